@@ -1,0 +1,12 @@
+# Compiler-wide settings: ccache, link order, sanitizers. Nothing here is needed to build.
+find_program(BANYAN_CCACHE ccache)
+if(BANYAN_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_C_COMPILER_LAUNCHER "${BANYAN_CCACHE}")
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${BANYAN_CCACHE}")
+endif()
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib")
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+if(BANYAN_SANITIZE)
+  add_compile_options(-fsanitize=${BANYAN_SANITIZE} -fno-omit-frame-pointer -g)
+  add_link_options(-fsanitize=${BANYAN_SANITIZE})
+endif()

@@ -1,0 +1,248 @@
+#include "Base/ThreadPool.h"
+
+#include "Base/Error.h"
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <cstdlib>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include <sched.h>
+
+namespace banyan
+{
+namespace
+{
+
+thread_local bool InsideLoop = false;
+std::atomic<int> RanksOnThisNode{ 1 };
+std::mutex ProcessPoolMutex;
+std::unique_ptr<ThreadPool> ProcessPool;
+
+int CoresOfThisProcess()
+{
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  if (sched_getaffinity(0, sizeof(set), &set) == 0)
+  {
+    return std::max(1, CPU_COUNT(&set));
+  }
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+/// One ParallelFor call. It outlives the call when a worker still holds it, hence shared_ptr.
+struct Loop
+{
+  Loop(std::int64_t count, const std::function<void(std::int64_t, int)>& body)
+    : Count(count)
+    , Body(body)
+  {
+  }
+
+  /// Takes items until none is left or one has failed.
+  void Work(int worker)
+  {
+    const bool nested = InsideLoop;
+    InsideLoop = true;
+    for (std::int64_t i = this->Next++; i < this->Count; i = this->Next++)
+    {
+      try
+      {
+        if (!this->Failed)
+        {
+          this->Body(i, worker);
+        }
+      }
+      catch (...)
+      {
+        std::lock_guard<std::mutex> lock(this->Mutex);
+        if (!this->Failed.exchange(true))
+        {
+          this->Failure = std::current_exception();
+        }
+      }
+      if (++this->Done == this->Count)
+      {
+        std::lock_guard<std::mutex> lock(this->Mutex);
+        this->AllDone.notify_all();
+      }
+    }
+    InsideLoop = nested;
+  }
+
+  void WaitAndRethrow()
+  {
+    std::unique_lock<std::mutex> lock(this->Mutex);
+    this->AllDone.wait(lock, [this] { return this->Done == this->Count; });
+    if (this->Failure)
+    {
+      std::rethrow_exception(this->Failure);
+    }
+  }
+
+  bool Exhausted() const { return this->Next >= this->Count; }
+
+  const std::int64_t Count;
+  const std::function<void(std::int64_t, int)>& Body;
+  std::atomic<std::int64_t> Next{ 0 };
+  std::atomic<std::int64_t> Done{ 0 };
+  std::atomic<bool> Failed{ false };
+  std::exception_ptr Failure;
+  std::mutex Mutex;
+  std::condition_variable AllDone;
+};
+
+} // namespace
+
+struct ThreadPool::Internals
+{
+  std::vector<std::thread> Threads;
+  std::deque<std::shared_ptr<Loop>> Loops;
+  std::mutex Mutex;
+  std::condition_variable Wake;
+  bool Stop = false;
+
+  void Run(int worker)
+  {
+    std::unique_lock<std::mutex> lock(this->Mutex);
+    while (true)
+    {
+      this->Wake.wait(lock, [this] { return this->Stop || !this->Loops.empty(); });
+      if (this->Stop)
+      {
+        return;
+      }
+      const std::shared_ptr<Loop> loop = this->Loops.front();
+      if (loop->Exhausted())
+      {
+        this->Loops.pop_front();
+        continue;
+      }
+      lock.unlock();
+      loop->Work(worker);
+      lock.lock();
+    }
+  }
+
+  void Remove(const std::shared_ptr<Loop>& loop)
+  {
+    std::lock_guard<std::mutex> lock(this->Mutex);
+    for (auto it = this->Loops.begin(); it != this->Loops.end(); ++it)
+    {
+      if (*it == loop)
+      {
+        this->Loops.erase(it);
+        return;
+      }
+    }
+  }
+};
+
+ThreadPool::ThreadPool(int width)
+  : Self(std::make_unique<Internals>())
+{
+  if (width < 1)
+  {
+    throw Error("A thread pool needs at least one thread");
+  }
+  for (int worker = 1; worker < width; ++worker)
+  {
+    this->Self->Threads.emplace_back([this, worker] { this->Self->Run(worker); });
+  }
+}
+
+ThreadPool::~ThreadPool()
+{
+  {
+    std::lock_guard<std::mutex> lock(this->Self->Mutex);
+    this->Self->Stop = true;
+  }
+  this->Self->Wake.notify_all();
+  for (std::thread& thread : this->Self->Threads)
+  {
+    thread.join();
+  }
+}
+
+int ThreadPool::Width() const noexcept
+{
+  return static_cast<int>(this->Self->Threads.size()) + 1;
+}
+
+void ThreadPool::ParallelFor(
+  std::int64_t count, const std::function<void(std::int64_t, int worker)>& body)
+{
+  if (count <= 0)
+  {
+    return;
+  }
+  const auto loop = std::make_shared<Loop>(count, body);
+  const bool share = count > 1 && !InsideLoop && !this->Self->Threads.empty();
+  if (share)
+  {
+    {
+      std::lock_guard<std::mutex> lock(this->Self->Mutex);
+      this->Self->Loops.push_back(loop);
+    }
+    this->Self->Wake.notify_all();
+  }
+  // Concurrent callers from outside share worker number 0 only with themselves: scratch memory is
+  // per call, so two loops never meet in it.
+  loop->Work(0);
+  if (share)
+  {
+    this->Remove(loop);
+  }
+  loop->WaitAndRethrow();
+}
+
+void ThreadPool::ParallelFor(std::int64_t count, const std::function<void(std::int64_t)>& body)
+{
+  const std::function<void(std::int64_t, int)> wrapped = [&body](std::int64_t i, int) { body(i); };
+  this->ParallelFor(count, wrapped);
+}
+
+ThreadPool& ThreadPool::Process()
+{
+  std::lock_guard<std::mutex> lock(ProcessPoolMutex);
+  if (!ProcessPool)
+  {
+    ProcessPool = std::make_unique<ThreadPool>(DefaultWidth());
+  }
+  return *ProcessPool;
+}
+
+void ThreadPool::SetProcessWidth(int width)
+{
+  const int wanted = width > 0 ? width : DefaultWidth();
+  std::lock_guard<std::mutex> lock(ProcessPoolMutex);
+  if (!ProcessPool || ProcessPool->Width() != wanted)
+  {
+    ProcessPool = std::make_unique<ThreadPool>(wanted);
+  }
+}
+
+int ThreadPool::DefaultWidth()
+{
+  if (const char* text = std::getenv("BANYAN_THREADS"))
+  {
+    const int threads = std::atoi(text);
+    if (threads > 0)
+    {
+      return threads;
+    }
+  }
+  return std::max(1, CoresOfThisProcess() / RanksOnThisNode.load());
+}
+
+void ThreadPool::SetRanksOnThisNode(int ranks)
+{
+  RanksOnThisNode = std::max(1, ranks);
+}
+
+} // namespace banyan

@@ -1,0 +1,79 @@
+#ifndef banyan_Cache_BrickCache_h
+#define banyan_Cache_BrickCache_h
+
+#include "Series/SeriesFile.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace banyan
+{
+
+/// Decoded samples of one brick, in the array's own type, `[z][y][x]`, x fastest.
+struct BrickValues
+{
+  ScalarType Type = ScalarType::Float32;
+  Box Samples; ///< in samples of its level, starting at 0 (see BrickLayout)
+  std::vector<unsigned char> Bytes;
+
+  template <class T>
+  const T* As() const
+  {
+    return reinterpret_cast<const T*>(this->Bytes.data());
+  }
+};
+
+/// Least-recently-used cache of decoded bricks under a hard byte budget, shared by reader and
+/// renderer. Bricks are known by what they decode to (payload identity), so one that does not
+/// change over time is held once.
+///
+/// Bricks in use (whose pointer somebody holds) are not counted after they were evicted; callers
+/// that hold many must bound them on their own (the renderer draws in batches).
+/// All methods may be called from any thread; two threads that ask for the same brick decode it
+/// once.
+class BrickCache
+{
+public:
+  struct Statistics
+  {
+    std::uint64_t Bytes = 0;     ///< held now
+    std::uint64_t PeakBytes = 0; ///< most ever held
+    std::uint64_t Hits = 0;
+    std::uint64_t Misses = 0; ///< equals the number of bricks decoded through the cache
+    std::uint64_t Evictions = 0;
+  };
+
+  explicit BrickCache(std::uint64_t budgetBytes);
+  ~BrickCache();
+
+  std::shared_ptr<const BrickValues> Get(
+    const SeriesFile& series, const FieldKey& field, std::int64_t brick);
+
+  /// Evicts at once when the new budget is smaller. 0 keeps nothing.
+  void SetBudget(std::uint64_t bytes);
+  std::uint64_t Budget() const;
+  void Clear();
+  Statistics GetStatistics() const;
+
+  /// The cache of this process; its budget is `BANYAN_CACHE_MB` from the environment if set,
+  /// otherwise 512 MiB.
+  static BrickCache& Process();
+
+private:
+  struct Internals;
+  std::unique_ptr<Internals> Self;
+};
+
+/// Copies the part `samples` of a field into a caller's array, decoding (through the cache, in
+/// parallel) only the bricks that it touches.
+/// @param samples of the field's level, inside the layout's samples
+/// @param values receives samples.Count() tuples; the value goes to
+/// `values[tupleIndex * stride + component]`, x fastest, in the array's own type.
+/// @param stride components per tuple of the receiving array
+void ReadRegion(BrickCache& cache, const SeriesFile& series, const FieldKey& field,
+  const Box& samples, void* values, int stride, int component);
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,58 @@
+#ifndef banyan_Parallel_Communicator_h
+#define banyan_Parallel_Communicator_h
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace banyan
+{
+
+/// What the parallel algorithms need of a message-passing library: ranks, bytes and nothing else.
+/// Implementations: MPI, one process alone, and simulated ranks (threads) for tests. Only one
+/// thread per rank may use it (the main thread: ParaView initialises MPI as single-threaded).
+class Communicator
+{
+public:
+  virtual ~Communicator() = default;
+  virtual int Rank() const = 0;
+  virtual int Size() const = 0;
+
+  /// Non-blocking; `data` must stay until `WaitAll()`. Messages between a pair of ranks with equal
+  /// tags arrive in order. More than 2^31 bytes are allowed.
+  virtual void Send(int to, int tag, const void* data, std::size_t bytes) = 0;
+  virtual void Receive(int from, int tag, void* data, std::size_t bytes) = 0;
+  /// Until all sends and receives posted by this rank are complete.
+  virtual void WaitAll() = 0;
+
+  virtual void Barrier() = 0;
+  virtual void Broadcast(int root, void* data, std::size_t bytes) = 0;
+  /// `all` receives Size() * bytes.
+  virtual void AllGather(const void* mine, std::size_t bytes, void* all) = 0;
+};
+
+std::unique_ptr<Communicator> MakeSelfCommunicator();
+
+/// Runs `body` on `size` simulated ranks (one thread each) and returns when all have ended; the
+/// first exception is thrown again (and the other ranks are released with an Error).
+void RunOnSimulatedRanks(int size, const std::function<void(Communicator&)>& body);
+
+/// Gathers one string per rank, on every rank.
+std::vector<std::string> AllGatherStrings(Communicator& communicator, const std::string& mine);
+
+/// Sum or maximum over all ranks, on every rank (summed in rank order: the same bits everywhere).
+double AllSum(Communicator& communicator, double mine);
+double AllMax(Communicator& communicator, double mine);
+std::vector<double> AllGatherValues(Communicator& communicator, double mine);
+
+/// Collective: all ranks learn whether one of them failed.
+/// @param mine this rank's error sentence; empty if all is well
+/// @return empty if no rank failed; else the sentence of the lowest failing rank, which names it
+std::string AgreeOnError(Communicator& communicator, const std::string& mine);
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,36 @@
+#ifndef banyan_Parallel_Zones_h
+#define banyan_Parallel_Zones_h
+
+#include "Base/Box.h"
+#include "Render/RayCamera.h"
+
+#include <string>
+#include <vector>
+
+namespace banyan
+{
+
+/// Cuts a grid of bricks into one zone per rank by a kd-tree of equal zones (section 3.2 of
+/// "Dynamic load balancing for parallel volume rendering", its first frame): the longest axis is
+/// split in the ratio of the ranks on each side, for any rank count. Zones are half-open boxes of
+/// brick positions, disjoint, and cover the grid; with more ranks than bricks some are empty.
+std::vector<Box> StaticZones(const glm::ivec3& bricks, int ranks);
+
+/// Cells of a zone of bricks.
+Box CellsOfBricks(const Box& bricks, int brickCells, const glm::ivec3& allCells);
+
+/// Makes boxes of cells disjoint that overlap in whole slabs (ghost layers, or the same piece on
+/// several ranks): the lower rank keeps the overlap. Throws Error when what is left of a box would
+/// not be a box.
+std::vector<Box> MakeDisjoint(std::vector<Box> boxes);
+
+/// Front-to-back order of disjoint boxes: box a stands before box b in the result when a can hide
+/// b. Exact for perspective (camera inside a box included) and parallel projections. Empty boxes
+/// come last. Throws Error when boxes hide each other in a circle (not possible for zones of a
+/// kd-tree).
+/// @param camera in the space of the boxes (index space)
+std::vector<int> FrontToBack(const RayCamera& camera, const std::vector<Box>& boxes);
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,50 @@
+#ifndef banyan_Render_BrickSource_h
+#define banyan_Render_BrickSource_h
+
+#include "Base/Box.h"
+#include "Base/ScalarType.h"
+#include "Series/SeriesIndex.h"
+#include "Series/ValueMask.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+namespace banyan
+{
+
+/// Samples of one brick in memory, ready for the marcher.
+struct BrickView
+{
+  const void* Values = nullptr; ///< the sample at the brick's lowest corner
+  ScalarType Type = ScalarType::Float32;
+  std::ptrdiff_t Stride[3] = { 1, 0, 0 }; ///< in values, per axis
+  std::shared_ptr<const void> Owner;      ///< keeps the values alive; may be empty
+};
+
+/// What the ray caster draws: a box of cells cut into bricks. Positions are samples of the whole
+/// grid (index space, starting at 0); cell c lies between samples c and c + 1.
+class BrickSource
+{
+public:
+  virtual ~BrickSource() = default;
+
+  /// Bricks are numbered x fastest over `Bricks()`; brick b owns the cells `CellsOf(b)`.
+  virtual glm::ivec3 Bricks() const = 0;
+  virtual Box CellsOf(std::int64_t brick) const = 0;
+
+  /// Of the finite values anywhere in the brick; empty when there is none.
+  virtual ValueRange RangeOf(std::int64_t brick) const = 0;
+  virtual ValueMask MaskOf(std::int64_t brick) const = 0;
+  virtual MaskRange MasksAreOver() const = 0;
+
+  /// Memory that one loaded brick takes (0 when the values are in memory anyway).
+  virtual std::size_t LoadBytes(std::int64_t brick) const = 0;
+
+  /// Called from many threads. Throws Error when the brick cannot be read.
+  virtual BrickView Load(std::int64_t brick) = 0;
+};
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,78 @@
+#ifndef banyan_Render_RayCaster_h
+#define banyan_Render_RayCaster_h
+
+#include "Render/BrickSource.h"
+#include "Render/RayCamera.h"
+#include "Render/TransferFunction.h"
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+
+#include <functional>
+#include <vector>
+
+namespace banyan
+{
+
+class ThreadPool;
+
+/// A part of a picture: premultiplied RGBA in float.
+struct FloatImage
+{
+  PixelRect Rect;
+  std::vector<glm::vec4> Pixels; ///< `[y][x]`, y up; Rect.Count() of them
+
+  glm::vec4& At(int x, int y);
+  const glm::vec4& At(int x, int y) const;
+};
+
+/// All that decides the picture, except the values.
+struct RayScene
+{
+  RayCamera Camera;               ///< in world space, of the whole picture
+  PixelRect Viewport;             ///< the pixels wanted, inside the picture
+  glm::dmat4 IndexToWorld{ 1.0 }; ///< affine: sample index (i, j, k) from 0 -> world
+  Box DomainCells; ///< all cells of the whole grid (of all ranks): where rays begin and end
+  TransferFunction Transfer;
+  double SampleDistance = 1.0;  ///< world length between samples; > 0
+  float OpacityLimit = 0.9961f; ///< a ray ends when its opacity reaches this
+  /// Depth in [0, 1] per pixel of Viewport at which rays end, `[y][x]`; empty means no geometry.
+  std::vector<float> Depth;
+};
+
+struct RayStatistics
+{
+  std::int64_t SamplesTaken = 0;
+  std::int64_t BricksDrawn = 0;   ///< bricks whose values were loaded
+  std::int64_t BricksSkipped = 0; ///< invisible under the transfer function, or off screen
+};
+
+/// Draws all bricks of `source` whose cells lie in `cells`.
+///
+/// Samples lie at t = (k + 1/2) * SampleDistance on one lattice per ray (see Ray), each stands for
+/// its interval [k, k + 1) * SampleDistance clipped to DomainCells, the clip planes and the depth,
+/// and belongs to exactly one cell; so pictures of disjoint sets of cells, blended in visibility
+/// order, give the picture of their union: within 1e-5 in float (rays that end early apart: 1 -
+/// OpacityLimit).
+/// Brick by brick, front to back; a batch of bricks never takes more than `budgetBytes`.
+///
+/// @return pixels of the footprint only (inside Viewport); may be empty.
+/// Throws Error when a brick cannot be read.
+FloatImage CastRays(const RayScene& scene, BrickSource& source, const Box& cells,
+  std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics);
+
+/// Bricks of `source` with cells in `cells` in front-to-back order for the camera.
+std::vector<std::int64_t> VisibilityOrder(
+  const RayCamera& cameraInIndexSpace, const BrickSource& source, const Box& cells);
+
+/// The slow, obvious reference: double precision, one ray after the other, every sample through
+/// all eight corners, no skipping, no early end, no table (`function` gives colour and opacity per
+/// UnitDistance of the scene's transfer function for any value).
+/// @param value gives the sample at an index position (0-based) or NaN
+FloatImage ReferenceImage(const RayScene& scene,
+  const std::function<double(const glm::ivec3&)>& value,
+  const std::function<glm::dvec4(double)>& function);
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,87 @@
+#ifndef banyan_Series_SeriesEncoder_h
+#define banyan_Series_SeriesEncoder_h
+
+#include "Series/SeriesIndex.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace banyan
+{
+
+class ThreadPool;
+
+struct EncodeOptions
+{
+  /// > 0 and finite, or 0 for bit-exact. See ErrorBoundMode.
+  double ErrorBound = 1.0 / 512.0;
+  ErrorBoundMode Mode = ErrorBoundMode::RelativeToSeriesRange;
+  int KeyframeInterval = 8; ///< steps per segment, in [1, 1024]
+  int BrickCells = 0;       ///< 8, 16, 32 or 64; 0 chooses by the size of the grid
+  int CompressionLevel = 3; ///< of zstd, in [1, 19]
+};
+
+/// What the arrays of a series are; ranges are needed only for relative error bounds.
+struct ArrayDescription
+{
+  std::string Name;
+  ScalarType Type = ScalarType::Float32;
+  std::vector<std::string> ComponentNames; ///< one per component, may hold empty strings
+  std::vector<ValueRange> SeriesRanges; ///< one per component: of the finite values over all steps
+};
+
+/// Values of one array at one step: `[nz][ny][nx][components]`, x (and components) fastest, the
+/// whole extent. Borrowed, not owned.
+struct ArrayValues
+{
+  const void* Values = nullptr;
+};
+
+/// Writes a series step by step: one segment per `KeyframeInterval` steps.
+///
+/// The index file appears (and grows) with each whole segment when no series of that name existed;
+/// an existing series stays untouched until `Finish()` replaces it. An encoder that is destroyed
+/// without `Finish()` removes what it wrote. A killed process leaves the segments that were indexed
+/// readable.
+///
+/// Exactness: every finite voxel is bounded by ErrorBoundAbsolute in its own type, verified here
+/// voxel by voxel; NaN (payload bits included) and infinities are bit-exact.
+///
+/// Threads: `AddStep` uses the pool; one thread at a time may use an encoder.
+class SeriesEncoder
+{
+public:
+  /// @param path of the index file; segments go to `path + ".d"`. Throws Error when the
+  /// description or an option is out of range, or the folder cannot be made.
+  SeriesEncoder(const std::string& path, const Grid& grid,
+    const std::vector<ArrayDescription>& arrays, const EncodeOptions& options, ThreadPool& pool);
+  ~SeriesEncoder();
+  SeriesEncoder(const SeriesEncoder&) = delete;
+  SeriesEncoder& operator=(const SeriesEncoder&) = delete;
+
+  /// Which array is coloured by at first; default is the first one.
+  void SetActiveScalars(const std::string& name);
+
+  /// @param time greater than the one before
+  /// @param arrays one per description, same order
+  /// Throws Error on bad input or when the disk is full; the encoder can then only be destroyed.
+  void AddStep(double time, const std::vector<ArrayValues>& arrays);
+
+  /// Writes what is left, replaces the index atomically and returns it. At least one step is
+  /// needed.
+  SeriesIndex Finish();
+
+  /// Called with a value in [0, 1) that says how much of the present step is encoded; may return
+  /// false to interrupt: AddStep then throws Error.
+  void SetProgress(std::function<bool(double)> progress);
+
+private:
+  struct Internals;
+  std::unique_ptr<Internals> Self;
+};
+
+} // namespace banyan
+
+#endif

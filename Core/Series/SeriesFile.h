@@ -1,0 +1,92 @@
+#ifndef banyan_Series_SeriesFile_h
+#define banyan_Series_SeriesFile_h
+
+#include "Series/SeriesIndex.h"
+#include "Series/ValueMask.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace banyan
+{
+
+/// Names one field of scalars: a component of an array at a step and level.
+struct FieldKey
+{
+  int Step = 0;
+  int Array = 0;
+  int Component = 0;
+  int Level = 0;
+};
+
+/// 128-bit hash of a payload and of what is needed to decode it: equal identities decode to equal
+/// values.
+struct PayloadIdentity
+{
+  std::uint64_t Low = 0;
+  std::uint64_t High = 0;
+  friend bool operator==(const PayloadIdentity& a, const PayloadIdentity& b)
+  {
+    return a.Low == b.Low && a.High == b.High;
+  }
+};
+
+/// What the tree knows of a brick without its payload.
+struct BrickNode
+{
+  ValueRange Range;          ///< extremes of the decoded finite samples; empty if there is none
+  ValueMask Mask = 0;        ///< over the component's series range; 0 when nothing finite
+  bool Uniform = false;      ///< a macro voxel: every sample has the value Range.Low, bit-exact
+  bool HasNonFinite = false; ///< some sample is NaN or infinite
+  PayloadIdentity Identity;  ///< equal to the step before's: unchanged
+  std::uint32_t PayloadBytes = 0; ///< in the file; 0 for a macro voxel
+};
+
+/// An open series. All methods may be called from any thread.
+///
+/// Opening reads the index and checks that segments exist with their right sizes; node tables and
+/// payloads are read (memory-mapped) and checked against their checksums when first needed.
+/// Everything that does not fit throws Error: never garbage, never a crash.
+class SeriesFile
+{
+public:
+  static std::shared_ptr<SeriesFile> Open(const std::string& path);
+  ~SeriesFile();
+
+  const std::string& Path() const;
+  const SeriesIndex& Index() const;
+  /// A number that no other open series of this process has.
+  std::uint64_t Id() const;
+
+  BrickLayout Layout(int level) const;
+  /// The range that the masks of a component are made over (its Range in the index).
+  MaskRange MaskRangeOf(int array, int component) const;
+
+  /// All bricks of a field, in the order of `BrickLayout::IndexOf`. Kept for the most recently used
+  /// fields only; hold the pointer as long as it is needed.
+  std::shared_ptr<const std::vector<BrickNode>> Nodes(const FieldKey& field) const;
+
+  /// Decodes one brick.
+  /// @param values receives `Layout(level).SamplesOf(brick).Count()` values of the array's own
+  /// type, `[z][y][x]`, x fastest.
+  /// Throws Error when the payload is damaged.
+  void DecodeBrick(const FieldKey& field, std::int64_t brick, void* values) const;
+
+  /// Checks the checksums of the bricks' payloads without decoding them.
+  void VerifyBricks(const FieldKey& field, const std::vector<std::int64_t>& bricks) const;
+
+  /// Bytes of tables and payloads read so far, and number of bricks decoded so far.
+  std::uint64_t BytesRead() const;
+  std::uint64_t BricksDecoded() const;
+
+private:
+  SeriesFile();
+  struct Internals;
+  std::unique_ptr<Internals> Self;
+};
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,93 @@
+#ifndef banyan_Series_SeriesIndex_h
+#define banyan_Series_SeriesIndex_h
+
+#include "Base/ScalarType.h"
+#include "Series/Grid.h"
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace banyan
+{
+
+/// How `ErrorBound` is meant.
+enum class ErrorBoundMode
+{
+  RelativeToSeriesRange, ///< times (maximum - minimum) of the component over the whole series
+  Absolute               ///< in the units of the data
+};
+
+/// Extremes of the finite values of one component. Empty (Low > High) when there is none.
+struct ValueRange
+{
+  double Low = std::numeric_limits<double>::infinity();
+  double High = -std::numeric_limits<double>::infinity();
+
+  bool Empty() const { return !(this->Low <= this->High); }
+  double Width() const { return this->Empty() ? 0.0 : this->High - this->Low; }
+  void Include(double value)
+  {
+    this->Low = value < this->Low ? value : this->Low;
+    this->High = value > this->High ? value : this->High;
+  }
+  void Include(const ValueRange& other)
+  {
+    this->Low = other.Low < this->Low ? other.Low : this->Low;
+    this->High = other.High > this->High ? other.High : this->High;
+  }
+};
+
+/// One component of one array: its lattice and what was measured while encoding.
+struct ComponentIndex
+{
+  std::string Name;              ///< may be empty
+  ValueRange Range;              ///< of the decoded finite values over the whole series
+  double ErrorBoundAbsolute = 0; ///< |decoded - original| <= this for every finite voxel, verified
+  double MeasuredMaxError = 0;   ///< the largest |decoded - original| met while encoding
+  double SumSquaredError = 0;    ///< over all finite voxels of all steps; for RMSE and PSNR
+  std::int64_t FiniteCount = 0;  ///< voxels (of all steps) that are finite
+  std::int64_t NonFiniteCount = 0; ///< NaN and infinities, kept bit-exact
+};
+
+struct ArrayIndex
+{
+  std::string Name;
+  ScalarType Type = ScalarType::Float32;
+  std::vector<ComponentIndex> Components; ///< at least one
+};
+
+/// One segment file: a group of consecutive steps.
+struct SegmentIndex
+{
+  std::string File; ///< name inside `<series>.d/`, without a path
+  int FirstStep = 0;
+  int Steps = 0;
+  std::uint64_t Bytes = 0; ///< size of the file
+};
+
+/// All that the index file says. See Documentation/format.md.
+struct SeriesIndex
+{
+  Grid Domain;
+  int BrickCells = 16;
+  int Levels = 1;
+  int KeyframeInterval = 8;
+  std::string ActiveScalars; ///< name of the array to colour by at first; may be empty
+  std::vector<ArrayIndex> Arrays;
+  std::vector<double> Times; ///< strictly increasing, one per step that a segment holds
+  std::vector<SegmentIndex> Segments;
+
+  std::uint64_t PayloadBytesIn = 0; ///< raw size of everything encoded so far
+
+  int Steps() const { return static_cast<int>(this->Times.size()); }
+  /// Index of the array of that name, or -1.
+  int FindArray(const std::string& name) const;
+  /// The segment that holds a step. Throws Error when the step does not exist.
+  const SegmentIndex& SegmentOf(int step) const;
+};
+
+} // namespace banyan
+
+#endif
