@@ -196,7 +196,7 @@ void ThreadPool::ParallelFor(
   loop->Work(0);
   if (share)
   {
-    this->Remove(loop);
+    this->Self->Remove(loop);
   }
   loop->WaitAndRethrow();
 }
