@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that Banyan is built, tested and demonstrated with.
+#   install-dependencies.sh          installs those that are missing (as root, or through sudo)
+#   install-dependencies.sh --list   prints their names
+# Does nothing, and needs neither root nor network, when all are there.
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+Packages=(
+  # Compiler and build tools
+  g++ cmake ninja-build ccache pkg-config
+  # Libraries of Core, the generator, the tests and the benchmarks
+  libzstd-dev libxxhash-dev nlohmann-json3-dev libglm-dev libhwy-dev libfftw3-dev
+  libgtest-dev libbenchmark-dev
+  # ParaView, and what its CMake package looks for but does not depend on
+  paraview paraview-dev python3-paraview libopenmpi-dev
+  qtbase5-dev qttools5-dev libqt5svg5-dev libqt5opengl5-dev libqt5x11extras5-dev
+  qtxmlpatterns5-dev-tools libxml2-dev libhdf5-openmpi-dev libutfcpp-dev libogg-dev libtheora-dev
+  libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libswresample-dev libgl2ps-dev
+  libpng-dev libnetcdf-dev libgdal-dev libglew-dev libdouble-conversion-dev libfreetype-dev
+  # To run: ranks, a display, pictures and animations
+  openmpi-bin xvfb ffmpeg imagemagick openbox
+  python3-numpy python3-matplotlib
+)
+
+case "${1:-}" in
+  "") ;;
+  --list) printf '%s\n' "${Packages[@]}"; exit 0 ;;
+  *) sed -n '2,5s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+esac
+
+if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+  fail "packages can be installed on Debian only: install the equivalents of" \
+    "'install-dependencies.sh --list' yourself and set BANYAN_SKIP_INSTALL=1."
+fi
+
+# A package counts as present when dpkg says "installed", not when only its settings remain.
+installed="$(dpkg-query -W -f '${binary:Package} ${db:Status-Status}\n' 2>/dev/null |
+  awk '$2 == "installed" { sub(/:.*/, "", $1); print $1 }')"
+missing=()
+for package in "${Packages[@]}"; do
+  grep -qxF -- "$package" <<<"$installed" || missing+=("$package")
+done
+if [[ ${#missing[@]} == 0 ]]; then
+  say "All ${#Packages[@]} packages are installed."
+  exit 0
+fi
+
+as_root=()
+if [[ "$(id -u)" != 0 ]]; then
+  command -v sudo >/dev/null ||
+    fail "${#missing[@]} packages are missing and only root can install them; run" \
+      "'apt-get install ${missing[*]}' as root."
+  as_root=(sudo)
+fi
+say "Installing ${#missing[@]} packages: ${missing[*]}"
+apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300)
+"${apt[@]}" update >&2 ||
+  say "The package lists could not be refreshed; trying with those that are there."
+"${apt[@]}" install -y --no-install-recommends "${missing[@]}" >&2 ||
+  fail "apt-get could not install the packages; its own messages above say why."
