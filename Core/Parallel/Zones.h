@@ -2,7 +2,7 @@
 #define banyan_Parallel_Zones_h
 
 #include "Base/Box.h"
-#include "Render/RayCamera.h"
+#include "Render/Viewpoint.h"
 
 #include <string>
 #include <vector>
@@ -28,8 +28,11 @@ std::vector<Box> MakeDisjoint(std::vector<Box> boxes);
 /// b. Exact for perspective (camera inside a box included) and parallel projections. Empty boxes
 /// come last. Throws Error when boxes hide each other in a circle (not possible for zones of a
 /// kd-tree).
-/// @param camera in the space of the boxes (index space)
-std::vector<int> FrontToBack(const RayCamera& camera, const std::vector<Box>& boxes);
+/// Among the orders that are right it gives the one with the lowest box numbers first, so that all
+/// ranks agree.
+/// @param view in the space of the boxes: index space, where cell c lies between samples c and
+///        c + 1, so that box corners are positions as they stand
+std::vector<int> FrontToBack(const Viewpoint& view, const std::vector<Box>& boxes);
 
 } // namespace banyan
 
