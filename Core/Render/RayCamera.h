@@ -26,7 +26,11 @@ struct PixelRect
   }
 };
 
+/// Empty rectangles come back as the all-zero rectangle.
 PixelRect Intersection(const PixelRect& a, const PixelRect& b);
+
+/// Smallest rectangle around both; an empty one counts as nothing.
+PixelRect Union(const PixelRect& a, const PixelRect& b);
 
 /// A ray in the space that the camera was given in: p(t) = Origin + t * Direction, |Direction| = 1.
 /// t = 0 is the eye (perspective) or the plane through `Anchor` (parallel projection), so that
@@ -34,9 +38,9 @@ PixelRect Intersection(const PixelRect& a, const PixelRect& b);
 struct Ray
 {
   glm::dvec3 Origin;
-  glm::dvec3 Direction;
-  double Near = 0; ///< t of the near clipping plane
-  double Far = 0;  ///< t of the far clipping plane
+  glm::dvec3 Direction; ///< from the near to the far clipping plane
+  double Near = 0;      ///< t of the near clipping plane
+  double Far = 0;       ///< t of the far clipping plane; may be infinite
 };
 
 /// Rays through pixel centres, from nothing but the matrix that takes world points to clip space
@@ -45,7 +49,7 @@ class RayCamera
 {
 public:
   /// @param worldToClip invertible; throws Error otherwise
-  /// @param imageSize pixels of the whole picture (not of one tile)
+  /// @param imageSize pixels of the whole picture (not of one tile), at least 1 x 1
   /// @param anchor where t = 0 is for parallel projections; any point, the same on all ranks
   RayCamera(const glm::dmat4& worldToClip, const glm::ivec2& imageSize, const glm::dvec3& anchor);
 
@@ -57,18 +61,22 @@ public:
   /// The ray through the centre of pixel (x, y), bottom left is (0, 0).
   Ray RayOf(int x, int y) const;
 
-  /// t along `ray` where the depth buffer has `depth` in [0, 1].
+  /// t along `ray`, which is RayOf(x, y), where the depth buffer has `depth` in [0, 1].
   double DistanceAtDepth(const Ray& ray, int x, int y, double depth) const;
 
-  /// Pixels that a box (axis-aligned in world space) may touch; the whole image when part of the
-  /// box is behind the eye; empty when it is off screen.
+  /// Pixels whose rays may meet a box (axis-aligned in the camera's space) between the clipping
+  /// planes; empty when there is none. At most a pixel too large per side for a box that lies
+  /// between the planes; what is in front of the near plane does not count.
   PixelRect Footprint(const glm::dvec3& low, const glm::dvec3& high) const;
 
   /// The same camera seen from another space: `toWorld` is affine and takes points of that space to
-  /// the present one. `Ray::Direction` has unit length in that other space.
+  /// the present one. `Ray::Direction` has unit length in that other space, so `t` has its unit.
   RayCamera InSpace(const glm::dmat4& toWorld) const;
 
 private:
+  /// Homogeneous point of pixel centre (x, y) half way between the clip planes in clip space.
+  glm::dvec4 MiddleOf(int x, int y) const;
+
   glm::dmat4 WorldToClip;
   glm::dmat4 ClipToWorld;
   glm::ivec2 Size;

@@ -44,20 +44,25 @@ struct RayStatistics
 {
   std::int64_t SamplesTaken = 0;
   std::int64_t BricksDrawn = 0;   ///< bricks whose values were loaded
-  std::int64_t BricksSkipped = 0; ///< invisible under the transfer function, or off screen
+  std::int64_t BricksSkipped = 0; ///< not loaded: cannot be seen, off screen, or hidden
 };
 
 /// Draws all bricks of `source` whose cells lie in `cells`.
 ///
-/// Samples lie at t = (k + 1/2) * SampleDistance on one lattice per ray (see Ray), each stands for
-/// its interval [k, k + 1) * SampleDistance clipped to DomainCells, the clip planes and the depth,
-/// and belongs to exactly one cell; so pictures of disjoint sets of cells, blended in visibility
-/// order, give the picture of their union: within 1e-5 in float (rays that end early apart: 1 -
-/// OpacityLimit).
-/// Brick by brick, front to back; a batch of bricks never takes more than `budgetBytes`.
+/// Samples lie at t = (k + 1/2) * SampleDistance on one lattice per ray (see Ray). Each stands for
+/// its interval [k, k + 1) * SampleDistance clipped to DomainCells, the clip planes and the depth;
+/// the sample of an interval that is clipped lies in the middle of what is left of it. Each sample
+/// belongs to exactly one cell, whatever the bricks: so pictures of disjoint sets of cells, blended
+/// in visibility order, give the picture of their union within 1e-5 in float (rays that end early
+/// apart: 1 - OpacityLimit), and the size of bricks, the budget and the threads change no bit.
 ///
-/// @return pixels of the footprint only (inside Viewport); may be empty.
-/// Throws Error when a brick cannot be read.
+/// Brick by brick, front to back; a batch of bricks never takes more than `budgetBytes`, unless one
+/// brick alone does. Bricks that cannot be seen are not loaded: by their range and mask under the
+/// transfer function, off screen, or behind pixels that have all reached the opacity limit.
+///
+/// @param statistics is added to
+/// @return pixels that the visible bricks may touch (inside Viewport); may be empty.
+/// Throws Error when the scene is not usable or a brick cannot be read.
 FloatImage CastRays(const RayScene& scene, BrickSource& source, const Box& cells,
   std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics);
 
@@ -67,8 +72,10 @@ std::vector<std::int64_t> VisibilityOrder(
 
 /// The slow, obvious reference: double precision, one ray after the other, every sample through
 /// all eight corners, no skipping, no early end, no table (`function` gives colour and opacity per
-/// UnitDistance of the scene's transfer function for any value).
+/// UnitDistance of the scene's transfer function for any value). Shares the lattice's definition
+/// with CastRays, but of its code only the camera.
 /// @param value gives the sample at an index position (0-based) or NaN
+/// @return the whole viewport
 FloatImage ReferenceImage(const RayScene& scene,
   const std::function<double(const glm::ivec3&)>& value,
   const std::function<glm::dvec4(double)>& function);

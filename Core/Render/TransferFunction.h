@@ -5,6 +5,7 @@
 
 #include <glm/vec4.hpp>
 
+#include <limits>
 #include <vector>
 
 namespace banyan
@@ -12,7 +13,8 @@ namespace banyan
 
 /// A transfer function as a table of colour (not premultiplied) and opacity per unit distance,
 /// equally spaced over [Low, High]; values outside take the first or last entry. Look-ups take the
-/// nearest entry: make the table fine (4096 is the default everywhere).
+/// nearest entry: make the table fine (4096 is the default everywhere). When High <= Low, values up
+/// to Low take the first entry and those above the last.
 struct TransferFunction
 {
   double Low = 0.0;
@@ -21,38 +23,82 @@ struct TransferFunction
   double UnitDistance = 1.0;      ///< world length over which an entry's opacity applies; > 0
 
   /// Values of the series range's bins that may be visible (opacity > 0 somewhere in the bin).
+  /// Conservative, as VisibleValues.
   ValueMask VisibleBins(const MaskRange& range) const;
 
-  /// Whether some value in [low, high] has an opacity above 0.
+  /// Whether some value in [low, high] has an opacity above 0. Conservative: a neighbouring entry
+  /// counts too, so that rounding in an interpolation never loses a sample. Takes time in
+  /// proportion to the entries; ask a VisibleValues when there are many intervals.
   bool AnyVisible(double low, double high) const;
+
+  /// Throws Error when there are fewer than two entries, when the range or the unit distance is
+  /// not usable, or when a colour or opacity is not finite or an opacity outside [0, 1].
+  void Check() const;
+};
+
+/// Answers "can any value in this interval be seen" in constant time.
+class VisibleValues
+{
+public:
+  explicit VisibleValues(const TransferFunction& function);
+
+  /// As TransferFunction::AnyVisible; an empty interval (low > high) shows nothing.
+  bool Any(double low, double high) const;
+
+private:
+  std::vector<int> VisibleBefore; ///< entries with opacity > 0 before entry i
+  double Low = 0.0;
+  double Scale = 0.0;
+  double Margin = 1.0; ///< entries
 };
 
 /// The table of a transfer function for one sample distance: premultiplied colour and opacity,
 /// opacity = 1 - (1 - a)^(distance / UnitDistance).
+///
+/// How values find their entry without losing precision: positions are (value - Low) * Scale in
+/// float, so types that float cannot hold (64-bit, 32-bit integers) must subtract `Low()` in double
+/// first and ask `IndexOfRelative`; data around 1e6 that varies by 0.1 then uses the whole table.
 class StepTable
 {
 public:
+  /// Throws Error as TransferFunction::Check does, and for a distance that is not above 0.
   StepTable(const TransferFunction& function, double sampleDistance);
 
-  /// Entry of a value: nearest; NaN gives a fully transparent entry.
-  const glm::vec4& At(float value) const
+  /// Entry of a value: nearest; NaN and infinities give a fully transparent entry.
+  const glm::vec4& At(float value) const { return this->Entries[this->IndexOf(value)]; }
+
+  int IndexOf(float value) const
   {
-    // The comparison is false for NaN, which then takes the extra transparent entry at the end.
-    const float position = (value - this->Low) * this->Scale + 0.5f;
-    if (!(position >= 0.0f))
-    {
-      return value == value ? this->Entries.front() : this->Entries.back();
-    }
-    return position >= this->Count ? this->Entries[this->LastIndex]
-                                   : this->Entries[static_cast<int>(position)];
+    return this->Index(value, (value - this->LowFloat) * this->Scale + this->Bias);
   }
 
+  /// @param valueMinusLow the value minus Low(), subtracted in double
+  int IndexOfRelative(float valueMinusLow) const
+  {
+    return this->Index(valueMinusLow, valueMinusLow * this->Scale + 0.5f);
+  }
+
+  double Low() const { return this->LowDouble; }
+  const glm::vec4* Data() const { return this->Entries.data(); }
+
 private:
+  int Index(float value, float position) const
+  {
+    // Written so that it compiles to max, min and a select: no jumps, and no NaN is ever converted.
+    const float notBelow = position > 0.0f ? position : 0.0f;
+    const float inside = notBelow < this->LastPosition ? notBelow : this->LastPosition;
+    const int index = static_cast<int>(inside);
+    constexpr float largest = std::numeric_limits<float>::max();
+    return value <= largest && value >= -largest ? index : this->TransparentIndex;
+  }
+
   std::vector<glm::vec4> Entries; ///< one more than the function's: the transparent one
-  float Low = 0;
+  double LowDouble = 0;
+  float LowFloat = 0;
   float Scale = 0;
-  float Count = 0;
-  int LastIndex = 0;
+  float Bias = 0.5f; ///< rounds to the nearest entry and undoes what rounding Low to float did
+  float LastPosition = 0;
+  int TransparentIndex = 0;
 };
 
 } // namespace banyan

@@ -1,0 +1,283 @@
+#include "Render/RayCaster.h"
+
+#include "Base/Error.h"
+#include "Base/ThreadPool.h"
+#include "Render/BrickMarcher.h"
+#include "Render/VisibilityOrder.h"
+
+#include <algorithm>
+#include <atomic>
+
+namespace banyan
+{
+namespace
+{
+
+/// Pixels per side of a tile: its rays (about 200 kB) and a brick's values share the L2 cache.
+constexpr int TileSize = 32;
+/// Bricks loaded before the rays that have become opaque are looked at again.
+constexpr std::size_t BricksPerBatch = 512;
+
+struct PlannedBrick
+{
+  std::int64_t Number = 0;
+  Box Cells;
+  PixelRect Footprint;
+  double Key = 0;
+};
+
+class Caster
+{
+public:
+  Caster(const RayScene& scene, BrickSource& source, const Box& cells, std::uint64_t budgetBytes,
+    ThreadPool& pool, RayStatistics& statistics)
+    : Scene(scene)
+    , Source(source)
+    , Cells(Intersection(cells, scene.DomainCells))
+    , BudgetBytes(budgetBytes)
+    , Pool(pool)
+    , Statistics(statistics)
+    , Lattice(scene)
+    , Table(scene.Transfer, scene.SampleDistance)
+    , IndexCamera(scene.Camera.InSpace(scene.IndexToWorld))
+  {
+  }
+
+  FloatImage Cast()
+  {
+    this->Plan();
+    this->MakeTiles();
+    std::size_t next = 0;
+    while (next < this->Bricks.size())
+    {
+      next = this->TakeBatch(next);
+      if (!this->Batch.empty())
+      {
+        this->DrawBatch();
+      }
+    }
+    // The marcher keeps the transmittance where the picture has the opacity.
+    for (glm::vec4& pixel : this->Picture.Pixels)
+    {
+      pixel.a = 1.0f - pixel.a;
+    }
+    return std::move(this->Picture);
+  }
+
+private:
+  /// Finds the bricks that can be seen, front to back, and the rectangle that they cover.
+  void Plan()
+  {
+    const glm::ivec3 counts = this->Source.Bricks();
+    const std::int64_t count = std::int64_t{ counts.x } * counts.y * counts.z;
+    const ValueMask visibleBins = this->Scene.Transfer.VisibleBins(this->Source.MasksAreOver());
+    const VisibleValues visible(this->Scene.Transfer);
+    for (std::int64_t number = 0; number < count; ++number)
+    {
+      PlannedBrick brick;
+      brick.Number = number;
+      const Box whole = this->Source.CellsOf(number);
+      brick.Cells = Intersection(whole, this->Cells);
+      if (brick.Cells.Empty())
+      {
+        continue;
+      }
+      const ValueRange range = this->Source.RangeOf(number);
+      if ((this->Source.MaskOf(number) & visibleBins) != 0 && visible.Any(range.Low, range.High))
+      {
+        brick.Footprint = Intersection(this->FootprintOf(brick.Cells), this->Scene.Viewport);
+      }
+      if (brick.Footprint.Empty())
+      {
+        ++this->Statistics.BricksSkipped;
+        continue;
+      }
+      brick.Key = VisibilityKey(this->IndexCamera, whole);
+      this->Picture.Rect = Union(this->Picture.Rect, brick.Footprint);
+      this->Bricks.push_back(brick);
+    }
+    std::sort(this->Bricks.begin(), this->Bricks.end(),
+      [](const PlannedBrick& a, const PlannedBrick& b)
+      { return a.Key < b.Key || (a.Key == b.Key && a.Number < b.Number); });
+  }
+
+  PixelRect FootprintOf(const Box& cells) const
+  {
+    return this->IndexCamera.Footprint(glm::dvec3(cells.Lo), glm::dvec3(cells.Hi));
+  }
+
+  void MakeTiles()
+  {
+    this->Picture.Pixels.assign(
+      static_cast<std::size_t>(this->Picture.Rect.Count()), glm::vec4(0, 0, 0, 1));
+    this->TileCounts = (this->Picture.Rect.Size() + TileSize - 1) / TileSize;
+    const auto tiles = static_cast<std::size_t>(this->TileCounts.x) * this->TileCounts.y;
+    this->TileIsDone.assign(tiles, 0);
+    this->BricksOfTile.resize(tiles);
+    this->Scratch.resize(this->Pool.Width());
+  }
+
+  PixelRect RectOfTile(std::int64_t tile) const
+  {
+    const glm::ivec2 low =
+      this->Picture.Rect.Lo + glm::ivec2(static_cast<int>(tile % this->TileCounts.x),
+                                static_cast<int>(tile / this->TileCounts.x)) *
+                                TileSize;
+    return Intersection({ low, low + TileSize }, this->Picture.Rect);
+  }
+
+  /// Calls function(tile) for the tiles under a footprint that have rays left.
+  template <class Function>
+  void ForTilesUnder(const PixelRect& footprint, Function&& function) const
+  {
+    const glm::ivec2 first = (footprint.Lo - this->Picture.Rect.Lo) / TileSize;
+    const glm::ivec2 last = (footprint.Hi - 1 - this->Picture.Rect.Lo) / TileSize;
+    for (int y = first.y; y <= last.y; ++y)
+    {
+      for (int x = first.x; x <= last.x; ++x)
+      {
+        const std::size_t tile = static_cast<std::size_t>(y) * this->TileCounts.x + x;
+        if (!this->TileIsDone[tile])
+        {
+          function(tile);
+        }
+      }
+    }
+  }
+
+  /// Puts bricks from number `first` on into the batch, as many as the budget allows but at least
+  /// one, and enters them in the lists of the tiles. @return the first brick of the next batch
+  std::size_t TakeBatch(std::size_t first)
+  {
+    this->Batch.clear();
+    for (std::vector<int>& bricks : this->BricksOfTile)
+    {
+      bricks.clear();
+    }
+    std::uint64_t bytes = 0;
+    std::size_t next = first;
+    for (; next < this->Bricks.size(); ++next)
+    {
+      const PlannedBrick& brick = this->Bricks[next];
+      const std::uint64_t brickBytes = this->Source.LoadBytes(brick.Number);
+      const bool full = bytes + brickBytes > this->BudgetBytes ||
+                        (bytes + brickBytes > 0 && this->Batch.size() >= BricksPerBatch);
+      if (full && !this->Batch.empty())
+      {
+        break;
+      }
+      const int position = static_cast<int>(this->Batch.size());
+      bool wanted = false;
+      this->ForTilesUnder(brick.Footprint,
+        [&](std::size_t tile)
+        {
+          this->BricksOfTile[tile].push_back(position);
+          wanted = true;
+        });
+      if (wanted)
+      {
+        this->Batch.push_back(&brick);
+        bytes += brickBytes;
+      }
+      else
+      {
+        ++this->Statistics.BricksSkipped;
+      }
+    }
+    return next;
+  }
+
+  void DrawBatch()
+  {
+    this->Views.assign(this->Batch.size(), {});
+    this->Pool.ParallelFor(static_cast<std::int64_t>(this->Batch.size()),
+      [this](std::int64_t i) { this->Views[i] = this->Source.Load(this->Batch[i]->Number); });
+    this->Statistics.BricksDrawn += static_cast<std::int64_t>(this->Batch.size());
+
+    std::atomic<std::int64_t> samples{ 0 };
+    const std::function<void(std::int64_t, int)> draw = [&](std::int64_t tile, int worker)
+    {
+      if (!this->BricksOfTile[tile].empty())
+      {
+        samples += this->DrawTile(tile, this->Scratch[worker]);
+      }
+    };
+    this->Pool.ParallelFor(static_cast<std::int64_t>(this->BricksOfTile.size()), draw);
+    this->Statistics.SamplesTaken += samples;
+    this->Views.clear();
+  }
+
+  /// @return samples taken
+  std::int64_t DrawTile(std::int64_t number, RayTile& tile)
+  {
+    tile.Rect = this->RectOfTile(number);
+    tile.Picture = &this->Picture;
+    tile.TransmittanceLimit = 1.0f - this->Scene.OpacityLimit;
+    tile.ActiveRays = 0;
+    tile.SamplesTaken = 0;
+    tile.Rays.resize(static_cast<std::size_t>(tile.Rect.Count()));
+    RaySamples* ray = tile.Rays.data();
+    for (int y = tile.Rect.Lo.y; y < tile.Rect.Hi.y; ++y)
+    {
+      for (int x = tile.Rect.Lo.x; x < tile.Rect.Hi.x; ++x, ++ray)
+      {
+        const bool active = this->Picture.At(x, y).a > tile.TransmittanceLimit;
+        *ray = active ? this->Lattice.SamplesOf(x, y) : RaySamples{};
+        tile.ActiveRays += ray->Empty() ? 0 : 1;
+      }
+    }
+    for (const int position : this->BricksOfTile[number])
+    {
+      if (tile.ActiveRays == 0)
+      {
+        break;
+      }
+      const PlannedBrick& brick = *this->Batch[position];
+      const Box whole = this->Source.CellsOf(brick.Number);
+      MarchBrick(
+        { this->Views[position], whole.Lo, brick.Cells }, this->Table, brick.Footprint, tile);
+    }
+    this->TileIsDone[number] = tile.ActiveRays == 0 ? 1 : 0;
+    return tile.SamplesTaken;
+  }
+
+  const RayScene& Scene;
+  BrickSource& Source;
+  Box Cells;
+  std::uint64_t BudgetBytes;
+  ThreadPool& Pool;
+  RayStatistics& Statistics;
+  RayLattice Lattice;
+  StepTable Table;
+  RayCamera IndexCamera;
+
+  FloatImage Picture;
+  std::vector<PlannedBrick> Bricks;
+  glm::ivec2 TileCounts{ 0 };
+  std::vector<char> TileIsDone;               ///< no ray of the tile needs another brick
+  std::vector<std::vector<int>> BricksOfTile; ///< positions in the batch, front to back
+  std::vector<RayTile> Scratch;               ///< one per worker
+  std::vector<const PlannedBrick*> Batch;
+  std::vector<BrickView> Views;
+};
+
+} // namespace
+
+glm::vec4& FloatImage::At(int x, int y)
+{
+  const auto row = static_cast<std::size_t>(y - this->Rect.Lo.y);
+  return this->Pixels[row * this->Rect.Size().x + (x - this->Rect.Lo.x)];
+}
+
+const glm::vec4& FloatImage::At(int x, int y) const
+{
+  return const_cast<FloatImage*>(this)->At(x, y);
+}
+
+FloatImage CastRays(const RayScene& scene, BrickSource& source, const Box& cells,
+  std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics)
+{
+  return Caster(scene, source, cells, budgetBytes, pool, statistics).Cast();
+}
+
+} // namespace banyan

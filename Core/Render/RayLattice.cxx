@@ -1,0 +1,265 @@
+#include "Render/RayLattice.h"
+
+#include "Base/Error.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace banyan
+{
+namespace
+{
+
+constexpr double FixedOne = static_cast<double>(std::int64_t{ 1 } << FractionBits);
+/// More samples on one ray than anybody waits for: a wrong unit, not a wish.
+constexpr double MostSamplesPerRay = 1e7;
+/// Beyond this the numbers of samples are no longer exact in double.
+constexpr double LargestSampleNumber = 1e15;
+
+void CheckDomain(const Box& cells)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (cells.Lo[axis] < -LargestPosition || cells.Hi[axis] > LargestPosition)
+    {
+      throw Error("The volume has too many cells along one axis to be drawn",
+        { {}, {}, static_cast<std::uint64_t>(std::abs(std::int64_t{ cells.Hi[axis] })),
+          static_cast<std::uint64_t>(LargestPosition) });
+    }
+  }
+}
+
+void CheckDistance(const RayScene& scene)
+{
+  if (!(scene.SampleDistance > 0.0) || !std::isfinite(scene.SampleDistance))
+  {
+    throw Error("The sample distance must be above 0");
+  }
+  const glm::dmat3 linear(scene.IndexToWorld);
+  const glm::dvec3 size(scene.DomainCells.Size());
+  const double longest = glm::length(linear[0]) * size.x + glm::length(linear[1]) * size.y +
+                         glm::length(linear[2]) * size.z;
+  if (longest / scene.SampleDistance > MostSamplesPerRay)
+  {
+    throw Error("The sample distance is too small for the volume: a ray would take more than ten "
+                "million samples");
+  }
+}
+
+void CheckViewport(const RayScene& scene)
+{
+  const PixelRect picture{ { 0, 0 }, scene.Camera.ImageSize() };
+  if (!scene.Viewport.Empty() && !(Intersection(scene.Viewport, picture) == scene.Viewport))
+  {
+    throw Error("The viewport lies outside the picture");
+  }
+  const auto pixels = static_cast<std::uint64_t>(scene.Viewport.Count());
+  if (!scene.Depth.empty() && scene.Depth.size() != pixels)
+  {
+    throw Error("The depth buffer does not have the size of the viewport",
+      { {}, {}, static_cast<std::uint64_t>(scene.Depth.size()), pixels });
+  }
+}
+
+} // namespace
+
+FixedBox::FixedBox(const Box& cells)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Lo[axis] = ToFixed(cells.Lo[axis]);
+    this->Size[axis] = static_cast<std::uint64_t>(ToFixed(cells.Size()[axis]));
+    this->LowFace[axis] = cells.Lo[axis];
+    this->HighFace[axis] = cells.Hi[axis];
+  }
+}
+
+void RaySamples::SamplesIn(const FixedBox& box, std::int32_t& begin, std::int32_t& end) const
+{
+  begin = end = 0;
+  double in = 0.0;
+  double out = this->Count;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (this->Step[axis] != 0)
+    {
+      const double low = (box.LowFace[axis] - this->Start[axis]) * this->InverseStep[axis];
+      const double high = (box.HighFace[axis] - this->Start[axis]) * this->InverseStep[axis];
+      in = std::max(in, std::min(low, high));
+      out = std::min(out, std::max(low, high));
+    }
+  }
+  if (!(in < out + 1.0))
+  {
+    return;
+  }
+  // Rounded down, the estimates are at most two samples early and never late: the exact test in
+  // fixed point finds the true ends from there.
+  std::int32_t first = static_cast<std::int32_t>(in);
+  const std::int32_t tooLate = std::min(first + 3, this->Count);
+  std::int64_t position[3];
+  for (; first < tooLate; ++first)
+  {
+    this->PositionOf(first, position);
+    if (box.Contains(position))
+    {
+      break;
+    }
+  }
+  if (first >= tooLate)
+  {
+    return;
+  }
+  begin = first;
+  end = std::max(static_cast<std::int32_t>(out), first + 1);
+  for (; end < this->Count; ++end)
+  {
+    this->PositionOf(end, position);
+    if (!box.Contains(position))
+    {
+      break;
+    }
+  }
+}
+
+RayLattice::RayLattice(const RayScene& scene)
+  : Scene(scene)
+  , WorldToIndex(glm::inverse(scene.IndexToWorld))
+  , WorldToIndexLinear(WorldToIndex)
+{
+  CheckDomain(scene.DomainCells);
+  CheckDistance(scene);
+  CheckViewport(scene);
+  const double volume = glm::determinant(glm::dmat3(scene.IndexToWorld));
+  if (volume == 0.0 || !std::isfinite(volume) || !std::isfinite(1.0 / volume))
+  {
+    throw Error("The volume has no extent in space: a spacing is 0 or not finite");
+  }
+}
+
+RaySamples RayLattice::SamplesOf(int x, int y) const
+{
+  RaySamples samples;
+  const Ray ray = this->Scene.Camera.RayOf(x, y);
+  double enter = ray.Near;
+  double exit = ray.Far;
+  if (!this->Scene.Depth.empty())
+  {
+    const PixelRect& view = this->Scene.Viewport;
+    const auto pixel = static_cast<std::size_t>(y - view.Lo.y) * view.Size().x + (x - view.Lo.x);
+    const float depth = this->Scene.Depth[pixel];
+    if (depth < 1.0f)
+    {
+      exit = std::min(exit, this->Scene.Camera.DistanceAtDepth(ray, x, y, depth));
+    }
+  }
+  const IndexRay indexRay{ glm::dvec3(this->WorldToIndex * glm::dvec4(ray.Origin, 1.0)),
+    this->WorldToIndexLinear * ray.Direction };
+  if (!this->ClipToDomain(indexRay, enter, exit))
+  {
+    return samples;
+  }
+
+  const double step = this->Scene.SampleDistance;
+  if (std::max(std::abs(enter), std::abs(exit)) / step > LargestSampleNumber)
+  {
+    throw Error("The sample distance is too small for the distance between the eye and the volume");
+  }
+  const double first = std::ceil(enter / step);
+  const double last = std::floor(exit / step);
+  if (first > last)
+  {
+    samples.Head = this->PlacePartial(indexRay, enter, exit);
+    return samples;
+  }
+  samples.Head = this->PlacePartial(indexRay, enter, first * step);
+  samples.Tail = this->PlacePartial(indexRay, last * step, exit);
+  samples.Count = static_cast<std::int32_t>(last - first);
+  if (samples.Count > 0)
+  {
+    this->PlaceWhole(indexRay, first, samples);
+  }
+  return samples;
+}
+
+bool RayLattice::ClipToDomain(const IndexRay& ray, double& enter, double& exit) const
+{
+  const Box& cells = this->Scene.DomainCells;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double low = cells.Lo[axis];
+    const double high = cells.Hi[axis];
+    if (ray.Direction[axis] == 0.0)
+    {
+      if (!(ray.Origin[axis] >= low && ray.Origin[axis] <= high))
+      {
+        return false;
+      }
+      continue;
+    }
+    const double a = (low - ray.Origin[axis]) / ray.Direction[axis];
+    const double b = (high - ray.Origin[axis]) / ray.Direction[axis];
+    enter = std::max(enter, std::min(a, b));
+    exit = std::min(exit, std::max(a, b));
+  }
+  return !cells.Empty() && enter < exit;
+}
+
+std::int64_t RayLattice::Fixed(const IndexRay& ray, double t, int axis) const
+{
+  // Rounding may put a sample just outside the domain; the upper face belongs to the last cell.
+  const Box& cells = this->Scene.DomainCells;
+  const double position = ray.Origin[axis] + ray.Direction[axis] * t;
+  const double inside = std::clamp<double>(position, cells.Lo[axis], cells.Hi[axis]);
+  const auto fixed = static_cast<std::int64_t>(std::floor(inside * FixedOne));
+  return std::min(fixed, ToFixed(cells.Hi[axis]) - 1);
+}
+
+PartialSample RayLattice::PlacePartial(const IndexRay& ray, double enter, double exit) const
+{
+  PartialSample sample;
+  const double fraction = (exit - enter) / this->Scene.SampleDistance;
+  if (fraction > 0.0)
+  {
+    const double middle = 0.5 * (enter + exit);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      sample.Position[axis] = this->Fixed(ray, middle, axis);
+    }
+    sample.Fraction = static_cast<float>(std::min(fraction, 1.0));
+  }
+  return sample;
+}
+
+void RayLattice::PlaceWhole(const IndexRay& ray, double firstSample, RaySamples& samples) const
+{
+  const double distance = this->Scene.SampleDistance;
+  const Box& cells = this->Scene.DomainCells;
+  const std::int64_t steps = samples.Count - 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const std::int64_t base = this->Fixed(ray, (firstSample + 0.5) * distance, axis);
+    std::int64_t step = 0;
+    if (steps > 0)
+    {
+      step = static_cast<std::int64_t>(std::llround(ray.Direction[axis] * distance * FixedOne));
+      // Keeps the last sample inside the domain too, whatever was rounded on the way.
+      const std::int64_t end = base + steps * step;
+      const std::int64_t low = ToFixed(cells.Lo[axis]);
+      const std::int64_t high = ToFixed(cells.Hi[axis]) - 1;
+      if (end < low || end > high)
+      {
+        step = (std::clamp(end, low, high) - base) / steps;
+      }
+    }
+    samples.Base[axis] = base;
+    samples.Step[axis] = step;
+    samples.Start[axis] = static_cast<double>(base) / FixedOne;
+    samples.InverseStep[axis] = step != 0 ? FixedOne / static_cast<double>(step) : 0.0;
+  }
+}
+
+} // namespace banyan

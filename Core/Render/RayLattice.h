@@ -1,0 +1,115 @@
+#ifndef banyan_Render_RayLattice_h
+#define banyan_Render_RayLattice_h
+
+#include "Render/RayCaster.h"
+
+#include <glm/mat3x3.hpp>
+
+#include <cstdint>
+
+namespace banyan
+{
+
+/// Positions along rays are fixed-point numbers in index space, with this many bits below the
+/// point. Adding them is exact, so the samples of a ray do not depend on where one starts counting:
+/// bricks, zones and batches of any size see the same samples, bit for bit, and each sample lies in
+/// exactly one cell.
+constexpr int FractionBits = 36;
+/// Leaves room for a sum of two positions in 64 bits.
+constexpr int LargestPosition = 1 << 26;
+
+inline std::int64_t ToFixed(int cell)
+{
+  return static_cast<std::int64_t>(cell) * (std::int64_t{ 1 } << FractionBits);
+}
+
+/// A box of cells with fixed-point faces: a sample is in exactly one cell, the one with
+/// Lo <= position < Lo + Size per axis.
+struct FixedBox
+{
+  explicit FixedBox(const Box& cells);
+
+  bool Contains(const std::int64_t (&position)[3]) const
+  {
+    // One unsigned comparison per axis tests both faces.
+    return (static_cast<std::uint64_t>(position[0] - this->Lo[0]) < this->Size[0]) &
+           (static_cast<std::uint64_t>(position[1] - this->Lo[1]) < this->Size[1]) &
+           (static_cast<std::uint64_t>(position[2] - this->Lo[2]) < this->Size[2]);
+  }
+
+  std::int64_t Lo[3];
+  std::uint64_t Size[3];
+  double LowFace[3];
+  double HighFace[3];
+};
+
+/// A sample at the end of a ray, which stands for less than a whole interval: it lies in the middle
+/// of what is left of the interval.
+struct PartialSample
+{
+  std::int64_t Position[3];
+  float Fraction = 0; ///< of the sample distance; 0 when there is no such sample
+};
+
+/// All samples of one ray in the domain: a head, `Count` whole ones, a tail.
+struct RaySamples
+{
+  std::int64_t Base[3]; ///< position of whole sample 0
+  std::int64_t Step[3];
+  double Start[3];       ///< Base in cells
+  double InverseStep[3]; ///< samples per cell; meaningless where Step is 0
+  std::int32_t Count = 0;
+  PartialSample Head;
+  PartialSample Tail;
+
+  bool Empty() const
+  {
+    return this->Count == 0 && this->Head.Fraction == 0 && this->Tail.Fraction == 0;
+  }
+
+  void PositionOf(std::int32_t sample, std::int64_t (&position)[3]) const
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      position[axis] = this->Base[axis] + sample * this->Step[axis];
+    }
+  }
+
+  /// Whole samples inside a box: a half-open interval, exact; empty when begin >= end.
+  void SamplesIn(const FixedBox& box, std::int32_t& begin, std::int32_t& end) const;
+};
+
+/// Makes the samples of rays from what all ranks know: the camera, the domain, the clip planes, the
+/// depth and the sample distance. The values and their distribution have no part in it.
+class RayLattice
+{
+public:
+  /// Refers to `scene`, which must stay. Throws Error when the scene is not usable.
+  explicit RayLattice(const RayScene& scene);
+
+  /// @param x, y pixel of the whole picture, inside the scene's viewport
+  RaySamples SamplesOf(int x, int y) const;
+
+private:
+  /// A ray in index space; t stays a world length.
+  struct IndexRay
+  {
+    glm::dvec3 Origin;
+    glm::dvec3 Direction; ///< cells per world length
+  };
+
+  /// Narrows t to where the ray is inside the domain.
+  /// @return false when nothing is left
+  bool ClipToDomain(const IndexRay& ray, double& enter, double& exit) const;
+  void PlaceWhole(const IndexRay& ray, double firstSample, RaySamples& samples) const;
+  PartialSample PlacePartial(const IndexRay& ray, double enter, double exit) const;
+  std::int64_t Fixed(const IndexRay& ray, double t, int axis) const;
+
+  const RayScene& Scene;
+  glm::dmat4 WorldToIndex;
+  glm::dmat3 WorldToIndexLinear;
+};
+
+} // namespace banyan
+
+#endif

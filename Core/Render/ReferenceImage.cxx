@@ -1,0 +1,141 @@
+#include "Render/RayCaster.h"
+
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace banyan
+{
+namespace
+{
+
+/// One ray through the field, in double; shares only the camera with the ray caster.
+class ReferenceRay
+{
+public:
+  ReferenceRay(const RayScene& scene, const std::function<double(const glm::ivec3&)>& value,
+    const std::function<glm::dvec4(double)>& function)
+    : Scene(scene)
+    , Value(value)
+    , Function(function)
+    , WorldToIndex(glm::inverse(scene.IndexToWorld))
+  {
+  }
+
+  glm::dvec4 Integrate(int x, int y) const
+  {
+    const Ray ray = this->Scene.Camera.RayOf(x, y);
+    double enter = ray.Near;
+    double exit = std::min(ray.Far, this->GeometryAt(ray, x, y));
+    if (!this->ClipToDomain(ray, enter, exit))
+    {
+      return glm::dvec4(0.0);
+    }
+    const double step = this->Scene.SampleDistance;
+    glm::dvec3 color(0.0);
+    double transmittance = 1.0;
+    for (double k = std::floor(enter / step); k * step < exit; k += 1.0)
+    {
+      const double begin = std::max(k * step, enter);
+      const double end = std::min((k + 1.0) * step, exit);
+      const double value = this->Interpolate(this->IndexAt(ray, 0.5 * (begin + end)));
+      if (std::isfinite(value) && end > begin)
+      {
+        const glm::dvec4 entry = this->Function(value);
+        const double length = (end - begin) / this->Scene.Transfer.UnitDistance;
+        const double opacity = 1.0 - std::pow(1.0 - entry.a, length);
+        color += transmittance * opacity * glm::dvec3(entry);
+        transmittance *= 1.0 - opacity;
+      }
+    }
+    return glm::dvec4(color, 1.0 - transmittance);
+  }
+
+private:
+  double GeometryAt(const Ray& ray, int x, int y) const
+  {
+    const PixelRect& view = this->Scene.Viewport;
+    if (this->Scene.Depth.empty())
+    {
+      return ray.Far;
+    }
+    const std::size_t row = static_cast<std::size_t>(y - view.Lo.y) * view.Size().x;
+    return this->Scene.Camera.DistanceAtDepth(ray, x, y, this->Scene.Depth[row + (x - view.Lo.x)]);
+  }
+
+  glm::dvec3 IndexAt(const Ray& ray, double t) const
+  {
+    return glm::dvec3(this->WorldToIndex * glm::dvec4(ray.Origin + t * ray.Direction, 1.0));
+  }
+
+  bool ClipToDomain(const Ray& ray, double& enter, double& exit) const
+  {
+    const glm::dvec3 origin = this->IndexAt(ray, 0.0);
+    const glm::dvec3 way(this->WorldToIndex * glm::dvec4(ray.Direction, 0.0));
+    const Box& cells = this->Scene.DomainCells;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      // Dividing by 0 gives infinities of the right sign, or NaN (which changes nothing here) for
+      // a ray inside a face.
+      const double a = (cells.Lo[axis] - origin[axis]) / way[axis];
+      const double b = (cells.Hi[axis] - origin[axis]) / way[axis];
+      enter = std::max(enter, std::min(a, b));
+      exit = std::min(exit, std::max(a, b));
+    }
+    return !cells.Empty() && enter < exit;
+  }
+
+  double Interpolate(const glm::dvec3& position) const
+  {
+    const Box& cells = this->Scene.DomainCells;
+    glm::ivec3 cell;
+    glm::dvec3 part;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int floor = static_cast<int>(std::floor(position[axis]));
+      cell[axis] = std::clamp(floor, cells.Lo[axis], cells.Hi[axis] - 1);
+      part[axis] = std::clamp(position[axis] - cell[axis], 0.0, 1.0);
+    }
+    double sum = 0.0;
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      const glm::ivec3 offset(corner & 1, corner >> 1 & 1, corner >> 2);
+      double weight = 1.0;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        weight *= offset[axis] ? part[axis] : 1.0 - part[axis];
+      }
+      // A corner of weight 0 counts too: 0 times NaN or infinity is NaN.
+      sum += weight * this->Value(cell + offset);
+    }
+    return sum;
+  }
+
+  const RayScene& Scene;
+  const std::function<double(const glm::ivec3&)>& Value;
+  const std::function<glm::dvec4(double)>& Function;
+  glm::dmat4 WorldToIndex;
+};
+
+} // namespace
+
+FloatImage ReferenceImage(const RayScene& scene,
+  const std::function<double(const glm::ivec3&)>& value,
+  const std::function<glm::dvec4(double)>& function)
+{
+  const ReferenceRay ray(scene, value, function);
+  FloatImage image;
+  image.Rect = scene.Viewport;
+  image.Pixels.reserve(static_cast<std::size_t>(scene.Viewport.Count()));
+  for (int y = scene.Viewport.Lo.y; y < scene.Viewport.Hi.y; ++y)
+  {
+    for (int x = scene.Viewport.Lo.x; x < scene.Viewport.Hi.x; ++x)
+    {
+      image.Pixels.emplace_back(ray.Integrate(x, y));
+    }
+  }
+  return image;
+}
+
+} // namespace banyan

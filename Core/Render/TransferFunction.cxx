@@ -1,0 +1,137 @@
+#include "Render/TransferFunction.h"
+
+#include "Base/Error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace banyan
+{
+namespace
+{
+
+/// Entries per unit of value. Bounded so that it stays finite in float: a range that narrow is a
+/// step at Low, whatever the scale.
+double EntriesPerValue(const TransferFunction& function)
+{
+  constexpr double steepest = 1e30;
+  const double width = function.High - function.Low;
+  const double entries = static_cast<double>(function.Entries.size()) - 1.0;
+  return width > 0.0 ? std::min(entries / width, steepest) : steepest;
+}
+
+} // namespace
+
+void TransferFunction::Check() const
+{
+  if (this->Entries.size() < 2)
+  {
+    throw Error("A transfer function needs at least two entries",
+      { {}, {}, static_cast<std::uint64_t>(this->Entries.size()), 2 });
+  }
+  if (!std::isfinite(this->Low) || !std::isfinite(this->High))
+  {
+    throw Error("The range of the transfer function is not finite");
+  }
+  if (!(this->UnitDistance > 0.0) || !std::isfinite(this->UnitDistance))
+  {
+    throw Error("The opacity unit distance must be above 0");
+  }
+  for (std::size_t i = 0; i < this->Entries.size(); ++i)
+  {
+    const glm::vec4& entry = this->Entries[i];
+    const bool finite = std::isfinite(entry.r) && std::isfinite(entry.g) && std::isfinite(entry.b);
+    if (!finite || !(entry.a >= 0.0f && entry.a <= 1.0f))
+    {
+      throw Error("An entry of the transfer function has a colour that is not finite or an opacity "
+                  "outside 0 to 1: entry " +
+                  std::to_string(i));
+    }
+  }
+}
+
+ValueMask TransferFunction::VisibleBins(const MaskRange& range) const
+{
+  const VisibleValues visible(*this);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const double width = range.High - range.Low;
+  if (!(width > 0.0))
+  {
+    return visible.Any(-infinity, infinity) ? MaskOfBins(0, 0) : ValueMask{ 0 };
+  }
+  // A value at the very edge may be counted to either side, depending on rounding.
+  const double slack = 1e-9 * width + 4e-16 * std::max(std::abs(range.Low), std::abs(range.High));
+  ValueMask mask = 0;
+  for (int bin = 0; bin < 64; ++bin)
+  {
+    const double low = bin == 0 ? -infinity : range.Low + width * (bin / 64.0) - slack;
+    const double high = bin == 63 ? infinity : range.Low + width * ((bin + 1) / 64.0) + slack;
+    mask |= visible.Any(low, high) ? MaskOfBins(bin, bin) : ValueMask{ 0 };
+  }
+  return mask;
+}
+
+bool TransferFunction::AnyVisible(double low, double high) const
+{
+  return VisibleValues(*this).Any(low, high);
+}
+
+VisibleValues::VisibleValues(const TransferFunction& function)
+  : Low(function.Low)
+  , Scale(EntriesPerValue(function))
+{
+  function.Check();
+  this->VisibleBefore.resize(function.Entries.size() + 1, 0);
+  for (std::size_t i = 0; i < function.Entries.size(); ++i)
+  {
+    this->VisibleBefore[i + 1] = this->VisibleBefore[i] + (function.Entries[i].a > 0.0f ? 1 : 0);
+  }
+  // Positions are computed in float by the marcher: about 1e-7 of the table's length off.
+  this->Margin = 1.0 + 1e-6 * static_cast<double>(function.Entries.size());
+}
+
+bool VisibleValues::Any(double low, double high) const
+{
+  if (!(low <= high))
+  {
+    return false;
+  }
+  const double last = static_cast<double>(this->VisibleBefore.size()) - 2.0;
+  const auto position = [&](double value) { return (value - this->Low) * this->Scale; };
+  const double first = std::clamp(std::floor(position(low) - this->Margin), 0.0, last);
+  const double end = std::clamp(std::ceil(position(high) + this->Margin), 0.0, last);
+  return this->VisibleBefore[static_cast<std::size_t>(end) + 1] >
+         this->VisibleBefore[static_cast<std::size_t>(first)];
+}
+
+StepTable::StepTable(const TransferFunction& function, double sampleDistance)
+{
+  function.Check();
+  if (!(sampleDistance > 0.0) || !std::isfinite(sampleDistance))
+  {
+    throw Error("The sample distance must be above 0");
+  }
+  const double exponent = sampleDistance / function.UnitDistance;
+  this->Entries.reserve(function.Entries.size() + 1);
+  for (const glm::vec4& entry : function.Entries)
+  {
+    // log1p and expm1 keep the relative precision of small opacities.
+    const double opacity =
+      entry.a < 1.0f ? -std::expm1(exponent * std::log1p(-double{ entry.a })) : 1.0;
+    this->Entries.emplace_back(static_cast<float>(entry.r * opacity),
+      static_cast<float>(entry.g * opacity), static_cast<float>(entry.b * opacity),
+      static_cast<float>(opacity));
+  }
+  this->Entries.emplace_back(0.0f);
+
+  constexpr double largest = std::numeric_limits<float>::max();
+  const double scale = EntriesPerValue(function);
+  this->LowDouble = function.Low;
+  this->LowFloat = static_cast<float>(std::clamp(function.Low, -largest, largest));
+  this->Scale = static_cast<float>(scale);
+  this->Bias = static_cast<float>(0.5 + (double{ this->LowFloat } - function.Low) * scale);
+  this->LastPosition = static_cast<float>(function.Entries.size()) - 0.5f;
+  this->TransparentIndex = static_cast<int>(function.Entries.size());
+}
+
+} // namespace banyan

@@ -1,0 +1,21 @@
+#ifndef banyan_Render_VisibilityOrder_h
+#define banyan_Render_VisibilityOrder_h
+
+#include "Base/Box.h"
+#include "Render/RayCamera.h"
+
+namespace banyan
+{
+
+/// A number by which the boxes of one grid (cut by whole planes, as bricks are) sort front to back:
+/// when box a can hide box b, a's number is smaller. Exact, for the eye inside a box too.
+///
+/// Why: on a ray from a to b, each axis either stays in one slab of the grid or moves on to a slab
+/// that is farther away on the same side of the eye. The squared distance of a box from the eye
+/// (perspective) and the depth of its low corner (parallel; boxes of one slab share it) grow
+/// strictly with each such move.
+double VisibilityKey(const RayCamera& cameraInIndexSpace, const Box& cells);
+
+} // namespace banyan
+
+#endif
