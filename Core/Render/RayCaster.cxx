@@ -72,6 +72,7 @@ private:
     const std::int64_t count = std::int64_t{ counts.x } * counts.y * counts.z;
     const ValueMask visibleBins = this->Scene.Transfer.VisibleBins(this->Source.MasksAreOver());
     const VisibleValues visible(this->Scene.Transfer);
+    const Viewpoint view = InIndexSpace(this->Scene.Camera, this->Scene.IndexToWorld);
     for (std::int64_t number = 0; number < count; ++number)
     {
       PlannedBrick brick;
@@ -92,7 +93,7 @@ private:
         ++this->Statistics.BricksSkipped;
         continue;
       }
-      brick.Key = VisibilityKey(this->IndexCamera, whole);
+      brick.Key = VisibilityKey(view, whole);
       this->Picture.Rect = Union(this->Picture.Rect, brick.Footprint);
       this->Bricks.push_back(brick);
     }

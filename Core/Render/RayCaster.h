@@ -4,6 +4,7 @@
 #include "Render/BrickSource.h"
 #include "Render/RayCamera.h"
 #include "Render/TransferFunction.h"
+#include "Render/Viewpoint.h"
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
@@ -66,9 +67,11 @@ struct RayStatistics
 FloatImage CastRays(const RayScene& scene, BrickSource& source, const Box& cells,
   std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics);
 
-/// Bricks of `source` with cells in `cells` in front-to-back order for the camera.
+/// Bricks of `source` with cells in `cells` in front-to-back order. Exact for bricks that are cut
+/// from a grid by whole planes; the eye may be inside.
+/// @param view in index space
 std::vector<std::int64_t> VisibilityOrder(
-  const RayCamera& cameraInIndexSpace, const BrickSource& source, const Box& cells);
+  const Viewpoint& view, const BrickSource& source, const Box& cells);
 
 /// The slow, obvious reference: double precision, one ray after the other, every sample through
 /// all eight corners, no skipping, no early end, no table (`function` gives colour and opacity per

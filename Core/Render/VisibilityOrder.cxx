@@ -9,22 +9,20 @@
 namespace banyan
 {
 
-double VisibilityKey(const RayCamera& cameraInIndexSpace, const Box& cells)
+double VisibilityKey(const Viewpoint& view, const Box& cells)
 {
   const glm::dvec3 low(cells.Lo);
   const glm::dvec3 high(cells.Hi);
-  if (cameraInIndexSpace.Parallel())
+  if (view.Parallel)
   {
-    const glm::dvec3 direction = cameraInIndexSpace.ViewDirection();
-    return glm::dot(direction, low);
+    return glm::dot(view.Direction, low);
   }
-  const glm::dvec3 eye = cameraInIndexSpace.Eye();
-  const glm::dvec3 away = glm::max(glm::max(low - eye, eye - high), glm::dvec3(0.0));
+  const glm::dvec3 away = glm::max(glm::max(low - view.Eye, view.Eye - high), glm::dvec3(0.0));
   return glm::dot(away, away);
 }
 
 std::vector<std::int64_t> VisibilityOrder(
-  const RayCamera& cameraInIndexSpace, const BrickSource& source, const Box& cells)
+  const Viewpoint& view, const BrickSource& source, const Box& cells)
 {
   struct Item
   {
@@ -39,7 +37,7 @@ std::vector<std::int64_t> VisibilityOrder(
     const Box part = Intersection(source.CellsOf(brick), cells);
     if (!part.Empty())
     {
-      items.push_back({ VisibilityKey(cameraInIndexSpace, source.CellsOf(brick)), brick });
+      items.push_back({ VisibilityKey(view, source.CellsOf(brick)), brick });
     }
   }
   std::sort(items.begin(), items.end(),

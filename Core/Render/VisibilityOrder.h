@@ -2,7 +2,7 @@
 #define banyan_Render_VisibilityOrder_h
 
 #include "Base/Box.h"
-#include "Render/RayCamera.h"
+#include "Render/Viewpoint.h"
 
 namespace banyan
 {
@@ -14,7 +14,8 @@ namespace banyan
 /// that is farther away on the same side of the eye. The squared distance of a box from the eye
 /// (perspective) and the depth of its low corner (parallel; boxes of one slab share it) grow
 /// strictly with each such move.
-double VisibilityKey(const RayCamera& cameraInIndexSpace, const Box& cells);
+/// @param view in the space of the boxes: index space
+double VisibilityKey(const Viewpoint& view, const Box& cells);
 
 } // namespace banyan
 
