@@ -1,0 +1,176 @@
+// The parts of banyan-generate around the physics, and the program itself.
+#include "GenerateOptions.h"
+#include "HotBlob.h"
+#include "ImageSeriesWriter.h"
+
+#include "Base/Error.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+namespace fs = std::filesystem;
+
+namespace
+{
+
+/// A folder of its own for each test, removed afterwards.
+class Generate : public testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    std::string pattern = (fs::temp_directory_path() / "banyan-generate-XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    this->Folder = pattern;
+  }
+  void TearDown() override { fs::remove_all(this->Folder); }
+
+  /// Runs the program and returns whether it succeeded.
+  bool Run(const std::string& arguments) const
+  {
+    const std::string command = std::string("\"") + BANYAN_GENERATE + "\" " + arguments + " 2>\"" +
+                                (this->Folder / "messages").string() + "\"";
+    return std::system(command.c_str()) == 0;
+  }
+  std::string Messages() const { return this->Text("messages"); }
+  std::string Text(const fs::path& name) const
+  {
+    std::ifstream file(this->Folder / name, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+
+  fs::path Folder;
+};
+
+std::string Base64(const std::string& bytes)
+{
+  return banyan::EncodeBase64(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+}
+
+std::string ErrorOf(const std::vector<std::string>& arguments)
+{
+  try
+  {
+    banyan::ParseGenerateOptions(arguments);
+  }
+  catch (const banyan::Error& error)
+  {
+    return error.what();
+  }
+  return "";
+}
+
+} // namespace
+
+TEST_F(Generate, Base64FollowsTheStandard)
+{
+  // The test vectors of RFC 4648, section 10.
+  EXPECT_EQ(Base64(""), "");
+  EXPECT_EQ(Base64("f"), "Zg==");
+  EXPECT_EQ(Base64("fo"), "Zm8=");
+  EXPECT_EQ(Base64("foo"), "Zm9v");
+  EXPECT_EQ(Base64("foob"), "Zm9vYg==");
+  EXPECT_EQ(Base64("fooba"), "Zm9vYmE=");
+  EXPECT_EQ(Base64("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(Base64("\xff\xef\xbf"), "/++/");
+}
+
+TEST_F(Generate, OptionsAreRead)
+{
+  const auto options = banyan::ParseGenerateOptions({ "--output", "here", "--size", "32", "--seed",
+    "7", "--arrays", "vorticity,temperature", "--duration", "1.5", "--steps", "3" });
+  EXPECT_EQ(options.Output, "here");
+  EXPECT_EQ(options.Size, 32);
+  EXPECT_EQ(options.Seed, 7u);
+  EXPECT_EQ(options.Steps, 3);
+  EXPECT_EQ(options.Duration, 1.5);
+  EXPECT_EQ(options.Arrays, (std::vector<std::string>{ "vorticity", "temperature" }));
+}
+
+TEST_F(Generate, WrongOptionsAreNamed)
+{
+  EXPECT_NE(ErrorOf({}).find("--output"), std::string::npos);
+  EXPECT_NE(ErrorOf({ "--output" }).find("--output needs a value"), std::string::npos);
+  EXPECT_NE(ErrorOf({ "--output", "o", "--size", "7" }).find("\"7\""), std::string::npos);
+  EXPECT_NE(ErrorOf({ "--output", "o", "--size", "33" }).find("even"), std::string::npos);
+  EXPECT_NE(ErrorOf({ "--output", "o", "--size", "32x" }).find("32x"), std::string::npos);
+  EXPECT_NE(ErrorOf({ "--output", "o", "--seed", "-1" }).find("-1"), std::string::npos);
+  EXPECT_NE(ErrorOf({ "--output", "o", "--duration", "nan" }).find("nan"), std::string::npos);
+  EXPECT_NE(ErrorOf({ "--output", "o", "--arrays", "heat" }).find("heat"), std::string::npos);
+  EXPECT_NE(ErrorOf({ "--output", "o", "--fast" }).find("--fast"), std::string::npos);
+}
+
+TEST_F(Generate, TheBlobIsHotInsideColdOutsideAndSeeded)
+{
+  const banyan::HotBlob blob(1, 0.1f), same(1, 0.1f), other(2, 0.1f);
+  EXPECT_NEAR(blob.Temperature(3.14f, 3.14f, 1.25f), 1.0f, 1e-3f);
+  EXPECT_NEAR(blob.Temperature(0.0f, 0.0f, 6.0f), 0.0f, 1e-3f);
+  bool differs = false;
+  std::mt19937 random(3);
+  for (int i = 0; i < 1000; ++i)
+  {
+    const float x = random() % 6283 / 1000.0f, y = random() % 6283 / 1000.0f;
+    const float t = blob.Temperature(x, y, 1.0f);
+    EXPECT_GE(t, 0.0f);
+    EXPECT_LE(t, 1.0f);
+    EXPECT_EQ(t, same.Temperature(x, y, 1.0f));
+    differs = differs || std::abs(t - other.Temperature(x, y, 1.0f)) > 0.1f;
+  }
+  EXPECT_TRUE(differs);
+}
+
+TEST_F(Generate, EqualSeedsGiveEqualBytesWithAnyNumberOfThreads)
+{
+  const std::string common = " --size 16 --steps 3 --duration 0.5 --arrays "
+                             "temperature,velocity,vorticity --output ";
+  ASSERT_TRUE(this->Run("--seed 5 --threads 1" + common + (this->Folder / "a").string()));
+  ASSERT_TRUE(this->Run("--seed 5 --threads 3" + common + (this->Folder / "b").string()));
+  ASSERT_TRUE(this->Run("--seed 6 --threads 1" + common + (this->Folder / "c").string()));
+  for (const char* name : { "flow_0000.vti", "flow_0001.vti", "flow_0002.vti", "flow.vti.series" })
+  {
+    ASSERT_FALSE(this->Text(fs::path("a") / name).empty()) << name;
+    EXPECT_TRUE(this->Text(fs::path("a") / name) == this->Text(fs::path("b") / name)) << name;
+  }
+  EXPECT_FALSE(this->Text("a/flow_0002.vti") == this->Text("c/flow_0002.vti"));
+}
+
+TEST_F(Generate, TheSeriesFileNamesEveryStepAndTime)
+{
+  ASSERT_TRUE(this->Run("--size 8 --steps 5 --duration 2 --output " + this->Folder.string()))
+    << this->Messages();
+  const auto series = nlohmann::json::parse(this->Text("flow.vti.series"));
+  ASSERT_EQ(series["files"].size(), 5u);
+  for (int step = 0; step < 5; ++step)
+  {
+    const std::string name = series["files"][step]["name"];
+    EXPECT_EQ(series["files"][step]["time"], 0.5 * step);
+    const std::string text = this->Text(name);
+    EXPECT_NE(text.find("WholeExtent=\"0 7 0 7 0 7\""), std::string::npos);
+    EXPECT_EQ(text.find("appended"), std::string::npos);
+    // 8 bytes of length and 512 floats, in base64.
+    EXPECT_NE(text.find("format=\"binary\">\n"), std::string::npos);
+  }
+  EXPECT_NE(this->Messages().find("step 5 of 5"), std::string::npos);
+}
+
+TEST_F(Generate, FailuresAreOneSentenceAndLeaveNothingHalfWritten)
+{
+  EXPECT_FALSE(this->Run("--size 8 --output /dev/null/folder"));
+  EXPECT_NE(this->Messages().find("banyan-generate: "), std::string::npos);
+  EXPECT_FALSE(this->Run("--size 12345"));
+  // A folder in the way of the third file: the first two are whole, the third leaves no trace.
+  fs::create_directories(this->Folder / "out" / "flow_0002.vti" / "x");
+  EXPECT_FALSE(
+    this->Run("--size 8 --steps 4 --duration 0.1 --output " + (this->Folder / "out").string()));
+  EXPECT_FALSE(fs::exists(this->Folder / "out" / "flow.vti.series"));
+  EXPECT_FALSE(fs::exists(this->Folder / "out" / "flow_0002.vti.partial"));
+  EXPECT_TRUE(fs::is_regular_file(this->Folder / "out" / "flow_0001.vti"));
+}
