@@ -8,8 +8,13 @@ namespace banyan
 
 /// A communicator over a duplicate of an MPI communicator (collective; the duplicate is freed with
 /// the object unless MPI has ended before).
+/// Works under MPI_THREAD_SINGLE: only the calling thread speaks MPI. Tags must lie in [0, 32767].
+/// Errors that MPI reports, and messages of another size than expected, are thrown as Error.
 /// @param mpiComm address of an MPI_Comm; void, so that no header of Core needs MPI
-std::unique_ptr<Communicator> MakeMpiCommunicator(const void* mpiComm);
+/// @param largestMessageBytes longer messages are cut, because MPI counts in int; the same on all
+///        ranks, at most 2^30 (tests make it small)
+std::unique_ptr<Communicator> MakeMpiCommunicator(
+  const void* mpiComm, std::size_t largestMessageBytes = std::size_t{ 1 } << 30);
 
 /// Ranks of the communicator that run on this machine (collective).
 int RanksOnThisNode(const void* mpiComm);

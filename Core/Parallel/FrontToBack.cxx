@@ -1,0 +1,182 @@
+#include "Parallel/Zones.h"
+
+#include "Base/Error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <queue>
+
+namespace banyan
+{
+namespace
+{
+
+/// The open interval of one unknown, narrowed by linear inequalities.
+struct Interval
+{
+  double Low;
+  double High = std::numeric_limits<double>::infinity();
+
+  /// factor * x < bound
+  void Below(double factor, double bound)
+  {
+    if (factor > 0)
+    {
+      this->High = std::min(this->High, bound / factor);
+    }
+    else if (factor < 0)
+    {
+      this->Low = std::max(this->Low, bound / factor);
+    }
+    else if (!(0 < bound))
+    {
+      this->High = -std::numeric_limits<double>::infinity();
+    }
+  }
+  /// factor * x > bound
+  void Above(double factor, double bound) { this->Below(-factor, -bound); }
+  bool Holds(double low, double high) const
+  {
+    return std::max(low, this->Low) < std::min(high, this->High);
+  }
+};
+
+enum class Hides
+{
+  Neither,
+  First,
+  Second,
+  Both
+};
+
+/// Whether some ray meets the inside of one box before that of the other.
+///
+/// Perspective: a ray from the eye E meets both when E + d lies in a and E + d / u in b for some
+/// u > 0, that is u * (b.Lo - E) < d < u * (b.Hi - E) and a.Lo - E < d < a.Hi - E. Per axis such a
+/// d exists when the two intervals overlap, which are two linear inequalities in u; u < 1 means
+/// that a comes first. Parallel: p in a and p + t * d in b, likewise linear in t; t > 0 means that
+/// a comes first. For a plane between the boxes the quotients are rounded on the right side of 1
+/// (or of 0), so that disjoint boxes never seem to hide each other.
+Hides WhoHides(const Viewpoint& view, const Box& a, const Box& b)
+{
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const glm::dvec3 aLow(a.Lo), aHigh(a.Hi), bLow(b.Lo), bHigh(b.Hi);
+  Interval interval{ view.Parallel ? -infinity : 0.0 };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (view.Parallel)
+    {
+      interval.Below(view.Direction[axis], bHigh[axis] - aLow[axis]);
+      interval.Above(view.Direction[axis], bLow[axis] - aHigh[axis]);
+    }
+    else
+    {
+      interval.Below(bLow[axis] - view.Eye[axis], aHigh[axis] - view.Eye[axis]);
+      interval.Above(bHigh[axis] - view.Eye[axis], aLow[axis] - view.Eye[axis]);
+    }
+  }
+  const double middle = view.Parallel ? 0.0 : 1.0;
+  const bool low = interval.Holds(-infinity, middle);
+  const bool high = interval.Holds(middle, infinity);
+  if (low && high)
+  {
+    return Hides::Both;
+  }
+  const bool first = view.Parallel ? high : low;
+  const bool second = view.Parallel ? low : high;
+  return first ? Hides::First : (second ? Hides::Second : Hides::Neither);
+}
+
+bool Finite(const glm::dvec3& v)
+{
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+void CheckView(const Viewpoint& view)
+{
+  const glm::dvec3& used = view.Parallel ? view.Direction : view.Eye;
+  if (!Finite(used) || (view.Parallel && used == glm::dvec3(0.0)))
+  {
+    throw Error("The camera has no position or direction that could order the data.");
+  }
+}
+
+} // namespace
+
+std::vector<int> FrontToBack(const Viewpoint& view, const std::vector<Box>& boxes)
+{
+  CheckView(view);
+  std::vector<int> drawn;
+  std::vector<int> order;
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+  {
+    if (!boxes[i].Empty())
+    {
+      drawn.push_back(static_cast<int>(i));
+    }
+  }
+
+  // An arrow from each box to those that it hides, then a topological sort that takes, of all
+  // boxes that nothing hides any more, the one with the lowest number.
+  std::vector<std::vector<int>> hidden(boxes.size());
+  std::vector<int> hiders(boxes.size(), 0);
+  for (std::size_t i = 0; i < drawn.size(); ++i)
+  {
+    for (std::size_t j = i + 1; j < drawn.size(); ++j)
+    {
+      const int a = drawn[i];
+      const int b = drawn[j];
+      const Hides who = WhoHides(view, boxes[a], boxes[b]);
+      if (who == Hides::First || who == Hides::Both)
+      {
+        hidden[a].push_back(b);
+        ++hiders[b];
+      }
+      if (who == Hides::Second || who == Hides::Both)
+      {
+        hidden[b].push_back(a);
+        ++hiders[a];
+      }
+    }
+  }
+  std::priority_queue<int, std::vector<int>, std::greater<int>> free;
+  for (const int box : drawn)
+  {
+    if (hiders[box] == 0)
+    {
+      free.push(box);
+    }
+  }
+  while (!free.empty())
+  {
+    const int box = free.top();
+    free.pop();
+    order.push_back(box);
+    for (const int behind : hidden[box])
+    {
+      if (--hiders[behind] == 0)
+      {
+        free.push(behind);
+      }
+    }
+  }
+  if (order.size() != drawn.size())
+  {
+    throw Error(
+      "The data of " + std::to_string(drawn.size() - order.size()) +
+      " ranks overlap or hide each other in a circle, so there is no order in which they could be "
+      "drawn; redistribute the data into boxes.");
+  }
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+  {
+    if (boxes[i].Empty())
+    {
+      order.push_back(static_cast<int>(i));
+    }
+  }
+  return order;
+}
+
+} // namespace banyan

@@ -1,0 +1,208 @@
+#include "Parallel/MpiCommunicator.h"
+
+#include "Base/Error.h"
+
+// The C++ bindings were removed from MPI and would only add a library to link.
+#define OMPI_SKIP_MPICXX 1
+#define MPICH_SKIP_MPICXX 1
+#include <mpi.h>
+
+#include <algorithm>
+
+namespace banyan
+{
+namespace
+{
+
+void Check(int code, const char* action)
+{
+  if (code != MPI_SUCCESS)
+  {
+    char text[MPI_MAX_ERROR_STRING] = {};
+    int length = 0;
+    MPI_Error_string(code, text, &length);
+    throw Error(std::string("MPI could not ") + action + ": " + std::string(text, length));
+  }
+}
+
+MPI_Comm HandleAt(const void* mpiComm)
+{
+  if (!mpiComm)
+  {
+    throw Error("No MPI communicator was given.");
+  }
+  return *static_cast<const MPI_Comm*>(mpiComm);
+}
+
+/// Calls `part(offset, count)` for consecutive parts of at most `limit` bytes; once for 0 bytes.
+template <typename Part>
+void ForEachPart(std::size_t bytes, std::size_t limit, const Part& part)
+{
+  std::size_t offset = 0;
+  do
+  {
+    const std::size_t count = std::min(limit, bytes - offset);
+    part(offset, static_cast<int>(count));
+    offset += count;
+  } while (offset < bytes);
+}
+
+class MpiCommunicator final : public Communicator
+{
+public:
+  MpiCommunicator(MPI_Comm original, std::size_t largestMessage)
+    : LargestMessage(largestMessage)
+  {
+    Check(MPI_Comm_dup(original, &this->Handle), "duplicate a communicator");
+    // Errors of the duplicate come back as codes, to be thrown; the original keeps its handler.
+    MPI_Comm_set_errhandler(this->Handle, MPI_ERRORS_RETURN);
+    MPI_Comm_rank(this->Handle, &this->Self);
+    MPI_Comm_size(this->Handle, &this->Ranks);
+  }
+
+  ~MpiCommunicator() override
+  {
+    int finalized = 0;
+    MPI_Finalized(&finalized);
+    if (finalized)
+    {
+      return;
+    }
+    // Only after an exception: nothing may be written to memory that is no longer there.
+    for (MPI_Request& request : this->Pending)
+    {
+      MPI_Cancel(&request);
+      MPI_Request_free(&request);
+    }
+    MPI_Comm_free(&this->Handle);
+  }
+
+  int Rank() const override { return this->Self; }
+  int Size() const override { return this->Ranks; }
+
+  void Send(int to, int tag, const void* data, std::size_t bytes) override
+  {
+    const char* begin = static_cast<const char*>(data);
+    ForEachPart(bytes, this->LargestMessage,
+      [&](std::size_t offset, int count)
+      {
+        this->Post([&](MPI_Request* request)
+          { return MPI_Isend(begin + offset, count, MPI_BYTE, to, tag, this->Handle, request); });
+      });
+  }
+
+  void Receive(int from, int tag, void* data, std::size_t bytes) override
+  {
+    char* begin = static_cast<char*>(data);
+    ForEachPart(bytes, this->LargestMessage,
+      [&](std::size_t offset, int count)
+      {
+        this->Post([&](MPI_Request* request)
+          { return MPI_Irecv(begin + offset, count, MPI_BYTE, from, tag, this->Handle, request); });
+        this->Expected.back() = count;
+      });
+  }
+
+  void WaitAll() override
+  {
+    std::vector<MPI_Request> requests = std::move(this->Pending);
+    const std::vector<int> expected = std::move(this->Expected);
+    this->Pending.clear();
+    this->Expected.clear();
+    std::vector<MPI_Status> statuses(requests.size());
+    const int code =
+      MPI_Waitall(static_cast<int>(requests.size()), requests.data(), statuses.data());
+    for (std::size_t i = 0; i < statuses.size(); ++i)
+    {
+      Check(code == MPI_ERR_IN_STATUS ? statuses[i].MPI_ERROR : code, "complete a message");
+      int count = 0;
+      MPI_Get_count(&statuses[i], MPI_BYTE, &count);
+      if (expected[i] >= 0 && count != expected[i])
+      {
+        ErrorPlace place;
+        place.Found = static_cast<std::uint64_t>(count);
+        place.Allowed = static_cast<std::uint64_t>(expected[i]);
+        throw Error("Rank " + std::to_string(this->Self) + " received a message from rank " +
+                      std::to_string(statuses[i].MPI_SOURCE) + " of another size than it expected.",
+          place);
+      }
+    }
+  }
+
+  void Barrier() override { Check(MPI_Barrier(this->Handle), "wait for all ranks"); }
+
+  void Broadcast(int root, void* data, std::size_t bytes) override
+  {
+    char* begin = static_cast<char*>(data);
+    ForEachPart(bytes, this->LargestMessage,
+      [&](std::size_t offset, int count)
+      { Check(MPI_Bcast(begin + offset, count, MPI_BYTE, root, this->Handle), "broadcast"); });
+  }
+
+  void AllGather(const void* mine, std::size_t bytes, void* all) override
+  {
+    if (bytes <= this->LargestMessage)
+    {
+      const int count = static_cast<int>(bytes);
+      Check(MPI_Allgather(mine, count, MPI_BYTE, all, count, MPI_BYTE, this->Handle), "gather");
+      return;
+    }
+    char* target = static_cast<char*>(all);
+    std::copy_n(static_cast<const char*>(mine), bytes, target + this->Self * bytes);
+    for (int rank = 0; rank < this->Ranks; ++rank)
+    {
+      this->Broadcast(rank, target + rank * bytes, bytes);
+    }
+  }
+
+private:
+  /// Makes room first: a request that has been started must never be forgotten.
+  template <typename Start>
+  void Post(const Start& start)
+  {
+    this->Pending.push_back(MPI_REQUEST_NULL);
+    this->Expected.push_back(-1);
+    const int code = start(&this->Pending.back());
+    if (code != MPI_SUCCESS)
+    {
+      this->Pending.pop_back();
+      this->Expected.pop_back();
+      Check(code, "start a message");
+    }
+  }
+
+  MPI_Comm Handle = MPI_COMM_NULL;
+  int Self = 0;
+  int Ranks = 1;
+  std::size_t LargestMessage;
+  std::vector<MPI_Request> Pending;
+  std::vector<int> Expected; ///< per pending request: bytes that must arrive, or -1 for a send
+};
+
+} // namespace
+
+std::unique_ptr<Communicator> MakeMpiCommunicator(
+  const void* mpiComm, std::size_t largestMessageBytes)
+{
+  if (largestMessageBytes < 1 || largestMessageBytes > (std::size_t{ 1 } << 30))
+  {
+    ErrorPlace place;
+    place.Found = largestMessageBytes;
+    place.Allowed = std::size_t{ 1 } << 30;
+    throw Error("One MPI message must hold between 1 byte and 1 GiB.", place);
+  }
+  return std::make_unique<MpiCommunicator>(HandleAt(mpiComm), largestMessageBytes);
+}
+
+int RanksOnThisNode(const void* mpiComm)
+{
+  MPI_Comm node = MPI_COMM_NULL;
+  Check(MPI_Comm_split_type(HandleAt(mpiComm), MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node),
+    "find the ranks of this node");
+  int ranks = 1;
+  MPI_Comm_size(node, &ranks);
+  MPI_Comm_free(&node);
+  return ranks;
+}
+
+} // namespace banyan

@@ -1,0 +1,148 @@
+#ifndef banyan_Testing_CommunicatorCases_h
+#define banyan_Testing_CommunicatorCases_h
+
+#include "Parallel/Communicator.h"
+
+#include <string>
+#include <vector>
+
+// What every communicator must do, the same on simulated ranks and under MPI. All functions are
+// collective and return what is wrong, or an empty string.
+namespace banyan::testing
+{
+
+/// Byte i of message number `message` from one rank to another: each is different.
+inline char ByteOf(int from, int to, int message, std::size_t i)
+{
+  return static_cast<char>(from * 31 + to * 17 + message * 7 + static_cast<int>(i % 251));
+}
+
+inline std::vector<char> MessageOf(int from, int to, int message, std::size_t bytes)
+{
+  std::vector<char> data(bytes);
+  for (std::size_t i = 0; i < bytes; ++i)
+  {
+    data[i] = ByteOf(from, to, message, i);
+  }
+  return data;
+}
+
+/// All to all (each to itself too), several messages of equal tag, sizes 0, 1 and `bytes`.
+inline std::string CheckMessages(Communicator& communicator, std::size_t bytes)
+{
+  const std::size_t sizes[] = { bytes, 0, 1, bytes };
+  const int self = communicator.Rank();
+  std::vector<std::vector<char>> sent, received, expected;
+  for (int peer = 0; peer < communicator.Size(); ++peer)
+  {
+    for (int message = 0; message < 4; ++message)
+    {
+      sent.push_back(MessageOf(self, peer, message, sizes[message]));
+      expected.push_back(MessageOf(peer, self, message, sizes[message]));
+      received.emplace_back(sizes[message]);
+    }
+  }
+  for (std::size_t i = 0; i < sent.size(); ++i)
+  {
+    const int peer = static_cast<int>(i / 4);
+    // The last message has a tag of its own and may overtake the others.
+    const int tag = i % 4 == 3 ? 32767 : 0;
+    communicator.Receive(peer, tag, received[i].data(), received[i].size());
+    communicator.Send(peer, tag, sent[i].data(), sent[i].size());
+  }
+  communicator.WaitAll();
+  communicator.WaitAll(); // nothing is left to wait for
+  return received == expected ? "" : "messages did not arrive as they were sent";
+}
+
+inline std::string CheckCollectives(Communicator& communicator, std::size_t bytes)
+{
+  const int size = communicator.Size();
+  const int self = communicator.Rank();
+  for (int root = 0; root < size; ++root)
+  {
+    const std::vector<char> expected = MessageOf(root, 0, 1, bytes);
+    std::vector<char> data = self == root ? expected : std::vector<char>(bytes);
+    communicator.Broadcast(root, data.data(), bytes);
+    if (data != expected)
+    {
+      return "a broadcast did not arrive";
+    }
+  }
+  std::vector<char> all(bytes * static_cast<std::size_t>(size)), expected;
+  for (int rank = 0; rank < size; ++rank)
+  {
+    const std::vector<char> part = MessageOf(rank, 0, 2, bytes);
+    expected.insert(expected.end(), part.begin(), part.end());
+  }
+  communicator.AllGather(MessageOf(self, 0, 2, bytes).data(), bytes, all.data());
+  communicator.Barrier();
+  return all == expected ? "" : "gathered bytes are not those that the ranks gave";
+}
+
+/// A collective operation between posting and waiting must not confuse the messages under way.
+inline std::string CheckPostedBeforeCollective(Communicator& communicator)
+{
+  const int next = (communicator.Rank() + 1) % communicator.Size();
+  const int previous = (communicator.Rank() + communicator.Size() - 1) % communicator.Size();
+  const int mine = communicator.Rank();
+  int received = -1;
+  communicator.Receive(previous, 3, &received, sizeof(received));
+  communicator.Barrier();
+  communicator.Send(next, 3, &mine, sizeof(mine));
+  const double sum = AllSum(communicator, 1.0);
+  communicator.WaitAll();
+  return received == previous && sum == communicator.Size() ? "" : "a posted message went astray";
+}
+
+inline std::string CheckHelpers(Communicator& communicator)
+{
+  const int size = communicator.Size();
+  const int self = communicator.Rank();
+  const std::vector<std::string> strings =
+    AllGatherStrings(communicator, self % 2 == 1 ? std::string(self, 'x') : "");
+  for (int rank = 0; rank < size; ++rank)
+  {
+    if (strings[rank] != (rank % 2 == 1 ? std::string(rank, 'x') : ""))
+    {
+      return "gathered strings are not those that the ranks gave";
+    }
+  }
+  // Summed in another order this would give other bits.
+  double sum = 0.0;
+  for (int rank = 0; rank < size; ++rank)
+  {
+    sum += 1.0 / (rank + 3);
+  }
+  if (AllSum(communicator, 1.0 / (self + 3)) != sum)
+  {
+    return "the sum is not that in rank order";
+  }
+  if (AllMax(communicator, -1.0 - self) != -1.0 ||
+      AllGatherValues(communicator, self).back() != size - 1)
+  {
+    return "the maximum or the gathered values are wrong";
+  }
+  if (!AgreeOnError(communicator, "").empty())
+  {
+    return "ranks agreed on an error that nobody had";
+  }
+  const std::string agreed = AgreeOnError(communicator, self >= size / 2 ? "No memory." : "");
+  const std::string expected =
+    size == 1 ? "No memory." : "Rank " + std::to_string(size / 2) + ": No memory.";
+  return agreed == expected ? "" : "ranks agreed on '" + agreed + "'";
+}
+
+inline std::string CheckCommunicator(Communicator& communicator)
+{
+  std::string wrong = CheckMessages(communicator, 1000);
+  wrong += CheckCollectives(communicator, 0);
+  wrong += CheckCollectives(communicator, 777);
+  wrong += CheckPostedBeforeCollective(communicator);
+  wrong += CheckHelpers(communicator);
+  return wrong;
+}
+
+} // namespace banyan::testing
+
+#endif

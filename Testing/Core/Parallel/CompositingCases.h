@@ -1,0 +1,219 @@
+#ifndef banyan_Testing_CompositingCases_h
+#define banyan_Testing_CompositingCases_h
+
+#include "Parallel/DirectSend.h"
+
+#include <algorithm>
+#include <random>
+#include <string>
+#include <vector>
+
+// Pictures that ranks bring to a compositing, the same on simulated ranks and under MPI. Every rank
+// can make the picture of every other rank, so each can compute what the result must be.
+namespace banyan::testing
+{
+
+/// What a rank draws, named after the tests of IceT where it has the same one.
+enum class Case
+{
+  BackgroundCorrect, ///< a different rectangle per rank, background between them
+  BlankTiles,        ///< everything lies in the lowest rows
+  RenderEmpty,       ///< nobody has anything
+  RanksWithoutData,  ///< every second rank has nothing
+  OneRankHasAll,     ///< the last rank covers the viewport, the others have nothing
+  AllOverlap,        ///< every rank covers every pixel
+  Interlaced,        ///< every rank has every n-th row
+  SparseCopy,        ///< a few single pixels in full-size images
+  OpaqueFront,       ///< every rank covers every pixel, and some pixels hide all behind them
+  Count
+};
+
+inline std::string NameOf(Case which)
+{
+  static const char* const names[] = { "BackgroundCorrect", "BlankTiles", "RenderEmpty",
+    "RanksWithoutData", "OneRankHasAll", "AllOverlap", "Interlaced", "SparseCopy", "OpaqueFront" };
+  return names[static_cast<int>(which)];
+}
+
+/// Viewports: odd, one pixel, one row, one column, fewer rows than ranks, away from the origin.
+inline std::vector<PixelRect> Viewports()
+{
+  return { { { 0, 0 }, { 37, 41 } }, { { 0, 0 }, { 1, 1 } }, { { 0, 0 }, { 53, 1 } },
+    { { 0, 0 }, { 1, 29 } }, { { 5, 7 }, { 8, 10 } }, { { -3, -11 }, { 60, 20 } },
+    { { 2, 2 }, { 2, 2 } } };
+}
+
+inline std::mt19937 Seeded(Case which, int rank, int size, const PixelRect& viewport)
+{
+  std::seed_seq seed{ static_cast<int>(which), rank, size, viewport.Lo.x, viewport.Hi.y };
+  return std::mt19937(seed);
+}
+
+inline PixelRect RectOf(Case which, int rank, int size, const PixelRect& viewport)
+{
+  std::mt19937 random = Seeded(which, rank, size, viewport);
+  const auto between = [&](int low, int high)
+  { return std::uniform_int_distribution<int>(low, high)(random); };
+  PixelRect part = viewport;
+  switch (which)
+  {
+    case Case::RenderEmpty:
+      return {};
+    case Case::OneRankHasAll:
+      return rank == size - 1 ? viewport : PixelRect{};
+    case Case::RanksWithoutData:
+      return rank % 2 == 1 ? viewport : PixelRect{};
+    case Case::BlankTiles:
+      part.Hi.y = part.Lo.y + (viewport.Size().y + 9) / 10;
+      return part;
+    case Case::BackgroundCorrect:
+      for (int axis = 0; axis < 2; ++axis)
+      {
+        const int middle = (viewport.Lo[axis] + viewport.Hi[axis]) / 2;
+        part.Lo[axis] = between(viewport.Lo[axis], middle);
+        part.Hi[axis] = between(middle, viewport.Hi[axis]);
+      }
+      return part;
+    default:
+      return viewport;
+  }
+}
+
+inline FloatImage ImageOf(Case which, int rank, int size, const PixelRect& viewport)
+{
+  FloatImage image{ RectOf(which, rank, size, viewport), {} };
+  std::mt19937 random = Seeded(which, rank, size, viewport);
+  std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+  for (int y = image.Rect.Lo.y; y < image.Rect.Hi.y; ++y)
+  {
+    for (int x = image.Rect.Lo.x; x < image.Rect.Hi.x; ++x)
+    {
+      float alpha = 0.4f * unit(random);
+      alpha = which == Case::OpaqueFront && unit(random) < 0.2f ? 1.0f : alpha;
+      alpha = which == Case::SparseCopy && unit(random) < 0.97f ? 0.0f : alpha;
+      alpha = which == Case::Interlaced && (y - viewport.Lo.y) % size != rank ? 0.0f : alpha;
+      const glm::vec3 color(unit(random), unit(random), unit(random));
+      image.Pixels.push_back(glm::vec4(color * alpha, alpha));
+    }
+  }
+  return image;
+}
+
+/// A visibility order that is neither the ranks' nor its reverse.
+inline std::vector<int> OrderOf(Case which, int size)
+{
+  std::vector<int> order(static_cast<std::size_t>(size));
+  for (int i = 0; i < size; ++i)
+  {
+    order[i] = i;
+  }
+  std::mt19937 random(static_cast<unsigned>(which) * 131u + static_cast<unsigned>(size));
+  std::shuffle(order.begin(), order.end(), random);
+  return order;
+}
+
+/// The obvious way: pixel by pixel, front to back, in the arithmetic of `Vector`.
+template <typename Vector>
+std::vector<Vector> BlendedSerially(Case which, int size, const PixelRect& viewport)
+{
+  std::vector<Vector> picture(static_cast<std::size_t>(viewport.Count()), Vector(0));
+  for (const int rank : OrderOf(which, size))
+  {
+    const FloatImage image = ImageOf(which, rank, size, viewport);
+    std::size_t next = 0;
+    for (int y = image.Rect.Lo.y; y < image.Rect.Hi.y; ++y)
+    {
+      for (int x = image.Rect.Lo.x; x < image.Rect.Hi.x; ++x, ++next)
+      {
+        Vector& pixel = picture[static_cast<std::size_t>(y - viewport.Lo.y) * viewport.Size().x +
+                                x - viewport.Lo.x];
+        pixel = pixel + (1 - pixel.a) * Vector(image.Pixels[next]);
+      }
+    }
+  }
+  return picture;
+}
+
+/// Composites and compares with the serial blend on rank 0.
+/// @return what is wrong, or an empty string
+inline std::string CheckComposite(Communicator& communicator, Case which, const PixelRect& viewport)
+{
+  const int size = communicator.Size();
+  CompositeStatistics statistics;
+  const FloatImage picture =
+    CompositeDirectSend(communicator, ImageOf(which, communicator.Rank(), size, viewport),
+      OrderOf(which, size), viewport, statistics);
+  const std::string where = NameOf(which) + " on " + std::to_string(size) + " ranks, viewport " +
+                            std::to_string(viewport.Size().x) + "x" +
+                            std::to_string(viewport.Size().y) + ": ";
+  if (communicator.Rank() != 0)
+  {
+    return picture.Pixels.empty() ? "" : where + "a rank other than the root got a picture";
+  }
+  if (!(picture.Rect == viewport) ||
+      static_cast<long long>(picture.Pixels.size()) != viewport.Count())
+  {
+    return where + "the picture is not the viewport";
+  }
+  const auto exact = BlendedSerially<glm::vec4>(which, size, viewport);
+  const auto reference = BlendedSerially<glm::dvec4>(which, size, viewport);
+  for (std::size_t i = 0; i < exact.size(); ++i)
+  {
+    const glm::dvec4 error = glm::abs(glm::dvec4(picture.Pixels[i]) - reference[i]);
+    if (std::max({ error.r, error.g, error.b, error.a }) > 1e-6)
+    {
+      return where + "pixel " + std::to_string(i) + " differs from the reference";
+    }
+    if (picture.Pixels[i] != exact[i])
+    {
+      return where + "pixel " + std::to_string(i) + " has other bits than one rank would blend";
+    }
+  }
+  return "";
+}
+
+/// Opaque pixels of a rank: few different depths, so that ties are common; the colour tells whose.
+inline std::vector<OpaquePixel> OpaqueOf(int rank, std::size_t count)
+{
+  std::vector<OpaquePixel> pixels(count);
+  std::mt19937 random(static_cast<unsigned>(rank) + 1u);
+  for (OpaquePixel& pixel : pixels)
+  {
+    pixel.Depth = static_cast<float>(random() % 5) / 4.0f;
+    pixel.Color[0] = static_cast<std::uint8_t>(rank);
+    pixel.Color[1] = static_cast<std::uint8_t>(random() % 256);
+    pixel.Color[2] = 7;
+    pixel.Color[3] = 255;
+  }
+  return pixels;
+}
+
+/// @return what is wrong, or an empty string
+inline std::string CheckNearest(Communicator& communicator, std::size_t count)
+{
+  std::vector<OpaquePixel> expected = OpaqueOf(0, count);
+  for (int rank = 1; rank < communicator.Size(); ++rank)
+  {
+    const std::vector<OpaquePixel> other = OpaqueOf(rank, count);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      expected[i] = other[i].Depth < expected[i].Depth ? other[i] : expected[i];
+    }
+  }
+  std::vector<OpaquePixel> pixels = OpaqueOf(communicator.Rank(), count);
+  ReduceNearest(communicator, pixels);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    if (pixels[i].Depth != expected[i].Depth ||
+        !std::equal(pixels[i].Color, pixels[i].Color + 4, expected[i].Color))
+    {
+      return "pixel " + std::to_string(i) + " of " + std::to_string(count) +
+             " is not the nearest one";
+    }
+  }
+  return "";
+}
+
+} // namespace banyan::testing
+
+#endif

@@ -1,0 +1,190 @@
+// The tests of the simulated ranks again, on real MPI ranks. Every check is collective; each rank
+// prints what it finds wrong, and the exit status is that of the worst rank.
+#include "CommunicatorCases.h"
+#include "CompositingCases.h"
+
+#include "Base/Error.h"
+#include "Parallel/MpiCommunicator.h"
+
+#define OMPI_SKIP_MPICXX 1
+#define MPICH_SKIP_MPICXX 1
+#include <mpi.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+
+namespace
+{
+
+using namespace banyan;
+using namespace banyan::testing;
+
+/// Seconds after which a rank that hangs ends itself; below the TIMEOUT of the test.
+constexpr unsigned WatchdogSeconds = 75;
+
+std::string CompositeAllCases(Communicator& communicator)
+{
+  std::string wrong;
+  for (int which = 0; which < static_cast<int>(Case::Count); ++which)
+  {
+    for (const PixelRect& viewport : Viewports())
+    {
+      wrong += CheckComposite(communicator, static_cast<Case>(which), viewport);
+    }
+  }
+  return wrong;
+}
+
+std::string CompositeLargePicture(Communicator& communicator)
+{
+  return CheckComposite(communicator, Case::AllOverlap, { { 0, 0 }, { 517, 389 } });
+}
+
+std::string Nearest(Communicator& communicator)
+{
+  std::string wrong;
+  for (const std::size_t count : { 0, 1, 3, 90000 })
+  {
+    wrong += CheckNearest(communicator, count);
+  }
+  return wrong;
+}
+
+/// Messages in parts of 64 bytes, as those beyond 1 GiB are sent in parts of 1 GiB.
+std::string SmallParts(Communicator&)
+{
+  const MPI_Comm world = MPI_COMM_WORLD;
+  const auto communicator = MakeMpiCommunicator(&world, 64);
+  std::string wrong = CheckCommunicator(*communicator);
+  wrong += CheckMessages(*communicator, 64);
+  wrong += CheckMessages(*communicator, 65);
+  wrong += CheckComposite(*communicator, Case::AllOverlap, { { 0, 0 }, { 31, 17 } });
+  return wrong;
+}
+
+std::string Several(Communicator& first)
+{
+  const MPI_Comm world = MPI_COMM_WORLD;
+  const auto second = MakeMpiCommunicator(&world);
+  // The same tag in both: messages must stay in their own communicator.
+  const int next = (first.Rank() + 1) % first.Size();
+  const int previous = (first.Rank() + first.Size() - 1) % first.Size();
+  const int one = 1, two = 2;
+  int fromFirst = 0, fromSecond = 0;
+  second->Receive(previous, 0, &fromSecond, sizeof(int));
+  first.Receive(previous, 0, &fromFirst, sizeof(int));
+  first.Send(next, 0, &one, sizeof(int));
+  second->Send(next, 0, &two, sizeof(int));
+  first.WaitAll();
+  second->WaitAll();
+  return fromFirst == 1 && fromSecond == 2 ? "" : "messages went to another communicator";
+}
+
+/// Errors come as exceptions, and the ranks agree on them.
+std::string Errors(Communicator& communicator)
+{
+  std::string mine;
+  try
+  {
+    if (communicator.Rank() == communicator.Size() - 1)
+    {
+      char byte = 0;
+      communicator.Send(communicator.Size(), 0, &byte, 1);
+    }
+  }
+  catch (const Error& error)
+  {
+    mine = error.what();
+  }
+  if (AgreeOnError(communicator, mine).empty())
+  {
+    return "a message to a rank that does not exist was no error";
+  }
+  const long long expected = 8;
+  long long value = 0;
+  const int self = communicator.Rank();
+  mine.clear();
+  try
+  {
+    communicator.Receive(self, 1, &value, sizeof(value));
+    communicator.Send(self, 1, &expected, 4);
+    communicator.WaitAll();
+  }
+  catch (const Error& error)
+  {
+    mine = error.what();
+  }
+  return mine.empty() ? "a message of another size was no error" : "";
+}
+
+std::string RanksOfThisNode(Communicator& communicator)
+{
+  const MPI_Comm world = MPI_COMM_WORLD;
+  const int ranks = RanksOnThisNode(&world);
+  return ranks == communicator.Size() ? "" : "not all ranks were found on this node";
+}
+
+struct Check
+{
+  const char* Name;
+  std::function<std::string(Communicator&)> Run;
+};
+
+int RunAll(Communicator& communicator)
+{
+  const Check checks[] = { { "communicator", CheckCommunicator }, { "small parts", SmallParts },
+    { "several communicators", Several }, { "ranks of this node", RanksOfThisNode },
+    { "compositing", CompositeAllCases }, { "large picture", CompositeLargePicture },
+    { "nearest pixels", Nearest }, { "errors", Errors } };
+  int failed = 0;
+  for (const Check& check : checks)
+  {
+    const std::string wrong = check.Run(communicator);
+    if (!wrong.empty())
+    {
+      ++failed;
+      std::fprintf(stderr, "rank %d: %s: %s\n", communicator.Rank(), check.Name, wrong.c_str());
+    }
+    if (communicator.Rank() == 0)
+    {
+      std::printf("%s on %d ranks\n", check.Name, communicator.Size());
+    }
+  }
+  return AllMax(communicator, failed) > 0 ? EXIT_FAILURE : EXIT_SUCCESS;
+}
+
+} // namespace
+
+/// @param argv[1] the number of ranks there must be, so that a launcher that starts that many
+///        separate processes instead is noticed
+int main(int argc, char** argv)
+{
+  alarm(WatchdogSeconds);
+  MPI_Init(&argc, &argv);
+  int status = EXIT_FAILURE;
+  // Outlives MPI on purpose: its destructor must notice.
+  std::unique_ptr<banyan::Communicator> communicator;
+  try
+  {
+    const MPI_Comm world = MPI_COMM_WORLD;
+    communicator = banyan::MakeMpiCommunicator(&world);
+    if (argc > 1 && communicator->Size() == std::atoi(argv[1]))
+    {
+      status = RunAll(*communicator);
+    }
+    else
+    {
+      std::fprintf(
+        stderr, "%d ranks are running, not as many as asked for\n", communicator->Size());
+    }
+  }
+  catch (const std::exception& error)
+  {
+    std::fprintf(stderr, "%s\n", error.what());
+    MPI_Abort(MPI_COMM_WORLD, EXIT_FAILURE);
+  }
+  MPI_Finalize();
+  return status;
+}
