@@ -12,10 +12,10 @@ namespace banyan
 /// Where something went wrong; every member is optional and shows up in the message when set.
 struct ErrorPlace
 {
-  std::string File;                     ///< path of the file concerned
-  std::optional<std::uint64_t> Offset;  ///< byte offset in that file
-  std::optional<std::uint64_t> Found;   ///< the value that was met
-  std::optional<std::uint64_t> Allowed; ///< the limit, or the value that was expected
+  std::string File;                          ///< path of the file concerned
+  std::optional<std::uint64_t> Offset = {};  ///< byte offset in that file
+  std::optional<std::uint64_t> Found = {};   ///< the value that was met
+  std::optional<std::uint64_t> Allowed = {}; ///< the limit, or the value that was expected
 };
 
 /// The one exception of Core. `what()` is a whole sentence for a user: what is wrong, where, and

@@ -61,7 +61,8 @@ public:
   std::uint64_t Id() const;
 
   BrickLayout Layout(int level) const;
-  /// The range that the masks of a component are made over (its Range in the index).
+  /// The range that the masks of a component are made over (the promised range of the
+  /// index where there is one, its Range otherwise).
   MaskRange MaskRangeOf(int array, int component) const;
 
   /// All bricks of a field, in the order of `BrickLayout::IndexOf`. Kept for the most recently used

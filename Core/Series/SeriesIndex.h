@@ -42,8 +42,10 @@ struct ValueRange
 /// One component of one array: its lattice and what was measured while encoding.
 struct ComponentIndex
 {
-  std::string Name;              ///< may be empty
-  ValueRange Range;              ///< of the decoded finite values over the whole series
+  std::string Name; ///< may be empty
+  ValueRange Range; ///< of the decoded finite values over the whole series
+  /// What the encoder was told beforehand that the values lie in; empty when it was not told.
+  ValueRange PromisedRange;
   double ErrorBoundAbsolute = 0; ///< |decoded - original| <= this for every finite voxel, verified
   double MeasuredMaxError = 0;   ///< the largest |decoded - original| met while encoding
   double SumSquaredError = 0;    ///< over all finite voxels of all steps; for RMSE and PSNR
@@ -64,7 +66,21 @@ struct SegmentIndex
   std::string File; ///< name inside `<series>.d/`, without a path
   int FirstStep = 0;
   int Steps = 0;
-  std::uint64_t Bytes = 0; ///< size of the file
+  std::uint64_t Bytes = 0;   ///< size of the file
+  std::uint64_t HashLow = 0; ///< of the file's header, through which every other byte is checked
+  std::uint64_t HashHigh = 0;
+};
+
+/// What encoding a series came to, over all steps, arrays, components and levels.
+struct EncodeStatistics
+{
+  std::int64_t Bricks = 0;
+  std::int64_t MacroVoxelBricks = 0; ///< fused: one value everywhere
+  std::int64_t UnchangedBricks = 0;  ///< same identity as at the step before
+  std::int64_t MergedBricks = 0;     ///< payload shared with an earlier brick of the segment
+  std::int64_t RawBricks = 0;
+  std::uint64_t PayloadBytes = 0; ///< stored in segments
+  std::uint64_t TableBytes = 0;   ///< stored in segments: node tables, directories, headers
 };
 
 /// All that the index file says. See Documentation/format.md.
@@ -74,12 +90,15 @@ struct SeriesIndex
   int BrickCells = 16;
   int Levels = 1;
   int KeyframeInterval = 8;
+  double ErrorBound = 0; ///< as asked for; the absolute one stands at each component
+  ErrorBoundMode Mode = ErrorBoundMode::RelativeToSeriesRange;
   std::string ActiveScalars; ///< name of the array to colour by at first; may be empty
   std::vector<ArrayIndex> Arrays;
   std::vector<double> Times; ///< strictly increasing, one per step that a segment holds
   std::vector<SegmentIndex> Segments;
 
   std::uint64_t PayloadBytesIn = 0; ///< raw size of everything encoded so far
+  EncodeStatistics Statistics;
 
   int Steps() const { return static_cast<int>(this->Times.size()); }
   /// Index of the array of that name, or -1.

@@ -25,7 +25,9 @@ struct MaskRange
     {
       return 0;
     }
-    const double bin = (value - this->Low) / (this->High - this->Low) * 64.0;
+    // Halves, because the width of a range of doubles may overflow.
+    const double width = 0.5 * this->High - 0.5 * this->Low;
+    const double bin = width > 0.0 ? (0.5 * value - 0.5 * this->Low) / width * 64.0 : 0.0;
     return bin >= 63.0 ? 63 : static_cast<int>(bin);
   }
 };

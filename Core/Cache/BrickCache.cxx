@@ -1,0 +1,242 @@
+#include "Cache/BrickCache.h"
+
+#include "Base/Error.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <cstdlib>
+#include <list>
+#include <mutex>
+#include <unordered_map>
+
+namespace banyan
+{
+namespace
+{
+
+/// What a decoded brick is known by. Its place belongs to it, because `BrickValues` says it.
+struct Key
+{
+  PayloadIdentity Identity;
+  ScalarType Type = ScalarType::Float32;
+  Box Samples;
+
+  friend bool operator==(const Key& a, const Key& b)
+  {
+    return a.Identity == b.Identity && a.Type == b.Type && a.Samples == b.Samples;
+  }
+};
+
+struct KeyHash
+{
+  std::size_t operator()(const Key& key) const
+  {
+    const glm::ivec3& lo = key.Samples.Lo;
+    std::uint64_t hash = key.Identity.Low;
+    for (const int part : { lo.x, lo.y, lo.z })
+    {
+      hash = (hash ^ static_cast<std::uint64_t>(part)) * 0x9e3779b97f4a7c15u;
+    }
+    return static_cast<std::size_t>(hash ^ hash >> 32);
+  }
+};
+
+/// Memory of a brick beside its values: list node, map node, control block.
+constexpr std::uint64_t OverheadBytes = 256;
+
+std::uint64_t CostOf(const BrickValues& brick)
+{
+  return brick.Bytes.size() + OverheadBytes;
+}
+
+constexpr std::uint64_t DefaultBudget = std::uint64_t{ 512 } << 20;
+
+std::uint64_t BudgetFromEnvironment()
+{
+  const char* text = std::getenv("BANYAN_CACHE_MB");
+  char* end = nullptr;
+  const unsigned long long megabytes = text != nullptr ? std::strtoull(text, &end, 10) : 0;
+  const bool good = text != nullptr && end != text && *end == '\0' && text[0] != '-' &&
+                    megabytes <= (std::uint64_t{ 1 } << 40);
+  return good ? std::uint64_t{ megabytes } << 20 : DefaultBudget;
+}
+
+} // namespace
+
+struct BrickCache::Internals
+{
+  using Pointer = std::shared_ptr<const BrickValues>;
+  using Order = std::list<std::pair<Key, Pointer>>; ///< most recently used first
+
+  /// A brick that some thread is decoding.
+  struct Pending
+  {
+    bool Done = false;
+    Pointer Result; ///< null after Done: decoding failed
+  };
+
+  std::uint64_t Budget = 0;
+  Statistics Numbers;
+  Order Bricks;
+  std::unordered_map<Key, Order::iterator, KeyHash> Places;
+  std::unordered_map<Key, std::shared_ptr<Pending>, KeyHash> Decoding;
+  mutable std::mutex Mutex;
+  std::condition_variable Decoded;
+
+  void EvictDownTo(std::uint64_t bytes)
+  {
+    while (this->Numbers.Bytes > bytes)
+    {
+      this->Numbers.Bytes -= CostOf(*this->Bricks.back().second);
+      this->Places.erase(this->Bricks.back().first);
+      this->Bricks.pop_back();
+      ++this->Numbers.Evictions;
+    }
+  }
+
+  void Keep(const Key& key, const Pointer& brick)
+  {
+    const std::uint64_t cost = CostOf(*brick);
+    if (cost > this->Budget)
+    {
+      return;
+    }
+    this->EvictDownTo(this->Budget - cost); // before adding: the budget is never exceeded
+    this->Bricks.emplace_front(key, brick);
+    this->Places[key] = this->Bricks.begin();
+    this->Numbers.Bytes += cost;
+    this->Numbers.PeakBytes = std::max(this->Numbers.PeakBytes, this->Numbers.Bytes);
+  }
+
+  /// Waits for another thread's result or claims the decoding; null when claimed.
+  Pointer FindOrClaim(const Key& key)
+  {
+    std::unique_lock<std::mutex> lock(this->Mutex);
+    while (true)
+    {
+      const auto place = this->Places.find(key);
+      if (place != this->Places.end())
+      {
+        this->Bricks.splice(this->Bricks.begin(), this->Bricks, place->second);
+        ++this->Numbers.Hits;
+        return place->second->second;
+      }
+      const auto decoding = this->Decoding.find(key);
+      if (decoding == this->Decoding.end())
+      {
+        this->Decoding[key] = std::make_shared<Pending>();
+        ++this->Numbers.Misses;
+        return nullptr;
+      }
+      const std::shared_ptr<Pending> pending = decoding->second;
+      this->Decoded.wait(lock, [&pending] { return pending->Done; });
+      if (pending->Result)
+      {
+        ++this->Numbers.Hits; // even if the budget did not let it stay
+        return pending->Result;
+      }
+    }
+  }
+
+  void Publish(const Key& key, const Pointer& brick)
+  {
+    {
+      std::lock_guard<std::mutex> lock(this->Mutex);
+      const auto decoding = this->Decoding.find(key);
+      decoding->second->Done = true;
+      decoding->second->Result = brick;
+      this->Decoding.erase(decoding);
+      if (brick)
+      {
+        this->Keep(key, brick);
+      }
+    }
+    this->Decoded.notify_all();
+  }
+};
+
+BrickCache::BrickCache(std::uint64_t budgetBytes)
+  : Self(std::make_unique<Internals>())
+{
+  this->Self->Budget = budgetBytes;
+}
+
+BrickCache::~BrickCache() = default;
+
+std::shared_ptr<const BrickValues> BrickCache::Get(
+  const SeriesFile& series, const FieldKey& field, std::int64_t brick)
+{
+  const auto nodes = series.Nodes(field);
+  if (brick < 0 || brick >= static_cast<std::int64_t>(nodes->size()))
+  {
+    throw Error("The level has no brick number " + std::to_string(brick), { series.Path() });
+  }
+  const BrickNode& node = (*nodes)[static_cast<std::size_t>(brick)];
+  Key key;
+  key.Identity = node.Identity;
+  key.Type = series.Index().Arrays[static_cast<std::size_t>(field.Array)].Type;
+  key.Samples = series.Layout(field.Level).SamplesOf(brick);
+  const auto decode = [&]
+  {
+    auto values = std::make_shared<BrickValues>();
+    values->Type = key.Type;
+    values->Samples = key.Samples;
+    values->Bytes.resize(static_cast<std::size_t>(key.Samples.Count()) * SizeOf(key.Type));
+    series.DecodeBrick(field, brick, values->Bytes.data());
+    return values;
+  };
+  if (node.Uniform)
+  {
+    return decode(); // filling is quicker than remembering, and leaves the room to others
+  }
+  if (const auto found = this->Self->FindOrClaim(key))
+  {
+    return found;
+  }
+  try
+  {
+    const std::shared_ptr<const BrickValues> values = decode();
+    this->Self->Publish(key, values);
+    return values;
+  }
+  catch (...)
+  {
+    this->Self->Publish(key, nullptr);
+    throw;
+  }
+}
+
+void BrickCache::SetBudget(std::uint64_t bytes)
+{
+  std::lock_guard<std::mutex> lock(this->Self->Mutex);
+  this->Self->Budget = bytes;
+  this->Self->EvictDownTo(bytes);
+}
+
+std::uint64_t BrickCache::Budget() const
+{
+  std::lock_guard<std::mutex> lock(this->Self->Mutex);
+  return this->Self->Budget;
+}
+
+void BrickCache::Clear()
+{
+  std::lock_guard<std::mutex> lock(this->Self->Mutex);
+  this->Self->Bricks.clear();
+  this->Self->Places.clear();
+  this->Self->Numbers.Bytes = 0;
+}
+
+BrickCache::Statistics BrickCache::GetStatistics() const
+{
+  std::lock_guard<std::mutex> lock(this->Self->Mutex);
+  return this->Self->Numbers;
+}
+
+BrickCache& BrickCache::Process()
+{
+  static BrickCache cache(BudgetFromEnvironment());
+  return cache;
+}
+
+} // namespace banyan

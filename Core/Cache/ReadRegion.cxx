@@ -1,0 +1,147 @@
+#include "Cache/BrickCache.h"
+
+#include "Base/Error.h"
+#include "Base/ThreadPool.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace banyan
+{
+namespace
+{
+
+/// Where the values of a region go.
+template <class T>
+struct Target
+{
+  T* Values; ///< already at the component
+  Box Samples;
+  std::ptrdiff_t Stride;
+
+  T* RowAt(int x, int y, int z) const
+  {
+    const glm::ivec3 size = this->Samples.Size();
+    const glm::ivec3 p = glm::ivec3(x, y, z) - this->Samples.Lo;
+    return this->Values + ((std::ptrdiff_t{ p.z } * size.y + p.y) * size.x + p.x) * this->Stride;
+  }
+};
+
+/// Calls `row(pointer to the row's first value in the target, x, y, z)` for each row of a part.
+template <class T, class Row>
+void ForRows(const Target<T>& target, const Box& part, Row&& row)
+{
+  for (int z = part.Lo.z; z < part.Hi.z; ++z)
+  {
+    for (int y = part.Lo.y; y < part.Hi.y; ++y)
+    {
+      row(target.RowAt(part.Lo.x, y, z), part.Lo.x, y, z);
+    }
+  }
+}
+
+template <class T>
+void Fill(const Target<T>& target, const Box& part, T value)
+{
+  const int length = part.Size().x;
+  ForRows(target, part,
+    [&](T* to, int, int, int)
+    {
+      for (int x = 0; x < length; ++x)
+      {
+        to[x * target.Stride] = value;
+      }
+    });
+}
+
+template <class T>
+void Copy(const Target<T>& target, const Box& part, const BrickValues& brick)
+{
+  const int length = part.Size().x;
+  const glm::ivec3 size = brick.Samples.Size();
+  ForRows(target, part,
+    [&](T* to, int x0, int y, int z)
+    {
+      const glm::ivec3 p = glm::ivec3(x0, y, z) - brick.Samples.Lo;
+      const T* from = brick.As<T>() + (std::ptrdiff_t{ p.z } * size.y + p.y) * size.x + p.x;
+      if (target.Stride == 1)
+      {
+        std::copy(from, from + length, to);
+        return;
+      }
+      for (int x = 0; x < length; ++x)
+      {
+        to[x * target.Stride] = from[x];
+      }
+    });
+}
+
+/// The part of the region that a brick writes: what several bricks hold (equal in all of them) is
+/// written by one, so that threads never meet.
+Box PartOf(
+  const BrickLayout& layout, const Box& bricks, const glm::ivec3& position, const Box& region)
+{
+  Box part = layout.SamplesOf(layout.IndexOf(position));
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    part.Hi[axis] -= position[axis] + 1 < bricks.Hi[axis] ? 1 : 0;
+  }
+  return Intersection(part, region);
+}
+
+template <class T>
+void Read(
+  BrickCache& cache, const SeriesFile& series, const FieldKey& field, const Target<T>& target)
+{
+  const BrickLayout layout = series.Layout(field.Level);
+  const auto nodes = series.Nodes(field);
+  const Box bricks = layout.BricksCovering(target.Samples);
+  const glm::ivec3 size = bricks.Size();
+  ThreadPool::Process().ParallelFor(bricks.Count(),
+    [&](std::int64_t i)
+    {
+      const glm::ivec3 position =
+        bricks.Lo + glm::ivec3(static_cast<int>(i % size.x), static_cast<int>(i / size.x % size.y),
+                      static_cast<int>(i / size.x / size.y));
+      const std::int64_t brick = layout.IndexOf(position);
+      const Box part = PartOf(layout, bricks, position, target.Samples);
+      const BrickNode& node = (*nodes)[static_cast<std::size_t>(brick)];
+      if (node.Uniform)
+      {
+        Fill(target, part, static_cast<T>(node.Range.Low));
+      }
+      else
+      {
+        Copy(target, part, *cache.Get(series, field, brick));
+      }
+    });
+}
+
+} // namespace
+
+void ReadRegion(BrickCache& cache, const SeriesFile& series, const FieldKey& field,
+  const Box& samples, void* values, int stride, int component)
+{
+  const Box whole = { glm::ivec3(0), series.Layout(field.Level).Samples() };
+  if (!whole.Contains(samples))
+  {
+    throw Error("The region reaches beyond the samples of its level", { series.Path() });
+  }
+  if (component < 0 || component >= stride)
+  {
+    throw Error("The receiving array has no component " + std::to_string(component));
+  }
+  (void)series.Nodes(field); // checks the field, even for an empty region
+  if (samples.Empty())
+  {
+    return;
+  }
+  Dispatch(series.Index().Arrays[static_cast<std::size_t>(field.Array)].Type,
+    [&](auto tag)
+    {
+      using T = typename decltype(tag)::Type;
+      Read(cache, series, field, Target<T>{ static_cast<T*>(values) + component, samples, stride });
+    });
+}
+
+} // namespace banyan

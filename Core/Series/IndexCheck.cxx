@@ -1,0 +1,140 @@
+#include "Series/IndexText.h"
+
+#include "Base/Error.h"
+
+#include <cmath>
+#include <set>
+
+namespace banyan
+{
+namespace
+{
+
+constexpr std::int64_t GreatestAxis = std::int64_t{ 1 } << 30;
+constexpr std::int64_t GreatestVolume = std::int64_t{ 1 } << 46;
+constexpr std::int64_t GreatestBricks = std::int64_t{ 1 } << 31;
+constexpr std::size_t GreatestSteps = std::size_t{ 1 } << 24;
+constexpr std::size_t GreatestComponents = 65536;
+
+void Require(bool good, const std::string& sentence)
+{
+  if (!good)
+  {
+    throw Error(sentence);
+  }
+}
+
+void CheckRange(const ValueRange& range)
+{
+  Require(range.Empty() || (std::isfinite(range.Low) && std::isfinite(range.High)),
+    "A range of values is not finite");
+}
+
+void CheckComponent(const ComponentIndex& component)
+{
+  CheckRange(component.Range);
+  CheckRange(component.PromisedRange);
+  Require(std::isfinite(component.ErrorBoundAbsolute) && component.ErrorBoundAbsolute >= 0,
+    "An error bound is negative or not finite");
+  Require(std::isfinite(component.MeasuredMaxError) && component.MeasuredMaxError >= 0 &&
+            component.SumSquaredError >= 0,
+    "A measured error is negative or not finite");
+  Require(
+    component.FiniteCount >= 0 && component.NonFiniteCount >= 0, "A count of voxels is negative");
+}
+
+void CheckArrays(const SeriesIndex& index)
+{
+  std::set<std::string> names;
+  std::size_t components = 0;
+  Require(!index.Arrays.empty(), "A series needs at least one array");
+  for (const ArrayIndex& array : index.Arrays)
+  {
+    Require(!array.Name.empty(), "An array needs a name");
+    Require(names.insert(array.Name).second, "Two arrays have the name '" + array.Name + "'");
+    Require(!array.Components.empty(), "The array '" + array.Name + "' has no component");
+    components += array.Components.size();
+    Require(components <= GreatestComponents, "The arrays have too many components in all");
+    for (const ComponentIndex& component : array.Components)
+    {
+      CheckComponent(component);
+    }
+  }
+  Require(index.ActiveScalars.empty() || names.count(index.ActiveScalars) == 1,
+    "The active array '" + index.ActiveScalars + "' is not among the arrays");
+}
+
+void CheckTimes(const std::vector<double>& times)
+{
+  Require(times.size() <= GreatestSteps, "The series has too many steps");
+  for (std::size_t i = 0; i < times.size(); ++i)
+  {
+    Require(std::isfinite(times[i]), "A time value is not finite");
+    Require(i == 0 || times[i] > times[i - 1], "Time values must increase from step to step");
+  }
+}
+
+void CheckSegments(const SeriesIndex& index)
+{
+  std::set<std::string> files;
+  std::int64_t next = 0;
+  for (const SegmentIndex& segment : index.Segments)
+  {
+    Require(!segment.File.empty() && segment.File[0] != '.' &&
+              segment.File.find('/') == std::string::npos &&
+              segment.File.find('\0') == std::string::npos,
+      "The name of a segment is not a plain file name");
+    Require(files.insert(segment.File).second, "Two segments have the same file");
+    Require(
+      segment.FirstStep == next && segment.Steps >= 1 && segment.Steps <= index.KeyframeInterval,
+      "The segments do not follow one another");
+    next += segment.Steps;
+  }
+  Require(next == static_cast<std::int64_t>(index.Times.size()),
+    "The segments do not hold as many steps as there are time values");
+}
+
+} // namespace
+
+void CheckGrid(const Grid& grid, int brickCells)
+{
+  std::int64_t volume = 1;
+  std::int64_t bricks = 1;
+  Require(brickCells == 8 || brickCells == 16 || brickCells == 32 || brickCells == 64,
+    "A brick must have 8, 16, 32 or 64 cells per axis");
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const std::int64_t lo = grid.Extent.Lo[axis];
+    const std::int64_t hi = grid.Extent.Hi[axis];
+    Require(hi > lo, "The grid has no samples");
+    Require(hi - lo <= GreatestAxis && lo >= -GreatestAxis && hi <= 2 * GreatestAxis - 1,
+      "The grid is longer than 2^30 samples along an axis");
+    volume *= hi - lo;
+    Require(volume <= GreatestVolume, "The grid has more than 2^46 samples");
+    bricks *= (hi - lo - 1) / brickCells + 1;
+    Require(bricks <= GreatestBricks, "The grid has more than 2^31 bricks");
+    Require(std::isfinite(grid.Origin[axis]), "The origin of the grid is not finite");
+    Require(std::isfinite(grid.Spacing[axis]) && grid.Spacing[axis] != 0,
+      "The spacing of the grid is zero or not finite");
+    for (int row = 0; row < 3; ++row)
+    {
+      Require(std::isfinite(grid.Direction[axis][row]), "The direction of the grid is not finite");
+    }
+  }
+}
+
+void CheckIndex(const SeriesIndex& index)
+{
+  CheckGrid(index.Domain, index.BrickCells);
+  Require(index.Levels == BrickLayout::LevelCount(index.Domain.Samples(), index.BrickCells),
+    "The number of levels does not fit the grid");
+  Require(index.KeyframeInterval >= 1 && index.KeyframeInterval <= 1024,
+    "The key-frame interval must be from 1 to 1024 steps");
+  Require(std::isfinite(index.ErrorBound) && index.ErrorBound >= 0,
+    "The error bound must be finite and not negative");
+  CheckArrays(index);
+  CheckTimes(index.Times);
+  CheckSegments(index);
+}
+
+} // namespace banyan

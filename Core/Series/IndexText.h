@@ -1,0 +1,32 @@
+#ifndef banyan_Series_IndexText_h
+#define banyan_Series_IndexText_h
+
+#include "Series/SeriesIndex.h"
+
+#include <string>
+
+namespace banyan
+{
+
+/// Greatest size of an index file, checked before it is read.
+constexpr std::uint64_t GreatestIndexBytes = std::uint64_t{ 256 } << 20;
+
+/// The content of an index file: see Documentation/format.md. Throws Error when a name is not UTF-8
+/// or a number that must be finite is not.
+std::string IndexToText(const SeriesIndex& index);
+
+/// Inverse of `IndexToText`; doubles come back bit-exact. Throws Error that names `path` when the
+/// text is no index, of another version, damaged, or says what cannot be.
+SeriesIndex IndexFromText(const std::string& text, const std::string& path);
+
+/// Checks what encoder and reader both need to hold: sizes, limits, names, finite numbers, order.
+/// Throws Error.
+void CheckIndex(const SeriesIndex& index);
+
+/// Throws Error when the grid is out of the format's limits (they keep every product of sizes far
+/// from overflow).
+void CheckGrid(const Grid& grid, int brickCells);
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,30 @@
+#include "Series/SeriesIndex.h"
+
+#include "Base/Error.h"
+
+#include <algorithm>
+
+namespace banyan
+{
+
+int SeriesIndex::FindArray(const std::string& name) const
+{
+  const auto found = std::find_if(this->Arrays.begin(), this->Arrays.end(),
+    [&name](const ArrayIndex& array) { return array.Name == name; });
+  return found == this->Arrays.end() ? -1 : static_cast<int>(found - this->Arrays.begin());
+}
+
+const SegmentIndex& SeriesIndex::SegmentOf(int step) const
+{
+  const auto after = std::upper_bound(this->Segments.begin(), this->Segments.end(), step,
+    [](int wanted, const SegmentIndex& segment) { return wanted < segment.FirstStep; });
+  if (step < 0 || after == this->Segments.begin() ||
+      step >= (after - 1)->FirstStep + (after - 1)->Steps)
+  {
+    throw Error("The series has no step " + std::to_string(step) + ": it has " +
+                std::to_string(this->Steps()) + " steps, counted from 0");
+  }
+  return *(after - 1);
+}
+
+} // namespace banyan
