@@ -1,0 +1,39 @@
+#ifndef banyan_Series_PieceRange_h
+#define banyan_Series_PieceRange_h
+
+#include "Series/SeriesFile.h"
+
+#include <vector>
+
+namespace banyan
+{
+
+/// Ranges of the finite values in a part of a field, told from the tree alone: nothing is decoded.
+struct PieceRange
+{
+  std::vector<ValueRange> Components; ///< one per component
+  /// Of the length (L2 norm) of the vectors: always contains the true range, and is usually a
+  /// little wider, because the tree knows components only. Equal to Components[0] for scalars.
+  ValueRange Magnitude;
+  /// Whether Components are the exact extremes of the part: true when every brick that touches it
+  /// lies in it completely. Otherwise they contain the true range.
+  bool Exact = true;
+  bool HasNonFinite = false; ///< some brick that touches the part holds NaN or infinities
+};
+
+/// @param array of the series, at `step` and `level`
+/// @param samples of the level, as in BrickLayout; empty gives empty ranges
+/// Throws Error when the tree cannot be read.
+PieceRange RangeOfPiece(
+  const SeriesFile& series, int step, int array, int level, const Box& samples);
+
+/// The same over all steps, from the index: exact for components over level 0, and an upper bound
+/// for coarser levels. The magnitude contains the true range.
+PieceRange RangeOfSeries(const SeriesFile& series, int array);
+
+/// Numbers of the bricks that together cover `samples`, in ascending order.
+std::vector<std::int64_t> BricksTouching(const BrickLayout& layout, const Box& samples);
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,168 @@
+#include "PieceValues.h"
+
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkImageData.h"
+#include "vtkSmartPointer.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace banyan
+{
+namespace
+{
+
+/// The ghost flags of points when some are hidden, else nullptr.
+const unsigned char* HidingFlags(vtkImageData* image)
+{
+  return image->HasAnyBlankPoints() ? image->GetPointGhostArray()->GetPointer(0) : nullptr;
+}
+
+bool IsHidden(unsigned char flags)
+{
+  return (flags & vtkDataSetAttributes::HIDDENPOINT) != 0;
+}
+
+/// The values as one block of tuples; arrays of another layout are copied into `keep` first.
+const void* Block(vtkDataArray* array, vtkSmartPointer<vtkDataArray>& keep)
+{
+  if (array->HasStandardMemoryLayout())
+  {
+    return array->GetVoidPointer(0);
+  }
+  keep.TakeReference(vtkDataArray::CreateDataArray(array->GetDataType()));
+  keep->DeepCopy(array);
+  return keep->GetVoidPointer(0);
+}
+
+template <class T>
+std::vector<ValueRange> Ranges(
+  const T* values, vtkIdType tuples, int components, const unsigned char* flags)
+{
+  std::vector<ValueRange> ranges(components);
+  for (vtkIdType tuple = 0; tuple < tuples; ++tuple, values += components)
+  {
+    if (flags && IsHidden(flags[tuple]))
+    {
+      continue;
+    }
+    for (int c = 0; c < components; ++c)
+    {
+      const double value = static_cast<double>(values[c]);
+      if (std::isfinite(value))
+      {
+        ranges[c].Include(value);
+      }
+    }
+  }
+  return ranges;
+}
+
+template <class T>
+void HideRow(T* row, const unsigned char* flags, int tuples, int components)
+{
+  if constexpr (std::numeric_limits<T>::has_quiet_NaN)
+  {
+    for (int i = 0; i < tuples; ++i)
+    {
+      for (int c = 0; c < components && IsHidden(flags[i]); ++c)
+      {
+        row[i * components + c] = std::numeric_limits<T>::quiet_NaN();
+      }
+    }
+  }
+}
+
+/// Calls `row(first tuple in the box, first tuple in the part)` for each row of samples.
+template <class Row>
+void ForEachRow(const Box& part, const Box& box, Row&& row)
+{
+  const glm::ivec3 size = box.Size();
+  std::int64_t inPart = 0;
+  for (int z = part.Lo.z; z < part.Hi.z; ++z)
+  {
+    for (int y = part.Lo.y; y < part.Hi.y; ++y)
+    {
+      const std::int64_t inBox =
+        (std::int64_t{ z - box.Lo.z } * size.y + (y - box.Lo.y)) * size.x + part.Lo.x - box.Lo.x;
+      row(inBox, inPart);
+      inPart += part.Size().x;
+    }
+  }
+}
+
+Box ExtentOf(vtkImageData* image)
+{
+  const int* e = image->GetExtent();
+  return { { e[0], e[2], e[4] }, { e[1] + 1, e[3] + 1, e[5] + 1 } };
+}
+
+} // namespace
+
+ScalarType TypeOf(vtkDataArray* array)
+{
+  switch (array->GetDataType())
+  {
+    vtkTemplateMacro(return ScalarTypeOf<VTK_TT>());
+    default:
+      throw Error("The array " + std::string(array->GetName() ? array->GetName() : "") +
+                  " is of a type that cannot be written: " + array->GetDataTypeAsString() + ".");
+  }
+}
+
+std::vector<ValueRange> FiniteRangesOf(vtkImageData* image, vtkDataArray* array)
+{
+  vtkSmartPointer<vtkDataArray> keep;
+  const void* values = Block(array, keep);
+  return Dispatch(TypeOf(array),
+    [&](auto tag)
+    {
+      return Ranges(static_cast<const typename decltype(tag)::Type*>(values),
+        array->GetNumberOfTuples(), array->GetNumberOfComponents(), HidingFlags(image));
+    });
+}
+
+void CopyPart(vtkImageData* image, vtkDataArray* array, const Box& part, void* values)
+{
+  vtkSmartPointer<vtkDataArray> keep;
+  const auto* from = static_cast<const unsigned char*>(Block(array, keep));
+  auto* to = static_cast<unsigned char*>(values);
+  const unsigned char* flags = HidingFlags(image);
+  const int components = array->GetNumberOfComponents();
+  const ScalarType type = TypeOf(array);
+  const std::size_t tupleBytes = SizeOf(type) * components;
+  const int tuples = part.Size().x;
+  ForEachRow(part, ExtentOf(image),
+    [&](std::int64_t inBox, std::int64_t inPart)
+    {
+      unsigned char* row = to + inPart * tupleBytes;
+      std::memcpy(row, from + inBox * tupleBytes, tuples * tupleBytes);
+      if (flags)
+      {
+        Dispatch(type,
+          [&](auto tag)
+          {
+            HideRow(reinterpret_cast<typename decltype(tag)::Type*>(row), flags + inBox, tuples,
+              components);
+          });
+      }
+    });
+}
+
+void PlacePart(
+  const void* values, const Box& part, void* wholeValues, const Box& whole, std::size_t tupleBytes)
+{
+  const auto* from = static_cast<const unsigned char*>(values);
+  auto* to = static_cast<unsigned char*>(wholeValues);
+  ForEachRow(part, whole,
+    [&](std::int64_t inWhole, std::int64_t inPart)
+    {
+      std::memcpy(
+        to + inWhole * tupleBytes, from + inPart * tupleBytes, part.Size().x * tupleBytes);
+    });
+}
+
+} // namespace banyan

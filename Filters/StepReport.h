@@ -1,0 +1,67 @@
+#ifndef banyan_Filters_StepReport_h
+#define banyan_Filters_StepReport_h
+
+#include "Parallel/GatherPlan.h"
+#include "Series/Grid.h"
+#include "Series/SeriesIndex.h"
+
+#include <string>
+#include <vector>
+
+class vtkDataArraySelection;
+class vtkDataObject;
+class vtkMultiProcessStream;
+
+namespace banyan
+{
+
+/// An array that is to be written, as one rank or all ranks see it.
+struct WrittenArray
+{
+  std::string Name;
+  ScalarType Type = ScalarType::Float32;
+  std::vector<std::string> Components; ///< names, which may be empty
+  std::vector<ValueRange> Ranges;      ///< of the finite values, one per component
+};
+
+/// What one rank says about its piece of a step.
+struct StepReport
+{
+  std::string Problem; ///< a sentence when this rank cannot go on
+  std::string Warning; ///< a sentence about what will not be written
+  bool Aborted = false;
+  Grid Piece;                       ///< Extent is the rank's own and may be empty
+  std::string ActiveScalars;        ///< may be empty
+  std::vector<WrittenArray> Arrays; ///< sorted by name; none when the piece is empty
+
+  void Save(vtkMultiProcessStream& stream) const;
+  void Load(vtkMultiProcessStream& stream);
+};
+
+/// Looks at a rank's piece.
+/// @param selection names of point arrays; an empty selection means all
+/// @param withRanges whether to go through all values for their ranges
+StepReport ReportOf(vtkDataObject* data, vtkDataArraySelection& selection, bool withRanges);
+
+/// What all ranks agree on about a step: every rank that has the same reports has the same
+/// agreement.
+struct StepAgreement
+{
+  std::string Problem; ///< of the lowest rank that has one, which it names; or of all together
+  std::string Warning;
+  bool Aborted = false;
+  Grid Whole;
+  std::string ActiveScalars;
+  std::vector<WrittenArray> Arrays;
+  GatherPlan Plan;
+};
+
+StepAgreement Agree(const std::vector<StepReport>& reports);
+
+/// What changed between two steps, as half a sentence ("the array p was float32 and is float64"),
+/// or nothing.
+std::string ChangeBetween(const StepAgreement& before, const StepAgreement& now);
+
+} // namespace banyan
+
+#endif

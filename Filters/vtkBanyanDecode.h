@@ -1,0 +1,39 @@
+/**
+ * @class   vtkBanyanDecode
+ * @brief   replaces point arrays that decode on first touch by plain, decoded ones
+ *
+ * Put it between vtkBanyanSeriesReader and a filter that handles only arrays that VTK knows
+ * (vtkTemporalStatistics is one), or one that is slow otherwise. Everything else passes unchanged;
+ * arrays that are plain already are passed by reference.
+ *
+ * @par Exactness:
+ * The values are bit-exact those of the deferred array. Ranges become those of the values: the
+ * finite range of a plain array is that of its step, not of the series.
+ */
+#ifndef vtkBanyanDecode_h
+#define vtkBanyanDecode_h
+
+#include "BanyanFiltersModule.h" // For export macro
+#include "vtkPassInputTypeAlgorithm.h"
+
+class BANYANFILTERS_EXPORT vtkBanyanDecode : public vtkPassInputTypeAlgorithm
+{
+public:
+  static vtkBanyanDecode* New();
+  vtkTypeMacro(vtkBanyanDecode, vtkPassInputTypeAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+protected:
+  vtkBanyanDecode() = default;
+  ~vtkBanyanDecode() override = default;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkBanyanDecode(const vtkBanyanDecode&) = delete;
+  void operator=(const vtkBanyanDecode&) = delete;
+};
+
+#endif

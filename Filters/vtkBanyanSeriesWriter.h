@@ -1,0 +1,128 @@
+/**
+ * @class   vtkBanyanSeriesWriter
+ * @brief   writes a time series of image data as a Banyan series (name.banyan)
+ *
+ * All steps of the input go into one series, each rank asking for its own piece of every step; rank
+ * 0 of the controller gathers and encodes them. With a relative error bound the input is updated
+ * twice per step: once to learn the ranges of the whole series, once to encode.
+ *
+ * What is written: point arrays of numbers, of any scalar type and any number of components; the
+ * extent, origin, spacing, direction and times. Ghost arrays are not written. Cell arrays, strings
+ * and bits are not written, with a warning that names them; when there is nothing else, writing
+ * fails. Field data are not written. Hidden (blanked) points become NaN in float and double arrays,
+ * and writing fails when there are integer arrays or hidden cells.
+ *
+ * @par Exactness:
+ * |decoded - original| <= error bound for each finite value, verified in the array's type; NaN and
+ * infinities are bit-exact. ErrorBound 0 keeps every bit.
+ *
+ * @par Errors:
+ * Write() returns 0, GetErrorCode() is set and an error message says what is wrong, at which step
+ * and on which rank; all ranks fail together. Nothing new is left on the disk, and a series that
+ * existed under the name is as it was.
+ *
+ * @par Limits:
+ * Rank 0 holds one whole step (all chosen arrays) in memory, unless it is the only rank.
+ */
+#ifndef vtkBanyanSeriesWriter_h
+#define vtkBanyanSeriesWriter_h
+
+#include "BanyanFiltersModule.h" // For export macro
+#include "vtkNew.h"              // For Selection
+#include "vtkSmartPointer.h"     // For Controller
+#include "vtkWriter.h"
+
+class vtkDataArraySelection;
+class vtkMultiProcessController;
+
+class BANYANFILTERS_EXPORT vtkBanyanSeriesWriter : public vtkWriter
+{
+public:
+  static vtkBanyanSeriesWriter* New();
+  vtkTypeMacro(vtkBanyanSeriesWriter, vtkWriter);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum ErrorBoundModes
+  {
+    RELATIVE_TO_SERIES_RANGE = 0,
+    ABSOLUTE = 1
+  };
+
+  ///@{
+  /**
+   * Path of the index file; the segments go into a folder of the same name with ".d" at its end.
+   */
+  vtkSetFilePathMacro(FileName);
+  vtkGetFilePathMacro(FileName);
+  ///@}
+
+  ///@{
+  /**
+   * Largest error of a finite value: a part of the range of its component over the whole series,
+   * or absolute in the units of the data. Default 1/512, which is 8-bit rounding; 0 is lossless.
+   */
+  vtkSetMacro(ErrorBound, double);
+  vtkGetMacro(ErrorBound, double);
+  vtkSetClampMacro(ErrorBoundMode, int, RELATIVE_TO_SERIES_RANGE, ABSOLUTE);
+  vtkGetMacro(ErrorBoundMode, int);
+  ///@}
+
+  ///@{
+  /**
+   * Steps per segment file, in [1, 1024]; default 8. A killed writer loses at most one segment.
+   */
+  vtkSetMacro(KeyframeInterval, int);
+  vtkGetMacro(KeyframeInterval, int);
+  ///@}
+
+  ///@{
+  /**
+   * Whether all time steps of the input are written (default), or only the present one.
+   */
+  vtkSetMacro(WriteTimeSteps, bool);
+  vtkGetMacro(WriteTimeSteps, bool);
+  vtkBooleanMacro(WriteTimeSteps, bool);
+  ///@}
+
+  /**
+   * Names of the point arrays to write. Empty (the default) means all; otherwise those that are
+   * enabled, and it is an error if one of them does not exist.
+   */
+  vtkDataArraySelection* GetPointArraySelection();
+
+  ///@{
+  /**
+   * Whose ranks write together; by default the global controller. nullptr: this rank alone.
+   */
+  void SetController(vtkMultiProcessController* controller);
+  vtkMultiProcessController* GetController();
+  ///@}
+
+  /**
+   * Writes the series. Collective over the ranks of the controller. Returns 1 on success.
+   */
+  int Write() override;
+
+protected:
+  vtkBanyanSeriesWriter();
+  ~vtkBanyanSeriesWriter() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  void WriteData() override;
+
+private:
+  vtkBanyanSeriesWriter(const vtkBanyanSeriesWriter&) = delete;
+  void operator=(const vtkBanyanSeriesWriter&) = delete;
+
+  void WriteSeries();
+
+  char* FileName = nullptr;
+  double ErrorBound = 1.0 / 512.0;
+  int ErrorBoundMode = RELATIVE_TO_SERIES_RANGE;
+  int KeyframeInterval = 8;
+  bool WriteTimeSteps = true;
+  vtkNew<vtkDataArraySelection> Selection;
+  vtkSmartPointer<vtkMultiProcessController> Controller;
+};
+
+#endif

@@ -1,0 +1,68 @@
+#include "vtkBanyanArray.txx"
+
+namespace
+{
+
+/// VTK's general path through unknown arrays goes by double; larger integers would change there.
+constexpr double LargestExactInteger = 9007199254740992.0; // 2^53
+
+bool FitsDouble(const banyan::ArrayIndex& index)
+{
+  const bool wide =
+    index.Type == banyan::ScalarType::Int64 || index.Type == banyan::ScalarType::UInt64;
+  for (const banyan::ComponentIndex& component : index.Components)
+  {
+    const banyan::ValueRange& range = component.Range;
+    if (wide && !range.Empty() &&
+        (range.Low < -LargestExactInteger || range.High > LargestExactInteger))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+template <class T>
+vtkSmartPointer<vtkDataArray> MakePlain(const vtkBanyanDeferred::Handle& handle)
+{
+  const banyan::ArrayIndex& index = handle.Series->Index().Arrays.at(handle.Array);
+  auto array = vtkSmartPointer<vtkDataArray>::Take(
+    vtkDataArray::CreateDataArray(vtkTypeTraits<T>::VTK_TYPE_ID));
+  array->SetName(index.Name.c_str());
+  array->SetNumberOfComponents(static_cast<int>(index.Components.size()));
+  for (std::size_t c = 0; c < index.Components.size(); ++c)
+  {
+    if (!index.Components[c].Name.empty())
+    {
+      array->SetComponentName(static_cast<vtkIdType>(c), index.Components[c].Name.c_str());
+    }
+  }
+  array->SetNumberOfTuples(handle.Samples.Count());
+  vtkBanyanDeferred::ReadInto(handle, array->GetVoidPointer(0));
+  return array;
+}
+
+} // namespace
+
+vtkSmartPointer<vtkDataArray> vtkBanyanDeferred::New(const Handle& handle)
+{
+  const banyan::ArrayIndex& index = handle.Series->Index().Arrays.at(handle.Array);
+  if (!FitsDouble(index))
+  {
+    return NewPlain(handle);
+  }
+  return banyan::Dispatch(index.Type,
+    [&](auto tag) -> vtkSmartPointer<vtkDataArray>
+    {
+      auto array = vtkSmartPointer<vtkBanyanArray<typename decltype(tag)::Type>>::New();
+      array->SetSource(handle);
+      return array;
+    });
+}
+
+vtkSmartPointer<vtkDataArray> vtkBanyanDeferred::NewPlain(const Handle& handle)
+{
+  const banyan::ArrayIndex& index = handle.Series->Index().Arrays.at(handle.Array);
+  return banyan::Dispatch(
+    index.Type, [&](auto tag) { return MakePlain<typename decltype(tag)::Type>(handle); });
+}

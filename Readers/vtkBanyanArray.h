@@ -1,0 +1,164 @@
+/**
+ * @class   vtkBanyanArray
+ * @brief   a point array of a Banyan series that decodes its piece when a value is first asked for
+ *
+ * Name, size and ranges are answered from the series' tree; the first access to a value decodes
+ * the whole piece (through the brick cache, on all threads of the pool) into ordinary memory.
+ * NewInstance() yields a plain array, so filters write plain arrays.
+ *
+ * @par Ranges:
+ * - GetRange(): of this piece at this step. Contains the true range; exact when the piece consists
+ *   of whole bricks, and always once the values have been decoded. Over the pieces of all ranks
+ *   together it is exact. Infinities do not count before the values have been decoded.
+ * - GetFiniteRange(range, component): of the whole *series*. ParaView 5.11 asks it in
+ *   vtkPVArrayInformation only, to choose colour ranges, which therefore do not drift over time.
+ *   (In VTK 9.2, vtkVolumeTexture and vtkPVExtractHistogram2D ask it too; they need a range that
+ *   contains the values and get one.)
+ * - With a ghost array: decodes, and gives what a plain array gives.
+ * - Of magnitudes: contains the true range; exact once decoded.
+ *
+ * @par Limits:
+ * VTK's array dispatch does not know this type, so filters take their general path, which is
+ * slower (1 to 4 times) and, in vtkTemporalStatistics, wrong: use vtkBanyanDecode before it, or
+ * switch the reader's DeferDecoding off.
+ * A value access cannot report an error: the reader checks the checksums of all that a piece needs.
+ * When decoding fails nevertheless, an error message says so, and the values are NaN (0 for
+ * integers).
+ */
+#ifndef vtkBanyanArray_h
+#define vtkBanyanArray_h
+
+#include "vtkBanyanDeferred.h"
+#include "vtkGenericDataArray.h"
+#include "vtkObjectFactory.h"
+
+#include "Series/PieceRange.h"
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <typeinfo>
+#include <vector>
+
+template <class ValueTypeT>
+class vtkBanyanArray
+  : public vtkGenericDataArray<vtkBanyanArray<ValueTypeT>, ValueTypeT>
+  , public vtkBanyanDeferred
+{
+  using GenericType = vtkGenericDataArray<vtkBanyanArray<ValueTypeT>, ValueTypeT>;
+
+public:
+  using SelfType = vtkBanyanArray<ValueTypeT>;
+  vtkAbstractTypeMacroWithNewInstanceType(
+    SelfType, GenericType, vtkDataArray, typeid(SelfType).name());
+  using ValueType = ValueTypeT;
+
+  static vtkBanyanArray* New() { VTK_STANDARD_NEW_BODY(SelfType); }
+
+  /// To be called once, before anything else. Throws banyan::Error when the tree cannot be read.
+  void SetSource(const Handle& source);
+
+  ///@{
+  /// The concept methods of vtkGenericDataArray.
+  ValueType GetValue(vtkIdType index) const { return this->Values()[index]; }
+  void SetValue(vtkIdType index, ValueType value) { this->Writable()[index] = value; }
+  void GetTypedTuple(vtkIdType tuple, ValueType* values) const
+  {
+    const ValueType* from = this->Values() + tuple * this->NumberOfComponents;
+    std::copy_n(from, this->NumberOfComponents, values);
+  }
+  void SetTypedTuple(vtkIdType tuple, const ValueType* values)
+  {
+    ValueType* to = this->Writable() + tuple * this->NumberOfComponents;
+    std::copy_n(values, this->NumberOfComponents, to);
+  }
+  ValueType GetTypedComponent(vtkIdType tuple, int component) const
+  {
+    return this->Values()[tuple * this->NumberOfComponents + component];
+  }
+  void SetTypedComponent(vtkIdType tuple, int component, ValueType value)
+  {
+    this->Writable()[tuple * this->NumberOfComponents + component] = value;
+  }
+  ///@}
+
+  void* GetVoidPointer(vtkIdType index) override;
+  void* WriteVoidPointer(vtkIdType index, vtkIdType count) override;
+  void ExportToVoidPointer(void* to) override;
+  bool HasStandardMemoryLayout() const override { return true; }
+  vtkArrayIterator* NewIterator() override;
+  unsigned long GetActualMemorySize() const override;
+  void Squeeze() override;
+
+protected:
+  vtkBanyanArray();
+  ~vtkBanyanArray() override;
+
+  // A filter's output is to be written, and that is what plain arrays are for.
+  vtkObjectBase* NewInstanceInternal() const override;
+
+  bool AllocateTuples(vtkIdType tuples);
+  bool ReallocateTuples(vtkIdType tuples);
+  friend GenericType;
+
+  void ComputeRange(double range[2], int component) override;
+  void ComputeRange(
+    double range[2], int component, const unsigned char* ghosts, unsigned char skip) override;
+  void ComputeFiniteRange(double range[2], int component) override;
+  void ComputeFiniteRange(
+    double range[2], int component, const unsigned char* ghosts, unsigned char skip) override;
+  bool ComputeScalarRange(double* ranges) override;
+  bool ComputeScalarRange(double* ranges, const unsigned char* ghosts, unsigned char skip) override;
+  bool ComputeVectorRange(double range[2]) override;
+  bool ComputeVectorRange(
+    double range[2], const unsigned char* ghosts, unsigned char skip) override;
+  bool ComputeFiniteScalarRange(double* ranges) override;
+  bool ComputeFiniteScalarRange(
+    double* ranges, const unsigned char* ghosts, unsigned char skip) override;
+  bool ComputeFiniteVectorRange(double range[2]) override;
+  bool ComputeFiniteVectorRange(
+    double range[2], const unsigned char* ghosts, unsigned char skip) override;
+
+  bool IsPristine() const override;
+  std::uint64_t DecodedBytes() const override;
+  bool Release() override;
+
+private:
+  vtkBanyanArray(const vtkBanyanArray&) = delete;
+  void operator=(const vtkBanyanArray&) = delete;
+
+  enum class Infinities
+  {
+    Count,
+    Skip
+  };
+
+  const ValueType* Values() const
+  {
+    const ValueType* values = this->Data.load(std::memory_order_acquire);
+    return values ? values : this->Decode();
+  }
+  ValueType* Decode() const;
+  ValueType* Writable();
+  bool Own(vtkIdType tuples, bool keep);
+  /// Ranges of a part of the values: NumberOfComponents of them, and the magnitude last.
+  std::vector<banyan::ValueRange> Scan(
+    const unsigned char* ghosts, unsigned char skip, Infinities infinities) const;
+  /// The same from the tree, or from the values once they are there.
+  std::vector<banyan::ValueRange> Told(Infinities infinities);
+  std::vector<banyan::ValueRange> Answer(
+    const unsigned char* ghosts, unsigned char skip, Infinities infinities);
+
+  banyan::PieceRange OfPiece;
+  banyan::PieceRange OfSeries;
+  mutable std::mutex Decoding;
+  mutable std::unique_ptr<ValueType[]> Storage;
+  mutable std::atomic<ValueType*> Data{ nullptr };
+  mutable std::atomic<bool> GivenAway{ false };
+  bool Written = false;
+  vtkMTimeType UnchangedSince = 0;
+  std::vector<banyan::ValueRange> Scanned[2]; ///< by Infinities; empty: not scanned yet
+};
+
+#endif

@@ -1,0 +1,403 @@
+#ifndef vtkBanyanArray_txx
+#define vtkBanyanArray_txx
+
+#include "vtkBanyanArray.h"
+
+#include "vtkArrayIteratorTemplate.h"
+
+#include "Cache/BrickCache.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+template <class T>
+vtkBanyanArray<T>::vtkBanyanArray() = default;
+
+template <class T>
+vtkBanyanArray<T>::~vtkBanyanArray()
+{
+  this->Forget();
+}
+
+template <class T>
+void vtkBanyanArray<T>::SetSource(const Handle& source)
+{
+  this->Source = source;
+  const banyan::SeriesFile& series = *source.Series;
+  this->OfPiece =
+    banyan::RangeOfPiece(series, source.Step, source.Array, source.Level, source.Samples);
+  this->OfSeries = banyan::RangeOfSeries(series, source.Array);
+
+  const banyan::ArrayIndex& index = series.Index().Arrays[source.Array];
+  this->SetName(index.Name.c_str());
+  this->SetNumberOfComponents(static_cast<int>(index.Components.size()));
+  for (std::size_t c = 0; c < index.Components.size(); ++c)
+  {
+    if (!index.Components[c].Name.empty())
+    {
+      this->SetComponentName(static_cast<vtkIdType>(c), index.Components[c].Name.c_str());
+    }
+  }
+  this->Size = source.Samples.Count() * this->NumberOfComponents;
+  this->MaxId = this->Size - 1;
+  this->UnchangedSince = this->GetMTime();
+}
+
+//--------------------------------------------------------------------------------------------------
+// Values
+
+template <class T>
+T* vtkBanyanArray<T>::Decode() const
+{
+  const std::lock_guard<std::mutex> lock(this->Decoding);
+  if (T* values = this->Data.load(std::memory_order_acquire))
+  {
+    return values; // another thread was faster
+  }
+  // An array is never without values, so that 0 is free to say "not decoded".
+  const std::size_t count = this->Size > 0 ? static_cast<std::size_t>(this->Size) : 1;
+  this->Storage.reset(new T[count]);
+  try
+  {
+    if (this->Source.Series)
+    {
+      ReadInto(this->Source, this->Storage.get());
+    }
+  }
+  catch (const std::exception& error)
+  {
+    auto* self = const_cast<SelfType*>(this);
+    vtkErrorWithObjectMacro(self, "The values of the array "
+                                    << self->GetName()
+                                    << " could not be decoded and are now missing (NaN, or 0 for "
+                                       "integers): "
+                                    << error.what());
+    const T missing =
+      std::numeric_limits<T>::has_quiet_NaN ? std::numeric_limits<T>::quiet_NaN() : T(0);
+    std::fill_n(this->Storage.get(), count, missing);
+  }
+  this->Data.store(this->Storage.get(), std::memory_order_release);
+  this->Remember();
+  return this->Storage.get();
+}
+
+template <class T>
+T* vtkBanyanArray<T>::Writable()
+{
+  T* values = const_cast<T*>(this->Values());
+  this->Written = true;
+  return values;
+}
+
+template <class T>
+bool vtkBanyanArray<T>::Own(vtkIdType tuples, bool keep)
+{
+  const std::size_t count = static_cast<std::size_t>(tuples) * this->NumberOfComponents;
+  std::unique_ptr<T[]> storage(new (std::nothrow) T[count > 0 ? count : 1]);
+  if (!storage)
+  {
+    return false;
+  }
+  if (keep && this->Size > 0)
+  {
+    std::copy_n(this->Values(), std::min<std::size_t>(count, this->Size), storage.get());
+  }
+  const std::lock_guard<std::mutex> lock(this->Decoding);
+  this->Storage = std::move(storage);
+  this->Data.store(this->Storage.get(), std::memory_order_release);
+  this->Written = true;
+  return true;
+}
+
+template <class T>
+bool vtkBanyanArray<T>::AllocateTuples(vtkIdType tuples)
+{
+  return this->Own(tuples, false);
+}
+
+template <class T>
+bool vtkBanyanArray<T>::ReallocateTuples(vtkIdType tuples)
+{
+  return this->Own(tuples, true);
+}
+
+template <class T>
+void* vtkBanyanArray<T>::GetVoidPointer(vtkIdType index)
+{
+  this->GivenAway = true;
+  return const_cast<T*>(this->Values()) + index;
+}
+
+template <class T>
+void* vtkBanyanArray<T>::WriteVoidPointer(vtkIdType index, vtkIdType count)
+{
+  const vtkIdType end = index + count;
+  if (end > this->Size)
+  {
+    const vtkIdType tuples = (end + this->NumberOfComponents - 1) / this->NumberOfComponents;
+    if (!this->Resize(tuples))
+    {
+      return nullptr;
+    }
+  }
+  this->MaxId = std::max(this->MaxId, end - 1);
+  this->GivenAway = true;
+  this->DataChanged();
+  return this->Writable() + index;
+}
+
+template <class T>
+void vtkBanyanArray<T>::ExportToVoidPointer(void* to)
+{
+  if (to && this->GetNumberOfValues() > 0)
+  {
+    std::memcpy(to, this->Values(), this->GetNumberOfValues() * sizeof(T));
+  }
+}
+
+template <class T>
+vtkArrayIterator* vtkBanyanArray<T>::NewIterator()
+{
+  vtkArrayIterator* iterator = vtkArrayIteratorTemplate<T>::New();
+  iterator->Initialize(this);
+  return iterator;
+}
+
+template <class T>
+unsigned long vtkBanyanArray<T>::GetActualMemorySize() const
+{
+  return this->Data.load() ? this->GenericType::GetActualMemorySize() : 1;
+}
+
+template <class T>
+void vtkBanyanArray<T>::Squeeze()
+{
+  if (!this->Release())
+  {
+    this->GenericType::Squeeze();
+  }
+}
+
+template <class T>
+vtkObjectBase* vtkBanyanArray<T>::NewInstanceInternal() const
+{
+  return vtkDataArray::CreateDataArray(GenericType::VTK_DATA_TYPE);
+}
+
+template <class T>
+bool vtkBanyanArray<T>::IsPristine() const
+{
+  // Who writes through a pointer has to call Modified(); there is no other sign of it.
+  auto* self = const_cast<SelfType*>(this);
+  return !this->Written && !(this->GivenAway && self->GetMTime() > this->UnchangedSince);
+}
+
+template <class T>
+std::uint64_t vtkBanyanArray<T>::DecodedBytes() const
+{
+  return this->Data.load() ? static_cast<std::uint64_t>(this->Size) * sizeof(T) : 0;
+}
+
+template <class T>
+bool vtkBanyanArray<T>::Release()
+{
+  const std::unique_lock<std::mutex> lock(this->Decoding, std::try_to_lock);
+  if (!lock || this->GivenAway || this->Written || !this->Data.load())
+  {
+    return false;
+  }
+  this->Data.store(nullptr);
+  this->Storage.reset();
+  return true;
+}
+
+//--------------------------------------------------------------------------------------------------
+// Ranges
+
+template <class T>
+std::vector<banyan::ValueRange> vtkBanyanArray<T>::Scan(
+  const unsigned char* ghosts, unsigned char skip, Infinities infinities) const
+{
+  const int components = this->NumberOfComponents;
+  const vtkIdType tuples = this->GetNumberOfTuples();
+  const bool finiteOnly = infinities == Infinities::Skip;
+  std::vector<banyan::ValueRange> ranges(components + 1);
+  const T* value = this->Values();
+  for (vtkIdType tuple = 0; tuple < tuples; ++tuple, value += components)
+  {
+    if (ghosts && (ghosts[tuple] & skip))
+    {
+      continue;
+    }
+    double squares = 0.0;
+    for (int c = 0; c < components; ++c)
+    {
+      const double x = static_cast<double>(value[c]);
+      squares += x * x;
+      if (!finiteOnly || !std::isinf(x))
+      {
+        ranges[c].Include(x); // NaN compares false and changes nothing
+      }
+    }
+    if (!finiteOnly || !std::isinf(squares))
+    {
+      ranges[components].Include(squares);
+    }
+  }
+  if (components == 1)
+  {
+    ranges[1] = ranges[0];
+  }
+  else if (!ranges[components].Empty())
+  {
+    ranges[components] = { std::sqrt(ranges[components].Low), std::sqrt(ranges[components].High) };
+  }
+  return ranges;
+}
+
+template <class T>
+std::vector<banyan::ValueRange> vtkBanyanArray<T>::Told(Infinities infinities)
+{
+  if (this->DecodedBytes() == 0)
+  {
+    std::vector<banyan::ValueRange> ranges = this->OfPiece.Components;
+    ranges.push_back(this->OfPiece.Magnitude);
+    return ranges;
+  }
+  std::vector<banyan::ValueRange>& ranges = this->Scanned[static_cast<int>(infinities)];
+  if (ranges.empty())
+  {
+    ranges = this->Scan(nullptr, 0, infinities);
+  }
+  return ranges;
+}
+
+template <class T>
+std::vector<banyan::ValueRange> vtkBanyanArray<T>::Answer(
+  const unsigned char* ghosts, unsigned char skip, Infinities infinities)
+{
+  // Values that were changed are nobody's but the array's: no memory of them is kept either.
+  return ghosts || !this->IsPristine() ? this->Scan(ghosts, skip, infinities)
+                                       : this->Told(infinities);
+}
+
+namespace vtkBanyanArrayDetail
+{
+/// As VTK writes ranges: nothing at all is from the largest double to the smallest.
+inline bool Write(const banyan::ValueRange& from, double* to)
+{
+  to[0] = from.Empty() ? VTK_DOUBLE_MAX : from.Low;
+  to[1] = from.Empty() ? VTK_DOUBLE_MIN : from.High;
+  return true;
+}
+
+/// @param component -1 for the magnitude, which comes last
+inline void WriteOne(const std::vector<banyan::ValueRange>& from, int component, double* to)
+{
+  const int components = static_cast<int>(from.size()) - 1;
+  if (component < components)
+  {
+    Write(from[component < 0 ? components : component], to);
+  }
+}
+
+inline void WriteAll(const std::vector<banyan::ValueRange>& from, double* to)
+{
+  for (std::size_t c = 0; c + 1 < from.size(); ++c)
+  {
+    Write(from[c], to + 2 * c);
+  }
+}
+}
+
+template <class T>
+void vtkBanyanArray<T>::ComputeRange(double range[2], int component)
+{
+  this->ComputeRange(range, component, nullptr, 0);
+}
+
+template <class T>
+void vtkBanyanArray<T>::ComputeRange(
+  double range[2], int component, const unsigned char* ghosts, unsigned char skip)
+{
+  vtkBanyanArrayDetail::WriteOne(this->Answer(ghosts, skip, Infinities::Count), component, range);
+}
+
+template <class T>
+void vtkBanyanArray<T>::ComputeFiniteRange(double range[2], int component)
+{
+  if (!this->IsPristine())
+  {
+    this->ComputeFiniteRange(range, component, nullptr, 0);
+    return;
+  }
+  std::vector<banyan::ValueRange> ranges = this->OfSeries.Components;
+  ranges.push_back(this->OfSeries.Magnitude);
+  vtkBanyanArrayDetail::WriteOne(ranges, component, range);
+}
+
+template <class T>
+void vtkBanyanArray<T>::ComputeFiniteRange(
+  double range[2], int component, const unsigned char* ghosts, unsigned char skip)
+{
+  vtkBanyanArrayDetail::WriteOne(this->Answer(ghosts, skip, Infinities::Skip), component, range);
+}
+
+template <class T>
+bool vtkBanyanArray<T>::ComputeScalarRange(double* ranges)
+{
+  return this->ComputeScalarRange(ranges, nullptr, 0);
+}
+
+template <class T>
+bool vtkBanyanArray<T>::ComputeScalarRange(
+  double* ranges, const unsigned char* ghosts, unsigned char skip)
+{
+  vtkBanyanArrayDetail::WriteAll(this->Answer(ghosts, skip, Infinities::Count), ranges);
+  return this->Size > 0;
+}
+
+template <class T>
+bool vtkBanyanArray<T>::ComputeVectorRange(double range[2])
+{
+  return this->ComputeVectorRange(range, nullptr, 0);
+}
+
+template <class T>
+bool vtkBanyanArray<T>::ComputeVectorRange(
+  double range[2], const unsigned char* ghosts, unsigned char skip)
+{
+  vtkBanyanArrayDetail::WriteOne(this->Answer(ghosts, skip, Infinities::Count), -1, range);
+  return this->Size > 0;
+}
+
+template <class T>
+bool vtkBanyanArray<T>::ComputeFiniteScalarRange(double* ranges)
+{
+  return this->ComputeFiniteScalarRange(ranges, nullptr, 0);
+}
+
+template <class T>
+bool vtkBanyanArray<T>::ComputeFiniteScalarRange(
+  double* ranges, const unsigned char* ghosts, unsigned char skip)
+{
+  vtkBanyanArrayDetail::WriteAll(this->Answer(ghosts, skip, Infinities::Skip), ranges);
+  return this->Size > 0;
+}
+
+template <class T>
+bool vtkBanyanArray<T>::ComputeFiniteVectorRange(double range[2])
+{
+  return this->ComputeFiniteVectorRange(range, nullptr, 0);
+}
+
+template <class T>
+bool vtkBanyanArray<T>::ComputeFiniteVectorRange(
+  double range[2], const unsigned char* ghosts, unsigned char skip)
+{
+  vtkBanyanArrayDetail::WriteOne(this->Answer(ghosts, skip, Infinities::Skip), -1, range);
+  return this->Size > 0;
+}
+
+#endif

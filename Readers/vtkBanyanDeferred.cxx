@@ -1,0 +1,184 @@
+#include "vtkBanyanDeferred.h"
+
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkMatrix3x3.h"
+
+#include "Cache/BrickCache.h"
+#include "Series/LevelGrid.h"
+#include "Series/SeriesFile.h"
+
+#include <algorithm>
+#include <mutex>
+#include <new>
+#include <vector>
+
+namespace
+{
+
+/// The deferred arrays of this process that hold decoded values, oldest first.
+struct Ledger
+{
+  std::mutex Mutex;
+  std::vector<vtkBanyanDeferred*> Arrays;
+
+  static Ledger& Get()
+  {
+    // Never destroyed: arrays may outlive the static objects of this library.
+    static Ledger* ledger = new Ledger;
+    return *ledger;
+  }
+};
+
+vtkBanyanDeferred* Cast(vtkAbstractArray* array)
+{
+  return dynamic_cast<vtkBanyanDeferred*>(array);
+}
+
+} // namespace
+
+vtkBanyanDeferred::vtkBanyanDeferred() = default;
+vtkBanyanDeferred::~vtkBanyanDeferred() = default;
+
+const vtkBanyanDeferred::Handle* vtkBanyanDeferred::From(vtkAbstractArray* array)
+{
+  const vtkBanyanDeferred* deferred = Cast(array);
+  return deferred && deferred->IsPristine() ? &deferred->Source : nullptr;
+}
+
+bool vtkBanyanDeferred::IsUntouched(vtkAbstractArray* array)
+{
+  const vtkBanyanDeferred* deferred = Cast(array);
+  return deferred && deferred->DecodedBytes() == 0;
+}
+
+bool vtkBanyanDeferred::LiesOnSeries(vtkImageData* image, const Handle& handle)
+{
+  const banyan::Grid grid = banyan::GridOfLevel(handle.Series->Index().Domain, handle.Level);
+  const int* extent = image->GetExtent();
+  const double* origin = image->GetOrigin();
+  const double* spacing = image->GetSpacing();
+  const vtkMatrix3x3* direction = image->GetDirectionMatrix();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int first = handle.Samples.Lo[axis] + grid.Extent.Lo[axis];
+    const int last = handle.Samples.Hi[axis] + grid.Extent.Lo[axis] - 1;
+    if (extent[2 * axis] != first || extent[2 * axis + 1] != last ||
+        origin[axis] != grid.Origin[axis] || spacing[axis] != grid.Spacing[axis])
+    {
+      return false;
+    }
+    for (int row = 0; row < 3; ++row)
+    {
+      if (direction->GetElement(row, axis) != grid.Direction[axis][row])
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+vtkSmartPointer<vtkDataArray> vtkBanyanDeferred::Plain(vtkDataArray* array)
+{
+  const vtkBanyanDeferred* deferred = Cast(array);
+  if (!deferred)
+  {
+    return array;
+  }
+  try
+  {
+    vtkSmartPointer<vtkDataArray> plain;
+    if (deferred->IsPristine() && IsUntouched(array))
+    {
+      plain = NewPlain(deferred->Source);
+    }
+    else
+    {
+      plain.TakeReference(array->NewInstance());
+      plain->SetNumberOfComponents(array->GetNumberOfComponents());
+      plain->SetNumberOfTuples(array->GetNumberOfTuples());
+      array->ExportToVoidPointer(plain->GetVoidPointer(0));
+      plain->CopyComponentNames(array);
+    }
+    plain->SetName(array->GetName());
+    plain->CopyInformation(array->GetInformation());
+    return plain;
+  }
+  catch (const std::bad_alloc&)
+  {
+    vtkErrorWithObjectMacro(array, "There is no memory for the " << array->GetNumberOfValues()
+                                                                 << " values of the array "
+                                                                 << array->GetName() << ".");
+  }
+  catch (const banyan::Error& error)
+  {
+    vtkErrorWithObjectMacro(
+      array, "The array " << array->GetName() << " cannot be decoded: " << error.what());
+  }
+  return nullptr;
+}
+
+void vtkBanyanDeferred::ReadInto(const Handle& handle, void* values)
+{
+  const int components =
+    static_cast<int>(handle.Series->Index().Arrays.at(handle.Array).Components.size());
+  if (handle.Samples.Empty())
+  {
+    return;
+  }
+  for (int component = 0; component < components; ++component)
+  {
+    banyan::ReadRegion(banyan::BrickCache::Process(), *handle.Series,
+      { handle.Step, handle.Array, component, handle.Level }, handle.Samples, values, components,
+      component);
+  }
+}
+
+void vtkBanyanDeferred::Remember() const
+{
+  Ledger& ledger = Ledger::Get();
+  const std::lock_guard<std::mutex> lock(ledger.Mutex);
+  ledger.Arrays.push_back(const_cast<vtkBanyanDeferred*>(this));
+}
+
+void vtkBanyanDeferred::Forget()
+{
+  Ledger& ledger = Ledger::Get();
+  const std::lock_guard<std::mutex> lock(ledger.Mutex);
+  auto& arrays = ledger.Arrays;
+  arrays.erase(std::remove(arrays.begin(), arrays.end(), this), arrays.end());
+}
+
+std::uint64_t vtkBanyanDeferred::HeldBytes()
+{
+  Ledger& ledger = Ledger::Get();
+  const std::lock_guard<std::mutex> lock(ledger.Mutex);
+  std::uint64_t bytes = 0;
+  for (const vtkBanyanDeferred* array : ledger.Arrays)
+  {
+    bytes += array->DecodedBytes();
+  }
+  return bytes;
+}
+
+void vtkBanyanDeferred::ReleaseDownTo(std::uint64_t budgetBytes)
+{
+  std::uint64_t held = HeldBytes();
+  Ledger& ledger = Ledger::Get();
+  const std::lock_guard<std::mutex> lock(ledger.Mutex);
+  auto& arrays = ledger.Arrays;
+  for (auto array = arrays.begin(); held > budgetBytes && array != arrays.end();)
+  {
+    const std::uint64_t bytes = (*array)->DecodedBytes();
+    if ((*array)->Release())
+    {
+      held -= bytes;
+      array = arrays.erase(array);
+    }
+    else
+    {
+      ++array;
+    }
+  }
+}

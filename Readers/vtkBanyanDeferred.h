@@ -1,0 +1,127 @@
+/**
+ * @class   vtkBanyanDeferred
+ * @brief   what a point array of a Banyan series that decodes on first touch says about itself
+ *
+ * vtkBanyanSeriesReader gives its point arrays this second base class, so that a renderer can read
+ * bricks from the series instead of values from the array, without knowing the array's template.
+ *
+ * @par Limits:
+ * A handle says where the values come from, never where the points lie: filters such as Transform
+ * keep the array on moved points. Ask LiesOnSeries() before drawing from the series.
+ */
+#ifndef vtkBanyanDeferred_h
+#define vtkBanyanDeferred_h
+
+#include "BanyanReadersModule.h" // For export macro
+#include "vtkSmartPointer.h"     // For return type
+
+#include "Base/Box.h"
+
+#include <cstdint>
+#include <memory>
+
+class vtkAbstractArray;
+class vtkDataArray;
+class vtkImageData;
+
+namespace banyan
+{
+class SeriesFile;
+}
+
+class BANYANREADERS_EXPORT vtkBanyanDeferred
+{
+public:
+  /// Where the values of an array come from.
+  struct Handle
+  {
+    std::shared_ptr<const banyan::SeriesFile> Series;
+    int Step = 0;
+    int Array = 0; ///< index in the series' list of arrays
+    int Level = 0; ///< 0 is the finest
+    /// The samples of that level, starting at 0 in each axis (see banyan::BrickLayout), that the
+    /// array's tuples stand for, x fastest.
+    banyan::Box Samples;
+  };
+
+  /**
+   * The handle of an array whose values are still those of the series, decoded or not; nullptr for
+   * plain arrays and for arrays that were written to. The pointer lives as long as the array.
+   */
+  static const Handle* From(vtkAbstractArray* array);
+
+  /**
+   * Whether the array is deferred and none of its values has been asked for (or they were let go
+   * again): it holds no decoded values now.
+   */
+  static bool IsUntouched(vtkAbstractArray* array);
+
+  /**
+   * Whether the image's extent, origin, spacing and direction say that its points are the samples
+   * of the handle: only then may the series be drawn in the place of the image.
+   */
+  static bool LiesOnSeries(vtkImageData* image, const Handle& handle);
+
+  /**
+   * The array with its values in ordinary memory: `array` itself when it is not deferred, else a
+   * new array of the same name, type, components and information. Decodes straight into the new
+   * array when the values are not there yet. nullptr when they cannot be decoded (after an error
+   * message) or there is no memory for them.
+   */
+  static vtkSmartPointer<vtkDataArray> Plain(vtkDataArray* array);
+
+  /**
+   * A deferred array with the name and component names of the series.
+   * 64-bit integers that a double cannot hold exactly come as a plain array, already decoded:
+   * VTK handles arrays that it does not know in double precision.
+   * Throws banyan::Error when the values have to be decoded and cannot be.
+   */
+  static vtkSmartPointer<vtkDataArray> New(const Handle& handle);
+
+  /**
+   * As New(), but plain and decoded. Throws banyan::Error, or std::bad_alloc.
+   */
+  static vtkSmartPointer<vtkDataArray> NewPlain(const Handle& handle);
+
+  /**
+   * Decodes the values of a handle, through the brick cache of the process and on its thread pool.
+   * @param values receives Samples.Count() tuples of the array's own type, components fastest,
+   * then x.
+   * Throws banyan::Error.
+   */
+  static void ReadInto(const Handle& handle, void* values);
+
+  /**
+   * Lets decoded values go, oldest first, until all deferred arrays of this process together hold
+   * at most `budgetBytes`. Values to which somebody has a pointer stay, and so do values that were
+   * changed. To be called when no filter is at work, as at the start of a reader's execution.
+   */
+  static void ReleaseDownTo(std::uint64_t budgetBytes);
+
+  /**
+   * Bytes of decoded values that all deferred arrays of this process hold now.
+   */
+  static std::uint64_t HeldBytes();
+
+  virtual ~vtkBanyanDeferred();
+
+protected:
+  vtkBanyanDeferred();
+  vtkBanyanDeferred(const vtkBanyanDeferred&) = delete;
+  void operator=(const vtkBanyanDeferred&) = delete;
+
+  /// Whether the values are still the series'.
+  virtual bool IsPristine() const = 0;
+  /// Bytes of decoded values that are held; 0 when untouched.
+  virtual std::uint64_t DecodedBytes() const = 0;
+  /// Frees decoded values unless a pointer to them was given away; returns whether it did.
+  virtual bool Release() = 0;
+
+  /// To be called when values have been decoded, and before they are destroyed.
+  void Remember() const;
+  void Forget();
+
+  Handle Source;
+};
+
+#endif

@@ -1,0 +1,401 @@
+#include "vtkBanyanSeriesReader.h"
+
+#include "VerifiedBricks.h"
+#include "vtkBanyanDeferred.h"
+
+#include "vtkDataArray.h"
+#include "vtkDataArraySelection.h"
+#include "vtkErrorCode.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMatrix3x3.h"
+#include "vtkMultiProcessController.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTypeTraits.h"
+
+#include "Cache/BrickCache.h"
+#include "Series/LevelGrid.h"
+#include "Series/SeriesFile.h"
+
+#include <algorithm>
+#include <new>
+#include <sstream>
+
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+vtkStandardNewMacro(vtkBanyanSeriesReader);
+
+struct vtkBanyanSeriesReader::Internals
+{
+  std::shared_ptr<const banyan::SeriesFile> Series;
+  std::string OpenName; ///< the FileName that Series was opened from
+  bool Reopen = false;
+  banyan::VerifiedBricks Verified;
+  vtkNew<vtkDataArraySelection> Selection;
+  vtkSmartPointer<vtkMultiProcessController> Controller;
+};
+
+namespace
+{
+
+int VtkTypeOf(banyan::ScalarType type)
+{
+  return banyan::Dispatch(
+    type, [](auto tag) -> int { return vtkTypeTraits<typename decltype(tag)::Type>::VTK_TYPE_ID; });
+}
+
+/// VTK's extents include their last index.
+void ToExtent(const banyan::Box& box, int extent[6])
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    extent[2 * axis] = box.Lo[axis];
+    extent[2 * axis + 1] = box.Hi[axis] - 1;
+  }
+}
+
+banyan::Box FromExtent(const int extent[6])
+{
+  return { { extent[0], extent[2], extent[4] }, { extent[1] + 1, extent[3] + 1, extent[5] + 1 } };
+}
+
+} // namespace
+
+vtkBanyanSeriesReader::vtkBanyanSeriesReader()
+  : Self(new Internals)
+{
+  this->SetNumberOfInputPorts(0);
+  this->Self->Controller = vtkMultiProcessController::GetGlobalController();
+}
+
+vtkBanyanSeriesReader::~vtkBanyanSeriesReader()
+{
+  this->SetFileName(nullptr);
+}
+
+void vtkBanyanSeriesReader::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n"
+     << indent << "Level: " << this->Level << "\n"
+     << indent << "DeferDecoding: " << this->DeferDecoding << "\n"
+     << indent << "CacheBudget: " << this->CacheBudget << "\n"
+     << indent << "Steps: " << (this->Self->Series ? this->Self->Series->Index().Steps() : 0)
+     << "\n";
+  os << indent << "PointArraySelection:\n";
+  this->Self->Selection->PrintSelf(os, indent.GetNextIndent());
+}
+
+int vtkBanyanSeriesReader::CanReadFile(const char* fileName)
+{
+  try
+  {
+    return fileName && banyan::SeriesFile::Open(fileName) ? 1 : 0;
+  }
+  catch (const std::exception&)
+  {
+    return 0;
+  }
+}
+
+int vtkBanyanSeriesReader::GetNumberOfLevels()
+{
+  return this->Self->Series ? this->Self->Series->Index().Levels : 0;
+}
+
+void vtkBanyanSeriesReader::SetCacheBudget(int mebibytes)
+{
+  if (mebibytes >= 0)
+  {
+    banyan::BrickCache::Process().SetBudget(static_cast<std::uint64_t>(mebibytes) << 20);
+  }
+  if (this->CacheBudget != mebibytes)
+  {
+    // No Modified(): the output does not depend on it.
+    this->CacheBudget = mebibytes;
+  }
+}
+
+vtkDataArraySelection* vtkBanyanSeriesReader::GetPointArraySelection()
+{
+  return this->Self->Selection;
+}
+
+int vtkBanyanSeriesReader::GetNumberOfPointArrays()
+{
+  return this->Self->Selection->GetNumberOfArrays();
+}
+
+const char* vtkBanyanSeriesReader::GetPointArrayName(int index)
+{
+  return this->Self->Selection->GetArrayName(index);
+}
+
+int vtkBanyanSeriesReader::GetPointArrayStatus(const char* name)
+{
+  return this->Self->Selection->ArrayIsEnabled(name);
+}
+
+void vtkBanyanSeriesReader::SetPointArrayStatus(const char* name, int status)
+{
+  this->Self->Selection->SetArraySetting(name, status);
+}
+
+void vtkBanyanSeriesReader::Refresh()
+{
+  this->Self->Reopen = true;
+  this->Modified();
+}
+
+void vtkBanyanSeriesReader::SetController(vtkMultiProcessController* controller)
+{
+  this->Self->Controller = controller;
+}
+
+vtkMultiProcessController* vtkBanyanSeriesReader::GetController()
+{
+  return this->Self->Controller;
+}
+
+vtkMTimeType vtkBanyanSeriesReader::GetMTime()
+{
+  return std::max(this->Superclass::GetMTime(), this->Self->Selection->GetMTime());
+}
+
+//--------------------------------------------------------------------------------------------------
+// Opening
+
+std::string vtkBanyanSeriesReader::Place() const
+{
+  std::ostringstream text;
+  text << (this->FileName ? this->FileName : "(no file name)");
+  const vtkMultiProcessController* controller = this->Self->Controller;
+  if (controller && this->Self->Controller->GetNumberOfProcesses() > 1)
+  {
+    text << " (rank " << this->Self->Controller->GetLocalProcessId() << ")";
+  }
+  return text.str();
+}
+
+void vtkBanyanSeriesReader::Fail(unsigned long code, const std::string& sentence)
+{
+  this->SetErrorCode(code);
+  vtkErrorMacro(<< sentence);
+}
+
+std::string vtkBanyanSeriesReader::TryToOpen()
+{
+  this->Self->Series.reset();
+  if (!this->FileName || !*this->FileName)
+  {
+    return "No file name is set: set FileName to the path of a .banyan file.";
+  }
+  try
+  {
+    this->Self->Series = banyan::SeriesFile::Open(this->FileName);
+    this->Self->OpenName = this->FileName;
+    return {};
+  }
+  catch (const std::exception& error)
+  {
+    return this->Place() + " cannot be opened as a Banyan series: " + error.what();
+  }
+}
+
+bool vtkBanyanSeriesReader::OpenOnAllRanks()
+{
+  const std::string wanted = this->FileName ? this->FileName : "";
+  // Every rank comes to the same decision here: after a failure no rank has a series.
+  if (this->Self->Series && this->Self->OpenName == wanted && !this->Self->Reopen)
+  {
+    return true;
+  }
+  this->Self->Reopen = false;
+  const std::string problem = this->TryToOpen();
+  vtkMultiProcessController* controller = this->Self->Controller;
+  int failing = problem.empty() ? 0 : 1;
+  int failingRanks = failing;
+  if (controller && controller->GetNumberOfProcesses() > 1)
+  {
+    controller->AllReduce(&failing, &failingRanks, 1, vtkCommunicator::SUM_OP);
+  }
+  if (failing)
+  {
+    this->Fail(
+      this->FileName ? vtkErrorCode::CannotOpenFileError : vtkErrorCode::NoFileNameError, problem);
+  }
+  else if (failingRanks > 0)
+  {
+    this->Self->Series.reset();
+    this->Fail(vtkErrorCode::CannotOpenFileError,
+      this->Place() + " was opened here, but not on " + std::to_string(failingRanks) +
+        " other rank(s), so no rank reads it: see their messages, and make sure that every "
+        "machine sees the file.");
+  }
+  return failingRanks == 0;
+}
+
+//--------------------------------------------------------------------------------------------------
+// Information
+
+int vtkBanyanSeriesReader::UsedLevel() const
+{
+  return std::min(this->Level, this->Self->Series->Index().Levels - 1);
+}
+
+int vtkBanyanSeriesReader::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  this->SetErrorCode(vtkErrorCode::NoError);
+  if (!this->OpenOnAllRanks())
+  {
+    return 0;
+  }
+  for (const banyan::ArrayIndex& array : this->Self->Series->Index().Arrays)
+  {
+    this->Self->Selection->AddArray(array.Name.c_str());
+  }
+  this->Describe(outputs->GetInformationObject(0));
+  return 1;
+}
+
+void vtkBanyanSeriesReader::Describe(vtkInformation* outInfo) const
+{
+  const banyan::SeriesIndex& index = this->Self->Series->Index();
+  const banyan::Grid grid = banyan::GridOfLevel(index.Domain, this->UsedLevel());
+  int extent[6];
+  ToExtent(grid.Extent, extent);
+  outInfo->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
+  outInfo->Set(vtkDataObject::ORIGIN(), &grid.Origin[0], 3);
+  outInfo->Set(vtkDataObject::SPACING(), &grid.Spacing[0], 3);
+  double direction[9];
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int column = 0; column < 3; ++column)
+    {
+      direction[3 * row + column] = grid.Direction[column][row];
+    }
+  }
+  outInfo->Set(vtkDataObject::DIRECTION(), direction, 9);
+  outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+
+  const int steps = index.Steps();
+  outInfo->Set(Pipeline::TIME_STEPS(), index.Times.data(), steps);
+  const double range[2] = { index.Times.front(), index.Times.back() };
+  outInfo->Set(Pipeline::TIME_RANGE(), range, 2);
+
+  const int active = index.FindArray(index.ActiveScalars);
+  if (active >= 0)
+  {
+    vtkDataObject::SetPointDataActiveScalarInfo(outInfo, VtkTypeOf(index.Arrays[active].Type),
+      static_cast<int>(index.Arrays[active].Components.size()));
+  }
+}
+
+int vtkBanyanSeriesReader::StepAt(vtkInformation* outInfo) const
+{
+  const std::vector<double>& times = this->Self->Series->Index().Times;
+  if (!outInfo->Has(Pipeline::UPDATE_TIME_STEP()))
+  {
+    return 0;
+  }
+  const double time = outInfo->Get(Pipeline::UPDATE_TIME_STEP());
+  const auto after = std::upper_bound(times.begin(), times.end(), time);
+  return std::max(0, static_cast<int>(after - times.begin()) - 1);
+}
+
+//--------------------------------------------------------------------------------------------------
+// Data
+
+int vtkBanyanSeriesReader::RequestData(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  this->SetErrorCode(vtkErrorCode::NoError);
+  if (!this->Self->Series)
+  {
+    this->Fail(vtkErrorCode::CannotOpenFileError, this->Place() + " is not open.");
+    return 0;
+  }
+  // No filter is at work now: the time to let go what earlier steps decoded, and what others hold.
+  vtkBanyanDeferred::ReleaseDownTo(banyan::BrickCache::Process().Budget());
+  vtkInformation* outInfo = outputs->GetInformationObject(0);
+  vtkImageData* output = vtkImageData::GetData(outInfo);
+  try
+  {
+    this->FillOutput(outInfo);
+    return 1;
+  }
+  catch (const std::bad_alloc&)
+  {
+    this->Fail(
+      vtkErrorCode::UnknownError, "There is no memory for the piece of " + this->Place() +
+                                    ": read a coarser Level, fewer arrays, or use more ranks.");
+  }
+  catch (const std::exception& error)
+  {
+    this->Fail(vtkErrorCode::FileFormatError,
+      "The data of " + this->Place() + " cannot be read: " + error.what());
+  }
+  output->Initialize();
+  return 0;
+}
+
+void vtkBanyanSeriesReader::FillOutput(vtkInformation* outInfo)
+{
+  const banyan::SeriesFile& series = *this->Self->Series;
+  const banyan::SeriesIndex& index = series.Index();
+  vtkBanyanDeferred::Handle handle;
+  handle.Series = this->Self->Series;
+  handle.Step = this->StepAt(outInfo);
+  handle.Level = this->UsedLevel();
+
+  const banyan::Grid grid = banyan::GridOfLevel(index.Domain, handle.Level);
+  const banyan::Box wanted =
+    Intersection(FromExtent(outInfo->Get(Pipeline::UPDATE_EXTENT())), grid.Extent);
+  if (!wanted.Empty())
+  {
+    handle.Samples = { wanted.Lo - grid.Extent.Lo, wanted.Hi - grid.Extent.Lo };
+  }
+  int extent[6] = { 0, -1, 0, -1, 0, -1 };
+  if (!wanted.Empty())
+  {
+    ToExtent(wanted, extent);
+  }
+  vtkImageData* output = vtkImageData::GetData(outInfo);
+  output->SetExtent(extent);
+  output->SetOrigin(&grid.Origin[0]);
+  output->SetSpacing(&grid.Spacing[0]);
+  output->SetDirectionMatrix(outInfo->Get(vtkDataObject::DIRECTION()));
+  output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), index.Times[handle.Step]);
+
+  const int arrays = static_cast<int>(index.Arrays.size());
+  for (handle.Array = 0; handle.Array < arrays; ++handle.Array)
+  {
+    this->UpdateProgress(static_cast<double>(handle.Array) / arrays);
+    const banyan::ArrayIndex& array = index.Arrays[handle.Array];
+    if (!this->Self->Selection->ArrayIsEnabled(array.Name.c_str()))
+    {
+      continue;
+    }
+    const bool defer = this->DeferDecoding && !wanted.Empty();
+    const int components = static_cast<int>(array.Components.size());
+    for (int component = 0; defer && component < components; ++component)
+    {
+      this->Self->Verified.Verify(
+        series, { handle.Step, handle.Array, component, handle.Level }, handle.Samples);
+    }
+    const vtkSmartPointer<vtkDataArray> values =
+      defer ? vtkBanyanDeferred::New(handle) : vtkBanyanDeferred::NewPlain(handle);
+    output->GetPointData()->AddArray(values);
+  }
+  if (output->GetPointData()->HasArray(index.ActiveScalars.c_str()))
+  {
+    output->GetPointData()->SetActiveScalars(index.ActiveScalars.c_str());
+  }
+  this->UpdateProgress(1.0);
+}

@@ -1,0 +1,148 @@
+/**
+ * @class   vtkBanyanSeriesReader
+ * @brief   reads a Banyan series (name.banyan) as image data with time steps
+ *
+ * The output is vtkImageData with the extent, origin, spacing, direction, arrays and times of what
+ * was encoded. Any piece or sub-extent can be asked for; only bricks that it touches are read.
+ * With DeferDecoding (the default) nothing is decoded until somebody asks for a value: see
+ * vtkBanyanArray, and vtkBanyanDeferred for renderers that draw from the series itself.
+ *
+ * A time between two steps gives the earlier one, a time before the first step gives the first.
+ *
+ * Each integer and floating-point array comes back in its own width and signedness: int64 as long,
+ * int8 as signed char.
+ *
+ * @par Exactness:
+ * Every finite value is bounded by the error bound in the index; NaN and infinities are bit-exact.
+ *
+ * @par Errors:
+ * vtkErrorMacro and GetErrorCode(); the update fails. The sentence names the file, the array and
+ * the rank. If a file cannot be opened on one rank, all ranks of the controller fail: the first
+ * RequestInformation() after SetFileName() or Refresh() is collective. A damaged piece fails on
+ * the ranks that asked for it.
+ */
+#ifndef vtkBanyanSeriesReader_h
+#define vtkBanyanSeriesReader_h
+
+#include "BanyanReadersModule.h" // For export macro
+#include "vtkImageAlgorithm.h"
+
+#include <memory> // For Internals
+
+class vtkDataArraySelection;
+class vtkMultiProcessController;
+
+class BANYANREADERS_EXPORT vtkBanyanSeriesReader : public vtkImageAlgorithm
+{
+public:
+  static vtkBanyanSeriesReader* New();
+  vtkTypeMacro(vtkBanyanSeriesReader, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Path of the index file. The segments lie in a folder of the same name with ".d" at its end.
+   */
+  vtkSetFilePathMacro(FileName);
+  vtkGetFilePathMacro(FileName);
+  ///@}
+
+  /**
+   * Whether the file can be opened as a Banyan series; silent. Not collective.
+   */
+  int CanReadFile(const char* fileName);
+
+  ///@{
+  /**
+   * 0 (the default) is the grid as it was encoded; level L keeps the samples that lie exactly on
+   * every 2^L-th of it, on an extent that starts at 0. Clamped to the coarsest level there is.
+   */
+  vtkSetClampMacro(Level, int, 0, 31);
+  vtkGetMacro(Level, int);
+  ///@}
+
+  /**
+   * Number of levels of the series, at least 1; 0 before the file is open.
+   */
+  int GetNumberOfLevels();
+
+  ///@{
+  /**
+   * Whether arrays decode on first touch (default) or at once into plain arrays.
+   */
+  vtkSetMacro(DeferDecoding, bool);
+  vtkGetMacro(DeferDecoding, bool);
+  vtkBooleanMacro(DeferDecoding, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Budget in MiB of the cache of decoded bricks, which all readers and renderers of the process
+   * share. Negative (the default) leaves it as it is: 512 MiB, or BANYAN_CACHE_MB from the
+   * environment.
+   */
+  void SetCacheBudget(int mebibytes);
+  vtkGetMacro(CacheBudget, int);
+  ///@}
+
+  ///@{
+  /**
+   * Which point arrays to read; all by default. Filled with the names of the series in
+   * RequestInformation().
+   */
+  vtkDataArraySelection* GetPointArraySelection();
+  int GetNumberOfPointArrays();
+  const char* GetPointArrayName(int index);
+  int GetPointArrayStatus(const char* name);
+  void SetPointArrayStatus(const char* name, int status);
+  ///@}
+
+  /**
+   * Opens the file again at the next update, for a series that has grown since. Collective, as
+   * said above.
+   */
+  void Refresh();
+
+  ///@{
+  /**
+   * Whose ranks agree on whether the file is open; by default the global controller. nullptr for
+   * a reader that only one rank uses. Not reference counted beyond this object's life.
+   */
+  void SetController(vtkMultiProcessController* controller);
+  vtkMultiProcessController* GetController();
+  ///@}
+
+  vtkMTimeType GetMTime() override;
+
+protected:
+  vtkBanyanSeriesReader();
+  ~vtkBanyanSeriesReader() override;
+
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkBanyanSeriesReader(const vtkBanyanSeriesReader&) = delete;
+  void operator=(const vtkBanyanSeriesReader&) = delete;
+
+  bool OpenOnAllRanks();
+  std::string TryToOpen();
+  int UsedLevel() const;
+  int StepAt(vtkInformation* outInfo) const;
+  void Describe(vtkInformation* outInfo) const;
+  void FillOutput(vtkInformation* outInfo);
+  void Fail(unsigned long code, const std::string& sentence);
+  std::string Place() const;
+
+  char* FileName = nullptr;
+  int Level = 0;
+  bool DeferDecoding = true;
+  int CacheBudget = -1;
+
+  struct Internals;
+  std::unique_ptr<Internals> Self;
+};
+
+#endif
