@@ -1,0 +1,46 @@
+#ifndef banyan_Parallel_DistributedFrame_h
+#define banyan_Parallel_DistributedFrame_h
+
+#include "Parallel/Communicator.h"
+#include "Parallel/DirectSend.h"
+#include "Render/RayCaster.h"
+
+#include <vector>
+
+namespace banyan
+{
+
+/// What one frame took: summed over ranks, except the seconds, which are the slowest rank's.
+struct FrameStatistics
+{
+  double TotalSeconds = 0;
+  double RenderSeconds = 0;
+  double CompositeSeconds = 0;
+  double Imbalance = 1; ///< slowest rank's render seconds over the mean, >= 1
+  std::int64_t SamplesTaken = 0;
+  std::int64_t BricksDrawn = 0;
+  std::int64_t BricksSkipped = 0;
+  std::uint64_t BytesComposited = 0; ///< sent between ranks to make one picture of N
+  std::uint64_t BytesRead = 0;       ///< of series files, for this frame
+  std::uint64_t CacheBytes = 0;      ///< held by the brick caches of all ranks
+};
+
+/// Draws one picture on all ranks: each casts rays through the cells of its own zone, then the
+/// pictures are composited by direct send. Collective.
+///
+/// @param scene the same on all ranks (depths included)
+/// @param source this rank's bricks; may be null when its zone is empty
+/// @param zones cells of each rank, disjoint, the same list on all ranks
+/// @param budgetBytes working memory for loaded bricks on this rank
+/// @param localError if not empty, this rank cannot draw: all ranks throw it
+/// @return the scene's viewport on rank 0, premultiplied; empty elsewhere. The picture does not
+/// depend on the number of ranks: within 1e-5 in float when no ray ends early, within
+/// 1 - OpacityLimit otherwise.
+/// When a rank fails, all ranks throw the same Error.
+FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene, BrickSource* source,
+  const std::vector<Box>& zones, std::uint64_t budgetBytes, ThreadPool& pool,
+  const std::string& localError, FrameStatistics& statistics);
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,57 @@
+#ifndef banyan_Render_SeriesBrickSource_h
+#define banyan_Render_SeriesBrickSource_h
+
+#include "Cache/BrickCache.h"
+#include "Render/BrickSource.h"
+#include "Series/SeriesFile.h"
+
+#include <memory>
+#include <vector>
+
+namespace banyan
+{
+
+/// Bricks of an encoded series, decoded through a cache when the ray caster asks for them and not
+/// before. Macro voxels are served from their node and decode nothing.
+class SeriesBrickSource : public BrickSource
+{
+public:
+  /// @param field step, array and level; its component is ignored in favour of `component`
+  /// @param component to draw, or -1 for the Euclidean norm of all components
+  SeriesBrickSource(std::shared_ptr<const SeriesFile> series, const FieldKey& field, int component,
+    BrickCache& cache);
+
+  glm::ivec3 Bricks() const override { return this->Layout.Bricks(); }
+  Box CellsOf(std::int64_t brick) const override { return this->Layout.CellsOf(brick); }
+  ValueRange RangeOf(std::int64_t brick) const override;
+  ValueMask MaskOf(std::int64_t brick) const override;
+  MaskRange MasksAreOver() const override { return this->Masks; }
+  std::size_t LoadBytes(std::int64_t brick) const override;
+  BrickView Load(std::int64_t brick) override;
+
+private:
+  using NodeList = std::shared_ptr<const std::vector<BrickNode>>;
+
+  FieldKey KeyOf(std::size_t component) const;
+  BrickView LoadComponent(std::int64_t brick, std::size_t component) const;
+  BrickView LoadMagnitude(std::int64_t brick) const;
+  ValueRange MagnitudeRange(std::int64_t brick) const;
+
+  std::shared_ptr<const SeriesFile> Series;
+  FieldKey Field;
+  BrickCache& Cache;
+  BrickLayout Layout;
+  MaskRange Masks;
+  ScalarType Type;
+  bool Magnitude;
+  std::vector<int> Components; ///< the one drawn, or all of them for the magnitude
+  std::vector<NodeList> Nodes; ///< one list per entry of Components
+};
+
+/// Bounds of the Euclidean norm of vectors whose components lie in the given ranges; empty when one
+/// of them is.
+ValueRange MagnitudeBounds(const std::vector<ValueRange>& components);
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,348 @@
+#include "DistributedField.h"
+
+#include "PlainSource.h"
+
+#include "Cache/BrickCache.h"
+#include "Parallel/Zones.h"
+#include "Render/SeriesBrickSource.h"
+#include "vtkBanyanDeferred.h"
+
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkMatrix3x3.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace banyan
+{
+namespace
+{
+
+/// Whether two numbers that were computed in slightly different ways mean the same place.
+bool Same(double a, double b, double scale)
+{
+  return std::abs(a - b) <= 1e-9 * std::max({ std::abs(a), std::abs(b), scale });
+}
+
+/// Samples per axis of a level as the reader gives them to VTK: those that are also fine ones.
+glm::ivec3 ExposedSamples(const SeriesFile& series, int level)
+{
+  const glm::ivec3 fine = series.Index().Domain.Samples();
+  return glm::ivec3(
+    ((fine.x - 1) >> level) + 1, ((fine.y - 1) >> level) + 1, ((fine.z - 1) >> level) + 1);
+}
+
+} // namespace
+
+/// What a rank tells the others about its piece. Plain memory: it is sent as it is.
+struct DistributedField::Facts
+{
+  std::int32_t HasData = 0;
+  std::int32_t Deferred = 0; ///< drawn from the file, if all ranks can
+  std::int32_t Components = 0;
+  std::int32_t Lo[3] = { 0, 0, 0 }; ///< samples, half-open
+  std::int32_t Hi[3] = { 0, 0, 0 };
+  std::int32_t Padding = 0;
+  double Origin[3] = { 0, 0, 0 };
+  double Spacing[3] = { 1, 1, 1 };
+  double Direction[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 }; ///< row by row
+  std::int32_t Step = 0;
+  std::int32_t Array = 0;
+  std::int32_t Component = 0;
+  std::int32_t Level = 0;
+
+  Box Samples() const
+  {
+    return { { this->Lo[0], this->Lo[1], this->Lo[2] }, { this->Hi[0], this->Hi[1], this->Hi[2] } };
+  }
+
+  Grid Geometry() const
+  {
+    Grid grid;
+    grid.Extent = this->Samples();
+    for (int i = 0; i < 3; ++i)
+    {
+      grid.Origin[i] = this->Origin[i];
+      grid.Spacing[i] = this->Spacing[i];
+      for (int j = 0; j < 3; ++j)
+      {
+        grid.Direction[j][i] = this->Direction[3 * i + j];
+      }
+    }
+    return grid;
+  }
+};
+
+DistributedField::DistributedField() = default;
+DistributedField::~DistributedField() = default;
+
+void DistributedField::Reset()
+{
+  this->Fresh = true;
+}
+
+std::uint64_t DistributedField::BytesRead() const
+{
+  return this->Series ? this->Series->BytesRead() : 0;
+}
+
+bool DistributedField::ChangedHere(const FieldPiece& piece)
+{
+  const std::array<std::uint64_t, 5> stamp{ { reinterpret_cast<std::uintptr_t>(piece.Image),
+    piece.Image ? piece.Image->GetMTime() : 0, reinterpret_cast<std::uintptr_t>(piece.Array),
+    piece.Array ? piece.Array->GetMTime() : 0, static_cast<std::uint64_t>(piece.Component + 1) } };
+  const bool changed = this->Fresh || stamp != this->Stamp || piece.Problem != this->PieceProblem;
+  this->Stamp = stamp;
+  this->PieceProblem = piece.Problem;
+  this->Fresh = false;
+  return changed;
+}
+
+void DistributedField::Update(Communicator& communicator, const FieldPiece& piece)
+{
+  const bool changed = this->ChangedHere(piece);
+  if (AllMax(communicator, changed ? 1.0 : 0.0) > 0.0)
+  {
+    this->ProblemText = piece.Problem;
+    this->Agree(communicator, piece);
+  }
+}
+
+DistributedField::Facts DistributedField::FactsOf(const FieldPiece& piece) const
+{
+  Facts facts;
+  if (!piece.Image || !piece.Array)
+  {
+    return facts;
+  }
+  facts.HasData = 1;
+  facts.Components = piece.Array->GetNumberOfComponents();
+  facts.Component = piece.Component;
+  const int* extent = piece.Image->GetExtent();
+  for (int i = 0; i < 3; ++i)
+  {
+    facts.Lo[i] = extent[2 * i];
+    facts.Hi[i] = extent[2 * i + 1] + 1;
+  }
+  piece.Image->GetOrigin(facts.Origin);
+  piece.Image->GetSpacing(facts.Spacing);
+  std::copy_n(piece.Image->GetDirectionMatrix()->GetData(), 9, facts.Direction);
+
+  const vtkBanyanDeferred::Handle* handle = vtkBanyanDeferred::From(piece.Array);
+  if (handle && vtkBanyanDeferred::LiesOnSeries(piece.Image, *handle))
+  {
+    facts.Deferred = 1;
+    facts.Step = handle->Step;
+    facts.Array = handle->Array;
+    facts.Level = handle->Level;
+  }
+  return facts;
+}
+
+/// Empty if a rank's piece belongs to the same grid as the first one's; otherwise what differs.
+std::string DistributedField::CheckAgainst(
+  const Facts& mine, const Facts& first, int firstRank) const
+{
+  const auto differs = [&](const std::string& what)
+  {
+    return "The pieces of the data do not belong to one grid: " + what +
+           " differs from that on rank " + std::to_string(firstRank) +
+           ". Draw such data one block at a time.";
+  };
+  const double scale = *std::max_element(first.Spacing, first.Spacing + 3);
+  for (int i = 0; i < 3; ++i)
+  {
+    if (!Same(mine.Origin[i], first.Origin[i], scale))
+    {
+      return differs("the origin");
+    }
+    if (!Same(mine.Spacing[i], first.Spacing[i], 0.0))
+    {
+      return differs("the spacing");
+    }
+  }
+  for (int i = 0; i < 9; ++i)
+  {
+    if (!Same(mine.Direction[i], first.Direction[i], 1.0))
+    {
+      return differs("the direction");
+    }
+  }
+  return mine.Components == first.Components ? std::string() : differs("the number of components");
+}
+
+void DistributedField::SetGrid(const Facts& facts, const Box& samples)
+{
+  const Grid grid = facts.Geometry();
+  this->Domain = { glm::ivec3(0), samples.Size() - 1 };
+  glm::dmat4 matrix(1.0);
+  this->ShortestEdge = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    matrix[axis] = glm::dvec4(grid.Direction[axis] * grid.Spacing[axis], 0.0);
+    this->ShortestEdge = std::min(this->ShortestEdge, std::abs(grid.Spacing[axis]));
+  }
+  const glm::dvec3 first = grid.Origin + grid.Direction * (grid.Spacing * glm::dvec3(samples.Lo));
+  matrix[3] = glm::dvec4(first, 1.0);
+  this->IndexToPhysicalMatrix = matrix;
+
+  glm::dvec3 low(std::numeric_limits<double>::infinity());
+  glm::dvec3 high = -low;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const glm::dvec4 index((corner & 1) ? this->Domain.Hi.x : 0,
+      (corner & 2) ? this->Domain.Hi.y : 0, (corner & 4) ? this->Domain.Hi.z : 0, 1.0);
+    const glm::dvec3 point(matrix * index);
+    low = glm::min(low, point);
+    high = glm::max(high, point);
+  }
+  this->PhysicalBounds = { { low.x, high.x, low.y, high.y, low.z, high.z } };
+}
+
+void DistributedField::Agree(Communicator& communicator, const FieldPiece& piece)
+{
+  const Facts mine = this->FactsOf(piece);
+  std::vector<Facts> all(static_cast<std::size_t>(communicator.Size()));
+  communicator.AllGather(&mine, sizeof(mine), all.data());
+
+  this->Bricks.reset();
+  this->Domain = Box{};
+  this->PhysicalBounds = { { 1, -1, 1, -1, 1, -1 } };
+  this->ZoneCells.assign(all.size(), Box{});
+  const auto first =
+    std::find_if(all.begin(), all.end(), [](const Facts& facts) { return facts.HasData != 0; });
+  if (first == all.end())
+  {
+    this->Series.reset();
+    return;
+  }
+  if (mine.HasData && this->ProblemText.empty())
+  {
+    this->ProblemText = this->CheckAgainst(mine, *first, static_cast<int>(first - all.begin()));
+  }
+  Box samples;
+  for (const Facts& facts : all)
+  {
+    samples = facts.HasData ? Union(samples, facts.Samples()) : samples;
+  }
+  this->SetGrid(*first, samples);
+
+  const bool deferred = std::all_of(all.begin(), all.end(),
+    [](const Facts& facts) { return facts.HasData == 0 || facts.Deferred != 0; });
+  // Which series it is must be agreed as well; strings do not fit into the facts.
+  const vtkBanyanDeferred::Handle* handle =
+    deferred && mine.HasData ? vtkBanyanDeferred::From(piece.Array) : nullptr;
+  const std::shared_ptr<const SeriesFile> held = handle ? handle->Series : nullptr;
+  if (deferred && this->TakeSeries(communicator, held, all, samples))
+  {
+    return;
+  }
+  this->Series.reset();
+  this->TakePieces(piece, all, samples.Lo);
+}
+
+/// Collective. Draws from the file if all pieces come from the same field of the same series and
+/// together are all of it.
+bool DistributedField::TakeSeries(Communicator& communicator,
+  const std::shared_ptr<const SeriesFile>& held, const std::vector<Facts>& all, const Box& samples)
+{
+  const std::vector<std::string> paths =
+    AllGatherStrings(communicator, held ? held->Path() : std::string());
+  const Facts* first = nullptr;
+  std::string path;
+  for (std::size_t rank = 0; rank < all.size(); ++rank)
+  {
+    const Facts& facts = all[rank];
+    if (!facts.HasData)
+    {
+      continue;
+    }
+    if (!first)
+    {
+      first = &facts;
+      path = paths[rank];
+    }
+    if (paths[rank] != path || facts.Step != first->Step || facts.Array != first->Array ||
+        facts.Component != first->Component || facts.Level != first->Level)
+    {
+      return false;
+    }
+  }
+  std::string failure;
+  bool whole = false;
+  try
+  {
+    if (held)
+    {
+      this->Series = held;
+    }
+    else if (!this->Series || this->Series->Path() != path)
+    {
+      this->Series = SeriesFile::Open(path);
+    }
+    whole = ExposedSamples(*this->Series, first->Level) == samples.Size();
+    if (whole && this->ProblemText.empty())
+    {
+      this->MakeSeriesZones(*first, communicator);
+    }
+  }
+  catch (const std::exception& error)
+  {
+    failure = error.what();
+    whole = true;
+  }
+  if (!failure.empty() && this->ProblemText.empty())
+  {
+    this->ProblemText = failure;
+  }
+  return AllMax(communicator, whole ? 0.0 : 1.0) == 0.0;
+}
+
+void DistributedField::MakeSeriesZones(const Facts& field, Communicator& communicator)
+{
+  FieldKey key;
+  key.Step = field.Step;
+  key.Array = field.Array;
+  key.Level = field.Level;
+  const BrickLayout layout = this->Series->Layout(field.Level);
+  const std::vector<Box> zones = StaticZones(layout.Bricks(), communicator.Size());
+  for (std::size_t rank = 0; rank < zones.size(); ++rank)
+  {
+    this->ZoneCells[rank] = CellsOfBricks(zones[rank], layout.BrickCells(), this->Domain.Hi);
+  }
+  if (!this->ZoneCells[static_cast<std::size_t>(communicator.Rank())].Empty())
+  {
+    this->Bricks = std::make_unique<SeriesBrickSource>(
+      this->Series, key, field.Component, BrickCache::Process());
+  }
+}
+
+/// Each rank draws the values that it holds.
+void DistributedField::TakePieces(
+  const FieldPiece& piece, const std::vector<Facts>& all, const glm::ivec3& first)
+{
+  std::vector<Box> cells;
+  for (const Facts& facts : all)
+  {
+    const Box samples = facts.Samples();
+    cells.push_back(facts.HasData ? Box{ samples.Lo - first, samples.Hi - 1 - first } : Box{});
+  }
+  try
+  {
+    this->ZoneCells = MakeDisjoint(cells);
+    if (piece.Array && piece.Image && this->ProblemText.empty())
+    {
+      this->Bricks = MakePlainSource(piece.Image, piece.Array, piece.Component, first);
+    }
+  }
+  catch (const std::exception& error)
+  {
+    this->ZoneCells.assign(all.size(), Box{});
+    this->ProblemText = this->ProblemText.empty() ? std::string(error.what()) : this->ProblemText;
+  }
+}
+
+} // namespace banyan

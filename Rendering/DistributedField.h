@@ -1,0 +1,94 @@
+#ifndef banyan_Rendering_DistributedField_h
+#define banyan_Rendering_DistributedField_h
+
+#include "Parallel/Communicator.h"
+#include "Render/BrickSource.h"
+#include "Series/SeriesFile.h"
+
+#include <glm/mat4x4.hpp>
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+class vtkImageData;
+
+namespace banyan
+{
+
+/// This rank's part of a field of scalars.
+struct FieldPiece
+{
+  vtkImageData* Image = nullptr; ///< null on ranks without data
+  vtkDataArray* Array = nullptr; ///< point data of Image
+  int Component = 0;             ///< -1: Euclidean norm of all components
+  std::string Problem;           ///< why this rank's data cannot be drawn; empty if it can
+};
+
+/// One field of scalars that lies distributed over the ranks, agreed upon by all of them: one grid,
+/// and one zone of cells per rank. Pieces of an encoded series that nobody has touched or moved are
+/// drawn from the file, brick by brick, in zones of their own; anything else from the values in
+/// memory, each rank its piece.
+class DistributedField
+{
+public:
+  DistributedField();
+  ~DistributedField();
+
+  /// Collective. Cheap when nothing has changed on any rank.
+  void Update(Communicator& communicator, const FieldPiece& piece);
+
+  /// Forgets everything; the next Update starts afresh on this rank.
+  void Reset();
+
+  /// A sentence when this rank cannot draw; to be agreed on by all ranks.
+  const std::string& Problem() const { return this->ProblemText; }
+
+  /// True when no rank has anything to draw. The same on all ranks, as is all that follows.
+  bool Empty() const { return this->Domain.Empty(); }
+  const glm::dmat4& IndexToPhysical() const { return this->IndexToPhysicalMatrix; }
+  const Box& DomainCells() const { return this->Domain; }
+  const std::vector<Box>& Zones() const { return this->ZoneCells; }
+  /// (xmin, xmax, ymin, ymax, zmin, zmax) in physical space.
+  const std::array<double, 6>& Bounds() const { return this->PhysicalBounds; }
+  /// Length of the shortest edge of a cell in physical space.
+  double CellSize() const { return this->ShortestEdge; }
+  /// Whether bricks come from an encoded series.
+  bool Encoded() const { return this->Series != nullptr; }
+
+  /// This rank's bricks; null when it has none.
+  BrickSource* Source() { return this->Bricks.get(); }
+  /// Bytes read so far from the series by this process; 0 for plain data.
+  std::uint64_t BytesRead() const;
+
+private:
+  struct Facts;
+
+  bool ChangedHere(const FieldPiece& piece);
+  void Agree(Communicator& communicator, const FieldPiece& piece);
+  Facts FactsOf(const FieldPiece& piece) const;
+  std::string CheckAgainst(const Facts& mine, const Facts& first, int firstRank) const;
+  void SetGrid(const Facts& facts, const Box& samples);
+  bool TakeSeries(Communicator& communicator, const std::shared_ptr<const SeriesFile>& held,
+    const std::vector<Facts>& all, const Box& samples);
+  void MakeSeriesZones(const Facts& field, Communicator& communicator);
+  void TakePieces(const FieldPiece& piece, const std::vector<Facts>& all, const glm::ivec3& first);
+
+  std::string ProblemText;
+  std::string PieceProblem;
+  Box Domain;
+  glm::dmat4 IndexToPhysicalMatrix{ 1.0 };
+  std::vector<Box> ZoneCells;
+  std::array<double, 6> PhysicalBounds{ { 1, -1, 1, -1, 1, -1 } };
+  double ShortestEdge = 1.0;
+  std::unique_ptr<BrickSource> Bricks;
+  std::shared_ptr<const SeriesFile> Series;
+  std::array<std::uint64_t, 5> Stamp{ {} };
+  bool Fresh = true;
+};
+
+} // namespace banyan
+
+#endif

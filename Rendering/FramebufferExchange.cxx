@@ -1,0 +1,207 @@
+#include "FramebufferExchange.h"
+
+#include "vtkNew.h"
+#include "vtkOpenGLFramebufferObject.h"
+#include "vtkOpenGLQuadHelper.h"
+#include "vtkOpenGLRenderWindow.h"
+#include "vtkOpenGLShaderCache.h"
+#include "vtkOpenGLState.h"
+#include "vtkRenderer.h"
+#include "vtkShaderProgram.h"
+#include "vtkTextureObject.h"
+#include "vtk_glew.h"
+
+#include <cstring>
+
+namespace banyan
+{
+namespace
+{
+
+const char* const FragmentShader = R"(//VTK::System::Dec
+in vec2 texCoord;
+uniform sampler2D colorTexture;
+uniform sampler2D depthTexture;
+//VTK::Output::Dec
+void main()
+{
+  gl_FragDepth = texture(depthTexture, texCoord).r;
+  gl_FragData[0] = texture(colorTexture, texCoord);
+}
+)";
+
+vtkOpenGLRenderWindow* WindowOf(vtkRenderer* renderer)
+{
+  return vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
+}
+
+/// Lower left corner of the renderer's viewport in the framebuffer.
+glm::ivec2 OriginOf(vtkRenderer* renderer)
+{
+  int width = 0;
+  int height = 0;
+  glm::ivec2 origin(0);
+  renderer->GetTiledSizeAndOrigin(&width, &height, &origin.x, &origin.y);
+  return origin;
+}
+
+/// glReadPixels of the framebuffer that is bound for reading.
+std::vector<OpaquePixel> ReadBound(const glm::ivec2& corner, const glm::ivec2& size)
+{
+  const auto count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+  std::vector<float> depths(count);
+  std::vector<std::uint8_t> colors(4 * count);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(corner.x, corner.y, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE, colors.data());
+  glReadPixels(corner.x, corner.y, size.x, size.y, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
+  std::vector<OpaquePixel> pixels(count);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    pixels[i].Depth = depths[i];
+    std::memcpy(pixels[i].Color, &colors[4 * i], 4);
+  }
+  return pixels;
+}
+
+/// Copies the rectangle of a multisampled framebuffer into a plain one and reads that.
+std::vector<OpaquePixel> ReadResolved(
+  vtkOpenGLRenderWindow* window, const glm::ivec2& corner, const glm::ivec2& size)
+{
+  vtkOpenGLState* state = window->GetState();
+  vtkNew<vtkOpenGLFramebufferObject> resolved;
+  resolved->SetContext(window);
+  state->PushFramebufferBindings();
+  resolved->PopulateFramebuffer(
+    size.x, size.y, true, 1, VTK_UNSIGNED_CHAR, true, 24, 0, window->GetStencilCapable() != 0);
+  state->PopReadFramebufferBinding();
+  {
+    vtkOpenGLState::ScopedglScissor scissor(state);
+    state->vtkglScissor(0, 0, size.x, size.y);
+    state->vtkglBlitFramebuffer(corner.x, corner.y, corner.x + size.x, corner.y + size.y, 0, 0,
+      size.x, size.y, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+  }
+  state->PushReadFramebufferBinding();
+  resolved->Bind(GL_READ_FRAMEBUFFER);
+  resolved->ActivateReadBuffer(0);
+  std::vector<OpaquePixel> pixels = ReadBound(glm::ivec2(0), size);
+  state->PopFramebufferBindings();
+  return pixels;
+}
+
+void DeleteTexture(vtkTextureObject* texture)
+{
+  texture->Delete();
+}
+
+vtkTextureObject* NewTexture(vtkOpenGLRenderWindow* window)
+{
+  vtkTextureObject* texture = vtkTextureObject::New();
+  texture->SetContext(window);
+  texture->SetMinificationFilter(vtkTextureObject::Nearest);
+  texture->SetMagnificationFilter(vtkTextureObject::Nearest);
+  return texture;
+}
+
+} // namespace
+
+FramebufferExchange::FramebufferExchange()
+  : Color(nullptr, &DeleteTexture)
+  , Depth(nullptr, &DeleteTexture)
+{
+}
+
+FramebufferExchange::~FramebufferExchange() = default;
+
+std::vector<OpaquePixel> FramebufferExchange::Read(vtkRenderer* renderer, const PixelRect& rect)
+{
+  vtkOpenGLRenderWindow* window = WindowOf(renderer);
+  const glm::ivec2 corner = OriginOf(renderer) + rect.Lo;
+  const glm::ivec2 size = rect.Size();
+
+  // VTK's cache of the state knows nothing of the read binding set here: leave it as it was.
+  GLint drawn = 0;
+  GLint read = 0;
+  GLint samples = 0;
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &drawn);
+  glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &read);
+  glGetIntegerv(GL_SAMPLES, &samples);
+  if (samples > 1)
+  {
+    return ReadResolved(window, corner, size);
+  }
+  GLint buffer = 0;
+  GLint readBuffer = 0;
+  glGetIntegerv(GL_DRAW_BUFFER0, &buffer);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(drawn));
+  glGetIntegerv(GL_READ_BUFFER, &readBuffer);
+  glReadBuffer(static_cast<GLenum>(buffer));
+  std::vector<OpaquePixel> pixels = ReadBound(corner, size);
+  glReadBuffer(static_cast<GLenum>(readBuffer));
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(read));
+  return pixels;
+}
+
+void FramebufferExchange::Write(
+  vtkRenderer* renderer, const PixelRect& rect, const std::vector<OpaquePixel>& pixels)
+{
+  vtkOpenGLRenderWindow* window = WindowOf(renderer);
+  vtkOpenGLState* state = window->GetState();
+  const glm::ivec2 corner = OriginOf(renderer) + rect.Lo;
+  const glm::ivec2 size = rect.Size();
+
+  std::vector<std::uint8_t> colors(4 * pixels.size());
+  std::vector<float> depths(pixels.size());
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+  {
+    std::memcpy(&colors[4 * i], pixels[i].Color, 4);
+    depths[i] = pixels[i].Depth;
+  }
+
+  vtkOpenGLState::ScopedglViewport viewport(state);
+  vtkOpenGLState::ScopedglScissor scissor(state);
+  vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);
+  vtkOpenGLState::ScopedglEnableDisable depthTest(state, GL_DEPTH_TEST);
+  vtkOpenGLState::ScopedglDepthMask depthMask(state);
+  vtkOpenGLState::ScopedglDepthFunc depthFunction(state);
+  state->vtkglViewport(corner.x, corner.y, size.x, size.y);
+  state->vtkglScissor(corner.x, corner.y, size.x, size.y);
+  state->vtkglDisable(GL_BLEND);
+  // Depths are written only while the test is on.
+  state->vtkglEnable(GL_DEPTH_TEST);
+  state->vtkglDepthFunc(GL_ALWAYS);
+  state->vtkglDepthMask(GL_TRUE);
+
+  if (!this->Quad)
+  {
+    this->Quad = std::make_unique<vtkOpenGLQuadHelper>(window, nullptr, FragmentShader, nullptr);
+    this->Color.reset(NewTexture(window));
+    this->Depth.reset(NewTexture(window));
+  }
+  window->GetShaderCache()->ReadyShaderProgram(this->Quad->Program);
+  const auto width = static_cast<unsigned int>(size.x);
+  const auto height = static_cast<unsigned int>(size.y);
+  this->Color->Create2DFromRaw(width, height, 4, VTK_UNSIGNED_CHAR, colors.data());
+  this->Depth->Create2DFromRaw(width, height, 1, VTK_FLOAT, depths.data());
+  this->Color->Activate();
+  this->Depth->Activate();
+  this->Quad->Program->SetUniformi("colorTexture", this->Color->GetTextureUnit());
+  this->Quad->Program->SetUniformi("depthTexture", this->Depth->GetTextureUnit());
+  this->Quad->Render();
+  this->Depth->Deactivate();
+  this->Color->Deactivate();
+}
+
+void FramebufferExchange::ReleaseGraphicsResources(vtkWindow* window)
+{
+  if (this->Quad)
+  {
+    this->Quad->ReleaseGraphicsResources(window);
+    this->Color->ReleaseGraphicsResources(window);
+    this->Depth->ReleaseGraphicsResources(window);
+    this->Quad.reset();
+    this->Color.reset();
+    this->Depth.reset();
+  }
+}
+
+} // namespace banyan

@@ -1,0 +1,44 @@
+#ifndef banyan_Rendering_FramebufferExchange_h
+#define banyan_Rendering_FramebufferExchange_h
+
+#include "Parallel/DirectSend.h"
+#include "Render/RayCamera.h"
+
+#include <memory>
+#include <vector>
+
+class vtkOpenGLQuadHelper;
+class vtkOpenGLRenderWindow;
+class vtkRenderer;
+class vtkTextureObject;
+class vtkWindow;
+
+namespace banyan
+{
+
+/// Reads what is drawn so far and writes a finished rectangle of pixels with their depths, to and
+/// from whatever framebuffer is bound. Rectangles are relative to the renderer's own viewport,
+/// bottom left is (0, 0).
+class FramebufferExchange
+{
+public:
+  FramebufferExchange();
+  ~FramebufferExchange();
+
+  /// Colours (8 bit) and depths, `[y][x]`, y up. A multisampled framebuffer is resolved first.
+  std::vector<OpaquePixel> Read(vtkRenderer* renderer, const PixelRect& rect);
+
+  /// Replaces colours and depths of a rectangle. rect.Count() pixels.
+  void Write(vtkRenderer* renderer, const PixelRect& rect, const std::vector<OpaquePixel>& pixels);
+
+  void ReleaseGraphicsResources(vtkWindow* window);
+
+private:
+  std::unique_ptr<vtkOpenGLQuadHelper> Quad;
+  std::unique_ptr<vtkTextureObject, void (*)(vtkTextureObject*)> Color;
+  std::unique_ptr<vtkTextureObject, void (*)(vtkTextureObject*)> Depth;
+};
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,120 @@
+#include "PixelsBehind.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace banyan
+{
+namespace
+{
+
+/// Where the volume covers opaque geometry, the compositor around us must prefer rank 0's pixel to
+/// the blank ones of the other ranks, which have depth 1.
+constexpr float CoveredDepth = 0.999999f;
+
+std::uint8_t ToByte(float value)
+{
+  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
+}
+
+/// Replaces the colours on rank 0 by those of all ranks, blended in the given order.
+void OverBlendInOrder(Communicator& communicator, const std::vector<int>& rankOrder,
+  const PixelRect& rect, std::vector<OpaquePixel>& pixels)
+{
+  FloatImage mine;
+  mine.Rect = rect;
+  mine.Pixels.reserve(pixels.size());
+  for (const OpaquePixel& pixel : pixels)
+  {
+    mine.Pixels.emplace_back(pixel.Color[0] / 255.0f, pixel.Color[1] / 255.0f,
+      pixel.Color[2] / 255.0f, pixel.Color[3] / 255.0f);
+  }
+  // The compositor around us may know fewer ranks than there are: the others have drawn nothing.
+  std::vector<int> order = rankOrder;
+  for (int rank = 0; rank < communicator.Size(); ++rank)
+  {
+    if (std::find(order.begin(), order.end(), rank) == order.end())
+    {
+      order.push_back(rank);
+    }
+  }
+  CompositeStatistics ignored;
+  const FloatImage blended = CompositeDirectSend(communicator, mine, order, rect, ignored);
+  for (std::size_t i = 0; i < blended.Pixels.size(); ++i)
+  {
+    for (int c = 0; c < 4; ++c)
+    {
+      pixels[i].Color[c] = ToByte(blended.Pixels[i][c]);
+    }
+  }
+}
+
+bool Covers(const OpaquePixel& pixel)
+{
+  return pixel.Depth < 1.0f;
+}
+
+} // namespace
+
+void CombineBehind(Communicator& communicator, const std::vector<int>& rankOrder,
+  const PixelRect& rect, std::vector<OpaquePixel>& pixels)
+{
+  if (communicator.Size() == 1)
+  {
+    return;
+  }
+  const bool geometry = std::any_of(pixels.begin(), pixels.end(), Covers);
+  std::vector<OpaquePixel> nearest = pixels;
+  if (!rankOrder.empty())
+  {
+    OverBlendInOrder(communicator, rankOrder, rect, pixels);
+  }
+  // Without geometry on any rank, rank 0's pixels are already what lies behind.
+  if (AllMax(communicator, geometry ? 1.0 : 0.0) == 0.0)
+  {
+    return;
+  }
+  ReduceNearest(communicator, nearest);
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+  {
+    pixels[i].Depth = nearest[i].Depth;
+    if (rankOrder.empty())
+    {
+      std::copy(nearest[i].Color, nearest[i].Color + 4, pixels[i].Color);
+    }
+  }
+}
+
+std::vector<float> DepthsOf(const std::vector<OpaquePixel>& pixels)
+{
+  std::vector<float> depths;
+  if (std::any_of(pixels.begin(), pixels.end(), Covers))
+  {
+    depths.reserve(pixels.size());
+    for (const OpaquePixel& pixel : pixels)
+    {
+      depths.push_back(pixel.Depth);
+    }
+  }
+  return depths;
+}
+
+void BlendOver(const FloatImage& picture, std::vector<OpaquePixel>& pixels)
+{
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+  {
+    const glm::vec4& front = picture.Pixels[i];
+    if (front.a <= 0.0f)
+    {
+      continue;
+    }
+    OpaquePixel& pixel = pixels[i];
+    for (int c = 0; c < 4; ++c)
+    {
+      pixel.Color[c] = ToByte(front[c] + (1.0f - front.a) * (pixel.Color[c] / 255.0f));
+    }
+    pixel.Depth = std::min(pixel.Depth, CoveredDepth);
+  }
+}
+
+} // namespace banyan

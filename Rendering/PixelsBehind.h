@@ -1,0 +1,27 @@
+#ifndef banyan_Rendering_PixelsBehind_h
+#define banyan_Rendering_PixelsBehind_h
+
+#include "Parallel/DirectSend.h"
+
+#include <vector>
+
+namespace banyan
+{
+
+/// Turns what each rank has drawn into what lies behind the volume: depths (on all ranks) are the
+/// nearest of all ranks; colours (right on rank 0) are those of the nearest, or, when `rankOrder`
+/// is not empty, all ranks' blended front to back in that order. Collective.
+void CombineBehind(Communicator& communicator, const std::vector<int>& rankOrder,
+  const PixelRect& rect, std::vector<OpaquePixel>& pixels);
+
+/// Depths of the pixels; none when nothing was drawn there.
+std::vector<float> DepthsOf(const std::vector<OpaquePixel>& pixels);
+
+/// Blends a premultiplied picture over the pixels of the same rectangle: in float, rounded to 8 bit
+/// once. Covered pixels get a depth below 1, so that a compositor that compares depths prefers them
+/// to blank ones.
+void BlendOver(const FloatImage& picture, std::vector<OpaquePixel>& pixels);
+
+} // namespace banyan
+
+#endif

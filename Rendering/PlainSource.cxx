@@ -1,0 +1,94 @@
+#include "PlainSource.h"
+
+#include "Base/ThreadPool.h"
+#include "Render/ArrayBrickSource.h"
+#include "vtkBanyanDeferred.h"
+
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkImageData.h"
+#include "vtkSmartPointer.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace banyan
+{
+namespace
+{
+
+/// Cells per axis of the bricks that plain data is cut into.
+constexpr int PlainBrickCells = 16;
+
+std::string NameOf(vtkDataArray* array)
+{
+  return array->GetName() ? array->GetName() : "";
+}
+
+ScalarType TypeOf(vtkDataArray* array)
+{
+  switch (array->GetDataType())
+  {
+    vtkTemplateMacro(return ScalarTypeOf<VTK_TT>());
+    default:
+      throw Error("Array '" + NameOf(array) + "' has the type " + array->GetDataTypeAsString() +
+                  ", which cannot be drawn.");
+  }
+}
+
+/// Keeps VTK objects from being deleted as long as the pointer is held.
+std::shared_ptr<const void> HoldAlive(vtkDataArray* array, vtkImageData* image)
+{
+  using Pair = std::pair<vtkSmartPointer<vtkDataArray>, vtkSmartPointer<vtkImageData>>;
+  return std::make_shared<const Pair>(array, image);
+}
+
+/// Bytes that mark hidden points, or null when no point is hidden.
+const std::uint8_t* HiddenPoints(vtkImageData* image)
+{
+  vtkUnsignedCharArray* flags = image->GetPointGhostArray();
+  if (!flags)
+  {
+    return nullptr;
+  }
+  const std::uint8_t* first = flags->GetPointer(0);
+  const std::uint8_t* last = first + flags->GetNumberOfTuples();
+  const bool some = std::any_of(
+    first, last, [](std::uint8_t bits) { return (bits & vtkDataSetAttributes::HIDDENPOINT) != 0; });
+  return some ? first : nullptr;
+}
+
+} // namespace
+
+std::unique_ptr<BrickSource> MakePlainSource(
+  vtkImageData* image, vtkDataArray* values, int component, const glm::ivec3& first)
+{
+  const vtkSmartPointer<vtkDataArray> plain = vtkBanyanDeferred::Plain(values);
+  if (!plain)
+  {
+    throw Error("The values of array '" + NameOf(values) + "' could not be decoded.");
+  }
+  int extent[6];
+  image->GetExtent(extent);
+  SampleArray array;
+  array.Values = plain->GetVoidPointer(0);
+  array.Type = TypeOf(plain);
+  array.Components = plain->GetNumberOfComponents();
+  array.Component = component;
+  array.Samples = { glm::ivec3(extent[0], extent[2], extent[4]) - first,
+    glm::ivec3(extent[1] + 1, extent[3] + 1, extent[5] + 1) - first };
+  const glm::ivec3 samples = array.Samples.Size();
+  array.Stride[0] = array.Components;
+  array.Stride[1] = array.Stride[0] * samples.x;
+  array.Stride[2] = array.Stride[1] * samples.y;
+  array.Flags = HiddenPoints(image);
+  array.Owner = HoldAlive(plain, image);
+
+  ThreadPool& pool = ThreadPool::Process();
+  const ValueRange range = FiniteRange(array, pool);
+  const MaskRange masks = range.Empty() ? MaskRange{} : MaskRange{ range.Low, range.High };
+  return std::make_unique<ArrayBrickSource>(array, PlainBrickCells, masks, pool);
+}
+
+} // namespace banyan

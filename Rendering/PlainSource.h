@@ -1,0 +1,24 @@
+#ifndef banyan_Rendering_PlainSource_h
+#define banyan_Rendering_PlainSource_h
+
+#include "Render/BrickSource.h"
+
+#include <memory>
+
+class vtkDataArray;
+class vtkImageData;
+
+namespace banyan
+{
+
+/// The bricks of a piece of image data whose values are in memory. Hidden points count as missing.
+/// @param values point data of `image`
+/// @param component in [0, components), or -1 for the Euclidean norm
+/// @param first extent index of the first sample of the whole grid that the piece belongs to
+/// Throws Error when the values cannot be decoded or drawn.
+std::unique_ptr<BrickSource> MakePlainSource(
+  vtkImageData* image, vtkDataArray* values, int component, const glm::ivec3& first);
+
+} // namespace banyan
+
+#endif

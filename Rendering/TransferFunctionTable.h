@@ -1,0 +1,18 @@
+#ifndef banyan_Rendering_TransferFunctionTable_h
+#define banyan_Rendering_TransferFunctionTable_h
+
+#include "Render/TransferFunction.h"
+
+class vtkVolumeProperty;
+
+namespace banyan
+{
+
+/// The transfer function of component 0 of a volume property: colour, scalar opacity and its unit
+/// distance, tabulated over the range of both functions.
+/// @param entries of the table, at least 2
+TransferFunction MakeTransferFunction(vtkVolumeProperty* property, int entries = 4096);
+
+} // namespace banyan
+
+#endif

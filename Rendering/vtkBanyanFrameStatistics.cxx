@@ -1,0 +1,21 @@
+#include "vtkBanyanFrameStatistics.h"
+
+#include "vtkObjectFactory.h"
+
+vtkStandardNewMacro(vtkBanyanFrameStatistics);
+
+void vtkBanyanFrameStatistics::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "TotalSeconds: " << this->TotalSeconds << "\n"
+     << indent << "RenderSeconds: " << this->RenderSeconds << "\n"
+     << indent << "CompositeSeconds: " << this->CompositeSeconds << "\n"
+     << indent << "Imbalance: " << this->Imbalance << "\n"
+     << indent << "SamplesTaken: " << this->SamplesTaken << "\n"
+     << indent << "BricksDrawn: " << this->BricksDrawn << "\n"
+     << indent << "BricksSkipped: " << this->BricksSkipped << "\n"
+     << indent << "BytesComposited: " << this->BytesComposited << "\n"
+     << indent << "BytesRead: " << this->BytesRead << "\n"
+     << indent << "CacheBytes: " << this->CacheBytes << "\n"
+     << indent << "Frames: " << this->Frames << "\n";
+}

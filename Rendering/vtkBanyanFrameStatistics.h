@@ -1,0 +1,91 @@
+#ifndef vtkBanyanFrameStatistics_h
+#define vtkBanyanFrameStatistics_h
+
+#include "BanyanRenderingModule.h" // for export macro
+#include "vtkObject.h"
+
+/**
+ * @class vtkBanyanFrameStatistics
+ * @brief what the last frame took, over all ranks
+ *
+ * Filled by vtkBanyanVolumeMapper after each frame. Sums over ranks, except the seconds, which are
+ * those of the slowest rank. In client-server an object of this class lives on the render server,
+ * whose root answers for all ranks.
+ */
+class BANYANRENDERING_EXPORT vtkBanyanFrameStatistics : public vtkObject
+{
+public:
+  static vtkBanyanFrameStatistics* New();
+  vtkTypeMacro(vtkBanyanFrameStatistics, vtkObject);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /// Wall-clock seconds of the slowest rank: the whole frame, casting rays, compositing.
+  vtkSetMacro(TotalSeconds, double);
+  vtkGetMacro(TotalSeconds, double);
+  vtkSetMacro(RenderSeconds, double);
+  vtkGetMacro(RenderSeconds, double);
+  vtkSetMacro(CompositeSeconds, double);
+  vtkGetMacro(CompositeSeconds, double);
+  ///@}
+
+  ///@{
+  /// Render seconds of the slowest rank over the mean of all ranks; 1 is perfect.
+  vtkSetMacro(Imbalance, double);
+  vtkGetMacro(Imbalance, double);
+  ///@}
+
+  ///@{
+  /// Samples of the field that were interpolated.
+  vtkSetMacro(SamplesTaken, vtkIdType);
+  vtkGetMacro(SamplesTaken, vtkIdType);
+  ///@}
+
+  ///@{
+  /// Bricks whose values were needed, and bricks left out (invisible under the transfer function,
+  /// or off screen).
+  vtkSetMacro(BricksDrawn, vtkIdType);
+  vtkGetMacro(BricksDrawn, vtkIdType);
+  vtkSetMacro(BricksSkipped, vtkIdType);
+  vtkGetMacro(BricksSkipped, vtkIdType);
+  ///@}
+
+  ///@{
+  /// Bytes sent between ranks to make one picture of all, read from series files for this frame,
+  /// and held by the brick caches now.
+  vtkSetMacro(BytesComposited, vtkIdType);
+  vtkGetMacro(BytesComposited, vtkIdType);
+  vtkSetMacro(BytesRead, vtkIdType);
+  vtkGetMacro(BytesRead, vtkIdType);
+  vtkSetMacro(CacheBytes, vtkIdType);
+  vtkGetMacro(CacheBytes, vtkIdType);
+  ///@}
+
+  ///@{
+  /// Frames drawn since the object was made.
+  vtkSetMacro(Frames, vtkIdType);
+  vtkGetMacro(Frames, vtkIdType);
+  ///@}
+
+protected:
+  vtkBanyanFrameStatistics() = default;
+  ~vtkBanyanFrameStatistics() override = default;
+
+  double TotalSeconds = 0.0;
+  double RenderSeconds = 0.0;
+  double CompositeSeconds = 0.0;
+  double Imbalance = 1.0;
+  vtkIdType SamplesTaken = 0;
+  vtkIdType BricksDrawn = 0;
+  vtkIdType BricksSkipped = 0;
+  vtkIdType BytesComposited = 0;
+  vtkIdType BytesRead = 0;
+  vtkIdType CacheBytes = 0;
+  vtkIdType Frames = 0;
+
+private:
+  vtkBanyanFrameStatistics(const vtkBanyanFrameStatistics&) = delete;
+  void operator=(const vtkBanyanFrameStatistics&) = delete;
+};
+
+#endif

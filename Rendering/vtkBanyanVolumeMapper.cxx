@@ -1,0 +1,346 @@
+#include "vtkBanyanVolumeMapper.h"
+
+#include "DistributedField.h"
+#include "FramebufferExchange.h"
+#include "PixelsBehind.h"
+#include "TransferFunctionTable.h"
+#include "vtkBanyanFrameStatistics.h"
+
+#include "Base/ThreadPool.h"
+#include "Base/Timer.h"
+#include "Cache/BrickCache.h"
+#include "Parallel/DistributedFrame.h"
+#include "Parallel/MpiCommunicator.h"
+
+#include "vtkAbstractMapper.h"
+#include "vtkAlgorithm.h"
+#include "vtkCamera.h"
+#include "vtkColorTransferFunction.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkMPI.h"
+#include "vtkMPICommunicator.h"
+#include "vtkMatrix4x4.h"
+#include "vtkMultiProcessController.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkRenderer.h"
+#include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
+
+#include <glm/gtc/matrix_access.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace
+{
+
+glm::dmat4 ToGlm(vtkMatrix4x4* matrix)
+{
+  glm::dmat4 result;
+  for (int row = 0; row < 4; ++row)
+  {
+    for (int column = 0; column < 4; ++column)
+    {
+      result[column][row] = matrix->GetElement(row, column);
+    }
+  }
+  return result;
+}
+
+/// Bounds in world space of a box of physical space.
+void WorldBounds(
+  const std::array<double, 6>& box, const glm::dmat4& toWorld, glm::dvec3& low, glm::dvec3& high)
+{
+  low = glm::dvec3(std::numeric_limits<double>::infinity());
+  high = -low;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const glm::dvec4 point(
+      box[corner & 1], box[2 + ((corner >> 1) & 1)], box[4 + ((corner >> 2) & 1)], 1.0);
+    const glm::dvec3 world(toWorld * point);
+    low = glm::min(low, world);
+    high = glm::max(high, world);
+  }
+}
+
+/// Smallest factor by which a matrix scales one of the axes.
+double SmallestScale(const glm::dmat4& matrix)
+{
+  return std::min({ glm::length(glm::dvec3(matrix[0])), glm::length(glm::dvec3(matrix[1])),
+    glm::length(glm::dvec3(matrix[2])) });
+}
+
+} // namespace
+
+struct vtkBanyanVolumeMapper::Internals
+{
+  std::unique_ptr<banyan::Communicator> Communicator;
+  banyan::DistributedField Field;
+  banyan::FramebufferExchange Framebuffer;
+  std::vector<int> RankOrderBehind;
+  std::string LastProblem;
+  std::array<double, 6> Bounds{ { 1, -1, 1, -1, 1, -1 } };
+  bool BoundsKnown = false;
+
+  banyan::FieldPiece PieceOf(vtkBanyanVolumeMapper* mapper, vtkVolume* volume) const;
+};
+
+vtkStandardNewMacro(vtkBanyanVolumeMapper);
+
+vtkBanyanVolumeMapper::vtkBanyanVolumeMapper()
+  : Statistics(vtkSmartPointer<vtkBanyanFrameStatistics>::New())
+  , Self(std::make_unique<Internals>())
+{
+  this->Self->Communicator = banyan::MakeSelfCommunicator();
+}
+
+vtkBanyanVolumeMapper::~vtkBanyanVolumeMapper() = default;
+
+int vtkBanyanVolumeMapper::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  // A rank without data takes part in drawing all the same.
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
+void vtkBanyanVolumeMapper::SetController(vtkMultiProcessController* controller)
+{
+  if (this->Controller == controller)
+  {
+    return;
+  }
+  this->Controller = controller;
+  this->Self->Field.Reset();
+  vtkMPICommunicator* mpi =
+    controller ? vtkMPICommunicator::SafeDownCast(controller->GetCommunicator()) : nullptr;
+  if (mpi && controller->GetNumberOfProcesses() > 1)
+  {
+    const MPI_Comm* handle = mpi->GetMPIComm()->GetHandle();
+    this->Self->Communicator = banyan::MakeMpiCommunicator(handle);
+    banyan::ThreadPool::SetRanksOnThisNode(banyan::RanksOnThisNode(handle));
+  }
+  else
+  {
+    this->Self->Communicator = banyan::MakeSelfCommunicator();
+  }
+  this->Modified();
+}
+
+vtkMultiProcessController* vtkBanyanVolumeMapper::GetController()
+{
+  return this->Controller;
+}
+
+void vtkBanyanVolumeMapper::SetStatistics(vtkBanyanFrameStatistics* statistics)
+{
+  this->Statistics =
+    statistics ? statistics : vtkSmartPointer<vtkBanyanFrameStatistics>::New().GetPointer();
+}
+
+vtkBanyanFrameStatistics* vtkBanyanVolumeMapper::GetStatistics()
+{
+  return this->Statistics;
+}
+
+void vtkBanyanVolumeMapper::SetRankOrderBehind(const std::vector<int>& frontToBack)
+{
+  this->Self->RankOrderBehind = frontToBack;
+}
+
+banyan::FieldPiece vtkBanyanVolumeMapper::Internals::PieceOf(
+  vtkBanyanVolumeMapper* mapper, vtkVolume* volume) const
+{
+  banyan::FieldPiece piece;
+  piece.Image = vtkImageData::SafeDownCast(mapper->GetDataObjectInput());
+  if (!piece.Image || piece.Image->GetNumberOfPoints() == 0)
+  {
+    piece.Image = nullptr;
+    return piece;
+  }
+  piece.Array = mapper->GetArrayToDraw(piece.Image);
+  if (!piece.Array)
+  {
+    const char* name = mapper->GetArrayName();
+    piece.Problem =
+      name && *name ? "The data has no point array '" + std::string(name) + "' of numbers to draw."
+                    : "The data has no point array to draw: select one in 'Coloring'.";
+  }
+  else if (piece.Array->GetNumberOfTuples() != piece.Image->GetNumberOfPoints())
+  {
+    piece.Problem =
+      "The array '" + std::string(mapper->GetArrayName() ? mapper->GetArrayName() : "") +
+      "' lies on cells, and volumes are drawn from point data: apply 'Cell Data to Point Data'.";
+  }
+  else
+  {
+    vtkColorTransferFunction* color = volume->GetProperty()->GetRGBTransferFunction(0);
+    const bool magnitude = color->GetVectorMode() == vtkScalarsToColors::MAGNITUDE;
+    const int components = piece.Array->GetNumberOfComponents();
+    piece.Component = components == 1 ? 0 : magnitude ? -1 : color->GetVectorComponent();
+    if (piece.Component >= components)
+    {
+      piece.Component = -1;
+    }
+  }
+  return piece;
+}
+
+vtkDataArray* vtkBanyanVolumeMapper::GetArrayToDraw(vtkImageData* image)
+{
+  if (!image)
+  {
+    return nullptr;
+  }
+  int isCellData = 0;
+  vtkDataArray* array = vtkAbstractMapper::GetScalars(image, this->GetScalarMode(),
+    this->GetArrayAccessMode(), this->GetArrayId(), this->GetArrayName(), isCellData);
+  if (!array && this->GetScalarMode() == VTK_SCALAR_MODE_DEFAULT)
+  {
+    array = image->GetPointData()->GetArray(0);
+  }
+  return array;
+}
+
+void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
+{
+  if (this->GetNumberOfInputConnections(0) > 0)
+  {
+    this->GetInputAlgorithm()->Update();
+  }
+  Internals& self = *this->Self;
+  banyan::ThreadPool::SetProcessWidth(this->NumberOfThreads);
+  self.Field.Update(*self.Communicator, self.PieceOf(this, volume));
+  self.Bounds = self.Field.Bounds();
+  self.BoundsKnown = true;
+}
+
+double* vtkBanyanVolumeMapper::GetBounds()
+{
+  if (!this->Self->BoundsKnown)
+  {
+    return this->Superclass::GetBounds();
+  }
+  std::copy(this->Self->Bounds.begin(), this->Self->Bounds.end(), this->Bounds);
+  return this->Bounds;
+}
+
+void vtkBanyanVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
+{
+  if (renderer->GetSelector())
+  {
+    return;
+  }
+  try
+  {
+    this->UpdateField(volume);
+    this->DrawFrame(renderer, volume);
+  }
+  catch (const std::exception& error)
+  {
+    this->ReportOnce(error.what());
+  }
+}
+
+void vtkBanyanVolumeMapper::ReportOnce(const std::string& problem)
+{
+  if (problem != this->Self->LastProblem)
+  {
+    this->Self->LastProblem = problem;
+    vtkErrorMacro(<< "The volume was not drawn. " << problem);
+  }
+}
+
+void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
+{
+  const banyan::Timer timer;
+  Internals& self = *this->Self;
+  const std::string problem = banyan::AgreeOnError(*self.Communicator, self.Field.Problem());
+  if (!problem.empty())
+  {
+    throw banyan::Error(problem);
+  }
+  if (self.Field.Empty())
+  {
+    return;
+  }
+
+  glm::ivec2 size(0);
+  glm::ivec2 origin(0);
+  renderer->GetTiledSizeAndOrigin(&size.x, &size.y, &origin.x, &origin.y);
+  const glm::dmat4 toWorld = ToGlm(volume->GetMatrix());
+  glm::dvec3 low;
+  glm::dvec3 high;
+  WorldBounds(self.Field.Bounds(), toWorld, low, high);
+  const banyan::RayCamera camera(
+    ToGlm(renderer->GetActiveCamera()->GetCompositeProjectionTransformMatrix(
+      renderer->GetTiledAspectRatio(), -1, 1)),
+    size, 0.5 * (low + high));
+  const banyan::PixelRect rect = camera.Footprint(low, high);
+  if (rect.Empty())
+  {
+    return;
+  }
+
+  std::vector<banyan::OpaquePixel> pixels = self.Framebuffer.Read(renderer, rect);
+  banyan::CombineBehind(*self.Communicator, self.RankOrderBehind, rect, pixels);
+  banyan::RayScene scene{ camera, rect, toWorld * self.Field.IndexToPhysical(),
+    self.Field.DomainCells(), banyan::MakeTransferFunction(volume->GetProperty()),
+    this->SampleDistanceVoxels * self.Field.CellSize() * SmallestScale(toWorld) };
+  scene.Transfer.UnitDistance *= SmallestScale(toWorld);
+  scene.Depth = banyan::DepthsOf(pixels);
+
+  const std::uint64_t bytesBefore = self.Field.BytesRead();
+  // Half of the cache: what one batch holds is then never evicted by that batch itself.
+  const std::uint64_t budget =
+    std::max<std::uint64_t>(banyan::BrickCache::Process().Budget() / 2, 16u << 20);
+  banyan::FrameStatistics frame;
+  const banyan::FloatImage picture = banyan::DrawDistributed(*self.Communicator, scene,
+    self.Field.Source(), self.Field.Zones(), budget, banyan::ThreadPool::Process(), {}, frame);
+
+  if (self.Communicator->Rank() == 0)
+  {
+    banyan::BlendOver(picture, pixels);
+  }
+  else
+  {
+    std::fill(pixels.begin(), pixels.end(), banyan::OpaquePixel{ 1.0f, { 0, 0, 0, 0 } });
+  }
+  self.Framebuffer.Write(renderer, rect, pixels);
+  self.LastProblem.clear();
+
+  const auto sum = [&self](std::uint64_t value) {
+    return static_cast<vtkIdType>(banyan::AllSum(*self.Communicator, static_cast<double>(value)));
+  };
+  vtkBanyanFrameStatistics* out = this->Statistics;
+  out->SetBytesRead(sum(self.Field.BytesRead() - bytesBefore));
+  out->SetCacheBytes(sum(banyan::BrickCache::Process().GetStatistics().Bytes));
+  out->SetTotalSeconds(timer.Seconds());
+  out->SetRenderSeconds(frame.RenderSeconds);
+  out->SetCompositeSeconds(frame.CompositeSeconds);
+  out->SetImbalance(frame.Imbalance);
+  out->SetSamplesTaken(static_cast<vtkIdType>(frame.SamplesTaken));
+  out->SetBricksDrawn(static_cast<vtkIdType>(frame.BricksDrawn));
+  out->SetBricksSkipped(static_cast<vtkIdType>(frame.BricksSkipped));
+  out->SetBytesComposited(static_cast<vtkIdType>(frame.BytesComposited));
+  out->SetFrames(out->GetFrames() + 1);
+}
+
+void vtkBanyanVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
+{
+  this->Self->Framebuffer.ReleaseGraphicsResources(window);
+  this->Superclass::ReleaseGraphicsResources(window);
+}
+
+void vtkBanyanVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "SampleDistanceVoxels: " << this->SampleDistanceVoxels << "\n"
+     << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"
+     << indent << "Controller: " << this->Controller.GetPointer() << "\n"
+     << indent << "Statistics: " << this->Statistics.GetPointer() << "\n";
+}

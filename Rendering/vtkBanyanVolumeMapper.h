@@ -1,0 +1,121 @@
+#ifndef vtkBanyanVolumeMapper_h
+#define vtkBanyanVolumeMapper_h
+
+#include "BanyanRenderingModule.h" // for export macro
+#include "vtkSmartPointer.h"       // for member
+#include "vtkVolumeMapper.h"
+
+#include <memory> // for member
+#include <vector> // for argument
+
+class vtkBanyanFrameStatistics;
+class vtkDataArray;
+class vtkImageData;
+class vtkMultiProcessController;
+
+/**
+ * @class vtkBanyanVolumeMapper
+ * @brief draws image data, encoded or plain, on one rank or many, with Banyan's own ray caster
+ *
+ * Use it like any volume mapper: give it image data (the output of vtkBanyanSeriesReader draws
+ * without being decoded) and put it into a vtkVolume with a colour and an opacity function. Rays
+ * end at opaque geometry that was drawn before.
+ *
+ * With a controller of several ranks, Render() is collective: each rank draws its zone and rank 0
+ * receives the finished picture, opaque geometry of all ranks included; the other ranks are left
+ * blank where the volume may be, so that a sort-last compositor keeps rank 0's pixels.
+ *
+ * The picture does not depend on the number of ranks or threads: at most 1/255 per channel.
+ *
+ * @par Limits: point data; blend mode composite; no shading; independent component 0 of the
+ * property; regular cropping and clipping planes are ignored.
+ */
+class BANYANRENDERING_EXPORT vtkBanyanVolumeMapper : public vtkVolumeMapper
+{
+public:
+  static vtkBanyanVolumeMapper* New();
+  vtkTypeMacro(vtkBanyanVolumeMapper, vtkVolumeMapper);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Distance between samples along a ray, in edges of the smallest cell. Opacities are corrected
+   * for it. Default 1; allowed [0.01, 100].
+   */
+  vtkSetClampMacro(SampleDistanceVoxels, double, 0.01, 100.0);
+  vtkGetMacro(SampleDistanceVoxels, double);
+  ///@}
+
+  ///@{
+  /**
+   * Threads that cast rays and decode in this process; 0 (default) takes the cores divided by the
+   * ranks on this machine.
+   */
+  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkGetMacro(NumberOfThreads, int);
+  ///@}
+
+  /**
+   * Ranks that draw together; null (default) for this process alone. Collective over the
+   * controller's ranks when it changes.
+   */
+  virtual void SetController(vtkMultiProcessController* controller);
+  vtkMultiProcessController* GetController();
+
+  /**
+   * Where statistics go after each frame; never null.
+   */
+  virtual void SetStatistics(vtkBanyanFrameStatistics* statistics);
+  vtkBanyanFrameStatistics* GetStatistics();
+
+  /**
+   * How the pixels of all ranks that lie behind the volume combine: by depth (empty, the default),
+   * or, when the surrounding compositor blends ranks in an order, that order, front first.
+   */
+  void SetRankOrderBehind(const std::vector<int>& frontToBack);
+
+  /**
+   * Collective: agrees on the field with all ranks, so that GetBounds() and Render() can be used.
+   * Render() does this by itself when needed.
+   */
+  void UpdateField(vtkVolume* volume);
+
+  /**
+   * The point or cell array of `image` that the mapper's scalar mode selects; with the default mode
+   * the active scalars, or the first array of numbers. Null if there is none.
+   */
+  vtkDataArray* GetArrayToDraw(vtkImageData* image);
+
+  /**
+   * Bounds of the whole field, over all ranks, once UpdateField() or Render() was called; those of
+   * the input before.
+   */
+  double* GetBounds() VTK_SIZEHINT(6) override;
+  using Superclass::GetBounds;
+
+  void Render(vtkRenderer* renderer, vtkVolume* volume) override;
+  void ReleaseGraphicsResources(vtkWindow* window) override;
+
+protected:
+  vtkBanyanVolumeMapper();
+  ~vtkBanyanVolumeMapper() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+
+private:
+  vtkBanyanVolumeMapper(const vtkBanyanVolumeMapper&) = delete;
+  void operator=(const vtkBanyanVolumeMapper&) = delete;
+
+  void DrawFrame(vtkRenderer* renderer, vtkVolume* volume);
+  void ReportOnce(const std::string& problem);
+
+  double SampleDistanceVoxels = 1.0;
+  int NumberOfThreads = 0;
+  vtkSmartPointer<vtkMultiProcessController> Controller;
+  vtkSmartPointer<vtkBanyanFrameStatistics> Statistics;
+
+  struct Internals;
+  std::unique_ptr<Internals> Self;
+};
+
+#endif

@@ -1,0 +1,58 @@
+#ifndef vtkBanyanVolume_h
+#define vtkBanyanVolume_h
+
+#include "BanyanRepresentationsModule.h" // for export macro
+#include "vtkPVLODVolume.h"
+#include "vtkWeakPointer.h" // for member
+
+class vtkBanyanVolumeMapper;
+class vtkPVRenderView;
+
+/**
+ * @class vtkBanyanVolume
+ * @brief the prop of the representation "Banyan Volume": draws collectively in the overlay pass
+ *
+ * ParaView composites opaque and translucent geometry of all ranks by IceT after everything is
+ * drawn. This prop composites by itself before that: on every rank, whatever data it has, in the
+ * overlay pass, which runs exactly once per rank and frame (the volumetric pass does not, under
+ * depth peeling). Documentation/architecture.md tells the whole story.
+ */
+class BANYANREPRESENTATIONS_EXPORT vtkBanyanVolume : public vtkPVLODVolume
+{
+public:
+  static vtkBanyanVolume* New();
+  vtkTypeMacro(vtkBanyanVolume, vtkPVLODVolume);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /** The mapper that draws; not owned. */
+  void SetBanyanMapper(vtkBanyanVolumeMapper* mapper);
+
+  /** The view that draws this prop; decides how pixels of other ranks combine. Not owned. */
+  void SetView(vtkPVRenderView* view);
+
+  int RenderOpaqueGeometry(vtkViewport* viewport) override;
+  int RenderVolumetricGeometry(vtkViewport* viewport) override;
+  int RenderTranslucentPolygonalGeometry(vtkViewport* viewport) override;
+  int RenderOverlay(vtkViewport* viewport) override;
+  vtkTypeBool HasTranslucentPolygonalGeometry() override;
+
+  /** Bounds of the whole volume on every rank: IceT drops pixels outside a rank's own bounds. */
+  double* GetBounds() VTK_SIZEHINT(6) override;
+  using Superclass::GetBounds;
+
+  void ReleaseGraphicsResources(vtkWindow* window) override;
+
+protected:
+  vtkBanyanVolume() = default;
+  ~vtkBanyanVolume() override = default;
+
+private:
+  vtkBanyanVolume(const vtkBanyanVolume&) = delete;
+  void operator=(const vtkBanyanVolume&) = delete;
+
+  vtkWeakPointer<vtkBanyanVolumeMapper> BanyanMapper;
+  vtkWeakPointer<vtkPVRenderView> View;
+  bool TileDisplayReported = false;
+};
+
+#endif

@@ -1,0 +1,216 @@
+#include "vtkBanyanVolumeRepresentation.h"
+
+#include "vtkBanyanFrameStatistics.h"
+#include "vtkBanyanVolume.h"
+#include "vtkBanyanVolumeMapper.h"
+
+#include "vtkAbstractMapper.h"
+#include "vtkColorTransferFunction.h"
+#include "vtkCommunicator.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMath.h"
+#include "vtkMultiProcessController.h"
+#include "vtkObjectFactory.h"
+#include "vtkPVRenderView.h"
+#include "vtkPiecewiseFunction.h"
+#include "vtkRenderer.h"
+#include "vtkVolumeProperty.h"
+
+vtkStandardNewMacro(vtkBanyanVolumeRepresentation);
+
+vtkBanyanVolumeRepresentation::vtkBanyanVolumeRepresentation()
+  : Prop(vtkSmartPointer<vtkBanyanVolume>::New())
+  , Piece(vtkSmartPointer<vtkImageData>::New())
+{
+  // The superclass has made a prop of ParaView's own: ours takes its place.
+  this->Actor = this->Prop;
+  this->Actor->SetProperty(this->Property);
+  this->Prop->SetMapper(this->Mapper);
+  this->Prop->SetBanyanMapper(this->Mapper);
+  vtkMath::UninitializeBounds(this->DataBounds);
+}
+
+vtkBanyanVolumeRepresentation::~vtkBanyanVolumeRepresentation() = default;
+
+int vtkBanyanVolumeRepresentation::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
+int vtkBanyanVolumeRepresentation::RequestData(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkMath::UninitializeBounds(this->DataBounds);
+  this->DataSize = 0;
+  this->Piece = vtkSmartPointer<vtkImageData>::New();
+  if (inputVector[0]->GetNumberOfInformationObjects() == 1)
+  {
+    if (vtkImageData* input = vtkImageData::GetData(inputVector[0], 0))
+    {
+      this->Piece->ShallowCopy(input);
+      if (input->GetNumberOfPoints() > 0)
+      {
+        input->GetBounds(this->DataBounds);
+        this->DataSize = input->GetActualMemorySize();
+      }
+    }
+  }
+  return this->Superclass::RequestData(request, inputVector, outputVector);
+}
+
+int vtkBanyanVolumeRepresentation::ProcessViewRequest(
+  vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo)
+{
+  if (!this->Superclass::ProcessViewRequest(request, inInfo, outInfo))
+  {
+    return 0;
+  }
+  if (request == vtkPVView::REQUEST_UPDATE())
+  {
+    vtkPVRenderView::SetPiece(inInfo, this, this->Piece, this->DataSize);
+    vtkPVRenderView::SetGeometryBounds(inInfo, this, this->DataBounds);
+    vtkPVRenderView::SetDeliverToClientAndRenderingProcesses(inInfo, this, false, false);
+    vtkPVRenderView::SetRequiresDistributedRendering(inInfo, this, true);
+    // Ranks whose bounds are off screen must draw all the same, or the others wait for ever. Never
+    // together with NEED_ORDERED_COMPOSITING: the view then forgets this one.
+    outInfo->Set(vtkPVRenderView::RENDER_EMPTY_IMAGES(), 1);
+  }
+  else if (request == vtkPVView::REQUEST_UPDATE_LOD())
+  {
+    vtkPVRenderView::SetRequiresDistributedRenderingLOD(inInfo, this, true);
+  }
+  else if (request == vtkPVView::REQUEST_RENDER())
+  {
+    this->PrepareRender(vtkPVView::GetDeliveredPiece(inInfo, this));
+  }
+  return 1;
+}
+
+/// Collective over the ranks that render.
+void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
+{
+  vtkImageData* image = vtkImageData::SafeDownCast(piece);
+  this->Mapper->SetInputDataObject(image);
+  this->Mapper->SetController(vtkMultiProcessController::GetGlobalController());
+  this->SelectArray();
+  this->Property->SetIndependentComponents(1);
+  this->Prop->SetView(vtkPVRenderView::SafeDownCast(this->GetView()));
+  if (!this->ColorGiven || !this->OpacityGiven)
+  {
+    this->UseDefaultFunctions(image);
+  }
+  this->Mapper->UpdateField(this->Prop);
+}
+
+/// ParaView gives a colour map only with an array that was chosen by name. Collective.
+void vtkBanyanVolumeRepresentation::UseDefaultFunctions(vtkImageData* piece)
+{
+  double local[2] = { VTK_DOUBLE_MIN, VTK_DOUBLE_MIN }; // -minimum, maximum
+  if (vtkDataArray* array = this->Mapper->GetArrayToDraw(piece))
+  {
+    double range[2];
+    array->GetFiniteRange(range, array->GetNumberOfComponents() > 1 ? -1 : 0);
+    local[0] = -range[0];
+    local[1] = range[1];
+  }
+  double all[2] = { local[0], local[1] };
+  if (vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController())
+  {
+    controller->AllReduce(local, all, 2, vtkCommunicator::MAX_OP);
+  }
+  const double low = -all[0] <= all[1] ? -all[0] : 0.0;
+  const double high = -all[0] <= all[1] ? all[1] : 1.0;
+  if (!this->ColorGiven)
+  {
+    vtkNew<vtkColorTransferFunction> colors;
+    colors->SetVectorModeToMagnitude();
+    colors->SetColorSpaceToDiverging();
+    colors->AddRGBPoint(low, 0.23, 0.30, 0.75);
+    colors->AddRGBPoint(high, 0.71, 0.016, 0.15);
+    this->Property->SetColor(colors);
+  }
+  if (!this->OpacityGiven)
+  {
+    vtkNew<vtkPiecewiseFunction> opacity;
+    opacity->AddPoint(low, 0.0);
+    opacity->AddPoint(high, 1.0);
+    this->Property->SetScalarOpacity(opacity);
+  }
+}
+
+void vtkBanyanVolumeRepresentation::SetColor(vtkColorTransferFunction* colors)
+{
+  this->ColorGiven = colors != nullptr;
+  this->Superclass::SetColor(colors);
+}
+
+void vtkBanyanVolumeRepresentation::SetScalarOpacity(vtkPiecewiseFunction* opacity)
+{
+  this->OpacityGiven = opacity != nullptr;
+  this->Superclass::SetScalarOpacity(opacity);
+}
+
+void vtkBanyanVolumeRepresentation::SelectArray()
+{
+  vtkInformation* info = this->GetInputArrayInformation(0);
+  const char* name = info && info->Has(vtkDataObject::FIELD_NAME())
+                       ? info->Get(vtkDataObject::FIELD_NAME())
+                       : nullptr;
+  if (!name || !*name)
+  {
+    this->Mapper->SetScalarMode(VTK_SCALAR_MODE_DEFAULT);
+    return;
+  }
+  const bool cells =
+    info->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_CELLS;
+  this->Mapper->SetScalarMode(
+    cells ? VTK_SCALAR_MODE_USE_CELL_FIELD_DATA : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA);
+  this->Mapper->SelectScalarArray(name);
+}
+
+bool vtkBanyanVolumeRepresentation::AddToView(vtkView* view)
+{
+  if (auto* renderView = vtkPVRenderView::SafeDownCast(view))
+  {
+    renderView->GetRenderer()->AddActor(this->Actor);
+    return this->Superclass::AddToView(view);
+  }
+  return false;
+}
+
+bool vtkBanyanVolumeRepresentation::RemoveFromView(vtkView* view)
+{
+  if (auto* renderView = vtkPVRenderView::SafeDownCast(view))
+  {
+    renderView->GetRenderer()->RemoveActor(this->Actor);
+    return this->Superclass::RemoveFromView(view);
+  }
+  return false;
+}
+
+void vtkBanyanVolumeRepresentation::SetSampleDistanceVoxels(double voxels)
+{
+  this->Mapper->SetSampleDistanceVoxels(voxels);
+}
+
+void vtkBanyanVolumeRepresentation::SetNumberOfThreads(int threads)
+{
+  this->Mapper->SetNumberOfThreads(threads);
+}
+
+void vtkBanyanVolumeRepresentation::SetStatistics(vtkBanyanFrameStatistics* statistics)
+{
+  this->Mapper->SetStatistics(statistics);
+}
+
+void vtkBanyanVolumeRepresentation::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Mapper:\n";
+  this->Mapper->PrintSelf(os, indent.GetNextIndent());
+}

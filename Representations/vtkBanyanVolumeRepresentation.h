@@ -1,0 +1,74 @@
+#ifndef vtkBanyanVolumeRepresentation_h
+#define vtkBanyanVolumeRepresentation_h
+
+#include "BanyanRepresentationsModule.h" // for export macro
+#include "vtkNew.h"                      // for members
+#include "vtkSmartPointer.h"             // for members
+#include "vtkVolumeRepresentation.h"
+
+class vtkBanyanFrameStatistics;
+class vtkBanyanVolume;
+class vtkBanyanVolumeMapper;
+class vtkImageData;
+
+/**
+ * @class vtkBanyanVolumeRepresentation
+ * @brief ParaView's representation "Banyan Volume" of image data, encoded or plain
+ *
+ * Draws in parallel with its own compositing; data is never redistributed. Colour map, opacity
+ * function and opacity unit distance are those of ParaView's own "Volume". With no array selected
+ * ("Solid Color") the active or first point array is drawn with a default colour map.
+ *
+ * @par Limits: as vtkBanyanVolumeMapper; tile displays are refused with a message.
+ */
+class BANYANREPRESENTATIONS_EXPORT vtkBanyanVolumeRepresentation : public vtkVolumeRepresentation
+{
+public:
+  static vtkBanyanVolumeRepresentation* New();
+  vtkTypeMacro(vtkBanyanVolumeRepresentation, vtkVolumeRepresentation);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  int ProcessViewRequest(
+    vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo) override;
+
+  ///@{
+  /** Colour map and opacity function; null takes a default over the range of the data. */
+  void SetColor(vtkColorTransferFunction* colors);
+  void SetScalarOpacity(vtkPiecewiseFunction* opacity);
+  ///@}
+
+  /** Distance between samples, in edges of the smallest cell. Default 1. */
+  void SetSampleDistanceVoxels(double voxels);
+
+  /** Threads per process; 0 (default) shares the cores of a machine among its ranks. */
+  void SetNumberOfThreads(int threads);
+
+  /** Where the statistics of each frame go. */
+  void SetStatistics(vtkBanyanFrameStatistics* statistics);
+
+protected:
+  vtkBanyanVolumeRepresentation();
+  ~vtkBanyanVolumeRepresentation() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  bool AddToView(vtkView* view) override;
+  bool RemoveFromView(vtkView* view) override;
+
+private:
+  vtkBanyanVolumeRepresentation(const vtkBanyanVolumeRepresentation&) = delete;
+  void operator=(const vtkBanyanVolumeRepresentation&) = delete;
+
+  void PrepareRender(vtkDataObject* piece);
+  void SelectArray();
+  void UseDefaultFunctions(vtkImageData* piece);
+
+  vtkNew<vtkBanyanVolumeMapper> Mapper;
+  vtkSmartPointer<vtkBanyanVolume> Prop;
+  vtkSmartPointer<vtkImageData> Piece;
+  bool ColorGiven = false;
+  bool OpacityGiven = false;
+};
+
+#endif
