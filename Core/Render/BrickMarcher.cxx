@@ -71,8 +71,8 @@ struct Marcher
     }
   }
 
-  /// The table entry at a position relative to the brick's corner.
-  const glm::vec4& Sample(std::int64_t x, std::int64_t y, std::int64_t z) const
+  /// Number of the table entry at a position relative to the brick's corner.
+  int Sample(std::int64_t x, std::int64_t y, std::int64_t z) const
   {
     const std::ptrdiff_t sx = this->Stride[0];
     const std::ptrdiff_t sy = this->Stride[1];
@@ -91,11 +91,11 @@ struct Marcher
     const float value = Mix(Mix(z00, z01, fy), Mix(z10, z11, fy), fx);
     if constexpr (IsRelative<T>)
     {
-      return this->Entries[this->Table.IndexOfRelative(value)];
+      return this->Table.IndexOfRelative(value);
     }
     else
     {
-      return this->Entries[this->Table.IndexOf(value)];
+      return this->Table.IndexOf(value);
     }
   }
 
@@ -146,7 +146,7 @@ struct Marcher
     std::int32_t sample = begin;
     do
     {
-      this->Blend(this->Sample(x, y, z), pixel);
+      this->Blend(this->Entries[this->Sample(x, y, z)], pixel);
       x += ray.Step[0];
       y += ray.Step[1];
       z += ray.Step[2];
@@ -162,15 +162,9 @@ struct Marcher
     {
       return 0;
     }
-    const glm::vec4& entry = this->Sample(sample.Position[0] - this->Corner[0],
+    const int index = this->Sample(sample.Position[0] - this->Corner[0],
       sample.Position[1] - this->Corner[1], sample.Position[2] - this->Corner[2]);
-    if (entry.a > 0.0f)
-    {
-      // Opacity over a part of the step, and the colour in proportion to it.
-      const float opacity =
-        entry.a < 1.0f ? -std::expm1(sample.Fraction * std::log1p(-entry.a)) : 1.0f;
-      this->Blend(entry * (opacity / entry.a), pixel);
-    }
+    this->Blend(this->Table.Partial(index, sample.Fraction), pixel);
     return 1;
   }
 };

@@ -167,25 +167,35 @@ private:
       {
         break;
       }
-      const int position = static_cast<int>(this->Batch.size());
-      bool wanted = false;
-      this->ForTilesUnder(brick.Footprint,
-        [&](std::size_t tile)
-        {
-          this->BricksOfTile[tile].push_back(position);
-          wanted = true;
-        });
-      if (wanted)
-      {
-        this->Batch.push_back(&brick);
-        bytes += brickBytes;
-      }
-      else
+      // What is in memory anyway costs less to draw than to look for open pixels.
+      if (brickBytes > 0 && !this->AnyRayOpen(brick.Footprint))
       {
         ++this->Statistics.BricksSkipped;
+        continue;
       }
+      const int position = static_cast<int>(this->Batch.size());
+      this->ForTilesUnder(
+        brick.Footprint, [&](std::size_t tile) { this->BricksOfTile[tile].push_back(position); });
+      this->Batch.push_back(&brick);
+      bytes += brickBytes;
     }
     return next;
+  }
+
+  /// Whether a pixel of a footprint has not reached the opacity limit.
+  bool AnyRayOpen(const PixelRect& footprint) const
+  {
+    const float limit = 1.0f - this->Scene.OpacityLimit;
+    for (int y = footprint.Lo.y; y < footprint.Hi.y; ++y)
+    {
+      const glm::vec4* row = &this->Picture.At(footprint.Lo.x, y);
+      const glm::vec4* end = row + footprint.Size().x;
+      if (std::any_of(row, end, [limit](const glm::vec4& pixel) { return pixel.a > limit; }))
+      {
+        return true;
+      }
+    }
+    return false;
   }
 
   void DrawBatch()

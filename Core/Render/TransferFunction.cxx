@@ -113,16 +113,19 @@ StepTable::StepTable(const TransferFunction& function, double sampleDistance)
   }
   const double exponent = sampleDistance / function.UnitDistance;
   this->Entries.reserve(function.Entries.size() + 1);
+  this->Extinctions.reserve(function.Entries.size() + 1);
   for (const glm::vec4& entry : function.Entries)
   {
     // log1p and expm1 keep the relative precision of small opacities.
-    const double opacity =
-      entry.a < 1.0f ? -std::expm1(exponent * std::log1p(-double{ entry.a })) : 1.0;
+    const double depth = -exponent * std::log1p(-double{ entry.a });
+    const double opacity = -std::expm1(-depth);
     this->Entries.emplace_back(static_cast<float>(entry.r * opacity),
       static_cast<float>(entry.g * opacity), static_cast<float>(entry.b * opacity),
       static_cast<float>(opacity));
+    this->Extinctions.emplace_back(entry.r, entry.g, entry.b, static_cast<float>(depth));
   }
   this->Entries.emplace_back(0.0f);
+  this->Extinctions.emplace_back(0.0f);
 
   constexpr double largest = std::numeric_limits<float>::max();
   const double scale = EntriesPerValue(function);

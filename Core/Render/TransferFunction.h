@@ -5,6 +5,7 @@
 
 #include <glm/vec4.hpp>
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -78,6 +79,15 @@ public:
     return this->Index(valueMinusLow, valueMinusLow * this->Scale + 0.5f);
   }
 
+  /// Premultiplied colour and opacity of entry `index` over a fraction of the sample distance, in
+  /// (0, 1]: exact even where the opacity of the whole distance rounds to 1.
+  glm::vec4 Partial(int index, float fraction) const
+  {
+    const glm::vec4& entry = this->Extinctions[index];
+    const float opacity = -std::expm1(-entry.a * fraction);
+    return { entry.r * opacity, entry.g * opacity, entry.b * opacity, opacity };
+  }
+
   double Low() const { return this->LowDouble; }
   const glm::vec4* Data() const { return this->Entries.data(); }
 
@@ -93,6 +103,8 @@ private:
   }
 
   std::vector<glm::vec4> Entries; ///< one more than the function's: the transparent one
+  /// Colour, not premultiplied, and optical depth of the sample distance; infinite for opacity 1.
+  std::vector<glm::vec4> Extinctions;
   double LowDouble = 0;
   float LowFloat = 0;
   float Scale = 0;
