@@ -63,27 +63,60 @@ std::vector<OpaquePixel> ReadBound(const glm::ivec2& corner, const glm::ivec2& s
   return pixels;
 }
 
-/// Copies the rectangle of a multisampled framebuffer into a plain one and reads that.
-std::vector<OpaquePixel> ReadResolved(
-  vtkOpenGLRenderWindow* window, const glm::ivec2& corner, const glm::ivec2& size)
+/// Binds a framebuffer for reading and puts everything back at the end. VTK's cache of the state is
+/// not told: it never notices.
+class ScopedRead
+{
+public:
+  ScopedRead(GLint framebuffer, GLint buffer)
+  {
+    glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &this->FramebufferBefore);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(framebuffer));
+    glGetIntegerv(GL_READ_BUFFER, &this->BufferBefore);
+    glReadBuffer(static_cast<GLenum>(buffer));
+  }
+  ~ScopedRead()
+  {
+    glReadBuffer(static_cast<GLenum>(this->BufferBefore));
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(this->FramebufferBefore));
+  }
+  ScopedRead(const ScopedRead&) = delete;
+  ScopedRead& operator=(const ScopedRead&) = delete;
+
+private:
+  GLint FramebufferBefore = 0;
+  GLint BufferBefore = 0;
+};
+
+/// Copies a rectangle of a multisampled framebuffer into a plain one and reads that.
+std::vector<OpaquePixel> ReadResolved(vtkOpenGLRenderWindow* window, GLint framebuffer,
+  GLint buffer, const glm::ivec2& corner, const glm::ivec2& size)
 {
   vtkOpenGLState* state = window->GetState();
   vtkNew<vtkOpenGLFramebufferObject> resolved;
   resolved->SetContext(window);
+  // Depths are only copied between equal formats.
+  GLint depthBits = 0;
+  GLint stencilBits = 0;
+  glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT,
+    GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE, &depthBits);
+  glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT,
+    GL_FRAMEBUFFER_ATTACHMENT_STENCIL_SIZE, &stencilBits);
   state->PushFramebufferBindings();
   resolved->PopulateFramebuffer(
-    size.x, size.y, true, 1, VTK_UNSIGNED_CHAR, true, 24, 0, window->GetStencilCapable() != 0);
-  state->PopReadFramebufferBinding();
+    size.x, size.y, true, 1, VTK_UNSIGNED_CHAR, true, depthBits, 0, stencilBits > 0);
   {
     vtkOpenGLState::ScopedglScissor scissor(state);
     state->vtkglScissor(0, 0, size.x, size.y);
-    state->vtkglBlitFramebuffer(corner.x, corner.y, corner.x + size.x, corner.y + size.y, 0, 0,
-      size.x, size.y, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+    const ScopedRead source(framebuffer, buffer);
+    glBlitFramebuffer(corner.x, corner.y, corner.x + size.x, corner.y + size.y, 0, 0, size.x,
+      size.y, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
   }
-  state->PushReadFramebufferBinding();
-  resolved->Bind(GL_READ_FRAMEBUFFER);
-  resolved->ActivateReadBuffer(0);
-  std::vector<OpaquePixel> pixels = ReadBound(glm::ivec2(0), size);
+  std::vector<OpaquePixel> pixels;
+  {
+    const ScopedRead copy(static_cast<GLint>(resolved->GetFBOIndex()), GL_COLOR_ATTACHMENT0);
+    pixels = ReadBound(glm::ivec2(0), size);
+  }
   state->PopFramebufferBindings();
   return pixels;
 }
@@ -118,27 +151,18 @@ std::vector<OpaquePixel> FramebufferExchange::Read(vtkRenderer* renderer, const 
   const glm::ivec2 corner = OriginOf(renderer) + rect.Lo;
   const glm::ivec2 size = rect.Size();
 
-  // VTK's cache of the state knows nothing of the read binding set here: leave it as it was.
-  GLint drawn = 0;
-  GLint read = 0;
+  GLint framebuffer = 0;
+  GLint buffer = 0;
   GLint samples = 0;
-  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &drawn);
-  glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &read);
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
+  glGetIntegerv(GL_DRAW_BUFFER0, &buffer);
   glGetIntegerv(GL_SAMPLES, &samples);
   if (samples > 1)
   {
-    return ReadResolved(window, corner, size);
+    return ReadResolved(window, framebuffer, buffer, corner, size);
   }
-  GLint buffer = 0;
-  GLint readBuffer = 0;
-  glGetIntegerv(GL_DRAW_BUFFER0, &buffer);
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(drawn));
-  glGetIntegerv(GL_READ_BUFFER, &readBuffer);
-  glReadBuffer(static_cast<GLenum>(buffer));
-  std::vector<OpaquePixel> pixels = ReadBound(corner, size);
-  glReadBuffer(static_cast<GLenum>(readBuffer));
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(read));
-  return pixels;
+  const ScopedRead bound(framebuffer, buffer);
+  return ReadBound(corner, size);
 }
 
 void FramebufferExchange::Write(

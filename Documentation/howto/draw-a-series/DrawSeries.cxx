@@ -77,8 +77,8 @@ protected:
   {
     vtkInformation* info = outputVector->GetInformationObject(0);
     const double time = info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP())
-      ? info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP())
-      : 0.0;
+                          ? info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP())
+                          : 0.0;
     vtkImageData* image = vtkImageData::GetData(info);
     image->SetExtent(info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()));
     image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
@@ -117,17 +117,17 @@ bool WriteSeries(const char* path)
   return writer->Write() == 1;
 }
 
-/// Colours and opacities over values from 0 to 1; opacity is per unit of length.
+/// Colours and opacities over the values; opacity is per unit of length.
 vtkSmartPointer<vtkVolume> MakeVolume(vtkAbstractVolumeMapper* mapper)
 {
   vtkNew<vtkColorTransferFunction> colors;
-  colors->AddRGBPoint(0.0, 0.1, 0.1, 0.5);
-  colors->AddRGBPoint(0.3, 0.9, 0.3, 0.1);
-  colors->AddRGBPoint(1.0, 1.0, 1.0, 0.6);
+  colors->AddRGBPoint(0.0, 0.1, 0.1, 0.6);
+  colors->AddRGBPoint(0.06, 0.7, 0.2, 0.4);
+  colors->AddRGBPoint(0.15, 1.0, 0.6, 0.2);
+  colors->AddRGBPoint(0.25, 1.0, 1.0, 0.8);
   vtkNew<vtkPiecewiseFunction> opacity;
-  opacity->AddPoint(0.02, 0.0);
-  opacity->AddPoint(0.2, 0.05);
-  opacity->AddPoint(1.0, 0.4);
+  opacity->AddPoint(0.004, 0.0);
+  opacity->AddPoint(0.25, 0.3);
   auto volume = vtkSmartPointer<vtkVolume>::New();
   volume->SetMapper(mapper);
   volume->GetProperty()->SetColor(colors);
@@ -140,8 +140,8 @@ vtkSmartPointer<vtkVolume> MakeVolume(vtkAbstractVolumeMapper* mapper)
 vtkSmartPointer<vtkActor> MakeBall()
 {
   vtkNew<vtkSphereSource> sphere;
-  sphere->SetCenter(32.0, 32.0, 32.0);
-  sphere->SetRadius(6.0);
+  sphere->SetCenter(24.0, 34.0, 34.0);
+  sphere->SetRadius(5.0);
   sphere->SetThetaResolution(48);
   sphere->SetPhiResolution(48);
   vtkNew<vtkPolyDataMapper> mapper;
@@ -191,6 +191,7 @@ int main(int argc, char* argv[])
   renderer->ResetCamera();
   renderer->GetActiveCamera()->Azimuth(30.0);
   renderer->GetActiveCamera()->Elevation(25.0);
+  renderer->GetActiveCamera()->Zoom(1.8);
   renderer->ResetCameraClippingRange();
   window->Render();
   SavePicture(window, argv[2]);
