@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# Takes a picture of the ParaView window that shows a series as 'Banyan Volume': the one of the
+# README. Needs the plugin (build.sh), Xvfb, openbox and ImageMagick's import.
+#
+#   Utilities/screenshot.sh SERIES.banyan PICTURE.png
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+[[ $# == 2 ]] || fail "usage: Utilities/screenshot.sh SERIES.banyan PICTURE.png"
+[[ -e "$1" ]] || fail "there is no file '$1'."
+plugin="$BuildFolder/lib/Banyan"
+[[ -e "$plugin/Banyan.so" ]] || fail "the plugin is not built: run Utilities/build.sh first."
+for program in Xvfb openbox import paraview; do
+  command -v "$program" > /dev/null || fail "'$program' is missing: run Utilities/install-dependencies.sh."
+done
+
+work="$(mktemp -d)"
+pids=()
+clean_up()
+{
+  kill "${pids[@]}" 2> /dev/null || true
+  rm -rf "$work"
+}
+trap clean_up EXIT
+
+# A fresh configuration, without the modal welcome dialog.
+mkdir -p "$work/config/ParaView"
+version="$(pvserver --version 2>&1 | grep -oE "[0-9]+\.[0-9]+\.[0-9]+" | head -1 || true)"
+printf '[General]\nGeneralSettings.ShowWelcomeDialog=0\n[GeneralSettings]\nShowWelcomeDialog=0\n' \
+  > "$work/config/ParaView/ParaView${version:-5.11.0}.ini"
+export HOME="$work" XDG_CONFIG_HOME="$work/config" XDG_RUNTIME_DIR="$work" QT_X11_NO_MITSHM=1
+export PV_PLUGIN_PATH="$plugin" BANYAN_READY="$work/ready"
+BANYAN_SERIES="$(realpath "$1")"
+export BANYAN_SERIES
+
+exec 3> >(cat > "$work/display")
+Xvfb -displayfd 3 -screen 0 1300x820x24 -noreset > /dev/null 2>&1 &
+pids+=($!)
+for _ in $(seq 50); do
+  [[ -s "$work/display" ]] && break
+  sleep 0.1
+done
+[[ -s "$work/display" ]] || fail "no X server could be started."
+DISPLAY=":$(tr -d '[:space:]' < "$work/display")"
+export DISPLAY
+openbox > /dev/null 2>&1 &
+pids+=($!)
+
+say "starting ParaView"
+timeout 120 paraview --geometry=1300x790+0+0 \
+  --script="$RepositoryRoot/Utilities/screenshot/window_script.py" > "$work/log" 2>&1 &
+pids+=($!)
+for _ in $(seq 200); do
+  [[ -e "$BANYAN_READY" ]] && break
+  sleep 0.5
+done
+[[ "$(cat "$BANYAN_READY" 2> /dev/null)" == ready ]] \
+  || fail "ParaView did not show the series: $(cat "$BANYAN_READY" "$work/log" 2> /dev/null | tail -5)"
+sleep 2 # the panels settle
+import -window root "$2"
+say "wrote $2"
