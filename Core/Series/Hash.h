@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 namespace banyan
 {
@@ -22,6 +23,11 @@ struct Hash128
 /// Detects damage, not malice: nothing that is read may trust a matching hash for memory safety.
 Hash128 HashOf(const void* data, std::size_t bytes, std::uint64_t seed = 0);
 std::uint64_t ShortHashOf(const void* data, std::size_t bytes);
+
+/// 32 lower-case hexadecimal digits, the high half first, and back. `FromHex` throws Error for any
+/// other text.
+std::string ToHex(const Hash128& hash);
+Hash128 FromHex(const std::string& text);
 
 } // namespace banyan
 

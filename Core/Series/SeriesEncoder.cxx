@@ -2,6 +2,7 @@
 
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
+#include "Series/EncodePlan.h"
 #include "Series/FieldEncoder.h"
 #include "Series/IndexText.h"
 #include "Series/NodeTable.h"
@@ -36,66 +37,6 @@ bool Exists(const std::string& path)
   return lstat(path.c_str(), &status) == 0;
 }
 
-/// 16 for everything up to 4 bricks of 32 per axis; see Documentation/format.md.
-int ChooseBrickCells(const glm::ivec3& samples)
-{
-  (void)samples;
-  return 16;
-}
-
-double AbsoluteBound(const EncodeOptions& options, const ValueRange& range)
-{
-  if (options.Mode == ErrorBoundMode::Absolute)
-  {
-    return options.ErrorBound;
-  }
-  // Both ends by themselves: the width of a range of doubles may overflow.
-  const double bound =
-    range.Empty() ? 0.0 : options.ErrorBound * range.High - options.ErrorBound * range.Low;
-  if (!std::isfinite(bound))
-  {
-    throw Error("The error bound times the range of the series is not a finite number");
-  }
-  return bound;
-}
-
-ArrayIndex MakeArray(const ArrayDescription& description, const EncodeOptions& options)
-{
-  ArrayIndex array;
-  array.Name = description.Name;
-  array.Type = description.Type;
-  const std::size_t components = description.ComponentNames.size();
-  const bool promised = !description.SeriesRanges.empty();
-  if ((promised && description.SeriesRanges.size() != components) ||
-      (!promised && options.Mode == ErrorBoundMode::RelativeToSeriesRange &&
-        options.ErrorBound > 0))
-  {
-    throw Error("The array '" + description.Name +
-                "' needs one series range per component for a relative error bound");
-  }
-  for (std::size_t c = 0; c < components; ++c)
-  {
-    ComponentIndex component;
-    component.Name = description.ComponentNames[c];
-    component.PromisedRange = promised ? description.SeriesRanges[c] : ValueRange{};
-    component.ErrorBoundAbsolute = AbsoluteBound(options, component.PromisedRange);
-    array.Components.push_back(component);
-  }
-  return array;
-}
-
-void CheckOptions(const EncodeOptions& options)
-{
-  if (!std::isfinite(options.ErrorBound) || options.ErrorBound < 0)
-  {
-    throw Error("The error bound must be a finite number that is not negative");
-  }
-  if (options.CompressionLevel < 1 || options.CompressionLevel > 19)
-  {
-    throw Error("The compression level must be from 1 to 19");
-  }
-}
-
 } // namespace
 
 struct SeriesEncoder::Internals
@@ -104,6 +45,7 @@ struct SeriesEncoder::Internals
     const EncodeOptions& options, ThreadPool& pool);
   ~Internals();
 
+  void CheckStep(double time, const std::vector<ArrayValues>& arrays) const;
   void EncodeStep(const std::vector<ArrayValues>& arrays);
   void EncodeComponent(std::size_t array, int component, const void* values, ComponentState& state);
   void EncodeLevel(const FieldToEncode& field, ComponentIndex& index, ComponentState& state);
@@ -133,23 +75,13 @@ SeriesEncoder::Internals::Internals(const std::string& path, const Grid& grid,
   : Path(path)
   , Options(options)
   , Pool(pool)
+  , Index(PlanSeries(grid, arrays, options))
   , KeepOld(Exists(path))
 {
-  CheckOptions(options);
-  CheckGrid(grid, options.BrickCells == 0 ? 16 : options.BrickCells);
-  this->Index.Domain = grid;
-  this->Index.BrickCells =
-    options.BrickCells == 0 ? ChooseBrickCells(grid.Samples()) : options.BrickCells;
-  this->Index.Levels = BrickLayout::LevelCount(grid.Samples(), this->Index.BrickCells);
-  this->Index.KeyframeInterval = options.KeyframeInterval;
-  this->Index.ErrorBound = options.ErrorBound;
-  this->Index.Mode = options.Mode;
   for (const ArrayDescription& array : arrays)
   {
-    this->Index.Arrays.push_back(MakeArray(array, options));
     this->States.emplace_back(array.ComponentNames.size());
   }
-  this->Index.ActiveScalars = arrays.empty() ? "" : arrays[0].Name;
   (void)IndexToText(this->Index); // says now what could not be written later
   for (int level = 0; level < this->Index.Levels; ++level)
   {
@@ -282,6 +214,28 @@ void SeriesEncoder::Internals::EncodeComponent(
   }
 }
 
+void SeriesEncoder::Internals::CheckStep(double time, const std::vector<ArrayValues>& arrays) const
+{
+  const std::vector<double>& times =
+    this->SegmentTimes.empty() ? this->Index.Times : this->SegmentTimes;
+  if (!std::isfinite(time) || (!times.empty() && !(time > times.back())))
+  {
+    throw Error("Time values must be finite and increase from step to step", { this->Path });
+  }
+  if (arrays.size() != this->Index.Arrays.size())
+  {
+    throw Error("A step must hold as many arrays as were described",
+      { this->Path, {}, arrays.size(), this->Index.Arrays.size() });
+  }
+  for (const ArrayValues& array : arrays)
+  {
+    if (array.Values == nullptr)
+    {
+      throw Error("An array of a step has no values", { this->Path });
+    }
+  }
+}
+
 void SeriesEncoder::Internals::EncodeStep(const std::vector<ArrayValues>& arrays)
 {
   const int step = this->Index.Steps() + static_cast<int>(this->SegmentTimes.size());
@@ -351,24 +305,7 @@ void SeriesEncoder::AddStep(double time, const std::vector<ArrayValues>& arrays)
   }
   // A bad call does not spoil what was encoded, but the contract says that nothing can follow it.
   self.Failed = true;
-  const std::vector<double>& times =
-    self.SegmentTimes.empty() ? self.Index.Times : self.SegmentTimes;
-  if (!std::isfinite(time) || (!times.empty() && !(time > times.back())))
-  {
-    throw Error("Time values must be finite and increase from step to step", { self.Path });
-  }
-  if (arrays.size() != self.Index.Arrays.size())
-  {
-    throw Error("A step must hold as many arrays as were described",
-      { self.Path, {}, arrays.size(), self.Index.Arrays.size() });
-  }
-  for (const ArrayValues& array : arrays)
-  {
-    if (array.Values == nullptr)
-    {
-      throw Error("An array of a step has no values", { self.Path });
-    }
-  }
+  self.CheckStep(time, arrays);
   self.EncodeStep(arrays);
   self.SegmentTimes.push_back(time);
   if (static_cast<int>(self.SegmentTimes.size()) == self.Options.KeyframeInterval)

@@ -1,0 +1,229 @@
+#include "Base/Error.h"
+#include "Series/Hash.h"
+#include "Series/IndexJson.h"
+
+#include <limits>
+
+namespace banyan
+{
+namespace
+{
+
+// Every access checks the type, because nlohmann::json converts numbers silently
+
+const Json& Member(const Json& json, const char* name)
+{
+  const auto found = json.find(name);
+  if (found == json.end())
+  {
+    throw Error(std::string("The member '") + name + "' is missing");
+  }
+  return *found;
+}
+
+[[noreturn]] void WrongType(const char* name)
+{
+  throw Error(std::string("The member '") + name + "' is not what it should be");
+}
+
+double Real(const Json& json, const char* name)
+{
+  if (!json.is_number())
+  {
+    WrongType(name);
+  }
+  return json.get<double>();
+}
+
+std::int64_t Integer(const Json& json, const char* name, std::int64_t least, std::int64_t greatest)
+{
+  const bool fits = json.is_number_integer() &&
+                    (!json.is_number_unsigned() ||
+                      json.get<std::uint64_t>() <=
+                        static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()));
+  if (!fits || json.get<std::int64_t>() < least || json.get<std::int64_t>() > greatest)
+  {
+    WrongType(name);
+  }
+  return json.get<std::int64_t>();
+}
+
+int IntegerMember(const Json& json, const char* name, int least)
+{
+  return static_cast<int>(
+    Integer(Member(json, name), name, least, std::numeric_limits<int>::max()));
+}
+
+std::int64_t CountMember(const Json& json, const char* name)
+{
+  return Integer(Member(json, name), name, 0, std::numeric_limits<std::int64_t>::max());
+}
+
+std::string TextMember(const Json& json, const char* name)
+{
+  const Json& member = Member(json, name);
+  if (!member.is_string())
+  {
+    WrongType(name);
+  }
+  return member.get<std::string>();
+}
+
+const Json& ListMember(const Json& json, const char* name)
+{
+  const Json& member = Member(json, name);
+  if (!member.is_array())
+  {
+    WrongType(name);
+  }
+  return member;
+}
+
+std::vector<double> Reals(const Json& json, const char* name, std::size_t count)
+{
+  const Json& list = ListMember(json, name);
+  if (list.size() != count)
+  {
+    WrongType(name);
+  }
+  std::vector<double> values;
+  for (const Json& item : list)
+  {
+    values.push_back(Real(item, name));
+  }
+  return values;
+}
+
+ValueRange RangeFromJson(const Json& json, const char* name)
+{
+  if (Member(json, name).is_null())
+  {
+    return {};
+  }
+  const std::vector<double> ends = Reals(json, name, 2);
+  if (!(ends[0] <= ends[1]))
+  {
+    WrongType(name);
+  }
+  return { ends[0], ends[1] };
+}
+
+ComponentIndex ComponentFromJson(const Json& json)
+{
+  ComponentIndex component;
+  component.Name = TextMember(json, "name");
+  component.Range = RangeFromJson(json, "range");
+  component.PromisedRange = RangeFromJson(json, "promisedRange");
+  component.ErrorBoundAbsolute = Real(Member(json, "errorBoundAbsolute"), "errorBoundAbsolute");
+  component.MeasuredMaxError = Real(Member(json, "measuredMaxError"), "measuredMaxError");
+  const Json& squares = Member(json, "sumSquaredError");
+  component.SumSquaredError =
+    squares.is_null() ? std::numeric_limits<double>::infinity() : Real(squares, "sumSquaredError");
+  component.FiniteCount = CountMember(json, "finiteCount");
+  component.NonFiniteCount = CountMember(json, "nonFiniteCount");
+  return component;
+}
+
+ArrayIndex ArrayFromJson(const Json& json)
+{
+  ArrayIndex array;
+  array.Name = TextMember(json, "name");
+  array.Type = ScalarTypeFromName(TextMember(json, "type"));
+  for (const Json& component : ListMember(json, "components"))
+  {
+    array.Components.push_back(ComponentFromJson(component));
+  }
+  return array;
+}
+
+SegmentIndex SegmentFromJson(const Json& json)
+{
+  SegmentIndex segment;
+  segment.File = TextMember(json, "file");
+  segment.FirstStep = IntegerMember(json, "firstStep", 0);
+  segment.Steps = IntegerMember(json, "steps", 1);
+  segment.Bytes = static_cast<std::uint64_t>(CountMember(json, "bytes"));
+  const Hash128 hash = FromHex(TextMember(json, "hash"));
+  segment.HashLow = hash.Low;
+  segment.HashHigh = hash.High;
+  return segment;
+}
+
+EncodeStatistics StatisticsFromJson(const Json& json)
+{
+  EncodeStatistics statistics;
+  statistics.Bricks = CountMember(json, "bricks");
+  statistics.MacroVoxelBricks = CountMember(json, "macroVoxelBricks");
+  statistics.UnchangedBricks = CountMember(json, "unchangedBricks");
+  statistics.MergedBricks = CountMember(json, "mergedBricks");
+  statistics.RawBricks = CountMember(json, "rawBricks");
+  statistics.PayloadBytes = static_cast<std::uint64_t>(CountMember(json, "payloadBytes"));
+  statistics.TableBytes = static_cast<std::uint64_t>(CountMember(json, "tableBytes"));
+  return statistics;
+}
+
+Grid GridFromJson(const Json& json)
+{
+  Grid grid;
+  const Json& extent = ListMember(json, "extent");
+  if (extent.size() != 6)
+  {
+    WrongType("extent");
+  }
+  const std::int64_t limit = std::numeric_limits<int>::max() - 1;
+  const std::vector<double> origin = Reals(json, "origin", 3);
+  const std::vector<double> spacing = Reals(json, "spacing", 3);
+  const std::vector<double> direction = Reals(json, "direction", 9);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const std::size_t a = static_cast<std::size_t>(axis);
+    grid.Extent.Lo[axis] = static_cast<int>(Integer(extent[2 * a], "extent", -limit, limit));
+    grid.Extent.Hi[axis] =
+      static_cast<int>(Integer(extent[2 * a + 1], "extent", -limit, limit)) + 1;
+    grid.Origin[axis] = origin[a];
+    grid.Spacing[axis] = spacing[a];
+    for (int column = 0; column < 3; ++column)
+    {
+      grid.Direction[column][axis] = direction[3 * a + static_cast<std::size_t>(column)];
+    }
+  }
+  return grid;
+}
+
+} // namespace
+
+SeriesIndex IndexFromJson(const Json& json)
+{
+  if (!json.is_object())
+  {
+    throw Error("The index is not a JSON object");
+  }
+  SeriesIndex index;
+  index.Domain = GridFromJson(json);
+  index.BrickCells = IntegerMember(json, "brickCells", 1);
+  index.Levels = IntegerMember(json, "levels", 1);
+  index.KeyframeInterval = IntegerMember(json, "keyframeInterval", 1);
+  index.ErrorBound = Real(Member(json, "errorBound"), "errorBound");
+  const std::string mode = TextMember(json, "errorBoundMode");
+  if (mode != "relative" && mode != "absolute")
+  {
+    WrongType("errorBoundMode");
+  }
+  index.Mode =
+    mode == "relative" ? ErrorBoundMode::RelativeToSeriesRange : ErrorBoundMode::Absolute;
+  index.ActiveScalars = TextMember(json, "activeScalars");
+  for (const Json& array : ListMember(json, "arrays"))
+  {
+    index.Arrays.push_back(ArrayFromJson(array));
+  }
+  index.Times = Reals(json, "times", ListMember(json, "times").size());
+  for (const Json& segment : ListMember(json, "segments"))
+  {
+    index.Segments.push_back(SegmentFromJson(segment));
+  }
+  index.PayloadBytesIn = static_cast<std::uint64_t>(CountMember(json, "payloadBytesIn"));
+  index.Statistics = StatisticsFromJson(Member(json, "statistics"));
+  return index;
+}
+
+} // namespace banyan

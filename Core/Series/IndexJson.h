@@ -1,0 +1,22 @@
+#ifndef banyan_Series_IndexJson_h
+#define banyan_Series_IndexJson_h
+
+#include "Series/SeriesIndex.h"
+
+#include <nlohmann/json.hpp>
+
+namespace banyan
+{
+
+/// Keeps members in the order they are written in, which is the order of Documentation/format.md.
+using Json = nlohmann::ordered_json;
+
+Json IndexToJson(const SeriesIndex& index);
+
+/// Checks that members are there and of the right type; what they say is `CheckIndex`'s business.
+/// Throws Error.
+SeriesIndex IndexFromJson(const Json& json);
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,123 @@
+#include "Series/Hash.h"
+#include "Series/IndexJson.h"
+
+#include <cmath>
+
+namespace banyan
+{
+namespace
+{
+
+Json RangeToJson(const ValueRange& range)
+{
+  return range.Empty() ? Json(nullptr) : Json::array({ range.Low, range.High });
+}
+
+Json VectorToJson(const glm::dvec3& v)
+{
+  return Json::array({ v.x, v.y, v.z });
+}
+
+Json ComponentToJson(const ComponentIndex& component)
+{
+  Json json;
+  json["name"] = component.Name;
+  json["range"] = RangeToJson(component.Range);
+  json["promisedRange"] = RangeToJson(component.PromisedRange);
+  json["errorBoundAbsolute"] = component.ErrorBoundAbsolute;
+  json["measuredMaxError"] = component.MeasuredMaxError;
+  // The one number that may overflow: squares of large errors.
+  json["sumSquaredError"] =
+    std::isfinite(component.SumSquaredError) ? Json(component.SumSquaredError) : Json(nullptr);
+  json["finiteCount"] = component.FiniteCount;
+  json["nonFiniteCount"] = component.NonFiniteCount;
+  return json;
+}
+
+Json ArrayToJson(const ArrayIndex& array)
+{
+  Json json;
+  json["name"] = array.Name;
+  json["type"] = NameOf(array.Type);
+  for (const ComponentIndex& component : array.Components)
+  {
+    json["components"].push_back(ComponentToJson(component));
+  }
+  return json;
+}
+
+Json SegmentToJson(const SegmentIndex& segment)
+{
+  Json json;
+  json["file"] = segment.File;
+  json["firstStep"] = segment.FirstStep;
+  json["steps"] = segment.Steps;
+  json["bytes"] = segment.Bytes;
+  json["hash"] = ToHex({ segment.HashLow, segment.HashHigh });
+  return json;
+}
+
+Json StatisticsToJson(const EncodeStatistics& statistics)
+{
+  Json json;
+  json["bricks"] = statistics.Bricks;
+  json["macroVoxelBricks"] = statistics.MacroVoxelBricks;
+  json["unchangedBricks"] = statistics.UnchangedBricks;
+  json["mergedBricks"] = statistics.MergedBricks;
+  json["rawBricks"] = statistics.RawBricks;
+  json["payloadBytes"] = statistics.PayloadBytes;
+  json["tableBytes"] = statistics.TableBytes;
+  return json;
+}
+
+Json GridToJson(const Grid& grid)
+{
+  Json json;
+  json["extent"] = Json::array();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    json["extent"].push_back(grid.Extent.Lo[axis]);
+    json["extent"].push_back(grid.Extent.Hi[axis] - 1);
+  }
+  json["origin"] = VectorToJson(grid.Origin);
+  json["spacing"] = VectorToJson(grid.Spacing);
+  json["direction"] = Json::array();
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int column = 0; column < 3; ++column)
+    {
+      json["direction"].push_back(grid.Direction[column][row]);
+    }
+  }
+  return json;
+}
+
+} // namespace
+
+Json IndexToJson(const SeriesIndex& index)
+{
+  Json json = GridToJson(index.Domain);
+  json["brickCells"] = index.BrickCells;
+  json["levels"] = index.Levels;
+  json["keyframeInterval"] = index.KeyframeInterval;
+  json["errorBound"] = index.ErrorBound;
+  json["errorBoundMode"] =
+    index.Mode == ErrorBoundMode::RelativeToSeriesRange ? "relative" : "absolute";
+  json["activeScalars"] = index.ActiveScalars;
+  json["arrays"] = Json::array();
+  for (const ArrayIndex& array : index.Arrays)
+  {
+    json["arrays"].push_back(ArrayToJson(array));
+  }
+  json["times"] = index.Times;
+  json["segments"] = Json::array();
+  for (const SegmentIndex& segment : index.Segments)
+  {
+    json["segments"].push_back(SegmentToJson(segment));
+  }
+  json["payloadBytesIn"] = index.PayloadBytesIn;
+  json["statistics"] = StatisticsToJson(index.Statistics);
+  return json;
+}
+
+} // namespace banyan
