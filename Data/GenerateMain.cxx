@@ -1,6 +1,6 @@
 #include "FlowSimulation.h"
 #include "GenerateOptions.h"
-#include "HotBlob.h"
+#include "HotBlobs.h"
 #include "ImageSeriesWriter.h"
 
 #include "Base/Error.h"
@@ -63,10 +63,10 @@ void Generate(const banyan::GenerateOptions& options)
     options.Threads > 0 ? options.Threads : banyan::ThreadPool::DefaultWidth());
   banyan::ImageSeriesWriter writer(options.Output, "flow", options.Size, BoxEdge);
   banyan::FlowSimulation flow(options.Size, ParametersFor(options.Size), pool);
-  const banyan::HotBlob blob(options.Seed, static_cast<float>(2.0 * BoxEdge / options.Size));
+  const banyan::HotBlobs blobs(options.Seed, static_cast<float>(2.0 * BoxEdge / options.Size));
   const auto still = [](float, float, float) { return 0.0f; };
   flow.SetState(
-    { still, still, still }, [&](float x, float y, float z) { return blob.Temperature(x, y, z); });
+    { still, still, still }, [&](float x, float y, float z) { return blobs.Temperature(x, y, z); });
 
   const banyan::Timer timer;
   for (int step = 0; step < options.Steps; ++step)

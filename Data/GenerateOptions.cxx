@@ -103,16 +103,16 @@ GenerateOptions ParseGenerateOptions(const std::vector<std::string>& arguments)
 
 std::string GenerateHelp()
 {
-  return "banyan-generate: simulates a hot blob that rises and rolls up, and writes it as a time\n"
+  return "banyan-generate: simulates hot blobs that rise and roll up, and writes them as a time\n"
          "series of .vti files with a .vti.series file that ParaView opens.\n"
          "\n"
          "  --output DIR     folder for the series; made when it does not exist\n"
          "  --size N         samples per axis, even, 8 to 2048 (default 64)\n"
          "  --steps N        time steps to write, evenly spaced (default 24)\n"
-         "  --duration T     simulated time of the last step (default 5.4)\n"
+         "  --duration T     simulated time of the last step (default 6)\n"
          "  --arrays A,B     of temperature, velocity, vorticity (its magnitude);\n"
          "                   the first is the one to colour by (default temperature)\n"
-         "  --seed N         which blob; equal seeds give equal bytes (default 1)\n"
+         "  --seed N         which blobs; equal seeds give equal bytes (default 1)\n"
          "  --threads N      0 uses all processors (default 0)\n"
          "  --help           this text\n";
 }

@@ -16,7 +16,7 @@ struct GenerateOptions
   int Steps = 24;
   std::uint64_t Seed = 1;
   int Threads = 0;
-  double Duration = 5.4;
+  double Duration = 6.0;
   std::vector<std::string> Arrays = { "temperature" };
   bool Help = false;
 };

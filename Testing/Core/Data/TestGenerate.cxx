@@ -1,6 +1,6 @@
 // The parts of banyan-generate around the physics, and the program itself.
 #include "GenerateOptions.h"
-#include "HotBlob.h"
+#include "HotBlobs.h"
 #include "ImageSeriesWriter.h"
 
 #include "Base/Error.h"
@@ -108,22 +108,23 @@ TEST_F(Generate, WrongOptionsAreNamed)
   EXPECT_NE(ErrorOf({ "--output", "o", "--fast" }).find("--fast"), std::string::npos);
 }
 
-TEST_F(Generate, TheBlobIsHotInsideColdOutsideAndSeeded)
+TEST_F(Generate, BlobsAreHotInsideColdOutsideAndSeeded)
 {
-  const banyan::HotBlob blob(1, 0.1f), same(1, 0.1f), other(2, 0.1f);
-  EXPECT_NEAR(blob.Temperature(3.14f, 3.14f, 1.25f), 1.0f, 1e-3f);
-  EXPECT_NEAR(blob.Temperature(0.0f, 0.0f, 6.0f), 0.0f, 1e-3f);
-  bool differs = false;
+  const banyan::HotBlobs blobs(1, 0.1f), same(1, 0.1f), other(2, 0.1f);
+  EXPECT_NEAR(blobs.Temperature(0.0f, 0.0f, 6.0f), 0.0f, 1e-3f);
+  bool hot = false, differs = false;
   std::mt19937 random(3);
   for (int i = 0; i < 1000; ++i)
   {
     const float x = random() % 6283 / 1000.0f, y = random() % 6283 / 1000.0f;
-    const float t = blob.Temperature(x, y, 1.0f);
+    const float t = blobs.Temperature(x, y, 1.3f);
     EXPECT_GE(t, 0.0f);
     EXPECT_LE(t, 1.0f);
-    EXPECT_EQ(t, same.Temperature(x, y, 1.0f));
-    differs = differs || std::abs(t - other.Temperature(x, y, 1.0f)) > 0.1f;
+    EXPECT_EQ(t, same.Temperature(x, y, 1.3f));
+    hot = hot || t > 0.99f;
+    differs = differs || std::abs(t - other.Temperature(x, y, 1.3f)) > 0.1f;
   }
+  EXPECT_TRUE(hot);
   EXPECT_TRUE(differs);
 }
 

@@ -1,0 +1,189 @@
+#!/usr/bin/env bash
+# Encodes a time series of volumes, measures how exact the result is, and draws it as an animation.
+#
+#   demo.sh [--input FILES...] [--ranks N] [--output DIR] [--error-bound E] [--size N] [--help]
+#
+#   --input FILES...   a time series of image data that ParaView opens (.vti, .mhd, .vti.series, ...),
+#                      in order of time; without it a flow simulation makes one
+#   --ranks N          MPI processes that draw (default 2)
+#   --output DIR       where the results go (default demo-output)
+#   --error-bound E    largest error of a value, as a share of the range of the whole series
+#                      (default 1/512); 0 keeps every bit
+#   --size N           samples per axis of the simulation (default 80)
+#
+# Leaves in DIR: series.banyan (with its folder series.banyan.d), frame_*.png, animation.mp4 and
+# report.json. Installs and builds what is missing first; a second run does not build again.
+# BANYAN_SKIP_INSTALL=1 leaves the packages of the system alone.
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+here="$RepositoryRoot/Utilities"
+inputs=()
+ranks=2
+output="demo-output"
+bound="1/512"
+size=80
+
+parse_arguments()
+{
+  while [[ $# -gt 0 ]]; do
+    local option="$1"
+    shift
+    case "$option" in
+      --help)
+        sed -n '2,/^source/{/^source/d;s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+        exit 0
+        ;;
+      --input)
+        while [[ $# -gt 0 && "$1" != --* ]]; do
+          inputs+=("$1")
+          shift
+        done
+        [[ ${#inputs[@]} -gt 0 ]] || fail "--input needs at least one file."
+        ;;
+      --ranks | --output | --error-bound | --size)
+        [[ $# -gt 0 ]] || fail "$option needs a value."
+        case "$option" in
+          --ranks) ranks="$1" ;;
+          --output) output="$1" ;;
+          --error-bound) bound="$1" ;;
+          --size) size="$1" ;;
+        esac
+        shift
+        ;;
+      *) fail "there is no option '$option'; --help lists them." ;;
+    esac
+  done
+}
+
+# Refuses what cannot work before anything is installed, built or written.
+check_arguments()
+{
+  local file
+  [[ "$ranks" =~ ^[1-9][0-9]{0,3}$ ]] || fail "--ranks needs a number from 1 on, not '$ranks'."
+  [[ "$size" =~ ^[0-9]+$ ]] || fail "--size needs a number, not '$size'."
+  [[ -n "$output" ]] || fail "--output needs the name of a folder."
+  bound="$(awk -v text="$bound" 'BEGIN {
+    number = "^([0-9]+[.]?[0-9]*|[.][0-9]+)([eE][-+]?[0-9]+)?$"
+    parts = split(text, part, "/")
+    if (parts < 1 || parts > 2 || part[1] !~ number) exit 1
+    value = part[1] + 0
+    if (parts == 2) {
+      if (part[2] !~ number || part[2] + 0 == 0) exit 1
+      value /= part[2]
+    }
+    if (value >= 1) exit 1
+    printf "%.17g\n", value
+  }')" || fail "--error-bound needs a number from 0 to below 1, such as 0.001 or 1/512."
+  for file in "${inputs[@]+"${inputs[@]}"}"; do
+    [[ -r "$file" && -f "$file" ]] || fail "the input file '$file' does not exist or cannot be read."
+  done
+}
+
+# Runs a stage's command and keeps how long it took.
+declare -A seconds
+timed()
+{
+  local name="$1" start
+  shift
+  start="$(date +%s.%N)"
+  "$@"
+  seconds[$name]="$(awk -v a="$start" -v b="$(date +%s.%N)" 'BEGIN { printf "%.3f", b - a }')"
+}
+
+install_and_build()
+{
+  [[ "${BANYAN_SKIP_INSTALL:-0}" == 1 ]] || "$here/install-dependencies.sh"
+  "$here/build.sh"
+  export BANYAN_PLUGIN="$BuildFolder/lib/Banyan/Banyan.so"
+  [[ -f "$BANYAN_PLUGIN" ]] || fail "the build left no plugin at $BANYAN_PLUGIN."
+}
+
+# The simulation's result is kept in the build folder and made again when the generator changed.
+make_input()
+{
+  if [[ ${#inputs[@]} -gt 0 ]]; then
+    say "      ${#inputs[@]} files are given"
+    return
+  fi
+  local folder="$BuildFolder/demo-input-$size" generator="$BuildFolder/bin/banyan-generate"
+  inputs=("$folder/flow.vti.series")
+  if [[ "${inputs[0]}" -nt "$generator" ]]; then
+    say "      the series in $folder is used again"
+    return
+  fi
+  rm -rf "$folder"
+  "$generator" --output "$folder" --size "$size" --steps 24 --seed 2 2> >(sed 's/^/      /' >&2) ||
+    fail "the simulation did not succeed."
+}
+
+encode()
+{
+  pvpython "$here/demo/demo_encode.py" "$work/series.banyan" "$bound" "$work/encode.json" \
+    "${inputs[@]}" || fail "the series could not be encoded."
+}
+
+measure()
+{
+  pvpython "$here/demo/demo_measure.py" "$work/series.banyan" "$bound" "$work/measure.json" \
+    "${inputs[@]}" || fail "the encoded series could not be compared with its source."
+}
+
+draw()
+{
+  "$here/with-display.sh" mpiexec -n "$ranks" pvbatch "$here/demo/demo_draw.py" \
+    "$work/series.banyan" "$work/measure.json" "$work" "$work/draw.json" ||
+    fail "the frames could not be drawn."
+}
+
+animate()
+{
+  local frames rate
+  frames="$(find "$work" -name 'frame_*.png' | wc -l)"
+  # About three seconds, as smooth as the number of frames allows.
+  rate=$((frames / 3))
+  rate=$((rate < 2 ? 2 : rate > 25 ? 25 : rate))
+  # This pixel format and this order of the file are what browsers play while they load it.
+  ffmpeg -nostdin -loglevel error -y -framerate "$rate" -i "$work/frame_%04d.png" \
+    -c:v libx264 -crf 18 -pix_fmt yuv420p -movflags +faststart "$work/animation.mp4" >&2 ||
+    fail "ffmpeg could not make the animation."
+}
+
+# Puts the results where they belong, all of them or none.
+deliver()
+{
+  mkdir -p "$output"
+  rm -rf "$output/series.banyan" "$output/series.banyan.d" "$output"/frame_*.png \
+    "$output/animation.mp4" "$output/report.json"
+  mv "$work/series.banyan.d" "$work/series.banyan" "$work"/frame_*.png "$work/animation.mp4" \
+    "$work/report.json" "$output/"
+}
+
+parse_arguments "$@"
+check_arguments
+prepare_mpi
+# On the file system of the results, so that they can be moved there at once when all is done.
+mkdir -p "$(dirname "$output")" || fail "the folder of '$output' cannot be made."
+work="$(mktemp -d "$(dirname "$output")/.banyan-demo.XXXXXX")" ||
+  fail "nothing can be written next to '$output'."
+trap 'rm -rf "$work"' EXIT
+
+stage 1 6 "Installing what is missing and building"
+timed build install_and_build
+stage 2 6 "Making a time series"
+timed generate make_input
+stage 3 6 "Encoding it"
+timed encode encode
+stage 4 6 "Comparing every value with its source"
+timed measure measure
+stage 5 6 "Drawing it on $ranks ranks"
+timed draw draw
+stage 6 6 "Making the animation and the report"
+timed animate animate
+times=()
+for name in build generate encode measure draw animate; do
+  times+=("$name=${seconds[$name]}")
+done
+python3 "$here/demo/demo_report.py" "$work" "$ranks" "${times[@]}" ||
+  fail "the report could not be written."
+deliver
+say "Done: $output/animation.mp4 and $output/report.json"

@@ -1,0 +1,43 @@
+"""pvpython demo_encode.py SERIES ERROR_BOUND REPORT FILES...
+
+Encodes the files, a time series of image data, as SERIES (a .banyan file) with an error bound
+relative to the range of the whole series, and writes what it took to REPORT (JSON).
+"""
+
+import os
+import sys
+import time
+
+from paraview import simple
+
+import demo_common as demo
+
+
+def bytes_of(series):
+    """The index and all that lies in its folder of segments."""
+    folder = series + ".d"
+    return os.path.getsize(series) + sum(
+        os.path.getsize(os.path.join(folder, name)) for name in os.listdir(folder))
+
+
+def main():
+    series, bound, report, files = sys.argv[1], float(sys.argv[2]), sys.argv[3], sys.argv[4:]
+    demo.load_plugin()
+    reader = demo.open_series(files)
+    times = demo.time_values(reader)
+    information = reader.GetDataInformation()
+    extent = information.GetExtent()
+    dimensions = [extent[2 * axis + 1] - extent[2 * axis] + 1 for axis in range(3)]
+    demo.progress(f"{len(times)} steps of {' x '.join(map(str, dimensions))} voxels: "
+                  f"{', '.join(demo.array_names(reader))}")
+    start = time.perf_counter()
+    simple.SaveData(series, proxy=reader, WriteTimeSteps=1, ErrorBound=bound)
+    seconds = time.perf_counter() - start
+    if not os.path.isfile(series):
+        raise demo.DemoError("the series was not written; the messages above say why.")
+    demo.write_json(report, {
+        "files": len(files), "steps": len(times), "dimensions": dimensions,
+        "bytes_encoded": bytes_of(series), "seconds": seconds})
+
+
+demo.run(main)
