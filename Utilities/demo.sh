@@ -13,7 +13,7 @@
 #
 # Leaves in DIR: series.banyan (with its folder series.banyan.d), frame_*.png, animation.mp4 and
 # report.json. Installs and builds what is missing first; a second run does not build again.
-# BANYAN_SKIP_INSTALL=1 leaves the packages of the system alone.
+# BANYAN_SKIP_INSTALL=1 leaves the packages of the system alone, BANYAN_SKIP_BUILD=1 the build.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 here="$RepositoryRoot/Utilities"
@@ -93,7 +93,7 @@ timed()
 install_and_build()
 {
   [[ "${BANYAN_SKIP_INSTALL:-0}" == 1 ]] || "$here/install-dependencies.sh"
-  "$here/build.sh"
+  [[ "${BANYAN_SKIP_BUILD:-0}" == 1 ]] || "$here/build.sh"
   export BANYAN_PLUGIN="$BuildFolder/lib/Banyan/Banyan.so"
   [[ -f "$BANYAN_PLUGIN" ]] || fail "the build left no plugin at $BANYAN_PLUGIN."
 }

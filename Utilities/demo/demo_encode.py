@@ -8,9 +8,11 @@ import os
 import sys
 import time
 
+from paraview import servermanager
 from paraview import simple
 
 import demo_common as demo
+import demo_inputs
 
 
 def bytes_of(series):
@@ -20,9 +22,24 @@ def bytes_of(series):
         os.path.getsize(os.path.join(folder, name)) for name in os.listdir(folder))
 
 
+def announce_progress():
+    """Prints how far the writer is, every tenth of the way."""
+    handler = servermanager.ActiveConnection.Session.GetProgressHandler()
+    printed = [0]
+
+    def print_tenths(caller, _event):
+        percent = caller.GetLastProgress()
+        if "SeriesWriter" in (caller.GetLastProgressText() or "") and percent >= printed[0] + 10:
+            printed[0] = percent - percent % 10
+            demo.progress(f"{printed[0]} % encoded")
+
+    handler.AddObserver("ProgressEvent", print_tenths)
+
+
 def main():
     series, bound, report, files = sys.argv[1], float(sys.argv[2]), sys.argv[3], sys.argv[4:]
     demo.load_plugin()
+    demo_inputs.check_files(files)
     reader = demo.open_series(files)
     times = demo.time_values(reader)
     information = reader.GetDataInformation()
@@ -30,6 +47,7 @@ def main():
     dimensions = [extent[2 * axis + 1] - extent[2 * axis] + 1 for axis in range(3)]
     demo.progress(f"{len(times)} steps of {' x '.join(map(str, dimensions))} voxels: "
                   f"{', '.join(demo.array_names(reader))}")
+    announce_progress()
     start = time.perf_counter()
     simple.SaveData(series, proxy=reader, WriteTimeSteps=1, ErrorBound=bound)
     seconds = time.perf_counter() - start

@@ -66,8 +66,9 @@ def dress(reader, display, view, look):
     bar = simple.GetScalarBar(colours, view)
     bar.Title, bar.ComponentTitle = name, ""
     bar.ScalarBarLength = 0.4
+    bar.LabelFormat = bar.RangeLabelFormat = "%.3g"
     display.SetScalarBarVisibility(view, True)
-    clock = simple.AnnotateTimeFilter(Input=reader)
+    clock = simple.AnnotateTimeFilter(Input=reader, Format="Time {time:.3f}")
     text = simple.Show(clock, view)
     text.WindowLocation = "Lower Left Corner"
     text.FontSize = 20

@@ -17,13 +17,18 @@ HISTOGRAM_BINS = 256
 HISTOGRAM_STEPS = 5
 
 
+HIDDEN_POINT = 2  # of vtkDataSetAttributes; such points have no value
+
+
 def values_of(image, name):
-    """The values of a point array as [point][component]."""
+    """The values of a point array as [point][component], without those of hidden points."""
     array = image.GetPointData().GetArray(name)
     if array is None:
         raise demo.DemoError(f'the array "{name}" is missing in a time step.')
     values = vtk_to_numpy(array)
-    return values.reshape(len(values), -1)
+    values = values.reshape(len(values), -1)
+    ghosts = image.GetPointGhostArray()
+    return values if ghosts is None else values[(vtk_to_numpy(ghosts) & HIDDEN_POINT) == 0]
 
 
 def exact(values):
@@ -98,14 +103,14 @@ def histogram(reader, times, name):
     return {"range": [float(edges[0]), float(edges[-1])], "counts": counts.tolist()}
 
 
-def compare(source, decoded, times):
-    """Errors by array name and component, and the bytes that the source holds."""
+def compare(source, decoded, times, names):
+    """Errors by array name and component, types by name, and the bytes that the source holds."""
     errors, types, size = {}, {}, 0
     for number, time in enumerate(times):
         original, copy = demo.image_at(source, time), demo.image_at(decoded, time)
         if original.GetExtent() != copy.GetExtent():
             raise demo.DemoError(f"the extent of step {number} changed by encoding.")
-        for name in demo.array_names(source):
+        for name in names:
             before, after = values_of(original, name), values_of(copy, name)
             if before.dtype != after.dtype or before.shape != after.shape:
                 raise demo.DemoError(f'type or size of "{name}" changed by encoding.')
@@ -126,14 +131,14 @@ def main():
     times, decoded_times = demo.time_values(source), demo.time_values(decoded)
     if times != decoded_times:
         raise demo.DemoError("the time values changed by encoding.")
-    errors, types, size = compare(source, decoded, times)
+    names = demo.array_names(decoded)
+    errors, types, size = compare(source, decoded, times, names)
     arrays = [{"name": name, "type": types[name],
-               "components": [part.report(bound) for part in parts]}
-              for name, parts in errors.items()]
-    first = arrays[0]["name"]
+               "components": [part.report(bound) for part in errors[name]]} for name in names]
+    scalars = [name for name in names if len(errors[name]) == 1]
+    drawn = (scalars or names)[0]
     demo.write_json(report, {"arrays": arrays, "bytes_raw": size, "times": times,
-                             "drawn_array": first,
-                             "histogram": histogram(source, times, first)})
+                             "drawn_array": drawn, "histogram": histogram(source, times, drawn)})
     for array in arrays:
         for component in array["components"]:
             if not component["within_bound"]:
