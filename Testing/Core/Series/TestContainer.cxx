@@ -240,6 +240,30 @@ TEST(Container, AFullDiskIsAnErrorThatNamesTheFileAndLeavesNothing)
   }
 }
 
+TEST(Container, AFullDiskAtTheIndexLeavesNothing)
+{
+  // Macro voxels only: the segment is smaller than the index.
+  const auto steps = Sample<float>(Small, 1, [](int, int, int, int) { return 2; });
+  const TemporaryFolder folder;
+  const int status = InChild(
+    [&]
+    {
+      signal(SIGXFSZ, SIG_IGN);
+      const rlimit small = { 800, 800 };
+      setrlimit(RLIMIT_FSIZE, &small);
+      try
+      {
+        Encode(folder / "s.banyan", Small, steps, {}, 1);
+      }
+      catch (const Error& failure)
+      {
+        _exit(failure.Place().File == folder / "s.banyan" ? 42 : 43);
+      }
+    });
+  EXPECT_EQ(WEXITSTATUS(status), 42);
+  EXPECT_TRUE(folder.Empty());
+}
+
 TEST(Container, AFullDiskSparesTheOldSeries)
 {
   const TemporaryFolder folder;

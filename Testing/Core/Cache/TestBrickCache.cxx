@@ -1,0 +1,261 @@
+#include "Series/SeriesTesting.h"
+
+#include "Base/Error.h"
+
+#include <atomic>
+#include <fstream>
+#include <thread>
+
+#include <unistd.h>
+
+namespace banyan::testing
+{
+namespace
+{
+
+/// A series of 4 x 2 x 2 bricks of 16; the bricks at x = 0 change from step to step, the upper half
+/// of x = 3 is one macro voxel.
+class BrickCacheTest : public ::testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    this->Values = Sample<float>(this->Domain, 4,
+      [](int x, int y, int z, int s)
+      { return x >= 48 && z >= 16 ? 1.0 : Wavy<float>(x, y, z, x < 16 ? s : 0); });
+    EncodeOptions options;
+    options.BrickCells = 16;
+    Encode(this->Folder / "s.banyan", this->Domain, this->Values, options);
+    this->File = SeriesFile::Open(this->Folder / "s.banyan");
+  }
+
+  std::vector<float> Brick(int step, std::int64_t brick) const
+  {
+    std::vector<float> values(
+      static_cast<std::size_t>(this->File->Layout(0).SamplesOf(brick).Count()));
+    this->File->DecodeBrick({ step, 0, 0, 0 }, brick, values.data());
+    return values;
+  }
+
+  bool IsRight(const BrickValues& values, int step, std::int64_t brick) const
+  {
+    const std::vector<float> expected = this->Brick(step, brick);
+    return values.Bytes.size() == expected.size() * 4 &&
+           values.Samples == this->File->Layout(0).SamplesOf(brick) &&
+           std::memcmp(values.Bytes.data(), expected.data(), values.Bytes.size()) == 0;
+  }
+
+  const TemporaryFolder Folder;
+  const Grid Domain = GridOf(65, 33, 33);
+  Steps<float> Values;
+  std::shared_ptr<SeriesFile> File;
+};
+
+constexpr std::uint64_t Plenty = std::uint64_t{ 1 } << 30;
+
+TEST_F(BrickCacheTest, DecodesOnceAndServesUnchangedBricksOfLaterSteps)
+{
+  BrickCache cache(Plenty);
+  for (int step = 0; step < 4; ++step)
+  {
+    for (const std::int64_t brick : { 0, 1 })
+    {
+      EXPECT_TRUE(this->IsRight(*cache.Get(*this->File, { step, 0, 0, 0 }, brick), step, brick));
+    }
+  }
+  EXPECT_EQ(cache.GetStatistics().Misses, 4u + 1u);
+  EXPECT_EQ(cache.GetStatistics().Hits, 3u);
+  EXPECT_EQ(cache.Get(*this->File, { 0, 0, 0, 0 }, 1), cache.Get(*this->File, { 3, 0, 0, 0 }, 1));
+}
+
+TEST_F(BrickCacheTest, MacroVoxelsTakeNoRoomAndNoDecoding)
+{
+  BrickCache cache(Plenty);
+  const BrickLayout layout = this->File->Layout(0);
+  const std::int64_t uniform = layout.IndexOf({ 3, 1, 1 });
+  ASSERT_TRUE((*this->File->Nodes({}))[static_cast<std::size_t>(uniform)].Uniform);
+  const auto values = cache.Get(*this->File, {}, uniform);
+  EXPECT_EQ(values->As<float>()[100],
+    (*this->File->Nodes({}))[static_cast<std::size_t>(uniform)].Range.Low);
+  EXPECT_EQ(cache.GetStatistics().Bytes, 0u);
+  EXPECT_EQ(this->File->BricksDecoded(), 0u);
+}
+
+TEST_F(BrickCacheTest, StaysWithinItsBudgetAndEvictsTheLeastRecentlyUsed)
+{
+  BrickCache cache(Plenty);
+  (void)cache.Get(*this->File, {}, 1);
+  const std::uint64_t one = cache.GetStatistics().Bytes;
+  EXPECT_GE(one, 17u * 17 * 17 * 4);
+  cache.Clear();
+  EXPECT_EQ(cache.GetStatistics().Bytes, 0u);
+
+  cache.SetBudget(3 * one);
+  EXPECT_EQ(cache.Budget(), 3 * one);
+  for (const std::int64_t brick : { 0, 1, 2 })
+  {
+    (void)cache.Get(*this->File, {}, brick);
+  }
+  (void)cache.Get(*this->File, {}, 0); // makes 1 the least recently used
+  (void)cache.Get(*this->File, {}, 5);
+  const auto before = cache.GetStatistics();
+  EXPECT_EQ(before.Evictions, 1u);
+  EXPECT_EQ(before.Bytes, 3 * one);
+  (void)cache.Get(*this->File, {}, 0);
+  (void)cache.Get(*this->File, {}, 2);
+  (void)cache.Get(*this->File, {}, 5);
+  EXPECT_EQ(cache.GetStatistics().Misses, before.Misses);
+  (void)cache.Get(*this->File, {}, 1);
+  EXPECT_EQ(cache.GetStatistics().Misses, before.Misses + 1);
+  EXPECT_LE(cache.GetStatistics().PeakBytes, 3 * one);
+
+  cache.SetBudget(one);
+  EXPECT_EQ(cache.GetStatistics().Bytes, one);
+  const auto held = cache.Get(*this->File, {}, 1); // the one that stayed
+  cache.SetBudget(0);
+  EXPECT_EQ(cache.GetStatistics().Bytes, 0u);
+  EXPECT_TRUE(this->IsRight(*held, 0, 1)) << "what somebody holds outlives eviction";
+  EXPECT_TRUE(this->IsRight(*cache.Get(*this->File, {}, 2), 0, 2));
+  EXPECT_EQ(cache.GetStatistics().Bytes, 0u);
+}
+
+TEST_F(BrickCacheTest, ManyThreadsDecodeEachBrickOnce)
+{
+  BrickCache cache(Plenty);
+  std::atomic<int> wrong{ 0 };
+  std::vector<std::vector<float>> expected;
+  for (std::int64_t b = 0; b < this->File->Layout(0).BrickCount(); ++b)
+  {
+    expected.push_back(this->Brick(2, b));
+  }
+  const std::uint64_t decodedBefore = this->File->BricksDecoded();
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 16; ++t)
+  {
+    threads.emplace_back(
+      [&, t]
+      {
+        for (std::size_t i = 0; i < expected.size(); ++i)
+        {
+          const std::size_t b = (i + static_cast<std::size_t>(t) / 4) % expected.size();
+          const auto values = cache.Get(*this->File, { 2, 0, 0, 0 }, static_cast<std::int64_t>(b));
+          wrong += std::memcmp(values->Bytes.data(), expected[b].data(), values->Bytes.size()) != 0;
+        }
+      });
+  }
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_EQ(this->File->BricksDecoded() - decodedBefore, cache.GetStatistics().Misses);
+  EXPECT_LE(cache.GetStatistics().Misses, expected.size());
+}
+
+TEST_F(BrickCacheTest, SixteenThreadsReadOneFileThroughASmallCache)
+{
+  BrickCache cache(100000); // so that eviction happens all the time
+  std::atomic<int> wrong{ 0 };
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 16; ++t)
+  {
+    threads.emplace_back(
+      [&, t]
+      {
+        std::mt19937 random(static_cast<unsigned>(t));
+        for (int round = 0; round < 12; ++round)
+        {
+          const int step = static_cast<int>(random() % 4);
+          const int x = static_cast<int>(random() % 60);
+          const Box box = { { x, 0, 0 }, { x + 5, 33, 33 } };
+          std::vector<float> values(static_cast<std::size_t>(box.Count()));
+          ReadRegion(cache, *this->File, { step, 0, 0, 0 }, box, values.data(), 1, 0);
+          const double bound = this->File->Index().Arrays[0].Components[0].ErrorBoundAbsolute;
+          for (std::size_t i = 0; i < values.size(); ++i)
+          {
+            const float original = this->Values[static_cast<std::size_t>(step)]
+                                               [i / 5 * 65 + i % 5 + static_cast<std::size_t>(x)];
+            wrong +=
+              std::abs(static_cast<double>(values[i]) - static_cast<double>(original)) > bound;
+          }
+        }
+      });
+  }
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_LE(cache.GetStatistics().PeakBytes, 100000u);
+}
+
+TEST_F(BrickCacheTest, DamageIsAnErrorForEveryoneAndIsNotKept)
+{
+  const std::string segment = this->Folder / ("s.banyan.d/" + this->File->Index().Segments[0].File);
+  std::fstream stream(segment, std::ios::binary | std::ios::in | std::ios::out);
+  stream.seekp(64);
+  stream.put('\x7f'); // in the first payload, which is brick 0 of step 0
+  stream.close();
+  BrickCache cache(Plenty);
+  std::atomic<int> errors{ 0 };
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 8; ++t)
+  {
+    threads.emplace_back(
+      [&]
+      {
+        try
+        {
+          (void)cache.Get(*this->File, {}, 0);
+        }
+        catch (const Error& failure)
+        {
+          errors += std::string(failure.what()).find("checksum") != std::string::npos;
+        }
+      });
+  }
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  EXPECT_EQ(errors, 8);
+  EXPECT_EQ(cache.GetStatistics().Bytes, 0u);
+  EXPECT_THROW(this->File->VerifyBricks({}, { 0 }), Error);
+  EXPECT_NO_THROW(this->File->VerifyBricks({}, { 1, 2, 3 }));
+  EXPECT_TRUE(this->IsRight(*cache.Get(*this->File, {}, 1), 0, 1));
+}
+
+TEST_F(BrickCacheTest, QuestionsBeyondTheSeriesAreErrors)
+{
+  BrickCache cache(Plenty);
+  EXPECT_THROW((void)cache.Get(*this->File, {}, -1), Error);
+  EXPECT_THROW((void)cache.Get(*this->File, {}, 99), Error);
+  EXPECT_THROW((void)cache.Get(*this->File, { 4, 0, 0, 0 }, 0), Error);
+}
+
+TEST(ProcessBrickCache, IsOne)
+{
+  EXPECT_EQ(&BrickCache::Process(), &BrickCache::Process());
+  EXPECT_GT(BrickCache::Process().Budget(), 0u);
+}
+
+int BudgetWith(const char* megabytes)
+{
+  setenv("BANYAN_CACHE_MB", megabytes, 1);
+  return static_cast<int>(BrickCache::Process().Budget() >> 20);
+}
+
+TEST(ProcessBrickCacheDeathTest, TakesItsBudgetFromTheEnvironment)
+{
+  // Each expectation runs in a new process, where the cache is not made yet.
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
+  const auto exits = [](int code) { return ::testing::ExitedWithCode(code); };
+  EXPECT_EXIT(_exit(BudgetWith("7")), exits(7), "");
+  EXPECT_EXIT(_exit(BudgetWith("0")), exits(0), "");
+  EXPECT_EXIT(_exit(BudgetWith("many") == 512 ? 5 : 6), exits(5), "");
+  EXPECT_EXIT(_exit(BudgetWith("-1") == 512 ? 5 : 6), exits(5), "");
+  EXPECT_EXIT(_exit(BudgetWith("") == 512 ? 5 : 6), exits(5), "");
+}
+
+} // namespace
+} // namespace banyan::testing

@@ -1,0 +1,131 @@
+#include "Series/SeriesTesting.h"
+
+#include "Base/Error.h"
+
+namespace banyan::testing
+{
+namespace
+{
+
+template <class T>
+void CheckRegions(const glm::ivec3& size, int cells)
+{
+  const TemporaryFolder folder;
+  const Grid grid = GridOf(size.x, size.y, size.z);
+  auto steps = Sample<T>(grid, 1, Wavy<T>);
+  EncodeOptions options;
+  options.BrickCells = cells;
+  Encode(folder / "s.banyan", grid, steps, options);
+  const auto file = SeriesFile::Open(folder / "s.banyan");
+  std::mt19937 random(size.x);
+  for (int level = 0; level < file->Index().Levels; ++level)
+  {
+    const std::vector<T> whole = ReadAll<T>(*file, { 0, 0, 0, level });
+    const glm::ivec3 n = file->Layout(level).Samples();
+    BrickCache cache(200000);
+    for (int round = 0; round < 40; ++round)
+    {
+      Box box;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const auto length = static_cast<unsigned>(n[axis]);
+        const int a = static_cast<int>(random() % length);
+        const int b = static_cast<int>(random() % length);
+        box.Lo[axis] = std::min(a, b);
+        box.Hi[axis] = std::max(a, b) + 1;
+      }
+      const int stride = 1 + static_cast<int>(random() % 3);
+      const int component = static_cast<int>(random() % static_cast<unsigned>(stride));
+      const T untouched = static_cast<T>(123);
+      std::vector<T> values(
+        static_cast<std::size_t>(box.Count()) * static_cast<std::size_t>(stride), untouched);
+      ReadRegion(cache, *file, { 0, 0, 0, level }, box, values.data(), stride, component);
+      std::size_t i = 0;
+      for (int z = box.Lo.z; z < box.Hi.z; ++z)
+      {
+        for (int y = box.Lo.y; y < box.Hi.y; ++y)
+        {
+          for (int x = box.Lo.x; x < box.Hi.x; ++x)
+          {
+            for (int c = 0; c < stride; ++c, ++i)
+            {
+              const T expected = c == component
+                                   ? whole[static_cast<std::size_t>((z * n.y + y) * n.x + x)]
+                                   : untouched;
+              ASSERT_TRUE(SameBits(values[i], expected)) << x << " " << y << " " << z << " " << c;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(ReadRegion, AnyBoxGivesWhatTheWholeGives)
+{
+  CheckRegions<float>({ 50, 33, 17 }, 8);
+  CheckRegions<float>({ 50, 33, 17 }, 16);
+  CheckRegions<std::int8_t>({ 1, 40, 23 }, 8);
+  CheckRegions<std::uint16_t>({ 29, 1, 1 }, 8);
+  CheckRegions<double>({ 16, 17, 18 }, 16);
+}
+
+TEST(ReadRegion, DecodesOnlyWhatItTouches)
+{
+  const TemporaryFolder folder;
+  const Grid grid = GridOf(65, 65, 33);
+  EncodeOptions options;
+  options.BrickCells = 16;
+  Encode(folder / "s.banyan", grid, Sample<float>(grid, 1, Wavy<float>), options);
+  const auto file = SeriesFile::Open(folder / "s.banyan");
+  BrickCache cache(std::uint64_t{ 1 } << 28);
+  std::vector<float> values(static_cast<std::size_t>(grid.Extent.Count()));
+  EXPECT_EQ(file->BytesRead(), 0u);
+  ReadRegion(cache, *file, {}, { { 3, 3, 3 }, { 17, 17, 17 } }, values.data(), 1, 0);
+  EXPECT_EQ(file->BricksDecoded(), 1u);
+  EXPECT_GT(file->BytesRead(), 0u);
+  ReadRegion(cache, *file, {}, { { 15, 3, 3 }, { 18, 4, 4 } }, values.data(), 1, 0);
+  EXPECT_EQ(file->BricksDecoded(), 2u);
+  ReadRegion(cache, *file, {}, { { 0, 0, 0 }, { 65, 65, 33 } }, values.data(), 1, 0);
+  EXPECT_EQ(file->BricksDecoded(), 32u);
+  ReadRegion(cache, *file, {}, { { 5, 5, 5 }, { 5, 9, 9 } }, values.data(), 1, 0);
+  EXPECT_EQ(cache.GetStatistics().Misses, 32u);
+}
+
+TEST(ReadRegion, MacroVoxelsAreFilledWithoutDecoding)
+{
+  const TemporaryFolder folder;
+  const Grid grid = GridOf(40, 40, 40);
+  Encode(folder / "s.banyan", grid,
+    Sample<std::int64_t>(grid, 1, [](int, int, int, int) { return -7; }), {});
+  const auto file = SeriesFile::Open(folder / "s.banyan");
+  BrickCache cache(std::uint64_t{ 1 } << 28);
+  std::vector<std::int64_t> values(40 * 40 * 40, 0);
+  ReadRegion(cache, *file, {}, grid.Extent, values.data(), 1, 0);
+  EXPECT_EQ(std::count(values.begin(), values.end(), -7), 64000);
+  EXPECT_EQ(file->BricksDecoded(), 0u);
+  EXPECT_EQ(cache.GetStatistics().Misses, 0u);
+}
+
+TEST(ReadRegion, RejectsWhatLiesOutside)
+{
+  const TemporaryFolder folder;
+  const Grid grid = GridOf(20, 20, 20);
+  Encode(folder / "s.banyan", grid, Sample<float>(grid, 1, Wavy<float>), {});
+  const auto file = SeriesFile::Open(folder / "s.banyan");
+  BrickCache cache(std::uint64_t{ 1 } << 20);
+  std::vector<float> values(8000);
+  const auto read = [&](const Box& box, int stride, int component, int level = 0) {
+    ReadRegion(cache, *file, { 0, 0, 0, level }, box, values.data(), stride, component);
+  };
+  EXPECT_THROW(read({ { 0, 0, 0 }, { 21, 1, 1 } }, 1, 0), Error);
+  EXPECT_THROW(read({ { -1, 0, 0 }, { 2, 1, 1 } }, 1, 0), Error);
+  EXPECT_THROW(read({ { 0, 0, 0 }, { 2, 1, 1 } }, 1, 1), Error);
+  EXPECT_THROW(read({ { 0, 0, 0 }, { 2, 1, 1 } }, 1, -1), Error);
+  EXPECT_THROW(read({ { 0, 0, 0 }, { 12, 1, 1 } }, 1, 0, 1), Error);
+  EXPECT_THROW(read({ { 0, 0, 0 }, { 1, 1, 1 } }, 1, 0, 5), Error);
+  EXPECT_NO_THROW(read({ { 0, 0, 0 }, { 20, 20, 20 } }, 1, 0));
+}
+
+} // namespace
+} // namespace banyan::testing
