@@ -52,7 +52,8 @@ struct PixelBounds
     return std::isfinite(pixel.x) && std::isfinite(pixel.y);
   }
 
-  /// Pixels whose centres are inside, with a little room for rounding.
+  /// Pixels whose centres are inside, with a little room for rounding; none that the box does not
+  /// reach at all, because compositors around us may cut pictures off there.
   PixelRect Pixels(const glm::ivec2& size) const
   {
     constexpr double slack = 0.01;
@@ -61,9 +62,9 @@ struct PixelBounds
     {
       const double limit = size[axis];
       rect.Lo[axis] =
-        static_cast<int>(std::clamp(std::floor(this->Lo[axis] - 0.5 - slack), 0.0, limit));
+        static_cast<int>(std::clamp(std::ceil(this->Lo[axis] - 0.5 - slack), 0.0, limit));
       rect.Hi[axis] =
-        static_cast<int>(std::clamp(std::ceil(this->Hi[axis] - 0.5 + slack) + 1.0, 0.0, limit));
+        static_cast<int>(std::clamp(std::floor(this->Hi[axis] - 0.5 + slack) + 1.0, 0.0, limit));
     }
     return rect.Empty() ? PixelRect{} : rect;
   }
