@@ -1,6 +1,7 @@
 #include "SeriesWriting.h"
 
 #include "PieceValues.h"
+#include "UpstreamErrors.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
@@ -186,10 +187,12 @@ void SeriesWriting::CheckOrder() const
   {
     throw Error("The writer of " + this->Order.FileName + " has no input.");
   }
+  const UpstreamErrors errors(this->Order.Producer);
   auto* pipeline = Pipeline::SafeDownCast(this->Order.Producer->GetExecutive());
-  if (!pipeline || !pipeline->UpdateInformation())
+  if (!pipeline || !pipeline->UpdateInformation() || !errors.First().empty())
   {
-    throw Error("The input does not say what it holds: see the messages before this one.");
+    throw Error("The input does not say what it holds" +
+                (errors.First().empty() ? std::string(".") : ": " + errors.First()));
   }
 }
 
@@ -264,9 +267,11 @@ StepReport SeriesWriting::PullMine(int step, bool withRanges) const
   {
     request->Set(Pipeline::UPDATE_TIME_STEP(), this->Times[step]);
   }
-  if (!producer->Update(this->Order.Port, requests))
+  const UpstreamErrors errors(producer);
+  if (!producer->Update(this->Order.Port, requests) || !errors.First().empty())
   {
-    throw Error("The input cannot be read: see the messages before this one.");
+    throw Error("The input cannot be read" +
+                (errors.First().empty() ? std::string(".") : ": " + errors.First()));
   }
   vtkDataObject* data = producer->GetOutputDataObject(this->Order.Port);
   StepReport report = ReportOf(data, *this->Order.Selection, withRanges);

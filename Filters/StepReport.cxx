@@ -10,6 +10,7 @@
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
 #include "vtkPointData.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 
@@ -150,7 +151,13 @@ std::vector<vtkDataArray*> Choose(
 
 void CheckBlanking(vtkImageData* image, StepReport& report)
 {
-  if (image->HasAnyBlankCells())
+  // Not HasAnyBlankCells(), which is also true when points are hidden.
+  vtkUnsignedCharArray* flags = image->GetCellGhostArray();
+  const unsigned char* first = flags ? flags->GetPointer(0) : nullptr;
+  const bool hiddenCells =
+    flags && std::any_of(first, first + flags->GetNumberOfTuples(),
+               [](unsigned char flag) { return (flag & vtkDataSetAttributes::HIDDENCELL) != 0; });
+  if (hiddenCells)
   {
     report.Problem = "The image has hidden (blanked) cells, which a series cannot hold: hide the "
                      "points instead, or apply 'Cell Data to Point Data'.";

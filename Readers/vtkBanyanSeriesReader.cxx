@@ -321,10 +321,12 @@ int vtkBanyanSeriesReader::RequestData(
     this->Fail(vtkErrorCode::CannotOpenFileError, this->Place() + " is not open.");
     return 0;
   }
-  // No filter is at work now: the time to let go what earlier steps decoded, and what others hold.
-  vtkBanyanDeferred::ReleaseDownTo(banyan::BrickCache::Process().Budget());
   vtkInformation* outInfo = outputs->GetInformationObject(0);
   vtkImageData* output = vtkImageData::GetData(outInfo);
+  // The pipeline keeps the scalars of the step before, for those who write into the same memory.
+  output->Initialize();
+  // No filter is at work now: the time to let go what was decoded for others.
+  vtkBanyanDeferred::ReleaseDownTo(banyan::BrickCache::Process().Budget());
   try
   {
     this->FillOutput(outInfo);

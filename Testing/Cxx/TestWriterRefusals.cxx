@@ -1,0 +1,391 @@
+// What cannot be written is refused with a sentence that says why and where, and leaves nothing.
+#include "VtkIoTesting.h"
+
+#include "vtkBanyanSeriesReader.h"
+#include "vtkBanyanSeriesWriter.h"
+
+#include "vtkBitArray.h"
+#include "vtkCallbackCommand.h"
+#include "vtkCellData.h"
+#include "vtkDataArraySelection.h"
+#include "vtkErrorCode.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkMetaImageReader.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkPointData.h"
+#include "vtkSphereSource.h"
+#include "vtkStringArray.h"
+#include "vtkTrivialProducer.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkXMLImageDataReader.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+namespace
+{
+
+using banyan::ScalarType;
+
+class WriterRobustness : public testing::TestWithParam<int>
+{
+protected:
+  /// Writes in the mode of the parameter; expects a refusal that mentions all the texts, and that
+  /// nothing is left.
+  void ExpectRefused(vtkAlgorithm* source, const std::vector<std::string>& mentions)
+  {
+    this->Refuse(source, mentions);
+    EXPECT_TRUE(this->Folder.Entries().empty()) << this->Folder.Entries().front();
+  }
+
+  void Refuse(vtkAlgorithm* source, const std::vector<std::string>& mentions)
+  {
+    vtkNew<vtkBanyanSeriesWriter> writer;
+    Messages messages(writer);
+    if (source)
+    {
+      messages.Watch(source);
+      writer->SetInputConnection(source->GetOutputPort());
+    }
+    writer->SetFileName((this->Folder / "a.banyan").c_str());
+    writer->SetErrorBoundMode(GetParam());
+    writer->SetErrorBound(0.01);
+    writer->SetKeyframeInterval(1); // so that segments are written before the trouble
+    if (this->Change)
+    {
+      this->Change(writer);
+    }
+    EXPECT_EQ(writer->Write(), 0);
+    EXPECT_NE(writer->GetErrorCode(), static_cast<unsigned long>(vtkErrorCode::NoError));
+    for (const std::string& mention : mentions)
+    {
+      EXPECT_NE(messages.Errors.find(mention), std::string::npos)
+        << "no '" << mention << "' in: " << messages.Errors;
+    }
+  }
+
+  /// Four steps, of which the third is changed.
+  vtkSmartPointer<TestSource> SourceThatChanges(
+    const std::function<void(vtkImageData*)>& change, ScalarType type = ScalarType::Float32)
+  {
+    const auto source = WaveSource(SimpleGrid({ 12, 11, 10 }), { 0.0, 0.5, 1.5, 2.0 }, type);
+    const auto fill = source->Fill;
+    source->Fill = [fill, change](vtkImageData* image, double time)
+    {
+      fill(image, time);
+      if (time == 1.5)
+      {
+        change(image);
+      }
+    };
+    return source;
+  }
+
+  TemporaryFolder Folder;
+  std::function<void(vtkBanyanSeriesWriter*)> Change;
+};
+
+INSTANTIATE_TEST_SUITE_P(Modes, WriterRobustness, testing::Values(0, 1),
+  [](const auto& info) { return info.param ? "Absolute" : "Relative"; });
+
+TEST_P(WriterRobustness, DimensionsChange)
+{
+  this->ExpectRefused(this->SourceThatChanges(
+                        [](vtkImageData* image)
+                        {
+                          image->Initialize();
+                          image->SetDimensions(12, 11, 9);
+                          image->GetPointData()->SetScalars(
+                            WaveArray(ScalarType::Float32, "wave", 1, image->GetExtent(), 0, 1, 0));
+                        }),
+    { "step 2 (time 1.5)", "extent was 0..11 x 0..10 x 0..9 and is 0..11 x 0..10 x 0..8" });
+}
+
+TEST_P(WriterRobustness, SpacingChanges)
+{
+  this->ExpectRefused(
+    this->SourceThatChanges([](vtkImageData* image) { image->SetSpacing(1, 1, 2); }),
+    { "step 2 (time 1.5)", "spacing was (1, 1, 1) and is (1, 1, 2)" });
+}
+
+TEST_P(WriterRobustness, OriginChanges)
+{
+  this->ExpectRefused(
+    this->SourceThatChanges([](vtkImageData* image) { image->SetOrigin(0, 0.5, 0); }),
+    { "step 2 (time 1.5)", "origin" });
+}
+
+TEST_P(WriterRobustness, DirectionChanges)
+{
+  this->ExpectRefused(this->SourceThatChanges([](vtkImageData* image)
+                        { image->SetDirectionMatrix(0, 1, 0, 1, 0, 0, 0, 0, 1); }),
+    { "step 2 (time 1.5)", "direction" });
+}
+
+TEST_P(WriterRobustness, TypeChanges)
+{
+  this->ExpectRefused(this->SourceThatChanges(
+                        [](vtkImageData* image)
+                        {
+                          image->GetPointData()->SetScalars(
+                            WaveArray(ScalarType::UInt8, "wave", 1, image->GetExtent(), 0, 1, 1));
+                        }),
+    { "step 2 (time 1.5)", "the array wave was float32 and is uint8" });
+}
+
+TEST_P(WriterRobustness, ComponentsChange)
+{
+  this->ExpectRefused(this->SourceThatChanges(
+                        [](vtkImageData* image)
+                        {
+                          image->GetPointData()->SetScalars(
+                            WaveArray(ScalarType::Float32, "wave", 2, image->GetExtent(), 0, 1, 1));
+                        }),
+    { "step 2 (time 1.5)", "wave had 1 component(s) and has 2" });
+}
+
+TEST_P(WriterRobustness, ArrayIsRenamed)
+{
+  this->ExpectRefused(this->SourceThatChanges([](vtkImageData* image)
+                        { image->GetPointData()->GetScalars()->SetName("other"); }),
+    { "step 2 (time 1.5)", "the point array wave is missing" });
+}
+
+TEST_P(WriterRobustness, ArrayAppears)
+{
+  this->ExpectRefused(this->SourceThatChanges(
+                        [](vtkImageData* image)
+                        {
+                          image->GetPointData()->AddArray(
+                            WaveArray(ScalarType::Float32, "new", 1, image->GetExtent(), 0, 1, 1));
+                        }),
+    { "step 2 (time 1.5)", "new point array new" });
+}
+
+TEST_P(WriterRobustness, InputFailsMidway)
+{
+  const auto source = this->SourceThatChanges([](vtkImageData*) {});
+  source->FailingStep = 2;
+  this->ExpectRefused(source, { "step 2 (time 1.5)", "cannot be read" });
+}
+
+TEST_P(WriterRobustness, AnOlderSeriesStays)
+{
+  const auto good = WaveSource(SimpleGrid({ 7, 7, 7 }), { 0.0, 1.0 });
+  WriteSeries(good, this->Folder / "a.banyan");
+  const auto before = this->Folder.Entries();
+  this->Refuse(this->SourceThatChanges([](vtkImageData* image) { image->SetSpacing(1, 1, 2); }),
+    { "spacing" });
+  EXPECT_EQ(this->Folder.Entries(), before);
+  const auto original = ImageAt(good, 1.0);
+  const auto decoded = ImageAt(Reader(this->Folder / "a.banyan"), 1.0);
+  EXPECT_LE(LargestDifference(
+              original->GetPointData()->GetScalars(), decoded->GetPointData()->GetScalars()),
+    20.0 / 512.0);
+}
+
+vtkSmartPointer<vtkTrivialProducer> Produce(vtkDataObject* data)
+{
+  auto producer = vtkSmartPointer<vtkTrivialProducer>::New();
+  producer->SetOutput(data);
+  return producer;
+}
+
+vtkSmartPointer<vtkImageData> Image()
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetDimensions(4, 4, 4);
+  return image;
+}
+
+void AddCells(vtkImageData* image, const char* name)
+{
+  vtkNew<vtkFloatArray> cells;
+  cells->SetName(name);
+  cells->SetNumberOfTuples(image->GetNumberOfCells());
+  cells->Fill(1.0);
+  image->GetCellData()->AddArray(cells);
+}
+
+TEST_P(WriterRobustness, OnlyCellData)
+{
+  const auto image = Image();
+  AddCells(image, "pressure");
+  this->ExpectRefused(Produce(image), { "only cell arrays (pressure)", "Cell Data to Point Data" });
+}
+
+TEST_P(WriterRobustness, NoArraysAtAll)
+{
+  this->ExpectRefused(Produce(Image()), { "no point array to write" });
+}
+
+TEST_P(WriterRobustness, OnlyStrings)
+{
+  const auto image = Image();
+  vtkNew<vtkStringArray> strings;
+  strings->SetName("words");
+  strings->SetNumberOfValues(64);
+  image->GetPointData()->AddArray(strings);
+  vtkNew<vtkBitArray> bits;
+  bits->SetName("bits");
+  bits->SetNumberOfTuples(64);
+  image->GetPointData()->AddArray(bits);
+  this->ExpectRefused(Produce(image), { "words (string)", "bits (bit)" });
+}
+
+TEST_P(WriterRobustness, AnArrayThatIsNotThere)
+{
+  this->Change = [](vtkBanyanSeriesWriter* w)
+  { w->GetPointArraySelection()->EnableArray("nothere"); };
+  this->ExpectRefused(
+    WaveSource(SimpleGrid({ 4, 4, 4 }), {}), { "no point array nothere", "there are: wave" });
+}
+
+TEST_P(WriterRobustness, NoImage)
+{
+  vtkNew<vtkSphereSource> sphere;
+  this->ExpectRefused(sphere, { "vtkPolyData", "image data" });
+  this->ExpectRefused(Produce(vtkNew<vtkMultiBlockDataSet>()), { "vtkMultiBlockDataSet" });
+}
+
+TEST_P(WriterRobustness, AnEmptyImage)
+{
+  this->ExpectRefused(Produce(vtkNew<vtkImageData>()), { "empty" });
+}
+
+TEST_P(WriterRobustness, HiddenPointsOfIntegers)
+{
+  const auto image = Image();
+  image->AllocateScalars(VTK_INT, 1);
+  image->GetPointData()->GetScalars()->SetName("i");
+  image->GetPointData()->GetScalars()->Fill(3.0);
+  image->AllocatePointGhostArray()->SetValue(5, vtkDataSetAttributes::HIDDENPOINT);
+  this->ExpectRefused(Produce(image), { "hidden", "integer array i" });
+}
+
+TEST_P(WriterRobustness, HiddenCells)
+{
+  const auto image = Image();
+  image->AllocateScalars(VTK_FLOAT, 1);
+  image->GetPointData()->GetScalars()->Fill(3.0);
+  image->AllocateCellGhostArray()->SetValue(5, vtkDataSetAttributes::HIDDENCELL);
+  this->ExpectRefused(Produce(image), { "hidden (blanked) cells" });
+}
+
+TEST_P(WriterRobustness, NoInput)
+{
+  this->ExpectRefused(nullptr, { "no input" });
+}
+
+TEST_P(WriterRobustness, NoFileName)
+{
+  this->Change = [](vtkBanyanSeriesWriter* w) { w->SetFileName(nullptr); };
+  this->ExpectRefused(WaveSource(SimpleGrid({ 4, 4, 4 }), {}), { "No file name" });
+}
+
+TEST_P(WriterRobustness, AFolderThatDoesNotExist)
+{
+  this->Change = [this](vtkBanyanSeriesWriter* w)
+  { w->SetFileName((this->Folder / "no/such/a.banyan").c_str()); };
+  this->ExpectRefused(WaveSource(SimpleGrid({ 4, 4, 4 }), {}), { "no/such" });
+}
+
+TEST_P(WriterRobustness, BadOptions)
+{
+  for (const double bound : { -1.0, std::nan(""), HUGE_VAL })
+  {
+    this->Change = [bound](vtkBanyanSeriesWriter* w) { w->SetErrorBound(bound); };
+    this->ExpectRefused(WaveSource(SimpleGrid({ 4, 4, 4 }), {}), { "a.banyan" });
+  }
+  for (const int interval : { 0, -3, 100000 })
+  {
+    this->Change = [interval](vtkBanyanSeriesWriter* w) { w->SetKeyframeInterval(interval); };
+    this->ExpectRefused(WaveSource(SimpleGrid({ 4, 4, 4 }), {}), { "a.banyan" });
+  }
+}
+
+TEST_P(WriterRobustness, Aborted)
+{
+  this->Change = [](vtkBanyanSeriesWriter* w)
+  {
+    vtkNew<vtkCallbackCommand> stop;
+    stop->SetCallback(
+      [](vtkObject* caller, unsigned long, void*, void*)
+      {
+        auto* writer = vtkBanyanSeriesWriter::SafeDownCast(caller);
+        writer->SetAbortExecute(writer->GetProgress() > 0.7);
+      });
+    w->AddObserver(vtkCommand::ProgressEvent, stop);
+  };
+  this->ExpectRefused(this->SourceThatChanges([](vtkImageData*) {}), { "interrupted" });
+}
+
+TEST_P(WriterRobustness, CellDataBesidePointDataIsNamedInAWarning)
+{
+  const auto image = Image();
+  image->AllocateScalars(VTK_FLOAT, 1);
+  image->GetPointData()->GetScalars()->SetName("p");
+  image->GetPointData()->GetScalars()->Fill(3.0);
+  AddCells(image, "pressure");
+  AddCells(image, "speed");
+  vtkNew<vtkBanyanSeriesWriter> writer;
+  Messages messages(writer);
+  writer->SetInputData(image);
+  writer->SetFileName((this->Folder / "a.banyan").c_str());
+  writer->SetErrorBoundMode(GetParam());
+  EXPECT_EQ(writer->Write(), 1);
+  EXPECT_EQ(messages.Errors, "");
+  EXPECT_NE(messages.Warnings.find("pressure, speed are not written"), std::string::npos)
+    << messages.Warnings;
+}
+
+/// Files that were broken on purpose; skipped where the data are not there.
+class BrokenFiles : public testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    if (DataPath("").empty() || !std::filesystem::is_directory(DataPath("")))
+    {
+      GTEST_SKIP() << "BANYAN_DATA_DIR names no folder of data";
+    }
+  }
+  void ExpectRefused(vtkAlgorithm* reader)
+  {
+    TemporaryFolder folder;
+    vtkNew<vtkBanyanSeriesWriter> writer;
+    Messages messages(writer);
+    messages.Watch(reader);
+    writer->SetInputConnection(reader->GetOutputPort());
+    writer->SetFileName((folder / "a.banyan").c_str());
+    EXPECT_EQ(writer->Write(), 0);
+    EXPECT_NE(messages.Errors.find("was not written"), std::string::npos) << messages.Errors;
+    EXPECT_TRUE(folder.Entries().empty());
+  }
+};
+
+TEST_F(BrokenFiles, RawFileTooShort)
+{
+  vtkNew<vtkMetaImageReader> reader;
+  reader->SetFileName(DataPath("malformed_basic/m01_short.mhd").c_str());
+  this->ExpectRefused(reader);
+}
+
+TEST_F(BrokenFiles, RawFileMissing)
+{
+  vtkNew<vtkMetaImageReader> reader;
+  reader->SetFileName(DataPath("malformed_basic/m03_missing.mhd").c_str());
+  this->ExpectRefused(reader);
+}
+
+TEST_F(BrokenFiles, TruncatedXml)
+{
+  vtkNew<vtkXMLImageDataReader> reader;
+  reader->SetFileName(DataPath("malformed_basic/v11_trunc.vti").c_str());
+  this->ExpectRefused(reader);
+}
+
+} // namespace
