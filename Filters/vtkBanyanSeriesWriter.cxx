@@ -76,6 +76,7 @@ void vtkBanyanSeriesWriter::WriteSeries()
 {
   this->SetErrorCode(vtkErrorCode::NoError);
   this->SetAbortExecute(0);
+  this->ErrorMessage.clear();
 
   banyan::WritingOrder order;
   order.FileName = this->FileName ? this->FileName : "";
@@ -104,11 +105,12 @@ void vtkBanyanSeriesWriter::WriteSeries()
   {
     this->SetErrorCode(
       order.FileName.empty() ? vtkErrorCode::NoFileNameError : vtkErrorCode::UserError);
+    this->ErrorMessage = (order.FileName.empty() ? "The series" : order.FileName) +
+                         " was not written. " + error.what();
     // All ranks throw the same sentence; one of them says it.
     if (!this->Controller || this->Controller->GetLocalProcessId() == 0)
     {
-      vtkErrorMacro(<< (order.FileName.empty() ? "The series" : order.FileName)
-                    << " was not written. " << error.what());
+      vtkErrorMacro(<< this->ErrorMessage);
     }
   }
 }

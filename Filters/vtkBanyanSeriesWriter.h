@@ -32,6 +32,8 @@
 #include "vtkSmartPointer.h"     // For Controller
 #include "vtkWriter.h"
 
+#include <string> // For ErrorMessage
+
 class vtkDataArraySelection;
 class vtkMultiProcessController;
 
@@ -99,6 +101,11 @@ public:
   ///@}
 
   /**
+   * What went wrong in the last Write(), as a sentence; empty if nothing did.
+   */
+  const char* GetErrorMessage() { return this->ErrorMessage.c_str(); }
+
+  /**
    * Writes the series. Collective over the ranks of the controller. Returns 1 on success.
    */
   int Write() override;
@@ -121,6 +128,7 @@ private:
   int ErrorBoundMode = RELATIVE_TO_SERIES_RANGE;
   int KeyframeInterval = 8;
   bool WriteTimeSteps = true;
+  std::string ErrorMessage;
   vtkNew<vtkDataArraySelection> Selection;
   vtkSmartPointer<vtkMultiProcessController> Controller;
 };

@@ -38,6 +38,7 @@ struct vtkBanyanSeriesReader::Internals
   banyan::VerifiedBricks Verified;
   vtkNew<vtkDataArraySelection> Selection;
   vtkSmartPointer<vtkMultiProcessController> Controller;
+  std::string ErrorMessage;
 };
 
 namespace
@@ -162,6 +163,11 @@ vtkMultiProcessController* vtkBanyanSeriesReader::GetController()
   return this->Self->Controller;
 }
 
+const char* vtkBanyanSeriesReader::GetErrorMessage()
+{
+  return this->Self->ErrorMessage.c_str();
+}
+
 vtkMTimeType vtkBanyanSeriesReader::GetMTime()
 {
   return std::max(this->Superclass::GetMTime(), this->Self->Selection->GetMTime());
@@ -185,7 +191,36 @@ std::string vtkBanyanSeriesReader::Place() const
 void vtkBanyanSeriesReader::Fail(unsigned long code, const std::string& sentence)
 {
   this->SetErrorCode(code);
+  this->Self->ErrorMessage = sentence;
   vtkErrorMacro(<< sentence);
+}
+
+void vtkBanyanSeriesReader::Clear()
+{
+  this->SetErrorCode(vtkErrorCode::NoError);
+  this->Self->ErrorMessage.clear();
+}
+
+bool vtkBanyanSeriesReader::AllRanksAreWell(unsigned long code, const std::string& problem)
+{
+  vtkMultiProcessController* controller = this->Self->Controller;
+  const int failing = problem.empty() ? 0 : 1;
+  int failingRanks = failing;
+  if (controller && controller->GetNumberOfProcesses() > 1)
+  {
+    controller->AllReduce(&failing, &failingRanks, 1, vtkCommunicator::SUM_OP);
+  }
+  if (failing)
+  {
+    this->Fail(code, problem);
+  }
+  else if (failingRanks > 0)
+  {
+    this->Fail(vtkErrorCode::UserError,
+      this->Place() + " could be read here, but not on " + std::to_string(failingRanks) +
+        " other rank(s), so no rank reads it: see their messages.");
+  }
+  return failingRanks == 0;
 }
 
 std::string vtkBanyanSeriesReader::TryToOpen()
@@ -217,27 +252,14 @@ bool vtkBanyanSeriesReader::OpenOnAllRanks()
   }
   this->Self->Reopen = false;
   const std::string problem = this->TryToOpen();
-  vtkMultiProcessController* controller = this->Self->Controller;
-  int failing = problem.empty() ? 0 : 1;
-  int failingRanks = failing;
-  if (controller && controller->GetNumberOfProcesses() > 1)
-  {
-    controller->AllReduce(&failing, &failingRanks, 1, vtkCommunicator::SUM_OP);
-  }
-  if (failing)
-  {
-    this->Fail(
-      this->FileName ? vtkErrorCode::CannotOpenFileError : vtkErrorCode::NoFileNameError, problem);
-  }
-  else if (failingRanks > 0)
+  const bool named = this->FileName && *this->FileName;
+  if (!this->AllRanksAreWell(
+        named ? vtkErrorCode::CannotOpenFileError : vtkErrorCode::NoFileNameError, problem))
   {
     this->Self->Series.reset();
-    this->Fail(vtkErrorCode::CannotOpenFileError,
-      this->Place() + " was opened here, but not on " + std::to_string(failingRanks) +
-        " other rank(s), so no rank reads it: see their messages, and make sure that every "
-        "machine sees the file.");
+    return false;
   }
-  return failingRanks == 0;
+  return true;
 }
 
 //--------------------------------------------------------------------------------------------------
@@ -251,7 +273,7 @@ int vtkBanyanSeriesReader::UsedLevel() const
 int vtkBanyanSeriesReader::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  this->SetErrorCode(vtkErrorCode::NoError);
+  this->Clear();
   if (!this->OpenOnAllRanks())
   {
     return 0;
@@ -315,36 +337,45 @@ int vtkBanyanSeriesReader::StepAt(vtkInformation* outInfo) const
 int vtkBanyanSeriesReader::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  this->SetErrorCode(vtkErrorCode::NoError);
-  if (!this->Self->Series)
-  {
-    this->Fail(vtkErrorCode::CannotOpenFileError, this->Place() + " is not open.");
-    return 0;
-  }
+  this->Clear();
   vtkInformation* outInfo = outputs->GetInformationObject(0);
   vtkImageData* output = vtkImageData::GetData(outInfo);
   // The pipeline keeps the scalars of the step before, for those who write into the same memory.
   output->Initialize();
   // No filter is at work now: the time to let go what was decoded for others.
   vtkBanyanDeferred::ReleaseDownTo(banyan::BrickCache::Process().Budget());
+  unsigned long code = vtkErrorCode::NoError;
+  const std::string problem = this->TryToFill(outInfo, code);
+  if (!this->AllRanksAreWell(code, problem))
+  {
+    output->Initialize();
+    return 0;
+  }
+  return 1;
+}
+
+std::string vtkBanyanSeriesReader::TryToFill(vtkInformation* outInfo, unsigned long& code)
+{
   try
   {
+    code = vtkErrorCode::FileFormatError;
+    if (!this->Self->Series)
+    {
+      return this->Place() + " is not open.";
+    }
     this->FillOutput(outInfo);
-    return 1;
+    return {};
   }
   catch (const std::bad_alloc&)
   {
-    this->Fail(
-      vtkErrorCode::UnknownError, "There is no memory for the piece of " + this->Place() +
-                                    ": read a coarser Level, fewer arrays, or use more ranks.");
+    code = vtkErrorCode::UnknownError;
+    return "There is no memory for the piece of " + this->Place() +
+           ": read a coarser Level, fewer arrays, or use more ranks.";
   }
   catch (const std::exception& error)
   {
-    this->Fail(vtkErrorCode::FileFormatError,
-      "The data of " + this->Place() + " cannot be read: " + error.what());
+    return "The data of " + this->Place() + " cannot be read: " + error.what();
   }
-  output->Initialize();
-  return 0;
 }
 
 void vtkBanyanSeriesReader::FillOutput(vtkInformation* outInfo)

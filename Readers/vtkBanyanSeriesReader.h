@@ -17,9 +17,9 @@
  *
  * @par Errors:
  * vtkErrorMacro and GetErrorCode(); the update fails. The sentence names the file, the array and
- * the rank. If a file cannot be opened on one rank, all ranks of the controller fail: the first
- * RequestInformation() after SetFileName() or Refresh() is collective. A damaged piece fails on
- * the ranks that asked for it.
+ * the rank. All ranks of the controller fail together, so that no filter waits for a rank that has
+ * no input: RequestData() and the first RequestInformation() after SetFileName() or Refresh() are
+ * collective. Set the controller to nullptr where only some ranks use a reader.
  */
 #ifndef vtkBanyanSeriesReader_h
 #define vtkBanyanSeriesReader_h
@@ -105,12 +105,17 @@ public:
 
   ///@{
   /**
-   * Whose ranks agree on whether the file is open; by default the global controller. nullptr for
-   * a reader that only one rank uses. Not reference counted beyond this object's life.
+   * Whose ranks fail together; by default the global controller. nullptr for a reader that only
+   * one rank uses.
    */
   void SetController(vtkMultiProcessController* controller);
   vtkMultiProcessController* GetController();
   ///@}
+
+  /**
+   * What went wrong in the last update, as a sentence; empty if nothing did.
+   */
+  const char* GetErrorMessage();
 
   vtkMTimeType GetMTime() override;
 
@@ -129,11 +134,14 @@ private:
 
   bool OpenOnAllRanks();
   std::string TryToOpen();
+  std::string TryToFill(vtkInformation* outInfo, unsigned long& code);
   int UsedLevel() const;
   int StepAt(vtkInformation* outInfo) const;
   void Describe(vtkInformation* outInfo) const;
   void FillOutput(vtkInformation* outInfo);
+  bool AllRanksAreWell(unsigned long code, const std::string& problem);
   void Fail(unsigned long code, const std::string& sentence);
+  void Clear();
   std::string Place() const;
 
   char* FileName = nullptr;

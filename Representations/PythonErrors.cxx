@@ -1,0 +1,54 @@
+#include "PythonErrors.h"
+
+#include "vtkSMProperty.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMProxy.h"
+
+#include <dlfcn.h>
+
+namespace banyan
+{
+namespace
+{
+
+/// A function of Python's C interface, if this process has a Python. Looked up instead of linked,
+/// so that the plugin loads into servers without Python as well.
+template <class Function>
+Function* Find(const char* name)
+{
+  return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
+}
+
+} // namespace
+
+void RaiseInPython(const std::string& sentence)
+{
+  const auto isInitialized = Find<int()>("Py_IsInitialized");
+  const auto holdsLock = Find<int()>("PyGILState_Check");
+  const auto frame = Find<void*()>("PyEval_GetFrame");
+  const auto setError = Find<void(void*, const char*)>("PyErr_SetString");
+  void** runtimeError = reinterpret_cast<void**>(dlsym(RTLD_DEFAULT, "PyExc_RuntimeError"));
+  if (isInitialized && holdsLock && frame && setError && runtimeError && isInitialized() &&
+      holdsLock() && frame())
+  {
+    // VTK's wrappers look for an error when the C++ method returns.
+    setError(*runtimeError, sentence.c_str());
+  }
+}
+
+void RaiseErrorOf(vtkSMProxy* proxy)
+{
+  vtkSMProperty* property = proxy->GetProperty("ErrorMessage");
+  if (!property)
+  {
+    return;
+  }
+  proxy->UpdatePropertyInformation(property);
+  const char* message = vtkSMPropertyHelper(property).GetAsString();
+  if (message && *message)
+  {
+    RaiseInPython(message);
+  }
+}
+
+} // namespace banyan

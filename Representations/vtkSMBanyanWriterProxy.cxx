@@ -1,0 +1,24 @@
+#include "vtkSMBanyanWriterProxy.h"
+
+#include "PythonErrors.h"
+
+#include "vtkObjectFactory.h"
+
+vtkStandardNewMacro(vtkSMBanyanWriterProxy);
+
+void vtkSMBanyanWriterProxy::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+}
+
+void vtkSMBanyanWriterProxy::UpdatePipeline()
+{
+  this->Superclass::UpdatePipeline();
+  banyan::RaiseErrorOf(this);
+}
+
+void vtkSMBanyanWriterProxy::UpdatePipeline(double time)
+{
+  this->Superclass::UpdatePipeline(time);
+  banyan::RaiseErrorOf(this);
+}
