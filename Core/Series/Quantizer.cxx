@@ -30,6 +30,14 @@ double HalfUlp(ScalarType type, double magnitude)
   return std::isfinite(ulp) ? 0.5 * ulp : 0.5 * std::numeric_limits<double>::epsilon() * magnitude;
 }
 
+/// The multiple of the step next to an origin: 0 then lies on the lattice and decodes to 0. Many
+/// fields are 0 almost everywhere; a constant error there would be the most visible of all.
+double OriginThroughZero(double origin, double step)
+{
+  const double multiple = std::round(origin / step);
+  return step > 0 && std::abs(multiple) < 0x1p52 ? multiple * step : origin;
+}
+
 Quantizer MakeReal(ScalarType type, double bound, const ValueRange& expected)
 {
   Quantizer quantizer;
@@ -47,6 +55,7 @@ Quantizer MakeReal(ScalarType type, double bound, const ValueRange& expected)
     {
       quantizer.Step = std::numeric_limits<double>::max() / 4;
     }
+    quantizer.Origin = OriginThroughZero(quantizer.Origin, quantizer.Step);
   }
   return quantizer;
 }

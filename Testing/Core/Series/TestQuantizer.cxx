@@ -115,6 +115,22 @@ TEST(Quantizer, LatticeServesTinyHugeAndShiftedRanges)
   ExpectLatticeServes<double>(0, 1, 1e-9);
 }
 
+/// Many fields are 0 almost everywhere: that must not become a small constant.
+TEST(Quantizer, ZeroDecodesToZero)
+{
+  for (const ValueRange range : { ValueRange{ -0.0337, 1.03 }, ValueRange{ 0.0, 78.66 },
+         ValueRange{ -1e-40, 3e-40 }, ValueRange{ -7e300, 1e300 } })
+  {
+    const Quantizer quantizer = MakeQuantizer(ScalarType::Float64, range.Width() / 512.0, range);
+    ASSERT_GT(quantizer.Step, 0.0);
+    const double zero = 0.0;
+    double decoded = 1.0;
+    std::int32_t number = 0;
+    EXPECT_TRUE(Quantize(quantizer, &zero, 1, &number, &decoded));
+    EXPECT_EQ(decoded, 0.0) << range.Low;
+  }
+}
+
 TEST(Quantizer, BoundBelowOneUlpFallsBackToExactValues)
 {
   std::vector<float> values;
