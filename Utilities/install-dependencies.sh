@@ -18,7 +18,7 @@ Packages=(
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libswresample-dev libgl2ps-dev
   libpng-dev libnetcdf-dev libgdal-dev libglew-dev libdouble-conversion-dev libfreetype-dev
   # To run: ranks, a display, pictures and animations
-  openmpi-bin xvfb ffmpeg imagemagick openbox
+  openmpi-bin xvfb xauth ffmpeg imagemagick openbox
   python3-numpy python3-matplotlib
 )
 

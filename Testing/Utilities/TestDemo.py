@@ -1,4 +1,4 @@
-"""TestDemo.py CASE: runs Utilities/demo.sh from outside and looks at what it leaves behind."""
+"""TestDemo.py whole | arguments | bad-input: runs Utilities/demo.sh from outside and looks at what it leaves behind."""
 
 import glob
 import json
@@ -106,9 +106,9 @@ def test_bad_input(folder):
 
 
 def main():
-    case = {"Arguments": test_arguments, "Demo": test_demo, "BadInput": test_bad_input}[sys.argv[1]]
+    cases = {"arguments": test_arguments, "whole": test_demo, "bad-input": test_bad_input}
     with tempfile.TemporaryDirectory() as folder:
-        case(folder)
+        cases[sys.argv[1]](folder)
 
 
 main()
