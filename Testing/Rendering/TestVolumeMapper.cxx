@@ -58,6 +58,25 @@ void EncodedDrawsLikePlain(const std::string& path)
   }
 }
 
+/// Level 1 is every second sample: the same picture as of those samples by themselves.
+void ACoarserLevelDrawsItsSamples(const std::string& path)
+{
+  const glm::ivec3 coarse = (Samples - 1) / 2 + 1;
+  const glm::dvec3 shrink = 2.0 * glm::dvec3(coarse - 1) / glm::dvec3(Samples - 1);
+  const auto everySecond = [&](double x, double y, double z, int step)
+  { return Balls(x * shrink.x, y * shrink.y, z * shrink.z, step); };
+  const vtkSmartPointer<vtkImageData> plain = PlainImage(everySecond, coarse);
+  plain->SetSpacing(2.0, 2.0, 2.0);
+  vtkNew<vtkBanyanSeriesReader> reader;
+  reader->SetFileName(path.c_str());
+  reader->SetLevel(1);
+  vtkNew<vtkBanyanVolumeMapper> mapper;
+  mapper->SetInputConnection(reader->GetOutputPort());
+  Stage stage(mapper);
+  stage.LookAt(Bounds);
+  Check(Difference(stage.Draw(), DrawImage(plain)) <= 1, "level 1 draws every second sample");
+}
+
 /// The direct way may be taken only where the points are those of the series.
 void AMovedImageIsDrawnWhereItLies(const std::string& path)
 {
@@ -257,6 +276,7 @@ int main()
 {
   const TemporaryFolder folder;
   EncodedDrawsLikePlain(folder / "series.banyan");
+  ACoarserLevelDrawsItsSamples(folder / "series.banyan");
   AMovedImageIsDrawnWhereItLies(folder / "series.banyan");
   MatricesMoveTheVolume();
   GeometryEndsRays();
