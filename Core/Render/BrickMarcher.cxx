@@ -1,173 +1,290 @@
 #include "Render/BrickMarcher.h"
 
-#include <cmath>
-#include <type_traits>
+#include "Render/BlockInterpolator.h"
+
+#include <algorithm>
 
 namespace banyan
 {
 namespace
 {
 
-/// Types that float cannot hold exactly are taken relative to the table's low end, in double,
-/// before they become float: data with a large offset keep all their digits.
-template <class T>
-constexpr bool IsRelative = sizeof(T) >= 4 && !std::is_same_v<T, float>;
-
-/// Values this far outside a table may as well be here: keeps differences finite in float.
-constexpr double FarAway = 1e30;
-
-template <class T>
-inline float Corner(T value, [[maybe_unused]] double low)
+/// What all marchers of a brick share, whatever the type of its values.
+class MarcherBase
 {
-  if constexpr (!IsRelative<T>)
-  {
-    return static_cast<float>(value);
-  }
-  else
-  {
-    double relative = static_cast<double>(value) - low;
-    if constexpr (std::is_same_v<T, double>)
-    {
-      if (!(std::abs(relative) < FarAway))
-      {
-        relative = std::isfinite(value) ? std::copysign(FarAway, relative)
-                                        : std::numeric_limits<double>::quiet_NaN();
-      }
-    }
-    return static_cast<float>(relative);
-  }
-}
-
-inline float Mix(float a, float b, float part)
-{
-  return a + part * (b - a);
-}
-
-/// What stays the same over all rays of a brick.
-template <class T>
-struct Marcher
-{
-  const T* Values;
-  std::ptrdiff_t Stride[3];
-  std::int64_t Corner[3]; ///< fixed-point position of Values[0]
-  FixedBox Cells;
-  const StepTable& Table;
-  const glm::vec4* Entries;
-  double Low;
-  float Limit;
-
-  Marcher(const BrickPart& part, const StepTable& table, float limit)
-    : Values(static_cast<const T*>(part.View.Values))
-    , Cells(part.Cells)
+public:
+  MarcherBase(const BrickPart& part, const StepTable& table, bool relative, float limit)
+    : Cells(part.Cells)
     , Table(table)
-    , Entries(table.Data())
-    , Low(table.Low())
+    , Lookup(relative ? table.RelativeLookup() : table.Lookup())
+    , Steps(table.Steps())
     , Limit(limit)
   {
     for (int axis = 0; axis < 3; ++axis)
     {
-      this->Stride[axis] = part.View.Stride[axis];
       this->Corner[axis] = ToFixed(part.Corner[axis]);
     }
   }
 
-  /// Number of the table entry at a position relative to the brick's corner.
-  int Sample(std::int64_t x, std::int64_t y, std::int64_t z) const
+protected:
+  void ToBrick(std::int64_t (&position)[3]) const
   {
-    const std::ptrdiff_t sx = this->Stride[0];
-    const std::ptrdiff_t sy = this->Stride[1];
-    const std::ptrdiff_t sz = this->Stride[2];
-    const T* p =
-      this->Values + (x >> FractionBits) * sx + (y >> FractionBits) * sy + (z >> FractionBits) * sz;
-    const float fx = Fraction(x);
-    const float fy = Fraction(y);
-    const float fz = Fraction(z);
-    const auto at = [this, p](std::ptrdiff_t offset)
-    { return banyan::Corner<T>(p[offset], this->Low); };
-    const float z00 = Mix(at(0), at(sz), fz);
-    const float z10 = Mix(at(sx), at(sx + sz), fz);
-    const float z01 = Mix(at(sy), at(sy + sz), fz);
-    const float z11 = Mix(at(sx + sy), at(sx + sy + sz), fz);
-    const float value = Mix(Mix(z00, z01, fy), Mix(z10, z11, fy), fx);
-    if constexpr (IsRelative<T>)
+    for (int axis = 0; axis < 3; ++axis)
     {
-      return this->Table.IndexOfRelative(value);
-    }
-    else
-    {
-      return this->Table.IndexOf(value);
+      position[axis] -= this->Corner[axis];
     }
   }
 
-  /// The upper 24 bits below the point, so that the fraction is exact in float and below 1.
-  static float Fraction(std::int64_t position)
+  std::int64_t Corner[3]; ///< fixed-point position of the brick's first sample
+  FixedBox Cells;
+  const StepTable& Table;
+  TableLookup Lookup;
+  const glm::vec4* Steps;
+  float Limit;
+};
+
+/// One sample after the other.
+template <class T>
+class PlainMarcher : public MarcherBase
+{
+public:
+  PlainMarcher(const BrickPart& part, const StepTable& table, float limit)
+    : MarcherBase(part, table, IsRelative<T>, limit)
+    , Values(part.View, table.Low())
   {
-    const auto bits = static_cast<std::int32_t>((position >> (FractionBits - 24)) & 0xFFFFFF);
-    return static_cast<float>(bits) * (1.0f / 16777216.0f);
   }
 
-  void Blend(const glm::vec4& entry, glm::vec4& pixel) const
-  {
-    const float transmittance = pixel.a;
-    pixel.r += transmittance * entry.r;
-    pixel.g += transmittance * entry.g;
-    pixel.b += transmittance * entry.b;
-    pixel.a = transmittance * (1.0f - entry.a);
-  }
-
+  /// Whole samples [begin, end) of a ray, all inside the cells, at least one.
   /// @return samples taken
-  std::int32_t March(const RaySamples& ray, glm::vec4& pixel) const
-  {
-    std::int32_t taken = this->MarchPartial(ray.Head, pixel);
-    std::int32_t begin = 0;
-    std::int32_t end = 0;
-    if (ray.Count > 0)
-    {
-      ray.SamplesIn(this->Cells, begin, end);
-    }
-    if (begin < end && pixel.a > this->Limit)
-    {
-      taken += this->MarchWhole(ray, begin, end, pixel);
-    }
-    if (pixel.a > this->Limit)
-    {
-      taken += this->MarchPartial(ray.Tail, pixel);
-    }
-    return taken;
-  }
-
   std::int32_t MarchWhole(
-    const RaySamples& ray, std::int32_t begin, std::int32_t end, glm::vec4& result) const
+    const RaySamples& ray, std::int32_t begin, std::int32_t end, glm::vec4& pixel) const
   {
-    std::int64_t x = ray.Base[0] + begin * ray.Step[0] - this->Corner[0];
-    std::int64_t y = ray.Base[1] + begin * ray.Step[1] - this->Corner[1];
-    std::int64_t z = ray.Base[2] + begin * ray.Step[2] - this->Corner[2];
-    glm::vec4 pixel = result;
+    std::int64_t position[3];
+    ray.PositionOf(begin, position);
+    this->ToBrick(position);
     std::int32_t sample = begin;
     do
     {
-      this->Blend(this->Entries[this->Sample(x, y, z)], pixel);
-      x += ray.Step[0];
-      y += ray.Step[1];
-      z += ray.Step[2];
+      const glm::vec4& step = this->Steps[this->Lookup.IndexOf(this->Values.At(position))];
+      pixel.r += pixel.a * step.r;
+      pixel.g += pixel.a * step.g;
+      pixel.b += pixel.a * step.b;
+      pixel.a *= step.a;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        position[axis] += ray.Step[axis];
+      }
       ++sample;
     } while (sample < end && pixel.a > this->Limit);
-    result = pixel;
     return sample - begin;
   }
 
+  /// A head or tail, if it lies in the cells. @return samples taken
   std::int32_t MarchPartial(const PartialSample& sample, glm::vec4& pixel) const
   {
     if (sample.Fraction == 0.0f || !this->Cells.Contains(sample.Position))
     {
       return 0;
     }
-    const int index = this->Sample(sample.Position[0] - this->Corner[0],
-      sample.Position[1] - this->Corner[1], sample.Position[2] - this->Corner[2]);
-    this->Blend(this->Table.Partial(index, sample.Fraction), pixel);
+    std::int64_t position[3] = { sample.Position[0], sample.Position[1], sample.Position[2] };
+    this->ToBrick(position);
+    const int index = this->Lookup.IndexOf(this->Values.At(position));
+    const glm::vec4 entry = this->Table.Partial(index, sample.Fraction);
+    pixel.r += pixel.a * entry.r;
+    pixel.g += pixel.a * entry.g;
+    pixel.b += pixel.a * entry.b;
+    pixel.a *= 1.0f - entry.a;
     return 1;
   }
+
+private:
+  PlainInterpolator<T> Values;
 };
+
+#if BANYAN_HAS_BLOCKS
+
+/// Four samples at a time; the picture is that of PlainMarcher, bit for bit.
+template <class T, bool Pairs>
+class BlockMarcher : public PlainMarcher<T>
+{
+public:
+  BlockMarcher(const BrickPart& part, const StepTable& table, float limit)
+    : PlainMarcher<T>(part, table, limit)
+    , Values(part.View, table.Low())
+  {
+  }
+
+  std::int32_t MarchWhole(
+    const RaySamples& ray, std::int32_t begin, std::int32_t end, glm::vec4& pixel) const
+  {
+    std::int64_t start[3];
+    ray.PositionOf(begin, start);
+    this->ToBrick(start);
+    PositionBlock block(start, ray.Step, std::min(4, end - begin));
+    __m128i stride[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      stride[axis] = _mm_set1_epi64x(4 * ray.Step[axis]);
+    }
+    __m128 color = _mm_loadu_ps(&pixel.r);
+    __m128 transmittance = _mm_set1_ps(pixel.a);
+    std::int32_t sample = begin;
+    while (true)
+    {
+      const int count = std::min(4, end - sample);
+      const int taken = this->Blend(this->Values.At(block), count, color, transmittance);
+      sample += taken;
+      if (taken < 4 || sample == end || !(_mm_cvtss_f32(transmittance) > this->Limit))
+      {
+        break;
+      }
+      if (end - sample >= 4)
+      {
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          block.Axis[axis][0] = _mm_add_epi64(block.Axis[axis][0], stride[axis]);
+          block.Axis[axis][1] = _mm_add_epi64(block.Axis[axis][1], stride[axis]);
+        }
+      }
+      else
+      {
+        ray.PositionOf(sample, start);
+        this->ToBrick(start);
+        block = PositionBlock(start, ray.Step, end - sample);
+      }
+    }
+    _mm_storeu_ps(&pixel.r, color);
+    pixel.a = _mm_cvtss_f32(transmittance);
+    return sample - begin;
+  }
+
+private:
+  /// The first `count` values blended behind, until the limit. @return values taken
+  int Blend(__m128 values, int count, __m128& color, __m128& transmittance) const
+  {
+    alignas(16) std::int32_t index[4];
+    _mm_store_si128(reinterpret_cast<__m128i*>(index), this->IndicesOf(values));
+    if (count == 4)
+    {
+      const __m128 a = this->StepOf(index[0]);
+      const __m128 b = this->StepOf(index[1]);
+      const __m128 c = this->StepOf(index[2]);
+      const __m128 d = this->StepOf(index[3]);
+      const __m128 afterA = _mm_mul_ps(transmittance, _mm_shuffle_ps(a, a, 0xFF));
+      const __m128 afterB = _mm_mul_ps(afterA, _mm_shuffle_ps(b, b, 0xFF));
+      const __m128 afterC = _mm_mul_ps(afterB, _mm_shuffle_ps(c, c, 0xFF));
+      const __m128 afterD = _mm_mul_ps(afterC, _mm_shuffle_ps(d, d, 0xFF));
+      // Transmittance never grows: when the last is above the limit, all are.
+      if (_mm_cvtss_f32(afterD) > this->Limit)
+      {
+        color = _mm_add_ps(color, _mm_mul_ps(transmittance, a));
+        color = _mm_add_ps(color, _mm_mul_ps(afterA, b));
+        color = _mm_add_ps(color, _mm_mul_ps(afterB, c));
+        color = _mm_add_ps(color, _mm_mul_ps(afterC, d));
+        transmittance = afterD;
+        return 4;
+      }
+    }
+    int taken = 0;
+    do
+    {
+      const __m128 step = this->StepOf(index[taken]);
+      color = _mm_add_ps(color, _mm_mul_ps(transmittance, step));
+      transmittance = _mm_mul_ps(transmittance, _mm_shuffle_ps(step, step, 0xFF));
+      ++taken;
+    } while (taken < count && _mm_cvtss_f32(transmittance) > this->Limit);
+    return taken;
+  }
+
+  __m128 StepOf(std::int32_t index) const { return _mm_loadu_ps(&this->Steps[index].r); }
+
+  /// TableLookup::IndexOf for four values.
+  __m128i IndicesOf(__m128 values) const
+  {
+    const TableLookup& lookup = this->Lookup;
+    const __m128 offset = _mm_sub_ps(values, _mm_set1_ps(lookup.Low));
+    const __m128 position =
+      _mm_add_ps(_mm_mul_ps(offset, _mm_set1_ps(lookup.Scale)), _mm_set1_ps(lookup.Bias));
+    // The maximum with a NaN is its second operand.
+    const __m128 notBelow = _mm_max_ps(position, _mm_setzero_ps());
+    const __m128i index = _mm_cvttps_epi32(_mm_min_ps(notBelow, _mm_set1_ps(lookup.Last)));
+    const __m128 largest = _mm_set1_ps(std::numeric_limits<float>::max());
+    const __m128i finite = _mm_castps_si128(_mm_and_ps(
+      _mm_cmple_ps(values, largest), _mm_cmpge_ps(values, _mm_sub_ps(_mm_setzero_ps(), largest))));
+    return _mm_or_si128(
+      _mm_and_si128(finite, index), _mm_andnot_si128(finite, _mm_set1_epi32(lookup.Transparent)));
+  }
+
+  BlockInterpolator<T, Pairs> Values;
+};
+
+#endif
+
+/// @return samples taken
+template <class Marcher>
+std::int32_t MarchRay(const Marcher& marcher, const FixedBox& cells, float limit,
+  const RaySamples& ray, glm::vec4& pixel)
+{
+  std::int32_t taken = marcher.MarchPartial(ray.Head, pixel);
+  std::int32_t begin = 0;
+  std::int32_t end = 0;
+  if (ray.Count > 0)
+  {
+    ray.SamplesIn(cells, begin, end);
+  }
+  if (begin < end && pixel.a > limit)
+  {
+    taken += marcher.MarchWhole(ray, begin, end, pixel);
+  }
+  if (pixel.a > limit)
+  {
+    taken += marcher.MarchPartial(ray.Tail, pixel);
+  }
+  return taken;
+}
+
+template <class Marcher>
+void MarchRays(const BrickPart& part, const StepTable& table, const PixelRect& rect, RayTile& tile)
+{
+  const float limit = tile.TransmittanceLimit;
+  const Marcher marcher(part, table, limit);
+  const FixedBox cells(part.Cells);
+  const int width = tile.Rect.Size().x;
+  for (int y = rect.Lo.y; y < rect.Hi.y; ++y)
+  {
+    const RaySamples* rays = &tile.Rays[static_cast<std::size_t>(y - tile.Rect.Lo.y) * width];
+    for (int x = rect.Lo.x; x < rect.Hi.x; ++x)
+    {
+      const RaySamples& ray = rays[x - tile.Rect.Lo.x];
+      glm::vec4& pixel = tile.Picture->At(x, y);
+      if (!ray.Empty() && pixel.a > limit)
+      {
+        tile.SamplesTaken += MarchRay(marcher, cells, limit, ray, pixel);
+        tile.ActiveRays -= pixel.a > limit ? 0 : 1;
+      }
+    }
+  }
+}
+
+/// Picks the fastest marcher that can read the brick.
+template <class T>
+void MarchTyped(const BrickPart& part, const StepTable& table, const PixelRect& rect, RayTile& tile)
+{
+#if BANYAN_HAS_BLOCKS
+  if constexpr (!IsRelative<T>)
+  {
+    if (BlockInterpolator<T, true>::CanRead(part.View))
+    {
+      return MarchRays<BlockMarcher<T, true>>(part, table, rect, tile);
+    }
+  }
+  if (BlockInterpolator<T, false>::CanRead(part.View))
+  {
+    return MarchRays<BlockMarcher<T, false>>(part, table, rect, tile);
+  }
+#endif
+  MarchRays<PlainMarcher<T>>(part, table, rect, tile);
+}
 
 } // namespace
 
@@ -176,25 +293,7 @@ void MarchBrick(
 {
   const PixelRect rect = Intersection(pixels, tile.Rect);
   Dispatch(part.View.Type,
-    [&](auto tag)
-    {
-      const Marcher<typename decltype(tag)::Type> marcher(part, table, tile.TransmittanceLimit);
-      const int width = tile.Rect.Size().x;
-      for (int y = rect.Lo.y; y < rect.Hi.y; ++y)
-      {
-        const RaySamples* rays = &tile.Rays[static_cast<std::size_t>(y - tile.Rect.Lo.y) * width];
-        for (int x = rect.Lo.x; x < rect.Hi.x; ++x)
-        {
-          const RaySamples& ray = rays[x - tile.Rect.Lo.x];
-          glm::vec4& pixel = tile.Picture->At(x, y);
-          if (!ray.Empty() && pixel.a > tile.TransmittanceLimit)
-          {
-            tile.SamplesTaken += marcher.March(ray, pixel);
-            tile.ActiveRays -= pixel.a > tile.TransmittanceLimit ? 0 : 1;
-          }
-        }
-      }
-    });
+    [&](auto tag) { MarchTyped<typename decltype(tag)::Type>(part, table, rect, tile); });
 }
 
 } // namespace banyan

@@ -35,8 +35,8 @@ struct RayScene
   glm::dmat4 IndexToWorld{ 1.0 }; ///< affine: sample index (i, j, k) from 0 -> world
   Box DomainCells; ///< all cells of the whole grid (of all ranks): where rays begin and end
   TransferFunction Transfer;
-  double SampleDistance = 1.0;  ///< world length between samples; > 0
-  float OpacityLimit = 0.999f;  ///< a ray ends when its opacity reaches this
+  double SampleDistance = 1.0; ///< world length between samples; > 0
+  float OpacityLimit = 0.999f; ///< a ray ends when its opacity reaches this
   /// Depth in [0, 1] per pixel of Viewport at which rays end, `[y][x]`; empty means no geometry.
   std::vector<float> Depth;
 };

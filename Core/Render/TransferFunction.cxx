@@ -121,20 +121,24 @@ StepTable::StepTable(const TransferFunction& function, double sampleDistance)
     const double opacity = -std::expm1(-depth);
     this->Entries.emplace_back(static_cast<float>(entry.r * opacity),
       static_cast<float>(entry.g * opacity), static_cast<float>(entry.b * opacity),
-      static_cast<float>(opacity));
+      static_cast<float>(1.0 - opacity));
     this->Extinctions.emplace_back(entry.r, entry.g, entry.b, static_cast<float>(depth));
   }
-  this->Entries.emplace_back(0.0f);
+  this->Entries.emplace_back(0.0f, 0.0f, 0.0f, 1.0f);
   this->Extinctions.emplace_back(0.0f);
 
   constexpr double largest = std::numeric_limits<float>::max();
   const double scale = EntriesPerValue(function);
   this->LowDouble = function.Low;
-  this->LowFloat = static_cast<float>(std::clamp(function.Low, -largest, largest));
-  this->Scale = static_cast<float>(scale);
-  this->Bias = static_cast<float>(0.5 + (double{ this->LowFloat } - function.Low) * scale);
-  this->LastPosition = static_cast<float>(function.Entries.size()) - 0.5f;
-  this->TransparentIndex = static_cast<int>(function.Entries.size());
+  this->Absolute.Low = static_cast<float>(std::clamp(function.Low, -largest, largest));
+  this->Absolute.Scale = static_cast<float>(scale);
+  this->Absolute.Bias =
+    static_cast<float>(0.5 + (double{ this->Absolute.Low } - function.Low) * scale);
+  this->Absolute.Last = static_cast<float>(function.Entries.size()) - 0.5f;
+  this->Absolute.Transparent = static_cast<int>(function.Entries.size());
+  this->Relative = this->Absolute;
+  this->Relative.Low = 0.0f;
+  this->Relative.Bias = 0.5f;
 }
 
 } // namespace banyan

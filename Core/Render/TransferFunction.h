@@ -53,31 +53,42 @@ private:
   double Margin = 1.0; ///< entries
 };
 
+/// How values find their entry in a table: (value - Low) * Scale + Bias, clamped to [0, Last],
+/// rounded down; what is not finite takes the entry Transparent.
+struct TableLookup
+{
+  float Low = 0;
+  float Scale = 0;
+  float Bias = 0.5f;
+  float Last = 0;
+  int Transparent = 0;
+
+  int IndexOf(float value) const
+  {
+    // No NaN is ever converted: comparing with it is false.
+    const float position = (value - this->Low) * this->Scale + this->Bias;
+    const float notBelow = position > 0.0f ? position : 0.0f;
+    const float inside = notBelow < this->Last ? notBelow : this->Last;
+    constexpr float largest = std::numeric_limits<float>::max();
+    return value <= largest && value >= -largest ? static_cast<int>(inside) : this->Transparent;
+  }
+};
+
 /// The table of a transfer function for one sample distance: premultiplied colour and opacity,
 /// opacity = 1 - (1 - a)^(distance / UnitDistance).
 ///
-/// How values find their entry without losing precision: positions are (value - Low) * Scale in
+/// How values find their entry without losing precision: positions in the table are computed in
 /// float, so types that float cannot hold (64-bit, 32-bit integers) must subtract `Low()` in double
-/// first and ask `IndexOfRelative`; data around 1e6 that varies by 0.1 then uses the whole table.
+/// first and use `RelativeLookup`; data around 1e6 that varies by 0.1 then uses the whole table.
 class StepTable
 {
 public:
   /// Throws Error as TransferFunction::Check does, and for a distance that is not above 0.
   StepTable(const TransferFunction& function, double sampleDistance);
 
-  /// Entry of a value: nearest; NaN and infinities give a fully transparent entry.
-  const glm::vec4& At(float value) const { return this->Entries[this->IndexOf(value)]; }
-
-  int IndexOf(float value) const
-  {
-    return this->Index(value, (value - this->LowFloat) * this->Scale + this->Bias);
-  }
-
-  /// @param valueMinusLow the value minus Low(), subtracted in double
-  int IndexOfRelative(float valueMinusLow) const
-  {
-    return this->Index(valueMinusLow, valueMinusLow * this->Scale + 0.5f);
-  }
+  /// Premultiplied colour and opacity of a value: of the nearest entry; NaN and infinities are
+  /// fully transparent.
+  glm::vec4 At(float value) const { return this->Partial(this->Lookup().IndexOf(value), 1.0f); }
 
   /// Premultiplied colour and opacity of entry `index` over a fraction of the sample distance, in
   /// (0, 1]: exact even where the opacity of the whole distance rounds to 1.
@@ -89,28 +100,21 @@ public:
   }
 
   double Low() const { return this->LowDouble; }
-  const glm::vec4* Data() const { return this->Entries.data(); }
+  const TableLookup& Lookup() const { return this->Absolute; }
+  /// For values from which Low() was subtracted in double.
+  const TableLookup& RelativeLookup() const { return this->Relative; }
+
+  /// Per entry, for the whole sample distance: premultiplied colour and the *transmittance*
+  /// (1 - opacity), which is what blending front to back multiplies by.
+  const glm::vec4* Steps() const { return this->Entries.data(); }
 
 private:
-  int Index(float value, float position) const
-  {
-    // Written so that it compiles to max, min and a select: no jumps, and no NaN is ever converted.
-    const float notBelow = position > 0.0f ? position : 0.0f;
-    const float inside = notBelow < this->LastPosition ? notBelow : this->LastPosition;
-    const int index = static_cast<int>(inside);
-    constexpr float largest = std::numeric_limits<float>::max();
-    return value <= largest && value >= -largest ? index : this->TransparentIndex;
-  }
-
   std::vector<glm::vec4> Entries; ///< one more than the function's: the transparent one
   /// Colour, not premultiplied, and optical depth of the sample distance; infinite for opacity 1.
   std::vector<glm::vec4> Extinctions;
   double LowDouble = 0;
-  float LowFloat = 0;
-  float Scale = 0;
-  float Bias = 0.5f; ///< rounds to the nearest entry and undoes what rounding Low to float did
-  float LastPosition = 0;
-  int TransparentIndex = 0;
+  TableLookup Absolute;
+  TableLookup Relative;
 };
 
 } // namespace banyan

@@ -31,15 +31,15 @@ TransferFunction Ramp(double low, double high, int entries, float opacity = 0.5f
 TEST(StepTable, NearestEntryAndEnds)
 {
   const StepTable table(Ramp(10.0, 14.0, 5), 1.0);
-  EXPECT_EQ(table.IndexOf(10.0f), 0);
-  EXPECT_EQ(table.IndexOf(10.49f), 0);
-  EXPECT_EQ(table.IndexOf(10.51f), 1);
-  EXPECT_EQ(table.IndexOf(14.0f), 4);
-  EXPECT_EQ(table.IndexOf(13.49f), 3);
-  EXPECT_EQ(table.IndexOf(-1e30f), 0);
-  EXPECT_EQ(table.IndexOf(1e30f), 4);
-  EXPECT_EQ(table.IndexOf(std::numeric_limits<float>::max()), 4);
-  EXPECT_EQ(table.IndexOf(std::numeric_limits<float>::lowest()), 0);
+  EXPECT_EQ(table.Lookup().IndexOf(10.0f), 0);
+  EXPECT_EQ(table.Lookup().IndexOf(10.49f), 0);
+  EXPECT_EQ(table.Lookup().IndexOf(10.51f), 1);
+  EXPECT_EQ(table.Lookup().IndexOf(14.0f), 4);
+  EXPECT_EQ(table.Lookup().IndexOf(13.49f), 3);
+  EXPECT_EQ(table.Lookup().IndexOf(-1e30f), 0);
+  EXPECT_EQ(table.Lookup().IndexOf(1e30f), 4);
+  EXPECT_EQ(table.Lookup().IndexOf(std::numeric_limits<float>::max()), 4);
+  EXPECT_EQ(table.Lookup().IndexOf(std::numeric_limits<float>::lowest()), 0);
 }
 
 TEST(StepTable, WhatIsNotFiniteIsTransparent)
@@ -48,7 +48,8 @@ TEST(StepTable, WhatIsNotFiniteIsTransparent)
   for (const float value : { NotANumber, Infinity, -Infinity })
   {
     EXPECT_EQ(table.At(value), glm::vec4(0.0f));
-    EXPECT_EQ(table.Data()[table.IndexOfRelative(value)], glm::vec4(0.0f));
+    EXPECT_EQ(
+      table.Steps()[table.RelativeLookup().IndexOf(value)], glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
   }
 }
 
@@ -74,7 +75,7 @@ TEST(StepTable, SmallRangeAtALargeOffset)
   for (int i = 0; i < entries; ++i)
   {
     const double value = 1e6 + 0.1 * i / (entries - 1);
-    EXPECT_EQ(table.IndexOfRelative(static_cast<float>(value - table.Low())), i);
+    EXPECT_EQ(table.RelativeLookup().IndexOf(static_cast<float>(value - table.Low())), i);
   }
 }
 
@@ -84,15 +85,15 @@ TEST(StepTable, LowThatFloatCannotHold)
   const StepTable table(Ramp(0.1, 0.1 + 4e-7, 4096), 1.0);
   const float value = std::nextafter(0.1f, 1.0f);
   const double position = (double{ value } - 0.1) / 4e-7 * 4095.0;
-  EXPECT_NEAR(table.IndexOf(value), position, 1.0);
+  EXPECT_NEAR(table.Lookup().IndexOf(value), position, 1.0);
 }
 
 TEST(StepTable, DegenerateRangeIsAStep)
 {
   const StepTable table(Ramp(3.0, 3.0, 8), 1.0);
-  EXPECT_EQ(table.IndexOf(2.9f), 0);
-  EXPECT_EQ(table.IndexOf(3.0f), 0);
-  EXPECT_EQ(table.IndexOf(3.1f), 7);
+  EXPECT_EQ(table.Lookup().IndexOf(2.9f), 0);
+  EXPECT_EQ(table.Lookup().IndexOf(3.0f), 0);
+  EXPECT_EQ(table.Lookup().IndexOf(3.1f), 7);
 }
 
 TEST(TransferFunction, RefusesWhatCannotBeUsed)
