@@ -10,8 +10,15 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 plugin="$BuildFolder/lib/Banyan"
 [[ -e "$plugin/Banyan.so" ]] || fail "the plugin is not built: run Utilities/build.sh first."
 for program in Xvfb openbox import paraview; do
-  command -v "$program" > /dev/null || fail "'$program' is missing: run Utilities/install-dependencies.sh."
+  command -v "$program" > /dev/null ||
+    fail "'$program' is missing: run Utilities/install-dependencies.sh."
 done
+
+# A display of its own, just large enough for the window.
+if [[ -z "${BANYAN_SCREENSHOT_DISPLAY:-}" ]]; then
+  exec env -u DISPLAY BANYAN_SCREENSHOT_DISPLAY=1 BANYAN_SCREEN=1300x820x24 \
+    "$RepositoryRoot/Utilities/with-display.sh" "$0" "$@"
+fi
 
 work="$(mktemp -d)"
 pids=()
@@ -32,16 +39,6 @@ export PV_PLUGIN_PATH="$plugin" BANYAN_READY="$work/ready"
 BANYAN_SERIES="$(realpath "$1")"
 export BANYAN_SERIES
 
-exec 3> >(cat > "$work/display")
-Xvfb -displayfd 3 -screen 0 1300x820x24 -noreset > /dev/null 2>&1 &
-pids+=($!)
-for _ in $(seq 50); do
-  [[ -s "$work/display" ]] && break
-  sleep 0.1
-done
-[[ -s "$work/display" ]] || fail "no X server could be started."
-DISPLAY=":$(tr -d '[:space:]' < "$work/display")"
-export DISPLAY
 openbox > /dev/null 2>&1 &
 pids+=($!)
 
@@ -56,5 +53,7 @@ done
 [[ "$(cat "$BANYAN_READY" 2> /dev/null)" == ready ]] \
   || fail "ParaView did not show the series: $(cat "$BANYAN_READY" "$work/log" 2> /dev/null | tail -5)"
 sleep 2 # the panels settle
-import -window root "$2"
+# Without the black of the display around the window.
+import -window root "$work/screen.png"
+convert "$work/screen.png" -bordercolor black -border 1 -trim +repage "$2"
 say "wrote $2"

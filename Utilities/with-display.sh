@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # Runs a command with an X display: the one there is, or a virtual one made for it.
 #   with-display.sh COMMAND [ARGUMENTS...]
-# Exits with the command's own status.
+# Exits with the command's own status. BANYAN_SCREEN is the size and depth of a virtual display
+# (default 1600x1200x24).
 set -euo pipefail
 
 if [[ $# == 0 || "$1" == --help ]]; then
-  sed -n '2,4s/^# \{0,1\}//p' "$0" >&2
+  sed -n '2,5s/^# \{0,1\}//p' "$0" >&2
   exit 2
 fi
 if [[ -n "${DISPLAY:-}" ]]; then
@@ -31,8 +32,8 @@ trap 'exit 130' INT
 # the same time. Without -noreset it would reset whenever its last client leaves, and the next
 # process that connects during the reset would abort. It ends with this script, however that ends.
 mkfifo "$scratch/number"
-setpriv --pdeathsig TERM Xvfb -displayfd 3 -screen 0 1600x1200x24 -noreset -nolisten tcp \
-  3>"$scratch/number" >"$scratch/log" 2>&1 &
+setpriv --pdeathsig TERM Xvfb -displayfd 3 -screen 0 "${BANYAN_SCREEN:-1600x1200x24}" \
+  -noreset -nolisten tcp 3>"$scratch/number" >"$scratch/log" 2>&1 &
 server=$!
 if ! read -r -t 30 number <"$scratch/number"; then
   echo "with-display.sh: Xvfb did not start: $(tail -n 1 "$scratch/log")" >&2

@@ -25,7 +25,7 @@ def show(path):
     low, high = colors.RGBPoints[0], colors.RGBPoints[-4]
     opacity = GetOpacityTransferFunction(name)
     opacity.Points = []
-    for position, value in ((0.0, 0.0), (0.05, 0.0), (0.3, 0.05), (0.6, 0.25), (1.0, 0.8)):
+    for position, value in ((0.0, 0.0), (0.1, 0.0), (0.3, 0.08), (0.6, 0.25), (1.0, 0.8)):
         opacity.Points = list(opacity.Points) + [low + position * (high - low), value, 0.5, 0.0]
     times = list(reader.TimestepValues)
     scene = GetAnimationScene()
@@ -33,7 +33,7 @@ def show(path):
     scene.AnimationTime = times[(3 * len(times)) // 4]
     view.ResetActiveCameraToPositiveY()
     view.ResetCamera()
-    view.CameraViewAngle = 15
+    view.CameraViewAngle = 11
     SetActiveSource(reader)
     Render()
 
