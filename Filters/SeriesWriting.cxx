@@ -1,26 +1,19 @@
 #include "SeriesWriting.h"
 
 #include "PieceValues.h"
-#include "UpstreamErrors.h"
 
-#include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
 #include "vtkMultiProcessStream.h"
-#include "vtkNew.h"
 #include "vtkPointData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include "Base/ThreadPool.h"
 
 #include <algorithm>
 #include <sstream>
-
-using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 namespace banyan
 {
@@ -87,6 +80,7 @@ vtkDataArray* ArrayOf(vtkImageData* image, const std::string& name)
 
 SeriesWriting::SeriesWriting(WritingOrder order)
   : Order(std::move(order))
+  , Input(this->Order.Producer, this->Order.Port)
 {
   if (this->Order.Controller)
   {
@@ -177,49 +171,20 @@ void SeriesWriting::Report(int step, double part) const
 //--------------------------------------------------------------------------------------------------
 // Input
 
-void SeriesWriting::CheckOrder() const
-{
-  if (this->Order.FileName.empty())
-  {
-    throw Error("No file name is set for the series.");
-  }
-  if (!this->Order.Producer)
-  {
-    throw Error("The writer of " + this->Order.FileName + " has no input.");
-  }
-  const UpstreamErrors errors(this->Order.Producer);
-  auto* pipeline = Pipeline::SafeDownCast(this->Order.Producer->GetExecutive());
-  if (!pipeline || !pipeline->UpdateInformation() || !errors.First().empty())
-  {
-    throw Error("The input does not say what it holds" +
-                (errors.First().empty() ? std::string(".") : ": " + errors.First()));
-  }
-}
-
 void SeriesWriting::AskForTimes()
 {
   std::string problem;
   try
   {
-    this->CheckOrder();
-    vtkInformation* info = this->Order.Producer->GetOutputInformation(this->Order.Port);
-    this->HasTimes = this->Order.AllSteps && info->Has(Pipeline::TIME_STEPS()) &&
-                     info->Length(Pipeline::TIME_STEPS()) > 0;
-    this->Times.assign(1, 0.0);
-    if (this->HasTimes)
+    if (this->Order.FileName.empty())
     {
-      const double* times = info->Get(Pipeline::TIME_STEPS());
-      this->Times.assign(times, times + info->Length(Pipeline::TIME_STEPS()));
+      throw Error("No file name is set for the series.");
     }
-    for (std::size_t i = 1; i < this->Times.size(); ++i)
+    this->Times = this->Input.Times();
+    this->HasTimes = this->Order.AllSteps && !this->Times.empty();
+    if (!this->HasTimes)
     {
-      if (!(this->Times[i] > this->Times[i - 1]))
-      {
-        std::ostringstream text;
-        text << "The times of the input do not increase: " << this->Times[i] << " (step " << i
-             << ") comes after " << this->Times[i - 1] << ".";
-        problem = text.str();
-      }
+      this->Times.assign(1, 0.0);
     }
   }
   catch (const std::exception& error)
@@ -251,29 +216,9 @@ void SeriesWriting::AskForTimes()
 
 StepReport SeriesWriting::PullMine(int step, bool withRanges) const
 {
-  vtkAlgorithm* producer = this->Order.Producer;
-  vtkInformation* info = producer->GetOutputInformation(this->Order.Port);
-  vtkNew<vtkInformationVector> requests;
-  requests->SetNumberOfInformationObjects(this->Order.Port + 1);
-  vtkInformation* request = requests->GetInformationObject(this->Order.Port);
-  request->Set(Pipeline::UPDATE_PIECE_NUMBER(), this->Rank);
-  request->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), this->Ranks);
-  request->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-  if (info->Has(Pipeline::WHOLE_EXTENT()))
-  {
-    request->Set(Pipeline::UPDATE_EXTENT(), info->Get(Pipeline::WHOLE_EXTENT()), 6);
-  }
-  if (this->HasTimes)
-  {
-    request->Set(Pipeline::UPDATE_TIME_STEP(), this->Times[step]);
-  }
-  const UpstreamErrors errors(producer);
-  if (!producer->Update(this->Order.Port, requests) || !errors.First().empty())
-  {
-    throw Error("The input cannot be read" +
-                (errors.First().empty() ? std::string(".") : ": " + errors.First()));
-  }
-  vtkDataObject* data = producer->GetOutputDataObject(this->Order.Port);
+  const bool seenBefore = this->TwoPasses && this->InSecondPass;
+  vtkDataObject* data = this->Input.Pull(
+    this->Rank, this->Ranks, this->HasTimes ? &this->Times[step] : nullptr, !seenBefore);
   StepReport report = ReportOf(data, *this->Order.Selection, withRanges);
   // Values that are decoded or copied on first touch are touched here, where a failure can still
   // be agreed upon.
@@ -424,8 +369,7 @@ void SeriesWriting::Encode(int step)
   double time = this->Times[step];
   if (!this->HasTimes)
   {
-    vtkInformation* data =
-      this->Order.Producer->GetOutputDataObject(this->Order.Port)->GetInformation();
+    vtkInformation* data = this->Input.Data()->GetInformation();
     time =
       data->Has(vtkDataObject::DATA_TIME_STEP()) ? data->Get(vtkDataObject::DATA_TIME_STEP()) : 0.0;
   }
@@ -448,7 +392,7 @@ void SeriesWriting::Encode(int step)
 
 vtkImageData* SeriesWriting::Mine() const
 {
-  return vtkImageData::SafeDownCast(this->Order.Producer->GetOutputDataObject(this->Order.Port));
+  return vtkImageData::SafeDownCast(this->Input.Data());
 }
 
 void SeriesWriting::Gather(const StepAgreement& step)

@@ -1,6 +1,7 @@
 #ifndef banyan_Filters_SeriesWriting_h
 #define banyan_Filters_SeriesWriting_h
 
+#include "PipelineInput.h"
 #include "StepReport.h"
 
 #include "Series/SeriesEncoder.h"
@@ -51,7 +52,6 @@ public:
 
 private:
   void AskForTimes();
-  void CheckOrder() const;
   StepReport PullMine(int step, bool withRanges) const;
   StepAgreement Pull(int step, bool withRanges);
   void Remember(int step, const StepAgreement& now);
@@ -70,6 +70,7 @@ private:
   std::string Named(int step) const;
 
   WritingOrder Order;
+  PipelineInput Input;
   int Rank = 0;
   int Ranks = 1;
   bool TwoPasses = false;

@@ -17,16 +17,6 @@ std::vector<WrittenArray>::const_iterator Find(
     arrays.begin(), arrays.end(), [&](const WrittenArray& array) { return array.Name == name; });
 }
 
-std::string Text(const Box& extent)
-{
-  std::ostringstream text;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    text << (axis ? " x " : "") << extent.Lo[axis] << ".." << extent.Hi[axis] - 1;
-  }
-  return text.str();
-}
-
 std::string Text(const glm::dvec3& v)
 {
   std::ostringstream text;
@@ -132,6 +122,16 @@ WrittenArray LoadArray(vtkMultiProcessStream& stream)
 
 } // namespace
 
+std::string TextOf(const Box& extent)
+{
+  std::ostringstream text;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    text << (axis ? " x " : "") << extent.Lo[axis] << ".." << extent.Hi[axis] - 1;
+  }
+  return text.str();
+}
+
 void StepReport::Save(vtkMultiProcessStream& stream) const
 {
   stream << this->Problem << this->Warning << static_cast<int>(this->Aborted)
@@ -206,8 +206,8 @@ StepAgreement Agree(const std::vector<StepReport>& reports)
   if (!agreement.Plan.Missing.empty() && agreement.Problem.empty())
   {
     agreement.Problem = "The pieces of the ranks leave out the extent " +
-                        Text(agreement.Plan.Missing.front()) + " of " +
-                        Text(agreement.Whole.Extent) + ".";
+                        TextOf(agreement.Plan.Missing.front()) + " of " +
+                        TextOf(agreement.Whole.Extent) + ".";
   }
   return agreement;
 }
@@ -216,7 +216,7 @@ std::string ChangeBetween(const StepAgreement& before, const StepAgreement& now)
 {
   if (before.Whole.Extent != now.Whole.Extent)
   {
-    return "the extent was " + Text(before.Whole.Extent) + " and is " + Text(now.Whole.Extent);
+    return "the extent was " + TextOf(before.Whole.Extent) + " and is " + TextOf(now.Whole.Extent);
   }
   return ChangeOfMeaning(before.Whole, now.Whole, before.Arrays, now.Arrays);
 }

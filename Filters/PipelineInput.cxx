@@ -1,0 +1,156 @@
+#include "PipelineInput.h"
+
+#include "SourceInspector.h"
+#include "StepReport.h"
+#include "UpstreamErrors.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkDataObject.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <sstream>
+
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+namespace banyan
+{
+namespace
+{
+
+void CollectSources(vtkAlgorithm* algorithm, std::vector<vtkAlgorithm*>& sources)
+{
+  bool isSource = true;
+  for (int port = 0; port < algorithm->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
+    {
+      isSource = false;
+      CollectSources(algorithm->GetInputAlgorithm(port, i), sources);
+    }
+  }
+  if (isSource)
+  {
+    sources.push_back(algorithm);
+  }
+}
+
+/// Throws Error when a file has another extent than its source says.
+void CheckFiles(const std::vector<vtkAlgorithm*>& sources)
+{
+  const SourceInspector* inspector = SourceInspector::Get();
+  for (vtkAlgorithm* source : sources)
+  {
+    const int* e = source->GetOutputInformation(0)->Get(Pipeline::WHOLE_EXTENT());
+    Box inFile;
+    if (!inspector || !e || !inspector->ExtentInFile(source, inFile))
+    {
+      continue;
+    }
+    const Box told{ { e[0], e[2], e[4] }, { e[1] + 1, e[3] + 1, e[5] + 1 } };
+    if (inFile != told)
+    {
+      throw Error("The extent of the file is not that of the files before: it was " + TextOf(told) +
+                  " and is " + TextOf(inFile) + ".");
+    }
+  }
+}
+
+/// " : what was said", or a full stop.
+std::string Said(const UpstreamErrors& errors)
+{
+  const std::string text = errors.First();
+  return text.empty() ? "." : ": " + text;
+}
+
+} // namespace
+
+std::vector<vtkAlgorithm*> PipelineInput::Sources() const
+{
+  std::vector<vtkAlgorithm*> sources;
+  CollectSources(this->Producer, sources);
+  return sources;
+}
+
+std::vector<double> PipelineInput::Times() const
+{
+  if (!this->Producer)
+  {
+    throw Error("The writer has no input.");
+  }
+  this->Forget();
+  const UpstreamErrors errors(this->Producer);
+  auto* pipeline = Pipeline::SafeDownCast(this->Producer->GetExecutive());
+  if (!pipeline || !pipeline->UpdateInformation() || !errors.First().empty())
+  {
+    throw Error("The input does not say what it holds" + Said(errors));
+  }
+  vtkInformation* info = this->Producer->GetOutputInformation(this->Port);
+  if (!info->Has(Pipeline::TIME_STEPS()))
+  {
+    return {};
+  }
+  const double* first = info->Get(Pipeline::TIME_STEPS());
+  const std::vector<double> times(first, first + info->Length(Pipeline::TIME_STEPS()));
+  for (std::size_t i = 1; i < times.size(); ++i)
+  {
+    if (!(times[i] > times[i - 1]))
+    {
+      std::ostringstream text;
+      text << "The times of the input do not increase: " << times[i] << " (step " << i
+           << ") comes after " << times[i - 1] << ".";
+      throw Error(text.str());
+    }
+  }
+  return times;
+}
+
+void PipelineInput::Forget() const
+{
+  const SourceInspector* inspector = SourceInspector::Get();
+  for (vtkAlgorithm* source : this->Sources())
+  {
+    if (inspector)
+    {
+      inspector->Forget(source);
+    }
+  }
+}
+
+vtkDataObject* PipelineInput::Pull(int piece, int pieces, const double* time, bool withFiles) const
+{
+  vtkInformation* info = this->Producer->GetOutputInformation(this->Port);
+  vtkNew<vtkInformationVector> requests;
+  requests->SetNumberOfInformationObjects(this->Port + 1);
+  vtkInformation* request = requests->GetInformationObject(this->Port);
+  request->Set(Pipeline::UPDATE_PIECE_NUMBER(), piece);
+  request->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), pieces);
+  request->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  if (info->Has(Pipeline::WHOLE_EXTENT()))
+  {
+    request->Set(Pipeline::UPDATE_EXTENT(), info->Get(Pipeline::WHOLE_EXTENT()), 6);
+  }
+  if (time)
+  {
+    request->Set(Pipeline::UPDATE_TIME_STEP(), *time);
+  }
+  const UpstreamErrors errors(this->Producer);
+  if (!this->Producer->Update(this->Port, requests) || !errors.First().empty())
+  {
+    throw Error("The input cannot be read" + Said(errors));
+  }
+  if (withFiles)
+  {
+    CheckFiles(this->Sources());
+  }
+  return this->Data();
+}
+
+vtkDataObject* PipelineInput::Data() const
+{
+  return this->Producer->GetOutputDataObject(this->Port);
+}
+
+} // namespace banyan

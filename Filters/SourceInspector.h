@@ -1,0 +1,38 @@
+#ifndef banyan_Filters_SourceInspector_h
+#define banyan_Filters_SourceInspector_h
+
+#include "BanyanFiltersModule.h" // For export macro
+
+#include "Base/Box.h"
+
+#include <memory>
+
+class vtkAlgorithm;
+
+namespace banyan
+{
+
+/// Knows more about a source than its output tells: a hook for the application, whose sources this
+/// module does not know. The writer asks it about every source upstream of its input.
+class BANYANFILTERS_EXPORT SourceInspector
+{
+public:
+  virtual ~SourceInspector() = default;
+
+  /// Makes a source that reads files read its present step again at the next update, so that what
+  /// it complains about is said while the writer listens.
+  virtual void Forget(vtkAlgorithm* source) const = 0;
+
+  /// The extent of the file that the source has just read, as it stands in the file. Some sources
+  /// present all files of a series with the extent of the first one.
+  /// @return false when nothing is known
+  virtual bool ExtentInFile(vtkAlgorithm* source, Box& extent) const = 0;
+
+  /// The one to ask, or nullptr.
+  static const SourceInspector* Get();
+  static void Set(std::unique_ptr<SourceInspector> inspector);
+};
+
+} // namespace banyan
+
+#endif
