@@ -200,7 +200,8 @@ StepAgreement Agree(const std::vector<StepReport>& reports)
   }
   if (agreement.Whole.Extent.Empty() && agreement.Problem.empty())
   {
-    agreement.Problem = "The image is empty: there is nothing to write.";
+    agreement.Problem = "The image is empty, so there is nothing to write. If it comes from a file "
+                        "that could not be read, an earlier message says why.";
   }
   agreement.Plan = PlanGathering(agreement.Whole.Extent, pieces);
   if (!agreement.Plan.Missing.empty() && agreement.Problem.empty())
