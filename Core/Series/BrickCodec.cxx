@@ -5,6 +5,7 @@
 #include "Series/Zstd.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -84,7 +85,33 @@ const std::uint8_t* ReadPlanes(const std::uint8_t* data, std::size_t bytes, bool
   return scratch.data();
 }
 
-/// Both predictors, the smaller one kept. C is as wide as the codes need.
+/// Bits that an ideal order-0 coder needs for the bytes of some numbers: a quick guess at what zstd
+/// will make of them.
+template <class C>
+double OrderZeroBits(const std::vector<C>& numbers)
+{
+  std::array<std::array<std::uint32_t, 256>, sizeof(C)> histograms{};
+  for (const C number : numbers)
+  {
+    for (std::size_t p = 0; p < sizeof(C); ++p)
+    {
+      ++histograms[p][number >> 8 * p & 255];
+    }
+  }
+  const double total = static_cast<double>(numbers.size());
+  double bits = 0;
+  for (const auto& histogram : histograms)
+  {
+    for (const std::uint32_t count : histogram)
+    {
+      bits += count > 0 ? count * std::log2(total / count) : 0;
+    }
+  }
+  return bits;
+}
+
+/// Both predictors, the smaller one kept; where a guess already says which, the other is not tried.
+/// C is as wide as the codes need.
 template <class C>
 void AppendCodes(const std::vector<std::uint32_t>& offsets, const glm::ivec3& samples, int level,
   std::uint8_t widthCode, std::int64_t base, Bytes& payload)
@@ -108,8 +135,20 @@ void AppendCodes(const std::vector<std::uint32_t>& offsets, const glm::ivec3& sa
     AppendNumber(base, out);
     out[0] |= AppendPlanes(planes, level, out) ? ZstdBit : 0;
   };
-  thread_local Bytes plain;
+  constexpr double clear = 0.7;
+  const double lorenzoBits = OrderZeroBits(residuals);
+  const double plainBits = OrderZeroBits(codes);
+  if (plainBits < clear * lorenzoBits)
+  {
+    code(codes, 0, payload);
+    return;
+  }
   code(residuals, LorenzoBit, payload);
+  if (lorenzoBits < clear * plainBits)
+  {
+    return;
+  }
+  thread_local Bytes plain;
   code(codes, 0, plain);
   if (plain.size() < payload.size())
   {

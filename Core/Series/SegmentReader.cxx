@@ -29,6 +29,12 @@ SegmentReader::~SegmentReader()
   munmap(const_cast<std::uint8_t*>(this->Data), static_cast<std::size_t>(this->Index.Bytes));
 }
 
+void SegmentReader::LetGo() const
+{
+  (void)madvise(const_cast<std::uint8_t*>(this->Data), static_cast<std::size_t>(this->Index.Bytes),
+    MADV_DONTNEED);
+}
+
 void SegmentReader::Map()
 {
   const int descriptor = open(this->FilePath.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);

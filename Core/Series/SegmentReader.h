@@ -39,6 +39,10 @@ public:
     return this->Data + payload.Offset;
   }
 
+  /// Takes the pages that were read out of this process's memory (the kernel keeps them as it sees
+  /// fit); reading on brings them back. Safe while other threads read.
+  void LetGo() const;
+
 private:
   void Map();
   void CheckHeader() const;

@@ -21,6 +21,10 @@ std::atomic<std::uint64_t> NextId{ 1 };
 // from readers; the kernel allows 65,530 mappings, so the rest of a very long series waits.
 constexpr std::size_t MappedAtOnce = 16384;
 
+// Mapped pages count as this process's memory once they are read: playing a long series must not
+// collect all of them.
+constexpr std::size_t SegmentsInMemory = 4;
+
 constexpr std::size_t KeptTables = 64;
 constexpr std::uint64_t KeptTableBytes = std::uint64_t{ 128 } << 20;
 
@@ -65,6 +69,7 @@ struct SeriesFile::Internals
 
   mutable std::mutex SegmentMutex;
   mutable std::vector<std::unique_ptr<SegmentReader>> Segments;
+  mutable std::list<const SegmentReader*> Recent; ///< most recently used first
 
   using Kept = std::pair<std::uint64_t, std::shared_ptr<const OpenField>>;
   mutable std::mutex TableMutex;
@@ -75,6 +80,7 @@ struct SeriesFile::Internals
 
   void Check(const FieldKey& field) const;
   const SegmentReader& Segment(int step) const;
+  void Touch(const SegmentReader& segment) const;
   std::shared_ptr<const OpenField> Load(const FieldKey& field, std::uint32_t table) const;
   std::shared_ptr<const OpenField> Open(const FieldKey& field) const;
   void CheckBrick(const OpenField& open, std::int64_t brick) const;
@@ -110,6 +116,22 @@ const SegmentReader& SeriesFile::Internals::Segment(int step) const
     segment = std::make_unique<SegmentReader>(this->Path + ".d", index, this->TablesPerStep);
   }
   return *segment;
+}
+
+void SeriesFile::Internals::Touch(const SegmentReader& segment) const
+{
+  std::lock_guard<std::mutex> lock(this->SegmentMutex);
+  if (!this->Recent.empty() && this->Recent.front() == &segment)
+  {
+    return;
+  }
+  this->Recent.remove(&segment);
+  this->Recent.push_front(&segment);
+  if (this->Recent.size() > SegmentsInMemory)
+  {
+    this->Recent.back()->LetGo();
+    this->Recent.pop_back();
+  }
 }
 
 std::shared_ptr<const OpenField> SeriesFile::Internals::Load(
@@ -152,11 +174,13 @@ std::shared_ptr<const OpenField> SeriesFile::Internals::Open(const FieldKey& fie
   if (found != this->Tables.end())
   {
     this->Tables.splice(this->Tables.begin(), this->Tables, found);
+    this->Touch(*this->Tables.front().second->Segment);
     return this->Tables.front().second;
   }
   const std::uint32_t step =
     static_cast<std::uint32_t>(field.Step - this->Index.SegmentOf(field.Step).FirstStep);
   this->Tables.emplace_front(key, this->Load(field, step * this->TablesPerStep + inStep));
+  this->Touch(*this->Tables.front().second->Segment);
   std::uint64_t bytes = 0;
   std::size_t count = 0;
   for (auto kept = this->Tables.begin(); kept != this->Tables.end();)

@@ -2,6 +2,10 @@
 
 #include "Base/Error.h"
 
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
 namespace banyan::testing
 {
 namespace
@@ -105,6 +109,53 @@ TEST(ReadRegion, MacroVoxelsAreFilledWithoutDecoding)
   EXPECT_EQ(std::count(values.begin(), values.end(), -7), 64000);
   EXPECT_EQ(file->BricksDecoded(), 0u);
   EXPECT_EQ(cache.GetStatistics().Misses, 0u);
+}
+
+/// Memory of this process that mapped files of a folder take, in bytes.
+std::uint64_t MappedMemoryOf(const std::string& folder)
+{
+  std::ifstream maps("/proc/self/smaps");
+  std::uint64_t kilobytes = 0;
+  bool inside = false;
+  for (std::string line; std::getline(maps, line);)
+  {
+    std::istringstream words(line);
+    std::string first;
+    words >> first;
+    if (first.find('-') != std::string::npos)
+    {
+      inside = line.find(folder) != std::string::npos;
+    }
+    else if (inside && first == "Rss:")
+    {
+      std::uint64_t size = 0;
+      words >> size;
+      kilobytes += size;
+    }
+  }
+  return kilobytes * 1024;
+}
+
+TEST(ReadRegion, PlayingALongSeriesDoesNotCollectItsFilesInMemory)
+{
+  const TemporaryFolder folder;
+  const Grid grid = GridOf(48, 48, 48);
+  std::mt19937 random(6);
+  EncodeOptions options;
+  options.KeyframeInterval = 1;
+  const SeriesIndex index = Encode(folder / "s.banyan", grid,
+    Sample<std::uint8_t>(grid, 20, [&](int, int, int, int) { return random() % 256; }), options);
+  const auto file = SeriesFile::Open(folder / "s.banyan");
+  const std::uint64_t one = index.Segments[0].Bytes;
+  ASSERT_GT(one, 100000u);
+  for (int s = 0; s < 20; ++s)
+  {
+    (void)ReadAll<std::uint8_t>(*file, { s, 0, 0, 0 });
+    const std::uint64_t mapped = MappedMemoryOf(folder.Path());
+    EXPECT_LT(mapped, 5 * one) << "step " << s;
+    EXPECT_GT(mapped, 0u);
+  }
+  (void)ReadAll<std::uint8_t>(*file, { 0, 0, 0, 0 }); // let go, and still there
 }
 
 TEST(ReadRegion, RejectsWhatLiesOutside)
