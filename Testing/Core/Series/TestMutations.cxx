@@ -41,7 +41,21 @@ std::vector<std::vector<float>> ReadEverything(const std::string& path)
   {
     for (int level = 0; level < file->Index().Levels; ++level)
     {
-      values.push_back(ReadAll<float>(*file, { s, 0, 0, level }));
+      const FieldKey field = { s, 0, 0, level };
+      values.push_back(ReadAll<float>(*file, field));
+      // What drawing decides by must be right as well. Masks are cut so that floats hold them.
+      std::vector<float> nodes;
+      for (const BrickNode& node : *file->Nodes(field))
+      {
+        nodes.push_back(static_cast<float>(node.Range.Low));
+        nodes.push_back(static_cast<float>(node.Range.High));
+        for (int part = 0; part < 64; part += 16)
+        {
+          nodes.push_back(static_cast<float>(node.Mask >> part & 0xffff));
+        }
+        nodes.push_back(static_cast<float>((node.Uniform ? 1 : 0) + (node.HasNonFinite ? 2 : 0)));
+      }
+      values.push_back(std::move(nodes));
     }
   }
   return values;
@@ -170,6 +184,45 @@ TEST(Mutations, AThousandOfThemGiveAnErrorOrTheRightValues)
   // Only changes of padding, and changes that change nothing, may pass.
   EXPECT_GT(errors, 900);
   EXPECT_LT(errors, 1000);
+}
+
+TEST(Mutations, EveryByteOutsideThePayloadsIsGuarded)
+{
+  const TemporaryFolder folder;
+  const std::string path = folder / "s.banyan";
+  const Grid grid = GridOf(12, 10, 9);
+  EncodeOptions options;
+  options.BrickCells = 8;
+  const SeriesIndex index = Encode(path, grid,
+    Sample<float>(
+      grid, 1, [](int x, int y, int z, int) { return x < 9 ? 0.25 : Wavy<float>(x, y, z, 0); }),
+    options);
+  const auto expected = ReadEverything(path);
+  const std::string segment = path + ".d/" + index.Segments[0].File;
+  const std::string good = ReadFile(segment);
+  const auto payloadEnd =
+    LoadNumber<std::uint64_t>(reinterpret_cast<const std::uint8_t*>(good.data()) + 40);
+  std::mt19937 random(12);
+  std::size_t harmless = 0;
+  for (std::size_t at = 0; at < good.size(); at = at == 63 ? payloadEnd : at + 1)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      std::string bad = good;
+      bad[at] = static_cast<char>(bad[at] ^ (1 << random() % 8));
+      std::ofstream(segment, std::ios::binary) << bad;
+      try
+      {
+        EXPECT_TRUE(SameValues(ReadEverything(path), expected)) << "byte " << at;
+        ++harmless;
+        EXPECT_EQ(good[at], '\0') << "byte " << at << " is no padding, but nobody looks at it";
+      }
+      catch (const Error&)
+      {
+      }
+    }
+  }
+  EXPECT_LT(harmless, 4u * 64 * 4) << "more than the padding of four sections";
 }
 
 /// Makes all hashes of the chain fit again, as somebody could who means ill.
