@@ -98,10 +98,10 @@ std::vector<OpaquePixel> ReadResolved(vtkOpenGLRenderWindow* window, GLint frame
   // Depths are only copied between equal formats.
   GLint depthBits = 0;
   GLint stencilBits = 0;
-  glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT,
-    GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE, &depthBits);
-  glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT,
-    GL_FRAMEBUFFER_ATTACHMENT_STENCIL_SIZE, &stencilBits);
+  glGetFramebufferAttachmentParameteriv(
+    GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE, &depthBits);
+  glGetFramebufferAttachmentParameteriv(
+    GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_FRAMEBUFFER_ATTACHMENT_STENCIL_SIZE, &stencilBits);
   state->PushFramebufferBindings();
   resolved->PopulateFramebuffer(
     size.x, size.y, true, 1, VTK_UNSIGNED_CHAR, true, depthBits, 0, stencilBits > 0);
@@ -166,7 +166,7 @@ std::vector<OpaquePixel> FramebufferExchange::Read(vtkRenderer* renderer, const 
 }
 
 void FramebufferExchange::Write(
-  vtkRenderer* renderer, const PixelRect& rect, const std::vector<OpaquePixel>& pixels)
+  vtkRenderer* renderer, const PixelRect& rect, const std::vector<OpaquePixel>& pixels, bool blend)
 {
   vtkOpenGLRenderWindow* window = WindowOf(renderer);
   vtkOpenGLState* state = window->GetState();
@@ -183,13 +183,15 @@ void FramebufferExchange::Write(
 
   vtkOpenGLState::ScopedglViewport viewport(state);
   vtkOpenGLState::ScopedglScissor scissor(state);
-  vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);
+  vtkOpenGLState::ScopedglEnableDisable blending(state, GL_BLEND);
+  vtkOpenGLState::ScopedglBlendFuncSeparate blendFunction(state);
   vtkOpenGLState::ScopedglEnableDisable depthTest(state, GL_DEPTH_TEST);
   vtkOpenGLState::ScopedglDepthMask depthMask(state);
   vtkOpenGLState::ScopedglDepthFunc depthFunction(state);
   state->vtkglViewport(corner.x, corner.y, size.x, size.y);
   state->vtkglScissor(corner.x, corner.y, size.x, size.y);
-  state->vtkglDisable(GL_BLEND);
+  state->SetEnumState(GL_BLEND, blend);
+  state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   // Depths are written only while the test is on.
   state->vtkglEnable(GL_DEPTH_TEST);
   state->vtkglDepthFunc(GL_ALWAYS);

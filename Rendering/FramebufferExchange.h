@@ -28,8 +28,12 @@ public:
   /// Colours (8 bit) and depths, `[y][x]`, y up. A multisampled framebuffer is resolved first.
   std::vector<OpaquePixel> Read(vtkRenderer* renderer, const PixelRect& rect);
 
-  /// Replaces colours and depths of a rectangle. rect.Count() pixels.
-  void Write(vtkRenderer* renderer, const PixelRect& rect, const std::vector<OpaquePixel>& pixels);
+  /// Writes colours and depths of a rectangle; depths always replace what is there.
+  /// @param pixels rect.Count() of them, premultiplied
+  /// @param blend over the colours that are there, as ParaView's compositor does with what several
+  ///        ranks have drawn; otherwise replaces them
+  void Write(vtkRenderer* renderer, const PixelRect& rect, const std::vector<OpaquePixel>& pixels,
+    bool blend);
 
   void ReleaseGraphicsResources(vtkWindow* window);
 

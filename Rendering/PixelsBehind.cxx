@@ -99,6 +99,17 @@ std::vector<float> DepthsOf(const std::vector<OpaquePixel>& pixels)
   return depths;
 }
 
+void ClearWithoutGeometry(std::vector<OpaquePixel>& pixels)
+{
+  for (OpaquePixel& pixel : pixels)
+  {
+    if (!Covers(pixel))
+    {
+      std::fill(pixel.Color, pixel.Color + 4, std::uint8_t{ 0 });
+    }
+  }
+}
+
 void BlendOver(const FloatImage& picture, std::vector<OpaquePixel>& pixels)
 {
   for (std::size_t i = 0; i < pixels.size(); ++i)

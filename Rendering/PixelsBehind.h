@@ -17,6 +17,9 @@ void CombineBehind(Communicator& communicator, const std::vector<int>& rankOrder
 /// Depths of the pixels; none when nothing was drawn there.
 std::vector<float> DepthsOf(const std::vector<OpaquePixel>& pixels);
 
+/// Makes pixels transparent where there is no opaque geometry.
+void ClearWithoutGeometry(std::vector<OpaquePixel>& pixels);
+
 /// Blends a premultiplied picture over the pixels of the same rectangle: in float, rounded to 8 bit
 /// once. Covered pixels get a depth below 1, so that a compositor that compares depths prefers them
 /// to blank ones.

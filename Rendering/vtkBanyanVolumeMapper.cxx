@@ -302,6 +302,13 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   const banyan::FloatImage picture = banyan::DrawDistributed(*self.Communicator, scene,
     self.Field.Source(), self.Field.Zones(), budget, banyan::ThreadPool::Process(), {}, frame);
 
+  // On several ranks the background comes last: the compositor blends the picture over it in 8 bit.
+  // A single rank does the same, for the same picture to the last bit.
+  const bool alone = self.Communicator->Size() == 1;
+  if (alone)
+  {
+    banyan::ClearWithoutGeometry(pixels);
+  }
   if (self.Communicator->Rank() == 0)
   {
     banyan::BlendOver(picture, pixels);
@@ -310,7 +317,7 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   {
     std::fill(pixels.begin(), pixels.end(), banyan::OpaquePixel{ 1.0f, { 0, 0, 0, 0 } });
   }
-  self.Framebuffer.Write(renderer, rect, pixels);
+  self.Framebuffer.Write(renderer, rect, pixels, /*blend=*/alone);
   self.LastProblem.clear();
 
   const auto sum = [&self](std::uint64_t value) {

@@ -3,16 +3,24 @@
 #include "vtkBanyanVolumeMapper.h"
 
 #include "vtkBoundingBox.h"
+#include "vtkCommand.h"
+#include "vtkFXAAOptions.h"
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkOpenGLFXAAFilter.h"
+#include "vtkOpenGLRenderer.h"
+#include "vtkOpenGLState.h"
 #include "vtkOrderedCompositingHelper.h"
 #include "vtkPVRenderView.h"
 #include "vtkPVRenderViewDataDeliveryManager.h"
 #include "vtkRenderer.h"
 
 vtkStandardNewMacro(vtkBanyanVolume);
+
+vtkBanyanVolume::vtkBanyanVolume() = default;
+vtkBanyanVolume::~vtkBanyanVolume() = default;
 
 void vtkBanyanVolume::SetBanyanMapper(vtkBanyanVolumeMapper* mapper)
 {
@@ -24,9 +32,44 @@ void vtkBanyanVolume::SetView(vtkPVRenderView* view)
   this->View = view;
 }
 
-int vtkBanyanVolume::RenderOpaqueGeometry(vtkViewport*)
+int vtkBanyanVolume::RenderOpaqueGeometry(vtkViewport* viewport)
 {
+  // VTK smooths edges (FXAA) before volumes are drawn, ParaView on several ranks after everything
+  // is. For one picture on any number of ranks, a single rank does as many do.
+  auto* renderer = vtkOpenGLRenderer::SafeDownCast(viewport);
+  if (renderer && renderer->GetUseFXAA() && !renderer->GetSelector())
+  {
+    renderer->SetUseFXAA(false);
+    this->SmoothAtEnd =
+      renderer->AddObserver(vtkCommand::EndEvent, this, &vtkBanyanVolume::SmoothEdges);
+  }
   return 0;
+}
+
+void vtkBanyanVolume::SmoothEdges(vtkObject* caller, unsigned long, void*)
+{
+  auto* renderer = vtkOpenGLRenderer::SafeDownCast(caller);
+  renderer->RemoveObserver(this->SmoothAtEnd);
+  renderer->SetUseFXAA(true);
+  if (!this->EdgeFilter)
+  {
+    this->EdgeFilter = vtkSmartPointer<vtkOpenGLFXAAFilter>::New();
+  }
+  if (renderer->GetFXAAOptions())
+  {
+    this->EdgeFilter->UpdateConfiguration(renderer->GetFXAAOptions());
+  }
+  int width = 0;
+  int height = 0;
+  int x = 0;
+  int y = 0;
+  renderer->GetTiledSizeAndOrigin(&width, &height, &x, &y);
+  vtkOpenGLState* state = renderer->GetState();
+  vtkOpenGLState::ScopedglViewport viewport(state);
+  vtkOpenGLState::ScopedglScissor scissor(state);
+  state->vtkglViewport(x, y, width, height);
+  state->vtkglScissor(x, y, width, height);
+  this->EdgeFilter->Execute(renderer);
 }
 
 int vtkBanyanVolume::RenderVolumetricGeometry(vtkViewport*)
@@ -103,6 +146,10 @@ void vtkBanyanVolume::ReleaseGraphicsResources(vtkWindow* window)
   if (this->BanyanMapper)
   {
     this->BanyanMapper->ReleaseGraphicsResources(window);
+  }
+  if (this->EdgeFilter)
+  {
+    this->EdgeFilter->ReleaseGraphicsResources();
   }
   this->Superclass::ReleaseGraphicsResources(window);
 }

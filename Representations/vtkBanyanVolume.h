@@ -3,9 +3,11 @@
 
 #include "BanyanRepresentationsModule.h" // for export macro
 #include "vtkPVLODVolume.h"
-#include "vtkWeakPointer.h" // for member
+#include "vtkSmartPointer.h" // for member
+#include "vtkWeakPointer.h"  // for members
 
 class vtkBanyanVolumeMapper;
+class vtkOpenGLFXAAFilter;
 class vtkPVRenderView;
 
 /**
@@ -43,15 +45,19 @@ public:
   void ReleaseGraphicsResources(vtkWindow* window) override;
 
 protected:
-  vtkBanyanVolume() = default;
-  ~vtkBanyanVolume() override = default;
+  vtkBanyanVolume();
+  ~vtkBanyanVolume() override;
 
 private:
   vtkBanyanVolume(const vtkBanyanVolume&) = delete;
   void operator=(const vtkBanyanVolume&) = delete;
 
+  void SmoothEdges(vtkObject* caller, unsigned long event, void* data);
+
   vtkWeakPointer<vtkBanyanVolumeMapper> BanyanMapper;
   vtkWeakPointer<vtkPVRenderView> View;
+  vtkSmartPointer<vtkOpenGLFXAAFilter> EdgeFilter;
+  unsigned long SmoothAtEnd = 0;
   bool TileDisplayReported = false;
 };
 
