@@ -97,12 +97,13 @@ def test_bad_input(folder):
     if not os.path.isdir(data):
         print("BANYAN_DATA_DIR has no malformed_basic")
         sys.exit(SKIPPED)
-    files = {"m01_short.mhd": "promises 262144", "m03_missing.mhd": "does not exist",
+    files = {"m01_short.mhd": "At step 0: The input cannot be read",
+             "m03_missing.mhd": "At step 0: The input cannot be read",
              "v11_trunc.vti": "nothing could be read", "u00_ok_hex.vtu": "vtkUnstructuredGrid"}
     for name, sentence in files.items():
         check_refused(folder, sentence, "--input", os.path.join(data, name))
     dims = sorted(glob.glob(os.path.join(data, "series_trouble", "dims_*.vti")))
-    check_refused(folder, "step 1 (dims_01.vti)", "--input", *dims)
+    check_refused(folder, "At step 1 (time 1): The extent", "--input", *dims)
 
 
 def main():

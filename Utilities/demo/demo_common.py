@@ -16,9 +16,9 @@ def run(main):
     """Calls main(); an error becomes one sentence on stderr and exit status 1."""
     try:
         main()
-    except DemoError as error:
-        print(f"demo: {error}", file=sys.stderr)
-    except (OSError, RuntimeError, KeyError, ValueError) as error:
+    except (DemoError, RuntimeError) as error:  # ParaView raises the latter, with a sentence
+        print(f"demo: {str(error).strip()}", file=sys.stderr)
+    except (OSError, KeyError, ValueError) as error:
         print(f"demo: {type(error).__name__}: {error}", file=sys.stderr)
     else:
         return
@@ -40,10 +40,7 @@ def load_plugin():
 
 def open_series(files):
     """Opens files as one time series of image data, with its first step loaded."""
-    try:
-        reader = simple.OpenDataFile(files if len(files) > 1 else files[0])
-    except RuntimeError as error:
-        raise DemoError(str(error).strip()) from error
+    reader = simple.OpenDataFile(files if len(files) > 1 else files[0])
     reader.UpdatePipeline()
     information = reader.GetDataInformation()
     if information.GetDataSetTypeAsString() != "vtkImageData":

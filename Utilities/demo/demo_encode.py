@@ -12,7 +12,6 @@ from paraview import servermanager
 from paraview import simple
 
 import demo_common as demo
-import demo_inputs
 
 
 def bytes_of(series):
@@ -39,7 +38,6 @@ def announce_progress():
 def main():
     series, bound, report, files = sys.argv[1], float(sys.argv[2]), sys.argv[3], sys.argv[4:]
     demo.load_plugin()
-    demo_inputs.check_files(files)
     reader = demo.open_series(files)
     times = demo.time_values(reader)
     information = reader.GetDataInformation()
