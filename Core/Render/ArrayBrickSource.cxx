@@ -2,28 +2,14 @@
 
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
-#include "Render/SampleReader.h"
+#include "Render/BrickSummary.h"
 
 #include <algorithm>
-#include <array>
 
 namespace banyan
 {
 namespace
 {
-
-/// Bins per sample of a slice: the lowest and highest so far. Not finite: nothing (low > high).
-struct Bins
-{
-  std::uint8_t Low = 255;
-  std::uint8_t High = 0;
-
-  void Include(const Bins& other)
-  {
-    this->Low = std::min(this->Low, other.Low);
-    this->High = std::max(this->High, other.High);
-  }
-};
 
 void CheckArray(const SampleArray& array)
 {
@@ -55,91 +41,6 @@ ScalarType CopyType(ScalarType type)
                                                           : ScalarType::Float64;
 }
 
-/// Range and mask of a box of samples, one slice of samples after the other.
-template <class T>
-class BrickSummary
-{
-public:
-  BrickSummary(const SampleArray& array, const MaskRange& over)
-    : Reader(array)
-    , Over(over)
-  {
-  }
-
-  /// @param samples positions in the array, from 0
-  void Summarize(const Box& samples, ValueRange& range, ValueMask& mask)
-  {
-    this->Size = samples.Size();
-    range = {};
-    mask = 0;
-    std::vector<Bins>& before = this->Slices[0];
-    std::vector<Bins>& now = this->Slices[1];
-    for (int z = samples.Lo.z; z < samples.Hi.z; ++z)
-    {
-      this->ReadSlice(samples, z, range, now);
-      this->ReduceSlice(now);
-      const bool hasCellLayer = z > samples.Lo.z;
-      if (hasCellLayer || this->Size.z == 1)
-      {
-        for (std::size_t i = 0; i < now.size(); ++i)
-        {
-          Bins bins = now[i];
-          if (hasCellLayer)
-          {
-            bins.Include(before[i]);
-          }
-          mask |= bins.Low <= bins.High ? MaskOfBins(bins.Low, bins.High) : ValueMask{ 0 };
-        }
-      }
-      std::swap(before, now);
-    }
-  }
-
-private:
-  void ReadSlice(const Box& samples, int z, ValueRange& range, std::vector<Bins>& slice) const
-  {
-    slice.resize(static_cast<std::size_t>(this->Size.x) * this->Size.y);
-    Bins* bins = slice.data();
-    for (int y = samples.Lo.y; y < samples.Hi.y; ++y)
-    {
-      for (int x = samples.Lo.x; x < samples.Hi.x; ++x, ++bins)
-      {
-        const double value = this->Reader.At(x, y, z);
-        *bins = {};
-        if (std::isfinite(value))
-        {
-          range.Include(value);
-          bins->Low = bins->High = static_cast<std::uint8_t>(this->Over.BinOf(value));
-        }
-      }
-    }
-  }
-
-  /// Samples to faces of cells: each position takes in its neighbours up in x and y. What lies at
-  /// the upper end stays a sample or an edge; counting it does no harm.
-  void ReduceSlice(std::vector<Bins>& slice) const
-  {
-    const int width = this->Size.x;
-    const auto count = static_cast<std::int64_t>(slice.size());
-    for (std::int64_t i = 0; i + 1 < count; ++i)
-    {
-      if ((i + 1) % width != 0)
-      {
-        slice[i].Include(slice[i + 1]);
-      }
-    }
-    for (std::int64_t i = 0; i + width < count; ++i)
-    {
-      slice[i].Include(slice[i + width]);
-    }
-  }
-
-  SampleReader<T> Reader;
-  MaskRange Over;
-  glm::ivec3 Size{ 0 };
-  std::vector<Bins> Slices[2];
-};
-
 template <class T>
 void CopyBrick(const SampleArray& array, const Box& samples, void* target, ScalarType type)
 {
@@ -150,10 +51,8 @@ void CopyBrick(const SampleArray& array, const Box& samples, void* target, Scala
     {
       for (int y = samples.Lo.y; y < samples.Hi.y; ++y)
       {
-        for (int x = samples.Lo.x; x < samples.Hi.x; ++x)
-        {
-          *out++ = static_cast<std::remove_pointer_t<decltype(out)>>(reader.At(x, y, z));
-        }
+        reader.Read(samples.Lo.x, samples.Hi.x, y, z, out);
+        out += samples.Size().x;
       }
     }
   };
@@ -187,11 +86,12 @@ ValueRange FiniteRange(const SampleArray& array, ThreadPool& pool)
         [&](std::int64_t z)
         {
           ValueRange range;
+          std::vector<double> row(size.x);
           for (int y = 0; y < size.y; ++y)
           {
-            for (int x = 0; x < size.x; ++x)
+            reader.Read(0, size.x, y, static_cast<int>(z), row.data());
+            for (const double value : row)
             {
-              const double value = reader.At(x, y, static_cast<int>(z));
               if (std::isfinite(value))
               {
                 range.Include(value);

@@ -22,34 +22,56 @@ public:
   {
   }
 
-  /// @param x, y, z position in the array, from 0
-  double At(int x, int y, int z) const
+  /// Reads samples [begin, end) of a row along x.
+  /// @param y, z, begin, end positions in the array, from 0
+  /// @param out float or double; end - begin of them
+  template <class Out>
+  void Read(int begin, int end, int y, int z, Out* out) const
   {
-    if (this->Array.Flags)
+    const T* row = this->Values + y * this->Array.Stride[1] + z * this->Array.Stride[2];
+    if (this->Array.Component == SampleArray::Magnitude)
     {
-      const std::int64_t index =
-        x + this->Size.x * (y + static_cast<std::int64_t>(this->Size.y) * z);
-      if (this->Array.Flags[index] & this->Array.HiddenBits)
+      this->ReadMagnitudes(row, begin, end, out);
+    }
+    else
+    {
+      row += this->Array.Component * this->Array.ComponentStride;
+      const std::ptrdiff_t stride = this->Array.Stride[0];
+      for (int x = begin; x < end; ++x)
       {
-        return std::numeric_limits<double>::quiet_NaN();
+        out[x - begin] = static_cast<Out>(row[x * stride]);
       }
     }
-    const T* sample = this->Values + x * this->Array.Stride[0] + y * this->Array.Stride[1] +
-                      z * this->Array.Stride[2];
-    if (this->Array.Component != SampleArray::Magnitude)
+    if (this->Array.Flags)
     {
-      return static_cast<double>(sample[this->Array.Component * this->Array.ComponentStride]);
+      const std::int64_t first = this->Size.x * (y + static_cast<std::int64_t>(this->Size.y) * z);
+      for (int x = begin; x < end; ++x)
+      {
+        if (this->Array.Flags[first + x] & this->Array.HiddenBits)
+        {
+          out[x - begin] = std::numeric_limits<Out>::quiet_NaN();
+        }
+      }
     }
-    double sum = 0.0;
-    for (int c = 0; c < this->Array.Components; ++c)
-    {
-      const auto value = static_cast<double>(sample[c * this->Array.ComponentStride]);
-      sum += value * value;
-    }
-    return std::sqrt(sum);
   }
 
 private:
+  template <class Out>
+  void ReadMagnitudes(const T* row, int begin, int end, Out* out) const
+  {
+    for (int x = begin; x < end; ++x)
+    {
+      double sum = 0.0;
+      for (int c = 0; c < this->Array.Components; ++c)
+      {
+        const auto value =
+          static_cast<double>(row[x * this->Array.Stride[0] + c * this->Array.ComponentStride]);
+        sum += value * value;
+      }
+      out[x - begin] = static_cast<Out>(std::sqrt(sum));
+    }
+  }
+
   const SampleArray& Array;
   const T* Values;
   glm::ivec3 Size;
