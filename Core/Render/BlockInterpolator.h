@@ -7,6 +7,8 @@
 #if defined(__SSE2__)
 #define BANYAN_HAS_BLOCKS 1
 
+#include <algorithm>
+
 #include <emmintrin.h>
 
 namespace banyan
@@ -142,9 +144,10 @@ private:
 
   __m128 LoadFloats(const char* cell) const
   {
-    const __m128d first = _mm_load_sd(reinterpret_cast<const double*>(cell));
-    return _mm_castpd_ps(
-      _mm_loadh_pd(first, reinterpret_cast<const double*>(cell + this->Stride[1])));
+    // Types that may alias and need no alignment.
+    const __m128i first = _mm_loadl_epi64(reinterpret_cast<const __m128i_u*>(cell));
+    return _mm_loadh_pi(
+      _mm_castsi128_ps(first), reinterpret_cast<const __m64*>(cell + this->Stride[1]));
   }
 
   /// Integers of one or two bytes.

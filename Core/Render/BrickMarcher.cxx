@@ -14,8 +14,7 @@ class MarcherBase
 {
 public:
   MarcherBase(const BrickPart& part, const StepTable& table, bool relative, float limit)
-    : Cells(part.Cells)
-    , Table(table)
+    : Table(table)
     , Lookup(relative ? table.RelativeLookup() : table.Lookup())
     , Steps(table.Steps())
     , Limit(limit)
@@ -36,7 +35,6 @@ protected:
   }
 
   std::int64_t Corner[3]; ///< fixed-point position of the brick's first sample
-  FixedBox Cells;
   const StepTable& Table;
   TableLookup Lookup;
   const glm::vec4* Steps;
@@ -79,13 +77,9 @@ public:
     return sample - begin;
   }
 
-  /// A head or tail, if it lies in the cells. @return samples taken
-  std::int32_t MarchPartial(const PartialSample& sample, glm::vec4& pixel) const
+  /// A head or tail that lies in the cells.
+  void MarchPartial(const PartialSample& sample, glm::vec4& pixel) const
   {
-    if (sample.Fraction == 0.0f || !this->Cells.Contains(sample.Position))
-    {
-      return 0;
-    }
     std::int64_t position[3] = { sample.Position[0], sample.Position[1], sample.Position[2] };
     this->ToBrick(position);
     const int index = this->Lookup.IndexOf(this->Values.At(position));
@@ -94,7 +88,6 @@ public:
     pixel.g += pixel.a * entry.g;
     pixel.b += pixel.a * entry.b;
     pixel.a *= 1.0f - entry.a;
-    return 1;
   }
 
 private:
@@ -128,29 +121,34 @@ public:
     }
     __m128 color = _mm_loadu_ps(&pixel.r);
     __m128 transmittance = _mm_set1_ps(pixel.a);
+    // The next block is on its way while one is blended: the processor looks only so far ahead.
+    __m128i next = this->IndicesOf(this->Values.At(block));
     std::int32_t sample = begin;
     while (true)
     {
+      const __m128i indices = next;
       const int count = std::min(4, end - sample);
-      const int taken = this->Blend(this->Values.At(block), count, color, transmittance);
-      sample += taken;
-      if (taken < 4 || sample == end || !(_mm_cvtss_f32(transmittance) > this->Limit))
-      {
-        break;
-      }
-      if (end - sample >= 4)
+      const int left = end - sample - count;
+      if (left >= 4)
       {
         for (int axis = 0; axis < 3; ++axis)
         {
           block.Axis[axis][0] = _mm_add_epi64(block.Axis[axis][0], stride[axis]);
           block.Axis[axis][1] = _mm_add_epi64(block.Axis[axis][1], stride[axis]);
         }
+        next = this->IndicesOf(this->Values.At(block));
       }
-      else
+      else if (left > 0)
       {
-        ray.PositionOf(sample, start);
+        ray.PositionOf(sample + count, start);
         this->ToBrick(start);
-        block = PositionBlock(start, ray.Step, end - sample);
+        next = this->IndicesOf(this->Values.At(PositionBlock(start, ray.Step, left)));
+      }
+      const int taken = this->Blend(indices, count, color, transmittance);
+      sample += taken;
+      if (left == 0 || taken < count || !(_mm_cvtss_f32(transmittance) > this->Limit))
+      {
+        break;
       }
     }
     _mm_storeu_ps(&pixel.r, color);
@@ -159,11 +157,11 @@ public:
   }
 
 private:
-  /// The first `count` values blended behind, until the limit. @return values taken
-  int Blend(__m128 values, int count, __m128& color, __m128& transmittance) const
+  /// The first `count` entries blended behind, until the limit. @return entries taken
+  int Blend(__m128i indices, int count, __m128& color, __m128& transmittance) const
   {
     alignas(16) std::int32_t index[4];
-    _mm_store_si128(reinterpret_cast<__m128i*>(index), this->IndicesOf(values));
+    _mm_store_si128(reinterpret_cast<__m128i*>(index), indices);
     if (count == 4)
     {
       const __m128 a = this->StepOf(index[0]);
@@ -225,7 +223,12 @@ template <class Marcher>
 std::int32_t MarchRay(const Marcher& marcher, const FixedBox& cells, float limit,
   const RaySamples& ray, glm::vec4& pixel)
 {
-  std::int32_t taken = marcher.MarchPartial(ray.Head, pixel);
+  std::int32_t taken = 0;
+  if (ray.Head.Fraction > 0.0f && cells.Contains(ray.Head.Position))
+  {
+    marcher.MarchPartial(ray.Head, pixel);
+    ++taken;
+  }
   std::int32_t begin = 0;
   std::int32_t end = 0;
   if (ray.Count > 0)
@@ -236,9 +239,10 @@ std::int32_t MarchRay(const Marcher& marcher, const FixedBox& cells, float limit
   {
     taken += marcher.MarchWhole(ray, begin, end, pixel);
   }
-  if (pixel.a > limit)
+  if (ray.Tail.Fraction > 0.0f && cells.Contains(ray.Tail.Position) && pixel.a > limit)
   {
-    taken += marcher.MarchPartial(ray.Tail, pixel);
+    marcher.MarchPartial(ray.Tail, pixel);
+    ++taken;
   }
   return taken;
 }

@@ -77,54 +77,6 @@ FixedBox::FixedBox(const Box& cells)
   }
 }
 
-void RaySamples::SamplesIn(const FixedBox& box, std::int32_t& begin, std::int32_t& end) const
-{
-  begin = end = 0;
-  double in = 0.0;
-  double out = this->Count;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    if (this->Step[axis] != 0)
-    {
-      const double low = (box.LowFace[axis] - this->Start[axis]) * this->InverseStep[axis];
-      const double high = (box.HighFace[axis] - this->Start[axis]) * this->InverseStep[axis];
-      in = std::max(in, std::min(low, high));
-      out = std::min(out, std::max(low, high));
-    }
-  }
-  if (!(in < out + 1.0))
-  {
-    return;
-  }
-  // Rounded down, the estimates are at most two samples early and never late: the exact test in
-  // fixed point finds the true ends from there.
-  std::int32_t first = static_cast<std::int32_t>(in);
-  const std::int32_t tooLate = std::min(first + 3, this->Count);
-  std::int64_t position[3];
-  for (; first < tooLate; ++first)
-  {
-    this->PositionOf(first, position);
-    if (box.Contains(position))
-    {
-      break;
-    }
-  }
-  if (first >= tooLate)
-  {
-    return;
-  }
-  begin = first;
-  end = std::max(static_cast<std::int32_t>(out), first + 1);
-  for (; end < this->Count; ++end)
-  {
-    this->PositionOf(end, position);
-    if (!box.Contains(position))
-    {
-      break;
-    }
-  }
-}
-
 RayLattice::RayLattice(const RayScene& scene)
   : Scene(scene)
   , WorldToIndex(glm::inverse(scene.IndexToWorld))
