@@ -1,0 +1,43 @@
+"""Pictures as arrays, and the measures by which two of them are compared."""
+import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
+
+
+def load(path):
+    """Picture of a PNG file as int array [y][x][3], y up; raises when it cannot be read."""
+    reader = vtkPNGReader()
+    if not reader.CanReadFile(str(path)):
+        raise OSError(f"{path} is missing or no PNG file")
+    reader.SetFileName(str(path))
+    reader.Update()
+    image = reader.GetOutput()
+    width, height, _ = image.GetDimensions()
+    values = vtk_to_numpy(image.GetPointData().GetScalars())
+    return values.reshape(height, width, -1)[:, :, :3].astype(int)
+
+
+def save(path, picture):
+    height, width, _ = picture.shape
+    image = vtkImageData()
+    image.SetDimensions(width, height, 1)
+    flat = numpy.ascontiguousarray(picture.reshape(-1, 3).clip(0, 255).astype(numpy.uint8))
+    image.GetPointData().SetScalars(numpy_to_vtk(flat, deep=True))
+    writer = vtkPNGWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputData(image)
+    writer.Write()
+
+
+def difference(a, b):
+    """Largest channel difference per pixel; pictures of different size differ everywhere."""
+    if a.shape != b.shape:
+        return numpy.full(a.shape[:2], 255)
+    return numpy.abs(a - b).max(axis=2)
+
+
+def psnr(a, b):
+    """Peak signal-to-noise ratio in dB over all pixels and channels, for a peak of 255."""
+    mean_square = ((a - b).astype(float) ** 2).mean()
+    return float("inf") if mean_square == 0 else 10 * numpy.log10(255**2 / mean_square)

@@ -1,0 +1,124 @@
+"""Runs a Python script in ParaView: builtin, on the ranks of pvbatch, or as client of a pvserver.
+
+    run_paraview.py [--mode builtin|batch|server] [--ranks N] [--seconds S] -- SCRIPT [ARGUMENTS]
+
+Nothing may hang: every process it starts is ended when the time is over. The script of a client
+finds host and port of its server in the environment variable BANYAN_TEST_SERVER. Exits with the
+script's status, or 124 when the time was over. Needs a DISPLAY and nothing but Python itself.
+"""
+import argparse
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+
+# What Open MPI wants to be told for root, in containers and beyond the number of cores.
+MPI_ENVIRONMENT = {
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
+    "OMPI_MCA_rmaps_base_oversubscribe": "1",
+    "OMPI_MCA_mpi_yield_when_idle": "1",
+}
+TIMED_OUT = 124
+
+
+def start(command, **options):
+    print("+ " + " ".join(command), flush=True)
+    # A session of its own, so that it can be ended together with all that it started.
+    return subprocess.Popen(command, start_new_session=True, **options)
+
+
+def end(process, grace=10):
+    """Ends a process and its children: mpirun needs the polite signal to end its ranks."""
+    for number in (signal.SIGTERM, signal.SIGKILL):
+        if process.poll() is not None:
+            return
+        os.killpg(process.pid, number)
+        try:
+            process.wait(grace)
+        except subprocess.TimeoutExpired:
+            continue
+
+
+def wait(process, deadline):
+    """Exit status of a process, ended if need be."""
+    try:
+        return process.wait(max(0.0, deadline - time.monotonic()))
+    except subprocess.TimeoutExpired:
+        print("run_paraview.py: the time is over", file=sys.stderr, flush=True)
+        end(process)
+        return TIMED_OUT
+
+
+def free_port():
+    with socket.socket() as listener:
+        listener.bind(("localhost", 0))
+        return listener.getsockname()[1]
+
+
+def mpi(ranks):
+    return [os.environ.get("MPIEXEC", "mpirun"), "-np", str(ranks)]
+
+
+class Server:
+    """A pvserver on several ranks whose output is passed on."""
+
+    def __init__(self, ranks):
+        self.port = free_port()
+        self.process = start(
+            mpi(ranks) + ["pvserver", "--hostname=localhost", f"--server-port={self.port}"],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.listening = threading.Event()
+        threading.Thread(target=self._pass_on, daemon=True).start()
+
+    def _pass_on(self):
+        for line in self.process.stdout:
+            print("server: " + line, end="", flush=True)
+            if "Accepting connection" in line:
+                self.listening.set()
+        self.listening.set()  # nothing more will come: do not wait for it
+
+
+def run_client(command, ranks, deadline):
+    server = Server(ranks)
+    try:
+        if not server.listening.wait(deadline - time.monotonic()):
+            print("run_paraview.py: the server did not start in time", file=sys.stderr)
+            return TIMED_OUT
+        if server.process.poll() is not None:
+            print("run_paraview.py: the server ended before a client came", file=sys.stderr)
+            return 1
+        environment = dict(os.environ, BANYAN_TEST_SERVER=f"localhost:{server.port}")
+        status = wait(start(command, env=environment), deadline)
+        # The server leaves when its client has left; that it does belongs to the test.
+        left = wait(server.process, min(deadline, time.monotonic() + 30))
+        return status or left
+    finally:
+        end(server.process)
+
+
+def main():
+    parser = argparse.ArgumentParser(usage=__doc__)
+    parser.add_argument("--mode", choices=("builtin", "batch", "server"), default="builtin")
+    parser.add_argument("--ranks", type=int, default=1)
+    parser.add_argument("--seconds", type=float, default=120)
+    parser.add_argument("command", nargs="+")
+    arguments = parser.parse_args()
+
+    os.environ.update(MPI_ENVIRONMENT)
+    deadline = time.monotonic() + arguments.seconds
+    python = ["pvpython", "--force-offscreen-rendering"]
+    if arguments.mode == "server":
+        return run_client(python + arguments.command, arguments.ranks, deadline)
+    if arguments.mode == "batch":
+        return wait(start(mpi(arguments.ranks) + ["pvbatch"] + arguments.command), deadline)
+    return wait(start(python + arguments.command), deadline)
+
+
+if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
+    sys.exit(main())

@@ -1,0 +1,73 @@
+"""What every test script needs first: the server if there is one, and the plugin."""
+import argparse
+import os
+
+from paraview import simple
+
+REPRESENTATION = "Banyan Volume"
+
+
+def parser(description):
+    """A command line that has the options of this module."""
+    result = argparse.ArgumentParser(description=description)
+    result.add_argument("--plugin", help="path of Banyan.so")
+    return result
+
+
+def begin(arguments):
+    """Connects to BANYAN_TEST_SERVER if it is set and loads the plugin on all processes."""
+    server = os.environ.get("BANYAN_TEST_SERVER")
+    if server:
+        host, port = server.rsplit(":", 1)
+        # The view that the client has made before belongs to the builtin server.
+        simple.Disconnect()
+        if not simple.Connect(host, int(port)):
+            raise RuntimeError(f"no connection to {server}")
+    if arguments.plugin:
+        simple.LoadPlugin(arguments.plugin, remote=False)
+        if server:
+            simple.LoadPlugin(arguments.plugin, remote=True)
+
+
+def new_view(size, **properties):
+    """A view whose picture depends on nothing but what is shown in it."""
+    view = simple.CreateView("RenderView")
+    view.ViewSize = list(size)
+    view.UseColorPaletteForBackground = 0
+    view.Background = [0.1, 0.2, 0.3]
+    view.OrientationAxesVisibility = 0
+    # ParaView smooths edges once more when the picture comes from a server (its own volumes differ
+    # by up to 44 of 255 there), which has nothing to do with who draws what.
+    view.UseFXAA = 0
+    for name, value in properties.items():
+        setattr(view, name, value)
+    return view
+
+
+KEPT = {}
+
+
+def kept(name, make):
+    """The source that `make` made when this name was first asked for; `clear` leaves it alone.
+
+    Making a source takes longer than drawing it: scenes share those that they have in common.
+    """
+    if name not in KEPT:
+        KEPT[name] = make()
+    return KEPT[name]
+
+
+def clear():
+    """Deletes every view with its displays, and every source that is not kept."""
+    for view in simple.GetRenderViews():
+        simple.Delete(view)
+    # Consumers first: a source with consumers cannot go.
+    for source in reversed(list(simple.GetSources().values())):
+        if source not in KEPT.values():
+            simple.Delete(source)
+
+
+def require(condition, sentence):
+    """`assert` with a sentence, that no optimisation switches off."""
+    if not condition:
+        raise AssertionError(sentence)
