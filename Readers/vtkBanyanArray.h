@@ -15,7 +15,7 @@
  *   (In VTK 9.2, vtkVolumeTexture and vtkPVExtractHistogram2D ask it too; they need a range that
  *   contains the values and get one.)
  * - With a ghost array: decodes, and gives what a plain array gives.
- * - Of magnitudes: contains the true range; exact once decoded.
+ * - Of magnitudes: the same; the index holds them per step.
  *
  * @par Limits:
  * VTK's array dispatch does not know this type, so filters take their general path, which is

@@ -59,6 +59,12 @@ void CheckArrays(const SeriesIndex& index)
     {
       CheckComponent(component);
     }
+    Require(array.Magnitudes.size() == (array.Components.size() > 1 ? index.Times.size() : 0),
+      "The array '" + array.Name + "' does not have a range of magnitudes for each step");
+    for (const ValueRange& magnitude : array.Magnitudes)
+    {
+      CheckRange(magnitude);
+    }
   }
   Require(index.ActiveScalars.empty() || names.count(index.ActiveScalars) == 1,
     "The active array '" + index.ActiveScalars + "' is not among the arrays");

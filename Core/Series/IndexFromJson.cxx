@@ -94,18 +94,23 @@ std::vector<double> Reals(const Json& json, const char* name, std::size_t count)
   return values;
 }
 
-ValueRange RangeFromJson(const Json& json, const char* name)
+/// @param json the range itself
+ValueRange RangeOf(const Json& json, const char* name)
 {
-  if (Member(json, name).is_null())
+  if (json.is_null())
   {
     return {};
   }
-  const std::vector<double> ends = Reals(json, name, 2);
-  if (!(ends[0] <= ends[1]))
+  if (!json.is_array() || json.size() != 2 || !(Real(json[0], name) <= Real(json[1], name)))
   {
     WrongType(name);
   }
-  return { ends[0], ends[1] };
+  return { Real(json[0], name), Real(json[1], name) };
+}
+
+ValueRange RangeFromJson(const Json& json, const char* name)
+{
+  return RangeOf(Member(json, name), name);
 }
 
 ComponentIndex ComponentFromJson(const Json& json)
@@ -132,6 +137,10 @@ ArrayIndex ArrayFromJson(const Json& json)
   for (const Json& component : ListMember(json, "components"))
   {
     array.Components.push_back(ComponentFromJson(component));
+  }
+  for (const Json& magnitude : ListMember(json, "magnitudes"))
+  {
+    array.Magnitudes.push_back(RangeOf(magnitude, "magnitudes"));
   }
   return array;
 }

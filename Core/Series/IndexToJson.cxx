@@ -43,6 +43,11 @@ Json ArrayToJson(const ArrayIndex& array)
   {
     json["components"].push_back(ComponentToJson(component));
   }
+  json["magnitudes"] = Json::array();
+  for (const ValueRange& magnitude : array.Magnitudes)
+  {
+    json["magnitudes"].push_back(RangeToJson(magnitude));
+  }
   return json;
 }
 

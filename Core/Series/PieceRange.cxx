@@ -27,6 +27,12 @@ ValueRange LengthOf(const std::vector<ValueRange>& components)
   return { std::sqrt(low), std::sqrt(high) };
 }
 
+ValueRange Common(const ValueRange& a, const ValueRange& b)
+{
+  const ValueRange common{ std::max(a.Low, b.Low), std::min(a.High, b.High) };
+  return common.Empty() ? ValueRange{} : common;
+}
+
 } // namespace
 
 std::vector<std::int64_t> BricksTouching(const BrickLayout& layout, const Box& samples)
@@ -81,7 +87,13 @@ PieceRange RangeOfPiece(
   if (components == 1)
   {
     result.Magnitude = result.Components[0];
+    return result;
   }
+  // A sample decodes to the same value at every level: the step's range bounds them all.
+  const ValueRange& ofStep =
+    series.Index().Arrays[array].Magnitudes[static_cast<std::size_t>(step)];
+  const bool whole = level == 0 && samples.Contains(Box{ glm::ivec3(0), layout.Samples() });
+  result.Magnitude = whole ? ofStep : Common(result.Magnitude, ofStep);
   return result;
 }
 
@@ -93,8 +105,14 @@ PieceRange RangeOfSeries(const SeriesFile& series, int array)
     result.Components.push_back(component.Range);
     result.HasNonFinite = result.HasNonFinite || component.NonFiniteCount > 0;
   }
-  result.Magnitude =
-    result.Components.size() == 1 ? result.Components[0] : LengthOf(result.Components);
+  if (result.Components.size() == 1)
+  {
+    result.Magnitude = result.Components[0];
+  }
+  for (const ValueRange& magnitude : series.Index().Arrays[array].Magnitudes)
+  {
+    result.Magnitude.Include(magnitude);
+  }
   return result;
 }
 

@@ -12,8 +12,10 @@ namespace banyan
 struct PieceRange
 {
   std::vector<ValueRange> Components; ///< one per component
-  /// Of the length (L2 norm) of the vectors: always contains the true range, and is usually a
-  /// little wider, because the tree knows components only. Equal to Components[0] for scalars.
+  /// Of the length (L2 norm) of the vectors; contains the true range, and is exact for the whole of
+  /// level 0. Otherwise it may be wider, because the tree knows components only; but it never goes
+  /// beyond the range of the whole step, so that pieces together have that range exactly. Equal to
+  /// Components[0] for scalars.
   ValueRange Magnitude;
   /// Whether Components are the exact extremes of the part: true when every brick that touches it
   /// lies in it completely. Otherwise they contain the true range.
@@ -27,8 +29,8 @@ struct PieceRange
 PieceRange RangeOfPiece(
   const SeriesFile& series, int step, int array, int level, const Box& samples);
 
-/// The same over all steps, from the index: exact for components over level 0, and an upper bound
-/// for coarser levels. The magnitude contains the true range.
+/// The same over all steps, from the index: exact for level 0, and contains the true ranges of
+/// coarser levels.
 PieceRange RangeOfSeries(const SeriesFile& series, int array);
 
 /// Numbers of the bricks that together cover `samples`, in ascending order.

@@ -5,6 +5,7 @@
 #include "Series/EncodePlan.h"
 #include "Series/FieldEncoder.h"
 #include "Series/IndexText.h"
+#include "Series/Magnitude.h"
 #include "Series/NodeTable.h"
 #include "Series/SegmentFolder.h"
 #include "Series/SegmentWriter.h"
@@ -63,7 +64,8 @@ struct SeriesEncoder::Internals
   bool Finished = false;
   std::unique_ptr<SegmentFolder> Folder;
   std::unique_ptr<SegmentWriter> Segment;
-  std::vector<double> SegmentTimes; ///< steps of the segment under way
+  std::vector<double> SegmentTimes;                       ///< steps of the segment under way
+  std::vector<std::vector<ValueRange>> SegmentMagnitudes; ///< by array and step; of vectors only
   std::vector<std::vector<ComponentState>> States;
   std::function<bool(double)> Progress;
   std::int64_t BricksPerStep = 0;
@@ -82,6 +84,7 @@ SeriesEncoder::Internals::Internals(const std::string& path, const Grid& grid,
   {
     this->States.emplace_back(array.ComponentNames.size());
   }
+  this->SegmentMagnitudes.resize(arrays.size());
   (void)IndexToText(this->Index); // says now what could not be written later
   for (int level = 0; level < this->Index.Levels; ++level)
   {
@@ -254,6 +257,16 @@ void SeriesEncoder::Internals::EncodeStep(const std::vector<ArrayValues>& arrays
       this->Index.PayloadBytesIn +=
         static_cast<std::uint64_t>(this->Index.Domain.Extent.Count()) * SizeOf(array.Type);
     }
+    if (array.Components.size() > 1)
+    {
+      std::vector<Quantizer> lattices;
+      for (const ComponentState& state : this->States[a])
+      {
+        lattices.push_back(state.Lattice);
+      }
+      this->SegmentMagnitudes[a].push_back(MagnitudeRange(
+        array.Type, arrays[a].Values, this->Index.Domain.Extent.Count(), lattices, this->Pool));
+    }
   }
 }
 
@@ -265,6 +278,13 @@ void SeriesEncoder::Internals::CloseSegment()
   this->Index.Times.insert(
     this->Index.Times.end(), this->SegmentTimes.begin(), this->SegmentTimes.end());
   this->SegmentTimes.clear();
+  for (std::size_t a = 0; a < this->SegmentMagnitudes.size(); ++a)
+  {
+    std::vector<ValueRange>& magnitudes = this->SegmentMagnitudes[a];
+    std::vector<ValueRange>& known = this->Index.Arrays[a].Magnitudes;
+    known.insert(known.end(), magnitudes.begin(), magnitudes.end());
+    magnitudes.clear();
+  }
   std::uint64_t bytes = 0;
   for (const SegmentIndex& each : this->Index.Segments)
   {

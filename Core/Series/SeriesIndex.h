@@ -58,6 +58,9 @@ struct ArrayIndex
   std::string Name;
   ScalarType Type = ScalarType::Float32;
   std::vector<ComponentIndex> Components; ///< at least one
+  /// Per step, of the length (L2 norm) of the decoded vectors whose components are finite. None for
+  /// arrays with one component.
+  std::vector<ValueRange> Magnitudes;
 };
 
 /// One segment file: a group of consecutive steps.

@@ -55,6 +55,7 @@ SeriesIndex MakeIndex(unsigned seed)
   component.PromisedRange = { -0.0, 0.1 };
   component.SumSquaredError = 0.3;
   array.Components.push_back(component);
+  array.Magnitudes = { { 0.0, 0.1 }, {}, { 5e-324, std::abs(RandomDouble(random)) + 1.0 } };
   index.Arrays.push_back(array);
   index.Times = { -1.5, 0.1, 0.1 + 1e-17 + 3e-17 };
   index.Segments.push_back({ "0123456789abcdef-000000.seg", 0, 2, 4711, random(), random() });
@@ -101,6 +102,10 @@ TEST(IndexText, ComesBackBitExact)
       ExpectSameBits(x.SumSquaredError, y.SumSquaredError);
       EXPECT_EQ(x.FiniteCount, y.FiniteCount);
     }
+    ASSERT_EQ(b.Arrays[0].Magnitudes.size(), 3u);
+    EXPECT_TRUE(b.Arrays[0].Magnitudes[1].Empty());
+    ExpectSameBits(a.Arrays[0].Magnitudes[2].Low, b.Arrays[0].Magnitudes[2].Low);
+    ExpectSameBits(a.Arrays[0].Magnitudes[2].High, b.Arrays[0].Magnitudes[2].High);
     EXPECT_EQ(a.Segments[1].HashHigh, b.Segments[1].HashHigh);
     EXPECT_EQ(a.Segments[1].HashLow, b.Segments[1].HashLow);
     EXPECT_EQ(b.Segments[1].Bytes, 815u);
@@ -195,6 +200,8 @@ TEST(IndexText, SaysWhatIsWrong)
   ExpectRejected(with("  -1.5,", "  null,"), "times");
   ExpectRejected(with("  -5,", "  -2000000000,"), "2^30");
   ExpectRejected(with("  39,", "  -6,"), "no samples");
+  ExpectRejected(with("\"magnitudes\": [\n    [\n     0.0,\n     0.1\n    ],", "\"magnitudes\": ["),
+    "range of magnitudes for each step");
   ExpectRejected(with("\"brickCells\": 16", "\"brickCells\": 15"), "8, 16, 32 or 64");
 }
 
