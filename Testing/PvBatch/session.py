@@ -36,9 +36,6 @@ def new_view(size, **properties):
     view.UseColorPaletteForBackground = 0
     view.Background = [0.1, 0.2, 0.3]
     view.OrientationAxesVisibility = 0
-    # ParaView smooths edges once more when the picture comes from a server (its own volumes differ
-    # by up to 44 of 255 there), which has nothing to do with who draws what.
-    view.UseFXAA = 0
     for name, value in properties.items():
         setattr(view, name, value)
     return view
