@@ -4,13 +4,14 @@ find_program(BANYAN_PYTHON3 NAMES python3)
 
 # banyan_add_pvbatch_test(<name>
 #   SCRIPT <script.py> [ARGUMENTS <argument>...]
+#   [OPTIONS <option of ParaView>]
 #   [MODE builtin|batch|server]   builtin by default; see Testing/PvBatch/run_paraview.py
 #   [RANKS <n>] [SECONDS <n>]     1 rank, 120 seconds
 #   [SETUP <fixture>...] [REQUIRES <fixture>...])
 # The script's name is relative to the current folder. BANYAN_DATA_DIR is in its environment, and a
 # script that exits with 77 counts as skipped.
 function(banyan_add_pvbatch_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 TEST "" "SCRIPT;MODE;RANKS;SECONDS"
+  cmake_parse_arguments(PARSE_ARGV 1 TEST "" "SCRIPT;MODE;RANKS;SECONDS;OPTIONS"
     "ARGUMENTS;SETUP;REQUIRES")
   foreach(default IN ITEMS MODE=builtin RANKS=1 SECONDS=120)
     string(REPLACE "=" ";" default "${default}")
@@ -24,7 +25,7 @@ function(banyan_add_pvbatch_test name)
     COMMAND "${Banyan_SOURCE_DIR}/Utilities/with-display.sh" "${BANYAN_PYTHON3}"
       "${Banyan_SOURCE_DIR}/Testing/PvBatch/run_paraview.py"
       --mode ${TEST_MODE} --ranks ${TEST_RANKS} --seconds ${TEST_SECONDS}
-      -- "${CMAKE_CURRENT_SOURCE_DIR}/${TEST_SCRIPT}" ${TEST_ARGUMENTS})
+      -- ${TEST_OPTIONS} "${CMAKE_CURRENT_SOURCE_DIR}/${TEST_SCRIPT}" ${TEST_ARGUMENTS})
   set_tests_properties(${name} PROPERTIES
     LABELS pvbatch
     PROCESSORS ${TEST_RANKS}

@@ -1,5 +1,7 @@
 #include "PieceValues.h"
 
+#include "vtkBanyanDeferred.h"
+
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
@@ -29,7 +31,7 @@ bool IsHidden(unsigned char flags)
 /// The values as one block of tuples; arrays of another layout are copied into `keep` first.
 const void* Block(vtkDataArray* array, vtkSmartPointer<vtkDataArray>& keep)
 {
-  if (array->HasStandardMemoryLayout())
+  if (IsOneBlock(array))
   {
     return array->GetVoidPointer(0);
   }
@@ -101,6 +103,11 @@ Box ExtentOf(vtkImageData* image)
 }
 
 } // namespace
+
+bool IsOneBlock(vtkDataArray* array)
+{
+  return array->HasStandardMemoryLayout() || vtkBanyanDeferred::IsDeferred(array);
+}
 
 ScalarType TypeOf(vtkDataArray* array)
 {

@@ -16,6 +16,9 @@ namespace banyan
 /// The type of an array of numbers (not of bits, which have none).
 ScalarType TypeOf(vtkDataArray* array);
 
+/// Whether GetVoidPointer() gives the array's own values as one block of tuples.
+bool IsOneBlock(vtkDataArray* array);
+
 /// Extremes of the finite values of a point array, one per component; points that the image hides
 /// do not count.
 std::vector<ValueRange> FiniteRangesOf(vtkImageData* image, vtkDataArray* array);

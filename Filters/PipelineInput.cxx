@@ -6,6 +6,7 @@
 
 #include "vtkAlgorithm.h"
 #include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
@@ -19,6 +20,33 @@ namespace banyan
 {
 namespace
 {
+
+/// The grid that an information tells of; what it does not tell is empty, or the default.
+Grid GridOf(vtkInformation* info)
+{
+  Grid grid;
+  const bool told = info->Has(Pipeline::WHOLE_EXTENT()) && info->Has(vtkDataObject::ORIGIN()) &&
+                    info->Has(vtkDataObject::SPACING());
+  for (int axis = 0; told && axis < 3; ++axis)
+  {
+    const int* extent = info->Get(Pipeline::WHOLE_EXTENT());
+    grid.Extent.Lo[axis] = extent[2 * axis];
+    grid.Extent.Hi[axis] = extent[2 * axis + 1] + 1;
+    grid.Origin[axis] = info->Get(vtkDataObject::ORIGIN())[axis];
+    grid.Spacing[axis] = info->Get(vtkDataObject::SPACING())[axis];
+  }
+  return grid;
+}
+
+/// The VTK type of the active scalars that an information tells of, or -1.
+int ScalarsOf(vtkInformation* info)
+{
+  vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
+    info, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+  return scalars && scalars->Has(vtkDataObject::FIELD_ARRAY_TYPE())
+           ? scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE())
+           : -1;
+}
 
 void CollectSources(vtkAlgorithm* algorithm, std::vector<vtkAlgorithm*>& sources)
 {
@@ -37,23 +65,34 @@ void CollectSources(vtkAlgorithm* algorithm, std::vector<vtkAlgorithm*>& sources
   }
 }
 
-/// Throws Error when a file has another extent than its source says.
+/// Throws Error when a file is not as its source says that all of them are.
 void CheckFiles(const std::vector<vtkAlgorithm*>& sources)
 {
   const SourceInspector* inspector = SourceInspector::Get();
   for (vtkAlgorithm* source : sources)
   {
-    const int* e = source->GetOutputInformation(0)->Get(Pipeline::WHOLE_EXTENT());
-    Box inFile;
-    if (!inspector || !e || !inspector->ExtentInFile(source, inFile))
+    const vtkSmartPointer<vtkInformation> file =
+      inspector ? inspector->InformationOfFile(source) : nullptr;
+    if (!file)
     {
       continue;
     }
-    const Box told{ { e[0], e[2], e[4] }, { e[1] + 1, e[3] + 1, e[5] + 1 } };
-    if (inFile != told)
+    vtkInformation* told = source->GetOutputInformation(0);
+    const Grid gridBefore = GridOf(told);
+    const Grid gridNow = GridOf(file);
+    const bool bothTold = !gridBefore.Extent.Empty() && !gridNow.Extent.Empty();
+    const std::string change = bothTold ? ChangeBetween(gridBefore, gridNow) : "";
+    if (!change.empty())
     {
-      throw Error("The extent of the file is not that of the files before: it was " + TextOf(told) +
-                  " and is " + TextOf(inFile) + ".");
+      throw Error("The file does not fit the ones before: " + change + ".");
+    }
+    const int before = ScalarsOf(told);
+    const int now = ScalarsOf(file);
+    if (before != now && before >= 0 && now >= 0)
+    {
+      throw Error(std::string("The file does not fit the ones before: its values were of type ") +
+                  vtkImageScalarTypeNameMacro(before) + " and are of type " +
+                  vtkImageScalarTypeNameMacro(now) + ".");
     }
   }
 }

@@ -414,7 +414,7 @@ void SeriesWriting::Gather(const StepAgreement& step)
       {
         const WrittenArray& array = this->First.Arrays[i];
         vtkDataArray* values = borrow ? ArrayOf(mine, array.Name) : nullptr;
-        if (values && values->HasStandardMemoryLayout())
+        if (values && IsOneBlock(values))
         {
           this->WholeValues[i] = values->GetVoidPointer(0);
           continue;

@@ -2,12 +2,12 @@
 #define banyan_Filters_SourceInspector_h
 
 #include "BanyanFiltersModule.h" // For export macro
-
-#include "Base/Box.h"
+#include "vtkSmartPointer.h"     // For return type
 
 #include <memory>
 
 class vtkAlgorithm;
+class vtkInformation;
 
 namespace banyan
 {
@@ -23,10 +23,11 @@ public:
   /// it complains about is said while the writer listens.
   virtual void Forget(vtkAlgorithm* source) const = 0;
 
-  /// The extent of the file that the source has just read, as it stands in the file. Some sources
-  /// present all files of a series with the extent of the first one.
-  /// @return false when nothing is known
-  virtual bool ExtentInFile(vtkAlgorithm* source, Box& extent) const = 0;
+  /// What the file that the source has just read says of itself (WHOLE_EXTENT, ORIGIN, SPACING and
+  /// active scalars, as far as known). Some sources present all files of a series as they found the
+  /// first one.
+  /// @return nullptr when nothing is known
+  virtual vtkSmartPointer<vtkInformation> InformationOfFile(vtkAlgorithm* source) const = 0;
 
   /// The one to ask, or nullptr.
   static const SourceInspector* Get();

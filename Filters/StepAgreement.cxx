@@ -17,6 +17,16 @@ std::vector<WrittenArray>::const_iterator Find(
     arrays.begin(), arrays.end(), [&](const WrittenArray& array) { return array.Name == name; });
 }
 
+std::string Text(const Box& extent)
+{
+  std::ostringstream text;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    text << (axis ? " x " : "") << extent.Lo[axis] << ".." << extent.Hi[axis] - 1;
+  }
+  return text.str();
+}
+
 std::string Text(const glm::dvec3& v)
 {
   std::ostringstream text;
@@ -25,9 +35,7 @@ std::string Text(const glm::dvec3& v)
   return text.str();
 }
 
-/// As ChangeBetween, for all but the extent.
-std::string ChangeOfMeaning(const Grid& a, const Grid& b, const std::vector<WrittenArray>& arraysA,
-  const std::vector<WrittenArray>& arraysB)
+std::string ChangeOfPlacement(const Grid& a, const Grid& b)
 {
   if (a.Spacing != b.Spacing)
   {
@@ -41,6 +49,12 @@ std::string ChangeOfMeaning(const Grid& a, const Grid& b, const std::vector<Writ
   {
     return "the direction matrix is another one";
   }
+  return {};
+}
+
+std::string ChangeOfArrays(
+  const std::vector<WrittenArray>& arraysA, const std::vector<WrittenArray>& arraysB)
+{
   for (const WrittenArray& array : arraysA)
   {
     const auto same = Find(arraysB, array.Name);
@@ -78,8 +92,11 @@ void Merge(const StepReport& report, StepAgreement& agreement)
     agreement.ActiveScalars = report.ActiveScalars;
     return;
   }
-  const std::string difference =
-    ChangeOfMeaning(agreement.Whole, report.Piece, agreement.Arrays, report.Arrays);
+  std::string difference = ChangeOfPlacement(agreement.Whole, report.Piece);
+  if (difference.empty())
+  {
+    difference = ChangeOfArrays(agreement.Arrays, report.Arrays);
+  }
   if (!difference.empty() && agreement.Problem.empty())
   {
     agreement.Problem = "The ranks hold different data: from one to another, " + difference + ".";
@@ -121,16 +138,6 @@ WrittenArray LoadArray(vtkMultiProcessStream& stream)
 }
 
 } // namespace
-
-std::string TextOf(const Box& extent)
-{
-  std::ostringstream text;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    text << (axis ? " x " : "") << extent.Lo[axis] << ".." << extent.Hi[axis] - 1;
-  }
-  return text.str();
-}
 
 void StepReport::Save(vtkMultiProcessStream& stream) const
 {
@@ -207,19 +214,23 @@ StepAgreement Agree(const std::vector<StepReport>& reports)
   if (!agreement.Plan.Missing.empty() && agreement.Problem.empty())
   {
     agreement.Problem = "The pieces of the ranks leave out the extent " +
-                        TextOf(agreement.Plan.Missing.front()) + " of " +
-                        TextOf(agreement.Whole.Extent) + ".";
+                        Text(agreement.Plan.Missing.front()) + " of " +
+                        Text(agreement.Whole.Extent) + ".";
   }
   return agreement;
 }
 
+std::string ChangeBetween(const Grid& before, const Grid& now)
+{
+  return before.Extent != now.Extent
+           ? "the extent was " + Text(before.Extent) + " and is " + Text(now.Extent)
+           : ChangeOfPlacement(before, now);
+}
+
 std::string ChangeBetween(const StepAgreement& before, const StepAgreement& now)
 {
-  if (before.Whole.Extent != now.Whole.Extent)
-  {
-    return "the extent was " + TextOf(before.Whole.Extent) + " and is " + TextOf(now.Whole.Extent);
-  }
-  return ChangeOfMeaning(before.Whole, now.Whole, before.Arrays, now.Arrays);
+  const std::string change = ChangeBetween(before.Whole, now.Whole);
+  return change.empty() ? ChangeOfArrays(before.Arrays, now.Arrays) : change;
 }
 
 } // namespace banyan

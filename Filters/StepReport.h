@@ -58,8 +58,9 @@ struct StepAgreement
 
 StepAgreement Agree(const std::vector<StepReport>& reports);
 
-/// "0..31 x 0..31 x 0..15", as VTK says it: the last one included.
-std::string TextOf(const Box& extent);
+/// What changed between two grids, as half a sentence ("the spacing was ... and is ..."), or
+/// nothing.
+std::string ChangeBetween(const Grid& before, const Grid& now);
 
 /// What changed between two steps, as half a sentence ("the array p was float32 and is float64"),
 /// or nothing.

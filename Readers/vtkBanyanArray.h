@@ -86,7 +86,8 @@ public:
   void* GetVoidPointer(vtkIdType index) override;
   void* WriteVoidPointer(vtkIdType index, vtkIdType count) override;
   void ExportToVoidPointer(void* to) override;
-  bool HasStandardMemoryLayout() const override { return true; }
+  // HasStandardMemoryLayout() stays false although there is one block of tuples: VTK takes true for
+  // a promise that the array can be cast to the plain type.
   vtkArrayIterator* NewIterator() override;
   unsigned long GetActualMemorySize() const override;
   void Squeeze() override;

@@ -46,6 +46,11 @@ const vtkBanyanDeferred::Handle* vtkBanyanDeferred::From(vtkAbstractArray* array
   return deferred && deferred->IsPristine() ? &deferred->Source : nullptr;
 }
 
+bool vtkBanyanDeferred::IsDeferred(vtkAbstractArray* array)
+{
+  return Cast(array) != nullptr;
+}
+
 bool vtkBanyanDeferred::IsUntouched(vtkAbstractArray* array)
 {
   const vtkBanyanDeferred* deferred = Cast(array);

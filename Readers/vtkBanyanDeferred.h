@@ -51,6 +51,12 @@ public:
   static const Handle* From(vtkAbstractArray* array);
 
   /**
+   * Whether the array is of the deferred kind, whatever became of its values: GetVoidPointer()
+   * then gives one block of tuples, although HasStandardMemoryLayout() is false.
+   */
+  static bool IsDeferred(vtkAbstractArray* array);
+
+  /**
    * Whether the array is deferred and none of its values has been asked for (or they were let go
    * again): it holds no decoded values now.
    */

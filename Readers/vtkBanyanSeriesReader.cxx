@@ -163,6 +163,11 @@ vtkMultiProcessController* vtkBanyanSeriesReader::GetController()
   return this->Self->Controller;
 }
 
+vtkIdType vtkBanyanSeriesReader::GetBricksDecoded()
+{
+  return this->Self->Series ? static_cast<vtkIdType>(this->Self->Series->BricksDecoded()) : 0;
+}
+
 const char* vtkBanyanSeriesReader::GetErrorMessage()
 {
   return this->Self->ErrorMessage.c_str();
@@ -337,6 +342,12 @@ int vtkBanyanSeriesReader::StepAt(vtkInformation* outInfo) const
 int vtkBanyanSeriesReader::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
+  if (!this->Self->Series)
+  {
+    // All ranks know that it could not be opened; but not all of them come here, because nobody
+    // told the pipeline that there are pieces. So there is nothing to agree on.
+    return 0;
+  }
   this->Clear();
   vtkInformation* outInfo = outputs->GetInformationObject(0);
   vtkImageData* output = vtkImageData::GetData(outInfo);
@@ -359,10 +370,6 @@ std::string vtkBanyanSeriesReader::TryToFill(vtkInformation* outInfo, unsigned l
   try
   {
     code = vtkErrorCode::FileFormatError;
-    if (!this->Self->Series)
-    {
-      return this->Place() + " is not open.";
-    }
     this->FillOutput(outInfo);
     return {};
   }

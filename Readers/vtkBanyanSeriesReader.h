@@ -113,6 +113,11 @@ public:
   ///@}
 
   /**
+   * How many bricks of the open series this process has decoded so far, for whomever.
+   */
+  vtkIdType GetBricksDecoded();
+
+  /**
    * What went wrong in the last update, as a sentence; empty if nothing did.
    */
   const char* GetErrorMessage();

@@ -6,7 +6,6 @@
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkXMLReader.h"
 
 namespace
@@ -25,13 +24,13 @@ public:
     }
   }
 
-  bool ExtentInFile(vtkAlgorithm* source, banyan::Box& extent) const override
+  vtkSmartPointer<vtkInformation> InformationOfFile(vtkAlgorithm* source) const override
   {
     auto* series = vtkFileSeriesReader::SafeDownCast(source);
     vtkAlgorithm* reader = series ? series->GetReader() : nullptr;
     if (!reader)
     {
-      return false;
+      return nullptr;
     }
     // The file name of the reader within is that of the step that was read last.
     if (auto* xml = vtkXMLReader::SafeDownCast(reader))
@@ -41,26 +40,15 @@ public:
       const auto probe = vtkSmartPointer<vtkXMLReader>::Take(xml->NewInstance());
       probe->SetFileName(xml->GetFileName());
       probe->UpdateInformation();
-      return ExtentOf(probe->GetOutputInformation(0), extent);
+      return probe->GetOutputInformation(0);
     }
     vtkNew<vtkInformation> request;
     request->Set(vtkDemandDrivenPipeline::REQUEST_INFORMATION());
     vtkNew<vtkInformationVector> outputs;
     outputs->SetNumberOfInformationObjects(reader->GetNumberOfOutputPorts());
-    return reader->ProcessRequest(request, static_cast<vtkInformationVector**>(nullptr), outputs) &&
-           ExtentOf(outputs->GetInformationObject(0), extent);
-  }
-
-private:
-  static bool ExtentOf(vtkInformation* info, banyan::Box& extent)
-  {
-    if (!info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
-    {
-      return false;
-    }
-    const int* e = info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
-    extent = { { e[0], e[2], e[4] }, { e[1] + 1, e[3] + 1, e[5] + 1 } };
-    return true;
+    return reader->ProcessRequest(request, static_cast<vtkInformationVector**>(nullptr), outputs)
+             ? outputs->GetInformationObject(0)
+             : nullptr;
   }
 };
 

@@ -227,6 +227,7 @@ TEST_F(DeferredArray, NewInstancesArePlain)
   EXPECT_TRUE(made->IsA("vtkFloatArray"));
   EXPECT_EQ(vtkFloatArray::SafeDownCast(this->Array), nullptr);
   EXPECT_EQ(vtkArrayDownCast<vtkFloatArray>(this->Array), nullptr);
+  EXPECT_FALSE(this->Array->HasStandardMemoryLayout()) << "VTK would cast it to a plain array";
 }
 
 TEST_F(DeferredArray, WritingEndsTheHandle)

@@ -1,0 +1,138 @@
+"""Bad input makes SaveData and OpenDataFile raise, with a sentence that says why, and leaves nothing.
+
+    test_refusals.py --plugin Banyan.so --out FOLDER
+
+The files that were broken on purpose are looked for in BANYAN_DATA_DIR/malformed_basic; without
+them only what can be made here is tested.
+"""
+import glob
+import os
+import sys
+
+import numpy
+from paraview import simple
+
+import make_series
+import session
+
+BROKEN = {
+    "m01_short.mhd": "data not read completely",
+    "m03_missing.mhd": "cannot read data",
+    "v11_trunc.vti": "image is empty",
+}
+AWKWARD = ("m07_one.mhd", "v01_nan.vti", "v04_const.vti", "v07_2d.vti")
+MODES = ({}, {"ErrorBoundMode": "Absolute", "ErrorBound": 0.5})
+
+
+def expect_refusal(what, call, mention):
+    """That a call raises an error which mentions something."""
+    try:
+        call()
+    except RuntimeError as error:
+        print(f"{what}: {error}", flush=True)
+        session.require(mention in str(error), f"{what}: no '{mention}' in '{error}'")
+        return
+    raise AssertionError(f"{what}: nothing was raised")
+
+
+def expect_no_series(what, source, folder, mention, **options):
+    path = os.path.join(folder, "refused.banyan")
+    expect_refusal(what, lambda: simple.SaveData(path, proxy=source, **options), mention)
+    session.require(not glob.glob(path + "*"), f"{what}: something was left behind")
+
+
+def broken_files(data, folder):
+    for name, mention in BROKEN.items():
+        source = simple.OpenDataFile(os.path.join(data, name))
+        for mode in MODES:
+            expect_no_series(name, source, folder, mention, **mode)
+    dims = simple.OpenDataFile(sorted(glob.glob(data + "/series_trouble/dims_*.vti")))
+    for mode in MODES:
+        expect_no_series("dims", dims, folder, "At step 1 (time 1)", **mode)
+    for name in AWKWARD:
+        path = os.path.join(folder, "good.banyan")
+        source = simple.OpenDataFile(os.path.join(data, name))
+        source.UpdatePipeline()
+        simple.SaveData(path, proxy=source)
+        reader = simple.OpenDataFile(path)
+        reader.UpdatePipeline()
+        session.require(reader.GetDataInformation().GetNumberOfPoints() > 0, f"{name}: no points")
+
+
+def changing_series(folder):
+    """A series whose spacing changes; the other changes are tested in Testing/Cxx."""
+    files = [make_series.write_step(folder, "change", 0, (9, 9, 9), (1.0, 1.0, 1.0)),
+             make_series.write_step(folder, "change", 1, (9, 9, 9), (1.0, 1.0, 2.0))]
+    source = simple.OpenDataFile(files)
+    for mode in MODES:
+        expect_no_series("spacing", source, folder, "At step 1", **mode)
+
+
+def cell_data(folder):
+    cells = simple.PointDatatoCellData(Input=simple.Wavelet())
+    expect_no_series("cell data", cells, folder, "'Cell Data to Point Data'")
+
+
+def bad_options(folder):
+    wavelet = simple.Wavelet()
+    expect_no_series("bound", wavelet, folder, "error bound", ErrorBound=-1)
+    expect_no_series("interval", wavelet, folder, "key-frame interval", KeyframeInterval=0)
+    expect_no_series("array", wavelet, folder, "there are: RTData", PointArrays=["nothere"])
+    expect_refusal("folder", lambda: simple.SaveData(
+        os.path.join(folder, "no/such/x.banyan"), proxy=wavelet), "no/such")
+
+
+def damaged_series(folder):
+    path = os.path.join(folder, "damaged.banyan")
+    simple.SaveData(path, proxy=simple.Wavelet(), ErrorBound=0)
+    segment = glob.glob(path + ".d/*")[0]
+    with open(segment, "rb") as file:
+        good = file.read()
+    with open(path, "rb") as file:
+        index = file.read()
+
+    def with_bytes(name, content, call, mention):
+        with open(segment if name.startswith("segment") else path, "wb") as file:
+            file.write(content)
+        expect_refusal(name, call, mention)
+        with open(segment, "wb") as file:
+            file.write(good)
+        with open(path, "wb") as file:
+            file.write(index)
+
+    def update():
+        simple.BanyanSeriesReader(FileName=path).UpdatePipeline()
+
+    numpy.random.seed(3)
+    middle = len(good) // 2
+    flipped = good[:middle] + bytes([good[middle] ^ 1]) + good[middle + 1:]
+    with_bytes("segment, one bit", flipped, update, "damaged.banyan")
+    with_bytes("segment, cut", good[:middle], lambda: simple.OpenDataFile(path), "not readable")
+    with_bytes("index, cut", index[:-9], lambda: simple.OpenDataFile(path), "not readable")
+    with_bytes("index, other", b"what is this?", update, "not a Banyan series")
+    update()
+
+
+def main():
+    parser = session.parser(__doc__)
+    parser.add_argument("--out", required=True)
+    parser.add_argument("--fail", action="store_true", help="save what cannot be saved, and stop")
+    arguments = parser.parse_args()
+    session.begin(arguments)
+    os.makedirs(arguments.out, exist_ok=True)
+    if arguments.fail:
+        # Not caught: the process has to end with a status other than 0.
+        cell_data_only = simple.PointDatatoCellData(Input=simple.Wavelet())
+        simple.SaveData(os.path.join(arguments.out, "x.banyan"), proxy=cell_data_only)
+        sys.exit(0)
+    cell_data(arguments.out)
+    bad_options(arguments.out)
+    changing_series(arguments.out)
+    damaged_series(arguments.out)
+    data = os.path.join(os.environ.get("BANYAN_DATA_DIR", ""), "malformed_basic")
+    if os.path.isdir(data):
+        broken_files(data, arguments.out)
+
+
+if __name__ == "__main__":
+    main()
