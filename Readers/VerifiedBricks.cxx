@@ -12,15 +12,18 @@ void VerifiedBricks::Verify(const SeriesFile& series, const FieldKey& field, con
 {
   if (this->Series != series.Id())
   {
-    this->Good.clear();
+    this->Checked.clear();
     this->Series = series.Id();
   }
   const auto nodes = series.Nodes(field);
+  std::vector<PayloadIdentity>& checked =
+    this->Checked[{ field.Array, field.Component, field.Level }];
+  checked.resize(nodes->size());
   std::vector<std::int64_t> unchecked;
   for (const std::int64_t brick : BricksTouching(series.Layout(field.Level), samples))
   {
     const BrickNode& node = (*nodes)[brick];
-    if (!node.Uniform && this->Good.count(node.Identity) == 0)
+    if (!node.Uniform && !(node.Identity == checked[brick]))
     {
       unchecked.push_back(brick);
     }
@@ -38,7 +41,7 @@ void VerifiedBricks::Verify(const SeriesFile& series, const FieldKey& field, con
     });
   for (const std::int64_t brick : unchecked)
   {
-    this->Good.insert((*nodes)[brick].Identity);
+    checked[brick] = (*nodes)[brick].Identity;
   }
 }
 

@@ -26,6 +26,7 @@ import session
 
 SAMPLES = (41, 34, 29)
 STEPS = 3
+BOUND = 1 / 4096
 TIME = 1.0
 BETWEEN_STEPS = 1.25
 TEMPORAL = ("temporal interpolator",)
@@ -76,7 +77,7 @@ def make_series(folder):
     controller().Barrier()
     source = simple.XMLImageDataReader(FileName=sorted(glob.glob(folder + "/step_*.vti")))
     path = os.path.join(folder, "series.banyan")
-    simple.SaveData(path, proxy=source, WriteTimeSteps=1, ErrorBound=1 / 4096)
+    simple.SaveData(path, proxy=source, WriteTimeSteps=1, ErrorBound=BOUND)
     return path
 
 
@@ -124,6 +125,23 @@ def compare_writer(extension, options, reader, path, folder):
     return compare_data.compare(*(updated(reader(FileName=[file])) for file in files))
 
 
+def compare_values(path):
+    """That every value that all ranks together wrote comes back within the bound, on its place."""
+    reader = readers(path)[1]
+    wrong = []
+    for step in range(STEPS):
+        image = updated(reader, float(step))
+        x0, x1, y0, y1, z0, z1 = image.GetExtent()
+        for name, original in zip("pv", fields(step)):
+            grid = original.reshape(SAMPLES[2], SAMPLES[1], SAMPLES[0], -1)
+            mine = grid[z0:z1 + 1, y0:y1 + 1, x0:x1 + 1]
+            found = compare_data.as_numpy(image.GetPointData().GetArray(name)).reshape(mine.shape)
+            # All ranges are at most 2.
+            if found.size == 0 or numpy.abs(found - mine).max() > 2 * BOUND:
+                wrong.append(f"{name} at step {step}")
+    return wrong
+
+
 def compare_statistics(path):
     deferred, plain = readers(path)
     decoded = simple.TemporalStatistics(Input=simple.BanyanDecode(Input=deferred))
@@ -155,6 +173,7 @@ def main():
         for extension, (options, reader) in WRITERS.items():
             note("writer of " + extension,
                  compare_writer(extension, options, reader, path, arguments.out))
+        note("values", compare_values(path))
         note("temporal statistics of decoded arrays", compare_statistics(path))
         session.require(total >= 30, f"only {total} filters gave anything on this rank")
     if failures:
