@@ -132,7 +132,7 @@ std::vector<double> PipelineInput::Times() const
     return {};
   }
   const double* first = info->Get(Pipeline::TIME_STEPS());
-  const std::vector<double> times(first, first + info->Length(Pipeline::TIME_STEPS()));
+  std::vector<double> times(first, first + info->Length(Pipeline::TIME_STEPS()));
   for (std::size_t i = 1; i < times.size(); ++i)
   {
     if (!(times[i] > times[i - 1]))

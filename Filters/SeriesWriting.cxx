@@ -435,7 +435,7 @@ void SeriesWriting::Transfer(const StepAgreement& step, std::size_t index)
   const std::size_t tupleBytes = TupleBytes(array);
   for (const GatherPlan::Part& message : Messages(step.Plan, tupleBytes))
   {
-    const auto bytes = static_cast<vtkIdType>(message.Samples.Count() * tupleBytes);
+    const auto bytes = message.Samples.Count() * static_cast<vtkIdType>(tupleBytes);
     if (this->Rank == message.Rank && !this->Borrowed(index))
     {
       this->Message.resize(std::max<std::size_t>(this->Message.size(), bytes));

@@ -20,7 +20,7 @@ vtkBanyanSeriesWriter::vtkBanyanSeriesWriter()
 
 vtkBanyanSeriesWriter::~vtkBanyanSeriesWriter()
 {
-  this->SetFileName(nullptr);
+  delete[] this->FileName;
 }
 
 void vtkBanyanSeriesWriter::PrintSelf(ostream& os, vtkIndent indent)

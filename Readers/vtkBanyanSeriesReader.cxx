@@ -76,7 +76,7 @@ vtkBanyanSeriesReader::vtkBanyanSeriesReader()
 
 vtkBanyanSeriesReader::~vtkBanyanSeriesReader()
 {
-  this->SetFileName(nullptr);
+  delete[] this->FileName;
 }
 
 void vtkBanyanSeriesReader::PrintSelf(ostream& os, vtkIndent indent)

@@ -65,6 +65,7 @@ PieceRange RangeOfPiece(
   const int components = static_cast<int>(series.Index().Arrays.at(array).Components.size());
 
   std::vector<std::shared_ptr<const std::vector<BrickNode>>> nodes;
+  nodes.reserve(static_cast<std::size_t>(components));
   for (int component = 0; component < components; ++component)
   {
     nodes.push_back(series.Nodes({ step, array, component, level }));

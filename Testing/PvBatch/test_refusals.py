@@ -60,12 +60,24 @@ def broken_files(data, folder):
 
 
 def changing_series(folder):
-    """A series whose spacing changes; the other changes are tested in Testing/Cxx."""
-    files = [make_series.write_step(folder, "change", 0, (9, 9, 9), (1.0, 1.0, 1.0)),
-             make_series.write_step(folder, "change", 1, (9, 9, 9), (1.0, 1.0, 2.0))]
-    source = simple.OpenDataFile(files)
-    for mode in MODES:
-        expect_no_series("spacing", source, folder, "At step 1", **mode)
+    """Files that ParaView presents as if they were like the first one."""
+    first = make_series.write_step(folder, "change", 0, (9, 9, 9), (1.0, 1.0, 1.0))
+    changed = {
+        "dims": (make_series.write_step(folder, "dims", 1, (9, 8, 9), (1.0, 1.0, 1.0)),
+                 "extent was 0..8 x 0..8 x 0..8 and is 0..8 x 0..7 x 0..8"),
+        "spacing": (make_series.write_step(folder, "spacing", 1, (9, 9, 9), (1.0, 1.0, 2.0)),
+                    "spacing was (1, 1, 1) and is (1, 1, 2)"),
+        "type": (make_series.write_step(folder, "type", 1, (9, 9, 9), (1.0, 1.0, 1.0)),
+                 "of type float and are of type short"),
+    }
+    with open(changed["type"][0], "r+", encoding="ascii") as file:
+        header = file.read().replace("MET_FLOAT", "MET_SHORT")
+        file.seek(0)
+        file.write(header)
+    for what, (second, mention) in changed.items():
+        source = simple.OpenDataFile([first, second])
+        for mode in MODES:
+            expect_no_series(what, source, folder, mention, **mode)
 
 
 def cell_data(folder):
