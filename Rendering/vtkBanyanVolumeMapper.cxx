@@ -67,13 +67,6 @@ void WorldBounds(
   }
 }
 
-/// Smallest factor by which a matrix scales one of the axes.
-double SmallestScale(const glm::dmat4& matrix)
-{
-  return std::min({ glm::length(glm::dvec3(matrix[0])), glm::length(glm::dvec3(matrix[1])),
-    glm::length(glm::dvec3(matrix[2])) });
-}
-
 } // namespace
 
 struct vtkBanyanVolumeMapper::Internals
@@ -288,10 +281,10 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
 
   std::vector<banyan::OpaquePixel> pixels = self.Framebuffer.Read(renderer, rect);
   banyan::CombineBehind(*self.Communicator, self.RankOrderBehind, rect, pixels);
-  banyan::RayScene scene{ camera, rect, toWorld * self.Field.IndexToPhysical(),
+  // Lengths are those of the data, before the prop is scaled, as in VTK's own volume mappers.
+  banyan::RayScene scene{ camera.InSpace(toWorld), rect, self.Field.IndexToPhysical(),
     self.Field.DomainCells(), banyan::MakeTransferFunction(volume->GetProperty()),
-    this->SampleDistanceVoxels * self.Field.CellSize() * SmallestScale(toWorld) };
-  scene.Transfer.UnitDistance *= SmallestScale(toWorld);
+    this->SampleDistanceVoxels * self.Field.CellSize() };
   scene.Depth = banyan::DepthsOf(pixels);
 
   const std::uint64_t bytesBefore = self.Field.BytesRead();
