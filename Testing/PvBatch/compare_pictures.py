@@ -13,8 +13,6 @@ import json
 import os
 import sys
 
-import numpy
-
 import pictures
 
 RIM_PIXELS = 3
@@ -26,19 +24,6 @@ def load_figures(folder):
         sys.exit(f"{path} is missing: the scenes were not drawn to the end")
     with open(path, encoding="utf-8") as file:
         return json.load(file)
-
-
-def rim(bare):
-    """Pixels of the picture without the volume whose neighbours look quite different."""
-    result = numpy.zeros(bare.shape[:2], dtype=bool)
-    for axis in (0, 1):
-        steps = numpy.abs(numpy.diff(bare, axis=axis)).max(axis=2) > 40
-        first = [slice(None)] * 2
-        second = [slice(None)] * 2
-        first[axis], second[axis] = slice(0, -1), slice(1, None)
-        result[tuple(first)] |= steps
-        result[tuple(second)] |= steps
-    return result
 
 
 def compare_picture(scene, arguments):
@@ -55,7 +40,8 @@ def compare_picture(scene, arguments):
     if wrong == 0:
         return None
     bare = os.path.join(arguments.reference, scene + ".bare.png")
-    if wrong <= RIM_PIXELS and os.path.exists(bare) and not (beyond & ~rim(pictures.load(bare))).any():
+    if wrong <= RIM_PIXELS and os.path.exists(bare) and \
+            not (beyond & ~pictures.rim(pictures.load(bare))).any():
         print(f"{scene}: they lie on the rim of the geometry")
         return None
     pictures.save(os.path.join(arguments.out, scene + ".difference.png"),

@@ -35,7 +35,7 @@ def values(samples, step):
 
 
 def write_step(folder, name, step, samples, spacing):
-    """Raw values and a MetaImage header, the grid centred at the origin; its path."""
+    """Raw values and a MetaImage header, the grid centred at the origin; the header's path."""
     origin = [-0.5 * h * (n - 1) for h, n in zip(spacing, samples)]
     stem = os.path.join(folder, f"{name}_{step}")
     values(samples, step).tofile(stem + ".raw")

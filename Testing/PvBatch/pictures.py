@@ -37,6 +37,23 @@ def difference(a, b):
     return numpy.abs(a - b).max(axis=2)
 
 
+def rim(picture, width=1):
+    """Pixels that are at most `width` pixels from a neighbour that looks quite different."""
+    result = numpy.zeros(picture.shape[:2], dtype=bool)
+    for axis in (0, 1):
+        steps = numpy.abs(numpy.diff(picture, axis=axis)).max(axis=2) > 40
+        first, second = [slice(None)] * 2, [slice(None)] * 2
+        first[axis], second[axis] = slice(0, -1), slice(1, None)
+        result[tuple(first)] |= steps
+        result[tuple(second)] |= steps
+    for _ in range(width - 1):
+        padded = numpy.pad(result, 1)
+        height, length = result.shape
+        result = numpy.any([padded[y:y + height, x:x + length]
+                            for y in range(3) for x in range(3)], axis=0)
+    return result
+
+
 def psnr(a, b):
     """Peak signal-to-noise ratio in dB over all pixels and channels, for a peak of 255."""
     mean_square = ((a - b).astype(float) ** 2).mean()
