@@ -210,6 +210,15 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
   self.Field.Update(*self.Communicator, self.PieceOf(this, volume));
   self.Bounds = self.Field.Bounds();
   self.BoundsKnown = true;
+  if (self.Field.Empty())
+  {
+    // Nothing with bounds is there to be rendered, so this may be the only place to say why.
+    const std::string problem = banyan::AgreeOnError(*self.Communicator, self.Field.Problem());
+    if (!problem.empty())
+    {
+      this->ReportOnce(problem);
+    }
+  }
 }
 
 double* vtkBanyanVolumeMapper::GetBounds()
