@@ -149,7 +149,8 @@ class Sessions:
             print(f"--- {step.__name__}", flush=True)
             step()
         _, last = self.scene()
-        self.expect(pictures.difference(first, last).max() == 0, "all is as it was at the beginning")
+        self.expect(pictures.difference(first, last).max() == 0,
+                    "all is as it was at the beginning")
         session.clear()
 
 

@@ -94,8 +94,9 @@ def colors_of(array, low, high, opacities=(0.0, 0.0, 0.01, 0.04, 0.12)):
     """Colour and opacity function over [low, high]; opacities at equal distances."""
     points = [low + (high - low) * i / 4 for i in range(5)]
     lookup = simple.GetColorTransferFunction(array)
-    lookup.RGBPoints = [points[0], 0.1, 0.2, 0.9, points[1], 0.1, 0.8, 0.9, points[2], 0.3, 0.9, 0.3,
-                        points[3], 0.95, 0.8, 0.2, points[4], 0.9, 0.2, 0.1]
+    lookup.RGBPoints = [points[0], 0.1, 0.2, 0.9, points[1], 0.1, 0.8, 0.9,
+                        points[2], 0.3, 0.9, 0.3, points[3], 0.95, 0.8, 0.2,
+                        points[4], 0.9, 0.2, 0.1]
     lookup.ColorSpace = "RGB"
     opacity = simple.GetOpacityTransferFunction(array)
     opacity.Points = [number for point, value in zip(points, opacities)
@@ -268,8 +269,8 @@ def translucent_surface_beside():
     # Of few cells: ParaView redistributes it through XML, which Debian's parser cuts off.
     nothing = ("nothing", (0, 0, 0), 0, (0, 0, 0))
     glass = ("glass", (-29, 17, 5), 5, (0.9, 0.4, 0.9))
-    # ParaView blends glass on one rank and on many with another rounding, and what looks like an edge
-    # to its smoothing hangs on the last bit.
+    # ParaView blends glass on one rank and on many with another rounding, and what looks like an
+    # edge to its smoothing hangs on the last bit.
     view.UseFXAA = 0
     return Drawn(view, [wavelet(view)], [spheres(view, (nothing, glass), 6, 0.5)],
                  volume_pixels=20000)
