@@ -80,6 +80,8 @@ struct vtkBanyanVolumeMapper::Internals
   bool BoundsKnown = false;
 
   banyan::FieldPiece PieceOf(vtkBanyanVolumeMapper* mapper, vtkVolume* volume) const;
+  void Publish(const banyan::FrameStatistics& frame, std::uint64_t bytesRead, double seconds,
+    vtkBanyanFrameStatistics* out) const;
 };
 
 vtkStandardNewMacro(vtkBanyanVolumeMapper);
@@ -231,6 +233,26 @@ double* vtkBanyanVolumeMapper::GetBounds()
   return this->Bounds;
 }
 
+/// Collective.
+void vtkBanyanVolumeMapper::Internals::Publish(const banyan::FrameStatistics& frame,
+  std::uint64_t bytesRead, double seconds, vtkBanyanFrameStatistics* out) const
+{
+  const auto sum = [this](std::uint64_t value) {
+    return static_cast<vtkIdType>(banyan::AllSum(*this->Communicator, static_cast<double>(value)));
+  };
+  out->SetBytesRead(sum(bytesRead));
+  out->SetCacheBytes(sum(banyan::BrickCache::Process().GetStatistics().Bytes));
+  out->SetTotalSeconds(seconds);
+  out->SetRenderSeconds(frame.RenderSeconds);
+  out->SetCompositeSeconds(frame.CompositeSeconds);
+  out->SetImbalance(frame.Imbalance);
+  out->SetSamplesTaken(static_cast<vtkIdType>(frame.SamplesTaken));
+  out->SetBricksDrawn(static_cast<vtkIdType>(frame.BricksDrawn));
+  out->SetBricksSkipped(static_cast<vtkIdType>(frame.BricksSkipped));
+  out->SetBytesComposited(static_cast<vtkIdType>(frame.BytesComposited));
+  out->SetFrames(out->GetFrames() + 1);
+}
+
 void vtkBanyanVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 {
   if (renderer->GetSelector())
@@ -322,21 +344,7 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   self.Framebuffer.Write(renderer, rect, pixels, /*blend=*/alone);
   self.LastProblem.clear();
 
-  const auto sum = [&self](std::uint64_t value) {
-    return static_cast<vtkIdType>(banyan::AllSum(*self.Communicator, static_cast<double>(value)));
-  };
-  vtkBanyanFrameStatistics* out = this->Statistics;
-  out->SetBytesRead(sum(self.Field.BytesRead() - bytesBefore));
-  out->SetCacheBytes(sum(banyan::BrickCache::Process().GetStatistics().Bytes));
-  out->SetTotalSeconds(timer.Seconds());
-  out->SetRenderSeconds(frame.RenderSeconds);
-  out->SetCompositeSeconds(frame.CompositeSeconds);
-  out->SetImbalance(frame.Imbalance);
-  out->SetSamplesTaken(static_cast<vtkIdType>(frame.SamplesTaken));
-  out->SetBricksDrawn(static_cast<vtkIdType>(frame.BricksDrawn));
-  out->SetBricksSkipped(static_cast<vtkIdType>(frame.BricksSkipped));
-  out->SetBytesComposited(static_cast<vtkIdType>(frame.BytesComposited));
-  out->SetFrames(out->GetFrames() + 1);
+  self.Publish(frame, self.Field.BytesRead() - bytesBefore, timer.Seconds(), this->Statistics);
 }
 
 void vtkBanyanVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)

@@ -21,8 +21,6 @@ struct FrameStatistics
   std::int64_t BricksDrawn = 0;
   std::int64_t BricksSkipped = 0;
   std::uint64_t BytesComposited = 0; ///< sent between ranks to make one picture of N
-  std::uint64_t BytesRead = 0;       ///< of series files, for this frame
-  std::uint64_t CacheBytes = 0;      ///< held by the brick caches of all ranks
 };
 
 /// Draws one picture on all ranks: each casts rays through the cells of its own zone, then the

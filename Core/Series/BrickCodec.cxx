@@ -1,6 +1,7 @@
 #include "Series/BrickCodec.h"
 
 #include "Base/Error.h"
+#include "Base/ForEachScalarType.h"
 #include "Series/Lorenzo.h"
 #include "Series/Zstd.h"
 
@@ -383,16 +384,7 @@ bool HoldsExactly(ScalarType type, double value)
 #define BANYAN_INSTANTIATE(T)                                                                      \
   template EncodedBrick EncodeBrick<T>(                                                            \
     const LatticeNumber<T>*, const T*, const glm::ivec3&, bool, bool, int)
-BANYAN_INSTANTIATE(std::int8_t);
-BANYAN_INSTANTIATE(std::uint8_t);
-BANYAN_INSTANTIATE(std::int16_t);
-BANYAN_INSTANTIATE(std::uint16_t);
-BANYAN_INSTANTIATE(std::int32_t);
-BANYAN_INSTANTIATE(std::uint32_t);
-BANYAN_INSTANTIATE(std::int64_t);
-BANYAN_INSTANTIATE(std::uint64_t);
-BANYAN_INSTANTIATE(float);
-BANYAN_INSTANTIATE(double);
+BANYAN_FOR_EACH_SCALAR_TYPE(BANYAN_INSTANTIATE);
 #undef BANYAN_INSTANTIATE
 
 } // namespace banyan

@@ -1,5 +1,6 @@
 #include "Series/BrickStatistics.h"
 
+#include "Base/ForEachScalarType.h"
 #include "Series/Quantizer.h"
 
 #include <algorithm>
@@ -178,16 +179,7 @@ BrickError MeasureError(
 #define BANYAN_INSTANTIATE(T)                                                                      \
   template BrickSummary Summarize<T>(const T*, const glm::ivec3&, const MaskRange&);               \
   template BrickError MeasureError<T>(const T*, const T*, const glm::ivec3&, const glm::ivec3&)
-BANYAN_INSTANTIATE(std::int8_t);
-BANYAN_INSTANTIATE(std::uint8_t);
-BANYAN_INSTANTIATE(std::int16_t);
-BANYAN_INSTANTIATE(std::uint16_t);
-BANYAN_INSTANTIATE(std::int32_t);
-BANYAN_INSTANTIATE(std::uint32_t);
-BANYAN_INSTANTIATE(std::int64_t);
-BANYAN_INSTANTIATE(std::uint64_t);
-BANYAN_INSTANTIATE(float);
-BANYAN_INSTANTIATE(double);
+BANYAN_FOR_EACH_SCALAR_TYPE(BANYAN_INSTANTIATE);
 #undef BANYAN_INSTANTIATE
 
 } // namespace banyan

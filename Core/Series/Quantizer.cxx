@@ -1,6 +1,7 @@
 #include "Series/Quantizer.h"
 
 #include "Base/Error.h"
+#include "Base/ForEachScalarType.h"
 #include "Series/Bytes.h"
 
 #include <algorithm>
@@ -259,16 +260,7 @@ void Dequantize(const Quantizer& quantizer, std::int64_t base, const std::uint32
 #define BANYAN_INSTANTIATE(T)                                                                      \
   template bool Quantize<T>(const Quantizer&, const T*, std::size_t, LatticeNumber<T>*, T*);       \
   template void Dequantize<T>(const Quantizer&, std::int64_t, const std::uint32_t*, std::size_t, T*)
-BANYAN_INSTANTIATE(std::int8_t);
-BANYAN_INSTANTIATE(std::uint8_t);
-BANYAN_INSTANTIATE(std::int16_t);
-BANYAN_INSTANTIATE(std::uint16_t);
-BANYAN_INSTANTIATE(std::int32_t);
-BANYAN_INSTANTIATE(std::uint32_t);
-BANYAN_INSTANTIATE(std::int64_t);
-BANYAN_INSTANTIATE(std::uint64_t);
-BANYAN_INSTANTIATE(float);
-BANYAN_INSTANTIATE(double);
+BANYAN_FOR_EACH_SCALAR_TYPE(BANYAN_INSTANTIATE);
 #undef BANYAN_INSTANTIATE
 
 } // namespace banyan
