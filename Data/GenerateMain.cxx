@@ -1,89 +1,60 @@
-#include "FlowSimulation.h"
 #include "GenerateOptions.h"
-#include "HotBlobs.h"
 #include "ImageSeriesWriter.h"
+#include "RawSeriesWriter.h"
+#include "SeriesCatalog.h"
 
-#include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
 
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <new>
+#include <optional>
 
 namespace
 {
 
-constexpr double BoxEdge = 6.283185307179586;
-
-banyan::FlowParameters ParametersFor(int size)
-{
-  banyan::FlowParameters parameters;
-  // The finest eddies must not be finer than the grid. They shrink as Reynolds^(-3/4)
-  // (Kolmogorov), so the viscosity that a grid carries goes with size^(-4/3).
-  parameters.Viscosity = static_cast<float>(0.0045 * std::pow(size / 64.0, -4.0 / 3.0));
-  parameters.Diffusivity = parameters.Viscosity;
-  return parameters;
-}
-
-banyan::ImageArray Gather(const banyan::FlowSimulation& flow, const std::string& name)
-{
-  banyan::ImageArray array;
-  array.Name = name;
-  if (name == "temperature")
-  {
-    array.Values = flow.Temperature();
-    return array;
-  }
-  const auto vectors = name == "velocity" ? flow.Velocity() : flow.Vorticity();
-  array.Components = name == "velocity" ? 3 : 1;
-  const std::size_t count = vectors[0].size();
-  array.Values.resize(count * array.Components);
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    const float x = vectors[0][i], y = vectors[1][i], z = vectors[2][i];
-    if (name == "velocity")
-    {
-      array.Values[3 * i] = x;
-      array.Values[3 * i + 1] = y;
-      array.Values[3 * i + 2] = z;
-    }
-    else
-    {
-      array.Values[i] = std::sqrt(x * x + y * y + z * z);
-    }
-  }
-  return array;
-}
-
 void Generate(const banyan::GenerateOptions& options)
 {
+  const banyan::SeriesKind& kind = banyan::FindSeriesKind(options.Series);
   banyan::ThreadPool pool(
     options.Threads > 0 ? options.Threads : banyan::ThreadPool::DefaultWidth());
-  banyan::ImageSeriesWriter writer(options.Output, "flow", options.Size, BoxEdge);
-  banyan::FlowSimulation flow(options.Size, ParametersFor(options.Size), pool);
-  const banyan::HotBlobs blobs(options.Seed, static_cast<float>(2.0 * BoxEdge / options.Size));
-  const auto still = [](float, float, float) { return 0.0f; };
-  flow.SetState(
-    { still, still, still }, [&](float x, float y, float z) { return blobs.Temperature(x, y, z); });
+  std::optional<banyan::ImageSeriesWriter> images;
+  if (!options.Output.empty())
+  {
+    images.emplace(options.Output, kind.FileName, options.Size, kind.Edge);
+  }
+  std::optional<banyan::RawSeriesWriter> raw;
+  if (!options.Raw.empty())
+  {
+    raw.emplace(options.Raw);
+  }
 
   const banyan::Timer timer;
-  for (int step = 0; step < options.Steps; ++step)
-  {
-    const double time =
-      options.Steps > 1 ? options.Duration * step / (options.Steps - 1) : options.Duration;
-    flow.AdvanceTo(time);
-    std::vector<banyan::ImageArray> arrays;
-    for (const std::string& name : options.Arrays)
+  int done = 0;
+  kind.Generate(options, pool,
+    [&](double time, const std::vector<banyan::ImageArray>& arrays)
     {
-      arrays.push_back(Gather(flow, name));
-    }
-    writer.AddStep(time, arrays);
-    std::fprintf(stderr, "step %d of %d, time %.3f, %lld flow steps, %.1f s\n", step + 1,
-      options.Steps, time, static_cast<long long>(flow.StepsTaken()), timer.Seconds());
+      if (images)
+      {
+        images->AddStep(time, arrays);
+      }
+      if (raw)
+      {
+        raw->AddStep(arrays.at(0).Values);
+      }
+      std::fprintf(
+        stderr, "step %d of %d, time %.3f, %.1f s\n", ++done, options.Steps, time, timer.Seconds());
+    });
+  if (images)
+  {
+    images->Finish();
   }
-  writer.Finish();
+  if (raw)
+  {
+    raw->Finish();
+  }
 }
 
 } // namespace

@@ -1,10 +1,11 @@
 #include "GenerateOptions.h"
 
+#include "SeriesCatalog.h"
+
 #include "Base/Error.h"
 
 #include <algorithm>
 #include <charconv>
-#include <set>
 #include <sstream>
 
 namespace banyan
@@ -30,19 +31,22 @@ Number ParseNumber(
   return value;
 }
 
-std::vector<std::string> ParseArrays(const std::string& text)
+std::string Joined(const std::vector<std::string>& names)
 {
-  const std::set<std::string> known = { "temperature", "velocity", "vorticity" };
+  std::string text;
+  for (const std::string& name : names)
+  {
+    text += (text.empty() ? "" : ", ") + name;
+  }
+  return text;
+}
+
+std::vector<std::string> ParseNames(const std::string& text)
+{
   std::vector<std::string> names;
   std::istringstream list(text);
   for (std::string name; std::getline(list, name, ',');)
   {
-    if (known.count(name) == 0 || std::count(names.begin(), names.end(), name) != 0)
-    {
-      throw Error("Option --arrays takes temperature, velocity and vorticity, each once and "
-                  "separated by commas, not \"" +
-                  text + "\".");
-    }
     names.push_back(name);
   }
   if (names.empty())
@@ -50,6 +54,44 @@ std::vector<std::string> ParseArrays(const std::string& text)
     throw Error("Option --arrays needs at least one name.");
   }
   return names;
+}
+
+void CheckArrays(const std::vector<std::string>& names, const SeriesKind& kind)
+{
+  for (const std::string& name : names)
+  {
+    if (std::count(kind.Arrays.begin(), kind.Arrays.end(), name) == 0 ||
+        std::count(names.begin(), names.end(), name) != 1)
+    {
+      throw Error("Option --arrays of the series " + kind.Name + " takes " + Joined(kind.Arrays) +
+                  ", each at most once and separated by commas, not \"" + Joined(names) + "\".");
+    }
+  }
+}
+
+/// Sets what the arguments left out, and checks what only makes sense together.
+void Complete(GenerateOptions& options)
+{
+  const SeriesKind& kind =
+    FindSeriesKind(options.Series.empty() ? SeriesCatalog().at(0).Name : options.Series);
+  options.Series = kind.Name;
+  options.Size = options.Size > 0 ? options.Size : kind.DefaultSize;
+  options.Steps = options.Steps > 0 ? options.Steps : kind.DefaultSteps;
+  options.Duration = options.Duration >= 0.0 ? options.Duration : kind.DefaultDuration;
+  if (options.Arrays.empty())
+  {
+    options.Arrays = { kind.Arrays.at(0) };
+  }
+  CheckArrays(options.Arrays, kind);
+  if (options.Size % 2 != 0)
+  {
+    throw Error("Option --size needs an even number.");
+  }
+  if (options.Output.empty() && options.Raw.empty())
+  {
+    throw Error("Option --output is needed: the folder that the series goes to. "
+                "(Or --raw: a file for its first array alone.)");
+  }
 }
 
 } // namespace
@@ -73,8 +115,12 @@ GenerateOptions ParseGenerateOptions(const std::vector<std::string>& arguments)
       }
       return arguments[++i];
     };
-    if (option == "--output")
+    if (option == "--series")
+      options.Series = value();
+    else if (option == "--output")
       options.Output = value();
+    else if (option == "--raw")
+      options.Raw = value();
     else if (option == "--size")
       options.Size = ParseNumber(option, value(), 8, 2048);
     else if (option == "--steps")
@@ -86,35 +132,43 @@ GenerateOptions ParseGenerateOptions(const std::vector<std::string>& arguments)
     else if (option == "--duration")
       options.Duration = ParseNumber(option, value(), 0.0, 1000.0);
     else if (option == "--arrays")
-      options.Arrays = ParseArrays(value());
+      options.Arrays = ParseNames(value());
     else
       throw Error("There is no option \"" + option + "\"; --help lists them.");
   }
-  if (options.Size % 2 != 0)
-  {
-    throw Error("Option --size needs an even number.");
-  }
-  if (options.Output.empty())
-  {
-    throw Error("Option --output is needed: the folder that the series goes to.");
-  }
+  Complete(options);
   return options;
 }
 
 std::string GenerateHelp()
 {
-  return "banyan-generate: simulates hot blobs that rise and roll up, and writes them as a time\n"
-         "series of .vti files with a .vti.series file that ParaView opens.\n"
-         "\n"
-         "  --output DIR     folder for the series; made when it does not exist\n"
-         "  --size N         samples per axis, even, 8 to 2048 (default 64)\n"
-         "  --steps N        time steps to write, evenly spaced (default 24)\n"
-         "  --duration T     simulated time of the last step (default 6)\n"
-         "  --arrays A,B     of temperature, velocity, vorticity (its magnitude);\n"
-         "                   the first is the one to colour by (default temperature)\n"
-         "  --seed N         which blobs; equal seeds give equal bytes (default 1)\n"
-         "  --threads N      0 uses all processors (default 0)\n"
-         "  --help           this text\n";
+  std::ostringstream text;
+  text
+    << "banyan-generate: simulates a physical process and writes it as a time series of .vti\n"
+       "files with a .vti.series file that ParaView opens.\n"
+       "\n"
+       "  --series NAME    which process, see below (default "
+    << SeriesCatalog().at(0).Name
+    << ")\n"
+       "  --output DIR     folder for the series; made when it does not exist\n"
+       "  --raw FILE       writes the first array of all steps as little-endian float32 without\n"
+       "                   a header, x fastest, steps slowest; with or instead of --output\n"
+       "  --size N         samples per axis, even, 8 to 2048\n"
+       "  --steps N        time steps to write, evenly spaced\n"
+       "  --duration T     simulated time from the first step to the last\n"
+       "  --arrays A,B     which arrays; the first is the one to colour by\n"
+       "  --seed N         chance's share; equal seeds give equal bytes (default 1)\n"
+       "  --threads N      0 uses all processors (default 0)\n"
+       "  --help           this text\n"
+       "\n"
+       "The series, with their defaults and arrays (the first alone, unless told):\n";
+  for (const SeriesKind& kind : SeriesCatalog())
+  {
+    text << "\n  " << kind.Name << ": " << kind.Description << "\n      --size " << kind.DefaultSize
+         << " --steps " << kind.DefaultSteps << " --duration " << kind.DefaultDuration
+         << "; arrays: " << Joined(kind.Arrays) << "\n";
+  }
+  return text.str();
 }
 
 } // namespace banyan

@@ -8,16 +8,19 @@
 namespace banyan
 {
 
-/// What banyan-generate is asked to do. `GenerateHelp()` explains each one.
+/// What banyan-generate is asked to do. `GenerateHelp()` explains each one. Once parsed, all are
+/// set: what the arguments leave out has the defaults of the series.
 struct GenerateOptions
 {
-  std::string Output;
-  int Size = 64;
-  int Steps = 24;
+  std::string Series; ///< the name of a kind in `SeriesCatalog()`
+  std::string Output; ///< folder for .vti files, or empty
+  std::string Raw;    ///< file for the first array without a header, or empty
+  int Size = 0;
+  int Steps = 0;
   std::uint64_t Seed = 1;
   int Threads = 0;
-  double Duration = 6.0;
-  std::vector<std::string> Arrays = { "temperature" };
+  double Duration = -1.0;
+  std::vector<std::string> Arrays;
   bool Help = false;
 };
 

@@ -1,0 +1,56 @@
+#include "FlowArrays.h"
+
+#include "FlowSimulation.h"
+
+#include <cmath>
+
+namespace banyan
+{
+
+namespace
+{
+
+ImageArray Gather(const FlowSimulation& flow, const std::string& name)
+{
+  ImageArray array;
+  array.Name = name;
+  if (name != "velocity" && name != "vorticity")
+  {
+    array.Values = flow.Temperature();
+    return array;
+  }
+  const auto vectors = name == "velocity" ? flow.Velocity() : flow.Vorticity();
+  array.Components = name == "velocity" ? 3 : 1;
+  const std::size_t count = vectors[0].size();
+  array.Values.resize(count * array.Components);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const float x = vectors[0][i], y = vectors[1][i], z = vectors[2][i];
+    if (name == "velocity")
+    {
+      array.Values[3 * i] = x;
+      array.Values[3 * i + 1] = y;
+      array.Values[3 * i + 2] = z;
+    }
+    else
+    {
+      array.Values[i] = std::sqrt(x * x + y * y + z * z);
+    }
+  }
+  return array;
+}
+
+} // namespace
+
+std::vector<ImageArray> FlowArrays(
+  const FlowSimulation& flow, const std::vector<std::string>& names)
+{
+  std::vector<ImageArray> arrays;
+  for (const std::string& name : names)
+  {
+    arrays.push_back(Gather(flow, name));
+  }
+  return arrays;
+}
+
+} // namespace banyan

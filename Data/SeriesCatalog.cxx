@@ -1,0 +1,38 @@
+#include "SeriesCatalog.h"
+
+#include "HotBlobsSeries.h"
+
+#include "Base/Error.h"
+
+namespace banyan
+{
+
+const std::vector<SeriesKind>& SeriesCatalog()
+{
+  // One per line, in the order of the help text.
+  static const std::vector<SeriesKind> kinds = {
+    HotBlobsSeries(),
+  };
+  return kinds;
+}
+
+const SeriesKind& FindSeriesKind(const std::string& name)
+{
+  std::string names;
+  for (const SeriesKind& kind : SeriesCatalog())
+  {
+    if (kind.Name == name)
+    {
+      return kind;
+    }
+    names += (names.empty() ? "" : ", ") + kind.Name;
+  }
+  throw Error("There is no series \"" + name + "\"; there are: " + names + ".");
+}
+
+double TimeOfStep(const GenerateOptions& options, int step)
+{
+  return options.Steps > 1 ? options.Duration * step / (options.Steps - 1) : options.Duration;
+}
+
+} // namespace banyan

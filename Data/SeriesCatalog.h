@@ -1,0 +1,51 @@
+#ifndef banyan_Data_SeriesCatalog_h
+#define banyan_Data_SeriesCatalog_h
+
+#include "GenerateOptions.h"
+#include "ImageSeriesWriter.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace banyan
+{
+
+class ThreadPool;
+
+/// Takes the steps of a series in order of time: the time, and the arrays that the options name,
+/// in that order, N^3 tuples each.
+using SeriesSink = std::function<void(double time, const std::vector<ImageArray>& arrays)>;
+
+/// One kind of series that banyan-generate can make.
+struct SeriesKind
+{
+  std::string Name;        ///< as `--series` takes it
+  std::string FileName;    ///< start of the names of the files
+  std::string Description; ///< one line for the help text
+  /// What `--arrays` may name; the first is the default.
+  std::vector<std::string> Arrays;
+  int DefaultSize = 128;
+  int DefaultSteps = 50;
+  double DefaultDuration = 1.0; ///< time of the last step; the first is at time 0
+  double Edge = 1.0;            ///< length of the box; sample i lies at i * Edge / N
+  /// Makes the series and hands every step to the sink. Equal options give equal bytes on the same
+  /// machine, for any width of the pool. Throws Error when the simulation fails.
+  std::function<void(const GenerateOptions& options, ThreadPool& pool, const SeriesSink& sink)>
+    Generate;
+};
+
+/// All kinds; the first is the one made when `--series` is not given. To add one, write a function
+/// that returns its `SeriesKind` in a file of its own, and name it in the table in the .cxx.
+const std::vector<SeriesKind>& SeriesCatalog();
+
+/// The kind of that name. Throws Error, with a sentence that lists the names, when there is none.
+const SeriesKind& FindSeriesKind(const std::string& name);
+
+/// Time of a step in [0, options.Steps): evenly spaced from 0 to options.Duration. A series of one
+/// step shows the end.
+double TimeOfStep(const GenerateOptions& options, int step);
+
+} // namespace banyan
+
+#endif
