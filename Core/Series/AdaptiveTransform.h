@@ -1,0 +1,57 @@
+#ifndef banyan_Series_AdaptiveTransform_h
+#define banyan_Series_AdaptiveTransform_h
+
+#include "Series/Histogram.h"
+#include "Series/Transform.h"
+
+namespace banyan
+{
+
+/// How a transform follows a histogram.
+///
+/// Over `Cells` cells of equal width of the range, with d the share of the values in a cell
+/// relative to an even distribution (mean 1), the slope is
+///
+///     s = (1 - Equalization) + Equalization * min(d, cap), scaled so that its mean is 1,
+///
+/// with cap such that greatest slope / least slope <= SlopeRatio. As y spans as much as x does, the
+/// error at x is that of the uniform quantizer with as many levels, divided by s. No value has an
+/// error of more than 1 / (1 - Equalization) times the uniform one (4 times, by default), where
+/// values are dense it is smaller, down to 1 / SlopeRatio of the largest.
+struct AdaptiveRule
+{
+  double Equalization = 0.75; ///< 0 (uniform) up to 0.999
+  double SlopeRatio = 64.0;   ///< 1 up to 2^20
+  int Cells = 256;            ///< 1 to 4095
+};
+
+/// The table of a rule. Knots lie at the edges of cells (those between cells of equal slope are
+/// left out); y = 0 at x = 0, with a knot there, when 0 lies in the range, y = low at x = low
+/// otherwise. Values beyond the range do not count. Deterministic: depends on the histogram's
+/// counts alone.
+/// @param range what the table is made over; finite and not empty. One value, or no values in the
+/// range: the identity.
+/// Throws Error for a rule or range that is not as above.
+///
+/// @par Source: "A study of time-varying octree and difference encoding", section 3.1: "set
+/// quantization levels adaptively" from source data statistics.
+Transform MakeAdaptive(
+  const ValueHistogram& values, const ValueRange& range, const AdaptiveRule& rule = {});
+
+/// How the scale of an asinh transform follows a histogram: the magnitude that `Share` of the
+/// non-zero values lie below, but at least `LeastShareOfGreatest` of the greatest magnitude (what
+/// is smaller counts as noise: logarithms of it would eat up the levels).
+struct AsinhRule
+{
+  double Share = 0.1;                 ///< 0 to 1
+  double LeastShareOfGreatest = 1e-5; ///< 0 to 1: five decades
+};
+
+/// A scale for Transform::Asinh; 1 when there is no value other than 0. Magnitudes beyond the range
+/// count as its ends. Throws Error for a rule that is not as above.
+double AsinhScale(
+  const ValueHistogram& values, const ValueRange& range, const AsinhRule& rule = {});
+
+} // namespace banyan
+
+#endif
