@@ -54,3 +54,43 @@ prepare_mpi()
   export OMPI_MCA_btl_vader_single_copy_mechanism=none
   export OMPI_MCA_rmaps_base_oversubscribe=1
 }
+
+# Prints the path of a program that needs Core alone, such as banyan-info. Builds it when it is
+# missing: in the build folder when there is one, otherwise in build-core, without ParaView.
+core_program()
+{
+  local name="$1" folder
+  for folder in "$BuildFolder" "$RepositoryRoot/build-core"; do
+    if [[ -x "$folder/bin/$name" ]]; then
+      printf '%s\n' "$folder/bin/$name"
+      return
+    fi
+  done
+  folder="$BuildFolder"
+  if [[ ! -f "$folder/CMakeCache.txt" ]]; then
+    command -v cmake >/dev/null ||
+      fail "cmake is missing; Utilities/install-dependencies.sh installs it."
+    folder="$RepositoryRoot/build-core"
+    say "Configuring $name in $folder"
+    cmake -S "$RepositoryRoot" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+      -DBANYAN_WITH_PARAVIEW=OFF -DBANYAN_BUILD_TESTING=OFF >&2 ||
+      fail "the configuration did not succeed."
+  fi
+  say "Building $name, once"
+  cmake --build "$folder" --target "$name" --parallel "$(jobs_for_memory 1000)" >&2 ||
+    fail "$name could not be built."
+  printf '%s\n' "$folder/bin/$name"
+}
+
+# Prints a Python 3 that has all the named modules.
+python_with()
+{
+  local python
+  for python in python3 /usr/bin/python3; do
+    if "$python" -c "import $(printf '%s, sys, ' "$@" | sed 's/, $//')" 2>/dev/null; then
+      printf '%s\n' "$python"
+      return
+    fi
+  done
+  fail "Python 3 with $* is needed; Utilities/install-dependencies.sh installs it."
+}

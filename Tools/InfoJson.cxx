@@ -1,0 +1,183 @@
+#include "InfoJson.h"
+
+#include <nlohmann/json.hpp>
+
+namespace banyan
+{
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+Json OrNull(const std::optional<double>& value)
+{
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json Range(const ValueRange& range)
+{
+  return range.Empty() ? Json(nullptr) : Json::array({ range.Low, range.High });
+}
+
+Json Vector(const glm::dvec3& v)
+{
+  return Json::array({ v.x, v.y, v.z });
+}
+
+Json GridToJson(const Grid& grid)
+{
+  Json json;
+  const glm::ivec3 samples = grid.Samples();
+  const Box& extent = grid.Extent;
+  json["samples"] = { samples.x, samples.y, samples.z };
+  json["extent"] = { extent.Lo.x, extent.Hi.x - 1, extent.Lo.y, extent.Hi.y - 1, extent.Lo.z,
+    extent.Hi.z - 1 };
+  json["origin"] = Vector(grid.Origin);
+  json["spacing"] = Vector(grid.Spacing);
+  // Row by row, as VTK has it.
+  json["direction"] = Json::array();
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int column = 0; column < 3; ++column)
+    {
+      json["direction"].push_back(grid.Direction[column][row]);
+    }
+  }
+  return json;
+}
+
+Json SizeToJson(const SeriesReport& report)
+{
+  const double encoded = static_cast<double>(report.EncodedBytes());
+  Json json;
+  json["encodedBytes"] = report.EncodedBytes();
+  json["indexBytes"] = report.IndexBytes;
+  json["segmentBytes"] = report.SegmentBytes;
+  json["payloadBytes"] = report.Index.Statistics.PayloadBytes;
+  json["rawBytes"] = report.Index.PayloadBytesIn;
+  json["values"] = report.Values();
+  json["bitsPerValue"] = report.BitsPerValue();
+  json["ratio"] = static_cast<double>(report.Index.PayloadBytesIn) / encoded;
+  json["savedAgainstRaw"] = 1.0 - encoded / static_cast<double>(report.Index.PayloadBytesIn);
+  json["savedAgainst8Bit"] = SavedShare(8 * report.EncodedBytes(), report.Values(), 8);
+  return json;
+}
+
+Json SizesToJson(const SeriesReport& report, const CountsBySize& counts)
+{
+  Json json = Json::array();
+  for (std::size_t level = 0; level < counts.size(); ++level)
+  {
+    json.push_back({ { "voxels", report.VoxelsBelow(level) }, { "count", counts[level] } });
+  }
+  return json;
+}
+
+Json LevelToJson(const BrickCounts& counts)
+{
+  return { { "bricks", counts.Bricks }, { "macroVoxels", counts.MacroVoxels },
+    { "unchanged", counts.Unchanged }, { "stored", counts.Stored }, { "shared", counts.Shared },
+    { "withNonFinite", counts.NonFinite }, { "storedBytes", counts.StoredBytes } };
+}
+
+Json ErrorToJson(const ComponentReport& component)
+{
+  const ComponentIndex& index = component.Index;
+  const double bound = index.ErrorBoundAbsolute;
+  Json json;
+  json["bound"] = bound;
+  json["max"] = index.MeasuredMaxError;
+  json["maxOverBound"] = bound > 0.0 ? Json(index.MeasuredMaxError / bound) : Json(nullptr);
+  json["rmse"] = component.Rmse();
+  json["psnr"] = OrNull(Decibels(index.Range.Width(), component.Rmse()));
+  const StepReport* narrowest = component.NarrowestStep();
+  json["narrowestStep"] = narrowest ? Json(narrowest->Step) : Json(nullptr);
+  json["psnrOfNarrowestStep"] =
+    narrowest ? OrNull(Decibels(narrowest->Range.Width(), component.Rmse())) : Json(nullptr);
+  return json;
+}
+
+Json OctreeToJson(const OctreeComparison& octree)
+{
+  const double voxels = static_cast<double>(octree.Voxels);
+  Json json;
+  json["bitsPerVoxel"] = static_cast<double>(octree.UniformBits) / voxels;
+  json["bitsPerVoxelOfCodes"] = static_cast<double>(octree.UniformCodes) / voxels;
+  json["bitsPerVoxelAdaptive"] = static_cast<double>(octree.AdaptiveBits) / voxels;
+  json["savedAgainst8Bit"] = SavedShare(octree.UniformBits, octree.Voxels, 8);
+  json["savedAgainst8BitAdaptive"] = SavedShare(octree.AdaptiveBits, octree.Voxels, 8);
+  return json;
+}
+
+Json ComponentToJson(const InfoReport& report, std::size_t number)
+{
+  const ComponentReport& component = report.Series.Components[number];
+  Json json;
+  json["name"] = component.Name;
+  json["type"] = NameOf(component.Type);
+  json["range"] = Range(component.Index.Range);
+  json["promisedRange"] = Range(component.Index.PromisedRange);
+  json["finite"] = component.Index.FiniteCount;
+  json["nonFinite"] = component.Index.NonFiniteCount;
+  json["error"] = ErrorToJson(component);
+  json["levels"] = Json::array();
+  for (int level = 0; level < report.Series.Index.Levels; ++level)
+  {
+    json["levels"].push_back(LevelToJson(component.Sum(level)));
+  }
+  json["macroVoxelsBySize"] = SizesToJson(report.Series, component.MacroVoxels());
+  json["unchangedBySize"] = SizesToJson(report.Series, component.Unchanged());
+  if (!report.Octrees.empty())
+  {
+    json["octree"] = OctreeToJson(report.Octrees[number]);
+  }
+  json["steps"] = Json::array();
+  return json;
+}
+
+Json SummaryToJson(const TimeSummary& summary)
+{
+  return { { "count", summary.Count }, { "median", summary.Median }, { "mean", summary.Mean },
+    { "percentile95", summary.Percentile95 } };
+}
+
+} // namespace
+
+std::string InfoToJson(const InfoReport& report, const DecodeTimes* times)
+{
+  const SeriesIndex& index = report.Series.Index;
+  Json json;
+  json["file"] = report.Series.File;
+  json["grid"] = GridToJson(index.Domain);
+  json["times"] = index.Times;
+  json["segments"] = index.Segments.size();
+  json["brickCells"] = index.BrickCells;
+  json["levels"] = index.Levels;
+  json["errorBound"] = { { "asked", index.ErrorBound },
+    { "mode", index.Mode == ErrorBoundMode::Absolute ? "absolute" : "relative" } };
+  json["size"] = SizeToJson(report.Series);
+  json["components"] = Json::array();
+  for (std::size_t c = 0; c < report.Series.Components.size(); ++c)
+  {
+    json["components"].push_back(ComponentToJson(report, c));
+  }
+  const std::vector<StepColumn> columns = StepColumns(report);
+  for (const StepLine& line : StepLines(report))
+  {
+    Json step;
+    for (const StepColumn& column : columns)
+    {
+      step[column.Name] = OrNull(column.Value(line));
+    }
+    json["components"][line.Component]["steps"].push_back(std::move(step));
+  }
+  if (times)
+  {
+    json["microseconds"] = { { "warmBrick", SummaryToJson(times->Warm) },
+      { "coldBrick", SummaryToJson(times->Cold) }, { "open", SummaryToJson(times->Open) } };
+    json["sequentialBytesPerSecond"] = times->SequentialBytesPerSecond;
+  }
+  return json.dump(2) + "\n";
+}
+
+} // namespace banyan

@@ -1,0 +1,19 @@
+#ifndef banyan_Tools_InfoJson_h
+#define banyan_Tools_InfoJson_h
+
+#include "DecodeTimes.h"
+#include "StepTable.h"
+
+#include <string>
+
+namespace banyan
+{
+
+/// The report as a JSON object; Documentation/howto/how-good.md explains its members. Numbers that
+/// do not exist are null.
+/// @param times nullptr when they were not measured
+std::string InfoToJson(const InfoReport& report, const DecodeTimes* times);
+
+} // namespace banyan
+
+#endif

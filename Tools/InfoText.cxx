@@ -1,0 +1,240 @@
+#include "InfoText.h"
+
+#include "TextTable.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace banyan
+{
+namespace
+{
+
+// More lines than fit on a screen help nobody; the CSV has all of them.
+constexpr std::size_t ShownSteps = 12;
+
+std::string Counted(std::size_t count, const std::string& noun)
+{
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+/// Error bounds are mostly given as fractions, 1/512 for example.
+std::string AsFraction(double share)
+{
+  const double inverse = share > 0.0 ? std::round(1.0 / share) : 0.0;
+  return inverse > 1.0 && inverse < 1e6 && 1.0 / inverse == share
+           ? "1/" + std::to_string(static_cast<int>(inverse))
+           : Digits(share);
+}
+
+template <class Vector>
+std::string Numbers(const Vector& v)
+{
+  return Digits(v.x) + " " + Digits(v.y) + " " + Digits(v.z);
+}
+
+std::string Heading(const SeriesReport& report)
+{
+  const SeriesIndex& index = report.Index;
+  const glm::ivec3 n = index.Domain.Samples();
+  const Box& extent = index.Domain.Extent;
+  std::string text = report.File + "\n  " + std::to_string(n.x) + " x " + std::to_string(n.y) +
+                     " x " + std::to_string(n.z) + " samples, " +
+                     Counted(index.Times.size(), "step") + ", times " +
+                     Digits(index.Times.front()) + " to " + Digits(index.Times.back()) + "\n";
+  for (const ArrayIndex& array : index.Arrays)
+  {
+    text += "  array " + array.Name + ": " + NameOf(array.Type);
+    text += array.Components.size() == 1
+              ? "\n"
+              : ", " + Counted(array.Components.size(), "component") + "\n";
+  }
+  text += "  extent";
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    text += " " + std::to_string(extent.Lo[axis]) + ".." + std::to_string(extent.Hi[axis] - 1);
+  }
+  text += ", origin " + Numbers(index.Domain.Origin) + ", spacing " +
+          Numbers(index.Domain.Spacing) + "\n  bricks of " + std::to_string(index.BrickCells) +
+          "^3 cells, " + Counted(static_cast<std::size_t>(index.Levels), "level") + ", " +
+          Counted(index.Segments.size(), "segment") + " of up to " +
+          Counted(static_cast<std::size_t>(index.KeyframeInterval), "step") + "\n";
+  return text;
+}
+
+std::string Size(const SeriesReport& report)
+{
+  const std::uint64_t raw = report.Index.PayloadBytesIn;
+  const std::uint64_t encoded = report.EncodedBytes();
+  const std::uint64_t codes = static_cast<std::uint64_t>(report.Values());
+  TextTable table({ "Size, index and tables counted", "", "bits per value", "encoded saves" });
+  table.AddRow({ "encoded", Megabytes(encoded), Digits(report.BitsPerValue()), "" });
+  table.AddRow({ "raw", Megabytes(raw), Digits(8.0 * static_cast<double>(raw) / codes),
+    Percent(1.0 - static_cast<double>(encoded) / static_cast<double>(raw)) });
+  table.AddRow({ "as 8-bit codes", Megabytes(codes), "8",
+    Percent(1.0 - static_cast<double>(encoded) / static_cast<double>(codes)) });
+  return "\n" + table.Text() + "  encoded: payloads " +
+         Megabytes(report.Index.Statistics.PayloadBytes) + ", tables " +
+         Megabytes(report.SegmentBytes - report.Index.Statistics.PayloadBytes) + ", index " +
+         Megabytes(report.IndexBytes) + "\n";
+}
+
+std::string Errors(const SeriesReport& report)
+{
+  TextTable table({ "Error", "range", "bound", "max |error|", "of bound", "RMSE", "PSNR dB",
+    "narrowest step", "PSNR dB there", "non-finite" });
+  for (const ComponentReport& component : report.Components)
+  {
+    const ComponentIndex& index = component.Index;
+    const double bound = index.ErrorBoundAbsolute;
+    const StepReport* narrowest = component.NarrowestStep();
+    table.AddRow({ component.Name,
+      index.Range.Empty() ? "-" : Digits(index.Range.Low) + " .. " + Digits(index.Range.High),
+      Digits(bound), Digits(index.MeasuredMaxError),
+      bound > 0.0 ? Percent(index.MeasuredMaxError / bound) : "-", Digits(component.Rmse()),
+      Digits(Decibels(index.Range.Width(), component.Rmse())),
+      narrowest ? std::to_string(narrowest->Step) : "-",
+      narrowest ? Digits(Decibels(narrowest->Range.Width(), component.Rmse())) : "-",
+      std::to_string(index.NonFiniteCount) });
+  }
+  const bool relative = report.Index.Mode == ErrorBoundMode::RelativeToSeriesRange;
+  return "\n" + table.Text() + "  asked for: " +
+         (relative ? AsFraction(report.Index.ErrorBound) + " of the range of the series\n"
+                   : Digits(report.Index.ErrorBound) + ", absolute\n");
+}
+
+std::string Bricks(const SeriesReport& report)
+{
+  TextTable table({ "Bricks by level", "bricks", "macro voxels", "unchanged", "stored", "shared",
+    "bytes stored", "with NaN or inf" });
+  for (const ComponentReport& component : report.Components)
+  {
+    for (int level = 0; level < report.Index.Levels; ++level)
+    {
+      const BrickCounts counts = component.Sum(level);
+      table.AddRow(
+        { component.Name + ", level " + std::to_string(level), std::to_string(counts.Bricks),
+          std::to_string(counts.MacroVoxels), std::to_string(counts.Unchanged),
+          std::to_string(counts.Stored), std::to_string(counts.Shared),
+          Megabytes(counts.StoredBytes), std::to_string(counts.NonFinite) });
+    }
+  }
+  return "\n" + table.Text() +
+         "  macro voxels: one value everywhere, nothing stored; unchanged: as at the step before;\n"
+         "  shared: with bytes that an earlier brick of the same segment stores\n";
+}
+
+std::vector<std::string> SizeHeadings(
+  const std::string& first, const SeriesReport& report, std::size_t sizes, bool bricks)
+{
+  std::vector<std::string> headings{ first };
+  for (std::size_t level = 0; level < sizes; ++level)
+  {
+    headings.push_back(std::to_string(
+      bricks ? report.VoxelsBelow(level) : report.VoxelsOf(std::int64_t{ 1 } << level)));
+  }
+  return headings;
+}
+
+std::vector<std::string> SizeRow(const std::string& name, const CountsBySize& counts)
+{
+  std::vector<std::string> row{ name };
+  for (const std::int64_t count : counts)
+  {
+    row.push_back(std::to_string(count));
+  }
+  return row;
+}
+
+/// Which steps of so many a short table shows.
+std::vector<std::size_t> Shown(std::size_t steps)
+{
+  std::vector<std::size_t> shown;
+  const std::size_t count = std::min(steps, ShownSteps);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    shown.push_back(count < 2 ? 0 : i * (steps - 1) / (count - 1));
+  }
+  return shown;
+}
+
+/// Figure 9 of the study: the number of matching blocks by size at each step.
+std::string BySize(const SeriesReport& report, const ComponentReport& component)
+{
+  const std::size_t sizes = component.Steps[0].Unchanged.size();
+  TextTable table(SizeHeadings(component.Name + ", by size in voxels", report, sizes, true));
+  table.AddRow(SizeRow("macro voxels", component.MacroVoxels()));
+  table.AddRow(SizeRow("unchanged subtrees", component.Unchanged()));
+  const CountsBySize all = component.Unchanged();
+  const bool any = std::any_of(all.begin(), all.end(), [](std::int64_t n) { return n != 0; });
+  for (const std::size_t i : Shown(any ? component.Steps.size() : 0))
+  {
+    table.AddRow(SizeRow(
+      "  at step " + std::to_string(component.Steps[i].Step), component.Steps[i].Unchanged));
+  }
+  return "\n" + table.Text();
+}
+
+std::string Octree(
+  const SeriesReport& report, const std::string& name, const OctreeComparison& octree)
+{
+  const double voxels = static_cast<double>(octree.Voxels);
+  TextTable table({ name + " in the study's octrees", "bits per value", "saved of 8 bits" });
+  const auto row = [&](const std::string& what, std::uint64_t bits)
+  {
+    table.AddRow({ what, Digits(static_cast<double>(bits) / voxels),
+      Percent(SavedShare(bits, octree.Voxels, 8)) });
+  };
+  row("uniform quantizer", octree.UniformBits);
+  row("  its codes alone", octree.UniformCodes);
+  row("adaptive quantizer", octree.AdaptiveBits);
+  CountsBySize macro(octree.Steps[0].MacroVoxels.size(), 0);
+  CountsBySize merged(macro.size(), 0);
+  for (const PaperOctreeCounts& step : octree.Steps)
+  {
+    for (std::size_t level = 0; level < macro.size(); ++level)
+    {
+      macro[level] += step.MacroVoxels[level];
+      merged[level] += step.MergedSubtrees[level];
+    }
+  }
+  TextTable sizes(SizeHeadings("its nodes by size in voxels", report, macro.size(), false));
+  sizes.AddRow(SizeRow("macro voxels", macro));
+  sizes.AddRow(SizeRow("merged subtrees", merged));
+  return "\n" + table.Text() + "\n" + sizes.Text();
+}
+
+std::string Times(const DecodeTimes& times)
+{
+  TextTable table({ "Microseconds, one thread", "median", "mean", "95 % below", "measured" });
+  const auto row = [&](const std::string& what, const TimeSummary& summary)
+  {
+    table.AddRow({ what, Digits(summary.Median), Digits(summary.Mean), Digits(summary.Percentile95),
+      std::to_string(summary.Count) });
+  };
+  row("a random brick, warm", times.Warm);
+  row("a random brick, cold", times.Cold);
+  row("opening the series", times.Open);
+  return "\n" + table.Text() +
+         "  all bricks in order: " + Digits(times.SequentialBytesPerSecond / 1e9) +
+         " GB/s of decoded values\n";
+}
+
+} // namespace
+
+std::string InfoToText(const InfoReport& report, const DecodeTimes* times)
+{
+  const SeriesReport& series = report.Series;
+  std::string text = Heading(series) + Size(series) + Errors(series) + Bricks(series);
+  for (const ComponentReport& component : series.Components)
+  {
+    text += BySize(series, component);
+  }
+  for (std::size_t c = 0; c < report.Octrees.size(); ++c)
+  {
+    text += Octree(series, series.Components[c].Name, report.Octrees[c]);
+  }
+  return times ? text + Times(*times) : text;
+}
+
+} // namespace banyan

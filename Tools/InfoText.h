@@ -1,0 +1,18 @@
+#ifndef banyan_Tools_InfoText_h
+#define banyan_Tools_InfoText_h
+
+#include "DecodeTimes.h"
+#include "StepTable.h"
+
+#include <string>
+
+namespace banyan
+{
+
+/// The report for people.
+/// @param times nullptr when they were not measured
+std::string InfoToText(const InfoReport& report, const DecodeTimes* times);
+
+} // namespace banyan
+
+#endif

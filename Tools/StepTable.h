@@ -1,0 +1,56 @@
+#ifndef banyan_Tools_StepTable_h
+#define banyan_Tools_StepTable_h
+
+#include "OctreeComparison.h"
+#include "SeriesReport.h"
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace banyan
+{
+
+/// Everything that banyan-info found out.
+struct InfoReport
+{
+  SeriesReport Series;
+  /// One per component of the report, when it was asked for.
+  std::vector<OctreeComparison> Octrees;
+};
+
+/// One line of the table by steps, with what its columns are made from.
+struct StepLine
+{
+  const InfoReport* Report = nullptr;
+  std::size_t Component = 0; ///< in the report
+  std::size_t Step = 0;      ///< in the component's steps
+
+  const ComponentReport& Of() const { return this->Report->Series.Components[this->Component]; }
+  const StepReport& At() const { return this->Of().Steps[this->Step]; }
+};
+
+/// A column of the table by steps: the same in CSV and JSON. Whoever learns something new about a
+/// step adds a column, and it appears in both.
+struct StepColumn
+{
+  std::string Name; ///< letters, digits and underscores
+  /// Nothing where there is no such number.
+  std::function<std::optional<double>(const StepLine&)> Value;
+};
+
+/// Columns "unchanged_4096" and the like count the greatest nodes of at most that many voxels.
+std::vector<StepColumn> StepColumns(const InfoReport& report);
+
+/// All lines: components in their order, steps within.
+std::vector<StepLine> StepLines(const InfoReport& report);
+
+/// The table as comma-separated values with a line of headings; the first columns are array (with
+/// the component) and the rest as `StepColumns`. Nothing is an empty field.
+std::string StepCsv(const InfoReport& report);
+
+} // namespace banyan
+
+#endif
