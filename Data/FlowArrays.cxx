@@ -7,14 +7,11 @@
 namespace banyan
 {
 
-namespace
-{
-
-ImageArray Gather(const FlowSimulation& flow, const std::string& name)
+ImageArray FlowArray(const FlowSimulation& flow, const std::string& name)
 {
   ImageArray array;
   array.Name = name;
-  if (name != "velocity" && name != "vorticity")
+  if (name == "temperature")
   {
     array.Values = flow.Temperature();
     return array;
@@ -38,19 +35,6 @@ ImageArray Gather(const FlowSimulation& flow, const std::string& name)
     }
   }
   return array;
-}
-
-} // namespace
-
-std::vector<ImageArray> FlowArrays(
-  const FlowSimulation& flow, const std::vector<std::string>& names)
-{
-  std::vector<ImageArray> arrays;
-  for (const std::string& name : names)
-  {
-    arrays.push_back(Gather(flow, name));
-  }
-  return arrays;
 }
 
 } // namespace banyan

@@ -8,10 +8,9 @@ namespace banyan
 
 class FlowSimulation;
 
-/// The present state of a flow as the arrays of these names: "velocity" (three components),
-/// "vorticity" (its magnitude), and any other name for the temperature, whatever it stands for.
-std::vector<ImageArray> FlowArrays(
-  const FlowSimulation& flow, const std::vector<std::string>& names);
+/// The present state of a flow as an array.
+/// @param name "temperature", "velocity" (three components) or "vorticity" (its magnitude)
+ImageArray FlowArray(const FlowSimulation& flow, const std::string& name);
 
 } // namespace banyan
 

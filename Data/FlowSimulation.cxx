@@ -54,27 +54,6 @@ std::vector<PeriodicField*> Pointers(std::vector<PeriodicField>& fields, int fir
   return pointers;
 }
 
-/// Coefficients to plain values; the argument is a copy that the transform may destroy.
-std::vector<float> PlainValues(
-  PeriodicField field, const FieldTransform& transform, ThreadPool& pool)
-{
-  transform.ToValues({ &field }, pool);
-  const int size = field.Size();
-  std::vector<float> values(static_cast<std::size_t>(size) * size * size);
-  for (std::size_t row = 0; row < static_cast<std::size_t>(size) * size; ++row)
-  {
-    std::copy_n(field.Values() + row * field.RowReals(), size, values.data() + row * size);
-  }
-  return values;
-}
-
-PeriodicField Copy(const PeriodicField& source)
-{
-  PeriodicField copy(source.Size());
-  std::copy_n(source.Modes(), source.ModeCount(), copy.Modes());
-  return copy;
-}
-
 } // namespace
 
 FlowSimulation::FlowSimulation(int size, const FlowParameters& parameters, ThreadPool& pool)
@@ -111,6 +90,25 @@ void FlowSimulation::SetState(const std::array<Scalar, 3>& velocity, const Scala
   this->Project();
 }
 
+void FlowSimulation::SetVelocitySpectrum(const Spectrum& spectrum)
+{
+  this->State = MakeFields(4, this->N);
+  this->Pool.ParallelFor(this->N,
+    [&](std::int64_t z)
+    {
+      WaveNumbers{ this->N }.ForCarried(static_cast<int>(z),
+        [&](std::size_t m, float kx, float ky, float kz)
+        {
+          const auto u = spectrum(static_cast<int>(kx), static_cast<int>(ky), static_cast<int>(kz));
+          for (int c = 0; c < 3; ++c)
+          {
+            this->State[c].Modes()[m] = u[c];
+          }
+        });
+    });
+  this->Project();
+}
+
 void FlowSimulation::Project()
 {
   std::vector<PeriodicField> kept = MakeFields(4, this->N);
@@ -142,28 +140,32 @@ void FlowSimulation::AdvanceTo(double time)
   }
 }
 
-void FlowSimulation::Step(double timeLeft)
+double FlowSimulation::Step(double timeLeft)
 {
   // Williamson's coefficients; stage times are 0, 1/3 and 3/4 of the step.
   constexpr float weights[3] = { 0.0f, -5.0f / 9.0f, -153.0f / 128.0f };
   constexpr float shares[3] = { 1.0f / 3.0f, 15.0f / 16.0f, 8.0f / 15.0f };
   constexpr double durations[3] = { 1.0 / 3.0, 5.0 / 12.0, 1.0 / 4.0 };
   double step = 0.0;
+  double time = this->Now;
+  const bool heat = this->Parameters.WithTemperature;
   for (int stage = 0; stage < 3; ++stage)
   {
     this->CopyState();
-    this->Transform.ToValues(Pointers(this->Scratch, 0, 7), this->Pool);
+    this->Transform.ToValues(Pointers(this->Scratch, 0, heat ? 7 : 6), this->Pool);
     if (stage == 0)
     {
       step = this->StableTimeStep(timeLeft);
     }
-    this->FormProducts();
-    this->Transform.ToModes(Pointers(this->Scratch, 0, 6), this->Pool);
+    this->FormProducts(time);
+    this->Transform.ToModes(Pointers(this->Scratch, 0, heat ? 6 : 3), this->Pool);
     this->AddRates(weights[stage], static_cast<float>(step));
     this->AddAndDiffuse(shares[stage], durations[stage] * step);
+    time += durations[stage] * step;
   }
   this->Now += step;
   ++this->Steps;
+  return step;
 }
 
 void FlowSimulation::CopyState()
@@ -227,9 +229,35 @@ double FlowSimulation::StableTimeStep(double timeLeft) const
   return std::min({ stable, static_cast<double>(this->Parameters.LongestTimeStep), timeLeft });
 }
 
-void FlowSimulation::FormProducts()
+std::vector<float> FlowSimulation::ForcingOnPlane(int z, double time) const
 {
-  const std::size_t slice = static_cast<std::size_t>(this->N) * this->State[0].RowReals();
+  const FlowForcing* forcing = this->Parameters.Forcing;
+  if (forcing == nullptr || !forcing->ActsOnPlane(z))
+  {
+    return {};
+  }
+  const std::size_t count = static_cast<std::size_t>(this->N) * this->N;
+  std::vector<float> accelerations(3 * count);
+  for (int y = 0; y < this->N; ++y)
+  {
+    for (int x = 0; x < this->N; ++x)
+    {
+      const std::array<float, 3> velocity = { this->Scratch[0].Value(x, y, z),
+        this->Scratch[1].Value(x, y, z), this->Scratch[2].Value(x, y, z) };
+      const auto acceleration = forcing->Acceleration(x, y, z, time, velocity);
+      for (int c = 0; c < 3; ++c)
+      {
+        accelerations[c * count + static_cast<std::size_t>(y) * this->N + x] = acceleration[c];
+      }
+    }
+  }
+  return accelerations;
+}
+
+void FlowSimulation::FormProducts(double time)
+{
+  const std::size_t row = this->State[0].RowReals();
+  const std::size_t slice = static_cast<std::size_t>(this->N) * row;
   std::array<float*, 7> f;
   for (int i = 0; i < 7; ++i)
   {
@@ -238,17 +266,26 @@ void FlowSimulation::FormProducts()
   this->Pool.ParallelFor(this->N,
     [&](std::int64_t z)
     {
+      const std::vector<float> forcing = this->ForcingOnPlane(static_cast<int>(z), time);
       for (std::size_t i = z * slice; i < (z + 1) * slice; ++i)
       {
         const float u = f[0][i], v = f[1][i], w = f[2][i];
         const float a = f[3][i], b = f[4][i], c = f[5][i];
-        const float t = f[6][i];
         f[0][i] = v * c - w * b;
         f[1][i] = w * a - u * c;
         f[2][i] = u * b - v * a;
-        f[3][i] = u * t;
-        f[4][i] = v * t;
-        f[5][i] = w * t;
+        if (this->Parameters.WithTemperature)
+        {
+          const float t = f[6][i];
+          f[3][i] = u * t;
+          f[4][i] = v * t;
+          f[5][i] = w * t;
+        }
+      }
+      for (std::size_t i = 0; i < forcing.size(); ++i)
+      {
+        const std::size_t line = i / this->N, c = line / this->N, y = line % this->N;
+        f[c][z * slice + y * row + i % this->N] += forcing[i];
       }
     });
 }
@@ -272,7 +309,7 @@ void FlowSimulation::AddRates(float weight, float timeStep)
           const Complex heating =
             -TimesI(kx * this->Scratch[3].Modes()[m] + ky * this->Scratch[4].Modes()[m] +
                     kz * this->Scratch[5].Modes()[m]);
-          for (int c = 0; c < 4; ++c)
+          for (int c = 0; c < (this->Parameters.WithTemperature ? 4 : 3); ++c)
           {
             Complex& rate = this->Rate[c].Modes()[m];
             rate = weight * rate + timeStep * (c < 3 ? force[c] : heating);
@@ -312,78 +349,6 @@ void FlowSimulation::AddAndDiffuse(float share, double seconds)
           }
         });
     });
-}
-
-std::vector<float> FlowSimulation::Temperature() const
-{
-  return PlainValues(Copy(this->State[3]), this->Transform, this->Pool);
-}
-
-std::array<std::vector<float>, 3> FlowSimulation::Velocity() const
-{
-  std::array<std::vector<float>, 3> velocity;
-  for (int c = 0; c < 3; ++c)
-  {
-    velocity[c] = PlainValues(Copy(this->State[c]), this->Transform, this->Pool);
-  }
-  return velocity;
-}
-
-std::array<std::vector<float>, 3> FlowSimulation::Vorticity() const
-{
-  std::array<std::vector<float>, 3> vorticity;
-  for (int c = 0; c < 3; ++c)
-  {
-    const int next = (c + 1) % 3, last = (c + 2) % 3;
-    PeriodicField curl(this->N);
-    for (int z = 0; z < this->N; ++z)
-    {
-      WaveNumbers{ this->N }.ForCarried(z,
-        [&](std::size_t m, float kx, float ky, float kz)
-        {
-          const float k[3] = { kx, ky, kz };
-          curl.Modes()[m] =
-            TimesI(k[next] * this->State[last].Modes()[m] - k[last] * this->State[next].Modes()[m]);
-        });
-    }
-    vorticity[c] = PlainValues(std::move(curl), this->Transform, this->Pool);
-  }
-  return vorticity;
-}
-
-double FlowSimulation::KineticEnergy() const
-{
-  double energy = 0.0;
-  for (int z = 0; z < this->N; ++z)
-  {
-    WaveNumbers{ this->N }.ForCarried(z,
-      [&](std::size_t m, float kx, float, float)
-      {
-        // Modes with kx > 0 stand for themselves and for their conjugates.
-        const double times = kx > 0.0f ? 1.0 : 0.5;
-        for (int c = 0; c < 3; ++c)
-        {
-          energy += times * std::norm(std::complex<double>(this->State[c].Modes()[m]));
-        }
-      });
-  }
-  return energy;
-}
-
-double FlowSimulation::LargestDivergence() const
-{
-  double largest = 0.0;
-  for (int z = 0; z < this->N; ++z)
-  {
-    WaveNumbers{ this->N }.ForCarried(z,
-      [&](std::size_t m, float kx, float ky, float kz)
-      {
-        const Complex divergence = kx * this->State[0].Modes()[m] + ky * this->State[1].Modes()[m] +
-                                   kz * this->State[2].Modes()[m];
-        largest = std::max(largest, static_cast<double>(std::abs(divergence)));
-      });
-  }
-  return largest;
 }
 
 } // namespace banyan

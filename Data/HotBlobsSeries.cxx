@@ -36,7 +36,12 @@ void Generate(const GenerateOptions& options, ThreadPool& pool, const SeriesSink
   for (int step = 0; step < options.Steps; ++step)
   {
     flow.AdvanceTo(TimeOfStep(options, step));
-    sink(TimeOfStep(options, step), FlowArrays(flow, options.Arrays));
+    std::vector<ImageArray> arrays;
+    for (const std::string& name : options.Arrays)
+    {
+      arrays.push_back(FlowArray(flow, name));
+    }
+    sink(TimeOfStep(options, step), arrays);
   }
 }
 

@@ -1,6 +1,8 @@
 #include "SeriesCatalog.h"
 
 #include "HotBlobsSeries.h"
+#include "JetSeries.h"
+#include "TurbulenceSeries.h"
 
 #include "Base/Error.h"
 
@@ -12,6 +14,8 @@ const std::vector<SeriesKind>& SeriesCatalog()
   // One per line, in the order of the help text.
   static const std::vector<SeriesKind> kinds = {
     HotBlobsSeries(),
+    TurbulenceSeries(),
+    JetSeries(),
   };
   return kinds;
 }

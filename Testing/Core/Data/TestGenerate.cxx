@@ -2,16 +2,21 @@
 #include "GenerateOptions.h"
 #include "HotBlobs.h"
 #include "ImageSeriesWriter.h"
+#include "SeriesCatalog.h"
 
 #include "Base/Error.h"
+#include "Base/ThreadPool.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <set>
 #include <sstream>
 
 namespace fs = std::filesystem;
@@ -105,6 +110,10 @@ TEST_F(Generate, WrongOptionsAreNamed)
   EXPECT_NE(ErrorOf({ "--output", "o", "--seed", "-1" }).find("-1"), std::string::npos);
   EXPECT_NE(ErrorOf({ "--output", "o", "--duration", "nan" }).find("nan"), std::string::npos);
   EXPECT_NE(ErrorOf({ "--output", "o", "--arrays", "heat" }).find("heat"), std::string::npos);
+  EXPECT_NE(ErrorOf({ "--output", "o", "--series", "tea" }).find("hot-blobs"), std::string::npos);
+  EXPECT_NE(
+    ErrorOf({ "--output", "o", "--series", "jet", "--arrays", "heat" }).find("concentration"),
+    std::string::npos);
   EXPECT_NE(ErrorOf({ "--output", "o", "--fast" }).find("--fast"), std::string::npos);
 }
 
@@ -174,4 +183,89 @@ TEST_F(Generate, FailuresAreOneSentenceAndLeaveNothingHalfWritten)
   EXPECT_FALSE(fs::exists(this->Folder / "out" / "flow.vti.series"));
   EXPECT_FALSE(fs::exists(this->Folder / "out" / "flow_0002.vti.partial"));
   EXPECT_TRUE(fs::is_regular_file(this->Folder / "out" / "flow_0001.vti"));
+}
+
+TEST_F(Generate, EverySeriesInTheCatalogueKeepsItsWord)
+{
+  std::set<std::string> names, files;
+  for (const banyan::SeriesKind& kind : banyan::SeriesCatalog())
+  {
+    EXPECT_TRUE(names.insert(kind.Name).second) << kind.Name;
+    EXPECT_TRUE(files.insert(kind.FileName).second) << kind.FileName;
+    EXPECT_NE(banyan::GenerateHelp().find(kind.Description), std::string::npos) << kind.Name;
+    auto options = banyan::ParseGenerateOptions(
+      { "--output", "o", "--series", kind.Name, "--size", "16", "--steps", "3", "--seed", "4" });
+    EXPECT_EQ(options.Duration, kind.DefaultDuration);
+    EXPECT_EQ(options.Arrays, std::vector<std::string>{ kind.Arrays[0] });
+    options.Arrays = kind.Arrays;
+    std::vector<std::vector<float>> results[2];
+    for (const int threads : { 1, 3 })
+    {
+      banyan::ThreadPool pool(threads);
+      double last = -1.0;
+      kind.Generate(options, pool,
+        [&](double time, const std::vector<banyan::ImageArray>& arrays)
+        {
+          EXPECT_GT(time, last);
+          last = time;
+          ASSERT_EQ(arrays.size(), kind.Arrays.size());
+          for (std::size_t a = 0; a < arrays.size(); ++a)
+          {
+            EXPECT_EQ(arrays[a].Name, kind.Arrays[a]);
+            ASSERT_EQ(arrays[a].Values.size(), 16u * 16 * 16 * arrays[a].Components);
+            EXPECT_TRUE(std::all_of(arrays[a].Values.begin(), arrays[a].Values.end(),
+              [](float value) { return std::isfinite(value); }))
+              << kind.Name << ", " << arrays[a].Name;
+            results[threads > 1].push_back(arrays[a].Values);
+          }
+        });
+      EXPECT_DOUBLE_EQ(last, kind.DefaultDuration) << kind.Name;
+    }
+    ASSERT_EQ(results[0].size(), 3 * kind.Arrays.size()) << kind.Name;
+    EXPECT_TRUE(results[0] == results[1]) << kind.Name << " depends on the number of threads";
+    EXPECT_FALSE(results[0].front() == results[0][2 * kind.Arrays.size()])
+      << kind.Name << " does not change";
+  }
+}
+
+TEST_F(Generate, TheSeedDecidesTurbulenceAndJet)
+{
+  for (const std::string name : { "turbulence", "jet" })
+  {
+    std::vector<std::vector<float>> results;
+    for (const char* seed : { "1", "1", "2" })
+    {
+      const auto options = banyan::ParseGenerateOptions(
+        { "--output", "o", "--series", name, "--size", "16", "--steps", "1", "--seed", seed });
+      banyan::ThreadPool pool(2);
+      banyan::FindSeriesKind(name).Generate(options, pool,
+        [&](double, const std::vector<banyan::ImageArray>& arrays)
+        { results.push_back(arrays[0].Values); });
+    }
+    ASSERT_EQ(results.size(), 3u);
+    EXPECT_TRUE(results[0] == results[1]) << name;
+    EXPECT_FALSE(results[0] == results[2]) << name;
+  }
+}
+
+TEST_F(Generate, TheRawFileHoldsTheFirstArrayOfEveryStep)
+{
+  const std::string path = (this->Folder / "raw").string();
+  ASSERT_TRUE(this->Run("--size 8 --steps 2 --duration 0.5 --arrays vorticity,temperature --raw " +
+                        path + " --output " + this->Folder.string()))
+    << this->Messages();
+  const std::string raw = this->Text("raw");
+  const std::size_t step = 8 * 8 * 8 * sizeof(float);
+  ASSERT_EQ(raw.size(), 2 * step);
+  for (int i = 0; i < 2; ++i)
+  {
+    // In the .vti file the same bytes follow their number.
+    const std::string length("\0\x08\0\0\0\0\0\0", 8);
+    EXPECT_NE(this->Text(i == 0 ? "flow_0000.vti" : "flow_0001.vti")
+                .find(Base64(length + raw.substr(i * step, step))),
+      std::string::npos);
+  }
+  EXPECT_FALSE(fs::exists(path + ".partial"));
+  EXPECT_FALSE(this->Run("--size 8 --raw /dev/null/file"));
+  EXPECT_NE(this->Messages().find("/dev/null/file"), std::string::npos);
 }
