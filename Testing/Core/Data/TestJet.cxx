@@ -42,6 +42,25 @@ private:
   bool Acts;
 };
 
+/// Pushes layers to and fro: cos(t) sin(z) along x.
+class Shaker : public banyan::FlowForcing
+{
+public:
+  explicit Shaker(int size)
+    : Cell(2.0 * Pi / size)
+  {
+  }
+  bool ActsOnPlane(int) const override { return true; }
+  std::array<float, 3> Acceleration(
+    int, int, int z, double time, const std::array<float, 3>&) const override
+  {
+    return { static_cast<float>(std::cos(time) * std::sin(z * this->Cell)), 0.0f, 0.0f };
+  }
+
+private:
+  double Cell;
+};
+
 /// A jet for small grids.
 JetParameters Wide()
 {
@@ -79,6 +98,28 @@ TEST(FlowForcing, DragAddsItsRateToTheDecayOfAVortex)
     const double decay = std::exp(-(2.0 * 0.05 + (acts ? 0.7 : 0.0)));
     // The mean keeps its energy: nothing accelerates it.
     EXPECT_NEAR(flow.KineticEnergy(), 0.5 * 0.09 + 0.25 * decay * decay, 1e-4);
+  }
+}
+
+TEST(FlowForcing, IsAskedAtTheRightTimes)
+{
+  ThreadPool pool(1);
+  const int size = 16;
+  const Shaker shaker(size);
+  FlowParameters parameters;
+  parameters.Viscosity = 0.0f;
+  parameters.Forcing = &shaker;
+  parameters.WithTemperature = false;
+  parameters.LongestTimeStep = 0.1f;
+  FlowSimulation flow(size, parameters, pool);
+  const auto zero = [](float, float, float) { return 0.0f; };
+  flow.SetState({ zero, zero, zero }, zero);
+  flow.AdvanceTo(1.0);
+  // The integral of cos(t) is sin(t); of third order, so that steps of 0.1 leave next to nothing.
+  const auto u = flow.Velocity()[0];
+  for (int z = 0; z < size; ++z)
+  {
+    EXPECT_NEAR(u[z * size * size + 7], std::sin(1.0) * std::sin(2.0 * Pi / size * z), 1e-5);
   }
 }
 

@@ -104,6 +104,19 @@ TEST(ScalarTransport, AWindCarriesASmoothBumpWithSecondOrder)
   EXPECT_GT(coarse / fine, 3.0) << "first order would be 2, second is 4";
 }
 
+TEST(ScalarTransport, AWindThatRisesCarriesByItsMean)
+{
+  ThreadPool pool(1);
+  const int size = 32;
+  ScalarTransport transport(size, TwoPi / size, 0.0, pool);
+  const auto wave = [](double x, double, double) { return 0.5 + 0.5 * std::cos(x); };
+  Set(transport, size, wave);
+  transport.Advance(Wind(size, 0.0f, 0.0f, 0.0f), Wind(size, 2.0f, 0.0f, 0.0f), 1.0);
+  EXPECT_LT(
+    MeanError(transport, size, [&](double x, double y, double z) { return wave(x - 1.0, y, z); }),
+    1e-2);
+}
+
 TEST(ScalarTransport, DiffusionDampsWavesAsTheDifferenceQuotientSays)
 {
   ThreadPool pool(1);
