@@ -1,0 +1,171 @@
+#include "CodecMethod.h"
+
+#include "Base/Error.h"
+#include "Base/ThreadPool.h"
+#include "Cache/BrickCache.h"
+#include "Series/SeriesEncoder.h"
+#include "Series/SeriesFile.h"
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+
+namespace banyan::bench
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+
+/// Enough for the steps that a decoder goes back to, and much less than a usual series needs.
+constexpr std::uint64_t CacheBytes = std::uint64_t{ 128 } << 20;
+
+std::uint64_t BytesOnDisk(const std::string& index)
+{
+  std::uint64_t bytes = fs::file_size(index);
+  for (const auto& entry : fs::recursive_directory_iterator(index + ".d"))
+  {
+    bytes += entry.is_regular_file() ? entry.file_size() : 0;
+  }
+  return bytes;
+}
+
+/// Copies the samples that two boxes share.
+void CopyShared(const Box& from, const float* source, const Box& to, float* target)
+{
+  const Box shared = Intersection(from, to);
+  const glm::ivec3 length = shared.Size();
+  const auto offset = [](const Box& box, int x, int y, int z)
+  {
+    const glm::ivec3 n = box.Size();
+    return (std::size_t(z - box.Lo.z) * n.y + (y - box.Lo.y)) * n.x + (x - box.Lo.x);
+  };
+  for (int z = shared.Lo.z; z < shared.Hi.z; ++z)
+  {
+    for (int y = shared.Lo.y; y < shared.Hi.y; ++y)
+    {
+      std::memcpy(target + offset(to, shared.Lo.x, y, z), source + offset(from, shared.Lo.x, y, z),
+        sizeof(float) * static_cast<std::size_t>(std::max(0, length.x)));
+    }
+  }
+}
+
+class BanyanSeries : public EncodedSeries
+{
+public:
+  explicit BanyanSeries(const std::string& index)
+    : IndexPath(index)
+  {
+    this->Forget();
+  }
+
+  std::uint64_t Bytes() const override { return BytesOnDisk(this->IndexPath); }
+
+  void Forget() override
+  {
+    this->Cache = std::make_unique<BrickCache>(CacheBytes);
+    this->File = SeriesFile::Open(this->IndexPath);
+  }
+
+  void DecodeStep(int step, float* values) override
+  {
+    const FieldKey field{ step, 0, 0, 0 };
+    const Box whole{ glm::ivec3(0), this->File->Layout(0).Samples() };
+    ReadRegion(*this->Cache, *this->File, field, whole, values, 1, 0);
+  }
+
+  bool DecodesBricks() const override { return true; }
+
+  /// Past the cache of bricks: each call decodes.
+  void DecodeBrick(int step, const Box& samples, float* values) override
+  {
+    const FieldKey field{ step, 0, 0, 0 };
+    const BrickLayout layout = this->File->Layout(0);
+    const Box bricks = layout.BricksCovering(samples);
+    for (int z = bricks.Lo.z; z < bricks.Hi.z; ++z)
+    {
+      for (int y = bricks.Lo.y; y < bricks.Hi.y; ++y)
+      {
+        for (int x = bricks.Lo.x; x < bricks.Hi.x; ++x)
+        {
+          const std::int64_t brick = layout.IndexOf({ x, y, z });
+          const Box held = layout.SamplesOf(brick);
+          this->Scratch.resize(static_cast<std::size_t>(held.Count()));
+          this->File->DecodeBrick(field, brick, this->Scratch.data());
+          CopyShared(held, this->Scratch.data(), samples, values);
+        }
+      }
+    }
+  }
+
+private:
+  std::string IndexPath;
+  std::shared_ptr<SeriesFile> File;
+  std::unique_ptr<BrickCache> Cache;
+  std::vector<float> Scratch;
+};
+
+class BanyanMethod : public CodecMethod
+{
+public:
+  BanyanMethod(const std::string& name, const EncodeOptions& options)
+    : CodecMethod(name)
+    , Options(options)
+  {
+  }
+
+  std::unique_ptr<EncodedSeries> Encode(
+    const RawSeries& series, const CodecSettings& settings) const override
+  {
+    ArrayDescription array;
+    array.Name = "values";
+    array.ComponentNames = { "" };
+    array.SeriesRanges = { series.FullRange() };
+    // The same absolute bound for every method, whatever range it was made from.
+    EncodeOptions options = this->Options;
+    options.Mode = ErrorBoundMode::Absolute;
+    options.ErrorBound = settings.ErrorBound;
+    const std::string path = settings.WorkFolder + "/series.banyan";
+    ThreadPool pool(1);
+    SeriesEncoder encoder(path, series.Domain(), { array }, options, pool);
+    for (int step = 0; step < series.Steps(); ++step)
+    {
+      encoder.AddStep(step, { { series.Step(step) } });
+    }
+    encoder.Finish();
+    return std::make_unique<BanyanSeries>(path);
+  }
+
+private:
+  EncodeOptions Options;
+};
+
+struct Variant
+{
+  const char* Name;
+  void (*Set)(EncodeOptions&);
+};
+
+/// The rows of the report that are ours: add a line here to measure other settings.
+constexpr Variant Variants[] = {
+  { "banyan", [](EncodeOptions&) {} },
+  { "banyan-fast", [](EncodeOptions& options) { options.CompressionLevel = 1; } },
+  { "banyan-compact", [](EncodeOptions& options) { options.CompressionLevel = 12; } },
+  { "banyan-every-step", [](EncodeOptions& options) { options.KeyframeInterval = 1; } },
+  { "banyan-32", [](EncodeOptions& options) { options.BrickCells = 32; } },
+};
+
+} // namespace
+
+void AppendBanyanMethods(MethodList& methods)
+{
+  for (const Variant& variant : Variants)
+  {
+    EncodeOptions options;
+    variant.Set(options);
+    methods.push_back(std::make_unique<BanyanMethod>(variant.Name, options));
+  }
+}
+
+} // namespace banyan::bench

@@ -1,0 +1,108 @@
+#include "CodecOptions.h"
+
+#include "Base/Error.h"
+
+#include <sstream>
+
+namespace banyan::bench
+{
+namespace
+{
+
+std::vector<std::string> SplitAtCommas(const std::string& text)
+{
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');)
+  {
+    parts.push_back(part);
+  }
+  return parts;
+}
+
+int NumberIn(const std::string& option, const std::string& text, int low, int high)
+{
+  std::size_t end = 0;
+  int number = 0;
+  try
+  {
+    number = std::stoi(text, &end);
+  }
+  catch (const std::exception&)
+  {
+    end = std::string::npos;
+  }
+  if (end != text.size() || number < low || number > high)
+  {
+    throw Error(option + " needs a number from " + std::to_string(low) + " to " +
+                std::to_string(high) + ", not '" + text + "'.");
+  }
+  return number;
+}
+
+} // namespace
+
+CodecOptions ParseCodecOptions(const std::vector<std::string>& arguments)
+{
+  CodecOptions options;
+  for (std::size_t i = 0; i < arguments.size(); ++i)
+  {
+    const std::string& option = arguments[i];
+    const auto value = [&]() -> const std::string&
+    {
+      if (i + 1 == arguments.size())
+      {
+        throw Error(option + " needs a value.");
+      }
+      return arguments[++i];
+    };
+    if (option == "--help")
+      options.Help = true;
+    else if (option == "--append")
+      options.Append = true;
+    else if (option == "--output")
+      options.Output = value();
+    else if (option == "--work")
+      options.Measuring.WorkFolder = value();
+    else if (option == "--methods")
+      options.Methods = SplitAtCommas(value());
+    else if (option == "--repeat")
+      options.Measuring.Repeat = NumberIn(option, value(), 1, 1000);
+    else if (option == "--bricks")
+      options.Measuring.Bricks = NumberIn(option, value(), 0, 1000000);
+    else if (option == "--bits")
+    {
+      options.Bits.clear();
+      for (const std::string& bits : SplitAtCommas(value()))
+        options.Bits.push_back(NumberIn(option, bits, 1, 16));
+    }
+    else if (option.rfind("--", 0) == 0)
+      throw Error("There is no option '" + option + "'; --help lists them.");
+    else
+      options.Series.push_back(option);
+  }
+  if (!options.Help && (options.Output.empty() || options.Series.empty()))
+  {
+    throw Error("--output and at least one description of a series are needed.");
+  }
+  return options;
+}
+
+std::string CodecHelp()
+{
+  return "banyan-bench-codec --output FILE.csv [OPTIONS] SERIES.json...\n"
+         "  Measures size, error and speed of this codec and of its peers, one line per dataset,\n"
+         "  accuracy and method. Fails when one of ours exceeds its error bound.\n"
+         "  SERIES.json     describes a file of raw float32 values beside it:\n"
+         "                  {\"name\": ..., \"file\": ..., \"samples\": [nx, ny, nz], \"steps\": "
+         "n,\n"
+         "                  \"range_percentile\": 100}\n"
+         "  --append        adds to FILE.csv instead of writing it anew\n"
+         "  --bits LIST     bits of accuracy (default 6,8,10,12)\n"
+         "  --methods LIST  only these (default all)\n"
+         "  --repeat N      timed passes of each kind, of which the median counts (default 3)\n"
+         "  --bricks N      random bricks per pass (default 2000; 0 leaves them out)\n"
+         "  --work FOLDER   for encoded files (default: the folder of FILE.csv)\n";
+}
+
+} // namespace banyan::bench
