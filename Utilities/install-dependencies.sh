@@ -2,6 +2,7 @@
 # Installs the Debian packages that Banyan is built, tested and demonstrated with.
 #   install-dependencies.sh          installs those that are missing (as root, or through sudo)
 #   install-dependencies.sh --list   prints their names
+#   install-dependencies.sh --with-peers   also the codecs that Benchmarks/codec.sh compares with
 # Does nothing, and needs neither root nor network, when all are there.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -22,10 +23,13 @@ Packages=(
   python3-numpy python3-matplotlib
 )
 
+PeerPackages=(libzfp-dev libblosc-dev libopenvdb-dev libnanovdb-dev libimath-dev libtbb-dev)
+
 case "${1:-}" in
   "") ;;
+  --with-peers) Packages+=("${PeerPackages[@]}") ;;
   --list) printf '%s\n' "${Packages[@]}"; exit 0 ;;
-  *) sed -n '2,5s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+  *) sed -n '2,6s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
 esac
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then

@@ -16,7 +16,7 @@ def read(path):
 
 
 def documents():
-    return [path for pattern in ("*.md", "Documentation/**/*.md", "Data/*.md")
+    return [path for pattern in ("*.md", "Documentation/**/*.md", "*/README.md")
             for path in glob.glob(os.path.join(ROOT, pattern), recursive=True)]
 
 
