@@ -9,28 +9,32 @@ namespace banyan
 
 /// How a transform follows a histogram.
 ///
-/// Over `Cells` cells of equal width of the range, with d the share of the values in a cell
-/// relative to an even distribution (mean 1), the slope is
+/// Over cells of equal width of the range, with d the share of the values in a cell relative to an
+/// even distribution (mean 1), the slope is
 ///
 ///     s = (1 - Equalization) + Equalization * min(d, cap), scaled so that its mean is 1,
 ///
-/// with cap such that greatest slope / least slope <= SlopeRatio. As y spans as much as x does, the
-/// error at x is that of the uniform quantizer with as many levels, divided by s. No value has an
-/// error of more than 1 / (1 - Equalization) times the uniform one (4 times, by default), where
-/// values are dense it is smaller, down to 1 / SlopeRatio of the largest.
+/// with the cap at which the greatest slope cannot be more than SlopeRatio times the least. As y
+/// spans as much as x does, the error at x is that of the uniform quantizer with as many levels,
+/// divided by s. So no value has an error of more than 1 / (1 - Equalization) times the uniform one
+/// (4 times, by default); where values are dense it is smaller, down to 1 / SlopeRatio of the
+/// largest.
 struct AdaptiveRule
 {
   double Equalization = 0.75; ///< 0 (uniform) up to 0.999
   double SlopeRatio = 64.0;   ///< 1 up to 2^20
-  int Cells = 256;            ///< 1 to 4095
+  int Cells = 256;            ///< 1 to GreatestCells
+
+  static constexpr int GreatestCells = 4094; ///< a table has one knot more, and one for 0
 };
 
-/// The table of a rule. Knots lie at the edges of cells (those between cells of equal slope are
-/// left out); y = 0 at x = 0, with a knot there, when 0 lies in the range, y = low at x = low
-/// otherwise. Values beyond the range do not count. Deterministic: depends on the histogram's
-/// counts alone.
-/// @param range what the table is made over; finite and not empty. One value, or no values in the
-/// range: the identity.
+/// The table of a rule. Knots lie at the edges of cells; those between cells of equal slope are
+/// left out. When 0 lies in the range there is a knot (0, 0), for which an edge is moved there or
+/// added (zeros stay exact, and do not count as values: they need no levels); otherwise y = low at
+/// x = low. Values beyond the range do not count. Deterministic: depends on the histogram's counts
+/// and extremes alone.
+/// @param range what the table is made over; not empty, within +- 2^999. The identity comes back
+/// for a range that doubles do not resolve into cells, and when no value other than 0 lies within.
 /// Throws Error for a rule or range that is not as above.
 ///
 /// @par Source: "A study of time-varying octree and difference encoding", section 3.1: "set

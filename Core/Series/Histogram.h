@@ -1,7 +1,7 @@
 #ifndef banyan_Series_Histogram_h
 #define banyan_Series_Histogram_h
 
-#include "Series/SeriesIndex.h"
+#include "Series/ValueRange.h"
 
 #include <array>
 #include <cstddef>
@@ -12,7 +12,8 @@
 namespace banyan
 {
 
-/// Values of [Low, High): of the greatest bin also infinity's neighbour. Low == High: exactly zero.
+/// How many values lie between Low and High; the end nearer to zero is part of the bin, the other
+/// is part of the next one. Low == High == 0: zeros.
 struct HistogramBin
 {
   double Low = 0.0;
@@ -20,11 +21,18 @@ struct HistogramBin
   std::uint64_t Count = 0;
 };
 
-/// A count of bin numbers, as messages between ranks carry it.
 struct HistogramEntry
 {
   std::uint32_t Bin = 0;
   std::uint64_t Count = 0;
+};
+
+/// All that a histogram knows, for messages between ranks.
+struct HistogramMessage
+{
+  std::vector<HistogramEntry> Entries; ///< of the bins that are not empty
+  std::uint64_t NonFinite = 0;
+  ValueRange Range;
 };
 
 /// A streaming histogram of any numbers, no range needed beforehand: bins over the ordered bit
@@ -50,10 +58,10 @@ public:
   void Add(const T* values, std::size_t count);
 
   void Merge(const ValueHistogram& other);
-  /// Adds what `Entries` of another histogram gave. Throws Error for a bin that does not exist.
-  void Merge(const std::vector<HistogramEntry>& entries);
-  /// Takes the extremes of another histogram, which entries do not carry.
-  void IncludeRange(const ValueRange& range) { this->Extremes.Include(range); }
+  /// Adds what another histogram's Message gave. Throws Error for a bin that does not exist; the
+  /// histogram is then not to be used.
+  void Merge(const HistogramMessage& message);
+  HistogramMessage Message() const;
 
   std::uint64_t FiniteCount() const { return this->Finite; }
   std::uint64_t NonFiniteCount() const { return this->NonFinite; }
@@ -62,28 +70,24 @@ public:
 
   /// Bins that are not empty, from the least values to the greatest.
   std::vector<HistogramBin> Bins() const;
-  std::vector<HistogramEntry> Entries() const;
 
   /// The value that `share` of the values lie at or below, sorted from the least: that of rank
-  /// ceil(share * count), rank 1 at least.
+  /// ceil(share * count) (in double precision), rank 1 at least.
   /// @param share 0 to 1. Throws Error otherwise, and when there is no finite value.
   /// @return `Low`: not above that value, `High`: not below it, less than 1/2048 of it apart; equal
   /// to it where it is zero, the least or the greatest value.
   ValueRange Percentile(double share) const;
 
-  /// Finite values strictly below low or above high, at least: bins that straddle a limit count as
-  /// inside.
+  /// At least so many finite values lie outside of a range: bins that straddle an end, and those
+  /// that touch it, count as inside. None for an empty range.
   std::uint64_t CountOutside(const ValueRange& range) const;
 
-  /// The histogram of |x| instead of x, zeros left out.
-  ValueHistogram Magnitudes() const;
-
 private:
-  static constexpr std::size_t PageCount = 4097; ///< signs times exponents, and zero
   using Page = std::array<std::uint64_t, BinsPerOctave>;
 
-  std::uint64_t& At(std::uint32_t bin);
+  std::uint64_t& CountOf(std::uint32_t bin);
 
+  /// Negative exponents downwards, zero, positive exponents upwards; null: nothing counted.
   std::vector<std::unique_ptr<Page>> Pages;
   std::uint64_t Finite = 0;
   std::uint64_t NonFinite = 0;

@@ -1,7 +1,7 @@
 #ifndef banyan_Series_OpacityWeight_h
 #define banyan_Series_OpacityWeight_h
 
-#include "Series/SeriesIndex.h"
+#include "Series/ValueRange.h"
 
 #include <cstddef>
 #include <vector>

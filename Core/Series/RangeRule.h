@@ -2,7 +2,7 @@
 #define banyan_Series_RangeRule_h
 
 #include "Series/Histogram.h"
-#include "Series/SeriesIndex.h"
+#include "Series/ValueRange.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -3,9 +3,10 @@
 
 #include "Base/ScalarType.h"
 #include "Series/Grid.h"
+#include "Series/Transform.h"
+#include "Series/ValueRange.h"
 
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,26 +18,6 @@ enum class ErrorBoundMode
 {
   RelativeToSeriesRange, ///< times (maximum - minimum) of the component over the whole series
   Absolute               ///< in the units of the data
-};
-
-/// Extremes of the finite values of one component. Empty (Low > High) when there is none.
-struct ValueRange
-{
-  double Low = std::numeric_limits<double>::infinity();
-  double High = -std::numeric_limits<double>::infinity();
-
-  bool Empty() const { return !(this->Low <= this->High); }
-  double Width() const { return this->Empty() ? 0.0 : this->High - this->Low; }
-  void Include(double value)
-  {
-    this->Low = value < this->Low ? value : this->Low;
-    this->High = value > this->High ? value : this->High;
-  }
-  void Include(const ValueRange& other)
-  {
-    this->Low = other.Low < this->Low ? other.Low : this->Low;
-    this->High = other.High > this->High ? other.High : this->High;
-  }
 };
 
 /// One component of one array: its lattice and what was measured while encoding.
@@ -51,6 +32,8 @@ struct ComponentIndex
   double SumSquaredError = 0;    ///< over all finite voxels of all steps; for RMSE and PSNR
   std::int64_t FiniteCount = 0;  ///< voxels (of all steps) that are finite
   std::int64_t NonFiniteCount = 0; ///< NaN and infinities, kept bit-exact
+  /// Of the values before they were put on the lattice; the identity unless the encoder was told.
+  Transform ValueTransform;
 };
 
 struct ArrayIndex

@@ -3,7 +3,7 @@
 
 #include "Base/ScalarType.h"
 #include "Series/MonotoneTable.h"
-#include "Series/SeriesIndex.h"
+#include "Series/ValueRange.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -26,10 +26,9 @@ enum class TransformKind
 /// Exactness: both directions use only + - * / sqrt in double precision, rounding and the exponents
 /// of numbers: the same bits on every CPU and build. Both are increasing in the weak sense: of two
 /// arguments the greater never gives the smaller result (for Asinh: as long as the arguments differ
-/// by more than 8 units in the last place). The maps are *agreed* ones: f of the kind Asinh is
-/// within 4 units in the last place of the mathematical function, and |f(f^-1(y)) - y| is of that
-/// order too, see `InverseError`; the encoder compares each value with what it decodes to, so that
-/// bounds do not rest on this.
+/// by more than 8 units in the last place). The maps are *agreed* ones: Asinh is within 8 units in
+/// the last place of the mathematical function either way, f^-1(f(x)) gives x but for rounding; the
+/// encoder compares each value with what it decodes to, so that bounds do not rest on this.
 ///
 /// f(0) = 0 and f^-1(0) = 0, bit-exact, for Uniform, Asinh, and tables that have the knot (0, 0): a
 /// lattice through y = 0 keeps zeros. NaN gives NaN; infinities give infinities (or, for inverse
