@@ -1,5 +1,6 @@
 #include "Series/Hash.h"
 #include "Series/IndexJson.h"
+#include "Series/TransformJson.h"
 
 #include <cmath>
 
@@ -31,6 +32,10 @@ Json ComponentToJson(const ComponentIndex& component)
     std::isfinite(component.SumSquaredError) ? Json(component.SumSquaredError) : Json(nullptr);
   json["finiteCount"] = component.FiniteCount;
   json["nonFiniteCount"] = component.NonFiniteCount;
+  if (!component.ValueTransform.IsIdentity())
+  {
+    json["transform"] = TransformToJson(component.ValueTransform);
+  }
   return json;
 }
 

@@ -54,6 +54,7 @@ SeriesIndex MakeIndex(unsigned seed)
   component.Range = {};
   component.PromisedRange = { -0.0, 0.1 };
   component.SumSquaredError = 0.3;
+  component.ValueTransform = Transform::Table({ { -0.1, 0.3 }, { 0.2, 7.0 } });
   array.Components.push_back(component);
   array.Magnitudes = { { 0.0, 0.1 }, {}, { 5e-324, std::abs(RandomDouble(random)) + 1.0 } };
   index.Arrays.push_back(array);
@@ -101,6 +102,7 @@ TEST(IndexText, ComesBackBitExact)
       ExpectSameBits(x.MeasuredMaxError, y.MeasuredMaxError);
       ExpectSameBits(x.SumSquaredError, y.SumSquaredError);
       EXPECT_EQ(x.FiniteCount, y.FiniteCount);
+      EXPECT_TRUE(x.ValueTransform == y.ValueTransform);
     }
     ASSERT_EQ(b.Arrays[0].Magnitudes.size(), 3u);
     EXPECT_TRUE(b.Arrays[0].Magnitudes[1].Empty());
@@ -202,6 +204,8 @@ TEST(IndexText, SaysWhatIsWrong)
   ExpectRejected(with("  39,", "  -6,"), "no samples");
   ExpectRejected(with("\"magnitudes\": [\n    [\n     0.0,\n     0.1\n    ],", "\"magnitudes\": ["),
     "range of magnitudes for each step");
+  ExpectRejected(with("\"kind\": \"table\"", "\"kind\": \"curve\""), "'curve' is not known");
+  ExpectRejected(with("\"kind\": \"table\"", "\"kind\": \"asinh\""), "'scale' is missing");
   ExpectRejected(with("\"brickCells\": 16", "\"brickCells\": 15"), "8, 16, 32 or 64");
 }
 
