@@ -17,7 +17,7 @@ struct JetParameters
   double EdgeWidth = 0.06;    ///< of the nozzle's shear layer (tanh profile)
   double Speed = 1.0;         ///< in the nozzle, beyond the co-flow's
   double CoFlow = 0.05;       ///< everywhere else
-  double Unsteadiness = 0.08; ///< r.m.s. of each velocity component in the nozzle, over Speed
+  double Unsteadiness = 0.15; ///< r.m.s. of each velocity component in the nozzle, over Speed
   double FringeWidth = 0.7;   ///< the inflow is imposed for z below this
   double FringeRate = 20.0;   ///< in the middle of the fringe, per unit of time
 };
