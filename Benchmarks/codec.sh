@@ -16,7 +16,9 @@
 # another folder), and generates four series: turbulence, convection, jet, wavep. Ends with a table.
 # Fails when one of our methods exceeds its error bound; asserts nothing about times.
 # BANYAN_SKIP_INSTALL=1 leaves the packages of the system alone, BANYAN_SKIP_BUILD=1 the build.
-export BANYAN_BUILD_DIR="${BANYAN_BUILD_DIR:-$(dirname "$(realpath "${BASH_SOURCE[0]}")")/../build-benchmark}"
+# Not the folder of the whole project, whose settings are others.
+BANYAN_BUILD_DIR="${BANYAN_BUILD_DIR:-$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")/build-benchmark}"
+export BANYAN_BUILD_DIR
 source "$(dirname "${BASH_SOURCE[0]}")/../Utilities/common.sh"
 
 here="$RepositoryRoot/Benchmarks"
@@ -34,7 +36,7 @@ parse_arguments()
     shift
     case "$option" in
       --help)
-        sed -n '2,/^export/{/^export/d;s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+        sed -n '2,/^# Not the/{/^# Not the/d;s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
         exit 0
         ;;
       --quick)
@@ -55,7 +57,7 @@ parse_arguments()
     esac
   done
   if [[ -z "$data" && -d "$RepositoryRoot/../shared/data" ]]; then
-    data="$RepositoryRoot/../shared/data"
+    data="$(realpath "$RepositoryRoot/../shared/data")"
   fi
   [[ -z "$data" || -d "$data" ]] || fail "there is no folder '$data'."
 }
