@@ -115,6 +115,7 @@ Json ComponentToJson(const InfoReport& report, std::size_t number)
   Json json;
   json["name"] = component.Name;
   json["type"] = NameOf(component.Type);
+  json["transformed"] = !component.Index.ValueTransform.IsIdentity();
   json["range"] = Range(component.Index.Range);
   json["promisedRange"] = Range(component.Index.PromisedRange);
   json["finite"] = component.Index.FiniteCount;

@@ -97,8 +97,16 @@ std::string Errors(const SeriesReport& report)
       narrowest ? Digits(Decibels(narrowest->Range.Width(), component.Rmse())) : "-",
       std::to_string(index.NonFiniteCount) });
   }
+  std::string transformed;
+  for (const ComponentReport& component : report.Components)
+  {
+    transformed +=
+      component.Index.ValueTransform.IsIdentity()
+        ? ""
+        : "  " + component.Name + " is transformed, and its bound one on what comes out\n";
+  }
   const bool relative = report.Index.Mode == ErrorBoundMode::RelativeToSeriesRange;
-  return "\n" + table.Text() + "  asked for: " +
+  return "\n" + table.Text() + transformed + "  asked for: " +
          (relative ? AsFraction(report.Index.ErrorBound) + " of the range of the series\n"
                    : Digits(report.Index.ErrorBound) + ", absolute\n");
 }

@@ -1,5 +1,6 @@
 #include "SeriesReport.h"
 
+#include "Agreement.h"
 #include "Base/Error.h"
 
 #include <algorithm>
@@ -65,31 +66,19 @@ void AddTo(CountsBySize& sum, const CountsBySize& counts)
 /// All components of the arrays that were asked for, without steps.
 std::vector<ComponentReport> ChosenComponents(const SeriesIndex& index, const std::string& array)
 {
-  if (!array.empty() && index.FindArray(array) < 0)
-  {
-    throw Error("The series has no array \"" + array + "\"");
-  }
   std::vector<ComponentReport> components;
-  for (std::size_t a = 0; a < index.Arrays.size(); ++a)
+  for (const int a : ChosenArrays(
+         index, array.empty() ? std::vector<std::string>{} : std::vector<std::string>{ array }))
   {
-    const ArrayIndex& found = index.Arrays[a];
+    const ArrayIndex& found = index.Arrays[static_cast<std::size_t>(a)];
     for (std::size_t c = 0; c < found.Components.size(); ++c)
     {
-      if (!array.empty() && found.Name != array)
-      {
-        continue;
-      }
       ComponentReport component;
-      component.Array = static_cast<int>(a);
+      component.Array = a;
       component.Component = static_cast<int>(c);
+      component.Name = NameOfComponent(found, c);
       component.Index = found.Components[c];
       component.Type = found.Type;
-      component.Name = found.Name;
-      if (found.Components.size() > 1)
-      {
-        const std::string& name = component.Index.Name;
-        component.Name += "[" + (name.empty() ? std::to_string(c) : name) + "]";
-      }
       components.push_back(std::move(component));
     }
   }

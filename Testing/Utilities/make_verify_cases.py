@@ -1,0 +1,78 @@
+"""pvpython make_verify_cases.py FOLDER: a small series of .vti files, the same encoded, and copies
+of its second file with one value changed, one NaN changed, and an array left out."""
+
+import os
+import sys
+
+from paraview import simple
+from vtkmodules.vtkCommonCore import vtkFloatArray, vtkShortArray
+from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkImageData
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
+
+STEPS = 3
+NAN, HIDDEN, CHANGED = 17, 40, 55  # numbers of points
+
+
+def image_at(step):
+    """Two arrays on an extent that does not begin at 0, with a NaN and a hidden point."""
+    image = vtkImageData()
+    image.SetExtent(-2, 9, 0, 10, 3, 8)
+    image.SetSpacing(0.5, 1.0, 2.0)
+    image.SetOrigin(1.0, 0.0, -4.0)
+    heat, wind = vtkFloatArray(), vtkShortArray()
+    heat.SetName("heat")
+    wind.SetName("wind")
+    wind.SetNumberOfComponents(3)
+    for i in range(image.GetNumberOfPoints()):
+        heat.InsertNextValue(float("nan") if i == NAN else (i * 37 % 101 + 10 * step) / 7.0)
+        wind.InsertNextTuple3(i % 300 - 150, step, 1000 * step)
+    image.GetPointData().AddArray(heat)
+    image.GetPointData().AddArray(wind)
+    return image
+
+
+def write(image, path):
+    writer = vtkXMLImageDataWriter()
+    writer.SetFileName(path)
+    writer.SetInputData(image)
+    writer.SetDataModeToBinary()  # ParaView of Debian 12 cannot read appended data
+    if not writer.Write():
+        raise RuntimeError(f"{path} was not written")
+
+
+def encode(files, path, **options):
+    reader = simple.OpenDataFile(files)
+    simple.SaveData(path, proxy=reader, WriteTimeSteps=1, ErrorBound=1 / 512, **options)
+    if not os.path.isfile(path):
+        raise RuntimeError(f"{path} was not written")
+
+
+def main():
+    folder = sys.argv[1]
+    simple.LoadPlugin(os.environ["BANYAN_PLUGIN"], ns=vars(simple))
+    files = [os.path.join(folder, f"step_{step}.vti") for step in range(STEPS)]
+    for step, path in enumerate(files):
+        write(image_at(step), path)
+    encode(files, os.path.join(folder, "series.banyan"))
+
+    changed = image_at(1)
+    changed.GetPointData().GetArray("heat").SetValue(CHANGED, 400.0)
+    write(changed, os.path.join(folder, "changed.vti"))
+    filled = image_at(1)
+    filled.GetPointData().GetArray("heat").SetValue(NAN, 0.0)
+    write(filled, os.path.join(folder, "filled.vti"))
+    fewer = image_at(1)
+    fewer.GetPointData().RemoveArray("wind")
+    write(fewer, os.path.join(folder, "fewer.vti"))
+
+    hiding = [os.path.join(folder, f"hiding_{step}.vti") for step in range(2)]
+    for step, path in enumerate(hiding):
+        image = image_at(step)
+        image.GetPointData().RemoveArray("wind")
+        image.AllocatePointGhostArray()
+        image.GetPointGhostArray().SetValue(HIDDEN, vtkDataSetAttributes.HIDDENPOINT)
+        write(image, path)
+    encode(hiding, os.path.join(folder, "hiding.banyan"), PointArrays=["heat"])
+
+
+main()

@@ -1,0 +1,28 @@
+#ifndef banyan_Tools_SeriesSource_h
+#define banyan_Tools_SeriesSource_h
+
+#include "Series/SeriesFile.h"
+#include "SourceSteps.h"
+
+#include <memory>
+
+namespace banyan
+{
+
+/// Another encoded series, as it decodes.
+class SeriesSource : public SourceSteps
+{
+public:
+  explicit SeriesSource(std::shared_ptr<const SeriesFile> file);
+
+  bool Next(SourceStep& step) override;
+  void ReadValues(std::size_t array, std::vector<std::uint8_t>& values) override;
+
+private:
+  std::shared_ptr<const SeriesFile> File;
+  int Step = -1; ///< at hand
+};
+
+} // namespace banyan
+
+#endif

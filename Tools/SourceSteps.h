@@ -1,0 +1,59 @@
+#ifndef banyan_Tools_SourceSteps_h
+#define banyan_Tools_SourceSteps_h
+
+#include "Base/ScalarType.h"
+#include "Series/Grid.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace banyan
+{
+
+/// One array of a source, without its values.
+struct SourceArray
+{
+  std::string Name;
+  ScalarType Type = ScalarType::Float32;
+  int Components = 1;
+};
+
+/// What a source says of a step, before its values.
+struct SourceStep
+{
+  std::optional<double> Time; ///< nothing: the source knows of no time
+  /// The whole grid, where the source knows it. Where not, only `Samples` counts.
+  std::optional<Grid> Domain;
+  glm::ivec3 Samples{ 0 };
+  std::vector<SourceArray> Arrays;
+};
+
+/// The steps of something that a series is compared with, one after the other. Nothing but the step
+/// at hand is kept in memory.
+class SourceSteps
+{
+public:
+  virtual ~SourceSteps() = default;
+
+  /// Goes to the next step. Throws Error when it cannot be read.
+  /// @return false when there is none
+  virtual bool Next(SourceStep& step) = 0;
+
+  /// Reads the values of an array of the step at hand, `[z][y][x][component]`, component fastest:
+  /// each array at most once, and in their order.
+  /// Throws Error when they cannot be read.
+  virtual void ReadValues(std::size_t array, std::vector<std::uint8_t>& values) = 0;
+};
+
+/// Bytes of an array's values at a step. The caller has checked that `samples` fit into memory.
+inline std::size_t BytesOf(const SourceArray& array, const glm::ivec3& samples)
+{
+  return static_cast<std::size_t>(Box{ glm::ivec3(0), samples }.Count()) *
+         static_cast<std::size_t>(array.Components) * SizeOf(array.Type);
+}
+
+} // namespace banyan
+
+#endif

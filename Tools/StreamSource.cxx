@@ -1,0 +1,153 @@
+#include "StreamSource.h"
+
+#include "Base/Error.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace banyan
+{
+namespace
+{
+
+using Json = nlohmann::json;
+
+// The header of a step is text of a few hundred bytes per array.
+constexpr std::size_t GreatestHeader = std::size_t{ 1 } << 24;
+
+std::string ReadLine(std::istream& stream)
+{
+  std::string line;
+  for (int c = stream.get(); c != '\n'; c = stream.get())
+  {
+    if (c == std::istream::traits_type::eof() || line.size() >= GreatestHeader)
+    {
+      throw Error("The source was cut short: its last time step never came to an end");
+    }
+    line.push_back(static_cast<char>(c));
+  }
+  return line;
+}
+
+glm::dvec3 Vector(const Json& json)
+{
+  return { json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>() };
+}
+
+Grid GridFrom(const Json& json)
+{
+  Grid grid;
+  const Json& extent = json.at("extent");
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const std::size_t i = static_cast<std::size_t>(axis);
+    const std::int64_t low = extent.at(2 * i).get<std::int64_t>();
+    const std::int64_t high = extent.at(2 * i + 1).get<std::int64_t>();
+    constexpr std::int64_t Limit = std::int64_t{ 1 } << 30;
+    if (low < -Limit || high >= Limit || high < low)
+    {
+      throw Error("The source has an empty or impossible extent");
+    }
+    grid.Extent.Lo[axis] = static_cast<int>(low);
+    grid.Extent.Hi[axis] = static_cast<int>(high) + 1;
+  }
+  grid.Origin = Vector(json.at("origin"));
+  grid.Spacing = Vector(json.at("spacing"));
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int column = 0; column < 3; ++column)
+    {
+      grid.Direction[column][row] =
+        json.at("direction").at(static_cast<std::size_t>(3 * row + column)).get<double>();
+    }
+  }
+  return grid;
+}
+
+SourceStep StepFrom(const Json& json)
+{
+  SourceStep step;
+  if (!json.at("time").is_null())
+  {
+    step.Time = json.at("time").get<double>();
+  }
+  step.Domain = GridFrom(json);
+  step.Samples = step.Domain->Samples();
+  for (const Json& array : json.at("arrays"))
+  {
+    const int components = array.at("components").get<int>();
+    if (components < 1 || components > 65536)
+    {
+      throw Error("The source has an array with an impossible number of components");
+    }
+    step.Arrays.push_back({ array.at("name").get<std::string>(),
+      ScalarTypeFromName(array.at("type").get<std::string>()), components });
+  }
+  return step;
+}
+
+} // namespace
+
+StreamSource::StreamSource(std::istream& stream)
+  : Stream(stream)
+{
+}
+
+bool StreamSource::Next(SourceStep& step)
+{
+  this->SkipValues(this->Present.Arrays.size());
+  try
+  {
+    const Json json = Json::parse(ReadLine(this->Stream));
+    if (json.contains("error"))
+    {
+      throw Error(json["error"].get<std::string>());
+    }
+    if (json.contains("end"))
+    {
+      return false;
+    }
+    this->Present = StepFrom(json);
+  }
+  catch (const Json::exception& failure)
+  {
+    throw Error(std::string("The source sent what is not a time step: ") + failure.what());
+  }
+  this->Unread = 0;
+  step = this->Present;
+  return true;
+}
+
+void StreamSource::SkipValues(std::size_t until)
+{
+  for (; this->Unread < until; ++this->Unread)
+  {
+    std::uint64_t left = BytesOf(this->Present.Arrays[this->Unread], this->Present.Samples);
+    std::vector<char> part(std::min<std::uint64_t>(left, 1 << 20));
+    while (left > 0 && this->Stream)
+    {
+      const std::uint64_t some = std::min<std::uint64_t>(left, part.size());
+      this->Stream.read(part.data(), static_cast<std::streamsize>(some));
+      left -= some;
+    }
+  }
+}
+
+void StreamSource::ReadValues(std::size_t array, std::vector<std::uint8_t>& values)
+{
+  this->SkipValues(array);
+  values.resize(BytesOf(this->Present.Arrays[array], this->Present.Samples));
+  this->Stream.read(
+    reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size()));
+  if (!this->Stream)
+  {
+    throw Error("The source was cut short in the values of the array \"" +
+                this->Present.Arrays[array].Name + "\"");
+  }
+  this->Unread = array + 1;
+}
+
+} // namespace banyan

@@ -1,0 +1,67 @@
+#ifndef banyan_Tools_ValueErrors_h
+#define banyan_Tools_ValueErrors_h
+
+#include "Base/ScalarType.h"
+#include "Series/OpacityWeight.h"
+#include "Series/PaperQuantizer.h"
+#include "Series/Transform.h"
+
+#include <cstdint>
+
+namespace banyan
+{
+
+class ThreadPool;
+
+/// How decoded values differ from original ones, of one component at one step or over all.
+struct ValueErrors
+{
+  std::int64_t Finite = 0;
+  std::int64_t NonFinite = 0;        ///< originals that are NaN or infinite
+  std::int64_t NonFiniteChanged = 0; ///< of these, those that are not bit-exact
+  std::int64_t OutOfBound = 0;       ///< finite originals
+  std::int64_t OtherClass = 0; ///< finite originals whose 8-bit code is not that of the original
+  double Greatest = 0.0; ///< |decoded - original|; infinity when a finite value is no longer one
+  /// In what the bound is one on: |f(decoded) - f(original)|; as `Greatest` without a transform.
+  double GreatestJudged = 0.0;
+  double SumSquared = 0.0;  ///< of the errors of finite values
+  double SumWeighted = 0.0; ///< of opacity times squared error
+  ValueRange Range;         ///< of the finite originals
+  /// Number of the worst value: the first one with the greatest judged error. Non-finite values
+  /// that are not bit-exact are worse than all others. -1 when nothing differs.
+  std::int64_t Worst = -1;
+  double WorstError = 0.0; ///< judged; infinity for the non-finite
+
+  /// @param first number of the other's first value: counted on from the ones here. Merging in
+  /// order gives the first of equally bad values.
+  void Merge(const ValueErrors& other, std::int64_t first);
+
+  /// Every finite value within the bound, all others bit-exact.
+  bool Proven() const { return this->OutOfBound == 0 && this->NonFiniteChanged == 0; }
+  double MeanSquared() const; ///< the study's equation 1; 0 without finite values
+  double Weighted() const;    ///< its equation 2
+  double Rmse() const;
+  double OtherClassShare() const;
+};
+
+/// What values are judged by.
+struct Judgement
+{
+  double Bound = 0.0;                       ///< |f(decoded) - f(original)| <= this
+  Transform Map;                            ///< f
+  PaperQuantizer Classes;                   ///< the 8-bit classes
+  const OpacityFunction* Opacity = nullptr; ///< null: 1 everywhere
+};
+
+/// Compares `count` values of one component.
+/// @param original the first value of the component, `stride` from one to the next
+/// @param decoded without gaps
+/// Whether a value is within the bound is decided in the type's own precision and beyond: for reals
+/// with at least 64 bits of mantissa, for integers exactly; with a transform in double precision,
+/// in which transforms are defined. The result does not depend on the number of threads.
+ValueErrors CompareValues(ScalarType type, const void* original, int stride, const void* decoded,
+  std::int64_t count, const Judgement& judgement, ThreadPool& pool);
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,240 @@
+#include "Verification.h"
+
+#include "Agreement.h"
+#include "Base/Error.h"
+#include "Base/ThreadPool.h"
+#include "Cache/BrickCache.h"
+#include "Series/Bytes.h"
+
+#include <algorithm>
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+
+namespace banyan
+{
+namespace
+{
+
+/// As many digits as bring back the same bits, and the bits of what is not a number.
+template <class T>
+std::string Exactly(T value)
+{
+  if constexpr (std::is_integral_v<T>)
+  {
+    return std::to_string(value);
+  }
+  else
+  {
+    char text[64];
+    std::snprintf(
+      text, sizeof(text), sizeof(T) == 4 ? "%.9g" : "%.17g", static_cast<double>(value));
+    if (!std::isnan(value))
+    {
+      return text;
+    }
+    using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
+    std::snprintf(text, sizeof(text), "NaN (bits 0x%" PRIx64 ")",
+      static_cast<std::uint64_t>(BitCast<Bits>(value)));
+    return text;
+  }
+}
+
+/// The opacity function that stands in when none is given.
+OpacityFunction Ramp(const ValueRange& range)
+{
+  if (!(range.Width() > 0.0))
+  {
+    return OpacityFunction({ { range.Empty() ? 0.0 : range.Low, 1.0 } });
+  }
+  return OpacityFunction({ { range.Low, 0.0 }, { range.High, 1.0 } });
+}
+
+/// Of the originals, as far as the index knows it.
+ValueRange RangeOf(const ComponentIndex& component)
+{
+  return component.PromisedRange.Empty() ? component.Range : component.PromisedRange;
+}
+
+/// Compares one series with one source.
+class Comparison
+{
+public:
+  Comparison(const SeriesFile& series, SourceSteps& source, const VerificationChoice& choice)
+    : Series(series)
+    , Source(source)
+    , Choice(choice)
+    , Whole{ glm::ivec3(0), series.Layout(0).Samples() }
+  {
+    const SeriesIndex& index = series.Index();
+    this->Result.Times = index.Times;
+    for (const int array : ChosenArrays(index, choice.Arrays))
+    {
+      const ArrayIndex& found = index.Arrays[static_cast<std::size_t>(array)];
+      for (std::size_t c = 0; c < found.Components.size(); ++c)
+      {
+        ComponentVerification component;
+        component.Array = array;
+        component.Component = static_cast<int>(c);
+        component.Name = NameOfComponent(found, c);
+        component.Bound = found.Components[c].ErrorBoundAbsolute;
+        component.Transformed = !found.Components[c].ValueTransform.IsIdentity();
+        this->Result.Components.push_back(std::move(component));
+        this->Opacities.push_back(
+          choice.Opacity ? *choice.Opacity : Ramp(RangeOf(found.Components[c])));
+      }
+    }
+  }
+
+  Verification Run(const std::function<void(int)>& progress)
+  {
+    const int steps = this->Series.Index().Steps();
+    SourceStep step;
+    for (int number = 0; number < steps; ++number)
+    {
+      if (!this->Source.Next(step))
+      {
+        throw Error("The source ends after " + std::to_string(number) +
+                    " time steps, and the series has " + std::to_string(steps) + ".");
+      }
+      CheckAgreement(this->Series.Index(), number, step, this->Choice.Arrays);
+      this->CompareStep(number, step);
+      if (progress)
+      {
+        progress(number + 1);
+      }
+    }
+    if (this->Source.Next(step))
+    {
+      throw Error(
+        "The source has more time steps than the " + std::to_string(steps) + " of the series.");
+    }
+    for (ComponentVerification& component : this->Result.Components)
+    {
+      component.TooLoose = this->LooserThanAsked(component);
+    }
+    return std::move(this->Result);
+  }
+
+private:
+  void CompareStep(int number, const SourceStep& step)
+  {
+    std::vector<std::uint8_t> original;
+    for (std::size_t a = 0; a < step.Arrays.size(); ++a)
+    {
+      bool read = false;
+      for (std::size_t c = 0; c < this->Result.Components.size(); ++c)
+      {
+        const ComponentVerification& component = this->Result.Components[c];
+        if (this->ArrayOf(component).Name != step.Arrays[a].Name)
+        {
+          continue;
+        }
+        if (!read)
+        {
+          this->Source.ReadValues(a, original);
+          read = true;
+        }
+        this->CompareComponent(number, c, original);
+      }
+    }
+  }
+
+  const ArrayIndex& ArrayOf(const ComponentVerification& component) const
+  {
+    return this->Series.Index().Arrays[static_cast<std::size_t>(component.Array)];
+  }
+
+  void CompareComponent(int number, std::size_t c, const std::vector<std::uint8_t>& original)
+  {
+    ComponentVerification& component = this->Result.Components[c];
+    const ArrayIndex& array = this->ArrayOf(component);
+    const std::size_t size = SizeOf(array.Type);
+    const int stride = static_cast<int>(array.Components.size());
+    this->Decoded.resize(static_cast<std::size_t>(this->Whole.Count()) * size);
+    // Each brick is needed once: there is nothing to keep.
+    BrickCache cache(0);
+    ReadRegion(cache, this->Series, { number, component.Array, component.Component, 0 },
+      this->Whole, this->Decoded.data(), 1, 0);
+    const std::uint8_t* first =
+      original.data() + static_cast<std::size_t>(component.Component) * size;
+    const ComponentIndex& index = array.Components[static_cast<std::size_t>(component.Component)];
+    const Judgement judgement{ component.Bound, index.ValueTransform, { RangeOf(index), 8 },
+      &this->Opacities[c] };
+    const ValueErrors errors = CompareValues(array.Type, first, stride, this->Decoded.data(),
+      this->Whole.Count(), judgement, ThreadPool::Process());
+    if (errors.WorstError > component.All.WorstError)
+    {
+      component.Worst = this->Describe(number, array.Type, errors, first, stride);
+    }
+    component.All.Merge(errors, 0);
+    component.Steps.push_back(errors);
+  }
+
+  WorstValue Describe(int number, ScalarType type, const ValueErrors& errors,
+    const std::uint8_t* original, int stride) const
+  {
+    WorstValue worst;
+    worst.Step = number;
+    worst.Error = errors.WorstError;
+    const glm::ivec3 size = this->Whole.Hi;
+    const std::int64_t i = errors.Worst;
+    worst.Index = this->Series.Index().Domain.Extent.Lo + glm::ivec3(static_cast<int>(i % size.x),
+                                                            static_cast<int>(i / size.x % size.y),
+                                                            static_cast<int>(i / size.x / size.y));
+    Dispatch(type,
+      [&](auto tag)
+      {
+        using T = typename decltype(tag)::Type;
+        worst.Original = Exactly(reinterpret_cast<const T*>(original)[i * stride]);
+        worst.Decoded = Exactly(reinterpret_cast<const T*>(this->Decoded.data())[i]);
+      });
+    return worst;
+  }
+
+  /// The index promises less than was asked for. What a relative bound refers to is the range of
+  /// the source, or a wider one that the encoder was told; with a transform, the width of what they
+  /// become.
+  std::string LooserThanAsked(const ComponentVerification& component) const
+  {
+    const SeriesIndex& index = this->Series.Index();
+    const ComponentIndex& found =
+      this->ArrayOf(component).Components[static_cast<std::size_t>(component.Component)];
+    const double width = std::max(found.ValueTransform.TransformedWidth(component.All.Range),
+      found.ValueTransform.TransformedWidth(found.PromisedRange));
+    const double asked =
+      index.Mode == ErrorBoundMode::Absolute ? index.ErrorBound : index.ErrorBound * width;
+    if (component.Bound <= asked * (1.0 + 1e-12))
+    {
+      return {};
+    }
+    char text[200];
+    std::snprintf(text, sizeof(text),
+      "its bound is stated as %.9g, and what was asked for comes to %.9g", component.Bound, asked);
+    return text;
+  }
+
+  const SeriesFile& Series;
+  SourceSteps& Source;
+  const VerificationChoice& Choice;
+  Box Whole;
+  std::vector<OpacityFunction> Opacities; ///< one per component of the result
+  std::vector<std::uint8_t> Decoded;
+  Verification Result;
+};
+
+} // namespace
+
+bool Verification::Proven() const
+{
+  return std::all_of(this->Components.begin(), this->Components.end(),
+    [](const ComponentVerification& component) { return component.Proven(); });
+}
+
+Verification Verify(const SeriesFile& series, SourceSteps& source, const VerificationChoice& choice,
+  const std::function<void(int)>& progress)
+{
+  return Comparison(series, source, choice).Run(progress);
+}
+
+} // namespace banyan

@@ -1,0 +1,124 @@
+"""pvpython stream_source.py [--array NAME]... FILES...: sends image data through a pipe.
+
+Reads the files, one series in order of time, with ParaView, and writes each step to the standard
+output in the form that Tools/StreamSource.h describes: a line of JSON, then the values of its
+arrays. Without --array all point arrays of numbers are sent.
+"""
+
+import argparse
+import json
+import os
+
+import numpy
+from paraview import simple
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+HIDDEN_POINT = 2  # of vtkDataSetAttributes; the writer of series makes NaN of such points
+GHOSTS = "vtkGhostType"
+
+
+class SourceError(Exception):
+    """Why the source cannot be sent, in a sentence."""
+
+
+def take_output():
+    """The standard output for the stream alone: whatever else prints goes to the messages."""
+    output, messages = 1, 2  # pvpython's sys.stdout does not know its number
+    stream = os.fdopen(os.dup(output), "wb")
+    os.dup2(messages, output)
+    return stream
+
+
+def open_source(files):
+    reader = simple.OpenDataFile(files if len(files) > 1 else files[0])
+    if reader is None:
+        raise SourceError(f"ParaView cannot read {files[0]}.")
+    reader.UpdatePipeline()
+    return reader
+
+
+def time_values(reader):
+    """The time values of a source, as a series written from it has them."""
+    values = getattr(reader, "TimestepValues", None)
+    if values is None:
+        return [0.0]
+    values = list(values) if hasattr(values, "__len__") else [values]
+    return [float(value) for value in values] or [0.0]
+
+
+def image_at(reader, time, file):
+    reader.UpdatePipeline(time)
+    image = reader.GetClientSideObject().GetOutputDataObject(0)
+    if image is None or not image.IsA("vtkImageData"):
+        kind = "nothing" if image is None else image.GetClassName()
+        raise SourceError(f"{file} holds {kind}, and a series holds image data (vtkImageData).")
+    if image.GetNumberOfPoints() == 0:
+        raise SourceError(f"Nothing could be read from {file} at time {time:.17g}.")
+    return image
+
+
+def type_name(values):
+    kind = {"f": "float", "i": "int", "u": "uint"}[values.dtype.kind]
+    return f"{kind}{8 * values.dtype.itemsize}"
+
+
+def arrays_of(image, wanted):
+    """Names and values ([point][component]) of the point arrays; hidden points are NaN."""
+    ghosts = image.GetPointGhostArray()
+    hidden = None if ghosts is None else (vtk_to_numpy(ghosts) & HIDDEN_POINT) != 0
+    arrays = []
+    for number in range(image.GetPointData().GetNumberOfArrays()):
+        array = image.GetPointData().GetArray(number)
+        # None stands for arrays of other things than numbers.
+        if array is None or array.GetName() == GHOSTS or array.GetClassName() == "vtkBitArray":
+            continue
+        if wanted and array.GetName() not in wanted:
+            continue
+        values = vtk_to_numpy(array).reshape(array.GetNumberOfTuples(), -1)
+        if hidden is not None and hidden.any() and values.dtype.kind == "f":
+            values = values.copy()
+            values[hidden] = numpy.nan
+        arrays.append((array.GetName(), numpy.ascontiguousarray(values)))
+    return arrays
+
+
+def send_step(stream, image, time, arrays):
+    matrix = image.GetDirectionMatrix()
+    header = {"time": time, "extent": list(image.GetExtent()), "origin": list(image.GetOrigin()),
+              "spacing": list(image.GetSpacing()),
+              "direction": [matrix.GetElement(row, column) for row in range(3)
+                            for column in range(3)],
+              "arrays": [{"name": name, "type": type_name(values), "components": values.shape[1]}
+                         for name, values in arrays]}
+    stream.write(json.dumps(header).encode() + b"\n")
+    for _name, values in arrays:
+        stream.write(memoryview(values).cast("B"))
+    stream.flush()
+
+
+def send(stream, wanted, files):
+    reader = open_source(files)
+    for time in time_values(reader):
+        image = image_at(reader, time, files[0])
+        send_step(stream, image, time, arrays_of(image, wanted))
+    stream.write(b'{"end": true}\n')
+
+
+def main():
+    parser = argparse.ArgumentParser(usage=__doc__)
+    parser.add_argument("--array", action="append", default=[])
+    parser.add_argument("files", nargs="+")
+    arguments = parser.parse_args()
+    stream = take_output()
+    try:
+        try:
+            send(stream, set(arguments.array), arguments.files)
+        except (SourceError, RuntimeError) as error:  # ParaView raises the latter
+            stream.write(json.dumps({"error": str(error).strip()}).encode() + b"\n")
+        stream.close()
+    except BrokenPipeError:
+        # Nobody listens any more: whoever compared has said why.
+        os._exit(1)
+
+
+main()
