@@ -1,8 +1,10 @@
 #include "SeriesCatalog.h"
 
+#include "ConvectionSeries.h"
 #include "HotBlobsSeries.h"
 #include "JetSeries.h"
 #include "TurbulenceSeries.h"
+#include "WaveSeries.h"
 
 #include "Base/Error.h"
 
@@ -16,6 +18,9 @@ const std::vector<SeriesKind>& SeriesCatalog()
     HotBlobsSeries(),
     TurbulenceSeries(),
     JetSeries(),
+    ConvectionSeries(),
+    WaveSeries(),
+    ClippedWaveSeries(),
   };
   return kinds;
 }
