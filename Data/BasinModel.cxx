@@ -52,12 +52,12 @@ BasinModel::BasinModel(std::uint64_t seed)
                           std::sin(rake) * std::cos(dip) * std::sin(strike),
     std::cos(rake) * std::sin(strike) - std::sin(rake) * std::cos(dip) * std::cos(strike),
     std::sin(rake) * std::sin(dip) };
-  constexpr double NewtonMetres = 1e16; // magnitude 4.6
+  constexpr double PeakRate = 1e16; // N m/s: a magnitude of about 4.3
   constexpr int pairs[6][2] = { { 0, 0 }, { 1, 1 }, { 2, 2 }, { 0, 1 }, { 0, 2 }, { 1, 2 } };
   for (int c = 0; c < 6; ++c)
   {
     const auto [i, j] = pairs[c];
-    this->Moment[c] = NewtonMetres * (n[i] * d[j] + n[j] * d[i]);
+    this->Moment[c] = PeakRate * (n[i] * d[j] + n[j] * d[i]);
   }
 }
 

@@ -24,7 +24,7 @@ struct ElasticMaterial
 struct MomentSource
 {
   std::array<int, 3> Cell{};      ///< x, y, z
-  std::array<double, 6> Moment{}; ///< xx, yy, zz, xy, xz, yz; N m
+  std::array<double, 6> Moment{}; ///< the rate at its peak, xx, yy, zz, xy, xz, yz; N m / s
   double HalfDuration = 0.1;      ///< s; the rate is exp(-((t - Delay) / HalfDuration)^2)
   double Delay = 0.4;             ///< s; the time of the peak
 };
