@@ -50,7 +50,7 @@ def style_of(method, methods):
     if is_ours(method):
         shade = 0.9 - 0.5 * own.index(method) / max(1, len(own) - 1)
         return dict(color=plot.cm.Reds(shade), linewidth=2.5 if method == "banyan" else 1.5,
-                    marker="o", zorder=3)
+                    marker="o", zorder=4 if method == "banyan" else 3)
     place = peers.index(method)
     # The ten colours of the map without its red, which is ours.
     colors = [plot.cm.tab10(i) for i in range(10) if i != 3]
