@@ -1,0 +1,342 @@
+#include "Series/GoldenFiles.h"
+
+#include "Series/AtomicFile.h"
+#include "Series/Hash.h"
+#include "Series/IndexText.h"
+#include "Series/SeriesTesting.h"
+
+#include <cstdio>
+#include <sstream>
+
+namespace banyan::testing
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t GreatestFile = std::uint64_t{ 1 } << 24;
+
+std::string Hex(const Bytes& bytes)
+{
+  char text[17];
+  std::snprintf(text, sizeof(text), "%016llx",
+    static_cast<unsigned long long>(ShortHashOf(bytes.data(), bytes.size())));
+  return text;
+}
+
+/// Text with digits enough for the same bits.
+std::ostringstream Stream()
+{
+  std::ostringstream out;
+  out.imbue(std::locale::classic());
+  out.precision(17);
+  return out;
+}
+
+std::string TextOf(const ValueRange& range)
+{
+  auto out = Stream();
+  if (range.Empty())
+  {
+    return "[]";
+  }
+  out << "[" << range.Low << " " << range.High << "]";
+  return out.str();
+}
+
+template <class T>
+void Append(T value, Bytes& out)
+{
+  out.resize(out.size() + sizeof(T));
+  StoreNumber(out.data() + out.size() - sizeof(T), value);
+}
+
+std::string GridText(const SeriesIndex& index)
+{
+  auto out = Stream();
+  const Grid& grid = index.Domain;
+  out << "from";
+  for (int i = 0; i < 3; ++i)
+  {
+    out << " " << grid.Extent.Lo[i];
+  }
+  out << " to";
+  for (int i = 0; i < 3; ++i)
+  {
+    out << " " << grid.Extent.Hi[i];
+  }
+  out << ", origin";
+  for (int i = 0; i < 3; ++i)
+  {
+    out << " " << grid.Origin[i];
+  }
+  out << ", spacing";
+  for (int i = 0; i < 3; ++i)
+  {
+    out << " " << grid.Spacing[i];
+  }
+  out << ", axes";
+  for (int i = 0; i < 9; ++i)
+  {
+    out << " " << grid.Direction[i / 3][i % 3];
+  }
+  out << ", bricks of " << index.BrickCells << ", levels " << index.Levels;
+  return out.str();
+}
+
+std::string StepsText(const SeriesIndex& index)
+{
+  auto out = Stream();
+  out << "times";
+  for (const double time : index.Times)
+  {
+    out << " " << time;
+  }
+  out << ", segments of at most " << index.KeyframeInterval << ":";
+  for (const SegmentIndex& segment : index.Segments)
+  {
+    out << " " << segment.FirstStep << "+" << segment.Steps;
+  }
+  return out.str();
+}
+
+std::string EncodingText(const SeriesIndex& index)
+{
+  auto out = Stream();
+  const EncodeStatistics& s = index.Statistics;
+  out << "bound " << index.ErrorBound
+      << (index.Mode == ErrorBoundMode::Absolute ? " absolute" : " relative") << ", active '"
+      << index.ActiveScalars << "', bytes in " << index.PayloadBytesIn << ", bricks " << s.Bricks
+      << ", macro voxels " << s.MacroVoxelBricks << ", unchanged " << s.UnchangedBricks
+      << ", merged " << s.MergedBricks << ", raw " << s.RawBricks << ", payload bytes "
+      << s.PayloadBytes << ", table bytes " << s.TableBytes;
+  return out.str();
+}
+
+std::string ArrayText(const ArrayIndex& array)
+{
+  std::string text = "'" + array.Name + "' " + banyan::NameOf(array.Type) + " in " +
+                     std::to_string(array.Components.size());
+  for (const ValueRange& magnitude : array.Magnitudes)
+  {
+    text += " " + TextOf(magnitude);
+  }
+  return text;
+}
+
+std::string ComponentText(const ComponentIndex& c, const MaskRange& masks)
+{
+  auto out = Stream();
+  out << "'" << c.Name << "' in " << TextOf(c.Range) << ", promised " << TextOf(c.PromisedRange)
+      << ", masks over " << masks.Low << " " << masks.High << ", bound " << c.ErrorBoundAbsolute
+      << ", error " << c.MeasuredMaxError << ", squares " << c.SumSquaredError << ", finite "
+      << c.FiniteCount << ", not finite " << c.NonFiniteCount;
+  if (!c.ValueTransform.IsIdentity())
+  {
+    out << ", transform " << static_cast<int>(c.ValueTransform.Kind()) << " "
+        << c.ValueTransform.Scale();
+    for (const TransformKnot& knot : c.ValueTransform.Knots())
+    {
+      out << " " << knot.X << ":" << knot.Y;
+    }
+  }
+  return out.str();
+}
+
+std::string FieldText(const SeriesFile& file, const FieldKey& field)
+{
+  const ScalarType type = file.Index().Arrays[static_cast<std::size_t>(field.Array)].Type;
+  const BrickLayout layout = file.Layout(field.Level);
+  Bytes values;
+  Bytes nodes;
+  for (std::int64_t brick = 0; brick < layout.BrickCount(); ++brick)
+  {
+    const std::size_t bytes =
+      static_cast<std::size_t>(layout.SamplesOf(brick).Count()) * SizeOf(type);
+    values.resize(values.size() + bytes);
+    file.DecodeBrick(field, brick, values.data() + values.size() - bytes);
+  }
+  for (const BrickNode& node : *file.Nodes(field))
+  {
+    Append(node.Range.Low, nodes);
+    Append(node.Range.High, nodes);
+    Append(node.Mask, nodes);
+    Append(static_cast<std::uint8_t>(node.Uniform), nodes);
+    Append(static_cast<std::uint8_t>(node.HasNonFinite), nodes);
+  }
+  return "values " + Hex(values) + " nodes " + Hex(nodes);
+}
+
+void ReadArray(const SeriesFile& file, int a, const std::string& series, GoldenParts& parts)
+{
+  const ArrayIndex& array = file.Index().Arrays[static_cast<std::size_t>(a)];
+  const std::string name = series + " array " + std::to_string(a);
+  parts[name] = ArrayText(array);
+  for (int c = 0; c < static_cast<int>(array.Components.size()); ++c)
+  {
+    const std::string component =
+      array.Components.size() > 1 ? name + " component " + std::to_string(c) : name;
+    parts[component + " index"] =
+      ComponentText(array.Components[static_cast<std::size_t>(c)], file.MaskRangeOf(a, c));
+    for (int step = 0; step < file.Index().Steps(); ++step)
+    {
+      for (int level = 0; level < file.Index().Levels; ++level)
+      {
+        std::string& text =
+          parts[component + " step " + std::to_string(step) + " level " + std::to_string(level)];
+        try
+        {
+          text = FieldText(file, { step, a, c, level });
+        }
+        catch (const Error& failure)
+        {
+          text = failure.what();
+        }
+      }
+    }
+  }
+}
+
+void ReadSeries(const std::string& path, const std::string& name, GoldenParts& parts)
+{
+  const auto file = SeriesFile::Open(path);
+  parts[name + " grid"] = GridText(file->Index());
+  parts[name + " steps"] = StepsText(file->Index());
+  parts[name + " encoding"] = EncodingText(file->Index());
+  for (int a = 0; a < static_cast<int>(file->Index().Arrays.size()); ++a)
+  {
+    ReadArray(*file, a, name, parts);
+  }
+}
+
+} // namespace
+
+GoldenParts ReadGolden(const std::string& folder)
+{
+  GoldenParts parts;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+  {
+    const std::string name = fs::relative(entry.path(), folder).generic_string();
+    if (!entry.is_regular_file() || name == ChecksumFile)
+    {
+      continue;
+    }
+    const std::string content = ReadWholeFile(entry.path().string(), GreatestFile);
+    parts["file " + name] = ToHex(HashOf(content.data(), content.size()));
+    if (entry.path().extension() == ".banyan")
+    {
+      const std::string series = entry.path().stem().string();
+      try
+      {
+        ReadSeries(entry.path().string(), series, parts);
+      }
+      catch (const Error& failure)
+      {
+        parts[series + " as a whole"] = failure.what();
+      }
+    }
+  }
+  return parts;
+}
+
+GoldenParts LoadChecksums(const std::string& folder)
+{
+  std::istringstream lines(ReadWholeFile(folder + "/" + ChecksumFile, GreatestFile));
+  GoldenParts parts;
+  for (std::string line; std::getline(lines, line);)
+  {
+    const std::size_t colon = line.find(": ");
+    if (line.empty() || line[0] == '#')
+    {
+      continue;
+    }
+    if (colon == std::string::npos ||
+        !parts.emplace(line.substr(0, colon), line.substr(colon + 2)).second)
+    {
+      throw Error("The line '" + line + "' of the checksums is no 'part: text', or there twice",
+        { folder + "/" + ChecksumFile });
+    }
+  }
+  return parts;
+}
+
+void SaveChecksums(const std::string& folder, const GoldenParts& parts)
+{
+  std::string text = "# What the series of this folder have to be read as; see ../README.md.\n";
+  for (const auto& part : parts)
+  {
+    text += part.first + ": " + part.second + "\n";
+  }
+  WriteFileAtomically(folder + "/" + ChecksumFile, text);
+}
+
+std::vector<std::string> Differences(const GoldenParts& expected, const GoldenParts& found)
+{
+  std::vector<std::string> sentences;
+  for (const auto& part : expected)
+  {
+    const auto other = found.find(part.first);
+    if (other == found.end())
+    {
+      sentences.push_back("'" + part.first + "' is listed and was not found.");
+    }
+    else if (other->second != part.second)
+    {
+      sentences.push_back("'" + part.first + "' was read as '" + other->second +
+                          "' and has to be '" + part.second + "'.");
+    }
+  }
+  for (const auto& part : found)
+  {
+    if (expected.count(part.first) == 0)
+    {
+      sentences.push_back("'" + part.first + "' was found and is not listed.");
+    }
+  }
+  return sentences;
+}
+
+SeriesIndex WriteGoldenSeries(const std::string& folder, const GoldenCase& series)
+{
+  const std::string path = folder + "/" + series.Name + ".banyan";
+  ThreadPool pool(2);
+  std::vector<ArrayDescription> descriptions;
+  for (const GoldenArray& array : series.Arrays)
+  {
+    descriptions.push_back(GoldenDescription(series, array));
+  }
+  SeriesEncoder encoder(path, series.Domain, descriptions, series.Options, pool);
+  encoder.SetActiveScalars(series.Arrays.back().Name);
+  for (int step = 0; step < series.Steps; ++step)
+  {
+    std::vector<Bytes> values;
+    std::vector<ArrayValues> borrowed;
+    for (const GoldenArray& array : series.Arrays)
+    {
+      values.push_back(GoldenValues(series, array, step));
+      borrowed.push_back({ values.back().data() });
+    }
+    encoder.AddStep(GoldenTime(step), borrowed);
+  }
+  SeriesIndex index = encoder.Finish();
+  for (SegmentIndex& segment : index.Segments)
+  {
+    const std::string name = "golden" + segment.File.substr(segment.File.rfind('-'));
+    fs::rename(path + ".d/" + segment.File, path + ".d/" + name);
+    segment.File = name;
+  }
+  WriteFileAtomically(path, IndexToText(index));
+  return index;
+}
+
+int VersionOf(const std::string& indexPath)
+{
+  std::istringstream text(ReadWholeFile(indexPath, GreatestFile));
+  std::string word;
+  int version = 0;
+  text >> word >> version;
+  return version;
+}
+
+} // namespace banyan::testing

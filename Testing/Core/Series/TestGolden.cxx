@@ -1,0 +1,239 @@
+/// Series that were written once and have to be read as they were for ever; see Golden/README.md.
+///
+/// To write such files with the encoder as it is:
+///
+///     BANYAN_WRITE_GOLDEN=<folder> TestSeries --gtest_filter=Golden.WhatIsWrittenToday*
+///
+/// makes `<folder>/version-<N>`, N being the version of the format; it must not be there yet.
+
+#include "Series/GoldenFiles.h"
+
+#include "Series/AtomicFile.h"
+#include "Series/SeriesTesting.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+
+namespace banyan
+{
+namespace
+{
+
+using namespace banyan::testing;
+namespace fs = std::filesystem;
+
+const std::string GoldenFolder = BANYAN_GOLDEN_DIR;
+
+/// The folders `version-<N>`, in order.
+std::vector<std::string> GoldenVersions()
+{
+  std::vector<std::string> folders;
+  for (const auto& entry : fs::directory_iterator(GoldenFolder))
+  {
+    if (entry.is_directory())
+    {
+      folders.push_back(entry.path().string());
+    }
+  }
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
+std::string MessageOf(const std::string& path, const FieldKey* field)
+{
+  try
+  {
+    const auto file = SeriesFile::Open(path);
+    if (field != nullptr)
+    {
+      (void)file->Nodes(*field);
+    }
+  }
+  catch (const Error& failure)
+  {
+    return failure.what();
+  }
+  return "nothing is wrong";
+}
+
+/// In place and without waiting for the disk, which is what takes the time of tests.
+void Overwrite(const std::string& path, const std::string& content)
+{
+  std::ofstream(path, std::ios::binary | std::ios::trunc) << content;
+  ASSERT_EQ(fs::file_size(path), content.size());
+}
+
+std::string WithByte(std::string content, std::size_t at, char value)
+{
+  content.at(at) = value;
+  return content;
+}
+
+/// Every voxel of an array against what the encoder was given.
+template <class T>
+void ExpectWithinBound(
+  const SeriesFile& file, const GoldenCase& series, int a, const ArrayIndex& written)
+{
+  const GoldenArray& array = series.Arrays[static_cast<std::size_t>(a)];
+  const std::size_t components = array.Components.size();
+  for (int step = 0; step < series.Steps; ++step)
+  {
+    const Bytes bytes = GoldenValues(series, array, step);
+    for (std::size_t c = 0; c < components; ++c)
+    {
+      std::vector<T> own;
+      for (std::size_t at = c * sizeof(T); at < bytes.size(); at += components * sizeof(T))
+      {
+        own.push_back(LoadNumber<T>(bytes.data() + at));
+      }
+      const std::vector<T> decoded = ReadAll<T>(file, { step, a, static_cast<int>(c), 0 });
+      EXPECT_TRUE(WithinBound(own, decoded, written.Components[c].ErrorBoundAbsolute))
+        << array.Name << " step " << step << " component " << c;
+    }
+  }
+}
+
+TEST(Golden, EveryVersionIsReadAsItWasWritten)
+{
+  const std::vector<std::string> folders = GoldenVersions();
+  ASSERT_FALSE(folders.empty());
+  EXPECT_EQ(fs::path(folders[0]).filename(), "version-1");
+  for (const std::string& folder : folders)
+  {
+    int series = 0;
+    for (const auto& entry : fs::directory_iterator(folder))
+    {
+      if (entry.path().extension() == ".banyan")
+      {
+        ++series;
+        EXPECT_EQ("version-" + std::to_string(VersionOf(entry.path().string())),
+          fs::path(folder).filename().string());
+      }
+    }
+    EXPECT_GT(series, 0) << folder;
+    for (const std::string& sentence : Differences(LoadChecksums(folder), ReadGolden(folder)))
+    {
+      ADD_FAILURE() << folder << ": " << sentence;
+    }
+  }
+}
+
+/// The list of cases must go on being what the encoder can write, or the files of the next version
+/// could not be made.
+TEST(Golden, WhatIsWrittenTodayHoldsItsBoundAndIsTheSameEachTime)
+{
+  const TemporaryFolder temporary;
+  fs::create_directory(temporary / "first");
+  fs::create_directory(temporary / "second");
+  for (const GoldenCase& series : GoldenCases())
+  {
+    SCOPED_TRACE(series.Name);
+    (void)WriteGoldenSeries(temporary / "second", series);
+    const SeriesIndex index = WriteGoldenSeries(temporary / "first", series);
+    const auto file = SeriesFile::Open(temporary / ("first/" + series.Name + ".banyan"));
+    for (int a = 0; a < static_cast<int>(series.Arrays.size()); ++a)
+    {
+      const ArrayIndex& written = index.Arrays[static_cast<std::size_t>(a)];
+      Dispatch(written.Type, [&](auto tag)
+        { ExpectWithinBound<typename decltype(tag)::Type>(*file, series, a, written); });
+    }
+  }
+  const GoldenParts parts = ReadGolden(temporary / "first");
+  EXPECT_EQ(Differences(parts, ReadGolden(temporary / "second")), std::vector<std::string>{});
+  if (const char* folder = std::getenv("BANYAN_WRITE_GOLDEN"))
+  {
+    const std::string name = std::string(folder) + "/version-" +
+                             std::to_string(VersionOf(temporary / "first/types.banyan"));
+    ASSERT_FALSE(fs::exists(name)) << name << " is there already; golden files stay as they are.";
+    fs::copy(temporary / "first", name, fs::copy_options::recursive);
+    SaveChecksums(name, parts);
+  }
+}
+
+TEST(Golden, ChecksumsComeBackAndEveryDifferenceIsSaid)
+{
+  const TemporaryFolder temporary;
+  const GoldenParts parts = LoadChecksums(GoldenVersions()[0]);
+  SaveChecksums(temporary.Path(), parts);
+  EXPECT_EQ(LoadChecksums(temporary.Path()), parts);
+  for (const auto& part : parts)
+  {
+    GoldenParts other = parts;
+    other[part.first] += "0";
+    std::vector<std::string> sentences = Differences(parts, other);
+    ASSERT_EQ(sentences.size(), 1u);
+    EXPECT_NE(sentences[0].find(part.first), std::string::npos);
+    EXPECT_NE(sentences[0].find(part.second), std::string::npos);
+    other.erase(part.first);
+    EXPECT_EQ(Differences(parts, other).size(), 1u);
+    EXPECT_EQ(Differences(other, parts).size(), 1u);
+  }
+}
+
+/// One byte anywhere: the checksum of its file differs in any case, and but for bytes that lie in a
+/// gap the reader notices, too.
+TEST(Golden, OneChangedByteIsNoticed)
+{
+  const std::string folder = GoldenVersions()[0];
+  const GoldenParts expected = LoadChecksums(folder);
+  std::mt19937 random(7);
+  int noticed = 0;
+  for (const std::string name : { "line.banyan", "line.banyan.d/golden-000000.seg" })
+  {
+    const TemporaryFolder temporary;
+    fs::copy(folder, temporary / "copy", fs::copy_options::recursive);
+    const std::string path = temporary / ("copy/" + name);
+    const std::string whole = ReadWholeFile(path, 1 << 24);
+    for (int i = 0; i < 60; ++i)
+    {
+      const std::size_t at = random() % whole.size();
+      const char changed = static_cast<char>(whole[at] ^ (1 << random() % 8));
+      Overwrite(path, WithByte(whole, at, changed));
+      const std::vector<std::string> sentences =
+        Differences(expected, ReadGolden(temporary / "copy"));
+      ASSERT_FALSE(sentences.empty()) << "byte " << at;
+      EXPECT_NE(sentences[0].find("file " + name), std::string::npos) << sentences[0];
+      noticed += sentences.size() > 1 ? 1 : 0;
+      Overwrite(path, whole);
+    }
+  }
+  EXPECT_GT(noticed, 90);
+}
+
+TEST(Golden, NewerVersionsAreRefusedInOneSentence)
+{
+  const TemporaryFolder temporary;
+  for (const std::string& folder : GoldenVersions())
+  {
+    const std::string copy = temporary / fs::path(folder).filename().string();
+    fs::copy(folder, copy, fs::copy_options::recursive);
+    const std::string path = copy + "/tiny.banyan";
+    const FieldKey field;
+    EXPECT_EQ(MessageOf(path, &field), "nothing is wrong");
+
+    const std::string segment = path + ".d/golden-000000.seg";
+    const std::string whole = ReadWholeFile(segment, 1 << 24);
+    Overwrite(segment, WithByte(whole, 8, 9));
+    std::string message = MessageOf(path, &field);
+    EXPECT_NE(message.find("format version"), std::string::npos) << message;
+    EXPECT_NE(message.find("golden-000000.seg"), std::string::npos) << message;
+    EXPECT_NE(message.find('9'), std::string::npos) << message;
+    Overwrite(segment, whole);
+
+    // A newer index may hold anything after the version; its number has to be said all the same.
+    const std::string index = ReadWholeFile(path, 1 << 24);
+    const std::size_t rest = index.find(' ', std::string("banyan-series ").size());
+    for (const std::string& after : { index.substr(rest), std::string("\n"), std::string(" ?") })
+    {
+      Overwrite(path, "banyan-series 9" + after);
+      message = MessageOf(path, nullptr);
+      EXPECT_NE(message.find("format version 9"), std::string::npos) << message;
+      EXPECT_NE(message.find("this Banyan reads version"), std::string::npos) << message;
+      EXPECT_NE(message.find("tiny.banyan"), std::string::npos) << message;
+    }
+  }
+}
+
+} // namespace
+} // namespace banyan
