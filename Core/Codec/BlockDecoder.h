@@ -1,0 +1,58 @@
+#ifndef banyan_Codec_BlockDecoder_h
+#define banyan_Codec_BlockDecoder_h
+
+#include "Codec/Tans.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace banyan
+{
+
+/// A block as the file holds it.
+struct BlockCode
+{
+  bool Exists = false;         ///< not beyond the field's end
+  bool Uniform = false;        ///< all its samples are `Value`
+  std::int32_t Value = 0;
+  std::uint8_t Mode = 0;       ///< see BlockModes.h
+  const std::uint8_t* Data = nullptr;
+  std::size_t Bytes = 0;       ///< 0: all residuals are zero
+  /// Greatest positions that carry residuals at strides 2 and 1, seen from the block's first sample.
+  glm::ivec3 CoarseLimit{ -1 }, FineLimit{ -1 };
+};
+
+/// What a field's blocks of one plane share.
+struct PlaneCode
+{
+  const tans::DecodeEntry* Tables = nullptr; ///< residual::ContextCount times tans::TableSize
+  std::int32_t CoarseBin = 1; ///< lattice steps per residual at stride 2
+  std::int32_t FineBin = 1;   ///< at stride 1
+  std::int32_t Least = 0;     ///< decoded lattice numbers are kept in [Least, Greatest]
+  std::int32_t Greatest = 0;
+};
+
+/// All that is needed to decode the samples of a block and of the faces that it shares.
+struct BoxCode
+{
+  /// The block and its neighbours: bits 0, 1, 2 of the index are offsets of one block in x, y, z.
+  BlockCode Blocks[8];
+  /// Samples at stride 4: `[z][y][x]` of (edge / 4 + 1) per axis; from the coarser plane.
+  const std::int32_t* Coarse = nullptr;
+  /// Decoded boxes of the references; must be given when a mode asks for them.
+  const std::int32_t* A = nullptr;
+  const std::int32_t* B = nullptr;
+};
+
+/// Decodes a box: the (edge + 1)^3 samples of a block and the layer that neighbours own.
+/// @param edge 8, 16, 32 or 64
+/// @param box receives lattice numbers `[z][y][x]`
+/// Throws Error when a payload is damaged; any input is safe. Integer arithmetic: bit-exact on
+/// every machine.
+void DecodeBox(int edge, const PlaneCode& plane, const BoxCode& code, std::int32_t* box);
+
+} // namespace banyan
+
+#endif

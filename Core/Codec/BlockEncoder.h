@@ -1,0 +1,77 @@
+#ifndef banyan_Codec_BlockEncoder_h
+#define banyan_Codec_BlockEncoder_h
+
+#include "Codec/BlockModes.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace banyan
+{
+
+class ThreadPool;
+
+/// Lattice numbers of one plane of a field, cut into blocks of Edge^3 samples.
+///
+/// Numbers are padded: there are Blocks * Edge + 1 per axis, x fastest, so that each block has its
+/// box of (Edge + 1)^3. Beyond the field's end they are what a decoder predicts there.
+struct PlaneNumbers
+{
+  PlaneNumbers() = default;
+  PlaneNumbers(const glm::ivec3& samples, int edge);
+
+  int Edge = 16;
+  glm::ivec3 Samples{ 1 };
+  glm::ivec3 Blocks{ 1 }; ///< ceil(Samples / Edge)
+  glm::ivec3 Padded{ 17 };
+  std::vector<std::int32_t> Numbers;
+
+  std::int64_t BlockCount() const
+  {
+    return std::int64_t{ this->Blocks.x } * this->Blocks.y * this->Blocks.z;
+  }
+  std::int64_t IndexOf(const glm::ivec3& p) const
+  {
+    return (std::int64_t{ p.z } * this->Padded.y + p.y) * this->Padded.x + p.x;
+  }
+};
+
+/// Samples per axis of the next coarser plane, which keeps every fourth sample; where the last gap
+/// is not whole, one more repeats the last sample.
+glm::ivec3 CoarserSamples(const glm::ivec3& samples);
+
+/// Greatest positions (seen from sample `origin`) that carry residuals at stride 2 or 1.
+glm::ivec3 ResidualLimit(const glm::ivec3& samples, const glm::ivec3& origin, int stride);
+
+/// A block before entropy coding.
+struct BlockTokens
+{
+  std::uint8_t Mode = 0;
+  bool Uniform = false;
+  std::int32_t Value = 0;
+  std::vector<std::uint16_t> Tokens; ///< context << 8 | symbol; empty when all residuals are zero
+  std::vector<std::uint32_t> Extra;  ///< of the symbols that have extra bits, in order
+};
+
+struct PlaneToEncode
+{
+  const PlaneNumbers* Target = nullptr;  ///< what to code, padded by repetition
+  const PlaneNumbers* Coarser = nullptr; ///< decoded
+  const PlaneNumbers* A = nullptr;       ///< decoded references, or null
+  const PlaneNumbers* B = nullptr;
+  std::int32_t CoarseBin = 1, FineBin = 1;
+  std::int32_t Least = 0, Greatest = 0;
+  std::vector<block::Mode> Candidates; ///< to choose from; at least one without references
+};
+
+/// Codes all blocks of a plane.
+/// @param decoded receives exactly what DecodeBox will give
+/// The result does not depend on the number of threads.
+void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded,
+  std::vector<BlockTokens>& blocks, ThreadPool& pool);
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,71 @@
+#ifndef banyan_Codec_BlockModes_h
+#define banyan_Codec_BlockModes_h
+
+#include <cstdint>
+
+/// How the samples of a block are predicted. The numbers are part of the file format.
+namespace banyan::block
+{
+
+/// Which earlier decoded steps are subtracted first. A is the reference before, B the one after;
+/// where the group ends there is no B, and B is A.
+enum class Reference : std::uint8_t
+{
+  None = 0,
+  Mean = 1,     ///< (A + B) / 2
+  HalfMean = 2, ///< (A + B) / 4: for motion too fast to trust the mean
+  A = 3,
+  B = 4
+};
+constexpr int References = 5;
+
+/// How the rest is predicted from its neighbours along the axis of a pass.
+enum class Interpolation : std::uint8_t
+{
+  Cubic = 0,
+  Linear = 1,
+  None = 2
+};
+constexpr int Interpolations = 3;
+
+struct Mode
+{
+  Reference From = Reference::None;
+  Interpolation By = Interpolation::Cubic;
+  friend bool operator==(const Mode& a, const Mode& b) { return a.From == b.From && a.By == b.By; }
+};
+
+/// As one number, 0 to ModeCount - 1.
+constexpr int ModeCount = References * Interpolations;
+constexpr int NumberOf(Mode mode)
+{
+  return static_cast<int>(mode.From) * Interpolations + static_cast<int>(mode.By);
+}
+constexpr Mode ModeOf(int number)
+{
+  return { static_cast<Reference>(number / Interpolations),
+    static_cast<Interpolation>(number % Interpolations) };
+}
+
+/// What is subtracted, from samples of A and B. Arithmetic wraps: any input is safe.
+inline std::int32_t ReferenceValue(Reference from, std::int32_t a, std::int32_t b)
+{
+  switch (from)
+  {
+    case Reference::Mean:
+      return static_cast<std::int32_t>((std::int64_t{ a } + b + 1) >> 1);
+    case Reference::HalfMean:
+      return static_cast<std::int32_t>((std::int64_t{ a } + b + 2) >> 2);
+    case Reference::A:
+      return a;
+    case Reference::B:
+      return b;
+    case Reference::None:
+      break;
+  }
+  return 0;
+}
+
+} // namespace banyan::block
+
+#endif

@@ -1,0 +1,75 @@
+#ifndef banyan_Codec_Residual_h
+#define banyan_Codec_Residual_h
+
+#include "Codec/Tans.h"
+
+#include <cstdint>
+
+/// Residuals (what a prediction lacks, in bins) as symbols, and their magnitudes as contexts.
+namespace banyan::residual
+{
+
+/// Residuals up to +-20 are symbols by themselves (zigzag: 0, 1, -1, 2, ...); beyond, the symbol
+/// says how many bits follow.
+constexpr int DirectSymbols = 40;
+
+inline std::uint32_t Zigzag(std::int32_t residual)
+{
+  return (static_cast<std::uint32_t>(residual) << 1) ^
+         static_cast<std::uint32_t>(residual >> 31);
+}
+
+inline std::int32_t Unzigzag(std::uint32_t code)
+{
+  return static_cast<std::int32_t>((code >> 1) ^ (0u - (code & 1u)));
+}
+
+/// Number of bits that follow a symbol, 0 to 31.
+inline int ExtraBits(int symbol)
+{
+  return symbol < DirectSymbols ? 0 : symbol - DirectSymbols;
+}
+
+/// Symbol of a zigzag code and, for large ones, the bits that follow.
+inline int SymbolOf(std::uint32_t code, std::uint32_t& extra)
+{
+  if (code < static_cast<std::uint32_t>(DirectSymbols))
+  {
+    extra = 0;
+    return static_cast<int>(code);
+  }
+  const std::uint64_t rest = std::uint64_t{ code } - DirectSymbols + 1;
+  const int bits = 63 - __builtin_clzll(rest);
+  extra = static_cast<std::uint32_t>(rest - (std::uint64_t{ 1 } << bits));
+  return DirectSymbols + bits;
+}
+
+/// Inverse of SymbolOf; any input is safe.
+inline std::uint32_t CodeOf(int symbol, std::uint32_t extra)
+{
+  return symbol < DirectSymbols
+           ? static_cast<std::uint32_t>(symbol)
+           : DirectSymbols - 1 + (1u << (symbol - DirectSymbols)) + extra;
+}
+
+/// About 2 log2(1 + |r|): sums of these say how rough the neighbourhood is, over any scale.
+/// Indexed by min(zigzag code, 127).
+extern const std::uint8_t MagnitudeOf[128];
+
+inline std::uint8_t Magnitude(std::uint32_t code)
+{
+  return MagnitudeOf[code < 127 ? code : 127];
+}
+
+/// Contexts: a band (kind of unit, stride, direction) and one of 8 classes of roughness; and one
+/// context per band for the flag "this row is all zero".
+constexpr int Bands = 11;
+constexpr int Classes = 8;
+constexpr int ContextCount = Bands * Classes + Bands;
+constexpr int FlagContext = Bands * Classes;
+
+static_assert(DirectSymbols + 32 <= tans::SymbolCount, "every 32-bit code has a symbol");
+
+} // namespace banyan::residual
+
+#endif

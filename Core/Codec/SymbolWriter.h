@@ -1,0 +1,62 @@
+#ifndef banyan_Codec_SymbolWriter_h
+#define banyan_Codec_SymbolWriter_h
+
+#include "Codec/Residual.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace banyan
+{
+
+/// How often each symbol came in each context.
+struct ContextCounts
+{
+  std::array<std::array<std::uint32_t, tans::SymbolCount>, residual::ContextCount> Of = {};
+
+  /// @param tokens context << 8 | symbol
+  void Add(const std::vector<std::uint16_t>& tokens);
+  void Add(const ContextCounts& other);
+};
+
+/// The tables of all contexts, for writing.
+class SymbolTables
+{
+public:
+  explicit SymbolTables(const ContextCounts& counts);
+
+  const std::vector<tans::Frequencies>& Frequencies() const { return this->Of; }
+
+  /// The payload that SymbolReader reads. The counts must have held all tokens.
+  /// @param extra one number per symbol with extra bits
+  std::vector<std::uint8_t> Encode(const std::vector<std::uint16_t>& tokens,
+    const std::vector<std::uint32_t>& extra) const;
+
+private:
+  /// How a symbol goes into a state: FSE's way, one subtraction and one look-up.
+  struct Transform
+  {
+    std::uint32_t DeltaBits = 0; ///< (state + DeltaBits) >> 16 is the number of bits to write
+    std::int32_t DeltaState = 0; ///< (state >> bits) + DeltaState is the place in Next
+  };
+  struct Table
+  {
+    std::array<Transform, tans::SymbolCount> Symbols;
+    std::array<std::uint16_t, tans::TableSize> Next;
+  };
+  std::vector<tans::Frequencies> Of;
+  std::vector<Table> Tables;
+};
+
+/// Frequencies of all contexts as bytes, and back. Throws Error when the bytes are not valid.
+std::vector<std::uint8_t> PackFrequencies(const std::vector<tans::Frequencies>& frequencies);
+std::vector<tans::Frequencies> UnpackFrequencies(const std::uint8_t* data, std::size_t bytes);
+
+/// Decode tables of all contexts, one after the other.
+std::vector<tans::DecodeEntry> DecodeTablesOf(const std::vector<tans::Frequencies>& frequencies);
+
+} // namespace banyan
+
+#endif
