@@ -13,6 +13,14 @@ namespace banyan
 
 class ThreadPool;
 
+/// What encoding aims at. Every profile keeps the bound and is read by every reader.
+enum class EncodeProfile
+{
+  Fast,     ///< in situ: fewer ways to predict are tried
+  Balanced, ///< the default
+  Compact   ///< archives: all of them, with more care
+};
+
 struct EncodeOptions
 {
   /// > 0 and finite, or 0 for bit-exact. See ErrorBoundMode.
@@ -20,7 +28,8 @@ struct EncodeOptions
   ErrorBoundMode Mode = ErrorBoundMode::RelativeToSeriesRange;
   int KeyframeInterval = 8; ///< steps per segment, in [1, 1024]
   int BrickCells = 0;       ///< 8, 16, 32 or 64; 0 chooses by the size of the grid
-  int CompressionLevel = 3; ///< of zstd, in [1, 19]
+  int CompressionLevel = 3; ///< of zstd (tables and exceptions), in [1, 19]
+  EncodeProfile Profile = EncodeProfile::Balanced;
 };
 
 /// What the arrays of a series are; ranges are needed only for relative error bounds.

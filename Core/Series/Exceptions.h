@@ -1,0 +1,34 @@
+#ifndef banyan_Series_Exceptions_h
+#define banyan_Series_Exceptions_h
+
+#include "Series/Bytes.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace banyan
+{
+
+/// Samples of a block that its lattice cannot hold within the bound (NaN, infinities, fill values,
+/// outliers; or all of them): kept bit-exact beside it.
+/// Positions count the block's samples with x fastest, the block as if it were whole.
+template <class T>
+struct ExceptionList
+{
+  std::vector<std::uint32_t> Positions; ///< increasing
+  std::vector<T> Values;                ///< of the same number
+};
+
+/// Throws nothing; the payload is the smaller of what list and mask give.
+template <class T>
+Bytes PackExceptions(const ExceptionList<T>& list, std::uint32_t samples, int compressionLevel);
+
+/// @param samples of the whole block
+/// Throws Error when the payload is damaged; any input is safe.
+template <class T>
+ExceptionList<T> UnpackExceptions(
+  const std::uint8_t* payload, std::size_t bytes, std::uint32_t samples);
+
+} // namespace banyan
+
+#endif

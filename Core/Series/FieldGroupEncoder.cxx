@@ -1,0 +1,291 @@
+#include "Series/FieldGroupEncoder.h"
+
+#include "Base/ThreadPool.h"
+#include "Codec/BlockEncoder.h"
+#include "Codec/GroupOrder.h"
+#include "Codec/SymbolWriter.h"
+#include "Series/Exceptions.h"
+#include "Series/FieldLattice.h"
+#include "Series/GroupNodes.h"
+#include "Series/LatticeTarget.h"
+
+#include <algorithm>
+#include <mutex>
+
+namespace banyan
+{
+namespace
+{
+
+using block::Interpolation;
+using block::Mode;
+using block::Reference;
+
+std::vector<Mode> CandidatesOf(EncodeProfile profile)
+{
+  const Mode intra{ Reference::None, Interpolation::Cubic };
+  const Mode mean{ Reference::Mean, Interpolation::Cubic };
+  if (profile == EncodeProfile::Fast)
+  {
+    return { intra, mean };
+  }
+  std::vector<Mode> modes{ intra, { Reference::None, Interpolation::Linear }, mean,
+    { Reference::Mean, Interpolation::Linear }, { Reference::Mean, Interpolation::None },
+    { Reference::HalfMean, Interpolation::Cubic } };
+  modes.push_back({ Reference::A, Interpolation::Linear });
+  modes.push_back({ Reference::B, Interpolation::Linear });
+  return modes;
+}
+
+/// Everything that is kept of a step until the group is written.
+struct StepWork
+{
+  std::vector<PlaneNumbers> Decoded; ///< by plane
+  std::vector<std::vector<BlockTokens>> Tokens;
+};
+
+template <class T>
+class Encoder
+{
+public:
+  Encoder(const FieldGroup& field, ThreadPool& pool)
+    : Field(field)
+    , Pool(pool)
+  {
+  }
+
+  EncodedField Run(
+    std::vector<std::vector<double>>* sumSquares, const std::function<void(int)>& tell);
+
+private:
+  void EncodeStep(int step);
+  void EncodePlanes(int step, const std::vector<PlaneNumbers>& targets);
+  void FindExceptions(int step, std::size_t plane, FieldErrors* errors, std::vector<double>* squares);
+  void WriteSymbols();
+  void CountChains();
+
+  const FieldGroup& Field;
+  ThreadPool& Pool;
+  std::unique_ptr<LatticeTarget<T>> Target;
+  std::vector<glm::ivec3> Planes; ///< samples
+  std::vector<StepWork> Work;
+  EncodedField Out;
+};
+
+template <class T>
+void Encoder<T>::EncodePlanes(int step, const std::vector<PlaneNumbers>& targets)
+{
+  StepWork& work = this->Work[static_cast<std::size_t>(step)];
+  EncodedStep& out = this->Out.Steps[static_cast<std::size_t>(step)];
+  const StepReferences references = ReferencesOfStep(step, static_cast<int>(this->Field.Steps.size()));
+  work.Decoded.resize(targets.size());
+  work.Tokens.resize(targets.size() - 1);
+  work.Decoded.back() = targets.back();
+  const PlaneNumbers& top = targets.back();
+  for (int z = 0; z < top.Samples.z; ++z)
+  {
+    for (int y = 0; y < top.Samples.y; ++y)
+    {
+      for (int x = 0; x < top.Samples.x; ++x)
+      {
+        out.Top.push_back(top.Numbers[static_cast<std::size_t>(top.IndexOf({ x, y, z }))]);
+      }
+    }
+  }
+  for (std::size_t p = targets.size() - 1; p-- > 0;)
+  {
+    PlaneToEncode plane;
+    plane.Target = &targets[p];
+    plane.Coarser = &work.Decoded[p + 1];
+    if (references.A >= 0)
+    {
+      plane.A = &this->Work[static_cast<std::size_t>(references.A)].Decoded[p];
+      plane.B = &this->Work[static_cast<std::size_t>(references.B)].Decoded[p];
+    }
+    plane.CoarseBin = BinOfOctave(this->Out.Head.Bin, static_cast<int>(2 * p + 1));
+    plane.FineBin = BinOfOctave(this->Out.Head.Bin, static_cast<int>(2 * p));
+    plane.Least = this->Out.Head.Least;
+    plane.Greatest = this->Out.Head.Greatest;
+    plane.Candidates = CandidatesOf(this->Field.Profile);
+    EncodePlane(plane, work.Decoded[p], work.Tokens[p], this->Pool);
+  }
+}
+
+/// Compares what the samples of each block decode to with the originals; what is out of bounds
+/// becomes an exception.
+template <class T>
+void Encoder<T>::FindExceptions(
+  int step, std::size_t plane, FieldErrors* errors, std::vector<double>* squares)
+{
+  const PlaneNumbers& decoded = this->Work[static_cast<std::size_t>(step)].Decoded[plane];
+  std::vector<EncodedBlock>& blocks =
+    this->Out.Steps[static_cast<std::size_t>(step)].Planes[plane];
+  std::vector<FieldErrors> parts(blocks.size());
+  this->Pool.ParallelFor(static_cast<std::int64_t>(blocks.size()),
+    [&](std::int64_t i)
+    {
+      ExceptionList<T> list;
+      this->Target->Verify(this->Field.Steps[static_cast<std::size_t>(step)], decoded,
+        static_cast<int>(plane), i, list, parts[static_cast<std::size_t>(i)], squares);
+      if (!list.Positions.empty())
+      {
+        const std::uint32_t edge = static_cast<std::uint32_t>(decoded.Edge);
+        blocks[static_cast<std::size_t>(i)].Exceptions =
+          PackExceptions(list, edge * edge * edge, this->Field.CompressionLevel);
+      }
+    });
+  for (const FieldErrors& part : parts)
+  {
+    if (errors != nullptr)
+    {
+      errors->Range.Include(part.Range);
+      errors->Maximum = std::max(errors->Maximum, part.Maximum);
+      errors->MaximumTransformed = std::max(errors->MaximumTransformed, part.MaximumTransformed);
+      errors->SumSquared += part.SumSquared;
+      errors->Finite += part.Finite;
+      errors->NonFinite += part.NonFinite;
+      errors->Exceptions += part.Exceptions;
+    }
+  }
+}
+
+/// Codes the tokens of all steps with tables made for all of them.
+template <class T>
+void Encoder<T>::WriteSymbols()
+{
+  for (int set = 0; set < 2; ++set)
+  {
+    ContextCounts counts;
+    const auto each = [&](auto&& body)
+    {
+      for (std::size_t t = 0; t < this->Work.size(); ++t)
+      {
+        for (std::size_t p = 0; p < this->Work[t].Tokens.size(); ++p)
+        {
+          if ((p > 0 ? 1 : 0) == set)
+          {
+            body(this->Work[t].Tokens[p], this->Out.Steps[t].Planes[p]);
+          }
+        }
+      }
+    };
+    each([&](std::vector<BlockTokens>& tokens, std::vector<EncodedBlock>&)
+      {
+        for (const BlockTokens& block : tokens)
+        {
+          counts.Add(block.Tokens);
+        }
+      });
+    const SymbolTables tables(counts);
+    this->Out.Head.Frequencies[set] = tables.Frequencies();
+    each([&](std::vector<BlockTokens>& tokens, std::vector<EncodedBlock>& blocks)
+      {
+        this->Pool.ParallelFor(static_cast<std::int64_t>(tokens.size()),
+          [&](std::int64_t i)
+          {
+            BlockTokens& from = tokens[static_cast<std::size_t>(i)];
+            EncodedBlock& to = blocks[static_cast<std::size_t>(i)];
+            to.Mode = from.Uniform ? 0 : from.Mode;
+            to.Uniform = from.Uniform;
+            to.Value = from.Value;
+            if (!from.Tokens.empty())
+            {
+              to.Payload = tables.Encode(from.Tokens, from.Extra);
+            }
+            from = {};
+          });
+      });
+  }
+}
+
+template <class T>
+void Encoder<T>::CountChains()
+{
+  const int steps = static_cast<int>(this->Out.Steps.size());
+  if (this->Planes.size() < 2)
+  {
+    return;
+  }
+  const std::size_t blocks = this->Out.Steps[0].Planes[0].size();
+  std::vector<char> needed(static_cast<std::size_t>(steps));
+  for (std::size_t b = 0; b < blocks; ++b)
+  {
+    for (int t = 0; t < steps; ++t)
+    {
+      std::fill(needed.begin(), needed.end(), 0);
+      std::vector<int> open{ t };
+      int chain = 0;
+      while (!open.empty())
+      {
+        const int at = open.back();
+        open.pop_back();
+        if (at < 0 || needed[static_cast<std::size_t>(at)] != 0)
+        {
+          continue;
+        }
+        needed[static_cast<std::size_t>(at)] = 1;
+        ++chain;
+        const EncodedBlock& block = this->Out.Steps[static_cast<std::size_t>(at)].Planes[0][b];
+        if (!block.Uniform && block::ModeOf(block.Mode).From != Reference::None)
+        {
+          const StepReferences references = ReferencesOfStep(at, steps);
+          open.push_back(references.A);
+          open.push_back(references.B);
+        }
+      }
+      this->Out.ChainSum += chain;
+      this->Out.ChainMost = std::max(this->Out.ChainMost, chain);
+    }
+  }
+}
+
+template <class T>
+EncodedField Encoder<T>::Run(
+  std::vector<std::vector<double>>* sumSquares, const std::function<void(int)>& tell)
+{
+  const int steps = static_cast<int>(this->Field.Steps.size());
+  ChooseLattice(this->Field.Type, this->Field.Map, this->Field.Bound, this->Field.Expected,
+    this->Out.Head);
+  this->Target = std::make_unique<LatticeTarget<T>>(this->Field, this->Out.Head, this->Pool);
+  this->Out.Head.Axes = this->Target->Axes();
+  this->Planes = this->Target->Planes();
+  this->Out.Steps.resize(static_cast<std::size_t>(steps));
+  this->Work.resize(static_cast<std::size_t>(steps));
+  int done = 0;
+  for (const int step : DyadicOrder(steps))
+  {
+    this->EncodePlanes(step, this->Target->Make(this->Field.Steps[static_cast<std::size_t>(step)]));
+    EncodedStep& out = this->Out.Steps[static_cast<std::size_t>(step)];
+    out.Planes.resize(this->Planes.size() - 1);
+    for (std::size_t p = 0; p + 1 < this->Planes.size(); ++p)
+    {
+      out.Planes[p].resize(this->Work[static_cast<std::size_t>(step)].Tokens[p].size());
+      this->FindExceptions(step, p, p == 0 ? &this->Out.Errors : nullptr,
+        p == 0 && sumSquares != nullptr ? &(*sumSquares)[static_cast<std::size_t>(step)] : nullptr);
+    }
+    tell(++done);
+  }
+  this->WriteSymbols();
+  std::vector<const std::vector<PlaneNumbers>*> decoded;
+  for (const StepWork& work : this->Work)
+  {
+    decoded.push_back(&work.Decoded);
+  }
+  MakeNodes<T>(this->Field, this->Out.Head, decoded, this->Out.Steps, this->Pool);
+  this->CountChains();
+  return std::move(this->Out);
+}
+
+} // namespace
+
+EncodedField EncodeFieldGroup(const FieldGroup& field, ThreadPool& pool,
+  std::vector<std::vector<double>>* sumSquares, const std::function<void(int)>& tell)
+{
+  EncodedField result;
+  Dispatch(field.Type,
+    [&](auto tag)
+    { result = Encoder<typename decltype(tag)::Type>(field, pool).Run(sumSquares, tell); });
+  return result;
+}
+
+} // namespace banyan

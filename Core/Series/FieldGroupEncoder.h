@@ -1,0 +1,81 @@
+#ifndef banyan_Series_FieldGroupEncoder_h
+#define banyan_Series_FieldGroupEncoder_h
+
+#include "Codec/BlockModes.h"
+#include "Series/GroupFormat.h"
+#include "Series/SeriesEncoder.h"
+
+#include <functional>
+#include <vector>
+
+namespace banyan
+{
+
+class ThreadPool;
+
+/// One component of one array over the steps of a group.
+struct FieldGroup
+{
+  ScalarType Type = ScalarType::Float32;
+  std::vector<const void*> Steps; ///< first component of the first tuple
+  int Components = 1;             ///< per tuple
+  int Component = 0;
+  glm::ivec3 Samples{ 1 };
+  int BrickCells = 16;
+  int Levels = 1;
+  Transform Map;
+  double Bound = 0;    ///< in the transformed domain
+  ValueRange Expected; ///< may be empty
+  EncodeProfile Profile = EncodeProfile::Balanced;
+  int CompressionLevel = 3;
+};
+
+/// A block ready to be written.
+struct EncodedBlock
+{
+  std::uint8_t Mode = 0;
+  bool Uniform = false;
+  std::int32_t Value = 0;
+  Bytes Payload;    ///< empty: all residuals are zero
+  Bytes Exceptions; ///< empty: none
+};
+
+struct EncodedStep
+{
+  std::vector<std::vector<EncodedBlock>> Planes;
+  std::vector<std::int32_t> Top;
+  std::vector<std::vector<group::NodeEntry>> Levels;
+};
+
+/// What was measured over the voxels of all steps.
+struct FieldErrors
+{
+  ValueRange Range; ///< of the decoded finite values
+  double Maximum = 0;
+  double SumSquared = 0;
+  double MaximumTransformed = 0;
+  std::int64_t Finite = 0;
+  std::int64_t NonFinite = 0;
+  std::int64_t Exceptions = 0; ///< voxels kept beside the lattice, non-finite ones included
+};
+
+struct EncodedField
+{
+  group::FieldHead Head;
+  std::vector<EncodedStep> Steps;
+  FieldErrors Errors;
+  /// Steps that must be decoded for a brick of the finest level: sum over all bricks, and most.
+  std::int64_t ChainSum = 0;
+  int ChainMost = 0;
+};
+
+/// Encodes a group. The result does not depend on the number of threads.
+/// @param sumSquares if not null, one array of all voxels per step, to which the squares of the
+/// decoded values are added (for magnitudes of vectors; NaN or infinite where a component is)
+/// @param tell called after each step with the number of steps done; may throw
+EncodedField EncodeFieldGroup(const FieldGroup& field, ThreadPool& pool,
+  std::vector<std::vector<double>>* sumSquares, const std::function<void(int)>& tell);
+
+} // namespace banyan
+
+#endif

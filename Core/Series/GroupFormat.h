@@ -1,0 +1,105 @@
+#ifndef banyan_Series_GroupFormat_h
+#define banyan_Series_GroupFormat_h
+
+#include "Codec/Tans.h"
+#include "Series/Bytes.h"
+#include "Series/Grid.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+/// The tables of a segment of version 2: see Documentation/format.md, "A segment, version 2".
+namespace banyan::group
+{
+
+constexpr std::uint32_t Version = 2;
+constexpr std::size_t EntryBytes = 24;
+constexpr int GreatestPlanes = 16;
+
+/// An entry of the directory: where a section lies.
+struct Section
+{
+  std::uint64_t Offset = 0;
+  std::uint32_t StoredBytes = 0; ///< one zstd frame
+  std::uint32_t RawBytes = 0;
+  std::uint64_t Hash = 0; ///< XXH3-64 of the stored bytes
+};
+
+/// What all steps of a component share in a segment.
+struct FieldHead
+{
+  /// Real axis (0 to 2) of each axis of the codec; predictions run along the last one last.
+  std::array<std::uint8_t, 3> Axes{ 0, 1, 2 };
+  bool Exact = false; ///< no lattice: every sample is an exception
+  double Origin = 0;
+  double Step = 1;
+  std::int32_t Bin = 31;
+  std::int32_t Least = 0, Greatest = 0;
+  /// Of the finest plane, and of all coarser ones.
+  std::vector<tans::Frequencies> Frequencies[2];
+};
+
+Bytes PackHead(const FieldHead& head);
+/// Throws Error when a field is out of range.
+FieldHead UnpackHead(const std::uint8_t* data, std::size_t bytes);
+
+/// Where bytes lie in the segment file.
+struct Place
+{
+  std::uint64_t Offset = 0;
+  std::uint32_t Bytes = 0; ///< 0: nowhere
+};
+
+/// A block of a plane.
+struct BlockEntry
+{
+  std::uint8_t Mode = 0;
+  bool Uniform = false;
+  std::int32_t Value = 0; ///< of a uniform block
+  Place Payload;          ///< none: all residuals are zero
+  Place Exceptions;
+};
+
+/// What is known of a brick without decoding it.
+struct NodeEntry
+{
+  bool HasNonFinite = false;
+  bool NothingFinite = false;
+  bool Uniform = false;
+  bool Explicit = false; ///< LowValue and HighValue hold, not Low and High
+  /// How many steps ago (in time) the brick last changed; at most the step's place in its group.
+  std::uint32_t Age = 0;
+  std::int32_t Low = 0, High = 0; ///< extremes, in lattice numbers
+  double LowValue = 0, HighValue = 0;
+  std::uint64_t Content = 0; ///< of the first step only: hash of the decoded samples
+};
+
+/// All of one component at one step.
+struct StepTable
+{
+  std::uint64_t FirstPayload = 0; ///< where its payloads begin
+  std::vector<std::vector<BlockEntry>> Planes;
+  std::vector<std::int32_t> Top; ///< lattice numbers of the coarsest plane, x fastest
+  std::vector<std::vector<NodeEntry>> Levels;
+
+  std::uint64_t MemoryBytes() const;
+};
+
+/// Samples per axis of each plane of a field, in the order of the codec's axes: each keeps every
+/// fourth sample of the one before, until no axis has more than 2; at least two planes. The last one
+/// is not cut into blocks.
+std::vector<glm::ivec3> PlanesOf(glm::ivec3 samples);
+
+Bytes PackStep(const StepTable& table, bool first);
+
+/// @param blocks per plane but the coarsest, and @param bricks per level: how many there must be
+/// @param payloadEnd all places must lie before it
+/// Throws Error when anything does not fit.
+StepTable UnpackStep(const std::uint8_t* data, std::size_t bytes, bool first, int step,
+  const std::vector<std::size_t>& blocks, std::size_t topSamples,
+  const std::vector<std::size_t>& bricks, std::uint64_t payloadEnd);
+
+} // namespace banyan::group
+
+#endif

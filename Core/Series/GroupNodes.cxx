@@ -1,0 +1,284 @@
+#include "Series/GroupNodes.h"
+
+#include "Base/ForEachScalarType.h"
+#include "Base/ThreadPool.h"
+#include "Series/BrickStatistics.h"
+#include "Series/Hash.h"
+#include "Series/LatticeDecoder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace banyan
+{
+
+PlaneRegion::PlaneRegion(int level, const Box& box, const std::array<std::uint8_t, 3>& axes,
+  const glm::ivec3& samples, int edge)
+  : Plane(level / 2)
+  , Stride(level % 2 == 0 ? 1 : 2)
+{
+  const glm::ivec3 size = box.Size();
+  for (int a = 0; a < 3; ++a)
+  {
+    const int real = axes[static_cast<std::size_t>(a)];
+    this->Low[a] = box.Lo[real] * this->Stride;
+    this->Count[a] = size[real];
+    this->FirstBlock[a] = std::min(this->Low[a], samples[a] - 1) / edge;
+    this->EndBlock[a] =
+      std::min(this->Low[a] + (this->Count[a] - 1) * this->Stride, samples[a] - 1) / edge + 1;
+  }
+}
+
+template <class T>
+void PlaceExceptions(const PlaneRegion& region, const glm::ivec3& samples, int edge,
+  const glm::ivec3& block, const ExceptionList<T>& list, T* values)
+{
+  for (std::size_t i = 0; i < list.Positions.size(); ++i)
+  {
+    const int at = static_cast<int>(list.Positions[i]);
+    const glm::ivec3 sample =
+      block * edge + glm::ivec3{ at % edge, at / edge % edge, at / edge / edge };
+    // Where the sample shows along each axis: at its own place, and, if it is the field's last one,
+    // in the place beyond.
+    int places[3][2];
+    int counts[3] = {};
+    for (int a = 0; a < 3; ++a)
+    {
+      const int from = sample[a] - region.Low[a];
+      const int lastPlace = region.Count[a] - 1;
+      if (from >= 0 && from % region.Stride == 0 && from / region.Stride <= lastPlace)
+      {
+        places[a][counts[a]++] = from / region.Stride;
+      }
+      if (sample[a] == samples[a] - 1 && lastPlace * region.Stride > from)
+      {
+        places[a][counts[a]++] = lastPlace;
+      }
+    }
+    for (int z = 0; z < counts[2]; ++z)
+    {
+      for (int y = 0; y < counts[1]; ++y)
+      {
+        for (int x = 0; x < counts[0]; ++x)
+        {
+          values[(static_cast<std::size_t>(places[2][z]) * region.Count.y + places[1][y]) *
+                   region.Count.x +
+            places[0][x]] = list.Values[i];
+        }
+      }
+    }
+  }
+}
+
+namespace
+{
+
+/// The nodes of one level over all steps.
+template <class T>
+class LevelNodes
+{
+public:
+  LevelNodes(const FieldGroup& field, const group::FieldHead& head, int level,
+    const std::vector<const std::vector<PlaneNumbers>*>& decoded, std::vector<EncodedStep>& steps)
+    : Field(field)
+    , Head(head)
+    , Level(level)
+    , Layout(field.Samples, field.BrickCells, level)
+    , Decoded(decoded)
+    , Steps(steps)
+    , Decoder(field.Map, head.Origin, head.Step, head.Least, head.Greatest)
+  {
+  }
+
+  std::int64_t Count() const { return this->Layout.BrickCount(); }
+
+  void Make(std::int64_t brick) const
+  {
+    const std::size_t plane = static_cast<std::size_t>(this->Level / 2);
+    const PlaneRegion region(this->Level, this->Layout.SamplesOf(brick), this->Head.Axes,
+      (*this->Decoded[0])[plane].Samples, this->Field.BrickCells);
+    std::vector<std::int32_t> numbers, before;
+    for (std::size_t t = 0; t < this->Steps.size(); ++t)
+    {
+      group::NodeEntry& node =
+        this->Steps[t].Levels[static_cast<std::size_t>(this->Level)][static_cast<std::size_t>(brick)];
+      std::swap(numbers, before);
+      this->Gather((*this->Decoded[t])[plane], region, numbers);
+      const bool exceptional = this->HasExceptions(t, region);
+      if (exceptional)
+      {
+        this->Describe(t, region, numbers, node);
+      }
+      else
+      {
+        const auto [low, high] = std::minmax_element(numbers.begin(), numbers.end());
+        node.Low = *low;
+        node.High = *high;
+        node.Uniform = node.Low == node.High;
+      }
+      if (t == 0)
+      {
+        node.Content = this->ContentOf(region, numbers);
+      }
+      else if (numbers == before && this->SameExceptions(t, region))
+      {
+        node.Age = this->Steps[t - 1]
+                     .Levels[static_cast<std::size_t>(this->Level)][static_cast<std::size_t>(brick)]
+                     .Age +
+                   1;
+      }
+    }
+  }
+
+private:
+  void Gather(const PlaneNumbers& plane, const PlaneRegion& region,
+    std::vector<std::int32_t>& numbers) const
+  {
+    numbers.resize(static_cast<std::size_t>(region.Count.x) *
+                   static_cast<std::size_t>(region.Count.y) *
+                   static_cast<std::size_t>(region.Count.z));
+    std::int32_t* to = numbers.data();
+    for (int z = 0; z < region.Count.z; ++z)
+    {
+      for (int y = 0; y < region.Count.y; ++y)
+      {
+        const std::int32_t* from =
+          plane.Numbers.data() +
+          plane.IndexOf(region.Low + glm::ivec3{ 0, y * region.Stride, z * region.Stride });
+        for (int x = 0; x < region.Count.x; ++x)
+        {
+          *to++ = from[x * region.Stride];
+        }
+      }
+    }
+  }
+
+  template <class Body>
+  void ForEachBlock(std::size_t step, const PlaneRegion& region, Body&& body) const
+  {
+    const std::size_t plane = static_cast<std::size_t>(region.Plane);
+    const glm::ivec3 blocks = (*this->Decoded[step])[plane].Blocks;
+    for (int z = region.FirstBlock.z; z < region.EndBlock.z; ++z)
+    {
+      for (int y = region.FirstBlock.y; y < region.EndBlock.y; ++y)
+      {
+        for (int x = region.FirstBlock.x; x < region.EndBlock.x; ++x)
+        {
+          const std::size_t index =
+            (static_cast<std::size_t>(z) * blocks.y + y) * blocks.x + static_cast<std::size_t>(x);
+          body(index, glm::ivec3{ x, y, z });
+        }
+      }
+    }
+  }
+
+  const Bytes& ExceptionsOf(std::size_t step, const PlaneRegion& region, std::size_t block) const
+  {
+    return this->Steps[step].Planes[static_cast<std::size_t>(region.Plane)][block].Exceptions;
+  }
+
+  bool HasExceptions(std::size_t step, const PlaneRegion& region) const
+  {
+    bool any = false;
+    this->ForEachBlock(step, region, [&](std::size_t block, const glm::ivec3&)
+      { any = any || !this->ExceptionsOf(step, region, block).empty(); });
+    return any;
+  }
+
+  bool SameExceptions(std::size_t step, const PlaneRegion& region) const
+  {
+    bool same = true;
+    this->ForEachBlock(step, region,
+      [&](std::size_t block, const glm::ivec3&)
+      {
+        same = same && this->ExceptionsOf(step, region, block) ==
+                         this->ExceptionsOf(step - 1, region, block);
+      });
+    return same;
+  }
+
+  std::uint64_t ContentOf(
+    const PlaneRegion& region, const std::vector<std::int32_t>& numbers) const
+  {
+    const double lattice[] = { this->Head.Origin, this->Head.Step };
+    Bytes all(sizeof(lattice) + numbers.size() * sizeof(std::int32_t));
+    std::memcpy(all.data(), lattice, sizeof(lattice));
+    std::memcpy(
+      all.data() + sizeof(lattice), numbers.data(), numbers.size() * sizeof(std::int32_t));
+    this->ForEachBlock(0, region,
+      [&](std::size_t block, const glm::ivec3&)
+      {
+        const Bytes& exceptions = this->ExceptionsOf(0, region, block);
+        all.insert(all.end(), exceptions.begin(), exceptions.end());
+      });
+    return ShortHashOf(all.data(), all.size());
+  }
+
+  /// The node of a brick with exceptions, from its values.
+  void Describe(std::size_t step, const PlaneRegion& region,
+    const std::vector<std::int32_t>& numbers, group::NodeEntry& node) const
+  {
+    std::vector<T> values(numbers.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+    {
+      values[i] = this->Decoder.ValueOf(numbers[i]);
+    }
+    const PlaneNumbers& plane = (*this->Decoded[step])[static_cast<std::size_t>(region.Plane)];
+    const std::uint32_t samples =
+      static_cast<std::uint32_t>(plane.Edge * plane.Edge * plane.Edge);
+    this->ForEachBlock(step, region,
+      [&](std::size_t block, const glm::ivec3& position)
+      {
+        const Bytes& payload = this->ExceptionsOf(step, region, block);
+        if (!payload.empty())
+        {
+          PlaceExceptions(region, plane.Samples, plane.Edge, position,
+            UnpackExceptions<T>(payload.data(), payload.size(), samples), values.data());
+        }
+      });
+    const BrickSummary summary = Summarize(values.data(), region.Count, MaskRange{ 0, 0 });
+    node.HasNonFinite = summary.HasNonFinite;
+    node.NothingFinite = summary.Range.Empty();
+    node.Uniform = summary.Uniform;
+    node.Explicit = !node.NothingFinite;
+    node.LowValue = node.NothingFinite ? 0 : summary.Range.Low;
+    node.HighValue = node.NothingFinite ? 0 : summary.Range.High;
+  }
+
+  const FieldGroup& Field;
+  const group::FieldHead& Head;
+  int Level;
+  BrickLayout Layout;
+  const std::vector<const std::vector<PlaneNumbers>*>& Decoded;
+  std::vector<EncodedStep>& Steps;
+  LatticeDecoder<T> Decoder;
+};
+
+} // namespace
+
+template <class T>
+void MakeNodes(const FieldGroup& field, const group::FieldHead& head,
+  const std::vector<const std::vector<PlaneNumbers>*>& decoded, std::vector<EncodedStep>& steps,
+  ThreadPool& pool)
+{
+  for (int level = 0; level < field.Levels; ++level)
+  {
+    const LevelNodes<T> nodes(field, head, level, decoded, steps);
+    for (EncodedStep& step : steps)
+    {
+      step.Levels.emplace_back(static_cast<std::size_t>(nodes.Count()));
+    }
+    pool.ParallelFor(nodes.Count(), [&](std::int64_t brick) { nodes.Make(brick); });
+  }
+}
+
+#define BANYAN_INSTANTIATE(T)                                                                      \
+  template void PlaceExceptions<T>(const PlaneRegion&, const glm::ivec3&, int, const glm::ivec3&,  \
+    const ExceptionList<T>&, T*);                                                                  \
+  template void MakeNodes<T>(const FieldGroup&, const group::FieldHead&,                           \
+    const std::vector<const std::vector<PlaneNumbers>*>&, std::vector<EncodedStep>&, ThreadPool&)
+BANYAN_FOR_EACH_SCALAR_TYPE(BANYAN_INSTANTIATE);
+#undef BANYAN_INSTANTIATE
+
+} // namespace banyan

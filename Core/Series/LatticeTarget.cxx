@@ -1,0 +1,305 @@
+#include "Series/LatticeTarget.h"
+
+#include "Base/ForEachScalarType.h"
+#include "Base/ThreadPool.h"
+#include "Series/FieldLattice.h"
+#include "Series/Quantizer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace banyan
+{
+namespace
+{
+
+constexpr int Tile = 16;
+
+glm::ivec3 PositionIn(const glm::ivec3& size, std::int64_t index)
+{
+  return { static_cast<int>(index % size.x), static_cast<int>(index / size.x % size.y),
+    static_cast<int>(index / size.x / size.y) };
+}
+
+glm::i64vec3 StridesOf(const FieldGroup& field)
+{
+  const std::int64_t row = std::int64_t{ field.Components } * field.Samples.x;
+  return { field.Components, row, row * field.Samples.y };
+}
+
+/// Repeats the last samples beyond the field's end.
+void Pad(PlaneNumbers& plane)
+{
+  const glm::ivec3 n = plane.Samples;
+  const auto row = [&plane](int y, int z)
+  { return plane.Numbers.data() + plane.IndexOf({ 0, y, z }); };
+  for (int z = 0; z < plane.Padded.z; ++z)
+  {
+    for (int y = 0; y < plane.Padded.y; ++y)
+    {
+      std::int32_t* to = row(y, z);
+      if (y >= n.y || z >= n.z)
+      {
+        const std::int32_t* from = row(std::min(y, n.y - 1), std::min(z, n.z - 1));
+        std::copy(from, from + plane.Padded.x, to);
+      }
+      else
+      {
+        std::fill(to + n.x, to + plane.Padded.x, to[n.x - 1]);
+      }
+    }
+  }
+}
+
+/// Every fourth sample.
+PlaneNumbers Coarser(const PlaneNumbers& fine)
+{
+  PlaneNumbers coarse(CoarserSamples(fine.Samples), fine.Edge);
+  const glm::ivec3 last = fine.Samples - 1;
+  for (int z = 0; z < coarse.Samples.z; ++z)
+  {
+    for (int y = 0; y < coarse.Samples.y; ++y)
+    {
+      for (int x = 0; x < coarse.Samples.x; ++x)
+      {
+        const std::int64_t from = fine.IndexOf(
+          { std::min(4 * x, last.x), std::min(4 * y, last.y), std::min(4 * z, last.z) });
+        coarse.Numbers[static_cast<std::size_t>(coarse.IndexOf({ x, y, z }))] =
+          fine.Numbers[static_cast<std::size_t>(from)];
+      }
+    }
+  }
+  Pad(coarse);
+  return coarse;
+}
+
+} // namespace
+
+template <class T>
+std::array<std::uint8_t, 3> SmoothestLast(const FieldGroup& field, const void* step)
+{
+  const T* values = static_cast<const T*>(step);
+  const glm::i64vec3 stride = StridesOf(field);
+  // A sparse grid of samples is enough to tell the axes apart.
+  glm::ivec3 gap;
+  for (int a = 0; a < 3; ++a)
+  {
+    gap[a] = std::max(1, field.Samples[a] / 24);
+  }
+  double roughness[3] = {};
+  for (int a = 0; a < 3; ++a)
+  {
+    if (field.Samples[a] < 3)
+    {
+      roughness[a] = std::numeric_limits<double>::infinity();
+      continue;
+    }
+    for (int z = a == 2 ? 1 : 0; z < field.Samples.z - (a == 2 ? 1 : 0); z += gap.z)
+    {
+      for (int y = a == 1 ? 1 : 0; y < field.Samples.y - (a == 1 ? 1 : 0); y += gap.y)
+      {
+        for (int x = a == 0 ? 1 : 0; x < field.Samples.x - (a == 0 ? 1 : 0); x += gap.x)
+        {
+          const T* at = values + x * stride.x + y * stride.y + z * stride.z;
+          const double bend = static_cast<double>(at[stride[a]]) +
+                              static_cast<double>(at[-stride[a]]) - 2.0 * static_cast<double>(at[0]);
+          roughness[a] += std::isfinite(bend) ? std::abs(bend) : 0.0;
+        }
+      }
+    }
+  }
+  std::array<std::uint8_t, 3> axes{ 0, 1, 2 };
+  std::stable_sort(axes.begin(), axes.end(),
+    [&roughness](std::uint8_t a, std::uint8_t b) { return roughness[a] > roughness[b]; });
+  return axes;
+}
+
+template <class T>
+LatticeTarget<T>::LatticeTarget(
+  const FieldGroup& field, const group::FieldHead& head, ThreadPool& pool)
+  : Field(field)
+  , Head(head)
+  , Pool(pool)
+  , AxisOrder(SmoothestLast<T>(field, field.Steps[0]))
+  , Decoder(field.Map, head.Origin, head.Step, head.Least, head.Greatest)
+{
+  const glm::i64vec3 real = StridesOf(field);
+  glm::ivec3 samples;
+  for (int a = 0; a < 3; ++a)
+  {
+    samples[a] = field.Samples[this->AxisOrder[static_cast<std::size_t>(a)]];
+    this->Stride[a] = real[this->AxisOrder[static_cast<std::size_t>(a)]];
+  }
+  this->PlaneSamples = group::PlanesOf(samples);
+  // A value further out than the range is wide would spoil the predictions around it.
+  const double low = head.Origin + head.Least * head.Step;
+  const double high = head.Origin + head.Greatest * head.Step;
+  const double width = field.Expected.Empty() ? GreatestLatticeNumber * head.Step : high - low;
+  this->Nearest = low - width - head.Step;
+  this->Furthest = high + width + head.Step;
+}
+
+template <class T>
+void LatticeTarget<T>::FillRow(
+  const T* values, std::int64_t stride, int count, std::int32_t* numbers) const
+{
+  double y[Tile];
+  for (int x = 0; x < count; ++x)
+  {
+    y[x] = static_cast<double>(values[x * stride]);
+  }
+  if (!this->Field.Map.IsIdentity())
+  {
+    this->Field.Map.Forward(y, static_cast<std::size_t>(count), y);
+  }
+  const double inverse = 1.0 / this->Head.Step;
+  constexpr double rounder = 6755399441055744.0; // 1.5 * 2^52: adding it rounds
+  bool held[Tile];
+  bool all = true;
+  for (int x = 0; x < count; ++x)
+  {
+    held[x] = y[x] >= this->Nearest && y[x] <= this->Furthest; // not for NaN
+    all = all && held[x];
+    const double number = held[x] ? (y[x] - this->Head.Origin) * inverse : 0.0;
+    const double bounded =
+      std::min(std::max(number, double(this->Head.Least)), double(this->Head.Greatest));
+    numbers[x] = static_cast<std::int32_t>((bounded + rounder) - rounder);
+  }
+  if (all)
+  {
+    return;
+  }
+  const bool* first = std::find(held, held + count, true);
+  std::int32_t last = first == held + count
+                        ? std::min(std::max(0, this->Head.Least), this->Head.Greatest)
+                        : numbers[first - held];
+  for (int x = 0; x < count; ++x)
+  {
+    last = held[x] ? numbers[x] : last;
+    numbers[x] = last;
+  }
+}
+
+template <class T>
+void LatticeTarget<T>::FillTile(const T* values, const glm::ivec3& low, PlaneNumbers& plane) const
+{
+  const glm::ivec3 n = plane.Samples;
+  for (int z = low.z; z < std::min(low.z + Tile, n.z); ++z)
+  {
+    for (int y = low.y; y < std::min(low.y + Tile, n.y); ++y)
+    {
+      this->FillRow(
+        values + low.x * this->Stride.x + y * this->Stride.y + z * this->Stride.z, this->Stride.x,
+        std::min(Tile, n.x - low.x), plane.Numbers.data() + plane.IndexOf({ low.x, y, z }));
+    }
+  }
+}
+
+template <class T>
+std::vector<PlaneNumbers> LatticeTarget<T>::Make(const void* values) const
+{
+  std::vector<PlaneNumbers> planes;
+  planes.emplace_back(this->PlaneSamples[0], this->Field.BrickCells);
+  const glm::ivec3 tiles = (this->PlaneSamples[0] + Tile - 1) / Tile;
+  this->Pool.ParallelFor(std::int64_t{ tiles.x } * tiles.y * tiles.z, [&](std::int64_t i)
+    { this->FillTile(static_cast<const T*>(values), PositionIn(tiles, i) * Tile, planes[0]); });
+  Pad(planes[0]);
+  while (planes.size() < this->PlaneSamples.size())
+  {
+    planes.push_back(Coarser(planes.back()));
+  }
+  return planes;
+}
+
+template <class T>
+bool LatticeTarget<T>::Within(T original, T decoded, double& error, double& transformed) const
+{
+  if (this->Head.Exact || this->Field.Bound == 0)
+  {
+    error = 0;
+    transformed = 0;
+    return std::memcmp(&original, &decoded, sizeof(T)) == 0;
+  }
+  error = Difference(original, decoded);
+  transformed = error;
+  if (!this->Field.Map.IsIdentity())
+  {
+    transformed = std::abs(this->Field.Map.Forward(static_cast<double>(original)) -
+                           this->Field.Map.Forward(static_cast<double>(decoded)));
+  }
+  return transformed <= this->Field.Bound;
+}
+
+template <class T>
+void LatticeTarget<T>::Verify(const void* values, const PlaneNumbers& decoded, int plane,
+  std::int64_t block, ExceptionList<T>& list, FieldErrors& errors,
+  std::vector<double>* squares) const
+{
+  const int edge = decoded.Edge;
+  const glm::ivec3 low = PositionIn(decoded.Blocks, block) * edge;
+  const glm::ivec3 high = glm::ivec3{ std::min(low.x + edge, decoded.Samples.x),
+    std::min(low.y + edge, decoded.Samples.y), std::min(low.z + edge, decoded.Samples.z) };
+  const glm::ivec3 last = this->PlaneSamples[0] - 1;
+  std::vector<std::uint32_t> offsets(static_cast<std::size_t>(edge));
+  std::vector<T> row(static_cast<std::size_t>(edge));
+  for (int z = low.z; z < high.z; ++z)
+  {
+    for (int y = low.y; y < high.y; ++y)
+    {
+      const std::int32_t* numbers = decoded.Numbers.data() + decoded.IndexOf({ low.x, y, z });
+      const int count = high.x - low.x;
+      for (int x = 0; x < count; ++x)
+      {
+        offsets[static_cast<std::size_t>(x)] =
+          static_cast<std::uint32_t>(numbers[x]) - static_cast<std::uint32_t>(this->Head.Least);
+      }
+      this->Decoder.Decode(
+        this->Head.Least, offsets.data(), static_cast<std::size_t>(count), row.data());
+      const std::int64_t base =
+        std::min(y << (2 * plane), last.y) * this->Stride.y +
+        std::min(z << (2 * plane), last.z) * this->Stride.z;
+      for (int x = 0; x < count; ++x)
+      {
+        const std::int64_t at =
+          base + std::min((low.x + x) << (2 * plane), last.x) * this->Stride.x;
+        const T original = static_cast<const T*>(values)[at];
+        const bool finite = std::isfinite(static_cast<double>(original));
+        double error = 0;
+        double transformed = 0;
+        T final = row[static_cast<std::size_t>(x)];
+        if (!finite || !this->Within(original, final, error, transformed))
+        {
+          const glm::ivec3 p = glm::ivec3{ low.x + x, y, z } - low;
+          list.Positions.push_back(static_cast<std::uint32_t>((p.z * edge + p.y) * edge + p.x));
+          list.Values.push_back(original);
+          final = original;
+          error = 0;
+          transformed = 0;
+          ++errors.Exceptions;
+        }
+        if (finite)
+        {
+          errors.Range.Include({ DoubleNotAbove(final), DoubleNotBelow(final) });
+          errors.Maximum = std::max(errors.Maximum, error);
+          errors.MaximumTransformed = std::max(errors.MaximumTransformed, transformed);
+          errors.SumSquared += error * error;
+        }
+        (finite ? errors.Finite : errors.NonFinite) += 1;
+        if (squares != nullptr)
+        {
+          (*squares)[static_cast<std::size_t>(at / this->Field.Components)] +=
+            static_cast<double>(final) * static_cast<double>(final);
+        }
+      }
+    }
+  }
+}
+
+#define BANYAN_INSTANTIATE(T)                                                                      \
+  template std::array<std::uint8_t, 3> SmoothestLast<T>(const FieldGroup&, const void*);           \
+  template class LatticeTarget<T>
+BANYAN_FOR_EACH_SCALAR_TYPE(BANYAN_INSTANTIATE);
+#undef BANYAN_INSTANTIATE
+
+} // namespace banyan

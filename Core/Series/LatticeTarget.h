@@ -1,0 +1,60 @@
+#ifndef banyan_Series_LatticeTarget_h
+#define banyan_Series_LatticeTarget_h
+
+#include "Codec/BlockEncoder.h"
+#include "Series/Exceptions.h"
+#include "Series/FieldGroupEncoder.h"
+#include "Series/LatticeDecoder.h"
+
+#include <array>
+#include <vector>
+
+namespace banyan
+{
+
+/// The axes of a field in the order that predicts best: predictions run along the last axis last,
+/// where half of all samples are, so that is the smoothest one.
+/// @param step values of one step, as FieldGroup has them
+template <class T>
+std::array<std::uint8_t, 3> SmoothestLast(const FieldGroup& field, const void* step);
+
+/// The way of values to lattice numbers and the comparison on the way back.
+template <class T>
+class LatticeTarget
+{
+public:
+  LatticeTarget(const FieldGroup& field, const group::FieldHead& head, ThreadPool& pool);
+
+  const std::array<std::uint8_t, 3>& Axes() const { return this->AxisOrder; }
+  /// Samples of each plane, axes in that order.
+  const std::vector<glm::ivec3>& Planes() const { return this->PlaneSamples; }
+
+  /// The lattice numbers of a step on all planes. What the lattice cannot hold gets a number of its
+  /// neighbourhood.
+  std::vector<PlaneNumbers> Make(const void* values) const;
+
+  /// Decodes the samples of a block and compares them with the originals.
+  /// @param list receives those that are not within the bound
+  /// @param errors of the block; decoded values include exceptions
+  /// @param squares if not null, of all voxels: the square of what each decodes to is added
+  void Verify(const void* values, const PlaneNumbers& decoded, int plane, std::int64_t block,
+    ExceptionList<T>& list, FieldErrors& errors, std::vector<double>* squares) const;
+
+private:
+  void FillTile(const T* values, const glm::ivec3& low, PlaneNumbers& plane) const;
+  void FillRow(const T* values, std::int64_t stride, int count, std::int32_t* numbers) const;
+  bool Within(T original, T decoded, double& error, double& transformed) const;
+
+  const FieldGroup& Field;
+  const group::FieldHead& Head;
+  ThreadPool& Pool;
+  std::array<std::uint8_t, 3> AxisOrder;
+  std::vector<glm::ivec3> PlaneSamples;
+  glm::i64vec3 Stride; ///< of values, along the axes in order
+  LatticeDecoder<T> Decoder;
+  double Nearest, Furthest; ///< transformed values outside are not put on the lattice
+};
+
+} // namespace banyan
+
+#endif
