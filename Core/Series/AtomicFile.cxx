@@ -126,6 +126,12 @@ void AtomicFile::Commit()
   SyncFolder(FolderOf(this->Path));
 }
 
+void AtomicFile::CommitAs(const std::string& path)
+{
+  this->Path = path;
+  this->Commit();
+}
+
 void WriteFileAtomically(const std::string& path, const std::string& content)
 {
   AtomicFile file(path);

@@ -29,6 +29,9 @@ public:
   /// Brings everything to the disk and renames. Throws Error.
   void Commit();
 
+  /// As Commit, under another name (in the same folder) than the one given at first.
+  void CommitAs(const std::string& path);
+
 private:
   void Discard() noexcept;
   [[noreturn]] void Fail(const std::string& what, int code);

@@ -40,6 +40,10 @@ ComponentIndex ComponentFromJson(const Json& json)
   component.PromisedRange = RangeFromJson(json, "promisedRange");
   component.ErrorBoundAbsolute = Real(Member(json, "errorBoundAbsolute"), "errorBoundAbsolute");
   component.MeasuredMaxError = Real(Member(json, "measuredMaxError"), "measuredMaxError");
+  component.MeasuredMaxErrorTransformed =
+    json.contains("measuredMaxErrorTransformed")
+      ? Real(Member(json, "measuredMaxErrorTransformed"), "measuredMaxErrorTransformed")
+      : component.MeasuredMaxError;
   const Json& squares = Member(json, "sumSquaredError");
   component.SumSquaredError =
     squares.is_null() ? std::numeric_limits<double>::infinity() : Real(squares, "sumSquaredError");
@@ -92,6 +96,14 @@ EncodeStatistics StatisticsFromJson(const Json& json)
   statistics.RawBricks = CountMember(json, "rawBricks");
   statistics.PayloadBytes = static_cast<std::uint64_t>(CountMember(json, "payloadBytes"));
   statistics.TableBytes = static_cast<std::uint64_t>(CountMember(json, "tableBytes"));
+  const auto later = [&json](const char* name)
+  { return json.contains(name) ? CountMember(json, name) : std::int64_t{ 0 }; };
+  statistics.Blocks = later("blocks");
+  statistics.EmptyBlocks = later("emptyBlocks");
+  statistics.ExceptionVoxels = later("exceptionVoxels");
+  statistics.ChainSum = later("chainSum");
+  statistics.ChainBricks = later("chainBricks");
+  statistics.ChainMost = later("chainMost");
   return statistics;
 }
 

@@ -10,10 +10,11 @@ namespace
 {
 
 const std::string Word = "banyan-series ";
-constexpr int Version = 1;
+constexpr int OldestVersion = 1;
+constexpr int NewestVersion = 2;
 
 /// Splits off the first line, having checked that it fits the rest.
-std::string CheckedBody(const std::string& text)
+std::string CheckedBody(const std::string& text, int& formatVersion)
 {
   if (text.compare(0, Word.size(), Word) != 0)
   {
@@ -27,10 +28,11 @@ std::string CheckedBody(const std::string& text)
   {
     throw Error("The first line of the index is damaged");
   }
-  if (version != std::to_string(Version))
+  formatVersion = std::stoi(version);
+  if (formatVersion < OldestVersion || formatVersion > NewestVersion)
   {
-    throw Error("The series has format version " + version + ", and this Banyan reads version " +
-                std::to_string(Version));
+    throw Error("The series has format version " + version + ", and this Banyan reads versions " +
+                std::to_string(OldestVersion) + " to " + std::to_string(NewestVersion));
   }
   const std::size_t start = end + 1 + 32 + 1;
   if (text[end] != ' ' || text.size() < start || text[start - 1] != '\n')
@@ -59,7 +61,7 @@ std::string IndexToText(const SeriesIndex& index)
   {
     throw Error("The name of an array or component is not valid UTF-8");
   }
-  return Word + std::to_string(Version) + " " + ToHex(HashOf(body.data(), body.size())) + "\n" +
+  return Word + std::to_string(index.FormatVersion) + " " + ToHex(HashOf(body.data(), body.size())) + "\n" +
          body;
 }
 
@@ -67,7 +69,10 @@ SeriesIndex IndexFromText(const std::string& text, const std::string& path)
 {
   try
   {
-    const SeriesIndex index = IndexFromJson(Json::parse(CheckedBody(text)));
+    int version = 0;
+    const std::string body = CheckedBody(text, version);
+    SeriesIndex index = IndexFromJson(Json::parse(body));
+    index.FormatVersion = version;
     CheckIndex(index);
     return index;
   }

@@ -26,6 +26,7 @@ Json ComponentToJson(const ComponentIndex& component)
   json["range"] = RangeToJson(component.Range);
   json["promisedRange"] = RangeToJson(component.PromisedRange);
   json["errorBoundAbsolute"] = component.ErrorBoundAbsolute;
+  json["measuredMaxErrorTransformed"] = component.MeasuredMaxErrorTransformed;
   json["measuredMaxError"] = component.MeasuredMaxError;
   // The one number that may overflow: squares of large errors.
   json["sumSquaredError"] =
@@ -77,6 +78,12 @@ Json StatisticsToJson(const EncodeStatistics& statistics)
   json["rawBricks"] = statistics.RawBricks;
   json["payloadBytes"] = statistics.PayloadBytes;
   json["tableBytes"] = statistics.TableBytes;
+  json["blocks"] = statistics.Blocks;
+  json["emptyBlocks"] = statistics.EmptyBlocks;
+  json["exceptionVoxels"] = statistics.ExceptionVoxels;
+  json["chainSum"] = statistics.ChainSum;
+  json["chainBricks"] = statistics.ChainBricks;
+  json["chainMost"] = statistics.ChainMost;
   return json;
 }
 

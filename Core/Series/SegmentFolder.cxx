@@ -37,6 +37,13 @@ std::string MakeRunId()
   return text;
 }
 
+std::string NumberOf(int segment)
+{
+  char number[16];
+  std::snprintf(number, sizeof(number), "-%06d", segment);
+  return number + Suffix;
+}
+
 bool EndsWith(const std::string& text, const std::string& end)
 {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
@@ -83,17 +90,32 @@ SegmentFolder::SegmentFolder(const std::string& seriesPath)
   }
 }
 
-std::string SegmentFolder::NameOf(int segment) const
+std::string SegmentFolder::TemporaryNameOf(int segment) const
 {
-  char number[16];
-  std::snprintf(number, sizeof(number), "-%06d", segment);
-  return this->Run + number + Suffix;
+  return this->Run + NumberOf(segment);
+}
+
+std::string SegmentFolder::FinalNameOf(int segment, std::uint64_t content)
+{
+  char hash[17];
+  std::snprintf(hash, sizeof(hash), "%016llx", static_cast<unsigned long long>(content));
+  const std::string name = hash + NumberOf(segment);
+  struct stat status = {};
+  if (lstat((this->FolderPath + "/" + name).c_str(), &status) != 0)
+  {
+    this->Own.push_back(name);
+  }
+  return name;
 }
 
 void SegmentFolder::RemoveOwn() noexcept
 {
   RemoveWhere(this->FolderPath,
-    [this](const std::string& name) { return name.compare(0, 16, this->Run) == 0; });
+    [this](const std::string& name)
+    {
+      return name.compare(0, 16, this->Run) == 0 ||
+             std::find(this->Own.begin(), this->Own.end(), name) != this->Own.end();
+    });
   if (this->Made)
   {
     (void)rmdir(this->FolderPath.c_str()); // refuses when somebody else put something there

@@ -1,14 +1,16 @@
 #ifndef banyan_Series_SegmentFolder_h
 #define banyan_Series_SegmentFolder_h
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace banyan
 {
 
-/// The folder `<series>.d` while a series is written. File names are unique per run, so that a new
-/// series never touches the segments of the one it is going to replace.
+/// The folder `<series>.d` while a series is written. Segments are named by their content, so that a
+/// new series never touches the segments of the one it is going to replace, and the same data gives
+/// the same files whoever encodes it.
 class SegmentFolder
 {
 public:
@@ -17,8 +19,12 @@ public:
 
   const std::string& Path() const { return this->FolderPath; }
 
-  /// File name of a segment of this run.
-  std::string NameOf(int segment) const;
+  /// A name of this run alone, for a segment that is being written.
+  std::string TemporaryNameOf(int segment) const;
+
+  /// Name of a segment whose content has this hash. Remembers it as this run's, unless a file of the
+  /// name (hence of the content) is there already.
+  std::string FinalNameOf(int segment, std::uint64_t content);
 
   /// Removes the segments of this run, and the folder if this run made it and it is empty.
   void RemoveOwn() noexcept;
@@ -29,6 +35,7 @@ public:
 private:
   std::string FolderPath;
   std::string Run;
+  std::vector<std::string> Own;
   bool Made = false;
 };
 

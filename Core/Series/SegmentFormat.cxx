@@ -9,7 +9,7 @@ namespace banyan::segment
 void StoreHeader(const Header& header, std::uint8_t* to)
 {
   std::memcpy(to, Magic, 8);
-  StoreNumber(to + 8, Version);
+  StoreNumber(to + 8, header.Version);
   StoreNumber(to + 12, header.Steps);
   StoreNumber(to + 16, header.FirstStep);
   StoreNumber(to + 20, header.Tables);
@@ -20,23 +20,24 @@ void StoreHeader(const Header& header, std::uint8_t* to)
   StoreNumber(to + 56, ShortHashOf(to, 56));
 }
 
-Header LoadHeader(const std::uint8_t* from)
+Header LoadHeader(const std::uint8_t* from, std::uint32_t wantedVersion)
 {
   if (std::memcmp(from, Magic, 8) != 0)
   {
     throw Error("This is not a segment of a Banyan series");
   }
   const auto version = LoadNumber<std::uint32_t>(from + 8);
-  if (version != Version)
+  if (version != wantedVersion)
   {
-    throw Error("This segment has a format version that this Banyan cannot read",
-      { {}, {}, version, Version });
+    throw Error("This segment has another format version than its series",
+      { {}, {}, version, wantedVersion });
   }
   if (LoadNumber<std::uint64_t>(from + 56) != ShortHashOf(from, 56))
   {
     throw Error("The header of a segment is damaged");
   }
   Header header;
+  header.Version = version;
   header.Steps = LoadNumber<std::uint32_t>(from + 12);
   header.FirstStep = LoadNumber<std::uint32_t>(from + 16);
   header.Tables = LoadNumber<std::uint32_t>(from + 20);

@@ -24,6 +24,7 @@ constexpr std::uint64_t GreatestExpansion = 32768;
 
 struct Header
 {
+  std::uint32_t Version = segment::Version;
   std::uint32_t Steps = 0;
   std::uint32_t FirstStep = 0;
   std::uint32_t Tables = 0;
@@ -49,7 +50,7 @@ struct TableEntry
 void StoreHeader(const Header& header, std::uint8_t* to);
 
 /// Reads and checks magic, version and hash. Throws Error.
-Header LoadHeader(const std::uint8_t* from);
+Header LoadHeader(const std::uint8_t* from, std::uint32_t wantedVersion = Version);
 
 /// Writes and reads `EntryBytes` bytes.
 void StoreEntry(const TableEntry& entry, std::uint8_t* to);

@@ -3,65 +3,18 @@
 #include "Base/Error.h"
 #include "Series/Hash.h"
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace banyan
 {
 
 SegmentReader::SegmentReader(
   const std::string& folder, const SegmentIndex& index, std::uint32_t tablesPerStep)
-  : FilePath(folder + "/" + index.File)
+  : File(folder, index)
   , Index(index)
   , TableCount(tablesPerStep * static_cast<std::uint32_t>(index.Steps))
+  , Data(File.Data())
 {
-  this->Map();
-}
-
-SegmentReader::~SegmentReader()
-{
-  munmap(const_cast<std::uint8_t*>(this->Data), static_cast<std::size_t>(this->Index.Bytes));
-}
-
-void SegmentReader::LetGo() const
-{
-  (void)madvise(const_cast<std::uint8_t*>(this->Data), static_cast<std::size_t>(this->Index.Bytes),
-    MADV_DONTNEED);
-}
-
-void SegmentReader::Map()
-{
-  const int descriptor = open(this->FilePath.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0)
-  {
-    throw Error(std::string("A segment of the series cannot be opened: ") + std::strerror(errno),
-      { this->FilePath });
-  }
-  struct stat status = {};
-  const bool plain = fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
-  const std::uint64_t size = plain ? static_cast<std::uint64_t>(status.st_size) : 0;
-  if (size != this->Index.Bytes || size < segment::HeaderBytes)
-  {
-    (void)close(descriptor);
-    throw Error("A segment of the series does not have the size that the index says: it is cut "
-                "short, or not of this series",
-      { this->FilePath, {}, size, this->Index.Bytes });
-  }
-  void* data = mmap(nullptr, static_cast<std::size_t>(size), PROT_READ, MAP_SHARED, descriptor, 0);
-  const int code = errno;
-  (void)close(descriptor);
-  if (data == MAP_FAILED)
-  {
-    throw Error(std::string("A segment of the series cannot be mapped: ") + std::strerror(code),
-      { this->FilePath });
-  }
-  this->Data = static_cast<const std::uint8_t*>(data);
 }
 
 void SegmentReader::CheckHeader() const

@@ -29,6 +29,9 @@ struct ComponentIndex
   ValueRange PromisedRange;
   double ErrorBoundAbsolute = 0; ///< |decoded - original| <= this for every finite voxel, verified
   double MeasuredMaxError = 0;   ///< the largest |decoded - original| met while encoding
+  /// The largest error in the transformed domain, where the bound holds; MeasuredMaxError when the
+  /// transform is the identity.
+  double MeasuredMaxErrorTransformed = 0;
   double SumSquaredError = 0;    ///< over all finite voxels of all steps; for RMSE and PSNR
   std::int64_t FiniteCount = 0;  ///< voxels (of all steps) that are finite
   std::int64_t NonFiniteCount = 0; ///< NaN and infinities, kept bit-exact
@@ -64,14 +67,22 @@ struct EncodeStatistics
   std::int64_t MacroVoxelBricks = 0; ///< fused: one value everywhere
   std::int64_t UnchangedBricks = 0;  ///< same identity as at the step before
   std::int64_t MergedBricks = 0;     ///< payload shared with an earlier brick of the segment
-  std::int64_t RawBricks = 0;
+  std::int64_t RawBricks = 0;        ///< with samples that are kept beside the lattice
   std::uint64_t PayloadBytes = 0; ///< stored in segments
   std::uint64_t TableBytes = 0;   ///< stored in segments: node tables, directories, headers
+  // Of format version 2; 0 otherwise.
+  std::int64_t EmptyBlocks = 0;     ///< without payload: as predicted, or of one value
+  std::int64_t Blocks = 0;          ///< what payloads are made of: blocks of all planes
+  std::int64_t ExceptionVoxels = 0; ///< of the finest level, kept bit-exact beside the lattice
+  std::int64_t ChainSum = 0;        ///< steps to decode for a brick of the finest level, summed
+  std::int64_t ChainBricks = 0;     ///< over this many bricks
+  std::int64_t ChainMost = 0;       ///< and the greatest
 };
 
 /// All that the index file says. See Documentation/format.md.
 struct SeriesIndex
 {
+  int FormatVersion = 2; ///< 1 is read, and never written
   Grid Domain;
   int BrickCells = 16;
   int Levels = 1;

@@ -1,0 +1,83 @@
+#ifndef banyan_Series_FieldReader_h
+#define banyan_Series_FieldReader_h
+
+#include "Series/SeriesFile.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace banyan
+{
+
+/// What SeriesFile needs of a format version. Arguments are checked before they come here. All
+/// methods may be called from any thread.
+class FieldReader
+{
+public:
+  virtual ~FieldReader() = default;
+
+  /// See SeriesFile.
+  virtual std::shared_ptr<const std::vector<BrickNode>> Nodes(const FieldKey& field) = 0;
+  virtual void DecodeBrick(const FieldKey& field, std::int64_t brick, void* values) = 0;
+  virtual void VerifyBricks(const FieldKey& field, const std::vector<std::int64_t>& bricks) = 0;
+  virtual std::uint64_t BytesRead() const = 0;
+  virtual std::uint64_t BricksDecoded() const = 0;
+};
+
+/// What readers of all versions share.
+struct OpenSeries
+{
+  std::string Path;
+  SeriesIndex Index;
+  std::uint64_t Id = 0;
+  std::vector<BrickLayout> Layouts;           ///< by level
+  std::vector<std::uint32_t> FirstComponents; ///< number of components before each array
+  std::uint32_t Components = 0;               ///< of all arrays
+
+  std::uint32_t ComponentOf(const FieldKey& field) const
+  {
+    return this->FirstComponents[static_cast<std::size_t>(field.Array)] +
+           static_cast<std::uint32_t>(field.Component);
+  }
+  MaskRange MaskRangeOf(int array, int component) const;
+};
+
+/// Readers of the two versions. Segments are mapped at once, so that replacing the series does not
+/// take them away from readers. Throw Error.
+std::unique_ptr<FieldReader> MakeFieldReader1(const OpenSeries& series);
+std::unique_ptr<FieldReader> MakeFieldReader2(const OpenSeries& series);
+
+/// Segments mapped when a series is opened: the kernel allows 65,530 mappings, so the rest of a very
+/// long series waits.
+constexpr std::size_t MappedAtOnce = 16384;
+
+/// Mapped pages count as this process's memory once they are read: playing a long series must not
+/// collect all of them.
+constexpr std::size_t SegmentsInMemory = 4;
+
+constexpr std::size_t KeptTables = 64;
+constexpr std::uint64_t KeptTableBytes = std::uint64_t{ 128 } << 20;
+
+/// Runs `body`; an Error without a place gets the file and offset at hand.
+template <class Body>
+decltype(auto) InFile(const std::string& path, std::uint64_t offset, Body&& body)
+{
+  try
+  {
+    return body();
+  }
+  catch (const Error& failure)
+  {
+    if (!failure.Place().File.empty())
+    {
+      throw;
+    }
+    throw Error(failure.what(), { path, offset });
+  }
+}
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,181 @@
+#include "Series/GroupEncoder.h"
+
+#include "Base/Error.h"
+#include "Base/ThreadPool.h"
+#include "Series/FieldEncoder.h"
+#include "Series/FieldGroupEncoder.h"
+#include "Series/GroupWriter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace banyan
+{
+namespace
+{
+
+ValueRange MagnitudeRange(const std::vector<double>& squares)
+{
+  ValueRange range;
+  for (const double square : squares)
+  {
+    if (std::isfinite(square))
+    {
+      range.Include(std::sqrt(square));
+    }
+  }
+  return range;
+}
+
+ValueRange RangeOfGroup(const FieldGroup& field, std::int64_t tuples, ThreadPool& pool)
+{
+  ValueRange range;
+  for (const void* step : field.Steps)
+  {
+    range.Include(RangeOfComponent(field.Type, step, tuples, field.Components, 0, pool));
+  }
+  return range;
+}
+
+void Measure(const EncodedField& field, ComponentIndex& component, EncodeStatistics& statistics)
+{
+  component.Range = field.Errors.Range;
+  component.MeasuredMaxError = field.Errors.Maximum;
+  component.MeasuredMaxErrorTransformed = field.Errors.MaximumTransformed;
+  component.SumSquaredError = field.Errors.SumSquared;
+  component.FiniteCount = field.Errors.Finite;
+  component.NonFiniteCount = field.Errors.NonFinite;
+  statistics.ExceptionVoxels += field.Errors.Exceptions;
+  statistics.ChainSum += field.ChainSum;
+  statistics.ChainBricks += static_cast<std::int64_t>(
+    field.Steps.empty() ? 0 : field.Steps.size() * field.Steps[0].Planes[0].size());
+  statistics.ChainMost = std::max<std::int64_t>(statistics.ChainMost, field.ChainMost);
+}
+
+} // namespace
+
+EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
+  SegmentFolder& folder, int number, const std::vector<double>& times,
+  const std::vector<std::vector<ArrayValues>>& steps, ThreadPool& pool,
+  const std::function<bool(double)>& tell)
+{
+  EncodedGroup group;
+  group.Times = times;
+  const std::int64_t tuples = plan.Domain.Extent.Count();
+  std::size_t components = 0;
+  for (const ArrayIndex& array : plan.Arrays)
+  {
+    components += array.Components.size();
+  }
+  std::vector<EncodedField> fields;
+  for (std::size_t a = 0; a < plan.Arrays.size(); ++a)
+  {
+    const ArrayIndex& array = plan.Arrays[a];
+    const bool vectors = array.Components.size() > 1;
+    std::vector<std::vector<double>> squares;
+    if (vectors)
+    {
+      squares.assign(steps.size(), std::vector<double>(static_cast<std::size_t>(tuples)));
+    }
+    group.Measured.emplace_back(array.Components.size());
+    for (std::size_t c = 0; c < array.Components.size(); ++c)
+    {
+      const ComponentIndex& component = array.Components[c];
+      FieldGroup field;
+      field.Type = array.Type;
+      for (const std::vector<ArrayValues>& step : steps)
+      {
+        field.Steps.push_back(
+          static_cast<const char*>(step[a].Values) + c * SizeOf(array.Type));
+      }
+      field.Components = static_cast<int>(array.Components.size());
+      field.Component = static_cast<int>(c);
+      field.Samples = plan.Domain.Samples();
+      field.BrickCells = plan.BrickCells;
+      field.Levels = plan.Levels;
+      field.Map = component.ValueTransform;
+      field.Bound = component.ErrorBoundAbsolute;
+      field.Profile = options.Profile;
+      field.CompressionLevel = options.CompressionLevel;
+      field.Expected = component.PromisedRange.Empty() ? RangeOfGroup(field, tuples, pool)
+                                                       : component.PromisedRange;
+      const double before = static_cast<double>(fields.size());
+      fields.push_back(EncodeFieldGroup(field, pool, vectors ? &squares : nullptr,
+        [&](int done)
+        {
+          const double share = (before + double(done) / double(steps.size())) / double(components);
+          if (tell && !tell(std::min(share, 0.999999)))
+          {
+            throw Error("Encoding was interrupted");
+          }
+        }));
+      Measure(fields.back(), group.Measured[a][c], group.Statistics);
+      group.BytesIn += static_cast<std::uint64_t>(tuples) * SizeOf(array.Type) * steps.size();
+    }
+    group.Magnitudes.emplace_back();
+    for (const std::vector<double>& step : squares)
+    {
+      group.Magnitudes.back().push_back(MagnitudeRange(step));
+    }
+  }
+  GroupWriter writer(folder, number, options.CompressionLevel);
+  std::vector<group::FieldHead> heads;
+  for (const EncodedField& field : fields)
+  {
+    heads.push_back(field.Head);
+  }
+  for (std::size_t t = 0; t < steps.size(); ++t)
+  {
+    for (EncodedField& field : fields)
+    {
+      writer.AddStep(field.Steps[t], t == 0, group.Statistics);
+      field.Steps[t] = {};
+    }
+  }
+  group.Segment = writer.Finish(
+    heads, number * plan.KeyframeInterval, static_cast<int>(steps.size()));
+  group.Statistics.TableBytes = group.Segment.Bytes - group.Statistics.PayloadBytes;
+  return group;
+}
+
+void AddGroup(const EncodedGroup& group, SeriesIndex& index)
+{
+  index.Segments.push_back(group.Segment);
+  index.Times.insert(index.Times.end(), group.Times.begin(), group.Times.end());
+  for (std::size_t a = 0; a < index.Arrays.size(); ++a)
+  {
+    ArrayIndex& array = index.Arrays[a];
+    array.Magnitudes.insert(
+      array.Magnitudes.end(), group.Magnitudes[a].begin(), group.Magnitudes[a].end());
+    for (std::size_t c = 0; c < array.Components.size(); ++c)
+    {
+      ComponentIndex& to = array.Components[c];
+      const ComponentIndex& from = group.Measured[a][c];
+      to.Range.Include(from.Range);
+      to.MeasuredMaxError = std::max(to.MeasuredMaxError, from.MeasuredMaxError);
+      to.MeasuredMaxErrorTransformed =
+        std::max(to.MeasuredMaxErrorTransformed, from.MeasuredMaxErrorTransformed);
+      to.SumSquaredError += from.SumSquaredError;
+      to.FiniteCount += from.FiniteCount;
+      to.NonFiniteCount += from.NonFiniteCount;
+    }
+  }
+  EncodeStatistics& to = index.Statistics;
+  const EncodeStatistics& from = group.Statistics;
+  to.Bricks += from.Bricks;
+  to.MacroVoxelBricks += from.MacroVoxelBricks;
+  to.UnchangedBricks += from.UnchangedBricks;
+  to.MergedBricks += from.MergedBricks;
+  to.RawBricks += from.RawBricks;
+  to.PayloadBytes += from.PayloadBytes;
+  to.TableBytes += from.TableBytes;
+  to.Blocks += from.Blocks;
+  to.EmptyBlocks += from.EmptyBlocks;
+  to.ExceptionVoxels += from.ExceptionVoxels;
+  to.ChainSum += from.ChainSum;
+  to.ChainBricks += from.ChainBricks;
+  to.ChainMost = std::max(to.ChainMost, from.ChainMost);
+  index.PayloadBytesIn += group.BytesIn;
+}
+
+} // namespace banyan

@@ -1,0 +1,260 @@
+#include "Base/Error.h"
+#include "Codec/BlockDecoder.h"
+#include "Codec/BlockEncoder.h"
+#include "Codec/BlockModes.h"
+#include "Codec/GroupOrder.h"
+#include "Codec/SymbolWriter.h"
+#include "Series/GroupReader.h"
+
+#include <algorithm>
+
+namespace banyan
+{
+namespace
+{
+
+bool Inside(const glm::ivec3& position, const glm::ivec3& size)
+{
+  return position.x < size.x && position.y < size.y && position.z < size.z;
+}
+
+glm::ivec3 NeighbourOf(const glm::ivec3& block, int bits)
+{
+  return block + glm::ivec3{ bits & 1, bits >> 1 & 1, bits >> 2 & 1 };
+}
+
+} // namespace
+
+GroupField::GroupField(GroupReader& segment, std::uint64_t series, std::uint32_t component,
+  const glm::ivec3& samples, int brickCells, const std::vector<BrickLayout>& layouts)
+  : File(segment)
+  , Series(series)
+  , Component(component)
+  , BrickCells(brickCells)
+  , StepTables(static_cast<std::size_t>(segment.Steps()))
+{
+  const Bytes head = segment.Section(segment.HeadSection(component));
+  this->FieldHead = group::UnpackHead(head.data(), head.size());
+  glm::ivec3 ordered;
+  for (int a = 0; a < 3; ++a)
+  {
+    ordered[a] = samples[this->FieldHead.Axes[static_cast<std::size_t>(a)]];
+  }
+  this->PlaneSamples = group::PlanesOf(ordered);
+  for (std::size_t p = 0; p + 1 < this->PlaneSamples.size(); ++p)
+  {
+    const glm::ivec3 blocks = this->BlocksOf(static_cast<int>(p));
+    this->BlockCounts.push_back(
+      static_cast<std::size_t>(std::int64_t{ blocks.x } * blocks.y * blocks.z));
+  }
+  for (const BrickLayout& layout : layouts)
+  {
+    this->BrickCounts.push_back(static_cast<std::size_t>(layout.BrickCount()));
+  }
+  for (int set = 0; set < 2; ++set)
+  {
+    this->Tables[set] = DecodeTablesOf(this->FieldHead.Frequencies[set]);
+    this->Memory += this->Tables[set].size() * sizeof(tans::DecodeEntry);
+  }
+}
+
+const group::StepTable& GroupField::Step(int step)
+{
+  // Under the lock: threads that start on a new step together then load its table once.
+  std::lock_guard<std::mutex> lock(this->Mutex);
+  std::unique_ptr<group::StepTable>& table = this->StepTables[static_cast<std::size_t>(step)];
+  if (!table)
+  {
+    const Bytes bytes = this->File.Section(this->File.StepSection(step, this->Component));
+    const glm::ivec3 top = this->PlaneSamples.back();
+    table = std::make_unique<group::StepTable>(
+      group::UnpackStep(bytes.data(), bytes.size(), step == 0, step, this->BlockCounts,
+        static_cast<std::size_t>(top.x * top.y * top.z), this->BrickCounts,
+        this->File.PayloadEnd()));
+    this->Memory += table->MemoryBytes();
+    this->BytesRead += bytes.size();
+  }
+  return *table;
+}
+
+std::size_t GroupField::IndexOf(int plane, const glm::ivec3& block) const
+{
+  const glm::ivec3 blocks = this->BlocksOf(plane);
+  return (static_cast<std::size_t>(block.z) * static_cast<std::size_t>(blocks.y) +
+           static_cast<std::size_t>(block.y)) *
+           static_cast<std::size_t>(blocks.x) +
+         static_cast<std::size_t>(block.x);
+}
+
+bool GroupField::NeedsReferences(int step, int plane, const glm::ivec3& block)
+{
+  const auto& entries = this->Step(step).Planes[static_cast<std::size_t>(plane)];
+  const glm::ivec3 blocks = this->BlocksOf(plane);
+  for (int bits = 0; bits < 7; ++bits)
+  {
+    const glm::ivec3 at = NeighbourOf(block, bits);
+    if (Inside(at, blocks))
+    {
+      const group::BlockEntry& entry = entries[this->IndexOf(plane, at)];
+      if (!entry.Uniform && block::ModeOf(entry.Mode).From != block::Reference::None)
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// The samples of the next plane that a box is predicted from.
+void GroupField::Coarse(
+  int step, int plane, const glm::ivec3& block, std::vector<std::int32_t>& numbers)
+{
+  const int n = this->BrickCells / 4 + 1;
+  const glm::ivec3 samples = this->PlaneSamples[static_cast<std::size_t>(plane) + 1];
+  const glm::ivec3 first = block * (this->BrickCells / 4);
+  const bool top = plane + 2 == static_cast<int>(this->PlaneSamples.size());
+  const glm::ivec3 coarseBlock = first / this->BrickCells;
+  const glm::ivec3 origin = top ? glm::ivec3(0) : coarseBlock * this->BrickCells;
+  const glm::ivec3 size = top ? samples : glm::ivec3(this->BrickCells + 1);
+  const LatticeCache::Box box = top ? nullptr : this->Box(step, plane + 1, coarseBlock);
+  const std::int32_t* from = top ? this->Step(step).Top.data() : box->data();
+  numbers.resize(static_cast<std::size_t>(n * n * n));
+  std::int32_t* to = numbers.data();
+  for (int z = 0; z < n; ++z)
+  {
+    const int sz = std::min(first.z + z, samples.z - 1) - origin.z;
+    for (int y = 0; y < n; ++y)
+    {
+      const int sy = std::min(first.y + y, samples.y - 1) - origin.y;
+      for (int x = 0; x < n; ++x)
+      {
+        *to++ = from[(sz * size.y + sy) * size.x + std::min(first.x + x, samples.x - 1) - origin.x];
+      }
+    }
+  }
+}
+
+std::vector<std::int32_t> GroupField::Decode(int step, int plane, const glm::ivec3& block)
+{
+  const auto& entries = this->Step(step).Planes[static_cast<std::size_t>(plane)];
+  const glm::ivec3 blocks = this->BlocksOf(plane);
+  const glm::ivec3 samples = this->PlaneSamples[static_cast<std::size_t>(plane)];
+  PlaneCode shared;
+  shared.Tables = this->Tables[plane > 0 ? 1 : 0].data();
+  shared.CoarseBin = BinOfOctave(this->FieldHead.Bin, 2 * plane + 1);
+  shared.FineBin = BinOfOctave(this->FieldHead.Bin, 2 * plane);
+  shared.Least = this->FieldHead.Least;
+  shared.Greatest = this->FieldHead.Greatest;
+  BoxCode code;
+  for (int bits = 0; bits < 8; ++bits)
+  {
+    const glm::ivec3 at = NeighbourOf(block, bits);
+    BlockCode& to = code.Blocks[bits];
+    to.Exists = Inside(at, blocks);
+    if (!to.Exists)
+    {
+      continue;
+    }
+    const group::BlockEntry& entry = entries[this->IndexOf(plane, at)];
+    to.Uniform = entry.Uniform;
+    to.Value = entry.Value;
+    to.Mode = entry.Mode;
+    to.CoarseLimit = ResidualLimit(samples, at * this->BrickCells, 2);
+    to.FineLimit = ResidualLimit(samples, at * this->BrickCells, 1);
+    if (entry.Payload.Bytes > 0 && bits != 7)
+    {
+      to.Data = this->File.Payload(entry.Payload);
+      to.Bytes = entry.Payload.Bytes;
+    }
+  }
+  this->BytesRead += code.Blocks[0].Bytes;
+  this->PayloadsRead += code.Blocks[0].Bytes > 0 ? 1 : 0;
+  std::vector<std::int32_t> coarse;
+  this->Coarse(step, plane, block, coarse);
+  code.Coarse = coarse.data();
+  LatticeCache::Box a, b;
+  if (this->NeedsReferences(step, plane, block))
+  {
+    const StepReferences references = ReferencesOfStep(step, this->File.Steps());
+    if (references.A < 0)
+    {
+      throw Error("A block of the first step of a segment refers to another step");
+    }
+    a = this->Box(references.A, plane, block);
+    b = references.B == references.A ? a : this->Box(references.B, plane, block);
+    code.A = a->data();
+    code.B = b->data();
+  }
+  const std::size_t n = static_cast<std::size_t>(this->BrickCells) + 1;
+  std::vector<std::int32_t> numbers(n * n * n);
+  DecodeBox(this->BrickCells, shared, code, numbers.data());
+  return numbers;
+}
+
+LatticeCache::Box GroupField::Box(int step, int plane, const glm::ivec3& block)
+{
+  LatticeCache& cache = LatticeCache::Process();
+  const LatticeCache::Key key{ this->Series, this->IndexOf(plane, block),
+    static_cast<std::uint32_t>(this->File.FirstStep() + step),
+    static_cast<std::uint16_t>(this->Component), static_cast<std::uint16_t>(plane) };
+  if (LatticeCache::Box found = cache.Find(key))
+  {
+    return found;
+  }
+  const LatticeCache::Box box =
+    std::make_shared<const std::vector<std::int32_t>>(this->Decode(step, plane, block));
+  // Boxes of the finest plane that no step refers to are of no further use as numbers.
+  const int distance = step == 0 ? this->File.Steps() : step & -step;
+  if (plane > 0 || distance > 1)
+  {
+    cache.Add(key, box);
+  }
+  return box;
+}
+
+void GroupField::Verify(int step, int plane, const glm::ivec3& block)
+{
+  Visited visited;
+  this->Verify(step, plane, block, visited);
+}
+
+void GroupField::Verify(int step, int plane, const glm::ivec3& block, Visited& visited)
+{
+  if (!visited.insert({ step, plane, this->IndexOf(plane, block) }).second)
+  {
+    return;
+  }
+  const auto& entries = this->Step(step).Planes[static_cast<std::size_t>(plane)];
+  const glm::ivec3 blocks = this->BlocksOf(plane);
+  for (int bits = 0; bits < 8; ++bits)
+  {
+    const glm::ivec3 at = NeighbourOf(block, bits);
+    if (!Inside(at, blocks))
+    {
+      continue;
+    }
+    const group::BlockEntry& entry = entries[this->IndexOf(plane, at)];
+    for (const group::Place& place : { entry.Payload, entry.Exceptions })
+    {
+      if (place.Bytes > 0)
+      {
+        (void)this->File.Payload(place);
+      }
+    }
+  }
+  if (plane + 2 < static_cast<int>(this->PlaneSamples.size()))
+  {
+    this->Verify(step, plane + 1, block / 4, visited);
+  }
+  if (this->NeedsReferences(step, plane, block))
+  {
+    const StepReferences references = ReferencesOfStep(step, this->File.Steps());
+    if (references.A >= 0)
+    {
+      this->Verify(references.A, plane, block, visited);
+      this->Verify(references.B, plane, block, visited);
+    }
+  }
+}
+
+} // namespace banyan

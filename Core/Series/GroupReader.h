@@ -1,0 +1,122 @@
+#ifndef banyan_Series_GroupReader_h
+#define banyan_Series_GroupReader_h
+
+#include "Codec/Tans.h"
+#include "Series/GroupFormat.h"
+#include "Series/Hash.h"
+#include "Series/LatticeCache.h"
+#include "Series/MappedSegment.h"
+#include "Series/SegmentFormat.h"
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <tuple>
+#include <vector>
+
+namespace banyan
+{
+
+/// One segment of version 2. Every access is checked against the index that names it; may be used
+/// from any thread.
+class GroupReader
+{
+public:
+  /// @param components of all arrays of the series
+  GroupReader(const std::string& folder, const SegmentIndex& index, std::uint32_t components);
+
+  const std::string& Path() const { return this->File.Path(); }
+  int FirstStep() const { return this->Index.FirstStep; }
+  int Steps() const { return this->Index.Steps; }
+  void LetGo() const { this->File.LetGo(); }
+
+  /// Unpacks a section: 0 holds the hashes of pages, then come the heads, then the steps' tables.
+  Bytes Section(std::uint32_t number);
+  std::uint32_t HeadSection(std::uint32_t component) const { return 1 + component; }
+  std::uint32_t StepSection(int step, std::uint32_t component) const
+  {
+    return 1 + this->Components + static_cast<std::uint32_t>(step) * this->Components + component;
+  }
+  std::uint64_t PayloadEnd();
+
+  /// First byte of a place that a table names, after its pages were checked (once each). Throws
+  /// Error when they are damaged.
+  const std::uint8_t* Payload(const group::Place& place);
+
+  const Hash128& HeaderHash() const { return this->Expected; }
+
+private:
+  void Check();
+
+  MappedSegment File;
+  SegmentIndex Index;
+  std::uint32_t Components;
+  Hash128 Expected;
+  std::mutex Mutex;
+  bool Checked = false;
+  segment::Header Head;
+  std::vector<std::uint32_t> PageHashes;
+  std::vector<std::atomic<bool>> PageGood;
+  std::uint64_t PageBytes = 4096;
+  std::once_flag PagesOnce;
+};
+
+/// One component in one segment, opened.
+class GroupField
+{
+public:
+  GroupField(GroupReader& segment, std::uint64_t series, std::uint32_t component,
+    const glm::ivec3& samples, int brickCells, const std::vector<BrickLayout>& layouts);
+
+  const group::FieldHead& Head() const { return this->FieldHead; }
+  GroupReader& Segment() const { return this->File; }
+  int Edge() const { return this->BrickCells; }
+  /// Samples and blocks of each plane, axes in the codec's order.
+  const std::vector<glm::ivec3>& Planes() const { return this->PlaneSamples; }
+  glm::ivec3 BlocksOf(int plane) const
+  {
+    return (this->PlaneSamples[static_cast<std::size_t>(plane)] + this->BrickCells - 1) /
+           this->BrickCells;
+  }
+
+  /// The table of a step of the segment (0 is its first).
+  const group::StepTable& Step(int step);
+
+  /// Decodes the box of a block: (edge + 1)^3 lattice numbers.
+  LatticeCache::Box Box(int step, int plane, const glm::ivec3& block);
+
+  /// Checks the pages of everything that decoding the box reads.
+  void Verify(int step, int plane, const glm::ivec3& block);
+
+  std::uint64_t MemoryBytes() const { return this->Memory; }
+  std::uint64_t BlocksRead() const { return this->PayloadsRead; }
+  std::uint64_t TakeBytesRead() { return this->BytesRead.exchange(0); }
+
+private:
+  using Visited = std::set<std::tuple<int, int, std::size_t>>;
+
+  std::size_t IndexOf(int plane, const glm::ivec3& block) const;
+  void Verify(int step, int plane, const glm::ivec3& block, Visited& visited);
+  bool NeedsReferences(int step, int plane, const glm::ivec3& block);
+  void Coarse(int step, int plane, const glm::ivec3& block, std::vector<std::int32_t>& numbers);
+  std::vector<std::int32_t> Decode(int step, int plane, const glm::ivec3& block);
+
+  GroupReader& File;
+  std::uint64_t Series;
+  std::uint32_t Component;
+  int BrickCells;
+  group::FieldHead FieldHead;
+  std::vector<glm::ivec3> PlaneSamples;
+  std::vector<std::size_t> BlockCounts, BrickCounts;
+  std::vector<tans::DecodeEntry> Tables[2];
+  std::mutex Mutex;
+  std::vector<std::unique_ptr<group::StepTable>> StepTables;
+  std::atomic<std::uint64_t> Memory{ 0 };
+  std::atomic<std::uint64_t> PayloadsRead{ 0 };
+  std::atomic<std::uint64_t> BytesRead{ 0 };
+};
+
+} // namespace banyan
+
+#endif

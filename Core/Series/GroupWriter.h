@@ -1,0 +1,49 @@
+#ifndef banyan_Series_GroupWriter_h
+#define banyan_Series_GroupWriter_h
+
+#include "Series/AtomicFile.h"
+#include "Series/FieldGroupEncoder.h"
+#include "Series/SegmentFolder.h"
+#include "Series/SeriesIndex.h"
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace banyan
+{
+
+/// Writes one segment of version 2. Nothing is left behind when it is destroyed before Finish().
+class GroupWriter
+{
+public:
+  GroupWriter(SegmentFolder& folder, int number, int compressionLevel);
+
+  /// Adds a component at the next step: the components of a step in order, then the next step.
+  /// @param statistics receives what it came to
+  void AddStep(const EncodedStep& step, bool first, EncodeStatistics& statistics);
+
+  /// @param heads of the components, in order
+  SegmentIndex Finish(const std::vector<group::FieldHead>& heads, int firstStep, int steps);
+
+private:
+  group::Place Store(const Bytes& payload, EncodeStatistics& statistics);
+  group::Section AddSection(const Bytes& raw);
+  Bytes PageHashes() const;
+
+  SegmentFolder& Folder;
+  int Number;
+  int CompressionLevel;
+  AtomicFile Output;
+  Bytes Payloads; ///< all bytes up to here, to hash their pages
+  std::unordered_map<std::string, group::Place> Stored;
+  std::vector<Bytes> Tables; ///< packed
+};
+
+/// Size of the pages that payloads are checked by: 4 KiB, more in large segments so that their
+/// hashes stay few.
+std::uint64_t PageBytesOf(std::uint64_t payloadEnd);
+
+} // namespace banyan
+
+#endif
