@@ -98,9 +98,19 @@ struct BoxDecoder
     }
   }
 
-  /// Fills what a uniform block owns of the box.
-  void PlaceUniform(int owner) const
+  /// Whether a block takes no decoding: it is uniform, or the same as in reference A.
+  bool Plain(int owner) const
   {
+    return this->Code.Blocks[owner].Uniform || this->Code.Blocks[owner].Same;
+  }
+
+  /// Fills what a plain block owns of the box.
+  void PlacePlain(int owner) const
+  {
+    if (this->Code.Blocks[owner].Same && this->Code.A == nullptr)
+    {
+      throw Error("A block is the same as in a step that its group does not have");
+    }
     const glm::ivec3 low = Corner(owner);
     const glm::ivec3 high{ owner & 1 ? N : B, owner & 2 ? N : B, owner & 4 ? N : B };
     for (int z = low.z; z < high.z; ++z)
@@ -108,7 +118,14 @@ struct BoxDecoder
       for (int y = low.y; y < high.y; ++y)
       {
         std::int32_t* row = this->Box.Row(y, z);
-        std::fill(row + low.x, row + high.x, this->Code.Blocks[owner].Value);
+        if (this->Code.Blocks[owner].Same)
+        {
+          std::copy(this->A.Row(y, z) + low.x, this->A.Row(y, z) + high.x, row + low.x);
+        }
+        else
+        {
+          std::fill(row + low.x, row + high.x, this->Code.Blocks[owner].Value);
+        }
       }
     }
   }
@@ -121,8 +138,7 @@ struct BoxDecoder
     const block::Mode mode = block::ModeOf(block.Mode);
     const glm::ivec3 axes = UnitAxes(mask);
     block::Unit<B> unit = scratch.Whole();
-    unit.CoarseLimit = Permuted(block.CoarseLimit, axes, D);
-    unit.FineLimit = Permuted(block.FineLimit, axes, D);
+    unit.Limit = Permuted(block.Limit, axes, D);
     const bool needed = (mask & owner) == 0;
     const glm::ivec3 corner = Corner(owner);
     References from = this->ReferencesOf(mode).Along(axes);
@@ -154,9 +170,9 @@ struct BoxDecoder
     for (int owner = 0; owner < 8; ++owner)
     {
       const BlockCode& block = this->Code.Blocks[owner];
-      if (block.Exists && block.Uniform)
+      if (block.Exists && this->Plain(owner))
       {
-        this->PlaceUniform(owner);
+        this->PlacePlain(owner);
       }
       else if (block.Exists && block.Bytes > 0 && owner != 7)
       {
@@ -166,7 +182,7 @@ struct BoxDecoder
     }
     for (const int owner : { 3, 5, 6 })
     {
-      if (!this->Code.Blocks[owner].Uniform)
+      if (!this->Plain(owner))
       {
         for (int unit = 0; unit < 3; ++unit)
         {
@@ -185,7 +201,7 @@ struct BoxDecoder
     for (int i = 0; i < 4; ++i)
     {
       const int owner = owners[i];
-      if (this->Code.Blocks[owner].Uniform)
+      if (this->Plain(owner))
       {
         continue;
       }
@@ -198,7 +214,7 @@ struct BoxDecoder
     for (int i = 0; i < 4; ++i)
     {
       const int owner = owners[i];
-      if (this->Code.Blocks[owner].Uniform)
+      if (this->Plain(owner))
       {
         continue;
       }
@@ -207,7 +223,7 @@ struct BoxDecoder
         this->Face(owner, unit, readers[owner], kept[i].Edges, work);
       }
     }
-    if (!this->Code.Blocks[0].Uniform)
+    if (!this->Plain(0))
     {
       this->Inside(readers[0], work);
     }

@@ -16,12 +16,13 @@ struct BlockCode
 {
   bool Exists = false;         ///< not beyond the field's end
   bool Uniform = false;        ///< all its samples are `Value`
+  bool Same = false;           ///< all its samples are those of reference A
   std::int32_t Value = 0;
   std::uint8_t Mode = 0;       ///< see BlockModes.h
   const std::uint8_t* Data = nullptr;
   std::size_t Bytes = 0;       ///< 0: all residuals are zero
-  /// Greatest positions that carry residuals at strides 2 and 1, seen from the block's first sample.
-  glm::ivec3 CoarseLimit{ -1 }, FineLimit{ -1 };
+  /// The field's last sample, seen from the block's first one: beyond, there are no residuals.
+  glm::ivec3 Limit{ -1 };
 };
 
 /// What a field's blocks of one plane share.

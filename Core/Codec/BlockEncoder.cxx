@@ -169,10 +169,7 @@ struct BlockCoder
     block::Unit<B> unit = scratch.Whole();
     const auto permuted = [&](const glm::ivec3& v)
     { return glm::ivec3{ v[axes.x], D > 1 ? v[axes.y] : B, D > 2 ? v[axes.z] : B }; };
-    unit.CoarseLimit =
-      coded ? permuted(ResidualLimit(plane.Target->Samples, origin, 2)) : glm::ivec3(-1);
-    unit.FineLimit =
-      coded ? permuted(ResidualLimit(plane.Target->Samples, origin, 1)) : glm::ivec3(-1);
+    unit.Limit = coded ? permuted(plane.Target->Samples - 1 - origin) : glm::ivec3(-1);
     LoadUnit<B, D>({ samples.Base, samples.Stride }, from, unit.W);
     LoadUnit<B, D>(wanted, from, target.W());
     RunPasses<B, D>(unit, mode.By, false,
@@ -193,7 +190,7 @@ struct BlockCoder
       (std::int64_t{ position.z } * blocks.y + position.y) * blocks.x + position.x);
     BlockTokens& out = beyond ? none : (*job.Blocks)[index];
     BlockUnderway& underway = beyond ? noneUnderway : (*job.Underway)[index];
-    if (!beyond && out.Uniform)
+    if (!beyond && (out.Uniform || out.Same))
     {
       return;
     }
@@ -346,7 +343,7 @@ struct BlockCoder
       (std::int64_t{ position.z } * plane.Target->Blocks.y + position.y) * plane.Target->Blocks.x +
       position.x);
     BlockTokens& out = (*job.Blocks)[index];
-    if (out.Uniform)
+    if (out.Uniform || out.Same)
     {
       return;
     }
@@ -468,6 +465,42 @@ void PlaceUniform(const PlaneNumbers& target, const glm::ivec3& position, BlockT
   }
 }
 
+/// Finds the blocks that may stay as they are in reference A, and places them.
+void PlaceSame(const PlaneToEncode& plane, const glm::ivec3& position, BlockTokens& block,
+  PlaneNumbers& decoded)
+{
+  const PlaneNumbers& target = *plane.Target;
+  const glm::ivec3 low = position * target.Edge;
+  const glm::ivec3 high = low + target.Edge;
+  const glm::ivec3 limit = target.Samples;
+  const std::int64_t most = plane.FineBin / 2;
+  for (int z = low.z; z < std::min(high.z, limit.z); ++z)
+  {
+    for (int y = low.y; y < std::min(high.y, limit.y); ++y)
+    {
+      const std::int32_t* row = target.Numbers.data() + target.IndexOf({ 0, y, z });
+      const std::int32_t* before = plane.A->Numbers.data() + plane.A->IndexOf({ 0, y, z });
+      for (int x = low.x; x < std::min(high.x, limit.x); ++x)
+      {
+        const std::int64_t rest = std::int64_t{ row[x] } - before[x];
+        if (rest > most || rest < -most)
+        {
+          return;
+        }
+      }
+    }
+  }
+  block.Same = true;
+  for (int z = low.z; z < high.z; ++z)
+  {
+    for (int y = low.y; y < high.y; ++y)
+    {
+      const std::int32_t* from = plane.A->Numbers.data() + plane.A->IndexOf({ low.x, y, z });
+      std::copy(from, from + target.Edge, decoded.Numbers.data() + decoded.IndexOf({ low.x, y, z }));
+    }
+  }
+}
+
 glm::ivec3 PositionIn(const glm::ivec3& size, std::int64_t index)
 {
   return { static_cast<int>(index % size.x), static_cast<int>(index / size.x % size.y),
@@ -490,11 +523,6 @@ glm::ivec3 CoarserSamples(const glm::ivec3& samples)
   return (samples - 1 + 3) / 4 + 1;
 }
 
-glm::ivec3 ResidualLimit(const glm::ivec3& samples, const glm::ivec3& origin, int stride)
-{
-  return (samples - 1 + stride - 1) / stride * stride - origin;
-}
-
 void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded,
   std::vector<BlockTokens>& blocks, ThreadPool& pool)
 {
@@ -503,8 +531,17 @@ void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded,
   blocks.clear();
   blocks.resize(static_cast<std::size_t>(target.BlockCount()));
   PlaceCoarser(*plane.Coarser, decoded);
-  pool.ParallelFor(target.BlockCount(), [&](std::int64_t i)
-    { PlaceUniform(target, PositionIn(target.Blocks, i), blocks[static_cast<std::size_t>(i)], decoded); });
+  pool.ParallelFor(target.BlockCount(),
+    [&](std::int64_t i)
+    {
+      const glm::ivec3 position = PositionIn(target.Blocks, i);
+      BlockTokens& block = blocks[static_cast<std::size_t>(i)];
+      PlaceUniform(target, position, block, decoded);
+      if (!block.Uniform && plane.A != nullptr)
+      {
+        PlaceSame(plane, position, block, decoded);
+      }
+    });
   std::vector<BlockUnderway> underway(blocks.size());
   const PlaneJob job{ &plane, &decoded, &blocks, &underway };
   pool.ParallelFor(target.BlockCount(), [&](std::int64_t i)

@@ -42,14 +42,12 @@ struct PlaneNumbers
 /// is not whole, one more repeats the last sample.
 glm::ivec3 CoarserSamples(const glm::ivec3& samples);
 
-/// Greatest positions (seen from sample `origin`) that carry residuals at stride 2 or 1.
-glm::ivec3 ResidualLimit(const glm::ivec3& samples, const glm::ivec3& origin, int stride);
-
 /// A block before entropy coding.
 struct BlockTokens
 {
   std::uint8_t Mode = 0;
   bool Uniform = false;
+  bool Same = false; ///< as in reference A, every sample
   std::int32_t Value = 0;
   std::vector<std::uint16_t> Tokens; ///< context << 8 | symbol; empty when all residuals are zero
   std::vector<std::uint32_t> Extra;  ///< of the symbols that have extra bits, in order

@@ -287,7 +287,7 @@ HWY_INLINE void RunPasses(const block::Unit<B>& unit, Interpolation by, bool coa
   alignas(64) std::uint8_t classes[B];
   for (int s = 2; s >= (coarseOnly ? 2 : 1); --s)
   {
-    const glm::ivec3& limit = s == 2 ? unit.CoarseLimit : unit.FineLimit;
+    const glm::ivec3& limit = unit.Limit;
     for (int axis = 0; axis < D; ++axis)
     {
       const auto first = [&](int a) { return a >= D ? 0 : (a <= axis ? s : 2 * s); };

@@ -19,8 +19,7 @@ struct Unit
   std::int32_t* W; ///< sample (0, 0, 0); samples 0 to B per axis
   std::uint8_t* M; ///< magnitudes of residuals, samples 0 to B - 1 per axis, zeros around rows
   std::ptrdiff_t PitchW, SliceW, PitchM, SliceM;
-  /// Greatest position per axis that carries residuals, at strides 2 and 1.
-  glm::ivec3 CoarseLimit, FineLimit;
+  glm::ivec3 Limit; ///< greatest position per axis that carries residuals
 };
 
 /// Memory of one unit of D dimensions. Rows have room on both sides, because predictions of whole
@@ -52,7 +51,7 @@ struct Scratch
   Unit<B> Whole()
   {
     return { this->W(), this->M(), D > 1 ? RowW : 0, D > 2 ? N * RowW : 0, D > 1 ? RowM : 0,
-      D > 2 ? B * RowM : 0, glm::ivec3(B), glm::ivec3(B) };
+      D > 2 ? B * RowM : 0, glm::ivec3(B) };
   }
 };
 

@@ -55,11 +55,11 @@ public:
   }
 
   EncodedField Run(
-    std::vector<std::vector<double>>* sumSquares, const std::function<void(int)>& tell);
+    std::vector<std::vector<double>>* sumSquares, const std::function<void(double)>& tell);
 
 private:
-  void EncodeStep(int step);
-  void EncodePlanes(int step, const std::vector<PlaneNumbers>& targets);
+  void EncodePlanes(int step, const std::vector<PlaneNumbers>& targets,
+    const std::function<void(double)>& tell);
   void FindExceptions(int step, std::size_t plane, FieldErrors* errors, std::vector<double>* squares);
   void WriteSymbols();
   void CountChains();
@@ -73,7 +73,8 @@ private:
 };
 
 template <class T>
-void Encoder<T>::EncodePlanes(int step, const std::vector<PlaneNumbers>& targets)
+void Encoder<T>::EncodePlanes(int step, const std::vector<PlaneNumbers>& targets,
+  const std::function<void(double)>& tell)
 {
   StepWork& work = this->Work[static_cast<std::size_t>(step)];
   EncodedStep& out = this->Out.Steps[static_cast<std::size_t>(step)];
@@ -108,6 +109,7 @@ void Encoder<T>::EncodePlanes(int step, const std::vector<PlaneNumbers>& targets
     plane.Greatest = this->Out.Head.Greatest;
     plane.Candidates = CandidatesOf(this->Field.Profile);
     EncodePlane(plane, work.Decoded[p], work.Tokens[p], this->Pool);
+    tell(static_cast<double>(targets.size() - 1 - p) / static_cast<double>(targets.size()));
   }
 }
 
@@ -185,8 +187,9 @@ void Encoder<T>::WriteSymbols()
           {
             BlockTokens& from = tokens[static_cast<std::size_t>(i)];
             EncodedBlock& to = blocks[static_cast<std::size_t>(i)];
-            to.Mode = from.Uniform ? 0 : from.Mode;
+            to.Mode = from.Uniform || from.Same ? 0 : from.Mode;
             to.Uniform = from.Uniform;
+            to.Same = from.Same;
             to.Value = from.Value;
             if (!from.Tokens.empty())
             {
@@ -226,9 +229,13 @@ void Encoder<T>::CountChains()
         needed[static_cast<std::size_t>(at)] = 1;
         ++chain;
         const EncodedBlock& block = this->Out.Steps[static_cast<std::size_t>(at)].Planes[0][b];
-        if (!block.Uniform && block::ModeOf(block.Mode).From != Reference::None)
+        const StepReferences references = ReferencesOfStep(at, steps);
+        if (block.Same)
         {
-          const StepReferences references = ReferencesOfStep(at, steps);
+          open.push_back(references.A);
+        }
+        else if (!block.Uniform && block::ModeOf(block.Mode).From != Reference::None)
+        {
           open.push_back(references.A);
           open.push_back(references.B);
         }
@@ -241,7 +248,7 @@ void Encoder<T>::CountChains()
 
 template <class T>
 EncodedField Encoder<T>::Run(
-  std::vector<std::vector<double>>* sumSquares, const std::function<void(int)>& tell)
+  std::vector<std::vector<double>>* sumSquares, const std::function<void(double)>& tell)
 {
   const int steps = static_cast<int>(this->Field.Steps.size());
   ChooseLattice(this->Field.Type, this->Field.Map, this->Field.Bound, this->Field.Expected,
@@ -254,7 +261,8 @@ EncodedField Encoder<T>::Run(
   int done = 0;
   for (const int step : DyadicOrder(steps))
   {
-    this->EncodePlanes(step, this->Target->Make(this->Field.Steps[static_cast<std::size_t>(step)]));
+    this->EncodePlanes(step, this->Target->Make(this->Field.Steps[static_cast<std::size_t>(step)]),
+      [&](double share) { tell(done + share); });
     EncodedStep& out = this->Out.Steps[static_cast<std::size_t>(step)];
     out.Planes.resize(this->Planes.size() - 1);
     for (std::size_t p = 0; p + 1 < this->Planes.size(); ++p)
@@ -279,7 +287,7 @@ EncodedField Encoder<T>::Run(
 } // namespace
 
 EncodedField EncodeFieldGroup(const FieldGroup& field, ThreadPool& pool,
-  std::vector<std::vector<double>>* sumSquares, const std::function<void(int)>& tell)
+  std::vector<std::vector<double>>* sumSquares, const std::function<void(double)>& tell)
 {
   EncodedField result;
   Dispatch(field.Type,

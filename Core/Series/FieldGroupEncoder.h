@@ -35,6 +35,7 @@ struct EncodedBlock
 {
   std::uint8_t Mode = 0;
   bool Uniform = false;
+  bool Same = false;
   std::int32_t Value = 0;
   Bytes Payload;    ///< empty: all residuals are zero
   Bytes Exceptions; ///< empty: none
@@ -72,9 +73,9 @@ struct EncodedField
 /// Encodes a group. The result does not depend on the number of threads.
 /// @param sumSquares if not null, one array of all voxels per step, to which the squares of the
 /// decoded values are added (for magnitudes of vectors; NaN or infinite where a component is)
-/// @param tell called after each step with the number of steps done; may throw
+/// @param tell called often with the number of steps done; may throw
 EncodedField EncodeFieldGroup(const FieldGroup& field, ThreadPool& pool,
-  std::vector<std::vector<double>>* sumSquares, const std::function<void(int)>& tell);
+  std::vector<std::vector<double>>* sumSquares, const std::function<void(double)>& tell);
 
 } // namespace banyan
 

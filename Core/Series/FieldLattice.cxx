@@ -40,6 +40,17 @@ void ChooseLattice(ScalarType type, const Transform& transform, double bound,
     head.Step = 2.0 * usable / FineBin;
     head.Exact = !(usable > 0) || !std::isnormal(head.Step);
   }
+  if (low == high)
+  {
+    // One value: it is the lattice.
+    head.Exact = false;
+    head.Origin = low;
+    head.Step = 1;
+    head.Bin = 1;
+    head.Least = 0;
+    head.Greatest = 0;
+    return;
+  }
   const double limit = GreatestLatticeNumber / 2;
   const double greatest = std::max(std::abs(low), std::abs(high));
   head.Exact = head.Exact || (high - low) / head.Step > limit;

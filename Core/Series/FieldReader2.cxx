@@ -240,12 +240,23 @@ BrickNode Reader2::MakeNode(OpenGroup& open, const FieldKey& field, std::int64_t
   const Hash128 hash = changed == 0 ? HashOf(content, sizeof(content)) : HashOf(seed, sizeof(seed));
   node.Identity = { hash.Low, hash.High };
   const PlaneRegion region = this->RegionOf(open, field, brick);
-  const int own = region.Stride == 1 ? 1 : 2; // blocks per axis that are the brick's own
+  if (region.Stride != 1)
+  {
+    return node; // part of the payloads of the level below
+  }
+  // The last bricks have what lies behind them as well.
+  const glm::ivec3 position = layout.PositionOf(brick);
+  glm::ivec3 own(1);
+  for (int a = 0; a < 3; ++a)
+  {
+    const int real = group.Head().Axes[static_cast<std::size_t>(a)];
+    own[a] = position[real] + 1 == layout.Bricks()[real] ? 2 : 1;
+  }
   ForEachBlock(region,
     [&](const glm::ivec3& block)
     {
       const glm::ivec3 offset = block - region.FirstBlock;
-      if (offset.x < own && offset.y < own && offset.z < own)
+      if (offset.x < own.x && offset.y < own.y && offset.z < own.z)
       {
         const group::BlockEntry& payload = EntryOf(group, step, region, block);
         node.PayloadBytes += payload.Payload.Bytes + payload.Exceptions.Bytes;
@@ -308,7 +319,6 @@ void Reader2::Decode(OpenGroup& open, const FieldKey& field, std::int64_t brick,
   thread_local std::vector<T> ordered;
   offsets.resize(count);
   ordered.resize(count);
-  const glm::ivec3 samples = group.Planes()[static_cast<std::size_t>(region.Plane)];
   const int edge = group.Edge();
   const int n = edge + 1;
   const std::uint32_t least = static_cast<std::uint32_t>(group.Head().Least);
@@ -318,32 +328,35 @@ void Reader2::Decode(OpenGroup& open, const FieldKey& field, std::int64_t brick,
     {
       exceptional = exceptional || EntryOf(group, step, region, block).Exceptions.Bytes > 0;
       // Places of the region that this block's box holds and no earlier block's does.
-      glm::ivec3 from, to;
+      glm::ivec3 from(0), to(0);
       for (int a = 0; a < 3; ++a)
       {
         const int low = block[a] * edge + (block[a] > region.FirstBlock[a] ? 1 : 0);
         from[a] = std::max(0, (low - region.Low[a] + region.Stride - 1) / region.Stride);
-        to[a] = std::min(
-          region.Count[a] - 1, (block[a] * edge + edge - region.Low[a]) / region.Stride);
+        to[a] = region.Count[a] - 1;
+        while (to[a] >= from[a] && region.SampleAt(a, to[a]) > block[a] * edge + edge)
+        {
+          --to[a];
+        }
       }
       if (from.x > to.x || from.y > to.y || from.z > to.z)
       {
         return; // only the block after the last face: its samples are in the box before
       }
       const LatticeCache::Box box = group.Box(step, region.Plane, block);
-      const glm::ivec3 shift = region.Low - block * edge;
+      const glm::ivec3 origin = block * edge;
       for (int z = from.z; z <= to.z; ++z)
       {
         for (int y = from.y; y <= to.y; ++y)
         {
-          const std::int32_t* row = box->data() +
-                                    ((z * region.Stride + shift.z) * n + y * region.Stride + shift.y) * n +
-                                    shift.x;
+          const std::int32_t* row =
+            box->data() +
+            ((region.SampleAt(2, z) - origin.z) * n + region.SampleAt(1, y) - origin.y) * n;
           std::uint32_t* out =
             offsets.data() + (static_cast<std::size_t>(z) * region.Count.y + y) * region.Count.x;
           for (int x = from.x; x <= to.x; ++x)
           {
-            out[x] = static_cast<std::uint32_t>(row[x * region.Stride]) - least;
+            out[x] = static_cast<std::uint32_t>(row[region.SampleAt(0, x) - origin.x]) - least;
           }
         }
       }
@@ -358,7 +371,7 @@ void Reader2::Decode(OpenGroup& open, const FieldKey& field, std::int64_t brick,
         const group::BlockEntry& payload = EntryOf(group, step, region, block);
         if (payload.Exceptions.Bytes > 0)
         {
-          PlaceExceptions(region, samples, edge, block,
+          PlaceExceptions(region, edge, block,
             UnpackExceptions<T>(group.Segment().Payload(payload.Exceptions),
               payload.Exceptions.Bytes, whole),
             ordered.data());

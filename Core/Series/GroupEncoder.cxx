@@ -101,9 +101,9 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
                                                        : component.PromisedRange;
       const double before = static_cast<double>(fields.size());
       fields.push_back(EncodeFieldGroup(field, pool, vectors ? &squares : nullptr,
-        [&](int done)
+        [&](double done)
         {
-          const double share = (before + double(done) / double(steps.size())) / double(components);
+          const double share = (before + done / double(steps.size())) / double(components);
           if (tell && !tell(std::min(share, 0.999999)))
           {
             throw Error("Encoding was interrupted");

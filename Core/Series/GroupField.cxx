@@ -96,7 +96,8 @@ bool GroupField::NeedsReferences(int step, int plane, const glm::ivec3& block)
     if (Inside(at, blocks))
     {
       const group::BlockEntry& entry = entries[this->IndexOf(plane, at)];
-      if (!entry.Uniform && block::ModeOf(entry.Mode).From != block::Reference::None)
+      if (entry.Same ||
+          (!entry.Uniform && block::ModeOf(entry.Mode).From != block::Reference::None))
       {
         return true;
       }
@@ -157,10 +158,10 @@ std::vector<std::int32_t> GroupField::Decode(int step, int plane, const glm::ive
     }
     const group::BlockEntry& entry = entries[this->IndexOf(plane, at)];
     to.Uniform = entry.Uniform;
+    to.Same = entry.Same;
     to.Value = entry.Value;
     to.Mode = entry.Mode;
-    to.CoarseLimit = ResidualLimit(samples, at * this->BrickCells, 2);
-    to.FineLimit = ResidualLimit(samples, at * this->BrickCells, 1);
+    to.Limit = samples - 1 - at * this->BrickCells;
     if (entry.Payload.Bytes > 0 && bits != 7)
     {
       to.Data = this->File.Payload(entry.Payload);

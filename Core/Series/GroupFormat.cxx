@@ -14,7 +14,7 @@ namespace
 
 constexpr std::uint8_t ModeMask = 0x0f;
 constexpr std::uint8_t HasPayload = 0x10;
-constexpr std::uint8_t IsUniform = 0x20;
+constexpr std::uint8_t IsPlain = 0x20; ///< mode 0: uniform; mode 1: the same as in reference A
 constexpr std::uint8_t HasExceptions = 0x40;
 
 constexpr std::uint8_t NodeNonFinite = 1;
@@ -142,8 +142,8 @@ Bytes PackStep(const StepTable& table, bool first)
   {
     for (const BlockEntry& block : plane)
     {
-      flags.push_back(static_cast<std::uint8_t>(block.Mode | (block.Payload.Bytes > 0 ? HasPayload : 0) |
-        (block.Uniform ? IsUniform : 0) | (block.Exceptions.Bytes > 0 ? HasExceptions : 0)));
+      flags.push_back(static_cast<std::uint8_t>((block.Same ? 1 : block.Mode) | (block.Payload.Bytes > 0 ? HasPayload : 0) |
+        (block.Uniform || block.Same ? IsPlain : 0) | (block.Exceptions.Bytes > 0 ? HasExceptions : 0)));
       if (block.Payload.Bytes > 0)
       {
         PutPlace(numbers, block.Payload, next);
@@ -212,9 +212,11 @@ void ReadBlocks(ByteReader& in, const std::uint8_t*& flags, std::uint64_t payloa
     {
       const std::uint8_t flag = *flags++;
       block.Mode = flag & ModeMask;
-      block.Uniform = (flag & IsUniform) != 0;
+      const bool plain = (flag & IsPlain) != 0;
+      block.Uniform = plain && block.Mode == 0;
+      block.Same = plain && block.Mode == 1;
       if (block.Mode >= block::ModeCount || (flag & 0x80) != 0 ||
-          (block.Uniform && (flag & HasPayload) != 0))
+          (plain && (block.Mode > 1 || (flag & HasPayload) != 0)))
       {
         throw Error("A block of the segment has an unknown mode");
       }

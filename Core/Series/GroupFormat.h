@@ -56,6 +56,7 @@ struct BlockEntry
 {
   std::uint8_t Mode = 0;
   bool Uniform = false;
+  bool Same = false;      ///< as in reference A
   std::int32_t Value = 0; ///< of a uniform block
   Place Payload;          ///< none: all residuals are zero
   Place Exceptions;

@@ -24,15 +24,14 @@ PlaneRegion::PlaneRegion(int level, const Box& box, const std::array<std::uint8_
     const int real = axes[static_cast<std::size_t>(a)];
     this->Low[a] = box.Lo[real] * this->Stride;
     this->Count[a] = size[real];
-    this->FirstBlock[a] = std::min(this->Low[a], samples[a] - 1) / edge;
-    this->EndBlock[a] =
-      std::min(this->Low[a] + (this->Count[a] - 1) * this->Stride, samples[a] - 1) / edge + 1;
+    this->Last[a] = samples[a] - 1;
+    this->FirstBlock[a] = this->SampleAt(a, 0) / edge;
+    this->EndBlock[a] = this->SampleAt(a, this->Count[a] - 1) / edge + 1;
   }
 }
 
 template <class T>
-void PlaceExceptions(const PlaneRegion& region, const glm::ivec3& samples, int edge,
-  const glm::ivec3& block, const ExceptionList<T>& list, T* values)
+void PlaceExceptions(const PlaneRegion& region, int edge, const glm::ivec3& block, const ExceptionList<T>& list, T* values)
 {
   for (std::size_t i = 0; i < list.Positions.size(); ++i)
   {
@@ -51,7 +50,7 @@ void PlaceExceptions(const PlaneRegion& region, const glm::ivec3& samples, int e
       {
         places[a][counts[a]++] = from / region.Stride;
       }
-      if (sample[a] == samples[a] - 1 && lastPlace * region.Stride > from)
+      if (sample[a] == region.Last[a] && lastPlace * region.Stride > from)
       {
         places[a][counts[a]++] = lastPlace;
       }
@@ -145,10 +144,10 @@ private:
       {
         const std::int32_t* from =
           plane.Numbers.data() +
-          plane.IndexOf(region.Low + glm::ivec3{ 0, y * region.Stride, z * region.Stride });
+          plane.IndexOf({ 0, region.SampleAt(1, y), region.SampleAt(2, z) });
         for (int x = 0; x < region.Count.x; ++x)
         {
-          *to++ = from[x * region.Stride];
+          *to++ = from[region.SampleAt(0, x)];
         }
       }
     }
@@ -233,7 +232,7 @@ private:
         const Bytes& payload = this->ExceptionsOf(step, region, block);
         if (!payload.empty())
         {
-          PlaceExceptions(region, plane.Samples, plane.Edge, position,
+          PlaceExceptions(region, plane.Edge, position,
             UnpackExceptions<T>(payload.data(), payload.size(), samples), values.data());
         }
       });
@@ -274,7 +273,7 @@ void MakeNodes(const FieldGroup& field, const group::FieldHead& head,
 }
 
 #define BANYAN_INSTANTIATE(T)                                                                      \
-  template void PlaceExceptions<T>(const PlaneRegion&, const glm::ivec3&, int, const glm::ivec3&,  \
+  template void PlaceExceptions<T>(const PlaneRegion&, int, const glm::ivec3&,                     \
     const ExceptionList<T>&, T*);                                                                  \
   template void MakeNodes<T>(const FieldGroup&, const group::FieldHead&,                           \
     const std::vector<const std::vector<PlaneNumbers>*>&, std::vector<EncodedStep>&, ThreadPool&)

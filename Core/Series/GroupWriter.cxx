@@ -63,6 +63,8 @@ void GroupWriter::AddStep(const EncodedStep& step, bool first, EncodeStatistics&
       const EncodedBlock& block = plane[b];
       entry.Mode = block.Mode;
       entry.Uniform = block.Uniform;
+      entry.Same = block.Same;
+      statistics.MergedBricks += block.Same ? 1 : 0;
       entry.Value = block.Value;
       if (!block.Payload.empty())
       {

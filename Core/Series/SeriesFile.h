@@ -41,7 +41,9 @@ struct BrickNode
   bool Uniform = false;      ///< a macro voxel: every sample has the value Range.Low, bit-exact
   bool HasNonFinite = false; ///< some sample is NaN or infinite
   PayloadIdentity Identity;  ///< equal to the step before's: unchanged
-  std::uint32_t PayloadBytes = 0; ///< in the file; 0 for a macro voxel
+  /// In the file; 0 for a macro voxel, for a brick that is the same as another one or as predicted,
+  /// and for levels that are part of the next finer one.
+  std::uint32_t PayloadBytes = 0;
 };
 
 /// An open series. All methods may be called from any thread.

@@ -221,8 +221,13 @@ TEST_F(BrickCacheTest, DamageIsAnErrorForEveryoneAndIsNotKept)
   EXPECT_EQ(errors, 8);
   EXPECT_EQ(cache.GetStatistics().Bytes, 0u);
   EXPECT_THROW(this->File->VerifyBricks({}, { 0 }), Error);
-  EXPECT_NO_THROW(this->File->VerifyBricks({}, { 1, 2, 3 }));
-  EXPECT_TRUE(this->IsRight(*cache.Get(*this->File, {}, 1), 0, 1));
+  // Steps of later segments lie in other files.
+  const int later = this->File->Index().Segments.back().FirstStep;
+  if (later > 0)
+  {
+    EXPECT_NO_THROW(this->File->VerifyBricks({ later, 0, 0, 0 }, { 0, 1, 2, 3 }));
+    EXPECT_TRUE(this->IsRight(*cache.Get(*this->File, { later, 0, 0, 0 }, 1), later, 1));
+  }
 }
 
 TEST_F(BrickCacheTest, QuestionsBeyondTheSeriesAreErrors)

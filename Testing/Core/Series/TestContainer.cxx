@@ -191,6 +191,7 @@ TEST(Container, AKilledWriterLeavesWhatWasIndexed)
           }
           encoder.AddStep(s, { { steps[static_cast<std::size_t>(s)].data() } });
         }
+        encoder.Finish(); // the last group is encoded here
       });
     ASSERT_TRUE(WIFSIGNALED(status));
     const int whole = killedAfter / 2 * 2;
@@ -217,7 +218,7 @@ TEST(Container, AFullDiskIsAnErrorThatNamesTheFileAndLeavesNothing)
   const auto steps = Sample<float>(grid, 1, [&](int, int, int, int) { return random() % 65536; });
   const TemporaryFolder folder;
   const std::string path = folder / "s.banyan";
-  for (const rlim_t limit : { 0, 10, 64, 1000, 50000, 200000 })
+  for (const rlim_t limit : { 0, 10, 64, 1000, 50000, 150000 })
   {
     const int status = InChild(
       [&]
@@ -391,7 +392,13 @@ TEST(Container, ProgressRisesAndInterrupts)
       last = done;
       return ++calls < 2;
     });
-  ExpectError([&] { encoder.AddStep(0, { { steps[0].data() } }); }, "interrupted");
+  ExpectError(
+    [&]
+    {
+      encoder.AddStep(0, { { steps[0].data() } });
+      encoder.Finish();
+    },
+    "interrupted");
   EXPECT_EQ(calls, 2);
 }
 
