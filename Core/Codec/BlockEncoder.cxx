@@ -307,7 +307,8 @@ struct BlockCoder
       for (int x = 0; x < B; ++x)
       {
         const std::int32_t rest = static_cast<std::int32_t>(U(at[x]) - U(prediction[x])) & mask[x];
-        const float size = 1.0f + scale * std::abs(static_cast<float>(rest));
+        const float bins = scale * static_cast<float>(rest);
+        const float size = 1.0f + bins * bins;
         std::int32_t bits;
         std::memcpy(&bits, &size, 4);
         sum += (bits - 0x3f800000) >> 12; // 2^11 times about log2(size)

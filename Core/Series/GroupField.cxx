@@ -90,7 +90,7 @@ bool GroupField::NeedsReferences(int step, int plane, const glm::ivec3& block)
 {
   const auto& entries = this->Step(step).Planes[static_cast<std::size_t>(plane)];
   const glm::ivec3 blocks = this->BlocksOf(plane);
-  for (int bits = 0; bits < 7; ++bits)
+  for (int bits = 0; bits < 8; ++bits)
   {
     const glm::ivec3 at = NeighbourOf(block, bits);
     if (Inside(at, blocks))
