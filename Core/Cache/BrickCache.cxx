@@ -1,6 +1,7 @@
 #include "Cache/BrickCache.h"
 
 #include "Base/Error.h"
+#include "Series/LatticeCache.h"
 
 #include <algorithm>
 #include <condition_variable>
@@ -208,6 +209,10 @@ std::shared_ptr<const BrickValues> BrickCache::Get(
 
 void BrickCache::SetBudget(std::uint64_t bytes)
 {
+  if (this == &BrickCache::Process())
+  {
+    LatticeCache::Process().SetBudgetBytes(bytes / 4);
+  }
   std::lock_guard<std::mutex> lock(this->Self->Mutex);
   this->Self->Budget = bytes;
   this->Self->EvictDownTo(bytes);

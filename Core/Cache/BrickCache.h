@@ -50,7 +50,8 @@ public:
   std::shared_ptr<const BrickValues> Get(
     const SeriesFile& series, const FieldKey& field, std::int64_t brick);
 
-  /// Evicts at once when the new budget is smaller. 0 keeps nothing.
+  /// Evicts at once when the new budget is smaller. 0 keeps nothing. The process's cache gives a
+  /// quarter as much to LatticeCache, which keeps what decoding needs again.
   void SetBudget(std::uint64_t bytes);
   std::uint64_t Budget() const;
   void Clear();

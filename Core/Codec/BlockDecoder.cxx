@@ -15,6 +15,28 @@ HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
 
+/// Reads the residuals of some lanes of a row. By itself, so that all it works with stays in
+/// registers.
+template <int Step>
+HWY_NOINLINE void ReadLanes(SymbolReader& symbols, SymbolReader::Cursor at,
+  const std::uint32_t* tables, const std::uint8_t* classes, int count, std::int32_t* residuals,
+  std::uint8_t* m)
+{
+  for (int x = 0; x < count * Step; x += Step)
+  {
+    const std::uint32_t entry = at.Next(tables + (static_cast<unsigned>(classes[x]) << 10));
+    if (HWY_LIKELY((entry >> residual::EscapeBit & 1u) == 0))
+    {
+      residuals[x] = static_cast<std::int32_t>(entry) >> 24;
+      m[x] = static_cast<std::uint8_t>(entry >> 14 & 15u);
+      continue;
+    }
+    residuals[x] = at.Long(entry);
+    m[x] = residual::Magnitude(residual::Zigzag(residuals[x]));
+  }
+  symbols.MoveTo(at);
+}
+
 /// Reads the residuals of rows and applies them.
 template <int B>
 struct RowDecoder
@@ -31,22 +53,21 @@ struct RowDecoder
       return;
     }
     SymbolReader::Cursor symbols = this->Symbols->Here();
-    if (!rough && symbols.Next(residual::FlagContext + row.Band) != 0)
+    if (!rough &&
+        symbols.Next(symbols.Tables + (residual::FlagContext + row.Band) * tans::TableSize) >> 24 != 0)
     {
       this->Symbols->MoveTo(symbols);
       SetLanes<B>(row.Lanes, prediction, w);
       return;
     }
     alignas(64) std::int32_t residuals[B] = {};
-    const int context = row.Band * residual::Classes;
-    int x = row.Lanes.First;
-    for (int i = 0; i < row.Coded; ++i, x += row.Lanes.Step)
-    {
-      const std::uint32_t code = symbols.NextCode(context + classes[x]);
-      residuals[x] = residual::Unzigzag(code);
-      m[x] = residual::Magnitude(code);
-    }
-    this->Symbols->MoveTo(symbols);
+    const std::uint32_t* tables =
+      symbols.Tables + row.Band * residual::Classes * tans::TableSize;
+    const int x = row.Lanes.First;
+    (row.Lanes.Step == 1   ? ReadLanes<1>
+      : row.Lanes.Step == 2 ? ReadLanes<2>
+                            : ReadLanes<4>)(*this->Symbols, symbols, tables, classes + x, row.Coded,
+      residuals + x, m + x);
     SetLanes<B>(
       row.Lanes, prediction, residuals, row.Stride == 2 ? this->CoarseBin : this->FineBin, w);
   }
@@ -98,16 +119,18 @@ struct BoxDecoder
     }
   }
 
-  /// Whether a block takes no decoding: it is uniform, or the same as in reference A.
+  /// Whether a block takes no decoding: it is uniform, the same as in reference A, or decoded.
   bool Plain(int owner) const
   {
-    return this->Code.Blocks[owner].Uniform || this->Code.Blocks[owner].Same;
+    const BlockCode& block = this->Code.Blocks[owner];
+    return block.Uniform || block.Same || this->Code.Boxes[owner] != nullptr;
   }
 
   /// Fills what a plain block owns of the box.
   void PlacePlain(int owner) const
   {
-    if (this->Code.Blocks[owner].Same && this->Code.A == nullptr)
+    if (this->Code.Boxes[owner] == nullptr && this->Code.Blocks[owner].Same &&
+        this->Code.A == nullptr)
     {
       throw Error("A block is the same as in a step that its group does not have");
     }
@@ -118,7 +141,13 @@ struct BoxDecoder
       for (int y = low.y; y < high.y; ++y)
       {
         std::int32_t* row = this->Box.Row(y, z);
-        if (this->Code.Blocks[owner].Same)
+        if (this->Code.Boxes[owner] != nullptr)
+        {
+          const std::int32_t* from =
+            this->Code.Boxes[owner] + ((z - Corner(owner).z) * N + y - Corner(owner).y) * N;
+          std::copy(from, from + (high.x - low.x), row + low.x);
+        }
+        else if (this->Code.Blocks[owner].Same)
         {
           std::copy(this->A.Row(y, z) + low.x, this->A.Row(y, z) + high.x, row + low.x);
         }
@@ -177,7 +206,10 @@ struct BoxDecoder
       else if (block.Exists && block.Bytes > 0 && owner != 7)
       {
         readers[owner] = &work.Readers[owner];
-        readers[owner]->Open(this->Plane.Tables, block.Data, block.Bytes);
+        // Of neighbours no more is read than their edges and faces; no symbol takes more bits.
+        constexpr std::size_t most = (3 * B * B + 3 * B) * 41 / 8 + 8;
+        readers[owner]->Open(
+          this->Plane.Tables, block.Data, block.Bytes, owner == 0 ? block.Bytes : most);
       }
     }
     for (const int owner : { 3, 5, 6 })

@@ -28,7 +28,7 @@ struct BlockCode
 /// What a field's blocks of one plane share.
 struct PlaneCode
 {
-  const tans::DecodeEntry* Tables = nullptr; ///< residual::ContextCount times tans::TableSize
+  const std::uint32_t* Tables = nullptr; ///< residual::ContextCount times tans::TableSize
   std::int32_t CoarseBin = 1; ///< lattice steps per residual at stride 2
   std::int32_t FineBin = 1;   ///< at stride 1
   std::int32_t Least = 0;     ///< decoded lattice numbers are kept in [Least, Greatest]
@@ -45,6 +45,8 @@ struct BoxCode
   /// Decoded boxes of the references; must be given when a mode asks for them.
   const std::int32_t* A = nullptr;
   const std::int32_t* B = nullptr;
+  /// Decoded boxes of neighbours that are at hand; null for others.
+  const std::int32_t* Boxes[8] = {};
 };
 
 /// Decodes a box: the (edge + 1)^3 samples of a block and the layer that neighbours own.

@@ -58,63 +58,73 @@ HWY_INLINE std::int32_t Shifted(std::uint32_t a, int bits)
   return static_cast<std::int32_t>(a) >> bits;
 }
 
-HWY_INLINE std::int32_t Cubic(std::int32_t a, std::int32_t b, std::int32_t c, std::int32_t d)
+/// Numbers of a row, as vectors of up to 16 (of the compiler: it splits them for every target).
+template <int B>
+struct Numbers
 {
-  return Shifted(9u * (U(b) + U(c)) - U(a) - U(d) + 8u, 4);
-}
-HWY_INLINE std::int32_t Quadratic(std::int32_t near, std::int32_t other, std::int32_t far)
-{
-  return Shifted(3u * U(near) + 6u * U(other) - U(far) + 4u, 3);
-}
-HWY_INLINE std::int32_t Linear(std::int32_t a, std::int32_t b)
-{
-  return Shifted(U(a) + U(b) + 1u, 1);
-}
+  static constexpr int Width = B < 16 ? B : 16;
+  static constexpr int Count = B / Width;
+  typedef std::uint32_t Unsigned __attribute__((vector_size(4 * Width)));
+  typedef std::int32_t Signed __attribute__((vector_size(4 * Width)));
+
+  static HWY_INLINE Unsigned Load(const std::int32_t* from)
+  {
+    Unsigned result;
+    std::memcpy(&result, from, sizeof(result));
+    return result;
+  }
+  static HWY_INLINE void Store(Unsigned value, std::int32_t* to)
+  {
+    std::memcpy(to, &value, sizeof(value));
+  }
+  static HWY_INLINE Unsigned Shift(Unsigned value, int bits)
+  {
+    return reinterpret_cast<Unsigned>(reinterpret_cast<Signed>(value) >> bits);
+  }
+
+  static HWY_INLINE Unsigned Cubic(Unsigned a, Unsigned b, Unsigned c, Unsigned d)
+  {
+    return Shift(9u * (b + c) - a - d + 8u, 4);
+  }
+  static HWY_INLINE Unsigned Quadratic(Unsigned near, Unsigned other, Unsigned far)
+  {
+    return Shift(3u * near + 6u * other - far + 4u, 3);
+  }
+  static HWY_INLINE Unsigned Linear(Unsigned a, Unsigned b) { return Shift(a + b + 1u, 1); }
+};
 
 /// Predicts a row from rows at distance `gap` (in elements) on both sides.
 /// @param position of the row along the axis of the pass, and @param s the stride
 template <int B>
-HWY_INLINE void PredictAcross(
-  const std::int32_t* w, std::ptrdiff_t gap, int position, int s, Interpolation by,
-  std::int32_t* HWY_RESTRICT prediction)
+HWY_INLINE void PredictAcross(const std::int32_t* w, std::ptrdiff_t gap, int position, int s,
+  Interpolation by, std::int32_t* HWY_RESTRICT prediction)
 {
-  const std::int32_t* before = w - gap;
-  const std::int32_t* after = w + gap;
-  if (by == Interpolation::None)
+  using V = Numbers<B>;
+  for (int i = 0; i < V::Count; ++i, w += V::Width, prediction += V::Width)
   {
-    std::fill(prediction, prediction + B, 0);
-  }
-  else if (by == Interpolation::Linear)
-  {
-    for (int x = 0; x < B; ++x)
+    typename V::Unsigned result{};
+    if (by != Interpolation::None)
     {
-      prediction[x] = Linear(before[x], after[x]);
+      const auto before = V::Load(w - gap);
+      const auto after = V::Load(w + gap);
+      if (by == Interpolation::Linear)
+      {
+        result = V::Linear(before, after);
+      }
+      else if (position - 3 * s < 0)
+      {
+        result = V::Quadratic(before, after, V::Load(w + 3 * gap));
+      }
+      else if (position + 3 * s > B)
+      {
+        result = V::Quadratic(after, before, V::Load(w - 3 * gap));
+      }
+      else
+      {
+        result = V::Cubic(V::Load(w - 3 * gap), before, after, V::Load(w + 3 * gap));
+      }
     }
-  }
-  else if (position - 3 * s < 0)
-  {
-    const std::int32_t* far = w + 3 * gap;
-    for (int x = 0; x < B; ++x)
-    {
-      prediction[x] = Quadratic(before[x], after[x], far[x]);
-    }
-  }
-  else if (position + 3 * s > B)
-  {
-    const std::int32_t* far = w - 3 * gap;
-    for (int x = 0; x < B; ++x)
-    {
-      prediction[x] = Quadratic(after[x], before[x], far[x]);
-    }
-  }
-  else
-  {
-    const std::int32_t* far = w - 3 * gap;
-    const std::int32_t* other = w + 3 * gap;
-    for (int x = 0; x < B; ++x)
-    {
-      prediction[x] = Cubic(far[x], before[x], after[x], other[x]);
-    }
+    V::Store(result, prediction);
   }
 }
 
@@ -123,25 +133,28 @@ template <int B>
 HWY_INLINE void PredictAlong(
   const std::int32_t* w, int s, Interpolation by, std::int32_t* HWY_RESTRICT prediction)
 {
-  if (by == Interpolation::None)
+  using V = Numbers<B>;
+  for (int i = 0; i < V::Count; ++i)
   {
-    std::fill(prediction, prediction + B, 0);
-    return;
-  }
-  if (by == Interpolation::Linear)
-  {
-    for (int x = 0; x < B; ++x)
+    const std::int32_t* at = w + i * V::Width;
+    typename V::Unsigned result{};
+    if (by != Interpolation::None)
     {
-      prediction[x] = Linear(w[x - s], w[x + s]);
+      const auto before = V::Load(at - s);
+      const auto after = V::Load(at + s);
+      result = by == Interpolation::Linear
+                 ? V::Linear(before, after)
+                 : V::Cubic(V::Load(at - 3 * s), before, after, V::Load(at + 3 * s));
     }
-    return;
+    V::Store(result, prediction + i * V::Width);
   }
-  for (int x = 0; x < B; ++x)
+  if (by == Interpolation::Cubic)
   {
-    prediction[x] = Cubic(w[x - 3 * s], w[x - s], w[x + s], w[x + 3 * s]);
+    const auto quadratic = [](std::int32_t near, std::int32_t other, std::int32_t far)
+    { return Shifted(3u * U(near) + 6u * U(other) - U(far) + 4u, 3); };
+    prediction[s] = quadratic(w[0], w[2 * s], w[4 * s]);
+    prediction[B - s] = quadratic(w[B], w[B - 2 * s], w[B - 4 * s]);
   }
-  prediction[s] = Quadratic(w[0], w[2 * s], w[4 * s]);
-  prediction[B - s] = Quadratic(w[B], w[B - 2 * s], w[B - 4 * s]);
 }
 
 /// Bytes of a row, as vectors of up to 16 (of the compiler: every target has those).

@@ -190,12 +190,13 @@ template <int B>
 HWY_INLINE void SetLanes(const LaneSet& lanes, const std::int32_t* HWY_RESTRICT prediction,
   const std::int32_t* HWY_RESTRICT residual, std::int32_t bin, std::int32_t* HWY_RESTRICT w)
 {
-  const std::int32_t* HWY_RESTRICT mask = LaneMask<B>(lanes);
-  for (int x = 0; x < B; ++x)
+  using V = Numbers<B>;
+  const std::int32_t* mask = LaneMask<B>(lanes);
+  for (int x = 0; x < B; x += V::Width)
   {
-    const std::int32_t value =
-      static_cast<std::int32_t>(U(prediction[x]) + U(residual[x]) * U(bin));
-    w[x] = (value & mask[x]) | (w[x] & ~mask[x]);
+    const auto set = V::Load(mask + x);
+    const auto value = V::Load(prediction + x) + V::Load(residual + x) * U(bin);
+    V::Store((value & set) | (V::Load(w + x) & ~set), w + x);
   }
 }
 
@@ -204,10 +205,12 @@ template <int B>
 HWY_INLINE void SetLanes(const LaneSet& lanes, const std::int32_t* HWY_RESTRICT prediction,
   std::int32_t* HWY_RESTRICT w)
 {
-  const std::int32_t* HWY_RESTRICT mask = LaneMask<B>(lanes);
-  for (int x = 0; x < B; ++x)
+  using V = Numbers<B>;
+  const std::int32_t* mask = LaneMask<B>(lanes);
+  for (int x = 0; x < B; x += V::Width)
   {
-    w[x] = (prediction[x] & mask[x]) | (w[x] & ~mask[x]);
+    const auto set = V::Load(mask + x);
+    V::Store((V::Load(prediction + x) & set) | (V::Load(w + x) & ~set), w + x);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <hwy/base.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -23,48 +24,48 @@ public:
   /// What moves while reading. Copy it out, read a row, and put it back: so it stays in registers.
   struct Cursor
   {
-    const tans::DecodeEntry* Tables;
+    const std::uint32_t* Tables;
     const std::uint8_t* Data;
     std::uint64_t Position;
     std::uint32_t First, Second, Third, Fourth; ///< states of the lanes, in turn
 
-    std::uint32_t Take(int bits)
+    std::uint32_t Take(std::uint32_t bits)
     {
       std::uint64_t word;
       std::memcpy(&word, this->Data + (this->Position >> 3), 8);
       const std::uint64_t value =
         (word >> (this->Position & 7)) & ((std::uint64_t{ 1 } << bits) - 1);
-      this->Position += static_cast<std::uint64_t>(bits);
+      this->Position += bits;
       return static_cast<std::uint32_t>(value);
     }
 
-    /// Next symbol in a context.
-    int Next(int context)
+    /// Next entry in a context: see residual::Packed.
+    std::uint32_t Next(const std::uint32_t* table)
     {
-      const tans::DecodeEntry entry = this->Tables[context * tans::TableSize + this->First];
-      const std::uint32_t next = entry.Base + this->Take(entry.Bits);
+      const std::uint32_t entry = table[this->First];
+      const std::uint32_t next = (entry & 1023u) + this->Take((entry >> 10) & 15u);
       this->First = this->Second;
       this->Second = this->Third;
       this->Third = this->Fourth;
       this->Fourth = next;
-      return entry.Symbol;
+      return entry;
     }
 
-    /// Zigzag code of the next residual in a context.
-    std::uint32_t NextCode(int context)
+    /// Residual of an entry with extra bits.
+    std::int32_t Long(std::uint32_t entry)
     {
-      const int symbol = this->Next(context);
-      if (HWY_LIKELY(symbol < residual::DirectSymbols))
-      {
-        return static_cast<std::uint32_t>(symbol);
-      }
-      return residual::CodeOf(symbol, this->Take(residual::ExtraBits(symbol)));
+      const int bits = static_cast<int>(entry >> 24);
+      return residual::Unzigzag(residual::CodeOf(
+        residual::DirectSymbols + bits, this->Take(static_cast<std::uint32_t>(bits))));
     }
   };
 
   /// @param tables TableSize entries for each context
-  void Open(const tans::DecodeEntry* tables, const std::uint8_t* data, std::size_t bytes)
+  /// @param most bytes that will be read at most
+  void Open(const std::uint32_t* tables, const std::uint8_t* data, std::size_t bytes,
+    std::size_t most)
   {
+    bytes = std::min(bytes, most);
     if (this->Buffer.size() < bytes + Slack)
     {
       this->Buffer.resize(bytes + Slack);

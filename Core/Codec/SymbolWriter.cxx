@@ -196,12 +196,18 @@ std::vector<tans::Frequencies> UnpackFrequencies(const std::uint8_t* data, std::
   return result;
 }
 
-std::vector<tans::DecodeEntry> DecodeTablesOf(const std::vector<tans::Frequencies>& frequencies)
+std::vector<std::uint32_t> DecodeTablesOf(const std::vector<tans::Frequencies>& frequencies)
 {
-  std::vector<tans::DecodeEntry> tables(frequencies.size() * tans::TableSize);
-  for (std::size_t c = 0; c < frequencies.size(); ++c)
+  std::vector<std::uint32_t> tables;
+  tables.reserve(frequencies.size() * tans::TableSize);
+  tans::DecodeEntry context[tans::TableSize];
+  for (const tans::Frequencies& each : frequencies)
   {
-    tans::BuildDecodeTable(frequencies[c], tables.data() + c * tans::TableSize);
+    tans::BuildDecodeTable(each, context);
+    for (const tans::DecodeEntry& entry : context)
+    {
+      tables.push_back(residual::Packed(entry));
+    }
   }
   return tables;
 }

@@ -54,8 +54,8 @@ private:
 std::vector<std::uint8_t> PackFrequencies(const std::vector<tans::Frequencies>& frequencies);
 std::vector<tans::Frequencies> UnpackFrequencies(const std::uint8_t* data, std::size_t bytes);
 
-/// Decode tables of all contexts, one after the other.
-std::vector<tans::DecodeEntry> DecodeTablesOf(const std::vector<tans::Frequencies>& frequencies);
+/// Decode tables of all contexts, one after the other, as SymbolReader takes them.
+std::vector<std::uint32_t> DecodeTablesOf(const std::vector<tans::Frequencies>& frequencies);
 
 } // namespace banyan
 

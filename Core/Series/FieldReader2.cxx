@@ -148,7 +148,9 @@ std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
   {
     bytes += kept->second->MemoryBytes();
     ++count;
-    const bool keep = count <= 1 || (count <= KeptTables && bytes <= KeptTableBytes);
+    // Of each component the segment at hand and, for those who go back and forth, one more.
+    const bool keep =
+      count <= 1 || (count <= 2 * this->Series.Components && bytes <= KeptTableBytes);
     kept = keep ? std::next(kept) : this->Opened.erase(kept);
   }
   return open;

@@ -54,7 +54,7 @@ GroupField::GroupField(GroupReader& segment, std::uint64_t series, std::uint32_t
   for (int set = 0; set < 2; ++set)
   {
     this->Tables[set] = DecodeTablesOf(this->FieldHead.Frequencies[set]);
-    this->Memory += this->Tables[set].size() * sizeof(tans::DecodeEntry);
+    this->Memory += this->Tables[set].size() * sizeof(std::uint32_t);
   }
 }
 
@@ -170,6 +170,17 @@ std::vector<std::int32_t> GroupField::Decode(int step, int plane, const glm::ive
   }
   this->BytesRead += code.Blocks[0].Bytes;
   this->PayloadsRead += code.Blocks[0].Bytes > 0 ? 1 : 0;
+  std::vector<LatticeCache::Box> neighbours;
+  for (const int bits : { 1, 2, 4 })
+  {
+    // Only what would have to be read again is worth a look.
+    if (code.Blocks[bits].Exists && code.Blocks[bits].Bytes > 0)
+    {
+      neighbours.push_back(
+        LatticeCache::Process().Find(this->KeyOf(step, plane, NeighbourOf(block, bits))));
+      code.Boxes[bits] = neighbours.back() ? neighbours.back()->data() : nullptr;
+    }
+  }
   std::vector<std::int32_t> coarse;
   this->Coarse(step, plane, block, coarse);
   code.Coarse = coarse.data();
@@ -192,24 +203,24 @@ std::vector<std::int32_t> GroupField::Decode(int step, int plane, const glm::ive
   return numbers;
 }
 
+LatticeCache::Key GroupField::KeyOf(int step, int plane, const glm::ivec3& block) const
+{
+  return { this->Series, this->IndexOf(plane, block),
+    static_cast<std::uint32_t>(this->File.FirstStep() + step),
+    static_cast<std::uint16_t>(this->Component), static_cast<std::uint16_t>(plane) };
+}
+
 LatticeCache::Box GroupField::Box(int step, int plane, const glm::ivec3& block)
 {
   LatticeCache& cache = LatticeCache::Process();
-  const LatticeCache::Key key{ this->Series, this->IndexOf(plane, block),
-    static_cast<std::uint32_t>(this->File.FirstStep() + step),
-    static_cast<std::uint16_t>(this->Component), static_cast<std::uint16_t>(plane) };
+  const LatticeCache::Key key = this->KeyOf(step, plane, block);
   if (LatticeCache::Box found = cache.Find(key))
   {
     return found;
   }
   const LatticeCache::Box box =
     std::make_shared<const std::vector<std::int32_t>>(this->Decode(step, plane, block));
-  // Boxes of the finest plane that no step refers to are of no further use as numbers.
-  const int distance = step == 0 ? this->File.Steps() : step & -step;
-  if (plane > 0 || distance > 1)
-  {
-    cache.Add(key, box);
-  }
+  cache.Add(key, box);
   return box;
 }
 

@@ -97,6 +97,7 @@ private:
   using Visited = std::set<std::tuple<int, int, std::size_t>>;
 
   std::size_t IndexOf(int plane, const glm::ivec3& block) const;
+  LatticeCache::Key KeyOf(int step, int plane, const glm::ivec3& block) const;
   void Verify(int step, int plane, const glm::ivec3& block, Visited& visited);
   bool NeedsReferences(int step, int plane, const glm::ivec3& block);
   void Coarse(int step, int plane, const glm::ivec3& block, std::vector<std::int32_t>& numbers);
@@ -109,7 +110,7 @@ private:
   group::FieldHead FieldHead;
   std::vector<glm::ivec3> PlaneSamples;
   std::vector<std::size_t> BlockCounts, BrickCounts;
-  std::vector<tans::DecodeEntry> Tables[2];
+  std::vector<std::uint32_t> Tables[2];
   std::mutex Mutex;
   std::vector<std::unique_ptr<group::StepTable>> StepTables;
   std::atomic<std::uint64_t> Memory{ 0 };

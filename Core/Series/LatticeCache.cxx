@@ -31,8 +31,9 @@ LatticeCache::LatticeCache()
 
 LatticeCache& LatticeCache::Process()
 {
-  static LatticeCache cache;
-  return cache;
+  // Never destroyed: series that are closed while the process ends still come here.
+  static LatticeCache* cache = new LatticeCache;
+  return *cache;
 }
 
 std::size_t LatticeCache::KeyHash::operator()(const Key& key) const
