@@ -95,11 +95,7 @@ void BuildDecodeTable(const Frequencies& frequencies, DecodeEntry* table)
   {
     const std::uint8_t symbol = slots[static_cast<std::size_t>(slot)];
     const int state = next[symbol]++;
-    int bits = 0;
-    while ((state << bits) < TableSize)
-    {
-      ++bits;
-    }
+    const int bits = TableBits - (31 - __builtin_clz(static_cast<unsigned>(state)));
     table[slot].Symbol = symbol;
     table[slot].Bits = static_cast<std::uint8_t>(bits);
     table[slot].Base = static_cast<std::uint16_t>((state << bits) - TableSize);

@@ -148,9 +148,10 @@ std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
   {
     bytes += kept->second->MemoryBytes();
     ++count;
-    // Of each component the segment at hand and, for those who go back and forth, one more.
-    const bool keep =
-      count <= 1 || (count <= 2 * this->Series.Components && bytes <= KeptTableBytes);
+    // Of each component the segment at hand and one more; others as the budget allows.
+    const bool keep = count <= 2 * std::size_t{ this->Series.Components } ||
+                      (count <= KeptTables * std::size_t{ this->Series.Components } &&
+                        bytes <= std::min(KeptTableBytes, LatticeCache::Process().BudgetBytes() / 2));
     kept = keep ? std::next(kept) : this->Opened.erase(kept);
   }
   return open;
