@@ -348,6 +348,11 @@ void Reader2::Decode(OpenGroup& open, const FieldKey& field, std::int64_t brick,
       }
       const LatticeCache::Box box = group.Box(step, region.Plane, block);
       const glm::ivec3 origin = block * edge;
+      int columns[2 * 64 + 1]; // places per row: at most a brick of the largest edge
+      for (int x = from.x; x <= to.x; ++x)
+      {
+        columns[x] = region.SampleAt(0, x) - origin.x;
+      }
       for (int z = from.z; z <= to.z; ++z)
       {
         for (int y = from.y; y <= to.y; ++y)
@@ -359,7 +364,7 @@ void Reader2::Decode(OpenGroup& open, const FieldKey& field, std::int64_t brick,
             offsets.data() + (static_cast<std::size_t>(z) * region.Count.y + y) * region.Count.x;
           for (int x = from.x; x <= to.x; ++x)
           {
-            out[x] = static_cast<std::uint32_t>(row[region.SampleAt(0, x) - origin.x]) - least;
+            out[x] = static_cast<std::uint32_t>(row[columns[x]]) - least;
           }
         }
       }
@@ -381,29 +386,27 @@ void Reader2::Decode(OpenGroup& open, const FieldKey& field, std::int64_t brick,
         }
       });
   }
-  // From the codec's order of axes to the data's.
-  glm::i64vec3 stride;
-  glm::ivec3 real;
-  const auto& axes = group.Head().Axes;
+  // From the codec's order of axes to the data's; the values are written one after the other.
+  const std::int64_t strides[3] = { 1, region.Count.x,
+    std::int64_t{ region.Count.x } * region.Count.y };
+  std::int64_t stride[3] = {};
+  int size[3] = {};
   for (int a = 0; a < 3; ++a)
   {
-    real[axes[static_cast<std::size_t>(a)]] = region.Count[a];
+    const std::size_t real = group.Head().Axes[static_cast<std::size_t>(a)];
+    stride[real] = strides[a];
+    size[real] = region.Count[a];
   }
-  const std::int64_t strides[3] = { 1, real.x, std::int64_t{ real.x } * real.y };
-  for (int a = 0; a < 3; ++a)
+  for (int z = 0; z < size[2]; ++z)
   {
-    stride[a] = strides[axes[static_cast<std::size_t>(a)]];
-  }
-  const T* next = ordered.data();
-  for (int z = 0; z < region.Count.z; ++z)
-  {
-    for (int y = 0; y < region.Count.y; ++y)
+    for (int y = 0; y < size[1]; ++y)
     {
-      T* out = values + z * stride.z + y * stride.y;
-      for (int x = 0; x < region.Count.x; ++x)
+      const T* from = ordered.data() + z * stride[2] + y * stride[1];
+      for (int x = 0; x < size[0]; ++x)
       {
-        out[x * stride.x] = *next++;
+        values[x] = from[x * stride[0]];
       }
+      values += size[0];
     }
   }
 }
