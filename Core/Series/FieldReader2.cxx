@@ -314,7 +314,7 @@ void Reader2::Decode(OpenGroup& open, const FieldKey& field, std::int64_t brick,
   if (entry.Uniform)
   {
     std::fill(values, values + count,
-      entry.Explicit ? static_cast<T>(entry.LowValue) : decoder.ValueOf(entry.Low));
+      entry.Explicit ? ValueFromReal<T>(entry.LowValue) : decoder.ValueOf(entry.Low));
     return;
   }
   ++this->Decoded;

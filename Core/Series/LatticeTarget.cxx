@@ -28,6 +28,29 @@ glm::i64vec3 StridesOf(const FieldGroup& field)
   return { field.Components, row, row * field.Samples.y };
 }
 
+/// Numbers for samples that are not held: on the line between those around, so that predictions
+/// cost nothing there.
+/// @param otherwise when none is held
+void FillGaps(const bool* held, int count, std::int32_t otherwise, std::int32_t* numbers)
+{
+  int before = -1;
+  for (int x = 0; x < count;)
+  {
+    if (held[x])
+    {
+      before = x++;
+      continue;
+    }
+    const int after = static_cast<int>(std::find(held + x, held + count, true) - held);
+    const std::int64_t right = after < count ? numbers[after] : before >= 0 ? numbers[before] : otherwise;
+    const std::int64_t left = before >= 0 ? numbers[before] : right;
+    for (; x < after; ++x)
+    {
+      numbers[x] = static_cast<std::int32_t>(left + (right - left) * (x - before) / (after - before));
+    }
+  }
+}
+
 /// Repeats the last samples beyond the field's end.
 void Pad(PlaneNumbers& plane)
 {
@@ -170,15 +193,7 @@ void LatticeTarget<T>::FillRow(
   {
     return;
   }
-  const bool* first = std::find(held, held + count, true);
-  std::int32_t last = first == held + count
-                        ? std::min(std::max(0, this->Head.Least), this->Head.Greatest)
-                        : numbers[first - held];
-  for (int x = 0; x < count; ++x)
-  {
-    last = held[x] ? numbers[x] : last;
-    numbers[x] = last;
-  }
+  FillGaps(held, count, std::min(std::max(0, this->Head.Least), this->Head.Greatest), numbers);
 }
 
 template <class T>

@@ -1,0 +1,216 @@
+#include "Codec/CodecTesting.h"
+
+#include "Base/Error.h"
+
+namespace banyan::testing
+{
+namespace
+{
+
+std::vector<block::Mode> AllModes()
+{
+  std::vector<block::Mode> modes;
+  for (int mode = 0; mode < block::ModeCount; ++mode)
+  {
+    modes.push_back(block::ModeOf(mode));
+  }
+  return modes;
+}
+
+/// Both decoders give what the encoder said.
+void ExpectDecodes(const EncodedPlane& encoded)
+{
+  for (std::int64_t i = 0; i < encoded.Plane.Target->BlockCount(); ++i)
+  {
+    const glm::ivec3 block = BlockAt(*encoded.Plane.Target, i);
+    const Box3 box = MakeBox(encoded, block);
+    const std::vector<std::int32_t> expected = BoxNumbers(encoded.Decoded, block);
+    ASSERT_EQ(DecodeFast(encoded, box), expected) << "block " << i;
+    ASSERT_EQ(DecodeSlow(encoded, box), expected) << "block " << i << ", the slow decoder";
+  }
+}
+
+/// What is coded is not further off than half a bin.
+void ExpectClose(const EncodedPlane& encoded)
+{
+  const PlaneNumbers& target = *encoded.Plane.Target;
+  for (int z = 0; z < target.Samples.z; ++z)
+  {
+    for (int y = 0; y < target.Samples.y; ++y)
+    {
+      for (int x = 0; x < target.Samples.x; ++x)
+      {
+        if (x % 4 == 0 && y % 4 == 0 && z % 4 == 0)
+        {
+          continue; // from the coarser plane
+        }
+        const std::size_t i = static_cast<std::size_t>(target.IndexOf({ x, y, z }));
+        ASSERT_LE(
+          std::abs(encoded.Decoded.Numbers[i] - target.Numbers[i]), encoded.Plane.FineBin / 2)
+          << x << " " << y << " " << z;
+      }
+    }
+  }
+}
+
+class Blocks : public ::testing::TestWithParam<int>
+{
+};
+
+TEST_P(Blocks, AllSizesDecodeToWhatTheEncoderSaid)
+{
+  const int edge = GetParam();
+  const std::vector<glm::ivec3> sizes = { { 1, 1, 1 }, { 2, 1, 1 }, { 2, 2, 2 }, { 1, 1, edge },
+    { edge - 1, edge, edge + 1 }, { edge, edge + 1, 1 }, { edge + 1, edge - 1, 2 },
+    { 2 * edge + 3, 1, edge + 2 }, { 1, 2 * edge, 3 }, { 13, 7, 19 }, { 67, 3, 5 } };
+  for (const glm::ivec3& size : sizes)
+  {
+    const MixedPlanes planes(size, edge, 1);
+    for (const bool references : { false, true })
+    {
+      SCOPED_TRACE(std::to_string(size.x) + " x " + std::to_string(size.y) + " x " +
+                   std::to_string(size.z) + (references ? ", with references" : ""));
+      const EncodedPlane encoded = EncodeWhole(planes.With(AllModes(), references));
+      ExpectDecodes(encoded);
+      ExpectClose(encoded);
+    }
+  }
+}
+
+TEST_P(Blocks, EveryModeDecodesToWhatTheEncoderSaid)
+{
+  const int edge = GetParam();
+  const MixedPlanes planes({ edge + 3, edge + 1, edge == 64 ? 9 : edge + 2 }, edge, 2);
+  for (const block::Mode& mode : AllModes())
+  {
+    SCOPED_TRACE("mode " + std::to_string(block::NumberOf(mode)));
+    const EncodedPlane encoded = EncodeWhole(planes.With({ mode }, true));
+    for (const BlockTokens& block : encoded.Blocks)
+    {
+      EXPECT_TRUE(block.Uniform || block.Same || block.Mode == block::NumberOf(mode));
+    }
+    ExpectDecodes(encoded);
+    ExpectClose(encoded);
+  }
+}
+
+TEST_P(Blocks, UniformAndSameBlocksMeetOthers)
+{
+  const int edge = GetParam();
+  const glm::ivec3 size{ 2 * edge, edge + 5, edge == 64 ? 5 : edge + 5 };
+  MixedPlanes planes(size, edge, 3);
+  planes.Target = PlaneOf(size, edge,
+    [edge](int x, int y, int z) {
+      return x < edge && y < edge ? 77 : x >= edge && y >= edge ? z : MixedNumber(x, y, z, 3);
+    });
+  planes.A = PlaneOf(size, edge,
+    [edge](int x, int y, int z)
+    { return x >= edge && y >= edge ? z + (x + y + z) % 31 - 15 : MixedNumber(x, y, z, 4); });
+  const EncodedPlane encoded = EncodeWhole(planes.With(AllModes(), true));
+  const auto count = [&encoded](bool BlockTokens::*what)
+  {
+    return std::count_if(encoded.Blocks.begin(), encoded.Blocks.end(),
+      [what](const BlockTokens& block) { return block.*what; });
+  };
+  EXPECT_GT(count(&BlockTokens::Uniform), 0);
+  EXPECT_GT(count(&BlockTokens::Same), 0);
+  EXPECT_LT(count(&BlockTokens::Uniform) + count(&BlockTokens::Same),
+    static_cast<std::int64_t>(encoded.Blocks.size()));
+  ExpectDecodes(encoded);
+  ExpectClose(encoded);
+}
+
+TEST_P(Blocks, WhatIsAsPredictedTakesNoPayload)
+{
+  const int edge = GetParam();
+  const auto plane = [edge](int scale, const glm::ivec3& samples)
+  {
+    return PlaneOf(
+      samples, edge, [scale](int x, int y, int z) { return scale * (8 * x + 4 * y - 12 * z); });
+  };
+  const glm::ivec3 size{ edge + 1, edge + 1, edge + 1 };
+  const PlaneNumbers target = plane(1, size);
+  const PlaneNumbers coarser = plane(4, CoarserSamples(size));
+  PlaneToEncode job;
+  job.Target = &target;
+  job.Coarser = &coarser;
+  job.CoarseBin = job.FineBin = 3;
+  job.Least = -100000;
+  job.Greatest = 100000;
+  job.Candidates = { block::Mode{} };
+  const EncodedPlane encoded = EncodeWhole(job);
+  EXPECT_TRUE(encoded.Payloads[0].empty());
+  ExpectDecodes(encoded);
+}
+
+TEST_P(Blocks, ThreadsChangeNothing)
+{
+  const int edge = GetParam();
+  const MixedPlanes planes({ edge + 3, 2 * edge, 9 }, edge, 4);
+  const EncodedPlane one = EncodeWhole(planes.With(AllModes(), true), 1);
+  const EncodedPlane seven = EncodeWhole(planes.With(AllModes(), true), 7);
+  EXPECT_EQ(one.Payloads, seven.Payloads);
+  EXPECT_EQ(one.Decoded.Numbers, seven.Decoded.Numbers);
+}
+
+TEST_P(Blocks, DamagedPayloadsGiveAnErrorOrNumbersInsideTheLimits)
+{
+  const int edge = GetParam();
+  const MixedPlanes planes({ edge + 2, edge + 1, edge == 64 ? 5 : edge }, edge, 5);
+  EncodedPlane encoded = EncodeWhole(planes.With(AllModes(), true));
+  std::mt19937 random(7);
+  int errors = 0;
+  const int trials = edge == 64 ? 20 : 200;
+  for (int trial = 0; trial < trials; ++trial)
+  {
+    const std::size_t i = random() % encoded.Payloads.size();
+    const std::vector<std::uint8_t> good = encoded.Payloads[i];
+    std::vector<std::uint8_t>& bad = encoded.Payloads[i];
+    bad.resize(trial % 3 == 0 ? 1 + random() % (2 * good.size() + 2)
+                              : std::max<std::size_t>(1, good.size()));
+    for (int change = 0; change < 3; ++change)
+    {
+      bad[random() % bad.size()] = static_cast<std::uint8_t>(random());
+    }
+    encoded.Blocks[i].Mode = static_cast<std::uint8_t>(random() % block::ModeCount);
+    const Box3 box = MakeBox(encoded, { 0, 0, 0 });
+    try
+    {
+      for (const std::int32_t number : DecodeFast(encoded, box))
+      {
+        ASSERT_TRUE(number >= std::min(encoded.Plane.Least, -120000) && number <= 210000000);
+      }
+    }
+    catch (const Error&)
+    {
+      ++errors;
+    }
+    encoded.Payloads[i] = good;
+  }
+  EXPECT_GT(errors, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Edges, Blocks, ::testing::Values(8, 16, 32, 64));
+
+TEST(BlockReferences, ThatAreNotThereAreAnError)
+{
+  const MixedPlanes planes({ 12, 12, 12 }, 8, 6);
+  EncodedPlane encoded =
+    EncodeWhole(planes.With({ { block::Reference::Mean, block::Interpolation::Cubic } }, true));
+  Box3 box = MakeBox(encoded, { 0, 0, 0 });
+  box.Code.B = nullptr;
+  EXPECT_THROW(DecodeFast(encoded, box), Error);
+  box.Code.A = nullptr;
+  EXPECT_THROW(DecodeFast(encoded, box), Error);
+  encoded = EncodeWhole(planes.With({ block::Mode{} }, false));
+  box = MakeBox(encoded, { 0, 0, 0 });
+  EXPECT_NO_THROW(DecodeFast(encoded, box));
+  for (BlockCode& block : box.Code.Blocks)
+  {
+    block.Same = block.Exists;
+  }
+  EXPECT_THROW(DecodeFast(encoded, box), Error);
+}
+
+} // namespace
+} // namespace banyan::testing

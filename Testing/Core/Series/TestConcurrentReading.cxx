@@ -1,0 +1,82 @@
+#include "Series/SeriesTesting.h"
+
+#include "Series/LatticeCache.h"
+
+#include <atomic>
+#include <thread>
+
+namespace banyan::testing
+{
+namespace
+{
+
+/// 16 threads that share one open file, its caches and its tables; run it under the thread
+/// sanitizer (preset tsan).
+TEST(ConcurrentReading, SixteenThreadsReadWhatOneReads)
+{
+  const TemporaryFolder folder;
+  const std::string path = folder / "s.banyan";
+  const Grid grid = GridOf(17, 17, 12);
+  auto steps = Sample<float>(grid, 6, Wavy<float>);
+  steps[2][100] = NAN;
+  EncodeOptions options;
+  options.KeyframeInterval = 3;
+  options.BrickCells = 8;
+  Encode(path, grid, steps, options);
+  std::vector<std::vector<float>> expected;
+  std::vector<std::pair<FieldKey, std::int64_t>> places;
+  {
+    const auto file = SeriesFile::Open(path);
+    for (int step = 0; step < 6; ++step)
+    {
+      for (int level = 0; level < file->Index().Levels; ++level)
+      {
+        for (std::int64_t brick = 0; brick < file->Layout(level).BrickCount(); ++brick)
+        {
+          const FieldKey field{ step, 0, 0, level };
+          places.push_back({ field, brick });
+          expected.emplace_back(
+            static_cast<std::size_t>(file->Layout(level).SamplesOf(brick).Count()));
+          file->DecodeBrick(field, brick, expected.back().data());
+        }
+      }
+    }
+  }
+  LatticeCache& cache = LatticeCache::Process();
+  const std::uint64_t budget = cache.BudgetBytes();
+  cache.SetBudgetBytes(200000); // boxes come and go
+  const auto file = SeriesFile::Open(path);
+  std::atomic<int> wrong{ 0 };
+  std::vector<std::thread> threads;
+  for (unsigned t = 0; t < 16; ++t)
+  {
+    threads.emplace_back(
+      [&, t]
+      {
+        std::vector<float> values;
+        for (std::size_t i = 0; i < places.size(); ++i)
+        {
+          // Half of them in step with each other, the others everywhere.
+          const std::size_t at = t % 2 == 0 ? i : (i * (2 * t + 1) + 31 * t) % places.size();
+          values.assign(expected[at].size(), 0.0f);
+          file->DecodeBrick(places[at].first, places[at].second, values.data());
+          wrong +=
+            std::memcmp(values.data(), expected[at].data(), values.size() * sizeof(float)) != 0;
+          if (i % 7 == t % 7)
+          {
+            (void)file->Nodes(places[at].first);
+            file->VerifyBricks(places[at].first, { places[at].second });
+          }
+        }
+      });
+  }
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  cache.SetBudgetBytes(budget);
+  EXPECT_EQ(wrong, 0);
+}
+
+} // namespace
+} // namespace banyan::testing

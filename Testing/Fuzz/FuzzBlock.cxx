@@ -1,0 +1,118 @@
+#include "Base/Error.h"
+#include "Codec/BlockDecoder.h"
+#include "Codec/BlockModes.h"
+#include "Codec/SymbolWriter.h"
+#include "Fuzz.h"
+
+#include <array>
+#include <cstdlib>
+#include <vector>
+
+namespace
+{
+
+using namespace banyan;
+
+/// Decode tables of all contexts, of 8 kinds from very skewed to flat, some contexts empty.
+const std::vector<tans::DecodeEntry>& TablesOf(unsigned kind)
+{
+  static const auto all = []
+  {
+    std::array<std::vector<tans::DecodeEntry>, 8> tables;
+    for (unsigned k = 0; k < tables.size(); ++k)
+    {
+      std::vector<tans::Frequencies> frequencies;
+      for (unsigned context = 0; context < residual::ContextCount; ++context)
+      {
+        std::array<std::uint32_t, tans::SymbolCount> counts = {};
+        for (unsigned s = 0; s < counts.size() && (context + k) % 13 != 12; ++s)
+        {
+          counts[s] =
+            1 + (0x10000u >> (s * k / 4 % 20)) + (context * 2654435761u >> (s % 32)) % 100;
+        }
+        frequencies.push_back(tans::Normalize(counts.data()));
+      }
+      tables[k] = DecodeTablesOf(frequencies);
+    }
+    return tables;
+  }();
+  return all[kind % 8];
+}
+
+/// Samples that are anything between small numbers and the ends of 32 bits.
+std::vector<std::int32_t> Samples(std::size_t count, std::uint32_t seed)
+{
+  std::vector<std::int32_t> samples(count);
+  for (std::int32_t& sample : samples)
+  {
+    seed = seed * 1664525u + 1013904223u;
+    sample = static_cast<std::int32_t>(seed) >> (seed % 8 * 4);
+  }
+  return samples;
+}
+
+} // namespace
+
+/// The input: edge, tables and references, limits of the lattice; for each of 8 blocks flags, mode,
+/// value, field's end and size of its payload; then the payloads.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+  fuzz::Input in(data, size);
+  const std::uint8_t head = in.Take<std::uint8_t>();
+  const int edge = 8 << (head % 8 == 7 ? 3 : head % 4 % 3);
+  PlaneCode plane;
+  plane.Tables = TablesOf(head >> 3).data();
+  plane.CoarseBin = in.Take<std::int32_t>();
+  plane.FineBin = in.Take<std::int32_t>();
+  plane.Least = in.Take<std::int32_t>();
+  plane.Greatest = std::max(plane.Least, in.Take<std::int32_t>());
+  const std::uint32_t seed = in.Take<std::uint32_t>();
+  BoxCode code;
+  std::array<std::vector<std::uint8_t>, 8> payloads;
+  std::array<std::size_t, 8> sizes = {};
+  for (std::size_t i = 0; i < 8; ++i)
+  {
+    BlockCode& block = code.Blocks[i];
+    const std::uint8_t flags = in.Take<std::uint8_t>();
+    block.Exists = i == 0 || (flags & 1) != 0;
+    block.Uniform = (flags & 6) == 2;
+    block.Same = (flags & 6) == 4;
+    block.Mode = static_cast<std::uint8_t>((flags >> 3) % block::ModeCount);
+    block.Value = in.Take<std::int32_t>();
+    for (int a = 0; a < 3; ++a)
+    {
+      block.Limit[a] = in.Take<std::uint8_t>();
+    }
+    sizes[i] = in.Take<std::uint16_t>();
+  }
+  for (std::size_t i = 0; i < 8; ++i)
+  {
+    // Copies of the exact size, so that reading behind them is noticed.
+    payloads[i] = in.Bytes(sizes[i]);
+    code.Blocks[i].Data = payloads[i].data();
+    code.Blocks[i].Bytes = payloads[i].size();
+  }
+  const std::size_t n = static_cast<std::size_t>(edge) + 1;
+  const std::size_t coarse = static_cast<std::size_t>(edge) / 4 + 1;
+  const auto coarseSamples = Samples(coarse * coarse * coarse, seed);
+  const auto a = Samples(n * n * n, seed + 1);
+  const auto b = Samples(n * n * n, seed + 2);
+  code.Coarse = coarseSamples.data();
+  code.A = seed % 5 == 0 ? nullptr : a.data();
+  code.B = seed % 7 == 0 ? nullptr : b.data();
+  std::vector<std::int32_t> box(n * n * n);
+  try
+  {
+    DecodeBox(edge, plane, code, box.data());
+    std::vector<std::int32_t> again(n * n * n);
+    DecodeBox(edge, plane, code, again.data());
+    if (again != box)
+    {
+      std::abort(); // something depends on what was decoded before
+    }
+  }
+  catch (const Error&)
+  {
+  }
+  return 0;
+}

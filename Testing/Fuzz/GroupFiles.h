@@ -1,0 +1,44 @@
+#ifndef banyan_Testing_GroupFiles_h
+#define banyan_Testing_GroupFiles_h
+
+#include "Series/SeriesIndex.h"
+
+#include <string>
+#include <vector>
+
+namespace banyan::fuzz
+{
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// What a segment of version 2 holds behind its checksums and compression.
+struct GroupParts
+{
+  Bytes Payloads;              ///< from offset 64 on
+  std::vector<Bytes> Sections; ///< heads and step tables, not the hashes of pages
+};
+
+/// The types that the series of the fuzzer takes turns with.
+constexpr int SeriesKinds = 4;
+
+/// A series of three steps in one segment, small: its index, and the parts of its segment.
+struct SmallSeries
+{
+  /// Encodes one in the folder.
+  SmallSeries(const std::string& folder, int kind);
+
+  std::string Path;
+  SeriesIndex Index;
+  GroupParts Parts;
+};
+
+/// Parts as the bytes of an input, and back; any bytes are safe.
+Bytes ToInput(int kind, const GroupParts& parts);
+GroupParts FromInput(const std::uint8_t* data, std::size_t size, std::size_t sections);
+
+/// A segment file of these parts, all checksums right.
+Bytes Assemble(const GroupParts& parts, int steps);
+
+} // namespace banyan::fuzz
+
+#endif
