@@ -7,6 +7,7 @@
 #include "Series/LatticeDecoder.h"
 #include "Series/NodeTable.h"
 #include "Series/Quantizer.h"
+#include "Series/TransformJson.h"
 
 #include <algorithm>
 #include <list>
@@ -23,6 +24,7 @@ struct OpenGroup
   std::unique_ptr<GroupField> Field;
   ScalarType Type = ScalarType::Float32;
   std::shared_ptr<const void> Decoder; ///< LatticeDecoder of the type
+  std::uint64_t Meaning = 0; ///< hash of what turns lattice numbers into values, and orders them
   std::mutex NodeMutex;
   /// By step of the segment and level.
   std::map<std::pair<int, int>, std::shared_ptr<const std::vector<BrickNode>>> Nodes;
@@ -141,6 +143,9 @@ std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
       open->Decoder = std::make_shared<const LatticeDecoder<T>>(
         map, head.Origin, head.Step, head.Least, head.Greatest);
     });
+  const std::string meaning = TransformToJson(map).dump() +
+                              std::string(head.Axes.begin(), head.Axes.end());
+  open->Meaning = ShortHashOf(meaning.data(), meaning.size());
   this->Opened.emplace_front(key, open);
   std::uint64_t bytes = 0;
   std::size_t count = 0;
@@ -237,7 +242,7 @@ BrickNode Reader2::MakeNode(OpenGroup& open, const FieldKey& field, std::int64_t
   const std::uint64_t seed[] = { std::uint64_t(field.Level), std::uint64_t(brick),
     std::uint64_t(changed), this->Series.ComponentOf(field), group.Segment().HeaderHash().Low,
     group.Segment().HeaderHash().High };
-  const std::uint64_t content[] = { std::uint64_t(open.Type), entryAt(0).Content,
+  const std::uint64_t content[] = { std::uint64_t(open.Type), open.Meaning, entryAt(0).Content,
     std::uint64_t(layout.SamplesOf(brick).Size().x), std::uint64_t(layout.SamplesOf(brick).Size().y),
     std::uint64_t(layout.SamplesOf(brick).Size().z) };
   const Hash128 hash = changed == 0 ? HashOf(content, sizeof(content)) : HashOf(seed, sizeof(seed));

@@ -14,11 +14,11 @@ namespace
 using namespace banyan;
 
 /// Decode tables of all contexts, of 8 kinds from very skewed to flat, some contexts empty.
-const std::vector<tans::DecodeEntry>& TablesOf(unsigned kind)
+const std::vector<std::uint32_t>& TablesOf(unsigned kind)
 {
   static const auto all = []
   {
-    std::array<std::vector<tans::DecodeEntry>, 8> tables;
+    std::array<std::vector<std::uint32_t>, 8> tables;
     for (unsigned k = 0; k < tables.size(); ++k)
     {
       std::vector<tans::Frequencies> frequencies;

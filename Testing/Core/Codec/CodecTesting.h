@@ -60,7 +60,7 @@ struct EncodedPlane
   std::vector<BlockTokens> Blocks;
   std::vector<std::vector<std::uint8_t>> Payloads;
   std::vector<tans::Frequencies> Frequencies;
-  std::vector<tans::DecodeEntry> Tables;
+  std::vector<std::uint32_t> Tables;
 };
 
 inline EncodedPlane EncodeWhole(const PlaneToEncode& plane, int threads = 2)

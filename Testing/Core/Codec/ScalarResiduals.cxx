@@ -1,0 +1,300 @@
+#include "Codec/ScalarResiduals.h"
+
+#include <cstddef>
+#include <stdexcept>
+
+namespace banyan::testing
+{
+namespace
+{
+
+/// Reads a payload bit by bit, lowest bit of a byte first.
+class BitReader
+{
+public:
+  BitReader(const std::uint8_t* data, std::size_t bytes)
+    : Data(data)
+    , Bits(8 * bytes)
+  {
+  }
+
+  std::uint32_t Take(int count)
+  {
+    std::uint32_t value = 0;
+    for (int i = 0; i < count; ++i)
+    {
+      if (this->Next == this->Bits)
+      {
+        throw std::runtime_error("the payload ends too early");
+      }
+      value |= static_cast<std::uint32_t>(this->Data[this->Next / 8] >> this->Next % 8 & 1) << i;
+      ++this->Next;
+    }
+    return value;
+  }
+
+  std::size_t Left() const { return this->Bits - this->Next; }
+
+private:
+  const std::uint8_t* Data;
+  std::size_t Bits;
+  std::size_t Next = 0;
+};
+
+/// Symbols of a payload: four states take turns.
+class Symbols
+{
+public:
+  Symbols(
+    const std::vector<std::vector<State>>& tables, const std::uint8_t* data, std::size_t bytes)
+    : Tables(tables)
+    , Bits(data, bytes)
+  {
+    for (std::uint32_t& state : this->States)
+    {
+      state = this->Bits.Take(10);
+    }
+  }
+
+  int Next(int context)
+  {
+    std::uint32_t& state = this->States[this->Count++ % 4];
+    const State& entry = this->Tables[static_cast<std::size_t>(context)][state];
+    state = static_cast<std::uint32_t>(entry.Base) + this->Bits.Take(entry.Bits);
+    return entry.Symbol;
+  }
+
+  /// 0, 1, -1, 2, -2, ... by code.
+  std::int32_t Residual(int context)
+  {
+    const int symbol = this->Next(context);
+    const std::uint32_t code =
+      symbol < 40 ? static_cast<std::uint32_t>(symbol)
+                  : 39u + (std::uint32_t{ 1 } << (symbol - 40)) + this->Bits.Take(symbol - 40);
+    return static_cast<std::int32_t>(code % 2 == 0 ? code / 2 : 0u - (code / 2 + code % 2));
+  }
+
+  void MustBeAtEnd() const
+  {
+    for (const std::uint32_t state : this->States)
+    {
+      if (state != 0)
+      {
+        throw std::runtime_error("a state does not end where encoding began");
+      }
+    }
+    if (this->Bits.Left() >= 8)
+    {
+      throw std::runtime_error("the payload is too long");
+    }
+  }
+
+private:
+  const std::vector<std::vector<State>>& Tables;
+  BitReader Bits;
+  std::array<std::uint32_t, 4> States = {};
+  std::size_t Count = 0;
+};
+
+/// The magnitude of a residual is the number of the last of these that it reaches, plus 2, or 0.
+int MagnitudeOf(std::int32_t residual)
+{
+  const std::int64_t size = residual < 0 ? -std::int64_t{ residual } : residual;
+  int magnitude = 0;
+  for (const int limit : { 1, 2, 3, 4, 6, 9, 13, 20, 27, 39, 55 })
+  {
+    magnitude += size >= limit ? (magnitude == 0 ? 2 : 1) : 0;
+  }
+  return magnitude;
+}
+
+/// The residuals of one block: all samples that it owns, whatever unit they belong to.
+class Block
+{
+public:
+  explicit Block(int edge)
+    : Edge(edge)
+    , Residuals(static_cast<std::size_t>(edge * edge * edge), 0)
+  {
+  }
+
+  std::int32_t& At(const Position& p)
+  {
+    return this
+      ->Residuals[static_cast<std::size_t>((p[2] * this->Edge + p[1]) * this->Edge + p[0])];
+  }
+
+  void Read(const glm::ivec3& limit, Symbols& symbols)
+  {
+    for (const std::vector<int>& axes : Units)
+    {
+      ForEachRow(this->Edge, static_cast<int>(axes.size()),
+        [&](int stride, int axis, int y, int z, int first, int step) {
+          this->ReadRow(axes, limit, stride, axis, { first, y, z }, step, symbols);
+        });
+    }
+  }
+
+  const std::vector<std::int32_t>& All() const { return this->Residuals; }
+
+private:
+  static Position InBlock(const std::vector<int>& axes, const Position& inUnit)
+  {
+    Position p{ 0, 0, 0 };
+    for (std::size_t a = 0; a < axes.size(); ++a)
+    {
+      p[static_cast<std::size_t>(axes[a])] = inUnit[a];
+    }
+    return p;
+  }
+
+  void ReadRow(const std::vector<int>& axes, const glm::ivec3& limit, int stride, int axis,
+    Position at, int step, Symbols& symbols)
+  {
+    const int dimensions = static_cast<int>(axes.size());
+    const auto inside = [&](const Position& inUnit)
+    {
+      const Position p = InBlock(axes, inUnit);
+      bool is = true;
+      for (std::size_t a = 0; a < axes.size(); ++a)
+      {
+        const int real = axes[a];
+        is = is && p[static_cast<std::size_t>(real)] <= limit[real];
+      }
+      return is;
+    };
+    if (!inside(at))
+    {
+      return; // not even its first sample lies in the field
+    }
+    const int band = dimensions == 1   ? 2 - stride
+                     : dimensions == 2 ? (stride == 2 ? 2 : 3 + axis)
+                                       : (stride == 2 ? 5 : 8) + axis;
+    bool smooth = true;
+    for (int x = 0; x < this->Edge; ++x)
+    {
+      smooth = smooth && this->Roughness(axes, stride, axis, { x, at[1], at[2] }) == 0;
+    }
+    if (smooth && symbols.Next(88 + band) != 0)
+    {
+      return;
+    }
+    std::vector<std::int32_t> row;
+    for (Position p = at; p[0] < this->Edge && inside(p); p[0] += step)
+    {
+      const int roughness = this->Roughness(axes, stride, axis, p);
+      int contextClass = 0;
+      for (const int limitOfClass : { 0, 3, 8, 15, 25, 38, 60 })
+      {
+        contextClass += roughness > limitOfClass ? 1 : 0;
+      }
+      row.push_back(symbols.Residual(8 * band + contextClass));
+    }
+    // Residuals of a row are no context for the same row.
+    for (std::size_t i = 0; i < row.size(); ++i)
+    {
+      this->At(InBlock(axes, { at[0] + static_cast<int>(i) * step, at[1], at[2] })) = row[i];
+    }
+  }
+
+  /// Weighted sum of magnitudes around a sample of a unit.
+  int Roughness(const std::vector<int>& axes, int s, int axis, const Position& at)
+  {
+    const int dimensions = static_cast<int>(axes.size());
+    const auto m = [&](int x, int y, int z) {
+      return x < 0 || x >= this->Edge ? 0 : MagnitudeOf(this->At(InBlock(axes, { x, y, z })));
+    };
+    // The next row of that axis, or the one before where there is none.
+    const auto next = [&](int position, int step)
+    { return position + step < this->Edge ? position + step : position - step; };
+    const auto [x, y, z] = at;
+    int sum = 0;
+    if (axis == 0)
+    {
+      sum += 2 * (m(x - s, y, z) + m(x + s, y, z));
+      if (dimensions > 1)
+      {
+        const int before = y - 2 * s;
+        const int after = next(y, 2 * s);
+        sum += m(x - s, before, z) + m(x + s, before, z) + 2 * m(x, before, z);
+        sum += m(x - s, after, z) + m(x + s, after, z);
+      }
+      if (dimensions > 2)
+      {
+        const int before = z - 2 * s;
+        const int after = next(z, 2 * s);
+        sum += m(x - s, y, before) + m(x + s, y, before) + 2 * m(x, y, before);
+        sum += m(x - s, y, after) + m(x + s, y, after);
+      }
+      return sum;
+    }
+    if (axis == 1)
+    {
+      for (const int end : { y - s, next(y, s) })
+      {
+        sum += 2 * m(x, end, z) + m(x - s, end, z) + m(x + s, end, z);
+        sum += dimensions > 2 ? m(x, end, z - 2 * s) + m(x, end, next(z, 2 * s)) : 0;
+      }
+      sum +=
+        y >= 2 * s ? 2 * m(x, y - 2 * s, z) + m(x - s, y - 2 * s, z) + m(x + s, y - 2 * s, z) : 0;
+    }
+    else
+    {
+      for (const int end : { z - s, next(z, s) })
+      {
+        sum += 2 * m(x, y, end) + m(x - s, y, end) + m(x + s, y, end);
+        sum += m(x, y - s, end) + m(x, next(y, s), end);
+      }
+      sum += 2 * m(x, y - s, z) + m(x - s, y - s, z) + m(x + s, y - s, z);
+    }
+    sum += dimensions > 2 && z >= 2 * s ? 2 * m(x, y, z - 2 * s) : 0;
+    return sum;
+  }
+
+  int Edge;
+  std::vector<std::int32_t> Residuals;
+};
+
+} // namespace
+
+std::vector<State> StatesOf(const tans::Frequencies& frequencies)
+{
+  std::vector<int> symbolAt(1024, 0);
+  int place = 0;
+  bool any = false;
+  for (int symbol = 0; symbol < 72; ++symbol)
+  {
+    for (int i = 0; i < frequencies.Count[symbol]; ++i)
+    {
+      symbolAt[static_cast<std::size_t>(place)] = symbol;
+      place = (place + 643) % 1024;
+      any = true;
+    }
+  }
+  std::vector<State> states(1024, { 0, 0, 0 });
+  std::array<int, 72> seen = {};
+  for (std::size_t i = 0; any && i < 1024; ++i)
+  {
+    const int symbol = symbolAt[i];
+    const int number = frequencies.Count[symbol] + seen[static_cast<std::size_t>(symbol)]++;
+    int bits = 0;
+    while (number * (1 << bits) < 1024)
+    {
+      ++bits;
+    }
+    states[i] = { symbol, bits, number * (1 << bits) - 1024 };
+  }
+  return states;
+}
+
+std::vector<std::int32_t> ReadResiduals(int edge, const std::vector<std::vector<State>>& tables,
+  const glm::ivec3& limit, const std::uint8_t* data, std::size_t bytes)
+{
+  Block block(edge);
+  Symbols symbols(tables, data, bytes);
+  block.Read(limit, symbols);
+  symbols.MustBeAtEnd();
+  return block.All();
+}
+
+} // namespace banyan::testing

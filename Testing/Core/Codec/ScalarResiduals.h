@@ -1,0 +1,70 @@
+#ifndef banyan_Testing_ScalarResiduals_h
+#define banyan_Testing_ScalarResiduals_h
+
+#include "Codec/Tans.h"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace banyan::testing
+{
+
+using Position = std::array<int, 3>;
+
+/// Axes of the units of a block in the order of its payload.
+inline const std::vector<std::vector<int>> Units = { { 0 }, { 1 }, { 2 }, { 0, 1 }, { 0, 2 },
+  { 1, 2 }, { 0, 1, 2 } };
+
+/// The passes of a unit, and the rows of each: what a payload is read in, and samples predicted in.
+/// @param body called as body(stride, axis, y, z, first, step): the samples x = first, first +
+/// step,
+/// ... of the row
+template <class Body>
+void ForEachRow(int edge, int dimensions, Body&& body)
+{
+  for (int stride = 2; stride >= 1; --stride)
+  {
+    for (int axis = 0; axis < dimensions; ++axis)
+    {
+      // Finished axes have all multiples of the stride, those to come only every second one.
+      Position first{ 0, 0, 0 };
+      Position step{ edge, edge, edge };
+      for (int a = 0; a < dimensions; ++a)
+      {
+        const std::size_t i = static_cast<std::size_t>(a);
+        first[i] = a <= axis ? stride : 2 * stride;
+        step[i] = a < axis ? stride : 2 * stride;
+      }
+      for (int z = first[2]; z < edge; z += step[2])
+      {
+        for (int y = first[1]; y < edge; y += step[1])
+        {
+          body(stride, axis, y, z, first[0], step[0]);
+        }
+      }
+    }
+  }
+}
+
+/// What each of the 1024 states of a context decodes to.
+struct State
+{
+  int Symbol;
+  int Bits;
+  int Base;
+};
+std::vector<State> StatesOf(const tans::Frequencies& frequencies);
+
+/// The residuals of a block, all units, `[z][y][x]`; see DecodeBoxSlowly.
+/// @param tables by context
+/// @param limit the field's last sample, seen from the block's first one
+std::vector<std::int32_t> ReadResiduals(int edge, const std::vector<std::vector<State>>& tables,
+  const glm::ivec3& limit, const std::uint8_t* data, std::size_t bytes);
+
+} // namespace banyan::testing
+
+#endif
