@@ -1,5 +1,5 @@
 #include "Base/Error.h"
-#include "Base/ForEachScalarType.h"
+#include "Base/ScalarType.h"
 #include "Fuzz.h"
 #include "Series/Exceptions.h"
 
