@@ -2,9 +2,13 @@
 #define banyan_Filters_SeriesWriting_h
 
 #include "PipelineInput.h"
+#include "RankTalk.h"
+#include "StepGathering.h"
 #include "StepReport.h"
 
-#include "Series/SeriesEncoder.h"
+#include "Series/BackgroundEncoder.h"
+#include "Series/SegmentFolder.h"
+#include "Series/SeriesAssembly.h"
 
 #include <functional>
 #include <memory>
@@ -29,17 +33,23 @@ struct WritingOrder
   vtkDataArraySelection* Selection = nullptr;
   bool AllSteps = true;
   vtkMultiProcessController* Controller = nullptr; ///< may be nullptr: this rank alone
-  std::function<void(double)> Progress;            ///< told a value in [0, 1]
-  std::function<bool()> Aborted;
-  std::function<void(const std::string&)> Warn; ///< called on rank 0 only
+  std::function<void(double)> Progress;            ///< told a value in [0, 1], never a smaller one
+  std::function<bool()> Aborted;                   ///< once true, it stays true
+  std::function<void(const std::string&)> Warn;    ///< called on rank 0 only
 };
 
-/// Pulls the steps of a series out of a pipeline, each rank its own piece, gathers them on rank 0
-/// and encodes them there. Everything is decided by all ranks together: a problem of one makes all
-/// of them throw the same Error, at the same point.
+/// Pulls the steps of a series out of a pipeline, each rank its own piece. Groups of steps are
+/// dealt out to the ranks in turn: the pieces of each step are gathered on the rank that has its
+/// group, which encodes the group in the background while all ranks go on with the steps that
+/// follow. Rank 0 keeps the index. The files are the same, byte for byte, on any number of ranks.
 ///
-/// With a relative error bound the steps are pulled twice: first for the ranges of the whole
-/// series. Changes of grid, type or arrays between steps are refused in the first pass.
+/// Memory: each rank holds the values of one group at a time. A rank whose group is still being
+/// encoded when it should receive the next one makes the others wait.
+///
+/// Everything is decided by all ranks together: a problem of one makes all of them throw the same
+/// Error, at the same point. With a relative error bound the steps are pulled twice: first for the
+/// ranges of the whole series. Changes of grid, type or arrays between steps are refused in the
+/// first pass.
 class SeriesWriting
 {
 public:
@@ -47,10 +57,15 @@ public:
   ~SeriesWriting();
 
   /// Collective. Throws Error on all ranks; then nothing new is on the disk, and a series that was
-  /// there under the same name still is.
+  /// there under the same name still is. Only when it was interrupted (see WritingOrder::Aborted)
+  /// and no series of the name was there, the groups that were finished stay as a series.
   void Run();
 
+  /// After an interruption: how many steps the series on the disk holds.
+  int StepsKept() const { return this->Kept; }
+
 private:
+  void Write();
   void AskForTimes();
   StepReport PullMine(int step, bool withRanges) const;
   StepAgreement Pull(int step, bool withRanges);
@@ -59,29 +74,39 @@ private:
   void FirstPass();
   void SecondPass();
   void Open();
-  void Gather(const StepAgreement& step);
-  void Transfer(const StepAgreement& step, std::size_t index);
-  bool Borrowed(std::size_t index) const;
+  void Collect(int step, const StepAgreement& now);
+  void Encode(int group);
+  void Exchange(const std::string& at);
+  void AddToIndex(const std::string& message, int number);
+  void GiveUp(bool interrupted);
+  double TimeOf(int step) const;
+  int StepsOf(int group) const;
   vtkImageData* Mine() const;
-  void Encode(int step);
-  void OnRankZero(const std::function<void()>& action) const;
-  void AgreeOn(const std::string& problem) const;
-  void Report(int step, double part) const;
+  void Tick();
+  void Report();
   std::string Named(int step) const;
 
   WritingOrder Order;
+  RankTalk Talk;
   PipelineInput Input;
-  int Rank = 0;
-  int Ranks = 1;
+  StepGathering Gathering;
   bool TwoPasses = false;
   bool InSecondPass = false;
   bool HasTimes = false; ///< whether the input has time steps that we go through
   std::vector<double> Times;
   StepAgreement First; ///< of step 0; its Ranges are those of the series after the first pass
-  std::unique_ptr<SeriesEncoder> Encoder;        ///< on rank 0
-  std::vector<std::vector<unsigned char>> Whole; ///< on rank 0: one step, by array
-  std::vector<const void*> WholeValues;          ///< into Whole, or the input's own memory
-  std::vector<unsigned char> Message;
+
+  std::unique_ptr<SeriesAssembly> Assembly;   ///< on rank 0
+  std::unique_ptr<SegmentFolder> Folder;      ///< of this rank's segments
+  std::vector<StepValues> Values;             ///< of this rank's group, by step
+  std::unique_ptr<BackgroundEncoder> Encoder; ///< of Values, into Folder
+  bool Opened = false;                        ///< all ranks have all that
+  std::string IndexProblem;                   ///< of rank 0, to be agreed on
+  int Encoded = 0;                            ///< steps, by all ranks
+  int Encoding = 0;                           ///< steps, by this rank now
+  int Step = 0;                               ///< that is being pulled
+  int Kept = 0;
+  double Told = 0.0; ///< progress
 };
 
 } // namespace banyan

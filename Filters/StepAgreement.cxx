@@ -211,6 +211,10 @@ StepAgreement Agree(const std::vector<StepReport>& reports)
                         "that could not be read, an earlier message says why.";
   }
   agreement.Plan = PlanGathering(agreement.Whole.Extent, pieces);
+  for (const Box& piece : pieces)
+  {
+    agreement.HoldsWhole.push_back(piece == agreement.Whole.Extent);
+  }
   if (!agreement.Plan.Missing.empty() && agreement.Problem.empty())
   {
     agreement.Problem = "The pieces of the ranks leave out the extent " +

@@ -119,7 +119,9 @@ std::vector<vtkDataArray*> Choose(
   for (int i = 0; i < selection.GetNumberOfArrays(); ++i)
   {
     const std::string name = selection.GetArrayName(i);
-    if (selection.GetArraySetting(i) &&
+    // ParaView offers the ghost flags like any array and selects them by default. They are not
+    // written, but points that they hide are.
+    if (selection.GetArraySetting(i) && name != vtkDataSetAttributes::GhostArrayName() &&
         std::find(available.begin(), available.end(), name) == available.end())
     {
       report.Problem = "There is no point array " + name +

@@ -54,6 +54,7 @@ struct StepAgreement
   std::string ActiveScalars;
   std::vector<WrittenArray> Arrays;
   GatherPlan Plan;
+  std::vector<bool> HoldsWhole; ///< by rank: its piece is the whole extent
 };
 
 StepAgreement Agree(const std::vector<StepReport>& reports);

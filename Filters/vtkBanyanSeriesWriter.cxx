@@ -9,7 +9,9 @@
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 
-#include <new>
+#include "Base/InterruptSignals.h"
+
+#include <csignal>
 
 vtkStandardNewMacro(vtkBanyanSeriesWriter);
 
@@ -93,11 +95,28 @@ void vtkBanyanSeriesWriter::WriteSeries()
   order.AllSteps = this->WriteTimeSteps;
   order.Controller = this->Controller;
   order.Progress = [this](double value) { this->UpdateProgress(value); };
-  order.Aborted = [this] { return this->GetAbortExecute() != 0; };
+  order.Aborted = [this]
+  { return this->GetAbortExecute() != 0 || banyan::InterruptSignals::Came(); };
   order.Warn = [this](const std::string& sentence) { vtkWarningMacro(<< sentence); };
+  int signal = 0;
+  {
+    const banyan::InterruptSignals signals;
+    this->Run(order);
+    signal = signals.Last();
+  }
+  if (signal != 0)
+  {
+    // The files are in order: now it may do what it does without us.
+    (void)std::raise(signal);
+  }
+}
+
+void vtkBanyanSeriesWriter::Run(const banyan::WritingOrder& order)
+{
+  banyan::SeriesWriting writing(order);
   try
   {
-    banyan::SeriesWriting(order).Run();
+    writing.Run();
     this->UpdateProgress(1.0);
     this->WriteTime.Modified();
   }
@@ -107,6 +126,11 @@ void vtkBanyanSeriesWriter::WriteSeries()
       order.FileName.empty() ? vtkErrorCode::NoFileNameError : vtkErrorCode::UserError);
     this->ErrorMessage = (order.FileName.empty() ? "The series" : order.FileName) +
                          " was not written. " + error.what();
+    if (writing.StepsKept() > 0)
+    {
+      this->ErrorMessage = order.FileName + " holds the first " +
+                           std::to_string(writing.StepsKept()) + " steps only. " + error.what();
+    }
     // All ranks throw the same sentence; one of them says it.
     if (!this->Controller || this->Controller->GetLocalProcessId() == 0)
     {

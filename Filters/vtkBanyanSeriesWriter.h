@@ -2,9 +2,11 @@
  * @class   vtkBanyanSeriesWriter
  * @brief   writes a time series of image data as a Banyan series (name.banyan)
  *
- * All steps of the input go into one series, each rank asking for its own piece of every step; rank
- * 0 of the controller gathers and encodes them. With a relative error bound the input is updated
- * twice per step: once to learn the ranges of the whole series, once to encode.
+ * All steps of the input go into one series, each rank asking for its own piece of every step.
+ * Groups of KeyframeInterval steps are dealt out to the ranks of the controller in turn: a rank
+ * encodes its group in a thread of its own, while the steps that follow are read. The files are the
+ * same, byte for byte, on any number of ranks and threads. With a relative error bound the input is
+ * updated twice per step: once to learn the ranges of the whole series, once to encode.
  *
  * What is written: point arrays of numbers, of any scalar type and any number of components; the
  * extent, origin, spacing, direction and times. Ghost arrays are not written. Cell arrays, strings
@@ -22,7 +24,8 @@
  * existed under the name is as it was.
  *
  * @par Limits:
- * Rank 0 holds one whole step (all chosen arrays) in memory, unless it is the only rank.
+ * Each rank holds one group of whole steps (all chosen arrays) in memory, beside the piece of one
+ * step that the pipeline holds.
  */
 #ifndef vtkBanyanSeriesWriter_h
 #define vtkBanyanSeriesWriter_h
@@ -36,6 +39,11 @@
 
 class vtkDataArraySelection;
 class vtkMultiProcessController;
+
+namespace banyan
+{
+struct WritingOrder;
+}
 
 class BANYANFILTERS_EXPORT vtkBanyanSeriesWriter : public vtkWriter
 {
@@ -71,7 +79,8 @@ public:
 
   ///@{
   /**
-   * Steps per segment file, in [1, 1024]; default 8. A killed writer loses at most one segment.
+   * Steps per segment file, in [1, 1024]; default 8. Each rank encodes one segment at a time, and
+   * holds its steps in memory; a killed writer loses those that were not finished.
    */
   vtkSetMacro(KeyframeInterval, int);
   vtkGetMacro(KeyframeInterval, int);
@@ -122,6 +131,7 @@ private:
   void operator=(const vtkBanyanSeriesWriter&) = delete;
 
   void WriteSeries();
+  void Run(const banyan::WritingOrder& order);
 
   char* FileName = nullptr;
   double ErrorBound = 1.0 / 512.0;

@@ -45,6 +45,9 @@ ArrayIndex MakeArray(const ArrayDescription& description, const EncodeOptions& o
     ComponentIndex component;
     component.Name = description.ComponentNames[c];
     component.PromisedRange = promised ? description.SeriesRanges[c] : ValueRange{};
+    // Which of two zeros was met first depends on who looked; adding a zero leaves the positive one.
+    component.PromisedRange.Low += 0.0;
+    component.PromisedRange.High += 0.0;
     component.ErrorBoundAbsolute = AbsoluteBound(options, component.PromisedRange);
     array.Components.push_back(component);
   }

@@ -108,13 +108,14 @@ std::string SegmentFolder::FinalNameOf(int segment, std::uint64_t content)
   return name;
 }
 
-void SegmentFolder::RemoveOwn() noexcept
+void SegmentFolder::RemoveOwn(const std::vector<std::string>& names) noexcept
 {
   RemoveWhere(this->FolderPath,
-    [this](const std::string& name)
+    [this, &names](const std::string& name)
     {
-      return name.compare(0, 16, this->Run) == 0 ||
-             std::find(this->Own.begin(), this->Own.end(), name) != this->Own.end();
+      const bool own = name.compare(0, 16, this->Run) == 0 ||
+                       std::find(this->Own.begin(), this->Own.end(), name) != this->Own.end();
+      return own && std::find(names.begin(), names.end(), name) == names.end();
     });
   if (this->Made)
   {

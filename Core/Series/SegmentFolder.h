@@ -8,9 +8,9 @@
 namespace banyan
 {
 
-/// The folder `<series>.d` while a series is written. Segments are named by their content, so that a
-/// new series never touches the segments of the one it is going to replace, and the same data gives
-/// the same files whoever encodes it.
+/// The folder `<series>.d` while a series is written. Segments are named by their content, so that
+/// a new series never touches the segments of the one it is going to replace, and the same data
+/// gives the same files whoever encodes it.
 class SegmentFolder
 {
 public:
@@ -22,12 +22,17 @@ public:
   /// A name of this run alone, for a segment that is being written.
   std::string TemporaryNameOf(int segment) const;
 
-  /// Name of a segment whose content has this hash. Remembers it as this run's, unless a file of the
-  /// name (hence of the content) is there already.
+  /// Name of a segment whose content has this hash. Remembers it as this run's, unless a file of
+  /// the name (hence of the content) is there already.
   std::string FinalNameOf(int segment, std::uint64_t content);
 
-  /// Removes the segments of this run, and the folder if this run made it and it is empty.
-  void RemoveOwn() noexcept;
+  /// Whether this object made the folder: of several processes that write one series together, only
+  /// the first one does, unless they see different disks.
+  bool MadeHere() const { return this->Made; }
+
+  /// Removes the segments of this run but those named, and the folder if this run made it and it is
+  /// empty.
+  void RemoveOwn(const std::vector<std::string>& names = {}) noexcept;
 
   /// Removes segments (whole or unfinished) of any run but those named. Other files stay.
   void RemoveAllBut(const std::vector<std::string>& names) noexcept;

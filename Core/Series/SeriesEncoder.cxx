@@ -4,28 +4,13 @@
 #include "Base/ThreadPool.h"
 #include "Series/EncodePlan.h"
 #include "Series/GroupEncoder.h"
-#include "Series/IndexText.h"
 #include "Series/SegmentFolder.h"
-#include "Series/AtomicFile.h"
+#include "Series/SeriesAssembly.h"
 
-#include <algorithm>
 #include <cmath>
-
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace banyan
 {
-namespace
-{
-
-bool Exists(const std::string& path)
-{
-  struct stat status = {};
-  return lstat(path.c_str(), &status) == 0;
-}
-
-} // namespace
 
 struct SeriesEncoder::Internals
 {
@@ -40,9 +25,7 @@ struct SeriesEncoder::Internals
   std::string Path;
   EncodeOptions Options;
   ThreadPool& Pool;
-  SeriesIndex Index;
-  bool KeepOld; ///< a file of that name was there: it stays until Finish
-  bool IndexWritten = false;
+  SeriesAssembly Assembly;
   bool Failed = false;
   bool Finished = false;
   std::unique_ptr<SegmentFolder> Folder;
@@ -56,10 +39,8 @@ SeriesEncoder::Internals::Internals(const std::string& path, const Grid& grid,
   : Path(path)
   , Options(options)
   , Pool(pool)
-  , Index(PlanSeries(grid, arrays, options))
-  , KeepOld(Exists(path))
+  , Assembly(path, PlanSeries(grid, arrays, options))
 {
-  (void)IndexToText(this->Index); // says now what could not be written later
   this->Folder = std::make_unique<SegmentFolder>(path);
 }
 
@@ -67,25 +48,23 @@ SeriesEncoder::Internals::~Internals()
 {
   if (!this->Finished && this->Folder)
   {
-    if (this->IndexWritten)
-    {
-      (void)unlink(this->Path.c_str());
-    }
+    this->Assembly.Withdraw();
     this->Folder->RemoveOwn();
   }
 }
 
 void SeriesEncoder::Internals::CheckStep(double time, const std::vector<ArrayValues>& arrays) const
 {
-  const std::vector<double>& times = this->Times.empty() ? this->Index.Times : this->Times;
+  const SeriesIndex& index = this->Assembly.Index();
+  const std::vector<double>& times = this->Times.empty() ? index.Times : this->Times;
   if (!std::isfinite(time) || (!times.empty() && !(time > times.back())))
   {
     throw Error("Time values must be finite and increase from step to step", { this->Path });
   }
-  if (arrays.size() != this->Index.Arrays.size())
+  if (arrays.size() != index.Arrays.size())
   {
     throw Error("A step must hold as many arrays as were described",
-      { this->Path, {}, arrays.size(), this->Index.Arrays.size() });
+      { this->Path, {}, arrays.size(), index.Arrays.size() });
   }
   for (const ArrayValues& array : arrays)
   {
@@ -98,12 +77,13 @@ void SeriesEncoder::Internals::CheckStep(double time, const std::vector<ArrayVal
 
 void SeriesEncoder::Internals::Keep(double time, const std::vector<ArrayValues>& arrays)
 {
+  const SeriesIndex& index = this->Assembly.Index();
   this->Times.push_back(time);
   this->Values.emplace_back();
   for (std::size_t a = 0; a < arrays.size(); ++a)
   {
-    const ArrayIndex& array = this->Index.Arrays[a];
-    const std::size_t bytes = static_cast<std::size_t>(this->Index.Domain.Extent.Count()) *
+    const ArrayIndex& array = index.Arrays[a];
+    const std::size_t bytes = static_cast<std::size_t>(index.Domain.Extent.Count()) *
                               array.Components.size() * SizeOf(array.Type);
     const std::uint8_t* values = static_cast<const std::uint8_t*>(arrays[a].Values);
     this->Values.back().emplace_back(values, values + bytes);
@@ -121,17 +101,11 @@ void SeriesEncoder::Internals::EncodeKept()
       steps.back().push_back({ values.data() });
     }
   }
-  AddGroup(EncodeGroup(this->Index, this->Options, *this->Folder,
-             static_cast<int>(this->Index.Segments.size()), this->Times, steps, this->Pool,
-             this->Progress),
-    this->Index);
+  const int number = static_cast<int>(this->Assembly.Index().Segments.size());
+  this->Assembly.Add(number, EncodeGroup(this->Assembly.Index(), this->Options, *this->Folder,
+                               number, this->Times, steps, this->Pool, this->Progress));
   this->Times.clear();
   this->Values.clear();
-  if (!this->KeepOld)
-  {
-    WriteFileAtomically(this->Path, IndexToText(this->Index));
-    this->IndexWritten = true;
-  }
 }
 
 SeriesEncoder::SeriesEncoder(const std::string& path, const Grid& grid,
@@ -144,11 +118,7 @@ SeriesEncoder::~SeriesEncoder() = default;
 
 void SeriesEncoder::SetActiveScalars(const std::string& name)
 {
-  if (this->Self->Index.FindArray(name) < 0)
-  {
-    throw Error("The active array '" + name + "' is not among the arrays");
-  }
-  this->Self->Index.ActiveScalars = name;
+  this->Self->Assembly.SetActiveScalars(name);
 }
 
 void SeriesEncoder::AddStep(double time, const std::vector<ArrayValues>& arrays)
@@ -184,19 +154,10 @@ SeriesIndex SeriesEncoder::Finish()
   {
     self.EncodeKept();
   }
-  if (self.Index.Steps() == 0)
-  {
-    throw Error("A series needs at least one step", { self.Path });
-  }
-  WriteFileAtomically(self.Path, IndexToText(self.Index));
+  const SeriesIndex& index = self.Assembly.Finish();
   self.Finished = true;
-  std::vector<std::string> files;
-  for (const SegmentIndex& segment : self.Index.Segments)
-  {
-    files.push_back(segment.File);
-  }
-  self.Folder->RemoveAllBut(files);
-  return self.Index;
+  self.Folder->RemoveAllBut(self.Assembly.SegmentsInFile());
+  return index;
 }
 
 void SeriesEncoder::SetProgress(std::function<bool(double)> progress)

@@ -1,0 +1,19 @@
+#ifndef banyan_Series_GroupMessage_h
+#define banyan_Series_GroupMessage_h
+
+#include "Series/Bytes.h"
+#include "Series/GroupEncoder.h"
+
+namespace banyan
+{
+
+/// What EncodeGroup returned, as bytes that another process of the same program understands: one
+/// rank encodes, another one keeps the index. Every bit of every number survives.
+Bytes PackGroup(const EncodedGroup& group);
+
+/// Inverse of PackGroup. Throws Error when the bytes are no such message.
+EncodedGroup UnpackGroup(const Bytes& message);
+
+} // namespace banyan
+
+#endif

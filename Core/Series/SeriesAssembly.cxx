@@ -1,0 +1,94 @@
+#include "Series/SeriesAssembly.h"
+
+#include "Base/Error.h"
+#include "Series/AtomicFile.h"
+#include "Series/IndexText.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace banyan
+{
+namespace
+{
+
+bool Exists(const std::string& path)
+{
+  struct stat status = {};
+  return lstat(path.c_str(), &status) == 0;
+}
+
+} // namespace
+
+SeriesAssembly::SeriesAssembly(const std::string& path, SeriesIndex plan)
+  : Path(path)
+  , Current(std::move(plan))
+  , KeepOld(Exists(path))
+{
+  (void)IndexToText(this->Current); // says now what could not be written later
+}
+
+void SeriesAssembly::SetActiveScalars(const std::string& name)
+{
+  if (this->Current.FindArray(name) < 0)
+  {
+    throw Error("The active array '" + name + "' is not among the arrays");
+  }
+  this->Current.ActiveScalars = name;
+}
+
+void SeriesAssembly::Add(int number, EncodedGroup group)
+{
+  this->Waiting.emplace(number, std::move(group));
+  const std::size_t before = this->Current.Segments.size();
+  for (auto next = this->Waiting.begin();
+       next != this->Waiting.end() &&
+       next->first == static_cast<int>(this->Current.Segments.size());
+       next = this->Waiting.erase(next))
+  {
+    AddGroup(next->second, this->Current);
+  }
+  if (!this->KeepOld && this->Current.Segments.size() > before)
+  {
+    WriteFileAtomically(this->Path, IndexToText(this->Current));
+    this->InFile = static_cast<int>(this->Current.Segments.size());
+  }
+}
+
+const SeriesIndex& SeriesAssembly::Finish()
+{
+  if (!this->Waiting.empty())
+  {
+    throw Error("A group of steps of the series is missing",
+      { this->Path, {}, this->Current.Segments.size(), this->Waiting.rbegin()->first + 1 });
+  }
+  if (this->Current.Steps() == 0)
+  {
+    throw Error("A series needs at least one step", { this->Path });
+  }
+  WriteFileAtomically(this->Path, IndexToText(this->Current));
+  this->KeepOld = true;
+  this->InFile = static_cast<int>(this->Current.Segments.size());
+  return this->Current;
+}
+
+void SeriesAssembly::Withdraw() noexcept
+{
+  if (!this->KeepOld && this->InFile > 0)
+  {
+    (void)unlink(this->Path.c_str());
+    this->InFile = 0;
+  }
+}
+
+std::vector<std::string> SeriesAssembly::SegmentsInFile() const
+{
+  std::vector<std::string> files;
+  for (int i = 0; i < this->InFile; ++i)
+  {
+    files.push_back(this->Current.Segments[static_cast<std::size_t>(i)].File);
+  }
+  return files;
+}
+
+} // namespace banyan

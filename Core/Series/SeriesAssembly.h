@@ -1,0 +1,57 @@
+#ifndef banyan_Series_SeriesAssembly_h
+#define banyan_Series_SeriesAssembly_h
+
+#include "Series/GroupEncoder.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace banyan
+{
+
+/// The index file of a series that is being written: takes its groups in any order, as they are
+/// encoded, and puts them into the index in theirs.
+///
+/// Where no series of that name existed, the index file appears with the first group and is
+/// replaced (in one rename) with each group that is complete in order, so that the series opens
+/// with those at any time. Where one existed, it stays untouched until Finish().
+class SeriesAssembly
+{
+public:
+  /// @param path of the index file
+  /// @param plan the index before the first group (see PlanSeries). Throws Error when it could not
+  /// be written later.
+  SeriesAssembly(const std::string& path, SeriesIndex plan);
+
+  /// The groups so far that are complete in order.
+  const SeriesIndex& Index() const { return this->Current; }
+
+  /// Default is the first array. Throws Error when there is none of that name.
+  void SetActiveScalars(const std::string& name);
+
+  /// @param number of the group in the series, each once
+  /// Throws Error when the index file cannot be written.
+  void Add(int number, EncodedGroup group);
+
+  /// Writes the index of the whole series. Throws Error when it has no step, when a group is
+  /// missing, or when the file cannot be written.
+  const SeriesIndex& Finish();
+
+  /// Removes the index file if it was written here and is not finished.
+  void Withdraw() noexcept;
+
+  /// The segments that the index file names now, none when it is not of this series.
+  std::vector<std::string> SegmentsInFile() const;
+
+private:
+  std::string Path;
+  SeriesIndex Current;
+  std::map<int, EncodedGroup> Waiting; ///< for those before them
+  bool KeepOld;                        ///< a file of that name was there: it stays until Finish
+  int InFile = 0;                      ///< groups that the index file names
+};
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,53 @@
+#ifndef banyan_Filters_StepGathering_h
+#define banyan_Filters_StepGathering_h
+
+#include "RankTalk.h"
+#include "StepReport.h"
+
+#include <vector>
+
+class vtkDataArray;
+class vtkImageData;
+class vtkMultiProcessController;
+
+namespace banyan
+{
+
+/// The values of one step, by array: `[z][y][x][components]` of the whole extent.
+using StepValues = std::vector<std::vector<unsigned char>>;
+
+/// The array of that name; names that VTK does not know were made from the array's place.
+vtkDataArray* ArrayOf(vtkImageData* image, const std::string& name);
+
+/// Brings the pieces of a step to the rank that is going to encode it.
+class StepGathering
+{
+public:
+  StepGathering(const RankTalk& talk, vtkMultiProcessController* controller)
+    : Talk(talk)
+    , Controller(controller)
+  {
+  }
+
+  /// Collective; throws AgreedError. A rank that holds everything itself needs no message.
+  /// @param mine this rank's piece
+  /// @param arrays which ones, in the order of `whole`
+  /// @param owner the rank that receives
+  /// @param whole on the owner: made as large as needed, and filled
+  void Gather(vtkImageData* mine, const StepAgreement& step,
+    const std::vector<WrittenArray>& arrays, int owner, StepValues& whole);
+
+private:
+  void Transfer(vtkImageData* mine, const StepAgreement& step, const WrittenArray& array, int owner,
+    std::vector<unsigned char>* whole);
+  void Copy(vtkImageData* mine, const WrittenArray& array, const Box& part, unsigned char* to);
+
+  const RankTalk& Talk;
+  vtkMultiProcessController* Controller;
+  std::vector<unsigned char> Message;
+  std::string Problem; ///< of this rank's values, to be agreed on
+};
+
+} // namespace banyan
+
+#endif

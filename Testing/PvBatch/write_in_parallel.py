@@ -1,0 +1,54 @@
+"""Writes series of all kinds that must not depend on the number of ranks, for compare_files.py.
+
+    write_in_parallel.py --plugin Banyan.so --out FOLDER
+"""
+import os
+import shutil
+
+from paraview import simple
+
+import make_series
+import moving_field
+import session
+
+SAMPLES = (23, 17, 12)
+STEPS = 7
+MODES = {"relative": {}, "absolute": {"ErrorBoundMode": "Absolute", "ErrorBound": 0.01},
+         "lossless": {"ErrorBound": 0}}
+
+
+def write(folder, name, source, **options):
+    path = os.path.join(folder, name + ".banyan")
+    simple.SaveData(path, proxy=source, **options)
+    reader = simple.OpenDataFile(path)
+    session.require(reader is not None, f"{path} was not written")
+    simple.Delete(reader)
+
+
+def main():
+    parser = session.parser(__doc__)
+    parser.add_argument("--out", required=True)
+    arguments = parser.parse_args()
+    session.begin(arguments)
+    shutil.rmtree(arguments.out, ignore_errors=True)
+    os.makedirs(arguments.out)
+    for pieces in (False, True):
+        source = moving_field.source(SAMPLES, STEPS, pieces)
+        kind = "pieces" if pieces else "whole"
+        for mode, options in MODES.items():
+            # 7 steps are 4 groups of 2 (more than ranks, or fewer), or one group for one rank.
+            write(arguments.out, f"{kind}_{mode}_2", source, KeyframeInterval=2, **options)
+        write(arguments.out, f"{kind}_one_group", source)
+        write(arguments.out, f"{kind}_groups_of_1", source, KeyframeInterval=1)
+    files = [make_series.write_step(arguments.out, "step", step, SAMPLES, (1.0, 1.0, 2.0))
+             for step in range(5)]
+    stored = simple.OpenDataFile(files)
+    write(arguments.out, "files", stored, KeyframeInterval=2)
+    # Pieces that overlap, with flags; which ParaView offers among the arrays to write.
+    ghosts = simple.GhostCells(Input=simple.Wavelet(WholeExtent=[0, 14, 0, 12, 0, 11]))
+    write(arguments.out, "ghost_cells", ghosts)
+    write(arguments.out, "present_step", simple.Wavelet(WholeExtent=[-3, 9, 0, 7, 2, 8]))
+
+
+if __name__ == "__main__":
+    main()
