@@ -407,9 +407,9 @@ TEST_P(WriterRobustness, AbortedAnOlderSeriesStays)
   WriteSeries(good, this->Folder / "a.banyan");
   const std::string before = SeriesBytes(this->Folder / "a.banyan");
   this->Change = [](vtkBanyanSeriesWriter* w)
-  { StopWhen(w, [w] { return w->GetProgress() > 0.7; }); };
+  { StopWhen(w, [w] { return w->GetProgress() > 0.4; }); };
   this->Refuse(this->SourceThatChanges([](vtkImageData*) {}), { "interrupted", "was not written" });
-  EXPECT_EQ(SeriesBytes(this->Folder / "a.banyan"), before);
+  EXPECT_TRUE(SeriesBytes(this->Folder / "a.banyan") == before);
 }
 
 TEST_P(WriterRobustness, ASignalInterruptsAndComesAgain)

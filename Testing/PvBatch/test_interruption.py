@@ -30,7 +30,8 @@ def require(condition, sentence):
 def segments(path):
     """The files that the index names, and those that are there."""
     with open(path, encoding="utf-8") as file:
-        named = [segment["file"] for segment in json.load(file)["segments"]]
+        text = file.read()
+    named = [segment["file"] for segment in json.loads(text[text.index("{"):])["segments"]]
     return named, os.listdir(path + ".d")
 
 
@@ -46,10 +47,14 @@ def has_two_groups(path):
     return os.path.exists(path) and len(segments(path)[0]) >= 2
 
 
+STARTED = []
+
+
 def start(arguments, path, *options):
     launcher = run_paraview.mpi(arguments.ranks) if arguments.ranks > 1 else []
-    return run_paraview.start(launcher + ["pvbatch", SCRIPT, "--plugin", arguments.plugin,
-                                          "--write", path, *options])
+    STARTED.append(run_paraview.start(launcher + ["pvbatch", SCRIPT, "--plugin", arguments.plugin,
+                                                  "--write", path, *options]))
+    return STARTED[-1]
 
 
 def end_by(number, process):
@@ -145,4 +150,8 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    finally:
+        for started in STARTED:
+            run_paraview.end(started)

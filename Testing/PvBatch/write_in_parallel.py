@@ -45,7 +45,7 @@ def main():
     stored = simple.OpenDataFile(files)
     write(arguments.out, "files", stored, KeyframeInterval=2)
     # Pieces that overlap, with flags; which ParaView offers among the arrays to write.
-    ghosts = simple.GhostCells(Input=simple.Wavelet(WholeExtent=[0, 14, 0, 12, 0, 11]))
+    ghosts = simple.GhostCellsGenerator(Input=simple.Wavelet(WholeExtent=[0, 14, 0, 12, 0, 11]))
     write(arguments.out, "ghost_cells", ghosts)
     write(arguments.out, "present_step", simple.Wavelet(WholeExtent=[-3, 9, 0, 7, 2, 8]))
 
