@@ -22,7 +22,7 @@ def content(folder):
 def main():
     reference = content(sys.argv[1])
     indices = [name for name in reference if name.endswith(".banyan")]
-    if len(indices) < 13 or len(reference) < 2 * len(indices):
+    if len(indices) < 14 or len(reference) < 2 * len(indices):
         sys.exit(f"too little to compare: {sorted(reference)}")
     for folder in sys.argv[2:]:
         other = content(folder)

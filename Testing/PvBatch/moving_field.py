@@ -41,14 +41,21 @@ wave = numpy.sin(0.3 * x + 0.8 * time) * numpy.cos(0.2 * y) + 0.1 * numpy.cos(1.
 output.PointData.append(wave.astype("f4").ravel(), "wave")
 output.PointData.append(numpy.stack([10 * wave.ravel(), wave.ravel() ** 2, x.ravel() + time],
                                     axis=1).astype("f8"), "vector")
-if rank == {failing_rank} and time == {failing_time}:
-    raise RuntimeError("this rank has had enough")
+if rank == {failing_rank} and time == 5.0:
+    if {disk_full}:
+        import resource
+        import signal
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
+    else:
+        raise RuntimeError("this rank has had enough")
 """
 
 
-def source(samples, steps, pieces, failing=(-1, 0.0)):
-    words = {"samples": samples, "steps": steps, "pieces": pieces, "failing_rank": failing[0],
-             "failing_time": failing[1]}
+def source(samples, steps, pieces, failing=-1, disk_full=False):
+    """The rank `failing` fails at time 5: to compute, or from then on to write."""
+    words = {"samples": samples, "steps": steps, "pieces": pieces, "failing_rank": failing,
+             "disk_full": disk_full}
     return simple.ProgrammableSource(
         OutputDataSetType="vtkImageData", ScriptRequestInformation=INFORMATION.format(**words),
         Script=DATA.format(**words))

@@ -112,13 +112,13 @@ def old_series_stays(arguments):
     return path
 
 
-def error_of_a_rank(arguments):
+def error_of_a_rank(arguments, mention, *options):
     """All ranks fail with the sentence of the one that does; nothing is left."""
     path = os.path.join(arguments.out, "error.banyan")
     failing = arguments.ranks - 1
     process = run_paraview.start(
         run_paraview.mpi(arguments.ranks) + ["pvbatch", SCRIPT, "--plugin", arguments.plugin,
-                                             "--write", path, "--fail", str(failing)],
+                                             "--write", path, "--fail", str(failing), *options],
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     try:
         output, _ = process.communicate(timeout=100)
@@ -127,7 +127,7 @@ def error_of_a_rank(arguments):
         sys.exit("test_interruption.py: the ranks hang after an error of one")
     print(output, flush=True)
     require(process.returncode != 0, "an error, and yet it says that all is well")
-    require("At step 10 (time 5)" in output, "it does not say where")
+    require(mention in output, f"it does not say '{mention}'")
     require(arguments.ranks == 1 or f"Rank {failing}" in output, "it does not say which rank")
     require(not os.path.exists(path) and not os.path.exists(path + ".d"), "something was left")
 
@@ -143,7 +143,8 @@ def main():
     os.makedirs(arguments.out)
     left = [interrupt(arguments, number) for number in SIGNALS]
     left.append(old_series_stays(arguments))
-    error_of_a_rank(arguments)
+    error_of_a_rank(arguments, "At step 10 (time 5)")
+    error_of_a_rank(arguments, "The file cannot be", "--disk-full")
     check = run_paraview.start(["pvpython", "--force-offscreen-rendering", SCRIPT, "--plugin",
                                 arguments.plugin, "--check", *left])
     require(run_paraview.wait(check, time.monotonic() + 100) == 0, "what is left is not in order")

@@ -25,6 +25,21 @@ def write(folder, name, source, **options):
     simple.Delete(reader)
 
 
+def image_with_flags(folder):
+    """A file of XML with ghost flags, which ParaView offers among the arrays to write."""
+    values = " ".join(str(0.25 * i) for i in range(60))
+    flags = " ".join("1" if i % 5 == 4 else "0" for i in range(60))
+    path = os.path.join(folder, "flags.vti")
+    with open(path, "w", encoding="ascii") as file:
+        file.write(f"""<VTKFile type="ImageData" version="1.0">
+<ImageData WholeExtent="0 4 0 3 0 2" Origin="0 0 0" Spacing="1 1 1">
+<Piece Extent="0 4 0 3 0 2"><PointData Scalars="p">
+<DataArray type="Float32" Name="p" format="ascii">{values}</DataArray>
+<DataArray type="UInt8" Name="vtkGhostType" format="ascii">{flags}</DataArray>
+</PointData></Piece></ImageData></VTKFile>""")
+    return simple.OpenDataFile(path)
+
+
 def main():
     parser = session.parser(__doc__)
     parser.add_argument("--out", required=True)
@@ -44,7 +59,8 @@ def main():
              for step in range(5)]
     stored = simple.OpenDataFile(files)
     write(arguments.out, "files", stored, KeyframeInterval=2)
-    # Pieces that overlap, with flags; which ParaView offers among the arrays to write.
+    write(arguments.out, "flags", image_with_flags(arguments.out))
+    # Pieces that overlap, with flags.
     ghosts = simple.GhostCellsGenerator(Input=simple.Wavelet(WholeExtent=[0, 14, 0, 12, 0, 11]))
     write(arguments.out, "ghost_cells", ghosts)
     write(arguments.out, "present_step", simple.Wavelet(WholeExtent=[-3, 9, 0, 7, 2, 8]))

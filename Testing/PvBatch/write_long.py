@@ -1,6 +1,6 @@
 """Writes a series that takes long, for test_interruption.py, or checks what is left of one.
 
-    write_long.py --plugin Banyan.so [--steps N] [--fail RANK] --write SERIES
+    write_long.py --plugin Banyan.so [--steps N] [--fail RANK [--disk-full]] --write SERIES
     write_long.py --plugin Banyan.so --check SERIES...
 """
 from paraview import simple
@@ -41,12 +41,14 @@ def main():
     parser = session.parser(__doc__)
     parser.add_argument("--steps", type=int, default=2000)
     parser.add_argument("--fail", type=int, default=-1)
+    parser.add_argument("--disk-full", action="store_true", help="that is how it fails")
     parser.add_argument("--write")
     parser.add_argument("--check", nargs="*", default=[])
     arguments = parser.parse_args()
     session.begin(arguments)
     if arguments.write:
-        source = moving_field.source(SAMPLES, arguments.steps, True, (arguments.fail, 5.0))
+        source = moving_field.source(SAMPLES, arguments.steps, True, arguments.fail,
+                                     arguments.disk_full)
         simple.SaveData(arguments.write, proxy=source, KeyframeInterval=4,
                         ErrorBoundMode="Absolute", ErrorBound=BOUND)
         print("written to the end", flush=True)
