@@ -2,6 +2,7 @@
 
 #include "Base/ThreadPool.h"
 #include "Series/Bytes.h"
+#include "Series/FillValues.h"
 #include "Series/Quantizer.h"
 
 #include <algorithm>
@@ -59,6 +60,7 @@ public:
     , Stride(stride)
     , Decoded(decoded)
     , Count(count)
+    , Fills(judgement.FillValues)
   {
   }
 
@@ -106,9 +108,24 @@ private:
     this->Rule.Map.ForwardValues(this->Decoded, count, this->DecodedMapped.data());
   }
 
+  void AddFill(std::int64_t number, T original, T decoded)
+  {
+    ++this->Errors.Fill;
+    if (std::memcmp(&original, &decoded, sizeof(T)) != 0)
+    {
+      ++this->Errors.OutOfBound;
+      this->Blame(number, Infinity);
+    }
+  }
+
   void AddFinite(std::int64_t number, T original, T decoded)
   {
     ++this->Errors.Finite;
+    if (this->Fills.Holds(original))
+    {
+      this->AddFill(number, original, decoded);
+      return;
+    }
     this->Errors.Range.Include({ DoubleNotAbove(original), DoubleNotBelow(original) });
     if (!IsFinite(decoded))
     {
@@ -131,9 +148,22 @@ private:
       judged = std::abs(this->DecodedMapped[at] - this->OriginalMapped[at]);
       within = judged <= this->Rule.Bound;
     }
-    this->Errors.OutOfBound += within ? 0 : 1;
-    this->Errors.GreatestJudged = std::max(this->Errors.GreatestJudged, judged);
-    this->Errors.Greatest = std::max(this->Errors.Greatest, error);
+    const double before = static_cast<double>(original);
+    const double after = static_cast<double>(decoded);
+    const bool unseen = !within &&
+                        this->Rule.Invisible.Invisible(
+                          std::min(before, after), std::max(before, after));
+    if (unseen)
+    {
+      ++this->Errors.Invisible;
+      judged = 0.0;
+    }
+    else
+    {
+      this->Errors.OutOfBound += within ? 0 : 1;
+      this->Errors.GreatestJudged = std::max(this->Errors.GreatestJudged, judged);
+      this->Errors.Greatest = std::max(this->Errors.Greatest, error);
+    }
     this->Errors.SumSquared += error * error;
     if (error > 0.0)
     {
@@ -168,6 +198,7 @@ private:
   std::size_t Stride;
   const T* Decoded;
   std::int64_t Count;
+  FillSet<T> Fills;
   std::vector<double> OriginalMapped; ///< empty without a transform
   std::vector<double> DecodedMapped;
   ValueErrors Errors;
@@ -181,6 +212,8 @@ void ValueErrors::Merge(const ValueErrors& other, std::int64_t first)
   this->NonFinite += other.NonFinite;
   this->NonFiniteChanged += other.NonFiniteChanged;
   this->OutOfBound += other.OutOfBound;
+  this->Fill += other.Fill;
+  this->Invisible += other.Invisible;
   this->OtherClass += other.OtherClass;
   this->Greatest = std::max(this->Greatest, other.Greatest);
   this->GreatestJudged = std::max(this->GreatestJudged, other.GreatestJudged);

@@ -7,6 +7,7 @@
 #include "Series/Transform.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace banyan
 {
@@ -20,13 +21,17 @@ struct ValueErrors
   std::int64_t NonFinite = 0;        ///< originals that are NaN or infinite
   std::int64_t NonFiniteChanged = 0; ///< of these, those that are not bit-exact
   std::int64_t OutOfBound = 0;       ///< finite originals
+  std::int64_t Fill = 0;       ///< finite originals that are fill values; wrong unless bit-exact
+  std::int64_t Invisible = 0;  ///< beyond the bound, but invisible before and after: not wrong
   std::int64_t OtherClass = 0; ///< finite originals whose 8-bit code is not that of the original
-  double Greatest = 0.0; ///< |decoded - original|; infinity when a finite value is no longer one
+  /// |decoded - original|, but for those counted as Fill and Invisible; infinity when a finite
+  /// value is no longer one.
+  double Greatest = 0.0;
   /// In what the bound is one on: |f(decoded) - f(original)|; as `Greatest` without a transform.
   double GreatestJudged = 0.0;
   double SumSquared = 0.0;  ///< of the errors of finite values
   double SumWeighted = 0.0; ///< of opacity times squared error
-  ValueRange Range;         ///< of the finite originals
+  ValueRange Range;         ///< of the finite originals that are no fill values
   /// Number of the worst value: the first one with the greatest judged error. Non-finite values
   /// that are not bit-exact are worse than all others. -1 when nothing differs.
   std::int64_t Worst = -1;
@@ -51,6 +56,9 @@ struct Judgement
   Transform Map;                            ///< f
   PaperQuantizer Classes;                   ///< the 8-bit classes
   const OpacityFunction* Opacity = nullptr; ///< null: 1 everywhere
+  /// Beyond the bound, a value may become another one of its interval.
+  InvisibleIntervals Invisible;
+  std::vector<double> FillValues; ///< must keep their bits
 };
 
 /// Compares `count` values of one component.

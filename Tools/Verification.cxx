@@ -5,6 +5,7 @@
 #include "Base/ThreadPool.h"
 #include "Cache/BrickCache.h"
 #include "Series/Bytes.h"
+#include "Series/FillValues.h"
 
 #include <algorithm>
 #include <cinttypes>
@@ -56,6 +57,12 @@ ValueRange RangeOf(const ComponentIndex& component)
   return component.PromisedRange.Empty() ? component.Range : component.PromisedRange;
 }
 
+InvisibleIntervals IntervalsOf(const ComponentIndex& component)
+{
+  return component.Opacity.empty() ? InvisibleIntervals{}
+                                   : InvisibleIntervals(OpacityFunction(component.Opacity));
+}
+
 /// Compares one series with one source.
 class Comparison
 {
@@ -81,7 +88,9 @@ public:
         component.Transformed = !found.Components[c].ValueTransform.IsIdentity();
         this->Result.Components.push_back(std::move(component));
         this->Opacities.push_back(
-          choice.Opacity ? *choice.Opacity : Ramp(RangeOf(found.Components[c])));
+          choice.Opacity                         ? *choice.Opacity
+          : !found.Components[c].Opacity.empty() ? OpacityFunction(found.Components[c].Opacity)
+                                                 : Ramp(RangeOf(found.Components[c])));
       }
     }
   }
@@ -150,7 +159,7 @@ private:
     ComponentVerification& component = this->Result.Components[c];
     const ArrayIndex& array = this->ArrayOf(component);
     const std::size_t size = SizeOf(array.Type);
-    const int stride = static_cast<int>(array.Components.size());
+    int stride = static_cast<int>(array.Components.size());
     this->Decoded.resize(static_cast<std::size_t>(this->Whole.Count()) * size);
     // Each brick is needed once: there is nothing to keep.
     BrickCache cache(0);
@@ -159,8 +168,18 @@ private:
     const std::uint8_t* first =
       original.data() + static_cast<std::size_t>(component.Component) * size;
     const ComponentIndex& index = array.Components[static_cast<std::size_t>(component.Component)];
+    std::vector<std::uint8_t> clamped;
+    if (index.ClampOutside)
+    {
+      // What the series promises is nearness to the clamped values.
+      clamped.resize(this->Decoded.size());
+      component.Clamped += ClampComponent(array.Type, first, stride, this->Whole.Count(),
+        index.PromisedRange, index.FillValues, clamped.data());
+      first = clamped.data();
+      stride = 1;
+    }
     const Judgement judgement{ component.Bound, index.ValueTransform, { RangeOf(index), 8 },
-      &this->Opacities[c] };
+      &this->Opacities[c], IntervalsOf(index), index.FillValues };
     const ValueErrors errors = CompareValues(array.Type, first, stride, this->Decoded.data(),
       this->Whole.Count(), judgement, ThreadPool::Process());
     if (errors.WorstError > component.All.WorstError)
@@ -193,15 +212,17 @@ private:
   }
 
   /// The index promises less than was asked for. What a relative bound refers to is the range of
-  /// the source, or a wider one that the encoder was told; with a transform, the width of what they
-  /// become.
+  /// the source, or a wider one that the encoder was told, or the one that was chosen by a rule; with
+  /// a transform, the width of what they become.
   std::string LooserThanAsked(const ComponentVerification& component) const
   {
     const SeriesIndex& index = this->Series.Index();
     const ComponentIndex& found =
       this->ArrayOf(component).Components[static_cast<std::size_t>(component.Component)];
-    const double width = std::max(found.ValueTransform.TransformedWidth(component.All.Range),
-      found.ValueTransform.TransformedWidth(found.PromisedRange));
+    const double chosen = found.ValueTransform.TransformedWidth(found.PromisedRange);
+    const double width = found.RangeFrom == RangeRule::Source::Data
+                           ? std::max(chosen, found.ValueTransform.TransformedWidth(component.All.Range))
+                           : chosen;
     const double asked =
       index.Mode == ErrorBoundMode::Absolute ? index.ErrorBound : index.ErrorBound * width;
     if (component.Bound <= asked * (1.0 + 1e-12))

@@ -32,6 +32,7 @@ struct ComponentVerification
   std::string Name;
   double Bound = 0.0;
   bool Transformed = false; ///< the bound is one on transformed values
+  std::int64_t Clamped = 0; ///< values that were judged by what they were clamped to
   std::vector<ValueErrors> Steps;
   ValueErrors All;
   std::optional<WorstValue> Worst; ///< nothing when no bit differs
@@ -53,7 +54,9 @@ struct VerificationChoice
 {
   std::vector<std::string> Arrays; ///< to compare; empty: all of the series, which must be all of
                                    ///< the source
-  /// Nothing: a ramp from 0 at the least to 1 at the greatest value of each component.
+  /// For equation 2. Nothing: the one that the component was encoded for; when there is none, a
+  /// ramp from 0 at the least to 1 at the greatest value of each component. Which values nobody can
+  /// see is for the series to say, not for this.
   std::optional<OpacityFunction> Opacity;
 };
 

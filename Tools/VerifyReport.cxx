@@ -40,6 +40,8 @@ Json ErrorsToJson(const ValueErrors& errors, double bound, const ValueRange& glo
   json["maxError"] = Number(errors.Greatest);
   json["maxErrorOverBound"] = Number(OverBound(errors, bound));
   json["outOfBound"] = errors.OutOfBound;
+  json["invisible"] = errors.Invisible;
+  json["fill"] = errors.Fill;
   json["rmse"] = Number(errors.Rmse());
   json["psnr"] = Number(Decibels(global.Width(), errors.Rmse()));
   json["psnrOfOwnRange"] = Number(Decibels(errors.Range.Width(), errors.Rmse()));
@@ -107,6 +109,20 @@ std::string Shares(const ComponentVerification& component)
          " %\n";
 }
 
+/// Values that were not judged by the bound, or not as they were.
+std::string Exempt(const ComponentVerification& component)
+{
+  std::string text;
+  const auto line = [&](std::int64_t count, const std::string& what)
+  {
+    text += count > 0 ? "  " + component.Name + ": " + Times(count, "value") + " " + what + "\n" : "";
+  };
+  line(component.All.Invisible, "beyond the bound, invisible in the source and in the series");
+  line(component.All.Fill, "without meaning (fill values), compared bit by bit");
+  line(component.Clamped, "outside the range, judged by the end that they were clamped to");
+  return text;
+}
+
 std::string Complaint(const ComponentVerification& component, const std::vector<double>& times)
 {
   std::string text = "  " + component.Name + ": ";
@@ -156,6 +172,10 @@ std::string VerificationToText(const Verification& result, const std::string& fi
   {
     text += Shares(component);
   }
+  for (const ComponentVerification& component : result.Components)
+  {
+    text += Exempt(component);
+  }
   if (result.Proven())
   {
     const std::string odd = Times(sum.NonFinite, "value");
@@ -186,6 +206,7 @@ std::string VerificationToJson(const Verification& result, const std::string& fi
     one["name"] = component.Name;
     one["bound"] = component.Bound;
     one["transformed"] = component.Transformed;
+    one["clamped"] = component.Clamped;
     one["proven"] = component.Proven();
     one["tooLoose"] = component.TooLoose.empty() ? Json(nullptr) : Json(component.TooLoose);
     one["worst"] = component.Worst ? WorstToJson(*component.Worst) : Json(nullptr);

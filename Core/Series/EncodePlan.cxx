@@ -10,15 +10,17 @@ namespace banyan
 namespace
 {
 
-double AbsoluteBound(const EncodeOptions& options, const ValueRange& range)
+double AbsoluteBound(
+  const EncodeOptions& options, const Transform& transform, const ValueRange& range)
 {
   if (options.Mode == ErrorBoundMode::Absolute)
   {
     return options.ErrorBound;
   }
   // Both ends by themselves: the width of a range of doubles may overflow.
-  const double bound =
-    range.Empty() ? 0.0 : options.ErrorBound * range.High - options.ErrorBound * range.Low;
+  const double bound = range.Empty() ? 0.0
+                                     : options.ErrorBound * transform.Forward(range.High) -
+                                         options.ErrorBound * transform.Forward(range.Low);
   if (!std::isfinite(bound))
   {
     throw Error("The error bound times the range of the series is not a finite number");
@@ -26,30 +28,49 @@ double AbsoluteBound(const EncodeOptions& options, const ValueRange& range)
   return bound;
 }
 
-ArrayIndex MakeArray(const ArrayDescription& description, const EncodeOptions& options)
+bool IsRelative(const EncodeOptions& options)
 {
-  ArrayIndex array;
-  array.Name = description.Name;
-  array.Type = description.Type;
+  return options.Mode == ErrorBoundMode::RelativeToSeriesRange && options.ErrorBound > 0;
+}
+
+void CheckDescription(const ArrayDescription& description, const EncodeOptions& options)
+{
   const std::size_t components = description.ComponentNames.size();
   const bool promised = !description.SeriesRanges.empty();
+  const bool counted = !description.Histograms.empty();
+  const bool given = options.QuantizerFor(description.Name).Range.From == RangeRule::Source::Given;
   if ((promised && description.SeriesRanges.size() != components) ||
-      (!promised && options.Mode == ErrorBoundMode::RelativeToSeriesRange &&
-        options.ErrorBound > 0))
+      (!promised && !counted && !given && IsRelative(options)))
   {
     throw Error("The array '" + description.Name +
                 "' needs one series range per component for a relative error bound");
   }
-  for (std::size_t c = 0; c < components; ++c)
+  if (counted && description.Histograms.size() != components)
+  {
+    throw Error("The array '" + description.Name + "' needs one histogram per component, or none");
+  }
+}
+
+ArrayIndex MakeArray(const ArrayDescription& description, const EncodeOptions& options)
+{
+  CheckDescription(description, options);
+  ArrayIndex array;
+  array.Name = description.Name;
+  array.Type = description.Type;
+  for (std::size_t c = 0; c < description.ComponentNames.size(); ++c)
   {
     ComponentIndex component;
     component.Name = description.ComponentNames[c];
-    component.PromisedRange = promised ? description.SeriesRanges[c] : ValueRange{};
+    ApplyQuantizer(options.QuantizerFor(description.Name),
+      description.Histograms.empty() ? nullptr : &description.Histograms[c],
+      description.SeriesRanges.empty() ? ValueRange{} : description.SeriesRanges[c],
+      IsRelative(options), component);
     // Which of two zeros was met first depends on who looked; adding a zero leaves the positive one.
     component.PromisedRange.Low += 0.0;
     component.PromisedRange.High += 0.0;
-    component.ErrorBoundAbsolute = AbsoluteBound(options, component.PromisedRange);
-    array.Components.push_back(component);
+    component.ErrorBoundAbsolute =
+      AbsoluteBound(options, component.ValueTransform, component.PromisedRange);
+    array.Components.push_back(std::move(component));
   }
   return array;
 }
@@ -67,6 +88,17 @@ void CheckOptions(const EncodeOptions& options)
 }
 
 } // namespace
+
+const QuantizerOptions& EncodeOptions::QuantizerFor(const std::string& array) const
+{
+  const auto own = this->QuantizerOfArray.find(array);
+  return own == this->QuantizerOfArray.end() ? this->Quantizer : own->second;
+}
+
+bool EncodeOptions::NeedsHistogram(const std::string& array) const
+{
+  return this->QuantizerFor(array).NeedsHistogram(IsRelative(*this));
+}
 
 int ChooseBrickCells(const glm::ivec3& samples)
 {
@@ -90,6 +122,14 @@ SeriesIndex PlanSeries(
   for (const ArrayDescription& array : arrays)
   {
     index.Arrays.push_back(MakeArray(array, options));
+  }
+  for (const auto& own : options.QuantizerOfArray)
+  {
+    if (index.FindArray(own.first) < 0)
+    {
+      throw Error("There are quantizer options for the array '" + own.first +
+                  "', and the series has no such array");
+    }
   }
   index.ActiveScalars = arrays.empty() ? "" : arrays[0].Name;
   return index;

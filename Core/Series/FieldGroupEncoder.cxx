@@ -147,6 +147,9 @@ void Encoder<T>::FindExceptions(
       errors->Finite += part.Finite;
       errors->NonFinite += part.NonFinite;
       errors->Exceptions += part.Exceptions;
+      errors->Fill += part.Fill;
+      errors->Invisible += part.Invisible;
+      errors->SumWeighted += part.SumWeighted;
     }
   }
 }
@@ -252,7 +255,7 @@ EncodedField Encoder<T>::Run(
 {
   const int steps = static_cast<int>(this->Field.Steps.size());
   ChooseLattice(this->Field.Type, this->Field.Map, this->Field.Bound, this->Field.Expected,
-    this->Out.Head);
+    this->Field.Beyond, this->Out.Head);
   this->Target = std::make_unique<LatticeTarget<T>>(this->Field, this->Out.Head, this->Pool);
   this->Out.Head.Axes = this->Target->Axes();
   this->Planes = this->Target->Planes();

@@ -6,6 +6,7 @@
 #include "Series/SeriesEncoder.h"
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace banyan
@@ -26,6 +27,9 @@ struct FieldGroup
   Transform Map;
   double Bound = 0;    ///< in the transformed domain
   ValueRange Expected; ///< may be empty
+  bool Beyond = false; ///< values may well lie outside of Expected
+  std::vector<double> FillValues;
+  std::optional<OpacityFunction> Opacity; ///< nothing: every value counts
   EncodeProfile Profile = EncodeProfile::Balanced;
   int CompressionLevel = 3;
 };
@@ -58,6 +62,9 @@ struct FieldErrors
   std::int64_t Finite = 0;
   std::int64_t NonFinite = 0;
   std::int64_t Exceptions = 0; ///< voxels kept beside the lattice, non-finite ones included
+  std::int64_t Fill = 0;       ///< voxels with fill values
+  std::int64_t Invisible = 0;  ///< out of bound, invisible before and after; not in the maxima
+  double SumWeighted = 0;      ///< of opacity times squared error
 };
 
 struct EncodedField

@@ -17,12 +17,27 @@ bool IsReal(ScalarType type)
   return type == ScalarType::Float32 || type == ScalarType::Float64;
 }
 
+/// The same range and its width at either end, in the transformed domain; some steps of the lattice
+/// when it has no width. Where that leads to infinity the range stays as it is.
+ValueRange Widened(const Transform& transform, const ValueRange& range, double bound)
+{
+  constexpr double leastBounds = 64;
+  const double low = transform.Forward(range.Low);
+  const double high = transform.Forward(range.High);
+  const double width = std::max(high - low, leastBounds * bound);
+  const ValueRange wide{ transform.Inverse(low - width), transform.Inverse(high + width) };
+  const bool good = std::isfinite(wide.Low) && std::isfinite(wide.High) &&
+                    std::isfinite(low - width) && std::isfinite(high + width);
+  return good && wide.Low <= range.Low && wide.High >= range.High ? wide : range;
+}
+
 } // namespace
 
 void ChooseLattice(ScalarType type, const Transform& transform, double bound,
-  const ValueRange& expected, group::FieldHead& head)
+  const ValueRange& expected, bool beyond, group::FieldHead& head)
 {
-  const ValueRange range = expected.Empty() ? ValueRange{ 0.0, 0.0 } : expected;
+  const ValueRange inner = expected.Empty() ? ValueRange{ 0.0, 0.0 } : expected;
+  const ValueRange range = beyond ? Widened(transform, inner, bound) : inner;
   const double low = transform.Forward(range.Low);
   const double high = transform.Forward(range.High);
   head.Exact = false;

@@ -20,8 +20,10 @@ constexpr double GreatestLatticeNumber = 268435456.0; // 2^28
 /// or below what the type resolves: every sample is then an exception.
 /// @param bound in the transformed domain, >= 0, finite
 /// @param expected where the values lie; only efficiency depends on it
+/// @param beyond some values may lie outside: the lattice goes on by its own width at either end,
+/// so that what is near does not have to be kept exactly
 void ChooseLattice(ScalarType type, const Transform& transform, double bound,
-  const ValueRange& expected, group::FieldHead& head);
+  const ValueRange& expected, bool beyond, group::FieldHead& head);
 
 } // namespace banyan
 

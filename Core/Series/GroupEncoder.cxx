@@ -4,6 +4,7 @@
 #include "Base/ThreadPool.h"
 #include "Series/FieldEncoder.h"
 #include "Series/FieldGroupEncoder.h"
+#include "Series/FillValues.h"
 #include "Series/GroupWriter.h"
 
 #include <algorithm>
@@ -30,11 +31,52 @@ ValueRange MagnitudeRange(const std::vector<double>& squares)
 ValueRange RangeOfGroup(const FieldGroup& field, std::int64_t tuples, ThreadPool& pool)
 {
   ValueRange range;
+  if (!field.FillValues.empty())
+  {
+    ValueHistogram values;
+    for (const void* step : field.Steps)
+    {
+      CountComponent(field.Type, step, tuples, field.Components, 0, field.FillValues, values);
+    }
+    return values.Range();
+  }
   for (const void* step : field.Steps)
   {
     range.Include(RangeOfComponent(field.Type, step, tuples, field.Components, 0, pool));
   }
   return range;
+}
+
+/// The steps of a component, clamped.
+struct ClampedSteps
+{
+  std::vector<std::vector<std::uint8_t>> Values; ///< kept alive for the field
+  std::int64_t Count = 0;
+};
+
+/// Replaces the values of a field by clamped copies.
+ClampedSteps Clamp(
+  const ComponentIndex& component, std::int64_t tuples, ThreadPool& pool, FieldGroup& field)
+{
+  ClampedSteps clamped;
+  clamped.Values.resize(field.Steps.size());
+  std::vector<std::int64_t> counts(field.Steps.size());
+  pool.ParallelFor(static_cast<std::int64_t>(field.Steps.size()),
+    [&](std::int64_t step)
+    {
+      const std::size_t s = static_cast<std::size_t>(step);
+      clamped.Values[s].resize(static_cast<std::size_t>(tuples) * SizeOf(field.Type));
+      counts[s] = ClampComponent(field.Type, field.Steps[s], field.Components, tuples,
+        component.PromisedRange, component.FillValues, clamped.Values[s].data());
+      field.Steps[s] = clamped.Values[s].data();
+    });
+  for (const std::int64_t count : counts)
+  {
+    clamped.Count += count;
+  }
+  field.Components = 1;
+  field.Component = 0;
+  return clamped;
 }
 
 void Measure(const EncodedField& field, ComponentIndex& component, EncodeStatistics& statistics)
@@ -45,6 +87,9 @@ void Measure(const EncodedField& field, ComponentIndex& component, EncodeStatist
   component.SumSquaredError = field.Errors.SumSquared;
   component.FiniteCount = field.Errors.Finite;
   component.NonFiniteCount = field.Errors.NonFinite;
+  component.FillCount = field.Errors.Fill;
+  component.InvisibleCount = field.Errors.Invisible;
+  component.SumWeightedError = field.Errors.SumWeighted;
   statistics.ExceptionVoxels += field.Errors.Exceptions;
   statistics.ChainSum += field.ChainSum;
   statistics.ChainBricks += static_cast<std::int64_t>(
@@ -97,8 +142,20 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
       field.Bound = component.ErrorBoundAbsolute;
       field.Profile = options.Profile;
       field.CompressionLevel = options.CompressionLevel;
+      field.FillValues = component.FillValues;
       field.Expected = component.PromisedRange.Empty() ? RangeOfGroup(field, tuples, pool)
                                                        : component.PromisedRange;
+      field.Beyond =
+        component.RangeFrom != RangeRule::Source::Data && !component.ClampOutside;
+      if (!component.Opacity.empty())
+      {
+        field.Opacity.emplace(component.Opacity);
+      }
+      ClampedSteps clamped;
+      if (component.ClampOutside)
+      {
+        clamped = Clamp(component, tuples, pool, field);
+      }
       const double before = static_cast<double>(fields.size());
       fields.push_back(EncodeFieldGroup(field, pool, vectors ? &squares : nullptr,
         [&](double done)
@@ -110,6 +167,7 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
           }
         }));
       Measure(fields.back(), group.Measured[a][c], group.Statistics);
+      group.Measured[a][c].ClampedCount = clamped.Count;
       group.BytesIn += static_cast<std::uint64_t>(tuples) * SizeOf(array.Type) * steps.size();
     }
     group.Magnitudes.emplace_back();
@@ -158,6 +216,10 @@ void AddGroup(const EncodedGroup& group, SeriesIndex& index)
       to.SumSquaredError += from.SumSquaredError;
       to.FiniteCount += from.FiniteCount;
       to.NonFiniteCount += from.NonFiniteCount;
+      to.ClampedCount += from.ClampedCount;
+      to.FillCount += from.FillCount;
+      to.InvisibleCount += from.InvisibleCount;
+      to.SumWeightedError += from.SumWeightedError;
     }
   }
   EncodeStatistics& to = index.Statistics;

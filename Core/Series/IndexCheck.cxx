@@ -39,6 +39,7 @@ void CheckComponent(const ComponentIndex& component)
   Require(std::isfinite(component.MeasuredMaxError) && component.MeasuredMaxError >= 0 &&
             component.SumSquaredError >= 0,
     "A measured error is negative or not finite");
+  Require(component.SumWeightedError >= 0, "A measured error is negative");
   Require(
     component.FiniteCount >= 0 && component.NonFiniteCount >= 0, "A count of voxels is negative");
 }

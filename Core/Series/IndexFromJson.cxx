@@ -2,6 +2,7 @@
 #include "Series/Hash.h"
 #include "Series/IndexJson.h"
 #include "Series/JsonMembers.h"
+#include "Series/QuantizerJson.h"
 #include "Series/TransformJson.h"
 
 #include <limits>
@@ -54,6 +55,7 @@ ComponentIndex ComponentFromJson(const Json& json)
   {
     component.ValueTransform = TransformFromJson(*transform);
   }
+  QuantizerFromJson(json, component);
   return component;
 }
 

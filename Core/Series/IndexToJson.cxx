@@ -1,5 +1,6 @@
 #include "Series/Hash.h"
 #include "Series/IndexJson.h"
+#include "Series/QuantizerJson.h"
 #include "Series/TransformJson.h"
 
 #include <cmath>
@@ -37,6 +38,7 @@ Json ComponentToJson(const ComponentIndex& component)
   {
     json["transform"] = TransformToJson(component.ValueTransform);
   }
+  QuantizerToJson(component, json);
   return json;
 }
 

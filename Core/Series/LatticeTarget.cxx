@@ -146,6 +146,7 @@ LatticeTarget<T>::LatticeTarget(
   , Pool(pool)
   , AxisOrder(SmoothestLast<T>(field, field.Steps[0]))
   , Decoder(field.Map, head.Origin, head.Step, head.Least, head.Greatest)
+  , Fills(field.FillValues)
 {
   const glm::i64vec3 real = StridesOf(field);
   glm::ivec3 samples;
@@ -158,9 +159,18 @@ LatticeTarget<T>::LatticeTarget(
   // A value further out than the range is wide would spoil the predictions around it.
   const double low = head.Origin + head.Least * head.Step;
   const double high = head.Origin + head.Greatest * head.Step;
-  const double width = field.Expected.Empty() ? GreatestLatticeNumber * head.Step : high - low;
+  // The lattice of a field with values beyond what is expected is that much wider already.
+  const double width = field.Expected.Empty() ? GreatestLatticeNumber * head.Step
+                       : field.Beyond         ? 0.0
+                                              : high - low;
   this->Nearest = low - width - head.Step;
   this->Furthest = high + width + head.Step;
+  auto hidden = std::make_unique<InvisibleBlocks<T>>(
+    field, head, this->Decoder, this->PlaneSamples[0], this->Stride);
+  if (hidden->Any())
+  {
+    this->Hidden = std::move(hidden);
+  }
 }
 
 template <class T>
@@ -183,6 +193,7 @@ void LatticeTarget<T>::FillRow(
   for (int x = 0; x < count; ++x)
   {
     held[x] = y[x] >= this->Nearest && y[x] <= this->Furthest; // not for NaN
+    held[x] = held[x] && !this->Fills.Holds(values[x * stride]);
     all = all && held[x];
     const double number = held[x] ? (y[x] - this->Head.Origin) * inverse : 0.0;
     const double bounded =
@@ -211,6 +222,32 @@ void LatticeTarget<T>::FillTile(const T* values, const glm::ivec3& low, PlaneNum
   }
 }
 
+/// Gives invisible blocks the number of their interval.
+template <class T>
+void LatticeTarget<T>::HideBlocks(const T* values, PlaneNumbers& plane) const
+{
+  this->Pool.ParallelFor(plane.BlockCount(),
+    [&](std::int64_t i)
+    {
+      const glm::ivec3 position = PositionIn(plane.Blocks, i);
+      const int interval = this->Hidden->IntervalOf(values, position);
+      if (interval < 0)
+      {
+        return;
+      }
+      const glm::ivec3 low = position * plane.Edge;
+      for (int z = low.z; z < std::min(low.z + plane.Edge, plane.Samples.z); ++z)
+      {
+        for (int y = low.y; y < std::min(low.y + plane.Edge, plane.Samples.y); ++y)
+        {
+          std::int32_t* row = plane.Numbers.data() + plane.IndexOf({ low.x, y, z });
+          std::fill(row, row + std::min(plane.Edge, plane.Samples.x - low.x),
+            this->Hidden->NumberOf(interval));
+        }
+      }
+    });
+}
+
 template <class T>
 std::vector<PlaneNumbers> LatticeTarget<T>::Make(const void* values) const
 {
@@ -219,6 +256,10 @@ std::vector<PlaneNumbers> LatticeTarget<T>::Make(const void* values) const
   const glm::ivec3 tiles = (this->PlaneSamples[0] + Tile - 1) / Tile;
   this->Pool.ParallelFor(std::int64_t{ tiles.x } * tiles.y * tiles.z, [&](std::int64_t i)
     { this->FillTile(static_cast<const T*>(values), PositionIn(tiles, i) * Tile, planes[0]); });
+  if (this->Hidden)
+  {
+    this->HideBlocks(static_cast<const T*>(values), planes[0]);
+  }
   Pad(planes[0]);
   while (planes.size() < this->PlaneSamples.size())
   {
@@ -246,6 +287,65 @@ bool LatticeTarget<T>::Within(T original, T decoded, double& error, double& tran
   return transformed <= this->Field.Bound;
 }
 
+/// @param sample of the finest plane
+/// @param known intervals of blocks that were looked at before
+template <class T>
+bool LatticeTarget<T>::BothInvisible(const T* values, const glm::ivec3& sample, T original,
+  T decoded, std::map<std::int64_t, int>& known) const
+{
+  if (!this->Hidden)
+  {
+    return false;
+  }
+  const glm::ivec3 block = sample / this->Field.BrickCells;
+  const std::int64_t key =
+    (std::int64_t{ block.z } << 42) | (std::int64_t{ block.y } << 21) | block.x;
+  auto found = known.find(key);
+  if (found == known.end())
+  {
+    found = known.emplace(key, this->Hidden->IntervalOf(values, block)).first;
+  }
+  return found->second >= 0 && this->Hidden->Holds(found->second, original) &&
+         this->Hidden->Holds(found->second, decoded);
+}
+
+template <class T>
+bool LatticeTarget<T>::MayStay(const T* values, const glm::ivec3& sample, T original, T decoded,
+  FieldErrors& errors, std::map<std::int64_t, int>& known) const
+{
+  if (!std::isfinite(static_cast<double>(original)))
+  {
+    return false;
+  }
+  if (this->Fills.Holds(original))
+  {
+    ++errors.Fill;
+    return std::memcmp(&original, &decoded, sizeof(T)) == 0;
+  }
+  double error = 0;
+  double transformed = 0;
+  if (this->Within(original, decoded, error, transformed))
+  {
+    errors.Maximum = std::max(errors.Maximum, error);
+    errors.MaximumTransformed = std::max(errors.MaximumTransformed, transformed);
+  }
+  else if (this->BothInvisible(values, sample, original, decoded, known))
+  {
+    error = Difference(original, decoded);
+    ++errors.Invisible;
+  }
+  else
+  {
+    return false;
+  }
+  errors.SumSquared += error * error;
+  if (this->Field.Opacity && error > 0)
+  {
+    errors.SumWeighted += (*this->Field.Opacity)(static_cast<double>(original)) * error * error;
+  }
+  return true;
+}
+
 template <class T>
 void LatticeTarget<T>::Verify(const void* values, const PlaneNumbers& decoded, int plane,
   std::int64_t block, ExceptionList<T>& list, FieldErrors& errors,
@@ -258,6 +358,7 @@ void LatticeTarget<T>::Verify(const void* values, const PlaneNumbers& decoded, i
   const glm::ivec3 last = this->PlaneSamples[0] - 1;
   std::vector<std::uint32_t> offsets(static_cast<std::size_t>(edge));
   std::vector<T> row(static_cast<std::size_t>(edge));
+  std::map<std::int64_t, int> known;
   for (int z = low.z; z < high.z; ++z)
   {
     for (int y = low.y; y < high.y; ++y)
@@ -271,34 +372,27 @@ void LatticeTarget<T>::Verify(const void* values, const PlaneNumbers& decoded, i
       }
       this->Decoder.Decode(
         this->Head.Least, offsets.data(), static_cast<std::size_t>(count), row.data());
-      const std::int64_t base =
-        std::min(y << (2 * plane), last.y) * this->Stride.y +
-        std::min(z << (2 * plane), last.z) * this->Stride.z;
       for (int x = 0; x < count; ++x)
       {
-        const std::int64_t at =
-          base + std::min((low.x + x) << (2 * plane), last.x) * this->Stride.x;
+        const glm::ivec3 sample = { std::min((low.x + x) << (2 * plane), last.x),
+          std::min(y << (2 * plane), last.y), std::min(z << (2 * plane), last.z) };
+        const std::int64_t at = sample.x * this->Stride.x + sample.y * this->Stride.y +
+                                sample.z * this->Stride.z;
         const T original = static_cast<const T*>(values)[at];
-        const bool finite = std::isfinite(static_cast<double>(original));
-        double error = 0;
-        double transformed = 0;
         T final = row[static_cast<std::size_t>(x)];
-        if (!finite || !this->Within(original, final, error, transformed))
+        if (!this->MayStay(
+              static_cast<const T*>(values), sample, original, final, errors, known))
         {
+          ++errors.Exceptions;
           const glm::ivec3 p = glm::ivec3{ low.x + x, y, z } - low;
           list.Positions.push_back(static_cast<std::uint32_t>((p.z * edge + p.y) * edge + p.x));
           list.Values.push_back(original);
           final = original;
-          error = 0;
-          transformed = 0;
-          ++errors.Exceptions;
         }
+        const bool finite = std::isfinite(static_cast<double>(original));
         if (finite)
         {
           errors.Range.Include({ DoubleNotAbove(final), DoubleNotBelow(final) });
-          errors.Maximum = std::max(errors.Maximum, error);
-          errors.MaximumTransformed = std::max(errors.MaximumTransformed, transformed);
-          errors.SumSquared += error * error;
         }
         (finite ? errors.Finite : errors.NonFinite) += 1;
         if (squares != nullptr)

@@ -4,9 +4,13 @@
 #include "Codec/BlockEncoder.h"
 #include "Series/Exceptions.h"
 #include "Series/FieldGroupEncoder.h"
+#include "Series/FillValues.h"
+#include "Series/InvisibleBlocks.h"
 #include "Series/LatticeDecoder.h"
 
 #include <array>
+#include <map>
+#include <memory>
 #include <vector>
 
 namespace banyan
@@ -30,10 +34,12 @@ public:
   const std::vector<glm::ivec3>& Planes() const { return this->PlaneSamples; }
 
   /// The lattice numbers of a step on all planes. What the lattice cannot hold gets a number of its
-  /// neighbourhood.
+  /// neighbourhood; blocks that nobody can see (InvisibleBlocks) get one number.
   std::vector<PlaneNumbers> Make(const void* values) const;
 
-  /// Decodes the samples of a block and compares them with the originals.
+  /// Decodes the samples of a block and compares them with the originals: within the bound, or both
+  /// in one invisible interval where the sample is of an invisible block. Fill values must be the
+  /// same bits.
   /// @param list receives those that are not within the bound
   /// @param errors of the block; decoded values include exceptions
   /// @param squares if not null, of all voxels: the square of what each decodes to is added
@@ -44,6 +50,12 @@ private:
   void FillTile(const T* values, const glm::ivec3& low, PlaneNumbers& plane) const;
   void FillRow(const T* values, std::int64_t stride, int count, std::int32_t* numbers) const;
   bool Within(T original, T decoded, double& error, double& transformed) const;
+  bool BothInvisible(const T* values, const glm::ivec3& sample, T original, T decoded,
+    std::map<std::int64_t, int>& known) const;
+  /// Whether a sample may decode to that; adds to `errors` if so.
+  bool MayStay(const T* values, const glm::ivec3& sample, T original, T decoded,
+    FieldErrors& errors, std::map<std::int64_t, int>& known) const;
+  void HideBlocks(const T* values, PlaneNumbers& plane) const;
 
   const FieldGroup& Field;
   const group::FieldHead& Head;
@@ -52,6 +64,8 @@ private:
   std::vector<glm::ivec3> PlaneSamples;
   glm::i64vec3 Stride; ///< of values, along the axes in order
   LatticeDecoder<T> Decoder;
+  FillSet<T> Fills;
+  std::unique_ptr<InvisibleBlocks<T>> Hidden; ///< null: every value counts
   double Nearest, Furthest; ///< transformed values outside are not put on the lattice
 };
 

@@ -1,9 +1,12 @@
 #ifndef banyan_Series_SeriesEncoder_h
 #define banyan_Series_SeriesEncoder_h
 
+#include "Series/Histogram.h"
+#include "Series/QuantizerOptions.h"
 #include "Series/SeriesIndex.h"
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,15 +33,25 @@ struct EncodeOptions
   int BrickCells = 0;       ///< 8, 16, 32 or 64; 0 chooses by the size of the grid
   int CompressionLevel = 3; ///< of zstd (tables and exceptions), in [1, 19]
   EncodeProfile Profile = EncodeProfile::Balanced;
+  QuantizerOptions Quantizer;                               ///< of all arrays
+  std::map<std::string, QuantizerOptions> QuantizerOfArray; ///< instead, of arrays by name
+
+  const QuantizerOptions& QuantizerFor(const std::string& array) const;
+  /// Whether an array needs ArrayDescription::Histograms.
+  bool NeedsHistogram(const std::string& array) const;
 };
 
-/// What the arrays of a series are; ranges are needed only for relative error bounds.
+/// What the arrays of a series are; ranges are needed only for relative error bounds, histograms
+/// where a transform or a range is chosen from the values (EncodeOptions::NeedsHistogram).
 struct ArrayDescription
 {
   std::string Name;
   ScalarType Type = ScalarType::Float32;
   std::vector<std::string> ComponentNames; ///< one per component, may hold empty strings
   std::vector<ValueRange> SeriesRanges; ///< one per component: of the finite values over all steps
+  /// One per component, or none: of all finite values over all steps but fill values
+  /// (CountComponent). Ranges of the data come from here when there are histograms.
+  std::vector<ValueHistogram> Histograms;
 };
 
 /// Values of one array at one step: `[nz][ny][nx][components]`, x (and components) fastest, the
@@ -56,7 +69,8 @@ struct ArrayValues
 /// readable.
 ///
 /// Exactness: every finite voxel is bounded by ErrorBoundAbsolute in its own type, verified here
-/// voxel by voxel; NaN (payload bits included) and infinities are bit-exact.
+/// voxel by voxel (with a transform, in what it makes of them); NaN (payload bits included),
+/// infinities and fill values are bit-exact.
 ///
 /// Threads: `AddStep` uses the pool; one thread at a time may use an encoder.
 class SeriesEncoder

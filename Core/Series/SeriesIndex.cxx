@@ -1,11 +1,25 @@
 #include "Series/SeriesIndex.h"
 
 #include "Base/Error.h"
+#include "Series/QuantizationError.h"
 
 #include <algorithm>
 
 namespace banyan
 {
+
+double ComponentIndex::OpacityWeightedError() const
+{
+  return this->FiniteCount > 0
+           ? ShareOfSquaredRange(this->SumWeightedError / static_cast<double>(this->FiniteCount),
+               this->ReferenceRange())
+           : 0.0;
+}
+
+const ValueRange& ComponentIndex::ReferenceRange() const
+{
+  return this->PromisedRange.Empty() ? this->Range : this->PromisedRange;
+}
 
 int SeriesIndex::FindArray(const std::string& name) const
 {

@@ -3,6 +3,8 @@
 
 #include "Base/ScalarType.h"
 #include "Series/Grid.h"
+#include "Series/OpacityWeight.h"
+#include "Series/RangeRule.h"
 #include "Series/Transform.h"
 #include "Series/ValueRange.h"
 
@@ -25,10 +27,15 @@ struct ComponentIndex
 {
   std::string Name; ///< may be empty
   ValueRange Range; ///< of the decoded finite values over the whole series
-  /// What the encoder was told beforehand that the values lie in; empty when it was not told.
+  /// What the encoder was told beforehand that the values lie in, or the range that was chosen by
+  /// a rule, which values may leave; empty when there was neither.
   ValueRange PromisedRange;
-  double ErrorBoundAbsolute = 0; ///< |decoded - original| <= this for every finite voxel, verified
-  double MeasuredMaxError = 0;   ///< the largest |decoded - original| met while encoding
+  /// |f(decoded) - f(original)| <= this, f = ValueTransform, for every finite voxel, verified: but
+  /// clamped voxels are measured against what they were clamped to, and invisible ones (see
+  /// Opacity) may become others.
+  double ErrorBoundAbsolute = 0;
+  /// The largest |decoded - original| met while encoding, of the voxels that the bound holds for.
+  double MeasuredMaxError = 0;
   /// The largest error in the transformed domain, where the bound holds; MeasuredMaxError when the
   /// transform is the identity.
   double MeasuredMaxErrorTransformed = 0;
@@ -37,6 +44,21 @@ struct ComponentIndex
   std::int64_t NonFiniteCount = 0; ///< NaN and infinities, kept bit-exact
   /// Of the values before they were put on the lattice; the identity unless the encoder was told.
   Transform ValueTransform;
+
+  // What else the encoder was told; see QuantizerOptions.
+  RangeRule::Source RangeFrom = RangeRule::Source::Data;
+  bool ClampOutside = false; ///< values were clamped to PromisedRange before they were encoded
+  std::vector<double> FillValues;
+  std::vector<OpacityKnot> Opacity; ///< empty: every value counts
+  std::int64_t ClampedCount = 0;    ///< voxels that clamping changed
+  std::int64_t FillCount = 0;       ///< voxels that hold a fill value, kept bit-exact
+  std::int64_t InvisibleCount = 0;  ///< out of bound: invisible ones, decoded to invisible ones
+  double SumWeightedError = 0;      ///< of opacity times squared error, over all finite voxels
+
+  /// Equation 2 of the study over its squared range (see QuantizationError.h); 0 without Opacity.
+  double OpacityWeightedError() const;
+  /// That ranges of errors refer to: PromisedRange if it was chosen, else Range.
+  const ValueRange& ReferenceRange() const;
 };
 
 struct ArrayIndex
