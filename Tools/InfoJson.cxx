@@ -87,13 +87,40 @@ Json ErrorToJson(const ComponentReport& component)
   Json json;
   json["bound"] = bound;
   json["max"] = index.MeasuredMaxError;
-  json["maxOverBound"] = bound > 0.0 ? Json(index.MeasuredMaxError / bound) : Json(nullptr);
+  json["maxTransformed"] = index.MeasuredMaxErrorTransformed;
+  json["maxOverBound"] =
+    bound > 0.0 ? Json(index.MeasuredMaxErrorTransformed / bound) : Json(nullptr);
   json["rmse"] = component.Rmse();
-  json["psnr"] = OrNull(Decibels(index.Range.Width(), component.Rmse()));
+  json["psnr"] = OrNull(Decibels(index.ReferenceRange().Width(), component.Rmse()));
   const StepReport* narrowest = component.NarrowestStep();
   json["narrowestStep"] = narrowest ? Json(narrowest->Step) : Json(nullptr);
   json["psnrOfNarrowestStep"] =
     narrowest ? OrNull(Decibels(narrowest->Range.Width(), component.Rmse())) : Json(nullptr);
+  return json;
+}
+
+/// How a component was quantized; null where it is as by default.
+Json QuantizerToJson(const ComponentIndex& index)
+{
+  constexpr const char* kinds[] = { "uniform", "asinh", "table" };
+  constexpr const char* ranges[] = { "data", "percentiles", "given" };
+  Json json;
+  json["transform"] = kinds[static_cast<int>(index.ValueTransform.Kind())];
+  json["asinhScale"] = index.ValueTransform.Kind() == TransformKind::Asinh
+                         ? Json(index.ValueTransform.Scale())
+                         : Json(nullptr);
+  json["rangeFrom"] = ranges[static_cast<int>(index.RangeFrom)];
+  json["clamped"] = index.ClampOutside ? Json(index.ClampedCount) : Json(nullptr);
+  json["fillValues"] = index.FillValues;
+  json["fill"] = index.FillCount;
+  json["opacity"] = Json::array();
+  for (const OpacityKnot& knot : index.Opacity)
+  {
+    json["opacity"].push_back({ knot.Value, knot.Opacity });
+  }
+  json["invisible"] = index.InvisibleCount;
+  json["opacityWeightedError"] =
+    index.Opacity.empty() ? Json(nullptr) : Json(index.OpacityWeightedError());
   return json;
 }
 
@@ -116,6 +143,7 @@ Json ComponentToJson(const InfoReport& report, std::size_t number)
   json["name"] = component.Name;
   json["type"] = NameOf(component.Type);
   json["transformed"] = !component.Index.ValueTransform.IsIdentity();
+  json["quantizer"] = QuantizerToJson(component.Index);
   json["range"] = Range(component.Index.Range);
   json["promisedRange"] = Range(component.Index.PromisedRange);
   json["finite"] = component.Index.FiniteCount;

@@ -79,6 +79,57 @@ std::string Size(const SeriesReport& report)
          Megabytes(report.IndexBytes) + "\n";
 }
 
+std::string Described(const Transform& transform)
+{
+  switch (transform.Kind())
+  {
+    case TransformKind::Asinh:
+      return "asinh(value / " + Digits(transform.Scale()) + ")";
+    case TransformKind::Table:
+      return "a table of " + Counted(transform.Knots().size(), "knot");
+    default:
+      return "the value itself";
+  }
+}
+
+/// How a component was quantized, where that is not simply as it is.
+std::string Quantizer(const ComponentReport& component)
+{
+  const ComponentIndex& index = component.Index;
+  std::string text;
+  const auto line = [&](const std::string& sentence)
+  { text += "  " + component.Name + ": " + sentence + "\n"; };
+  const std::string range =
+    Digits(index.PromisedRange.Low) + " .. " + Digits(index.PromisedRange.High);
+  if (!index.ValueTransform.IsIdentity())
+  {
+    line("the bound is one on " + Described(index.ValueTransform) + ", where the greatest error is " +
+         Digits(index.MeasuredMaxErrorTransformed));
+  }
+  if (index.RangeFrom != RangeRule::Source::Data)
+  {
+    line("its range was " +
+         std::string(index.RangeFrom == RangeRule::Source::Given ? "given" : "chosen by percentiles") +
+         ": " + range);
+  }
+  if (index.ClampOutside)
+  {
+    line(Counted(static_cast<std::size_t>(index.ClampedCount), "value") + " clamped to " + range);
+  }
+  if (!index.FillValues.empty())
+  {
+    line(Counted(static_cast<std::size_t>(index.FillCount), "fill value") + ", kept bit by bit");
+  }
+  if (!index.Opacity.empty())
+  {
+    line("made for an opacity function of " + Counted(index.Opacity.size(), "knot") + ": " +
+         Counted(static_cast<std::size_t>(index.InvisibleCount), "invisible value") +
+         " out of bound, equation 2 is " + Digits(100.0 * index.OpacityWeightedError()) +
+         " % of the squared range");
+  }
+  return text;
+}
+
 std::string Errors(const SeriesReport& report)
 {
   TextTable table({ "Error", "range", "bound", "max |error|", "of bound", "RMSE", "PSNR dB",
@@ -91,22 +142,20 @@ std::string Errors(const SeriesReport& report)
     table.AddRow({ component.Name,
       index.Range.Empty() ? "-" : Digits(index.Range.Low) + " .. " + Digits(index.Range.High),
       Digits(bound), Digits(index.MeasuredMaxError),
-      bound > 0.0 ? Percent(index.MeasuredMaxError / bound) : "-", Digits(component.Rmse()),
-      Digits(Decibels(index.Range.Width(), component.Rmse())),
+      bound > 0.0 ? Percent(index.MeasuredMaxErrorTransformed / bound) : "-",
+      Digits(component.Rmse()),
+      Digits(Decibels(index.ReferenceRange().Width(), component.Rmse())),
       narrowest ? std::to_string(narrowest->Step) : "-",
       narrowest ? Digits(Decibels(narrowest->Range.Width(), component.Rmse())) : "-",
       std::to_string(index.NonFiniteCount) });
   }
-  std::string transformed;
+  std::string quantizers;
   for (const ComponentReport& component : report.Components)
   {
-    transformed +=
-      component.Index.ValueTransform.IsIdentity()
-        ? ""
-        : "  " + component.Name + " is transformed, and its bound one on what comes out\n";
+    quantizers += Quantizer(component);
   }
   const bool relative = report.Index.Mode == ErrorBoundMode::RelativeToSeriesRange;
-  return "\n" + table.Text() + transformed + "  asked for: " +
+  return "\n" + table.Text() + quantizers + "  asked for: " +
          (relative ? AsFraction(report.Index.ErrorBound) + " of the range of the series\n"
                    : Digits(report.Index.ErrorBound) + ", absolute\n");
 }
