@@ -21,9 +21,13 @@ SeriesWriting::SeriesWriting(WritingOrder order)
   , Talk(this->Order.Controller)
   , Input(this->Order.Producer, this->Order.Port)
   , Gathering(this->Talk, this->Order.Controller)
+  , Histograms(this->Order.Options)
 {
-  this->TwoPasses = this->Order.Options.Mode == ErrorBoundMode::RelativeToSeriesRange &&
-                    this->Order.Options.ErrorBound > 0.0;
+  const bool relative = this->Order.Options.Mode == ErrorBoundMode::RelativeToSeriesRange &&
+                        this->Order.Options.ErrorBound > 0.0;
+  const QuantizerOptions& quantizer = this->Order.Options.Quantizer;
+  this->TwoPasses = quantizer.NeedsHistogram(relative) ||
+                    (relative && quantizer.Range.From != RangeRule::Source::Given);
 }
 
 SeriesWriting::~SeriesWriting() = default;
@@ -249,7 +253,9 @@ void SeriesWriting::FirstPass()
         array.Ranges[c].Include(same->Ranges[c]);
       }
     }
+    this->Talk.Together([&] { this->Histograms.Count(this->Mine(), now, this->Talk.Rank()); });
   }
+  this->Histograms.Merge(this->Talk, this->First.Arrays);
 }
 
 void SeriesWriting::SecondPass()
@@ -282,7 +288,8 @@ void SeriesWriting::Open()
   std::vector<ArrayDescription> descriptions;
   for (const WrittenArray& array : this->First.Arrays)
   {
-    descriptions.push_back({ array.Name, array.Type, array.Components, array.Ranges });
+    descriptions.push_back(
+      { array.Name, array.Type, array.Components, array.Ranges, this->Histograms.Of(array.Name) });
   }
   this->Talk.OnRank(0,
     [&]

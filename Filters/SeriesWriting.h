@@ -3,6 +3,7 @@
 
 #include "PipelineInput.h"
 #include "RankTalk.h"
+#include "SeriesHistograms.h"
 #include "StepGathering.h"
 #include "StepReport.h"
 
@@ -48,8 +49,8 @@ struct WritingOrder
 ///
 /// Everything is decided by all ranks together: a problem of one makes all of them throw the same
 /// Error, at the same point. With a relative error bound the steps are pulled twice: first for the
-/// ranges of the whole series. Changes of grid, type or arrays between steps are refused in the
-/// first pass.
+/// ranges of the whole series; the same where a transform or a range is chosen from the values.
+/// Changes of grid, type or arrays between steps are refused in the first pass.
 class SeriesWriting
 {
 public:
@@ -90,6 +91,7 @@ private:
   RankTalk Talk;
   PipelineInput Input;
   StepGathering Gathering;
+  SeriesHistograms Histograms;
   bool TwoPasses = false;
   bool InSecondPass = false;
   bool HasTimes = false; ///< whether the input has time steps that we go through

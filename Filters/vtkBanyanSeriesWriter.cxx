@@ -1,6 +1,7 @@
 #include "vtkBanyanSeriesWriter.h"
 
 #include "SeriesWriting.h"
+#include "WriterQuantizer.h"
 
 #include "vtkCommand.h"
 #include "vtkDataArraySelection.h"
@@ -11,11 +12,15 @@
 
 #include "Base/InterruptSignals.h"
 
+#include "Base/Error.h"
+
+#include <algorithm>
 #include <csignal>
 
 vtkStandardNewMacro(vtkBanyanSeriesWriter);
 
 vtkBanyanSeriesWriter::vtkBanyanSeriesWriter()
+  : Quantizer(std::make_unique<banyan::WriterQuantizer>())
 {
   this->Controller = vtkMultiProcessController::GetGlobalController();
 }
@@ -32,9 +37,118 @@ void vtkBanyanSeriesWriter::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "ErrorBound: " << this->ErrorBound << "\n"
      << indent << "ErrorBoundMode: " << this->ErrorBoundMode << "\n"
      << indent << "KeyframeInterval: " << this->KeyframeInterval << "\n"
-     << indent << "WriteTimeSteps: " << this->WriteTimeSteps << "\n"
+     << indent << "Profile: " << this->Profile << "\n"
+     << this->Quantizer->Text() << indent << "WriteTimeSteps: " << this->WriteTimeSteps << "\n"
      << indent << "PointArraySelection:\n";
   this->Selection->PrintSelf(os, indent.GetNextIndent());
+}
+
+void vtkBanyanSeriesWriter::SetTransform(int transform)
+{
+  if (this->Quantizer->Transform != transform)
+  {
+    this->Quantizer->Transform = std::min(std::max(transform, int{ UNIFORM }), int{ ADAPTIVE });
+    this->Modified();
+  }
+}
+
+int vtkBanyanSeriesWriter::GetTransform()
+{
+  return this->Quantizer->Transform;
+}
+
+void vtkBanyanSeriesWriter::SetAsinhScale(double scale)
+{
+  if (this->Quantizer->AsinhScale != scale)
+  {
+    this->Quantizer->AsinhScale = scale;
+    this->Modified();
+  }
+}
+
+double vtkBanyanSeriesWriter::GetAsinhScale()
+{
+  return this->Quantizer->AsinhScale;
+}
+
+void vtkBanyanSeriesWriter::AddTransformKnot(double value, double transformed)
+{
+  this->Quantizer->TransformTable.push_back(value);
+  this->Quantizer->TransformTable.push_back(transformed);
+  this->Modified();
+}
+
+void vtkBanyanSeriesWriter::RemoveAllTransformKnots()
+{
+  this->Quantizer->TransformTable.clear();
+  this->Modified();
+}
+
+void vtkBanyanSeriesWriter::SetRangeMode(int mode)
+{
+  if (this->Quantizer->RangeMode != mode)
+  {
+    this->Quantizer->RangeMode = std::min(std::max(mode, int{ FROM_DATA }), int{ GIVEN });
+    this->Modified();
+  }
+}
+
+int vtkBanyanSeriesWriter::GetRangeMode()
+{
+  return this->Quantizer->RangeMode;
+}
+
+void vtkBanyanSeriesWriter::SetRangePercentiles(double low, double high)
+{
+  this->Quantizer->RangePercentiles[0] = low;
+  this->Quantizer->RangePercentiles[1] = high;
+  this->Modified();
+}
+
+void vtkBanyanSeriesWriter::SetRange(double low, double high)
+{
+  this->Quantizer->Range[0] = low;
+  this->Quantizer->Range[1] = high;
+  this->Modified();
+}
+
+void vtkBanyanSeriesWriter::SetClampOutside(bool clamp)
+{
+  if (this->Quantizer->ClampOutside != clamp)
+  {
+    this->Quantizer->ClampOutside = clamp;
+    this->Modified();
+  }
+}
+
+bool vtkBanyanSeriesWriter::GetClampOutside()
+{
+  return this->Quantizer->ClampOutside;
+}
+
+void vtkBanyanSeriesWriter::AddFillValue(double value)
+{
+  this->Quantizer->FillValues.push_back(value);
+  this->Modified();
+}
+
+void vtkBanyanSeriesWriter::RemoveAllFillValues()
+{
+  this->Quantizer->FillValues.clear();
+  this->Modified();
+}
+
+void vtkBanyanSeriesWriter::AddOpacityKnot(double value, double opacity)
+{
+  this->Quantizer->OpacityFunction.push_back(value);
+  this->Quantizer->OpacityFunction.push_back(opacity);
+  this->Modified();
+}
+
+void vtkBanyanSeriesWriter::RemoveAllOpacityKnots()
+{
+  this->Quantizer->OpacityFunction.clear();
+  this->Modified();
 }
 
 int vtkBanyanSeriesWriter::FillInputPortInformation(int, vtkInformation* info)
@@ -87,6 +201,7 @@ void vtkBanyanSeriesWriter::WriteSeries()
                          ? banyan::ErrorBoundMode::Absolute
                          : banyan::ErrorBoundMode::RelativeToSeriesRange;
   order.Options.KeyframeInterval = this->KeyframeInterval;
+  order.Options.Profile = static_cast<banyan::EncodeProfile>(this->Profile);
   if (this->GetNumberOfInputConnections(0) > 0)
   {
     order.Producer = this->GetInputAlgorithm(0, 0, order.Port);
@@ -98,6 +213,17 @@ void vtkBanyanSeriesWriter::WriteSeries()
   order.Aborted = [this]
   { return this->GetAbortExecute() != 0 || banyan::InterruptSignals::Came(); };
   order.Warn = [this](const std::string& sentence) { vtkWarningMacro(<< sentence); };
+  try
+  {
+    order.Options.Quantizer = this->Quantizer->Options();
+  }
+  catch (const banyan::Error& error)
+  {
+    // The same on all ranks, which have the same properties.
+    this->Fail((order.FileName.empty() ? "The series" : order.FileName) + " was not written. " +
+               error.what());
+    return;
+  }
   int signal = 0;
   {
     const banyan::InterruptSignals signals;
@@ -131,10 +257,20 @@ void vtkBanyanSeriesWriter::Run(const banyan::WritingOrder& order)
       this->ErrorMessage = order.FileName + " holds the first " +
                            std::to_string(writing.StepsKept()) + " steps only. " + error.what();
     }
-    // All ranks throw the same sentence; one of them says it.
-    if (!this->Controller || this->Controller->GetLocalProcessId() == 0)
-    {
-      vtkErrorMacro(<< this->ErrorMessage);
-    }
+    this->Fail(this->ErrorMessage);
+  }
+}
+
+void vtkBanyanSeriesWriter::Fail(const std::string& sentence)
+{
+  if (this->GetErrorCode() == vtkErrorCode::NoError)
+  {
+    this->SetErrorCode(vtkErrorCode::UserError);
+  }
+  this->ErrorMessage = sentence;
+  // All ranks have the same sentence; one of them says it.
+  if (!this->Controller || this->Controller->GetLocalProcessId() == 0)
+  {
+    vtkErrorMacro(<< this->ErrorMessage);
   }
 }

@@ -16,7 +16,8 @@
  *
  * @par Exactness:
  * |decoded - original| <= error bound for each finite value, verified in the array's type; NaN and
- * infinities are bit-exact. ErrorBound 0 keeps every bit.
+ * infinities are bit-exact. ErrorBound 0 keeps every bit. With a Transform the bound is one on the
+ * transformed values; with ClampOutside on the clamped ones.
  *
  * @par Errors:
  * Write() returns 0, GetErrorCode() is set and an error message says what is wrong, at which step
@@ -35,6 +36,7 @@
 #include "vtkSmartPointer.h"     // For Controller
 #include "vtkWriter.h"
 
+#include <memory> // For Quantizer
 #include <string> // For ErrorMessage
 
 class vtkDataArraySelection;
@@ -42,6 +44,7 @@ class vtkMultiProcessController;
 
 namespace banyan
 {
+struct WriterQuantizer;
 struct WritingOrder;
 }
 
@@ -75,6 +78,95 @@ public:
   vtkGetMacro(ErrorBound, double);
   vtkSetClampMacro(ErrorBoundMode, int, RELATIVE_TO_SERIES_RANGE, ABSOLUTE);
   vtkGetMacro(ErrorBoundMode, int);
+  ///@}
+
+  enum Transforms
+  {
+    UNIFORM = 0,
+    ASINH = 1,
+    TABLE = 2,
+    ADAPTIVE = 3
+  };
+  ///@{
+  /**
+   * What the error bound holds in: the values as they are (default), asinh(value / AsinhScale) for
+   * values over decades, a table of knots, or a table from the histogram of the whole series, which
+   * is more exact where values are dense. A relative bound is relative to the transformed range.
+   */
+  void SetTransform(int transform);
+  int GetTransform();
+  ///@}
+
+  ///@{
+  /**
+   * Below this magnitude asinh is linear, above it logarithmic. 0 (default): chosen from the data.
+   */
+  void SetAsinhScale(double scale);
+  double GetAsinhScale();
+  ///@}
+
+  ///@{
+  /**
+   * Knots of the table: values and what they become, both strictly increasing.
+   */
+  void AddTransformKnot(double value, double transformed);
+  void RemoveAllTransformKnots();
+  ///@}
+
+  enum RangeModes
+  {
+    FROM_DATA = 0,
+    PERCENTILES = 1,
+    GIVEN = 2
+  };
+  ///@{
+  /**
+   * Which range of values a relative error bound refers to: least to greatest (default), the two
+   * RangePercentiles, or Range. Values outside keep the bound all the same: bit-exact if far away.
+   */
+  void SetRangeMode(int mode);
+  int GetRangeMode();
+  void SetRangePercentiles(double low, double high);
+  void SetRange(double low, double high);
+  ///@}
+
+  ///@{
+  /**
+   * Whether values outside the range become its nearer end, and are counted; default off.
+   */
+  void SetClampOutside(bool clamp);
+  bool GetClampOutside();
+  ///@}
+
+  ///@{
+  /**
+   * Values that mean "no value" (1e20, -9999): bit-exact, and never part of a range. Default none.
+   */
+  void AddFillValue(double value);
+  void RemoveAllFillValues();
+  ///@}
+
+  ///@{
+  /**
+   * Opacity (0 to 1) over values, linear between knots: what it makes invisible may become anything
+   * invisible of the same interval, and costs next to nothing. Default none: all values count.
+   */
+  void AddOpacityKnot(double value, double opacity);
+  void RemoveAllOpacityKnots();
+  ///@}
+
+  enum Profiles
+  {
+    FAST = 0,
+    BALANCED = 1,
+    COMPACT = 2
+  };
+  ///@{
+  /**
+   * Time against size; the bound is the same. Default BALANCED.
+   */
+  vtkSetClampMacro(Profile, int, FAST, COMPACT);
+  vtkGetMacro(Profile, int);
   ///@}
 
   ///@{
@@ -132,14 +224,17 @@ private:
 
   void WriteSeries();
   void Run(const banyan::WritingOrder& order);
+  void Fail(const std::string& sentence);
 
   char* FileName = nullptr;
   double ErrorBound = 1.0 / 512.0;
   int ErrorBoundMode = RELATIVE_TO_SERIES_RANGE;
   int KeyframeInterval = 8;
+  int Profile = BALANCED;
   bool WriteTimeSteps = true;
   std::string ErrorMessage;
   vtkNew<vtkDataArraySelection> Selection;
+  std::unique_ptr<banyan::WriterQuantizer> Quantizer;
   vtkSmartPointer<vtkMultiProcessController> Controller;
 };
 

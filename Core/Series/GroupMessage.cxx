@@ -122,6 +122,10 @@ void Visit(Visitor& visitor, Group& group)
           visitor.Number(component.SumSquaredError);
           visitor.Number(component.FiniteCount);
           visitor.Number(component.NonFiniteCount);
+          visitor.Number(component.ClampedCount);
+          visitor.Number(component.FillCount);
+          visitor.Number(component.InvisibleCount);
+          visitor.Number(component.SumWeightedError);
         });
     });
   visitor.Items(group.Magnitudes,

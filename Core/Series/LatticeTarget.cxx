@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace banyan
 {
@@ -55,8 +56,9 @@ void FillGaps(const bool* held, int count, std::int32_t otherwise, std::int32_t*
 void Pad(PlaneNumbers& plane)
 {
   const glm::ivec3 n = plane.Samples;
-  const auto row = [&plane](int y, int z)
-  { return plane.Numbers.data() + plane.IndexOf({ 0, y, z }); };
+  const auto row = [&plane](int y, int z) {
+    return plane.Numbers.data() + plane.IndexOf({ 0, y, z });
+  };
   for (int z = 0; z < plane.Padded.z; ++z)
   {
     for (int y = 0; y < plane.Padded.y; ++y)
@@ -126,7 +128,8 @@ std::array<std::uint8_t, 3> SmoothestLast(const FieldGroup& field, const void* s
         {
           const T* at = values + x * stride.x + y * stride.y + z * stride.z;
           const double bend = static_cast<double>(at[stride[a]]) +
-                              static_cast<double>(at[-stride[a]]) - 2.0 * static_cast<double>(at[0]);
+                              static_cast<double>(at[-stride[a]]) -
+                              2.0 * static_cast<double>(at[0]);
           roughness[a] += std::isfinite(bend) ? std::abs(bend) : 0.0;
         }
       }
@@ -215,9 +218,9 @@ void LatticeTarget<T>::FillTile(const T* values, const glm::ivec3& low, PlaneNum
   {
     for (int y = low.y; y < std::min(low.y + Tile, n.y); ++y)
     {
-      this->FillRow(
-        values + low.x * this->Stride.x + y * this->Stride.y + z * this->Stride.z, this->Stride.x,
-        std::min(Tile, n.x - low.x), plane.Numbers.data() + plane.IndexOf({ low.x, y, z }));
+      this->FillRow(values + low.x * this->Stride.x + y * this->Stride.y + z * this->Stride.z,
+        this->Stride.x, std::min(Tile, n.x - low.x),
+        plane.Numbers.data() + plane.IndexOf({ low.x, y, z }));
     }
   }
 }
@@ -376,12 +379,11 @@ void LatticeTarget<T>::Verify(const void* values, const PlaneNumbers& decoded, i
       {
         const glm::ivec3 sample = { std::min((low.x + x) << (2 * plane), last.x),
           std::min(y << (2 * plane), last.y), std::min(z << (2 * plane), last.z) };
-        const std::int64_t at = sample.x * this->Stride.x + sample.y * this->Stride.y +
-                                sample.z * this->Stride.z;
+        const std::int64_t at =
+          sample.x * this->Stride.x + sample.y * this->Stride.y + sample.z * this->Stride.z;
         const T original = static_cast<const T*>(values)[at];
         T final = row[static_cast<std::size_t>(x)];
-        if (!this->MayStay(
-              static_cast<const T*>(values), sample, original, final, errors, known))
+        if (!this->MayStay(static_cast<const T*>(values), sample, original, final, errors, known))
         {
           ++errors.Exceptions;
           const glm::ivec3 p = glm::ivec3{ low.x + x, y, z } - low;
@@ -397,8 +399,11 @@ void LatticeTarget<T>::Verify(const void* values, const PlaneNumbers& decoded, i
         (finite ? errors.Finite : errors.NonFinite) += 1;
         if (squares != nullptr)
         {
-          (*squares)[static_cast<std::size_t>(at / this->Field.Components)] +=
-            static_cast<double>(final) * static_cast<double>(final);
+          // A vector with a fill value has no length.
+          const double value = this->Fills.Holds(original)
+                                 ? std::numeric_limits<double>::quiet_NaN()
+                                 : static_cast<double>(final);
+          (*squares)[static_cast<std::size_t>(at / this->Field.Components)] += value * value;
         }
       }
     }

@@ -103,7 +103,10 @@ PieceRange RangeOfSeries(const SeriesFile& series, int array)
   PieceRange result;
   for (const ComponentIndex& component : series.Index().Arrays.at(array).Components)
   {
-    result.Components.push_back(component.Range);
+    // Neither outliers nor fill values are to spoil colours.
+    const bool chosen =
+      component.RangeFrom != RangeRule::Source::Data || !component.FillValues.empty();
+    result.Components.push_back(chosen ? component.ReferenceRange() : component.Range);
     result.HasNonFinite = result.HasNonFinite || component.NonFiniteCount > 0;
   }
   if (result.Components.size() == 1)

@@ -30,7 +30,8 @@ PieceRange RangeOfPiece(
   const SeriesFile& series, int step, int array, int level, const Box& samples);
 
 /// The same over all steps, from the index: exact for level 0, and contains the true ranges of
-/// coarser levels.
+/// coarser levels. Of components whose range was chosen (percentiles, given) or that have fill
+/// values it is that range instead, for colours.
 PieceRange RangeOfSeries(const SeriesFile& series, int array);
 
 /// Numbers of the bricks that together cover `samples`, in ascending order.
