@@ -103,14 +103,15 @@ std::string Quantizer(const ComponentReport& component)
     Digits(index.PromisedRange.Low) + " .. " + Digits(index.PromisedRange.High);
   if (!index.ValueTransform.IsIdentity())
   {
-    line("the bound is one on " + Described(index.ValueTransform) + ", where the greatest error is " +
-         Digits(index.MeasuredMaxErrorTransformed));
+    line("the bound is one on " + Described(index.ValueTransform) +
+         ", where the greatest error is " + Digits(index.MeasuredMaxErrorTransformed));
   }
   if (index.RangeFrom != RangeRule::Source::Data)
   {
-    line("its range was " +
-         std::string(index.RangeFrom == RangeRule::Source::Given ? "given" : "chosen by percentiles") +
-         ": " + range);
+    line(
+      "its range was " +
+      std::string(index.RangeFrom == RangeRule::Source::Given ? "given" : "chosen by percentiles") +
+      ": " + range);
   }
   if (index.ClampOutside)
   {
@@ -143,8 +144,7 @@ std::string Errors(const SeriesReport& report)
       index.Range.Empty() ? "-" : Digits(index.Range.Low) + " .. " + Digits(index.Range.High),
       Digits(bound), Digits(index.MeasuredMaxError),
       bound > 0.0 ? Percent(index.MeasuredMaxErrorTransformed / bound) : "-",
-      Digits(component.Rmse()),
-      Digits(Decibels(index.ReferenceRange().Width(), component.Rmse())),
+      Digits(component.Rmse()), Digits(Decibels(index.ReferenceRange().Width(), component.Rmse())),
       narrowest ? std::to_string(narrowest->Step) : "-",
       narrowest ? Digits(Decibels(narrowest->Range.Width(), component.Rmse())) : "-",
       std::to_string(index.NonFiniteCount) });

@@ -150,9 +150,8 @@ private:
     }
     const double before = static_cast<double>(original);
     const double after = static_cast<double>(decoded);
-    const bool unseen = !within &&
-                        this->Rule.Invisible.Invisible(
-                          std::min(before, after), std::max(before, after));
+    const bool unseen =
+      !within && this->Rule.Invisible.Invisible(std::min(before, after), std::max(before, after));
     if (unseen)
     {
       ++this->Errors.Invisible;

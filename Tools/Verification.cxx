@@ -87,10 +87,10 @@ public:
         component.Bound = found.Components[c].ErrorBoundAbsolute;
         component.Transformed = !found.Components[c].ValueTransform.IsIdentity();
         this->Result.Components.push_back(std::move(component));
-        this->Opacities.push_back(
-          choice.Opacity                         ? *choice.Opacity
-          : !found.Components[c].Opacity.empty() ? OpacityFunction(found.Components[c].Opacity)
-                                                 : Ramp(RangeOf(found.Components[c])));
+        this->Opacities.push_back(choice.Opacity ? *choice.Opacity
+                                  : !found.Components[c].Opacity.empty()
+                                    ? OpacityFunction(found.Components[c].Opacity)
+                                    : Ramp(RangeOf(found.Components[c])));
       }
     }
   }
@@ -212,17 +212,18 @@ private:
   }
 
   /// The index promises less than was asked for. What a relative bound refers to is the range of
-  /// the source, or a wider one that the encoder was told, or the one that was chosen by a rule; with
-  /// a transform, the width of what they become.
+  /// the source, or a wider one that the encoder was told, or the one that was chosen by a rule;
+  /// with a transform, the width of what they become.
   std::string LooserThanAsked(const ComponentVerification& component) const
   {
     const SeriesIndex& index = this->Series.Index();
     const ComponentIndex& found =
       this->ArrayOf(component).Components[static_cast<std::size_t>(component.Component)];
     const double chosen = found.ValueTransform.TransformedWidth(found.PromisedRange);
-    const double width = found.RangeFrom == RangeRule::Source::Data
-                           ? std::max(chosen, found.ValueTransform.TransformedWidth(component.All.Range))
-                           : chosen;
+    const double width =
+      found.RangeFrom == RangeRule::Source::Data
+        ? std::max(chosen, found.ValueTransform.TransformedWidth(component.All.Range))
+        : chosen;
     const double asked =
       index.Mode == ErrorBoundMode::Absolute ? index.ErrorBound : index.ErrorBound * width;
     if (component.Bound <= asked * (1.0 + 1e-12))

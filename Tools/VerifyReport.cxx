@@ -115,7 +115,8 @@ std::string Exempt(const ComponentVerification& component)
   std::string text;
   const auto line = [&](std::int64_t count, const std::string& what)
   {
-    text += count > 0 ? "  " + component.Name + ": " + Times(count, "value") + " " + what + "\n" : "";
+    text +=
+      count > 0 ? "  " + component.Name + ": " + Times(count, "value") + " " + what + "\n" : "";
   };
   line(component.All.Invisible, "beyond the bound, invisible in the source and in the series");
   line(component.All.Fill, "without meaning (fill values), compared bit by bit");

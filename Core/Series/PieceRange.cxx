@@ -104,9 +104,7 @@ PieceRange RangeOfSeries(const SeriesFile& series, int array)
   for (const ComponentIndex& component : series.Index().Arrays.at(array).Components)
   {
     // Neither outliers nor fill values are to spoil colours.
-    const bool chosen =
-      component.RangeFrom != RangeRule::Source::Data || !component.FillValues.empty();
-    result.Components.push_back(chosen ? component.ReferenceRange() : component.Range);
+    result.Components.push_back(component.ReferenceRange());
     result.HasNonFinite = result.HasNonFinite || component.NonFiniteCount > 0;
   }
   if (result.Components.size() == 1)

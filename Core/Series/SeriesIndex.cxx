@@ -18,7 +18,8 @@ double ComponentIndex::OpacityWeightedError() const
 
 const ValueRange& ComponentIndex::ReferenceRange() const
 {
-  return this->PromisedRange.Empty() ? this->Range : this->PromisedRange;
+  const bool chosen = this->RangeFrom != RangeRule::Source::Data || !this->FillValues.empty();
+  return chosen && !this->PromisedRange.Empty() ? this->PromisedRange : this->Range;
 }
 
 int SeriesIndex::FindArray(const std::string& name) const

@@ -57,7 +57,8 @@ struct ComponentIndex
 
   /// Equation 2 of the study over its squared range (see QuantizationError.h); 0 without Opacity.
   double OpacityWeightedError() const;
-  /// That ranges of errors refer to: PromisedRange if it was chosen, else Range.
+  /// What shares of errors refer to: PromisedRange if it was chosen or fill values were left out of
+  /// it, else Range.
   const ValueRange& ReferenceRange() const;
 };
 

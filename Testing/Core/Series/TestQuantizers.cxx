@@ -102,8 +102,8 @@ TEST(Quantizers, AsinhKeepsLateStepsThatUniformLoses)
   const auto f = [scale](float x) { return std::asinh(static_cast<long double>(x) / scale); };
   const ValueRange range = asinh.Component().PromisedRange;
   const double bound = asinh.Component().ErrorBoundAbsolute;
-  EXPECT_NEAR(bound, (std::asinh(range.High / double(scale)) - std::asinh(range.Low / double(scale))) / 512,
-    1e-12);
+  EXPECT_NEAR(bound,
+    (std::asinh(range.High / double(scale)) - std::asinh(range.Low / double(scale))) / 512, 1e-12);
   const double error = GreatestError(asinh, steps, f);
   EXPECT_LE(error, bound * (1 + 1e-12));
   EXPECT_GT(error, bound / 4); // the bound is used
@@ -181,8 +181,8 @@ TEST(Quantizers, AdaptiveIsMoreExactWhereValuesAre)
                               (static_cast<long double>(knots[j + 1].X) - knots[j].X);
     return knots[j].Y + (x - static_cast<long double>(knots[j].X)) * slope;
   };
-  EXPECT_LE(GreatestError(adaptive, steps, f),
-    adaptive.Component().ErrorBoundAbsolute * (1 + 1e-9));
+  EXPECT_LE(
+    GreatestError(adaptive, steps, f), adaptive.Component().ErrorBoundAbsolute * (1 + 1e-9));
   const auto rmse = [](const Written& w)
   { return std::sqrt(w.Component().SumSquaredError / double(w.Component().FiniteCount)); };
   EXPECT_LT(rmse(adaptive), 0.5 * rmse(uniform));
@@ -255,7 +255,8 @@ TEST(Quantizers, FillValuesAreBitExactAndSetNoRange)
   const Written percentiles(grid, steps, options);
   EXPECT_LT(percentiles.Component().ErrorBoundAbsolute, 110.0 / 512);
   EXPECT_LE(GreatestError(percentiles, steps, Same), percentiles.Component().ErrorBoundAbsolute);
-  // An absolute bound needs no counting beforehand; the lattice leaves fill values out all the same.
+  // An absolute bound needs no counting beforehand; the lattice leaves fill values out all the
+  // same.
   EncodeOptions absolute;
   absolute.Mode = ErrorBoundMode::Absolute;
   absolute.ErrorBound = 0.2;
@@ -364,7 +365,7 @@ TEST(Quantizers, InvisibleValuesCostNothingAndStayInvisible)
   EXPECT_NEAR(visible.Component().SumWeightedError, weighted, 1e-5 * weighted);
   EXPECT_NEAR(visible.Component().OpacityWeightedError(),
     weighted / double(visible.Component().FiniteCount) /
-      std::pow(visible.Component().PromisedRange.Width(), 2),
+      std::pow(visible.Component().Range.Width(), 2),
     1e-5 * visible.Component().OpacityWeightedError());
   EXPECT_LT(double(visible.Bytes()), 0.5 * double(all.Bytes()));
   EXPECT_LE(visible.Component().MeasuredMaxError, bound);

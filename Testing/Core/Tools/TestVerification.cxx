@@ -1,5 +1,6 @@
 #include "VerifyTesting.h"
 
+#include "Series/FillValues.h"
 #include "VerifyReport.h"
 
 #include <gtest/gtest.h>
@@ -106,6 +107,90 @@ TEST(Verification, WeighsByTheGivenOpacity)
   const VerificationChoice all{ {}, OpacityFunction({ { 0.0, 1.0 } }) };
   const ValueErrors errors = again.Run(all).Components[0].All;
   EXPECT_EQ(errors.SumWeighted, errors.SumSquared);
+}
+
+/// An encoded series of Wavy values (-30 .. 70) with some fill values, quantized as it is said.
+struct Quantized : Encoded
+{
+  explicit Quantized(const QuantizerOptions& quantizer)
+  {
+    EncodeOptions options;
+    options.Quantizer = quantizer;
+    ArrayDescription description = Describe(this->Original);
+    description.Histograms.resize(1);
+    for (std::size_t step = 0; step < this->Original.size(); ++step)
+    {
+      std::vector<float>& values = this->Original[step];
+      values[100] = -999.0f;
+      std::memcpy(&this->At(static_cast<int>(step), 100), &values[100], sizeof(float));
+      CountComponent(ScalarType::Float32, values.data(), static_cast<std::int64_t>(values.size()),
+        1, 0, quantizer.FillValues, description.Histograms[0]);
+    }
+    ThreadPool pool(2);
+    SeriesEncoder encoder(this->Path, OddGrid(), { description }, options, pool);
+    for (std::size_t step = 0; step < this->Original.size(); ++step)
+    {
+      encoder.AddStep(static_cast<double>(step), { { this->Original[step].data() } });
+    }
+    (void)encoder.Finish();
+  }
+};
+
+QuantizerOptions FillsAreNamed()
+{
+  QuantizerOptions quantizer;
+  quantizer.FillValues = { -999 };
+  return quantizer;
+}
+
+TEST(Verification, ComparesFillValuesBitByBit)
+{
+  Quantized encoded(FillsAreNamed());
+  const Verification result = encoded.Run();
+  EXPECT_TRUE(result.Proven());
+  EXPECT_EQ(result.Components[0].All.Fill, StepCount);
+  EXPECT_LT(result.Components[0].Bound, 110.0 / 512);
+  EXPECT_NE(VerificationToText(result, "x").find("5 values without meaning (fill values)"),
+    std::string::npos);
+  Quantized wrong(FillsAreNamed());
+  wrong.At(1, 200) = -999.0f; // was none when it was encoded
+  EXPECT_EQ(wrong.Run().Components[0].All.OutOfBound, 1);
+}
+
+TEST(Verification, JudgesClampedValuesByTheEndOfTheRange)
+{
+  QuantizerOptions quantizer = FillsAreNamed();
+  quantizer.Range = { RangeRule::Source::Percentiles, 0.1, 0.9, {}, true };
+  Quantized encoded(quantizer);
+  const Verification result = encoded.Run();
+  EXPECT_TRUE(result.Proven());
+  const ComponentIndex index = SeriesFile::Open(encoded.Path)->Index().Arrays[0].Components[0];
+  EXPECT_GT(result.Components[0].Clamped, 1000);
+  EXPECT_EQ(result.Components[0].Clamped, index.ClampedCount);
+  EXPECT_NE(VerificationToText(result, "x").find("judged by the end"), std::string::npos);
+}
+
+TEST(Verification, AcceptsInvisibleValuesThatStayInvisible)
+{
+  QuantizerOptions quantizer = FillsAreNamed();
+  quantizer.Opacity = { { 100, 0 }, { 200, 1 } }; // all of Wavy is invisible
+  Quantized encoded(quantizer);
+  const Verification result = encoded.Run();
+  EXPECT_TRUE(result.Proven());
+  const ComponentIndex index = SeriesFile::Open(encoded.Path)->Index().Arrays[0].Components[0];
+  EXPECT_GE(result.Components[0].All.Invisible, 0);
+  EXPECT_EQ(result.Components[0].All.Invisible, index.InvisibleCount);
+  // One that can be seen in the source and is not there is found.
+  Quantized wrong(quantizer);
+  wrong.At(2, 7) = 150.0f;
+  EXPECT_EQ(wrong.Run().Components[0].All.OutOfBound, 1);
+  // Without the function in the index nothing is accepted that is out of bound.
+  Quantized again(quantizer);
+  again.ChangeIndex(
+    [](SeriesIndex& changed) {
+      changed.Arrays[0].Components[0].Opacity = { { 0, 1 } };
+    });
+  EXPECT_EQ(again.Run().Components[0].All.OutOfBound, index.InvisibleCount);
 }
 
 TEST(Verification, RefusesOtherNumbersOfSteps)
