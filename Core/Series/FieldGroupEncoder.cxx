@@ -34,6 +34,15 @@ std::vector<Mode> CandidatesOf(EncodeProfile profile)
     { Reference::HalfMean, Interpolation::Cubic } };
   modes.push_back({ Reference::A, Interpolation::Linear });
   modes.push_back({ Reference::B, Interpolation::Linear });
+  if (profile == EncodeProfile::Compact)
+  {
+    for (const Reference from : { Reference::A, Reference::B, Reference::HalfMean })
+    {
+      modes.push_back(
+        { from, from == Reference::HalfMean ? Interpolation::Linear : Interpolation::Cubic });
+      modes.push_back({ from, Interpolation::None });
+    }
+  }
   return modes;
 }
 
@@ -58,9 +67,10 @@ public:
     std::vector<std::vector<double>>* sumSquares, const std::function<void(double)>& tell);
 
 private:
-  void EncodePlanes(int step, const std::vector<PlaneNumbers>& targets,
-    const std::function<void(double)>& tell);
-  void FindExceptions(int step, std::size_t plane, FieldErrors* errors, std::vector<double>* squares);
+  void EncodePlanes(
+    int step, const std::vector<PlaneNumbers>& targets, const std::function<void(double)>& tell);
+  void FindExceptions(
+    int step, std::size_t plane, FieldErrors* errors, std::vector<double>* squares);
   void WriteSymbols();
   void CountChains();
 
@@ -73,12 +83,13 @@ private:
 };
 
 template <class T>
-void Encoder<T>::EncodePlanes(int step, const std::vector<PlaneNumbers>& targets,
-  const std::function<void(double)>& tell)
+void Encoder<T>::EncodePlanes(
+  int step, const std::vector<PlaneNumbers>& targets, const std::function<void(double)>& tell)
 {
   StepWork& work = this->Work[static_cast<std::size_t>(step)];
   EncodedStep& out = this->Out.Steps[static_cast<std::size_t>(step)];
-  const StepReferences references = ReferencesOfStep(step, static_cast<int>(this->Field.Steps.size()));
+  const StepReferences references =
+    ReferencesOfStep(step, static_cast<int>(this->Field.Steps.size()));
   work.Decoded.resize(targets.size());
   work.Tokens.resize(targets.size() - 1);
   work.Decoded.back() = targets.back();
@@ -120,8 +131,7 @@ void Encoder<T>::FindExceptions(
   int step, std::size_t plane, FieldErrors* errors, std::vector<double>* squares)
 {
   const PlaneNumbers& decoded = this->Work[static_cast<std::size_t>(step)].Decoded[plane];
-  std::vector<EncodedBlock>& blocks =
-    this->Out.Steps[static_cast<std::size_t>(step)].Planes[plane];
+  std::vector<EncodedBlock>& blocks = this->Out.Steps[static_cast<std::size_t>(step)].Planes[plane];
   std::vector<FieldErrors> parts(blocks.size());
   this->Pool.ParallelFor(static_cast<std::int64_t>(blocks.size()),
     [&](std::int64_t i)
@@ -174,7 +184,8 @@ void Encoder<T>::WriteSymbols()
         }
       }
     };
-    each([&](std::vector<BlockTokens>& tokens, std::vector<EncodedBlock>&)
+    each(
+      [&](std::vector<BlockTokens>& tokens, std::vector<EncodedBlock>&)
       {
         for (const BlockTokens& block : tokens)
         {
@@ -183,7 +194,8 @@ void Encoder<T>::WriteSymbols()
       });
     const SymbolTables tables(counts);
     this->Out.Head.Frequencies[set] = tables.Frequencies();
-    each([&](std::vector<BlockTokens>& tokens, std::vector<EncodedBlock>& blocks)
+    each(
+      [&](std::vector<BlockTokens>& tokens, std::vector<EncodedBlock>& blocks)
       {
         this->Pool.ParallelFor(static_cast<std::int64_t>(tokens.size()),
           [&](std::int64_t i)
@@ -293,8 +305,7 @@ EncodedField EncodeFieldGroup(const FieldGroup& field, ThreadPool& pool,
   std::vector<std::vector<double>>* sumSquares, const std::function<void(double)>& tell)
 {
   EncodedField result;
-  Dispatch(field.Type,
-    [&](auto tag)
+  Dispatch(field.Type, [&](auto tag)
     { result = Encoder<typename decltype(tag)::Type>(field, pool).Run(sumSquares, tell); });
   return result;
 }
