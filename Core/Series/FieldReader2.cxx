@@ -132,7 +132,7 @@ std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
   auto open = std::make_shared<OpenGroup>();
   open->Type = array.Type;
   open->Field = std::make_unique<GroupField>(*segment, this->Series.Id, component,
-    this->Series.Index.Domain.Samples(), this->Series.Index.BrickCells, this->Series.Layouts);
+    this->Series.Index.Domain.Samples(), this->Series.Index.BrickCells, this->Series.Index.Levels);
   const group::FieldHead& head = open->Field->Head();
   const Transform& map =
     array.Components[static_cast<std::size_t>(field.Component)].ValueTransform;
@@ -242,10 +242,13 @@ BrickNode Reader2::MakeNode(OpenGroup& open, const FieldKey& field, std::int64_t
   const std::uint64_t seed[] = { std::uint64_t(field.Level), std::uint64_t(brick),
     std::uint64_t(changed), this->Series.ComponentOf(field), group.Segment().HeaderHash().Low,
     group.Segment().HeaderHash().High };
-  const std::uint64_t content[] = { std::uint64_t(open.Type), open.Meaning, entryAt(0).Content,
+  // Bricks that change at once have no content, but are as good as new in each segment.
+  const std::uint64_t hashed = changed == 0 ? entryAt(0).Content : 0;
+  const std::uint64_t content[] = { std::uint64_t(open.Type), open.Meaning, hashed,
+    BitCast<std::uint64_t>(node.Range.Low), BitCast<std::uint64_t>(node.Range.High),
     std::uint64_t(layout.SamplesOf(brick).Size().x), std::uint64_t(layout.SamplesOf(brick).Size().y),
     std::uint64_t(layout.SamplesOf(brick).Size().z) };
-  const Hash128 hash = changed == 0 ? HashOf(content, sizeof(content)) : HashOf(seed, sizeof(seed));
+  const Hash128 hash = hashed != 0 ? HashOf(content, sizeof(content)) : HashOf(seed, sizeof(seed));
   node.Identity = { hash.Low, hash.High };
   const PlaneRegion region = this->RegionOf(open, field, brick);
   if (region.Stride != 1)

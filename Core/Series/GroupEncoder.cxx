@@ -176,22 +176,25 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
       group.Magnitudes.back().push_back(MagnitudeRange(step));
     }
   }
-  GroupWriter writer(folder, number, options.CompressionLevel);
+  GroupWriter writer(folder, number);
   std::vector<group::FieldHead> heads;
+  std::vector<group::TableShape> shapes;
   for (const EncodedField& field : fields)
   {
     heads.push_back(field.Head);
+    shapes.push_back(group::ShapeOf(
+      plan.Domain.Samples(), field.Head.Axes, plan.BrickCells, plan.Levels));
   }
   for (std::size_t t = 0; t < steps.size(); ++t)
   {
     for (EncodedField& field : fields)
     {
-      writer.AddStep(field.Steps[t], t == 0, group.Statistics);
+      writer.AddStep(field.Steps[t], group.Statistics);
       field.Steps[t] = {};
     }
   }
   group.Segment = writer.Finish(
-    heads, number * plan.KeyframeInterval, static_cast<int>(steps.size()));
+    heads, shapes, number * plan.KeyframeInterval, static_cast<int>(steps.size()));
   group.Statistics.TableBytes = group.Segment.Bytes - group.Statistics.PayloadBytes;
   return group;
 }

@@ -26,7 +26,7 @@ glm::ivec3 NeighbourOf(const glm::ivec3& block, int bits)
 } // namespace
 
 GroupField::GroupField(GroupReader& segment, std::uint64_t series, std::uint32_t component,
-  const glm::ivec3& samples, int brickCells, const std::vector<BrickLayout>& layouts)
+  const glm::ivec3& samples, int brickCells, int levels)
   : File(segment)
   , Series(series)
   , Component(component)
@@ -35,22 +35,7 @@ GroupField::GroupField(GroupReader& segment, std::uint64_t series, std::uint32_t
 {
   const Bytes head = segment.Section(segment.HeadSection(component));
   this->FieldHead = group::UnpackHead(head.data(), head.size());
-  glm::ivec3 ordered;
-  for (int a = 0; a < 3; ++a)
-  {
-    ordered[a] = samples[this->FieldHead.Axes[static_cast<std::size_t>(a)]];
-  }
-  this->PlaneSamples = group::PlanesOf(ordered);
-  for (std::size_t p = 0; p + 1 < this->PlaneSamples.size(); ++p)
-  {
-    const glm::ivec3 blocks = this->BlocksOf(static_cast<int>(p));
-    this->BlockCounts.push_back(
-      static_cast<std::size_t>(std::int64_t{ blocks.x } * blocks.y * blocks.z));
-  }
-  for (const BrickLayout& layout : layouts)
-  {
-    this->BrickCounts.push_back(static_cast<std::size_t>(layout.BrickCount()));
-  }
+  this->Shape = group::ShapeOf(samples, this->FieldHead.Axes, brickCells, levels);
   for (int set = 0; set < 2; ++set)
   {
     this->Tables[set] = DecodeTablesOf(this->FieldHead.Frequencies[set]);
@@ -62,15 +47,20 @@ const group::StepTable& GroupField::Step(int step)
 {
   // Under the lock: threads that start on a new step together then load its table once.
   std::lock_guard<std::mutex> lock(this->Mutex);
+  return this->Load(step);
+}
+
+const group::StepTable& GroupField::Load(int step)
+{
   std::unique_ptr<group::StepTable>& table = this->StepTables[static_cast<std::size_t>(step)];
   if (!table)
   {
+    const int reference = ReferencesOfStep(step, this->File.Steps()).B;
+    const group::TableReference from{ reference,
+      reference < 0 ? nullptr : &this->Load(reference) };
     const Bytes bytes = this->File.Section(this->File.StepSection(step, this->Component));
-    const glm::ivec3 top = this->PlaneSamples.back();
-    table = std::make_unique<group::StepTable>(
-      group::UnpackStep(bytes.data(), bytes.size(), step == 0, step, this->BlockCounts,
-        static_cast<std::size_t>(top.x * top.y * top.z), this->BrickCounts,
-        this->File.PayloadEnd()));
+    table = std::make_unique<group::StepTable>(group::UnpackStep(
+      bytes.data(), bytes.size(), this->Shape, step, from, this->File.PayloadEnd()));
     this->Memory += table->MemoryBytes();
     this->BytesRead += bytes.size();
   }
@@ -111,9 +101,9 @@ void GroupField::Coarse(
   int step, int plane, const glm::ivec3& block, std::vector<std::int32_t>& numbers)
 {
   const int n = this->BrickCells / 4 + 1;
-  const glm::ivec3 samples = this->PlaneSamples[static_cast<std::size_t>(plane) + 1];
+  const glm::ivec3 samples = this->Shape.Planes[static_cast<std::size_t>(plane) + 1];
   const glm::ivec3 first = block * (this->BrickCells / 4);
-  const bool top = plane + 2 == static_cast<int>(this->PlaneSamples.size());
+  const bool top = plane + 2 == static_cast<int>(this->Shape.Planes.size());
   const glm::ivec3 coarseBlock = first / this->BrickCells;
   const glm::ivec3 origin = top ? glm::ivec3(0) : coarseBlock * this->BrickCells;
   const glm::ivec3 size = top ? samples : glm::ivec3(this->BrickCells + 1);
@@ -139,7 +129,7 @@ std::vector<std::int32_t> GroupField::Decode(int step, int plane, const glm::ive
 {
   const auto& entries = this->Step(step).Planes[static_cast<std::size_t>(plane)];
   const glm::ivec3 blocks = this->BlocksOf(plane);
-  const glm::ivec3 samples = this->PlaneSamples[static_cast<std::size_t>(plane)];
+  const glm::ivec3 samples = this->Shape.Planes[static_cast<std::size_t>(plane)];
   PlaneCode shared;
   shared.Tables = this->Tables[plane > 0 ? 1 : 0].data();
   shared.CoarseBin = BinOfOctave(this->FieldHead.Bin, 2 * plane + 1);
@@ -254,7 +244,7 @@ void GroupField::Verify(int step, int plane, const glm::ivec3& block, Visited& v
       }
     }
   }
-  if (plane + 2 < static_cast<int>(this->PlaneSamples.size()))
+  if (plane + 2 < static_cast<int>(this->Shape.Planes.size()))
   {
     this->Verify(step, plane + 1, block / 4, visited);
   }

@@ -16,6 +16,7 @@ namespace banyan::group
 constexpr std::uint32_t Version = 2;
 constexpr std::size_t EntryBytes = 24;
 constexpr int GreatestPlanes = 16;
+constexpr int ContentBits = 48;
 
 /// An entry of the directory: where a section lies.
 struct Section
@@ -73,7 +74,8 @@ struct NodeEntry
   std::uint32_t Age = 0;
   std::int32_t Low = 0, High = 0; ///< extremes, in lattice numbers
   double LowValue = 0, HighValue = 0;
-  std::uint64_t Content = 0; ///< of the first step only: hash of the decoded samples
+  /// Of the first step only: hash of the decoded samples, ContentBits of it. 0 where it is not kept.
+  std::uint64_t Content = 0;
 };
 
 /// All of one component at one step.
@@ -92,14 +94,35 @@ struct StepTable
 /// is not cut into blocks.
 std::vector<glm::ivec3> PlanesOf(glm::ivec3 samples);
 
-Bytes PackStep(const StepTable& table, bool first);
+/// What the tables of a component look like, the same in all steps.
+struct TableShape
+{
+  std::vector<glm::ivec3> Planes; ///< samples; see PlanesOf
+  std::vector<glm::ivec3> Blocks; ///< of all planes but the last, in the codec's order of axes
+  std::vector<glm::ivec3> Bricks; ///< of each level, in the data's order of axes
+};
 
-/// @param blocks per plane but the coarsest, and @param bricks per level: how many there must be
+TableShape ShapeOf(const glm::ivec3& samples, const std::array<std::uint8_t, 3>& axes,
+  int brickCells, int levels);
+
+/// The table that another one is coded relative to.
+struct TableReference
+{
+  int Step = -1; ///< of the segment
+  const StepTable* Table = nullptr; ///< null: there is none
+};
+
+/// @param step of the segment, whose first is 0
+/// Of nodes' contents only those are kept that UnpackStep gives back: in the first step, of bricks
+/// that are not uniform and the same as in the reference, or of all when there is none.
+Bytes PackStep(
+  const StepTable& table, const TableShape& shape, int step, const TableReference& reference);
+
+/// The same step, shape and reference as when it was packed.
 /// @param payloadEnd all places must lie before it
 /// Throws Error when anything does not fit.
-StepTable UnpackStep(const std::uint8_t* data, std::size_t bytes, bool first, int step,
-  const std::vector<std::size_t>& blocks, std::size_t topSamples,
-  const std::vector<std::size_t>& bricks, std::uint64_t payloadEnd);
+StepTable UnpackStep(const std::uint8_t* data, std::size_t bytes, const TableShape& shape, int step,
+  const TableReference& reference, std::uint64_t payloadEnd);
 
 } // namespace banyan::group
 

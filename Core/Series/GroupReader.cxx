@@ -69,13 +69,17 @@ Bytes GroupReader::Section(std::uint32_t number)
   const auto raw = LoadNumber<std::uint32_t>(entry + 12);
   const std::uint64_t end = this->Head.DirectoryOffset;
   if (offset < this->Head.PayloadEnd || offset > end || stored > end - offset ||
-      raw / segment::GreatestExpansion > stored)
+      raw / segment::GreatestExpansion > stored || (number > this->Components && raw != stored))
   {
     throw Error("An entry of the directory is not valid");
   }
   if (ShortHashOf(this->File.Data() + offset, stored) != LoadNumber<std::uint64_t>(entry + 16))
   {
     throw Error("A table of the segment is damaged: its checksum does not fit");
+  }
+  if (stored == raw)
+  {
+    return { this->File.Data() + offset, this->File.Data() + offset + stored };
   }
   Bytes bytes(raw);
   Decompress(this->File.Data() + offset, stored, bytes.data(), bytes.size());

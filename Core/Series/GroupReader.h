@@ -67,17 +67,16 @@ class GroupField
 {
 public:
   GroupField(GroupReader& segment, std::uint64_t series, std::uint32_t component,
-    const glm::ivec3& samples, int brickCells, const std::vector<BrickLayout>& layouts);
+    const glm::ivec3& samples, int brickCells, int levels);
 
   const group::FieldHead& Head() const { return this->FieldHead; }
   GroupReader& Segment() const { return this->File; }
   int Edge() const { return this->BrickCells; }
   /// Samples and blocks of each plane, axes in the codec's order.
-  const std::vector<glm::ivec3>& Planes() const { return this->PlaneSamples; }
+  const std::vector<glm::ivec3>& Planes() const { return this->Shape.Planes; }
   glm::ivec3 BlocksOf(int plane) const
   {
-    return (this->PlaneSamples[static_cast<std::size_t>(plane)] + this->BrickCells - 1) /
-           this->BrickCells;
+    return this->Shape.Blocks[static_cast<std::size_t>(plane)];
   }
 
   /// The table of a step of the segment (0 is its first).
@@ -96,6 +95,8 @@ public:
 private:
   using Visited = std::set<std::tuple<int, int, std::size_t>>;
 
+  /// The same under the lock. Loads the table's references as well.
+  const group::StepTable& Load(int step);
   std::size_t IndexOf(int plane, const glm::ivec3& block) const;
   LatticeCache::Key KeyOf(int step, int plane, const glm::ivec3& block) const;
   void Verify(int step, int plane, const glm::ivec3& block, Visited& visited);
@@ -108,8 +109,7 @@ private:
   std::uint32_t Component;
   int BrickCells;
   group::FieldHead FieldHead;
-  std::vector<glm::ivec3> PlaneSamples;
-  std::vector<std::size_t> BlockCounts, BrickCounts;
+  group::TableShape Shape;
   std::vector<std::uint32_t> Tables[2];
   std::mutex Mutex;
   std::vector<std::unique_ptr<group::StepTable>> StepTables;

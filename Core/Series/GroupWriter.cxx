@@ -1,5 +1,6 @@
 #include "Series/GroupWriter.h"
 
+#include "Codec/GroupOrder.h"
 #include "Series/Hash.h"
 #include "Series/SegmentFormat.h"
 #include "Series/Zstd.h"
@@ -19,10 +20,16 @@ std::uint64_t PageBytesOf(std::uint64_t payloadEnd)
   return bytes;
 }
 
-GroupWriter::GroupWriter(SegmentFolder& folder, int number, int compressionLevel)
+namespace
+{
+
+constexpr int TableLevel = 19; ///< of zstd: tables are small, and read more often than written
+
+} // namespace
+
+GroupWriter::GroupWriter(SegmentFolder& folder, int number)
   : Folder(folder)
   , Number(number)
-  , CompressionLevel(compressionLevel)
   , Output(folder.Path() + "/" + folder.TemporaryNameOf(number))
   , Payloads(segment::HeaderBytes)
 {
@@ -48,7 +55,7 @@ group::Place GroupWriter::Store(const Bytes& payload, EncodeStatistics& statisti
   return place->second;
 }
 
-void GroupWriter::AddStep(const EncodedStep& step, bool first, EncodeStatistics& statistics)
+void GroupWriter::AddStep(const EncodedStep& step, EncodeStatistics& statistics)
 {
   group::StepTable table;
   table.FirstPayload = this->Output.Size();
@@ -88,13 +95,20 @@ void GroupWriter::AddStep(const EncodedStep& step, bool first, EncodeStatistics&
       statistics.UnchangedBricks += node.Age > 0 ? 1 : 0;
     }
   }
-  this->Tables.push_back(group::PackStep(table, first));
+  this->Tables.push_back(std::move(table));
 }
 
-group::Section GroupWriter::AddSection(const Bytes& raw)
+group::Section GroupWriter::AddSection(const Bytes& raw, bool compressed)
 {
   Bytes packed;
-  AppendCompressed(raw.data(), raw.size(), this->CompressionLevel, packed);
+  if (compressed)
+  {
+    AppendCompressed(raw.data(), raw.size(), TableLevel, packed);
+  }
+  if (!compressed || packed.size() >= raw.size())
+  {
+    packed = raw;
+  }
   group::Section section;
   section.Offset = this->Output.Size();
   section.StoredBytes = static_cast<std::uint32_t>(packed.size());
@@ -128,20 +142,31 @@ Bytes GroupWriter::PageHashes() const
 }
 
 SegmentIndex GroupWriter::Finish(
-  const std::vector<group::FieldHead>& heads, int firstStep, int steps)
+  const std::vector<group::FieldHead>& heads, const std::vector<group::TableShape>& shapes,
+  int firstStep, int steps)
 {
   segment::Header header;
   header.Version = group::Version;
   header.PayloadEnd = this->Output.Size();
   std::vector<group::Section> sections;
-  sections.push_back(this->AddSection(this->PageHashes()));
+  sections.push_back(this->AddSection(this->PageHashes(), true));
   for (const group::FieldHead& head : heads)
   {
-    sections.push_back(this->AddSection(group::PackHead(head)));
+    sections.push_back(this->AddSection(group::PackHead(head), true));
   }
-  for (const Bytes& table : this->Tables)
+  for (std::size_t i = 0; i < this->Tables.size(); ++i)
   {
-    sections.push_back(this->AddSection(table));
+    const std::size_t component = i % heads.size();
+    const int step = static_cast<int>(i / heads.size());
+    group::TableReference reference;
+    reference.Step = ReferencesOfStep(step, steps).B;
+    if (reference.Step >= 0)
+    {
+      reference.Table =
+        &this->Tables[static_cast<std::size_t>(reference.Step) * heads.size() + component];
+    }
+    sections.push_back(this->AddSection(
+      group::PackStep(this->Tables[i], shapes[component], step, reference), false));
   }
   Bytes directory(sections.size() * group::EntryBytes);
   for (std::size_t i = 0; i < sections.size(); ++i)

@@ -17,27 +17,27 @@ namespace banyan
 class GroupWriter
 {
 public:
-  GroupWriter(SegmentFolder& folder, int number, int compressionLevel);
+  GroupWriter(SegmentFolder& folder, int number);
 
   /// Adds a component at the next step: the components of a step in order, then the next step.
   /// @param statistics receives what it came to
-  void AddStep(const EncodedStep& step, bool first, EncodeStatistics& statistics);
+  void AddStep(const EncodedStep& step, EncodeStatistics& statistics);
 
-  /// @param heads of the components, in order
-  SegmentIndex Finish(const std::vector<group::FieldHead>& heads, int firstStep, int steps);
+  /// @param heads and @param shapes of the components, in order
+  SegmentIndex Finish(const std::vector<group::FieldHead>& heads,
+    const std::vector<group::TableShape>& shapes, int firstStep, int steps);
 
 private:
   group::Place Store(const Bytes& payload, EncodeStatistics& statistics);
-  group::Section AddSection(const Bytes& raw);
+  group::Section AddSection(const Bytes& raw, bool compressed);
   Bytes PageHashes() const;
 
   SegmentFolder& Folder;
   int Number;
-  int CompressionLevel;
   AtomicFile Output;
   Bytes Payloads; ///< all bytes up to here, to hash their pages
   std::unordered_map<std::string, group::Place> Stored;
-  std::vector<Bytes> Tables; ///< packed
+  std::vector<group::StepTable> Tables;
 };
 
 /// Size of the pages that payloads are checked by: 4 KiB, more in large segments so that their

@@ -31,7 +31,7 @@ struct EncodeOptions
   ErrorBoundMode Mode = ErrorBoundMode::RelativeToSeriesRange;
   int KeyframeInterval = 8; ///< steps per segment, in [1, 1024]
   int BrickCells = 0;       ///< 8, 16, 32 or 64; 0 chooses by the size of the grid
-  int CompressionLevel = 3; ///< of zstd (tables and exceptions), in [1, 19]
+  int CompressionLevel = 3; ///< of zstd (exceptions), in [1, 19]
   EncodeProfile Profile = EncodeProfile::Balanced;
   QuantizerOptions Quantizer;                               ///< of all arrays
   std::map<std::string, QuantizerOptions> QuantizerOfArray; ///< instead, of arrays by name

@@ -92,8 +92,16 @@ SmallSeries::SmallSeries(const std::string& folder, int kind)
   {
     const std::uint8_t* entry = data + header.DirectoryOffset + i * group::EntryBytes;
     Bytes section(LoadNumber<std::uint32_t>(entry + 12));
-    Decompress(data + LoadNumber<std::uint64_t>(entry), LoadNumber<std::uint32_t>(entry + 8),
-      section.data(), section.size());
+    const std::uint8_t* stored = data + LoadNumber<std::uint64_t>(entry);
+    const std::uint32_t bytes = LoadNumber<std::uint32_t>(entry + 8);
+    if (bytes == section.size())
+    {
+      section.assign(stored, stored + bytes);
+    }
+    else
+    {
+      Decompress(stored, bytes, section.data(), section.size());
+    }
     this->Parts.Sections.push_back(section);
   }
 }
@@ -147,8 +155,8 @@ Bytes Assemble(const GroupParts& parts, int steps)
   for (const Bytes& section : sections)
   {
     const std::size_t offset = file.size();
-    AppendCompressed(section.data(), section.size(), 1, file);
-    const std::size_t stored = file.size() - offset;
+    file.insert(file.end(), section.begin(), section.end());
+    const std::size_t stored = section.size();
     std::uint8_t entry[group::EntryBytes];
     StoreNumber(entry, std::uint64_t{ offset });
     StoreNumber(entry + 8, static_cast<std::uint32_t>(stored));
