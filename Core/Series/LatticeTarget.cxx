@@ -3,11 +3,10 @@
 #include "Base/ForEachScalarType.h"
 #include "Base/ThreadPool.h"
 #include "Series/FieldLattice.h"
-#include "Series/Quantizer.h"
+#include "Series/LatticeCheck.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 namespace banyan
@@ -272,142 +271,13 @@ std::vector<PlaneNumbers> LatticeTarget<T>::Make(const void* values) const
 }
 
 template <class T>
-bool LatticeTarget<T>::Within(T original, T decoded, double& error, double& transformed) const
-{
-  if (this->Head.Exact || this->Field.Bound == 0)
-  {
-    error = 0;
-    transformed = 0;
-    return std::memcmp(&original, &decoded, sizeof(T)) == 0;
-  }
-  error = Difference(original, decoded);
-  transformed = error;
-  if (!this->Field.Map.IsIdentity())
-  {
-    transformed = std::abs(this->Field.Map.Forward(static_cast<double>(original)) -
-                           this->Field.Map.Forward(static_cast<double>(decoded)));
-  }
-  return transformed <= this->Field.Bound;
-}
-
-/// @param sample of the finest plane
-/// @param known intervals of blocks that were looked at before
-template <class T>
-bool LatticeTarget<T>::BothInvisible(const T* values, const glm::ivec3& sample, T original,
-  T decoded, std::map<std::int64_t, int>& known) const
-{
-  if (!this->Hidden)
-  {
-    return false;
-  }
-  const glm::ivec3 block = sample / this->Field.BrickCells;
-  const std::int64_t key =
-    (std::int64_t{ block.z } << 42) | (std::int64_t{ block.y } << 21) | block.x;
-  auto found = known.find(key);
-  if (found == known.end())
-  {
-    found = known.emplace(key, this->Hidden->IntervalOf(values, block)).first;
-  }
-  return found->second >= 0 && this->Hidden->Holds(found->second, original) &&
-         this->Hidden->Holds(found->second, decoded);
-}
-
-template <class T>
-bool LatticeTarget<T>::MayStay(const T* values, const glm::ivec3& sample, T original, T decoded,
-  FieldErrors& errors, std::map<std::int64_t, int>& known) const
-{
-  if (!std::isfinite(static_cast<double>(original)))
-  {
-    return false;
-  }
-  if (this->Fills.Holds(original))
-  {
-    ++errors.Fill;
-    return std::memcmp(&original, &decoded, sizeof(T)) == 0;
-  }
-  double error = 0;
-  double transformed = 0;
-  if (this->Within(original, decoded, error, transformed))
-  {
-    errors.Maximum = std::max(errors.Maximum, error);
-    errors.MaximumTransformed = std::max(errors.MaximumTransformed, transformed);
-  }
-  else if (this->BothInvisible(values, sample, original, decoded, known))
-  {
-    error = Difference(original, decoded);
-    ++errors.Invisible;
-  }
-  else
-  {
-    return false;
-  }
-  errors.SumSquared += error * error;
-  if (this->Field.Opacity && error > 0)
-  {
-    errors.SumWeighted += (*this->Field.Opacity)(static_cast<double>(original)) * error * error;
-  }
-  return true;
-}
-
-template <class T>
 void LatticeTarget<T>::Verify(const void* values, const PlaneNumbers& decoded, int plane,
   std::int64_t block, ExceptionList<T>& list, FieldErrors& errors,
   std::vector<double>* squares) const
 {
-  const int edge = decoded.Edge;
-  const glm::ivec3 low = PositionIn(decoded.Blocks, block) * edge;
-  const glm::ivec3 high = glm::ivec3{ std::min(low.x + edge, decoded.Samples.x),
-    std::min(low.y + edge, decoded.Samples.y), std::min(low.z + edge, decoded.Samples.z) };
-  const glm::ivec3 last = this->PlaneSamples[0] - 1;
-  std::vector<std::uint32_t> offsets(static_cast<std::size_t>(edge));
-  std::vector<T> row(static_cast<std::size_t>(edge));
-  std::map<std::int64_t, int> known;
-  for (int z = low.z; z < high.z; ++z)
-  {
-    for (int y = low.y; y < high.y; ++y)
-    {
-      const std::int32_t* numbers = decoded.Numbers.data() + decoded.IndexOf({ low.x, y, z });
-      const int count = high.x - low.x;
-      for (int x = 0; x < count; ++x)
-      {
-        offsets[static_cast<std::size_t>(x)] =
-          static_cast<std::uint32_t>(numbers[x]) - static_cast<std::uint32_t>(this->Head.Least);
-      }
-      this->Decoder.Decode(
-        this->Head.Least, offsets.data(), static_cast<std::size_t>(count), row.data());
-      for (int x = 0; x < count; ++x)
-      {
-        const glm::ivec3 sample = { std::min((low.x + x) << (2 * plane), last.x),
-          std::min(y << (2 * plane), last.y), std::min(z << (2 * plane), last.z) };
-        const std::int64_t at =
-          sample.x * this->Stride.x + sample.y * this->Stride.y + sample.z * this->Stride.z;
-        const T original = static_cast<const T*>(values)[at];
-        T final = row[static_cast<std::size_t>(x)];
-        if (!this->MayStay(static_cast<const T*>(values), sample, original, final, errors, known))
-        {
-          ++errors.Exceptions;
-          const glm::ivec3 p = glm::ivec3{ low.x + x, y, z } - low;
-          list.Positions.push_back(static_cast<std::uint32_t>((p.z * edge + p.y) * edge + p.x));
-          list.Values.push_back(original);
-          final = original;
-        }
-        const bool finite = std::isfinite(static_cast<double>(original));
-        if (finite)
-        {
-          errors.Range.Include({ DoubleNotAbove(final), DoubleNotBelow(final) });
-        }
-        (finite ? errors.Finite : errors.NonFinite) += 1;
-        if (squares != nullptr)
-        {
-          // A vector with a fill value has no length.
-          const double value = this->Fills.Holds(original)
-                                 ? std::numeric_limits<double>::quiet_NaN()
-                                 : static_cast<double>(final);
-          (*squares)[static_cast<std::size_t>(at / this->Field.Components)] += value * value;
-        }
-      }
-    }
-  }
+  LatticeCheck<T> check(this->Field, this->Head, this->Decoder, this->Fills, this->Hidden.get(),
+    this->Stride, this->PlaneSamples[0] - 1, static_cast<const T*>(values));
+  check.Block(decoded, plane, block, list, errors, squares);
 }
 
 #define BANYAN_INSTANTIATE(T)                                                                      \

@@ -9,7 +9,6 @@
 #include "Series/LatticeDecoder.h"
 
 #include <array>
-#include <map>
 #include <memory>
 #include <vector>
 
@@ -49,12 +48,6 @@ public:
 private:
   void FillTile(const T* values, const glm::ivec3& low, PlaneNumbers& plane) const;
   void FillRow(const T* values, std::int64_t stride, int count, std::int32_t* numbers) const;
-  bool Within(T original, T decoded, double& error, double& transformed) const;
-  bool BothInvisible(const T* values, const glm::ivec3& sample, T original, T decoded,
-    std::map<std::int64_t, int>& known) const;
-  /// Whether a sample may decode to that; adds to `errors` if so.
-  bool MayStay(const T* values, const glm::ivec3& sample, T original, T decoded,
-    FieldErrors& errors, std::map<std::int64_t, int>& known) const;
   void HideBlocks(const T* values, PlaneNumbers& plane) const;
 
   const FieldGroup& Field;

@@ -1,0 +1,70 @@
+#ifndef banyan_Series_LatticeCheck_h
+#define banyan_Series_LatticeCheck_h
+
+#include "Codec/BlockEncoder.h"
+#include "Series/Exceptions.h"
+#include "Series/FieldGroupEncoder.h"
+#include "Series/FillValues.h"
+#include "Series/InvisibleBlocks.h"
+#include "Series/LatticeDecoder.h"
+
+#include <map>
+#include <vector>
+
+namespace banyan
+{
+
+/// Compares a block of a decoded plane with the original values: one use per block.
+template <class T>
+class LatticeCheck
+{
+public:
+  /// @param values of the step, as FieldGroup has them
+  /// @param stride of values along the codec's axes, and @param last sample of the finest plane
+  /// @param hidden null: every value counts
+  LatticeCheck(const FieldGroup& field, const group::FieldHead& head,
+    const LatticeDecoder<T>& decoder, const FillSet<T>& fills, const InvisibleBlocks<T>* hidden,
+    const glm::i64vec3& stride, const glm::ivec3& last, const T* values);
+
+  /// See LatticeTarget::Verify.
+  void Block(const PlaneNumbers& decoded, int plane, std::int64_t block, ExceptionList<T>& list,
+    FieldErrors& errors, std::vector<double>* squares);
+
+private:
+  /// One row of the block along the codec's first axis.
+  struct Row
+  {
+    glm::ivec3 Sample{ 0 }; ///< of the plane: the first one
+    std::int64_t At = 0;    ///< of the finest plane's sample (0, y, z) among the values
+    int Count = 0;
+  };
+
+  void LoadRow(const PlaneNumbers& decoded, const Row& row);
+  bool AllWithin(int count, FieldErrors& errors);
+  void EachSample(const Row& row, int plane, const glm::ivec3& low, int edge,
+    ExceptionList<T>& list, FieldErrors& errors);
+  bool Within(T original, T decoded, double& error, double& transformed) const;
+  bool BothInvisible(const glm::ivec3& sample, T original, T decoded);
+  bool MayStay(const glm::ivec3& sample, T original, T decoded, FieldErrors& errors);
+
+  const FieldGroup& Field;
+  const group::FieldHead& Head;
+  const LatticeDecoder<T>& Decoder;
+  const FillSet<T>& Fills;
+  const InvisibleBlocks<T>* Hidden;
+  glm::i64vec3 Stride;
+  glm::ivec3 Last;
+  const T* Values;
+  bool Plain; ///< rows may be taken as a whole
+
+  /// Of the block's samples along a row, among the values, and among tuples of them.
+  std::vector<std::int64_t> Columns, Tuples;
+  std::vector<std::uint32_t> Offsets;
+  std::vector<T> Originals, Decoded;                 ///< of a row
+  std::vector<double> OriginalImages, DecodedImages; ///< transformed
+  std::map<std::int64_t, int> Intervals;             ///< of blocks that were looked at before
+};
+
+} // namespace banyan
+
+#endif
