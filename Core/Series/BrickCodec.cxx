@@ -1,12 +1,10 @@
 #include "Series/BrickCodec.h"
 
 #include "Base/Error.h"
-#include "Base/ForEachScalarType.h"
 #include "Series/Lorenzo.h"
 #include "Series/Zstd.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -25,17 +23,7 @@ std::size_t CountOf(const glm::ivec3& samples)
   return static_cast<std::size_t>(samples.x) * samples.y * samples.z;
 }
 
-void AppendNumber(std::int64_t number, Bytes& out)
-{
-  std::uint64_t rest = ToZigzag(static_cast<std::uint64_t>(number));
-  for (; rest >= 128; rest >>= 7)
-  {
-    out.push_back(static_cast<std::uint8_t>(rest | 128));
-  }
-  out.push_back(static_cast<std::uint8_t>(rest));
-}
-
-/// Reads what `AppendNumber` wrote and moves `position` behind it.
+/// Reads a number and moves `position` behind it.
 std::int64_t ReadNumber(const std::uint8_t* data, std::size_t bytes, std::size_t& position)
 {
   std::uint64_t number = 0;
@@ -55,20 +43,6 @@ std::int64_t ReadNumber(const std::uint8_t* data, std::size_t bytes, std::size_t
   throw Error("The payload of a brick holds a number that is too long");
 }
 
-/// Appends planes as they are or as a zstd frame, whichever is smaller; says whether compressed.
-bool AppendPlanes(const Bytes& planes, int level, Bytes& out)
-{
-  const std::size_t before = out.size();
-  AppendCompressed(planes.data(), planes.size(), level, out);
-  if (out.size() - before < planes.size())
-  {
-    return true;
-  }
-  out.resize(before);
-  out.insert(out.end(), planes.begin(), planes.end());
-  return false;
-}
-
 /// Bytes of planes, decompressed into `scratch` where needed.
 const std::uint8_t* ReadPlanes(const std::uint8_t* data, std::size_t bytes, bool compressed,
   std::size_t expected, Bytes& scratch)
@@ -86,77 +60,6 @@ const std::uint8_t* ReadPlanes(const std::uint8_t* data, std::size_t bytes, bool
   return scratch.data();
 }
 
-/// Bits that an ideal order-0 coder needs for the bytes of some numbers: a quick guess at what zstd
-/// will make of them.
-template <class C>
-double OrderZeroBits(const std::vector<C>& numbers)
-{
-  std::array<std::array<std::uint32_t, 256>, sizeof(C)> histograms{};
-  for (const C number : numbers)
-  {
-    for (std::size_t p = 0; p < sizeof(C); ++p)
-    {
-      ++histograms[p][number >> 8 * p & 255];
-    }
-  }
-  const double total = static_cast<double>(numbers.size());
-  double bits = 0;
-  for (const auto& histogram : histograms)
-  {
-    for (const std::uint32_t count : histogram)
-    {
-      bits += count > 0 ? count * std::log2(total / count) : 0;
-    }
-  }
-  return bits;
-}
-
-/// Both predictors, the smaller one kept; where a guess already says which, the other is not tried.
-/// C is as wide as the codes need.
-template <class C>
-void AppendCodes(const std::vector<std::uint32_t>& offsets, const glm::ivec3& samples, int level,
-  std::uint8_t widthCode, std::int64_t base, Bytes& payload)
-{
-  const std::size_t count = offsets.size();
-  thread_local std::vector<C> codes;
-  thread_local std::vector<C> residuals;
-  codes.resize(count);
-  residuals.resize(count);
-  std::transform(offsets.begin(), offsets.end(), codes.begin(),
-    [](std::uint32_t offset) { return static_cast<C>(offset); });
-  ToLorenzo(codes.data(), samples, residuals.data());
-  std::transform(residuals.begin(), residuals.end(), residuals.begin(), ToZigzag<C>);
-
-  thread_local Bytes planes;
-  planes.resize(count * sizeof(C));
-  const auto code = [&](const std::vector<C>& numbers, std::uint8_t predictor, Bytes& out)
-  {
-    ToPlanes(numbers.data(), count, planes.data());
-    out.assign(1, static_cast<std::uint8_t>(widthCode | predictor));
-    AppendNumber(base, out);
-    out[0] |= AppendPlanes(planes, level, out) ? ZstdBit : 0;
-  };
-  constexpr double clear = 0.7;
-  const double lorenzoBits = OrderZeroBits(residuals);
-  const double plainBits = OrderZeroBits(codes);
-  if (plainBits < clear * lorenzoBits)
-  {
-    code(codes, 0, payload);
-    return;
-  }
-  code(residuals, LorenzoBit, payload);
-  if (lorenzoBits < clear * plainBits)
-  {
-    return;
-  }
-  thread_local Bytes plain;
-  code(codes, 0, plain);
-  if (plain.size() < payload.size())
-  {
-    payload = plain;
-  }
-}
-
 template <class C>
 void ReadCodes(const std::uint8_t* planes, const glm::ivec3& samples, bool lorenzo,
   std::vector<std::uint32_t>& offsets)
@@ -170,60 +73,6 @@ void ReadCodes(const std::uint8_t* planes, const glm::ivec3& samples, bool loren
     FromLorenzo(codes.data(), samples);
   }
   std::copy(codes.begin(), codes.end(), offsets.begin());
-}
-
-/// Codes on the lattice; returns false when they lie too far apart.
-template <class T>
-bool EncodeLattice(
-  const LatticeNumber<T>* numbers, const glm::ivec3& samples, int level, Bytes& payload)
-{
-  const std::size_t count = CountOf(samples);
-  const auto extremes = std::minmax_element(numbers, numbers + count);
-  const LatticeNumber<T> least = *extremes.first;
-  const std::uint64_t width =
-    static_cast<std::uint64_t>(*extremes.second) - static_cast<std::uint64_t>(least);
-  if (width > (std::is_floating_point_v<T> ? 0x7fffffffu : 0xffffffffu))
-  {
-    return false;
-  }
-  const std::int64_t base = static_cast<std::int64_t>(least);
-  if (width == 0)
-  {
-    payload.assign(1, 0);
-    AppendNumber(base, payload);
-    return true;
-  }
-  thread_local std::vector<std::uint32_t> offsets;
-  offsets.resize(count);
-  std::transform(numbers, numbers + count, offsets.begin(),
-    [least](LatticeNumber<T> number)
-    {
-      return static_cast<std::uint32_t>(
-        static_cast<std::uint64_t>(number) - static_cast<std::uint64_t>(least));
-    });
-  if (width <= 0xff)
-  {
-    AppendCodes<std::uint8_t>(offsets, samples, level, 1, base, payload);
-  }
-  else if (width <= 0xffff)
-  {
-    AppendCodes<std::uint16_t>(offsets, samples, level, 2, base, payload);
-  }
-  else
-  {
-    AppendCodes<std::uint32_t>(offsets, samples, level, 3, base, payload);
-  }
-  return true;
-}
-
-template <class T>
-void EncodeRaw(const T* values, std::size_t count, int level, Bytes& payload)
-{
-  thread_local Bytes planes;
-  planes.resize(count * sizeof(T));
-  ToPlanes(values, count, planes.data());
-  payload.assign(1, 0);
-  payload[0] = AppendPlanes(planes, level, payload) ? 1 : 0;
 }
 
 template <class T>
@@ -299,36 +148,6 @@ bool HoldsExactlyAs(double value)
 
 } // namespace
 
-template <class T>
-EncodedBrick EncodeBrick(const LatticeNumber<T>* numbers, const T* decoded,
-  const glm::ivec3& samples, bool onLattice, bool uniform, int compressionLevel)
-{
-  EncodedBrick brick;
-  if (uniform)
-  {
-    brick.Mode = BrickMode::MacroVoxel;
-    return brick;
-  }
-  const std::size_t count = CountOf(samples);
-  if (onLattice && EncodeLattice<T>(numbers, samples, compressionLevel, brick.Payload))
-  {
-    brick.Mode = BrickMode::Lattice;
-    // Only codes as wide as the values themselves can be worse than these.
-    if (brick.Payload.size() <= count * sizeof(T) / 2)
-    {
-      return brick;
-    }
-  }
-  Bytes raw;
-  EncodeRaw(decoded, count, compressionLevel, raw);
-  if (brick.Mode == BrickMode::Raw || raw.size() < brick.Payload.size())
-  {
-    brick.Mode = BrickMode::Raw;
-    brick.Payload = std::move(raw);
-  }
-  return brick;
-}
-
 void DecodeBrick(std::uint8_t mode, const std::uint8_t* payload, std::size_t bytes,
   const Quantizer& quantizer, ScalarType type, const glm::ivec3& samples, double uniformValue,
   void* out)
@@ -380,11 +199,5 @@ bool HoldsExactly(ScalarType type, double value)
   return Dispatch(
     type, [value](auto tag) { return HoldsExactlyAs<typename decltype(tag)::Type>(value); });
 }
-
-#define BANYAN_INSTANTIATE(T)                                                                      \
-  template EncodedBrick EncodeBrick<T>(                                                            \
-    const LatticeNumber<T>*, const T*, const glm::ivec3&, bool, bool, int)
-BANYAN_FOR_EACH_SCALAR_TYPE(BANYAN_INSTANTIATE);
-#undef BANYAN_INSTANTIATE
 
 } // namespace banyan

@@ -10,30 +10,13 @@
 namespace banyan
 {
 
-/// How a payload is coded; the numbers are part of the file format.
+/// How a payload of version 1 is coded; the numbers are part of the file format.
 enum class BrickMode : std::uint8_t
 {
   MacroVoxel = 0, ///< no payload
   Lattice = 1,
   Raw = 2
 };
-
-struct EncodedBrick
-{
-  BrickMode Mode = BrickMode::Raw;
-  Bytes Payload; ///< empty for a macro voxel
-};
-
-/// Codes one brick; the smaller of what the modes give that can hold it.
-/// @param numbers lattice numbers and
-/// @param decoded values as `Quantize` made them; `[z][y][x]`, x fastest
-/// @param onLattice what `Quantize` returned
-/// @param uniform all `decoded` have one bit pattern, which the node table keeps
-/// @param compressionLevel of zstd, 1 to 19
-/// Decoding gives `decoded` bit-exactly.
-template <class T>
-EncodedBrick EncodeBrick(const LatticeNumber<T>* numbers, const T* decoded,
-  const glm::ivec3& samples, bool onLattice, bool uniform, int compressionLevel);
 
 /// @param uniformValue of a macro voxel, as the node table keeps it
 /// @param out receives samples.x * samples.y * samples.z values of `type`

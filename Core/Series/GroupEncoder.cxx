@@ -2,7 +2,7 @@
 
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
-#include "Series/FieldEncoder.h"
+#include "Series/ComponentRange.h"
 #include "Series/FieldGroupEncoder.h"
 #include "Series/FillValues.h"
 #include "Series/GroupWriter.h"

@@ -236,7 +236,7 @@ private:
             UnpackExceptions<T>(payload.data(), payload.size(), samples), values.data());
         }
       });
-    const BrickSummary summary = Summarize(values.data(), region.Count, MaskRange{ 0, 0 });
+    const BrickSummary summary = Summarize(values.data(), values.size());
     node.HasNonFinite = summary.HasNonFinite;
     node.NothingFinite = summary.Range.Empty();
     node.Uniform = summary.Uniform;

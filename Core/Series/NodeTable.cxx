@@ -14,7 +14,7 @@ namespace
 constexpr std::uint8_t HasNonFiniteFlag = 1;
 constexpr std::uint8_t NothingFiniteFlag = 2;
 
-/// The columns of a table between memory and planes of bytes, in the order of the format.
+/// The columns of a table, in the order of the format.
 struct Columns
 {
   explicit Columns(std::size_t count)
@@ -128,45 +128,6 @@ PayloadIdentity MacroVoxelIdentity(ScalarType type, const glm::ivec3& samples, d
   const Hash128 hash =
     IdentityOf(static_cast<std::uint8_t>(BrickMode::MacroVoxel), payload, 8, {}, type, samples);
   return { hash.Low, hash.High };
-}
-
-Bytes PackNodeTable(const NodeTable& table, int compressionLevel)
-{
-  const std::size_t count = table.Nodes.size();
-  Columns columns(count);
-  std::uint64_t expected = segment::HeaderBytes;
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    const BrickNode& node = table.Nodes[i];
-    columns.Mode[i] = table.Payloads[i].Mode;
-    columns.Flags[i] = static_cast<std::uint8_t>(
-      (node.HasNonFinite ? HasNonFiniteFlag : 0) | (node.Range.Empty() ? NothingFiniteFlag : 0));
-    if (!node.Range.Empty())
-    {
-      columns.Low[i] = BitCast<std::uint64_t>(node.Range.Low);
-      columns.High[i] = columns.Low[i] ^ BitCast<std::uint64_t>(node.Range.High);
-    }
-    columns.Mask[i] = node.Mask;
-    if (!node.Uniform)
-    {
-      columns.Offset[i] = table.Payloads[i].Offset - expected;
-      columns.PayloadBytes[i] = node.PayloadBytes;
-      columns.IdentityLow[i] = node.Identity.Low;
-      columns.IdentityHigh[i] = node.Identity.High;
-      expected = EndOf(table.Payloads[i].Offset, node.PayloadBytes);
-    }
-  }
-  Bytes raw(count * segment::NodeBytes);
-  std::uint8_t* to = raw.data();
-  columns.Visit(
-    [&to, count](const auto& column)
-    {
-      ToPlanes(column.data(), count, to);
-      to += count * sizeof(column[0]);
-    });
-  Bytes packed;
-  AppendCompressed(raw.data(), raw.size(), compressionLevel, packed);
-  return packed;
 }
 
 NodeTable UnpackNodeTable(const std::uint8_t* stored, const segment::TableEntry& entry,

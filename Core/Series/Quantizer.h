@@ -13,7 +13,8 @@
 namespace banyan
 {
 
-/// The lattice that the values of one component go to.
+/// The lattice that the values of one component lie on in version 1 (see FieldLattice.h for what is
+/// written today).
 ///
 /// Real types: decoded = (T)(Origin + k * Step) in double precision. Integer types: decoded =
 /// k * IntegerStep, clamped to the type. Either way what a value decodes to depends on that value
@@ -26,16 +27,11 @@ struct Quantizer
   double Origin = 0.0;
   double Step = 0.0;             ///< real types; 0: no lattice, values stay bit-exact
   std::uint64_t IntegerStep = 1; ///< integer types; odd; 1: exact
-  double Bound = 0.0;            ///< needed for encoding only
 
   /// As the format keeps them; see Documentation/format.md.
   std::uint64_t OriginBits(ScalarType type) const;
   std::uint64_t StepBits(ScalarType type) const;
 };
-
-/// @param bound |decoded - original| is to be at most this; finite, >= 0; 0 is bit-exact
-/// @param expected roughly where the values lie: only efficiency depends on it, not the bound
-Quantizer MakeQuantizer(ScalarType type, double bound, const ValueRange& expected);
 
 /// Inverse of the two `Bits` functions. Throws Error when no quantizer has these bits.
 Quantizer QuantizerFromBits(ScalarType type, std::uint64_t origin, std::uint64_t step);
@@ -48,17 +44,8 @@ using LatticeNumber = std::conditional_t<std::is_floating_point_v<T>, std::int32
 /// Greatest |k| of real types: beyond, the lattice saves nothing over the values themselves.
 constexpr double LatticeLimit = 1073741824.0;
 
-/// Puts values on the lattice where that keeps the bound in the type T, and leaves the others (NaN
-/// and infinities among them) bit-exact.
-/// @param numbers receives the lattice numbers; 0 where a value was left
-/// @param decoded receives what each value decodes to
-/// @return whether all values are on the lattice
-template <class T>
-bool Quantize(const Quantizer& quantizer, const T* values, std::size_t count,
-  LatticeNumber<T>* numbers, T* decoded);
-
 /// decoded[i] from the number base + offsets[i]. Any input is safe (crafted files): it decodes to
-/// something. Gives the bits that `Quantize` gave for the same number.
+/// something.
 template <class T>
 void Dequantize(const Quantizer& quantizer, std::int64_t base, const std::uint32_t* offsets,
   std::size_t count, T* decoded);

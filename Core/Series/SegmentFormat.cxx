@@ -48,18 +48,6 @@ Header LoadHeader(const std::uint8_t* from, std::uint32_t wantedVersion)
   return header;
 }
 
-void StoreEntry(const TableEntry& entry, std::uint8_t* to)
-{
-  StoreNumber(to, entry.Offset);
-  StoreNumber(to + 8, entry.StoredBytes);
-  StoreNumber(to + 16, entry.RawBytes);
-  StoreNumber(to + 24, entry.Hash);
-  StoreNumber(to + 32, entry.Masks.Low);
-  StoreNumber(to + 40, entry.Masks.High);
-  StoreNumber(to + 48, entry.QuantizerOrigin);
-  StoreNumber(to + 56, entry.QuantizerStep);
-}
-
 TableEntry LoadEntry(const std::uint8_t* from)
 {
   TableEntry entry;

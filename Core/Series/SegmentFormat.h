@@ -52,8 +52,7 @@ void StoreHeader(const Header& header, std::uint8_t* to);
 /// Reads and checks magic, version and hash. Throws Error.
 Header LoadHeader(const std::uint8_t* from, std::uint32_t wantedVersion = Version);
 
-/// Writes and reads `EntryBytes` bytes.
-void StoreEntry(const TableEntry& entry, std::uint8_t* to);
+/// Reads `EntryBytes` bytes.
 TableEntry LoadEntry(const std::uint8_t* from);
 
 } // namespace banyan::segment

@@ -1,0 +1,57 @@
+#include "Series/ComponentRange.h"
+
+#include "Base/ThreadPool.h"
+#include "Series/Quantizer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace banyan
+{
+namespace
+{
+
+template <class T>
+ValueRange RangeOfTuples(const T* values, std::int64_t first, std::int64_t last, int components)
+{
+  ValueRange range;
+  for (std::int64_t i = first; i < last; ++i)
+  {
+    const T value = values[i * components];
+    if (std::isfinite(static_cast<double>(value)))
+    {
+      range.Include({ DoubleNotAbove(value), DoubleNotBelow(value) });
+    }
+  }
+  return range;
+}
+
+} // namespace
+
+ValueRange RangeOfComponent(ScalarType type, const void* values, std::int64_t tuples,
+  int components, int component, ThreadPool& pool)
+{
+  constexpr std::int64_t chunk = 65536;
+  std::vector<ValueRange> parts(static_cast<std::size_t>((tuples + chunk - 1) / chunk));
+  Dispatch(type,
+    [&](auto tag)
+    {
+      using T = typename decltype(tag)::Type;
+      const T* start = static_cast<const T*>(values) + component;
+      pool.ParallelFor(static_cast<std::int64_t>(parts.size()),
+        [&](std::int64_t i)
+        {
+          parts[static_cast<std::size_t>(i)] =
+            RangeOfTuples(start, i * chunk, std::min(tuples, (i + 1) * chunk), components);
+        });
+    });
+  ValueRange range;
+  for (const ValueRange& part : parts)
+  {
+    range.Include(part);
+  }
+  return range;
+}
+
+} // namespace banyan

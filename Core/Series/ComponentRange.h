@@ -1,0 +1,21 @@
+#ifndef banyan_Series_ComponentRange_h
+#define banyan_Series_ComponentRange_h
+
+#include "Base/ScalarType.h"
+#include "Series/ValueRange.h"
+
+#include <cstdint>
+
+namespace banyan
+{
+
+class ThreadPool;
+
+/// Extremes of the finite values of a component, outward for 64-bit integers.
+/// @param values `[tuples][components]`
+ValueRange RangeOfComponent(ScalarType type, const void* values, std::int64_t tuples,
+  int components, int component, ThreadPool& pool);
+
+} // namespace banyan
+
+#endif
