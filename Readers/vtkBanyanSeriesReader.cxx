@@ -1,5 +1,6 @@
 #include "vtkBanyanSeriesReader.h"
 
+#include "SeriesInformation.h"
 #include "VerifiedBricks.h"
 #include "vtkBanyanDeferred.h"
 
@@ -9,14 +10,12 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkMatrix3x3.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkTypeTraits.h"
 
 #include "Cache/BrickCache.h"
 #include "Series/LevelGrid.h"
@@ -40,32 +39,6 @@ struct vtkBanyanSeriesReader::Internals
   vtkSmartPointer<vtkMultiProcessController> Controller;
   std::string ErrorMessage;
 };
-
-namespace
-{
-
-int VtkTypeOf(banyan::ScalarType type)
-{
-  return banyan::Dispatch(
-    type, [](auto tag) -> int { return vtkTypeTraits<typename decltype(tag)::Type>::VTK_TYPE_ID; });
-}
-
-/// VTK's extents include their last index.
-void ToExtent(const banyan::Box& box, int extent[6])
-{
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    extent[2 * axis] = box.Lo[axis];
-    extent[2 * axis + 1] = box.Hi[axis] - 1;
-  }
-}
-
-banyan::Box FromExtent(const int extent[6])
-{
-  return { { extent[0], extent[2], extent[4] }, { extent[1] + 1, extent[3] + 1, extent[5] + 1 } };
-}
-
-} // namespace
 
 vtkBanyanSeriesReader::vtkBanyanSeriesReader()
   : Self(new Internals)
@@ -287,53 +260,9 @@ int vtkBanyanSeriesReader::RequestInformation(
   {
     this->Self->Selection->AddArray(array.Name.c_str());
   }
-  this->Describe(outputs->GetInformationObject(0));
+  banyan::DescribeSeries(
+    this->Self->Series->Index(), this->UsedLevel(), *outputs->GetInformationObject(0));
   return 1;
-}
-
-void vtkBanyanSeriesReader::Describe(vtkInformation* outInfo) const
-{
-  const banyan::SeriesIndex& index = this->Self->Series->Index();
-  const banyan::Grid grid = banyan::GridOfLevel(index.Domain, this->UsedLevel());
-  int extent[6];
-  ToExtent(grid.Extent, extent);
-  outInfo->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
-  outInfo->Set(vtkDataObject::ORIGIN(), &grid.Origin[0], 3);
-  outInfo->Set(vtkDataObject::SPACING(), &grid.Spacing[0], 3);
-  double direction[9];
-  for (int row = 0; row < 3; ++row)
-  {
-    for (int column = 0; column < 3; ++column)
-    {
-      direction[3 * row + column] = grid.Direction[column][row];
-    }
-  }
-  outInfo->Set(vtkDataObject::DIRECTION(), direction, 9);
-  outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-
-  const int steps = index.Steps();
-  outInfo->Set(Pipeline::TIME_STEPS(), index.Times.data(), steps);
-  const double range[2] = { index.Times.front(), index.Times.back() };
-  outInfo->Set(Pipeline::TIME_RANGE(), range, 2);
-
-  const int active = index.FindArray(index.ActiveScalars);
-  if (active >= 0)
-  {
-    vtkDataObject::SetPointDataActiveScalarInfo(outInfo, VtkTypeOf(index.Arrays[active].Type),
-      static_cast<int>(index.Arrays[active].Components.size()));
-  }
-}
-
-int vtkBanyanSeriesReader::StepAt(vtkInformation* outInfo) const
-{
-  const std::vector<double>& times = this->Self->Series->Index().Times;
-  if (!outInfo->Has(Pipeline::UPDATE_TIME_STEP()))
-  {
-    return 0;
-  }
-  const double time = outInfo->Get(Pipeline::UPDATE_TIME_STEP());
-  const auto after = std::upper_bound(times.begin(), times.end(), time);
-  return std::max(0, static_cast<int>(after - times.begin()) - 1);
 }
 
 //--------------------------------------------------------------------------------------------------
@@ -391,12 +320,12 @@ void vtkBanyanSeriesReader::FillOutput(vtkInformation* outInfo)
   const banyan::SeriesIndex& index = series.Index();
   vtkBanyanDeferred::Handle handle;
   handle.Series = this->Self->Series;
-  handle.Step = this->StepAt(outInfo);
+  handle.Step = banyan::StepAt(index, *outInfo);
   handle.Level = this->UsedLevel();
 
   const banyan::Grid grid = banyan::GridOfLevel(index.Domain, handle.Level);
   const banyan::Box wanted =
-    Intersection(FromExtent(outInfo->Get(Pipeline::UPDATE_EXTENT())), grid.Extent);
+    Intersection(banyan::FromExtent(outInfo->Get(Pipeline::UPDATE_EXTENT())), grid.Extent);
   if (!wanted.Empty())
   {
     handle.Samples = { wanted.Lo - grid.Extent.Lo, wanted.Hi - grid.Extent.Lo };
@@ -404,7 +333,7 @@ void vtkBanyanSeriesReader::FillOutput(vtkInformation* outInfo)
   int extent[6] = { 0, -1, 0, -1, 0, -1 };
   if (!wanted.Empty())
   {
-    ToExtent(wanted, extent);
+    banyan::ToExtent(wanted, extent);
   }
   vtkImageData* output = vtkImageData::GetData(outInfo);
   output->SetExtent(extent);

@@ -141,8 +141,6 @@ private:
   std::string TryToOpen();
   std::string TryToFill(vtkInformation* outInfo, unsigned long& code);
   int UsedLevel() const;
-  int StepAt(vtkInformation* outInfo) const;
-  void Describe(vtkInformation* outInfo) const;
   void FillOutput(vtkInformation* outInfo);
   bool AllRanksAreWell(unsigned long code, const std::string& problem);
   void Fail(unsigned long code, const std::string& sentence);

@@ -1,6 +1,4 @@
-#include "Series/SeriesTesting.h"
-
-#include "Base/Error.h"
+#include "Series/ContainerTesting.h"
 
 #include <csignal>
 #include <fstream>
@@ -16,21 +14,6 @@ namespace
 {
 
 namespace fs = std::filesystem;
-
-const Grid Small = GridOf(33, 20, 18);
-
-Steps<float> SmallSteps(int count, double shift = 0)
-{
-  return Sample<float>(
-    Small, count, [shift](int x, int y, int z, int s) { return shift + Wavy<float>(x, y, z, s); });
-}
-
-EncodeOptions TwoPerSegment()
-{
-  EncodeOptions options;
-  options.KeyframeInterval = 2;
-  return options;
-}
 
 void ExpectHolds(const std::string& path, const Steps<float>& steps, int count)
 {
@@ -48,20 +31,6 @@ std::size_t FilesIn(const std::string& folder)
 {
   return static_cast<std::size_t>(
     std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-}
-
-template <class Body>
-void ExpectError(Body&& body, const std::string& word)
-{
-  try
-  {
-    body();
-    ADD_FAILURE() << "no error about: " << word;
-  }
-  catch (const Error& failure)
-  {
-    EXPECT_NE(std::string(failure.what()).find(word), std::string::npos) << failure.what();
-  }
 }
 
 TEST(Container, GrowsSegmentBySegment)
@@ -328,98 +297,6 @@ TEST(Container, SegmentsOfAnotherSeriesAreNoticed)
     fs::copy_options::overwrite_existing);
   const auto file = SeriesFile::Open(folder / "a.banyan");
   ExpectError([&] { (void)file->Nodes({ 0, 0, 0, 0 }); }, "not the one that the index names");
-}
-
-TEST(Container, BadCallsAreRejected)
-{
-  const TemporaryFolder folder;
-  ThreadPool pool(1);
-  const auto steps = SmallSteps(2);
-  const ArrayDescription good = Describe(steps);
-  const auto make =
-    [&](const Grid& grid, std::vector<ArrayDescription> arrays, const EncodeOptions& options)
-  { SeriesEncoder encoder(folder / "bad.banyan", grid, arrays, options, pool); };
-  const auto with = [](auto&& change)
-  {
-    EncodeOptions options;
-    change(options);
-    return options;
-  };
-  EXPECT_THROW(make(Small, {}, {}), Error);
-  EXPECT_THROW(make(GridOf(0, 1, 1), { good }, {}), Error);
-  EXPECT_THROW(make(Small, { good, good }, {}), Error);
-  EXPECT_THROW(make(Small, { good }, with([](auto& o) { o.ErrorBound = -1; })), Error);
-  EXPECT_THROW(make(Small, { good }, with([](auto& o) { o.ErrorBound = NAN; })), Error);
-  EXPECT_THROW(make(Small, { good }, with([](auto& o) { o.KeyframeInterval = 0; })), Error);
-  EXPECT_THROW(make(Small, { good }, with([](auto& o) { o.BrickCells = 12; })), Error);
-  EXPECT_THROW(make(Small, { good }, with([](auto& o) { o.CompressionLevel = 20; })), Error);
-  ArrayDescription bad = good;
-  bad.SeriesRanges.clear();
-  EXPECT_THROW(make(Small, { bad }, {}), Error);
-  bad.SeriesRanges = { { 0, INFINITY } };
-  EXPECT_THROW(make(Small, { bad }, {}), Error);
-  bad = good;
-  bad.ComponentNames.clear();
-  EXPECT_THROW(make(Small, { bad }, {}), Error);
-  EXPECT_TRUE(folder.Empty()) << "rejected before anything was written";
-  EXPECT_THROW(SeriesEncoder(folder / "no/folder/s.banyan", Small, { good }, {}, pool), Error);
-
-  SeriesEncoder late(folder / "s.banyan", Small, { good }, {}, pool);
-  late.AddStep(1, { { steps[0].data() } });
-  EXPECT_THROW(late.AddStep(1, { { steps[1].data() } }), Error);
-  EXPECT_THROW(late.Finish(), Error);
-  SeriesEncoder empty(folder / "e.banyan", Small, { good }, {}, pool);
-  EXPECT_THROW(empty.Finish(), Error);
-  SeriesEncoder few(folder / "f.banyan", Small, { good }, {}, pool);
-  EXPECT_THROW(few.AddStep(0, {}), Error);
-  SeriesEncoder null(folder / "n.banyan", Small, { good }, {}, pool);
-  EXPECT_THROW(null.AddStep(0, { { nullptr } }), Error);
-}
-
-TEST(Container, ProgressRisesAndInterrupts)
-{
-  const TemporaryFolder folder;
-  ThreadPool pool(2);
-  const auto steps = SmallSteps(1);
-  SeriesEncoder encoder(folder / "s.banyan", Small, { Describe(steps) }, {}, pool);
-  double last = 0;
-  int calls = 0;
-  encoder.SetProgress(
-    [&](double done)
-    {
-      EXPECT_GT(done, last);
-      EXPECT_LT(done, 1);
-      last = done;
-      return ++calls < 2;
-    });
-  ExpectError(
-    [&]
-    {
-      encoder.AddStep(0, { { steps[0].data() } });
-      encoder.Finish();
-    },
-    "interrupted");
-  EXPECT_EQ(calls, 2);
-}
-
-TEST(Container, QuestionsBeyondTheSeriesAreErrors)
-{
-  const TemporaryFolder folder;
-  Encode(folder / "s.banyan", Small, SmallSteps(3), TwoPerSegment());
-  const auto file = SeriesFile::Open(folder / "s.banyan");
-  std::vector<float> room(17 * 17 * 17);
-  for (const FieldKey& field : { FieldKey{ 3, 0, 0, 0 }, FieldKey{ -1, 0, 0, 0 },
-         FieldKey{ 0, 1, 0, 0 }, FieldKey{ 0, -1, 0, 0 }, FieldKey{ 0, 0, 1, 0 },
-         FieldKey{ 0, 0, -1, 0 }, FieldKey{ 0, 0, 0, 9 }, FieldKey{ 0, 0, 0, -1 } })
-  {
-    EXPECT_THROW((void)file->Nodes(field), Error);
-    EXPECT_THROW(file->DecodeBrick(field, 0, room.data()), Error);
-  }
-  EXPECT_THROW(file->DecodeBrick({}, -1, room.data()), Error);
-  EXPECT_THROW(file->DecodeBrick({}, file->Layout(0).BrickCount(), room.data()), Error);
-  EXPECT_THROW(file->VerifyBricks({}, { 0, 99 }), Error);
-  EXPECT_THROW((void)file->Layout(9), Error);
-  EXPECT_THROW((void)file->MaskRangeOf(0, 1), Error);
 }
 
 } // namespace

@@ -1,0 +1,25 @@
+#ifndef banyan_Readers_SeriesInformation_h
+#define banyan_Readers_SeriesInformation_h
+
+#include "Base/Box.h"
+#include "Series/SeriesIndex.h"
+
+class vtkInformation;
+
+namespace banyan
+{
+
+/// Half-open boxes to VTK's extents, which include their last index, and back.
+void ToExtent(const Box& box, int extent[6]);
+Box FromExtent(const int extent[6]);
+
+/// Tells the pipeline what a series looks like at a level: grid, times, active scalars.
+void DescribeSeries(const SeriesIndex& index, int level, vtkInformation& information);
+
+/// The step that shows at the time asked for: the last one not after it; the first one before that,
+/// and when no time is asked for.
+int StepAt(const SeriesIndex& index, vtkInformation& information);
+
+} // namespace banyan
+
+#endif
