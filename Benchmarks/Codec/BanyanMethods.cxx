@@ -7,7 +7,6 @@
 #include "Series/SeriesFile.h"
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 #include <functional>
 
@@ -29,26 +28,6 @@ std::uint64_t BytesOnDisk(const std::string& index)
     bytes += entry.is_regular_file() ? entry.file_size() : 0;
   }
   return bytes;
-}
-
-/// Copies the samples that two boxes share.
-void CopyShared(const Box& from, const float* source, const Box& to, float* target)
-{
-  const Box shared = Intersection(from, to);
-  const glm::ivec3 length = shared.Size();
-  const auto offset = [](const Box& box, int x, int y, int z)
-  {
-    const glm::ivec3 n = box.Size();
-    return (std::size_t(z - box.Lo.z) * n.y + (y - box.Lo.y)) * n.x + (x - box.Lo.x);
-  };
-  for (int z = shared.Lo.z; z < shared.Hi.z; ++z)
-  {
-    for (int y = shared.Lo.y; y < shared.Hi.y; ++y)
-    {
-      std::memcpy(target + offset(to, shared.Lo.x, y, z), source + offset(from, shared.Lo.x, y, z),
-        sizeof(float) * static_cast<std::size_t>(std::max(0, length.x)));
-    }
-  }
 }
 
 class BanyanSeries : public EncodedSeries
@@ -90,10 +69,15 @@ public:
         for (int x = bricks.Lo.x; x < bricks.Hi.x; ++x)
         {
           const std::int64_t brick = layout.IndexOf({ x, y, z });
-          const Box held = layout.SamplesOf(brick);
-          this->Scratch.resize(static_cast<std::size_t>(held.Count()));
-          this->File->DecodeBrick(field, brick, this->Scratch.data());
-          CopyShared(held, this->Scratch.data(), samples, values);
+          const Box part = Intersection(layout.SamplesOf(brick), samples);
+          if (part.Empty())
+          {
+            continue;
+          }
+          const glm::ivec3 size = samples.Size(), low = part.Lo - samples.Lo;
+          const glm::i64vec3 stride{ 1, size.x, std::int64_t{ size.x } * size.y };
+          this->File->DecodePart(field, brick, part, stride,
+            values + low.x + low.y * stride.y + low.z * stride.z);
         }
       }
     }
@@ -103,7 +87,6 @@ private:
   std::string IndexPath;
   std::shared_ptr<SeriesFile> File;
   std::unique_ptr<BrickCache> Cache;
-  std::vector<float> Scratch;
 };
 
 class BanyanMethod : public CodecMethod

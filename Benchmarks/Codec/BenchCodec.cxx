@@ -93,6 +93,8 @@ int main(int argc, char** argv)
       std::fputs(CodecHelp().c_str(), stdout);
       return EXIT_SUCCESS;
     }
+    // Times are of one core, for every method.
+    setenv("BANYAN_THREADS", "1", 1);
     return Run(options) ? EXIT_SUCCESS : EXIT_FAILURE;
   }
   catch (const std::exception& error)

@@ -62,6 +62,23 @@ std::uint64_t BudgetFromEnvironment()
   return good ? std::uint64_t{ megabytes } << 20 : DefaultBudget;
 }
 
+BrickNode NodeOf(const SeriesFile& series, const FieldKey& field, std::int64_t brick)
+{
+  const auto nodes = series.Nodes(field);
+  if (brick < 0 || brick >= static_cast<std::int64_t>(nodes->size()))
+  {
+    throw Error("The level has no brick number " + std::to_string(brick), { series.Path() });
+  }
+  return (*nodes)[static_cast<std::size_t>(brick)];
+}
+
+Key KeyOf(
+  const SeriesFile& series, const FieldKey& field, const BrickNode& node, std::int64_t brick)
+{
+  return { node.Identity, series.Index().Arrays[static_cast<std::size_t>(field.Array)].Type,
+    series.Layout(field.Level).SamplesOf(brick) };
+}
+
 } // namespace
 
 struct BrickCache::Internals
@@ -110,6 +127,19 @@ struct BrickCache::Internals
   }
 
   /// Waits for another thread's result or claims the decoding; null when claimed.
+  Pointer Find(const Key& key)
+  {
+    std::lock_guard<std::mutex> lock(this->Mutex);
+    const auto place = this->Places.find(key);
+    if (place == this->Places.end())
+    {
+      return nullptr;
+    }
+    this->Bricks.splice(this->Bricks.begin(), this->Bricks, place->second);
+    ++this->Numbers.Hits;
+    return place->second->second;
+  }
+
   Pointer FindOrClaim(const Key& key)
   {
     std::unique_lock<std::mutex> lock(this->Mutex);
@@ -164,19 +194,17 @@ BrickCache::BrickCache(std::uint64_t budgetBytes)
 
 BrickCache::~BrickCache() = default;
 
+std::shared_ptr<const BrickValues> BrickCache::GetIfHeld(
+  const SeriesFile& series, const FieldKey& field, std::int64_t brick)
+{
+  return this->Self->Find(KeyOf(series, field, NodeOf(series, field, brick), brick));
+}
+
 std::shared_ptr<const BrickValues> BrickCache::Get(
   const SeriesFile& series, const FieldKey& field, std::int64_t brick)
 {
-  const auto nodes = series.Nodes(field);
-  if (brick < 0 || brick >= static_cast<std::int64_t>(nodes->size()))
-  {
-    throw Error("The level has no brick number " + std::to_string(brick), { series.Path() });
-  }
-  const BrickNode& node = (*nodes)[static_cast<std::size_t>(brick)];
-  Key key;
-  key.Identity = node.Identity;
-  key.Type = series.Index().Arrays[static_cast<std::size_t>(field.Array)].Type;
-  key.Samples = series.Layout(field.Level).SamplesOf(brick);
+  const BrickNode node = NodeOf(series, field, brick);
+  const Key key = KeyOf(series, field, node, brick);
   const auto decode = [&]
   {
     auto values = std::make_shared<BrickValues>();

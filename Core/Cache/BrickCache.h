@@ -50,6 +50,10 @@ public:
   std::shared_ptr<const BrickValues> Get(
     const SeriesFile& series, const FieldKey& field, std::int64_t brick);
 
+  /// The brick if it is held, otherwise null: for those who decode past the cache.
+  std::shared_ptr<const BrickValues> GetIfHeld(
+    const SeriesFile& series, const FieldKey& field, std::int64_t brick);
+
   /// Evicts at once when the new budget is smaller. 0 keeps nothing. The process's cache gives a
   /// quarter as much to LatticeCache, which keeps what decoding needs again.
   void SetBudget(std::uint64_t bytes);
@@ -66,8 +70,10 @@ private:
   std::unique_ptr<Internals> Self;
 };
 
-/// Copies the part `samples` of a field into a caller's array, decoding (through the cache, in
-/// parallel) only the bricks that it touches.
+/// Copies the part `samples` of a field into a caller's array, decoding (in parallel) only the bricks
+/// that it touches. They come from the cache and go there; but a part of more than a sixteenth of the
+/// cache's budget goes past it, because it would push out everything else and be gone itself before
+/// it comes again.
 /// @param samples of the field's level, inside the layout's samples
 /// @param values receives samples.Count() tuples; the value goes to
 /// `values[tupleIndex * stride + component]`, x fastest, in the array's own type.

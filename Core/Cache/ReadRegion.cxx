@@ -97,22 +97,40 @@ void Read(
   const auto nodes = series.Nodes(field);
   const Box bricks = layout.BricksCovering(target.Samples);
   const glm::ivec3 size = bricks.Size();
-  ThreadPool::Process().ParallelFor(bricks.Count(),
-    [&](std::int64_t i)
+  const std::int64_t count = bricks.Count();
+  const bool past =
+    static_cast<std::uint64_t>(target.Samples.Count()) * sizeof(T) > cache.Budget() / 16;
+  ThreadPool::Process().ParallelFor(count,
+    [&](std::int64_t fromLast)
     {
+      // The last one first: a brick then finds the layers that it shares with others decoded.
+      const std::int64_t i = count - 1 - fromLast;
       const glm::ivec3 position =
         bricks.Lo + glm::ivec3(static_cast<int>(i % size.x), static_cast<int>(i / size.x % size.y),
                       static_cast<int>(i / size.x / size.y));
       const std::int64_t brick = layout.IndexOf(position);
       const Box part = PartOf(layout, bricks, position, target.Samples);
       const BrickNode& node = (*nodes)[static_cast<std::size_t>(brick)];
+      if (part.Empty())
+      {
+        return;
+      }
       if (node.Uniform)
       {
         Fill(target, part, static_cast<T>(node.Range.Low));
       }
+      else if (const auto held = past ? cache.GetIfHeld(series, field, brick)
+                                      : cache.Get(series, field, brick))
+      {
+        Copy(target, part, *held);
+      }
       else
       {
-        Copy(target, part, *cache.Get(series, field, brick));
+        const glm::ivec3 length = target.Samples.Size();
+        series.DecodePart(field, brick, part,
+          { target.Stride, target.Stride * length.x,
+            target.Stride * std::ptrdiff_t{ length.x } * length.y },
+          target.RowAt(part.Lo.x, part.Lo.y, part.Lo.z));
       }
     });
 }

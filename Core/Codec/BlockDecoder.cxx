@@ -10,32 +10,11 @@
 #include <hwy/foreach_target.h>
 
 #include "Codec/BlockUnits-inl.h"
+#include "Codec/SymbolRow-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
-
-/// Reads the residuals of some lanes of a row. By itself, so that all it works with stays in
-/// registers.
-template <int Step>
-HWY_NOINLINE void ReadLanes(SymbolReader& symbols, SymbolReader::Cursor at,
-  const std::uint32_t* tables, const std::uint8_t* classes, int count, std::int32_t* residuals,
-  std::uint8_t* m)
-{
-  for (int x = 0; x < count * Step; x += Step)
-  {
-    const std::uint32_t entry = at.Next(tables + (static_cast<unsigned>(classes[x]) << 10));
-    if (HWY_LIKELY((entry >> residual::EscapeBit & 1u) == 0))
-    {
-      residuals[x] = static_cast<std::int32_t>(entry) >> 24;
-      m[x] = static_cast<std::uint8_t>(entry >> 14 & 15u);
-      continue;
-    }
-    residuals[x] = at.Long(entry);
-    m[x] = residual::Magnitude(residual::Zigzag(residuals[x]));
-  }
-  symbols.MoveTo(at);
-}
 
 /// Reads the residuals of rows and applies them.
 template <int B>
@@ -47,29 +26,56 @@ struct RowDecoder
   HWY_INLINE void operator()(const Row& row, std::int32_t* w, const std::int32_t* prediction,
     std::uint8_t* m, const std::uint8_t* classes, bool rough) const
   {
-    if (this->Symbols == nullptr || row.Coded == 0)
+    if (this->Symbols == nullptr || row.Coded == 0 ||
+        (!rough && this->Symbols->One(residual::FlagContext + row.Band) >> residual::ResidualShift != 0))
     {
       SetLanes<B>(row.Lanes, prediction, w);
       return;
     }
-    SymbolReader::Cursor symbols = this->Symbols->Here();
-    if (!rough &&
-        symbols.Next(symbols.Tables + (residual::FlagContext + row.Band) * tans::TableSize) >> 24 != 0)
-    {
-      this->Symbols->MoveTo(symbols);
-      SetLanes<B>(row.Lanes, prediction, w);
-      return;
-    }
-    alignas(64) std::int32_t residuals[B] = {};
-    const std::uint32_t* tables =
-      symbols.Tables + row.Band * residual::Classes * tans::TableSize;
+    alignas(64) std::uint32_t entries[B] = {};
+    const int context = row.Band * residual::Classes;
     const int x = row.Lanes.First;
-    (row.Lanes.Step == 1   ? ReadLanes<1>
-      : row.Lanes.Step == 2 ? ReadLanes<2>
-                            : ReadLanes<4>)(*this->Symbols, symbols, tables, classes + x, row.Coded,
-      residuals + x, m + x);
+    const bool escapes =
+      row.Lanes.Step == 1   ? ReadRow<1>(*this->Symbols, context, classes + x, row.Coded, entries + x)
+      : row.Lanes.Step == 2 ? ReadRow<2>(*this->Symbols, context, classes + x, row.Coded, entries + x)
+                            : ReadRow<4>(*this->Symbols, context, classes + x, row.Coded, entries + x);
+    alignas(64) std::int32_t residuals[B];
+    alignas(64) std::uint8_t magnitudes[B];
+    for (int i = 0; i < B; ++i)
+    {
+      residuals[i] = static_cast<std::int32_t>(entries[i]) >> residual::ResidualShift;
+    }
+    for (int i = 0; i < B; ++i)
+    {
+      magnitudes[i] = static_cast<std::uint8_t>(
+        entries[i] >> residual::MagnitudeShift & residual::MagnitudeMask);
+    }
+    if (HWY_UNLIKELY(escapes))
+    {
+      this->ReadLong(row, entries, residuals, magnitudes);
+    }
+    const std::uint8_t* mask = LaneMask<B, std::uint8_t>(row.Lanes);
+    for (int i = 0; i < B; ++i)
+    {
+      m[i] = static_cast<std::uint8_t>((m[i] & ~mask[i]) | magnitudes[i]);
+    }
     SetLanes<B>(
       row.Lanes, prediction, residuals, row.Stride == 2 ? this->CoarseBin : this->FineBin, w);
+  }
+
+  /// Residuals with extra bits, which follow those of their row.
+  HWY_NOINLINE void ReadLong(const Row& row, const std::uint32_t* entries, std::int32_t* residuals,
+    std::uint8_t* magnitudes) const
+  {
+    for (int k = 0; k < row.Coded; ++k)
+    {
+      const int x = row.Lanes.First + k * row.Lanes.Step;
+      if ((entries[x] & residual::EscapeFlag) != 0)
+      {
+        residuals[x] = this->Symbols->Long(entries[x]);
+        magnitudes[x] = residual::Magnitude(residual::Zigzag(residuals[x]));
+      }
+    }
   }
 };
 
@@ -119,6 +125,52 @@ struct BoxDecoder
     }
   }
 
+  /// Whether the edge that a block across an edge of the box owns is in a decoded box.
+  bool HasEdge(int owner) const
+  {
+    for (const int neighbour : { 1, 2, 4 })
+    {
+      if ((neighbour & owner) != 0 && this->Code.Boxes[neighbour] != nullptr)
+      {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Rows have one of three lengths, which the compiler then knows.
+  static HWY_INLINE void CopyRow(const std::int32_t* from, int count, std::int32_t* to)
+  {
+    if (count == 1)
+    {
+      *to = *from;
+    }
+    else if (count == B)
+    {
+      std::memcpy(to, from, B * sizeof(*to));
+    }
+    else
+    {
+      std::memcpy(to, from, N * sizeof(*to));
+    }
+  }
+
+  /// The whole face that the box has in common with a decoded neighbour's, other owners' edges of it
+  /// included.
+  void PlaceFace(int owner) const
+  {
+    const glm::ivec3 low = Corner(owner);
+    const std::int32_t* neighbour = this->Code.Boxes[owner];
+    for (int z = low.z; z < N; ++z)
+    {
+      for (int y = low.y; y < N; ++y)
+      {
+        const std::int32_t* from = neighbour + ((z - low.z) * N + y - low.y) * N;
+        CopyRow(from, N - low.x, this->Box.Row(y, z) + low.x);
+      }
+    }
+  }
+
   /// Whether a block takes no decoding: it is uniform, the same as in reference A, or decoded.
   bool Plain(int owner) const
   {
@@ -129,8 +181,11 @@ struct BoxDecoder
   /// Fills what a plain block owns of the box.
   void PlacePlain(int owner) const
   {
-    if (this->Code.Boxes[owner] == nullptr && this->Code.Blocks[owner].Same &&
-        this->Code.A == nullptr)
+    if (this->Code.Boxes[owner] != nullptr)
+    {
+      return this->PlaceFace(owner);
+    }
+    if (this->Code.Blocks[owner].Same && this->Code.A == nullptr)
     {
       throw Error("A block is the same as in a step that its group does not have");
     }
@@ -141,15 +196,9 @@ struct BoxDecoder
       for (int y = low.y; y < high.y; ++y)
       {
         std::int32_t* row = this->Box.Row(y, z);
-        if (this->Code.Boxes[owner] != nullptr)
+        if (this->Code.Blocks[owner].Same)
         {
-          const std::int32_t* from =
-            this->Code.Boxes[owner] + ((z - Corner(owner).z) * N + y - Corner(owner).y) * N;
-          std::copy(from, from + (high.x - low.x), row + low.x);
-        }
-        else if (this->Code.Blocks[owner].Same)
-        {
-          std::copy(this->A.Row(y, z) + low.x, this->A.Row(y, z) + high.x, row + low.x);
+          CopyRow(this->A.Row(y, z) + low.x, high.x - low.x, row + low.x);
         }
         else
         {
@@ -178,7 +227,7 @@ struct BoxDecoder
       view = view.At(Permuted(corner, axes, 3));
       LoadUnit<B, D>({ view.Base, view.Stride }, from, unit.W);
     }
-    RunPasses<B, D>(unit, mode.By, false,
+    RunPasses<B, D>(unit, mode.By,
       RowDecoder<B>{ symbols, this->Plane.CoarseBin, this->Plane.FineBin });
     if (needed)
     {
@@ -203,7 +252,7 @@ struct BoxDecoder
       {
         this->PlacePlain(owner);
       }
-      else if (block.Exists && block.Bytes > 0 && owner != 7)
+      else if (block.Exists && block.Bytes > 0 && owner != 7 && !this->HasEdge(owner))
       {
         readers[owner] = &work.Readers[owner];
         // Of neighbours no more is read than their edges and faces; no symbol takes more bits.
@@ -214,7 +263,7 @@ struct BoxDecoder
     }
     for (const int owner : { 3, 5, 6 })
     {
-      if (!this->Plain(owner))
+      if (!this->Plain(owner) && !this->HasEdge(owner))
       {
         for (int unit = 0; unit < 3; ++unit)
         {

@@ -45,7 +45,7 @@ struct BoxCode
   /// Decoded boxes of the references; must be given when a mode asks for them.
   const std::int32_t* A = nullptr;
   const std::int32_t* B = nullptr;
-  /// Decoded boxes of neighbours that are at hand; null for others.
+  /// Decoded boxes of the neighbours 1, 2 and 4 that are at hand; null for others.
   const std::int32_t* Boxes[8] = {};
 };
 

@@ -75,6 +75,7 @@ struct RowEncoder
     {
       this->Out->Tokens.push_back(static_cast<std::uint16_t>(
         (residual::FlagContext + row.Band) << 8 | (any == 0 ? 1 : 0)));
+      this->Out->Rows.push_back(1);
       if (any == 0)
       {
         return;
@@ -82,6 +83,7 @@ struct RowEncoder
     }
     *this->Rough |= any != 0;
     const int context = row.Band * residual::Classes;
+    this->Out->Rows.push_back(static_cast<std::uint8_t>(row.Coded));
     for (int x = row.Lanes.First; x <= last; x += row.Lanes.Step)
     {
       const std::uint32_t code = residual::Zigzag(residuals[x]);
@@ -172,7 +174,7 @@ struct BlockCoder
     unit.Limit = coded ? permuted(plane.Target->Samples - 1 - origin) : glm::ivec3(-1);
     LoadUnit<B, D>({ samples.Base, samples.Stride }, from, unit.W);
     LoadUnit<B, D>(wanted, from, target.W());
-    RunPasses<B, D>(unit, mode.By, false,
+    RunPasses<B, D>(unit, mode.By,
       RowEncoder<B>{ unit.W, target.W(), plane.CoarseBin, plane.FineBin, &out, &rough });
     StoreUnit<B, D>(unit.W, from, plane.Least, plane.Greatest, samples);
   }
@@ -287,6 +289,7 @@ struct BlockCoder
     {
       out.Tokens = {};
       out.Extra = {};
+      out.Rows = {};
     }
     underway.Magnitudes = {};
   }

@@ -27,12 +27,12 @@ struct LaneSet
 };
 
 /// -1 for the lanes of a set.
-template <int B>
-HWY_INLINE const std::int32_t* LaneMask(const LaneSet& set)
+template <int B, class Number = std::int32_t>
+HWY_INLINE const Number* LaneMask(const LaneSet& set)
 {
   struct Masks
   {
-    alignas(64) std::int32_t Of[4][B] = {};
+    alignas(64) Number Of[4][B] = {};
     constexpr Masks()
     {
       for (int x = 0; x < B; ++x)
@@ -289,52 +289,75 @@ struct Row
   int Coded; ///< lanes (from the first) that carry a residual; the others are as predicted
 };
 
-/// Runs the passes of a unit: stride 2 and then (unless `coarseOnly`) stride 1, and in each the
-/// axes in order; rows z outermost.
+/// One pass: predicts the samples at odd multiples of the stride along an axis. All that rows share
+/// is known to the compiler.
+template <int B, int D, int Axis, int S, class Coder>
+HWY_INLINE void RunPass(const block::Unit<B>& unit, Interpolation by, const Coder& coder)
+{
+  constexpr std::ptrdiff_t pitch = D > 1 ? B + 8 : 0;
+  constexpr std::ptrdiff_t sliceW = D > 2 ? (B + 1) * (B + 8) : 0;
+  constexpr std::ptrdiff_t sliceM = D > 2 ? B * (B + 8) : 0;
+  constexpr int band =
+    D == 1 ? 2 - S : D == 2 ? (S == 2 ? 2 : 3 + Axis) : (S == 2 ? 5 : 8) + Axis;
+  constexpr LaneSet lanes{ S, Axis > 0 ? S : 2 * S };
+  constexpr int firstY = D > 1 ? (1 <= Axis ? S : 2 * S) : 0;
+  constexpr int firstZ = D > 2 ? (2 <= Axis ? S : 2 * S) : 0;
+  constexpr int stepY = D > 1 ? (1 < Axis ? S : 2 * S) : B;
+  constexpr int stepZ = D > 2 ? 2 * S : B;
+  const glm::ivec3 limit = unit.Limit;
+  const int inRow =
+    lanes.First <= limit.x ? (std::min(limit.x, B - 1) - lanes.First) / lanes.Step + 1 : 0;
+  alignas(64) std::int32_t prediction[B];
+  alignas(64) std::uint8_t classes[B];
+  for (int z = firstZ; z < B; z += stepZ)
+  {
+    for (int y = firstY; y < B; y += stepY)
+    {
+      std::int32_t* w = unit.W + z * sliceW + y * pitch;
+      std::uint8_t* m = unit.M + z * sliceM + y * pitch;
+      if (Axis == 0)
+      {
+        PredictAlong<B>(w, S, by, prediction);
+      }
+      else
+      {
+        PredictAcross<B>(w, S * (Axis == 1 ? pitch : sliceW), Axis == 1 ? y : z, S, by, prediction);
+      }
+      const int coded = y <= limit.y && z <= limit.z ? inRow : 0;
+      bool rough = false;
+      if (coded > 0)
+      {
+        rough = ClassesOf<B>(RoughnessOfRow<B, D>(m, pitch, sliceM, Axis, S, y, z), classes);
+      }
+      coder(Row{ band, S, lanes, y, z, coded }, w, prediction, m, classes, rough);
+    }
+  }
+}
+
+/// Runs the passes of a unit: stride 2 and then stride 1, and in each the axes in order; rows z
+/// outermost.
 /// @param coder called as coder(row, w, prediction, m, classes, rough): predicts what it is given,
 /// and must set the lanes of w and m
 template <int B, int D, class Coder>
-HWY_INLINE void RunPasses(const block::Unit<B>& unit, Interpolation by, bool coarseOnly, Coder&& coder)
+HWY_INLINE void RunPasses(const block::Unit<B>& unit, Interpolation by, const Coder& coder)
 {
-  alignas(64) std::int32_t prediction[B];
-  alignas(64) std::uint8_t classes[B];
-  for (int s = 2; s >= (coarseOnly ? 2 : 1); --s)
+  RunPass<B, D, 0, 2>(unit, by, coder);
+  if constexpr (D > 1)
   {
-    const glm::ivec3& limit = unit.Limit;
-    for (int axis = 0; axis < D; ++axis)
-    {
-      const auto first = [&](int a) { return a >= D ? 0 : (a <= axis ? s : 2 * s); };
-      const auto step = [&](int a) { return a >= D ? B : (a < axis ? s : 2 * s); };
-      const int band = D == 1 ? 2 - s : D == 2 ? (s == 2 ? 2 : 3 + axis) : (s == 2 ? 5 : 8) + axis;
-      const LaneSet lanes{ first(0), step(0) };
-      for (int z = first(2); z < B; z += step(2))
-      {
-        for (int y = first(1); y < B; y += step(1))
-        {
-          std::int32_t* w = unit.W + z * unit.SliceW + y * unit.PitchW;
-          std::uint8_t* m = unit.M + z * unit.SliceM + y * unit.PitchM;
-          if (axis == 0)
-          {
-            PredictAlong<B>(w, s, by, prediction);
-          }
-          else
-          {
-            PredictAcross<B>(w, s * (axis == 1 ? unit.PitchW : unit.SliceW), axis == 1 ? y : z, s,
-              by, prediction);
-          }
-          const bool inside = y <= limit.y && z <= limit.z && lanes.First <= limit.x;
-          const int coded =
-            inside ? (std::min(limit.x, B - 1) - lanes.First) / lanes.Step + 1 : 0;
-          bool rough = false;
-          if (coded > 0)
-          {
-            rough = ClassesOf<B>(
-              RoughnessOfRow<B, D>(m, unit.PitchM, unit.SliceM, axis, s, y, z), classes);
-          }
-          coder(Row{ band, s, lanes, y, z, coded }, w, prediction, m, classes, rough);
-        }
-      }
-    }
+    RunPass<B, D, 1, 2>(unit, by, coder);
+  }
+  if constexpr (D > 2)
+  {
+    RunPass<B, D, 2, 2>(unit, by, coder);
+  }
+  RunPass<B, D, 0, 1>(unit, by, coder);
+  if constexpr (D > 1)
+  {
+    RunPass<B, D, 1, 1>(unit, by, coder);
+  }
+  if constexpr (D > 2)
+  {
+    RunPass<B, D, 2, 1>(unit, by, coder);
   }
 }
 

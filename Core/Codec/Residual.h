@@ -61,18 +61,23 @@ inline std::uint8_t Magnitude(std::uint32_t code)
   return MagnitudeOf[code < 127 ? code : 127];
 }
 
-/// A table entry as one word: next state (10 bits), bits to read (4), magnitude (4), whether extra
-/// bits follow (1), and from bit 24 the residual, or the number of extra bits.
-constexpr int EscapeBit = 18;
+/// A table entry as one word: number of bits to read (8 bits of the word, for shift instructions take
+/// their counts from such a byte), next state (10), magnitude (4), whether extra bits follow (1), and
+/// from bit 24 the residual, or the number of extra bits.
+constexpr int BaseShift = 8;
+constexpr int MagnitudeShift = 18;
+constexpr std::uint32_t MagnitudeMask = 15;
+constexpr std::uint32_t EscapeFlag = 1u << 22;
+constexpr int ResidualShift = 24;
 inline std::uint32_t Packed(const tans::DecodeEntry& entry)
 {
   const bool escape = entry.Symbol >= DirectSymbols;
   const std::uint32_t top = escape
                               ? static_cast<std::uint32_t>(ExtraBits(entry.Symbol))
                               : static_cast<std::uint32_t>(Unzigzag(entry.Symbol));
-  return entry.Base | static_cast<std::uint32_t>(entry.Bits) << 10 |
-         static_cast<std::uint32_t>(escape ? 0 : Magnitude(entry.Symbol)) << 14 |
-         static_cast<std::uint32_t>(escape ? 1 : 0) << EscapeBit | top << 24;
+  return entry.Bits | static_cast<std::uint32_t>(entry.Base) << BaseShift |
+         static_cast<std::uint32_t>(escape ? 0 : Magnitude(entry.Symbol)) << MagnitudeShift |
+         (escape ? EscapeFlag : 0u) | top << ResidualShift;
 }
 
 /// Contexts: a band (kind of unit, stride, direction) and one of 8 classes of roughness; and one

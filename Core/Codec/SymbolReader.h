@@ -13,52 +13,17 @@
 namespace banyan
 {
 
-/// Reads the symbols of one payload. Any bytes are safe: reading past the end gives zeros, and
-/// `AtEnd` says so.
+/// Reads the symbols of one payload, row by row (ReadRow in SymbolRow-inl.h). Any bytes are safe: reading past the end gives
+/// zeros, and `AtEnd` says so.
 ///
-/// Layout of a payload: the first states of the lanes (tans::TableBits bits each), then for each
-/// symbol the bits that its table asks for and its extra bits; lowest bit of a byte first.
+/// Layout of a payload: 2 bits, the logarithm of the number of lanes; the first states of the lanes
+/// (tans::TableBits bits each); then for each row the bits that the tables of its symbols ask for,
+/// and then the extra bits of those of its symbols that have some. Lanes take turns within a row,
+/// which starts with the first lane. Lowest bit of a byte first.
 class SymbolReader
 {
 public:
-  /// What moves while reading. Copy it out, read a row, and put it back: so it stays in registers.
-  struct Cursor
-  {
-    const std::uint32_t* Tables;
-    const std::uint8_t* Data;
-    std::uint64_t Position;
-    std::uint32_t First, Second, Third, Fourth; ///< states of the lanes, in turn
-
-    std::uint32_t Take(std::uint32_t bits)
-    {
-      std::uint64_t word;
-      std::memcpy(&word, this->Data + (this->Position >> 3), 8);
-      const std::uint64_t value =
-        (word >> (this->Position & 7)) & ((std::uint64_t{ 1 } << bits) - 1);
-      this->Position += bits;
-      return static_cast<std::uint32_t>(value);
-    }
-
-    /// Next entry in a context: see residual::Packed.
-    std::uint32_t Next(const std::uint32_t* table)
-    {
-      const std::uint32_t entry = table[this->First];
-      const std::uint32_t next = (entry & 1023u) + this->Take((entry >> 10) & 15u);
-      this->First = this->Second;
-      this->Second = this->Third;
-      this->Third = this->Fourth;
-      this->Fourth = next;
-      return entry;
-    }
-
-    /// Residual of an entry with extra bits.
-    std::int32_t Long(std::uint32_t entry)
-    {
-      const int bits = static_cast<int>(entry >> 24);
-      return residual::Unzigzag(residual::CodeOf(
-        residual::DirectSymbols + bits, this->Take(static_cast<std::uint32_t>(bits))));
-    }
-  };
+  static constexpr int LongestRow = 65;
 
   /// @param tables TableSize entries for each context
   /// @param most bytes that will be read at most
@@ -74,41 +39,91 @@ public:
     std::memset(this->Buffer.data() + bytes, 0, Slack);
     this->End = bytes * 8;
     this->Overrun = false;
-    this->At = { tables, this->Buffer.data(), 0, 0, 0, 0, 0 };
-    this->At.First = this->At.Take(tans::TableBits);
-    this->At.Second = this->At.Take(tans::TableBits);
-    this->At.Third = this->At.Take(tans::TableBits);
-    this->At.Fourth = this->At.Take(tans::TableBits);
+    this->Tables = tables;
+    this->Position = 0;
+    this->LanesLog = static_cast<int>(this->Take(2));
+    std::fill(this->States, this->States + tans::MostLanes, 0u);
+    for (int lane = 0; lane < 1 << this->LanesLog; ++lane)
+    {
+      this->States[lane] = this->Take(tans::TableBits);
+    }
+    this->Check();
   }
 
-  /// To read at most 65 symbols with.
-  Cursor Here() const { return this->At; }
-
-  void MoveTo(const Cursor& cursor)
+  /// A row of one symbol without extra bits: its entry, see residual::Packed.
+  HWY_INLINE std::uint32_t One(int context)
   {
-    this->At = cursor;
-    if (HWY_UNLIKELY(this->At.Position > this->End))
-    {
-      this->At.Position = this->End; // zeros from here on
-      this->Overrun = true;
-    }
+    const std::uint32_t entry = this->Context(context)[this->States[0]];
+    this->States[0] = (entry >> residual::BaseShift & (tans::TableSize - 1)) + this->Take(entry & 0xffu);
+    this->Check();
+    return entry;
+  }
+
+  /// Residual of an entry with extra bits.
+  std::int32_t Long(std::uint32_t entry)
+  {
+    const std::uint32_t bits = entry >> residual::ResidualShift;
+    const std::uint32_t extra = this->Take(bits);
+    this->Check();
+    return residual::Unzigzag(
+      residual::CodeOf(residual::DirectSymbols + static_cast<int>(bits), extra));
   }
 
   /// Whether all was read and the lanes are back where encoding began: anything else is damage.
   bool AtEnd() const
   {
-    return !this->Overrun && this->End - this->At.Position < 8 &&
-           (this->At.First | this->At.Second | this->At.Third | this->At.Fourth) == 0;
+    std::uint32_t states = 0;
+    for (const std::uint32_t state : this->States)
+    {
+      states |= state;
+    }
+    return !this->Overrun && this->End - this->Position < 8 && states == 0;
+  }
+
+  /// What ReadRow (SymbolRow-inl.h) moves.
+  std::uint64_t Position = 0;
+  std::uint32_t States[tans::MostLanes] = {};
+  int LanesLog = 0;
+
+  const std::uint32_t* Context(int context) const
+  {
+    return this->Tables + (context << tans::TableBits);
+  }
+
+  /// The bits from a position on, 57 at least.
+  HWY_INLINE std::uint64_t Word(std::uint64_t position) const
+  {
+    std::uint64_t word;
+    std::memcpy(&word, this->Buffer.data() + (position >> 3), 8);
+    return word >> (position & 7);
+  }
+
+  /// To be called after each row.
+  HWY_INLINE void Check()
+  {
+    if (HWY_UNLIKELY(this->Position > this->End))
+    {
+      this->Position = this->End; // zeros from here on
+      this->Overrun = true;
+    }
   }
 
 private:
   /// No row takes more: 65 symbols of 10 bits, 31 extra bits each; and a word is read at a time.
-  static constexpr std::size_t Slack = 65 * 41 / 8 + 16;
+  static constexpr std::size_t Slack = LongestRow * 41 / 8 + 16;
+
+  HWY_INLINE std::uint32_t Take(std::uint32_t bits)
+  {
+    const std::uint64_t value =
+      this->Word(this->Position) & ((std::uint64_t{ 1 } << bits) - 1);
+    this->Position += bits;
+    return static_cast<std::uint32_t>(value);
+  }
 
   std::vector<std::uint8_t> Buffer;
+  const std::uint32_t* Tables = nullptr;
   std::uint64_t End = 0;
   bool Overrun = false;
-  Cursor At = {};
 };
 
 } // namespace banyan

@@ -13,33 +13,36 @@ namespace
 class BitWriter
 {
 public:
-  explicit BitWriter(std::size_t expectedBytes) { this->Bytes.reserve(expectedBytes); }
+  /// @param bits that will be put at most
+  explicit BitWriter(std::size_t bits)
+    : Bytes(bits / 8 + 16)
+  {
+  }
 
-  void Put(std::uint32_t value, int bits)
+  /// At most 32 bits.
+  void Put(std::uint32_t value, std::uint32_t bits)
   {
     this->Word |= std::uint64_t{ value } << this->Filled;
     this->Filled += bits;
-    while (this->Filled >= 8)
-    {
-      this->Bytes.push_back(static_cast<std::uint8_t>(this->Word));
-      this->Word >>= 8;
-      this->Filled -= 8;
-    }
+    std::memcpy(this->Bytes.data() + this->At, &this->Word, 8);
+    const std::uint32_t whole = this->Filled >> 3;
+    this->At += whole;
+    this->Word >>= 8 * whole;
+    this->Filled &= 7;
   }
 
   std::vector<std::uint8_t> Finish()
   {
-    if (this->Filled > 0)
-    {
-      this->Bytes.push_back(static_cast<std::uint8_t>(this->Word));
-    }
+    this->Bytes.resize(this->At + (this->Filled > 0 ? 1 : 0));
+    this->Bytes.shrink_to_fit();
     return std::move(this->Bytes);
   }
 
 private:
   std::vector<std::uint8_t> Bytes;
+  std::size_t At = 0;
   std::uint64_t Word = 0;
-  int Filled = 0;
+  std::uint32_t Filled = 0;
 };
 
 } // namespace
@@ -94,37 +97,69 @@ SymbolTables::SymbolTables(const ContextCounts& counts)
   }
 }
 
-std::vector<std::uint8_t> SymbolTables::Encode(
-  const std::vector<std::uint16_t>& tokens, const std::vector<std::uint32_t>& extra) const
+/// More lanes decode faster, but each costs its first state: as many as make a payload about 1 %
+/// larger.
+int SymbolTables::LanesLogFor(const std::vector<std::uint16_t>& tokens) const
 {
+  std::uint64_t bits = 0;
+  for (const std::uint16_t token : tokens)
+  {
+    bits += (tans::TableSize * 3 / 2 +
+              this->Tables[token >> 8].Symbols[token & 0xff].DeltaBits) >> 16;
+  }
+  return bits < 250 ? 0 : bits < 1000 ? 1 : bits < 5000 ? 2 : 3;
+}
+
+std::vector<std::uint8_t> SymbolTables::Encode(const std::vector<std::uint16_t>& tokens,
+  const std::vector<std::uint32_t>& extra, const std::vector<std::uint8_t>& rows) const
+{
+  const int lanesLog = this->LanesLogFor(tokens);
+  const std::size_t lanes = std::size_t{ 1 } << lanesLog;
   thread_local std::vector<std::uint32_t> written; // bits << 4 | their number
   written.resize(tokens.size());
-  std::uint32_t lanes[tans::Lanes];
-  std::fill(lanes, lanes + tans::Lanes, static_cast<std::uint32_t>(tans::TableSize));
-  for (std::size_t i = tokens.size(); i-- > 0;)
+  std::uint32_t states[tans::MostLanes];
+  std::fill(states, states + lanes, static_cast<std::uint32_t>(tans::TableSize));
+  std::size_t begin = tokens.size();
+  std::size_t total = 2 + lanes * tans::TableBits + 32 * extra.size();
+  for (std::size_t row = rows.size(); row-- > 0;)
   {
-    const Table& table = this->Tables[tokens[i] >> 8];
-    const Transform& transform = table.Symbols[tokens[i] & 0xff];
-    std::uint32_t& state = lanes[i % tans::Lanes];
-    const std::uint32_t bits = (state + transform.DeltaBits) >> 16;
-    written[i] = (state & ((1u << bits) - 1u)) << 4 | bits;
-    state = table.Next[static_cast<std::size_t>(
-      static_cast<std::int32_t>(state >> bits) + transform.DeltaState)];
+    const std::size_t end = begin;
+    begin -= rows[row];
+    for (std::size_t i = end; i-- > begin;)
+    {
+      const Table& table = this->Tables[tokens[i] >> 8];
+      const Transform& transform = table.Symbols[tokens[i] & 0xff];
+      std::uint32_t& state = states[(i - begin) & (lanes - 1)];
+      const std::uint32_t bits = (state + transform.DeltaBits) >> 16;
+      written[i] = (state & ((1u << bits) - 1u)) << 4 | bits;
+      total += bits;
+      state = table.Next[static_cast<std::size_t>(
+        static_cast<std::int32_t>(state >> bits) + transform.DeltaState)];
+    }
   }
-  BitWriter writer(tokens.size() / 2 + 16);
-  for (const std::uint32_t lane : lanes)
+  BitWriter writer(total);
+  writer.Put(static_cast<std::uint32_t>(lanesLog), 2);
+  for (std::size_t lane = 0; lane < lanes; ++lane)
   {
-    writer.Put(lane - tans::TableSize, tans::TableBits);
+    writer.Put(states[lane] - tans::TableSize, tans::TableBits);
   }
   std::size_t nextExtra = 0;
-  for (std::size_t i = 0; i < tokens.size(); ++i)
+  for (const std::uint8_t row : rows)
   {
-    writer.Put(written[i] >> 4, static_cast<int>(written[i] & 15u));
-    const int symbol = tokens[i] & 0xff;
-    if (symbol >= residual::DirectSymbols)
+    const std::size_t end = begin + row;
+    for (std::size_t i = begin; i < end; ++i)
     {
-      writer.Put(extra[nextExtra++], residual::ExtraBits(symbol));
+      writer.Put(written[i] >> 4, written[i] & 15u);
     }
+    for (std::size_t i = begin; i < end && nextExtra < extra.size(); ++i)
+    {
+      const int symbol = tokens[i] & 0xff;
+      if (symbol >= residual::DirectSymbols)
+      {
+        writer.Put(extra[nextExtra++], static_cast<std::uint32_t>(residual::ExtraBits(symbol)));
+      }
+    }
+    begin = end;
   }
   return writer.Finish();
 }

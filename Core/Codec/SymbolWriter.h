@@ -31,8 +31,9 @@ public:
 
   /// The payload that SymbolReader reads. The counts must have held all tokens.
   /// @param extra one number per symbol with extra bits
+  /// @param rows how many symbols each row has; their sum is the number of tokens
   std::vector<std::uint8_t> Encode(const std::vector<std::uint16_t>& tokens,
-    const std::vector<std::uint32_t>& extra) const;
+    const std::vector<std::uint32_t>& extra, const std::vector<std::uint8_t>& rows) const;
 
 private:
   /// How a symbol goes into a state: FSE's way, one subtraction and one look-up.
@@ -46,6 +47,8 @@ private:
     std::array<Transform, tans::SymbolCount> Symbols;
     std::array<std::uint16_t, tans::TableSize> Next;
   };
+  int LanesLogFor(const std::vector<std::uint16_t>& tokens) const;
+
   std::vector<tans::Frequencies> Of;
   std::vector<Table> Tables;
 };

@@ -16,8 +16,9 @@ namespace banyan::tans
 constexpr int TableBits = 10;
 constexpr int TableSize = 1 << TableBits;
 
-/// States that take turns, so that look-ups of successive symbols overlap.
-constexpr int Lanes = 4;
+/// A payload has 1, 2, 4 or 8 states that take turns, so that look-ups of successive symbols overlap:
+/// few where each of their first values weighs much.
+constexpr int MostLanes = 8;
 
 /// Symbols are numbered 0 to SymbolCount - 1.
 constexpr int SymbolCount = 72;

@@ -208,7 +208,7 @@ void Encoder<T>::WriteSymbols()
             to.Value = from.Value;
             if (!from.Tokens.empty())
             {
-              to.Payload = tables.Encode(from.Tokens, from.Extra);
+              to.Payload = tables.Encode(from.Tokens, from.Extra, from.Rows);
             }
             from = {};
           });

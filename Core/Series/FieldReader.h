@@ -21,6 +21,11 @@ public:
   /// See SeriesFile.
   virtual std::shared_ptr<const std::vector<BrickNode>> Nodes(const FieldKey& field) = 0;
   virtual void DecodeBrick(const FieldKey& field, std::int64_t brick, void* values) = 0;
+  /// As SeriesFile::DecodePart. @return false when the caller has to decode the whole brick instead
+  virtual bool DecodePart(const FieldKey&, std::int64_t, const Box&, const glm::i64vec3&, void*)
+  {
+    return false;
+  }
   virtual void VerifyBricks(const FieldKey& field, const std::vector<std::int64_t>& bricks) = 0;
   virtual std::uint64_t BytesRead() const = 0;
   virtual std::uint64_t BricksDecoded() const = 0;

@@ -47,6 +47,8 @@ public:
 
   std::shared_ptr<const std::vector<BrickNode>> Nodes(const FieldKey& field) override;
   void DecodeBrick(const FieldKey& field, std::int64_t brick, void* values) override;
+  bool DecodePart(const FieldKey& field, std::int64_t brick, const Box& part,
+    const glm::i64vec3& stride, void* first) override;
   void VerifyBricks(const FieldKey& field, const std::vector<std::int64_t>& bricks) override;
   std::uint64_t BytesRead() const override { return this->Read; }
   std::uint64_t BricksDecoded() const override { return this->Decoded; }
@@ -62,6 +64,9 @@ private:
   PlaneRegion RegionOf(const OpenGroup& open, const FieldKey& field, std::int64_t brick) const;
   template <class T>
   void Decode(OpenGroup& open, const FieldKey& field, std::int64_t brick, T* values);
+  template <class T>
+  void DecodeBox(OpenGroup& open, int step, const PlaneRegion& region, const glm::ivec3& skip,
+    const glm::ivec3& size, const glm::i64vec3& strides, T* values);
 
   const OpenSeries& Series;
   std::mutex SegmentMutex;
@@ -307,6 +312,57 @@ std::shared_ptr<const std::vector<BrickNode>> Reader2::Nodes(const FieldKey& fie
   return nodes;
 }
 
+bool Exceptional(GroupField& group, int step, const PlaneRegion& region)
+{
+  bool exceptional = false;
+  ForEachBlock(region, [&](const glm::ivec3& block)
+    { exceptional = exceptional || EntryOf(group, step, region, block).Exceptions.Bytes > 0; });
+  return exceptional;
+}
+
+/// Whether all samples of a region lie next to each other in the box of its first block.
+bool InOneBox(const PlaneRegion& region, int edge)
+{
+  bool inside = region.Stride == 1;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int low = region.FirstBlock[a] * edge;
+    inside = inside && region.Low[a] >= low &&
+             region.Low[a] + region.Count[a] - 1 <= std::min(low + edge, region.Last[a]);
+  }
+  return inside;
+}
+
+/// The usual case of Decode: one box, no exceptions.
+/// @param skip samples of the brick before the first one that is wanted, and @param size how many
+/// are, axes as the data has them
+template <class T>
+void Reader2::DecodeBox(OpenGroup& open, int step, const PlaneRegion& region,
+  const glm::ivec3& skip, const glm::ivec3& size, const glm::i64vec3& strides, T* values)
+{
+  GroupField& group = *open.Field;
+  const LatticeDecoder<T>& decoder = DecoderOf<T>(open);
+  const LatticeCache::Box box = group.Box(step, region.Plane, region.FirstBlock);
+  const std::ptrdiff_t n = group.Edge() + 1;
+  const std::ptrdiff_t pitch[3] = { 1, n, n * n };
+  const std::int32_t* first = box->data();
+  std::ptrdiff_t stride[3] = {};
+  for (int a = 0; a < 3; ++a)
+  {
+    const int real = group.Head().Axes[static_cast<std::size_t>(a)];
+    stride[real] = pitch[a];
+    first += (region.Low[a] - region.FirstBlock[a] * group.Edge() + skip[real]) * pitch[a];
+  }
+  for (int z = 0; z < size.z; ++z)
+  {
+    for (int y = 0; y < size.y; ++y)
+    {
+      decoder.Decode(first + z * stride[2] + y * stride[1], stride[0],
+        static_cast<std::size_t>(size.x), values + z * strides.z + y * strides.y, strides.x);
+    }
+  }
+}
+
 template <class T>
 void Reader2::Decode(OpenGroup& open, const FieldKey& field, std::int64_t brick, T* values)
 {
@@ -326,6 +382,14 @@ void Reader2::Decode(OpenGroup& open, const FieldKey& field, std::int64_t brick,
     return;
   }
   ++this->Decoded;
+  const bool exceptional = Exceptional(group, step, region);
+  if (!exceptional && InOneBox(region, group.Edge()))
+  {
+    const glm::ivec3 size = this->Series.Layouts[static_cast<std::size_t>(field.Level)]
+                              .SamplesOf(brick).Size();
+    return this->DecodeBox(
+      open, step, region, glm::ivec3(0), size, { 1, size.x, std::int64_t{ size.x } * size.y }, values);
+  }
   thread_local std::vector<std::uint32_t> offsets;
   thread_local std::vector<T> ordered;
   offsets.resize(count);
@@ -333,11 +397,9 @@ void Reader2::Decode(OpenGroup& open, const FieldKey& field, std::int64_t brick,
   const int edge = group.Edge();
   const int n = edge + 1;
   const std::uint32_t least = static_cast<std::uint32_t>(group.Head().Least);
-  bool exceptional = false;
   ForEachBlock(region,
     [&](const glm::ivec3& block)
     {
-      exceptional = exceptional || EntryOf(group, step, region, block).Exceptions.Bytes > 0;
       // Places of the region that this block's box holds and no earlier block's does.
       glm::ivec3 from(0), to(0);
       for (int a = 0; a < 3; ++a)
@@ -433,6 +495,37 @@ void Reader2::DecodeBrick(const FieldKey& field, std::int64_t brick, void* value
         });
     });
   this->Read += open->Field->TakeBytesRead();
+}
+
+bool Reader2::DecodePart(const FieldKey& field, std::int64_t brick, const Box& part,
+  const glm::i64vec3& stride, void* first)
+{
+  const std::shared_ptr<OpenGroup> open = this->Open(field);
+  GroupField& group = *open->Field;
+  const int step = field.Step - group.Segment().FirstStep();
+  const PlaneRegion region = this->RegionOf(*open, field, brick);
+  return InFile(group.Segment().Path(), 0,
+    [&]
+    {
+      const group::NodeEntry& entry = group.Step(step).Levels[static_cast<std::size_t>(
+        field.Level)][static_cast<std::size_t>(brick)];
+      if (entry.Uniform || !InOneBox(region, group.Edge()) || Exceptional(group, step, region))
+      {
+        return false;
+      }
+      ++this->Decoded;
+      const glm::ivec3 skip =
+        part.Lo - this->Series.Layouts[static_cast<std::size_t>(field.Level)].SamplesOf(brick).Lo;
+      Dispatch(open->Type,
+        [&](auto tag)
+        {
+          using T = typename decltype(tag)::Type;
+          this->DecodeBox<T>(
+            *open, step, region, skip, part.Size(), stride, static_cast<T*>(first));
+        });
+      this->Read += group.TakeBytesRead();
+      return true;
+    });
 }
 
 void Reader2::VerifyBricks(const FieldKey& field, const std::vector<std::int64_t>& bricks)

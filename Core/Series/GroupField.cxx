@@ -125,7 +125,7 @@ void GroupField::Coarse(
   }
 }
 
-std::vector<std::int32_t> GroupField::Decode(int step, int plane, const glm::ivec3& block)
+LatticeCache::Box GroupField::Decode(int step, int plane, const glm::ivec3& block)
 {
   const auto& entries = this->Step(step).Planes[static_cast<std::size_t>(plane)];
   const glm::ivec3 blocks = this->BlocksOf(plane);
@@ -160,20 +160,26 @@ std::vector<std::int32_t> GroupField::Decode(int step, int plane, const glm::ive
   }
   this->BytesRead += code.Blocks[0].Bytes;
   this->PayloadsRead += code.Blocks[0].Bytes > 0 ? 1 : 0;
-  std::vector<LatticeCache::Box> neighbours;
-  for (const int bits : { 1, 2, 4 })
+  if (std::all_of(code.Blocks, code.Blocks + 8,
+        [](const BlockCode& each) { return each.Same || !each.Exists; }))
   {
-    // Only what would have to be read again is worth a look.
-    if (code.Blocks[bits].Exists && code.Blocks[bits].Bytes > 0)
+    const int before = ReferencesOfStep(step, this->File.Steps()).A;
+    if (before >= 0)
     {
-      neighbours.push_back(
-        LatticeCache::Process().Find(this->KeyOf(step, plane, NeighbourOf(block, bits))));
-      code.Boxes[bits] = neighbours.back() ? neighbours.back()->data() : nullptr;
+      return this->Box(before, plane, block);
     }
   }
-  std::vector<std::int32_t> coarse;
-  this->Coarse(step, plane, block, coarse);
-  code.Coarse = coarse.data();
+  LatticeCache::Box neighbours[8];
+  for (const int bits : { 1, 2, 4 })
+  {
+    // Only what would have to be decoded again is worth a look.
+    if (code.Blocks[bits].Exists && !code.Blocks[bits].Uniform && !code.Blocks[bits].Same)
+    {
+      LatticeCache::Box& box = neighbours[bits];
+      box = LatticeCache::Process().Find(this->KeyOf(step, plane, NeighbourOf(block, bits)));
+      code.Boxes[bits] = box ? box->data() : nullptr;
+    }
+  }
   LatticeCache::Box a, b;
   if (this->NeedsReferences(step, plane, block))
   {
@@ -187,9 +193,13 @@ std::vector<std::int32_t> GroupField::Decode(int step, int plane, const glm::ive
     code.A = a->data();
     code.B = b->data();
   }
+  // The last thing before decoding, because boxes that are decoded on the way use it as well.
+  thread_local std::vector<std::int32_t> coarse;
+  this->Coarse(step, plane, block, coarse);
+  code.Coarse = coarse.data();
   const std::size_t n = static_cast<std::size_t>(this->BrickCells) + 1;
-  std::vector<std::int32_t> numbers(n * n * n);
-  DecodeBox(this->BrickCells, shared, code, numbers.data());
+  const auto numbers = std::make_shared<LatticeCache::Numbers>(n * n * n);
+  DecodeBox(this->BrickCells, shared, code, numbers->data());
   return numbers;
 }
 
@@ -208,8 +218,7 @@ LatticeCache::Box GroupField::Box(int step, int plane, const glm::ivec3& block)
   {
     return found;
   }
-  const LatticeCache::Box box =
-    std::make_shared<const std::vector<std::int32_t>>(this->Decode(step, plane, block));
+  const LatticeCache::Box box = this->Decode(step, plane, block);
   cache.Add(key, box);
   return box;
 }

@@ -102,7 +102,7 @@ private:
   void Verify(int step, int plane, const glm::ivec3& block, Visited& visited);
   bool NeedsReferences(int step, int plane, const glm::ivec3& block);
   void Coarse(int step, int plane, const glm::ivec3& block, std::vector<std::int32_t>& numbers);
-  std::vector<std::int32_t> Decode(int step, int plane, const glm::ivec3& block);
+  LatticeCache::Box Decode(int step, int plane, const glm::ivec3& block);
 
   GroupReader& File;
   std::uint64_t Series;

@@ -36,6 +36,10 @@ public:
   /// is safe.
   void Decode(std::int64_t base, const std::uint32_t* offsets, std::size_t count, T* decoded) const;
 
+  /// decoded[i * step] from numbers[i * stride]. Any input is safe.
+  void Decode(const std::int32_t* numbers, std::ptrdiff_t stride, std::size_t count, T* decoded,
+    std::ptrdiff_t step) const;
+
 private:
   T Compute(std::int64_t number) const;
 

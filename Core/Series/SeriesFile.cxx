@@ -132,6 +132,45 @@ void SeriesFile::DecodeBrick(const FieldKey& field, std::int64_t brick, void* va
   this->Self->Reader->DecodeBrick(field, brick, values);
 }
 
+void SeriesFile::DecodePart(const FieldKey& field, std::int64_t brick, const Box& part,
+  const glm::i64vec3& stride, void* first) const
+{
+  const Internals& self = *this->Self;
+  self.Check(field);
+  self.CheckBrick(field, brick);
+  const Box samples =
+    self.Series.Layouts[static_cast<std::size_t>(field.Level)].SamplesOf(brick);
+  if (part.Empty() || !samples.Contains(part))
+  {
+    throw Error("The part to decode is not inside its brick", { self.Series.Path });
+  }
+  if (self.Reader->DecodePart(field, brick, part, stride, first))
+  {
+    return;
+  }
+  Dispatch(self.Series.Index.Arrays[static_cast<std::size_t>(field.Array)].Type,
+    [&](auto tag)
+    {
+      using T = typename decltype(tag)::Type;
+      const glm::ivec3 size = samples.Size();
+      std::vector<T> values(static_cast<std::size_t>(samples.Count()));
+      self.Reader->DecodeBrick(field, brick, values.data());
+      for (int z = part.Lo.z; z < part.Hi.z; ++z)
+      {
+        for (int y = part.Lo.y; y < part.Hi.y; ++y)
+        {
+          const glm::ivec3 p = glm::ivec3(part.Lo.x, y, z) - samples.Lo;
+          const T* from = values.data() + (std::ptrdiff_t{ p.z } * size.y + p.y) * size.x + p.x;
+          T* to = static_cast<T*>(first) + (z - part.Lo.z) * stride.z + (y - part.Lo.y) * stride.y;
+          for (int x = 0; x < part.Size().x; ++x)
+          {
+            to[x * stride.x] = from[x];
+          }
+        }
+      }
+    });
+}
+
 void SeriesFile::VerifyBricks(const FieldKey& field, const std::vector<std::int64_t>& bricks) const
 {
   this->Self->Check(field);

@@ -77,6 +77,13 @@ public:
   /// Throws Error when the payload is damaged.
   void DecodeBrick(const FieldKey& field, std::int64_t brick, void* values) const;
 
+  /// Decodes a part of a brick to where the caller wants it.
+  /// @param part not empty, inside the brick's samples
+  /// @param stride distances in values between neighbours in x, y, z
+  /// @param first receives the part's first sample; values of the array's own type
+  void DecodePart(const FieldKey& field, std::int64_t brick, const Box& part,
+    const glm::i64vec3& stride, void* first) const;
+
   /// Checks the checksums of the bricks' payloads without decoding them.
   void VerifyBricks(const FieldKey& field, const std::vector<std::int64_t>& bricks) const;
 

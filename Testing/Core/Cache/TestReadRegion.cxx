@@ -3,7 +3,9 @@
 #include "Base/Error.h"
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 namespace banyan::testing
@@ -62,6 +64,75 @@ void CheckRegions(const glm::ivec3& size, int cells)
         }
       }
     }
+  }
+}
+
+/// What would push out everything else does not enter, but what is held is used.
+TEST(ReadRegion, LargePartsGoPastTheCache)
+{
+  const TemporaryFolder folder;
+  const Grid grid = GridOf(33, 33, 33);
+  const auto steps = Sample<float>(grid, 1, Wavy<float>);
+  EncodeOptions options;
+  options.BrickCells = 16;
+  Encode(folder / "s.banyan", grid, steps, options);
+  const auto file = SeriesFile::Open(folder / "s.banyan");
+  const Box whole{ glm::ivec3(0), file->Layout(0).Samples() };
+  const std::uint64_t bytes = static_cast<std::uint64_t>(whole.Count()) * sizeof(float);
+  std::vector<float> values(static_cast<std::size_t>(whole.Count()));
+  BrickCache large(16 * bytes);
+  ReadRegion(large, *file, {}, whole, values.data(), 1, 0);
+  EXPECT_EQ(large.GetStatistics().Misses, 8u);
+  std::vector<float> past(values.size());
+  BrickCache small(16 * bytes - 16);
+  ReadRegion(small, *file, {}, whole, past.data(), 1, 0);
+  EXPECT_EQ(past, values);
+  EXPECT_EQ(small.GetStatistics().Misses, 0u);
+  EXPECT_EQ(small.GetStatistics().Bytes, 0u);
+  (void)small.Get(*file, {}, 3);
+  ReadRegion(small, *file, {}, whole, past.data(), 1, 0);
+  EXPECT_EQ(past, values);
+  EXPECT_EQ(small.GetStatistics().Hits, 1u);
+}
+
+TEST(DecodePart, IsThePartOfTheBrickAndNoMore)
+{
+  const TemporaryFolder folder;
+  const Grid grid = GridOf(20, 20, 20);
+  auto steps = Sample<float>(grid, 1, Wavy<float>);
+  steps[0][5] = std::numeric_limits<float>::quiet_NaN(); // the first brick goes another way
+  EncodeOptions options;
+  options.BrickCells = 8;
+  Encode(folder / "s.banyan", grid, steps, options);
+  const auto file = SeriesFile::Open(folder / "s.banyan");
+  const BrickLayout layout = file->Layout(0);
+  for (std::int64_t brick = 0; brick < layout.BrickCount(); ++brick)
+  {
+    const Box samples = layout.SamplesOf(brick);
+    const glm::ivec3 n = samples.Size();
+    std::vector<float> whole(static_cast<std::size_t>(samples.Count()));
+    file->DecodeBrick({}, brick, whole.data());
+    const Box part{ samples.Lo + glm::min(glm::ivec3(1, 2, 0), n - 1), samples.Hi };
+    const glm::ivec3 size = part.Size();
+    const glm::i64vec3 stride{ 2, 2 * size.x + 1, (2 * size.x + 1) * size.y };
+    std::vector<float> values(static_cast<std::size_t>(stride.z * size.z), -7.0f);
+    std::vector<float> expected = values;
+    file->DecodePart({}, brick, part, stride, values.data());
+    for (int z = 0; z < size.z; ++z)
+    {
+      for (int y = 0; y < size.y; ++y)
+      {
+        for (int x = 0; x < size.x; ++x)
+        {
+          const glm::ivec3 p = part.Lo - samples.Lo + glm::ivec3(x, y, z);
+          expected[static_cast<std::size_t>(x * stride.x + y * stride.y + z * stride.z)] =
+            whole[static_cast<std::size_t>((p.z * n.y + p.y) * n.x + p.x)];
+        }
+      }
+    }
+    EXPECT_EQ(std::memcmp(values.data(), expected.data(), values.size() * sizeof(float)), 0) << brick;
+    EXPECT_THROW(
+      file->DecodePart({}, brick, { samples.Lo, samples.Hi + 1 }, stride, values.data()), Error);
   }
 }
 

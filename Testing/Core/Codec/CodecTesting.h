@@ -79,8 +79,9 @@ inline EncodedPlane EncodeWhole(const PlaneToEncode& plane, int threads = 2)
   result.Tables = DecodeTablesOf(tables.Frequencies());
   for (const BlockTokens& block : result.Blocks)
   {
-    result.Payloads.push_back(block.Tokens.empty() ? std::vector<std::uint8_t>{}
-                                                   : tables.Encode(block.Tokens, block.Extra));
+    result.Payloads.push_back(block.Tokens.empty()
+        ? std::vector<std::uint8_t>{}
+        : tables.Encode(block.Tokens, block.Extra, block.Rows));
   }
   return result;
 }

@@ -41,7 +41,7 @@ private:
   std::size_t Next = 0;
 };
 
-/// Symbols of a payload: four states take turns.
+/// Symbols of a payload: 1, 2, 4 or 8 states take turns in each row.
 class Symbols
 {
 public:
@@ -49,6 +49,7 @@ public:
     const std::vector<std::vector<State>>& tables, const std::uint8_t* data, std::size_t bytes)
     : Tables(tables)
     , Bits(data, bytes)
+    , States(std::size_t{ 1 } << this->Bits.Take(2))
   {
     for (std::uint32_t& state : this->States)
     {
@@ -56,18 +57,18 @@ public:
     }
   }
 
-  int Next(int context)
+  /// The symbol number `place` of a row.
+  int Next(int context, std::size_t place)
   {
-    std::uint32_t& state = this->States[this->Count++ % 4];
+    std::uint32_t& state = this->States[place % this->States.size()];
     const State& entry = this->Tables[static_cast<std::size_t>(context)][state];
     state = static_cast<std::uint32_t>(entry.Base) + this->Bits.Take(entry.Bits);
     return entry.Symbol;
   }
 
-  /// 0, 1, -1, 2, -2, ... by code.
-  std::int32_t Residual(int context)
+  /// 0, 1, -1, 2, -2, ... by code; takes the symbol's extra bits.
+  std::int32_t Residual(int symbol)
   {
-    const int symbol = this->Next(context);
     const std::uint32_t code =
       symbol < 40 ? static_cast<std::uint32_t>(symbol)
                   : 39u + (std::uint32_t{ 1 } << (symbol - 40)) + this->Bits.Take(symbol - 40);
@@ -92,8 +93,7 @@ public:
 private:
   const std::vector<std::vector<State>>& Tables;
   BitReader Bits;
-  std::array<std::uint32_t, 4> States = {};
-  std::size_t Count = 0;
+  std::vector<std::uint32_t> States;
 };
 
 /// The magnitude of a residual is the number of the last of these that it reaches, plus 2, or 0.
@@ -175,11 +175,11 @@ private:
     {
       smooth = smooth && this->Roughness(axes, stride, axis, { x, at[1], at[2] }) == 0;
     }
-    if (smooth && symbols.Next(88 + band) != 0)
+    if (smooth && symbols.Next(88 + band, 0) != 0)
     {
       return;
     }
-    std::vector<std::int32_t> row;
+    std::vector<int> row;
     for (Position p = at; p[0] < this->Edge && inside(p); p[0] += step)
     {
       const int roughness = this->Roughness(axes, stride, axis, p);
@@ -188,12 +188,13 @@ private:
       {
         contextClass += roughness > limitOfClass ? 1 : 0;
       }
-      row.push_back(symbols.Residual(8 * band + contextClass));
+      row.push_back(symbols.Next(8 * band + contextClass, row.size()));
     }
-    // Residuals of a row are no context for the same row.
+    // Residuals of a row are no context for the same row, and their extra bits follow all of it.
     for (std::size_t i = 0; i < row.size(); ++i)
     {
-      this->At(InBlock(axes, { at[0] + static_cast<int>(i) * step, at[1], at[2] })) = row[i];
+      this->At(InBlock(axes, { at[0] + static_cast<int>(i) * step, at[1], at[2] })) =
+        symbols.Residual(row[i]);
     }
   }
 

@@ -1,5 +1,5 @@
 #include "Base/Error.h"
-#include "Codec/SymbolReader.h"
+#include "Codec/SymbolRow-inl.h"
 #include "Codec/SymbolWriter.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,8 @@ namespace banyan::testing
 namespace
 {
 
-/// Tokens in contexts that come and contexts that do not, with symbols of all sizes.
+/// Tokens in contexts that come and contexts that do not, with symbols of all sizes, in rows of all
+/// lengths.
 struct Tokens
 {
   explicit Tokens(std::size_t count, unsigned seed)
@@ -31,70 +32,113 @@ struct Tokens
         this->Extra.push_back(extra);
       }
     }
+    for (std::size_t left = count; left > 0; left -= this->Rows.back())
+    {
+      this->Rows.push_back(static_cast<std::uint8_t>(
+        std::min<std::size_t>(left, 1 + random() % SymbolReader::LongestRow)));
+    }
     this->Counts.Add(this->Of);
+  }
+
+  std::vector<std::uint8_t> Payload() const
+  {
+    return SymbolTables(this->Counts).Encode(this->Of, this->Extra, this->Rows);
+  }
+
+  std::vector<std::uint32_t> DecodeTables() const
+  {
+    return DecodeTablesOf(SymbolTables(this->Counts).Frequencies());
   }
 
   std::vector<std::uint16_t> Of;
   std::vector<std::uint32_t> Extra;
   std::vector<std::uint32_t> Codes;
+  std::vector<std::uint8_t> Rows;
   ContextCounts Counts;
 };
 
-/// Zigzag code of the next residual in a context.
-std::uint32_t NextCode(SymbolReader::Cursor& cursor, int context)
+/// Zigzag code of an entry.
+std::uint32_t CodeOf(SymbolReader& reader, std::uint32_t entry)
 {
-  const std::uint32_t entry = cursor.Next(cursor.Tables + context * tans::TableSize);
-  if ((entry >> residual::EscapeBit & 1u) != 0)
+  if ((entry & residual::EscapeFlag) != 0)
   {
-    return residual::Zigzag(cursor.Long(entry));
+    return residual::Zigzag(reader.Long(entry));
   }
-  const std::int32_t residual = static_cast<std::int32_t>(entry) >> 24;
-  EXPECT_EQ(entry >> 14 & 15u, residual::Magnitude(residual::Zigzag(residual)));
+  const std::int32_t residual = static_cast<std::int32_t>(entry) >> residual::ResidualShift;
+  EXPECT_EQ(entry >> residual::MagnitudeShift & residual::MagnitudeMask,
+    residual::Magnitude(residual::Zigzag(residual)));
   return residual::Zigzag(residual);
+}
+
+/// All codes that a reader gives; every third row of one symbol without extra bits by itself.
+/// @param Step distance of the row's entries in memory
+template <int Step>
+std::vector<std::uint32_t> ReadAll(SymbolReader& reader, const Tokens& tokens)
+{
+  std::vector<std::uint32_t> codes;
+  std::size_t begin = 0;
+  for (const std::uint8_t row : tokens.Rows)
+  {
+    if (row == 1 && (tokens.Of[begin] & 0xff) < residual::DirectSymbols && begin % 3 == 0)
+    {
+      codes.push_back(CodeOf(reader, reader.One(tokens.Of[begin++] >> 8)));
+      continue;
+    }
+    std::vector<std::uint8_t> contexts(static_cast<std::size_t>(row) * Step);
+    std::vector<std::uint32_t> entries(static_cast<std::size_t>(row) * Step);
+    for (std::size_t i = 0; i < row; ++i)
+    {
+      contexts[i * Step] = static_cast<std::uint8_t>(tokens.Of[begin + i] >> 8);
+    }
+    const bool escapes = HWY_NAMESPACE::ReadRow<Step>(
+      reader, 0, contexts.data(), static_cast<int>(row), entries.data());
+    bool has = false;
+    for (std::size_t i = 0; i < row; ++i)
+    {
+      has = has || (entries[i * Step] & residual::EscapeFlag) != 0;
+      codes.push_back(CodeOf(reader, entries[i * Step]));
+    }
+    EXPECT_EQ(escapes, has);
+    begin += row;
+  }
+  return codes;
 }
 
 TEST(Symbols, ComeBack)
 {
-  for (const std::size_t count : { 1, 2, 3, 4, 5, 64, 65, 1000, 50000 })
+  int lanes = 0;
+  for (const std::size_t count : { 1, 2, 3, 4, 5, 30, 64, 65, 100, 300, 1000, 50000 })
   {
     const Tokens tokens(count, static_cast<unsigned>(count));
-    const SymbolTables tables(tokens.Counts);
-    const std::vector<std::uint8_t> payload = tables.Encode(tokens.Of, tokens.Extra);
-    const auto decode = DecodeTablesOf(tables.Frequencies());
+    const std::vector<std::uint8_t> payload = tokens.Payload();
+    lanes |= 1 << (payload[0] & 3);
+    const auto decode = tokens.DecodeTables();
     SymbolReader reader;
-    reader.Open(decode.data(), payload.data(), payload.size(), payload.size());
-    SymbolReader::Cursor cursor = reader.Here();
-    for (std::size_t i = 0; i < count; ++i)
+    for (int step = 1; step <= 4; step *= 2)
     {
-      EXPECT_FALSE(reader.AtEnd() && i + 8 < count);
-      ASSERT_EQ(NextCode(cursor, tokens.Of[i] >> 8), tokens.Codes[i]) << i << " of " << count;
-      if (i % 32 == 31)
-      {
-        reader.MoveTo(cursor);
-        cursor = reader.Here();
-      }
+      reader.Open(decode.data(), payload.data(), payload.size(), payload.size());
+      EXPECT_FALSE(reader.AtEnd() && count > 8);
+      ASSERT_EQ(step == 1     ? ReadAll<1>(reader, tokens)
+                  : step == 2 ? ReadAll<2>(reader, tokens)
+                              : ReadAll<4>(reader, tokens),
+        tokens.Codes)
+        << count;
+      EXPECT_TRUE(reader.AtEnd());
     }
-    reader.MoveTo(cursor);
-    EXPECT_TRUE(reader.AtEnd());
   }
+  EXPECT_EQ(lanes, 15) << "some number of lanes never came";
 }
 
 TEST(Symbols, MissingAndSuperfluousBytesAreNoticed)
 {
   const Tokens tokens(500, 9);
-  const SymbolTables tables(tokens.Counts);
-  const std::vector<std::uint8_t> good = tables.Encode(tokens.Of, tokens.Extra);
-  const auto decode = DecodeTablesOf(tables.Frequencies());
+  const std::vector<std::uint8_t> good = tokens.Payload();
+  const auto decode = tokens.DecodeTables();
   const auto endsWell = [&](const std::vector<std::uint8_t>& payload)
   {
     SymbolReader reader;
     reader.Open(decode.data(), payload.data(), payload.size(), payload.size());
-    for (std::size_t i = 0; i < tokens.Of.size(); ++i)
-    {
-      SymbolReader::Cursor cursor = reader.Here();
-      (void)NextCode(cursor, tokens.Of[i] >> 8);
-      reader.MoveTo(cursor);
-    }
+    (void)ReadAll<1>(reader, tokens);
     return reader.AtEnd();
   };
   EXPECT_TRUE(endsWell(good));
@@ -117,16 +161,10 @@ TEST(Symbols, ReadersAreUsedAgain)
   SymbolReader reader;
   for (const Tokens* tokens : { &many, &few, &many })
   {
-    const SymbolTables tables(tokens->Counts);
-    const std::vector<std::uint8_t> payload = tables.Encode(tokens->Of, tokens->Extra);
-    const auto decode = DecodeTablesOf(tables.Frequencies());
+    const std::vector<std::uint8_t> payload = tokens->Payload();
+    const auto decode = tokens->DecodeTables();
     reader.Open(decode.data(), payload.data(), payload.size(), payload.size());
-    for (std::size_t i = 0; i < tokens->Of.size(); ++i)
-    {
-      SymbolReader::Cursor cursor = reader.Here();
-      ASSERT_EQ(NextCode(cursor, tokens->Of[i] >> 8), tokens->Codes[i]);
-      reader.MoveTo(cursor);
-    }
+    ASSERT_EQ(ReadAll<1>(reader, *tokens), tokens->Codes);
     EXPECT_TRUE(reader.AtEnd());
   }
 }
