@@ -15,8 +15,14 @@ void SeriesWriting::Collect(int step, const StepAgreement& now)
   const int group = step / this->Order.Options.KeyframeInterval;
   const int place = step % this->Order.Options.KeyframeInterval;
   const int owner = group % this->Talk.Ranks();
+  const bool ends = place + 1 == this->StepsOf(group);
+  // A group refers to the last step of the one before. Who encodes both in turn remembers it.
+  const int next = (group + 1) % this->Talk.Ranks();
+  const bool forNext = ends && next != owner && this->RefersBefore &&
+                       step + 1 < static_cast<int>(this->Times.size());
   const bool receives = this->Talk.Rank() == owner;
-  if (place == 0 && receives)
+  const bool receivesForNext = forNext && this->Talk.Rank() == next;
+  if ((place == 0 && receives) || receivesForNext)
   {
     // Its values are those of the group before until that is encoded.
     this->Encoder->Wait([this] { this->Tick(); });
@@ -29,7 +35,12 @@ void SeriesWriting::Collect(int step, const StepAgreement& now)
   }
   this->Gathering.Gather(
     this->Mine(), now, this->First.Arrays, owner, receives ? this->Values[place] : none);
-  if (place + 1 == this->StepsOf(group))
+  if (forNext)
+  {
+    this->Gathering.Gather(
+      this->Mine(), now, this->First.Arrays, next, receivesForNext ? this->ValuesBefore : none);
+  }
+  if (ends)
   {
     this->Talk.OnRank(owner, [this, group] { this->Encode(group); });
   }
@@ -38,19 +49,25 @@ void SeriesWriting::Collect(int step, const StepAgreement& now)
 void SeriesWriting::Encode(int group)
 {
   const int first = group * this->Order.Options.KeyframeInterval;
+  const auto borrowed = [](const StepValues& step)
+  {
+    std::vector<ArrayValues> arrays;
+    for (const std::vector<unsigned char>& array : step)
+    {
+      arrays.push_back({ array.data() });
+    }
+    return arrays;
+  };
   std::vector<double> times;
   std::vector<std::vector<ArrayValues>> steps;
   for (int place = 0; place < this->StepsOf(group); ++place)
   {
     times.push_back(this->TimeOf(first + place));
-    steps.emplace_back();
-    for (const std::vector<unsigned char>& array : this->Values[place])
-    {
-      steps.back().push_back({ array.data() });
-    }
+    steps.push_back(borrowed(this->Values[place]));
   }
   this->Encoding = static_cast<int>(steps.size());
-  this->Encoder->Start(group, std::move(times), std::move(steps));
+  this->Encoder->Start(
+    group, std::move(times), std::move(steps), borrowed(this->ValuesBefore));
 }
 
 /// Brings the groups that were encoded meanwhile to rank 0, and the problems to all.

@@ -319,9 +319,10 @@ void SeriesWriting::Open()
             { this->Folder->Path() });
         }
       }
+      SeriesIndex plan = PlanSeries(this->First.Whole, descriptions, this->Order.Options);
+      this->RefersBefore = MayReferBefore(plan);
       this->Encoder = std::make_unique<BackgroundEncoder>(
-        PlanSeries(this->First.Whole, descriptions, this->Order.Options), this->Order.Options,
-        *this->Folder, ThreadPool::DefaultWidth());
+        std::move(plan), this->Order.Options, *this->Folder, ThreadPool::DefaultWidth());
     });
   this->Opened = true;
 }

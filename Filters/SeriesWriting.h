@@ -44,7 +44,7 @@ struct WritingOrder
 /// group, which encodes the group in the background while all ranks go on with the steps that
 /// follow. Rank 0 keeps the index. The files are the same, byte for byte, on any number of ranks.
 ///
-/// Memory: each rank holds the values of one group at a time. A rank whose group is still being
+/// Memory: each rank holds the values of one group at a time, and of the step before it. A rank whose group is still being
 /// encoded when it should receive the next one makes the others wait.
 ///
 /// Everything is decided by all ranks together: a problem of one makes all of them throw the same
@@ -101,6 +101,8 @@ private:
   std::unique_ptr<SeriesAssembly> Assembly;   ///< on rank 0
   std::unique_ptr<SegmentFolder> Folder;      ///< of this rank's segments
   std::vector<StepValues> Values;             ///< of this rank's group, by step
+  StepValues ValuesBefore;                    ///< of the step before them, where another rank has it
+  bool RefersBefore = false;                  ///< whether groups need that at all
   std::unique_ptr<BackgroundEncoder> Encoder; ///< of Values, into Folder
   bool Opened = false;                        ///< all ranks have all that
   std::string IndexProblem;                   ///< of rank 0, to be agreed on

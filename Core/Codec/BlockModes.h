@@ -8,7 +8,7 @@ namespace banyan::block
 {
 
 /// Which earlier decoded steps are subtracted first. A is the reference before, B the one after;
-/// where the group ends there is no B, and B is A.
+/// where there is none before, A is B.
 enum class Reference : std::uint8_t
 {
   None = 0,

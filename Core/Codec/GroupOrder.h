@@ -8,26 +8,42 @@
 namespace banyan
 {
 
-/// The steps that a step of a group is predicted from, counted from the group's first; -1 for none.
+/// In place of a step of a group, which count from 0: no step.
+constexpr int NoStep = -2;
+/// The last step of the group before.
+constexpr int StepBefore = -1;
+
+/// The steps that a step of a group is predicted from, counted from the group's first.
 struct StepReferences
 {
-  int A = -1; ///< before
-  int B = -1; ///< after, or A where the group has no step there
+  int A = NoStep; ///< before, or B where there is none
+  int B = NoStep; ///< after
+
+  /// False for the key frame of a group.
+  bool Any() const { return this->A != NoStep; }
 };
 
-/// Dyadic: a step refers to those at the distance of its lowest set bit. So a group of 8 has chains
-/// of at most 4 steps (3.1 in the mean), half of the steps are referred to by none, and no step
-/// refers beyond its group.
-inline StepReferences ReferencesOfStep(int step, int steps)
+/// How far away the references of a step are: the lowest set bit of its distance to the last one.
+inline int ReferenceDistance(int step, int steps)
 {
-  if (step == 0)
+  const int left = steps - 1 - step;
+  return left & -left;
+}
+
+/// Dyadic. The last step of a group is its key frame, which is coded by itself; the others lie
+/// between it and the key frame of the group before. So a group of 8 has chains of at most 5 steps,
+/// half of the steps are referred to by none, and a step takes its own group and one key frame.
+/// @param open whether the group refers to the key frame of the one before
+inline StepReferences ReferencesOfStep(int step, int steps, bool open)
+{
+  const int distance = ReferenceDistance(step, steps);
+  if (distance == 0)
   {
     return {};
   }
-  const int distance = step & -step;
-  const int before = step - distance;
   const int after = step + distance;
-  return { before, after < steps ? after : before };
+  const int before = std::max(step - distance, StepBefore);
+  return { before == StepBefore && !open ? after : before, after };
 }
 
 /// The steps of a group in an order that has each after its references.
@@ -38,7 +54,8 @@ inline std::vector<int> DyadicOrder(int steps)
   {
     order.push_back(step);
   }
-  const auto rank = [steps](int step) { return step == 0 ? 2 * steps : step & -step; };
+  const auto rank = [steps](int step)
+  { return step + 1 == steps ? 2 * steps : ReferenceDistance(step, steps); };
   std::stable_sort(
     order.begin(), order.end(), [&rank](int a, int b) { return rank(a) > rank(b); });
   return order;

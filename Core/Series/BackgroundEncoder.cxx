@@ -25,8 +25,8 @@ BackgroundEncoder::~BackgroundEncoder()
   }
 }
 
-void BackgroundEncoder::Start(
-  int number, std::vector<double> times, std::vector<std::vector<ArrayValues>> steps)
+void BackgroundEncoder::Start(int number, std::vector<double> times,
+  std::vector<std::vector<ArrayValues>> steps, std::vector<ArrayValues> before)
 {
   if (this->Worker.joinable())
   {
@@ -36,8 +36,9 @@ void BackgroundEncoder::Start(
   this->Working = true;
   try
   {
-    this->Worker = std::thread([this, number, times = std::move(times), steps = std::move(steps)]
-      { this->Encode(number, times, steps); });
+    this->Worker = std::thread([this, number, times = std::move(times), steps = std::move(steps),
+                                 before = std::move(before)]
+      { this->Encode(number, times, steps, before); });
   }
   catch (const std::system_error& error)
   {
@@ -47,19 +48,27 @@ void BackgroundEncoder::Start(
 }
 
 void BackgroundEncoder::Encode(int number, const std::vector<double>& times,
-  const std::vector<std::vector<ArrayValues>>& steps) noexcept
+  const std::vector<std::vector<ArrayValues>>& steps,
+  const std::vector<ArrayValues>& before) noexcept
 {
   std::optional<std::pair<int, EncodedGroup>> result;
   std::exception_ptr failure;
   try
   {
-    result.emplace(
-      number, EncodeGroup(this->Plan, this->Options, this->Folder, number, times, steps, this->Pool,
-                [this](double share)
-                {
-                  this->Done = share;
-                  return !this->Interrupted;
-                }));
+    const auto tell = [this](double share)
+    {
+      this->Done = share;
+      return !this->Interrupted;
+    };
+    // Who brings the step before now will do so again: nothing needs to be kept.
+    LastStep* last = before.empty() ? &this->Last : nullptr;
+    if (last == nullptr)
+    {
+      this->Last = {};
+    }
+    result.emplace(number,
+      EncodeGroup(this->Plan, this->Options, this->Folder, number, times, steps, before, last,
+        this->Pool, tell));
   }
   catch (...)
   {

@@ -37,8 +37,11 @@ public:
 
   /// Begins with a group; must not be Busy(), and the result of the one before must be taken.
   /// @param steps values by step and array; borrowed until it is no longer Busy()
+  /// @param before the step before them, borrowed as well. Not needed by the first group of the
+  /// series, nor when the group before was encoded here just before this one
   /// Throws Error when no thread can be started.
-  void Start(int number, std::vector<double> times, std::vector<std::vector<ArrayValues>> steps);
+  void Start(int number, std::vector<double> times, std::vector<std::vector<ArrayValues>> steps,
+    std::vector<ArrayValues> before = {});
 
   bool Busy() const;
 
@@ -58,12 +61,14 @@ public:
 
 private:
   void Encode(int number, const std::vector<double>& times,
-    const std::vector<std::vector<ArrayValues>>& steps) noexcept;
+    const std::vector<std::vector<ArrayValues>>& steps,
+    const std::vector<ArrayValues>& before) noexcept;
 
   const SeriesIndex Plan;
   const EncodeOptions Options;
   SegmentFolder& Folder;
   ThreadPool Pool;
+  LastStep Last; ///< of the group before, where groups come one after the other
   std::thread Worker;
   std::atomic<double> Done{ 0.0 };
   std::atomic<bool> Interrupted{ false };

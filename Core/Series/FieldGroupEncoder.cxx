@@ -65,8 +65,11 @@ public:
 
   EncodedField Run(
     std::vector<std::vector<double>>* sumSquares, const std::function<void(double)>& tell);
+  KeyFrame RunKeyFrame();
 
 private:
+  void Prepare();
+  const std::vector<PlaneNumbers>* DecodedAt(int step) const;
   void EncodePlanes(
     int step, const std::vector<PlaneNumbers>& targets, const std::function<void(double)>& tell);
   void FindExceptions(
@@ -82,6 +85,30 @@ private:
   EncodedField Out;
 };
 
+/// Lattice, axes and planes, and whether the group refers to the one before.
+template <class T>
+void Encoder<T>::Prepare()
+{
+  group::FieldHead& head = this->Out.Head;
+  ChooseLattice(this->Field.Type, this->Field.Map, this->Field.Bound, this->Field.Expected,
+    this->Field.Beyond, head);
+  this->Target = std::make_unique<LatticeTarget<T>>(this->Field, head, this->Pool);
+  head.Axes = this->Target->Axes();
+  head.Open = this->Field.Before != nullptr && !head.Exact && this->Field.Steps.size() > 1 &&
+              group::SameLattice(this->Field.Before->Head, head);
+  this->Planes = this->Target->Planes();
+  this->Out.Steps.resize(this->Field.Steps.size());
+  this->Work.resize(this->Field.Steps.size());
+}
+
+/// The planes of a step that was encoded before, or of the key frame before the group.
+template <class T>
+const std::vector<PlaneNumbers>* Encoder<T>::DecodedAt(int step) const
+{
+  return step == StepBefore ? &this->Field.Before->Planes
+                            : &this->Work[static_cast<std::size_t>(step)].Decoded;
+}
+
 template <class T>
 void Encoder<T>::EncodePlanes(
   int step, const std::vector<PlaneNumbers>& targets, const std::function<void(double)>& tell)
@@ -89,7 +116,7 @@ void Encoder<T>::EncodePlanes(
   StepWork& work = this->Work[static_cast<std::size_t>(step)];
   EncodedStep& out = this->Out.Steps[static_cast<std::size_t>(step)];
   const StepReferences references =
-    ReferencesOfStep(step, static_cast<int>(this->Field.Steps.size()));
+    ReferencesOfStep(step, static_cast<int>(this->Field.Steps.size()), this->Out.Head.Open);
   work.Decoded.resize(targets.size());
   work.Tokens.resize(targets.size() - 1);
   work.Decoded.back() = targets.back();
@@ -109,10 +136,10 @@ void Encoder<T>::EncodePlanes(
     PlaneToEncode plane;
     plane.Target = &targets[p];
     plane.Coarser = &work.Decoded[p + 1];
-    if (references.A >= 0)
+    if (references.Any())
     {
-      plane.A = &this->Work[static_cast<std::size_t>(references.A)].Decoded[p];
-      plane.B = &this->Work[static_cast<std::size_t>(references.B)].Decoded[p];
+      plane.A = &(*this->DecodedAt(references.A))[p];
+      plane.B = &(*this->DecodedAt(references.B))[p];
     }
     plane.CoarseBin = BinOfOctave(this->Out.Head.Bin, static_cast<int>(2 * p + 1));
     plane.FineBin = BinOfOctave(this->Out.Head.Bin, static_cast<int>(2 * p));
@@ -225,7 +252,7 @@ void Encoder<T>::CountChains()
     return;
   }
   const std::size_t blocks = this->Out.Steps[0].Planes[0].size();
-  std::vector<char> needed(static_cast<std::size_t>(steps));
+  std::vector<char> needed(static_cast<std::size_t>(steps) + 1); // the step before comes first
   for (std::size_t b = 0; b < blocks; ++b)
   {
     for (int t = 0; t < steps; ++t)
@@ -237,14 +264,19 @@ void Encoder<T>::CountChains()
       {
         const int at = open.back();
         open.pop_back();
-        if (at < 0 || needed[static_cast<std::size_t>(at)] != 0)
+        char& counted = needed[static_cast<std::size_t>(at - StepBefore)];
+        if (counted != 0)
         {
           continue;
         }
-        needed[static_cast<std::size_t>(at)] = 1;
+        counted = 1;
         ++chain;
+        if (at == StepBefore)
+        {
+          continue; // a key frame
+        }
         const EncodedBlock& block = this->Out.Steps[static_cast<std::size_t>(at)].Planes[0][b];
-        const StepReferences references = ReferencesOfStep(at, steps);
+        const StepReferences references = ReferencesOfStep(at, steps, this->Out.Head.Open);
         if (block.Same)
         {
           open.push_back(references.A);
@@ -265,14 +297,8 @@ template <class T>
 EncodedField Encoder<T>::Run(
   std::vector<std::vector<double>>* sumSquares, const std::function<void(double)>& tell)
 {
+  this->Prepare();
   const int steps = static_cast<int>(this->Field.Steps.size());
-  ChooseLattice(this->Field.Type, this->Field.Map, this->Field.Bound, this->Field.Expected,
-    this->Field.Beyond, this->Out.Head);
-  this->Target = std::make_unique<LatticeTarget<T>>(this->Field, this->Out.Head, this->Pool);
-  this->Out.Head.Axes = this->Target->Axes();
-  this->Planes = this->Target->Planes();
-  this->Out.Steps.resize(static_cast<std::size_t>(steps));
-  this->Work.resize(static_cast<std::size_t>(steps));
   int done = 0;
   for (const int step : DyadicOrder(steps))
   {
@@ -296,8 +322,23 @@ EncodedField Encoder<T>::Run(
   }
   MakeNodes<T>(this->Field, this->Out.Head, decoded, this->Out.Steps, this->Pool);
   this->CountChains();
+  this->Out.Last = { this->Out.Head, std::move(this->Work.back().Decoded) };
+  for (auto& set : this->Out.Last.Head.Frequencies)
+  {
+    set.clear();
+  }
   return std::move(this->Out);
 }
+
+template <class T>
+KeyFrame Encoder<T>::RunKeyFrame()
+{
+  this->Prepare();
+  const int last = static_cast<int>(this->Field.Steps.size()) - 1;
+  this->EncodePlanes(last, this->Target->Make(this->Field.Steps.back()), [](double) {});
+  return { this->Out.Head, std::move(this->Work.back().Decoded) };
+}
+
 
 } // namespace
 
@@ -307,6 +348,14 @@ EncodedField EncodeFieldGroup(const FieldGroup& field, ThreadPool& pool,
   EncodedField result;
   Dispatch(field.Type, [&](auto tag)
     { result = Encoder<typename decltype(tag)::Type>(field, pool).Run(sumSquares, tell); });
+  return result;
+}
+
+KeyFrame EncodeKeyFrame(const FieldGroup& field, ThreadPool& pool)
+{
+  KeyFrame result;
+  Dispatch(field.Type, [&](auto tag)
+    { result = Encoder<typename decltype(tag)::Type>(field, pool).RunKeyFrame(); });
   return result;
 }
 

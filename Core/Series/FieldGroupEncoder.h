@@ -1,7 +1,7 @@
 #ifndef banyan_Series_FieldGroupEncoder_h
 #define banyan_Series_FieldGroupEncoder_h
 
-#include "Codec/BlockModes.h"
+#include "Codec/BlockEncoder.h"
 #include "Series/GroupFormat.h"
 #include "Series/SeriesEncoder.h"
 
@@ -13,6 +13,13 @@ namespace banyan
 {
 
 class ThreadPool;
+
+/// What the key frame of a group, its last step, decodes to: the group after it may refer to it.
+struct KeyFrame
+{
+  group::FieldHead Head; ///< the lattice, without tables
+  std::vector<PlaneNumbers> Planes;
+};
 
 /// One component of one array over the steps of a group.
 struct FieldGroup
@@ -32,6 +39,8 @@ struct FieldGroup
   std::optional<OpacityFunction> Opacity; ///< nothing: every value counts
   EncodeProfile Profile = EncodeProfile::Balanced;
   int CompressionLevel = 3;
+  /// Of the group before; null: do not refer to it. Used where its lattice is the same.
+  const KeyFrame* Before = nullptr;
 };
 
 /// A block ready to be written.
@@ -72,6 +81,7 @@ struct EncodedField
   group::FieldHead Head;
   std::vector<EncodedStep> Steps;
   FieldErrors Errors;
+  KeyFrame Last;
   /// Steps that must be decoded for a brick of the finest level: sum over all bricks, and most.
   std::int64_t ChainSum = 0;
   int ChainMost = 0;
@@ -83,6 +93,10 @@ struct EncodedField
 /// @param tell called often with the number of steps done; may throw
 EncodedField EncodeFieldGroup(const FieldGroup& field, ThreadPool& pool,
   std::vector<std::vector<double>>* sumSquares, const std::function<void(double)>& tell);
+
+/// The key frame of a group, as EncodeFieldGroup encodes it, from its values alone.
+/// @param field of which the last step counts
+KeyFrame EncodeKeyFrame(const FieldGroup& field, ThreadPool& pool);
 
 } // namespace banyan
 

@@ -136,8 +136,19 @@ std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
   const ArrayIndex& array = this->Series.Index.Arrays[static_cast<std::size_t>(field.Array)];
   auto open = std::make_shared<OpenGroup>();
   open->Type = array.Type;
-  open->Field = std::make_unique<GroupField>(*segment, this->Series.Id, component,
-    this->Series.Index.Domain.Samples(), this->Series.Index.BrickCells, this->Series.Index.Levels);
+  const auto before = [this, key = FieldKey{ segment->FirstStep() - 1, field.Array,
+                               field.Component, 0 }]
+  {
+    const std::shared_ptr<OpenGroup> opened = this->Open(key);
+    return std::shared_ptr<GroupField>(opened, opened->Field.get());
+  };
+  InFile(segment->Path(), 0,
+    [&]
+    {
+      open->Field = std::make_unique<GroupField>(*segment, this->Series.Id, component,
+        this->Series.Index.Domain.Samples(), this->Series.Index.BrickCells, this->Series.Index.Levels,
+        before);
+    });
   const group::FieldHead& head = open->Field->Head();
   const Transform& map =
     array.Components[static_cast<std::size_t>(field.Component)].ValueTransform;
@@ -158,8 +169,9 @@ std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
   {
     bytes += kept->second->MemoryBytes();
     ++count;
-    // Of each component the segment at hand and one more; others as the budget allows.
-    const bool keep = count <= 2 * std::size_t{ this->Series.Components } ||
+    // Of each component the segment at hand, the one before it, and one more; others as the budget
+    // allows.
+    const bool keep = count <= 3 * std::size_t{ this->Series.Components } ||
                       (count <= KeptTables * std::size_t{ this->Series.Components } &&
                         bytes <= std::min(KeptTableBytes, LatticeCache::Process().BudgetBytes() / 2));
     kept = keep ? std::next(kept) : this->Opened.erase(kept);
@@ -244,16 +256,21 @@ BrickNode Reader2::MakeNode(OpenGroup& open, const FieldKey& field, std::int64_t
     return node;
   }
   const int changed = step - static_cast<int>(entry.Age);
+  const int last = group.Segment().Steps() - 1;
+  // By its content where bricks of other segments may be the same.
+  std::uint64_t shared = changed == 0 ? entryAt(0).Content : 0;
+  if (shared == 0 && last - static_cast<int>(entryAt(last).Age) == changed)
+  {
+    shared = entryAt(last).Content;
+  }
   const std::uint64_t seed[] = { std::uint64_t(field.Level), std::uint64_t(brick),
     std::uint64_t(changed), this->Series.ComponentOf(field), group.Segment().HeaderHash().Low,
     group.Segment().HeaderHash().High };
-  // Bricks that change at once have no content, but are as good as new in each segment.
-  const std::uint64_t hashed = changed == 0 ? entryAt(0).Content : 0;
-  const std::uint64_t content[] = { std::uint64_t(open.Type), open.Meaning, hashed,
+  const std::uint64_t content[] = { std::uint64_t(open.Type), open.Meaning, shared,
     BitCast<std::uint64_t>(node.Range.Low), BitCast<std::uint64_t>(node.Range.High),
     std::uint64_t(layout.SamplesOf(brick).Size().x), std::uint64_t(layout.SamplesOf(brick).Size().y),
     std::uint64_t(layout.SamplesOf(brick).Size().z) };
-  const Hash128 hash = hashed != 0 ? HashOf(content, sizeof(content)) : HashOf(seed, sizeof(seed));
+  const Hash128 hash = shared != 0 ? HashOf(content, sizeof(content)) : HashOf(seed, sizeof(seed));
   node.Identity = { hash.Low, hash.High };
   const PlaneRegion region = this->RegionOf(open, field, brick);
   if (region.Stride != 1)

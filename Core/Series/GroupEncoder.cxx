@@ -3,7 +3,7 @@
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Series/ComponentRange.h"
-#include "Series/FieldGroupEncoder.h"
+#include "Series/FieldLattice.h"
 #include "Series/FillValues.h"
 #include "Series/GroupWriter.h"
 
@@ -97,12 +97,148 @@ void Measure(const EncodedField& field, ComponentIndex& component, EncodeStatist
   statistics.ChainMost = std::max<std::int64_t>(statistics.ChainMost, field.ChainMost);
 }
 
+bool IsPromised(const ComponentIndex& component)
+{
+  return !component.PromisedRange.Empty();
+}
+
+bool GoesBeyond(const ComponentIndex& component)
+{
+  return component.RangeFrom != RangeRule::Source::Data && !component.ClampOutside;
+}
+
+/// A component over some steps, with the values that are encoded.
+struct FieldOfPlan
+{
+  FieldGroup Field;
+  ClampedSteps Clamped;
+};
+
+FieldOfPlan MakeField(const SeriesIndex& plan, const EncodeOptions& options, std::size_t array,
+  std::size_t component, const std::vector<std::vector<ArrayValues>>& steps, ThreadPool& pool)
+{
+  const ArrayIndex& of = plan.Arrays[array];
+  const ComponentIndex& index = of.Components[component];
+  const std::int64_t tuples = plan.Domain.Extent.Count();
+  FieldOfPlan made;
+  FieldGroup& field = made.Field;
+  field.Type = of.Type;
+  for (const std::vector<ArrayValues>& step : steps)
+  {
+    field.Steps.push_back(
+      static_cast<const char*>(step[array].Values) + component * SizeOf(of.Type));
+  }
+  field.Components = static_cast<int>(of.Components.size());
+  field.Component = static_cast<int>(component);
+  field.Samples = plan.Domain.Samples();
+  field.BrickCells = plan.BrickCells;
+  field.Levels = plan.Levels;
+  field.Map = index.ValueTransform;
+  field.Bound = index.ErrorBoundAbsolute;
+  field.Profile = options.Profile;
+  field.CompressionLevel = options.CompressionLevel;
+  field.FillValues = index.FillValues;
+  field.Expected = IsPromised(index) ? index.PromisedRange : RangeOfGroup(field, tuples, pool);
+  field.Beyond = GoesBeyond(index);
+  if (!index.Opacity.empty())
+  {
+    field.Opacity.emplace(index.Opacity);
+  }
+  if (index.ClampOutside)
+  {
+    made.Clamped = Clamp(index, tuples, pool, field);
+  }
+  return made;
+}
+
+/// Whether the groups of a component all have one lattice.
+bool HasOneLattice(ScalarType type, const ComponentIndex& component)
+{
+  group::FieldHead head;
+  if (IsPromised(component))
+  {
+    ChooseLattice(type, component.ValueTransform, component.ErrorBoundAbsolute,
+      component.PromisedRange, GoesBeyond(component), head);
+  }
+  return IsPromised(component) && !head.Exact;
+}
+
+/// What the steps before the groups decode to, one component after the other.
+class StepBeforeGroup
+{
+public:
+  /// @param last of the group before, or null
+  StepBeforeGroup(const SeriesIndex& plan, const EncodeOptions& options, int group,
+    const std::vector<ArrayValues>& values, LastStep* last, ThreadPool& pool)
+    : Plan(plan)
+    , Options(options)
+    , First(group == 0)
+    , Values(values)
+    , Pool(pool)
+  {
+    if (last != nullptr && last->Group >= 0 && last->Group == group - 1)
+    {
+      this->Known = std::move(last->Fields);
+    }
+    if (last != nullptr)
+    {
+      *last = {};
+    }
+  }
+
+  /// Null when the group does not refer to it; until the next call.
+  /// @param number of the component among those of all arrays
+  const KeyFrame* Of(std::size_t array, std::size_t component, std::size_t number)
+  {
+    const ArrayIndex& of = this->Plan.Arrays[array];
+    if (this->First || !HasOneLattice(of.Type, of.Components[component]))
+    {
+      return nullptr;
+    }
+    if (!this->Known.empty())
+    {
+      this->Frame = std::move(this->Known[number]);
+      return &this->Frame;
+    }
+    if (this->Values.empty())
+    {
+      throw Error("A group of steps cannot be encoded without the step before it");
+    }
+    const FieldOfPlan made =
+      MakeField(this->Plan, this->Options, array, component, { this->Values }, this->Pool);
+    this->Frame = EncodeKeyFrame(made.Field, this->Pool);
+    return &this->Frame;
+  }
+
+private:
+  const SeriesIndex& Plan;
+  const EncodeOptions& Options;
+  bool First;
+  const std::vector<ArrayValues>& Values;
+  ThreadPool& Pool;
+  std::vector<KeyFrame> Known;
+  KeyFrame Frame;
+};
+
 } // namespace
+
+bool MayReferBefore(const SeriesIndex& plan)
+{
+  bool may = false;
+  for (const ArrayIndex& array : plan.Arrays)
+  {
+    for (const ComponentIndex& component : array.Components)
+    {
+      may = may || HasOneLattice(array.Type, component);
+    }
+  }
+  return may && plan.KeyframeInterval > 1;
+}
 
 EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
   SegmentFolder& folder, int number, const std::vector<double>& times,
-  const std::vector<std::vector<ArrayValues>>& steps, ThreadPool& pool,
-  const std::function<bool(double)>& tell)
+  const std::vector<std::vector<ArrayValues>>& steps, const std::vector<ArrayValues>& before,
+  LastStep* last, ThreadPool& pool, const std::function<bool(double)>& tell)
 {
   EncodedGroup group;
   group.Times = times;
@@ -112,6 +248,7 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
   {
     components += array.Components.size();
   }
+  StepBeforeGroup stepBefore(plan, options, number, before, last, pool);
   std::vector<EncodedField> fields;
   for (std::size_t a = 0; a < plan.Arrays.size(); ++a)
   {
@@ -125,49 +262,28 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
     group.Measured.emplace_back(array.Components.size());
     for (std::size_t c = 0; c < array.Components.size(); ++c)
     {
-      const ComponentIndex& component = array.Components[c];
-      FieldGroup field;
-      field.Type = array.Type;
-      for (const std::vector<ArrayValues>& step : steps)
+      const double done = static_cast<double>(fields.size());
+      const auto tellSteps = [&](double more)
       {
-        field.Steps.push_back(
-          static_cast<const char*>(step[a].Values) + c * SizeOf(array.Type));
-      }
-      field.Components = static_cast<int>(array.Components.size());
-      field.Component = static_cast<int>(c);
-      field.Samples = plan.Domain.Samples();
-      field.BrickCells = plan.BrickCells;
-      field.Levels = plan.Levels;
-      field.Map = component.ValueTransform;
-      field.Bound = component.ErrorBoundAbsolute;
-      field.Profile = options.Profile;
-      field.CompressionLevel = options.CompressionLevel;
-      field.FillValues = component.FillValues;
-      field.Expected = component.PromisedRange.Empty() ? RangeOfGroup(field, tuples, pool)
-                                                       : component.PromisedRange;
-      field.Beyond =
-        component.RangeFrom != RangeRule::Source::Data && !component.ClampOutside;
-      if (!component.Opacity.empty())
-      {
-        field.Opacity.emplace(component.Opacity);
-      }
-      ClampedSteps clamped;
-      if (component.ClampOutside)
-      {
-        clamped = Clamp(component, tuples, pool, field);
-      }
-      const double before = static_cast<double>(fields.size());
-      fields.push_back(EncodeFieldGroup(field, pool, vectors ? &squares : nullptr,
-        [&](double done)
+        const double share = (done + more / double(steps.size())) / double(components);
+        if (tell && !tell(std::min(share, 0.999999)))
         {
-          const double share = (before + done / double(steps.size())) / double(components);
-          if (tell && !tell(std::min(share, 0.999999)))
-          {
-            throw Error("Encoding was interrupted");
-          }
-        }));
+          throw Error("Encoding was interrupted");
+        }
+      };
+      FieldOfPlan made = MakeField(plan, options, a, c, steps, pool);
+      if (steps.size() > 1)
+      {
+        tellSteps(0);
+        made.Field.Before = stepBefore.Of(a, c, fields.size());
+      }
+      fields.push_back(EncodeFieldGroup(made.Field, pool, vectors ? &squares : nullptr, tellSteps));
+      if (last == nullptr || !HasOneLattice(array.Type, array.Components[c]))
+      {
+        fields.back().Last = {};
+      }
       Measure(fields.back(), group.Measured[a][c], group.Statistics);
-      group.Measured[a][c].ClampedCount = clamped.Count;
+      group.Measured[a][c].ClampedCount = made.Clamped.Count;
       group.BytesIn += static_cast<std::uint64_t>(tuples) * SizeOf(array.Type) * steps.size();
     }
     group.Magnitudes.emplace_back();
@@ -196,6 +312,14 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
   group.Segment = writer.Finish(
     heads, shapes, number * plan.KeyframeInterval, static_cast<int>(steps.size()));
   group.Statistics.TableBytes = group.Segment.Bytes - group.Statistics.PayloadBytes;
+  if (last != nullptr)
+  {
+    last->Group = number;
+    for (EncodedField& field : fields)
+    {
+      last->Fields.push_back(std::move(field.Last));
+    }
+  }
   return group;
 }
 

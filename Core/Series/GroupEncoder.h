@@ -1,6 +1,7 @@
 #ifndef banyan_Series_GroupEncoder_h
 #define banyan_Series_GroupEncoder_h
 
+#include "Series/FieldGroupEncoder.h"
 #include "Series/SegmentFolder.h"
 #include "Series/SeriesEncoder.h"
 
@@ -25,17 +26,32 @@ struct EncodedGroup
   std::uint64_t BytesIn = 0;
 };
 
-/// Encodes a group of consecutive steps into its segment. Groups do not depend on each other: they
-/// may be encoded in any order, by any process that has the same plan, to the same bytes.
+/// What the last step of a group decodes to, as the group after it needs it.
+struct LastStep
+{
+  int Group = -1; ///< -1: there is none
+  std::vector<KeyFrame> Fields; ///< by component of all arrays
+};
+
+/// Whether groups of a series may refer to the last step of the group before: where the plan fixes
+/// the lattice of some component.
+bool MayReferBefore(const SeriesIndex& plan);
+
+/// Encodes a group of consecutive steps into its segment. Groups may be encoded in any order, by any
+/// process that has the same plan, to the same bytes: all that a group needs of the one before is
+/// what its last step decodes to, which follows from the values of that step alone.
 /// @param plan the index of the series, with ranges and bounds (see PlanSeries)
 /// @param number of the group in the series
 /// @param steps values by step and array, as SeriesEncoder::AddStep has them
+/// @param before values by array of the step before the first. May be empty for the first group of
+/// the series, where MayReferBefore is false, and where `last` is of the group before
+/// @param last if not null, replaced by that of this group
 /// @param tell called with a value in [0, 1); may return false to interrupt
 /// Throws Error; the segment is then not there.
 EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
   SegmentFolder& folder, int number, const std::vector<double>& times,
-  const std::vector<std::vector<ArrayValues>>& steps, ThreadPool& pool,
-  const std::function<bool(double)>& tell);
+  const std::vector<std::vector<ArrayValues>>& steps, const std::vector<ArrayValues>& before,
+  LastStep* last, ThreadPool& pool, const std::function<bool(double)>& tell);
 
 /// Adds a group to the index; groups in order.
 void AddGroup(const EncodedGroup& group, SeriesIndex& index);

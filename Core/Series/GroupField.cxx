@@ -4,6 +4,7 @@
 #include "Codec/BlockModes.h"
 #include "Codec/GroupOrder.h"
 #include "Codec/SymbolWriter.h"
+#include "Series/FieldReader.h"
 #include "Series/GroupReader.h"
 
 #include <algorithm>
@@ -26,15 +27,21 @@ glm::ivec3 NeighbourOf(const glm::ivec3& block, int bits)
 } // namespace
 
 GroupField::GroupField(GroupReader& segment, std::uint64_t series, std::uint32_t component,
-  const glm::ivec3& samples, int brickCells, int levels)
+  const glm::ivec3& samples, int brickCells, int levels,
+  std::function<std::shared_ptr<GroupField>()> before)
   : File(segment)
   , Series(series)
   , Component(component)
   , BrickCells(brickCells)
+  , Before(std::move(before))
   , StepTables(static_cast<std::size_t>(segment.Steps()))
 {
   const Bytes head = segment.Section(segment.HeadSection(component));
   this->FieldHead = group::UnpackHead(head.data(), head.size());
+  if (this->FieldHead.Open && segment.FirstStep() == 0)
+  {
+    throw Error("The first segment of a series refers to one before it");
+  }
   this->Shape = group::ShapeOf(samples, this->FieldHead.Axes, brickCells, levels);
   for (int set = 0; set < 2; ++set)
   {
@@ -55,7 +62,7 @@ const group::StepTable& GroupField::Load(int step)
   std::unique_ptr<group::StepTable>& table = this->StepTables[static_cast<std::size_t>(step)];
   if (!table)
   {
-    const int reference = ReferencesOfStep(step, this->File.Steps()).B;
+    const int reference = ReferencesOfStep(step, this->File.Steps(), this->FieldHead.Open).B;
     const group::TableReference from{ reference,
       reference < 0 ? nullptr : &this->Load(reference) };
     const Bytes bytes = this->File.Section(this->File.StepSection(step, this->Component));
@@ -94,6 +101,54 @@ bool GroupField::NeedsReferences(int step, int plane, const glm::ivec3& block)
     }
   }
   return false;
+}
+
+StepReferences GroupField::ReferencesOf(int step) const
+{
+  const StepReferences references =
+    ReferencesOfStep(step, this->File.Steps(), this->FieldHead.Open);
+  if (!references.Any())
+  {
+    throw Error("A block of the key frame of a segment refers to another step");
+  }
+  return references;
+}
+
+/// Calls the body with the same component in the segment before.
+template <class Body>
+auto GroupField::InSegmentBefore(Body&& body)
+{
+  const std::shared_ptr<GroupField> before = this->Before();
+  if (!group::SameLattice(before->FieldHead, this->FieldHead))
+  {
+    throw Error("A segment refers to the one before it, which has another lattice");
+  }
+  this->BeforeFits = true;
+  return InFile(before->File.Path(), 0,
+    [&]
+    {
+      const auto result = body(*before);
+      this->BytesRead += before->TakeBytesRead();
+      return result;
+    });
+}
+
+/// The box of a step that another one refers to.
+LatticeCache::Box GroupField::ReferenceBox(int step, int plane, const glm::ivec3& block)
+{
+  if (step != StepBefore)
+  {
+    return this->Box(step, plane, block);
+  }
+  if (this->BeforeFits)
+  {
+    if (LatticeCache::Box found = LatticeCache::Process().Find(this->KeyOf(step, plane, block)))
+    {
+      return found;
+    }
+  }
+  return this->InSegmentBefore(
+    [&](GroupField& before) { return before.Box(before.File.Steps() - 1, plane, block); });
 }
 
 /// The samples of the next plane that a box is predicted from.
@@ -163,11 +218,7 @@ LatticeCache::Box GroupField::Decode(int step, int plane, const glm::ivec3& bloc
   if (std::all_of(code.Blocks, code.Blocks + 8,
         [](const BlockCode& each) { return each.Same || !each.Exists; }))
   {
-    const int before = ReferencesOfStep(step, this->File.Steps()).A;
-    if (before >= 0)
-    {
-      return this->Box(before, plane, block);
-    }
+    return this->ReferenceBox(this->ReferencesOf(step).A, plane, block);
   }
   LatticeCache::Box neighbours[8];
   for (const int bits : { 1, 2, 4 })
@@ -183,13 +234,9 @@ LatticeCache::Box GroupField::Decode(int step, int plane, const glm::ivec3& bloc
   LatticeCache::Box a, b;
   if (this->NeedsReferences(step, plane, block))
   {
-    const StepReferences references = ReferencesOfStep(step, this->File.Steps());
-    if (references.A < 0)
-    {
-      throw Error("A block of the first step of a segment refers to another step");
-    }
-    a = this->Box(references.A, plane, block);
-    b = references.B == references.A ? a : this->Box(references.B, plane, block);
+    const StepReferences references = this->ReferencesOf(step);
+    a = this->ReferenceBox(references.A, plane, block);
+    b = references.B == references.A ? a : this->ReferenceBox(references.B, plane, block);
     code.A = a->data();
     code.B = b->data();
   }
@@ -231,7 +278,7 @@ void GroupField::Verify(int step, int plane, const glm::ivec3& block)
 
 void GroupField::Verify(int step, int plane, const glm::ivec3& block, Visited& visited)
 {
-  if (!visited.insert({ step, plane, this->IndexOf(plane, block) }).second)
+  if (!visited.insert({ this->File.FirstStep() + step, plane, this->IndexOf(plane, block) }).second)
   {
     return;
   }
@@ -259,12 +306,19 @@ void GroupField::Verify(int step, int plane, const glm::ivec3& block, Visited& v
   }
   if (this->NeedsReferences(step, plane, block))
   {
-    const StepReferences references = ReferencesOfStep(step, this->File.Steps());
-    if (references.A >= 0)
+    const StepReferences references = this->ReferencesOf(step);
+    this->Verify(references.B, plane, block, visited);
+    if (references.A != StepBefore)
     {
       this->Verify(references.A, plane, block, visited);
-      this->Verify(references.B, plane, block, visited);
+      return;
     }
+    this->InSegmentBefore(
+      [&](GroupField& before)
+      {
+        before.Verify(before.File.Steps() - 1, plane, block, visited);
+        return true;
+      });
   }
 }
 

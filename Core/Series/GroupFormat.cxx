@@ -12,6 +12,9 @@ namespace banyan::group
 namespace
 {
 
+constexpr std::uint8_t HeadExact = 1;
+constexpr std::uint8_t HeadOpen = 2;
+
 void Append(Bytes& out, const Bytes& more)
 {
   out.insert(out.end(), more.begin(), more.end());
@@ -27,11 +30,18 @@ void AppendNumber(Bytes& out, T value)
 
 } // namespace
 
+bool SameLattice(const FieldHead& a, const FieldHead& b)
+{
+  return a.Axes == b.Axes && a.Exact == b.Exact && a.Origin == b.Origin && a.Step == b.Step &&
+         a.Bin == b.Bin && a.Least == b.Least && a.Greatest == b.Greatest;
+}
+
 Bytes PackHead(const FieldHead& head)
 {
   Bytes out;
   out.insert(out.end(), head.Axes.begin(), head.Axes.end());
-  out.push_back(head.Exact ? 1 : 0);
+  out.push_back(
+    static_cast<std::uint8_t>((head.Exact ? HeadExact : 0) | (head.Open ? HeadOpen : 0)));
   AppendNumber(out, head.Origin);
   AppendNumber(out, head.Step);
   AppendNumber(out, head.Bin);
@@ -57,13 +67,14 @@ FieldHead UnpackHead(const std::uint8_t* data, std::size_t bytes)
     seen |= axis < 3 ? 1 << axis : 0;
   }
   const std::uint8_t flags = in.Byte();
-  head.Exact = flags == 1;
+  head.Exact = flags == HeadExact;
+  head.Open = flags == HeadOpen;
   head.Origin = in.Number<double>();
   head.Step = in.Number<double>();
   head.Bin = in.Number<std::int32_t>();
   head.Least = in.Number<std::int32_t>();
   head.Greatest = in.Number<std::int32_t>();
-  if (seen != 7 || flags > 1 || !std::isfinite(head.Origin) || !std::isfinite(head.Step) ||
+  if (seen != 7 || flags > HeadOpen || !std::isfinite(head.Origin) || !std::isfinite(head.Step) ||
       !(head.Step > 0) || head.Bin < 1 || head.Bin % 2 == 0 || head.Least > head.Greatest)
   {
     throw Error("The head of a field of the segment is not valid");

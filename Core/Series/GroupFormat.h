@@ -33,6 +33,7 @@ struct FieldHead
   /// Real axis (0 to 2) of each axis of the codec; predictions run along the last one last.
   std::array<std::uint8_t, 3> Axes{ 0, 1, 2 };
   bool Exact = false; ///< no lattice: every sample is an exception
+  bool Open = false;  ///< refers to the last step of the segment before, on the same lattice
   double Origin = 0;
   double Step = 1;
   std::int32_t Bin = 31;
@@ -40,6 +41,9 @@ struct FieldHead
   /// Of the finest plane, and of all coarser ones.
   std::vector<tans::Frequencies> Frequencies[2];
 };
+
+/// Whether lattice numbers of both mean the same, in the same order of axes.
+bool SameLattice(const FieldHead& a, const FieldHead& b);
 
 Bytes PackHead(const FieldHead& head);
 /// Throws Error when a field is out of range.
@@ -74,7 +78,8 @@ struct NodeEntry
   std::uint32_t Age = 0;
   std::int32_t Low = 0, High = 0; ///< extremes, in lattice numbers
   double LowValue = 0, HighValue = 0;
-  /// Of the first step only: hash of the decoded samples, ContentBits of it. 0 where it is not kept.
+  /// Hash of the decoded samples, ContentBits of it, by which bricks of different segments are known
+  /// to be the same; only some bricks of the first and of the last step have it. 0: none.
   std::uint64_t Content = 0;
 };
 
@@ -113,8 +118,8 @@ struct TableReference
 };
 
 /// @param step of the segment, whose first is 0
-/// Of nodes' contents only those are kept that UnpackStep gives back: in the first step, of bricks
-/// that are not uniform and the same as in the reference, or of all when there is none.
+/// Of nodes' contents only those are kept that are in the first step or in one without reference, and
+/// not of uniform bricks.
 Bytes PackStep(
   const StepTable& table, const TableShape& shape, int step, const TableReference& reference);
 

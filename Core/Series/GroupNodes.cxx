@@ -100,8 +100,7 @@ public:
     std::vector<std::int32_t> numbers, before;
     for (std::size_t t = 0; t < this->Steps.size(); ++t)
     {
-      group::NodeEntry& node =
-        this->Steps[t].Levels[static_cast<std::size_t>(this->Level)][static_cast<std::size_t>(brick)];
+      group::NodeEntry& node = this->NodeOf(t, brick);
       std::swap(numbers, before);
       this->Gather((*this->Decoded[t])[plane], region, numbers);
       const bool exceptional = this->HasExceptions(t, region);
@@ -116,21 +115,55 @@ public:
         node.High = *high;
         node.Uniform = node.Low == node.High;
       }
-      if (t == 0)
+      if (t > 0 && numbers == before && this->SameExceptions(t, region))
       {
-        node.Content = this->ContentOf(region, numbers);
+        node.Age = this->NodeOf(t - 1, brick).Age + 1;
       }
-      else if (numbers == before && this->SameExceptions(t, region))
+    }
+    for (const std::size_t t : { std::size_t{ 0 }, this->Steps.size() - 1 })
+    {
+      if (!this->NodeOf(t, brick).Uniform && this->NeedsContent(t, brick, region))
       {
-        node.Age = this->Steps[t - 1]
-                     .Levels[static_cast<std::size_t>(this->Level)][static_cast<std::size_t>(brick)]
-                     .Age +
-                   1;
+        this->Gather((*this->Decoded[t])[plane], region, numbers);
+        this->NodeOf(t, brick).Content = this->ContentOf(t, region, numbers);
       }
     }
   }
 
 private:
+  group::NodeEntry& NodeOf(std::size_t step, std::int64_t brick) const
+  {
+    return this->Steps[step]
+      .Levels[static_cast<std::size_t>(this->Level)][static_cast<std::size_t>(brick)];
+  }
+
+  /// Whether a brick may well be the same as one of another segment: in the first step as the key
+  /// frame before, in the last step as the first one after.
+  bool NeedsContent(std::size_t step, std::int64_t brick, const PlaneRegion& region) const
+  {
+    const std::size_t last = this->Steps.size() - 1;
+    if (step == 0 && this->Head.Open)
+    {
+      const std::size_t plane = static_cast<std::size_t>(region.Plane);
+      std::vector<std::int32_t> numbers, before;
+      this->Gather((*this->Decoded[0])[plane], region, numbers);
+      this->Gather(this->Field.Before->Planes[plane], region, before);
+      return numbers == before;
+    }
+    if (step == 0)
+    {
+      return last == 0 || this->NodeOf(1, brick).Age > 0;
+    }
+    const std::uint32_t age = this->NodeOf(last, brick).Age;
+    const bool known = this->NodeOf(0, brick).Content != 0;
+    if (age == last && known)
+    {
+      return false; // it has that content
+    }
+    // What moved up to the key frame will move on: nothing is the same as this.
+    return age > 0 || (last == 1 ? known : this->NodeOf(last - 1, brick).Age > 0);
+  }
+
   void Gather(const PlaneNumbers& plane, const PlaneRegion& region,
     std::vector<std::int32_t>& numbers) const
   {
@@ -197,21 +230,22 @@ private:
     return same;
   }
 
-  std::uint64_t ContentOf(
-    const PlaneRegion& region, const std::vector<std::int32_t>& numbers) const
+  std::uint64_t ContentOf(std::size_t step, const PlaneRegion& region,
+    const std::vector<std::int32_t>& numbers) const
   {
     const double lattice[] = { this->Head.Origin, this->Head.Step };
     Bytes all(sizeof(lattice) + numbers.size() * sizeof(std::int32_t));
     std::memcpy(all.data(), lattice, sizeof(lattice));
     std::memcpy(
       all.data() + sizeof(lattice), numbers.data(), numbers.size() * sizeof(std::int32_t));
-    this->ForEachBlock(0, region,
+    this->ForEachBlock(step, region,
       [&](std::size_t block, const glm::ivec3&)
       {
-        const Bytes& exceptions = this->ExceptionsOf(0, region, block);
+        const Bytes& exceptions = this->ExceptionsOf(step, region, block);
         all.insert(all.end(), exceptions.begin(), exceptions.end());
       });
-    return ShortHashOf(all.data(), all.size());
+    constexpr std::uint64_t mask = (std::uint64_t{ 1 } << group::ContentBits) - 1;
+    return ShortHashOf(all.data(), all.size()) & mask;
   }
 
   /// The node of a brick with exceptions, from its values.

@@ -1,6 +1,7 @@
 #ifndef banyan_Series_GroupReader_h
 #define banyan_Series_GroupReader_h
 
+#include "Codec/GroupOrder.h"
 #include "Codec/Tans.h"
 #include "Series/GroupFormat.h"
 #include "Series/Hash.h"
@@ -9,6 +10,7 @@
 #include "Series/SegmentFormat.h"
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -66,8 +68,11 @@ private:
 class GroupField
 {
 public:
+  /// @param before gives the same component in the segment before; called without any lock, when a
+  /// box is predicted from there. Must not be kept: each would keep the one before it.
   GroupField(GroupReader& segment, std::uint64_t series, std::uint32_t component,
-    const glm::ivec3& samples, int brickCells, int levels);
+    const glm::ivec3& samples, int brickCells, int levels,
+    std::function<std::shared_ptr<GroupField>()> before);
 
   const group::FieldHead& Head() const { return this->FieldHead; }
   GroupReader& Segment() const { return this->File; }
@@ -93,7 +98,7 @@ public:
   std::uint64_t TakeBytesRead() { return this->BytesRead.exchange(0); }
 
 private:
-  using Visited = std::set<std::tuple<int, int, std::size_t>>;
+  using Visited = std::set<std::tuple<int, int, std::size_t>>; ///< steps of the series
 
   /// The same under the lock. Loads the table's references as well.
   const group::StepTable& Load(int step);
@@ -101,6 +106,10 @@ private:
   LatticeCache::Key KeyOf(int step, int plane, const glm::ivec3& block) const;
   void Verify(int step, int plane, const glm::ivec3& block, Visited& visited);
   bool NeedsReferences(int step, int plane, const glm::ivec3& block);
+  StepReferences ReferencesOf(int step) const;
+  template <class Body>
+  auto InSegmentBefore(Body&& body);
+  LatticeCache::Box ReferenceBox(int step, int plane, const glm::ivec3& block);
   void Coarse(int step, int plane, const glm::ivec3& block, std::vector<std::int32_t>& numbers);
   LatticeCache::Box Decode(int step, int plane, const glm::ivec3& block);
 
@@ -108,6 +117,8 @@ private:
   std::uint64_t Series;
   std::uint32_t Component;
   int BrickCells;
+  std::function<std::shared_ptr<GroupField>()> Before;
+  std::atomic<bool> BeforeFits{ false }; ///< it was seen to have the same lattice
   group::FieldHead FieldHead;
   group::TableShape Shape;
   std::vector<std::uint32_t> Tables[2];

@@ -159,7 +159,7 @@ SegmentIndex GroupWriter::Finish(
     const std::size_t component = i % heads.size();
     const int step = static_cast<int>(i / heads.size());
     group::TableReference reference;
-    reference.Step = ReferencesOfStep(step, steps).B;
+    reference.Step = ReferencesOfStep(step, steps, heads[component].Open).B;
     if (reference.Step >= 0)
     {
       reference.Table =

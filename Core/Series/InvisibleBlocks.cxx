@@ -10,7 +10,7 @@ namespace banyan
 namespace
 {
 
-/// Values per step that the choice is made from: a median does not need more.
+/// Values that the choice is made from: a median does not need more.
 constexpr std::int64_t ValuesToSee = 8192;
 
 } // namespace
@@ -44,16 +44,14 @@ void InvisibleBlocks<T>::CollectInto(std::vector<std::vector<double>>& values) c
   const std::int64_t count =
     std::int64_t{ this->Samples.x } * this->Samples.y * this->Samples.z;
   const std::int64_t gap = count / ValuesToSee + 1;
-  for (const void* step : this->Field.Steps)
+  const T* keyFrame = static_cast<const T*>(this->Field.Steps.back());
+  for (std::int64_t i = 0; i < count; i += gap)
   {
-    for (std::int64_t i = 0; i < count; i += gap)
+    const T value = keyFrame[i * this->Field.Components];
+    const int interval = this->Intervals.IntervalOf(static_cast<double>(value));
+    if (interval >= 0 && std::isfinite(static_cast<double>(value)) && !this->Fills.Holds(value))
     {
-      const T value = static_cast<const T*>(step)[i * this->Field.Components];
-      const int interval = this->Intervals.IntervalOf(static_cast<double>(value));
-      if (interval >= 0 && std::isfinite(static_cast<double>(value)) && !this->Fills.Holds(value))
-      {
-        values[static_cast<std::size_t>(interval)].push_back(static_cast<double>(value));
-      }
+      values[static_cast<std::size_t>(interval)].push_back(static_cast<double>(value));
     }
   }
 }
@@ -63,12 +61,6 @@ typename InvisibleBlocks<T>::Choice InvisibleBlocks<T>::Choose(const ValueRange&
   std::vector<double>& values, const LatticeDecoder<T>& decoder) const
 {
   Choice choice;
-  if (values.empty())
-  {
-    return choice;
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
   // What a block decodes to may be the bound away from what it became.
   const double low = this->Field.Map.Forward(interval.Low) + this->Field.Bound;
   const double high = this->Field.Map.Forward(interval.High) - this->Field.Bound;
@@ -76,7 +68,14 @@ typename InvisibleBlocks<T>::Choice InvisibleBlocks<T>::Choose(const ValueRange&
   {
     return choice;
   }
-  const double y = std::min(std::max(this->Field.Map.Forward(*middle), low), high);
+  // Where the key frame has no value there, other steps still may: the end next to the origin.
+  double y = std::min(std::max(this->Head.Origin, low), high);
+  if (!values.empty())
+  {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    y = std::min(std::max(this->Field.Map.Forward(*middle), low), high);
+  }
   const double number = std::round((y - this->Head.Origin) / this->Head.Step);
   choice.Number = static_cast<std::int32_t>(std::min(
     std::max(number, double(this->Head.Least)), double(this->Head.Greatest)));

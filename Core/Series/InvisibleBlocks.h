@@ -21,9 +21,10 @@ template <class T>
 class InvisibleBlocks
 {
 public:
-  /// Looks at a part of the group's values to choose one number per interval, the same for all
-  /// blocks and steps, so that they cost nothing: that of the median of the values in the interval,
-  /// at least the bound away from its ends. Intervals too narrow for that are left alone.
+  /// Chooses one number per interval, the same for all blocks and steps of the group, so that they
+  /// cost nothing: that of the median of the values in the interval, at least the bound away from
+  /// its ends. Intervals too narrow for that are left alone. Looks at a part of the key frame only:
+  /// what a key frame decodes to must not depend on other steps.
   InvisibleBlocks(const FieldGroup& field, const group::FieldHead& head,
     const LatticeDecoder<T>& decoder, const glm::ivec3& samples, const glm::i64vec3& stride);
 

@@ -112,6 +112,9 @@ std::array<std::uint8_t, 3> SmoothestLast(const FieldGroup& field, const void* s
     gap[a] = std::max(1, field.Samples[a] / 24);
   }
   double roughness[3] = {};
+  // No outlier decides alone.
+  const double most =
+    field.Expected.Empty() ? std::numeric_limits<double>::max() : field.Expected.Width();
   for (int a = 0; a < 3; ++a)
   {
     if (field.Samples[a] < 3)
@@ -129,14 +132,22 @@ std::array<std::uint8_t, 3> SmoothestLast(const FieldGroup& field, const void* s
           const double bend = static_cast<double>(at[stride[a]]) +
                               static_cast<double>(at[-stride[a]]) -
                               2.0 * static_cast<double>(at[0]);
-          roughness[a] += std::isfinite(bend) ? std::abs(bend) : 0.0;
+          roughness[a] += std::isfinite(bend) ? std::min(std::abs(bend), most) : 0.0;
         }
       }
     }
   }
   std::array<std::uint8_t, 3> axes{ 0, 1, 2 };
-  std::stable_sort(axes.begin(), axes.end(),
-    [&roughness](std::uint8_t a, std::uint8_t b) { return roughness[a] > roughness[b]; });
+  // Only what is clearly smoother goes behind, so that groups that are alike have the same order and
+  // may refer to each other.
+  constexpr double clearly = 1.125;
+  for (const std::size_t a : { 0, 1, 0 })
+  {
+    if (roughness[axes[a]] * clearly < roughness[axes[a + 1]])
+    {
+      std::swap(axes[a], axes[a + 1]);
+    }
+  }
   return axes;
 }
 
@@ -146,7 +157,7 @@ LatticeTarget<T>::LatticeTarget(
   : Field(field)
   , Head(head)
   , Pool(pool)
-  , AxisOrder(SmoothestLast<T>(field, field.Steps[0]))
+  , AxisOrder(SmoothestLast<T>(field, field.Steps.back()))
   , Decoder(field.Map, head.Origin, head.Step, head.Least, head.Greatest)
   , Fills(field.FillValues)
 {

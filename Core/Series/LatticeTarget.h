@@ -16,7 +16,7 @@ namespace banyan
 {
 
 /// The axes of a field in the order that predicts best: predictions run along the last axis last,
-/// where half of all samples are, so that is the smoothest one.
+/// where half of all samples are, so that is the smoothest one. Axes that hardly differ stay in order.
 /// @param step values of one step, as FieldGroup has them
 template <class T>
 std::array<std::uint8_t, 3> SmoothestLast(const FieldGroup& field, const void* step);
@@ -26,6 +26,7 @@ template <class T>
 class LatticeTarget
 {
 public:
+  /// Axes are those of the key frame, the last step.
   LatticeTarget(const FieldGroup& field, const group::FieldHead& head, ThreadPool& pool);
 
   const std::array<std::uint8_t, 3>& Axes() const { return this->AxisOrder; }

@@ -31,6 +31,7 @@ struct SeriesEncoder::Internals
   std::unique_ptr<SegmentFolder> Folder;
   std::vector<double> Times;                                  ///< of the group under way
   std::vector<std::vector<std::vector<std::uint8_t>>> Values; ///< its steps and arrays
+  LastStep Last; ///< of the group before
   std::function<bool(double)> Progress;
 };
 
@@ -103,7 +104,8 @@ void SeriesEncoder::Internals::EncodeKept()
   }
   const int number = static_cast<int>(this->Assembly.Index().Segments.size());
   this->Assembly.Add(number, EncodeGroup(this->Assembly.Index(), this->Options, *this->Folder,
-                               number, this->Times, steps, this->Pool, this->Progress));
+                               number, this->Times, steps, {}, &this->Last, this->Pool,
+                               this->Progress));
   this->Times.clear();
   this->Values.clear();
 }

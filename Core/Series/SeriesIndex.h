@@ -88,7 +88,7 @@ struct EncodeStatistics
 {
   std::int64_t Bricks = 0;
   std::int64_t MacroVoxelBricks = 0; ///< fused: one value everywhere
-  std::int64_t UnchangedBricks = 0;  ///< same identity as at the step before
+  std::int64_t UnchangedBricks = 0;  ///< as at the step before, of the same segment
   std::int64_t MergedBricks = 0;     ///< payload shared with an earlier brick of the segment
   std::int64_t RawBricks = 0;        ///< with samples that are kept beside the lattice
   std::uint64_t PayloadBytes = 0; ///< stored in segments

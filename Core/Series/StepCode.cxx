@@ -233,9 +233,21 @@ private:
     {
       this->CodeNode(level, index, reference, node);
     }
-    const bool kept =
-      this->Step == 0 && !node.Uniform && (derived || this->Reference.Table == nullptr);
-    node.Content = kept ? bits::Raw(this->Code, ContentBits, content) : 0;
+    node.Content = 0;
+    if (!node.Uniform && (this->Step == 0 || this->Reference.Table == nullptr))
+    {
+      this->CodeContent(derived || node.Age > 0, content, node);
+    }
+  }
+
+  /// @param rests whether the brick is the same as one step later, or earlier
+  void CodeContent(bool rests, std::uint64_t content, NodeEntry& node)
+  {
+    if (this->Code.Bit(this->HasContent[rests ? 1 : 0][this->LastContent ? 1 : 0], content != 0))
+    {
+      node.Content = bits::Raw(this->Code, ContentBits, content);
+    }
+    this->LastContent = node.Content != 0;
   }
 
   void CodeNode(std::size_t level, std::size_t index, const NodeEntry* reference, NodeEntry& node)
@@ -284,10 +296,12 @@ private:
   std::int32_t LastValue = 0;
   std::int32_t LastAge = 0;
   std::uint32_t LastFlags = 0;
+  bool LastContent = false;
 
   bits::Numbers TopNumbers, Values, ExceptionSizes, Ages;
   bits::Numbers Sizes[SizeClasses], Lows[4], Highs[4];
   bits::Model Follows, IsSame, HasPayload[3][4], IsPlain[4], HasExceptions[4];
+  bits::Model HasContent[2][2];
   bits::Reals RealExtremes;
   std::array<bits::Model, 16> Modes[2], NodeFlags[4];
 };

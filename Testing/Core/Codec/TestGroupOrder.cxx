@@ -12,33 +12,67 @@ namespace banyan::testing
 namespace
 {
 
-TEST(GroupOrder, ReferencesAreInsideAndEarlier)
+TEST(GroupOrder, ReferencesAreInsideOrTheStepBeforeAndEarlier)
 {
-  for (int steps = 1; steps <= 70; ++steps)
+  for (const bool open : { false, true })
   {
-    const std::vector<int> order = DyadicOrder(steps);
-    std::vector<int> sorted = order;
-    std::sort(sorted.begin(), sorted.end());
-    ASSERT_EQ(static_cast<int>(sorted.size()), steps);
-    std::vector<bool> done(static_cast<std::size_t>(steps), false);
-    for (int i = 0; i < steps; ++i)
+    for (int steps = 1; steps <= 70; ++steps)
     {
-      ASSERT_EQ(sorted[static_cast<std::size_t>(i)], i);
-      const int step = order[static_cast<std::size_t>(i)];
-      const StepReferences references = ReferencesOfStep(step, steps);
-      if (step == 0)
+      const std::vector<int> order = DyadicOrder(steps);
+      std::vector<int> sorted = order;
+      std::sort(sorted.begin(), sorted.end());
+      ASSERT_EQ(static_cast<int>(sorted.size()), steps);
+      ASSERT_EQ(order[0], steps - 1) << "the key frame comes first";
+      std::vector<bool> done(static_cast<std::size_t>(steps) + 1, false);
+      done[0] = open; // the step before
+      int before = 0;
+      for (int i = 0; i < steps; ++i)
       {
-        EXPECT_TRUE(references.A < 0 && references.B < 0);
+        ASSERT_EQ(sorted[static_cast<std::size_t>(i)], i);
+        const int step = order[static_cast<std::size_t>(i)];
+        const StepReferences references = ReferencesOfStep(step, steps, open);
+        EXPECT_EQ(references.Any(), step != steps - 1);
+        if (references.Any())
+        {
+          ASSERT_TRUE(references.A >= StepBefore && references.A < steps);
+          ASSERT_TRUE(references.B > step && references.B < steps);
+          EXPECT_TRUE(references.A < step || references.A == references.B);
+          EXPECT_TRUE(open ? references.A < step : references.A >= 0) << step << " of " << steps;
+          EXPECT_TRUE(done[static_cast<std::size_t>(references.A + 1)]) << step << " of " << steps;
+          EXPECT_TRUE(done[static_cast<std::size_t>(references.B + 1)]) << step << " of " << steps;
+          before += references.A == StepBefore ? 1 : 0;
+        }
+        done[static_cast<std::size_t>(step) + 1] = true;
       }
-      else
-      {
-        ASSERT_TRUE(references.A >= 0 && references.A < step);
-        ASSERT_TRUE(references.B >= 0 && references.B < steps && references.B != step);
-        EXPECT_TRUE(done[static_cast<std::size_t>(references.A)]) << step << " of " << steps;
-        EXPECT_TRUE(done[static_cast<std::size_t>(references.B)]) << step << " of " << steps;
-      }
-      done[static_cast<std::size_t>(step)] = true;
+      EXPECT_EQ(before > 0, open && steps > 1);
     }
+  }
+}
+
+/// As format.md lists them.
+TEST(GroupOrder, OfEightStepsIsTheOneOfTheFormat)
+{
+  EXPECT_EQ(DyadicOrder(8), (std::vector<int>{ 7, 3, 1, 5, 0, 2, 4, 6 }));
+  const int a[] = { -1, -1, 1, -1, 3, 3, 5 };
+  const int b[] = { 1, 3, 3, 7, 5, 7, 7 };
+  for (int step = 0; step < 7; ++step)
+  {
+    EXPECT_EQ(ReferencesOfStep(step, 8, true).A, a[step]) << step;
+    EXPECT_EQ(ReferencesOfStep(step, 8, true).B, b[step]) << step;
+    EXPECT_EQ(ReferencesOfStep(step, 8, false).A, a[step] < 0 ? b[step] : a[step]) << step;
+    EXPECT_EQ(ReferencesOfStep(step, 8, false).B, b[step]) << step;
+  }
+}
+
+TEST(GroupOrder, OfSixStepsHasReferencesOnBothSides)
+{
+  EXPECT_EQ(DyadicOrder(6), (std::vector<int>{ 5, 1, 3, 0, 2, 4 }));
+  const int a[] = { -1, -1, 1, 1, 3 };
+  const int b[] = { 1, 5, 3, 5, 5 };
+  for (int step = 0; step < 5; ++step)
+  {
+    EXPECT_EQ(ReferencesOfStep(step, 6, true).A, a[step]) << step;
+    EXPECT_EQ(ReferencesOfStep(step, 6, true).B, b[step]) << step;
   }
 }
 
@@ -51,15 +85,19 @@ TEST(GroupOrder, ChainsGrowWithTheLogarithm)
     {
       ++log;
     }
-    // The longest way from a step back to the first.
-    const std::function<int(int)> length = [&](int step)
+    for (const bool open : { false, true })
     {
-      const StepReferences references = ReferencesOfStep(step, steps);
-      return step == 0 ? 1 : 1 + std::max(length(references.A), length(references.B));
-    };
-    for (int step = 0; step < steps; ++step)
-    {
-      EXPECT_LE(length(step), log + 1) << step << " of " << steps;
+      // The longest way from a step back to a key frame.
+      const std::function<int(int)> length = [&](int step)
+      {
+        const StepReferences references =
+          step == StepBefore ? StepReferences() : ReferencesOfStep(step, steps, open);
+        return references.Any() ? 1 + std::max(length(references.A), length(references.B)) : 1;
+      };
+      for (int step = 0; step < steps; ++step)
+      {
+        EXPECT_LE(length(step), log + 1) << step << " of " << steps;
+      }
     }
   }
 }

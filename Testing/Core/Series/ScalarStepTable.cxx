@@ -371,8 +371,14 @@ private:
         }
       }
     }
-    const bool kept = this->Step == 0 && !node.Uniform && (same || !r);
-    node.Content = kept ? this->In.Raw(48) : 0;
+    node.Content = 0;
+    if ((this->Step == 0 || !r) && !node.Uniform)
+    {
+      const std::string rests = same || node.Age > 0 ? " at rest" : "";
+      const bool there = this->In.Bit("content" + rests + (this->LastHasContent ? " after" : ""));
+      node.Content = there ? this->In.Raw(48) : 0;
+      this->LastHasContent = node.Content != 0;
+    }
   }
 
   CodedBits In;
@@ -385,6 +391,7 @@ private:
   std::int32_t LastUniform = 0;
   std::int32_t LastAge = 0;
   std::uint64_t LastFlags = 0;
+  bool LastHasContent = false;
   std::map<std::string, double> LastReals;
 };
 

@@ -50,13 +50,22 @@ FieldHead SomeHead()
   return head;
 }
 
-TEST(GroupFormat, HeadsComeBack)
+class Heads : public ::testing::TestWithParam<int>
 {
-  const FieldHead head = SomeHead();
+};
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Heads, ::testing::Values(0, 1, 2));
+
+TEST_P(Heads, ComeBack)
+{
+  FieldHead head = SomeHead();
+  head.Exact = GetParam() == 1;
+  head.Open = GetParam() == 2;
   const Bytes packed = PackHead(head);
   const FieldHead back = group::UnpackHead(packed.data(), packed.size());
   EXPECT_EQ(back.Axes, head.Axes);
   EXPECT_EQ(back.Exact, head.Exact);
+  EXPECT_EQ(back.Open, head.Open);
   EXPECT_EQ(back.Origin, head.Origin);
   EXPECT_EQ(back.Step, head.Step);
   EXPECT_EQ(back.Bin, head.Bin);
@@ -84,7 +93,29 @@ TEST(GroupFormat, HeadsOutOfRangeAreRefused)
   refused([](FieldHead& head) { head.Bin = 30; });
   refused([](FieldHead& head) { head.Bin = -31; });
   refused([](FieldHead& head) { head.Least = head.Greatest + 1; });
+  refused([](FieldHead& head) { head.Exact = head.Open = true; });
   refused([](FieldHead& head) { head.Frequencies[1][5].Count[3] += 1; });
+}
+
+TEST(GroupFormat, LatticesDifferByAnyOfTheirNumbers)
+{
+  FieldHead other = SomeHead();
+  other.Open = true;
+  other.Frequencies[0].clear();
+  EXPECT_TRUE(group::SameLattice(SomeHead(), other));
+  const auto differs = [](const std::function<void(FieldHead&)>& change)
+  {
+    FieldHead head = SomeHead();
+    change(head);
+    EXPECT_FALSE(group::SameLattice(SomeHead(), head));
+  };
+  differs([](FieldHead& head) { head.Axes = { 0, 1, 2 }; });
+  differs([](FieldHead& head) { head.Exact = true; });
+  differs([](FieldHead& head) { head.Origin = 0; });
+  differs([](FieldHead& head) { head.Step *= 2; });
+  differs([](FieldHead& head) { head.Bin = 29; });
+  differs([](FieldHead& head) { --head.Least; });
+  differs([](FieldHead& head) { ++head.Greatest; });
 }
 
 /// All kinds of entries. Some bricks are the same as in the reference.
@@ -154,7 +185,8 @@ StepTable SomeTable(int step, const group::TableReference& reference = {})
         node.LowValue = node.Explicit ? (b % 2 == 0 ? -1.5e300 : -0.0) : 0;
         node.HighValue = node.Explicit ? 2.5 + (b % 3 == 0 ? 1e-9 * double(random()) : 0) : 0;
       }
-      const bool kept = step == 0 && !node.Uniform && (same || !reference.Table);
+      const bool kept =
+        (step == 0 || !reference.Table) && !node.Uniform && (same || random() % 2 == 0);
       node.Content = kept ? (std::uint64_t{ random() } << 32 | random()) >> 16 : 0;
     }
   }

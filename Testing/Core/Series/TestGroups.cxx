@@ -46,8 +46,16 @@ std::map<std::string, std::string> FilesOf(const std::string& path)
   return files;
 }
 
+enum class Kind
+{
+  Relative,
+  Absolute, ///< without ranges: no group refers to another
+  Clamped,
+  Hidden ///< by an opacity function
+};
+
 /// Vectors of floats with some NaN, and scalars of a short type, in two arrays.
-class Groups : public ::testing::TestWithParam<ErrorBoundMode>
+class Groups : public ::testing::TestWithParam<Kind>
 {
 protected:
   Groups()
@@ -64,11 +72,25 @@ protected:
         }).front());
     }
     this->Options.KeyframeInterval = Interval;
-    this->Options.Mode = GetParam();
-    this->Options.ErrorBound = GetParam() == ErrorBoundMode::Absolute ? 0.2 : 1.0 / 300.0;
+    const bool absolute = GetParam() == Kind::Absolute;
+    this->Options.Mode =
+      absolute ? ErrorBoundMode::Absolute : ErrorBoundMode::RelativeToSeriesRange;
+    this->Options.ErrorBound = absolute ? 0.2 : 1.0 / 300.0;
+    QuantizerOptions& quantizer = this->Options.Quantizer;
+    if (GetParam() == Kind::Clamped)
+    {
+      quantizer.Range.From = RangeRule::Source::Given;
+      quantizer.Range.Given = { -20.0, 40.0 };
+      quantizer.Range.ClampOutside = true;
+      quantizer.FillValues = { 20.0 };
+    }
+    if (GetParam() == Kind::Hidden)
+    {
+      quantizer.Opacity = { { 20.0, 0.0 }, { 30.0, 0.8 } };
+    }
     this->Descriptions = { { "v", ScalarType::Float32, { "x", "y", "z" }, {} },
       { "s", ScalarType::Int16, { "" }, {} } };
-    if (GetParam() == ErrorBoundMode::RelativeToSeriesRange)
+    if (!absolute)
     {
       this->Descriptions[0].SeriesRanges.assign(3, ValueRange{ -40.0, 90.0 });
       this->Descriptions[1].SeriesRanges.assign(1, ValueRange{ -32768.0, 32767.0 });
@@ -103,6 +125,12 @@ protected:
     return steps;
   }
 
+  /// The step before a group; none before the first one.
+  std::vector<ArrayValues> Before(int group) const
+  {
+    return group == 0 ? std::vector<ArrayValues>() : this->Values(group * Interval - 1);
+  }
+
   /// What one encoder writes.
   std::map<std::string, std::string> Reference(int threads) const
   {
@@ -123,10 +151,13 @@ protected:
   std::vector<ArrayDescription> Descriptions;
 };
 
-INSTANTIATE_TEST_SUITE_P(Modes, Groups,
-  ::testing::Values(ErrorBoundMode::RelativeToSeriesRange, ErrorBoundMode::Absolute),
+INSTANTIATE_TEST_SUITE_P(Kinds, Groups,
+  ::testing::Values(Kind::Relative, Kind::Absolute, Kind::Clamped, Kind::Hidden),
   [](const auto& info)
-  { return info.param == ErrorBoundMode::Absolute ? "Absolute" : "Relative"; });
+  {
+    const std::vector<std::string> names({ "Relative", "Absolute", "Clamped", "Hidden" });
+    return names[static_cast<std::size_t>(info.param)];
+  });
 
 TEST_P(Groups, OfAnyProcessInAnyOrderGiveTheSameBytes)
 {
@@ -147,7 +178,7 @@ TEST_P(Groups, OfAnyProcessInAnyOrderGiveTheSameBytes)
       ThreadPool pool(1);
       SegmentFolder segments(path);
       const Bytes message = PackGroup(EncodeGroup(this->Plan(), this->Options, segments, group,
-        this->TimesOf(group), this->StepsOf(group), pool, nullptr));
+        this->TimesOf(group), this->StepsOf(group), this->Before(group), nullptr, pool, nullptr));
       std::ofstream file(folder / "message", std::ios::binary);
       file.write(reinterpret_cast<const char*>(message.data()),
         static_cast<std::streamsize>(message.size()));
@@ -172,6 +203,29 @@ TEST_P(Groups, OfAnyProcessInAnyOrderGiveTheSameBytes)
   EXPECT_EQ(FilesOf(path), reference);
 }
 
+TEST_P(Groups, NeedTheStepBeforeWhereTheyReferToIt)
+{
+  const TemporaryFolder folder;
+  SegmentFolder segments(folder / "s.banyan");
+  ThreadPool pool(1);
+  const bool refers = GetParam() != Kind::Absolute;
+  EXPECT_EQ(MayReferBefore(this->Plan()), refers);
+  const auto encode = [&](const std::vector<ArrayValues>& before)
+  {
+    return EncodeGroup(this->Plan(), this->Options, segments, 1, this->TimesOf(1),
+      this->StepsOf(1), before, nullptr, pool, nullptr)
+      .Segment;
+  };
+  const SegmentIndex whole = encode(this->Before(1));
+  if (refers)
+  {
+    EXPECT_THROW(encode({}), Error);
+    EXPECT_NE(encode(this->Values(0)).HashLow, whole.HashLow);
+    return;
+  }
+  EXPECT_EQ(encode({}).HashLow, whole.HashLow);
+}
+
 TEST_P(Groups, OfTheBackgroundAreTheSame)
 {
   const TemporaryFolder folder;
@@ -182,7 +236,10 @@ TEST_P(Groups, OfTheBackgroundAreTheSame)
   EXPECT_FALSE(encoder.Take().has_value());
   for (int group = 0; group < GroupCount; ++group)
   {
-    encoder.Start(group, this->TimesOf(group), this->StepsOf(group));
+    // Once it is brought although it is known, and then it has to be brought.
+    const bool brought = group >= 2;
+    encoder.Start(group, this->TimesOf(group), this->StepsOf(group),
+      brought ? this->Before(group) : std::vector<ArrayValues>());
     encoder.Wait([] {});
     EXPECT_FALSE(encoder.Busy());
     auto encoded = encoder.Take();
@@ -206,7 +263,7 @@ TEST_P(Groups, AnInterruptedOneIsNotThere)
     encoder.Wait([] {});
     EXPECT_THROW((void)encoder.Take(), Error);
     EXPECT_FALSE(encoder.Take().has_value());
-    encoder.Start(1, this->TimesOf(1), this->StepsOf(1)); // and left alone
+    encoder.Start(1, this->TimesOf(1), this->StepsOf(1), this->Before(1)); // and left alone
   }
   segments.RemoveOwn();
   EXPECT_TRUE(folder.Empty());
@@ -245,7 +302,8 @@ TEST_P(Groups, MissingOnesAreNoticedAndWithdrawnOnesLeaveNothing)
   for (const int group : { 0, 2 })
   {
     assembly.Add(group, EncodeGroup(this->Plan(), this->Options, group == 0 ? first : second, group,
-                          this->TimesOf(group), this->StepsOf(group), pool, nullptr));
+                          this->TimesOf(group), this->StepsOf(group), this->Before(group), nullptr, pool,
+                          nullptr));
   }
   EXPECT_THROW(assembly.Finish(), Error);
   second.RemoveOwn(assembly.SegmentsInFile());
