@@ -40,6 +40,27 @@ HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
 
+/// What is written down of a unit.
+template <int B>
+struct UnitTokens
+{
+  // Every sample has a token at most, and every row a flag.
+  std::uint16_t Tokens[B * B * B + 3 * B * B];
+  std::uint32_t Extra[B * B * B];
+  std::uint8_t Rows[6 * B * B];
+  std::size_t TokenCount = 0, ExtraCount = 0, RowCount = 0;
+
+  void AppendTo(BlockTokens& block)
+  {
+    block.Tokens.insert(block.Tokens.end(), this->Tokens, this->Tokens + this->TokenCount);
+    block.Extra.insert(block.Extra.end(), this->Extra, this->Extra + this->ExtraCount);
+    block.Rows.insert(block.Rows.end(), this->Rows, this->Rows + this->RowCount);
+    this->TokenCount = 0;
+    this->ExtraCount = 0;
+    this->RowCount = 0;
+  }
+};
+
 /// Quantizes the residuals of rows and writes them down.
 template <int B>
 struct RowEncoder
@@ -47,7 +68,7 @@ struct RowEncoder
   const std::int32_t* W;      ///< of the unit
   const std::int32_t* Target; ///< same layout, what W is to become
   std::int32_t CoarseBin, FineBin;
-  BlockTokens* Out;
+  UnitTokens<B>* Out;
   bool* Rough;
 
   HWY_INLINE void operator()(const Row& row, std::int32_t* w, const std::int32_t* prediction,
@@ -63,19 +84,22 @@ struct RowEncoder
     alignas(64) std::int32_t residuals[B];
     Quantize(target, prediction, bin, residuals);
     const int last = row.Lanes.First + (row.Coded - 1) * row.Lanes.Step;
-    std::int32_t any = 0;
+    alignas(64) std::uint32_t codes[B];
+    std::uint32_t any = 0;
     const std::int32_t* mask = LaneMask<B>(row.Lanes);
     for (int x = 0; x < B; ++x)
     {
       residuals[x] = x <= last ? residuals[x] & mask[x] : 0;
-      any |= residuals[x];
+      codes[x] = residual::Zigzag(residuals[x]);
+      any |= codes[x];
     }
     SetLanes<B>(row.Lanes, prediction, residuals, bin, w);
+    UnitTokens<B>& out = *this->Out;
     if (!rough)
     {
-      this->Out->Tokens.push_back(static_cast<std::uint16_t>(
-        (residual::FlagContext + row.Band) << 8 | (any == 0 ? 1 : 0)));
-      this->Out->Rows.push_back(1);
+      out.Tokens[out.TokenCount++] = static_cast<std::uint16_t>(
+        (residual::FlagContext + row.Band) << 8 | (any == 0 ? 1 : 0));
+      out.Rows[out.RowCount++] = 1;
       if (any == 0)
       {
         return;
@@ -83,18 +107,28 @@ struct RowEncoder
     }
     *this->Rough |= any != 0;
     const int context = row.Band * residual::Classes;
-    this->Out->Rows.push_back(static_cast<std::uint8_t>(row.Coded));
+    out.Rows[out.RowCount++] = static_cast<std::uint8_t>(row.Coded);
+    std::uint16_t* tokens = out.Tokens + out.TokenCount;
+    out.TokenCount += static_cast<std::size_t>(row.Coded);
+    if (any < 32) // so is each code then
+    {
+      for (int x = row.Lanes.First; x <= last; x += row.Lanes.Step)
+      {
+        m[x] = residual::MagnitudeOf[codes[x]];
+        *tokens++ = static_cast<std::uint16_t>(
+          static_cast<std::uint32_t>(context + classes[x]) << 8 | codes[x]);
+      }
+      return;
+    }
     for (int x = row.Lanes.First; x <= last; x += row.Lanes.Step)
     {
-      const std::uint32_t code = residual::Zigzag(residuals[x]);
       std::uint32_t extra = 0;
-      const int symbol = residual::SymbolOf(code, extra);
-      m[x] = residual::Magnitude(code);
-      this->Out->Tokens.push_back(
-        static_cast<std::uint16_t>((context + classes[x]) << 8 | symbol));
+      const int symbol = residual::SymbolOf(codes[x], extra);
+      m[x] = residual::Magnitude(codes[x]);
+      *tokens++ = static_cast<std::uint16_t>((context + classes[x]) << 8 | symbol);
       if (symbol >= residual::DirectSymbols)
       {
-        this->Out->Extra.push_back(extra);
+        out.Extra[out.ExtraCount++] = extra;
       }
     }
   }
@@ -123,6 +157,7 @@ struct BlockCoder
     block::Scratch<B, 1> Edge, EdgeTarget;
     block::Scratch<B, 2> Face, FaceTarget;
     block::Scratch<B, 3> Interior, InteriorTarget;
+    UnitTokens<B> Tokens;
   };
 
   static Workspace& Work()
@@ -175,7 +210,8 @@ struct BlockCoder
     LoadUnit<B, D>({ samples.Base, samples.Stride }, from, unit.W);
     LoadUnit<B, D>(wanted, from, target.W());
     RunPasses<B, D>(unit, mode.By,
-      RowEncoder<B>{ unit.W, target.W(), plane.CoarseBin, plane.FineBin, &out, &rough });
+      RowEncoder<B>{ unit.W, target.W(), plane.CoarseBin, plane.FineBin, &Work().Tokens, &rough });
+    Work().Tokens.AppendTo(out);
     StoreUnit<B, D>(unit.W, from, plane.Least, plane.Greatest, samples);
   }
 

@@ -125,6 +125,17 @@ HWY_INLINE void LoadUnit(
     for (int y = 0; y < (D > 1 ? n : 1); ++y)
     {
       const std::int32_t* row = samples.Row(y, z);
+      if (D > 2)
+      {
+        // Rows lie far apart in whole fields: ask for those of the next slice in time.
+        __builtin_prefetch(row + samples.Stride.z);
+        __builtin_prefetch(row + samples.Stride.z + n - 1);
+        if (from.From != block::Reference::None)
+        {
+          __builtin_prefetch(from.A.Row(y, z + 1));
+          __builtin_prefetch(from.B.Row(y, z + 1));
+        }
+      }
       const std::int64_t stride = samples.Stride.x;
       std::int32_t* HWY_RESTRICT to = w + (z * n + y) * (B + 8);
       WithReferenceRow<n>(from, y, z,

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace banyan
 {
@@ -97,25 +98,24 @@ public:
     const std::size_t plane = static_cast<std::size_t>(this->Level / 2);
     const PlaneRegion region(this->Level, this->Layout.SamplesOf(brick), this->Head.Axes,
       (*this->Decoded[0])[plane].Samples, this->Field.BrickCells);
-    std::vector<std::int32_t> numbers, before;
+    std::vector<std::int32_t> numbers;
     for (std::size_t t = 0; t < this->Steps.size(); ++t)
     {
       group::NodeEntry& node = this->NodeOf(t, brick);
-      std::swap(numbers, before);
-      this->Gather((*this->Decoded[t])[plane], region, numbers);
-      const bool exceptional = this->HasExceptions(t, region);
-      if (exceptional)
+      const Extremes extremes =
+        this->ExtremesOf((*this->Decoded[t])[plane], (*this->Decoded[t > 0 ? t - 1 : 0])[plane], region);
+      if (this->HasExceptions(t, region))
       {
+        this->Gather((*this->Decoded[t])[plane], region, numbers);
         this->Describe(t, region, numbers, node);
       }
       else
       {
-        const auto [low, high] = std::minmax_element(numbers.begin(), numbers.end());
-        node.Low = *low;
-        node.High = *high;
+        node.Low = extremes.Low;
+        node.High = extremes.High;
         node.Uniform = node.Low == node.High;
       }
-      if (t > 0 && numbers == before && this->SameExceptions(t, region))
+      if (t > 0 && extremes.AsBefore && this->SameExceptions(t, region))
       {
         node.Age = this->NodeOf(t - 1, brick).Age + 1;
       }
@@ -131,6 +131,72 @@ public:
   }
 
 private:
+  struct Extremes
+  {
+    std::int32_t Low = std::numeric_limits<std::int32_t>::max();
+    std::int32_t High = std::numeric_limits<std::int32_t>::min();
+    bool AsBefore = true; ///< every number is that of the step before
+
+    void Include(const std::int32_t* row, const std::int32_t* before, int count, int stride)
+    {
+      std::int32_t low = this->Low, high = this->High, changed = 0;
+      if (stride == 1)
+      {
+        for (int x = 0; x < count; ++x)
+        {
+          low = row[x] < low ? row[x] : low;
+          high = high < row[x] ? row[x] : high;
+          changed |= row[x] ^ before[x];
+        }
+      }
+      else
+      {
+        for (int x = 0; x < count; ++x)
+        {
+          low = std::min(low, row[x * stride]);
+          high = std::max(high, row[x * stride]);
+          changed |= row[x * stride] ^ before[x * stride];
+        }
+      }
+      this->Low = low;
+      this->High = high;
+      this->AsBefore = this->AsBefore && changed == 0;
+    }
+  };
+
+  /// @param before the plane of another step
+  Extremes ExtremesOf(
+    const PlaneNumbers& plane, const PlaneNumbers& before, const PlaneRegion& region) const
+  {
+    // Samples that stand for what lies beyond the last one come once.
+    int inside = region.Count.x;
+    while (inside > 1 && region.Low.x + (inside - 1) * region.Stride > region.Last.x)
+    {
+      --inside;
+    }
+    const std::ptrdiff_t ahead =
+      std::ptrdiff_t{ plane.Padded.x } * plane.Padded.y * region.Stride; // of the next slice
+    Extremes extremes;
+    for (int z = 0; z < region.Count.z; ++z)
+    {
+      for (int y = 0; y < region.Count.y; ++y)
+      {
+        const glm::ivec3 first{ region.SampleAt(0, 0), region.SampleAt(1, y), region.SampleAt(2, z) };
+        const std::size_t at = static_cast<std::size_t>(plane.IndexOf(first));
+        __builtin_prefetch(plane.Numbers.data() + at + ahead);
+        __builtin_prefetch(before.Numbers.data() + at + ahead);
+        extremes.Include(
+          plane.Numbers.data() + at, before.Numbers.data() + at, inside, region.Stride);
+        if (inside < region.Count.x)
+        {
+          const std::size_t last = at + static_cast<std::size_t>(region.Last.x - first.x);
+          extremes.Include(plane.Numbers.data() + last, before.Numbers.data() + last, 1, 1);
+        }
+      }
+    }
+    return extremes;
+  }
+
   group::NodeEntry& NodeOf(std::size_t step, std::int64_t brick) const
   {
     return this->Steps[step]
@@ -145,10 +211,8 @@ private:
     if (step == 0 && this->Head.Open)
     {
       const std::size_t plane = static_cast<std::size_t>(region.Plane);
-      std::vector<std::int32_t> numbers, before;
-      this->Gather((*this->Decoded[0])[plane], region, numbers);
-      this->Gather(this->Field.Before->Planes[plane], region, before);
-      return numbers == before;
+      return this->ExtremesOf((*this->Decoded[0])[plane], this->Field.Before->Planes[plane], region)
+        .AsBefore;
     }
     if (step == 0)
     {

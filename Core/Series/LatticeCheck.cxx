@@ -1,6 +1,7 @@
 #include "Series/LatticeCheck.h"
 
 #include "Base/ForEachScalarType.h"
+#include "Series/GatherTile.h"
 #include "Series/Quantizer.h"
 
 #include <algorithm>
@@ -30,8 +31,15 @@ struct RowDifference
   double SumSquared = 0;
 };
 
+// Compiled for newer processors, too; no operation is fused, so that results are the same bits.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define BANYAN_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define BANYAN_CLONES
+#endif
+
 template <class V>
-RowDifference DifferenceOfRows(const V* a, const V* b, int count, double bound)
+BANYAN_CLONES RowDifference DifferenceOfRows(const V* a, const V* b, int count, double bound)
 {
   std::array<double, Lanes> greatest{}, squares{};
   std::array<int, Lanes> beyond{};
@@ -99,17 +107,19 @@ template <class T>
 void LatticeCheck<T>::LoadRow(const PlaneNumbers& decoded, const Row& row)
 {
   const std::int32_t* numbers = decoded.Numbers.data() + decoded.IndexOf(row.Sample);
-  const std::uint32_t least = static_cast<std::uint32_t>(this->Head.Least);
   const std::size_t count = static_cast<std::size_t>(row.Count);
-  for (std::size_t x = 0; x < count; ++x)
+  this->Decoder.Decode(numbers, 1, count, this->Decoded.data(), 1);
+  if (row.Values != nullptr)
   {
-    this->Offsets[x] = static_cast<std::uint32_t>(numbers[x]) - least;
+    std::copy(row.Values, row.Values + count, this->Originals.begin());
   }
-  this->Decoder.Decode(this->Head.Least, this->Offsets.data(), count, this->Decoded.data());
-  const T* from = this->Values + row.At;
-  for (std::size_t x = 0; x < count; ++x)
+  else
   {
-    this->Originals[x] = from[this->Columns[x]];
+    const T* from = this->Values + row.At;
+    for (std::size_t x = 0; x < count; ++x)
+    {
+      this->Originals[x] = from[this->Columns[x]];
+    }
   }
   const std::size_t end = static_cast<std::size_t>(RoundUp(row.Count));
   std::fill(this->Decoded.begin() + row.Count, this->Decoded.begin() + end, this->Decoded[0]);
@@ -275,7 +285,6 @@ void LatticeCheck<T>::Block(const PlaneNumbers& decoded, int plane, std::int64_t
   const int shift = 2 * plane;
   const std::size_t room = static_cast<std::size_t>(RoundUp(edge));
   this->Columns.resize(room);
-  this->Offsets.resize(room);
   this->Originals.resize(room);
   this->Decoded.resize(room);
   this->OriginalImages.resize(room);
@@ -287,6 +296,12 @@ void LatticeCheck<T>::Block(const PlaneNumbers& decoded, int plane, std::int64_t
     this->Columns[i] = std::min(x << shift, this->Last.x) * this->Stride.x;
     this->Tuples[i] = this->Columns[i] / this->Field.Components;
   }
+  if (plane == 0)
+  {
+    this->Tile.resize(static_cast<std::size_t>(edge) * edge * edge);
+    GatherTile(this->Values + low.x * this->Stride.x + low.y * this->Stride.y + low.z * this->Stride.z,
+      this->Stride, high - low, edge, this->Tile.data());
+  }
   Row row;
   row.Count = high.x - low.x;
   for (int z = low.z; z < high.z; ++z)
@@ -296,6 +311,8 @@ void LatticeCheck<T>::Block(const PlaneNumbers& decoded, int plane, std::int64_t
       row.Sample = { low.x, y, z };
       row.At = std::min(y << shift, this->Last.y) * this->Stride.y +
                std::min(z << shift, this->Last.z) * this->Stride.z;
+      row.Values =
+        plane == 0 ? this->Tile.data() + ((z - low.z) * edge + (y - low.y)) * edge : nullptr;
       this->LoadRow(decoded, row);
       if (!this->Plain || !this->AllWithin(row.Count, errors))
       {

@@ -37,6 +37,7 @@ private:
     glm::ivec3 Sample{ 0 }; ///< of the plane: the first one
     std::int64_t At = 0;    ///< of the finest plane's sample (0, y, z) among the values
     int Count = 0;
+    const T* Values = nullptr; ///< its originals one after the other; null: take them by Columns
   };
 
   void LoadRow(const PlaneNumbers& decoded, const Row& row);
@@ -59,7 +60,7 @@ private:
 
   /// Of the block's samples along a row, among the values, and among tuples of them.
   std::vector<std::int64_t> Columns, Tuples;
-  std::vector<std::uint32_t> Offsets;
+  std::vector<T> Tile;                               ///< originals of a block of the finest plane
   std::vector<T> Originals, Decoded;                 ///< of a row
   std::vector<double> OriginalImages, DecodedImages; ///< transformed
   std::map<std::int64_t, int> Intervals;             ///< of blocks that were looked at before

@@ -3,6 +3,7 @@
 #include "Base/ForEachScalarType.h"
 #include "Base/ThreadPool.h"
 #include "Series/FieldLattice.h"
+#include "Series/GatherTile.h"
 #include "Series/LatticeCheck.h"
 
 #include <algorithm>
@@ -188,12 +189,12 @@ LatticeTarget<T>::LatticeTarget(
 
 template <class T>
 void LatticeTarget<T>::FillRow(
-  const T* values, std::int64_t stride, int count, std::int32_t* numbers) const
+  const T* values, int count, std::int32_t* numbers) const
 {
   double y[Tile];
   for (int x = 0; x < count; ++x)
   {
-    y[x] = static_cast<double>(values[x * stride]);
+    y[x] = static_cast<double>(values[x]);
   }
   if (!this->Field.Map.IsIdentity())
   {
@@ -206,7 +207,7 @@ void LatticeTarget<T>::FillRow(
   for (int x = 0; x < count; ++x)
   {
     held[x] = y[x] >= this->Nearest && y[x] <= this->Furthest; // not for NaN
-    held[x] = held[x] && !this->Fills.Holds(values[x * stride]);
+    held[x] = held[x] && !this->Fills.Holds(values[x]);
     all = all && held[x];
     const double number = held[x] ? (y[x] - this->Head.Origin) * inverse : 0.0;
     const double bounded =
@@ -223,14 +224,16 @@ void LatticeTarget<T>::FillRow(
 template <class T>
 void LatticeTarget<T>::FillTile(const T* values, const glm::ivec3& low, PlaneNumbers& plane) const
 {
-  const glm::ivec3 n = plane.Samples;
-  for (int z = low.z; z < std::min(low.z + Tile, n.z); ++z)
+  const glm::ivec3 n = glm::min(glm::ivec3(Tile), plane.Samples - low);
+  T tile[Tile * Tile * Tile];
+  GatherTile(values + low.x * this->Stride.x + low.y * this->Stride.y + low.z * this->Stride.z,
+    this->Stride, n, Tile, tile);
+  for (int z = 0; z < n.z; ++z)
   {
-    for (int y = low.y; y < std::min(low.y + Tile, n.y); ++y)
+    for (int y = 0; y < n.y; ++y)
     {
-      this->FillRow(values + low.x * this->Stride.x + y * this->Stride.y + z * this->Stride.z,
-        this->Stride.x, std::min(Tile, n.x - low.x),
-        plane.Numbers.data() + plane.IndexOf({ low.x, y, z }));
+      this->FillRow(tile + (z * Tile + y) * Tile, n.x,
+        plane.Numbers.data() + plane.IndexOf(low + glm::ivec3(0, y, z)));
     }
   }
 }

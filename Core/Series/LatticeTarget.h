@@ -48,7 +48,7 @@ public:
 
 private:
   void FillTile(const T* values, const glm::ivec3& low, PlaneNumbers& plane) const;
-  void FillRow(const T* values, std::int64_t stride, int count, std::int32_t* numbers) const;
+  void FillRow(const T* values, int count, std::int32_t* numbers) const;
   void HideBlocks(const T* values, PlaneNumbers& plane) const;
 
   const FieldGroup& Field;

@@ -1,0 +1,51 @@
+#ifndef banyan_Series_GatherTile_h
+#define banyan_Series_GatherTile_h
+
+#include <glm/vec3.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+namespace banyan
+{
+
+/// Copies a small box of values whose axes are in any order in memory: along the axis that is
+/// contiguous there, or nearest to it. Reading across it instead would touch a page per value.
+/// @param stride of the values along x, y, z; @param count how many
+/// @param tile receives value (x, y, z) at (z * pitch + y) * pitch + x
+template <class T>
+void GatherTile(const T* values, const glm::i64vec3& stride, const glm::ivec3& count,
+  std::ptrdiff_t pitch, T* tile)
+{
+  const glm::i64vec3 to{ 1, pitch, pitch * pitch };
+  int order[3] = { 0, 1, 2 }; // nearest in memory first
+  const auto sort = [&](int a, int b)
+  {
+    if (stride[order[b]] < stride[order[a]])
+    {
+      std::swap(order[a], order[b]);
+    }
+  };
+  sort(0, 1);
+  sort(1, 2);
+  sort(0, 1);
+  const auto [u, v, w] = order;
+  for (int k = 0; k < count[w]; ++k)
+  {
+    for (int j = 0; j < count[v]; ++j)
+    {
+      const T* from = values + k * stride[w] + j * stride[v];
+      __builtin_prefetch(from + stride[w]); // a row is a line of the cache or two: ask in time
+      T* at = tile + k * to[w] + j * to[v];
+      for (int i = 0; i < count[u]; ++i)
+      {
+        at[i * to[u]] = from[i * stride[u]];
+      }
+    }
+  }
+}
+
+} // namespace banyan
+
+#endif
