@@ -62,6 +62,19 @@ std::string Heading(const SeriesReport& report)
   return text;
 }
 
+/// How far a look at one brick goes.
+std::string Chains(const EncodeStatistics& statistics)
+{
+  if (statistics.ChainBricks == 0)
+  {
+    return "";
+  }
+  return "  steps to decode for a brick of one: " +
+         Digits(static_cast<double>(statistics.ChainSum) /
+                static_cast<double>(statistics.ChainBricks)) +
+         " in the mean, " + std::to_string(statistics.ChainMost) + " at most\n";
+}
+
 std::string Size(const SeriesReport& report)
 {
   const std::uint64_t raw = report.Index.PayloadBytesIn;
@@ -76,7 +89,7 @@ std::string Size(const SeriesReport& report)
   return "\n" + table.Text() + "  encoded: payloads " +
          Megabytes(report.Index.Statistics.PayloadBytes) + ", tables " +
          Megabytes(report.SegmentBytes - report.Index.Statistics.PayloadBytes) + ", index " +
-         Megabytes(report.IndexBytes) + "\n";
+         Megabytes(report.IndexBytes) + "\n" + Chains(report.Index.Statistics);
 }
 
 std::string Described(const Transform& transform)

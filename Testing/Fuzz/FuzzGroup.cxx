@@ -100,7 +100,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const fuzz::SmallSeries& series = *stage.Series[data[0] % fuzz::SeriesKinds];
   const fuzz::Bytes segment = fuzz::Assemble(
-    fuzz::FromInput(data + 1, size - 1, series.Parts.Sections.size()), series.Index.Steps());
+    fuzz::FromInput(data + 1, size - 1, series.Parts.Sections.size()), series.Index.Segments[0].Steps);
   SeriesIndex index = series.Index;
   const Hash128 hash = HashOf(segment.data(), segment::HeaderBytes);
   index.Segments[0].Bytes = segment.size();

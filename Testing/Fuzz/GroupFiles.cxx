@@ -19,7 +19,8 @@ namespace banyan::fuzz
 namespace
 {
 
-constexpr int StepCount = 3;
+constexpr int Interval = 3;
+constexpr int StepCount = 5;
 constexpr int X = 13, Y = 9, Z = 10;
 
 /// Waves, noise, a flat part, a part that rests, and values that are kept beside the lattice.
@@ -76,7 +77,7 @@ SmallSeries::SmallSeries(const std::string& folder, int kind)
   : Path(folder + "/" + std::to_string(kind) + ".banyan")
 {
   EncodeOptions options;
-  options.KeyframeInterval = StepCount;
+  options.KeyframeInterval = Interval;
   options.BrickCells = 8;
   options.ErrorBound = kind == 3 ? 0 : 1.0 / 512;
   this->Index = kind == 0   ? Encode<float>(this->Path, 1, options)

@@ -21,7 +21,8 @@ struct GroupParts
 /// The types that the series of the fuzzer takes turns with.
 constexpr int SeriesKinds = 4;
 
-/// A series of three steps in one segment, small: its index, and the parts of its segment.
+/// A series of three steps in one segment and two in another, which refers to the first; small: its
+/// index, and the parts of the first segment.
 struct SmallSeries
 {
   /// Encodes one in the folder.

@@ -26,7 +26,8 @@ TEST(InfoProgram, PrintsTextJsonAndTheTable)
   const ProgramResult text = RunProgram(info + " --octree --time");
   EXPECT_EQ(text.Status, 0);
   for (const char* phrase : { "40 x 24 x 17 samples, 4 steps", "1/512 of the range",
-         "bits per value", "unchanged subtrees", "uniform quantizer", "a random brick, cold" })
+         "bits per value", "steps to decode for a brick", "unchanged subtrees", "uniform quantizer",
+         "a random brick, cold" })
   {
     EXPECT_NE(text.Output.find(phrase), std::string::npos) << phrase << "\n" << text.Output;
   }
