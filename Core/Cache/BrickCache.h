@@ -71,7 +71,7 @@ private:
 };
 
 /// Copies the part `samples` of a field into a caller's array, decoding (in parallel) only the bricks
-/// that it touches. They come from the cache and go there; but a part of more than a sixteenth of the
+/// that it touches. They come from the cache and go there; but a part of a sixteenth or more of the
 /// cache's budget goes past it, because it would push out everything else and be gone itself before
 /// it comes again.
 /// @param samples of the field's level, inside the layout's samples

@@ -99,7 +99,7 @@ void Read(
   const glm::ivec3 size = bricks.Size();
   const std::int64_t count = bricks.Count();
   const bool past =
-    static_cast<std::uint64_t>(target.Samples.Count()) * sizeof(T) > cache.Budget() / 16;
+    static_cast<std::uint64_t>(target.Samples.Count()) * sizeof(T) >= cache.Budget() / 16;
   ThreadPool::Process().ParallelFor(count,
     [&](std::int64_t fromLast)
     {

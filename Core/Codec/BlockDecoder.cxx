@@ -125,12 +125,18 @@ struct BoxDecoder
     }
   }
 
-  /// Whether the edge that a block across an edge of the box owns is in a decoded box.
+  /// The decoded face of a neighbour (1, 2 or 4), or null.
+  const std::int32_t* FaceOf(int owner) const
+  {
+    return owner == 1 || owner == 2 || owner == 4 ? this->Code.Faces[owner / 2] : nullptr;
+  }
+
+  /// Whether the edge that a block across an edge of the box owns is in a decoded face.
   bool HasEdge(int owner) const
   {
     for (const int neighbour : { 1, 2, 4 })
     {
-      if ((neighbour & owner) != 0 && this->Code.Boxes[neighbour] != nullptr)
+      if ((neighbour & owner) != 0 && this->FaceOf(neighbour) != nullptr)
       {
         return true;
       }
@@ -155,19 +161,21 @@ struct BoxDecoder
     }
   }
 
-  /// The whole face that the box has in common with a decoded neighbour's, other owners' edges of it
-  /// included.
+  /// A whole face, other owners' edges of it included.
   void PlaceFace(int owner) const
   {
-    const glm::ivec3 low = Corner(owner);
-    const std::int32_t* neighbour = this->Code.Boxes[owner];
-    for (int z = low.z; z < N; ++z)
+    const std::int32_t* from = this->FaceOf(owner);
+    for (int j = 0; j < N; ++j, from += N)
     {
-      for (int y = low.y; y < N; ++y)
+      if (owner == 1)
       {
-        const std::int32_t* from = neighbour + ((z - low.z) * N + y - low.y) * N;
-        CopyRow(from, N - low.x, this->Box.Row(y, z) + low.x);
+        for (int y = 0; y < N; ++y)
+        {
+          this->Box.Row(y, j)[B] = from[y];
+        }
+        continue;
       }
+      CopyRow(from, N, owner == 2 ? this->Box.Row(B, j) : this->Box.Row(j, B));
     }
   }
 
@@ -175,13 +183,13 @@ struct BoxDecoder
   bool Plain(int owner) const
   {
     const BlockCode& block = this->Code.Blocks[owner];
-    return block.Uniform || block.Same || this->Code.Boxes[owner] != nullptr;
+    return block.Uniform || block.Same || this->FaceOf(owner) != nullptr;
   }
 
   /// Fills what a plain block owns of the box.
   void PlacePlain(int owner) const
   {
-    if (this->Code.Boxes[owner] != nullptr)
+    if (this->FaceOf(owner) != nullptr)
     {
       return this->PlaceFace(owner);
     }

@@ -45,8 +45,9 @@ struct BoxCode
   /// Decoded boxes of the references; must be given when a mode asks for them.
   const std::int32_t* A = nullptr;
   const std::int32_t* B = nullptr;
-  /// Decoded boxes of the neighbours 1, 2 and 4 that are at hand; null for others.
-  const std::int32_t* Boxes[8] = {};
+  /// Last layers of the box along x, y, z, of neighbours that were decoded before: (edge + 1)^2
+  /// numbers `[z][y]`, `[z][x]`, `[y][x]`. Null for others; what is here is not decoded again.
+  const std::int32_t* Faces[3] = {};
 };
 
 /// Decodes a box: the (edge + 1)^3 samples of a block and the layer that neighbours own.

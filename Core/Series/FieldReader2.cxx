@@ -362,7 +362,7 @@ void Reader2::DecodeBox(OpenGroup& open, int step, const PlaneRegion& region,
   const LatticeCache::Box box = group.Box(step, region.Plane, region.FirstBlock);
   const std::ptrdiff_t n = group.Edge() + 1;
   const std::ptrdiff_t pitch[3] = { 1, n, n * n };
-  const std::int32_t* first = box->data();
+  std::ptrdiff_t first = 0;
   std::ptrdiff_t stride[3] = {};
   for (int a = 0; a < 3; ++a)
   {
@@ -370,14 +370,18 @@ void Reader2::DecodeBox(OpenGroup& open, int step, const PlaneRegion& region,
     stride[real] = pitch[a];
     first += (region.Low[a] - region.FirstBlock[a] * group.Edge() + skip[real]) * pitch[a];
   }
-  for (int z = 0; z < size.z; ++z)
-  {
-    for (int y = 0; y < size.y; ++y)
+  box->Visit(
+    [&](const auto* numbers, std::int32_t base)
     {
-      decoder.Decode(first + z * stride[2] + y * stride[1], stride[0],
-        static_cast<std::size_t>(size.x), values + z * strides.z + y * strides.y, strides.x);
-    }
-  }
+      for (int z = 0; z < size.z; ++z)
+      {
+        for (int y = 0; y < size.y; ++y)
+        {
+          decoder.Decode(numbers + first + z * stride[2] + y * stride[1], base, stride[0],
+            static_cast<std::size_t>(size.x), values + z * strides.z + y * strides.y, strides.x);
+        }
+      }
+    });
 }
 
 template <class T>
@@ -407,6 +411,7 @@ void Reader2::Decode(OpenGroup& open, const FieldKey& field, std::int64_t brick,
     return this->DecodeBox(
       open, step, region, glm::ivec3(0), size, { 1, size.x, std::int64_t{ size.x } * size.y }, values);
   }
+  thread_local std::vector<std::int32_t> numbers;
   thread_local std::vector<std::uint32_t> offsets;
   thread_local std::vector<T> ordered;
   offsets.resize(count);
@@ -433,7 +438,8 @@ void Reader2::Decode(OpenGroup& open, const FieldKey& field, std::int64_t brick,
       {
         return; // only the block after the last face: its samples are in the box before
       }
-      const LatticeCache::Box box = group.Box(step, region.Plane, block);
+      numbers.resize(static_cast<std::size_t>(n) * n * n);
+      group.Box(step, region.Plane, block)->CopyTo(numbers.data());
       const glm::ivec3 origin = block * edge;
       int columns[2 * 64 + 1]; // places per row: at most a brick of the largest edge
       for (int x = from.x; x <= to.x; ++x)
@@ -445,7 +451,7 @@ void Reader2::Decode(OpenGroup& open, const FieldKey& field, std::int64_t brick,
         for (int y = from.y; y <= to.y; ++y)
         {
           const std::int32_t* row =
-            box->data() +
+            numbers.data() +
             ((region.SampleAt(2, z) - origin.z) * n + region.SampleAt(1, y) - origin.y) * n;
           std::uint32_t* out =
             offsets.data() + (static_cast<std::size_t>(z) * region.Count.y + y) * region.Count.x;

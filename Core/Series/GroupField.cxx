@@ -24,6 +24,43 @@ glm::ivec3 NeighbourOf(const glm::ivec3& block, int bits)
   return block + glm::ivec3{ bits & 1, bits >> 1 & 1, bits >> 2 & 1 };
 }
 
+/// What a thread decodes with.
+struct DecodeMemory
+{
+  std::vector<std::int32_t> Coarse, A, B, Box, Faces[3];
+
+  static const std::int32_t* Take(
+    std::vector<std::int32_t>& numbers, const LatticeBox& box, std::size_t n)
+  {
+    numbers.resize(n * n * n);
+    box.CopyTo(numbers.data());
+    return numbers.data();
+  }
+
+  /// The first layer of a neighbour along an axis.
+  const std::int32_t* TakeFace(std::size_t axis, const LatticeBox& box, std::size_t n)
+  {
+    std::vector<std::int32_t>& face = this->Faces[axis];
+    face.resize(n * n);
+    if (axis == 0)
+    {
+      box.CopyTo(0, n, n * n, face.data());
+    }
+    else if (axis == 2)
+    {
+      box.CopyTo(0, 1, n * n, face.data());
+    }
+    else
+    {
+      for (std::size_t z = 0; z < n; ++z)
+      {
+        box.CopyTo(z * n * n, 1, n, face.data() + z * n);
+      }
+    }
+    return face.data();
+  }
+};
+
 } // namespace
 
 GroupField::GroupField(GroupReader& segment, std::uint64_t series, std::uint32_t component,
@@ -68,10 +105,30 @@ const group::StepTable& GroupField::Load(int step)
     const Bytes bytes = this->File.Section(this->File.StepSection(step, this->Component));
     table = std::make_unique<group::StepTable>(group::UnpackStep(
       bytes.data(), bytes.size(), this->Shape, step, from, this->File.PayloadEnd()));
+    this->CheckNumbers(*table);
     this->Memory += table->MemoryBytes();
     this->BytesRead += bytes.size();
   }
   return *table;
+}
+
+/// Everything that is decoded lies between the head's extremes; so must what is stored as it is.
+void GroupField::CheckNumbers(const group::StepTable& table) const
+{
+  const auto outside = [this](std::int32_t number)
+  { return number < this->FieldHead.Least || number > this->FieldHead.Greatest; };
+  bool any = std::any_of(table.Top.begin(), table.Top.end(), outside);
+  for (const auto& plane : table.Planes)
+  {
+    for (const group::BlockEntry& block : plane)
+    {
+      any = any || (block.Uniform && outside(block.Value));
+    }
+  }
+  if (any)
+  {
+    throw Error("A number in the table of a step lies outside of its lattice");
+  }
 }
 
 std::size_t GroupField::IndexOf(int plane, const glm::ivec3& block) const
@@ -162,8 +219,19 @@ void GroupField::Coarse(
   const glm::ivec3 coarseBlock = first / this->BrickCells;
   const glm::ivec3 origin = top ? glm::ivec3(0) : coarseBlock * this->BrickCells;
   const glm::ivec3 size = top ? samples : glm::ivec3(this->BrickCells + 1);
-  const LatticeCache::Box box = top ? nullptr : this->Box(step, plane + 1, coarseBlock);
-  const std::int32_t* from = top ? this->Step(step).Top.data() : box->data();
+  thread_local std::vector<std::int32_t> coarser;
+  const std::int32_t* from = coarser.data();
+  if (top)
+  {
+    from = this->Step(step).Top.data();
+  }
+  else
+  {
+    const LatticeCache::Box box = this->Box(step, plane + 1, coarseBlock);
+    coarser.resize(static_cast<std::size_t>(size.x * size.y * size.z));
+    box->CopyTo(coarser.data());
+    from = coarser.data();
+  }
   numbers.resize(static_cast<std::size_t>(n * n * n));
   std::int32_t* to = numbers.data();
   for (int z = 0; z < n; ++z)
@@ -220,15 +288,15 @@ LatticeCache::Box GroupField::Decode(int step, int plane, const glm::ivec3& bloc
   {
     return this->ReferenceBox(this->ReferencesOf(step).A, plane, block);
   }
-  LatticeCache::Box neighbours[8];
-  for (const int bits : { 1, 2, 4 })
+  LatticeCache::Box neighbours[3];
+  for (int axis = 0; axis < 3; ++axis)
   {
     // Only what would have to be decoded again is worth a look.
-    if (code.Blocks[bits].Exists && !code.Blocks[bits].Uniform && !code.Blocks[bits].Same)
+    const BlockCode& neighbour = code.Blocks[1 << axis];
+    if (neighbour.Exists && !neighbour.Uniform && !neighbour.Same)
     {
-      LatticeCache::Box& box = neighbours[bits];
-      box = LatticeCache::Process().Find(this->KeyOf(step, plane, NeighbourOf(block, bits)));
-      code.Boxes[bits] = box ? box->data() : nullptr;
+      neighbours[axis] =
+        LatticeCache::Process().Find(this->KeyOf(step, plane, NeighbourOf(block, 1 << axis)));
     }
   }
   LatticeCache::Box a, b;
@@ -237,17 +305,28 @@ LatticeCache::Box GroupField::Decode(int step, int plane, const glm::ivec3& bloc
     const StepReferences references = this->ReferencesOf(step);
     a = this->ReferenceBox(references.A, plane, block);
     b = references.B == references.A ? a : this->ReferenceBox(references.B, plane, block);
-    code.A = a->data();
-    code.B = b->data();
   }
-  // The last thing before decoding, because boxes that are decoded on the way use it as well.
-  thread_local std::vector<std::int32_t> coarse;
-  this->Coarse(step, plane, block, coarse);
-  code.Coarse = coarse.data();
+  // From here on nothing else is decoded on the way, which would use the same memory.
+  thread_local DecodeMemory memory;
+  this->Coarse(step, plane, block, memory.Coarse);
+  code.Coarse = memory.Coarse.data();
   const std::size_t n = static_cast<std::size_t>(this->BrickCells) + 1;
-  const auto numbers = std::make_shared<LatticeCache::Numbers>(n * n * n);
-  DecodeBox(this->BrickCells, shared, code, numbers->data());
-  return numbers;
+  if (a)
+  {
+    code.A = memory.Take(memory.A, *a, n);
+    code.B = b == a ? code.A : memory.Take(memory.B, *b, n);
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    if (neighbours[axis])
+    {
+      code.Faces[axis] = memory.TakeFace(axis, *neighbours[axis], n);
+    }
+  }
+  memory.Box.resize(n * n * n);
+  DecodeBox(this->BrickCells, shared, code, memory.Box.data());
+  return std::make_shared<LatticeBox>(
+    memory.Box.data(), memory.Box.size(), shared.Least, shared.Greatest);
 }
 
 LatticeCache::Key GroupField::KeyOf(int step, int plane, const glm::ivec3& block) const

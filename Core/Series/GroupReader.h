@@ -111,6 +111,7 @@ private:
   auto InSegmentBefore(Body&& body);
   LatticeCache::Box ReferenceBox(int step, int plane, const glm::ivec3& block);
   void Coarse(int step, int plane, const glm::ivec3& block, std::vector<std::int32_t>& numbers);
+  void CheckNumbers(const group::StepTable& table) const;
   LatticeCache::Box Decode(int step, int plane, const glm::ivec3& block);
 
   GroupReader& File;

@@ -13,7 +13,7 @@ constexpr std::uint64_t DefaultBudget = std::uint64_t{ 128 } << 20;
 
 std::uint64_t BytesOf(const LatticeCache::Box& box)
 {
-  return box->size() * sizeof(std::int32_t) + 160; // with what list and map take
+  return box->Bytes() + 180; // with what list and map take
 }
 
 } // namespace

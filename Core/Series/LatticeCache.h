@@ -1,6 +1,8 @@
 #ifndef banyan_Series_LatticeCache_h
 #define banyan_Series_LatticeCache_h
 
+#include "Series/LatticeBox.h"
+
 #include <atomic>
 #include <cstdint>
 #include <list>
@@ -17,24 +19,7 @@ namespace banyan
 class LatticeCache
 {
 public:
-  /// Lattice numbers, not set to anything at first.
-  class Numbers
-  {
-  public:
-    explicit Numbers(std::size_t count)
-      : Values(new std::int32_t[count])
-      , Count(count)
-    {
-    }
-    std::int32_t* data() { return this->Values.get(); }
-    const std::int32_t* data() const { return this->Values.get(); }
-    std::size_t size() const { return this->Count; }
-
-  private:
-    std::unique_ptr<std::int32_t[]> Values;
-    std::size_t Count;
-  };
-  using Box = std::shared_ptr<const Numbers>;
+  using Box = std::shared_ptr<const LatticeBox>;
 
   /// Names a box of an open series.
   struct Key

@@ -86,20 +86,6 @@ void LatticeDecoder<T>::Decode(
   }
 }
 
-template <class T>
-void LatticeDecoder<T>::Decode(const std::int32_t* numbers, std::ptrdiff_t stride,
-  std::size_t count, T* decoded, std::ptrdiff_t step) const
-{
-  const std::uint64_t entries = this->Table.size();
-  const std::int64_t first = entries > 0 ? this->First : 0; // tables have numbers of 32 bits only
-  const T* table = this->Table.data();
-  for (std::size_t i = 0; i < count; ++i, numbers += stride, decoded += step)
-  {
-    const std::uint64_t entry = static_cast<std::uint64_t>(*numbers - first);
-    *decoded = entry < entries ? table[entry] : this->Compute(*numbers);
-  }
-}
-
 #define BANYAN_INSTANTIATE(T) template class LatticeDecoder<T>
 BANYAN_FOR_EACH_SCALAR_TYPE(BANYAN_INSTANTIATE);
 #undef BANYAN_INSTANTIATE

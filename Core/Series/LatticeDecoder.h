@@ -36,9 +36,22 @@ public:
   /// is safe.
   void Decode(std::int64_t base, const std::uint32_t* offsets, std::size_t count, T* decoded) const;
 
-  /// decoded[i * step] from numbers[i * stride]. Any input is safe.
-  void Decode(const std::int32_t* numbers, std::ptrdiff_t stride, std::size_t count, T* decoded,
-    std::ptrdiff_t step) const;
+  /// decoded[i * step] from the number base + numbers[i * stride]. Any input is safe.
+  /// @param Number std::int32_t or std::uint16_t
+  template <class Number>
+  void Decode(const Number* numbers, std::int32_t base, std::ptrdiff_t stride, std::size_t count,
+    T* decoded, std::ptrdiff_t step) const
+  {
+    const std::uint64_t entries = this->Table.size();
+    // Tables have numbers of 32 bits only.
+    const std::int64_t first = (entries > 0 ? this->First : 0) - base;
+    const T* table = this->Table.data();
+    for (std::size_t i = 0; i < count; ++i, numbers += stride, decoded += step)
+    {
+      const std::uint64_t entry = static_cast<std::uint64_t>(*numbers - first);
+      *decoded = entry < entries ? table[entry] : this->Compute(std::int64_t{ *numbers } + base);
+    }
+  }
 
 private:
   T Compute(std::int64_t number) const;

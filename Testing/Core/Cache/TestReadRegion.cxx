@@ -80,11 +80,11 @@ TEST(ReadRegion, LargePartsGoPastTheCache)
   const Box whole{ glm::ivec3(0), file->Layout(0).Samples() };
   const std::uint64_t bytes = static_cast<std::uint64_t>(whole.Count()) * sizeof(float);
   std::vector<float> values(static_cast<std::size_t>(whole.Count()));
-  BrickCache large(16 * bytes);
+  BrickCache large(16 * bytes + 16);
   ReadRegion(large, *file, {}, whole, values.data(), 1, 0);
   EXPECT_EQ(large.GetStatistics().Misses, 8u);
   std::vector<float> past(values.size());
-  BrickCache small(16 * bytes - 16);
+  BrickCache small(16 * bytes);
   ReadRegion(small, *file, {}, whole, past.data(), 1, 0);
   EXPECT_EQ(past, values);
   EXPECT_EQ(small.GetStatistics().Misses, 0u);
