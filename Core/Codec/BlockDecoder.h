@@ -45,7 +45,7 @@ struct BoxCode
   /// Decoded boxes of the references; must be given when a mode asks for them.
   const std::int32_t* A = nullptr;
   const std::int32_t* B = nullptr;
-  /// Last layers of the box along x, y, z, of neighbours that were decoded before: (edge + 1)^2
+  /// Last layers of the box along x, y, z, of existing neighbours that were decoded before: (edge + 1)^2
   /// numbers `[z][y]`, `[z][x]`, `[y][x]`. Null for others; what is here is not decoded again.
   const std::int32_t* Faces[3] = {};
 };

@@ -39,7 +39,8 @@ void ExpectDecodesWithFaces(
     Box3 with = box;
     for (int a = 0; a < 3; ++a)
     {
-      with.Code.Faces[a] = (some >> a & 1) != 0 ? faces[a].data() : nullptr;
+      const bool given = (some >> a & 1) != 0 && box.Code.Blocks[1 << a].Exists;
+      with.Code.Faces[a] = given ? faces[a].data() : nullptr;
     }
     ASSERT_EQ(DecodeFast(encoded, with), expected) << "with faces " << some;
   }
