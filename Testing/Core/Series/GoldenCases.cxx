@@ -1,6 +1,4 @@
-#include "Series/GoldenCases.h"
-
-#include "Series/SeriesTesting.h"
+#include "Series/GoldenBuilders.h"
 
 namespace banyan::testing
 {
@@ -8,148 +6,6 @@ namespace
 {
 
 using Pattern = GoldenPattern;
-
-/// A number that depends on nothing but its arguments (the finaliser of SplitMix64).
-std::uint64_t Mix(std::uint64_t seed, std::uint64_t place)
-{
-  std::uint64_t z = seed * 0x9E3779B97F4A7C15u + place * 0xD1B54A32D192ED03u + 1;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-  return z ^ (z >> 31);
-}
-
-/// A parabola over every 32 numbers, 0 to 256.
-std::int64_t Parabola(std::int64_t t)
-{
-  const std::int64_t u = t & 31;
-  return u * (32 - u);
-}
-
-struct Place
-{
-  int X, Y, Z, Step, Component;
-};
-
-std::uint64_t NumberOf(const Place& p)
-{
-  std::uint64_t number = 0;
-  for (const int part : { p.X, p.Y, p.Z, p.Step, p.Component })
-  {
-    number = number * 256 + static_cast<std::uint64_t>(part);
-  }
-  return number;
-}
-
-std::int64_t PatternAt(const GoldenArray& array, const Place& p)
-{
-  if (p.X < array.QuietBelow)
-  {
-    return 0;
-  }
-  const std::uint64_t random = Mix(array.Seed, NumberOf(p));
-  switch (array.Pattern)
-  {
-    case Pattern::Constant:
-      return 0;
-    case Pattern::Bumps:
-      return Parabola(2 * p.X + p.Y + 3 * p.Step + 5 * p.Component) + Parabola(3 * p.Y - p.Z) +
-             Parabola(p.Z + p.X + p.Step + static_cast<int>(array.Seed));
-    case Pattern::Noise:
-      return static_cast<std::int64_t>(
-        array.Bits < 64 ? random & ((1ull << array.Bits) - 1) : random);
-    case Pattern::Picks:
-      return static_cast<std::int64_t>(random % 3 * (random % 3));
-  }
-  return 0;
-}
-
-/// A NaN with a payload of its own, or an infinity.
-template <class T>
-T NonFinite(std::uint64_t random)
-{
-  using Word = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
-  constexpr int mantissa = std::numeric_limits<T>::digits - 1;
-  const Word infinity = BitCast<Word>(std::numeric_limits<T>::infinity());
-  const Word sign = static_cast<Word>(Word{ (random & 1) != 0 } << (8 * sizeof(T) - 1));
-  const bool nan = (random & 6) != 0;
-  const Word payload = (Word{ 1 } << (mantissa - 1)) | static_cast<Word>(random >> 3 & 0xffff);
-  return BitCast<T>(static_cast<Word>(infinity | sign | (nan ? payload : 0)));
-}
-
-template <class T>
-T ValueAt(const GoldenArray& array, Place p)
-{
-  p.Step /= array.Hold;
-  // Unsigned, because noise of 64 bits is meant to wrap around.
-  const std::uint64_t number =
-    static_cast<std::uint64_t>(array.Low) +
-    static_cast<std::uint64_t>(array.Factor) * static_cast<std::uint64_t>(PatternAt(array, p));
-  if constexpr (std::is_floating_point_v<T>)
-  {
-    const std::uint64_t random = Mix(array.Seed + 1000003u, NumberOf(p));
-    if (array.NonFiniteOneIn > 0 &&
-        random % static_cast<std::uint64_t>(array.NonFiniteOneIn) == 0 && p.X >= array.QuietBelow)
-    {
-      return NonFinite<T>(random >> 32);
-    }
-    return static_cast<T>(
-      std::ldexp(static_cast<double>(static_cast<std::int64_t>(number)), array.Exponent));
-  }
-  else
-  {
-    return static_cast<T>(number);
-  }
-}
-
-template <class T>
-std::vector<T> ValuesOf(const GoldenCase& series, const GoldenArray& array, int step)
-{
-  const glm::ivec3 n = series.Domain.Samples();
-  std::vector<T> values;
-  for (int z = 0; z < n.z; ++z)
-  {
-    for (int y = 0; y < n.y; ++y)
-    {
-      for (int x = 0; x < n.x; ++x)
-      {
-        for (int c = 0; c < static_cast<int>(array.Components.size()); ++c)
-        {
-          values.push_back(ValueAt<T>(array, { x, y, z, step, c }));
-        }
-      }
-    }
-  }
-  return values;
-}
-
-Grid At(const glm::ivec3& low, const glm::ivec3& samples)
-{
-  Grid grid;
-  grid.Extent = { low, low + samples };
-  return grid;
-}
-
-EncodeOptions Within(double bound, ErrorBoundMode mode, int brickCells)
-{
-  EncodeOptions options;
-  options.ErrorBound = bound;
-  options.Mode = mode;
-  options.BrickCells = brickCells;
-  return options;
-}
-
-GoldenArray Array(const std::string& name, ScalarType type, Pattern pattern, std::int64_t low = 0,
-  std::int64_t factor = 1, int exponent = 0)
-{
-  GoldenArray array;
-  array.Name = name;
-  array.Type = type;
-  array.Pattern = pattern;
-  array.Low = low;
-  array.Factor = factor;
-  array.Exponent = exponent;
-  return array;
-}
 
 /// Every scalar type on a lattice, by an absolute bound.
 GoldenCase Types()
@@ -283,60 +139,11 @@ std::vector<GoldenCase> GoldenCases()
   {
     cases.push_back(flat);
   }
-  return cases;
-}
-
-Bytes GoldenValues(const GoldenCase& series, const GoldenArray& array, int step)
-{
-  return Dispatch(array.Type,
-    [&](auto tag)
-    {
-      using T = typename decltype(tag)::Type;
-      const std::vector<T> values = ValuesOf<T>(series, array, step);
-      Bytes bytes(values.size() * sizeof(T));
-      std::memcpy(bytes.data(), values.data(), bytes.size());
-      return bytes;
-    });
-}
-
-ArrayDescription GoldenDescription(const GoldenCase& series, const GoldenArray& array)
-{
-  ArrayDescription description;
-  description.Name = array.Name;
-  description.Type = array.Type;
-  description.ComponentNames = array.Components;
-  const bool needed =
-    series.Options.Mode == ErrorBoundMode::RelativeToSeriesRange && series.Options.ErrorBound > 0;
-  if (!array.Promised && !needed)
+  for (const GoldenCase& group : GoldenGroupCases())
   {
-    return description;
+    cases.push_back(group);
   }
-  Dispatch(array.Type,
-    [&](auto tag)
-    {
-      using T = typename decltype(tag)::Type;
-      const std::size_t components = array.Components.size();
-      description.SeriesRanges.resize(components);
-      for (int step = 0; step < series.Steps; ++step)
-      {
-        const std::vector<T> values = ValuesOf<T>(series, array, step);
-        for (std::size_t c = 0; c < components; ++c)
-        {
-          std::vector<T> own;
-          for (std::size_t i = c; i < values.size(); i += components)
-          {
-            own.push_back(values[i]);
-          }
-          description.SeriesRanges[c].Include(RangeOf(own));
-        }
-      }
-    });
-  return description;
-}
-
-double GoldenTime(int step)
-{
-  return std::ldexp(static_cast<double>(step) * (step + 3), -2) - 1.0;
+  return cases;
 }
 
 } // namespace banyan::testing

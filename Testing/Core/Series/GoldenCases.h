@@ -17,7 +17,8 @@ enum class GoldenPattern
   Constant, ///< 0 everywhere
   Bumps,    ///< smooth: a sum of three parabolas that repeat, and move with the steps
   Noise,    ///< independent, even over 2^Bits numbers
-  Picks     ///< independent, one of three numbers far apart: prediction from neighbours does harm
+  Picks,    ///< independent, one of three numbers far apart: prediction from neighbours does harm
+  Fates     ///< every 8 samples along x are best predicted in a way of their own
 };
 
 /// One array of a golden series. A sample is number = Low + Factor * pattern, all in integers; of a
@@ -36,8 +37,11 @@ struct GoldenArray
   int QuietBelow = 0;     ///< samples with x below have pattern 0: macro voxels
   int Hold = 1;           ///< steps for which values stay as they are: unchanged bricks
   int NonFiniteOneIn = 0; ///< of real types: one sample in so many is NaN or infinite; 0: none
-  unsigned Seed = 1;      ///< arrays with equal numbers and seeds share their payloads
-  bool Promised = true;   ///< whether the encoder is told the range beforehand
+  int SpecialOneIn = 0;   ///< one sample in so many has the value Special; 0: none
+  double Special = 0;
+  std::int64_t Rise = 0; ///< added per step to the number
+  unsigned Seed = 1;     ///< arrays with equal numbers and seeds share their payloads
+  bool Promised = true;  ///< whether the encoder is told the range beforehand
 };
 
 /// One golden series: everything that the encoder is given.
@@ -52,6 +56,9 @@ struct GoldenCase
 
 /// The list; it does not depend on the version of the format.
 std::vector<GoldenCase> GoldenCases();
+
+/// Those of them that came with version 2: groups of steps, all ways of prediction, quantizers.
+std::vector<GoldenCase> GoldenGroupCases();
 
 /// Values of one array at a step, `[z][y][x][component]`, as bytes.
 Bytes GoldenValues(const GoldenCase& series, const GoldenArray& array, int step);

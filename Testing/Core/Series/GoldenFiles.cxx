@@ -111,6 +111,12 @@ std::string EncodingText(const SeriesIndex& index)
       << ", macro voxels " << s.MacroVoxelBricks << ", unchanged " << s.UnchangedBricks
       << ", merged " << s.MergedBricks << ", raw " << s.RawBricks << ", payload bytes "
       << s.PayloadBytes << ", table bytes " << s.TableBytes;
+  if (index.FormatVersion > 1)
+  {
+    out << ", blocks " << s.Blocks << ", empty " << s.EmptyBlocks << ", exceptions "
+        << s.ExceptionVoxels << ", chains " << s.ChainSum << " over " << s.ChainBricks
+        << ", longest " << s.ChainMost;
+  }
   return out.str();
 }
 
@@ -123,6 +129,37 @@ std::string ArrayText(const ArrayIndex& array)
     text += " " + TextOf(magnitude);
   }
   return text;
+}
+
+/// What the quantizer of a component was told, as far as it was told anything.
+std::string QuantizerText(const ComponentIndex& c)
+{
+  auto out = Stream();
+  if (c.RangeFrom != RangeRule::Source::Data)
+  {
+    out << ", range from " << static_cast<int>(c.RangeFrom);
+  }
+  if (c.ClampOutside)
+  {
+    out << ", clamped " << c.ClampedCount;
+  }
+  for (const double value : c.FillValues)
+  {
+    out << ", fill value " << value;
+  }
+  if (!c.FillValues.empty())
+  {
+    out << " in " << c.FillCount;
+  }
+  for (const OpacityKnot& knot : c.Opacity)
+  {
+    out << ", opacity " << knot.Value << ":" << knot.Opacity;
+  }
+  if (!c.Opacity.empty())
+  {
+    out << ", invisible " << c.InvisibleCount << ", weighted " << c.SumWeightedError;
+  }
+  return out.str();
 }
 
 std::string ComponentText(const ComponentIndex& c, const MaskRange& masks)
@@ -140,8 +177,9 @@ std::string ComponentText(const ComponentIndex& c, const MaskRange& masks)
     {
       out << " " << knot.X << ":" << knot.Y;
     }
+    out << ", error transformed " << c.MeasuredMaxErrorTransformed;
   }
-  return out.str();
+  return out.str() + QuantizerText(c);
 }
 
 std::string FieldText(const SeriesFile& file, const FieldKey& field)
