@@ -1,9 +1,7 @@
-#include "Codec/BlockEncoder.h"
+#include "Codec/BlockJob.h"
 
-#include "Base/ThreadPool.h"
 #include "Codec/Residual.h"
 
-#include <cmath>
 #include <limits>
 #include <memory>
 
@@ -12,142 +10,11 @@
 #include <hwy/foreach_target.h>
 
 #include "Codec/BlockUnits-inl.h"
-
-#ifndef banyan_Codec_BlockEncoder_once
-#define banyan_Codec_BlockEncoder_once
-namespace banyan
-{
-
-/// What is kept of a block between its edges, faces and interior.
-struct BlockUnderway
-{
-  std::vector<std::uint8_t> Magnitudes; ///< 3 edges, 3 faces
-  bool Rough = false;                   ///< some residual is not zero
-};
-
-struct PlaneJob
-{
-  const PlaneToEncode* Plane;
-  PlaneNumbers* Decoded;
-  std::vector<BlockTokens>* Blocks;
-  std::vector<BlockUnderway>* Underway;
-};
-
-} // namespace banyan
-#endif
+#include "Codec/RowEncoder-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
-
-/// What is written down of a unit.
-template <int B>
-struct UnitTokens
-{
-  // Every sample has a token at most, and every row a flag.
-  std::uint16_t Tokens[B * B * B + 3 * B * B];
-  std::uint32_t Extra[B * B * B];
-  std::uint8_t Rows[6 * B * B];
-  std::size_t TokenCount = 0, ExtraCount = 0, RowCount = 0;
-
-  void AppendTo(BlockTokens& block)
-  {
-    block.Tokens.insert(block.Tokens.end(), this->Tokens, this->Tokens + this->TokenCount);
-    block.Extra.insert(block.Extra.end(), this->Extra, this->Extra + this->ExtraCount);
-    block.Rows.insert(block.Rows.end(), this->Rows, this->Rows + this->RowCount);
-    this->TokenCount = 0;
-    this->ExtraCount = 0;
-    this->RowCount = 0;
-  }
-};
-
-/// Quantizes the residuals of rows and writes them down.
-template <int B>
-struct RowEncoder
-{
-  const std::int32_t* W;      ///< of the unit
-  const std::int32_t* Target; ///< same layout, what W is to become
-  std::int32_t CoarseBin, FineBin;
-  UnitTokens<B>* Out;
-  bool* Rough;
-
-  HWY_INLINE void operator()(const Row& row, std::int32_t* w, const std::int32_t* prediction,
-    std::uint8_t* m, const std::uint8_t* classes, bool rough) const
-  {
-    if (row.Coded == 0)
-    {
-      SetLanes<B>(row.Lanes, prediction, w);
-      return;
-    }
-    const std::int32_t bin = row.Stride == 2 ? this->CoarseBin : this->FineBin;
-    const std::int32_t* target = this->Target + (w - this->W);
-    alignas(64) std::int32_t residuals[B];
-    Quantize(target, prediction, bin, residuals);
-    const int last = row.Lanes.First + (row.Coded - 1) * row.Lanes.Step;
-    alignas(64) std::uint32_t codes[B];
-    std::uint32_t any = 0;
-    const std::int32_t* mask = LaneMask<B>(row.Lanes);
-    for (int x = 0; x < B; ++x)
-    {
-      residuals[x] = x <= last ? residuals[x] & mask[x] : 0;
-      codes[x] = residual::Zigzag(residuals[x]);
-      any |= codes[x];
-    }
-    SetLanes<B>(row.Lanes, prediction, residuals, bin, w);
-    UnitTokens<B>& out = *this->Out;
-    if (!rough)
-    {
-      out.Tokens[out.TokenCount++] = static_cast<std::uint16_t>(
-        (residual::FlagContext + row.Band) << 8 | (any == 0 ? 1 : 0));
-      out.Rows[out.RowCount++] = 1;
-      if (any == 0)
-      {
-        return;
-      }
-    }
-    *this->Rough |= any != 0;
-    const int context = row.Band * residual::Classes;
-    out.Rows[out.RowCount++] = static_cast<std::uint8_t>(row.Coded);
-    std::uint16_t* tokens = out.Tokens + out.TokenCount;
-    out.TokenCount += static_cast<std::size_t>(row.Coded);
-    if (any < 32) // so is each code then
-    {
-      for (int x = row.Lanes.First; x <= last; x += row.Lanes.Step)
-      {
-        m[x] = residual::MagnitudeOf[codes[x]];
-        *tokens++ = static_cast<std::uint16_t>(
-          static_cast<std::uint32_t>(context + classes[x]) << 8 | codes[x]);
-      }
-      return;
-    }
-    for (int x = row.Lanes.First; x <= last; x += row.Lanes.Step)
-    {
-      std::uint32_t extra = 0;
-      const int symbol = residual::SymbolOf(codes[x], extra);
-      m[x] = residual::Magnitude(codes[x]);
-      *tokens++ = static_cast<std::uint16_t>((context + classes[x]) << 8 | symbol);
-      if (symbol >= residual::DirectSymbols)
-      {
-        out.Extra[out.ExtraCount++] = extra;
-      }
-    }
-  }
-
-  /// Nearest multiple of the bin. The bin is odd, so nothing lies half way, and double precision is
-  /// far more exact than what is left to the next half.
-  static HWY_INLINE void Quantize(const std::int32_t* HWY_RESTRICT target,
-    const std::int32_t* HWY_RESTRICT prediction, std::int32_t bin,
-    std::int32_t* HWY_RESTRICT residuals)
-  {
-    const double inverse = 1.0 / bin;
-    constexpr double rounder = 6755399441055744.0; // 1.5 * 2^52: adding it rounds
-    for (int x = 0; x < B; ++x)
-    {
-      const double rest = static_cast<std::int32_t>(U(target[x]) - U(prediction[x]));
-      residuals[x] = static_cast<std::int32_t>((rest * inverse + rounder) - rounder);
-    }
-  }
-};
 
 template <int B>
 struct BlockCoder
@@ -215,9 +82,8 @@ struct BlockCoder
     StoreUnit<B, D>(unit.W, from, plane.Least, plane.Greatest, samples);
   }
 
-  /// One phase (0: edges, 1: faces, 2: interior) of the block at a position. Positions may lie one
-  /// beyond the last block: what the field's last blocks share with none is predicted only.
-  static void Encode(const PlaneJob& job, const glm::ivec3& position, int phase)
+  /// See EncodeBlock.
+  static void Encode(const PlaneJob& job, const glm::ivec3& position, BlockPhase phase)
   {
     const glm::ivec3 blocks = job.Decoded->Blocks;
     const bool beyond = position.x == blocks.x || position.y == blocks.y || position.z == blocks.z;
@@ -232,8 +98,9 @@ struct BlockCoder
     {
       return;
     }
-    for (int unit = phase == 0 ? 0 : phase == 1 ? 3 : 6; unit < (phase == 0 ? 3 : phase == 1 ? 6 : 7);
-         ++unit)
+    const int first = phase == BlockPhase::Edges ? 0 : phase == BlockPhase::Faces ? 3 : 6;
+    const int end = phase == BlockPhase::Interior ? 7 : first + 3;
+    for (int unit = first; unit < end; ++unit)
     {
       const int mask = UnitMasks[unit];
       if (((mask & 1) != 0 && position.x == blocks.x) ||
@@ -242,13 +109,13 @@ struct BlockCoder
       {
         continue;
       }
-      if (phase == 0)
+      if (phase == BlockPhase::Edges)
       {
         work.Edge.ClearMagnitudes();
         EncodeUnit<1>(job, position, mask, out, !beyond, work.Edge, work.EdgeTarget, underway.Rough);
         Keep(underway, unit, work.Edge.M(), 1);
       }
-      else if (phase == 1)
+      else if (phase == BlockPhase::Faces)
       {
         work.Face.ClearMagnitudes();
         Recall(underway, mask, work.Face.M(), beyond);
@@ -417,9 +284,9 @@ struct BlockCoder
 };
 
 template <int B>
-void EncodeBlockOf(const PlaneJob& job, const glm::ivec3& position, int phase)
+void EncodeBlockOf(const PlaneJob& job, const glm::ivec3& position, BlockPhase phase)
 {
-  if (phase < 0)
+  if (phase == BlockPhase::Choose)
   {
     BlockCoder<B>::Choose(job, position);
     return;
@@ -427,7 +294,7 @@ void EncodeBlockOf(const PlaneJob& job, const glm::ivec3& position, int phase)
   BlockCoder<B>::Encode(job, position, phase);
 }
 
-void EncodeBlockHere(const PlaneJob& job, const glm::ivec3& position, int phase)
+void EncodeBlockHere(const PlaneJob& job, const glm::ivec3& position, BlockPhase phase)
 {
   switch (job.Decoded->Edge)
   {
@@ -451,148 +318,9 @@ namespace banyan
 
 HWY_EXPORT(EncodeBlockHere);
 
-namespace
+void EncodeBlock(const PlaneJob& job, const glm::ivec3& position, BlockPhase phase)
 {
-
-void PlaceCoarser(const PlaneNumbers& coarser, PlaneNumbers& decoded)
-{
-  const glm::ivec3 last = coarser.Samples - 1;
-  for (int z = 0; z < decoded.Padded.z; z += 4)
-  {
-    for (int y = 0; y < decoded.Padded.y; y += 4)
-    {
-      const std::int64_t from =
-        coarser.IndexOf({ 0, std::min(y / 4, last.y), std::min(z / 4, last.z) });
-      std::int32_t* row = decoded.Numbers.data() + decoded.IndexOf({ 0, y, z });
-      for (int x = 0; x < decoded.Padded.x; x += 4)
-      {
-        row[x] = coarser.Numbers[static_cast<std::size_t>(from + std::min(x / 4, last.x))];
-      }
-    }
-  }
-}
-
-/// Finds the blocks whose samples are all the same, and places them.
-void PlaceUniform(const PlaneNumbers& target, const glm::ivec3& position, BlockTokens& block,
-  PlaneNumbers& decoded)
-{
-  const glm::ivec3 low = position * target.Edge;
-  const glm::ivec3 high = low + target.Edge;
-  const std::int32_t value = target.Numbers[static_cast<std::size_t>(target.IndexOf(low))];
-  for (int z = low.z; z < high.z; ++z)
-  {
-    for (int y = low.y; y < high.y; ++y)
-    {
-      const std::int32_t* row = target.Numbers.data() + target.IndexOf({ low.x, y, z });
-      for (int x = 0; x < target.Edge; ++x)
-      {
-        if (row[x] != value)
-        {
-          return;
-        }
-      }
-    }
-  }
-  block.Uniform = true;
-  block.Value = value;
-  for (int z = low.z; z < high.z; ++z)
-  {
-    for (int y = low.y; y < high.y; ++y)
-    {
-      std::int32_t* row = decoded.Numbers.data() + decoded.IndexOf({ low.x, y, z });
-      std::fill(row, row + target.Edge, value);
-    }
-  }
-}
-
-/// Finds the blocks that may stay as they are in reference A, and places them.
-void PlaceSame(const PlaneToEncode& plane, const glm::ivec3& position, BlockTokens& block,
-  PlaneNumbers& decoded)
-{
-  const PlaneNumbers& target = *plane.Target;
-  const glm::ivec3 low = position * target.Edge;
-  const glm::ivec3 high = low + target.Edge;
-  const glm::ivec3 limit = target.Samples;
-  const std::int64_t most = plane.FineBin / 2;
-  for (int z = low.z; z < std::min(high.z, limit.z); ++z)
-  {
-    for (int y = low.y; y < std::min(high.y, limit.y); ++y)
-    {
-      const std::int32_t* row = target.Numbers.data() + target.IndexOf({ 0, y, z });
-      const std::int32_t* before = plane.A->Numbers.data() + plane.A->IndexOf({ 0, y, z });
-      for (int x = low.x; x < std::min(high.x, limit.x); ++x)
-      {
-        const std::int64_t rest = std::int64_t{ row[x] } - before[x];
-        if (rest > most || rest < -most)
-        {
-          return;
-        }
-      }
-    }
-  }
-  block.Same = true;
-  for (int z = low.z; z < high.z; ++z)
-  {
-    for (int y = low.y; y < high.y; ++y)
-    {
-      const std::int32_t* from = plane.A->Numbers.data() + plane.A->IndexOf({ low.x, y, z });
-      std::copy(from, from + target.Edge, decoded.Numbers.data() + decoded.IndexOf({ low.x, y, z }));
-    }
-  }
-}
-
-glm::ivec3 PositionIn(const glm::ivec3& size, std::int64_t index)
-{
-  return { static_cast<int>(index % size.x), static_cast<int>(index / size.x % size.y),
-    static_cast<int>(index / size.x / size.y) };
-}
-
-} // namespace
-
-PlaneNumbers::PlaneNumbers(const glm::ivec3& samples, int edge)
-  : Edge(edge)
-  , Samples(samples)
-  , Blocks((samples + edge - 1) / edge)
-  , Padded(Blocks * edge + 1)
-  , Numbers(static_cast<std::size_t>(std::int64_t{ Padded.x } * Padded.y * Padded.z))
-{
-}
-
-glm::ivec3 CoarserSamples(const glm::ivec3& samples)
-{
-  return (samples - 1 + 3) / 4 + 1;
-}
-
-void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded,
-  std::vector<BlockTokens>& blocks, ThreadPool& pool)
-{
-  const PlaneNumbers& target = *plane.Target;
-  decoded = PlaneNumbers(target.Samples, target.Edge);
-  blocks.clear();
-  blocks.resize(static_cast<std::size_t>(target.BlockCount()));
-  PlaceCoarser(*plane.Coarser, decoded);
-  pool.ParallelFor(target.BlockCount(),
-    [&](std::int64_t i)
-    {
-      const glm::ivec3 position = PositionIn(target.Blocks, i);
-      BlockTokens& block = blocks[static_cast<std::size_t>(i)];
-      PlaceUniform(target, position, block, decoded);
-      if (!block.Uniform && plane.A != nullptr)
-      {
-        PlaceSame(plane, position, block, decoded);
-      }
-    });
-  std::vector<BlockUnderway> underway(blocks.size());
-  const PlaneJob job{ &plane, &decoded, &blocks, &underway };
-  pool.ParallelFor(target.BlockCount(), [&](std::int64_t i)
-    { HWY_DYNAMIC_DISPATCH(EncodeBlockHere)(job, PositionIn(target.Blocks, i), -1); });
-  const glm::ivec3 extended = target.Blocks + 1;
-  const std::int64_t count = std::int64_t{ extended.x } * extended.y * extended.z;
-  for (int phase = 0; phase < 3; ++phase)
-  {
-    pool.ParallelFor(count, [&](std::int64_t i)
-      { HWY_DYNAMIC_DISPATCH(EncodeBlockHere)(job, PositionIn(extended, i), phase); });
-  }
+  HWY_DYNAMIC_DISPATCH(EncodeBlockHere)(job, position, phase);
 }
 
 } // namespace banyan

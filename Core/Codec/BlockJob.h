@@ -1,0 +1,43 @@
+#ifndef banyan_Codec_BlockJob_h
+#define banyan_Codec_BlockJob_h
+
+#include "Codec/BlockEncoder.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace banyan
+{
+
+/// What is kept of a block between its edges, faces and interior.
+struct BlockUnderway
+{
+  std::vector<std::uint8_t> Magnitudes; ///< 3 edges, 3 faces
+  bool Rough = false;                   ///< some residual is not zero
+};
+
+struct PlaneJob
+{
+  const PlaneToEncode* Plane;
+  PlaneNumbers* Decoded;
+  std::vector<BlockTokens>* Blocks;
+  std::vector<BlockUnderway>* Underway;
+};
+
+/// What a block is encoded in. Each phase needs those before of all blocks, because units begin at
+/// what neighbours own.
+enum class BlockPhase
+{
+  Choose, ///< of a mode
+  Edges,
+  Faces,
+  Interior
+};
+
+/// Runs a phase of the block at a position, with the instructions of this processor. Positions may
+/// lie one beyond the last block: what the field's last blocks share with none is predicted only.
+void EncodeBlock(const PlaneJob& job, const glm::ivec3& position, BlockPhase phase);
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,229 @@
+#include "Series/BrickDecoding.h"
+
+#include "Series/Exceptions.h"
+#include "Series/Quantizer.h"
+
+#include <algorithm>
+
+namespace banyan
+{
+namespace
+{
+
+bool Exceptional(GroupField& group, int step, const PlaneRegion& region)
+{
+  bool exceptional = false;
+  ForEachBlock(region, [&](const glm::ivec3& block)
+    { exceptional = exceptional || EntryOf(group, step, region, block).Exceptions.Bytes > 0; });
+  return exceptional;
+}
+
+/// Whether all samples of a region lie next to each other in the box of its first block.
+bool InOneBox(const PlaneRegion& region, int edge)
+{
+  bool inside = region.Stride == 1;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int low = region.FirstBlock[a] * edge;
+    inside = inside && region.Low[a] >= low &&
+             region.Low[a] + region.Count[a] - 1 <= std::min(low + edge, region.Last[a]);
+  }
+  return inside;
+}
+
+/// The usual case of Decode: one box, no exceptions.
+/// @param skip samples of the brick before the first one that is wanted, and @param size how many
+/// are, axes as the data has them
+template <class T>
+void DecodeBox(OpenGroup& open, int step, const PlaneRegion& region,
+  const glm::ivec3& skip, const glm::ivec3& size, const glm::i64vec3& strides, T* values)
+{
+  GroupField& group = *open.Field;
+  const LatticeDecoder<T>& decoder = DecoderOf<T>(open);
+  const LatticeCache::Box box = group.Box(step, region.Plane, region.FirstBlock);
+  const std::ptrdiff_t n = group.Edge() + 1;
+  const std::ptrdiff_t pitch[3] = { 1, n, n * n };
+  std::ptrdiff_t first = 0;
+  std::ptrdiff_t stride[3] = {};
+  for (int a = 0; a < 3; ++a)
+  {
+    const int real = group.Head().Axes[static_cast<std::size_t>(a)];
+    stride[real] = pitch[a];
+    first += (region.Low[a] - region.FirstBlock[a] * group.Edge() + skip[real]) * pitch[a];
+  }
+  box->Visit(
+    [&](const auto* numbers, std::int32_t base)
+    {
+      for (int z = 0; z < size.z; ++z)
+      {
+        for (int y = 0; y < size.y; ++y)
+        {
+          decoder.Decode(numbers + first + z * stride[2] + y * stride[1], base, stride[0],
+            static_cast<std::size_t>(size.x), values + z * strides.z + y * strides.y, strides.x);
+        }
+      }
+    });
+}
+
+/// @return false when there was nothing to decode: all samples are one value
+template <class T>
+bool Decode(const OpenSeries& series, OpenGroup& open, const FieldKey& field, std::int64_t brick,
+  T* values)
+{
+  GroupField& group = *open.Field;
+  const int step = field.Step - group.Segment().FirstStep();
+  const LatticeDecoder<T>& decoder = DecoderOf<T>(open);
+  const PlaneRegion region = RegionOf(series, open, field, brick);
+  const group::NodeEntry& entry = group.Step(step).Levels[static_cast<std::size_t>(
+    field.Level)][static_cast<std::size_t>(brick)];
+  const std::size_t count = static_cast<std::size_t>(region.Count.x) *
+                            static_cast<std::size_t>(region.Count.y) *
+                            static_cast<std::size_t>(region.Count.z);
+  if (entry.Uniform)
+  {
+    std::fill(values, values + count,
+      entry.Explicit ? ValueFromReal<T>(entry.LowValue) : decoder.ValueOf(entry.Low));
+    return false;
+  }
+  const bool exceptional = Exceptional(group, step, region);
+  if (!exceptional && InOneBox(region, group.Edge()))
+  {
+    const glm::ivec3 size =
+      series.Layouts[static_cast<std::size_t>(field.Level)].SamplesOf(brick).Size();
+    DecodeBox(open, step, region, glm::ivec3(0), size,
+      { 1, size.x, std::int64_t{ size.x } * size.y }, values);
+    return true;
+  }
+  thread_local std::vector<std::int32_t> numbers;
+  thread_local std::vector<std::uint32_t> offsets;
+  thread_local std::vector<T> ordered;
+  offsets.resize(count);
+  ordered.resize(count);
+  const int edge = group.Edge();
+  const int n = edge + 1;
+  const std::uint32_t least = static_cast<std::uint32_t>(group.Head().Least);
+  ForEachBlock(region,
+    [&](const glm::ivec3& block)
+    {
+      // Places of the region that this block's box holds and no earlier block's does.
+      glm::ivec3 from(0), to(0);
+      for (int a = 0; a < 3; ++a)
+      {
+        const int low = block[a] * edge + (block[a] > region.FirstBlock[a] ? 1 : 0);
+        from[a] = std::max(0, (low - region.Low[a] + region.Stride - 1) / region.Stride);
+        to[a] = region.Count[a] - 1;
+        while (to[a] >= from[a] && region.SampleAt(a, to[a]) > block[a] * edge + edge)
+        {
+          --to[a];
+        }
+      }
+      if (from.x > to.x || from.y > to.y || from.z > to.z)
+      {
+        return; // only the block after the last face: its samples are in the box before
+      }
+      numbers.resize(static_cast<std::size_t>(n) * n * n);
+      group.Box(step, region.Plane, block)->CopyTo(numbers.data());
+      const glm::ivec3 origin = block * edge;
+      int columns[2 * 64 + 1]; // places per row: at most a brick of the largest edge
+      for (int x = from.x; x <= to.x; ++x)
+      {
+        columns[x] = region.SampleAt(0, x) - origin.x;
+      }
+      for (int z = from.z; z <= to.z; ++z)
+      {
+        for (int y = from.y; y <= to.y; ++y)
+        {
+          const std::int32_t* row =
+            numbers.data() +
+            ((region.SampleAt(2, z) - origin.z) * n + region.SampleAt(1, y) - origin.y) * n;
+          std::uint32_t* out =
+            offsets.data() + (static_cast<std::size_t>(z) * region.Count.y + y) * region.Count.x;
+          for (int x = from.x; x <= to.x; ++x)
+          {
+            out[x] = static_cast<std::uint32_t>(row[columns[x]]) - least;
+          }
+        }
+      }
+    });
+  decoder.Decode(group.Head().Least, offsets.data(), count, ordered.data());
+  if (exceptional)
+  {
+    const std::uint32_t whole = static_cast<std::uint32_t>(edge) * edge * edge;
+    ForEachBlock(region,
+      [&](const glm::ivec3& block)
+      {
+        const group::BlockEntry& payload = EntryOf(group, step, region, block);
+        if (payload.Exceptions.Bytes > 0)
+        {
+          PlaceExceptions(region, edge, block,
+            UnpackExceptions<T>(group.Segment().Payload(payload.Exceptions),
+              payload.Exceptions.Bytes, whole),
+            ordered.data());
+        }
+      });
+  }
+  // From the codec's order of axes to the data's; the values are written one after the other.
+  const std::int64_t strides[3] = { 1, region.Count.x,
+    std::int64_t{ region.Count.x } * region.Count.y };
+  std::int64_t stride[3] = {};
+  int size[3] = {};
+  for (int a = 0; a < 3; ++a)
+  {
+    const std::size_t real = group.Head().Axes[static_cast<std::size_t>(a)];
+    stride[real] = strides[a];
+    size[real] = region.Count[a];
+  }
+  for (int z = 0; z < size[2]; ++z)
+  {
+    for (int y = 0; y < size[1]; ++y)
+    {
+      const T* from = ordered.data() + z * stride[2] + y * stride[1];
+      for (int x = 0; x < size[0]; ++x)
+      {
+        values[x] = from[x * stride[0]];
+      }
+      values += size[0];
+    }
+  }
+  return true;
+}
+
+} // namespace
+
+bool DecodeWhole(const OpenSeries& series, OpenGroup& open, const FieldKey& field,
+  std::int64_t brick, void* values)
+{
+  bool decoded = false;
+  Dispatch(open.Type,
+    [&](auto tag)
+    {
+      using T = typename decltype(tag)::Type;
+      decoded = Decode<T>(series, open, field, brick, static_cast<T*>(values));
+    });
+  return decoded;
+}
+
+bool DecodeSome(const OpenSeries& series, OpenGroup& open, const FieldKey& field,
+  std::int64_t brick, const Box& part, const glm::i64vec3& stride, void* first)
+{
+  GroupField& group = *open.Field;
+  const int step = field.Step - group.Segment().FirstStep();
+  const PlaneRegion region = RegionOf(series, open, field, brick);
+  const std::size_t level = static_cast<std::size_t>(field.Level);
+  const group::NodeEntry& entry =
+    group.Step(step).Levels[level][static_cast<std::size_t>(brick)];
+  if (entry.Uniform || !InOneBox(region, group.Edge()) || Exceptional(group, step, region))
+  {
+    return false;
+  }
+  const glm::ivec3 skip = part.Lo - series.Layouts[level].SamplesOf(brick).Lo;
+  Dispatch(open.Type,
+    [&](auto tag)
+    {
+      using T = typename decltype(tag)::Type;
+      DecodeBox<T>(open, step, region, skip, part.Size(), stride, static_cast<T*>(first));
+    });
+  return true;
+}
+
+} // namespace banyan
