@@ -2,8 +2,9 @@
 
 #include "Codec/Residual.h"
 
-#include <limits>
+#include <algorithm>
 #include <memory>
+#include <utility>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "Codec/BlockEncoder.cxx"
@@ -11,6 +12,7 @@
 
 #include "Codec/BlockUnits-inl.h"
 #include "Codec/RowEncoder-inl.h"
+#include "Codec/RowTrial-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
@@ -258,28 +260,51 @@ struct BlockCoder
                                              plane.Target->IndexOf(origin),
       StridesOf(*plane.Target) };
     block::Scratch<B, 3>& scratch = Work().Interior;
-    double best = std::numeric_limits<double>::infinity();
+    std::vector<std::pair<double, block::Mode>> costs;
     block::Reference loaded = block::Reference::None;
-    bool first = true;
     for (const block::Mode& mode : plane.Candidates)
     {
       if (mode.From != block::Reference::None && (plane.A == nullptr || plane.B == nullptr))
       {
         continue;
       }
-      if (first || mode.From != loaded)
+      if (costs.empty() || mode.From != loaded)
       {
         LoadUnit<B, 3>(wanted, ReferencesOf(plane, mode.From, origin), scratch.W());
         loaded = mode.From;
-        first = false;
       }
-      const double cost = Estimate(scratch.W(), mode.By, plane.FineBin);
-      if (cost < best)
-      {
-        best = cost;
-        out.Mode = static_cast<std::uint8_t>(block::NumberOf(mode));
-      }
+      costs.emplace_back(Estimate(scratch.W(), mode.By, plane.FineBin), mode);
     }
+    const std::size_t tried = static_cast<std::size_t>(std::max(plane.Trials, 1));
+    std::stable_sort(costs.begin(), costs.end(),
+      [](const auto& a, const auto& b) { return a.first < b.first; });
+    costs.resize(std::min(costs.size(), tried));
+    for (auto& [cost, mode] : costs)
+    {
+      cost = costs.size() > 1 ? TrialCost(plane, wanted, mode, origin) : 0.0;
+    }
+    const auto best = std::min_element(costs.begin(), costs.end(),
+      [](const auto& a, const auto& b) { return a.first < b.first; });
+    out.Mode = static_cast<std::uint8_t>(block::NumberOf(best->second));
+  }
+
+  /// What the interior of a block would cost, with borders as they are to be in place of what they
+  /// will have been decoded to.
+  static double TrialCost(const PlaneToEncode& plane, const View<const std::int32_t>& wanted,
+    const block::Mode& mode, const glm::ivec3& origin)
+  {
+    block::Scratch<B, 3>& scratch = Work().Interior;
+    block::Scratch<B, 3>& target = Work().InteriorTarget;
+    const References from = ReferencesOf(plane, mode.From, origin);
+    LoadUnit<B, 3>(wanted, from, target.W());
+    LoadUnit<B, 3>(wanted, from, scratch.W());
+    scratch.ClearMagnitudes();
+    block::Unit<B> unit = scratch.Whole();
+    unit.Limit = plane.Target->Samples - 1 - origin;
+    std::int64_t cost = 0;
+    RunPasses<B, 3>(unit, mode.By,
+      RowTrial<B>{ unit.W, target.W(), plane.CoarseBin, plane.FineBin, &cost });
+    return static_cast<double>(cost);
   }
 };
 

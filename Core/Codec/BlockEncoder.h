@@ -63,6 +63,7 @@ struct PlaneToEncode
   std::int32_t CoarseBin = 1, FineBin = 1;
   std::int32_t Least = 0, Greatest = 0;
   std::vector<block::Mode> Candidates; ///< to choose from; at least one without references
+  int Trials = 1; ///< how many of them, those that look best, are encoded to see what they cost
 };
 
 /// Codes all blocks of a plane.

@@ -146,6 +146,9 @@ void Encoder<T>::EncodePlanes(
     plane.Least = this->Out.Head.Least;
     plane.Greatest = this->Out.Head.Greatest;
     plane.Candidates = CandidatesOf(this->Field.Profile);
+    plane.Trials = this->Field.Profile == EncodeProfile::Compact  ? 4
+                   : this->Field.Profile == EncodeProfile::Fast ? 1
+                                                                : 2;
     EncodePlane(plane, work.Decoded[p], work.Tokens[p], this->Pool);
     tell(static_cast<double>(targets.size() - 1 - p) / static_cast<double>(targets.size()));
   }
