@@ -35,7 +35,7 @@ public:
     {
       this->Buffer.resize(bytes + Slack);
     }
-    std::memcpy(this->Buffer.data(), data, bytes);
+    std::copy_n(data, bytes, this->Buffer.data()); // of no bytes data may be null
     std::memset(this->Buffer.data() + bytes, 0, Slack);
     this->End = bytes * 8;
     this->Overrun = false;

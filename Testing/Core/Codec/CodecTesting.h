@@ -40,7 +40,9 @@ PlaneNumbers PlaneOf(const glm::ivec3& samples, int edge, Function&& f)
 inline std::int32_t MixedNumber(int x, int y, int z, unsigned seed)
 {
   std::uint32_t noise =
-    static_cast<std::uint32_t>(x * 73856093 ^ y * 19349663 ^ z * 83492791) + seed;
+    (static_cast<std::uint32_t>(x) * 73856093u ^ static_cast<std::uint32_t>(y) * 19349663u ^
+      static_cast<std::uint32_t>(z) * 83492791u) +
+    seed;
   noise = (noise ^ noise >> 15) * 2654435761u;
   noise ^= noise >> 13;
   const double smooth =
@@ -80,8 +82,8 @@ inline EncodedPlane EncodeWhole(const PlaneToEncode& plane, int threads = 2)
   for (const BlockTokens& block : result.Blocks)
   {
     result.Payloads.push_back(block.Tokens.empty()
-        ? std::vector<std::uint8_t>{}
-        : tables.Encode(block.Tokens, block.Extra, block.Rows));
+                                ? std::vector<std::uint8_t>{}
+                                : tables.Encode(block.Tokens, block.Extra, block.Rows));
   }
   return result;
 }

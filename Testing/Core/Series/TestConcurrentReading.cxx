@@ -78,5 +78,58 @@ TEST(ConcurrentReading, SixteenThreadsReadWhatOneReads)
   EXPECT_EQ(wrong, 0);
 }
 
+/// The same of whole fields at once, which take other ways past the cache of boxes, while others
+/// read the same through one cache of bricks.
+TEST(ConcurrentReading, WholeFieldsAndBricksAtTheSameTime)
+{
+  const TemporaryFolder folder;
+  const std::string path = folder / "s.banyan";
+  const Grid grid = GridOf(18, 17, 11);
+  const auto steps = Sample<float>(grid, 6, Wavy<float>);
+  EncodeOptions options;
+  options.KeyframeInterval = 3;
+  options.BrickCells = 8;
+  Encode(path, grid, steps, options);
+  std::vector<FieldKey> fields;
+  std::vector<std::vector<float>> expected;
+  {
+    const auto file = SeriesFile::Open(path);
+    for (int step = 0; step < 6; ++step)
+    {
+      for (int level = 0; level < file->Index().Levels; ++level)
+      {
+        fields.push_back({ step, 0, 0, level });
+        expected.push_back(ReadAll<float>(*file, fields.back()));
+      }
+    }
+  }
+  const auto file = SeriesFile::Open(path);
+  BrickCache cache(20000); // bricks come and go
+  std::atomic<int> wrong{ 0 };
+  std::vector<std::thread> threads;
+  for (unsigned t = 0; t < 16; ++t)
+  {
+    threads.emplace_back(
+      [&, t]
+      {
+        for (std::size_t i = 0; i < fields.size(); ++i)
+        {
+          const std::size_t at = (i * (2 * t / 4 + 1) + 5 * t) % fields.size();
+          const Box whole = { glm::ivec3(0), file->Layout(fields[at].Level).Samples() };
+          std::vector<float> values(expected[at].size());
+          BrickCache own(std::uint64_t{ 1 } << 20);
+          ReadRegion(t % 2 == 0 ? own : cache, *file, fields[at], whole, values.data(), 1, 0);
+          wrong +=
+            std::memcmp(values.data(), expected[at].data(), values.size() * sizeof(float)) != 0;
+        }
+      });
+  }
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  EXPECT_EQ(wrong, 0);
+}
+
 } // namespace
 } // namespace banyan::testing
