@@ -1,4 +1,5 @@
 #include "Base/Error.h"
+#include "Cache/BrickCache.h"
 #include "GroupFiles.h"
 #include "Series/Hash.h"
 #include "Series/IndexText.h"
@@ -82,6 +83,16 @@ void ReadEverything(const SeriesFile& file)
       catch (const Error&)
       {
       }
+      try
+      {
+        const Box whole{ glm::ivec3(0), file.Layout(level).Samples() };
+        std::vector<std::uint64_t> all(static_cast<std::size_t>(whole.Count()));
+        BrickCache cache(std::uint64_t{ 1 } << 20);
+        ReadRegion(cache, file, field, whole, all.data(), 1, 0);
+      }
+      catch (const Error&)
+      {
+      }
     }
   }
 }
@@ -98,17 +109,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   {
     return 0;
   }
-  const fuzz::SmallSeries& series = *stage.Series[data[0] % fuzz::SeriesKinds];
-  const fuzz::Bytes segment = fuzz::Assemble(
-    fuzz::FromInput(data + 1, size - 1, series.Parts.Sections.size()), series.Index.Segments[0].Steps);
-  SeriesIndex index = series.Index;
+  fuzz::SmallSeries& series = *stage.Series[data[0] % fuzz::SeriesKinds];
+  SegmentIndex& changed = series.Changed();
+  const fuzz::Bytes segment =
+    fuzz::Assemble(fuzz::FromInput(data + 1, size - 1, series.Parts.Sections.size()), changed);
   const Hash128 hash = HashOf(segment.data(), segment::HeaderBytes);
-  index.Segments[0].Bytes = segment.size();
-  index.Segments[0].HashLow = hash.Low;
-  index.Segments[0].HashHigh = hash.High;
-  Write(series.Path + ".d/" + index.Segments[0].File, reinterpret_cast<const char*>(segment.data()),
+  changed.Bytes = segment.size();
+  changed.HashLow = hash.Low;
+  changed.HashHigh = hash.High;
+  Write(series.Path + ".d/" + changed.File, reinterpret_cast<const char*>(segment.data()),
     segment.size());
-  const std::string text = IndexToText(index);
+  const std::string text = IndexToText(series.Index);
   Write(series.Path, text.data(), text.size());
   try
   {

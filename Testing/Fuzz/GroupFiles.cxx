@@ -75,16 +75,18 @@ SeriesIndex Encode(const std::string& path, double scale, const EncodeOptions& o
 
 SmallSeries::SmallSeries(const std::string& folder, int kind)
   : Path(folder + "/" + std::to_string(kind) + ".banyan")
+  , Number(kind < 4 ? 0 : 1)
 {
   EncodeOptions options;
   options.KeyframeInterval = Interval;
   options.BrickCells = 8;
-  options.ErrorBound = kind == 3 ? 0 : 1.0 / 512;
-  this->Index = kind == 0   ? Encode<float>(this->Path, 1, options)
-                : kind == 1 ? Encode<std::int16_t>(this->Path, 50, options)
-                : kind == 2 ? Encode<double>(this->Path, 1e-300, options)
+  const int type = kind % 4;
+  options.ErrorBound = type == 3 ? 0 : 1.0 / 512;
+  this->Index = type == 0   ? Encode<float>(this->Path, 1, options)
+                : type == 1 ? Encode<std::int16_t>(this->Path, 50, options)
+                : type == 2 ? Encode<double>(this->Path, 1e-300, options)
                             : Encode<std::int64_t>(this->Path, 1e12, options);
-  std::ifstream stream(this->Path + ".d/" + this->Index.Segments[0].File, std::ios::binary);
+  std::ifstream stream(this->Path + ".d/" + this->Changed().File, std::ios::binary);
   const std::string file{ std::istreambuf_iterator<char>(stream), {} };
   const auto* data = reinterpret_cast<const std::uint8_t*>(file.data());
   const segment::Header header = segment::LoadHeader(data, group::Version);
@@ -132,13 +134,14 @@ GroupParts FromInput(const std::uint8_t* data, std::size_t size, std::size_t sec
   return parts;
 }
 
-Bytes Assemble(const GroupParts& parts, int steps)
+Bytes Assemble(const GroupParts& parts, const SegmentIndex& segment)
 {
   Bytes file(segment::HeaderBytes);
   file.insert(file.end(), parts.Payloads.begin(), parts.Payloads.end());
   segment::Header header;
   header.Version = group::Version;
-  header.Steps = static_cast<std::uint32_t>(steps);
+  header.Steps = static_cast<std::uint32_t>(segment.Steps);
+  header.FirstStep = static_cast<std::uint32_t>(segment.FirstStep);
   header.PayloadEnd = file.size();
   Bytes pages;
   const std::uint64_t page = PageBytesOf(header.PayloadEnd);

@@ -18,17 +18,21 @@ struct GroupParts
   std::vector<Bytes> Sections; ///< heads and step tables, not the hashes of pages
 };
 
-/// The types that the series of the fuzzer takes turns with.
-constexpr int SeriesKinds = 4;
+/// The series that the fuzzer takes turns with: four types, each with the first and with the second
+/// segment as what is not as it should be.
+constexpr int SeriesKinds = 8;
 
 /// A series of three steps in one segment and two in another, which refers to the first; small: its
-/// index, and the parts of the first segment.
+/// index, and the parts of one of its segments.
 struct SmallSeries
 {
   /// Encodes one in the folder.
   SmallSeries(const std::string& folder, int kind);
 
+  SegmentIndex& Changed() { return this->Index.Segments[this->Number]; }
+
   std::string Path;
+  std::size_t Number; ///< of the segment
   SeriesIndex Index;
   GroupParts Parts;
 };
@@ -37,8 +41,8 @@ struct SmallSeries
 Bytes ToInput(int kind, const GroupParts& parts);
 GroupParts FromInput(const std::uint8_t* data, std::size_t size, std::size_t sections);
 
-/// A segment file of these parts, all checksums right.
-Bytes Assemble(const GroupParts& parts, int steps);
+/// The file of a segment made of these parts, all checksums right.
+Bytes Assemble(const GroupParts& parts, const SegmentIndex& segment);
 
 } // namespace banyan::fuzz
 
