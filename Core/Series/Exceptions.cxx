@@ -125,11 +125,12 @@ std::vector<std::uint32_t> ReadPositions(ByteReader& in, std::uint64_t count, st
     std::uint64_t next = 0;
     for (std::uint64_t i = 0; i < count; ++i)
     {
-      next += in.Varint();
-      if (next >= samples)
+      const std::uint64_t distance = in.Varint();
+      if (distance >= samples - next) // a sum may wrap around
       {
         throw Error("An exception does not lie inside its block");
       }
+      next += distance;
       positions.push_back(static_cast<std::uint32_t>(next++));
     }
   }

@@ -124,5 +124,15 @@ TEST(Exceptions, MoreThanTheBlockHoldsAreRefused)
   EXPECT_THROW(UnpackExceptions<float>(payload.data(), payload.size(), 511), Error);
 }
 
+/// Found by fuzzing: a distance so great that the position wrapped around to one before.
+TEST(ExceptionPositions, DoNotWrapAround)
+{
+  Bytes payload{ 2, 13, 0, 0, 5 }; // two of them, stored, a list; the first one at 5
+  payload.insert(payload.end(), 9, 0xff);
+  payload.push_back(1); // 2^64 - 1 further
+  payload.insert(payload.end(), { 0, 0 });
+  EXPECT_THROW(UnpackExceptions<std::uint8_t>(payload.data(), payload.size(), 512), Error);
+}
+
 } // namespace
 } // namespace banyan::testing
