@@ -13,8 +13,8 @@
 namespace banyan
 {
 
-/// Reads the symbols of one payload, row by row (ReadRow in SymbolRow-inl.h). Any bytes are safe: reading past the end gives
-/// zeros, and `AtEnd` says so.
+/// Reads the symbols of one payload, row by row (ReadRow in SymbolRow-inl.h). Any bytes are safe:
+/// reading past the end gives zeros, and `AtEnd` says so.
 ///
 /// Layout of a payload: 2 bits, the logarithm of the number of lanes; the first states of the lanes
 /// (tans::TableBits bits each); then for each row the bits that the tables of its symbols ask for,
