@@ -78,6 +78,7 @@ struct BlockCoder
     unit.Limit = coded ? permuted(plane.Target->Samples - 1 - origin) : glm::ivec3(-1);
     LoadUnit<B, D>({ samples.Base, samples.Stride }, from, unit.W);
     LoadUnit<B, D>(wanted, from, target.W());
+    Work().Tokens.Clear();
     RunPasses<B, D>(unit, mode.By,
       RowEncoder<B>{ unit.W, target.W(), plane.CoarseBin, plane.FineBin, &Work().Tokens, &rough });
     Work().Tokens.AppendTo(out);

@@ -294,9 +294,9 @@ struct Row
 template <int B, int D, int Axis, int S, class Coder>
 HWY_INLINE void RunPass(const block::Unit<B>& unit, Interpolation by, const Coder& coder)
 {
-  constexpr std::ptrdiff_t pitch = D > 1 ? B + 8 : 0;
-  constexpr std::ptrdiff_t sliceW = D > 2 ? (B + 1) * (B + 8) : 0;
-  constexpr std::ptrdiff_t sliceM = D > 2 ? B * (B + 8) : 0;
+  constexpr std::ptrdiff_t pitch = block::Scratch<B, D>::Pitch;
+  constexpr std::ptrdiff_t sliceW = block::Scratch<B, D>::SliceW;
+  constexpr std::ptrdiff_t sliceM = block::Scratch<B, D>::SliceM;
   constexpr int band =
     D == 1 ? 2 - S : D == 2 ? (S == 2 ? 2 : 3 + Axis) : (S == 2 ? 5 : 8) + Axis;
   constexpr LaneSet lanes{ S, Axis > 0 ? S : 2 * S };

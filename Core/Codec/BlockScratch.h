@@ -18,7 +18,6 @@ struct Unit
 {
   std::int32_t* W; ///< sample (0, 0, 0); samples 0 to B per axis
   std::uint8_t* M; ///< magnitudes of residuals, samples 0 to B - 1 per axis, zeros around rows
-  std::ptrdiff_t PitchW, SliceW, PitchM, SliceM;
   glm::ivec3 Limit; ///< greatest position per axis that carries residuals
 };
 
@@ -31,6 +30,10 @@ struct Scratch
   static constexpr int RowW = B + 8;
   static constexpr int RowM = B + 8;
   static constexpr int RowsW = D == 1 ? 1 : D == 2 ? N : N * N;
+  // Distances between rows (of samples and of magnitudes) and slices.
+  static constexpr std::ptrdiff_t Pitch = D > 1 ? RowW : 0;
+  static constexpr std::ptrdiff_t SliceW = D > 2 ? N * RowW : 0;
+  static constexpr std::ptrdiff_t SliceM = D > 2 ? B * RowM : 0;
   // Rows before the first one are read as the neighbours of the first ones that are predicted.
   static constexpr int RowsM = D == 1 ? 1 : D == 2 ? B : B * B;
 
@@ -50,8 +53,7 @@ struct Scratch
 
   Unit<B> Whole()
   {
-    return { this->W(), this->M(), D > 1 ? RowW : 0, D > 2 ? N * RowW : 0, D > 1 ? RowM : 0,
-      D > 2 ? B * RowM : 0, glm::ivec3(B) };
+    return { this->W(), this->M(), glm::ivec3(B) };
   }
 };
 

@@ -24,16 +24,61 @@ struct UnitTokens
   std::uint8_t Rows[6 * B * B];
   std::size_t TokenCount = 0, ExtraCount = 0, RowCount = 0;
 
-  void AppendTo(BlockTokens& block)
+  /// To be called first: what came before may have ended early.
+  void Clear()
   {
-    block.Tokens.insert(block.Tokens.end(), this->Tokens, this->Tokens + this->TokenCount);
-    block.Extra.insert(block.Extra.end(), this->Extra, this->Extra + this->ExtraCount);
-    block.Rows.insert(block.Rows.end(), this->Rows, this->Rows + this->RowCount);
     this->TokenCount = 0;
     this->ExtraCount = 0;
     this->RowCount = 0;
   }
+
+  void AppendTo(BlockTokens& block) const
+  {
+    block.Tokens.insert(block.Tokens.end(), this->Tokens, this->Tokens + this->TokenCount);
+    block.Extra.insert(block.Extra.end(), this->Extra, this->Extra + this->ExtraCount);
+    block.Rows.insert(block.Rows.end(), this->Rows, this->Rows + this->RowCount);
+  }
 };
+
+/// Nearest multiple of the bin. The bin is odd, so nothing lies half way, and double precision is far
+/// more exact than what is left to the next half.
+template <int B>
+HWY_INLINE void Quantize(const std::int32_t* HWY_RESTRICT target,
+  const std::int32_t* HWY_RESTRICT prediction, std::int32_t bin,
+  std::int32_t* HWY_RESTRICT residuals)
+{
+  const double inverse = 1.0 / bin;
+  constexpr double rounder = 6755399441055744.0; // 1.5 * 2^52: adding it rounds
+  for (int x = 0; x < B; ++x)
+  {
+    const double rest = static_cast<std::int32_t>(U(target[x]) - U(prediction[x]));
+    residuals[x] = static_cast<std::int32_t>((rest * inverse + rounder) - rounder);
+  }
+}
+
+/// Quantizes a row that carries residuals and sets its lanes to what they decode to.
+/// @param codes receives the zigzag codes of all lanes, 0 for those that are not coded
+/// @param last receives the last lane that is coded
+/// @return all codes, or-ed
+template <int B>
+HWY_INLINE std::uint32_t QuantizeRow(const Row& row, const std::int32_t* target,
+  const std::int32_t* prediction, std::int32_t bin, std::int32_t* w,
+  std::uint32_t* HWY_RESTRICT codes, int& last)
+{
+  alignas(64) std::int32_t residuals[B];
+  Quantize<B>(target, prediction, bin, residuals);
+  last = row.Lanes.First + (row.Coded - 1) * row.Lanes.Step;
+  const std::int32_t* mask = LaneMask<B>(row.Lanes);
+  std::uint32_t any = 0;
+  for (int x = 0; x < B; ++x)
+  {
+    residuals[x] = x <= last ? residuals[x] & mask[x] : 0;
+    codes[x] = residual::Zigzag(residuals[x]);
+    any |= codes[x];
+  }
+  SetLanes<B>(row.Lanes, prediction, residuals, bin, w);
+  return any;
+}
 
 /// Quantizes the residuals of rows and writes them down.
 template <int B>
@@ -53,21 +98,10 @@ struct RowEncoder
       SetLanes<B>(row.Lanes, prediction, w);
       return;
     }
-    const std::int32_t bin = row.Stride == 2 ? this->CoarseBin : this->FineBin;
-    const std::int32_t* target = this->Target + (w - this->W);
-    alignas(64) std::int32_t residuals[B];
-    Quantize(target, prediction, bin, residuals);
-    const int last = row.Lanes.First + (row.Coded - 1) * row.Lanes.Step;
     alignas(64) std::uint32_t codes[B];
-    std::uint32_t any = 0;
-    const std::int32_t* mask = LaneMask<B>(row.Lanes);
-    for (int x = 0; x < B; ++x)
-    {
-      residuals[x] = x <= last ? residuals[x] & mask[x] : 0;
-      codes[x] = residual::Zigzag(residuals[x]);
-      any |= codes[x];
-    }
-    SetLanes<B>(row.Lanes, prediction, residuals, bin, w);
+    int last = 0;
+    const std::uint32_t any = QuantizeRow<B>(row, this->Target + (w - this->W), prediction,
+      row.Stride == 2 ? this->CoarseBin : this->FineBin, w, codes, last);
     UnitTokens<B>& out = *this->Out;
     if (!rough)
     {
@@ -104,21 +138,6 @@ struct RowEncoder
       {
         out.Extra[out.ExtraCount++] = extra;
       }
-    }
-  }
-
-  /// Nearest multiple of the bin. The bin is odd, so nothing lies half way, and double precision is
-  /// far more exact than what is left to the next half.
-  static HWY_INLINE void Quantize(const std::int32_t* HWY_RESTRICT target,
-    const std::int32_t* HWY_RESTRICT prediction, std::int32_t bin,
-    std::int32_t* HWY_RESTRICT residuals)
-  {
-    const double inverse = 1.0 / bin;
-    constexpr double rounder = 6755399441055744.0; // 1.5 * 2^52: adding it rounds
-    for (int x = 0; x < B; ++x)
-    {
-      const double rest = static_cast<std::int32_t>(U(target[x]) - U(prediction[x]));
-      residuals[x] = static_cast<std::int32_t>((rest * inverse + rounder) - rounder);
     }
   }
 };

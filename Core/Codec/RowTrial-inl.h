@@ -45,18 +45,10 @@ struct RowTrial
       SetLanes<B>(row.Lanes, prediction, w);
       return;
     }
-    const std::int32_t bin = row.Stride == 2 ? this->CoarseBin : this->FineBin;
-    alignas(64) std::int32_t residuals[B];
-    RowEncoder<B>::Quantize(this->Target + (w - this->W), prediction, bin, residuals);
-    const int last = row.Lanes.First + (row.Coded - 1) * row.Lanes.Step;
-    const std::int32_t* mask = LaneMask<B>(row.Lanes);
-    std::int32_t any = 0;
-    for (int x = 0; x < B; ++x)
-    {
-      residuals[x] = x <= last ? residuals[x] & mask[x] : 0;
-      any |= residuals[x];
-    }
-    SetLanes<B>(row.Lanes, prediction, residuals, bin, w);
+    alignas(64) std::uint32_t codes[B];
+    int last = 0;
+    const std::uint32_t any = QuantizeRow<B>(row, this->Target + (w - this->W), prediction,
+      row.Stride == 2 ? this->CoarseBin : this->FineBin, w, codes, last);
     if (!rough)
     {
       *this->Cost += any == 0 ? SmoothRowCost : UnexpectedRowCost;
@@ -68,9 +60,9 @@ struct RowTrial
     std::int64_t cost = 0;
     for (int x = row.Lanes.First; x <= last; x += row.Lanes.Step)
     {
-      const std::uint32_t code = residual::Zigzag(residuals[x]);
-      m[x] = residual::Magnitude(code);
-      const std::int64_t size = std::min<std::int64_t>((std::int64_t{ code } + 1) / 2, LongestStep);
+      m[x] = residual::Magnitude(codes[x]);
+      const std::int64_t size =
+        std::min<std::int64_t>((std::int64_t{ codes[x] } + 1) / 2, LongestStep);
       cost += ZeroCost[classes[x]] + StepCost[classes[x]] * size;
     }
     *this->Cost += cost;

@@ -19,8 +19,10 @@ using namespace banyan;
 
 std::string MakeFolder()
 {
-  const bool inMemory = std::filesystem::is_directory("/dev/shm");
-  std::string name = inMemory ? "/dev/shm/banyan-fuzz-XXXXXX" : "/tmp/banyan-fuzz-XXXXXX";
+  const std::filesystem::path memory = "/dev/shm";
+  const std::filesystem::path parent =
+    std::filesystem::is_directory(memory) ? memory : std::filesystem::temp_directory_path();
+  std::string name = parent / "banyan-fuzz-XXXXXX";
   if (mkdtemp(name.data()) == nullptr)
   {
     abort();
