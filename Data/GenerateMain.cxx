@@ -20,10 +20,19 @@ void Generate(const banyan::GenerateOptions& options)
   const banyan::SeriesKind& kind = banyan::FindSeriesKind(options.Series);
   banyan::ThreadPool pool(
     options.Threads > 0 ? options.Threads : banyan::ThreadPool::DefaultWidth());
+  if (options.Output.empty() && kind.GenerateSlabs)
+  {
+    banyan::RawSeriesWriter raw(options.Raw);
+    kind.GenerateSlabs(
+      options, pool, [&raw](const std::vector<float>& values) { raw.AddStep(values); });
+    raw.Finish();
+    return;
+  }
   std::optional<banyan::ImageSeriesWriter> images;
   if (!options.Output.empty())
   {
-    images.emplace(options.Output, kind.FileName, options.Size, kind.Edge);
+    const double edge = kind.Edge > 0.0 ? kind.Edge : options.Size;
+    images.emplace(options.Output, kind.FileName, options.Size, edge);
   }
   std::optional<banyan::RawSeriesWriter> raw;
   if (!options.Raw.empty())

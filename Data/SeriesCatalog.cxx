@@ -3,6 +3,7 @@
 #include "ConvectionSeries.h"
 #include "HotBlobsSeries.h"
 #include "JetSeries.h"
+#include "StandardSeries.h"
 #include "TurbulenceSeries.h"
 #include "WaveSeries.h"
 
@@ -21,6 +22,7 @@ const std::vector<SeriesKind>& SeriesCatalog()
     ConvectionSeries(),
     WaveSeries(),
     ClippedWaveSeries(),
+    StandardSeries(),
   };
   return kinds;
 }

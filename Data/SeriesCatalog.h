@@ -17,6 +17,9 @@ class ThreadPool;
 /// in that order, N^3 tuples each.
 using SeriesSink = std::function<void(double time, const std::vector<ImageArray>& arrays)>;
 
+/// Takes a series piece by piece: whole slices of the first array, in order of memory and time.
+using SlabSink = std::function<void(const std::vector<float>& values)>;
+
 /// One kind of series that banyan-generate can make.
 struct SeriesKind
 {
@@ -28,11 +31,17 @@ struct SeriesKind
   int DefaultSize = 128;
   int DefaultSteps = 50;
   double DefaultDuration = 1.0; ///< time of the last step; the first is at time 0
-  double Edge = 1.0;            ///< length of the box; sample i lies at i * Edge / N
+  /// Length of the box; sample i lies at i * Edge / N. 0 for unit spacing: sample i lies at i.
+  double Edge = 1.0;
+  bool Steady = false; ///< all steps have the same values
   /// Makes the series and hands every step to the sink. Equal options give equal bytes on the same
   /// machine, for any width of the pool. Throws Error when the simulation fails.
   std::function<void(const GenerateOptions& options, ThreadPool& pool, const SeriesSink& sink)>
     Generate;
+  /// May be empty. The same values without ever holding a whole step: for `--raw` alone, and sizes
+  /// that fit no memory.
+  std::function<void(const GenerateOptions& options, ThreadPool& pool, const SlabSink& sink)>
+    GenerateSlabs;
 };
 
 /// All kinds; the first is the one made when `--series` is not given. To add one, write a function
