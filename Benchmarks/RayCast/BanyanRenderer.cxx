@@ -1,0 +1,85 @@
+#include "RayCastRenderer.h"
+
+#include "Base/ThreadPool.h"
+#include "Base/Timer.h"
+
+namespace banyan::bench
+{
+namespace
+{
+
+/// As VTK's GPU mapper: a ray ends when one step of 8 bits is all that could follow.
+constexpr float OpacityLimit = 1.0f - 1.0f / 255.0f;
+constexpr int BrickCells = 16; // as the mapper cuts plain arrays
+
+class BanyanRenderer : public RayCastRenderer
+{
+public:
+  explicit BanyanRenderer(int threads)
+    : Pool(threads)
+  {
+  }
+
+  std::string Name() const override { return "banyan"; }
+
+  std::vector<Setting> SettingsFor(const BenchScene& scene) const override
+  {
+    std::vector<Setting> settings;
+    if (scene.Shaded)
+    {
+      return settings;
+    }
+    for (const double distance : { 0.25, 0.5, 1.0, 2.0, 4.0 })
+    {
+      settings.push_back({ {}, distance });
+    }
+    return settings;
+  }
+
+  void Prepare(const BenchScene& scene, const std::vector<Setting>& settings) override
+  {
+    this->Scene = &scene;
+    this->Settings = settings;
+    this->Source.reset();
+  }
+
+  Frame Draw(std::size_t number) override
+  {
+    Frame frame;
+    const Timer timer;
+    if (!this->Source)
+    {
+      this->Source = std::make_unique<ArrayBrickSource>(this->Scene->Data->Array(), BrickCells,
+        MaskRange{ this->Scene->Low, this->Scene->High }, this->Pool);
+    }
+    const RayScene scene = this->SceneWith(this->Settings.at(number));
+    RayStatistics statistics;
+    FloatImage image = CastRays(
+      scene, *this->Source, scene.DomainCells, ~std::uint64_t{ 0 }, this->Pool, statistics);
+    frame.Seconds = timer.Seconds();
+    frame.Shown = Rounded(image, this->Scene->Picture);
+    frame.Unrounded = std::move(image);
+    frame.Samples = statistics.SamplesTaken;
+    return frame;
+  }
+
+private:
+  RayScene SceneWith(const Setting& setting) const
+  {
+    return ToRayScene(*this->Scene, setting.SampleDistance.value_or(1.0), OpacityLimit);
+  }
+
+  ThreadPool Pool;
+  const BenchScene* Scene = nullptr;
+  std::vector<Setting> Settings;
+  std::unique_ptr<ArrayBrickSource> Source; ///< of the scene, once something was drawn
+};
+
+} // namespace
+
+std::unique_ptr<RayCastRenderer> MakeBanyanRenderer(int threads)
+{
+  return std::make_unique<BanyanRenderer>(threads);
+}
+
+} // namespace banyan::bench

@@ -1,0 +1,278 @@
+// Time of the first and of later frames against the size of the volume (scene S2), one line of CSV
+// per run. Without VTK, so that memory and start-up are the ray caster's own. See README.md.
+#include "StandardScenes.h"
+
+#include "Base/Error.h"
+#include "Base/ThreadPool.h"
+#include "Base/Timer.h"
+#include "Cache/BrickCache.h"
+#include "Render/SeriesBrickSource.h"
+#include "Series/SeriesEncoder.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace
+{
+
+using namespace banyan;
+namespace fs = std::filesystem;
+
+constexpr double MiB = 1048576.0;
+
+struct Options
+{
+  std::string Raw;    ///< to encode
+  std::string Series; ///< to draw from, or to write; none draws from memory
+  int Size = 256;
+  int Picture = 1024;
+  int Threads = 1;
+  int Repeat = 3;
+  int BudgetMiB = 512;
+};
+
+const char* Help = "banyan-bench-scaling --size N [--series FILE.banyan] [OPTIONS]\n"
+                   "  Draws the standard scene S2 of N^3 samples, from memory or from the encoded\n"
+                   "  series, whose files are dropped from the system's cache before.\n"
+                   "banyan-bench-scaling --encode FILE.raw --size N --series FILE.banyan\n"
+                   "  Encodes one step of float32, with the default error bound.\n"
+                   "  --threads N  (default 1)    --repeat N   later frames (default 3)\n"
+                   "  --budget MIB cache of decoded bricks (default 512)\n"
+                   "  --picture N  pixels per side (default 1024)\n"
+                   "  --header     prints the names of the columns and ends\n";
+
+/// A file's bytes, mapped for reading.
+class MappedFile
+{
+public:
+  MappedFile(const std::string& path, std::size_t bytes)
+    : Bytes(bytes)
+  {
+    const int file = open(path.c_str(), O_RDONLY);
+    if (file >= 0)
+    {
+      this->Data = mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, file, 0);
+      close(file);
+    }
+    std::error_code problem;
+    if (file < 0 || this->Data == MAP_FAILED || fs::file_size(path, problem) != bytes)
+    {
+      throw Error("The file of raw values cannot be read, or has not the right size.", { path });
+    }
+  }
+  ~MappedFile() { munmap(this->Data, this->Bytes); }
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+
+  const void* Get() const { return this->Data; }
+
+private:
+  std::size_t Bytes;
+  void* Data = MAP_FAILED;
+};
+
+std::vector<fs::path> FilesOf(const std::string& series)
+{
+  std::vector<fs::path> files{ series };
+  for (const auto& entry : fs::directory_iterator(series + ".d"))
+  {
+    files.push_back(entry.path());
+  }
+  return files;
+}
+
+/// Calls function(descriptor) for each file of a series.
+template <class Function>
+void ForFilesOf(const std::string& series, Function&& function)
+{
+  for (const fs::path& path : FilesOf(series))
+  {
+    const int file = open(path.c_str(), O_RDONLY);
+    if (file < 0)
+    {
+      throw Error("The file cannot be read.", { path.string() });
+    }
+    function(file);
+    close(file);
+  }
+}
+
+void Encode(const Options& options)
+{
+  const std::size_t n = options.Size;
+  const MappedFile raw(options.Raw, n * n * n * sizeof(float));
+  Grid grid;
+  grid.Extent.Hi = glm::ivec3(options.Size);
+  ArrayDescription array;
+  array.Name = "value";
+  array.ComponentNames = { "" };
+  array.SeriesRanges = { { 0.0, 1.0 } };
+  ThreadPool pool(options.Threads);
+  SeriesEncoder encoder(options.Series, grid, { array }, {}, pool);
+  encoder.AddStep(0.0, { { raw.Get() } });
+  encoder.Finish();
+  // Only what is on the disk can be dropped from the system's cache later.
+  ForFilesOf(options.Series, [](int file) { fsync(file); });
+}
+
+/// Most memory that this process has had, the pages of mapped files included.
+double PeakMiB()
+{
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+  {
+    if (line.rfind("VmHWM:", 0) == 0)
+    {
+      return std::atof(line.c_str() + 6) / 1024.0;
+    }
+  }
+  return 0.0;
+}
+
+struct Frames
+{
+  double FirstMilliseconds = 0;
+  std::vector<double> Milliseconds;
+  RayStatistics Statistics; ///< of the last frame
+};
+
+Frames DrawFrames(const Options& options, const Timer& sinceStart, BrickSource& source,
+  std::uint64_t budget, ThreadPool& pool)
+{
+  auto shape = std::make_shared<bench::Volume>();
+  shape->Samples = glm::ivec3(options.Size);
+  const RayScene scene = ToRayScene(
+    StandardScene(shape, bench::StandardFunction::S2, false, options.Picture), 1.0, 0.99f);
+  Frames frames;
+  for (int i = 0; i <= options.Repeat; ++i)
+  {
+    const Timer timer;
+    frames.Statistics = {};
+    CastRays(scene, source, scene.DomainCells, budget, pool, frames.Statistics);
+    if (i == 0)
+      frames.FirstMilliseconds = 1e3 * sinceStart.Seconds();
+    else
+      frames.Milliseconds.push_back(1e3 * timer.Seconds());
+  }
+  std::sort(frames.Milliseconds.begin(), frames.Milliseconds.end());
+  return frames;
+}
+
+void Report(const Options& options, const Frames& frames)
+{
+  double fileBytes = 0.0;
+  if (!options.Series.empty())
+  {
+    for (const fs::path& path : FilesOf(options.Series))
+    {
+      fileBytes += static_cast<double>(fs::file_size(path));
+    }
+  }
+  const RayStatistics& statistics = frames.Statistics;
+  std::printf("S2-%d,%s,%d,%.6g,%.6g,%lld,%lld,%lld,%d,%.6g,%.6g\n", options.Size,
+    options.Series.empty() ? "memory" : "series", options.Threads, frames.FirstMilliseconds,
+    frames.Milliseconds[frames.Milliseconds.size() / 2],
+    static_cast<long long>(statistics.SamplesTaken), static_cast<long long>(statistics.BricksDrawn),
+    static_cast<long long>(statistics.BricksSkipped), options.BudgetMiB, PeakMiB(),
+    fileBytes / MiB);
+}
+
+void Draw(const Options& options)
+{
+  ThreadPool::SetProcessWidth(options.Threads);
+  ThreadPool& pool = ThreadPool::Process();
+  const auto budget = static_cast<std::uint64_t>(options.BudgetMiB) << 20;
+  if (options.Series.empty())
+  {
+    const auto volume = bench::StandardVolume(options.Size, pool);
+    const Timer sinceStart;
+    ArrayBrickSource source(volume->Array(), 16, { 0.0, 1.0 }, pool);
+    Report(options, DrawFrames(options, sinceStart, source, budget, pool));
+    return;
+  }
+  ForFilesOf(options.Series, [](int file) { posix_fadvise(file, 0, 0, POSIX_FADV_DONTNEED); });
+  const Timer sinceStart;
+  BrickCache& cache = BrickCache::Process();
+  cache.SetBudget(budget);
+  SeriesBrickSource source(SeriesFile::Open(options.Series), {}, 0, cache);
+  // Half of it for what is being drawn, as the mapper does.
+  Report(options, DrawFrames(options, sinceStart, source, budget / 2, pool));
+}
+
+int NumberIn(const std::string& option, const char* text)
+{
+  const int number = std::atoi(text);
+  if (number < 1 || number > 1000000)
+  {
+    throw Error(option + " needs a whole number above 0.");
+  }
+  return number;
+}
+
+Options Parse(int argc, char** argv)
+{
+  Options options;
+  for (int i = 1; i < argc; i += 2)
+  {
+    const std::string option = argv[i];
+    if (i + 1 == argc)
+      throw Error(option + " needs a value, or is unknown; --help lists the options.");
+    else if (option == "--encode")
+      options.Raw = argv[i + 1];
+    else if (option == "--series")
+      options.Series = argv[i + 1];
+    else if (option == "--size")
+      options.Size = NumberIn(option, argv[i + 1]);
+    else if (option == "--picture")
+      options.Picture = NumberIn(option, argv[i + 1]);
+    else if (option == "--threads")
+      options.Threads = NumberIn(option, argv[i + 1]);
+    else if (option == "--repeat")
+      options.Repeat = NumberIn(option, argv[i + 1]);
+    else if (option == "--budget")
+      options.BudgetMiB = NumberIn(option, argv[i + 1]);
+    else
+      throw Error("There is no option '" + option + "'; --help lists them.");
+  }
+  return options;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  try
+  {
+    if (argc == 2 && std::strcmp(argv[1], "--help") == 0)
+    {
+      std::fputs(Help, stdout);
+    }
+    else if (argc == 2 && std::strcmp(argv[1], "--header") == 0)
+    {
+      std::puts("scene,source,threads,first_frame_ms,ms_per_frame,samples,bricks_drawn,"
+                "bricks_skipped,budget_mib,peak_mib,file_mib");
+    }
+    else
+    {
+      const Options options = Parse(argc, argv);
+      options.Raw.empty() ? Draw(options) : Encode(options);
+    }
+    return EXIT_SUCCESS;
+  }
+  catch (const std::exception& error)
+  {
+    std::fprintf(stderr, "banyan-bench-scaling: %s\n", error.what());
+  }
+  return EXIT_FAILURE;
+}

@@ -1,0 +1,141 @@
+#include "RayCastMeasure.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace banyan::bench
+{
+namespace
+{
+
+/// One renderer with one setting, and what was found out about it.
+struct Candidate
+{
+  RayCastRenderer* Renderer;
+  std::size_t Setting;
+  RayCastMeasurement Result;
+  std::vector<double> Milliseconds;
+};
+
+std::string Number(double value)
+{
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.6g", value);
+  return text;
+}
+
+std::string Number(const std::optional<double>& value)
+{
+  return value ? Number(*value) : std::string();
+}
+
+double MedianOf(std::vector<double> values)
+{
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+std::string NameOf(const Setting& setting)
+{
+  return setting.Tolerance ? "tolerance " + Number(*setting.Tolerance)
+                           : "step " + Number(setting.SampleDistance.value_or(0.0));
+}
+
+std::string FileNameOf(const RayCastMeasurement& m)
+{
+  std::string name = m.Scene + "-" + m.Renderer + "-" + NameOf(m.Accuracy) + ".ppm";
+  std::replace(name.begin(), name.end(), ' ', '-');
+  return name;
+}
+
+void JudgeFirst(
+  Candidate& candidate, const Frame& frame, const FloatImage& reference, const std::string& folder)
+{
+  RayCastMeasurement& result = candidate.Result;
+  result.FirstFrameMilliseconds = 1e3 * frame.Seconds;
+  result.Samples = frame.Samples;
+  result.Error = ErrorOf(frame.Shown, reference);
+  if (frame.Unrounded)
+  {
+    result.LargestErrorUnrounded = ErrorOf(*frame.Unrounded, reference).Largest;
+  }
+  const Setting& setting = result.Accuracy;
+  if (!folder.empty() && setting.Tolerance.value_or(setting.SampleDistance.value_or(0.0)) == 1.0)
+  {
+    WritePicture(frame.Shown, folder + "/" + FileNameOf(result));
+  }
+}
+
+} // namespace
+
+std::vector<RayCastMeasurement> MeasureScene(const BenchScene& scene, const FloatImage& reference,
+  const RendererList& renderers, const RayCastMeasuring& options)
+{
+  std::vector<Candidate> candidates;
+  for (const auto& renderer : renderers)
+  {
+    const std::vector<Setting> settings = renderer->SettingsFor(scene);
+    if (!settings.empty())
+    {
+      renderer->Prepare(scene, settings);
+    }
+    for (std::size_t i = 0; i < settings.size(); ++i)
+    {
+      Candidate candidate{ renderer.get(), i, {}, {} };
+      candidate.Result.Scene = scene.Name;
+      candidate.Result.Renderer = renderer->Name();
+      candidate.Result.Threads = options.Threads;
+      candidate.Result.Accuracy = settings[i];
+      JudgeFirst(candidate, renderer->Draw(i), reference, options.PictureFolder);
+      candidates.push_back(std::move(candidate));
+    }
+  }
+  for (int turn = 0; turn < options.Repeat; ++turn)
+  {
+    for (Candidate& candidate : candidates)
+    {
+      candidate.Milliseconds.push_back(1e3 * candidate.Renderer->Draw(candidate.Setting).Seconds);
+    }
+  }
+  std::vector<RayCastMeasurement> results;
+  for (Candidate& candidate : candidates)
+  {
+    candidate.Result.FrameMilliseconds = MedianOf(candidate.Milliseconds);
+    results.push_back(candidate.Result);
+  }
+  return results;
+}
+
+std::string RayCastCsvHeader()
+{
+  return "scene,renderer,threads,tolerance,ms_per_frame,samples,msamples_s,psnr_db,max_error,"
+         "sample_distance,first_frame_ms,max_error_unrounded";
+}
+
+std::string RayCastCsvLine(const RayCastMeasurement& m)
+{
+  std::string samples;
+  std::string rate;
+  if (m.Samples)
+  {
+    samples = std::to_string(*m.Samples);
+    rate = Number(1e-3 * static_cast<double>(*m.Samples) / m.FrameMilliseconds);
+  }
+  return m.Scene + "," + m.Renderer + "," + std::to_string(m.Threads) + "," +
+         Number(m.Accuracy.Tolerance) + "," + Number(m.FrameMilliseconds) + "," + samples + "," +
+         rate + "," + Number(m.Error.PsnrDecibels) + "," + Number(m.Error.Largest) + "," +
+         Number(m.Accuracy.SampleDistance) + "," + Number(m.FirstFrameMilliseconds) + "," +
+         Number(m.LargestErrorUnrounded);
+}
+
+std::string RayCastMessage(const RayCastMeasurement& m)
+{
+  char text[256];
+  std::snprintf(text, sizeof(text), "%-16s %-16s %-14s %9.1f ms  %6.2f dB  max %7.2f/255",
+    m.Scene.c_str(), m.Renderer.c_str(), NameOf(m.Accuracy).c_str(), m.FrameMilliseconds,
+    m.Error.PsnrDecibels, m.Error.Largest);
+  return text;
+}
+
+} // namespace banyan::bench

@@ -1,0 +1,47 @@
+#ifndef banyan_Benchmarks_RayCastMeasure_h
+#define banyan_Benchmarks_RayCastMeasure_h
+
+#include "RayCastRenderer.h"
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace banyan::bench
+{
+
+/// One line of the report.
+struct RayCastMeasurement
+{
+  std::string Scene;
+  std::string Renderer;
+  int Threads = 1;
+  Setting Accuracy;
+  double FrameMilliseconds = 0; ///< median of the repeated frames
+  double FirstFrameMilliseconds = 0;
+  std::optional<std::int64_t> Samples;
+  PictureError Error;                          ///< of the picture in 8 bits
+  std::optional<double> LargestErrorUnrounded; ///< in 1/255, where the renderer has floats
+};
+
+struct RayCastMeasuring
+{
+  int Threads = 1;
+  int Repeat = 3;
+  std::string PictureFolder; ///< where pictures at step or tolerance 1 go; empty for none
+};
+
+/// Draws a scene with all settings of all renderers: first all of them once, then `Repeat` times in
+/// turns, so that whatever slows the machine down for a while slows down everybody.
+std::vector<RayCastMeasurement> MeasureScene(const BenchScene& scene, const FloatImage& reference,
+  const RendererList& renderers, const RayCastMeasuring& options);
+
+/// Names of the columns, without the end of the line.
+std::string RayCastCsvHeader();
+std::string RayCastCsvLine(const RayCastMeasurement& measurement);
+/// The same for people.
+std::string RayCastMessage(const RayCastMeasurement& measurement);
+
+} // namespace banyan::bench
+
+#endif

@@ -1,0 +1,61 @@
+#ifndef banyan_Benchmarks_RayCastRenderer_h
+#define banyan_Benchmarks_RayCastRenderer_h
+
+#include "BenchScene.h"
+#include "Picture.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace banyan::bench
+{
+
+/// How exact a renderer is asked to be: one of the two.
+struct Setting
+{
+  std::optional<double> Tolerance;      ///< largest error of a channel, in 1/255
+  std::optional<double> SampleDistance; ///< in voxels
+};
+
+/// A picture and what it took.
+struct Frame
+{
+  double Seconds = 0;
+  Picture Shown;
+  std::optional<FloatImage> Unrounded; ///< where the renderer has it
+  std::optional<std::int64_t> Samples; ///< where the renderer tells
+};
+
+/// A volume renderer under measurement: ours or a peer.
+class RayCastRenderer
+{
+public:
+  virtual ~RayCastRenderer() = default;
+  virtual std::string Name() const = 0;
+
+  /// From exact to quick; none when it cannot draw the scene.
+  virtual std::vector<Setting> SettingsFor(const BenchScene& scene) const = 0;
+
+  /// Forgets the scene before and keeps this one, which must stay. No picture that follows may
+  /// profit from another setting's.
+  virtual void Prepare(const BenchScene& scene, const std::vector<Setting>& settings) = 0;
+
+  /// Draws with setting number `setting` of those prepared. The first time, the time includes all
+  /// that has to be done once.
+  virtual Frame Draw(std::size_t setting) = 0;
+};
+
+using RendererList = std::vector<std::unique_ptr<RayCastRenderer>>;
+
+std::unique_ptr<RayCastRenderer> MakeBanyanRenderer(int threads);
+
+/// VTK's mappers, those that this program was built with. Must be called before anything else
+/// uses OpenGL: the number of threads is fixed then.
+/// @param missing receives the names of those that are not there
+RendererList MakeVtkRenderers(int threads, std::vector<std::string>& missing);
+
+} // namespace banyan::bench
+
+#endif

@@ -1,0 +1,217 @@
+#!/usr/bin/env bash
+# Measures time and error of the ray caster and of VTK's volume mappers, and draws charts.
+#
+#   raycast.sh [--quick] [--scaling] [--output DIR] [--data DIR] [--work DIR] [--repeat N]
+#              [--threads LIST] [--scenes LIST] [--renderers LIST] [--help]
+#
+#   --quick           128^3 samples and 256^2 pixels instead of 256^3 and 1024^2, all threads only:
+#                     minutes instead of an hour
+#   --scaling         measures time against the size of the volume instead: 64^3 to 1024^3
+#                     (--quick: 256^3) and the first frame of an encoded series from a cold start
+#   --output DIR      where raycast.csv, raycast.png, raycast-largest.png (the worst pixel) and
+#                     raycast-pictures.png go, or raycast-scaling.csv and raycast-scaling.png
+#                     (default benchmark-output)
+#   --data DIR        folder of real data (default ../shared/data beside the project, if it exists)
+#   --work DIR        keeps volumes and converged pictures, which a later run uses again
+#                     (default: raycast-scenes in the build folder)
+#   --repeat N        timed frames, of which the median counts (default 3)
+#   --threads LIST    numbers of threads, separated by commas (default 1 and all processors)
+#   --scenes LIST     only these, e.g. S1-256,S2-256-shaded,bonsai (default all)
+#   --renderers LIST  only these: banyan, vtk-gpu, vtk-fixed-point (default all)
+#
+# Installs what is missing, and builds in build-benchmark (BANYAN_BUILD_DIR names another folder).
+# VTK's mappers draw into a window of the X display, or of a virtual one. Ends with a table.
+# BANYAN_SKIP_INSTALL=1 leaves the packages of the system alone, BANYAN_SKIP_BUILD=1 the build.
+# Not the folder of the whole project, whose settings are others.
+BANYAN_BUILD_DIR="${BANYAN_BUILD_DIR:-$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")/build-benchmark}"
+export BANYAN_BUILD_DIR
+source "$(dirname "${BASH_SOURCE[0]}")/../Utilities/common.sh"
+
+here="$RepositoryRoot/Benchmarks"
+output="benchmark-output"
+data=""
+work=""
+size=256
+turbulence=128
+sizes=(64 128 256 512 1024)
+threads=""
+repeat=3
+quick=0
+scaling=0
+measuring=()
+
+parse_arguments()
+{
+  while [[ $# -gt 0 ]]; do
+    local option="$1"
+    shift
+    case "$option" in
+      --help)
+        sed -n '2,/^# Not the/{/^# Not the/d;s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+        exit 0
+        ;;
+      --quick) quick=1 ;;
+      --scaling) scaling=1 ;;
+      --output | --data | --work | --repeat | --threads | --scenes | --renderers)
+        [[ $# -gt 0 && -n "$1" ]] || fail "$option needs a value."
+        case "$option" in
+          --output) output="$1" ;;
+          --data) data="$1" ;;
+          --work) work="$1" ;;
+          --threads) threads="$1" ;;
+          --repeat) repeat="$1" ;;
+          *) measuring+=("$option" "$1") ;;
+        esac
+        shift
+        ;;
+      *) fail "there is no option '$option'; --help lists them." ;;
+    esac
+  done
+  if [[ -z "$data" && -d "$RepositoryRoot/../shared/data" ]]; then
+    data="$(realpath "$RepositoryRoot/../shared/data")"
+  fi
+  [[ -z "$data" || -d "$data" ]] || fail "there is no folder '$data'."
+  local all
+  all="$(nproc)"
+  if [[ -z "$threads" ]]; then
+    threads="$([[ $quick == 1 || $all == 1 ]] && echo "$all" || echo "1,$all")"
+  fi
+  if [[ $quick == 1 ]]; then
+    size=128
+    turbulence=64
+    sizes=(64 128 256)
+    measuring+=(--picture 256)
+  fi
+}
+
+install_and_build()
+{
+  [[ "${BANYAN_SKIP_INSTALL:-0}" == 1 ]] || "$RepositoryRoot/Utilities/install-dependencies.sh"
+  [[ "${BANYAN_SKIP_BUILD:-0}" == 1 ]] ||
+    "$RepositoryRoot/Utilities/build.sh" -DBANYAN_WITH_PARAVIEW=OFF -DBANYAN_BUILD_TESTING=OFF \
+      -DBANYAN_BUILD_BENCHMARKS=ON
+}
+
+# Images of the real data as one raw series, if they are there.
+collect()
+{
+  local name="$1" pattern="$2" images=()
+  mapfile -t images < <(compgen -G "$data/$name/$pattern" | sort)
+  if [[ ${#images[@]} == 0 ]]; then
+    say "      there is no $name"
+    return
+  fi
+  "$python" "$here/Codec/read_images.py" "$name" "$work/$name.raw" "${images[@]}" ||
+    fail "the images of '$name' could not be read."
+  real+=("$work/$name.json")
+}
+
+# The last step of the turbulence, unless it is there.
+generate_turbulence()
+{
+  local file="turbulence-$turbulence"
+  if [[ ! -e "$work/$file.raw" ]]; then
+    "$BuildFolder/bin/banyan-generate" --series turbulence --size "$turbulence" --steps 1 \
+      --raw "$work/$file.raw" 2> "$work/$file.log" ||
+      fail "the turbulence could not be generated: $(tail -1 "$work/$file.log")"
+  fi
+  printf '{"name": "turbulence", "file": "%s", "samples": [%d, %d, %d], "steps": 1}\n' \
+    "$file.raw" "$turbulence" "$turbulence" "$turbulence" > "$work/$file.json"
+  real+=("$work/$file.json")
+}
+
+# Time and error of all renderers in all scenes, once for each number of threads.
+measure_renderers()
+{
+  local count append=()
+  rm -rf "$work/pictures"
+  mkdir -p "$work/pictures"
+  for count in ${threads//,/ }; do
+    say "      $count thread(s)"
+    "$RepositoryRoot/Utilities/with-display.sh" "$BuildFolder/bin/banyan-bench-raycast" \
+      --output "$output/raycast.csv" --references "$work" --pictures "$work/pictures" \
+      --size "$size" --threads "$count" --repeat "$repeat" "${append[@]+"${append[@]}"}" \
+      "${measuring[@]+"${measuring[@]}"}" "${real[@]+"${real[@]}"}" || fail "measuring failed."
+    append=(--append)
+  done
+}
+
+# The standard field as an encoded series, unless it is there.
+encode_standard()
+{
+  local n="$1"
+  [[ ! -e "$work/standard-$n.banyan" ]] || return 0
+  say "      $n^3"
+  "$BuildFolder/bin/banyan-generate" --series standard --size "$n" --raw "$work/standard-$n.raw" ||
+    fail "the field of $n^3 samples could not be generated."
+  "$BuildFolder/bin/banyan-bench-scaling" --encode "$work/standard-$n.raw" --size "$n" \
+    --series "$work/standard-$n.banyan" --threads "$(nproc)" || fail "encoding $n^3 samples failed."
+  rm "$work/standard-$n.raw"
+}
+
+# A process for each line, so that the first frame and the memory are its own.
+measure_scaling()
+{
+  local n count needed available program="$BuildFolder/bin/banyan-bench-scaling"
+  local csv="$output/raycast-scaling.csv"
+  "$program" --header > "$csv"
+  for n in "${sizes[@]}"; do
+    # Values, and half as much again for all others.
+    needed=$((n * n * n / 1048576 * 6))
+    available="$(awk '/^MemAvailable:/ { print int($2 / 1024) }' /proc/meminfo)"
+    for count in ${threads//,/ }; do
+      say "      $n^3, $count thread(s)"
+      "$program" --size "$n" --series "$work/standard-$n.banyan" --threads "$count" \
+        --repeat "$repeat" >> "$csv" || fail "measuring $n^3 samples failed."
+      if ((needed > available)); then
+        say "      $n^3 from memory needs $needed MiB and is left out"
+        continue
+      fi
+      "$program" --size "$n" --threads "$count" --repeat "$repeat" >> "$csv" ||
+        fail "measuring $n^3 samples failed."
+    done
+  done
+}
+
+parse_arguments "$@"
+# Debian's Python, for which its packages are.
+python=/usr/bin/python3
+[[ -x "$python" ]] || python=python3
+
+stage 1 4 "Installing what is missing and building"
+install_and_build
+[[ -x "$BuildFolder/bin/banyan-bench-raycast" ]] ||
+  fail "there is no $BuildFolder/bin/banyan-bench-raycast; it has to be built first."
+work="${work:-$BuildFolder/raycast-scenes}"
+mkdir -p "$work" "$output" || fail "the folders for the results cannot be made."
+
+if [[ $scaling == 1 ]]; then
+  stage 2 4 "Encoding the standard field, sizes that are not in $work"
+  for n in "${sizes[@]}"; do
+    encode_standard "$n"
+  done
+  stage 3 4 "Measuring"
+  measure_scaling
+  stage 4 4 "Reporting"
+  "$python" "$here/RayCast/report_scaling.py" "$output/raycast-scaling.csv" \
+    "$output/raycast-scaling.png" || fail "the report could not be written."
+  say "Done: $output/raycast-scaling.csv and $output/raycast-scaling.png"
+  exit 0
+fi
+
+stage 2 4 "Collecting volumes${data:+ from $data}"
+real=()
+if [[ -n "$data" ]]; then
+  collect bonsai '*.mhd'
+  collect isabel_velmag '*.vti'
+  collect viscous_fingers_run01 '*.mhd'
+fi
+generate_turbulence
+stage 3 4 "Measuring"
+measure_renderers
+stage 4 4 "Reporting"
+"$python" "$here/RayCast/report.py" "$output/raycast.csv" "$output/raycast.png" \
+  "$output/raycast-largest.png" &&
+  "$python" "$here/RayCast/compare_pictures.py" "$work/pictures" "$output/raycast-pictures.png" ||
+  fail "the report could not be written."
+say "Done: $output/raycast.csv, $output/raycast.png, -largest.png and -pictures.png"
