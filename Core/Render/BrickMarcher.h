@@ -2,29 +2,12 @@
 #define banyan_Render_BrickMarcher_h
 
 #include "Render/BrickSource.h"
-#include "Render/RayLattice.h"
+#include "Render/PackedBrick.h"
+#include "Render/RayTile.h"
 #include "Render/TransferFunction.h"
-
-#include <glm/vec4.hpp>
-
-#include <cstdint>
-#include <vector>
 
 namespace banyan
 {
-
-/// The rays of a rectangle of pixels while bricks are drawn front to back.
-struct RayTile
-{
-  PixelRect Rect;
-  std::vector<RaySamples> Rays; ///< `[y][x]` of Rect
-  /// Premultiplied colour so far, and in the fourth component the *transmittance* (1 - opacity), so
-  /// that stopping and going on with the next batch changes no bit.
-  FloatImage* Picture = nullptr;
-  float TransmittanceLimit = 0; ///< a ray ends when its transmittance is not above this
-  std::int64_t ActiveRays = 0;  ///< rays with samples that have not ended
-  std::int64_t SamplesTaken = 0;
-};
 
 /// A brick, or the part of it that is to be drawn.
 struct BrickPart
@@ -34,7 +17,8 @@ struct BrickPart
   Box Cells;         ///< the cells to draw, inside the brick
 };
 
-/// Blends the samples that lie in `part` behind what the rays of `tile` have met so far.
+/// Blends the samples that lie in `part` behind what the rays of `tile` have met so far: one sample
+/// after the other, for any type, strides, size and step.
 ///
 /// A sample is the trilinear interpolant of the eight corners of its cell, in float, from 24-bit
 /// fractions; the result does not depend on the brick around the cell. A sample with a corner that
@@ -42,6 +26,16 @@ struct BrickPart
 /// @param pixels those whose rays may meet the part; only these are tried
 void MarchBrick(
   const BrickPart& part, const StepTable& table, const PixelRect& pixels, RayTile& tile);
+
+/// The same for a packed brick, all of `seen.Cells`; the reference for MarchPacked.
+void MarchUnpacked(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
+  const PixelRect& pixels, RayTile& tile);
+
+/// The same picture, bit for bit and on every processor, by packets of rays. Space that cannot be
+/// seen takes no samples, and is not counted in `tile.SamplesTaken`.
+/// @param tile PacketsFit
+void MarchPacked(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
+  const PixelRect& pixels, RayTile& tile);
 
 } // namespace banyan
 

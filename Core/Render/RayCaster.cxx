@@ -13,8 +13,7 @@ namespace banyan
 namespace
 {
 
-/// Pixels per side of a tile: its rays (about 200 kB) and a brick's values share the L2 cache.
-constexpr int TileSize = 32;
+constexpr int TileSize = RayTile::Edge;
 /// Bricks loaded before the rays that have become opaque are looked at again.
 constexpr std::size_t BricksPerBatch = 512;
 
@@ -24,6 +23,15 @@ struct PlannedBrick
   Box Cells;
   PixelRect Footprint;
   double Key = 0;
+};
+
+/// Packed, or as the source gives it where it cannot be packed.
+struct LoadedBrick
+{
+  std::shared_ptr<const PackedBrick> Packed;
+  BrickVisibility Seen;
+  PixelRect Footprint; ///< of what can be seen
+  BrickView View;
 };
 
 class Caster
@@ -39,6 +47,7 @@ public:
     , Statistics(statistics)
     , Lattice(scene)
     , Table(scene.Transfer, scene.SampleDistance)
+    , Visible(scene.Transfer)
     , IndexCamera(scene.Camera.InSpace(scene.IndexToWorld))
   {
   }
@@ -71,7 +80,6 @@ private:
     const glm::ivec3 counts = this->Source.Bricks();
     const std::int64_t count = std::int64_t{ counts.x } * counts.y * counts.z;
     const ValueMask visibleBins = this->Scene.Transfer.VisibleBins(this->Source.MasksAreOver());
-    const VisibleValues visible(this->Scene.Transfer);
     const Viewpoint view = InIndexSpace(this->Scene.Camera, this->Scene.IndexToWorld);
     for (std::int64_t number = 0; number < count; ++number)
     {
@@ -84,7 +92,8 @@ private:
         continue;
       }
       const ValueRange range = this->Source.RangeOf(number);
-      if ((this->Source.MaskOf(number) & visibleBins) != 0 && visible.Any(range.Low, range.High))
+      if ((this->Source.MaskOf(number) & visibleBins) != 0 &&
+          this->Visible.Any(range.Low, range.High))
       {
         brick.Footprint = Intersection(this->FootprintOf(brick.Cells), this->Scene.Viewport);
       }
@@ -160,15 +169,16 @@ private:
     for (; next < this->Bricks.size(); ++next)
     {
       const PlannedBrick& brick = this->Bricks[next];
-      const std::uint64_t brickBytes = this->Source.LoadBytes(brick.Number);
-      const bool full = bytes + brickBytes > this->BudgetBytes ||
-                        (bytes + brickBytes > 0 && this->Batch.size() >= BricksPerBatch);
+      const std::uint64_t loadBytes = this->Source.LoadBytes(brick.Number);
+      const std::uint64_t brickBytes = loadBytes + PackedBrick::BytesFor(brick.Cells);
+      const bool full =
+        bytes + brickBytes > this->BudgetBytes || this->Batch.size() >= BricksPerBatch;
       if (full && !this->Batch.empty())
       {
         break;
       }
       // What is in memory anyway costs less to draw than to look for open pixels.
-      if (brickBytes > 0 && !this->AnyRayOpen(brick.Footprint))
+      if (loadBytes > 0 && !this->AnyRayOpen(brick.Footprint))
       {
         ++this->Statistics.BricksSkipped;
         continue;
@@ -200,9 +210,10 @@ private:
 
   void DrawBatch()
   {
-    this->Views.assign(this->Batch.size(), {});
+    this->Loaded.clear();
+    this->Loaded.resize(this->Batch.size());
     this->Pool.ParallelFor(static_cast<std::int64_t>(this->Batch.size()),
-      [this](std::int64_t i) { this->Views[i] = this->Source.Load(this->Batch[i]->Number); });
+      [this](std::int64_t i) { this->Load(*this->Batch[i], this->Loaded[i]); });
     this->Statistics.BricksDrawn += static_cast<std::int64_t>(this->Batch.size());
 
     std::atomic<std::int64_t> samples{ 0 };
@@ -215,41 +226,59 @@ private:
     };
     this->Pool.ParallelFor(static_cast<std::int64_t>(this->BricksOfTile.size()), draw);
     this->Statistics.SamplesTaken += samples;
-    this->Views.clear();
+    this->Loaded.clear();
+  }
+
+  void Load(const PlannedBrick& brick, LoadedBrick& loaded) const
+  {
+    BrickView view = this->Source.Load(brick.Number);
+    if (!PackedBrick::CanPack(brick.Cells))
+    {
+      loaded.View = view;
+      return;
+    }
+    const glm::ivec3 corner = this->Source.CellsOf(brick.Number).Lo;
+    loaded.Packed =
+      std::make_shared<const PackedBrick>(view, corner, brick.Cells, this->Table.Low());
+    loaded.Seen =
+      BrickVisibility(*loaded.Packed, this->Source.RangeOf(brick.Number), this->Visible);
+    loaded.Footprint =
+      loaded.Seen.Cells == brick.Cells ? brick.Footprint : this->FootprintOf(loaded.Seen.Cells);
   }
 
   /// @return samples taken
   std::int64_t DrawTile(std::int64_t number, RayTile& tile)
   {
-    tile.Rect = this->RectOfTile(number);
-    tile.Picture = &this->Picture;
-    tile.TransmittanceLimit = 1.0f - this->Scene.OpacityLimit;
-    tile.ActiveRays = 0;
-    tile.SamplesTaken = 0;
-    tile.Rays.resize(static_cast<std::size_t>(tile.Rect.Count()));
-    RaySamples* ray = tile.Rays.data();
-    for (int y = tile.Rect.Lo.y; y < tile.Rect.Hi.y; ++y)
-    {
-      for (int x = tile.Rect.Lo.x; x < tile.Rect.Hi.x; ++x, ++ray)
-      {
-        const bool active = this->Picture.At(x, y).a > tile.TransmittanceLimit;
-        *ray = active ? this->Lattice.SamplesOf(x, y) : RaySamples{};
-        tile.ActiveRays += ray->Empty() ? 0 : 1;
-      }
-    }
+    tile.Open(
+      this->Lattice, this->RectOfTile(number), this->Picture, 1.0f - this->Scene.OpacityLimit);
     for (const int position : this->BricksOfTile[number])
     {
       if (tile.ActiveRays == 0)
       {
         break;
       }
-      const PlannedBrick& brick = *this->Batch[position];
-      const Box whole = this->Source.CellsOf(brick.Number);
-      MarchBrick(
-        { this->Views[position], whole.Lo, brick.Cells }, this->Table, brick.Footprint, tile);
+      this->DrawBrick(*this->Batch[position], this->Loaded[position], tile);
     }
+    tile.Close(this->Picture);
     this->TileIsDone[number] = tile.ActiveRays == 0 ? 1 : 0;
     return tile.SamplesTaken;
+  }
+
+  void DrawBrick(const PlannedBrick& brick, const LoadedBrick& loaded, RayTile& tile) const
+  {
+    if (!loaded.Packed)
+    {
+      const glm::ivec3 corner = this->Source.CellsOf(brick.Number).Lo;
+      MarchBrick({ loaded.View, corner, brick.Cells }, this->Table, brick.Footprint, tile);
+    }
+    else if (tile.PacketsFit)
+    {
+      MarchPacked(*loaded.Packed, loaded.Seen, this->Table, loaded.Footprint, tile);
+    }
+    else
+    {
+      MarchUnpacked(*loaded.Packed, loaded.Seen, this->Table, loaded.Footprint, tile);
+    }
   }
 
   const RayScene& Scene;
@@ -260,6 +289,7 @@ private:
   RayStatistics& Statistics;
   RayLattice Lattice;
   StepTable Table;
+  VisibleValues Visible;
   RayCamera IndexCamera;
 
   FloatImage Picture;
@@ -269,7 +299,7 @@ private:
   std::vector<std::vector<int>> BricksOfTile; ///< positions in the batch, front to back
   std::vector<RayTile> Scratch;               ///< one per worker
   std::vector<const PlannedBrick*> Batch;
-  std::vector<BrickView> Views;
+  std::vector<LoadedBrick> Loaded; ///< of the batch
 };
 
 } // namespace

@@ -43,7 +43,7 @@ struct RayScene
 
 struct RayStatistics
 {
-  std::int64_t SamplesTaken = 0;
+  std::int64_t SamplesTaken = 0;  ///< without those left out where nothing can be seen
   std::int64_t BricksDrawn = 0;   ///< bricks whose values were loaded
   std::int64_t BricksSkipped = 0; ///< not loaded: cannot be seen, off screen, or hidden
 };
@@ -57,9 +57,10 @@ struct RayStatistics
 /// in visibility order, give the picture of their union within 1e-5 in float (rays that end early
 /// apart: 1 - OpacityLimit), and the size of bricks, the budget and the threads change no bit.
 ///
-/// Brick by brick, front to back; a batch of bricks never takes more than `budgetBytes`, unless one
-/// brick alone does. Bricks that cannot be seen are not loaded: by their range and mask under the
-/// transfer function, off screen, or behind pixels that have all reached the opacity limit.
+/// Brick by brick, front to back; a batch of bricks, as loaded and as packed for drawing, never
+/// takes more than `budgetBytes`, unless one brick alone does. Bricks that cannot be seen are not
+/// loaded: by their range and mask under the transfer function, off screen, or behind pixels that
+/// have all reached the opacity limit.
 ///
 /// @param statistics is added to
 /// @return pixels that the visible bricks may touch (inside Viewport); may be empty.

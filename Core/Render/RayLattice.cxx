@@ -194,10 +194,10 @@ void RayLattice::PlaceWhole(const IndexRay& ray, double firstSample, RaySamples&
   for (int axis = 0; axis < 3; ++axis)
   {
     const std::int64_t base = this->Fixed(ray, (firstSample + 0.5) * distance, axis);
-    std::int64_t step = 0;
+    // Where a single sample's ray comes from and goes to counts for its head and tail.
+    std::int64_t step = std::llround(ray.Direction[axis] * distance * FixedOne);
     if (steps > 0)
     {
-      step = static_cast<std::int64_t>(std::llround(ray.Direction[axis] * distance * FixedOne));
       // Keeps the last sample inside the domain too, whatever was rounded on the way.
       const std::int64_t end = base + steps * step;
       const std::int64_t low = ToFixed(cells.Lo[axis]);

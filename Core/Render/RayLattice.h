@@ -15,7 +15,7 @@ namespace banyan
 /// point. Adding them is exact, so the samples of a ray do not depend on where one starts counting:
 /// bricks, zones and batches of any size see the same samples, bit for bit, and each sample lies in
 /// exactly one cell.
-constexpr int FractionBits = 36;
+constexpr int FractionBits = 24;
 /// Leaves room for a sum of two positions in 64 bits.
 constexpr int LargestPosition = 1 << 26;
 

@@ -90,18 +90,34 @@ VisibleValues::VisibleValues(const TransferFunction& function)
   this->Margin = 1.0 + 1e-6 * static_cast<double>(function.Entries.size());
 }
 
+VisibleValues::Span VisibleValues::EntriesOf(double low, double high) const
+{
+  const double last = static_cast<double>(this->VisibleBefore.size()) - 2.0;
+  const auto position = [&](double value) { return (value - this->Low) * this->Scale; };
+  return { static_cast<std::size_t>(
+             std::clamp(std::floor(position(low) - this->Margin), 0.0, last)),
+    static_cast<std::size_t>(std::clamp(std::ceil(position(high) + this->Margin), 0.0, last)) };
+}
+
 bool VisibleValues::Any(double low, double high) const
 {
   if (!(low <= high))
   {
     return false;
   }
-  const double last = static_cast<double>(this->VisibleBefore.size()) - 2.0;
-  const auto position = [&](double value) { return (value - this->Low) * this->Scale; };
-  const double first = std::clamp(std::floor(position(low) - this->Margin), 0.0, last);
-  const double end = std::clamp(std::ceil(position(high) + this->Margin), 0.0, last);
-  return this->VisibleBefore[static_cast<std::size_t>(end) + 1] >
-         this->VisibleBefore[static_cast<std::size_t>(first)];
+  const Span span = this->EntriesOf(low, high);
+  return this->VisibleBefore[span.Last + 1] > this->VisibleBefore[span.First];
+}
+
+bool VisibleValues::All(double low, double high) const
+{
+  if (!(low <= high))
+  {
+    return false;
+  }
+  const Span span = this->EntriesOf(low, high);
+  const int entries = static_cast<int>(span.Last - span.First) + 1;
+  return this->VisibleBefore[span.Last + 1] - this->VisibleBefore[span.First] == entries;
 }
 
 StepTable::StepTable(const TransferFunction& function, double sampleDistance)

@@ -46,7 +46,19 @@ public:
   /// As TransferFunction::AnyVisible; an empty interval (low > high) shows nothing.
   bool Any(double low, double high) const;
 
+  /// Whether every value in [low, high] can be seen. Conservative too: false when in doubt.
+  bool All(double low, double high) const;
+
 private:
+  struct Span
+  {
+    std::size_t First;
+    std::size_t Last; ///< inclusive
+  };
+
+  /// The entries that values in [low, high] may take.
+  Span EntriesOf(double low, double high) const;
+
   std::vector<int> VisibleBefore; ///< entries with opacity > 0 before entry i
   double Low = 0.0;
   double Scale = 0.0;

@@ -1,4 +1,4 @@
-#include "Render/BlockInterpolator.h"
+#include "Render/Interpolators.h"
 #include "Render/Scenes.h"
 
 #include <gtest/gtest.h>
@@ -15,27 +15,6 @@ using AllTypes = testing::Types<std::int8_t, std::uint8_t, std::int16_t, std::ui
   std::int32_t, std::uint32_t, std::int64_t, std::uint64_t, float, double>;
 
 constexpr int Size = 7;
-
-/// Random values over the whole range of the type, some of them not finite.
-template <class T>
-std::vector<T> RandomValues(std::size_t count, std::mt19937_64& random)
-{
-  std::vector<T> values(count);
-  for (T& value : values)
-  {
-    if constexpr (std::is_integral_v<T>)
-    {
-      value = static_cast<T>(random());
-    }
-    else
-    {
-      value = static_cast<T>(static_cast<double>(random() % 2000001) * 1e-3 - 1000.0);
-      value = random() % 50 == 0 ? std::numeric_limits<T>::quiet_NaN() : value;
-      value = random() % 50 == 0 ? std::numeric_limits<T>::infinity() : value;
-    }
-  }
-  return values;
-}
 
 void RandomPosition(std::int64_t (&position)[3], std::mt19937_64& random)
 {
@@ -86,64 +65,7 @@ TYPED_TEST(Interpolators, TrilinearInDouble)
   }
 }
 
-#if BANYAN_HAS_BLOCKS
-
-template <class T, bool Pairs>
-void ExpectSameBits(const BrickView& view, std::mt19937_64& random)
-{
-  using Block = BlockInterpolator<T, Pairs>;
-  const double low = 12.5;
-  ASSERT_TRUE(Block::CanRead(view));
-  const Block blocks(view, low);
-  const PlainInterpolator<T> plain(view, low);
-  for (int i = 0; i < 3000; ++i)
-  {
-    std::int64_t start[3];
-    std::int64_t end[3];
-    std::int64_t step[3];
-    RandomPosition(start, random);
-    RandomPosition(end, random);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      step[axis] = (end[axis] - start[axis]) / 3;
-    }
-    const int count = 1 + i % 4;
-    alignas(16) float found[4];
-    _mm_store_ps(found, blocks.At(PositionBlock(start, step, count)));
-    for (int k = 0; k < 4; ++k)
-    {
-      const int expectedAt = std::min(k, count - 1);
-      const std::int64_t position[3] = { start[0] + expectedAt * step[0],
-        start[1] + expectedAt * step[1], start[2] + expectedAt * step[2] };
-      const float expected = plain.At(position);
-      const bool same = std::isnan(expected) ? std::isnan(found[k]) : expected == found[k];
-      ASSERT_TRUE(same) << expected << " " << found[k];
-    }
-  }
-}
-
-TYPED_TEST(Interpolators, BlocksGiveTheBitsOfThePlainWay)
-{
-  using T = TypeParam;
-  std::mt19937_64 random(5);
-  // Rows with gaps, and an odd start, so that nothing is aligned.
-  const std::vector<T> values = RandomValues<T>(3 * 11 * 11 * 11 + 1, random);
-  BrickView view{ values.data() + 1, ScalarTypeOf<T>(), { 1, 11, 11 * 11 }, {} };
-  ExpectSameBits<T, false>(view, random);
-  if constexpr (!IsRelative<T>)
-  {
-    ExpectSameBits<T, true>(view, random);
-  }
-  view = { values.data() + 1, ScalarTypeOf<T>(), { 3, 33, 3 * 11 * 11 }, {} };
-  ExpectSameBits<T, false>(view, random);
-  EXPECT_FALSE((BlockInterpolator<T, true>::CanRead(view)));
-  view.Stride[1] = -33;
-  EXPECT_FALSE((BlockInterpolator<T, false>::CanRead(view)));
-}
-
-#endif
-
-/// Strides that only the plain way can read draw the same bits.
+/// Whatever the strides, the same bits are drawn.
 TEST(Strides, MirroredAndInterleavedArraysDrawTheSame)
 {
   const glm::ivec3 n(23, 18, 20);

@@ -1,0 +1,91 @@
+#ifndef banyan_Render_PackedBrick_h
+#define banyan_Render_PackedBrick_h
+
+#include "Render/BrickSource.h"
+#include "Render/TransferFunction.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+namespace banyan
+{
+
+/// A brick laid out for packets of rays: float32, and beside each sample its neighbour in y. The
+/// four corners of a cell's lower or upper face are then 16 bytes side by side, and a sample takes
+/// two loads. Beside the values, the extremes of macro cells.
+///
+/// Exactness: each value is the float that an interpolation of the brick itself works with
+/// (CornerValue), so that packing changes no bit of the picture.
+class PackedBrick
+{
+public:
+  /// Cells per axis: positions in a brick, and some steps before and after it, have 32 bits.
+  static constexpr int LargestEdge = 128;
+  /// Macro cells per axis at most; each has 4^3 cells, or 8^3 or 16^3 in bricks above 32 or 64.
+  static constexpr int MacroEdge = 8;
+  static constexpr int MacroCells = MacroEdge * MacroEdge * MacroEdge;
+
+  static bool CanPack(const Box& cells);
+  static std::size_t BytesFor(const Box& cells);
+
+  /// @param view the brick
+  /// @param corner the sample (index space) that view.Values points at
+  /// @param cells those to pack, inside the brick; CanPack
+  /// @param low what values of types that float cannot hold are relative to (see IsRelative)
+  PackedBrick(const BrickView& view, const glm::ivec3& corner, const Box& cells, double low);
+
+  /// The packed values as a view of Cells(), whose corner is Corner().
+  BrickView View() const;
+  const glm::ivec3& Corner() const { return this->Whole.Lo; }
+  const Box& Cells() const { return this->Whole; }
+
+  const float* Values() const { return this->Samples.get(); }
+  std::ptrdiff_t StrideY() const { return this->Row; }
+  std::ptrdiff_t StrideZ() const { return this->Slice; }
+
+  bool Relative() const { return this->IsRelativeToLow; }
+  double Low() const { return this->RelativeTo; } ///< 0 unless Relative
+  /// Whether a value is not finite, or so large that interpolating might give such a value.
+  bool Special() const { return this->HasSpecial; }
+
+  int MacroShift() const { return this->Shift; } ///< a macro cell has 2^shift cells per axis
+  glm::ivec3 Macros() const;
+  /// Extremes of the values at the corners of a macro cell's cells, NaN apart; empty: low > high.
+  ValueRange RangeOfMacro(const glm::ivec3& macro) const;
+
+private:
+  template <class T>
+  void Copy(const BrickView& view, const glm::ivec3& corner);
+  void FindExtremes();
+
+  Box Whole;
+  std::ptrdiff_t Row = 0;
+  std::ptrdiff_t Slice = 0;
+  int Shift = 2;
+  bool IsRelativeToLow = false;
+  bool HasSpecial = false;
+  double RelativeTo = 0.0;
+  std::unique_ptr<float[]> Samples;
+  float Lowest[MacroCells];
+  float Highest[MacroCells];
+};
+
+/// What can be seen of a packed brick under a transfer function.
+struct BrickVisibility
+{
+  BrickVisibility() = default;
+  /// @param range of the brick's finite values
+  BrickVisibility(const PackedBrick& brick, const ValueRange& range, const VisibleValues& visible);
+
+  /// A box of macro cells around all that can be seen; empty when there are none.
+  Box Cells;
+  /// Whether some macro cells in Cells cannot be seen.
+  bool Holes = false;
+  /// A bit per macro cell of the brick that can be seen: `[8][8][8]`, x fastest.
+  std::uint32_t Mask[PackedBrick::MacroCells / 32] = {};
+};
+
+} // namespace banyan
+
+#endif

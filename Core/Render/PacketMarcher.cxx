@@ -1,0 +1,318 @@
+#include "Render/BrickMarcher.h"
+#include "Render/PartialMarcher.h"
+
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "Render/PacketMarcher.cxx"
+#include <hwy/foreach_target.h>
+
+#include <hwy/highway.h>
+
+#if HWY_TARGET != HWY_SCALAR
+#include "Render/PacketIntervals-inl.h"
+#include "Render/PacketSamples-inl.h"
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace banyan::HWY_NAMESPACE
+{
+
+#if HWY_TARGET == HWY_SCALAR
+
+// Processors without SSE4, and others without vectors: one ray after the other.
+void MarchPackedHere(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
+  const PixelRect& pixels, RayTile& tile)
+{
+  MarchUnpacked(brick, seen, table, pixels, tile);
+}
+
+#else
+
+/// Draws through one brick as many rays at a time as a vector has lanes. Rays of a packet walk side
+/// by side, each from where it enters the brick.
+/// @tparam Special whether samples may not be finite
+/// @tparam Holes whether macro cells are to be skipped
+template <bool Special, bool Holes>
+class PacketMarcher
+{
+public:
+  PacketMarcher(
+    const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table, RayTile& tile)
+    : Intervals(tile, seen.Cells)
+    , Samples(brick, table)
+    , Partial(brick.View(), brick.Corner(), table, brick.Relative())
+    , Cells(seen.Cells)
+    , Tile(tile)
+    , MacroMask(seen.Mask)
+    , MacroShift(FractionBits + brick.MacroShift())
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Offset[axis] =
+        static_cast<std::uint32_t>(ToFixed(seen.Cells.Lo[axis] - brick.Corner()[axis]));
+    }
+  }
+
+  HWY_INLINE void MarchPacket(int packet)
+  {
+    for (int i = 0; i < RayTile::PacketSize; i += static_cast<int>(hn::Lanes(D())))
+    {
+      this->MarchLanes(packet * RayTile::PacketSize + i);
+    }
+  }
+
+private:
+  HWY_INLINE void MarchLanes(int slot)
+  {
+    const D d;
+    const auto open = this->OpenAt(slot);
+    if (hn::AllFalse(d, open))
+    {
+      return;
+    }
+    const Estimate estimate = this->Intervals.EstimateAt(slot);
+    if (estimate.MayHaveHead)
+    {
+      this->MarchPartials(slot, true);
+    }
+    const Whole whole = this->Intervals.FindAt(slot, estimate);
+    const auto active =
+      hn::And(this->OpenAt(slot), hn::RebindMask(d, hn::Gt(whole.Count, hn::Zero(DI()))));
+    if (!hn::AllFalse(d, active))
+    {
+      this->MarchWhole(slot, whole, active);
+    }
+    if (estimate.MayHaveTail)
+    {
+      this->MarchPartials(slot, false);
+    }
+    const std::size_t stillOpen = hn::CountTrue(d, this->OpenAt(slot));
+    this->Tile.ActiveRays -= static_cast<std::int64_t>(hn::CountTrue(d, open) - stillOpen);
+  }
+
+  HWY_INLINE hn::Mask<D> OpenAt(int slot) const
+  {
+    const D d;
+    return hn::Gt(
+      hn::Load(d, this->Tile.Transmittance + slot), hn::Set(d, this->Tile.TransmittanceLimit));
+  }
+
+  using Place = typename PacketSamples<Special>::Place;
+  using Lanes = hn::Mask<D>;
+
+  /// What a vector of rays has met, and where it goes.
+  struct Walk
+  {
+    VF R;
+    VF G;
+    VF B;
+    VF T;
+    Lanes Open; ///< rays that have not ended
+    Position At;
+    Position Step;
+    VI Left; ///< samples from At on
+    std::size_t Taken = 0;
+  };
+
+  HWY_INLINE void MarchWhole(int slot, const Whole& whole, Lanes open)
+  {
+    const D d;
+    const DU du;
+    Walk walk;
+    walk.R = hn::Load(d, this->Tile.Color[0] + slot);
+    walk.G = hn::Load(d, this->Tile.Color[1] + slot);
+    walk.B = hn::Load(d, this->Tile.Color[2] + slot);
+    walk.T = hn::Load(d, this->Tile.Transmittance + slot);
+    walk.Open = open;
+    walk.Left = whole.Count;
+    walk.At = { hn::Add(whole.First[0], hn::Set(du, this->Offset[0])),
+      hn::Add(whole.First[1], hn::Set(du, this->Offset[1])),
+      hn::Add(whole.First[2], hn::Set(du, this->Offset[2])) };
+    walk.Step = { hn::Load(du, this->Tile.Step[0] + slot), hn::Load(du, this->Tile.Step[1] + slot),
+      hn::Load(du, this->Tile.Step[2] + slot) };
+    this->Follow(walk);
+    hn::Store(walk.R, d, this->Tile.Color[0] + slot);
+    hn::Store(walk.G, d, this->Tile.Color[1] + slot);
+    hn::Store(walk.B, d, this->Tile.Color[2] + slot);
+    hn::Store(walk.T, d, this->Tile.Transmittance + slot);
+    this->Tile.SamplesTaken += static_cast<std::int64_t>(walk.Taken);
+  }
+
+  /// While a sample is blended the next one is interpolated, and the one after that is located.
+  HWY_INLINE void Follow(Walk& walk) const
+  {
+    const D d;
+    Place even;
+    Place odd;
+    Offsets evenEntries;
+    Offsets oddEntries;
+    Lanes first = this->Next(walk, even);
+    this->Samples.Interpolate(even, evenEntries);
+    Lanes second = this->Next(walk, odd);
+    while (!hn::AllFalse(d, first))
+    {
+      const Lanes third = this->Next(walk, even);
+      this->Samples.Interpolate(odd, oddEntries);
+      this->Blend(walk, first, evenEntries);
+      if (hn::AllFalse(d, second) || hn::AllFalse(d, walk.Open))
+      {
+        break;
+      }
+      first = third;
+      const Lanes fourth = this->Next(walk, odd);
+      this->Samples.Interpolate(even, evenEntries);
+      this->Blend(walk, second, oddEntries);
+      second = fourth;
+      if (hn::AllFalse(d, walk.Open))
+      {
+        break;
+      }
+    }
+  }
+
+  /// Locates the next sample that may be seen in some lane. @return these lanes; none at the end
+  HWY_INLINE Lanes Next(Walk& walk, Place& place) const
+  {
+    const D d;
+    const DI di;
+    Lanes lanes = hn::And(walk.Open, hn::RebindMask(d, hn::Gt(walk.Left, hn::Zero(di))));
+    if (Holes)
+    {
+      Lanes seen = this->Visible(walk.At, lanes);
+      while (hn::AllFalse(d, seen) && !hn::AllFalse(d, lanes))
+      {
+        Advance(walk);
+        lanes = hn::And(lanes, hn::RebindMask(d, hn::Gt(walk.Left, hn::Zero(di))));
+        seen = this->Visible(walk.At, lanes);
+      }
+      lanes = seen;
+    }
+    this->Samples.Locate(walk.At, lanes, place);
+    Advance(walk);
+    return lanes;
+  }
+
+  static HWY_INLINE void Advance(Walk& walk)
+  {
+    walk.At = { hn::Add(walk.At.X, walk.Step.X), hn::Add(walk.At.Y, walk.Step.Y),
+      hn::Add(walk.At.Z, walk.Step.Z) };
+    walk.Left = hn::Sub(walk.Left, hn::Set(DI(), 1));
+  }
+
+  HWY_INLINE void Blend(Walk& walk, Lanes lanes, const Offsets& entries) const
+  {
+    const D d;
+    lanes = hn::And(lanes, walk.Open);
+    const Steps steps = this->Samples.LookUp(entries);
+    const VF weight = hn::IfThenElseZero(lanes, walk.T);
+    walk.R = hn::Add(walk.R, hn::Mul(weight, steps.R));
+    walk.G = hn::Add(walk.G, hn::Mul(weight, steps.G));
+    walk.B = hn::Add(walk.B, hn::Mul(weight, steps.B));
+    walk.T = hn::IfThenElse(lanes, hn::Mul(walk.T, steps.Transmittance), walk.T);
+    walk.Open = hn::And(walk.Open, hn::Gt(walk.T, hn::Set(d, this->Tile.TransmittanceLimit)));
+    walk.Taken += hn::CountTrue(d, lanes);
+  }
+
+  /// The lanes whose macro cell can be seen. Samples in others would change no bit.
+  HWY_INLINE hn::Mask<D> Visible(const Position& at, hn::Mask<D> active) const
+  {
+    static_assert(PackedBrick::MacroEdge == 8, "three bits per axis");
+    const DU d;
+    const VU x = hn::ShiftRightSame(at.X, this->MacroShift);
+    const VU y = hn::ShiftRightSame(at.Y, this->MacroShift);
+    const VU z = hn::ShiftRightSame(at.Z, this->MacroShift);
+    const VU macro = hn::Or(x, hn::Or(hn::ShiftLeft<3>(y), hn::ShiftLeft<6>(z)));
+    // Lanes that have left the brick look at some other macro cell.
+    const VU number = hn::And(hn::ShiftRight<5>(macro), hn::Set(d, 15u));
+    constexpr unsigned lanes = static_cast<unsigned>(hn::MaxLanes(DU()));
+    const auto lane = hn::IndicesFromVec(d, hn::And(number, hn::Set(d, lanes - 1)));
+    VU word = hn::TableLookupLanes(hn::LoadU(d, this->MacroMask), lane);
+    for (unsigned i = lanes; i < 16; i += lanes)
+    {
+      const VU other = hn::TableLookupLanes(hn::LoadU(d, this->MacroMask + i), lane);
+      word =
+        hn::IfThenElse(hn::Eq(hn::And(number, hn::Set(d, 16 - lanes)), hn::Set(d, i)), other, word);
+    }
+    const VU bit = hn::Shl(hn::Set(d, 1u), hn::And(macro, hn::Set(d, 31u)));
+    const auto shown = hn::TestBit(word, bit);
+    return hn::And(active, hn::RebindMask(D(), shown));
+  }
+
+  /// Heads or tails of a vector's rays, where they lie in the cells. Few bricks have any.
+  void MarchPartials(int slot, bool heads)
+  {
+    for (int i = slot; i < slot + static_cast<int>(hn::Lanes(D())); ++i)
+    {
+      const RaySamples& ray = this->Tile.Rays[static_cast<std::size_t>(i)];
+      const PartialSample& sample = heads ? ray.Head : ray.Tail;
+      const bool here = sample.Fraction > 0.0f && this->Cells.Contains(sample.Position);
+      if (here && this->Tile.Transmittance[i] > this->Tile.TransmittanceLimit)
+      {
+        glm::vec4 pixel = this->Tile.PixelOf(i);
+        this->Partial.March(sample, pixel);
+        this->Tile.SetPixel(i, pixel);
+        ++this->Tile.SamplesTaken;
+      }
+    }
+  }
+
+  PacketIntervals Intervals;
+  PacketSamples<Special> Samples;
+  PartialMarcher<float> Partial;
+  FixedBox Cells;
+  RayTile& Tile;
+  const std::uint32_t* MacroMask;
+  int MacroShift;
+  std::uint32_t Offset[3]; ///< from the cells' low corner to the brick's
+};
+
+template <bool Special, bool Holes>
+void MarchPackets(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
+  const PixelRect& pixels, RayTile& tile)
+{
+  constexpr int edge = RayTile::PacketEdge;
+  const glm::ivec2 corner = tile.Rect.Lo;
+  const PixelRect packets{ (pixels.Lo - corner) / edge, (pixels.Hi - corner + edge - 1) / edge };
+  PacketMarcher<Special, Holes> marcher(brick, seen, table, tile);
+  for (int y = packets.Lo.y; y < packets.Hi.y; ++y)
+  {
+    for (int x = packets.Lo.x; x < packets.Hi.x; ++x)
+    {
+      marcher.MarchPacket(y * RayTile::PacketsPerRow + x);
+    }
+  }
+}
+
+void MarchPackedHere(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
+  const PixelRect& pixels, RayTile& tile)
+{
+  const auto march = brick.Special()
+                       ? (seen.Holes ? MarchPackets<true, true> : MarchPackets<true, false>)
+                       : (seen.Holes ? MarchPackets<false, true> : MarchPackets<false, false>);
+  march(brick, seen, table, pixels, tile);
+}
+
+#endif
+
+} // namespace banyan::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace banyan
+{
+
+HWY_EXPORT(MarchPackedHere);
+
+void MarchPacked(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
+  const PixelRect& pixels, RayTile& tile)
+{
+  const PixelRect rect = Intersection(pixels, tile.Rect);
+  if (!rect.Empty() && !seen.Cells.Empty())
+  {
+    HWY_DYNAMIC_DISPATCH(MarchPackedHere)(brick, seen, table, rect, tile);
+  }
+}
+
+} // namespace banyan
+#endif

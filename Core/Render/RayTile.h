@@ -1,0 +1,80 @@
+#ifndef banyan_Render_RayTile_h
+#define banyan_Render_RayTile_h
+
+#include "Render/RayLattice.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace banyan
+{
+
+/// The rays of a rectangle of pixels while bricks are drawn front to back.
+///
+/// Rays stand in slots, packet by packet: a packet has the rays of 4 x 4 pixels, row by row, so
+/// that rays that are drawn together stay together. Slots without a pixel have an empty ray.
+struct RayTile
+{
+  static constexpr int Edge = 32; ///< pixels: rays (about 200 kB) and a brick share the L2 cache
+  static constexpr int PacketEdge = 4;
+  static constexpr int PacketSize = PacketEdge * PacketEdge;
+  static constexpr int PacketsPerRow = Edge / PacketEdge;
+  static constexpr int Slots = Edge * Edge;
+  /// Cells that a step may go along an axis for packets to be drawn; see PackedBrick::LargestEdge.
+  static constexpr int LongestStep = 16;
+
+  /// @param x, y pixel of the picture, inside Rect
+  int SlotOf(int x, int y) const
+  {
+    const int column = x - this->Rect.Lo.x;
+    const int row = y - this->Rect.Lo.y;
+    const int packet = row / PacketEdge * PacketsPerRow + column / PacketEdge;
+    return packet * PacketSize + row % PacketEdge * PacketEdge + column % PacketEdge;
+  }
+
+  /// Places the rays of a rectangle of at most Edge x Edge pixels, and takes up what they have met
+  /// so far. Rays that have ended are left empty.
+  /// @param picture premultiplied colour, and the *transmittance* (1 - opacity) in the fourth
+  ///        component, so that stopping and going on with the next batch changes no bit
+  void Open(
+    const RayLattice& lattice, const PixelRect& rect, const FloatImage& picture, float limit);
+
+  /// Puts what the rays have met back into the picture.
+  void Close(FloatImage& picture) const;
+
+  void SetRay(int slot, const RaySamples& ray);
+
+  /// Premultiplied colour and transmittance.
+  glm::vec4 PixelOf(int slot) const
+  {
+    return { this->Color[0][slot], this->Color[1][slot], this->Color[2][slot],
+      this->Transmittance[slot] };
+  }
+  void SetPixel(int slot, const glm::vec4& pixel)
+  {
+    this->Color[0][slot] = pixel.r;
+    this->Color[1][slot] = pixel.g;
+    this->Color[2][slot] = pixel.b;
+    this->Transmittance[slot] = pixel.a;
+  }
+
+  PixelRect Rect;
+  float TransmittanceLimit = 0;  ///< a ray ends when its transmittance is not above this
+  std::int64_t ActiveRays = 0;   ///< rays with samples that have not ended
+  std::int64_t SamplesTaken = 0; ///< since Open
+  bool PacketsFit = true;        ///< no ray steps further than LongestStep
+  std::vector<RaySamples> Rays;  ///< per slot
+
+  // What packets need, axis by axis, slot by slot.
+  alignas(64) std::uint32_t Base[3][Slots]; ///< position of whole sample 0, modulo 256 cells
+  alignas(64) std::uint32_t Step[3][Slots]; ///< modulo 256 cells
+  alignas(64) double Start[3][Slots];       ///< in cells; never a whole number where Step is 0
+  alignas(64) double Inverse[3][Slots];     ///< samples per cell; infinite where Step is 0
+  alignas(64) std::int32_t Count[Slots];
+  alignas(64) float Color[3][Slots];
+  alignas(64) float Transmittance[Slots];
+};
+
+} // namespace banyan
+
+#endif
