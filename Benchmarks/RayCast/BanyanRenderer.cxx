@@ -10,7 +10,7 @@ namespace
 
 /// As VTK's GPU mapper: a ray ends when one step of 8 bits is all that could follow.
 constexpr float OpacityLimit = 1.0f - 1.0f / 255.0f;
-constexpr int BrickCells = 16; // as the mapper cuts plain arrays
+constexpr int BrickCells = 32; // what the packets are made for
 
 class BanyanRenderer : public RayCastRenderer
 {

@@ -197,7 +197,7 @@ void Draw(const Options& options)
   {
     const auto volume = bench::StandardVolume(options.Size, pool);
     const Timer sinceStart;
-    ArrayBrickSource source(volume->Array(), 16, { 0.0, 1.0 }, pool);
+    ArrayBrickSource source(volume->Array(), 32, { 0.0, 1.0 }, pool);
     Report(options, DrawFrames(options, sinceStart, source, budget, pool));
     return;
   }
