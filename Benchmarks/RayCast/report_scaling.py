@@ -7,16 +7,17 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plot  # noqa: E402 (the backend has to be chosen first)
+from matplotlib.ticker import LogLocator, NullFormatter  # noqa: E402
 
 
 def read(path):
     with open(path, encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     for row in rows:
-        row["size"] = int(row["scene"].split("-")[1])
         for key, text in row.items():
             if key not in ("scene", "source"):
                 row[key] = float(text)
+        row["size"] = int(row["scene"].split("-")[1])
     return rows
 
 
@@ -37,6 +38,9 @@ def draw(rows, path):
         axes.set_xscale("log", base=2)
         axes.set_yscale("log")
         axes.set_xticks(sizes, [f"{size}³" for size in sizes])
+        axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axes.yaxis.set_major_formatter("{x:g}")
+        axes.yaxis.set_minor_formatter(NullFormatter())
         axes.grid(True, which="both", alpha=0.25)
         axes.set_ylabel(label)
     grid[0].legend(fontsize=8)
