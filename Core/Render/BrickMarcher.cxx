@@ -88,11 +88,10 @@ void MarchRays(const PlainMarcher<T>& marcher, const PixelRect& rect, RayTile& t
     for (int x = rect.Lo.x; x < rect.Hi.x; ++x)
     {
       const int slot = tile.SlotOf(x, y);
-      const RaySamples& ray = tile.Rays[static_cast<std::size_t>(slot)];
-      if (!ray.Empty() && tile.Transmittance[slot] > limit)
+      if (!tile.IsEmpty(slot) && tile.Transmittance[slot] > limit)
       {
         glm::vec4 pixel = tile.PixelOf(slot);
-        tile.SamplesTaken += marcher.MarchRay(ray, pixel);
+        tile.SamplesTaken += marcher.MarchRay(tile.RayOf(slot), pixel);
         tile.ActiveRays -= pixel.a > limit ? 0 : 1;
         tile.SetPixel(slot, pixel);
       }

@@ -1,5 +1,4 @@
 #include "Render/BrickMarcher.h"
-#include "Render/PartialMarcher.h"
 
 #include <algorithm>
 
@@ -41,7 +40,6 @@ public:
     const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table, RayTile& tile)
     : Intervals(tile, seen.Cells)
     , Samples(brick, table)
-    , Partial(brick.View(), brick.Corner(), table, brick.Relative())
     , Cells(seen.Cells)
     , Tile(tile)
     , MacroMask(seen.Mask)
@@ -49,6 +47,8 @@ public:
   {
     for (int axis = 0; axis < 3; ++axis)
     {
+      this->Size[axis] = static_cast<std::uint32_t>(seen.Cells.Size()[axis]);
+      this->ToBrick[axis] = static_cast<std::uint32_t>(-ToFixed(brick.Corner()[axis]));
       this->Offset[axis] =
         static_cast<std::uint32_t>(ToFixed(seen.Cells.Lo[axis] - brick.Corner()[axis]));
     }
@@ -74,7 +74,7 @@ private:
     const Estimate estimate = this->Intervals.EstimateAt(slot);
     if (estimate.MayHaveHead)
     {
-      this->MarchPartials(slot, true);
+      this->MarchEnds(slot, this->Tile.Head);
     }
     const Whole whole = this->Intervals.FindAt(slot, estimate);
     const auto active =
@@ -85,7 +85,7 @@ private:
     }
     if (estimate.MayHaveTail)
     {
-      this->MarchPartials(slot, false);
+      this->MarchEnds(slot, this->Tile.Tail);
     }
     const std::size_t stillOpen = hn::CountTrue(d, this->OpenAt(slot));
     this->Tile.ActiveRays -= static_cast<std::int64_t>(hn::CountTrue(d, open) - stillOpen);
@@ -117,14 +117,8 @@ private:
 
   HWY_INLINE void MarchWhole(int slot, const Whole& whole, Lanes open)
   {
-    const D d;
     const DU du;
-    Walk walk;
-    walk.R = hn::Load(d, this->Tile.Color[0] + slot);
-    walk.G = hn::Load(d, this->Tile.Color[1] + slot);
-    walk.B = hn::Load(d, this->Tile.Color[2] + slot);
-    walk.T = hn::Load(d, this->Tile.Transmittance + slot);
-    walk.Open = open;
+    Walk walk = this->WalkAt(slot, open);
     walk.Left = whole.Count;
     walk.At = { hn::Add(whole.First[0], hn::Set(du, this->Offset[0])),
       hn::Add(whole.First[1], hn::Set(du, this->Offset[1])),
@@ -132,11 +126,30 @@ private:
     walk.Step = { hn::Load(du, this->Tile.Step[0] + slot), hn::Load(du, this->Tile.Step[1] + slot),
       hn::Load(du, this->Tile.Step[2] + slot) };
     this->Follow(walk);
+    this->Keep(slot, walk);
+    this->Tile.SamplesTaken += static_cast<std::int64_t>(walk.Taken);
+  }
+
+  /// @param open the rays that are to go on
+  HWY_INLINE Walk WalkAt(int slot, Lanes open) const
+  {
+    const D d;
+    Walk walk;
+    walk.R = hn::Load(d, this->Tile.Color[0] + slot);
+    walk.G = hn::Load(d, this->Tile.Color[1] + slot);
+    walk.B = hn::Load(d, this->Tile.Color[2] + slot);
+    walk.T = hn::Load(d, this->Tile.Transmittance + slot);
+    walk.Open = open;
+    return walk;
+  }
+
+  HWY_INLINE void Keep(int slot, const Walk& walk)
+  {
+    const D d;
     hn::Store(walk.R, d, this->Tile.Color[0] + slot);
     hn::Store(walk.G, d, this->Tile.Color[1] + slot);
     hn::Store(walk.B, d, this->Tile.Color[2] + slot);
     hn::Store(walk.T, d, this->Tile.Transmittance + slot);
-    this->Tile.SamplesTaken += static_cast<std::int64_t>(walk.Taken);
   }
 
   /// While a sample is blended the next one is interpolated, and the one after that is located.
@@ -204,14 +217,18 @@ private:
   {
     const D d;
     lanes = hn::And(lanes, walk.Open);
-    const Steps steps = this->Samples.LookUp(entries);
+    Add(walk, lanes, this->Samples.LookUp(entries));
+    walk.Open = hn::And(walk.Open, hn::Gt(walk.T, hn::Set(d, this->Tile.TransmittanceLimit)));
+    walk.Taken += hn::CountTrue(d, lanes);
+  }
+
+  static HWY_INLINE void Add(Walk& walk, Lanes lanes, const Steps& steps)
+  {
     const VF weight = hn::IfThenElseZero(lanes, walk.T);
     walk.R = hn::Add(walk.R, hn::Mul(weight, steps.R));
     walk.G = hn::Add(walk.G, hn::Mul(weight, steps.G));
     walk.B = hn::Add(walk.B, hn::Mul(weight, steps.B));
     walk.T = hn::IfThenElse(lanes, hn::Mul(walk.T, steps.Transmittance), walk.T);
-    walk.Open = hn::And(walk.Open, hn::Gt(walk.T, hn::Set(d, this->Tile.TransmittanceLimit)));
-    walk.Taken += hn::CountTrue(d, lanes);
   }
 
   /// The lanes whose macro cell can be seen. Samples in others would change no bit.
@@ -240,31 +257,45 @@ private:
   }
 
   /// Heads or tails of a vector's rays, where they lie in the cells. Few bricks have any.
-  void MarchPartials(int slot, bool heads)
+  HWY_INLINE void MarchEnds(int slot, const RayTile::Ends& ends)
   {
-    for (int i = slot; i < slot + static_cast<int>(hn::Lanes(D())); ++i)
+    const D d;
+    const DU du;
+    const VF fraction = hn::Load(d, ends.Fraction + slot);
+    Lanes here = hn::And(this->OpenAt(slot), hn::Gt(fraction, hn::Zero(d)));
+    VU position[3];
+    for (int axis = 0; axis < 3; ++axis)
     {
-      const RaySamples& ray = this->Tile.Rays[static_cast<std::size_t>(i)];
-      const PartialSample& sample = heads ? ray.Head : ray.Tail;
-      const bool here = sample.Fraction > 0.0f && this->Cells.Contains(sample.Position);
-      if (here && this->Tile.Transmittance[i] > this->Tile.TransmittanceLimit)
-      {
-        glm::vec4 pixel = this->Tile.PixelOf(i);
-        this->Partial.March(sample, pixel);
-        this->Tile.SetPixel(i, pixel);
-        ++this->Tile.SamplesTaken;
-      }
+      const VI cell =
+        hn::Sub(hn::Load(DI(), ends.Cell[axis] + slot), hn::Set(DI(), this->Cells.Lo[axis]));
+      here = hn::And(
+        here, hn::RebindMask(d, hn::Lt(hn::BitCast(du, cell), hn::Set(du, this->Size[axis]))));
+      position[axis] =
+        hn::Add(hn::Load(du, ends.Position[axis] + slot), hn::Set(du, this->ToBrick[axis]));
     }
+    if (hn::AllFalse(d, here))
+    {
+      return;
+    }
+    Place place;
+    Offsets entries;
+    this->Samples.Locate({ position[0], position[1], position[2] }, here, place);
+    this->Samples.Interpolate(place, entries);
+    Walk walk = this->WalkAt(slot, here);
+    Add(walk, here, this->Samples.LookUp(entries, fraction));
+    this->Keep(slot, walk);
+    this->Tile.SamplesTaken += static_cast<std::int64_t>(hn::CountTrue(d, here));
   }
 
   PacketIntervals Intervals;
   PacketSamples<Special> Samples;
-  PartialMarcher<float> Partial;
-  FixedBox Cells;
+  Box Cells;
   RayTile& Tile;
   const std::uint32_t* MacroMask;
   int MacroShift;
-  std::uint32_t Offset[3]; ///< from the cells' low corner to the brick's
+  std::uint32_t Size[3];    ///< of the cells
+  std::uint32_t ToBrick[3]; ///< to positions in the brick, modulo 256 cells
+  std::uint32_t Offset[3];  ///< from the cells' low corner to the brick's
 };
 
 template <bool Special, bool Holes>

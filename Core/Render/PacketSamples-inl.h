@@ -144,6 +144,7 @@ public:
     , SliceBytes(static_cast<std::int32_t>(brick.StrideZ() * sizeof(float)))
     , Lookup(brick.Relative() ? table.RelativeLookup() : table.Lookup())
     , Table(table.Steps())
+    , Depths(table.Depths())
   {
   }
 
@@ -188,7 +189,39 @@ public:
     return { steps.Of[0], steps.Of[1], steps.Of[2], steps.Of[3] };
   }
 
+  /// As StepTable::Partial, with transmittance in place of opacity.
+  HWY_INLINE Steps LookUp(const Offsets& entries, VF fraction) const
+  {
+    const Blocks depths = Transposed(LoadBlocks(this->Depths, entries));
+    const VF opacity = OpacityOf(hn::Mul(depths.Of[3], fraction));
+    return { hn::Mul(depths.Of[0], opacity), hn::Mul(depths.Of[1], opacity),
+      hn::Mul(depths.Of[2], opacity), hn::Sub(hn::Set(D(), 1.0f), opacity) };
+  }
+
 private:
+  /// As OpacityOfDepth::Of.
+  static HWY_INLINE VF OpacityOf(VF depth)
+  {
+    using C = OpacityOfDepth;
+    const D d;
+    const DI di;
+    const VF x = hn::Sub(hn::Zero(d), hn::Min(depth, hn::Set(d, C::Largest)));
+    const VF round = hn::Set(d, C::Round);
+    const VF octaves = hn::Sub(hn::Add(hn::Mul(x, hn::Set(d, C::PerOctave)), round), round);
+    const VF r = hn::Sub(hn::Sub(x, hn::Mul(octaves, hn::Set(d, C::OctaveHigh))),
+      hn::Mul(octaves, hn::Set(d, C::OctaveLow)));
+    VF sum = hn::Set(d, C::Terms[0]);
+    for (int i = 1; i < 6; ++i)
+    {
+      sum = hn::Add(hn::Mul(sum, r), hn::Set(d, C::Terms[i]));
+    }
+    const VF less = hn::Add(hn::Mul(hn::Mul(sum, r), r), r);
+    const VF scale =
+      hn::BitCast(d, hn::ShiftLeft<23>(hn::Add(Truncated(octaves), hn::Set(di, 127))));
+    const VF one = hn::Set(d, 1.0f);
+    return hn::Sub(hn::Sub(one, scale), hn::Mul(scale, less));
+  }
+
   /// The four edges along z of the cells of lanes 4 b + k.
   template <int k>
   HWY_INLINE VF MixedAlongZ(const Place& place) const
@@ -235,6 +268,7 @@ private:
   std::int32_t SliceBytes;
   TableLookup Lookup;
   const glm::vec4* Table;
+  const glm::vec4* Depths;
 };
 
 } // namespace banyan::HWY_NAMESPACE

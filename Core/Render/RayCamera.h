@@ -58,6 +58,10 @@ public:
   glm::dvec3 Eye() const { return this->EyePoint; }          ///< perspective only
   glm::dvec3 ViewDirection() const { return this->Forward; } ///< of the centre ray, unit
 
+  /// The inverse of the matrix it was made from, or its negative: points before the eye have w > 0.
+  const glm::dmat4& ClipToWorldMatrix() const { return this->ClipToWorld; }
+  const glm::dvec3& AnchorPoint() const { return this->Anchor; }
+
   /// The ray through the centre of pixel (x, y), bottom left is (0, 0).
   Ray RayOf(int x, int y) const;
 

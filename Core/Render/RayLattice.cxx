@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace banyan
 {
@@ -16,8 +17,6 @@ namespace
 constexpr double FixedOne = static_cast<double>(std::int64_t{ 1 } << FractionBits);
 /// More samples on one ray than anybody waits for: a wrong unit, not a wish.
 constexpr double MostSamplesPerRay = 1e7;
-/// Beyond this the numbers of samples are no longer exact in double.
-constexpr double LargestSampleNumber = 1e15;
 
 void CheckDomain(const Box& cells)
 {
@@ -92,22 +91,51 @@ RayLattice::RayLattice(const RayScene& scene)
   }
 }
 
+LatticeSetup RayLattice::Setup() const
+{
+  const RayCamera& camera = this->Scene.Camera;
+  LatticeSetup setup;
+  setup.ClipToWorld = camera.ClipToWorldMatrix();
+  setup.WorldToIndex = this->WorldToIndex;
+  setup.Width = camera.ImageSize().x;
+  setup.Height = camera.ImageSize().y;
+  setup.Parallel = camera.Parallel();
+  setup.Forward = camera.ViewDirection();
+  setup.Anchor = camera.AnchorPoint();
+  setup.Eye = setup.Parallel ? glm::dvec3(0.0) : camera.Eye();
+  setup.Low = glm::dvec3(this->Scene.DomainCells.Lo);
+  setup.High = glm::dvec3(this->Scene.DomainCells.Hi);
+  setup.Distance = this->Scene.SampleDistance;
+  return setup;
+}
+
+double RayLattice::GeometryAt(int x, int y) const
+{
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (this->Scene.Depth.empty())
+  {
+    return infinity;
+  }
+  const PixelRect& view = this->Scene.Viewport;
+  const auto pixel = static_cast<std::size_t>(y - view.Lo.y) * view.Size().x + (x - view.Lo.x);
+  const float depth = this->Scene.Depth[pixel];
+  return depth < 1.0f
+           ? this->Scene.Camera.DistanceAtDepth(this->Scene.Camera.RayOf(x, y), x, y, depth)
+           : infinity;
+}
+
+void RayLattice::ThrowTooFar()
+{
+  throw Error("The sample distance is too small for the distance between the eye and the volume");
+}
+
 RaySamples RayLattice::SamplesOf(int x, int y) const
 {
   RaySamples samples;
   const Ray ray = this->Scene.Camera.RayOf(x, y);
   double enter = ray.Near;
   double exit = ray.Far;
-  if (!this->Scene.Depth.empty())
-  {
-    const PixelRect& view = this->Scene.Viewport;
-    const auto pixel = static_cast<std::size_t>(y - view.Lo.y) * view.Size().x + (x - view.Lo.x);
-    const float depth = this->Scene.Depth[pixel];
-    if (depth < 1.0f)
-    {
-      exit = std::min(exit, this->Scene.Camera.DistanceAtDepth(ray, x, y, depth));
-    }
-  }
+  exit = std::min(exit, this->GeometryAt(x, y));
   const IndexRay indexRay{ glm::dvec3(this->WorldToIndex * glm::dvec4(ray.Origin, 1.0)),
     this->WorldToIndexLinear * ray.Direction };
   if (!this->ClipToDomain(indexRay, enter, exit))
@@ -118,7 +146,7 @@ RaySamples RayLattice::SamplesOf(int x, int y) const
   const double step = this->Scene.SampleDistance;
   if (std::max(std::abs(enter), std::abs(exit)) / step > LargestSampleNumber)
   {
-    throw Error("The sample distance is too small for the distance between the eye and the volume");
+    ThrowTooFar();
   }
   const double first = std::ceil(enter / step);
   const double last = std::floor(exit / step);
@@ -195,7 +223,8 @@ void RayLattice::PlaceWhole(const IndexRay& ray, double firstSample, RaySamples&
   {
     const std::int64_t base = this->Fixed(ray, (firstSample + 0.5) * distance, axis);
     // Where a single sample's ray comes from and goes to counts for its head and tail.
-    std::int64_t step = std::llround(ray.Direction[axis] * distance * FixedOne);
+    const double exact = ray.Direction[axis] * distance * FixedOne;
+    auto step = static_cast<std::int64_t>(std::floor(exact + 0.5));
     if (steps > 0)
     {
       // Keeps the last sample inside the domain too, whatever was rounded on the way.

@@ -128,6 +128,22 @@ inline void RaySamples::SamplesIn(const FixedBox& box, std::int32_t& begin, std:
   }
 }
 
+/// What rays are made from, for code that makes many at a time.
+struct LatticeSetup
+{
+  glm::dmat4 ClipToWorld{ 1.0 };
+  glm::dmat4 WorldToIndex{ 1.0 };
+  double Width = 0; ///< of the whole picture, in pixels
+  double Height = 0;
+  bool Parallel = false;
+  glm::dvec3 Forward{ 0.0 }; ///< parallel projections only, as Anchor
+  glm::dvec3 Anchor{ 0.0 };
+  glm::dvec3 Eye{ 0.0 }; ///< perspective projections only
+  glm::dvec3 Low{ 0.0 }; ///< of the domain, in cells
+  glm::dvec3 High{ 0.0 };
+  double Distance = 1.0;
+};
+
 /// Makes the samples of rays from what all ranks know: the camera, the domain, the clip planes, the
 /// depth and the sample distance. The values and their distribution have no part in it.
 class RayLattice
@@ -136,8 +152,19 @@ public:
   /// Refers to `scene`, which must stay. Throws Error when the scene is not usable.
   explicit RayLattice(const RayScene& scene);
 
+  /// Beyond this the numbers of samples are no longer exact in double.
+  static constexpr double LargestSampleNumber = 1e15;
+
+  /// One ray after the other: what tiles of rays are held to (RayTile::Open).
   /// @param x, y pixel of the whole picture, inside the scene's viewport
   RaySamples SamplesOf(int x, int y) const;
+
+  LatticeSetup Setup() const;
+
+  /// t along the ray of a pixel where the depth buffer has geometry; infinite where it has none.
+  double GeometryAt(int x, int y) const;
+
+  [[noreturn]] static void ThrowTooFar();
 
 private:
   /// A ray in index space; t stays a world length.

@@ -1,50 +1,328 @@
 #include "Render/RayTile.h"
 
-#include <cstdlib>
+#include <cmath>
 #include <limits>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "Render/RayTile.cxx"
+#include <hwy/foreach_target.h>
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace banyan::HWY_NAMESPACE
+{
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using DD = hn::CappedTag<double, RayTile::PacketSize>;
+using DHalf = hn::Rebind<std::int32_t, DD>;
+using DFloat = hn::Rebind<float, DD>;
+using VD = hn::Vec<DD>;
+
+/// Makes the samples of as many rays at a time as a vector has lanes: RayLattice::SamplesOf, step
+/// by step. Divisions and roots are those of IEEE and nothing is fused, so all targets agree.
+class RayFiller
+{
+public:
+  RayFiller(const RayLattice& lattice, RayTile& tile)
+    : Setup(lattice.Setup())
+    , Tile(tile)
+  {
+  }
+
+  /// @param x, y pixels of the lanes
+  /// @param end upper bound of t per lane: the geometry
+  /// @param active not 0 for lanes that want a ray
+  /// @return false when a lane's sample distance is too small for its distance
+  HWY_INLINE bool Fill(
+    int slot, const double* x, const double* y, const double* end, const double* active)
+  {
+    const DD d;
+    this->MakeRay(hn::Load(d, x), hn::Load(d, y));
+    VD enter = this->Near;
+    VD exit = hn::Min(this->Far, hn::Load(d, end));
+    auto alive = hn::Ne(hn::Load(d, active), hn::Zero(d));
+    this->Clip(enter, exit, alive);
+    alive = hn::And(alive, hn::Lt(enter, exit));
+    if (hn::AllFalse(d, alive))
+    {
+      this->StoreNothing(slot);
+      return true;
+    }
+    const VD distance = hn::Set(d, this->Setup.Distance);
+    const VD farthest = hn::Div(hn::Max(hn::Abs(enter), hn::Abs(exit)), distance);
+    if (!hn::AllFalse(
+          d, hn::And(alive, hn::Gt(farthest, hn::Set(d, RayLattice::LargestSampleNumber)))))
+    {
+      return false;
+    }
+    // Lanes without a ray must not carry numbers that no integer can hold.
+    enter = hn::IfThenElseZero(alive, enter);
+    exit = hn::IfThenElseZero(alive, exit);
+    const VD first = hn::Ceil(hn::Div(enter, distance));
+    const VD last = hn::Floor(hn::Div(exit, distance));
+    const auto whole = hn::And(alive, hn::Le(first, last));
+    this->StoreEnd(
+      slot, enter, hn::IfThenElse(whole, hn::Mul(first, distance), exit), alive, this->Tile.Head);
+    this->StoreEnd(slot, hn::Mul(last, distance), exit, whole, this->Tile.Tail);
+    const VD count = hn::IfThenElseZero(whole, hn::Sub(last, first));
+    hn::Store(hn::DemoteTo(DHalf(), count), DHalf(), this->Tile.Count + slot);
+    this->StoreWhole(slot, first, count, alive);
+    return true;
+  }
+
+private:
+  HWY_INLINE VD Set(double value) const { return hn::Set(DD(), value); }
+
+  HWY_INLINE VD Dot(const VD (&a)[3], const VD (&b)[3]) const
+  {
+    return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2]));
+  }
+
+  /// As RayCamera::RayOf, in index space in the end.
+  HWY_INLINE void MakeRay(VD x, VD y)
+  {
+    const VD one = this->Set(1.0);
+    const VD two = this->Set(2.0);
+    const VD u = hn::Sub(hn::Div(hn::Add(hn::Mul(two, x), one), this->Set(this->Setup.Width)), one);
+    const VD v =
+      hn::Sub(hn::Div(hn::Add(hn::Mul(two, y), one), this->Set(this->Setup.Height)), one);
+    VD middle[4];
+    VD apex[4];
+    for (int i = 0; i < 4; ++i)
+    {
+      middle[i] = hn::Add(hn::Add(hn::Mul(this->Set(this->Setup.ClipToWorld[0][i]), u),
+                            hn::Mul(this->Set(this->Setup.ClipToWorld[1][i]), v)),
+        this->Set(this->Setup.ClipToWorld[3][i]));
+      apex[i] = this->Set(this->Setup.ClipToWorld[2][i]);
+    }
+    const VD nearWeight = hn::Sub(middle[3], apex[3]);
+    const VD farWeight = hn::Add(middle[3], apex[3]);
+    VD nearPoint[3];
+    VD direction[3];
+    VD toNear[3];
+    VD origin[3];
+    for (int i = 0; i < 3; ++i)
+    {
+      nearPoint[i] = hn::Div(hn::Sub(middle[i], apex[i]), nearWeight);
+      direction[i] = this->Setup.Parallel
+                       ? this->Set(this->Setup.Forward[i])
+                       : hn::Sub(hn::Mul(apex[i], middle[3]), hn::Mul(middle[i], apex[3]));
+      toNear[i] = hn::Sub(
+        nearPoint[i], this->Set(this->Setup.Parallel ? this->Setup.Anchor[i] : this->Setup.Eye[i]));
+    }
+    if (!this->Setup.Parallel)
+    {
+      const VD scale = hn::Div(one, hn::Sqrt(this->Dot(direction, direction)));
+      for (VD& component : direction)
+      {
+        component = hn::Mul(component, scale);
+      }
+    }
+    this->Near = this->Dot(toNear, direction);
+    VD toFar[3];
+    for (int i = 0; i < 3; ++i)
+    {
+      origin[i] = this->Setup.Parallel ? hn::Sub(nearPoint[i], hn::Mul(direction[i], this->Near))
+                                       : this->Set(this->Setup.Eye[i]);
+      toFar[i] = hn::Sub(hn::Div(hn::Add(middle[i], apex[i]), farWeight), origin[i]);
+    }
+    this->Far = hn::IfThenElse(hn::Gt(farWeight, hn::Zero(DD())), this->Dot(toFar, direction),
+      this->Set(std::numeric_limits<double>::infinity()));
+    this->ToIndexSpace(origin, direction);
+  }
+
+  HWY_INLINE void ToIndexSpace(const VD (&origin)[3], const VD (&direction)[3])
+  {
+    const glm::dmat4& m = this->Setup.WorldToIndex;
+    for (int i = 0; i < 3; ++i)
+    {
+      const VD x = this->Set(m[0][i]);
+      const VD y = this->Set(m[1][i]);
+      const VD z = this->Set(m[2][i]);
+      this->Origin[i] = hn::Add(hn::Add(hn::Mul(x, origin[0]), hn::Mul(y, origin[1])),
+        hn::Add(hn::Mul(z, origin[2]), this->Set(m[3][i])));
+      this->Direction[i] = hn::Add(
+        hn::Add(hn::Mul(x, direction[0]), hn::Mul(y, direction[1])), hn::Mul(z, direction[2]));
+    }
+  }
+
+  HWY_INLINE void Clip(VD& enter, VD& exit, hn::Mask<DD>& alive) const
+  {
+    const DD d;
+    const VD infinity = this->Set(std::numeric_limits<double>::infinity());
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const VD low = this->Set(this->Setup.Low[axis]);
+      const VD high = this->Set(this->Setup.High[axis]);
+      const VD origin = this->Origin[axis];
+      const auto along = hn::Eq(this->Direction[axis], hn::Zero(d));
+      const auto inside = hn::And(hn::Ge(origin, low), hn::Le(origin, high));
+      const VD a = hn::Div(hn::Sub(low, origin), this->Direction[axis]);
+      const VD b = hn::Div(hn::Sub(high, origin), this->Direction[axis]);
+      enter = hn::Max(enter, hn::IfThenElse(along, hn::Neg(infinity), hn::Min(a, b)));
+      exit = hn::Min(exit, hn::IfThenElse(along, infinity, hn::Max(a, b)));
+      alive = hn::And(alive, hn::Or(hn::Not(along), inside));
+    }
+  }
+
+  /// Position of a sample: a whole number of fixed-point units.
+  HWY_INLINE VD Fixed(VD t, int axis) const
+  {
+    const VD low = this->Set(this->Setup.Low[axis]);
+    const VD high = this->Set(this->Setup.High[axis]);
+    const VD position = hn::Add(this->Origin[axis], hn::Mul(this->Direction[axis], t));
+    const VD inside = hn::Min(hn::Max(position, low), high);
+    return hn::Min(hn::Floor(hn::Mul(inside, this->Set(Unit))), this->Highest(axis));
+  }
+
+  HWY_INLINE VD Lowest(int axis) const { return this->Set(this->Setup.Low[axis] * Unit); }
+  HWY_INLINE VD Highest(int axis) const { return this->Set(this->Setup.High[axis] * Unit - 1.0); }
+
+  /// Splits fixed-point numbers into cells and positions modulo 256 cells.
+  HWY_INLINE void StoreFixed(VD fixed, std::int32_t* cells, std::uint32_t* positions) const
+  {
+    const DHalf half;
+    const VD cell = hn::Floor(hn::Mul(fixed, this->Set(1.0 / Unit)));
+    const auto fraction = hn::DemoteTo(half, hn::Sub(fixed, hn::Mul(cell, this->Set(Unit))));
+    const auto whole = hn::DemoteTo(half, cell);
+    const auto position = hn::Or(hn::ShiftLeft<FractionBits>(whole), fraction);
+    if (cells)
+    {
+      hn::Store(whole, half, cells);
+    }
+    hn::Store(position, half, reinterpret_cast<std::int32_t*>(positions));
+  }
+
+  HWY_INLINE void StoreEnd(
+    int slot, VD enter, VD exit, hn::Mask<DD> exists, RayTile::Ends& ends) const
+  {
+    const DD d;
+    const VD fraction = hn::Div(hn::Sub(exit, enter), this->Set(this->Setup.Distance));
+    exists = hn::And(exists, hn::Gt(fraction, hn::Zero(d)));
+    const VD kept = hn::IfThenElseZero(exists, hn::Min(fraction, this->Set(1.0)));
+    hn::Store(hn::DemoteTo(DFloat(), kept), DFloat(), ends.Fraction + slot);
+    const VD middle = hn::Mul(this->Set(0.5), hn::Add(enter, exit));
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->StoreFixed(
+        this->Fixed(middle, axis), ends.Cell[axis] + slot, ends.Position[axis] + slot);
+    }
+  }
+
+  HWY_INLINE void StoreWhole(int slot, VD first, VD count, hn::Mask<DD> alive)
+  {
+    const DD d;
+    const VD infinity = this->Set(std::numeric_limits<double>::infinity());
+    const VD distance = this->Set(this->Setup.Distance);
+    const VD half = this->Set(0.5);
+    const VD steps = hn::Sub(count, this->Set(1.0));
+    const auto some = hn::Gt(count, hn::Zero(d));
+    const VD longest = this->Set(RayTile::LongestStep * Unit);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const VD base = this->Fixed(hn::Mul(hn::Add(first, half), distance), axis);
+      VD step = hn::Mul(hn::Mul(this->Direction[axis], distance), this->Set(Unit));
+      step = hn::Floor(hn::Add(hn::IfThenElseZero(some, step), half));
+      // Keeps the last sample inside the domain too, whatever was rounded on the way.
+      const VD end = hn::Add(base, hn::Mul(steps, step));
+      const VD inside = hn::Min(hn::Max(end, this->Lowest(axis)), this->Highest(axis));
+      const auto bent = hn::And(hn::Gt(steps, hn::Zero(d)), hn::Ne(end, inside));
+      step = hn::IfThenElse(bent, hn::Trunc(hn::Div(hn::Sub(inside, base), steps)), step);
+      this->StoreFixed(base, nullptr, this->Tile.Base[axis] + slot);
+      this->StoreFixed(step, nullptr, this->Tile.Step[axis] + slot);
+      hn::Store(step, d, this->Tile.WholeStep[axis] + slot);
+      this->Tile.PacketsFit &= hn::AllTrue(d, hn::Le(hn::Abs(step), longest));
+      // Where a ray runs along a face, distances to faces are infinite, with the right sign: no
+      // product of 0 and infinity. Rays of a head or tail alone always count as near; empty ones
+      // never.
+      const auto along = hn::Eq(step, hn::Zero(d));
+      const VD cell = hn::Mul(base, this->Set(1.0 / Unit));
+      const VD offset = hn::IfThenElseZero(along, this->Set(0.25 / Unit));
+      const VD inverse = hn::IfThenElse(along, infinity, hn::Div(this->Set(Unit), step));
+      const VD start =
+        hn::IfThenElse(alive, hn::IfThenElseZero(some, hn::Add(cell, offset)), this->Set(FarAway));
+      hn::Store(start, d, this->Tile.Start[axis] + slot);
+      hn::Store(hn::IfThenElse(alive, hn::IfThenElseZero(some, inverse), infinity), d,
+        this->Tile.Inverse[axis] + slot);
+    }
+  }
+
+  HWY_INLINE void StoreNothing(int slot)
+  {
+    const DD d;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      hn::Store(this->Set(FarAway), d, this->Tile.Start[axis] + slot);
+      hn::Store(
+        this->Set(std::numeric_limits<double>::infinity()), d, this->Tile.Inverse[axis] + slot);
+    }
+    hn::Store(hn::Zero(DHalf()), DHalf(), this->Tile.Count + slot);
+    hn::Store(hn::Zero(DFloat()), DFloat(), this->Tile.Head.Fraction + slot);
+    hn::Store(hn::Zero(DFloat()), DFloat(), this->Tile.Tail.Fraction + slot);
+  }
+
+  static constexpr double Unit = 1 << FractionBits;
+  static constexpr double FarAway = -1e9;
+
+  const LatticeSetup Setup;
+  RayTile& Tile;
+  VD Origin[3];
+  VD Direction[3];
+  VD Near;
+  VD Far;
+};
+
+/// @return false when the sample distance is too small for the distance of a ray's samples
+bool FillRaysHere(
+  const RayLattice& lattice, const double* ends, const double* active, RayTile& tile)
+{
+  RayFiller filler(lattice, tile);
+  constexpr int lanes = static_cast<int>(hn::MaxLanes(DD()));
+  constexpr int size = RayTile::PacketSize;
+  alignas(64) double x[size];
+  alignas(64) double y[size];
+  for (int packet = 0; packet < RayTile::Slots / size; ++packet)
+  {
+    const glm::ivec2 corner =
+      tile.Rect.Lo + glm::ivec2(packet % RayTile::PacketsPerRow, packet / RayTile::PacketsPerRow) *
+                       RayTile::PacketEdge;
+    for (int i = 0; i < size; ++i)
+    {
+      x[i] = corner.x + i % RayTile::PacketEdge;
+      y[i] = corner.y + i / RayTile::PacketEdge;
+    }
+    for (int i = 0; i < size; i += lanes)
+    {
+      const int slot = packet * size + i;
+      if (!filler.Fill(slot, x + i, y + i, ends + slot, active + slot))
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+} // namespace banyan::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace banyan
 {
 
-void RayTile::SetRay(int slot, const RaySamples& ray)
-{
-  static_assert(FractionBits == 24, "positions modulo 256 cells have 32 bits");
-  this->Rays[static_cast<std::size_t>(slot)] = ray;
-  this->Count[slot] = ray.Count;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    if (ray.Count == 0)
-    {
-      // Empty rays never come near a brick; those with a head or tail alone always do.
-      constexpr double infinity = std::numeric_limits<double>::infinity();
-      this->Base[axis][slot] = this->Step[axis][slot] = 0;
-      this->Start[axis][slot] = ray.Empty() ? -1e9 : 0.0;
-      this->Inverse[axis][slot] = ray.Empty() ? infinity : 0.0;
-      continue;
-    }
-    this->Base[axis][slot] = static_cast<std::uint32_t>(ray.Base[axis]);
-    this->Step[axis][slot] = static_cast<std::uint32_t>(ray.Step[axis]);
-    this->Start[axis][slot] = ray.Start[axis];
-    this->Inverse[axis][slot] = ray.InverseStep[axis];
-    if (ray.Step[axis] == 0)
-    {
-      // Distances to faces are then infinite, with the right sign: no product of 0 and infinity.
-      this->Start[axis][slot] += 0.25 / (1 << FractionBits);
-      this->Inverse[axis][slot] = std::numeric_limits<double>::infinity();
-    }
-    this->PacketsFit &= std::llabs(ray.Step[axis]) <= ToFixed(LongestStep);
-  }
-}
+HWY_EXPORT(FillRaysHere);
 
 void RayTile::Open(
   const RayLattice& lattice, const PixelRect& rect, const FloatImage& picture, float limit)
 {
   this->Rect = rect;
   this->TransmittanceLimit = limit;
-  this->ActiveRays = 0;
   this->SamplesTaken = 0;
   this->PacketsFit = true;
-  this->Rays.resize(Slots);
+  alignas(64) double ends[Slots];
+  alignas(64) double active[Slots];
   for (int y = rect.Lo.y; y < rect.Lo.y + Edge; ++y)
   {
     for (int x = rect.Lo.x; x < rect.Lo.x + Edge; ++x)
@@ -52,11 +330,20 @@ void RayTile::Open(
       const int slot = this->SlotOf(x, y);
       const bool inside = x < rect.Hi.x && y < rect.Hi.y;
       const glm::vec4 pixel = inside ? picture.At(x, y) : glm::vec4(0.0f);
-      const bool active = inside && pixel.a > limit;
-      this->SetRay(slot, active ? lattice.SamplesOf(x, y) : RaySamples{});
-      this->ActiveRays += this->Rays[static_cast<std::size_t>(slot)].Empty() ? 0 : 1;
+      const bool wanted = inside && pixel.a > limit;
+      active[slot] = wanted ? 1.0 : 0.0;
+      ends[slot] = wanted ? lattice.GeometryAt(x, y) : 0.0;
       this->SetPixel(slot, pixel);
     }
+  }
+  if (!HWY_DYNAMIC_DISPATCH(FillRaysHere)(lattice, ends, active, *this))
+  {
+    RayLattice::ThrowTooFar();
+  }
+  this->ActiveRays = 0;
+  for (int slot = 0; slot < Slots; ++slot)
+  {
+    this->ActiveRays += this->IsEmpty(slot) ? 0 : 1;
   }
 }
 
@@ -64,11 +351,34 @@ void RayTile::Close(FloatImage& picture) const
 {
   for (int y = this->Rect.Lo.y; y < this->Rect.Hi.y; ++y)
   {
+    glm::vec4* row = &picture.At(this->Rect.Lo.x, y);
     for (int x = this->Rect.Lo.x; x < this->Rect.Hi.x; ++x)
     {
-      picture.At(x, y) = this->PixelOf(this->SlotOf(x, y));
+      row[x - this->Rect.Lo.x] = this->PixelOf(this->SlotOf(x, y));
     }
   }
 }
 
+RaySamples RayTile::RayOf(int slot) const
+{
+  const auto fixed = [](std::int32_t cell, std::uint32_t position)
+  { return ToFixed(cell) + (position & ((1u << FractionBits) - 1)); };
+  RaySamples ray;
+  ray.Count = this->Count[slot];
+  ray.Head.Fraction = this->Head.Fraction[slot];
+  ray.Tail.Fraction = this->Tail.Fraction[slot];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    ray.Head.Position[axis] = fixed(this->Head.Cell[axis][slot], this->Head.Position[axis][slot]);
+    ray.Tail.Position[axis] = fixed(this->Tail.Cell[axis][slot], this->Tail.Position[axis][slot]);
+    const double unit = 1 << FractionBits;
+    ray.Step[axis] = static_cast<std::int64_t>(this->WholeStep[axis][slot]);
+    ray.Base[axis] = static_cast<std::int64_t>(std::floor(this->Start[axis][slot] * unit));
+    ray.Start[axis] = static_cast<double>(ray.Base[axis]) / unit;
+    ray.InverseStep[axis] = ray.Step[axis] != 0 ? this->Inverse[axis][slot] : 0.0;
+  }
+  return ray;
+}
+
 } // namespace banyan
+#endif

@@ -4,7 +4,6 @@
 #include "Render/RayLattice.h"
 
 #include <cstdint>
-#include <vector>
 
 namespace banyan
 {
@@ -33,16 +32,25 @@ struct RayTile
   }
 
   /// Places the rays of a rectangle of at most Edge x Edge pixels, and takes up what they have met
-  /// so far. Rays that have ended are left empty.
+  /// so far. The samples are those of RayLattice::SamplesOf, bit for bit and on every processor;
+  /// rays that have ended are left empty.
   /// @param picture premultiplied colour, and the *transmittance* (1 - opacity) in the fourth
   ///        component, so that stopping and going on with the next batch changes no bit
+  /// Throws Error as RayLattice::SamplesOf does.
   void Open(
     const RayLattice& lattice, const PixelRect& rect, const FloatImage& picture, float limit);
 
   /// Puts what the rays have met back into the picture.
   void Close(FloatImage& picture) const;
 
-  void SetRay(int slot, const RaySamples& ray);
+  /// The samples of one ray.
+  RaySamples RayOf(int slot) const;
+
+  bool IsEmpty(int slot) const
+  {
+    return this->Count[slot] == 0 && this->Head.Fraction[slot] == 0.0f &&
+           this->Tail.Fraction[slot] == 0.0f;
+  }
 
   /// Premultiplied colour and transmittance.
   glm::vec4 PixelOf(int slot) const
@@ -63,14 +71,24 @@ struct RayTile
   std::int64_t ActiveRays = 0;   ///< rays with samples that have not ended
   std::int64_t SamplesTaken = 0; ///< since Open
   bool PacketsFit = true;        ///< no ray steps further than LongestStep
-  std::vector<RaySamples> Rays;  ///< per slot
 
-  // What packets need, axis by axis, slot by slot.
+  /// First or last samples of rays, which stand for less than a whole interval.
+  struct Ends
+  {
+    alignas(64) std::int32_t Cell[3][Slots];
+    alignas(64) std::uint32_t Position[3][Slots]; ///< fixed-point, modulo 256 cells
+    alignas(64) float Fraction[Slots];            ///< 0 where there is none
+  };
+
+  // Axis by axis, slot by slot.
   alignas(64) std::uint32_t Base[3][Slots]; ///< position of whole sample 0, modulo 256 cells
   alignas(64) std::uint32_t Step[3][Slots]; ///< modulo 256 cells
+  alignas(64) double WholeStep[3][Slots];   ///< fixed-point
   alignas(64) double Start[3][Slots];       ///< in cells; never a whole number where Step is 0
   alignas(64) double Inverse[3][Slots];     ///< samples per cell; infinite where Step is 0
   alignas(64) std::int32_t Count[Slots];
+  Ends Head;
+  Ends Tail;
   alignas(64) float Color[3][Slots];
   alignas(64) float Transmittance[Slots];
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace banyan
 {
@@ -118,6 +119,23 @@ bool VisibleValues::All(double low, double high) const
   const Span span = this->EntriesOf(low, high);
   const int entries = static_cast<int>(span.Last - span.First) + 1;
   return this->VisibleBefore[span.Last + 1] - this->VisibleBefore[span.First] == entries;
+}
+
+float OpacityOfDepth::Of(float depth)
+{
+  const float x = 0.0f - (depth < Largest ? depth : Largest);
+  const float octaves = (x * PerOctave + Round) - Round;
+  const float r = (x - octaves * OctaveHigh) - octaves * OctaveLow;
+  float sum = Terms[0];
+  for (int i = 1; i < 6; ++i)
+  {
+    sum = sum * r + Terms[i];
+  }
+  const float less = (sum * r) * r + r; // exp(r) - 1
+  const std::int32_t bits = (static_cast<std::int32_t>(octaves) + 127) * (1 << 23);
+  float scale;
+  std::memcpy(&scale, &bits, sizeof(scale));
+  return (1.0f - scale) - scale * less;
 }
 
 StepTable::StepTable(const TransferFunction& function, double sampleDistance)

@@ -86,6 +86,21 @@ struct TableLookup
   }
 };
 
+/// Opacity of an optical depth, 1 - exp(-depth), for depths from 0 to infinity: within 3e-7 of the
+/// result. Only operations that every processor rounds alike, so that vectors do the same.
+struct OpacityOfDepth
+{
+  static constexpr float Largest = 80.0f;         ///< deeper is as opaque
+  static constexpr float PerOctave = 1.44269504f; ///< 1 / ln 2
+  static constexpr float Round = 12582912.0f;     ///< 1.5 * 2^23: adding it rounds to whole numbers
+  static constexpr float OctaveHigh = 0.693359375f; ///< ln 2 in two parts; the first is short
+  static constexpr float OctaveLow = -2.12194440e-4f;
+  /// (exp(r) - 1 - r) / r^2 for abs(r) below half an octave.
+  static constexpr float Terms[6] = { 1.0f / 5040, 1.0f / 720, 1.0f / 120, 1.0f / 24, 1.0f / 6, 0.5f };
+
+  static float Of(float depth);
+};
+
 /// The table of a transfer function for one sample distance: premultiplied colour and opacity,
 /// opacity = 1 - (1 - a)^(distance / UnitDistance).
 ///
@@ -107,7 +122,7 @@ public:
   glm::vec4 Partial(int index, float fraction) const
   {
     const glm::vec4& entry = this->Extinctions[index];
-    const float opacity = -std::expm1(-entry.a * fraction);
+    const float opacity = OpacityOfDepth::Of(entry.a * fraction);
     return { entry.r * opacity, entry.g * opacity, entry.b * opacity, opacity };
   }
 
@@ -119,6 +134,8 @@ public:
   /// Per entry, for the whole sample distance: premultiplied colour and the *transmittance*
   /// (1 - opacity), which is what blending front to back multiplies by.
   const glm::vec4* Steps() const { return this->Entries.data(); }
+  /// Per entry: colour, not premultiplied, and optical depth of the whole sample distance.
+  const glm::vec4* Depths() const { return this->Extinctions.data(); }
 
 private:
   std::vector<glm::vec4> Entries; ///< one more than the function's: the transparent one

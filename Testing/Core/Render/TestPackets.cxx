@@ -1,9 +1,8 @@
 #include "Render/BrickMarcher.h"
 #include "Render/Scenes.h"
+#include "Render/Targets.h"
 
 #include <gtest/gtest.h>
-
-#include <hwy/targets.h>
 
 #include <random>
 
@@ -11,39 +10,6 @@ namespace
 {
 
 using namespace banyan;
-
-/// Dispatches to one set of instructions only, until it goes.
-class OnlyTarget
-{
-public:
-  explicit OnlyTarget(std::int64_t target)
-  {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-  ~OnlyTarget()
-  {
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-  OnlyTarget(const OnlyTarget&) = delete;
-  OnlyTarget& operator=(const OnlyTarget&) = delete;
-};
-
-/// All that this machine can run, the poorest included.
-std::vector<std::int64_t> TargetsOfThisMachine()
-{
-  std::vector<std::int64_t> targets;
-  const std::int64_t supported = hwy::SupportedTargets();
-  for (int bit = 0; bit < 63; ++bit)
-  {
-    if ((supported >> bit & 1) != 0)
-    {
-      targets.push_back(std::int64_t{ 1 } << bit);
-    }
-  }
-  return targets;
-}
 
 struct Tiled
 {
@@ -117,10 +83,10 @@ void ExpectPacketsGiveTheBitsOfSingleRays(const Scenario& test, std::vector<T> v
   const Tiled unpacked =
     DrawTiles(scene, [&](RayTile& tile) { MarchUnpacked(packed, seen, table, all, tile); });
   EXPECT_EQ(MaxDifference(unpacked.Picture, plain.Picture), 0.0);
-  for (const std::int64_t target : TargetsOfThisMachine())
+  for (const std::int64_t target : scenes::TargetsOfThisMachine())
   {
     SCOPED_TRACE(hwy::TargetName(target));
-    const OnlyTarget only(target);
+    const scenes::OnlyTarget only(target);
     const Tiled drawn = DrawTiles(scene,
       [&](RayTile& tile)
       {
