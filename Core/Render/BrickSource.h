@@ -2,7 +2,8 @@
 #define banyan_Render_BrickSource_h
 
 #include "Base/Box.h"
-#include "Base/ScalarType.h"
+#include "Render/BrickView.h"
+#include "Render/KeptBricks.h"
 #include "Series/SeriesIndex.h"
 #include "Series/ValueMask.h"
 
@@ -12,15 +13,6 @@
 
 namespace banyan
 {
-
-/// Samples of one brick in memory, ready for the marcher.
-struct BrickView
-{
-  const void* Values = nullptr; ///< the sample at the brick's lowest corner
-  ScalarType Type = ScalarType::Float32;
-  std::ptrdiff_t Stride[3] = { 1, 0, 0 }; ///< in values, per axis
-  std::shared_ptr<const void> Owner;      ///< keeps the values alive; may be empty
-};
 
 /// What the ray caster draws: a box of cells cut into bricks. Positions are samples of the whole
 /// grid (index space, starting at 0); cell c lies between samples c and c + 1.
@@ -43,6 +35,13 @@ public:
 
   /// Called from many threads. Throws Error when the brick cannot be read.
   virtual BrickView Load(std::int64_t brick) = 0;
+
+  /// What the ray caster keeps of this source from picture to picture. Values must not change while
+  /// the source lives.
+  KeptBricks& Kept() const { return *this->KeptOfSource; }
+
+private:
+  std::shared_ptr<KeptBricks> KeptOfSource = std::make_shared<KeptBricks>();
 };
 
 } // namespace banyan

@@ -1,7 +1,7 @@
 #ifndef banyan_Render_Interpolators_h
 #define banyan_Render_Interpolators_h
 
-#include "Render/BrickSource.h"
+#include "Render/BrickView.h"
 #include "Render/RayLattice.h"
 
 #include <cmath>

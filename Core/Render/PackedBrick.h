@@ -1,8 +1,10 @@
 #ifndef banyan_Render_PackedBrick_h
 #define banyan_Render_PackedBrick_h
 
-#include "Render/BrickSource.h"
+#include "Base/Box.h"
+#include "Render/BrickView.h"
 #include "Render/TransferFunction.h"
+#include "Series/ValueRange.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -55,6 +55,7 @@ public:
   FloatImage Cast()
   {
     this->Plan();
+    this->Source.Kept().BeginPicture(this->BudgetBytes / 2);
     this->MakeTiles();
     std::size_t next = 0;
     while (next < this->Bricks.size())
@@ -155,24 +156,33 @@ private:
     }
   }
 
+  /// What the budget leaves beside the bricks that are kept.
+  std::uint64_t BytesLeft() const
+  {
+    return this->BudgetBytes - std::min(this->BudgetBytes, this->Source.Kept().Bytes());
+  }
+
   /// Puts bricks from number `first` on into the batch, as many as the budget allows but at least
   /// one, and enters them in the lists of the tiles. @return the first brick of the next batch
   std::size_t TakeBatch(std::size_t first)
   {
     this->Batch.clear();
+    this->Loaded.clear();
     for (std::vector<int>& bricks : this->BricksOfTile)
     {
       bricks.clear();
     }
+    const std::uint64_t left = this->BytesLeft();
     std::uint64_t bytes = 0;
     std::size_t next = first;
     for (; next < this->Bricks.size(); ++next)
     {
       const PlannedBrick& brick = this->Bricks[next];
-      const std::uint64_t loadBytes = this->Source.LoadBytes(brick.Number);
-      const std::uint64_t brickBytes = loadBytes + PackedBrick::BytesFor(brick.Cells);
-      const bool full =
-        bytes + brickBytes > this->BudgetBytes || this->Batch.size() >= BricksPerBatch;
+      KeptBricks::Pointer kept =
+        this->Source.Kept().Find(brick.Number, brick.Cells, this->Table.Low());
+      const std::uint64_t loadBytes = kept ? 0 : this->Source.LoadBytes(brick.Number);
+      const std::uint64_t brickBytes = kept ? 0 : loadBytes + PackedBrick::BytesFor(brick.Cells);
+      const bool full = bytes + brickBytes > left || this->Batch.size() >= BricksPerBatch;
       if (full && !this->Batch.empty())
       {
         break;
@@ -187,6 +197,8 @@ private:
       this->ForTilesUnder(
         brick.Footprint, [&](std::size_t tile) { this->BricksOfTile[tile].push_back(position); });
       this->Batch.push_back(&brick);
+      this->Loaded.emplace_back();
+      this->Loaded.back().Packed = std::move(kept);
       bytes += brickBytes;
     }
     return next;
@@ -210,8 +222,6 @@ private:
 
   void DrawBatch()
   {
-    this->Loaded.clear();
-    this->Loaded.resize(this->Batch.size());
     this->Pool.ParallelFor(static_cast<std::int64_t>(this->Batch.size()),
       [this](std::int64_t i) { this->Load(*this->Batch[i], this->Loaded[i]); });
     this->Statistics.BricksDrawn += static_cast<std::int64_t>(this->Batch.size());
@@ -231,15 +241,19 @@ private:
 
   void Load(const PlannedBrick& brick, LoadedBrick& loaded) const
   {
-    BrickView view = this->Source.Load(brick.Number);
-    if (!PackedBrick::CanPack(brick.Cells))
+    if (!loaded.Packed)
     {
-      loaded.View = view;
-      return;
+      const BrickView view = this->Source.Load(brick.Number);
+      if (!PackedBrick::CanPack(brick.Cells))
+      {
+        loaded.View = view;
+        return;
+      }
+      const glm::ivec3 corner = this->Source.CellsOf(brick.Number).Lo;
+      loaded.Packed =
+        std::make_shared<const PackedBrick>(view, corner, brick.Cells, this->Table.Low());
+      this->Source.Kept().Keep(brick.Number, loaded.Packed);
     }
-    const glm::ivec3 corner = this->Source.CellsOf(brick.Number).Lo;
-    loaded.Packed =
-      std::make_shared<const PackedBrick>(view, corner, brick.Cells, this->Table.Low());
     loaded.Seen =
       BrickVisibility(*loaded.Packed, this->Source.RangeOf(brick.Number), this->Visible);
     loaded.Footprint =

@@ -44,7 +44,7 @@ struct RayScene
 struct RayStatistics
 {
   std::int64_t SamplesTaken = 0;  ///< without those left out where nothing can be seen
-  std::int64_t BricksDrawn = 0;   ///< bricks whose values were loaded
+  std::int64_t BricksDrawn = 0;   ///< bricks whose values were loaded, or kept from before
   std::int64_t BricksSkipped = 0; ///< not loaded: cannot be seen, off screen, or hidden
 };
 
@@ -58,9 +58,10 @@ struct RayStatistics
 /// apart: 1 - OpacityLimit), and the size of bricks, the budget and the threads change no bit.
 ///
 /// Brick by brick, front to back; a batch of bricks, as loaded and as packed for drawing, never
-/// takes more than `budgetBytes`, unless one brick alone does. Bricks that cannot be seen are not
-/// loaded: by their range and mask under the transfer function, off screen, or behind pixels that
-/// have all reached the opacity limit.
+/// takes more than `budgetBytes`, unless one brick alone does. Up to half the budget are packed bricks
+/// that the source keeps for the next picture. Bricks that cannot be seen are not loaded: by their
+/// range and mask under the transfer function, off screen, or behind pixels that have all reached the
+/// opacity limit.
 ///
 /// @param statistics is added to
 /// @return pixels that the visible bricks may touch (inside Viewport); may be empty.

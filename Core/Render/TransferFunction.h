@@ -96,7 +96,8 @@ struct OpacityOfDepth
   static constexpr float OctaveHigh = 0.693359375f; ///< ln 2 in two parts; the first is short
   static constexpr float OctaveLow = -2.12194440e-4f;
   /// (exp(r) - 1 - r) / r^2 for abs(r) below half an octave.
-  static constexpr float Terms[6] = { 1.0f / 5040, 1.0f / 720, 1.0f / 120, 1.0f / 24, 1.0f / 6, 0.5f };
+  static constexpr float Terms[6] = { 1.0f / 5040, 1.0f / 720, 1.0f / 120, 1.0f / 24, 1.0f / 6,
+    0.5f };
 
   static float Of(float depth);
 };

@@ -1,0 +1,52 @@
+#ifndef banyan_Render_KeptBricks_h
+#define banyan_Render_KeptBricks_h
+
+#include "Render/PackedBrick.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+
+namespace banyan
+{
+
+/// Packed bricks that a source keeps from one picture to the next. What is there stays, as long as
+/// pictures use it: pictures go through bricks in ever other orders, and dropping the least
+/// recently used of more than there is room for would keep none in time.
+///
+/// Methods may be called from any thread.
+class KeptBricks
+{
+public:
+  using Pointer = std::shared_ptr<const PackedBrick>;
+
+  /// Lets go of bricks that the last two pictures did not use, and of all beyond the limit.
+  void BeginPicture(std::uint64_t limitBytes);
+
+  /// The cells of a brick, packed relative to `low` if they are relative; null if not kept.
+  Pointer Find(std::int64_t brick, const Box& cells, double low);
+
+  /// Keeps a brick if there is room, in place of what was kept under its number.
+  void Keep(std::int64_t brick, const Pointer& packed);
+
+  std::uint64_t Bytes() const;
+
+private:
+  struct Item
+  {
+    Pointer Packed;
+    std::int64_t UsedIn = 0; ///< number of a picture
+  };
+
+  std::uint64_t LimitBytes = 0;
+  std::uint64_t HeldBytes = 0;
+  std::int64_t Picture = 0;
+  std::unordered_map<std::int64_t, Item> Items;
+  mutable std::mutex Mutex;
+};
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,101 @@
+#include "Render/Scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+namespace
+{
+
+using namespace banyan;
+
+class Counting : public ArrayBrickSource
+{
+public:
+  using ArrayBrickSource::ArrayBrickSource;
+  BrickView Load(std::int64_t brick) override
+  {
+    ++this->Loads;
+    return ArrayBrickSource::Load(brick);
+  }
+  std::atomic<int> Loads{ 0 };
+};
+
+KeptBricks::Pointer Pack(const std::vector<double>& values, double low)
+{
+  BrickView view{ values.data(), ScalarType::Float64, { 1, 3, 9 }, {} };
+  return std::make_shared<const PackedBrick>(
+    view, glm::ivec3(0), Box{ glm::ivec3(0), glm::ivec3(2) }, low);
+}
+
+TEST(KeptBricks, StayWithinTheLimitAndAsLongAsTheyAreUsed)
+{
+  const std::vector<double> values(27, 1.0);
+  const Box cells{ glm::ivec3(0), glm::ivec3(2) };
+  const std::uint64_t bytes = PackedBrick::BytesFor(cells);
+  KeptBricks kept;
+  kept.BeginPicture(2 * bytes);
+  for (int brick = 0; brick < 3; ++brick)
+  {
+    EXPECT_EQ(kept.Find(brick, cells, 0.0), nullptr);
+    kept.Keep(brick, Pack(values, 0.0));
+  }
+  EXPECT_EQ(kept.Bytes(), 2 * bytes);
+  EXPECT_NE(kept.Find(1, cells, 0.0), nullptr);
+  EXPECT_EQ(kept.Find(2, cells, 0.0), nullptr);
+  for (int picture = 0; picture < 3; ++picture)
+  {
+    kept.BeginPicture(2 * bytes);
+    EXPECT_NE(kept.Find(0, cells, 0.0), nullptr);
+  }
+  EXPECT_EQ(kept.Find(1, cells, 0.0), nullptr);
+  EXPECT_EQ(kept.Bytes(), bytes);
+  kept.BeginPicture(bytes - 1);
+  EXPECT_EQ(kept.Bytes(), 0u);
+}
+
+TEST(KeptBricks, OtherCellsOrAnotherLowEndAreOtherBricks)
+{
+  const std::vector<double> values(27, 1.0);
+  const Box cells{ glm::ivec3(0), glm::ivec3(2) };
+  KeptBricks kept;
+  kept.BeginPicture(1 << 20);
+  kept.Keep(7, Pack(values, 0.5));
+  EXPECT_NE(kept.Find(7, cells, 0.5), nullptr);
+  EXPECT_EQ(kept.Find(7, cells, 0.25), nullptr);
+  EXPECT_EQ(kept.Find(7, Box{ glm::ivec3(0), glm::ivec3(1, 2, 2) }, 0.5), nullptr);
+  const std::uint64_t bytes = kept.Bytes();
+  kept.Keep(7, Pack(values, 0.25));
+  EXPECT_EQ(kept.Bytes(), bytes);
+  EXPECT_NE(kept.Find(7, cells, 0.25), nullptr);
+}
+
+TEST(KeptBricks, PicturesAreTheSameAndLoadOnce)
+{
+  const glm::ivec3 n(33);
+  const std::vector<double> values = scenes::Sampled<double>(scenes::Standard, n);
+  RayScene scene = scenes::Scene(n, { 50, 50 });
+  ThreadPool pool(2);
+  Counting source(scenes::ArrayOf(values, n), 8, { 0, 1 }, pool);
+  for (const std::uint64_t budget : { std::uint64_t{ 1 } << 30, std::uint64_t{ 300000 } })
+  {
+    for (const double low : { 0.0, -0.25 })
+    {
+      scene.Transfer.Low = low;
+      RayStatistics statistics;
+      const auto draw = [&]
+      { return CastRays(scene, source, scene.DomainCells, budget, pool, statistics); };
+      const FloatImage first = draw();
+      source.Loads = 0;
+      const FloatImage second = draw();
+      EXPECT_EQ(MaxDifference(first, second), 0.0);
+      EXPECT_EQ(MaxDifference(first, scenes::Draw(scene, scenes::ArrayOf(values, n)).Image), 0.0);
+      EXPECT_EQ(source.Loads, budget > 300000 ? 0 : source.Loads.load());
+      EXPECT_LT(source.Loads, 64);
+      EXPECT_LE(source.Kept().Bytes(), budget / 2);
+      EXPECT_EQ(statistics.BricksDrawn, 128);
+    }
+  }
+}
+
+} // namespace
