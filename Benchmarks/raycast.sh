@@ -2,7 +2,7 @@
 # Measures time and error of the ray caster and of VTK's volume mappers, and draws charts.
 #
 #   raycast.sh [--quick] [--scaling] [--output DIR] [--data DIR] [--work DIR] [--repeat N]
-#              [--threads LIST] [--scenes LIST] [--renderers LIST] [--help]
+#              [--threads LIST] [--scenes LIST] [--renderers LIST] [--settings LIST] [--help]
 #
 #   --quick           128^3 samples and 256^2 pixels instead of 256^3 and 1024^2, all threads only:
 #                     minutes instead of an hour
@@ -15,9 +15,11 @@
 #   --work DIR        keeps volumes and converged pictures, which a later run uses again
 #                     (default: raycast-scenes in the build folder)
 #   --repeat N        timed frames, of which the median counts (default 3)
-#   --threads LIST    numbers of threads, separated by commas (default 1 and all processors)
+#   --threads LIST    numbers of threads, separated by commas (default 1 and all processors); fewer
+#                     than the largest measure one sample per voxel only
 #   --scenes LIST     only these, e.g. S1-256,S2-256-shaded,bonsai (default all)
 #   --renderers LIST  only these: banyan, vtk-gpu, vtk-fixed-point (default all)
+#   --settings LIST   only these sample distances and tolerances (default all)
 #
 # Installs what is missing, and builds in build-benchmark (BANYAN_BUILD_DIR names another folder).
 # VTK's mappers draw into a window of the X display, or of a virtual one. Ends with a table.
@@ -52,7 +54,7 @@ parse_arguments()
         ;;
       --quick) quick=1 ;;
       --scaling) scaling=1 ;;
-      --output | --data | --work | --repeat | --threads | --scenes | --renderers)
+      --output | --data | --work | --repeat | --threads | --scenes | --renderers | --settings)
         [[ $# -gt 0 && -n "$1" ]] || fail "$option needs a value."
         case "$option" in
           --output) output="$1" ;;
@@ -123,15 +125,19 @@ generate_turbulence()
 # Time and error of all renderers in all scenes, once for each number of threads.
 measure_renderers()
 {
-  local count append=()
+  local count most only append=()
+  most="$(tr , '\n' <<<"$threads" | sort -n | tail -1)"
   rm -rf "$work/pictures"
   mkdir -p "$work/pictures"
   for count in ${threads//,/ }; do
     say "      $count thread(s)"
+    only=()
+    ((count == most)) || only=(--settings 1)
     "$RepositoryRoot/Utilities/with-display.sh" "$BuildFolder/bin/banyan-bench-raycast" \
       --output "$output/raycast.csv" --references "$work" --pictures "$work/pictures" \
       --size "$size" --threads "$count" --repeat "$repeat" "${append[@]+"${append[@]}"}" \
-      "${measuring[@]+"${measuring[@]}"}" "${real[@]+"${real[@]}"}" || fail "measuring failed."
+      "${only[@]+"${only[@]}"}" "${measuring[@]+"${measuring[@]}"}" \
+      "${real[@]+"${real[@]}"}" || fail "measuring failed."
     append=(--append)
   done
 }

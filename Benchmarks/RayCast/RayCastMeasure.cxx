@@ -42,6 +42,19 @@ std::string NameOf(const Setting& setting)
                            : "step " + Number(setting.SampleDistance.value_or(0.0));
 }
 
+std::vector<Setting> ChosenSettings(
+  const RayCastRenderer& renderer, const BenchScene& scene, const std::vector<double>& wanted)
+{
+  std::vector<Setting> settings = renderer.SettingsFor(scene);
+  const auto unwanted = [&wanted](const Setting& setting)
+  {
+    const double number = setting.Tolerance.value_or(setting.SampleDistance.value_or(0.0));
+    return !wanted.empty() && std::find(wanted.begin(), wanted.end(), number) == wanted.end();
+  };
+  settings.erase(std::remove_if(settings.begin(), settings.end(), unwanted), settings.end());
+  return settings;
+}
+
 std::string FileNameOf(const RayCastMeasurement& m)
 {
   std::string name = m.Scene + "-" + m.Renderer + "-" + NameOf(m.Accuracy) + ".ppm";
@@ -75,7 +88,7 @@ std::vector<RayCastMeasurement> MeasureScene(const BenchScene& scene, const Floa
   std::vector<Candidate> candidates;
   for (const auto& renderer : renderers)
   {
-    const std::vector<Setting> settings = renderer->SettingsFor(scene);
+    const std::vector<Setting> settings = ChosenSettings(*renderer, scene, options.Settings);
     if (!settings.empty())
     {
       renderer->Prepare(scene, settings);

@@ -83,6 +83,11 @@ RayCastOptions ParseRayCastOptions(const std::vector<std::string>& arguments)
       options.Scenes = SplitAtCommas(value());
     else if (option == "--renderers")
       options.Renderers = SplitAtCommas(value());
+    else if (option == "--settings")
+    {
+      for (const std::string& number : SplitAtCommas(value()))
+        options.Measuring.Settings.push_back(NumberIn(option, number, 1e-3, 255.0));
+    }
     else if (option == "--threads")
       options.Measuring.Threads = CountIn(option, value(), 1, 1024);
     else if (option == "--repeat")
@@ -121,6 +126,7 @@ std::string RayCastHelp()
          "  --picture N         pixels per side (default 1024)\n"
          "  --scenes LIST       only these (default all), e.g. S1-256,S2-256-shaded,bonsai\n"
          "  --renderers LIST    only these (default all)\n"
+         "  --settings LIST     only these sample distances and tolerances (default all)\n"
          "  --threads N         that each renderer may use (default 1)\n"
          "  --repeat N          timed frames, of which the median counts (default 3)\n"
          "  --reference-step D  sample distance of the converged picture in voxels (default 1/16)\n"
