@@ -170,7 +170,20 @@ std::size_t ArrayBrickSource::LoadBytes(std::int64_t brick) const
 
 BrickView ArrayBrickSource::Load(std::int64_t brick)
 {
-  const Box samples = this->SamplesOf(brick);
+  return this->ViewOf(this->SamplesOf(brick));
+}
+
+BrickView ArrayBrickSource::LoadAround(std::int64_t brick, Box& samples)
+{
+  const Box own = this->SamplesOf(brick);
+  const Box part =
+    Intersection({ own.Lo - 1, own.Hi + 1 }, { glm::ivec3(0), this->Array.Samples.Size() });
+  samples = { part.Lo + this->Array.Samples.Lo, part.Hi + this->Array.Samples.Lo };
+  return this->ViewOf(part);
+}
+
+BrickView ArrayBrickSource::ViewOf(const Box& samples) const
+{
   BrickView view;
   if (!IsCopied(this->Array))
   {

@@ -56,8 +56,12 @@ public:
   MaskRange MasksAreOver() const override { return this->Over; }
   std::size_t LoadBytes(std::int64_t brick) const override;
   BrickView Load(std::int64_t brick) override;
+  /// Takes the samples from the array, also those beyond its bricks' own.
+  BrickView LoadAround(std::int64_t brick, Box& samples) override;
 
 private:
+  /// @param samples positions in the array, from 0
+  BrickView ViewOf(const Box& samples) const;
   Box SamplesOf(std::int64_t brick) const;
 
   SampleArray Array;

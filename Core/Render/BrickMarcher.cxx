@@ -1,81 +1,132 @@
 #include "Render/BrickMarcher.h"
 
-#include "Render/PartialMarcher.h"
+#include "Render/Interpolators.h"
 
 namespace banyan
 {
 namespace
 {
 
-/// One sample after the other.
-template <class T>
-class PlainMarcher : public PartialMarcher<T>
+/// Shades samples of a packed brick with gradients.
+class GradientShader
 {
 public:
-  PlainMarcher(const BrickPart& part, const StepTable& table, bool relative, float limit)
-    : PartialMarcher<T>(part.View, part.Corner, table, relative)
-    , Cells(part.Cells)
-    , Steps(table.Steps())
-    , Limit(limit)
+  GradientShader(const PackedBrick& brick, const ShadingTable& shading)
+    : Gradient{ { brick.GradientView(0), 0.0 }, { brick.GradientView(1), 0.0 },
+      { brick.GradientView(2), 0.0 } }
+    , Shading(shading)
   {
   }
 
-  /// @return samples taken
-  std::int32_t MarchRay(const RaySamples& ray, glm::vec4& pixel) const
+  /// @param step premultiplied colour and transmittance
+  void Light(const std::int64_t (&position)[3], const float (&direction)[3], glm::vec4& step) const
   {
-    std::int32_t taken = 0;
-    if (ray.Head.Fraction > 0.0f && this->Cells.Contains(ray.Head.Position))
+    const float gradient[3] = { this->Gradient[0].At(position), this->Gradient[1].At(position),
+      this->Gradient[2].At(position) };
+    const Shade shade = this->Shading.Of(gradient, direction);
+    const float opacity = 1.0f - step.a;
+    for (int channel = 0; channel < 3; ++channel)
     {
-      this->March(ray.Head, pixel);
-      ++taken;
+      step[channel] *= shade.Colour;
+      step[channel] += this->Shading.HasHighlights ? shade.Highlight * opacity : 0.0f;
     }
+  }
+
+private:
+  PlainInterpolator<float> Gradient[3];
+  const ShadingTable& Shading;
+};
+
+/// One sample after the other.
+template <class T>
+class PlainMarcher
+{
+public:
+  /// @param relative whether values become relative to the table's low end, or are already
+  /// @param shader may be null
+  PlainMarcher(const BrickPart& part, const StepTable& table, bool relative, float limit,
+    const GradientShader* shader)
+    : Table(table)
+    , Lookup(relative ? table.RelativeLookup() : table.Lookup())
+    , Values(part.View, table.Low())
+    , Shader(shader)
+    , Cells(part.Cells)
+    , Limit(limit)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Corner[axis] = ToFixed(part.Corner[axis]);
+    }
+  }
+
+  /// @return samples taken
+  std::int32_t MarchRay(const RaySamples& ray, const float (&direction)[3], glm::vec4& pixel) const
+  {
+    std::int32_t taken = this->MarchEnd(ray.Head, direction, pixel);
     std::int32_t begin = 0;
     std::int32_t end = 0;
     if (ray.Count > 0)
     {
       ray.SamplesIn(this->Cells, begin, end);
     }
-    if (begin < end && pixel.a > this->Limit)
-    {
-      taken += this->MarchWhole(ray, begin, end, pixel);
-    }
-    if (ray.Tail.Fraction > 0.0f && this->Cells.Contains(ray.Tail.Position) &&
-        pixel.a > this->Limit)
-    {
-      this->March(ray.Tail, pixel);
-      ++taken;
-    }
-    return taken;
-  }
-
-private:
-  /// Whole samples [begin, end) of a ray, all inside the cells, at least one.
-  /// @return samples taken
-  std::int32_t MarchWhole(
-    const RaySamples& ray, std::int32_t begin, std::int32_t end, glm::vec4& pixel) const
-  {
     std::int64_t position[3];
     ray.PositionOf(begin, position);
-    this->MoveToBrick(position);
-    std::int32_t sample = begin;
-    do
+    for (; begin < end && pixel.a > this->Limit; ++begin, ++taken)
     {
-      const glm::vec4& step = this->Steps[this->Lookup.IndexOf(this->Values.At(position))];
-      pixel.r += pixel.a * step.r;
-      pixel.g += pixel.a * step.g;
-      pixel.b += pixel.a * step.b;
-      pixel.a *= step.a;
+      this->Blend(position, direction, this->Table.Steps()[this->EntryAt(position)], pixel);
       for (int axis = 0; axis < 3; ++axis)
       {
         position[axis] += ray.Step[axis];
       }
-      ++sample;
-    } while (sample < end && pixel.a > this->Limit);
-    return sample - begin;
+    }
+    return taken + this->MarchEnd(ray.Tail, direction, pixel);
   }
 
+private:
+  /// A head or tail, if it lies in the cells.
+  std::int32_t MarchEnd(
+    const PartialSample& sample, const float (&direction)[3], glm::vec4& pixel) const
+  {
+    if (!(sample.Fraction > 0.0f) || !this->Cells.Contains(sample.Position) ||
+        !(pixel.a > this->Limit))
+    {
+      return 0;
+    }
+    glm::vec4 step = this->Table.Partial(this->EntryAt(sample.Position), sample.Fraction);
+    step.a = 1.0f - step.a;
+    this->Blend(sample.Position, direction, step, pixel);
+    return 1;
+  }
+
+  int EntryAt(const std::int64_t (&position)[3]) const
+  {
+    const std::int64_t inBrick[3] = { position[0] - this->Corner[0], position[1] - this->Corner[1],
+      position[2] - this->Corner[2] };
+    return this->Lookup.IndexOf(this->Values.At(inBrick));
+  }
+
+  /// @param step premultiplied colour and transmittance
+  void Blend(const std::int64_t (&position)[3], const float (&direction)[3], glm::vec4 step,
+    glm::vec4& pixel) const
+  {
+    if (this->Shader)
+    {
+      const std::int64_t inBrick[3] = { position[0] - this->Corner[0],
+        position[1] - this->Corner[1], position[2] - this->Corner[2] };
+      this->Shader->Light(inBrick, direction, step);
+    }
+    pixel.r += pixel.a * step.r;
+    pixel.g += pixel.a * step.g;
+    pixel.b += pixel.a * step.b;
+    pixel.a *= step.a;
+  }
+
+  std::int64_t Corner[3]; ///< fixed-point position of the brick's first sample
+  const StepTable& Table;
+  TableLookup Lookup;
+  PlainInterpolator<T> Values;
+  const GradientShader* Shader;
   FixedBox Cells;
-  const glm::vec4* Steps;
   float Limit;
 };
 
@@ -90,8 +141,10 @@ void MarchRays(const PlainMarcher<T>& marcher, const PixelRect& rect, RayTile& t
       const int slot = tile.SlotOf(x, y);
       if (!tile.IsEmpty(slot) && tile.Transmittance[slot] > limit)
       {
+        const float direction[3] = { tile.Direction[0][slot], tile.Direction[1][slot],
+          tile.Direction[2][slot] };
         glm::vec4 pixel = tile.PixelOf(slot);
-        tile.SamplesTaken += marcher.MarchRay(tile.RayOf(slot), pixel);
+        tile.SamplesTaken += marcher.MarchRay(tile.RayOf(slot), direction, pixel);
         tile.ActiveRays -= pixel.a > limit ? 0 : 1;
         tile.SetPixel(slot, pixel);
       }
@@ -108,17 +161,22 @@ void MarchBrick(
     [&](auto tag)
     {
       using T = typename decltype(tag)::Type;
-      const PlainMarcher<T> marcher(part, table, IsRelative<T>, tile.TransmittanceLimit);
+      const PlainMarcher<T> marcher(part, table, IsRelative<T>, tile.TransmittanceLimit, nullptr);
       MarchRays(marcher, Intersection(pixels, tile.Rect), tile);
     });
 }
 
 void MarchUnpacked(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
-  const PixelRect& pixels, RayTile& tile)
+  const ShadingTable* shading, const PixelRect& pixels, RayTile& tile)
 {
   const BrickView view = brick.View();
-  const PlainMarcher<float> marcher(
-    { view, brick.Corner(), seen.Cells }, table, brick.Relative(), tile.TransmittanceLimit);
+  std::unique_ptr<const GradientShader> shader;
+  if (shading)
+  {
+    shader = std::make_unique<const GradientShader>(brick, *shading);
+  }
+  const PlainMarcher<float> marcher({ view, brick.Corner(), seen.Cells }, table, brick.Relative(),
+    tile.TransmittanceLimit, shader.get());
   MarchRays(marcher, Intersection(pixels, tile.Rect), tile);
 }
 

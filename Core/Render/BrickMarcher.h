@@ -4,6 +4,7 @@
 #include "Render/BrickSource.h"
 #include "Render/PackedBrick.h"
 #include "Render/RayTile.h"
+#include "Render/ShadingTable.h"
 #include "Render/TransferFunction.h"
 
 namespace banyan
@@ -28,14 +29,15 @@ void MarchBrick(
   const BrickPart& part, const StepTable& table, const PixelRect& pixels, RayTile& tile);
 
 /// The same for a packed brick, all of `seen.Cells`; the reference for MarchPacked.
+/// @param shading null for none; otherwise the brick HasGradients
 void MarchUnpacked(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
-  const PixelRect& pixels, RayTile& tile);
+  const ShadingTable* shading, const PixelRect& pixels, RayTile& tile);
 
 /// The same picture, bit for bit and on every processor, by packets of rays. Space that cannot be
 /// seen takes no samples, and is not counted in `tile.SamplesTaken`.
 /// @param tile PacketsFit
 void MarchPacked(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
-  const PixelRect& pixels, RayTile& tile);
+  const ShadingTable* shading, const PixelRect& pixels, RayTile& tile);
 
 } // namespace banyan
 

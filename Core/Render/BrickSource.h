@@ -36,6 +36,11 @@ public:
   /// Called from many threads. Throws Error when the brick cannot be read.
   virtual BrickView Load(std::int64_t brick) = 0;
 
+  /// The same with one more layer of samples on each side, where the source has them. Unless a
+  /// source knows better, it is put together from the bricks around.
+  /// @param samples set to those that the view has; the view starts at samples.Lo
+  virtual BrickView LoadAround(std::int64_t brick, Box& samples);
+
   /// What the ray caster keeps of this source from picture to picture. Values must not change while
   /// the source lives.
   KeptBricks& Kept() const { return *this->KeptOfSource; }

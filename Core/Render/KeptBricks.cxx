@@ -2,6 +2,15 @@
 
 namespace banyan
 {
+namespace
+{
+
+std::uint64_t BytesOf(const PackedBrick& packed)
+{
+  return PackedBrick::BytesFor(packed.Cells(), packed.HasGradients());
+}
+
+} // namespace
 
 void KeptBricks::BeginPicture(std::uint64_t limitBytes)
 {
@@ -13,7 +22,7 @@ void KeptBricks::BeginPicture(std::uint64_t limitBytes)
     const bool old = item->second.UsedIn < this->Picture - 2;
     if (old || this->HeldBytes > limitBytes)
     {
-      this->HeldBytes -= PackedBrick::BytesFor(item->second.Packed->Cells());
+      this->HeldBytes -= BytesOf(*item->second.Packed);
       item = this->Items.erase(item);
     }
     else
@@ -23,11 +32,13 @@ void KeptBricks::BeginPicture(std::uint64_t limitBytes)
   }
 }
 
-KeptBricks::Pointer KeptBricks::Find(std::int64_t brick, const Box& cells, double low)
+KeptBricks::Pointer KeptBricks::Find(
+  std::int64_t brick, const Box& cells, double low, bool gradients)
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
   const auto item = this->Items.find(brick);
   if (item == this->Items.end() || item->second.Packed->Cells() != cells ||
+      item->second.Packed->HasGradients() != gradients ||
       (item->second.Packed->Relative() && item->second.Packed->Low() != low))
   {
     return nullptr;
@@ -38,12 +49,12 @@ KeptBricks::Pointer KeptBricks::Find(std::int64_t brick, const Box& cells, doubl
 
 void KeptBricks::Keep(std::int64_t brick, const Pointer& packed)
 {
-  const std::uint64_t bytes = PackedBrick::BytesFor(packed->Cells());
+  const std::uint64_t bytes = BytesOf(*packed);
   const std::lock_guard<std::mutex> lock(this->Mutex);
   const auto item = this->Items.find(brick);
   if (item != this->Items.end())
   {
-    this->HeldBytes -= PackedBrick::BytesFor(item->second.Packed->Cells());
+    this->HeldBytes -= BytesOf(*item->second.Packed);
     this->Items.erase(item);
   }
   if (this->HeldBytes + bytes <= this->LimitBytes)

@@ -26,7 +26,7 @@ public:
   void BeginPicture(std::uint64_t limitBytes);
 
   /// The cells of a brick, packed relative to `low` if they are relative; null if not kept.
-  Pointer Find(std::int64_t brick, const Box& cells, double low);
+  Pointer Find(std::int64_t brick, const Box& cells, double low, bool gradients);
 
   /// Keeps a brick if there is room, in place of what was kept under its number.
   void Keep(std::int64_t brick, const Pointer& packed);

@@ -81,64 +81,93 @@ bool PackedBrick::CanPack(const Box& cells)
   return !cells.Empty() && std::max({ size.x, size.y, size.z }) <= LargestEdge;
 }
 
-std::size_t PackedBrick::BytesFor(const Box& cells)
+std::size_t PackedBrick::BytesFor(const Box& cells, bool gradients)
 {
   const glm::i64vec3 samples = glm::i64vec3(cells.Size()) + std::int64_t{ 1 };
-  return static_cast<std::size_t>(samples.x * samples.y * samples.z) * 2 * sizeof(float) +
+  return static_cast<std::size_t>(samples.x * samples.y * samples.z) * (gradients ? 4 : 2) *
+           sizeof(float) +
          sizeof(PackedBrick);
 }
 
-template <class T>
-void PackedBrick::Copy(const BrickView& view, const glm::ivec3& corner)
+PackedBrick::Dense PackedBrick::Convert(
+  const BrickView& view, const glm::ivec3& corner, const Box& samples, double low)
 {
-  const glm::ivec3 samples = this->Whole.Size() + 1;
-  const glm::ivec3 first = this->Whole.Lo - corner;
-  const T* values = static_cast<const T*>(view.Values) + first.x * view.Stride[0] +
-                    first.y * view.Stride[1] + first.z * view.Stride[2];
-  std::array<float, LargestEdge + 1> rows[2];
-  int special = 0;
-  for (int z = 0; z < samples.z; ++z)
-  {
-    float* out = this->Samples.get() + z * this->Slice;
-    for (int y = 0; y < samples.y; ++y)
-    {
-      const T* row = values + z * view.Stride[2] + y * view.Stride[1];
-      std::array<float, LargestEdge + 1>& now = rows[y & 1];
-      special |= ConvertRow(row, view.Stride[0], samples.x, this->RelativeTo, now.data());
-      if (y > 0)
-      {
-        Interleave(rows[1 - (y & 1)].data(), now.data(), samples.x, out);
-        out += this->Row;
-      }
-    }
-    // So that the last row can be read as the others are, one value after the other.
-    const float* last = rows[(samples.y - 1) & 1].data();
-    Interleave(last, last, samples.x, out);
-  }
-  this->HasSpecial = special != 0;
-}
-
-PackedBrick::PackedBrick(
-  const BrickView& view, const glm::ivec3& corner, const Box& cells, double low)
-  : Whole(cells)
-{
-  const glm::ivec3 samples = cells.Size() + 1;
-  this->Row = 2 * std::ptrdiff_t{ samples.x };
-  this->Slice = this->Row * samples.y;
-  while (std::max({ samples.x, samples.y, samples.z }) - 1 > MacroEdge << this->Shift)
-  {
-    ++this->Shift;
-  }
-  this->Samples.reset(new float[static_cast<std::size_t>(this->Slice * samples.z)]);
+  Dense dense;
+  dense.Samples = samples;
+  dense.Values.resize(static_cast<std::size_t>(samples.Count()));
+  const glm::ivec3 size = samples.Size();
+  const glm::ivec3 first = samples.Lo - corner;
   Dispatch(view.Type,
     [&](auto tag)
     {
       using T = typename decltype(tag)::Type;
       this->IsRelativeToLow = IsRelative<T>;
       this->RelativeTo = IsRelative<T> ? low : 0.0;
-      this->Copy<T>(view, corner);
+      const T* values = static_cast<const T*>(view.Values) + first.x * view.Stride[0] +
+                        first.y * view.Stride[1] + first.z * view.Stride[2];
+      float* out = dense.Values.data();
+      int special = 0;
+      for (int z = 0; z < size.z; ++z)
+      {
+        for (int y = 0; y < size.y; ++y, out += size.x)
+        {
+          const T* row = values + z * view.Stride[2] + y * view.Stride[1];
+          special |= ConvertRow(row, view.Stride[0], size.x, this->RelativeTo, out);
+        }
+      }
+      this->HasSpecial = special != 0;
     });
-  this->FindExtremes();
+  return dense;
+}
+
+void PackedBrick::Allocate(int perSample)
+{
+  const glm::ivec3 samples = this->Whole.Size() + 1;
+  this->PerSample = perSample;
+  this->Row = std::ptrdiff_t{ perSample } * samples.x;
+  this->Slice = this->Row * samples.y;
+  while (std::max({ samples.x, samples.y, samples.z }) - 1 > MacroEdge << this->Shift)
+  {
+    ++this->Shift;
+  }
+  this->Samples.reset(new float[static_cast<std::size_t>(this->Slice * samples.z)]);
+}
+
+PackedBrick::PackedBrick(
+  const BrickView& view, const glm::ivec3& corner, const Box& cells, double low)
+  : Whole(cells)
+{
+  this->Allocate(2);
+  const Dense dense = this->Convert(view, corner, { cells.Lo, cells.Hi + 1 }, low);
+  this->FindExtremes(dense);
+  this->PlacePairs(dense);
+}
+
+PackedBrick::PackedBrick(
+  const BrickView& view, const Box& around, const Box& cells, double low, float scale)
+  : Whole(cells)
+{
+  this->Allocate(4);
+  const Box wanted{ cells.Lo - 1, cells.Hi + 2 };
+  const Dense dense = this->Convert(view, around.Lo, Intersection(around, wanted), low);
+  this->FindExtremes(dense);
+  this->PlaceGradients(dense, scale);
+}
+
+void PackedBrick::PlacePairs(const Dense& dense)
+{
+  const glm::ivec3 samples = this->Whole.Size() + 1;
+  const float* row = dense.Values.data();
+  for (int z = 0; z < samples.z; ++z)
+  {
+    float* out = this->Samples.get() + z * this->Slice;
+    for (int y = 0; y < samples.y; ++y, row += samples.x, out += this->Row)
+    {
+      // The last row is its own neighbour, so that it can be read as the others are, one value
+      // after the other.
+      Interleave(row, y + 1 < samples.y ? row + samples.x : row, samples.x, out);
+    }
+  }
 }
 
 glm::ivec3 PackedBrick::Macros() const
@@ -153,13 +182,14 @@ ValueRange PackedBrick::RangeOfMacro(const glm::ivec3& macro) const
   return { this->Lowest[number], this->Highest[number] };
 }
 
-void PackedBrick::FindExtremes()
+void PackedBrick::FindExtremes(const Dense& dense)
 {
   const glm::ivec3 cells = this->Whole.Size();
+  const glm::ivec3 corner = this->Whole.Lo;
   const int edge = 1 << this->Shift;
   const glm::ivec3 macros = this->Macros();
-  std::array<float, 2 * LargestEdge + 2> lowest;
-  std::array<float, 2 * LargestEdge + 2> highest;
+  std::array<float, LargestEdge + 1> lowest;
+  std::array<float, LargestEdge + 1> highest;
   for (int z = 0; z < macros.z; ++z)
   {
     for (int y = 0; y < macros.y; ++y)
@@ -170,19 +200,16 @@ void PackedBrick::FindExtremes()
       const glm::ivec2 end = glm::min(begin + edge, glm::ivec2(cells.y, cells.z));
       for (int j = begin.y; j <= end.y; ++j)
       {
-        // A row holds the next one, too.
-        for (int i = begin.x; i < end.x; i += 2)
+        for (int i = begin.x; i <= end.x; ++i)
         {
-          const float* row = this->Samples.get() + j * this->Slice + i * this->Row;
-          Widen(row, this->Row, lowest.data(), highest.data());
+          const float* row = dense.At(corner.x, corner.y + i, corner.z + j);
+          Widen(row, cells.x + 1, lowest.data(), highest.data());
         }
-        const float* row = this->Samples.get() + j * this->Slice + (end.x - 1) * this->Row;
-        Widen(row, this->Row, lowest.data(), highest.data());
       }
       for (int x = 0; x < macros.x; ++x)
       {
-        const int first = 2 * x * edge;
-        const int last = 2 * std::min((x + 1) * edge, cells.x) + 2;
+        const int first = x * edge;
+        const int last = std::min((x + 1) * edge, cells.x) + 1;
         const int number = MacroNumber({ x, y, z });
         this->Lowest[number] = *std::min_element(lowest.data() + first, lowest.data() + last);
         this->Highest[number] = *std::max_element(highest.data() + first, highest.data() + last);
@@ -196,9 +223,16 @@ BrickView PackedBrick::View() const
   BrickView view;
   view.Values = this->Samples.get();
   view.Type = ScalarType::Float32;
-  view.Stride[0] = 2;
+  view.Stride[0] = this->PerSample;
   view.Stride[1] = this->Row;
   view.Stride[2] = this->Slice;
+  return view;
+}
+
+BrickView PackedBrick::GradientView(int axis) const
+{
+  BrickView view = this->View();
+  view.Values = this->Samples.get() + 1 + axis;
   return view;
 }
 

@@ -9,16 +9,20 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 namespace banyan
 {
 
-/// A brick laid out for packets of rays: float32, and beside each sample its neighbour in y. The
-/// four corners of a cell's lower or upper face are then 16 bytes side by side, and a sample takes
-/// two loads. Beside the values, the extremes of macro cells.
+/// A brick laid out for packets of rays, in float32, and the extremes of its macro cells.
+///
+/// Without gradients, beside each sample stands its neighbour in y. The four corners of a cell's
+/// lower or upper face are then 16 bytes side by side, and a sample takes two loads. With
+/// gradients, a sample is its value and its gradient, and takes eight loads.
 ///
 /// Exactness: each value is the float that an interpolation of the brick itself works with
-/// (CornerValue), so that packing changes no bit of the picture.
+/// (CornerValue), so that packing changes no bit of the picture. Gradients are differences of these
+/// floats, the same ones whatever brick a sample is in.
 class PackedBrick
 {
 public:
@@ -29,7 +33,7 @@ public:
   static constexpr int MacroCells = MacroEdge * MacroEdge * MacroEdge;
 
   static bool CanPack(const Box& cells);
-  static std::size_t BytesFor(const Box& cells);
+  static std::size_t BytesFor(const Box& cells, bool gradients);
 
   /// @param view the brick
   /// @param corner the sample (index space) that view.Values points at
@@ -37,15 +41,24 @@ public:
   /// @param low what values of types that float cannot hold are relative to (see IsRelative)
   PackedBrick(const BrickView& view, const glm::ivec3& corner, const Box& cells, double low);
 
+  /// With gradients.
+  /// @param around samples that the view has: where there is one, a layer more than the brick's
+  /// @param scale of gradients: a power of two, the same for all bricks of a volume
+  PackedBrick(const BrickView& view, const Box& around, const Box& cells, double low, float scale);
+
   /// The packed values as a view of Cells(), whose corner is Corner().
   BrickView View() const;
   const glm::ivec3& Corner() const { return this->Whole.Lo; }
   const Box& Cells() const { return this->Whole; }
 
+  /// Of the gradient along an axis, at the same samples. HasGradients.
+  BrickView GradientView(int axis) const;
+
   const float* Values() const { return this->Samples.get(); }
   std::ptrdiff_t StrideY() const { return this->Row; }
   std::ptrdiff_t StrideZ() const { return this->Slice; }
 
+  bool HasGradients() const { return this->PerSample == 4; }
   bool Relative() const { return this->IsRelativeToLow; }
   double Low() const { return this->RelativeTo; } ///< 0 unless Relative
   /// Whether a value is not finite, or so large that interpolating might give such a value.
@@ -57,14 +70,32 @@ public:
   ValueRange RangeOfMacro(const glm::ivec3& macro) const;
 
 private:
-  template <class T>
-  void Copy(const BrickView& view, const glm::ivec3& corner);
-  void FindExtremes();
+  /// Values as interpolations take them, one after the other.
+  struct Dense
+  {
+    Box Samples;
+    std::vector<float> Values;
+
+    const float* At(int x, int y, int z) const
+    {
+      const glm::ivec3 size = this->Samples.Size();
+      const glm::ivec3 p = glm::ivec3(x, y, z) - this->Samples.Lo;
+      return &this->Values[(static_cast<std::size_t>(p.z) * size.y + p.y) * size.x + p.x];
+    }
+  };
+
+  Dense Convert(const BrickView& view, const glm::ivec3& corner, const Box& samples, double low);
+  void Allocate(int perSample);
+  void PlacePairs(const Dense& dense);
+  void PlaceGradients(const Dense& dense, float scale);
+  void PlaceGradientRow(const Dense& dense, int y, int z, float scale, float* out) const;
+  void FindExtremes(const Dense& dense);
 
   Box Whole;
   std::ptrdiff_t Row = 0;
   std::ptrdiff_t Slice = 0;
   int Shift = 2;
+  int PerSample = 2;
   bool IsRelativeToLow = false;
   bool HasSpecial = false;
   double RelativeTo = 0.0;

@@ -21,9 +21,9 @@ namespace banyan::HWY_NAMESPACE
 
 // Processors without SSE4, and others without vectors: one ray after the other.
 void MarchPackedHere(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
-  const PixelRect& pixels, RayTile& tile)
+  const ShadingTable* shading, const PixelRect& pixels, RayTile& tile)
 {
-  MarchUnpacked(brick, seen, table, pixels, tile);
+  MarchUnpacked(brick, seen, table, shading, pixels, tile);
 }
 
 #else
@@ -32,14 +32,15 @@ void MarchPackedHere(const PackedBrick& brick, const BrickVisibility& seen, cons
 /// by side, each from where it enters the brick.
 /// @tparam Special whether samples may not be finite
 /// @tparam Holes whether macro cells are to be skipped
-template <bool Special, bool Holes>
+/// @tparam Shaded whether samples are shaded
+template <bool Special, bool Holes, bool Shaded>
 class PacketMarcher
 {
 public:
-  PacketMarcher(
-    const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table, RayTile& tile)
+  PacketMarcher(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
+    const ShadingTable* shading, RayTile& tile)
     : Intervals(tile, seen.Cells)
-    , Samples(brick, table)
+    , Samples(brick, table, shading)
     , Cells(seen.Cells)
     , Tile(tile)
     , MacroMask(seen.Mask)
@@ -98,7 +99,8 @@ private:
       hn::Load(d, this->Tile.Transmittance + slot), hn::Set(d, this->Tile.TransmittanceLimit));
   }
 
-  using Place = typename PacketSamples<Special>::Place;
+  using Place = typename PacketSamples<Special, Shaded>::Place;
+  using Found = typename PacketSamples<Special, Shaded>::Found;
   using Lanes = hn::Mask<D>;
 
   /// What a vector of rays has met, and where it goes.
@@ -111,7 +113,8 @@ private:
     Lanes Open; ///< rays that have not ended
     Position At;
     Position Step;
-    VI Left; ///< samples from At on
+    Direction Ray; ///< set if Shaded
+    VI Left;       ///< samples from At on
     std::size_t Taken = 0;
   };
 
@@ -140,6 +143,11 @@ private:
     walk.B = hn::Load(d, this->Tile.Color[2] + slot);
     walk.T = hn::Load(d, this->Tile.Transmittance + slot);
     walk.Open = open;
+    if (Shaded)
+    {
+      walk.Ray = { hn::Load(d, this->Tile.Direction[0] + slot),
+        hn::Load(d, this->Tile.Direction[1] + slot), hn::Load(d, this->Tile.Direction[2] + slot) };
+    }
     return walk;
   }
 
@@ -158,24 +166,24 @@ private:
     const D d;
     Place even;
     Place odd;
-    Offsets evenEntries;
-    Offsets oddEntries;
+    Found evenFound;
+    Found oddFound;
     Lanes first = this->Next(walk, even);
-    this->Samples.Interpolate(even, evenEntries);
+    this->Samples.Interpolate(even, walk.Ray, evenFound);
     Lanes second = this->Next(walk, odd);
     while (!hn::AllFalse(d, first))
     {
       const Lanes third = this->Next(walk, even);
-      this->Samples.Interpolate(odd, oddEntries);
-      this->Blend(walk, first, evenEntries);
+      this->Samples.Interpolate(odd, walk.Ray, oddFound);
+      this->Blend(walk, first, evenFound);
       if (hn::AllFalse(d, second) || hn::AllFalse(d, walk.Open))
       {
         break;
       }
       first = third;
       const Lanes fourth = this->Next(walk, odd);
-      this->Samples.Interpolate(even, evenEntries);
-      this->Blend(walk, second, oddEntries);
+      this->Samples.Interpolate(even, walk.Ray, evenFound);
+      this->Blend(walk, second, oddFound);
       second = fourth;
       if (hn::AllFalse(d, walk.Open))
       {
@@ -213,11 +221,11 @@ private:
     walk.Left = hn::Sub(walk.Left, hn::Set(DI(), 1));
   }
 
-  HWY_INLINE void Blend(Walk& walk, Lanes lanes, const Offsets& entries) const
+  HWY_INLINE void Blend(Walk& walk, Lanes lanes, const Found& found) const
   {
     const D d;
     lanes = hn::And(lanes, walk.Open);
-    Add(walk, lanes, this->Samples.LookUp(entries));
+    Add(walk, lanes, this->Samples.LookUp(found));
     walk.Open = hn::And(walk.Open, hn::Gt(walk.T, hn::Set(d, this->Tile.TransmittanceLimit)));
     walk.Taken += hn::CountTrue(d, lanes);
   }
@@ -278,17 +286,17 @@ private:
       return;
     }
     Place place;
-    Offsets entries;
-    this->Samples.Locate({ position[0], position[1], position[2] }, here, place);
-    this->Samples.Interpolate(place, entries);
+    Found found;
     Walk walk = this->WalkAt(slot, here);
-    Add(walk, here, this->Samples.LookUp(entries, fraction));
+    this->Samples.Locate({ position[0], position[1], position[2] }, here, place);
+    this->Samples.Interpolate(place, walk.Ray, found);
+    Add(walk, here, this->Samples.LookUp(found, fraction));
     this->Keep(slot, walk);
     this->Tile.SamplesTaken += static_cast<std::int64_t>(hn::CountTrue(d, here));
   }
 
   PacketIntervals Intervals;
-  PacketSamples<Special> Samples;
+  PacketSamples<Special, Shaded> Samples;
   Box Cells;
   RayTile& Tile;
   const std::uint32_t* MacroMask;
@@ -298,14 +306,14 @@ private:
   std::uint32_t Offset[3];  ///< from the cells' low corner to the brick's
 };
 
-template <bool Special, bool Holes>
+template <bool Special, bool Holes, bool Shaded>
 void MarchPackets(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
-  const PixelRect& pixels, RayTile& tile)
+  const ShadingTable* shading, const PixelRect& pixels, RayTile& tile)
 {
   constexpr int edge = RayTile::PacketEdge;
   const glm::ivec2 corner = tile.Rect.Lo;
   const PixelRect packets{ (pixels.Lo - corner) / edge, (pixels.Hi - corner + edge - 1) / edge };
-  PacketMarcher<Special, Holes> marcher(brick, seen, table, tile);
+  PacketMarcher<Special, Holes, Shaded> marcher(brick, seen, table, shading, tile);
   for (int y = packets.Lo.y; y < packets.Hi.y; ++y)
   {
     for (int x = packets.Lo.x; x < packets.Hi.x; ++x)
@@ -316,12 +324,17 @@ void MarchPackets(const PackedBrick& brick, const BrickVisibility& seen, const S
 }
 
 void MarchPackedHere(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
-  const PixelRect& pixels, RayTile& tile)
+  const ShadingTable* shading, const PixelRect& pixels, RayTile& tile)
 {
-  const auto march = brick.Special()
-                       ? (seen.Holes ? MarchPackets<true, true> : MarchPackets<true, false>)
-                       : (seen.Holes ? MarchPackets<false, true> : MarchPackets<false, false>);
-  march(brick, seen, table, pixels, tile);
+  using March = void (*)(const PackedBrick&, const BrickVisibility&, const StepTable&,
+    const ShadingTable*, const PixelRect&, RayTile&);
+  static constexpr March marches[8] = { MarchPackets<false, false, false>,
+    MarchPackets<true, false, false>, MarchPackets<false, true, false>,
+    MarchPackets<true, true, false>, MarchPackets<false, false, true>,
+    MarchPackets<true, false, true>, MarchPackets<false, true, true>,
+    MarchPackets<true, true, true> };
+  const int which = (brick.Special() ? 1 : 0) + (seen.Holes ? 2 : 0) + (shading ? 4 : 0);
+  marches[which](brick, seen, table, shading, pixels, tile);
 }
 
 #endif
@@ -336,12 +349,12 @@ namespace banyan
 HWY_EXPORT(MarchPackedHere);
 
 void MarchPacked(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
-  const PixelRect& pixels, RayTile& tile)
+  const ShadingTable* shading, const PixelRect& pixels, RayTile& tile)
 {
   const PixelRect rect = Intersection(pixels, tile.Rect);
   if (!rect.Empty() && !seen.Cells.Empty())
   {
-    HWY_DYNAMIC_DISPATCH(MarchPackedHere)(brick, seen, table, rect, tile);
+    HWY_DYNAMIC_DISPATCH(MarchPackedHere)(brick, seen, table, shading, rect, tile);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "Render/Interpolators.h"
 #include "Render/PackedBrick.h"
 #include "Render/RayTile.h"
+#include "Render/ShadingTable.h"
 
 #include <limits>
 
@@ -123,6 +124,14 @@ struct Position
   VU Z;
 };
 
+/// The direction of a ray per lane: RayTile::Direction.
+struct Direction
+{
+  VF X;
+  VF Y;
+  VF Z;
+};
+
 /// What one sample per lane adds: premultiplied colour and transmittance.
 struct Steps
 {
@@ -134,17 +143,19 @@ struct Steps
 
 /// Samples of a packed brick: value by value what PlainInterpolator and TableLookup give.
 /// @tparam Special whether values may not be finite
-template <bool Special>
+/// @tparam Shaded whether the brick has gradients, and samples are shaded by them
+template <bool Special, bool Shaded>
 class PacketSamples
 {
 public:
-  PacketSamples(const PackedBrick& brick, const StepTable& table)
+  PacketSamples(const PackedBrick& brick, const StepTable& table, const ShadingTable* shading)
     : Values(reinterpret_cast<const char*>(brick.Values()))
     , RowBytes(static_cast<std::int32_t>(brick.StrideY() * sizeof(float)))
     , SliceBytes(static_cast<std::int32_t>(brick.StrideZ() * sizeof(float)))
     , Lookup(brick.Relative() ? table.RelativeLookup() : table.Lookup())
     , Table(table.Steps())
     , Depths(table.Depths())
+    , Shading(shading)
   {
   }
 
@@ -164,7 +175,7 @@ public:
   HWY_INLINE void Locate(const Position& position, Mask mask, Place& place) const
   {
     const DI d;
-    const VI bytes = hn::Add(hn::ShiftLeft<3>(CellOf(position.X)),
+    const VI bytes = hn::Add(hn::ShiftLeft < Shaded ? 4 : 3 > (CellOf(position.X)),
       hn::Add(hn::Mul(CellOf(position.Y), hn::Set(d, this->RowBytes)),
         hn::Mul(CellOf(position.Z), hn::Set(d, this->SliceBytes))));
     place.Cell.Set(hn::IfThenElseZero(hn::RebindMask(d, mask), bytes));
@@ -173,32 +184,116 @@ public:
     place.Z = FractionOf(position.Z);
   }
 
-  /// Interpolates, and finds the entries of the table.
-  HWY_INLINE void Interpolate(const Place& place, Offsets& entries) const
+  /// A sample of which the entry in the table is known.
+  struct Found
   {
-    const Blocks edges = Transposed({ { this->MixedAlongZ<0>(place), this->MixedAlongZ<1>(place),
-      this->MixedAlongZ<2>(place), this->MixedAlongZ<3>(place) } });
-    const VF value =
-      Mix(Mix(edges.Of[0], edges.Of[1], place.Y), Mix(edges.Of[2], edges.Of[3], place.Y), place.X);
-    entries.Set(hn::ShiftLeft<4>(this->IndicesOf(value)));
+    Offsets Entries;
+    VF Colour;    ///< as Shade has it; set if Shaded
+    VF Highlight; ///< set if Shaded and there are highlights
+  };
+
+  /// Interpolates, and finds the entries of the table.
+  HWY_INLINE void Interpolate(const Place& place, const Direction& direction, Found& found) const
+  {
+    VF value;
+    if constexpr (Shaded)
+    {
+      const Blocks mixed = Transposed({ { this->MixedInCell<0>(place), this->MixedInCell<1>(place),
+        this->MixedInCell<2>(place), this->MixedInCell<3>(place) } });
+      value = mixed.Of[0];
+      this->ShadeOf(mixed.Of[1], mixed.Of[2], mixed.Of[3], direction, found);
+    }
+    else
+    {
+      const Blocks edges = Transposed({ { this->MixedAlongZ<0>(place), this->MixedAlongZ<1>(place),
+        this->MixedAlongZ<2>(place), this->MixedAlongZ<3>(place) } });
+      value = Mix(
+        Mix(edges.Of[0], edges.Of[1], place.Y), Mix(edges.Of[2], edges.Of[3], place.Y), place.X);
+    }
+    found.Entries.Set(hn::ShiftLeft<4>(this->IndicesOf(value)));
   }
 
-  HWY_INLINE Steps LookUp(const Offsets& entries) const
+  HWY_INLINE Steps LookUp(const Found& found) const
   {
-    const Blocks steps = Transposed(LoadBlocks(this->Table, entries));
-    return { steps.Of[0], steps.Of[1], steps.Of[2], steps.Of[3] };
+    const Blocks steps = Transposed(LoadBlocks(this->Table, found.Entries));
+    return this->Lit({ steps.Of[0], steps.Of[1], steps.Of[2], steps.Of[3] }, found);
   }
 
   /// As StepTable::Partial, with transmittance in place of opacity.
-  HWY_INLINE Steps LookUp(const Offsets& entries, VF fraction) const
+  HWY_INLINE Steps LookUp(const Found& found, VF fraction) const
   {
-    const Blocks depths = Transposed(LoadBlocks(this->Depths, entries));
+    const Blocks depths = Transposed(LoadBlocks(this->Depths, found.Entries));
     const VF opacity = OpacityOf(hn::Mul(depths.Of[3], fraction));
-    return { hn::Mul(depths.Of[0], opacity), hn::Mul(depths.Of[1], opacity),
-      hn::Mul(depths.Of[2], opacity), hn::Sub(hn::Set(D(), 1.0f), opacity) };
+    return this->Lit({ hn::Mul(depths.Of[0], opacity), hn::Mul(depths.Of[1], opacity),
+                       hn::Mul(depths.Of[2], opacity), hn::Sub(hn::Set(D(), 1.0f), opacity) },
+      found);
   }
 
 private:
+  HWY_INLINE Steps Lit(const Steps& steps, const Found& found) const
+  {
+    if constexpr (!Shaded)
+    {
+      return steps;
+    }
+    else
+    {
+      Steps lit = { hn::Mul(steps.R, found.Colour), hn::Mul(steps.G, found.Colour),
+        hn::Mul(steps.B, found.Colour), steps.Transmittance };
+      if (this->Shading->HasHighlights)
+      {
+        const VF opacity = hn::Sub(hn::Set(D(), 1.0f), steps.Transmittance);
+        const VF white = hn::Mul(found.Highlight, opacity);
+        lit.R = hn::Add(lit.R, white);
+        lit.G = hn::Add(lit.G, white);
+        lit.B = hn::Add(lit.B, white);
+      }
+      return lit;
+    }
+  }
+
+  /// As ShadingTable::Of.
+  HWY_INLINE void ShadeOf(VF x, VF y, VF z, const Direction& direction, Found& found) const
+  {
+    const D d;
+    const ShadingTable& table = *this->Shading;
+    const auto metric = [&](int i) HWY_ATTR { return hn::Set(d, table.Metric[i]); };
+    const VF along =
+      hn::Add(hn::Add(hn::Mul(x, direction.X), hn::Mul(y, direction.Y)), hn::Mul(z, direction.Z));
+    const VF mx =
+      hn::Add(hn::Add(hn::Mul(x, metric(0)), hn::Mul(y, metric(3))), hn::Mul(z, metric(4)));
+    const VF my = hn::Add(hn::Mul(y, metric(1)), hn::Mul(z, metric(5)));
+    const VF mz = hn::Mul(z, metric(2));
+    const VF length = hn::Add(hn::Add(hn::Mul(x, mx), hn::Mul(y, my)), hn::Mul(z, mz));
+    const VF squared = hn::Div(hn::Mul(along, along), length);
+    const VF one = hn::Set(d, 1.0f);
+    const VF atMost = hn::IfThenElse(hn::Lt(squared, one), squared, one);
+    const VF inside = hn::IfThenElseZero(hn::Ge(squared, hn::Zero(d)), atMost);
+    const VF cosine = hn::Sqrt(inside);
+    found.Colour = hn::Add(hn::Set(d, table.Ambient), hn::Mul(hn::Set(d, table.Diffuse), cosine));
+    if (table.HasHighlights)
+    {
+      const VF last = hn::Set(d, static_cast<float>(ShadingTable::Entries - 1));
+      const VI entry = Truncated(hn::Add(hn::Mul(cosine, last), hn::Set(d, 0.5f)));
+      found.Highlight = hn::GatherIndex(d, table.Highlights.data(), entry);
+    }
+  }
+
+  /// Value and gradient of lanes 4 b + k.
+  template <int k>
+  HWY_INLINE VF MixedInCell(const Place& place) const
+  {
+    const std::int32_t* bytes = place.Cell.Bytes + k;
+    const VF z = hn::Broadcast<k>(place.Z);
+    const auto edge = [&](const char* from) HWY_ATTR
+    { return Mix(LoadBlocks(from, bytes), LoadBlocks(from + this->SliceBytes, bytes), z); };
+    const VF y = hn::Broadcast<k>(place.Y);
+    const char* const next = this->Values + 4 * sizeof(float);
+    const VF left = Mix(edge(this->Values), edge(this->Values + this->RowBytes), y);
+    const VF right = Mix(edge(next), edge(next + this->RowBytes), y);
+    return Mix(left, right, hn::Broadcast<k>(place.X));
+  }
+
   /// As OpacityOfDepth::Of.
   static HWY_INLINE VF OpacityOf(VF depth)
   {
@@ -269,6 +364,7 @@ private:
   TableLookup Lookup;
   const glm::vec4* Table;
   const glm::vec4* Depths;
+  const ShadingTable* Shading;
 };
 
 } // namespace banyan::HWY_NAMESPACE

@@ -5,8 +5,11 @@
 #include "Render/BrickMarcher.h"
 #include "Render/VisibilityOrder.h"
 
+#include <glm/matrix.hpp>
+
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
 namespace banyan
 {
@@ -50,6 +53,11 @@ public:
     , Visible(scene.Transfer)
     , IndexCamera(scene.Camera.InSpace(scene.IndexToWorld))
   {
+    if (scene.Shading.On)
+    {
+      this->Shading = std::make_unique<const ShadingTable>(
+        scene.Shading, glm::dmat3(glm::inverse(scene.IndexToWorld)));
+    }
   }
 
   FloatImage Cast()
@@ -178,10 +186,11 @@ private:
     for (; next < this->Bricks.size(); ++next)
     {
       const PlannedBrick& brick = this->Bricks[next];
-      KeptBricks::Pointer kept =
-        this->Source.Kept().Find(brick.Number, brick.Cells, this->Table.Low());
+      KeptBricks::Pointer kept = this->Source.Kept().Find(
+        brick.Number, brick.Cells, this->Table.Low(), this->Scene.Shading.On);
       const std::uint64_t loadBytes = kept ? 0 : this->Source.LoadBytes(brick.Number);
-      const std::uint64_t brickBytes = kept ? 0 : loadBytes + PackedBrick::BytesFor(brick.Cells);
+      const std::uint64_t brickBytes =
+        kept ? 0 : loadBytes + PackedBrick::BytesFor(brick.Cells, this->Scene.Shading.On);
       const bool full = bytes + brickBytes > left || this->Batch.size() >= BricksPerBatch;
       if (full && !this->Batch.empty())
       {
@@ -243,21 +252,53 @@ private:
   {
     if (!loaded.Packed)
     {
-      const BrickView view = this->Source.Load(brick.Number);
       if (!PackedBrick::CanPack(brick.Cells))
       {
-        loaded.View = view;
+        loaded.View = this->LoadLarge(brick);
         return;
       }
-      const glm::ivec3 corner = this->Source.CellsOf(brick.Number).Lo;
-      loaded.Packed =
-        std::make_shared<const PackedBrick>(view, corner, brick.Cells, this->Table.Low());
+      loaded.Packed = this->Pack(brick);
       this->Source.Kept().Keep(brick.Number, loaded.Packed);
     }
     loaded.Seen =
       BrickVisibility(*loaded.Packed, this->Source.RangeOf(brick.Number), this->Visible);
     loaded.Footprint =
       loaded.Seen.Cells == brick.Cells ? brick.Footprint : this->FootprintOf(loaded.Seen.Cells);
+  }
+
+  KeptBricks::Pointer Pack(const PlannedBrick& brick) const
+  {
+    const double low = this->Table.Low();
+    if (!this->Shading)
+    {
+      const BrickView view = this->Source.Load(brick.Number);
+      const glm::ivec3 corner = this->Source.CellsOf(brick.Number).Lo;
+      return std::make_shared<const PackedBrick>(view, corner, brick.Cells, low);
+    }
+    Box around;
+    const BrickView view = this->Source.LoadAround(brick.Number, around);
+    return std::make_shared<const PackedBrick>(
+      view, around, brick.Cells, low, this->GradientScale());
+  }
+
+  /// Brings gradients near 1, so that their squares neither overflow nor vanish.
+  float GradientScale() const
+  {
+    const MaskRange range = this->Source.MasksAreOver();
+    const double width = range.High - range.Low;
+    const int exponent = width > 0.0 && std::isfinite(width) ? std::ilogb(width) : 0;
+    return static_cast<float>(std::exp2(-std::clamp(exponent, -100, 100)));
+  }
+
+  BrickView LoadLarge(const PlannedBrick& brick) const
+  {
+    if (this->Shading)
+    {
+      throw Error("Bricks of so many cells per axis cannot be shaded",
+        { {}, {}, static_cast<std::uint64_t>(brick.Cells.Size().x),
+          static_cast<std::uint64_t>(PackedBrick::LargestEdge) });
+    }
+    return this->Source.Load(brick.Number);
   }
 
   /// @return samples taken
@@ -287,11 +328,13 @@ private:
     }
     else if (tile.PacketsFit)
     {
-      MarchPacked(*loaded.Packed, loaded.Seen, this->Table, loaded.Footprint, tile);
+      MarchPacked(
+        *loaded.Packed, loaded.Seen, this->Table, this->Shading.get(), loaded.Footprint, tile);
     }
     else
     {
-      MarchUnpacked(*loaded.Packed, loaded.Seen, this->Table, loaded.Footprint, tile);
+      MarchUnpacked(
+        *loaded.Packed, loaded.Seen, this->Table, this->Shading.get(), loaded.Footprint, tile);
     }
   }
 
@@ -304,6 +347,7 @@ private:
   RayLattice Lattice;
   StepTable Table;
   VisibleValues Visible;
+  std::unique_ptr<const ShadingTable> Shading; ///< null for none
   RayCamera IndexCamera;
 
   FloatImage Picture;

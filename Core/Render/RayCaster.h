@@ -27,6 +27,22 @@ struct FloatImage
   const glm::vec4& At(int x, int y) const;
 };
 
+/// Light from the viewer, along each ray. With c = |normal . ray|, the colour of a sample becomes
+/// colour * (Ambient + Diffuse * c) + Specular * c^SpecularPower, before it is weighted with its
+/// opacity. Normals are those of the gradient; where that is 0 only the ambient part is left.
+///
+/// The gradient is interpolated between samples, where it is the difference of the neighbours on
+/// both sides (of the one that there is at the edge of the volume, or beside values that are not
+/// finite).
+struct RayShading
+{
+  bool On = false;
+  float Ambient = 0.3f;
+  float Diffuse = 0.7f;
+  float Specular = 0.0f;
+  float SpecularPower = 10.0f; ///< the power of the nearest of 4096 values of c is taken
+};
+
 /// All that decides the picture, except the values.
 struct RayScene
 {
@@ -39,6 +55,7 @@ struct RayScene
   float OpacityLimit = 0.999f; ///< a ray ends when its opacity reaches this
   /// Depth in [0, 1] per pixel of Viewport at which rays end, `[y][x]`; empty means no geometry.
   std::vector<float> Depth;
+  RayShading Shading{};
 };
 
 struct RayStatistics
@@ -58,10 +75,10 @@ struct RayStatistics
 /// apart: 1 - OpacityLimit), and the size of bricks, the budget and the threads change no bit.
 ///
 /// Brick by brick, front to back; a batch of bricks, as loaded and as packed for drawing, never
-/// takes more than `budgetBytes`, unless one brick alone does. Up to half the budget are packed bricks
-/// that the source keeps for the next picture. Bricks that cannot be seen are not loaded: by their
-/// range and mask under the transfer function, off screen, or behind pixels that have all reached the
-/// opacity limit.
+/// takes more than `budgetBytes`, unless one brick alone does. Up to half the budget are packed
+/// bricks that the source keeps for the next picture. Bricks that cannot be seen are not loaded: by
+/// their range and mask under the transfer function, off screen, or behind pixels that have all
+/// reached the opacity limit.
 ///
 /// @param statistics is added to
 /// @return pixels that the visible bricks may touch (inside Viewport); may be empty.

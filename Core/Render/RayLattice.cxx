@@ -65,6 +65,19 @@ void CheckViewport(const RayScene& scene)
 
 } // namespace
 
+double ScaleToOne(const glm::dmat3& matrix)
+{
+  double largest = 0.0;
+  for (int column = 0; column < 3; ++column)
+  {
+    for (int row = 0; row < 3; ++row)
+    {
+      largest = std::max(largest, std::abs(matrix[column][row]));
+    }
+  }
+  return largest > 0.0 && std::isfinite(largest) ? std::exp2(-std::ilogb(largest)) : 1.0;
+}
+
 FixedBox::FixedBox(const Box& cells)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -106,6 +119,7 @@ LatticeSetup RayLattice::Setup() const
   setup.Low = glm::dvec3(this->Scene.DomainCells.Lo);
   setup.High = glm::dvec3(this->Scene.DomainCells.Hi);
   setup.Distance = this->Scene.SampleDistance;
+  setup.ShadingScale = ScaleToOne(this->WorldToIndexLinear);
   return setup;
 }
 

@@ -128,6 +128,9 @@ inline void RaySamples::SamplesIn(const FixedBox& box, std::int32_t& begin, std:
   }
 }
 
+/// The power of two that brings the largest number of a matrix to 1 or below 2.
+double ScaleToOne(const glm::dmat3& matrix);
+
 /// What rays are made from, for code that makes many at a time.
 struct LatticeSetup
 {
@@ -142,6 +145,8 @@ struct LatticeSetup
   glm::dvec3 Low{ 0.0 }; ///< of the domain, in cells
   glm::dvec3 High{ 0.0 };
   double Distance = 1.0;
+  /// A power of two that brings directions in index space near 1.
+  double ShadingScale = 1.0;
 };
 
 /// Makes the samples of rays from what all ranks know: the camera, the domain, the clip planes, the

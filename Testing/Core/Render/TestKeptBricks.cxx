@@ -32,23 +32,23 @@ TEST(KeptBricks, StayWithinTheLimitAndAsLongAsTheyAreUsed)
 {
   const std::vector<double> values(27, 1.0);
   const Box cells{ glm::ivec3(0), glm::ivec3(2) };
-  const std::uint64_t bytes = PackedBrick::BytesFor(cells);
+  const std::uint64_t bytes = PackedBrick::BytesFor(cells, false);
   KeptBricks kept;
   kept.BeginPicture(2 * bytes);
   for (int brick = 0; brick < 3; ++brick)
   {
-    EXPECT_EQ(kept.Find(brick, cells, 0.0), nullptr);
+    EXPECT_EQ(kept.Find(brick, cells, 0.0, false), nullptr);
     kept.Keep(brick, Pack(values, 0.0));
   }
   EXPECT_EQ(kept.Bytes(), 2 * bytes);
-  EXPECT_NE(kept.Find(1, cells, 0.0), nullptr);
-  EXPECT_EQ(kept.Find(2, cells, 0.0), nullptr);
+  EXPECT_NE(kept.Find(1, cells, 0.0, false), nullptr);
+  EXPECT_EQ(kept.Find(2, cells, 0.0, false), nullptr);
   for (int picture = 0; picture < 3; ++picture)
   {
     kept.BeginPicture(2 * bytes);
-    EXPECT_NE(kept.Find(0, cells, 0.0), nullptr);
+    EXPECT_NE(kept.Find(0, cells, 0.0, false), nullptr);
   }
-  EXPECT_EQ(kept.Find(1, cells, 0.0), nullptr);
+  EXPECT_EQ(kept.Find(1, cells, 0.0, false), nullptr);
   EXPECT_EQ(kept.Bytes(), bytes);
   kept.BeginPicture(bytes - 1);
   EXPECT_EQ(kept.Bytes(), 0u);
@@ -61,13 +61,13 @@ TEST(KeptBricks, OtherCellsOrAnotherLowEndAreOtherBricks)
   KeptBricks kept;
   kept.BeginPicture(1 << 20);
   kept.Keep(7, Pack(values, 0.5));
-  EXPECT_NE(kept.Find(7, cells, 0.5), nullptr);
-  EXPECT_EQ(kept.Find(7, cells, 0.25), nullptr);
-  EXPECT_EQ(kept.Find(7, Box{ glm::ivec3(0), glm::ivec3(1, 2, 2) }, 0.5), nullptr);
+  EXPECT_NE(kept.Find(7, cells, 0.5, false), nullptr);
+  EXPECT_EQ(kept.Find(7, cells, 0.25, false), nullptr);
+  EXPECT_EQ(kept.Find(7, Box{ glm::ivec3(0), glm::ivec3(1, 2, 2) }, 0.5, false), nullptr);
   const std::uint64_t bytes = kept.Bytes();
   kept.Keep(7, Pack(values, 0.25));
   EXPECT_EQ(kept.Bytes(), bytes);
-  EXPECT_NE(kept.Find(7, cells, 0.25), nullptr);
+  EXPECT_NE(kept.Find(7, cells, 0.25, false), nullptr);
 }
 
 TEST(KeptBricks, PicturesAreTheSameAndLoadOnce)

@@ -80,8 +80,8 @@ void ExpectPacketsGiveTheBitsOfSingleRays(const Scenario& test, std::vector<T> v
   const PackedBrick packed(view, glm::ivec3(0), test.Cells, table.Low());
   const BrickVisibility seen(packed, { 0.0, 100.0 }, visible);
   EXPECT_EQ(seen.Holes, test.Sparse);
-  const Tiled unpacked =
-    DrawTiles(scene, [&](RayTile& tile) { MarchUnpacked(packed, seen, table, all, tile); });
+  const Tiled unpacked = DrawTiles(
+    scene, [&](RayTile& tile) { MarchUnpacked(packed, seen, table, nullptr, all, tile); });
   EXPECT_EQ(MaxDifference(unpacked.Picture, plain.Picture), 0.0);
   for (const std::int64_t target : scenes::TargetsOfThisMachine())
   {
@@ -91,7 +91,7 @@ void ExpectPacketsGiveTheBitsOfSingleRays(const Scenario& test, std::vector<T> v
       [&](RayTile& tile)
       {
         ASSERT_TRUE(tile.PacketsFit);
-        MarchPacked(packed, seen, table, all, tile);
+        MarchPacked(packed, seen, table, nullptr, all, tile);
       });
     EXPECT_EQ(MaxDifference(drawn.Picture, plain.Picture), 0.0);
     EXPECT_EQ(drawn.Ended, plain.Ended);
@@ -202,6 +202,57 @@ TEST(Packets, IntegersAndDoubles)
   ExpectPacketsGiveTheBitsOfSingleRays(
     test, scenes::Sampled<std::int32_t>(scenes::Standard, test.N, 100.0));
   ExpectPacketsGiveTheBitsOfSingleRays(test, scenes::Sampled<double>(scenes::Standard, test.N));
+}
+
+/// Shaded packets against shaded single rays.
+void ExpectSameBitsShaded(const Scenario& test, std::vector<float> values, float specular)
+{
+  RayScene scene = scenes::Scene(test.N, { 70, 45 }, glm::dmat4(1.0), test.Distance, test.Parallel);
+  scene.Transfer = scenes::Tabulate(test.Sparse ? scenes::Sparse : scenes::Smooth);
+  scene.SampleDistance = test.Step;
+  scene.OpacityLimit = test.OpacityLimit;
+  scene.Shading = { true, 0.2f, 0.6f, specular, 7.5f };
+  glm::dmat3 toIndex(1.0);
+  toIndex[1][0] = 0.25;
+  toIndex[2][2] = 0.5;
+  const ShadingTable shading(scene.Shading, toIndex);
+  const StepTable table(scene.Transfer, scene.SampleDistance);
+  BrickView view{ values.data(), ScalarType::Float32, { 1, test.N.x, test.N.x * test.N.y }, {} };
+  const PackedBrick packed(view, { glm::ivec3(0), test.N }, test.Cells, table.Low(), 4.0f);
+  const BrickVisibility seen(packed, { 0.0, 100.0 }, VisibleValues(scene.Transfer));
+  const auto march = [&](auto&& function)
+  {
+    return DrawTiles(
+      scene, [&](RayTile& tile) { function(packed, seen, table, &shading, scene.Viewport, tile); });
+  };
+  const Tiled plain = march(MarchUnpacked);
+  for (const std::int64_t target : scenes::TargetsOfThisMachine())
+  {
+    SCOPED_TRACE(hwy::TargetName(target));
+    const scenes::OnlyTarget only(target);
+    const Tiled drawn = march(MarchPacked);
+    EXPECT_EQ(MaxDifference(drawn.Picture, plain.Picture), 0.0);
+    EXPECT_EQ(drawn.Ended, plain.Ended);
+  }
+}
+
+TEST(Packets, ShadedSamples)
+{
+  Scenario test;
+  std::vector<float> values = scenes::Sampled(scenes::Standard, test.N);
+  ExpectSameBitsShaded(test, values, 0.0f);
+  ExpectSameBitsShaded(test, values, 0.5f);
+  test.Cells = { { 3, 7, 1 }, { 30, 20, 29 } };
+  test.Sparse = true;
+  test.OpacityLimit = 0.6f;
+  ExpectSameBitsShaded(test, values, 0.5f);
+  std::mt19937 random(3);
+  const float special[] = { NAN, INFINITY, -INFINITY, 3e38f, -3e38f };
+  for (int i = 0; i < 200; ++i)
+  {
+    values[random() % values.size()] = special[i % 5];
+  }
+  ExpectSameBitsShaded(test, values, 0.5f);
 }
 
 TEST(Packets, MacroCellsHaveTheExtremesOfTheirCorners)
