@@ -1,6 +1,7 @@
 #include "Codec/BlockDecoder.h"
 
 #include "Base/Error.h"
+#include "Codec/BlockScratch.h"
 #include "Codec/SymbolReader.h"
 
 #include <memory>
@@ -10,50 +11,70 @@
 #include <hwy/foreach_target.h>
 
 #include "Codec/BlockUnits-inl.h"
-#include "Codec/RowDecoder-inl.h"
+#include "Codec/SliceDecoder-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
 
-template <int B>
+/// Samples of one unit after the other: three edges, three faces, or an interior.
+template <int D>
+constexpr int UnitsOf = D < 3 ? 3 : 1;
+
+template <class Edge, class Number>
 struct BoxDecoder
 {
-  static constexpr int N = B + 1;
-  const PlaneCode& Plane;
-  const BoxCode& Code;
-  View<std::int32_t> Box;
-  View<const std::int32_t> A, BRef;
-
   struct Workspace
   {
-    block::Scratch<B, 1> Edges[3];
-    block::Scratch<B, 2> Faces[3];
-    block::Scratch<B, 3> Interior;
+    explicit Workspace(int edge)
+      : Edges(edge)
+      , Faces(edge)
+      , Interior(edge)
+      , Slice(edge)
+    {
+    }
+    block::Scratch<Number, 1> Edges;
+    block::Scratch<Number, 2> Faces;
+    block::Scratch<Number, 3> Interior;
+    SliceMemory<Number> Slice;
     SymbolReader Readers[8];
+    /// Magnitudes of the edges of the blocks 1, 2, 4 and 0 of a box, row by row.
+    std::uint8_t EdgeMagnitudes[4][3][64];
   };
 
-  static glm::ivec3 Corner(int owner) { return { owner & 1 ? B : 0, owner & 2 ? B : 0, owner & 4 ? B : 0 }; }
+  Edge B;
+  const PlaneCode& Plane;
+  const BoxCodeOf<Number>& Code;
+  View<Number> Box;
+  View<const Number> A, BRef;
+  Workspace& Work;
 
-  References ReferencesOf(const block::Mode& mode) const
+  int N() const { return this->B() + 1; }
+
+  glm::ivec3 Corner(int owner) const
   {
-    References result{ mode.From, this->A, this->BRef };
+    const int b = this->B();
+    return { owner & 1 ? b : 0, owner & 2 ? b : 0, owner & 4 ? b : 0 };
+  }
+
+  References<Number> ReferencesOf(const block::Mode& mode) const
+  {
     if (mode.From != block::Reference::None && (this->Code.A == nullptr || this->Code.B == nullptr))
     {
       throw Error("A block refers to a step that its group does not have");
     }
-    return result;
+    return { mode.From, this->A, this->BRef };
   }
 
   void PlaceCoarse() const
   {
-    constexpr int n = B / 4 + 1;
+    const int n = this->B() / 4 + 1;
+    const Number* from = this->Code.Coarse;
     for (int z = 0; z < n; ++z)
     {
-      for (int y = 0; y < n; ++y)
+      for (int y = 0; y < n; ++y, from += n)
       {
-        std::int32_t* row = this->Box.Row(4 * y, 4 * z);
-        const std::int32_t* from = this->Code.Coarse + (z * n + y) * n;
+        Number* row = this->Box.Row(4 * y, 4 * z);
         for (int x = 0; x < n; ++x)
         {
           row[4 * x] = from[x];
@@ -62,10 +83,10 @@ struct BoxDecoder
     }
   }
 
-  /// The decoded face of a neighbour (1, 2 or 4), or null.
-  const std::int32_t* FaceOf(int owner) const
+  /// The decoded box of a neighbour (1, 2 or 4), or null.
+  const Number* NeighbourOf(int owner) const
   {
-    return owner == 1 || owner == 2 || owner == 4 ? this->Code.Faces[owner / 2] : nullptr;
+    return owner == 1 || owner == 2 || owner == 4 ? this->Code.Neighbours[owner / 2] : nullptr;
   }
 
   /// Whether the edge that a block across an edge of the box owns is in a decoded face.
@@ -73,7 +94,7 @@ struct BoxDecoder
   {
     for (const int neighbour : { 1, 2, 4 })
     {
-      if ((neighbour & owner) != 0 && this->FaceOf(neighbour) != nullptr)
+      if ((neighbour & owner) != 0 && this->NeighbourOf(neighbour) != nullptr)
       {
         return true;
       }
@@ -81,38 +102,29 @@ struct BoxDecoder
     return false;
   }
 
-  /// Rows have one of three lengths, which the compiler then knows.
-  static HWY_INLINE void CopyRow(const std::int32_t* from, int count, std::int32_t* to)
-  {
-    if (count == 1)
-    {
-      *to = *from;
-    }
-    else if (count == B)
-    {
-      std::memcpy(to, from, B * sizeof(*to));
-    }
-    else
-    {
-      std::memcpy(to, from, N * sizeof(*to));
-    }
-  }
-
-  /// A whole face, other owners' edges of it included.
+  /// The first layer of a decoded neighbour, other owners' edges of it included, is the last one here.
   void PlaceFace(int owner) const
   {
-    const std::int32_t* from = this->FaceOf(owner);
-    for (int j = 0; j < N; ++j, from += N)
+    const int n = this->N();
+    const View<const Number> from{ this->NeighbourOf(owner), this->Box.Stride };
+    const glm::ivec3 corner = this->Corner(owner);
+    const View<Number> to = this->Box.At(corner);
+    if (owner == 1)
     {
-      if (owner == 1)
+      for (int z = 0; z < n; ++z)
       {
-        for (int y = 0; y < N; ++y)
+        for (int y = 0; y < n; ++y)
         {
-          this->Box.Row(y, j)[B] = from[y];
+          *to.Row(y, z) = *from.Row(y, z);
         }
-        continue;
       }
-      CopyRow(from, N, owner == 2 ? this->Box.Row(B, j) : this->Box.Row(j, B));
+      return;
+    }
+    for (int j = 0; j < n; ++j)
+    {
+      const int y = owner == 2 ? 0 : j;
+      const int z = owner == 2 ? j : 0;
+      std::copy_n(from.Row(y, z), n, to.Row(y, z));
     }
   }
 
@@ -120,13 +132,13 @@ struct BoxDecoder
   bool Plain(int owner) const
   {
     const BlockCode& block = this->Code.Blocks[owner];
-    return block.Uniform || block.Same || this->FaceOf(owner) != nullptr;
+    return block.Uniform || block.Same || this->NeighbourOf(owner) != nullptr;
   }
 
   /// Fills what a plain block owns of the box.
   void PlacePlain(int owner) const
   {
-    if (this->FaceOf(owner) != nullptr)
+    if (this->NeighbourOf(owner) != nullptr)
     {
       return this->PlaceFace(owner);
     }
@@ -134,59 +146,74 @@ struct BoxDecoder
     {
       throw Error("A block is the same as in a step that its group does not have");
     }
-    const glm::ivec3 low = Corner(owner);
-    const glm::ivec3 high{ owner & 1 ? N : B, owner & 2 ? N : B, owner & 4 ? N : B };
+    const int n = this->N();
+    const glm::ivec3 low = this->Corner(owner);
+    const glm::ivec3 high{ owner & 1 ? n : n - 1, owner & 2 ? n : n - 1, owner & 4 ? n : n - 1 };
     for (int z = low.z; z < high.z; ++z)
     {
       for (int y = low.y; y < high.y; ++y)
       {
-        std::int32_t* row = this->Box.Row(y, z);
+        Number* row = this->Box.Row(y, z);
         if (this->Code.Blocks[owner].Same)
         {
-          CopyRow(this->A.Row(y, z) + low.x, high.x - low.x, row + low.x);
+          std::copy(this->A.Row(y, z) + low.x, this->A.Row(y, z) + high.x, row + low.x);
         }
         else
         {
-          std::fill(row + low.x, row + high.x, this->Code.Blocks[owner].Value);
+          std::fill(row + low.x, row + high.x, static_cast<Number>(this->Code.Blocks[owner].Value));
         }
       }
     }
   }
 
-  /// Decodes one unit of a block. Units outside the box only advance the reader.
+  /// Decodes the units of D dimensions of a block. Those outside the box only advance the reader.
+  /// @param any whether some magnitudes are not 0, before
+  /// @return the same, after
   template <int D>
-  void DecodeUnit(int owner, int mask, SymbolReader* symbols, block::Scratch<B, D>& scratch) const
+  bool DecodeUnits(
+    int owner, SymbolReader* symbols, block::Scratch<Number, D>& scratch, bool any) const
   {
     const BlockCode& block = this->Code.Blocks[owner];
     const block::Mode mode = block::ModeOf(block.Mode);
-    const glm::ivec3 axes = UnitAxes(mask);
-    block::Unit<B> unit = scratch.Whole();
-    unit.Limit = Permuted(block.Limit, axes, D);
-    const bool needed = (mask & owner) == 0;
-    const glm::ivec3 corner = Corner(owner);
-    References from = this->ReferencesOf(mode).Along(axes);
-    View<std::int32_t> view = this->Box.Along(axes);
-    if (needed)
+    const block::Shape<D> shape{ this->B() };
+    const glm::ivec3 corner = this->Corner(owner);
+    const References<Number> references = this->ReferencesOf(mode);
+    const auto forEachNeeded = [&](auto&& body)
     {
-      from = from.At(Permuted(corner, axes, 3));
-      view = view.At(Permuted(corner, axes, 3));
-      LoadUnit<B, D>({ view.Base, view.Stride }, from, unit.W);
-    }
-    RunPasses<B, D>(unit, mode.By,
-      RowDecoder<B>{ symbols, this->Plane.CoarseBin, this->Plane.FineBin });
-    if (needed)
+      for (int number = 0; number < UnitsOf<D>; ++number)
+      {
+        if ((MaskOf<D>(number) & owner) == 0)
+        {
+          const glm::ivec3 axes = AxesOf<D>(number);
+          const glm::ivec3 from = InOrderOf<3>(axes, corner, 0);
+          body(this->Box.Along(axes).At(from), references.Along(axes).At(from),
+            scratch.W() + number * shape.Pitch());
+        }
+      }
+    };
+    Unit<Number, D> unit{ scratch.W(), scratch.M(), {}, any };
+    for (int number = 0; number < UnitsOf<D>; ++number)
     {
-      StoreUnit<B, D>(unit.W, from, this->Plane.Least, this->Plane.Greatest, view);
+      unit.Limit[number] = InOrderOf<D>(AxesOf<D>(number), block.Limit, this->B());
     }
+    forEachNeeded([&](const View<Number>& samples, const References<Number>& from, Number* w)
+      { LoadUnit<D>(View<const Number>{ samples.Base, samples.Stride }, from, this->B, false, w); });
+    ForEachPass<D>(
+      [&](auto pass)
+      {
+        using P = decltype(pass);
+        SliceDecoder<P, Edge, Number>(unit, this->B, mode.By, symbols,
+          static_cast<Number>(P::S == 2 ? this->Plane.CoarseBin : this->Plane.FineBin),
+          this->Work.Slice)
+          .Run();
+      });
+    forEachNeeded(
+      [&](const View<Number>& samples, const References<Number>& from, Number* w)
+      { StoreUnit<D>(w, from, this->B, this->Plane.Least, this->Plane.Greatest, samples); });
+    return unit.Any;
   }
 
-  /// A vector in the order of a unit's axes; those that the unit does not have do not limit it.
-  static glm::ivec3 Permuted(const glm::ivec3& v, const glm::ivec3& axes, int dimensions)
-  {
-    return { v[axes.x], dimensions > 1 ? v[axes.y] : B, dimensions > 2 ? v[axes.z] : B };
-  }
-
-  void Run(Workspace& work) const
+  void Run() const
   {
     this->PlaceCoarse();
     SymbolReader* readers[8] = {};
@@ -199,9 +226,10 @@ struct BoxDecoder
       }
       else if (block.Exists && block.Bytes > 0 && owner != 7 && !this->HasEdge(owner))
       {
-        readers[owner] = &work.Readers[owner];
+        readers[owner] = &this->Work.Readers[owner];
         // Of neighbours no more is read than their edges and faces; no symbol takes more bits.
-        constexpr std::size_t most = (3 * B * B + 3 * B) * 41 / 8 + 8;
+        const std::size_t b = static_cast<std::size_t>(this->B());
+        const std::size_t most = (3 * b * b + 3 * b) * 41 / 8 + 8 * b;
         readers[owner]->Open(
           this->Plane.Tables, block.Data, block.Bytes, owner == 0 ? block.Bytes : most);
       }
@@ -210,115 +238,68 @@ struct BoxDecoder
     {
       if (!this->Plain(owner) && !this->HasEdge(owner))
       {
-        for (int unit = 0; unit < 3; ++unit)
-        {
-          this->Edge(owner, unit, readers[owner], work);
-        }
+        this->Edges(owner, readers[owner]);
       }
     }
     // The faces of a block need the magnitudes of its own edges; those of all blocks need the edges
     // of the others.
-    struct FaceOwner
-    {
-      std::uint8_t Edges[3][B];
-    };
-    FaceOwner kept[4];
     constexpr int owners[4] = { 1, 2, 4, 0 };
+    bool any[4] = {};
     for (int i = 0; i < 4; ++i)
     {
-      const int owner = owners[i];
-      if (this->Plain(owner))
+      if (!this->Plain(owners[i]))
       {
-        continue;
-      }
-      for (int unit = 0; unit < 3; ++unit)
-      {
-        this->Edge(owner, unit, readers[owner], work);
-        std::copy(work.Edges[unit].M(), work.Edges[unit].M() + B, kept[i].Edges[unit]);
+        any[i] = this->Edges(owners[i], readers[owners[i]]);
+        this->KeepEdges(this->Work.EdgeMagnitudes[i]);
       }
     }
     for (int i = 0; i < 4; ++i)
     {
-      const int owner = owners[i];
-      if (this->Plain(owner))
+      if (!this->Plain(owners[i]))
       {
-        continue;
-      }
-      for (int unit = 3; unit < 6; ++unit)
-      {
-        this->Face(owner, unit, readers[owner], kept[i].Edges, work);
+        any[i] = this->Faces(owners[i], readers[owners[i]], this->Work.EdgeMagnitudes[i], any[i]);
       }
     }
     if (!this->Plain(0))
     {
-      this->Inside(readers[0], work);
+      this->Inside(readers[0], any[3]);
     }
   }
 
-  void Edge(int owner, int unit, SymbolReader* symbols, Workspace& work) const
+  bool Edges(int owner, SymbolReader* symbols) const
   {
-    const int mask = UnitMasks[unit];
-    const bool needed = (mask & owner) == 0;
-    work.Edges[unit].ClearMagnitudes();
-    if (needed || symbols != nullptr)
-    {
-      this->DecodeUnit<1>(owner, mask, symbols, work.Edges[unit]);
-    }
+    this->Work.Edges.ClearMagnitudes();
+    return this->template DecodeUnits<1>(owner, symbols, this->Work.Edges, false);
   }
 
-  void Face(int owner, int unit, SymbolReader* symbols, const std::uint8_t (&edges)[3][B],
-    Workspace& work) const
+  void KeepEdges(std::uint8_t (&magnitudes)[3][64]) const
   {
-    const int mask = UnitMasks[unit];
-    const bool needed = (mask & owner) == 0;
-    block::Scratch<B, 2>& scratch = work.Faces[unit - 3];
-    scratch.ClearMagnitudes();
-    if (symbols != nullptr)
+    const block::Shape<1> shape{ this->B() };
+    for (int edge = 0; edge < 3; ++edge)
     {
-      const glm::ivec3 axes = UnitAxes(mask);
-      PlaceEdges(scratch, edges[axes.x], edges[axes.y]);
-    }
-    if (needed || symbols != nullptr)
-    {
-      this->DecodeUnit<2>(owner, mask, symbols, scratch);
+      std::copy_n(this->Work.Edges.M() + edge * shape.Pitch(), this->B(), magnitudes[edge]);
     }
   }
 
-  static void PlaceEdges(
-    block::Scratch<B, 2>& scratch, const std::uint8_t* alongX, const std::uint8_t* alongY)
-  {
-    std::uint8_t* m = scratch.M();
-    std::copy(alongX, alongX + B, m);
-    for (int y = 1; y < B; ++y)
-    {
-      m[y * scratch.RowM] = alongY[y];
-    }
-  }
-
-  void Inside(SymbolReader* symbols, Workspace& work) const
+  bool Faces(
+    int owner, SymbolReader* symbols, const std::uint8_t (&edges)[3][64], bool any) const
   {
     if (symbols != nullptr)
     {
-      work.Interior.ClearMagnitudes();
-      std::uint8_t* m = work.Interior.M();
-      constexpr int row = block::Scratch<B, 3>::RowM;
-      const std::uint8_t* xy = work.Faces[0].M();
-      const std::uint8_t* xz = work.Faces[1].M();
-      const std::uint8_t* yz = work.Faces[2].M();
-      for (int j = 0; j < B; ++j)
-      {
-        std::copy(xy + j * row, xy + j * row + B, m + j * row);
-      }
-      for (int k = 1; k < B; ++k)
-      {
-        std::copy(xz + k * row, xz + k * row + B, m + k * B * row);
-        for (int j = 1; j < B; ++j)
-        {
-          m[(k * B + j) * row] = yz[k * row + j];
-        }
-      }
+      this->Work.Faces.ClearMagnitudes();
+      block::PlaceEdges(this->B(), edges, this->Work.Faces.M());
     }
-    this->DecodeUnit<3>(0, 7, symbols, work.Interior);
+    return this->template DecodeUnits<2>(owner, symbols, this->Work.Faces, any);
+  }
+
+  void Inside(SymbolReader* symbols, bool any) const
+  {
+    if (symbols != nullptr)
+    {
+      this->Work.Interior.ClearMagnitudes();
+      block::PlaceFaces(this->B(), this->Work.Faces.M(), this->Work.Interior.M());
+    }
+    this->template DecodeUnits<3>(0, symbols, this->Work.Interior, any);
     if (symbols != nullptr && !symbols->AtEnd())
     {
       throw Error("The payload of a block is damaged: its symbols do not end where it ends");
@@ -326,34 +307,45 @@ struct BoxDecoder
   }
 };
 
-template <int B>
-void DecodeBoxOf(const PlaneCode& plane, const BoxCode& code, std::int32_t* box)
+template <class Edge, class Number>
+void DecodeBoxOf(
+  const Edge& edge, const PlaneCode& plane, const BoxCodeOf<Number>& code, Number* box)
 {
-  constexpr std::int64_t n = B + 1;
-  thread_local std::unique_ptr<typename BoxDecoder<B>::Workspace> work;
-  if (!work)
+  using Decoder = BoxDecoder<Edge, Number>;
+  thread_local std::unique_ptr<typename Decoder::Workspace> work;
+  thread_local int workEdge = 0;
+  if (workEdge != edge())
   {
-    work = std::make_unique<typename BoxDecoder<B>::Workspace>();
+    work = std::make_unique<typename Decoder::Workspace>(edge());
+    workEdge = edge();
   }
+  const std::int64_t n = edge() + 1;
   const glm::i64vec3 strides{ 1, n, n * n };
-  const BoxDecoder<B> decoder{ plane, code, { box, strides }, { code.A, strides },
-    { code.B, strides } };
-  decoder.Run(*work);
+  Decoder{ edge, plane, code, { box, strides }, { code.A, strides }, { code.B, strides }, *work }
+    .Run();
 }
 
-void DecodeBoxHere(int edge, const PlaneCode& plane, const BoxCode& code, std::int32_t* box)
+template <class Number>
+void DecodeBoxOf(
+  int edge, const PlaneCode& plane, const BoxCodeOf<Number>& code, Number* box)
 {
-  switch (edge)
+  if (edge == 16)
   {
-    case 8:
-      return DecodeBoxOf<8>(plane, code, box);
-    case 16:
-      return DecodeBoxOf<16>(plane, code, box);
-    case 32:
-      return DecodeBoxOf<32>(plane, code, box);
-    default:
-      return DecodeBoxOf<64>(plane, code, box);
+    return DecodeBoxOf(EdgeIs<16>{}, plane, code, box);
   }
+  DecodeBoxOf(EdgeIs<0>{ edge }, plane, code, box);
+}
+
+void DecodeShort(
+  int edge, const PlaneCode& plane, const BoxCodeOf<std::int16_t>& code, std::int16_t* box)
+{
+  DecodeBoxOf(edge, plane, code, box);
+}
+
+void DecodeLong(
+  int edge, const PlaneCode& plane, const BoxCodeOf<std::int32_t>& code, std::int32_t* box)
+{
+  DecodeBoxOf(edge, plane, code, box);
 }
 
 } // namespace banyan::HWY_NAMESPACE
@@ -363,11 +355,19 @@ HWY_AFTER_NAMESPACE();
 namespace banyan
 {
 
-HWY_EXPORT(DecodeBoxHere);
+HWY_EXPORT(DecodeShort);
+HWY_EXPORT(DecodeLong);
 
-void DecodeBox(int edge, const PlaneCode& plane, const BoxCode& code, std::int32_t* box)
+void DecodeBox(
+  int edge, const PlaneCode& plane, const BoxCodeOf<std::int16_t>& code, std::int16_t* box)
 {
-  HWY_DYNAMIC_DISPATCH(DecodeBoxHere)(edge, plane, code, box);
+  HWY_DYNAMIC_DISPATCH(DecodeShort)(edge, plane, code, box);
+}
+
+void DecodeBox(
+  int edge, const PlaneCode& plane, const BoxCodeOf<std::int32_t>& code, std::int32_t* box)
+{
+  HWY_DYNAMIC_DISPATCH(DecodeLong)(edge, plane, code, box);
 }
 
 } // namespace banyan

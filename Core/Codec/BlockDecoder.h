@@ -36,26 +36,32 @@ struct PlaneCode
 };
 
 /// All that is needed to decode the samples of a block and of the faces that it shares.
-struct BoxCode
+/// @param Number std::int16_t where block::Narrow says so, else std::int32_t
+template <class Number>
+struct BoxCodeOf
 {
   /// The block and its neighbours: bits 0, 1, 2 of the index are offsets of one block in x, y, z.
   BlockCode Blocks[8];
   /// Samples at stride 4: `[z][y][x]` of (edge / 4 + 1) per axis; from the coarser plane.
-  const std::int32_t* Coarse = nullptr;
+  const Number* Coarse = nullptr;
   /// Decoded boxes of the references; must be given when a mode asks for them.
-  const std::int32_t* A = nullptr;
-  const std::int32_t* B = nullptr;
-  /// Last layers of the box along x, y, z, of existing neighbours that were decoded before: (edge + 1)^2
-  /// numbers `[z][y]`, `[z][x]`, `[y][x]`. Null for others; what is here is not decoded again.
-  const std::int32_t* Faces[3] = {};
+  const Number* A = nullptr;
+  const Number* B = nullptr;
+  /// Decoded boxes of the neighbours that exist along x, y, z and were decoded before; null for others.
+  /// Of what is here the faces are not decoded again.
+  const Number* Neighbours[3] = {};
 };
+using BoxCode = BoxCodeOf<std::int32_t>;
 
 /// Decodes a box: the (edge + 1)^3 samples of a block and the layer that neighbours own.
 /// @param edge 8, 16, 32 or 64
 /// @param box receives lattice numbers `[z][y][x]`
 /// Throws Error when a payload is damaged; any input is safe. Integer arithmetic: bit-exact on
 /// every machine.
-void DecodeBox(int edge, const PlaneCode& plane, const BoxCode& code, std::int32_t* box);
+void DecodeBox(
+  int edge, const PlaneCode& plane, const BoxCodeOf<std::int16_t>& code, std::int16_t* box);
+void DecodeBox(
+  int edge, const PlaneCode& plane, const BoxCodeOf<std::int32_t>& code, std::int32_t* box);
 
 } // namespace banyan
 

@@ -11,256 +11,270 @@
 #include <hwy/foreach_target.h>
 
 #include "Codec/BlockUnits-inl.h"
-#include "Codec/RowEncoder-inl.h"
-#include "Codec/RowTrial-inl.h"
+#include "Codec/SliceEncoder-inl.h"
+#include "Codec/SliceTrial-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
 
-template <int B>
+using Sample = std::int32_t; ///< of planes
+
+template <class Edge, class Number>
 struct BlockCoder
 {
   struct Workspace
   {
-    block::Scratch<B, 1> Edge, EdgeTarget;
-    block::Scratch<B, 2> Face, FaceTarget;
-    block::Scratch<B, 3> Interior, InteriorTarget;
-    UnitTokens<B> Tokens;
+    explicit Workspace(int edge)
+      : Edges(edge)
+      , EdgesTarget(edge)
+      , Faces(edge)
+      , FacesTarget(edge)
+      , Interior(edge)
+      , InteriorTarget(edge)
+      , Tokens(edge)
+    {
+    }
+    block::Scratch<Number, 1> Edges, EdgesTarget;
+    block::Scratch<Number, 2> Faces, FacesTarget;
+    block::Scratch<Number, 3> Interior, InteriorTarget;
+    UnitTokens Tokens;
   };
 
-  static Workspace& Work()
+  Edge B;
+  const PlaneJob& Job;
+  glm::ivec3 Position;
+  Workspace& Work;
+
+  const PlaneToEncode& Plane() const { return *this->Job.Plane; }
+
+  View<Sample> ViewOf(PlaneNumbers& plane) const
   {
-    thread_local std::unique_ptr<Workspace> work;
-    if (!work)
-    {
-      work = std::make_unique<Workspace>();
-    }
-    return *work;
+    const glm::ivec3 origin = this->Position * this->B();
+    return { plane.Numbers.data() + plane.IndexOf(origin),
+      { 1, plane.Padded.x, std::int64_t{ plane.Padded.x } * plane.Padded.y } };
+  }
+  View<const Sample> ViewOf(const PlaneNumbers& plane) const
+  {
+    const View<Sample> view = this->ViewOf(const_cast<PlaneNumbers&>(plane));
+    return { view.Base, view.Stride };
   }
 
-  static glm::i64vec3 StridesOf(const PlaneNumbers& plane)
+  References<Sample> ReferencesOf(block::Reference from) const
   {
-    return { 1, plane.Padded.x, std::int64_t{ plane.Padded.x } * plane.Padded.y };
-  }
-
-  static References ReferencesOf(const PlaneToEncode& plane, block::Reference from, const glm::ivec3& origin)
-  {
-    References result;
+    References<Sample> result;
     result.From = from;
     if (from != block::Reference::None)
     {
-      result.A = { plane.A->Numbers.data() + plane.A->IndexOf(origin), StridesOf(*plane.A) };
-      result.B = { plane.B->Numbers.data() + plane.B->IndexOf(origin), StridesOf(*plane.B) };
+      result.A = this->ViewOf(*this->Plane().A);
+      result.B = this->ViewOf(*this->Plane().B);
     }
     return result;
   }
 
-  template <int D>
-  static void EncodeUnit(const PlaneJob& job, const glm::ivec3& position, int mask,
-    BlockTokens& out, bool coded, block::Scratch<B, D>& scratch, block::Scratch<B, D>& target,
-    bool& rough)
+  template <class P>
+  RowQuantizer<P, Edge, Number> RowsOf(
+    Unit<Number, P::D>& unit, Interpolation by, const Number* target) const
   {
-    const PlaneToEncode& plane = *job.Plane;
-    const glm::ivec3 origin = position * B;
-    const glm::ivec3 axes = UnitAxes(mask);
+    return { unit, this->B, by, target,
+      static_cast<Number>(P::S == 2 ? this->Plane().CoarseBin : this->Plane().FineBin) };
+  }
+
+  /// Encodes the units of D dimensions of a block.
+  /// @param coded false: they are predicted only
+  template <int D>
+  void EncodeUnits(BlockTokens& out, bool coded, block::Scratch<Number, D>& scratch,
+    block::Scratch<Number, D>& target, bool& rough) const
+  {
+    const PlaneToEncode& plane = this->Plane();
     const block::Mode mode = block::ModeOf(out.Mode);
-    const References from = ReferencesOf(plane, mode.From, origin).Along(axes);
-    const View<std::int32_t> samples =
-      View<std::int32_t>{ job.Decoded->Numbers.data() + job.Decoded->IndexOf(origin),
-        StridesOf(*job.Decoded) }.Along(axes);
-    const View<const std::int32_t> wanted =
-      View<const std::int32_t>{ plane.Target->Numbers.data() + plane.Target->IndexOf(origin),
-        StridesOf(*plane.Target) }.Along(axes);
-    block::Unit<B> unit = scratch.Whole();
-    const auto permuted = [&](const glm::ivec3& v)
-    { return glm::ivec3{ v[axes.x], D > 1 ? v[axes.y] : B, D > 2 ? v[axes.z] : B }; };
-    unit.Limit = coded ? permuted(plane.Target->Samples - 1 - origin) : glm::ivec3(-1);
-    LoadUnit<B, D>({ samples.Base, samples.Stride }, from, unit.W);
-    LoadUnit<B, D>(wanted, from, target.W());
-    Work().Tokens.Clear();
-    RunPasses<B, D>(unit, mode.By,
-      RowEncoder<B>{ unit.W, target.W(), plane.CoarseBin, plane.FineBin, &Work().Tokens, &rough });
-    Work().Tokens.AppendTo(out);
-    StoreUnit<B, D>(unit.W, from, plane.Least, plane.Greatest, samples);
+    const block::Shape<D> shape{ this->B() };
+    const References<Sample> references = this->ReferencesOf(mode.From);
+    const View<Sample> decoded = this->ViewOf(*this->Job.Decoded);
+    const View<const Sample> wanted = this->ViewOf(*plane.Target);
+    const glm::ivec3 blocks = this->Job.Decoded->Blocks;
+    Unit<Number, D> unit{ scratch.W(), scratch.M(), {}, rough };
+    constexpr int units = D < 3 ? 3 : 1;
+    bool exists[3] = {};
+    for (int number = 0; number < units; ++number)
+    {
+      const glm::ivec3 axes = AxesOf<D>(number);
+      const int mask = MaskOf<D>(number);
+      exists[number] = !((mask & 1) != 0 && this->Position.x == blocks.x) &&
+                       !((mask & 2) != 0 && this->Position.y == blocks.y) &&
+                       !((mask & 4) != 0 && this->Position.z == blocks.z);
+      unit.Limit[number] = glm::ivec3(-1);
+      if (coded)
+      {
+        unit.Limit[number] = InOrderOf<D>(
+          axes, plane.Target->Samples - 1 - this->Position * this->B(), this->B());
+      }
+      if (exists[number])
+      {
+        const std::ptrdiff_t at = number * shape.Pitch();
+        const View<Sample> samples = decoded.Along(axes);
+        LoadUnit<D>(View<const Sample>{ samples.Base, samples.Stride }, references.Along(axes),
+          this->B, false, scratch.W() + at);
+        LoadUnit<D>(
+          wanted.Along(axes), references.Along(axes), this->B, true, target.W() + at);
+      }
+    }
+    this->Work.Tokens.Clear();
+    ForEachPass<D>(
+      [&](auto pass)
+      {
+        using P = decltype(pass);
+        SliceEncoder<P, Edge, Number>{ this->template RowsOf<P>(unit, mode.By, target.W()),
+          this->Work.Tokens }
+          .Run();
+      });
+    this->Work.Tokens.AppendTo(out);
+    rough = unit.Any;
+    for (int number = 0; number < units; ++number)
+    {
+      if (exists[number])
+      {
+        const glm::ivec3 axes = AxesOf<D>(number);
+        StoreUnit<D>(scratch.W() + number * shape.Pitch(), references.Along(axes), this->B,
+          plane.Least, plane.Greatest, decoded.Along(axes));
+      }
+    }
   }
 
   /// See EncodeBlock.
-  static void Encode(const PlaneJob& job, const glm::ivec3& position, BlockPhase phase)
+  void Encode(BlockPhase phase) const
   {
-    const glm::ivec3 blocks = job.Decoded->Blocks;
+    const glm::ivec3 blocks = this->Job.Decoded->Blocks;
+    const glm::ivec3& position = this->Position;
     const bool beyond = position.x == blocks.x || position.y == blocks.y || position.z == blocks.z;
-    Workspace& work = Work();
     BlockTokens none;
     BlockUnderway noneUnderway;
     const std::size_t index = static_cast<std::size_t>(
       (std::int64_t{ position.z } * blocks.y + position.y) * blocks.x + position.x);
-    BlockTokens& out = beyond ? none : (*job.Blocks)[index];
-    BlockUnderway& underway = beyond ? noneUnderway : (*job.Underway)[index];
+    BlockTokens& out = beyond ? none : (*this->Job.Blocks)[index];
+    BlockUnderway& underway = beyond ? noneUnderway : (*this->Job.Underway)[index];
     if (!beyond && (out.Uniform || out.Same))
     {
       return;
     }
-    const int first = phase == BlockPhase::Edges ? 0 : phase == BlockPhase::Faces ? 3 : 6;
-    const int end = phase == BlockPhase::Interior ? 7 : first + 3;
-    for (int unit = first; unit < end; ++unit)
+    const int b = this->B();
+    const block::Shape<1> edges{ b };
+    const block::Shape<2> faces{ b };
+    if (phase == BlockPhase::Edges)
     {
-      const int mask = UnitMasks[unit];
-      if (((mask & 1) != 0 && position.x == blocks.x) ||
-          ((mask & 2) != 0 && position.y == blocks.y) ||
-          ((mask & 4) != 0 && position.z == blocks.z))
+      this->Work.Edges.ClearMagnitudes();
+      this->EncodeUnits<1>(out, !beyond, this->Work.Edges, this->Work.EdgesTarget, underway.Rough);
+      if (!beyond)
       {
-        continue;
-      }
-      if (phase == BlockPhase::Edges)
-      {
-        work.Edge.ClearMagnitudes();
-        EncodeUnit<1>(job, position, mask, out, !beyond, work.Edge, work.EdgeTarget, underway.Rough);
-        Keep(underway, unit, work.Edge.M(), 1);
-      }
-      else if (phase == BlockPhase::Faces)
-      {
-        work.Face.ClearMagnitudes();
-        Recall(underway, mask, work.Face.M(), beyond);
-        EncodeUnit<2>(job, position, mask, out, !beyond, work.Face, work.FaceTarget, underway.Rough);
-        Keep(underway, unit, work.Face.M(), B);
-      }
-      else if (!beyond)
-      {
-        work.Interior.ClearMagnitudes();
-        RecallFaces(underway, work.Interior.M());
-        EncodeUnit<3>(
-          job, position, mask, out, true, work.Interior, work.InteriorTarget, underway.Rough);
-        Finish(out, underway);
+        const std::uint8_t* m = this->Work.Edges.M();
+        underway.Magnitudes.assign(m, m + 3 * edges.Pitch());
       }
     }
-  }
-
-  static constexpr int RowM = block::Scratch<B, 2>::RowM;
-
-  static std::size_t OffsetOf(int unit)
-  {
-    return static_cast<std::size_t>(unit < 3 ? unit * B : 3 * B + (unit - 3) * B * B);
-  }
-
-  static void Keep(BlockUnderway& underway, int unit, const std::uint8_t* m, int rows)
-  {
-    underway.Magnitudes.resize(OffsetOf(6));
-    std::uint8_t* to = underway.Magnitudes.data() + OffsetOf(unit);
-    for (int y = 0; y < rows; ++y)
+    else if (phase == BlockPhase::Faces)
     {
-      std::copy(m + y * RowM, m + y * RowM + B, to + y * B);
-    }
-  }
-
-  /// The magnitudes of the edges that a face starts with.
-  static void Recall(const BlockUnderway& underway, int mask, std::uint8_t* m, bool beyond)
-  {
-    if (beyond)
-    {
-      return;
-    }
-    const glm::ivec3 axes = UnitAxes(mask);
-    const std::uint8_t* alongX = underway.Magnitudes.data() + OffsetOf(axes.x);
-    const std::uint8_t* alongY = underway.Magnitudes.data() + OffsetOf(axes.y);
-    std::copy(alongX, alongX + B, m);
-    for (int y = 1; y < B; ++y)
-    {
-      m[y * RowM] = alongY[y];
-    }
-  }
-
-  static void RecallFaces(const BlockUnderway& underway, std::uint8_t* m)
-  {
-    const std::uint8_t* xy = underway.Magnitudes.data() + OffsetOf(3);
-    const std::uint8_t* xz = underway.Magnitudes.data() + OffsetOf(4);
-    const std::uint8_t* yz = underway.Magnitudes.data() + OffsetOf(5);
-    for (int j = 0; j < B; ++j)
-    {
-      std::copy(xy + j * B, xy + j * B + B, m + j * RowM);
-    }
-    for (int k = 1; k < B; ++k)
-    {
-      std::copy(xz + k * B, xz + k * B + B, m + k * B * RowM);
-      for (int j = 1; j < B; ++j)
+      this->Work.Faces.ClearMagnitudes();
+      if (!beyond)
       {
-        m[(k * B + j) * RowM] = yz[k * B + j];
+        std::uint8_t kept[3][64];
+        for (int edge = 0; edge < 3; ++edge)
+        {
+          std::copy_n(underway.Magnitudes.data() + edge * edges.Pitch(), b, kept[edge]);
+        }
+        block::PlaceEdges(b, kept, this->Work.Faces.M());
+      }
+      this->EncodeUnits<2>(out, !beyond, this->Work.Faces, this->Work.FacesTarget, underway.Rough);
+      if (!beyond)
+      {
+        const std::uint8_t* m = this->Work.Faces.M();
+        underway.Magnitudes.assign(m, m + b * faces.Y());
       }
     }
-  }
-
-  static void Finish(BlockTokens& out, BlockUnderway& underway)
-  {
-    if (!underway.Rough)
+    else if (!beyond)
     {
-      out.Tokens = {};
-      out.Extra = {};
-      out.Rows = {};
+      this->Work.Interior.ClearMagnitudes();
+      block::PlaceFaces(b, underway.Magnitudes.data(), this->Work.Interior.M());
+      this->EncodeUnits<3>(
+        out, true, this->Work.Interior, this->Work.InteriorTarget, underway.Rough);
+      if (!underway.Rough)
+      {
+        out.Tokens = {};
+        out.Extra = {};
+        out.Runs = {};
+      }
+      underway.Magnitudes = {};
     }
-    underway.Magnitudes = {};
   }
 
   /// Guesses the bits that residuals take, from some rows of each pass, with what is to be coded in
   /// place of what will have been decoded.
-  static double Estimate(const std::int32_t* w, Interpolation by, std::int32_t bin)
+  double Estimate(const Number* w, Interpolation by) const
   {
-    constexpr int n = B + 1;
-    constexpr std::ptrdiff_t row = B + 8;
-    alignas(64) std::int32_t prediction[B];
+    const int b = this->B();
     double cost = 0;
-    const auto add = [&](const std::int32_t* at, const LaneSet& lanes, double weight)
+    const auto add = [&](auto pass, int y, int z, double weight)
     {
-      const std::int32_t* mask = LaneMask<B>(lanes);
-      const float scale = 2.0f / static_cast<float>(bin);
-      std::int32_t sum = 0;
-      for (int x = 0; x < B; ++x)
-      {
-        const std::int32_t rest = static_cast<std::int32_t>(U(at[x]) - U(prediction[x])) & mask[x];
-        const float bins = scale * static_cast<float>(rest);
-        const float size = 1.0f + bins * bins;
-        std::int32_t bits;
-        std::memcpy(&bits, &size, 4);
-        sum += (bits - 0x3f800000) >> 12; // 2^11 times about log2(size)
-      }
-      cost += weight * sum;
+      using P = decltype(pass);
+      cost += weight * this->template RowEstimate<P>(w, y, z, by);
     };
-    for (int k = 1; k < B; k += 2)
+    for (int k = 1; k < b; k += 2)
     {
-      for (int j = 1 + (k / 2) % 3; j < B; j += 5)
+      for (int j = 1 + (k / 2) % 3; j < b; j += 5)
       {
-        const std::int32_t* across = w + (k * n + j) * row;
-        PredictAcross<B>(across, n * row, k, 1, by, prediction);
-        add(across, { 1, 1 }, 5.0);
+        add(Pass<3, 2, 1>{}, j, k, 5.0);
       }
-      for (int j = 4; j < B; j += 4)
+      for (int j = 4; j < b; j += 4)
       {
-        const std::int32_t* across = w + (j * n + k) * row;
-        PredictAcross<B>(across, row, k, 1, by, prediction);
-        add(across, { 1, 1 }, 2.0);
-        const std::int32_t* along = w + (j * n + (k / 2) * 2) * row;
-        PredictAlong<B>(along, 1, by, prediction);
-        add(along, { 1, 2 }, 2.0);
+        add(Pass<3, 1, 1>{}, k, j, 2.0);
+        add(Pass<3, 0, 1>{}, (k / 2) * 2, j, 2.0);
       }
     }
     return cost;
   }
 
-  static void Choose(const PlaneJob& job, const glm::ivec3& position)
+  template <class P>
+  HWY_INLINE double RowEstimate(const Number* w, int y, int z, Interpolation by) const
   {
-    const PlaneToEncode& plane = *job.Plane;
-    const glm::ivec3 origin = position * B;
+    using Signed = typename Numbers<Number>::Signed;
+    using Bits = Numbers<std::int32_t>::Signed;
+    typedef float Floats __attribute__((vector_size(64)));
+    const block::Shape<3> shape{ this->B() };
+    const RowPlace place{ z * shape.Z() + y * shape.Y(), 0, y, z, 0 };
+    const float scale = 2.0f / static_cast<float>(this->Plane().FineBin);
+    const int left = this->B() - P::First;
+    Bits sum{};
+    for (int at = 0; at < left; at += Width)
+    {
+      Signed rest = reinterpret_cast<Signed>(Numbers<Number>::Load(w + place.W + P::First + at) -
+                                             Predict<P>(w, this->B, place, at, by));
+      rest &= LaneMask<P, Signed>(left - at);
+      const Floats bins = __builtin_convertvector(rest, Floats) * scale;
+      const Floats size = 1.0f + bins * bins;
+      Bits bits;
+      std::memcpy(&bits, &size, sizeof(bits));
+      sum += (bits - 0x3f800000) >> 12; // 2^11 times about log2(size)
+    }
+    std::int32_t total = 0;
+    for (int x = 0; x < Width; ++x)
+    {
+      total += sum[x];
+    }
+    return total;
+  }
+
+  void Choose() const
+  {
+    const PlaneToEncode& plane = this->Plane();
     const std::size_t index = static_cast<std::size_t>(
-      (std::int64_t{ position.z } * plane.Target->Blocks.y + position.y) * plane.Target->Blocks.x +
-      position.x);
-    BlockTokens& out = (*job.Blocks)[index];
+      (std::int64_t{ this->Position.z } * plane.Target->Blocks.y + this->Position.y) *
+        plane.Target->Blocks.x +
+      this->Position.x);
+    BlockTokens& out = (*this->Job.Blocks)[index];
     if (out.Uniform || out.Same)
     {
       return;
     }
-    const View<const std::int32_t> wanted{ plane.Target->Numbers.data() +
-                                             plane.Target->IndexOf(origin),
-      StridesOf(*plane.Target) };
-    block::Scratch<B, 3>& scratch = Work().Interior;
+    const View<const Sample> wanted = this->ViewOf(*plane.Target);
+    block::Scratch<Number, 3>& scratch = this->Work.Interior;
     std::vector<std::pair<double, block::Mode>> costs;
     block::Reference loaded = block::Reference::None;
     for (const block::Mode& mode : plane.Candidates)
@@ -271,10 +285,10 @@ struct BlockCoder
       }
       if (costs.empty() || mode.From != loaded)
       {
-        LoadUnit<B, 3>(wanted, ReferencesOf(plane, mode.From, origin), scratch.W());
+        LoadUnit<3>(wanted, this->ReferencesOf(mode.From), this->B, true, scratch.W());
         loaded = mode.From;
       }
-      costs.emplace_back(Estimate(scratch.W(), mode.By, plane.FineBin), mode);
+      costs.emplace_back(this->Estimate(scratch.W(), mode.By), mode);
     }
     const std::size_t tried = static_cast<std::size_t>(std::max(plane.Trials, 1));
     std::stable_sort(costs.begin(), costs.end(),
@@ -282,7 +296,7 @@ struct BlockCoder
     costs.resize(std::min(costs.size(), tried));
     for (auto& [cost, mode] : costs)
     {
-      cost = costs.size() > 1 ? TrialCost(plane, wanted, mode, origin) : 0.0;
+      cost = costs.size() > 1 ? this->TrialCost(wanted, mode) : 0.0;
     }
     const auto best = std::min_element(costs.begin(), costs.end(),
       [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -291,48 +305,67 @@ struct BlockCoder
 
   /// What the interior of a block would cost, with borders as they are to be in place of what they
   /// will have been decoded to.
-  static double TrialCost(const PlaneToEncode& plane, const View<const std::int32_t>& wanted,
-    const block::Mode& mode, const glm::ivec3& origin)
+  double TrialCost(const View<const Sample>& wanted, const block::Mode& mode) const
   {
-    block::Scratch<B, 3>& scratch = Work().Interior;
-    block::Scratch<B, 3>& target = Work().InteriorTarget;
-    const References from = ReferencesOf(plane, mode.From, origin);
-    LoadUnit<B, 3>(wanted, from, target.W());
-    LoadUnit<B, 3>(wanted, from, scratch.W());
+    block::Scratch<Number, 3>& scratch = this->Work.Interior;
+    block::Scratch<Number, 3>& target = this->Work.InteriorTarget;
+    const References<Sample> from = this->ReferencesOf(mode.From);
+    LoadUnit<3>(wanted, from, this->B, true, target.W());
+    LoadUnit<3>(wanted, from, this->B, false, scratch.W());
     scratch.ClearMagnitudes();
-    block::Unit<B> unit = scratch.Whole();
-    unit.Limit = plane.Target->Samples - 1 - origin;
+    Unit<Number, 3> unit{ scratch.W(), scratch.M(),
+      { this->Plane().Target->Samples - 1 - this->Position * this->B() }, true };
     std::int64_t cost = 0;
-    RunPasses<B, 3>(unit, mode.By,
-      RowTrial<B>{ unit.W, target.W(), plane.CoarseBin, plane.FineBin, &cost });
+    ForEachPass<3>(
+      [&](auto pass)
+      {
+        using P = decltype(pass);
+        cost += SliceTrial<P, Edge, Number>{
+          this->template RowsOf<P>(unit, mode.By, target.W()) }
+                  .Run();
+      });
     return static_cast<double>(cost);
   }
 };
 
-template <int B>
-void EncodeBlockOf(const PlaneJob& job, const glm::ivec3& position, BlockPhase phase)
+template <class Edge, class Number>
+void EncodeBlockOf(
+  const Edge& edge, const PlaneJob& job, const glm::ivec3& position, BlockPhase phase)
 {
+  using Coder = BlockCoder<Edge, Number>;
+  thread_local std::unique_ptr<typename Coder::Workspace> work;
+  thread_local int workEdge = 0;
+  if (workEdge != edge())
+  {
+    work = std::make_unique<typename Coder::Workspace>(edge());
+    workEdge = edge();
+  }
+  const Coder coder{ edge, job, position, *work };
   if (phase == BlockPhase::Choose)
   {
-    BlockCoder<B>::Choose(job, position);
+    coder.Choose();
     return;
   }
-  BlockCoder<B>::Encode(job, position, phase);
+  coder.Encode(phase);
+}
+
+template <class Number>
+void EncodeBlockOf(const PlaneJob& job, const glm::ivec3& position, BlockPhase phase)
+{
+  if (job.Decoded->Edge == 16)
+  {
+    return EncodeBlockOf<EdgeIs<16>, Number>({}, job, position, phase);
+  }
+  EncodeBlockOf<EdgeIs<0>, Number>({ job.Decoded->Edge }, job, position, phase);
 }
 
 void EncodeBlockHere(const PlaneJob& job, const glm::ivec3& position, BlockPhase phase)
 {
-  switch (job.Decoded->Edge)
+  if (block::Narrow(job.Plane->Least, job.Plane->Greatest))
   {
-    case 8:
-      return EncodeBlockOf<8>(job, position, phase);
-    case 16:
-      return EncodeBlockOf<16>(job, position, phase);
-    case 32:
-      return EncodeBlockOf<32>(job, position, phase);
-    default:
-      return EncodeBlockOf<64>(job, position, phase);
+    return EncodeBlockOf<std::int16_t>(job, position, phase);
   }
+  EncodeBlockOf<std::int32_t>(job, position, phase);
 }
 
 } // namespace banyan::HWY_NAMESPACE

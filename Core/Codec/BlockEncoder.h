@@ -51,7 +51,7 @@ struct BlockTokens
   std::int32_t Value = 0;
   std::vector<std::uint16_t> Tokens; ///< context << 8 | symbol; empty when all residuals are zero
   std::vector<std::uint32_t> Extra;  ///< of the symbols that have extra bits, in order
-  std::vector<std::uint8_t> Rows;    ///< how many tokens each row has
+  std::vector<std::uint16_t> Runs;   ///< how many tokens each run has
 };
 
 struct PlaneToEncode

@@ -12,7 +12,7 @@ namespace banyan
 /// What is kept of a block between its edges, faces and interior.
 struct BlockUnderway
 {
-  std::vector<std::uint8_t> Magnitudes; ///< 3 edges, 3 faces
+  std::vector<std::uint8_t> Magnitudes; ///< of its edges, and then of its faces with them
   bool Rough = false;                   ///< some residual is not zero
 };
 

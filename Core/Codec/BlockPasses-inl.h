@@ -10,6 +10,7 @@
 #include "Codec/BlockScratch.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include <hwy/highway.h>
 
@@ -19,345 +20,247 @@ namespace banyan::HWY_NAMESPACE
 
 using block::Interpolation;
 
-/// The lanes of a row that a pass predicts: First, First + Step, ... below B.
-struct LaneSet
+/// The edge of blocks, known to the compiler or not.
+template <int B>
+struct EdgeIs
 {
-  int First;
-  int Step;
+  HWY_INLINE constexpr int operator()() const { return B; }
+};
+template <>
+struct EdgeIs<0>
+{
+  int B;
+  HWY_INLINE int operator()() const { return this->B; }
 };
 
-/// -1 for the lanes of a set.
-template <int B, class Number = std::int32_t>
-HWY_INLINE const Number* LaneMask(const LaneSet& set)
+/// Lanes that are worked on together (vectors of the compiler: it splits them for every target).
+constexpr int Width = 16;
+
+template <class Number>
+struct VectorsOf;
+template <>
+struct VectorsOf<std::int16_t>
 {
-  struct Masks
-  {
-    alignas(64) Number Of[4][B] = {};
-    constexpr Masks()
-    {
-      for (int x = 0; x < B; ++x)
-      {
-        Of[0][x] = x >= 1 ? -1 : 0;              // 1, 2, 3, ...
-        Of[1][x] = x % 2 == 1 ? -1 : 0;          // 1, 3, 5, ...
-        Of[2][x] = x >= 2 && x % 2 == 0 ? -1 : 0; // 2, 4, 6, ...
-        Of[3][x] = x % 4 == 2 ? -1 : 0;          // 2, 6, 10, ...
-      }
-    }
-  };
-  static constexpr Masks masks{};
-  return masks.Of[(set.First - 1) * 2 + (set.Step > set.First ? 1 : 0)];
+  typedef std::int16_t Signed __attribute__((vector_size(32)));
+  typedef std::uint16_t Unsigned __attribute__((vector_size(32)));
+};
+template <>
+struct VectorsOf<std::int32_t>
+{
+  typedef std::int32_t Signed __attribute__((vector_size(64)));
+  typedef std::uint32_t Unsigned __attribute__((vector_size(64)));
+};
+typedef std::uint8_t ByteVector __attribute__((vector_size(16)));
+typedef std::int8_t SignedByteVector __attribute__((vector_size(16)));
+
+template <class Vector, class Element>
+HWY_INLINE Vector LoadVector(const Element* from)
+{
+  Vector result;
+  std::memcpy(&result, from, sizeof(result));
+  return result;
+}
+template <class Vector, class Element>
+HWY_INLINE void StoreVector(const Vector& value, Element* to)
+{
+  std::memcpy(to, &value, sizeof(value));
 }
 
-// Wrapping arithmetic: files made with ill intent must not reach undefined behaviour.
-HWY_INLINE std::uint32_t U(std::int32_t a)
-{
-  return static_cast<std::uint32_t>(a);
-}
-HWY_INLINE std::int32_t Shifted(std::uint32_t a, int bits)
-{
-  return static_cast<std::int32_t>(a) >> bits;
-}
-
-/// Numbers of a row, as vectors of up to 16 (of the compiler: it splits them for every target).
-template <int B>
+/// Predictions of whole vectors. Arithmetic wraps: files made with ill intent must not reach undefined
+/// behaviour. The formulas are the usual ones, rounded, in an order that needs no more bits than
+/// samples have.
+template <class Number>
 struct Numbers
 {
-  static constexpr int Width = B < 16 ? B : 16;
-  static constexpr int Count = B / Width;
-  typedef std::uint32_t Unsigned __attribute__((vector_size(4 * Width)));
-  typedef std::int32_t Signed __attribute__((vector_size(4 * Width)));
+  using Signed = typename VectorsOf<Number>::Signed;
+  using Unsigned = typename VectorsOf<Number>::Unsigned;
 
-  static HWY_INLINE Unsigned Load(const std::int32_t* from)
-  {
-    Unsigned result;
-    std::memcpy(&result, from, sizeof(result));
-    return result;
-  }
-  static HWY_INLINE void Store(Unsigned value, std::int32_t* to)
-  {
-    std::memcpy(to, &value, sizeof(value));
-  }
+  static HWY_INLINE Unsigned Load(const Number* from) { return LoadVector<Unsigned>(from); }
   static HWY_INLINE Unsigned Shift(Unsigned value, int bits)
   {
-    return reinterpret_cast<Unsigned>(reinterpret_cast<Signed>(value) >> bits);
+    return reinterpret_cast<Unsigned>(reinterpret_cast<Signed>(value) >> static_cast<Number>(bits));
   }
 
+  /// (9 (b + c) - a - d + 8) / 16, rounded down.
   static HWY_INLINE Unsigned Cubic(Unsigned a, Unsigned b, Unsigned c, Unsigned d)
   {
-    return Shift(9u * (b + c) - a - d + 8u, 4);
+    const Unsigned middle = b + c;
+    return Shift(middle + Number{ 1 } + Shift(middle - (a + d), 3), 1);
   }
+  /// (3 near + 6 other - far + 4) / 8, rounded down.
   static HWY_INLINE Unsigned Quadratic(Unsigned near, Unsigned other, Unsigned far)
   {
-    return Shift(3u * near + 6u * other - far + 4u, 3);
+    return other + Shift((near - other) + Shift(near - far + Number{ 4 }, 1), 2);
   }
-  static HWY_INLINE Unsigned Linear(Unsigned a, Unsigned b) { return Shift(a + b + 1u, 1); }
+  static HWY_INLINE Unsigned Linear(Unsigned a, Unsigned b) { return Shift(a + b + Number{ 1 }, 1); }
 };
 
-/// Predicts a row from rows at distance `gap` (in elements) on both sides.
-/// @param position of the row along the axis of the pass, and @param s the stride
-template <int B>
-HWY_INLINE void PredictAcross(const std::int32_t* w, std::ptrdiff_t gap, int position, int s,
-  Interpolation by, std::int32_t* HWY_RESTRICT prediction)
+/// Lane numbers of a vector.
+template <class Vector>
+HWY_INLINE Vector LaneNumbers()
 {
-  using V = Numbers<B>;
-  for (int i = 0; i < V::Count; ++i, w += V::Width, prediction += V::Width)
-  {
-    typename V::Unsigned result{};
-    if (by != Interpolation::None)
-    {
-      const auto before = V::Load(w - gap);
-      const auto after = V::Load(w + gap);
-      if (by == Interpolation::Linear)
-      {
-        result = V::Linear(before, after);
-      }
-      else if (position - 3 * s < 0)
-      {
-        result = V::Quadratic(before, after, V::Load(w + 3 * gap));
-      }
-      else if (position + 3 * s > B)
-      {
-        result = V::Quadratic(after, before, V::Load(w - 3 * gap));
-      }
-      else
-      {
-        result = V::Cubic(V::Load(w - 3 * gap), before, after, V::Load(w + 3 * gap));
-      }
-    }
-    V::Store(result, prediction);
-  }
+  return Vector{ 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15 };
 }
 
-/// Predicts lanes of a row from the row itself. Lanes outside the set hold anything.
-template <int B>
-HWY_INLINE void PredictAlong(
-  const std::int32_t* w, int s, Interpolation by, std::int32_t* HWY_RESTRICT prediction)
+/// A pass: which samples it predicts, along which axis, from how far away.
+template <int D_, int Axis_, int S_>
+struct Pass
 {
-  using V = Numbers<B>;
-  for (int i = 0; i < V::Count; ++i)
-  {
-    const std::int32_t* at = w + i * V::Width;
-    typename V::Unsigned result{};
-    if (by != Interpolation::None)
-    {
-      const auto before = V::Load(at - s);
-      const auto after = V::Load(at + s);
-      result = by == Interpolation::Linear
-                 ? V::Linear(before, after)
-                 : V::Cubic(V::Load(at - 3 * s), before, after, V::Load(at + 3 * s));
-    }
-    V::Store(result, prediction + i * V::Width);
-  }
-  if (by == Interpolation::Cubic)
-  {
-    const auto quadratic = [](std::int32_t near, std::int32_t other, std::int32_t far)
-    { return Shifted(3u * U(near) + 6u * U(other) - U(far) + 4u, 3); };
-    prediction[s] = quadratic(w[0], w[2 * s], w[4 * s]);
-    prediction[B - s] = quadratic(w[B], w[B - 2 * s], w[B - 4 * s]);
-  }
-}
-
-/// Bytes of a row, as vectors of up to 16 (of the compiler: every target has those).
-template <int B>
-struct Bytes
-{
-  static constexpr int Width = B < 16 ? B : 16;
-  static constexpr int Count = B / Width;
-  typedef std::uint8_t Vector __attribute__((vector_size(Width)));
-  Vector Of[Count];
-
-  static HWY_INLINE Vector Load(const std::uint8_t* from)
-  {
-    Vector result;
-    std::memcpy(&result, from, Width);
-    return result;
-  }
-  HWY_INLINE void AddRow(const std::uint8_t* row)
-  {
-    for (int i = 0; i < Count; ++i)
-    {
-      this->Of[i] += Load(row + i * Width);
-    }
-  }
-  HWY_INLINE void AddTwice(const std::uint8_t* row)
-  {
-    for (int i = 0; i < Count; ++i)
-    {
-      const Vector v = Load(row + i * Width);
-      this->Of[i] += v + v;
-    }
-  }
-  HWY_INLINE void AddSides(const std::uint8_t* row, int s)
-  {
-    this->AddRow(row - s);
-    this->AddRow(row + s);
-  }
-};
-
-/// Sum of the magnitudes of residuals around that are known when a row is coded: those at both ends
-/// of the interpolation count double, so does the same lane of the row before. At most 18 times 12.
-/// @param m magnitudes of the row (its lane 0); rows are `pitch`, slices `slice` apart
-template <int B, int D>
-HWY_INLINE Bytes<B> RoughnessOfRow(const std::uint8_t* m, std::ptrdiff_t pitch,
-  std::ptrdiff_t slice, int axis, int s, int y, int z)
-{
-  Bytes<B> sum;
-  for (auto& part : sum.Of)
-  {
-    part = typename Bytes<B>::Vector{};
-  }
-  // Beyond the last row nothing of this block is known: the other side stands for it.
-  const auto up = [](int position, int step, std::ptrdiff_t gap)
-  { return position + step < B ? gap : -gap; };
-  if (axis == 0)
-  {
-    sum.AddSides(m, s);
-    sum.AddSides(m, s);
-    if (D > 1)
-    {
-      const std::ptrdiff_t gap = 2 * s * pitch;
-      sum.AddSides(m - gap, s);
-      sum.AddSides(m + up(y, 2 * s, gap), s);
-      sum.AddTwice(m - gap);
-    }
-    if (D > 2)
-    {
-      const std::ptrdiff_t gap = 2 * s * slice;
-      sum.AddSides(m - gap, s);
-      sum.AddSides(m + up(z, 2 * s, gap), s);
-      sum.AddTwice(m - gap);
-    }
-    return sum;
-  }
-  const std::ptrdiff_t gap = s * (axis == 1 ? pitch : slice);
-  const std::ptrdiff_t ahead = up(axis == 1 ? y : z, s, gap);
-  for (const std::ptrdiff_t end : { -gap, ahead })
-  {
-    sum.AddTwice(m + end);
-    sum.AddSides(m + end, s);
-    if (D > 2)
-    {
-      const std::ptrdiff_t across = axis == 1 ? 2 * s * slice : s * pitch;
-      const std::ptrdiff_t next = axis == 1 ? up(z, 2 * s, across) : up(y, s, across);
-      sum.AddRow(m + end - across);
-      sum.AddRow(m + end + next);
-    }
-  }
-  if (axis == 2 || y >= 2 * s)
-  {
-    const std::ptrdiff_t last = axis == 1 ? 2 * gap : s * pitch; // the row that was coded before
-    sum.AddTwice(m - last);
-    sum.AddSides(m - last, s);
-  }
-  if (D > 2 && z >= 2 * s)
-  {
-    sum.AddTwice(m - 2 * s * slice);
-  }
-  return sum;
-}
-
-/// Classes of roughness, 0 to 7.
-/// @return whether any lane is rough at all
-template <int B>
-HWY_INLINE bool ClassesOf(const Bytes<B>& sum, std::uint8_t* HWY_RESTRICT classes)
-{
-  using Vector = typename Bytes<B>::Vector;
-  Vector any{};
-  for (int i = 0; i < Bytes<B>::Count; ++i)
-  {
-    const Vector e = sum.Of[i];
-    any |= e;
-    Vector result{};
-    for (const std::uint8_t limit : { 0, 3, 8, 15, 25, 38, 60 })
-    {
-      result -= reinterpret_cast<Vector>(e > limit); // -1 where it holds
-    }
-    std::memcpy(classes + i * Bytes<B>::Width, &result, Bytes<B>::Width);
-  }
-  std::uint64_t words[sizeof(Vector) / 8];
-  std::memcpy(words, &any, sizeof any);
-  return (words[0] | words[sizeof(Vector) / 8 - 1]) != 0;
-}
-
-/// One row as a pass hands it to a coder.
-struct Row
-{
-  int Band;
-  int Stride;
-  LaneSet Lanes;
-  int Y, Z;
-  int Coded; ///< lanes (from the first) that carry a residual; the others are as predicted
-};
-
-/// One pass: predicts the samples at odd multiples of the stride along an axis. All that rows share
-/// is known to the compiler.
-template <int B, int D, int Axis, int S, class Coder>
-HWY_INLINE void RunPass(const block::Unit<B>& unit, Interpolation by, const Coder& coder)
-{
-  constexpr std::ptrdiff_t pitch = block::Scratch<B, D>::Pitch;
-  constexpr std::ptrdiff_t sliceW = block::Scratch<B, D>::SliceW;
-  constexpr std::ptrdiff_t sliceM = block::Scratch<B, D>::SliceM;
-  constexpr int band =
+  static constexpr int D = D_;
+  static constexpr int Axis = Axis_;
+  static constexpr int S = S_;
+  static constexpr int Band =
     D == 1 ? 2 - S : D == 2 ? (S == 2 ? 2 : 3 + Axis) : (S == 2 ? 5 : 8) + Axis;
-  constexpr LaneSet lanes{ S, Axis > 0 ? S : 2 * S };
-  constexpr int firstY = D > 1 ? (1 <= Axis ? S : 2 * S) : 0;
-  constexpr int firstZ = D > 2 ? (2 <= Axis ? S : 2 * S) : 0;
-  constexpr int stepY = D > 1 ? (1 < Axis ? S : 2 * S) : B;
-  constexpr int stepZ = D > 2 ? 2 * S : B;
-  const glm::ivec3 limit = unit.Limit;
-  const int inRow =
-    lanes.First <= limit.x ? (std::min(limit.x, B - 1) - lanes.First) / lanes.Step + 1 : 0;
-  alignas(64) std::int32_t prediction[B];
-  alignas(64) std::uint8_t classes[B];
-  for (int z = firstZ; z < B; z += stepZ)
+  /// Lanes of a row: First, First + Step, ... below the edge.
+  static constexpr int First = S;
+  static constexpr int Step = Axis > 0 ? S : 2 * S;
+
+  /// Rows are coded in slices: those of one z of an interior, those of one y of the three faces, all
+  /// three edges.
+  static constexpr int FirstSlice = D == 1 ? 0 : D - 1 <= Axis ? S : 2 * S;
+  static constexpr int SliceStep = 2 * S;
+  static int EndOfSlices(int edge) { return D == 1 ? 1 : edge; }
+  /// The rows of a slice: y of an interior, or the numbers of faces or edges.
+  static constexpr int FirstRow = D < 3 ? 0 : 1 <= Axis ? S : 2 * S;
+  static constexpr int RowStep = D < 3 ? 1 : 1 < Axis ? S : 2 * S;
+  static int EndOfRows(int edge) { return D < 3 ? 3 : edge; }
+  static int LanesOf(int edge) { return (edge - First + Step - 1) / Step; }
+};
+
+/// -1 for the lanes (of Width from the first one of a vector on) that a pass predicts.
+/// @param left lanes up to the edge
+template <class P, class Vector>
+HWY_INLINE Vector LaneMask(int left)
+{
+  using Element = std::remove_reference_t<decltype(Vector{}[0])>;
+  const Vector lanes = LaneNumbers<Vector>();
+  const auto below = lanes < static_cast<Element>(left);
+  if (P::Step == 1)
   {
-    for (int y = firstY; y < B; y += stepY)
-    {
-      std::int32_t* w = unit.W + z * sliceW + y * pitch;
-      std::uint8_t* m = unit.M + z * sliceM + y * pitch;
-      if (Axis == 0)
-      {
-        PredictAlong<B>(w, S, by, prediction);
-      }
-      else
-      {
-        PredictAcross<B>(w, S * (Axis == 1 ? pitch : sliceW), Axis == 1 ? y : z, S, by, prediction);
-      }
-      const int coded = y <= limit.y && z <= limit.z ? inRow : 0;
-      bool rough = false;
-      if (coded > 0)
-      {
-        rough = ClassesOf<B>(RoughnessOfRow<B, D>(m, pitch, sliceM, Axis, S, y, z), classes);
-      }
-      coder(Row{ band, S, lanes, y, z, coded }, w, prediction, m, classes, rough);
-    }
+    return reinterpret_cast<Vector>(below);
   }
+  return reinterpret_cast<Vector>(
+    below & ((lanes & static_cast<Element>(P::Step - 1)) == Element{ 0 }));
 }
 
-/// Runs the passes of a unit: stride 2 and then stride 1, and in each the axes in order; rows z
-/// outermost.
-/// @param coder called as coder(row, w, prediction, m, classes, rough): predicts what it is given,
-/// and must set the lanes of w and m
-template <int B, int D, class Coder>
-HWY_INLINE void RunPasses(const block::Unit<B>& unit, Interpolation by, const Coder& coder)
+/// Where a row of a slice lies.
+struct RowPlace
 {
-  RunPass<B, D, 0, 2>(unit, by, coder);
+  std::ptrdiff_t W, M; ///< its lane 0
+  int Y, Z;            ///< positions of an interior; Y of faces
+  int Coded;           ///< lanes of the pass (from its first) that carry a residual
+};
+
+/// Units as the passes see them.
+template <class Number, int D>
+struct Unit
+{
+  Number* W;
+  std::uint8_t* M;
+  /// Greatest position per axis that carries residuals; of each face and edge.
+  glm::ivec3 Limit[3];
+  bool Any = false; ///< whether some magnitude may be other than 0
+};
+
+template <class P, class Edge, class Number>
+HWY_INLINE RowPlace PlaceOf(const Unit<Number, P::D>& unit, const Edge& edge, int slice, int row)
+{
+  const block::Shape<P::D> shape{ edge() };
+  RowPlace place;
+  place.Y = P::D == 3 ? row : slice;
+  place.Z = slice;
+  place.W = (P::D == 3 ? slice * shape.Z() : P::D == 2 ? slice * shape.Y() : 0) + row * shape.Pitch();
+  place.M = (P::D == 3 ? slice * shape.ZM() : P::D == 2 ? slice * shape.Y() : 0) + row * shape.Pitch();
+  const glm::ivec3& limit = unit.Limit[P::D < 3 ? row : 0];
+  const bool inside =
+    (P::D < 2 || place.Y <= limit.y) && (P::D < 3 || place.Z <= limit.z) && P::First <= limit.x;
+  place.Coded = inside ? (std::min(limit.x, edge() - 1) - P::First) / P::Step + 1 : 0;
+  return place;
+}
+
+/// Predicts Width lanes of a row, from lane `First + at` on; lanes that the pass does not have hold
+/// anything.
+template <class P, class Edge, class Number>
+HWY_INLINE typename Numbers<Number>::Unsigned Predict(
+  const Number* w, const Edge& edge, const RowPlace& place, int at, Interpolation by)
+{
+  using V = Numbers<Number>;
+  using Vector = typename V::Unsigned;
+  if (by == Interpolation::None)
+  {
+    return Vector{};
+  }
+  const block::Shape<P::D> shape{ edge() };
+  const std::ptrdiff_t gap =
+    P::Axis == 0 ? P::S : P::S * (P::Axis == 1 ? shape.Y() : shape.Z());
+  const Number* from = w + place.W + P::First + at;
+  const Vector before = V::Load(from - gap);
+  const Vector after = V::Load(from + gap);
+  if (by == Interpolation::Linear)
+  {
+    return V::Linear(before, after);
+  }
+  if (P::Axis > 0)
+  {
+    const int position = P::Axis == 1 ? place.Y : place.Z;
+    if (position == P::S)
+    {
+      return V::Quadratic(before, after, V::Load(from + 3 * gap));
+    }
+    if (position == edge() - P::S)
+    {
+      return V::Quadratic(after, before, V::Load(from - 3 * gap));
+    }
+    return V::Cubic(V::Load(from - 3 * gap), before, after, V::Load(from + 3 * gap));
+  }
+  const Vector first = V::Load(from - 3 * gap);
+  const Vector last = V::Load(from + 3 * gap);
+  Vector result = V::Cubic(first, before, after, last);
+  const Vector lanes = LaneNumbers<Vector>();
+  if (at == 0)
+  {
+    result = lanes == Number{ 0 } ? V::Quadratic(before, after, last) : result;
+  }
+  const int end = edge() - 2 * P::S - at; // the last lane, from here
+  if (end < Width)
+  {
+    result = lanes == static_cast<Number>(end) ? V::Quadratic(after, before, first) : result;
+  }
+  return result;
+}
+
+/// Sets the lanes of a pass.
+/// @param to lane First + at of a row, and @param left how many lanes there are up to the edge
+template <class P, class Number>
+HWY_INLINE void SetLanes(typename Numbers<Number>::Unsigned value, int left, Number* to)
+{
+  using Vector = typename Numbers<Number>::Unsigned;
+  const Vector mask = LaneMask<P, Vector>(left);
+  StoreVector((value & mask) | (LoadVector<Vector>(to) & ~mask), to);
+}
+
+/// Calls body(pass) for each pass of units of D dimensions: stride 2 and then stride 1, and in each
+/// the axes in order.
+template <int D, class Body>
+HWY_INLINE void ForEachPass(const Body& body)
+{
+  body(Pass<D, 0, 2>{});
   if constexpr (D > 1)
   {
-    RunPass<B, D, 1, 2>(unit, by, coder);
+    body(Pass<D, 1, 2>{});
   }
   if constexpr (D > 2)
   {
-    RunPass<B, D, 2, 2>(unit, by, coder);
+    body(Pass<D, 2, 2>{});
   }
-  RunPass<B, D, 0, 1>(unit, by, coder);
+  body(Pass<D, 0, 1>{});
   if constexpr (D > 1)
   {
-    RunPass<B, D, 1, 1>(unit, by, coder);
+    body(Pass<D, 1, 1>{});
   }
   if constexpr (D > 2)
   {
-    RunPass<B, D, 2, 1>(unit, by, coder);
+    body(Pass<D, 2, 1>{});
   }
 }
 

@@ -3,59 +3,110 @@
 
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
+#include <vector>
 
 namespace banyan::block
 {
 
-/// A unit of a block is what is left of it between what is known: its three edges (one dimension),
-/// its three faces (two) and its interior (three). This is a unit as the passes see it: axes in
-/// order, unused ones of size 1.
-template <int B>
-struct Unit
+/// How the memory of units is laid out. A unit is what is left of a block between what is known: its
+/// three edges (one dimension), its three faces (two), or its interior (three). Edges, and faces, are
+/// coded together: their rows lie side by side, number 0 to 2.
+///
+/// Rows have room on both sides, because predictions of whole vectors read (and ignore) lanes beyond
+/// the ends; so have magnitudes, with zeros before the first lane.
+template <int D>
+struct Shape
 {
-  std::int32_t* W; ///< sample (0, 0, 0); samples 0 to B per axis
-  std::uint8_t* M; ///< magnitudes of residuals, samples 0 to B - 1 per axis, zeros around rows
-  glm::ivec3 Limit; ///< greatest position per axis that carries residuals
-};
+  int Edge;
 
-/// Memory of one unit of D dimensions. Rows have room on both sides, because predictions of whole
-/// vectors read (and ignore) lanes beyond the ends; so have magnitudes, with zeros in it.
-template <int B, int D>
-struct Scratch
-{
-  static constexpr int N = B + 1;
-  static constexpr int RowW = B + 8;
-  static constexpr int RowM = B + 8;
-  static constexpr int RowsW = D == 1 ? 1 : D == 2 ? N : N * N;
-  // Distances between rows (of samples and of magnitudes) and slices.
-  static constexpr std::ptrdiff_t Pitch = D > 1 ? RowW : 0;
-  static constexpr std::ptrdiff_t SliceW = D > 2 ? N * RowW : 0;
-  static constexpr std::ptrdiff_t SliceM = D > 2 ? B * RowM : 0;
-  // Rows before the first one are read as the neighbours of the first ones that are predicted.
-  static constexpr int RowsM = D == 1 ? 1 : D == 2 ? B : B * B;
+  std::ptrdiff_t Pitch() const { return this->Edge + 8; }
+  /// Distance of rows that follow each other along y, and along z.
+  std::ptrdiff_t Y() const { return D == 2 ? 3 * this->Pitch() : this->Pitch(); }
+  std::ptrdiff_t Z() const { return D > 2 ? (this->Edge + 1) * this->Pitch() : 0; }
+  /// The same for magnitudes, which have no last row.
+  std::ptrdiff_t ZM() const { return D > 2 ? this->Edge * this->Pitch() : 0; }
 
-  alignas(64) std::int32_t Samples[RowsW * RowW + 32];
-  alignas(64) std::uint8_t Magnitudes[RowsM * RowM + 32];
-
-  std::int32_t* W() { return this->Samples + 8; }
-  std::uint8_t* M() { return this->Magnitudes + 8; }
-
-  Scratch()
+  std::size_t Samples() const
   {
-    std::memset(this->Samples, 0, sizeof this->Samples);
-    std::memset(this->Magnitudes, 0, sizeof this->Magnitudes);
+    const std::ptrdiff_t n = this->Edge + 1;
+    return static_cast<std::size_t>((D == 1 ? 3 : D == 2 ? 3 * n : n * n) * this->Pitch() + 48);
   }
-
-  void ClearMagnitudes() { std::memset(this->Magnitudes, 0, sizeof this->Magnitudes); }
-
-  Unit<B> Whole()
+  std::size_t Magnitudes() const
   {
-    return { this->W(), this->M(), glm::ivec3(B) };
+    const std::ptrdiff_t n = this->Edge;
+    return static_cast<std::size_t>((D == 1 ? 3 : D == 2 ? 3 * n : n * n) * this->Pitch() + 48);
   }
 };
+
+/// Memory of the units of D dimensions of a block.
+template <class Number, int D>
+class Scratch
+{
+public:
+  explicit Scratch(int edge)
+    : SamplesAt(Shape<D>{ edge }.Samples())
+    , MagnitudesAt(Shape<D>{ edge }.Magnitudes())
+  {
+  }
+
+  /// Sample 0 of the first row. Samples 0 to edge of each axis.
+  Number* W() { return this->SamplesAt.data() + 16; }
+  /// Magnitude of the residual there. 0 to edge - 1 of each axis.
+  std::uint8_t* M() { return this->MagnitudesAt.data() + 16; }
+  void ClearMagnitudes() { std::fill(this->MagnitudesAt.begin(), this->MagnitudesAt.end(), 0); }
+
+private:
+  std::vector<Number> SamplesAt;
+  std::vector<std::uint8_t> MagnitudesAt;
+};
+
+/// Magnitudes of faces start with those of the edges around them.
+/// @param edges along x, y, z
+inline void PlaceEdges(int edge, const std::uint8_t (&edges)[3][64], std::uint8_t* faces)
+{
+  const Shape<2> shape{ edge };
+  constexpr int axes[3][2] = { { 0, 1 }, { 0, 2 }, { 1, 2 } };
+  for (int face = 0; face < 3; ++face)
+  {
+    std::uint8_t* m = faces + face * shape.Pitch();
+    std::copy_n(edges[axes[face][0]], edge, m);
+    for (int y = 1; y < edge; ++y)
+    {
+      m[y * shape.Y()] = edges[axes[face][1]][y];
+    }
+  }
+}
+
+/// Magnitudes of the interior start with those of the faces, edges included.
+inline void PlaceFaces(int edge, const std::uint8_t* faces, std::uint8_t* interior)
+{
+  const Shape<2> from{ edge };
+  const Shape<3> to{ edge };
+  for (int j = 0; j < edge; ++j)
+  {
+    std::copy_n(faces + j * from.Y(), edge, interior + j * to.Y());
+  }
+  for (int k = 1; k < edge; ++k)
+  {
+    std::copy_n(faces + from.Pitch() + k * from.Y(), edge, interior + k * to.ZM());
+    const std::uint8_t* yz = faces + 2 * from.Pitch() + k * from.Y();
+    for (int j = 1; j < edge; ++j)
+    {
+      interior[k * to.ZM() + j * to.Y()] = yz[j];
+    }
+  }
+}
+
+/// Lattices that are no larger have predictions in 16-bit arithmetic (which wraps), others in 32-bit.
+/// Part of the file format.
+inline bool Narrow(std::int32_t least, std::int32_t greatest)
+{
+  constexpr std::int32_t most = 8000;
+  return least >= -most && greatest <= most && greatest - least <= most;
+}
 
 } // namespace banyan::block
 

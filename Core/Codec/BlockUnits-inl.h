@@ -8,18 +8,20 @@
 
 #include "Codec/BlockPasses-inl.h"
 
+#include <type_traits>
+
 HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
 
 /// Samples in an array of any strides: where a unit lies in a box, or in a whole field.
-template <class Number>
+template <class Sample>
 struct View
 {
-  Number* Base;
+  Sample* Base;
   glm::i64vec3 Stride;
 
-  /// The same array with its axes in another order; see UnitAxes.
+  /// The same array with its axes in another order; see AxesOf.
   View Along(const glm::ivec3& axes) const
   {
     return { this->Base,
@@ -31,17 +33,18 @@ struct View
                position.z * this->Stride.z,
       this->Stride };
   }
-  Number* Row(int y, int z) const
+  Sample* Row(int y, int z) const
   {
     return this->Base + y * this->Stride.y + z * this->Stride.z;
   }
 };
 
 /// Where the samples of references lie; the same place as the unit's own.
+template <class Sample>
 struct References
 {
   block::Reference From = block::Reference::None;
-  View<const std::int32_t> A{ nullptr, {} }, B{ nullptr, {} };
+  View<const Sample> A{ nullptr, {} }, B{ nullptr, {} };
 
   References Along(const glm::ivec3& axes) const
   {
@@ -55,174 +58,254 @@ struct References
   }
 };
 
-/// Axes of a unit (a mask of the free ones) in its own order: the free ones first.
-constexpr int UnitCount = 7;
-constexpr int UnitMasks[UnitCount] = { 1, 2, 4, 3, 5, 6, 7 };
-inline glm::ivec3 UnitAxes(int mask)
+/// The axes of an edge, a face or an interior in the unit's own order: the free ones first. Edges run
+/// along x, y, z; faces along x and y, x and z, y and z.
+template <int D>
+HWY_INLINE glm::ivec3 AxesOf(int number)
 {
-  switch (mask)
+  if (D == 1)
   {
-    case 2:
-      return { 1, 0, 2 };
-    case 4:
-      return { 2, 0, 1 };
-    case 5:
-      return { 0, 2, 1 };
-    case 6:
-      return { 1, 2, 0 };
+    return number == 1 ? glm::ivec3{ 1, 0, 2 } : number == 2 ? glm::ivec3{ 2, 0, 1 } : glm::ivec3{ 0, 1, 2 };
+  }
+  if (D == 2)
+  {
+    return number == 1 ? glm::ivec3{ 0, 2, 1 } : number == 2 ? glm::ivec3{ 1, 2, 0 } : glm::ivec3{ 0, 1, 2 };
+  }
+  return { 0, 1, 2 };
+}
+
+/// The free axes as bits.
+template <int D>
+HWY_INLINE int MaskOf(int number)
+{
+  const glm::ivec3 axes = AxesOf<D>(number);
+  return 1 << axes.x | (D > 1 ? 1 << axes.y : 0) | (D > 2 ? 1 << axes.z : 0);
+}
+
+/// A vector in the order of a unit's axes; those that the unit does not have do not limit it.
+template <int D>
+HWY_INLINE glm::ivec3 InOrderOf(const glm::ivec3& axes, const glm::ivec3& v, int edge)
+{
+  return { v[axes.x], D > 1 ? v[axes.y] : edge, D > 2 ? v[axes.z] : edge };
+}
+
+/// What is subtracted from samples, whose kind the compiler knows. Arithmetic wraps.
+template <class Number, block::Reference From>
+struct Subtracted
+{
+  using V = Numbers<Number>;
+  using Vector = typename V::Unsigned;
+  static HWY_INLINE Vector Of(Vector a, Vector b)
+  {
+    switch (From)
+    {
+      case block::Reference::Mean:
+        return V::Shift(a + b + Number{ 1 }, 1);
+      case block::Reference::HalfMean:
+        return V::Shift(a + b + Number{ 2 }, 2);
+      case block::Reference::A:
+        return a;
+      case block::Reference::B:
+        return b;
+      default:
+        return Vector{};
+    }
+  }
+  static HWY_INLINE Number Of(Number a, Number b)
+  {
+    using U = std::make_unsigned_t<Number>;
+    const U sum = static_cast<U>(static_cast<U>(a) + static_cast<U>(b));
+    switch (From)
+    {
+      case block::Reference::Mean:
+        return static_cast<Number>(static_cast<Number>(sum + 1u) >> 1);
+      case block::Reference::HalfMean:
+        return static_cast<Number>(static_cast<Number>(sum + 2u) >> 2);
+      case block::Reference::A:
+        return a;
+      case block::Reference::B:
+        return b;
+      default:
+        return 0;
+    }
+  }
+};
+
+template <class Number, class Body>
+HWY_INLINE void WithReference(block::Reference from, const Body& body)
+{
+  using block::Reference;
+  switch (from)
+  {
+    case Reference::Mean:
+      return body(Subtracted<Number, Reference::Mean>{});
+    case Reference::HalfMean:
+      return body(Subtracted<Number, Reference::HalfMean>{});
+    case Reference::A:
+      return body(Subtracted<Number, Reference::A>{});
+    case Reference::B:
+      return body(Subtracted<Number, Reference::B>{});
     default:
-      return { 0, 1, 2 };
+      return body(Subtracted<Number, Reference::None>{});
   }
 }
 
-/// Calls body(reference value of (x)) for the samples of a row, the reference's kind known to the
-/// compiler.
-template <int N, class Body>
-HWY_INLINE void WithReferenceRow(const References& from, int y, int z, Body&& body)
+/// Width samples as numbers that are computed with.
+template <class Number, class Sample>
+HWY_INLINE typename Numbers<Number>::Unsigned LoadSamples(const Sample* from)
+{
+  using Vector = typename Numbers<Number>::Unsigned;
+  if constexpr (std::is_same_v<Number, Sample>)
+  {
+    return LoadVector<Vector>(from);
+  }
+  else
+  {
+    return __builtin_convertvector(
+      LoadVector<typename Numbers<Sample>::Unsigned>(from), Vector);
+  }
+}
+
+/// A row of samples and of both references.
+template <class Sample>
+struct SampleRow
+{
+  Sample* X;
+  const Sample* A;
+  const Sample* B;
+  std::int64_t StrideX, StrideA, StrideB;
+};
+
+template <class Sample, class Other>
+HWY_INLINE SampleRow<Other> RowOf(
+  const View<Other>& samples, const References<Sample>& from, int y, int z)
 {
   if (from.From == block::Reference::None)
   {
-    body([](int) { return 0; });
+    Other* row = samples.Row(y, z);
+    return { row, row, row, samples.Stride.x, samples.Stride.x, samples.Stride.x };
+  }
+  return { samples.Row(y, z), from.A.Row(y, z), from.B.Row(y, z), samples.Stride.x,
+    from.A.Stride.x, from.B.Stride.x };
+}
+
+/// Takes samples first to last of a row, less their references.
+template <class Number, class Reference, class Sample>
+HWY_INLINE void LoadRow(
+  const Reference&, const SampleRow<const Sample>& row, int first, int last, Number* w)
+{
+  int x = first;
+  if (row.StrideX == 1 && row.StrideA == 1 && row.StrideB == 1 && last - first >= Width)
+  {
+    const auto take = [&](int at)
+    {
+      StoreVector(LoadSamples<Number>(row.X + at) -
+                    Reference::Of(LoadSamples<Number>(row.A + at), LoadSamples<Number>(row.B + at)),
+        w + at);
+    };
+    for (; x + Width <= last; x += Width)
+    {
+      take(x);
+    }
+    take(last - Width + 1); // the rest, and some once more
     return;
   }
-  const std::int32_t* a = from.A.Row(y, z);
-  const std::int32_t* b = from.B.Row(y, z);
-  const std::int64_t sa = from.A.Stride.x;
-  const std::int64_t sb = from.B.Stride.x;
-  // Wrapping arithmetic in 32 bits: samples are far from the limits, and hostile files stay safe.
-  const auto with = [&](auto get)
+  for (; x <= last; ++x)
   {
-    if (sa == 1 && sb == 1)
-    {
-      body([&](int x) { return get(a[x], b[x]); });
-    }
-    else
-    {
-      body([&](int x) { return get(a[x * sa], b[x * sb]); });
-    }
-  };
-  switch (from.From)
-  {
-    case block::Reference::Mean:
-      return with([](std::int32_t p, std::int32_t q) { return Shifted(U(p) + U(q) + 1u, 1); });
-    case block::Reference::HalfMean:
-      return with([](std::int32_t p, std::int32_t q) { return Shifted(U(p) + U(q) + 2u, 2); });
-    case block::Reference::A:
-      return with([](std::int32_t p, std::int32_t) { return p; });
-    default:
-      return with([](std::int32_t, std::int32_t q) { return q; });
+    using U = std::make_unsigned_t<Number>;
+    const Number reference = Reference::Of(static_cast<Number>(row.A[x * row.StrideA]),
+      static_cast<Number>(row.B[x * row.StrideB]));
+    w[x] = static_cast<Number>(
+      static_cast<U>(static_cast<U>(row.X[x * row.StrideX]) - static_cast<U>(reference)));
   }
 }
 
-/// Takes a unit with its borders (B + 1 samples per free axis) into scratch, less its reference.
-template <int B, int D>
-HWY_INLINE void LoadUnit(
-  const View<const std::int32_t>& samples, const References& from, std::int32_t* HWY_RESTRICT w)
+/// Takes a unit with its borders (edge + 1 samples per free axis), less its reference.
+/// @param w its sample 0, and @param shape the distances between its rows
+/// @param all false: only what is known before the unit is decoded, its borders and every fourth sample
+template <int D, class Number, class Edge, class Sample>
+HWY_INLINE void LoadUnit(const View<const Sample>& samples, const References<Sample>& from,
+  const Edge& edge, bool all, Number* w)
 {
-  constexpr int n = B + 1;
-  for (int z = 0; z < (D > 2 ? n : 1); ++z)
-  {
-    for (int y = 0; y < (D > 1 ? n : 1); ++y)
+  const block::Shape<D> shape{ edge() };
+  const int n = edge();
+  WithReference<Number>(from.From,
+    [&](auto reference)
     {
-      const std::int32_t* row = samples.Row(y, z);
-      if (D > 2)
+      for (int z = 0; z <= (D > 2 ? n : 0); ++z)
       {
-        // Rows lie far apart in whole fields: ask for those of the next slice in time.
-        __builtin_prefetch(row + samples.Stride.z);
-        __builtin_prefetch(row + samples.Stride.z + n - 1);
-        if (from.From != block::Reference::None)
+        for (int y = 0; y <= (D > 1 ? n : 0); ++y)
         {
-          __builtin_prefetch(from.A.Row(y, z + 1));
-          __builtin_prefetch(from.B.Row(y, z + 1));
+          const auto row = RowOf(samples, from, y, z);
+          Number* to = w + z * shape.Z() + y * shape.Y();
+          const bool border = z % n == 0 && D > 2;
+          // Whole rows take no longer than two samples where they lie side by side.
+          const bool whole = all || row.StrideX == 1;
+          if (whole || border || y % n == 0 || ((y | z) & 3) == 0)
+          {
+            LoadRow(reference, row, 0, n, to);
+            continue;
+          }
+          LoadRow(reference, row, 0, 0, to);
+          LoadRow(reference, row, n, n, to);
         }
       }
-      const std::int64_t stride = samples.Stride.x;
-      std::int32_t* HWY_RESTRICT to = w + (z * n + y) * (B + 8);
-      WithReferenceRow<n>(from, y, z,
-        [&](auto reference)
-        {
-          if (stride == 1)
-          {
-            for (int x = 0; x < n; ++x)
-            {
-              to[x] = static_cast<std::int32_t>(U(row[x]) - U(reference(x)));
-            }
-            return;
-          }
-          for (int x = 0; x < n; ++x)
-          {
-            to[x] = static_cast<std::int32_t>(U(row[x * stride]) - U(reference(x)));
-          }
-        });
-    }
-  }
+    });
 }
 
-/// Puts the inside of a unit (samples 1 to B - 1 of its free axes) back, with its reference and
-/// within the limits of the lattice.
-template <int B, int D>
-HWY_INLINE void StoreUnit(const std::int32_t* HWY_RESTRICT w, const References& from,
-  std::int32_t least, std::int32_t greatest, const View<std::int32_t>& samples)
+/// Puts the inside of a unit (samples 1 to edge - 1 of its free axes) back, with its reference and
+/// within the limits of the lattice. Samples 0 of rows are put back as well: they stay what they are.
+template <int D, class Number, class Edge, class Sample>
+HWY_INLINE void StoreUnit(const Number* w, const References<Sample>& from, const Edge& edge,
+  std::int32_t least, std::int32_t greatest, const View<Sample>& samples)
 {
-  for (int z = (D > 2 ? 1 : 0); z < (D > 2 ? B : 1); ++z)
-  {
-    for (int y = (D > 1 ? 1 : 0); y < (D > 1 ? B : 1); ++y)
+  const block::Shape<D> shape{ edge() };
+  const int n = edge();
+  using V = Numbers<Number>;
+  using Signed = typename V::Signed;
+  const Signed low = Signed{} + static_cast<Number>(least);
+  const Signed high = Signed{} + static_cast<Number>(greatest);
+  WithReference<Number>(from.From,
+    [&](auto reference)
     {
-      std::int32_t* row = samples.Row(y, z);
-      const std::int64_t stride = samples.Stride.x;
-      const std::int32_t* HWY_RESTRICT in = w + (z * (B + 1) + y) * (B + 8);
-      WithReferenceRow<B>(from, y, z,
-        [&](auto reference)
+      for (int z = (D > 2 ? 1 : 0); z < (D > 2 ? n : 1); ++z)
+      {
+        for (int y = (D > 1 ? 1 : 0); y < (D > 1 ? n : 1); ++y)
         {
-          const auto value = [&](int x)
+          const SampleRow<Sample> row = RowOf(samples, from, y, z);
+          const Number* in = w + z * shape.Z() + y * shape.Y();
+          int x = D > 1 ? 0 : 1; // sample 0 of an edge is a corner, which has no limits
+          if (D > 1 && row.StrideX == 1 && row.StrideA == 1 && row.StrideB == 1)
           {
-            const std::int32_t sum = static_cast<std::int32_t>(U(in[x]) + U(reference(x)));
-            return std::min(std::max(sum, least), greatest);
-          };
-          if (stride == 1)
-          {
-            for (int x = 1; x < B; ++x)
+            for (; x + Width <= n; x += Width)
             {
-              row[x] = value(x);
+              const auto sum = V::Load(in + x) +
+                reference.Of(LoadSamples<Number>(row.A + x), LoadSamples<Number>(row.B + x));
+              Signed value = reinterpret_cast<Signed>(sum);
+              value = value < low ? low : value;
+              value = value > high ? high : value;
+              if constexpr (std::is_same_v<Number, Sample>)
+              {
+                StoreVector(value, row.X + x);
+              }
+              else
+              {
+                StoreVector(__builtin_convertvector(value, typename Numbers<Sample>::Signed), row.X + x);
+              }
             }
-            return;
           }
-          for (int x = 1; x < B; ++x)
+          for (; x < n; ++x)
           {
-            row[x * stride] = value(x);
+            using U = std::make_unsigned_t<Number>;
+            const Number subtracted = reference.Of(static_cast<Number>(row.A[x * row.StrideA]),
+              static_cast<Number>(row.B[x * row.StrideB]));
+            const Number sum =
+              static_cast<Number>(static_cast<U>(static_cast<U>(in[x]) + static_cast<U>(subtracted)));
+            row.X[x * row.StrideX] = std::min(std::max<Sample>(sum, least), static_cast<Sample>(greatest));
           }
-        });
-    }
-  }
-}
-
-/// Sets the lanes of a row: prediction plus residual times bin.
-template <int B>
-HWY_INLINE void SetLanes(const LaneSet& lanes, const std::int32_t* HWY_RESTRICT prediction,
-  const std::int32_t* HWY_RESTRICT residual, std::int32_t bin, std::int32_t* HWY_RESTRICT w)
-{
-  using V = Numbers<B>;
-  const std::int32_t* mask = LaneMask<B>(lanes);
-  for (int x = 0; x < B; x += V::Width)
-  {
-    const auto set = V::Load(mask + x);
-    const auto value = V::Load(prediction + x) + V::Load(residual + x) * U(bin);
-    V::Store((value & set) | (V::Load(w + x) & ~set), w + x);
-  }
-}
-
-/// The same without residuals.
-template <int B>
-HWY_INLINE void SetLanes(const LaneSet& lanes, const std::int32_t* HWY_RESTRICT prediction,
-  std::int32_t* HWY_RESTRICT w)
-{
-  using V = Numbers<B>;
-  const std::int32_t* mask = LaneMask<B>(lanes);
-  for (int x = 0; x < B; x += V::Width)
-  {
-    const auto set = V::Load(mask + x);
-    V::Store((V::Load(prediction + x) & set) | (V::Load(w + x) & ~set), w + x);
-  }
+        }
+      }
+    });
 }
 
 } // namespace banyan::HWY_NAMESPACE

@@ -52,32 +52,28 @@ inline std::uint32_t CodeOf(int symbol, std::uint32_t extra)
            : DirectSymbols - 1 + (1u << (symbol - DirectSymbols)) + extra;
 }
 
-/// About 2 log2(1 + |r|): sums of these say how rough the neighbourhood is, over any scale.
-/// Indexed by min(zigzag code, 127).
-extern const std::uint8_t MagnitudeOf[128];
-
-inline std::uint8_t Magnitude(std::uint32_t code)
+/// About 2 log2(1 + |r|): sums of these say how rough the neighbourhood is, over any scale. From 15 on it
+/// grows no more.
+inline std::uint8_t MagnitudeOf(std::int32_t residual)
 {
-  return MagnitudeOf[code < 127 ? code : 127];
+  constexpr std::uint8_t of[16] = { 0, 2, 3, 4, 5, 5, 6, 6, 6, 7, 7, 7, 7, 8, 8, 8 };
+  const std::uint32_t size = residual < 0 ? 0u - static_cast<std::uint32_t>(residual)
+                                          : static_cast<std::uint32_t>(residual);
+  return of[size < 15 ? size : 15];
 }
 
 /// A table entry as one word: number of bits to read (8 bits of the word, for shift instructions take
-/// their counts from such a byte), next state (10), magnitude (4), whether extra bits follow (1), and
-/// from bit 24 the residual, or the number of extra bits.
+/// their counts from such a byte), next state (10; zeros up to 16), and from bit 24 the residual, or
+/// EscapeTop and the number of extra bits.
 constexpr int BaseShift = 8;
-constexpr int MagnitudeShift = 18;
-constexpr std::uint32_t MagnitudeMask = 15;
-constexpr std::uint32_t EscapeFlag = 1u << 22;
-constexpr int ResidualShift = 24;
+constexpr int TopShift = 24;
+constexpr int EscapeTop = 64;
 inline std::uint32_t Packed(const tans::DecodeEntry& entry)
 {
-  const bool escape = entry.Symbol >= DirectSymbols;
-  const std::uint32_t top = escape
-                              ? static_cast<std::uint32_t>(ExtraBits(entry.Symbol))
+  const std::uint32_t top = entry.Symbol >= DirectSymbols
+                              ? static_cast<std::uint32_t>(EscapeTop + ExtraBits(entry.Symbol))
                               : static_cast<std::uint32_t>(Unzigzag(entry.Symbol));
-  return entry.Bits | static_cast<std::uint32_t>(entry.Base) << BaseShift |
-         static_cast<std::uint32_t>(escape ? 0 : Magnitude(entry.Symbol)) << MagnitudeShift |
-         (escape ? EscapeFlag : 0u) | top << ResidualShift;
+  return entry.Bits | static_cast<std::uint32_t>(entry.Base) << BaseShift | top << TopShift;
 }
 
 /// Contexts: a band (kind of unit, stride, direction) and one of 8 classes of roughness; and one

@@ -13,18 +13,16 @@
 namespace banyan
 {
 
-/// Reads the symbols of one payload, row by row (ReadRow in SymbolRow-inl.h). Any bytes are safe:
+/// Reads the symbols of one payload, run by run (ReadRun in SymbolRun-inl.h). Any bytes are safe:
 /// reading past the end gives zeros, and `AtEnd` says so.
 ///
 /// Layout of a payload: 2 bits, the logarithm of the number of lanes; the first states of the lanes
-/// (tans::TableBits bits each); then for each row the bits that the tables of its symbols ask for,
-/// and then the extra bits of those of its symbols that have some. Lanes take turns within a row,
+/// (tans::TableBits bits each); then for each run the bits that the tables of its symbols ask for,
+/// and then the extra bits of those of its symbols that have some. Lanes take turns within a run,
 /// which starts with the first lane. Lowest bit of a byte first.
 class SymbolReader
 {
 public:
-  static constexpr int LongestRow = 65;
-
   /// @param tables TableSize entries for each context
   /// @param most bytes that will be read at most
   void Open(const std::uint32_t* tables, const std::uint8_t* data, std::size_t bytes,
@@ -42,47 +40,35 @@ public:
     this->Tables = tables;
     this->Position = 0;
     this->LanesLog = static_cast<int>(this->Take(2));
-    std::fill(this->States, this->States + tans::MostLanes, 0u);
+    std::fill(this->States, this->States + tans::MostLanes, std::uint64_t{ 0 });
     for (int lane = 0; lane < 1 << this->LanesLog; ++lane)
     {
       this->States[lane] = this->Take(tans::TableBits);
     }
-    this->Check();
   }
 
-  /// A row of one symbol without extra bits: its entry, see residual::Packed.
-  HWY_INLINE std::uint32_t One(int context)
+  /// Residual of a symbol with extra bits.
+  /// @param bits how many
+  std::int32_t Long(std::uint32_t bits)
   {
-    const std::uint32_t entry = this->Context(context)[this->States[0]];
-    this->States[0] = (entry >> residual::BaseShift & (tans::TableSize - 1)) + this->Take(entry & 0xffu);
-    this->Check();
-    return entry;
-  }
-
-  /// Residual of an entry with extra bits.
-  std::int32_t Long(std::uint32_t entry)
-  {
-    const std::uint32_t bits = entry >> residual::ResidualShift;
-    const std::uint32_t extra = this->Take(bits);
-    this->Check();
     return residual::Unzigzag(
-      residual::CodeOf(residual::DirectSymbols + static_cast<int>(bits), extra));
+      residual::CodeOf(residual::DirectSymbols + static_cast<int>(bits), this->Take(bits)));
   }
 
   /// Whether all was read and the lanes are back where encoding began: anything else is damage.
   bool AtEnd() const
   {
-    std::uint32_t states = 0;
-    for (const std::uint32_t state : this->States)
+    std::uint64_t states = 0;
+    for (const std::uint64_t state : this->States)
     {
       states |= state;
     }
     return !this->Overrun && this->End - this->Position < 8 && states == 0;
   }
 
-  /// What ReadRow (SymbolRow-inl.h) moves.
+  /// What ReadRun moves.
   std::uint64_t Position = 0;
-  std::uint32_t States[tans::MostLanes] = {};
+  std::uint64_t States[tans::MostLanes] = {};
   int LanesLog = 0;
 
   const std::uint32_t* Context(int context) const
@@ -90,15 +76,16 @@ public:
     return this->Tables + (context << tans::TableBits);
   }
 
-  /// The bits from a position on, 57 at least.
+  /// The bits from a position on, 57 at least; zeros where it lies beyond the end.
   HWY_INLINE std::uint64_t Word(std::uint64_t position) const
   {
+    position = std::min(position, this->End);
     std::uint64_t word;
     std::memcpy(&word, this->Buffer.data() + (position >> 3), 8);
     return word >> (position & 7);
   }
 
-  /// To be called after each row.
+  /// To be called when the position was moved.
   HWY_INLINE void Check()
   {
     if (HWY_UNLIKELY(this->Position > this->End))
@@ -109,14 +96,14 @@ public:
   }
 
 private:
-  /// No row takes more: 65 symbols of 10 bits, 31 extra bits each; and a word is read at a time.
-  static constexpr std::size_t Slack = LongestRow * 41 / 8 + 16;
+  static constexpr std::size_t Slack = 16; // a word is read at a time
 
   HWY_INLINE std::uint32_t Take(std::uint32_t bits)
   {
     const std::uint64_t value =
       this->Word(this->Position) & ((std::uint64_t{ 1 } << bits) - 1);
     this->Position += bits;
+    this->Check();
     return static_cast<std::uint32_t>(value);
   }
 

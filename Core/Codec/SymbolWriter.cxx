@@ -111,7 +111,7 @@ int SymbolTables::LanesLogFor(const std::vector<std::uint16_t>& tokens) const
 }
 
 std::vector<std::uint8_t> SymbolTables::Encode(const std::vector<std::uint16_t>& tokens,
-  const std::vector<std::uint32_t>& extra, const std::vector<std::uint8_t>& rows) const
+  const std::vector<std::uint32_t>& extra, const std::vector<std::uint16_t>& runs) const
 {
   const int lanesLog = this->LanesLogFor(tokens);
   const std::size_t lanes = std::size_t{ 1 } << lanesLog;
@@ -121,10 +121,10 @@ std::vector<std::uint8_t> SymbolTables::Encode(const std::vector<std::uint16_t>&
   std::fill(states, states + lanes, static_cast<std::uint32_t>(tans::TableSize));
   std::size_t begin = tokens.size();
   std::size_t total = 2 + lanes * tans::TableBits + 32 * extra.size();
-  for (std::size_t row = rows.size(); row-- > 0;)
+  for (std::size_t run = runs.size(); run-- > 0;)
   {
     const std::size_t end = begin;
-    begin -= rows[row];
+    begin -= runs[run];
     for (std::size_t i = end; i-- > begin;)
     {
       const Table& table = this->Tables[tokens[i] >> 8];
@@ -144,9 +144,9 @@ std::vector<std::uint8_t> SymbolTables::Encode(const std::vector<std::uint16_t>&
     writer.Put(states[lane] - tans::TableSize, tans::TableBits);
   }
   std::size_t nextExtra = 0;
-  for (const std::uint8_t row : rows)
+  for (const std::uint16_t run : runs)
   {
-    const std::size_t end = begin + row;
+    const std::size_t end = begin + run;
     for (std::size_t i = begin; i < end; ++i)
     {
       writer.Put(written[i] >> 4, written[i] & 15u);

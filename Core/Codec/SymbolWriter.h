@@ -31,9 +31,9 @@ public:
 
   /// The payload that SymbolReader reads. The counts must have held all tokens.
   /// @param extra one number per symbol with extra bits
-  /// @param rows how many symbols each row has; their sum is the number of tokens
+  /// @param runs how many symbols each run has; their sum is the number of tokens
   std::vector<std::uint8_t> Encode(const std::vector<std::uint16_t>& tokens,
-    const std::vector<std::uint32_t>& extra, const std::vector<std::uint8_t>& rows) const;
+    const std::vector<std::uint32_t>& extra, const std::vector<std::uint16_t>& runs) const;
 
 private:
   /// How a symbol goes into a state: FSE's way, one subtraction and one look-up.

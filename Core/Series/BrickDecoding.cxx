@@ -1,6 +1,7 @@
 #include "Series/BrickDecoding.h"
 
 #include "Series/Exceptions.h"
+#include "Series/GatherTile.h"
 #include "Series/Quantizer.h"
 
 #include <algorithm>
@@ -31,6 +32,18 @@ bool InOneBox(const PlaneRegion& region, int edge)
   return inside;
 }
 
+/// Numbers of a part of a box, in the order of the data's axes: x fastest.
+/// @param stride of the numbers along x, y, z
+template <class Number>
+const Number* InOrder(const Number* numbers, const glm::ivec3& size, const std::ptrdiff_t (&stride)[3])
+{
+  thread_local std::vector<Number> ordered;
+  ordered.resize(static_cast<std::size_t>(size.x) * size.y * size.z);
+  GatherTile(numbers, glm::i64vec3{ stride[0], stride[1], stride[2] }, size,
+    glm::i64vec3{ 1, size.x, std::int64_t{ size.x } * size.y }, ordered.data());
+  return ordered.data();
+}
+
 /// The usual case of Decode: one box, no exceptions.
 /// @param skip samples of the brick before the first one that is wanted, and @param size how many
 /// are, axes as the data has them
@@ -40,6 +53,14 @@ void DecodeBox(OpenGroup& open, int step, const PlaneRegion& region,
 {
   GroupField& group = *open.Field;
   const LatticeDecoder<T>& decoder = DecoderOf<T>(open);
+  // Rows are lines of the cache that lie far apart: ask for them before they are written.
+  for (int z = 0; z < size.z; ++z)
+  {
+    for (int y = 0; y < size.y; ++y)
+    {
+      __builtin_prefetch(values + z * strides.z + y * strides.y, 1);
+    }
+  }
   const LatticeCache::Box box = group.Box(step, region.Plane, region.FirstBlock);
   const std::ptrdiff_t n = group.Edge() + 1;
   const std::ptrdiff_t pitch[3] = { 1, n, n * n };
@@ -52,13 +73,21 @@ void DecodeBox(OpenGroup& open, int step, const PlaneRegion& region,
     first += (region.Low[a] - region.FirstBlock[a] * group.Edge() + skip[real]) * pitch[a];
   }
   box->Visit(
-    [&](const auto* numbers, std::int32_t base)
+    [&](const auto* all)
     {
+      const auto* numbers = all + first;
+      if (stride[0] != 1)
+      {
+        numbers = InOrder(numbers, size, stride);
+        stride[0] = 1;
+        stride[1] = size.x;
+        stride[2] = std::ptrdiff_t{ size.x } * size.y;
+      }
       for (int z = 0; z < size.z; ++z)
       {
         for (int y = 0; y < size.y; ++y)
         {
-          decoder.Decode(numbers + first + z * stride[2] + y * stride[1], base, stride[0],
+          decoder.Decode(numbers + z * stride[2] + y * stride[1], 1,
             static_cast<std::size_t>(size.x), values + z * strides.z + y * strides.y, strides.x);
         }
       }
@@ -94,7 +123,6 @@ bool Decode(const OpenSeries& series, OpenGroup& open, const FieldKey& field, st
       { 1, size.x, std::int64_t{ size.x } * size.y }, values);
     return true;
   }
-  thread_local std::vector<std::int32_t> numbers;
   thread_local std::vector<std::uint32_t> offsets;
   thread_local std::vector<T> ordered;
   offsets.resize(count);
@@ -121,29 +149,30 @@ bool Decode(const OpenSeries& series, OpenGroup& open, const FieldKey& field, st
       {
         return; // only the block after the last face: its samples are in the box before
       }
-      numbers.resize(static_cast<std::size_t>(n) * n * n);
-      group.Box(step, region.Plane, block)->CopyTo(numbers.data());
       const glm::ivec3 origin = block * edge;
       int columns[2 * 64 + 1]; // places per row: at most a brick of the largest edge
       for (int x = from.x; x <= to.x; ++x)
       {
         columns[x] = region.SampleAt(0, x) - origin.x;
       }
-      for (int z = from.z; z <= to.z; ++z)
-      {
-        for (int y = from.y; y <= to.y; ++y)
+      group.Box(step, region.Plane, block)->Visit(
+        [&](const auto* numbers)
         {
-          const std::int32_t* row =
-            numbers.data() +
-            ((region.SampleAt(2, z) - origin.z) * n + region.SampleAt(1, y) - origin.y) * n;
-          std::uint32_t* out =
-            offsets.data() + (static_cast<std::size_t>(z) * region.Count.y + y) * region.Count.x;
-          for (int x = from.x; x <= to.x; ++x)
+          for (int z = from.z; z <= to.z; ++z)
           {
-            out[x] = static_cast<std::uint32_t>(row[columns[x]]) - least;
+            for (int y = from.y; y <= to.y; ++y)
+            {
+              const auto* row = numbers +
+                ((region.SampleAt(2, z) - origin.z) * n + region.SampleAt(1, y) - origin.y) * n;
+              std::uint32_t* out = offsets.data() +
+                (static_cast<std::size_t>(z) * region.Count.y + y) * region.Count.x;
+              for (int x = from.x; x <= to.x; ++x)
+              {
+                out[x] = static_cast<std::uint32_t>(row[columns[x]]) - least;
+              }
+            }
           }
-        }
-      }
+        });
     });
   decoder.Decode(group.Head().Least, offsets.data(), count, ordered.data());
   if (exceptional)

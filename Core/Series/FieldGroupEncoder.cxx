@@ -238,7 +238,7 @@ void Encoder<T>::WriteSymbols()
             to.Value = from.Value;
             if (!from.Tokens.empty())
             {
-              to.Payload = tables.Encode(from.Tokens, from.Extra, from.Rows);
+              to.Payload = tables.Encode(from.Tokens, from.Extra, from.Runs);
             }
             from = {};
           });

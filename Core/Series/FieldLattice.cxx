@@ -1,5 +1,7 @@
 #include "Series/FieldLattice.h"
 
+#include "Codec/BlockScratch.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -82,6 +84,14 @@ void ChooseLattice(ScalarType type, const Transform& transform, double bound,
   if (!std::isfinite(head.Origin))
   {
     head.Origin = low;
+  }
+  const double first = std::round((low - head.Origin) / head.Step);
+  const double last = std::round((high - head.Origin) / head.Step);
+  if (last - first < limit && block::Narrow(0, static_cast<std::int32_t>(last - first)) &&
+      !block::Narrow(static_cast<std::int32_t>(first), static_cast<std::int32_t>(last)))
+  {
+    // A short range far from zero: begin with it, so that its numbers are small.
+    head.Origin += first * head.Step;
   }
   head.Least = static_cast<std::int32_t>(std::round((low - head.Origin) / head.Step));
   head.Greatest = static_cast<std::int32_t>(std::round((high - head.Origin) / head.Step));

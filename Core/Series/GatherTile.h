@@ -13,12 +13,11 @@ namespace banyan
 /// Copies a small box of values whose axes are in any order in memory: along the axis that is
 /// contiguous there, or nearest to it. Reading across it instead would touch a page per value.
 /// @param stride of the values along x, y, z; @param count how many
-/// @param tile receives value (x, y, z) at (z * pitch + y) * pitch + x
+/// @param to strides of the tile, which receives the values in that order
 template <class T>
 void GatherTile(const T* values, const glm::i64vec3& stride, const glm::ivec3& count,
-  std::ptrdiff_t pitch, T* tile)
+  const glm::i64vec3& to, T* tile)
 {
-  const glm::i64vec3 to{ 1, pitch, pitch * pitch };
   int order[3] = { 0, 1, 2 }; // nearest in memory first
   const auto sort = [&](int a, int b)
   {

@@ -2,10 +2,10 @@
 #include "Codec/BlockDecoder.h"
 #include "Codec/BlockEncoder.h"
 #include "Codec/BlockModes.h"
+#include "Codec/BlockScratch.h"
 #include "Codec/GroupOrder.h"
 #include "Codec/SymbolWriter.h"
 #include "Series/FieldReader.h"
-#include "Series/DecodeMemory.h"
 #include "Series/GroupReader.h"
 
 #include <algorithm>
@@ -25,6 +25,13 @@ glm::ivec3 NeighbourOf(const glm::ivec3& block, int bits)
   return block + glm::ivec3{ bits & 1, bits >> 1 & 1, bits >> 2 & 1 };
 }
 
+/// Whether a block is predicted from other steps.
+bool Refers(const group::BlockEntry& entry)
+{
+  return entry.Same ||
+         (!entry.Uniform && block::ModeOf(entry.Mode).From != block::Reference::None);
+}
+
 } // namespace
 
 GroupField::GroupField(GroupReader& segment, std::uint64_t series, std::uint32_t component,
@@ -36,6 +43,7 @@ GroupField::GroupField(GroupReader& segment, std::uint64_t series, std::uint32_t
   , BrickCells(brickCells)
   , Before(std::move(before))
   , StepTables(static_cast<std::size_t>(segment.Steps()))
+  , Loaded(StepTables.size())
 {
   const Bytes head = segment.Section(segment.HeadSection(component));
   this->FieldHead = group::UnpackHead(head.data(), head.size());
@@ -53,6 +61,11 @@ GroupField::GroupField(GroupReader& segment, std::uint64_t series, std::uint32_t
 
 const group::StepTable& GroupField::Step(int step)
 {
+  if (const group::StepTable* table =
+        this->Loaded[static_cast<std::size_t>(step)].load(std::memory_order_acquire))
+  {
+    return *table;
+  }
   // Under the lock: threads that start on a new step together then load its table once.
   std::lock_guard<std::mutex> lock(this->Mutex);
   return this->Load(step);
@@ -72,6 +85,7 @@ const group::StepTable& GroupField::Load(int step)
     this->CheckNumbers(*table);
     this->Memory += table->MemoryBytes();
     this->BytesRead += bytes.size();
+    this->Loaded[static_cast<std::size_t>(step)].store(table.get(), std::memory_order_release);
   }
   return *table;
 }
@@ -114,8 +128,7 @@ bool GroupField::NeedsReferences(int step, int plane, const glm::ivec3& block)
     if (Inside(at, blocks))
     {
       const group::BlockEntry& entry = entries[this->IndexOf(plane, at)];
-      if (entry.Same ||
-          (!entry.Uniform && block::ModeOf(entry.Mode).From != block::Reference::None))
+      if (Refers(entry))
       {
         return true;
       }
@@ -173,8 +186,8 @@ LatticeCache::Box GroupField::ReferenceBox(int step, int plane, const glm::ivec3
 }
 
 /// The samples of the next plane that a box is predicted from.
-void GroupField::Coarse(
-  int step, int plane, const glm::ivec3& block, std::vector<std::int32_t>& numbers)
+template <class Number>
+const Number* GroupField::Coarse(int step, int plane, const glm::ivec3& block)
 {
   const int n = this->BrickCells / 4 + 1;
   const glm::ivec3 samples = this->Shape.Planes[static_cast<std::size_t>(plane) + 1];
@@ -183,36 +196,46 @@ void GroupField::Coarse(
   const glm::ivec3 coarseBlock = first / this->BrickCells;
   const glm::ivec3 origin = top ? glm::ivec3(0) : coarseBlock * this->BrickCells;
   const glm::ivec3 size = top ? samples : glm::ivec3(this->BrickCells + 1);
-  thread_local std::vector<std::int32_t> coarser;
-  const std::int32_t* from = coarser.data();
+  thread_local std::vector<Number> numbers;
+  numbers.resize(static_cast<std::size_t>(n * n * n));
+  const auto gather = [&](const auto* from)
+  {
+    Number* to = numbers.data();
+    for (int z = 0; z < n; ++z)
+    {
+      const int sz = std::min(first.z + z, samples.z - 1) - origin.z;
+      for (int y = 0; y < n; ++y)
+      {
+        const int sy = std::min(first.y + y, samples.y - 1) - origin.y;
+        const auto* row = from + (sz * size.y + sy) * size.x - origin.x;
+        for (int x = 0; x < n; ++x)
+        {
+          *to++ = static_cast<Number>(row[std::min(first.x + x, samples.x - 1)]);
+        }
+      }
+    }
+  };
   if (top)
   {
-    from = this->Step(step).Top.data();
+    gather(this->Step(step).Top.data());
   }
   else
   {
-    const LatticeCache::Box box = this->Box(step, plane + 1, coarseBlock);
-    coarser.resize(static_cast<std::size_t>(size.x * size.y * size.z));
-    box->CopyTo(coarser.data());
-    from = coarser.data();
+    // The box may decode others on the way, which use the same memory: it comes first.
+    gather(this->Box(step, plane + 1, coarseBlock)->Numbers<Number>());
   }
-  numbers.resize(static_cast<std::size_t>(n * n * n));
-  std::int32_t* to = numbers.data();
-  for (int z = 0; z < n; ++z)
-  {
-    const int sz = std::min(first.z + z, samples.z - 1) - origin.z;
-    for (int y = 0; y < n; ++y)
-    {
-      const int sy = std::min(first.y + y, samples.y - 1) - origin.y;
-      for (int x = 0; x < n; ++x)
-      {
-        *to++ = from[(sz * size.y + sy) * size.x + std::min(first.x + x, samples.x - 1) - origin.x];
-      }
-    }
-  }
+  return numbers.data();
 }
 
 LatticeCache::Box GroupField::Decode(int step, int plane, const glm::ivec3& block)
+{
+  return block::Narrow(this->FieldHead.Least, this->FieldHead.Greatest)
+           ? this->DecodeAs<std::int16_t>(step, plane, block)
+           : this->DecodeAs<std::int32_t>(step, plane, block);
+}
+
+template <class Number>
+LatticeCache::Box GroupField::DecodeAs(int step, int plane, const glm::ivec3& block)
 {
   const auto& entries = this->Step(step).Planes[static_cast<std::size_t>(plane)];
   const glm::ivec3 blocks = this->BlocksOf(plane);
@@ -223,7 +246,9 @@ LatticeCache::Box GroupField::Decode(int step, int plane, const glm::ivec3& bloc
   shared.FineBin = BinOfOctave(this->FieldHead.Bin, 2 * plane);
   shared.Least = this->FieldHead.Least;
   shared.Greatest = this->FieldHead.Greatest;
-  BoxCode code;
+  BoxCodeOf<Number> code;
+  bool refers = false;
+  bool same = true;
   for (int bits = 0; bits < 8; ++bits)
   {
     const glm::ivec3 at = NeighbourOf(block, bits);
@@ -239,6 +264,8 @@ LatticeCache::Box GroupField::Decode(int step, int plane, const glm::ivec3& bloc
     to.Value = entry.Value;
     to.Mode = entry.Mode;
     to.Limit = samples - 1 - at * this->BrickCells;
+    refers = refers || Refers(entry);
+    same = same && entry.Same;
     if (entry.Payload.Bytes > 0 && bits != 7)
     {
       to.Data = this->File.Payload(entry.Payload);
@@ -247,8 +274,7 @@ LatticeCache::Box GroupField::Decode(int step, int plane, const glm::ivec3& bloc
   }
   this->BytesRead += code.Blocks[0].Bytes;
   this->PayloadsRead += code.Blocks[0].Bytes > 0 ? 1 : 0;
-  if (std::all_of(code.Blocks, code.Blocks + 8,
-        [](const BlockCode& each) { return each.Same || !each.Exists; }))
+  if (same)
   {
     return this->ReferenceBox(this->ReferencesOf(step).A, plane, block);
   }
@@ -261,36 +287,23 @@ LatticeCache::Box GroupField::Decode(int step, int plane, const glm::ivec3& bloc
     {
       neighbours[axis] =
         LatticeCache::Process().Find(this->KeyOf(step, plane, NeighbourOf(block, 1 << axis)));
+      code.Neighbours[axis] = neighbours[axis] ? neighbours[axis]->Numbers<Number>() : nullptr;
     }
   }
   LatticeCache::Box a, b;
-  if (this->NeedsReferences(step, plane, block))
+  if (refers)
   {
     const StepReferences references = this->ReferencesOf(step);
     a = this->ReferenceBox(references.A, plane, block);
     b = references.B == references.A ? a : this->ReferenceBox(references.B, plane, block);
+    code.A = a->Numbers<Number>();
+    code.B = b->Numbers<Number>();
   }
-  // From here on nothing else is decoded on the way, which would use the same memory.
-  thread_local DecodeMemory memory;
-  this->Coarse(step, plane, block, memory.Coarse);
-  code.Coarse = memory.Coarse.data();
+  code.Coarse = this->Coarse<Number>(step, plane, block);
   const std::size_t n = static_cast<std::size_t>(this->BrickCells) + 1;
-  if (a)
-  {
-    code.A = memory.Take(memory.A, *a, n);
-    code.B = b == a ? code.A : memory.Take(memory.B, *b, n);
-  }
-  for (std::size_t axis = 0; axis < 3; ++axis)
-  {
-    if (neighbours[axis])
-    {
-      code.Faces[axis] = memory.TakeFace(axis, *neighbours[axis], n);
-    }
-  }
-  memory.Box.resize(n * n * n);
-  DecodeBox(this->BrickCells, shared, code, memory.Box.data());
-  return std::make_shared<LatticeBox>(
-    memory.Box.data(), memory.Box.size(), shared.Least, shared.Greatest);
+  const auto box = std::make_shared<LatticeBox>(n * n * n, sizeof(Number) == sizeof(std::int16_t));
+  DecodeBox(this->BrickCells, shared, code, box->Numbers<Number>());
+  return box;
 }
 
 LatticeCache::Key GroupField::KeyOf(int step, int plane, const glm::ivec3& block) const

@@ -110,9 +110,12 @@ private:
   template <class Body>
   auto InSegmentBefore(Body&& body);
   LatticeCache::Box ReferenceBox(int step, int plane, const glm::ivec3& block);
-  void Coarse(int step, int plane, const glm::ivec3& block, std::vector<std::int32_t>& numbers);
+  template <class Number>
+  const Number* Coarse(int step, int plane, const glm::ivec3& block);
   void CheckNumbers(const group::StepTable& table) const;
   LatticeCache::Box Decode(int step, int plane, const glm::ivec3& block);
+  template <class Number>
+  LatticeCache::Box DecodeAs(int step, int plane, const glm::ivec3& block);
 
   GroupReader& File;
   std::uint64_t Series;
@@ -125,6 +128,7 @@ private:
   std::vector<std::uint32_t> Tables[2];
   std::mutex Mutex;
   std::vector<std::unique_ptr<group::StepTable>> StepTables;
+  std::vector<std::atomic<const group::StepTable*>> Loaded; ///< the same, without the lock
   std::atomic<std::uint64_t> Memory{ 0 };
   std::atomic<std::uint64_t> PayloadsRead{ 0 };
   std::atomic<std::uint64_t> BytesRead{ 0 };

@@ -108,7 +108,7 @@ void LatticeCheck<T>::LoadRow(const PlaneNumbers& decoded, const Row& row)
 {
   const std::int32_t* numbers = decoded.Numbers.data() + decoded.IndexOf(row.Sample);
   const std::size_t count = static_cast<std::size_t>(row.Count);
-  this->Decoder.Decode(numbers, 0, 1, count, this->Decoded.data(), 1);
+  this->Decoder.Decode(numbers, 1, count, this->Decoded.data(), 1);
   if (row.Values != nullptr)
   {
     std::copy(row.Values, row.Values + count, this->Originals.begin());
@@ -300,7 +300,7 @@ void LatticeCheck<T>::Block(const PlaneNumbers& decoded, int plane, std::int64_t
   {
     this->Tile.resize(static_cast<std::size_t>(edge) * edge * edge);
     GatherTile(this->Values + low.x * this->Stride.x + low.y * this->Stride.y + low.z * this->Stride.z,
-      this->Stride, high - low, edge, this->Tile.data());
+      this->Stride, high - low, glm::i64vec3{ 1, edge, edge * edge }, this->Tile.data());
   }
   Row row;
   row.Count = high.x - low.x;

@@ -1,10 +1,12 @@
 #ifndef banyan_Series_LatticeDecoder_h
 #define banyan_Series_LatticeDecoder_h
 
+#include "Series/LatticeValues.h"
 #include "Series/Transform.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 namespace banyan
@@ -36,20 +38,27 @@ public:
   /// is safe.
   void Decode(std::int64_t base, const std::uint32_t* offsets, std::size_t count, T* decoded) const;
 
-  /// decoded[i * step] from the number base + numbers[i * stride]. Any input is safe.
-  /// @param Number std::int32_t or std::uint16_t
+  /// decoded[i * step] from numbers[i * stride]. Any input is safe.
+  /// @param Number std::int32_t or std::int16_t
   template <class Number>
-  void Decode(const Number* numbers, std::int32_t base, std::ptrdiff_t stride, std::size_t count,
-    T* decoded, std::ptrdiff_t step) const
+  void Decode(const Number* numbers, std::ptrdiff_t stride, std::size_t count, T* decoded,
+    std::ptrdiff_t step) const
   {
+    if constexpr (std::is_floating_point_v<T>)
+    {
+      if (stride == 1 && step == 1 && this->Map.IsIdentity())
+      {
+        return ValuesOnLattice(numbers, count, this->Origin, this->Step, decoded);
+      }
+    }
     const std::uint64_t entries = this->Table.size();
     // Tables have numbers of 32 bits only.
-    const std::int64_t first = (entries > 0 ? this->First : 0) - base;
+    const std::int64_t first = entries > 0 ? this->First : 0;
     const T* table = this->Table.data();
     for (std::size_t i = 0; i < count; ++i, numbers += stride, decoded += step)
     {
       const std::uint64_t entry = static_cast<std::uint64_t>(*numbers - first);
-      *decoded = entry < entries ? table[entry] : this->Compute(std::int64_t{ *numbers } + base);
+      *decoded = entry < entries ? table[entry] : this->Compute(*numbers);
     }
   }
 

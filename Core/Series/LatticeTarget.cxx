@@ -227,7 +227,7 @@ void LatticeTarget<T>::FillTile(const T* values, const glm::ivec3& low, PlaneNum
   const glm::ivec3 n = glm::min(glm::ivec3(Tile), plane.Samples - low);
   T tile[Tile * Tile * Tile];
   GatherTile(values + low.x * this->Stride.x + low.y * this->Stride.y + low.z * this->Stride.z,
-    this->Stride, n, Tile, tile);
+    this->Stride, n, glm::i64vec3{ 1, Tile, Tile * Tile }, tile);
   for (int z = 0; z < n.z; ++z)
   {
     for (int y = 0; y < n.y; ++y)

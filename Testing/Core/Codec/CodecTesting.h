@@ -4,12 +4,14 @@
 #include "Base/ThreadPool.h"
 #include "Codec/BlockDecoder.h"
 #include "Codec/BlockEncoder.h"
+#include "Codec/BlockScratch.h"
 #include "Codec/ScalarBlock.h"
 #include "Codec/SymbolWriter.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -83,7 +85,7 @@ inline EncodedPlane EncodeWhole(const PlaneToEncode& plane, int threads = 2)
   {
     result.Payloads.push_back(block.Tokens.empty()
                                 ? std::vector<std::uint8_t>{}
-                                : tables.Encode(block.Tokens, block.Extra, block.Rows));
+                                : tables.Encode(block.Tokens, block.Extra, block.Runs));
   }
   return result;
 }
@@ -164,15 +166,45 @@ inline Box3 MakeBox(const EncodedPlane& encoded, const glm::ivec3& block)
   return box;
 }
 
-inline std::vector<std::int32_t> DecodeFast(const EncodedPlane& encoded, const Box3& box)
+/// Neighbours' boxes, where they are at hand.
+using NeighbourBoxes = std::array<std::vector<std::int32_t>, 3>;
+
+/// Decodes in 16 or 32 bits, as the lattice asks for.
+template <class Number>
+std::vector<std::int32_t> DecodeAs(
+  const EncodedPlane& encoded, const Box3& box, const NeighbourBoxes& neighbours)
 {
   const PlaneToEncode& plane = encoded.Plane;
   const int edge = plane.Target->Edge;
   const PlaneCode shared{ encoded.Tables.data(), plane.CoarseBin, plane.FineBin, plane.Least,
     plane.Greatest };
-  std::vector<std::int32_t> numbers(static_cast<std::size_t>((edge + 1) * (edge + 1) * (edge + 1)));
-  DecodeBox(edge, shared, box.Code, numbers.data());
-  return numbers;
+  std::vector<std::vector<Number>> memory;
+  memory.reserve(6);
+  const auto converted = [&](const std::vector<std::int32_t>& numbers, bool given) -> const Number*
+  {
+    memory.emplace_back(numbers.begin(), numbers.end());
+    return given ? memory.back().data() : nullptr;
+  };
+  BoxCodeOf<Number> code;
+  std::copy(std::begin(box.Code.Blocks), std::end(box.Code.Blocks), std::begin(code.Blocks));
+  code.Coarse = converted(box.Coarse, true);
+  code.A = converted(box.A, box.Code.A != nullptr);
+  code.B = converted(box.B, box.Code.B != nullptr);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    code.Neighbours[axis] = converted(neighbours[axis], !neighbours[axis].empty());
+  }
+  std::vector<Number> numbers(static_cast<std::size_t>((edge + 1) * (edge + 1) * (edge + 1)));
+  DecodeBox(edge, shared, code, numbers.data());
+  return { numbers.begin(), numbers.end() };
+}
+
+inline std::vector<std::int32_t> DecodeFast(
+  const EncodedPlane& encoded, const Box3& box, const NeighbourBoxes& neighbours = {})
+{
+  return block::Narrow(encoded.Plane.Least, encoded.Plane.Greatest)
+           ? DecodeAs<std::int16_t>(encoded, box, neighbours)
+           : DecodeAs<std::int32_t>(encoded, box, neighbours);
 }
 
 inline std::vector<std::int32_t> DecodeSlow(const EncodedPlane& encoded, const Box3& box)
@@ -220,6 +252,23 @@ struct MixedPlanes
     plane.Least = -6000;
     plane.Greatest = 120000000;
     plane.Candidates = std::move(candidates);
+    return plane;
+  }
+
+  /// The same in a lattice whose predictions are in 16 bits. Numbers go from one end of it to the
+  /// other, so that some arithmetic wraps.
+  PlaneToEncode NarrowWith(std::vector<block::Mode> candidates, bool references)
+  {
+    for (PlaneNumbers* plane : { &this->Target, &this->Coarser, &this->A, &this->B })
+    {
+      for (std::int32_t& number : plane->Numbers)
+      {
+        number = std::clamp(number, -3500, 4500);
+      }
+    }
+    PlaneToEncode plane = this->With(std::move(candidates), references);
+    plane.Least = -3500;
+    plane.Greatest = 4500;
     return plane;
   }
 

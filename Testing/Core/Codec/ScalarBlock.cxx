@@ -119,6 +119,15 @@ private:
     return blocks;
   }
 
+  /// Arithmetic wraps in 16 bits, or in 32 where the lattice is larger.
+  std::int64_t Wrap(std::int64_t number) const
+  {
+    const std::int64_t least = this->Plane.Least;
+    const std::int64_t greatest = this->Plane.Greatest;
+    const bool narrow = least >= -8000 && greatest <= 8000 && greatest - least <= 8000;
+    return narrow ? static_cast<std::int16_t>(number) : static_cast<std::int32_t>(number);
+  }
+
   /// What mode m / 3 subtracts from a sample.
   std::int64_t Reference(int mode, const Position& p) const
   {
@@ -127,9 +136,9 @@ private:
     switch (mode / 3)
     {
       case 1:
-        return (sample(this->Code.A) + sample(this->Code.B) + 1) >> 1;
+        return this->Wrap(sample(this->Code.A) + sample(this->Code.B) + 1) >> 1;
       case 2:
-        return (sample(this->Code.A) + sample(this->Code.B) + 2) >> 2;
+        return this->Wrap(sample(this->Code.A) + sample(this->Code.B) + 2) >> 2;
       case 3:
         return sample(this->Code.A);
       case 4:
@@ -146,7 +155,7 @@ private:
     {
       throw std::logic_error("a prediction uses a sample that is not known yet");
     }
-    return this->Values[this->IndexOf(p)] - this->Reference(mode, p);
+    return this->Wrap(this->Values[this->IndexOf(p)] - this->Reference(mode, p));
   }
 
   std::int64_t Predict(int mode, Position at, std::size_t axis, int place, int s) const
@@ -164,19 +173,25 @@ private:
     }
     if (mode % 3 == 1)
     {
-      return (value(place - s) + value(place + s) + 1) >> 1;
+      return this->Wrap(value(place - s) + value(place + s) + 1) >> 1;
     }
     if (place == s)
     {
-      return (3 * value(0) + 6 * value(2 * s) - value(4 * s) + 4) >> 3;
+      return this->Quadratic(value(0), value(2 * s), value(4 * s));
     }
     if (place == edge - s)
     {
-      return (3 * value(edge) + 6 * value(edge - 2 * s) - value(edge - 4 * s) + 4) >> 3;
+      return this->Quadratic(value(edge), value(edge - 2 * s), value(edge - 4 * s));
     }
-    return (9 * (value(place - s) + value(place + s)) - value(place - 3 * s) -
-             value(place + 3 * s) + 8) >>
-           4;
+    const std::int64_t middle = this->Wrap(value(place - s) + value(place + s));
+    const std::int64_t outer = this->Wrap(value(place - 3 * s) + value(place + 3 * s));
+    return this->Wrap(middle + 1 + (this->Wrap(middle - outer) >> 3)) >> 1;
+  }
+
+  std::int64_t Quadratic(std::int64_t near, std::int64_t other, std::int64_t far) const
+  {
+    const std::int64_t slope = this->Wrap(near - far + 4) >> 1;
+    return this->Wrap(other + (this->Wrap(this->Wrap(near - other) + slope) >> 2));
   }
 
   void DecodeUnit(
@@ -221,7 +236,7 @@ private:
                     (inBlock[2] * this->Edge + inBlock[1]) * this->Edge + inBlock[0])]
             } *
               (stride == 2 ? this->Plane.CoarseBin : this->Plane.FineBin);
-          this->Set(at, static_cast<std::int32_t>(rest + this->Reference(mode, at)));
+          this->Set(at, static_cast<std::int32_t>(this->Wrap(rest + this->Reference(mode, at))));
           done.push_back(at);
         }
       });

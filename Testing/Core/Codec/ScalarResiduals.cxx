@@ -41,7 +41,7 @@ private:
   std::size_t Next = 0;
 };
 
-/// Symbols of a payload: 1, 2, 4 or 8 states take turns in each row.
+/// Symbols of a payload: 1, 2, 4 or 8 states take turns in each run.
 class Symbols
 {
 public:
@@ -57,7 +57,7 @@ public:
     }
   }
 
-  /// The symbol number `place` of a row.
+  /// The symbol number `place` of a run.
   int Next(int context, std::size_t place)
   {
     std::uint32_t& state = this->States[place % this->States.size()];
@@ -101,7 +101,7 @@ int MagnitudeOf(std::int32_t residual)
 {
   const std::int64_t size = residual < 0 ? -std::int64_t{ residual } : residual;
   int magnitude = 0;
-  for (const int limit : { 1, 2, 3, 4, 6, 9, 13, 20, 27, 39, 55 })
+  for (const int limit : { 1, 2, 3, 4, 6, 9, 13 })
   {
     magnitude += size >= limit ? (magnitude == 0 ? 2 : 1) : 0;
   }
@@ -126,13 +126,9 @@ public:
 
   void Read(const glm::ivec3& limit, Symbols& symbols)
   {
-    for (const std::vector<int>& axes : Units)
-    {
-      ForEachRow(this->Edge, static_cast<int>(axes.size()),
-        [&](int stride, int axis, int y, int z, int first, int step) {
-          this->ReadRow(axes, limit, stride, axis, { first, y, z }, step, symbols);
-        });
-    }
+    ForEachSlice(this->Edge,
+      [&](int stride, int axis, const std::vector<RowToRead>& rows, int step)
+      { this->ReadSlice(rows, limit, stride, axis, step, symbols); });
   }
 
   const std::vector<std::int32_t>& All() const { return this->Residuals; }
@@ -148,54 +144,75 @@ private:
     return p;
   }
 
-  void ReadRow(const std::vector<int>& axes, const glm::ivec3& limit, int stride, int axis,
-    Position at, int step, Symbols& symbols)
+  void ReadSlice(const std::vector<RowToRead>& rows, const glm::ivec3& limit, int stride, int axis,
+    int step, Symbols& symbols)
   {
-    const int dimensions = static_cast<int>(axes.size());
-    const auto inside = [&](const Position& inUnit)
-    {
-      const Position p = InBlock(axes, inUnit);
-      bool is = true;
-      for (std::size_t a = 0; a < axes.size(); ++a)
-      {
-        const int real = axes[a];
-        is = is && p[static_cast<std::size_t>(real)] <= limit[real];
-      }
-      return is;
-    };
-    if (!inside(at))
-    {
-      return; // not even its first sample lies in the field
-    }
+    const int dimensions = static_cast<int>(rows[0].Axes.size());
     const int band = dimensions == 1   ? 2 - stride
                      : dimensions == 2 ? (stride == 2 ? 2 : 3 + axis)
                                        : (stride == 2 ? 5 : 8) + axis;
-    bool smooth = true;
-    for (int x = 0; x < this->Edge; ++x)
+    struct Sample
     {
-      smooth = smooth && this->Roughness(axes, stride, axis, { x, at[1], at[2] }) == 0;
-    }
-    if (smooth && symbols.Next(88 + band, 0) != 0)
+      Position Where; ///< in the block
+      int Context;
+    };
+    // Residuals of a slice are no context for the same slice: all of it is read, and then set.
+    std::vector<std::vector<Sample>> withSymbols;
+    std::vector<bool> flagged;
+    for (const RowToRead& row : rows)
     {
-      return;
-    }
-    std::vector<int> row;
-    for (Position p = at; p[0] < this->Edge && inside(p); p[0] += step)
-    {
-      const int roughness = this->Roughness(axes, stride, axis, p);
-      int contextClass = 0;
-      for (const int limitOfClass : { 0, 3, 8, 15, 25, 38, 60 })
+      std::vector<Sample> samples;
+      bool smooth = true;
+      for (Position at = row.First; at[0] < this->Edge; at[0] += step)
       {
-        contextClass += roughness > limitOfClass ? 1 : 0;
+        if (!Inside(row.Axes, at, limit))
+        {
+          break;
+        }
+        const int roughness = this->Roughness(row.Axes, stride, axis, at);
+        smooth = smooth && roughness == 0;
+        int contextClass = 0;
+        for (const int limitOfClass : { 0, 5, 12, 22, 36, 56, 90 })
+        {
+          contextClass += roughness > limitOfClass ? 1 : 0;
+        }
+        samples.push_back({ InBlock(row.Axes, at), 8 * band + contextClass });
       }
-      row.push_back(symbols.Next(8 * band + contextClass, row.size()));
+      if (!samples.empty())
+      {
+        withSymbols.push_back(samples);
+        flagged.push_back(smooth);
+      }
     }
-    // Residuals of a row are no context for the same row, and their extra bits follow all of it.
-    for (std::size_t i = 0; i < row.size(); ++i)
+    std::size_t flag = 0;
+    std::vector<Sample> run;
+    for (std::size_t r = 0; r < withSymbols.size(); ++r)
     {
-      this->At(InBlock(axes, { at[0] + static_cast<int>(i) * step, at[1], at[2] })) =
-        symbols.Residual(row[i]);
+      if (!flagged[r] || symbols.Next(88 + band, flag++) == 0)
+      {
+        run.insert(run.end(), withSymbols[r].begin(), withSymbols[r].end());
+      }
     }
+    std::vector<int> read;
+    for (const Sample& sample : run)
+    {
+      read.push_back(symbols.Next(sample.Context, read.size()));
+    }
+    for (std::size_t i = 0; i < run.size(); ++i)
+    {
+      this->At(run[i].Where) = symbols.Residual(read[i]);
+    }
+  }
+
+  static bool Inside(const std::vector<int>& axes, const Position& inUnit, const glm::ivec3& limit)
+  {
+    const Position p = InBlock(axes, inUnit);
+    bool inside = true;
+    for (const int real : axes)
+    {
+      inside = inside && p[static_cast<std::size_t>(real)] <= limit[real];
+    }
+    return inside;
   }
 
   /// Weighted sum of magnitudes around a sample of a unit.
@@ -215,29 +232,26 @@ private:
       sum += 2 * (m(x - s, y, z) + m(x + s, y, z));
       if (dimensions > 1)
       {
-        const int before = y - 2 * s;
-        const int after = next(y, 2 * s);
-        sum += m(x - s, before, z) + m(x + s, before, z) + 2 * m(x, before, z);
-        sum += m(x - s, after, z) + m(x + s, after, z);
+        for (const int e : { y - 2 * s, next(y, 2 * s) })
+        {
+          sum += m(x - s, e, z) + m(x + s, e, z);
+        }
       }
       if (dimensions > 2)
       {
-        const int before = z - 2 * s;
-        const int after = next(z, 2 * s);
-        sum += m(x - s, y, before) + m(x + s, y, before) + 2 * m(x, y, before);
-        sum += m(x - s, y, after) + m(x + s, y, after);
+        for (const int e : { z - 2 * s, next(z, 2 * s) })
+        {
+          sum += m(x - s, y, e) + m(x + s, y, e);
+        }
       }
-      return sum;
     }
-    if (axis == 1)
+    else if (axis == 1)
     {
       for (const int end : { y - s, next(y, s) })
       {
         sum += 2 * m(x, end, z) + m(x - s, end, z) + m(x + s, end, z);
         sum += dimensions > 2 ? m(x, end, z - 2 * s) + m(x, end, next(z, 2 * s)) : 0;
       }
-      sum +=
-        y >= 2 * s ? 2 * m(x, y - 2 * s, z) + m(x - s, y - 2 * s, z) + m(x + s, y - 2 * s, z) : 0;
     }
     else
     {
@@ -246,10 +260,29 @@ private:
         sum += 2 * m(x, y, end) + m(x - s, y, end) + m(x + s, y, end);
         sum += m(x, y - s, end) + m(x, next(y, s), end);
       }
-      sum += 2 * m(x, y - s, z) + m(x - s, y - s, z) + m(x + s, y - s, z);
     }
-    sum += dimensions > 2 && z >= 2 * s ? 2 * m(x, y, z - 2 * s) : 0;
-    return sum;
+    if (dimensions == 1)
+    {
+      return sum;
+    }
+    // The slice before, of the same pass.
+    const int across = axis == 0 ? 2 * s : s;
+    if (dimensions == 2)
+    {
+      const int e = y - 2 * s;
+      return y < 2 * s ? 2 * sum
+                       : sum + 6 * m(x, e, z) + 2 * (m(x - across, e, z) + m(x + across, e, z));
+    }
+    if (z < 2 * s)
+    {
+      return 2 * sum;
+    }
+    const int e = z - 2 * s;
+    const int up = axis == 2 ? s : 2 * s;
+    const int after = next(y, up);
+    const int before = y >= up ? y - up : after;
+    return sum + 6 * m(x, y, e) +
+           2 * (m(x - across, y, e) + m(x + across, y, e) + m(x, before, e) + m(x, after, e));
   }
 
   int Edge;

@@ -50,6 +50,62 @@ void ForEachRow(int edge, int dimensions, Body&& body)
   }
 }
 
+/// A row of a unit that is being read.
+struct RowToRead
+{
+  std::vector<int> Axes; ///< of the unit
+  Position First;        ///< of its samples, in the unit
+};
+
+/// What a payload is read in: the passes of all edges, of all faces and of the interior, each slice by
+/// slice.
+/// @param body called as body(stride, axis, rows, step) for each slice
+template <class Body>
+void ForEachSlice(int edge, Body&& body)
+{
+  for (int dimensions = 1; dimensions <= 3; ++dimensions)
+  {
+    std::vector<std::vector<int>> units;
+    for (const std::vector<int>& axes : Units)
+    {
+      if (static_cast<int>(axes.size()) == dimensions)
+      {
+        units.push_back(axes);
+      }
+    }
+    // Rows that follow each other with the same last coordinate are a slice.
+    struct Slice
+    {
+      int Stride, Axis, Last, Step;
+      std::vector<Position> Rows;
+    };
+    std::vector<Slice> slices;
+    ForEachRow(edge, dimensions,
+      [&](int stride, int axis, int y, int z, int first, int step)
+      {
+        const int last = dimensions == 3 ? z : y;
+        if (slices.empty() || slices.back().Stride != stride || slices.back().Axis != axis ||
+            slices.back().Last != last)
+        {
+          slices.push_back({ stride, axis, last, step, {} });
+        }
+        slices.back().Rows.push_back({ first, y, z });
+      });
+    for (const Slice& slice : slices)
+    {
+      std::vector<RowToRead> rows;
+      for (const Position& first : slice.Rows)
+      {
+        for (const std::vector<int>& axes : units)
+        {
+          rows.push_back({ axes, first });
+        }
+      }
+      body(slice.Stride, slice.Axis, rows, slice.Step);
+    }
+  }
+}
+
 /// What each of the 1024 states of a context decodes to.
 struct State
 {

@@ -17,32 +17,23 @@ std::vector<block::Mode> AllModes()
   return modes;
 }
 
-/// Faces of neighbours at hand save work, and change nothing.
-void ExpectDecodesWithFaces(
-  const EncodedPlane& encoded, const Box3& box, const std::vector<std::int32_t>& expected)
+/// Boxes of neighbours at hand save work, and change nothing.
+void ExpectDecodesWithNeighbours(const EncodedPlane& encoded, const glm::ivec3& block,
+  const Box3& box, const std::vector<std::int32_t>& expected)
 {
-  const int n = encoded.Plane.Target->Edge + 1;
-  std::vector<std::int32_t> faces[3];
-  for (int i = 0; i < n * n * n; ++i)
-  {
-    const glm::ivec3 p{ i % n, i / n % n, i / n / n };
-    for (int a = 0; a < 3; ++a)
-    {
-      if (p[a] == n - 1)
-      {
-        faces[a].push_back(expected[static_cast<std::size_t>(i)]);
-      }
-    }
-  }
   for (int some = 1; some < 8; ++some)
   {
-    Box3 with = box;
+    NeighbourBoxes neighbours;
     for (int a = 0; a < 3; ++a)
     {
-      const bool given = (some >> a & 1) != 0 && box.Code.Blocks[1 << a].Exists;
-      with.Code.Faces[a] = given ? faces[a].data() : nullptr;
+      if ((some >> a & 1) != 0 && box.Code.Blocks[1 << a].Exists)
+      {
+        glm::ivec3 at = block;
+        ++at[a];
+        neighbours[static_cast<std::size_t>(a)] = BoxNumbers(encoded.Decoded, at);
+      }
     }
-    ASSERT_EQ(DecodeFast(encoded, with), expected) << "with faces " << some;
+    ASSERT_EQ(DecodeFast(encoded, box, neighbours), expected) << "with neighbours " << some;
   }
 }
 
@@ -56,7 +47,7 @@ void ExpectDecodes(const EncodedPlane& encoded)
     const std::vector<std::int32_t> expected = BoxNumbers(encoded.Decoded, block);
     ASSERT_EQ(DecodeFast(encoded, box), expected) << "block " << i;
     ASSERT_EQ(DecodeSlow(encoded, box), expected) << "block " << i << ", the slow decoder";
-    ExpectDecodesWithFaces(encoded, box, expected);
+    ExpectDecodesWithNeighbours(encoded, block, box, expected);
   }
 }
 
@@ -81,6 +72,15 @@ void ExpectClose(const EncodedPlane& encoded)
       }
     }
   }
+}
+
+/// Only every kind of mode once.
+std::vector<block::Mode> SomeModes()
+{
+  return { { block::Reference::None, block::Interpolation::Cubic },
+    { block::Reference::Mean, block::Interpolation::Linear },
+    { block::Reference::HalfMean, block::Interpolation::Cubic },
+    { block::Reference::B, block::Interpolation::None } };
 }
 
 class Blocks : public ::testing::TestWithParam<int>
@@ -121,6 +121,23 @@ TEST_P(Blocks, EveryModeDecodesToWhatTheEncoderSaid)
     }
     ExpectDecodes(encoded);
     ExpectClose(encoded);
+  }
+}
+
+TEST_P(Blocks, ArithmeticOf16BitsDecodesToWhatTheEncoderSaid)
+{
+  const int edge = GetParam();
+  for (const glm::ivec3& size :
+    { glm::ivec3{ edge + 3, edge + 1, edge == 64 ? 9 : 2 * edge }, glm::ivec3{ 5, 2 * edge, 3 } })
+  {
+    MixedPlanes planes(size, edge, 12);
+    const EncodedPlane chosen = EncodeWhole(planes.NarrowWith(AllModes(), true));
+    ExpectDecodes(chosen);
+    for (const block::Mode& mode : SomeModes())
+    {
+      SCOPED_TRACE("mode " + std::to_string(block::NumberOf(mode)));
+      ExpectDecodes(EncodeWhole(planes.NarrowWith({ mode }, true)));
+    }
   }
 }
 

@@ -71,16 +71,15 @@ TEST(Residual, SmallOnesAreSymbolsByThemselves)
 
 TEST(Residual, MagnitudesGrow)
 {
-  EXPECT_EQ(residual::Magnitude(0), 0);
-  for (std::uint32_t code = 1; code < 1000; ++code)
+  EXPECT_EQ(residual::MagnitudeOf(0), 0);
+  for (std::int32_t size = 1; size < 1000; ++size)
   {
-    EXPECT_GE(residual::Magnitude(code), residual::Magnitude(code - 1)) << code;
-    // Signs do not matter.
-    EXPECT_EQ(residual::Magnitude(code), residual::Magnitude((code + 1) / 2 * 2)) << code;
-    const double size = std::abs(static_cast<double>(residual::Unzigzag(code)));
-    EXPECT_NEAR(residual::Magnitude(code), std::min(12.0, 2 * std::log2(1 + size)), 0.8) << code;
+    EXPECT_GE(residual::MagnitudeOf(size), residual::MagnitudeOf(size - 1)) << size;
+    EXPECT_EQ(residual::MagnitudeOf(size), residual::MagnitudeOf(-size)) << size;
+    EXPECT_NEAR(residual::MagnitudeOf(size), std::min(8.0, 2 * std::log2(1 + size)), 0.8) << size;
   }
-  EXPECT_EQ(residual::Magnitude(0xffffffffu), 12);
+  EXPECT_EQ(residual::MagnitudeOf(Least), 8);
+  EXPECT_EQ(residual::MagnitudeOf(Greatest), 8);
 }
 
 } // namespace

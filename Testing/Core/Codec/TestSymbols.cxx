@@ -1,5 +1,5 @@
 #include "Base/Error.h"
-#include "Codec/SymbolRow-inl.h"
+#include "Codec/SymbolRun-inl.h"
 #include "Codec/SymbolWriter.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,10 @@ namespace banyan::testing
 namespace
 {
 
-/// Tokens in contexts that come and contexts that do not, with symbols of all sizes, in rows of all
+/// Classes times the size of a table fit 16 bits.
+constexpr unsigned ContextsOfARun = 64;
+
+/// Tokens in contexts that come and contexts that do not, with symbols of all sizes, in runs of all
 /// lengths.
 struct Tokens
 {
@@ -21,7 +24,7 @@ struct Tokens
     std::mt19937 random(seed);
     for (std::size_t i = 0; i < count; ++i)
     {
-      const unsigned context = random() % 3 == 0 ? 7 : random() % residual::ContextCount / 2 * 2;
+      const unsigned context = random() % 3 == 0 ? 7 : random() % ContextsOfARun / 2 * 2;
       const std::int32_t residual = static_cast<std::int32_t>(random()) >> random() % 32;
       std::uint32_t extra = 0;
       const int symbol = residual::SymbolOf(residual::Zigzag(residual), extra);
@@ -32,17 +35,18 @@ struct Tokens
         this->Extra.push_back(extra);
       }
     }
-    for (std::size_t left = count; left > 0; left -= this->Rows.back())
+    for (std::size_t left = count; left > 0; left -= this->Runs.back())
     {
-      this->Rows.push_back(static_cast<std::uint8_t>(
-        std::min<std::size_t>(left, 1 + random() % SymbolReader::LongestRow)));
+      const std::size_t longest = random() % 10 == 0 ? 4096 : 65;
+      this->Runs.push_back(
+        static_cast<std::uint16_t>(std::min<std::size_t>(left, 1 + random() % longest)));
     }
     this->Counts.Add(this->Of);
   }
 
   std::vector<std::uint8_t> Payload() const
   {
-    return SymbolTables(this->Counts).Encode(this->Of, this->Extra, this->Rows);
+    return SymbolTables(this->Counts).Encode(this->Of, this->Extra, this->Runs);
   }
 
   std::vector<std::uint32_t> DecodeTables() const
@@ -53,53 +57,33 @@ struct Tokens
   std::vector<std::uint16_t> Of;
   std::vector<std::uint32_t> Extra;
   std::vector<std::uint32_t> Codes;
-  std::vector<std::uint8_t> Rows;
+  std::vector<std::uint16_t> Runs;
   ContextCounts Counts;
 };
 
-/// Zigzag code of an entry.
-std::uint32_t CodeOf(SymbolReader& reader, std::uint32_t entry)
-{
-  if ((entry & residual::EscapeFlag) != 0)
-  {
-    return residual::Zigzag(reader.Long(entry));
-  }
-  const std::int32_t residual = static_cast<std::int32_t>(entry) >> residual::ResidualShift;
-  EXPECT_EQ(entry >> residual::MagnitudeShift & residual::MagnitudeMask,
-    residual::Magnitude(residual::Zigzag(residual)));
-  return residual::Zigzag(residual);
-}
-
-/// All codes that a reader gives; every third row of one symbol without extra bits by itself.
-/// @param Step distance of the row's entries in memory
-template <int Step>
+/// All codes that a reader gives.
 std::vector<std::uint32_t> ReadAll(SymbolReader& reader, const Tokens& tokens)
 {
   std::vector<std::uint32_t> codes;
   std::size_t begin = 0;
-  for (const std::uint8_t row : tokens.Rows)
+  for (const std::uint16_t run : tokens.Runs)
   {
-    if (row == 1 && (tokens.Of[begin] & 0xff) < residual::DirectSymbols && begin % 3 == 0)
+    // Contexts differ within a run by what is added to the first one.
+    std::vector<std::uint16_t> contexts;
+    std::vector<std::int8_t> tops(run);
+    for (std::size_t i = 0; i < run; ++i)
     {
-      codes.push_back(CodeOf(reader, reader.One(tokens.Of[begin++] >> 8)));
-      continue;
+      contexts.push_back(static_cast<std::uint16_t>(
+        (static_cast<unsigned>(tokens.Of[begin + i]) >> 8) % ContextsOfARun << tans::TableBits));
     }
-    std::vector<std::uint8_t> contexts(static_cast<std::size_t>(row) * Step);
-    std::vector<std::uint32_t> entries(static_cast<std::size_t>(row) * Step);
-    for (std::size_t i = 0; i < row; ++i)
+    HWY_NAMESPACE::ReadRun(reader, 0, contexts.data(), static_cast<int>(run), tops.data());
+    for (const std::int8_t top : tops)
     {
-      contexts[i * Step] = static_cast<std::uint8_t>(tokens.Of[begin + i] >> 8);
+      codes.push_back(residual::Zigzag(top < residual::EscapeTop
+          ? top
+          : reader.Long(static_cast<std::uint32_t>(top - residual::EscapeTop))));
     }
-    const bool escapes = HWY_NAMESPACE::ReadRow<Step>(
-      reader, 0, contexts.data(), static_cast<int>(row), entries.data());
-    bool has = false;
-    for (std::size_t i = 0; i < row; ++i)
-    {
-      has = has || (entries[i * Step] & residual::EscapeFlag) != 0;
-      codes.push_back(CodeOf(reader, entries[i * Step]));
-    }
-    EXPECT_EQ(escapes, has);
-    begin += row;
+    begin += run;
   }
   return codes;
 }
@@ -114,17 +98,10 @@ TEST(Symbols, ComeBack)
     lanes |= 1 << (payload[0] & 3);
     const auto decode = tokens.DecodeTables();
     SymbolReader reader;
-    for (int step = 1; step <= 4; step *= 2)
-    {
-      reader.Open(decode.data(), payload.data(), payload.size(), payload.size());
-      EXPECT_FALSE(reader.AtEnd() && count > 8);
-      ASSERT_EQ(step == 1     ? ReadAll<1>(reader, tokens)
-                  : step == 2 ? ReadAll<2>(reader, tokens)
-                              : ReadAll<4>(reader, tokens),
-        tokens.Codes)
-        << count;
-      EXPECT_TRUE(reader.AtEnd());
-    }
+    reader.Open(decode.data(), payload.data(), payload.size(), payload.size());
+    EXPECT_FALSE(reader.AtEnd() && count > 8);
+    ASSERT_EQ(ReadAll(reader, tokens), tokens.Codes) << count;
+    EXPECT_TRUE(reader.AtEnd());
   }
   EXPECT_EQ(lanes, 15) << "some number of lanes never came";
 }
@@ -138,7 +115,7 @@ TEST(Symbols, MissingAndSuperfluousBytesAreNoticed)
   {
     SymbolReader reader;
     reader.Open(decode.data(), payload.data(), payload.size(), payload.size());
-    (void)ReadAll<1>(reader, tokens);
+    (void)ReadAll(reader, tokens);
     return reader.AtEnd();
   };
   EXPECT_TRUE(endsWell(good));
@@ -164,7 +141,7 @@ TEST(Symbols, ReadersAreUsedAgain)
     const std::vector<std::uint8_t> payload = tokens->Payload();
     const auto decode = tokens->DecodeTables();
     reader.Open(decode.data(), payload.data(), payload.size(), payload.size());
-    ASSERT_EQ(ReadAll<1>(reader, *tokens), tokens->Codes);
+    ASSERT_EQ(ReadAll(reader, *tokens), tokens->Codes);
     EXPECT_TRUE(reader.AtEnd());
   }
 }

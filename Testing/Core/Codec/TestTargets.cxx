@@ -50,16 +50,19 @@ TEST(Targets, AllOfThemGiveTheSameBits)
   {
     modes.push_back(block::ModeOf(mode));
   }
-  for (const int edge : { 8, 16, 32, 64 })
+  for (const int edge : { 8, 16, 32, 64, -16, -32 })
   {
-    const MixedPlanes planes({ edge + 5, edge + 1, edge == 64 ? 9 : 2 * edge }, edge, 11);
+    const bool narrow = edge < 0;
+    const int size = std::abs(edge);
+    MixedPlanes planes({ size + 5, size + 1, size == 64 ? 9 : 2 * size }, size, 11);
+    const PlaneToEncode plane = narrow ? planes.NarrowWith(modes, true) : planes.With(modes, true);
     EncodedPlane first;
     for (const std::int64_t target : targets)
     {
       SCOPED_TRACE(std::string(hwy::TargetName(target)) + ", edge " + std::to_string(edge));
       const OnlyTarget only(target);
       ASSERT_EQ(hwy::SupportedTargets() & target, target);
-      const EncodedPlane encoded = EncodeWhole(planes.With(modes, true));
+      const EncodedPlane encoded = EncodeWhole(plane);
       for (std::int64_t i = 0; i < planes.Target.BlockCount(); ++i)
       {
         const glm::ivec3 block = BlockAt(planes.Target, i);

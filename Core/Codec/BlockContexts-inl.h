@@ -1,0 +1,147 @@
+// Included once per SIMD target: see BlockDecoder.cxx and BlockEncoder.cxx.
+#if defined(banyan_Codec_BlockContexts_inl_h) == defined(HWY_TARGET_TOGGLE)
+#ifdef banyan_Codec_BlockContexts_inl_h
+#undef banyan_Codec_BlockContexts_inl_h
+#else
+#define banyan_Codec_BlockContexts_inl_h
+#endif
+
+#include "Codec/BlockPasses-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace banyan::HWY_NAMESPACE
+{
+
+/// Sum of the magnitudes of residuals around that are known when a slice is coded: those at and beside
+/// both ends of the interpolation, and those of the slice that the same pass coded before, which count
+/// most. At most 26 times 8.
+/// @param m lane First + at of a row
+template <class P, class Edge>
+HWY_INLINE ByteVector RoughnessOf(const std::uint8_t* m, const Edge& edge, const RowPlace& place)
+{
+  const block::Shape<P::D> shape{ edge() };
+  constexpr int s = P::S;
+  const auto load = [m](std::ptrdiff_t offset) { return LoadVector<ByteVector>(m + offset); };
+  const auto sides = [&](std::ptrdiff_t offset, std::ptrdiff_t distance)
+  { return load(offset - distance) + load(offset + distance); };
+  // Beyond the last row nothing of this block is known: the other side stands for it.
+  const auto ahead = [&](int position, int step, std::ptrdiff_t gap)
+  { return position + step < edge() ? gap : -gap; };
+  const std::ptrdiff_t y = shape.Y();
+  const std::ptrdiff_t z = shape.ZM();
+  ByteVector sum;
+  if (P::Axis == 0)
+  {
+    const ByteVector ends = sides(0, s);
+    sum = ends + ends;
+    if (P::D > 1)
+    {
+      const std::ptrdiff_t gap = 2 * s * y;
+      sum += sides(-gap, s) + sides(ahead(place.Y, 2 * s, gap), s);
+    }
+    if (P::D > 2)
+    {
+      const std::ptrdiff_t gap = 2 * s * z;
+      sum += sides(-gap, s) + sides(ahead(place.Z, 2 * s, gap), s);
+    }
+  }
+  else
+  {
+    const std::ptrdiff_t gap = s * (P::Axis == 1 ? y : z);
+    const std::ptrdiff_t next = ahead(P::Axis == 1 ? place.Y : place.Z, s, gap);
+    const ByteVector ends = load(-gap) + load(next);
+    sum = ends + ends + sides(-gap, s) + sides(next, s);
+    if (P::D > 2)
+    {
+      const std::ptrdiff_t across = P::Axis == 1 ? 2 * s * z : s * y;
+      const std::ptrdiff_t beside =
+        P::Axis == 1 ? ahead(place.Z, 2 * s, across) : ahead(place.Y, s, across);
+      sum += load(-gap - across) + load(next - across) + load(-gap + beside) + load(next + beside);
+    }
+  }
+  if (P::D == 1)
+  {
+    return sum;
+  }
+  if ((P::D == 2 ? place.Y : place.Z) < 2 * s)
+  {
+    return sum + sum; // the first slice
+  }
+  const std::ptrdiff_t before = 2 * s * (P::D == 2 ? y : z);
+  ByteVector near = sides(-before, P::Step);
+  if (P::D > 2)
+  {
+    constexpr int step = P::RowStep;
+    const std::ptrdiff_t gap = step * y;
+    const std::ptrdiff_t up = ahead(place.Y, step, gap);
+    near += load(-before + (place.Y >= step ? -gap : up)) + load(-before + up);
+  }
+  const ByteVector same = load(-before);
+  const ByteVector twice = same + near;
+  return sum + twice + twice + (same + same) + (same + same);
+}
+
+/// Classes of roughness, 0 to 7.
+HWY_INLINE ByteVector ClassesOf(ByteVector sum)
+{
+  ByteVector result{};
+  for (const std::uint8_t limit : { 0, 5, 12, 22, 36, 56, 90 })
+  {
+    result -= reinterpret_cast<ByteVector>(sum > limit); // -1 where it holds
+  }
+  return result;
+}
+
+HWY_INLINE bool AnyOf(ByteVector v)
+{
+  std::uint64_t words[2];
+  std::memcpy(words, &v, sizeof(v));
+  return (words[0] | words[1]) != 0;
+}
+
+/// Every Step-th lane, side by side from lane 0 on.
+template <int Step>
+HWY_INLINE ByteVector Compressed(ByteVector v)
+{
+  if (Step == 2)
+  {
+    return __builtin_shuffle(
+      v, ByteVector{ 0, 2, 4, 6, 8, 10, 12, 14, 0, 2, 4, 6, 8, 10, 12, 14 });
+  }
+  if (Step == 4)
+  {
+    return __builtin_shuffle(v, ByteVector{ 0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12 });
+  }
+  return v;
+}
+
+/// The other way round; lanes between hold anything.
+template <int Step, class Vector>
+HWY_INLINE Vector Expanded(Vector v)
+{
+  if (Step == 2)
+  {
+    return __builtin_shuffle(v, Vector{ 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7 });
+  }
+  if (Step == 4)
+  {
+    return __builtin_shuffle(v, Vector{ 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3 });
+  }
+  return v;
+}
+
+/// About 2 log2(1 + |r|): sums of these say how rough the neighbourhood is, over any scale. From 15 on
+/// it grows no more.
+HWY_INLINE ByteVector MagnitudesOf(SignedByteVector residuals)
+{
+  const SignedByteVector size = residuals < 0 ? -residuals : residuals;
+  const SignedByteVector most = SignedByteVector{} + std::int8_t{ 15 };
+  const SignedByteVector index = size < most ? size : most;
+  return __builtin_shuffle(ByteVector{ 0, 2, 3, 4, 5, 5, 6, 6, 6, 7, 7, 7, 7, 8, 8, 8 },
+    reinterpret_cast<ByteVector>(index));
+}
+
+} // namespace banyan::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,289 @@
+// Included once per SIMD target: see BlockEncoder.cxx.
+#if defined(banyan_Codec_SliceEncoder_inl_h) == defined(HWY_TARGET_TOGGLE)
+#ifdef banyan_Codec_SliceEncoder_inl_h
+#undef banyan_Codec_SliceEncoder_inl_h
+#else
+#define banyan_Codec_SliceEncoder_inl_h
+#endif
+
+#include "Codec/BlockContexts-inl.h"
+#include "Codec/BlockEncoder.h"
+#include "Codec/Residual.h"
+
+#include <vector>
+
+HWY_BEFORE_NAMESPACE();
+namespace banyan::HWY_NAMESPACE
+{
+
+/// Nearest multiples of a bin. The bin is odd, so nothing lies half way, and the arithmetic is far more
+/// exact than what is left to the next half.
+HWY_INLINE Numbers<std::int16_t>::Signed Quantize(
+  Numbers<std::int16_t>::Signed rest, std::int16_t bin)
+{
+  typedef float Floats __attribute__((vector_size(64)));
+  constexpr float rounder = 12582912.0f; // 1.5 * 2^23: adding it rounds
+  const Floats bins = __builtin_convertvector(rest, Floats) * (1.0f / bin);
+  return __builtin_convertvector(__builtin_convertvector((bins + rounder) - rounder,
+                                   Numbers<std::int32_t>::Signed),
+    Numbers<std::int16_t>::Signed);
+}
+HWY_INLINE Numbers<std::int32_t>::Signed Quantize(
+  Numbers<std::int32_t>::Signed rest, std::int32_t bin)
+{
+  typedef double Doubles __attribute__((vector_size(128)));
+  constexpr double rounder = 6755399441055744.0; // 1.5 * 2^52
+  const Doubles bins = __builtin_convertvector(rest, Doubles) * (1.0 / bin);
+  return __builtin_convertvector(
+    (bins + rounder) - rounder, Numbers<std::int32_t>::Signed);
+}
+
+/// Quantizes the residuals of rows, and sets rows and magnitudes to what they decode to.
+template <class P, class Edge, class Number>
+struct RowQuantizer
+{
+  using V = Numbers<Number>;
+  using Vector = typename V::Unsigned;
+  using Signed = typename V::Signed;
+
+  Unit<Number, P::D>& Of;
+  const Edge& B;
+  Interpolation By;
+  const Number* Target; ///< same layout as the unit's samples, what they are to become
+  Number Bin;
+
+  /// Calls body(residuals of Width lanes, others 0; lane of the pass where they begin; classes).
+  /// @return all residuals, or-ed
+  template <class Body>
+  HWY_INLINE bool Row(const RowPlace& place, bool rough, Body&& body) const
+  {
+    const int left = this->B() - P::First;
+    const int lanes = place.Coded * P::Step;
+    Number* w = this->Of.W + place.W + P::First;
+    const Number* target = this->Target + place.W + P::First;
+    std::uint8_t* m = this->Of.M + place.M + P::First;
+    Signed any{};
+    for (int at = 0; at < left; at += Width)
+    {
+      const Vector prediction = Predict<P>(this->Of.W, this->B, place, at, this->By);
+      Signed residual{};
+      if (at < lanes)
+      {
+        residual = Quantize(reinterpret_cast<Signed>(V::Load(target + at) - prediction), this->Bin);
+        residual &= LaneMask<P, Signed>(lanes - at);
+        ByteVector classes{};
+        if (rough)
+        {
+          classes = ClassesOf(RoughnessOf<P>(m + at, this->B, place));
+        }
+        body(residual, at / P::Step, classes);
+      }
+      any |= residual;
+      SetLanes<P>(prediction + reinterpret_cast<Vector>(residual) *
+                                 static_cast<std::make_unsigned_t<Number>>(this->Bin),
+        left - at, w + at);
+    }
+    // Afterwards: a row's magnitudes are no context of its own.
+    const Signed zero{};
+    const auto some = any != zero;
+    std::uint64_t words[sizeof(some) / 8];
+    std::memcpy(words, &some, sizeof(some));
+    std::uint64_t all = 0;
+    for (const std::uint64_t word : words)
+    {
+      all |= word;
+    }
+    return all != 0;
+  }
+
+  /// Whether anything around a row is rough.
+  HWY_INLINE bool Rough(const RowPlace& place) const
+  {
+    const int lanes = place.Coded * P::Step;
+    const std::uint8_t* m = this->Of.M + place.M + P::First;
+    ByteVector any{};
+    for (int at = 0; at < lanes; at += Width)
+    {
+      any |= RoughnessOf<P>(m + at, this->B, place) & LaneMask<P, ByteVector>(lanes - at);
+    }
+    return AnyOf(any);
+  }
+
+  /// Sets the magnitudes of lanes from `First + at` on.
+  HWY_INLINE void SetMagnitudes(const RowPlace& place, int at, Signed residual) const
+  {
+    const Signed most = Signed{} + Number{ 15 };
+    residual = residual > most ? most : residual;
+    residual = residual < -most ? -most : residual;
+    const ByteVector size =
+      MagnitudesOf(__builtin_convertvector(residual, SignedByteVector));
+    std::uint8_t* m = this->Of.M + place.M + P::First + at;
+    const ByteVector mask = LaneMask<P, ByteVector>(this->B() - P::First - at);
+    StoreVector((size & mask) | (LoadVector<ByteVector>(m) & ~mask), m);
+  }
+};
+
+/// What is written down of a block's units.
+struct UnitTokens
+{
+  explicit UnitTokens(int edge)
+    : Tokens(static_cast<std::size_t>(edge * edge * edge + 6 * edge * edge + 64))
+    , Extra(Tokens.size())
+    , Slice(static_cast<std::size_t>(edge * std::max(edge, 3) + 2 * Width))
+  {
+  }
+
+  // Every sample has a token at most, and every row a flag.
+  std::vector<std::uint16_t> Tokens;
+  std::vector<std::uint32_t> Extra;
+  std::vector<std::uint16_t> Slice; ///< tokens of a slice
+  std::vector<std::uint16_t> Runs;
+  std::size_t TokenCount = 0, ExtraCount = 0;
+
+  /// To be called first: what came before may have ended early.
+  void Clear()
+  {
+    this->TokenCount = 0;
+    this->ExtraCount = 0;
+    this->Runs.clear();
+  }
+
+  void AddRun(const std::uint16_t* tokens, std::size_t count)
+  {
+    if (count > 0)
+    {
+      std::copy_n(tokens, count, this->Tokens.data() + this->TokenCount);
+      this->TokenCount += count;
+      this->Runs.push_back(static_cast<std::uint16_t>(count));
+    }
+  }
+
+  void AppendTo(BlockTokens& block) const
+  {
+    const auto count = static_cast<std::ptrdiff_t>(this->TokenCount);
+    block.Tokens.insert(block.Tokens.end(), this->Tokens.begin(), this->Tokens.begin() + count);
+    block.Extra.insert(block.Extra.end(), this->Extra.begin(),
+      this->Extra.begin() + static_cast<std::ptrdiff_t>(this->ExtraCount));
+    block.Runs.insert(block.Runs.end(), this->Runs.begin(), this->Runs.end());
+  }
+};
+
+/// Quantizes the residuals of slices and writes them down.
+template <class P, class Edge, class Number>
+struct SliceEncoder
+{
+  using Signed = typename Numbers<Number>::Signed;
+
+  RowQuantizer<P, Edge, Number> Rows;
+  UnitTokens& Out;
+
+  HWY_INLINE void Run() const
+  {
+    const Edge& edge = this->Rows.B;
+    const int slices = P::EndOfSlices(edge());
+    for (int slice = P::FirstSlice; slice < slices; slice += P::SliceStep)
+    {
+      std::uint16_t flags[64];
+      std::size_t flagCount = 0;
+      std::size_t count = 0;
+      bool any = false;
+      for (int row = P::FirstRow; row < P::EndOfRows(edge()); row += P::RowStep)
+      {
+        const RowPlace place = PlaceOf<P>(this->Rows.Of, edge, slice, row);
+        const bool rough = place.Coded > 0 && this->Rows.Of.Any && this->Rows.Rough(place);
+        const bool coded = this->AddRow(place, rough, this->Out.Slice.data() + count);
+        any = any || coded;
+        if (place.Coded > 0 && !rough)
+        {
+          flags[flagCount++] = static_cast<std::uint16_t>(
+            (residual::FlagContext + P::Band) << 8 | (coded ? 0 : 1));
+        }
+        count += rough || coded ? static_cast<std::size_t>(place.Coded) : 0;
+      }
+      this->Rows.Of.Any = this->Rows.Of.Any || any;
+      this->Out.AddRun(flags, flagCount);
+      this->Out.AddRun(this->Out.Slice.data(), count);
+    }
+  }
+
+private:
+  /// @return whether some residual is not 0
+  HWY_INLINE bool AddRow(const RowPlace& place, bool rough, std::uint16_t* tokens) const
+  {
+    typedef std::uint16_t Tokens __attribute__((vector_size(32)));
+    const std::size_t extraBefore = this->Out.ExtraCount;
+    const bool any = this->Rows.Row(place, rough,
+      [&](Signed residual, int lane, ByteVector classes)
+      {
+        this->Rows.SetMagnitudes(place, lane * P::Step, residual);
+        const auto codes = reinterpret_cast<typename Numbers<Number>::Unsigned>(
+          (residual << 1) ^ (residual >> (8 * sizeof(Number) - 1)));
+        const auto large = codes >= static_cast<std::make_unsigned_t<Number>>(residual::DirectSymbols);
+        constexpr std::uint16_t context = P::Band * residual::Classes;
+        Tokens each;
+        if constexpr (sizeof(Number) == 2)
+        {
+          each = codes;
+        }
+        else
+        {
+          each = __builtin_convertvector(codes, Tokens);
+        }
+        const Tokens contexts = (__builtin_convertvector(classes, Tokens) + context) << 8;
+        StoreVector(Squeezed(contexts | each), tokens + lane);
+        std::uint64_t words[sizeof(large) / 8];
+        std::memcpy(words, &large, sizeof(large));
+        std::uint64_t all = 0;
+        for (const std::uint64_t word : words)
+        {
+          all |= word;
+        }
+        if (HWY_UNLIKELY(all != 0))
+        {
+          this->AddLong(place, residual, contexts, lane, tokens);
+        }
+      });
+    if (!any)
+    {
+      this->Out.ExtraCount = extraBefore;
+    }
+    return any;
+  }
+
+  /// Every Step-th token.
+  template <class Vector>
+  static HWY_INLINE Vector Squeezed(Vector v)
+  {
+    if (P::Step == 2)
+    {
+      return __builtin_shuffle(v, Vector{ 0, 2, 4, 6, 8, 10, 12, 14, 0, 2, 4, 6, 8, 10, 12, 14 });
+    }
+    if (P::Step == 4)
+    {
+      return __builtin_shuffle(v, Vector{ 0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12 });
+    }
+    return v;
+  }
+
+  /// Tokens of a vector in which some symbols have extra bits.
+  template <class Contexts>
+  HWY_NOINLINE void AddLong(const RowPlace& place, const Signed& residuals, const Contexts& contexts,
+    int lane, std::uint16_t* tokens) const
+  {
+    for (int x = 0; x < Width && lane + x / P::Step < place.Coded; x += P::Step)
+    {
+      std::uint32_t extra = 0;
+      const int symbol = residual::SymbolOf(residual::Zigzag(residuals[x]), extra);
+      tokens[lane + x / P::Step] = static_cast<std::uint16_t>(contexts[x] | symbol);
+      if (symbol >= residual::DirectSymbols)
+      {
+        this->Out.Extra[this->Out.ExtraCount++] = extra;
+      }
+    }
+  }
+};
+
+} // namespace banyan::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,106 @@
+// Included once per SIMD target: see BlockEncoder.cxx.
+#if defined(banyan_Codec_SliceTrial_inl_h) == defined(HWY_TARGET_TOGGLE)
+#ifdef banyan_Codec_SliceTrial_inl_h
+#undef banyan_Codec_SliceTrial_inl_h
+#else
+#define banyan_Codec_SliceTrial_inl_h
+#endif
+
+#include "Codec/SliceEncoder-inl.h"
+
+#ifndef banyan_Codec_SliceTrial_once
+#define banyan_Codec_SliceTrial_once
+namespace banyan
+{
+
+constexpr int SmoothRowCost = 8;     ///< of the flag of a row of zeros, in 256ths of a bit
+constexpr int UnexpectedRowCost = 1400;
+
+} // namespace banyan
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace banyan::HWY_NAMESPACE
+{
+
+/// Encodes slices as SliceEncoder does, and only adds up what they would cost.
+template <class P, class Edge, class Number>
+struct SliceTrial
+{
+  using Signed = typename Numbers<Number>::Signed;
+
+  RowQuantizer<P, Edge, Number> Rows;
+
+  /// In 256ths of a bit, about.
+  HWY_INLINE std::int64_t Run() const
+  {
+    const Edge& edge = this->Rows.B;
+    std::int64_t cost = 0;
+    const int slices = P::EndOfSlices(edge());
+    for (int slice = P::FirstSlice; slice < slices; slice += P::SliceStep)
+    {
+      for (int row = P::FirstRow; row < P::EndOfRows(edge()); row += P::RowStep)
+      {
+        const RowPlace place = PlaceOf<P>(this->Rows.Of, edge, slice, row);
+        const bool rough = place.Coded > 0 && this->Rows.Rough(place);
+        std::int64_t symbols = 0;
+        const bool any = this->Rows.Row(place, rough,
+          [&](Signed residual, int lane, ByteVector classes)
+          {
+            this->Rows.SetMagnitudes(place, lane * P::Step, residual);
+            symbols += CostOf(
+              residual, classes, LaneMask<P, Numbers<std::int16_t>::Signed>((place.Coded - lane) * P::Step));
+          });
+        if (rough || any)
+        {
+          cost += symbols;
+        }
+        if (place.Coded > 0 && !rough)
+        {
+          cost += any ? UnexpectedRowCost : SmoothRowCost;
+        }
+      }
+    }
+    return cost;
+  }
+
+private:
+  /// About how many 256ths of a bit residuals take in their classes of roughness: as if they fell off
+  /// geometrically, with means from 0.02 to 5. Integers, so that every machine chooses the same.
+  static HWY_INLINE std::int64_t CostOf(
+    Signed residual, ByteVector classes, Numbers<std::int16_t>::Signed lanes)
+  {
+    using Costs = Numbers<std::int16_t>::Signed;
+    const Signed most = Signed{} + Number{ 16 }; // residuals beyond cost little more
+    Signed size = residual < 0 ? -residual : residual;
+    size = size < most ? size : most;
+    Costs sizes;
+    if constexpr (sizeof(Number) == 2)
+    {
+      sizes = size;
+    }
+    else
+    {
+      sizes = __builtin_convertvector(size, Costs);
+    }
+    // Quarters of the costs, which bytes hold.
+    const ByteVector zero = __builtin_shuffle(
+      ByteVector{ 2, 9, 22, 44, 74, 106, 150, 214, 0, 0, 0, 0, 0, 0, 0, 0 }, classes);
+    const ByteVector step = __builtin_shuffle(
+      ByteVector{ 213, 138, 98, 67, 45, 30, 18, 9, 0, 0, 0, 0, 0, 0, 0, 0 }, classes);
+    const Costs cost = (__builtin_convertvector(zero, Costs) * std::int16_t{ 4 } +
+                         __builtin_convertvector(step, Costs) * std::int16_t{ 8 } * sizes) &
+                       lanes;
+    std::int32_t sum = 0;
+    for (int x = 0; x < Width; ++x)
+    {
+      sum += cost[x];
+    }
+    return sum;
+  }
+};
+
+} // namespace banyan::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
