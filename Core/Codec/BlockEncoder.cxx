@@ -33,12 +33,14 @@ struct BlockCoder
       , Interior(edge)
       , InteriorTarget(edge)
       , Tokens(edge)
+      , Boxes(3 * static_cast<std::size_t>((edge + 1) * (edge + 1) * (edge + 1)))
     {
     }
     block::Scratch<Number, 1> Edges, EdgesTarget;
     block::Scratch<Number, 2> Faces, FacesTarget;
     block::Scratch<Number, 3> Interior, InteriorTarget;
     UnitTokens Tokens;
+    std::vector<Number> Boxes; ///< of the target and both references
   };
 
   Edge B;
@@ -261,6 +263,49 @@ struct BlockCoder
     return total;
   }
 
+  /// The samples that a block is chosen by, side by side: they are looked at many times.
+  struct Boxes
+  {
+    View<const Number> Target, A, B;
+    References<Number> ReferencesOf(block::Reference from) const
+    {
+      return { from, this->A, this->B };
+    }
+  };
+
+  Boxes GatherBoxes() const
+  {
+    const PlaneToEncode& plane = this->Plane();
+    const std::int64_t n = this->B() + 1;
+    Number* to = this->Work.Boxes.data();
+    const auto gather = [&](const PlaneNumbers* from)
+    {
+      const View<const Number> box{ to, { 1, n, n * n } };
+      if (from != nullptr)
+      {
+        const View<const Sample> samples = this->ViewOf(*from);
+        for (int z = 0; z < n; ++z)
+        {
+          for (int y = 0; y < n; ++y, to += n)
+          {
+            const Sample* row = samples.Row(y, z);
+            __builtin_prefetch(row + samples.Stride.z);
+            for (int x = 0; x < n; ++x)
+            {
+              to[x] = static_cast<Number>(row[x]);
+            }
+          }
+        }
+      }
+      return box;
+    };
+    Boxes boxes;
+    boxes.Target = gather(plane.Target);
+    boxes.A = gather(plane.A);
+    boxes.B = plane.B == plane.A ? boxes.A : gather(plane.B);
+    return boxes;
+  }
+
   void Choose() const
   {
     const PlaneToEncode& plane = this->Plane();
@@ -273,7 +318,7 @@ struct BlockCoder
     {
       return;
     }
-    const View<const Sample> wanted = this->ViewOf(*plane.Target);
+    const Boxes boxes = this->GatherBoxes();
     block::Scratch<Number, 3>& scratch = this->Work.Interior;
     std::vector<std::pair<double, block::Mode>> costs;
     block::Reference loaded = block::Reference::None;
@@ -285,7 +330,7 @@ struct BlockCoder
       }
       if (costs.empty() || mode.From != loaded)
       {
-        LoadUnit<3>(wanted, this->ReferencesOf(mode.From), this->B, true, scratch.W());
+        LoadUnit<3>(boxes.Target, boxes.ReferencesOf(mode.From), this->B, true, scratch.W());
         loaded = mode.From;
       }
       costs.emplace_back(this->Estimate(scratch.W(), mode.By), mode);
@@ -296,7 +341,7 @@ struct BlockCoder
     costs.resize(std::min(costs.size(), tried));
     for (auto& [cost, mode] : costs)
     {
-      cost = costs.size() > 1 ? this->TrialCost(wanted, mode) : 0.0;
+      cost = costs.size() > 1 ? this->TrialCost(boxes, mode) : 0.0;
     }
     const auto best = std::min_element(costs.begin(), costs.end(),
       [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -305,13 +350,13 @@ struct BlockCoder
 
   /// What the interior of a block would cost, with borders as they are to be in place of what they
   /// will have been decoded to.
-  double TrialCost(const View<const Sample>& wanted, const block::Mode& mode) const
+  double TrialCost(const Boxes& boxes, const block::Mode& mode) const
   {
     block::Scratch<Number, 3>& scratch = this->Work.Interior;
     block::Scratch<Number, 3>& target = this->Work.InteriorTarget;
-    const References<Sample> from = this->ReferencesOf(mode.From);
-    LoadUnit<3>(wanted, from, this->B, true, target.W());
-    LoadUnit<3>(wanted, from, this->B, false, scratch.W());
+    LoadUnit<3>(boxes.Target, boxes.ReferencesOf(mode.From), this->B, true, target.W());
+    const block::Shape<3> shape{ this->B() };
+    std::copy_n(target.W(), (this->B() + 1) * shape.Z(), scratch.W());
     scratch.ClearMagnitudes();
     Unit<Number, 3> unit{ scratch.W(), scratch.M(),
       { this->Plane().Target->Samples - 1 - this->Position * this->B() }, true };

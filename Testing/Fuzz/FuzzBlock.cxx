@@ -1,5 +1,6 @@
 #include "Base/Error.h"
 #include "Codec/BlockDecoder.h"
+#include "Codec/BlockScratch.h"
 #include "Codec/BlockModes.h"
 #include "Codec/SymbolWriter.h"
 #include "Fuzz.h"
@@ -39,16 +40,46 @@ const std::vector<std::uint32_t>& TablesOf(unsigned kind)
   return all[kind % 8];
 }
 
-/// Samples that are anything between small numbers and the ends of 32 bits.
-std::vector<std::int32_t> Samples(std::size_t count, std::uint32_t seed)
+/// Samples that are anything between small numbers and the ends of their type.
+template <class Number>
+std::vector<Number> Samples(std::size_t count, std::uint32_t seed)
 {
-  std::vector<std::int32_t> samples(count);
-  for (std::int32_t& sample : samples)
+  std::vector<Number> samples(count);
+  for (Number& sample : samples)
   {
     seed = seed * 1664525u + 1013904223u;
-    sample = static_cast<std::int32_t>(seed) >> (seed % 8 * 4);
+    sample = static_cast<Number>(static_cast<std::int32_t>(seed) >> (seed % 8 * 4));
   }
   return samples;
+}
+
+/// Decodes twice; what was decoded before must not matter.
+template <class Number>
+void DecodeTwice(int edge, const PlaneCode& plane, const BlockCode (&blocks)[8], std::uint32_t seed)
+{
+  const std::size_t n = static_cast<std::size_t>(edge) + 1;
+  const std::size_t coarse = static_cast<std::size_t>(edge) / 4 + 1;
+  const auto coarseSamples = Samples<Number>(coarse * coarse * coarse, seed);
+  const auto a = Samples<Number>(n * n * n, seed + 1);
+  const auto b = Samples<Number>(n * n * n, seed + 2);
+  BoxCodeOf<Number> code;
+  std::copy(std::begin(blocks), std::end(blocks), std::begin(code.Blocks));
+  code.Coarse = coarseSamples.data();
+  code.A = seed % 5 == 0 ? nullptr : a.data();
+  code.B = seed % 7 == 0 ? nullptr : b.data();
+  for (std::uint32_t axis = 0; axis < 3; ++axis)
+  {
+    const bool given = (seed >> (8 + axis) & 3) == 3 && blocks[1u << axis].Exists;
+    code.Neighbours[axis] = given ? a.data() : nullptr;
+  }
+  std::vector<Number> box(n * n * n);
+  DecodeBox(edge, plane, code, box.data());
+  std::vector<Number> again(n * n * n);
+  DecodeBox(edge, plane, code, again.data());
+  if (again != box)
+  {
+    std::abort();
+  }
 }
 
 } // namespace
@@ -66,13 +97,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   plane.FineBin = in.Take<std::int32_t>();
   plane.Least = in.Take<std::int32_t>();
   plane.Greatest = std::max(plane.Least, in.Take<std::int32_t>());
+  if (head >> 6 == 3)
+  {
+    plane.Least %= 4001;
+    plane.Greatest = plane.Least + (plane.Greatest & 4095); // a lattice of 16 bits
+  }
   const std::uint32_t seed = in.Take<std::uint32_t>();
-  BoxCode code;
+  BlockCode blocks[8];
   std::array<std::vector<std::uint8_t>, 8> payloads;
   std::array<std::size_t, 8> sizes = {};
   for (std::size_t i = 0; i < 8; ++i)
   {
-    BlockCode& block = code.Blocks[i];
+    BlockCode& block = blocks[i];
     const std::uint8_t flags = in.Take<std::uint8_t>();
     block.Exists = i == 0 || (flags & 1) != 0;
     block.Uniform = (flags & 6) == 2;
@@ -89,27 +125,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   {
     // Copies of the exact size, so that reading behind them is noticed.
     payloads[i] = in.Bytes(sizes[i]);
-    code.Blocks[i].Data = payloads[i].data();
-    code.Blocks[i].Bytes = payloads[i].size();
+    blocks[i].Data = payloads[i].data();
+    blocks[i].Bytes = payloads[i].size();
   }
-  const std::size_t n = static_cast<std::size_t>(edge) + 1;
-  const std::size_t coarse = static_cast<std::size_t>(edge) / 4 + 1;
-  const auto coarseSamples = Samples(coarse * coarse * coarse, seed);
-  const auto a = Samples(n * n * n, seed + 1);
-  const auto b = Samples(n * n * n, seed + 2);
-  code.Coarse = coarseSamples.data();
-  code.A = seed % 5 == 0 ? nullptr : a.data();
-  code.B = seed % 7 == 0 ? nullptr : b.data();
-  std::vector<std::int32_t> box(n * n * n);
   try
   {
-    DecodeBox(edge, plane, code, box.data());
-    std::vector<std::int32_t> again(n * n * n);
-    DecodeBox(edge, plane, code, again.data());
-    if (again != box)
+    if (block::Narrow(plane.Least, plane.Greatest))
     {
-      std::abort(); // something depends on what was decoded before
+      DecodeTwice<std::int16_t>(edge, plane, blocks, seed);
     }
+    DecodeTwice<std::int32_t>(edge, plane, blocks, seed);
   }
   catch (const Error&)
   {
