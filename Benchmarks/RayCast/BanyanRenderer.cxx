@@ -1,7 +1,6 @@
 #include "RayCastRenderer.h"
 
 #include "Base/ThreadPool.h"
-#include "Base/Timer.h"
 
 namespace banyan::bench
 {
@@ -46,7 +45,7 @@ public:
   Frame Draw(std::size_t number) override
   {
     Frame frame;
-    const Timer timer;
+    const FrameClock clock;
     if (!this->Source)
     {
       this->Source = std::make_unique<ArrayBrickSource>(this->Scene->Data->Array(), BrickCells,
@@ -56,7 +55,7 @@ public:
     RayStatistics statistics;
     FloatImage image = CastRays(
       scene, *this->Source, scene.DomainCells, ~std::uint64_t{ 0 }, this->Pool, statistics);
-    frame.Seconds = timer.Seconds();
+    clock.StopInto(frame);
     frame.Shown = Rounded(image, this->Scene->Picture);
     frame.Unrounded = std::move(image);
     frame.Samples = statistics.SamplesTaken;

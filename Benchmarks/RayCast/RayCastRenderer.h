@@ -4,6 +4,9 @@
 #include "BenchScene.h"
 #include "Picture.h"
 
+#include "Base/Timer.h"
+
+#include <ctime>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,9 +26,25 @@ struct Setting
 struct Frame
 {
   double Seconds = 0;
+  double ProcessorSeconds = 0; ///< of all threads together
   Picture Shown;
   std::optional<FloatImage> Unrounded; ///< where the renderer has it
   std::optional<std::int64_t> Samples; ///< where the renderer tells
+};
+
+/// Takes the times of a frame.
+class FrameClock
+{
+public:
+  void StopInto(Frame& frame) const
+  {
+    frame.Seconds = this->Wall.Seconds();
+    frame.ProcessorSeconds = static_cast<double>(std::clock() - this->Processor) / CLOCKS_PER_SEC;
+  }
+
+private:
+  Timer Wall;
+  std::clock_t Processor = std::clock();
 };
 
 /// A volume renderer under measurement: ours or a peer.

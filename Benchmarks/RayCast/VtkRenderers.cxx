@@ -1,7 +1,5 @@
 #include "RayCastRenderer.h"
 
-#include "Base/Timer.h"
-
 #include <vtkCamera.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkFixedPointVolumeRayCastMapper.h>
@@ -107,10 +105,10 @@ public:
     this->Renderer->AddVolume(this->Volumes.at(number));
     this->Renderer->ResetCameraClippingRange();
     Frame frame;
-    const Timer timer;
+    const FrameClock clock;
     this->Window->Render();
     this->Window->WaitForCompletion();
-    frame.Seconds = timer.Seconds();
+    clock.StopInto(frame);
     const int size = this->Scene->Picture;
     vtkNew<vtkUnsignedCharArray> pixels;
     constexpr int back = 0;
