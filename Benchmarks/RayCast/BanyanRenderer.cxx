@@ -21,13 +21,9 @@ public:
 
   std::string Name() const override { return "banyan"; }
 
-  std::vector<Setting> SettingsFor(const BenchScene& scene) const override
+  std::vector<Setting> SettingsFor(const BenchScene&) const override
   {
     std::vector<Setting> settings;
-    if (scene.Shaded)
-    {
-      return settings;
-    }
     for (const double distance : { 0.25, 0.5, 1.0, 2.0, 4.0 })
     {
       settings.push_back({ {}, distance });

@@ -67,9 +67,11 @@ RayScene ToRayScene(
     const double part = i / (tableEntries - 1.0);
     transfer.Entries.emplace_back(scene.At(scene.Low + part * (scene.High - scene.Low)));
   }
-  return { RayCamera(projection * view, picture, scene.Center), { glm::ivec2(0), picture },
+  RayScene drawn{ RayCamera(projection * view, picture, scene.Center), { glm::ivec2(0), picture },
     glm::scale(glm::dmat4(1.0), scene.Data->Spacing), { glm::ivec3(0), scene.Data->Samples - 1 },
     std::move(transfer), sampleDistance * scene.Data->VoxelLength(), opacityLimit, {} };
+  drawn.Shading.On = scene.Shaded; // its coefficients are the scene's
+  return drawn;
 }
 
 } // namespace banyan::bench

@@ -61,7 +61,7 @@ struct BenchScene
   void LookFromAfar(double distance);
 };
 
-/// The scene in the ray caster's own words; it has no shading there.
+/// The scene in the ray caster's own words.
 /// @param sampleDistance in voxels
 /// @param opacityLimit see RayScene
 /// @param tableEntries of the transfer function's table

@@ -80,13 +80,17 @@ TEST(RayCastBenchmark, TheConvergedPictureIsTheReferenceIntegrators)
 TEST(RayCastBenchmark, TheRayCasterDrawsTheScene)
 {
   banyan::ThreadPool pool(1);
-  const BenchScene scene = FlatScene(false);
-  const banyan::RayScene drawn = ToRayScene(scene, 0.05, 2.0f);
-  banyan::ArrayBrickSource source(scene.Data->Array(), 16, { 0.0, 1.0 }, pool);
-  banyan::RayStatistics statistics;
-  const banyan::FloatImage image =
-    banyan::CastRays(drawn, source, drawn.DomainCells, 1u << 30, pool, statistics);
-  EXPECT_LT(ErrorOf(image, ConvergedImage(scene, 0.05, pool)).Largest, 1.0);
+  for (const bool shaded : { false, true })
+  {
+    BenchScene scene = FlatScene(false);
+    scene.Shaded = shaded;
+    const banyan::RayScene drawn = ToRayScene(scene, 0.05, 2.0f);
+    banyan::ArrayBrickSource source(scene.Data->Array(), 16, { 0.0, 1.0 }, pool);
+    banyan::RayStatistics statistics;
+    const banyan::FloatImage image =
+      banyan::CastRays(drawn, source, drawn.DomainCells, 1u << 30, pool, statistics);
+    EXPECT_LT(ErrorOf(image, ConvergedImage(scene, 0.05, pool)).Largest, shaded ? 2.0 : 1.0);
+  }
 }
 
 TEST(RayCastBenchmark, LightIsThatOfTheGradientAndTheRay)
