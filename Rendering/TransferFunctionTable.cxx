@@ -60,4 +60,15 @@ TransferFunction MakeTransferFunction(vtkVolumeProperty* property, int entries)
   return function;
 }
 
+RayShading MakeShading(vtkVolumeProperty* property)
+{
+  RayShading shading;
+  shading.On = property->GetShade(0) != 0;
+  shading.Ambient = static_cast<float>(property->GetAmbient(0));
+  shading.Diffuse = static_cast<float>(property->GetDiffuse(0));
+  shading.Specular = static_cast<float>(property->GetSpecular(0));
+  shading.SpecularPower = static_cast<float>(property->GetSpecularPower(0));
+  return shading;
+}
+
 } // namespace banyan

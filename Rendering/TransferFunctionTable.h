@@ -1,7 +1,7 @@
 #ifndef banyan_Rendering_TransferFunctionTable_h
 #define banyan_Rendering_TransferFunctionTable_h
 
-#include "Render/TransferFunction.h"
+#include "Render/RayCaster.h"
 
 class vtkVolumeProperty;
 
@@ -12,6 +12,10 @@ namespace banyan
 /// distance, tabulated over the range of both functions.
 /// @param entries of the table, at least 2
 TransferFunction MakeTransferFunction(vtkVolumeProperty* property, int entries = 4096);
+
+/// Shading of component 0 of a volume property; the light is the viewer's, whatever lights there
+/// are.
+RayShading MakeShading(vtkVolumeProperty* property);
 
 } // namespace banyan
 

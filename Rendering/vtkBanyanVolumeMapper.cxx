@@ -317,6 +317,7 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
     self.Field.DomainCells(), banyan::MakeTransferFunction(volume->GetProperty()),
     this->SampleDistanceVoxels * self.Field.CellSize() };
   scene.Depth = banyan::DepthsOf(pixels);
+  scene.Shading = banyan::MakeShading(volume->GetProperty());
 
   const std::uint64_t bytesBefore = self.Field.BytesRead();
   // Half of the cache: what one batch holds is then never evicted by that batch itself.

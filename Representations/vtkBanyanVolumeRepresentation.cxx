@@ -198,6 +198,11 @@ void vtkBanyanVolumeRepresentation::SetSampleDistanceVoxels(double voxels)
   this->Mapper->SetSampleDistanceVoxels(voxels);
 }
 
+void vtkBanyanVolumeRepresentation::SetShade(bool shade)
+{
+  this->Property->SetShade(shade ? 1 : 0);
+}
+
 void vtkBanyanVolumeRepresentation::SetNumberOfThreads(int threads)
 {
   this->Mapper->SetNumberOfThreads(threads);

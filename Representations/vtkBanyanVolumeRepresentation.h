@@ -39,6 +39,7 @@ public:
 
   /** Distance between samples, in edges of the smallest cell. Default 1. */
   void SetSampleDistanceVoxels(double voxels);
+  void SetShade(bool shade);
 
   /** Threads per process; 0 (default) shares the cores of a machine among its ranks. */
   void SetNumberOfThreads(int threads);

@@ -270,6 +270,27 @@ void HalvingTheStepChangesLittle()
   Check(mapper->GetStatistics()->GetSamplesTaken() > 3 * before / 2, "and takes more samples");
 }
 
+void ShadingChangesColours(const std::string& path)
+{
+  WriteSeries(path, Balls, Samples, 1, 0.0);
+  vtkNew<vtkBanyanSeriesReader> reader;
+  reader->SetFileName(path.c_str());
+  vtkNew<vtkBanyanVolumeMapper> encoded;
+  encoded->SetInputConnection(reader->GetOutputPort());
+  vtkNew<vtkBanyanVolumeMapper> plain;
+  plain->SetInputData(PlainImage(Balls, Samples));
+  const auto draw = [](vtkBanyanVolumeMapper* mapper, bool shade)
+  {
+    Stage stage(mapper);
+    stage.LookAt(Bounds);
+    stage.Volume->GetProperty()->SetShade(shade);
+    return stage.Draw();
+  };
+  const Picture shaded = draw(plain, true);
+  Check(Difference(shaded, draw(plain, false)) > 20, "shading is seen");
+  Check(Difference(shaded, draw(encoded, true)) <= 1, "encoded volumes are shaded like plain ones");
+}
+
 } // namespace
 
 int main()
@@ -285,6 +306,7 @@ int main()
   SmallVolumesDrawWithoutAWord();
   UnusableInputGetsASentence();
   HalvingTheStepChangesLittle();
+  ShadingChangesColours(folder / "shaded.banyan");
   std::cout << Failures() << " checks failed\n";
   return Failures();
 }
