@@ -81,6 +81,46 @@ HWY_INLINE ByteVector RoughnessOf(const std::uint8_t* m, const Edge& edge, const
   return sum + twice + twice + (same + same) + (same + same);
 }
 
+/// What the residuals at the same place in the two slices before, of the same pass, hint at: its sign is
+/// likely that of the residual. 0 where there are none, or the place is not rough.
+/// @param r lane First + at of a row
+template <class P, class Edge>
+HWY_INLINE SignedByteVector HintOf(
+  const std::int8_t* r, const Edge& edge, const RowPlace& place, ByteVector roughness)
+{
+  SignedByteVector hint{};
+  const int slice = P::D == 2 ? place.Y : place.Z;
+  if (P::D == 1 || slice < 2 * P::S)
+  {
+    return hint;
+  }
+  const block::Shape<P::D> shape{ edge() };
+  const std::ptrdiff_t before = 2 * P::S * (P::D == 2 ? shape.Y() : shape.ZM());
+  const auto near = LoadVector<SignedByteVector>(r - before);
+  hint = near + near;
+  if (slice >= 4 * P::S)
+  {
+    hint += LoadVector<SignedByteVector>(r - 2 * before);
+  }
+  return hint & reinterpret_cast<SignedByteVector>(roughness != std::uint8_t{ 0 });
+}
+
+/// Sets Width lanes of kept residuals.
+/// @param mask -1 for those that are set
+HWY_INLINE void KeepResiduals(SignedByteVector residuals, ByteVector mask, std::int8_t* to)
+{
+  const auto lanes = reinterpret_cast<SignedByteVector>(mask);
+  StoreVector((residuals & lanes) | (LoadVector<SignedByteVector>(to) & ~lanes), to);
+}
+
+template <class Vector, class Element>
+HWY_INLINE Vector Limited(Vector v, Element most)
+{
+  const Vector high = Vector{} + most;
+  v = v < high ? v : high;
+  return v > -high ? v : -high;
+}
+
 /// Classes of roughness, 0 to 7.
 HWY_INLINE ByteVector ClassesOf(ByteVector sum)
 {

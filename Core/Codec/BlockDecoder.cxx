@@ -191,7 +191,7 @@ struct BoxDecoder
         }
       }
     };
-    Unit<Number, D> unit{ scratch.W(), scratch.M(), {}, any };
+    Unit<Number, D> unit{ scratch.W(), scratch.M(), scratch.R(), {}, any };
     for (int number = 0; number < UnitsOf<D>; ++number)
     {
       unit.Limit[number] = InOrderOf<D>(AxesOf<D>(number), block.Limit, this->B());
@@ -268,7 +268,7 @@ struct BoxDecoder
 
   bool Edges(int owner, SymbolReader* symbols) const
   {
-    this->Work.Edges.ClearMagnitudes();
+    this->Work.Edges.Clear();
     return this->template DecodeUnits<1>(owner, symbols, this->Work.Edges, false);
   }
 
@@ -286,7 +286,7 @@ struct BoxDecoder
   {
     if (symbols != nullptr)
     {
-      this->Work.Faces.ClearMagnitudes();
+      this->Work.Faces.Clear();
       block::PlaceEdges(this->B(), edges, this->Work.Faces.M());
     }
     return this->template DecodeUnits<2>(owner, symbols, this->Work.Faces, any);
@@ -296,7 +296,7 @@ struct BoxDecoder
   {
     if (symbols != nullptr)
     {
-      this->Work.Interior.ClearMagnitudes();
+      this->Work.Interior.Clear();
       block::PlaceFaces(this->B(), this->Work.Faces.M(), this->Work.Interior.M());
     }
     this->template DecodeUnits<3>(0, symbols, this->Work.Interior, any);

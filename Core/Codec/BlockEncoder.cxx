@@ -95,7 +95,7 @@ struct BlockCoder
     const View<Sample> decoded = this->ViewOf(*this->Job.Decoded);
     const View<const Sample> wanted = this->ViewOf(*plane.Target);
     const glm::ivec3 blocks = this->Job.Decoded->Blocks;
-    Unit<Number, D> unit{ scratch.W(), scratch.M(), {}, rough };
+    Unit<Number, D> unit{ scratch.W(), scratch.M(), scratch.R(), {}, rough };
     constexpr int units = D < 3 ? 3 : 1;
     bool exists[3] = {};
     for (int number = 0; number < units; ++number)
@@ -164,7 +164,7 @@ struct BlockCoder
     const block::Shape<2> faces{ b };
     if (phase == BlockPhase::Edges)
     {
-      this->Work.Edges.ClearMagnitudes();
+      this->Work.Edges.Clear();
       this->EncodeUnits<1>(out, !beyond, this->Work.Edges, this->Work.EdgesTarget, underway.Rough);
       if (!beyond)
       {
@@ -174,7 +174,7 @@ struct BlockCoder
     }
     else if (phase == BlockPhase::Faces)
     {
-      this->Work.Faces.ClearMagnitudes();
+      this->Work.Faces.Clear();
       if (!beyond)
       {
         std::uint8_t kept[3][64];
@@ -193,7 +193,7 @@ struct BlockCoder
     }
     else if (!beyond)
     {
-      this->Work.Interior.ClearMagnitudes();
+      this->Work.Interior.Clear();
       block::PlaceFaces(b, underway.Magnitudes.data(), this->Work.Interior.M());
       this->EncodeUnits<3>(
         out, true, this->Work.Interior, this->Work.InteriorTarget, underway.Rough);
@@ -357,8 +357,8 @@ struct BlockCoder
     LoadUnit<3>(boxes.Target, boxes.ReferencesOf(mode.From), this->B, true, target.W());
     const block::Shape<3> shape{ this->B() };
     std::copy_n(target.W(), (this->B() + 1) * shape.Z(), scratch.W());
-    scratch.ClearMagnitudes();
-    Unit<Number, 3> unit{ scratch.W(), scratch.M(),
+    scratch.Clear();
+    Unit<Number, 3> unit{ scratch.W(), scratch.M(), scratch.R(),
       { this->Plane().Target->Samples - 1 - this->Position * this->B() }, true };
     std::int64_t cost = 0;
     ForEachPass<3>(

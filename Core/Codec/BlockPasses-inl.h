@@ -157,6 +157,7 @@ struct Unit
 {
   Number* W;
   std::uint8_t* M;
+  std::int8_t* R; ///< residuals, from -15 to 15; same places
   /// Greatest position per axis that carries residuals; of each face and edge.
   glm::ivec3 Limit[3];
   bool Any = false; ///< whether some magnitude may be other than 0

@@ -49,6 +49,7 @@ public:
   explicit Scratch(int edge)
     : SamplesAt(Shape<D>{ edge }.Samples())
     , MagnitudesAt(Shape<D>{ edge }.Magnitudes())
+    , ResidualsAt(D > 1 ? MagnitudesAt.size() : 0)
   {
   }
 
@@ -56,11 +57,18 @@ public:
   Number* W() { return this->SamplesAt.data() + 16; }
   /// Magnitude of the residual there. 0 to edge - 1 of each axis.
   std::uint8_t* M() { return this->MagnitudesAt.data() + 16; }
-  void ClearMagnitudes() { std::fill(this->MagnitudesAt.begin(), this->MagnitudesAt.end(), 0); }
+  /// The residuals of the unit itself, from -15 to 15; none of edges.
+  std::int8_t* R() { return this->ResidualsAt.data() + 16; }
+  void Clear()
+  {
+    std::fill(this->MagnitudesAt.begin(), this->MagnitudesAt.end(), std::uint8_t{ 0 });
+    std::fill(this->ResidualsAt.begin(), this->ResidualsAt.end(), std::int8_t{ 0 });
+  }
 
 private:
   std::vector<Number> SamplesAt;
   std::vector<std::uint8_t> MagnitudesAt;
+  std::vector<std::int8_t> ResidualsAt;
 };
 
 /// Magnitudes of faces start with those of the edges around them.

@@ -76,10 +76,12 @@ inline std::uint32_t Packed(const tans::DecodeEntry& entry)
   return entry.Bits | static_cast<std::uint32_t>(entry.Base) << BaseShift | top << TopShift;
 }
 
-/// Contexts: a band (kind of unit, stride, direction) and one of 8 classes of roughness; and one
-/// context per band for the flag "this row is all zero".
+/// Contexts: a band (kind of unit, stride, direction), one of 8 classes of roughness, and whether the
+/// residuals in the slices before hint at a sign; and one context per band for the flag "this row is all
+/// zero".
 constexpr int Bands = 11;
-constexpr int Classes = 8;
+constexpr int Signed = 8; ///< added to the class where there is such a hint
+constexpr int Classes = 16;
 constexpr int ContextCount = Bands * Classes + Bands;
 constexpr int FlagContext = Bands * Classes;
 

@@ -25,12 +25,14 @@ struct SliceMemory
   explicit SliceMemory(int edge)
     : Classes(static_cast<std::size_t>(edge * std::max(edge, 3) + 2 * Width))
     , Tops(Classes.size())
+    , Turned(Classes.size())
     , Long(Classes.size())
   {
   }
 
   std::vector<std::uint16_t> Classes; ///< of each symbol, times tans::TableSize
   std::vector<std::int8_t> Tops;      ///< residuals, or escapes
+  std::vector<std::int8_t> Turned;    ///< -1 where residuals have the other sign
   std::vector<Number> Long;           ///< residuals, where there are escapes
   RowPlace Rows[MostRows];
   int Begin[MostRows]; ///< of a row's symbols; -1: it has none
@@ -91,7 +93,7 @@ private:
       rough[r] = false;
       if (coded > 0)
       {
-        rough[r] = this->Of.Any && this->Classify(memory.Rows[r], memory.Classes.data() + count);
+        rough[r] = this->Of.Any && this->Classify(memory.Rows[r], count);
         smooth += rough[r] ? 0 : 1;
         count += coded;
       }
@@ -112,19 +114,26 @@ private:
   }
 
   /// Writes down the classes of a row's symbols. Returns whether any is not 0.
-  HWY_INLINE bool Classify(const RowPlace& place, std::uint16_t* classes) const
+  HWY_INLINE bool Classify(const RowPlace& place, int begin) const
   {
     ByteVector any{};
     const std::uint8_t* m = this->Of.M + place.M + P::First;
+    const std::int8_t* r = this->Of.R + place.M + P::First;
+    std::uint16_t* classes = this->Memory.Classes.data() + begin;
+    std::int8_t* turned = this->Memory.Turned.data() + begin;
     const int lanes = place.Coded * P::Step;
-    for (int at = 0; at < lanes; at += Width, classes += Width / P::Step)
+    for (int at = 0; at < lanes; at += Width, classes += Width / P::Step, turned += Width / P::Step)
     {
       ByteVector sum = RoughnessOf<P>(m + at, this->B, place);
       sum &= LaneMask<P, ByteVector>(lanes - at);
       any |= sum;
       typedef std::uint16_t Classes16 __attribute__((vector_size(32)));
-      const Classes16 wide =
-        __builtin_convertvector(Compressed<P::Step>(ClassesOf(sum)), Classes16);
+      const SignedByteVector hint = HintOf<P>(r + at, this->B, place, sum);
+      const ByteVector hinted = reinterpret_cast<ByteVector>(hint != std::int8_t{ 0 });
+      const ByteVector classesOf = ClassesOf(sum) + (hinted & std::uint8_t{ residual::Signed });
+      const Classes16 wide = __builtin_convertvector(Compressed<P::Step>(classesOf), Classes16);
+      StoreVector(
+        Compressed<P::Step>(reinterpret_cast<ByteVector>(hint < std::int8_t{ 0 })), turned);
       StoreVector(wide << tans::TableBits, classes);
     }
     return AnyOf(any);
@@ -152,14 +161,17 @@ private:
         continue;
       }
       std::uint16_t* to = memory.Classes.data() + count;
+      std::int8_t* turned = memory.Turned.data() + count;
       const int coded = memory.Rows[r].Coded;
       if (rough[r])
       {
         std::copy_n(memory.Classes.data() + memory.Begin[r], coded, to);
+        std::copy_n(memory.Turned.data() + memory.Begin[r], coded, turned);
       }
       else
       {
         std::fill_n(to, coded, std::uint16_t{ 0 });
+        std::fill_n(turned, coded, std::int8_t{ 0 });
       }
       memory.Begin[r] = count;
       count += coded;
@@ -193,10 +205,14 @@ private:
     const std::int8_t* tops = this->Memory.Tops.data();
     for (int k = 0; k < this->Count; ++k)
     {
-      this->Memory.Long[static_cast<std::size_t>(k)] = tops[k] < residual::EscapeTop
-        ? static_cast<Number>(tops[k])
-        : static_cast<Number>(
-            this->Symbols->Long(static_cast<std::uint32_t>(tops[k] - residual::EscapeTop)));
+      const std::int32_t residual = tops[k] < residual::EscapeTop
+        ? tops[k]
+        : this->Symbols->Long(static_cast<std::uint32_t>(tops[k] - residual::EscapeTop));
+      // Wraps where a file of ill intent makes it.
+      const std::uint32_t turned =
+        static_cast<std::uint32_t>(std::int32_t{ this->Memory.Turned[static_cast<std::size_t>(k)] });
+      this->Memory.Long[static_cast<std::size_t>(k)] =
+        static_cast<Number>((static_cast<std::uint32_t>(residual) ^ turned) - turned);
     }
   }
 
@@ -231,7 +247,8 @@ private:
       }
       else if (place.Coded == P::LanesOf(this->B()))
       {
-        this->PlaceRow(place, residuals + begin, this->Memory.Tops.data() + begin);
+        this->PlaceRow(place, residuals + begin, this->Memory.Tops.data() + begin,
+          this->Memory.Turned.data() + begin);
       }
       else
       {
@@ -239,32 +256,41 @@ private:
         Residual some[SliceMemory<Number>::MostRows + Width] = {};
         std::int8_t tops[SliceMemory<Number>::MostRows + Width] = {};
         std::copy_n(residuals + begin, place.Coded, some);
+        std::int8_t turned[SliceMemory<Number>::MostRows + Width] = {};
         std::copy_n(this->Memory.Tops.data() + begin, place.Coded, tops);
-        this->PlaceRow(place, some, tops);
+        std::copy_n(this->Memory.Turned.data() + begin, place.Coded, turned);
+        this->PlaceRow(place, some, tops, turned);
       }
     }
   }
 
   template <class Residual>
   HWY_INLINE void PlaceRow(
-    const RowPlace& place, const Residual* residuals, const std::int8_t* tops) const
+    const RowPlace& place, const Residual* residuals, const std::int8_t* tops,
+    const std::int8_t* turned) const
   {
     using V = Numbers<Number>;
     using Vector = typename V::Unsigned;
     const int left = this->B() - P::First;
     Number* w = this->Of.W + place.W + P::First;
     std::uint8_t* m = this->Of.M + place.M + P::First;
+    std::int8_t* r = this->Of.R + place.M + P::First;
     for (int at = 0, k = 0; at < left; at += Width, k += Width / P::Step)
     {
       Vector residual;
+      SignedByteVector kept;
       if constexpr (std::is_same_v<Residual, std::int8_t>)
       {
-        residual = reinterpret_cast<Vector>(__builtin_convertvector(
-          LoadVector<SignedByteVector>(residuals + k), typename V::Signed));
+        const auto turn = LoadVector<SignedByteVector>(turned + k);
+        kept = (LoadVector<SignedByteVector>(residuals + k) ^ turn) - turn;
+        residual = reinterpret_cast<Vector>(__builtin_convertvector(kept, typename V::Signed));
+        kept = Limited(kept, std::int8_t{ 15 });
       }
       else
       {
         residual = V::Load(residuals + k);
+        kept = __builtin_convertvector(
+          Limited(reinterpret_cast<typename V::Signed>(residual), Number{ 15 }), SignedByteVector);
       }
       const Vector value = Predict<P>(this->Of.W, this->B, place, at, this->By) +
                            Expanded<P::Step>(residual) * static_cast<std::make_unsigned_t<Number>>(this->Bin);
@@ -274,6 +300,12 @@ private:
       StoreVector((Expanded<P::Step>(size) & mask) |
                     (LoadVector<ByteVector>(m + at) & ~mask),
         m + at);
+      if (P::D > 1)
+      {
+        KeepResiduals(reinterpret_cast<SignedByteVector>(
+                        Expanded<P::Step>(reinterpret_cast<ByteVector>(kept))),
+          mask, r + at);
+      }
     }
   }
 

@@ -52,7 +52,8 @@ struct RowQuantizer
   const Number* Target; ///< same layout as the unit's samples, what they are to become
   Number Bin;
 
-  /// Calls body(residuals of Width lanes, others 0; lane of the pass where they begin; classes).
+  /// Calls body(residuals of Width lanes, others 0; lane of the pass where they begin; classes; what
+  /// residuals before hint at).
   /// @return all residuals, or-ed
   template <class Body>
   HWY_INLINE bool Row(const RowPlace& place, bool rough, Body&& body) const
@@ -72,11 +73,14 @@ struct RowQuantizer
         residual = Quantize(reinterpret_cast<Signed>(V::Load(target + at) - prediction), this->Bin);
         residual &= LaneMask<P, Signed>(lanes - at);
         ByteVector classes{};
+        SignedByteVector hint{};
         if (rough)
         {
-          classes = ClassesOf(RoughnessOf<P>(m + at, this->B, place));
+          const ByteVector sum = RoughnessOf<P>(m + at, this->B, place);
+          classes = ClassesOf(sum);
+          hint = HintOf<P>(this->Of.R + place.M + P::First + at, this->B, place, sum);
         }
-        body(residual, at / P::Step, classes);
+        body(residual, at / P::Step, classes, hint);
       }
       any |= residual;
       SetLanes<P>(prediction + reinterpret_cast<Vector>(residual) *
@@ -109,17 +113,18 @@ struct RowQuantizer
     return AnyOf(any);
   }
 
-  /// Sets the magnitudes of lanes from `First + at` on.
-  HWY_INLINE void SetMagnitudes(const RowPlace& place, int at, Signed residual) const
+  /// Sets the magnitudes and kept residuals of lanes from `First + at` on.
+  HWY_INLINE void Keep(const RowPlace& place, int at, Signed residual) const
   {
-    const Signed most = Signed{} + Number{ 15 };
-    residual = residual > most ? most : residual;
-    residual = residual < -most ? -most : residual;
-    const ByteVector size =
-      MagnitudesOf(__builtin_convertvector(residual, SignedByteVector));
+    const auto kept = __builtin_convertvector(Limited(residual, Number{ 15 }), SignedByteVector);
+    const ByteVector size = MagnitudesOf(kept);
     std::uint8_t* m = this->Of.M + place.M + P::First + at;
     const ByteVector mask = LaneMask<P, ByteVector>(this->B() - P::First - at);
     StoreVector((size & mask) | (LoadVector<ByteVector>(m) & ~mask), m);
+    if (P::D > 1)
+    {
+      KeepResiduals(kept, mask, this->Of.R + place.M + P::First + at);
+    }
   }
 };
 
@@ -213,9 +218,14 @@ private:
     typedef std::uint16_t Tokens __attribute__((vector_size(32)));
     const std::size_t extraBefore = this->Out.ExtraCount;
     const bool any = this->Rows.Row(place, rough,
-      [&](Signed residual, int lane, ByteVector classes)
+      [&](Signed residual, int lane, ByteVector classes, SignedByteVector hint)
       {
-        this->Rows.SetMagnitudes(place, lane * P::Step, residual);
+        this->Rows.Keep(place, lane * P::Step, residual);
+        const Signed turned =
+          __builtin_convertvector(reinterpret_cast<SignedByteVector>(hint < std::int8_t{ 0 }), Signed);
+        residual = (residual ^ turned) - turned;
+        classes += reinterpret_cast<ByteVector>(hint != std::int8_t{ 0 }) &
+                   std::uint8_t{ residual::Signed };
         const auto codes = reinterpret_cast<typename Numbers<Number>::Unsigned>(
           (residual << 1) ^ (residual >> (8 * sizeof(Number) - 1)));
         const auto large = codes >= static_cast<std::make_unsigned_t<Number>>(residual::DirectSymbols);

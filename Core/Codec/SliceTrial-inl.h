@@ -45,9 +45,9 @@ struct SliceTrial
         const bool rough = place.Coded > 0 && this->Rows.Rough(place);
         std::int64_t symbols = 0;
         const bool any = this->Rows.Row(place, rough,
-          [&](Signed residual, int lane, ByteVector classes)
+          [&](Signed residual, int lane, ByteVector classes, SignedByteVector)
           {
-            this->Rows.SetMagnitudes(place, lane * P::Step, residual);
+            this->Rows.Keep(place, lane * P::Step, residual);
             symbols += CostOf(
               residual, classes, LaneMask<P, Numbers<std::int16_t>::Signed>((place.Coded - lane) * P::Step));
           });

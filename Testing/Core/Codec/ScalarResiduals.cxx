@@ -1,5 +1,6 @@
 #include "Codec/ScalarResiduals.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <stdexcept>
 
@@ -155,6 +156,7 @@ private:
     {
       Position Where; ///< in the block
       int Context;
+      bool Turned; ///< what is coded has the other sign
     };
     // Residuals of a slice are no context for the same slice: all of it is read, and then set.
     std::vector<std::vector<Sample>> withSymbols;
@@ -176,7 +178,9 @@ private:
         {
           contextClass += roughness > limitOfClass ? 1 : 0;
         }
-        samples.push_back({ InBlock(row.Axes, at), 8 * band + contextClass });
+        const int hint = contextClass > 0 ? this->Hint(row.Axes, stride, at) : 0;
+        samples.push_back({ InBlock(row.Axes, at),
+          16 * band + contextClass + (hint != 0 ? 8 : 0), hint < 0 });
       }
       if (!samples.empty())
       {
@@ -188,7 +192,7 @@ private:
     std::vector<Sample> run;
     for (std::size_t r = 0; r < withSymbols.size(); ++r)
     {
-      if (!flagged[r] || symbols.Next(88 + band, flag++) == 0)
+      if (!flagged[r] || symbols.Next(176 + band, flag++) == 0)
       {
         run.insert(run.end(), withSymbols[r].begin(), withSymbols[r].end());
       }
@@ -200,8 +204,24 @@ private:
     }
     for (std::size_t i = 0; i < run.size(); ++i)
     {
-      this->At(run[i].Where) = symbols.Residual(read[i]);
+      const std::int32_t residual = symbols.Residual(read[i]);
+      this->At(run[i].Where) =
+        run[i].Turned ? static_cast<std::int32_t>(0u - static_cast<std::uint32_t>(residual)) : residual;
     }
+  }
+
+  /// Twice the residual of the slice before, and that of the one before it, each from -15 to 15.
+  int Hint(const std::vector<int>& axes, int s, const Position& at)
+  {
+    const auto residual = [&](int before)
+    {
+      Position p = at;
+      p[axes.size() - 1] -= before;
+      return p[axes.size() - 1] > 0
+               ? std::clamp(this->At(InBlock(axes, p)), std::int32_t{ -15 }, std::int32_t{ 15 })
+               : 0;
+    };
+    return axes.size() == 1 ? 0 : 2 * residual(2 * s) + residual(4 * s);
   }
 
   static bool Inside(const std::vector<int>& axes, const Position& inUnit, const glm::ivec3& limit)
