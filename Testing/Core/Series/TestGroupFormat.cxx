@@ -40,7 +40,7 @@ FieldHead SomeHead()
   head.Greatest = 70000;
   for (auto& set : head.Frequencies)
   {
-    set.resize(99); // contexts
+    set.resize(187); // contexts
     for (std::size_t c = 0; c < set.size(); c += 2)
     {
       set[c].Count[c % 72] += 1000;
