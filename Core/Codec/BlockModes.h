@@ -47,25 +47,6 @@ constexpr Mode ModeOf(int number)
     static_cast<Interpolation>(number % Interpolations) };
 }
 
-/// What is subtracted, from samples of A and B. Arithmetic wraps: any input is safe.
-inline std::int32_t ReferenceValue(Reference from, std::int32_t a, std::int32_t b)
-{
-  switch (from)
-  {
-    case Reference::Mean:
-      return static_cast<std::int32_t>((std::int64_t{ a } + b + 1) >> 1);
-    case Reference::HalfMean:
-      return static_cast<std::int32_t>((std::int64_t{ a } + b + 2) >> 2);
-    case Reference::A:
-      return a;
-    case Reference::B:
-      return b;
-    case Reference::None:
-      break;
-  }
-  return 0;
-}
-
 } // namespace banyan::block
 
 #endif
