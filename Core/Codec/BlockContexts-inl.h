@@ -65,7 +65,7 @@ HWY_INLINE ByteVector RoughnessOf(const std::uint8_t* m, const Edge& edge, const
   }
   if ((P::D == 2 ? place.Y : place.Z) < 2 * s)
   {
-    return sum + sum; // the first slice
+    return sum + sum; // the pass has coded none before
   }
   const std::ptrdiff_t before = 2 * s * (P::D == 2 ? y : z);
   ByteVector near = sides(-before, P::Step);

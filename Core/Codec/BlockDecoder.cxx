@@ -17,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
 
-/// Samples of one unit after the other: three edges, three faces, or an interior.
+/// How many units of D dimensions a block has: three edges, three faces, one interior.
 template <int D>
 constexpr int UnitsOf = D < 3 ? 3 : 1;
 

@@ -49,7 +49,7 @@ public:
   explicit Scratch(int edge)
     : SamplesAt(Shape<D>{ edge }.Samples())
     , MagnitudesAt(Shape<D>{ edge }.Magnitudes())
-    , ResidualsAt(D > 1 ? MagnitudesAt.size() : 0)
+    , ResidualsAt(MagnitudesAt.size())
   {
   }
 
@@ -57,7 +57,7 @@ public:
   Number* W() { return this->SamplesAt.data() + 16; }
   /// Magnitude of the residual there. 0 to edge - 1 of each axis.
   std::uint8_t* M() { return this->MagnitudesAt.data() + 16; }
-  /// The residuals of the unit itself, from -15 to 15; none of edges.
+  /// The residuals of the unit itself, from -15 to 15; of edges none is kept.
   std::int8_t* R() { return this->ResidualsAt.data() + 16; }
   void Clear()
   {

@@ -221,8 +221,9 @@ HWY_INLINE void LoadRow(
 }
 
 /// Takes a unit with its borders (edge + 1 samples per free axis), less its reference.
-/// @param w its sample 0, and @param shape the distances between its rows
-/// @param all false: only what is known before the unit is decoded, its borders and every fourth sample
+/// @param all false: what is known before the unit is decoded, its borders and every fourth sample, is
+/// enough; the rest is anything
+/// @param w its sample 0
 template <int D, class Number, class Edge, class Sample>
 HWY_INLINE void LoadUnit(const View<const Sample>& samples, const References<Sample>& from,
   const Edge& edge, bool all, Number* w)
@@ -253,8 +254,31 @@ HWY_INLINE void LoadUnit(const View<const Sample>& samples, const References<Sam
     });
 }
 
+/// Stores the lanes of a vector from the first one on.
+template <class Vector, class Sample>
+HWY_INLINE void StoreSamples(const Vector& value, int first, Sample* to)
+{
+  typename Numbers<Sample>::Signed samples;
+  if constexpr (sizeof(samples) == sizeof(value))
+  {
+    samples = value;
+  }
+  else
+  {
+    samples = __builtin_convertvector(value, typename Numbers<Sample>::Signed);
+  }
+  if (first == 0)
+  {
+    StoreVector(samples, to);
+    return;
+  }
+  Sample lanes[Width];
+  StoreVector(samples, lanes);
+  std::memcpy(to + 1, lanes + 1, sizeof(lanes) - sizeof(Sample));
+}
+
 /// Puts the inside of a unit (samples 1 to edge - 1 of its free axes) back, with its reference and
-/// within the limits of the lattice. Samples 0 of rows are put back as well: they stay what they are.
+/// within the limits of the lattice. Nothing else is written: other threads may read it.
 template <int D, class Number, class Edge, class Sample>
 HWY_INLINE void StoreUnit(const Number* w, const References<Sample>& from, const Edge& edge,
   std::int32_t least, std::int32_t greatest, const View<Sample>& samples)
@@ -274,7 +298,7 @@ HWY_INLINE void StoreUnit(const Number* w, const References<Sample>& from, const
         {
           const SampleRow<Sample> row = RowOf(samples, from, y, z);
           const Number* in = w + z * shape.Z() + y * shape.Y();
-          int x = D > 1 ? 0 : 1; // sample 0 of an edge is a corner, which has no limits
+          int x = D > 1 ? 0 : 1;
           if (D > 1 && row.StrideX == 1 && row.StrideA == 1 && row.StrideB == 1)
           {
             for (; x + Width <= n; x += Width)
@@ -284,17 +308,10 @@ HWY_INLINE void StoreUnit(const Number* w, const References<Sample>& from, const
               Signed value = reinterpret_cast<Signed>(sum);
               value = value < low ? low : value;
               value = value > high ? high : value;
-              if constexpr (std::is_same_v<Number, Sample>)
-              {
-                StoreVector(value, row.X + x);
-              }
-              else
-              {
-                StoreVector(__builtin_convertvector(value, typename Numbers<Sample>::Signed), row.X + x);
-              }
+              StoreSamples(value, x == 0 ? 1 : 0, row.X + x);
             }
           }
-          for (; x < n; ++x)
+          for (x = std::max(x, 1); x < n; ++x)
           {
             using U = std::make_unsigned_t<Number>;
             const Number subtracted = reference.Of(static_cast<Number>(row.A[x * row.StrideA]),

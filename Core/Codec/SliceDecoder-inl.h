@@ -20,7 +20,6 @@ template <class Number>
 struct SliceMemory
 {
   static constexpr int MostRows = 64;
-  static constexpr int MostSymbols = 64 * 64;
 
   explicit SliceMemory(int edge)
     : Classes(static_cast<std::size_t>(edge * std::max(edge, 3) + 2 * Width))

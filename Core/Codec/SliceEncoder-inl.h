@@ -54,7 +54,7 @@ struct RowQuantizer
 
   /// Calls body(residuals of Width lanes, others 0; lane of the pass where they begin; classes; what
   /// residuals before hint at).
-  /// @return all residuals, or-ed
+  /// @return whether some residual is not 0
   template <class Body>
   HWY_INLINE bool Row(const RowPlace& place, bool rough, Body&& body) const
   {
@@ -87,7 +87,6 @@ struct RowQuantizer
                                  static_cast<std::make_unsigned_t<Number>>(this->Bin),
         left - at, w + at);
     }
-    // Afterwards: a row's magnitudes are no context of its own.
     const Signed zero{};
     const auto some = any != zero;
     std::uint64_t words[sizeof(some) / 8];
@@ -216,8 +215,7 @@ private:
   HWY_INLINE bool AddRow(const RowPlace& place, bool rough, std::uint16_t* tokens) const
   {
     typedef std::uint16_t Tokens __attribute__((vector_size(32)));
-    const std::size_t extraBefore = this->Out.ExtraCount;
-    const bool any = this->Rows.Row(place, rough,
+    return this->Rows.Row(place, rough,
       [&](Signed residual, int lane, ByteVector classes, SignedByteVector hint)
       {
         this->Rows.Keep(place, lane * P::Step, residual);
@@ -253,11 +251,6 @@ private:
           this->AddLong(place, residual, contexts, lane, tokens);
         }
       });
-    if (!any)
-    {
-      this->Out.ExtraCount = extraBefore;
-    }
-    return any;
   }
 
   /// Every Step-th token.

@@ -207,10 +207,10 @@ const Number* GroupField::Coarse(int step, int plane, const glm::ivec3& block)
       for (int y = 0; y < n; ++y)
       {
         const int sy = std::min(first.y + y, samples.y - 1) - origin.y;
-        const auto* row = from + (sz * size.y + sy) * size.x - origin.x;
+        const auto* row = from + (sz * size.y + sy) * size.x;
         for (int x = 0; x < n; ++x)
         {
-          *to++ = static_cast<Number>(row[std::min(first.x + x, samples.x - 1)]);
+          *to++ = static_cast<Number>(row[std::min(first.x + x, samples.x - 1) - origin.x]);
         }
       }
     }

@@ -52,7 +52,6 @@ public:
       }
     }
     const std::uint64_t entries = this->Table.size();
-    // Tables have numbers of 32 bits only.
     const std::int64_t first = entries > 0 ? this->First : 0;
     const T* table = this->Table.data();
     for (std::size_t i = 0; i < count; ++i, numbers += stride, decoded += step)

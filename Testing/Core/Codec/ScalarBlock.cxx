@@ -113,19 +113,23 @@ private:
       blocks.emplace_back();
       if (code.Exists && code.Bytes > 0)
       {
-        blocks.back() = ReadResiduals(this->Edge, tables, code.Limit, code.Data, code.Bytes);
+        blocks.back() = ReadResiduals(
+          this->Edge, tables, code.Limit, this->Narrow(), code.Data, code.Bytes);
       }
     }
     return blocks;
   }
 
   /// Arithmetic wraps in 16 bits, or in 32 where the lattice is larger.
-  std::int64_t Wrap(std::int64_t number) const
+  bool Narrow() const
   {
     const std::int64_t least = this->Plane.Least;
     const std::int64_t greatest = this->Plane.Greatest;
-    const bool narrow = least >= -8000 && greatest <= 8000 && greatest - least <= 8000;
-    return narrow ? static_cast<std::int16_t>(number) : static_cast<std::int32_t>(number);
+    return least >= -8000 && greatest <= 8000 && greatest - least <= 8000;
+  }
+  std::int64_t Wrap(std::int64_t number) const
+  {
+    return this->Narrow() ? static_cast<std::int16_t>(number) : static_cast<std::int32_t>(number);
   }
 
   /// What mode m / 3 subtracts from a sample.

@@ -113,16 +113,17 @@ int MagnitudeOf(std::int32_t residual)
 class Block
 {
 public:
-  explicit Block(int edge)
+  Block(int edge, bool narrow)
     : Edge(edge)
+    , Narrow(narrow)
     , Residuals(static_cast<std::size_t>(edge * edge * edge), 0)
+    , Large(Residuals.size(), false)
   {
   }
 
   std::int32_t& At(const Position& p)
   {
-    return this
-      ->Residuals[static_cast<std::size_t>((p[2] * this->Edge + p[1]) * this->Edge + p[0])];
+    return this->Residuals[this->IndexOf(p)];
   }
 
   void Read(const glm::ivec3& limit, Symbols& symbols)
@@ -135,6 +136,11 @@ public:
   const std::vector<std::int32_t>& All() const { return this->Residuals; }
 
 private:
+  std::size_t IndexOf(const Position& p) const
+  {
+    return static_cast<std::size_t>((p[2] * this->Edge + p[1]) * this->Edge + p[0]);
+  }
+
   static Position InBlock(const std::vector<int>& axes, const Position& inUnit)
   {
     Position p{ 0, 0, 0 };
@@ -205,8 +211,10 @@ private:
     for (std::size_t i = 0; i < run.size(); ++i)
     {
       const std::int32_t residual = symbols.Residual(read[i]);
-      this->At(run[i].Where) =
+      const std::int32_t turned =
         run[i].Turned ? static_cast<std::int32_t>(0u - static_cast<std::uint32_t>(residual)) : residual;
+      this->At(run[i].Where) = this->Narrow ? static_cast<std::int16_t>(turned) : turned;
+      this->Large[this->IndexOf(run[i].Where)] = read[i] >= 40;
     }
   }
 
@@ -239,8 +247,14 @@ private:
   int Roughness(const std::vector<int>& axes, int s, int axis, const Position& at)
   {
     const int dimensions = static_cast<int>(axes.size());
-    const auto m = [&](int x, int y, int z) {
-      return x < 0 || x >= this->Edge ? 0 : MagnitudeOf(this->At(InBlock(axes, { x, y, z })));
+    const auto m = [&](int x, int y, int z)
+    {
+      if (x < 0 || x >= this->Edge)
+      {
+        return 0;
+      }
+      const Position p = InBlock(axes, { x, y, z });
+      return this->Large[this->IndexOf(p)] ? 8 : MagnitudeOf(this->At(p));
     };
     // The next row of that axis, or the one before where there is none.
     const auto next = [&](int position, int step)
@@ -306,7 +320,9 @@ private:
   }
 
   int Edge;
+  bool Narrow;
   std::vector<std::int32_t> Residuals;
+  std::vector<bool> Large; ///< their symbols have extra bits
 };
 
 } // namespace
@@ -342,9 +358,9 @@ std::vector<State> StatesOf(const tans::Frequencies& frequencies)
 }
 
 std::vector<std::int32_t> ReadResiduals(int edge, const std::vector<std::vector<State>>& tables,
-  const glm::ivec3& limit, const std::uint8_t* data, std::size_t bytes)
+  const glm::ivec3& limit, bool narrow, const std::uint8_t* data, std::size_t bytes)
 {
-  Block block(edge);
+  Block block(edge, narrow);
   Symbols symbols(tables, data, bytes);
   block.Read(limit, symbols);
   symbols.MustBeAtEnd();

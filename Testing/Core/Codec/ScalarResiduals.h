@@ -118,8 +118,9 @@ std::vector<State> StatesOf(const tans::Frequencies& frequencies);
 /// The residuals of a block, all units, `[z][y][x]`; see DecodeBoxSlowly.
 /// @param tables by context
 /// @param limit the field's last sample, seen from the block's first one
+/// @param narrow residuals are reduced to 16 bits
 std::vector<std::int32_t> ReadResiduals(int edge, const std::vector<std::vector<State>>& tables,
-  const glm::ivec3& limit, const std::uint8_t* data, std::size_t bytes);
+  const glm::ivec3& limit, bool narrow, const std::uint8_t* data, std::size_t bytes);
 
 } // namespace banyan::testing
 
