@@ -135,9 +135,9 @@ std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
   {
     bytes += kept->second->MemoryBytes();
     ++count;
-    // Of each component the segment at hand, the one before it, and one more; others as the budget
-    // allows.
-    const bool keep = count <= 3 * std::size_t{ this->Series.Components } ||
+    // Of each component the segment at hand and the one before it; others as the budget allows: the
+    // tables of a segment take more than a megabyte.
+    const bool keep = count <= 2 * std::size_t{ this->Series.Components } ||
                       (count <= KeptTables * std::size_t{ this->Series.Components } &&
                         bytes <= std::min(KeptTableBytes, LatticeCache::Process().BudgetBytes() / 2));
     kept = keep ? std::next(kept) : this->Opened.erase(kept);
