@@ -256,6 +256,7 @@ LatticeCache::Box GroupField::DecodeAs(int step, int plane, const glm::ivec3& bl
     to.Exists = Inside(at, blocks);
     if (!to.Exists)
     {
+      same = false; // what lies beyond the field's end is predicted anew at each step
       continue;
     }
     const group::BlockEntry& entry = entries[this->IndexOf(plane, at)];
