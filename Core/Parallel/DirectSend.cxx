@@ -82,8 +82,21 @@ FloatImage Cut(const FloatImage& image, const PixelRect& rect)
   return part;
 }
 
+glm::vec4 Combine(const glm::vec4& front, const glm::vec4& back, Combination combination)
+{
+  switch (combination)
+  {
+    case Combination::Largest:
+      return glm::max(front, back);
+    case Combination::Sum:
+      return front + back;
+    default:
+      return Over(front, back);
+  }
+}
+
 /// Puts `behind`, whose rectangle lies inside that of `target`, behind what is there.
-void BlendBehind(FloatImage& target, const FloatImage& behind)
+void BlendBehind(FloatImage& target, const FloatImage& behind, Combination combination)
 {
   const glm::vec4* from = behind.Pixels.data();
   for (int y = behind.Rect.Lo.y; y < behind.Rect.Hi.y && !behind.Rect.Empty(); ++y)
@@ -91,7 +104,7 @@ void BlendBehind(FloatImage& target, const FloatImage& behind)
     glm::vec4* to = target.Pixels.data() + RowBegin(target.Rect, behind.Rect, y);
     for (std::size_t x = 0; x < RowLength(behind.Rect); ++x, ++to, ++from)
     {
-      *to = Over(*to, *from);
+      *to = Combine(*to, *from, combination);
     }
   }
 }
@@ -239,7 +252,7 @@ std::vector<FloatImage> Exchange(Communicator& communicator,
 /// Brings the fragments of this rank's strip here and blends them.
 FloatImage BlendOwnStrip(Communicator& communicator, const FloatImage& mine,
   const std::vector<Announcement>& all, const std::vector<PixelRect>& strips,
-  const std::vector<int>& frontToBack, CompositeStatistics& statistics)
+  const std::vector<int>& frontToBack, CompositeStatistics& statistics, Combination combination)
 {
   const int self = communicator.Rank();
   std::vector<std::pair<int, FloatImage>> outgoing;
@@ -267,11 +280,11 @@ FloatImage BlendOwnStrip(Communicator& communicator, const FloatImage& mine,
   {
     if (rank == self)
     {
-      BlendBehind(strip, Cut(mine, ActiveRect(mine, strips[self])));
+      BlendBehind(strip, Cut(mine, ActiveRect(mine, strips[self])), combination);
     }
     else if (position[rank] >= 0)
     {
-      BlendBehind(strip, incoming[position[rank]]);
+      BlendBehind(strip, incoming[position[rank]], combination);
     }
   }
   return strip;
@@ -280,11 +293,13 @@ FloatImage BlendOwnStrip(Communicator& communicator, const FloatImage& mine,
 } // namespace
 
 FloatImage CompositeDirectSend(Communicator& communicator, const FloatImage& mine,
-  const std::vector<int>& frontToBack, const PixelRect& viewport, CompositeStatistics& statistics)
+  const std::vector<int>& frontToBack, const PixelRect& viewport, CompositeStatistics& statistics,
+  Combination combination)
 {
   const std::vector<Announcement> all = Announce(communicator, mine, frontToBack, viewport);
   const std::vector<PixelRect> strips = Strips(all);
-  const FloatImage strip = BlendOwnStrip(communicator, mine, all, strips, frontToBack, statistics);
+  const FloatImage strip =
+    BlendOwnStrip(communicator, mine, all, strips, frontToBack, statistics, combination);
 
   std::vector<std::pair<int, FloatImage>> outgoing;
   if (communicator.Rank() != 0)
@@ -305,10 +320,10 @@ FloatImage CompositeDirectSend(Communicator& communicator, const FloatImage& min
     }
   }
   FloatImage picture = Transparent(viewport);
-  BlendBehind(picture, strip);
+  BlendBehind(picture, strip, combination);
   for (const FloatImage& part : Exchange(communicator, outgoing, sources, statistics))
   {
-    BlendBehind(picture, part);
+    BlendBehind(picture, part, combination);
   }
   return picture;
 }

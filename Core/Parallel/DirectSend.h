@@ -2,7 +2,7 @@
 #define banyan_Parallel_DirectSend_h
 
 #include "Parallel/Communicator.h"
-#include "Render/RayCaster.h"
+#include "Render/ProjectionTable.h"
 
 #include <vector>
 
@@ -26,10 +26,13 @@ struct CompositeStatistics
 ///
 /// @param mine this rank's pixels, anywhere inside `viewport`
 /// @param frontToBack ranks in visibility order, the same on all ranks
-/// @return on rank 0 the whole viewport (transparent where nothing was drawn); elsewhere empty.
-/// Exact: the over operator in float in visibility order, as a single rank would blend.
+/// @param combination what is done with the pixels of two ranks; the same on all ranks
+/// @return on rank 0 the whole viewport (0 where nothing was drawn); elsewhere empty.
+/// Exact: the over operator in float in visibility order, as a single rank would blend; largest
+/// numbers are those of any order, and sums are made in visibility order.
 FloatImage CompositeDirectSend(Communicator& communicator, const FloatImage& mine,
-  const std::vector<int>& frontToBack, const PixelRect& viewport, CompositeStatistics& statistics);
+  const std::vector<int>& frontToBack, const PixelRect& viewport, CompositeStatistics& statistics,
+  Combination combination = Combination::Over);
 
 /// Opaque geometry as one rank sees it: nearest depth in [0, 1] and 8-bit colour per pixel.
 struct OpaquePixel

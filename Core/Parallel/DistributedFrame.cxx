@@ -67,7 +67,9 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene, Br
   const Timer composite;
   CompositeStatistics sent;
   const std::vector<int> order = FrontToBack(InIndexSpace(scene.Camera, scene.IndexToWorld), zones);
-  FloatImage picture = CompositeDirectSend(communicator, mine, order, scene.Viewport, sent);
+  FloatImage picture = CompositeDirectSend(
+    communicator, mine, order, scene.Viewport, sent, CombinationOf(scene.Blend));
+  FinishPicture(scene, picture);
   const double compositeSeconds = composite.Seconds();
 
   const std::vector<double> allRender = AllGatherValues(communicator, renderSeconds);

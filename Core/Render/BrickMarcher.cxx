@@ -11,9 +11,9 @@ namespace
 class GradientShader
 {
 public:
-  GradientShader(const PackedBrick& brick, const ShadingTable& shading)
-    : Gradient{ { brick.GradientView(0), 0.0 }, { brick.GradientView(1), 0.0 },
-      { brick.GradientView(2), 0.0 } }
+  GradientShader(const PackedBrick& brick, const ShadingTable& shading, bool nearest)
+    : Gradient{ { brick.GradientView(0), 0.0, nearest }, { brick.GradientView(1), 0.0, nearest },
+      { brick.GradientView(2), 0.0, nearest } }
     , Shading(shading)
   {
   }
@@ -45,10 +45,10 @@ public:
   /// @param relative whether values become relative to the table's low end, or are already
   /// @param shader may be null
   PlainMarcher(const BrickPart& part, const StepTable& table, bool relative, float limit,
-    const GradientShader* shader)
+    const GradientShader* shader, bool nearest)
     : Table(table)
     , Lookup(relative ? table.RelativeLookup() : table.Lookup())
-    , Values(part.View, table.Low())
+    , Values(part.View, table.Low(), nearest)
     , Shader(shader)
     , Cells(part.Cells)
     , Limit(limit)
@@ -154,29 +154,33 @@ void MarchRays(const PlainMarcher<T>& marcher, const PixelRect& rect, RayTile& t
 
 } // namespace
 
-void MarchBrick(
-  const BrickPart& part, const StepTable& table, const PixelRect& pixels, RayTile& tile)
+void MarchBrick(const BrickPart& part, const StepTable& table, const PixelRect& pixels,
+  RayTile& tile, SampleInterpolation interpolation)
 {
+  const bool nearest = interpolation == SampleInterpolation::Nearest;
   Dispatch(part.View.Type,
     [&](auto tag)
     {
       using T = typename decltype(tag)::Type;
-      const PlainMarcher<T> marcher(part, table, IsRelative<T>, tile.TransmittanceLimit, nullptr);
+      const PlainMarcher<T> marcher(
+        part, table, IsRelative<T>, tile.TransmittanceLimit, nullptr, nearest);
       MarchRays(marcher, Intersection(pixels, tile.Rect), tile);
     });
 }
 
 void MarchUnpacked(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
-  const ShadingTable* shading, const PixelRect& pixels, RayTile& tile)
+  const ShadingTable* shading, const PixelRect& pixels, RayTile& tile,
+  SampleInterpolation interpolation)
 {
+  const bool nearest = interpolation == SampleInterpolation::Nearest;
   const BrickView view = brick.View();
   std::unique_ptr<const GradientShader> shader;
   if (shading)
   {
-    shader = std::make_unique<const GradientShader>(brick, *shading);
+    shader = std::make_unique<const GradientShader>(brick, *shading, nearest);
   }
   const PlainMarcher<float> marcher({ view, brick.Corner(), seen.Cells }, table, brick.Relative(),
-    tile.TransmittanceLimit, shader.get());
+    tile.TransmittanceLimit, shader.get(), nearest);
   MarchRays(marcher, Intersection(pixels, tile.Rect), tile);
 }
 

@@ -23,21 +23,24 @@ struct BrickPart
 ///
 /// A sample is the trilinear interpolant of the eight corners of its cell, in float, from 24-bit
 /// fractions; the result does not depend on the brick around the cell. A sample with a corner that
-/// is not finite is transparent.
+/// is not finite is transparent. With nearest interpolation a sample has the value of the nearest
+/// corner, and is transparent when that is not finite.
 /// @param pixels those whose rays may meet the part; only these are tried
-void MarchBrick(
-  const BrickPart& part, const StepTable& table, const PixelRect& pixels, RayTile& tile);
+void MarchBrick(const BrickPart& part, const StepTable& table, const PixelRect& pixels,
+  RayTile& tile, SampleInterpolation interpolation = SampleInterpolation::Linear);
 
 /// The same for a packed brick, all of `seen.Cells`; the reference for MarchPacked.
 /// @param shading null for none; otherwise the brick HasGradients
 void MarchUnpacked(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
-  const ShadingTable* shading, const PixelRect& pixels, RayTile& tile);
+  const ShadingTable* shading, const PixelRect& pixels, RayTile& tile,
+  SampleInterpolation interpolation = SampleInterpolation::Linear);
 
 /// The same picture, bit for bit and on every processor, by packets of rays. Space that cannot be
 /// seen takes no samples, and is not counted in `tile.SamplesTaken`.
 /// @param tile PacketsFit
 void MarchPacked(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
-  const ShadingTable* shading, const PixelRect& pixels, RayTile& tile);
+  const ShadingTable* shading, const PixelRect& pixels, RayTile& tile,
+  SampleInterpolation interpolation = SampleInterpolation::Linear);
 
 } // namespace banyan
 

@@ -53,19 +53,25 @@ template <class T>
 class PlainInterpolator
 {
 public:
-  PlainInterpolator(const BrickView& view, double low)
+  /// @param nearest whether values are those of the nearest samples
+  PlainInterpolator(const BrickView& view, double low, bool nearest = false)
     : Values(static_cast<const T*>(view.Values))
     , StrideX(view.Stride[0])
     , StrideY(view.Stride[1])
     , StrideZ(view.Stride[2])
     , Low(low)
+    , Nearest(nearest)
   {
   }
 
   /// The value (for relative types: minus `low`) at a fixed-point position relative to the brick's
-  /// corner, inside the brick. Not finite when a corner is not finite.
+  /// corner, inside the brick. Not finite when a corner is not finite, or the nearest one.
   float At(const std::int64_t (&position)[3]) const
   {
+    if (this->Nearest)
+    {
+      return this->NearestTo(position);
+    }
     const T* cell = this->Values + (position[0] >> FractionBits) * this->StrideX +
                     (position[1] >> FractionBits) * this->StrideY +
                     (position[2] >> FractionBits) * this->StrideZ;
@@ -82,6 +88,16 @@ public:
   }
 
 private:
+  /// Half way between two samples it is the upper one.
+  float NearestTo(const std::int64_t (&position)[3]) const
+  {
+    constexpr std::int64_t half = std::int64_t{ 1 } << (FractionBits - 1);
+    const T* sample = this->Values + ((position[0] + half) >> FractionBits) * this->StrideX +
+                      ((position[1] + half) >> FractionBits) * this->StrideY +
+                      ((position[2] + half) >> FractionBits) * this->StrideZ;
+    return CornerValue(*sample, this->Low);
+  }
+
   static float Mix(float a, float b, float part) { return a + part * (b - a); }
 
   static float Fraction(std::int64_t position)
@@ -96,6 +112,7 @@ private:
   std::ptrdiff_t StrideY;
   std::ptrdiff_t StrideZ;
   double Low;
+  bool Nearest;
 };
 
 } // namespace banyan

@@ -21,9 +21,10 @@ namespace banyan::HWY_NAMESPACE
 
 // Processors without SSE4, and others without vectors: one ray after the other.
 void MarchPackedHere(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
-  const ShadingTable* shading, const PixelRect& pixels, RayTile& tile)
+  const ShadingTable* shading, const PixelRect& pixels, RayTile& tile,
+  SampleInterpolation interpolation)
 {
-  MarchUnpacked(brick, seen, table, shading, pixels, tile);
+  MarchUnpacked(brick, seen, table, shading, pixels, tile, interpolation);
 }
 
 #else
@@ -33,7 +34,8 @@ void MarchPackedHere(const PackedBrick& brick, const BrickVisibility& seen, cons
 /// @tparam Special whether samples may not be finite
 /// @tparam Holes whether macro cells are to be skipped
 /// @tparam Shaded whether samples are shaded
-template <bool Special, bool Holes, bool Shaded>
+/// @tparam Nearest whether samples are those of the grid nearest by
+template <bool Special, bool Holes, bool Shaded, bool Nearest>
 class PacketMarcher
 {
 public:
@@ -99,8 +101,8 @@ private:
       hn::Load(d, this->Tile.Transmittance + slot), hn::Set(d, this->Tile.TransmittanceLimit));
   }
 
-  using Place = typename PacketSamples<Special, Shaded>::Place;
-  using Found = typename PacketSamples<Special, Shaded>::Found;
+  using Place = typename PacketSamples<Special, Shaded, Nearest>::Place;
+  using Found = typename PacketSamples<Special, Shaded, Nearest>::Found;
   using Lanes = hn::Mask<D>;
 
   /// What a vector of rays has met, and where it goes.
@@ -296,7 +298,7 @@ private:
   }
 
   PacketIntervals Intervals;
-  PacketSamples<Special, Shaded> Samples;
+  PacketSamples<Special, Shaded, Nearest> Samples;
   Box Cells;
   RayTile& Tile;
   const std::uint32_t* MacroMask;
@@ -306,14 +308,14 @@ private:
   std::uint32_t Offset[3];  ///< from the cells' low corner to the brick's
 };
 
-template <bool Special, bool Holes, bool Shaded>
+template <bool Special, bool Holes, bool Shaded, bool Nearest>
 void MarchPackets(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
   const ShadingTable* shading, const PixelRect& pixels, RayTile& tile)
 {
   constexpr int edge = RayTile::PacketEdge;
   const glm::ivec2 corner = tile.Rect.Lo;
   const PixelRect packets{ (pixels.Lo - corner) / edge, (pixels.Hi - corner + edge - 1) / edge };
-  PacketMarcher<Special, Holes, Shaded> marcher(brick, seen, table, shading, tile);
+  PacketMarcher<Special, Holes, Shaded, Nearest> marcher(brick, seen, table, shading, tile);
   for (int y = packets.Lo.y; y < packets.Hi.y; ++y)
   {
     for (int x = packets.Lo.x; x < packets.Hi.x; ++x)
@@ -324,17 +326,25 @@ void MarchPackets(const PackedBrick& brick, const BrickVisibility& seen, const S
 }
 
 void MarchPackedHere(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
-  const ShadingTable* shading, const PixelRect& pixels, RayTile& tile)
+  const ShadingTable* shading, const PixelRect& pixels, RayTile& tile,
+  SampleInterpolation interpolation)
 {
   using March = void (*)(const PackedBrick&, const BrickVisibility&, const StepTable&,
     const ShadingTable*, const PixelRect&, RayTile&);
-  static constexpr March marches[8] = { MarchPackets<false, false, false>,
-    MarchPackets<true, false, false>, MarchPackets<false, true, false>,
-    MarchPackets<true, true, false>, MarchPackets<false, false, true>,
-    MarchPackets<true, false, true>, MarchPackets<false, true, true>,
-    MarchPackets<true, true, true> };
-  const int which = (brick.Special() ? 1 : 0) + (seen.Holes ? 2 : 0) + (shading ? 4 : 0);
-  marches[which](brick, seen, table, shading, pixels, tile);
+  static constexpr March linear[8] = { MarchPackets<false, false, false, false>,
+    MarchPackets<true, false, false, false>, MarchPackets<false, true, false, false>,
+    MarchPackets<true, true, false, false>, MarchPackets<false, false, true, false>,
+    MarchPackets<true, false, true, false>, MarchPackets<false, true, true, false>,
+    MarchPackets<true, true, true, false> };
+  // One way for all values: labels are not drawn so often that a second one would pay.
+  static constexpr March nearest[4] = { MarchPackets<true, false, false, true>,
+    MarchPackets<true, true, false, true>, MarchPackets<true, false, true, true>,
+    MarchPackets<true, true, true, true> };
+  const int which = (seen.Holes ? 1 : 0) + (shading ? 2 : 0);
+  const March march = interpolation == SampleInterpolation::Nearest
+                        ? nearest[which]
+                        : linear[2 * which + (brick.Special() ? 1 : 0)];
+  march(brick, seen, table, shading, pixels, tile);
 }
 
 #endif
@@ -349,12 +359,14 @@ namespace banyan
 HWY_EXPORT(MarchPackedHere);
 
 void MarchPacked(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
-  const ShadingTable* shading, const PixelRect& pixels, RayTile& tile)
+  const ShadingTable* shading, const PixelRect& pixels, RayTile& tile,
+  SampleInterpolation interpolation)
 {
   const PixelRect rect = Intersection(pixels, tile.Rect);
   if (!rect.Empty() && !seen.Cells.Empty())
   {
-    HWY_DYNAMIC_DISPATCH(MarchPackedHere)(brick, seen, table, shading, rect, tile);
+    HWY_DYNAMIC_DISPATCH(MarchPackedHere)
+    (brick, seen, table, shading, rect, tile, interpolation);
   }
 }
 

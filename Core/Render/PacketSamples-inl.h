@@ -8,113 +8,14 @@
 
 #include "Render/Interpolators.h"
 #include "Render/PackedBrick.h"
-#include "Render/RayTile.h"
+#include "Render/PacketVectors-inl.h"
 #include "Render/ShadingTable.h"
 
 #include <limits>
 
-#include <hwy/highway.h>
-
 HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4
-using D = hn::ScalableTag<float>; ///< 16, 8 or 4 lanes
-#else
-using D = hn::CappedTag<float, 4>;
-#endif
-using DI = hn::Rebind<std::int32_t, D>;
-using DU = hn::Rebind<std::uint32_t, D>;
-using DWide = hn::Repartition<std::uint64_t, D>;
-using VF = hn::Vec<D>;
-using VI = hn::Vec<DI>;
-using VU = hn::Vec<DU>;
-
-/// Distances in bytes per lane, where scalar code can read them.
-struct Offsets
-{
-  HWY_INLINE void Set(VI bytes)
-  {
-    hn::Store(bytes, DI(), this->Bytes);
-#if HWY_COMPILER_GCC || HWY_COMPILER_CLANG
-    // Otherwise numbers are taken out of the vector one by one, which is slower than loading them.
-    __asm__("" : "+m"(this->Bytes));
-#endif
-  }
-
-  alignas(64) std::int32_t Bytes[RayTile::PacketSize];
-};
-
-/// Four floats of each lane: lane 4 b + k has those of block b of number k. Blocks of 128 bits are
-/// loaded one by one: on many processors a gather takes much longer than its loads.
-struct Blocks
-{
-  VF Of[4];
-};
-
-/// Blocks at the first, fifth, ... distance.
-HWY_INLINE VF LoadBlocks(const char* base, const std::int32_t* bytes)
-{
-  const auto at = [&](int i) HWY_ATTR { return reinterpret_cast<const float*>(base + bytes[i]); };
-#if HWY_TARGET == HWY_AVX3
-  // Blocks are put in place as they are loaded, which takes no shuffle.
-  __m512 v = _mm512_castps128_ps512(_mm_loadu_ps(at(0)));
-  v = _mm512_insertf32x4(v, _mm_loadu_ps(at(4)), 1);
-  v = _mm512_insertf32x4(v, _mm_loadu_ps(at(8)), 2);
-  return VF{ _mm512_insertf32x4(v, _mm_loadu_ps(at(12)), 3) };
-#elif HWY_TARGET == HWY_AVX2
-  const __m256 v = _mm256_castps128_ps256(_mm_loadu_ps(at(0)));
-  return VF{ _mm256_insertf128_ps(v, _mm_loadu_ps(at(4)), 1) };
-#else
-  static_assert(hn::MaxLanes(D()) == 4, "one block");
-  return hn::LoadU(D(), at(0));
-#endif
-}
-
-HWY_INLINE Blocks LoadBlocks(const void* base, const Offsets& offsets)
-{
-  const auto* from = static_cast<const char*>(base);
-  return { { LoadBlocks(from, offsets.Bytes), LoadBlocks(from, offsets.Bytes + 1),
-    LoadBlocks(from, offsets.Bytes + 2), LoadBlocks(from, offsets.Bytes + 3) } };
-}
-
-/// From four floats of a lane side by side to four vectors of them.
-HWY_INLINE Blocks Transposed(const Blocks& blocks)
-{
-  const D d;
-  const DWide wide;
-  const auto lowAB = hn::BitCast(wide, hn::InterleaveLower(d, blocks.Of[0], blocks.Of[1]));
-  const auto lowCD = hn::BitCast(wide, hn::InterleaveLower(d, blocks.Of[2], blocks.Of[3]));
-  const auto highAB = hn::BitCast(wide, hn::InterleaveUpper(d, blocks.Of[0], blocks.Of[1]));
-  const auto highCD = hn::BitCast(wide, hn::InterleaveUpper(d, blocks.Of[2], blocks.Of[3]));
-  return { { hn::BitCast(d, hn::InterleaveLower(wide, lowAB, lowCD)),
-    hn::BitCast(d, hn::InterleaveUpper(wide, lowAB, lowCD)),
-    hn::BitCast(d, hn::InterleaveLower(wide, highAB, highCD)),
-    hn::BitCast(d, hn::InterleaveUpper(wide, highAB, highCD)) } };
-}
-
-// No fused operations: all targets give the same bits, and those of the scalar interpolator.
-HWY_INLINE VF Mix(VF a, VF b, VF part)
-{
-  return hn::Add(a, hn::Mul(part, hn::Sub(b, a)));
-}
-
-/// Numbers that an integer can hold: without what ConvertTo does for others.
-HWY_INLINE VI Truncated(VF v)
-{
-#if HWY_TARGET == HWY_SSE4
-  return VI{ _mm_cvttps_epi32(v.raw) };
-#elif HWY_TARGET == HWY_AVX2
-  return VI{ _mm256_cvttps_epi32(v.raw) };
-#elif HWY_TARGET == HWY_AVX3
-  return VI{ _mm512_cvttps_epi32(v.raw) };
-#else
-  return hn::ConvertTo(DI(), v);
-#endif
-}
 
 /// A position in a brick per lane: 8 bits of cells above 24 bits of fraction.
 struct Position
@@ -144,18 +45,25 @@ struct Steps
 /// Samples of a packed brick: value by value what PlainInterpolator and TableLookup give.
 /// @tparam Special whether values may not be finite
 /// @tparam Shaded whether the brick has gradients, and samples are shaded by them
-template <bool Special, bool Shaded>
+/// @tparam Nearest whether samples are those of the grid nearest by
+template <bool Special, bool Shaded, bool Nearest>
 class PacketSamples
 {
 public:
   PacketSamples(const PackedBrick& brick, const StepTable& table, const ShadingTable* shading)
+    : PacketSamples(brick, brick.Relative() ? table.RelativeLookup() : table.Lookup())
+  {
+    this->Table = table.Steps();
+    this->Depths = table.Depths();
+    this->Shading = shading;
+  }
+
+  /// For values and their entries alone.
+  PacketSamples(const PackedBrick& brick, const TableLookup& lookup)
     : Values(reinterpret_cast<const char*>(brick.Values()))
     , RowBytes(static_cast<std::int32_t>(brick.StrideY() * sizeof(float)))
     , SliceBytes(static_cast<std::int32_t>(brick.StrideZ() * sizeof(float)))
-    , Lookup(brick.Relative() ? table.RelativeLookup() : table.Lookup())
-    , Table(table.Steps())
-    , Depths(table.Depths())
-    , Shading(shading)
+    , Lookup(lookup)
   {
   }
 
@@ -179,9 +87,12 @@ public:
       hn::Add(hn::Mul(CellOf(position.Y), hn::Set(d, this->RowBytes)),
         hn::Mul(CellOf(position.Z), hn::Set(d, this->SliceBytes))));
     place.Cell.Set(hn::IfThenElseZero(hn::RebindMask(d, mask), bytes));
-    place.X = FractionOf(position.X);
-    place.Y = FractionOf(position.Y);
-    place.Z = FractionOf(position.Z);
+    if constexpr (!Nearest)
+    {
+      place.X = FractionOf(position.X);
+      place.Y = FractionOf(position.Y);
+      place.Z = FractionOf(position.Z);
+    }
   }
 
   /// A sample of which the entry in the table is known.
@@ -198,19 +109,53 @@ public:
     VF value;
     if constexpr (Shaded)
     {
-      const Blocks mixed = Transposed({ { this->MixedInCell<0>(place), this->MixedInCell<1>(place),
-        this->MixedInCell<2>(place), this->MixedInCell<3>(place) } });
+      const Blocks mixed = this->ValuesAndGradients(place);
       value = mixed.Of[0];
       this->ShadeOf(mixed.Of[1], mixed.Of[2], mixed.Of[3], direction, found);
     }
     else
     {
-      const Blocks edges = Transposed({ { this->MixedAlongZ<0>(place), this->MixedAlongZ<1>(place),
-        this->MixedAlongZ<2>(place), this->MixedAlongZ<3>(place) } });
-      value = Mix(
-        Mix(edges.Of[0], edges.Of[1], place.Y), Mix(edges.Of[2], edges.Of[3], place.Y), place.X);
+      value = this->ValueOf(place);
     }
     found.Entries.Set(hn::ShiftLeft<4>(this->IndicesOf(value)));
+  }
+
+  /// Without gradients.
+  HWY_INLINE VF ValueOf(const Place& place) const
+  {
+    static_assert(!Shaded, "two floats per sample");
+    if constexpr (Nearest)
+    {
+      const auto* values = reinterpret_cast<const float*>(this->Values);
+      return hn::GatherOffset(D(), values, hn::Load(DI(), place.Cell.Bytes));
+    }
+    else
+    {
+      const Blocks edges = Transposed({ { this->MixedAlongZ<0>(place), this->MixedAlongZ<1>(place),
+        this->MixedAlongZ<2>(place), this->MixedAlongZ<3>(place) } });
+      return Mix(
+        Mix(edges.Of[0], edges.Of[1], place.Y), Mix(edges.Of[2], edges.Of[3], place.Y), place.X);
+    }
+  }
+
+  /// As TableLookup::IndexOf.
+  HWY_INLINE VI IndicesOf(VF value) const
+  {
+    const D d;
+    const VF position =
+      hn::Add(hn::Mul(hn::Sub(value, hn::Set(d, this->Lookup.Low)), hn::Set(d, this->Lookup.Scale)),
+        hn::Set(d, this->Lookup.Bias));
+    const VF last = hn::Set(d, this->Lookup.Last);
+    if (!Special)
+    {
+      const VF inside = hn::Min(hn::Max(position, hn::Zero(d)), last);
+      return Truncated(inside);
+    }
+    const VF notBelow = hn::IfThenElseZero(hn::Gt(position, hn::Zero(d)), position);
+    const VI index = Truncated(hn::IfThenElse(hn::Lt(notBelow, last), notBelow, last));
+    const auto finite = hn::Le(hn::Abs(value), hn::Set(d, std::numeric_limits<float>::max()));
+    return hn::IfThenElse(
+      hn::RebindMask(DI(), finite), index, hn::Set(DI(), this->Lookup.Transparent));
   }
 
   HWY_INLINE Steps LookUp(const Found& found) const
@@ -279,6 +224,19 @@ private:
     }
   }
 
+  HWY_INLINE Blocks ValuesAndGradients(const Place& place) const
+  {
+    if constexpr (Nearest)
+    {
+      return Transposed(LoadBlocks(this->Values, place.Cell));
+    }
+    else
+    {
+      return Transposed({ { this->MixedInCell<0>(place), this->MixedInCell<1>(place),
+        this->MixedInCell<2>(place), this->MixedInCell<3>(place) } });
+    }
+  }
+
   /// Value and gradient of lanes 4 b + k.
   template <int k>
   HWY_INLINE VF MixedInCell(const Place& place) const
@@ -326,8 +284,13 @@ private:
       hn::Broadcast<k>(place.Z));
   }
 
+  /// The cell, or the nearest sample.
   static HWY_INLINE VI CellOf(VU position)
   {
+    if constexpr (Nearest)
+    {
+      position = hn::Add(position, hn::Set(DU(), 1u << (FractionBits - 1)));
+    }
     return hn::BitCast(DI(), hn::ShiftRight<FractionBits>(position));
   }
 
@@ -338,33 +301,13 @@ private:
     return hn::Mul(hn::ConvertTo(D(), hn::BitCast(DI(), bits)), hn::Set(D(), UsedUnit));
   }
 
-  /// As TableLookup::IndexOf.
-  HWY_INLINE VI IndicesOf(VF value) const
-  {
-    const D d;
-    const VF position =
-      hn::Add(hn::Mul(hn::Sub(value, hn::Set(d, this->Lookup.Low)), hn::Set(d, this->Lookup.Scale)),
-        hn::Set(d, this->Lookup.Bias));
-    const VF last = hn::Set(d, this->Lookup.Last);
-    if (!Special)
-    {
-      const VF inside = hn::Min(hn::Max(position, hn::Zero(d)), last);
-      return Truncated(inside);
-    }
-    const VF notBelow = hn::IfThenElseZero(hn::Gt(position, hn::Zero(d)), position);
-    const VI index = Truncated(hn::IfThenElse(hn::Lt(notBelow, last), notBelow, last));
-    const auto finite = hn::Le(hn::Abs(value), hn::Set(d, std::numeric_limits<float>::max()));
-    return hn::IfThenElse(
-      hn::RebindMask(DI(), finite), index, hn::Set(DI(), this->Lookup.Transparent));
-  }
-
   const char* Values;
   std::int32_t RowBytes;
   std::int32_t SliceBytes;
   TableLookup Lookup;
-  const glm::vec4* Table;
-  const glm::vec4* Depths;
-  const ShadingTable* Shading;
+  const glm::vec4* Table = nullptr;
+  const glm::vec4* Depths = nullptr;
+  const ShadingTable* Shading = nullptr;
 };
 
 } // namespace banyan::HWY_NAMESPACE

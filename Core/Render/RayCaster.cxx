@@ -2,7 +2,8 @@
 
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
-#include "Render/BrickMarcher.h"
+#include "Render/BrickProjector.h"
+#include "Render/TileGrid.h"
 #include "Render/VisibilityOrder.h"
 
 #include <glm/matrix.hpp>
@@ -16,7 +17,6 @@ namespace banyan
 namespace
 {
 
-constexpr int TileSize = RayTile::Edge;
 /// Bricks loaded before the rays that have become opaque are looked at again.
 constexpr std::size_t BricksPerBatch = 512;
 
@@ -26,6 +26,7 @@ struct PlannedBrick
   Box Cells;
   PixelRect Footprint;
   double Key = 0;
+  float HighestRank = 0; ///< of a projection
 };
 
 /// Packed, or as the source gives it where it cannot be packed.
@@ -53,7 +54,11 @@ public:
     , Visible(scene.Transfer)
     , IndexCamera(scene.Camera.InSpace(scene.IndexToWorld))
   {
-    if (scene.Shading.On)
+    if (scene.Blend.Mode != BlendMode::Composite)
+    {
+      this->Projection = std::make_unique<const ProjectionTable>(scene, this->Table);
+    }
+    else if (scene.Shading.On)
     {
       this->Shading = std::make_unique<const ShadingTable>(
         scene.Shading, glm::dmat3(glm::inverse(scene.IndexToWorld)));
@@ -101,8 +106,11 @@ private:
         continue;
       }
       const ValueRange range = this->Source.RangeOf(number);
-      if ((this->Source.MaskOf(number) & visibleBins) != 0 &&
-          this->Visible.Any(range.Low, range.High))
+      brick.HighestRank = this->Projection ? this->Projection->HighestRank(range) : 0.0f;
+      const bool wanted = this->Projection ? brick.HighestRank > 0.0f
+                                           : (this->Source.MaskOf(number) & visibleBins) != 0 &&
+                                               this->Visible.Any(range.Low, range.High);
+      if (wanted && !IsCutAway(this->Lattice.Planes(), brick.Cells))
       {
         brick.Footprint = Intersection(this->FootprintOf(brick.Cells), this->Scene.Viewport);
       }
@@ -111,7 +119,10 @@ private:
         ++this->Statistics.BricksSkipped;
         continue;
       }
-      brick.Key = VisibilityKey(view, whole);
+      // The best values first: bricks that cannot beat them are then never loaded. Averages are
+      // added up front to back, so that they round alike in bricks of all sizes.
+      brick.Key = this->Projection && !this->Projection->Averages() ? -brick.HighestRank
+                                                                    : VisibilityKey(view, whole);
       this->Picture.Rect = Union(this->Picture.Rect, brick.Footprint);
       this->Bricks.push_back(brick);
     }
@@ -129,39 +140,11 @@ private:
   {
     this->Picture.Pixels.assign(
       static_cast<std::size_t>(this->Picture.Rect.Count()), glm::vec4(0, 0, 0, 1));
-    this->TileCounts = (this->Picture.Rect.Size() + TileSize - 1) / TileSize;
-    const auto tiles = static_cast<std::size_t>(this->TileCounts.x) * this->TileCounts.y;
+    this->Tiles = TileGrid(this->Picture.Rect);
+    const std::size_t tiles = this->Tiles.Count();
     this->TileIsDone.assign(tiles, 0);
     this->BricksOfTile.resize(tiles);
     this->Scratch.resize(this->Pool.Width());
-  }
-
-  PixelRect RectOfTile(std::int64_t tile) const
-  {
-    const glm::ivec2 low =
-      this->Picture.Rect.Lo + glm::ivec2(static_cast<int>(tile % this->TileCounts.x),
-                                static_cast<int>(tile / this->TileCounts.x)) *
-                                TileSize;
-    return Intersection({ low, low + TileSize }, this->Picture.Rect);
-  }
-
-  /// Calls function(tile) for the tiles under a footprint that have rays left.
-  template <class Function>
-  void ForTilesUnder(const PixelRect& footprint, Function&& function) const
-  {
-    const glm::ivec2 first = (footprint.Lo - this->Picture.Rect.Lo) / TileSize;
-    const glm::ivec2 last = (footprint.Hi - 1 - this->Picture.Rect.Lo) / TileSize;
-    for (int y = first.y; y <= last.y; ++y)
-    {
-      for (int x = first.x; x <= last.x; ++x)
-      {
-        const std::size_t tile = static_cast<std::size_t>(y) * this->TileCounts.x + x;
-        if (!this->TileIsDone[tile])
-        {
-          function(tile);
-        }
-      }
-    }
   }
 
   /// What the budget leaves beside the bricks that are kept.
@@ -187,24 +170,30 @@ private:
     {
       const PlannedBrick& brick = this->Bricks[next];
       KeptBricks::Pointer kept = this->Source.Kept().Find(
-        brick.Number, brick.Cells, this->Table.Low(), this->Scene.Shading.On);
+        brick.Number, brick.Cells, this->Table.Low(), this->Shading != nullptr);
       const std::uint64_t loadBytes = kept ? 0 : this->Source.LoadBytes(brick.Number);
       const std::uint64_t brickBytes =
-        kept ? 0 : loadBytes + PackedBrick::BytesFor(brick.Cells, this->Scene.Shading.On);
+        kept ? 0 : loadBytes + PackedBrick::BytesFor(brick.Cells, this->Shading != nullptr);
       const bool full = bytes + brickBytes > left || this->Batch.size() >= BricksPerBatch;
       if (full && !this->Batch.empty())
       {
         break;
       }
       // What is in memory anyway costs less to draw than to look for open pixels.
-      if (loadBytes > 0 && !this->AnyRayOpen(brick.Footprint))
+      if (loadBytes > 0 && !this->AnyRayOpen(brick))
       {
         ++this->Statistics.BricksSkipped;
         continue;
       }
       const int position = static_cast<int>(this->Batch.size());
-      this->ForTilesUnder(
-        brick.Footprint, [&](std::size_t tile) { this->BricksOfTile[tile].push_back(position); });
+      this->Tiles.ForEachUnder(brick.Footprint,
+        [&](std::size_t tile)
+        {
+          if (!this->TileIsDone[tile])
+          {
+            this->BricksOfTile[tile].push_back(position);
+          }
+        });
       this->Batch.push_back(&brick);
       this->Loaded.emplace_back();
       this->Loaded.back().Packed = std::move(kept);
@@ -213,20 +202,30 @@ private:
     return next;
   }
 
-  /// Whether a pixel of a footprint has not reached the opacity limit.
-  bool AnyRayOpen(const PixelRect& footprint) const
+  /// Whether a pixel under a brick has not reached the opacity limit, or a better rank.
+  bool AnyRayOpen(const PlannedBrick& brick) const
   {
-    const float limit = 1.0f - this->Scene.OpacityLimit;
+    const PixelRect& footprint = brick.Footprint;
+    const float limit = this->TransmittanceLimit();
+    const bool ranked = this->Projection && !this->Projection->Averages();
+    const auto open = [&](const glm::vec4& pixel)
+    { return ranked ? pixel.r < brick.HighestRank : pixel.a > limit; };
     for (int y = footprint.Lo.y; y < footprint.Hi.y; ++y)
     {
       const glm::vec4* row = &this->Picture.At(footprint.Lo.x, y);
       const glm::vec4* end = row + footprint.Size().x;
-      if (std::any_of(row, end, [limit](const glm::vec4& pixel) { return pixel.a > limit; }))
+      if (std::any_of(row, end, open))
       {
         return true;
       }
     }
     return false;
+  }
+
+  /// Rays of a projection never end.
+  float TransmittanceLimit() const
+  {
+    return this->Projection ? 0.0f : 1.0f - this->Scene.OpacityLimit;
   }
 
   void DrawBatch()
@@ -259,6 +258,11 @@ private:
       }
       loaded.Packed = this->Pack(brick);
       this->Source.Kept().Keep(brick.Number, loaded.Packed);
+    }
+    loaded.Footprint = brick.Footprint;
+    if (this->Projection)
+    {
+      return;
     }
     loaded.Seen =
       BrickVisibility(*loaded.Packed, this->Source.RangeOf(brick.Number), this->Visible);
@@ -304,8 +308,7 @@ private:
   /// @return samples taken
   std::int64_t DrawTile(std::int64_t number, RayTile& tile)
   {
-    tile.Open(
-      this->Lattice, this->RectOfTile(number), this->Picture, 1.0f - this->Scene.OpacityLimit);
+    tile.Open(this->Lattice, this->Tiles.RectOf(number), this->Picture, this->TransmittanceLimit());
     for (const int position : this->BricksOfTile[number])
     {
       if (tile.ActiveRays == 0)
@@ -324,17 +327,33 @@ private:
     if (!loaded.Packed)
     {
       const glm::ivec3 corner = this->Source.CellsOf(brick.Number).Lo;
-      MarchBrick({ loaded.View, corner, brick.Cells }, this->Table, brick.Footprint, tile);
+      const BrickPart part{ loaded.View, corner, brick.Cells };
+      this->Projection
+        ? ProjectBrick(part, *this->Projection, brick.Footprint, tile)
+        : MarchBrick(part, this->Table, brick.Footprint, tile, this->Scene.Interpolation);
     }
-    else if (tile.PacketsFit)
+    else if (this->Projection)
     {
-      MarchPacked(
-        *loaded.Packed, loaded.Seen, this->Table, this->Shading.get(), loaded.Footprint, tile);
+      this->ProjectPackedBrick(brick, *loaded.Packed, tile);
     }
     else
     {
-      MarchUnpacked(
-        *loaded.Packed, loaded.Seen, this->Table, this->Shading.get(), loaded.Footprint, tile);
+      const auto march = tile.PacketsFit ? MarchPacked : MarchUnpacked;
+      march(*loaded.Packed, loaded.Seen, this->Table, this->Shading.get(), loaded.Footprint, tile,
+        this->Scene.Interpolation);
+    }
+  }
+
+  void ProjectPackedBrick(const PlannedBrick& brick, const PackedBrick& packed, RayTile& tile) const
+  {
+    if (tile.PacketsFit)
+    {
+      const ValueRange range = this->Source.RangeOf(brick.Number);
+      ProjectPacked(packed, range, *this->Projection, brick.Footprint, tile);
+    }
+    else
+    {
+      ProjectUnpacked(packed, *this->Projection, brick.Footprint, tile);
     }
   }
 
@@ -347,12 +366,13 @@ private:
   RayLattice Lattice;
   StepTable Table;
   VisibleValues Visible;
-  std::unique_ptr<const ShadingTable> Shading; ///< null for none
+  std::unique_ptr<const ShadingTable> Shading;       ///< null for none
+  std::unique_ptr<const ProjectionTable> Projection; ///< null when samples are composited
   RayCamera IndexCamera;
 
   FloatImage Picture;
   std::vector<PlannedBrick> Bricks;
-  glm::ivec2 TileCounts{ 0 };
+  TileGrid Tiles;
   std::vector<char> TileIsDone;               ///< no ray of the tile needs another brick
   std::vector<std::vector<int>> BricksOfTile; ///< positions in the batch, front to back
   std::vector<RayTile> Scratch;               ///< one per worker
@@ -361,17 +381,6 @@ private:
 };
 
 } // namespace
-
-glm::vec4& FloatImage::At(int x, int y)
-{
-  const auto row = static_cast<std::size_t>(y - this->Rect.Lo.y);
-  return this->Pixels[row * this->Rect.Size().x + (x - this->Rect.Lo.x)];
-}
-
-const glm::vec4& FloatImage::At(int x, int y) const
-{
-  return const_cast<FloatImage*>(this)->At(x, y);
-}
 
 FloatImage CastRays(const RayScene& scene, BrickSource& source, const Box& cells,
   std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics)

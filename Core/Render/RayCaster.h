@@ -2,6 +2,9 @@
 #define banyan_Render_RayCaster_h
 
 #include "Render/BrickSource.h"
+#include "Render/ClipPlanes.h"
+#include "Render/FloatImage.h"
+#include "Render/RayBlend.h"
 #include "Render/RayCamera.h"
 #include "Render/TransferFunction.h"
 #include "Render/Viewpoint.h"
@@ -16,16 +19,6 @@ namespace banyan
 {
 
 class ThreadPool;
-
-/// A part of a picture: premultiplied RGBA in float.
-struct FloatImage
-{
-  PixelRect Rect;
-  std::vector<glm::vec4> Pixels; ///< `[y][x]`, y up; Rect.Count() of them
-
-  glm::vec4& At(int x, int y);
-  const glm::vec4& At(int x, int y) const;
-};
 
 /// Light from the viewer, along each ray. With c = |normal . ray|, the colour of a sample becomes
 /// colour * (Ambient + Diffuse * c) + Specular * c^SpecularPower, before it is weighted with its
@@ -55,7 +48,10 @@ struct RayScene
   float OpacityLimit = 0.999f; ///< a ray ends when its opacity reaches this
   /// Depth in [0, 1] per pixel of Viewport at which rays end, `[y][x]`; empty means no geometry.
   std::vector<float> Depth;
-  RayShading Shading{};
+  RayShading Shading{};                ///< without effect unless samples are composited
+  std::vector<ClipPlane> ClipPlanes{}; ///< at most MostClipPlanes
+  SampleInterpolation Interpolation = SampleInterpolation::Linear;
+  RayBlend Blend{};
 };
 
 struct RayStatistics
@@ -68,7 +64,7 @@ struct RayStatistics
 /// Draws all bricks of `source` whose cells lie in `cells`.
 ///
 /// Samples lie at t = (k + 1/2) * SampleDistance on one lattice per ray (see Ray). Each stands for
-/// its interval [k, k + 1) * SampleDistance clipped to DomainCells, the clip planes and the depth;
+/// its interval [k, k + 1) * SampleDistance clipped to DomainCells, ClipPlanes and the depth;
 /// the sample of an interval that is clipped lies in the middle of what is left of it. Each sample
 /// belongs to exactly one cell, whatever the bricks: so pictures of disjoint sets of cells, blended
 /// in visibility order, give the picture of their union within 1e-5 in float (rays that end early
@@ -81,7 +77,8 @@ struct RayStatistics
 /// reached the opacity limit.
 ///
 /// @param statistics is added to
-/// @return pixels that the visible bricks may touch (inside Viewport); may be empty.
+/// @return pixels that the visible bricks may touch (inside Viewport); may be empty. Unless samples
+/// are composited, FinishPicture makes colours of them.
 /// Throws Error when the scene is not usable or a brick cannot be read.
 FloatImage CastRays(const RayScene& scene, BrickSource& source, const Box& cells,
   std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics);
@@ -96,6 +93,7 @@ std::vector<std::int64_t> VisibilityOrder(
 /// all eight corners, no skipping, no early end, no table (`function` gives colour and opacity per
 /// UnitDistance of the scene's transfer function for any value). Shares the lattice's definition
 /// with CastRays, but of its code only the camera.
+/// Draws all that a scene may ask for but shading.
 /// @param value gives the sample at an index position (0-based) or NaN
 /// @return the whole viewport
 FloatImage ReferenceImage(const RayScene& scene,

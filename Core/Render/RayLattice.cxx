@@ -102,6 +102,7 @@ RayLattice::RayLattice(const RayScene& scene)
   {
     throw Error("The volume has no extent in space: a spacing is 0 or not finite");
   }
+  this->IndexPlanes = PlanesInIndexSpace(scene.ClipPlanes, scene.IndexToWorld);
 }
 
 LatticeSetup RayLattice::Setup() const
@@ -120,6 +121,8 @@ LatticeSetup RayLattice::Setup() const
   setup.High = glm::dvec3(this->Scene.DomainCells.Hi);
   setup.Distance = this->Scene.SampleDistance;
   setup.ShadingScale = ScaleToOne(this->WorldToIndexLinear);
+  setup.Planes = this->IndexPlanes.data();
+  setup.PlaneCount = this->IndexPlanes.size();
   return setup;
 }
 
@@ -152,7 +155,7 @@ RaySamples RayLattice::SamplesOf(int x, int y) const
   exit = std::min(exit, this->GeometryAt(x, y));
   const IndexRay indexRay{ glm::dvec3(this->WorldToIndex * glm::dvec4(ray.Origin, 1.0)),
     this->WorldToIndexLinear * ray.Direction };
-  if (!this->ClipToDomain(indexRay, enter, exit))
+  if (!this->ClipToDomain(indexRay, enter, exit) || !this->ClipToPlanes(indexRay, enter, exit))
   {
     return samples;
   }
@@ -200,6 +203,29 @@ bool RayLattice::ClipToDomain(const IndexRay& ray, double& enter, double& exit) 
     exit = std::min(exit, std::max(a, b));
   }
   return !cells.Empty() && enter < exit;
+}
+
+bool RayLattice::ClipToPlanes(const IndexRay& ray, double& enter, double& exit) const
+{
+  for (const glm::dvec4& plane : this->IndexPlanes)
+  {
+    const double along =
+      (plane.x * ray.Direction.x + plane.y * ray.Direction.y) + plane.z * ray.Direction.z;
+    const double above =
+      ((plane.x * ray.Origin.x + plane.y * ray.Origin.y) + plane.z * ray.Origin.z) + plane.w;
+    if (along == 0.0)
+    {
+      if (!(above >= 0.0))
+      {
+        return false;
+      }
+      continue;
+    }
+    const double t = -above / along;
+    enter = along > 0.0 ? std::max(enter, t) : enter;
+    exit = along > 0.0 ? exit : std::min(exit, t);
+  }
+  return enter < exit;
 }
 
 std::int64_t RayLattice::Fixed(const IndexRay& ray, double t, int axis) const

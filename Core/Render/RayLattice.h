@@ -147,6 +147,8 @@ struct LatticeSetup
   double Distance = 1.0;
   /// A power of two that brings directions in index space near 1.
   double ShadingScale = 1.0;
+  const glm::dvec4* Planes = nullptr; ///< RayLattice::Planes
+  std::size_t PlaneCount = 0;
 };
 
 /// Makes the samples of rays from what all ranks know: the camera, the domain, the clip planes, the
@@ -164,7 +166,11 @@ public:
   /// @param x, y pixel of the whole picture, inside the scene's viewport
   RaySamples SamplesOf(int x, int y) const;
 
+  /// Refers to this lattice.
   LatticeSetup Setup() const;
+
+  /// The clip planes in index space: unit normal, and distance in cells.
+  const std::vector<glm::dvec4>& Planes() const { return this->IndexPlanes; }
 
   /// t along the ray of a pixel where the depth buffer has geometry; infinite where it has none.
   double GeometryAt(int x, int y) const;
@@ -182,6 +188,9 @@ private:
   /// Narrows t to where the ray is inside the domain.
   /// @return false when nothing is left
   bool ClipToDomain(const IndexRay& ray, double& enter, double& exit) const;
+  /// Narrows t to what the clip planes leave of the ray.
+  /// @return false when nothing is left
+  bool ClipToPlanes(const IndexRay& ray, double& enter, double& exit) const;
   void PlaceWhole(const IndexRay& ray, double firstSample, RaySamples& samples) const;
   PartialSample PlacePartial(const IndexRay& ray, double enter, double exit) const;
   std::int64_t Fixed(const IndexRay& ray, double t, int axis) const;
@@ -189,6 +198,7 @@ private:
   const RayScene& Scene;
   glm::dmat4 WorldToIndex;
   glm::dmat3 WorldToIndexLinear;
+  std::vector<glm::dvec4> IndexPlanes;
 };
 
 } // namespace banyan

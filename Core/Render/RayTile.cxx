@@ -44,6 +44,7 @@ public:
     VD exit = hn::Min(this->Far, hn::Load(d, end));
     auto alive = hn::Ne(hn::Load(d, active), hn::Zero(d));
     this->Clip(enter, exit, alive);
+    this->ClipToPlanes(enter, exit, alive);
     alive = hn::And(alive, hn::Lt(enter, exit));
     if (hn::AllFalse(d, alive))
     {
@@ -169,6 +170,25 @@ private:
       enter = hn::Max(enter, hn::IfThenElse(along, hn::Neg(infinity), hn::Min(a, b)));
       exit = hn::Min(exit, hn::IfThenElse(along, infinity, hn::Max(a, b)));
       alive = hn::And(alive, hn::Or(hn::Not(along), inside));
+    }
+  }
+
+  HWY_INLINE void ClipToPlanes(VD& enter, VD& exit, hn::Mask<DD>& alive) const
+  {
+    const DD d;
+    const VD infinity = this->Set(std::numeric_limits<double>::infinity());
+    const VD zero = hn::Zero(d);
+    for (std::size_t i = 0; i < this->Setup.PlaneCount; ++i)
+    {
+      const glm::dvec4& plane = this->Setup.Planes[i];
+      const VD normal[3] = { this->Set(plane.x), this->Set(plane.y), this->Set(plane.z) };
+      const VD along = this->Dot(normal, this->Direction);
+      const VD above = hn::Add(this->Dot(normal, this->Origin), this->Set(plane.w));
+      const VD t = hn::Div(hn::Neg(above), along);
+      enter = hn::Max(enter, hn::IfThenElse(hn::Gt(along, zero), t, hn::Neg(infinity)));
+      exit = hn::Min(exit, hn::IfThenElse(hn::Lt(along, zero), t, infinity));
+      const auto beside = hn::And(hn::Eq(along, zero), hn::Lt(above, zero));
+      alive = hn::AndNot(beside, alive);
     }
   }
 

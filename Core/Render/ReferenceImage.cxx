@@ -1,9 +1,11 @@
 #include "Render/RayCaster.h"
 
+#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace banyan
 {
@@ -28,13 +30,12 @@ public:
     const Ray ray = this->Scene.Camera.RayOf(x, y);
     double enter = ray.Near;
     double exit = std::min(ray.Far, this->GeometryAt(ray, x, y));
-    if (!this->ClipToDomain(ray, enter, exit))
+    if (!this->ClipToDomain(ray, enter, exit) || !this->ClipToPlanes(ray, enter, exit))
     {
       return glm::dvec4(0.0);
     }
+    Met met;
     const double step = this->Scene.SampleDistance;
-    glm::dvec3 color(0.0);
-    double transmittance = 1.0;
     for (double k = std::floor(enter / step); k * step < exit; k += 1.0)
     {
       const double begin = std::max(k * step, enter);
@@ -42,17 +43,83 @@ public:
       const double value = this->Interpolate(this->IndexAt(ray, 0.5 * (begin + end)));
       if (std::isfinite(value) && end > begin)
       {
-        const glm::dvec4 entry = this->Function(value);
-        const double length = (end - begin) / this->Scene.Transfer.UnitDistance;
-        const double opacity = 1.0 - std::pow(1.0 - entry.a, length);
-        color += transmittance * opacity * glm::dvec3(entry);
-        transmittance *= 1.0 - opacity;
+        this->Add(value, end - begin, met);
       }
     }
-    return glm::dvec4(color, 1.0 - transmittance);
+    return this->PixelOf(met);
   }
 
 private:
+  /// What a ray has met so far.
+  struct Met
+  {
+    glm::dvec3 Color{ 0.0 };
+    double Transmittance = 1.0;
+    double Lowest = std::numeric_limits<double>::infinity();
+    double Highest = -std::numeric_limits<double>::infinity();
+    double Sum = 0.0;
+    double Length = 0.0;
+  };
+
+  void Add(double value, double length, Met& met) const
+  {
+    const RayBlend& blend = this->Scene.Blend;
+    const glm::dvec4 entry = this->Function(value);
+    const double opacity =
+      1.0 - std::pow(1.0 - entry.a, length / this->Scene.Transfer.UnitDistance);
+    met.Color += met.Transmittance * opacity * glm::dvec3(entry);
+    met.Transmittance *= 1.0 - opacity;
+    met.Lowest = std::min(met.Lowest, value);
+    met.Highest = std::max(met.Highest, value);
+    if (value >= blend.AveragedLow && value <= blend.AveragedHigh)
+    {
+      const double level = (value - blend.Black) / (blend.White - blend.Black);
+      met.Sum += length * entry.a * std::clamp(level, 0.0, 1.0);
+      met.Length += length;
+    }
+  }
+
+  glm::dvec4 PixelOf(const Met& met) const
+  {
+    const BlendMode mode = this->Scene.Blend.Mode;
+    if (mode == BlendMode::Composite)
+    {
+      return glm::dvec4(met.Color, 1.0 - met.Transmittance);
+    }
+    if (mode == BlendMode::Average)
+    {
+      return met.Length > 0.0 ? glm::dvec4(glm::dvec3(met.Sum / met.Length), 1.0) : glm::dvec4(0.0);
+    }
+    if (met.Lowest > met.Highest)
+    {
+      return glm::dvec4(0.0);
+    }
+    const glm::dvec4 entry = this->Function(mode == BlendMode::Maximum ? met.Highest : met.Lowest);
+    return glm::dvec4(entry.a * glm::dvec3(entry), entry.a);
+  }
+
+  bool ClipToPlanes(const Ray& ray, double& enter, double& exit) const
+  {
+    for (const ClipPlane& plane : this->Scene.ClipPlanes)
+    {
+      const double atOrigin = glm::dot(plane.Normal, ray.Origin) + plane.Offset;
+      const double along = glm::dot(plane.Normal, ray.Direction);
+      if (along > 0.0)
+      {
+        enter = std::max(enter, -atOrigin / along);
+      }
+      else if (along < 0.0)
+      {
+        exit = std::min(exit, -atOrigin / along);
+      }
+      else if (atOrigin < 0.0)
+      {
+        return false;
+      }
+    }
+    return enter < exit;
+  }
+
   double GeometryAt(const Ray& ray, int x, int y) const
   {
     const PixelRect& view = this->Scene.Viewport;
@@ -86,8 +153,19 @@ private:
     return !cells.Empty() && enter < exit;
   }
 
+  double NearestTo(const glm::dvec3& position) const
+  {
+    const Box& cells = this->Scene.DomainCells;
+    const glm::ivec3 nearest(glm::floor(position + 0.5));
+    return this->Value(glm::clamp(nearest, cells.Lo, cells.Hi));
+  }
+
   double Interpolate(const glm::dvec3& position) const
   {
+    if (this->Scene.Interpolation == SampleInterpolation::Nearest)
+    {
+      return this->NearestTo(position);
+    }
     const Box& cells = this->Scene.DomainCells;
     glm::ivec3 cell;
     glm::dvec3 part;

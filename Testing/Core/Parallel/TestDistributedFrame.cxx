@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <mutex>
 
 namespace
@@ -120,6 +121,42 @@ TEST_P(EveryRankCount, RaysThatEndEarlyChangeLessThanAHalfOf255)
   const Outcome alone = DrawSeries(field, scene, 1);
   const Outcome together = DrawSeries(field, scene, GetParam());
   EXPECT_LT(MaxDifference(alone.Picture, together.Picture), 0.5 / 255.0);
+}
+
+TEST_P(EveryRankCount, DrawsExtremesToTheBitAndAveragesAndLabelsAndCutsAsOneRank)
+{
+  const EncodedField field;
+  RayScene scene = SceneOf(1.4, false);
+  const auto expectSame = [&](double tolerance, bool sameWork)
+  {
+    const Outcome alone = DrawSeries(field, scene, 1);
+    const auto drawn = std::count_if(alone.Picture.Pixels.begin(), alone.Picture.Pixels.end(),
+      [](const glm::vec4& pixel) { return pixel.a > 0.05f; });
+    ASSERT_GT(drawn, 100);
+    const Outcome together = DrawSeries(field, scene, GetParam());
+    EXPECT_LE(MaxDifference(alone.Picture, together.Picture), tolerance);
+    if (sameWork)
+    {
+      EXPECT_EQ(alone.Statistics.SamplesTaken, together.Statistics.SamplesTaken);
+      EXPECT_EQ(alone.Statistics.BricksDrawn, together.Statistics.BricksDrawn);
+    }
+  };
+  for (glm::vec4& entry : scene.Transfer.Entries)
+  {
+    entry.a = 0.1f + 0.5f * entry.a;
+  }
+  const glm::dvec3 normal(0.6, -0.2, 0.8);
+  scene.ClipPlanes = { { normal, -glm::dot(normal, glm::dvec3(Samples) * 0.5) } };
+  expectSame(1e-5, true);
+  scene.Interpolation = SampleInterpolation::Nearest;
+  expectSame(1e-5, true);
+  scene.Interpolation = SampleInterpolation::Linear;
+  scene.Blend.Mode = BlendMode::Average;
+  expectSame(1e-5, true);
+  scene.Blend.Mode = BlendMode::Maximum;
+  expectSame(0.0, false);
+  scene.Blend.Mode = BlendMode::Minimum;
+  expectSame(0.0, false);
 }
 
 // 125 bricks: the last count leaves ranks without any.

@@ -4,7 +4,7 @@
 #include "Base/ThreadPool.h"
 #include "Render/ArrayBrickSource.h"
 #include "Render/ImageError.h"
-#include "Render/RayCaster.h"
+#include "Render/ProjectionTable.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -170,7 +170,7 @@ struct DrawOptions
   std::uint64_t BudgetBytes = std::uint64_t{ 1 } << 30;
 };
 
-/// Draws an array with masks over [0, 1] of its finite range.
+/// Draws and finishes an array with masks over [0, 1] of its finite range.
 inline Drawn Draw(
   const banyan::RayScene& scene, const banyan::SampleArray& array, const DrawOptions& options = {})
 {
@@ -182,6 +182,7 @@ inline Drawn Draw(
   Drawn drawn;
   drawn.Image =
     banyan::CastRays(scene, source, scene.DomainCells, options.BudgetBytes, pool, drawn.Statistics);
+  banyan::FinishPicture(scene, drawn.Image);
   return drawn;
 }
 

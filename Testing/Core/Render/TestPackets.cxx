@@ -222,8 +222,10 @@ void ExpectSameBitsShaded(const Scenario& test, std::vector<float> values, float
   const BrickVisibility seen(packed, { 0.0, 100.0 }, VisibleValues(scene.Transfer));
   const auto march = [&](auto&& function)
   {
-    return DrawTiles(
-      scene, [&](RayTile& tile) { function(packed, seen, table, &shading, scene.Viewport, tile); });
+    return DrawTiles(scene,
+      [&](RayTile& tile) {
+        function(packed, seen, table, &shading, scene.Viewport, tile, SampleInterpolation::Linear);
+      });
   };
   const Tiled plain = march(MarchUnpacked);
   for (const std::int64_t target : scenes::TargetsOfThisMachine())

@@ -146,6 +146,40 @@ TEST(RayTile, Geometry)
   EXPECT_GT(Compare(scene), 100);
 }
 
+TEST(RayTile, ClippedRays)
+{
+  const glm::ivec3 n(20, 31, 12);
+  glm::dmat4 toWorld = glm::rotate(glm::dmat4(1.0), 0.8, glm::normalize(glm::dvec3(1, 2, 3)));
+  toWorld = glm::scale(toWorld, glm::dvec3(0.5, -1.25, 2.0));
+  for (const bool parallel : { false, true })
+  {
+    for (const double distance : { 0.1, 1.4 })
+    {
+      RayScene scene = scenes::Scene(n, { 30, 30 }, toWorld, distance, parallel);
+      const int whole = Compare(scene);
+      const glm::dvec3 centre = scenes::CentreOf(scene.DomainCells, toWorld);
+      scene.ClipPlanes = { { { 1, 0.3, -0.2 }, 3.0 - glm::dot(glm::dvec3(1, 0.3, -0.2), centre) },
+        { { 0, -5, 0 }, 15.0 + 5.0 * centre.y } };
+      const int rays = Compare(scene);
+      EXPECT_GT(rays, 50);
+      EXPECT_TRUE(rays < whole || distance < 1.0);
+    }
+  }
+}
+
+TEST(RayTile, RaysAlongClipPlanes)
+{
+  const glm::dvec3 centre(4.0);
+  RayScene scene = scenes::Scene(glm::ivec3(9), { 17, 17 });
+  scene.Camera = RayCamera(glm::ortho(-4.25, 4.25, -4.25, 4.25, 1.0, 40.0) *
+                             glm::lookAt(centre - glm::dvec3(0, 0, 20), centre, { 0, 1, 0 }),
+    { 17, 17 }, centre);
+  scene.ClipPlanes = { { { 1, 0, 0 }, -3.25 }, { { 0, -1, 0 }, 5.25 }, { { 0, 0, 1 }, -2.25 } };
+  const int rays = Compare(scene);
+  EXPECT_GT(rays, 80);
+  EXPECT_LT(rays, 120);
+}
+
 TEST(RayTile, FarFromTheOrigin)
 {
   const glm::dmat4 toWorld = glm::translate(glm::dmat4(1.0), glm::dvec3(4e5, -5e6, 3e4));

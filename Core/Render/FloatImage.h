@@ -1,0 +1,29 @@
+#ifndef banyan_Render_FloatImage_h
+#define banyan_Render_FloatImage_h
+
+#include "Render/RayCamera.h"
+
+#include <glm/vec4.hpp>
+
+#include <vector>
+
+namespace banyan
+{
+
+/// A part of a picture: premultiplied RGBA in float, or what FinishPicture makes that of.
+struct FloatImage
+{
+  PixelRect Rect;
+  std::vector<glm::vec4> Pixels; ///< `[y][x]`, y up; Rect.Count() of them
+
+  glm::vec4& At(int x, int y)
+  {
+    const auto row = static_cast<std::size_t>(y - this->Rect.Lo.y);
+    return this->Pixels[row * this->Rect.Size().x + (x - this->Rect.Lo.x)];
+  }
+  const glm::vec4& At(int x, int y) const { return const_cast<FloatImage*>(this)->At(x, y); }
+};
+
+} // namespace banyan
+
+#endif

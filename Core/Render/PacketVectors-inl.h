@@ -1,0 +1,117 @@
+// Included once per SIMD target: see PacketMarcher.cxx.
+#if defined(banyan_Render_PacketVectors_inl_h) == defined(HWY_TARGET_TOGGLE)
+#ifdef banyan_Render_PacketVectors_inl_h
+#undef banyan_Render_PacketVectors_inl_h
+#else
+#define banyan_Render_PacketVectors_inl_h
+#endif
+
+#include "Render/RayTile.h"
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace banyan::HWY_NAMESPACE
+{
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4
+using D = hn::ScalableTag<float>; ///< 16, 8 or 4 lanes
+#else
+using D = hn::CappedTag<float, 4>;
+#endif
+using DI = hn::Rebind<std::int32_t, D>;
+using DU = hn::Rebind<std::uint32_t, D>;
+using DWide = hn::Repartition<std::uint64_t, D>;
+using VF = hn::Vec<D>;
+using VI = hn::Vec<DI>;
+using VU = hn::Vec<DU>;
+
+/// Distances in bytes per lane, where scalar code can read them.
+struct Offsets
+{
+  HWY_INLINE void Set(VI bytes)
+  {
+    hn::Store(bytes, DI(), this->Bytes);
+#if HWY_COMPILER_GCC || HWY_COMPILER_CLANG
+    // Otherwise numbers are taken out of the vector one by one, which is slower than loading them.
+    __asm__("" : "+m"(this->Bytes));
+#endif
+  }
+
+  alignas(64) std::int32_t Bytes[RayTile::PacketSize];
+};
+
+/// Four floats of each lane: lane 4 b + k has those of block b of number k. Blocks of 128 bits are
+/// loaded one by one: on many processors a gather takes much longer than its loads.
+struct Blocks
+{
+  VF Of[4];
+};
+
+/// Blocks at the first, fifth, ... distance.
+HWY_INLINE VF LoadBlocks(const char* base, const std::int32_t* bytes)
+{
+  const auto at = [&](int i) HWY_ATTR { return reinterpret_cast<const float*>(base + bytes[i]); };
+#if HWY_TARGET == HWY_AVX3
+  // Blocks are put in place as they are loaded, which takes no shuffle.
+  __m512 v = _mm512_castps128_ps512(_mm_loadu_ps(at(0)));
+  v = _mm512_insertf32x4(v, _mm_loadu_ps(at(4)), 1);
+  v = _mm512_insertf32x4(v, _mm_loadu_ps(at(8)), 2);
+  return VF{ _mm512_insertf32x4(v, _mm_loadu_ps(at(12)), 3) };
+#elif HWY_TARGET == HWY_AVX2
+  const __m256 v = _mm256_castps128_ps256(_mm_loadu_ps(at(0)));
+  return VF{ _mm256_insertf128_ps(v, _mm_loadu_ps(at(4)), 1) };
+#else
+  static_assert(hn::MaxLanes(D()) == 4, "one block");
+  return hn::LoadU(D(), at(0));
+#endif
+}
+
+HWY_INLINE Blocks LoadBlocks(const void* base, const Offsets& offsets)
+{
+  const auto* from = static_cast<const char*>(base);
+  return { { LoadBlocks(from, offsets.Bytes), LoadBlocks(from, offsets.Bytes + 1),
+    LoadBlocks(from, offsets.Bytes + 2), LoadBlocks(from, offsets.Bytes + 3) } };
+}
+
+/// From four floats of a lane side by side to four vectors of them.
+HWY_INLINE Blocks Transposed(const Blocks& blocks)
+{
+  const D d;
+  const DWide wide;
+  const auto lowAB = hn::BitCast(wide, hn::InterleaveLower(d, blocks.Of[0], blocks.Of[1]));
+  const auto lowCD = hn::BitCast(wide, hn::InterleaveLower(d, blocks.Of[2], blocks.Of[3]));
+  const auto highAB = hn::BitCast(wide, hn::InterleaveUpper(d, blocks.Of[0], blocks.Of[1]));
+  const auto highCD = hn::BitCast(wide, hn::InterleaveUpper(d, blocks.Of[2], blocks.Of[3]));
+  return { { hn::BitCast(d, hn::InterleaveLower(wide, lowAB, lowCD)),
+    hn::BitCast(d, hn::InterleaveUpper(wide, lowAB, lowCD)),
+    hn::BitCast(d, hn::InterleaveLower(wide, highAB, highCD)),
+    hn::BitCast(d, hn::InterleaveUpper(wide, highAB, highCD)) } };
+}
+
+// No fused operations: all targets give the same bits, and those of the scalar interpolator.
+HWY_INLINE VF Mix(VF a, VF b, VF part)
+{
+  return hn::Add(a, hn::Mul(part, hn::Sub(b, a)));
+}
+
+/// Numbers that an integer can hold: without what ConvertTo does for others.
+HWY_INLINE VI Truncated(VF v)
+{
+#if HWY_TARGET == HWY_SSE4
+  return VI{ _mm_cvttps_epi32(v.raw) };
+#elif HWY_TARGET == HWY_AVX2
+  return VI{ _mm256_cvttps_epi32(v.raw) };
+#elif HWY_TARGET == HWY_AVX3
+  return VI{ _mm512_cvttps_epi32(v.raw) };
+#else
+  return hn::ConvertTo(DI(), v);
+#endif
+}
+
+} // namespace banyan::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
