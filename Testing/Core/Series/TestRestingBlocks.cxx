@@ -30,8 +30,8 @@ Steps<float> MovingSteps(int axis, double higher)
       }
       if (step % 4 != 3)
       {
-        value +=
-          0.05 * std::sin(0.9 * x + 1.7 * step) * std::sin(0.7 * y) * std::cos(0.8 * z + 0.3 * step);
+        value += 0.05 * std::sin(0.9 * x + 1.7 * step) * std::sin(0.7 * y) *
+                 std::cos(0.8 * z + 0.3 * step);
       }
       return value;
     });
