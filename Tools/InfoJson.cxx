@@ -54,6 +54,8 @@ Json SizeToJson(const SeriesReport& report)
   json["indexBytes"] = report.IndexBytes;
   json["segmentBytes"] = report.SegmentBytes;
   json["payloadBytes"] = report.Index.Statistics.PayloadBytes;
+  json["repeatedSegments"] = report.Index.Statistics.RepeatedSegments;
+  json["repeatedBytes"] = report.Index.Statistics.RepeatedBytes;
   json["rawBytes"] = report.Index.PayloadBytesIn;
   json["values"] = report.Values();
   json["bitsPerValue"] = report.BitsPerValue();

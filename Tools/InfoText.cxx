@@ -62,6 +62,18 @@ std::string Heading(const SeriesReport& report)
   return text;
 }
 
+/// What is stored once for several groups of steps.
+std::string Repeated(const EncodeStatistics& statistics)
+{
+  if (statistics.RepeatedSegments == 0)
+  {
+    return "";
+  }
+  return "  equal to earlier segments, and not stored again: " +
+         Counted(static_cast<std::size_t>(statistics.RepeatedSegments), "segment") + ", " +
+         Megabytes(statistics.RepeatedBytes) + "\n";
+}
+
 /// How far a look at one brick goes.
 std::string Chains(const EncodeStatistics& statistics)
 {
@@ -89,7 +101,8 @@ std::string Size(const SeriesReport& report)
   return "\n" + table.Text() + "  encoded: payloads " +
          Megabytes(report.Index.Statistics.PayloadBytes) + ", tables " +
          Megabytes(report.SegmentBytes - report.Index.Statistics.PayloadBytes) + ", index " +
-         Megabytes(report.IndexBytes) + "\n" + Chains(report.Index.Statistics);
+         Megabytes(report.IndexBytes) + "\n" + Repeated(report.Index.Statistics) +
+         Chains(report.Index.Statistics);
 }
 
 std::string Described(const Transform& transform)

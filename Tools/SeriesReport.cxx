@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <unordered_set>
 
 namespace banyan
@@ -146,7 +147,9 @@ BrickCounts* CountsOf(SeriesReport& report, const FieldKey& field)
 
 /// Fills in which payloads are stored where. A segment is counted as a whole, because what its
 /// first fields store the others share.
-void CountSegment(const SeriesFile& file, const SegmentIndex& segment, SeriesReport& report)
+/// @param again its file is that of an earlier one, which stores all of it
+void CountSegment(
+  const SeriesFile& file, const SegmentIndex& segment, bool again, SeriesReport& report)
 {
   Identities seen;
   for (int step = segment.FirstStep; step < segment.FirstStep + segment.Steps; ++step)
@@ -156,6 +159,12 @@ void CountSegment(const SeriesFile& file, const SegmentIndex& segment, SeriesRep
       {
         BrickCounts counts;
         CountPayloads(*file.Nodes(field), seen, counts);
+        if (again)
+        {
+          counts.Shared += counts.Stored;
+          counts.Stored = 0;
+          counts.StoredBytes = 0;
+        }
         if (BrickCounts* sum = CountsOf(report, field))
         {
           sum->Add(counts);
@@ -267,9 +276,12 @@ SeriesReport ReportSeries(const SeriesFile& file, const ReportChoice& choice)
     (void)report.Index.SegmentOf(choice.Step); // throws when there is no such step
   }
   report.IndexBytes = std::filesystem::file_size(file.Path());
+  std::set<std::string> files;
+  std::vector<bool> again;
   for (const SegmentIndex& segment : report.Index.Segments)
   {
-    report.SegmentBytes += segment.Bytes;
+    again.push_back(!files.insert(segment.File).second);
+    report.SegmentBytes += again.back() ? 0 : segment.Bytes;
   }
   report.Components = ChosenComponents(report.Index, choice.Array);
   if (report.Components.empty() || report.Index.Steps() == 0)
@@ -285,11 +297,12 @@ SeriesReport ReportSeries(const SeriesFile& file, const ReportChoice& choice)
       component.Steps.push_back(ReportStep(file, component, step));
     }
   }
-  for (const SegmentIndex& segment : report.Index.Segments)
+  for (std::size_t i = 0; i < again.size(); ++i)
   {
+    const SegmentIndex& segment = report.Index.Segments[i];
     if (segment.FirstStep < end && segment.FirstStep + segment.Steps > first)
     {
-      CountSegment(file, segment, report);
+      CountSegment(file, segment, again[i], report);
     }
   }
   return report;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <list>
+#include <unordered_map>
 
 namespace banyan
 {
@@ -37,6 +38,7 @@ private:
   const OpenSeries& Series;
   std::mutex SegmentMutex;
   std::vector<std::shared_ptr<GroupReader>> Segments;
+  std::unordered_map<std::string, std::shared_ptr<const MappedSegment>> Files; ///< by name
   std::list<const GroupReader*> Recent; ///< most recently used first
   std::mutex OpenMutex;
   std::list<Kept> Opened; ///< most recently used first
@@ -62,8 +64,12 @@ std::shared_ptr<GroupReader> Reader2::Segment(int step)
   std::shared_ptr<GroupReader>& segment = this->Segments[number];
   if (!segment)
   {
-    segment =
-      std::make_shared<GroupReader>(this->Series.Path + ".d", index, this->Series.Components);
+    std::shared_ptr<const MappedSegment>& file = this->Files[index.File];
+    if (!file)
+    {
+      file = std::make_shared<const MappedSegment>(this->Series.Path + ".d", index);
+    }
+    segment = std::make_shared<GroupReader>(file, index, this->Series.Components);
   }
   return segment;
 }
@@ -116,6 +122,10 @@ std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
         before);
     });
   const group::FieldHead& head = open->Field->Head();
+  if (head.Open)
+  {
+    open->Before = this->Segment(segment->FirstStep() - 1)->HeaderHash();
+  }
   const Transform& map =
     array.Components[static_cast<std::size_t>(field.Component)].ValueTransform;
   Dispatch(array.Type,

@@ -364,6 +364,8 @@ void AddGroup(const EncodedGroup& group, SeriesIndex& index)
   to.ChainSum += from.ChainSum;
   to.ChainBricks += from.ChainBricks;
   to.ChainMost = std::max(to.ChainMost, from.ChainMost);
+  to.RepeatedSegments += from.RepeatedSegments;
+  to.RepeatedBytes += from.RepeatedBytes;
   index.PayloadBytesIn += group.BytesIn;
 }
 

@@ -12,7 +12,13 @@ namespace banyan
 
 GroupReader::GroupReader(
   const std::string& folder, const SegmentIndex& index, std::uint32_t components)
-  : File(folder, index)
+  : GroupReader(std::make_shared<const MappedSegment>(folder, index), index, components)
+{
+}
+
+GroupReader::GroupReader(std::shared_ptr<const MappedSegment> file, const SegmentIndex& index,
+  std::uint32_t components)
+  : File(std::move(file))
   , Index(index)
   , Components(components)
   , Expected{ index.HashLow, index.HashHigh }
@@ -26,18 +32,17 @@ void GroupReader::Check()
   {
     return;
   }
-  this->Head = segment::LoadHeader(this->File.Data(), group::Version);
-  if (HashOf(this->File.Data(), segment::HeaderBytes) != this->Expected)
+  this->Head = segment::LoadHeader(this->File->Data(), group::Version);
+  if (HashOf(this->File->Data(), segment::HeaderBytes) != this->Expected)
   {
     throw Error("The segment is not the one that the index names");
   }
   const std::uint64_t sections =
     1 + std::uint64_t{ this->Components } * (1 + static_cast<std::uint64_t>(this->Index.Steps));
-  const std::uint64_t bytes = this->File.Bytes();
+  const std::uint64_t bytes = this->File->Bytes();
   const std::uint64_t directoryBytes = sections * group::EntryBytes;
   if (this->Head.FileBytes != bytes ||
       this->Head.Steps != static_cast<std::uint32_t>(this->Index.Steps) ||
-      this->Head.FirstStep != static_cast<std::uint32_t>(this->Index.FirstStep) ||
       this->Head.Tables != sections || directoryBytes > bytes ||
       this->Head.DirectoryOffset != bytes - directoryBytes ||
       this->Head.PayloadEnd < segment::HeaderBytes ||
@@ -45,7 +50,7 @@ void GroupReader::Check()
   {
     throw Error("The header of the segment does not fit the index");
   }
-  if (ShortHashOf(this->File.Data() + this->Head.DirectoryOffset,
+  if (ShortHashOf(this->File->Data() + this->Head.DirectoryOffset,
         static_cast<std::size_t>(directoryBytes)) != this->Head.DirectoryHash)
   {
     throw Error("The directory of the segment is damaged");
@@ -63,7 +68,7 @@ Bytes GroupReader::Section(std::uint32_t number)
 {
   this->Check();
   const std::uint8_t* entry =
-    this->File.Data() + this->Head.DirectoryOffset + std::uint64_t{ number } * group::EntryBytes;
+    this->File->Data() + this->Head.DirectoryOffset + std::uint64_t{ number } * group::EntryBytes;
   const auto offset = LoadNumber<std::uint64_t>(entry);
   const auto stored = LoadNumber<std::uint32_t>(entry + 8);
   const auto raw = LoadNumber<std::uint32_t>(entry + 12);
@@ -73,16 +78,16 @@ Bytes GroupReader::Section(std::uint32_t number)
   {
     throw Error("An entry of the directory is not valid");
   }
-  if (ShortHashOf(this->File.Data() + offset, stored) != LoadNumber<std::uint64_t>(entry + 16))
+  if (ShortHashOf(this->File->Data() + offset, stored) != LoadNumber<std::uint64_t>(entry + 16))
   {
     throw Error("A table of the segment is damaged: its checksum does not fit");
   }
   if (stored == raw)
   {
-    return { this->File.Data() + offset, this->File.Data() + offset + stored };
+    return { this->File->Data() + offset, this->File->Data() + offset + stored };
   }
   Bytes bytes(raw);
-  Decompress(this->File.Data() + offset, stored, bytes.data(), bytes.size());
+  Decompress(this->File->Data() + offset, stored, bytes.data(), bytes.size());
   return bytes;
 }
 
@@ -113,7 +118,7 @@ const std::uint8_t* GroupReader::Payload(const group::Place& place)
     const std::uint64_t from =
       std::max<std::uint64_t>(page * this->PageBytes, segment::HeaderBytes);
     const std::uint64_t to = std::min((page + 1) * this->PageBytes, this->Head.PayloadEnd);
-    if (static_cast<std::uint32_t>(ShortHashOf(this->File.Data() + from, to - from)) !=
+    if (static_cast<std::uint32_t>(ShortHashOf(this->File->Data() + from, to - from)) !=
         this->PageHashes[static_cast<std::size_t>(page)])
     {
       throw Error("Payloads of the segment are damaged: their checksum does not fit",
@@ -121,7 +126,7 @@ const std::uint8_t* GroupReader::Payload(const group::Place& place)
     }
     good.store(true, std::memory_order_relaxed);
   }
-  return this->File.Data() + place.Offset;
+  return this->File->Data() + place.Offset;
 }
 
 } // namespace banyan

@@ -27,11 +27,14 @@ class GroupReader
 public:
   /// @param components of all arrays of the series
   GroupReader(const std::string& folder, const SegmentIndex& index, std::uint32_t components);
+  /// @param file of several readers, where the index names it for several groups
+  GroupReader(std::shared_ptr<const MappedSegment> file, const SegmentIndex& index,
+    std::uint32_t components);
 
-  const std::string& Path() const { return this->File.Path(); }
+  const std::string& Path() const { return this->File->Path(); }
   int FirstStep() const { return this->Index.FirstStep; }
   int Steps() const { return this->Index.Steps; }
-  void LetGo() const { this->File.LetGo(); }
+  void LetGo() const { this->File->LetGo(); }
 
   /// Unpacks a section: 0 holds the hashes of pages, then come the heads, then the steps' tables.
   Bytes Section(std::uint32_t number);
@@ -51,7 +54,7 @@ public:
 private:
   void Check();
 
-  MappedSegment File;
+  std::shared_ptr<const MappedSegment> File;
   SegmentIndex Index;
   std::uint32_t Components;
   Hash128 Expected;

@@ -178,7 +178,9 @@ SegmentIndex GroupWriter::Finish(
     StoreNumber(to + 16, sections[i].Hash);
   }
   header.Steps = static_cast<std::uint32_t>(steps);
-  header.FirstStep = static_cast<std::uint32_t>(firstStep);
+  const std::uint64_t content = ShortHashOf(this->Payloads.data() + segment::HeaderBytes,
+    this->Payloads.size() - segment::HeaderBytes);
+  header.FirstStep = static_cast<std::uint32_t>(content >> 32); // pages have the low half of theirs
   header.Tables = static_cast<std::uint32_t>(sections.size());
   header.DirectoryOffset = this->Output.Size();
   header.DirectoryHash = ShortHashOf(directory.data(), directory.size());
@@ -189,7 +191,7 @@ SegmentIndex GroupWriter::Finish(
   this->Output.Overwrite(0, bytes, sizeof(bytes));
   const Hash128 hash = HashOf(bytes, sizeof(bytes));
   SegmentIndex index;
-  index.File = this->Folder.FinalNameOf(this->Number, hash.Low);
+  index.File = this->Folder.FinalNameOf(hash);
   this->Output.CommitAs(this->Folder.Path() + "/" + index.File);
   index.FirstStep = firstStep;
   index.Steps = steps;

@@ -3,6 +3,7 @@
 #include "Base/Error.h"
 
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace banyan
@@ -81,9 +82,15 @@ void CheckTimes(const std::vector<double>& times)
   }
 }
 
+bool SameContent(const SegmentIndex& a, const SegmentIndex& b)
+{
+  return a.Steps == b.Steps && a.Bytes == b.Bytes && a.HashLow == b.HashLow &&
+         a.HashHigh == b.HashHigh;
+}
+
 void CheckSegments(const SeriesIndex& index)
 {
-  std::set<std::string> files;
+  std::map<std::string, const SegmentIndex*> files;
   std::int64_t next = 0;
   for (const SegmentIndex& segment : index.Segments)
   {
@@ -91,7 +98,9 @@ void CheckSegments(const SeriesIndex& index)
               segment.File.find('/') == std::string::npos &&
               segment.File.find('\0') == std::string::npos,
       "The name of a segment is not a plain file name");
-    Require(files.insert(segment.File).second, "Two segments have the same file");
+    const SegmentIndex& first = *files.emplace(segment.File, &segment).first->second;
+    Require(&first == &segment || (index.FormatVersion > 1 && SameContent(first, segment)),
+      "Two segments have the same file, and not the same content");
     Require(
       segment.FirstStep == next && segment.Steps >= 1 && segment.Steps <= index.KeyframeInterval,
       "The segments do not follow one another");

@@ -106,6 +106,8 @@ EncodeStatistics StatisticsFromJson(const Json& json)
   statistics.ChainSum = later("chainSum");
   statistics.ChainBricks = later("chainBricks");
   statistics.ChainMost = later("chainMost");
+  statistics.RepeatedSegments = later("repeatedSegments");
+  statistics.RepeatedBytes = static_cast<std::uint64_t>(later("repeatedBytes"));
   return statistics;
 }
 

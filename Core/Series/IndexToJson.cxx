@@ -86,6 +86,8 @@ Json StatisticsToJson(const EncodeStatistics& statistics)
   json["chainSum"] = statistics.ChainSum;
   json["chainBricks"] = statistics.ChainBricks;
   json["chainMost"] = statistics.ChainMost;
+  json["repeatedSegments"] = statistics.RepeatedSegments;
+  json["repeatedBytes"] = statistics.RepeatedBytes;
   return json;
 }
 

@@ -58,9 +58,10 @@ BrickNode MakeNode(
   {
     shared = entryAt(last).Content;
   }
+  // A segment may be named for several groups: what it decodes to depends on what lies before.
   const std::uint64_t seed[] = { std::uint64_t(field.Level), std::uint64_t(brick),
     std::uint64_t(changed), series.ComponentOf(field), group.Segment().HeaderHash().Low,
-    group.Segment().HeaderHash().High };
+    group.Segment().HeaderHash().High, open.Before.Low, open.Before.High };
   const std::uint64_t content[] = { std::uint64_t(open.Type), open.Meaning, shared,
     BitCast<std::uint64_t>(node.Range.Low), BitCast<std::uint64_t>(node.Range.High),
     std::uint64_t(layout.SamplesOf(brick).Size().x), std::uint64_t(layout.SamplesOf(brick).Size().y),

@@ -23,6 +23,7 @@ struct OpenGroup
   ScalarType Type = ScalarType::Float32;
   std::shared_ptr<const void> Decoder; ///< LatticeDecoder of the type
   std::uint64_t Meaning = 0; ///< hash of what turns lattice numbers into values, and orders them
+  Hash128 Before; ///< hash of the header of the segment that this one refers to; 0: none
   std::mutex NodeMutex;
   /// By step of the segment and level.
   std::map<std::pair<int, int>, std::shared_ptr<const std::vector<BrickNode>>> Nodes;

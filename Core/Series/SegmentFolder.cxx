@@ -1,7 +1,6 @@
 #include "Series/SegmentFolder.h"
 
 #include "Base/Error.h"
-#include "Series/Hash.h"
 
 #include <algorithm>
 #include <atomic>
@@ -95,11 +94,10 @@ std::string SegmentFolder::TemporaryNameOf(int segment) const
   return this->Run + NumberOf(segment);
 }
 
-std::string SegmentFolder::FinalNameOf(int segment, std::uint64_t content)
+std::string SegmentFolder::FinalNameOf(const Hash128& content)
 {
-  char hash[17];
-  std::snprintf(hash, sizeof(hash), "%016llx", static_cast<unsigned long long>(content));
-  const std::string name = hash + NumberOf(segment);
+  const std::string hash = ToHex(content);
+  const std::string name = hash.substr(16) + "-" + hash.substr(0, 16) + Suffix;
   struct stat status = {};
   if (lstat((this->FolderPath + "/" + name).c_str(), &status) != 0)
   {

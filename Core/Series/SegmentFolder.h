@@ -1,6 +1,8 @@
 #ifndef banyan_Series_SegmentFolder_h
 #define banyan_Series_SegmentFolder_h
 
+#include "Series/Hash.h"
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -9,8 +11,8 @@ namespace banyan
 {
 
 /// The folder `<series>.d` while a series is written. Segments are named by their content, so that
-/// a new series never touches the segments of the one it is going to replace, and the same data
-/// gives the same files whoever encodes it.
+/// a new series never touches the segments of the one it is going to replace, the same data gives
+/// the same files whoever encodes it, and what is equal is stored once, wherever it occurs.
 class SegmentFolder
 {
 public:
@@ -24,7 +26,7 @@ public:
 
   /// Name of a segment whose content has this hash. Remembers it as this run's, unless a file of
   /// the name (hence of the content) is there already.
-  std::string FinalNameOf(int segment, std::uint64_t content);
+  std::string FinalNameOf(const Hash128& content);
 
   /// Whether this object made the folder: of several processes that write one series together, only
   /// the first one does, unless they see different disks.

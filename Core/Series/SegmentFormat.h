@@ -26,6 +26,8 @@ struct Header
 {
   std::uint32_t Version = segment::Version;
   std::uint32_t Steps = 0;
+  /// Version 2: half a hash of all payloads instead, so that no two segments have the same header
+  /// but equal ones.
   std::uint32_t FirstStep = 0;
   std::uint32_t Tables = 0;
   std::uint64_t DirectoryOffset = 0;

@@ -46,7 +46,15 @@ void SeriesAssembly::Add(int number, EncodedGroup group)
        next->first == static_cast<int>(this->Current.Segments.size());
        next = this->Waiting.erase(next))
   {
-    AddGroup(next->second, this->Current);
+    EncodedGroup& added = next->second;
+    if (!this->Files.insert(added.Segment.File).second)
+    {
+      added.Statistics.RepeatedSegments = 1;
+      added.Statistics.RepeatedBytes = added.Segment.Bytes;
+      added.Statistics.PayloadBytes = 0;
+      added.Statistics.TableBytes = 0;
+    }
+    AddGroup(added, this->Current);
   }
   if (!this->KeepOld && this->Current.Segments.size() > before)
   {

@@ -4,6 +4,7 @@
 #include "Series/GroupEncoder.h"
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,7 @@ private:
   std::string Path;
   SeriesIndex Current;
   std::map<int, EncodedGroup> Waiting; ///< for those before them
+  std::set<std::string> Files;         ///< that the groups in order have
   bool KeepOld;                        ///< a file of that name was there: it stays until Finish
   int InFile = 0;                      ///< groups that the index file names
 };

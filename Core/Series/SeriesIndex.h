@@ -72,7 +72,7 @@ struct ArrayIndex
   std::vector<ValueRange> Magnitudes;
 };
 
-/// One segment file: a group of consecutive steps.
+/// A group of consecutive steps. Groups of equal content have the same file.
 struct SegmentIndex
 {
   std::string File; ///< name inside `<series>.d/`, without a path
@@ -100,6 +100,8 @@ struct EncodeStatistics
   std::int64_t ChainSum = 0;        ///< steps to decode for a brick of the finest level, summed
   std::int64_t ChainBricks = 0;     ///< over this many bricks
   std::int64_t ChainMost = 0;       ///< and the greatest
+  std::int64_t RepeatedSegments = 0; ///< groups whose segment was there already
+  std::uint64_t RepeatedBytes = 0;   ///< that these would take; not among Payload- and TableBytes
 };
 
 /// All that the index file says. See Documentation/format.md.

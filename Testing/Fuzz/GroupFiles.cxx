@@ -141,7 +141,6 @@ Bytes Assemble(const GroupParts& parts, const SegmentIndex& segment)
   segment::Header header;
   header.Version = group::Version;
   header.Steps = static_cast<std::uint32_t>(segment.Steps);
-  header.FirstStep = static_cast<std::uint32_t>(segment.FirstStep);
   header.PayloadEnd = file.size();
   Bytes pages;
   const std::uint64_t page = PageBytesOf(header.PayloadEnd);

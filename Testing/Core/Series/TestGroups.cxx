@@ -51,7 +51,8 @@ enum class Kind
   Relative,
   Absolute, ///< without ranges: no group refers to another
   Clamped,
-  Hidden ///< by an opacity function
+  Hidden,  ///< by an opacity function
+  Repeated ///< the steps of the first group come again and again
 };
 
 /// Vectors of floats with some NaN, and scalars of a short type, in two arrays.
@@ -60,8 +61,9 @@ class Groups : public ::testing::TestWithParam<Kind>
 protected:
   Groups()
   {
-    for (int s = 0; s < StepCount; ++s)
+    for (int step = 0; step < StepCount; ++step)
     {
+      const int s = GetParam() == Kind::Repeated ? step % Interval : step;
       this->Vectors.push_back(Sample<float>(GridOf(34 * 3, 19, 17), 1,
         [s](int x, int y, int z, int) {
           return x == 5 && y == 3 ? std::nan("") : Wavy<float>(x / 3, y, z + 7 * (x % 3), s);
@@ -152,17 +154,19 @@ protected:
 };
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Groups,
-  ::testing::Values(Kind::Relative, Kind::Absolute, Kind::Clamped, Kind::Hidden),
+  ::testing::Values(Kind::Relative, Kind::Absolute, Kind::Clamped, Kind::Hidden, Kind::Repeated),
   [](const auto& info)
   {
-    const std::vector<std::string> names({ "Relative", "Absolute", "Clamped", "Hidden" });
+    const std::vector<std::string> names(
+      { "Relative", "Absolute", "Clamped", "Hidden", "Repeated" });
     return names[static_cast<std::size_t>(info.param)];
   });
 
 TEST_P(Groups, OfAnyProcessInAnyOrderGiveTheSameBytes)
 {
   const auto reference = this->Reference(3);
-  EXPECT_EQ(reference.size(), 1u + GroupCount);
+  // The second and the third group, which refer to the same step before, are stored once.
+  EXPECT_EQ(reference.size(), GetParam() == Kind::Repeated ? GroupCount : 1u + GroupCount);
   EXPECT_EQ(this->Reference(1), reference);
 
   const TemporaryFolder folder;
@@ -331,6 +335,7 @@ TEST(GroupMessage, KeepsEveryBit)
   group.Measured[1][0].NonFiniteCount = 18;
   group.Magnitudes = { { {}, { 1.0, 2.0 } }, {} };
   group.Statistics.ChainMost = 9;
+  group.Statistics.RepeatedBytes = 11;
   group.Statistics.PayloadBytes = 10;
   group.BytesIn = 11;
 
@@ -351,6 +356,7 @@ TEST(GroupMessage, KeepsEveryBit)
   EXPECT_TRUE(copy.Magnitudes[0][0].Empty());
   EXPECT_EQ(copy.Magnitudes[0][1].High, 2.0);
   EXPECT_EQ(copy.Statistics.ChainMost, 9);
+  EXPECT_EQ(copy.Statistics.RepeatedBytes, 11u);
   EXPECT_EQ(copy.Statistics.PayloadBytes, 10u);
   EXPECT_EQ(copy.BytesIn, 11u);
 

@@ -62,7 +62,7 @@ SeriesIndex MakeIndex(unsigned seed)
   index.Segments.push_back({ "0123456789abcdef-000000.seg", 0, 2, 4711, random(), random() });
   index.Segments.push_back({ "0123456789abcdef-000001.seg", 2, 1, 815, random(), random() });
   index.PayloadBytesIn = 123456789012345u;
-  index.Statistics = { 1, 2, 3, 4, 5, 6, 7 };
+  index.Statistics = { 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15 };
   return index;
 }
 
@@ -112,6 +112,9 @@ TEST(IndexText, ComesBackBitExact)
     EXPECT_EQ(a.Segments[1].HashLow, b.Segments[1].HashLow);
     EXPECT_EQ(b.Segments[1].Bytes, 815u);
     EXPECT_EQ(b.Statistics.TableBytes, 7u);
+    EXPECT_EQ(b.Statistics.ChainMost, 13);
+    EXPECT_EQ(b.Statistics.RepeatedSegments, 14);
+    EXPECT_EQ(b.Statistics.RepeatedBytes, 15u);
     EXPECT_EQ(b.PayloadBytesIn, a.PayloadBytesIn);
     EXPECT_EQ(b.KeyframeInterval, 2);
   }

@@ -221,6 +221,45 @@ TEST(Info, ChoosesStepsAndArrays)
   EXPECT_THROW(corners.Report({ -1, "other" }), Error);
 }
 
+TEST(Info, SegmentsThatAreStoredOnceAreCountedOnce)
+{
+  const TemporaryFolder folder;
+  const std::string path = folder / "loop.banyan";
+  Steps<float> steps;
+  for (int step = 0; step < 15; ++step)
+  {
+    steps.push_back(Sample<float>(CornersGrid(), 1,
+      [step](int x, int y, int z, int) {
+        return CornersAt(x, y, z, step % 3);
+      }).front());
+  }
+  Encode(path, CornersGrid(), steps, CornersOptions()); // 3 steps per segment
+  const auto file = SeriesFile::Open(path);
+  const InfoReport report{ ReportSeries(*file, {}), {} };
+  // All but the first refer to the same step before.
+  ASSERT_EQ(file->Index().Statistics.RepeatedSegments, 3);
+  std::uint64_t bytes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(path + ".d"))
+  {
+    bytes += entry.file_size();
+  }
+  EXPECT_EQ(report.Series.SegmentBytes, bytes);
+  std::uint64_t stored = 0;
+  for (int level = 0; level < file->Index().Levels; ++level)
+  {
+    stored += report.Series.Components[0].Sum(level).StoredBytes;
+  }
+  EXPECT_LE(stored, file->Index().Statistics.PayloadBytes);
+  EXPECT_GT(report.Series.Components[0].Steps[3].Levels[0].Stored, 0);
+  EXPECT_EQ(report.Series.Components[0].Steps[9].Levels[0].Stored, 0);
+  EXPECT_GT(report.Series.Components[0].Steps[9].Levels[0].Shared, 0);
+  const auto size = nlohmann::json::parse(InfoToJson(report, nullptr))["size"];
+  EXPECT_EQ(size["segmentBytes"], bytes);
+  EXPECT_EQ(size["repeatedSegments"], 3);
+  EXPECT_EQ(size["repeatedBytes"], 3 * file->Index().Segments[1].Bytes);
+  EXPECT_NE(InfoToText(report, nullptr).find("not stored again: 3 segments"), std::string::npos);
+}
+
 TEST(Info, TheTableOfStepsIsTheSameInCsvAndJson)
 {
   const Corners corners;
