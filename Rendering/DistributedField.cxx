@@ -108,7 +108,28 @@ void DistributedField::Update(Communicator& communicator, const FieldPiece& piec
   {
     this->ProblemText = piece.Problem;
     this->Agree(communicator, piece);
+    this->AgreeOnRange(communicator);
   }
+}
+
+void DistributedField::AgreeOnRange(Communicator& communicator)
+{
+  ValueRange range;
+  if (this->Bricks && this->Series)
+  {
+    const MaskRange all = this->Bricks->MasksAreOver();
+    range = { all.Low, all.High };
+  }
+  else if (this->Bricks)
+  {
+    const glm::ivec3 counts = this->Bricks->Bricks();
+    for (std::int64_t i = 0; i < std::int64_t{ counts.x } * counts.y * counts.z; ++i)
+    {
+      range.Include(this->Bricks->RangeOf(i));
+    }
+  }
+  this->ValuesRange.Low = -AllMax(communicator, -range.Low);
+  this->ValuesRange.High = AllMax(communicator, range.High);
 }
 
 DistributedField::Facts DistributedField::FactsOf(const FieldPiece& piece) const

@@ -4,6 +4,7 @@
 #include "Parallel/Communicator.h"
 #include "Render/BrickSource.h"
 #include "Series/SeriesFile.h"
+#include "Series/ValueRange.h"
 
 #include <glm/mat4x4.hpp>
 
@@ -55,6 +56,8 @@ public:
   const std::array<double, 6>& Bounds() const { return this->PhysicalBounds; }
   /// Length of the shortest edge of a cell in physical space.
   double CellSize() const { return this->ShortestEdge; }
+  /// Of the values of all ranks; of all steps, where they come from an encoded series.
+  const ValueRange& Range() const { return this->ValuesRange; }
   /// Whether bricks come from an encoded series.
   bool Encoded() const { return this->Series != nullptr; }
 
@@ -68,6 +71,7 @@ private:
 
   bool ChangedHere(const FieldPiece& piece);
   void Agree(Communicator& communicator, const FieldPiece& piece);
+  void AgreeOnRange(Communicator& communicator);
   Facts FactsOf(const FieldPiece& piece) const;
   std::string CheckAgainst(const Facts& mine, const Facts& first, int firstRank) const;
   void SetGrid(const Facts& facts, const Box& samples);
@@ -83,6 +87,7 @@ private:
   std::vector<Box> ZoneCells;
   std::array<double, 6> PhysicalBounds{ { 1, -1, 1, -1, 1, -1 } };
   double ShortestEdge = 1.0;
+  ValueRange ValuesRange;
   std::unique_ptr<BrickSource> Bricks;
   std::shared_ptr<const SeriesFile> Series;
   std::array<std::uint64_t, 5> Stamp{ {} };

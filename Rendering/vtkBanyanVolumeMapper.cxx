@@ -3,6 +3,7 @@
 #include "DistributedField.h"
 #include "FramebufferExchange.h"
 #include "PixelsBehind.h"
+#include "SceneOptions.h"
 #include "TransferFunctionTable.h"
 #include "vtkBanyanFrameStatistics.h"
 
@@ -318,6 +319,18 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
     this->SampleDistanceVoxels * self.Field.CellSize() };
   scene.Depth = banyan::DepthsOf(pixels);
   scene.Shading = banyan::MakeShading(volume->GetProperty());
+  scene.Interpolation = banyan::MakeInterpolation(volume->GetProperty());
+  std::string failure;
+  try
+  {
+    scene.ClipPlanes = banyan::MakeClipPlanes(this, toWorld);
+    scene.Blend = banyan::MakeBlend(this, self.Field.Range());
+  }
+  catch (const banyan::Error& error)
+  {
+    // For the other ranks too, which would wait for this one.
+    failure = error.what();
+  }
 
   const std::uint64_t bytesBefore = self.Field.BytesRead();
   // Half of the cache: what one batch holds is then never evicted by that batch itself.
@@ -325,7 +338,7 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
     std::max<std::uint64_t>(banyan::BrickCache::Process().Budget() / 2, 16u << 20);
   banyan::FrameStatistics frame;
   const banyan::FloatImage picture = banyan::DrawDistributed(*self.Communicator, scene,
-    self.Field.Source(), self.Field.Zones(), budget, banyan::ThreadPool::Process(), {}, frame);
+    self.Field.Source(), self.Field.Zones(), budget, banyan::ThreadPool::Process(), failure, frame);
 
   // On several ranks the background comes last: the compositor blends the picture over it in 8 bit.
   // A single rank does the same, for the same picture to the last bit.

@@ -27,8 +27,14 @@ class vtkMultiProcessController;
  *
  * The picture does not depend on the number of ranks or threads: at most 1/255 per channel.
  *
- * @par Limits: point data; blend mode composite; no shading; independent component 0 of the
- * property; regular cropping and clipping planes are ignored.
+ * Blend modes composite, maximum, minimum and average intensity; clipping planes, and cropping to
+ * the inside of a box; shading; linear interpolation or, as vtkVolumeProperty has it by default, that
+ * of the nearest point. All as VTK's own volume mappers know them, and the same on all ranks.
+ *
+ * @par Limits: point data; component 0 of the property, which draws one component of the data or
+ * their magnitude, as the vector mode of its colour function says; lights other than the viewer's
+ * are ignored, and so is shading in modes other than composite. Averages are grey, from the lowest to
+ * the highest value of the data (of all steps of an encoded series).
  */
 class BANYANRENDERING_EXPORT vtkBanyanVolumeMapper : public vtkVolumeMapper
 {

@@ -148,6 +148,7 @@ public:
     opacity->AddPoint(1.0, 0.5);
     this->Volume->GetProperty()->SetColor(colors);
     this->Volume->GetProperty()->SetScalarOpacity(opacity);
+    this->Volume->GetProperty()->SetInterpolationTypeToLinear();
     this->Volume->SetMapper(mapper);
     this->Renderer->AddVolume(this->Volume);
     this->Renderer->SetBackground(0.1, 0.2, 0.3);

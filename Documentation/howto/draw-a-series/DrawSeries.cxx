@@ -133,6 +133,7 @@ vtkSmartPointer<vtkVolume> MakeVolume(vtkAbstractVolumeMapper* mapper)
   volume->GetProperty()->SetColor(colors);
   volume->GetProperty()->SetScalarOpacity(opacity);
   volume->GetProperty()->SetScalarOpacityUnitDistance(1.0);
+  volume->GetProperty()->SetInterpolationTypeToLinear();
   return volume;
 }
 

@@ -1,0 +1,26 @@
+#ifndef banyan_Rendering_SceneOptions_h
+#define banyan_Rendering_SceneOptions_h
+
+#include "Render/RayCaster.h"
+#include "Series/ValueRange.h"
+
+class vtkVolumeMapper;
+class vtkVolumeProperty;
+
+namespace banyan
+{
+
+/// Clipping planes and, if cropping is on, the crop box of a mapper, in the space of its data.
+/// Throws Error for regions of cropping other than the inside of the box.
+/// @param toWorld the volume's matrix
+std::vector<ClipPlane> MakeClipPlanes(vtkVolumeMapper* mapper, const glm::dmat4& toWorld);
+
+/// The blend mode of a mapper. Throws Error for those that are not drawn, with its name.
+/// @param data the range of the values: what averages show from black to white
+RayBlend MakeBlend(vtkVolumeMapper* mapper, const ValueRange& data);
+
+SampleInterpolation MakeInterpolation(vtkVolumeProperty* property);
+
+} // namespace banyan
+
+#endif
