@@ -28,6 +28,7 @@ vtkBanyanVolumeRepresentation::vtkBanyanVolumeRepresentation()
   // The superclass has made a prop of ParaView's own: ours takes its place.
   this->Actor = this->Prop;
   this->Actor->SetProperty(this->Property);
+  this->Property->SetInterpolationTypeToLinear();
   this->Prop->SetMapper(this->Mapper);
   this->Prop->SetBanyanMapper(this->Mapper);
   vtkMath::UninitializeBounds(this->DataBounds);
@@ -104,7 +105,24 @@ void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
   {
     this->UseDefaultFunctions(image);
   }
+  this->Mapper->SetBlendMode(this->BlendMode != 0 ? this->BlendMode : this->Projection);
   this->Mapper->UpdateField(this->Prop);
+  this->PlaceCroppingBox();
+}
+
+void vtkBanyanVolumeRepresentation::PlaceCroppingBox()
+{
+  const double* bounds = this->Mapper->GetBounds();
+  if (!vtkMath::AreBoundsInitialized(bounds))
+  {
+    return;
+  }
+  double planes[6];
+  for (int i = 0; i < 6; ++i)
+  {
+    planes[i] = this->CroppingOrigin[i / 2] + bounds[i] * this->CroppingScale[i / 2];
+  }
+  this->Mapper->SetCroppingRegionPlanes(planes);
 }
 
 /// ParaView gives a colour map only with an array that was chosen by name. Collective.
@@ -201,6 +219,65 @@ void vtkBanyanVolumeRepresentation::SetSampleDistanceVoxels(double voxels)
 void vtkBanyanVolumeRepresentation::SetShade(bool shade)
 {
   this->Property->SetShade(shade ? 1 : 0);
+}
+
+void vtkBanyanVolumeRepresentation::SetAmbient(double coefficient)
+{
+  this->Property->SetAmbient(coefficient);
+}
+
+void vtkBanyanVolumeRepresentation::SetDiffuse(double coefficient)
+{
+  this->Property->SetDiffuse(coefficient);
+}
+
+void vtkBanyanVolumeRepresentation::SetSpecular(double coefficient)
+{
+  this->Property->SetSpecular(coefficient);
+}
+
+void vtkBanyanVolumeRepresentation::SetSpecularPower(double power)
+{
+  this->Property->SetSpecularPower(power);
+}
+
+void vtkBanyanVolumeRepresentation::SetBlendMode(int mode)
+{
+  this->BlendMode = mode;
+}
+
+void vtkBanyanVolumeRepresentation::SetProjection(int mode)
+{
+  this->Projection = mode;
+}
+
+void vtkBanyanVolumeRepresentation::SetCropping(int cropping)
+{
+  this->Mapper->SetCropping(cropping);
+}
+
+void vtkBanyanVolumeRepresentation::SetCroppingOrigin(double x, double y, double z)
+{
+  this->CroppingOrigin[0] = x;
+  this->CroppingOrigin[1] = y;
+  this->CroppingOrigin[2] = z;
+}
+
+void vtkBanyanVolumeRepresentation::SetCroppingOrigin(double origin[3])
+{
+  this->SetCroppingOrigin(origin[0], origin[1], origin[2]);
+}
+
+void vtkBanyanVolumeRepresentation::SetCroppingScale(double x, double y, double z)
+{
+  this->CroppingScale[0] = x;
+  this->CroppingScale[1] = y;
+  this->CroppingScale[2] = z;
+}
+
+void vtkBanyanVolumeRepresentation::SetCroppingScale(double scale[3])
+{
+  this->SetCroppingScale(scale[0], scale[1], scale[2]);
 }
 
 void vtkBanyanVolumeRepresentation::SetNumberOfThreads(int threads)

@@ -39,7 +39,37 @@ public:
 
   /** Distance between samples, in edges of the smallest cell. Default 1. */
   void SetSampleDistanceVoxels(double voxels);
+
+  ///@{
+  /** Gradient shading with the light at the viewer, and its coefficients: as vtkVolumeProperty. */
   void SetShade(bool shade);
+  void SetAmbient(double coefficient);
+  void SetDiffuse(double coefficient);
+  void SetSpecular(double coefficient);
+  void SetSpecularPower(double power);
+  ///@}
+
+  ///@{
+  /**
+   * How samples along a ray become a pixel: a number of vtkVolumeMapper. BlendMode is the property
+   * of ParaView's own volumes, whose panel offers composite, isosurface and slice only; where it is
+   * composite (default), Projection counts. Isosurfaces and slices are refused with a message.
+   */
+  void SetBlendMode(int mode);
+  void SetProjection(int mode);
+  ///@}
+
+  ///@{
+  /**
+   * Shows the inside of a box only, in the coordinates of the data: the bounds of the data (of all
+   * ranks) times the scale, plus the origin, as ParaView's own volumes do.
+   */
+  void SetCropping(int cropping);
+  void SetCroppingOrigin(double x, double y, double z);
+  void SetCroppingOrigin(double origin[3]);
+  void SetCroppingScale(double x, double y, double z);
+  void SetCroppingScale(double scale[3]);
+  ///@}
 
   /** Threads per process; 0 (default) shares the cores of a machine among its ranks. */
   void SetNumberOfThreads(int threads);
@@ -62,12 +92,17 @@ private:
   void operator=(const vtkBanyanVolumeRepresentation&) = delete;
 
   void PrepareRender(vtkDataObject* piece);
+  void PlaceCroppingBox();
   void SelectArray();
   void UseDefaultFunctions(vtkImageData* piece);
 
   vtkNew<vtkBanyanVolumeMapper> Mapper;
   vtkSmartPointer<vtkBanyanVolume> Prop;
   vtkSmartPointer<vtkImageData> Piece;
+  int BlendMode = 0;
+  int Projection = 0;
+  double CroppingOrigin[3] = { 0.0, 0.0, 0.0 };
+  double CroppingScale[3] = { 1.0, 1.0, 1.0 };
   bool ColorGiven = false;
   bool OpacityGiven = false;
 };

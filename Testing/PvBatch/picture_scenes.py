@@ -250,6 +250,45 @@ def one_layer_of_cells():
 
 
 @scene
+def maximum_intensity():
+    view = session.new_view(SIZE, **CAMERA)
+    display = encoded(view, opacities=(0.0, 0.3, 0.6, 0.8, 1.0))
+    display.Projection = "Maximum Intensity"
+    return Drawn(view, [display], [spheres(view)], volume_pixels=20000)
+
+
+@scene
+def minimum_of_labels():
+    view = session.new_view(SIZE, **CAMERA)
+    display = wavelet(view, opacities=(0.3, 0.9, 0.8, 0.8, 1.0))
+    display.Projection = "Minimum Intensity"
+    display.InterpolationType = "Nearest"
+    return Drawn(view, [display], [spheres(view)], volume_pixels=20000)
+
+
+@scene
+def average_intensity():
+    view = session.new_view(SIZE, **CAMERA)
+    display = wavelet(view, opacities=(0.5, 0.5, 0.5, 0.8, 1.0))
+    display.Projection = "Average Intensity"
+    return Drawn(view, [display], [spheres(view)], volume_pixels=20000)
+
+
+@scene
+def cropped_and_shaded():
+    view = session.new_view(SIZE, **CAMERA)
+    display = encoded(view, opacities=(0.0, 0.05, 0.1, 0.2, 0.5))
+    display.Shade = 1
+    display.Diffuse = 0.9
+    display.Specular = 0.5
+    display.SpecularPower = 10
+    display.UseCropping = 1
+    display.CroppingOrigin = [1.5, -2, 0]
+    display.CroppingScale = [0.6, 0.7, 0.9]
+    return Drawn(view, [display], [spheres(view)], volume_pixels=8000)
+
+
+@scene
 def slice_inside():
     # Opaque geometry that is itself in pieces on all ranks.
     view = session.new_view(SIZE, **CAMERA)
