@@ -28,7 +28,6 @@ vtkBanyanVolumeRepresentation::vtkBanyanVolumeRepresentation()
   // The superclass has made a prop of ParaView's own: ours takes its place.
   this->Actor = this->Prop;
   this->Actor->SetProperty(this->Property);
-  this->Property->SetInterpolationTypeToLinear();
   this->Prop->SetMapper(this->Mapper);
   this->Prop->SetBanyanMapper(this->Mapper);
   vtkMath::UninitializeBounds(this->DataBounds);
@@ -100,6 +99,8 @@ void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
   this->Mapper->SetController(vtkMultiProcessController::GetGlobalController());
   this->SelectArray();
   this->Property->SetIndependentComponents(1);
+  this->Property->SetInterpolationType(
+    this->NearestPoint ? VTK_NEAREST_INTERPOLATION : this->InterpolationType);
   this->Prop->SetView(vtkPVRenderView::SafeDownCast(this->GetView()));
   if (!this->ColorGiven || !this->OpacityGiven)
   {
@@ -239,6 +240,16 @@ void vtkBanyanVolumeRepresentation::SetSpecular(double coefficient)
 void vtkBanyanVolumeRepresentation::SetSpecularPower(double power)
 {
   this->Property->SetSpecularPower(power);
+}
+
+void vtkBanyanVolumeRepresentation::SetInterpolationType(int type)
+{
+  this->InterpolationType = type;
+}
+
+void vtkBanyanVolumeRepresentation::SetNearestPoint(bool nearest)
+{
+  this->NearestPoint = nearest;
 }
 
 void vtkBanyanVolumeRepresentation::SetBlendMode(int mode)

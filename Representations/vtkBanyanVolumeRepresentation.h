@@ -51,6 +51,16 @@ public:
 
   ///@{
   /**
+   * Between points the value of the nearest one is drawn, if either says so. InterpolationType (a
+   * number of vtkVolumeProperty; more than linear is drawn as linear, the default) is a property of
+   * ParaView's own volumes, but on no panel.
+   */
+  void SetInterpolationType(int type);
+  void SetNearestPoint(bool nearest);
+  ///@}
+
+  ///@{
+  /**
    * How samples along a ray become a pixel: a number of vtkVolumeMapper. BlendMode is the property
    * of ParaView's own volumes, whose panel offers composite, isosurface and slice only; where it is
    * composite (default), Projection counts. Isosurfaces and slices are refused with a message.
@@ -99,6 +109,8 @@ private:
   vtkNew<vtkBanyanVolumeMapper> Mapper;
   vtkSmartPointer<vtkBanyanVolume> Prop;
   vtkSmartPointer<vtkImageData> Piece;
+  int InterpolationType = 1;
+  bool NearestPoint = false;
   int BlendMode = 0;
   int Projection = 0;
   double CroppingOrigin[3] = { 0.0, 0.0, 0.0 };

@@ -70,6 +70,7 @@ class Stage:
             self.take("ambient", Shade=1, Ambient=0.4, Diffuse=0.9, Specular=0.0)
             self.take("highlights", Shade=1, Ambient=0.0, Diffuse=0.9, Specular=0.8,
                       SpecularPower=10)
+            self.take("nearest point", NearestPoint=1)
             for mode in ("Maximum", "Minimum", "Average"):
                 self.take("projected " + mode.lower(), Projection=mode + " Intensity")
             self.take("isosurface", BlendMode="Isosurface")
@@ -102,7 +103,7 @@ def main():
         require(decibel >= least, f"'{name}' does not look as it should: {decibel:.1f} dB")
         require(name == "plain" or change < least - 4, f"'{name}' changes too little")
     for one, other in (("plain again", "plain"), ("isosurface", "hidden"), ("slice", "hidden"),
-                       ("projected maximum", "maximum"), ("projected minimum", "minimum"),
+                       ("nearest point", "nearest"), ("projected maximum", "maximum"), ("projected minimum", "minimum"),
                        ("projected average", "average")):
         largest = int(pictures.difference(ours[one], ours[other]).max())
         print(f"'{one}' against '{other}': largest difference {largest}")
