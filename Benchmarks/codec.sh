@@ -16,14 +16,9 @@
 # another folder), and generates four series: turbulence, convection, jet, wavep. Ends with a table.
 # Fails when one of our methods exceeds its error bound; asserts nothing about times.
 # BANYAN_SKIP_INSTALL=1 leaves the packages of the system alone, BANYAN_SKIP_BUILD=1 the build.
-# Not the folder of the whole project, whose settings are others.
-BANYAN_BUILD_DIR="${BANYAN_BUILD_DIR:-$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")/build-benchmark}"
-export BANYAN_BUILD_DIR
-source "$(dirname "${BASH_SOURCE[0]}")/../Utilities/common.sh"
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-here="$RepositoryRoot/Benchmarks"
 output="benchmark-output"
-data=""
 work=""
 size=128
 steps=50
@@ -36,7 +31,7 @@ parse_arguments()
     shift
     case "$option" in
       --help)
-        sed -n '2,/^# Not the/{/^# Not the/d;s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+        help_of "${BASH_SOURCE[0]}"
         exit 0
         ;;
       --quick)
@@ -56,19 +51,7 @@ parse_arguments()
       *) fail "there is no option '$option'; --help lists them." ;;
     esac
   done
-  if [[ -z "$data" && -d "$RepositoryRoot/../shared/data" ]]; then
-    data="$(realpath "$RepositoryRoot/../shared/data")"
-  fi
-  [[ -z "$data" || -d "$data" ]] || fail "there is no folder '$data'."
-}
-
-install_and_build()
-{
-  [[ "${BANYAN_SKIP_INSTALL:-0}" == 1 ]] ||
-    "$RepositoryRoot/Utilities/install-dependencies.sh" --with-peers
-  [[ "${BANYAN_SKIP_BUILD:-0}" == 1 ]] ||
-    "$RepositoryRoot/Utilities/build.sh" -DBANYAN_WITH_PARAVIEW=OFF -DBANYAN_BUILD_TESTING=OFF \
-      -DBANYAN_BUILD_BENCHMARKS=ON
+  find_data
 }
 
 # One series into $work, unless it is there; with its description, whose name comes first.
@@ -87,20 +70,6 @@ generate()
   generated+=("$work/$file.json")
 }
 
-# Images of the real data as one raw series, if they are there.
-collect()
-{
-  local name="$1" pattern="$2" images=()
-  mapfile -t images < <(compgen -G "$data/$name/$pattern" | sort)
-  if [[ ${#images[@]} == 0 ]]; then
-    say "      there is no $name"
-    return
-  fi
-  "$python" "$here/Codec/read_images.py" "$name" "$work/$name.raw" "${images[@]}" ||
-    fail "the images of '$name' could not be read."
-  real+=("$work/$name.json")
-}
-
 measure()
 {
   "$BuildFolder/bin/banyan-bench-codec" --output "$output/codec.csv" --work "$work/encoded" \
@@ -108,12 +77,9 @@ measure()
 }
 
 parse_arguments "$@"
-# Debian's Python, for which its packages are.
-python=/usr/bin/python3
-[[ -x "$python" ]] || python=python3
 
 stage 1 5 "Installing what is missing and building"
-install_and_build
+install_and_build --with-peers
 [[ -x "$BuildFolder/bin/banyan-bench-codec" ]] ||
   fail "there is no $BuildFolder/bin/banyan-bench-codec; it has to be built first."
 work="${work:-$BuildFolder/codec-series}"

@@ -24,14 +24,9 @@
 # Installs what is missing, and builds in build-benchmark (BANYAN_BUILD_DIR names another folder).
 # VTK's mappers draw into a window of the X display, or of a virtual one. Ends with a table.
 # BANYAN_SKIP_INSTALL=1 leaves the packages of the system alone, BANYAN_SKIP_BUILD=1 the build.
-# Not the folder of the whole project, whose settings are others.
-BANYAN_BUILD_DIR="${BANYAN_BUILD_DIR:-$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")/build-benchmark}"
-export BANYAN_BUILD_DIR
-source "$(dirname "${BASH_SOURCE[0]}")/../Utilities/common.sh"
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-here="$RepositoryRoot/Benchmarks"
 output="benchmark-output"
-data=""
 work=""
 size=256
 turbulence=128
@@ -49,7 +44,7 @@ parse_arguments()
     shift
     case "$option" in
       --help)
-        sed -n '2,/^# Not the/{/^# Not the/d;s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+        help_of "${BASH_SOURCE[0]}"
         exit 0
         ;;
       --quick) quick=1 ;;
@@ -69,10 +64,7 @@ parse_arguments()
       *) fail "there is no option '$option'; --help lists them." ;;
     esac
   done
-  if [[ -z "$data" && -d "$RepositoryRoot/../shared/data" ]]; then
-    data="$(realpath "$RepositoryRoot/../shared/data")"
-  fi
-  [[ -z "$data" || -d "$data" ]] || fail "there is no folder '$data'."
+  find_data
   local all
   all="$(nproc)"
   if [[ -z "$threads" ]]; then
@@ -84,28 +76,6 @@ parse_arguments()
     sizes=(64 128 256)
     measuring+=(--picture 256)
   fi
-}
-
-install_and_build()
-{
-  [[ "${BANYAN_SKIP_INSTALL:-0}" == 1 ]] || "$RepositoryRoot/Utilities/install-dependencies.sh"
-  [[ "${BANYAN_SKIP_BUILD:-0}" == 1 ]] ||
-    "$RepositoryRoot/Utilities/build.sh" -DBANYAN_WITH_PARAVIEW=OFF -DBANYAN_BUILD_TESTING=OFF \
-      -DBANYAN_BUILD_BENCHMARKS=ON
-}
-
-# Images of the real data as one raw series, if they are there.
-collect()
-{
-  local name="$1" pattern="$2" images=()
-  mapfile -t images < <(compgen -G "$data/$name/$pattern" | sort)
-  if [[ ${#images[@]} == 0 ]]; then
-    say "      there is no $name"
-    return
-  fi
-  "$python" "$here/Codec/read_images.py" "$name" "$work/$name.raw" "${images[@]}" ||
-    fail "the images of '$name' could not be read."
-  real+=("$work/$name.json")
 }
 
 # The last step of the turbulence, unless it is there.
@@ -180,9 +150,6 @@ measure_scaling()
 }
 
 parse_arguments "$@"
-# Debian's Python, for which its packages are.
-python=/usr/bin/python3
-[[ -x "$python" ]] || python=python3
 
 stage 1 4 "Installing what is missing and building"
 install_and_build

@@ -1,46 +1,11 @@
 #include "CodecOptions.h"
 
-#include "Base/Error.h"
+#include "OptionValues.h"
 
-#include <sstream>
+#include "Base/Error.h"
 
 namespace banyan::bench
 {
-namespace
-{
-
-std::vector<std::string> SplitAtCommas(const std::string& text)
-{
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');)
-  {
-    parts.push_back(part);
-  }
-  return parts;
-}
-
-int NumberIn(const std::string& option, const std::string& text, int low, int high)
-{
-  std::size_t end = 0;
-  int number = 0;
-  try
-  {
-    number = std::stoi(text, &end);
-  }
-  catch (const std::exception&)
-  {
-    end = std::string::npos;
-  }
-  if (end != text.size() || number < low || number > high)
-  {
-    throw Error(option + " needs a number from " + std::to_string(low) + " to " +
-                std::to_string(high) + ", not '" + text + "'.");
-  }
-  return number;
-}
-
-} // namespace
 
 CodecOptions ParseCodecOptions(const std::vector<std::string>& arguments)
 {
@@ -48,14 +13,7 @@ CodecOptions ParseCodecOptions(const std::vector<std::string>& arguments)
   for (std::size_t i = 0; i < arguments.size(); ++i)
   {
     const std::string& option = arguments[i];
-    const auto value = [&]() -> const std::string&
-    {
-      if (i + 1 == arguments.size())
-      {
-        throw Error(option + " needs a value.");
-      }
-      return arguments[++i];
-    };
+    const auto value = [&]() -> const std::string& { return ValueBehind(arguments, i); };
     if (option == "--help")
       options.Help = true;
     else if (option == "--append")
@@ -67,14 +25,14 @@ CodecOptions ParseCodecOptions(const std::vector<std::string>& arguments)
     else if (option == "--methods")
       options.Methods = SplitAtCommas(value());
     else if (option == "--repeat")
-      options.Measuring.Repeat = NumberIn(option, value(), 1, 1000);
+      options.Measuring.Repeat = CountIn(option, value(), 1, 1000);
     else if (option == "--bricks")
-      options.Measuring.Bricks = NumberIn(option, value(), 0, 1000000);
+      options.Measuring.Bricks = CountIn(option, value(), 0, 1000000);
     else if (option == "--bits")
     {
       options.Bits.clear();
       for (const std::string& bits : SplitAtCommas(value()))
-        options.Bits.push_back(NumberIn(option, bits, 1, 16));
+        options.Bits.push_back(CountIn(option, bits, 1, 16));
     }
     else if (option.rfind("--", 0) == 0)
       throw Error("There is no option '" + option + "'; --help lists them.");

@@ -1,7 +1,7 @@
 """report.py CODEC.csv CHART.png : draws rates and distortions, and prints sizes as a table."""
 
-import csv
 import math
+import pathlib
 import sys
 
 import matplotlib
@@ -9,24 +9,13 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plot  # noqa: E402 (the backend has to be chosen first)
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
+from tables import in_order, read  # noqa: E402
+
 BITS_OF_TABLE = 8
 WIDTH = 14  # of the table's columns; longer names of datasets are cut
 # Peers' last digits of float32 may cross the bound: that is no reason to leave them out.
 SLACK = 1.001
-
-
-def read(path):
-    with open(path, encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    for row in rows:
-        for key, text in row.items():
-            if key not in ("dataset", "method"):
-                row[key] = float(text) if text else None
-    return rows
-
-
-def in_order(rows, key):
-    return list(dict.fromkeys(row[key] for row in rows))
 
 
 def is_ours(method):
@@ -140,6 +129,6 @@ def print_best(rows, datasets):
 
 if len(sys.argv) != 3:
     sys.exit(__doc__)
-measurements = read(sys.argv[1])
+measurements = read(sys.argv[1], ("dataset", "method"))
 print_table(measurements)
 draw(measurements, sys.argv[2])

@@ -1,5 +1,6 @@
 // Time of the first and of later frames against the size of the volume (scene S2), one line of CSV
 // per run. Without VTK, so that memory and start-up are the ray caster's own. See README.md.
+#include "OptionValues.h"
 #include "StandardScenes.h"
 
 #include "Base/Error.h"
@@ -210,38 +211,28 @@ void Draw(const Options& options)
   Report(options, DrawFrames(options, sinceStart, source, budget / 2, pool));
 }
 
-int NumberIn(const std::string& option, const char* text)
-{
-  const int number = std::atoi(text);
-  if (number < 1 || number > 1000000)
-  {
-    throw Error(option + " needs a whole number above 0.");
-  }
-  return number;
-}
-
-Options Parse(int argc, char** argv)
+Options Parse(const std::vector<std::string>& arguments)
 {
   Options options;
-  for (int i = 1; i < argc; i += 2)
+  for (std::size_t i = 0; i < arguments.size(); ++i)
   {
-    const std::string option = argv[i];
-    if (i + 1 == argc)
-      throw Error(option + " needs a value, or is unknown; --help lists the options.");
-    else if (option == "--encode")
-      options.Raw = argv[i + 1];
+    const std::string& option = arguments[i];
+    const auto value = [&]() -> const std::string& { return bench::ValueBehind(arguments, i); };
+    const auto count = [&] { return bench::CountIn(option, value(), 1, 1000000); };
+    if (option == "--encode")
+      options.Raw = value();
     else if (option == "--series")
-      options.Series = argv[i + 1];
+      options.Series = value();
     else if (option == "--size")
-      options.Size = NumberIn(option, argv[i + 1]);
+      options.Size = count();
     else if (option == "--picture")
-      options.Picture = NumberIn(option, argv[i + 1]);
+      options.Picture = count();
     else if (option == "--threads")
-      options.Threads = NumberIn(option, argv[i + 1]);
+      options.Threads = count();
     else if (option == "--repeat")
-      options.Repeat = NumberIn(option, argv[i + 1]);
+      options.Repeat = count();
     else if (option == "--budget")
-      options.BudgetMiB = NumberIn(option, argv[i + 1]);
+      options.BudgetMiB = count();
     else
       throw Error("There is no option '" + option + "'; --help lists them.");
   }
@@ -265,7 +256,7 @@ int main(int argc, char** argv)
     }
     else
     {
-      const Options options = Parse(argc, argv);
+      const Options options = Parse({ argv + 1, argv + argc });
       options.Raw.empty() ? Draw(options) : Encode(options);
     }
     return EXIT_SUCCESS;

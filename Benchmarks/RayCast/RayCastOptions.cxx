@@ -1,59 +1,13 @@
 #include "RayCastOptions.h"
 
+#include "OptionValues.h"
+
 #include "Base/Error.h"
 
 #include <filesystem>
-#include <sstream>
 
 namespace banyan::bench
 {
-namespace
-{
-
-std::vector<std::string> SplitAtCommas(const std::string& text)
-{
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');)
-  {
-    parts.push_back(part);
-  }
-  return parts;
-}
-
-double NumberIn(const std::string& option, const std::string& text, double low, double high)
-{
-  std::size_t end = 0;
-  double number = 0.0;
-  try
-  {
-    number = std::stod(text, &end);
-  }
-  catch (const std::exception&)
-  {
-    end = std::string::npos;
-  }
-  if (end != text.size() || !(number >= low && number <= high))
-  {
-    std::ostringstream sentence;
-    sentence << option << " needs a number from " << low << " to " << high << ", not '" << text
-             << "'.";
-    throw Error(sentence.str());
-  }
-  return number;
-}
-
-int CountIn(const std::string& option, const std::string& text, int low, int high)
-{
-  const double number = NumberIn(option, text, low, high);
-  if (number != static_cast<int>(number))
-  {
-    throw Error(option + " needs a whole number, not '" + text + "'.");
-  }
-  return static_cast<int>(number);
-}
-
-} // namespace
 
 RayCastOptions ParseRayCastOptions(const std::vector<std::string>& arguments)
 {
@@ -61,14 +15,7 @@ RayCastOptions ParseRayCastOptions(const std::vector<std::string>& arguments)
   for (std::size_t i = 0; i < arguments.size(); ++i)
   {
     const std::string& option = arguments[i];
-    const auto value = [&]() -> const std::string&
-    {
-      if (i + 1 == arguments.size())
-      {
-        throw Error(option + " needs a value.");
-      }
-      return arguments[++i];
-    };
+    const auto value = [&]() -> const std::string& { return ValueBehind(arguments, i); };
     if (option == "--help")
       options.Help = true;
     else if (option == "--append")

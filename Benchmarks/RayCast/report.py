@@ -1,8 +1,8 @@
 """report.py RAYCAST.csv CHART.png CHART-OF-LARGEST.png : draws time against the error of whole
 pictures and against that of the worst pixel, and prints ratios as tables."""
 
-import csv
 import math
+import pathlib
 import sys
 
 import matplotlib
@@ -11,26 +11,15 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plot  # noqa: E402 (the backend has to be chosen first)
 from matplotlib.ticker import LogLocator, NullFormatter  # noqa: E402
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
+from tables import in_order, read  # noqa: E402
+
 OURS = "banyan"
 STYLES = {"banyan": dict(color="tab:red", marker="o", linewidth=2.5, zorder=4),
           "vtk-gpu": dict(color="tab:blue", marker="s", linewidth=1.2, zorder=3),
           "vtk-fixed-point": dict(color="tab:green", marker="v", linewidth=1.2, zorder=2)}
 # Rounding to 8 bits may add a half to an error of 1.
 LARGEST_ERROR = 1.5
-
-
-def read(path):
-    with open(path, encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    for row in rows:
-        for key, text in row.items():
-            if key not in ("scene", "renderer"):
-                row[key] = float(text) if text else None
-    return rows
-
-
-def in_order(rows, key):
-    return list(dict.fromkeys(row[key] for row in rows))
 
 
 def rms_error(row):
@@ -116,7 +105,7 @@ def text(number, form):
 
 if len(sys.argv) != 4:
     sys.exit(__doc__)
-measurements = read(sys.argv[1])
+measurements = read(sys.argv[1], ("scene", "renderer"))
 print_table(measurements, "One sample per voxel", lambda row: row["sample_distance"] == 1.0)
 for decibels in (40, 50):
     print_table(measurements, f"Quickest setting of {decibels} dB or better",

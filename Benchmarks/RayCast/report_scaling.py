@@ -1,6 +1,6 @@
 """report_scaling.py SCALING.csv CHART.png : draws time and memory against the volume's size."""
 
-import csv
+import pathlib
 import sys
 
 import matplotlib
@@ -9,14 +9,13 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plot  # noqa: E402 (the backend has to be chosen first)
 from matplotlib.ticker import LogLocator, NullFormatter  # noqa: E402
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
+from tables import read  # noqa: E402
 
-def read(path):
-    with open(path, encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
+
+def read_scaling(path):
+    rows = read(path, ("scene", "source"))
     for row in rows:
-        for key, text in row.items():
-            if key not in ("scene", "source"):
-                row[key] = float(text)
         row["size"] = int(row["scene"].split("-")[1])
     return rows
 
@@ -63,6 +62,6 @@ def print_table(rows):
 
 if len(sys.argv) != 3:
     sys.exit(__doc__)
-measurements = read(sys.argv[1])
+measurements = read_scaling(sys.argv[1])
 print_table(measurements)
 draw(measurements, sys.argv[2])

@@ -60,10 +60,12 @@ inline double OpacityOf(double extinction)
 using Integral = std::function<glm::dvec4(const Chord&)>;
 
 /// Requires every pixel of a picture to be the integral, within `bound` per channel, and the
-/// picture to show something.
+/// picture to show something. Failures name the place of the call.
 inline void ExpectIntegral(const banyan::FloatImage& image, const banyan::RayScene& scene,
-  const glm::dvec3& size, const Integral& integral, double bound)
+  const glm::dvec3& size, const Integral& integral, double bound,
+  const char* file = __builtin_FILE(), int line = __builtin_LINE())
 {
+  const ::testing::ScopedTrace trace(file, line, "ExpectIntegral");
   double worst = 0.0;
   double strongest = 0.0;
   for (int y = scene.Viewport.Lo.y; y < scene.Viewport.Hi.y; ++y)

@@ -40,8 +40,10 @@ scenes::Field Ramp(int axis)
 
 /// Draws with a transfer function over [0, 1] from all three viewpoints and compares.
 void ExpectEverywhere(const scenes::Field& field, const scenes::Function& function,
-  double sampleDistance, const analytic::Integral& integral, double bound)
+  double sampleDistance, const analytic::Integral& integral, double bound,
+  const char* file = __builtin_FILE(), int line = __builtin_LINE())
 {
+  const testing::ScopedTrace trace(file, line, "ExpectEverywhere");
   const std::vector<float> values = scenes::Sampled(field, Samples);
   for (const View view : Views)
   {

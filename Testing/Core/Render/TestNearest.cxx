@@ -1,6 +1,6 @@
 #include "Render/BrickMarcher.h"
 #include "Render/Scenes.h"
-#include "Render/Targets.h"
+#include "Targets.h"
 
 #include <gtest/gtest.h>
 
@@ -124,10 +124,10 @@ void ExpectSameBits(const RayScene& scene, const std::vector<float>& values, boo
     return picture;
   };
   const FloatImage plain = draw(MarchUnpacked);
-  for (const std::int64_t target : scenes::TargetsOfThisMachine())
+  for (const std::int64_t target : targets::OfThisMachine())
   {
     SCOPED_TRACE(hwy::TargetName(target));
-    const scenes::OnlyTarget only(target);
+    const targets::OnlyTarget only(target);
     EXPECT_EQ(MaxDifference(draw(MarchPacked), plain), 0.0);
   }
 }

@@ -1,6 +1,6 @@
 #include "Render/BrickMarcher.h"
 #include "Render/Scenes.h"
-#include "Render/Targets.h"
+#include "Targets.h"
 
 #include <gtest/gtest.h>
 
@@ -83,10 +83,10 @@ void ExpectPacketsGiveTheBitsOfSingleRays(const Scenario& test, std::vector<T> v
   const Tiled unpacked = DrawTiles(
     scene, [&](RayTile& tile) { MarchUnpacked(packed, seen, table, nullptr, all, tile); });
   EXPECT_EQ(MaxDifference(unpacked.Picture, plain.Picture), 0.0);
-  for (const std::int64_t target : scenes::TargetsOfThisMachine())
+  for (const std::int64_t target : targets::OfThisMachine())
   {
     SCOPED_TRACE(hwy::TargetName(target));
-    const scenes::OnlyTarget only(target);
+    const targets::OnlyTarget only(target);
     const Tiled drawn = DrawTiles(scene,
       [&](RayTile& tile)
       {
@@ -228,10 +228,10 @@ void ExpectSameBitsShaded(const Scenario& test, std::vector<float> values, float
       });
   };
   const Tiled plain = march(MarchUnpacked);
-  for (const std::int64_t target : scenes::TargetsOfThisMachine())
+  for (const std::int64_t target : targets::OfThisMachine())
   {
     SCOPED_TRACE(hwy::TargetName(target));
-    const scenes::OnlyTarget only(target);
+    const targets::OnlyTarget only(target);
     const Tiled drawn = march(MarchPacked);
     EXPECT_EQ(MaxDifference(drawn.Picture, plain.Picture), 0.0);
     EXPECT_EQ(drawn.Ended, plain.Ended);

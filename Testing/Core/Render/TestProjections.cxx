@@ -1,7 +1,7 @@
 #include "Base/Error.h"
 #include "Render/BrickProjector.h"
 #include "Render/Scenes.h"
-#include "Render/Targets.h"
+#include "Targets.h"
 
 #include <gtest/gtest.h>
 
@@ -178,10 +178,10 @@ void ExpectPacketsGiveTheBitsOfSingleRays(const RayScene& scene, const std::vect
     DrawTiles(scene, samples, [&](RayTile& tile) { ProjectUnpacked(packed, table, all, tile); });
   EXPECT_EQ(MaxDifference(unpacked, plain), 0.0);
   EXPECT_EQ(samples, taken);
-  for (const std::int64_t target : scenes::TargetsOfThisMachine())
+  for (const std::int64_t target : targets::OfThisMachine())
   {
     SCOPED_TRACE(hwy::TargetName(target));
-    const scenes::OnlyTarget only(target);
+    const targets::OnlyTarget only(target);
     const FloatImage drawn = DrawTiles(
       scene, samples, [&](RayTile& tile) { ProjectPacked(packed, range, table, all, tile); });
     EXPECT_EQ(MaxDifference(drawn, plain), 0.0);

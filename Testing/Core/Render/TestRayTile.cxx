@@ -1,7 +1,7 @@
 #include "Base/Error.h"
 #include "Render/RayTile.h"
 #include "Render/Scenes.h"
-#include "Render/Targets.h"
+#include "Targets.h"
 
 #include <gtest/gtest.h>
 
@@ -49,10 +49,10 @@ int Compare(const RayScene& scene)
   const FloatImage picture = Untouched(scene);
   const auto tile = std::make_unique<RayTile>();
   int rays = 0;
-  for (const std::int64_t target : scenes::TargetsOfThisMachine())
+  for (const std::int64_t target : targets::OfThisMachine())
   {
     SCOPED_TRACE(hwy::TargetName(target));
-    const scenes::OnlyTarget only(target);
+    const targets::OnlyTarget only(target);
     rays = 0;
     const glm::ivec2 corner = scene.Viewport.Lo;
     tile->Open(

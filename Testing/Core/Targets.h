@@ -1,12 +1,12 @@
-#ifndef banyan_Testing_Core_Render_Targets_h
-#define banyan_Testing_Core_Render_Targets_h
+#ifndef banyan_Testing_Core_Targets_h
+#define banyan_Testing_Core_Targets_h
 
 #include <cstdint>
 #include <vector>
 
 #include <hwy/targets.h>
 
-namespace scenes
+namespace targets
 {
 
 /// Dispatches to one set of instructions only, until it goes.
@@ -28,7 +28,7 @@ public:
 };
 
 /// All that this machine can run, the poorest included.
-inline std::vector<std::int64_t> TargetsOfThisMachine()
+inline std::vector<std::int64_t> OfThisMachine()
 {
   std::vector<std::int64_t> targets;
   const std::int64_t supported = hwy::SupportedTargets();
@@ -42,6 +42,6 @@ inline std::vector<std::int64_t> TargetsOfThisMachine()
   return targets;
 }
 
-} // namespace scenes
+} // namespace targets
 
 #endif

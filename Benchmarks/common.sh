@@ -1,0 +1,52 @@
+# Shared by the scripts of this folder: source it, do not run it.
+# shellcheck shell=bash
+
+# Not the folder of the whole project, whose settings are others.
+BANYAN_BUILD_DIR="${BANYAN_BUILD_DIR:-$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")/build-benchmark}"
+export BANYAN_BUILD_DIR
+source "$(dirname "${BASH_SOURCE[0]}")/../Utilities/common.sh"
+
+here="$RepositoryRoot/Benchmarks"
+# Debian's Python, for which its packages are.
+python=/usr/bin/python3
+[[ -x "$python" ]] || python=python3
+data=""
+
+# What stands at the top of a script.
+help_of()
+{
+  sed -n '2,/^source/{/^source/d;s/^# \{0,1\}//p}' "$1"
+}
+
+# Sets `data` to the folder of real data beside the project, unless it is given.
+find_data()
+{
+  if [[ -z "$data" && -d "$RepositoryRoot/../shared/data" ]]; then
+    data="$(realpath "$RepositoryRoot/../shared/data")"
+  fi
+  [[ -z "$data" || -d "$data" ]] || fail "there is no folder '$data'."
+}
+
+# Takes what installing the packages is to be told.
+install_and_build()
+{
+  [[ "${BANYAN_SKIP_INSTALL:-0}" == 1 ]] ||
+    "$RepositoryRoot/Utilities/install-dependencies.sh" "$@"
+  [[ "${BANYAN_SKIP_BUILD:-0}" == 1 ]] ||
+    "$RepositoryRoot/Utilities/build.sh" -DBANYAN_WITH_PARAVIEW=OFF -DBANYAN_BUILD_TESTING=OFF \
+      -DBANYAN_BUILD_BENCHMARKS=ON
+}
+
+# Images of the real data as one raw series in $work, if they are there; adds it to `real`.
+collect()
+{
+  local name="$1" pattern="$2" images=()
+  mapfile -t images < <(compgen -G "$data/$name/$pattern" | sort)
+  if [[ ${#images[@]} == 0 ]]; then
+    say "      there is no $name"
+    return
+  fi
+  "$python" "$here/Codec/read_images.py" "$name" "$work/$name.raw" "${images[@]}" ||
+    fail "the images of '$name' could not be read."
+  real+=("$work/$name.json")
+}
