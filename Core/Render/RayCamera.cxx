@@ -92,6 +92,7 @@ RayCamera::RayCamera(
   : WorldToClip(worldToClip)
   , ClipToWorld(glm::inverse(worldToClip))
   , Size(imageSize)
+  , PixelSize(1.0 / glm::dvec2(imageSize))
   , Anchor(anchor)
 {
   if (imageSize.x < 1 || imageSize.y < 1)
@@ -125,8 +126,8 @@ RayCamera::RayCamera(
 
 glm::dvec4 RayCamera::MiddleOf(int x, int y) const
 {
-  const double u = (2.0 * x + 1.0) / this->Size.x - 1.0;
-  const double v = (2.0 * y + 1.0) / this->Size.y - 1.0;
+  const double u = (2.0 * x + 1.0) * this->PixelSize.x - 1.0;
+  const double v = (2.0 * y + 1.0) * this->PixelSize.y - 1.0;
   return this->ClipToWorld[0] * u + this->ClipToWorld[1] * v + this->ClipToWorld[3];
 }
 
@@ -138,7 +139,7 @@ Ray RayCamera::RayOf(int x, int y) const
   const glm::dvec4& apex = this->ClipToWorld[2];
   const glm::dvec4 near = middle - apex;
   const glm::dvec4 far = middle + apex;
-  const glm::dvec3 nearPoint = glm::dvec3(near) / near.w;
+  const glm::dvec3 nearPoint = glm::dvec3(near) * (1.0 / near.w);
 
   Ray ray;
   if (this->IsParallel)
@@ -153,7 +154,7 @@ Ray RayCamera::RayOf(int x, int y) const
     ray.Origin = this->EyePoint;
     ray.Near = glm::dot(nearPoint - this->EyePoint, ray.Direction);
   }
-  ray.Far = far.w > 0.0 ? glm::dot(glm::dvec3(far) / far.w - ray.Origin, ray.Direction)
+  ray.Far = far.w > 0.0 ? glm::dot(glm::dvec3(far) * (1.0 / far.w) - ray.Origin, ray.Direction)
                         : std::numeric_limits<double>::infinity();
   return ray;
 }

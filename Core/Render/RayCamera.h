@@ -62,6 +62,9 @@ public:
   const glm::dmat4& ClipToWorldMatrix() const { return this->ClipToWorld; }
   const glm::dvec3& AnchorPoint() const { return this->Anchor; }
 
+  /// 1 over the picture's size: what pixel centres are multiplied with.
+  const glm::dvec2& PerPixel() const { return this->PixelSize; }
+
   /// The ray through the centre of pixel (x, y), bottom left is (0, 0).
   Ray RayOf(int x, int y) const;
 
@@ -84,6 +87,7 @@ private:
   glm::dmat4 WorldToClip;
   glm::dmat4 ClipToWorld;
   glm::ivec2 Size;
+  glm::dvec2 PixelSize; ///< 1 / Size
   glm::dvec3 Anchor;
   glm::dvec3 EyePoint{ 0.0 };
   glm::dvec3 Forward{ 0.0 };

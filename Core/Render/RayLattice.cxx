@@ -93,6 +93,7 @@ RayLattice::RayLattice(const RayScene& scene)
   : Scene(scene)
   , WorldToIndex(glm::inverse(scene.IndexToWorld))
   , WorldToIndexLinear(WorldToIndex)
+  , PerDistance(1.0 / scene.SampleDistance)
 {
   CheckDomain(scene.DomainCells);
   CheckDistance(scene);
@@ -111,8 +112,7 @@ LatticeSetup RayLattice::Setup() const
   LatticeSetup setup;
   setup.ClipToWorld = camera.ClipToWorldMatrix();
   setup.WorldToIndex = this->WorldToIndex;
-  setup.Width = camera.ImageSize().x;
-  setup.Height = camera.ImageSize().y;
+  setup.PerPixel = camera.PerPixel();
   setup.Parallel = camera.Parallel();
   setup.Forward = camera.ViewDirection();
   setup.Anchor = camera.AnchorPoint();
@@ -120,6 +120,7 @@ LatticeSetup RayLattice::Setup() const
   setup.Low = glm::dvec3(this->Scene.DomainCells.Lo);
   setup.High = glm::dvec3(this->Scene.DomainCells.Hi);
   setup.Distance = this->Scene.SampleDistance;
+  setup.PerDistance = this->PerDistance;
   setup.ShadingScale = ScaleToOne(this->WorldToIndexLinear);
   setup.Planes = this->IndexPlanes.data();
   setup.PlaneCount = this->IndexPlanes.size();
@@ -161,12 +162,12 @@ RaySamples RayLattice::SamplesOf(int x, int y) const
   }
 
   const double step = this->Scene.SampleDistance;
-  if (std::max(std::abs(enter), std::abs(exit)) / step > LargestSampleNumber)
+  if (std::max(std::abs(enter), std::abs(exit)) * this->PerDistance > LargestSampleNumber)
   {
     ThrowTooFar();
   }
-  const double first = std::ceil(enter / step);
-  const double last = std::floor(exit / step);
+  const double first = std::ceil(enter * this->PerDistance);
+  const double last = std::floor(exit * this->PerDistance);
   if (first > last)
   {
     samples.Head = this->PlacePartial(indexRay, enter, exit);
@@ -189,7 +190,7 @@ bool RayLattice::ClipToDomain(const IndexRay& ray, double& enter, double& exit) 
   {
     const double low = cells.Lo[axis];
     const double high = cells.Hi[axis];
-    if (ray.Direction[axis] == 0.0)
+    if (std::abs(ray.Direction[axis]) < AlongFaces)
     {
       if (!(ray.Origin[axis] >= low && ray.Origin[axis] <= high))
       {
@@ -197,8 +198,9 @@ bool RayLattice::ClipToDomain(const IndexRay& ray, double& enter, double& exit) 
       }
       continue;
     }
-    const double a = (low - ray.Origin[axis]) / ray.Direction[axis];
-    const double b = (high - ray.Origin[axis]) / ray.Direction[axis];
+    const double inverse = 1.0 / ray.Direction[axis];
+    const double a = (low - ray.Origin[axis]) * inverse;
+    const double b = (high - ray.Origin[axis]) * inverse;
     enter = std::max(enter, std::min(a, b));
     exit = std::min(exit, std::max(a, b));
   }
@@ -241,7 +243,7 @@ std::int64_t RayLattice::Fixed(const IndexRay& ray, double t, int axis) const
 PartialSample RayLattice::PlacePartial(const IndexRay& ray, double enter, double exit) const
 {
   PartialSample sample;
-  const double fraction = (exit - enter) / this->Scene.SampleDistance;
+  const double fraction = (exit - enter) * this->PerDistance;
   if (fraction > 0.0)
   {
     const double middle = 0.5 * (enter + exit);

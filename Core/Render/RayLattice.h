@@ -136,8 +136,7 @@ struct LatticeSetup
 {
   glm::dmat4 ClipToWorld{ 1.0 };
   glm::dmat4 WorldToIndex{ 1.0 };
-  double Width = 0; ///< of the whole picture, in pixels
-  double Height = 0;
+  glm::dvec2 PerPixel{ 1.0 }; ///< 1 over the size of the whole picture
   bool Parallel = false;
   glm::dvec3 Forward{ 0.0 }; ///< parallel projections only, as Anchor
   glm::dvec3 Anchor{ 0.0 };
@@ -145,6 +144,7 @@ struct LatticeSetup
   glm::dvec3 Low{ 0.0 }; ///< of the domain, in cells
   glm::dvec3 High{ 0.0 };
   double Distance = 1.0;
+  double PerDistance = 1.0; ///< 1 / Distance
   /// A power of two that brings directions in index space near 1.
   double ShadingScale = 1.0;
   const glm::dvec4* Planes = nullptr; ///< RayLattice::Planes
@@ -161,6 +161,12 @@ public:
 
   /// Beyond this the numbers of samples are no longer exact in double.
   static constexpr double LargestSampleNumber = 1e15;
+
+  /// Rays that go less far along an axis, in cells per world length, run along its faces.
+  static constexpr double AlongFaces = 1e-290;
+
+  /// Whether there is any: GeometryAt is infinite for all pixels otherwise.
+  bool HasGeometry() const { return !this->Scene.Depth.empty(); }
 
   /// One ray after the other: what tiles of rays are held to (RayTile::Open).
   /// @param x, y pixel of the whole picture, inside the scene's viewport
@@ -199,6 +205,7 @@ private:
   glm::dmat4 WorldToIndex;
   glm::dmat3 WorldToIndexLinear;
   std::vector<glm::dvec4> IndexPlanes;
+  double PerDistance; ///< 1 / SampleDistance
 };
 
 } // namespace banyan

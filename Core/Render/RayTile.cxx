@@ -1,5 +1,6 @@
 #include "Render/RayTile.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -39,10 +40,15 @@ public:
     int slot, const double* x, const double* y, const double* end, const double* active)
   {
     const DD d;
+    auto alive = hn::Ne(hn::Load(d, active), hn::Zero(d));
+    if (hn::AllFalse(d, alive))
+    {
+      this->StoreNothing(slot);
+      return true;
+    }
     this->MakeRay(hn::Load(d, x), hn::Load(d, y));
     VD enter = this->Near;
     VD exit = hn::Min(this->Far, hn::Load(d, end));
-    auto alive = hn::Ne(hn::Load(d, active), hn::Zero(d));
     this->Clip(enter, exit, alive);
     this->ClipToPlanes(enter, exit, alive);
     alive = hn::And(alive, hn::Lt(enter, exit));
@@ -52,7 +58,8 @@ public:
       return true;
     }
     const VD distance = hn::Set(d, this->Setup.Distance);
-    const VD farthest = hn::Div(hn::Max(hn::Abs(enter), hn::Abs(exit)), distance);
+    const VD perDistance = hn::Set(d, this->Setup.PerDistance);
+    const VD farthest = hn::Mul(hn::Max(hn::Abs(enter), hn::Abs(exit)), perDistance);
     if (!hn::AllFalse(
           d, hn::And(alive, hn::Gt(farthest, hn::Set(d, RayLattice::LargestSampleNumber)))))
     {
@@ -61,8 +68,8 @@ public:
     // Lanes without a ray must not carry numbers that no integer can hold.
     enter = hn::IfThenElseZero(alive, enter);
     exit = hn::IfThenElseZero(alive, exit);
-    const VD first = hn::Ceil(hn::Div(enter, distance));
-    const VD last = hn::Floor(hn::Div(exit, distance));
+    const VD first = hn::Ceil(hn::Mul(enter, perDistance));
+    const VD last = hn::Floor(hn::Mul(exit, perDistance));
     const auto whole = hn::And(alive, hn::Le(first, last));
     this->StoreEnd(
       slot, enter, hn::IfThenElse(whole, hn::Mul(first, distance), exit), alive, this->Tile.Head);
@@ -91,9 +98,9 @@ private:
   {
     const VD one = this->Set(1.0);
     const VD two = this->Set(2.0);
-    const VD u = hn::Sub(hn::Div(hn::Add(hn::Mul(two, x), one), this->Set(this->Setup.Width)), one);
+    const VD u = hn::Sub(hn::Mul(hn::Add(hn::Mul(two, x), one), this->Set(this->Setup.PerPixel.x)), one);
     const VD v =
-      hn::Sub(hn::Div(hn::Add(hn::Mul(two, y), one), this->Set(this->Setup.Height)), one);
+      hn::Sub(hn::Mul(hn::Add(hn::Mul(two, y), one), this->Set(this->Setup.PerPixel.y)), one);
     VD middle[4];
     VD apex[4];
     for (int i = 0; i < 4; ++i)
@@ -103,15 +110,16 @@ private:
         this->Set(this->Setup.ClipToWorld[3][i]));
       apex[i] = this->Set(this->Setup.ClipToWorld[2][i]);
     }
-    const VD nearWeight = hn::Sub(middle[3], apex[3]);
+    const VD perNear = hn::Div(one, hn::Sub(middle[3], apex[3]));
     const VD farWeight = hn::Add(middle[3], apex[3]);
+    const VD perFar = hn::Div(one, farWeight);
     VD nearPoint[3];
     VD direction[3];
     VD toNear[3];
     VD origin[3];
     for (int i = 0; i < 3; ++i)
     {
-      nearPoint[i] = hn::Div(hn::Sub(middle[i], apex[i]), nearWeight);
+      nearPoint[i] = hn::Mul(hn::Sub(middle[i], apex[i]), perNear);
       direction[i] = this->Setup.Parallel
                        ? this->Set(this->Setup.Forward[i])
                        : hn::Sub(hn::Mul(apex[i], middle[3]), hn::Mul(middle[i], apex[3]));
@@ -132,7 +140,7 @@ private:
     {
       origin[i] = this->Setup.Parallel ? hn::Sub(nearPoint[i], hn::Mul(direction[i], this->Near))
                                        : this->Set(this->Setup.Eye[i]);
-      toFar[i] = hn::Sub(hn::Div(hn::Add(middle[i], apex[i]), farWeight), origin[i]);
+      toFar[i] = hn::Sub(hn::Mul(hn::Add(middle[i], apex[i]), perFar), origin[i]);
     }
     this->Far = hn::IfThenElse(hn::Gt(farWeight, hn::Zero(DD())), this->Dot(toFar, direction),
       this->Set(std::numeric_limits<double>::infinity()));
@@ -156,17 +164,18 @@ private:
 
   HWY_INLINE void Clip(VD& enter, VD& exit, hn::Mask<DD>& alive) const
   {
-    const DD d;
     const VD infinity = this->Set(std::numeric_limits<double>::infinity());
     for (int axis = 0; axis < 3; ++axis)
     {
       const VD low = this->Set(this->Setup.Low[axis]);
       const VD high = this->Set(this->Setup.High[axis]);
       const VD origin = this->Origin[axis];
-      const auto along = hn::Eq(this->Direction[axis], hn::Zero(d));
+      const auto along =
+        hn::Lt(hn::Abs(this->Direction[axis]), this->Set(RayLattice::AlongFaces));
       const auto inside = hn::And(hn::Ge(origin, low), hn::Le(origin, high));
-      const VD a = hn::Div(hn::Sub(low, origin), this->Direction[axis]);
-      const VD b = hn::Div(hn::Sub(high, origin), this->Direction[axis]);
+      const VD inverse = hn::Div(this->Set(1.0), this->Direction[axis]);
+      const VD a = hn::Mul(hn::Sub(low, origin), inverse);
+      const VD b = hn::Mul(hn::Sub(high, origin), inverse);
       enter = hn::Max(enter, hn::IfThenElse(along, hn::Neg(infinity), hn::Min(a, b)));
       exit = hn::Min(exit, hn::IfThenElse(along, infinity, hn::Max(a, b)));
       alive = hn::And(alive, hn::Or(hn::Not(along), inside));
@@ -224,7 +233,7 @@ private:
     int slot, VD enter, VD exit, hn::Mask<DD> exists, RayTile::Ends& ends) const
   {
     const DD d;
-    const VD fraction = hn::Div(hn::Sub(exit, enter), this->Set(this->Setup.Distance));
+    const VD fraction = hn::Mul(hn::Sub(exit, enter), this->Set(this->Setup.PerDistance));
     exists = hn::And(exists, hn::Gt(fraction, hn::Zero(d)));
     const VD kept = hn::IfThenElseZero(exists, hn::Min(fraction, this->Set(1.0)));
     hn::Store(hn::DemoteTo(DFloat(), kept), DFloat(), ends.Fraction + slot);
@@ -254,7 +263,10 @@ private:
       const VD end = hn::Add(base, hn::Mul(steps, step));
       const VD inside = hn::Min(hn::Max(end, this->Lowest(axis)), this->Highest(axis));
       const auto bent = hn::And(hn::Gt(steps, hn::Zero(d)), hn::Ne(end, inside));
-      step = hn::IfThenElse(bent, hn::Trunc(hn::Div(hn::Sub(inside, base), steps)), step);
+      if (!hn::AllFalse(d, bent))
+      {
+        step = hn::IfThenElse(bent, hn::Trunc(hn::Div(hn::Sub(inside, base), steps)), step);
+      }
       this->StoreFixed(base, nullptr, this->Tile.Base[axis] + slot);
       this->StoreFixed(step, nullptr, this->Tile.Step[axis] + slot);
       hn::Store(step, d, this->Tile.WholeStep[axis] + slot);
@@ -348,17 +360,20 @@ void RayTile::Open(
   this->PacketsFit = true;
   alignas(64) double ends[Slots];
   alignas(64) double active[Slots];
-  for (int y = rect.Lo.y; y < rect.Lo.y + Edge; ++y)
+  const bool geometry = lattice.HasGeometry();
+  for (int slot = 0; slot < Slots; slot += PacketEdge)
   {
-    for (int x = rect.Lo.x; x < rect.Lo.x + Edge; ++x)
+    const glm::ivec2 at = this->PixelAt(slot);
+    const int width = at.y < rect.Hi.y ? std::clamp(rect.Hi.x - at.x, 0, PacketEdge) : 0;
+    const glm::vec4* row = width > 0 ? &picture.At(at.x, at.y) : nullptr;
+    for (int i = 0; i < PacketEdge; ++i)
     {
-      const int slot = this->SlotOf(x, y);
-      const bool inside = x < rect.Hi.x && y < rect.Hi.y;
-      const glm::vec4 pixel = inside ? picture.At(x, y) : glm::vec4(0.0f);
-      const bool wanted = inside && pixel.a > limit;
-      active[slot] = wanted ? 1.0 : 0.0;
-      ends[slot] = wanted ? lattice.GeometryAt(x, y) : 0.0;
-      this->SetPixel(slot, pixel);
+      const glm::vec4 pixel = i < width ? row[i] : glm::vec4(0.0f);
+      const bool wanted = i < width && pixel.a > limit;
+      active[slot + i] = wanted ? 1.0 : 0.0;
+      ends[slot + i] = geometry && wanted ? lattice.GeometryAt(at.x + i, at.y)
+                                          : std::numeric_limits<double>::infinity();
+      this->SetPixel(slot + i, pixel);
     }
   }
   if (!HWY_DYNAMIC_DISPATCH(FillRaysHere)(lattice, ends, active, *this))
@@ -368,18 +383,22 @@ void RayTile::Open(
   this->ActiveRays = 0;
   for (int slot = 0; slot < Slots; ++slot)
   {
-    this->ActiveRays += this->IsEmpty(slot) ? 0 : 1;
+    const bool empty = (this->Count[slot] == 0) & (this->Head.Fraction[slot] == 0.0f) &
+                       (this->Tail.Fraction[slot] == 0.0f);
+    this->ActiveRays += empty ? 0 : 1;
   }
 }
 
 void RayTile::Close(FloatImage& picture) const
 {
-  for (int y = this->Rect.Lo.y; y < this->Rect.Hi.y; ++y)
+  for (int slot = 0; slot < Slots; slot += PacketEdge)
   {
-    glm::vec4* row = &picture.At(this->Rect.Lo.x, y);
-    for (int x = this->Rect.Lo.x; x < this->Rect.Hi.x; ++x)
+    const glm::ivec2 at = this->PixelAt(slot);
+    const int width = at.y < this->Rect.Hi.y ? std::min(this->Rect.Hi.x - at.x, PacketEdge) : 0;
+    glm::vec4* row = width > 0 ? &picture.At(at.x, at.y) : nullptr;
+    for (int i = 0; i < width; ++i)
     {
-      row[x - this->Rect.Lo.x] = this->PixelOf(this->SlotOf(x, y));
+      row[i] = this->PixelOf(slot + i);
     }
   }
 }

@@ -31,6 +31,15 @@ struct RayTile
     return packet * PacketSize + row % PacketEdge * PacketEdge + column % PacketEdge;
   }
 
+  /// The pixel of a slot, which may lie beyond Rect.
+  glm::ivec2 PixelAt(int slot) const
+  {
+    const int packet = slot / PacketSize;
+    const int within = slot % PacketSize;
+    return this->Rect.Lo + glm::ivec2(packet % PacketsPerRow * PacketEdge + within % PacketEdge,
+                             packet / PacketsPerRow * PacketEdge + within / PacketEdge);
+  }
+
   /// Places the rays of a rectangle of at most Edge x Edge pixels, and takes up what they have met
   /// so far. The samples are those of RayLattice::SamplesOf, bit for bit and on every processor;
   /// rays that have ended are left empty.
