@@ -5,6 +5,7 @@
 #include "Render/BrickSummary.h"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace banyan
 {
@@ -30,9 +31,10 @@ void CheckArray(const SampleArray& array)
   }
 }
 
-bool IsCopied(const SampleArray& array)
+glm::ivec3 PositionOf(std::int64_t brick, const glm::ivec3& counts)
 {
-  return array.Component == SampleArray::Magnitude || array.Flags;
+  return { static_cast<int>(brick % counts.x), static_cast<int>(brick / counts.x % counts.y),
+    static_cast<int>(brick / counts.x / counts.y) };
 }
 
 ScalarType CopyType(ScalarType type)
@@ -41,18 +43,29 @@ ScalarType CopyType(ScalarType type)
                                                           : ScalarType::Float64;
 }
 
+/// @param samples of a level: every `every`-th of the array, and the last one
 template <class T>
-void CopyBrick(const SampleArray& array, const Box& samples, void* target, ScalarType type)
+void CopyBrick(
+  const SampleArray& array, const Box& samples, int every, void* target, ScalarType type)
 {
   const SampleReader<T> reader(array);
+  const glm::ivec3 last = array.Samples.Size() - 1;
+  const auto fine = [&](int sample, int axis) { return std::min(sample * every, last[axis]); };
   const auto copy = [&](auto* out)
   {
+    using Out = std::remove_pointer_t<decltype(out)>;
+    const int begin = fine(samples.Lo.x, 0);
+    const int end = fine(samples.Hi.x - 1, 0) + 1;
+    std::vector<Out> row(static_cast<std::size_t>(end - begin));
     for (int z = samples.Lo.z; z < samples.Hi.z; ++z)
     {
       for (int y = samples.Lo.y; y < samples.Hi.y; ++y)
       {
-        reader.Read(samples.Lo.x, samples.Hi.x, y, z, out);
-        out += samples.Size().x;
+        reader.Read(begin, end, fine(y, 1), fine(z, 2), row.data());
+        for (int x = samples.Lo.x; x < samples.Hi.x; ++x)
+        {
+          *out++ = row[static_cast<std::size_t>(fine(x, 0) - begin)];
+        }
       }
     }
   };
@@ -125,13 +138,9 @@ ArrayBrickSource::ArrayBrickSource(
     return;
   }
   this->Cells = { array.Samples.Lo, array.Samples.Hi - 1 };
-  this->FirstBrick = this->Cells.Lo / brickCells;
-  const glm::ivec3 lastCell = glm::max(this->Cells.Hi - 1, this->Cells.Lo);
-  this->BrickCounts = lastCell / brickCells - this->FirstBrick + 1;
-  const std::int64_t count =
-    std::int64_t{ this->BrickCounts.x } * this->BrickCounts.y * this->BrickCounts.z;
-  this->Ranges.resize(count);
-  this->Masks.resize(count);
+  this->Held = array.Samples.Size();
+  this->CutIntoBricks();
+  const auto count = static_cast<std::int64_t>(this->Ranges.size());
   Dispatch(array.Type,
     [&](auto tag)
     {
@@ -145,12 +154,49 @@ ArrayBrickSource::ArrayBrickSource(
     });
 }
 
+ArrayBrickSource::ArrayBrickSource(const ArrayBrickSource& finest, int level)
+  : Array(finest.Array)
+  , Every(1 << level)
+  , BrickCells(finest.BrickCells)
+  , Over(finest.Over)
+{
+  this->Cells = { glm::ivec3(0), (finest.Cells.Hi + this->Every - 1) / this->Every };
+  this->Held = this->Cells.Hi + 1;
+  this->CutIntoBricks();
+  for (std::size_t fine = 0; fine < finest.Ranges.size(); ++fine)
+  {
+    const glm::ivec3 position =
+      PositionOf(static_cast<std::int64_t>(fine), finest.BrickCounts) / this->Every;
+    const std::size_t brick =
+      position.x +
+      this->BrickCounts.x * (position.y + static_cast<std::size_t>(this->BrickCounts.y) * position.z);
+    this->Ranges[brick].Include(finest.Ranges[fine]);
+    this->Masks[brick] |= finest.Masks[fine];
+  }
+}
+
+std::unique_ptr<BrickSource> ArrayBrickSource::MakeLevel(int level, const Box& domain)
+{
+  const bool whole = this->Cells == domain && domain.Lo == glm::ivec3(0) && !domain.Empty();
+  return whole && level < 30
+           ? std::unique_ptr<BrickSource>(new ArrayBrickSource(*this, level))
+           : nullptr;
+}
+
+void ArrayBrickSource::CutIntoBricks()
+{
+  this->FirstBrick = this->Cells.Lo / this->BrickCells;
+  const glm::ivec3 lastCell = glm::max(this->Cells.Hi - 1, this->Cells.Lo);
+  this->BrickCounts = lastCell / this->BrickCells - this->FirstBrick + 1;
+  const std::size_t count =
+    static_cast<std::size_t>(this->BrickCounts.x) * this->BrickCounts.y * this->BrickCounts.z;
+  this->Ranges.resize(count);
+  this->Masks.resize(count);
+}
+
 Box ArrayBrickSource::CellsOf(std::int64_t brick) const
 {
-  const glm::ivec3 n = this->BrickCounts;
-  const glm::ivec3 position(static_cast<int>(brick % n.x), static_cast<int>(brick / n.x % n.y),
-    static_cast<int>(brick / n.x / n.y));
-  const glm::ivec3 low = (this->FirstBrick + position) * this->BrickCells;
+  const glm::ivec3 low = (this->FirstBrick + PositionOf(brick, this->BrickCounts)) * this->BrickCells;
   return Intersection(Box{ low, low + this->BrickCells }, this->Cells);
 }
 
@@ -161,11 +207,20 @@ Box ArrayBrickSource::SamplesOf(std::int64_t brick) const
   return { cells.Lo - this->Array.Samples.Lo, cells.Hi + 1 - this->Array.Samples.Lo };
 }
 
+bool ArrayBrickSource::IsCopied(const Box& samples) const
+{
+  const glm::ivec3 last = (samples.Hi - 1) * this->Every;
+  const glm::ivec3 size = this->Array.Samples.Size();
+  const bool repeats = last.x >= size.x || last.y >= size.y || last.z >= size.z;
+  return this->Array.Component == SampleArray::Magnitude || this->Array.Flags || repeats;
+}
+
 std::size_t ArrayBrickSource::LoadBytes(std::int64_t brick) const
 {
-  return IsCopied(this->Array) ? static_cast<std::size_t>(this->SamplesOf(brick).Count()) *
-                                   SizeOf(CopyType(this->Array.Type))
-                               : 0;
+  const Box samples = this->SamplesOf(brick);
+  return this->IsCopied(samples)
+           ? static_cast<std::size_t>(samples.Count()) * SizeOf(CopyType(this->Array.Type))
+           : 0;
 }
 
 BrickView ArrayBrickSource::Load(std::int64_t brick)
@@ -177,7 +232,7 @@ BrickView ArrayBrickSource::LoadAround(std::int64_t brick, Box& samples)
 {
   const Box own = this->SamplesOf(brick);
   const Box part =
-    Intersection({ own.Lo - 1, own.Hi + 1 }, { glm::ivec3(0), this->Array.Samples.Size() });
+    Intersection({ own.Lo - 1, own.Hi + 1 }, { glm::ivec3(0), this->Held });
   samples = { part.Lo + this->Array.Samples.Lo, part.Hi + this->Array.Samples.Lo };
   return this->ViewOf(part);
 }
@@ -185,13 +240,13 @@ BrickView ArrayBrickSource::LoadAround(std::int64_t brick, Box& samples)
 BrickView ArrayBrickSource::ViewOf(const Box& samples) const
 {
   BrickView view;
-  if (!IsCopied(this->Array))
+  if (!this->IsCopied(samples))
   {
     std::ptrdiff_t offset = this->Array.Component * this->Array.ComponentStride;
     for (int axis = 0; axis < 3; ++axis)
     {
-      view.Stride[axis] = this->Array.Stride[axis];
-      offset += samples.Lo[axis] * this->Array.Stride[axis];
+      view.Stride[axis] = this->Every * this->Array.Stride[axis];
+      offset += samples.Lo[axis] * view.Stride[axis];
     }
     const auto bytes = offset * static_cast<std::ptrdiff_t>(SizeOf(this->Array.Type));
     view.Values = static_cast<const char*>(this->Array.Values) + bytes;
@@ -203,8 +258,12 @@ BrickView ArrayBrickSource::ViewOf(const Box& samples) const
   const auto count = static_cast<std::size_t>(samples.Count());
   const auto copy = std::make_shared<std::vector<double>>(
     (count * SizeOf(view.Type) + sizeof(double) - 1) / sizeof(double));
-  Dispatch(this->Array.Type, [&](auto tag)
-    { CopyBrick<typename decltype(tag)::Type>(this->Array, samples, copy->data(), view.Type); });
+  Dispatch(this->Array.Type,
+    [&](auto tag)
+    {
+      CopyBrick<typename decltype(tag)::Type>(
+        this->Array, samples, this->Every, copy->data(), view.Type);
+    });
   view.Values = copy->data();
   view.Stride[1] = samples.Size().x;
   view.Stride[2] = std::ptrdiff_t{ samples.Size().x } * samples.Size().y;

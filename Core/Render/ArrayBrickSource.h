@@ -59,12 +59,25 @@ public:
   /// Takes the samples from the array, also those beyond its bricks' own.
   BrickView LoadAround(std::int64_t brick, Box& samples) override;
 
+protected:
+  /// Exists when the array is the whole grid.
+  std::unique_ptr<BrickSource> MakeLevel(int level, const Box& domain) override;
+
 private:
-  /// @param samples positions in the array, from 0
+  /// A coarser level. Ranges and masks are those of everything that lies in a brick.
+  ArrayBrickSource(const ArrayBrickSource& finest, int level);
+
+  /// Cuts `Cells` into bricks.
+  void CutIntoBricks();
+  /// Whether a brick's samples cannot be used where they are.
+  bool IsCopied(const Box& samples) const;
+  /// @param samples positions in the array, from 0, in samples of the level
   BrickView ViewOf(const Box& samples) const;
   Box SamplesOf(std::int64_t brick) const;
 
-  SampleArray Array;
+  SampleArray Array;      ///< of the finest level
+  int Every = 1;          ///< samples of the array from one of the level to the next
+  glm::ivec3 Held{ 0 };   ///< samples of the level per axis
   int BrickCells;
   MaskRange Over;
   Box Cells;

@@ -45,6 +45,32 @@ void CopyPart(const Neighbour& from, const Box& target, To* out)
 
 } // namespace
 
+BrickSource* BrickSource::AtLevel(int level, const Box& domain)
+{
+  if (level == 0)
+  {
+    return this;
+  }
+  const std::lock_guard<std::mutex> lock(this->LevelsMutex);
+  const auto found = this->Levels.find(level);
+  if (found != this->Levels.end())
+  {
+    return found->second.get();
+  }
+  std::unique_ptr<BrickSource> source = this->MakeLevel(level, domain);
+  if (source)
+  {
+    source->LevelNumber = level;
+    source->KeptOfSource = this->KeptOfSource;
+  }
+  return (this->Levels[level] = std::move(source)).get();
+}
+
+std::unique_ptr<BrickSource> BrickSource::MakeLevel(int, const Box&)
+{
+  return nullptr;
+}
+
 BrickView BrickSource::LoadAround(std::int64_t brick, Box& samples)
 {
   const glm::ivec3 counts = this->Bricks();

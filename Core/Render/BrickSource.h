@@ -9,7 +9,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 
 namespace banyan
 {
@@ -41,12 +43,36 @@ public:
   /// @param samples set to those that the view has; the view starts at samples.Lo
   virtual BrickView LoadAround(std::int64_t brick, Box& samples);
 
-  /// What the ray caster keeps of this source from picture to picture. Values must not change while
-  /// the source lives.
+  /// 0 is the finest. Index space is that of the level: positions are 2^Level fine ones apart.
+  int Level() const { return this->LevelNumber; }
+
+  /// The same field at a coarser level, in bricks of as many cells: every 2^level-th sample; where
+  /// the last cell is not whole, one more sample repeats the last fine one (see BrickLayout). It
+  /// stays with this source.
+  /// @param level >= 0; 0 is this source, which must be of the finest level
+  /// @param domain all fine cells of the whole grid
+  /// @return null where there is none: pieces of a plain grid have no coarser levels
+  /// May be called from any thread.
+  BrickSource* AtLevel(int level, const Box& domain);
+
+  /// What the ray caster keeps of this source and its levels from picture to picture. Values must
+  /// not change while the source lives.
   KeptBricks& Kept() const { return *this->KeptOfSource; }
+  /// The number under which a brick of this level is kept.
+  std::int64_t KeptNumber(std::int64_t brick) const
+  {
+    return brick + (static_cast<std::int64_t>(this->LevelNumber) << 48);
+  }
+
+protected:
+  /// A source of a coarser level; may refer to this one. Null where there is none.
+  virtual std::unique_ptr<BrickSource> MakeLevel(int level, const Box& domain);
 
 private:
   std::shared_ptr<KeptBricks> KeptOfSource = std::make_shared<KeptBricks>();
+  int LevelNumber = 0;
+  std::map<int, std::unique_ptr<BrickSource>> Levels; ///< that were asked for
+  std::mutex LevelsMutex;
 };
 
 } // namespace banyan

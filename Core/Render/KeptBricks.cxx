@@ -12,11 +12,11 @@ std::uint64_t BytesOf(const PackedBrick& packed)
 
 } // namespace
 
-void KeptBricks::BeginPicture(std::uint64_t limitBytes)
+void KeptBricks::BeginPicture(std::uint64_t limitBytes, bool ages)
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
   this->LimitBytes = limitBytes;
-  ++this->Picture;
+  this->Picture += ages ? 1 : 0;
   for (auto item = this->Items.begin(); item != this->Items.end();)
   {
     const bool old = item->second.UsedIn < this->Picture - 2;

@@ -23,7 +23,8 @@ public:
   using Pointer = std::shared_ptr<const PackedBrick>;
 
   /// Lets go of bricks that the last two pictures did not use, and of all beyond the limit.
-  void BeginPicture(std::uint64_t limitBytes);
+  /// @param ages false for a picture that only helps to make the next one, and does not count
+  void BeginPicture(std::uint64_t limitBytes, bool ages = true);
 
   /// The cells of a brick, packed relative to `low` if they are relative; null if not kept.
   Pointer Find(std::int64_t brick, const Box& cells, double low, bool gradients);

@@ -6,6 +6,7 @@
 #include "Render/FloatImage.h"
 #include "Render/RayBlend.h"
 #include "Render/RayCamera.h"
+#include "Render/RaySampling.h"
 #include "Render/TransferFunction.h"
 #include "Render/Viewpoint.h"
 
@@ -13,6 +14,7 @@
 #include <glm/vec4.hpp>
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace banyan
@@ -52,6 +54,10 @@ struct RayScene
   std::vector<ClipPlane> ClipPlanes{}; ///< at most MostClipPlanes
   SampleInterpolation Interpolation = SampleInterpolation::Linear;
   RayBlend Blend{};
+  /// In place of SampleDistance; of the whole picture. Null samples the finest level everywhere.
+  std::shared_ptr<const TileSamplings> Samplings{};
+  /// Whether the picture only helps to make another one: packed bricks are kept for that one.
+  bool Pilot = false;
 };
 
 struct RayStatistics

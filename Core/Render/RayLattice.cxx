@@ -2,6 +2,7 @@
 
 #include "Base/Error.h"
 
+#include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -31,9 +32,9 @@ void CheckDomain(const Box& cells)
   }
 }
 
-void CheckDistance(const RayScene& scene)
+void CheckDistance(const RayScene& scene, double distance)
 {
-  if (!(scene.SampleDistance > 0.0) || !std::isfinite(scene.SampleDistance))
+  if (!(distance > 0.0) || !std::isfinite(distance))
   {
     throw Error("The sample distance must be above 0");
   }
@@ -41,7 +42,7 @@ void CheckDistance(const RayScene& scene)
   const glm::dvec3 size(scene.DomainCells.Size());
   const double longest = glm::length(linear[0]) * size.x + glm::length(linear[1]) * size.y +
                          glm::length(linear[2]) * size.z;
-  if (longest / scene.SampleDistance > MostSamplesPerRay)
+  if (longest / distance > MostSamplesPerRay)
   {
     throw Error("The sample distance is too small for the volume: a ray would take more than ten "
                 "million samples");
@@ -64,6 +65,11 @@ void CheckViewport(const RayScene& scene)
 }
 
 } // namespace
+
+glm::dmat4 IndexToWorldAt(const RayScene& scene, int level)
+{
+  return glm::scale(scene.IndexToWorld, glm::dvec3(std::ldexp(1.0, level)));
+}
 
 double ScaleToOne(const glm::dmat3& matrix)
 {
@@ -90,20 +96,28 @@ FixedBox::FixedBox(const Box& cells)
 }
 
 RayLattice::RayLattice(const RayScene& scene)
+  : RayLattice(scene, { 0, scene.SampleDistance })
+{
+}
+
+RayLattice::RayLattice(const RayScene& scene, const RaySampling& sampling)
   : Scene(scene)
-  , WorldToIndex(glm::inverse(scene.IndexToWorld))
+  , WorldToIndex(glm::inverse(IndexToWorldAt(scene, sampling.Level)))
   , WorldToIndexLinear(WorldToIndex)
-  , PerDistance(1.0 / scene.SampleDistance)
+  , Distance(sampling.Distance)
+  , PerDistance(1.0 / sampling.Distance)
+  , Low(glm::dvec3(scene.DomainCells.Lo) * std::ldexp(1.0, -sampling.Level))
+  , High(glm::dvec3(scene.DomainCells.Hi) * std::ldexp(1.0, -sampling.Level))
 {
   CheckDomain(scene.DomainCells);
-  CheckDistance(scene);
+  CheckDistance(scene, sampling.Distance);
   CheckViewport(scene);
   const double volume = glm::determinant(glm::dmat3(scene.IndexToWorld));
   if (volume == 0.0 || !std::isfinite(volume) || !std::isfinite(1.0 / volume))
   {
     throw Error("The volume has no extent in space: a spacing is 0 or not finite");
   }
-  this->IndexPlanes = PlanesInIndexSpace(scene.ClipPlanes, scene.IndexToWorld);
+  this->IndexPlanes = PlanesInIndexSpace(scene.ClipPlanes, IndexToWorldAt(scene, sampling.Level));
 }
 
 LatticeSetup RayLattice::Setup() const
@@ -117,9 +131,9 @@ LatticeSetup RayLattice::Setup() const
   setup.Forward = camera.ViewDirection();
   setup.Anchor = camera.AnchorPoint();
   setup.Eye = setup.Parallel ? glm::dvec3(0.0) : camera.Eye();
-  setup.Low = glm::dvec3(this->Scene.DomainCells.Lo);
-  setup.High = glm::dvec3(this->Scene.DomainCells.Hi);
-  setup.Distance = this->Scene.SampleDistance;
+  setup.Low = this->Low;
+  setup.High = this->High;
+  setup.Distance = this->Distance;
   setup.PerDistance = this->PerDistance;
   setup.ShadingScale = ScaleToOne(this->WorldToIndexLinear);
   setup.Planes = this->IndexPlanes.data();
@@ -161,7 +175,7 @@ RaySamples RayLattice::SamplesOf(int x, int y) const
     return samples;
   }
 
-  const double step = this->Scene.SampleDistance;
+  const double step = this->Distance;
   if (std::max(std::abs(enter), std::abs(exit)) * this->PerDistance > LargestSampleNumber)
   {
     ThrowTooFar();
@@ -185,11 +199,10 @@ RaySamples RayLattice::SamplesOf(int x, int y) const
 
 bool RayLattice::ClipToDomain(const IndexRay& ray, double& enter, double& exit) const
 {
-  const Box& cells = this->Scene.DomainCells;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double low = cells.Lo[axis];
-    const double high = cells.Hi[axis];
+    const double low = this->Low[axis];
+    const double high = this->High[axis];
     if (std::abs(ray.Direction[axis]) < AlongFaces)
     {
       if (!(ray.Origin[axis] >= low && ray.Origin[axis] <= high))
@@ -204,7 +217,7 @@ bool RayLattice::ClipToDomain(const IndexRay& ray, double& enter, double& exit) 
     enter = std::max(enter, std::min(a, b));
     exit = std::min(exit, std::max(a, b));
   }
-  return !cells.Empty() && enter < exit;
+  return !this->Scene.DomainCells.Empty() && enter < exit;
 }
 
 bool RayLattice::ClipToPlanes(const IndexRay& ray, double& enter, double& exit) const
@@ -233,11 +246,10 @@ bool RayLattice::ClipToPlanes(const IndexRay& ray, double& enter, double& exit) 
 std::int64_t RayLattice::Fixed(const IndexRay& ray, double t, int axis) const
 {
   // Rounding may put a sample just outside the domain; the upper face belongs to the last cell.
-  const Box& cells = this->Scene.DomainCells;
   const double position = ray.Origin[axis] + ray.Direction[axis] * t;
-  const double inside = std::clamp<double>(position, cells.Lo[axis], cells.Hi[axis]);
+  const double inside = std::clamp<double>(position, this->Low[axis], this->High[axis]);
   const auto fixed = static_cast<std::int64_t>(std::floor(inside * FixedOne));
-  return std::min(fixed, ToFixed(cells.Hi[axis]) - 1);
+  return std::min(fixed, this->LastPosition(axis));
 }
 
 PartialSample RayLattice::PlacePartial(const IndexRay& ray, double enter, double exit) const
@@ -258,8 +270,7 @@ PartialSample RayLattice::PlacePartial(const IndexRay& ray, double enter, double
 
 void RayLattice::PlaceWhole(const IndexRay& ray, double firstSample, RaySamples& samples) const
 {
-  const double distance = this->Scene.SampleDistance;
-  const Box& cells = this->Scene.DomainCells;
+  const double distance = this->Distance;
   const std::int64_t steps = samples.Count - 1;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -271,8 +282,8 @@ void RayLattice::PlaceWhole(const IndexRay& ray, double firstSample, RaySamples&
     {
       // Keeps the last sample inside the domain too, whatever was rounded on the way.
       const std::int64_t end = base + steps * step;
-      const std::int64_t low = ToFixed(cells.Lo[axis]);
-      const std::int64_t high = ToFixed(cells.Hi[axis]) - 1;
+      const std::int64_t low = this->FirstPosition(axis);
+      const std::int64_t high = this->LastPosition(axis);
       if (end < low || end > high)
       {
         step = (std::clamp(end, low, high) - base) / steps;

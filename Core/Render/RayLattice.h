@@ -2,10 +2,12 @@
 #define banyan_Render_RayLattice_h
 
 #include "Render/RayCaster.h"
+#include "Render/RaySampling.h"
 
 #include <glm/mat3x3.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace banyan
@@ -128,6 +130,9 @@ inline void RaySamples::SamplesIn(const FixedBox& box, std::int32_t& begin, std:
   }
 }
 
+/// Of the index space of a level: cells are 2^level fine ones long.
+glm::dmat4 IndexToWorldAt(const RayScene& scene, int level);
+
 /// The power of two that brings the largest number of a matrix to 1 or below 2.
 double ScaleToOne(const glm::dmat3& matrix);
 
@@ -152,11 +157,14 @@ struct LatticeSetup
 };
 
 /// Makes the samples of rays from what all ranks know: the camera, the domain, the clip planes, the
-/// depth and the sample distance. The values and their distribution have no part in it.
+/// depth and the sampling. The values and their distribution have no part in it. Index space is that
+/// of the sampling's level: the domain may end inside a cell there.
 class RayLattice
 {
 public:
   /// Refers to `scene`, which must stay. Throws Error when the scene is not usable.
+  RayLattice(const RayScene& scene, const RaySampling& sampling);
+  /// At the finest level, with the scene's sample distance.
   explicit RayLattice(const RayScene& scene);
 
   /// Beyond this the numbers of samples are no longer exact in double.
@@ -200,12 +208,24 @@ private:
   void PlaceWhole(const IndexRay& ray, double firstSample, RaySamples& samples) const;
   PartialSample PlacePartial(const IndexRay& ray, double enter, double exit) const;
   std::int64_t Fixed(const IndexRay& ray, double t, int axis) const;
+  /// Fixed-point positions that lie in the domain. What is not whole ends beyond any position.
+  std::int64_t FirstPosition(int axis) const
+  {
+    return static_cast<std::int64_t>(std::ceil(this->Low[axis] * (1 << FractionBits)));
+  }
+  std::int64_t LastPosition(int axis) const
+  {
+    return static_cast<std::int64_t>(std::ceil(this->High[axis] * (1 << FractionBits))) - 1;
+  }
 
   const RayScene& Scene;
   glm::dmat4 WorldToIndex;
   glm::dmat3 WorldToIndexLinear;
   std::vector<glm::dvec4> IndexPlanes;
-  double PerDistance; ///< 1 / SampleDistance
+  double Distance;
+  double PerDistance; ///< 1 / Distance
+  glm::dvec3 Low;     ///< of the domain, in cells
+  glm::dvec3 High;
 };
 
 } // namespace banyan

@@ -211,8 +211,14 @@ private:
     return hn::Min(hn::Floor(hn::Mul(inside, this->Set(Unit))), this->Highest(axis));
   }
 
-  HWY_INLINE VD Lowest(int axis) const { return this->Set(this->Setup.Low[axis] * Unit); }
-  HWY_INLINE VD Highest(int axis) const { return this->Set(this->Setup.High[axis] * Unit - 1.0); }
+  HWY_INLINE VD Lowest(int axis) const
+  {
+    return this->Set(std::ceil(this->Setup.Low[axis] * Unit));
+  }
+  HWY_INLINE VD Highest(int axis) const
+  {
+    return this->Set(std::ceil(this->Setup.High[axis] * Unit) - 1.0);
+  }
 
   /// Splits fixed-point numbers into cells and positions modulo 256 cells.
   HWY_INLINE void StoreFixed(VD fixed, std::int32_t* cells, std::uint32_t* positions) const

@@ -80,6 +80,7 @@ SeriesBrickSource::SeriesBrickSource(
   std::shared_ptr<const SeriesFile> series, const FieldKey& field, int component, BrickCache& cache)
   : Series(std::move(series))
   , Field(field)
+  , Component(component)
   , Cache(cache)
   , Layout(this->Series->Layout(field.Level))
 {
@@ -112,6 +113,17 @@ SeriesBrickSource::SeriesBrickSource(
   {
     this->Masks = this->Series->MaskRangeOf(field.Array, this->Components.front());
   }
+}
+
+std::unique_ptr<BrickSource> SeriesBrickSource::MakeLevel(int level, const Box&)
+{
+  FieldKey field = this->Field;
+  field.Level += level;
+  if (field.Level >= this->Series->Index().Levels)
+  {
+    return nullptr;
+  }
+  return std::make_unique<SeriesBrickSource>(this->Series, field, this->Component, this->Cache);
 }
 
 FieldKey SeriesBrickSource::KeyOf(std::size_t component) const

@@ -29,6 +29,9 @@ public:
   std::size_t LoadBytes(std::int64_t brick) const override;
   BrickView Load(std::int64_t brick) override;
 
+protected:
+  std::unique_ptr<BrickSource> MakeLevel(int level, const Box& domain) override;
+
 private:
   using NodeList = std::shared_ptr<const std::vector<BrickNode>>;
 
@@ -39,6 +42,7 @@ private:
 
   std::shared_ptr<const SeriesFile> Series;
   FieldKey Field;
+  int Component; ///< as it was asked for
   BrickCache& Cache;
   BrickLayout Layout;
   MaskRange Masks;

@@ -6,33 +6,41 @@
 namespace banyan
 {
 
-/// A picture cut into tiles, numbered x fastest.
+/// A part of a picture cut into tiles, numbered x fastest. Tiles are cut from the lower left corner of
+/// the whole picture on, as those of TileSamplings.
 class TileGrid
 {
 public:
   TileGrid() = default;
-  explicit TileGrid(const PixelRect& picture)
-    : Picture(picture)
-    , Counts((picture.Size() + RayTile::Edge - 1) / RayTile::Edge)
+  explicit TileGrid(const PixelRect& part)
+    : Part(part)
+    , First(part.Lo / RayTile::Edge)
+    , Counts(part.Empty() ? glm::ivec2(0)
+                          : (part.Hi + RayTile::Edge - 1) / RayTile::Edge - this->First)
   {
   }
 
   std::size_t Count() const { return static_cast<std::size_t>(this->Counts.x) * this->Counts.y; }
 
-  PixelRect RectOf(std::int64_t tile) const
+  /// Of a tile, among those of the whole picture.
+  glm::ivec2 PositionOf(std::size_t tile) const
   {
-    const glm::ivec2 position(
-      static_cast<int>(tile % this->Counts.x), static_cast<int>(tile / this->Counts.x));
-    const glm::ivec2 low = this->Picture.Lo + position * RayTile::Edge;
-    return Intersection({ low, low + RayTile::Edge }, this->Picture);
+    const auto width = static_cast<std::size_t>(this->Counts.x);
+    return this->First + glm::ivec2(static_cast<int>(tile % width), static_cast<int>(tile / width));
   }
 
-  /// Calls function(tile) for the tiles under a rectangle inside the picture.
+  PixelRect RectOf(std::size_t tile) const
+  {
+    const glm::ivec2 low = this->PositionOf(tile) * RayTile::Edge;
+    return Intersection({ low, low + RayTile::Edge }, this->Part);
+  }
+
+  /// Calls function(tile) for the tiles under a rectangle inside the part.
   template <class Function>
   void ForEachUnder(const PixelRect& rect, Function&& function) const
   {
-    const glm::ivec2 first = (rect.Lo - this->Picture.Lo) / RayTile::Edge;
-    const glm::ivec2 last = (rect.Hi - 1 - this->Picture.Lo) / RayTile::Edge;
+    const glm::ivec2 first = rect.Lo / RayTile::Edge - this->First;
+    const glm::ivec2 last = (rect.Hi - 1) / RayTile::Edge - this->First;
     for (int y = first.y; y <= last.y; ++y)
     {
       for (int x = first.x; x <= last.x; ++x)
@@ -43,7 +51,8 @@ public:
   }
 
 private:
-  PixelRect Picture;
+  PixelRect Part;
+  glm::ivec2 First{ 0 };
   glm::ivec2 Counts{ 0 };
 };
 

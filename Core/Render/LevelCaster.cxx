@@ -1,0 +1,380 @@
+#include "Render/LevelCaster.h"
+
+#include "Base/Error.h"
+#include "Base/ThreadPool.h"
+#include "Render/VisibilityOrder.h"
+
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace banyan
+{
+namespace
+{
+
+static_assert(TileSamplings::Edge == RayTile::Edge, "a tile has one sampling");
+/// Bricks loaded before the rays that have become opaque are looked at again.
+constexpr std::size_t BricksPerBatch = 512;
+
+} // namespace
+
+LevelCaster::Sampled::Sampled(const RayScene& scene, const RaySampling& sampling)
+  : Lattice(scene, sampling)
+  , Table(scene.Transfer, sampling.Distance)
+{
+  if (scene.Blend.Mode != BlendMode::Composite)
+  {
+    this->Projection = std::make_unique<const ProjectionTable>(scene, this->Table);
+  }
+}
+
+LevelCaster::LevelCaster(const RayScene& scene, BrickSource& source, const Box& cells,
+  std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics)
+  : Scene(scene)
+  , Source(source)
+  , Cells(cells)
+  , BudgetBytes(budgetBytes)
+  , Pool(pool)
+  , Statistics(statistics)
+  , Visible(scene.Transfer)
+  , IndexToWorld(IndexToWorldAt(scene, source.Level()))
+  , IndexCamera(scene.Camera.InSpace(IndexToWorld))
+{
+  if (scene.Shading.On && scene.Blend.Mode == BlendMode::Composite)
+  {
+    this->Shading = std::make_unique<const ShadingTable>(
+      scene.Shading, glm::dmat3(glm::inverse(this->IndexToWorld)));
+  }
+  this->AddSamplings();
+  this->Plan();
+}
+
+void LevelCaster::AddSamplings()
+{
+  std::vector<RaySampling> samplings{ { 0, this->Scene.SampleDistance } };
+  if (this->Scene.Samplings)
+  {
+    samplings = this->Scene.Samplings->Samplings();
+  }
+  for (const RaySampling& sampling : samplings)
+  {
+    this->Samplings.emplace_back();
+    if (sampling.Level == this->Source.Level())
+    {
+      this->Samplings.back() = std::make_unique<const Sampled>(this->Scene, sampling);
+      this->AnySampling = this->Samplings.back().get();
+    }
+  }
+}
+
+/// Finds the bricks that can be seen, front to back, and the rectangle that they cover.
+void LevelCaster::Plan()
+{
+  const glm::ivec3 counts = this->Source.Bricks();
+  const std::int64_t count = std::int64_t{ counts.x } * counts.y * counts.z;
+  const ValueMask visibleBins = this->Scene.Transfer.VisibleBins(this->Source.MasksAreOver());
+  const Viewpoint view = InIndexSpace(this->Scene.Camera, this->IndexToWorld);
+  const ProjectionTable* const projection = this->AnySampling->Projection.get();
+  for (std::int64_t number = 0; number < count; ++number)
+  {
+    PlannedBrick brick;
+    brick.Number = number;
+    const Box whole = this->Source.CellsOf(number);
+    brick.Cells = Intersection(whole, this->Cells);
+    if (brick.Cells.Empty())
+    {
+      continue;
+    }
+    const ValueRange range = this->Source.RangeOf(number);
+    brick.HighestRank = projection ? projection->HighestRank(range) : 0.0f;
+    const bool wanted = projection ? brick.HighestRank > 0.0f
+                                   : (this->Source.MaskOf(number) & visibleBins) != 0 &&
+                                       this->Visible.Any(range.Low, range.High);
+    if (wanted && !IsCutAway(this->AnySampling->Lattice.Planes(), brick.Cells))
+    {
+      brick.Footprint = Intersection(this->FootprintOf(brick.Cells), this->Scene.Viewport);
+    }
+    if (brick.Footprint.Empty())
+    {
+      ++this->Statistics.BricksSkipped;
+      continue;
+    }
+    // The best values first: bricks that cannot beat them are then never loaded. Averages are
+    // added up front to back, so that they round alike in bricks of all sizes.
+    brick.Key = projection && !projection->Averages() ? -brick.HighestRank
+                                                      : VisibilityKey(view, whole);
+    this->Touched = Union(this->Touched, brick.Footprint);
+    this->Bricks.push_back(brick);
+  }
+  std::sort(this->Bricks.begin(), this->Bricks.end(),
+    [](const PlannedBrick& a, const PlannedBrick& b)
+    { return a.Key < b.Key || (a.Key == b.Key && a.Number < b.Number); });
+}
+
+PixelRect LevelCaster::FootprintOf(const Box& cells) const
+{
+  return this->IndexCamera.Footprint(glm::dvec3(cells.Lo), glm::dvec3(cells.Hi));
+}
+
+void LevelCaster::Draw(FloatImage& picture)
+{
+  this->Picture = &picture;
+  this->MakeTiles();
+  std::size_t next = 0;
+  while (next < this->Bricks.size())
+  {
+    next = this->TakeBatch(next);
+    if (!this->Batch.empty())
+    {
+      this->DrawBatch();
+    }
+  }
+}
+
+void LevelCaster::MakeTiles()
+{
+  this->Grid = TileGrid(this->Picture->Rect);
+  this->Tiles.resize(this->Grid.Count());
+  for (std::size_t i = 0; i < this->Tiles.size(); ++i)
+  {
+    const int sampling =
+      this->Scene.Samplings ? this->Scene.Samplings->NumberAt(this->Grid.PositionOf(i)) : 0;
+    this->Tiles[i].Sampling = this->Samplings.at(static_cast<std::size_t>(sampling)).get();
+    this->Tiles[i].Done = this->Tiles[i].Sampling == nullptr;
+  }
+  this->Scratch.resize(static_cast<std::size_t>(this->Pool.Width()));
+}
+
+/// Calls function(tile, rect) for the tiles under a footprint that have rays left.
+template <class Function>
+void LevelCaster::ForTilesUnder(const PixelRect& footprint, Function&& function)
+{
+  this->Grid.ForEachUnder(footprint,
+    [&](std::size_t number)
+    {
+      if (!this->Tiles[number].Done)
+      {
+        function(this->Tiles[number], this->Grid.RectOf(number));
+      }
+    });
+}
+
+/// What the budget leaves beside the bricks that are kept.
+std::uint64_t LevelCaster::BytesLeft() const
+{
+  return this->BudgetBytes - std::min(this->BudgetBytes, this->Source.Kept().Bytes());
+}
+
+/// Puts bricks from number `first` on into the batch, as many as the budget allows but at least
+/// one, and enters them in the lists of the tiles. @return the first brick of the next batch
+std::size_t LevelCaster::TakeBatch(std::size_t first)
+{
+  this->Batch.clear();
+  this->Loaded.clear();
+  for (Tile& tile : this->Tiles)
+  {
+    tile.Bricks.clear();
+  }
+  const std::uint64_t left = this->BytesLeft();
+  std::uint64_t bytes = 0;
+  std::size_t next = first;
+  for (; next < this->Bricks.size(); ++next)
+  {
+    const PlannedBrick& brick = this->Bricks[next];
+    KeptBricks::Pointer kept = this->Source.Kept().Find(
+      this->Source.KeptNumber(brick.Number), brick.Cells, this->AnySampling->Table.Low(),
+      this->Shading != nullptr);
+    const std::uint64_t loadBytes = kept ? 0 : this->Source.LoadBytes(brick.Number);
+    const std::uint64_t brickBytes =
+      kept ? 0 : loadBytes + PackedBrick::BytesFor(brick.Cells, this->Shading != nullptr);
+    const bool full = bytes + brickBytes > left || this->Batch.size() >= BricksPerBatch;
+    if (full && !this->Batch.empty())
+    {
+      break;
+    }
+    // What is in memory anyway costs less to draw than to look for open pixels.
+    if (!this->AnyRayOpen(brick, loadBytes > 0))
+    {
+      ++this->Statistics.BricksSkipped;
+      continue;
+    }
+    const int position = static_cast<int>(this->Batch.size());
+    this->ForTilesUnder(
+      brick.Footprint, [position](Tile& tile, const PixelRect&) { tile.Bricks.push_back(position); });
+    this->Batch.push_back(&brick);
+    this->Loaded.emplace_back();
+    this->Loaded.back().Packed = std::move(kept);
+    bytes += brickBytes;
+  }
+  return next;
+}
+
+/// Whether a tile under a brick has rays left; if asked to look at pixels, whether one of them has
+/// not reached the opacity limit, or a better rank.
+bool LevelCaster::AnyRayOpen(const PlannedBrick& brick, bool lookAtPixels)
+{
+  const float limit = this->TransmittanceLimit();
+  const ProjectionTable* const projection = this->AnySampling->Projection.get();
+  const bool ranked = projection && !projection->Averages();
+  const auto isOpen = [&](const glm::vec4& pixel)
+  { return ranked ? pixel.r < brick.HighestRank : pixel.a > limit; };
+  bool open = false;
+  this->ForTilesUnder(brick.Footprint,
+    [&](const Tile&, const PixelRect& rect)
+    {
+      const PixelRect part = Intersection(brick.Footprint, rect);
+      open = open || !lookAtPixels;
+      for (int y = part.Lo.y; y < part.Hi.y && !open; ++y)
+      {
+        const glm::vec4* row = &this->Picture->At(part.Lo.x, y);
+        open = std::any_of(row, row + part.Size().x, isOpen);
+      }
+    });
+  return open;
+}
+
+/// Rays of a projection never end.
+float LevelCaster::TransmittanceLimit() const
+{
+  return this->AnySampling->Projection ? 0.0f : 1.0f - this->Scene.OpacityLimit;
+}
+
+void LevelCaster::DrawBatch()
+{
+  this->Pool.ParallelFor(static_cast<std::int64_t>(this->Batch.size()),
+    [this](std::int64_t i) { this->Load(*this->Batch[i], this->Loaded[i]); });
+  this->Statistics.BricksDrawn += static_cast<std::int64_t>(this->Batch.size());
+
+  std::atomic<std::int64_t> samples{ 0 };
+  const std::function<void(std::int64_t, int)> draw = [&](std::int64_t number, int worker)
+  {
+    const auto tile = static_cast<std::size_t>(number);
+    if (!this->Tiles[tile].Bricks.empty())
+    {
+      samples += this->DrawTile(tile, this->Scratch[static_cast<std::size_t>(worker)]);
+    }
+  };
+  this->Pool.ParallelFor(static_cast<std::int64_t>(this->Tiles.size()), draw);
+  this->Statistics.SamplesTaken += samples;
+  this->Loaded.clear();
+}
+
+void LevelCaster::Load(const PlannedBrick& brick, LoadedBrick& loaded) const
+{
+  if (!loaded.Packed)
+  {
+    if (!PackedBrick::CanPack(brick.Cells))
+    {
+      loaded.View = this->LoadLarge(brick);
+      return;
+    }
+    loaded.Packed = this->Pack(brick);
+    this->Source.Kept().Keep(this->Source.KeptNumber(brick.Number), loaded.Packed);
+  }
+  loaded.Footprint = brick.Footprint;
+  if (this->AnySampling->Projection)
+  {
+    return;
+  }
+  loaded.Seen = BrickVisibility(*loaded.Packed, this->Source.RangeOf(brick.Number), this->Visible);
+  loaded.Footprint =
+    loaded.Seen.Cells == brick.Cells ? brick.Footprint : this->FootprintOf(loaded.Seen.Cells);
+}
+
+KeptBricks::Pointer LevelCaster::Pack(const PlannedBrick& brick) const
+{
+  const double low = this->AnySampling->Table.Low();
+  if (!this->Shading)
+  {
+    const BrickView view = this->Source.Load(brick.Number);
+    const glm::ivec3 corner = this->Source.CellsOf(brick.Number).Lo;
+    return std::make_shared<const PackedBrick>(view, corner, brick.Cells, low);
+  }
+  Box around;
+  const BrickView view = this->Source.LoadAround(brick.Number, around);
+  return std::make_shared<const PackedBrick>(
+    view, around, brick.Cells, low, this->GradientScale());
+}
+
+/// Brings gradients near 1, so that their squares neither overflow nor vanish.
+float LevelCaster::GradientScale() const
+{
+  const MaskRange range = this->Source.MasksAreOver();
+  const double width = range.High - range.Low;
+  const int exponent = width > 0.0 && std::isfinite(width) ? std::ilogb(width) : 0;
+  return static_cast<float>(std::exp2(-std::clamp(exponent, -100, 100)));
+}
+
+BrickView LevelCaster::LoadLarge(const PlannedBrick& brick) const
+{
+  if (this->Shading)
+  {
+    throw Error("Bricks of so many cells per axis cannot be shaded",
+      { {}, {}, static_cast<std::uint64_t>(brick.Cells.Size().x),
+        static_cast<std::uint64_t>(PackedBrick::LargestEdge) });
+  }
+  return this->Source.Load(brick.Number);
+}
+
+/// @return samples taken
+std::int64_t LevelCaster::DrawTile(std::size_t number, RayTile& rays)
+{
+  Tile& tile = this->Tiles[number];
+  rays.Open(
+    tile.Sampling->Lattice, this->Grid.RectOf(number), *this->Picture, this->TransmittanceLimit());
+  for (const int position : tile.Bricks)
+  {
+    if (rays.ActiveRays == 0)
+    {
+      break;
+    }
+    this->DrawBrick(*this->Batch[static_cast<std::size_t>(position)],
+      this->Loaded[static_cast<std::size_t>(position)], *tile.Sampling, rays);
+  }
+  rays.Close(*this->Picture);
+  tile.Done = rays.ActiveRays == 0;
+  return rays.SamplesTaken;
+}
+
+void LevelCaster::DrawBrick(const PlannedBrick& brick, const LoadedBrick& loaded,
+  const Sampled& sampling, RayTile& rays) const
+{
+  const ProjectionTable* const projection = sampling.Projection.get();
+  if (!loaded.Packed)
+  {
+    const glm::ivec3 corner = this->Source.CellsOf(brick.Number).Lo;
+    const BrickPart part{ loaded.View, corner, brick.Cells };
+    projection
+      ? ProjectBrick(part, *projection, brick.Footprint, rays)
+      : MarchBrick(part, sampling.Table, brick.Footprint, rays, this->Scene.Interpolation);
+  }
+  else if (projection)
+  {
+    this->ProjectPackedBrick(brick, *loaded.Packed, *projection, rays);
+  }
+  else
+  {
+    const auto march = rays.PacketsFit ? MarchPacked : MarchUnpacked;
+    march(*loaded.Packed, loaded.Seen, sampling.Table, this->Shading.get(), loaded.Footprint, rays,
+      this->Scene.Interpolation);
+  }
+}
+
+void LevelCaster::ProjectPackedBrick(const PlannedBrick& brick, const PackedBrick& packed,
+  const ProjectionTable& projection, RayTile& rays) const
+{
+  if (rays.PacketsFit)
+  {
+    const ValueRange range = this->Source.RangeOf(brick.Number);
+    ProjectPacked(packed, range, projection, brick.Footprint, rays);
+  }
+  else
+  {
+    ProjectUnpacked(packed, projection, brick.Footprint, rays);
+  }
+}
+
+} // namespace banyan

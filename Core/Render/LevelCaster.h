@@ -1,0 +1,119 @@
+#ifndef banyan_Render_LevelCaster_h
+#define banyan_Render_LevelCaster_h
+
+#include "Render/BrickProjector.h"
+#include "Render/RayCaster.h"
+#include "Render/RayLattice.h"
+#include "Render/TileGrid.h"
+
+#include <memory>
+#include <vector>
+
+namespace banyan
+{
+
+class ThreadPool;
+
+/// Casts the rays of those tiles of a picture that are sampled at one level: CastRays for that
+/// level.
+class LevelCaster
+{
+public:
+  /// Everything referred to must stay. Finds the bricks that can be seen.
+  /// @param source of the level
+  /// @param cells to draw, in cells of the level
+  LevelCaster(const RayScene& scene, BrickSource& source, const Box& cells,
+    std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics);
+
+  /// Pixels that the visible bricks may touch, those of other levels' tiles included.
+  const PixelRect& Rect() const { return this->Touched; }
+
+  /// Draws the tiles of the level.
+  /// @param picture premultiplied colours, and the *transmittance* in the fourth component
+  void Draw(FloatImage& picture);
+
+private:
+  struct PlannedBrick
+  {
+    std::int64_t Number = 0;
+    Box Cells;
+    PixelRect Footprint;
+    double Key = 0;
+    float HighestRank = 0; ///< of a projection
+  };
+
+  /// Packed, or as the source gives it where it cannot be packed.
+  struct LoadedBrick
+  {
+    std::shared_ptr<const PackedBrick> Packed;
+    BrickVisibility Seen;
+    PixelRect Footprint; ///< of what can be seen
+    BrickView View;
+  };
+
+  /// A sampling that tiles of the level have.
+  struct Sampled
+  {
+    RayLattice Lattice;
+    StepTable Table;
+    std::unique_ptr<const ProjectionTable> Projection; ///< null when samples are composited
+
+    Sampled(const RayScene& scene, const RaySampling& sampling);
+  };
+
+  struct Tile
+  {
+    const Sampled* Sampling = nullptr; ///< null for tiles of other levels
+    bool Done = false;       ///< no ray of the tile needs another brick
+    std::vector<int> Bricks; ///< positions in the batch, front to back
+  };
+
+  void AddSamplings();
+  void Plan();
+  PixelRect FootprintOf(const Box& cells) const;
+  void MakeTiles();
+  template <class Function>
+  void ForTilesUnder(const PixelRect& footprint, Function&& function);
+  std::uint64_t BytesLeft() const;
+  std::size_t TakeBatch(std::size_t first);
+  bool AnyRayOpen(const PlannedBrick& brick, bool lookAtPixels);
+  float TransmittanceLimit() const;
+  void DrawBatch();
+  void Load(const PlannedBrick& brick, LoadedBrick& loaded) const;
+  KeptBricks::Pointer Pack(const PlannedBrick& brick) const;
+  float GradientScale() const;
+  BrickView LoadLarge(const PlannedBrick& brick) const;
+  std::int64_t DrawTile(std::size_t number, RayTile& rays);
+  void DrawBrick(const PlannedBrick& brick, const LoadedBrick& loaded, const Sampled& sampling,
+    RayTile& rays) const;
+  void ProjectPackedBrick(const PlannedBrick& brick, const PackedBrick& packed,
+    const ProjectionTable& projection, RayTile& rays) const;
+
+  const RayScene& Scene;
+  BrickSource& Source;
+  Box Cells;
+  std::uint64_t BudgetBytes;
+  ThreadPool& Pool;
+  RayStatistics& Statistics;
+  VisibleValues Visible;
+  glm::dmat4 IndexToWorld;
+  RayCamera IndexCamera;
+  std::unique_ptr<const ShadingTable> Shading; ///< null for none
+
+  /// By number of the scene's samplings; null for those of other levels.
+  std::vector<std::unique_ptr<const Sampled>> Samplings;
+  const Sampled* AnySampling = nullptr; ///< for what is the same for all
+
+  PixelRect Touched;
+  std::vector<PlannedBrick> Bricks;
+  FloatImage* Picture = nullptr;
+  TileGrid Grid;
+  std::vector<Tile> Tiles; ///< of the grid
+  std::vector<RayTile> Scratch; ///< one per worker
+  std::vector<const PlannedBrick*> Batch;
+  std::vector<LoadedBrick> Loaded; ///< of the batch
+};
+
+} // namespace banyan
+
+#endif

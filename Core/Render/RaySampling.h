@@ -1,0 +1,67 @@
+#ifndef banyan_Render_RaySampling_h
+#define banyan_Render_RaySampling_h
+
+#include <glm/vec2.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace banyan
+{
+
+/// How finely a ray is sampled.
+struct RaySampling
+{
+  int Level = 0;         ///< of the bricks: cells are 2^Level fine ones long; 0 is the finest
+  double Distance = 1.0; ///< world length between samples; > 0
+
+  friend bool operator==(const RaySampling& a, const RaySampling& b)
+  {
+    return a.Level == b.Level && a.Distance == b.Distance;
+  }
+};
+
+/// How finely each tile of a picture is sampled. Tiles are those of the whole picture, cut from its
+/// lower left corner on: they are the same for all ranks, zones and viewports. All along its ray a
+/// pixel has one sampling, so no value jumps where levels meet, and what bricks and zones add up to
+/// is what one brick gives, bit for bit.
+class TileSamplings
+{
+public:
+  static constexpr int Edge = 32; ///< pixels
+
+  TileSamplings() = default;
+  /// All tiles have sampling 0 at first.
+  /// @param imageSize pixels of the whole picture
+  /// @param samplings 1 to 255 of them
+  TileSamplings(const glm::ivec2& imageSize, std::vector<RaySampling> samplings)
+    : TileCounts((imageSize + Edge - 1) / Edge)
+    , List(std::move(samplings))
+    , Numbers(static_cast<std::size_t>(this->TileCounts.x) * this->TileCounts.y, 0)
+  {
+  }
+
+  glm::ivec2 Tiles() const { return this->TileCounts; }
+  const std::vector<RaySampling>& Samplings() const { return this->List; }
+  /// @param tile inside Tiles()
+  int NumberAt(const glm::ivec2& tile) const { return this->Numbers[this->IndexOf(tile)]; }
+  void SetNumber(const glm::ivec2& tile, int number)
+  {
+    this->Numbers[this->IndexOf(tile)] = static_cast<std::uint8_t>(number);
+  }
+
+private:
+  std::size_t IndexOf(const glm::ivec2& tile) const
+  {
+    return static_cast<std::size_t>(tile.y) * this->TileCounts.x + tile.x;
+  }
+
+  glm::ivec2 TileCounts{ 0 };
+  std::vector<RaySampling> List;
+  std::vector<std::uint8_t> Numbers;
+};
+
+} // namespace banyan
+
+#endif
