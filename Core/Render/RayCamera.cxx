@@ -206,6 +206,11 @@ PixelRect RayCamera::Footprint(const glm::dvec3& low, const glm::dvec3& high) co
   return projected ? bounds.Pixels(this->Size) : PixelRect{ { 0, 0 }, this->Size };
 }
 
+RayCamera RayCamera::WithSize(const glm::ivec2& imageSize) const
+{
+  return RayCamera(this->WorldToClip, imageSize, this->Anchor);
+}
+
 RayCamera RayCamera::InSpace(const glm::dmat4& toWorld) const
 {
   const glm::dvec4 anchor = glm::inverse(toWorld) * glm::dvec4(this->Anchor, 1.0);

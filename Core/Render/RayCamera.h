@@ -76,6 +76,9 @@ public:
   /// between the planes; what is in front of the near plane does not count.
   PixelRect Footprint(const glm::dvec3& low, const glm::dvec3& high) const;
 
+  /// The same view in a picture of another size: each of its pixels covers as large a part of it.
+  RayCamera WithSize(const glm::ivec2& imageSize) const;
+
   /// The same camera seen from another space: `toWorld` is affine and takes points of that space to
   /// the present one. `Ray::Direction` has unit length in that other space, so `t` has its unit.
   RayCamera InSpace(const glm::dmat4& toWorld) const;

@@ -1,0 +1,74 @@
+#ifndef banyan_Render_PilotPictures_h
+#define banyan_Render_PilotPictures_h
+
+#include "Render/RayCaster.h"
+
+#include <functional>
+#include <vector>
+
+namespace banyan
+{
+
+/// A small picture of a scene.
+struct PilotPicture
+{
+  std::vector<glm::vec4> Pixels; ///< `[y][x]` of the whole picture; empty before it is drawn
+};
+
+/// How far each pixel of a pilot is off, in 1/255: the largest of red, green, blue and opacity.
+struct PilotErrors
+{
+  std::vector<float> Pixels;
+
+  double Largest() const;
+};
+
+/// What is expected of the tiles of a picture, in 1/255.
+struct TileErrors
+{
+  std::vector<double> Tiles;
+
+  double Of(std::size_t tile) const { return this->Tiles[tile]; }
+  double Largest() const;
+  double Smallest() const;
+  void Add(const TileErrors& other);
+  /// Takes the smaller error of each tile.
+  void Lower(const TileErrors& other);
+};
+
+/// Small pictures of a scene, and what they say of the tiles of the large one.
+class PilotPictures
+{
+public:
+  /// @param scene refers to it, which must stay
+  PilotPictures(const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw);
+
+  PilotPicture Draw(const RaySampling& sampling);
+  int Count() const { return this->Drawn; }
+  /// Whether a pixel of any picture had an opacity.
+  bool SawSomething() const { return this->Saw; }
+
+  PilotErrors Difference(const PilotPicture& a, const PilotPicture& b) const;
+
+  /// Of a tile: the largest error of the pixels within two and a half tiles, times `factor`, and at
+  /// least that of all pixels times `share`.
+  TileErrors ErrorsOf(const PilotErrors& errors, double factor, double share) const;
+
+  glm::ivec2 ImageSize() const { return this->Scene.Camera.ImageSize(); }
+  std::size_t TileCount() const;
+  float OpacityLimit() const { return this->Scene.OpacityLimit; }
+
+private:
+  std::vector<float> DepthOf(const RayScene& pilot) const;
+  glm::ivec2 ToImage(int x, int y) const;
+
+  const RayScene& Scene;
+  std::function<FloatImage(const RayScene& pilot)> DrawScene;
+  glm::ivec2 Size;
+  int Drawn = 0;
+  bool Saw = false;
+};
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,66 @@
+#ifndef banyan_Render_SamplingPlan_h
+#define banyan_Render_SamplingPlan_h
+
+#include "Render/RayCaster.h"
+
+#include <functional>
+#include <memory>
+
+namespace banyan
+{
+
+/// What a picture may cost and how wrong it may be.
+struct SamplingWish
+{
+  /// Largest error of a pixel's red, green or blue, in 1/255, against the integral along its ray;
+  /// above 0.
+  double Tolerance = 1.0;
+  /// World length that samples are usually apart: an edge of a cell. Samples are taken from 1/8 of
+  /// it to 8 times as far apart at the finest level.
+  double Distance = 1.0;
+  /// The coarsest level that may be drawn from; 0 allows the finest only.
+  int CoarsestLevel = 0;
+};
+
+/// How a picture is to be sampled so that its error stays within a tolerance.
+struct SamplingPlan
+{
+  /// Null when nothing was seen to decide from: then sample the finest level at the usual distance.
+  std::shared_ptr<const TileSamplings> Samplings;
+  /// The largest error expected of any tile, in 1/255. Estimated: see PlanSamplings. It is above the
+  /// tolerance where even the finest sampling is not expected to meet it.
+  double EstimatedError = 0.0;
+  /// To be used with it: what rays that end early leave away is part of the error.
+  float OpacityLimit = 0.999f;
+  int Pilots = 0; ///< small pictures that were drawn to find out
+};
+
+/// Draws a small picture of the scene's whole image: all pixels of it, on all ranks alike.
+using DrawPilot = std::function<FloatImage(const RayScene& pilot)>;
+
+/// Finds for each tile the cheapest sampling that keeps its error within the tolerance.
+///
+/// How: *pilots*, pictures of about 64 x 64 pixels, are drawn with ever finer samplings: levels
+/// 2^l fine cells long with as distant samples, then smaller distances at the finest level. The
+/// error of one is taken from its difference to the one before: divided by r - 1, where r is how
+/// much larger the difference before was (Richardson's extrapolation, r held between 1.7 and 4).
+/// It goes on until all tiles are content; the difference to the next finer pilot, and that one's
+/// error, bound the error too. Then longer distances at the levels in use are tried, which differ
+/// from a known pilot by what they add to the error.
+///
+/// A tile's error is the largest of its pilots and of those around it, times a factor of safety,
+/// because the worst of a thousand pixels is worse than that of a few; and at least a part of the
+/// largest error anywhere, because pilots may miss what is thin. The error is estimated, then, and
+/// not bounded: `ctest -R SamplingPlan` shows that it is above the true one on the standard scenes.
+///
+/// Why not from bounds on the values: they take no account of how errors cancel along a ray, and
+/// are 30 to 100 times too large for smooth scenes (Documentation/rendering.md).
+///
+/// @param scene all of it, its Samplings apart; the picture's size decides the tiles
+/// Throws Error when the wish or the scene is not usable.
+SamplingPlan PlanSamplings(
+  const RayScene& scene, const SamplingWish& wish, const DrawPilot& draw);
+
+} // namespace banyan
+
+#endif

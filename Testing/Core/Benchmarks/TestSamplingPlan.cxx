@@ -1,0 +1,177 @@
+// The samplings that are chosen for a tolerance: is the picture as good as they say?
+#include "ConvergedImage.h"
+#include "Picture.h"
+#include "StandardScenes.h"
+
+#include "Base/Error.h"
+#include "Base/ThreadPool.h"
+#include "Render/SamplingPlan.h"
+#include "Render/Scenes.h"
+
+#include <gtest/gtest.h>
+
+using namespace banyan;
+using namespace banyan::bench;
+
+namespace
+{
+
+constexpr int Samples = 64;
+constexpr int Pixels = 192;
+
+/// Draws a scene of a volume in memory, and plans how to.
+class Drawer
+{
+public:
+  explicit Drawer(const BenchScene& scene)
+    : Data(scene.Data)
+    , Source(scene.Data->Array(), 16, MaskRange{ scene.Low, scene.High }, this->Pool)
+    , Scene(ToRayScene(scene, 1.0, 1.0f))
+  {
+  }
+
+  SamplingPlan Plan(double tolerance, int coarsestLevel)
+  {
+    return PlanSamplings(this->Scene, { tolerance, this->Scene.SampleDistance, coarsestLevel },
+      [this](const RayScene& pilot) { return this->Cast(pilot); });
+  }
+
+  FloatImage Draw(const SamplingPlan& plan)
+  {
+    RayScene scene = this->Scene;
+    scene.Samplings = plan.Samplings;
+    scene.OpacityLimit = plan.OpacityLimit;
+    return this->Cast(scene);
+  }
+
+  FloatImage Converged()
+  {
+    RayScene scene = this->Scene;
+    scene.SampleDistance /= 32.0;
+    return this->Cast(scene);
+  }
+
+  FloatImage Cast(const RayScene& scene)
+  {
+    return CastRays(
+      scene, this->Source, scene.DomainCells, std::uint64_t{ 1 } << 30, this->Pool, this->Statistics);
+  }
+
+  ThreadPool Pool{ 2 };
+  std::shared_ptr<const Volume> Data;
+  ArrayBrickSource Source;
+  RayScene Scene;
+  RayStatistics Statistics;
+};
+
+class StandardScenesPlan : public testing::TestWithParam<std::pair<StandardFunction, bool>>
+{
+};
+
+TEST_P(StandardScenesPlan, TheErrorStaysBelowTheEstimate)
+{
+  ThreadPool pool(2);
+  const BenchScene scene =
+    StandardScene(StandardVolume(Samples, pool), GetParam().first, GetParam().second, Pixels);
+  // Of gradients at the faces of the volume the converged picture has another opinion: shaded, the
+  // ray caster is compared with itself at far more samples.
+  const FloatImage converged =
+    GetParam().second ? Drawer(scene).Converged() : ConvergedImage(scene, 1.0 / 16.0, pool);
+  std::int64_t samplesBefore = std::numeric_limits<std::int64_t>::max();
+  for (const double tolerance : { 0.5, 2.0, 8.0, 32.0 })
+  {
+    SCOPED_TRACE(tolerance);
+    for (const int coarsest : { 2, 0 })
+    {
+      Drawer drawer(scene);
+      const SamplingPlan plan = drawer.Plan(tolerance, coarsest);
+      ASSERT_TRUE(plan.Samplings);
+      drawer.Statistics = {};
+      const double error = ErrorOf(drawer.Draw(plan), converged).Largest;
+      EXPECT_LE(error, plan.EstimatedError);
+      EXPECT_GT(plan.EstimatedError, 0.0);
+      if (plan.EstimatedError > tolerance)
+      {
+        // Then it is only because samples get no closer.
+        double closest = drawer.Scene.SampleDistance;
+        for (const RaySampling& sampling : plan.Samplings->Samplings())
+        {
+          closest = std::min(closest, sampling.Distance);
+        }
+        EXPECT_EQ(closest, drawer.Scene.SampleDistance / 8.0);
+      }
+      if (coarsest > 0)
+      {
+        EXPECT_LT(drawer.Statistics.SamplesTaken, samplesBefore);
+        samplesBefore = drawer.Statistics.SamplesTaken;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(SamplingPlan, StandardScenesPlan,
+  testing::Values(std::pair{ StandardFunction::S1, false }, std::pair{ StandardFunction::S1, true },
+    std::pair{ StandardFunction::S2, false }, std::pair{ StandardFunction::S2, true }));
+
+TEST(SamplingPlan, SmoothScenesTakeFewerSamplesThanOnePerVoxel)
+{
+  ThreadPool pool(2);
+  Drawer drawer(StandardScene(StandardVolume(97, pool), StandardFunction::S1, false, Pixels));
+  drawer.Cast(drawer.Scene);
+  const std::int64_t onePerVoxel = drawer.Statistics.SamplesTaken;
+  const SamplingPlan plan = drawer.Plan(8.0, 2);
+  drawer.Statistics = {};
+  drawer.Draw(plan);
+  EXPECT_LT(drawer.Statistics.SamplesTaken, onePerVoxel / 2);
+}
+
+TEST(SamplingPlan, WhatCannotBeSeenIsNotPlanned)
+{
+  ThreadPool pool(2);
+  BenchScene scene =
+    StandardScene(StandardVolume(16, pool), StandardFunction::S1, false, Pixels);
+  for (glm::dvec4& node : scene.Nodes)
+  {
+    node.a = 0.0;
+  }
+  const SamplingPlan plan = Drawer(scene).Plan(1.0, 2);
+  EXPECT_FALSE(plan.Samplings);
+  EXPECT_EQ(plan.EstimatedError, 0.0);
+  EXPECT_GT(plan.Pilots, 0);
+}
+
+TEST(SamplingPlan, PicturesOfAnySize)
+{
+  ThreadPool pool(2);
+  const BenchScene scene =
+    StandardScene(StandardVolume(16, pool), StandardFunction::S2, false, Pixels);
+  Drawer drawer(scene);
+  const RayCamera camera = drawer.Scene.Camera;
+  for (const glm::ivec2 size : { glm::ivec2(1, 1), glm::ivec2(31, 200), glm::ivec2(333, 7) })
+  {
+    drawer.Scene.Camera = camera.WithSize(size);
+    drawer.Scene.Viewport = { glm::ivec2(0), size };
+    drawer.Scene.Depth.assign(static_cast<std::size_t>(size.x) * size.y, 0.7f);
+    const SamplingPlan plan = drawer.Plan(1.0, 1);
+    if (plan.Samplings)
+    {
+      EXPECT_EQ(plan.Samplings->Tiles(), (size + 31) / 32);
+    }
+    drawer.Draw(plan);
+  }
+}
+
+TEST(SamplingPlan, WishesAreChecked)
+{
+  ThreadPool pool(1);
+  Drawer drawer(StandardScene(StandardVolume(8, pool), StandardFunction::S1, false, 16));
+  for (const double tolerance : { 0.0, -1.0, std::nan(""), HUGE_VAL })
+  {
+    EXPECT_THROW(drawer.Plan(tolerance, 0), Error);
+  }
+  EXPECT_THROW(drawer.Plan(1.0, -1), Error);
+  drawer.Scene.SampleDistance = 0.0;
+  EXPECT_THROW(drawer.Plan(1.0, 0), Error);
+}
+
+} // namespace
