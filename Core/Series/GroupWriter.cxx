@@ -29,7 +29,6 @@ constexpr int TableLevel = 19; ///< of zstd: tables are small, and read more oft
 
 GroupWriter::GroupWriter(SegmentFolder& folder, int number)
   : Folder(folder)
-  , Number(number)
   , Output(folder.Path() + "/" + folder.TemporaryNameOf(number))
   , Payloads(segment::HeaderBytes)
 {

@@ -33,7 +33,6 @@ private:
   Bytes PageHashes() const;
 
   SegmentFolder& Folder;
-  int Number;
   AtomicFile Output;
   Bytes Payloads; ///< all bytes up to here, to hash their pages
   std::unordered_map<std::string, group::Place> Stored;
