@@ -54,7 +54,7 @@ struct BlockChooser : BlockAt<Edge, Number>
     using Bits = Numbers<std::int32_t>::Signed;
     typedef float Floats __attribute__((vector_size(64)));
     const block::Shape<3> shape{ this->B() };
-    const RowPlace place{ z * shape.Z() + y * shape.Y(), 0, y, z, 0 };
+    const RowPlace place{ z * shape.Z() + y * shape.Y(), 0, y, z, y, 0 };
     const float scale = 2.0f / static_cast<float>(this->Plane().FineBin);
     const int left = this->B() - P::First;
     Bits sum{};
@@ -172,7 +172,7 @@ struct BlockChooser : BlockAt<Edge, Number>
     const block::Shape<3> shape{ this->B() };
     std::copy_n(target.W(), (this->B() + 1) * shape.Z(), scratch.W());
     scratch.Clear();
-    Unit<Number, 3> unit{ scratch.W(), scratch.M(), scratch.R(),
+    Unit<Number, 3> unit{ scratch.W(), scratch.M(), scratch.R(), scratch.S(),
       { this->Plane().Target->Samples - 1 - this->Position * this->B() }, true };
     std::int64_t cost = 0;
     ForEachPass<3>(

@@ -139,18 +139,149 @@ HWY_INLINE bool AnyOf(ByteVector v)
   return (words[0] | words[1]) != 0;
 }
 
+typedef std::uint16_t SumVector __attribute__((vector_size(32)));
+
+/// Sum of up to Width magnitudes.
+HWY_INLINE std::uint16_t SumOf(ByteVector magnitudes)
+{
+  std::uint64_t words[2];
+  std::memcpy(words, &magnitudes, sizeof(magnitudes));
+  // Each is 8 at most, so that no byte overflows.
+  return static_cast<std::uint16_t>(((words[0] + words[1]) * 0x0101010101010101u) >> 56);
+}
+
+/// Sets the sums of rows to those of the magnitudes that a unit starts with: those of its first slice,
+/// and of the first row and the first lane of others.
+template <int D, class Edge>
+HWY_INLINE void SumRows(const std::uint8_t* m, const Edge& edge, std::uint16_t* s)
+{
+  const block::Shape<D> shape{ edge() };
+  const auto sum = [&](const std::uint8_t* row)
+  {
+    std::uint16_t result = 0;
+    for (int x = 0; x < edge(); x += Width)
+    {
+      const ByteVector inside = LaneMask<Pass<3, 2, 1>, ByteVector>(edge() - x);
+      result = static_cast<std::uint16_t>(
+        result + SumOf(LoadVector<ByteVector>(row + x) & inside));
+    }
+    return result;
+  };
+  const int rows = D > 2 ? edge() : 3;
+  for (int slice = 0; slice < edge(); ++slice)
+  {
+    const std::uint8_t* first = m + slice * (D > 2 ? shape.ZM() : shape.Y());
+    std::uint16_t* to = s + slice * shape.SumPitch();
+    for (int row = 0; row < rows; ++row)
+    {
+      const std::uint8_t* from = first + row * shape.Pitch();
+      to[row] = slice == 0 || (D > 2 && row == 0) ? sum(from) : from[0];
+    }
+  }
+}
+
+/// How likely rows of a slice have residuals: weighted sums of the magnitudes around, as in RoughnessOf.
+/// @param s of the slice's row `first`
+template <class P, class Edge>
+HWY_INLINE SumVector RowWeights(const std::uint16_t* s, const Edge& edge, int slice, int first)
+{
+  const block::Shape<P::D> shape{ edge() };
+  constexpr int S = P::S;
+  const std::ptrdiff_t pitch = shape.SumPitch();
+  const SumVector rows = LaneNumbers<SumVector>() + static_cast<std::uint16_t>(first);
+  const auto load = [s](std::ptrdiff_t offset) { return LoadVector<SumVector>(s + offset); };
+  // Beyond the last row or slice the other side stands for it.
+  const auto ahead = [&](std::ptrdiff_t offset, int step)
+  {
+    return rows + static_cast<std::uint16_t>(step) < static_cast<std::uint16_t>(edge())
+             ? load(offset + step)
+             : load(offset - step);
+  };
+  const auto slices = [&](int step) { return (slice + step < edge() ? step : -step) * pitch; };
+  SumVector sum;
+  if (P::D == 1)
+  {
+    return load(0) * std::uint16_t{ 4 };
+  }
+  if (P::Axis == 0)
+  {
+    sum = load(-2 * S * pitch) + load(slices(2 * S));
+    if (P::D > 2)
+    {
+      sum += load(-2 * S) + ahead(0, 2 * S);
+    }
+    sum = (sum + load(0) + load(0)) * std::uint16_t{ 2 };
+  }
+  else if (P::D == 2)
+  {
+    sum = (load(-S * pitch) + load(slices(S))) * std::uint16_t{ 4 };
+  }
+  else if (P::Axis == 1)
+  {
+    sum = (load(-S) + ahead(0, S)) * std::uint16_t{ 4 };
+    for (const std::ptrdiff_t beside : { -2 * S * pitch, slices(2 * S) })
+    {
+      sum += load(beside - S) + ahead(beside, S);
+    }
+  }
+  else
+  {
+    sum = SumVector{};
+    for (const std::ptrdiff_t end : { -S * pitch, slices(S) })
+    {
+      sum += load(end) * std::uint16_t{ 4 } + load(end - S) + ahead(end, S);
+    }
+  }
+  if (slice < 2 * S)
+  {
+    return sum + sum;
+  }
+  const std::ptrdiff_t before = -2 * S * pitch;
+  sum += load(before) * std::uint16_t{ 10 };
+  if (P::D > 2)
+  {
+    constexpr int step = P::RowStep;
+    const SumVector up = ahead(before, step);
+    const SumVector down =
+      rows >= static_cast<std::uint16_t>(step) ? load(before - step) : up;
+    sum += (up + down) * std::uint16_t{ 2 };
+  }
+  return sum;
+}
+
+/// Classes of the rows of a slice, by what is around them: RowClasses and more where residuals are so
+/// likely that rows have no flags.
+/// @param to of all rows from 0 on, those included that the pass does not have
+template <class P, class Edge, class Number>
+HWY_INLINE void RowClasses(
+  const Unit<Number, P::D>& unit, const Edge& edge, int slice, std::uint8_t* to)
+{
+  const std::ptrdiff_t pitch = block::Shape<P::D>{ edge() }.SumPitch();
+  const int rows = P::D > 2 ? edge() : 3;
+  for (int row = 0; row < rows; row += Width)
+  {
+    const SumVector weights =
+      RowWeights<P>(unit.S + (P::D > 1 ? slice * pitch : 0) + row, edge, slice, row);
+    SumVector classes{};
+    for (const std::uint16_t limit : residual::RowLimits)
+    {
+      classes -= reinterpret_cast<SumVector>(weights > limit); // -1 where it holds
+    }
+    StoreVector(__builtin_convertvector(classes, ByteVector), to + row);
+  }
+}
+
 /// Every Step-th lane, side by side from lane 0 on.
-template <int Step>
-HWY_INLINE ByteVector Compressed(ByteVector v)
+template <int Step, class Vector>
+HWY_INLINE Vector Compressed(Vector v)
 {
   if (Step == 2)
   {
-    return __builtin_shuffle(
-      v, ByteVector{ 0, 2, 4, 6, 8, 10, 12, 14, 0, 2, 4, 6, 8, 10, 12, 14 });
+    return __builtin_shuffle(v, Vector{ 0, 2, 4, 6, 8, 10, 12, 14, 0, 2, 4, 6, 8, 10, 12, 14 });
   }
   if (Step == 4)
   {
-    return __builtin_shuffle(v, ByteVector{ 0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12 });
+    return __builtin_shuffle(v, Vector{ 0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12 });
   }
   return v;
 }

@@ -17,10 +17,6 @@ HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
 
-/// How many units of D dimensions a block has: three edges, three faces, one interior.
-template <int D>
-constexpr int UnitsOf = D < 3 ? 3 : 1;
-
 template <class Edge, class Number>
 struct BoxDecoder
 {
@@ -191,7 +187,7 @@ struct BoxDecoder
         }
       }
     };
-    Unit<Number, D> unit{ scratch.W(), scratch.M(), scratch.R(), {}, any };
+    Unit<Number, D> unit{ scratch.W(), scratch.M(), scratch.R(), scratch.S(), {}, any };
     for (int number = 0; number < UnitsOf<D>; ++number)
     {
       unit.Limit[number] = InOrderOf<D>(AxesOf<D>(number), block.Limit, this->B());
@@ -231,7 +227,7 @@ struct BoxDecoder
         const std::size_t b = static_cast<std::size_t>(this->B());
         const std::size_t most = (3 * b * b + 3 * b) * 41 / 8 + 8 * b;
         readers[owner]->Open(
-          this->Plane.Tables, block.Data, block.Bytes, owner == 0 ? block.Bytes : most);
+          *this->Plane.Tables, block.Data, block.Bytes, owner == 0 ? block.Bytes : most);
       }
     }
     for (const int owner : { 3, 5, 6 })
@@ -288,6 +284,7 @@ struct BoxDecoder
     {
       this->Work.Faces.Clear();
       block::PlaceEdges(this->B(), edges, this->Work.Faces.M());
+      SumRows<2>(this->Work.Faces.M(), this->B, this->Work.Faces.S());
     }
     return this->template DecodeUnits<2>(owner, symbols, this->Work.Faces, any);
   }
@@ -298,6 +295,7 @@ struct BoxDecoder
     {
       this->Work.Interior.Clear();
       block::PlaceFaces(this->B(), this->Work.Faces.M(), this->Work.Interior.M());
+      SumRows<3>(this->Work.Interior.M(), this->B, this->Work.Interior.S());
     }
     this->template DecodeUnits<3>(0, symbols, this->Work.Interior, any);
     if (symbols != nullptr && !symbols->AtEnd())

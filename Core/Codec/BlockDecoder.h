@@ -1,7 +1,7 @@
 #ifndef banyan_Codec_BlockDecoder_h
 #define banyan_Codec_BlockDecoder_h
 
-#include "Codec/Tans.h"
+#include "Codec/DecodeTables.h"
 
 #include <glm/vec3.hpp>
 
@@ -28,7 +28,7 @@ struct BlockCode
 /// What a field's blocks of one plane share.
 struct PlaneCode
 {
-  const std::uint32_t* Tables = nullptr; ///< residual::ContextCount times tans::TableSize
+  const DecodeTables* Tables = nullptr;
   std::int32_t CoarseBin = 1; ///< lattice steps per residual at stride 2
   std::int32_t FineBin = 1;   ///< at stride 1
   std::int32_t Least = 0;     ///< decoded lattice numbers are kept in [Least, Greatest]

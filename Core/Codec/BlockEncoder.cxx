@@ -34,10 +34,9 @@ struct BlockCoder : BlockAt<Edge, Number>
     const View<Sample> decoded = this->ViewOf(*this->Job.Decoded);
     const View<const Sample> wanted = this->ViewOf(*plane.Target);
     const glm::ivec3 blocks = this->Job.Decoded->Blocks;
-    Unit<Number, D> unit{ scratch.W(), scratch.M(), scratch.R(), {}, rough };
-    constexpr int units = D < 3 ? 3 : 1;
+    Unit<Number, D> unit{ scratch.W(), scratch.M(), scratch.R(), scratch.S(), {}, rough };
     bool exists[3] = {};
-    for (int number = 0; number < units; ++number)
+    for (int number = 0; number < UnitsOf<D>; ++number)
     {
       const glm::ivec3 axes = AxesOf<D>(number);
       const int mask = MaskOf<D>(number);
@@ -71,7 +70,7 @@ struct BlockCoder : BlockAt<Edge, Number>
       });
     this->Work.Tokens.AppendTo(out);
     rough = unit.Any;
-    for (int number = 0; number < units; ++number)
+    for (int number = 0; number < UnitsOf<D>; ++number)
     {
       if (exists[number])
       {
@@ -122,6 +121,7 @@ struct BlockCoder : BlockAt<Edge, Number>
           std::copy_n(underway.Magnitudes.data() + edge * edges.Pitch(), b, kept[edge]);
         }
         block::PlaceEdges(b, kept, this->Work.Faces.M());
+        SumRows<2>(this->Work.Faces.M(), this->B, this->Work.Faces.S());
       }
       this->EncodeUnits<2>(out, !beyond, this->Work.Faces, this->Work.FacesTarget, underway.Rough);
       if (!beyond)
@@ -134,6 +134,7 @@ struct BlockCoder : BlockAt<Edge, Number>
     {
       this->Work.Interior.Clear();
       block::PlaceFaces(b, underway.Magnitudes.data(), this->Work.Interior.M());
+      SumRows<3>(this->Work.Interior.M(), this->B, this->Work.Interior.S());
       this->EncodeUnits<3>(
         out, true, this->Work.Interior, this->Work.InteriorTarget, underway.Rough);
       if (!underway.Rough)

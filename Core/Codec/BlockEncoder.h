@@ -49,7 +49,7 @@ struct BlockTokens
   bool Uniform = false;
   bool Same = false; ///< as in reference A, every sample
   std::int32_t Value = 0;
-  std::vector<std::uint16_t> Tokens; ///< context << 8 | symbol; empty when all residuals are zero
+  std::vector<std::uint16_t> Tokens; ///< see residual::TokenOf; empty when all residuals are zero
   std::vector<std::uint32_t> Extra;  ///< of the symbols that have extra bits, in order
   std::vector<std::uint16_t> Runs;   ///< how many tokens each run has
 };

@@ -148,6 +148,7 @@ struct RowPlace
 {
   std::ptrdiff_t W, M; ///< its lane 0
   int Y, Z;            ///< positions of an interior; Y of faces
+  int Row;             ///< its number: Y of an interior, or that of the face or edge
   int Coded;           ///< lanes of the pass (from its first) that carry a residual
 };
 
@@ -158,6 +159,7 @@ struct Unit
   Number* W;
   std::uint8_t* M;
   std::int8_t* R; ///< residuals, from -15 to 15; same places
+  std::uint16_t* S; ///< sums of the magnitudes of rows
   /// Greatest position per axis that carries residuals; of each face and edge.
   glm::ivec3 Limit[3];
   bool Any = false; ///< whether some magnitude may be other than 0
@@ -170,6 +172,7 @@ HWY_INLINE RowPlace PlaceOf(const Unit<Number, P::D>& unit, const Edge& edge, in
   RowPlace place;
   place.Y = P::D == 3 ? row : slice;
   place.Z = slice;
+  place.Row = row;
   place.W = (P::D == 3 ? slice * shape.Z() : P::D == 2 ? slice * shape.Y() : 0) + row * shape.Pitch();
   place.M = (P::D == 3 ? slice * shape.ZM() : P::D == 2 ? slice * shape.Y() : 0) + row * shape.Pitch();
   const glm::ivec3& limit = unit.Limit[P::D < 3 ? row : 0];

@@ -39,6 +39,14 @@ struct Shape
     const std::ptrdiff_t n = this->Edge;
     return static_cast<std::size_t>((D == 1 ? 3 : D == 2 ? 3 * n : n * n) * this->Pitch() + 48);
   }
+
+  /// Distance of the sums of magnitudes of rows, from slice to slice; those of a slice lie side by
+  /// side: along y, or those of three faces or edges.
+  std::ptrdiff_t SumPitch() const { return D > 2 ? this->Edge + 16 : 16; }
+  std::size_t Sums() const
+  {
+    return static_cast<std::size_t>((D == 1 ? 1 : this->Edge) * this->SumPitch() + 32);
+  }
 };
 
 /// Memory of the units of D dimensions of a block.
@@ -50,6 +58,7 @@ public:
     : SamplesAt(Shape<D>{ edge }.Samples())
     , MagnitudesAt(Shape<D>{ edge }.Magnitudes())
     , ResidualsAt(MagnitudesAt.size())
+    , SumsAt(Shape<D>{ edge }.Sums())
   {
   }
 
@@ -59,8 +68,11 @@ public:
   std::uint8_t* M() { return this->MagnitudesAt.data() + 16; }
   /// The residuals of the unit itself, from -15 to 15; of edges none is kept.
   std::int8_t* R() { return this->ResidualsAt.data() + 16; }
+  /// Sums of the magnitudes of rows.
+  std::uint16_t* S() { return this->SumsAt.data() + 16; }
   void Clear()
   {
+    std::fill(this->SumsAt.begin(), this->SumsAt.end(), std::uint16_t{ 0 });
     std::fill(this->MagnitudesAt.begin(), this->MagnitudesAt.end(), std::uint8_t{ 0 });
     std::fill(this->ResidualsAt.begin(), this->ResidualsAt.end(), std::int8_t{ 0 });
   }
@@ -69,6 +81,7 @@ private:
   std::vector<Number> SamplesAt;
   std::vector<std::uint8_t> MagnitudesAt;
   std::vector<std::int8_t> ResidualsAt;
+  std::vector<std::uint16_t> SumsAt;
 };
 
 /// Magnitudes of faces start with those of the edges around them.

@@ -58,6 +58,10 @@ struct References
   }
 };
 
+/// How many units of D dimensions a block has: three edges, three faces, one interior.
+template <int D>
+constexpr int UnitsOf = D < 3 ? 3 : 1;
+
 /// The axes of an edge, a face or an interior in the unit's own order: the free ones first. Edges run
 /// along x, y, z; faces along x and y, x and z, y and z.
 template <int D>

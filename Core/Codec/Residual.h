@@ -63,7 +63,7 @@ inline std::uint8_t MagnitudeOf(std::int32_t residual)
 }
 
 /// A table entry as one word: number of bits to read (8 bits of the word, for shift instructions take
-/// their counts from such a byte), next state (10; zeros up to 16), and from bit 24 the residual, or
+/// their counts from such a byte), next state (9; zeros up to 16), and from bit 24 the residual, or
 /// EscapeTop and the number of extra bits.
 constexpr int BaseShift = 8;
 constexpr int TopShift = 24;
@@ -77,13 +77,24 @@ inline std::uint32_t Packed(const tans::DecodeEntry& entry)
 }
 
 /// Contexts: a band (kind of unit, stride, direction), one of 8 classes of roughness, and whether the
-/// residuals in the slices before hint at a sign; and one context per band for the flag "this row is all
-/// zero".
+/// residuals in the slices before hint at a sign; and contexts for the flag "this row is all zero", by the
+/// weight of what is around a row.
 constexpr int Bands = 11;
 constexpr int Signed = 8; ///< added to the class where there is such a hint
 constexpr int Classes = 16;
-constexpr int ContextCount = Bands * Classes + Bands;
+constexpr int RowClasses = 12; ///< of rows that begin with a flag
+/// A row's class is how many of these its weight exceeds; beyond the last one it has no flag.
+constexpr std::uint16_t RowLimits[RowClasses] = { 0, 8, 16, 28, 44, 64, 90, 125, 170, 230, 310, 420 };
 constexpr int FlagContext = Bands * Classes;
+constexpr int ContextCount = FlagContext + Bands * RowClasses;
+
+/// A symbol in its context, in 16 bits.
+constexpr int TokenShift = 7;
+constexpr int TokenMask = (1 << TokenShift) - 1;
+constexpr std::uint16_t TokenOf(int context, int symbol)
+{
+  return static_cast<std::uint16_t>(context << TokenShift | symbol);
+}
 
 static_assert(DirectSymbols + 32 <= tans::SymbolCount, "every 32-bit code has a symbol");
 

@@ -22,19 +22,21 @@ struct SliceMemory
   static constexpr int MostRows = 64;
 
   explicit SliceMemory(int edge)
-    : Classes(static_cast<std::size_t>(edge * std::max(edge, 3) + 2 * Width))
-    , Tops(Classes.size())
-    , Turned(Classes.size())
-    , Long(Classes.size())
+    : Tables(static_cast<std::size_t>(edge * std::max(edge, 3) + 2 * Width))
+    , Tops(Tables.size())
+    , Turned(Tables.size())
+    , Long(Tables.size())
   {
   }
 
-  std::vector<std::uint16_t> Classes; ///< of each symbol, times tans::TableSize
+  std::vector<std::uint16_t> Tables;  ///< of each symbol, as ReadRun takes them
   std::vector<std::int8_t> Tops;      ///< residuals, or escapes
   std::vector<std::int8_t> Turned;    ///< -1 where residuals have the other sign
   std::vector<Number> Long;           ///< residuals, where there are escapes
   RowPlace Rows[MostRows];
   int Begin[MostRows]; ///< of a row's symbols; -1: it has none
+  std::uint8_t RowClass[MostRows + Width];      ///< by number of row
+  std::uint16_t FlagTables[MostRows + Width];   ///< of each flag, as ReadRun takes them
   std::int8_t Flags[MostRows + Width];
 };
 
@@ -60,7 +62,7 @@ struct SliceDecoder
       {
         this->Memory.Rows[rows++] = PlaceOf<P>(this->Of, this->B, slice, row);
       }
-      const bool any = this->Symbols != nullptr && this->ReadSymbols(rows);
+      const bool any = this->Symbols != nullptr && this->ReadSymbols(slice, rows);
       if (!any)
       {
         this->PlacePredictions(rows);
@@ -79,103 +81,88 @@ struct SliceDecoder
 
 private:
   /// @return false when all residuals of the slice are zero
-  HWY_INLINE bool ReadSymbols(int rows) const
+  HWY_INLINE bool ReadSymbols(int slice, int rows) const
   {
     SliceMemory<Number>& memory = this->Memory;
-    int count = 0;
-    int smooth = 0;
-    bool rough[SliceMemory<Number>::MostRows];
+    if (this->Of.Any)
+    {
+      RowClasses<P>(this->Of, this->B, slice, memory.RowClass);
+    }
+    else
+    {
+      std::fill_n(memory.RowClass, P::D > 2 ? this->B() : 3, std::uint8_t{ 0 });
+    }
+    const int flagBand = residual::Bands + P::Band;
+    const std::uint8_t* const flagTables = this->Symbols->BandOf(flagBand).Tables;
+    int flags = 0;
     for (int r = 0; r < rows; ++r)
     {
-      const int coded = memory.Rows[r].Coded;
-      memory.Begin[r] = coded > 0 ? count : -1;
-      rough[r] = false;
-      if (coded > 0)
-      {
-        rough[r] = this->Of.Any && this->Classify(memory.Rows[r], count);
-        smooth += rough[r] ? 0 : 1;
-        count += coded;
-      }
+      const RowPlace& place = memory.Rows[r];
+      const unsigned rowClass = memory.RowClass[place.Row];
+      memory.FlagTables[flags] =
+        static_cast<std::uint16_t>(flagTables[rowClass] << tans::TableBits);
+      flags += place.Coded > 0 && rowClass < residual::RowClasses ? 1 : 0;
     }
-    if (smooth > 0)
+    if (flags > 0)
     {
-      count = this->ReadFlags(rows, rough, smooth);
+      ReadRun(*this->Symbols, this->Symbols->TablesOf(flagBand), memory.FlagTables, flags,
+        memory.Flags);
+    }
+    int count = 0;
+    int flag = 0;
+    for (int r = 0; r < rows; ++r)
+    {
+      const RowPlace& place = memory.Rows[r];
+      memory.Begin[r] = -1;
+      if (place.Coded > 0 && (memory.RowClass[place.Row] >= residual::RowClasses ||
+                               memory.Flags[flag++] == 0))
+      {
+        memory.Begin[r] = count;
+        this->Classify(place, count);
+        count += place.Coded;
+      }
     }
     if (count == 0)
     {
       return false;
     }
-    ReadRun(*this->Symbols, P::Band * residual::Classes, memory.Classes.data(), count,
+    ReadRun(*this->Symbols, this->Symbols->TablesOf(P::Band), memory.Tables.data(), count,
       memory.Tops.data());
     this->Of.Any = true;
     this->Count = count;
     return true;
   }
 
-  /// Writes down the classes of a row's symbols. Returns whether any is not 0.
-  HWY_INLINE bool Classify(const RowPlace& place, int begin) const
+  /// Writes down the tables of a row's symbols.
+  HWY_INLINE void Classify(const RowPlace& place, int begin) const
   {
-    ByteVector any{};
+    typedef std::uint16_t Tables16 __attribute__((vector_size(32)));
+    std::uint16_t* tables = this->Memory.Tables.data() + begin;
+    std::int8_t* turned = this->Memory.Turned.data() + begin;
+    const std::uint8_t* const tablesOf = this->Symbols->BandOf(P::Band).Tables;
+    if (!this->Of.Any)
+    {
+      std::fill_n(
+        tables, place.Coded, static_cast<std::uint16_t>(tablesOf[0] << tans::TableBits));
+      std::fill_n(turned, place.Coded, std::int8_t{ 0 });
+      return;
+    }
+    const ByteVector byClass = LoadVector<ByteVector>(tablesOf);
     const std::uint8_t* m = this->Of.M + place.M + P::First;
     const std::int8_t* r = this->Of.R + place.M + P::First;
-    std::uint16_t* classes = this->Memory.Classes.data() + begin;
-    std::int8_t* turned = this->Memory.Turned.data() + begin;
     const int lanes = place.Coded * P::Step;
-    for (int at = 0; at < lanes; at += Width, classes += Width / P::Step, turned += Width / P::Step)
+    for (int at = 0; at < lanes; at += Width, tables += Width / P::Step, turned += Width / P::Step)
     {
-      ByteVector sum = RoughnessOf<P>(m + at, this->B, place);
-      sum &= LaneMask<P, ByteVector>(lanes - at);
-      any |= sum;
-      typedef std::uint16_t Classes16 __attribute__((vector_size(32)));
+      const ByteVector sum = RoughnessOf<P>(m + at, this->B, place);
       const SignedByteVector hint = HintOf<P>(r + at, this->B, place, sum);
       const ByteVector hinted = reinterpret_cast<ByteVector>(hint != std::int8_t{ 0 });
-      const ByteVector classesOf = ClassesOf(sum) + (hinted & std::uint8_t{ residual::Signed });
-      const Classes16 wide = __builtin_convertvector(Compressed<P::Step>(classesOf), Classes16);
+      const ByteVector classes = ClassesOf(sum) + (hinted & std::uint8_t{ residual::Signed });
+      const Tables16 wide = __builtin_convertvector(
+        Compressed<P::Step>(__builtin_shuffle(byClass, classes)), Tables16);
       StoreVector(
         Compressed<P::Step>(reinterpret_cast<ByteVector>(hint < std::int8_t{ 0 })), turned);
-      StoreVector(wide << tans::TableBits, classes);
+      StoreVector(wide << tans::TableBits, tables);
     }
-    return AnyOf(any);
-  }
-
-  /// Rows without anything around begin with a flag: whether all is zero. Leaves the symbols of the
-  /// others, one after the other.
-  /// @return how many there are
-  HWY_NOINLINE int ReadFlags(int rows, const bool* rough, int smooth) const
-  {
-    SliceMemory<Number>& memory = this->Memory;
-    static constexpr std::uint16_t none[SliceMemory<Number>::MostRows] = {};
-    ReadRun(*this->Symbols, residual::FlagContext + P::Band, none, smooth, memory.Flags);
-    int count = 0;
-    int flag = 0;
-    for (int r = 0; r < rows; ++r)
-    {
-      if (memory.Begin[r] < 0)
-      {
-        continue;
-      }
-      if (!rough[r] && memory.Flags[flag++] != 0)
-      {
-        memory.Begin[r] = -1;
-        continue;
-      }
-      std::uint16_t* to = memory.Classes.data() + count;
-      std::int8_t* turned = memory.Turned.data() + count;
-      const int coded = memory.Rows[r].Coded;
-      if (rough[r])
-      {
-        std::copy_n(memory.Classes.data() + memory.Begin[r], coded, to);
-        std::copy_n(memory.Turned.data() + memory.Begin[r], coded, turned);
-      }
-      else
-      {
-        std::fill_n(to, coded, std::uint16_t{ 0 });
-        std::fill_n(turned, coded, std::int8_t{ 0 });
-      }
-      memory.Begin[r] = count;
-      count += coded;
-    }
-    return count;
   }
 
   HWY_INLINE bool HasEscapes() const
@@ -274,6 +261,7 @@ private:
     Number* w = this->Of.W + place.W + P::First;
     std::uint8_t* m = this->Of.M + place.M + P::First;
     std::int8_t* r = this->Of.R + place.M + P::First;
+    std::uint16_t total = 0;
     for (int at = 0, k = 0; at < left; at += Width, k += Width / P::Step)
     {
       Vector residual;
@@ -295,10 +283,10 @@ private:
                            Expanded<P::Step>(residual) * static_cast<std::make_unsigned_t<Number>>(this->Bin);
       SetLanes<P>(value, left - at, w + at);
       const ByteVector mask = LaneMask<P, ByteVector>(left - at);
-      const ByteVector size = MagnitudesOf(LoadVector<SignedByteVector>(tops + k));
-      StoreVector((Expanded<P::Step>(size) & mask) |
-                    (LoadVector<ByteVector>(m + at) & ~mask),
-        m + at);
+      const ByteVector size =
+        Expanded<P::Step>(MagnitudesOf(LoadVector<SignedByteVector>(tops + k))) & mask;
+      total = static_cast<std::uint16_t>(total + SumOf(size));
+      StoreVector(size | (LoadVector<ByteVector>(m + at) & ~mask), m + at);
       if (P::D > 1)
       {
         KeepResiduals(reinterpret_cast<SignedByteVector>(
@@ -306,6 +294,10 @@ private:
           mask, r + at);
       }
     }
+    const int slice = P::D == 3 ? place.Z : P::D == 2 ? place.Y : 0;
+    std::uint16_t& sum =
+      this->Of.S[slice * block::Shape<P::D>{ this->B() }.SumPitch() + place.Row];
+    sum = static_cast<std::uint16_t>(sum + total);
   }
 
   mutable int Count = 0;

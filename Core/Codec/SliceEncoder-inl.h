@@ -120,6 +120,10 @@ struct RowQuantizer
     std::uint8_t* m = this->Of.M + place.M + P::First + at;
     const ByteVector mask = LaneMask<P, ByteVector>(this->B() - P::First - at);
     StoreVector((size & mask) | (LoadVector<ByteVector>(m) & ~mask), m);
+    const int slice = P::D == 3 ? place.Z : P::D == 2 ? place.Y : 0;
+    std::uint16_t& sum =
+      this->Of.S[slice * block::Shape<P::D>{ this->B() }.SumPitch() + place.Row];
+    sum = static_cast<std::uint16_t>(sum + SumOf(size & mask));
     if (P::D > 1)
     {
       KeepResiduals(kept, mask, this->Of.R + place.M + P::First + at);
@@ -142,6 +146,7 @@ struct UnitTokens
   std::vector<std::uint32_t> Extra;
   std::vector<std::uint16_t> Slice; ///< tokens of a slice
   std::vector<std::uint16_t> Runs;
+  std::uint8_t RowClass[64 + Width]; ///< of the rows of a slice
   std::size_t TokenCount = 0, ExtraCount = 0;
 
   /// To be called first: what came before may have ended early.
@@ -191,18 +196,20 @@ struct SliceEncoder
       std::size_t flagCount = 0;
       std::size_t count = 0;
       bool any = false;
+      RowClasses<P>(this->Rows.Of, edge, slice, this->Out.RowClass);
       for (int row = P::FirstRow; row < P::EndOfRows(edge()); row += P::RowStep)
       {
         const RowPlace place = PlaceOf<P>(this->Rows.Of, edge, slice, row);
-        const bool rough = place.Coded > 0 && this->Rows.Of.Any && this->Rows.Rough(place);
-        const bool coded = this->AddRow(place, rough, this->Out.Slice.data() + count);
+        const int rowClass = this->Out.RowClass[row];
+        const bool coded = this->AddRow(place, this->Rows.Of.Any, this->Out.Slice.data() + count);
         any = any || coded;
-        if (place.Coded > 0 && !rough)
+        const bool flagged = place.Coded > 0 && rowClass < residual::RowClasses;
+        if (flagged)
         {
-          flags[flagCount++] = static_cast<std::uint16_t>(
-            (residual::FlagContext + P::Band) << 8 | (coded ? 0 : 1));
+          flags[flagCount++] = residual::TokenOf(
+            residual::FlagContext + P::Band * residual::RowClasses + rowClass, coded ? 0 : 1);
         }
-        count += rough || coded ? static_cast<std::size_t>(place.Coded) : 0;
+        count += !flagged || coded ? static_cast<std::size_t>(place.Coded) : 0;
       }
       this->Rows.Of.Any = this->Rows.Of.Any || any;
       this->Out.AddRun(flags, flagCount);
@@ -237,8 +244,9 @@ private:
         {
           each = __builtin_convertvector(codes, Tokens);
         }
-        const Tokens contexts = (__builtin_convertvector(classes, Tokens) + context) << 8;
-        StoreVector(Squeezed(contexts | each), tokens + lane);
+        const Tokens contexts =
+          (__builtin_convertvector(classes, Tokens) + context) << residual::TokenShift;
+        StoreVector(Compressed<P::Step>(contexts | each), tokens + lane);
         std::uint64_t words[sizeof(large) / 8];
         std::memcpy(words, &large, sizeof(large));
         std::uint64_t all = 0;
@@ -251,21 +259,6 @@ private:
           this->AddLong(place, residual, contexts, lane, tokens);
         }
       });
-  }
-
-  /// Every Step-th token.
-  template <class Vector>
-  static HWY_INLINE Vector Squeezed(Vector v)
-  {
-    if (P::Step == 2)
-    {
-      return __builtin_shuffle(v, Vector{ 0, 2, 4, 6, 8, 10, 12, 14, 0, 2, 4, 6, 8, 10, 12, 14 });
-    }
-    if (P::Step == 4)
-    {
-      return __builtin_shuffle(v, Vector{ 0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12 });
-    }
-    return v;
   }
 
   /// Tokens of a vector in which some symbols have extra bits.

@@ -1,7 +1,7 @@
 #ifndef banyan_Codec_SymbolReader_h
 #define banyan_Codec_SymbolReader_h
 
-#include "Codec/Residual.h"
+#include "Codec/DecodeTables.h"
 
 #include <hwy/base.h>
 
@@ -23,9 +23,9 @@ namespace banyan
 class SymbolReader
 {
 public:
-  /// @param tables TableSize entries for each context
+  /// @param tables must live as long as symbols are read
   /// @param most bytes that will be read at most
-  void Open(const std::uint32_t* tables, const std::uint8_t* data, std::size_t bytes,
+  void Open(const DecodeTables& tables, const std::uint8_t* data, std::size_t bytes,
     std::size_t most)
   {
     bytes = std::min(bytes, most);
@@ -37,7 +37,7 @@ public:
     std::memset(this->Buffer.data() + bytes, 0, Slack);
     this->End = bytes * 8;
     this->Overrun = false;
-    this->Tables = tables;
+    this->Tables = &tables;
     this->Position = 0;
     this->LanesLog = static_cast<int>(this->Take(2));
     std::fill(this->States, this->States + tans::MostLanes, std::uint64_t{ 0 });
@@ -71,9 +71,13 @@ public:
   std::uint64_t States[tans::MostLanes] = {};
   int LanesLog = 0;
 
-  const std::uint32_t* Context(int context) const
+  const DecodeTables::Band& BandOf(int band) const
   {
-    return this->Tables + (context << tans::TableBits);
+    return this->Tables->Bands[static_cast<std::size_t>(band)];
+  }
+  const std::uint32_t* TablesOf(int band) const
+  {
+    return this->Tables->Entries.data() + this->BandOf(band).First;
   }
 
   /// The bits from a position on, 57 at least; zeros where it lies beyond the end.
@@ -108,7 +112,7 @@ private:
   }
 
   std::vector<std::uint8_t> Buffer;
-  const std::uint32_t* Tables = nullptr;
+  const DecodeTables* Tables = nullptr;
   std::uint64_t End = 0;
   bool Overrun = false;
 };

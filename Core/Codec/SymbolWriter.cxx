@@ -1,7 +1,9 @@
 #include "Codec/SymbolWriter.h"
 
 #include "Base/Error.h"
+#include "Codec/SharedContexts.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace banyan
@@ -51,7 +53,7 @@ void ContextCounts::Add(const std::vector<std::uint16_t>& tokens)
 {
   for (const std::uint16_t token : tokens)
   {
-    ++this->Of[token >> 8][token & 0xff];
+    ++this->Of[token >> residual::TokenShift][token & residual::TokenMask];
   }
 }
 
@@ -66,9 +68,11 @@ void ContextCounts::Add(const ContextCounts& other)
   }
 }
 
-SymbolTables::SymbolTables(const ContextCounts& counts)
+SymbolTables::SymbolTables(const ContextCounts& each)
   : Tables(residual::ContextCount)
 {
+  ContextCounts counts = each;
+  ShareContexts(counts);
   for (std::size_t c = 0; c < counts.Of.size(); ++c)
   {
     this->Of.push_back(tans::Normalize(counts.Of[c].data()));
@@ -105,7 +109,7 @@ int SymbolTables::LanesLogFor(const std::vector<std::uint16_t>& tokens) const
   for (const std::uint16_t token : tokens)
   {
     bits += (tans::TableSize * 3 / 2 +
-              this->Tables[token >> 8].Symbols[token & 0xff].DeltaBits) >> 16;
+              this->Tables[token >> residual::TokenShift].Symbols[token & residual::TokenMask].DeltaBits) >> 16;
   }
   return bits < 250 ? 0 : bits < 1000 ? 1 : bits < 5000 ? 2 : 3;
 }
@@ -127,8 +131,8 @@ std::vector<std::uint8_t> SymbolTables::Encode(const std::vector<std::uint16_t>&
     begin -= runs[run];
     for (std::size_t i = end; i-- > begin;)
     {
-      const Table& table = this->Tables[tokens[i] >> 8];
-      const Transform& transform = table.Symbols[tokens[i] & 0xff];
+      const Table& table = this->Tables[tokens[i] >> residual::TokenShift];
+      const Transform& transform = table.Symbols[tokens[i] & residual::TokenMask];
       std::uint32_t& state = states[(i - begin) & (lanes - 1)];
       const std::uint32_t bits = (state + transform.DeltaBits) >> 16;
       written[i] = (state & ((1u << bits) - 1u)) << 4 | bits;
@@ -153,7 +157,7 @@ std::vector<std::uint8_t> SymbolTables::Encode(const std::vector<std::uint16_t>&
     }
     for (std::size_t i = begin; i < end && nextExtra < extra.size(); ++i)
     {
-      const int symbol = tokens[i] & 0xff;
+      const int symbol = tokens[i] & residual::TokenMask;
       if (symbol >= residual::DirectSymbols)
       {
         writer.Put(extra[nextExtra++], static_cast<std::uint32_t>(residual::ExtraBits(symbol)));
@@ -164,13 +168,51 @@ std::vector<std::uint8_t> SymbolTables::Encode(const std::vector<std::uint16_t>&
   return writer.Finish();
 }
 
+namespace
+{
+
+/// Stands for the number of symbols where a context has the table of another one.
+constexpr std::uint8_t SharedTable = tans::SymbolCount + 1;
+
+bool Same(const tans::Frequencies& a, const tans::Frequencies& b)
+{
+  return std::equal(std::begin(a.Count), std::end(a.Count), std::begin(b.Count));
+}
+
+/// How many contexts before there is one with the same frequencies; 0: none, or none of them comes.
+std::size_t SharedWith(const std::vector<tans::Frequencies>& frequencies, std::size_t context)
+{
+  if (Same(frequencies[context], tans::Frequencies{}))
+  {
+    return 0;
+  }
+  for (std::size_t before = 1; before <= std::min<std::size_t>(context, 255); ++before)
+  {
+    if (Same(frequencies[context], frequencies[context - before]))
+    {
+      return before;
+    }
+  }
+  return 0;
+}
+
+} // namespace
+
 std::vector<std::uint8_t> PackFrequencies(const std::vector<tans::Frequencies>& frequencies)
 {
   // Per context: number of symbols up to the last that comes, then their frequencies, 7 bits per
   // byte. The bytes are compressed with the table that they are part of.
   std::vector<std::uint8_t> bytes;
-  for (const tans::Frequencies& context : frequencies)
+  for (std::size_t c = 0; c < frequencies.size(); ++c)
   {
+    const tans::Frequencies& context = frequencies[c];
+    const std::size_t shared = SharedWith(frequencies, c);
+    if (shared > 0)
+    {
+      bytes.push_back(SharedTable);
+      bytes.push_back(static_cast<std::uint8_t>(shared));
+      continue;
+    }
     int count = tans::SymbolCount;
     while (count > 0 && context.Count[count - 1] == 0)
     {
@@ -206,9 +248,20 @@ std::vector<tans::Frequencies> UnpackFrequencies(const std::uint8_t* data, std::
     }
     return data[at++];
   };
-  for (tans::Frequencies& context : result)
+  for (std::size_t c = 0; c < result.size(); ++c)
   {
+    tans::Frequencies& context = result[c];
     const unsigned count = next();
+    if (count == SharedTable)
+    {
+      const std::size_t before = next();
+      if (before == 0 || before > c)
+      {
+        throw Error("A table of symbols is that of a context which does not come before");
+      }
+      context = result[c - before];
+      continue;
+    }
     if (count > static_cast<unsigned>(tans::SymbolCount))
     {
       throw Error("A table of symbols has too many of them");
@@ -231,19 +284,44 @@ std::vector<tans::Frequencies> UnpackFrequencies(const std::uint8_t* data, std::
   return result;
 }
 
-std::vector<std::uint32_t> DecodeTablesOf(const std::vector<tans::Frequencies>& frequencies)
+DecodeTables DecodeTablesOf(const std::vector<tans::Frequencies>& frequencies)
 {
-  std::vector<std::uint32_t> tables;
-  tables.reserve(frequencies.size() * tans::TableSize);
-  tans::DecodeEntry context[tans::TableSize];
-  for (const tans::Frequencies& each : frequencies)
+  DecodeTables tables;
+  tans::DecodeEntry entries[tans::TableSize];
+  const auto add = [&](std::size_t first, int classes)
   {
-    tans::BuildDecodeTable(each, context);
-    for (const tans::DecodeEntry& entry : context)
+    DecodeTables::Band band;
+    band.First = tables.Entries.size();
+    int count = 0;
+    for (int c = 0; c < classes; ++c)
     {
-      tables.push_back(residual::Packed(entry));
+      const tans::Frequencies& context = frequencies[first + static_cast<std::size_t>(c)];
+      int same = 0;
+      while (same < c && !Same(context, frequencies[first + static_cast<std::size_t>(same)]))
+      {
+        ++same;
+      }
+      band.Tables[c] = same < c ? band.Tables[same] : static_cast<std::uint8_t>(count++);
+      if (same == c)
+      {
+        tans::BuildDecodeTable(context, entries);
+        for (const tans::DecodeEntry& entry : entries)
+        {
+          tables.Entries.push_back(residual::Packed(entry));
+        }
+      }
     }
+    tables.Bands.push_back(band);
+  };
+  for (std::size_t band = 0; band < residual::Bands; ++band)
+  {
+    add(band * residual::Classes, residual::Classes);
   }
+  for (std::size_t band = 0; band < residual::Bands; ++band)
+  {
+    add(residual::FlagContext + band * residual::RowClasses, residual::RowClasses);
+  }
+  tables.Entries.shrink_to_fit();
   return tables;
 }
 

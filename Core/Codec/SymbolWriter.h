@@ -1,6 +1,7 @@
 #ifndef banyan_Codec_SymbolWriter_h
 #define banyan_Codec_SymbolWriter_h
 
+#include "Codec/DecodeTables.h"
 #include "Codec/Residual.h"
 
 #include <array>
@@ -16,7 +17,7 @@ struct ContextCounts
 {
   std::array<std::array<std::uint32_t, tans::SymbolCount>, residual::ContextCount> Of = {};
 
-  /// @param tokens context << 8 | symbol
+  /// @param tokens residual::TokenOf(context, symbol)
   void Add(const std::vector<std::uint16_t>& tokens);
   void Add(const ContextCounts& other);
 };
@@ -57,8 +58,7 @@ private:
 std::vector<std::uint8_t> PackFrequencies(const std::vector<tans::Frequencies>& frequencies);
 std::vector<tans::Frequencies> UnpackFrequencies(const std::uint8_t* data, std::size_t bytes);
 
-/// Decode tables of all contexts, one after the other, as SymbolReader takes them.
-std::vector<std::uint32_t> DecodeTablesOf(const std::vector<tans::Frequencies>& frequencies);
+DecodeTables DecodeTablesOf(const std::vector<tans::Frequencies>& frequencies);
 
 } // namespace banyan
 

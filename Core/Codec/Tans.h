@@ -13,7 +13,7 @@
 namespace banyan::tans
 {
 
-constexpr int TableBits = 10;
+constexpr int TableBits = 9;
 constexpr int TableSize = 1 << TableBits;
 
 /// A payload has 1, 2, 4 or 8 states that take turns, so that look-ups of successive symbols overlap:

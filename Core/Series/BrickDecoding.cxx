@@ -1,7 +1,6 @@
 #include "Series/BrickDecoding.h"
 
 #include "Series/Exceptions.h"
-#include "Series/GatherTile.h"
 #include "Series/Quantizer.h"
 
 #include <algorithm>
@@ -32,18 +31,6 @@ bool InOneBox(const PlaneRegion& region, int edge)
   return inside;
 }
 
-/// Numbers of a part of a box, in the order of the data's axes: x fastest.
-/// @param stride of the numbers along x, y, z
-template <class Number>
-const Number* InOrder(const Number* numbers, const glm::ivec3& size, const std::ptrdiff_t (&stride)[3])
-{
-  thread_local std::vector<Number> ordered;
-  ordered.resize(static_cast<std::size_t>(size.x) * size.y * size.z);
-  GatherTile(numbers, glm::i64vec3{ stride[0], stride[1], stride[2] }, size,
-    glm::i64vec3{ 1, size.x, std::int64_t{ size.x } * size.y }, ordered.data());
-  return ordered.data();
-}
-
 /// The usual case of Decode: one box, no exceptions.
 /// @param skip samples of the brick before the first one that is wanted, and @param size how many
 /// are, axes as the data has them
@@ -53,19 +40,11 @@ void DecodeBox(OpenGroup& open, int step, const PlaneRegion& region,
 {
   GroupField& group = *open.Field;
   const LatticeDecoder<T>& decoder = DecoderOf<T>(open);
-  // Rows are lines of the cache that lie far apart: ask for them before they are written.
-  for (int z = 0; z < size.z; ++z)
-  {
-    for (int y = 0; y < size.y; ++y)
-    {
-      __builtin_prefetch(values + z * strides.z + y * strides.y, 1);
-    }
-  }
   const LatticeCache::Box box = group.Box(step, region.Plane, region.FirstBlock);
   const std::ptrdiff_t n = group.Edge() + 1;
   const std::ptrdiff_t pitch[3] = { 1, n, n * n };
   std::ptrdiff_t first = 0;
-  std::ptrdiff_t stride[3] = {};
+  glm::i64vec3 stride;
   for (int a = 0; a < 3; ++a)
   {
     const int real = group.Head().Axes[static_cast<std::size_t>(a)];
@@ -76,21 +55,16 @@ void DecodeBox(OpenGroup& open, int step, const PlaneRegion& region,
     [&](const auto* all)
     {
       const auto* numbers = all + first;
-      if (stride[0] != 1)
+      if (stride.x != 1)
       {
-        numbers = InOrder(numbers, size, stride);
-        stride[0] = 1;
-        stride[1] = size.x;
-        stride[2] = std::ptrdiff_t{ size.x } * size.y;
+        using Number = std::remove_cv_t<std::remove_reference_t<decltype(*all)>>;
+        thread_local std::vector<Number> ordered;
+        ordered.resize(static_cast<std::size_t>(size.x) * size.y * size.z);
+        TransposeBox(numbers, stride, size, ordered.data());
+        numbers = ordered.data();
+        stride = { 1, size.x, std::int64_t{ size.x } * size.y };
       }
-      for (int z = 0; z < size.z; ++z)
-      {
-        for (int y = 0; y < size.y; ++y)
-        {
-          decoder.Decode(numbers + z * stride[2] + y * stride[1], 1,
-            static_cast<std::size_t>(size.x), values + z * strides.z + y * strides.y, strides.x);
-        }
-      }
+      decoder.Decode(numbers, stride, size, values, strides);
     });
 }
 

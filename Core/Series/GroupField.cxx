@@ -55,7 +55,7 @@ GroupField::GroupField(GroupReader& segment, std::uint64_t series, std::uint32_t
   for (int set = 0; set < 2; ++set)
   {
     this->Tables[set] = DecodeTablesOf(this->FieldHead.Frequencies[set]);
-    this->Memory += this->Tables[set].size() * sizeof(std::uint32_t);
+    this->Memory += this->Tables[set].Bytes();
   }
 }
 
@@ -241,7 +241,7 @@ LatticeCache::Box GroupField::DecodeAs(int step, int plane, const glm::ivec3& bl
   const glm::ivec3 blocks = this->BlocksOf(plane);
   const glm::ivec3 samples = this->Shape.Planes[static_cast<std::size_t>(plane)];
   PlaneCode shared;
-  shared.Tables = this->Tables[plane > 0 ? 1 : 0].data();
+  shared.Tables = &this->Tables[plane > 0 ? 1 : 0];
   shared.CoarseBin = BinOfOctave(this->FieldHead.Bin, 2 * plane + 1);
   shared.FineBin = BinOfOctave(this->FieldHead.Bin, 2 * plane);
   shared.Least = this->FieldHead.Least;

@@ -1,8 +1,8 @@
 #ifndef banyan_Series_GroupReader_h
 #define banyan_Series_GroupReader_h
 
+#include "Codec/DecodeTables.h"
 #include "Codec/GroupOrder.h"
-#include "Codec/Tans.h"
 #include "Series/GroupFormat.h"
 #include "Series/Hash.h"
 #include "Series/LatticeCache.h"
@@ -128,7 +128,7 @@ private:
   std::atomic<bool> BeforeFits{ false }; ///< it was seen to have the same lattice
   group::FieldHead FieldHead;
   group::TableShape Shape;
-  std::vector<std::uint32_t> Tables[2];
+  DecodeTables Tables[2];
   std::mutex Mutex;
   std::vector<std::unique_ptr<group::StepTable>> StepTables;
   std::vector<std::atomic<const group::StepTable*>> Loaded; ///< the same, without the lock

@@ -2,6 +2,7 @@
 
 #include "Series/Hash.h"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace banyan
@@ -13,7 +14,7 @@ constexpr std::uint64_t DefaultBudget = std::uint64_t{ 128 } << 20;
 
 std::uint64_t BytesOf(const LatticeCache::Box& box)
 {
-  return box->Bytes() + 180; // with what list and map take
+  return box->Bytes() + 180; // with what is kept beside it
 }
 
 } // namespace
@@ -36,7 +37,7 @@ LatticeCache& LatticeCache::Process()
   return *cache;
 }
 
-std::size_t LatticeCache::KeyHash::operator()(const Key& key) const
+std::size_t LatticeCache::HashOf(const Key& key)
 {
   std::uint64_t hash = key.Series * 0x9e3779b97f4a7c15ull + key.Block;
   hash = (hash ^ (hash >> 29)) * 0xbf58476d1ce4e5b9ull;
@@ -45,46 +46,108 @@ std::size_t LatticeCache::KeyHash::operator()(const Key& key) const
   return static_cast<std::size_t>(hash ^ (hash >> 31));
 }
 
-LatticeCache::Shard& LatticeCache::ShardOf(const Key& key)
+std::int32_t& LatticeCache::BucketOf(Shard& shard, std::size_t hash)
 {
-  return this->Shards[KeyHash()(key) / 7 % ShardCount];
+  return shard.Buckets[hash / ShardCount & (shard.Buckets.size() - 1)];
+}
+
+/// -1: it is not there.
+std::int32_t LatticeCache::EntryOf(Shard& shard, std::size_t hash, const Key& key)
+{
+  std::int32_t entry = shard.Buckets.empty() ? -1 : BucketOf(shard, hash);
+  while (entry >= 0 && !(shard.Entries[static_cast<std::size_t>(entry)].Name == key))
+  {
+    entry = shard.Entries[static_cast<std::size_t>(entry)].Next;
+  }
+  return entry;
 }
 
 LatticeCache::Box LatticeCache::Find(const Key& key)
 {
-  Shard& shard = this->ShardOf(key);
+  const std::size_t hash = HashOf(key);
+  Shard& shard = this->Shards[hash % ShardCount];
   std::lock_guard<std::mutex> lock(shard.Mutex);
-  const auto found = shard.Places.find(key);
-  if (found == shard.Places.end())
+  const std::int32_t found = EntryOf(shard, hash, key);
+  if (found < 0)
   {
     return nullptr;
   }
-  shard.Recent.splice(shard.Recent.begin(), shard.Recent, found->second);
-  return found->second->Numbers;
+  Kept& kept = shard.Entries[static_cast<std::size_t>(found)];
+  kept.Used = true;
+  return kept.Numbers;
 }
 
 void LatticeCache::Add(const Key& key, const Box& box)
 {
-  Shard& shard = this->ShardOf(key);
+  const std::size_t hash = HashOf(key);
+  Shard& shard = this->Shards[hash % ShardCount];
   std::lock_guard<std::mutex> lock(shard.Mutex);
-  if (shard.Places.find(key) != shard.Places.end())
+  if (EntryOf(shard, hash, key) >= 0)
   {
     return; // another thread was faster
   }
-  shard.Recent.push_front({ key, box });
-  shard.Places[key] = shard.Recent.begin();
+  if (shard.Free.empty())
+  {
+    Grow(shard);
+  }
+  const std::int32_t entry = shard.Free.back();
+  shard.Free.pop_back();
+  std::int32_t& bucket = BucketOf(shard, hash);
+  shard.Entries[static_cast<std::size_t>(entry)] = { key, box, bucket, false };
+  bucket = entry;
   shard.Bytes += BytesOf(box);
   this->Shrink(shard);
+}
+
+/// Makes room for twice as many boxes.
+void LatticeCache::Grow(Shard& shard)
+{
+  const std::size_t before = shard.Entries.size();
+  const std::size_t after = std::max<std::size_t>(64, 2 * before);
+  shard.Entries.resize(after);
+  shard.Buckets.assign(after, -1);
+  for (std::size_t i = 0; i < after; ++i)
+  {
+    Kept& kept = shard.Entries[i];
+    if (kept.Numbers)
+    {
+      std::int32_t& bucket = BucketOf(shard, HashOf(kept.Name));
+      kept.Next = bucket;
+      bucket = static_cast<std::int32_t>(i);
+    }
+    else
+    {
+      shard.Free.push_back(static_cast<std::int32_t>(i));
+    }
+  }
+}
+
+void LatticeCache::Remove(Shard& shard, std::int32_t entry)
+{
+  Kept& kept = shard.Entries[static_cast<std::size_t>(entry)];
+  std::int32_t* link = &BucketOf(shard, HashOf(kept.Name));
+  while (*link != entry)
+  {
+    link = &shard.Entries[static_cast<std::size_t>(*link)].Next;
+  }
+  *link = kept.Next;
+  shard.Bytes -= BytesOf(kept.Numbers);
+  kept = {};
+  shard.Free.push_back(entry);
 }
 
 void LatticeCache::Shrink(Shard& shard)
 {
   const std::uint64_t budget = this->Budget / ShardCount;
-  while (shard.Bytes > budget && !shard.Recent.empty())
+  while (shard.Bytes > budget)
   {
-    shard.Bytes -= BytesOf(shard.Recent.back().Numbers);
-    shard.Places.erase(shard.Recent.back().Name);
-    shard.Recent.pop_back();
+    shard.Hand = shard.Hand + 1 < shard.Entries.size() ? shard.Hand + 1 : 0;
+    Kept& kept = shard.Entries[shard.Hand];
+    if (kept.Numbers && !kept.Used)
+    {
+      Remove(shard, static_cast<std::int32_t>(shard.Hand));
+    }
+    kept.Used = false;
   }
 }
 
@@ -93,16 +156,12 @@ void LatticeCache::Forget(std::uint64_t series)
   for (Shard& shard : this->Shards)
   {
     std::lock_guard<std::mutex> lock(shard.Mutex);
-    for (auto kept = shard.Recent.begin(); kept != shard.Recent.end();)
+    for (std::size_t i = 0; i < shard.Entries.size(); ++i)
     {
-      if (kept->Name.Series != series)
+      if (shard.Entries[i].Numbers && shard.Entries[i].Name.Series == series)
       {
-        ++kept;
-        continue;
+        Remove(shard, static_cast<std::int32_t>(i));
       }
-      shard.Bytes -= BytesOf(kept->Numbers);
-      shard.Places.erase(kept->Name);
-      kept = shard.Recent.erase(kept);
     }
   }
 }

@@ -5,17 +5,16 @@
 
 #include <atomic>
 #include <cstdint>
-#include <list>
 #include <memory>
 #include <mutex>
-#include <unordered_map>
 #include <vector>
 
 namespace banyan
 {
 
 /// Decoded boxes (lattice numbers) that other steps and finer blocks are predicted from, kept within
-/// a byte budget, least recently used out first. One for the process. Thread-safe.
+/// a byte budget. What goes out is found as by the hand of a clock, which spares once what was used since
+/// it came by. One for the process. Thread-safe.
 class LatticeCache
 {
 public:
@@ -53,26 +52,31 @@ public:
 private:
   LatticeCache();
 
-  struct KeyHash
-  {
-    std::size_t operator()(const Key& key) const;
-  };
   struct Kept
   {
     Key Name;
-    Box Numbers;
+    Box Numbers;            ///< null: the place is free
+    std::int32_t Next = -1; ///< entry of the same bucket
+    bool Used = false;      ///< since the hand of the clock came by
   };
-  /// Shards have locks of their own, so that threads seldom wait for each other.
+  /// Shards have locks of their own, so that threads seldom wait for each other. Entries stay where
+  /// they are: to find one takes two lines of the cache.
   struct Shard
   {
     mutable std::mutex Mutex;
-    std::list<Kept> Recent; ///< most recently used first
-    std::unordered_map<Key, std::list<Kept>::iterator, KeyHash> Places;
+    std::vector<Kept> Entries;
+    std::vector<std::int32_t> Free;
+    std::vector<std::int32_t> Buckets; ///< first entries; -1: none. A power of two of them
+    std::size_t Hand = 0;
     std::uint64_t Bytes = 0;
   };
   static constexpr std::size_t ShardCount = 16;
 
-  Shard& ShardOf(const Key& key);
+  static std::size_t HashOf(const Key& key);
+  static std::int32_t& BucketOf(Shard& shard, std::size_t hash);
+  static std::int32_t EntryOf(Shard& shard, std::size_t hash, const Key& key);
+  static void Grow(Shard& shard);
+  static void Remove(Shard& shard, std::int32_t entry);
   void Shrink(Shard& shard);
 
   Shard Shards[ShardCount];

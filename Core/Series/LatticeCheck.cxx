@@ -108,7 +108,7 @@ void LatticeCheck<T>::LoadRow(const PlaneNumbers& decoded, const Row& row)
 {
   const std::int32_t* numbers = decoded.Numbers.data() + decoded.IndexOf(row.Sample);
   const std::size_t count = static_cast<std::size_t>(row.Count);
-  this->Decoder.Decode(numbers, 1, count, this->Decoded.data(), 1);
+  this->Decoder.Decode(numbers, count, this->Decoded.data());
   if (row.Values != nullptr)
   {
     std::copy(row.Values, row.Values + count, this->Originals.begin());

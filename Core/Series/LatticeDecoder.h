@@ -16,8 +16,9 @@ namespace banyan
 /// precision.
 ///
 /// Lattices of a few thousand numbers are what error bounds for pictures give, so that the results
-/// fit into a table: one load per voxel whatever the transform costs. Numbers outside the table are
-/// computed; the bits are the same either way. Thread-safe once built.
+/// fit into a table, which is what transforms take then; without a transform floating-point values are
+/// computed, in vectors. So are numbers outside the table; the bits are the same either way. Thread-safe
+/// once built.
 template <class T>
 class LatticeDecoder
 {
@@ -38,27 +39,45 @@ public:
   /// is safe.
   void Decode(std::int64_t base, const std::uint32_t* offsets, std::size_t count, T* decoded) const;
 
-  /// decoded[i * step] from numbers[i * stride]. Any input is safe.
+  /// Decodes a box of numbers; any input is safe.
+  /// @param pitch of the numbers along y and z: rows lie side by side
+  /// @param size along x, y, z
+  /// @param to strides of what is decoded
   /// @param Number std::int32_t or std::int16_t
   template <class Number>
-  void Decode(const Number* numbers, std::ptrdiff_t stride, std::size_t count, T* decoded,
-    std::ptrdiff_t step) const
+  void Decode(const Number* numbers, const glm::i64vec3& pitch, const glm::ivec3& size, T* decoded,
+    const glm::i64vec3& to) const
   {
     if constexpr (std::is_floating_point_v<T>)
     {
-      if (stride == 1 && step == 1 && this->Map.IsIdentity())
+      if (to.x == 1 && this->Map.IsIdentity())
       {
-        return ValuesOnLattice(numbers, count, this->Origin, this->Step, decoded);
+        return ValuesOnLattice(numbers, pitch, size, this->Origin, this->Step, decoded, to);
       }
     }
     const std::uint64_t entries = this->Table.size();
     const std::int64_t first = entries > 0 ? this->First : 0;
     const T* table = this->Table.data();
-    for (std::size_t i = 0; i < count; ++i, numbers += stride, decoded += step)
+    for (int z = 0; z < size.z; ++z)
     {
-      const std::uint64_t entry = static_cast<std::uint64_t>(*numbers - first);
-      *decoded = entry < entries ? table[entry] : this->Compute(*numbers);
+      for (int y = 0; y < size.y; ++y)
+      {
+        const Number* from = numbers + z * pitch.z + y * pitch.y;
+        T* at = decoded + z * to.z + y * to.y;
+        for (int x = 0; x < size.x; ++x, at += to.x)
+        {
+          const std::uint64_t entry = static_cast<std::uint64_t>(from[x] - first);
+          *at = entry < entries ? table[entry] : this->Compute(from[x]);
+        }
+      }
     }
+  }
+
+  /// Decodes numbers that lie side by side.
+  template <class Number>
+  void Decode(const Number* numbers, std::size_t count, T* decoded) const
+  {
+    this->Decode(numbers, { 1, 0, 0 }, { static_cast<int>(count), 1, 1 }, decoded, { 1, 0, 0 });
   }
 
 private:

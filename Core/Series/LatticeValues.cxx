@@ -11,60 +11,179 @@ namespace banyan::HWY_NAMESPACE
 namespace hn = hwy::HWY_NAMESPACE;
 
 template <class Number, class T>
-void Values(const Number* HWY_RESTRICT numbers, std::size_t count, double origin, double step,
-  T* HWY_RESTRICT values)
+void Values(const Number* numbers, const glm::i64vec3& pitch, const glm::ivec3& size, double origin,
+  double step, T* values, const glm::i64vec3& to)
 {
   const hn::ScalableTag<double> real;
   const hn::Rebind<std::int32_t, decltype(real)> whole;
   const hn::Rebind<Number, decltype(real)> number;
   const auto origins = hn::Set(real, origin);
   const auto steps = hn::Set(real, step);
-  const std::size_t lanes = hn::Lanes(real);
-  std::size_t i = 0;
-  for (; i + lanes <= count; i += lanes)
+  const int lanes = static_cast<int>(hn::Lanes(real));
+  const auto compute = [&](const Number* from, T* at)
   {
     hn::VFromD<decltype(whole)> n;
     if constexpr (sizeof(Number) == sizeof(std::int32_t))
     {
-      n = hn::LoadU(whole, numbers + i);
+      n = hn::LoadU(whole, from);
     }
     else
     {
-      n = hn::PromoteTo(whole, hn::LoadU(number, numbers + i));
+      n = hn::PromoteTo(whole, hn::LoadU(number, from));
     }
     // Not fused: a product is rounded before it is added, wherever this runs.
     const auto y = hn::Add(hn::Mul(hn::PromoteTo(real, n), steps), origins);
     if constexpr (sizeof(T) == sizeof(double))
     {
-      hn::StoreU(y, real, values + i);
+      hn::StoreU(y, real, at);
     }
     else
     {
       const hn::Rebind<float, decltype(real)> single;
-      hn::StoreU(hn::DemoteTo(single, y), single, values + i);
+      hn::StoreU(hn::DemoteTo(single, y), single, at);
     }
-  }
-  for (; i < count; ++i)
+  };
+  for (int z = 0; z < size.z; ++z)
   {
-    values[i] = static_cast<T>(origin + static_cast<double>(numbers[i]) * step);
+    for (int y = 0; y < size.y; ++y)
+    {
+      const Number* const from = numbers + z * pitch.z + y * pitch.y;
+      T* const row = values + z * to.z + y * to.y;
+      // Rows are lines of the cache that lie far apart: ask for them before they are written.
+      __builtin_prefetch(row + to.z, 1);
+      int x = 0;
+      for (; x + lanes <= size.x; x += lanes)
+      {
+        compute(from + x, row + x);
+      }
+      if (x < size.x && size.x >= lanes)
+      {
+        compute(from + size.x - lanes, row + size.x - lanes); // the rest, and some once more
+        continue;
+      }
+      for (; x < size.x; ++x)
+      {
+        row[x] = static_cast<T>(origin + static_cast<double>(from[x]) * step);
+      }
+    }
   }
 }
 
-void ShortFloats(const std::int16_t* n, std::size_t count, double origin, double step, float* v)
+/// Transposes 8 x 8 numbers.
+template <class Number>
+HWY_INLINE void TransposeTile(
+  const Number* from, std::int64_t fromStride, Number* to, std::int64_t toStride)
 {
-  Values(n, count, origin, step, v);
+  for (int i = 0; i < 8; ++i)
+  {
+    for (int j = 0; j < 8; ++j)
+    {
+      to[j * toStride + i] = from[i * fromStride + j];
+    }
+  }
 }
-void ShortDoubles(const std::int16_t* n, std::size_t count, double origin, double step, double* v)
+
+#if HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
+HWY_INLINE void TransposeTile(
+  const std::int16_t* from, std::int64_t fromStride, std::int16_t* to, std::int64_t toStride)
 {
-  Values(n, count, origin, step, v);
+  const hn::FixedTag<std::int16_t, 8> d;
+  const hn::FixedTag<std::int32_t, 4> pairs;
+  const hn::FixedTag<std::int64_t, 2> fours;
+  hn::VFromD<decltype(d)> rows[8];
+  for (int i = 0; i < 8; ++i)
+  {
+    rows[i] = hn::LoadU(d, from + i * fromStride);
+  }
+  hn::VFromD<decltype(pairs)> two[8]; // columns 0 to 3, and 4 to 7, of two rows
+  for (int i = 0; i < 4; ++i)
+  {
+    two[i] = hn::BitCast(pairs, hn::InterleaveLower(d, rows[2 * i], rows[2 * i + 1]));
+    two[i + 4] = hn::BitCast(pairs, hn::InterleaveUpper(d, rows[2 * i], rows[2 * i + 1]));
+  }
+  for (int half = 0; half < 2; ++half)
+  {
+    const auto* const t = two + 4 * half;
+    std::int16_t* const at = to + 4 * half * toStride;
+    const auto low0 = hn::BitCast(fours, hn::InterleaveLower(pairs, t[0], t[1]));
+    const auto low1 = hn::BitCast(fours, hn::InterleaveLower(pairs, t[2], t[3]));
+    const auto high0 = hn::BitCast(fours, hn::InterleaveUpper(pairs, t[0], t[1]));
+    const auto high1 = hn::BitCast(fours, hn::InterleaveUpper(pairs, t[2], t[3]));
+    hn::StoreU(hn::BitCast(d, hn::InterleaveLower(fours, low0, low1)), d, at);
+    hn::StoreU(hn::BitCast(d, hn::InterleaveUpper(fours, low0, low1)), d, at + toStride);
+    hn::StoreU(hn::BitCast(d, hn::InterleaveLower(fours, high0, high1)), d, at + 2 * toStride);
+    hn::StoreU(hn::BitCast(d, hn::InterleaveUpper(fours, high0, high1)), d, at + 3 * toStride);
+  }
 }
-void LongFloats(const std::int32_t* n, std::size_t count, double origin, double step, float* v)
+#endif
+
+template <class Number>
+void Transpose(
+  const Number* numbers, const glm::i64vec3& stride, const glm::ivec3& size, Number* ordered)
 {
-  Values(n, count, origin, step, v);
+  // v is contiguous in memory, w neither that nor x.
+  const int v = stride.y == 1 ? 1 : 2;
+  const int w = 3 - v;
+  const std::int64_t to[3] = { 1, size.x, std::int64_t{ size.x } * size.y };
+  constexpr int tile = 8;
+  for (int k = 0; k < size[w]; ++k)
+  {
+    const Number* const from = numbers + k * stride[w];
+    Number* const at = ordered + k * to[w];
+    if (size.x < tile || size[v] < tile)
+    {
+      for (int x = 0; x < size.x; ++x)
+      {
+        for (int j = 0; j < size[v]; ++j)
+        {
+          at[x + j * to[v]] = from[x * stride.x + j];
+        }
+      }
+      continue;
+    }
+    for (int x = 0; x < size.x; x += tile)
+    {
+      const int column = x + tile <= size.x ? x : size.x - tile; // the rest, and some once more
+      for (int j = 0; j < size[v]; j += tile)
+      {
+        const int row = j + tile <= size[v] ? j : size[v] - tile;
+        TransposeTile(
+          from + column * stride.x + row, stride.x, at + column + row * to[v], to[v]);
+      }
+    }
+  }
 }
-void LongDoubles(const std::int32_t* n, std::size_t count, double origin, double step, double* v)
+
+void ShortFloats(const std::int16_t* n, const glm::i64vec3& pitch, const glm::ivec3& size,
+  double origin, double step, float* v, const glm::i64vec3& to)
 {
-  Values(n, count, origin, step, v);
+  Values(n, pitch, size, origin, step, v, to);
+}
+void ShortDoubles(const std::int16_t* n, const glm::i64vec3& pitch, const glm::ivec3& size,
+  double origin, double step, double* v, const glm::i64vec3& to)
+{
+  Values(n, pitch, size, origin, step, v, to);
+}
+void LongFloats(const std::int32_t* n, const glm::i64vec3& pitch, const glm::ivec3& size,
+  double origin, double step, float* v, const glm::i64vec3& to)
+{
+  Values(n, pitch, size, origin, step, v, to);
+}
+void LongDoubles(const std::int32_t* n, const glm::i64vec3& pitch, const glm::ivec3& size,
+  double origin, double step, double* v, const glm::i64vec3& to)
+{
+  Values(n, pitch, size, origin, step, v, to);
+}
+
+void TransposeShorts(const std::int16_t* numbers, const glm::i64vec3& stride,
+  const glm::ivec3& size, std::int16_t* ordered)
+{
+  Transpose(numbers, stride, size, ordered);
+}
+void TransposeLongs(const std::int32_t* numbers, const glm::i64vec3& stride,
+  const glm::ivec3& size, std::int32_t* ordered)
+{
+  Transpose(numbers, stride, size, ordered);
 }
 
 } // namespace banyan::HWY_NAMESPACE
@@ -78,30 +197,45 @@ HWY_EXPORT(ShortFloats);
 HWY_EXPORT(ShortDoubles);
 HWY_EXPORT(LongFloats);
 HWY_EXPORT(LongDoubles);
+HWY_EXPORT(TransposeShorts);
+HWY_EXPORT(TransposeLongs);
 
 template <>
-void ValuesOnLattice(
-  const std::int16_t* numbers, std::size_t count, double origin, double step, float* values)
+void ValuesOnLattice(const std::int16_t* numbers, const glm::i64vec3& pitch, const glm::ivec3& size,
+  double origin, double step, float* values, const glm::i64vec3& to)
 {
-  HWY_DYNAMIC_DISPATCH(ShortFloats)(numbers, count, origin, step, values);
+  HWY_DYNAMIC_DISPATCH(ShortFloats)(numbers, pitch, size, origin, step, values, to);
 }
 template <>
-void ValuesOnLattice(
-  const std::int16_t* numbers, std::size_t count, double origin, double step, double* values)
+void ValuesOnLattice(const std::int16_t* numbers, const glm::i64vec3& pitch, const glm::ivec3& size,
+  double origin, double step, double* values, const glm::i64vec3& to)
 {
-  HWY_DYNAMIC_DISPATCH(ShortDoubles)(numbers, count, origin, step, values);
+  HWY_DYNAMIC_DISPATCH(ShortDoubles)(numbers, pitch, size, origin, step, values, to);
 }
 template <>
-void ValuesOnLattice(
-  const std::int32_t* numbers, std::size_t count, double origin, double step, float* values)
+void ValuesOnLattice(const std::int32_t* numbers, const glm::i64vec3& pitch, const glm::ivec3& size,
+  double origin, double step, float* values, const glm::i64vec3& to)
 {
-  HWY_DYNAMIC_DISPATCH(LongFloats)(numbers, count, origin, step, values);
+  HWY_DYNAMIC_DISPATCH(LongFloats)(numbers, pitch, size, origin, step, values, to);
 }
 template <>
-void ValuesOnLattice(
-  const std::int32_t* numbers, std::size_t count, double origin, double step, double* values)
+void ValuesOnLattice(const std::int32_t* numbers, const glm::i64vec3& pitch, const glm::ivec3& size,
+  double origin, double step, double* values, const glm::i64vec3& to)
 {
-  HWY_DYNAMIC_DISPATCH(LongDoubles)(numbers, count, origin, step, values);
+  HWY_DYNAMIC_DISPATCH(LongDoubles)(numbers, pitch, size, origin, step, values, to);
+}
+
+template <>
+void TransposeBox(const std::int16_t* numbers, const glm::i64vec3& stride, const glm::ivec3& size,
+  std::int16_t* ordered)
+{
+  HWY_DYNAMIC_DISPATCH(TransposeShorts)(numbers, stride, size, ordered);
+}
+template <>
+void TransposeBox(const std::int32_t* numbers, const glm::i64vec3& stride, const glm::ivec3& size,
+  std::int32_t* ordered)
+{
+  HWY_DYNAMIC_DISPATCH(TransposeLongs)(numbers, stride, size, ordered);
 }
 
 } // namespace banyan

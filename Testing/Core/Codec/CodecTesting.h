@@ -64,7 +64,7 @@ struct EncodedPlane
   std::vector<BlockTokens> Blocks;
   std::vector<std::vector<std::uint8_t>> Payloads;
   std::vector<tans::Frequencies> Frequencies;
-  std::vector<std::uint32_t> Tables;
+  DecodeTables Tables;
 };
 
 inline EncodedPlane EncodeWhole(const PlaneToEncode& plane, int threads = 2)
@@ -176,7 +176,7 @@ std::vector<std::int32_t> DecodeAs(
 {
   const PlaneToEncode& plane = encoded.Plane;
   const int edge = plane.Target->Edge;
-  const PlaneCode shared{ encoded.Tables.data(), plane.CoarseBin, plane.FineBin, plane.Least,
+  const PlaneCode shared{ &encoded.Tables, plane.CoarseBin, plane.FineBin, plane.Least,
     plane.Greatest };
   std::vector<std::vector<Number>> memory;
   memory.reserve(6);

@@ -1,101 +1,14 @@
 #include "Codec/ScalarResiduals.h"
 
+#include "Codec/ScalarSymbols.h"
+
 #include <algorithm>
 #include <cstddef>
-#include <stdexcept>
 
 namespace banyan::testing
 {
 namespace
 {
-
-/// Reads a payload bit by bit, lowest bit of a byte first.
-class BitReader
-{
-public:
-  BitReader(const std::uint8_t* data, std::size_t bytes)
-    : Data(data)
-    , Bits(8 * bytes)
-  {
-  }
-
-  std::uint32_t Take(int count)
-  {
-    std::uint32_t value = 0;
-    for (int i = 0; i < count; ++i)
-    {
-      if (this->Next == this->Bits)
-      {
-        throw std::runtime_error("the payload ends too early");
-      }
-      value |= static_cast<std::uint32_t>(this->Data[this->Next / 8] >> this->Next % 8 & 1) << i;
-      ++this->Next;
-    }
-    return value;
-  }
-
-  std::size_t Left() const { return this->Bits - this->Next; }
-
-private:
-  const std::uint8_t* Data;
-  std::size_t Bits;
-  std::size_t Next = 0;
-};
-
-/// Symbols of a payload: 1, 2, 4 or 8 states take turns in each run.
-class Symbols
-{
-public:
-  Symbols(
-    const std::vector<std::vector<State>>& tables, const std::uint8_t* data, std::size_t bytes)
-    : Tables(tables)
-    , Bits(data, bytes)
-    , States(std::size_t{ 1 } << this->Bits.Take(2))
-  {
-    for (std::uint32_t& state : this->States)
-    {
-      state = this->Bits.Take(10);
-    }
-  }
-
-  /// The symbol number `place` of a run.
-  int Next(int context, std::size_t place)
-  {
-    std::uint32_t& state = this->States[place % this->States.size()];
-    const State& entry = this->Tables[static_cast<std::size_t>(context)][state];
-    state = static_cast<std::uint32_t>(entry.Base) + this->Bits.Take(entry.Bits);
-    return entry.Symbol;
-  }
-
-  /// 0, 1, -1, 2, -2, ... by code; takes the symbol's extra bits.
-  std::int32_t Residual(int symbol)
-  {
-    const std::uint32_t code =
-      symbol < 40 ? static_cast<std::uint32_t>(symbol)
-                  : 39u + (std::uint32_t{ 1 } << (symbol - 40)) + this->Bits.Take(symbol - 40);
-    return static_cast<std::int32_t>(code % 2 == 0 ? code / 2 : 0u - (code / 2 + code % 2));
-  }
-
-  void MustBeAtEnd() const
-  {
-    for (const std::uint32_t state : this->States)
-    {
-      if (state != 0)
-      {
-        throw std::runtime_error("a state does not end where encoding began");
-      }
-    }
-    if (this->Bits.Left() >= 8)
-    {
-      throw std::runtime_error("the payload is too long");
-    }
-  }
-
-private:
-  const std::vector<std::vector<State>>& Tables;
-  BitReader Bits;
-  std::vector<std::uint32_t> States;
-};
 
 /// The magnitude of a residual is the number of the last of these that it reaches, plus 2, or 0.
 int MagnitudeOf(std::int32_t residual)
@@ -166,11 +79,10 @@ private:
     };
     // Residuals of a slice are no context for the same slice: all of it is read, and then set.
     std::vector<std::vector<Sample>> withSymbols;
-    std::vector<bool> flagged;
+    std::vector<int> classes;
     for (const RowToRead& row : rows)
     {
       std::vector<Sample> samples;
-      bool smooth = true;
       for (Position at = row.First; at[0] < this->Edge; at[0] += step)
       {
         if (!Inside(row.Axes, at, limit))
@@ -178,7 +90,6 @@ private:
           break;
         }
         const int roughness = this->Roughness(row.Axes, stride, axis, at);
-        smooth = smooth && roughness == 0;
         int contextClass = 0;
         for (const int limitOfClass : { 0, 5, 12, 22, 36, 56, 90 })
         {
@@ -190,15 +101,21 @@ private:
       }
       if (!samples.empty())
       {
+        int rowClass = 0;
+        const int weight = this->RowWeight(row.Axes, stride, axis, row.First);
+        for (const int limitOfClass : { 0, 8, 16, 28, 44, 64, 90, 125, 170, 230, 310, 420 })
+        {
+          rowClass += weight > limitOfClass ? 1 : 0;
+        }
         withSymbols.push_back(samples);
-        flagged.push_back(smooth);
+        classes.push_back(rowClass);
       }
     }
     std::size_t flag = 0;
     std::vector<Sample> run;
     for (std::size_t r = 0; r < withSymbols.size(); ++r)
     {
-      if (!flagged[r] || symbols.Next(176 + band, flag++) == 0)
+      if (classes[r] == 12 || symbols.Next(176 + 12 * band + classes[r], flag++) == 0)
       {
         run.insert(run.end(), withSymbols[r].begin(), withSymbols[r].end());
       }
@@ -253,8 +170,7 @@ private:
       {
         return 0;
       }
-      const Position p = InBlock(axes, { x, y, z });
-      return this->Large[this->IndexOf(p)] ? 8 : MagnitudeOf(this->At(p));
+      return this->Magnitude(axes, { x, y, z });
     };
     // The next row of that axis, or the one before where there is none.
     const auto next = [&](int position, int step)
@@ -319,6 +235,71 @@ private:
            2 * (m(x - across, y, e) + m(x + across, y, e) + m(x, before, e) + m(x, after, e));
   }
 
+  /// Weighted sum of the magnitudes in the rows around a row of a unit.
+  int RowWeight(const std::vector<int>& axes, int s, int axis, const Position& first)
+  {
+    const int dimensions = static_cast<int>(axes.size());
+    const auto sum = [&](int y, int z)
+    {
+      int all = 0;
+      for (int x = 0; x < this->Edge; ++x)
+      {
+        all += this->Magnitude(axes, { x, y, z });
+      }
+      return all;
+    };
+    const auto next = [&](int position, int step)
+    { return position + step < this->Edge ? position + step : position - step; };
+    const int y = first[1];
+    const int z = first[2];
+    int weight = 0;
+    if (axis == 0)
+    {
+      weight = 4 * sum(y, z);
+      weight += dimensions > 1 ? 2 * (sum(y - 2 * s, z) + sum(next(y, 2 * s), z)) : 0;
+      weight += dimensions > 2 ? 2 * (sum(y, z - 2 * s) + sum(y, next(z, 2 * s))) : 0;
+    }
+    else if (axis == 1)
+    {
+      for (const int end : { y - s, next(y, s) })
+      {
+        weight += 4 * sum(end, z);
+        weight += dimensions > 2 ? sum(end, z - 2 * s) + sum(end, next(z, 2 * s)) : 0;
+      }
+    }
+    else
+    {
+      for (const int end : { z - s, next(z, s) })
+      {
+        weight += 4 * sum(y, end) + sum(y - s, end) + sum(next(y, s), end);
+      }
+    }
+    if (dimensions == 1)
+    {
+      return weight;
+    }
+    const int slice = dimensions == 2 ? y : z;
+    if (slice < 2 * s)
+    {
+      return 2 * weight;
+    }
+    if (dimensions == 2)
+    {
+      return weight + 10 * sum(y - 2 * s, z);
+    }
+    const int e = z - 2 * s;
+    const int step = axis == 2 ? s : 2 * s;
+    const int after = next(y, step);
+    const int before = y >= step ? y - step : after;
+    return weight + 10 * sum(y, e) + 2 * (sum(before, e) + sum(after, e));
+  }
+
+  int Magnitude(const std::vector<int>& axes, const Position& inUnit)
+  {
+    const Position p = InBlock(axes, inUnit);
+    return this->Large[this->IndexOf(p)] ? 8 : MagnitudeOf(this->At(p));
+  }
+
   int Edge;
   bool Narrow;
   std::vector<std::int32_t> Residuals;
@@ -326,36 +307,6 @@ private:
 };
 
 } // namespace
-
-std::vector<State> StatesOf(const tans::Frequencies& frequencies)
-{
-  std::vector<int> symbolAt(1024, 0);
-  int place = 0;
-  bool any = false;
-  for (int symbol = 0; symbol < 72; ++symbol)
-  {
-    for (int i = 0; i < frequencies.Count[symbol]; ++i)
-    {
-      symbolAt[static_cast<std::size_t>(place)] = symbol;
-      place = (place + 643) % 1024;
-      any = true;
-    }
-  }
-  std::vector<State> states(1024, { 0, 0, 0 });
-  std::array<int, 72> seen = {};
-  for (std::size_t i = 0; any && i < 1024; ++i)
-  {
-    const int symbol = symbolAt[i];
-    const int number = frequencies.Count[symbol] + seen[static_cast<std::size_t>(symbol)]++;
-    int bits = 0;
-    while (number * (1 << bits) < 1024)
-    {
-      ++bits;
-    }
-    states[i] = { symbol, bits, number * (1 << bits) - 1024 };
-  }
-  return states;
-}
 
 std::vector<std::int32_t> ReadResiduals(int edge, const std::vector<std::vector<State>>& tables,
   const glm::ivec3& limit, bool narrow, const std::uint8_t* data, std::size_t bytes)

@@ -1,7 +1,7 @@
 #ifndef banyan_Testing_ScalarResiduals_h
 #define banyan_Testing_ScalarResiduals_h
 
-#include "Codec/Tans.h"
+#include "Codec/ScalarSymbols.h"
 
 #include <glm/vec3.hpp>
 
@@ -105,15 +105,6 @@ void ForEachSlice(int edge, Body&& body)
     }
   }
 }
-
-/// What each of the 1024 states of a context decodes to.
-struct State
-{
-  int Symbol;
-  int Bits;
-  int Base;
-};
-std::vector<State> StatesOf(const tans::Frequencies& frequencies);
 
 /// The residuals of a block, all units, `[z][y][x]`; see DecodeBoxSlowly.
 /// @param tables by context

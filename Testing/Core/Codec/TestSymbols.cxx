@@ -12,8 +12,8 @@ namespace banyan::testing
 namespace
 {
 
-/// Classes times the size of a table fit 16 bits.
-constexpr unsigned ContextsOfARun = 64;
+/// Those of the first band.
+constexpr unsigned ContextsOfARun = residual::Classes;
 
 /// Tokens in contexts that come and contexts that do not, with symbols of all sizes, in runs of all
 /// lengths.
@@ -24,11 +24,11 @@ struct Tokens
     std::mt19937 random(seed);
     for (std::size_t i = 0; i < count; ++i)
     {
-      const unsigned context = random() % 3 == 0 ? 7 : random() % ContextsOfARun / 2 * 2;
+      const unsigned context = random() % 3 == 0 ? 7u : random() % ContextsOfARun / 2 * 2;
       const std::int32_t residual = static_cast<std::int32_t>(random()) >> random() % 32;
       std::uint32_t extra = 0;
       const int symbol = residual::SymbolOf(residual::Zigzag(residual), extra);
-      this->Of.push_back(static_cast<std::uint16_t>(context << 8 | static_cast<unsigned>(symbol)));
+      this->Of.push_back(residual::TokenOf(static_cast<int>(context), symbol));
       this->Codes.push_back(residual::Zigzag(residual));
       if (symbol >= residual::DirectSymbols)
       {
@@ -49,7 +49,7 @@ struct Tokens
     return SymbolTables(this->Counts).Encode(this->Of, this->Extra, this->Runs);
   }
 
-  std::vector<std::uint32_t> DecodeTables() const
+  banyan::DecodeTables Tables() const
   {
     return DecodeTablesOf(SymbolTables(this->Counts).Frequencies());
   }
@@ -73,10 +73,11 @@ std::vector<std::uint32_t> ReadAll(SymbolReader& reader, const Tokens& tokens)
     std::vector<std::int8_t> tops(run);
     for (std::size_t i = 0; i < run; ++i)
     {
-      contexts.push_back(static_cast<std::uint16_t>(
-        (static_cast<unsigned>(tokens.Of[begin + i]) >> 8) % ContextsOfARun << tans::TableBits));
+      const int context = tokens.Of[begin + i] >> residual::TokenShift;
+      contexts.push_back(
+        static_cast<std::uint16_t>(reader.BandOf(0).Tables[context] << tans::TableBits));
     }
-    HWY_NAMESPACE::ReadRun(reader, 0, contexts.data(), static_cast<int>(run), tops.data());
+    HWY_NAMESPACE::ReadRun(reader, reader.TablesOf(0), contexts.data(), static_cast<int>(run), tops.data());
     for (const std::int8_t top : tops)
     {
       codes.push_back(residual::Zigzag(top < residual::EscapeTop
@@ -96,9 +97,9 @@ TEST(Symbols, ComeBack)
     const Tokens tokens(count, static_cast<unsigned>(count));
     const std::vector<std::uint8_t> payload = tokens.Payload();
     lanes |= 1 << (payload[0] & 3);
-    const auto decode = tokens.DecodeTables();
+    const auto decode = tokens.Tables();
     SymbolReader reader;
-    reader.Open(decode.data(), payload.data(), payload.size(), payload.size());
+    reader.Open(decode, payload.data(), payload.size(), payload.size());
     EXPECT_FALSE(reader.AtEnd() && count > 8);
     ASSERT_EQ(ReadAll(reader, tokens), tokens.Codes) << count;
     EXPECT_TRUE(reader.AtEnd());
@@ -110,11 +111,11 @@ TEST(Symbols, MissingAndSuperfluousBytesAreNoticed)
 {
   const Tokens tokens(500, 9);
   const std::vector<std::uint8_t> good = tokens.Payload();
-  const auto decode = tokens.DecodeTables();
+  const auto decode = tokens.Tables();
   const auto endsWell = [&](const std::vector<std::uint8_t>& payload)
   {
     SymbolReader reader;
-    reader.Open(decode.data(), payload.data(), payload.size(), payload.size());
+    reader.Open(decode, payload.data(), payload.size(), payload.size());
     (void)ReadAll(reader, tokens);
     return reader.AtEnd();
   };
@@ -139,8 +140,8 @@ TEST(Symbols, ReadersAreUsedAgain)
   for (const Tokens* tokens : { &many, &few, &many })
   {
     const std::vector<std::uint8_t> payload = tokens->Payload();
-    const auto decode = tokens->DecodeTables();
-    reader.Open(decode.data(), payload.data(), payload.size(), payload.size());
+    const auto decode = tokens->Tables();
+    reader.Open(decode, payload.data(), payload.size(), payload.size());
     ASSERT_EQ(ReadAll(reader, *tokens), tokens->Codes);
     EXPECT_TRUE(reader.AtEnd());
   }

@@ -250,7 +250,7 @@ TEST(FailureTable, WavesThatMoveFastAreNotLargerThanStepsByThemselves)
   options.KeyframeInterval = 1;
   const Encoded single = Check(steps, Unit, options);
   EXPECT_LE(static_cast<double>(grouped.Index.Statistics.PayloadBytes),
-    1.03 * static_cast<double>(single.Index.Statistics.PayloadBytes));
+    1.02 * static_cast<double>(single.Index.Statistics.PayloadBytes));
   EXPECT_LE(grouped.Bits, 1.02 * single.Bits);
 }
 

@@ -197,6 +197,23 @@ bool WalkHead(const Bytes& head, int steps, Bytes& before, Found& found)
         : first        ? "head closed, first"
         : steps == 1   ? "head closed, one step"
                        : "head closed"] += 1;
+  std::size_t at = lattice.size();
+  for (int set = 0; set < 2; ++set)
+  {
+    while (head[at++] >= 128) // the set's size
+    {
+    }
+    for (int context = 0; context < 308; ++context)
+    {
+      const int symbols = head[at++];
+      found["context with another one's table"] += symbols == 73 ? 1 : 0;
+      for (int s = 0; s < (symbols == 73 ? 1 : symbols); ++s)
+      {
+        at += symbols != 73 && head[at] >= 128 ? 2 : 1;
+      }
+    }
+  }
+  EXPECT_EQ(at, head.size());
   before = lattice;
   return open;
 }
@@ -284,7 +301,7 @@ TEST(GoldenCoverage, EveryCodingOfVersion2Occurs)
     "head open", "head without lattice", "head closed, first", "head closed, another lattice",
     "head closed, one step", "section stored", "section packed", "brick not finite",
     "brick nothing finite", "brick uniform", "brick with values", "brick at rest",
-    "brick with content", "shared", "group of 1", "group of 2", "group of 3", "group of 4",
+    "brick with content", "shared", "context with another one's table", "group of 1", "group of 2", "group of 3", "group of 4",
     "group of 8" };
   for (int mode = 0; mode < 15; ++mode)
   {

@@ -40,10 +40,10 @@ FieldHead SomeHead()
   head.Greatest = 70000;
   for (auto& set : head.Frequencies)
   {
-    set.resize(187); // contexts
+    set.resize(308); // contexts
     for (std::size_t c = 0; c < set.size(); c += 2)
     {
-      set[c].Count[c % 72] += 1000;
+      set[c].Count[c % 72] += 488;
       set[c].Count[0] = static_cast<std::uint16_t>(set[c].Count[0] + 24);
     }
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -65,6 +66,83 @@ void ExpectTableDecodesAsComputed(const Transform& transform, double origin, dou
     ASSERT_EQ(std::memcmp(&expected, &one, sizeof(T)), 0);
     ASSERT_EQ(std::memcmp(&expected, &a[17], sizeof(T)), 0);
   }
+}
+
+/// Boxes of all sizes up to some vectors, their rows apart.
+template <class T, class Number>
+void ExpectBoxesDecodeAsSingleNumbers(const Transform& transform)
+{
+  const LatticeDecoder<T> decoder(transform, -3.0, 0.01, -100, 3000);
+  std::vector<Number> numbers(20 * 19 * 5);
+  std::mt19937 random(3);
+  for (Number& number : numbers)
+  {
+    number = static_cast<Number>(random());
+  }
+  for (int width = 1; width <= 19; ++width)
+  {
+    const glm::ivec3 size{ width, 3, 2 };
+    const glm::i64vec3 pitch{ 1, 20, 20 * 19 };
+    for (const std::int64_t step : { 1, 3 })
+    {
+      const T unset = static_cast<T>(77);
+      std::vector<T> values(static_cast<std::size_t>(4 * 23 * 3 * step), unset);
+      const glm::i64vec3 to{ step, 23 * step, 23 * 4 * step };
+      decoder.Decode(numbers.data(), pitch, size, values.data(), to);
+      for (int i = 0; i < 4 * 23 * 3; ++i)
+      {
+        const glm::ivec3 p{ i % 23, i / 23 % 4, i / 23 / 4 };
+        const bool inside = p.x < size.x && p.y < size.y && p.z < size.z;
+        const T expected =
+          inside ? decoder.ValueOf(numbers[static_cast<std::size_t>(p.x + 20 * (p.y + 19 * p.z))])
+                 : unset;
+        ASSERT_EQ(std::memcmp(&values[static_cast<std::size_t>(i * step)], &expected, sizeof(T)), 0)
+          << width << " " << i;
+      }
+    }
+  }
+}
+
+TEST(LatticeDecoder, BoxesDecodeAsSingleNumbers)
+{
+  for (const Transform& transform : { Transform(), Transform::Asinh(0.5) })
+  {
+    ExpectBoxesDecodeAsSingleNumbers<float, std::int16_t>(transform);
+    ExpectBoxesDecodeAsSingleNumbers<float, std::int32_t>(transform);
+    ExpectBoxesDecodeAsSingleNumbers<double, std::int16_t>(transform);
+    ExpectBoxesDecodeAsSingleNumbers<double, std::int32_t>(transform);
+    ExpectBoxesDecodeAsSingleNumbers<std::uint8_t, std::int16_t>(transform);
+  }
+}
+
+template <class Number>
+void ExpectBoxesAreTransposed()
+{
+  std::vector<Number> numbers(17 * 17 * 17);
+  std::iota(numbers.begin(), numbers.end(), Number{ 1 });
+  for (const glm::i64vec3& stride : { glm::i64vec3{ 17, 1, 289 }, glm::i64vec3{ 289, 1, 17 },
+         glm::i64vec3{ 17, 289, 1 }, glm::i64vec3{ 289, 17, 1 } })
+  {
+    for (const glm::ivec3& size : { glm::ivec3{ 17, 17, 17 }, glm::ivec3{ 16, 16, 16 },
+           glm::ivec3{ 8, 9, 7 }, glm::ivec3{ 9, 7, 8 }, glm::ivec3{ 1, 1, 1 }, glm::ivec3{ 15, 8, 17 } })
+    {
+      std::vector<Number> ordered(static_cast<std::size_t>(size.x * size.y * size.z) + 1);
+      TransposeBox(numbers.data(), stride, size, ordered.data());
+      for (int i = 0; i < size.x * size.y * size.z; ++i)
+      {
+        const glm::i64vec3 p{ i % size.x, i / size.x % size.y, i / size.x / size.y };
+        ASSERT_EQ(ordered[static_cast<std::size_t>(i)],
+          numbers[static_cast<std::size_t>(p.x * stride.x + p.y * stride.y + p.z * stride.z)]);
+      }
+      ASSERT_EQ(ordered.back(), 0) << "nothing is written behind";
+    }
+  }
+}
+
+TEST(LatticeDecoder, BoxesAreTransposed)
+{
+  ExpectBoxesAreTransposed<std::int16_t>();
+  ExpectBoxesAreTransposed<std::int32_t>();
 }
 
 TEST(LatticeDecoder, TableDecodesAsComputed)
