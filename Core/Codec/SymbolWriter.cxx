@@ -111,7 +111,7 @@ int SymbolTables::LanesLogFor(const std::vector<std::uint16_t>& tokens) const
     bits += (tans::TableSize * 3 / 2 +
               this->Tables[token >> residual::TokenShift].Symbols[token & residual::TokenMask].DeltaBits) >> 16;
   }
-  return bits < 250 ? 0 : bits < 1000 ? 1 : bits < 5000 ? 2 : 3;
+  return bits < 600 ? 0 : bits < 2400 ? 1 : bits < 8000 ? 2 : 3;
 }
 
 std::vector<std::uint8_t> SymbolTables::Encode(const std::vector<std::uint16_t>& tokens,

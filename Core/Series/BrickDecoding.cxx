@@ -40,6 +40,12 @@ void DecodeBox(OpenGroup& open, int step, const PlaneRegion& region,
 {
   GroupField& group = *open.Field;
   const LatticeDecoder<T>& decoder = DecoderOf<T>(open);
+  // The first rows to be written; they ask for those behind.
+  for (int y = 0; y < size.y; ++y)
+  {
+    __builtin_prefetch(values + y * strides.y, 1);
+    __builtin_prefetch(values + strides.z + y * strides.y, 1);
+  }
   const LatticeCache::Box box = group.Box(step, region.Plane, region.FirstBlock);
   const std::ptrdiff_t n = group.Edge() + 1;
   const std::ptrdiff_t pitch[3] = { 1, n, n * n };

@@ -50,7 +50,7 @@ void Values(const Number* numbers, const glm::i64vec3& pitch, const glm::ivec3& 
       const Number* const from = numbers + z * pitch.z + y * pitch.y;
       T* const row = values + z * to.z + y * to.y;
       // Rows are lines of the cache that lie far apart: ask for them before they are written.
-      __builtin_prefetch(row + to.z, 1);
+      __builtin_prefetch(row + 2 * to.z, 1);
       int x = 0;
       for (; x + lanes <= size.x; x += lanes)
       {
