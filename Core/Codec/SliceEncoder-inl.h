@@ -99,19 +99,6 @@ struct RowQuantizer
     return all != 0;
   }
 
-  /// Whether anything around a row is rough.
-  HWY_INLINE bool Rough(const RowPlace& place) const
-  {
-    const int lanes = place.Coded * P::Step;
-    const std::uint8_t* m = this->Of.M + place.M + P::First;
-    ByteVector any{};
-    for (int at = 0; at < lanes; at += Width)
-    {
-      any |= RoughnessOf<P>(m + at, this->B, place) & LaneMask<P, ByteVector>(lanes - at);
-    }
-    return AnyOf(any);
-  }
-
   /// Sets the magnitudes and kept residuals of lanes from `First + at` on.
   HWY_INLINE void Keep(const RowPlace& place, int at, Signed residual) const
   {
@@ -201,7 +188,7 @@ struct SliceEncoder
       {
         const RowPlace place = PlaceOf<P>(this->Rows.Of, edge, slice, row);
         const int rowClass = this->Out.RowClass[row];
-        const bool coded = this->AddRow(place, this->Rows.Of.Any, this->Out.Slice.data() + count);
+        const bool coded = this->AddRow(place, rowClass > 0, this->Out.Slice.data() + count);
         any = any || coded;
         const bool flagged = place.Coded > 0 && rowClass < residual::RowClasses;
         if (flagged)

@@ -13,8 +13,12 @@
 namespace banyan
 {
 
-constexpr int SmoothRowCost = 8;     ///< of the flag of a row of zeros, in 256ths of a bit
-constexpr int UnexpectedRowCost = 1400;
+/// What flags of rows take by the class of the row, in 256ths of a bit, as smooth series have them; rows of
+/// the last class have none.
+constexpr std::int64_t ZeroRowCosts[residual::RowClasses + 1] = { 11, 19, 31, 56, 78, 101, 137, 171,
+  208, 287, 409, 512, 0 };
+constexpr std::int64_t OtherRowCosts[residual::RowClasses + 1] = { 1295, 1107, 933, 726, 613, 527, 432,
+  367, 312, 228, 148, 106, 0 };
 
 } // namespace banyan
 #endif
@@ -39,25 +43,24 @@ struct SliceTrial
     const int slices = P::EndOfSlices(edge());
     for (int slice = P::FirstSlice; slice < slices; slice += P::SliceStep)
     {
+      std::uint8_t rowClasses[64 + Width];
+      RowClasses<P>(this->Rows.Of, edge, slice, rowClasses);
       for (int row = P::FirstRow; row < P::EndOfRows(edge()); row += P::RowStep)
       {
         const RowPlace place = PlaceOf<P>(this->Rows.Of, edge, slice, row);
-        const bool rough = place.Coded > 0 && this->Rows.Rough(place);
+        const int rowClass = rowClasses[row];
         std::int64_t symbols = 0;
-        const bool any = this->Rows.Row(place, rough,
+        const bool any = this->Rows.Row(place, rowClass > 0,
           [&](Signed residual, int lane, ByteVector classes, SignedByteVector)
           {
             this->Rows.Keep(place, lane * P::Step, residual);
             symbols += CostOf(
               residual, classes, LaneMask<P, Numbers<std::int16_t>::Signed>((place.Coded - lane) * P::Step));
           });
-        if (rough || any)
+        if (place.Coded > 0)
         {
-          cost += symbols;
-        }
-        if (place.Coded > 0 && !rough)
-        {
-          cost += any ? UnexpectedRowCost : SmoothRowCost;
+          const bool coded = any || rowClass == residual::RowClasses;
+          cost += coded ? OtherRowCosts[rowClass] + symbols : ZeroRowCosts[rowClass];
         }
       }
     }
