@@ -50,11 +50,15 @@ def compare_picture(scene, arguments):
 
 
 def compare_figures(expected, found):
-    """What is wrong, or None. Ranks end rays apart, so that together they may take more samples."""
+    """What is wrong, or None. Ranks end rays apart, so that together they may take more samples.
+
+    In maxima and minima, what a brick may leave out depends on the bricks before it.
+    """
     if "SamplesTaken" not in expected or "SamplesTaken" not in found:
         return None
     samples, reference = found["SamplesTaken"], expected["SamplesTaken"]
-    if not reference <= samples * 1.001 or not samples <= 1.5 * reference:
+    fewest = 0.9 if expected.get("extremes") else 0.999
+    if not samples >= fewest * reference or not samples <= 1.5 * reference:
         return f"{samples} samples taken instead of {reference}"
     return None
 

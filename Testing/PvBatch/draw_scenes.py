@@ -35,7 +35,8 @@ def draw(name, arguments):
         drawn.view.RemoteRenderThreshold = arguments.threshold
     path = os.path.join(arguments.out, name)
     screenshot(drawn, path + ".png")
-    figures = {"volume_pixels": drawn.volume_pixels, "geometry": len(drawn.geometry)}
+    figures = {"volume_pixels": drawn.volume_pixels, "geometry": len(drawn.geometry),
+               "extremes": drawn.extremes}
     if arguments.figures:
         figures.update(figures_of(drawn.volumes[0]))
     if arguments.parts:

@@ -59,6 +59,7 @@ class Drawn:
     geometry: list = field(default_factory=list)
     image_size: tuple = None  # of the screenshot; that of the view when None
     volume_pixels: int = 0  # the volume changes at least so many pixels; -1: none at all
+    extremes: bool = False  # a maximum or minimum
 
 
 class Settings:
@@ -254,7 +255,7 @@ def maximum_intensity():
     view = session.new_view(SIZE, **CAMERA)
     display = encoded(view, opacities=(0.0, 0.3, 0.6, 0.8, 1.0))
     display.Projection = "Maximum Intensity"
-    return Drawn(view, [display], [spheres(view)], volume_pixels=20000)
+    return Drawn(view, [display], [spheres(view)], volume_pixels=20000, extremes=True)
 
 
 @scene
@@ -263,7 +264,7 @@ def minimum_of_labels():
     display = wavelet(view, opacities=(0.3, 0.9, 0.8, 0.8, 1.0))
     display.Projection = "Minimum Intensity"
     display.InterpolationType = "Nearest"
-    return Drawn(view, [display], [spheres(view)], volume_pixels=20000)
+    return Drawn(view, [display], [spheres(view)], volume_pixels=20000, extremes=True)
 
 
 @scene
