@@ -1,7 +1,6 @@
 #include "Render/RayTile.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -98,7 +97,8 @@ private:
   {
     const VD one = this->Set(1.0);
     const VD two = this->Set(2.0);
-    const VD u = hn::Sub(hn::Mul(hn::Add(hn::Mul(two, x), one), this->Set(this->Setup.PerPixel.x)), one);
+    const VD u =
+      hn::Sub(hn::Mul(hn::Add(hn::Mul(two, x), one), this->Set(this->Setup.PerPixel.x)), one);
     const VD v =
       hn::Sub(hn::Mul(hn::Add(hn::Mul(two, y), one), this->Set(this->Setup.PerPixel.y)), one);
     VD middle[4];
@@ -170,8 +170,7 @@ private:
       const VD low = this->Set(this->Setup.Low[axis]);
       const VD high = this->Set(this->Setup.High[axis]);
       const VD origin = this->Origin[axis];
-      const auto along =
-        hn::Lt(hn::Abs(this->Direction[axis]), this->Set(RayLattice::AlongFaces));
+      const auto along = hn::Lt(hn::Abs(this->Direction[axis]), this->Set(RayLattice::AlongFaces));
       const auto inside = hn::And(hn::Ge(origin, low), hn::Le(origin, high));
       const VD inverse = hn::Div(this->Set(1.0), this->Direction[axis]);
       const VD a = hn::Mul(hn::Sub(low, origin), inverse);
@@ -393,41 +392,6 @@ void RayTile::Open(
                        (this->Tail.Fraction[slot] == 0.0f);
     this->ActiveRays += empty ? 0 : 1;
   }
-}
-
-void RayTile::Close(FloatImage& picture) const
-{
-  for (int slot = 0; slot < Slots; slot += PacketEdge)
-  {
-    const glm::ivec2 at = this->PixelAt(slot);
-    const int width = at.y < this->Rect.Hi.y ? std::min(this->Rect.Hi.x - at.x, PacketEdge) : 0;
-    glm::vec4* row = width > 0 ? &picture.At(at.x, at.y) : nullptr;
-    for (int i = 0; i < width; ++i)
-    {
-      row[i] = this->PixelOf(slot + i);
-    }
-  }
-}
-
-RaySamples RayTile::RayOf(int slot) const
-{
-  const auto fixed = [](std::int32_t cell, std::uint32_t position)
-  { return ToFixed(cell) + (position & ((1u << FractionBits) - 1)); };
-  RaySamples ray;
-  ray.Count = this->Count[slot];
-  ray.Head.Fraction = this->Head.Fraction[slot];
-  ray.Tail.Fraction = this->Tail.Fraction[slot];
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    ray.Head.Position[axis] = fixed(this->Head.Cell[axis][slot], this->Head.Position[axis][slot]);
-    ray.Tail.Position[axis] = fixed(this->Tail.Cell[axis][slot], this->Tail.Position[axis][slot]);
-    const double unit = 1 << FractionBits;
-    ray.Step[axis] = static_cast<std::int64_t>(this->WholeStep[axis][slot]);
-    ray.Base[axis] = static_cast<std::int64_t>(std::floor(this->Start[axis][slot] * unit));
-    ray.Start[axis] = static_cast<double>(ray.Base[axis]) / unit;
-    ray.InverseStep[axis] = ray.Step[axis] != 0 ? this->Inverse[axis][slot] : 0.0;
-  }
-  return ray;
 }
 
 } // namespace banyan
