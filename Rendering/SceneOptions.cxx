@@ -99,4 +99,10 @@ SampleInterpolation MakeInterpolation(vtkVolumeProperty* property)
            : SampleInterpolation::Linear;
 }
 
+bool CanKeepTolerance(vtkVolumeMapper* mapper, vtkVolumeProperty* property)
+{
+  return mapper->GetBlendMode() == vtkVolumeMapper::COMPOSITE_BLEND &&
+         MakeInterpolation(property) == SampleInterpolation::Linear;
+}
+
 } // namespace banyan

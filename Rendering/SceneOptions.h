@@ -21,6 +21,10 @@ RayBlend MakeBlend(vtkVolumeMapper* mapper, const ValueRange& data);
 
 SampleInterpolation MakeInterpolation(vtkVolumeProperty* property);
 
+/// Whether the samples of a picture can be chosen by its error: composited ones of linear
+/// interpolation. Nearest values jump, and projections show single samples.
+bool CanKeepTolerance(vtkVolumeMapper* mapper, vtkVolumeProperty* property);
+
 } // namespace banyan
 
 #endif

@@ -17,5 +17,6 @@ void vtkBanyanFrameStatistics::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "BytesComposited: " << this->BytesComposited << "\n"
      << indent << "BytesRead: " << this->BytesRead << "\n"
      << indent << "CacheBytes: " << this->CacheBytes << "\n"
+     << indent << "EstimatedImageError: " << this->EstimatedImageError << "\n"
      << indent << "Frames: " << this->Frames << "\n";
 }

@@ -62,6 +62,13 @@ public:
   ///@}
 
   ///@{
+  /// The largest error that is expected of a pixel, in 1/255 of a channel; 0 where the sample
+  /// distance was fixed. Estimated.
+  vtkSetMacro(EstimatedImageError, double);
+  vtkGetMacro(EstimatedImageError, double);
+  ///@}
+
+  ///@{
   /// Frames drawn since the object was made.
   vtkSetMacro(Frames, vtkIdType);
   vtkGetMacro(Frames, vtkIdType);
@@ -81,6 +88,7 @@ protected:
   vtkIdType BytesComposited = 0;
   vtkIdType BytesRead = 0;
   vtkIdType CacheBytes = 0;
+  double EstimatedImageError = 0.0;
   vtkIdType Frames = 0;
 
 private:

@@ -4,6 +4,7 @@
 #include "FramebufferExchange.h"
 #include "PixelsBehind.h"
 #include "SceneOptions.h"
+#include "ToleranceControl.h"
 #include "TransferFunctionTable.h"
 #include "vtkBanyanFrameStatistics.h"
 
@@ -26,6 +27,7 @@
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
@@ -79,6 +81,7 @@ struct vtkBanyanVolumeMapper::Internals
   std::string LastProblem;
   std::array<double, 6> Bounds{ { 1, -1, 1, -1, 1, -1 } };
   bool BoundsKnown = false;
+  banyan::ToleranceControl Tolerance;
 
   banyan::FieldPiece PieceOf(vtkBanyanVolumeMapper* mapper, vtkVolume* volume) const;
   void Publish(const banyan::FrameStatistics& frame, std::uint64_t bytesRead, double seconds,
@@ -316,7 +319,7 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   // Lengths are those of the data, before the prop is scaled, as in VTK's own volume mappers.
   banyan::RayScene scene{ camera.InSpace(toWorld), rect, self.Field.IndexToPhysical(),
     self.Field.DomainCells(), banyan::MakeTransferFunction(volume->GetProperty()),
-    this->SampleDistanceVoxels * self.Field.CellSize() };
+    (this->SampleDistanceVoxels > 0.0 ? this->SampleDistanceVoxels : 1.0) * self.Field.CellSize() };
   scene.Depth = banyan::DepthsOf(pixels);
   scene.Shading = banyan::MakeShading(volume->GetProperty());
   scene.Interpolation = banyan::MakeInterpolation(volume->GetProperty());
@@ -337,8 +340,22 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   const std::uint64_t budget =
     std::max<std::uint64_t>(banyan::BrickCache::Process().Budget() / 2, 16u << 20);
   banyan::FrameStatistics frame;
+  // More than one frame per second: somebody moves the camera. All ranks are told the same rate.
+  const banyan::ToleranceControl::Wish wish{ this->ImageErrorTolerance,
+    this->InteractiveImageErrorTolerance, this->InteractiveFrameSeconds,
+    renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0 };
+  const banyan::Timer drawing;
+  this->Statistics->SetEstimatedImageError(
+    !(this->SampleDistanceVoxels > 0.0) && banyan::CanKeepTolerance(this, volume->GetProperty())
+      ? self.Tolerance.Plan(*self.Communicator, self.Field, scene, wish, budget, failure, frame)
+      : 0.0);
+  const banyan::FrameStatistics pilots = frame;
   const banyan::FloatImage picture = banyan::DrawDistributed(*self.Communicator, scene,
     self.Field.Source(), self.Field.Zones(), budget, banyan::ThreadPool::Process(), failure, frame);
+
+  frame.SamplesTaken += pilots.SamplesTaken;
+  frame.BytesComposited += pilots.BytesComposited;
+  self.Tolerance.FrameTook(wish, banyan::AllMax(*self.Communicator, drawing.Seconds()));
 
   // On several ranks the background comes last: the compositor blends the picture over it in 8 bit.
   // A single rank does the same, for the same picture to the last bit.
@@ -370,7 +387,10 @@ void vtkBanyanVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 void vtkBanyanVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "SampleDistanceVoxels: " << this->SampleDistanceVoxels << "\n"
+  os << indent << "ImageErrorTolerance: " << this->ImageErrorTolerance << "\n"
+     << indent << "InteractiveImageErrorTolerance: " << this->InteractiveImageErrorTolerance << "\n"
+     << indent << "InteractiveFrameSeconds: " << this->InteractiveFrameSeconds << "\n"
+     << indent << "SampleDistanceVoxels: " << this->SampleDistanceVoxels << "\n"
      << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"
      << indent << "Controller: " << this->Controller.GetPointer() << "\n"
      << indent << "Statistics: " << this->Statistics.GetPointer() << "\n";

@@ -45,10 +45,34 @@ public:
 
   ///@{
   /**
-   * Distance between samples along a ray, in edges of the smallest cell. Opacities are corrected
-   * for it. Default 1; allowed [0.01, 100].
+   * Largest error of a pixel that is wanted, in 1/255 of a channel: of still frames (default 1), and
+   * while interacting, that is, while the window asks for more than one frame per second (default
+   * 8). It decides how closely each part of the picture is sampled, and from which level of an
+   * encoded series. The error is estimated (see banyan::PlanSamplings) and goes to the statistics.
+   * Allowed [0.05, 255]. Without effect on projections and nearest interpolation.
    */
-  vtkSetClampMacro(SampleDistanceVoxels, double, 0.01, 100.0);
+  vtkSetClampMacro(ImageErrorTolerance, double, 0.05, 255.0);
+  vtkGetMacro(ImageErrorTolerance, double);
+  vtkSetClampMacro(InteractiveImageErrorTolerance, double, 0.05, 255.0);
+  vtkGetMacro(InteractiveImageErrorTolerance, double);
+  ///@}
+
+  ///@{
+  /**
+   * Seconds that a frame may take while interacting: the tolerance is raised, up to 16-fold, while
+   * frames take longer. Default 0.2; 0 leaves the tolerance as it is.
+   */
+  vtkSetClampMacro(InteractiveFrameSeconds, double, 0.0, 3600.0);
+  vtkGetMacro(InteractiveFrameSeconds, double);
+  ///@}
+
+  ///@{
+  /**
+   * A fixed distance between samples along a ray, in edges of the smallest cell, in place of the
+   * tolerance. Opacities are corrected for it. Default 0: the tolerance decides (projections and
+   * nearest interpolation take 1). Allowed [0, 100].
+   */
+  vtkSetClampMacro(SampleDistanceVoxels, double, 0.0, 100.0);
   vtkGetMacro(SampleDistanceVoxels, double);
   ///@}
 
@@ -115,7 +139,10 @@ private:
   void DrawFrame(vtkRenderer* renderer, vtkVolume* volume);
   void ReportOnce(const std::string& problem);
 
-  double SampleDistanceVoxels = 1.0;
+  double ImageErrorTolerance = 1.0;
+  double InteractiveImageErrorTolerance = 8.0;
+  double InteractiveFrameSeconds = 0.2;
+  double SampleDistanceVoxels = 0.0;
   int NumberOfThreads = 0;
   vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkSmartPointer<vtkBanyanFrameStatistics> Statistics;

@@ -212,6 +212,21 @@ bool vtkBanyanVolumeRepresentation::RemoveFromView(vtkView* view)
   return false;
 }
 
+void vtkBanyanVolumeRepresentation::SetImageErrorTolerance(double tolerance)
+{
+  this->Mapper->SetImageErrorTolerance(tolerance);
+}
+
+void vtkBanyanVolumeRepresentation::SetInteractiveImageErrorTolerance(double tolerance)
+{
+  this->Mapper->SetInteractiveImageErrorTolerance(tolerance);
+}
+
+void vtkBanyanVolumeRepresentation::SetInteractiveFrameSeconds(double seconds)
+{
+  this->Mapper->SetInteractiveFrameSeconds(seconds);
+}
+
 void vtkBanyanVolumeRepresentation::SetSampleDistanceVoxels(double voxels)
 {
   this->Mapper->SetSampleDistanceVoxels(voxels);

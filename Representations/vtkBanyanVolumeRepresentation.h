@@ -38,6 +38,9 @@ public:
   ///@}
 
   /** Distance between samples, in edges of the smallest cell. Default 1. */
+  void SetImageErrorTolerance(double tolerance);
+  void SetInteractiveImageErrorTolerance(double tolerance);
+  void SetInteractiveFrameSeconds(double seconds);
   void SetSampleDistanceVoxels(double voxels);
 
   ///@{

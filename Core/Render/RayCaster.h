@@ -49,7 +49,7 @@ struct RayScene
   double SampleDistance = 1.0; ///< world length between samples; > 0
   float OpacityLimit = 0.999f; ///< a ray ends when its opacity reaches this
   /// Depth in [0, 1] per pixel of Viewport at which rays end, `[y][x]`; empty means no geometry.
-  std::vector<float> Depth;
+  std::vector<float> Depth{};
   RayShading Shading{};                ///< without effect unless samples are composited
   std::vector<ClipPlane> ClipPlanes{}; ///< at most MostClipPlanes
   SampleInterpolation Interpolation = SampleInterpolation::Linear;

@@ -1,0 +1,46 @@
+#include "Parallel/DistributedPlan.h"
+
+namespace banyan
+{
+namespace
+{
+
+/// The coarsest level, up to `most`, that all ranks with bricks have.
+int CommonLevel(Communicator& communicator, BrickSource* source, const Box& domain, int most)
+{
+  int mine = most;
+  while (source != nullptr && mine > 0 && source->AtLevel(mine, domain) == nullptr)
+  {
+    --mine;
+  }
+  return -static_cast<int>(AllMax(communicator, -mine));
+}
+
+} // namespace
+
+SamplingPlan PlanDistributed(Communicator& communicator, const RayScene& scene, BrickSource* source,
+  const std::vector<Box>& zones, std::uint64_t budgetBytes, ThreadPool& pool,
+  const std::string& localError, SamplingWish wish, FrameStatistics& statistics)
+{
+  const std::string agreed = AgreeOnError(communicator, localError);
+  if (!agreed.empty())
+  {
+    throw Error(agreed);
+  }
+  wish.CoarsestLevel = CommonLevel(communicator, source, scene.DomainCells, wish.CoarsestLevel);
+  return PlanSamplings(scene, wish,
+    [&](const RayScene& pilot)
+    {
+      FrameStatistics taken;
+      FloatImage image =
+        DrawDistributed(communicator, pilot, source, zones, budgetBytes, pool, {}, taken);
+      statistics.SamplesTaken += taken.SamplesTaken;
+      statistics.BytesComposited += taken.BytesComposited;
+      image.Rect = pilot.Viewport;
+      image.Pixels.resize(static_cast<std::size_t>(pilot.Viewport.Count()), glm::vec4(0.0f));
+      communicator.Broadcast(0, image.Pixels.data(), image.Pixels.size() * sizeof(glm::vec4));
+      return image;
+    });
+}
+
+} // namespace banyan

@@ -1,0 +1,24 @@
+#ifndef banyan_Parallel_DistributedPlan_h
+#define banyan_Parallel_DistributedPlan_h
+
+#include "Parallel/DistributedFrame.h"
+#include "Render/SamplingPlan.h"
+
+namespace banyan
+{
+
+/// Plans how a picture is to be sampled on all ranks: PlanSamplings with pilots that all ranks draw
+/// together. Collective; all ranks get the same plan. The parameters are those of DrawDistributed,
+/// whose picture of `scene` with the plan's samplings and opacity limit then is within the
+/// tolerance as estimated.
+///
+/// @param wish its coarsest level is lowered to what the bricks of all ranks have
+/// @param statistics samples and bytes of the pilots are added; the rest stays
+/// When a rank fails, all ranks throw the same Error.
+SamplingPlan PlanDistributed(Communicator& communicator, const RayScene& scene, BrickSource* source,
+  const std::vector<Box>& zones, std::uint64_t budgetBytes, ThreadPool& pool,
+  const std::string& localError, SamplingWish wish, FrameStatistics& statistics);
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,55 @@
+#include "ToleranceControl.h"
+
+#include "DistributedField.h"
+
+#include "Base/ThreadPool.h"
+
+#include <algorithm>
+
+namespace banyan
+{
+namespace
+{
+
+constexpr int CoarsestLevel = 3;
+constexpr double MostSlack = 16.0;
+
+} // namespace
+
+double ToleranceControl::Plan(Communicator& communicator, DistributedField& field, RayScene& scene,
+  const Wish& wish, std::uint64_t budgetBytes, const std::string& failure, FrameStatistics& frame)
+{
+  // Pieces on ranks have no coarser levels, and still pictures are the same on any number of ranks.
+  const bool levels = field.Encoded() || (wish.Interacting && communicator.Size() == 1);
+  const double tolerance = wish.Interacting ? wish.Interactive * this->Slack : wish.Still;
+  const SamplingPlan plan =
+    PlanDistributed(communicator, scene, field.Source(), field.Zones(), budgetBytes,
+      ThreadPool::Process(), failure,
+      { tolerance, scene.SampleDistance, levels ? CoarsestLevel : 0 }, frame);
+  scene.Samplings = plan.Samplings;
+  scene.OpacityLimit = plan.OpacityLimit;
+  return plan.EstimatedError;
+}
+
+void ToleranceControl::FrameTook(const Wish& wish, double seconds)
+{
+  if (!wish.Interacting)
+  {
+    return;
+  }
+  if (!(wish.Seconds > 0.0))
+  {
+    this->Slack = 1.0;
+  }
+  else if (seconds > wish.Seconds)
+  {
+    this->Slack = std::min(MostSlack, 2.0 * this->Slack);
+  }
+  else if (seconds < 0.3 * wish.Seconds)
+  {
+    // Half the tolerance takes up to twice the time: not so much that it swings back.
+    this->Slack = std::max(1.0, 0.5 * this->Slack);
+  }
+}
+
+} // namespace banyan

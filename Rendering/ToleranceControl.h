@@ -1,0 +1,41 @@
+#ifndef banyan_Rendering_ToleranceControl_h
+#define banyan_Rendering_ToleranceControl_h
+
+#include "Parallel/DistributedPlan.h"
+
+namespace banyan
+{
+
+class DistributedField;
+
+/// Decides how frames are sampled: within the tolerance that is wanted, and while somebody moves the
+/// camera, as far beyond it as the promised frame time demands.
+class ToleranceControl
+{
+public:
+  struct Wish
+  {
+    double Still = 1.0;       ///< 1/255
+    double Interactive = 8.0; ///< 1/255
+    double Seconds = 0.2;     ///< that a frame may take while interacting; 0 for any
+    bool Interacting = false;
+  };
+
+  /// Collective: gives the scene its samplings and its opacity limit.
+  /// @param failure of this rank, which all ranks then throw
+  /// @param frame the pilots' samples and bytes are added
+  /// @return the estimated error in 1/255
+  double Plan(Communicator& communicator, DistributedField& field, RayScene& scene,
+    const Wish& wish, std::uint64_t budgetBytes, const std::string& failure,
+    FrameStatistics& frame);
+
+  /// Tells what the frame took that was planned last: the same number on all ranks.
+  void FrameTook(const Wish& wish, double seconds);
+
+private:
+  double Slack = 1.0; ///< times the interactive tolerance
+};
+
+} // namespace banyan
+
+#endif
