@@ -28,6 +28,7 @@ const double Bounds[6] = { 0, 44, 0, 37, 0, 40 };
 Picture DrawImage(vtkImageData* image, int multiSamples = 0)
 {
   vtkNew<vtkBanyanVolumeMapper> mapper;
+  mapper->SetSampleDistanceVoxels(1.0);
   mapper->SetInputData(image);
   Stage stage(mapper, multiSamples);
   stage.LookAt(Bounds);
@@ -46,6 +47,7 @@ void EncodedDrawsLikePlain(const std::string& path)
     reader->SetFileName(path.c_str());
     reader->SetDeferDecoding(deferred);
     vtkNew<vtkBanyanVolumeMapper> mapper;
+    mapper->SetSampleDistanceVoxels(1.0);
     mapper->SetInputConnection(reader->GetOutputPort());
     Stage stage(mapper);
     stage.LookAt(Bounds);
@@ -71,6 +73,7 @@ void ACoarserLevelDrawsItsSamples(const std::string& path)
   reader->SetFileName(path.c_str());
   reader->SetLevel(1);
   vtkNew<vtkBanyanVolumeMapper> mapper;
+  mapper->SetSampleDistanceVoxels(1.0);
   mapper->SetInputConnection(reader->GetOutputPort());
   Stage stage(mapper);
   stage.LookAt(Bounds);
@@ -99,6 +102,7 @@ void MatricesMoveTheVolume()
   scaled->SetOrigin(5.0, 0.0, 0.0);
   Stage expected(nullptr);
   vtkNew<vtkBanyanVolumeMapper> first;
+  first->SetSampleDistanceVoxels(1.0);
   first->SetInputData(scaled);
   expected.Volume->SetMapper(first);
   expected.Volume->GetProperty()->SetScalarOpacityUnitDistance(2.0);
@@ -106,6 +110,7 @@ void MatricesMoveTheVolume()
   expected.LookAt(bounds);
 
   vtkNew<vtkBanyanVolumeMapper> second;
+  second->SetSampleDistanceVoxels(1.0);
   second->SetInputData(image);
   Stage moved(second);
   moved.Volume->SetScale(2.0);
@@ -139,6 +144,7 @@ void AddBalls(vtkRenderer* renderer)
 Picture WithBalls(bool volume, int multiSamples)
 {
   vtkNew<vtkBanyanVolumeMapper> mapper;
+  mapper->SetSampleDistanceVoxels(1.0);
   mapper->SetInputData(PlainImage(Balls, Samples));
   Stage stage(mapper, multiSamples);
   stage.Volume->SetVisibility(volume);
@@ -185,6 +191,7 @@ void VectorsAreDrawnByMagnitudeOrComponent()
   }
   image->GetPointData()->SetScalars(vectors);
   vtkNew<vtkBanyanVolumeMapper> mapper;
+  mapper->SetSampleDistanceVoxels(1.0);
   mapper->SetInputData(image);
   Stage stage(mapper);
   stage.LookAt(Bounds);
@@ -218,6 +225,7 @@ void SmallVolumesDrawWithoutAWord()
     { glm::ivec3(1), glm::ivec3(1, 8, 9), glm::ivec3(2), glm::ivec3(17, 16, 2) })
   {
     vtkNew<vtkBanyanVolumeMapper> mapper;
+    mapper->SetSampleDistanceVoxels(1.0);
     vtkNew<vtkTest::ErrorObserver> errors;
     mapper->AddObserver(vtkCommand::ErrorEvent, errors);
     mapper->SetInputData(PlainImage([](double, double, double, int) { return 0.9f; }, n));
@@ -240,6 +248,7 @@ void UnusableInputGetsASentence()
   cells->Fill(0.9f);
   image->GetCellData()->SetScalars(cells);
   vtkNew<vtkBanyanVolumeMapper> mapper;
+  mapper->SetSampleDistanceVoxels(1.0);
   vtkNew<vtkTest::ErrorObserver> errors;
   mapper->AddObserver(vtkCommand::ErrorEvent, errors);
   mapper->SetInputData(image);
@@ -260,6 +269,7 @@ void UnusableInputGetsASentence()
 void HalvingTheStepChangesLittle()
 {
   vtkNew<vtkBanyanVolumeMapper> mapper;
+  mapper->SetSampleDistanceVoxels(1.0);
   mapper->SetInputData(PlainImage(Balls, Samples));
   Stage stage(mapper);
   stage.LookAt(Bounds);
@@ -276,8 +286,10 @@ void ShadingChangesColours(const std::string& path)
   vtkNew<vtkBanyanSeriesReader> reader;
   reader->SetFileName(path.c_str());
   vtkNew<vtkBanyanVolumeMapper> encoded;
+  encoded->SetSampleDistanceVoxels(1.0);
   encoded->SetInputConnection(reader->GetOutputPort());
   vtkNew<vtkBanyanVolumeMapper> plain;
+  plain->SetSampleDistanceVoxels(1.0);
   plain->SetInputData(PlainImage(Balls, Samples));
   const auto draw = [](vtkBanyanVolumeMapper* mapper, bool shade)
   {

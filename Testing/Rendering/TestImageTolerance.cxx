@@ -1,0 +1,106 @@
+// The tolerance for errors of vtkBanyanVolumeMapper's pictures, still and while somebody interacts.
+
+#include "MapperTesting.h"
+
+#include "vtkBanyanFrameStatistics.h"
+#include "vtkBanyanSeriesReader.h"
+#include "vtkBanyanVolumeMapper.h"
+
+using namespace mapper_testing;
+
+namespace
+{
+
+const glm::ivec3 Samples{ 49, 41, 45 };
+const double Bounds[6] = { 0, 48, 0, 40, 0, 44 };
+
+double EstimateOf(vtkBanyanVolumeMapper* mapper)
+{
+  return mapper->GetStatistics()->GetEstimatedImageError();
+}
+
+void PicturesStayWithinTheirTolerance(const std::string& path)
+{
+  WriteSeries(path, Balls, Samples, 1, 0.0);
+  vtkNew<vtkBanyanSeriesReader> reader;
+  reader->SetFileName(path.c_str());
+  for (const bool encoded : { false, true })
+  {
+    const auto draw = [&](double tolerance, double distance, double& estimate, vtkIdType& samples)
+    {
+      vtkNew<vtkBanyanVolumeMapper> mapper;
+      if (encoded)
+      {
+        mapper->SetInputConnection(reader->GetOutputPort());
+      }
+      else
+      {
+        mapper->SetInputData(PlainImage(Balls, Samples));
+      }
+      mapper->SetImageErrorTolerance(tolerance);
+      mapper->SetSampleDistanceVoxels(distance);
+      Stage stage(mapper);
+      stage.LookAt(Bounds);
+      const auto picture = stage.Draw();
+      estimate = EstimateOf(mapper);
+      samples = mapper->GetStatistics()->GetSamplesTaken();
+      return picture;
+    };
+    double estimate = 0.0;
+    vtkIdType samples = 0;
+    const auto exact = draw(1.0, 0.05, estimate, samples);
+    Check(estimate == 0.0, "nothing is estimated where the sample distance is fixed");
+    vtkIdType before = 0;
+    for (const double tolerance : { 20.0, 4.0, 1.0 })
+    {
+      const auto picture = draw(tolerance, 0.0, estimate, samples);
+      Check(estimate > 0.0 && estimate <= tolerance, "the estimate is within the tolerance");
+      // Both pictures are rounded to 8 bits.
+      Check(Difference(picture, exact) <= estimate + 1.0, "the error is below the estimate");
+      Check(samples > before, "smaller tolerances take more samples");
+      before = samples;
+    }
+  }
+}
+
+void FramesThatTakeTooLongGetALargerTolerance()
+{
+  vtkNew<vtkBanyanVolumeMapper> mapper;
+  mapper->SetInputData(PlainImage(Balls, Samples));
+  mapper->SetInteractiveImageErrorTolerance(2.0);
+  mapper->SetInteractiveFrameSeconds(1e-6);
+  Stage stage(mapper);
+  stage.LookAt(Bounds);
+  stage.Draw();
+  const double still = EstimateOf(mapper);
+  const auto stillPicture = stage.Draw();
+  Check(still <= 1.0, "a still frame keeps its tolerance");
+  stage.Window->SetDesiredUpdateRate(5.0);
+  stage.Draw();
+  const double first = EstimateOf(mapper);
+  Check(first > still && first <= 2.0, "while interacting there is another tolerance");
+  for (int i = 0; i < 10; ++i)
+  {
+    stage.Draw();
+  }
+  const double last = EstimateOf(mapper);
+  Check(last > 2.0 && last <= 32.0, "it grows while frames take too long, up to 16 times");
+  mapper->SetInteractiveFrameSeconds(1000.0);
+  for (int i = 0; i < 6; ++i)
+  {
+    stage.Draw();
+  }
+  Check(EstimateOf(mapper) <= 2.0, "and shrinks when they do not");
+  stage.Window->SetDesiredUpdateRate(0.0001);
+  Check(Difference(stage.Draw(), stillPicture) == 0, "still frames know nothing of all that");
+}
+
+} // namespace
+
+int main()
+{
+  const TemporaryFolder folder;
+  PicturesStayWithinTheirTolerance(folder / "series.banyan");
+  FramesThatTakeTooLongGetALargerTolerance();
+  return Failures() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
