@@ -1,15 +1,18 @@
 #include "RayCastRenderer.h"
 
 #include "Base/ThreadPool.h"
+#include "Render/SamplingPlan.h"
 
 namespace banyan::bench
 {
 namespace
 {
 
-/// As VTK's GPU mapper: a ray ends when one step of 8 bits is all that could follow.
+/// With fixed sample distances, as VTK's GPU mapper: a ray ends when one step of 8 bits is all that
+/// could follow.
 constexpr float OpacityLimit = 1.0f - 1.0f / 255.0f;
 constexpr int BrickCells = 32; // what the packets are made for
+constexpr int CoarsestLevel = 3;
 
 class BanyanRenderer : public RayCastRenderer
 {
@@ -27,6 +30,10 @@ public:
     for (const double distance : { 0.25, 0.5, 1.0, 2.0, 4.0 })
     {
       settings.push_back({ {}, distance });
+    }
+    for (const double tolerance : { 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0 })
+    {
+      settings.push_back({ tolerance, {} });
     }
     return settings;
   }
@@ -47,10 +54,8 @@ public:
       this->Source = std::make_unique<ArrayBrickSource>(this->Scene->Data->Array(), BrickCells,
         MaskRange{ this->Scene->Low, this->Scene->High }, this->Pool);
     }
-    const RayScene scene = this->SceneWith(this->Settings.at(number));
     RayStatistics statistics;
-    FloatImage image = CastRays(
-      scene, *this->Source, scene.DomainCells, ~std::uint64_t{ 0 }, this->Pool, statistics);
+    FloatImage image = this->Cast(this->SceneWith(this->Settings.at(number), statistics), statistics);
     clock.StopInto(frame);
     frame.Shown = Rounded(image, this->Scene->Picture);
     frame.Unrounded = std::move(image);
@@ -59,9 +64,25 @@ public:
   }
 
 private:
-  RayScene SceneWith(const Setting& setting) const
+  FloatImage Cast(const RayScene& scene, RayStatistics& statistics)
   {
-    return ToRayScene(*this->Scene, setting.SampleDistance.value_or(1.0), OpacityLimit);
+    return CastRays(
+      scene, *this->Source, scene.DomainCells, ~std::uint64_t{ 0 }, this->Pool, statistics);
+  }
+
+  /// What finding samplings for a tolerance takes is part of the frame.
+  RayScene SceneWith(const Setting& setting, RayStatistics& statistics)
+  {
+    RayScene scene = ToRayScene(*this->Scene, setting.SampleDistance.value_or(1.0), OpacityLimit);
+    if (setting.Tolerance)
+    {
+      const SamplingPlan plan =
+        PlanSamplings(scene, { *setting.Tolerance, scene.SampleDistance, CoarsestLevel },
+          [&](const RayScene& pilot) { return this->Cast(pilot, statistics); });
+      scene.Samplings = plan.Samplings;
+      scene.OpacityLimit = plan.OpacityLimit;
+    }
+    return scene;
   }
 
   ThreadPool Pool;

@@ -75,7 +75,7 @@ void JudgeFirst(
     result.LargestErrorUnrounded = ErrorOf(*frame.Unrounded, reference).Largest;
   }
   const Setting& setting = result.Accuracy;
-  if (!folder.empty() && setting.Tolerance.value_or(setting.SampleDistance.value_or(0.0)) == 1.0)
+  if (!folder.empty() && setting.SampleDistance.value_or(0.0) == 1.0)
   {
     WritePicture(frame.Shown, folder + "/" + FileNameOf(result));
   }

@@ -30,7 +30,7 @@ struct RayCastMeasuring
   int Threads = 1;
   int Repeat = 3;
   std::vector<double> Settings; ///< only these sample distances and tolerances; none means all
-  std::string PictureFolder;    ///< where pictures at step or tolerance 1 go; empty for none
+  std::string PictureFolder;    ///< where pictures at step 1 go; empty for none
 };
 
 /// Draws a scene with all settings of all renderers: first all of them once, then `Repeat` times in
