@@ -55,8 +55,11 @@ void PicturesStayWithinTheirTolerance(const std::string& path)
     {
       const auto picture = draw(tolerance, 0.0, estimate, samples);
       Check(estimate > 0.0 && estimate <= tolerance, "the estimate is within the tolerance");
-      // Both pictures are rounded to 8 bits.
-      Check(Difference(picture, exact) <= estimate + 1.0, "the error is below the estimate");
+      // Both pictures are rounded to 8 bits, and the exact one's rays end at an opacity of 0.999.
+      const double ownErrors = 1.0 + 0.001 * 255.0;
+      const double error = Difference(picture, exact);
+      Check(error <= estimate + ownErrors, "the error is below the estimate: " + std::to_string(error) +
+          " and " + std::to_string(estimate) + ", encoded: " + std::to_string(encoded));
       Check(samples > before, "smaller tolerances take more samples");
       before = samples;
     }
