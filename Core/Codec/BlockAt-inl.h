@@ -10,13 +10,12 @@
 #include "Codec/BlockUnits-inl.h"
 #include "Codec/SliceEncoder-inl.h"
 
+#include <utility>
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
-
-using Sample = std::int32_t; ///< of planes
 
 /// What a thread encodes blocks with.
 template <class Number>
@@ -38,6 +37,7 @@ struct BlockMemory
   block::Scratch<Number, 3> Interior, InteriorTarget;
   UnitTokens Tokens;
   std::vector<Number> Boxes; ///< of the target and both references
+  std::vector<std::pair<std::int64_t, block::Mode>> Costs;
 };
 
 /// A block of a plane that is being encoded.
@@ -51,21 +51,21 @@ struct BlockAt
 
   const PlaneToEncode& Plane() const { return *this->Job.Plane; }
 
-  View<Sample> ViewOf(PlaneNumbers& plane) const
+  View<Number> ViewOf(PlaneNumbers& plane) const
   {
     const glm::ivec3 origin = this->Position * this->B();
-    return { plane.Numbers.data() + plane.IndexOf(origin),
+    return { plane.Data<Number>() + plane.IndexOf(origin),
       { 1, plane.Padded.x, std::int64_t{ plane.Padded.x } * plane.Padded.y } };
   }
-  View<const Sample> ViewOf(const PlaneNumbers& plane) const
+  View<const Number> ViewOf(const PlaneNumbers& plane) const
   {
-    const View<Sample> view = this->ViewOf(const_cast<PlaneNumbers&>(plane));
+    const View<Number> view = this->ViewOf(const_cast<PlaneNumbers&>(plane));
     return { view.Base, view.Stride };
   }
 
-  References<Sample> ReferencesOf(block::Reference from) const
+  References<Number> ReferencesOf(block::Reference from) const
   {
-    References<Sample> result;
+    References<Number> result;
     result.From = from;
     if (from != block::Reference::None)
     {

@@ -9,7 +9,10 @@
 #include "Codec/BlockAt-inl.h"
 #include "Codec/SliceTrial-inl.h"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -21,60 +24,108 @@ namespace banyan::HWY_NAMESPACE
 template <class Edge, class Number>
 struct BlockChooser : BlockAt<Edge, Number>
 {
+  typedef float Floats __attribute__((vector_size(64)));
+  using Costs = Numbers<std::int32_t>::Signed;
+
+  /// Whether rows along z are looked at there: some of all.
+  static bool Looked(int y) { return y % 16 == 3 || y % 16 == 8 || y % 16 == 12; }
+
+  /// Takes what Estimate looks at, less its reference.
+  void LoadLooked(const View<const Number>& samples, const References<Number>& from, Number* w) const
+  {
+    const block::Shape<3> shape{ this->B() };
+    const int n = this->B();
+    WithReference<Number>(from.From,
+      [&](auto reference)
+      {
+        for (int z = 0; z <= n; ++z)
+        {
+          for (int y = 0; y <= n; ++y)
+          {
+            if (Looked(y) || (z & 3) == 0)
+            {
+              LoadRow(reference, RowOf(samples, from, y, z), 0, n, w + z * shape.Z() + y * shape.Y());
+            }
+          }
+        }
+      });
+  }
+
   /// Guesses the bits that residuals take, from some rows of each pass, with what is to be coded in
   /// place of what will have been decoded.
-  double Estimate(const Number* w, Interpolation by) const
+  std::int64_t Estimate(const Number* w, Interpolation by) const
   {
     const int b = this->B();
-    double cost = 0;
-    const auto add = [&](auto pass, int y, int z, double weight)
+    const glm::ivec3 last =
+      glm::min(this->Plane().Target->Samples - 1 - this->Position * b, glm::ivec3(b - 1));
+    Costs costs{};
+    const auto add = [&](auto pass, int y, int z, std::int32_t weight)
     {
       using P = decltype(pass);
-      cost += weight * this->template RowEstimate<P>(w, y, z, by);
+      if (y <= last.y && z <= last.z)
+      {
+        costs += this->template RowEstimate<P>(w, y, z, by, last.x) * weight;
+      }
     };
     for (int k = 1; k < b; k += 2)
     {
-      for (int j = 1 + (k / 2) % 3; j < b; j += 5)
+      for (int j = 1; j < b; ++j)
       {
-        add(Pass<3, 2, 1>{}, j, k, 5.0);
+        if (Looked(j))
+        {
+          add(Pass<3, 2, 1>{}, j, k, 5);
+        }
       }
       for (int j = 4; j < b; j += 4)
       {
-        add(Pass<3, 1, 1>{}, k, j, 2.0);
-        add(Pass<3, 0, 1>{}, (k / 2) * 2, j, 2.0);
+        add(Pass<3, 1, 1>{}, k, j, 2);
+        add(Pass<3, 0, 1>{}, k - 1, j, 2);
       }
     }
-    return cost;
+    for (int k = 2; k < b; k += 4)
+    {
+      for (int j = 4; j < b; j += 4)
+      {
+        add(Pass<3, 1, 2>{}, k, j, 1);
+        if (Looked(j))
+        {
+          add(Pass<3, 2, 2>{}, j, k, 4);
+        }
+      }
+    }
+    std::int64_t total = 0;
+    for (int x = 0; x < Width; ++x)
+    {
+      total += costs[x];
+    }
+    return total;
   }
 
+  /// Of a row, in 2^-11 bits times 8, about. What is less than half a bin costs little, and much less the
+  /// less it is: it is 0 once it is quantized, like what is around it.
   template <class P>
-  HWY_INLINE double RowEstimate(const Number* w, int y, int z, Interpolation by) const
+  HWY_INLINE Costs RowEstimate(const Number* w, int y, int z, Interpolation by, int last) const
   {
     using Signed = typename Numbers<Number>::Signed;
-    using Bits = Numbers<std::int32_t>::Signed;
-    typedef float Floats __attribute__((vector_size(64)));
     const block::Shape<3> shape{ this->B() };
     const RowPlace place{ z * shape.Z() + y * shape.Y(), 0, y, z, y, 0 };
-    const float scale = 2.0f / static_cast<float>(this->Plane().FineBin);
-    const int left = this->B() - P::First;
-    Bits sum{};
+    const float scale =
+      4.0f / static_cast<float>(P::S == 2 ? this->Plane().CoarseBin : this->Plane().FineBin);
+    const int left = last + 1 - P::First;
+    Costs sum{};
     for (int at = 0; at < left; at += Width)
     {
       Signed rest = reinterpret_cast<Signed>(Numbers<Number>::Load(w + place.W + P::First + at) -
                                              Predict<P>(w, this->B, place, at, by));
       rest &= LaneMask<P, Signed>(left - at);
       const Floats bins = __builtin_convertvector(rest, Floats) * scale;
-      const Floats size = 1.0f + bins * bins;
-      Bits bits;
+      const Floats squares = bins * bins;
+      const Floats size = 1.0f + squares * squares;
+      Costs bits;
       std::memcpy(&bits, &size, sizeof(bits));
       sum += (bits - 0x3f800000) >> 12; // 2^11 times about log2(size)
     }
-    std::int32_t total = 0;
-    for (int x = 0; x < Width; ++x)
-    {
-      total += sum[x];
-    }
-    return total;
+    return sum;
   }
 
   /// The samples that a block is chosen by, side by side: they are looked at many times.
@@ -97,17 +148,14 @@ struct BlockChooser : BlockAt<Edge, Number>
       const View<const Number> box{ to, { 1, n, n * n } };
       if (from != nullptr)
       {
-        const View<const Sample> samples = this->ViewOf(*from);
+        const View<const Number> samples = this->ViewOf(*from);
         for (int z = 0; z < n; ++z)
         {
           for (int y = 0; y < n; ++y, to += n)
           {
-            const Sample* row = samples.Row(y, z);
+            const Number* row = samples.Row(y, z);
             __builtin_prefetch(row + samples.Stride.z);
-            for (int x = 0; x < n; ++x)
-            {
-              to[x] = static_cast<Number>(row[x]);
-            }
+            std::memcpy(to, row, static_cast<std::size_t>(n) * sizeof(Number));
           }
         }
       }
@@ -134,7 +182,8 @@ struct BlockChooser : BlockAt<Edge, Number>
     }
     const Boxes boxes = this->GatherBoxes();
     block::Scratch<Number, 3>& scratch = this->Work.Interior;
-    std::vector<std::pair<double, block::Mode>> costs;
+    std::vector<std::pair<std::int64_t, block::Mode>>& costs = this->Work.Costs;
+    costs.clear();
     block::Reference loaded = block::Reference::None;
     for (const block::Mode& mode : plane.Candidates)
     {
@@ -144,27 +193,33 @@ struct BlockChooser : BlockAt<Edge, Number>
       }
       if (costs.empty() || mode.From != loaded)
       {
-        LoadUnit<3>(boxes.Target, boxes.ReferencesOf(mode.From), this->B, true, scratch.W());
+        this->LoadLooked(boxes.Target, boxes.ReferencesOf(mode.From), scratch.W());
         loaded = mode.From;
       }
       costs.emplace_back(this->Estimate(scratch.W(), mode.By), mode);
     }
-    const std::size_t tried = static_cast<std::size_t>(std::max(plane.Trials, 1));
     std::stable_sort(costs.begin(), costs.end(),
       [](const auto& a, const auto& b) { return a.first < b.first; });
-    costs.resize(std::min(costs.size(), tried));
-    for (auto& [cost, mode] : costs)
+    // Where one looks clearly best, it is.
+    const std::int64_t close = costs[0].first + costs[0].first * plane.TrialMargin / 100;
+    const auto end = std::find_if(costs.begin() + 1, costs.end(), [close](const auto& cost) { return cost.first > close; });
+    const std::size_t trials = std::min<std::size_t>(
+      static_cast<std::size_t>(end - costs.begin()), static_cast<std::size_t>(std::max(plane.Trials, 1)));
+    std::size_t best = 0;
+    std::int64_t least = std::numeric_limits<std::int64_t>::max();
+    for (std::size_t i = 0; trials > 1 && i < trials; ++i)
     {
-      cost = costs.size() > 1 ? this->TrialCost(boxes, mode) : 0.0;
+      const std::int64_t cost = this->TrialCost(boxes, costs[i].second, least);
+      best = cost < least ? i : best;
+      least = std::min(cost, least);
     }
-    const auto best = std::min_element(costs.begin(), costs.end(),
-      [](const auto& a, const auto& b) { return a.first < b.first; });
-    out.Mode = static_cast<std::uint8_t>(block::NumberOf(best->second));
+    out.Mode = static_cast<std::uint8_t>(block::NumberOf(costs[best].second));
   }
 
   /// What the interior of a block would cost, with borders as they are to be in place of what they
   /// will have been decoded to.
-  double TrialCost(const Boxes& boxes, const block::Mode& mode) const
+  /// @param enough more than that is as good as any other
+  std::int64_t TrialCost(const Boxes& boxes, const block::Mode& mode, std::int64_t enough) const
   {
     block::Scratch<Number, 3>& scratch = this->Work.Interior;
     block::Scratch<Number, 3>& target = this->Work.InteriorTarget;
@@ -179,11 +234,14 @@ struct BlockChooser : BlockAt<Edge, Number>
       [&](auto pass)
       {
         using P = decltype(pass);
-        cost += SliceTrial<P, Edge, Number>{
-          this->template RowsOf<P>(unit, mode.By, target.W()) }
-                  .Run();
+        if (cost < enough)
+        {
+          cost += SliceTrial<P, Edge, Number>{
+            this->template RowsOf<P>(unit, mode.By, target.W()) }
+                    .Run();
+        }
       });
-    return static_cast<double>(cost);
+    return cost;
   }
 };
 

@@ -30,9 +30,9 @@ struct BlockCoder : BlockAt<Edge, Number>
     const PlaneToEncode& plane = this->Plane();
     const block::Mode mode = block::ModeOf(out.Mode);
     const block::Shape<D> shape{ this->B() };
-    const References<Sample> references = this->ReferencesOf(mode.From);
-    const View<Sample> decoded = this->ViewOf(*this->Job.Decoded);
-    const View<const Sample> wanted = this->ViewOf(*plane.Target);
+    const References<Number> references = this->ReferencesOf(mode.From);
+    const View<Number> decoded = this->ViewOf(*this->Job.Decoded);
+    const View<const Number> wanted = this->ViewOf(*plane.Target);
     const glm::ivec3 blocks = this->Job.Decoded->Blocks;
     Unit<Number, D> unit{ scratch.W(), scratch.M(), scratch.R(), scratch.S(), {}, rough };
     bool exists[3] = {};
@@ -52,8 +52,8 @@ struct BlockCoder : BlockAt<Edge, Number>
       if (exists[number])
       {
         const std::ptrdiff_t at = number * shape.Pitch();
-        const View<Sample> samples = decoded.Along(axes);
-        LoadUnit<D>(View<const Sample>{ samples.Base, samples.Stride }, references.Along(axes),
+        const View<Number> samples = decoded.Along(axes);
+        LoadUnit<D>(View<const Number>{ samples.Base, samples.Stride }, references.Along(axes),
           this->B, false, scratch.W() + at);
         LoadUnit<D>(
           wanted.Along(axes), references.Along(axes), this->B, true, target.W() + at);
@@ -179,7 +179,7 @@ void EncodeBlockOf(const PlaneJob& job, const glm::ivec3& position, BlockPhase p
 
 void EncodeBlockHere(const PlaneJob& job, const glm::ivec3& position, BlockPhase phase)
 {
-  if (block::Narrow(job.Plane->Least, job.Plane->Greatest))
+  if (job.Decoded->Narrow)
   {
     return EncodeBlockOf<std::int16_t>(job, position, phase);
   }

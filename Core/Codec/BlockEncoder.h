@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace banyan
@@ -17,16 +18,54 @@ class ThreadPool;
 ///
 /// Numbers are padded: there are Blocks * Edge + 1 per axis, x fastest, so that each block has its
 /// box of (Edge + 1)^3. Beyond the field's end they are what a decoder predicts there.
-struct PlaneNumbers
+class PlaneNumbers
 {
+public:
   PlaneNumbers() = default;
-  PlaneNumbers(const glm::ivec3& samples, int edge);
+  /// @param narrow whether numbers are kept in 16 bits: where block::Narrow says so
+  PlaneNumbers(const glm::ivec3& samples, int edge, bool narrow);
 
   int Edge = 16;
   glm::ivec3 Samples{ 1 };
   glm::ivec3 Blocks{ 1 }; ///< ceil(Samples / Edge)
   glm::ivec3 Padded{ 17 };
-  std::vector<std::int32_t> Numbers;
+  bool Narrow = false;
+
+  /// All numbers.
+  /// @param Number std::int16_t where they are narrow, else std::int32_t
+  template <class Number>
+  Number* Data()
+  {
+    if constexpr (sizeof(Number) == sizeof(std::int16_t))
+    {
+      return this->Short.data();
+    }
+    else
+    {
+      return this->Long.data();
+    }
+  }
+  template <class Number>
+  const Number* Data() const
+  {
+    return const_cast<PlaneNumbers*>(this)->Data<Number>();
+  }
+  /// Calls body(Data<Number>()).
+  template <class Body>
+  void With(Body&& body)
+  {
+    this->Narrow ? body(this->Data<std::int16_t>()) : body(this->Data<std::int32_t>());
+  }
+  template <class Body>
+  void With(Body&& body) const
+  {
+    this->Narrow ? body(this->Data<std::int16_t>()) : body(this->Data<std::int32_t>());
+  }
+  std::int32_t At(const glm::ivec3& p) const
+  {
+    const std::size_t i = static_cast<std::size_t>(this->IndexOf(p));
+    return this->Narrow ? this->Short[i] : this->Long[i];
+  }
 
   std::int64_t BlockCount() const
   {
@@ -36,6 +75,14 @@ struct PlaneNumbers
   {
     return (std::int64_t{ p.z } * this->Padded.y + p.y) * this->Padded.x + p.x;
   }
+  friend bool operator==(const PlaneNumbers& a, const PlaneNumbers& b)
+  {
+    return a.Edge == b.Edge && a.Samples == b.Samples && a.Short == b.Short && a.Long == b.Long;
+  }
+
+private:
+  std::vector<std::int16_t> Short; ///< one of both is empty
+  std::vector<std::int32_t> Long;
 };
 
 /// Samples per axis of the next coarser plane, which keeps every fourth sample; where the last gap
@@ -64,13 +111,16 @@ struct PlaneToEncode
   std::int32_t Least = 0, Greatest = 0;
   std::vector<block::Mode> Candidates; ///< to choose from; at least one without references
   int Trials = 1; ///< how many of them, those that look best, are encoded to see what they cost
+  int TrialMargin = 1000; ///< those that look worse by more per cent are not
 };
 
 /// Codes all blocks of a plane.
-/// @param decoded receives exactly what DecodeBox will give
+/// @param decoded a plane like the target (of which nothing is kept); receives exactly what DecodeBox
+/// will give
+/// @param done called for each block, by any thread, when it is decoded: its numbers are still at hand
 /// The result does not depend on the number of threads.
-void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded,
-  std::vector<BlockTokens>& blocks, ThreadPool& pool);
+void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded, std::vector<BlockTokens>& blocks,
+  ThreadPool& pool, const std::function<void(std::int64_t block)>& done);
 
 } // namespace banyan
 

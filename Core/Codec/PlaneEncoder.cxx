@@ -1,50 +1,62 @@
 #include "Codec/BlockJob.h"
 
+#include "Base/Error.h"
 #include "Base/ThreadPool.h"
+#include "Codec/BlockScratch.h"
+
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
+#include <type_traits>
 
 namespace banyan
 {
 namespace
 {
 
+template <class Number>
 void PlaceCoarser(const PlaneNumbers& coarser, PlaneNumbers& decoded)
 {
   const glm::ivec3 last = coarser.Samples - 1;
+  const Number* const numbers = coarser.Data<Number>();
   for (int z = 0; z < decoded.Padded.z; z += 4)
   {
     for (int y = 0; y < decoded.Padded.y; y += 4)
     {
-      const std::int64_t from =
-        coarser.IndexOf({ 0, std::min(y / 4, last.y), std::min(z / 4, last.z) });
-      std::int32_t* row = decoded.Numbers.data() + decoded.IndexOf({ 0, y, z });
+      const Number* from =
+        numbers + coarser.IndexOf({ 0, std::min(y / 4, last.y), std::min(z / 4, last.z) });
+      Number* row = decoded.Data<Number>() + decoded.IndexOf({ 0, y, z });
       for (int x = 0; x < decoded.Padded.x; x += 4)
       {
-        row[x] = coarser.Numbers[static_cast<std::size_t>(from + std::min(x / 4, last.x))];
+        row[x] = from[std::min(x / 4, last.x)];
       }
     }
   }
 }
 
-/// Finds the blocks whose samples are all the same, and places them.
+/// Finds out whether the samples of a block are all the same, and places them.
+template <class Number>
 void PlaceUniform(const PlaneNumbers& target, const glm::ivec3& position, BlockTokens& block,
   PlaneNumbers& decoded)
 {
   const glm::ivec3 low = position * target.Edge;
   const glm::ivec3 high = low + target.Edge;
-  const std::int32_t value = target.Numbers[static_cast<std::size_t>(target.IndexOf(low))];
+  const Number* const numbers = target.Data<Number>();
+  const Number value = numbers[target.IndexOf(low)];
   for (int z = low.z; z < high.z; ++z)
   {
     for (int y = low.y; y < high.y; ++y)
     {
-      const std::int32_t* row = target.Numbers.data() + target.IndexOf({ low.x, y, z });
+      const Number* row = numbers + target.IndexOf({ low.x, y, z });
+      Number other = 0;
       for (int x = 0; x < target.Edge; ++x)
       {
-        if (row[x] != value)
-        {
-          return;
-        }
+        other = static_cast<Number>(other | (row[x] ^ value));
+      }
+      if (other != 0)
+      {
+        return;
       }
     }
   }
@@ -54,34 +66,39 @@ void PlaceUniform(const PlaneNumbers& target, const glm::ivec3& position, BlockT
   {
     for (int y = low.y; y < high.y; ++y)
     {
-      std::int32_t* row = decoded.Numbers.data() + decoded.IndexOf({ low.x, y, z });
+      Number* row = decoded.Data<Number>() + decoded.IndexOf({ low.x, y, z });
       std::fill(row, row + target.Edge, value);
     }
   }
 }
 
-/// Finds the blocks that may stay as they are in reference A, and places them.
+/// Finds out whether a block may stay as it is in reference A, and places it.
+template <class Number>
 void PlaceSame(const PlaneToEncode& plane, const glm::ivec3& position, BlockTokens& block,
   PlaneNumbers& decoded)
 {
+  // Numbers of 16 bits are of a lattice of 8000: their differences are, too.
+  using Wide = std::conditional_t<sizeof(Number) == 2, Number, std::int64_t>;
   const PlaneNumbers& target = *plane.Target;
   const glm::ivec3 low = position * target.Edge;
   const glm::ivec3 high = low + target.Edge;
-  const glm::ivec3 limit = target.Samples;
-  const std::int64_t most = plane.FineBin / 2;
-  for (int z = low.z; z < std::min(high.z, limit.z); ++z)
+  const glm::ivec3 end = glm::min(high, target.Samples);
+  const Wide most = static_cast<Wide>(plane.FineBin / 2);
+  for (int z = low.z; z < end.z; ++z)
   {
-    for (int y = low.y; y < std::min(high.y, limit.y); ++y)
+    for (int y = low.y; y < end.y; ++y)
     {
-      const std::int32_t* row = target.Numbers.data() + target.IndexOf({ 0, y, z });
-      const std::int32_t* before = plane.A->Numbers.data() + plane.A->IndexOf({ 0, y, z });
-      for (int x = low.x; x < std::min(high.x, limit.x); ++x)
+      const Number* row = target.Data<Number>() + target.IndexOf({ low.x, y, z });
+      const Number* before = plane.A->Data<Number>() + plane.A->IndexOf({ low.x, y, z });
+      int beyond = 0;
+      for (int x = 0; x < end.x - low.x; ++x)
       {
-        const std::int64_t rest = std::int64_t{ row[x] } - before[x];
-        if (rest > most || rest < -most)
-        {
-          return;
-        }
+        const Wide rest = static_cast<Wide>(static_cast<Wide>(row[x]) - before[x]);
+        beyond |= static_cast<int>(rest > most) | static_cast<int>(rest < -most);
+      }
+      if (beyond != 0)
+      {
+        return;
       }
     }
   }
@@ -90,8 +107,9 @@ void PlaceSame(const PlaneToEncode& plane, const glm::ivec3& position, BlockToke
   {
     for (int y = low.y; y < high.y; ++y)
     {
-      const std::int32_t* from = plane.A->Numbers.data() + plane.A->IndexOf({ low.x, y, z });
-      std::copy(from, from + target.Edge, decoded.Numbers.data() + decoded.IndexOf({ low.x, y, z }));
+      const Number* from = plane.A->Data<Number>() + plane.A->IndexOf({ low.x, y, z });
+      std::copy(
+        from, from + target.Edge, decoded.Data<Number>() + decoded.IndexOf({ low.x, y, z }));
     }
   }
 }
@@ -104,13 +122,16 @@ glm::ivec3 PositionIn(const glm::ivec3& size, std::int64_t index)
 
 } // namespace
 
-PlaneNumbers::PlaneNumbers(const glm::ivec3& samples, int edge)
+PlaneNumbers::PlaneNumbers(const glm::ivec3& samples, int edge, bool narrow)
   : Edge(edge)
   , Samples(samples)
   , Blocks((samples + edge - 1) / edge)
   , Padded(Blocks * edge + 1)
-  , Numbers(static_cast<std::size_t>(std::int64_t{ Padded.x } * Padded.y * Padded.z))
+  , Narrow(narrow)
 {
+  const std::size_t count = static_cast<std::size_t>(
+    std::int64_t{ this->Padded.x } * this->Padded.y * this->Padded.z);
+  narrow ? this->Short.resize(count) : this->Long.resize(count);
 }
 
 glm::ivec3 CoarserSamples(const glm::ivec3& samples)
@@ -118,35 +139,87 @@ glm::ivec3 CoarserSamples(const glm::ivec3& samples)
   return (samples - 1 + 3) / 4 + 1;
 }
 
-void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded,
-  std::vector<BlockTokens>& blocks, ThreadPool& pool)
+void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded, std::vector<BlockTokens>& blocks,
+  ThreadPool& pool, const std::function<void(std::int64_t)>& done)
 {
   const PlaneNumbers& target = *plane.Target;
-  decoded = PlaneNumbers(target.Samples, target.Edge);
+  if (target.Narrow != block::Narrow(plane.Least, plane.Greatest) ||
+      decoded.Narrow != target.Narrow || decoded.Padded != target.Padded)
+  {
+    throw Error("The numbers of a plane are not kept in as many bits as its lattice asks for");
+  }
   blocks.clear();
   blocks.resize(static_cast<std::size_t>(target.BlockCount()));
-  PlaceCoarser(*plane.Coarser, decoded);
-  pool.ParallelFor(target.BlockCount(),
-    [&](std::int64_t i)
-    {
-      const glm::ivec3 position = PositionIn(target.Blocks, i);
-      BlockTokens& block = blocks[static_cast<std::size_t>(i)];
-      PlaceUniform(target, position, block, decoded);
-      if (!block.Uniform && plane.A != nullptr)
-      {
-        PlaceSame(plane, position, block, decoded);
-      }
-    });
   std::vector<BlockUnderway> underway(blocks.size());
   const PlaneJob job{ &plane, &decoded, &blocks, &underway };
-  pool.ParallelFor(target.BlockCount(), [&](std::int64_t i)
-    { EncodeBlock(job, PositionIn(target.Blocks, i), BlockPhase::Choose); });
+  const auto place = [&](std::int64_t i)
+  {
+    const glm::ivec3 position = PositionIn(target.Blocks, i);
+    BlockTokens& block = blocks[static_cast<std::size_t>(i)];
+    target.With(
+      [&](auto* numbers)
+      {
+        using Number = std::remove_const_t<std::remove_pointer_t<decltype(numbers)>>;
+        PlaceUniform<Number>(target, position, block, decoded);
+        if (!block.Uniform && plane.A != nullptr)
+        {
+          PlaceSame<Number>(plane, position, block, decoded);
+        }
+      });
+    EncodeBlock(job, position, BlockPhase::Choose);
+  };
   const glm::ivec3 extended = target.Blocks + 1;
   const std::int64_t count = std::int64_t{ extended.x } * extended.y * extended.z;
-  for (const BlockPhase phase : { BlockPhase::Edges, BlockPhase::Faces, BlockPhase::Interior })
+  const auto indexOf = [&](const glm::ivec3& position)
   {
-    pool.ParallelFor(
-      count, [&](std::int64_t i) { EncodeBlock(job, PositionIn(extended, i), phase); });
+    return glm::all(glm::lessThan(position, target.Blocks))
+             ? (std::int64_t{ position.z } * target.Blocks.y + position.y) * target.Blocks.x + position.x
+             : -1;
+  };
+  target.With(
+    [&](auto* numbers)
+    {
+      PlaceCoarser<std::remove_const_t<std::remove_pointer_t<decltype(numbers)>>>(
+        *plane.Coarser, decoded);
+    });
+  constexpr BlockPhase phases[] = { BlockPhase::Edges, BlockPhase::Faces, BlockPhase::Interior };
+  if (pool.Width() == 1)
+  {
+    // Units begin at what the neighbours behind own: from the last block to the first, each can be
+    // done as a whole, while its numbers are at hand.
+    for (std::int64_t i = count; i-- > 0;)
+    {
+      const glm::ivec3 position = PositionIn(extended, i);
+      const std::int64_t index = indexOf(position);
+      if (index >= 0)
+      {
+        place(index);
+      }
+      for (const BlockPhase phase : phases)
+      {
+        EncodeBlock(job, position, phase);
+      }
+      if (index >= 0)
+      {
+        done(index);
+      }
+    }
+    return;
+  }
+  pool.ParallelFor(target.BlockCount(), place);
+  for (const BlockPhase phase : phases)
+  {
+    pool.ParallelFor(count,
+      [&](std::int64_t i)
+      {
+        const glm::ivec3 position = PositionIn(extended, i);
+        EncodeBlock(job, position, phase);
+        const std::int64_t index = phase == BlockPhase::Interior ? indexOf(position) : -1;
+        if (index >= 0)
+        {
+          done(index);
+        }
+      });
   }
 }
 

@@ -2,12 +2,14 @@
 
 #include "Base/ThreadPool.h"
 #include "Codec/BlockEncoder.h"
+#include "Codec/BlockScratch.h"
 #include "Codec/GroupOrder.h"
 #include "Codec/SymbolWriter.h"
 #include "Series/Exceptions.h"
 #include "Series/FieldLattice.h"
 #include "Series/GroupNodes.h"
 #include "Series/LatticeTarget.h"
+#include "Series/ProfileModes.h"
 
 #include <algorithm>
 #include <mutex>
@@ -16,35 +18,6 @@ namespace banyan
 {
 namespace
 {
-
-using block::Interpolation;
-using block::Mode;
-using block::Reference;
-
-std::vector<Mode> CandidatesOf(EncodeProfile profile)
-{
-  const Mode intra{ Reference::None, Interpolation::Cubic };
-  const Mode mean{ Reference::Mean, Interpolation::Cubic };
-  if (profile == EncodeProfile::Fast)
-  {
-    return { intra, mean };
-  }
-  std::vector<Mode> modes{ intra, { Reference::None, Interpolation::Linear }, mean,
-    { Reference::Mean, Interpolation::Linear }, { Reference::Mean, Interpolation::None },
-    { Reference::HalfMean, Interpolation::Cubic } };
-  modes.push_back({ Reference::A, Interpolation::Linear });
-  modes.push_back({ Reference::B, Interpolation::Linear });
-  if (profile == EncodeProfile::Compact)
-  {
-    for (const Reference from : { Reference::A, Reference::B, Reference::HalfMean })
-    {
-      modes.push_back(
-        { from, from == Reference::HalfMean ? Interpolation::Linear : Interpolation::Cubic });
-      modes.push_back({ from, Interpolation::None });
-    }
-  }
-  return modes;
-}
 
 /// Everything that is kept of a step until the group is written.
 struct StepWork
@@ -70,10 +43,11 @@ public:
 private:
   void Prepare();
   const std::vector<PlaneNumbers>* DecodedAt(int step) const;
-  void EncodePlanes(
-    int step, const std::vector<PlaneNumbers>& targets, const std::function<void(double)>& tell);
-  void FindExceptions(
-    int step, std::size_t plane, FieldErrors* errors, std::vector<double>* squares);
+  std::vector<PlaneNumbers> TakePlanes() const;
+  using BlockBody = std::function<void(std::size_t plane, std::int64_t block)>;
+  void EncodePlanes(int step, const BlockBody& done, const std::function<void(double)>& tell);
+  void EncodeStep(
+    int step, std::vector<double>* squares, const std::function<void(double)>& tell);
   void WriteSymbols();
   void CountChains();
 
@@ -81,6 +55,7 @@ private:
   ThreadPool& Pool;
   std::unique_ptr<LatticeTarget<T>> Target;
   std::vector<glm::ivec3> Planes; ///< samples
+  std::vector<PlaneNumbers> Wanted; ///< of the step under way
   std::vector<StepWork> Work;
   EncodedField Out;
 };
@@ -97,6 +72,7 @@ void Encoder<T>::Prepare()
   head.Open = this->Field.Before != nullptr && !head.Exact && this->Field.Steps.size() > 1 &&
               group::SameLattice(this->Field.Before->Head, head);
   this->Planes = this->Target->Planes();
+  this->Wanted = this->TakePlanes();
   this->Out.Steps.resize(this->Field.Steps.size());
   this->Work.resize(this->Field.Steps.size());
 }
@@ -109,15 +85,41 @@ const std::vector<PlaneNumbers>* Encoder<T>::DecodedAt(int step) const
                             : &this->Work[static_cast<std::size_t>(step)].Decoded;
 }
 
+/// Spare planes where there are such ones that fit, else new ones.
+template <class T>
+std::vector<PlaneNumbers> Encoder<T>::TakePlanes() const
+{
+  SparePlanes* const spare = this->Field.Spare;
+  while (spare != nullptr && !spare->empty())
+  {
+    std::vector<PlaneNumbers> planes = std::move(spare->back());
+    spare->pop_back();
+    bool fits = planes.size() == this->Planes.size();
+    for (std::size_t p = 0; fits && p < planes.size(); ++p)
+    {
+      fits = planes[p].Samples == this->Planes[p] && planes[p].Edge == this->Field.BrickCells &&
+             planes[p].Narrow == block::Narrow(this->Out.Head.Least, this->Out.Head.Greatest);
+    }
+    if (fits)
+    {
+      return planes;
+    }
+  }
+  return this->Target->NewPlanes();
+}
+
+/// @param done called for each block, by any thread, when it is decoded
 template <class T>
 void Encoder<T>::EncodePlanes(
-  int step, const std::vector<PlaneNumbers>& targets, const std::function<void(double)>& tell)
+  int step, const BlockBody& done, const std::function<void(double)>& tell)
 {
+  std::vector<PlaneNumbers>& targets = this->Wanted;
+  this->Target->Make(this->Field.Steps[static_cast<std::size_t>(step)], targets);
   StepWork& work = this->Work[static_cast<std::size_t>(step)];
   EncodedStep& out = this->Out.Steps[static_cast<std::size_t>(step)];
   const StepReferences references =
     ReferencesOfStep(step, static_cast<int>(this->Field.Steps.size()), this->Out.Head.Open);
-  work.Decoded.resize(targets.size());
+  work.Decoded = this->TakePlanes();
   work.Tokens.resize(targets.size() - 1);
   work.Decoded.back() = targets.back();
   const PlaneNumbers& top = targets.back();
@@ -127,7 +129,7 @@ void Encoder<T>::EncodePlanes(
     {
       for (int x = 0; x < top.Samples.x; ++x)
       {
-        out.Top.push_back(top.Numbers[static_cast<std::size_t>(top.IndexOf({ x, y, z }))]);
+        out.Top.push_back(top.At({ x, y, z }));
       }
     }
   }
@@ -145,52 +147,55 @@ void Encoder<T>::EncodePlanes(
     plane.FineBin = BinOfOctave(this->Out.Head.Bin, static_cast<int>(2 * p));
     plane.Least = this->Out.Head.Least;
     plane.Greatest = this->Out.Head.Greatest;
-    plane.Candidates = CandidatesOf(this->Field.Profile);
-    plane.Trials = this->Field.Profile == EncodeProfile::Compact  ? 4
-                   : this->Field.Profile == EncodeProfile::Fast ? 1
-                                                                : 2;
-    EncodePlane(plane, work.Decoded[p], work.Tokens[p], this->Pool);
+    ApplyProfile(this->Field.Profile, plane);
+    EncodePlane(plane, work.Decoded[p], work.Tokens[p], this->Pool,
+      [&](std::int64_t block) { done(p, block); });
     tell(static_cast<double>(targets.size() - 1 - p) / static_cast<double>(targets.size()));
   }
 }
 
-/// Compares what the samples of each block decode to with the originals; what is out of bounds
-/// becomes an exception.
+/// Encodes a step and compares what the samples of each block decode to with the originals; what is out
+/// of bounds becomes an exception.
 template <class T>
-void Encoder<T>::FindExceptions(
-  int step, std::size_t plane, FieldErrors* errors, std::vector<double>* squares)
+void Encoder<T>::EncodeStep(
+  int step, std::vector<double>* squares, const std::function<void(double)>& tell)
 {
-  const PlaneNumbers& decoded = this->Work[static_cast<std::size_t>(step)].Decoded[plane];
-  std::vector<EncodedBlock>& blocks = this->Out.Steps[static_cast<std::size_t>(step)].Planes[plane];
-  std::vector<FieldErrors> parts(blocks.size());
-  this->Pool.ParallelFor(static_cast<std::int64_t>(blocks.size()),
-    [&](std::int64_t i)
+  const void* const values = this->Field.Steps[static_cast<std::size_t>(step)];
+  const std::vector<PlaneNumbers>& decoded = this->Work[static_cast<std::size_t>(step)].Decoded;
+  EncodedStep& out = this->Out.Steps[static_cast<std::size_t>(step)];
+  for (std::size_t p = 0; p + 1 < this->Planes.size(); ++p)
+  {
+    out.Planes.emplace_back(static_cast<std::size_t>(this->Wanted[p].BlockCount()));
+  }
+  std::vector<FieldErrors> parts(out.Planes.empty() ? 0 : out.Planes[0].size());
+  this->EncodePlanes(step,
+    [&](std::size_t plane, std::int64_t i)
     {
       ExceptionList<T> list;
-      this->Target->Verify(this->Field.Steps[static_cast<std::size_t>(step)], decoded,
-        static_cast<int>(plane), i, list, parts[static_cast<std::size_t>(i)], squares);
+      FieldErrors coarse; // counted on the finest plane only
+      this->Target->Verify(values, decoded[plane], static_cast<int>(plane), i, list,
+        plane == 0 ? parts[static_cast<std::size_t>(i)] : coarse, plane == 0 ? squares : nullptr);
       if (!list.Positions.empty())
       {
-        const std::uint32_t edge = static_cast<std::uint32_t>(decoded.Edge);
-        blocks[static_cast<std::size_t>(i)].Exceptions =
+        const std::uint32_t edge = static_cast<std::uint32_t>(decoded[plane].Edge);
+        out.Planes[plane][static_cast<std::size_t>(i)].Exceptions =
           PackExceptions(list, edge * edge * edge, this->Field.CompressionLevel);
       }
-    });
+    },
+    tell);
+  FieldErrors& errors = this->Out.Errors;
   for (const FieldErrors& part : parts)
   {
-    if (errors != nullptr)
-    {
-      errors->Range.Include(part.Range);
-      errors->Maximum = std::max(errors->Maximum, part.Maximum);
-      errors->MaximumTransformed = std::max(errors->MaximumTransformed, part.MaximumTransformed);
-      errors->SumSquared += part.SumSquared;
-      errors->Finite += part.Finite;
-      errors->NonFinite += part.NonFinite;
-      errors->Exceptions += part.Exceptions;
-      errors->Fill += part.Fill;
-      errors->Invisible += part.Invisible;
-      errors->SumWeighted += part.SumWeighted;
-    }
+    errors.Range.Include(part.Range);
+    errors.Maximum = std::max(errors.Maximum, part.Maximum);
+    errors.MaximumTransformed = std::max(errors.MaximumTransformed, part.MaximumTransformed);
+    errors.SumSquared += part.SumSquared;
+    errors.Finite += part.Finite;
+    errors.NonFinite += part.NonFinite;
+    errors.Exceptions += part.Exceptions;
+    errors.Fill += part.Fill;
+    errors.Invisible += part.Invisible;
+    errors.SumWeighted += part.SumWeighted;
   }
 }
 
@@ -284,7 +289,7 @@ void Encoder<T>::CountChains()
         {
           open.push_back(references.A);
         }
-        else if (!block.Uniform && block::ModeOf(block.Mode).From != Reference::None)
+        else if (!block.Uniform && block::ModeOf(block.Mode).From != block::Reference::None)
         {
           open.push_back(references.A);
           open.push_back(references.B);
@@ -305,16 +310,9 @@ EncodedField Encoder<T>::Run(
   int done = 0;
   for (const int step : DyadicOrder(steps))
   {
-    this->EncodePlanes(step, this->Target->Make(this->Field.Steps[static_cast<std::size_t>(step)]),
+    this->EncodeStep(step,
+      sumSquares != nullptr ? &(*sumSquares)[static_cast<std::size_t>(step)] : nullptr,
       [&](double share) { tell(done + share); });
-    EncodedStep& out = this->Out.Steps[static_cast<std::size_t>(step)];
-    out.Planes.resize(this->Planes.size() - 1);
-    for (std::size_t p = 0; p + 1 < this->Planes.size(); ++p)
-    {
-      out.Planes[p].resize(this->Work[static_cast<std::size_t>(step)].Tokens[p].size());
-      this->FindExceptions(step, p, p == 0 ? &this->Out.Errors : nullptr,
-        p == 0 && sumSquares != nullptr ? &(*sumSquares)[static_cast<std::size_t>(step)] : nullptr);
-    }
     tell(++done);
   }
   this->WriteSymbols();
@@ -326,6 +324,15 @@ EncodedField Encoder<T>::Run(
   MakeNodes<T>(this->Field, this->Out.Head, decoded, this->Out.Steps, this->Pool);
   this->CountChains();
   this->Out.Last = { this->Out.Head, std::move(this->Work.back().Decoded) };
+  this->Work.pop_back();
+  if (this->Field.Spare != nullptr)
+  {
+    this->Field.Spare->push_back(std::move(this->Wanted));
+    for (StepWork& work : this->Work)
+    {
+      this->Field.Spare->push_back(std::move(work.Decoded));
+    }
+  }
   for (auto& set : this->Out.Last.Head.Frequencies)
   {
     set.clear();
@@ -338,10 +345,9 @@ KeyFrame Encoder<T>::RunKeyFrame()
 {
   this->Prepare();
   const int last = static_cast<int>(this->Field.Steps.size()) - 1;
-  this->EncodePlanes(last, this->Target->Make(this->Field.Steps.back()), [](double) {});
+  this->EncodePlanes(last, [](std::size_t, std::int64_t) {}, [](double) {});
   return { this->Out.Head, std::move(this->Work.back().Decoded) };
 }
-
 
 } // namespace
 

@@ -21,6 +21,9 @@ struct KeyFrame
   std::vector<PlaneNumbers> Planes;
 };
 
+/// Planes of steps that nobody needs any more. New memory takes time, much more than its use.
+using SparePlanes = std::vector<std::vector<PlaneNumbers>>;
+
 /// One component of one array over the steps of a group.
 struct FieldGroup
 {
@@ -41,6 +44,7 @@ struct FieldGroup
   int CompressionLevel = 3;
   /// Of the group before; null: do not refer to it. Used where its lattice is the same.
   const KeyFrame* Before = nullptr;
+  SparePlanes* Spare = nullptr; ///< if not null, planes are taken from there, and put there
 };
 
 /// A block ready to be written.

@@ -10,6 +10,60 @@
 namespace banyan
 {
 
+/// The axes of values in the order in which they lie in memory.
+struct MemoryOrder
+{
+  int Axes[3] = { 0, 1, 2 }; ///< nearest in memory first
+
+  /// @param stride of the values along x, y, z
+  explicit MemoryOrder(const glm::i64vec3& stride)
+  {
+    const auto sort = [&](int a, int b)
+    {
+      if (stride[this->Axes[b]] < stride[this->Axes[a]])
+      {
+        std::swap(this->Axes[a], this->Axes[b]);
+      }
+    };
+    sort(0, 1);
+    sort(1, 2);
+    sort(0, 1);
+  }
+
+  /// Where a sample of a tile lies that has its axes in this order.
+  std::ptrdiff_t PlaceOf(int edge, const glm::ivec3& sample) const
+  {
+    return (std::ptrdiff_t{ sample[this->Axes[2]] } * edge + sample[this->Axes[1]]) * edge +
+           sample[this->Axes[0]];
+  }
+
+  /// A row along the nearest axis: as it lies there, or, where it has gaps, a copy.
+  template <class T>
+  const T* Row(const T* values, const glm::i64vec3& stride, int count, T* copy) const
+  {
+    const std::int64_t gap = stride[this->Axes[0]];
+    if (gap == 1)
+    {
+      return values;
+    }
+    for (int i = 0; i < count; ++i)
+    {
+      copy[i] = values[i * gap];
+    }
+    return copy;
+  }
+};
+
+/// Copies numbers that have gaps of one kind to where they have gaps of another.
+template <class T>
+void CopyRow(const T* from, std::ptrdiff_t fromGap, int count, T* to, std::ptrdiff_t toGap)
+{
+  for (int i = 0; i < count; ++i)
+  {
+    to[i * toGap] = from[i * fromGap];
+  }
+}
+
 /// Copies a small box of values whose axes are in any order in memory: along the axis that is
 /// contiguous there, or nearest to it. Reading across it instead would touch a page per value.
 /// @param stride of the values along x, y, z; @param count how many
@@ -18,18 +72,7 @@ template <class T>
 void GatherTile(const T* values, const glm::i64vec3& stride, const glm::ivec3& count,
   const glm::i64vec3& to, T* tile)
 {
-  int order[3] = { 0, 1, 2 }; // nearest in memory first
-  const auto sort = [&](int a, int b)
-  {
-    if (stride[order[b]] < stride[order[a]])
-    {
-      std::swap(order[a], order[b]);
-    }
-  };
-  sort(0, 1);
-  sort(1, 2);
-  sort(0, 1);
-  const auto [u, v, w] = order;
+  const auto [u, v, w] = MemoryOrder(stride).Axes;
   for (int k = 0; k < count[w]; ++k)
   {
     for (int j = 0; j < count[v]; ++j)

@@ -182,7 +182,8 @@ public:
     }
     if (last != nullptr)
     {
-      *last = {};
+      last->Group = -1;
+      last->Fields.clear();
     }
   }
 
@@ -209,6 +210,9 @@ public:
     this->Frame = EncodeKeyFrame(made.Field, this->Pool);
     return &this->Frame;
   }
+
+  /// The memory of what the last call gave, which must not be used any more.
+  std::vector<PlaneNumbers> Release() { return std::move(this->Frame.Planes); }
 
 private:
   const SeriesIndex& Plan;
@@ -249,6 +253,8 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
     components += array.Components.size();
   }
   StepBeforeGroup stepBefore(plan, options, number, before, last, pool);
+  SparePlanes own;
+  SparePlanes& spare = last != nullptr ? last->Spare : own;
   std::vector<EncodedField> fields;
   for (std::size_t a = 0; a < plan.Arrays.size(); ++a)
   {
@@ -272,14 +278,17 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
         }
       };
       FieldOfPlan made = MakeField(plan, options, a, c, steps, pool);
+      made.Field.Spare = &spare;
       if (steps.size() > 1)
       {
         tellSteps(0);
         made.Field.Before = stepBefore.Of(a, c, fields.size());
       }
       fields.push_back(EncodeFieldGroup(made.Field, pool, vectors ? &squares : nullptr, tellSteps));
+      spare.push_back(stepBefore.Release());
       if (last == nullptr || !HasOneLattice(array.Type, array.Components[c]))
       {
+        spare.push_back(std::move(fields.back().Last.Planes));
         fields.back().Last = {};
       }
       Measure(fields.back(), group.Measured[a][c], group.Statistics);

@@ -31,6 +31,7 @@ struct LastStep
 {
   int Group = -1; ///< -1: there is none
   std::vector<KeyFrame> Fields; ///< by component of all arrays
+  SparePlanes Spare;            ///< memory of the group before
 };
 
 /// Whether groups of a series may refer to the last step of the group before: where the plan fixes

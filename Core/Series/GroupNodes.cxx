@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 namespace banyan
 {
@@ -137,16 +138,18 @@ private:
     std::int32_t High = std::numeric_limits<std::int32_t>::min();
     bool AsBefore = true; ///< every number is that of the step before
 
-    void Include(const std::int32_t* row, const std::int32_t* before, int count, int stride)
+    template <class Number>
+    void Include(const Number* row, const Number* before, int count, int stride)
     {
-      std::int32_t low = this->Low, high = this->High, changed = 0;
+      Number low = row[0], high = row[0];
+      Number changed = 0;
       if (stride == 1)
       {
         for (int x = 0; x < count; ++x)
         {
           low = row[x] < low ? row[x] : low;
           high = high < row[x] ? row[x] : high;
-          changed |= row[x] ^ before[x];
+          changed = static_cast<Number>(changed | (row[x] ^ before[x]));
         }
       }
       else
@@ -155,11 +158,11 @@ private:
         {
           low = std::min(low, row[x * stride]);
           high = std::max(high, row[x * stride]);
-          changed |= row[x * stride] ^ before[x * stride];
+          changed = static_cast<Number>(changed | (row[x * stride] ^ before[x * stride]));
         }
       }
-      this->Low = low;
-      this->High = high;
+      this->Low = std::min<std::int32_t>(this->Low, low);
+      this->High = std::max<std::int32_t>(this->High, high);
       this->AsBefore = this->AsBefore && changed == 0;
     }
   };
@@ -182,16 +185,22 @@ private:
       for (int y = 0; y < region.Count.y; ++y)
       {
         const glm::ivec3 first{ region.SampleAt(0, 0), region.SampleAt(1, y), region.SampleAt(2, z) };
-        const std::size_t at = static_cast<std::size_t>(plane.IndexOf(first));
-        __builtin_prefetch(plane.Numbers.data() + at + ahead);
-        __builtin_prefetch(before.Numbers.data() + at + ahead);
-        extremes.Include(
-          plane.Numbers.data() + at, before.Numbers.data() + at, inside, region.Stride);
-        if (inside < region.Count.x)
-        {
-          const std::size_t last = at + static_cast<std::size_t>(region.Last.x - first.x);
-          extremes.Include(plane.Numbers.data() + last, before.Numbers.data() + last, 1, 1);
-        }
+        const std::int64_t at = plane.IndexOf(first);
+        plane.With(
+          [&](const auto* numbers)
+          {
+            const auto* row = numbers + at;
+            const auto* other =
+              before.Data<std::remove_const_t<std::remove_pointer_t<decltype(numbers)>>>() + at;
+            __builtin_prefetch(row + ahead);
+            __builtin_prefetch(other + ahead);
+            extremes.Include(row, other, inside, region.Stride);
+            if (inside < region.Count.x)
+            {
+              const std::ptrdiff_t last = region.Last.x - first.x;
+              extremes.Include(row + last, other + last, 1, 1);
+            }
+          });
       }
     }
     return extremes;
@@ -239,13 +248,15 @@ private:
     {
       for (int y = 0; y < region.Count.y; ++y)
       {
-        const std::int32_t* from =
-          plane.Numbers.data() +
-          plane.IndexOf({ 0, region.SampleAt(1, y), region.SampleAt(2, z) });
-        for (int x = 0; x < region.Count.x; ++x)
-        {
-          *to++ = from[region.SampleAt(0, x)];
-        }
+        const std::int64_t row = plane.IndexOf({ 0, region.SampleAt(1, y), region.SampleAt(2, z) });
+        plane.With(
+          [&](const auto* from)
+          {
+            for (int x = 0; x < region.Count.x; ++x)
+            {
+              *to++ = from[row + region.SampleAt(0, x)];
+            }
+          });
       }
     }
   }

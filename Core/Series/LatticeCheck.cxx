@@ -106,9 +106,9 @@ LatticeCheck<T>::LatticeCheck(const FieldGroup& field, const group::FieldHead& h
 template <class T>
 void LatticeCheck<T>::LoadRow(const PlaneNumbers& decoded, const Row& row)
 {
-  const std::int32_t* numbers = decoded.Numbers.data() + decoded.IndexOf(row.Sample);
   const std::size_t count = static_cast<std::size_t>(row.Count);
-  this->Decoder.Decode(numbers, count, this->Decoded.data());
+  decoded.With([&](const auto* numbers)
+    { this->Decoder.Decode(numbers + decoded.IndexOf(row.Sample), count, this->Decoded.data()); });
   if (row.Values != nullptr)
   {
     std::copy(row.Values, row.Values + count, this->Originals.begin());
@@ -282,6 +282,11 @@ void LatticeCheck<T>::Block(const PlaneNumbers& decoded, int plane, std::int64_t
     static_cast<int>(block / decoded.Blocks.x / decoded.Blocks.y) };
   const glm::ivec3 low = position * edge;
   const glm::ivec3 high = glm::min(low + edge, decoded.Samples);
+  if (plane == 0 && this->Plain && this->Field.Map.IsIdentity() && squares == nullptr &&
+      this->WholeBlock(decoded, low, high - low, errors))
+  {
+    return;
+  }
   const int shift = 2 * plane;
   const std::size_t room = static_cast<std::size_t>(RoundUp(edge));
   this->Columns.resize(room);

@@ -40,6 +40,13 @@ private:
     const T* Values = nullptr; ///< its originals one after the other; null: take them by Columns
   };
 
+  /// Whether all of a block of the finest plane is within the bound, all its values being ordinary ones
+  /// that are not transformed; adds to `errors` if so.
+  bool WholeBlock(const PlaneNumbers& decoded, const glm::ivec3& low, const glm::ivec3& n,
+    FieldErrors& errors) const;
+  template <class Number>
+  bool WholeBlockOf(const PlaneNumbers& decoded, const glm::ivec3& low, const glm::ivec3& n,
+    FieldErrors& errors) const;
   void LoadRow(const PlaneNumbers& decoded, const Row& row);
   bool AllWithin(int count, FieldErrors& errors);
   void EachSample(const Row& row, int plane, const glm::ivec3& low, int edge,

@@ -2,6 +2,7 @@
 
 #include "Base/ForEachScalarType.h"
 #include "Base/ThreadPool.h"
+#include "Codec/BlockScratch.h"
 #include "Series/FieldLattice.h"
 #include "Series/GatherTile.h"
 #include "Series/LatticeCheck.h"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 namespace banyan
 {
@@ -32,7 +34,8 @@ glm::i64vec3 StridesOf(const FieldGroup& field)
 /// Numbers for samples that are not held: on the line between those around, so that predictions
 /// cost nothing there.
 /// @param otherwise when none is held
-void FillGaps(const bool* held, int count, std::int32_t otherwise, std::int32_t* numbers)
+template <class Number>
+void FillGaps(const bool* held, int count, std::int32_t otherwise, Number* numbers)
 {
   int before = -1;
   for (int x = 0; x < count;)
@@ -47,26 +50,26 @@ void FillGaps(const bool* held, int count, std::int32_t otherwise, std::int32_t*
     const std::int64_t left = before >= 0 ? numbers[before] : right;
     for (; x < after; ++x)
     {
-      numbers[x] = static_cast<std::int32_t>(left + (right - left) * (x - before) / (after - before));
+      numbers[x] = static_cast<Number>(left + (right - left) * (x - before) / (after - before));
     }
   }
 }
 
 /// Repeats the last samples beyond the field's end.
+template <class Number>
 void Pad(PlaneNumbers& plane)
 {
   const glm::ivec3 n = plane.Samples;
-  const auto row = [&plane](int y, int z) {
-    return plane.Numbers.data() + plane.IndexOf({ 0, y, z });
-  };
+  const auto row = [&plane](int y, int z)
+  { return plane.Data<Number>() + plane.IndexOf({ 0, y, z }); };
   for (int z = 0; z < plane.Padded.z; ++z)
   {
     for (int y = 0; y < plane.Padded.y; ++y)
     {
-      std::int32_t* to = row(y, z);
+      Number* to = row(y, z);
       if (y >= n.y || z >= n.z)
       {
-        const std::int32_t* from = row(std::min(y, n.y - 1), std::min(z, n.z - 1));
+        const Number* from = row(std::min(y, n.y - 1), std::min(z, n.z - 1));
         std::copy(from, from + plane.Padded.x, to);
       }
       else
@@ -78,26 +81,29 @@ void Pad(PlaneNumbers& plane)
 }
 
 /// Every fourth sample.
-PlaneNumbers Coarser(const PlaneNumbers& fine)
+template <class Number>
+void Coarsen(const PlaneNumbers& fine, PlaneNumbers& coarse)
 {
-  PlaneNumbers coarse(CoarserSamples(fine.Samples), fine.Edge);
   const glm::ivec3 last = fine.Samples - 1;
   for (int z = 0; z < coarse.Samples.z; ++z)
   {
     for (int y = 0; y < coarse.Samples.y; ++y)
     {
+      const Number* from =
+        fine.Data<Number>() + fine.IndexOf({ 0, std::min(4 * y, last.y), std::min(4 * z, last.z) });
+      Number* to = coarse.Data<Number>() + coarse.IndexOf({ 0, y, z });
       for (int x = 0; x < coarse.Samples.x; ++x)
       {
-        const std::int64_t from = fine.IndexOf(
-          { std::min(4 * x, last.x), std::min(4 * y, last.y), std::min(4 * z, last.z) });
-        coarse.Numbers[static_cast<std::size_t>(coarse.IndexOf({ x, y, z }))] =
-          fine.Numbers[static_cast<std::size_t>(from)];
+        to[x] = from[std::min(4 * x, last.x)];
       }
     }
   }
-  Pad(coarse);
-  return coarse;
+  Pad<Number>(coarse);
 }
+
+/// Whether a type has fast ways to the lattice and back.
+template <class T>
+constexpr bool IsReal = std::is_floating_point_v<T>;
 
 } // namespace
 
@@ -188,8 +194,16 @@ LatticeTarget<T>::LatticeTarget(
 }
 
 template <class T>
-void LatticeTarget<T>::FillRow(
-  const T* values, int count, std::int32_t* numbers) const
+LatticeScale LatticeTarget<T>::Scale() const
+{
+  return { this->Head.Origin, this->Head.Step, this->Nearest, this->Furthest, this->Head.Least,
+    this->Head.Greatest };
+}
+
+/// Values, at most a tile's row of them, to numbers one by one.
+template <class T>
+template <class Number>
+void LatticeTarget<T>::FillRow(const T* values, int count, Number* numbers) const
 {
   double y[Tile];
   for (int x = 0; x < count; ++x)
@@ -212,7 +226,7 @@ void LatticeTarget<T>::FillRow(
     const double number = held[x] ? (y[x] - this->Head.Origin) * inverse : 0.0;
     const double bounded =
       std::min(std::max(number, double(this->Head.Least)), double(this->Head.Greatest));
-    numbers[x] = static_cast<std::int32_t>((bounded + rounder) - rounder);
+    numbers[x] = static_cast<Number>(static_cast<std::int32_t>((bounded + rounder) - rounder));
   }
   if (all)
   {
@@ -221,25 +235,77 @@ void LatticeTarget<T>::FillRow(
   FillGaps(held, count, std::min(std::max(0, this->Head.Least), this->Head.Greatest), numbers);
 }
 
+/// Fills a tile from values that lie side by side where its numbers do.
+/// @return false: some value is not held
 template <class T>
+template <class Number>
+bool LatticeTarget<T>::FillTileFast(
+  const T* values, const glm::ivec3& low, const glm::ivec3& n, PlaneNumbers& plane) const
+{
+  if constexpr (IsReal<T>)
+  {
+    const LatticeScale scale = this->Scale();
+    const MemoryOrder order(this->Stride);
+    const auto [u, v, w] = order.Axes;
+    const bool inPlace = u == 0;
+    Number tile[Tile * Tile * Tile];
+    T row[Tile];
+    Number* const numbers = plane.Data<Number>();
+    bool all = true;
+    for (int k = 0; k < n[w]; ++k)
+    {
+      for (int j = 0; j < n[v]; ++j)
+      {
+        glm::ivec3 at = low;
+        at[v] += j;
+        at[w] += k;
+        const T* from = order.Row(values + this->OffsetOf(at), this->Stride, n[u], row);
+        Number* to = inPlace ? numbers + plane.IndexOf(at) : tile + (k * Tile + j) * Tile;
+        all = NumbersOnLattice(from, static_cast<std::size_t>(n[u]), scale, to) && all;
+      }
+    }
+    for (int z = 0; !inPlace && z < n.z; ++z)
+    {
+      for (int y = 0; y < n.y; ++y)
+      {
+        CopyRow(tile + order.PlaceOf(Tile, { 0, y, z }), order.PlaceOf(Tile, { 1, 0, 0 }), n.x,
+          numbers + plane.IndexOf(low + glm::ivec3(0, y, z)), 1);
+      }
+    }
+    return all;
+  }
+  else
+  {
+    return false;
+  }
+}
+
+template <class T>
+template <class Number>
 void LatticeTarget<T>::FillTile(const T* values, const glm::ivec3& low, PlaneNumbers& plane) const
 {
   const glm::ivec3 n = glm::min(glm::ivec3(Tile), plane.Samples - low);
+  const bool plain = IsReal<T> && this->Field.Map.IsIdentity() && this->Fills.Empty();
+  if (plain && this->FillTileFast<Number>(values, low, n, plane))
+  {
+    return;
+  }
   T tile[Tile * Tile * Tile];
-  GatherTile(values + low.x * this->Stride.x + low.y * this->Stride.y + low.z * this->Stride.z,
-    this->Stride, n, glm::i64vec3{ 1, Tile, Tile * Tile }, tile);
+  GatherTile(values + this->OffsetOf(low), this->Stride, n, glm::i64vec3{ 1, Tile, Tile * Tile },
+    tile);
   for (int z = 0; z < n.z; ++z)
   {
     for (int y = 0; y < n.y; ++y)
     {
       this->FillRow(tile + (z * Tile + y) * Tile, n.x,
-        plane.Numbers.data() + plane.IndexOf(low + glm::ivec3(0, y, z)));
+        plane.Data<Number>() + plane.IndexOf(low + glm::ivec3(0, y, z)));
     }
   }
 }
 
 /// Gives invisible blocks the number of their interval.
 template <class T>
+template <class Number>
 void LatticeTarget<T>::HideBlocks(const T* values, PlaneNumbers& plane) const
 {
   this->Pool.ParallelFor(plane.BlockCount(),
@@ -256,32 +322,47 @@ void LatticeTarget<T>::HideBlocks(const T* values, PlaneNumbers& plane) const
       {
         for (int y = low.y; y < std::min(low.y + plane.Edge, plane.Samples.y); ++y)
         {
-          std::int32_t* row = plane.Numbers.data() + plane.IndexOf({ low.x, y, z });
+          Number* row = plane.Data<Number>() + plane.IndexOf({ low.x, y, z });
           std::fill(row, row + std::min(plane.Edge, plane.Samples.x - low.x),
-            this->Hidden->NumberOf(interval));
+            static_cast<Number>(this->Hidden->NumberOf(interval)));
         }
       }
     });
 }
 
 template <class T>
-std::vector<PlaneNumbers> LatticeTarget<T>::Make(const void* values) const
+std::vector<PlaneNumbers> LatticeTarget<T>::NewPlanes() const
 {
   std::vector<PlaneNumbers> planes;
-  planes.emplace_back(this->PlaneSamples[0], this->Field.BrickCells);
-  const glm::ivec3 tiles = (this->PlaneSamples[0] + Tile - 1) / Tile;
-  this->Pool.ParallelFor(std::int64_t{ tiles.x } * tiles.y * tiles.z, [&](std::int64_t i)
-    { this->FillTile(static_cast<const T*>(values), PositionIn(tiles, i) * Tile, planes[0]); });
-  if (this->Hidden)
+  for (const glm::ivec3& samples : this->PlaneSamples)
   {
-    this->HideBlocks(static_cast<const T*>(values), planes[0]);
-  }
-  Pad(planes[0]);
-  while (planes.size() < this->PlaneSamples.size())
-  {
-    planes.push_back(Coarser(planes.back()));
+    planes.emplace_back(
+      samples, this->Field.BrickCells, block::Narrow(this->Head.Least, this->Head.Greatest));
   }
   return planes;
+}
+
+template <class T>
+void LatticeTarget<T>::Make(const void* values, std::vector<PlaneNumbers>& planes) const
+{
+  const glm::ivec3 tiles = (this->PlaneSamples[0] + Tile - 1) / Tile;
+  planes[0].With(
+    [&](auto* numbers)
+    {
+      using Number = std::remove_pointer_t<decltype(numbers)>;
+      const T* from = static_cast<const T*>(values);
+      this->Pool.ParallelFor(std::int64_t{ tiles.x } * tiles.y * tiles.z, [&](std::int64_t i)
+        { this->FillTile<Number>(from, PositionIn(tiles, i) * Tile, planes[0]); });
+      if (this->Hidden)
+      {
+        this->HideBlocks<Number>(from, planes[0]);
+      }
+      Pad<Number>(planes[0]);
+      for (std::size_t p = 1; p < planes.size(); ++p)
+      {
+        Coarsen<Number>(planes[p - 1], planes[p]);
+      }
+    });
 }
 
 template <class T>

@@ -7,6 +7,7 @@
 #include "Series/FillValues.h"
 #include "Series/InvisibleBlocks.h"
 #include "Series/LatticeDecoder.h"
+#include "Series/LatticeRows.h"
 
 #include <array>
 #include <memory>
@@ -33,9 +34,13 @@ public:
   /// Samples of each plane, axes in that order.
   const std::vector<glm::ivec3>& Planes() const { return this->PlaneSamples; }
 
+  /// Memory for the lattice numbers of a step on all planes.
+  std::vector<PlaneNumbers> NewPlanes() const;
+
   /// The lattice numbers of a step on all planes. What the lattice cannot hold gets a number of its
   /// neighbourhood; blocks that nobody can see (InvisibleBlocks) get one number.
-  std::vector<PlaneNumbers> Make(const void* values) const;
+  /// @param planes as NewPlanes makes them; whatever they hold is replaced
+  void Make(const void* values, std::vector<PlaneNumbers>& planes) const;
 
   /// Decodes the samples of a block and compares them with the originals: within the bound, or both
   /// in one invisible interval where the sample is of an invisible block. Fill values must be the
@@ -47,8 +52,19 @@ public:
     ExceptionList<T>& list, FieldErrors& errors, std::vector<double>* squares) const;
 
 private:
+  LatticeScale Scale() const;
+  std::int64_t OffsetOf(const glm::ivec3& sample) const
+  {
+    return sample.x * this->Stride.x + sample.y * this->Stride.y + sample.z * this->Stride.z;
+  }
+  template <class Number>
   void FillTile(const T* values, const glm::ivec3& low, PlaneNumbers& plane) const;
-  void FillRow(const T* values, int count, std::int32_t* numbers) const;
+  template <class Number>
+  bool FillTileFast(
+    const T* values, const glm::ivec3& low, const glm::ivec3& n, PlaneNumbers& plane) const;
+  template <class Number>
+  void FillRow(const T* values, int count, Number* numbers) const;
+  template <class Number>
   void HideBlocks(const T* values, PlaneNumbers& plane) const;
 
   const FieldGroup& Field;

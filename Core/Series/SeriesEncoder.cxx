@@ -31,6 +31,7 @@ struct SeriesEncoder::Internals
   std::unique_ptr<SegmentFolder> Folder;
   std::vector<double> Times;                                  ///< of the group under way
   std::vector<std::vector<std::vector<std::uint8_t>>> Values; ///< its steps and arrays
+  std::vector<std::vector<std::vector<std::uint8_t>>> Spare;  ///< memory for them
   LastStep Last; ///< of the group before
   std::function<bool(double)> Progress;
 };
@@ -81,13 +82,19 @@ void SeriesEncoder::Internals::Keep(double time, const std::vector<ArrayValues>&
   const SeriesIndex& index = this->Assembly.Index();
   this->Times.push_back(time);
   this->Values.emplace_back();
+  if (!this->Spare.empty())
+  {
+    this->Values.back() = std::move(this->Spare.back());
+    this->Spare.pop_back();
+  }
+  this->Values.back().resize(arrays.size());
   for (std::size_t a = 0; a < arrays.size(); ++a)
   {
     const ArrayIndex& array = index.Arrays[a];
     const std::size_t bytes = static_cast<std::size_t>(index.Domain.Extent.Count()) *
                               array.Components.size() * SizeOf(array.Type);
     const std::uint8_t* values = static_cast<const std::uint8_t*>(arrays[a].Values);
-    this->Values.back().emplace_back(values, values + bytes);
+    this->Values.back()[a].assign(values, values + bytes);
   }
 }
 
@@ -107,6 +114,7 @@ void SeriesEncoder::Internals::EncodeKept()
                                number, this->Times, steps, {}, &this->Last, this->Pool,
                                this->Progress));
   this->Times.clear();
+  this->Spare = std::move(this->Values); // new memory takes longer than to copy
   this->Values.clear();
 }
 

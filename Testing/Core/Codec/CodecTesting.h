@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <type_traits>
 #include <vector>
 
 namespace banyan::testing
@@ -21,20 +22,24 @@ namespace banyan::testing
 
 /// Numbers of a plane from f(x, y, z), padded by repetition.
 template <class Function>
-PlaneNumbers PlaneOf(const glm::ivec3& samples, int edge, Function&& f)
+PlaneNumbers PlaneOf(const glm::ivec3& samples, int edge, Function&& f, bool narrow = false)
 {
-  PlaneNumbers plane(samples, edge);
-  for (int z = 0; z < plane.Padded.z; ++z)
-  {
-    for (int y = 0; y < plane.Padded.y; ++y)
+  PlaneNumbers plane(samples, edge, narrow);
+  plane.With(
+    [&](auto* numbers)
     {
-      for (int x = 0; x < plane.Padded.x; ++x)
+      for (int z = 0; z < plane.Padded.z; ++z)
       {
-        plane.Numbers[static_cast<std::size_t>(plane.IndexOf({ x, y, z }))] =
-          f(std::min(x, samples.x - 1), std::min(y, samples.y - 1), std::min(z, samples.z - 1));
+        for (int y = 0; y < plane.Padded.y; ++y)
+        {
+          for (int x = 0; x < plane.Padded.x; ++x)
+          {
+            *numbers++ = static_cast<std::remove_pointer_t<decltype(numbers)>>(
+              f(std::min(x, samples.x - 1), std::min(y, samples.y - 1), std::min(z, samples.z - 1)));
+          }
+        }
       }
-    }
-  }
+    });
   return plane;
 }
 
@@ -72,7 +77,8 @@ inline EncodedPlane EncodeWhole(const PlaneToEncode& plane, int threads = 2)
   EncodedPlane result;
   result.Plane = plane;
   ThreadPool pool(threads);
-  EncodePlane(plane, result.Decoded, result.Blocks, pool);
+  result.Decoded = PlaneNumbers(plane.Target->Samples, plane.Target->Edge, plane.Target->Narrow);
+  EncodePlane(plane, result.Decoded, result.Blocks, pool, [](std::int64_t) {});
   ContextCounts counts;
   for (const BlockTokens& block : result.Blocks)
   {
@@ -106,9 +112,12 @@ inline std::vector<std::int32_t> BoxNumbers(const PlaneNumbers& plane, const glm
   {
     for (int y = low.y; y <= low.y + plane.Edge; ++y)
     {
-      const auto row =
-        plane.Numbers.begin() + static_cast<std::ptrdiff_t>(plane.IndexOf({ low.x, y, z }));
-      numbers.insert(numbers.end(), row, row + plane.Edge + 1);
+      plane.With(
+        [&](const auto* all)
+        {
+          const auto* row = all + plane.IndexOf({ low.x, y, z });
+          numbers.insert(numbers.end(), row, row + plane.Edge + 1);
+        });
     }
   }
   return numbers;
@@ -150,10 +159,8 @@ inline Box3 MakeBox(const EncodedPlane& encoded, const glm::ivec3& block)
   for (int i = 0; i < n * n * n; ++i)
   {
     const glm::ivec3 p = first + glm::ivec3{ i % n, i / n % n, i / n / n };
-    box.Coarse.push_back(
-      coarser
-        .Numbers[static_cast<std::size_t>(coarser.IndexOf({ std::min(p.x, coarser.Samples.x - 1),
-          std::min(p.y, coarser.Samples.y - 1), std::min(p.z, coarser.Samples.z - 1) }))]);
+    box.Coarse.push_back(coarser.At({ std::min(p.x, coarser.Samples.x - 1),
+      std::min(p.y, coarser.Samples.y - 1), std::min(p.z, coarser.Samples.z - 1) }));
   }
   box.Code.Coarse = box.Coarse.data();
   if (encoded.Plane.A != nullptr)
@@ -261,10 +268,9 @@ struct MixedPlanes
   {
     for (PlaneNumbers* plane : { &this->Target, &this->Coarser, &this->A, &this->B })
     {
-      for (std::int32_t& number : plane->Numbers)
-      {
-        number = std::clamp(number, -3500, 4500);
-      }
+      *plane = PlaneOf(plane->Samples, plane->Edge,
+        [old = *plane](int x, int y, int z) { return std::clamp(old.At({ x, y, z }), -3500, 4500); },
+        true);
     }
     PlaneToEncode plane = this->With(std::move(candidates), references);
     plane.Least = -3500;

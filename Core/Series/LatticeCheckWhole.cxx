@@ -1,0 +1,97 @@
+#include "Base/ForEachScalarType.h"
+#include "Series/GatherTile.h"
+#include "Series/LatticeCheck.h"
+#include "Series/LatticeRows.h"
+
+#include <algorithm>
+#include <type_traits>
+
+namespace banyan
+{
+
+template <class T>
+template <class Number>
+bool LatticeCheck<T>::WholeBlockOf(const PlaneNumbers& decoded, const glm::ivec3& low,
+  const glm::ivec3& n, FieldErrors& errors) const
+{
+  if constexpr (std::is_floating_point_v<T>)
+  {
+    const int edge = decoded.Edge;
+    const MemoryOrder order(this->Stride);
+    const auto [u, v, w] = order.Axes;
+    const Number* const numbers = decoded.Data<Number>();
+    thread_local std::vector<Number> tile;
+    T values[64];
+    if (u != 0)
+    {
+      tile.resize(static_cast<std::size_t>(edge) * edge * edge);
+      for (int z = 0; z < n.z; ++z)
+      {
+        for (int y = 0; y < n.y; ++y)
+        {
+          CopyRow(numbers + decoded.IndexOf(low + glm::ivec3{ 0, y, z }), 1, n.x,
+            tile.data() + order.PlaceOf(edge, { 0, y, z }), order.PlaceOf(edge, { 1, 0, 0 }));
+        }
+      }
+    }
+    const LatticeScale scale{ this->Head.Origin, this->Head.Step };
+    RowErrors sums;
+    for (int k = 0; k < n[w]; ++k)
+    {
+      for (int j = 0; j < n[v]; ++j)
+      {
+        glm::ivec3 at = low;
+        at[v] += j;
+        at[w] += k;
+        const T* from = this->Values + at.x * this->Stride.x + at.y * this->Stride.y +
+                        at.z * this->Stride.z;
+        const Number* row =
+          u == 0 ? numbers + decoded.IndexOf(at) : tile.data() + (k * edge + j) * edge;
+        if (!AddRowErrors(order.Row(from, this->Stride, n[u], values), row,
+              static_cast<std::size_t>(n[u]), scale, this->Field.Bound, sums))
+        {
+          return false;
+        }
+      }
+    }
+    // What numbers decode to grows with them.
+    errors.Range.Include({ static_cast<double>(this->Decoder.ValueOf(sums.Low)),
+      static_cast<double>(this->Decoder.ValueOf(sums.High)) });
+    const double greatest = *std::max_element(std::begin(sums.Greatest), std::end(sums.Greatest));
+    errors.Maximum = std::max(errors.Maximum, greatest);
+    errors.MaximumTransformed = std::max(errors.MaximumTransformed, greatest);
+    for (const double squares : sums.Squares)
+    {
+      errors.SumSquared += squares;
+    }
+    errors.Finite += std::int64_t{ n.x } * n.y * n.z;
+    return true;
+  }
+  else
+  {
+    return false;
+  }
+}
+
+/// Row by row in the order in which values lie in memory.
+template <class T>
+bool LatticeCheck<T>::WholeBlock(const PlaneNumbers& decoded, const glm::ivec3& low,
+  const glm::ivec3& n, FieldErrors& errors) const
+{
+  bool whole = false;
+  decoded.With(
+    [&](const auto* numbers)
+    {
+      using Number = std::remove_const_t<std::remove_pointer_t<decltype(numbers)>>;
+      whole = this->WholeBlockOf<Number>(decoded, low, n, errors);
+    });
+  return whole;
+}
+
+#define BANYAN_INSTANTIATE(T)                                                                      \
+  template bool LatticeCheck<T>::WholeBlock(                                                       \
+    const PlaneNumbers&, const glm::ivec3&, const glm::ivec3&, FieldErrors&) const
+BANYAN_FOR_EACH_SCALAR_TYPE(BANYAN_INSTANTIATE);
+#undef BANYAN_INSTANTIATE
+
+} // namespace banyan

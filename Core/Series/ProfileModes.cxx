@@ -1,0 +1,46 @@
+#include "Series/ProfileModes.h"
+
+namespace banyan
+{
+namespace
+{
+
+using block::Interpolation;
+using block::Mode;
+using block::Reference;
+
+std::vector<Mode> CandidatesOf(EncodeProfile profile)
+{
+  const Mode intra{ Reference::None, Interpolation::Cubic };
+  const Mode mean{ Reference::Mean, Interpolation::Cubic };
+  if (profile == EncodeProfile::Fast)
+  {
+    return { intra, mean };
+  }
+  std::vector<Mode> modes{ intra, { Reference::None, Interpolation::Linear }, mean,
+    { Reference::Mean, Interpolation::Linear }, { Reference::Mean, Interpolation::None },
+    { Reference::HalfMean, Interpolation::Cubic } };
+  modes.push_back({ Reference::A, Interpolation::Linear });
+  modes.push_back({ Reference::B, Interpolation::Linear });
+  if (profile == EncodeProfile::Compact)
+  {
+    for (const Reference from : { Reference::A, Reference::B, Reference::HalfMean })
+    {
+      modes.push_back(
+        { from, from == Reference::HalfMean ? Interpolation::Linear : Interpolation::Cubic });
+      modes.push_back({ from, Interpolation::None });
+    }
+  }
+  return modes;
+}
+
+} // namespace
+
+void ApplyProfile(EncodeProfile profile, PlaneToEncode& plane)
+{
+  plane.Candidates = CandidatesOf(profile);
+  plane.Trials = profile == EncodeProfile::Compact ? 4 : profile == EncodeProfile::Fast ? 1 : 2;
+  plane.TrialMargin = profile == EncodeProfile::Compact ? 100 : 15;
+}
+
+} // namespace banyan

@@ -1,0 +1,15 @@
+#ifndef banyan_Series_ProfileModes_h
+#define banyan_Series_ProfileModes_h
+
+#include "Codec/BlockEncoder.h"
+#include "Series/SeriesEncoder.h"
+
+namespace banyan
+{
+
+/// Sets which modes are candidates for the blocks of a plane, and how many are tried out.
+void ApplyProfile(EncodeProfile profile, PlaneToEncode& plane);
+
+} // namespace banyan
+
+#endif
