@@ -54,9 +54,11 @@ struct RowQuantizer
 
   /// Calls body(residuals of Width lanes, others 0; lane of the pass where they begin; classes; what
   /// residuals before hint at).
+  /// @param flagged whether nobody asks for the residuals where all of a row are 0; magnitudes must be 0
+  /// already
   /// @return whether some residual is not 0
   template <class Body>
-  HWY_INLINE bool Row(const RowPlace& place, bool rough, Body&& body) const
+  HWY_INLINE bool Row(const RowPlace& place, bool rough, bool flagged, Body&& body) const
   {
     const int left = this->B() - P::First;
     const int lanes = place.Coded * P::Step;
@@ -70,8 +72,14 @@ struct RowQuantizer
       Signed residual{};
       if (at < lanes)
       {
-        residual = Quantize(reinterpret_cast<Signed>(V::Load(target + at) - prediction), this->Bin);
+        residual = reinterpret_cast<Signed>(V::Load(target + at) - prediction);
         residual &= LaneMask<P, Signed>(lanes - at);
+        if (flagged && left <= Width && !this->AnyCoded(residual))
+        {
+          SetLanes<P>(prediction, left - at, w + at);
+          return false;
+        }
+        residual = Quantize(residual, this->Bin);
         ByteVector classes{};
         SignedByteVector hint{};
         if (rough)
@@ -87,10 +95,21 @@ struct RowQuantizer
                                  static_cast<std::make_unsigned_t<Number>>(this->Bin),
         left - at, w + at);
     }
-    const Signed zero{};
-    const auto some = any != zero;
-    std::uint64_t words[sizeof(some) / 8];
-    std::memcpy(words, &some, sizeof(some));
+    return AnyLane(any);
+  }
+
+  /// Whether some difference is more than half a bin.
+  HWY_INLINE bool AnyCoded(Signed difference) const
+  {
+    const Number half = static_cast<Number>(this->Bin / 2);
+    return AnyLane(reinterpret_cast<Signed>(difference > half) |
+                   reinterpret_cast<Signed>(difference < static_cast<Number>(-half)));
+  }
+
+  static HWY_INLINE bool AnyLane(Signed lanes)
+  {
+    std::uint64_t words[sizeof(lanes) / 8];
+    std::memcpy(words, &lanes, sizeof(lanes));
     std::uint64_t all = 0;
     for (const std::uint64_t word : words)
     {
@@ -188,9 +207,10 @@ struct SliceEncoder
       {
         const RowPlace place = PlaceOf<P>(this->Rows.Of, edge, slice, row);
         const int rowClass = this->Out.RowClass[row];
-        const bool coded = this->AddRow(place, rowClass > 0, this->Out.Slice.data() + count);
-        any = any || coded;
         const bool flagged = place.Coded > 0 && rowClass < residual::RowClasses;
+        const bool coded =
+          this->AddRow(place, rowClass > 0, flagged, this->Out.Slice.data() + count);
+        any = any || coded;
         if (flagged)
         {
           flags[flagCount++] = residual::TokenOf(
@@ -206,10 +226,11 @@ struct SliceEncoder
 
 private:
   /// @return whether some residual is not 0
-  HWY_INLINE bool AddRow(const RowPlace& place, bool rough, std::uint16_t* tokens) const
+  HWY_INLINE bool AddRow(
+    const RowPlace& place, bool rough, bool flagged, std::uint16_t* tokens) const
   {
     typedef std::uint16_t Tokens __attribute__((vector_size(32)));
-    return this->Rows.Row(place, rough,
+    return this->Rows.Row(place, rough, flagged,
       [&](Signed residual, int lane, ByteVector classes, SignedByteVector hint)
       {
         this->Rows.Keep(place, lane * P::Step, residual);

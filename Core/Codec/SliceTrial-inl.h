@@ -50,7 +50,7 @@ struct SliceTrial
         const RowPlace place = PlaceOf<P>(this->Rows.Of, edge, slice, row);
         const int rowClass = rowClasses[row];
         std::int64_t symbols = 0;
-        const bool any = this->Rows.Row(place, rowClass > 0,
+        const bool any = this->Rows.Row(place, rowClass > 0, rowClass < residual::RowClasses,
           [&](Signed residual, int lane, ByteVector classes, SignedByteVector)
           {
             this->Rows.Keep(place, lane * P::Step, residual);

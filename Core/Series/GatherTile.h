@@ -36,22 +36,6 @@ struct MemoryOrder
     return (std::ptrdiff_t{ sample[this->Axes[2]] } * edge + sample[this->Axes[1]]) * edge +
            sample[this->Axes[0]];
   }
-
-  /// A row along the nearest axis: as it lies there, or, where it has gaps, a copy.
-  template <class T>
-  const T* Row(const T* values, const glm::i64vec3& stride, int count, T* copy) const
-  {
-    const std::int64_t gap = stride[this->Axes[0]];
-    if (gap == 1)
-    {
-      return values;
-    }
-    for (int i = 0; i < count; ++i)
-    {
-      copy[i] = values[i * gap];
-    }
-    return copy;
-  }
 };
 
 /// Copies numbers that have gaps of one kind to where they have gaps of another.

@@ -171,6 +171,20 @@ private:
   Extremes ExtremesOf(
     const PlaneNumbers& plane, const PlaneNumbers& before, const PlaneRegion& region) const
   {
+    Extremes extremes;
+    plane.With(
+      [&](const auto* numbers)
+      {
+        using Number = std::remove_const_t<std::remove_pointer_t<decltype(numbers)>>;
+        extremes = this->ExtremesOf(plane, numbers, before.Data<Number>(), region);
+      });
+    return extremes;
+  }
+
+  template <class Number>
+  Extremes ExtremesOf(const PlaneNumbers& plane, const Number* numbers, const Number* before,
+    const PlaneRegion& region) const
+  {
     // Samples that stand for what lies beyond the last one come once.
     int inside = region.Count.x;
     while (inside > 1 && region.Low.x + (inside - 1) * region.Stride > region.Last.x)
@@ -186,21 +200,14 @@ private:
       {
         const glm::ivec3 first{ region.SampleAt(0, 0), region.SampleAt(1, y), region.SampleAt(2, z) };
         const std::int64_t at = plane.IndexOf(first);
-        plane.With(
-          [&](const auto* numbers)
-          {
-            const auto* row = numbers + at;
-            const auto* other =
-              before.Data<std::remove_const_t<std::remove_pointer_t<decltype(numbers)>>>() + at;
-            __builtin_prefetch(row + ahead);
-            __builtin_prefetch(other + ahead);
-            extremes.Include(row, other, inside, region.Stride);
-            if (inside < region.Count.x)
-            {
-              const std::ptrdiff_t last = region.Last.x - first.x;
-              extremes.Include(row + last, other + last, 1, 1);
-            }
-          });
+        __builtin_prefetch(numbers + at + ahead);
+        __builtin_prefetch(before + at + ahead);
+        extremes.Include(numbers + at, before + at, inside, region.Stride);
+        if (inside < region.Count.x)
+        {
+          const std::int64_t last = at + region.Last.x - first.x;
+          extremes.Include(numbers + last, before + last, 1, 1);
+        }
       }
     }
     return extremes;

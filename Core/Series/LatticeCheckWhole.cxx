@@ -21,7 +21,6 @@ bool LatticeCheck<T>::WholeBlockOf(const PlaneNumbers& decoded, const glm::ivec3
     const auto [u, v, w] = order.Axes;
     const Number* const numbers = decoded.Data<Number>();
     thread_local std::vector<Number> tile;
-    T values[64];
     if (u != 0)
     {
       tile.resize(static_cast<std::size_t>(edge) * edge * edge);
@@ -35,24 +34,23 @@ bool LatticeCheck<T>::WholeBlockOf(const PlaneNumbers& decoded, const glm::ivec3
       }
     }
     const LatticeScale scale{ this->Head.Origin, this->Head.Step };
+    const glm::i64vec3 gaps{ 1, decoded.Padded.x, std::int64_t{ decoded.Padded.x } * decoded.Padded.y };
+    LatticeRows<T, const Number> rows;
+    rows.Values = this->Values + low.x * this->Stride.x + low.y * this->Stride.y + low.z * this->Stride.z;
+    rows.Gap = this->Stride[u];
+    rows.ValueRow = this->Stride[v];
+    rows.ValueSlice = this->Stride[w];
+    rows.Numbers = u == 0 ? numbers + decoded.IndexOf(low) : tile.data();
+    rows.NumberRow = u == 0 ? gaps[v] : edge;
+    rows.NumberSlice = u == 0 ? gaps[w] : edge * edge;
+    rows.Count = n[u];
+    rows.Rows = n[v];
+    rows.Slices = n[w];
+    rows.Next = low.x >= edge ? -edge * this->Stride.x : 0; // blocks come from the last to the first
     RowErrors sums;
-    for (int k = 0; k < n[w]; ++k)
+    if (!ErrorsOnLattice(rows, scale, this->Field.Bound, sums))
     {
-      for (int j = 0; j < n[v]; ++j)
-      {
-        glm::ivec3 at = low;
-        at[v] += j;
-        at[w] += k;
-        const T* from = this->Values + at.x * this->Stride.x + at.y * this->Stride.y +
-                        at.z * this->Stride.z;
-        const Number* row =
-          u == 0 ? numbers + decoded.IndexOf(at) : tile.data() + (k * edge + j) * edge;
-        if (!AddRowErrors(order.Row(from, this->Stride, n[u], values), row,
-              static_cast<std::size_t>(n[u]), scale, this->Field.Bound, sums))
-        {
-          return false;
-        }
-      }
+      return false;
     }
     // What numbers decode to grows with them.
     errors.Range.Include({ static_cast<double>(this->Decoder.ValueOf(sums.Low)),

@@ -92,8 +92,33 @@ HWY_INLINE void ForEachGroup(const T* values, Number* numbers, std::size_t count
   }
 }
 
+/// Calls body(values, numbers) for each row.
+template <class T, class Number, class Body>
+HWY_INLINE void ForEachRow(const LatticeRows<T, Number>& rows, const Body& body)
+{
+  T copy[64];
+  for (int slice = 0; slice < rows.Slices; ++slice)
+  {
+    for (int row = 0; row < rows.Rows; ++row)
+    {
+      const T* values = rows.Values + slice * rows.ValueSlice + row * rows.ValueRow;
+      // A row is a line of the cache or two, far from the next one: ask in time.
+      __builtin_prefetch(values + rows.Next);
+      if (rows.Gap != 1)
+      {
+        for (int i = 0; i < rows.Count; ++i)
+        {
+          copy[i] = values[i * rows.Gap];
+        }
+        values = copy;
+      }
+      body(values, rows.Numbers + slice * rows.NumberSlice + row * rows.NumberRow);
+    }
+  }
+}
+
 template <class T, class Number>
-bool Numbers(const T* values, std::size_t count, const LatticeScale& scale, Number* numbers)
+bool Numbers(const LatticeRows<T, Number>& rows, const LatticeScale& scale)
 {
   const Reals real;
   const Real origin = hn::Set(real, scale.Origin);
@@ -102,74 +127,97 @@ bool Numbers(const T* values, std::size_t count, const LatticeScale& scale, Numb
   const Real least = hn::Set(real, scale.Least), greatest = hn::Set(real, scale.Greatest);
   const Real rounder = hn::Set(real, 6755399441055744.0); // 1.5 * 2^52: adding it rounds
   auto held = hn::Eq(origin, origin);
-  ForEachGroup(values, numbers, count,
-    [&](const T* from, Number* to, std::size_t)
+  const auto group = [&](const T* from, Number* to, std::size_t)
+  {
+    for (std::size_t i = 0; i < RowErrors::Lanes; i += hn::Lanes(real))
     {
-      for (std::size_t i = 0; i < RowErrors::Lanes; i += hn::Lanes(real))
-      {
-        const Real y = LoadReals(from + i);
-        held = hn::And(held, hn::And(hn::Ge(y, nearest), hn::Le(y, furthest))); // not for NaN
-        const Real number = hn::Mul(hn::Sub(y, origin), inverse);
-        const Real bounded = hn::Min(hn::Max(number, least), greatest);
-        StoreNumbers(hn::Sub(hn::Add(bounded, rounder), rounder), to + i);
-      }
-    });
+      const Real y = LoadReals(from + i);
+      held = hn::And(held, hn::And(hn::Ge(y, nearest), hn::Le(y, furthest))); // not for NaN
+      const Real number = hn::Mul(hn::Sub(y, origin), inverse);
+      const Real bounded = hn::Min(hn::Max(number, least), greatest);
+      StoreNumbers(hn::Sub(hn::Add(bounded, rounder), rounder), to + i);
+    }
+  };
+  ForEachRow(rows, [&](const T* values, Number* numbers)
+    { ForEachGroup(values, numbers, static_cast<std::size_t>(rows.Count), group); });
   return hn::AllTrue(real, held);
 }
 
-template <class T, class Number>
-bool AddErrors(const T* values, const Number* numbers, std::size_t count,
-  const LatticeScale& scale, double bound, RowErrors& errors)
+template <class Number>
+HWY_INLINE void AddExtremes(const Number* numbers, int count, Number& low, Number& high)
 {
-  const Reals real;
-  const Real origin = hn::Set(real, scale.Origin), step = hn::Set(real, scale.Step);
-  const Real most = hn::Set(real, bound);
-  auto within = hn::Eq(origin, origin);
-  Number low = numbers[0], high = numbers[0];
-  for (std::size_t i = 0; i < count; ++i)
+  for (int i = 0; i < count; ++i)
   {
     low = numbers[i] < low ? numbers[i] : low;
     high = high < numbers[i] ? numbers[i] : high;
   }
+}
+
+template <class T, class Number>
+bool Errors(const LatticeRows<T, const Number>& rows, const LatticeScale& scale, double bound,
+  RowErrors& errors)
+{
+  const Reals real;
+  constexpr std::size_t parts = RowErrors::Lanes / hn::MaxLanes(Reals());
+  const Real origin = hn::Set(real, scale.Origin), step = hn::Set(real, scale.Step);
+  const Real most = hn::Set(real, bound);
+  Real greatest[parts], squares[parts];
+  for (std::size_t part = 0; part < parts; ++part)
+  {
+    greatest[part] = hn::LoadU(real, errors.Greatest + part * hn::Lanes(real));
+    squares[part] = hn::LoadU(real, errors.Squares + part * hn::Lanes(real));
+  }
+  auto within = hn::Eq(origin, origin);
+  Number low = rows.Numbers[0], high = low;
+  const auto group = [&](const T* from, const Number* number, std::size_t left)
+  {
+    for (std::size_t part = 0; part < parts; ++part)
+    {
+      const std::size_t i = part * hn::Lanes(real);
+      // Not fused: a product is rounded before it is added, wherever this runs.
+      Real decoded = hn::Add(hn::Mul(LoadNumbers(number + i), step), origin);
+      if constexpr (sizeof(T) != sizeof(double))
+      {
+        const hn::Rebind<T, Reals> own;
+        decoded = hn::PromoteTo(real, hn::DemoteTo(own, decoded));
+      }
+      Real difference = hn::Abs(hn::Sub(LoadReals(from + i), decoded));
+      if (left < RowErrors::Lanes)
+      {
+        const Real end = hn::Set(real, static_cast<double>(left));
+        difference =
+          hn::IfThenElseZero(hn::Lt(hn::Iota(real, static_cast<double>(i)), end), difference);
+      }
+      within = hn::And(within, hn::Le(difference, most)); // not for NaN
+      greatest[part] = hn::Max(greatest[part], difference);
+      squares[part] = hn::Add(squares[part], hn::Mul(difference, difference));
+    }
+  };
+  ForEachRow(rows,
+    [&](const T* values, const Number* numbers)
+    {
+      ForEachGroup(values, numbers, static_cast<std::size_t>(rows.Count), group);
+      AddExtremes(numbers, rows.Count, low, high);
+    });
+  for (std::size_t part = 0; part < parts; ++part)
+  {
+    hn::StoreU(greatest[part], real, errors.Greatest + part * hn::Lanes(real));
+    hn::StoreU(squares[part], real, errors.Squares + part * hn::Lanes(real));
+  }
   errors.Low = std::min<std::int32_t>(errors.Low, low);
   errors.High = std::max<std::int32_t>(errors.High, high);
-  ForEachGroup(values, numbers, count,
-    [&](const T* from, const Number* number, std::size_t left)
-    {
-      for (std::size_t i = 0; i < RowErrors::Lanes; i += hn::Lanes(real))
-      {
-        // Not fused: a product is rounded before it is added, wherever this runs.
-        Real decoded = hn::Add(hn::Mul(LoadNumbers(number + i), step), origin);
-        if constexpr (sizeof(T) != sizeof(double))
-        {
-          const hn::Rebind<T, Reals> own;
-          decoded = hn::PromoteTo(real, hn::DemoteTo(own, decoded));
-        }
-        Real difference = hn::Abs(hn::Sub(LoadReals(from + i), decoded));
-        if (left < RowErrors::Lanes)
-        {
-          const auto last = hn::Set(real, static_cast<double>(left));
-          difference = hn::IfThenElseZero(hn::Lt(hn::Iota(real, i), last), difference);
-        }
-        within = hn::And(within, hn::Le(difference, most)); // not for NaN
-        const Real greatest = hn::LoadU(real, errors.Greatest + i);
-        const Real squares = hn::LoadU(real, errors.Squares + i);
-        hn::StoreU(hn::Max(greatest, difference), real, errors.Greatest + i);
-        hn::StoreU(hn::Add(squares, hn::Mul(difference, difference)), real, errors.Squares + i);
-      }
-    });
   return hn::AllTrue(real, within);
 }
 
 #define BANYAN_ROWS(name, T, Number)                                                               \
-  bool Numbers##name(const T* v, std::size_t count, const LatticeScale& scale, Number* n)          \
+  bool Numbers##name(const LatticeRows<T, Number>& rows, const LatticeScale& scale)                \
   {                                                                                                \
-    return Numbers(v, count, scale, n);                                                            \
+    return Numbers(rows, scale);                                                                   \
   }                                                                                                \
-  bool AddErrors##name(const T* v, const Number* n, std::size_t count, const LatticeScale& scale,  \
+  bool Errors##name(const LatticeRows<T, const Number>& rows, const LatticeScale& scale,           \
     double bound, RowErrors& errors)                                                               \
   {                                                                                                \
-    return AddErrors(v, n, count, scale, bound, errors);                                           \
+    return Errors<T, Number>(rows, scale, bound, errors);                                          \
   }
 BANYAN_ROWS(ShortFloats, float, std::int16_t)
 BANYAN_ROWS(ShortDoubles, double, std::int16_t)
@@ -186,17 +234,17 @@ namespace banyan
 
 #define BANYAN_ROWS(name, T, Number)                                                               \
   HWY_EXPORT(Numbers##name);                                                                       \
-  HWY_EXPORT(AddErrors##name);                                                                     \
+  HWY_EXPORT(Errors##name);                                                                        \
   template <>                                                                                      \
-  bool NumbersOnLattice(const T* v, std::size_t count, const LatticeScale& scale, Number* n)       \
+  bool NumbersOnLattice(const LatticeRows<T, Number>& rows, const LatticeScale& scale)             \
   {                                                                                                \
-    return HWY_DYNAMIC_DISPATCH(Numbers##name)(v, count, scale, n);                                \
+    return HWY_DYNAMIC_DISPATCH(Numbers##name)(rows, scale);                                       \
   }                                                                                                \
   template <>                                                                                      \
-  bool AddRowErrors(const T* v, const Number* n, std::size_t count, const LatticeScale& scale,     \
+  bool ErrorsOnLattice(const LatticeRows<T, const Number>& rows, const LatticeScale& scale,        \
     double bound, RowErrors& errors)                                                               \
   {                                                                                                \
-    return HWY_DYNAMIC_DISPATCH(AddErrors##name)(v, n, count, scale, bound, errors);               \
+    return HWY_DYNAMIC_DISPATCH(Errors##name)(rows, scale, bound, errors);                         \
   }
 BANYAN_ROWS(ShortFloats, float, std::int16_t)
 BANYAN_ROWS(ShortDoubles, double, std::int16_t)

@@ -249,21 +249,21 @@ bool LatticeTarget<T>::FillTileFast(
     const auto [u, v, w] = order.Axes;
     const bool inPlace = u == 0;
     Number tile[Tile * Tile * Tile];
-    T row[Tile];
     Number* const numbers = plane.Data<Number>();
-    bool all = true;
-    for (int k = 0; k < n[w]; ++k)
-    {
-      for (int j = 0; j < n[v]; ++j)
-      {
-        glm::ivec3 at = low;
-        at[v] += j;
-        at[w] += k;
-        const T* from = order.Row(values + this->OffsetOf(at), this->Stride, n[u], row);
-        Number* to = inPlace ? numbers + plane.IndexOf(at) : tile + (k * Tile + j) * Tile;
-        all = NumbersOnLattice(from, static_cast<std::size_t>(n[u]), scale, to) && all;
-      }
-    }
+    const glm::i64vec3 gaps{ 1, plane.Padded.x, std::int64_t{ plane.Padded.x } * plane.Padded.y };
+    LatticeRows<T, Number> rows;
+    rows.Values = values + this->OffsetOf(low);
+    rows.Gap = this->Stride[u];
+    rows.ValueRow = this->Stride[v];
+    rows.ValueSlice = this->Stride[w];
+    rows.Numbers = inPlace ? numbers + plane.IndexOf(low) : tile;
+    rows.NumberRow = inPlace ? gaps[v] : Tile;
+    rows.NumberSlice = inPlace ? gaps[w] : Tile * Tile;
+    rows.Count = n[u];
+    rows.Rows = n[v];
+    rows.Slices = n[w];
+    rows.Next = low.x + Tile < plane.Samples.x ? Tile * this->Stride.x : 0;
+    const bool all = NumbersOnLattice(rows, scale);
     for (int z = 0; !inPlace && z < n.z; ++z)
     {
       for (int y = 0; y < n.y; ++y)

@@ -40,7 +40,7 @@ void ApplyProfile(EncodeProfile profile, PlaneToEncode& plane)
 {
   plane.Candidates = CandidatesOf(profile);
   plane.Trials = profile == EncodeProfile::Compact ? 4 : profile == EncodeProfile::Fast ? 1 : 2;
-  plane.TrialMargin = profile == EncodeProfile::Compact ? 100 : 15;
+  plane.TrialMargin = profile == EncodeProfile::Compact ? 100 : 30;
 }
 
 } // namespace banyan

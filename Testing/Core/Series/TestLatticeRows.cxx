@@ -18,6 +18,19 @@ using namespace banyan::testing;
 
 const LatticeScale Scale{ 0.125, 0.03, -10, 130, -300, 4000 };
 
+/// One row of values without gaps.
+template <class T, class Number>
+LatticeRows<T, Number> RowOf(const std::vector<T>& values, Number* numbers)
+{
+  LatticeRows<T, Number> rows;
+  rows.Values = values.data();
+  rows.Numbers = numbers;
+  rows.Count = static_cast<int>(values.size());
+  rows.Rows = 1;
+  rows.Slices = 1;
+  return rows;
+}
+
 template <class T>
 std::vector<T> SomeValues(std::size_t count)
 {
@@ -45,7 +58,7 @@ void ExpectNumbersOfEveryCount()
   {
     const std::vector<T> values = SomeValues<T>(count);
     std::vector<Number> numbers(count + 1, Number{ 77 });
-    ASSERT_TRUE(NumbersOnLattice(values.data(), count, Scale, numbers.data()));
+    ASSERT_TRUE(NumbersOnLattice(RowOf(values, numbers.data()), Scale));
     for (std::size_t i = 0; i < count; ++i)
     {
       ASSERT_EQ(numbers[i], SlowNumber<Number>(values[i])) << i << " of " << count;
@@ -57,7 +70,7 @@ void ExpectNumbersOfEveryCount()
       {
         std::vector<T> spoilt = values;
         spoilt[i] = static_cast<T>(bad);
-        ASSERT_FALSE(NumbersOnLattice(spoilt.data(), count, Scale, numbers.data()))
+        ASSERT_FALSE(NumbersOnLattice(RowOf(spoilt, numbers.data()), Scale))
           << bad << " at " << i << " of " << count;
       }
     }
@@ -94,8 +107,9 @@ void ExpectErrorsOfEveryCount()
       numbers[i] = SlowNumber<Number>(values[i]);
     }
     RowErrors row;
-    ASSERT_TRUE(AddRowErrors(values.data(), numbers.data(), count, Scale, bound, row));
-    ASSERT_TRUE(AddRowErrors(values.data(), numbers.data(), count, Scale, bound, sums));
+    const Number* const all = numbers.data();
+    ASSERT_TRUE(ErrorsOnLattice(RowOf(values, all), Scale, bound, row));
+    ASSERT_TRUE(ErrorsOnLattice(RowOf(values, all), Scale, bound, sums));
     RowErrors expected;
     for (std::size_t i = 0; i < count; ++i)
     {
@@ -126,7 +140,7 @@ void ExpectErrorsOfEveryCount()
         std::vector<T> spoilt = values;
         spoilt[i] = static_cast<T>(bad);
         RowErrors ignored;
-        ASSERT_FALSE(AddRowErrors(spoilt.data(), numbers.data(), count, Scale, bound, ignored))
+        ASSERT_FALSE(ErrorsOnLattice(RowOf(spoilt, all), Scale, bound, ignored))
           << bad << " at " << i << " of " << count;
       }
     }
@@ -143,6 +157,63 @@ TEST(LatticeRows, ErrorsAreThoseOfEachValueAndWhatIsBeyondTheBoundIsTold)
     ExpectErrorsOfEveryCount<float, std::int32_t>();
     ExpectErrorsOfEveryCount<double, std::int16_t>();
     ExpectErrorsOfEveryCount<double, std::int32_t>();
+  }
+}
+
+/// A box inside of larger arrays, whose values have gaps.
+template <class T>
+void ExpectBoxesOfAnyStrides(int gap)
+{
+  constexpr int count = 11, height = 5, slices = 3;
+  const int row = count * gap + 4, slice = row * height + 7;
+  const std::vector<T> values = SomeValues<T>(static_cast<std::size_t>(slice * slices));
+  std::vector<std::int32_t> numbers(1000, 77);
+  LatticeRows<T, std::int32_t> rows;
+  rows.Values = values.data();
+  rows.Gap = gap;
+  rows.ValueRow = row;
+  rows.ValueSlice = slice;
+  rows.Numbers = numbers.data();
+  rows.NumberRow = 20;
+  rows.NumberSlice = 200;
+  rows.Count = count;
+  rows.Rows = height;
+  rows.Slices = slices;
+  ASSERT_TRUE(NumbersOnLattice(rows, Scale));
+  double greatest = 0;
+  for (int i = 0; i < 1000; ++i)
+  {
+    const int x = i % 20, y = i / 20 % 10, z = i / 200;
+    const bool inside = x < count && y < height && z < slices;
+    const double value = inside ? values[static_cast<std::size_t>(z * slice + y * row + x * gap)] : 0;
+    const std::int32_t number = numbers[static_cast<std::size_t>(i)];
+    ASSERT_EQ(number, inside ? SlowNumber<std::int32_t>(value) : 77) << i;
+    const T decoded = static_cast<T>(Scale.Origin + number * Scale.Step);
+    greatest = inside ? std::max(greatest, std::abs(value - static_cast<double>(decoded))) : greatest;
+  }
+  LatticeRows<T, const std::int32_t> all;
+  all.Values = rows.Values;
+  all.Gap = rows.Gap;
+  all.ValueRow = rows.ValueRow;
+  all.ValueSlice = rows.ValueSlice;
+  all.Numbers = rows.Numbers;
+  all.NumberRow = rows.NumberRow;
+  all.NumberSlice = rows.NumberSlice;
+  all.Count = rows.Count;
+  all.Rows = rows.Rows;
+  all.Slices = rows.Slices;
+  RowErrors errors;
+  ASSERT_TRUE(ErrorsOnLattice(all, Scale, greatest, errors));
+  EXPECT_EQ(*std::max_element(std::begin(errors.Greatest), std::end(errors.Greatest)), greatest);
+  EXPECT_FALSE(ErrorsOnLattice(all, Scale, std::nextafter(greatest, 0.0), errors));
+}
+
+TEST(LatticeRows, BoxesOfAnyStridesAreTakenSampleBySample)
+{
+  for (const int gap : { 1, 3 })
+  {
+    ExpectBoxesOfAnyStrides<float>(gap);
+    ExpectBoxesOfAnyStrides<double>(gap);
   }
 }
 
