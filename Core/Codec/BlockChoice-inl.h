@@ -101,7 +101,7 @@ struct BlockChooser : BlockAt<Edge, Number>
     return total;
   }
 
-  /// Of a row, in 2^-11 bits times 8, about. What is less than half a bin costs little, and much less the
+  /// Of a row, in 2^-13 bits, about. What is less than half a bin costs little, and much less the
   /// less it is: it is 0 once it is quantized, like what is around it.
   template <class P>
   HWY_INLINE Costs RowEstimate(const Number* w, int y, int z, Interpolation by, int last) const
@@ -200,11 +200,16 @@ struct BlockChooser : BlockAt<Edge, Number>
     }
     std::stable_sort(costs.begin(), costs.end(),
       [](const auto& a, const auto& b) { return a.first < b.first; });
-    // Where one looks clearly best, it is.
-    const std::int64_t close = costs[0].first + costs[0].first * plane.TrialMargin / 100;
-    const auto end = std::find_if(costs.begin() + 1, costs.end(), [close](const auto& cost) { return cost.first > close; });
-    const std::size_t trials = std::min<std::size_t>(
-      static_cast<std::size_t>(end - costs.begin()), static_cast<std::size_t>(std::max(plane.Trials, 1)));
+    // Where one looks clearly best, it is: by so many per cent, or, of what costs much anyway, by as much
+    // as that is of a third of a bit per sample.
+    constexpr std::int64_t third = (1 << 13) / 3 / 100;
+    const std::int64_t samples = std::int64_t{ this->B() } * this->B() * this->B();
+    const std::int64_t close =
+      costs[0].first + std::min(costs[0].first / 100, third * samples) * plane.TrialMargin;
+    const auto end = std::find_if(costs.begin() + 1, costs.end(),
+      [close](const auto& cost) { return cost.first > close; });
+    const std::size_t trials = std::min<std::size_t>(static_cast<std::size_t>(end - costs.begin()),
+      static_cast<std::size_t>(std::max(plane.Trials, 1)));
     std::size_t best = 0;
     std::int64_t least = std::numeric_limits<std::int64_t>::max();
     for (std::size_t i = 0; trials > 1 && i < trials; ++i)

@@ -14,8 +14,6 @@ namespace banyan
 namespace
 {
 
-using namespace banyan::testing;
-
 const LatticeScale Scale{ 0.125, 0.03, -10, 130, -300, 4000 };
 
 /// One row of values without gaps.
