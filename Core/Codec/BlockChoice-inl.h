@@ -110,7 +110,7 @@ struct BlockChooser : BlockAt<Edge, Number>
     const block::Shape<3> shape{ this->B() };
     const RowPlace place{ z * shape.Z() + y * shape.Y(), 0, y, z, y, 0 };
     const float scale =
-      4.0f / static_cast<float>(P::S == 2 ? this->Plane().CoarseBin : this->Plane().FineBin);
+      3.5f / static_cast<float>(P::S == 2 ? this->Plane().CoarseBin : this->Plane().FineBin);
     const int left = last + 1 - P::First;
     Costs sum{};
     for (int at = 0; at < left; at += Width)
@@ -201,11 +201,11 @@ struct BlockChooser : BlockAt<Edge, Number>
     std::stable_sort(costs.begin(), costs.end(),
       [](const auto& a, const auto& b) { return a.first < b.first; });
     // Where one looks clearly best, it is: by so many per cent, or, of what costs much anyway, by as much
-    // as that is of a third of a bit per sample.
-    constexpr std::int64_t third = (1 << 13) / 3 / 100;
+    // as that is of a tenth of a bit per sample.
+    constexpr std::int64_t tenth = (1 << 13) / 10 / 100;
     const std::int64_t samples = std::int64_t{ this->B() } * this->B() * this->B();
     const std::int64_t close =
-      costs[0].first + std::min(costs[0].first / 100, third * samples) * plane.TrialMargin;
+      costs[0].first + std::min(costs[0].first / 100, tenth * samples) * plane.TrialMargin;
     const auto end = std::find_if(costs.begin() + 1, costs.end(),
       [close](const auto& cost) { return cost.first > close; });
     const std::size_t trials = std::min<std::size_t>(static_cast<std::size_t>(end - costs.begin()),

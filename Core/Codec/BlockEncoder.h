@@ -111,7 +111,9 @@ struct PlaneToEncode
   std::int32_t Least = 0, Greatest = 0;
   std::vector<block::Mode> Candidates; ///< to choose from; at least one without references
   int Trials = 1; ///< how many of them, those that look best, are encoded to see what they cost
-  int TrialMargin = 1000; ///< those that look worse by more per cent are not
+  /// Those that look worse by more per cent, or, where blocks cost much, by more of a tenth of a bit per
+  /// sample, are not.
+  int TrialMargin = 1000;
 };
 
 /// Codes all blocks of a plane.

@@ -39,8 +39,8 @@ std::vector<Mode> CandidatesOf(EncodeProfile profile)
 void ApplyProfile(EncodeProfile profile, PlaneToEncode& plane)
 {
   plane.Candidates = CandidatesOf(profile);
-  plane.Trials = profile == EncodeProfile::Compact ? 4 : profile == EncodeProfile::Fast ? 1 : 2;
-  plane.TrialMargin = profile == EncodeProfile::Compact ? 100 : 30;
+  plane.Trials = profile == EncodeProfile::Compact ? 4 : profile == EncodeProfile::Fast ? 1 : 3;
+  plane.TrialMargin = profile == EncodeProfile::Compact ? 1000 : 100;
 }
 
 } // namespace banyan
