@@ -10,10 +10,8 @@
 namespace banyan
 {
 
-/// Cuts a grid of bricks into one zone per rank by a kd-tree of equal zones (section 3.2 of
-/// "Dynamic load balancing for parallel volume rendering", its first frame): the longest axis is
-/// split in the ratio of the ranks on each side, for any rank count. Zones are half-open boxes of
-/// brick positions, disjoint, and cover the grid; with more ranks than bricks some are empty.
+/// The zones of EqualZoneTree: one per rank, half-open boxes of brick positions, disjoint. They cover
+/// the grid; with more ranks than bricks some are empty.
 std::vector<Box> StaticZones(const glm::ivec3& bricks, int ranks);
 
 /// Cells of a zone of bricks.

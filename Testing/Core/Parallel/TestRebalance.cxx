@@ -1,0 +1,295 @@
+#include "Parallel/Rebalance.h"
+
+#include "Base/Error.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace banyan
+{
+namespace
+{
+
+/// Costs that are high around a point.
+BrickCosts Hill(const glm::ivec3& positions, int edge, const glm::dvec3& center, double width)
+{
+  BrickCosts costs(positions, edge);
+  for (std::size_t i = 0; i < costs.Values.size(); ++i)
+  {
+    const Box box = costs.PositionsOf(i);
+    const glm::dvec3 away = 0.5 * glm::dvec3(box.Lo + box.Hi) - center;
+    costs.Values[i] =
+      std::exp(-(away.x * away.x + away.y * away.y + away.z * away.z) / (width * width)) *
+      static_cast<double>(box.Count());
+  }
+  return costs;
+}
+
+double SlowSum(const BrickCosts& costs, const Box& box)
+{
+  double sum = 0.0;
+  for (std::size_t i = 0; i < costs.Values.size(); ++i)
+  {
+    const Box brick = costs.PositionsOf(i);
+    const Box common = Intersection(brick, box);
+    sum += common.Empty() ? 0.0
+                          : costs.Values[i] * static_cast<double>(common.Count()) /
+                              static_cast<double>(brick.Count());
+  }
+  return sum;
+}
+
+double ImbalanceWith(
+  const ZoneTree& tree, const BrickCosts& costs, const std::vector<double>& speeds)
+{
+  return ExpectedImbalance(tree, CostSums(costs), speeds);
+}
+
+TEST(CostSums, AreTheSumsOfParts)
+{
+  std::mt19937 random(1);
+  for (int trial = 0; trial < 60; ++trial)
+  {
+    const glm::ivec3 size(random() % 19 + 1, random() % 17 + 1, random() % 13 + 1);
+    BrickCosts costs(size, static_cast<int>(random() % 5 + 1));
+    for (double& cost : costs.Values)
+    {
+      cost = random() % 3 == 0 ? 0.0 : static_cast<double>(random() % 1000);
+    }
+    const CostSums sums(costs);
+    EXPECT_NEAR(sums.Total(), SlowSum(costs, { glm::ivec3(0), size }), 1e-6);
+    for (int i = 0; i < 20; ++i)
+    {
+      Box box;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        box.Lo[axis] = static_cast<int>(random() % (size[axis] + 1u));
+        box.Hi[axis] = static_cast<int>(random() % (size[axis] + 1u));
+      }
+      EXPECT_NEAR(sums.In(box), box.Empty() ? 0.0 : SlowSum(costs, box), 1e-6);
+    }
+  }
+}
+
+TEST(CostSums, RefuseWhatIsNoCost)
+{
+  BrickCosts costs(glm::ivec3(4), 2);
+  costs.Values[3] = -1.0;
+  EXPECT_THROW(CostSums{ costs }, Error);
+  costs.Values[3] = std::nan("");
+  EXPECT_THROW(CostSums{ costs }, Error);
+  costs.Values.pop_back();
+  EXPECT_THROW(CostSums{ costs }, Error);
+  EXPECT_THROW(BrickCosts(glm::ivec3(4), 0), Error);
+  EXPECT_EQ(CostSums(BrickCosts(glm::ivec3(0, 3, 3), 2)).Total(), 0.0);
+}
+
+TEST(BrickCosts, SpreadWhatIsAddedOverBricks)
+{
+  BrickCosts costs({ 10, 9, 8 }, 4);
+  costs.Add({ { 2, 0, 0 }, { 6, 4, 4 } }, 8.0);
+  EXPECT_DOUBLE_EQ(costs.Values[0], 4.0);
+  EXPECT_DOUBLE_EQ(costs.Values[1], 4.0);
+  costs.Add({ { -5, -5, -5 }, { 99, 99, 99 } }, 720.0);
+  EXPECT_DOUBLE_EQ(costs.Values[0], 4.0 + 64.0);
+  EXPECT_DOUBLE_EQ(costs.Values[2], 32.0);
+  costs.Add({ { 20, 20, 20 }, { 30, 30, 30 } }, 1.0);
+  EXPECT_NEAR(CostSums(costs).Total(), 728.0, 1e-9);
+}
+
+TEST(SliceStep, MovesEachPlaneOneSliceTowardsTheCostlierChild)
+{
+  // The paper's tree of eight; ranks 0 to 7 from the lowest corner on.
+  const ZoneTree tree = EqualZoneTree(glm::ivec3(16), 8);
+  const std::vector<double> seconds{ 4, 1, 2, 2, 3, 3, 9, 0 };
+  const ZoneTree next = RebalanceSliceStep(tree, seconds);
+  for (std::size_t number = 0; number < tree.Nodes.size(); ++number)
+  {
+    const ZoneTree::Node& node = tree.Nodes[number];
+    EXPECT_EQ(next.Nodes[number].Axis, node.Axis);
+    double below = 0.0;
+    double above = 0.0;
+    for (int rank = node.FirstRank; rank < node.FirstRank + node.Ranks && !node.IsLeaf(); ++rank)
+    {
+      (rank < tree.Nodes[node.Above].FirstRank ? below : above) += seconds[rank];
+    }
+    const int step = below > above ? -1 : below < above ? 1 : 0;
+    EXPECT_EQ(next.Nodes[number].Plane, node.Plane + step) << number;
+  }
+}
+
+TEST(SliceStep, ComparesSecondsPerRank)
+{
+  const ZoneTree tree = EqualZoneTree({ 12, 1, 1 }, 3); // two ranks on one side of the root
+  const ZoneTree::Node& root = tree.Nodes.front();
+  const ZoneTree same = RebalanceSliceStep(tree, { 2, 2, 2 });
+  EXPECT_EQ(same, tree);
+  const int first = tree.Nodes[root.Below].Ranks == 1 ? 0 : 2;
+  std::vector<double> seconds(3, 2.0);
+  seconds[first] = 3.0;
+  EXPECT_EQ(
+    RebalanceSliceStep(tree, seconds).Nodes.front().Plane, root.Plane + (first == 0 ? -1 : 1));
+  EXPECT_THROW(RebalanceSliceStep(tree, { 1, 2 }), Error);
+  EXPECT_THROW(RebalanceSliceStep(tree, seconds, 0), Error);
+}
+
+TEST(SliceStep, NeverLosesAZone)
+{
+  for (const int ranks : { 2, 3, 5, 8, 13 })
+  {
+    ZoneTree tree = EqualZoneTree(glm::ivec3(16, 12, 9), ranks);
+    for (int frame = 0; frame < 60; ++frame)
+    {
+      std::vector<double> seconds(static_cast<std::size_t>(ranks), 0.0);
+      seconds[static_cast<std::size_t>(frame / 30 % ranks)] = 1.0;
+      tree = RebalanceSliceStep(tree, seconds);
+      for (const Box& zone : ZonesOf(tree))
+      {
+        EXPECT_FALSE(zone.Empty());
+      }
+    }
+  }
+  // Where there is no room, zones stay nested.
+  ZoneTree tree = EqualZoneTree({ 2, 1, 1 }, 5);
+  for (int frame = 0; frame < 20; ++frame)
+  {
+    tree = RebalanceSliceStep(tree, { 0, 0, 1, 5, 0 });
+    std::int64_t count = 0;
+    for (const Box& zone : ZonesOf(tree))
+    {
+      count += zone.Count();
+    }
+    EXPECT_EQ(count, 2);
+  }
+}
+
+TEST(MeasuredCost, BalancesAtOnceWherePositionsAreFine)
+{
+  for (int ranks = 2; ranks <= 64; ranks += ranks < 17 ? 1 : 9)
+  {
+    for (const glm::dvec3& center : { glm::dvec3(20, 80, 64), glm::dvec3(64, 64, 64) })
+    {
+      const BrickCosts costs = Hill(glm::ivec3(128), 8, center, 30.0);
+      std::vector<double> speeds;
+      for (int rank = 0; rank < ranks; ++rank)
+      {
+        speeds.push_back(rank % 3 == 0 ? 0.2 : 1.0);
+      }
+      const ZoneTree tree = CostZoneTree(costs, speeds);
+      // A position is a smaller part of a zone the fewer zones there are.
+      EXPECT_LT(ImbalanceWith(tree, costs, speeds), ranks <= 16 ? 1.10 : 1.25) << ranks;
+      EXPECT_EQ(CostZoneTree(costs, speeds), tree);
+    }
+  }
+}
+
+TEST(MeasuredCost, IsAsGoodAsAnyTwoZones)
+{
+  std::mt19937 random(5);
+  for (int trial = 0; trial < 100; ++trial)
+  {
+    BrickCosts costs({ static_cast<int>(random() % 30 + 2), 3, 2 }, 1);
+    for (double& cost : costs.Values)
+    {
+      cost = random() % 2 == 0 ? 0.0 : static_cast<double>(random() % 100);
+    }
+    const std::vector<double> speeds{ 1.0 + random() % 4, 1.0 + random() % 4 };
+    const ZoneTree found = CostZoneTree(costs, speeds);
+    const auto slower = [&](const ZoneTree& tree)
+    {
+      const std::vector<double> seconds = ExpectedSeconds(tree, CostSums(costs), speeds);
+      return std::max(seconds[0], seconds[1]);
+    };
+    double best = 1e300;
+    for (int plane = 0; plane <= costs.Positions.x; ++plane)
+    {
+      ZoneTree tree = found;
+      tree.Nodes.front().Axis = 0;
+      tree.Nodes.front().Plane = plane;
+      best = std::min(best, slower(tree));
+    }
+    if (found.Nodes.front().Axis == 0)
+    {
+      EXPECT_LE(slower(found), best * (1.0 + 1e-6));
+    }
+  }
+}
+
+TEST(MeasuredCost, StaysWhereItIsBalancedEnoughOrNothingIsGained)
+{
+  const ZoneTree tree = EqualZoneTree(glm::ivec3(64), 8);
+  const std::vector<double> speeds(8, 1.0);
+  BrickCosts even(glm::ivec3(64), 8);
+  std::fill(even.Values.begin(), even.Values.end(), 1.0);
+  EXPECT_EQ(RebalanceMeasuredCost(tree, even, speeds).Tree, tree);
+  even.Values[0] = 3.0; // a little more: tolerated
+  const Rebalanced same = RebalanceMeasuredCost(tree, even, speeds);
+  EXPECT_EQ(same.Tree, tree);
+  EXPECT_GT(same.Before, 1.0);
+  RebalanceLimits limits;
+  limits.Tolerated = 1.0;
+  EXPECT_EQ(RebalanceMeasuredCost(tree, even, speeds, limits).Tree, tree); // a slab is more
+  even.Values[0] = 30.0;
+  EXPECT_NE(RebalanceMeasuredCost(tree, even, speeds, limits).Tree, tree);
+  limits.LeastGain = 0.5;
+  EXPECT_EQ(RebalanceMeasuredCost(tree, even, speeds, limits).Tree, tree);
+  // Nothing is drawn at all: nothing moves.
+  EXPECT_EQ(RebalanceMeasuredCost(tree, BrickCosts(glm::ivec3(64), 8), speeds).Tree, tree);
+}
+
+TEST(MeasuredCost, MovesNoMoreBytesThanAllowedAndArrivesAllTheSame)
+{
+  const BrickCosts costs = Hill(glm::ivec3(128), 8, { 20, 100, 30 }, 25.0);
+  const std::vector<double> speeds(16, 1.0);
+  BrickCosts bytes(glm::ivec3(128), 8);
+  for (std::size_t i = 0; i < bytes.Values.size(); ++i)
+  {
+    bytes.Values[i] = costs.Values[i] > 1e-3 ? 2048.0 : 0.0;
+  }
+  RebalanceLimits limits;
+  limits.Bytes = &bytes;
+  limits.MostBytes = 0.1 * CostSums(bytes).Total();
+  limits.LeastGain = 0.0;
+  ZoneTree tree = EqualZoneTree(glm::ivec3(128), 16);
+  double moved = 0.0;
+  int frames = 0;
+  while (ImbalanceWith(tree, costs, speeds) > 1.06 && frames < 30)
+  {
+    const Rebalanced next = RebalanceMeasuredCost(tree, costs, speeds, limits);
+    EXPECT_LE(next.BytesMoved, limits.MostBytes);
+    EXPECT_NEAR(next.BytesMoved, MovedBetween(tree, next.Tree, CostSums(bytes)), 1.0);
+    for (std::size_t number = 0; number < tree.Nodes.size(); ++number)
+    {
+      EXPECT_EQ(next.Tree.Nodes[number].Axis, tree.Nodes[number].Axis);
+    }
+    tree = next.Tree;
+    moved += next.BytesMoved;
+    ++frames;
+  }
+  EXPECT_GT(frames, 3);
+  EXPECT_LE(frames, 20);
+  EXPECT_GT(moved, 3.0 * limits.MostBytes);
+}
+
+TEST(MeasuredCost, RefusesWhatDoesNotFitTogether)
+{
+  const ZoneTree tree = EqualZoneTree(glm::ivec3(8), 3);
+  const BrickCosts costs(glm::ivec3(8), 2);
+  EXPECT_THROW(RebalanceMeasuredCost(tree, costs, { 1, 1 }), Error);
+  EXPECT_THROW(RebalanceMeasuredCost(tree, costs, { 1, 1, 0 }), Error);
+  EXPECT_THROW(RebalanceMeasuredCost(tree, costs, { 1, 1, std::nan("") }), Error);
+  EXPECT_THROW(RebalanceMeasuredCost(tree, BrickCosts(glm::ivec3(9), 2), { 1, 1, 1 }), Error);
+}
+
+TEST(ImbalanceOf, IsLargestOverMean)
+{
+  EXPECT_DOUBLE_EQ(ImbalanceOf({ 1, 1, 4 }), 2.0);
+  EXPECT_DOUBLE_EQ(ImbalanceOf({ 0, 0 }), 1.0);
+  EXPECT_DOUBLE_EQ(ImbalanceOf({}), 1.0);
+}
+
+} // namespace
+} // namespace banyan
