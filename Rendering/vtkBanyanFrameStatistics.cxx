@@ -13,6 +13,7 @@ void vtkBanyanFrameStatistics::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "Imbalance: " << this->Imbalance << "\n"
      << indent << "SamplesTaken: " << this->SamplesTaken << "\n"
      << indent << "BricksDrawn: " << this->BricksDrawn << "\n"
+     << indent << "BricksUniform: " << this->BricksUniform << "\n"
      << indent << "BricksSkipped: " << this->BricksSkipped << "\n"
      << indent << "BytesComposited: " << this->BytesComposited << "\n"
      << indent << "BytesRead: " << this->BytesRead << "\n"

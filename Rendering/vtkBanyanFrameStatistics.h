@@ -42,10 +42,12 @@ public:
   ///@}
 
   ///@{
-  /// Bricks whose values were needed, and bricks left out (invisible under the transfer function,
-  /// or off screen).
+  /// Bricks whose values were needed, bricks of one value, which are drawn without being loaded or
+  /// sampled, and bricks left out (invisible under the transfer function, or off screen).
   vtkSetMacro(BricksDrawn, vtkIdType);
   vtkGetMacro(BricksDrawn, vtkIdType);
+  vtkSetMacro(BricksUniform, vtkIdType);
+  vtkGetMacro(BricksUniform, vtkIdType);
   vtkSetMacro(BricksSkipped, vtkIdType);
   vtkGetMacro(BricksSkipped, vtkIdType);
   ///@}
@@ -84,6 +86,7 @@ protected:
   double Imbalance = 1.0;
   vtkIdType SamplesTaken = 0;
   vtkIdType BricksDrawn = 0;
+  vtkIdType BricksUniform = 0;
   vtkIdType BricksSkipped = 0;
   vtkIdType BytesComposited = 0;
   vtkIdType BytesRead = 0;

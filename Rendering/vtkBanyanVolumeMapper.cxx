@@ -1,11 +1,11 @@
 #include "vtkBanyanVolumeMapper.h"
 
 #include "DistributedField.h"
+#include "FrameScene.h"
 #include "FramebufferExchange.h"
 #include "PixelsBehind.h"
 #include "SceneOptions.h"
 #include "ToleranceControl.h"
-#include "TransferFunctionTable.h"
 #include "vtkBanyanFrameStatistics.h"
 
 #include "Base/ThreadPool.h"
@@ -16,14 +16,12 @@
 
 #include "vtkAbstractMapper.h"
 #include "vtkAlgorithm.h"
-#include "vtkCamera.h"
 #include "vtkColorTransferFunction.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkMPI.h"
 #include "vtkMPICommunicator.h"
-#include "vtkMatrix4x4.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -32,45 +30,7 @@
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
 
-#include <glm/gtc/matrix_access.hpp>
-#include <glm/matrix.hpp>
-
 #include <algorithm>
-#include <cmath>
-
-namespace
-{
-
-glm::dmat4 ToGlm(vtkMatrix4x4* matrix)
-{
-  glm::dmat4 result;
-  for (int row = 0; row < 4; ++row)
-  {
-    for (int column = 0; column < 4; ++column)
-    {
-      result[column][row] = matrix->GetElement(row, column);
-    }
-  }
-  return result;
-}
-
-/// Bounds in world space of a box of physical space.
-void WorldBounds(
-  const std::array<double, 6>& box, const glm::dmat4& toWorld, glm::dvec3& low, glm::dvec3& high)
-{
-  low = glm::dvec3(std::numeric_limits<double>::infinity());
-  high = -low;
-  for (int corner = 0; corner < 8; ++corner)
-  {
-    const glm::dvec4 point(
-      box[corner & 1], box[2 + ((corner >> 1) & 1)], box[4 + ((corner >> 2) & 1)], 1.0);
-    const glm::dvec3 world(toWorld * point);
-    low = glm::min(low, world);
-    high = glm::max(high, world);
-  }
-}
-
-} // namespace
 
 struct vtkBanyanVolumeMapper::Internals
 {
@@ -252,6 +212,7 @@ void vtkBanyanVolumeMapper::Internals::Publish(const banyan::FrameStatistics& fr
   out->SetImbalance(frame.Imbalance);
   out->SetSamplesTaken(static_cast<vtkIdType>(frame.SamplesTaken));
   out->SetBricksDrawn(static_cast<vtkIdType>(frame.BricksDrawn));
+  out->SetBricksUniform(static_cast<vtkIdType>(frame.BricksUniform));
   out->SetBricksSkipped(static_cast<vtkIdType>(frame.BricksSkipped));
   out->SetBytesComposited(static_cast<vtkIdType>(frame.BytesComposited));
   out->SetFrames(out->GetFrames() + 1);
@@ -297,43 +258,18 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
     return;
   }
 
-  glm::ivec2 size(0);
-  glm::ivec2 origin(0);
-  renderer->GetTiledSizeAndOrigin(&size.x, &size.y, &origin.x, &origin.y);
-  const glm::dmat4 toWorld = ToGlm(volume->GetMatrix());
-  glm::dvec3 low;
-  glm::dvec3 high;
-  WorldBounds(self.Field.Bounds(), toWorld, low, high);
-  const banyan::RayCamera camera(
-    ToGlm(renderer->GetActiveCamera()->GetCompositeProjectionTransformMatrix(
-      renderer->GetTiledAspectRatio(), -1, 1)),
-    size, 0.5 * (low + high));
-  const banyan::PixelRect rect = camera.Footprint(low, high);
+  const bool fixed = this->SampleDistanceVoxels > 0.0;
+  banyan::FrameScene wanted = banyan::MakeFrameScene(
+    renderer, volume, this, self.Field, fixed ? this->SampleDistanceVoxels : 1.0);
+  banyan::RayScene& scene = wanted.Scene;
+  const banyan::PixelRect rect = scene.Viewport;
   if (rect.Empty())
   {
     return;
   }
-
   std::vector<banyan::OpaquePixel> pixels = self.Framebuffer.Read(renderer, rect);
   banyan::CombineBehind(*self.Communicator, self.RankOrderBehind, rect, pixels);
-  // Lengths are those of the data, before the prop is scaled, as in VTK's own volume mappers.
-  banyan::RayScene scene{ camera.InSpace(toWorld), rect, self.Field.IndexToPhysical(),
-    self.Field.DomainCells(), banyan::MakeTransferFunction(volume->GetProperty()),
-    (this->SampleDistanceVoxels > 0.0 ? this->SampleDistanceVoxels : 1.0) * self.Field.CellSize() };
   scene.Depth = banyan::DepthsOf(pixels);
-  scene.Shading = banyan::MakeShading(volume->GetProperty());
-  scene.Interpolation = banyan::MakeInterpolation(volume->GetProperty());
-  std::string failure;
-  try
-  {
-    scene.ClipPlanes = banyan::MakeClipPlanes(this, toWorld);
-    scene.Blend = banyan::MakeBlend(this, self.Field.Range());
-  }
-  catch (const banyan::Error& error)
-  {
-    // For the other ranks too, which would wait for this one.
-    failure = error.what();
-  }
 
   const std::uint64_t bytesBefore = self.Field.BytesRead();
   // Half of the cache: what one batch holds is then never evicted by that batch itself.
@@ -346,12 +282,14 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
     renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0 };
   const banyan::Timer drawing;
   this->Statistics->SetEstimatedImageError(
-    !(this->SampleDistanceVoxels > 0.0) && banyan::CanKeepTolerance(this, volume->GetProperty())
-      ? self.Tolerance.Plan(*self.Communicator, self.Field, scene, wish, budget, failure, frame)
+    !fixed && banyan::CanKeepTolerance(this, volume->GetProperty())
+      ? self.Tolerance.Plan(
+          *self.Communicator, self.Field, scene, wish, budget, wanted.Problem, frame)
       : 0.0);
   const banyan::FrameStatistics pilots = frame;
   const banyan::FloatImage picture = banyan::DrawDistributed(*self.Communicator, scene,
-    self.Field.Source(), self.Field.Zones(), budget, banyan::ThreadPool::Process(), failure, frame);
+    self.Field.Source(), self.Field.Zones(), budget, banyan::ThreadPool::Process(), wanted.Problem,
+    frame);
 
   frame.SamplesTaken += pilots.SamplesTaken;
   frame.BytesComposited += pilots.BytesComposited;

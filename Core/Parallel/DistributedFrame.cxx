@@ -81,6 +81,7 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene, Br
   { return static_cast<decltype(value)>(AllSum(communicator, static_cast<double>(value))); };
   statistics.SamplesTaken = sum(rays.SamplesTaken);
   statistics.BricksDrawn = sum(rays.BricksDrawn);
+  statistics.BricksUniform = sum(rays.BricksUniform);
   statistics.BricksSkipped = sum(rays.BricksSkipped);
   statistics.BytesComposited = sum(sent.BytesSent);
   return picture;

@@ -19,6 +19,7 @@ struct FrameStatistics
   double Imbalance = 1; ///< slowest rank's render seconds over the mean, >= 1
   std::int64_t SamplesTaken = 0;
   std::int64_t BricksDrawn = 0;
+  std::int64_t BricksUniform = 0;
   std::int64_t BricksSkipped = 0;
   std::uint64_t BytesComposited = 0; ///< sent between ranks to make one picture of N
 };

@@ -61,6 +61,12 @@ void CopyBrick(
     {
       for (int y = samples.Lo.y; y < samples.Hi.y; ++y)
       {
+        if (every == 1)
+        {
+          reader.Read(begin, end, y, z, out);
+          out += end - begin;
+          continue;
+        }
         reader.Read(begin, end, fine(y, 1), fine(z, 2), row.data());
         for (int x = samples.Lo.x; x < samples.Hi.x; ++x)
         {
@@ -147,8 +153,10 @@ ArrayBrickSource::ArrayBrickSource(
       using Summary = BrickSummary<typename decltype(tag)::Type>;
       std::vector<Summary> summaries(pool.Width(), Summary(this->Array, this->Over));
       const std::function<void(std::int64_t, int)> summarize = [&](std::int64_t brick, int worker) {
-        summaries[worker].Summarize(
-          this->SamplesOf(brick), this->Ranges[brick], this->Masks[brick]);
+        ValueRange& range = this->Ranges[brick];
+        const Box samples = this->SamplesOf(brick);
+        summaries[worker].Summarize(samples, range, this->Masks[brick]);
+        this->Uniform[brick] = range.Low == range.High && !this->HasSpecial(samples);
       };
       pool.ParallelFor(count, summarize);
     });
@@ -163,6 +171,7 @@ ArrayBrickSource::ArrayBrickSource(const ArrayBrickSource& finest, int level)
   this->Cells = { glm::ivec3(0), (finest.Cells.Hi + this->Every - 1) / this->Every };
   this->Held = this->Cells.Hi + 1;
   this->CutIntoBricks();
+  std::fill(this->Uniform.begin(), this->Uniform.end(), std::uint8_t{ 1 });
   for (std::size_t fine = 0; fine < finest.Ranges.size(); ++fine)
   {
     const glm::ivec3 position =
@@ -172,6 +181,7 @@ ArrayBrickSource::ArrayBrickSource(const ArrayBrickSource& finest, int level)
       this->BrickCounts.x * (position.y + static_cast<std::size_t>(this->BrickCounts.y) * position.z);
     this->Ranges[brick].Include(finest.Ranges[fine]);
     this->Masks[brick] |= finest.Masks[fine];
+    this->Uniform[brick] &= finest.Uniform[fine];
   }
 }
 
@@ -192,6 +202,7 @@ void ArrayBrickSource::CutIntoBricks()
     static_cast<std::size_t>(this->BrickCounts.x) * this->BrickCounts.y * this->BrickCounts.z;
   this->Ranges.resize(count);
   this->Masks.resize(count);
+  this->Uniform.resize(count);
 }
 
 Box ArrayBrickSource::CellsOf(std::int64_t brick) const
@@ -205,6 +216,40 @@ Box ArrayBrickSource::SamplesOf(std::int64_t brick) const
 {
   const Box cells = this->CellsOf(brick);
   return { cells.Lo - this->Array.Samples.Lo, cells.Hi + 1 - this->Array.Samples.Lo };
+}
+
+bool ArrayBrickSource::HasSpecial(const Box& samples) const
+{
+  bool found = false;
+  Dispatch(this->Array.Type,
+    [&](auto tag)
+    {
+      const SampleReader<typename decltype(tag)::Type> reader(this->Array);
+      std::vector<double> row(static_cast<std::size_t>(samples.Size().x));
+      for (int z = samples.Lo.z; z < samples.Hi.z && !found; ++z)
+      {
+        for (int y = samples.Lo.y; y < samples.Hi.y && !found; ++y)
+        {
+          reader.Read(samples.Lo.x, samples.Hi.x, y, z, row.data());
+          found = !std::all_of(
+            row.begin(), row.end(), [](double value) { return std::isfinite(value); });
+        }
+      }
+    });
+  return found;
+}
+
+/// Signs of zeros and the rounding of magnitudes do not matter: zeros find one entry of a table, and
+/// magnitudes are not known.
+std::optional<UniformValue> ArrayBrickSource::UniformValueOf(std::int64_t brick) const
+{
+  const ValueRange& range = this->Ranges[brick];
+  const bool known = this->Uniform[brick] != 0 && range.Low == range.High;
+  if (!known || this->Array.Component == SampleArray::Magnitude)
+  {
+    return std::nullopt;
+  }
+  return UniformValue{ range.Low, this->Array.Type };
 }
 
 bool ArrayBrickSource::IsCopied(const Box& samples) const

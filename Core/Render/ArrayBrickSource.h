@@ -54,6 +54,7 @@ public:
   ValueRange RangeOf(std::int64_t brick) const override { return this->Ranges[brick]; }
   ValueMask MaskOf(std::int64_t brick) const override { return this->Masks[brick]; }
   MaskRange MasksAreOver() const override { return this->Over; }
+  std::optional<UniformValue> UniformValueOf(std::int64_t brick) const override;
   std::size_t LoadBytes(std::int64_t brick) const override;
   BrickView Load(std::int64_t brick) override;
   /// Takes the samples from the array, also those beyond its bricks' own.
@@ -74,6 +75,8 @@ private:
   /// @param samples positions in the array, from 0, in samples of the level
   BrickView ViewOf(const Box& samples) const;
   Box SamplesOf(std::int64_t brick) const;
+  /// Whether a sample of the finest level is NaN, infinite or hidden.
+  bool HasSpecial(const Box& samples) const;
 
   SampleArray Array;      ///< of the finest level
   int Every = 1;          ///< samples of the array from one of the level to the next
@@ -85,6 +88,7 @@ private:
   glm::ivec3 BrickCounts{ 1 };
   std::vector<ValueRange> Ranges;
   std::vector<ValueMask> Masks;
+  std::vector<std::uint8_t> Uniform; ///< whether all samples have the value Range.Low
 };
 
 } // namespace banyan

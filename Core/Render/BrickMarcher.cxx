@@ -37,25 +37,55 @@ private:
   const ShadingTable& Shading;
 };
 
-/// One sample after the other.
+/// The table's entries of a brick's values.
 template <class T>
-class PlainMarcher
+class BrickEntries
 {
 public:
   /// @param relative whether values become relative to the table's low end, or are already
+  BrickEntries(const BrickView& view, const StepTable& table, bool relative, bool nearest)
+    : Lookup(relative ? table.RelativeLookup() : table.Lookup())
+    , Values(view, table.Low(), nearest)
+  {
+  }
+
+  int At(const std::int64_t (&position)[3]) const
+  {
+    return this->Lookup.IndexOf(this->Values.At(position));
+  }
+
+private:
+  TableLookup Lookup;
+  PlainInterpolator<T> Values;
+};
+
+/// Where all values have one entry.
+struct UniformEntries
+{
+  int Entry;
+
+  int At(const std::int64_t (&)[3]) const { return this->Entry; }
+};
+
+/// One sample after the other.
+/// @tparam Values BrickEntries, or what stands in for them
+template <class Values>
+class PlainMarcher
+{
+public:
+  /// @param corner of the brick
   /// @param shader may be null
-  PlainMarcher(const BrickPart& part, const StepTable& table, bool relative, float limit,
-    const GradientShader* shader, bool nearest)
+  PlainMarcher(const Values& entries, const Box& cells, const glm::ivec3& corner,
+    const StepTable& table, float limit, const GradientShader* shader = nullptr)
     : Table(table)
-    , Lookup(relative ? table.RelativeLookup() : table.Lookup())
-    , Values(part.View, table.Low(), nearest)
+    , Entries(entries)
     , Shader(shader)
-    , Cells(part.Cells)
+    , Cells(cells)
     , Limit(limit)
   {
     for (int axis = 0; axis < 3; ++axis)
     {
-      this->Corner[axis] = ToFixed(part.Corner[axis]);
+      this->Corner[axis] = ToFixed(corner[axis]);
     }
   }
 
@@ -102,7 +132,7 @@ private:
   {
     const std::int64_t inBrick[3] = { position[0] - this->Corner[0], position[1] - this->Corner[1],
       position[2] - this->Corner[2] };
-    return this->Lookup.IndexOf(this->Values.At(inBrick));
+    return this->Entries.At(inBrick);
   }
 
   /// @param step premultiplied colour and transmittance
@@ -123,15 +153,14 @@ private:
 
   std::int64_t Corner[3]; ///< fixed-point position of the brick's first sample
   const StepTable& Table;
-  TableLookup Lookup;
-  PlainInterpolator<T> Values;
+  Values Entries;
   const GradientShader* Shader;
   FixedBox Cells;
   float Limit;
 };
 
-template <class T>
-void MarchRays(const PlainMarcher<T>& marcher, const PixelRect& rect, RayTile& tile)
+template <class Values>
+void MarchRays(const PlainMarcher<Values>& marcher, const PixelRect& rect, RayTile& tile)
 {
   const float limit = tile.TransmittanceLimit;
   for (int y = rect.Lo.y; y < rect.Hi.y; ++y)
@@ -162,8 +191,9 @@ void MarchBrick(const BrickPart& part, const StepTable& table, const PixelRect& 
     [&](auto tag)
     {
       using T = typename decltype(tag)::Type;
-      const PlainMarcher<T> marcher(
-        part, table, IsRelative<T>, tile.TransmittanceLimit, nullptr, nearest);
+      const BrickEntries<T> entries(part.View, table, IsRelative<T>, nearest);
+      const PlainMarcher marcher(
+        entries, part.Cells, part.Corner, table, tile.TransmittanceLimit);
       MarchRays(marcher, Intersection(pixels, tile.Rect), tile);
     });
 }
@@ -179,9 +209,20 @@ void MarchUnpacked(const PackedBrick& brick, const BrickVisibility& seen, const 
   {
     shader = std::make_unique<const GradientShader>(brick, *shading, nearest);
   }
-  const PlainMarcher<float> marcher({ view, brick.Corner(), seen.Cells }, table, brick.Relative(),
-    tile.TransmittanceLimit, shader.get(), nearest);
+  const BrickEntries<float> entries(view, table, brick.Relative(), nearest);
+  const PlainMarcher marcher(
+    entries, seen.Cells, brick.Corner(), table, tile.TransmittanceLimit, shader.get());
   MarchRays(marcher, Intersection(pixels, tile.Rect), tile);
+}
+
+void MarchUniformPlain(
+  const Box& cells, const StepTable& table, int entry, const PixelRect& pixels, RayTile& tile)
+{
+  const std::int64_t taken = tile.SamplesTaken;
+  const PlainMarcher marcher(
+    UniformEntries{ entry }, cells, cells.Lo, table, tile.TransmittanceLimit);
+  MarchRays(marcher, Intersection(pixels, tile.Rect), tile);
+  tile.SamplesTaken = taken;
 }
 
 } // namespace banyan

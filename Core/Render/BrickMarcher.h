@@ -42,6 +42,19 @@ void MarchPacked(const PackedBrick& brick, const BrickVisibility& seen, const St
   const ShadingTable* shading, const PixelRect& pixels, RayTile& tile,
   SampleInterpolation interpolation = SampleInterpolation::Linear);
 
+/// The same for a brick of which all samples, at most PackedBrick::LargestEdge cells per axis, have
+/// one entry of the table: the samples that lie in `cells` are known from where rays enter and leave,
+/// and none is taken (equation 4 of "Rendering time-varying data with octrees and difference
+/// encoding" sums them up; here they are added one by one, which changes no bit of the picture).
+/// Without shading. `tile.SamplesTaken` stays as it is.
+/// @param tile PacketsFit
+void MarchUniform(
+  const Box& cells, const StepTable& table, int entry, const PixelRect& pixels, RayTile& tile);
+
+/// The same, one ray after the other, for any tile and size.
+void MarchUniformPlain(
+  const Box& cells, const StepTable& table, int entry, const PixelRect& pixels, RayTile& tile);
+
 } // namespace banyan
 
 #endif

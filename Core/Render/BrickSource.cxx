@@ -45,6 +45,11 @@ void CopyPart(const Neighbour& from, const Box& target, To* out)
 
 } // namespace
 
+std::optional<UniformValue> BrickSource::UniformValueOf(std::int64_t) const
+{
+  return std::nullopt;
+}
+
 BrickSource* BrickSource::AtLevel(int level, const Box& domain)
 {
   if (level == 0)

@@ -12,9 +12,17 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 
 namespace banyan
 {
+
+/// One finite value, and the type that samples have.
+struct UniformValue
+{
+  double Value = 0.0;
+  ScalarType Type = ScalarType::Float64;
+};
 
 /// What the ray caster draws: a box of cells cut into bricks. Positions are samples of the whole
 /// grid (index space, starting at 0); cell c lies between samples c and c + 1.
@@ -31,6 +39,9 @@ public:
   virtual ValueRange RangeOf(std::int64_t brick) const = 0;
   virtual ValueMask MaskOf(std::int64_t brick) const = 0;
   virtual MaskRange MasksAreOver() const = 0;
+  /// Of a brick (a macro voxel) whose samples are all known to have one finite value; asked without
+  /// loading it. Empty when they have not, or when it is not known.
+  virtual std::optional<UniformValue> UniformValueOf(std::int64_t brick) const;
 
   /// Memory that one loaded brick takes (0 when the values are in memory anyway).
   virtual std::size_t LoadBytes(std::int64_t brick) const = 0;

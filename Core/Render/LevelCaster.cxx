@@ -2,7 +2,6 @@
 
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
-#include "Render/VisibilityOrder.h"
 
 #include <glm/matrix.hpp>
 
@@ -50,73 +49,6 @@ LevelCaster::LevelCaster(const RayScene& scene, BrickSource& source, const Box& 
   }
   this->AddSamplings();
   this->Plan();
-}
-
-void LevelCaster::AddSamplings()
-{
-  std::vector<RaySampling> samplings{ { 0, this->Scene.SampleDistance } };
-  if (this->Scene.Samplings)
-  {
-    samplings = this->Scene.Samplings->Samplings();
-  }
-  for (const RaySampling& sampling : samplings)
-  {
-    this->Samplings.emplace_back();
-    if (sampling.Level == this->Source.Level())
-    {
-      this->Samplings.back() = std::make_unique<const Sampled>(this->Scene, sampling);
-      this->AnySampling = this->Samplings.back().get();
-    }
-  }
-}
-
-/// Finds the bricks that can be seen, front to back, and the rectangle that they cover.
-void LevelCaster::Plan()
-{
-  const glm::ivec3 counts = this->Source.Bricks();
-  const std::int64_t count = std::int64_t{ counts.x } * counts.y * counts.z;
-  const ValueMask visibleBins = this->Scene.Transfer.VisibleBins(this->Source.MasksAreOver());
-  const Viewpoint view = InIndexSpace(this->Scene.Camera, this->IndexToWorld);
-  const ProjectionTable* const projection = this->AnySampling->Projection.get();
-  for (std::int64_t number = 0; number < count; ++number)
-  {
-    PlannedBrick brick;
-    brick.Number = number;
-    const Box whole = this->Source.CellsOf(number);
-    brick.Cells = Intersection(whole, this->Cells);
-    if (brick.Cells.Empty())
-    {
-      continue;
-    }
-    const ValueRange range = this->Source.RangeOf(number);
-    brick.HighestRank = projection ? projection->HighestRank(range) : 0.0f;
-    const bool wanted = projection ? brick.HighestRank > 0.0f
-                                   : (this->Source.MaskOf(number) & visibleBins) != 0 &&
-                                       this->Visible.Any(range.Low, range.High);
-    if (wanted && !IsCutAway(this->AnySampling->Lattice.Planes(), brick.Cells))
-    {
-      brick.Footprint = Intersection(this->FootprintOf(brick.Cells), this->Scene.Viewport);
-    }
-    if (brick.Footprint.Empty())
-    {
-      ++this->Statistics.BricksSkipped;
-      continue;
-    }
-    // The best values first: bricks that cannot beat them are then never loaded. Averages are
-    // added up front to back, so that they round alike in bricks of all sizes.
-    brick.Key = projection && !projection->Averages() ? -brick.HighestRank
-                                                      : VisibilityKey(view, whole);
-    this->Touched = Union(this->Touched, brick.Footprint);
-    this->Bricks.push_back(brick);
-  }
-  std::sort(this->Bricks.begin(), this->Bricks.end(),
-    [](const PlannedBrick& a, const PlannedBrick& b)
-    { return a.Key < b.Key || (a.Key == b.Key && a.Number < b.Number); });
-}
-
-PixelRect LevelCaster::FootprintOf(const Box& cells) const
-{
-  return this->IndexCamera.Footprint(glm::dvec3(cells.Lo), glm::dvec3(cells.Hi));
 }
 
 void LevelCaster::Draw(FloatImage& picture)
@@ -184,12 +116,11 @@ std::size_t LevelCaster::TakeBatch(std::size_t first)
   for (; next < this->Bricks.size(); ++next)
   {
     const PlannedBrick& brick = this->Bricks[next];
-    KeptBricks::Pointer kept = this->Source.Kept().Find(
-      this->Source.KeptNumber(brick.Number), brick.Cells, this->AnySampling->Table.Low(),
-      this->Shading != nullptr);
-    const std::uint64_t loadBytes = kept ? 0 : this->Source.LoadBytes(brick.Number);
+    KeptBricks::Pointer kept = this->FindKept(brick);
+    const bool isThere = kept || brick.Entry;
+    const std::uint64_t loadBytes = isThere ? 0 : this->Source.LoadBytes(brick.Number);
     const std::uint64_t brickBytes =
-      kept ? 0 : loadBytes + PackedBrick::BytesFor(brick.Cells, this->Shading != nullptr);
+      isThere ? 0 : loadBytes + PackedBrick::BytesFor(brick.Cells, this->Shading != nullptr);
     const bool full = bytes + brickBytes > left || this->Batch.size() >= BricksPerBatch;
     if (full && !this->Batch.empty())
     {
@@ -210,6 +141,14 @@ std::size_t LevelCaster::TakeBatch(std::size_t first)
     bytes += brickBytes;
   }
   return next;
+}
+
+/// Null for bricks that are not kept, or need not be.
+KeptBricks::Pointer LevelCaster::FindKept(const PlannedBrick& brick) const
+{
+  return brick.Entry ? nullptr
+                     : this->Source.Kept().Find(this->Source.KeptNumber(brick.Number), brick.Cells,
+                         this->AnySampling->Table.Low(), this->Shading != nullptr);
 }
 
 /// Whether a tile under a brick has rays left; if asked to look at pixels, whether one of them has
@@ -246,7 +185,10 @@ void LevelCaster::DrawBatch()
 {
   this->Pool.ParallelFor(static_cast<std::int64_t>(this->Batch.size()),
     [this](std::int64_t i) { this->Load(*this->Batch[i], this->Loaded[i]); });
-  this->Statistics.BricksDrawn += static_cast<std::int64_t>(this->Batch.size());
+  const auto uniform = std::count_if(this->Batch.begin(), this->Batch.end(),
+    [](const PlannedBrick* brick) { return brick->Entry.has_value(); });
+  this->Statistics.BricksUniform += uniform;
+  this->Statistics.BricksDrawn += static_cast<std::int64_t>(this->Batch.size()) - uniform;
 
   std::atomic<std::int64_t> samples{ 0 };
   const std::function<void(std::int64_t, int)> draw = [&](std::int64_t number, int worker)
@@ -264,6 +206,10 @@ void LevelCaster::DrawBatch()
 
 void LevelCaster::Load(const PlannedBrick& brick, LoadedBrick& loaded) const
 {
+  if (brick.Entry)
+  {
+    return;
+  }
   if (!loaded.Packed)
   {
     if (!PackedBrick::CanPack(brick.Cells))
@@ -343,7 +289,13 @@ void LevelCaster::DrawBrick(const PlannedBrick& brick, const LoadedBrick& loaded
   const Sampled& sampling, RayTile& rays) const
 {
   const ProjectionTable* const projection = sampling.Projection.get();
-  if (!loaded.Packed)
+  if (brick.Entry)
+  {
+    const bool fits = rays.PacketsFit && PackedBrick::CanPack(brick.Cells);
+    const auto march = fits ? MarchUniform : MarchUniformPlain;
+    march(brick.Cells, sampling.Table, *brick.Entry, brick.Footprint, rays);
+  }
+  else if (!loaded.Packed)
   {
     const glm::ivec3 corner = this->Source.CellsOf(brick.Number).Lo;
     const BrickPart part{ loaded.View, corner, brick.Cells };

@@ -7,6 +7,7 @@
 #include "Render/TileGrid.h"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace banyan
@@ -40,9 +41,11 @@ private:
     PixelRect Footprint;
     double Key = 0;
     float HighestRank = 0; ///< of a projection
+    /// Of the table, where all samples have it and are not shaded: nothing is loaded then.
+    std::optional<int> Entry;
   };
 
-  /// Packed, or as the source gives it where it cannot be packed.
+  /// Packed, or as the source gives it where it cannot be packed, or nothing where all is known.
   struct LoadedBrick
   {
     std::shared_ptr<const PackedBrick> Packed;
@@ -71,11 +74,13 @@ private:
   void AddSamplings();
   void Plan();
   PixelRect FootprintOf(const Box& cells) const;
+  std::optional<int> EntryOf(std::int64_t brick) const;
   void MakeTiles();
   template <class Function>
   void ForTilesUnder(const PixelRect& footprint, Function&& function);
   std::uint64_t BytesLeft() const;
   std::size_t TakeBatch(std::size_t first);
+  KeptBricks::Pointer FindKept(const PlannedBrick& brick) const;
   bool AnyRayOpen(const PlannedBrick& brick, bool lookAtPixels);
   float TransmittanceLimit() const;
   void DrawBatch();
@@ -100,7 +105,7 @@ private:
   RayCamera IndexCamera;
   std::unique_ptr<const ShadingTable> Shading; ///< null for none
 
-  /// By number of the scene's samplings; null for those of other levels.
+  /// By number of the scene's samplings; null for those of other levels, and that no tile has.
   std::vector<std::unique_ptr<const Sampled>> Samplings;
   const Sampled* AnySampling = nullptr; ///< for what is the same for all
 

@@ -11,6 +11,7 @@
 #if HWY_TARGET != HWY_SCALAR
 #include "Render/PacketIntervals-inl.h"
 #include "Render/PacketSamples-inl.h"
+#include "Render/UniformSamples-inl.h"
 #endif
 
 HWY_BEFORE_NAMESPACE();
@@ -27,35 +28,61 @@ void MarchPackedHere(const PackedBrick& brick, const BrickVisibility& seen, cons
   MarchUnpacked(brick, seen, table, shading, pixels, tile, interpolation);
 }
 
+void MarchUniformHere(
+  const Box& cells, const StepTable& table, int entry, const PixelRect& pixels, RayTile& tile)
+{
+  MarchUniformPlain(cells, table, entry, pixels, tile);
+}
+
 #else
 
 /// Draws through one brick as many rays at a time as a vector has lanes. Rays of a packet walk side
 /// by side, each from where it enters the brick.
-/// @tparam Special whether samples may not be finite
+/// @tparam Values PacketSamples, or what stands in for them
 /// @tparam Holes whether macro cells are to be skipped
-/// @tparam Shaded whether samples are shaded
-/// @tparam Nearest whether samples are those of the grid nearest by
-template <bool Special, bool Holes, bool Shaded, bool Nearest>
+template <class Values, bool Holes>
 class PacketMarcher
 {
 public:
-  PacketMarcher(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
-    const ShadingTable* shading, RayTile& tile)
-    : Intervals(tile, seen.Cells)
-    , Samples(brick, table, shading)
-    , Cells(seen.Cells)
+  /// @param cells those to draw
+  /// @param corner of the brick
+  PacketMarcher(const Values& samples, const Box& cells, const glm::ivec3& corner, RayTile& tile)
+    : Intervals(tile, cells)
+    , Samples(samples)
+    , Cells(cells)
     , Tile(tile)
-    , MacroMask(seen.Mask)
-    , MacroShift(FractionBits + brick.MacroShift())
   {
     for (int axis = 0; axis < 3; ++axis)
     {
-      this->Size[axis] = static_cast<std::uint32_t>(seen.Cells.Size()[axis]);
-      this->ToBrick[axis] = static_cast<std::uint32_t>(-ToFixed(brick.Corner()[axis]));
-      this->Offset[axis] =
-        static_cast<std::uint32_t>(ToFixed(seen.Cells.Lo[axis] - brick.Corner()[axis]));
+      this->Size[axis] = static_cast<std::uint32_t>(cells.Size()[axis]);
+      this->ToBrick[axis] = static_cast<std::uint32_t>(-ToFixed(corner[axis]));
+      this->Offset[axis] = static_cast<std::uint32_t>(ToFixed(cells.Lo[axis] - corner[axis]));
     }
   }
+
+  /// For Holes.
+  void SkipMacros(const PackedBrick& brick, const BrickVisibility& seen)
+  {
+    this->MacroMask = seen.Mask;
+    this->MacroShift = FractionBits + brick.MacroShift();
+  }
+
+  /// All packets under some pixels of the tile.
+  void March(const PixelRect& pixels)
+  {
+    constexpr int edge = RayTile::PacketEdge;
+    const glm::ivec2 corner = this->Tile.Rect.Lo;
+    const PixelRect packets{ (pixels.Lo - corner) / edge, (pixels.Hi - corner + edge - 1) / edge };
+    for (int y = packets.Lo.y; y < packets.Hi.y; ++y)
+    {
+      for (int x = packets.Lo.x; x < packets.Hi.x; ++x)
+      {
+        this->MarchPacket(y * RayTile::PacketsPerRow + x);
+      }
+    }
+  }
+
+private:
 
   HWY_INLINE void MarchPacket(int packet)
   {
@@ -65,7 +92,6 @@ public:
     }
   }
 
-private:
   HWY_INLINE void MarchLanes(int slot)
   {
     const D d;
@@ -101,8 +127,8 @@ private:
       hn::Load(d, this->Tile.Transmittance + slot), hn::Set(d, this->Tile.TransmittanceLimit));
   }
 
-  using Place = typename PacketSamples<Special, Shaded, Nearest>::Place;
-  using Found = typename PacketSamples<Special, Shaded, Nearest>::Found;
+  using Place = typename Values::Place;
+  using Found = typename Values::Found;
   using Lanes = hn::Mask<D>;
 
   /// What a vector of rays has met, and where it goes.
@@ -115,7 +141,7 @@ private:
     Lanes Open; ///< rays that have not ended
     Position At;
     Position Step;
-    Direction Ray; ///< set if Shaded
+    Direction Ray; ///< set if shaded
     VI Left;       ///< samples from At on
     std::size_t Taken = 0;
   };
@@ -145,7 +171,7 @@ private:
     walk.B = hn::Load(d, this->Tile.Color[2] + slot);
     walk.T = hn::Load(d, this->Tile.Transmittance + slot);
     walk.Open = open;
-    if (Shaded)
+    if (Values::IsShaded)
     {
       walk.Ray = { hn::Load(d, this->Tile.Direction[0] + slot),
         hn::Load(d, this->Tile.Direction[1] + slot), hn::Load(d, this->Tile.Direction[2] + slot) };
@@ -298,11 +324,11 @@ private:
   }
 
   PacketIntervals Intervals;
-  PacketSamples<Special, Shaded, Nearest> Samples;
+  Values Samples;
   Box Cells;
   RayTile& Tile;
-  const std::uint32_t* MacroMask;
-  int MacroShift;
+  const std::uint32_t* MacroMask = nullptr;
+  int MacroShift = 0;
   std::uint32_t Size[3];    ///< of the cells
   std::uint32_t ToBrick[3]; ///< to positions in the brick, modulo 256 cells
   std::uint32_t Offset[3];  ///< from the cells' low corner to the brick's
@@ -312,17 +338,17 @@ template <bool Special, bool Holes, bool Shaded, bool Nearest>
 void MarchPackets(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
   const ShadingTable* shading, const PixelRect& pixels, RayTile& tile)
 {
-  constexpr int edge = RayTile::PacketEdge;
-  const glm::ivec2 corner = tile.Rect.Lo;
-  const PixelRect packets{ (pixels.Lo - corner) / edge, (pixels.Hi - corner + edge - 1) / edge };
-  PacketMarcher<Special, Holes, Shaded, Nearest> marcher(brick, seen, table, shading, tile);
-  for (int y = packets.Lo.y; y < packets.Hi.y; ++y)
-  {
-    for (int x = packets.Lo.x; x < packets.Hi.x; ++x)
-    {
-      marcher.MarchPacket(y * RayTile::PacketsPerRow + x);
-    }
-  }
+  using Values = PacketSamples<Special, Shaded, Nearest>;
+  PacketMarcher<Values, Holes> marcher(
+    Values(brick, table, shading), seen.Cells, brick.Corner(), tile);
+  marcher.SkipMacros(brick, seen);
+  marcher.March(pixels);
+}
+
+void MarchUniformHere(
+  const Box& cells, const StepTable& table, int entry, const PixelRect& pixels, RayTile& tile)
+{
+  PacketMarcher<UniformSamples, false>({ table, entry }, cells, cells.Lo, tile).March(pixels);
 }
 
 void MarchPackedHere(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
@@ -368,6 +394,20 @@ void MarchPacked(const PackedBrick& brick, const BrickVisibility& seen, const St
     HWY_DYNAMIC_DISPATCH(MarchPackedHere)
     (brick, seen, table, shading, rect, tile, interpolation);
   }
+}
+
+HWY_EXPORT(MarchUniformHere);
+
+void MarchUniform(
+  const Box& cells, const StepTable& table, int entry, const PixelRect& pixels, RayTile& tile)
+{
+  const PixelRect rect = Intersection(pixels, tile.Rect);
+  const std::int64_t taken = tile.SamplesTaken;
+  if (!rect.Empty() && !cells.Empty())
+  {
+    HWY_DYNAMIC_DISPATCH(MarchUniformHere)(cells, table, entry, rect, tile);
+  }
+  tile.SamplesTaken = taken;
 }
 
 } // namespace banyan

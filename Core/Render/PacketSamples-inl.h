@@ -42,6 +42,38 @@ struct Steps
   VF Transmittance;
 };
 
+/// As OpacityOfDepth::Of.
+HWY_INLINE VF OpacityOf(VF depth)
+{
+  using C = OpacityOfDepth;
+  const D d;
+  const DI di;
+  const VF x = hn::Sub(hn::Zero(d), hn::Min(depth, hn::Set(d, C::Largest)));
+  const VF round = hn::Set(d, C::Round);
+  const VF octaves = hn::Sub(hn::Add(hn::Mul(x, hn::Set(d, C::PerOctave)), round), round);
+  const VF r = hn::Sub(hn::Sub(x, hn::Mul(octaves, hn::Set(d, C::OctaveHigh))),
+    hn::Mul(octaves, hn::Set(d, C::OctaveLow)));
+  VF sum = hn::Set(d, C::Terms[0]);
+  for (int i = 1; i < 6; ++i)
+  {
+    sum = hn::Add(hn::Mul(sum, r), hn::Set(d, C::Terms[i]));
+  }
+  const VF less = hn::Add(hn::Mul(hn::Mul(sum, r), r), r);
+  const VF scale =
+    hn::BitCast(d, hn::ShiftLeft<23>(hn::Add(Truncated(octaves), hn::Set(di, 127))));
+  const VF one = hn::Set(d, 1.0f);
+  return hn::Sub(hn::Sub(one, scale), hn::Mul(scale, less));
+}
+
+/// As StepTable::Partial, with transmittance in place of opacity.
+/// @param depths of entries: colour and optical depth
+HWY_INLINE Steps OverFraction(const Blocks& depths, VF fraction)
+{
+  const VF opacity = OpacityOf(hn::Mul(depths.Of[3], fraction));
+  return { hn::Mul(depths.Of[0], opacity), hn::Mul(depths.Of[1], opacity),
+    hn::Mul(depths.Of[2], opacity), hn::Sub(hn::Set(D(), 1.0f), opacity) };
+}
+
 /// Samples of a packed brick: value by value what PlainInterpolator and TableLookup give.
 /// @tparam Special whether values may not be finite
 /// @tparam Shaded whether the brick has gradients, and samples are shaded by them
@@ -50,6 +82,8 @@ template <bool Special, bool Shaded, bool Nearest>
 class PacketSamples
 {
 public:
+  static constexpr bool IsShaded = Shaded;
+
   PacketSamples(const PackedBrick& brick, const StepTable& table, const ShadingTable* shading)
     : PacketSamples(brick, brick.Relative() ? table.RelativeLookup() : table.Lookup())
   {
@@ -168,10 +202,7 @@ public:
   HWY_INLINE Steps LookUp(const Found& found, VF fraction) const
   {
     const Blocks depths = Transposed(LoadBlocks(this->Depths, found.Entries));
-    const VF opacity = OpacityOf(hn::Mul(depths.Of[3], fraction));
-    return this->Lit({ hn::Mul(depths.Of[0], opacity), hn::Mul(depths.Of[1], opacity),
-                       hn::Mul(depths.Of[2], opacity), hn::Sub(hn::Set(D(), 1.0f), opacity) },
-      found);
+    return this->Lit(OverFraction(depths, fraction), found);
   }
 
 private:
@@ -250,29 +281,6 @@ private:
     const VF left = Mix(edge(this->Values), edge(this->Values + this->RowBytes), y);
     const VF right = Mix(edge(next), edge(next + this->RowBytes), y);
     return Mix(left, right, hn::Broadcast<k>(place.X));
-  }
-
-  /// As OpacityOfDepth::Of.
-  static HWY_INLINE VF OpacityOf(VF depth)
-  {
-    using C = OpacityOfDepth;
-    const D d;
-    const DI di;
-    const VF x = hn::Sub(hn::Zero(d), hn::Min(depth, hn::Set(d, C::Largest)));
-    const VF round = hn::Set(d, C::Round);
-    const VF octaves = hn::Sub(hn::Add(hn::Mul(x, hn::Set(d, C::PerOctave)), round), round);
-    const VF r = hn::Sub(hn::Sub(x, hn::Mul(octaves, hn::Set(d, C::OctaveHigh))),
-      hn::Mul(octaves, hn::Set(d, C::OctaveLow)));
-    VF sum = hn::Set(d, C::Terms[0]);
-    for (int i = 1; i < 6; ++i)
-    {
-      sum = hn::Add(hn::Mul(sum, r), hn::Set(d, C::Terms[i]));
-    }
-    const VF less = hn::Add(hn::Mul(hn::Mul(sum, r), r), r);
-    const VF scale =
-      hn::BitCast(d, hn::ShiftLeft<23>(hn::Add(Truncated(octaves), hn::Set(di, 127))));
-    const VF one = hn::Set(d, 1.0f);
-    return hn::Sub(hn::Sub(one, scale), hn::Mul(scale, less));
   }
 
   /// The four edges along z of the cells of lanes 4 b + k.

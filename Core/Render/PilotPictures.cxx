@@ -128,14 +128,14 @@ PilotErrors PilotPictures::Difference(const PilotPicture& a, const PilotPicture&
 
 std::size_t PilotPictures::TileCount() const
 {
-  const glm::ivec2 tiles = TileSamplings(this->ImageSize(), { {} }).Tiles();
+  const glm::ivec2 tiles = TileSamplings::TilesOf(this->ImageSize());
   return static_cast<std::size_t>(tiles.x) * tiles.y;
 }
 
 TileErrors PilotPictures::ErrorsOf(const PilotErrors& errors, double factor, double share) const
 {
   constexpr double around = 2.5 * TileSamplings::Edge;
-  const glm::ivec2 tiles = TileSamplings(this->ImageSize(), { {} }).Tiles();
+  const glm::ivec2 tiles = TileSamplings::TilesOf(this->ImageSize());
   const glm::dvec2 perPixel = glm::dvec2(this->Size) / glm::dvec2(this->ImageSize());
   const double atLeast = share * errors.Largest();
   TileErrors result;

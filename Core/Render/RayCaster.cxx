@@ -3,7 +3,7 @@
 #include "Base/Error.h"
 #include "Render/LevelCaster.h"
 
-#include <map>
+#include <set>
 
 namespace banyan
 {
@@ -11,32 +11,24 @@ namespace
 {
 
 /// The levels that tiles are sampled at.
-std::vector<int> LevelsOf(const RayScene& scene)
+std::set<int> LevelsOf(const RayScene& scene)
 {
   if (!scene.Samplings)
   {
     return { 0 };
   }
-  const glm::ivec2 tiles = scene.Samplings->Tiles();
-  const glm::ivec2 needed =
-    (scene.Camera.ImageSize() + TileSamplings::Edge - 1) / TileSamplings::Edge;
-  if (tiles != needed)
+  if (scene.Samplings->Tiles() != TileSamplings::TilesOf(scene.Camera.ImageSize()))
   {
     throw Error("The samplings are those of a picture of another size");
   }
-  std::map<int, bool> used;
-  for (int y = 0; y < tiles.y; ++y)
+  std::set<int> levels;
+  const std::vector<bool> used = scene.Samplings->Used();
+  for (std::size_t i = 0; i < used.size(); ++i)
   {
-    for (int x = 0; x < tiles.x; ++x)
+    if (used[i])
     {
-      const auto number = static_cast<std::size_t>(scene.Samplings->NumberAt({ x, y }));
-      used[scene.Samplings->Samplings().at(number).Level] = true;
+      levels.insert(scene.Samplings->Samplings()[i].Level);
     }
-  }
-  std::vector<int> levels;
-  for (const auto& level : used)
-  {
-    levels.push_back(level.first);
   }
   return levels;
 }

@@ -64,6 +64,7 @@ struct RayStatistics
 {
   std::int64_t SamplesTaken = 0;  ///< without those left out where nothing can be seen
   std::int64_t BricksDrawn = 0;   ///< bricks whose values were loaded, or kept from before
+  std::int64_t BricksUniform = 0; ///< of one value: drawn without loading them or taking samples
   std::int64_t BricksSkipped = 0; ///< not loaded: cannot be seen, off screen, or hidden
 };
 

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace banyan
@@ -36,14 +37,28 @@ public:
   /// @param imageSize pixels of the whole picture
   /// @param samplings 1 to 255 of them
   TileSamplings(const glm::ivec2& imageSize, std::vector<RaySampling> samplings)
-    : TileCounts((imageSize + Edge - 1) / Edge)
+    : TileCounts(TilesOf(imageSize))
     , List(std::move(samplings))
     , Numbers(static_cast<std::size_t>(this->TileCounts.x) * this->TileCounts.y, 0)
   {
   }
 
+  /// How many tiles a picture has per axis.
+  static glm::ivec2 TilesOf(const glm::ivec2& imageSize) { return (imageSize + Edge - 1) / Edge; }
+
   glm::ivec2 Tiles() const { return this->TileCounts; }
   const std::vector<RaySampling>& Samplings() const { return this->List; }
+  /// Per sampling, whether a tile has it.
+  std::vector<bool> Used() const
+  {
+    std::vector<bool> used(this->List.size(), false);
+    for (const std::uint8_t number : this->Numbers)
+    {
+      used[number] = true;
+    }
+    return used;
+  }
+
   /// @param tile inside Tiles()
   int NumberAt(const glm::ivec2& tile) const { return this->Numbers[this->IndexOf(tile)]; }
   void SetNumber(const glm::ivec2& tile, int number)

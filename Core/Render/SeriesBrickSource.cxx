@@ -160,6 +160,16 @@ ValueMask SeriesBrickSource::MaskOf(std::int64_t brick) const
                        : MaskOfBins(this->Masks.BinOf(range.Low), this->Masks.BinOf(range.High));
 }
 
+std::optional<UniformValue> SeriesBrickSource::UniformValueOf(std::int64_t brick) const
+{
+  const BrickNode& node = (*this->Nodes.front())[static_cast<std::size_t>(brick)];
+  if (this->Magnitude || !node.Uniform)
+  {
+    return std::nullopt;
+  }
+  return UniformValue{ node.Range.Low, ScalarType::Float64 };
+}
+
 std::size_t SeriesBrickSource::LoadBytes(std::int64_t brick) const
 {
   const auto samples = static_cast<std::size_t>(this->Layout.SamplesOf(brick).Count());

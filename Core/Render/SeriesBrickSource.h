@@ -25,6 +25,8 @@ public:
   Box CellsOf(std::int64_t brick) const override { return this->Layout.CellsOf(brick); }
   ValueRange RangeOf(std::int64_t brick) const override;
   ValueMask MaskOf(std::int64_t brick) const override;
+  /// Not known of magnitudes.
+  std::optional<UniformValue> UniformValueOf(std::int64_t brick) const override;
   MaskRange MasksAreOver() const override { return this->Masks; }
   std::size_t LoadBytes(std::int64_t brick) const override;
   BrickView Load(std::int64_t brick) override;

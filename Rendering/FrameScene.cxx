@@ -1,0 +1,87 @@
+#include "FrameScene.h"
+
+#include "DistributedField.h"
+#include "SceneOptions.h"
+#include "TransferFunctionTable.h"
+
+#include "vtkCamera.h"
+#include "vtkMatrix4x4.h"
+#include "vtkRenderer.h"
+#include "vtkVolume.h"
+#include "vtkVolumeMapper.h"
+#include "vtkVolumeProperty.h"
+
+#include <limits>
+
+namespace banyan
+{
+namespace
+{
+
+glm::dmat4 ToGlm(vtkMatrix4x4* matrix)
+{
+  glm::dmat4 result;
+  for (int row = 0; row < 4; ++row)
+  {
+    for (int column = 0; column < 4; ++column)
+    {
+      result[column][row] = matrix->GetElement(row, column);
+    }
+  }
+  return result;
+}
+
+/// Bounds in world space of a box of physical space.
+void WorldBounds(
+  const std::array<double, 6>& box, const glm::dmat4& toWorld, glm::dvec3& low, glm::dvec3& high)
+{
+  low = glm::dvec3(std::numeric_limits<double>::infinity());
+  high = -low;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const glm::dvec4 point(
+      box[corner & 1], box[2 + ((corner >> 1) & 1)], box[4 + ((corner >> 2) & 1)], 1.0);
+    const glm::dvec3 world(toWorld * point);
+    low = glm::min(low, world);
+    high = glm::max(high, world);
+  }
+}
+
+} // namespace
+
+FrameScene MakeFrameScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMapper* mapper,
+  const DistributedField& field, double sampleDistanceVoxels)
+{
+  glm::ivec2 size(0);
+  glm::ivec2 origin(0);
+  renderer->GetTiledSizeAndOrigin(&size.x, &size.y, &origin.x, &origin.y);
+  const glm::dmat4 toWorld = ToGlm(volume->GetMatrix());
+  glm::dvec3 low;
+  glm::dvec3 high;
+  WorldBounds(field.Bounds(), toWorld, low, high);
+  const RayCamera camera(
+    ToGlm(renderer->GetActiveCamera()->GetCompositeProjectionTransformMatrix(
+      renderer->GetTiledAspectRatio(), -1, 1)),
+    size, 0.5 * (low + high));
+  vtkVolumeProperty* property = volume->GetProperty();
+  FrameScene frame{ { camera.InSpace(toWorld), camera.Footprint(low, high), field.IndexToPhysical(),
+                      field.DomainCells(), MakeTransferFunction(property),
+                      sampleDistanceVoxels * field.CellSize() },
+    {} };
+  RayScene& scene = frame.Scene;
+  scene.Shading = MakeShading(property);
+  scene.Interpolation = MakeInterpolation(property);
+  try
+  {
+    scene.ClipPlanes = MakeClipPlanes(mapper, toWorld);
+    scene.Blend = MakeBlend(mapper, field.Range());
+  }
+  catch (const Error& error)
+  {
+    // For the other ranks too, which would wait for this one.
+    frame.Problem = error.what();
+  }
+  return frame;
+}
+
+} // namespace banyan
