@@ -106,6 +106,7 @@ void DistributedField::Update(Communicator& communicator, const FieldPiece& piec
   const bool changed = this->ChangedHere(piece);
   if (AllMax(communicator, changed ? 1.0 : 0.0) > 0.0)
   {
+    ++this->Updates;
     this->ProblemText = piece.Problem;
     this->Agree(communicator, piece);
     this->AgreeOnRange(communicator);

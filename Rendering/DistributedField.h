@@ -44,6 +44,9 @@ public:
   /// Forgets everything; the next Update starts afresh on this rank.
   void Reset();
 
+  /// Another number whenever what is drawn may have changed.
+  std::uint64_t Version() const { return this->Updates; }
+
   /// A sentence when this rank cannot draw; to be agreed on by all ranks.
   const std::string& Problem() const { return this->ProblemText; }
 
@@ -92,6 +95,7 @@ private:
   std::shared_ptr<const SeriesFile> Series;
   std::array<std::uint64_t, 5> Stamp{ {} };
   bool Fresh = true;
+  std::uint64_t Updates = 0;
 };
 
 } // namespace banyan

@@ -21,7 +21,14 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
 {
   // Pieces on ranks have no coarser levels, and still pictures are the same on any number of ranks.
   const bool levels = field.Encoded() || (wish.Interacting && communicator.Size() == 1);
-  const double tolerance = wish.Interacting ? wish.Interactive * this->Slack : wish.Still;
+  if (wish.Interacting)
+  {
+    this->Passes.Interacted();
+  }
+  const double tolerance =
+    wish.Interacting ? wish.Interactive * this->Slack
+                     : this->Passes.ToleranceOf(communicator, scene, field.Version(),
+                         { wish.Passes, wish.Still, wish.Interactive });
   const SamplingPlan plan =
     PlanDistributed(communicator, scene, field.Source(), field.Zones(), budgetBytes,
       ThreadPool::Process(), failure,

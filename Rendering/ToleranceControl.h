@@ -1,6 +1,8 @@
 #ifndef banyan_Rendering_ToleranceControl_h
 #define banyan_Rendering_ToleranceControl_h
 
+#include "RefinementPasses.h"
+
 #include "Parallel/DistributedPlan.h"
 
 namespace banyan
@@ -19,6 +21,7 @@ public:
     double Interactive = 8.0; ///< 1/255
     double Seconds = 0.2;     ///< that a frame may take while interacting; 0 for any
     bool Interacting = false;
+    bool Passes = false; ///< whether still pictures become better in passes
   };
 
   /// Collective: gives the scene its samplings and its opacity limit.
@@ -32,7 +35,11 @@ public:
   /// Tells what the frame took that was planned last: the same number on all ranks.
   void FrameTook(const Wish& wish, double seconds);
 
+  /// As RefinementPasses::Next.
+  bool RefineNext() { return this->Passes.Next(); }
+
 private:
+  RefinementPasses Passes;
   double Slack = 1.0; ///< times the interactive tolerance
 };
 

@@ -279,7 +279,7 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   // More than one frame per second: somebody moves the camera. All ranks are told the same rate.
   const banyan::ToleranceControl::Wish wish{ this->ImageErrorTolerance,
     this->InteractiveImageErrorTolerance, this->InteractiveFrameSeconds,
-    renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0 };
+    renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0, this->RefineInPasses };
   const banyan::Timer drawing;
   this->Statistics->SetEstimatedImageError(
     !fixed && banyan::CanKeepTolerance(this, volume->GetProperty())
@@ -316,6 +316,11 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   self.Publish(frame, self.Field.BytesRead() - bytesBefore, timer.Seconds(), this->Statistics);
 }
 
+bool vtkBanyanVolumeMapper::RefineNext()
+{
+  return this->RefineInPasses && this->Self->Tolerance.RefineNext();
+}
+
 void vtkBanyanVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 {
   this->Self->Framebuffer.ReleaseGraphicsResources(window);
@@ -328,6 +333,7 @@ void vtkBanyanVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ImageErrorTolerance: " << this->ImageErrorTolerance << "\n"
      << indent << "InteractiveImageErrorTolerance: " << this->InteractiveImageErrorTolerance << "\n"
      << indent << "InteractiveFrameSeconds: " << this->InteractiveFrameSeconds << "\n"
+     << indent << "RefineInPasses: " << this->RefineInPasses << "\n"
      << indent << "SampleDistanceVoxels: " << this->SampleDistanceVoxels << "\n"
      << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"
      << indent << "Controller: " << this->Controller.GetPointer() << "\n"

@@ -68,6 +68,23 @@ public:
 
   ///@{
   /**
+   * Whether still frames that follow an interaction are drawn in passes: the first with the
+   * tolerance of interaction, each next one that RefineNext() asked for with a quarter of the one
+   * before, until ImageErrorTolerance is kept. Never worse than the frame before it. Off by default.
+   */
+  vtkSetMacro(RefineInPasses, bool);
+  vtkGetMacro(RefineInPasses, bool);
+  vtkBooleanMacro(RefineInPasses, bool);
+  ///@}
+
+  /**
+   * Makes the next frame the next pass. To be called on all ranks. False when there is none: the
+   * last frame kept the tolerance.
+   */
+  bool RefineNext();
+
+  ///@{
+  /**
    * A fixed distance between samples along a ray, in edges of the smallest cell, in place of the
    * tolerance. Opacities are corrected for it. Default 0: the tolerance decides (projections and
    * nearest interpolation take 1). Allowed [0, 100].
@@ -142,6 +159,7 @@ private:
   double ImageErrorTolerance = 1.0;
   double InteractiveImageErrorTolerance = 8.0;
   double InteractiveFrameSeconds = 0.2;
+  bool RefineInPasses = false;
   double SampleDistanceVoxels = 0.0;
   int NumberOfThreads = 0;
   vtkSmartPointer<vtkMultiProcessController> Controller;

@@ -79,6 +79,17 @@ int vtkBanyanVolumeRepresentation::ProcessViewRequest(
     // Ranks whose bounds are off screen must draw all the same, or the others wait for ever. Never
     // together with NEED_ORDERED_COMPOSITING: the view then forgets this one.
     outInfo->Set(vtkPVRenderView::RENDER_EMPTY_IMAGES(), 1);
+    this->Mapper->SetRefineInPasses(vtkPVView::GetEnableStreaming());
+    vtkPVRenderView::SetStreamable(inInfo, this, this->Mapper->GetRefineInPasses());
+  }
+  else if (request == vtkPVRenderView::REQUEST_STREAMING_UPDATE())
+  {
+    // No data has to come: that a piece was set makes the view render again.
+    if (this->Mapper->RefineNext())
+    {
+      vtkNew<vtkImageData> nothing;
+      vtkPVRenderView::SetNextStreamedPiece(inInfo, this, nothing);
+    }
   }
   else if (request == vtkPVView::REQUEST_UPDATE_LOD())
   {

@@ -1,0 +1,49 @@
+#ifndef banyan_Rendering_RefinementPasses_h
+#define banyan_Rendering_RefinementPasses_h
+
+#include "Parallel/Communicator.h"
+#include "Render/RayCaster.h"
+
+#include <cstdint>
+
+namespace banyan
+{
+
+/// Draws the still pictures that follow an interaction in passes: the first with the tolerance of
+/// interaction, each of the next ones with a quarter of the one before, until the one that is wanted.
+/// A picture of the same scene is never drawn with a larger tolerance than the one before it. Other
+/// still pictures (those of scripts, and of the files that people save) keep the tolerance at once.
+class RefinementPasses
+{
+public:
+  struct Wish
+  {
+    bool Passes = false;      ///< otherwise the tolerance is kept at once
+    double Still = 1.0;       ///< 1/255
+    double Interactive = 8.0; ///< 1/255
+  };
+
+  /// Collective: the tolerance of the next still picture, the same on all ranks.
+  /// @param scene all that decides the picture, its samplings apart
+  /// @param values a number that changes with the values that are drawn
+  double ToleranceOf(Communicator& communicator, const RayScene& scene, std::uint64_t values,
+    const Wish& wish);
+
+  /// Tells that a picture was drawn while somebody moved the camera.
+  void Interacted() { this->AfterInteraction = true; }
+
+  /// Asks for the next pass. To be called on all ranks. @return false when there is none: the last
+  /// picture kept the tolerance that is wanted
+  bool Next();
+
+private:
+  std::uint64_t Drawn = 0; ///< the last scene
+  double Reached = 0.0;
+  bool AfterInteraction = false;
+  bool IsLast = true;
+  bool Asked = false;
+};
+
+} // namespace banyan
+
+#endif
