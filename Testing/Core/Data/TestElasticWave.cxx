@@ -1,6 +1,7 @@
 // Elastic waves against the exact solution of Stokes, arrival times, energy, and the free surface.
 #include "BasinModel.h"
 #include "ElasticWaveSimulation.h"
+#include "StokesSolution.h"
 #include "WaveSeries.h"
 
 #include "Base/Error.h"
@@ -22,7 +23,6 @@ using banyan::ThreadPool;
 namespace
 {
 
-constexpr double Pi = 3.141592653589793;
 constexpr ElasticMaterial Stone = { 2500.0f, 4000.0f, 2300.0f };
 
 ElasticMaterial StoneEverywhere(int, int, int)
@@ -48,55 +48,10 @@ MomentSource SourceAt(int x, int y, int z, const std::array<double, 6>& moment)
   return source;
 }
 
-double MomentRate(const MomentSource& source, double time)
-{
-  const double phase = (time - source.Delay) / source.HalfDuration;
-  return std::exp(-phase * phase);
-}
-
-double MomentAcceleration(const MomentSource& source, double time)
-{
-  return -2.0 * (time - source.Delay) / (source.HalfDuration * source.HalfDuration) *
-         MomentRate(source, time);
-}
-
-/// Velocity at offset r (metres) from a point source in an endless homogeneous solid: Aki,
-/// Richards, Quantitative Seismology (2002), equation 4.29, differentiated in time.
+/// Velocity at offset r (metres) in an endless solid.
 std::array<double, 3> Exact(const MomentSource& source, const std::array<double, 3>& r, double time)
 {
-  const double alpha = Stone.PressureSpeed, beta = Stone.ShearSpeed, rho = Stone.Density;
-  const double distance = std::sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
-  const double tp = distance / alpha, ts = distance / beta;
-  double between = 0.0; // integral of tau * rate(time - tau) from tp to ts
-  const int parts = 200;
-  for (int i = 0; i < parts; ++i)
-  {
-    const double tau = tp + (ts - tp) * (i + 0.5) / parts;
-    between += tau * MomentRate(source, time - tau) * (ts - tp) / parts;
-  }
-  constexpr int component[3][3] = { { 0, 3, 4 }, { 3, 1, 5 }, { 4, 5, 2 } };
-  const double scale = 1.0 / (4.0 * Pi * rho);
-  std::array<double, 3> v{};
-  for (int n = 0; n < 3; ++n)
-    for (int p = 0; p < 3; ++p)
-      for (int q = 0; q < 3; ++q)
-      {
-        const double m = source.Moment[component[p][q]];
-        const double gn = r[n] / distance, gp = r[p] / distance, gq = r[q] / distance;
-        const double np = n == p, nq = n == q, pq = p == q;
-        const double mixed = gn * pq + gp * nq + gq * np;
-        v[n] +=
-          m * scale *
-          ((15 * gn * gp * gq - 3 * mixed) / std::pow(distance, 4) * between +
-            (6 * gn * gp * gq - mixed) / (alpha * alpha * distance * distance) *
-              MomentRate(source, time - tp) -
-            (6 * gn * gp * gq - mixed - gq * np) / (beta * beta * distance * distance) *
-              MomentRate(source, time - ts) +
-            gn * gp * gq / (std::pow(alpha, 3) * distance) * MomentAcceleration(source, time - tp) -
-            (gn * gp - np) * gq / (std::pow(beta, 3) * distance) *
-              MomentAcceleration(source, time - ts));
-      }
-  return v;
+  return banyan::StokesVelocity(Stone, source, r, time);
 }
 
 /// Largest difference from the exact velocity at a cell up to the given time, as a share of the

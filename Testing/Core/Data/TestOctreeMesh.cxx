@@ -245,7 +245,11 @@ TEST(OctreeMesh, KeysAreBitsOfThreeCoordinatesInTurn)
   std::mt19937 random(1);
   for (int i = 0; i < 1000; ++i)
   {
-    const Place p = { random() & 0xfffff, random() & 0xfffff, random() & 0xfffff };
+    Place p;
+    for (auto& coordinate : p)
+    {
+      coordinate = static_cast<std::uint32_t>(random() & 0xfffff);
+    }
     std::uint64_t slow = 0;
     for (int bit = 0; bit < 20; ++bit)
     {
