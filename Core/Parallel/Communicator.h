@@ -25,8 +25,22 @@ public:
   /// tags arrive in order. More than 2^31 bytes are allowed.
   virtual void Send(int to, int tag, const void* data, std::size_t bytes) = 0;
   virtual void Receive(int from, int tag, void* data, std::size_t bytes) = 0;
-  /// Until all sends and receives posted by this rank are complete.
+  /// Until all sends and receives posted by this rank are complete, but for `ReceiveWhole`.
   virtual void WaitAll() = 0;
+
+  /// A message whose size its receiver does not know, less than 2^31 bytes. `SendWhole` is complete
+  /// with `WaitAll()`, `ReceiveWhole` with `WaitAnyWhole()`. The tag must not be one that `Send`
+  /// uses at the same time.
+  virtual void SendWhole(int to, int tag, const void* data, std::size_t bytes) = 0;
+  /// Non-blocking. A message of more than `capacity` bytes is an Error.
+  virtual void ReceiveWhole(int from, int tag, void* data, std::size_t capacity) = 0;
+  struct Arrival
+  {
+    std::size_t Posted = 0; ///< the how manieth call of `ReceiveWhole` since none was open, from 0
+    std::size_t Bytes = 0;
+  };
+  /// Until one of the messages of `ReceiveWhole` is here. Throws Error when none is awaited.
+  virtual Arrival WaitAnyWhole() = 0;
 
   virtual void Barrier() = 0;
   virtual void Broadcast(int root, void* data, std::size_t bytes) = 0;

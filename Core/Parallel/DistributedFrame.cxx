@@ -44,11 +44,25 @@ double ImbalanceOf(const std::vector<double>& seconds)
   return sum > 0.0 ? largest * static_cast<double>(seconds.size()) / sum : 1.0;
 }
 
+/// What compositing needs to know of the scene.
+CompositeOptions CompleteOptions(
+  CompositeOptions options, const RayScene& scene, const std::vector<Box>& zones)
+{
+  options.Combine = CombinationOf(scene.Blend);
+  options.Footprints = FootprintsOfZones(scene.Camera, scene.IndexToWorld, zones, scene.Viewport);
+  if (scene.Shading.On)
+  {
+    options.Brightest = std::max(
+      options.Brightest, scene.Shading.Ambient + scene.Shading.Diffuse + scene.Shading.Specular);
+  }
+  return options;
+}
+
 } // namespace
 
 FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene, BrickSource* source,
   const std::vector<Box>& zones, std::uint64_t budgetBytes, ThreadPool& pool,
-  const std::string& localError, FrameStatistics& statistics)
+  const std::string& localError, FrameStatistics& statistics, const CompositeOptions& compositing)
 {
   const Timer total;
   const Timer render;
@@ -58,6 +72,14 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene, Br
   const FloatImage mine = CastOwnZone(scene, source, zone, budgetBytes, pool, rays, failure);
   const double renderSeconds = render.Seconds();
 
+  // The order and the footprints depend on what all ranks have alike: no rank fails here alone.
+  const std::vector<int> order = FrontToBack(InIndexSpace(scene.Camera, scene.IndexToWorld), zones);
+  CompositeOptions options = CompleteOptions(compositing, scene, zones);
+  if (failure.empty())
+  {
+    failure =
+      ProblemOf(communicator.Rank(), communicator.Size(), mine, order, scene.Viewport, options);
+  }
   const std::string agreed = AgreeOnError(communicator, failure);
   if (!agreed.empty())
   {
@@ -66,9 +88,8 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene, Br
 
   const Timer composite;
   CompositeStatistics sent;
-  const std::vector<int> order = FrontToBack(InIndexSpace(scene.Camera, scene.IndexToWorld), zones);
-  FloatImage picture = CompositeDirectSend(
-    communicator, mine, order, scene.Viewport, sent, CombinationOf(scene.Blend));
+  options.Agreed = true;
+  FloatImage picture = Composite(communicator, mine, order, scene.Viewport, options, sent);
   FinishPicture(scene, picture);
   const double compositeSeconds = composite.Seconds();
 
@@ -84,6 +105,7 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene, Br
   statistics.BricksUniform = sum(rays.BricksUniform);
   statistics.BricksSkipped = sum(rays.BricksSkipped);
   statistics.BytesComposited = sum(sent.BytesSent);
+  statistics.MessagesComposited = sum(sent.MessagesSent);
   return picture;
 }
 

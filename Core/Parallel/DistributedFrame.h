@@ -2,7 +2,7 @@
 #define banyan_Parallel_DistributedFrame_h
 
 #include "Parallel/Communicator.h"
-#include "Parallel/DirectSend.h"
+#include "Parallel/Compositing.h"
 #include "Render/RayCaster.h"
 
 #include <vector>
@@ -21,24 +21,28 @@ struct FrameStatistics
   std::int64_t BricksDrawn = 0;
   std::int64_t BricksUniform = 0;
   std::int64_t BricksSkipped = 0;
-  std::uint64_t BytesComposited = 0; ///< sent between ranks to make one picture of N
+  std::uint64_t BytesComposited = 0;    ///< sent between ranks to make one picture of N
+  std::uint64_t MessagesComposited = 0; ///< in so many messages
 };
 
 /// Draws one picture on all ranks: each casts rays through the cells of its own zone, then the
-/// pictures are composited by direct send. Collective.
+/// pictures are composited. Collective.
 ///
 /// @param scene the same on all ranks (depths included)
 /// @param source this rank's bricks; may be null when its zone is empty
 /// @param zones cells of each rank, disjoint, the same list on all ranks
 /// @param budgetBytes working memory for loaded bricks on this rank
 /// @param localError if not empty, this rank cannot draw: all ranks throw it
+/// @param compositing how the pictures are put together; the same on all ranks. What follows from
+/// the scene and the zones (combination, footprints, brightest colours) is set here.
 /// @return the scene's viewport on rank 0, premultiplied; empty elsewhere. The picture does not
 /// depend on the number of ranks: within 1e-5 in float when no ray ends early, within
-/// 1 - OpacityLimit otherwise.
+/// 1 - OpacityLimit otherwise; with PixelTransport::WithinOne, 1 of 255 more.
 /// When a rank fails, all ranks throw the same Error.
 FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene, BrickSource* source,
   const std::vector<Box>& zones, std::uint64_t budgetBytes, ThreadPool& pool,
-  const std::string& localError, FrameStatistics& statistics);
+  const std::string& localError, FrameStatistics& statistics,
+  const CompositeOptions& compositing = {});
 
 } // namespace banyan
 

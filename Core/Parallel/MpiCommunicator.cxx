@@ -8,6 +8,7 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace banyan
 {
@@ -69,10 +70,16 @@ public:
       return;
     }
     // Only after an exception: nothing may be written to memory that is no longer there.
-    for (MPI_Request& request : this->Pending)
+    for (std::vector<MPI_Request>* requests : { &this->Pending, &this->Awaited })
     {
-      MPI_Cancel(&request);
-      MPI_Request_free(&request);
+      for (MPI_Request& request : *requests)
+      {
+        if (request != MPI_REQUEST_NULL)
+        {
+          MPI_Cancel(&request);
+          MPI_Request_free(&request);
+        }
+      }
     }
     MPI_Comm_free(&this->Handle);
   }
@@ -129,6 +136,46 @@ public:
     }
   }
 
+  void SendWhole(int to, int tag, const void* data, std::size_t bytes) override
+  {
+    const int count = CountOf(bytes);
+    this->Post([&](MPI_Request* request)
+      { return MPI_Isend(data, count, MPI_BYTE, to, tag, this->Handle, request); });
+  }
+
+  void ReceiveWhole(int from, int tag, void* data, std::size_t capacity) override
+  {
+    const int count = CountOf(capacity);
+    if (this->Open == 0)
+    {
+      this->Awaited.clear();
+    }
+    this->Awaited.push_back(MPI_REQUEST_NULL);
+    Check(MPI_Irecv(data, count, MPI_BYTE, from, tag, this->Handle, &this->Awaited.back()),
+      "start a message");
+    ++this->Open;
+  }
+
+  Arrival WaitAnyWhole() override
+  {
+    int index = MPI_UNDEFINED;
+    MPI_Status status;
+    if (this->Open > 0)
+    {
+      Check(
+        MPI_Waitany(static_cast<int>(this->Awaited.size()), this->Awaited.data(), &index, &status),
+        "complete a message");
+    }
+    if (index == MPI_UNDEFINED)
+    {
+      throw Error("Rank " + std::to_string(this->Self) + " waits, but awaits no message.");
+    }
+    --this->Open;
+    int count = 0;
+    MPI_Get_count(&status, MPI_BYTE, &count);
+    return { static_cast<std::size_t>(index), static_cast<std::size_t>(count) };
+  }
+
   void Barrier() override { Check(MPI_Barrier(this->Handle), "wait for all ranks"); }
 
   void Broadcast(int root, void* data, std::size_t bytes) override
@@ -156,6 +203,19 @@ public:
   }
 
 private:
+  static int CountOf(std::size_t bytes)
+  {
+    constexpr std::size_t most = std::numeric_limits<int>::max();
+    if (bytes > most)
+    {
+      ErrorPlace place;
+      place.Found = bytes;
+      place.Allowed = most;
+      throw Error("A message that travels in one piece is too long.", place);
+    }
+    return static_cast<int>(bytes);
+  }
+
   /// Makes room first: a request that has been started must never be forgotten.
   template <typename Start>
   void Post(const Start& start)
@@ -176,6 +236,8 @@ private:
   int Ranks = 1;
   std::size_t LargestMessage;
   std::vector<MPI_Request> Pending;
+  std::vector<MPI_Request> Awaited; ///< of ReceiveWhole, since none was open
+  std::size_t Open = 0;             ///< of these
   std::vector<int> Expected; ///< per pending request: bytes that must arrive, or -1 for a send
 };
 

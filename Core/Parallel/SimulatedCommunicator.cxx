@@ -2,6 +2,7 @@
 
 #include "Base/Error.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <cstring>
 #include <deque>
@@ -42,23 +43,35 @@ public:
     this->Changed.notify_all();
   }
 
-  void Take(int from, int to, int tag, void* data, std::size_t bytes)
+  using Key = std::tuple<int, int, int>; // from, to, tag
+
+  /// Waits until a message of one of the keys is here, and takes it.
+  /// @return which key, the first one of those that have a message
+  std::size_t TakeAny(int to, const std::vector<Key>& keys, std::vector<char>& message)
   {
-    const Key key{ from, to, tag };
     std::unique_lock<std::mutex> lock(this->Mutex);
-    this->Awaited[to] = key;
+    const auto arrived = [&](const Key& key) { return this->Arrived(key); };
+    const auto found = [&] { return std::find_if(keys.begin(), keys.end(), arrived); };
+    this->Awaited[to] = keys;
     this->ReleaseIfStuck();
-    this->Changed.wait(lock, [&] { return this->Released || this->Arrived(key); });
-    this->Awaited[to].reset();
-    if (!this->Arrived(key))
+    this->Changed.wait(lock, [&] { return this->Released || found() != keys.end(); });
+    this->Awaited[to].clear();
+    const auto key = found();
+    if (key == keys.end())
     {
       throw Error(this->Released->empty() ? "Another rank failed, so this one cannot go on."
                                           : *this->Released);
     }
-    std::deque<std::vector<char>>& queue = this->Messages[key];
-    const std::vector<char> message = std::move(queue.front());
+    std::deque<std::vector<char>>& queue = this->Messages[*key];
+    message = std::move(queue.front());
     queue.pop_front();
-    lock.unlock();
+    return static_cast<std::size_t>(key - keys.begin());
+  }
+
+  void Take(int from, int to, int tag, void* data, std::size_t bytes)
+  {
+    std::vector<char> message;
+    this->TakeAny(to, { Key{ from, to, tag } }, message);
     if (message.size() != bytes)
     {
       ErrorPlace place;
@@ -98,8 +111,6 @@ public:
   std::exception_ptr FirstException() const { return this->First; }
 
 private:
-  using Key = std::tuple<int, int, int>; // from, to, tag
-
   bool Arrived(const Key& key) const
   {
     const auto found = this->Messages.find(key);
@@ -113,16 +124,17 @@ private:
     std::optional<Key> waits;
     for (std::size_t rank = 0; rank < this->Ended.size(); ++rank)
     {
-      const std::optional<Key>& key = this->Awaited[rank];
+      const std::vector<Key>& keys = this->Awaited[rank];
       if (this->Ended[rank])
       {
         continue;
       }
-      if (!key || this->Arrived(*key))
+      const auto arrived = [this](const Key& key) { return this->Arrived(key); };
+      if (keys.empty() || std::any_of(keys.begin(), keys.end(), arrived))
       {
         return;
       }
-      waits = key;
+      waits = keys.front();
     }
     if (waits && !this->Released)
     {
@@ -137,7 +149,7 @@ private:
   std::mutex Mutex;
   std::condition_variable Changed;
   std::map<Key, std::deque<std::vector<char>>> Messages;
-  std::vector<std::optional<Key>> Awaited;
+  std::vector<std::vector<Key>> Awaited; ///< per rank that waits, for which messages
   std::vector<bool> Ended;
   std::optional<std::string> Released; ///< set: waiting is over; the reason if there is one to tell
   std::exception_ptr First;
@@ -176,6 +188,48 @@ public:
     {
       this->Shared->Take(posted.From, this->Self, posted.Tag, posted.Data, posted.Bytes);
     }
+  }
+
+  void SendWhole(int to, int tag, const void* data, std::size_t bytes) override
+  {
+    this->Send(to, tag, data, bytes);
+  }
+
+  void ReceiveWhole(int from, int tag, void* data, std::size_t capacity) override
+  {
+    this->Check(from, tag);
+    if (this->OpenKeys.empty())
+    {
+      this->Posted.clear();
+    }
+    this->OpenKeys.push_back(Network::Key{ from, this->Self, tag });
+    this->OpenIndices.push_back(this->Posted.size());
+    this->Posted.push_back({ from, tag, data, capacity });
+  }
+
+  Arrival WaitAnyWhole() override
+  {
+    if (this->OpenKeys.empty())
+    {
+      throw Error("Rank " + std::to_string(this->Self) + " waits, but awaits no message.");
+    }
+    std::vector<char> message;
+    const std::size_t which = this->Shared->TakeAny(this->Self, this->OpenKeys, message);
+    const std::size_t index = this->OpenIndices[which];
+    const PostedReceive posted = this->Posted[index];
+    this->OpenKeys.erase(this->OpenKeys.begin() + static_cast<std::ptrdiff_t>(which));
+    this->OpenIndices.erase(this->OpenIndices.begin() + static_cast<std::ptrdiff_t>(which));
+    if (message.size() > posted.Bytes)
+    {
+      ErrorPlace place;
+      place.Found = message.size();
+      place.Allowed = posted.Bytes;
+      throw Error("Rank " + std::to_string(this->Self) + " received a message from rank " +
+                    std::to_string(posted.From) + " that is longer than it expected.",
+        place);
+    }
+    std::copy(message.begin(), message.end(), static_cast<char*>(posted.Data));
+    return { index, message.size() };
   }
 
   void Barrier() override
@@ -240,6 +294,9 @@ private:
   std::shared_ptr<Network> Shared;
   int Self;
   std::vector<PostedReceive> Pending;
+  std::vector<PostedReceive> Posted;    ///< by ReceiveWhole, since none was open
+  std::vector<Network::Key> OpenKeys;   ///< of those not here yet
+  std::vector<std::size_t> OpenIndices; ///< and which they are in Posted
 };
 
 } // namespace

@@ -37,6 +37,28 @@ std::string CompositeAllCases(Communicator& communicator)
   return wrong;
 }
 
+/// Every method, as floats and in few bits, with pictures that need several messages.
+std::string CompositeByAllMethods(Communicator& communicator)
+{
+  std::string wrong;
+  for (const Case which : { Case::BackgroundCorrect, Case::AllOverlap, Case::SparseCopy })
+  {
+    const PreparedCase prepared(
+      which, communicator.Size(), { { -3, 2 }, { 290, 203 } }, Combination::Over);
+    for (const CompositingMethod method : Methods())
+    {
+      CompositeOptions options;
+      options.Method = method;
+      for (const PixelTransport transport : { PixelTransport::Floats, PixelTransport::WithinOne })
+      {
+        options.Transport = transport;
+        wrong += CheckMethod(communicator, prepared, options);
+      }
+    }
+  }
+  return wrong;
+}
+
 std::string CompositeLargePicture(Communicator& communicator)
 {
   return CheckComposite(communicator, Case::AllOverlap, { { 0, 0 }, { 517, 389 } });
@@ -136,8 +158,9 @@ int RunAll(Communicator& communicator)
 {
   const Check checks[] = { { "communicator", CheckCommunicator }, { "small parts", SmallParts },
     { "several communicators", Several }, { "ranks of this node", RanksOfThisNode },
-    { "compositing", CompositeAllCases }, { "large picture", CompositeLargePicture },
-    { "nearest pixels", Nearest }, { "errors", Errors } };
+    { "compositing", CompositeAllCases }, { "methods", CompositeByAllMethods },
+    { "large picture", CompositeLargePicture }, { "nearest pixels", Nearest },
+    { "errors", Errors } };
   int failed = 0;
   for (const Check& check : checks)
   {

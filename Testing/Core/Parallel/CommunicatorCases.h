@@ -55,6 +55,48 @@ inline std::string CheckMessages(Communicator& communicator, std::size_t bytes)
   return received == expected ? "" : "messages did not arrive as they were sent";
 }
 
+/// Messages of a size that the receiver does not know, from all to all, in the order of arrival.
+inline std::string CheckWholeMessages(Communicator& communicator, std::size_t bytes)
+{
+  const int self = communicator.Rank();
+  const int size = communicator.Size();
+  for (int round = 0; round < 2; ++round)
+  {
+    std::vector<std::vector<char>> sent, received;
+    for (int peer = 0; peer < size; ++peer)
+    {
+      sent.push_back(MessageOf(self, peer, round, bytes * static_cast<std::size_t>(peer) / 3));
+      received.emplace_back(bytes * static_cast<std::size_t>(size));
+      communicator.ReceiveWhole(peer, 9, received.back().data(), received.back().size());
+    }
+    for (int peer = 0; peer < size; ++peer)
+    {
+      communicator.SendWhole(peer, 9, sent[peer].data(), sent[peer].size());
+    }
+    std::vector<bool> here(static_cast<std::size_t>(size), false);
+    for (int i = 0; i < size; ++i)
+    {
+      const Communicator::Arrival arrival = communicator.WaitAnyWhole();
+      if (arrival.Posted >= here.size() || here[arrival.Posted])
+      {
+        return "a message arrived twice";
+      }
+      here[arrival.Posted] = true;
+      received[arrival.Posted].resize(arrival.Bytes);
+    }
+    communicator.WaitAll();
+    for (int peer = 0; peer < size; ++peer)
+    {
+      if (received[peer] !=
+          MessageOf(peer, self, round, bytes * static_cast<std::size_t>(self) / 3))
+      {
+        return "a message of unknown size did not arrive as it was sent";
+      }
+    }
+  }
+  return "";
+}
+
 inline std::string CheckCollectives(Communicator& communicator, std::size_t bytes)
 {
   const int size = communicator.Size();
@@ -136,6 +178,7 @@ inline std::string CheckHelpers(Communicator& communicator)
 inline std::string CheckCommunicator(Communicator& communicator)
 {
   std::string wrong = CheckMessages(communicator, 1000);
+  wrong += CheckWholeMessages(communicator, 1000);
   wrong += CheckCollectives(communicator, 0);
   wrong += CheckCollectives(communicator, 777);
   wrong += CheckPostedBeforeCollective(communicator);

@@ -1,9 +1,11 @@
 #ifndef banyan_Testing_CompositingCases_h
 #define banyan_Testing_CompositingCases_h
 
+#include "Parallel/Compositing.h"
 #include "Parallel/DirectSend.h"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <string>
 #include <vector>
@@ -167,6 +169,121 @@ inline std::string CheckComposite(Communicator& communicator, Case which, const 
     if (picture.Pixels[i] != exact[i])
     {
       return where + "pixel " + std::to_string(i) + " has other bits than one rank would blend";
+    }
+  }
+  return "";
+}
+
+/// The methods that Core has.
+inline std::vector<CompositingMethod> Methods()
+{
+  return { CompositingMethod::Slic, CompositingMethod::SlicAsPublished,
+    CompositingMethod::DirectSend, CompositingMethod::BinarySwap };
+}
+
+/// Numbers of two pixels made into one, in the arithmetic of doubles.
+inline glm::dvec4 CombinedSlowly(
+  const glm::dvec4& front, const glm::dvec4& back, Combination combination)
+{
+  switch (combination)
+  {
+    case Combination::Largest:
+      return glm::max(front, back);
+    case Combination::Sum:
+      return front + back;
+    default:
+      return front + (1 - front.a) * back;
+  }
+}
+
+/// A case with the images of all ranks, and the picture as it must be, made in the obvious way;
+/// made once for all methods and ranks.
+struct PreparedCase
+{
+  PreparedCase(Case which, int size, const PixelRect& viewport, Combination combination)
+    : Name(NameOf(which) + " on " + std::to_string(size) + " ranks, viewport " +
+           std::to_string(viewport.Size().x) + "x" + std::to_string(viewport.Size().y))
+    , Viewport(viewport)
+    , Combine(combination)
+    , Order(OrderOf(which, size))
+    , Reference(static_cast<std::size_t>(viewport.Count()), glm::dvec4(0))
+  {
+    for (int rank = 0; rank < size; ++rank)
+    {
+      this->Images.push_back(ImageOf(which, rank, size, viewport));
+    }
+    for (const int rank : this->Order)
+    {
+      const FloatImage& image = this->Images[rank];
+      for (int y = image.Rect.Lo.y; y < image.Rect.Hi.y; ++y)
+      {
+        for (int x = image.Rect.Lo.x; x < image.Rect.Hi.x; ++x)
+        {
+          const glm::ivec2 at = glm::ivec2(x, y) - viewport.Lo;
+          glm::dvec4& pixel =
+            this->Reference[static_cast<std::size_t>(at.y) * viewport.Size().x + at.x];
+          pixel = CombinedSlowly(pixel, glm::dvec4(image.At(x, y)), combination);
+        }
+      }
+    }
+  }
+
+  std::string Name;
+  PixelRect Viewport;
+  Combination Combine;
+  std::vector<int> Order;
+  std::vector<FloatImage> Images;
+  std::vector<glm::dvec4> Reference;
+};
+
+/// Composites as the options say and compares with the slow picture on rank 0: as floats within
+/// 1e-5, otherwise rounded to 8 bits within 1, over black and, where the options say that the root
+/// blends, over white too.
+/// @return what is wrong, or an empty string
+inline std::string CheckMethod(
+  Communicator& communicator, const PreparedCase& prepared, CompositeOptions options)
+{
+  options.Combine = prepared.Combine;
+  const PixelRect& viewport = prepared.Viewport;
+  CompositeStatistics statistics;
+  const FloatImage picture = Composite(communicator, prepared.Images[communicator.Rank()],
+    prepared.Order, viewport, options, statistics);
+  const std::string where = "method " + std::to_string(static_cast<int>(options.Method)) +
+                            ", combination " + std::to_string(static_cast<int>(options.Combine)) +
+                            ", transport " + std::to_string(static_cast<int>(options.Transport)) +
+                            ", " + prepared.Name + ": ";
+  if (communicator.Rank() != 0)
+  {
+    return picture.Pixels.empty() ? "" : where + "a rank other than the root got a picture";
+  }
+  if (!(picture.Rect == viewport) ||
+      static_cast<long long>(picture.Pixels.size()) != viewport.Count())
+  {
+    return where + "the picture is not the viewport";
+  }
+  const bool floats =
+    options.Transport == PixelTransport::Floats || options.Combine != Combination::Over;
+  const auto rounded = [](double value) { return std::lround(255.0 * std::min(value, 1.0)); };
+  const std::vector<glm::dvec4>& reference = prepared.Reference;
+  for (std::size_t i = 0; i < reference.size(); ++i)
+  {
+    const glm::dvec4 got(picture.Pixels[i]);
+    const glm::ivec2 at = viewport.Lo + glm::ivec2(i % viewport.Size().x, i / viewport.Size().x);
+    const bool blended = at.x >= options.Behind.Lo.x && at.x < options.Behind.Hi.x &&
+                         at.y >= options.Behind.Lo.y && at.y < options.Behind.Hi.y;
+    for (int c = 0; c < 4; ++c)
+    {
+      const double right = reference[i][c];
+      bool wrong =
+        floats ? std::abs(got[c] - right) > 1e-5 : std::abs(rounded(got[c]) - rounded(right)) > 1;
+      wrong =
+        wrong || (!floats && blended &&
+                   std::abs(rounded(got[c] + 1 - got.a) - rounded(right + 1 - reference[i].a)) > 1);
+      if (wrong)
+      {
+        return where + "channel " + std::to_string(c) + " of pixel " + std::to_string(i) + " is " +
+               std::to_string(got[c]) + " instead of " + std::to_string(right);
+      }
     }
   }
   return "";

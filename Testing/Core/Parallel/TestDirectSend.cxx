@@ -1,6 +1,7 @@
 #include "CompositingCases.h"
 
 #include "Base/Error.h"
+#include "Parallel/FragmentMessage.h"
 
 #include <gtest/gtest.h>
 
@@ -74,8 +75,8 @@ TEST(CompositingCases, OrderMatters)
   for (int rank = 0; rank < 4; ++rank)
   {
     const glm::vec4 pixel = ImageOf(Case::AllOverlap, rank, 4, viewport).Pixels[5];
-    forward = Over(forward, pixel);
-    backward = Over(pixel, backward);
+    forward = Combined(forward, pixel, Combination::Over);
+    backward = Combined(pixel, backward, Combination::Over);
   }
   EXPECT_GT(glm::abs(forward.r - backward.r), 1e-3f);
 }

@@ -1,0 +1,114 @@
+#ifndef banyan_Parallel_Compositing_h
+#define banyan_Parallel_Compositing_h
+
+#include "Parallel/Communicator.h"
+#include "Parallel/CompositePlan.h"
+#include "Parallel/CompositeStatistics.h"
+#include "Parallel/FragmentFormat.h"
+#include "Render/FloatImage.h"
+#include "Render/ProjectionTable.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace banyan
+{
+
+/// Ways to make one picture of those of all ranks. All make the same one.
+enum class CompositingMethod
+{
+  Slic,            ///< CompositePlan: tile owners, the root stays, active pixels, packed
+  SlicAsPublished, ///< spans with the set of ranks that may draw there, dense
+  DirectSend,      ///< a strip of rows per rank
+  BinarySwap,      ///< pairs exchange halves, for any number of ranks
+  IceTRadixK       ///< IceT's, where the caller brings it (CompositeOptions::External)
+};
+
+/// How exactly pixels travel.
+enum class PixelTransport
+{
+  Floats,    ///< as they are: the picture is within 1e-5 of one rank's
+  WithinOne, ///< as few bits as keep each pixel, rounded to 8 bits, within 1 of one rank's
+  Bytes      ///< 8 bits each time, as other compositors do: off by up to 1 per two fragments
+};
+
+enum class PixelPacking
+{
+  ByCosts, ///< where PackingPays
+  Always,
+  Never
+};
+
+struct CompositeOptions
+{
+  CompositingMethod Method = CompositingMethod::Slic;
+  /// What is done with the pixels of two ranks; all but Over always travel as floats.
+  Combination Combine = Combination::Over;
+  PixelTransport Transport = PixelTransport::Floats;
+  PixelPacking Packing = PixelPacking::ByCosts;
+  CompositeCosts Costs;
+  /// Where each rank may draw; none if only the ranks themselves know (they then tell each other).
+  std::vector<Footprint> Footprints;
+  /// Pixels under which the root has something that it will blend them over.
+  PixelRect Behind;
+  /// Largest colour over opacity of a pixel: above 1 where there are highlights.
+  float Brightest = 1.0f;
+  /// Whether the ranks know already that ProblemOf finds nothing, and that all have the same
+  /// options, order and viewport: saves a collective message.
+  bool Agreed = false;
+
+  using Compositor = std::function<FloatImage(Communicator&, const FloatImage& mine,
+    const std::vector<int>& frontToBack, const PixelRect& viewport, CompositeStatistics&)>;
+  /// What draws for IceTRadixK, in 8 bits and only Over; without it, and for other combinations,
+  /// that method is an Error.
+  Compositor External;
+};
+
+/// Makes one picture of those of all ranks. Collective; all arguments but `mine` are the same on
+/// all ranks.
+///
+/// @param mine this rank's pixels, anywhere inside `viewport`; may be empty
+/// @param frontToBack ranks in visibility order
+/// @param statistics is added to
+/// @return on rank 0 the whole viewport (0 where nothing was drawn); elsewhere empty.
+/// When one rank is called wrongly, all ranks throw the same Error.
+FloatImage Composite(Communicator& communicator, const FloatImage& mine,
+  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
+  CompositeStatistics& statistics);
+
+/// Why Composite cannot work with these arguments on this rank; empty if it can.
+std::string ProblemOf(int rank, int ranks, const FloatImage& mine,
+  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options);
+
+/// Smallest rectangle around the drawn pixels (not all zero) of `image` inside `rect`.
+PixelRect ActiveRect(const FloatImage& image, const PixelRect& rect);
+
+/// How pixels travel of which up to `meeting` are blended, `shares` times one after the other.
+FragmentFormat FormatFor(const CompositeOptions& options, int meeting, int shares);
+/// And those that are not blended any more.
+FragmentFormat FormatOfFinal(const CompositeOptions& options);
+bool Packs(const CompositeOptions& options);
+
+/// The methods. The arguments have been checked, footprints are there.
+/// @{
+FloatImage CompositeSlic(Communicator& communicator, const FloatImage& mine,
+  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
+  CompositeStatistics& statistics);
+/// @par Source: "A parallel visualization pipeline for terascale earthquake simulations",
+/// section 4.2
+FloatImage CompositeSlicAsPublished(Communicator& communicator, const FloatImage& mine,
+  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
+  CompositeStatistics& statistics);
+FloatImage CompositeDirectSend(Communicator& communicator, const FloatImage& mine,
+  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
+  CompositeStatistics& statistics);
+/// @par Source: "Dynamic load balancing for parallel volume rendering", section 3 (compositing)
+FloatImage CompositeBinarySwap(Communicator& communicator, const FloatImage& mine,
+  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
+  CompositeStatistics& statistics);
+/// @}
+
+} // namespace banyan
+
+#endif
