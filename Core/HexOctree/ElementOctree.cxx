@@ -1,0 +1,112 @@
+#include "HexOctree/ElementOctree.h"
+
+#include <algorithm>
+
+namespace banyan
+{
+
+glm::dmat4 ElementOctree::LatticeToWorld() const
+{
+  glm::dmat4 matrix(1.0);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    matrix[axis][axis] = this->FinestEdge[axis];
+    matrix[3][axis] = this->LatticeOrigin[axis];
+  }
+  return matrix;
+}
+
+void ElementOctree::NodesOfLeaf(std::int64_t leaf, std::int64_t (&nodes)[8]) const
+{
+  const auto cell = static_cast<std::size_t>(this->CellNumbers[Index(leaf)]);
+  const std::size_t order = this->OrderOfCell.empty() ? 0 : this->OrderOfCell[cell];
+  const std::array<std::uint8_t, 8>& places = this->CornerOrders[order];
+  if (this->Cells.IdType == ScalarType::Int64)
+  {
+    const auto* ids = static_cast<const std::int64_t*>(this->Cells.Connectivity) + 8 * cell;
+    for (std::size_t i = 0; i < 8; ++i)
+    {
+      nodes[places[i]] = ids[i];
+    }
+    return;
+  }
+  const auto* ids = static_cast<const std::int32_t*>(this->Cells.Connectivity) + 8 * cell;
+  for (std::size_t i = 0; i < 8; ++i)
+  {
+    nodes[places[i]] = ids[i];
+  }
+}
+
+/// Starts of runs of keys, about as many as there are 16 leaves: searches are short then.
+void ElementOctree::MakeStarts()
+{
+  int keyBits = 1;
+  while (keyBits < 63 && this->Keys.back() >> keyBits != 0)
+  {
+    ++keyBits;
+  }
+  int bits = 0;
+  while (bits < keyBits && bits < 24 && (this->LeafCount() >> 4) > std::int64_t{ 1 } << bits)
+  {
+    ++bits;
+  }
+  this->StartShift = keyBits - bits;
+  this->Starts.assign((std::size_t{ 1 } << bits) + 1, 0);
+  std::size_t run = 0;
+  for (std::size_t leaf = 0; leaf < this->Keys.size(); ++leaf)
+  {
+    const auto own = static_cast<std::size_t>(this->Keys[leaf] >> this->StartShift);
+    for (; run <= own; ++run)
+    {
+      this->Starts[run] = static_cast<std::uint32_t>(leaf);
+    }
+  }
+  for (; run < this->Starts.size(); ++run)
+  {
+    this->Starts[run] = static_cast<std::uint32_t>(this->Keys.size());
+  }
+}
+
+std::int64_t ElementOctree::LeafFrom(MortonKey key) const
+{
+  const MortonKey run = key >> this->StartShift;
+  if (run + 1 >= this->Starts.size())
+  {
+    return this->LeafCount();
+  }
+  const auto begin = this->Keys.begin() + this->Starts[run];
+  const auto end = this->Keys.begin() + this->Starts[run + 1];
+  return std::lower_bound(begin, end, key) - this->Keys.begin();
+}
+
+std::int64_t ElementOctree::LeafAt(const glm::ivec3& cell) const
+{
+  if (!this->DomainCells.Contains(cell))
+  {
+    return -1;
+  }
+  const MortonKey key = KeyOf(cell);
+  std::int64_t leaf = this->LeafFrom(key);
+  if (leaf == this->LeafCount() || this->KeyOfLeaf(leaf) != key)
+  {
+    --leaf;
+  }
+  return leaf >= 0 && key - this->KeyOfLeaf(leaf) < CubeKeys(this->LevelOfLeaf(leaf)) ? leaf : -1;
+}
+
+std::int64_t ElementOctree::LargestLeafAround(const glm::ivec3& point) const
+{
+  std::int64_t largest = -1;
+  for (int octant = 0; octant < 8; ++octant)
+  {
+    const glm::ivec3 cell = point - glm::ivec3(octant & 1, octant >> 1 & 1, octant >> 2);
+    const std::int64_t leaf = this->LeafAt(cell);
+    if (leaf >= 0 && (largest < 0 || this->LevelOfLeaf(leaf) > this->LevelOfLeaf(largest)))
+    {
+      largest = leaf;
+    }
+  }
+  return largest;
+}
+
+} // namespace banyan

@@ -1,0 +1,67 @@
+#ifndef banyan_HexOctree_OctreeFinder_h
+#define banyan_HexOctree_OctreeFinder_h
+
+#include "HexOctree/ElementOctree.h"
+#include "HexOctree/FirstFailure.h"
+
+#include <mutex>
+#include <string>
+
+namespace banyan
+{
+
+/// Finds the leaves: see ElementOctree::Find.
+class OctreeFinder
+{
+public:
+  OctreeFinder(ElementOctree& tree, ThreadPool& pool);
+  void Find();
+
+private:
+  /// A cell on the lattice.
+  struct Placed
+  {
+    glm::ivec3 Corner{ 0 };
+    int Level = 0;
+    std::array<std::uint8_t, 8> Order{};
+  };
+  template <class Real, class Id>
+  class Placer;
+  struct OrderMemory;
+
+  void AlignOrigin(const MeshSurvey& survey);
+  void PlaceCells();
+  std::uint16_t NumberOfOrder(const std::array<std::uint8_t, 8>& order, OrderMemory& memory);
+  void SortLeaves();
+  void CheckLeaves();
+  [[noreturn]] void ThrowOverlap(std::size_t leaf) const;
+
+  ElementOctree& Tree;
+  ThreadPool& Pool;
+  std::mutex OrdersMutex;
+  std::vector<std::uint8_t> LevelOfCell;
+};
+
+/// Finds points that hang, and points that are twins.
+class NodeFinder
+{
+public:
+  NodeFinder(ElementOctree& tree, ThreadPool& pool);
+  void Find();
+
+private:
+  struct Found;
+
+  void MarkCorners();
+  void Look(std::int64_t node, unsigned mask, Found& found) const;
+  glm::ivec3 PositionOf(std::int64_t node) const;
+
+  ElementOctree& Tree;
+  ThreadPool& Pool;
+  /// A bit per octant around each point that a leaf with this corner covers.
+  std::unique_ptr<std::atomic<std::uint8_t>, void (*)(void*)> Octants;
+};
+
+} // namespace banyan
+
+#endif
