@@ -76,12 +76,12 @@ public:
   /// @param corner of the brick
   /// @param shader may be null
   PlainMarcher(const Values& entries, const Box& cells, const glm::ivec3& corner,
-    const StepTable& table, float limit, const GradientShader* shader = nullptr)
+    const StepTable& table, const RayTile& tile, const GradientShader* shader = nullptr)
     : Table(table)
     , Entries(entries)
     , Shader(shader)
-    , Cells(cells)
-    , Limit(limit)
+    , Cells(cells, tile.CellShift - tile.BrickShift)
+    , Limit(tile.TransmittanceLimit)
   {
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -192,8 +192,7 @@ void MarchBrick(const BrickPart& part, const StepTable& table, const PixelRect& 
     {
       using T = typename decltype(tag)::Type;
       const BrickEntries<T> entries(part.View, table, IsRelative<T>, nearest);
-      const PlainMarcher marcher(
-        entries, part.Cells, part.Corner, table, tile.TransmittanceLimit);
+      const PlainMarcher marcher(entries, part.Cells, part.Corner, table, tile);
       MarchRays(marcher, Intersection(pixels, tile.Rect), tile);
     });
 }
@@ -210,8 +209,7 @@ void MarchUnpacked(const PackedBrick& brick, const BrickVisibility& seen, const 
     shader = std::make_unique<const GradientShader>(brick, *shading, nearest);
   }
   const BrickEntries<float> entries(view, table, brick.Relative(), nearest);
-  const PlainMarcher marcher(
-    entries, seen.Cells, brick.Corner(), table, tile.TransmittanceLimit, shader.get());
+  const PlainMarcher marcher(entries, seen.Cells, brick.Corner(), table, tile, shader.get());
   MarchRays(marcher, Intersection(pixels, tile.Rect), tile);
 }
 
@@ -219,8 +217,7 @@ void MarchUniformPlain(
   const Box& cells, const StepTable& table, int entry, const PixelRect& pixels, RayTile& tile)
 {
   const std::int64_t taken = tile.SamplesTaken;
-  const PlainMarcher marcher(
-    UniformEntries{ entry }, cells, cells.Lo, table, tile.TransmittanceLimit);
+  const PlainMarcher marcher(UniformEntries{ entry }, cells, cells.Lo, table, tile);
   MarchRays(marcher, Intersection(pixels, tile.Rect), tile);
   tile.SamplesTaken = taken;
 }

@@ -15,7 +15,7 @@ struct BrickPart
 {
   const BrickView& View;
   glm::ivec3 Corner; ///< the sample (index space) that View.Values points at
-  Box Cells;         ///< the cells to draw, inside the brick
+  Box Cells;         ///< the cells to draw, inside the brick; see RayTile::CellShift
 };
 
 /// Blends the samples that lie in `part` behind what the rays of `tile` have met so far: one sample
@@ -29,7 +29,8 @@ struct BrickPart
 void MarchBrick(const BrickPart& part, const StepTable& table, const PixelRect& pixels,
   RayTile& tile, SampleInterpolation interpolation = SampleInterpolation::Linear);
 
-/// The same for a packed brick, all of `seen.Cells`; the reference for MarchPacked.
+/// The same for a packed brick, all of `seen.Cells` (see RayTile::CellShift); the reference for
+/// MarchPacked.
 /// @param shading null for none; otherwise the brick HasGradients
 void MarchUnpacked(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
   const ShadingTable* shading, const PixelRect& pixels, RayTile& tile,

@@ -13,11 +13,12 @@ class PlainProjector
 {
 public:
   /// @param relative whether values become relative to the table's low end, or are already
-  PlainProjector(const BrickPart& part, const ProjectionTable& table, bool relative)
+  PlainProjector(
+    const BrickPart& part, const ProjectionTable& table, bool relative, const RayTile& tile)
     : Table(table)
     , Scale(table.ScaleOf(relative))
     , Values(part.View, table.Low(), table.Nearest())
-    , Cells(part.Cells)
+    , Cells(part.Cells, tile.CellShift - tile.BrickShift)
   {
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -133,16 +134,16 @@ void ProjectBrick(
     {
       using T = typename decltype(tag)::Type;
       ProjectRays(
-        PlainProjector<T>(part, table, IsRelative<T>), Intersection(pixels, tile.Rect), tile);
+        PlainProjector<T>(part, table, IsRelative<T>, tile), Intersection(pixels, tile.Rect), tile);
     });
 }
 
-void ProjectUnpacked(
-  const PackedBrick& brick, const ProjectionTable& table, const PixelRect& pixels, RayTile& tile)
+void ProjectUnpacked(const PackedBrick& brick, const Box& cells, const ProjectionTable& table,
+  const PixelRect& pixels, RayTile& tile)
 {
   const BrickView view = brick.View();
   const PlainProjector<float> projector(
-    { view, brick.Corner(), brick.Cells() }, table, brick.Relative());
+    { view, brick.Corner(), cells }, table, brick.Relative(), tile);
   ProjectRays(projector, Intersection(pixels, tile.Rect), tile);
 }
 

@@ -15,15 +15,16 @@ void ProjectBrick(
   const BrickPart& part, const ProjectionTable& table, const PixelRect& pixels, RayTile& tile);
 
 /// The same for a packed brick; the reference for ProjectPacked.
-void ProjectUnpacked(
-  const PackedBrick& brick, const ProjectionTable& table, const PixelRect& pixels, RayTile& tile);
+/// @param cells the part of it to draw: see RayTile::CellShift
+void ProjectUnpacked(const PackedBrick& brick, const Box& cells, const ProjectionTable& table,
+  const PixelRect& pixels, RayTile& tile);
 
 /// The same picture, bit for bit and on every processor, by packets of rays. Rays that the brick
 /// can change in nothing take no samples.
 /// @param range of the brick's finite values
 /// @param tile PacketsFit
-void ProjectPacked(const PackedBrick& brick, const ValueRange& range, const ProjectionTable& table,
-  const PixelRect& pixels, RayTile& tile);
+void ProjectPacked(const PackedBrick& brick, const Box& cells, const ValueRange& range,
+  const ProjectionTable& table, const PixelRect& pixels, RayTile& tile);
 
 } // namespace banyan
 

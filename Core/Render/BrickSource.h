@@ -4,6 +4,7 @@
 #include "Base/Box.h"
 #include "Render/BrickView.h"
 #include "Render/KeptBricks.h"
+#include "Render/Viewpoint.h"
 #include "Series/SeriesIndex.h"
 #include "Series/ValueMask.h"
 
@@ -13,6 +14,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 namespace banyan
 {
@@ -26,14 +28,30 @@ struct UniformValue
 
 /// What the ray caster draws: a box of cells cut into bricks. Positions are samples of the whole
 /// grid (index space, starting at 0); cell c lies between samples c and c + 1.
+///
+/// Bricks of one source may have cells of different sizes, as those of octree meshes do: brick b
+/// counts in cells of its own, which are 2^BrickLevel(b) cells of the source long. They are drawn in
+/// one picture, exactly.
 class BrickSource
 {
 public:
   virtual ~BrickSource() = default;
 
-  /// Bricks are numbered x fastest over `Bricks()`; brick b owns the cells `CellsOf(b)`.
+  /// Bricks are numbered x fastest over `Bricks()`; brick b owns the cells `CellsOf(b)`, its own.
   virtual glm::ivec3 Bricks() const = 0;
   virtual Box CellsOf(std::int64_t brick) const = 0;
+
+  /// How many times a brick's cells are twice as long as the source's: 0 unless a source has cells
+  /// of several sizes.
+  virtual int BrickLevel(std::int64_t) const { return 0; }
+  /// The largest that there is, at most MostBrickLevels.
+  virtual int CoarsestBrickLevel() const { return 0; }
+  static constexpr int MostBrickLevels = 16;
+
+  /// The place of each brick in visibility order; empty when bricks are cut by whole planes, and
+  /// VisibilityKey orders them.
+  /// @param view in index space
+  virtual std::vector<std::int64_t> RanksFrontToBack(const Viewpoint&) const { return {}; }
 
   /// Of the finite values anywhere in the brick; empty when there is none.
   virtual ValueRange RangeOf(std::int64_t brick) const = 0;

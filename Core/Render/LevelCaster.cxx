@@ -20,8 +20,8 @@ constexpr std::size_t BricksPerBatch = 512;
 
 } // namespace
 
-LevelCaster::Sampled::Sampled(const RayScene& scene, const RaySampling& sampling)
-  : Lattice(scene, sampling)
+LevelCaster::Sampled::Sampled(const RayScene& scene, const RaySampling& sampling, int coarsest)
+  : Lattice(scene, { sampling.Level + coarsest, sampling.Distance }, coarsest)
   , Table(scene.Transfer, sampling.Distance)
 {
   if (scene.Blend.Mode != BlendMode::Composite)
@@ -41,6 +41,7 @@ LevelCaster::LevelCaster(const RayScene& scene, BrickSource& source, const Box& 
   , Visible(scene.Transfer)
   , IndexToWorld(IndexToWorldAt(scene, source.Level()))
   , IndexCamera(scene.Camera.InSpace(IndexToWorld))
+  , ClipPlanes(PlanesInIndexSpace(scene.ClipPlanes, IndexToWorld))
 {
   if (scene.Shading.On && scene.Blend.Mode == BlendMode::Composite)
   {
@@ -226,8 +227,10 @@ void LevelCaster::Load(const PlannedBrick& brick, LoadedBrick& loaded) const
     return;
   }
   loaded.Seen = BrickVisibility(*loaded.Packed, this->Source.RangeOf(brick.Number), this->Visible);
-  loaded.Footprint =
-    loaded.Seen.Cells == brick.Cells ? brick.Footprint : this->FootprintOf(loaded.Seen.Cells);
+  Box& seen = loaded.Seen.Cells;
+  const int size = 1 << brick.Level;
+  seen = Intersection({ seen.Lo * size, seen.Hi * size }, brick.Drawn);
+  loaded.Footprint = seen == brick.Drawn ? brick.Footprint : this->FootprintOf(seen);
 }
 
 KeptBricks::Pointer LevelCaster::Pack(const PlannedBrick& brick) const
@@ -271,13 +274,16 @@ std::int64_t LevelCaster::DrawTile(std::size_t number, RayTile& rays)
   Tile& tile = this->Tiles[number];
   rays.Open(
     tile.Sampling->Lattice, this->Grid.RectOf(number), *this->Picture, this->TransmittanceLimit());
+  rays.CellShift = this->Source.CoarsestBrickLevel();
   for (const int position : tile.Bricks)
   {
     if (rays.ActiveRays == 0)
     {
       break;
     }
-    this->DrawBrick(*this->Batch[static_cast<std::size_t>(position)],
+    const PlannedBrick& brick = *this->Batch[static_cast<std::size_t>(position)];
+    rays.BrickShift = rays.CellShift - brick.Level;
+    this->DrawBrick(brick,
       this->Loaded[static_cast<std::size_t>(position)], *tile.Sampling, rays);
   }
   rays.Close(*this->Picture);
@@ -293,12 +299,12 @@ void LevelCaster::DrawBrick(const PlannedBrick& brick, const LoadedBrick& loaded
   {
     const bool fits = rays.PacketsFit && PackedBrick::CanPack(brick.Cells);
     const auto march = fits ? MarchUniform : MarchUniformPlain;
-    march(brick.Cells, sampling.Table, *brick.Entry, brick.Footprint, rays);
+    march(brick.Drawn, sampling.Table, *brick.Entry, brick.Footprint, rays);
   }
   else if (!loaded.Packed)
   {
     const glm::ivec3 corner = this->Source.CellsOf(brick.Number).Lo;
-    const BrickPart part{ loaded.View, corner, brick.Cells };
+    const BrickPart part{ loaded.View, corner, brick.Drawn };
     projection
       ? ProjectBrick(part, *projection, brick.Footprint, rays)
       : MarchBrick(part, sampling.Table, brick.Footprint, rays, this->Scene.Interpolation);
@@ -321,11 +327,11 @@ void LevelCaster::ProjectPackedBrick(const PlannedBrick& brick, const PackedBric
   if (rays.PacketsFit)
   {
     const ValueRange range = this->Source.RangeOf(brick.Number);
-    ProjectPacked(packed, range, projection, brick.Footprint, rays);
+    ProjectPacked(packed, brick.Drawn, range, projection, brick.Footprint, rays);
   }
   else
   {
-    ProjectUnpacked(packed, projection, brick.Footprint, rays);
+    ProjectUnpacked(packed, brick.Drawn, projection, brick.Footprint, rays);
   }
 }
 

@@ -37,7 +37,9 @@ private:
   struct PlannedBrick
   {
     std::int64_t Number = 0;
-    Box Cells;
+    int Level = 0; ///< BrickSource::BrickLevel
+    Box Cells;     ///< to pack, in its own
+    Box Drawn;     ///< the part of them to draw, in cells of the source
     PixelRect Footprint;
     double Key = 0;
     float HighestRank = 0; ///< of a projection
@@ -61,7 +63,9 @@ private:
     StepTable Table;
     std::unique_ptr<const ProjectionTable> Projection; ///< null when samples are composited
 
-    Sampled(const RayScene& scene, const RaySampling& sampling);
+    /// Rays are made for the largest cells.
+    /// @param coarsest BrickSource::CoarsestBrickLevel
+    Sampled(const RayScene& scene, const RaySampling& sampling, int coarsest);
   };
 
   struct Tile
@@ -73,6 +77,8 @@ private:
 
   void AddSamplings();
   void Plan();
+  void PlaceCells(PlannedBrick& brick) const;
+  void SetKeys();
   PixelRect FootprintOf(const Box& cells) const;
   std::optional<int> EntryOf(std::int64_t brick) const;
   void MakeTiles();
@@ -103,6 +109,7 @@ private:
   VisibleValues Visible;
   glm::dmat4 IndexToWorld;
   RayCamera IndexCamera;
+  std::vector<glm::dvec4> ClipPlanes; ///< in index space
   std::unique_ptr<const ShadingTable> Shading; ///< null for none
 
   /// By number of the scene's samplings; null for those of other levels, and that no tile has.

@@ -21,7 +21,8 @@ void LevelCaster::AddSamplings()
     this->Samplings.emplace_back();
     if (used[i] && samplings[i].Level == this->Source.Level())
     {
-      this->Samplings.back() = std::make_unique<const Sampled>(this->Scene, samplings[i]);
+      this->Samplings.back() = std::make_unique<const Sampled>(
+        this->Scene, samplings[i], this->Source.CoarsestBrickLevel());
       this->AnySampling = this->Samplings.back().get();
     }
   }
@@ -33,15 +34,13 @@ void LevelCaster::Plan()
   const glm::ivec3 counts = this->Source.Bricks();
   const std::int64_t count = std::int64_t{ counts.x } * counts.y * counts.z;
   const ValueMask visibleBins = this->Scene.Transfer.VisibleBins(this->Source.MasksAreOver());
-  const Viewpoint view = InIndexSpace(this->Scene.Camera, this->IndexToWorld);
   const ProjectionTable* const projection = this->AnySampling->Projection.get();
   for (std::int64_t number = 0; number < count; ++number)
   {
     PlannedBrick brick;
     brick.Number = number;
-    const Box whole = this->Source.CellsOf(number);
-    brick.Cells = Intersection(whole, this->Cells);
-    if (brick.Cells.Empty())
+    this->PlaceCells(brick);
+    if (brick.Drawn.Empty())
     {
       continue;
     }
@@ -50,26 +49,55 @@ void LevelCaster::Plan()
     const bool wanted = projection ? brick.HighestRank > 0.0f
                                    : (this->Source.MaskOf(number) & visibleBins) != 0 &&
                                        this->Visible.Any(range.Low, range.High);
-    if (wanted && !IsCutAway(this->AnySampling->Lattice.Planes(), brick.Cells))
+    if (wanted && !IsCutAway(this->ClipPlanes, brick.Drawn))
     {
-      brick.Footprint = Intersection(this->FootprintOf(brick.Cells), this->Scene.Viewport);
+      brick.Footprint = Intersection(this->FootprintOf(brick.Drawn), this->Scene.Viewport);
     }
     if (brick.Footprint.Empty())
     {
       ++this->Statistics.BricksSkipped;
       continue;
     }
-    // The best values first: bricks that cannot beat them are then never loaded. Averages are
-    // added up front to back, so that they round alike in bricks of all sizes.
-    brick.Key = projection && !projection->Averages() ? -brick.HighestRank
-                                                      : VisibilityKey(view, whole);
     brick.Entry = this->EntryOf(number);
     this->Touched = Union(this->Touched, brick.Footprint);
     this->Bricks.push_back(brick);
   }
+  this->SetKeys();
   std::sort(this->Bricks.begin(), this->Bricks.end(),
     [](const PlannedBrick& a, const PlannedBrick& b)
     { return a.Key < b.Key || (a.Key == b.Key && a.Number < b.Number); });
+}
+
+/// The part of a brick that is to be drawn, and the cells of it that this takes.
+void LevelCaster::PlaceCells(PlannedBrick& brick) const
+{
+  brick.Level = this->Source.BrickLevel(brick.Number);
+  const Box own = this->Source.CellsOf(brick.Number);
+  const int size = 1 << brick.Level;
+  brick.Drawn = Intersection({ own.Lo * size, own.Hi * size }, this->Cells);
+  brick.Cells = { brick.Drawn.Lo / size, (brick.Drawn.Hi + size - 1) / size };
+}
+
+void LevelCaster::SetKeys()
+{
+  const Viewpoint view = InIndexSpace(this->Scene.Camera, this->IndexToWorld);
+  const ProjectionTable* const projection = this->AnySampling->Projection.get();
+  const std::vector<std::int64_t> ranks = this->Source.RanksFrontToBack(view);
+  for (PlannedBrick& brick : this->Bricks)
+  {
+    // The best values first: bricks that cannot beat them are then never loaded. Averages are
+    // added up front to back, so that they round alike in bricks of all sizes.
+    if (projection && !projection->Averages())
+    {
+      brick.Key = -brick.HighestRank;
+    }
+    else
+    {
+      brick.Key = ranks.empty()
+                    ? VisibilityKey(view, this->Source.CellsOf(brick.Number))
+                    : static_cast<double>(ranks[static_cast<std::size_t>(brick.Number)]);
+    }
+  }
 }
 
 /// The entry of the table that all samples of a brick have, if nothing else has to be known of them.

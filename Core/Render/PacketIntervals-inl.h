@@ -39,16 +39,48 @@ struct Whole
 class PacketIntervals
 {
 public:
+  /// @param cells 2^CellShift times as short as those of the rays
   PacketIntervals(const RayTile& tile, const Box& cells)
     : Tile(tile)
   {
+    const int larger = tile.CellShift - tile.BrickShift;
     for (int axis = 0; axis < 3; ++axis)
     {
-      this->LowFace[axis] = cells.Lo[axis];
-      this->HighFace[axis] = cells.Hi[axis];
-      this->Low[axis] = static_cast<std::uint32_t>(ToFixed(cells.Lo[axis]));
-      this->Size[axis] = static_cast<std::uint32_t>(ToFixed(cells.Size()[axis]));
+      this->LowFace[axis] = std::ldexp(cells.Lo[axis], -tile.CellShift);
+      this->HighFace[axis] = std::ldexp(cells.Hi[axis], -tile.CellShift);
+      this->Low[axis] = static_cast<std::uint32_t>(ToFixed(cells.Lo[axis]) >> larger);
+      this->Size[axis] = static_cast<std::uint32_t>(ToFixed(cells.Size()[axis]) >> larger);
+      this->LowCell[axis] = cells.Lo[axis];
+      this->CellCount[axis] = static_cast<std::uint32_t>(cells.Size()[axis]);
     }
+  }
+
+  /// A step or position of a vector's rays in cells of the brick, modulo 256 of them.
+  HWY_INLINE VU InBrickCells(const std::uint32_t* positions) const
+  {
+    return hn::ShiftLeftSame(hn::Load(DU(), positions), this->Tile.BrickShift);
+  }
+
+  /// The lanes whose head or tail lies in the cells.
+  HWY_INLINE hn::Mask<D> EndsInside(int slot, const RayTile::Ends& ends) const
+  {
+    const D d;
+    const DU du;
+    auto inside = hn::Gt(hn::Load(d, ends.Fraction + slot), hn::Zero(d));
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const VI large = hn::Load(DI(), ends.Cell[axis] + slot);
+      const VU fraction =
+        hn::And(hn::Load(du, ends.Position[axis] + slot), hn::Set(du, (1u << FractionBits) - 1));
+      const VU part = hn::ShiftRightSame(fraction, FractionBits - this->Tile.CellShift);
+      const VU cell =
+        hn::Or(hn::BitCast(du, hn::ShiftLeftSame(large, this->Tile.CellShift)), part);
+      const VU from =
+        hn::Sub(cell, hn::Set(du, static_cast<std::uint32_t>(this->LowCell[axis])));
+      inside =
+        hn::And(inside, hn::RebindMask(d, hn::Lt(from, hn::Set(du, this->CellCount[axis]))));
+    }
+    return inside;
   }
 
   HWY_INLINE Estimate EstimateAt(int slot) const
@@ -75,7 +107,7 @@ public:
     Whole result;
     for (int axis = 0; axis < 3; ++axis)
     {
-      step[axis] = hn::Load(DU(), this->Tile.Step[axis] + slot);
+      step[axis] = this->InBrickCells(this->Tile.Step[axis] + slot);
       result.First[axis] = this->PositionAt(slot, axis, step[axis], estimate.Begin);
     }
     VI begin = estimate.Begin;
@@ -150,7 +182,7 @@ private:
   HWY_INLINE VU PositionAt(int slot, int axis, VU step, VI sample) const
   {
     const DU du;
-    const VU base = hn::Load(du, this->Tile.Base[axis] + slot);
+    const VU base = this->InBrickCells(this->Tile.Base[axis] + slot);
     return hn::Sub(
       hn::Add(base, hn::Mul(step, hn::BitCast(du, sample))), hn::Set(du, this->Low[axis]));
   }
@@ -171,8 +203,11 @@ private:
   const RayTile& Tile;
   double LowFace[3];
   double HighFace[3];
-  std::uint32_t Low[3];  ///< fixed-point position of the cells' low corner, modulo 256 cells
+  /// Fixed-point position of the cells' low corner in cells of the brick, modulo 256 of them.
+  std::uint32_t Low[3];
   std::uint32_t Size[3]; ///< fixed-point
+  std::int32_t LowCell[3];
+  std::uint32_t CellCount[3];
 };
 
 } // namespace banyan::HWY_NAMESPACE

@@ -49,14 +49,14 @@ public:
   PacketMarcher(const Values& samples, const Box& cells, const glm::ivec3& corner, RayTile& tile)
     : Intervals(tile, cells)
     , Samples(samples)
-    , Cells(cells)
     , Tile(tile)
   {
+    const int larger = tile.CellShift - tile.BrickShift;
     for (int axis = 0; axis < 3; ++axis)
     {
-      this->Size[axis] = static_cast<std::uint32_t>(cells.Size()[axis]);
-      this->ToBrick[axis] = static_cast<std::uint32_t>(-ToFixed(corner[axis]));
-      this->Offset[axis] = static_cast<std::uint32_t>(ToFixed(cells.Lo[axis] - corner[axis]));
+      const std::int64_t low = ToFixed(corner[axis]);
+      this->ToBrick[axis] = static_cast<std::uint32_t>(-low);
+      this->Offset[axis] = static_cast<std::uint32_t>((ToFixed(cells.Lo[axis]) >> larger) - low);
     }
   }
 
@@ -154,8 +154,9 @@ private:
     walk.At = { hn::Add(whole.First[0], hn::Set(du, this->Offset[0])),
       hn::Add(whole.First[1], hn::Set(du, this->Offset[1])),
       hn::Add(whole.First[2], hn::Set(du, this->Offset[2])) };
-    walk.Step = { hn::Load(du, this->Tile.Step[0] + slot), hn::Load(du, this->Tile.Step[1] + slot),
-      hn::Load(du, this->Tile.Step[2] + slot) };
+    walk.Step = { this->Intervals.InBrickCells(this->Tile.Step[0] + slot),
+      this->Intervals.InBrickCells(this->Tile.Step[1] + slot),
+      this->Intervals.InBrickCells(this->Tile.Step[2] + slot) };
     this->Follow(walk);
     this->Keep(slot, walk);
     this->Tile.SamplesTaken += static_cast<std::int64_t>(walk.Taken);
@@ -298,20 +299,16 @@ private:
     const D d;
     const DU du;
     const VF fraction = hn::Load(d, ends.Fraction + slot);
-    Lanes here = hn::And(this->OpenAt(slot), hn::Gt(fraction, hn::Zero(d)));
-    VU position[3];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const VI cell =
-        hn::Sub(hn::Load(DI(), ends.Cell[axis] + slot), hn::Set(DI(), this->Cells.Lo[axis]));
-      here = hn::And(
-        here, hn::RebindMask(d, hn::Lt(hn::BitCast(du, cell), hn::Set(du, this->Size[axis]))));
-      position[axis] =
-        hn::Add(hn::Load(du, ends.Position[axis] + slot), hn::Set(du, this->ToBrick[axis]));
-    }
+    const Lanes here = hn::And(this->OpenAt(slot), this->Intervals.EndsInside(slot, ends));
     if (hn::AllFalse(d, here))
     {
       return;
+    }
+    VU position[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      position[axis] = hn::Add(this->Intervals.InBrickCells(ends.Position[axis] + slot),
+        hn::Set(du, this->ToBrick[axis]));
     }
     Place place;
     Found found;
@@ -325,11 +322,9 @@ private:
 
   PacketIntervals Intervals;
   Values Samples;
-  Box Cells;
   RayTile& Tile;
   const std::uint32_t* MacroMask = nullptr;
   int MacroShift = 0;
-  std::uint32_t Size[3];    ///< of the cells
   std::uint32_t ToBrick[3]; ///< to positions in the brick, modulo 256 cells
   std::uint32_t Offset[3];  ///< from the cells' low corner to the brick's
 };

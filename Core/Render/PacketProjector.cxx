@@ -20,10 +20,10 @@ namespace banyan::HWY_NAMESPACE
 #if HWY_TARGET == HWY_SCALAR
 
 // Processors without SSE4, and others without vectors: one ray after the other.
-void ProjectPackedHere(const PackedBrick& brick, const ValueRange&, const ProjectionTable& table,
-  const PixelRect& pixels, RayTile& tile)
+void ProjectPackedHere(const PackedBrick& brick, const Box& cells, const ValueRange&,
+  const ProjectionTable& table, const PixelRect& pixels, RayTile& tile)
 {
-  ProjectUnpacked(brick, table, pixels, tile);
+  ProjectUnpacked(brick, cells, table, pixels, tile);
 }
 
 #else
@@ -143,21 +143,23 @@ template <bool Special, bool Nearest, bool Average>
 class PacketProjector
 {
 public:
-  PacketProjector(
-    const PackedBrick& brick, const ValueRange& range, const ProjectionTable& table, RayTile& tile)
+  PacketProjector(const PackedBrick& brick, const Box& cells, const ValueRange& range,
+    const ProjectionTable& table, RayTile& tile)
     : Table(table)
-    , Intervals(tile, brick.Cells())
+    , Intervals(tile, cells)
     , Samples(brick, table.ScaleOf(brick.Relative()).Lookup)
-    , Cells(brick.Cells())
     , Tile(tile)
     , Relative(brick.Relative())
     , OnlyCounts(Average && !Special && table.OnlyCounts(range))
     , HighestRank(table.HighestRank(range))
   {
+    const int larger = tile.CellShift - tile.BrickShift;
     for (int axis = 0; axis < 3; ++axis)
     {
-      this->Size[axis] = static_cast<std::uint32_t>(brick.Cells().Size()[axis]);
-      this->ToBrick[axis] = static_cast<std::uint32_t>(-ToFixed(brick.Corner()[axis]));
+      const std::int64_t corner = ToFixed(brick.Corner()[axis]);
+      this->ToBrick[axis] = static_cast<std::uint32_t>(-corner);
+      this->Offset[axis] =
+        static_cast<std::uint32_t>((ToFixed(cells.Lo[axis]) >> larger) - corner);
     }
   }
 
@@ -229,9 +231,12 @@ private:
         return;
       }
     }
-    Position at = { whole.First[0], whole.First[1], whole.First[2] };
-    const Position step = { hn::Load(du, this->Tile.Step[0] + slot),
-      hn::Load(du, this->Tile.Step[1] + slot), hn::Load(du, this->Tile.Step[2] + slot) };
+    Position at = { hn::Add(whole.First[0], hn::Set(du, this->Offset[0])),
+      hn::Add(whole.First[1], hn::Set(du, this->Offset[1])),
+      hn::Add(whole.First[2], hn::Set(du, this->Offset[2])) };
+    const Position step = { this->Intervals.InBrickCells(this->Tile.Step[0] + slot),
+      this->Intervals.InBrickCells(this->Tile.Step[1] + slot),
+      this->Intervals.InBrickCells(this->Tile.Step[2] + slot) };
     VI left = whole.Count;
     std::size_t taken = 0;
     for (Lanes lanes = open; !hn::AllFalse(d, lanes);)
@@ -255,20 +260,16 @@ private:
     const D d;
     const DU du;
     const VF fraction = hn::Load(d, ends.Fraction + slot);
-    Lanes here = hn::Gt(fraction, hn::Zero(d));
-    VU position[3];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const VI cell =
-        hn::Sub(hn::Load(DI(), ends.Cell[axis] + slot), hn::Set(DI(), this->Cells.Lo[axis]));
-      here = hn::And(
-        here, hn::RebindMask(d, hn::Lt(hn::BitCast(du, cell), hn::Set(du, this->Size[axis]))));
-      position[axis] =
-        hn::Add(hn::Load(du, ends.Position[axis] + slot), hn::Set(du, this->ToBrick[axis]));
-    }
+    const Lanes here = this->Intervals.EndsInside(slot, ends);
     if (hn::AllFalse(d, here))
     {
       return;
+    }
+    VU position[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      position[axis] = hn::Add(this->Intervals.InBrickCells(ends.Position[axis] + slot),
+        hn::Set(du, this->ToBrick[axis]));
     }
     auto met = this->MetAt(slot);
     if constexpr (Average)
@@ -291,23 +292,22 @@ private:
   const ProjectionTable& Table;
   PacketIntervals Intervals;
   PacketSamples<Special, false, Nearest> Samples;
-  Box Cells;
   RayTile& Tile;
   bool Relative;
   bool OnlyCounts;
   float HighestRank;
-  std::uint32_t Size[3];    ///< of the cells
   std::uint32_t ToBrick[3]; ///< to positions in the brick, modulo 256 cells
+  std::uint32_t Offset[3];  ///< from the cells' low corner to the brick's
 };
 
 template <bool Special, bool Nearest, bool Average>
-void ProjectPackets(const PackedBrick& brick, const ValueRange& range, const ProjectionTable& table,
-  const PixelRect& pixels, RayTile& tile)
+void ProjectPackets(const PackedBrick& brick, const Box& cells, const ValueRange& range,
+  const ProjectionTable& table, const PixelRect& pixels, RayTile& tile)
 {
   constexpr int edge = RayTile::PacketEdge;
   const glm::ivec2 corner = tile.Rect.Lo;
   const PixelRect packets{ (pixels.Lo - corner) / edge, (pixels.Hi - corner + edge - 1) / edge };
-  PacketProjector<Special, Nearest, Average> projector(brick, range, table, tile);
+  PacketProjector<Special, Nearest, Average> projector(brick, cells, range, table, tile);
   for (int y = packets.Lo.y; y < packets.Hi.y; ++y)
   {
     for (int x = packets.Lo.x; x < packets.Hi.x; ++x)
@@ -317,11 +317,11 @@ void ProjectPackets(const PackedBrick& brick, const ValueRange& range, const Pro
   }
 }
 
-void ProjectPackedHere(const PackedBrick& brick, const ValueRange& range,
+void ProjectPackedHere(const PackedBrick& brick, const Box& cells, const ValueRange& range,
   const ProjectionTable& table, const PixelRect& pixels, RayTile& tile)
 {
-  using Project = void (*)(
-    const PackedBrick&, const ValueRange&, const ProjectionTable&, const PixelRect&, RayTile&);
+  using Project = void (*)(const PackedBrick&, const Box&, const ValueRange&,
+    const ProjectionTable&, const PixelRect&, RayTile&);
   static constexpr Project projects[8] = { ProjectPackets<false, false, false>,
     ProjectPackets<true, false, false>, ProjectPackets<false, true, false>,
     ProjectPackets<true, true, false>, ProjectPackets<false, false, true>,
@@ -329,7 +329,7 @@ void ProjectPackedHere(const PackedBrick& brick, const ValueRange& range,
     ProjectPackets<true, true, true> };
   const int which =
     (brick.Special() ? 1 : 0) + (table.Nearest() ? 2 : 0) + (table.Averages() ? 4 : 0);
-  projects[which](brick, range, table, pixels, tile);
+  projects[which](brick, cells, range, table, pixels, tile);
 }
 
 #endif
@@ -343,13 +343,13 @@ namespace banyan
 
 HWY_EXPORT(ProjectPackedHere);
 
-void ProjectPacked(const PackedBrick& brick, const ValueRange& range, const ProjectionTable& table,
-  const PixelRect& pixels, RayTile& tile)
+void ProjectPacked(const PackedBrick& brick, const Box& cells, const ValueRange& range,
+  const ProjectionTable& table, const PixelRect& pixels, RayTile& tile)
 {
   const PixelRect rect = Intersection(pixels, tile.Rect);
   if (!rect.Empty())
   {
-    HWY_DYNAMIC_DISPATCH(ProjectPackedHere)(brick, range, table, rect, tile);
+    HWY_DYNAMIC_DISPATCH(ProjectPackedHere)(brick, cells, range, table, rect, tile);
   }
 }
 

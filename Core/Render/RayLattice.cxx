@@ -84,14 +84,14 @@ double ScaleToOne(const glm::dmat3& matrix)
   return largest > 0.0 && std::isfinite(largest) ? std::exp2(-std::ilogb(largest)) : 1.0;
 }
 
-FixedBox::FixedBox(const Box& cells)
+FixedBox::FixedBox(const Box& cells, int larger)
 {
   for (int axis = 0; axis < 3; ++axis)
   {
-    this->Lo[axis] = ToFixed(cells.Lo[axis]);
-    this->Size[axis] = static_cast<std::uint64_t>(ToFixed(cells.Size()[axis]));
-    this->LowFace[axis] = cells.Lo[axis];
-    this->HighFace[axis] = cells.Hi[axis];
+    this->Lo[axis] = ToFixed(cells.Lo[axis]) >> larger;
+    this->Size[axis] = static_cast<std::uint64_t>(ToFixed(cells.Size()[axis]) >> larger);
+    this->LowFace[axis] = std::ldexp(cells.Lo[axis], -larger);
+    this->HighFace[axis] = std::ldexp(cells.Hi[axis], -larger);
   }
 }
 
@@ -100,12 +100,13 @@ RayLattice::RayLattice(const RayScene& scene)
 {
 }
 
-RayLattice::RayLattice(const RayScene& scene, const RaySampling& sampling)
+RayLattice::RayLattice(const RayScene& scene, const RaySampling& sampling, int smaller)
   : Scene(scene)
   , WorldToIndex(glm::inverse(IndexToWorldAt(scene, sampling.Level)))
   , WorldToIndexLinear(WorldToIndex)
   , Distance(sampling.Distance)
   , PerDistance(1.0 / sampling.Distance)
+  , SmallestPerCell(std::ldexp(1.0, smaller))
   , Low(glm::dvec3(scene.DomainCells.Lo) * std::ldexp(1.0, -sampling.Level))
   , High(glm::dvec3(scene.DomainCells.Hi) * std::ldexp(1.0, -sampling.Level))
 {
@@ -136,6 +137,7 @@ LatticeSetup RayLattice::Setup() const
   setup.Distance = this->Distance;
   setup.PerDistance = this->PerDistance;
   setup.ShadingScale = ScaleToOne(this->WorldToIndexLinear);
+  setup.SmallestPerCell = this->SmallestPerCell;
   setup.Planes = this->IndexPlanes.data();
   setup.PlaneCount = this->IndexPlanes.size();
   return setup;

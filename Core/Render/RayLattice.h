@@ -30,7 +30,9 @@ inline std::int64_t ToFixed(int cell)
 /// Lo <= position < Lo + Size per axis.
 struct FixedBox
 {
-  explicit FixedBox(const Box& cells);
+  /// @param larger how many times cells that positions count are twice as long as those of the box:
+  /// its faces may lie inside of them; at most FractionBits
+  explicit FixedBox(const Box& cells, int larger = 0);
 
   bool Contains(const std::int64_t (&position)[3]) const
   {
@@ -77,6 +79,9 @@ struct RaySamples
       position[axis] = this->Base[axis] + sample * this->Step[axis];
     }
   }
+
+  /// The same samples, in cells 2^levels times as short: exact.
+  void CountInSmallerCells(int levels);
 
   /// Whole samples inside a box: a half-open interval, exact; empty when begin >= end.
   void SamplesIn(const FixedBox& box, std::int32_t& begin, std::int32_t& end) const;
@@ -152,6 +157,8 @@ struct LatticeSetup
   double PerDistance = 1.0; ///< 1 / Distance
   /// A power of two that brings directions in index space near 1.
   double ShadingScale = 1.0;
+  /// Smallest cells that are drawn per cell of the lattice, along an axis.
+  double SmallestPerCell = 1.0;
   const glm::dvec4* Planes = nullptr; ///< RayLattice::Planes
   std::size_t PlaneCount = 0;
 };
@@ -163,7 +170,8 @@ class RayLattice
 {
 public:
   /// Refers to `scene`, which must stay. Throws Error when the scene is not usable.
-  RayLattice(const RayScene& scene, const RaySampling& sampling);
+  /// @param smaller how many times the smallest cells are half as long as those of the sampling's level
+  RayLattice(const RayScene& scene, const RaySampling& sampling, int smaller = 0);
   /// At the finest level, with the scene's sample distance.
   explicit RayLattice(const RayScene& scene);
 
@@ -224,6 +232,7 @@ private:
   std::vector<glm::dvec4> IndexPlanes;
   double Distance;
   double PerDistance; ///< 1 / Distance
+  double SmallestPerCell;
   glm::dvec3 Low;     ///< of the domain, in cells
   glm::dvec3 High;
 };

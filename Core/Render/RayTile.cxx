@@ -258,7 +258,7 @@ private:
     const VD half = this->Set(0.5);
     const VD steps = hn::Sub(count, this->Set(1.0));
     const auto some = hn::Gt(count, hn::Zero(d));
-    const VD longest = this->Set(RayTile::LongestStep * Unit);
+    const VD longest = this->Set(RayTile::LongestStep * Unit / this->Setup.SmallestPerCell);
     for (int axis = 0; axis < 3; ++axis)
     {
       const VD base = this->Fixed(hn::Mul(hn::Add(first, half), distance), axis);

@@ -52,7 +52,7 @@ struct RayTile
   /// Puts what the rays have met back into the picture.
   void Close(FloatImage& picture) const;
 
-  /// The samples of one ray.
+  /// The samples of one ray, in cells of the brick that is drawn.
   RaySamples RayOf(int slot) const;
 
   bool IsEmpty(int slot) const
@@ -79,7 +79,14 @@ struct RayTile
   float TransmittanceLimit = 0;  ///< a ray ends when its transmittance is not above this
   std::int64_t ActiveRays = 0;   ///< rays with samples that have not ended
   std::int64_t SamplesTaken = 0; ///< since Open
-  bool PacketsFit = true;        ///< no ray steps further than LongestStep
+  bool PacketsFit = true;        ///< no ray steps further than LongestStep, in the finest cells
+
+  /// The brick that is being drawn has cells 2^BrickShift times as short as the index space that rays
+  /// are made in, and the box of it that is drawn counts in cells 2^CellShift times as short. Rays are
+  /// made for the largest cells, so that a position in smaller ones is the same bits, moved up:
+  /// all bricks agree on where a sample is.
+  int BrickShift = 0;
+  int CellShift = 0;
 
   /// First or last samples of rays, which stand for less than a whole interval.
   struct Ends

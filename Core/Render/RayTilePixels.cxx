@@ -38,7 +38,26 @@ RaySamples RayTile::RayOf(int slot) const
     ray.Start[axis] = static_cast<double>(ray.Base[axis]) / unit;
     ray.InverseStep[axis] = ray.Step[axis] != 0 ? this->Inverse[axis][slot] : 0.0;
   }
+  ray.CountInSmallerCells(this->BrickShift);
   return ray;
+}
+
+void RaySamples::CountInSmallerCells(int levels)
+{
+  if (levels == 0)
+  {
+    return;
+  }
+  const std::int64_t factor = std::int64_t{ 1 } << levels;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Base[axis] *= factor;
+    this->Step[axis] *= factor;
+    this->Start[axis] *= static_cast<double>(factor);
+    this->InverseStep[axis] /= static_cast<double>(factor);
+    this->Head.Position[axis] *= factor;
+    this->Tail.Position[axis] *= factor;
+  }
 }
 
 } // namespace banyan
