@@ -258,10 +258,15 @@ std::uint16_t OctreeFinder::NumberOfOrder(
   {
     const std::lock_guard<std::mutex> lock(this->OrdersMutex);
     std::vector<std::array<std::uint8_t, 8>>& orders = this->Tree.CornerOrders;
-    const auto found = std::find(orders.begin(), orders.end(), order);
-    memory.Number = static_cast<int>(found - orders.begin());
+    std::uint32_t bits = 0;
+    for (const std::uint8_t place : order)
+    {
+      bits = bits << 3 | place;
+    }
+    const auto found = this->NumberOfOrders.emplace(bits, static_cast<int>(orders.size()));
+    memory.Number = found.first->second;
     memory.Order = order;
-    if (found == orders.end())
+    if (found.second)
     {
       orders.push_back(order);
     }

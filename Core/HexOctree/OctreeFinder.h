@@ -6,6 +6,7 @@
 
 #include <mutex>
 #include <string>
+#include <unordered_map>
 
 namespace banyan
 {
@@ -39,6 +40,7 @@ private:
   ElementOctree& Tree;
   ThreadPool& Pool;
   std::mutex OrdersMutex;
+  std::unordered_map<std::uint32_t, int> NumberOfOrders; ///< by their bits
   std::vector<std::uint8_t> LevelOfCell;
 };
 

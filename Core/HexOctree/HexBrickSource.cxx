@@ -1,0 +1,208 @@
+#include "HexOctree/HexBrickSource.h"
+
+#include "Base/ThreadPool.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace banyan
+{
+
+HexBrickSource::HexBrickSource(
+  std::shared_ptr<const HexBricks> bricks, const NodeArray& values, ThreadPool& pool)
+  : Cut(std::move(bricks))
+  // The octree belongs to the bricks, which stay.
+  , Values(std::shared_ptr<const ElementOctree>(Cut, &Cut->Tree()), values, pool)
+{
+  this->Summarize(pool);
+}
+
+glm::ivec3 HexBrickSource::Bricks() const
+{
+  return { static_cast<int>(this->Cut->List().size()), 1, 1 };
+}
+
+/// Calls function(range, special) for the elements of a brick: the extremes of their corners, and
+/// whether one is not finite.
+template <class Function>
+void HexBrickSource::ForElements(std::int64_t number, const Function& function) const
+{
+  double corners[8];
+  const HexBrick& brick = this->Brick(number);
+  for (std::int64_t leaf = brick.FirstLeaf; leaf < brick.EndLeaf; ++leaf)
+  {
+    this->Values.CornersOf(leaf, corners);
+    ValueRange range;
+    bool special = false;
+    for (const double value : corners)
+    {
+      if (std::isfinite(value))
+      {
+        range.Include(value);
+      }
+      special = special || !std::isfinite(value);
+    }
+    function(range, special);
+  }
+}
+
+/// Ranges, then masks over the range of all.
+void HexBrickSource::Summarize(ThreadPool& pool)
+{
+  const auto count = static_cast<std::int64_t>(this->Cut->List().size());
+  this->Ranges.resize(Index(count));
+  this->Masks.resize(Index(count));
+  this->Special.resize(Index(count));
+  pool.ParallelFor(count,
+    [&](std::int64_t number)
+    {
+      ValueRange total;
+      bool some = false;
+      this->ForElements(number,
+        [&](const ValueRange& range, bool special)
+        {
+          total.Include(range);
+          some = some || special;
+        });
+      this->Ranges[Index(number)] = total;
+      this->Special[Index(number)] = some ? 1 : 0;
+    });
+  ValueRange all;
+  for (const ValueRange& range : this->Ranges)
+  {
+    all.Include(range);
+  }
+  this->Over = all.Empty() ? MaskRange{} : MaskRange{ all.Low, all.High };
+  pool.ParallelFor(count, [&](std::int64_t number) { this->MakeMask(number); });
+}
+
+void HexBrickSource::MakeMask(std::int64_t number)
+{
+  const auto maskOf = [this](const ValueRange& range)
+  {
+    return range.Empty() ? ValueMask{ 0 }
+                         : MaskOfBins(this->Over.BinOf(range.Low), this->Over.BinOf(range.High));
+  };
+  const ValueRange& total = this->Ranges[Index(number)];
+  ValueMask& mask = this->Masks[Index(number)];
+  mask = maskOf(total);
+  if (!total.Empty() && this->Over.BinOf(total.High) - this->Over.BinOf(total.Low) > 1)
+  {
+    mask = 0;
+    this->ForElements(number, [&](const ValueRange& range, bool) { mask |= maskOf(range); });
+  }
+}
+
+std::optional<UniformValue> HexBrickSource::UniformValueOf(std::int64_t brick) const
+{
+  const ValueRange& range = this->Ranges[Index(brick)];
+  if (range.Empty() || range.Low != range.High || this->Special[Index(brick)] != 0)
+  {
+    return std::nullopt;
+  }
+  return UniformValue{ range.Low, this->Values.Type() };
+}
+
+std::size_t HexBrickSource::LoadBytes(std::int64_t brick) const
+{
+  const Box cells = this->CellsOf(brick);
+  return static_cast<std::size_t>(Box{ cells.Lo, cells.Hi + 1 }.Count()) *
+         SizeOf(this->Values.Type());
+}
+
+BrickView HexBrickSource::Load(std::int64_t brick)
+{
+  const Box cells = this->CellsOf(brick);
+  return this->Sampled(this->Brick(brick), { cells.Lo, cells.Hi + 1 });
+}
+
+BrickView HexBrickSource::LoadAround(std::int64_t brick, Box& samples)
+{
+  const Box cells = this->CellsOf(brick);
+  samples = { cells.Lo - 1, cells.Hi + 2 };
+  return this->Sampled(this->Brick(brick), samples);
+}
+
+BrickView HexBrickSource::Sampled(const HexBrick& brick, const Box& samples) const
+{
+  const auto bytes = std::make_shared<std::vector<double>>(
+    (static_cast<std::size_t>(samples.Count()) * SizeOf(this->Values.Type()) + sizeof(double) - 1) /
+    sizeof(double));
+  const auto fill = [&](auto* out)
+  {
+    this->FillAround(brick, samples, out);
+    for (std::int64_t leaf = brick.FirstLeaf; leaf < brick.EndLeaf; ++leaf)
+    {
+      this->FillLeaf(brick, leaf, samples, out);
+    }
+  };
+  if (this->Values.Type() == ScalarType::Float32)
+  {
+    fill(reinterpret_cast<float*>(bytes->data()));
+  }
+  else
+  {
+    fill(bytes->data());
+  }
+  BrickView view;
+  view.Values = bytes->data();
+  view.Type = this->Values.Type();
+  view.Stride[1] = samples.Size().x;
+  view.Stride[2] = std::ptrdiff_t{ samples.Size().x } * samples.Size().y;
+  view.Owner = std::shared_ptr<const void>(bytes, bytes->data());
+  return view;
+}
+
+/// The samples that an element of the brick touches.
+template <class Out>
+void HexBrickSource::FillLeaf(
+  const HexBrick& brick, std::int64_t leaf, const Box& samples, Out* out) const
+{
+  const ElementOctree& tree = this->Values.Tree();
+  double corners[8];
+  this->Values.CornersOf(leaf, corners);
+  const int edge = 1 << (tree.LevelOfLeaf(leaf) - brick.Level);
+  const glm::ivec3 first = tree.CornerOfLeaf(leaf) / (1 << brick.Level) - samples.Lo;
+  const glm::ivec3 size = samples.Size();
+  for (int z = 0; z <= edge; ++z)
+  {
+    for (int y = 0; y <= edge; ++y)
+    {
+      Out* const row =
+        out + (static_cast<std::ptrdiff_t>(first.z + z) * size.y + first.y + y) * size.x + first.x;
+      for (int x = 0; x <= edge; ++x)
+      {
+        row[x] = static_cast<Out>(
+          edge == 1 ? corners[x + 2 * y + 4 * z]
+                    : NodalField::Interpolate(corners, glm::dvec3(x, y, z) / double(edge)));
+      }
+    }
+  }
+}
+
+/// The samples outside of the brick; NaN where there is no element.
+template <class Out>
+void HexBrickSource::FillAround(const HexBrick& brick, const Box& samples, Out* out) const
+{
+  const Box own{ brick.Cells.Lo, brick.Cells.Hi + 1 };
+  if (own == samples)
+  {
+    return;
+  }
+  for (int z = samples.Lo.z; z < samples.Hi.z; ++z)
+  {
+    for (int y = samples.Lo.y; y < samples.Hi.y; ++y)
+    {
+      for (int x = samples.Lo.x; x < samples.Hi.x; ++x, ++out)
+      {
+        const glm::ivec3 at(x, y, z);
+        if (!own.Contains(at))
+        {
+          *out = static_cast<Out>(this->Values.AtPoint(at * (1 << brick.Level)));
+        }
+      }
+    }
+  }
+}
+
+} // namespace banyan

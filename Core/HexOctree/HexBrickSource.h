@@ -1,0 +1,70 @@
+#ifndef banyan_HexOctree_HexBrickSource_h
+#define banyan_HexOctree_HexBrickSource_h
+
+#include "HexOctree/HexBricks.h"
+#include "HexOctree/NodalField.h"
+#include "Render/BrickSource.h"
+
+#include <vector>
+
+namespace banyan
+{
+
+class ThreadPool;
+
+/// Bricks of a hexahedral mesh that never was encoded, each on the lattice of its own smallest
+/// element: sampling loses nothing, since a trilinear interpolant between samples is that of the
+/// element. Bricks meet without a crack, since the field is continuous (see NodalField).
+///
+/// Index space is the lattice of the mesh's octree: DomainCells are its Domain(), and IndexToWorld
+/// its LatticeToWorld().
+class HexBrickSource : public BrickSource
+{
+public:
+  /// New values of the same mesh need a new source on the same bricks, and nothing else.
+  HexBrickSource(
+    std::shared_ptr<const HexBricks> bricks, const NodeArray& values, ThreadPool& pool);
+
+  glm::ivec3 Bricks() const override;
+  Box CellsOf(std::int64_t brick) const override { return this->Brick(brick).Cells; }
+  int BrickLevel(std::int64_t brick) const override { return this->Brick(brick).Level; }
+  int CoarsestBrickLevel() const override { return this->Cut->CoarsestLevel(); }
+  std::vector<std::int64_t> RanksFrontToBack(const Viewpoint& view) const override
+  {
+    return this->Cut->RanksFrontToBack(view);
+  }
+  ValueRange RangeOf(std::int64_t brick) const override { return this->Ranges[Index(brick)]; }
+  ValueMask MaskOf(std::int64_t brick) const override { return this->Masks[Index(brick)]; }
+  MaskRange MasksAreOver() const override { return this->Over; }
+  std::optional<UniformValue> UniformValueOf(std::int64_t brick) const override;
+  std::size_t LoadBytes(std::int64_t brick) const override;
+  BrickView Load(std::int64_t brick) override;
+  BrickView LoadAround(std::int64_t brick, Box& samples) override;
+
+  const NodalField& Field() const { return this->Values; }
+
+private:
+  static std::size_t Index(std::int64_t i) { return static_cast<std::size_t>(i); }
+  const HexBrick& Brick(std::int64_t i) const { return this->Cut->List()[Index(i)]; }
+
+  template <class Function>
+  void ForElements(std::int64_t number, const Function& function) const;
+  void Summarize(ThreadPool& pool);
+  void MakeMask(std::int64_t number);
+  template <class Out>
+  void FillLeaf(const HexBrick& brick, std::int64_t leaf, const Box& samples, Out* out) const;
+  template <class Out>
+  void FillAround(const HexBrick& brick, const Box& samples, Out* out) const;
+  BrickView Sampled(const HexBrick& brick, const Box& samples) const;
+
+  std::shared_ptr<const HexBricks> Cut;
+  NodalField Values;
+  std::vector<ValueRange> Ranges;
+  std::vector<ValueMask> Masks;
+  std::vector<std::uint8_t> Special; ///< whether a corner of an element is not finite
+  MaskRange Over;
+};
+
+} // namespace banyan
+
+#endif

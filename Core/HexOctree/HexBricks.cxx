@@ -1,0 +1,124 @@
+#include "HexOctree/HexBricks.h"
+
+#include <algorithm>
+
+namespace banyan
+{
+
+HexBricks::HexBricks(std::shared_ptr<const ElementOctree> tree, int edge)
+  : Octree(std::move(tree))
+  , EdgeLevel(0)
+{
+  if (edge < 1 || (edge & (edge - 1)) != 0)
+  {
+    throw Error("The cells per axis of a brick must be a power of two");
+  }
+  while (1 << this->EdgeLevel < edge)
+  {
+    ++this->EdgeLevel;
+  }
+  const glm::ivec3 end = this->Octree->Domain().Hi;
+  while (1 << this->RootLevel < std::max({ end.x, end.y, end.z }))
+  {
+    ++this->RootLevel;
+  }
+  this->Cut({ 0, this->RootLevel, 0, this->Octree->LeafCount() });
+  for (const HexBrick& brick : this->Bricks)
+  {
+    this->Coarsest = std::max(this->Coarsest, brick.Level);
+  }
+}
+
+void HexBricks::Cut(const Cube& cube)
+{
+  if (cube.FirstLeaf == cube.EndLeaf || this->TakeWhole(cube))
+  {
+    return;
+  }
+  const int level = cube.Level - 1;
+  Cube part{ cube.Key, level, cube.FirstLeaf, cube.FirstLeaf };
+  for (int child = 0; child < 8; ++child)
+  {
+    part.FirstLeaf = part.EndLeaf;
+    part.EndLeaf = child == 7 ? cube.EndLeaf : this->Octree->LeafFrom(part.Key + CubeKeys(level));
+    this->Cut(part);
+    part.Key += CubeKeys(level);
+  }
+}
+
+/// @return false when the cube has to be cut
+bool HexBricks::TakeWhole(const Cube& cube)
+{
+  HexBrick brick{ cube.Level, {}, cube.FirstLeaf, cube.EndLeaf };
+  const int lowest = cube.Level - this->EdgeLevel;
+  Box box;
+  std::int64_t filled = 0;
+  for (std::int64_t leaf = cube.FirstLeaf; leaf < cube.EndLeaf; ++leaf)
+  {
+    const int level = this->Octree->LevelOfLeaf(leaf);
+    if (level < lowest)
+    {
+      return false;
+    }
+    const glm::ivec3 corner = this->Octree->CornerOfLeaf(leaf);
+    box = Union(box, Box{ corner, corner + (1 << level) });
+    filled += static_cast<std::int64_t>(CubeKeys(level));
+    brick.Level = std::min(brick.Level, level);
+  }
+  if (filled != box.Count())
+  {
+    return false;
+  }
+  const int size = 1 << brick.Level;
+  brick.Cells = { box.Lo / size, box.Hi / size };
+  this->Bricks.push_back(brick);
+  return true;
+}
+
+std::vector<std::int64_t> HexBricks::RanksFrontToBack(const Viewpoint& view) const
+{
+  std::vector<std::int64_t> ranks(this->Bricks.size());
+  std::int64_t next = 0;
+  this->Rank(view, 0, this->RootLevel, 0, this->Bricks.size(), next, ranks);
+  return ranks;
+}
+
+/// @param first, end bricks inside the cube
+void HexBricks::Rank(const Viewpoint& view, MortonKey key, int level, std::size_t first,
+  std::size_t end, std::int64_t& next, std::vector<std::int64_t>& ranks) const
+{
+  if (end - first <= 1)
+  {
+    for (; first < end; ++first)
+    {
+      ranks[first] = next++;
+    }
+    return;
+  }
+  // The octant that the viewer looks from, and from there on as many steps away as bits differ.
+  const glm::dvec3 middle(PositionOfKey(key) + (1 << (level - 1)));
+  unsigned nearest = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const bool high = view.Parallel ? view.Direction[axis] < 0.0 : view.Eye[axis] >= middle[axis];
+    nearest |= high ? 1u << axis : 0u;
+  }
+  const MortonKey keys = CubeKeys(level - 1);
+  std::size_t begins[9] = { first, 0, 0, 0, 0, 0, 0, 0, end };
+  for (unsigned child = 1; child < 8; ++child)
+  {
+    const MortonKey from = key + child * keys;
+    begins[child] = static_cast<std::size_t>(
+      std::partition_point(this->Bricks.begin() + static_cast<std::ptrdiff_t>(first),
+        this->Bricks.begin() + static_cast<std::ptrdiff_t>(end),
+        [&](const HexBrick& brick) { return this->Octree->KeyOfLeaf(brick.FirstLeaf) < from; }) -
+      this->Bricks.begin());
+  }
+  for (unsigned steps = 0; steps < 8; ++steps)
+  {
+    const unsigned child = nearest ^ steps;
+    this->Rank(view, key + child * keys, level - 1, begins[child], begins[child + 1], next, ranks);
+  }
+}
+
+} // namespace banyan

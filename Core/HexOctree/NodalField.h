@@ -1,0 +1,76 @@
+#ifndef banyan_HexOctree_NodalField_h
+#define banyan_HexOctree_NodalField_h
+
+#include "HexOctree/ElementOctree.h"
+
+#include <glm/vec3.hpp>
+
+#include <vector>
+
+namespace banyan
+{
+
+class ThreadPool;
+
+/// Values at the points of a mesh.
+struct NodeArray
+{
+  static constexpr int Magnitude = -1;
+
+  const void* Values = nullptr; ///< `[point][component]`
+  ScalarType Type = ScalarType::Float32;
+  int Components = 1;
+  int Component = 0; ///< in [0, Components), or Magnitude: the Euclidean length of all
+};
+
+/// A field that is trilinear in each element and continuous everywhere: points that hang take the
+/// value that the largest element around has there, whatever the array says, and of points at one
+/// place the first one counts.
+///
+/// Exact in the corners of elements; in between within rounding of double precision.
+class NodalField
+{
+public:
+  /// Copies the values (4 bytes per point, 8 for types that float32 cannot hold), which is all that
+  /// new values take: the octree stays as it is.
+  /// Throws Error when the array has no such component.
+  NodalField(std::shared_ptr<const ElementOctree> tree, const NodeArray& array, ThreadPool& pool);
+
+  const ElementOctree& Tree() const { return *this->Octree; }
+
+  /// Float32, or Float64 where float32 cannot hold the values.
+  ScalarType Type() const
+  {
+    return this->Floats.empty() ? ScalarType::Float64 : ScalarType::Float32;
+  }
+
+  double AtNode(std::int64_t node) const
+  {
+    const auto i = static_cast<std::size_t>(node);
+    return this->Floats.empty() ? this->Doubles[i] : double{ this->Floats[i] };
+  }
+
+  /// At the eight corners of a leaf, x fastest.
+  void CornersOf(std::int64_t leaf, double (&values)[8]) const;
+
+  /// The trilinear interpolant of eight corners.
+  /// @param part from 0 to 1 along each axis
+  static double Interpolate(const double (&corners)[8], const glm::dvec3& part);
+
+  /// At a point of the lattice; NaN where no element touches it.
+  double AtPoint(const glm::ivec3& point) const;
+
+private:
+  template <class Out>
+  void Take(const NodeArray& array, std::vector<Out>& values, ThreadPool& pool);
+  template <class Out>
+  void Constrain(std::vector<Out>& values);
+
+  std::shared_ptr<const ElementOctree> Octree;
+  std::vector<float> Floats;
+  std::vector<double> Doubles;
+};
+
+} // namespace banyan
+
+#endif
