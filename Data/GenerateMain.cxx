@@ -1,5 +1,7 @@
 #include "GenerateOptions.h"
 #include "ImageSeriesWriter.h"
+#include "MeshSeriesWriter.h"
+#include "OctreeMesh.h"
 #include "RawSeriesWriter.h"
 #include "SeriesCatalog.h"
 
@@ -9,17 +11,71 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <memory>
 #include <new>
 #include <optional>
 
 namespace
 {
 
+void GenerateMesh(
+  const banyan::GenerateOptions& options, const banyan::SeriesKind& kind, banyan::ThreadPool& pool)
+{
+  const banyan::Timer timer;
+  std::unique_ptr<banyan::MeshSeriesWriter> writer;
+  std::optional<banyan::RawSeriesWriter> raw;
+  if (!options.Raw.empty())
+  {
+    raw.emplace(options.Raw);
+  }
+  int done = 0;
+  kind.GenerateMesh(options, pool,
+    [&](const banyan::MeshStep& step)
+    {
+      const banyan::OctreeMesh& mesh = step.Mesh;
+      if (done == 0)
+      {
+        std::fprintf(stderr, "%zu cells, %zu nodes, of which %zu hang, %.1f s\n%s\n",
+          mesh.CellCount(), mesh.NodeCount(), mesh.Hanging().size(), timer.Seconds(),
+          step.About.c_str());
+        if (!options.Output.empty())
+        {
+          writer = options.Format == "vtu"
+                     ? banyan::MakeVtuWriter(options.Output, kind.FileName, mesh, options.Voxels)
+                     : banyan::MakeExodusWriter(options.Output, kind.FileName, mesh);
+        }
+      }
+      if (writer)
+      {
+        writer->AddStep(step.Time, step.Arrays);
+      }
+      if (raw)
+      {
+        raw->AddStep(*step.Arrays.at(0).Values);
+      }
+      std::fprintf(stderr, "step %d of %d, time %.3f, %.1f s\n", ++done, options.Steps, step.Time,
+        timer.Seconds());
+      if (done == options.Steps && writer)
+      {
+        writer->Finish();
+      }
+    });
+  if (raw)
+  {
+    raw->Finish();
+  }
+}
+
 void Generate(const banyan::GenerateOptions& options)
 {
   const banyan::SeriesKind& kind = banyan::FindSeriesKind(options.Series);
   banyan::ThreadPool pool(
     options.Threads > 0 ? options.Threads : banyan::ThreadPool::DefaultWidth());
+  if (kind.GenerateMesh)
+  {
+    GenerateMesh(options, kind, pool);
+    return;
+  }
   if (options.Output.empty() && kind.GenerateSlabs)
   {
     banyan::RawSeriesWriter raw(options.Raw);

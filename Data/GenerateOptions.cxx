@@ -69,12 +69,47 @@ void CheckArrays(const std::vector<std::string>& names, const SeriesKind& kind)
   }
 }
 
+/// As below, for what series on meshes have and others have not.
+void CompleteMesh(GenerateOptions& options, const SeriesKind& kind)
+{
+  if (!kind.GenerateMesh)
+  {
+    if (options.Cells > 0 || options.Slowest > 0.0 || !options.Format.empty() || options.Voxels)
+    {
+      throw Error(
+        "Options --cells, --slowest, --format and --voxels are for the series on meshes; " +
+        kind.Name + " takes --size.");
+    }
+    return;
+  }
+  if (options.Size > 0)
+  {
+    throw Error("Option --size is for images; the series " + kind.Name + " takes --cells.");
+  }
+  options.Cells = options.Cells > 0 ? options.Cells : kind.DefaultCells;
+  options.Slowest = options.Slowest > 0.0 ? options.Slowest : 500.0;
+  options.Format = options.Format.empty() ? options.Voxels ? "vtu" : "exodus" : options.Format;
+  if (options.Format != "exodus" && options.Format != "vtu")
+  {
+    throw Error("Option --format takes exodus or vtu, not \"" + options.Format + "\".");
+  }
+  if (options.Voxels && options.Format != "vtu")
+  {
+    throw Error("Option --voxels needs --format vtu: Exodus has no voxels.");
+  }
+  if (options.Arrays.empty())
+  {
+    options.Arrays = kind.Arrays;
+  }
+}
+
 /// Sets what the arguments left out, and checks what only makes sense together.
 void Complete(GenerateOptions& options)
 {
   const SeriesKind& kind =
     FindSeriesKind(options.Series.empty() ? SeriesCatalog().at(0).Name : options.Series);
   options.Series = kind.Name;
+  CompleteMesh(options, kind);
   options.Size = options.Size > 0 ? options.Size : kind.DefaultSize;
   options.Steps = options.Steps > 0 ? options.Steps : kind.DefaultSteps;
   options.Duration = options.Duration >= 0.0 ? options.Duration : kind.DefaultDuration;
@@ -131,6 +166,14 @@ GenerateOptions ParseGenerateOptions(const std::vector<std::string>& arguments)
       options.Threads = ParseNumber(option, value(), 0, 1024);
     else if (option == "--duration")
       options.Duration = ParseNumber(option, value(), 0.0, 1000.0);
+    else if (option == "--cells")
+      options.Cells = ParseNumber<std::int64_t>(option, value(), 1000, 200000000);
+    else if (option == "--slowest")
+      options.Slowest = ParseNumber(option, value(), 100.0, 1500.0);
+    else if (option == "--format")
+      options.Format = value();
+    else if (option == "--voxels")
+      options.Voxels = true;
     else if (option == "--arrays")
       options.Arrays = ParseNames(value());
     else
@@ -159,13 +202,22 @@ std::string GenerateHelp()
        "  --arrays A,B     which arrays; the first is the one to colour by\n"
        "  --seed N         chance's share; equal seeds give equal bytes (default 1)\n"
        "  --threads N      0 uses all processors (default 0)\n"
+       "  --cells N        of a series on a mesh, instead of --size: about so many, 1000 to 2e8\n"
+       "  --format NAME    of a series on a mesh: exodus (default; one .exo file with the mesh "
+       "once)\n"
+       "                   or vtu (.vtu files with a .vtu.series file, the mesh in each)\n"
+       "  --voxels         cells of .vtu files are VTK_VOXEL instead of VTK_HEXAHEDRON\n"
+       "  --slowest V      speed of S waves in the softest sediments, m/s, 100 to 1500 (default "
+       "500)\n"
        "  --help           this text\n"
        "\n"
        "The series, with their defaults and arrays (the first alone, unless told):\n";
   for (const SeriesKind& kind : SeriesCatalog())
   {
-    text << "\n  " << kind.Name << ": " << kind.Description << "\n      --size " << kind.DefaultSize
-         << " --steps " << kind.DefaultSteps << " --duration " << kind.DefaultDuration
+    text << "\n  " << kind.Name << ": " << kind.Description << "\n      "
+         << (kind.GenerateMesh ? "--cells " : "--size ")
+         << (kind.GenerateMesh ? kind.DefaultCells : kind.DefaultSize) << " --steps "
+         << kind.DefaultSteps << " --duration " << kind.DefaultDuration
          << "; arrays: " << Joined(kind.Arrays) << "\n";
   }
   return text.str();

@@ -20,6 +20,10 @@ struct GenerateOptions
   std::uint64_t Seed = 1;
   int Threads = 0;
   double Duration = -1.0;
+  std::int64_t Cells = 0; ///< of a mesh, about; 0 for series on images
+  double Slowest = 0.0;   ///< S waves in the softest sediments, m/s
+  std::string Format;     ///< of series on meshes: "exodus" or "vtu"
+  bool Voxels = false;    ///< cells of .vtu files are VTK_VOXEL
   std::vector<std::string> Arrays;
   bool Help = false;
 };

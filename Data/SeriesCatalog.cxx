@@ -1,6 +1,7 @@
 #include "SeriesCatalog.h"
 
 #include "ConvectionSeries.h"
+#include "EarthquakeSeries.h"
 #include "HotBlobsSeries.h"
 #include "JetSeries.h"
 #include "StandardSeries.h"
@@ -23,6 +24,7 @@ const std::vector<SeriesKind>& SeriesCatalog()
     WaveSeries(),
     ClippedWaveSeries(),
     StandardSeries(),
+    EarthquakeSeries(),
   };
   return kinds;
 }

@@ -3,6 +3,7 @@
 
 #include "GenerateOptions.h"
 #include "ImageSeriesWriter.h"
+#include "MeshSeriesWriter.h"
 
 #include <functional>
 #include <string>
@@ -20,13 +21,25 @@ using SeriesSink = std::function<void(double time, const std::vector<ImageArray>
 /// Takes a series piece by piece: whole slices of the first array, in order of memory and time.
 using SlabSink = std::function<void(const std::vector<float>& values)>;
 
+/// A step of a series on a mesh, which is the same each time.
+struct MeshStep
+{
+  const OctreeMesh& Mesh;
+  double Time;
+  std::vector<NodeArray> Arrays; ///< those that the options name, in that order
+  std::string About;             ///< a line on what the mesh can carry
+};
+
+/// Takes the steps of a series on a mesh in order of time.
+using MeshSeriesSink = std::function<void(const MeshStep& step)>;
+
 /// One kind of series that banyan-generate can make.
 struct SeriesKind
 {
   std::string Name;        ///< as `--series` takes it
   std::string FileName;    ///< start of the names of the files
   std::string Description; ///< one line for the help text
-  /// What `--arrays` may name; the first is the default.
+  /// What `--arrays` may name; the first is the default, on a mesh all of them.
   std::vector<std::string> Arrays;
   int DefaultSize = 128;
   int DefaultSteps = 50;
@@ -42,6 +55,11 @@ struct SeriesKind
   /// that fit no memory.
   std::function<void(const GenerateOptions& options, ThreadPool& pool, const SlabSink& sink)>
     GenerateSlabs;
+  /// Not empty for a series on a mesh, which has `--cells` instead of a size; `Generate` is empty
+  /// then, and this makes the series as that does.
+  std::function<void(const GenerateOptions& options, ThreadPool& pool, const MeshSeriesSink& sink)>
+    GenerateMesh;
+  std::int64_t DefaultCells = 0; ///< on a mesh
 };
 
 /// All kinds; the first is the one made when `--series` is not given. To add one, write a function

@@ -1,4 +1,5 @@
 // The parts of banyan-generate around the physics, and the program itself.
+#include "GenerateFixture.h"
 #include "GenerateOptions.h"
 #include "HotBlobs.h"
 #include "ImageSeriesWriter.h"
@@ -12,48 +13,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <random>
 #include <set>
-#include <sstream>
 
 namespace fs = std::filesystem;
 
 namespace
 {
-
-/// A folder of its own for each test, removed afterwards.
-class Generate : public testing::Test
-{
-protected:
-  void SetUp() override
-  {
-    std::string pattern = (fs::temp_directory_path() / "banyan-generate-XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    this->Folder = pattern;
-  }
-  void TearDown() override { fs::remove_all(this->Folder); }
-
-  /// Runs the program and returns whether it succeeded.
-  bool Run(const std::string& arguments) const
-  {
-    const std::string command = std::string("\"") + BANYAN_GENERATE + "\" " + arguments + " 2>\"" +
-                                (this->Folder / "messages").string() + "\"";
-    return std::system(command.c_str()) == 0;
-  }
-  std::string Messages() const { return this->Text("messages"); }
-  std::string Text(const fs::path& name) const
-  {
-    std::ifstream file(this->Folder / name, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-  }
-
-  fs::path Folder;
-};
 
 std::string Base64(const std::string& bytes)
 {
@@ -193,6 +159,11 @@ TEST_F(Generate, EverySeriesInTheCatalogueKeepsItsWord)
     EXPECT_TRUE(names.insert(kind.Name).second) << kind.Name;
     EXPECT_TRUE(files.insert(kind.FileName).second) << kind.FileName;
     EXPECT_NE(banyan::GenerateHelp().find(kind.Description), std::string::npos) << kind.Name;
+    if (kind.GenerateMesh)
+    {
+      EXPECT_FALSE(kind.Generate) << kind.Name;
+      continue; // TestEarthquake
+    }
     auto options = banyan::ParseGenerateOptions(
       { "--output", "o", "--series", kind.Name, "--size", "16", "--steps", "3", "--seed", "4" });
     EXPECT_EQ(options.Duration, kind.DefaultDuration);

@@ -245,7 +245,7 @@ TEST(HexWave, ABorderBetweenSizesOfCellsReflectsLittle)
     }
   }
   const double reflected = Misfit(same, traces[0]);
-  EXPECT_LT(reflected, 0.03);
+  EXPECT_LT(reflected, 0.005);
   EXPECT_GT(reflected, 0.0);
 }
 
