@@ -35,24 +35,42 @@ Box BrickCosts::BricksUnder(const Box& positions) const
                         : Box{ inside.Lo / this->Edge, (inside.Hi + this->Edge - 1) / this->Edge };
 }
 
-void BrickCosts::Add(const Box& positions, double value)
+void BrickCosts::Add(const Box& positions, double value, const BrickCosts* weights)
 {
   const Box inside = Intersection(positions, { glm::ivec3(0), this->Positions });
   const Box bricks = this->BricksUnder(inside);
-  const double perPosition = bricks.Empty() ? 0.0 : value / static_cast<double>(inside.Count());
-  for (int z = bricks.Lo.z; z < bricks.Hi.z; ++z)
+  const auto forBricks = [&](auto&& function)
   {
-    for (int y = bricks.Lo.y; y < bricks.Hi.y; ++y)
+    for (int z = bricks.Lo.z; z < bricks.Hi.z; ++z)
     {
-      for (int x = bricks.Lo.x; x < bricks.Hi.x; ++x)
+      for (int y = bricks.Lo.y; y < bricks.Hi.y; ++y)
       {
-        const glm::ivec3 low = glm::ivec3(x, y, z) * this->Edge;
-        const Box part = Intersection({ low, low + this->Edge }, inside);
-        this->Values[this->NumberAt({ x, y, z })] +=
-          perPosition * static_cast<double>(part.Count());
+        for (int x = bricks.Lo.x; x < bricks.Hi.x; ++x)
+        {
+          const glm::ivec3 low = glm::ivec3(x, y, z) * this->Edge;
+          const Box whole =
+            Intersection({ low, low + this->Edge }, { glm::ivec3(0), this->Positions });
+          const Box part = Intersection(whole, inside);
+          function(this->NumberAt({ x, y, z }), static_cast<double>(part.Count()),
+            static_cast<double>(whole.Count()));
+        }
       }
     }
+  };
+  double sum = 0.0;
+  if (weights)
+  {
+    forBricks([&](std::size_t number, double part, double whole)
+      { sum += weights->Values[number] * part / whole; });
   }
+  const bool weighted = sum > 0.0;
+  sum = weighted ? sum : static_cast<double>(inside.Count());
+  forBricks(
+    [&](std::size_t number, double part, double whole)
+    {
+      const double weight = weighted ? weights->Values[number] * part / whole : part;
+      this->Values[number] += value * weight / sum;
+    });
 }
 
 CostSums::CostSums(const BrickCosts& costs)

@@ -3,6 +3,7 @@
 
 #include "Base/Box.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace banyan
@@ -31,7 +32,9 @@ struct BrickCosts
   /// Bricks with a part in a box of positions.
   Box BricksUnder(const Box& positions) const;
   /// Adds a number to the bricks under a box of positions, in proportion to what it has of each.
-  void Add(const Box& positions, double value);
+  /// @param weights of the same bricks: in proportion to what it has of these instead, unless they
+  ///        are all 0
+  void Add(const Box& positions, double value, const BrickCosts* weights = nullptr);
 };
 
 /// Sums of costs over boxes of positions, each in constant time: a summed-volume table, in which

@@ -79,6 +79,7 @@ void LevelCaster::MakeTiles()
     this->Tiles[i].Done = this->Tiles[i].Sampling == nullptr;
   }
   this->Scratch.resize(static_cast<std::size_t>(this->Pool.Width()));
+  this->Meters.resize(this->Scratch.size());
 }
 
 /// Calls function(tile, rect) for the tiles under a footprint that have rays left.
@@ -191,18 +192,41 @@ void LevelCaster::DrawBatch()
   this->Statistics.BricksUniform += uniform;
   this->Statistics.BricksDrawn += static_cast<std::int64_t>(this->Batch.size()) - uniform;
 
+  for (BatchMeter& meter : this->Meters)
+  {
+    meter.Reset(this->Scene.Work ? this->Batch.size() : 0);
+  }
+  const double began = this->Scene.Work ? this->Scene.Work->Clock() : 0.0;
   std::atomic<std::int64_t> samples{ 0 };
   const std::function<void(std::int64_t, int)> draw = [&](std::int64_t number, int worker)
   {
     const auto tile = static_cast<std::size_t>(number);
     if (!this->Tiles[tile].Bricks.empty())
     {
-      samples += this->DrawTile(tile, this->Scratch[static_cast<std::size_t>(worker)]);
+      const auto mine = static_cast<std::size_t>(worker);
+      samples += this->DrawTile(tile, this->Scratch[mine], this->Meters[mine]);
     }
   };
   this->Pool.ParallelFor(static_cast<std::int64_t>(this->Tiles.size()), draw);
   this->Statistics.SamplesTaken += samples;
+  this->RecordWork(began);
   this->Loaded.clear();
+}
+
+/// @param began when drawing the batch did
+void LevelCaster::RecordWork(double began)
+{
+  if (!this->Scene.Work)
+  {
+    return;
+  }
+  this->Scene.Work->DrawSeconds += this->Scene.Work->Clock() - began;
+  std::vector<Box> cells;
+  for (const PlannedBrick* brick : this->Batch)
+  {
+    cells.push_back(brick->Drawn);
+  }
+  AddBatch(*this->Scene.Work, this->Meters, cells, this->Source.Level(), this->Scene.DomainCells);
 }
 
 void LevelCaster::Load(const PlannedBrick& brick, LoadedBrick& loaded) const
@@ -269,12 +293,16 @@ BrickView LevelCaster::LoadLarge(const PlannedBrick& brick) const
 }
 
 /// @return samples taken
-std::int64_t LevelCaster::DrawTile(std::size_t number, RayTile& rays)
+std::int64_t LevelCaster::DrawTile(std::size_t number, RayTile& rays, BatchMeter& meter)
 {
   Tile& tile = this->Tiles[number];
   rays.Open(
     tile.Sampling->Lattice, this->Grid.RectOf(number), *this->Picture, this->TransmittanceLimit());
   rays.CellShift = this->Source.CoarsestBrickLevel();
+  if (meter.IsOn())
+  {
+    meter.Start();
+  }
   for (const int position : tile.Bricks)
   {
     if (rays.ActiveRays == 0)
@@ -283,8 +311,18 @@ std::int64_t LevelCaster::DrawTile(std::size_t number, RayTile& rays)
     }
     const PlannedBrick& brick = *this->Batch[static_cast<std::size_t>(position)];
     rays.BrickShift = rays.CellShift - brick.Level;
-    this->DrawBrick(brick,
-      this->Loaded[static_cast<std::size_t>(position)], *tile.Sampling, rays);
+    const LoadedBrick& loaded = this->Loaded[static_cast<std::size_t>(position)];
+    this->DrawBrick(brick, loaded, *tile.Sampling, rays);
+    if (meter.IsOn())
+    {
+      const PixelRect& drawn = loaded.Packed ? loaded.Footprint : brick.Footprint;
+      meter.Lap(
+        position, rays.SamplesTaken, Intersection(drawn, this->Grid.RectOf(number)).Count());
+    }
+  }
+  if (meter.IsOn())
+  {
+    meter.Finish(this->Grid.RectOf(number).Count());
   }
   rays.Close(*this->Picture);
   tile.Done = rays.ActiveRays == 0;

@@ -2,6 +2,7 @@
 #define banyan_Render_LevelCaster_h
 
 #include "Render/BrickProjector.h"
+#include "Render/BrickWork.h"
 #include "Render/RayCaster.h"
 #include "Render/RayLattice.h"
 #include "Render/TileGrid.h"
@@ -71,8 +72,8 @@ private:
   struct Tile
   {
     const Sampled* Sampling = nullptr; ///< null for tiles of other levels
-    bool Done = false;       ///< no ray of the tile needs another brick
-    std::vector<int> Bricks; ///< positions in the batch, front to back
+    bool Done = false;                 ///< no ray of the tile needs another brick
+    std::vector<int> Bricks;           ///< positions in the batch, front to back
   };
 
   void AddSamplings();
@@ -94,7 +95,8 @@ private:
   KeptBricks::Pointer Pack(const PlannedBrick& brick) const;
   float GradientScale() const;
   BrickView LoadLarge(const PlannedBrick& brick) const;
-  std::int64_t DrawTile(std::size_t number, RayTile& rays);
+  std::int64_t DrawTile(std::size_t number, RayTile& rays, BatchMeter& meter);
+  void RecordWork(double began);
   void DrawBrick(const PlannedBrick& brick, const LoadedBrick& loaded, const Sampled& sampling,
     RayTile& rays) const;
   void ProjectPackedBrick(const PlannedBrick& brick, const PackedBrick& packed,
@@ -120,8 +122,9 @@ private:
   std::vector<PlannedBrick> Bricks;
   FloatImage* Picture = nullptr;
   TileGrid Grid;
-  std::vector<Tile> Tiles; ///< of the grid
-  std::vector<RayTile> Scratch; ///< one per worker
+  std::vector<Tile> Tiles;        ///< of the grid
+  std::vector<RayTile> Scratch;   ///< one per worker
+  std::vector<BatchMeter> Meters; ///< one per worker
   std::vector<const PlannedBrick*> Batch;
   std::vector<LoadedBrick> Loaded; ///< of the batch
 };

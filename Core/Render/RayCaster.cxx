@@ -43,11 +43,11 @@ BrickSource& SourceAt(BrickSource& source, int level, const RayScene& scene)
   return *found;
 }
 
-/// Cells of a level that have a part in cells of the finest one.
+/// Cells of a level that begin in cells of the finest one: of disjoint boxes they are disjoint.
 Box CellsAtLevel(const Box& cells, int level)
 {
   const int edge = 1 << level;
-  return { cells.Lo / edge, (cells.Hi + edge - 1) / edge };
+  return { (cells.Lo + edge - 1) / edge, (cells.Hi + edge - 1) / edge };
 }
 
 } // namespace

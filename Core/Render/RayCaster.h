@@ -20,6 +20,7 @@
 namespace banyan
 {
 
+struct BrickWork;
 class ThreadPool;
 
 /// Light from the viewer, along each ray. With c = |normal . ray|, the colour of a sample becomes
@@ -58,6 +59,8 @@ struct RayScene
   std::shared_ptr<const TileSamplings> Samplings{};
   /// Whether the picture only helps to make another one: packed bricks are kept for that one.
   bool Pilot = false;
+  /// Where the ray caster adds what bricks took to draw; null for nowhere. No part of the picture.
+  BrickWork* Work = nullptr;
 };
 
 struct RayStatistics

@@ -1,0 +1,122 @@
+#ifndef banyan_Parallel_LoadBalancer_h
+#define banyan_Parallel_LoadBalancer_h
+
+#include "Parallel/Rebalance.h"
+
+#include <array>
+#include <vector>
+
+namespace banyan
+{
+
+/// What one rank took for a frame.
+struct RankWork
+{
+  double Seconds = 0; ///< in which it cast rays
+  double Work = 0;    ///< that it did in them: the same on a slow rank as on a quick one
+};
+
+/// An edge of blocks that are few enough to be looked at in each frame: a power of two, at least 8.
+int BlockEdgeFor(const glm::ivec3& positions);
+
+/// Moves the planes of a zone tree from frame to frame. Depends on what it is told and on nothing
+/// else, so that all ranks that are told the same have the same tree.
+///
+/// *Measured cost* expects costs of blocks in three ways, and goes by the one that has lately been
+/// right about the ranks' work:
+/// - work in proportion to what is seen (ViewCosts), as of the last two frames that saw a block;
+///   blocks that were never seen are expected to cost what others do for as much,
+/// - the work of the last two frames,
+/// - the average of many frames.
+/// Speeds of ranks are smoothed. Where moving planes was a mistake, again and again, it waits ever
+/// longer between moves.
+class LoadBalancer
+{
+public:
+  struct Options
+  {
+    LoadBalancing Mode = LoadBalancing::Off;
+    glm::ivec3 Positions{ 0 }; ///< that zones may be cut at: cells
+    int Ranks = 1;
+    int SlicePositions = 16; ///< thickness of a slice of bricks
+    int BlockEdge = 8;       ///< positions per block of the costs
+    double BytesPerPosition = 4.0;
+    /// That may change ranks before a frame: so many, or half of what is drawn if that is more.
+    double MostBytes = 32.0 * 1048576.0;
+  };
+
+  /// Zones of equal size. Throws Error when there are no ranks or no positions per block.
+  explicit LoadBalancer(const Options& options);
+
+  const Options& Given() const { return this->Settings; }
+  const ZoneTree& Tree() const { return this->Zones; }
+
+  /// Before a frame: moves planes.
+  /// @param view what is seen of each block (Options::BlockEdge), in any unit that stays the same
+  void BeginFrame(const BrickCosts& view);
+
+  /// After it.
+  /// @param ranks what each one took
+  /// @param work of each block, of all ranks together, in the unit of RankWork::Work
+  void FrameTook(const std::vector<RankWork>& ranks, const BrickCosts& work);
+
+  /// That the last BeginFrame moved.
+  double BytesMoved() const { return this->Moved; }
+  /// Of the frame that was begun last: largest over mean seconds.
+  double ExpectedImbalance() const { return this->Expected; }
+
+private:
+  enum Expectation
+  {
+    FromView,
+    FromLast,
+    FromMany,
+    Expectations
+  };
+
+  void MoveSlices();
+  void MoveToBalance(const BrickCosts& view);
+  std::vector<double> ExpectedFromView(const BrickCosts& view) const;
+  BrickCosts DrawnBytes(const std::vector<double>& costs) const;
+  BrickCosts CostsOf(const std::vector<double>& values) const;
+  std::vector<double> Speeds() const;
+  void LearnWork(const BrickCosts& work);
+  void LearnSpeeds(const std::vector<RankWork>& ranks, const BrickCosts& work);
+  void LearnErrors(const BrickCosts& work);
+  void LearnMistakes(const BrickCosts& work);
+
+  Options Settings;
+  ZoneTree Zones;
+  double Moved = 0.0;
+  double Expected = 1.0;
+
+  std::int64_t Frames = 0;      ///< that took something
+  std::vector<RankWork> Last;   ///< of the last frame
+  std::vector<double> LastWork; ///< by blocks, as all that follows
+  std::vector<double> OlderWork;
+  std::vector<double> LongWork;
+  std::vector<double> View;       ///< of the last frame
+  std::vector<double> Ratio;      ///< work over view when a block was last seen; -1: never
+  std::vector<double> OlderRatio; ///< and the time before
+
+  std::array<std::vector<double>, Expectations> Costs; ///< of the frame that was begun
+  std::array<double, Expectations> Errors{ { 0.0, 0.0, 0.0 } };
+
+  struct Pace
+  {
+    double SecondsPerWork = 1.0; ///< in units of the ranks' median
+    int Frames = 0;              ///< that the average is over
+    double Outlier = 0.0;        ///< of the last frame, if it was one
+    double Share = 1.0;          ///< work of the zone by blocks over that by bricks
+  };
+  std::vector<Pace> Paces;
+
+  ZoneTree Before;  ///< the last BeginFrame
+  int Mistakes = 0; ///< how often moving planes made it worse, lately
+  int Wait = 0;     ///< frames until planes may move again
+  bool Moving = false;
+};
+
+} // namespace banyan
+
+#endif
