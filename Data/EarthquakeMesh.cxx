@@ -2,7 +2,10 @@
 
 #include "OctreeMeshKeys.h"
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
 
 namespace banyan
 {
@@ -20,20 +23,32 @@ OctreeMeshShape ShapeOfBlock()
   return shape;
 }
 
-OctreeMesh::TooLarge WiderThanWaves(
-  const OctreeMeshShape& shape, const NorthridgeModel& ground, double hertz)
+/// The lowest frequency that a cube is too large for.
+double Limit(const OctreeMeshShape& shape, const NorthridgeModel& ground, const MeshOctant& octant)
 {
-  return [&shape, &ground, hertz](const MeshOctant& octant)
+  const double edge = std::ldexp(shape.RootEdge, -octant.Level);
+  const double smallest = std::ldexp(shape.RootEdge, -shape.MaxLevel);
+  std::array<double, 3> low;
+  for (int axis = 0; axis < 3; ++axis)
   {
-    const double edge = std::ldexp(shape.RootEdge, -octant.Level);
-    const double smallest = std::ldexp(shape.RootEdge, -shape.MaxLevel);
-    std::array<double, 3> low;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      low[axis] = shape.Origin[axis] + smallest * octant.Corner[axis];
-    }
-    return edge * hertz * EarthquakeMesh::CellsPerWave > ground.SlowestIn(low, edge);
-  };
+    low[axis] = shape.Origin[axis] + smallest * octant.Corner[axis];
+  }
+  return ground.SlowestIn(low, edge) / (edge * EarthquakeMesh::CellsPerWave);
+}
+
+/// Bins of frequencies, 0.2 % wide.
+constexpr double LowestHertz = 0.001, BinsPerOctave = 350.0;
+constexpr int Bins = 6000;
+
+double HertzOfBin(int bin)
+{
+  return LowestHertz * std::exp2(bin / BinsPerOctave);
+}
+
+int BinOfHertz(double hertz)
+{
+  const double bin = std::floor(BinsPerOctave * std::log2(hertz / LowestHertz));
+  return static_cast<int>(std::clamp(bin, 0.0, Bins - 1.0));
 }
 
 } // namespace
@@ -42,43 +57,53 @@ OctreeMesh EarthquakeMesh::ForFrequency(
   const NorthridgeModel& ground, double hertz, ThreadPool& pool)
 {
   const OctreeMeshShape shape = ShapeOfBlock();
-  return OctreeMesh(shape, WiderThanWaves(shape, ground, hertz), pool);
+  return OctreeMesh(
+    shape, [&](const MeshOctant& octant) { return hertz > Limit(shape, ground, octant); }, pool);
 }
 
 double EarthquakeMesh::FrequencyForCells(
   const NorthridgeModel& ground, double cells, ThreadPool& pool)
 {
   const OctreeMeshShape shape = ShapeOfBlock();
-  const auto count = [&](double hertz)
-  {
-    DividedCubes divided = DivideCubes(shape, WiderThanWaves(shape, ground, hertz), pool);
-    BalanceCubes(shape, divided);
-    return static_cast<double>(CountLeaves(shape, divided));
-  };
-  // Cells grow with about the third power of frequency; from below, so that no try is much larger
+  const double roots = 1.0 * shape.Roots[0] * shape.Roots[1] * shape.Roots[2];
+  // Cells grow with about the third power of frequency. From below, so that no try is much larger
   // than what is wanted.
-  double low = 0.01, high = HUGE_VAL, best = low, bestOff = HUGE_VAL;
-  double hertz = 0.4 * std::cbrt(cells / 1e6);
-  for (int round = 0; round < 14 && high / low > 1.01; ++round)
+  double highest = 0.4 * std::cbrt(cells / 1e6);
+  while (true)
   {
-    const double found = count(hertz), off = std::abs(std::log(found / cells));
-    (found < cells ? low : high) = hertz;
-    if (off < bestOff)
+    // Each cube that is divided makes seven cells more; a few more, which balance needs, are left
+    // out.
+    std::vector<std::atomic<std::uint32_t>> divided(Bins);
+    DivideCubes(
+      shape,
+      [&](const MeshOctant& octant)
+      {
+        const double limit = Limit(shape, ground, octant);
+        if (limit < highest)
+        {
+          divided[BinOfHertz(limit)].fetch_add(1, std::memory_order_relaxed);
+        }
+        return limit < highest;
+      },
+      pool);
+    double count = roots, best = LowestHertz, bestOff = HUGE_VAL;
+    for (int bin = 0; bin < BinOfHertz(highest); ++bin)
     {
-      best = hertz;
-      bestOff = off;
+      count += 7.0 * divided[bin];
+      const double off = std::abs(std::log(count / cells));
+      if (off < bestOff)
+      {
+        best = HertzOfBin(bin + 1);
+        bestOff = off;
+      }
     }
-    if (off < 0.02)
+    // All cells may be as small as there can be.
+    if (count > cells || highest > HertzOfBin(Bins - 1))
     {
-      break;
+      return best;
     }
-    hertz *= std::cbrt(cells / found);
-    if (!(hertz > low && hertz < high))
-    {
-      hertz = std::isfinite(high) ? std::sqrt(low * high) : 1.3 * low;
-    }
+    highest *= 1.4;
   }
-  return best;
 }
 
 double EarthquakeMesh::HalfDuration(double hertz)

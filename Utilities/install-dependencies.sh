@@ -11,13 +11,13 @@ Packages=(
   g++ cmake ninja-build ccache pkg-config
   # Libraries of Core, the generator, the tests and the benchmarks
   libzstd-dev libxxhash-dev nlohmann-json3-dev libglm-dev libhwy-dev libfftw3-dev
-  libgtest-dev libbenchmark-dev
+  libnetcdf-dev libgtest-dev libbenchmark-dev
   # ParaView, and what its CMake package looks for but does not depend on
   paraview paraview-dev python3-paraview libopenmpi-dev
   qtbase5-dev qttools5-dev libqt5svg5-dev libqt5opengl5-dev libqt5x11extras5-dev
   qtxmlpatterns5-dev-tools libxml2-dev libhdf5-openmpi-dev libutfcpp-dev libogg-dev libtheora-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libswresample-dev libgl2ps-dev
-  libpng-dev libnetcdf-dev libgdal-dev libglew-dev libdouble-conversion-dev libfreetype-dev
+  libpng-dev libgdal-dev libglew-dev libdouble-conversion-dev libfreetype-dev
   # To run: ranks, a display, pictures and animations
   openmpi-bin xvfb xauth ffmpeg imagemagick openbox
   python3-numpy python3-matplotlib
