@@ -19,7 +19,8 @@ OctreeMeshShape ShapeOfBlock()
   shape.Roots = NorthridgeModel::Roots;
   shape.RootEdge = NorthridgeModel::RootMetres;
   shape.Origin = { 0.0, 0.0, -NorthridgeModel::DepthMetres };
-  shape.MaxLevel = 10;
+  // Cells of 4.9 m; with this level coordinates are still exact in single precision.
+  shape.MaxLevel = 11;
   return shape;
 }
 

@@ -57,7 +57,7 @@ struct HexWaveEnergy
 /// is continuous, and a deformation of constant strain is kept exactly. Open sides are dashpots of
 /// Lysmer and Kuhlemeyer. The time step is 95 % of one that is proved to be stable.
 ///
-/// Waves need about ten cells per wavelength to travel at their right speed (within 2 %). About 120
+/// Waves need about ten cells per wavelength to travel at their right speed (within 2 %). About 160
 /// bytes a cell with the mesh. The same bits for any number of threads.
 ///
 /// @par Source: Bao, Bielak, Ghattas, Kallivokas, O'Hallaron, Shewchuk, Xu (1998), Large-scale
