@@ -7,6 +7,7 @@
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
 #include "Cache/BrickCache.h"
+#include "Render/SamplingPlan.h"
 #include "Render/SeriesBrickSource.h"
 #include "Series/SeriesEncoder.h"
 
@@ -41,7 +42,10 @@ struct Options
   int Threads = 1;
   int Repeat = 3;
   int BudgetMiB = 512;
+  double Tolerance = 0; ///< in 1/255; 0 takes one sample per voxel
 };
+
+constexpr int CoarsestLevel = 3;
 
 const char* Help = "banyan-bench-scaling --size N [--series FILE.banyan] [OPTIONS]\n"
                    "  Draws the standard scene S2 of N^3 samples, from memory or from the encoded\n"
@@ -51,6 +55,8 @@ const char* Help = "banyan-bench-scaling --size N [--series FILE.banyan] [OPTION
                    "  --threads N  (default 1)    --repeat N   later frames (default 3)\n"
                    "  --budget MIB cache of decoded bricks (default 512)\n"
                    "  --picture N  pixels per side (default 1024)\n"
+                   "  --tolerance T  samples as the picture needs for an error of T/255, instead of\n"
+                   "                 one per voxel; finding out is part of each frame\n"
                    "  --header     prints the names of the columns and ends\n";
 
 /// A file's bytes, mapped for reading.
@@ -141,6 +147,19 @@ double PeakMiB()
   return 0.0;
 }
 
+/// The scene as it is to be sampled.
+RayScene Sampled(RayScene scene, double tolerance, const DrawPilot& draw)
+{
+  if (tolerance > 0.0)
+  {
+    const SamplingPlan plan =
+      PlanSamplings(scene, { tolerance, scene.SampleDistance, CoarsestLevel }, draw);
+    scene.Samplings = plan.Samplings;
+    scene.OpacityLimit = plan.OpacityLimit;
+  }
+  return scene;
+}
+
 struct Frames
 {
   double FirstMilliseconds = 0;
@@ -160,7 +179,9 @@ Frames DrawFrames(const Options& options, const Timer& sinceStart, BrickSource& 
   {
     const Timer timer;
     frames.Statistics = {};
-    CastRays(scene, source, scene.DomainCells, budget, pool, frames.Statistics);
+    const auto draw = [&](const RayScene& wanted)
+    { return CastRays(wanted, source, wanted.DomainCells, budget, pool, frames.Statistics); };
+    draw(Sampled(scene, options.Tolerance, draw));
     if (i == 0)
       frames.FirstMilliseconds = 1e3 * sinceStart.Seconds();
     else
@@ -181,8 +202,14 @@ void Report(const Options& options, const Frames& frames)
     }
   }
   const RayStatistics& statistics = frames.Statistics;
-  std::printf("S2-%d,%s,%d,%.6g,%.6g,%lld,%lld,%lld,%d,%.6g,%.6g\n", options.Size,
-    options.Series.empty() ? "memory" : "series", options.Threads, frames.FirstMilliseconds,
+  char tolerance[32] = "";
+  if (options.Tolerance > 0.0)
+  {
+    std::snprintf(tolerance, sizeof(tolerance), "%g", options.Tolerance);
+  }
+  std::printf("S2-%d,%s,%d,%s,%.6g,%.6g,%lld,%lld,%lld,%d,%.6g,%.6g\n", options.Size,
+    options.Series.empty() ? "memory" : "series", options.Threads, tolerance,
+    frames.FirstMilliseconds,
     frames.Milliseconds[frames.Milliseconds.size() / 2],
     static_cast<long long>(statistics.SamplesTaken), static_cast<long long>(statistics.BricksDrawn),
     static_cast<long long>(statistics.BricksSkipped), options.BudgetMiB, PeakMiB(),
@@ -223,6 +250,8 @@ Options Parse(const std::vector<std::string>& arguments)
       options.Raw = value();
     else if (option == "--series")
       options.Series = value();
+    else if (option == "--tolerance")
+      options.Tolerance = bench::NumberIn(option, value(), 0.01, 255.0);
     else if (option == "--size")
       options.Size = count();
     else if (option == "--picture")
@@ -251,7 +280,7 @@ int main(int argc, char** argv)
     }
     else if (argc == 2 && std::strcmp(argv[1], "--header") == 0)
     {
-      std::puts("scene,source,threads,first_frame_ms,ms_per_frame,samples,bricks_drawn,"
+      std::puts("scene,source,threads,tolerance,first_frame_ms,ms_per_frame,samples,bricks_drawn,"
                 "bricks_skipped,budget_mib,peak_mib,file_mib");
     }
     else

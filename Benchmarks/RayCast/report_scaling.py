@@ -17,6 +17,7 @@ def read_scaling(path):
     rows = read(path, ("scene", "source"))
     for row in rows:
         row["size"] = int(row["scene"].split("-")[1])
+        row["sampling"] = f"error {row['tolerance']:g}/255" if row["tolerance"] else "one per voxel"
     return rows
 
 
@@ -25,15 +26,16 @@ def draw(rows, path):
               ("first_frame_ms", "ms until the first frame"), ("peak_mib", "peak memory in MiB")]
     figure, grid = plot.subplots(1, len(panels), figsize=(15, 4.8))
     sizes = sorted({row["size"] for row in rows})
+    most = max(row["threads"] for row in rows)
     for axes, (column, label) in zip(grid, panels):
         for source, color in (("series", "tab:red"), ("memory", "tab:blue")):
-            for threads, line in zip(sorted({row["threads"] for row in rows}), ("--", "-", ":")):
-                curve = [row for row in rows
-                         if row["source"] == source and row["threads"] == threads]
+            for sampling, line in (("one per voxel", "--"), ("error 1/255", "-")):
+                curve = [row for row in rows if row["source"] == source
+                         and row["threads"] == most and row["sampling"] == sampling]
+                name = "an encoded series" if source == "series" else source
                 axes.plot([row["size"] for row in curve], [row[column] for row in curve], line,
                           color=color, marker="o", markersize=4,
-                          label=f"from {'an encoded series' if source == 'series' else source}, "
-                                f"{threads:g} threads")
+                          label=f"from {name}, {sampling}")
         axes.set_xscale("log", base=2)
         axes.set_yscale("log")
         axes.set_xticks(sizes, [f"{size}³" for size in sizes])
@@ -43,19 +45,20 @@ def draw(rows, path):
         axes.grid(True, which="both", alpha=0.25)
         axes.set_ylabel(label)
     grid[0].legend(fontsize=8)
-    figure.suptitle("Scene S2: nine voxels in ten are invisible")
+    figure.suptitle(f"Scene S2: nine voxels in ten are invisible; {most:g} threads")
     figure.tight_layout()
     figure.savefig(path, dpi=90, metadata={"Software": None})
 
 
 def print_table(rows):
-    print(f"{'scene':10}{'source':>8}{'threads':>9}{'first ms':>10}{'later ms':>10}"
+    print(f"{'scene':10}{'source':>8}{'threads':>9}{'sampling':>15}{'first ms':>10}{'later ms':>10}"
           f"{'Msamples':>10}{'peak MiB':>10}{'file MiB':>10}{'later / 256^3':>15}")
     for row in rows:
         base = [other["ms_per_frame"] for other in rows if other["size"] == 256
-                and other["source"] == row["source"] and other["threads"] == row["threads"]]
+                and all(other[key] == row[key] for key in ("source", "threads", "sampling"))]
         ratio = f"{row['ms_per_frame'] / base[0]:.2f}" if base else "-"
-        print(f"{row['scene']:10}{row['source']:>8}{row['threads']:9g}{row['first_frame_ms']:10.0f}"
+        print(f"{row['scene']:10}{row['source']:>8}{row['threads']:9g}{row['sampling']:>15}"
+              f"{row['first_frame_ms']:10.0f}"
               f"{row['ms_per_frame']:10.0f}{1e-6 * row['samples']:10.1f}{row['peak_mib']:10.0f}"
               f"{row['file_mib']:10.1f}{ratio:>15}")
 

@@ -28,11 +28,6 @@ double TileErrors::Largest() const
   return this->Tiles.empty() ? 0.0 : *std::max_element(this->Tiles.begin(), this->Tiles.end());
 }
 
-double TileErrors::Smallest() const
-{
-  return this->Tiles.empty() ? 0.0 : *std::min_element(this->Tiles.begin(), this->Tiles.end());
-}
-
 void TileErrors::Add(const TileErrors& other)
 {
   for (std::size_t i = 0; i < this->Tiles.size(); ++i)
@@ -46,6 +41,14 @@ void TileErrors::Lower(const TileErrors& other)
   for (std::size_t i = 0; i < this->Tiles.size(); ++i)
   {
     this->Tiles[i] = std::min(this->Tiles[i], other.Tiles[i]);
+  }
+}
+
+void TileErrors::Raise(const TileErrors& other)
+{
+  for (std::size_t i = 0; i < this->Tiles.size(); ++i)
+  {
+    this->Tiles[i] = std::max(this->Tiles[i], other.Tiles[i]);
   }
 }
 

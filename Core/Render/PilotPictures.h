@@ -30,10 +30,11 @@ struct TileErrors
 
   double Of(std::size_t tile) const { return this->Tiles[tile]; }
   double Largest() const;
-  double Smallest() const;
   void Add(const TileErrors& other);
   /// Takes the smaller error of each tile.
   void Lower(const TileErrors& other);
+  /// Takes the larger error of each tile.
+  void Raise(const TileErrors& other);
 };
 
 /// Small pictures of a scene, and what they say of the tiles of the large one.

@@ -1,7 +1,7 @@
 #include "Render/SamplingPlan.h"
 
 #include "Base/Error.h"
-#include "Render/PilotPictures.h"
+#include "Render/PilotSequence.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,23 +12,18 @@ namespace banyan
 namespace
 {
 
-/// The worst pixel of a tile against the worst of its pilots.
-constexpr double Safety = 4.0;
-/// Of the largest error anywhere, what a tile without pilots of its own is taken to have.
-constexpr double ShareOfLargest = 1.0;
 /// Of the tolerance, what rays that end early may leave away.
 constexpr double ShareOfEnds = 0.125;
-/// Halvings of the usual distance, and doublings beyond that of a level.
-constexpr int MostHalvings = 3;
+/// Distances between samples go from 2^MostDoublings times the usual one to 2^-MostHalvings times.
 constexpr int MostDoublings = 3;
+constexpr int MostHalvings = 3;
 /// What a level costs beside its samples, as bricks are entered: in samples at the usual distance.
 constexpr double CostOfBricks = 0.35;
 
-/// A sampling that was tried, and the error that it is expected to have in each tile.
-struct Tried
+/// The error that a choice adds to those of others.
+struct Choice
 {
-  RaySampling Sampling;
-  double Cost = 0.0; ///< in samples at the usual distance
+  double Value = 0.0; ///< a distance or a level
   TileErrors Errors;
 };
 
@@ -44,12 +39,12 @@ public:
 
   SamplingPlan Plan()
   {
-    this->GoFiner();
+    this->TryDistances();
     SamplingPlan plan;
     plan.OpacityLimit = this->Pictures.OpacityLimit();
     if (this->Pictures.SawSomething())
     {
-      this->GoFarther();
+      this->TryLevels();
       this->Choose(plan);
     }
     plan.Pilots = this->Pictures.Count();
@@ -57,134 +52,131 @@ public:
   }
 
 private:
-  /// The samplings that GoFiner tries, in order.
-  std::vector<RaySampling> Ladder() const
+  /// At the coarsest level, which costs least: the errors of distances are much the same at all.
+  void TryDistances()
   {
-    std::vector<RaySampling> ladder;
-    if (this->Wish.CoarsestLevel == 0)
-    {
-      for (int doublings = MostHalvings; doublings > 0; --doublings)
-      {
-        ladder.push_back({ 0, std::ldexp(this->Wish.Distance, doublings) });
-      }
-    }
-    for (int level = this->Wish.CoarsestLevel; level > 0; --level)
-    {
-      ladder.push_back({ level, std::ldexp(this->Wish.Distance, level) });
-    }
-    for (int halvings = 0; halvings <= MostHalvings; ++halvings)
-    {
-      ladder.push_back({ 0, std::ldexp(this->Wish.Distance, -halvings) });
-    }
-    return ladder;
+    const bool levels = this->Wish.CoarsestLevel > 0;
+    PilotSequence pictures(this->Pictures);
+    const Trial trial{ this->Wish.CoarsestLevel,
+      std::ldexp(this->Wish.Distance, MostDoublings),
+      levels ? this->Wish.Distance : std::ldexp(this->Wish.Distance, -MostHalvings),
+      (levels ? 0.5 : 1.0) * this->Allowed };
+    this->Distances = this->DistancesOf(trial, pictures);
+    this->Closest = pictures.Last();
   }
 
-  void GoFiner()
+  struct Trial
   {
-    PilotPicture last;
-    double differenceBefore = 0.0;
-    for (const RaySampling& sampling : this->Ladder())
+    int Level;
+    double From;
+    double To;
+    double Allowed;
+    double KnownDistance = 0.0;
+    const PilotPicture* Known = nullptr; ///< need not be drawn again
+  };
+
+  /// Ever smaller distances, until all tiles are content.
+  std::vector<Choice> DistancesOf(const Trial& trial, PilotSequence& pictures)
+  {
+    std::vector<Choice> choices;
+    bool content = false;
+    for (double distance = trial.From; distance >= trial.To; distance *= 0.5)
     {
-      PilotPicture now = this->Pictures.Draw(sampling);
-      if (!last.Pixels.empty())
+      const bool known = trial.Known && distance == trial.KnownDistance;
+      pictures.Add(known ? *trial.Known : this->Pictures.Draw({ trial.Level, distance }));
+      choices.push_back({ distance, {} });
+      // One more costs little, and may show that larger distances will do.
+      if (content)
       {
-        const PilotErrors difference = this->Pictures.Difference(now, last);
-        const double largest = difference.Largest();
-        if (this->All.size() == 1)
-        {
-          // Of the first one nothing else is known.
-          this->All.front().Errors = this->Pictures.ErrorsOf(difference, 2.0 * Safety, 2.0);
-        }
-        const bool known = this->All.size() > 1 && largest > 0.0;
-        const double ratio = known ? std::clamp(differenceBefore / largest, 1.7, 4.0) : 2.0;
-        const double part = 1.0 / (ratio - 1.0);
-        this->Add(sampling,
-          this->Pictures.ErrorsOf(difference, Safety * part, ShareOfLargest * part), now);
-        this->Refine(difference);
-        differenceBefore = largest;
-        if (this->All.back().Errors.Largest() <= this->Allowed)
-        {
-          break;
-        }
+        break;
       }
-      else
-      {
-        this->Add(sampling, {}, now);
-      }
-      last = std::move(now);
+      content = pictures.LastIsWithin(trial.Allowed);
     }
+    const std::vector<TileErrors> errors = pictures.AllErrors();
+    for (std::size_t i = 0; i < choices.size(); ++i)
+    {
+      choices[i].Errors = errors[i];
+    }
+    return choices;
   }
 
-  /// Now that there is a finer picture, the one before it is judged by that one too.
-  void Refine(const PilotErrors& difference)
+  /// Ever finer levels at the smallest distance that was needed, until all tiles are content.
+  void TryLevels()
   {
-    TileErrors errors = this->Pictures.ErrorsOf(difference, Safety, ShareOfLargest);
-    errors.Add(this->All.back().Errors);
-    this->All[this->All.size() - 2].Errors.Lower(errors);
+    int level = this->Wish.CoarsestLevel;
+    PilotSequence pictures(this->Pictures);
+    pictures.Add(this->Closest);
+    std::vector<Choice> choices{ { static_cast<double>(level), {} } };
+    const double distance = this->Distances.back().Value;
+    while (level > 0 && !pictures.LastIsWithin(0.5 * this->Allowed))
+    {
+      --level;
+      pictures.Add(this->Pictures.Draw({ level, distance }));
+      choices.push_back({ static_cast<double>(level), {} });
+    }
+    if (choices.size() == 1)
+    {
+      choices.front().Errors.Tiles.assign(this->Pictures.TileCount(), 0.0);
+      this->Levels = std::move(choices);
+      return;
+    }
+    if (level == 0)
+    {
+      pictures.LastIsExact();
+    }
+    const std::vector<TileErrors> errors = pictures.AllErrors();
+    for (std::size_t i = 0; i < choices.size(); ++i)
+    {
+      choices[i].Errors = errors[i];
+    }
+    this->Levels = std::move(choices);
+    this->TryDistancesAgain(level, pictures.Last());
   }
 
-  void Add(const RaySampling& sampling, TileErrors errors, const PilotPicture& picture)
+  /// Finer levels show what coarser ones leave out: distances are judged there once more.
+  /// @param known the finest level at the smallest distance so far
+  void TryDistancesAgain(int level, const PilotPicture& known)
   {
-    const double samples = this->Wish.Distance / sampling.Distance;
-    this->All.push_back(
-      { sampling, samples + std::ldexp(CostOfBricks, -sampling.Level), std::move(errors) });
-    this->Drawn.push_back(picture);
+    PilotSequence pictures(this->Pictures);
+    Trial trial{ level, std::ldexp(this->Wish.Distance, MostDoublings),
+      std::ldexp(this->Wish.Distance, -MostHalvings), 0.5 * this->Allowed };
+    trial.KnownDistance = this->Distances.back().Value;
+    trial.Known = &known;
+    this->Distances = this->DistancesOf(trial, pictures);
   }
 
-  /// Tries longer distances at the levels that tiles would use as things stand.
-  void GoFarther()
+  struct Chosen
   {
-    const std::size_t known = this->All.size();
-    std::vector<bool> used(known, false);
-    for (std::size_t tile = 0; tile < this->Pictures.TileCount(); ++tile)
-    {
-      used[this->CheapestFor(tile)] = true;
-    }
-    for (std::size_t i = 0; i < known; ++i)
-    {
-      const RaySampling from = this->All[i].Sampling;
-      const bool isFirstOfLevel = i == 0 || this->All[i - 1].Sampling.Level != from.Level;
-      if (!used[i] || !isFirstOfLevel)
-      {
-        continue;
-      }
-      for (int doublings = 1; doublings <= MostDoublings; ++doublings)
-      {
-        const RaySampling sampling{ from.Level, std::ldexp(from.Distance, doublings) };
-        const PilotPicture picture = this->Pictures.Draw(sampling);
-        const PilotErrors difference = this->Pictures.Difference(picture, this->Drawn[i]);
-        TileErrors errors = this->Pictures.ErrorsOf(difference, Safety, ShareOfLargest);
-        if (from.Level == 0 && doublings == 1)
-        {
-          // Twice as distant samples have at least twice the error, and differ by that of these.
-          this->All[i].Errors.Lower(errors);
-        }
-        errors.Add(this->All[i].Errors);
-        const bool hopeless = errors.Smallest() > this->Allowed;
-        this->Add(sampling, std::move(errors), picture);
-        if (hopeless)
-        {
-          break;
-        }
-      }
-    }
-  }
+    std::size_t Level = 0;    ///< position in Levels
+    std::size_t Distance = 0; ///< position in Distances
+    double Error = 0.0;
+  };
 
   /// The cheapest sampling that is good enough, or the one with the smallest error.
-  std::size_t CheapestFor(std::size_t tile) const
+  Chosen CheapestFor(std::size_t tile) const
   {
-    std::size_t best = 0;
+    Chosen best;
     double bestCost = std::numeric_limits<double>::infinity();
-    std::size_t closest = 0;
-    for (std::size_t i = 0; i < this->All.size(); ++i)
+    Chosen closest;
+    closest.Error = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < this->Levels.size(); ++i)
     {
-      const double error = this->All[i].Errors.Of(tile);
-      if (error <= this->Allowed && this->All[i].Cost < bestCost)
+      for (std::size_t j = 0; j < this->Distances.size(); ++j)
       {
-        best = i;
-        bestCost = this->All[i].Cost;
+        const double error =
+          this->Levels[i].Errors.Of(tile) + this->Distances[j].Errors.Of(tile);
+        const double cost = this->Wish.Distance / this->Distances[j].Value +
+                            std::ldexp(CostOfBricks, -static_cast<int>(this->Levels[i].Value));
+        if (error <= this->Allowed && cost < bestCost)
+        {
+          best = { i, j, error };
+          bestCost = cost;
+        }
+        if (error < closest.Error)
+        {
+          closest = { i, j, error };
+        }
       }
-      closest = error < this->All[closest].Errors.Of(tile) ? i : closest;
     }
     return std::isfinite(bestCost) ? best : closest;
   }
@@ -192,20 +184,24 @@ private:
   void Choose(SamplingPlan& plan) const
   {
     std::vector<RaySampling> samplings;
-    for (const Tried& tried : this->All)
+    for (const Choice& level : this->Levels)
     {
-      samplings.push_back(tried.Sampling);
+      for (const Choice& distance : this->Distances)
+      {
+        samplings.push_back({ static_cast<int>(level.Value), distance.Value });
+      }
     }
     const auto tiles =
       std::make_shared<TileSamplings>(this->Pictures.ImageSize(), std::move(samplings));
     double largest = 0.0;
     for (std::size_t tile = 0; tile < this->Pictures.TileCount(); ++tile)
     {
-      const std::size_t number = this->CheapestFor(tile);
+      const Chosen chosen = this->CheapestFor(tile);
       const glm::ivec2 position(static_cast<int>(tile % static_cast<std::size_t>(tiles->Tiles().x)),
         static_cast<int>(tile / static_cast<std::size_t>(tiles->Tiles().x)));
-      tiles->SetNumber(position, static_cast<int>(number));
-      largest = std::max(largest, this->All[number].Errors.Of(tile));
+      tiles->SetNumber(
+        position, static_cast<int>(chosen.Level * this->Distances.size() + chosen.Distance));
+      largest = std::max(largest, chosen.Error);
     }
     plan.Samplings = tiles;
     plan.EstimatedError = largest + this->Wish.Tolerance * ShareOfEnds;
@@ -214,8 +210,9 @@ private:
   SamplingWish Wish;
   PilotPictures Pictures;
   double Allowed;
-  std::vector<Tried> All;
-  std::vector<PilotPicture> Drawn; ///< of each of All
+  std::vector<Choice> Distances; ///< from the largest on
+  std::vector<Choice> Levels;    ///< from the coarsest on
+  PilotPicture Closest;          ///< of the coarsest level and the smallest distance
 };
 
 void Check(const SamplingWish& wish)

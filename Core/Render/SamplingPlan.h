@@ -40,18 +40,14 @@ using DrawPilot = std::function<FloatImage(const RayScene& pilot)>;
 
 /// Finds for each tile the cheapest sampling that keeps its error within the tolerance.
 ///
-/// How: *pilots*, pictures of about 64 x 64 pixels, are drawn with ever finer samplings: levels
-/// 2^l fine cells long with as distant samples, then smaller distances at the finest level. The
-/// error of one is taken from its difference to the one before: divided by r - 1, where r is how
-/// much larger the difference before was (Richardson's extrapolation, r held between 1.7 and 4).
-/// It goes on until all tiles are content; the difference to the next finer pilot, and that one's
-/// error, bound the error too. Then longer distances at the levels in use are tried, which differ
-/// from a known pilot by what they add to the error.
+/// How: *pilots*, pictures of about 64 x 64 pixels, are drawn with ever smaller distances between
+/// samples at the coarsest level, which costs least, then with ever finer levels at the distance that
+/// was needed, and then with some distances at the finest of these levels again, each until all tiles
+/// are content (PilotSequence). Which level and which distance a tile gets is chosen from the sums of
+/// both errors: finer levels than needed are never loaded.
 ///
-/// A tile's error is the largest of its pilots and of those around it, times a factor of safety,
-/// because the worst of a thousand pixels is worse than that of a few; and at least a part of the
-/// largest error anywhere, because pilots may miss what is thin. The error is estimated, then, and
-/// not bounded: `ctest -R SamplingPlan` shows that it is above the true one on the standard scenes.
+/// The error is estimated, then, and not bounded: `ctest -R SamplingPlan` shows that it is above the
+/// true one on the standard scenes.
 ///
 /// Why not from bounds on the values: they take no account of how errors cancel along a ray, and
 /// are 30 to 100 times too large for smooth scenes (Documentation/rendering.md).

@@ -1,0 +1,69 @@
+#include "Render/PilotSequence.h"
+
+#include <algorithm>
+
+namespace banyan
+{
+namespace
+{
+
+/// The worst pixel of a tile against the worst of its pilots.
+constexpr double Safety = 4.0;
+/// Of the largest error anywhere, what a tile without pilots of its own is taken to have.
+constexpr double ShareOfLargest = 1.0;
+
+} // namespace
+
+void PilotSequence::Add(PilotPicture picture)
+{
+  if (this->Drawn.empty())
+  {
+    this->Errors.emplace_back();
+    this->Drawn.push_back(std::move(picture));
+    return;
+  }
+  const PilotErrors difference = this->Pictures.Difference(picture, this->Drawn.back());
+  const double largest = difference.Largest();
+  if (this->Drawn.size() == 1)
+  {
+    // Of the first one nothing else is known.
+    this->Errors.front() = this->Pictures.ErrorsOf(difference, 2.0 * Safety, 2.0);
+  }
+  const bool known = this->Drawn.size() > 1 && largest > 0.0;
+  const double ratio = known ? std::clamp(this->LargestBefore / largest, 1.7, 4.0) : 2.0;
+  const double part = 1.0 / (ratio - 1.0);
+  this->Errors.push_back(
+    this->Pictures.ErrorsOf(difference, Safety * part, ShareOfLargest * part));
+  this->Errors.back().Lower(this->Errors[this->Errors.size() - 2]);
+  this->LargestBefore = largest;
+  this->Drawn.push_back(std::move(picture));
+}
+
+void PilotSequence::LastIsExact()
+{
+  TileErrors& last = this->Errors.back();
+  std::fill(last.Tiles.begin(), last.Tiles.end(), 0.0);
+}
+
+bool PilotSequence::LastIsWithin(double allowed) const
+{
+  return this->Drawn.size() > 1 && this->Errors.back().Largest() <= allowed;
+}
+
+std::vector<TileErrors> PilotSequence::AllErrors() const
+{
+  std::vector<TileErrors> errors = this->Errors;
+  for (std::size_t i = errors.size() - 1; i-- > 0;)
+  {
+    for (std::size_t later : { i + 1, errors.size() - 1 })
+    {
+      TileErrors bound = this->Pictures.ErrorsOf(
+        this->Pictures.Difference(this->Drawn[i], this->Drawn[later]), Safety, ShareOfLargest);
+      bound.Add(errors[later]);
+      errors[i].Lower(bound);
+    }
+  }
+  return errors;
+}
+
+} // namespace banyan
