@@ -272,9 +272,9 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   scene.Depth = banyan::DepthsOf(pixels);
 
   const std::uint64_t bytesBefore = self.Field.BytesRead();
-  // Half of the cache: what one batch holds is then never evicted by that batch itself.
+  // Less than the cache has: what one batch holds is then never evicted by that batch itself.
   const std::uint64_t budget =
-    std::max<std::uint64_t>(banyan::BrickCache::Process().Budget() / 2, 16u << 20);
+    std::max<std::uint64_t>(banyan::BrickCache::Process().DrawingBudget(), 16u << 20);
   banyan::FrameStatistics frame;
   // More than one frame per second: somebody moves the camera. All ranks are told the same rate.
   const banyan::ToleranceControl::Wish wish{ this->ImageErrorTolerance,

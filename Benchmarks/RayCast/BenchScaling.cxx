@@ -148,12 +148,13 @@ double PeakMiB()
 }
 
 /// The scene as it is to be sampled.
-RayScene Sampled(RayScene scene, double tolerance, const DrawPilot& draw)
+RayScene Sampled(
+  RayScene scene, double tolerance, int finestPilotLevel, const DrawPilot& draw)
 {
   if (tolerance > 0.0)
   {
-    const SamplingPlan plan =
-      PlanSamplings(scene, { tolerance, scene.SampleDistance, CoarsestLevel }, draw);
+    const SamplingPlan plan = PlanSamplings(
+      scene, { tolerance, scene.SampleDistance, CoarsestLevel, finestPilotLevel }, draw);
     scene.Samplings = plan.Samplings;
     scene.OpacityLimit = plan.OpacityLimit;
   }
@@ -181,7 +182,9 @@ Frames DrawFrames(const Options& options, const Timer& sinceStart, BrickSource& 
     frames.Statistics = {};
     const auto draw = [&](const RayScene& wanted)
     { return CastRays(wanted, source, wanted.DomainCells, budget, pool, frames.Statistics); };
-    draw(Sampled(scene, options.Tolerance, draw));
+    const int finestPilot = std::min(CoarsestLevel - 1,
+      FinestLevelWithin(scene, source, scene.DomainCells, CoarsestLevel, budget, pool));
+    draw(Sampled(scene, options.Tolerance, finestPilot, draw));
     if (i == 0)
       frames.FirstMilliseconds = 1e3 * sinceStart.Seconds();
     else
@@ -234,8 +237,7 @@ void Draw(const Options& options)
   BrickCache& cache = BrickCache::Process();
   cache.SetBudget(budget);
   SeriesBrickSource source(SeriesFile::Open(options.Series), {}, 0, cache);
-  // Half of it for what is being drawn, as the mapper does.
-  Report(options, DrawFrames(options, sinceStart, source, budget / 2, pool));
+  Report(options, DrawFrames(options, sinceStart, source, cache.DrawingBudget(), pool));
 }
 
 Options Parse(const std::vector<std::string>& arguments)

@@ -94,12 +94,15 @@ struct BrickCache::Internals
   };
 
   std::uint64_t Budget = 0;
+  bool Shares = false; ///< whether only half of the budget is for decoded bricks
   Statistics Numbers;
   Order Bricks;
   std::unordered_map<Key, Order::iterator, KeyHash> Places;
   std::unordered_map<Key, std::shared_ptr<Pending>, KeyHash> Decoding;
   mutable std::mutex Mutex;
   std::condition_variable Decoded;
+
+  std::uint64_t Limit() const { return this->Shares ? this->Budget / 2 : this->Budget; }
 
   void EvictDownTo(std::uint64_t bytes)
   {
@@ -115,11 +118,11 @@ struct BrickCache::Internals
   void Keep(const Key& key, const Pointer& brick)
   {
     const std::uint64_t cost = CostOf(*brick);
-    if (cost > this->Budget)
+    if (cost > this->Limit())
     {
       return;
     }
-    this->EvictDownTo(this->Budget - cost); // before adding: the budget is never exceeded
+    this->EvictDownTo(this->Limit() - cost); // before adding: the budget is never exceeded
     this->Bricks.emplace_front(key, brick);
     this->Places[key] = this->Bricks.begin();
     this->Numbers.Bytes += cost;
@@ -192,6 +195,12 @@ BrickCache::BrickCache(std::uint64_t budgetBytes)
   this->Self->Budget = budgetBytes;
 }
 
+BrickCache::BrickCache()
+  : BrickCache(BudgetFromEnvironment())
+{
+  this->Self->Shares = true;
+}
+
 BrickCache::~BrickCache() = default;
 
 std::shared_ptr<const BrickValues> BrickCache::GetIfHeld(
@@ -239,11 +248,11 @@ void BrickCache::SetBudget(std::uint64_t bytes)
 {
   if (this == &BrickCache::Process())
   {
-    LatticeCache::Process().SetBudgetBytes(bytes / 4);
+    LatticeCache::Process().SetBudgetBytes(bytes / 8);
   }
   std::lock_guard<std::mutex> lock(this->Self->Mutex);
   this->Self->Budget = bytes;
-  this->Self->EvictDownTo(bytes);
+  this->Self->EvictDownTo(this->Self->Limit());
 }
 
 std::uint64_t BrickCache::Budget() const
@@ -268,7 +277,7 @@ BrickCache::Statistics BrickCache::GetStatistics() const
 
 BrickCache& BrickCache::Process()
 {
-  static BrickCache cache(BudgetFromEnvironment());
+  static BrickCache cache;
   return cache;
 }
 

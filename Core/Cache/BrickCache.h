@@ -46,6 +46,8 @@ public:
 
   explicit BrickCache(std::uint64_t budgetBytes);
   ~BrickCache();
+  BrickCache(const BrickCache&) = delete;
+  BrickCache& operator=(const BrickCache&) = delete;
 
   std::shared_ptr<const BrickValues> Get(
     const SeriesFile& series, const FieldKey& field, std::int64_t brick);
@@ -54,10 +56,13 @@ public:
   std::shared_ptr<const BrickValues> GetIfHeld(
     const SeriesFile& series, const FieldKey& field, std::int64_t brick);
 
-  /// Evicts at once when the new budget is smaller. 0 keeps nothing. The process's cache gives a
-  /// quarter as much to LatticeCache, which keeps what decoding needs again.
+  /// Evicts at once when the new budget is smaller. 0 keeps nothing. The budget of the process's
+  /// cache is for drawing as well: half of it are decoded bricks, three eighths what the renderer
+  /// has loaded and packed, an eighth is LatticeCache's, which keeps what decoding needs again.
   void SetBudget(std::uint64_t bytes);
   std::uint64_t Budget() const;
+  /// The renderer's share of the budget of the process's cache.
+  std::uint64_t DrawingBudget() const { return this->Budget() / 8 * 3; }
   void Clear();
   Statistics GetStatistics() const;
 
@@ -66,6 +71,9 @@ public:
   static BrickCache& Process();
 
 private:
+  /// That of the process.
+  BrickCache();
+
   struct Internals;
   std::unique_ptr<Internals> Self;
 };

@@ -1,5 +1,7 @@
 #include "Parallel/DistributedPlan.h"
 
+#include <algorithm>
+
 namespace banyan
 {
 namespace
@@ -16,6 +18,36 @@ int CommonLevel(Communicator& communicator, BrickSource* source, const Box& doma
   return -static_cast<int>(AllMax(communicator, -mine));
 }
 
+/// The finest level that all ranks can draw pilots from without loading everything again for each of
+/// them; one that leaves another to compare it with.
+int FinestPilotLevel(Communicator& communicator, const RayScene& scene, BrickSource* source,
+  const std::vector<Box>& zones, int coarsest, std::uint64_t budgetBytes, ThreadPool& pool)
+{
+  if (coarsest == 0)
+  {
+    return 0;
+  }
+  const Box& zone = zones.at(static_cast<std::size_t>(communicator.Rank()));
+  int mine = 0;
+  std::string failure;
+  try
+  {
+    mine = source && !zone.Empty()
+             ? FinestLevelWithin(scene, *source, zone, coarsest, budgetBytes, pool)
+             : 0;
+  }
+  catch (const std::exception& error)
+  {
+    failure = error.what();
+  }
+  const std::string agreed = AgreeOnError(communicator, failure);
+  if (!agreed.empty())
+  {
+    throw Error(agreed);
+  }
+  return std::min(static_cast<int>(AllMax(communicator, mine)), coarsest - 1);
+}
+
 } // namespace
 
 SamplingPlan PlanDistributed(Communicator& communicator, const RayScene& scene, BrickSource* source,
@@ -28,6 +60,8 @@ SamplingPlan PlanDistributed(Communicator& communicator, const RayScene& scene, 
     throw Error(agreed);
   }
   wish.CoarsestLevel = CommonLevel(communicator, source, scene.DomainCells, wish.CoarsestLevel);
+  wish.FinestPilotLevel = FinestPilotLevel(
+    communicator, scene, source, zones, wish.CoarsestLevel, budgetBytes, pool);
   return PlanSamplings(scene, wish,
     [&](const RayScene& pilot)
     {

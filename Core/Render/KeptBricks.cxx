@@ -60,7 +60,28 @@ void KeptBricks::Keep(std::int64_t brick, const Pointer& packed)
   if (this->HeldBytes + bytes <= this->LimitBytes)
   {
     this->HeldBytes += bytes;
-    this->Items[brick] = { packed, this->Picture };
+    this->Items[brick] = { packed, this->Picture, std::nullopt, 0 };
+  }
+}
+
+std::optional<BrickVisibility> KeptBricks::FindVisibility(
+  std::int64_t brick, std::uint64_t visible) const
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  const auto item = this->Items.find(brick);
+  const bool known = item != this->Items.end() && item->second.VisibleUnder == visible;
+  return known ? item->second.Visibility : std::nullopt;
+}
+
+void KeptBricks::KeepVisibility(
+  std::int64_t brick, std::uint64_t visible, const BrickVisibility& visibility)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  const auto item = this->Items.find(brick);
+  if (item != this->Items.end())
+  {
+    item->second.Visibility = visibility;
+    item->second.VisibleUnder = visible;
   }
 }
 

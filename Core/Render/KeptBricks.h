@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <unordered_map>
 
 namespace banyan
@@ -32,6 +33,13 @@ public:
   /// Keeps a brick if there is room, in place of what was kept under its number.
   void Keep(std::int64_t brick, const Pointer& packed);
 
+  /// What can be seen of a kept brick, as KeepVisibility was told for this number of VisibleValues;
+  /// empty if it was not.
+  std::optional<BrickVisibility> FindVisibility(std::int64_t brick, std::uint64_t visible) const;
+  /// Without effect when the brick is not kept.
+  void KeepVisibility(
+    std::int64_t brick, std::uint64_t visible, const BrickVisibility& visibility);
+
   std::uint64_t Bytes() const;
 
 private:
@@ -39,6 +47,8 @@ private:
   {
     Pointer Packed;
     std::int64_t UsedIn = 0; ///< number of a picture
+    std::optional<BrickVisibility> Visibility;
+    std::uint64_t VisibleUnder = 0; ///< VisibleValues::Number
   };
 
   std::uint64_t LimitBytes = 0;

@@ -120,16 +120,14 @@ std::size_t LevelCaster::TakeBatch(std::size_t first)
     const PlannedBrick& brick = this->Bricks[next];
     KeptBricks::Pointer kept = this->FindKept(brick);
     const bool isThere = kept || brick.Entry;
-    const std::uint64_t loadBytes = isThere ? 0 : this->Source.LoadBytes(brick.Number);
-    const std::uint64_t brickBytes =
-      isThere ? 0 : loadBytes + PackedBrick::BytesFor(brick.Cells, this->Shading != nullptr);
+    const std::uint64_t brickBytes = isThere ? 0 : this->BytesOf(brick);
     const bool full = bytes + brickBytes > left || this->Batch.size() >= BricksPerBatch;
     if (full && !this->Batch.empty())
     {
       break;
     }
     // What is in memory anyway costs less to draw than to look for open pixels.
-    if (!this->AnyRayOpen(brick, loadBytes > 0))
+    if (!this->AnyRayOpen(brick, !isThere && this->Source.LoadBytes(brick.Number) > 0))
     {
       ++this->Statistics.BricksSkipped;
       continue;
@@ -143,6 +141,24 @@ std::size_t LevelCaster::TakeBatch(std::size_t first)
     bytes += brickBytes;
   }
   return next;
+}
+
+/// As loaded and as packed.
+std::uint64_t LevelCaster::BytesOf(const PlannedBrick& brick) const
+{
+  return brick.Entry ? 0
+                     : this->Source.LoadBytes(brick.Number) +
+                         PackedBrick::BytesFor(brick.Cells, this->Shading != nullptr);
+}
+
+std::uint64_t LevelCaster::BytesToDraw() const
+{
+  std::uint64_t bytes = 0;
+  for (const PlannedBrick& brick : this->Bricks)
+  {
+    bytes += this->BytesOf(brick);
+  }
+  return bytes;
 }
 
 /// Null for bricks that are not kept, or need not be.
@@ -250,11 +266,27 @@ void LevelCaster::Load(const PlannedBrick& brick, LoadedBrick& loaded) const
   {
     return;
   }
-  loaded.Seen = BrickVisibility(*loaded.Packed, this->Source.RangeOf(brick.Number), this->Visible);
+  loaded.Seen = this->VisibilityOf(brick, *loaded.Packed);
   Box& seen = loaded.Seen.Cells;
   const int size = 1 << brick.Level;
   seen = Intersection({ seen.Lo * size, seen.Hi * size }, brick.Drawn);
   loaded.Footprint = seen == brick.Drawn ? brick.Footprint : this->FootprintOf(seen);
+}
+
+BrickVisibility LevelCaster::VisibilityOf(
+  const PlannedBrick& brick, const PackedBrick& packed) const
+{
+  KeptBricks& kept = this->Source.Kept();
+  const std::int64_t number = this->Source.KeptNumber(brick.Number);
+  const std::uint64_t visible = this->Visible.Number();
+  const std::optional<BrickVisibility> known = kept.FindVisibility(number, visible);
+  if (known)
+  {
+    return *known;
+  }
+  const BrickVisibility seen(packed, this->Source.RangeOf(brick.Number), this->Visible);
+  kept.KeepVisibility(number, visible, seen);
+  return seen;
 }
 
 KeptBricks::Pointer LevelCaster::Pack(const PlannedBrick& brick) const

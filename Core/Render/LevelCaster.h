@@ -30,6 +30,9 @@ public:
   /// Pixels that the visible bricks may touch, those of other levels' tiles included.
   const PixelRect& Rect() const { return this->Touched; }
 
+  /// What all bricks that can be seen take, as loaded and as packed for drawing.
+  std::uint64_t BytesToDraw() const;
+
   /// Draws the tiles of the level.
   /// @param picture premultiplied colours, and the *transmittance* in the fourth component
   void Draw(FloatImage& picture);
@@ -87,11 +90,13 @@ private:
   void ForTilesUnder(const PixelRect& footprint, Function&& function);
   std::uint64_t BytesLeft() const;
   std::size_t TakeBatch(std::size_t first);
+  std::uint64_t BytesOf(const PlannedBrick& brick) const;
   KeptBricks::Pointer FindKept(const PlannedBrick& brick) const;
   bool AnyRayOpen(const PlannedBrick& brick, bool lookAtPixels);
   float TransmittanceLimit() const;
   void DrawBatch();
   void Load(const PlannedBrick& brick, LoadedBrick& loaded) const;
+  BrickVisibility VisibilityOf(const PlannedBrick& brick, const PackedBrick& packed) const;
   KeptBricks::Pointer Pack(const PlannedBrick& brick) const;
   float GradientScale() const;
   BrickView LoadLarge(const PlannedBrick& brick) const;

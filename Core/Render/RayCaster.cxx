@@ -52,6 +52,26 @@ Box CellsAtLevel(const Box& cells, int level)
 
 } // namespace
 
+int FinestLevelWithin(const RayScene& scene, BrickSource& source, const Box& cells, int coarsest,
+  std::uint64_t bytes, ThreadPool& pool)
+{
+  RayScene planned = scene;
+  RayStatistics statistics;
+  int level = 0;
+  for (; level < coarsest; ++level)
+  {
+    planned.Samplings = std::make_shared<const TileSamplings>(
+      scene.Camera.ImageSize(), std::vector{ RaySampling{ level, scene.SampleDistance } });
+    const LevelCaster caster(planned, SourceAt(source, level, scene),
+      CellsAtLevel(Intersection(cells, scene.DomainCells), level), bytes, pool, statistics);
+    if (caster.BytesToDraw() <= bytes)
+    {
+      break;
+    }
+  }
+  return level;
+}
+
 FloatImage CastRays(const RayScene& scene, BrickSource& source, const Box& cells,
   std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics)
 {

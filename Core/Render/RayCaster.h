@@ -93,6 +93,12 @@ struct RayStatistics
 FloatImage CastRays(const RayScene& scene, BrickSource& source, const Box& cells,
   std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics);
 
+/// The finest level of which all that can be seen, as loaded and as packed for drawing, takes at
+/// most `bytes`; `coarsest` if there is none. Nothing is loaded to find out.
+/// @param coarsest a level that the source has
+int FinestLevelWithin(const RayScene& scene, BrickSource& source, const Box& cells, int coarsest,
+  std::uint64_t bytes, ThreadPool& pool);
+
 /// Bricks of `source` with cells in `cells` in front-to-back order. Exact for bricks that are cut
 /// from a grid by whole planes; the eye may be inside.
 /// @param view in index space

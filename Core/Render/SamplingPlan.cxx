@@ -108,7 +108,8 @@ private:
     pictures.Add(this->Closest);
     std::vector<Choice> choices{ { static_cast<double>(level), {} } };
     const double distance = this->Distances.back().Value;
-    while (level > 0 && !pictures.LastIsWithin(0.5 * this->Allowed))
+    while (
+      level > this->Wish.FinestPilotLevel && !pictures.LastIsWithin(0.5 * this->Allowed))
     {
       --level;
       pictures.Add(this->Pictures.Draw({ level, distance }));
@@ -116,8 +117,11 @@ private:
     }
     if (choices.size() == 1)
     {
-      choices.front().Errors.Tiles.assign(this->Pictures.TileCount(), 0.0);
+      // The finest; or the only one that there are pilots of, of which nothing is known.
+      choices.front().Errors.Tiles.assign(
+        this->Pictures.TileCount(), level > 0 ? std::numeric_limits<double>::infinity() : 0.0);
       this->Levels = std::move(choices);
+      this->ExtrapolateLevels();
       return;
     }
     if (level == 0)
@@ -131,6 +135,25 @@ private:
     }
     this->Levels = std::move(choices);
     this->TryDistancesAgain(level, pictures.Last());
+    if (!pictures.LastIsWithin(0.5 * this->Allowed))
+    {
+      this->ExtrapolateLevels();
+    }
+  }
+
+  /// Adds the levels that no pilots were drawn from: cells of half the edge have at most half the
+  /// error (a quarter, where the field is smooth), and the finest has none.
+  void ExtrapolateLevels()
+  {
+    for (int level = static_cast<int>(this->Levels.back().Value) - 1; level >= 0; --level)
+    {
+      Choice finer{ static_cast<double>(level), this->Levels.back().Errors };
+      for (double& error : finer.Errors.Tiles)
+      {
+        error = level > 0 ? 0.5 * error : 0.0;
+      }
+      this->Levels.push_back(std::move(finer));
+    }
   }
 
   /// Finer levels show what coarser ones leave out: distances are judged there once more.
@@ -225,9 +248,13 @@ void Check(const SamplingWish& wish)
   {
     throw Error("The sample distance must be above 0");
   }
-  if (wish.CoarsestLevel < 0)
+  if (wish.CoarsestLevel < 0 || wish.FinestPilotLevel < 0)
   {
     throw Error("There is no level below 0, the finest");
+  }
+  if (wish.FinestPilotLevel > wish.CoarsestLevel)
+  {
+    throw Error("No level is coarser than the coarsest that may be drawn from");
   }
 }
 

@@ -20,6 +20,9 @@ struct SamplingWish
   double Distance = 1.0;
   /// The coarsest level that may be drawn from; 0 allows the finest only.
   int CoarsestLevel = 0;
+  /// The finest level that pilots are drawn from, at most CoarsestLevel: what finer ones would
+  /// show is extrapolated. For volumes of which more is visible than memory may hold.
+  int FinestPilotLevel = 0;
 };
 
 /// How a picture is to be sampled so that its error stays within a tolerance.

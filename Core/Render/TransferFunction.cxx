@@ -1,6 +1,7 @@
 #include "Render/TransferFunction.h"
 
 #include "Base/Error.h"
+#include "Series/Hash.h"
 
 #include <algorithm>
 #include <cmath>
@@ -89,6 +90,10 @@ VisibleValues::VisibleValues(const TransferFunction& function)
   }
   // Positions are computed in float by the marcher: about 1e-7 of the table's length off.
   this->Margin = 1.0 + 1e-6 * static_cast<double>(function.Entries.size());
+  const double range[2] = { this->Low, this->Scale };
+  this->Hash = HashOf(this->VisibleBefore.data(), this->VisibleBefore.size() * sizeof(int),
+    ShortHashOf(range, sizeof(range)))
+                 .Low;
 }
 
 VisibleValues::Span VisibleValues::EntriesOf(double low, double high) const

@@ -49,6 +49,9 @@ public:
   /// Whether every value in [low, high] can be seen. Conservative too: false when in doubt.
   bool All(double low, double high) const;
 
+  /// The same for functions that show the same values; hardly ever the same for others.
+  std::uint64_t Number() const { return this->Hash; }
+
 private:
   struct Span
   {
@@ -63,6 +66,7 @@ private:
   double Low = 0.0;
   double Scale = 0.0;
   double Margin = 1.0; ///< entries
+  std::uint64_t Hash = 0;
 };
 
 /// How values find their entry in a table: (value - Low) * Scale + Bias, clamped to [0, Last],

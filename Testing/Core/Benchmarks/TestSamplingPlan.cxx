@@ -125,6 +125,48 @@ TEST(SamplingPlan, SmoothScenesTakeFewerSamplesThanOnePerVoxel)
   EXPECT_LT(drawer.Statistics.SamplesTaken, onePerVoxel / 2);
 }
 
+TEST(SamplingPlan, LevelsWithoutPilotsAreExtrapolated)
+{
+  ThreadPool pool(2);
+  const BenchScene scene =
+    StandardScene(StandardVolume(Samples, pool), StandardFunction::S2, false, Pixels);
+  const FloatImage converged = ConvergedImage(scene, 1.0 / 16.0, pool);
+  for (const int finestPilot : { 1, 2 })
+  {
+    for (const double tolerance : { 2.0, 16.0 })
+    {
+      Drawer drawer(scene);
+      int finest = 3;
+      const SamplingPlan plan = PlanSamplings(drawer.Scene,
+        { tolerance, drawer.Scene.SampleDistance, 3, finestPilot },
+        [&](const RayScene& pilot)
+        {
+          finest = std::min(finest, pilot.Samplings->Samplings().front().Level);
+          return drawer.Cast(pilot);
+        });
+      EXPECT_GE(finest, finestPilot);
+      EXPECT_LE(ErrorOf(drawer.Draw(plan), converged).Largest, plan.EstimatedError);
+    }
+  }
+}
+
+TEST(SamplingPlan, TheFinestLevelThatFitsInMemoryIsFoundWithoutLoading)
+{
+  ThreadPool pool(2);
+  Drawer drawer(StandardScene(StandardVolume(65, pool), StandardFunction::S1, false, Pixels));
+  const auto finest = [&](std::uint64_t bytes)
+  {
+    return FinestLevelWithin(
+      drawer.Scene, drawer.Source, drawer.Scene.DomainCells, 3, bytes, drawer.Pool);
+  };
+  // 64^3 cells, of which everything can be seen, packed as pairs of floats.
+  const std::uint64_t all = std::uint64_t{ 65 * 65 * 65 } * 8;
+  EXPECT_EQ(finest(2 * all), 0);
+  EXPECT_EQ(finest(all / 2), 1);
+  EXPECT_EQ(finest(all / 20), 2);
+  EXPECT_EQ(finest(0), 3);
+}
+
 TEST(SamplingPlan, WhatCannotBeSeenIsNotPlanned)
 {
   ThreadPool pool(2);

@@ -98,4 +98,26 @@ TEST(KeptBricks, PicturesAreTheSameAndLoadOnce)
   }
 }
 
+TEST(KeptBricks, WhatCanBeSeenChangesWithTheTransferFunction)
+{
+  const glm::ivec3 n(33);
+  const std::vector<float> values = scenes::Sampled(scenes::Standard, n);
+  RayScene scene = scenes::Scene(n, { 50, 50 });
+  ThreadPool pool(2);
+  Counting source(scenes::ArrayOf(values, n), 16, { 0, 1 }, pool);
+  std::int64_t before = 0;
+  for (const scenes::Function& function :
+    { scenes::Function(scenes::Sparse), scenes::Function(scenes::Smooth),
+      scenes::Function(scenes::Sparse) })
+  {
+    scene.Transfer = scenes::Tabulate(function);
+    RayStatistics statistics;
+    const FloatImage picture =
+      CastRays(scene, source, scene.DomainCells, std::uint64_t{ 1 } << 30, pool, statistics);
+    EXPECT_EQ(MaxDifference(picture, scenes::Draw(scene, scenes::ArrayOf(values, n)).Image), 0.0);
+    EXPECT_NE(statistics.SamplesTaken, before);
+    before = statistics.SamplesTaken;
+  }
+}
+
 } // namespace
