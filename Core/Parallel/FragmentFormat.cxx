@@ -1,6 +1,10 @@
 #include "Parallel/FragmentFormat.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <vector>
 
 namespace banyan
 {
@@ -8,6 +12,7 @@ namespace
 {
 
 constexpr float Most = 65535.0f;
+constexpr double Covering = 0.7; ///< the part of a step's weight that is due to opacity
 
 /// Steps of colours per unit, times the weight below.
 float ColorScale(const FragmentFormat& format)
@@ -17,7 +22,46 @@ float ColorScale(const FragmentFormat& format)
 
 float WeightOf(const FragmentFormat& format, float alpha)
 {
-  return 0.5f * alpha + 0.5f / static_cast<float>(format.Meeting);
+  return static_cast<float>(Covering) * alpha +
+         static_cast<float>(1.0 - Covering) / static_cast<float>(format.Meeting);
+}
+
+/// q = Scale * log(1 + PerOpacity * a)
+struct AlphaCode
+{
+  double Scale;
+  double PerOpacity;
+
+  explicit AlphaCode(const FragmentFormat& format)
+    : Scale(255.0 * format.Brightest * format.Shares / Covering)
+    , PerOpacity(Covering / (1.0 - Covering) * format.Meeting)
+  {
+  }
+  double OfOpaque() const { return this->Scale * std::log1p(this->PerOpacity); }
+};
+
+/// The opacities of all numbers up to that of opacity 1; few formats occur in a frame.
+const std::vector<float>& OpacitiesOf(const FragmentFormat& format)
+{
+  using Key = std::tuple<int, int, float>;
+  thread_local std::map<Key, std::vector<float>> tables;
+  constexpr std::size_t most = 256;
+  if (tables.size() > most)
+  {
+    tables.clear();
+  }
+  std::vector<float>& table = tables[Key{ format.Meeting, format.Shares, format.Brightest }];
+  if (table.empty())
+  {
+    const AlphaCode code(format);
+    const int last = static_cast<int>(std::ceil(std::min(code.OfOpaque(), double{ Most })));
+    for (int q = 0; q <= last; ++q)
+    {
+      const double opacity = std::expm1(q / code.Scale) / code.PerOpacity;
+      table.push_back(static_cast<float>(std::min(opacity, 1.0)));
+    }
+  }
+  return table;
 }
 
 /// To nearest; what is negative or not a number becomes 0.
@@ -31,16 +75,11 @@ std::uint16_t Rounded(float value)
 FragmentFormat FormatOfFragments(int meeting, int shares, float brightest)
 {
   FragmentFormat format;
-  const double steps = 255.0 * std::max(brightest, 1.0f) * std::max(meeting, 1) * shares;
-  if (!(steps <= Most))
-  {
-    return format;
-  }
   format.Kind = FragmentFormat::Fragment;
   format.Shares = static_cast<std::uint8_t>(shares);
-  format.Meeting = static_cast<std::uint16_t>(std::max(meeting, 1));
+  format.Meeting = static_cast<std::uint16_t>(std::clamp(meeting, 1, 65535));
   format.Brightest = std::max(brightest, 1.0f);
-  return format;
+  return AlphaCode(format).OfOpaque() < Most ? format : FragmentFormat{};
 }
 
 void QuantizePixels(
@@ -57,14 +96,19 @@ void QuantizePixels(
     }
     return;
   }
-  const float alphaSteps = format.AlphaSteps();
+  const std::vector<float>& opacities = OpacitiesOf(format);
+  const AlphaCode code(format);
+  const float codeScale = static_cast<float>(code.Scale);
+  const float perOpacity = static_cast<float>(code.PerOpacity);
+  const float last = static_cast<float>(opacities.size() - 1);
   const float scale = ColorScale(format);
   const float half = 0.5f * format.Brightest;
   for (std::size_t i = 0; i < count; ++i)
   {
     const glm::vec4& pixel = pixels[i];
-    const std::uint16_t alpha = Rounded(pixel.a * alphaSteps);
-    const float written = static_cast<float>(alpha) / alphaSteps;
+    const float wanted = codeScale * std::log(1.0f + perOpacity * std::max(pixel.a, 0.0f));
+    const std::uint16_t alpha = Rounded(std::min(wanted, last));
+    const float written = opacities[alpha];
     const float perColor = scale / WeightOf(format, written);
     const float shift = (written - pixel.a) * half;
     for (int c = 0; c < 3; ++c)
@@ -91,12 +135,12 @@ void RestorePixels(
     }
     return;
   }
-  const float alphaSteps = format.AlphaSteps();
+  const std::vector<float>& opacities = OpacitiesOf(format);
   const float scale = ColorScale(format);
   for (std::size_t i = 0; i < count; ++i)
   {
     const std::uint16_t* from = numbers + 4 * i;
-    const float alpha = static_cast<float>(from[3]) / alphaSteps;
+    const float alpha = opacities[std::min<std::size_t>(from[3], opacities.size() - 1)];
     const float step = WeightOf(format, alpha) / scale;
     pixels[i] = glm::vec4(from[0] * step, from[1] * step, from[2] * step, alpha);
   }

@@ -22,21 +22,23 @@ namespace banyan
 /// where T'_i is the product of 1 - a'_j over what lies before, and B_i in [0, M] the exact picture
 /// of what lies behind. M is 1 unless colours exceed their opacity. Since B_i is not known to the
 /// sender, it rounds c_i + (a'_i - a_i) * M / 2 instead of c_i: then the bracket is at most half a
-/// step of colours and M / 4 of a step of opacities (the deviation is M / 2 times half a step).
-/// Should that fall below 0, it becomes 0, which is no worse while a step of opacities, times M, is
-/// not larger than the smallest step of colours.
+/// step of colours and M / 2 times the error of the opacity. (Should that number fall below 0, it
+/// becomes 0, which is no worse while the error of the opacity, times M, is not larger than a step
+/// of colours.)
 ///
-/// Opacities have 255 * n * M / share steps of equal size; all n of them together make
-/// n * M / 4 / (255 * n * M / share) = 0.25 * share / 255.
+/// All steps grow with w = 0.7 * a' + 0.3 / n: coarser where the fragment hides more. The sum of
+/// T'_i * a'_i never exceeds 1, nor does that of T'_i / n: so that of T'_i * w_i is at most 1,
+/// however many fragments there are, and what follows is the error of all n together.
 ///
-/// Colours have steps of (a' / 2 + 1 / (2 n)) / (172 / share): coarser where the fragment hides
-/// more, because the sum of T'_i * a'_i never exceeds 1, whatever n. All n together make (1 / 2 + 1
-/// / 2) / 2 / (172 / share) < 0.742 * share / 255.
+/// - Colours have steps of w * share / 172: 1 / 2 / 172 < 0.742 / 255, times share.
+/// - Opacities are written down as whole numbers q, a' = 3 / 7 / n * (exp(q / F) - 1), with
+///   F = 255 * M / 0.7 / share: steps of w * share / 255 / M, to one part in 1000. M / 2 times half
+///   a step make 0.25 / 255, times share.
 ///
 /// Both together stay below share / 255, with room for the rounding of floats. So two pictures of
 /// share 1, rounded to 8 bits, differ by at most 1; and fragments that are blended to partial
-/// pictures, which travel again, may do both at share 1/2. Colours then need 8 to 10 bits whatever
-/// n, where equal steps need 8 + log2(n).
+/// pictures, which travel again, may do both at share 1/2. At share 1, colours need 8 bits whatever
+/// n and opacities 9 to 11 (n up to 100), where equal steps would need 8 + log2(n) bits for each.
 struct FragmentFormat
 {
   enum : std::uint8_t
@@ -49,16 +51,10 @@ struct FragmentFormat
   std::uint8_t Shares = 1;   ///< 1 / share
   std::uint16_t Meeting = 1; ///< n
   float Brightest = 1.0f;    ///< M
-
-  /// Steps between opacities 0 and 1.
-  float AlphaSteps() const
-  {
-    return 255.0f * this->Brightest * static_cast<float>(this->Meeting * this->Shares);
-  }
 };
 
-/// The format of fragments of which up to `meeting` meet in a pixel; floats when there are so many
-/// that 16 bits are not enough (128 at share 1/2).
+/// The format of fragments of which up to `meeting` meet in a pixel; floats when 16 bits are not
+/// enough for opacities (of colours many times brighter than 1).
 /// @param shares 1 / share, at least 1
 /// @param brightest largest colour over opacity, at least 1
 FragmentFormat FormatOfFragments(int meeting, int shares, float brightest);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 namespace banyan
 {
@@ -12,6 +13,7 @@ namespace
 {
 
 constexpr std::uint32_t PackedBit = 1u << 31;
+constexpr std::uint32_t AboveBit = 1u << 30; ///< the numbers above were subtracted
 
 [[noreturn]] void Damaged()
 {
@@ -33,6 +35,78 @@ std::size_t PixelsOf(const CompositePlan::Region& region)
     pixels += static_cast<std::size_t>(run.Hi - run.Lo);
   }
   return pixels;
+}
+
+/// Numbers of the row above the one that is written or read: 0 where nothing is drawn.
+class RowAbove
+{
+public:
+  explicit RowAbove(const std::vector<DrawnSegment>& segments)
+  {
+    int hi = std::numeric_limits<int>::min();
+    this->Lo = std::numeric_limits<int>::max();
+    for (const DrawnSegment& segment : segments)
+    {
+      const int last = segment.X + segment.Step * (segment.Count - 1);
+      this->Lo = std::min({ this->Lo, segment.X, last });
+      hi = std::max({ hi, segment.X, last });
+    }
+    this->Rows.assign(static_cast<std::size_t>(hi - this->Lo + 1), NoRow);
+    this->Numbers.resize(4 * this->Rows.size());
+  }
+
+  /// Calls `action(numbers, above)` for each pixel and keeps what `numbers` are afterwards, if
+  /// `after`, or were before.
+  template <bool after, typename Action>
+  void ForEach(
+    const std::vector<DrawnSegment>& segments, std::uint16_t* numbers, const Action& action)
+  {
+    constexpr std::uint16_t nothing[4] = {};
+    for (const DrawnSegment& segment : segments)
+    {
+      int column = segment.X - this->Lo;
+      for (int i = 0; i < segment.Count; ++i, column += segment.Step, numbers += 4)
+      {
+        std::uint16_t* above = &this->Numbers[4 * static_cast<std::size_t>(column)];
+        const bool drawn = this->Rows[column] == segment.Y - 1;
+        std::uint16_t kept[4];
+        std::memcpy(kept, numbers, sizeof(kept));
+        action(numbers, drawn ? above : nothing);
+        std::memcpy(above, after ? numbers : kept, sizeof(kept));
+        this->Rows[column] = segment.Y;
+      }
+    }
+  }
+
+private:
+  static constexpr int NoRow = std::numeric_limits<int>::min();
+  int Lo;
+  std::vector<int> Rows; ///< per column, which row the numbers are of
+  std::vector<std::uint16_t> Numbers;
+};
+
+void SubtractAbove(const std::vector<DrawnSegment>& segments, std::uint16_t* numbers)
+{
+  RowAbove(segments).ForEach<false>(segments, numbers,
+    [](std::uint16_t* pixel, const std::uint16_t* above)
+    {
+      for (int c = 0; c < 4; ++c)
+      {
+        pixel[c] = static_cast<std::uint16_t>(pixel[c] - above[c]);
+      }
+    });
+}
+
+void AddAbove(const std::vector<DrawnSegment>& segments, std::uint16_t* numbers)
+{
+  RowAbove(segments).ForEach<true>(segments, numbers,
+    [](std::uint16_t* pixel, const std::uint16_t* above)
+    {
+      for (int c = 0; c < 4; ++c)
+      {
+        pixel[c] = static_cast<std::uint16_t>(pixel[c] + above[c]);
+      }
+    });
 }
 
 /// Walks through the lengths of runs, which are checked before.
@@ -106,6 +180,7 @@ void FragmentWriter::Collect(
   const CompositePlan::Region& region, const FloatImage& image, bool dense)
 {
   this->Drawn.clear();
+  this->Segments.clear();
   this->Runs.clear();
   std::size_t length = 0;
   bool drawing = false;
@@ -115,11 +190,13 @@ void FragmentWriter::Collect(
     const bool inside = run.Y >= image.Rect.Lo.y && run.Y < image.Rect.Hi.y;
     const int lo = inside ? std::clamp(image.Rect.Lo.x, run.Lo, run.Hi) : run.Hi;
     const int hi = inside ? std::clamp(image.Rect.Hi.x, lo, run.Hi) : run.Hi;
+    const glm::vec4* row = lo < hi ? &image.At(lo, run.Y) : nullptr;
     const int step = run.Reversed ? -1 : 1;
     int x = run.Reversed ? run.Hi - 1 : run.Lo;
+    bool begun = false;
     for (int i = run.Lo; i < run.Hi; ++i, x += step)
     {
-      const glm::vec4& pixel = x >= lo && x < hi ? image.At(x, run.Y) : nothing;
+      const glm::vec4& pixel = x >= lo && x < hi ? row[x - lo] : nothing;
       const bool drawn = dense || pixel != nothing;
       if (drawn != drawing)
       {
@@ -128,8 +205,14 @@ void FragmentWriter::Collect(
         drawing = drawn;
       }
       ++length;
+      if (drawn && !begun)
+      {
+        this->Segments.push_back({ run.Y, x, step, 0 });
+      }
+      begun = drawn;
       if (drawn)
       {
+        ++this->Segments.back().Count;
         this->Drawn.push_back(pixel);
       }
     }
@@ -171,10 +254,26 @@ void FragmentWriter::Append(const CompositePlan::Region& region, const FloatImag
     this->Numbers.resize(4 * count);
     QuantizePixels(format, this->Drawn.data(), count, this->Numbers.data());
     this->Bytes.resize(begin + PackedBytesAtMost(count));
-    bytes = pack ? PackPixels(this->Numbers.data(), count, this->Bytes.data() + begin)
-                 : WritePlain(this->Numbers.data(), count, this->Bytes.data() + begin);
+    if (pack)
+    {
+      bytes = PackPixels(this->Numbers.data(), count, this->Bytes.data() + begin);
+      packed = PackedBit;
+      // Smooth pictures gain from the row above, noisy ones lose.
+      SubtractAbove(this->Segments, this->Numbers.data());
+      this->Other.resize(PackedBytesAtMost(count));
+      const std::size_t other = PackPixels(this->Numbers.data(), count, this->Other.data());
+      if (other < bytes)
+      {
+        std::memcpy(this->Bytes.data() + begin, this->Other.data(), other);
+        bytes = other;
+        packed |= AboveBit;
+      }
+    }
+    else
+    {
+      bytes = WritePlain(this->Numbers.data(), count, this->Bytes.data() + begin);
+    }
     this->Bytes.resize(begin + bytes);
-    packed = pack ? PackedBit : 0u;
   }
   const std::uint32_t sizes[] = { static_cast<std::uint32_t>(this->Runs.size()),
     static_cast<std::uint32_t>(bytes) | packed };
@@ -193,9 +292,53 @@ std::uint32_t FragmentReader::Number()
   return number;
 }
 
-void FragmentReader::ReadPixels(
-  std::size_t drawn, const FragmentFormat& format, std::size_t bytes, bool packed)
+void FragmentReader::ReadSegments(
+  const CompositePlan::Region& region, std::size_t drawn, std::size_t bytes)
 {
+  this->Segments.clear();
+  RunLengths lengths(this->From, this->From + bytes);
+  this->From += bytes;
+  std::size_t found = 0;
+  bool drawing = false;
+  std::size_t left = lengths.Next();
+  for (const CompositePlan::Run& run : region)
+  {
+    const int width = run.Hi - run.Lo;
+    for (int x = 0; x < width;)
+    {
+      while (left == 0)
+      {
+        if (found == drawn)
+        {
+          return;
+        }
+        left = lengths.Next();
+        drawing = !drawing;
+      }
+      const int here = static_cast<int>(std::min<std::size_t>(left, width - x));
+      left -= static_cast<std::size_t>(here);
+      if (drawing)
+      {
+        found += static_cast<std::size_t>(here);
+        this->Segments.push_back(
+          { run.Y, run.Reversed ? run.Hi - 1 - x : run.Lo + x, run.Reversed ? -1 : 1, here });
+      }
+      if (found > drawn)
+      {
+        Damaged();
+      }
+      x += here;
+    }
+  }
+  if (found != drawn)
+  {
+    Damaged();
+  }
+}
+
+void FragmentReader::ReadPixels(std::size_t drawn, const FragmentFormat& format, std::uint32_t size)
+{
+  const std::size_t bytes = size & ~(PackedBit | AboveBit);
   this->Drawn.resize(drawn);
   if (format.Kind == FragmentFormat::Floats)
   {
@@ -204,11 +347,19 @@ void FragmentReader::ReadPixels(
       Damaged();
     }
     std::memcpy(this->Drawn.data(), this->From, bytes);
-    return;
   }
-  this->Numbers.resize(4 * drawn);
-  (packed ? UnpackPixels : ReadPlain)(this->From, bytes, drawn, this->Numbers.data());
-  RestorePixels(format, this->Numbers.data(), drawn, this->Drawn.data());
+  else
+  {
+    this->Numbers.resize(4 * drawn);
+    const bool packed = (size & PackedBit) != 0;
+    (packed ? UnpackPixels : ReadPlain)(this->From, bytes, drawn, this->Numbers.data());
+    if ((size & AboveBit) != 0)
+    {
+      AddAbove(this->Segments, this->Numbers.data());
+    }
+    RestorePixels(format, this->Numbers.data(), drawn, this->Drawn.data());
+  }
+  this->From += bytes;
 }
 
 void FragmentReader::Blend(
@@ -232,53 +383,22 @@ void FragmentReader::Blend(
   this->From += sizeof(format);
   const std::size_t runBytes = this->Number();
   const std::uint32_t size = this->Number();
-  const std::size_t pixelBytes = size & ~PackedBit;
-  if (static_cast<std::size_t>(this->End - this->From) < runBytes + pixelBytes)
+  if (static_cast<std::size_t>(this->End - this->From) <
+      runBytes + (size & ~(PackedBit | AboveBit)))
   {
     Damaged();
   }
-  RunLengths lengths(this->From, this->From + runBytes);
-  this->From += runBytes;
-  this->ReadPixels(drawn, format, pixelBytes, (size & PackedBit) != 0);
-  this->From += pixelBytes;
-
-  std::size_t next = 0;
-  bool drawing = false;
-  std::size_t left = lengths.Next();
-  for (const CompositePlan::Run& run : region)
+  this->ReadSegments(region, drawn, runBytes);
+  this->ReadPixels(drawn, format, size);
+  const glm::vec4* read = this->Drawn.data();
+  for (const DrawnSegment& segment : this->Segments)
   {
-    glm::vec4* row = &target.At(run.Lo, run.Y);
-    const int width = run.Hi - run.Lo;
-    for (int x = 0; x < width;)
+    glm::vec4* pixel = &target.At(segment.X, segment.Y);
+    for (int i = 0; i < segment.Count; ++i, pixel += segment.Step, ++read)
     {
-      while (left == 0)
-      {
-        if (next == drawn)
-        {
-          return;
-        }
-        left = lengths.Next();
-        drawing = !drawing;
-      }
-      const int here = static_cast<int>(std::min<std::size_t>(left, width - x));
-      left -= static_cast<std::size_t>(here);
-      if (drawing && drawn - next < static_cast<std::size_t>(here))
-      {
-        Damaged();
-      }
-      for (int i = x; drawing && i < x + here; ++i)
-      {
-        glm::vec4& pixel = row[run.Reversed ? width - 1 - i : i];
-        const glm::vec4& read = this->Drawn[next++];
-        pixel = place == Place::Before ? Combined(read, pixel, combination)
-                                       : Combined(pixel, read, combination);
-      }
-      x += here;
+      *pixel = place == Place::Before ? Combined(*read, *pixel, combination)
+                                      : Combined(*pixel, *read, combination);
     }
-  }
-  if (next != drawn)
-  {
-    Damaged();
   }
 }
 

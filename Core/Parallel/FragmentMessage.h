@@ -15,6 +15,15 @@ namespace banyan
 /// The pixel of two parts of a volume, of which one lies before the other.
 glm::vec4 Combined(const glm::vec4& front, const glm::vec4& back, Combination combination);
 
+/// Drawn pixels that follow each other in a row.
+struct DrawnSegment
+{
+  int Y = 0;
+  int X = 0;    ///< of the first one
+  int Step = 1; ///< to the next one: 1 or -1
+  int Count = 0;
+};
+
 /// Writes pixels of regions into one message. A region that both sides know needs no coordinates:
 /// only which of its pixels are drawn (not all zero), as the lengths of runs, and these.
 ///
@@ -37,8 +46,10 @@ private:
   void AddRun(std::size_t length);
 
   std::vector<glm::vec4> Drawn;
+  std::vector<DrawnSegment> Segments;
   std::vector<std::uint8_t> Runs;
   std::vector<std::uint16_t> Numbers;
+  std::vector<std::uint8_t> Other; ///< packed in the other one of two ways
 };
 
 /// What a part of so many pixels takes at most, with room that packing writes over.
@@ -68,11 +79,13 @@ public:
 
 private:
   std::uint32_t Number();
-  void ReadPixels(std::size_t drawn, const FragmentFormat& format, std::size_t bytes, bool packed);
+  void ReadSegments(const CompositePlan::Region& region, std::size_t drawn, std::size_t bytes);
+  void ReadPixels(std::size_t drawn, const FragmentFormat& format, std::uint32_t size);
 
   const std::uint8_t* From;
   const std::uint8_t* End;
   std::vector<glm::vec4> Drawn;
+  std::vector<DrawnSegment> Segments;
   std::vector<std::uint16_t> Numbers;
 };
 

@@ -3,7 +3,9 @@
 #include "Base/Error.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <vector>
 
 namespace banyan
 {
@@ -120,14 +122,13 @@ void CopyLastGroup(const std::uint16_t* numbers, std::size_t count, std::uint16_
   }
 }
 
-std::uint8_t* PackGroup(const std::uint16_t* group, std::uint16_t* before, std::uint8_t* to)
+std::uint8_t* PackGroup(const std::int16_t* differences, std::uint8_t* to)
 {
   std::uint16_t zigzag[4 * Group];
   std::uint16_t any[4] = {};
   for (std::size_t i = 0; i < 4 * Group; ++i)
   {
-    const std::uint16_t previous = i < 4 ? before[i] : group[i - 4];
-    const auto difference = static_cast<std::int16_t>(group[i] - previous);
+    const std::int16_t difference = differences[i];
     zigzag[i] = static_cast<std::uint16_t>(
       (static_cast<std::uint16_t>(difference) << 1) ^ static_cast<std::uint16_t>(difference >> 15));
   }
@@ -135,7 +136,6 @@ std::uint8_t* PackGroup(const std::uint16_t* group, std::uint16_t* before, std::
   {
     any[i % 4] = static_cast<std::uint16_t>(any[i % 4] | zigzag[i]);
   }
-  std::memcpy(before, group + 4 * (Group - 1), 4 * sizeof(std::uint16_t));
   unsigned header = 0;
   for (unsigned c = 0; c < 4; ++c)
   {
@@ -152,13 +152,102 @@ std::uint8_t* PackGroup(const std::uint16_t* group, std::uint16_t* before, std::
   return to;
 }
 
-void UndoDifferences(const std::uint16_t* zigzag, std::uint16_t* before, std::uint16_t* group)
+/// What differences of some channels say about those of others, in parts of 32.
+struct Factors
 {
+  static constexpr std::size_t Bytes = 5;
+  std::int8_t GreenOfAlpha = 0;
+  std::int8_t RedOfAlpha = 0;
+  std::int8_t RedOfGreen = 0;
+  std::int8_t BlueOfAlpha = 0;
+  std::int8_t BlueOfGreen = 0;
+};
+
+std::int8_t InParts(double factor)
+{
+  return static_cast<std::int8_t>(std::clamp(std::floor(32.0 * factor + 0.5), -127.0, 127.0));
+}
+
+/// Least squares, from a part of the pixels: with too few or with flat ones all are 0.
+Factors Fitted(const std::int16_t* differences, std::size_t count)
+{
+  // Every fourth group: how well they fit matters, not which they are.
+  float sums[9] = {};
+  for (std::size_t first = 0; first < count; first += 4 * Group)
+  {
+    const std::size_t last = std::min(first + Group, count);
+    for (std::size_t i = first; i < last; ++i)
+    {
+      const std::int16_t* d = differences + 4 * i;
+      const float r = d[0], g = d[1], b = d[2], a = d[3];
+      const float products[9] = { a * a, a * g, g * g, r * a, r * g, b * a, b * g, r * r, b * b };
+      for (int k = 0; k < 9; ++k)
+      {
+        sums[k] += products[k];
+      }
+    }
+  }
+  const double aa = sums[0], ag = sums[1], gg = sums[2];
+  Factors factors;
+  factors.GreenOfAlpha = InParts(aa > 0.0 ? ag / aa : 0.0);
+  const double determinant = aa * gg - ag * ag;
+  // Green that follows alpha says nothing that alpha does not.
+  const bool both = determinant > 1e-3 * aa * gg;
+  const auto fit = [&](double ca, double cg, std::int8_t& ofAlpha, std::int8_t& ofGreen)
+  {
+    ofAlpha = InParts(both ? (ca * gg - cg * ag) / determinant : (aa > 0.0 ? ca / aa : 0.0));
+    ofGreen = InParts(
+      both ? (cg * aa - ca * ag) / determinant : (aa > 0.0 ? 0.0 : (gg > 0.0 ? cg / gg : 0.0)));
+  };
+  fit(sums[3], sums[4], factors.RedOfAlpha, factors.RedOfGreen);
+  fit(sums[5], sums[6], factors.BlueOfAlpha, factors.BlueOfGreen);
+  return factors;
+}
+
+int Share(int alpha, int ofAlpha, int green, int ofGreen)
+{
+  return (alpha * ofAlpha + green * ofGreen) >> 5;
+}
+
+void SubtractShares(const Factors& factors, std::int16_t* differences, std::size_t count)
+{
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    std::int16_t* d = differences + 4 * i;
+    const int green = d[1];
+    const int alpha = d[3];
+    d[0] =
+      static_cast<std::int16_t>(d[0] - Share(alpha, factors.RedOfAlpha, green, factors.RedOfGreen));
+    d[2] = static_cast<std::int16_t>(
+      d[2] - Share(alpha, factors.BlueOfAlpha, green, factors.BlueOfGreen));
+    d[1] = static_cast<std::int16_t>(green - Share(alpha, factors.GreenOfAlpha, 0, 0));
+  }
+}
+
+/// Numbers of a group from what PackGroup has written down of them.
+void UndoDifferences(
+  const Factors& factors, const std::uint16_t* zigzag, std::uint16_t* before, std::uint16_t* group)
+{
+  std::int16_t d[4 * Group];
   for (std::size_t i = 0; i < 4 * Group; ++i)
   {
     const unsigned z = zigzag[i];
-    const unsigned difference = (z >> 1) ^ (0u - (z & 1u));
-    before[i % 4] = static_cast<std::uint16_t>(before[i % 4] + difference);
+    d[i] = static_cast<std::int16_t>((z >> 1) ^ (0u - (z & 1u)));
+  }
+  for (std::size_t i = 0; i < 4 * Group; i += 4)
+  {
+    const int alpha = d[i + 3];
+    const auto green =
+      static_cast<std::int16_t>(d[i + 1] + Share(alpha, factors.GreenOfAlpha, 0, 0));
+    d[i] =
+      static_cast<std::int16_t>(d[i] + Share(alpha, factors.RedOfAlpha, green, factors.RedOfGreen));
+    d[i + 2] = static_cast<std::int16_t>(
+      d[i + 2] + Share(alpha, factors.BlueOfAlpha, green, factors.BlueOfGreen));
+    d[i + 1] = green;
+  }
+  for (std::size_t i = 0; i < 4 * Group; ++i)
+  {
+    before[i % 4] = static_cast<std::uint16_t>(before[i % 4] + d[i]);
     group[i] = before[i % 4];
   }
 }
@@ -168,23 +257,24 @@ void UndoDifferences(const std::uint16_t* zigzag, std::uint16_t* before, std::ui
 std::size_t PackedBytesAtMost(std::size_t count)
 {
   const std::size_t groups = (count + Group - 1) / Group;
-  return groups * (2 + 4 * 16) + 4 + 2 * Slack;
+  return groups * (2 + 4 * 16) + Factors::Bytes + 2 * Slack;
 }
 
 std::size_t PackPixels(const std::uint16_t* numbers, std::size_t count, std::uint8_t* packed)
 {
-  std::uint8_t* to = packed;
-  std::uint16_t before[4] = {};
+  // Whole groups: what is missing has differences 0.
+  std::vector<std::int16_t> differences((count + Group - 1) / Group * 4 * Group, 0);
+  for (std::size_t i = 0; i < 4 * count; ++i)
+  {
+    differences[i] = static_cast<std::int16_t>(numbers[i] - (i < 4 ? 0 : numbers[i - 4]));
+  }
+  const Factors factors = Fitted(differences.data(), count);
+  SubtractShares(factors, differences.data(), count);
+  std::memcpy(packed, &factors, Factors::Bytes);
+  std::uint8_t* to = packed + Factors::Bytes;
   for (std::size_t first = 0; first < count; first += Group)
   {
-    std::uint16_t padded[4 * Group];
-    const std::uint16_t* group = numbers + 4 * first;
-    if (count - first < Group)
-    {
-      CopyLastGroup(group, count - first, padded);
-      group = padded;
-    }
-    to = PackGroup(group, before, to);
+    to = PackGroup(differences.data() + 4 * first, to);
   }
   return static_cast<std::size_t>(to - packed);
 }
@@ -192,7 +282,13 @@ std::size_t PackPixels(const std::uint16_t* numbers, std::size_t count, std::uin
 void UnpackPixels(
   const std::uint8_t* packed, std::size_t bytes, std::size_t count, std::uint16_t* numbers)
 {
-  const std::uint8_t* from = packed;
+  if (bytes < Factors::Bytes)
+  {
+    Fail(bytes, Factors::Bytes);
+  }
+  Factors factors;
+  std::memcpy(&factors, packed, Factors::Bytes);
+  const std::uint8_t* from = packed + Factors::Bytes;
   const std::uint8_t* end = packed + bytes;
   std::uint16_t before[4] = {};
   for (std::size_t first = 0; first < count; first += Group)
@@ -216,7 +312,7 @@ void UnpackPixels(
     }
     std::uint16_t padded[4 * Group];
     const std::size_t here = std::min(Group, count - first);
-    UndoDifferences(zigzag, before, here == Group ? numbers + 4 * first : padded);
+    UndoDifferences(factors, zigzag, before, here == Group ? numbers + 4 * first : padded);
     if (here < Group)
     {
       std::memcpy(numbers + 4 * first, padded, 4 * here * sizeof(std::uint16_t));

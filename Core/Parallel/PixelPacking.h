@@ -9,12 +9,16 @@ namespace banyan
 
 /// Lossless packing of pixels of four whole numbers of 16 bits.
 ///
-/// Eight pixels after the other: per channel the differences to the pixel before (modulo 2^16),
-/// made positive by zig-zag (0, -1, 1, -2, ... become 0, 1, 2, 3, ...), and of these only as many
-/// bits as the largest of the eight needs: 0 to 14, or 16. A group begins with 2 bytes, 4 bits per
-/// channel (red lowest; 15 says 16), then come the bits of each channel: first the lowest ones of
-/// the eight numbers in one byte, first pixel lowest, then the next. Missing pixels of the last
-/// group repeat the last one.
+/// Per channel the difference to the pixel before, modulo 2^16. What the difference of alpha lets
+/// expect of green, and alpha and green of red and blue, is subtracted: (a * alpha + g * green) /
+/// 32, rounded down, with five factors a and g that are fitted to these pixels (least squares);
+/// they stand at the beginning, a byte with sign each: green's a, red's a and g, blue's a and g.
+///
+/// Then eight pixels after the other: numbers are made positive by zig-zag (0, -1, 1, -2, ...
+/// become 0, 1, 2, 3, ...), and of these only as many bits are kept as the largest of the eight
+/// needs: 0 to 14, or 16. A group begins with 2 bytes, 4 bits per channel (red lowest; 15 says 16),
+/// then come the bits of each channel: first the lowest ones of the eight numbers in one byte,
+/// first pixel lowest, then the next. Missing pixels of the last group have differences 0.
 /// @return bytes written, at most PackedBytesAtMost
 std::size_t PackPixels(const std::uint16_t* numbers, std::size_t count, std::uint8_t* packed);
 

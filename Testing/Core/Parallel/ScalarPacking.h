@@ -9,12 +9,42 @@
 namespace banyan::testing
 {
 
-inline std::vector<std::uint8_t> PackedSlowly(const std::vector<std::uint16_t>& numbers)
+/// @param factors what the packing has fitted, which may be anything
+inline std::vector<std::uint8_t> PackedSlowly(
+  const std::vector<std::uint16_t>& numbers, const std::vector<std::int8_t>& factors)
 {
   const std::size_t count = numbers.size() / 4;
-  const auto numberOf = [&](std::size_t pixel, std::size_t channel)
-  { return numbers[4 * std::min(pixel, count - 1) + channel]; };
+  const auto difference = [&](std::size_t pixel, std::size_t channel)
+  {
+    const int before = pixel == 0 || pixel >= count ? 0 : numbers[4 * (pixel - 1) + channel];
+    return static_cast<std::int16_t>(pixel < count ? numbers[4 * pixel + channel] - before : 0);
+  };
+  const auto rest = [&](std::size_t pixel, std::size_t channel)
+  {
+    const int green = difference(pixel, 1);
+    const int alpha = difference(pixel, 3);
+    int expected = 0;
+    switch (channel)
+    {
+      case 0:
+        expected = (alpha * factors[1] + green * factors[2]) >> 5;
+        break;
+      case 1:
+        expected = (alpha * factors[0]) >> 5;
+        break;
+      case 2:
+        expected = (alpha * factors[3] + green * factors[4]) >> 5;
+        break;
+      default:
+        break;
+    }
+    return static_cast<std::int16_t>(difference(pixel, channel) - expected);
+  };
   std::vector<std::uint8_t> packed;
+  for (const std::int8_t factor : factors)
+  {
+    packed.push_back(static_cast<std::uint8_t>(factor));
+  }
   for (std::size_t first = 0; first < count; first += 8)
   {
     unsigned header = 0;
@@ -25,9 +55,8 @@ inline std::vector<std::uint8_t> PackedSlowly(const std::vector<std::uint16_t>& 
       unsigned bits = 0;
       for (std::size_t i = 0; i < 8; ++i)
       {
-        const int before = first + i == 0 ? 0 : numberOf(first + i - 1, channel);
-        const int difference = static_cast<std::int16_t>(numberOf(first + i, channel) - before);
-        zigzag[i] = static_cast<unsigned>(difference < 0 ? -2 * difference - 1 : 2 * difference);
+        const int number = rest(first + i, channel);
+        zigzag[i] = static_cast<unsigned>(number < 0 ? -2 * number - 1 : 2 * number);
         while (zigzag[i] >> bits != 0)
         {
           ++bits;
