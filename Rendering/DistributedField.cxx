@@ -1,5 +1,6 @@
 #include "DistributedField.h"
 
+#include "MeshField.h"
 #include "PlainSource.h"
 
 #include "Cache/BrickCache.h"
@@ -10,6 +11,7 @@
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -91,10 +93,14 @@ std::uint64_t DistributedField::BytesRead() const
 
 bool DistributedField::ChangedHere(const FieldPiece& piece)
 {
-  const std::array<std::uint64_t, 5> stamp{ { reinterpret_cast<std::uintptr_t>(piece.Image),
+  const std::array<std::uint64_t, 7> stamp{ { reinterpret_cast<std::uintptr_t>(piece.Image),
     piece.Image ? piece.Image->GetMTime() : 0, reinterpret_cast<std::uintptr_t>(piece.Array),
-    piece.Array ? piece.Array->GetMTime() : 0, static_cast<std::uint64_t>(piece.Component + 1) } };
-  const bool changed = this->Fresh || stamp != this->Stamp || piece.Problem != this->PieceProblem;
+    piece.Array ? piece.Array->GetMTime() : 0, static_cast<std::uint64_t>(piece.Component + 1),
+    reinterpret_cast<std::uintptr_t>(piece.Grid), piece.Grid ? piece.Grid->GetMTime() : 0 } };
+  const bool changed = this->Fresh || stamp != this->Stamp ||
+                       piece.MeshTolerance != this->StampedTolerance ||
+                       piece.Problem != this->PieceProblem;
+  this->StampedTolerance = piece.MeshTolerance;
   this->Stamp = stamp;
   this->PieceProblem = piece.Problem;
   this->Fresh = false;
@@ -108,7 +114,10 @@ void DistributedField::Update(Communicator& communicator, const FieldPiece& piec
   {
     ++this->Updates;
     this->ProblemText = piece.Problem;
-    this->Agree(communicator, piece);
+    if (!this->TakeMesh(communicator, piece))
+    {
+      this->Agree(communicator, piece);
+    }
     this->AgreeOnRange(communicator);
   }
 }

@@ -15,23 +15,29 @@
 
 class vtkDataArray;
 class vtkImageData;
+class vtkUnstructuredGrid;
 
 namespace banyan
 {
 
+class MeshField;
+
 /// This rank's part of a field of scalars.
 struct FieldPiece
 {
-  vtkImageData* Image = nullptr; ///< null on ranks without data
-  vtkDataArray* Array = nullptr; ///< point data of Image
+  vtkImageData* Image = nullptr;       ///< null on ranks without data
+  vtkUnstructuredGrid* Grid = nullptr; ///< in place of Image: hexahedra
+  vtkDataArray* Array = nullptr;       ///< point data of Image or Grid
   int Component = 0;             ///< -1: Euclidean norm of all components
+  double MeshTolerance = 0.0;    ///< of Grid: see ElementOctree::Find; the same on all ranks
   std::string Problem;           ///< why this rank's data cannot be drawn; empty if it can
 };
 
 /// One field of scalars that lies distributed over the ranks, agreed upon by all of them: one grid,
 /// and one zone of cells per rank. Pieces of an encoded series that nobody has touched or moved are
 /// drawn from the file, brick by brick, in zones of their own; anything else from the values in
-/// memory, each rank its piece.
+/// memory, each rank its piece. Hexahedral meshes are put together on all ranks, and each draws a
+/// zone (see MeshField).
 class DistributedField
 {
 public:
@@ -64,6 +70,9 @@ public:
   /// Whether bricks come from an encoded series.
   bool Encoded() const { return this->Series != nullptr; }
 
+  /// Whether there are coarser levels of it, wherever one process has all of it.
+  bool HasLevels() const { return this->Mesh == nullptr; }
+
   /// This rank's bricks; null when it has none.
   BrickSource* Source() { return this->Bricks.get(); }
   /// Bytes read so far from the series by this process; 0 for plain data.
@@ -75,6 +84,8 @@ private:
   bool ChangedHere(const FieldPiece& piece);
   void Agree(Communicator& communicator, const FieldPiece& piece);
   void AgreeOnRange(Communicator& communicator);
+  bool TakeMesh(Communicator& communicator, const FieldPiece& piece);
+  void SetMesh();
   Facts FactsOf(const FieldPiece& piece) const;
   std::string CheckAgainst(const Facts& mine, const Facts& first, int firstRank) const;
   void SetGrid(const Facts& facts, const Box& samples);
@@ -91,9 +102,11 @@ private:
   std::array<double, 6> PhysicalBounds{ { 1, -1, 1, -1, 1, -1 } };
   double ShortestEdge = 1.0;
   ValueRange ValuesRange;
+  std::unique_ptr<MeshField> Mesh; ///< null unless it is one of hexahedra
   std::unique_ptr<BrickSource> Bricks;
   std::shared_ptr<const SeriesFile> Series;
-  std::array<std::uint64_t, 5> Stamp{ {} };
+  std::array<std::uint64_t, 7> Stamp{ {} };
+  double StampedTolerance = 0.0;
   bool Fresh = true;
   std::uint64_t Updates = 0;
 };

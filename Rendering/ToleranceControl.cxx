@@ -20,7 +20,8 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
   const Wish& wish, std::uint64_t budgetBytes, const std::string& failure, FrameStatistics& frame)
 {
   // Pieces on ranks have no coarser levels, and still pictures are the same on any number of ranks.
-  const bool levels = field.Encoded() || (wish.Interacting && communicator.Size() == 1);
+  const bool levels =
+    field.HasLevels() && (field.Encoded() || (wish.Interacting && communicator.Size() == 1));
   if (wish.Interacting)
   {
     this->Passes.Interacted();

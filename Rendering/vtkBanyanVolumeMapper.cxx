@@ -27,6 +27,7 @@
 #include "vtkPointData.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
+#include "vtkUnstructuredGrid.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
 
@@ -61,7 +62,9 @@ vtkBanyanVolumeMapper::~vtkBanyanVolumeMapper() = default;
 
 int vtkBanyanVolumeMapper::FillInputPortInformation(int, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGrid");
   // A rank without data takes part in drawing all the same.
   info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   return 1;
@@ -115,13 +118,17 @@ banyan::FieldPiece vtkBanyanVolumeMapper::Internals::PieceOf(
   vtkBanyanVolumeMapper* mapper, vtkVolume* volume) const
 {
   banyan::FieldPiece piece;
-  piece.Image = vtkImageData::SafeDownCast(mapper->GetDataObjectInput());
-  if (!piece.Image || piece.Image->GetNumberOfPoints() == 0)
+  piece.MeshTolerance = mapper->GetMeshTolerance();
+  vtkDataSet* data = vtkDataSet::SafeDownCast(mapper->GetDataObjectInput());
+  vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(data);
+  // Points alone are nothing that a ray meets.
+  if (!data || data->GetNumberOfPoints() == 0 || (grid && grid->GetNumberOfCells() == 0))
   {
-    piece.Image = nullptr;
     return piece;
   }
-  piece.Array = mapper->GetArrayToDraw(piece.Image);
+  piece.Image = vtkImageData::SafeDownCast(data);
+  piece.Grid = grid;
+  piece.Array = mapper->GetArrayToDraw(data);
   if (!piece.Array)
   {
     const char* name = mapper->GetArrayName();
@@ -129,7 +136,7 @@ banyan::FieldPiece vtkBanyanVolumeMapper::Internals::PieceOf(
       name && *name ? "The data has no point array '" + std::string(name) + "' of numbers to draw."
                     : "The data has no point array to draw: select one in 'Coloring'.";
   }
-  else if (piece.Array->GetNumberOfTuples() != piece.Image->GetNumberOfPoints())
+  else if (piece.Array->GetNumberOfTuples() != data->GetNumberOfPoints())
   {
     piece.Problem =
       "The array '" + std::string(mapper->GetArrayName() ? mapper->GetArrayName() : "") +
@@ -149,18 +156,18 @@ banyan::FieldPiece vtkBanyanVolumeMapper::Internals::PieceOf(
   return piece;
 }
 
-vtkDataArray* vtkBanyanVolumeMapper::GetArrayToDraw(vtkImageData* image)
+vtkDataArray* vtkBanyanVolumeMapper::GetArrayToDraw(vtkDataSet* data)
 {
-  if (!image)
+  if (!data)
   {
     return nullptr;
   }
   int isCellData = 0;
-  vtkDataArray* array = vtkAbstractMapper::GetScalars(image, this->GetScalarMode(),
+  vtkDataArray* array = vtkAbstractMapper::GetScalars(data, this->GetScalarMode(),
     this->GetArrayAccessMode(), this->GetArrayId(), this->GetArrayName(), isCellData);
   if (!array && this->GetScalarMode() == VTK_SCALAR_MODE_DEFAULT)
   {
-    array = image->GetPointData()->GetArray(0);
+    array = data->GetPointData()->GetArray(0);
   }
   return array;
 }
@@ -335,6 +342,7 @@ void vtkBanyanVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "InteractiveFrameSeconds: " << this->InteractiveFrameSeconds << "\n"
      << indent << "RefineInPasses: " << this->RefineInPasses << "\n"
      << indent << "SampleDistanceVoxels: " << this->SampleDistanceVoxels << "\n"
+     << indent << "MeshTolerance: " << this->MeshTolerance << "\n"
      << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"
      << indent << "Controller: " << this->Controller.GetPointer() << "\n"
      << indent << "Statistics: " << this->Statistics.GetPointer() << "\n";

@@ -10,15 +10,17 @@
 
 class vtkBanyanFrameStatistics;
 class vtkDataArray;
-class vtkImageData;
+class vtkDataSet;
 class vtkMultiProcessController;
 
 /**
  * @class vtkBanyanVolumeMapper
- * @brief draws image data, encoded or plain, on one rank or many, with Banyan's own ray caster
+ * @brief draws image data, encoded or plain, and meshes of hexahedra that are the leaves of an octree,
+ * on one rank or many, with Banyan's own ray caster
  *
  * Use it like any volume mapper: give it image data (the output of vtkBanyanSeriesReader draws
- * without being decoded) and put it into a vtkVolume with a colour and an opacity function. Rays
+ * without being decoded), or an unstructured grid of axis-aligned hexahedra or voxels (each is drawn as
+ * the trilinear element that it is; vtkBanyanHexOctree says what is wrong with others), and put it into a vtkVolume with a colour and an opacity function. Rays
  * end at opaque geometry that was drawn before.
  *
  * With a controller of several ranks, Render() is collective: each rank draws its zone and rank 0
@@ -95,6 +97,16 @@ public:
 
   ///@{
   /**
+   * How far the points of hexahedra may lie beside the lattice of their octree, in edges of the smallest
+   * cell: they are drawn as if they were there. Default 1/1024; allowed [0, 1/16]. More than the default
+   * is for meshes whose points were moved by the displacements that they carry.
+   */
+  vtkSetClampMacro(MeshTolerance, double, 0.0, 0.0625);
+  vtkGetMacro(MeshTolerance, double);
+  ///@}
+
+  ///@{
+  /**
    * Threads that cast rays and decode in this process; 0 (default) takes the cores divided by the
    * ranks on this machine.
    */
@@ -128,10 +140,10 @@ public:
   void UpdateField(vtkVolume* volume);
 
   /**
-   * The point or cell array of `image` that the mapper's scalar mode selects; with the default mode
+   * The point or cell array of `data` that the mapper's scalar mode selects; with the default mode
    * the active scalars, or the first array of numbers. Null if there is none.
    */
-  vtkDataArray* GetArrayToDraw(vtkImageData* image);
+  vtkDataArray* GetArrayToDraw(vtkDataSet* data);
 
   /**
    * Bounds of the whole field, over all ranks, once UpdateField() or Render() was called; those of
@@ -161,6 +173,7 @@ private:
   double InteractiveFrameSeconds = 0.2;
   bool RefineInPasses = false;
   double SampleDistanceVoxels = 0.0;
+  double MeshTolerance = 1.0 / 1024;
   int NumberOfThreads = 0;
   vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkSmartPointer<vtkBanyanFrameStatistics> Statistics;

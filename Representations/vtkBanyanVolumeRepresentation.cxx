@@ -5,8 +5,11 @@
 #include "vtkBanyanVolumeMapper.h"
 
 #include "vtkAbstractMapper.h"
+#include "vtkAppendFilter.h"
 #include "vtkColorTransferFunction.h"
 #include "vtkCommunicator.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -17,13 +20,45 @@
 #include "vtkPVRenderView.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkRenderer.h"
+#include "vtkUnstructuredGrid.h"
 #include "vtkVolumeProperty.h"
+
+namespace
+{
+
+/// A data set, or the blocks of one as one grid; null if there is none.
+vtkSmartPointer<vtkDataSet> DataOf(vtkDataObject* data)
+{
+  vtkCompositeDataSet* const blocks = vtkCompositeDataSet::SafeDownCast(data);
+  if (!blocks)
+  {
+    return vtkDataSet::SafeDownCast(data);
+  }
+  vtkNew<vtkAppendFilter> append;
+  const auto visit = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
+  for (visit->InitTraversal(); !visit->IsDoneWithTraversal(); visit->GoToNextItem())
+  {
+    vtkDataSet* const block = vtkDataSet::SafeDownCast(visit->GetCurrentDataObject());
+    if (block && block->GetNumberOfPoints() > 0)
+    {
+      append->AddInputData(block);
+    }
+  }
+  if (append->GetNumberOfInputConnections(0) == 0)
+  {
+    return nullptr;
+  }
+  append->Update();
+  return append->GetOutput();
+}
+
+} // namespace
 
 vtkStandardNewMacro(vtkBanyanVolumeRepresentation);
 
 vtkBanyanVolumeRepresentation::vtkBanyanVolumeRepresentation()
   : Prop(vtkSmartPointer<vtkBanyanVolume>::New())
-  , Piece(vtkSmartPointer<vtkImageData>::New())
+  , Piece(vtkSmartPointer<vtkImageData>::New().GetPointer())
 {
   // The superclass has made a prop of ParaView's own: ours takes its place.
   this->Actor = this->Prop;
@@ -37,7 +72,11 @@ vtkBanyanVolumeRepresentation::~vtkBanyanVolumeRepresentation() = default;
 
 int vtkBanyanVolumeRepresentation::FillInputPortInformation(int, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGrid");
+  // Blocks of hexahedra are drawn as one mesh.
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
   info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   return 1;
 }
@@ -47,11 +86,13 @@ int vtkBanyanVolumeRepresentation::RequestData(
 {
   vtkMath::UninitializeBounds(this->DataBounds);
   this->DataSize = 0;
-  this->Piece = vtkSmartPointer<vtkImageData>::New();
+  this->Piece = vtkSmartPointer<vtkImageData>::New().GetPointer();
   if (inputVector[0]->GetNumberOfInformationObjects() == 1)
   {
-    if (vtkImageData* input = vtkImageData::GetData(inputVector[0], 0))
+    if (const vtkSmartPointer<vtkDataSet> input =
+          DataOf(vtkDataObject::GetData(inputVector[0], 0)))
     {
+      this->Piece = vtkSmartPointer<vtkDataSet>::Take(input->NewInstance());
       this->Piece->ShallowCopy(input);
       if (input->GetNumberOfPoints() > 0)
       {
@@ -105,8 +146,8 @@ int vtkBanyanVolumeRepresentation::ProcessViewRequest(
 /// Collective over the ranks that render.
 void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
 {
-  vtkImageData* image = vtkImageData::SafeDownCast(piece);
-  this->Mapper->SetInputDataObject(image);
+  vtkDataSet* data = vtkDataSet::SafeDownCast(piece);
+  this->Mapper->SetInputDataObject(data);
   this->Mapper->SetController(vtkMultiProcessController::GetGlobalController());
   this->SelectArray();
   this->Property->SetIndependentComponents(1);
@@ -115,7 +156,7 @@ void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
   this->Prop->SetView(vtkPVRenderView::SafeDownCast(this->GetView()));
   if (!this->ColorGiven || !this->OpacityGiven)
   {
-    this->UseDefaultFunctions(image);
+    this->UseDefaultFunctions(data);
   }
   this->Mapper->SetBlendMode(this->BlendMode != 0 ? this->BlendMode : this->Projection);
   this->Mapper->UpdateField(this->Prop);
@@ -138,7 +179,7 @@ void vtkBanyanVolumeRepresentation::PlaceCroppingBox()
 }
 
 /// ParaView gives a colour map only with an array that was chosen by name. Collective.
-void vtkBanyanVolumeRepresentation::UseDefaultFunctions(vtkImageData* piece)
+void vtkBanyanVolumeRepresentation::UseDefaultFunctions(vtkDataSet* piece)
 {
   double local[2] = { VTK_DOUBLE_MIN, VTK_DOUBLE_MIN }; // -minimum, maximum
   if (vtkDataArray* array = this->Mapper->GetArrayToDraw(piece))
@@ -315,6 +356,11 @@ void vtkBanyanVolumeRepresentation::SetCroppingScale(double x, double y, double 
 void vtkBanyanVolumeRepresentation::SetCroppingScale(double scale[3])
 {
   this->SetCroppingScale(scale[0], scale[1], scale[2]);
+}
+
+void vtkBanyanVolumeRepresentation::SetMeshTolerance(double tolerance)
+{
+  this->Mapper->SetMeshTolerance(tolerance);
 }
 
 void vtkBanyanVolumeRepresentation::SetNumberOfThreads(int threads)

@@ -9,11 +9,12 @@
 class vtkBanyanFrameStatistics;
 class vtkBanyanVolume;
 class vtkBanyanVolumeMapper;
-class vtkImageData;
+class vtkDataSet;
 
 /**
  * @class vtkBanyanVolumeRepresentation
- * @brief ParaView's representation "Banyan Volume" of image data, encoded or plain
+ * @brief ParaView's representation "Banyan Volume" of image data, encoded or plain, and of hexahedral
+ * octree meshes
  *
  * Draws in parallel with its own compositing; data is never redistributed. Colour map, opacity
  * function and opacity unit distance are those of ParaView's own "Volume". With no array selected
@@ -84,6 +85,9 @@ public:
   void SetCroppingScale(double scale[3]);
   ///@}
 
+  /** How far points of hexahedra may lie beside the lattice of their octree, in finest edges. */
+  void SetMeshTolerance(double tolerance);
+
   /** Threads per process; 0 (default) shares the cores of a machine among its ranks. */
   void SetNumberOfThreads(int threads);
 
@@ -107,11 +111,11 @@ private:
   void PrepareRender(vtkDataObject* piece);
   void PlaceCroppingBox();
   void SelectArray();
-  void UseDefaultFunctions(vtkImageData* piece);
+  void UseDefaultFunctions(vtkDataSet* piece);
 
   vtkNew<vtkBanyanVolumeMapper> Mapper;
   vtkSmartPointer<vtkBanyanVolume> Prop;
-  vtkSmartPointer<vtkImageData> Piece;
+  vtkSmartPointer<vtkDataSet> Piece;
   int InterpolationType = 1;
   bool NearestPoint = false;
   int BlendMode = 0;

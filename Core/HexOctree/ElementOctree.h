@@ -53,7 +53,13 @@ public:
   /// - edges that are not one power of two of the finest edge along all axes,
   /// - cells that begin elsewhere than at multiples of their size, and cells that overlap,
   /// - more than 2^21 finest cells along an axis, or 2^32 - 2 cells.
-  static std::shared_ptr<const ElementOctree> Find(const HexMesh& mesh, ThreadPool& pool);
+  /// @param tolerance how far a point may lie beside the lattice, in finest edges: it counts as if
+  /// it were there. At most LargestTolerance. More than the default is for meshes whose points were
+  /// moved, by the displacements of an earthquake, say
+  static std::shared_ptr<const ElementOctree> Find(
+    const HexMesh& mesh, ThreadPool& pool, double tolerance = DefaultTolerance);
+  static constexpr double DefaultTolerance = 1.0 / 1024;
+  static constexpr double LargestTolerance = 1.0 / 16;
 
   /// How many were found in this process so far: new values do not add to it.
   static std::int64_t FoundSoFar();
@@ -112,7 +118,7 @@ private:
   HexMesh Cells;
   glm::dvec3 LatticeOrigin{ 0.0 };
   glm::dvec3 FinestEdge{ 1.0 };
-  glm::dvec3 LatticeTolerance{ 0.0 };
+  glm::dvec3 LatticeTolerance{ 0.0 }; ///< lengths
   Box DomainCells;
   int CoarsestLeaf = 0;
   std::int64_t Holes = 0;

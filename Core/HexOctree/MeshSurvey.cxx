@@ -273,7 +273,7 @@ MeshSurvey SurveyMesh(const HexMesh& mesh, ThreadPool& pool)
   return survey;
 }
 
-LatticeAxis FindLattice(const MeshSurvey& survey, int axis)
+LatticeAxis FindLattice(const MeshSurvey& survey, int axis, double tolerance)
 {
   const double shortest = survey.Shortest[axis];
   // Between neighbouring numbers of the type, where they are largest.
@@ -325,7 +325,7 @@ LatticeAxis FindLattice(const MeshSurvey& survey, int axis)
   LatticeAxis lattice;
   lattice.Origin = planes.front();
   lattice.Edge = length / count;
-  lattice.Tolerance = std::max(lattice.Edge / 1024, 2.0 * spacing);
+  lattice.Tolerance = std::max(lattice.Edge * tolerance, 2.0 * spacing);
   return lattice;
 }
 

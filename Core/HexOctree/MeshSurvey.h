@@ -36,17 +36,18 @@ struct LatticeAxis
 {
   double Origin = 0.0;
   double Edge = 1.0;
-  /// How far a coordinate may lie from a plane of the lattice to be taken for it: 1/1024 of the
-  /// finest edge, or twice the distance of neighbouring numbers of the coordinates' type if that is
-  /// more: what rounding explains.
+  /// How far a coordinate may lie from a plane of the lattice to be taken for it: a part of the
+  /// finest edge that is asked for, or twice the distance of neighbouring numbers of the
+  /// coordinates' type if that is more: what rounding explains.
   double Tolerance = 0.0;
 };
 
 /// The lattice that the faces of the cells lie on along an axis. Steps between neighbouring planes
 /// are counted from the shortest to the longest, each with the edge that those before it have on
 /// average: rounded coordinates then add up to no wrong count in large meshes.
+/// @param tolerance in finest edges
 /// Throws Error when coordinates are rounded to more than a sixteenth of an edge.
-LatticeAxis FindLattice(const MeshSurvey& survey, int axis);
+LatticeAxis FindLattice(const MeshSurvey& survey, int axis, double tolerance);
 
 } // namespace banyan
 

@@ -90,7 +90,7 @@ private:
            std::to_string(std::abs(off)) + " of the finest edge (" +
            std::to_string(this->Tree.FinestEdge[axis]) +
            ") beside the lattice of the others along " + "xyz"[axis] + ", and " +
-           std::to_string(this->Allowed[axis]) + " is allowed for rounding";
+           std::to_string(this->Allowed[axis]) + " is allowed (MeshTolerance)";
   }
 
   std::string Fit(std::int64_t cell, const glm::ivec3 (&corners)[8], const glm::ivec3& low,
@@ -152,9 +152,10 @@ struct OctreeFinder::OrderMemory
   int Number = -1;
 };
 
-OctreeFinder::OctreeFinder(ElementOctree& tree, ThreadPool& pool)
+OctreeFinder::OctreeFinder(ElementOctree& tree, ThreadPool& pool, double tolerance)
   : Tree(tree)
   , Pool(pool)
+  , Tolerance(tolerance)
 {
 }
 
@@ -175,7 +176,7 @@ void OctreeFinder::AlignOrigin(const MeshSurvey& survey)
   glm::dvec3 last;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const LatticeAxis lattice = FindLattice(survey, axis);
+    const LatticeAxis lattice = FindLattice(survey, axis, this->Tolerance);
     tree.LatticeOrigin[axis] = lattice.Origin;
     tree.FinestEdge[axis] = lattice.Edge;
     tree.LatticeTolerance[axis] = lattice.Tolerance;
@@ -326,11 +327,16 @@ void OctreeFinder::ThrowOverlap(std::size_t leaf) const
               " overlap: no place may belong to two cells");
 }
 
-std::shared_ptr<const ElementOctree> ElementOctree::Find(const HexMesh& mesh, ThreadPool& pool)
+std::shared_ptr<const ElementOctree> ElementOctree::Find(
+  const HexMesh& mesh, ThreadPool& pool, double tolerance)
 {
+  if (!(tolerance >= 0.0 && tolerance <= LargestTolerance))
+  {
+    throw Error("The tolerance for points beside the lattice lies between 0 and 1/16");
+  }
   const std::shared_ptr<ElementOctree> tree(new ElementOctree());
   tree->Cells = mesh;
-  OctreeFinder(*tree, pool).Find();
+  OctreeFinder(*tree, pool, tolerance).Find();
   NodeFinder(*tree, pool).Find();
   ++Found;
   return tree;

@@ -15,7 +15,7 @@ namespace banyan
 class OctreeFinder
 {
 public:
-  OctreeFinder(ElementOctree& tree, ThreadPool& pool);
+  OctreeFinder(ElementOctree& tree, ThreadPool& pool, double tolerance);
   void Find();
 
 private:
@@ -39,6 +39,7 @@ private:
 
   ElementOctree& Tree;
   ThreadPool& Pool;
+  double Tolerance;
   std::mutex OrdersMutex;
   std::unordered_map<std::uint32_t, int> NumberOfOrders; ///< by their bits
   std::vector<std::uint8_t> LevelOfCell;

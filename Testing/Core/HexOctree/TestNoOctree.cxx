@@ -103,6 +103,13 @@ TEST_F(NoOctree, FlatAndWarpedCells)
   auto rounded = this->Mesh;
   rounded.Points[3 * static_cast<std::size_t>(rounded.IdAt(0, 2))] += 0.0005 * 0.5;
   EXPECT_EQ(Refusal(rounded), "found");
+  // More than that has to be asked for.
+  ThreadPool pool(1);
+  auto moved = this->Mesh;
+  moved.Points[3 * static_cast<std::size_t>(moved.IdAt(0, 2))] += 0.02 * 0.5;
+  EXPECT_EQ(ElementOctree::Find(moved.Mesh(), pool, 0.03)->LeafCount(),
+    meshes::Find(this->Mesh.Mesh())->LeafCount());
+  EXPECT_THROW(ElementOctree::Find(moved.Mesh(), pool, 0.5), Error);
 }
 
 TEST_F(NoOctree, TwoPointsAtOneCorner)

@@ -1,0 +1,20 @@
+#ifndef banyan_Filters_HexMeshOfGrid_h
+#define banyan_Filters_HexMeshOfGrid_h
+
+#include "BanyanFiltersModule.h" // for export macro
+#include "HexOctree/HexMesh.h"
+
+class vtkUnstructuredGrid;
+
+namespace banyan
+{
+
+/// The cells of an unstructured grid for ElementOctree: hexahedra and voxels. Ghost cells (those
+/// that another piece has too, and hidden ones) are left out, which takes a copy of the
+/// connectivity; otherwise nothing is copied, and the grid is kept alive. Throws Error with the
+/// first cell of another type, which says what it is and what to do.
+BANYANFILTERS_EXPORT HexMesh HexMeshOf(vtkUnstructuredGrid* grid);
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,71 @@
+// The part of DistributedField that is for hexahedral meshes.
+#include "DistributedField.h"
+
+#include "MeshField.h"
+
+#include "vtkDataArray.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <algorithm>
+
+namespace banyan
+{
+
+/// Collective. @return false when no rank has a mesh
+bool DistributedField::TakeMesh(Communicator& communicator, const FieldPiece& piece)
+{
+  if (AllMax(communicator, piece.Grid ? 1.0 : 0.0) == 0.0)
+  {
+    this->Mesh.reset();
+    return false;
+  }
+  this->Bricks.reset();
+  this->Series.reset();
+  this->Domain = Box{};
+  this->PhysicalBounds = { { 1, -1, 1, -1, 1, -1 } };
+  this->ZoneCells.assign(static_cast<std::size_t>(communicator.Size()), Box{});
+  if (this->ProblemText.empty() && piece.Image)
+  {
+    this->ProblemText = "One rank has image data and another one hexahedra.";
+  }
+  if (!this->Mesh)
+  {
+    this->Mesh = std::make_unique<MeshField>();
+  }
+  // Nobody waits for a rank that has nothing to give.
+  if (!AgreeOnError(communicator, this->ProblemText).empty())
+  {
+    return true;
+  }
+  try
+  {
+    this->Mesh->Update(communicator, piece.Grid, piece.Array, piece.Component, piece.MeshTolerance);
+    this->Bricks = this->Mesh->TakeSource();
+    this->SetMesh();
+    this->ZoneCells = this->Mesh->Zones(communicator.Size());
+  }
+  catch (const std::exception& error)
+  {
+    this->Bricks.reset();
+    this->Domain = Box{};
+    this->ProblemText = error.what();
+  }
+  return true;
+}
+
+void DistributedField::SetMesh()
+{
+  const ElementOctree& tree = this->Mesh->Tree();
+  this->Domain = tree.Domain();
+  this->IndexToPhysicalMatrix = tree.LatticeToWorld();
+  this->ShortestEdge = std::min({ tree.Edge().x, tree.Edge().y, tree.Edge().z });
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->PhysicalBounds[2 * axis] =
+      tree.Origin()[axis] + this->Domain.Lo[axis] * tree.Edge()[axis];
+    this->PhysicalBounds[2 * axis + 1] =
+      tree.Origin()[axis] + this->Domain.Hi[axis] * tree.Edge()[axis];
+  }
+}
+
+} // namespace banyan

@@ -1,0 +1,124 @@
+#include "MeshField.h"
+
+#include "HexMeshOfGrid.h"
+
+#include "Base/ThreadPool.h"
+#include "Parallel/MeshGathering.h"
+#include "Parallel/Zones.h"
+
+#include "vtkDataArray.h"
+#include "vtkSetGet.h"
+#include "vtkUnstructuredGrid.h"
+
+namespace banyan
+{
+namespace
+{
+
+/// Cells per axis of the bricks that meshes are cut into.
+constexpr int MeshBrickCells = 16;
+
+Hash128 HashOfMesh(const HexMesh& mesh)
+{
+  const auto points = static_cast<std::size_t>(3 * mesh.PointCount) * SizeOf(mesh.PointType);
+  const auto ids = static_cast<std::size_t>(8 * mesh.CellCount) * SizeOf(mesh.IdType);
+  const Hash128 first = HashOf(mesh.Points, points, static_cast<std::uint64_t>(mesh.PointType));
+  return HashOf(mesh.Connectivity, ids, first.Low ^ first.High);
+}
+
+/// Throws Error on all ranks when one has failed: those that have not say nothing.
+void StopTogether(Communicator& communicator, const std::string& failure)
+{
+  if (!AgreeOnError(communicator, failure).empty())
+  {
+    throw Error(failure);
+  }
+}
+
+NodeArray NodesOf(vtkDataArray* values, int component)
+{
+  NodeArray nodes;
+  nodes.Component = component;
+  if (!values)
+  {
+    return nodes;
+  }
+  nodes.Values = values->GetVoidPointer(0);
+  nodes.Components = values->GetNumberOfComponents();
+  switch (values->GetDataType())
+  {
+    vtkTemplateMacro(nodes.Type = ScalarTypeOf<VTK_TT>());
+    default:
+      throw Error(std::string("The array to draw has the type ") + values->GetDataTypeAsString() +
+                  ", which cannot be drawn.");
+  }
+  return nodes;
+}
+
+} // namespace
+
+void MeshField::Update(Communicator& communicator, vtkUnstructuredGrid* grid, vtkDataArray* values,
+  int component, double tolerance)
+{
+  HexMesh piece;
+  NodeArray nodes;
+  std::string failure;
+  try
+  {
+    piece = HexMeshOf(grid);
+    nodes = NodesOf(piece.CellCount > 0 ? values : nullptr, component);
+  }
+  catch (const std::exception& error)
+  {
+    failure = error.what();
+  }
+  StopTogether(communicator, failure);
+  if (piece.CellCount == 0)
+  {
+    piece.PointCount = 0;
+  }
+  ThreadPool& pool = ThreadPool::Process();
+  const bool sameMesh = this->SameMesh(communicator, piece);
+  if (!sameMesh || tolerance != this->Tolerance)
+  {
+    this->Bricks.reset();
+    this->Tolerance = tolerance;
+    const HexMesh mesh = GatherMesh(communicator, piece);
+    try
+    {
+      this->Bricks = std::make_shared<const HexBricks>(
+        ElementOctree::Find(mesh, pool, tolerance), MeshBrickCells);
+    }
+    catch (const std::exception& error)
+    {
+      failure = error.what();
+    }
+    StopTogether(communicator, failure);
+  }
+  const GatheredValues all = GatherNodes(communicator, nodes, piece.PointCount);
+  this->Source = std::make_unique<HexBrickSource>(this->Bricks, all.Array, pool);
+}
+
+/// Collective: whether the mesh on all ranks is that of the octree.
+bool MeshField::SameMesh(Communicator& communicator, const HexMesh& piece)
+{
+  const Hash128 hash = HashOfMesh(piece);
+  const bool same = this->Bricks && hash == this->PieceHash;
+  this->PieceHash = hash;
+  return AllMax(communicator, same ? 0.0 : 1.0) == 0.0;
+}
+
+std::vector<Box> MeshField::Zones(int ranks) const
+{
+  const Box& domain = this->Tree().Domain();
+  const glm::ivec3 blocks = (domain.Size() + MeshBrickCells - 1) / MeshBrickCells;
+  std::vector<Box> zones = StaticZones(blocks, ranks);
+  for (Box& zone : zones)
+  {
+    zone = CellsOfBricks(zone, MeshBrickCells, domain.Size());
+    zone = { zone.Lo + domain.Lo, zone.Hi + domain.Lo };
+  }
+  return zones;
+}
+
+} // namespace banyan

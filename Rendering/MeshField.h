@@ -1,0 +1,49 @@
+#ifndef banyan_Rendering_MeshField_h
+#define banyan_Rendering_MeshField_h
+
+#include "HexOctree/HexBrickSource.h"
+#include "Parallel/Communicator.h"
+#include "Series/Hash.h"
+
+#include <memory>
+
+class vtkDataArray;
+class vtkUnstructuredGrid;
+
+namespace banyan
+{
+
+/// A field on a hexahedral mesh that lies in pieces on the ranks. The octree is found once per
+/// mesh, however often the reader makes new objects of the same points and cells: new values touch
+/// values only. Every rank has the whole mesh and the values of one component of it, and draws a
+/// part.
+class MeshField
+{
+public:
+  /// Collective: takes the pieces of all ranks.
+  /// @param grid null on ranks without cells
+  /// @param component in [0, components), or -1 for the Euclidean norm
+  /// @param tolerance see ElementOctree::Find; the same on all ranks
+  /// Throws Error when the mesh is no octree, or cannot be read; on all ranks, if one cannot.
+  void Update(Communicator& communicator, vtkUnstructuredGrid* grid, vtkDataArray* values,
+    int component, double tolerance);
+
+  const ElementOctree& Tree() const { return this->Bricks->Tree(); }
+  /// A part of the mesh for each rank, in finest cells.
+  std::vector<Box> Zones(int ranks) const;
+
+  /// The bricks of the last Update; can be called once for each.
+  std::unique_ptr<BrickSource> TakeSource() { return std::move(this->Source); }
+
+private:
+  bool SameMesh(Communicator& communicator, const HexMesh& piece);
+
+  std::shared_ptr<const HexBricks> Bricks;
+  std::unique_ptr<BrickSource> Source;
+  Hash128 PieceHash;      ///< of this rank's points and cells
+  double Tolerance = 0.0; ///< that the octree was found with
+};
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,110 @@
+// Meshes in pieces on ranks.
+#include "HexOctree/HexBrickSource.h"
+#include "HexOctree/TinyMeshes.h"
+#include "Parallel/MeshGathering.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <mutex>
+
+namespace
+{
+
+using namespace banyan;
+
+/// Cells begin to end of a mesh, with the points that they have, as a reader gives pieces.
+struct Piece
+{
+  meshes::OwnMesh<float, std::int32_t> Mesh;
+  std::vector<float> Values; ///< two components
+
+  Piece(const meshes::OwnMesh<double, std::int64_t>& whole, std::size_t begin, std::size_t end)
+  {
+    std::map<std::int64_t, std::int32_t> numbers;
+    for (std::size_t i = 8 * begin; i < 8 * end; ++i)
+    {
+      const std::int64_t id = whole.Ids[i];
+      const auto number = numbers.emplace(id, static_cast<std::int32_t>(numbers.size()));
+      this->Mesh.Ids.push_back(number.first->second);
+      if (number.second)
+      {
+        const glm::ivec3 place = whole.Places[static_cast<std::size_t>(id)];
+        this->Mesh.Places.push_back(place);
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          this->Mesh.Points.push_back(static_cast<float>(place[axis]));
+        }
+        this->Values.push_back(0.0f);
+        this->Values.push_back(static_cast<float>(place.x + 100 * place.y + 10000 * place.z));
+      }
+    }
+  }
+};
+
+TEST(MeshGathering, PiecesAreTheMeshThatTheyWereCutFrom)
+{
+  const auto whole = meshes::Make(meshes::Ball({ 2, 1, 1 }, 4));
+  const std::size_t cells = whole.Ids.size() / 8;
+  for (const int ranks : { 1, 2, 3, 5 })
+  {
+    std::atomic<int> checked{ 0 };
+    RunOnSimulatedRanks(ranks,
+      [&](Communicator& communicator)
+      {
+        // The last rank has no cells where there are several.
+        const int parts = std::max(1, ranks - 1);
+        const auto rank = static_cast<std::size_t>(std::min(communicator.Rank(), parts));
+        const Piece piece(whole, cells * rank / static_cast<std::size_t>(parts),
+          cells * std::min<std::size_t>(rank + 1, static_cast<std::size_t>(parts)) /
+            static_cast<std::size_t>(parts));
+        const HexMesh mine = piece.Mesh.Mesh();
+        const HexMesh mesh = GatherMesh(communicator, mine);
+        ASSERT_EQ(mesh.CellCount, static_cast<std::int64_t>(cells));
+        const auto tree = meshes::Find(mesh, 1);
+        EXPECT_EQ(tree->HoleCells(), 0);
+        NodeArray array;
+        array.Values = piece.Values.data();
+        array.Components = 2;
+        array.Component = communicator.Size() % 2 == 0 ? NodeArray::Magnitude : 1;
+        const GatheredValues all = GatherNodes(communicator, array, mine.PointCount);
+        ThreadPool pool(1);
+        const NodalField field(tree, all.Array, pool);
+        for (std::size_t i = 0; i < whole.Places.size(); ++i)
+        {
+          const glm::ivec3 place = whole.Places[i];
+          const double expected = place.x + 100.0 * place.y + 10000.0 * place.z;
+          ASSERT_NEAR(field.AtPoint(place), expected, 1e-2);
+        }
+        ++checked;
+      });
+    EXPECT_EQ(checked, ranks);
+  }
+}
+
+TEST(MeshGathering, AStrayPointIsSaidOnAllRanks)
+{
+  const auto whole = meshes::Make(meshes::Ball({ 1, 1, 1 }, 3));
+  std::atomic<int> refused{ 0 };
+  RunOnSimulatedRanks(3,
+    [&](Communicator& communicator)
+    {
+      Piece piece(whole, 0, 4);
+      if (communicator.Rank() == 1)
+      {
+        piece.Mesh.IdAt(2, 3) = 4711;
+      }
+      try
+      {
+        GatherMesh(communicator, piece.Mesh.Mesh());
+      }
+      catch (const Error& error)
+      {
+        refused += std::string(error.what()).find("point 4711") != std::string::npos ? 1 : 0;
+      }
+    });
+  EXPECT_EQ(refused, 3);
+}
+
+} // namespace

@@ -1,0 +1,210 @@
+// Hexahedra in a real window: the picture of image data, from new values without a new octree, and
+// sentences for what cannot be drawn.
+#include "MapperTesting.h"
+
+#include "HexOctree/ElementOctree.h"
+
+#include "vtkBanyanVolumeMapper.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkCellData.h"
+#include "vtkCellType.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkPoints.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <map>
+#include <tuple>
+
+namespace
+{
+
+using namespace mapper_testing;
+
+constexpr int Edge = 16; // cells of the domain per axis
+
+float Linear(double x, double y, double z, int step)
+{
+  return static_cast<float>(0.1 + (0.3 * x + 0.2 * y + 0.3 * z) * (step == 0 ? 1.0 : 0.5));
+}
+
+/// Cells of 4, 2 and 1 edges, the smaller ones at low x; every second one a voxel.
+vtkSmartPointer<vtkUnstructuredGrid> Mesh(int step, double shift = 0.0, bool ghosts = false)
+{
+  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkFloatArray> values;
+  values->SetName("field");
+  vtkNew<vtkUnsignedCharArray> types;
+  types->SetName(vtkDataSetAttributes::GhostArrayName());
+  std::map<std::tuple<int, int, int>, vtkIdType> numbers;
+  const auto number = [&](const glm::ivec3& p)
+  {
+    const auto found =
+      numbers.emplace(std::make_tuple(p.x, p.y, p.z), static_cast<vtkIdType>(numbers.size()));
+    if (found.second)
+    {
+      points->InsertNextPoint(p.x + shift, p.y, p.z);
+      values->InsertNextValue(
+        Linear(p.x / double(Edge), p.y / double(Edge), p.z / double(Edge), step));
+    }
+    return found.first->second;
+  };
+  int cells = 0;
+  const auto add = [&](const glm::ivec3& low, int size)
+  {
+    vtkIdType ids[8];
+    const bool voxel = cells++ % 2 == 1;
+    for (int i = 0; i < 8; ++i)
+    {
+      const int x = voxel ? i & 1 : (i & 3) == 1 || (i & 3) == 2 ? 1 : 0;
+      const int y = voxel ? i >> 1 & 1 : (i & 3) >= 2 ? 1 : 0;
+      ids[i] = number(low + size * glm::ivec3(x, y, i >> 2));
+    }
+    grid->InsertNextCell(voxel ? VTK_VOXEL : VTK_HEXAHEDRON, 8, ids);
+    types->InsertNextValue(0);
+  };
+  grid->Allocate(4096);
+  for (int x = 0; x < Edge;)
+  {
+    const int size = x < 4 ? 1 : x < 8 ? 2 : 4;
+    for (int z = 0; z < Edge; z += size)
+    {
+      for (int y = 0; y < Edge; y += size)
+      {
+        add({ x, y, z }, size);
+      }
+    }
+    x += size;
+  }
+  if (ghosts)
+  {
+    // Another piece has this cell too, so it comes twice in all: here, and as a ghost.
+    add({ 0, 0, 0 }, 1);
+    types->SetValue(types->GetNumberOfTuples() - 1, vtkDataSetAttributes::DUPLICATECELL);
+    grid->GetCellData()->AddArray(types);
+  }
+  grid->SetPoints(points);
+  grid->GetPointData()->SetScalars(values);
+  return grid;
+}
+
+vtkSmartPointer<vtkImageData> Image(int step)
+{
+  return PlainImage(
+    [=](double x, double y, double z, int) { return Linear(x, y, z, step); }, glm::ivec3(Edge + 1));
+}
+
+std::vector<unsigned char> PictureOf(vtkDataSet* data, bool shaded = false)
+{
+  vtkNew<vtkBanyanVolumeMapper> mapper;
+  mapper->SetInputDataObject(data);
+  mapper->SetSampleDistanceVoxels(0.5);
+  Stage stage(mapper);
+  stage.Volume->GetProperty()->SetShade(shaded ? 1 : 0);
+  stage.LookAt(data->GetBounds());
+  return stage.Draw();
+}
+
+void DrawsAsImageData()
+{
+  for (const bool shaded : { false, true })
+  {
+    const auto expected = PictureOf(Image(0), shaded);
+    Check(Covered(expected) > 10000, "the image is seen");
+    Check(Difference(expected, PictureOf(Mesh(0), shaded)) <= 1, "a mesh is drawn as image data");
+    Check(Difference(expected, PictureOf(Mesh(0, 0.0, true), shaded)) <= 1, "without ghost cells");
+  }
+}
+
+void NewValuesFindNoOctree()
+{
+  vtkNew<vtkBanyanVolumeMapper> mapper;
+  mapper->SetInputDataObject(Mesh(0));
+  mapper->SetImageErrorTolerance(0.5);
+  Stage stage(mapper);
+  stage.LookAt(Image(0)->GetBounds());
+  stage.Draw();
+  const std::int64_t found = banyan::ElementOctree::FoundSoFar();
+  // A reader makes new objects of the same points and cells at each step.
+  mapper->SetInputDataObject(Mesh(1));
+  const auto drawn = stage.Draw();
+  Check(banyan::ElementOctree::FoundSoFar() == found, "new values find no octree");
+  vtkNew<vtkBanyanVolumeMapper> other;
+  other->SetInputDataObject(Image(1));
+  other->SetImageErrorTolerance(0.5);
+  Stage expected(other);
+  expected.LookAt(Image(0)->GetBounds());
+  Check(Difference(drawn, expected.Draw()) <= 1, "new values are drawn");
+  mapper->SetInputDataObject(Mesh(1, 3.0));
+  stage.Draw();
+  Check(banyan::ElementOctree::FoundSoFar() == found + 1, "another mesh has another octree");
+  // While somebody moves the camera, and from a mesh to image data and back.
+  stage.Window->SetDesiredUpdateRate(10.0);
+  stage.Draw();
+  mapper->SetInputDataObject(Image(1));
+  stage.Draw();
+  stage.Window->SetDesiredUpdateRate(0.0001);
+  mapper->SetInputDataObject(Mesh(1));
+  Check(Difference(stage.Draw(), drawn) <= 1, "the same mesh once more");
+}
+
+/// What a mapper says about data.
+std::string Said(vtkDataSet* data)
+{
+  std::string said;
+  vtkNew<vtkCallbackCommand> listener;
+  listener->SetClientData(&said);
+  listener->SetCallback([](vtkObject*, unsigned long, void* to, void* text)
+    { *static_cast<std::string*>(to) += static_cast<const char*>(text); });
+  vtkNew<vtkBanyanVolumeMapper> mapper;
+  mapper->AddObserver(vtkCommand::ErrorEvent, listener);
+  mapper->SetInputDataObject(data);
+  Stage stage(mapper);
+  stage.LookAt(Image(0)->GetBounds());
+  Check(Covered(stage.Draw()) == 0, "nothing is drawn of what is refused");
+  return said;
+}
+
+void ExpectSays(vtkDataSet* data, const std::string& part)
+{
+  const std::string said = Said(data);
+  Check(said.find(part) != std::string::npos, "'" + part + "' in '" + said + "'");
+}
+
+void Refuses()
+{
+  const auto warped = Mesh(0);
+  double point[3];
+  warped->GetPoint(5, point);
+  warped->GetPoints()->SetPoint(5, point[0] + 0.01, point[1], point[2]);
+  ExpectSays(warped, "beside the lattice");
+
+  const auto mixed = Mesh(0);
+  const vtkIdType ids[4] = { 0, 1, 2, 5 };
+  mixed->InsertNextCell(VTK_TETRA, 4, ids);
+  ExpectSays(mixed, "is of the type vtkTetra");
+
+  const auto twice = Mesh(0, 0.0, true);
+  twice->GetCellData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+  ExpectSays(twice, "overlap");
+
+  const auto stray = Mesh(0);
+  const vtkIdType far[8] = { 0, 1, 2, 3, 4, 5, 6, 99999999 };
+  stray->InsertNextCell(VTK_HEXAHEDRON, 8, far);
+  ExpectSays(stray, "refers to point 99999999");
+
+  const auto bare = Mesh(0);
+  bare->GetPointData()->Initialize();
+  ExpectSays(bare, "no point array");
+}
+
+} // namespace
+
+int main()
+{
+  DrawsAsImageData();
+  NewValuesFindNoOctree();
+  Refuses();
+  return Failures();
+}
