@@ -122,6 +122,68 @@ public:
   /// @return what is wrong with the cell; empty if nothing is
   std::string Look(std::int64_t cell, Part& part) const
   {
+    return this->TakeBox(cell, part) ? std::string() : this->LookClosely(cell, part);
+  }
+
+private:
+  /// Takes up a cell that is plainly a box. @return false when it may be none
+  bool TakeBox(std::int64_t cell, Part& part) const
+  {
+    Real corners[3][8];
+    bool plain = true;
+    for (int i = 0; i < 8; ++i)
+    {
+      const auto id = static_cast<std::int64_t>(this->Ids[8 * cell + i]);
+      if (static_cast<std::uint64_t>(id) >= static_cast<std::uint64_t>(this->PointCount))
+      {
+        return false;
+      }
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        corners[axis][i] = this->Points[3 * id + axis];
+      }
+    }
+    Real low[3];
+    Real high[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const Real* const x = corners[axis];
+      // Opposite corners first: one of these pairs has both faces.
+      low[axis] = std::min(std::min(std::min(x[0], x[6]), std::min(x[1], x[7])),
+        std::min(std::min(x[2], x[4]), std::min(x[3], x[5])));
+      high[axis] = std::max(std::max(std::max(x[0], x[6]), std::max(x[1], x[7])),
+        std::max(std::max(x[2], x[4]), std::max(x[3], x[5])));
+      for (int i = 0; i < 8; ++i)
+      {
+        // Nothing equals NaN.
+        plain &= (x[i] == low[axis]) | (x[i] == high[axis]);
+      }
+      const double edge = static_cast<double>(high[axis]) - low[axis];
+      plain &= edge > 0.0 && std::isfinite(edge);
+    }
+    if (!plain)
+    {
+      return false;
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Take(axis, low[axis], high[axis], part);
+    }
+    this->TakeEdge(cell, static_cast<double>(high[0]) - low[0], part);
+    return true;
+  }
+
+  static void TakeEdge(std::int64_t cell, double edge, Part& part)
+  {
+    if (edge > part.LongestEdge)
+    {
+      part.LongestEdge = edge;
+      part.LongestCell = cell;
+    }
+  }
+
+  std::string LookClosely(std::int64_t cell, Part& part) const
+  {
     double low[3];
     double high[3];
     double corners[8][3];
@@ -165,15 +227,10 @@ public:
       }
       this->Take(axis, low[axis], high[axis], part);
     }
-    if (high[0] - low[0] > part.LongestEdge)
-    {
-      part.LongestEdge = high[0] - low[0];
-      part.LongestCell = cell;
-    }
+    this->TakeEdge(cell, high[0] - low[0], part);
     return {};
   }
 
-private:
   static void Take(int axis, double low, double high, Part& part)
   {
     part.Shortest[axis] = std::min(part.Shortest[axis], high - low);

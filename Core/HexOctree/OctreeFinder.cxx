@@ -64,7 +64,8 @@ public:
       for (int axis = 0; axis < 3; ++axis)
       {
         const double exact = (point[axis] - this->Origin[axis]) * this->PerEdge[axis];
-        const double whole = std::floor(exact + 0.5);
+        // Rounded to a whole number, which takes a function call on processors without SSE4.
+        const double whole = (exact + Rounder) - Rounder;
         if (!(std::abs(exact - whole) <= this->Allowed[axis]))
         {
           return this->Off(cell, i, axis, exact - whole);
@@ -83,6 +84,8 @@ public:
   }
 
 private:
+  static constexpr double Rounder = 6755399441055744.0; ///< 1.5 * 2^52
+
   std::string Off(std::int64_t cell, int corner, int axis, double off) const
   {
     return CellText(cell) + " is no box of an octree: its point " +
@@ -279,52 +282,86 @@ void OctreeFinder::SortLeaves()
 {
   ElementOctree& tree = this->Tree;
   tree.CellNumbers.resize(tree.Keys.size());
-  MortonKey all = 1;
-  for (std::size_t i = 0; i < tree.Keys.size(); ++i)
-  {
-    tree.CellNumbers[i] = static_cast<std::uint32_t>(i);
-    all |= tree.Keys[i];
-  }
+  tree.Levels.resize(tree.Keys.size());
+  std::atomic<MortonKey> all{ 1 };
+  FirstFailure failure;
+  const auto forLeaves = [&](const auto& body)
+  { ForRuns(tree.LeafCount(), this->Pool, failure, body); };
+  forLeaves(
+    [&](std::int64_t begin, std::int64_t end, int)
+    {
+      MortonKey bits = 0;
+      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+      {
+        tree.CellNumbers[i] = static_cast<std::uint32_t>(i);
+        bits |= tree.Keys[i];
+      }
+      all |= bits;
+    });
   int bits = 1;
   while (bits < 63 && all >> bits != 0)
   {
     ++bits;
   }
   RadixSort(tree.Keys, tree.CellNumbers, bits, this->Pool);
-  tree.Levels.resize(tree.Keys.size());
-  for (std::size_t leaf = 0; leaf < tree.Keys.size(); ++leaf)
-  {
-    tree.Levels[leaf] = this->LevelOfCell[tree.CellNumbers[leaf]];
-  }
+  forLeaves(
+    [&](std::int64_t begin, std::int64_t end, int)
+    {
+      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+      {
+        tree.Levels[i] = this->LevelOfCell[tree.CellNumbers[i]];
+      }
+    });
   this->LevelOfCell = {};
 }
 
 /// Overlaps, the domain, and what is left of it.
 void OctreeFinder::CheckLeaves()
 {
-  ElementOctree& tree = this->Tree;
-  std::int64_t covered = 0;
-  for (std::size_t leaf = 0; leaf < tree.Keys.size(); ++leaf)
+  struct Sum
   {
-    const int level = tree.Levels[leaf];
-    if (leaf + 1 < tree.Keys.size() && tree.Keys[leaf + 1] - tree.Keys[leaf] < CubeKeys(level))
+    Box Domain;
+    int Coarsest = 0;
+    std::int64_t Covered = 0;
+  };
+  ElementOctree& tree = this->Tree;
+  std::vector<Sum> sums(static_cast<std::size_t>(this->Pool.Width()));
+  FirstFailure failure;
+  ForRuns(tree.LeafCount(), this->Pool, failure,
+    [&](std::int64_t begin, std::int64_t end, int worker)
     {
-      this->ThrowOverlap(leaf);
-    }
-    const glm::ivec3 corner = PositionOfKey(tree.Keys[leaf]);
-    tree.DomainCells = Union(tree.DomainCells, Box{ corner, corner + (1 << level) });
-    tree.CoarsestLeaf = std::max(tree.CoarsestLeaf, level);
-    covered += static_cast<std::int64_t>(CubeKeys(level));
+      Sum& sum = sums[static_cast<std::size_t>(worker)];
+      for (auto leaf = static_cast<std::size_t>(begin); leaf < static_cast<std::size_t>(end);
+           ++leaf)
+      {
+        const int level = tree.Levels[leaf];
+        if (leaf + 1 < tree.Keys.size() && tree.Keys[leaf + 1] - tree.Keys[leaf] < CubeKeys(level))
+        {
+          failure.Report(static_cast<std::int64_t>(leaf), this->OverlapAt(leaf));
+          return;
+        }
+        const glm::ivec3 corner = PositionOfKey(tree.Keys[leaf]);
+        sum.Domain = Union(sum.Domain, Box{ corner, corner + (1 << level) });
+        sum.Coarsest = std::max(sum.Coarsest, level);
+        sum.Covered += static_cast<std::int64_t>(CubeKeys(level));
+      }
+    });
+  std::int64_t covered = 0;
+  for (const Sum& sum : sums)
+  {
+    tree.DomainCells = Union(tree.DomainCells, sum.Domain);
+    tree.CoarsestLeaf = std::max(tree.CoarsestLeaf, sum.Coarsest);
+    covered += sum.Covered;
   }
   tree.Holes = tree.DomainCells.Count() - covered;
 }
 
-void OctreeFinder::ThrowOverlap(std::size_t leaf) const
+std::string OctreeFinder::OverlapAt(std::size_t leaf) const
 {
   const std::uint32_t a = this->Tree.CellNumbers[leaf];
   const std::uint32_t b = this->Tree.CellNumbers[leaf + 1];
-  throw Error("Cells " + std::to_string(std::min(a, b)) + " and " + std::to_string(std::max(a, b)) +
-              " overlap: no place may belong to two cells");
+  return "Cells " + std::to_string(std::min(a, b)) + " and " + std::to_string(std::max(a, b)) +
+         " overlap: no place may belong to two cells";
 }
 
 std::shared_ptr<const ElementOctree> ElementOctree::Find(

@@ -35,7 +35,8 @@ private:
   std::uint16_t NumberOfOrder(const std::array<std::uint8_t, 8>& order, OrderMemory& memory);
   void SortLeaves();
   void CheckLeaves();
-  [[noreturn]] void ThrowOverlap(std::size_t leaf) const;
+  /// What is wrong with a leaf that the next one overlaps.
+  std::string OverlapAt(std::size_t leaf) const;
 
   ElementOctree& Tree;
   ThreadPool& Pool;
