@@ -182,8 +182,8 @@ Frames DrawFrames(const Options& options, const Timer& sinceStart, BrickSource& 
     frames.Statistics = {};
     const auto draw = [&](const RayScene& wanted)
     { return CastRays(wanted, source, wanted.DomainCells, budget, pool, frames.Statistics); };
-    const int finestPilot = std::min(CoarsestLevel - 1,
-      FinestLevelWithin(scene, source, scene.DomainCells, CoarsestLevel, budget, pool));
+    const int finestPilot =
+      FinestLevelWithin(scene, source, scene.DomainCells, CoarsestLevel, budget, pool);
     draw(Sampled(scene, options.Tolerance, finestPilot, draw));
     if (i == 0)
       frames.FirstMilliseconds = 1e3 * sinceStart.Seconds();

@@ -1,7 +1,5 @@
 #include "Parallel/DistributedPlan.h"
 
-#include <algorithm>
-
 namespace banyan
 {
 namespace
@@ -19,7 +17,7 @@ int CommonLevel(Communicator& communicator, BrickSource* source, const Box& doma
 }
 
 /// The finest level that all ranks can draw pilots from without loading everything again for each of
-/// them; one that leaves another to compare it with.
+/// them.
 int FinestPilotLevel(Communicator& communicator, const RayScene& scene, BrickSource* source,
   const std::vector<Box>& zones, int coarsest, std::uint64_t budgetBytes, ThreadPool& pool)
 {
@@ -45,7 +43,7 @@ int FinestPilotLevel(Communicator& communicator, const RayScene& scene, BrickSou
   {
     throw Error(agreed);
   }
-  return std::min(static_cast<int>(AllMax(communicator, mine)), coarsest - 1);
+  return static_cast<int>(AllMax(communicator, mine));
 }
 
 } // namespace

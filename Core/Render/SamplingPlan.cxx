@@ -117,11 +117,8 @@ private:
     }
     if (choices.size() == 1)
     {
-      // The finest; or the only one that there are pilots of, of which nothing is known.
-      choices.front().Errors.Tiles.assign(
-        this->Pictures.TileCount(), level > 0 ? std::numeric_limits<double>::infinity() : 0.0);
+      choices.front().Errors.Tiles.assign(this->Pictures.TileCount(), 0.0);
       this->Levels = std::move(choices);
-      this->ExtrapolateLevels();
       return;
     }
     if (level == 0)
@@ -252,17 +249,21 @@ void Check(const SamplingWish& wish)
   {
     throw Error("There is no level below 0, the finest");
   }
-  if (wish.FinestPilotLevel > wish.CoarsestLevel)
-  {
-    throw Error("No level is coarser than the coarsest that may be drawn from");
-  }
 }
 
 } // namespace
 
-SamplingPlan PlanSamplings(const RayScene& scene, const SamplingWish& wish, const DrawPilot& draw)
+SamplingPlan PlanSamplings(const RayScene& scene, SamplingWish wish, const DrawPilot& draw)
 {
   Check(wish);
+  const glm::ivec3 cells = scene.DomainCells.Size();
+  const int longest = std::max({ cells.x, cells.y, cells.z });
+  while (wish.CoarsestLevel > 0 && longest >> wish.CoarsestLevel < wish.LeastCells)
+  {
+    --wish.CoarsestLevel;
+  }
+  // Of one level alone nothing could be told.
+  wish.FinestPilotLevel = std::min(wish.FinestPilotLevel, std::max(0, wish.CoarsestLevel - 1));
   RayScene pilots = scene;
   pilots.OpacityLimit =
     static_cast<float>(1.0 - std::min(wish.Tolerance, 32.0) * ShareOfEnds / 255.0);

@@ -23,6 +23,9 @@ struct SamplingWish
   /// The finest level that pilots are drawn from, at most CoarsestLevel: what finer ones would
   /// show is extrapolated. For volumes of which more is visible than memory may hold.
   int FinestPilotLevel = 0;
+  /// Levels with fewer cells along the longest axis are not used: two of them may look alike because
+  /// both have lost what there is to see.
+  int LeastCells = 64;
 };
 
 /// How a picture is to be sampled so that its error stays within a tolerance.
@@ -58,7 +61,7 @@ using DrawPilot = std::function<FloatImage(const RayScene& pilot)>;
 /// @param scene all of it, its Samplings apart; the picture's size decides the tiles
 /// Throws Error when the wish or the scene is not usable.
 SamplingPlan PlanSamplings(
-  const RayScene& scene, const SamplingWish& wish, const DrawPilot& draw);
+  const RayScene& scene, SamplingWish wish, const DrawPilot& draw);
 
 } // namespace banyan
 

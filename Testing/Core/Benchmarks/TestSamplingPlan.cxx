@@ -18,6 +18,7 @@ namespace
 
 constexpr int Samples = 64;
 constexpr int Pixels = 192;
+constexpr int LeastCells = 7; // these volumes are smooth
 
 /// Draws a scene of a volume in memory, and plans how to.
 class Drawer
@@ -32,7 +33,8 @@ public:
 
   SamplingPlan Plan(double tolerance, int coarsestLevel)
   {
-    return PlanSamplings(this->Scene, { tolerance, this->Scene.SampleDistance, coarsestLevel },
+    return PlanSamplings(this->Scene,
+      { tolerance, this->Scene.SampleDistance, coarsestLevel, 0, LeastCells },
       [this](const RayScene& pilot) { return this->Cast(pilot); });
   }
 
@@ -138,7 +140,7 @@ TEST(SamplingPlan, LevelsWithoutPilotsAreExtrapolated)
       Drawer drawer(scene);
       int finest = 3;
       const SamplingPlan plan = PlanSamplings(drawer.Scene,
-        { tolerance, drawer.Scene.SampleDistance, 3, finestPilot },
+        { tolerance, drawer.Scene.SampleDistance, 3, finestPilot, LeastCells },
         [&](const RayScene& pilot)
         {
           finest = std::min(finest, pilot.Samplings->Samplings().front().Level);
@@ -148,6 +150,20 @@ TEST(SamplingPlan, LevelsWithoutPilotsAreExtrapolated)
       EXPECT_LE(ErrorOf(drawer.Draw(plan), converged).Largest, plan.EstimatedError);
     }
   }
+}
+
+TEST(SamplingPlan, LevelsOfFewCellsAreNotTrusted)
+{
+  ThreadPool pool(2);
+  Drawer drawer(StandardScene(StandardVolume(129, pool), StandardFunction::S1, false, Pixels));
+  int coarsest = 0;
+  PlanSamplings(drawer.Scene, { 8.0, drawer.Scene.SampleDistance, 3 },
+    [&](const RayScene& pilot)
+    {
+      coarsest = std::max(coarsest, pilot.Samplings->Samplings().front().Level);
+      return drawer.Cast(pilot);
+    });
+  EXPECT_EQ(coarsest, 1);
 }
 
 TEST(SamplingPlan, TheFinestLevelThatFitsInMemoryIsFoundWithoutLoading)
