@@ -183,7 +183,7 @@ Frames DrawFrames(const Options& options, const Timer& sinceStart, BrickSource& 
     const auto draw = [&](const RayScene& wanted)
     { return CastRays(wanted, source, wanted.DomainCells, budget, pool, frames.Statistics); };
     const int finestPilot =
-      FinestLevelWithin(scene, source, scene.DomainCells, CoarsestLevel, budget, pool);
+      FinestLevelWithin(scene, source, scene.DomainCells, CoarsestLevel, budget / 2, pool);
     draw(Sampled(scene, options.Tolerance, finestPilot, draw));
     if (i == 0)
       frames.FirstMilliseconds = 1e3 * sinceStart.Seconds();

@@ -17,7 +17,7 @@ int CommonLevel(Communicator& communicator, BrickSource* source, const Box& doma
 }
 
 /// The finest level that all ranks can draw pilots from without loading everything again for each of
-/// them.
+/// them: half the budget is for bricks that are kept.
 int FinestPilotLevel(Communicator& communicator, const RayScene& scene, BrickSource* source,
   const std::vector<Box>& zones, int coarsest, std::uint64_t budgetBytes, ThreadPool& pool)
 {
@@ -31,7 +31,7 @@ int FinestPilotLevel(Communicator& communicator, const RayScene& scene, BrickSou
   try
   {
     mine = source && !zone.Empty()
-             ? FinestLevelWithin(scene, *source, zone, coarsest, budgetBytes, pool)
+             ? FinestLevelWithin(scene, *source, zone, coarsest, budgetBytes / 2, pool)
              : 0;
   }
   catch (const std::exception& error)
