@@ -2,6 +2,7 @@
 
 #include "MeshField.h"
 #include "PlainSource.h"
+#include "ToleranceControl.h"
 
 #include "Cache/BrickCache.h"
 #include "Parallel/Zones.h"
@@ -339,16 +340,17 @@ void DistributedField::MakeSeriesZones(const Facts& field, Communicator& communi
   key.Array = field.Array;
   key.Level = field.Level;
   const BrickLayout layout = this->Series->Layout(field.Level);
-  const std::vector<Box> zones = StaticZones(layout.Bricks(), communicator.Size());
-  for (std::size_t rank = 0; rank < zones.size(); ++rank)
-  {
-    this->ZoneCells[rank] = CellsOfBricks(zones[rank], layout.BrickCells(), this->Domain.Hi);
-  }
-  if (!this->ZoneCells[static_cast<std::size_t>(communicator.Rank())].Empty())
-  {
-    this->Bricks = std::make_unique<SeriesBrickSource>(
-      this->Series, key, field.Component, BrickCache::Process());
-  }
+  FrameBalancer::Field balanced;
+  balanced.Cells = this->Domain.Hi;
+  balanced.BrickCells = layout.BrickCells();
+  balanced.CoarsestLevel = ToleranceControl::CoarsestLevel;
+  balanced.BytesPerCell = static_cast<double>(
+    SizeOf(this->Series->Index().Arrays.at(static_cast<std::size_t>(field.Array)).Type));
+  this->Balancer.Start(this->Balancing, balanced, communicator.Size());
+  this->ZoneCells = this->Balancer.Zones();
+  // Ranks without a zone need it too: to know what can be seen of the others'.
+  this->Bricks =
+    std::make_unique<SeriesBrickSource>(this->Series, key, field.Component, BrickCache::Process());
 }
 
 /// Each rank draws the values that it holds.

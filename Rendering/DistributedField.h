@@ -1,7 +1,7 @@
 #ifndef banyan_Rendering_DistributedField_h
 #define banyan_Rendering_DistributedField_h
 
-#include "Parallel/Communicator.h"
+#include "Parallel/FrameBalancer.h"
 #include "Render/BrickSource.h"
 #include "Series/SeriesFile.h"
 #include "Series/ValueRange.h"
@@ -43,6 +43,17 @@ class DistributedField
 public:
   DistributedField();
   ~DistributedField();
+
+  /// How the zones of encoded series follow what frames cost; pieces of plain data stay where they
+  /// are. For the next Update; the same on all ranks.
+  void SetLoadBalancing(LoadBalancing mode);
+
+  /// Moves the zones before a frame, and lets the scene tell what it takes. The same on all ranks.
+  void BeginFrame(RayScene& scene);
+  /// Collective, after it.
+  void EndFrame(Communicator& communicator);
+  /// From rank to rank for the frame that was begun last, over all ranks.
+  double BytesMoved() const { return this->Encoded() ? this->Balancer.BytesMoved() : 0.0; }
 
   /// Collective. Cheap when nothing has changed on any rank.
   void Update(Communicator& communicator, const FieldPiece& piece);
@@ -99,6 +110,8 @@ private:
   Box Domain;
   glm::dmat4 IndexToPhysicalMatrix{ 1.0 };
   std::vector<Box> ZoneCells;
+  LoadBalancing Balancing = LoadBalancing::Off;
+  FrameBalancer Balancer; ///< of encoded series
   std::array<double, 6> PhysicalBounds{ { 1, -1, 1, -1, 1, -1 } };
   double ShortestEdge = 1.0;
   ValueRange ValuesRange;

@@ -11,7 +11,6 @@ namespace banyan
 namespace
 {
 
-constexpr int CoarsestLevel = 3;
 constexpr double MostSlack = 16.0;
 
 } // namespace
@@ -26,14 +25,13 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
   {
     this->Passes.Interacted();
   }
-  const double tolerance =
-    wish.Interacting ? wish.Interactive * this->Slack
-                     : this->Passes.ToleranceOf(communicator, scene, field.Version(),
-                         { wish.Passes, wish.Still, wish.Interactive });
-  const SamplingPlan plan =
-    PlanDistributed(communicator, scene, field.Source(), field.Zones(), budgetBytes,
-      ThreadPool::Process(), failure,
-      { tolerance, scene.SampleDistance, levels ? CoarsestLevel : 0 }, frame);
+  const double tolerance = wish.Interacting
+                             ? wish.Interactive * this->Slack
+                             : this->Passes.ToleranceOf(communicator, scene, field.Version(),
+                                 { wish.Passes, wish.Still, wish.Interactive });
+  const SamplingPlan plan = PlanDistributed(communicator, scene, field.Source(), field.Zones(),
+    budgetBytes, ThreadPool::Process(), failure,
+    { tolerance, scene.SampleDistance, levels ? CoarsestLevel : 0 }, frame);
   scene.Samplings = plan.Samplings;
   scene.OpacityLimit = plan.OpacityLimit;
   return plan.EstimatedError;

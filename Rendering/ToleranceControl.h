@@ -10,11 +10,13 @@ namespace banyan
 
 class DistributedField;
 
-/// Decides how frames are sampled: within the tolerance that is wanted, and while somebody moves the
-/// camera, as far beyond it as the promised frame time demands.
+/// Decides how frames are sampled: within the tolerance that is wanted, and while somebody moves
+/// the camera, as far beyond it as the promised frame time demands.
 class ToleranceControl
 {
 public:
+  static constexpr int CoarsestLevel = 3; ///< that pictures are sampled at
+
   struct Wish
   {
     double Still = 1.0;       ///< 1/255

@@ -18,6 +18,9 @@ void vtkBanyanFrameStatistics::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "BytesComposited: " << this->BytesComposited << "\n"
      << indent << "BytesRead: " << this->BytesRead << "\n"
      << indent << "CacheBytes: " << this->CacheBytes << "\n"
+     << indent << "BytesMoved: " << this->BytesMoved << "\n"
+     << indent << "CacheHits: " << this->CacheHits << "\n"
+     << indent << "CacheMisses: " << this->CacheMisses << "\n"
      << indent << "EstimatedImageError: " << this->EstimatedImageError << "\n"
      << indent << "Frames: " << this->Frames << "\n";
 }

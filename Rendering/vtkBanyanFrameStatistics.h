@@ -64,6 +64,17 @@ public:
   ///@}
 
   ///@{
+  /// Bytes of bricks that went from one rank's zone to another's for this frame, and bricks that the
+  /// caches had and had not.
+  vtkSetMacro(BytesMoved, vtkIdType);
+  vtkGetMacro(BytesMoved, vtkIdType);
+  vtkSetMacro(CacheHits, vtkIdType);
+  vtkGetMacro(CacheHits, vtkIdType);
+  vtkSetMacro(CacheMisses, vtkIdType);
+  vtkGetMacro(CacheMisses, vtkIdType);
+  ///@}
+
+  ///@{
   /// The largest error that is expected of a pixel, in 1/255 of a channel; 0 where the sample
   /// distance was fixed. Estimated.
   vtkSetMacro(EstimatedImageError, double);
@@ -91,6 +102,9 @@ protected:
   vtkIdType BytesComposited = 0;
   vtkIdType BytesRead = 0;
   vtkIdType CacheBytes = 0;
+  vtkIdType BytesMoved = 0;
+  vtkIdType CacheHits = 0;
+  vtkIdType CacheMisses = 0;
   double EstimatedImageError = 0.0;
   vtkIdType Frames = 0;
 

@@ -45,7 +45,8 @@ struct vtkBanyanVolumeMapper::Internals
   banyan::ToleranceControl Tolerance;
 
   banyan::FieldPiece PieceOf(vtkBanyanVolumeMapper* mapper, vtkVolume* volume) const;
-  void Publish(const banyan::FrameStatistics& frame, std::uint64_t bytesRead, double seconds,
+  void Publish(const banyan::FrameStatistics& frame, std::uint64_t bytesRead,
+    const banyan::BrickCache::Statistics& cacheBefore, double seconds,
     vtkBanyanFrameStatistics* out) const;
 };
 
@@ -180,6 +181,7 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
   }
   Internals& self = *this->Self;
   banyan::ThreadPool::SetProcessWidth(this->NumberOfThreads);
+  self.Field.SetLoadBalancing(static_cast<banyan::LoadBalancing>(this->LoadBalancing));
   self.Field.Update(*self.Communicator, self.PieceOf(this, volume));
   self.Bounds = self.Field.Bounds();
   self.BoundsKnown = true;
@@ -206,13 +208,18 @@ double* vtkBanyanVolumeMapper::GetBounds()
 
 /// Collective.
 void vtkBanyanVolumeMapper::Internals::Publish(const banyan::FrameStatistics& frame,
-  std::uint64_t bytesRead, double seconds, vtkBanyanFrameStatistics* out) const
+  std::uint64_t bytesRead, const banyan::BrickCache::Statistics& cacheBefore, double seconds,
+  vtkBanyanFrameStatistics* out) const
 {
   const auto sum = [this](std::uint64_t value) {
     return static_cast<vtkIdType>(banyan::AllSum(*this->Communicator, static_cast<double>(value)));
   };
   out->SetBytesRead(sum(bytesRead));
-  out->SetCacheBytes(sum(banyan::BrickCache::Process().GetStatistics().Bytes));
+  const banyan::BrickCache::Statistics cache = banyan::BrickCache::Process().GetStatistics();
+  out->SetCacheBytes(sum(cache.Bytes));
+  out->SetCacheHits(sum(cache.Hits - cacheBefore.Hits));
+  out->SetCacheMisses(sum(cache.Misses - cacheBefore.Misses));
+  out->SetBytesMoved(static_cast<vtkIdType>(this->Field.BytesMoved()));
   out->SetTotalSeconds(seconds);
   out->SetRenderSeconds(frame.RenderSeconds);
   out->SetCompositeSeconds(frame.CompositeSeconds);
@@ -279,6 +286,7 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   scene.Depth = banyan::DepthsOf(pixels);
 
   const std::uint64_t bytesBefore = self.Field.BytesRead();
+  const banyan::BrickCache::Statistics cacheBefore = banyan::BrickCache::Process().GetStatistics();
   // Less than the cache has: what one batch holds is then never evicted by that batch itself.
   const std::uint64_t budget =
     std::max<std::uint64_t>(banyan::BrickCache::Process().DrawingBudget(), 16u << 20);
@@ -288,18 +296,20 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
     this->InteractiveImageErrorTolerance, this->InteractiveFrameSeconds,
     renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0, this->RefineInPasses };
   const banyan::Timer drawing;
+  self.Field.BeginFrame(scene);
   this->Statistics->SetEstimatedImageError(
     !fixed && banyan::CanKeepTolerance(this, volume->GetProperty())
       ? self.Tolerance.Plan(
           *self.Communicator, self.Field, scene, wish, budget, wanted.Problem, frame)
       : 0.0);
   const banyan::FrameStatistics pilots = frame;
-  const banyan::FloatImage picture = banyan::DrawDistributed(*self.Communicator, scene,
-    self.Field.Source(), self.Field.Zones(), budget, banyan::ThreadPool::Process(), wanted.Problem,
-    frame);
+  const banyan::FloatImage picture =
+    banyan::DrawDistributed(*self.Communicator, scene, self.Field.Source(), self.Field.Zones(),
+      budget, banyan::ThreadPool::Process(), wanted.Problem, frame);
 
   frame.SamplesTaken += pilots.SamplesTaken;
   frame.BytesComposited += pilots.BytesComposited;
+  self.Field.EndFrame(*self.Communicator);
   self.Tolerance.FrameTook(wish, banyan::AllMax(*self.Communicator, drawing.Seconds()));
 
   // On several ranks the background comes last: the compositor blends the picture over it in 8 bit.
@@ -320,7 +330,8 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   self.Framebuffer.Write(renderer, rect, pixels, /*blend=*/alone);
   self.LastProblem.clear();
 
-  self.Publish(frame, self.Field.BytesRead() - bytesBefore, timer.Seconds(), this->Statistics);
+  self.Publish(
+    frame, self.Field.BytesRead() - bytesBefore, cacheBefore, timer.Seconds(), this->Statistics);
 }
 
 bool vtkBanyanVolumeMapper::RefineNext()
@@ -344,6 +355,7 @@ void vtkBanyanVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "SampleDistanceVoxels: " << this->SampleDistanceVoxels << "\n"
      << indent << "MeshTolerance: " << this->MeshTolerance << "\n"
      << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"
+     << indent << "LoadBalancing: " << this->LoadBalancing << "\n"
      << indent << "Controller: " << this->Controller.GetPointer() << "\n"
      << indent << "Statistics: " << this->Statistics.GetPointer() << "\n";
 }

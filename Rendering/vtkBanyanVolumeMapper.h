@@ -114,6 +114,16 @@ public:
   vtkGetMacro(NumberOfThreads, int);
   ///@}
 
+  ///@{
+  /**
+   * How the zones of the ranks follow what frames cost: 0 not at all, 1 a slice of bricks per frame
+   * towards the slower side, 2 (default) to where measured costs balance. For encoded series; pieces of
+   * plain data are drawn where they are. The same on all ranks. The picture does not change.
+   */
+  vtkSetClampMacro(LoadBalancing, int, 0, 2);
+  vtkGetMacro(LoadBalancing, int);
+  ///@}
+
   /**
    * Ranks that draw together; null (default) for this process alone. Collective over the
    * controller's ranks when it changes.
@@ -175,6 +185,7 @@ private:
   double SampleDistanceVoxels = 0.0;
   double MeshTolerance = 1.0 / 1024;
   int NumberOfThreads = 0;
+  int LoadBalancing = 2;
   vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkSmartPointer<vtkBanyanFrameStatistics> Statistics;
 

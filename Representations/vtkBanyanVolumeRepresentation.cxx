@@ -368,6 +368,11 @@ void vtkBanyanVolumeRepresentation::SetNumberOfThreads(int threads)
   this->Mapper->SetNumberOfThreads(threads);
 }
 
+void vtkBanyanVolumeRepresentation::SetLoadBalancing(int mode)
+{
+  this->Mapper->SetLoadBalancing(mode);
+}
+
 void vtkBanyanVolumeRepresentation::SetStatistics(vtkBanyanFrameStatistics* statistics)
 {
   this->Mapper->SetStatistics(statistics);

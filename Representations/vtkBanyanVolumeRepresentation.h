@@ -91,6 +91,9 @@ public:
   /** Threads per process; 0 (default) shares the cores of a machine among its ranks. */
   void SetNumberOfThreads(int threads);
 
+  /** 0 off, 1 slice step, 2 measured cost; see vtkBanyanVolumeMapper. */
+  void SetLoadBalancing(int mode);
+
   /** Where the statistics of each frame go. */
   void SetStatistics(vtkBanyanFrameStatistics* statistics);
 

@@ -55,6 +55,17 @@ double UsualRatio(const std::vector<double>& work, const std::vector<double>& vi
   return done > 0.0 && seen > 0.0 ? done / seen : 1.0;
 }
 
+ZoneTree BrickZones(const LoadBalancer::Options& options)
+{
+  const int slice = options.SlicePositions;
+  if (slice < 1)
+  {
+    throw Error("A slice of bricks is at least one position thick.");
+  }
+  const glm::ivec3 bricks = (options.Positions + slice - 1) / slice;
+  return Refined(EqualZoneTree(bricks, options.Ranks), slice, options.Positions);
+}
+
 } // namespace
 
 int BlockEdgeFor(const glm::ivec3& positions)
@@ -69,7 +80,7 @@ int BlockEdgeFor(const glm::ivec3& positions)
 
 LoadBalancer::LoadBalancer(const Options& options)
   : Settings(options)
-  , Zones(EqualZoneTree(options.Positions, options.Ranks))
+  , Zones(BrickZones(options))
   , Paces(static_cast<std::size_t>(options.Ranks))
 {
   const std::size_t blocks = BrickCosts(options.Positions, options.BlockEdge).Values.size();
@@ -91,7 +102,7 @@ void LoadBalancer::BeginFrame(const BrickCosts& view)
   {
     this->MoveSlices();
   }
-  else if (this->Settings.Mode == LoadBalancing::MeasuredCost)
+  else if (this->Settings.Mode == LoadBalancing::MeasuredCost && this->Frames > 0)
   {
     this->MoveToBalance(view);
   }
@@ -119,14 +130,14 @@ void LoadBalancer::MoveToBalance(const BrickCosts& view)
     this->Costs[FromLast][i] = 0.5 * (this->LastWork[i] + this->OlderWork[i]);
   }
   this->Costs[FromMany] = this->LongWork;
-  const auto best = this->Frames == 0 ? std::ptrdiff_t{ FromView }
-                                      : std::min_element(this->Errors.begin(), this->Errors.end()) -
-                                          this->Errors.begin();
+  const auto best =
+    std::min_element(this->Errors.begin(), this->Errors.end()) - this->Errors.begin();
   const BrickCosts costs = this->CostsOf(this->Costs[static_cast<std::size_t>(best)]);
   const BrickCosts bytes = this->DrawnBytes(costs.Values);
   RebalanceLimits limits;
   limits.Tolerated = this->Moving ? StopBelow : MoveAbove;
   limits.LeastGain = this->Moving ? LeastFurtherGain : LeastGain;
+  limits.PlaneStep = this->Settings.PlaneStep;
   limits.Bytes = &bytes;
   limits.MostBytes = std::max(this->Settings.MostBytes, 0.5 * CostSums(bytes).Total());
   if (this->Wait > 0)
@@ -310,7 +321,6 @@ void LoadBalancer::LearnErrors(const BrickCosts& work)
     {
       error = std::max(error, std::abs(expected[rank] - truth[rank]));
     }
-    // Of the first frame nothing was known.
     this->Errors[way] += (this->Frames <= 1 ? 1.0 : ErrorWeight) * (error - this->Errors[way]);
   }
 }
@@ -318,7 +328,7 @@ void LoadBalancer::LearnErrors(const BrickCosts& work)
 /// Whether it would have been better not to move planes.
 void LoadBalancer::LearnMistakes(const BrickCosts& work)
 {
-  if (this->Moving && this->Frames > 0)
+  if (this->Moving)
   {
     const CostSums sums(work);
     const double stayed = banyan::ExpectedImbalance(this->Before, sums, this->Speeds());

@@ -39,13 +39,16 @@ public:
     glm::ivec3 Positions{ 0 }; ///< that zones may be cut at: cells
     int Ranks = 1;
     int SlicePositions = 16; ///< thickness of a slice of bricks
-    int BlockEdge = 8;       ///< positions per block of the costs
+    /// Where planes that are moved by measured cost may stand: at multiples of it.
+    int PlaneStep = 1;
+    int BlockEdge = 8; ///< positions per block of the costs
     double BytesPerPosition = 4.0;
     /// That may change ranks before a frame: so many, or half of what is drawn if that is more.
     double MostBytes = 32.0 * 1048576.0;
   };
 
-  /// Zones of equal size. Throws Error when there are no ranks or no positions per block.
+  /// Zones of equal numbers of bricks. Throws Error when there are no ranks, or no positions per
+  /// block or brick.
   explicit LoadBalancer(const Options& options);
 
   const Options& Given() const { return this->Settings; }

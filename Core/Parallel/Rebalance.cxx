@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace banyan
 {
@@ -89,10 +90,12 @@ void KeepApart(ZoneTree& tree, int slice)
 class Division
 {
 public:
-  Division(const CostSums& costs, const Box& zone, int axis, double speedBelow, double speedAbove)
+  Division(const CostSums& costs, const Box& zone, int axis, int step, double speedBelow,
+    double speedAbove)
     : Costs(costs)
     , Zone(zone)
     , Axis(axis)
+    , Step(step)
     , SpeedBelow(speedBelow)
     , SpeedAbove(speedAbove)
     , Total(costs.In(zone))
@@ -104,19 +107,21 @@ public:
   /// The plane with the least seconds of the slower side; of several the one nearest to `now`.
   int Best(int now) const
   {
-    int low = this->Zone.Lo[this->Axis];
-    int high = this->Zone.Hi[this->Axis];
-    now = std::clamp(now, low, high);
+    const int from = this->Zone.Lo[this->Axis];
+    const int to = this->Zone.Hi[this->Axis];
+    now = std::clamp(now, from, to);
     if (this->IsFree())
     {
       return now;
     }
-    // The first plane below which is as much as the speeds are for, or more.
+    // The first plane below which is as much as the speeds are for, or more; in steps.
     const double wanted = this->Total * this->SpeedBelow / (this->SpeedBelow + this->SpeedAbove);
+    int low = (from + this->Step - 1) / this->Step;
+    int high = (to + this->Step - 1) / this->Step;
     while (low < high)
     {
       const int middle = low + (high - low) / 2;
-      if (this->Below(middle) >= wanted)
+      if (this->Below(std::min(middle * this->Step, to)) >= wanted)
       {
         high = middle;
       }
@@ -125,10 +130,11 @@ public:
         low = middle + 1;
       }
     }
-    int best = low;
-    if (low > this->Zone.Lo[this->Axis] && this->Slower(low - 1) < this->Slower(low))
+    int best = std::min(low * this->Step, to);
+    const int before = (low - 1) * this->Step;
+    if (before >= from && this->Slower(before) < this->Slower(best))
     {
-      best = low - 1;
+      best = before;
     }
     return this->Slower(now) <= this->Slower(best) * (1.0 + 1e-9) ? now : best;
   }
@@ -149,6 +155,7 @@ private:
   const CostSums& Costs;
   Box Zone;
   int Axis;
+  int Step;
   double SpeedBelow;
   double SpeedAbove;
   double Total;
@@ -156,7 +163,7 @@ private:
 
 /// Every plane where it balances, without limits.
 ZoneTree BalancedTree(
-  const ZoneTree& tree, const CostSums& costs, const std::vector<double>& speeds)
+  const ZoneTree& tree, const CostSums& costs, const std::vector<double>& speeds, int step)
 {
   const std::vector<double> speedOf = SumsOfNodes(tree, speeds);
   ZoneTree balanced = tree;
@@ -167,7 +174,7 @@ ZoneTree BalancedTree(
     Node& node = balanced.Nodes[number];
     if (!node.IsLeaf())
     {
-      const Division division(costs, zones[number], node.Axis,
+      const Division division(costs, zones[number], node.Axis, step,
         speedOf[static_cast<std::size_t>(node.Below)],
         speedOf[static_cast<std::size_t>(node.Above)]);
       node.Plane = division.Best(node.Plane);
@@ -178,21 +185,22 @@ ZoneTree BalancedTree(
 }
 
 /// All planes the same part of the way from one tree to another, which are nested as those are.
-ZoneTree PartOfTheWay(const ZoneTree& from, const ZoneTree& to, double part)
+ZoneTree PartOfTheWay(const ZoneTree& from, const ZoneTree& to, double part, int step)
 {
   ZoneTree tree = from;
   for (std::size_t number = 0; number < tree.Nodes.size(); ++number)
   {
     const int way = to.Nodes[number].Plane - from.Nodes[number].Plane;
     // Rounded down on both sides alike: planes that do not cross before do not cross afterwards.
-    tree.Nodes[number].Plane += static_cast<int>(std::floor(part * way));
+    const double steps = std::floor((tree.Nodes[number].Plane + part * way) / step);
+    tree.Nodes[number].Plane = static_cast<int>(steps) * step;
   }
   return tree;
 }
 
 /// As far as `most` bytes go.
-ZoneTree WithinBytes(
-  const ZoneTree& from, const ZoneTree& to, const CostSums& bytes, double most, double& moved)
+ZoneTree WithinBytes(const ZoneTree& from, const ZoneTree& to, const CostSums& bytes, double most,
+  int step, double& moved)
 {
   moved = MovedBetween(from, to, bytes);
   if (moved <= most)
@@ -204,11 +212,32 @@ ZoneTree WithinBytes(
   for (int i = 0; i < 12; ++i)
   {
     const double middle = 0.5 * (low + high);
-    (MovedBetween(from, PartOfTheWay(from, to, middle), bytes) <= most ? low : high) = middle;
+    (MovedBetween(from, PartOfTheWay(from, to, middle, step), bytes) <= most ? low : high) = middle;
   }
-  ZoneTree tree = PartOfTheWay(from, to, low);
+  // Where even the first step of all planes is too much, `from`.
+  ZoneTree tree = low > 0.0 ? PartOfTheWay(from, to, low, step) : from;
   moved = MovedBetween(from, tree, bytes);
   return tree;
+}
+
+/// One plane by one step towards `to`: the first from the root on for which `most` bytes are
+/// enough.
+ZoneTree OnePlaneAStep(
+  const ZoneTree& from, const ZoneTree& to, const CostSums& bytes, double most, int step)
+{
+  for (std::size_t number = 0; number < from.Nodes.size(); ++number)
+  {
+    const int way = to.Nodes[number].Plane - from.Nodes[number].Plane;
+    const int length = std::min(std::abs(way), step);
+    ZoneTree tree = from;
+    tree.Nodes[number].Plane += way > 0 ? length : -length;
+    KeepApart(tree, 0);
+    if (way != 0 && MovedBetween(from, tree, bytes) <= most)
+    {
+      return tree;
+    }
+  }
+  return from;
 }
 
 } // namespace
@@ -267,6 +296,10 @@ Rebalanced RebalanceMeasuredCost(const ZoneTree& tree, const BrickCosts& costs,
   {
     throw Error("The speed of a rank is not a positive number.");
   }
+  if (limits.PlaneStep < 1)
+  {
+    throw Error("Planes move by at least one position.");
+  }
   const CostSums sums(costs);
   Rebalanced result{ tree };
   result.Before = result.After = ExpectedImbalance(tree, sums, speeds);
@@ -275,14 +308,22 @@ Rebalanced RebalanceMeasuredCost(const ZoneTree& tree, const BrickCosts& costs,
     return result;
   }
   double moved = 0.0;
-  ZoneTree balanced = BalancedTree(tree, sums, speeds);
-  if (result.Before - ExpectedImbalance(balanced, sums, speeds) < limits.LeastGain)
+  const ZoneTree target = BalancedTree(tree, sums, speeds, limits.PlaneStep);
+  if (result.Before - ExpectedImbalance(target, sums, speeds) < limits.LeastGain)
   {
     return result;
   }
+  ZoneTree balanced = target;
   if (limits.Bytes)
   {
-    balanced = WithinBytes(tree, balanced, CostSums(*limits.Bytes), limits.MostBytes, moved);
+    balanced =
+      WithinBytes(tree, target, CostSums(*limits.Bytes), limits.MostBytes, limits.PlaneStep, moved);
+  }
+  if (limits.Bytes && balanced == tree)
+  {
+    const CostSums bytes(*limits.Bytes);
+    balanced = OnePlaneAStep(tree, target, bytes, limits.MostBytes, limits.PlaneStep);
+    moved = MovedBetween(tree, balanced, bytes);
   }
   result.Tree = std::move(balanced);
   result.After = ExpectedImbalance(result.Tree, sums, speeds);

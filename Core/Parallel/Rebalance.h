@@ -38,6 +38,7 @@ struct RebalanceLimits
 {
   double Tolerated = 1.04; ///< expected imbalance at which the tree is left alone
   double LeastGain = 0.01; ///< by which the expected imbalance must fall for planes to move
+  int PlaneStep = 1;       ///< planes move to multiples of it, or to the end of the grid
   /// What moving each brick takes: bytes, say. Null for nothing.
   const BrickCosts* Bytes = nullptr;
   double MostBytes = std::numeric_limits<double>::infinity(); ///< that change ranks

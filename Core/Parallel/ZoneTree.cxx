@@ -186,23 +186,4 @@ std::vector<int> FrontToBack(const Viewpoint& view, const ZoneTree& tree)
   return order;
 }
 
-ZoneTree WithoutPlanesBeforeTheEye(const ZoneTree& tree, const Viewpoint& view, int edge)
-{
-  ZoneTree moved = tree;
-  if (view.Parallel)
-  {
-    return moved;
-  }
-  for (ZoneTree::Node& node : moved.Nodes)
-  {
-    // All planes inside the coarse cell of the eye, so that none comes to stand behind another.
-    const double low = std::floor(view.Eye[node.Axis] / edge) * edge;
-    if (!node.IsLeaf() && low < node.Plane && node.Plane < low + edge)
-    {
-      node.Plane = std::min(static_cast<int>(low) + edge, moved.Positions[node.Axis]);
-    }
-  }
-  return moved;
-}
-
 } // namespace banyan

@@ -64,14 +64,6 @@ ZoneTree Refined(const ZoneTree& tree, int edge, const glm::ivec3& positions);
 /// Throws Error when the camera has no position or direction.
 std::vector<int> FrontToBack(const Viewpoint& view, const ZoneTree& tree);
 
-/// A tree whose zones may be drawn from coarser levels in one order: cells of a level belong to the
-/// zone that holds their low corner, so a zone may begin up to `edge` - 1 positions late there.
-/// Planes inside the coarse cells that the eye is in, of whatever zone, are put to the end of
-/// these.
-/// @param edge positions per coarse cell and axis
-/// @param view in the space of the positions
-ZoneTree WithoutPlanesBeforeTheEye(const ZoneTree& tree, const Viewpoint& view, int edge);
-
 } // namespace banyan
 
 #endif

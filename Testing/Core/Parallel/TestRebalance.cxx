@@ -274,6 +274,45 @@ TEST(MeasuredCost, MovesNoMoreBytesThanAllowedAndArrivesAllTheSame)
   EXPECT_GT(moved, 3.0 * limits.MostBytes);
 }
 
+TEST(MeasuredCost, PlanesStandAtMultiplesOfTheStep)
+{
+  const glm::ivec3 size(125, 90, 77);
+  const BrickCosts costs = Hill(size, 8, { 20, 70, 30 }, 25.0);
+  BrickCosts bytes(size, 8);
+  std::fill(bytes.Values.begin(), bytes.Values.end(), 1.0);
+  const std::vector<double> speeds(7, 1.0);
+  for (const int step : { 1, 4, 8, 16 })
+  {
+    RebalanceLimits limits;
+    limits.PlaneStep = step;
+    limits.Bytes = &bytes;
+    limits.MostBytes = (step == 16 ? 0.15 : 0.1) * CostSums(bytes).Total();
+    limits.LeastGain = 0.0;
+    ZoneTree tree = Refined(EqualZoneTree((size + 15) / 16, 7), 16, size);
+    RebalanceLimits unlimited;
+    unlimited.PlaneStep = step;
+    const double best =
+      ImbalanceWith(RebalanceMeasuredCost(tree, costs, speeds, unlimited).Tree, costs, speeds);
+    for (int frame = 0; frame < 40; ++frame)
+    {
+      tree = RebalanceMeasuredCost(tree, costs, speeds, limits).Tree;
+      const std::vector<Box> zones = NodeZones(tree);
+      for (std::size_t number = 0; number < zones.size(); ++number)
+      {
+        const ZoneTree::Node& node = tree.Nodes[number];
+        EXPECT_TRUE(node.IsLeaf() || node.Plane % step == 0 || node.Plane == size[node.Axis]);
+        EXPECT_TRUE(node.IsLeaf() || (node.Plane >= zones[number].Lo[node.Axis] &&
+                                       node.Plane <= zones[number].Hi[node.Axis]));
+      }
+    }
+    EXPECT_LE(ImbalanceWith(tree, costs, speeds), (step < 16 ? 1.1 : 1.2) * best) << step;
+  }
+  RebalanceLimits limits;
+  limits.PlaneStep = 0;
+  EXPECT_THROW(
+    RebalanceMeasuredCost(EqualZoneTree(size, 2), BrickCosts(size, 8), { 1, 1 }, limits), Error);
+}
+
 TEST(MeasuredCost, RefusesWhatDoesNotFitTogether)
 {
   const ZoneTree tree = EqualZoneTree(glm::ivec3(8), 3);

@@ -159,41 +159,5 @@ TEST(ZoneTree, RefinedZonesAreThoseOfTheCells)
   }
 }
 
-TEST(ZoneTree, ZonesOfCoarserLevelsHaveTheSameOrder)
-{
-  std::mt19937 random(4);
-  int moved = 0;
-  for (int trial = 0; trial < 600; ++trial)
-  {
-    const int edge = 1 << random() % 4;
-    const glm::ivec3 size(random() % 40 + 1, random() % 40 + 1, random() % 40 + 1);
-    const ZoneTree tree = RandomTree(random, size, static_cast<int>(random() % 12 + 1));
-    Viewpoint view = RandomView(random, size);
-    const ZoneTree kept = WithoutPlanesBeforeTheEye(tree, view, edge);
-    moved += kept != tree ? 1 : 0;
-    const std::vector<int> order = FrontToBack(view, kept);
-    // Zones of the level, in positions of the finest one.
-    std::vector<Box> level;
-    for (const Box& zone : ZonesOf(kept))
-    {
-      level.push_back({ (zone.Lo + edge - 1) / edge * edge, (zone.Hi + edge - 1) / edge * edge });
-    }
-    for (std::size_t i = 0; i < order.size(); ++i)
-    {
-      for (std::size_t j = i + 1; j < order.size(); ++j)
-      {
-        const Box& first = level[order[i]];
-        const Box& second = level[order[j]];
-        if (!first.Empty() && !second.Empty())
-        {
-          ASSERT_TRUE(Intersection(first, second).Empty());
-          EXPECT_FALSE(Hides(view, second, first)) << trial;
-        }
-      }
-    }
-  }
-  EXPECT_GT(moved, 20);
-}
-
 } // namespace
 } // namespace banyan

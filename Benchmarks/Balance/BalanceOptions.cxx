@@ -1,0 +1,107 @@
+#include "BalanceOptions.h"
+
+#include "OptionValues.h"
+
+#include "Base/Error.h"
+
+#include <algorithm>
+
+namespace banyan::bench
+{
+namespace
+{
+
+const LoadBalancing AllModes[] = { LoadBalancing::Off, LoadBalancing::SliceStep,
+  LoadBalancing::MeasuredCost };
+
+std::vector<LoadBalancing> ModesIn(const std::string& text)
+{
+  std::vector<LoadBalancing> modes;
+  for (const std::string& name : SplitAtCommas(text))
+  {
+    const auto* found = std::find_if(std::begin(AllModes), std::end(AllModes),
+      [&](LoadBalancing mode) { return name == NameOf(mode); });
+    if (found == std::end(AllModes))
+    {
+      throw Error("There is no mode '" + name + "': off, slice-step and measured-cost are there.");
+    }
+    modes.push_back(*found);
+  }
+  return modes;
+}
+
+} // namespace
+
+const char* const BalanceHelp =
+  "banyan-bench-balance [OPTIONS]\n"
+  "  Draws a camera path with zones that are balanced in different ways. Ranks are simulated: "
+  "their\n"
+  "  zones are drawn one after the other on one thread, and the processor time of each counts.\n"
+  "  --series FILE.json   real data (see banyan-bench-raycast); default the standard scene S2\n"
+  "  --size N             samples per axis of the standard scene (default 256)\n"
+  "  --path NAME          zoom (default), rest, jumps\n"
+  "  --picture N          pixels per side (default 512)    --frames N   (default 60)\n"
+  "  --ranks LIST         default 2,4,8,16\n"
+  "  --modes LIST         default off,slice-step,measured-cost\n"
+  "  --plane-step N       cells between places of planes (default 1; encoded series have 8)\n"
+  "  --output FILE.csv    default standard output          --append     to it\n"
+  "  --rank-times FILE.csv   each rank's milliseconds too\n"
+  "  --brick-times FILE.csv  what the bricks of each frame took, and nothing else\n"
+  "  --mpi                on the real ranks of mpirun, in wall-clock time; one thread each\n";
+
+const char* NameOf(LoadBalancing mode)
+{
+  return mode == LoadBalancing::Off         ? "off"
+         : mode == LoadBalancing::SliceStep ? "slice-step"
+                                            : "measured-cost";
+}
+
+BalanceOptions ParseBalanceOptions(const std::vector<std::string>& arguments)
+{
+  BalanceOptions options;
+  for (std::size_t i = 0; i < arguments.size(); ++i)
+  {
+    const std::string& option = arguments[i];
+    const auto value = [&]() -> const std::string& { return ValueBehind(arguments, i); };
+    const auto count = [&](int most) { return CountIn(option, value(), 1, most); };
+    if (option == "--help")
+      options.Help = true;
+    else if (option == "--append")
+      options.Append = true;
+    else if (option == "--mpi")
+      options.Mpi = true;
+    else if (option == "--series")
+      options.Series = value();
+    else if (option == "--path")
+      options.Path = value();
+    else if (option == "--output")
+      options.Output = value();
+    else if (option == "--rank-times")
+      options.RankTimes = value();
+    else if (option == "--brick-times")
+      options.BrickTimes = value();
+    else if (option == "--size")
+      options.Size = count(2048);
+    else if (option == "--picture")
+      options.Picture = count(8192);
+    else if (option == "--plane-step")
+      options.PlaneStep = count(64);
+    else if (option == "--frames")
+      options.Frames = count(100000);
+    else if (option == "--modes")
+      options.Modes = ModesIn(value());
+    else if (option == "--ranks")
+    {
+      options.Ranks.clear();
+      for (const std::string& part : SplitAtCommas(value()))
+      {
+        options.Ranks.push_back(CountIn(option, part, 1, 4096));
+      }
+    }
+    else
+      throw Error("There is no option '" + option + "'; --help lists them.");
+  }
+  return options;
+}
+
+} // namespace banyan::bench

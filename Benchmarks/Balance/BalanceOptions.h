@@ -1,0 +1,41 @@
+#ifndef banyan_Benchmarks_BalanceOptions_h
+#define banyan_Benchmarks_BalanceOptions_h
+
+#include "Parallel/Rebalance.h"
+
+#include <string>
+#include <vector>
+
+namespace banyan::bench
+{
+
+struct BalanceOptions
+{
+  std::string Series; ///< description of a raw series; none draws the standard scene S2
+  std::string Path = "zoom";
+  std::string Output;     ///< CSV; none prints
+  std::string RankTimes;  ///< CSV of each rank's times; none
+  std::string BrickTimes; ///< CSV of what each brick of the first frame took; none
+  int Size = 256;         ///< samples per axis of the standard scene
+  int Picture = 512;
+  int Frames = 60;
+  int PlaneStep = 1; ///< cells
+  std::vector<int> Ranks{ 2, 4, 8, 16 };
+  std::vector<LoadBalancing> Modes{ LoadBalancing::Off, LoadBalancing::SliceStep,
+    LoadBalancing::MeasuredCost };
+  bool Append = false;
+  bool Mpi = false; ///< on the ranks of this job in place of simulated ones
+  bool Help = false;
+};
+
+extern const char* const BalanceHelp;
+
+/// Throws Error with a sentence.
+BalanceOptions ParseBalanceOptions(const std::vector<std::string>& arguments);
+
+/// As in the column `mode`.
+const char* NameOf(LoadBalancing mode);
+
+} // namespace banyan::bench
+
+#endif

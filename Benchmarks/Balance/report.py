@@ -1,0 +1,127 @@
+"""report.py DIR : draws the charts of the tables that balance.sh left in DIR, and prints a summary."""
+
+import pathlib
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plot  # noqa: E402 (the backend has to be chosen first)
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
+from tables import in_order, read  # noqa: E402
+
+COLORS = {"off": "tab:red", "slice-step": "tab:orange", "measured-cost": "tab:blue"}
+BALANCED_WITHIN = 5  # frames after a jump of the camera
+JUMP_EVERY = 10      # frames, on the path of jumps
+
+
+def table(folder, name):
+    path = folder / name
+    return read(path, ("mode",)) if path.exists() else []
+
+
+def curve(rows, ranks, mode, column):
+    return [row[column] for row in rows if row["ranks"] == ranks and row["mode"] == mode]
+
+
+def mean(values):
+    return sum(values) / len(values) if values else float("nan")
+
+
+def draw_frames(rows, path):
+    """The paper's figure 11, and what else there is to a frame."""
+    counts = in_order(rows, "ranks")
+    columns = [("ms", "ms of the slowest rank"), ("imbalance", "largest over mean"),
+               ("bytes_moved", "bytes moved")]
+    figure, grid = plot.subplots(len(columns), len(counts), figsize=(4.2 * len(counts), 8.4),
+                                 squeeze=False)
+    for across, ranks in enumerate(counts):
+        for down, (column, label) in enumerate(columns):
+            axes = grid[down][across]
+            for mode in in_order(rows, "mode"):
+                axes.plot(curve(rows, ranks, mode, column), color=COLORS[mode], label=mode)
+            axes.set_ylim(bottom=1 if column == "imbalance" else 0)
+            axes.grid(True, alpha=0.25)
+            axes.set_xlabel("frame")
+            if across == 0:
+                axes.set_ylabel(label)
+        grid[0][across].set_title(f"{ranks:g} ranks")
+    grid[0][0].legend(fontsize=8)
+    figure.suptitle("Zooming into a part of the volume")
+    figure.tight_layout()
+    figure.savefig(path, dpi=90, metadata={"Software": None})
+
+
+def draw_ranks(rows, path):
+    """The paper's figure 12: what each rank takes."""
+    ranks = 8 if 8 in in_order(rows, "ranks") else max(in_order(rows, "ranks"))
+    modes = in_order(rows, "mode")
+    figure, grid = plot.subplots(1, len(modes), figsize=(5 * len(modes), 4), sharey=True,
+                                 squeeze=False)
+    for axes, mode in zip(grid[0], modes):
+        for rank in range(int(ranks)):
+            axes.plot([row["ms"] for row in rows if row["ranks"] == ranks
+                       and row["mode"] == mode and row["rank"] == rank], label=f"rank {rank}")
+        axes.set_title(f"{mode}, {ranks:g} ranks")
+        axes.set_xlabel("frame")
+        axes.set_ylim(bottom=0)
+        axes.grid(True, alpha=0.25)
+    grid[0][0].set_ylabel("ms")
+    grid[0][0].legend(fontsize=7)
+    figure.tight_layout()
+    figure.savefig(path, dpi=90, metadata={"Software": None})
+
+
+def print_zoom(name, rows):
+    if not rows:
+        return
+    print(f"{name}: ms are means over all frames; the factor is that of the ms without balancing in "
+          "the last quarter")
+    print(f"{'ranks':>6} {'mode':14}{'ms':>9}{'imbalance':>11}{'last quarter':>14}{'factor':>8}"
+          f"{'MB per frame':>14}{'most':>8}")
+    for ranks in in_order(rows, "ranks"):
+        for mode in in_order(rows, "mode"):
+            ms = curve(rows, ranks, mode, "ms")
+            imbalance = curve(rows, ranks, mode, "imbalance")
+            moved = curve(rows, ranks, mode, "bytes_moved")
+            last = 3 * len(ms) // 4
+            static = curve(rows, ranks, "off", "ms")
+            factor = mean(static[last:]) / mean(ms[last:]) if static else float("nan")
+            print(f"{ranks:6g} {mode:14}{mean(ms):9.2f}{mean(imbalance):11.3f}"
+                  f"{mean(imbalance[last:]):14.3f}{factor:8.2f}{1e-6 * mean(moved):14.3f}"
+                  f"{1e-6 * max(moved):8.2f}")
+
+
+def print_settled(name, rows, settled):
+    if not rows:
+        return
+    print(f"{name}: imbalance of the frames that count as settled")
+    for ranks in in_order(rows, "ranks"):
+        line = f"{ranks:6g} "
+        for mode in in_order(rows, "mode"):
+            values = [value for frame, value in enumerate(curve(rows, ranks, mode, "imbalance"))
+                      if settled(frame)]
+            line += f"  {mode} mean {mean(values):.3f} largest {max(values):.3f}"
+        print(line)
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    folder = pathlib.Path(sys.argv[1])
+    zoom = table(folder, "balance.csv")
+    draw_frames(zoom, folder / "balance.png")
+    draw_ranks(table(folder, "balance-ranks.csv"), folder / "balance-ranks.png")
+    print_zoom("Zoom, simulated ranks", zoom)
+    print_zoom("Zoom into bonsai, simulated ranks", table(folder, "balance-bonsai.csv"))
+    print_zoom("Zoom, real ranks", table(folder, "balance-real.csv"))
+    print_settled(f"Jumps, from frame {BALANCED_WITHIN} after each",
+                  table(folder, "balance-jumps.csv"),
+                  lambda frame: frame % JUMP_EVERY >= BALANCED_WITHIN)
+    print_settled("At rest, from frame 5", table(folder, "balance-rest.csv"),
+                  lambda frame: frame >= 5)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,105 @@
+#!/usr/bin/env bash
+# Measures frames of a camera that zooms into a part of a volume, with zones that are balanced in
+# different ways: figures 11 and 12 of "Dynamic load balancing for parallel volume rendering".
+#
+#   balance.sh [--quick] [--output DIR] [--data DIR] [--work DIR] [--frames N] [--ranks LIST] [--help]
+#
+#   --quick        128^3 samples, 256^2 pixels and 40 frames instead of 256^3, 512^2 and 80: a minute
+#                  or two
+#   --output DIR   where balance.csv, balance-ranks.csv (each rank's times), balance.png,
+#                  balance-ranks.png and, where there is mpirun, balance-real.csv go; jumps of the
+#                  camera and a camera at rest are in balance-jumps.csv and balance-rest.csv
+#                  (default benchmark-output)
+#   --data DIR     folder of real data (default ../shared/data beside the project, if it exists):
+#                  bonsai is zoomed into as well, in balance-bonsai.csv
+#   --work DIR     keeps volumes (default: balance-scenes in the build folder)
+#   --frames N     of the zoom
+#   --ranks LIST   default 2,4,8,16
+#
+# Ranks are simulated where cores are missing: each one's zone is really drawn, one after the other on
+# one thread, and the processor time of the slowest is the frame's. Two ranks are also real (mpirun),
+# in wall-clock time. Installs what is missing, and builds in build-benchmark (BANYAN_BUILD_DIR names
+# another folder). BANYAN_SKIP_INSTALL=1 leaves the packages of the system alone, BANYAN_SKIP_BUILD=1
+# the build.
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+output="benchmark-output"
+work=""
+size=256
+picture=512
+frames=80
+ranks="2,4,8,16"
+
+parse_arguments()
+{
+  local given=""
+  while [[ $# -gt 0 ]]; do
+    local option="$1"
+    shift
+    case "$option" in
+      --help)
+        help_of "${BASH_SOURCE[0]}"
+        exit 0
+        ;;
+      --quick)
+        size=128
+        picture=256
+        frames=40
+        ;;
+      --output | --data | --work | --frames | --ranks)
+        [[ $# -gt 0 && -n "$1" ]] || fail "$option needs a value."
+        case "$option" in
+          --output) output="$1" ;;
+          --data) data="$1" ;;
+          --work) work="$1" ;;
+          --frames) given="$1" ;;
+          --ranks) ranks="$1" ;;
+        esac
+        shift
+        ;;
+      *) fail "there is no option '$option'; --help lists them." ;;
+    esac
+  done
+  frames="${given:-$frames}"
+  find_data
+}
+
+parse_arguments "$@"
+
+stage 1 4 "Installing what is missing and building"
+install_and_build
+program="$BuildFolder/bin/banyan-bench-balance"
+[[ -x "$program" ]] || fail "there is no $program; it has to be built first."
+work="${work:-$BuildFolder/balance-scenes}"
+mkdir -p "$work" "$output" || fail "the folders for the results cannot be made."
+common=(--size "$size" --picture "$picture")
+
+stage 2 4 "Measuring simulated ranks"
+"$program" "${common[@]}" --frames "$frames" --ranks "$ranks" --output "$output/balance.csv" \
+  --rank-times "$output/balance-ranks.csv" || fail "measuring failed."
+for path in jumps rest; do
+  say "      $path"
+  "$program" "${common[@]}" --path "$path" --frames 40 --ranks "$ranks" \
+    --output "$output/balance-$path.csv" || fail "measuring failed."
+done
+real=()
+if [[ -n "$data" ]]; then
+  collect bonsai '*.mhd'
+fi
+for series in "${real[@]+"${real[@]}"}"; do
+  say "      bonsai"
+  "$program" "${common[@]}" --series "$series" --frames "$frames" --ranks 8 \
+    --output "$output/balance-bonsai.csv" || fail "measuring bonsai failed."
+done
+
+stage 3 4 "Measuring two real ranks"
+if command -v mpirun > /dev/null; then
+  mpirun -np 2 --oversubscribe "$program" --mpi "${common[@]}" --frames "$frames" \
+    --output "$output/balance-real.csv" || fail "measuring real ranks failed."
+else
+  say "      there is no mpirun"
+fi
+
+stage 4 4 "Reporting"
+"$python" "$here/Balance/report.py" "$output" || fail "the report could not be written."
+say "Done: $output/balance.csv, balance.png, balance-ranks.png and the other paths"

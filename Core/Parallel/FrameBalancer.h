@@ -1,0 +1,66 @@
+#ifndef banyan_Parallel_FrameBalancer_h
+#define banyan_Parallel_FrameBalancer_h
+
+#include "Parallel/Communicator.h"
+#include "Parallel/FrameWork.h"
+#include "Render/RayBlend.h"
+#include "Render/TransferFunction.h"
+
+#include <optional>
+#include <vector>
+
+namespace banyan
+{
+
+/// Zones of one field from frame to frame: the balancer, and what it has to be told. Used alike on
+/// all ranks.
+class FrameBalancer
+{
+public:
+  struct Field
+  {
+    glm::ivec3 Cells{ 0 };
+    int BrickCells = 16;
+    int CoarsestLevel = 0; ///< that pictures are drawn from: planes stand between cells of it
+    double BytesPerCell = 4.0;
+  };
+
+  /// Begins with equal zones, unless ranks, field and mode are those of before.
+  void Start(LoadBalancing mode, const Field& field, int ranks);
+
+  /// Moves planes for the next frame, and lets the scene tell what bricks take.
+  /// @param scene all of it but its samplings
+  /// @param source of the whole field
+  void BeginFrame(RayScene& scene, const BrickSource& source);
+
+  /// In cells.
+  const std::vector<Box>& Zones() const { return this->ZoneCells; }
+
+  /// After a frame was drawn by the scene. Collective.
+  void EndFrame(Communicator& communicator);
+
+  /// From rank to rank for the frame that was begun last.
+  double BytesMoved() const { return this->Balancer ? this->Balancer->BytesMoved() : 0.0; }
+
+private:
+  bool IsOff() const
+  {
+    return !this->Balancer || this->Balancer->Given().Ranks == 1 ||
+           this->Balancer->Given().Mode == LoadBalancing::Off;
+  }
+  void LookAgain(const RayScene& scene, const BrickSource& source);
+
+  std::optional<LoadBalancer> Balancer;
+  std::vector<Box> ZoneCells;
+  BrickWork Work;  ///< of this rank for the frame
+  BrickCosts View; ///< of the frame
+
+  std::vector<float> Visible; ///< for what follows
+  const BrickSource* SeenOf = nullptr;
+  TransferFunction SeenBy;
+  BlendMode SeenAs = BlendMode::Composite;
+};
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,87 @@
+"""Checks that zones move on real ranks, and that the picture does not change by it.
+
+A camera comes closer to a part of an encoded series, with each mode of LoadBalancing: every frame
+must look as without, and on several ranks bricks must move, but only where a mode asks for it.
+"""
+import os
+import sys
+
+from paraview import simple
+
+import picture_scenes
+import pictures
+import session
+
+SIZE = (240, 200)
+MODES = ("Off", "Slice step", "Measured cost")
+FRAMES = 7
+TOLERANCE = 1
+FIGURES = ("Imbalance", "BytesMoved", "CacheHits", "CacheMisses", "BricksDrawn")
+
+
+def camera(frame):
+    """From everything to a corner."""
+    away = 1.0 - 0.13 * frame
+    target = [14 * (1 - away), 11 * (1 - away), 9 * (1 - away)]
+    return {"CameraPosition": [target[0] + 45 * away, target[1] + 40 * away,
+                               target[2] + 100 * away],
+            "CameraFocalPoint": target, "CameraViewUp": [0, 1, 0]}
+
+
+def draw(mode, folder):
+    """Pictures and figures of all frames in one mode."""
+    view = session.new_view(SIZE, UseFXAA=0, **camera(0))
+    display = picture_scenes.encoded(view)
+    # In place of the tolerance, which pilots may meet with other samples on other ranks.
+    display.SampleDistanceVoxels = 0.5
+    display.LoadBalancing = mode
+    taken = []
+    for frame in range(FRAMES):
+        for name, value in camera(frame).items():
+            setattr(view, name, value)
+        path = os.path.join(folder, f"{mode.replace(' ', '')}.{frame}.png")
+        simple.SaveScreenshot(path, view, ImageResolution=list(SIZE))
+        display.UpdatePropertyInformation()
+        figures = {name: display.GetPropertyValue(name) for name in FIGURES}
+        print(mode, frame, figures, flush=True)
+        taken.append((pictures.load(path), figures))
+    session.clear()
+    return taken
+
+
+def main():
+    parser = session.parser(__doc__)
+    parser.add_argument("--out", required=True)
+    parser.add_argument("--data", default=".", help="folder with swirl.banyan")
+    parser.add_argument("--ranks", type=int, default=1)
+    arguments = parser.parse_args()
+    session.begin(arguments)
+    picture_scenes.Settings.data = arguments.data
+    os.makedirs(arguments.out, exist_ok=True)
+    failures = []
+
+    def require(condition, sentence):
+        if not condition:
+            failures.append(sentence)
+
+    drawn = {mode: draw(mode, arguments.out) for mode in MODES}
+    for mode, frames in drawn.items():
+        moved = sum(figures["BytesMoved"] for _, figures in frames)
+        wanted = mode != "Off" and arguments.ranks > 1
+        require((moved > 0) == wanted, f"'{mode}' moved {moved} bytes on {arguments.ranks} ranks")
+        for frame, (picture, figures) in enumerate(frames):
+            largest = int(pictures.difference(picture, drawn["Off"][frame][0]).max())
+            require(largest <= TOLERANCE, f"'{mode}', frame {frame}: pixels differ by {largest}")
+            require(picture.max() > 60, f"'{mode}', frame {frame}: nothing was drawn")
+            require(1.0 <= figures["Imbalance"] <= arguments.ranks + 1e-6,
+                    f"'{mode}', frame {frame}: the imbalance is {figures['Imbalance']}")
+    changes = pictures.difference(drawn["Off"][0][0], drawn["Off"][-1][0]).max()
+    require(changes > 60, "the camera did not move")
+    for failure in failures:
+        print("FAILED " + failure, file=sys.stderr)
+    if failures:
+        sys.exit(1)
+
+
+if __name__ == "__main__":
+    main()
