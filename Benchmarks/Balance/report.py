@@ -102,7 +102,8 @@ def print_settled(name, rows, settled):
         for mode in in_order(rows, "mode"):
             values = [value for frame, value in enumerate(curve(rows, ranks, mode, "imbalance"))
                       if settled(frame)]
-            line += f"  {mode} mean {mean(values):.3f} largest {max(values):.3f}"
+            if values:
+                line += f"  {mode} mean {mean(values):.3f} largest {max(values):.3f}"
         print(line)
 
 
