@@ -19,7 +19,7 @@ std::uint8_t ToByte(float value)
 
 /// Replaces the colours on rank 0 by those of all ranks, blended in the given order.
 void OverBlendInOrder(Communicator& communicator, const std::vector<int>& rankOrder,
-  const PixelRect& rect, std::vector<OpaquePixel>& pixels)
+  const PixelRect& rect, std::vector<OpaquePixel>& pixels, CompositeStatistics& statistics)
 {
   FloatImage mine;
   mine.Rect = rect;
@@ -38,8 +38,7 @@ void OverBlendInOrder(Communicator& communicator, const std::vector<int>& rankOr
       order.push_back(rank);
     }
   }
-  CompositeStatistics ignored;
-  const FloatImage blended = CompositeDirectSend(communicator, mine, order, rect, ignored);
+  const FloatImage blended = CompositeDirectSend(communicator, mine, order, rect, statistics);
   for (std::size_t i = 0; i < blended.Pixels.size(); ++i)
   {
     for (int c = 0; c < 4; ++c)
@@ -56,26 +55,21 @@ bool Covers(const OpaquePixel& pixel)
 
 } // namespace
 
-void CombineBehind(Communicator& communicator, const std::vector<int>& rankOrder,
-  const PixelRect& rect, std::vector<OpaquePixel>& pixels)
+PixelRect CombineBehind(Communicator& communicator, const std::vector<int>& rankOrder,
+  const PixelRect& rect, std::vector<OpaquePixel>& pixels, CompositeStatistics& statistics)
 {
   if (communicator.Size() == 1)
   {
-    return;
+    return {};
   }
-  const bool geometry = std::any_of(pixels.begin(), pixels.end(), Covers);
   std::vector<OpaquePixel> nearest = pixels;
   if (!rankOrder.empty())
   {
-    OverBlendInOrder(communicator, rankOrder, rect, pixels);
+    OverBlendInOrder(communicator, rankOrder, rect, pixels, statistics);
   }
   // Without geometry on any rank, rank 0's pixels are already what lies behind.
-  if (AllMax(communicator, geometry ? 1.0 : 0.0) == 0.0)
-  {
-    return;
-  }
-  ReduceNearest(communicator, nearest);
-  for (std::size_t i = 0; i < pixels.size(); ++i)
+  const PixelRect geometry = ReduceNearestGeometry(communicator, rect, nearest, statistics);
+  for (std::size_t i = 0; i < pixels.size() && !geometry.Empty(); ++i)
   {
     pixels[i].Depth = nearest[i].Depth;
     if (rankOrder.empty())
@@ -83,6 +77,14 @@ void CombineBehind(Communicator& communicator, const std::vector<int>& rankOrder
       std::copy(nearest[i].Color, nearest[i].Color + 4, pixels[i].Color);
     }
   }
+  PixelRect coloured = RectAround(rect, pixels,
+    [](const OpaquePixel& pixel)
+    {
+      return std::any_of(
+        pixel.Color, pixel.Color + 4, [](std::uint8_t value) { return value != 0; });
+    });
+  communicator.Broadcast(0, &coloured, sizeof(coloured));
+  return Union(geometry, coloured);
 }
 
 std::vector<float> DepthsOf(const std::vector<OpaquePixel>& pixels)

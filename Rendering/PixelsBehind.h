@@ -10,9 +10,12 @@ namespace banyan
 
 /// Turns what each rank has drawn into what lies behind the volume: depths (on all ranks) are the
 /// nearest of all ranks; colours (right on rank 0) are those of the nearest, or, when `rankOrder`
-/// is not empty, all ranks' blended front to back in that order. Collective.
-void CombineBehind(Communicator& communicator, const std::vector<int>& rankOrder,
-  const PixelRect& rect, std::vector<OpaquePixel>& pixels);
+/// is not empty, all ranks' blended front to back in that order. Pixels travel only where there is
+/// something. Collective.
+/// @param statistics is added to
+/// @return on all ranks, the rectangle around what rank 0 will blend the volume over; may be empty
+PixelRect CombineBehind(Communicator& communicator, const std::vector<int>& rankOrder,
+  const PixelRect& rect, std::vector<OpaquePixel>& pixels, CompositeStatistics& statistics);
 
 /// Depths of the pixels; none when nothing was drawn there.
 std::vector<float> DepthsOf(const std::vector<OpaquePixel>& pixels);

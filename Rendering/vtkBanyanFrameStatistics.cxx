@@ -16,6 +16,7 @@ void vtkBanyanFrameStatistics::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "BricksUniform: " << this->BricksUniform << "\n"
      << indent << "BricksSkipped: " << this->BricksSkipped << "\n"
      << indent << "BytesComposited: " << this->BytesComposited << "\n"
+     << indent << "MessagesComposited: " << this->MessagesComposited << "\n"
      << indent << "BytesRead: " << this->BytesRead << "\n"
      << indent << "CacheBytes: " << this->CacheBytes << "\n"
      << indent << "BytesMoved: " << this->BytesMoved << "\n"

@@ -57,6 +57,9 @@ public:
   /// and held by the brick caches now.
   vtkSetMacro(BytesComposited, vtkIdType);
   vtkGetMacro(BytesComposited, vtkIdType);
+  /// In so many messages.
+  vtkSetMacro(MessagesComposited, vtkIdType);
+  vtkGetMacro(MessagesComposited, vtkIdType);
   vtkSetMacro(BytesRead, vtkIdType);
   vtkGetMacro(BytesRead, vtkIdType);
   vtkSetMacro(CacheBytes, vtkIdType);
@@ -100,6 +103,7 @@ protected:
   vtkIdType BricksUniform = 0;
   vtkIdType BricksSkipped = 0;
   vtkIdType BytesComposited = 0;
+  vtkIdType MessagesComposited = 0;
   vtkIdType BytesRead = 0;
   vtkIdType CacheBytes = 0;
   vtkIdType BytesMoved = 0;

@@ -3,6 +3,7 @@
 #include "DistributedField.h"
 #include "FrameScene.h"
 #include "FramebufferExchange.h"
+#include "IceTCompositing.h"
 #include "PixelsBehind.h"
 #include "SceneOptions.h"
 #include "ToleranceControl.h"
@@ -229,6 +230,7 @@ void vtkBanyanVolumeMapper::Internals::Publish(const banyan::FrameStatistics& fr
   out->SetBricksUniform(static_cast<vtkIdType>(frame.BricksUniform));
   out->SetBricksSkipped(static_cast<vtkIdType>(frame.BricksSkipped));
   out->SetBytesComposited(static_cast<vtkIdType>(frame.BytesComposited));
+  out->SetMessagesComposited(static_cast<vtkIdType>(frame.MessagesComposited));
   out->SetFrames(out->GetFrames() + 1);
 }
 
@@ -282,7 +284,10 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
     return;
   }
   std::vector<banyan::OpaquePixel> pixels = self.Framebuffer.Read(renderer, rect);
-  banyan::CombineBehind(*self.Communicator, self.RankOrderBehind, rect, pixels);
+  banyan::CompositeStatistics geometry;
+  banyan::CompositeOptions compositing;
+  compositing.Behind =
+    banyan::CombineBehind(*self.Communicator, self.RankOrderBehind, rect, pixels, geometry);
   scene.Depth = banyan::DepthsOf(pixels);
 
   const std::uint64_t bytesBefore = self.Field.BytesRead();
@@ -303,12 +308,17 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
           *self.Communicator, self.Field, scene, wish, budget, wanted.Problem, frame)
       : 0.0);
   const banyan::FrameStatistics pilots = frame;
+  compositing.Method = static_cast<banyan::CompositingMethod>(this->Compositing);
+  compositing.Transport =
+    this->CompositeInFewBits ? banyan::PixelTransport::WithinOne : banyan::PixelTransport::Floats;
+  compositing.External = banyan::IceTRadixK(this->Controller);
   const banyan::FloatImage picture =
     banyan::DrawDistributed(*self.Communicator, scene, self.Field.Source(), self.Field.Zones(),
-      budget, banyan::ThreadPool::Process(), wanted.Problem, frame);
+      budget, banyan::ThreadPool::Process(), wanted.Problem, frame, compositing);
 
   frame.SamplesTaken += pilots.SamplesTaken;
   frame.BytesComposited += pilots.BytesComposited;
+  frame.MessagesComposited += pilots.MessagesComposited;
   self.Field.EndFrame(*self.Communicator);
   self.Tolerance.FrameTook(wish, banyan::AllMax(*self.Communicator, drawing.Seconds()));
 
@@ -330,6 +340,8 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   self.Framebuffer.Write(renderer, rect, pixels, /*blend=*/alone);
   self.LastProblem.clear();
 
+  frame.BytesComposited += static_cast<std::uint64_t>(
+    banyan::AllSum(*self.Communicator, static_cast<double>(geometry.BytesSent)));
   self.Publish(
     frame, self.Field.BytesRead() - bytesBefore, cacheBefore, timer.Seconds(), this->Statistics);
 }
@@ -354,6 +366,8 @@ void vtkBanyanVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "RefineInPasses: " << this->RefineInPasses << "\n"
      << indent << "SampleDistanceVoxels: " << this->SampleDistanceVoxels << "\n"
      << indent << "MeshTolerance: " << this->MeshTolerance << "\n"
+     << indent << "Compositing: " << this->Compositing << "\n"
+     << indent << "CompositeInFewBits: " << this->CompositeInFewBits << "\n"
      << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"
      << indent << "LoadBalancing: " << this->LoadBalancing << "\n"
      << indent << "Controller: " << this->Controller.GetPointer() << "\n"

@@ -30,13 +30,13 @@ class vtkMultiProcessController;
  * The picture does not depend on the number of ranks or threads: at most 1/255 per channel.
  *
  * Blend modes composite, maximum, minimum and average intensity; clipping planes, and cropping to
- * the inside of a box; shading; linear interpolation or, as vtkVolumeProperty has it by default, that
- * of the nearest point. All as VTK's own volume mappers know them, and the same on all ranks.
+ * the inside of a box; shading; linear interpolation or, as vtkVolumeProperty has it by default,
+ * that of the nearest point. All as VTK's own volume mappers know them, and the same on all ranks.
  *
  * @par Limits: point data; component 0 of the property, which draws one component of the data or
  * their magnitude, as the vector mode of its colour function says; lights other than the viewer's
- * are ignored, and so is shading in modes other than composite. Averages are grey, from the lowest to
- * the highest value of the data (of all steps of an encoded series).
+ * are ignored, and so is shading in modes other than composite. Averages are grey, from the lowest
+ * to the highest value of the data (of all steps of an encoded series).
  */
 class BANYANRENDERING_EXPORT vtkBanyanVolumeMapper : public vtkVolumeMapper
 {
@@ -47,11 +47,11 @@ public:
 
   ///@{
   /**
-   * Largest error of a pixel that is wanted, in 1/255 of a channel: of still frames (default 1), and
-   * while interacting, that is, while the window asks for more than one frame per second (default
-   * 8). It decides how closely each part of the picture is sampled, and from which level of an
-   * encoded series. The error is estimated (see banyan::PlanSamplings) and goes to the statistics.
-   * Allowed [0.05, 255]. Without effect on projections and nearest interpolation.
+   * Largest error of a pixel that is wanted, in 1/255 of a channel: of still frames (default 1),
+   * and while interacting, that is, while the window asks for more than one frame per second
+   * (default 8). It decides how closely each part of the picture is sampled, and from which level
+   * of an encoded series. The error is estimated (see banyan::PlanSamplings) and goes to the
+   * statistics. Allowed [0.05, 255]. Without effect on projections and nearest interpolation.
    */
   vtkSetClampMacro(ImageErrorTolerance, double, 0.05, 255.0);
   vtkGetMacro(ImageErrorTolerance, double);
@@ -72,7 +72,8 @@ public:
   /**
    * Whether still frames that follow an interaction are drawn in passes: the first with the
    * tolerance of interaction, each next one that RefineNext() asked for with a quarter of the one
-   * before, until ImageErrorTolerance is kept. Never worse than the frame before it. Off by default.
+   * before, until ImageErrorTolerance is kept. Never worse than the frame before it. Off by
+   * default.
    */
   vtkSetMacro(RefineInPasses, bool);
   vtkGetMacro(RefineInPasses, bool);
@@ -103,6 +104,28 @@ public:
    */
   vtkSetClampMacro(MeshTolerance, double, 0.0, 0.0625);
   vtkGetMacro(MeshTolerance, double);
+  ///@}
+
+  ///@{
+  /**
+   * How the pictures of several ranks become one: as banyan::CompositingMethod (0, the default:
+   * SLIC; 1: SLIC as published; 2: direct send; 3: binary swap; 4: IceT's radix-k, for blend mode
+   * composite only). All make the same picture, but for IceT's, which rounds to 8 bits on the way.
+   */
+  vtkSetClampMacro(Compositing, int, 0, 4);
+  vtkGetMacro(Compositing, int);
+  ///@}
+
+  ///@{
+  /**
+   * Whether pixels travel between ranks in as few bits as keep each of them within 1/255 of one
+   * rank's, and packed: far fewer bytes than floats. Where a background is blended behind
+   * the picture later, in 8 bits, as ParaView does, a few pixels may then differ by 2/255. Default
+   * off: floats, which are within 1/255 there too. Without effect on IceT and on projections.
+   */
+  vtkSetMacro(CompositeInFewBits, bool);
+  vtkGetMacro(CompositeInFewBits, bool);
+  vtkBooleanMacro(CompositeInFewBits, bool);
   ///@}
 
   ///@{
@@ -184,6 +207,8 @@ private:
   bool RefineInPasses = false;
   double SampleDistanceVoxels = 0.0;
   double MeshTolerance = 1.0 / 1024;
+  int Compositing = 0;
+  bool CompositeInFewBits = false;
   int NumberOfThreads = 0;
   int LoadBalancing = 2;
   vtkSmartPointer<vtkMultiProcessController> Controller;

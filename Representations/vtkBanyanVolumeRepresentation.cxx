@@ -363,6 +363,16 @@ void vtkBanyanVolumeRepresentation::SetMeshTolerance(double tolerance)
   this->Mapper->SetMeshTolerance(tolerance);
 }
 
+void vtkBanyanVolumeRepresentation::SetCompositing(int method)
+{
+  this->Mapper->SetCompositing(method);
+}
+
+void vtkBanyanVolumeRepresentation::SetCompositeInFewBits(bool few)
+{
+  this->Mapper->SetCompositeInFewBits(few);
+}
+
 void vtkBanyanVolumeRepresentation::SetNumberOfThreads(int threads)
 {
   this->Mapper->SetNumberOfThreads(threads);

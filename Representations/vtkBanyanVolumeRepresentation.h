@@ -88,6 +88,11 @@ public:
   /** How far points of hexahedra may lie beside the lattice of their octree, in finest edges. */
   void SetMeshTolerance(double tolerance);
 
+  /** How the pictures of ranks become one; see vtkBanyanVolumeMapper::SetCompositing. */
+  void SetCompositing(int method);
+  /** Whether pixels of ranks travel packed; see vtkBanyanVolumeMapper::SetCompositeInFewBits. */
+  void SetCompositeInFewBits(bool few);
+
   /** Threads per process; 0 (default) shares the cores of a machine among its ranks. */
   void SetNumberOfThreads(int threads);
 

@@ -2,7 +2,7 @@
 # Installs the Debian packages that Banyan is built, tested and demonstrated with.
 #   install-dependencies.sh          installs those that are missing (as root, or through sudo)
 #   install-dependencies.sh --list   prints their names
-#   install-dependencies.sh --with-peers   also the codecs that Benchmarks/codec.sh compares with
+#   install-dependencies.sh --with-peers   also the codecs and the network simulator of Benchmarks
 # Does nothing, and needs neither root nor network, when all are there.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -23,7 +23,7 @@ Packages=(
   python3-numpy python3-matplotlib
 )
 
-PeerPackages=(libzfp-dev libblosc-dev libopenvdb-dev libnanovdb-dev libimath-dev libtbb-dev)
+PeerPackages=(libsimgrid-dev libzfp-dev libblosc-dev libopenvdb-dev libnanovdb-dev libimath-dev libtbb-dev)
 
 case "${1:-}" in
   "") ;;

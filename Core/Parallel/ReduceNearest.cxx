@@ -82,4 +82,50 @@ void ReduceNearest(Communicator& communicator, std::vector<OpaquePixel>& pixels)
   communicator.WaitAll();
 }
 
+PixelRect ReduceNearestGeometry(Communicator& communicator, const PixelRect& rect,
+  std::vector<OpaquePixel>& pixels, CompositeStatistics& statistics)
+{
+  const PixelRect mine =
+    RectAround(rect, pixels, [](const OpaquePixel& pixel) { return pixel.Depth < 1.0f; });
+  std::vector<PixelRect> all(static_cast<std::size_t>(communicator.Size()));
+  communicator.AllGather(&mine, sizeof(mine), all.data());
+  PixelRect geometry;
+  for (const PixelRect& one : all)
+  {
+    geometry = Union(geometry, one);
+  }
+  if (geometry.Empty() || communicator.Size() == 1)
+  {
+    return geometry;
+  }
+  const glm::ivec2 size = geometry.Size();
+  std::vector<OpaquePixel> part;
+  part.reserve(static_cast<std::size_t>(geometry.Count()));
+  const auto rowOf = [&](int y)
+  {
+    const glm::ivec2 at = glm::ivec2(geometry.Lo.x, y) - rect.Lo;
+    return pixels.begin() + static_cast<std::ptrdiff_t>(at.y) * rect.Size().x +
+           static_cast<std::ptrdiff_t>(at.x);
+  };
+  for (int y = geometry.Lo.y; y < geometry.Hi.y; ++y)
+  {
+    part.insert(part.end(), rowOf(y), rowOf(y) + size.x);
+  }
+  ReduceNearest(communicator, part);
+  for (int y = geometry.Lo.y; y < geometry.Hi.y; ++y)
+  {
+    std::copy_n(
+      part.begin() + static_cast<std::ptrdiff_t>(y - geometry.Lo.y) * size.x, size.x, rowOf(y));
+  }
+  // Its own part of the pixels to the others, and theirs back: as ReduceNearest cuts them.
+  const std::size_t ranks = all.size();
+  const std::size_t self = static_cast<std::size_t>(communicator.Rank());
+  const std::size_t own = part.size() * (self + 1) / ranks - part.size() * self / ranks;
+  const std::uint64_t sent = (part.size() - own) + own * (ranks - 1);
+  statistics.BytesSent += sent * sizeof(OpaquePixel);
+  statistics.BytesReceived += sent * sizeof(OpaquePixel);
+  statistics.MessagesSent += 2 * (ranks - 1);
+  return geometry;
+}
+
 } // namespace banyan

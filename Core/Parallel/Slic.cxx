@@ -1,5 +1,6 @@
 #include "Parallel/Compositing.h"
 #include "Parallel/FragmentMessage.h"
+#include "Parallel/SlicParts.h"
 
 #include <algorithm>
 #include <memory>
@@ -10,17 +11,6 @@ namespace
 {
 
 using Kind = CompositePlan::Kind;
-constexpr Kind AllKinds[] = { Kind::Final, Kind::Behind, Kind::Split };
-
-// Tags: one per sort of message and chunk.
-constexpr int FirstTag = 64;
-constexpr int TagDirect = 0; ///< pixels that nobody else draws, to the root
-constexpr int TagShared = 1; ///< to the owner of a tile
-constexpr int TagResult = 2; ///< from the owner of a tile to the root
-int TagOf(int sort, int chunk)
-{
-  return FirstTag + 3 * chunk + sort;
-}
 
 FloatImage Transparent(const PixelRect& rect)
 {
@@ -86,7 +76,7 @@ private:
   struct Message
   {
     int From;
-    int Sort;
+    SlicMessage Sort;
     int Chunk;
     std::unique_ptr<std::uint8_t[]> Data; ///< not cleared: most of it is never touched
     std::size_t Bytes;
@@ -109,56 +99,20 @@ private:
                                : FormatFor(this->Options, kind == Kind::Split ? 2 : 1, 2);
   }
 
-  /// Calls `action(tile, kind, region)` for all parts of a message, in the order in which they are
-  /// in it, and leaves out the empty ones.
   template <typename Action>
-  void ForEachPart(int from, int to, int sort, int chunk, const Action& action)
+  void ForEachPart(int from, int to, SlicMessage sort, int chunk, const Action& action)
   {
-    CompositePlan::Region& region = this->Region;
-    const std::vector<int>& tiles =
-      sort == TagResult ? this->Plan.TilesOfChunk[chunk] : this->Plan.TilesOfRank[from];
-    for (const int index : tiles)
-    {
-      const CompositePlan::Tile& tile = this->Plan.Tiles[index];
-      if (tile.Chunk != chunk || (sort == TagShared && tile.Owner != to) ||
-          (sort == TagResult && tile.Owner != from))
-      {
-        continue;
-      }
-      for (const Kind kind : AllKinds)
-      {
-        if ((tile.Kinds & (1u << static_cast<unsigned>(kind))) == 0)
-        {
-          continue;
-        }
-        if (sort == TagResult)
-        {
-          this->Plan.ResultRegion(index, kind, region);
-        }
-        else if (sort == TagDirect)
-        {
-          this->Plan.DirectRegion(from, index, kind, region);
-        }
-        else
-        {
-          this->Plan.SharedRegion(from, index, kind, region);
-        }
-        if (!region.empty())
-        {
-          action(index, kind, region);
-        }
-      }
-    }
+    ForEachSlicPart(this->Plan, from, to, sort, chunk, this->Region, action);
   }
 
   /// Posts the receipt of a message unless it has no parts.
-  bool Expect(int from, int sort, int chunk)
+  bool Expect(int from, SlicMessage sort, int chunk)
   {
     std::size_t capacity = 0;
     this->ForEachPart(from, this->Ranks.Rank(), sort, chunk,
       [&](int, Kind kind, const CompositePlan::Region& region)
       {
-        const int parts = sort == TagResult && kind == Kind::Split ? 2 : 1;
+        const int parts = sort == SlicMessage::Result && kind == Kind::Split ? 2 : 1;
         capacity += parts * FragmentBytesAtMost(region);
       });
     if (capacity == 0)
@@ -167,7 +121,8 @@ private:
     }
     this->Expected.push_back(
       { from, sort, chunk, std::unique_ptr<std::uint8_t[]>(new std::uint8_t[capacity]), 0 });
-    this->Ranks.ReceiveWhole(from, TagOf(sort, chunk), this->Expected.back().Data.get(), capacity);
+    this->Ranks.ReceiveWhole(
+      from, TagOfSlic(sort, chunk), this->Expected.back().Data.get(), capacity);
     return true;
   }
 
@@ -177,8 +132,8 @@ private:
     {
       for (int rank = 1; rank < this->Ranks.Size(); ++rank)
       {
-        this->Expect(rank, TagDirect, chunk);
-        this->Expect(rank, TagResult, chunk);
+        this->Expect(rank, SlicMessage::Direct, chunk);
+        this->Expect(rank, SlicMessage::Result, chunk);
       }
     }
   }
@@ -198,12 +153,13 @@ private:
       this->Missing[chunk] = 0;
       for (int rank = 1; rank < this->Ranks.Size(); ++rank)
       {
-        this->Missing[chunk] += rank != self && this->Expect(rank, TagShared, chunk) ? 1 : 0;
+        this->Missing[chunk] +=
+          rank != self && this->Expect(rank, SlicMessage::Shared, chunk) ? 1 : 0;
       }
     }
   }
 
-  void Send(int to, int sort, int chunk, std::vector<std::uint8_t> bytes)
+  void Send(int to, SlicMessage sort, int chunk, std::vector<std::uint8_t> bytes)
   {
     if (bytes.empty())
     {
@@ -211,17 +167,17 @@ private:
     }
     this->Outgoing.push_back(std::move(bytes));
     const std::vector<std::uint8_t>& kept = this->Outgoing.back();
-    this->Ranks.SendWhole(to, TagOf(sort, chunk), kept.data(), kept.size());
+    this->Ranks.SendWhole(to, TagOfSlic(sort, chunk), kept.data(), kept.size());
     this->Statistics.Sent(kept.size());
   }
 
   void SendDirect(int chunk)
   {
     FragmentWriter writer;
-    this->ForEachPart(this->Ranks.Rank(), 0, TagDirect, chunk,
+    this->ForEachPart(this->Ranks.Rank(), 0, SlicMessage::Direct, chunk,
       [&](int, Kind kind, const CompositePlan::Region& region)
       { writer.Append(region, this->Mine, this->DirectFormat(kind), this->Pack); });
-    this->Send(0, TagDirect, chunk, std::move(writer.Bytes));
+    this->Send(0, SlicMessage::Direct, chunk, std::move(writer.Bytes));
   }
 
   void SendShared(int chunk)
@@ -242,10 +198,10 @@ private:
         continue;
       }
       FragmentWriter writer;
-      this->ForEachPart(self, to, TagShared, chunk,
+      this->ForEachPart(self, to, SlicMessage::Shared, chunk,
         [&](int tile, Kind kind, const CompositePlan::Region& region)
         { writer.Append(region, this->Mine, this->SharedFormat(kind, tile), this->Pack); });
-      this->Send(to, TagShared, chunk, std::move(writer.Bytes));
+      this->Send(to, SlicMessage::Shared, chunk, std::move(writer.Bytes));
     }
   }
 
@@ -279,7 +235,7 @@ private:
     this->ForEachPart(message.From, 0, message.Sort, message.Chunk,
       [&](int, Kind kind, const CompositePlan::Region& region)
       {
-        if (message.Sort == TagDirect)
+        if (message.Sort == SlicMessage::Direct)
         {
           blend(region, this->BeforeRoot(message.From));
           return;
@@ -316,7 +272,7 @@ private:
     const int self = this->Ranks.Rank();
     // Written and read as others' pixels are, but as floats: nothing is lost.
     FragmentWriter writer;
-    this->ForEachPart(self, self, TagShared, chunk,
+    this->ForEachPart(self, self, SlicMessage::Shared, chunk,
       [&](int, Kind, const CompositePlan::Region& region)
       { writer.Append(region, this->Mine, FragmentFormat{}, false); });
     this->BlendFrom(self, chunk, writer.Bytes.data(), writer.Bytes.size(), tiles);
@@ -326,7 +282,7 @@ private:
     int from, int chunk, const std::uint8_t* data, std::size_t bytes, std::vector<Halves>& tiles)
   {
     FragmentReader reader(data, bytes);
-    this->ForEachPart(from, this->Ranks.Rank(), TagShared, chunk,
+    this->ForEachPart(from, this->Ranks.Rank(), SlicMessage::Shared, chunk,
       [&](int tile, Kind kind, const CompositePlan::Region& region)
       {
         Halves& halves = tiles[this->IndexOfTile[tile]];
@@ -376,7 +332,7 @@ private:
       }
     }
     FragmentWriter writer;
-    this->ForEachPart(self, 0, TagResult, chunk,
+    this->ForEachPart(self, 0, SlicMessage::Result, chunk,
       [&](int tile, Kind kind, const CompositePlan::Region& region)
       {
         const Halves& halves = tiles[this->IndexOfTile[tile]];
@@ -386,7 +342,7 @@ private:
           writer.Append(region, halves.Behind, this->ResultFormat(kind), this->Pack);
         }
       });
-    this->Send(0, TagResult, chunk, std::move(writer.Bytes));
+    this->Send(0, SlicMessage::Result, chunk, std::move(writer.Bytes));
   }
 
   Communicator& Ranks;

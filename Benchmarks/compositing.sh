@@ -1,0 +1,192 @@
+#!/usr/bin/env bash
+# Simulates compositing on clusters of 2 to many ranks: ours and, unmodified, that of IceT, on frames
+# that the ray caster has drawn; writes a table and charts of time and bytes.
+#
+#   compositing.sh [--quick] [--output DIR] [--data DIR] [--work DIR] [--scenes LIST]
+#                  [--cameras LIST] [--ranks LIST] [--networks LIST] [--help]
+#
+#   --quick          two of the four cameras, 2 to 64 ranks on 10 Gb/s: minutes instead of hours
+#   --output DIR     where compositing.csv, compositing-time.png and compositing-bytes.png go (default
+#                    benchmark-output)
+#   --data DIR       folder of real data (default ../shared/data beside the project, if it exists)
+#   --work DIR       keeps volumes; frames are recorded there and removed (default:
+#                    compositing-frames in the build folder)
+#   --scenes LIST    of bonsai, isabel_velmag, turbulence, S1, S2, separated by commas (default all
+#                    but S1; without real data, S1 stands in for it)
+#   --cameras LIST   of perspective-full, perspective-zoom, parallel-full, parallel-zoom
+#   --ranks LIST     numbers of ranks, up to 512 (default 2,3,4,8,16,32,64 and, unless --quick, 256
+#                    and 512)
+#   --networks LIST  gigabits per second (default 10,100; --quick: 10)
+#
+# The network is SimGrid's: a fat tree of 512 nodes, full bisection, 1 us per link, 95 % of the
+# bandwidth for data, 1 us per message on both sides. Only the network takes time, so that the
+# numbers are the same in every run; pictures are 1024^2.
+#
+# Installs what is missing (the simulator too), and builds in build-benchmark (BANYAN_BUILD_DIR names
+# another folder). BANYAN_SKIP_INSTALL=1 leaves the packages of the system alone, BANYAN_SKIP_BUILD=1
+# the build.
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+output="benchmark-output"
+work=""
+quick=0
+scenes=""
+cameras=""
+ranks=""
+networks=""
+
+parse_arguments()
+{
+  while [[ $# -gt 0 ]]; do
+    local option="$1"
+    shift
+    case "$option" in
+      --help)
+        help_of "${BASH_SOURCE[0]}"
+        exit 0
+        ;;
+      --quick) quick=1 ;;
+      --output | --data | --work | --scenes | --cameras | --ranks | --networks)
+        [[ $# -gt 0 && -n "$1" ]] || fail "$option needs a value."
+        declare -g "${option#--}=$1"
+        shift
+        ;;
+      *) fail "there is no option '$option'; --help lists them." ;;
+    esac
+  done
+  find_data
+  if [[ $quick == 1 ]]; then
+    cameras="${cameras:-perspective-full,parallel-zoom}"
+    ranks="${ranks:-2,3,4,8,16,32,64}"
+    networks="${networks:-10}"
+  fi
+  cameras="${cameras:-perspective-full,perspective-zoom,parallel-full,parallel-zoom}"
+  ranks="${ranks:-2,3,4,8,16,32,64,256,512}"
+  networks="${networks:-10,100}"
+  scenes="${scenes:-bonsai,isabel_velmag,turbulence,S2}"
+}
+
+# The simulation, with the simulator's compiler, the MPI adapter and the unmodified IceT.
+build_simulation()
+{
+  command -v smpicxx > /dev/null || fail "smpicxx is missing: install libsimgrid-dev."
+  local paraview=/usr/include/paraview-5.11 core="$BuildFolder/lib/Banyan" source
+  [[ -e "$paraview/vtkicet/src/include/IceT.h" ]] ||
+    fail "IceT's headers are missing: install paraview-dev."
+  simulation="$BuildFolder/bin/banyan-simulate-compositing"
+  for source in "$here"/Compositing/*.{cxx,h} "$RepositoryRoot"/Core/Parallel/*.{cxx,h}; do
+    if [[ ! -e "$simulation" || "$source" -nt "$simulation" ]]; then
+      smpicxx -std=c++17 -O2 -DNDEBUG -fPIC -I"$RepositoryRoot/Core" \
+        -I"$paraview/vtkicet/src/include" -I"$paraview" \
+        "$here"/Compositing/{SimulateCompositing,IceTMethods,FrameFile}.cxx \
+        "$RepositoryRoot/Core/Parallel/MpiCommunicator.cxx" \
+        -L"$core" -Wl,-rpath,"$core" -lBanyanCore -lvtkIceTCore-pv5.11 -o "$simulation" ||
+        fail "the simulation could not be built."
+      return
+    fi
+  done
+}
+
+# A fat tree of 2 levels, 16 switches of 32 nodes each.
+write_platform()
+{
+  local bandwidth="$1"
+  cat > "$work/platform-$bandwidth.xml" << EOF
+<?xml version='1.0'?>
+<!DOCTYPE platform SYSTEM "https://simgrid.org/simgrid.dtd">
+<platform version="4.1">
+  <cluster id="fat" prefix="n" suffix="" radical="0-511" speed="10Gf" bw="${bandwidth}Gbps"
+           lat="1us" topology="FAT_TREE" topo_parameters="2;16,32;1,16;1,1"
+           sharing_policy="SPLITDUPLEX"/>
+</platform>
+EOF
+}
+
+# A volume that can be drawn: S1, S2, or the JSON file of a series.
+prepare_scene()
+{
+  local scene="$1"
+  volume=""
+  case "$scene" in
+    S1 | S2) volume="$scene" ;;
+    turbulence)
+      if [[ ! -e "$work/turbulence.raw" ]]; then
+        "$BuildFolder/bin/banyan-generate" --series turbulence --size 64 --steps 1 \
+          --raw "$work/turbulence.raw" 2> "$work/turbulence.log" ||
+          fail "the turbulence could not be generated: $(tail -1 "$work/turbulence.log")"
+      fi
+      printf '{"name": "turbulence", "file": "turbulence.raw", "samples": [64, 64, 64], "steps": 1}\n' \
+        > "$work/turbulence.json"
+      volume="$work/turbulence.json"
+      ;;
+    *)
+      real=()
+      [[ -z "$data" ]] || collect "$scene" "$([[ $scene == bonsai ]] && echo '*.mhd' || echo '*_02.vti')"
+      if [[ ${#real[@]} == 0 ]]; then
+        say "      S1 stands in for $scene"
+        volume="S1"
+      else
+        volume="${real[0]}"
+      fi
+      ;;
+  esac
+}
+
+# All methods on one frame.
+simulate()
+{
+  local frame="$1" network="$2" name scene camera count private
+  name="$(basename "$frame" .frame)"
+  count="${name##*_}"
+  camera="${name%_*}"
+  camera="${camera##*_}"
+  scene="${name%_*_*}"
+  private="$(mktemp -d "$work/run.XXXXXX")"
+  TMPDIR="$private" timeout 1800 smpirun -np "$count" -platform "$work/platform-$network.xml" \
+    -hostfile "$work/hosts" --cfg=smpi/privatize-libs:libvtkIceTCore-pv5.11.so.1 \
+    --cfg=smpi/bw-factor:0:0.95 --cfg=smpi/lat-factor:0:1.0 --cfg=network/crosstraffic:0 \
+    --cfg=smpi/os:0:1e-6:0 --cfg=smpi/ois:0:1e-6:0 --cfg=smpi/or:0:1e-6:0 \
+    --cfg=smpi/simulate-computation:no --log=root.thres:warning "$simulation" \
+    "$frame" "$scene" "$camera" "${network}Gb/s" "$((network * 125000000))" \
+    >> "$output/compositing.csv" 2> "$work/simulation.log" ||
+    fail "the simulation of $name failed: $(tail -1 "$work/simulation.log")"
+  rm -rf "$private"
+}
+
+parse_arguments "$@"
+stage 1 4 "Installing what is missing and building"
+install_and_build --with-peers
+build_simulation
+work="${work:-$BuildFolder/compositing-frames}"
+mkdir -p "$work" "$output" || fail "the folders for the results cannot be made."
+work="$(realpath "$work")"
+output="$(realpath "$output")"
+printf 'n%d\n' {0..511} > "$work/hosts"
+for network in ${networks//,/ }; do
+  write_platform "$network"
+done
+
+stage 2 4 "Recording frames and simulating them"
+echo "scene,camera,ranks,network,method,ms,bytes,messages,max_bytes_in" > "$output/compositing.csv"
+drawn=" "
+for scene in ${scenes//,/ }; do
+  prepare_scene "$scene"
+  [[ "$drawn" != *" $volume "* ]] || continue
+  drawn+="$volume "
+  for camera in ${cameras//,/ }; do
+    say "      $scene, $camera"
+    # One frame at a time: those of many ranks take much room.
+    for count in ${ranks//,/ }; do
+      frame="$("$BuildFolder/bin/banyan-record-frames" --output "$work" --ranks "$count" \
+        --cameras "$camera" "$volume")" || fail "the frames could not be drawn."
+      for network in ${networks//,/ }; do
+        simulate "$frame" "$network"
+      done
+      rm -f "$frame"
+    done
+  done
+done
+stage 3 4 "Drawing charts"
+"$python" "$here/Compositing/report.py" "$output/compositing.csv" "$output/compositing-time.png" \
+  "$output/compositing-bytes.png" || fail "the report could not be written."
+stage 4 4 "Done: $output/compositing.csv, compositing-time.png and compositing-bytes.png"

@@ -1,0 +1,18 @@
+#ifndef banyan_Rendering_IceTCompositing_h
+#define banyan_Rendering_IceTCompositing_h
+
+#include "Parallel/Compositing.h"
+
+class vtkMultiProcessController;
+
+namespace banyan
+{
+
+/// IceT's radix-k, of ParaView's own library, over the ranks of a controller: in 8 bits, ordered.
+/// Bytes are those that IceT says it has sent; messages are not known. One rank alone keeps its
+/// picture.
+CompositeOptions::Compositor IceTRadixK(vtkMultiProcessController* controller);
+
+} // namespace banyan
+
+#endif
