@@ -114,7 +114,8 @@ int vtkBanyanVolumeRepresentation::ProcessViewRequest(
   if (request == vtkPVView::REQUEST_UPDATE())
   {
     vtkPVRenderView::SetPiece(inInfo, this, this->Piece, this->DataSize);
-    vtkPVRenderView::SetGeometryBounds(inInfo, this, this->DataBounds);
+    // Placed as it is drawn: a client without data takes its clipping planes from here.
+    vtkPVRenderView::SetGeometryBounds(inInfo, this, this->DataBounds, this->Actor->GetMatrix());
     vtkPVRenderView::SetDeliverToClientAndRenderingProcesses(inInfo, this, false, false);
     vtkPVRenderView::SetRequiresDistributedRendering(inInfo, this, true);
     // Ranks whose bounds are off screen must draw all the same, or the others wait for ever. Never

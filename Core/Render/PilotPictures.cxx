@@ -8,12 +8,12 @@ namespace banyan
 namespace
 {
 
-/// Pixels of the picture per pixel of a pilot: 4096 pilots see enough of most scenes, and small
-/// pictures must not cost much more than themselves.
-int SpacingFor(const glm::ivec2& size)
+/// Pixels of the picture per pixel of a pilot: 4096 pilots see enough of most scenes. Volumes that
+/// take up little of the picture need close ones, and cost little.
+int SpacingFor(const PixelRect& viewport)
 {
-  const double edge = std::sqrt(static_cast<double>(size.x) * size.y);
-  return std::clamp(static_cast<int>(edge / 64.0 + 0.5), 8, 16);
+  const double edge = std::sqrt(static_cast<double>(viewport.Count()));
+  return std::clamp(static_cast<int>(edge / 64.0 + 0.5), 2, 16);
 }
 
 } // namespace
@@ -57,28 +57,35 @@ PilotPictures::PilotPictures(
   : Scene(scene)
   , DrawScene(std::move(draw))
 {
-  const int spacing = SpacingFor(this->ImageSize());
+  const int spacing = SpacingFor(scene.Viewport);
   this->Size = (this->ImageSize() + spacing - 1) / spacing;
+  // 4 where one pixel of 64 or fewer is looked at; if all were, extrapolation alone could be wrong.
+  this->SafetyFactor = 1.5 + 2.5 * std::min(1.0, (spacing - 1) / 7.0);
+  const glm::dvec2 perPixel = glm::dvec2(this->Size) / glm::dvec2(this->ImageSize());
+  this->View = Intersection({ glm::ivec2(glm::floor(glm::dvec2(scene.Viewport.Lo) * perPixel)),
+                              glm::ivec2(glm::ceil(glm::dvec2(scene.Viewport.Hi) * perPixel)) },
+    { glm::ivec2(0), this->Size });
 }
 
 PilotPicture PilotPictures::Draw(const RaySampling& sampling)
 {
   RayScene pilot = this->Scene;
   pilot.Camera = this->Scene.Camera.WithSize(this->Size);
-  pilot.Viewport = { glm::ivec2(0), this->Size };
+  pilot.Viewport = this->View;
   pilot.Depth = this->DepthOf(pilot);
   pilot.Samplings = std::make_shared<const TileSamplings>(this->Size, std::vector{ sampling });
   pilot.Pilot = true;
   const FloatImage image = this->DrawScene(pilot);
 
   PilotPicture picture;
-  picture.Pixels.assign(static_cast<std::size_t>(this->Size.x) * this->Size.y, glm::vec4(0.0f));
+  picture.Pixels.assign(static_cast<std::size_t>(this->View.Count()), glm::vec4(0.0f));
   for (int y = image.Rect.Lo.y; y < image.Rect.Hi.y; ++y)
   {
     for (int x = image.Rect.Lo.x; x < image.Rect.Hi.x; ++x)
     {
       const glm::vec4& pixel = image.At(x, y);
-      picture.Pixels[static_cast<std::size_t>(y) * this->Size.x + x] = pixel;
+      picture.Pixels[static_cast<std::size_t>(y - this->View.Lo.y) * this->View.Size().x + x -
+                     this->View.Lo.x] = pixel;
       this->Saw = this->Saw || pixel.a > 0.0f;
     }
   }
@@ -108,9 +115,11 @@ std::vector<float> PilotPictures::DepthOf(const RayScene& pilot) const
     for (int x = pilot.Viewport.Lo.x; x < pilot.Viewport.Hi.x; ++x)
     {
       const glm::ivec2 at = this->ToImage(x, y);
-      const bool inside = at.x >= view.Lo.x && at.y >= view.Lo.y && at.x < view.Hi.x && at.y < view.Hi.y;
+      const bool inside =
+        at.x >= view.Lo.x && at.y >= view.Lo.y && at.x < view.Hi.x && at.y < view.Hi.y;
       const std::size_t pixel =
-        inside ? static_cast<std::size_t>(at.y - view.Lo.y) * view.Size().x + (at.x - view.Lo.x) : 0;
+        inside ? static_cast<std::size_t>(at.y - view.Lo.y) * view.Size().x + (at.x - view.Lo.x)
+               : 0;
       depths.push_back(inside ? this->Scene.Depth[pixel] : 1.0f);
     }
   }
@@ -148,13 +157,16 @@ TileErrors PilotPictures::ErrorsOf(const PilotErrors& errors, double factor, dou
     {
       const glm::dvec2 low = glm::dvec2(x, y) * static_cast<double>(TileSamplings::Edge) - around;
       const glm::dvec2 high = low + (2.0 * around + TileSamplings::Edge);
-      const glm::ivec2 first = glm::max(glm::ivec2(glm::floor(low * perPixel)), glm::ivec2(0));
-      const glm::ivec2 end = glm::min(glm::ivec2(glm::ceil(high * perPixel)), this->Size);
+      const PixelRect near = Intersection(
+        { glm::ivec2(glm::floor(low * perPixel)), glm::ivec2(glm::ceil(high * perPixel)) },
+        this->View);
       float largest = 0.0f;
-      for (int j = first.y; j < end.y; ++j)
+      for (int j = near.Lo.y; j < near.Hi.y; ++j)
       {
-        const float* const row = &errors.Pixels[static_cast<std::size_t>(j) * this->Size.x];
-        largest = std::max(largest, *std::max_element(row + first.x, row + end.x));
+        const float* const row =
+          &errors.Pixels[static_cast<std::size_t>(j - this->View.Lo.y) * this->View.Size().x];
+        largest = std::max(largest,
+          *std::max_element(row + near.Lo.x - this->View.Lo.x, row + near.Hi.x - this->View.Lo.x));
       }
       result.Tiles.push_back(std::max(factor * largest, atLeast));
     }

@@ -12,7 +12,7 @@ namespace banyan
 /// A small picture of a scene.
 struct PilotPicture
 {
-  std::vector<glm::vec4> Pixels; ///< `[y][x]` of the whole picture; empty before it is drawn
+  std::vector<glm::vec4> Pixels; ///< `[y][x]` of the part that is wanted; empty before it is drawn
 };
 
 /// How far each pixel of a pilot is off, in 1/255: the largest of red, green, blue and opacity.
@@ -57,6 +57,9 @@ public:
 
   glm::ivec2 ImageSize() const { return this->Scene.Camera.ImageSize(); }
   std::size_t TileCount() const;
+  /// The worst pixel around may be so many times worse than the worst pilot: the more, the farther
+  /// pilots are apart.
+  double Safety() const { return this->SafetyFactor; }
   float OpacityLimit() const { return this->Scene.OpacityLimit; }
 
 private:
@@ -66,6 +69,8 @@ private:
   const RayScene& Scene;
   std::function<FloatImage(const RayScene& pilot)> DrawScene;
   glm::ivec2 Size;
+  PixelRect View; ///< the part that is wanted
+  double SafetyFactor = 4.0;
   int Drawn = 0;
   bool Saw = false;
 };
