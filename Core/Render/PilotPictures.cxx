@@ -8,12 +8,12 @@ namespace banyan
 namespace
 {
 
-/// Pixels of the picture per pixel of a pilot: 4096 pilots see enough of most scenes. Volumes that
-/// take up little of the picture need close ones, and cost little.
-int SpacingFor(const PixelRect& viewport)
+/// Pixels of the picture per pixel of a pilot: 4096 pilots see enough of most scenes, and small
+/// pictures must not cost much more than themselves.
+int SpacingFor(const glm::ivec2& size)
 {
-  const double edge = std::sqrt(static_cast<double>(viewport.Count()));
-  return std::clamp(static_cast<int>(edge / 64.0 + 0.5), 2, 16);
+  const double edge = std::sqrt(static_cast<double>(size.x) * size.y);
+  return std::clamp(static_cast<int>(edge / 64.0 + 0.5), 8, 16);
 }
 
 } // namespace
@@ -57,10 +57,8 @@ PilotPictures::PilotPictures(
   : Scene(scene)
   , DrawScene(std::move(draw))
 {
-  const int spacing = SpacingFor(scene.Viewport);
+  const int spacing = SpacingFor(this->ImageSize());
   this->Size = (this->ImageSize() + spacing - 1) / spacing;
-  // 4 where one pixel of 64 or fewer is looked at; if all were, extrapolation alone could be wrong.
-  this->SafetyFactor = 1.5 + 2.5 * std::min(1.0, (spacing - 1) / 7.0);
   const glm::dvec2 perPixel = glm::dvec2(this->Size) / glm::dvec2(this->ImageSize());
   this->View = Intersection({ glm::ivec2(glm::floor(glm::dvec2(scene.Viewport.Lo) * perPixel)),
                               glm::ivec2(glm::ceil(glm::dvec2(scene.Viewport.Hi) * perPixel)) },

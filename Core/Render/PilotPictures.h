@@ -57,9 +57,8 @@ public:
 
   glm::ivec2 ImageSize() const { return this->Scene.Camera.ImageSize(); }
   std::size_t TileCount() const;
-  /// The worst pixel around may be so many times worse than the worst pilot: the more, the farther
-  /// pilots are apart.
-  double Safety() const { return this->SafetyFactor; }
+  /// The worst pixel of a tile may be so many times worse than the worst of its pilots.
+  static constexpr double Safety() { return 4.0; }
   float OpacityLimit() const { return this->Scene.OpacityLimit; }
 
 private:
@@ -70,7 +69,6 @@ private:
   std::function<FloatImage(const RayScene& pilot)> DrawScene;
   glm::ivec2 Size;
   PixelRect View; ///< the part that is wanted
-  double SafetyFactor = 4.0;
   int Drawn = 0;
   bool Saw = false;
 };

@@ -25,13 +25,13 @@ void PilotSequence::Add(PilotPicture picture)
   if (this->Drawn.size() == 1)
   {
     // Of the first one nothing else is known.
-    this->Errors.front() = this->Pictures.ErrorsOf(difference, 2.0 * this->Pictures.Safety(), 2.0);
+    this->Errors.front() = this->Pictures.ErrorsOf(difference, 2.0 * PilotPictures::Safety(), 2.0);
   }
   const bool known = this->Drawn.size() > 1 && largest > 0.0;
   const double ratio = known ? std::clamp(this->LargestBefore / largest, 1.7, 4.0) : 2.0;
   const double part = 1.0 / (ratio - 1.0);
   this->Errors.push_back(
-    this->Pictures.ErrorsOf(difference, this->Pictures.Safety() * part, ShareOfLargest * part));
+    this->Pictures.ErrorsOf(difference, PilotPictures::Safety() * part, ShareOfLargest * part));
   this->Errors.back().Lower(this->Errors[this->Errors.size() - 2]);
   this->LargestBefore = largest;
   this->Drawn.push_back(std::move(picture));
@@ -57,7 +57,7 @@ std::vector<TileErrors> PilotSequence::AllErrors() const
     {
       TileErrors bound =
         this->Pictures.ErrorsOf(this->Pictures.Difference(this->Drawn[i], this->Drawn[later]),
-          this->Pictures.Safety(), ShareOfLargest);
+          PilotPictures::Safety(), ShareOfLargest);
       bound.Add(errors[later]);
       errors[i].Lower(bound);
     }
