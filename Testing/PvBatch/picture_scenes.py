@@ -194,6 +194,18 @@ def camera_inside_encoded():
 
 
 @scene
+def placed():
+    # Much larger than its data: a client has to know, to see as far.
+    view = session.new_view(SIZE, CameraPosition=[180, 160, 400], CameraFocalPoint=[0, 0, 0],
+                            CameraViewUp=[0, 1, 0])
+    display = wavelet(view)
+    display.Scale = [4, 4, 4]
+    display.Orientation = [0, 30, 0]
+    display.Position = [5, 0, 0]
+    return Drawn(view, [display], volume_pixels=20000)
+
+
+@scene
 def zoomed_to_a_corner():
     # Most ranks have nothing in the picture.
     view = session.new_view(SIZE, CameraPosition=[38, 30, 34], CameraFocalPoint=[19, 15, 13],

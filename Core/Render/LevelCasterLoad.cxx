@@ -1,0 +1,90 @@
+#include "Render/LevelCaster.h"
+
+#include "Base/Error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace banyan
+{
+
+void LevelCaster::Load(const PlannedBrick& brick, LoadedBrick& loaded) const
+{
+  if (brick.Entry)
+  {
+    return;
+  }
+  if (!loaded.Packed)
+  {
+    if (!PackedBrick::CanPack(brick.Cells))
+    {
+      loaded.View = this->LoadLarge(brick);
+      return;
+    }
+    loaded.Packed = this->Pack(brick);
+    this->Source.Kept().Keep(this->Source.KeptNumber(brick.Number), loaded.Packed);
+  }
+  loaded.Footprint = brick.Footprint;
+  if (this->AnySampling->Projection)
+  {
+    return;
+  }
+  loaded.Seen = this->VisibilityOf(brick, *loaded.Packed);
+  Box& seen = loaded.Seen.Cells;
+  const int size = 1 << brick.Level;
+  seen = Intersection({ seen.Lo * size, seen.Hi * size }, brick.Drawn);
+  loaded.Footprint = seen == brick.Drawn ? brick.Footprint : this->FootprintOf(seen);
+}
+
+BrickVisibility LevelCaster::VisibilityOf(
+  const PlannedBrick& brick, const PackedBrick& packed) const
+{
+  KeptBricks& kept = this->Source.Kept();
+  const std::int64_t number = this->Source.KeptNumber(brick.Number);
+  const std::uint64_t visible = this->Visible.Number();
+  const std::optional<BrickVisibility> known = kept.FindVisibility(number, visible);
+  if (known)
+  {
+    return *known;
+  }
+  const BrickVisibility seen(packed, this->Source.RangeOf(brick.Number), this->Visible);
+  kept.KeepVisibility(number, visible, seen);
+  return seen;
+}
+
+KeptBricks::Pointer LevelCaster::Pack(const PlannedBrick& brick) const
+{
+  const double low = this->AnySampling->Table.Low();
+  if (!this->Shading)
+  {
+    const BrickView view = this->Source.Load(brick.Number);
+    const glm::ivec3 corner = this->Source.CellsOf(brick.Number).Lo;
+    return std::make_shared<const PackedBrick>(view, corner, brick.Cells, low);
+  }
+  Box around;
+  const BrickView view = this->Source.LoadAround(brick.Number, around);
+  return std::make_shared<const PackedBrick>(
+    view, around, brick.Cells, low, this->GradientScale());
+}
+
+/// Brings gradients near 1, so that their squares neither overflow nor vanish.
+float LevelCaster::GradientScale() const
+{
+  const MaskRange range = this->Source.MasksAreOver();
+  const double width = range.High - range.Low;
+  const int exponent = width > 0.0 && std::isfinite(width) ? std::ilogb(width) : 0;
+  return static_cast<float>(std::exp2(-std::clamp(exponent, -100, 100)));
+}
+
+BrickView LevelCaster::LoadLarge(const PlannedBrick& brick) const
+{
+  if (this->Shading)
+  {
+    throw Error("Bricks of so many cells per axis cannot be shaded",
+      { {}, {}, static_cast<std::uint64_t>(brick.Cells.Size().x),
+        static_cast<std::uint64_t>(PackedBrick::LargestEdge) });
+  }
+  return this->Source.Load(brick.Number);
+}
+
+} // namespace banyan
