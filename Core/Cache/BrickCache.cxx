@@ -94,7 +94,7 @@ struct BrickCache::Internals
   };
 
   std::uint64_t Budget = 0;
-  bool Shares = false; ///< whether only half of the budget is for decoded bricks
+  bool Shares = false; ///< whether only three eighths of the budget are for decoded bricks
   Statistics Numbers;
   Order Bricks;
   std::unordered_map<Key, Order::iterator, KeyHash> Places;
@@ -102,7 +102,7 @@ struct BrickCache::Internals
   mutable std::mutex Mutex;
   std::condition_variable Decoded;
 
-  std::uint64_t Limit() const { return this->Shares ? this->Budget / 2 : this->Budget; }
+  std::uint64_t Limit() const { return this->Shares ? this->Budget / 8 * 3 : this->Budget; }
 
   void EvictDownTo(std::uint64_t bytes)
   {
@@ -248,7 +248,7 @@ void BrickCache::SetBudget(std::uint64_t bytes)
 {
   if (this == &BrickCache::Process())
   {
-    LatticeCache::Process().SetBudgetBytes(bytes / 8);
+    LatticeCache::Process().SetBudgetBytes(bytes / 4);
   }
   std::lock_guard<std::mutex> lock(this->Self->Mutex);
   this->Self->Budget = bytes;

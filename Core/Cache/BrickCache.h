@@ -57,8 +57,8 @@ public:
     const SeriesFile& series, const FieldKey& field, std::int64_t brick);
 
   /// Evicts at once when the new budget is smaller. 0 keeps nothing. The budget of the process's
-  /// cache is for drawing as well: half of it are decoded bricks, three eighths what the renderer
-  /// has loaded and packed, an eighth is LatticeCache's, which keeps what decoding needs again.
+  /// cache is for drawing as well: three eighths of it are decoded bricks, three what the renderer
+  /// has loaded and packed, a quarter is LatticeCache's, which keeps what decoding needs again.
   void SetBudget(std::uint64_t bytes);
   std::uint64_t Budget() const;
   /// The renderer's share of the budget of the process's cache.

@@ -10,7 +10,7 @@ namespace banyan
 namespace
 {
 
-constexpr std::uint64_t DefaultBudget = std::uint64_t{ 64 } << 20;
+constexpr std::uint64_t DefaultBudget = std::uint64_t{ 128 } << 20;
 
 std::uint64_t BytesOf(const LatticeCache::Box& box)
 {
@@ -26,7 +26,7 @@ LatticeCache::LatticeCache()
   const long megabytes = text != nullptr ? std::strtol(text, nullptr, 10) : 0;
   if (megabytes > 0)
   {
-    this->Budget = (static_cast<std::uint64_t>(megabytes) << 20) / 8;
+    this->Budget = (static_cast<std::uint64_t>(megabytes) << 20) / 4;
   }
 }
 
