@@ -19,9 +19,10 @@ class vtkMultiProcessController;
  * on one rank or many, with Banyan's own ray caster
  *
  * Use it like any volume mapper: give it image data (the output of vtkBanyanSeriesReader draws
- * without being decoded), or an unstructured grid of axis-aligned hexahedra or voxels (each is drawn as
- * the trilinear element that it is; vtkBanyanHexOctree says what is wrong with others), and put it into a vtkVolume with a colour and an opacity function. Rays
- * end at opaque geometry that was drawn before.
+ * without being decoded), or an unstructured grid of axis-aligned hexahedra or voxels (each is
+ * drawn as the trilinear element that it is; vtkBanyanHexOctree says what is wrong with others), and
+ * put it into a vtkVolume with a colour and an opacity function. Rays end at opaque geometry that
+ * was drawn before.
  *
  * With a controller of several ranks, Render() is collective: each rank draws its zone and rank 0
  * receives the finished picture, opaque geometry of all ranks included; the other ranks are left

@@ -2,10 +2,13 @@
 
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
+#include "Parallel/Rebalance.h"
 #include "Parallel/Zones.h"
 #include "Render/Viewpoint.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 namespace banyan
 {
@@ -31,17 +34,54 @@ FloatImage CastOwnZone(const RayScene& scene, BrickSource* source, const Box& zo
   }
 }
 
-/// Slowest over mean of the ranks' seconds.
-double ImbalanceOf(const std::vector<double>& seconds)
+/// What a rank tells the others of a frame. Plain numbers: all are sent in one message.
+struct Report
 {
-  double sum = 0.0;
-  double largest = 0.0;
-  for (const double value : seconds)
+  double RenderSeconds;
+  double CompositeSeconds;
+  double TotalSeconds;
+  double SamplesTaken;
+  double BricksDrawn;
+  double BricksUniform;
+  double BricksSkipped;
+  double BytesComposited;
+  double MessagesComposited;
+};
+
+/// Collective.
+void Publish(Communicator& communicator, const Report& mine, FrameStatistics& statistics)
+{
+  std::vector<Report> all(static_cast<std::size_t>(communicator.Size()));
+  communicator.AllGather(&mine, sizeof(mine), all.data());
+  const auto values = [&all](double Report::*of)
   {
-    sum += value;
-    largest = std::max(largest, value);
-  }
-  return sum > 0.0 ? largest * static_cast<double>(seconds.size()) / sum : 1.0;
+    std::vector<double> list;
+    for (const Report& report : all)
+    {
+      list.push_back(report.*of);
+    }
+    return list;
+  };
+  const auto largest = [&values](double Report::*of)
+  {
+    const std::vector<double> list = values(of);
+    return *std::max_element(list.begin(), list.end());
+  };
+  const auto sum = [&values](double Report::*of)
+  {
+    const std::vector<double> list = values(of);
+    return std::llround(std::accumulate(list.begin(), list.end(), 0.0));
+  };
+  statistics.RenderSeconds = largest(&Report::RenderSeconds);
+  statistics.Imbalance = ImbalanceOf(values(&Report::RenderSeconds));
+  statistics.CompositeSeconds = largest(&Report::CompositeSeconds);
+  statistics.TotalSeconds = largest(&Report::TotalSeconds);
+  statistics.SamplesTaken = sum(&Report::SamplesTaken);
+  statistics.BricksDrawn = sum(&Report::BricksDrawn);
+  statistics.BricksUniform = sum(&Report::BricksUniform);
+  statistics.BricksSkipped = sum(&Report::BricksSkipped);
+  statistics.BytesComposited = static_cast<std::uint64_t>(sum(&Report::BytesComposited));
+  statistics.MessagesComposited = static_cast<std::uint64_t>(sum(&Report::MessagesComposited));
 }
 
 /// What compositing needs to know of the scene.
@@ -93,19 +133,12 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene, Br
   FinishPicture(scene, picture);
   const double compositeSeconds = composite.Seconds();
 
-  const std::vector<double> allRender = AllGatherValues(communicator, renderSeconds);
-  statistics.RenderSeconds = *std::max_element(allRender.begin(), allRender.end());
-  statistics.Imbalance = ImbalanceOf(allRender);
-  statistics.CompositeSeconds = AllMax(communicator, compositeSeconds);
-  statistics.TotalSeconds = AllMax(communicator, total.Seconds());
-  const auto sum = [&communicator](auto value)
-  { return static_cast<decltype(value)>(AllSum(communicator, static_cast<double>(value))); };
-  statistics.SamplesTaken = sum(rays.SamplesTaken);
-  statistics.BricksDrawn = sum(rays.BricksDrawn);
-  statistics.BricksUniform = sum(rays.BricksUniform);
-  statistics.BricksSkipped = sum(rays.BricksSkipped);
-  statistics.BytesComposited = sum(sent.BytesSent);
-  statistics.MessagesComposited = sum(sent.MessagesSent);
+  const auto number = [](auto value) { return static_cast<double>(value); };
+  Publish(communicator,
+    { renderSeconds, compositeSeconds, total.Seconds(), number(rays.SamplesTaken),
+      number(rays.BricksDrawn), number(rays.BricksUniform), number(rays.BricksSkipped),
+      number(sent.BytesSent), number(sent.MessagesSent) },
+    statistics);
   return picture;
 }
 
