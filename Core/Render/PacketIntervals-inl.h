@@ -35,6 +35,22 @@ struct Whole
   VI Count;
 };
 
+/// Calls function(number) for the packets of a tile under some pixels of it.
+template <class Function>
+HWY_INLINE void ForPacketsUnder(const PixelRect& pixels, const RayTile& tile, Function&& function)
+{
+  constexpr int edge = RayTile::PacketEdge;
+  const glm::ivec2 corner = tile.Rect.Lo;
+  const PixelRect packets{ (pixels.Lo - corner) / edge, (pixels.Hi - corner + edge - 1) / edge };
+  for (int y = packets.Lo.y; y < packets.Hi.y; ++y)
+  {
+    for (int x = packets.Lo.x; x < packets.Hi.x; ++x)
+    {
+      function(y * RayTile::PacketsPerRow + x);
+    }
+  }
+}
+
 /// Finds which whole samples of rays lie in a box of cells: what RaySamples::SamplesIn finds.
 class PacketIntervals
 {

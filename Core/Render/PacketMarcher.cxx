@@ -70,20 +70,11 @@ public:
   /// All packets under some pixels of the tile.
   void March(const PixelRect& pixels)
   {
-    constexpr int edge = RayTile::PacketEdge;
-    const glm::ivec2 corner = this->Tile.Rect.Lo;
-    const PixelRect packets{ (pixels.Lo - corner) / edge, (pixels.Hi - corner + edge - 1) / edge };
-    for (int y = packets.Lo.y; y < packets.Hi.y; ++y)
-    {
-      for (int x = packets.Lo.x; x < packets.Hi.x; ++x)
-      {
-        this->MarchPacket(y * RayTile::PacketsPerRow + x);
-      }
-    }
+    ForPacketsUnder(
+      pixels, this->Tile, [this](int packet) HWY_ATTR { this->MarchPacket(packet); });
   }
 
 private:
-
   HWY_INLINE void MarchPacket(int packet)
   {
     for (int i = 0; i < RayTile::PacketSize; i += static_cast<int>(hn::Lanes(D())))

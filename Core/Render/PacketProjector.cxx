@@ -304,17 +304,9 @@ template <bool Special, bool Nearest, bool Average>
 void ProjectPackets(const PackedBrick& brick, const Box& cells, const ValueRange& range,
   const ProjectionTable& table, const PixelRect& pixels, RayTile& tile)
 {
-  constexpr int edge = RayTile::PacketEdge;
-  const glm::ivec2 corner = tile.Rect.Lo;
-  const PixelRect packets{ (pixels.Lo - corner) / edge, (pixels.Hi - corner + edge - 1) / edge };
   PacketProjector<Special, Nearest, Average> projector(brick, cells, range, table, tile);
-  for (int y = packets.Lo.y; y < packets.Hi.y; ++y)
-  {
-    for (int x = packets.Lo.x; x < packets.Hi.x; ++x)
-    {
-      projector.ProjectPacket(y * RayTile::PacketsPerRow + x);
-    }
-  }
+  ForPacketsUnder(
+    pixels, tile, [&projector](int packet) HWY_ATTR { projector.ProjectPacket(packet); });
 }
 
 void ProjectPackedHere(const PackedBrick& brick, const Box& cells, const ValueRange& range,
