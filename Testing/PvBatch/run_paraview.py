@@ -8,6 +8,7 @@ script's status, or 124 when the time was over. Needs a DISPLAY and nothing but 
 """
 import argparse
 import os
+import random
 import signal
 import socket
 import subprocess
@@ -55,9 +56,16 @@ def wait(process, deadline):
 
 
 def free_port():
-    with socket.socket() as listener:
-        listener.bind(("localhost", 0))
-        return listener.getsockname()[1]
+    """A port that nobody listens on now, below those that the system lends to outgoing connections
+    (mpirun makes many), so that it is unlikely to be taken until the server listens on it."""
+    while True:
+        port = random.randrange(20000, 32000)
+        with socket.socket() as listener:
+            try:
+                listener.bind(("localhost", port))
+            except OSError:
+                continue
+            return port
 
 
 def mpi(ranks):
@@ -72,33 +80,43 @@ class Server:
         self.process = start(
             mpi(ranks) + ["pvserver", "--hostname=localhost", f"--server-port={self.port}"],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        self.listening = threading.Event()
+        self.told = threading.Event()  # whether it listens, or why not
+        self.listens = False
+        self.port_was_taken = False
         threading.Thread(target=self._pass_on, daemon=True).start()
 
     def _pass_on(self):
         for line in self.process.stdout:
             print("server: " + line, end="", flush=True)
             if "Accepting connection" in line:
-                self.listening.set()
-        self.listening.set()  # nothing more will come: do not wait for it
+                self.listens = True
+                self.told.set()
+            self.port_was_taken |= "Address already in use" in line
+        self.told.set()  # nothing more will come: do not wait for it
+
+
+def run_with_server(server, command, deadline):
+    environment = dict(os.environ, BANYAN_TEST_SERVER=f"localhost:{server.port}")
+    status = wait(start(command, env=environment), deadline)
+    # The server leaves when its client has left; that it does belongs to the test.
+    left = wait(server.process, min(deadline, time.monotonic() + 30))
+    return status or left
 
 
 def run_client(command, ranks, deadline):
-    server = Server(ranks)
-    try:
-        if not server.listening.wait(deadline - time.monotonic()):
-            print("run_paraview.py: the server did not start in time", file=sys.stderr)
-            return TIMED_OUT
-        if server.process.poll() is not None:
-            print("run_paraview.py: the server ended before a client came", file=sys.stderr)
-            return 1
-        environment = dict(os.environ, BANYAN_TEST_SERVER=f"localhost:{server.port}")
-        status = wait(start(command, env=environment), deadline)
-        # The server leaves when its client has left; that it does belongs to the test.
-        left = wait(server.process, min(deadline, time.monotonic() + 30))
-        return status or left
-    finally:
-        end(server.process)
+    while True:
+        server = Server(ranks)
+        try:
+            if not server.told.wait(max(0.0, deadline - time.monotonic())):
+                print("run_paraview.py: the server did not start in time", file=sys.stderr)
+                return TIMED_OUT
+            if server.listens:
+                return run_with_server(server, command, deadline)
+            if not server.port_was_taken:  # else somebody was quicker: try another port
+                print("run_paraview.py: the server ended before a client came", file=sys.stderr)
+                return 1
+        finally:
+            end(server.process)
 
 
 def main():
