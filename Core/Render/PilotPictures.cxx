@@ -1,22 +1,12 @@
 #include "Render/PilotPictures.h"
 
+#include "Render/PilotSpacing.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace banyan
 {
-namespace
-{
-
-/// Pixels of the picture per pixel of a pilot: 4096 pilots see enough of most scenes, and small
-/// pictures must not cost much more than themselves.
-int SpacingFor(const glm::ivec2& size)
-{
-  const double edge = std::sqrt(static_cast<double>(size.x) * size.y);
-  return std::clamp(static_cast<int>(edge / 64.0 + 0.5), 8, 16);
-}
-
-} // namespace
 
 double PilotErrors::Largest() const
 {
@@ -57,15 +47,41 @@ PilotPictures::PilotPictures(
   : Scene(scene)
   , DrawScene(std::move(draw))
 {
-  const int spacing = SpacingFor(this->ImageSize());
-  this->Size = (this->ImageSize() + spacing - 1) / spacing;
+  this->SetSpacing(PilotSpacing(scene));
+}
+
+void PilotPictures::SetSpacing(int pixels)
+{
+  this->Spacing = pixels;
+  this->Size = (this->ImageSize() + pixels - 1) / pixels;
   const glm::dvec2 perPixel = glm::dvec2(this->Size) / glm::dvec2(this->ImageSize());
-  this->View = Intersection({ glm::ivec2(glm::floor(glm::dvec2(scene.Viewport.Lo) * perPixel)),
-                              glm::ivec2(glm::ceil(glm::dvec2(scene.Viewport.Hi) * perPixel)) },
+  const PixelRect wanted = VolumeOnScreen(this->Scene);
+  this->View = Intersection({ glm::ivec2(glm::floor(glm::dvec2(wanted.Lo) * perPixel)),
+                              glm::ivec2(glm::ceil(glm::dvec2(wanted.Hi) * perPixel)) },
     { glm::ivec2(0), this->Size });
 }
 
 PilotPicture PilotPictures::Draw(const RaySampling& sampling)
+{
+  const bool first = this->Drawn == 0;
+  PilotPicture picture = this->DrawAsItIs(sampling);
+  // Little of a volume may be seen of which much is on the screen.
+  for (bool enough = !first; !enough;)
+  {
+    const auto seen = std::count_if(picture.Pixels.begin(), picture.Pixels.end(),
+      [](const glm::vec4& pixel) { return pixel.a > 0.0f; });
+    const int spacing = PilotSpacingAfter(this->Spacing, static_cast<int>(seen));
+    enough = spacing == this->Spacing;
+    if (!enough)
+    {
+      this->SetSpacing(spacing);
+      picture = this->DrawAsItIs(sampling);
+    }
+  }
+  return picture;
+}
+
+PilotPicture PilotPictures::DrawAsItIs(const RaySampling& sampling)
 {
   RayScene pilot = this->Scene;
   pilot.Camera = this->Scene.Camera.WithSize(this->Size);
@@ -126,12 +142,16 @@ std::vector<float> PilotPictures::DepthOf(const RayScene& pilot) const
 
 PilotErrors PilotPictures::Difference(const PilotPicture& a, const PilotPicture& b) const
 {
+  const std::size_t count = a.Pixels.size();
   PilotErrors errors;
-  errors.Pixels.reserve(a.Pixels.size());
-  for (std::size_t i = 0; i < a.Pixels.size(); ++i)
+  errors.Pixels.resize(count);
+  for (std::size_t i = 0; i < count; ++i)
   {
-    const glm::vec4 off = glm::abs(a.Pixels[i] - b.Pixels[i]) * 255.0f;
-    errors.Pixels.push_back(std::max({ off.r, off.g, off.b, off.a }));
+    const glm::vec4& p = a.Pixels[i];
+    const glm::vec4& q = b.Pixels[i];
+    const float light = std::max(std::abs(p.r - q.r), std::abs(p.g - q.g));
+    const float rest = std::max(std::abs(p.b - q.b), std::abs(p.a - q.a));
+    errors.Pixels[i] = 255.0f * std::max(light, rest);
   }
   return errors;
 }
@@ -144,32 +164,49 @@ std::size_t PilotPictures::TileCount() const
 
 TileErrors PilotPictures::ErrorsOf(const PilotErrors& errors, double factor, double share) const
 {
-  constexpr double around = 2.5 * TileSamplings::Edge;
   const glm::ivec2 tiles = TileSamplings::TilesOf(this->ImageSize());
-  const glm::dvec2 perPixel = glm::dvec2(this->Size) / glm::dvec2(this->ImageSize());
+  const int width = this->View.Size().x;
   const double atLeast = share * errors.Largest();
   TileErrors result;
+  std::vector<float> columns(static_cast<std::size_t>(width));
   for (int y = 0; y < tiles.y; ++y)
   {
+    // Columns first: what lies in them is then looked at once for a row of tiles.
+    std::fill(columns.begin(), columns.end(), 0.0f);
+    const PilotsAround rows = this->Around(y, 1);
+    for (int j = rows.Begin; j < rows.End; ++j)
+    {
+      const float* const row = errors.Pixels.data() + static_cast<std::ptrdiff_t>(j) * width;
+      for (int i = 0; i < width; ++i)
+      {
+        columns[i] = columns[i] < row[i] ? row[i] : columns[i];
+      }
+    }
     for (int x = 0; x < tiles.x; ++x)
     {
-      const glm::dvec2 low = glm::dvec2(x, y) * static_cast<double>(TileSamplings::Edge) - around;
-      const glm::dvec2 high = low + (2.0 * around + TileSamplings::Edge);
-      const PixelRect near = Intersection(
-        { glm::ivec2(glm::floor(low * perPixel)), glm::ivec2(glm::ceil(high * perPixel)) },
-        this->View);
+      const PilotsAround near = this->Around(x, 0);
       float largest = 0.0f;
-      for (int j = near.Lo.y; j < near.Hi.y; ++j)
+      for (int i = near.Begin; i < near.End; ++i)
       {
-        const float* const row =
-          &errors.Pixels[static_cast<std::size_t>(j - this->View.Lo.y) * this->View.Size().x];
-        largest = std::max(largest,
-          *std::max_element(row + near.Lo.x - this->View.Lo.x, row + near.Hi.x - this->View.Lo.x));
+        largest = std::max(largest, columns[i]);
       }
       result.Tiles.push_back(std::max(factor * largest, atLeast));
     }
   }
   return result;
+}
+
+/// Along one axis, the pilots within two and a half tiles of a tile: their positions in View.
+PilotPictures::PilotsAround PilotPictures::Around(int tile, int axis) const
+{
+  constexpr double around = 2.5 * TileSamplings::Edge;
+  const double perPixel = static_cast<double>(this->Size[axis]) / this->ImageSize()[axis];
+  const double low = tile * static_cast<double>(TileSamplings::Edge) - around;
+  const double high = low + (2.0 * around + TileSamplings::Edge);
+  const int first = this->View.Lo[axis];
+  const int count = this->View.Size()[axis];
+  return { std::clamp(static_cast<int>(std::floor(low * perPixel)) - first, 0, count),
+    std::clamp(static_cast<int>(std::ceil(high * perPixel)) - first, 0, count) };
 }
 
 } // namespace banyan

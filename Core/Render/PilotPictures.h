@@ -44,6 +44,7 @@ public:
   /// @param scene refers to it, which must stay
   PilotPictures(const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw);
 
+  /// The first picture may be drawn several times, until enough of its pixels see something.
   PilotPicture Draw(const RaySampling& sampling);
   int Count() const { return this->Drawn; }
   /// Whether a pixel of any picture had an opacity.
@@ -62,11 +63,21 @@ public:
   float OpacityLimit() const { return this->Scene.OpacityLimit; }
 
 private:
+  struct PilotsAround
+  {
+    int Begin;
+    int End;
+  };
+
+  PilotsAround Around(int tile, int axis) const;
+  void SetSpacing(int pixels);
+  PilotPicture DrawAsItIs(const RaySampling& sampling);
   std::vector<float> DepthOf(const RayScene& pilot) const;
   glm::ivec2 ToImage(int x, int y) const;
 
   const RayScene& Scene;
   std::function<FloatImage(const RayScene& pilot)> DrawScene;
+  int Spacing = 1; ///< pixels of the large picture from one of a small one to the next
   glm::ivec2 Size;
   PixelRect View; ///< the part that is wanted
   int Drawn = 0;

@@ -39,7 +39,13 @@ public:
 
   SamplingPlan Plan()
   {
-    this->TryDistances();
+    this->TryDistances(MostDoublings);
+    if (!this->Pictures.SawSomething())
+    {
+      // Coarse levels and few samples may miss all that there is to see.
+      this->Wish.CoarsestLevel = this->Wish.FinestPilotLevel;
+      this->TryDistances(1);
+    }
     SamplingPlan plan;
     plan.OpacityLimit = this->Pictures.OpacityLimit();
     if (this->Pictures.SawSomething())
@@ -53,12 +59,12 @@ public:
 
 private:
   /// At the coarsest level, which costs least: the errors of distances are much the same at all.
-  void TryDistances()
+  /// @param doublings of the usual distance to begin with, at least 1
+  void TryDistances(int doublings)
   {
     const bool levels = this->Wish.CoarsestLevel > 0;
     PilotSequence pictures(this->Pictures);
-    const Trial trial{ this->Wish.CoarsestLevel,
-      std::ldexp(this->Wish.Distance, MostDoublings),
+    const Trial trial{ this->Wish.CoarsestLevel, std::ldexp(this->Wish.Distance, doublings),
       levels ? this->Wish.Distance : std::ldexp(this->Wish.Distance, -MostHalvings),
       (levels ? 0.5 : 1.0) * this->Allowed };
     this->Distances = this->DistancesOf(trial, pictures);
@@ -108,8 +114,7 @@ private:
     pictures.Add(this->Closest);
     std::vector<Choice> choices{ { static_cast<double>(level), {} } };
     const double distance = this->Distances.back().Value;
-    while (
-      level > this->Wish.FinestPilotLevel && !pictures.LastIsWithin(0.5 * this->Allowed))
+    while (level > this->Wish.FinestPilotLevel && !pictures.LastIsWithin(0.5 * this->Allowed))
     {
       --level;
       pictures.Add(this->Pictures.Draw({ level, distance }));
@@ -183,8 +188,7 @@ private:
     {
       for (std::size_t j = 0; j < this->Distances.size(); ++j)
       {
-        const double error =
-          this->Levels[i].Errors.Of(tile) + this->Distances[j].Errors.Of(tile);
+        const double error = this->Levels[i].Errors.Of(tile) + this->Distances[j].Errors.Of(tile);
         const double cost = this->Wish.Distance / this->Distances[j].Value +
                             std::ldexp(CostOfBricks, -static_cast<int>(this->Levels[i].Value));
         if (error <= this->Allowed && cost < bestCost)

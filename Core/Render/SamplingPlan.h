@@ -46,7 +46,7 @@ using DrawPilot = std::function<FloatImage(const RayScene& pilot)>;
 
 /// Finds for each tile the cheapest sampling that keeps its error within the tolerance.
 ///
-/// How: *pilots*, pictures of about 64 x 64 pixels, are drawn with ever smaller distances between
+/// How: *pilots*, small pictures whose pixels are PilotSpacing apart, are drawn with ever smaller distances between
 /// samples at the coarsest level, which costs least, then with ever finer levels at the distance that
 /// was needed, and then with some distances at the finest of these levels again, each until all tiles
 /// are content (PilotSequence). Which level and which distance a tile gets is chosen from the sums of

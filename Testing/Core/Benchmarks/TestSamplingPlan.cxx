@@ -1,6 +1,7 @@
 // The samplings that are chosen for a tolerance: is the picture as good as they say?
 #include "ConvergedImage.h"
 #include "Picture.h"
+#include "PlanTesting.h"
 #include "StandardScenes.h"
 
 #include "Base/Error.h"
@@ -12,59 +13,13 @@
 
 using namespace banyan;
 using namespace banyan::bench;
+using namespace banyan::plan_testing;
 
 namespace
 {
 
 constexpr int Samples = 64;
 constexpr int Pixels = 192;
-constexpr int LeastCells = 7; // these volumes are smooth
-
-/// Draws a scene of a volume in memory, and plans how to.
-class Drawer
-{
-public:
-  explicit Drawer(const BenchScene& scene)
-    : Data(scene.Data)
-    , Source(scene.Data->Array(), 16, MaskRange{ scene.Low, scene.High }, this->Pool)
-    , Scene(ToRayScene(scene, 1.0, 1.0f))
-  {
-  }
-
-  SamplingPlan Plan(double tolerance, int coarsestLevel)
-  {
-    return PlanSamplings(this->Scene,
-      { tolerance, this->Scene.SampleDistance, coarsestLevel, 0, LeastCells },
-      [this](const RayScene& pilot) { return this->Cast(pilot); });
-  }
-
-  FloatImage Draw(const SamplingPlan& plan)
-  {
-    RayScene scene = this->Scene;
-    scene.Samplings = plan.Samplings;
-    scene.OpacityLimit = plan.OpacityLimit;
-    return this->Cast(scene);
-  }
-
-  FloatImage Converged()
-  {
-    RayScene scene = this->Scene;
-    scene.SampleDistance /= 32.0;
-    return this->Cast(scene);
-  }
-
-  FloatImage Cast(const RayScene& scene)
-  {
-    return CastRays(
-      scene, this->Source, scene.DomainCells, std::uint64_t{ 1 } << 30, this->Pool, this->Statistics);
-  }
-
-  ThreadPool Pool{ 2 };
-  std::shared_ptr<const Volume> Data;
-  ArrayBrickSource Source;
-  RayScene Scene;
-  RayStatistics Statistics;
-};
 
 class StandardScenesPlan : public testing::TestWithParam<std::pair<StandardFunction, bool>>
 {
@@ -186,8 +141,7 @@ TEST(SamplingPlan, TheFinestLevelThatFitsInMemoryIsFoundWithoutLoading)
 TEST(SamplingPlan, WhatCannotBeSeenIsNotPlanned)
 {
   ThreadPool pool(2);
-  BenchScene scene =
-    StandardScene(StandardVolume(16, pool), StandardFunction::S1, false, Pixels);
+  BenchScene scene = StandardScene(StandardVolume(16, pool), StandardFunction::S1, false, Pixels);
   for (glm::dvec4& node : scene.Nodes)
   {
     node.a = 0.0;
