@@ -1,6 +1,7 @@
 #include "DistributedField.h"
 
 #include "MeshField.h"
+#include "MotionEnhancement.h"
 #include "PlainSource.h"
 #include "ToleranceControl.h"
 
@@ -100,8 +101,11 @@ bool DistributedField::ChangedHere(const FieldPiece& piece)
     reinterpret_cast<std::uintptr_t>(piece.Grid), piece.Grid ? piece.Grid->GetMTime() : 0 } };
   const bool changed = this->Fresh || stamp != this->Stamp ||
                        piece.MeshTolerance != this->StampedTolerance ||
+                       piece.Enhancement.Strength != this->Enhancement.Strength ||
+                       piece.Enhancement.Scale != this->Enhancement.Scale ||
                        piece.Problem != this->PieceProblem;
   this->StampedTolerance = piece.MeshTolerance;
+  this->Enhancement = piece.Enhancement;
   this->Stamp = stamp;
   this->PieceProblem = piece.Problem;
   this->Fresh = false;
@@ -273,6 +277,11 @@ void DistributedField::Agree(Communicator& communicator, const FieldPiece& piece
     return;
   }
   this->Series.reset();
+  if (deferred && this->Enhancement.Strength > 0.0 && this->ProblemText.empty())
+  {
+    this->ProblemText = "Of an encoded series only whole steps can be enhanced while they are drawn: put "
+                        "the filter 'Banyan Temporal Enhancement' behind the reader.";
+  }
   this->TakePieces(piece, all, samples.Lo);
 }
 
@@ -349,8 +358,7 @@ void DistributedField::MakeSeriesZones(const Facts& field, Communicator& communi
   this->Balancer.Start(this->Balancing, balanced, communicator.Size());
   this->ZoneCells = this->Balancer.Zones();
   // Ranks without a zone need it too: to know what can be seen of the others'.
-  this->Bricks =
-    std::make_unique<SeriesBrickSource>(this->Series, key, field.Component, BrickCache::Process());
+  this->Bricks = MakeSeriesSource(this->Series, key, field.Component, this->Enhancement);
 }
 
 /// Each rank draws the values that it holds.

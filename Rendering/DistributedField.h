@@ -3,6 +3,7 @@
 
 #include "Parallel/FrameBalancer.h"
 #include "Render/BrickSource.h"
+#include "Render/TemporalEnhancement.h"
 #include "Series/SeriesFile.h"
 #include "Series/ValueRange.h"
 
@@ -30,6 +31,9 @@ struct FieldPiece
   vtkDataArray* Array = nullptr;       ///< point data of Image or Grid
   int Component = 0;             ///< -1: Euclidean norm of all components
   double MeshTolerance = 0.0;    ///< of Grid: see ElementOctree::Find; the same on all ranks
+  /// Of pieces of an encoded series, as they are drawn; plain ones have it already. The same on all
+  /// ranks. Off where Strength is 0.
+  TemporalEnhancement Enhancement{ 0.0, 1.0, 0.0 };
   std::string Problem;           ///< why this rank's data cannot be drawn; empty if it can
 };
 
@@ -120,6 +124,7 @@ private:
   std::shared_ptr<const SeriesFile> Series;
   std::array<std::uint64_t, 7> Stamp{ {} };
   double StampedTolerance = 0.0;
+  TemporalEnhancement Enhancement{ 0.0, 1.0, 0.0 };
   bool Fresh = true;
   std::uint64_t Updates = 0;
 };

@@ -4,6 +4,7 @@
 #include "FrameScene.h"
 #include "FramebufferExchange.h"
 #include "IceTCompositing.h"
+#include "MotionEnhancement.h"
 #include "PixelsBehind.h"
 #include "SceneOptions.h"
 #include "ToleranceControl.h"
@@ -38,6 +39,7 @@ struct vtkBanyanVolumeMapper::Internals
 {
   std::unique_ptr<banyan::Communicator> Communicator;
   banyan::DistributedField Field;
+  banyan::MotionEnhancement Motion;
   banyan::FramebufferExchange Framebuffer;
   std::vector<int> RankOrderBehind;
   std::string LastProblem;
@@ -45,7 +47,7 @@ struct vtkBanyanVolumeMapper::Internals
   bool BoundsKnown = false;
   banyan::ToleranceControl Tolerance;
 
-  banyan::FieldPiece PieceOf(vtkBanyanVolumeMapper* mapper, vtkVolume* volume) const;
+  banyan::FieldPiece PieceOf(vtkBanyanVolumeMapper* mapper, vtkVolume* volume);
   void Publish(const banyan::FrameStatistics& frame, std::uint64_t bytesRead,
     const banyan::BrickCache::Statistics& cacheBefore, double seconds,
     vtkBanyanFrameStatistics* out) const;
@@ -117,7 +119,7 @@ void vtkBanyanVolumeMapper::SetRankOrderBehind(const std::vector<int>& frontToBa
 }
 
 banyan::FieldPiece vtkBanyanVolumeMapper::Internals::PieceOf(
-  vtkBanyanVolumeMapper* mapper, vtkVolume* volume) const
+  vtkBanyanVolumeMapper* mapper, vtkVolume* volume)
 {
   banyan::FieldPiece piece;
   piece.MeshTolerance = mapper->GetMeshTolerance();
@@ -155,6 +157,7 @@ banyan::FieldPiece vtkBanyanVolumeMapper::Internals::PieceOf(
       piece.Component = -1;
     }
   }
+  this->Motion.Apply(mapper->GetTemporalEnhancement(), volume->GetProperty(), data, piece);
   return piece;
 }
 
@@ -366,6 +369,7 @@ void vtkBanyanVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "RefineInPasses: " << this->RefineInPasses << "\n"
      << indent << "SampleDistanceVoxels: " << this->SampleDistanceVoxels << "\n"
      << indent << "MeshTolerance: " << this->MeshTolerance << "\n"
+     << indent << "TemporalEnhancement: " << this->TemporalEnhancement << "\n"
      << indent << "Compositing: " << this->Compositing << "\n"
      << indent << "CompositeInFewBits: " << this->CompositeInFewBits << "\n"
      << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"

@@ -109,6 +109,18 @@ public:
 
   ///@{
   /**
+   * Brings out what moves from one step of an encoded series to the next, while it is drawn: the
+   * strength of banyan::TemporalEnhancement, in [0, 1]. Its scale is the largest magnitude that the
+   * opacity function knows. Of plain data the steps around must be there as point arrays
+   * (banyan::MotionEnhancement); the representation sees to that. Default 0: values are drawn as they
+   * are. vtkBanyanTemporalEnhancement does the same to data.
+   */
+  vtkSetClampMacro(TemporalEnhancement, double, 0.0, 1.0);
+  vtkGetMacro(TemporalEnhancement, double);
+  ///@}
+
+  ///@{
+  /**
    * How the pictures of several ranks become one: as banyan::CompositingMethod (0, the default:
    * SLIC; 1: SLIC as published; 2: direct send; 3: binary swap; 4: IceT's radix-k, for blend mode
    * composite only). All make the same picture, but for IceT's, which rounds to 8 bits on the way.
@@ -208,6 +220,7 @@ private:
   bool RefineInPasses = false;
   double SampleDistanceVoxels = 0.0;
   double MeshTolerance = 1.0 / 1024;
+  double TemporalEnhancement = 0.0;
   int Compositing = 0;
   bool CompositeInFewBits = false;
   int NumberOfThreads = 0;

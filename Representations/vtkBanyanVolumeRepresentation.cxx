@@ -1,15 +1,13 @@
 #include "vtkBanyanVolumeRepresentation.h"
 
+#include "BlocksAsOne.h"
+#include "DefaultFunctions.h"
+#include "StepWindow.h"
 #include "vtkBanyanFrameStatistics.h"
 #include "vtkBanyanVolume.h"
 #include "vtkBanyanVolumeMapper.h"
 
-#include "vtkAbstractMapper.h"
-#include "vtkAppendFilter.h"
 #include "vtkColorTransferFunction.h"
-#include "vtkCommunicator.h"
-#include "vtkCompositeDataIterator.h"
-#include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -20,45 +18,14 @@
 #include "vtkPVRenderView.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkRenderer.h"
-#include "vtkUnstructuredGrid.h"
 #include "vtkVolumeProperty.h"
-
-namespace
-{
-
-/// A data set, or the blocks of one as one grid; null if there is none.
-vtkSmartPointer<vtkDataSet> DataOf(vtkDataObject* data)
-{
-  vtkCompositeDataSet* const blocks = vtkCompositeDataSet::SafeDownCast(data);
-  if (!blocks)
-  {
-    return vtkDataSet::SafeDownCast(data);
-  }
-  vtkNew<vtkAppendFilter> append;
-  const auto visit = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
-  for (visit->InitTraversal(); !visit->IsDoneWithTraversal(); visit->GoToNextItem())
-  {
-    vtkDataSet* const block = vtkDataSet::SafeDownCast(visit->GetCurrentDataObject());
-    if (block && block->GetNumberOfPoints() > 0)
-    {
-      append->AddInputData(block);
-    }
-  }
-  if (append->GetNumberOfInputConnections(0) == 0)
-  {
-    return nullptr;
-  }
-  append->Update();
-  return append->GetOutput();
-}
-
-} // namespace
 
 vtkStandardNewMacro(vtkBanyanVolumeRepresentation);
 
 vtkBanyanVolumeRepresentation::vtkBanyanVolumeRepresentation()
   : Prop(vtkSmartPointer<vtkBanyanVolume>::New())
   , Piece(vtkSmartPointer<vtkImageData>::New().GetPointer())
+  , Steps(std::make_unique<banyan::StepWindow>())
 {
   // The superclass has made a prop of ParaView's own: ours takes its place.
   this->Actor = this->Prop;
@@ -81,24 +48,63 @@ int vtkBanyanVolumeRepresentation::FillInputPortInformation(int, vtkInformation*
   return 1;
 }
 
+int vtkBanyanVolumeRepresentation::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  const int done = this->Superclass::RequestUpdateExtent(request, inputVector, outputVector);
+  if (done && this->Mapper->GetTemporalEnhancement() > 0.0 &&
+      inputVector[0]->GetNumberOfInformationObjects() == 1)
+  {
+    const bool timed = this->GetUpdateTimeValid();
+    this->Steps->Request(
+      this, timed ? std::optional<double>(this->GetUpdateTime()) : std::nullopt, {});
+  }
+  return done;
+}
+
+/// Whether there are steps to compare with.
+bool vtkBanyanVolumeRepresentation::TakeSteps()
+{
+  if (this->Mapper->GetTemporalEnhancement() == 0.0)
+  {
+    return false;
+  }
+  try
+  {
+    this->Steps->Take(this);
+    return true;
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< "Motion is not brought out: " << error.what());
+    return false;
+  }
+}
+
 int vtkBanyanVolumeRepresentation::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
+  const bool hasInput = inputVector[0]->GetNumberOfInformationObjects() == 1;
+  const bool enhanced = hasInput && this->TakeSteps();
   vtkMath::UninitializeBounds(this->DataBounds);
   this->DataSize = 0;
   this->Piece = vtkSmartPointer<vtkImageData>::New().GetPointer();
-  if (inputVector[0]->GetNumberOfInformationObjects() == 1)
+  vtkDataObject* const now = !hasInput ? nullptr
+                             : enhanced ? this->Steps->Now()
+                                        : vtkDataObject::GetData(inputVector[0], 0);
+  if (const vtkSmartPointer<vtkDataSet> input = banyan::BlocksAsOne(now))
   {
-    if (const vtkSmartPointer<vtkDataSet> input =
-          DataOf(vtkDataObject::GetData(inputVector[0], 0)))
+    this->Piece = vtkSmartPointer<vtkDataSet>::Take(input->NewInstance());
+    this->Piece->ShallowCopy(input);
+    if (enhanced)
     {
-      this->Piece = vtkSmartPointer<vtkDataSet>::Take(input->NewInstance());
-      this->Piece->ShallowCopy(input);
-      if (input->GetNumberOfPoints() > 0)
-      {
-        input->GetBounds(this->DataBounds);
-        this->DataSize = input->GetActualMemorySize();
-      }
+      this->SelectArray();
+      banyan::AddNeighbours(this->Mapper->GetArrayToDraw(this->Piece), *this->Steps, this->Piece);
+    }
+    if (input->GetNumberOfPoints() > 0)
+    {
+      input->GetBounds(this->DataBounds);
+      this->DataSize = this->Piece->GetActualMemorySize();
     }
   }
   return this->Superclass::RequestData(request, inputVector, outputVector);
@@ -157,7 +163,8 @@ void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
   this->Prop->SetView(vtkPVRenderView::SafeDownCast(this->GetView()));
   if (!this->ColorGiven || !this->OpacityGiven)
   {
-    this->UseDefaultFunctions(data);
+    banyan::UseDefaultFunctions(this->Mapper->GetArrayToDraw(data), !this->ColorGiven,
+      !this->OpacityGiven, this->Property);
   }
   this->Mapper->SetBlendMode(this->BlendMode != 0 ? this->BlendMode : this->Projection);
   this->Mapper->UpdateField(this->Prop);
@@ -177,42 +184,6 @@ void vtkBanyanVolumeRepresentation::PlaceCroppingBox()
     planes[i] = this->CroppingOrigin[i / 2] + bounds[i] * this->CroppingScale[i / 2];
   }
   this->Mapper->SetCroppingRegionPlanes(planes);
-}
-
-/// ParaView gives a colour map only with an array that was chosen by name. Collective.
-void vtkBanyanVolumeRepresentation::UseDefaultFunctions(vtkDataSet* piece)
-{
-  double local[2] = { VTK_DOUBLE_MIN, VTK_DOUBLE_MIN }; // -minimum, maximum
-  if (vtkDataArray* array = this->Mapper->GetArrayToDraw(piece))
-  {
-    double range[2];
-    array->GetFiniteRange(range, array->GetNumberOfComponents() > 1 ? -1 : 0);
-    local[0] = -range[0];
-    local[1] = range[1];
-  }
-  double all[2] = { local[0], local[1] };
-  if (vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController())
-  {
-    controller->AllReduce(local, all, 2, vtkCommunicator::MAX_OP);
-  }
-  const double low = -all[0] <= all[1] ? -all[0] : 0.0;
-  const double high = -all[0] <= all[1] ? all[1] : 1.0;
-  if (!this->ColorGiven)
-  {
-    vtkNew<vtkColorTransferFunction> colors;
-    colors->SetVectorModeToMagnitude();
-    colors->SetColorSpaceToDiverging();
-    colors->AddRGBPoint(low, 0.23, 0.30, 0.75);
-    colors->AddRGBPoint(high, 0.71, 0.016, 0.15);
-    this->Property->SetColor(colors);
-  }
-  if (!this->OpacityGiven)
-  {
-    vtkNew<vtkPiecewiseFunction> opacity;
-    opacity->AddPoint(low, 0.0);
-    opacity->AddPoint(high, 1.0);
-    this->Property->SetScalarOpacity(opacity);
-  }
 }
 
 void vtkBanyanVolumeRepresentation::SetColor(vtkColorTransferFunction* colors)
@@ -362,6 +333,16 @@ void vtkBanyanVolumeRepresentation::SetCroppingScale(double scale[3])
 void vtkBanyanVolumeRepresentation::SetMeshTolerance(double tolerance)
 {
   this->Mapper->SetMeshTolerance(tolerance);
+}
+
+void vtkBanyanVolumeRepresentation::SetTemporalEnhancement(double strength)
+{
+  const bool needed = this->Mapper->GetTemporalEnhancement() > 0.0;
+  this->Mapper->SetTemporalEnhancement(strength);
+  if (needed != this->Mapper->GetTemporalEnhancement() > 0.0)
+  {
+    this->MarkModified(); // other steps are needed, or no longer
+  }
 }
 
 void vtkBanyanVolumeRepresentation::SetCompositing(int method)

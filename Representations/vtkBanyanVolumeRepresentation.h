@@ -6,10 +6,17 @@
 #include "vtkSmartPointer.h"             // for members
 #include "vtkVolumeRepresentation.h"
 
+#include <memory> // for members
+
 class vtkBanyanFrameStatistics;
 class vtkBanyanVolume;
 class vtkBanyanVolumeMapper;
 class vtkDataSet;
+
+namespace banyan
+{
+class StepWindow;
+}
 
 /**
  * @class vtkBanyanVolumeRepresentation
@@ -88,6 +95,9 @@ public:
   /** How far points of hexahedra may lie beside the lattice of their octree, in finest edges. */
   void SetMeshTolerance(double tolerance);
 
+  /** As vtkBanyanVolumeMapper's; steps around the one that is drawn are asked of the pipeline. */
+  void SetTemporalEnhancement(double strength);
+
   /** How the pictures of ranks become one; see vtkBanyanVolumeMapper::SetCompositing. */
   void SetCompositing(int method);
   /** Whether pixels of ranks travel packed; see vtkBanyanVolumeMapper::SetCompositeInFewBits. */
@@ -107,6 +117,8 @@ protected:
   ~vtkBanyanVolumeRepresentation() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   bool AddToView(vtkView* view) override;
@@ -116,14 +128,15 @@ private:
   vtkBanyanVolumeRepresentation(const vtkBanyanVolumeRepresentation&) = delete;
   void operator=(const vtkBanyanVolumeRepresentation&) = delete;
 
+  bool TakeSteps();
   void PrepareRender(vtkDataObject* piece);
   void PlaceCroppingBox();
   void SelectArray();
-  void UseDefaultFunctions(vtkDataSet* piece);
 
   vtkNew<vtkBanyanVolumeMapper> Mapper;
   vtkSmartPointer<vtkBanyanVolume> Prop;
   vtkSmartPointer<vtkDataSet> Piece;
+  std::unique_ptr<banyan::StepWindow> Steps; ///< around the one drawn, if motion is brought out
   int InterpolationType = 1;
   bool NearestPoint = false;
   int BlendMode = 0;

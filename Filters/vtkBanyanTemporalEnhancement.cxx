@@ -1,0 +1,212 @@
+#include "vtkBanyanTemporalEnhancement.h"
+
+#include "EnhancedArray.h"
+#include "vtkBanyanDeferred.h"
+
+#include "Series/SeriesFile.h"
+
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkErrorCode.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+vtkStandardNewMacro(vtkBanyanTemporalEnhancement);
+
+namespace
+{
+
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+/// The data set at the same place of another step; null where there is none.
+vtkDataSet* Counterpart(vtkDataObject* step, vtkCompositeDataIterator* place)
+{
+  vtkCompositeDataSet* const blocks = vtkCompositeDataSet::SafeDownCast(step);
+  return vtkDataSet::SafeDownCast(blocks && place ? blocks->GetDataSet(place) : step);
+}
+
+} // namespace
+
+vtkBanyanTemporalEnhancement::vtkBanyanTemporalEnhancement()
+{
+  this->SetInputArrayToProcess(
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+}
+
+int vtkBanyanTemporalEnhancement::FillInputPortInformation(int, vtkInformation* info)
+{
+  // Blocks are walked here: the pipeline's own loop over them does not go with several steps.
+  info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  return 1;
+}
+
+int vtkBanyanTemporalEnhancement::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  vtkInformation* const output = outputs->GetInformationObject(0);
+  std::optional<double> time;
+  if (output->Has(Pipeline::UPDATE_TIME_STEP()))
+  {
+    time = output->Get(Pipeline::UPDATE_TIME_STEP());
+  }
+  this->Window.Request(this, time,
+    { (this->CompareWith & PREVIOUS) != 0, (this->CompareWith & NEXT) != 0, this->StepDistance });
+  return 1;
+}
+
+int vtkBanyanTemporalEnhancement::RequestData(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  this->SetErrorCode(vtkErrorCode::NoError);
+  vtkDataObject* const output = vtkDataObject::GetData(outputs);
+  try
+  {
+    this->Window.Take(this);
+    output->ShallowCopy(this->Window.Now());
+    this->EnhanceAll(output);
+  }
+  catch (const std::exception& error)
+  {
+    this->SetErrorCode(vtkErrorCode::UserError);
+    vtkErrorMacro(<< "Nothing can be enhanced: " << error.what());
+    output->Initialize();
+    return 0;
+  }
+  return 1;
+}
+
+void vtkBanyanTemporalEnhancement::EnhanceAll(vtkDataObject* output)
+{
+  PlainArrays plain;
+  plain.swap(this->Decoded);
+  bool points = false;
+  bool found = false;
+  const auto enhance = [&](vtkDataSet* data, vtkCompositeDataIterator* place)
+  {
+    if (data && data->GetNumberOfPoints() > 0)
+    {
+      points = true;
+      found = this->Enhance(data, place, plain) || found;
+    }
+  };
+  if (vtkCompositeDataSet* const blocks = vtkCompositeDataSet::SafeDownCast(output))
+  {
+    const auto visit = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
+    for (visit->InitTraversal(); !visit->IsDoneWithTraversal(); visit->GoToNextItem())
+    {
+      enhance(vtkDataSet::SafeDownCast(visit->GetCurrentDataObject()), visit);
+    }
+  }
+  else
+  {
+    enhance(vtkDataSet::SafeDownCast(output), nullptr);
+  }
+  if (points && !found)
+  {
+    throw std::runtime_error("there is no point array of the name that was chosen. Choose another "
+                             "one; Cell Data to Point Data makes point arrays of cell arrays.");
+  }
+}
+
+/// False where there is no such array.
+bool vtkBanyanTemporalEnhancement::Enhance(
+  vtkDataSet* data, vtkCompositeDataIterator* place, PlainArrays& plain)
+{
+  int association = 0;
+  vtkDataArray* const array = this->GetInputArrayToProcess(0, data, association);
+  if (!array || association != vtkDataObject::FIELD_ASSOCIATION_POINTS)
+  {
+    return false;
+  }
+  vtkDataArray* neighbours[2] = { nullptr, nullptr };
+  vtkDataObject* const steps[2] = { this->Window.Previous(), this->Window.Next() };
+  for (int i = 0; i < 2; ++i)
+  {
+    if (!steps[i])
+    {
+      continue;
+    }
+    const std::string which = i == 0 ? "the step before" : "the step after";
+    vtkDataSet* const other = Counterpart(steps[i], place);
+    vtkDataArray* const there = other ? other->GetPointData()->GetArray(array->GetName()) : nullptr;
+    if (!there)
+    {
+      throw std::runtime_error(which + " has no point array \"" + array->GetName() + "\".");
+    }
+    if (there->GetNumberOfTuples() != array->GetNumberOfTuples() ||
+        there->GetNumberOfComponents() != array->GetNumberOfComponents())
+    {
+      const auto shape = [](vtkDataArray* of)
+      {
+        return std::to_string(of->GetNumberOfTuples()) + " points with " +
+               std::to_string(of->GetNumberOfComponents()) + " components";
+      };
+      throw std::runtime_error("\"" + std::string(array->GetName()) + "\" has " + shape(there) +
+                               " in " + which + ", and " + shape(array) +
+                               " now. Only meshes that stay the same can be compared.");
+    }
+    neighbours[i] = this->PlainOf(there, plain);
+  }
+  const auto enhanced = banyan::EnhancedArray(
+    this->HowFor(array), this->PlainOf(array, plain), neighbours[0], neighbours[1]);
+  data->GetPointData()->AddArray(enhanced);
+  return true;
+}
+
+/// In ordinary memory; decoded once as long as its step is kept.
+/// @param before what was decoded for the step before
+vtkDataArray* vtkBanyanTemporalEnhancement::PlainOf(vtkDataArray* array, const PlainArrays& before)
+{
+  if (!vtkBanyanDeferred::IsDeferred(array))
+  {
+    return array;
+  }
+  vtkSmartPointer<vtkDataArray>& plain = this->Decoded[array];
+  if (!plain)
+  {
+    const auto found = before.find(array);
+    plain = found != before.end() ? found->second : vtkBanyanDeferred::Plain(array);
+  }
+  if (!plain)
+  {
+    throw std::runtime_error(
+      std::string("the values of \"") + array->GetName() + "\" cannot be decoded.");
+  }
+  return plain;
+}
+
+/// What the user left open, the series knows.
+banyan::TemporalEnhancement vtkBanyanTemporalEnhancement::HowFor(vtkDataArray* array) const
+{
+  banyan::TemporalEnhancement how{ this->Strength, this->Scale, this->NoiseFloor };
+  if (const vtkBanyanDeferred::Handle* const handle = vtkBanyanDeferred::From(array))
+  {
+    const auto& index = handle->Series->Index().Arrays.at(static_cast<std::size_t>(handle->Array));
+    const banyan::TemporalEnhancement known = banyan::EnhancementFor(index, this->Strength, -1);
+    how.Scale = how.Scale > 0.0 ? how.Scale : known.Scale;
+    how.NoiseFloor = how.NoiseFloor > 0.0 ? how.NoiseFloor : known.NoiseFloor;
+  }
+  how.Scale = how.Scale > 0.0 ? how.Scale : 1.0;
+  return how;
+}
+
+void vtkBanyanTemporalEnhancement::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "CompareWith: " << this->CompareWith << "\n";
+  os << indent << "StepDistance: " << this->StepDistance << "\n";
+  os << indent << "Strength: " << this->Strength << "\n";
+  os << indent << "Scale: " << this->Scale << "\n";
+  os << indent << "NoiseFloor: " << this->NoiseFloor << "\n";
+}

@@ -1,0 +1,53 @@
+#ifndef banyan_Rendering_MotionEnhancement_h
+#define banyan_Rendering_MotionEnhancement_h
+
+#include "Render/TemporalEnhancement.h"
+
+#include "vtkSmartPointer.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+class vtkDataArray;
+class vtkDataSet;
+class vtkVolumeProperty;
+
+namespace banyan
+{
+
+class BrickSource;
+class SeriesFile;
+struct FieldKey;
+struct FieldPiece;
+
+/// Temporal enhancement of what a mapper draws: bricks of encoded series are enhanced as they are
+/// drawn, plain values when the data change.
+class MotionEnhancement
+{
+public:
+  /// Names of the point arrays of a data set in which the drawn array's values of the step before
+  /// and after are looked for; without them plain data are drawn as they are.
+  static const char* PreviousName() { return "banyan: step before"; }
+  static const char* NextName() { return "banyan: step after"; }
+
+  /// Puts enhanced values in the place of a plain piece's, or notes how those of a series are to be
+  /// enhanced. The scale is the largest magnitude that the opacity function knows, so that
+  /// functions mean the same with and without.
+  /// @param strength in [0, 1]; 0 does nothing
+  void Apply(double strength, vtkVolumeProperty* property, vtkDataSet* data, FieldPiece& piece);
+
+private:
+  vtkSmartPointer<vtkDataArray> Enhanced;
+  std::array<std::uint64_t, 9> Stamp{ {} }; ///< of what it was made of
+};
+
+/// Bricks of a step of an encoded series, enhanced with the steps around it unless Strength is 0.
+/// The noise floor is the series' error bound.
+/// @param component or -1 for the length
+std::unique_ptr<BrickSource> MakeSeriesSource(const std::shared_ptr<const SeriesFile>& series,
+  const FieldKey& field, int component, const TemporalEnhancement& how);
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,19 @@
+#ifndef banyan_Representations_DefaultFunctions_h
+#define banyan_Representations_DefaultFunctions_h
+
+class vtkDataArray;
+class vtkVolumeProperty;
+
+namespace banyan
+{
+
+/// Colours and opacities over the range of an array (of vectors: of their lengths), for when ParaView
+/// gives none: it does only with an array that was chosen by name. Collective over the ranks of the
+/// process group.
+/// @param array null on ranks without data
+void UseDefaultFunctions(
+  vtkDataArray* array, bool colors, bool opacities, vtkVolumeProperty* property);
+
+} // namespace banyan
+
+#endif
