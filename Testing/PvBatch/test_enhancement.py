@@ -1,0 +1,89 @@
+"""Motion is brought out in ParaView: the filter and the representation give one picture.
+
+Drawn are an encoded series (its bricks are enhanced while they are drawn), the same series decoded
+(whole arrays are, in the representation), and what the filter makes of both.
+
+    test_enhancement.py --data SERIES_FOLDER --out DIR
+"""
+import os
+
+from paraview import simple
+
+import pictures
+import session
+
+SIZE = (300, 240)
+SCALE = 1.0
+STEP = 1.0
+
+
+def opacity_range(display, array):
+    """Half the largest opacity up to SCALE: dim and strong values are told apart."""
+    simple.ColorBy(display, ("POINTS", array))
+    colors = simple.GetColorTransferFunction(array)
+    colors.RGBPoints = [0.0, 0.1, 0.2, 0.9, 0.5, 0.9, 0.9, 0.4, SCALE, 0.9, 0.1, 0.1]
+    opacities = simple.GetOpacityTransferFunction(array)
+    opacities.Points = [0.0, 0.0, 0.5, 0.0, 0.2, 0.02, 0.5, 0.0, SCALE, 0.4, 0.5, 0.0]
+    display.ScalarOpacityUnitDistance = 1.0
+    display.SampleDistanceVoxels = 0.5
+
+
+def draw(source, array, path, strength=0.0, time=STEP):
+    view = session.new_view(SIZE, CameraPosition=[60, -70, 50], CameraFocalPoint=[0, 0, 0],
+                            CameraViewUp=[0, 0, 1])
+    view.ViewTime = time
+    display = simple.Show(source, view)
+    display.SetRepresentationType(session.REPRESENTATION)
+    opacity_range(display, array)
+    display.TemporalEnhancement = strength
+    simple.SaveScreenshot(path, view, ImageResolution=list(SIZE))
+    simple.Delete(view)
+    return pictures.load(path)
+
+
+def main():
+    parser = session.parser(__doc__)
+    parser.add_argument("--data", required=True)
+    parser.add_argument("--out", required=True)
+    arguments = parser.parse_args()
+    session.begin(arguments)
+    os.makedirs(arguments.out, exist_ok=True)
+
+    def path(name):
+        return os.path.join(arguments.out, name + ".png")
+
+    def same(a, b, most, what):
+        worst = pictures.difference(a, b).max()
+        session.require(worst <= most, f"{what}: {worst}/255 apart")
+
+    def differ(a, b, what):
+        session.require(pictures.difference(a, b).max() > 20, f"{what}: the same picture")
+
+    encoded = simple.OpenDataFile(os.path.join(arguments.data, "swirl.banyan"))
+    array = "swirl"
+    plain = draw(encoded, array, path("plain"))
+    bricks = draw(encoded, array, path("bricks"), 0.5)
+    differ(plain, bricks, "enhancement of bricks")
+    same(plain, draw(encoded, array, path("plain_again"), 0.0), 0, "switched off again")
+    first = draw(encoded, array, path("bricks_first"), 0.5, 0.0)
+    differ(bricks, first, "another step")
+
+    filtered = simple.BanyanTemporalEnhancement(Input=encoded, Strength=0.5, Scale=SCALE)
+    filtered.Array = ["POINTS", array]
+    same(bricks, draw(filtered, array + "_enhanced", path("filter")), 1, "filter and bricks")
+    same(plain, draw(filtered, array, path("filter_off")), 1, "the filter's other array")
+
+    # Without a series there is no error bound to take for a floor.
+    decoded = simple.BanyanDecode(Input=encoded)
+    arrays = draw(decoded, array, path("arrays"), 0.5)
+    differ(plain, arrays, "enhancement of arrays")
+    of_decoded = simple.BanyanTemporalEnhancement(Input=decoded, Strength=0.5, Scale=SCALE)
+    of_decoded.Array = ["POINTS", array]
+    same(arrays, draw(of_decoded, array + "_enhanced", path("filter_of_decoded")), 1,
+         "filter and arrays")
+    session.clear()
+    print("One picture by all ways.")
+
+
+if __name__ == "__main__":
+    main()
