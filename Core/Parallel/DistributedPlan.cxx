@@ -1,5 +1,7 @@
 #include "Parallel/DistributedPlan.h"
 
+#include "Parallel/DistributedPilot.h"
+
 namespace banyan
 {
 namespace
@@ -16,8 +18,8 @@ int CommonLevel(Communicator& communicator, BrickSource* source, const Box& doma
   return -static_cast<int>(AllMax(communicator, -mine));
 }
 
-/// The finest level that all ranks can draw pilots from without loading everything again for each of
-/// them: half the budget is for bricks that are kept.
+/// The finest level that all ranks can draw pilots from without loading everything again for each
+/// of them: half the budget is for bricks that are kept.
 int FinestPilotLevel(Communicator& communicator, const RayScene& scene, BrickSource* source,
   const std::vector<Box>& zones, int coarsest, std::uint64_t budgetBytes, ThreadPool& pool)
 {
@@ -58,20 +60,13 @@ SamplingPlan PlanDistributed(Communicator& communicator, const RayScene& scene, 
     throw Error(agreed);
   }
   wish.CoarsestLevel = CommonLevel(communicator, source, scene.DomainCells, wish.CoarsestLevel);
-  wish.FinestPilotLevel = FinestPilotLevel(
-    communicator, scene, source, zones, wish.CoarsestLevel, budgetBytes, pool);
+  wish.FinestPilotLevel =
+    FinestPilotLevel(communicator, scene, source, zones, wish.CoarsestLevel, budgetBytes, pool);
   return PlanSamplings(scene, wish,
     [&](const RayScene& pilot)
     {
-      FrameStatistics taken;
-      FloatImage image =
-        DrawDistributed(communicator, pilot, source, zones, budgetBytes, pool, {}, taken);
-      statistics.SamplesTaken += taken.SamplesTaken;
-      statistics.BytesComposited += taken.BytesComposited;
-      image.Rect = pilot.Viewport;
-      image.Pixels.resize(static_cast<std::size_t>(pilot.Viewport.Count()), glm::vec4(0.0f));
-      communicator.Broadcast(0, image.Pixels.data(), image.Pixels.size() * sizeof(glm::vec4));
-      return image;
+      return DrawDistributedPilot(
+        communicator, pilot, source, zones, budgetBytes, pool, statistics);
     });
 }
 

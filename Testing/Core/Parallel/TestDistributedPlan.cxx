@@ -1,0 +1,170 @@
+// Plans and their pilots on ranks, held to those of one rank.
+#include "Parallel/DistributedPilot.h"
+#include "Parallel/DistributedPlan.h"
+#include "Parallel/Zones.h"
+#include "Render/ArrayBrickSource.h"
+#include "Render/ImageError.h"
+#include "Render/Scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <mutex>
+
+namespace
+{
+
+using namespace banyan;
+
+constexpr std::uint64_t Budget = 1u << 26;
+constexpr int BrickCells = 8;
+const glm::ivec3 Samples{ 41, 33, 37 };
+
+/// Cannot read one of its bricks.
+class BrokenSource : public ArrayBrickSource
+{
+public:
+  using ArrayBrickSource::ArrayBrickSource;
+  BrickView Load(std::int64_t brick) override
+  {
+    throw Error("Brick " + std::to_string(brick) + " cannot be read.");
+  }
+};
+
+/// The standard field, of which each rank has all and draws a zone.
+class DistributedPlans : public ::testing::Test
+{
+protected:
+  DistributedPlans()
+    : Values(scenes::Sampled<float>(scenes::Standard, Samples))
+    , Scene(scenes::Scene(Samples, { 310, 290 }, glm::dmat4(1.0), 1.4, false))
+  {
+    this->Scene.Transfer = scenes::Tabulate(scenes::Sparse);
+    this->Wish.LeastCells = 7;
+    this->Wish.CoarsestLevel = 2;
+    this->Wish.Distance = this->Scene.SampleDistance;
+  }
+
+  template <class Source = ArrayBrickSource>
+  Source MakeSource(ThreadPool& pool) const
+  {
+    return Source(scenes::ArrayOf(this->Values, Samples), BrickCells, MaskRange{ 0.0, 1.0 }, pool);
+  }
+
+  static std::vector<Box> ZonesOf(int ranks)
+  {
+    const glm::ivec3 cells = Samples - 1;
+    std::vector<Box> zones;
+    for (const Box& bricks : StaticZones((cells + BrickCells - 1) / BrickCells, ranks))
+    {
+      zones.push_back(CellsOfBricks(bricks, BrickCells, cells));
+    }
+    return zones;
+  }
+
+  std::vector<float> Values;
+  RayScene Scene;
+  SamplingWish Wish;
+};
+
+TEST_F(DistributedPlans, PilotsAreThePicturesOfOneRankOnEveryRank)
+{
+  for (const double distance : { 1.4, 0.1 })
+  {
+    RayScene scene = scenes::Scene(Samples, { 61, 47 }, glm::dmat4(1.0), distance, false);
+    scene.Transfer = this->Scene.Transfer;
+    FloatImage alone;
+    FrameStatistics aloneTook;
+    for (const int ranks : { 1, 2, 3, 7, 131 })
+    {
+      SCOPED_TRACE(ranks);
+      std::mutex mutex;
+      RunOnSimulatedRanks(ranks,
+        [&](Communicator& communicator)
+        {
+          ThreadPool pool(1);
+          ArrayBrickSource source = this->MakeSource(pool);
+          FrameStatistics took;
+          const FloatImage picture =
+            DrawDistributedPilot(communicator, scene, &source, ZonesOf(ranks), Budget, pool, took);
+          const std::lock_guard<std::mutex> lock(mutex);
+          EXPECT_EQ(took.BytesComposited > 0, ranks > 1);
+          EXPECT_EQ(picture.Rect, scene.Viewport);
+          if (ranks == 1)
+          {
+            alone = picture;
+            aloneTook = took;
+            return;
+          }
+          EXPECT_LT(MaxDifference(picture, alone), 1e-5);
+          EXPECT_EQ(took.SamplesTaken, aloneTook.SamplesTaken);
+        });
+    }
+    EXPECT_GT(alone.At(30, 23).a, 0.05f);
+  }
+}
+
+TEST_F(DistributedPlans, ArePlansOfOneRank)
+{
+  SamplingPlan alone;
+  for (const int ranks : { 1, 2, 5 })
+  {
+    SCOPED_TRACE(ranks);
+    std::mutex mutex;
+    RunOnSimulatedRanks(ranks,
+      [&](Communicator& communicator)
+      {
+        ThreadPool pool(1);
+        ArrayBrickSource source = this->MakeSource(pool);
+        FrameStatistics took;
+        const SamplingPlan plan = PlanDistributed(
+          communicator, this->Scene, &source, ZonesOf(ranks), Budget, pool, {}, this->Wish, took);
+        const std::lock_guard<std::mutex> lock(mutex);
+        ASSERT_TRUE(plan.Samplings);
+        EXPECT_GT(took.SamplesTaken, 0);
+        if (ranks == 1)
+        {
+          alone = plan;
+          return;
+        }
+        EXPECT_EQ(plan.Pilots, alone.Pilots);
+        EXPECT_NEAR(plan.EstimatedError, alone.EstimatedError, 1e-2 * alone.EstimatedError);
+        EXPECT_EQ(plan.Samplings->Samplings().size(), alone.Samplings->Samplings().size());
+      });
+  }
+}
+
+TEST_F(DistributedPlans, AFailureOnOneRankIsThrownOnAll)
+{
+  std::mutex mutex;
+  std::vector<std::string> sentences;
+  RunOnSimulatedRanks(4,
+    [&](Communicator& communicator)
+    {
+      ThreadPool pool(1);
+      ArrayBrickSource source = this->MakeSource(pool);
+      BrokenSource broken = this->MakeSource<BrokenSource>(pool);
+      BrickSource* const mine =
+        communicator.Rank() == 2 ? static_cast<BrickSource*>(&broken) : &source;
+      FrameStatistics took;
+      try
+      {
+        SamplingWish wish = this->Wish;
+        wish.CoarsestLevel = 0;
+        PlanDistributed(communicator, this->Scene, mine, ZonesOf(4), Budget, pool, {}, wish, took);
+      }
+      catch (const Error& error)
+      {
+        const std::lock_guard<std::mutex> lock(mutex);
+        sentences.emplace_back(error.what());
+      }
+    });
+  ASSERT_EQ(sentences.size(), 4u);
+  for (const std::string& sentence : sentences)
+  {
+    EXPECT_EQ(sentence, sentences.front());
+    EXPECT_NE(sentence.find("cannot be read"), std::string::npos);
+    EXPECT_NE(sentence.find("Rank 2"), std::string::npos) << sentence;
+  }
+}
+
+} // namespace
