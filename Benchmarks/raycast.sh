@@ -5,7 +5,7 @@
 #              [--threads LIST] [--scenes LIST] [--renderers LIST] [--settings LIST] [--help]
 #
 #   --quick           128^3 samples and 256^2 pixels instead of 256^3 and 1024^2, all threads only:
-#                     minutes instead of an hour
+#                     minutes instead of half an hour
 #   --scaling         measures time against the size of the volume instead: 64^3 to 1024^3
 #                     (--quick: 256^3) and the first frame of an encoded series from a cold start
 #   --output DIR      where raycast.csv, raycast.png, raycast-largest.png (the worst pixel) and
@@ -14,15 +14,18 @@
 #   --data DIR        folder of real data (default ../shared/data beside the project, if it exists)
 #   --work DIR        keeps volumes and converged pictures, which a later run uses again
 #                     (default: raycast-scenes in the build folder)
-#   --repeat N        timed frames, of which the median counts (default 3)
+#   --repeat N        timed frames, of which the median counts (default 3); fewer of those settings
+#                     that take seconds
 #   --threads LIST    numbers of threads, separated by commas (default 1 and all processors); fewer
-#                     than the largest measure one sample per voxel only
+#                     than the largest measure only settings that the design's goals need, and one
+#                     sample per voxel
 #   --scenes LIST     only these, e.g. S1-256,S2-256-shaded,bonsai (default all)
 #   --renderers LIST  only these: banyan, vtk-gpu, vtk-fixed-point (default all)
 #   --settings LIST   only these sample distances and tolerances (default all)
 #
 # Installs what is missing, and builds in build-benchmark (BANYAN_BUILD_DIR names another folder).
-# VTK's mappers draw into a window of the X display, or of a virtual one. Ends with a table.
+# VTK's mappers draw into a window of the X display, or of a virtual one. Ends with tables, the last of
+# which compares with the design's goals.
 # BANYAN_SKIP_INSTALL=1 leaves the packages of the system alone, BANYAN_SKIP_BUILD=1 the build.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -92,23 +95,33 @@ generate_turbulence()
   real+=("$work/$file.json")
 }
 
-# Time and error of all renderers in all scenes, once for each number of threads.
+# Time and error as options ask for, with a number of threads.
+measure_with()
+{
+  local count="$1"
+  shift
+  "$RepositoryRoot/Utilities/with-display.sh" "$BuildFolder/bin/banyan-bench-raycast" \
+    --output "$output/raycast.csv" --references "$work" --pictures "$work/pictures" \
+    --size "$size" --threads "$count" --repeat "$repeat" \
+    "${measuring[@]+"${measuring[@]}"}" "$@" "${real[@]+"${real[@]}"}" || fail "measuring failed."
+}
+
+# All settings with the largest number of threads, then with fewer those that goals need.
 measure_renderers()
 {
-  local count most only append=()
+  local count most scene settings
   most="$(tr , '\n' <<<"$threads" | sort -n | tail -1)"
   rm -rf "$work/pictures"
   mkdir -p "$work/pictures"
+  say "      $most thread(s)"
+  measure_with "$most"
+  cp "$output/raycast.csv" "$work/most-threads.csv" || fail "the results cannot be copied."
   for count in ${threads//,/ }; do
+    ((count != most)) || continue
     say "      $count thread(s)"
-    only=()
-    ((count == most)) || only=(--settings 1)
-    "$RepositoryRoot/Utilities/with-display.sh" "$BuildFolder/bin/banyan-bench-raycast" \
-      --output "$output/raycast.csv" --references "$work" --pictures "$work/pictures" \
-      --size "$size" --threads "$count" --repeat "$repeat" "${append[@]+"${append[@]}"}" \
-      "${only[@]+"${only[@]}"}" "${measuring[@]+"${measuring[@]}"}" \
-      "${real[@]+"${real[@]}"}" || fail "measuring failed."
-    append=(--append)
+    while read -r scene settings; do
+      measure_with "$count" --append --goals-only --scenes "$scene" --settings "$settings" < /dev/null
+    done < <("$python" "$here/RayCast/goals.py" --needed "$work/most-threads.csv")
   done
 }
 
@@ -188,6 +201,7 @@ measure_renderers
 stage 4 4 "Reporting"
 "$python" "$here/RayCast/report.py" "$output/raycast.csv" "$output/raycast.png" \
   "$output/raycast-largest.png" &&
+  "$python" "$here/RayCast/goals.py" "$output/raycast.csv" &&
   "$python" "$here/RayCast/compare_pictures.py" "$work/pictures" "$output/raycast-pictures.png" ||
   fail "the report could not be written."
 say "Done: $output/raycast.csv, $output/raycast.png, -largest.png and -pictures.png"

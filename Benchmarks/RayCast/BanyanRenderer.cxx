@@ -31,7 +31,7 @@ public:
     {
       settings.push_back({ {}, distance });
     }
-    for (const double tolerance : { 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0 })
+    for (const double tolerance : { 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0 })
     {
       settings.push_back({ tolerance, {} });
     }

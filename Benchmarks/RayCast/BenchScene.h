@@ -53,6 +53,7 @@ struct BenchScene
   /// Colour times 0.3 + 0.7 |n . d|, n the direction of the gradient (central differences over two
   /// voxels), d the ray's; 0.3 where there is no gradient.
   bool Shaded = false;
+  bool HasGoals = false; ///< whether the design says how fast it is to be drawn
 
   /// What the nodes say of a value.
   glm::dvec4 At(double value) const;

@@ -15,6 +15,25 @@ namespace
 {
 
 constexpr double NothingLeft = 1e-7;
+/// Below this series are as exact as the library's functions, within 1e-12, and several times
+/// faster.
+constexpr double Small = 0.01;
+
+/// -log(1 - a)
+double DepthOf(double a)
+{
+  return a < Small
+           ? a * (1.0 + a * (1.0 / 2 + a * (1.0 / 3 + a * (1.0 / 4 + a * (1.0 / 5 + a / 6)))))
+           : -std::log1p(-a);
+}
+
+/// 1 - exp(-depth)
+double OpacityOf(double depth)
+{
+  return depth < Small
+           ? depth * (1.0 - depth / 2 * (1.0 - depth / 3 * (1.0 - depth / 4 * (1.0 - depth / 5))))
+           : -std::expm1(-depth);
+}
 
 template <class T>
 class ConvergedRays
@@ -58,8 +77,8 @@ public:
       const glm::dvec4 entry = this->Scene.At(this->Interpolate(position));
       if (entry.a > 0.0 && end > begin)
       {
-        const double depth = -std::log1p(-entry.a) * (end - begin) / this->Scene.UnitDistance;
-        const double opacity = -std::expm1(-depth);
+        const double depth = DepthOf(entry.a) * (end - begin) / this->Scene.UnitDistance;
+        const double opacity = OpacityOf(depth);
         const double light = this->Scene.Shaded ? this->LightAt(position, ray.Direction) : 1.0;
         color += transmittance * opacity * light * glm::dvec3(entry);
         transmittance *= 1.0 - opacity;

@@ -43,14 +43,28 @@ std::string NameOf(const Setting& setting)
                            : "step " + Number(setting.SampleDistance.value_or(0.0));
 }
 
-std::vector<Setting> ChosenSettings(
-  const RayCastRenderer& renderer, const BenchScene& scene, const std::vector<double>& wanted)
+bool OneSamplePerVoxel(const Setting& setting)
 {
+  return setting.SampleDistance.value_or(0.0) == 1.0;
+}
+
+/// VTK's mapper for processors is many times slower than its other one: goals do without it.
+bool HasGoals(const BenchScene& scene, const RayCastRenderer& renderer)
+{
+  return scene.HasGoals && renderer.Name() != "vtk-fixed-point";
+}
+
+std::vector<Setting> ChosenSettings(
+  const RayCastRenderer& renderer, const BenchScene& scene, const RayCastMeasuring& options)
+{
+  const std::vector<double>& wanted = options.Settings;
+  const bool few = options.GoalsOnly && !HasGoals(scene, renderer);
   std::vector<Setting> settings = renderer.SettingsFor(scene);
-  const auto unwanted = [&wanted](const Setting& setting)
+  const auto unwanted = [&](const Setting& setting)
   {
     const double number = setting.Tolerance.value_or(setting.SampleDistance.value_or(0.0));
-    return !wanted.empty() && std::find(wanted.begin(), wanted.end(), number) == wanted.end();
+    return (few && !OneSamplePerVoxel(setting)) ||
+           (!wanted.empty() && std::find(wanted.begin(), wanted.end(), number) == wanted.end());
   };
   settings.erase(std::remove_if(settings.begin(), settings.end(), unwanted), settings.end());
   return settings;
@@ -63,22 +77,41 @@ std::string FileNameOf(const RayCastMeasurement& m)
   return name;
 }
 
+void Add(Candidate& candidate, const Frame& frame)
+{
+  candidate.Milliseconds.push_back(1e3 * frame.Seconds);
+  candidate.ProcessorMilliseconds.push_back(1e3 * frame.ProcessorSeconds);
+}
+
 void JudgeFirst(
   Candidate& candidate, const Frame& frame, const FloatImage& reference, const std::string& folder)
 {
   RayCastMeasurement& result = candidate.Result;
-  result.FirstFrameMilliseconds = 1e3 * frame.Seconds;
+  result.FirstFrameMilliseconds = 1e3 * (frame.Seconds + frame.OnceSeconds.value_or(0.0));
+  if (frame.OnceSeconds)
+  {
+    Add(candidate, frame);
+  }
   result.Samples = frame.Samples;
   result.Error = ErrorOf(frame.Shown, reference);
   if (frame.Unrounded)
   {
     result.LargestErrorUnrounded = ErrorOf(*frame.Unrounded, reference).Largest;
   }
-  const Setting& setting = result.Accuracy;
-  if (!folder.empty() && setting.SampleDistance.value_or(0.0) == 1.0)
+  if (!folder.empty() && OneSamplePerVoxel(result.Accuracy))
   {
     WritePicture(frame.Shown, folder + "/" + FileNameOf(result));
   }
+}
+
+/// How many frames of a candidate are timed.
+int TurnsOf(const Candidate& candidate, const RayCastMeasuring& options)
+{
+  const int least = OneSamplePerVoxel(candidate.Result.Accuracy) ? 2 : 1;
+  const double frames =
+    1e3 * options.PatienceSeconds / std::max(1e-3, candidate.Result.FirstFrameMilliseconds);
+  const int turns = static_cast<int>(std::min(frames, static_cast<double>(options.Repeat)));
+  return std::max(turns, std::min(least, options.Repeat));
 }
 
 } // namespace
@@ -89,7 +122,7 @@ std::vector<RayCastMeasurement> MeasureScene(const BenchScene& scene, const Floa
   std::vector<Candidate> candidates;
   for (const auto& renderer : renderers)
   {
-    const std::vector<Setting> settings = ChosenSettings(*renderer, scene, options.Settings);
+    const std::vector<Setting> settings = ChosenSettings(*renderer, scene, options);
     if (!settings.empty())
     {
       renderer->Prepare(scene, settings);
@@ -109,9 +142,11 @@ std::vector<RayCastMeasurement> MeasureScene(const BenchScene& scene, const Floa
   {
     for (Candidate& candidate : candidates)
     {
-      const Frame frame = candidate.Renderer->Draw(candidate.Setting);
-      candidate.Milliseconds.push_back(1e3 * frame.Seconds);
-      candidate.ProcessorMilliseconds.push_back(1e3 * frame.ProcessorSeconds);
+      const auto timed = static_cast<int>(candidate.Milliseconds.size());
+      if (timed < TurnsOf(candidate, options))
+      {
+        Add(candidate, candidate.Renderer->Draw(candidate.Setting));
+      }
     }
   }
   std::vector<RayCastMeasurement> results;

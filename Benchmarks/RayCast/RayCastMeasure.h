@@ -29,12 +29,17 @@ struct RayCastMeasuring
 {
   int Threads = 1;
   int Repeat = 3;
+  /// Settings that would take longer than this are timed less often than `Repeat`: at least once,
+  /// and twice with one sample per voxel, which is compared most.
+  double PatienceSeconds = 6.0;
+  /// Of scenes and renderers that no goal compares, only one sample per voxel.
+  bool GoalsOnly = false;
   std::vector<double> Settings; ///< only these sample distances and tolerances; none means all
   std::string PictureFolder;    ///< where pictures at step 1 go; empty for none
 };
 
-/// Draws a scene with all settings of all renderers: first all of them once, then `Repeat` times in
-/// turns, so that whatever slows the machine down for a while slows down everybody.
+/// Draws a scene with all settings of all renderers: first all of them once, then up to `Repeat`
+/// times in turns, so that whatever slows the machine down for a while slows down everybody.
 std::vector<RayCastMeasurement> MeasureScene(const BenchScene& scene, const FloatImage& reference,
   const RendererList& renderers, const RayCastMeasuring& options);
 

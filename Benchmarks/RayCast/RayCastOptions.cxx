@@ -39,6 +39,10 @@ RayCastOptions ParseRayCastOptions(const std::vector<std::string>& arguments)
       options.Measuring.Threads = CountIn(option, value(), 1, 1024);
     else if (option == "--repeat")
       options.Measuring.Repeat = CountIn(option, value(), 1, 1000);
+    else if (option == "--patience")
+      options.Measuring.PatienceSeconds = NumberIn(option, value(), 0.0, 1e6);
+    else if (option == "--goals-only")
+      options.Measuring.GoalsOnly = true;
     else if (option == "--size")
       options.Size = CountIn(option, value(), 8, 1024);
     else if (option == "--picture")
@@ -76,6 +80,11 @@ std::string RayCastHelp()
          "  --settings LIST     only these sample distances and tolerances (default all)\n"
          "  --threads N         that each renderer may use (default 1)\n"
          "  --repeat N          timed frames, of which the median counts (default 3)\n"
+         "  --patience S        settings whose frames would take longer than S seconds together\n"
+         "                      are timed less often, at least once, and twice with one sample\n"
+         "                      per voxel (default 6)\n"
+         "  --goals-only        one sample per voxel only, where no goal compares renderers: on\n"
+         "                      real data, and of vtk-fixed-point\n"
          "  --reference-step D  sample distance of the converged picture in voxels (default 1/16)\n"
          "  --references DIR    keeps the converged pictures (default: the folder of FILE.csv)\n"
          "  --pictures DIR      writes pictures at step 1 there, as .ppm\n";

@@ -26,6 +26,9 @@ struct Setting
 struct Frame
 {
   double Seconds = 0;
+  /// Of a first frame, what had to be done once, where a renderer can do that apart: not in
+  /// Seconds.
+  std::optional<double> OnceSeconds;
   double ProcessorSeconds = 0; ///< of all threads together
   Picture Shown;
   std::optional<FloatImage> Unrounded; ///< where the renderer has it

@@ -31,6 +31,7 @@ BenchScene StandardScene(
   scene.Data = std::move(volume);
   scene.Picture = picture;
   scene.Shaded = shaded;
+  scene.HasGoals = true;
   scene.UnitDistance = edge / 255.0; // a voxel of 256^3
   scene.Center = glm::dvec3(0.5 * edge);
   scene.Eye = scene.Center + 1.9 * edge * glm::dvec3(0.48, 0.36, 0.80);
