@@ -173,6 +173,10 @@ void SeriesWriting::GiveUp(bool interrupted)
     this->Folder->RemoveOwn(keep);
   }
   this->Talk.Meet([] {});
+  if (this->Assembly)
+  {
+    keep = this->Assembly->FilesInFile();
+  }
   if (this->Folder && this->Talk.Rank() == 0)
   {
     this->Folder->RemoveOwn(keep); // and the folder, once the others have removed theirs

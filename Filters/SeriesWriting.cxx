@@ -22,6 +22,7 @@ SeriesWriting::SeriesWriting(WritingOrder order)
   , Input(this->Order.Producer, this->Order.Port)
   , Gathering(this->Talk, this->Order.Controller)
   , Histograms(this->Order.Options)
+  , Meshes(this->Talk, this->Order.Controller, this->Order.Options, this->Order.Selection)
 {
   const bool relative = this->Order.Options.Mode == ErrorBoundMode::RelativeToSeriesRange &&
                         this->Order.Options.ErrorBound > 0.0;
@@ -68,7 +69,7 @@ void SeriesWriting::Write()
         throw Error(this->IndexProblem);
       }
       this->Assembly->Finish();
-      this->Folder->RemoveAllBut(this->Assembly->SegmentsInFile());
+      this->Folder->RemoveAllBut(this->Assembly->FilesInFile());
     });
 }
 
@@ -155,17 +156,21 @@ void SeriesWriting::AskForTimes()
   }
 }
 
-StepReport SeriesWriting::PullMine(int step, bool withRanges) const
+vtkSmartPointer<vtkDataObject> SeriesWriting::PullMine(int step) const
 {
   const bool seenBefore = this->TwoPasses && this->InSecondPass;
-  vtkDataObject* data = this->Input.Pull(this->Talk.Rank(), this->Talk.Ranks(),
+  return this->Input.Pull(this->Talk.Rank(), this->Talk.Ranks(),
     this->HasTimes ? &this->Times[step] : nullptr, !seenBefore);
-  StepReport report = ReportOf(data, *this->Order.Selection, withRanges);
+}
+
+StepReport SeriesWriting::ReportOfMine(bool withRanges) const
+{
+  StepReport report = ReportOf(this->Data, *this->Order.Selection, withRanges);
   // Values that are decoded or copied on first touch are touched here, where a failure can still
   // be agreed upon.
   for (const WrittenArray& array : report.Arrays)
   {
-    ArrayOf(vtkImageData::SafeDownCast(data), array.Name)->GetVoidPointer(0);
+    ArrayOf(this->Mine(), array.Name)->GetVoidPointer(0);
   }
   return report;
 }
@@ -173,17 +178,27 @@ StepReport SeriesWriting::PullMine(int step, bool withRanges) const
 StepAgreement SeriesWriting::Pull(int step, bool withRanges)
 {
   StepReport mine;
-  try
+  const auto attempt = [&](const std::function<void()>& action)
   {
-    mine = this->PullMine(step, withRanges);
-  }
-  catch (const std::bad_alloc&)
+    try
+    {
+      action();
+    }
+    catch (const std::bad_alloc&)
+    {
+      mine.Problem = "There is not enough memory for a piece of the input.";
+    }
+    catch (const std::exception& error)
+    {
+      mine.Problem = error.what();
+    }
+  };
+  attempt([&] { this->Data = this->PullMine(step); });
+  this->Talk.Meet([this] { this->Tick(); });
+  mine.Problem = this->Meshes.Take(this->Data, mine.Problem);
+  if (mine.Problem.empty())
   {
-    mine.Problem = "There is not enough memory for a piece of the input.";
-  }
-  catch (const std::exception& error)
-  {
-    mine.Problem = error.what();
+    attempt([&] { mine = this->ReportOfMine(withRanges); });
   }
   this->Talk.Meet([this] { this->Tick(); });
   mine.Aborted = this->Order.Aborted();
@@ -291,6 +306,12 @@ void SeriesWriting::Open()
     descriptions.push_back(
       { array.Name, array.Type, array.Components, array.Ranges, this->Histograms.Of(array.Name) });
   }
+  if (this->Meshes.Active())
+  {
+    this->Talk.OnRank(
+      0, [&] { this->Folder = std::make_unique<SegmentFolder>(this->Order.FileName); });
+    this->Order.Options.Mesh = this->Meshes.Write(this->Folder.get());
+  }
   this->Talk.OnRank(0,
     [&]
     {
@@ -303,7 +324,10 @@ void SeriesWriting::Open()
           this->Assembly->SetActiveScalars(array.Name);
         }
       }
-      this->Folder = std::make_unique<SegmentFolder>(this->Order.FileName);
+      if (!this->Folder)
+      {
+        this->Folder = std::make_unique<SegmentFolder>(this->Order.FileName);
+      }
     });
   ThreadPool::SetRanksOnThisNode(this->Talk.RanksOnThisNode());
   this->Talk.Together(
@@ -346,7 +370,7 @@ int SeriesWriting::StepsOf(int group) const
 
 vtkImageData* SeriesWriting::Mine() const
 {
-  return vtkImageData::SafeDownCast(this->Input.Data());
+  return vtkImageData::SafeDownCast(this->Data);
 }
 
 } // namespace banyan

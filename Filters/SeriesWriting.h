@@ -1,6 +1,7 @@
 #ifndef banyan_Filters_SeriesWriting_h
 #define banyan_Filters_SeriesWriting_h
 
+#include "MeshSteps.h"
 #include "PipelineInput.h"
 #include "RankTalk.h"
 #include "SeriesHistograms.h"
@@ -39,7 +40,8 @@ struct WritingOrder
   std::function<void(const std::string&)> Warn;    ///< called on rank 0 only
 };
 
-/// Pulls the steps of a series out of a pipeline, each rank its own piece. Groups of steps are
+/// Pulls the steps of a series out of a pipeline, each rank its own piece. Meshes become images (see
+/// MeshSteps). Groups of steps are
 /// dealt out to the ranks in turn: the pieces of each step are gathered on the rank that has its
 /// group, which encodes the group in the background while all ranks go on with the steps that
 /// follow. Rank 0 keeps the index. The files are the same, byte for byte, on any number of ranks.
@@ -68,7 +70,8 @@ public:
 private:
   void Write();
   void AskForTimes();
-  StepReport PullMine(int step, bool withRanges) const;
+  vtkSmartPointer<vtkDataObject> PullMine(int step) const;
+  StepReport ReportOfMine(bool withRanges) const;
   StepAgreement Pull(int step, bool withRanges);
   void Remember(int step, const StepAgreement& now);
   void CompareWithFirst(int step, const StepAgreement& now) const;
@@ -92,6 +95,8 @@ private:
   PipelineInput Input;
   StepGathering Gathering;
   SeriesHistograms Histograms;
+  MeshSteps Meshes;
+  vtkSmartPointer<vtkDataObject> Data; ///< of this rank: the step under way, as an image
   bool TwoPasses = false;
   bool InSecondPass = false;
   bool HasTimes = false; ///< whether the input has time steps that we go through

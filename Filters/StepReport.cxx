@@ -7,6 +7,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataArraySelection.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
 #include "vtkPointData.h"
@@ -122,7 +123,8 @@ std::vector<vtkDataArray*> Choose(
     // ParaView offers the ghost flags like any array and selects them by default. They are not
     // written, but points that they hide are.
     if (selection.GetArraySetting(i) && name != vtkDataSetAttributes::GhostArrayName() &&
-        std::find(available.begin(), available.end(), name) == available.end())
+        std::find(available.begin(), available.end(), name) == available.end() &&
+        !image->GetFieldData()->GetAbstractArray(LeftOutName(name).c_str()))
     {
       report.Problem = "There is no point array " + name +
                        (available.empty() ? "." : "; there are: " + Joined(available) + ".");
@@ -189,8 +191,8 @@ StepReport ReportOf(vtkDataObject* data, vtkDataArraySelection& selection, bool 
   vtkImageData* image = vtkImageData::SafeDownCast(data);
   if (!image)
   {
-    report.Problem = std::string("A Banyan series is made from image data (a regular grid), and "
-                                 "the input is ") +
+    report.Problem = std::string("A Banyan series is made from image data (a regular grid) or from an "
+                                 "unstructured grid of hexahedra, and the input is ") +
                      (data ? data->GetClassName() : "nothing") +
                      ": apply a filter such as 'Resample To Image' first.";
     return report;

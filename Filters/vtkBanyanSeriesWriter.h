@@ -1,6 +1,6 @@
 /**
  * @class   vtkBanyanSeriesWriter
- * @brief   writes a time series of image data as a Banyan series (name.banyan)
+ * @brief   writes a time series of image data, or of a mesh, as a Banyan series (name.banyan)
  *
  * All steps of the input go into one series, each rank asking for its own piece of every step.
  * Groups of KeyframeInterval steps are dealt out to the ranks of the controller in turn: a rank
@@ -13,6 +13,10 @@
  * and bits are not written, with a warning that names them; when there is nothing else, writing
  * fails. Field data are not written. Hidden (blanked) points become NaN in float and double arrays,
  * and writing fails when there are integer arrays or hidden cells.
+ *
+ * Unstructured grids (alone or as the only block of composite data) whose cells are hexahedra that
+ * are the leaves of an octree are written as meshes: see Documentation/hexahedra.md. Rank 0 gathers
+ * them. Global and pedigree ids are not written.
  *
  * @par Exactness:
  * |decoded - original| <= error bound for each finite value, verified in the array's type; NaN and

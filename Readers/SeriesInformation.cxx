@@ -40,7 +40,10 @@ Box FromExtent(const int extent[6])
   return { { extent[0], extent[2], extent[4] }, { extent[1] + 1, extent[3] + 1, extent[5] + 1 } };
 }
 
-void DescribeSeries(const SeriesIndex& index, int level, vtkInformation& information)
+namespace
+{
+
+void DescribeGrid(const SeriesIndex& index, int level, vtkInformation& information)
 {
   const Grid grid = GridOfLevel(index.Domain, level);
   int extent[6];
@@ -58,7 +61,20 @@ void DescribeSeries(const SeriesIndex& index, int level, vtkInformation& informa
   }
   information.Set(vtkDataObject::DIRECTION(), direction, 9);
   information.Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+}
 
+} // namespace
+
+void DescribeSeries(const SeriesIndex& index, int level, vtkInformation& information)
+{
+  if (index.Mesh)
+  {
+    information.Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+  }
+  else
+  {
+    DescribeGrid(index, level, information);
+  }
   const int steps = index.Steps();
   information.Set(Pipeline::TIME_STEPS(), index.Times.data(), steps);
   const double range[2] = { index.Times.front(), index.Times.back() };

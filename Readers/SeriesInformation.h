@@ -13,7 +13,8 @@ namespace banyan
 void ToExtent(const Box& box, int extent[6]);
 Box FromExtent(const int extent[6]);
 
-/// Tells the pipeline what a series looks like at a level: grid, times, active scalars.
+/// Tells the pipeline what a series looks like at a level: grid (but that of a mesh), times, active
+/// scalars.
 void DescribeSeries(const SeriesIndex& index, int level, vtkInformation& information);
 
 /// The step that shows at the time asked for: the last one not after it; the first one before that,

@@ -1,11 +1,15 @@
 /**
  * @class   vtkBanyanSeriesReader
- * @brief   reads a Banyan series (name.banyan) as image data with time steps
+ * @brief   reads a Banyan series (name.banyan) with time steps: image data, or an unstructured grid
  *
  * The output is vtkImageData with the extent, origin, spacing, direction, arrays and times of what
  * was encoded. Any piece or sub-extent can be asked for; only bricks that it touches are read.
  * With DeferDecoding (the default) nothing is decoded until somebody asks for a value: see
  * vtkBanyanArray, and vtkBanyanDeferred for renderers that draw from the series itself.
+ *
+ * A series of a mesh gives back the vtkUnstructuredGrid that was encoded: its points and cells in
+ * their order, with plain arrays. Level L merges cells into cubes of 2^L finest ones. A piece is a run
+ * of cells with the points that they use. All values of a step are decoded on each rank.
  *
  * A time between two steps gives the earlier one, a time before the first step gives the first.
  *
@@ -128,6 +132,9 @@ protected:
   vtkBanyanSeriesReader();
   ~vtkBanyanSeriesReader() override;
 
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
+    vtkInformationVector* outputs) override;
   int RequestInformation(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(
@@ -141,7 +148,10 @@ private:
   std::string TryToOpen();
   std::string TryToFill(vtkInformation* outInfo, unsigned long& code);
   int UsedLevel() const;
+  bool IsMesh() const;
+  int MakeOutput(vtkInformationVector* outputs);
   void FillOutput(vtkInformation* outInfo);
+  void FillMesh(vtkInformation* outInfo);
   bool AllRanksAreWell(unsigned long code, const std::string& problem);
   void Fail(unsigned long code, const std::string& sentence);
   void Clear();

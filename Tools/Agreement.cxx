@@ -51,8 +51,30 @@ std::string Differ(const std::string& what, const Value& source, const Value& se
          Text(series) + ".";
 }
 
+void CheckMeshes(const SeriesIndex& index, int step, const SourceStep& source)
+{
+  if (!source.Mesh || !index.Mesh)
+  {
+    Refuse(step, index.Mesh ? "the source has no mesh, and the series is one of a mesh. It is compared "
+                              "with files of the mesh that it was made from."
+                            : "the source is a mesh, and the series is one of images.");
+  }
+  if (source.Samples.x != index.Mesh->Points || source.Mesh->Cells != index.Mesh->Cells)
+  {
+    Refuse(step, "the mesh of the source has " + std::to_string(source.Samples.x) + " points and " +
+                   std::to_string(source.Mesh->Cells) + " cells, and that of the series " +
+                   std::to_string(index.Mesh->Points) + " and " +
+                   std::to_string(index.Mesh->Cells) + ".");
+  }
+}
+
 void CheckGrids(const SeriesIndex& index, int step, const SourceStep& source)
 {
+  if (source.Mesh || index.Mesh)
+  {
+    CheckMeshes(index, step, source);
+    return;
+  }
   const Grid& series = index.Domain;
   if (source.Domain && source.Domain->Extent != series.Extent)
   {
@@ -110,9 +132,10 @@ void CheckArrays(const SeriesIndex& index, int step, const SourceStep& source,
     }
     CheckArray(step, array, *std::find_if(source.Arrays.begin(), source.Arrays.end(), fits));
   }
-  for (const SourceArray& array : source.Arrays)
+  for (std::size_t a = 0; a < source.Arrays.size(); ++a)
   {
-    if (names.empty() && index.FindArray(array.Name) < 0)
+    const SourceArray& array = source.Arrays[a];
+    if (names.empty() && source.IsValue(a) && index.FindArray(array.Name) < 0)
     {
       Refuse(step, "the source has the array \"" + array.Name +
                      "\", which the series does not hold; --array NAME compares only those that "

@@ -179,6 +179,11 @@ std::string InfoToJson(const InfoReport& report, const DecodeTimes* times)
   const SeriesIndex& index = report.Series.Index;
   Json json;
   json["file"] = report.Series.File;
+  if (index.Mesh)
+  {
+    json["mesh"] = { { "points", index.Mesh->Points }, { "cells", index.Mesh->Cells },
+      { "bytes", index.Mesh->Bytes } };
+  }
   json["grid"] = GridToJson(index.Domain);
   json["times"] = index.Times;
   json["segments"] = index.Segments.size();

@@ -38,9 +38,13 @@ std::string Heading(const SeriesReport& report)
   const SeriesIndex& index = report.Index;
   const glm::ivec3 n = index.Domain.Samples();
   const Box& extent = index.Domain.Extent;
-  std::string text = report.File + "\n  " + std::to_string(n.x) + " x " + std::to_string(n.y) +
-                     " x " + std::to_string(n.z) + " samples, " +
-                     Counted(index.Times.size(), "step") + ", times " +
+  const std::string samples = std::to_string(n.x) + " x " + std::to_string(n.y) + " x " +
+                              std::to_string(n.z) + " samples";
+  std::string text = report.File + "\n  " +
+                     (index.Mesh ? "a mesh of " + std::to_string(index.Mesh->Cells) +
+                                     " cells and " + std::to_string(index.Mesh->Points) + " points"
+                                 : samples) +
+                     ", " + Counted(index.Times.size(), "step") + ", times " +
                      Digits(index.Times.front()) + " to " + Digits(index.Times.back()) + "\n";
   for (const ArrayIndex& array : index.Arrays)
   {
@@ -49,13 +53,21 @@ std::string Heading(const SeriesReport& report)
               ? "\n"
               : ", " + Counted(array.Components.size(), "component") + "\n";
   }
-  text += "  extent";
-  for (int axis = 0; axis < 3; ++axis)
+  if (index.Mesh)
   {
-    text += " " + std::to_string(extent.Lo[axis]) + ".." + std::to_string(extent.Hi[axis] - 1);
+    text += "  the mesh: " + Megabytes(index.Mesh->Bytes) + "; its values: images of " + samples;
   }
-  text += ", origin " + Numbers(index.Domain.Origin) + ", spacing " +
-          Numbers(index.Domain.Spacing) + "\n  bricks of " + std::to_string(index.BrickCells) +
+  for (int axis = 0; !index.Mesh && axis < 3; ++axis)
+  {
+    text += std::string(axis == 0 ? "  extent" : "") + " " + std::to_string(extent.Lo[axis]) + ".." +
+            std::to_string(extent.Hi[axis] - 1);
+  }
+  if (!index.Mesh)
+  {
+    text += ", origin " + Numbers(index.Domain.Origin) + ", spacing " +
+            Numbers(index.Domain.Spacing);
+  }
+  text += "\n  bricks of " + std::to_string(index.BrickCells) +
           "^3 cells, " + Counted(static_cast<std::size_t>(index.Levels), "level") + ", " +
           Counted(index.Segments.size(), "segment") + " of up to " +
           Counted(static_cast<std::size_t>(index.KeyframeInterval), "step") + "\n";
@@ -101,7 +113,9 @@ std::string Size(const SeriesReport& report)
   return "\n" + table.Text() + "  encoded: payloads " +
          Megabytes(report.Index.Statistics.PayloadBytes) + ", tables " +
          Megabytes(report.SegmentBytes - report.Index.Statistics.PayloadBytes) + ", index " +
-         Megabytes(report.IndexBytes) + "\n" + Repeated(report.Index.Statistics) +
+         Megabytes(report.IndexBytes) +
+         (report.Index.Mesh ? ", mesh " + Megabytes(report.Index.Mesh->Bytes) : std::string()) + "\n" +
+         Repeated(report.Index.Statistics) +
          Chains(report.Index.Statistics);
 }
 

@@ -243,7 +243,9 @@ std::int64_t SeriesReport::Values() const
   {
     components += static_cast<std::int64_t>(array.Components.size());
   }
-  return this->Index.Domain.Extent.Count() * this->Index.Steps() * components;
+  const std::int64_t tuples =
+    this->Index.Mesh ? this->Index.Mesh->Points : this->Index.Domain.Extent.Count();
+  return tuples * this->Index.Steps() * components;
 }
 
 double SeriesReport::BitsPerValue() const

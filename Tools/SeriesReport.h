@@ -66,7 +66,11 @@ struct SeriesReport
   std::uint64_t SegmentBytes = 0;
   std::vector<ComponentReport> Components; ///< of the arrays that were asked for
 
-  std::uint64_t EncodedBytes() const { return this->IndexBytes + this->SegmentBytes; }
+  /// With the mesh, if there is one.
+  std::uint64_t EncodedBytes() const
+  {
+    return this->IndexBytes + this->SegmentBytes + (this->Index.Mesh ? this->Index.Mesh->Bytes : 0);
+  }
   /// Values of all steps, arrays and components: what "per value" refers to.
   std::int64_t Values() const;
   double BitsPerValue() const; ///< everything counted

@@ -18,6 +18,15 @@ struct SourceArray
   std::string Name;
   ScalarType Type = ScalarType::Float32;
   int Components = 1;
+  std::int64_t Tuples = 0; ///< 0: one per sample
+};
+
+/// What a source says of its mesh, before the values: where it is found among the arrays.
+struct SourceMesh
+{
+  std::int64_t Cells = 0;
+  int Coordinates = -1; ///< x, y, z of each point
+  int Corners = -1;     ///< eight points (int64) of each cell, in the order that its type has
 };
 
 /// What a source says of a step, before its values.
@@ -28,6 +37,14 @@ struct SourceStep
   std::optional<Grid> Domain;
   glm::ivec3 Samples{ 0 };
   std::vector<SourceArray> Arrays;
+  std::optional<SourceMesh> Mesh; ///< samples are points, along x, then
+
+  /// Whether an array holds values, and not the mesh.
+  bool IsValue(std::size_t array) const
+  {
+    const int number = static_cast<int>(array);
+    return !this->Mesh || (number != this->Mesh->Coordinates && number != this->Mesh->Corners);
+  }
 };
 
 /// The steps of something that a series is compared with, one after the other. Nothing but the step
@@ -50,7 +67,9 @@ public:
 /// Bytes of an array's values at a step. The caller has checked that `samples` fit into memory.
 inline std::size_t BytesOf(const SourceArray& array, const glm::ivec3& samples)
 {
-  return static_cast<std::size_t>(Box{ glm::ivec3(0), samples }.Count()) *
+  const std::int64_t tuples =
+    array.Tuples > 0 ? array.Tuples : Box{ glm::ivec3(0), samples }.Count();
+  return static_cast<std::size_t>(tuples) *
          static_cast<std::size_t>(array.Components) * SizeOf(array.Type);
 }
 

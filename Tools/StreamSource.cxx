@@ -74,8 +74,21 @@ SourceStep StepFrom(const Json& json)
   {
     step.Time = json.at("time").get<double>();
   }
-  step.Domain = GridFrom(json);
-  step.Samples = step.Domain->Samples();
+  if (json.contains("mesh"))
+  {
+    const std::int64_t points = json["mesh"].at("points").get<std::int64_t>();
+    step.Mesh = SourceMesh{ json["mesh"].at("cells").get<std::int64_t>(), -1, -1 };
+    if (points < 1 || points > std::numeric_limits<int>::max() || step.Mesh->Cells < 1)
+    {
+      throw Error("The source has a mesh without points, or with too many");
+    }
+    step.Samples = { static_cast<int>(points), 1, 1 };
+  }
+  else
+  {
+    step.Domain = GridFrom(json);
+    step.Samples = step.Domain->Samples();
+  }
   for (const Json& array : json.at("arrays"))
   {
     const int components = array.at("components").get<int>();
@@ -85,6 +98,16 @@ SourceStep StepFrom(const Json& json)
     }
     step.Arrays.push_back({ array.at("name").get<std::string>(),
       ScalarTypeFromName(array.at("type").get<std::string>()), components });
+    const std::string role = array.value("role", "");
+    if (step.Mesh && role == "coordinates")
+    {
+      step.Mesh->Coordinates = static_cast<int>(step.Arrays.size()) - 1;
+    }
+    if (step.Mesh && role == "corners")
+    {
+      step.Mesh->Corners = static_cast<int>(step.Arrays.size()) - 1;
+      step.Arrays.back().Tuples = step.Mesh->Cells;
+    }
   }
   return step;
 }

@@ -4,6 +4,8 @@
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Cache/BrickCache.h"
+#include "MeshSeries/AtlasValues.h"
+#include "MeshSeries/MeshFile.h"
 #include "Series/Bytes.h"
 #include "Series/FillValues.h"
 
@@ -11,6 +13,7 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 
 namespace banyan
 {
@@ -74,6 +77,10 @@ public:
     , Whole{ glm::ivec3(0), series.Layout(0).Samples() }
   {
     const SeriesIndex& index = series.Index();
+    if (index.Mesh)
+    {
+      this->Mesh = ReadMesh(series);
+    }
     this->Result.Times = index.Times;
     for (const int array : ChosenArrays(index, choice.Arrays))
     {
@@ -131,6 +138,12 @@ private:
     std::vector<std::uint8_t> original;
     for (std::size_t a = 0; a < step.Arrays.size(); ++a)
     {
+      if (!step.IsValue(a))
+      {
+        this->Source.ReadValues(a, original);
+        this->CompareMesh(number, step.Arrays[a], static_cast<int>(a) == step.Mesh->Corners, original);
+        continue;
+      }
       bool read = false;
       for (std::size_t c = 0; c < this->Result.Components.size(); ++c)
       {
@@ -146,6 +159,24 @@ private:
         }
         this->CompareComponent(number, c, original);
       }
+    }
+  }
+
+  /// Points and cells must be the same bits in the same order.
+  void CompareMesh(int number, const SourceArray& array, bool corners,
+    const std::vector<std::uint8_t>& original) const
+  {
+    const void* const mine = corners ? static_cast<const void*>(this->Mesh->Connectivity.data())
+                                     : this->Mesh->Points.data();
+    const std::size_t bytes =
+      corners ? 8 * this->Mesh->Connectivity.size() : this->Mesh->Points.size();
+    const ScalarType type = corners ? ScalarType::Int64 : this->Mesh->PointType;
+    if (array.Type != type || original.size() != bytes ||
+        std::memcmp(original.data(), mine, bytes) != 0)
+    {
+      throw Error("At step " + std::to_string(number) + " the " +
+                  (corners ? "corners of cells" : "coordinates of points") +
+                  " of the source are others than those of the series.");
     }
   }
 
@@ -165,6 +196,14 @@ private:
     BrickCache cache(0);
     ReadRegion(cache, this->Series, { number, component.Array, component.Component, 0 },
       this->Whole, this->Decoded.data(), 1, 0);
+    std::int64_t count = this->Whole.Count();
+    if (this->Mesh)
+    {
+      std::vector<std::uint8_t> points(static_cast<std::size_t>(this->Mesh->PointCount()) * size);
+      AtlasValues(this->Mesh).FromImage(array.Type, this->Decoded.data(), 1, points.data());
+      this->Decoded = std::move(points);
+      count = this->Mesh->PointCount();
+    }
     const std::uint8_t* first =
       original.data() + static_cast<std::size_t>(component.Component) * size;
     const ComponentIndex& index = array.Components[static_cast<std::size_t>(component.Component)];
@@ -173,7 +212,7 @@ private:
     {
       // What the series promises is nearness to the clamped values.
       clamped.resize(this->Decoded.size());
-      component.Clamped += ClampComponent(array.Type, first, stride, this->Whole.Count(),
+      component.Clamped += ClampComponent(array.Type, first, stride, count,
         index.PromisedRange, index.FillValues, clamped.data());
       first = clamped.data();
       stride = 1;
@@ -181,7 +220,7 @@ private:
     const Judgement judgement{ component.Bound, index.ValueTransform, { RangeOf(index), 8 },
       &this->Opacities[c], IntervalsOf(index), index.FillValues };
     const ValueErrors errors = CompareValues(array.Type, first, stride, this->Decoded.data(),
-      this->Whole.Count(), judgement, ThreadPool::Process());
+      count, judgement, ThreadPool::Process());
     if (errors.WorstError > component.All.WorstError)
     {
       component.Worst = this->Describe(number, array.Type, errors, first, stride);
@@ -196,7 +235,9 @@ private:
     WorstValue worst;
     worst.Step = number;
     worst.Error = errors.WorstError;
-    const glm::ivec3 size = this->Whole.Hi;
+    // Points of a mesh are counted along x.
+    const glm::ivec3 size =
+      this->Mesh ? glm::ivec3(static_cast<int>(this->Mesh->PointCount()), 1, 1) : this->Whole.Hi;
     const std::int64_t i = errors.Worst;
     worst.Index = this->Series.Index().Domain.Extent.Lo + glm::ivec3(static_cast<int>(i % size.x),
                                                             static_cast<int>(i / size.x % size.y),
@@ -240,6 +281,7 @@ private:
   SourceSteps& Source;
   const VerificationChoice& Choice;
   Box Whole;
+  std::shared_ptr<const StoredMesh> Mesh; ///< null: the series is of images
   std::vector<OpacityFunction> Opacities; ///< one per component of the result
   std::vector<std::uint8_t> Decoded;
   Verification Result;

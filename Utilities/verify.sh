@@ -5,8 +5,9 @@
 #   verify.sh FILE --against SOURCE... --raw-type float32 --dims X Y Z [...]
 #
 #   FILE               the series, name.banyan
-#   --against SOURCE   what it was made from: a file or files, in order of time, of image data that
-#                      ParaView opens (.vti, .vti.series, .pvd, .mhd, ...), or another .banyan
+#   --against SOURCE   what it was made from: a file or files, in order of time, of image data or of a
+#                      mesh that ParaView opens (.vti, .vti.series, .pvd, .mhd, .exo, .vtu, ...), or
+#                      another .banyan (of images)
 #   --raw-type T       SOURCE are raw files without a header, little-endian, x fastest, of type
 #                      float32, float64, uint8, ...; each holds one time step or more
 #   --dims X Y Z       samples of raw files per axis

@@ -131,6 +131,16 @@ SeriesIndex PlanSeries(
                   "', and the series has no such array");
     }
   }
+  if (options.Mesh)
+  {
+    index.FormatVersion = 3;
+    index.Mesh = options.Mesh->Index;
+    if (!options.Mesh->Needed ||
+        options.Mesh->Needed->size() != static_cast<std::size_t>(grid.Extent.Count()))
+    {
+      throw Error("It must be said of each sample whether it stands for a point of the mesh");
+    }
+  }
   index.ActiveScalars = arrays.empty() ? "" : arrays[0].Name;
   return index;
 }

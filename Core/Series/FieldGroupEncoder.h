@@ -40,6 +40,8 @@ struct FieldGroup
   bool Beyond = false; ///< values may well lie outside of Expected
   std::vector<double> FillValues;
   std::optional<OpacityFunction> Opacity; ///< nothing: every value counts
+  /// By sample, x fastest: 0 where any value will do. Null: all are needed.
+  const std::uint8_t* Needed = nullptr;
   EncodeProfile Profile = EncodeProfile::Balanced;
   int CompressionLevel = 3;
   /// Of the group before; null: do not refer to it. Used where its lattice is the same.

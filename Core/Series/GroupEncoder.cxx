@@ -140,6 +140,7 @@ FieldOfPlan MakeField(const SeriesIndex& plan, const EncodeOptions& options, std
   field.FillValues = index.FillValues;
   field.Expected = IsPromised(index) ? index.PromisedRange : RangeOfGroup(field, tuples, pool);
   field.Beyond = GoesBeyond(index);
+  field.Needed = options.Mesh ? options.Mesh->Needed->data() : nullptr;
   if (!index.Opacity.empty())
   {
     field.Opacity.emplace(index.Opacity);
@@ -293,7 +294,8 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
       }
       Measure(fields.back(), group.Measured[a][c], group.Statistics);
       group.Measured[a][c].ClampedCount = made.Clamped.Count;
-      group.BytesIn += static_cast<std::uint64_t>(tuples) * SizeOf(array.Type) * steps.size();
+      group.BytesIn += static_cast<std::uint64_t>(plan.Mesh ? plan.Mesh->Points : tuples) *
+                       SizeOf(array.Type) * steps.size();
     }
     group.Magnitudes.emplace_back();
     for (const std::vector<double>& step : squares)

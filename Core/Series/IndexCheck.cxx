@@ -88,16 +88,32 @@ bool SameContent(const SegmentIndex& a, const SegmentIndex& b)
          a.HashHigh == b.HashHigh;
 }
 
+bool IsPlainName(const std::string& file)
+{
+  return !file.empty() && file[0] != '.' && file.find('/') == std::string::npos &&
+         file.find('\0') == std::string::npos;
+}
+
+void CheckMesh(const SeriesIndex& index)
+{
+  Require((index.FormatVersion >= 3) == index.Mesh.has_value(),
+    "A series of format version 3 is one of a mesh, and only such a series is");
+  if (index.Mesh)
+  {
+    Require(IsPlainName(index.Mesh->File), "The name of the mesh is not a plain file name");
+    Require(index.Mesh->Points >= 8 && index.Mesh->Cells >= 1 &&
+              index.Mesh->Points <= index.Domain.Extent.Count(),
+      "The mesh has an impossible number of points or cells");
+  }
+}
+
 void CheckSegments(const SeriesIndex& index)
 {
   std::map<std::string, const SegmentIndex*> files;
   std::int64_t next = 0;
   for (const SegmentIndex& segment : index.Segments)
   {
-    Require(!segment.File.empty() && segment.File[0] != '.' &&
-              segment.File.find('/') == std::string::npos &&
-              segment.File.find('\0') == std::string::npos,
-      "The name of a segment is not a plain file name");
+    Require(IsPlainName(segment.File), "The name of a segment is not a plain file name");
     const SegmentIndex& first = *files.emplace(segment.File, &segment).first->second;
     Require(&first == &segment || (index.FormatVersion > 1 && SameContent(first, segment)),
       "Two segments have the same file, and not the same content");
@@ -148,6 +164,7 @@ void CheckIndex(const SeriesIndex& index)
     "The key-frame interval must be from 1 to 1024 steps");
   Require(std::isfinite(index.ErrorBound) && index.ErrorBound >= 0,
     "The error bound must be finite and not negative");
+  CheckMesh(index);
   CheckArrays(index);
   CheckTimes(index.Times);
   CheckSegments(index);

@@ -88,6 +88,19 @@ SegmentIndex SegmentFromJson(const Json& json)
   return segment;
 }
 
+MeshIndex MeshFromJson(const Json& json)
+{
+  MeshIndex mesh;
+  mesh.File = TextMember(json, "file");
+  mesh.Bytes = static_cast<std::uint64_t>(CountMember(json, "bytes"));
+  const Hash128 hash = FromHex(TextMember(json, "hash"));
+  mesh.HashLow = hash.Low;
+  mesh.HashHigh = hash.High;
+  mesh.Points = CountMember(json, "points");
+  mesh.Cells = CountMember(json, "cells");
+  return mesh;
+}
+
 EncodeStatistics StatisticsFromJson(const Json& json)
 {
   EncodeStatistics statistics;
@@ -149,6 +162,11 @@ SeriesIndex IndexFromJson(const Json& json)
   }
   SeriesIndex index;
   index.Domain = GridFromJson(json);
+  const auto mesh = json.find("mesh");
+  if (mesh != json.end())
+  {
+    index.Mesh = MeshFromJson(*mesh);
+  }
   index.BrickCells = IntegerMember(json, "brickCells", 1);
   index.Levels = IntegerMember(json, "levels", 1);
   index.KeyframeInterval = IntegerMember(json, "keyframeInterval", 1);

@@ -91,6 +91,17 @@ Json StatisticsToJson(const EncodeStatistics& statistics)
   return json;
 }
 
+Json MeshToJson(const MeshIndex& mesh)
+{
+  Json json;
+  json["file"] = mesh.File;
+  json["bytes"] = mesh.Bytes;
+  json["hash"] = ToHex({ mesh.HashLow, mesh.HashHigh });
+  json["points"] = mesh.Points;
+  json["cells"] = mesh.Cells;
+  return json;
+}
+
 Json GridToJson(const Grid& grid)
 {
   Json json;
@@ -118,6 +129,10 @@ Json GridToJson(const Grid& grid)
 Json IndexToJson(const SeriesIndex& index)
 {
   Json json = GridToJson(index.Domain);
+  if (index.Mesh)
+  {
+    json["mesh"] = MeshToJson(*index.Mesh);
+  }
   json["brickCells"] = index.BrickCells;
   json["levels"] = index.Levels;
   json["keyframeInterval"] = index.KeyframeInterval;

@@ -238,6 +238,14 @@ bool LatticeCheck<T>::MayStay(const glm::ivec3& sample, T original, T decoded, F
   return true;
 }
 
+/// Whether a sample of a row has to be within the bound.
+template <class T>
+bool LatticeCheck<T>::Needs(const Row& row, std::size_t x) const
+{
+  return !this->Field.Needed ||
+         this->Field.Needed[row.At / this->Field.Components + this->Tuples[x]] != 0;
+}
+
 /// Sample by sample; `Decoded` becomes what decoding gives with the exceptions.
 template <class T>
 void LatticeCheck<T>::EachSample(const Row& row, int plane, const glm::ivec3& low, int edge,
@@ -253,6 +261,10 @@ void LatticeCheck<T>::EachSample(const Row& row, int plane, const glm::ivec3& lo
     const T original = this->Originals[static_cast<std::size_t>(x)];
     T& decoded = this->Decoded[static_cast<std::size_t>(x)];
     const int column = std::min((row.Sample.x + x) << shift, this->Last.x);
+    if (!this->Needs(row, static_cast<std::size_t>(x)))
+    {
+      continue;
+    }
     if (!this->MayStay({ column, y, z }, original, decoded, errors))
     {
       ++errors.Exceptions;
@@ -282,7 +294,7 @@ void LatticeCheck<T>::Block(const PlaneNumbers& decoded, int plane, std::int64_t
     static_cast<int>(block / decoded.Blocks.x / decoded.Blocks.y) };
   const glm::ivec3 low = position * edge;
   const glm::ivec3 high = glm::min(low + edge, decoded.Samples);
-  if (plane == 0 && this->Plain && this->Field.Map.IsIdentity() && squares == nullptr &&
+  if (plane == 0 && this->Plain && !this->Field.Needed && this->Field.Map.IsIdentity() && squares == nullptr &&
       this->WholeBlock(decoded, low, high - low, errors))
   {
     return;
@@ -319,7 +331,7 @@ void LatticeCheck<T>::Block(const PlaneNumbers& decoded, int plane, std::int64_t
       row.Values =
         plane == 0 ? this->Tile.data() + ((z - low.z) * edge + (y - low.y)) * edge : nullptr;
       this->LoadRow(decoded, row);
-      if (!this->Plain || !this->AllWithin(row.Count, errors))
+      if (!this->Plain || this->Field.Needed || !this->AllWithin(row.Count, errors))
       {
         this->EachSample(row, plane, low, edge, list, errors);
       }
@@ -328,7 +340,7 @@ void LatticeCheck<T>::Block(const PlaneNumbers& decoded, int plane, std::int64_t
       {
         // A vector with a fill value has no length.
         const std::size_t i = static_cast<std::size_t>(x);
-        const double value = this->Fills.Holds(this->Originals[i])
+        const double value = this->Fills.Holds(this->Originals[i]) || !this->Needs(row, i)
                                ? std::numeric_limits<double>::quiet_NaN()
                                : static_cast<double>(this->Decoded[i]);
         (*squares)[static_cast<std::size_t>(tuple + this->Tuples[i])] += value * value;

@@ -49,6 +49,7 @@ private:
     FieldErrors& errors) const;
   void LoadRow(const PlaneNumbers& decoded, const Row& row);
   bool AllWithin(int count, FieldErrors& errors);
+  bool Needs(const Row& row, std::size_t x) const;
   void EachSample(const Row& row, int plane, const glm::ivec3& low, int edge,
     ExceptionList<T>& list, FieldErrors& errors);
   bool Within(T original, T decoded, double& error, double& transformed) const;

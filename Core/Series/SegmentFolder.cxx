@@ -22,7 +22,8 @@ namespace
 {
 
 const std::string Suffix = ".seg";
-const std::string PartSuffix = ".seg.part";
+const std::string MeshSuffix = ".mesh";
+const std::string PartSuffix = ".part"; // behind one of these
 
 std::string MakeRunId()
 {
@@ -52,7 +53,8 @@ bool EndsWith(const std::string& text, const std::string& end)
 bool IsSegmentName(const std::string& name)
 {
   return name.size() > 17 && name[16] == '-' && name.find_first_not_of("0123456789abcdef") == 16 &&
-         (EndsWith(name, Suffix) || EndsWith(name, PartSuffix));
+         (EndsWith(name, Suffix) || EndsWith(name, Suffix + PartSuffix) ||
+           EndsWith(name, MeshSuffix) || EndsWith(name, MeshSuffix + PartSuffix));
 }
 
 void RemoveWhere(
@@ -96,8 +98,18 @@ std::string SegmentFolder::TemporaryNameOf(int segment) const
 
 std::string SegmentFolder::FinalNameOf(const Hash128& content)
 {
+  return this->NameOf(content, Suffix);
+}
+
+std::string SegmentFolder::FinalNameOfMesh(const Hash128& content)
+{
+  return this->NameOf(content, MeshSuffix);
+}
+
+std::string SegmentFolder::NameOf(const Hash128& content, const std::string& suffix)
+{
   const std::string hash = ToHex(content);
-  const std::string name = hash.substr(16) + "-" + hash.substr(0, 16) + Suffix;
+  const std::string name = hash.substr(16) + "-" + hash.substr(0, 16) + suffix;
   struct stat status = {};
   if (lstat((this->FolderPath + "/" + name).c_str(), &status) != 0)
   {

@@ -27,6 +27,8 @@ public:
   /// Name of a segment whose content has this hash. Remembers it as this run's, unless a file of
   /// the name (hence of the content) is there already.
   std::string FinalNameOf(const Hash128& content);
+  /// The same for the file of a mesh.
+  std::string FinalNameOfMesh(const Hash128& content);
 
   /// Whether this object made the folder: of several processes that write one series together, only
   /// the first one does, unless they see different disks.
@@ -40,6 +42,8 @@ public:
   void RemoveAllBut(const std::vector<std::string>& names) noexcept;
 
 private:
+  std::string NameOf(const Hash128& content, const std::string& suffix);
+
   std::string FolderPath;
   std::string Run;
   std::vector<std::string> Own;

@@ -99,4 +99,14 @@ std::vector<std::string> SeriesAssembly::SegmentsInFile() const
   return files;
 }
 
+std::vector<std::string> SeriesAssembly::FilesInFile() const
+{
+  std::vector<std::string> files = this->SegmentsInFile();
+  if (this->InFile > 0 && this->Current.Mesh)
+  {
+    files.push_back(this->Current.Mesh->File);
+  }
+  return files;
+}
+
 } // namespace banyan

@@ -44,6 +44,8 @@ public:
 
   /// The segments that the index file names now, none when it is not of this series.
   std::vector<std::string> SegmentsInFile() const;
+  /// The same, and the file of the mesh.
+  std::vector<std::string> FilesInFile() const;
 
 private:
   std::string Path;

@@ -166,7 +166,7 @@ SeriesIndex SeriesEncoder::Finish()
   }
   const SeriesIndex& index = self.Assembly.Finish();
   self.Finished = true;
-  self.Folder->RemoveAllBut(self.Assembly.SegmentsInFile());
+  self.Folder->RemoveAllBut(self.Assembly.FilesInFile());
   return index;
 }
 

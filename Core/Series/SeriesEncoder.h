@@ -24,6 +24,15 @@ enum class EncodeProfile
   Compact   ///< archives: all of them, with more care
 };
 
+/// What encoding has to know of the mesh that images stand for.
+struct MeshPlan
+{
+  MeshIndex Index;
+  /// By sample of an image, x fastest: 0 where it stands for no point of the mesh. Such a sample may
+  /// decode to anything, and is not counted.
+  std::shared_ptr<const std::vector<std::uint8_t>> Needed;
+};
+
 struct EncodeOptions
 {
   /// > 0 and finite, or 0 for bit-exact. See ErrorBoundMode.
@@ -35,6 +44,7 @@ struct EncodeOptions
   EncodeProfile Profile = EncodeProfile::Balanced;
   QuantizerOptions Quantizer;                               ///< of all arrays
   std::map<std::string, QuantizerOptions> QuantizerOfArray; ///< instead, of arrays by name
+  std::shared_ptr<const MeshPlan> Mesh; ///< null: the series is of images
 
   const QuantizerOptions& QuantizerFor(const std::string& array) const;
   /// Whether an array needs ArrayDescription::Histograms.

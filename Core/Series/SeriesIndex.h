@@ -9,6 +9,7 @@
 #include "Series/ValueRange.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -72,6 +73,17 @@ struct ArrayIndex
   std::vector<ValueRange> Magnitudes;
 };
 
+/// The mesh whose values a series holds as images (see MeshSeries/StoredMesh.h).
+struct MeshIndex
+{
+  std::string File; ///< name inside `<series>.d/`, without a path
+  std::uint64_t Bytes = 0;
+  std::uint64_t HashLow = 0; ///< of the whole file
+  std::uint64_t HashHigh = 0;
+  std::int64_t Points = 0;
+  std::int64_t Cells = 0;
+};
+
 /// A group of consecutive steps. Groups of equal content have the same file.
 struct SegmentIndex
 {
@@ -107,8 +119,9 @@ struct EncodeStatistics
 /// All that the index file says. See Documentation/format.md.
 struct SeriesIndex
 {
-  int FormatVersion = 2; ///< 1 is read, and never written
+  int FormatVersion = 2; ///< 1 is read, and never written; 3 is that of meshes
   Grid Domain;
+  std::optional<MeshIndex> Mesh; ///< nothing: the series is of the images themselves
   int BrickCells = 16;
   int Levels = 1;
   int KeyframeInterval = 8;

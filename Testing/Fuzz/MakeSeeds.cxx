@@ -1,7 +1,11 @@
 #include "GroupFiles.h"
 
+#include "Base/ThreadPool.h"
+#include "MeshSeries/StoredMesh.h"
 #include "Series/Exceptions.h"
 #include "Series/IndexText.h"
+#include "Series/Varint.h"
+#include "Series/Zstd.h"
 
 #include <filesystem>
 #include <fstream>
@@ -49,6 +53,71 @@ void CopyGolden(const std::filesystem::path& golden, const std::filesystem::path
   }
 }
 
+/// The sections of the file of a mesh without compression, as FuzzMesh takes them.
+Bytes SectionsOf(const Bytes& file)
+{
+  Bytes input;
+  banyan::ByteReader reader(file.data() + 24, file.size() - 24);
+  while (reader.Left() > 0)
+  {
+    Bytes part(reader.Varint());
+    const std::uint64_t stored = reader.Varint();
+    const std::uint8_t* from = reader.Skip(stored);
+    if (stored < part.size())
+    {
+      banyan::Decompress(from, stored, part.data(), part.size());
+    }
+    else
+    {
+      part.assign(from, from + stored);
+    }
+    banyan::PutVarint(input, part.size());
+    input.insert(input.end(), part.begin(), part.end());
+  }
+  return input;
+}
+
+/// A large cell, and beside it eight small ones, in any order; with own points for each if wanted.
+Bytes SmallMesh(bool shared)
+{
+  std::vector<float> points;
+  std::vector<std::int64_t> ids;
+  const auto add = [&](const glm::ivec3& low, int edge)
+  {
+    for (int c = 7; c >= 0; --c)
+    {
+      const glm::ivec3 p = low + edge * glm::ivec3(c & 1, c >> 1 & 1, c >> 2);
+      std::size_t found = shared ? 0 : points.size();
+      while (found < points.size() && (points[found] != 0.1f * static_cast<float>(p.x) ||
+                                        points[found + 1] != static_cast<float>(p.y) ||
+                                        points[found + 2] != static_cast<float>(p.z)))
+      {
+        found += 3;
+      }
+      if (found == points.size())
+      {
+        points.insert(points.end(),
+          { 0.1f * static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z) });
+      }
+      ids.push_back(static_cast<std::int64_t>(found / 3));
+    }
+  };
+  for (int c = 0; c < 8; ++c)
+  {
+    add({ c & 1, c >> 1 & 1, c >> 2 }, 1);
+  }
+  add({ 2, 0, 0 }, 2);
+  points.insert(points.end(), { 1.0f, 2.0f, 3.0f });
+  banyan::HexMesh mesh;
+  mesh.Points = points.data();
+  mesh.PointCount = static_cast<std::int64_t>(points.size() / 3);
+  mesh.Connectivity = ids.data();
+  mesh.CellCount = 9;
+  banyan::ThreadPool pool(1);
+  return banyan::MeshToBytes(
+    *banyan::StoreMesh(*banyan::ElementOctree::Find(mesh, pool), nullptr));
+}
+
 } // namespace
 
 /// Writes the seeds of Testing/Fuzz/Seeds: MakeSeeds FOLDER. With a second folder, of golden files,
@@ -64,7 +133,8 @@ int main(int argc, char** argv)
   const fs::path folder = argv[1];
   const fs::path scratch = folder / "scratch";
   for (const fs::path& part :
-    { folder / "Group", folder / "Exceptions", folder / "Index", folder / "Segment", scratch })
+    { folder / "Group", folder / "Exceptions", folder / "Index", folder / "Segment",
+      folder / "Mesh", scratch })
   {
     fs::create_directories(part);
   }
@@ -91,6 +161,8 @@ int main(int argc, char** argv)
     input.insert(input.end(), payload.begin(), payload.end());
     Write((folder / "Exceptions" / std::to_string(share)).string(), input);
   }
+  Write((folder / "Mesh" / "shared").string(), SectionsOf(SmallMesh(true)));
+  Write((folder / "Mesh" / "own").string(), SectionsOf(SmallMesh(false)));
   if (argc == 3)
   {
     CopyGolden(argv[2], folder);

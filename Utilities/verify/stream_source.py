@@ -46,12 +46,31 @@ def time_values(reader):
     return [float(value) for value in values] or [0.0]
 
 
+def only_block(data, file):
+    """The block of a composite data set that has cells."""
+    iterator = data.NewIterator()
+    iterator.UnRegister(None)
+    blocks = []
+    iterator.InitTraversal()
+    while not iterator.IsDoneWithTraversal():
+        block = iterator.GetCurrentDataObject()
+        if block.IsA("vtkDataSet") and block.GetNumberOfCells() > 0:
+            blocks.append(block)
+        iterator.GoToNextItem()
+    if len(blocks) != 1:
+        raise SourceError(f"{file} holds {len(blocks)} blocks with cells, and a series holds one mesh.")
+    return blocks[0]
+
+
 def image_at(reader, time, file):
     reader.UpdatePipeline(time)
     image = reader.GetClientSideObject().GetOutputDataObject(0)
-    if image is None or not image.IsA("vtkImageData"):
+    if image is not None and image.IsA("vtkCompositeDataSet"):
+        image = only_block(image, file)
+    if image is None or not (image.IsA("vtkImageData") or image.IsA("vtkUnstructuredGrid")):
         kind = "nothing" if image is None else image.GetClassName()
-        raise SourceError(f"{file} holds {kind}, and a series holds image data (vtkImageData).")
+        raise SourceError(f"{file} holds {kind}, and a series holds image data (vtkImageData) or a "
+                          "mesh (vtkUnstructuredGrid).")
     if image.GetNumberOfPoints() == 0:
         raise SourceError(f"Nothing could be read from {file} at time {time:.17g}.")
     return image
@@ -74,6 +93,9 @@ def arrays_of(image, wanted):
             continue
         if wanted and array.GetName() not in wanted:
             continue
+        if image.IsA("vtkUnstructuredGrid") and array in (image.GetPointData().GetGlobalIds(),
+                                                          image.GetPointData().GetPedigreeIds()):
+            continue  # names of points, which are no values
         values = vtk_to_numpy(array).reshape(array.GetNumberOfTuples(), -1)
         if hidden is not None and hidden.any() and values.dtype.kind == "f":
             values = values.copy()
@@ -82,7 +104,27 @@ def arrays_of(image, wanted):
     return arrays
 
 
+def send_mesh(stream, grid, time, arrays):
+    """Points and corners of cells come before the values."""
+    points = vtk_to_numpy(grid.GetPoints().GetData())
+    corners = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).astype(numpy.int64)
+    if corners.size != 8 * grid.GetNumberOfCells():
+        raise SourceError("The mesh has cells that are no hexahedra.")
+    parts = [("", points, "coordinates"), ("", corners.reshape(-1, 8), "corners")]
+    parts += [(name, values, "") for name, values in arrays]
+    header = {"time": time, "mesh": {"points": grid.GetNumberOfPoints(), "cells": grid.GetNumberOfCells()},
+              "arrays": [{"name": name, "type": type_name(values), "components": values.shape[1],
+                          "role": role} for name, values, role in parts]}
+    stream.write(json.dumps(header).encode() + b"\n")
+    for _name, values, _role in parts:
+        stream.write(memoryview(numpy.ascontiguousarray(values)).cast("B"))
+    stream.flush()
+
+
 def send_step(stream, image, time, arrays):
+    if image.IsA("vtkUnstructuredGrid"):
+        send_mesh(stream, image, time, arrays)
+        return
     matrix = image.GetDirectionMatrix()
     header = {"time": time, "extent": list(image.GetExtent()), "origin": list(image.GetOrigin()),
               "spacing": list(image.GetSpacing()),

@@ -1,0 +1,28 @@
+#ifndef banyan_MeshSeries_MeshFile_h
+#define banyan_MeshSeries_MeshFile_h
+
+#include "MeshSeries/StoredMesh.h"
+#include "Series/SeriesEncoder.h"
+
+#include <memory>
+
+namespace banyan
+{
+
+class SegmentFolder;
+class SeriesFile;
+
+/// Writes the file of a mesh into the folder of its series, and says what encoding must know of it.
+/// Throws Error when the file cannot be written.
+std::shared_ptr<const MeshPlan> WriteMesh(const StoredMesh& mesh, SegmentFolder& folder);
+
+/// The grid of the images that values of a mesh become.
+Grid GridOfImages(const StoredMesh& mesh);
+
+/// The mesh of an open series. Throws Error that names the file when it is missing or damaged, or
+/// is not what the index says.
+std::shared_ptr<const StoredMesh> ReadMesh(const SeriesFile& series);
+
+} // namespace banyan
+
+#endif

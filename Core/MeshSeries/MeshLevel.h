@@ -1,0 +1,27 @@
+#ifndef banyan_MeshSeries_MeshLevel_h
+#define banyan_MeshSeries_MeshLevel_h
+
+#include "MeshSeries/StoredMesh.h"
+
+#include <vector>
+
+namespace banyan
+{
+
+/// Cells of a mesh, or of a coarser one, with points of the mesh.
+struct MeshCells
+{
+  std::vector<std::int64_t> Connectivity; ///< `[cell][8]`: points of the mesh, corners x fastest
+  std::int64_t Count() const { return static_cast<std::int64_t>(this->Connectivity.size() / 8); }
+};
+
+/// The cells of a coarser mesh: cubes of 2^level finest cells that smaller cells fill become one
+/// cell each, with the points of the mesh at its corners. Cubes with holes become cells of smaller
+/// cubes, as large as can be. Cells that are larger stay. In the order of Morton keys.
+/// @param level 1 or more; from the level of the whole octree on, one cell is what is left of a
+/// cube
+MeshCells CoarserCells(const StoredMesh& mesh, int level);
+
+} // namespace banyan
+
+#endif

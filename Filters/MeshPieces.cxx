@@ -1,0 +1,353 @@
+#include "MeshPieces.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
+
+#include "Base/Error.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <map>
+#include <numeric>
+
+namespace banyan
+{
+namespace
+{
+
+constexpr int GhostBits = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
+
+bool HasGhosts(vtkUnstructuredGrid* grid)
+{
+  vtkUnsignedCharArray* const ghosts = grid->GetCellGhostArray();
+  for (vtkIdType cell = 0; ghosts && cell < ghosts->GetNumberOfTuples(); ++cell)
+  {
+    if ((ghosts->GetValue(cell) & GhostBits) != 0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// A point or cell of one of the pieces.
+struct Source
+{
+  std::size_t Piece = 0;
+  vtkIdType Id = 0;
+};
+
+class PieceMerger
+{
+public:
+  explicit PieceMerger(const std::vector<vtkUnstructuredGrid*>& pieces)
+    : Pieces(pieces)
+  {
+  }
+
+  vtkSmartPointer<vtkUnstructuredGrid> Merge()
+  {
+    for (std::size_t piece = 0; piece < this->Pieces.size(); ++piece)
+    {
+      this->AddPiece(piece);
+    }
+    this->SortByGlobalIds();
+    const auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    this->MakePoints(grid);
+    this->MakeCells(grid);
+    this->MakeArrays(grid);
+    return grid;
+  }
+
+private:
+  using Coordinates = std::array<double, 3>;
+
+  vtkDataArray* PointsOf(std::size_t piece) const
+  {
+    return this->Pieces[piece]->GetPoints()->GetData();
+  }
+
+  void AddPiece(std::size_t piece)
+  {
+    vtkUnstructuredGrid* const grid = this->Pieces[piece];
+    vtkUnsignedCharArray* const ghosts = grid->GetCellGhostArray();
+    const bool some = HasGhosts(grid);
+    std::vector<char> used(static_cast<std::size_t>(grid->GetNumberOfPoints()), some ? 0 : 1);
+    vtkNew<vtkIdList> ids;
+    for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+    {
+      if (some && (ghosts->GetValue(cell) & GhostBits) != 0)
+      {
+        continue;
+      }
+      this->Cells.push_back({ piece, cell });
+      grid->GetCells()->GetCellAtId(cell, ids);
+      for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
+      {
+        if (ids->GetId(i) < 0 || ids->GetId(i) >= grid->GetNumberOfPoints())
+        {
+          throw Error("Cell " + std::to_string(cell) + " refers to point " +
+                      std::to_string(ids->GetId(i)) + ", and its piece has " +
+                      std::to_string(grid->GetNumberOfPoints()) + " points");
+        }
+        used[static_cast<std::size_t>(ids->GetId(i))] = 1;
+      }
+    }
+    this->Merged.emplace_back(used.size(), -1);
+    std::map<Coordinates, std::size_t> seen; // how many of this piece lie there
+    for (std::size_t id = 0; id < used.size(); ++id)
+    {
+      if (used[id] != 0)
+      {
+        this->AddPoint(piece, static_cast<vtkIdType>(id), seen);
+      }
+    }
+  }
+
+  void AddPoint(std::size_t piece, vtkIdType id, std::map<Coordinates, std::size_t>& seen)
+  {
+    Coordinates at{};
+    this->PointsOf(piece)->GetTuple(id, at.data());
+    std::vector<vtkIdType>& known = this->AtPlace[at];
+    const std::size_t number = seen[at]++;
+    if (number == known.size())
+    {
+      known.push_back(static_cast<vtkIdType>(this->Points.size()));
+      this->Points.push_back({ piece, id });
+    }
+    else
+    {
+      this->Twins.push_back(
+        { this->Points[static_cast<std::size_t>(known[number])], { piece, id } });
+    }
+    this->Merged[piece][static_cast<std::size_t>(id)] = known[number];
+  }
+
+  static vtkDataArray* GlobalIds(vtkDataSetAttributes* attributes)
+  {
+    return attributes->GetGlobalIds();
+  }
+
+  template <class Attributes>
+  bool Sorted(
+    std::vector<Source>& items, Attributes attributes, std::vector<vtkIdType>& place) const
+  {
+    std::vector<vtkIdType> ids;
+    for (const Source& item : items)
+    {
+      vtkDataArray* const global = GlobalIds(attributes(this->Pieces[item.Piece]));
+      if (!global)
+      {
+        return false;
+      }
+      ids.push_back(static_cast<vtkIdType>(global->GetTuple1(item.Id)));
+    }
+    std::vector<std::size_t> order(items.size());
+    std::iota(order.begin(), order.end(), std::size_t{ 0 });
+    std::stable_sort(
+      order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return ids[a] < ids[b]; });
+    std::vector<Source> sorted;
+    place.resize(items.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+    {
+      place[order[i]] = static_cast<vtkIdType>(i);
+      sorted.push_back(items[order[i]]);
+    }
+    items = std::move(sorted);
+    return true;
+  }
+
+  void SortByGlobalIds()
+  {
+    std::vector<vtkIdType> place;
+    if (this->Sorted(
+          this->Points, [](vtkUnstructuredGrid* grid) { return grid->GetPointData(); }, place))
+    {
+      for (std::vector<vtkIdType>& piece : this->Merged)
+      {
+        for (vtkIdType& point : piece)
+        {
+          point = point < 0 ? point : place[static_cast<std::size_t>(point)];
+        }
+      }
+    }
+    (void)this->Sorted(
+      this->Cells, [](vtkUnstructuredGrid* grid) { return grid->GetCellData(); }, place);
+  }
+
+  void MakePoints(vtkUnstructuredGrid* grid) const
+  {
+    bool doubles = false;
+    for (std::size_t piece = 0; piece < this->Pieces.size(); ++piece)
+    {
+      doubles = doubles || this->PointsOf(piece)->GetDataType() == VTK_DOUBLE;
+    }
+    vtkNew<vtkPoints> points;
+    points->SetDataType(doubles ? VTK_DOUBLE : VTK_FLOAT);
+    points->SetNumberOfPoints(static_cast<vtkIdType>(this->Points.size()));
+    for (std::size_t i = 0; i < this->Points.size(); ++i)
+    {
+      points->GetData()->SetTuple(static_cast<vtkIdType>(i),
+        this->PointsOf(this->Points[i].Piece)->GetTuple(this->Points[i].Id));
+    }
+    grid->SetPoints(points);
+  }
+
+  void MakeCells(vtkUnstructuredGrid* grid) const
+  {
+    grid->Allocate(static_cast<vtkIdType>(this->Cells.size()));
+    vtkNew<vtkIdList> ids;
+    for (const Source& cell : this->Cells)
+    {
+      this->Pieces[cell.Piece]->GetCells()->GetCellAtId(cell.Id, ids);
+      for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
+      {
+        ids->SetId(i, this->Merged[cell.Piece][static_cast<std::size_t>(ids->GetId(i))]);
+      }
+      grid->InsertNextCell(this->Pieces[cell.Piece]->GetCellType(cell.Id), ids);
+    }
+  }
+
+  void MakeArrays(vtkUnstructuredGrid* grid) const
+  {
+    vtkPointData* const first = this->Pieces[0]->GetPointData();
+    for (int a = 0; a < first->GetNumberOfArrays(); ++a)
+    {
+      vtkDataArray* const array = first->GetArray(a);
+      if (!array || !array->GetName() || array == first->GetGlobalIds() ||
+          std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName()) == 0)
+      {
+        continue;
+      }
+      std::vector<vtkDataArray*> parts;
+      for (vtkUnstructuredGrid* piece : this->Pieces)
+      {
+        parts.push_back(piece->GetPointData()->GetArray(array->GetName()));
+        if (!parts.back() || parts.back()->GetDataType() != array->GetDataType() ||
+            parts.back()->GetNumberOfComponents() != array->GetNumberOfComponents())
+        {
+          throw Error(std::string("The point array ") + array->GetName() +
+                      " is not the same in all pieces or blocks of the mesh");
+        }
+      }
+      grid->GetPointData()->AddArray(this->Joined(array, parts));
+    }
+    if (first->GetScalars() && first->GetScalars()->GetName())
+    {
+      grid->GetPointData()->SetActiveScalars(first->GetScalars()->GetName());
+    }
+  }
+
+  vtkSmartPointer<vtkDataArray> Joined(
+    vtkDataArray* like, const std::vector<vtkDataArray*>& parts) const
+  {
+    const auto whole = vtkSmartPointer<vtkDataArray>::Take(like->NewInstance());
+    whole->SetName(like->GetName());
+    whole->SetNumberOfComponents(like->GetNumberOfComponents());
+    whole->CopyComponentNames(like);
+    whole->SetNumberOfTuples(static_cast<vtkIdType>(this->Points.size()));
+    for (std::size_t i = 0; i < this->Points.size(); ++i)
+    {
+      whole->SetTuple(static_cast<vtkIdType>(i), this->Points[i].Id, parts[this->Points[i].Piece]);
+    }
+    const std::size_t bytes =
+      static_cast<std::size_t>(like->GetDataTypeSize()) * like->GetNumberOfComponents();
+    for (const auto& twin : this->Twins)
+    {
+      const auto at = [&](const Source& point)
+      {
+        return static_cast<const char*>(parts[point.Piece]->GetVoidPointer(0)) +
+               static_cast<std::size_t>(point.Id) * bytes;
+      };
+      if (std::memcmp(at(twin.first), at(twin.second), bytes) != 0)
+      {
+        throw Error(std::string("Two ranks have different values of the array ") + like->GetName() +
+                    " at the same point of the mesh: which one should be kept?");
+      }
+    }
+    return whole;
+  }
+
+  const std::vector<vtkUnstructuredGrid*>& Pieces;
+  std::vector<Source> Points;
+  std::vector<Source> Cells;
+  std::vector<std::pair<Source, Source>> Twins;
+  std::vector<std::vector<vtkIdType>> Merged; ///< by piece and its points; -1: left out
+  std::map<Coordinates, std::vector<vtkIdType>> AtPlace;
+};
+
+} // namespace
+
+bool CollectGrids(vtkDataObject* data, std::vector<vtkUnstructuredGrid*>& grids)
+{
+  if (vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(data))
+  {
+    if (grid->GetNumberOfCells() > 0)
+    {
+      grids.push_back(grid);
+    }
+    return true;
+  }
+  vtkCompositeDataSet* const composite = vtkCompositeDataSet::SafeDownCast(data);
+  if (!composite)
+  {
+    return false;
+  }
+  vtkSmartPointer<vtkCompositeDataIterator> blocks;
+  blocks.TakeReference(composite->NewIterator());
+  blocks->SkipEmptyNodesOn();
+  bool any = false;
+  for (blocks->InitTraversal(); !blocks->IsDoneWithTraversal(); blocks->GoToNextItem())
+  {
+    vtkDataSet* const block = vtkDataSet::SafeDownCast(blocks->GetCurrentDataObject());
+    vtkUnstructuredGrid* const grid = vtkUnstructuredGrid::SafeDownCast(block);
+    if (block && !grid && block->GetNumberOfCells() > 0)
+    {
+      return false;
+    }
+    any = any || grid;
+    if (grid && grid->GetNumberOfCells() > 0)
+    {
+      grids.push_back(grid);
+    }
+  }
+  return any;
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> OnlyBlock(const std::vector<vtkUnstructuredGrid*>& blocks)
+{
+  if (blocks.empty())
+  {
+    return vtkSmartPointer<vtkUnstructuredGrid>::New();
+  }
+  if (blocks.size() == 1)
+  {
+    return blocks[0];
+  }
+  throw Error("The mesh has " + std::to_string(blocks.size()) +
+              " blocks, and a series holds one: apply the filter 'Merge Blocks' first (with its "
+              "option 'Merge Points', so that blocks meet in common points).");
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> MergePieces(const std::vector<vtkUnstructuredGrid*>& pieces)
+{
+  if (pieces.size() == 1 && !HasGhosts(pieces[0]))
+  {
+    return pieces[0];
+  }
+  return PieceMerger(pieces).Merge();
+}
+
+} // namespace banyan

@@ -1,0 +1,72 @@
+#ifndef banyan_Filters_MeshSteps_h
+#define banyan_Filters_MeshSteps_h
+
+#include "RankTalk.h"
+
+#include "MeshSeries/StoredMesh.h"
+#include "Series/SeriesEncoder.h"
+
+#include "vtkSmartPointer.h"
+
+#include <memory>
+#include <string>
+
+class vtkDataArraySelection;
+class vtkDataObject;
+class vtkImageData;
+class vtkMultiProcessController;
+class vtkUnstructuredGrid;
+
+namespace banyan
+{
+
+class AtlasValues;
+class SegmentFolder;
+
+/// The steps of a mesh as images, so that they can be written like those of an image: see
+/// AtlasValues. Rank 0 has the whole mesh and makes the images; others have empty ones.
+///
+/// The octree is found once, at the first step; the mesh of later steps must be the same.
+class MeshSteps
+{
+public:
+  MeshSteps(const RankTalk& talk, vtkMultiProcessController* controller,
+    const EncodeOptions& options, vtkDataArraySelection* selection)
+    : Talk(talk)
+    , Controller(controller)
+    , Options(options)
+    , Selection(selection)
+  {
+  }
+
+  /// Whether steps are those of a mesh. Known after the first Take().
+  bool Active() const { return this->Found; }
+
+  /// Collective. Replaces this rank's data by its image when any rank has a mesh.
+  /// @param problem of this rank so far, or nothing; data do not count then
+  /// @return what is wrong on this rank, or nothing
+  std::string Take(vtkSmartPointer<vtkDataObject>& data, const std::string& problem);
+
+  /// Collective; throws AgreedError. Rank 0 writes the file of the mesh, and all ranks learn what
+  /// encoding must know of it.
+  /// @param folder on rank 0
+  std::shared_ptr<const MeshPlan> Write(SegmentFolder* folder) const;
+
+private:
+  void Gather(vtkSmartPointer<vtkUnstructuredGrid>& piece, bool others);
+  void Remember(vtkUnstructuredGrid* grid);
+  vtkSmartPointer<vtkImageData> ImageOf(vtkUnstructuredGrid* grid) const;
+
+  const RankTalk& Talk;
+  vtkMultiProcessController* Controller;
+  const EncodeOptions& Options;
+  vtkDataArraySelection* Selection;
+  bool Found = false;
+  // On rank 0:
+  vtkSmartPointer<vtkUnstructuredGrid> First; ///< the grid of the first step
+  std::shared_ptr<const StoredMesh> Mesh;
+};
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,147 @@
+#include "MeshOutput.h"
+
+#include "vtkCellArray.h"
+#include "vtkDataArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
+
+#include "MeshSeries/MeshFile.h"
+#include "MeshSeries/MeshLevel.h"
+#include "Series/SeriesFile.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace banyan
+{
+namespace
+{
+
+constexpr unsigned char Voxel = 11; ///< VTK's order of corners is that of leaves
+
+/// Copies the chosen tuples one after the other.
+void CopyTuples(
+  const void* from, const std::vector<std::uint32_t>& chosen, std::size_t bytes, void* to)
+{
+  const char* const source = static_cast<const char*>(from);
+  char* target = static_cast<char*>(to);
+  for (const std::uint32_t tuple : chosen)
+  {
+    std::memcpy(target, source + std::size_t{ tuple } * bytes, bytes);
+    target += bytes;
+  }
+}
+
+} // namespace
+
+void MeshOutput::Open(std::shared_ptr<const SeriesFile> series)
+{
+  this->Series = std::move(series);
+  this->Mesh.reset();
+  this->Grid = nullptr;
+  this->Made[0] = -1;
+}
+
+void MeshOutput::Load()
+{
+  if (!this->Mesh)
+  {
+    this->Mesh = ReadMesh(*this->Series);
+  }
+}
+
+int MeshOutput::Levels()
+{
+  this->Load();
+  return this->Mesh->Atlas->CoarsestLevel() + 1;
+}
+
+void MeshOutput::MakeGrid(int level, int piece, int pieces)
+{
+  const StoredMesh& mesh = *this->Mesh;
+  MeshCells coarse;
+  if (level > 0)
+  {
+    coarse = CoarserCells(mesh, level);
+  }
+  const std::vector<std::int64_t>& corners = level > 0 ? coarse.Connectivity : mesh.Connectivity;
+  const auto count = static_cast<std::int64_t>(corners.size() / 8);
+  const std::int64_t first = count * piece / pieces;
+  const std::int64_t end = count * (piece + 1) / pieces;
+  // Where each point of the mesh is in this piece.
+  std::vector<std::int64_t> place(
+    static_cast<std::size_t>(mesh.PointCount()), level == 0 && pieces == 1 ? 0 : -1);
+  for (std::int64_t i = 8 * first; i < 8 * end; ++i)
+  {
+    place[static_cast<std::size_t>(corners[static_cast<std::size_t>(i)])] = 0;
+  }
+  std::vector<std::uint32_t> chosen;
+  this->Samples.clear();
+  for (std::size_t point = 0; point < place.size(); ++point)
+  {
+    if (place[point] == 0)
+    {
+      place[point] = static_cast<std::int64_t>(chosen.size());
+      chosen.push_back(static_cast<std::uint32_t>(point));
+      this->Samples.push_back(mesh.SampleOfPoint[point]);
+    }
+  }
+  vtkNew<vtkPoints> points;
+  points->SetDataType(mesh.PointType == ScalarType::Float64 ? VTK_DOUBLE : VTK_FLOAT);
+  points->SetNumberOfPoints(static_cast<vtkIdType>(chosen.size()));
+  CopyTuples(mesh.Points.data(), chosen, 3 * SizeOf(mesh.PointType), points->GetVoidPointer(0));
+  vtkNew<vtkIdTypeArray> ids;
+  ids->SetNumberOfValues(8 * (end - first));
+  vtkNew<vtkUnsignedCharArray> types;
+  types->SetNumberOfValues(end - first);
+  for (std::int64_t i = 8 * first; i < 8 * end; ++i)
+  {
+    ids->SetValue(
+      i - 8 * first, place[static_cast<std::size_t>(corners[static_cast<std::size_t>(i)])]);
+  }
+  for (std::int64_t cell = first; cell < end; ++cell)
+  {
+    types->SetValue(
+      cell - first, level > 0 ? Voxel : mesh.CellTypes[static_cast<std::size_t>(cell)]);
+  }
+  vtkNew<vtkCellArray> cells;
+  cells->SetData(8, ids);
+  this->Grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  this->Grid->SetPoints(points);
+  this->Grid->SetCells(types, cells);
+}
+
+void MeshOutput::FillGrid(int level, int piece, int pieces, vtkUnstructuredGrid* output)
+{
+  this->Load();
+  level = std::min(level, this->Mesh->Atlas->CoarsestLevel());
+  if (this->Made[0] != level || this->Made[1] != piece || this->Made[2] != pieces)
+  {
+    this->Made[0] = -1;
+    this->MakeGrid(level, piece, pieces);
+    this->Made[0] = level;
+    this->Made[1] = piece;
+    this->Made[2] = pieces;
+  }
+  output->ShallowCopy(this->Grid);
+}
+
+vtkSmartPointer<vtkDataArray> MeshOutput::Values(const vtkBanyanDeferred::Handle& handle) const
+{
+  const vtkSmartPointer<vtkDataArray> image = vtkBanyanDeferred::NewPlain(handle);
+  const auto values = vtkSmartPointer<vtkDataArray>::Take(image->NewInstance());
+  values->SetName(image->GetName());
+  values->SetNumberOfComponents(image->GetNumberOfComponents());
+  values->CopyComponentNames(image);
+  values->SetNumberOfTuples(static_cast<vtkIdType>(this->Samples.size()));
+  CopyTuples(image->GetVoidPointer(0), this->Samples,
+    static_cast<std::size_t>(image->GetDataTypeSize()) *
+      static_cast<std::size_t>(image->GetNumberOfComponents()),
+    values->GetVoidPointer(0));
+  return values;
+}
+
+} // namespace banyan

@@ -1,0 +1,52 @@
+#ifndef banyan_Readers_MeshOutput_h
+#define banyan_Readers_MeshOutput_h
+
+#include "vtkBanyanDeferred.h"
+
+#include "vtkSmartPointer.h"
+
+#include <memory>
+#include <vector>
+
+class vtkUnstructuredGrid;
+class vtkDataArray;
+
+namespace banyan
+{
+
+class SeriesFile;
+struct StoredMesh;
+
+/// The mesh of a series as unstructured grids, with the values of a step. The grid is made once for
+/// each level and piece: steps share its points and cells.
+class MeshOutput
+{
+public:
+  /// Forgets all that was read of another series.
+  void Open(std::shared_ptr<const SeriesFile> series);
+
+  /// Levels of the octree; the mesh itself is level 0. Reads the file of the mesh; throws Error.
+  int Levels();
+
+  /// Points and cells of a piece: a run of the cells, with the points that they use in the order of
+  /// the mesh. One piece has all points. Throws Error.
+  void FillGrid(int level, int piece, int pieces, vtkUnstructuredGrid* output);
+
+  /// The values of an array at the points of the last FillGrid(). Throws Error.
+  /// @param handle of the whole image
+  vtkSmartPointer<vtkDataArray> Values(const vtkBanyanDeferred::Handle& handle) const;
+
+private:
+  void Load();
+  void MakeGrid(int level, int piece, int pieces);
+
+  std::shared_ptr<const SeriesFile> Series;
+  std::shared_ptr<const StoredMesh> Mesh;
+  vtkSmartPointer<vtkUnstructuredGrid> Grid;
+  int Made[3] = { -1, 0, 0 };         ///< level, piece and pieces of Grid
+  std::vector<std::uint32_t> Samples; ///< of its points
+};
+
+} // namespace banyan
+
+#endif

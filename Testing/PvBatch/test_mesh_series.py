@@ -1,0 +1,268 @@
+"""Meshes of hexahedra are saved as Banyan series, come back, and are drawn.
+
+    test_mesh_series.py --plugin Banyan.so --generate BANYAN_GENERATE --out FOLDER
+
+One rank compares every value. compare_files.py compares the series of several runs, which must not
+depend on the number of ranks.
+"""
+import glob
+import os
+import shutil
+import subprocess
+
+import numpy
+from paraview import servermanager, simple
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+import pictures
+import session
+
+BOUND = 1e-3
+STEPS = 5
+QUAKE_CELLS, SHUFFLED_CELLS = 3489, 280
+TIMES = [10.0 * step for step in range(STEPS)]
+
+# (max and min are others there than those of Python.) Cells of two sizes in any order, with holes, in pieces by ranks that know global numbers of points
+# and cells, and ghost cells.
+SHUFFLED = """
+import numpy
+from vtkmodules.numpy_interface import dataset_adapter
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSetAttributes
+executive = self.GetExecutive()
+info = executive.GetOutputInformation(0)
+time = info.Get(executive.UPDATE_TIME_STEP()) if info.Has(executive.UPDATE_TIME_STEP()) else 0.0
+piece = info.Get(executive.UPDATE_PIECE_NUMBER())
+pieces = info.Get(executive.UPDATE_NUMBER_OF_PIECES()) or 1
+random = numpy.random.RandomState(7)
+cubes = []
+for z in range(4):
+    for y in range(4):
+        for x in range(4):
+            if (x, y, z) == (1, 2, 1):
+                continue  # a hole
+            if x < 2:
+                cubes += [(2 * x + i, 2 * y + j, 2 * z + k, 1) for i in (0, 1) for j in (0, 1) for k in (0, 1)]
+            else:
+                cubes.append((2 * x, 2 * y, 2 * z, 2))
+random.shuffle(cubes)
+numbers, cells = {}, []
+for x, y, z, e in cubes:
+    corners = [(x, y, z), (x + e, y, z), (x + e, y + e, z), (x, y + e, z)]
+    corners += [(a, b, c + e) for a, b, c in corners]
+    cells.append([numbers.setdefault(corner, len(numbers)) for corner in corners])
+place = numpy.array(sorted(numbers, key=numbers.get), dtype=float)
+order = random.permutation(len(place))
+place, cells = place[numpy.argsort(order)], order[numpy.array(cells)]
+first, end = [len(cells) * i // pieces for i in (piece, piece + 1)]
+own = numpy.arange(first, end + 5 if SHARED and piece + 1 < pieces else end)  # some of the next one's: ghosts
+used = numpy.unique(cells[own]) if pieces > 1 else numpy.arange(len(place))
+local = {point: i for i, point in enumerate(used)}
+points = vtkPoints()
+points.SetData(numpy_to_vtk(numpy.array([0.1, 10.0, -3.0]) + place[used] * [0.1, 0.2, 0.3], 1))
+output = self.GetUnstructuredGridOutput()
+output.SetPoints(points)
+ids = numpy.array([[8] + [local[p] for p in cells[c]] for c in own], dtype=numpy.int64).ravel()
+array = vtkCellArray()
+array.ImportLegacyFormat(numpy_to_vtkIdTypeArray(ids, 1))
+output.SetCells(12, array)
+def add(data, name, values):
+    values = numpy_to_vtk(numpy.ascontiguousarray(values), 1)
+    values.SetName(name)
+    data.AddArray(values)
+    return values
+x, y, z = place[used].T
+add(output.GetPointData(), "u", numpy.stack([numpy.sin(x + time), y * time, z], 1).astype(numpy.float32))
+special = numpy.cos(x + y - time)
+special[used % 97 == 5] = numpy.nan
+special[used % 89 == 3] = -9999.0
+add(output.GetPointData(), "special", special)
+add(output.GetPointData(), "count", (x + 10 * y).astype(numpy.int16))
+if GLOBAL:
+    for data, values in ((output.GetPointData(), used), (output.GetCellData(), own)):
+        ids = numpy_to_vtkIdTypeArray(numpy.ascontiguousarray(values, dtype=numpy.int64), 1)
+        ids.SetName("number")
+        data.SetGlobalIds(ids)
+flags = numpy.where(own < end, 0, vtkDataSetAttributes.DUPLICATECELL).astype(numpy.uint8)
+if SHARED and pieces > 1:
+    add(output.GetCellData(), "vtkGhostType", flags)
+"""
+INFORMATION = """
+executive = self.GetExecutive()
+info = executive.GetOutputInformation(0)
+info.Set(executive.TIME_STEPS(), [0.0, 1.0, 2.5], 3)
+info.Set(executive.TIME_RANGE(), [0.0, 2.5], 2)
+info.Set(self.CAN_HANDLE_PIECE_REQUEST(), 1)
+"""
+
+
+def shuffled(shared, numbered):
+    source = simple.ProgrammableSource(OutputDataSetType="vtkUnstructuredGrid")
+    source.Script = f"SHARED, GLOBAL = {shared}, {numbered}\n" + SHUFFLED
+    source.ScriptRequestInformation = INFORMATION
+    return source
+
+
+def expect_same_mesh(one, other, where):
+    """Same points, cells and types, in the same order."""
+    for name, get in (("points", lambda g: g.GetPoints().GetData()),
+                      ("corners", lambda g: g.GetCells().GetConnectivityArray()),
+                      ("types", lambda g: g.GetCellTypesArray())):
+        a, b = vtk_to_numpy(get(one)), vtk_to_numpy(get(other))
+        session.require(a.shape == b.shape and (a == b).all(), f"{where}: other {name}")
+
+
+def expect_within(one, other, names, where):
+    for name in names:
+        a, b = [vtk_to_numpy(g.GetPointData().GetArray(name)) for g in (one, other)]
+        session.require(a.dtype == b.dtype and a.shape == b.shape, f"{where}: {name} is another array")
+        fixed = ~numpy.isfinite(a.astype(float)) | (a == -9999.0)
+        session.require(a[fixed].tobytes() == b[fixed].tobytes(), f"{where}: {name} without value")
+        worst = numpy.abs(a[~fixed].astype(float) - b[~fixed].astype(float)).max()
+        session.require(worst <= BOUND, f"{where}: {name} is {worst} away")
+
+
+def compare(source, path, names, times, cells):
+    """Each step of a source and of the series that it was written to."""
+    reader = simple.OpenDataFile(path)
+    session.require(list(reader.TimestepValues) == times,
+                    f"{path}: times {list(reader.TimestepValues)}")
+    merged = simple.MergeBlocks(Input=source, MergePoints=0)
+    for time in times:
+        merged.UpdatePipeline(time)
+        reader.UpdatePipeline(time)
+        if vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses() == 1:
+            one, other = servermanager.Fetch(merged), servermanager.Fetch(reader)
+            expect_same_mesh(one, other, path)
+            expect_within(one, other, names, f"{path}, time {time}")
+    read = reader.GetDataInformation()
+    session.require(read.GetNumberOfCells() == cells, f"{path}: {read.GetNumberOfCells()} cells")
+    for name in names:
+        session.require(read.GetPointDataInformation().GetArrayInformation(name), f"{path}: no {name}")
+    simple.Delete(merged)
+    return reader
+
+
+def write(source, folder, name, names, **options):
+    path = os.path.join(folder, name + ".banyan")
+    simple.SaveData(path, proxy=source, ErrorBoundMode="Absolute", ErrorBound=BOUND,
+                    PointArrays=names, WriteTimeSteps=1, KeyframeInterval=2, **options)
+    return path
+
+
+def check_levels(reader):
+    counts = []
+    for level in range(4):
+        reader.Level = level
+        reader.UpdatePipeline()
+        counts.append(reader.GetDataInformation().GetNumberOfCells())
+    reader.Level = 0
+    session.require(counts[0] > counts[1] > counts[2], f"cells of levels: {counts}")
+
+
+def check_pictures(source, reader, array, out):
+    """The picture of the series is that of the mesh."""
+    drawn = []
+    for name, shown in (("mesh", source), ("series", reader)):
+        view = session.new_view((160, 120))
+        display = simple.Show(shown, view)
+        simple.ColorBy(display, ("POINTS", array, "Magnitude"))
+        display.SetRepresentationType(session.REPRESENTATION)
+        view.ViewTime = TIMES[-1]
+        if not drawn:
+            source.UpdatePipeline(TIMES[-1])
+            highest = source.PointData[array].GetRange(-1)[1]
+        for table in (simple.GetColorTransferFunction(array), simple.GetOpacityTransferFunction(array)):
+            table.RescaleTransferFunction(0.0, 0.3 * highest)
+        view.ResetCamera()
+        simple.GetActiveCamera().Elevation(-50)
+        simple.Render(view)
+        drawn.append(os.path.join(out, name + ".png"))
+        simple.SaveScreenshot(drawn[-1], view)
+        simple.Delete(view)
+    one, other = [pictures.load(path) for path in drawn]
+    if one is not None:
+        session.require(abs(one - one[0, 0]).max() > 30, "nothing is drawn")
+        worst = abs(one - other).max()
+        allowed = 2 + 255 * 2 * BOUND * 3 ** 0.5 / (0.3 * highest)  # colour and opacity change by that
+        session.require(worst <= allowed, f"the picture of the series is {worst} away, not {allowed}")
+
+
+def check_refusals(folder, quake):
+    def refused(source, sentence, **options):
+        path = os.path.join(folder, "refused.banyan")
+        try:
+            simple.SaveData(path, proxy=source, **options)
+        except RuntimeError as error:
+            session.require(sentence in str(error), f"'{error}' and not '{sentence}'")
+            session.require(not os.path.exists(path) and not os.path.exists(path + ".d"),
+                            "something is left")
+            return
+        raise AssertionError(f"was written, and not refused with '{sentence}'")
+
+    refused(simple.Tetrahedralize(Input=simple.Wavelet(WholeExtent=[0, 3, 0, 3, 0, 3])), "is of the type vtkTetra")
+    # Points that move.
+    moved = simple.WarpByVector(Input=simple.MergeBlocks(Input=quake, MergePoints=0))
+    moved.Vectors = ["POINTS", "ground_displacement"]
+    moved.ScaleFactor = 1.0
+    refused(moved, "points have moved")
+    refused(simple.MergeBlocks(Input=quake, MergePoints=0), "There is no point array nonsense",
+            PointArrays=["nonsense"])
+    # Cell data only.
+    averages = simple.PointDatatoCellData(Input=simple.MergeBlocks(Input=quake, MergePoints=0))
+    refused(averages, "only cell arrays")
+
+
+def check_damage(path, folder):
+    copy = os.path.join(folder, "damaged.banyan")
+    shutil.copy(path, copy)
+    shutil.copytree(path + ".d", copy + ".d")
+    mesh = glob.glob(copy + ".d/*.mesh")[0]
+    with open(mesh, "r+b") as file:
+        file.seek(100)
+        byte = file.read(1)
+        file.seek(100)
+        file.write(bytes([byte[0] ^ 1]))
+    reader = simple.OpenDataFile(copy)
+    try:
+        reader.UpdatePipeline()
+    except RuntimeError as error:
+        session.require("The file of the mesh is damaged" in str(error), str(error))
+    else:
+        raise AssertionError("a damaged mesh was read")
+    os.remove(copy)
+    shutil.rmtree(copy + ".d")
+
+
+def main():
+    parser = session.parser(__doc__)
+    parser.add_argument("--generate", required=True)
+    parser.add_argument("--out", required=True)
+    options = parser.parse_args()
+    session.begin(options)
+    controller = vtkMultiProcessController.GetGlobalController()
+    if controller.GetLocalProcessId() == 0:
+        shutil.rmtree(options.out, ignore_errors=True)
+        os.makedirs(options.out)
+        quake = os.path.join(options.out, "quake")
+        subprocess.run([options.generate, "--series", "earthquake", "--cells", "3000", "--steps",
+                        str(STEPS), "--duration", str(TIMES[-1]), "--output", quake], check=True)
+    quake = simple.OpenDataFile(os.path.join(options.out, "quake", "earthquake.exo"))
+    arrays = ["velocity", "ground_displacement"]
+    path = write(quake, options.out, "earthquake", arrays + ["ids"])
+    reader = compare(quake, path, arrays, TIMES, QUAKE_CELLS)
+    check_levels(reader)
+    check_pictures(simple.MergeBlocks(Input=quake), reader, "velocity", options.out)
+    names = ["u", "special", "count"]
+    for name, shared, numbered in (("numbered", True, True), ("pieces", False, True)):
+        source = shuffled(shared, numbered)
+        path = write(source, options.out, name, names, FillValues=[-9999.0])
+        compare(source, path, names, [0.0, 1.0, 2.5], SHUFFLED_CELLS)
+    check_refusals(options.out, quake)
+    check_damage(path, options.out)
+
+
+if __name__ == "__main__":
+    main()
