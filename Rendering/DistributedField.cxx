@@ -2,12 +2,12 @@
 
 #include "MeshField.h"
 #include "MotionEnhancement.h"
-#include "PlainSource.h"
 #include "ToleranceControl.h"
 
 #include "Cache/BrickCache.h"
-#include "Parallel/Zones.h"
+#include "Pieces/PieceField.h"
 #include "Render/SeriesBrickSource.h"
+#include "Render/StepAhead.h"
 #include "vtkBanyanDeferred.h"
 
 #include "vtkDataArray.h"
@@ -135,12 +135,12 @@ void DistributedField::AgreeOnRange(Communicator& communicator)
     const MaskRange all = this->Bricks->MasksAreOver();
     range = { all.Low, all.High };
   }
-  else if (this->Bricks)
+  else if (const BrickSource* const source = this->Source())
   {
-    const glm::ivec3 counts = this->Bricks->Bricks();
+    const glm::ivec3 counts = source->Bricks();
     for (std::int64_t i = 0; i < std::int64_t{ counts.x } * counts.y * counts.z; ++i)
     {
-      range.Include(this->Bricks->RangeOf(i));
+      range.Include(source->RangeOf(i));
     }
   }
   this->ValuesRange.Low = -AllMax(communicator, -range.Low);
@@ -253,6 +253,7 @@ void DistributedField::Agree(Communicator& communicator, const FieldPiece& piece
   if (first == all.end())
   {
     this->Series.reset();
+    this->Pieces.reset();
     return;
   }
   if (mine.HasData && this->ProblemText.empty())
@@ -274,6 +275,7 @@ void DistributedField::Agree(Communicator& communicator, const FieldPiece& piece
   const std::shared_ptr<const SeriesFile> held = handle ? handle->Series : nullptr;
   if (deferred && this->TakeSeries(communicator, held, all, samples))
   {
+    this->Pieces.reset();
     return;
   }
   this->Series.reset();
@@ -282,7 +284,13 @@ void DistributedField::Agree(Communicator& communicator, const FieldPiece& piece
     this->ProblemText = "Of an encoded series only whole steps can be enhanced while they are drawn: put "
                         "the filter 'Banyan Temporal Enhancement' behind the reader.";
   }
-  this->TakePieces(piece, all, samples.Lo);
+  std::vector<Box> pieces;
+  for (const Facts& facts : all)
+  {
+    const Box own = facts.Samples();
+    pieces.push_back(facts.HasData ? Box{ own.Lo - samples.Lo, own.Hi - samples.Lo } : Box{});
+  }
+  this->TakePieces(communicator, piece, pieces, samples.Lo);
 }
 
 /// Collective. Draws from the file if all pieces come from the same field of the same series and
@@ -345,7 +353,7 @@ bool DistributedField::TakeSeries(Communicator& communicator,
 void DistributedField::MakeSeriesZones(const Facts& field, Communicator& communicator)
 {
   FieldKey key;
-  key.Step = field.Step;
+  key.Step = this->Step = field.Step;
   key.Array = field.Array;
   key.Level = field.Level;
   const BrickLayout layout = this->Series->Layout(field.Level);
@@ -359,31 +367,6 @@ void DistributedField::MakeSeriesZones(const Facts& field, Communicator& communi
   this->ZoneCells = this->Balancer.Zones();
   // Ranks without a zone need it too: to know what can be seen of the others'.
   this->Bricks = MakeSeriesSource(this->Series, key, field.Component, this->Enhancement);
-}
-
-/// Each rank draws the values that it holds.
-void DistributedField::TakePieces(
-  const FieldPiece& piece, const std::vector<Facts>& all, const glm::ivec3& first)
-{
-  std::vector<Box> cells;
-  for (const Facts& facts : all)
-  {
-    const Box samples = facts.Samples();
-    cells.push_back(facts.HasData ? Box{ samples.Lo - first, samples.Hi - 1 - first } : Box{});
-  }
-  try
-  {
-    this->ZoneCells = MakeDisjoint(cells);
-    if (piece.Array && piece.Image && this->ProblemText.empty())
-    {
-      this->Bricks = MakePlainSource(piece.Image, piece.Array, piece.Component, first);
-    }
-  }
-  catch (const std::exception& error)
-  {
-    this->ZoneCells.assign(all.size(), Box{});
-    this->ProblemText = this->ProblemText.empty() ? std::string(error.what()) : this->ProblemText;
-  }
 }
 
 } // namespace banyan

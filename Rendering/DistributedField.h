@@ -22,6 +22,9 @@ namespace banyan
 {
 
 class MeshField;
+class PieceField;
+class SeriesBrickSource;
+class StepAhead;
 
 /// This rank's part of a field of scalars.
 struct FieldPiece
@@ -40,7 +43,7 @@ struct FieldPiece
 /// One field of scalars that lies distributed over the ranks, agreed upon by all of them: one grid,
 /// and one zone of cells per rank. Pieces of an encoded series that nobody has touched or moved are
 /// drawn from the file, brick by brick, in zones of their own; anything else from the values in
-/// memory, each rank its piece. Hexahedral meshes are put together on all ranks, and each draws a
+/// memory, by the rank that has them or by one that fetched them from there (see PieceField). Hexahedral meshes are put together on all ranks, and each draws a
 /// zone (see MeshField).
 class DistributedField
 {
@@ -48,16 +51,24 @@ public:
   DistributedField();
   ~DistributedField();
 
-  /// How the zones of encoded series follow what frames cost; pieces of plain data stay where they
-  /// are. For the next Update; the same on all ranks.
+  /// How the zones of image data follow what frames cost. For the next Update; the same on all ranks.
   void SetLoadBalancing(LoadBalancing mode);
 
-  /// Moves the zones before a frame, and lets the scene tell what it takes. The same on all ranks.
-  void BeginFrame(RayScene& scene);
+  /// Collective, before a frame: moves the zones, brings what they take, and lets the scene tell what
+  /// drawing takes. Throws Error, the same on all ranks, when one fails.
+  void BeginFrame(Communicator& communicator, RayScene& scene);
+  /// When this rank has cast the rays of the frame: begins to decode the time step that comes next, if it
+  /// is an encoded series that plays. Does not throw.
+  void ReadAhead();
   /// Collective, after it.
   void EndFrame(Communicator& communicator);
   /// From rank to rank for the frame that was begun last, over all ranks.
-  double BytesMoved() const { return this->Encoded() ? this->Balancer.BytesMoved() : 0.0; }
+  double BytesMoved() const;
+  /// Bricks of other ranks that were still here for it, and that were not, over all ranks; and bytes
+  /// of such bricks on this rank.
+  std::uint64_t FetchHits() const;
+  std::uint64_t FetchMisses() const;
+  std::uint64_t FetchedBytes() const;
 
   /// Collective. Cheap when nothing has changed on any rank.
   void Update(Communicator& communicator, const FieldPiece& piece);
@@ -75,7 +86,7 @@ public:
   bool Empty() const { return this->Domain.Empty(); }
   const glm::dmat4& IndexToPhysical() const { return this->IndexToPhysicalMatrix; }
   const Box& DomainCells() const { return this->Domain; }
-  const std::vector<Box>& Zones() const { return this->ZoneCells; }
+  const std::vector<Box>& Zones() const;
   /// (xmin, xmax, ymin, ymax, zmin, zmax) in physical space.
   const std::array<double, 6>& Bounds() const { return this->PhysicalBounds; }
   /// Length of the shortest edge of a cell in physical space.
@@ -89,7 +100,7 @@ public:
   bool HasLevels() const { return this->Mesh == nullptr; }
 
   /// This rank's bricks; null when it has none.
-  BrickSource* Source() { return this->Bricks.get(); }
+  BrickSource* Source();
   /// Bytes read so far from the series by this process; 0 for plain data.
   std::uint64_t BytesRead() const;
 
@@ -107,19 +118,23 @@ private:
   bool TakeSeries(Communicator& communicator, const std::shared_ptr<const SeriesFile>& held,
     const std::vector<Facts>& all, const Box& samples);
   void MakeSeriesZones(const Facts& field, Communicator& communicator);
-  void TakePieces(const FieldPiece& piece, const std::vector<Facts>& all, const glm::ivec3& first);
+  void TakePieces(Communicator& communicator, const FieldPiece& piece,
+    const std::vector<Box>& pieces, const glm::ivec3& first);
 
   std::string ProblemText;
   std::string PieceProblem;
   Box Domain;
   glm::dmat4 IndexToPhysicalMatrix{ 1.0 };
   std::vector<Box> ZoneCells;
+  std::unique_ptr<StepAhead> Ahead; ///< null until a series plays
+  int Step = 0;                     ///< of the series
   LoadBalancing Balancing = LoadBalancing::Off;
   FrameBalancer Balancer; ///< of encoded series
   std::array<double, 6> PhysicalBounds{ { 1, -1, 1, -1, 1, -1 } };
   double ShortestEdge = 1.0;
   ValueRange ValuesRange;
   std::unique_ptr<MeshField> Mesh; ///< null unless it is one of hexahedra
+  std::unique_ptr<PieceField> Pieces; ///< null unless it is plain data on several ranks
   std::unique_ptr<BrickSource> Bricks;
   std::shared_ptr<const SeriesFile> Series;
   std::array<std::uint64_t, 7> Stamp{ {} };

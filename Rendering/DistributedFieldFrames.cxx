@@ -1,5 +1,11 @@
-// Zones of an encoded series from frame to frame.
+// Zones of image data from frame to frame.
 #include "DistributedField.h"
+
+#include "Base/ThreadPool.h"
+#include "Cache/BrickCache.h"
+#include "Pieces/PieceField.h"
+#include "Render/SeriesBrickSource.h"
+#include "Render/StepAhead.h"
 
 namespace banyan
 {
@@ -13,21 +19,88 @@ void DistributedField::SetLoadBalancing(LoadBalancing mode)
   }
 }
 
-void DistributedField::BeginFrame(RayScene& scene)
+const std::vector<Box>& DistributedField::Zones() const
 {
-  if (this->Encoded() && this->Bricks)
+  return this->Pieces ? this->Pieces->Zones() : this->ZoneCells;
+}
+
+BrickSource* DistributedField::Source()
+{
+  return this->Pieces ? this->Pieces->Source() : this->Bricks.get();
+}
+
+void DistributedField::BeginFrame(Communicator& communicator, RayScene& scene)
+{
+  if (this->Pieces)
   {
+    this->Pieces->BeginFrame(communicator, scene, BrickCache::Process().DecodedBudget());
+  }
+  else if (this->Encoded() && this->Bricks)
+  {
+    if (this->Ahead)
+    {
+      this->Ahead->Drawing(*this->Series, this->Step);
+    }
     this->Balancer.BeginFrame(scene, *this->Bricks);
     this->ZoneCells = this->Balancer.Zones();
   }
 }
 
+void DistributedField::ReadAhead()
+{
+  const auto* source = dynamic_cast<const SeriesBrickSource*>(this->Bricks.get());
+  if (!this->Encoded() || !source)
+  {
+    return;
+  }
+  try
+  {
+    if (!this->Ahead)
+    {
+      this->Ahead =
+        std::make_unique<StepAhead>(BrickCache::Process(), ThreadPool::Process().Width());
+      this->Ahead->Drawing(*this->Series, this->Step);
+    }
+    this->Ahead->Drawn(this->Series, *source);
+  }
+  catch (const std::exception&)
+  {
+    this->Ahead.reset(); // no threads, no memory: steps are decoded when they are asked for
+  }
+}
+
 void DistributedField::EndFrame(Communicator& communicator)
 {
-  if (this->Encoded())
+  if (this->Pieces)
+  {
+    this->Pieces->EndFrame(communicator);
+  }
+  else if (this->Encoded())
   {
     this->Balancer.EndFrame(communicator);
   }
+}
+
+double DistributedField::BytesMoved() const
+{
+  return this->Pieces      ? static_cast<double>(this->Pieces->FrameStatistics().BytesMoved)
+         : this->Encoded() ? this->Balancer.BytesMoved()
+                           : 0.0;
+}
+
+std::uint64_t DistributedField::FetchHits() const
+{
+  return this->Pieces ? this->Pieces->FrameStatistics().Hits : 0;
+}
+
+std::uint64_t DistributedField::FetchMisses() const
+{
+  return this->Pieces ? this->Pieces->FrameStatistics().Misses : 0;
+}
+
+std::uint64_t DistributedField::FetchedBytes() const
+{
+  return this->Pieces ? this->Pieces->FetchedBytes() : 0;
 }
 
 } // namespace banyan

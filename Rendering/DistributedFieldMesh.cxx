@@ -3,6 +3,9 @@
 
 #include "MeshField.h"
 
+#include "Pieces/PieceField.h"
+#include "Render/StepAhead.h"
+
 #include "vtkDataArray.h"
 #include "vtkUnstructuredGrid.h"
 
@@ -20,6 +23,7 @@ bool DistributedField::TakeMesh(Communicator& communicator, const FieldPiece& pi
     return false;
   }
   this->Bricks.reset();
+  this->Pieces.reset();
   this->Series.reset();
   this->Domain = Box{};
   this->PhysicalBounds = { { 1, -1, 1, -1, 1, -1 } };

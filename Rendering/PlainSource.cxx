@@ -18,9 +18,6 @@ namespace banyan
 namespace
 {
 
-/// Cells per axis of the bricks that plain data is cut into.
-constexpr int PlainBrickCells = 16;
-
 std::string NameOf(vtkDataArray* array)
 {
   return array->GetName() ? array->GetName() : "";
@@ -61,7 +58,7 @@ const std::uint8_t* HiddenPoints(vtkImageData* image)
 
 } // namespace
 
-std::unique_ptr<BrickSource> MakePlainSource(
+SampleArray PlainSamples(
   vtkImageData* image, vtkDataArray* values, int component, const glm::ivec3& first)
 {
   const vtkSmartPointer<vtkDataArray> plain = vtkBanyanDeferred::Plain(values);
@@ -84,7 +81,13 @@ std::unique_ptr<BrickSource> MakePlainSource(
   array.Stride[2] = array.Stride[1] * samples.y;
   array.Flags = HiddenPoints(image);
   array.Owner = HoldAlive(plain, image);
+  return array;
+}
 
+std::unique_ptr<BrickSource> MakePlainSource(
+  vtkImageData* image, vtkDataArray* values, int component, const glm::ivec3& first)
+{
+  const SampleArray array = PlainSamples(image, values, component, first);
   ThreadPool& pool = ThreadPool::Process();
   const ValueRange range = FiniteRange(array, pool);
   const MaskRange masks = range.Empty() ? MaskRange{} : MaskRange{ range.Low, range.High };

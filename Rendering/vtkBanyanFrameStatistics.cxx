@@ -20,6 +20,7 @@ void vtkBanyanFrameStatistics::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "BytesRead: " << this->BytesRead << "\n"
      << indent << "CacheBytes: " << this->CacheBytes << "\n"
      << indent << "BytesMoved: " << this->BytesMoved << "\n"
+     << indent << "CacheHitsAhead: " << this->CacheHitsAhead << "\n"
      << indent << "CacheHits: " << this->CacheHits << "\n"
      << indent << "CacheMisses: " << this->CacheMisses << "\n"
      << indent << "EstimatedImageError: " << this->EstimatedImageError << "\n"

@@ -75,6 +75,9 @@ public:
   vtkGetMacro(CacheHits, vtkIdType);
   vtkSetMacro(CacheMisses, vtkIdType);
   vtkGetMacro(CacheMisses, vtkIdType);
+  /// Of the hits, those that were decoded in the background before anybody asked for them.
+  vtkSetMacro(CacheHitsAhead, vtkIdType);
+  vtkGetMacro(CacheHitsAhead, vtkIdType);
   ///@}
 
   ///@{
@@ -109,6 +112,7 @@ protected:
   vtkIdType BytesMoved = 0;
   vtkIdType CacheHits = 0;
   vtkIdType CacheMisses = 0;
+  vtkIdType CacheHitsAhead = 0;
   double EstimatedImageError = 0.0;
   vtkIdType Frames = 0;
 

@@ -49,7 +49,7 @@ struct vtkBanyanVolumeMapper::Internals
 
   banyan::FieldPiece PieceOf(vtkBanyanVolumeMapper* mapper, vtkVolume* volume);
   void Publish(const banyan::FrameStatistics& frame, std::uint64_t bytesRead,
-    const banyan::BrickCache::Statistics& cacheBefore, double seconds,
+    const banyan::BrickCache::Statistics& cacheBefore, std::uint64_t aheadBefore, double seconds,
     vtkBanyanFrameStatistics* out) const;
 };
 
@@ -212,17 +212,22 @@ double* vtkBanyanVolumeMapper::GetBounds()
 
 /// Collective.
 void vtkBanyanVolumeMapper::Internals::Publish(const banyan::FrameStatistics& frame,
-  std::uint64_t bytesRead, const banyan::BrickCache::Statistics& cacheBefore, double seconds,
-  vtkBanyanFrameStatistics* out) const
+  std::uint64_t bytesRead, const banyan::BrickCache::Statistics& cacheBefore,
+  std::uint64_t aheadBefore, double seconds, vtkBanyanFrameStatistics* out) const
 {
   const auto sum = [this](std::uint64_t value) {
     return static_cast<vtkIdType>(banyan::AllSum(*this->Communicator, static_cast<double>(value)));
   };
   out->SetBytesRead(sum(bytesRead));
   const banyan::BrickCache::Statistics cache = banyan::BrickCache::Process().GetStatistics();
-  out->SetCacheBytes(sum(cache.Bytes));
-  out->SetCacheHits(sum(cache.Hits - cacheBefore.Hits));
-  out->SetCacheMisses(sum(cache.Misses - cacheBefore.Misses));
+  out->SetCacheBytes(sum(cache.Bytes + this->Field.FetchedBytes()));
+  out->SetCacheHits(
+    sum(cache.Hits - cacheBefore.Hits) + static_cast<vtkIdType>(this->Field.FetchHits()));
+  out->SetCacheMisses(
+    sum(cache.Misses - cacheBefore.Misses) + static_cast<vtkIdType>(this->Field.FetchMisses()));
+  const banyan::BrickCache::AheadStatistics ahead =
+    banyan::BrickCache::Process().GetAheadStatistics();
+  out->SetCacheHitsAhead(sum(ahead.Hits - aheadBefore));
   out->SetBytesMoved(static_cast<vtkIdType>(this->Field.BytesMoved()));
   out->SetTotalSeconds(seconds);
   out->SetRenderSeconds(frame.RenderSeconds);
@@ -281,6 +286,11 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   banyan::FrameScene wanted = banyan::MakeFrameScene(
     renderer, volume, this, self.Field, fixed ? this->SampleDistanceVoxels : 1.0);
   banyan::RayScene& scene = wanted.Scene;
+  const std::string unclear = banyan::AgreeOnError(*self.Communicator, wanted.Problem);
+  if (!unclear.empty())
+  {
+    throw banyan::Error(unclear);
+  }
   const banyan::PixelRect rect = scene.Viewport;
   if (rect.Empty())
   {
@@ -295,6 +305,7 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
 
   const std::uint64_t bytesBefore = self.Field.BytesRead();
   const banyan::BrickCache::Statistics cacheBefore = banyan::BrickCache::Process().GetStatistics();
+  const std::uint64_t aheadBefore = banyan::BrickCache::Process().GetAheadStatistics().Hits;
   // Less than the cache has: what one batch holds is then never evicted by that batch itself.
   const std::uint64_t budget =
     std::max<std::uint64_t>(banyan::BrickCache::Process().DrawingBudget(), 16u << 20);
@@ -304,7 +315,7 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
     this->InteractiveImageErrorTolerance, this->InteractiveFrameSeconds,
     renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0, this->RefineInPasses };
   const banyan::Timer drawing;
-  self.Field.BeginFrame(scene);
+  self.Field.BeginFrame(*self.Communicator, scene);
   this->Statistics->SetEstimatedImageError(
     !fixed && banyan::CanKeepTolerance(this, volume->GetProperty())
       ? self.Tolerance.Plan(
@@ -315,6 +326,10 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   compositing.Transport =
     this->CompositeInFewBits ? banyan::PixelTransport::WithinOne : banyan::PixelTransport::Floats;
   compositing.External = banyan::IceTRadixK(this->Controller);
+  if (this->ReadAhead)
+  {
+    compositing.AfterCasting = [&self] { self.Field.ReadAhead(); };
+  }
   const banyan::FloatImage picture =
     banyan::DrawDistributed(*self.Communicator, scene, self.Field.Source(), self.Field.Zones(),
       budget, banyan::ThreadPool::Process(), wanted.Problem, frame, compositing);
@@ -345,8 +360,8 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
 
   frame.BytesComposited += static_cast<std::uint64_t>(
     banyan::AllSum(*self.Communicator, static_cast<double>(geometry.BytesSent)));
-  self.Publish(
-    frame, self.Field.BytesRead() - bytesBefore, cacheBefore, timer.Seconds(), this->Statistics);
+  self.Publish(frame, self.Field.BytesRead() - bytesBefore, cacheBefore, aheadBefore,
+    timer.Seconds(), this->Statistics);
 }
 
 bool vtkBanyanVolumeMapper::RefineNext()
@@ -374,6 +389,7 @@ void vtkBanyanVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "CompositeInFewBits: " << this->CompositeInFewBits << "\n"
      << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"
      << indent << "LoadBalancing: " << this->LoadBalancing << "\n"
+     << indent << "ReadAhead: " << this->ReadAhead << "\n"
      << indent << "Controller: " << this->Controller.GetPointer() << "\n"
      << indent << "Statistics: " << this->Statistics.GetPointer() << "\n";
 }

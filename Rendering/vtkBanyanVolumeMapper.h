@@ -153,11 +153,22 @@ public:
   ///@{
   /**
    * How the zones of the ranks follow what frames cost: 0 not at all, 1 a slice of bricks per frame
-   * towards the slower side, 2 (default) to where measured costs balance. For encoded series; pieces of
-   * plain data are drawn where they are. The same on all ranks. The picture does not change.
+   * towards the slower side, 2 (default) to where measured costs balance. For image data; bricks of plain
+   * data go from rank to rank for it. The same on all ranks. The picture does not change.
    */
   vtkSetClampMacro(LoadBalancing, int, 0, 2);
   vtkGetMacro(LoadBalancing, int);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the next time step of an encoded series that plays is decoded in the background while a frame
+   * is composited and shown: the bricks that were drawn of this step, within half of what the cache has
+   * for decoded bricks. Default on.
+   */
+  vtkSetMacro(ReadAhead, bool);
+  vtkGetMacro(ReadAhead, bool);
+  vtkBooleanMacro(ReadAhead, bool);
   ///@}
 
   /**
@@ -225,6 +236,7 @@ private:
   bool CompositeInFewBits = false;
   int NumberOfThreads = 0;
   int LoadBalancing = 2;
+  bool ReadAhead = true;
   vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkSmartPointer<vtkBanyanFrameStatistics> Statistics;
 

@@ -360,6 +360,11 @@ void vtkBanyanVolumeRepresentation::SetNumberOfThreads(int threads)
   this->Mapper->SetNumberOfThreads(threads);
 }
 
+void vtkBanyanVolumeRepresentation::SetReadAhead(bool on)
+{
+  this->Mapper->SetReadAhead(on);
+}
+
 void vtkBanyanVolumeRepresentation::SetLoadBalancing(int mode)
 {
   this->Mapper->SetLoadBalancing(mode);

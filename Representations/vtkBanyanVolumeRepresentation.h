@@ -108,6 +108,7 @@ public:
 
   /** 0 off, 1 slice step, 2 measured cost; see vtkBanyanVolumeMapper. */
   void SetLoadBalancing(int mode);
+  void SetReadAhead(bool on);
 
   /** Where the statistics of each frame go. */
   void SetStatistics(vtkBanyanFrameStatistics* statistics);

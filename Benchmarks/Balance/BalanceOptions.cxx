@@ -47,6 +47,7 @@ const char* const BalanceHelp =
   "  --output FILE.csv    default standard output          --append     to it\n"
   "  --rank-times FILE.csv   each rank's milliseconds too\n"
   "  --brick-times FILE.csv  what the bricks of each frame took, and nothing else\n"
+  "  --pieces             with --mpi: each rank holds a piece, and bricks go from rank to rank\n"
   "  --mpi                on the real ranks of mpirun, in wall-clock time; one thread each\n";
 
 const char* NameOf(LoadBalancing mode)
@@ -70,6 +71,8 @@ BalanceOptions ParseBalanceOptions(const std::vector<std::string>& arguments)
       options.Append = true;
     else if (option == "--mpi")
       options.Mpi = true;
+    else if (option == "--pieces")
+      options.Pieces = true;
     else if (option == "--series")
       options.Series = value();
     else if (option == "--path")

@@ -25,6 +25,7 @@ struct BalanceOptions
     LoadBalancing::MeasuredCost };
   bool Append = false;
   bool Mpi = false; ///< on the ranks of this job in place of simulated ones
+  bool Pieces = false; ///< with Mpi: each rank holds an equal block of the volume, and nothing else
   bool Help = false;
 };
 

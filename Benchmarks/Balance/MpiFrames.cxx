@@ -6,6 +6,7 @@
 #include "Base/Timer.h"
 #include "Parallel/DistributedFrame.h"
 #include "Parallel/MpiCommunicator.h"
+#include "Pieces/PieceField.h"
 
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1
@@ -60,6 +61,59 @@ void DrawPath(Communicator& communicator, const BenchScene& scene, const Balance
   }
 }
 
+/// A box of an array, where it is.
+SampleArray PartOf(const SampleArray& whole, const Box& samples)
+{
+  SampleArray part = whole;
+  std::ptrdiff_t offset = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    offset += samples.Lo[axis] * whole.Stride[axis];
+  }
+  part.Values = static_cast<const char*>(whole.Values) +
+                offset * static_cast<std::ptrdiff_t>(SizeOf(whole.Type));
+  part.Samples = samples;
+  return part;
+}
+
+void DrawPieces(Communicator& communicator, const BenchScene& scene, const BalanceOptions& options,
+  LoadBalancing mode, const TakeFrame& take)
+{
+  ThreadPool pool(1);
+  const glm::ivec3 cells = scene.Data->Samples - 1;
+  std::vector<Box> pieces;
+  for (const Box& zone : ZonesOf(EqualZoneTree(cells, communicator.Size())))
+  {
+    pieces.push_back(zone.Empty() ? Box{} : Box{ zone.Lo, zone.Hi + 1 });
+  }
+  const Box& own = pieces[static_cast<std::size_t>(communicator.Rank())];
+  PieceField field;
+  field.Take(communicator, pieces, PartOf(scene.Data->Array(), own), cells, BenchBrickCells, mode,
+    pool);
+  for (int number = 0; number < options.Frames; ++number)
+  {
+    RayScene drawn = SceneOnPath(scene, options.Path, number, options.Frames);
+    communicator.Barrier();
+    const Timer whole;
+    field.BeginFrame(communicator, drawn, ~std::uint64_t{ 0 });
+    FrameStatistics statistics;
+    DrawDistributed(communicator, drawn, field.Source(), field.Zones(), ~std::uint64_t{ 0 }, pool,
+      {}, statistics);
+    field.EndFrame(communicator);
+    BalanceFrame frame;
+    frame.Milliseconds = 1e3 * AllMax(communicator, whole.Seconds());
+    frame.RankMilliseconds.assign(1, 1e3 * statistics.RenderSeconds);
+    frame.Number = number;
+    frame.Mode = mode;
+    frame.Imbalance = statistics.Imbalance;
+    frame.BytesMoved = static_cast<double>(field.FrameStatistics().BytesMoved);
+    if (communicator.Rank() == 0)
+    {
+      take(frame);
+    }
+  }
+}
+
 } // namespace
 
 void DrawOnMpiRanks(const std::function<BenchScene()>& makeScene, const BalanceOptions& options,
@@ -73,7 +127,7 @@ void DrawOnMpiRanks(const std::function<BenchScene()>& makeScene, const BalanceO
     const BenchScene scene = makeScene();
     for (const LoadBalancing mode : options.Modes)
     {
-      DrawPath(*communicator, scene, options, mode, take);
+      (options.Pieces ? DrawPieces : DrawPath)(*communicator, scene, options, mode, take);
     }
   }
   catch (const std::exception& error)

@@ -79,12 +79,29 @@ Key KeyOf(
     series.Layout(field.Level).SamplesOf(brick) };
 }
 
+std::shared_ptr<const BrickValues> Decode(
+  const SeriesFile& series, const FieldKey& field, std::int64_t brick, const Key& key)
+{
+  auto values = std::make_shared<BrickValues>();
+  values->Type = key.Type;
+  values->Samples = key.Samples;
+  values->Bytes.resize(static_cast<std::size_t>(key.Samples.Count()) * SizeOf(key.Type));
+  series.DecodeBrick(field, brick, values->Bytes.data());
+  return values;
+}
+
 } // namespace
 
 struct BrickCache::Internals
 {
   using Pointer = std::shared_ptr<const BrickValues>;
-  using Order = std::list<std::pair<Key, Pointer>>; ///< most recently used first
+  struct Item
+  {
+    Key Name;
+    Pointer Brick;
+    bool Ahead = false; ///< decoded before anybody asked, and not asked for yet
+  };
+  using Order = std::list<Item>; ///< most recently used first
 
   /// A brick that some thread is decoding.
   struct Pending
@@ -96,26 +113,30 @@ struct BrickCache::Internals
   std::uint64_t Budget = 0;
   bool Shares = false; ///< whether only three eighths of the budget are for decoded bricks
   Statistics Numbers;
+  AheadStatistics Ahead;
   Order Bricks;
   std::unordered_map<Key, Order::iterator, KeyHash> Places;
   std::unordered_map<Key, std::shared_ptr<Pending>, KeyHash> Decoding;
   mutable std::mutex Mutex;
   std::condition_variable Decoded;
 
-  std::uint64_t Limit() const { return this->Shares ? this->Budget / 8 * 3 : this->Budget; }
+  std::uint64_t Reserved = 0; ///< of the decoded bricks' part, by others
+
+  std::uint64_t Part() const { return this->Shares ? this->Budget / 8 * 3 : this->Budget; }
+  std::uint64_t Limit() const { return this->Part() - std::min(this->Part(), this->Reserved); }
 
   void EvictDownTo(std::uint64_t bytes)
   {
     while (this->Numbers.Bytes > bytes)
     {
-      this->Numbers.Bytes -= CostOf(*this->Bricks.back().second);
-      this->Places.erase(this->Bricks.back().first);
+      this->Numbers.Bytes -= CostOf(*this->Bricks.back().Brick);
+      this->Places.erase(this->Bricks.back().Name);
       this->Bricks.pop_back();
       ++this->Numbers.Evictions;
     }
   }
 
-  void Keep(const Key& key, const Pointer& brick)
+  void Keep(const Key& key, const Pointer& brick, bool ahead)
   {
     const std::uint64_t cost = CostOf(*brick);
     if (cost > this->Limit())
@@ -123,26 +144,31 @@ struct BrickCache::Internals
       return;
     }
     this->EvictDownTo(this->Limit() - cost); // before adding: the budget is never exceeded
-    this->Bricks.emplace_front(key, brick);
+    this->Bricks.push_front({ key, brick, ahead });
     this->Places[key] = this->Bricks.begin();
     this->Numbers.Bytes += cost;
     this->Numbers.PeakBytes = std::max(this->Numbers.PeakBytes, this->Numbers.Bytes);
   }
 
-  /// Waits for another thread's result or claims the decoding; null when claimed.
+  /// A brick that is held, for somebody who asked for it.
+  Pointer Hit(Order::iterator place)
+  {
+    this->Bricks.splice(this->Bricks.begin(), this->Bricks, place);
+    ++this->Numbers.Hits;
+    this->Ahead.Hits += place->Ahead ? 1 : 0;
+    place->Ahead = false;
+    return place->Brick;
+  }
+
+  /// Null when the brick is not held.
   Pointer Find(const Key& key)
   {
     std::lock_guard<std::mutex> lock(this->Mutex);
     const auto place = this->Places.find(key);
-    if (place == this->Places.end())
-    {
-      return nullptr;
-    }
-    this->Bricks.splice(this->Bricks.begin(), this->Bricks, place->second);
-    ++this->Numbers.Hits;
-    return place->second->second;
+    return place == this->Places.end() ? nullptr : this->Hit(place->second);
   }
 
+  /// Waits for another thread's result or claims the decoding; null when claimed.
   Pointer FindOrClaim(const Key& key)
   {
     std::unique_lock<std::mutex> lock(this->Mutex);
@@ -151,18 +177,13 @@ struct BrickCache::Internals
       const auto place = this->Places.find(key);
       if (place != this->Places.end())
       {
-        this->Bricks.splice(this->Bricks.begin(), this->Bricks, place->second);
-        ++this->Numbers.Hits;
-        return place->second->second;
+        return this->Hit(place->second);
       }
-      const auto decoding = this->Decoding.find(key);
-      if (decoding == this->Decoding.end())
+      if (this->Claim(key))
       {
-        this->Decoding[key] = std::make_shared<Pending>();
-        ++this->Numbers.Misses;
         return nullptr;
       }
-      const std::shared_ptr<Pending> pending = decoding->second;
+      const std::shared_ptr<Pending> pending = this->Decoding[key];
       this->Decoded.wait(lock, [&pending] { return pending->Done; });
       if (pending->Result)
       {
@@ -172,7 +193,26 @@ struct BrickCache::Internals
     }
   }
 
-  void Publish(const Key& key, const Pointer& brick)
+  /// Under the lock. @return false when another thread is decoding the brick
+  bool Claim(const Key& key)
+  {
+    if (this->Decoding.count(key) > 0)
+    {
+      return false;
+    }
+    this->Decoding[key] = std::make_shared<Pending>();
+    ++this->Numbers.Misses;
+    return true;
+  }
+
+  /// Claims a brick that is neither held nor being decoded.
+  bool ClaimAhead(const Key& key)
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    return this->Places.count(key) == 0 && this->Claim(key);
+  }
+
+  void Publish(const Key& key, const Pointer& brick, bool ahead)
   {
     {
       std::lock_guard<std::mutex> lock(this->Mutex);
@@ -182,10 +222,28 @@ struct BrickCache::Internals
       this->Decoding.erase(decoding);
       if (brick)
       {
-        this->Keep(key, brick);
+        this->Keep(key, brick, ahead);
+        this->Ahead.Decoded += ahead ? 1 : 0;
       }
     }
     this->Decoded.notify_all();
+  }
+
+  /// For the thread that claimed it.
+  Pointer DecodeClaimed(
+    const SeriesFile& series, const FieldKey& field, std::int64_t brick, const Key& key, bool ahead)
+  {
+    try
+    {
+      Pointer values = Decode(series, field, brick, key);
+      this->Publish(key, values, ahead);
+      return values;
+    }
+    catch (...)
+    {
+      this->Publish(key, nullptr, ahead);
+      throw;
+    }
   }
 };
 
@@ -214,34 +272,31 @@ std::shared_ptr<const BrickValues> BrickCache::Get(
 {
   const BrickNode node = NodeOf(series, field, brick);
   const Key key = KeyOf(series, field, node, brick);
-  const auto decode = [&]
-  {
-    auto values = std::make_shared<BrickValues>();
-    values->Type = key.Type;
-    values->Samples = key.Samples;
-    values->Bytes.resize(static_cast<std::size_t>(key.Samples.Count()) * SizeOf(key.Type));
-    series.DecodeBrick(field, brick, values->Bytes.data());
-    return values;
-  };
   if (node.Uniform)
   {
-    return decode(); // filling is quicker than remembering, and leaves the room to others
+    // Filling is quicker than remembering, and leaves the room to others.
+    return Decode(series, field, brick, key);
   }
-  if (const auto found = this->Self->FindOrClaim(key))
+  const auto found = this->Self->FindOrClaim(key);
+  return found ? found : this->Self->DecodeClaimed(series, field, brick, key, false);
+}
+
+std::uint64_t BrickCache::GetAhead(
+  const SeriesFile& series, const FieldKey& field, std::int64_t brick)
+{
+  const BrickNode node = NodeOf(series, field, brick);
+  const Key key = KeyOf(series, field, node, brick);
+  if (node.Uniform || !this->Self->ClaimAhead(key))
   {
-    return found;
+    return 0;
   }
-  try
-  {
-    const std::shared_ptr<const BrickValues> values = decode();
-    this->Self->Publish(key, values);
-    return values;
-  }
-  catch (...)
-  {
-    this->Self->Publish(key, nullptr);
-    throw;
-  }
+  return CostOf(*this->Self->DecodeClaimed(series, field, brick, key, true));
+}
+
+BrickCache::AheadStatistics BrickCache::GetAheadStatistics() const
+{
+  std::lock_guard<std::mutex> lock(this->Self->Mutex);
+  return this->Self->Ahead;
 }
 
 void BrickCache::SetBudget(std::uint64_t bytes)
@@ -259,6 +314,19 @@ std::uint64_t BrickCache::Budget() const
 {
   std::lock_guard<std::mutex> lock(this->Self->Mutex);
   return this->Self->Budget;
+}
+
+std::uint64_t BrickCache::DecodedBudget() const
+{
+  std::lock_guard<std::mutex> lock(this->Self->Mutex);
+  return this->Self->Part();
+}
+
+void BrickCache::Reserve(std::int64_t change)
+{
+  std::lock_guard<std::mutex> lock(this->Self->Mutex);
+  this->Self->Reserved += static_cast<std::uint64_t>(change);
+  this->Self->EvictDownTo(this->Self->Limit());
 }
 
 void BrickCache::Clear()

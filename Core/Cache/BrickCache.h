@@ -56,6 +56,17 @@ public:
   std::shared_ptr<const BrickValues> GetIfHeld(
     const SeriesFile& series, const FieldKey& field, std::int64_t brick);
 
+  /// Decodes a brick before anybody asks for it, if it is not held already. Asking for it later is a
+  /// hit, and counted among those of AheadStatistics the first time.
+  /// @return bytes that the cache holds more
+  std::uint64_t GetAhead(const SeriesFile& series, const FieldKey& field, std::int64_t brick);
+  struct AheadStatistics
+  {
+    std::uint64_t Decoded = 0; ///< bricks; among the misses
+    std::uint64_t Hits = 0;    ///< of these were asked for later
+  };
+  AheadStatistics GetAheadStatistics() const;
+
   /// Evicts at once when the new budget is smaller. 0 keeps nothing. The budget of the process's
   /// cache is for drawing as well: three eighths of it are decoded bricks, three what the renderer
   /// has loaded and packed, a quarter is LatticeCache's, which keeps what decoding needs again.
@@ -63,6 +74,10 @@ public:
   std::uint64_t Budget() const;
   /// The renderer's share of the budget of the process's cache.
   std::uint64_t DrawingBudget() const { return this->Budget() / 8 * 3; }
+  /// What decoded bricks may take: the budget, or their share of the process's.
+  std::uint64_t DecodedBudget() const;
+  /// Others take so much more (or less) of that: bricks that ranks fetch from each other. Evicts at once.
+  void Reserve(std::int64_t change);
   void Clear();
   Statistics GetStatistics() const;
 

@@ -63,6 +63,10 @@ struct CompositeOptions
   /// What draws for IceTRadixK, in 8 bits and only Over; without it, and for other combinations,
   /// that method is an Error.
   Compositor External;
+
+  /// Called by DrawDistributed when this rank has cast its rays: begins what can go on in the
+  /// background while pictures are composited and shown. Must not throw.
+  std::function<void()> AfterCasting;
 };
 
 /// Makes one picture of those of all ranks. Collective; all arguments but `mine` are the same on

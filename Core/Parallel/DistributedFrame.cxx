@@ -111,6 +111,10 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene, Br
   const Box zone = zones.at(static_cast<std::size_t>(communicator.Rank()));
   const FloatImage mine = CastOwnZone(scene, source, zone, budgetBytes, pool, rays, failure);
   const double renderSeconds = render.Seconds();
+  if (compositing.AfterCasting)
+  {
+    compositing.AfterCasting();
+  }
 
   // The order and the footprints depend on what all ranks have alike: no rank fails here alone.
   const std::vector<int> order = FrontToBack(InIndexSpace(scene.Camera, scene.IndexToWorld), zones);

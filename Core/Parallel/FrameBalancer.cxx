@@ -5,12 +5,33 @@
 namespace banyan
 {
 
+std::vector<Box> ZonesOfRanks::Zones() const
+{
+  const std::vector<Box> seats = ZonesOf(this->Tree);
+  if (this->RankOfSeat.empty())
+  {
+    return seats;
+  }
+  std::vector<Box> zones(seats.size());
+  for (std::size_t seat = 0; seat < seats.size(); ++seat)
+  {
+    zones.at(static_cast<std::size_t>(this->RankOfSeat.at(seat))) = seats[seat];
+  }
+  return zones;
+}
+
+void FrameBalancer::PlaceZones()
+{
+  this->ZoneCells = ZonesOfRanks{ this->Balancer->Tree(), this->RankOfSeat }.Zones();
+}
+
 void FrameBalancer::Start(LoadBalancing mode, const Field& field, int ranks)
 {
   LoadBalancer::Options options;
   options.Mode = mode;
   options.Positions = field.Cells;
   options.Ranks = ranks;
+  options.Start = field.Start.Tree;
   options.SlicePositions = field.BrickCells;
   options.PlaneStep = 1 << field.CoarsestLevel;
   options.BlockEdge = BlockEdgeFor(field.Cells);
@@ -22,13 +43,16 @@ void FrameBalancer::Start(LoadBalancing mode, const Field& field, int ranks)
     const LoadBalancer::Options& now = this->Balancer->Given();
     if (now.Mode == options.Mode && now.Positions == options.Positions &&
         now.Ranks == options.Ranks && now.SlicePositions == options.SlicePositions &&
-        now.PlaneStep == options.PlaneStep && now.BytesPerPosition == options.BytesPerPosition)
+        now.PlaneStep == options.PlaneStep &&
+        now.BytesPerPosition == options.BytesPerPosition && now.Start == options.Start &&
+        this->RankOfSeat == field.Start.RankOfSeat)
     {
       return;
     }
   }
   this->Balancer.emplace(options);
-  this->ZoneCells = ZonesOf(this->Balancer->Tree());
+  this->RankOfSeat = field.Start.RankOfSeat;
+  this->PlaceZones();
 }
 
 /// Which blocks can be seen changes with the values and the transfer function only.
@@ -58,9 +82,21 @@ void FrameBalancer::BeginFrame(RayScene& scene, const BrickSource& source)
   const LoadBalancer::Options& options = this->Balancer->Given();
   this->View = ViewCosts(scene, options.Positions, options.BlockEdge, this->Visible);
   this->Balancer->BeginFrame(this->View);
-  this->ZoneCells = ZonesOf(this->Balancer->Tree());
+  this->PlaceZones();
   this->Work = BrickWork();
   scene.Work = &this->Work;
+}
+
+void FrameBalancer::GoBack(double part)
+{
+  if (!this->IsOff())
+  {
+    const LoadBalancer::Options& options = this->Balancer->Given();
+    const ZoneTree& start = options.Start;
+    this->Balancer->SetTree(
+      part > 0.0 ? PartOfTheWay(start, this->Balancer->Tree(), part, 1) : start);
+    this->PlaceZones();
+  }
 }
 
 void FrameBalancer::EndFrame(Communicator& communicator)
@@ -70,7 +106,12 @@ void FrameBalancer::EndFrame(Communicator& communicator)
     return;
   }
   const FrameWork took = GatherWork(communicator, this->Work, this->ZoneCells, this->View);
-  this->Balancer->FrameTook(took.Ranks, took.Blocks);
+  std::vector<RankWork> seats = took.Ranks;
+  for (std::size_t seat = 0; seat < this->RankOfSeat.size(); ++seat)
+  {
+    seats[seat] = took.Ranks[static_cast<std::size_t>(this->RankOfSeat[seat])];
+  }
+  this->Balancer->FrameTook(seats, took.Blocks);
 }
 
 } // namespace banyan

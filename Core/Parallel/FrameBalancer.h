@@ -12,6 +12,16 @@
 namespace banyan
 {
 
+/// A tree of zones, and the ranks that draw them in the order of its leaves.
+struct ZonesOfRanks
+{
+  ZoneTree Tree;
+  std::vector<int> RankOfSeat; ///< empty: rank i draws leaf i
+
+  /// One per rank.
+  std::vector<Box> Zones() const;
+};
+
 /// Zones of one field from frame to frame: the balancer, and what it has to be told. Used alike on
 /// all ranks.
 class FrameBalancer
@@ -23,15 +33,25 @@ public:
     int BrickCells = 16;
     int CoarsestLevel = 0; ///< that pictures are drawn from: planes stand between cells of it
     double BytesPerCell = 4.0;
+    /// Zones to begin with; a tree without nodes: equal ones.
+    ZonesOfRanks Start;
   };
 
-  /// Begins with equal zones, unless ranks, field and mode are those of before.
+  /// Begins with the field's zones, unless ranks, field and mode are those of before.
   void Start(LoadBalancing mode, const Field& field, int ranks);
 
   /// Moves planes for the next frame, and lets the scene tell what bricks take.
   /// @param scene all of it but its samplings
   /// @param source of the whole field
   void BeginFrame(RayScene& scene, const BrickSource& source);
+
+  /// Goes back from the zones of the frame that was begun towards those at the start.
+  /// @param part of the way that is kept, [0, 1]
+  void GoBack(double part);
+  /// Whether zones can have moved from where they were at the start.
+  bool Moves() const { return !this->IsOff(); }
+  /// Most bytes that should change ranks before a frame, as far as balancing goes.
+  double MostBytes() const { return this->Balancer ? this->Balancer->Given().MostBytes : 0.0; }
 
   /// In cells.
   const std::vector<Box>& Zones() const { return this->ZoneCells; }
@@ -50,7 +70,10 @@ private:
   }
   void LookAgain(const RayScene& scene, const BrickSource& source);
 
+  void PlaceZones();
+
   std::optional<LoadBalancer> Balancer;
+  std::vector<int> RankOfSeat; ///< as in ZonesOfRanks
   std::vector<Box> ZoneCells;
   BrickWork Work;  ///< of this rank for the frame
   BrickCosts View; ///< of the frame

@@ -1,7 +1,7 @@
 #include "Parallel/FrameWork.h"
 
 #include "Base/Error.h"
-#include "Render/RayCaster.h"
+#include "Render/VisibleBricks.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -177,17 +177,11 @@ std::vector<float> VisibleParts(
   const RayScene& scene, const BrickSource& source, const glm::ivec3& cells, int blockEdge)
 {
   BrickCosts blocks(cells, blockEdge);
-  const VisibleValues visible(scene.Transfer);
-  const ValueMask bins = scene.Transfer.VisibleBins(source.MasksAreOver());
-  const bool composited = scene.Blend.Mode == BlendMode::Composite;
+  const VisibleBricks visible(scene, source);
   const glm::ivec3 counts = source.Bricks();
   for (std::int64_t brick = 0; brick < std::int64_t{ counts.x } * counts.y * counts.z; ++brick)
   {
-    const ValueRange range = source.RangeOf(brick);
-    const bool seen =
-      !range.Empty() &&
-      (!composited || ((source.MaskOf(brick) & bins) != 0 && visible.Any(range.Low, range.High)));
-    if (seen)
+    if (visible.Contains(brick))
     {
       const Box own = source.CellsOf(brick);
       const int size = 1 << source.BrickLevel(brick);

@@ -55,12 +55,20 @@ double UsualRatio(const std::vector<double>& work, const std::vector<double>& vi
   return done > 0.0 && seen > 0.0 ? done / seen : 1.0;
 }
 
-ZoneTree BrickZones(const LoadBalancer::Options& options)
+ZoneTree FirstZones(const LoadBalancer::Options& options)
 {
   const int slice = options.SlicePositions;
   if (slice < 1)
   {
     throw Error("A slice of bricks is at least one position thick.");
+  }
+  if (!options.Start.Nodes.empty())
+  {
+    if (options.Start.Ranks() != options.Ranks || options.Start.Positions != options.Positions)
+    {
+      throw Error("The zones to begin with are those of another grid.");
+    }
+    return options.Start;
   }
   const glm::ivec3 bricks = (options.Positions + slice - 1) / slice;
   return Refined(EqualZoneTree(bricks, options.Ranks), slice, options.Positions);
@@ -80,7 +88,7 @@ int BlockEdgeFor(const glm::ivec3& positions)
 
 LoadBalancer::LoadBalancer(const Options& options)
   : Settings(options)
-  , Zones(BrickZones(options))
+  , Zones(FirstZones(options))
   , Paces(static_cast<std::size_t>(options.Ranks))
 {
   const std::size_t blocks = BrickCosts(options.Positions, options.BlockEdge).Values.size();

@@ -38,6 +38,8 @@ public:
     LoadBalancing Mode = LoadBalancing::Off;
     glm::ivec3 Positions{ 0 }; ///< that zones may be cut at: cells
     int Ranks = 1;
+    /// Zones to begin with; without nodes, zones of equal numbers of bricks.
+    ZoneTree Start;
     int SlicePositions = 16; ///< thickness of a slice of bricks
     /// Where planes that are moved by measured cost may stand: at multiples of it.
     int PlaneStep = 1;
@@ -47,8 +49,8 @@ public:
     double MostBytes = 32.0 * 1048576.0;
   };
 
-  /// Zones of equal numbers of bricks. Throws Error when there are no ranks, or no positions per
-  /// block or brick.
+  /// Throws Error when there are no ranks, no positions per block or brick, or zones to begin with of
+  /// another grid or number of ranks.
   explicit LoadBalancer(const Options& options);
 
   const Options& Given() const { return this->Settings; }
@@ -57,6 +59,9 @@ public:
   /// Before a frame: moves planes.
   /// @param view what is seen of each block (Options::BlockEdge), in any unit that stays the same
   void BeginFrame(const BrickCosts& view);
+
+  /// Instead of the zones that the last BeginFrame came to: for the frame that was begun.
+  void SetTree(const ZoneTree& tree) { this->Zones = tree; }
 
   /// After it.
   /// @param ranks what each one took

@@ -184,20 +184,6 @@ ZoneTree BalancedTree(
   return balanced;
 }
 
-/// All planes the same part of the way from one tree to another, which are nested as those are.
-ZoneTree PartOfTheWay(const ZoneTree& from, const ZoneTree& to, double part, int step)
-{
-  ZoneTree tree = from;
-  for (std::size_t number = 0; number < tree.Nodes.size(); ++number)
-  {
-    const int way = to.Nodes[number].Plane - from.Nodes[number].Plane;
-    // Rounded down on both sides alike: planes that do not cross before do not cross afterwards.
-    const double steps = std::floor((tree.Nodes[number].Plane + part * way) / step);
-    tree.Nodes[number].Plane = static_cast<int>(steps) * step;
-  }
-  return tree;
-}
-
 /// As far as `most` bytes go.
 ZoneTree WithinBytes(const ZoneTree& from, const ZoneTree& to, const CostSums& bytes, double most,
   int step, double& moved)
@@ -241,6 +227,19 @@ ZoneTree OnePlaneAStep(
 }
 
 } // namespace
+
+ZoneTree PartOfTheWay(const ZoneTree& from, const ZoneTree& to, double part, int step)
+{
+  ZoneTree tree = from;
+  for (std::size_t number = 0; number < tree.Nodes.size(); ++number)
+  {
+    const int way = to.Nodes[number].Plane - from.Nodes[number].Plane;
+    // Rounded down on both sides alike: planes that do not cross before do not cross afterwards.
+    const double steps = std::floor((tree.Nodes[number].Plane + part * way) / step);
+    tree.Nodes[number].Plane = static_cast<int>(steps) * step;
+  }
+  return tree;
+}
 
 double ImbalanceOf(const std::vector<double>& seconds)
 {

@@ -74,6 +74,11 @@ std::vector<double> ExpectedSeconds(
 double ExpectedImbalance(
   const ZoneTree& tree, const CostSums& costs, const std::vector<double>& speeds);
 
+/// All planes the same part of the way from one tree to another, whose zones are nested alike.
+/// @param part in [0, 1]
+/// @param step planes of the result stand at multiples of it
+ZoneTree PartOfTheWay(const ZoneTree& from, const ZoneTree& to, double part, int step);
+
 /// What changes ranks from one tree to another of the same grid.
 double MovedBetween(const ZoneTree& from, const ZoneTree& to, const CostSums& bytes);
 

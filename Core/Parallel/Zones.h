@@ -17,11 +17,6 @@ std::vector<Box> StaticZones(const glm::ivec3& bricks, int ranks);
 /// Cells of a zone of bricks.
 Box CellsOfBricks(const Box& bricks, int brickCells, const glm::ivec3& allCells);
 
-/// Makes boxes of cells disjoint that overlap in whole slabs (ghost layers, or the same piece on
-/// several ranks): the lower rank keeps the overlap. Throws Error when what is left of a box would
-/// not be a box.
-std::vector<Box> MakeDisjoint(std::vector<Box> boxes);
-
 /// Front-to-back order of disjoint boxes: box a stands before box b in the result when a can hide
 /// b. Exact for perspective (camera inside a box included) and parallel projections. Empty boxes
 /// come last. Throws Error when boxes hide each other in a circle (not possible for zones of a

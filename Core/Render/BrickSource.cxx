@@ -1,5 +1,7 @@
 #include "Render/BrickSource.h"
 
+#include "Render/SampledBox.h"
+
 #include <vector>
 
 namespace banyan
@@ -7,40 +9,9 @@ namespace banyan
 namespace
 {
 
-/// A brick that is part of what is put together.
-struct Neighbour
-{
-  BrickView View;
-  Box Samples;
-};
-
 bool IsUniform(const BrickView& view)
 {
   return view.Stride[0] == 0 && view.Stride[1] == 0 && view.Stride[2] == 0;
-}
-
-/// @param out `[z][y][x]` of `target`
-template <class From, class To>
-void CopyPart(const Neighbour& from, const Box& target, To* out)
-{
-  const Box part = Intersection(from.Samples, target);
-  const glm::ivec3 size = target.Size();
-  const auto* values = static_cast<const From*>(from.View.Values);
-  for (int z = part.Lo.z; z < part.Hi.z; ++z)
-  {
-    for (int y = part.Lo.y; y < part.Hi.y; ++y)
-    {
-      const glm::ivec3 source = glm::ivec3(part.Lo.x, y, z) - from.Samples.Lo;
-      const glm::ivec3 to = glm::ivec3(part.Lo.x, y, z) - target.Lo;
-      const From* row = values + source.x * from.View.Stride[0] + source.y * from.View.Stride[1] +
-                        source.z * from.View.Stride[2];
-      To* outRow = out + (static_cast<std::ptrdiff_t>(to.z) * size.y + to.y) * size.x + to.x;
-      for (int x = 0; x < part.Size().x; ++x)
-      {
-        outRow[x] = static_cast<To>(row[x * from.View.Stride[0]]);
-      }
-    }
-  }
 }
 
 } // namespace
@@ -86,7 +57,7 @@ BrickView BrickSource::LoadAround(std::int64_t brick, Box& samples)
   samples =
     Intersection({ own.Lo - 1, own.Hi + 2 }, { this->CellsOf(0).Lo, this->CellsOf(last).Hi + 1 });
 
-  std::vector<Neighbour> neighbours;
+  std::vector<SampledBox> neighbours;
   for (int i = 0; i < 27; ++i)
   {
     const glm::ivec3 p = position + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1;
@@ -98,32 +69,12 @@ BrickView BrickSource::LoadAround(std::int64_t brick, Box& samples)
     }
   }
   // Bricks of one value may come in another type, which holds the value all the same.
-  BrickView result;
-  result.Type = neighbours.front().View.Type;
-  for (const Neighbour& neighbour : neighbours)
+  ScalarType type = neighbours.front().View.Type;
+  for (const SampledBox& neighbour : neighbours)
   {
-    result.Type = IsUniform(neighbour.View) ? result.Type : neighbour.View.Type;
+    type = IsUniform(neighbour.View) ? type : neighbour.View.Type;
   }
-  const glm::ivec3 size = samples.Size();
-  const auto bytes = std::make_shared<std::vector<double>>(
-    (static_cast<std::size_t>(samples.Count()) * SizeOf(result.Type) + sizeof(double) - 1) /
-    sizeof(double));
-  Dispatch(result.Type,
-    [&](auto to)
-    {
-      using To = typename decltype(to)::Type;
-      To* const out = reinterpret_cast<To*>(bytes->data());
-      for (const Neighbour& neighbour : neighbours)
-      {
-        Dispatch(neighbour.View.Type,
-          [&](auto from) { CopyPart<typename decltype(from)::Type>(neighbour, samples, out); });
-      }
-    });
-  result.Values = bytes->data();
-  result.Stride[1] = size.x;
-  result.Stride[2] = std::ptrdiff_t{ size.x } * size.y;
-  result.Owner = std::shared_ptr<const void>(bytes, bytes->data());
-  return result;
+  return Assemble(neighbours, samples, type);
 }
 
 } // namespace banyan

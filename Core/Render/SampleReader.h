@@ -1,7 +1,7 @@
 #ifndef banyan_Render_SampleReader_h
 #define banyan_Render_SampleReader_h
 
-#include "Render/ArrayBrickSource.h"
+#include "Render/ArraySamples.h"
 
 #include <cmath>
 #include <limits>

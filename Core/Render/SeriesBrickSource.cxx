@@ -123,7 +123,10 @@ std::unique_ptr<BrickSource> SeriesBrickSource::MakeLevel(int level, const Box&)
   {
     return nullptr;
   }
-  return std::make_unique<SeriesBrickSource>(this->Series, field, this->Component, this->Cache);
+  auto source =
+    std::make_unique<SeriesBrickSource>(this->Series, field, this->Component, this->Cache);
+  source->LoadedBricks = this->LoadedBricks;
+  return source;
 }
 
 FieldKey SeriesBrickSource::KeyOf(std::size_t component) const
@@ -212,7 +215,37 @@ BrickView SeriesBrickSource::LoadMagnitude(std::int64_t brick) const
 
 BrickView SeriesBrickSource::Load(std::int64_t brick)
 {
+  this->Note(brick);
   return this->Magnitude ? this->LoadMagnitude(brick) : this->LoadComponent(brick, 0);
+}
+
+void SeriesBrickSource::Note(std::int64_t brick) const
+{
+  const std::lock_guard<std::mutex> lock(this->LoadedBricks->Mutex);
+  LoadRecord::Level& level = this->LoadedBricks->Levels[this->Field.Level];
+  level.Has.resize(this->Nodes.front()->size());
+  const auto number = static_cast<std::size_t>(brick);
+  if (!level.Has[number])
+  {
+    level.Has[number] = true;
+    level.Bricks.push_back(brick);
+  }
+}
+
+std::vector<FieldBricks> SeriesBrickSource::Loaded() const
+{
+  const std::lock_guard<std::mutex> lock(this->LoadedBricks->Mutex);
+  std::vector<FieldBricks> loaded;
+  for (const auto& [number, level] : this->LoadedBricks->Levels)
+  {
+    for (std::size_t c = 0; c < this->Components.size(); ++c)
+    {
+      FieldKey field = this->KeyOf(c);
+      field.Level = number;
+      loaded.push_back({ field, level.Bricks });
+    }
+  }
+  return loaded;
 }
 
 } // namespace banyan

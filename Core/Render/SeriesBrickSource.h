@@ -1,11 +1,14 @@
 #ifndef banyan_Render_SeriesBrickSource_h
 #define banyan_Render_SeriesBrickSource_h
 
+#include "Cache/AheadDecoder.h"
 #include "Cache/BrickCache.h"
 #include "Render/BrickSource.h"
 #include "Series/SeriesFile.h"
 
+#include <map>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 namespace banyan
@@ -31,12 +34,28 @@ public:
   std::size_t LoadBytes(std::int64_t brick) const override;
   BrickView Load(std::int64_t brick) override;
 
+  /// What was loaded of this source and its levels so far, in the order in which it was.
+  std::vector<FieldBricks> Loaded() const;
+
 protected:
   std::unique_ptr<BrickSource> MakeLevel(int level, const Box& domain) override;
 
 private:
+  /// Bricks by level, in the order in which they were first loaded.
+  struct LoadRecord
+  {
+    struct Level
+    {
+      std::vector<std::int64_t> Bricks;
+      std::vector<bool> Has; ///< by number
+    };
+    std::map<int, Level> Levels; ///< by FieldKey::Level
+    std::mutex Mutex;
+  };
+
   using NodeList = std::shared_ptr<const std::vector<BrickNode>>;
 
+  void Note(std::int64_t brick) const;
   FieldKey KeyOf(std::size_t component) const;
   BrickView LoadComponent(std::int64_t brick, std::size_t component) const;
   BrickView LoadMagnitude(std::int64_t brick) const;
@@ -52,6 +71,7 @@ private:
   bool Magnitude;
   std::vector<int> Components; ///< the one drawn, or all of them for the magnitude
   std::vector<NodeList> Nodes; ///< one list per entry of Components
+  std::shared_ptr<LoadRecord> LoadedBricks = std::make_shared<LoadRecord>(); ///< shared with the levels
 };
 
 /// Bounds of the Euclidean norm of vectors whose components lie in the given ranges; empty when one

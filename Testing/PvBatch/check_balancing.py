@@ -1,7 +1,9 @@
 """Checks that zones move on real ranks, and that the picture does not change by it.
 
-A camera comes closer to a part of an encoded series, with each mode of LoadBalancing: every frame
-must look as without, and on several ranks bricks must move, but only where a mode asks for it.
+A camera comes closer to a part of an encoded series, and of plain data that lies in pieces, with each
+mode of LoadBalancing: every frame must look as without, and on several ranks bricks must move, but
+only where a mode asks for it. Plain data is shaded as well: without ghost layers its pieces have no
+seams.
 """
 import os
 import sys
@@ -28,10 +30,20 @@ def camera(frame):
             "CameraFocalPoint": target, "CameraViewUp": [0, 1, 0]}
 
 
-def draw(mode, folder):
+def shaded_pieces(view):
+    display = picture_scenes.wavelet(view, opacities=(0.0, 0.0, 0.05, 0.1, 0.2))
+    display.Shade = 1
+    return display
+
+
+DATA = {"encoded": picture_scenes.encoded, "plain": picture_scenes.wavelet,
+        "shaded": shaded_pieces}
+
+
+def draw(data, mode, folder):
     """Pictures and figures of all frames in one mode."""
     view = session.new_view(SIZE, UseFXAA=0, **camera(0))
-    display = picture_scenes.encoded(view)
+    display = DATA[data](view)
     # In place of the tolerance, which pilots may meet with other samples on other ranks.
     display.SampleDistanceVoxels = 0.5
     display.LoadBalancing = mode
@@ -39,11 +51,11 @@ def draw(mode, folder):
     for frame in range(FRAMES):
         for name, value in camera(frame).items():
             setattr(view, name, value)
-        path = os.path.join(folder, f"{mode.replace(' ', '')}.{frame}.png")
+        path = os.path.join(folder, f"{data}.{mode.replace(' ', '')}.{frame}.png")
         simple.SaveScreenshot(path, view, ImageResolution=list(SIZE))
         display.UpdatePropertyInformation()
         figures = {name: display.GetPropertyValue(name) for name in FIGURES}
-        print(mode, frame, figures, flush=True)
+        print(data, mode, frame, figures, flush=True)
         taken.append((pictures.load(path), figures))
     session.clear()
     return taken
@@ -54,6 +66,7 @@ def main():
     parser.add_argument("--out", required=True)
     parser.add_argument("--data", default=".", help="folder with swirl.banyan")
     parser.add_argument("--ranks", type=int, default=1)
+    parser.add_argument("--reference", help="folder of the pictures of one rank")
     arguments = parser.parse_args()
     session.begin(arguments)
     picture_scenes.Settings.data = arguments.data
@@ -64,19 +77,28 @@ def main():
         if not condition:
             failures.append(sentence)
 
-    drawn = {mode: draw(mode, arguments.out) for mode in MODES}
-    for mode, frames in drawn.items():
-        moved = sum(figures["BytesMoved"] for _, figures in frames)
-        wanted = mode != "Off" and arguments.ranks > 1
-        require((moved > 0) == wanted, f"'{mode}' moved {moved} bytes on {arguments.ranks} ranks")
-        for frame, (picture, figures) in enumerate(frames):
-            largest = int(pictures.difference(picture, drawn["Off"][frame][0]).max())
-            require(largest <= TOLERANCE, f"'{mode}', frame {frame}: pixels differ by {largest}")
-            require(picture.max() > 60, f"'{mode}', frame {frame}: nothing was drawn")
-            require(1.0 <= figures["Imbalance"] <= arguments.ranks + 1e-6,
-                    f"'{mode}', frame {frame}: the imbalance is {figures['Imbalance']}")
-    changes = pictures.difference(drawn["Off"][0][0], drawn["Off"][-1][0]).max()
-    require(changes > 60, "the camera did not move")
+    for data in DATA:
+        drawn = {mode: draw(data, mode, arguments.out) for mode in MODES}
+        for mode, frames in drawn.items():
+            moved = sum(figures["BytesMoved"] for _, figures in frames)
+            # Shading takes a layer of samples from the pieces around.
+            wanted = (mode != "Off" or data == "shaded") and arguments.ranks > 1
+            require((moved > 0) == wanted,
+                    f"{data}, '{mode}' moved {moved} bytes on {arguments.ranks} ranks")
+            for frame, (picture, figures) in enumerate(frames):
+                what = f"{data}, '{mode}', frame {frame}"
+                largest = int(pictures.difference(picture, drawn["Off"][frame][0]).max())
+                require(largest <= TOLERANCE, f"{what}: pixels differ by {largest}")
+                require(picture.max() > 60, f"{what}: nothing was drawn")
+                require(1.0 <= figures["Imbalance"] <= arguments.ranks + 1e-6,
+                        f"{what}: the imbalance is {figures['Imbalance']}")
+        for frame, (picture, _) in enumerate(drawn["Off"] if arguments.reference else ()):
+            alone = pictures.load(os.path.join(arguments.reference, f"{data}.Off.{frame}.png"))
+            largest = int(pictures.difference(picture, alone).max())
+            require(largest <= TOLERANCE,
+                    f"{data}, frame {frame}: pixels differ from those of one rank by {largest}")
+        changes = pictures.difference(drawn["Off"][0][0], drawn["Off"][-1][0]).max()
+        require(changes > 60, f"{data}: the camera did not move")
     for failure in failures:
         print("FAILED " + failure, file=sys.stderr)
     if failures:

@@ -109,45 +109,5 @@ TEST(CellsOfBricks, EndsWithTheGrid)
   EXPECT_TRUE(CellsOfBricks({ { 1, 1, 1 }, { 1, 2, 2 } }, 16, { 50, 50, 50 }).Empty());
 }
 
-TEST(MakeDisjoint, GhostLayersGoToTheLowerRank)
-{
-  // Pieces of a 24 x 20 x 18 grid, each one cell (or three) too large at its inner faces.
-  for (const int ghosts : { 0, 1, 3 })
-  {
-    const glm::ivec3 grid(24, 20, 18);
-    std::vector<Box> boxes = StaticZones(grid, 8);
-    for (Box& box : boxes)
-    {
-      box.Lo = glm::max(box.Lo - ghosts, glm::ivec3(0));
-      box.Hi = glm::min(box.Hi + ghosts, grid);
-    }
-    const std::vector<Box> disjoint = MakeDisjoint(boxes);
-    const std::vector<int> cover = Cover(disjoint, grid);
-    EXPECT_TRUE(std::all_of(cover.begin(), cover.end(), [](int n) { return n == 1; })) << ghosts;
-    EXPECT_EQ(disjoint[0], boxes[0]);
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-    {
-      EXPECT_TRUE(boxes[i].Contains(disjoint[i]));
-    }
-  }
-}
-
-TEST(MakeDisjoint, TheSamePieceOnAllRanksStaysOnTheFirst)
-{
-  const Box piece{ { -2, 3, 1 }, { 7, 9, 4 } };
-  const std::vector<Box> disjoint = MakeDisjoint({ Box{}, piece, piece, piece });
-  EXPECT_EQ(disjoint[1], piece);
-  EXPECT_TRUE(disjoint[0].Empty() && disjoint[2].Empty() && disjoint[3].Empty());
-}
-
-TEST(MakeDisjoint, RefusesWhatIsNoBoxAnyMore)
-{
-  const Box all{ { 0, 0, 0 }, { 4, 4, 4 } };
-  EXPECT_THROW(MakeDisjoint({ { { 1, 1, 1 }, { 2, 2, 2 } }, all }), Error); // a hole
-  EXPECT_THROW(MakeDisjoint({ { { 0, 0, 0 }, { 2, 2, 4 } }, all }), Error); // a notch
-  EXPECT_THROW(MakeDisjoint({ { { 1, 0, 0 }, { 2, 4, 4 } }, all }), Error); // two parts
-  EXPECT_EQ(MakeDisjoint({ all, { { 1, 1, 1 }, { 2, 2, 2 } } })[1].Count(), 0);
-}
-
 } // namespace
 } // namespace banyan

@@ -1,0 +1,56 @@
+#ifndef banyan_Cache_AheadDecoder_h
+#define banyan_Cache_AheadDecoder_h
+
+#include "Series/SeriesFile.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace banyan
+{
+
+class BrickCache;
+
+/// Bricks of one field.
+struct FieldBricks
+{
+  FieldKey Field;
+  std::vector<std::int64_t> Bricks;
+};
+
+/// Reads and decodes bricks into a cache on threads of its own, of low priority, before anybody
+/// asks for them: those of the next time step, say, while a picture is composited and shown. What
+/// cannot be read is left to whoever asks for it, who is then told why.
+///
+/// Use it from one thread.
+class AheadDecoder
+{
+public:
+  /// @param cache must stay
+  /// @param threads at least 1; they are started when first needed
+  AheadDecoder(BrickCache& cache, int threads);
+  /// Stops.
+  ~AheadDecoder();
+  AheadDecoder(const AheadDecoder&) = delete;
+  AheadDecoder& operator=(const AheadDecoder&) = delete;
+
+  /// Begins, in place of what it was doing.
+  /// @param wanted in the order in which they will be needed; bricks of one value are passed over
+  /// @param mostBytes that may be decoded
+  void Start(std::shared_ptr<const SeriesFile> series, std::vector<FieldBricks> wanted,
+    std::uint64_t mostBytes);
+
+  /// Begins no further brick. Returns when those that were begun are done.
+  void Stop();
+  /// Returns when all is done: for tests and benchmarks.
+  void Finish();
+
+private:
+  struct Internals;
+  std::unique_ptr<Internals> Self;
+};
+
+} // namespace banyan
+
+#endif
