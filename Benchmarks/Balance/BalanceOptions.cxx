@@ -48,6 +48,7 @@ const char* const BalanceHelp =
   "  --rank-times FILE.csv   each rank's milliseconds too\n"
   "  --brick-times FILE.csv  what the bricks of each frame took, and nothing else\n"
   "  --pieces             with --mpi: each rank holds a piece, and bricks go from rank to rank\n"
+  "  --exchange           with --mpi: all ranks fetch the bricks of the first, and nothing is drawn\n"
   "  --mpi                on the real ranks of mpirun, in wall-clock time; one thread each\n";
 
 const char* NameOf(LoadBalancing mode)
@@ -73,6 +74,8 @@ BalanceOptions ParseBalanceOptions(const std::vector<std::string>& arguments)
       options.Mpi = true;
     else if (option == "--pieces")
       options.Pieces = true;
+    else if (option == "--exchange")
+      options.Exchange = true;
     else if (option == "--series")
       options.Series = value();
     else if (option == "--path")

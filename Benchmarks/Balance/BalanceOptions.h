@@ -26,6 +26,7 @@ struct BalanceOptions
   bool Append = false;
   bool Mpi = false; ///< on the ranks of this job in place of simulated ones
   bool Pieces = false; ///< with Mpi: each rank holds an equal block of the volume, and nothing else
+  bool Exchange = false; ///< with Mpi: only what it takes to fetch a brick
   bool Help = false;
 };
 

@@ -13,6 +13,7 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <cstdio>
 
 namespace banyan::bench
 {
@@ -88,8 +89,8 @@ void DrawPieces(Communicator& communicator, const BenchScene& scene, const Balan
   }
   const Box& own = pieces[static_cast<std::size_t>(communicator.Rank())];
   PieceField field;
-  field.Take(communicator, pieces, PartOf(scene.Data->Array(), own), cells, BenchBrickCells, mode,
-    pool);
+  field.Take(
+    communicator, pieces, PartOf(scene.Data->Array(), own), cells, BenchBrickCells, mode, pool);
   for (int number = 0; number < options.Frames; ++number)
   {
     RayScene drawn = SceneOnPath(scene, options.Path, number, options.Frames);
@@ -114,6 +115,44 @@ void DrawPieces(Communicator& communicator, const BenchScene& scene, const Balan
   }
 }
 
+/// What it takes to fetch all bricks of a volume from the memory of the first rank.
+void FetchAll(Communicator& communicator, const BenchScene& scene)
+{
+  const auto ranks = static_cast<std::size_t>(communicator.Size());
+  const SampleArray whole = scene.Data->Array();
+  std::vector<Box> pieces(ranks);
+  pieces[0] = whole.Samples;
+  const PieceGrid grid(pieces, BenchBrickCells);
+  const PieceSamples mine = communicator.Rank() == 0 ? PieceSamples(whole) : PieceSamples();
+  const std::vector<ScalarType> types(ranks, whole.Type);
+  std::vector<std::int64_t> wanted;
+  std::vector<std::int32_t> counts(ranks * ranks, 0);
+  for (std::size_t rank = 1; rank < ranks; ++rank)
+  {
+    counts[rank * ranks] = static_cast<std::int32_t>(grid.Count());
+  }
+  for (std::int64_t brick = 0; brick < grid.Count() && communicator.Rank() != 0; ++brick)
+  {
+    wanted.push_back(brick);
+  }
+  for (int round = 0; round < 5; ++round)
+  {
+    BrickFetch fetch(communicator, grid, types, mine, false);
+    FetchedBricks into;
+    communicator.Barrier();
+    const Timer timer;
+    const std::string failure = fetch.Exchange(wanted, counts, into);
+    const double seconds = AllMax(communicator, timer.Seconds());
+    const double bytes = AllSum(communicator, static_cast<double>(into.Bytes()));
+    const double bricks = AllSum(communicator, static_cast<double>(into.Count()));
+    if (communicator.Rank() == 0)
+    {
+      std::printf("%.0f bricks, %.1f MB, %.1f ms, %.2f us per brick%s\n", bricks, bytes / 1e6,
+        1e3 * seconds, 1e6 * seconds / bricks, failure.c_str());
+    }
+  }
+}
+
 } // namespace
 
 void DrawOnMpiRanks(const std::function<BenchScene()>& makeScene, const BalanceOptions& options,
@@ -125,7 +164,11 @@ void DrawOnMpiRanks(const std::function<BenchScene()>& makeScene, const BalanceO
     const MPI_Comm world = MPI_COMM_WORLD;
     const auto communicator = MakeMpiCommunicator(&world);
     const BenchScene scene = makeScene();
-    for (const LoadBalancing mode : options.Modes)
+    if (options.Exchange)
+    {
+      FetchAll(*communicator, scene);
+    }
+    for (const LoadBalancing mode : options.Exchange ? std::vector<LoadBalancing>{} : options.Modes)
     {
       (options.Pieces ? DrawPieces : DrawPath)(*communicator, scene, options, mode, take);
     }
