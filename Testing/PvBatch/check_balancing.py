@@ -16,7 +16,7 @@ import session
 
 SIZE = (240, 200)
 MODES = ("Off", "Slice step", "Measured cost")
-FRAMES = 7
+FRAMES = {"encoded": 7, "plain": 6, "shaded": 3}
 TOLERANCE = 1
 FIGURES = ("Imbalance", "BytesMoved", "CacheHits", "CacheMisses", "BricksDrawn")
 
@@ -48,7 +48,7 @@ def draw(data, mode, folder):
     display.SampleDistanceVoxels = 0.5
     display.LoadBalancing = mode
     taken = []
-    for frame in range(FRAMES):
+    for frame in range(FRAMES[data]):
         for name, value in camera(frame).items():
             setattr(view, name, value)
         path = os.path.join(folder, f"{data}.{mode.replace(' ', '')}.{frame}.png")
