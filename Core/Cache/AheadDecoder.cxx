@@ -156,9 +156,8 @@ void AheadDecoder::Start(std::shared_ptr<const SeriesFile> series, std::vector<F
 
 void AheadDecoder::Stop()
 {
-  std::unique_lock<std::mutex> lock(this->Self->Mutex);
+  const std::lock_guard<std::mutex> lock(this->Self->Mutex);
   this->Self->Drop();
-  this->Self->Changed.wait(lock, [this] { return this->Self->Busy == 0; });
   this->Self->Series.reset();
 }
 

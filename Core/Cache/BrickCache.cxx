@@ -107,7 +107,8 @@ struct BrickCache::Internals
   struct Pending
   {
     bool Done = false;
-    Pointer Result; ///< null after Done: decoding failed
+    bool Ahead = false; ///< nobody asked for it: somebody who does need not wait for it
+    Pointer Result;     ///< null after Done: decoding failed
   };
 
   std::uint64_t Budget = 0;
@@ -183,6 +184,13 @@ struct BrickCache::Internals
       {
         return nullptr;
       }
+      if (this->Decoding[key]->Ahead)
+      {
+        // Threads that work ahead have low priority: decoding once more is quicker than to wait.
+        this->Decoding[key] = std::make_shared<Pending>();
+        ++this->Numbers.Misses;
+        return nullptr;
+      }
       const std::shared_ptr<Pending> pending = this->Decoding[key];
       this->Decoded.wait(lock, [&pending] { return pending->Done; });
       if (pending->Result)
@@ -205,14 +213,37 @@ struct BrickCache::Internals
     return true;
   }
 
-  /// Claims a brick that is neither held nor being decoded.
-  bool ClaimAhead(const Key& key)
+  /// Claims a brick that is neither held nor being decoded; null when it is.
+  std::shared_ptr<Pending> ClaimAhead(const Key& key)
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
-    return this->Places.count(key) == 0 && this->Claim(key);
+    if (this->Places.count(key) > 0 || !this->Claim(key))
+    {
+      return nullptr;
+    }
+    const std::shared_ptr<Pending> claim = this->Decoding[key];
+    claim->Ahead = true;
+    return claim;
   }
 
-  void Publish(const Key& key, const Pointer& brick, bool ahead)
+  /// Unless somebody has taken the claim over.
+  void PublishAhead(const Key& key, const std::shared_ptr<Pending>& claim, const Pointer& brick)
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    const auto decoding = this->Decoding.find(key);
+    if (decoding == this->Decoding.end() || decoding->second != claim)
+    {
+      return;
+    }
+    this->Decoding.erase(decoding);
+    if (brick)
+    {
+      this->Keep(key, brick, true);
+      ++this->Ahead.Decoded;
+    }
+  }
+
+  void Publish(const Key& key, const Pointer& brick)
   {
     {
       std::lock_guard<std::mutex> lock(this->Mutex);
@@ -222,8 +253,7 @@ struct BrickCache::Internals
       this->Decoding.erase(decoding);
       if (brick)
       {
-        this->Keep(key, brick, ahead);
-        this->Ahead.Decoded += ahead ? 1 : 0;
+        this->Keep(key, brick, false);
       }
     }
     this->Decoded.notify_all();
@@ -231,17 +261,17 @@ struct BrickCache::Internals
 
   /// For the thread that claimed it.
   Pointer DecodeClaimed(
-    const SeriesFile& series, const FieldKey& field, std::int64_t brick, const Key& key, bool ahead)
+    const SeriesFile& series, const FieldKey& field, std::int64_t brick, const Key& key)
   {
     try
     {
       Pointer values = Decode(series, field, brick, key);
-      this->Publish(key, values, ahead);
+      this->Publish(key, values);
       return values;
     }
     catch (...)
     {
-      this->Publish(key, nullptr, ahead);
+      this->Publish(key, nullptr);
       throw;
     }
   }
@@ -278,7 +308,7 @@ std::shared_ptr<const BrickValues> BrickCache::Get(
     return Decode(series, field, brick, key);
   }
   const auto found = this->Self->FindOrClaim(key);
-  return found ? found : this->Self->DecodeClaimed(series, field, brick, key, false);
+  return found ? found : this->Self->DecodeClaimed(series, field, brick, key);
 }
 
 std::uint64_t BrickCache::GetAhead(
@@ -286,11 +316,22 @@ std::uint64_t BrickCache::GetAhead(
 {
   const BrickNode node = NodeOf(series, field, brick);
   const Key key = KeyOf(series, field, node, brick);
-  if (node.Uniform || !this->Self->ClaimAhead(key))
+  const auto claim = node.Uniform ? nullptr : this->Self->ClaimAhead(key);
+  if (!claim)
   {
     return 0;
   }
-  return CostOf(*this->Self->DecodeClaimed(series, field, brick, key, true));
+  try
+  {
+    const std::shared_ptr<const BrickValues> values = Decode(series, field, brick, key);
+    this->Self->PublishAhead(key, claim, values);
+    return CostOf(*values);
+  }
+  catch (...)
+  {
+    this->Self->PublishAhead(key, claim, nullptr);
+    throw;
+  }
 }
 
 BrickCache::AheadStatistics BrickCache::GetAheadStatistics() const

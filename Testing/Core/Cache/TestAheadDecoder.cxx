@@ -115,6 +115,7 @@ TEST_F(Ahead, StopsAndBeginsAgainAtAnyTime)
     cache.Get(*this->File, { i % Steps, 0, 0, 0 }, i % 16);
   }
   decoder.Stop();
+  decoder.Finish();
   const std::uint64_t decoded = cache.GetAheadStatistics().Decoded;
   cache.Clear();
   decoder.Finish();
