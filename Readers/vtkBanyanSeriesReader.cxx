@@ -1,8 +1,7 @@
 #include "vtkBanyanSeriesReader.h"
 
-#include "MeshOutput.h"
 #include "SeriesInformation.h"
-#include "VerifiedBricks.h"
+#include "SeriesReaderInternals.h"
 #include "vtkBanyanDeferred.h"
 
 #include "vtkDataArray.h"
@@ -17,7 +16,6 @@
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkUnstructuredGrid.h"
 
 #include "Cache/BrickCache.h"
 #include "Series/LevelGrid.h"
@@ -30,18 +28,6 @@
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 vtkStandardNewMacro(vtkBanyanSeriesReader);
-
-struct vtkBanyanSeriesReader::Internals
-{
-  std::shared_ptr<const banyan::SeriesFile> Series;
-  std::string OpenName; ///< the FileName that Series was opened from
-  bool Reopen = false;
-  banyan::MeshOutput Mesh;
-  banyan::VerifiedBricks Verified;
-  vtkNew<vtkDataArraySelection> Selection;
-  vtkSmartPointer<vtkMultiProcessController> Controller;
-  std::string ErrorMessage;
-};
 
 vtkBanyanSeriesReader::vtkBanyanSeriesReader()
   : Self(new Internals)
@@ -258,50 +244,6 @@ bool vtkBanyanSeriesReader::OpenOnAllRanks()
 //--------------------------------------------------------------------------------------------------
 // Information
 
-bool vtkBanyanSeriesReader::IsMesh() const
-{
-  return this->Self->Series && this->Self->Series->Index().Mesh;
-}
-
-int vtkBanyanSeriesReader::FillOutputPortInformation(int, vtkInformation* info)
-{
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataSet");
-  return 1;
-}
-
-vtkTypeBool vtkBanyanSeriesReader::ProcessRequest(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  if (request->Has(Pipeline::REQUEST_DATA_OBJECT()))
-  {
-    return this->MakeOutput(outputs);
-  }
-  return this->Superclass::ProcessRequest(request, inputs, outputs);
-}
-
-/// An output of the type that the series is of; an image where it cannot be opened.
-int vtkBanyanSeriesReader::MakeOutput(vtkInformationVector* outputs)
-{
-  const std::string wanted = this->FileName ? this->FileName : "";
-  bool open = true;
-  if (!this->Self->Series || this->Self->OpenName != wanted || this->Self->Reopen)
-  {
-    this->Clear();
-    open = this->OpenOnAllRanks();
-  }
-  vtkInformation* const info = outputs->GetInformationObject(0);
-  const int type = this->IsMesh() ? VTK_UNSTRUCTURED_GRID : VTK_IMAGE_DATA;
-  vtkDataObject* const now = info->Get(vtkDataObject::DATA_OBJECT());
-  if (!now || now->GetDataObjectType() != type)
-  {
-    vtkSmartPointer<vtkDataObject> output;
-    output.TakeReference(this->IsMesh() ? static_cast<vtkDataObject*>(vtkUnstructuredGrid::New())
-                                        : vtkImageData::New());
-    info->Set(vtkDataObject::DATA_OBJECT(), output);
-  }
-  return open ? 1 : 0;
-}
-
 int vtkBanyanSeriesReader::UsedLevel() const
 {
   return std::min(this->Level, this->Self->Series->Index().Levels - 1);
@@ -427,34 +369,6 @@ void vtkBanyanSeriesReader::FillOutput(vtkInformation* outInfo)
     const vtkSmartPointer<vtkDataArray> values =
       defer ? vtkBanyanDeferred::New(handle) : vtkBanyanDeferred::NewPlain(handle);
     output->GetPointData()->AddArray(values);
-  }
-  if (output->GetPointData()->HasArray(index.ActiveScalars.c_str()))
-  {
-    output->GetPointData()->SetActiveScalars(index.ActiveScalars.c_str());
-  }
-  this->UpdateProgress(1.0);
-}
-
-void vtkBanyanSeriesReader::FillMesh(vtkInformation* outInfo)
-{
-  const banyan::SeriesIndex& index = this->Self->Series->Index();
-  vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outInfo);
-  const bool told = outInfo->Has(Pipeline::UPDATE_NUMBER_OF_PIECES());
-  this->Self->Mesh.FillGrid(this->Level, told ? outInfo->Get(Pipeline::UPDATE_PIECE_NUMBER()) : 0,
-    told ? std::max(outInfo->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()), 1) : 1, output);
-  vtkBanyanDeferred::Handle handle;
-  handle.Series = this->Self->Series;
-  handle.Step = banyan::StepAt(index, *outInfo);
-  handle.Samples = { glm::ivec3{ 0 }, index.Domain.Samples() };
-  output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), index.Times[handle.Step]);
-  const int arrays = static_cast<int>(index.Arrays.size());
-  for (handle.Array = 0; handle.Array < arrays; ++handle.Array)
-  {
-    this->UpdateProgress(static_cast<double>(handle.Array) / arrays);
-    if (this->Self->Selection->ArrayIsEnabled(index.Arrays[handle.Array].Name.c_str()))
-    {
-      output->GetPointData()->AddArray(this->Self->Mesh.Values(handle));
-    }
   }
   if (output->GetPointData()->HasArray(index.ActiveScalars.c_str()))
   {

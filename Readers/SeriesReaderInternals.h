@@ -1,0 +1,30 @@
+#ifndef banyan_Readers_SeriesReaderInternals_h
+#define banyan_Readers_SeriesReaderInternals_h
+
+#include "MeshOutput.h"
+#include "VerifiedBricks.h"
+#include "vtkBanyanSeriesReader.h"
+
+#include "vtkDataArraySelection.h"
+#include "vtkMultiProcessController.h"
+#include "vtkNew.h"
+#include "vtkSmartPointer.h"
+
+#include "Series/SeriesFile.h"
+
+#include <memory>
+#include <string>
+
+struct vtkBanyanSeriesReader::Internals
+{
+  std::shared_ptr<const banyan::SeriesFile> Series;
+  std::string OpenName; ///< the FileName that Series was opened from
+  bool Reopen = false;
+  banyan::MeshOutput Mesh;
+  banyan::VerifiedBricks Verified;
+  vtkNew<vtkDataArraySelection> Selection;
+  vtkSmartPointer<vtkMultiProcessController> Controller;
+  std::string ErrorMessage;
+};
+
+#endif

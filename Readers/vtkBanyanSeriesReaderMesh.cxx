@@ -1,0 +1,87 @@
+// What the reader does differently for series of meshes.
+#include "SeriesInformation.h"
+#include "SeriesReaderInternals.h"
+
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <algorithm>
+
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+bool vtkBanyanSeriesReader::IsMesh() const
+{
+  return this->Self->Series && this->Self->Series->Index().Mesh;
+}
+
+int vtkBanyanSeriesReader::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataSet");
+  return 1;
+}
+
+vtkTypeBool vtkBanyanSeriesReader::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (request->Has(Pipeline::REQUEST_DATA_OBJECT()))
+  {
+    return this->MakeOutput(outputs);
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+/// An output of the type that the series is of; an image where it cannot be opened.
+int vtkBanyanSeriesReader::MakeOutput(vtkInformationVector* outputs)
+{
+  const std::string wanted = this->FileName ? this->FileName : "";
+  bool open = true;
+  if (!this->Self->Series || this->Self->OpenName != wanted || this->Self->Reopen)
+  {
+    this->Clear();
+    open = this->OpenOnAllRanks();
+  }
+  vtkInformation* const info = outputs->GetInformationObject(0);
+  const int type = this->IsMesh() ? VTK_UNSTRUCTURED_GRID : VTK_IMAGE_DATA;
+  vtkDataObject* const now = info->Get(vtkDataObject::DATA_OBJECT());
+  if (!now || now->GetDataObjectType() != type)
+  {
+    vtkSmartPointer<vtkDataObject> output;
+    output.TakeReference(this->IsMesh() ? static_cast<vtkDataObject*>(vtkUnstructuredGrid::New())
+                                        : vtkImageData::New());
+    info->Set(vtkDataObject::DATA_OBJECT(), output);
+  }
+  return open ? 1 : 0;
+}
+
+void vtkBanyanSeriesReader::FillMesh(vtkInformation* outInfo)
+{
+  const banyan::SeriesIndex& index = this->Self->Series->Index();
+  vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outInfo);
+  const bool told = outInfo->Has(Pipeline::UPDATE_NUMBER_OF_PIECES());
+  this->Self->Mesh.FillGrid(this->Level, told ? outInfo->Get(Pipeline::UPDATE_PIECE_NUMBER()) : 0,
+    told ? std::max(outInfo->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()), 1) : 1, output);
+  vtkBanyanDeferred::Handle handle;
+  handle.Series = this->Self->Series;
+  handle.Step = banyan::StepAt(index, *outInfo);
+  handle.Samples = { glm::ivec3{ 0 }, index.Domain.Samples() };
+  output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), index.Times[handle.Step]);
+  const int arrays = static_cast<int>(index.Arrays.size());
+  for (handle.Array = 0; handle.Array < arrays; ++handle.Array)
+  {
+    this->UpdateProgress(static_cast<double>(handle.Array) / arrays);
+    if (this->Self->Selection->ArrayIsEnabled(index.Arrays[handle.Array].Name.c_str()))
+    {
+      output->GetPointData()->AddArray(this->Self->Mesh.Values(handle));
+    }
+  }
+  if (output->GetPointData()->HasArray(index.ActiveScalars.c_str()))
+  {
+    output->GetPointData()->SetActiveScalars(index.ActiveScalars.c_str());
+  }
+  this->UpdateProgress(1.0);
+}
