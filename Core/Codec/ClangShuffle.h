@@ -2,26 +2,34 @@
 #define banyan_Codec_ClangShuffle_h
 
 /// Clang does not have GCC's `__builtin_shuffle` for lanes that are chosen while running: where it
-/// compiles Core, this file comes before all others.
+/// compiles Core, this file comes before all others. Not a function: it would be compiled for other
+/// instructions than those who call it, and must not be given their vectors then.
 #ifdef __cplusplus
 namespace banyan
 {
 
-template <class Vector, class Lanes>
-inline __attribute__((always_inline)) Vector ShuffledLanes(Vector from, Lanes lanes)
+template <class Vector, class Numbers>
+struct LanesToShuffle
 {
-  Vector result{};
-  constexpr int count = sizeof(Vector) / sizeof(from[0]);
-  for (int i = 0; i < count; ++i)
-  {
-    result[i] = from[lanes[i] & (count - 1)];
-  }
-  return result;
-}
+  Vector From;
+  Numbers Lanes;
+};
+template <class Vector, class Numbers>
+LanesToShuffle(Vector, Numbers) -> LanesToShuffle<Vector, Numbers>;
 
 } // namespace banyan
 
-#define __builtin_shuffle(from, ...) ::banyan::ShuffledLanes(from, __VA_ARGS__)
+#define __builtin_shuffle(...)                                                                     \
+  (__extension__({                                                                                 \
+    const ::banyan::LanesToShuffle shuffle{ __VA_ARGS__ };                                         \
+    auto shuffled = shuffle.From;                                                                  \
+    constexpr int shuffledCount = sizeof(shuffled) / sizeof(shuffled[0]);                          \
+    for (int lane = 0; lane < shuffledCount; ++lane)                                               \
+    {                                                                                              \
+      shuffled[lane] = shuffle.From[shuffle.Lanes[lane] & (shuffledCount - 1)];                    \
+    }                                                                                              \
+    shuffled;                                                                                      \
+  }))
 #endif
 
 #endif

@@ -1,196 +1,20 @@
 #include "Codec/SymbolWriter.h"
 
 #include "Base/Error.h"
+#include "Codec/BackwardBits.h"
 #include "Codec/SharedContexts.h"
 
 #include <algorithm>
-#include <cstring>
+
+// Compiled for processors with quick shifts, too.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define BANYAN_CLONES __attribute__((target_clones("arch=haswell", "default")))
+#else
+#define BANYAN_CLONES
+#endif
 
 namespace banyan
 {
-namespace
-{
-
-/// Collects bits, lowest first.
-class BitWriter
-{
-public:
-  /// @param bits that will be put at most
-  explicit BitWriter(std::size_t bits)
-    : Bytes(bits / 8 + 16)
-  {
-  }
-
-  /// At most 32 bits.
-  void Put(std::uint32_t value, std::uint32_t bits)
-  {
-    this->Add(value, bits);
-    this->Flush();
-  }
-
-  /// At most 56 bits between two calls of Flush.
-  void Add(std::uint32_t value, std::uint32_t bits)
-  {
-    this->Word |= std::uint64_t{ value } << this->Filled;
-    this->Filled += bits;
-  }
-
-  void Flush()
-  {
-    std::memcpy(this->Bytes.data() + this->At, &this->Word, 8);
-    const std::uint32_t whole = this->Filled >> 3;
-    this->At += whole;
-    this->Word >>= 8 * whole;
-    this->Filled &= 7;
-  }
-
-  std::vector<std::uint8_t> Finish()
-  {
-    this->Bytes.resize(this->At + (this->Filled > 0 ? 1 : 0));
-    this->Bytes.shrink_to_fit();
-    return std::move(this->Bytes);
-  }
-
-private:
-  std::vector<std::uint8_t> Bytes;
-  std::size_t At = 0;
-  std::uint64_t Word = 0;
-  std::uint32_t Filled = 0;
-};
-
-} // namespace
-
-void ContextCounts::Add(const std::vector<std::uint16_t>& tokens)
-{
-  for (const std::uint16_t token : tokens)
-  {
-    ++this->Of[token >> residual::TokenShift][token & residual::TokenMask];
-  }
-}
-
-void ContextCounts::Add(const ContextCounts& other)
-{
-  for (std::size_t c = 0; c < this->Of.size(); ++c)
-  {
-    for (std::size_t s = 0; s < this->Of[c].size(); ++s)
-    {
-      this->Of[c][s] += other.Of[c][s];
-    }
-  }
-}
-
-SymbolTables::SymbolTables(const ContextCounts& each)
-  : Tables(residual::ContextCount)
-{
-  ContextCounts counts = each;
-  ShareContexts(counts);
-  for (std::size_t c = 0; c < counts.Of.size(); ++c)
-  {
-    this->Of.push_back(tans::Normalize(counts.Of[c].data()));
-    const tans::EncodeTable encode(this->Of.back());
-    Table& table = this->Tables[c];
-    std::copy(encode.Next.begin(), encode.Next.end(), table.Next.begin());
-    for (int s = 0; s < tans::SymbolCount; ++s)
-    {
-      const std::uint32_t frequency = encode.Used[s];
-      if (frequency == 0)
-      {
-        continue;
-      }
-      int most = 0; // bits written from the greatest states
-      while ((2u * tans::TableSize - 1u) >> most >= 2 * frequency)
-      {
-        ++most;
-      }
-      Transform& transform = table.Symbols[static_cast<std::size_t>(s)];
-      transform.DeltaBits = most == 0 ? 0
-                                      : (static_cast<std::uint32_t>(most) << 16) -
-                                          (frequency << most);
-      transform.DeltaState =
-        static_cast<std::int32_t>(encode.First[s]) - static_cast<std::int32_t>(frequency);
-    }
-  }
-}
-
-/// More lanes decode faster, but each costs its first state: as many as make a payload about 1 %
-/// larger.
-int SymbolTables::LanesLogFor(const std::vector<std::uint16_t>& tokens) const
-{
-  const std::size_t every = tokens.size() < 1024 ? 1 : 8; // of many, some tell enough
-  std::uint64_t bits = 0;
-  for (std::size_t i = 0; i < tokens.size(); i += every)
-  {
-    const std::uint16_t token = tokens[i];
-    bits += (tans::TableSize * 3 / 2 +
-              this->Tables[token >> residual::TokenShift].Symbols[token & residual::TokenMask].DeltaBits) >> 16;
-  }
-  bits *= every;
-  return bits < 600 ? 0 : bits < 2400 ? 1 : bits < 8000 ? 2 : 3;
-}
-
-std::vector<std::uint8_t> SymbolTables::Encode(const std::vector<std::uint16_t>& tokens,
-  const std::vector<std::uint32_t>& extra, const std::vector<std::uint16_t>& runs) const
-{
-  const int lanesLog = this->LanesLogFor(tokens);
-  const std::size_t lanes = std::size_t{ 1 } << lanesLog;
-  thread_local std::vector<std::uint32_t> written; // bits << 4 | their number
-  written.resize(tokens.size());
-  std::uint32_t states[tans::MostLanes];
-  std::fill(states, states + lanes, static_cast<std::uint32_t>(tans::TableSize));
-  std::size_t begin = tokens.size();
-  std::size_t total = 2 + lanes * tans::TableBits + 32 * extra.size();
-  for (std::size_t run = runs.size(); run-- > 0;)
-  {
-    const std::size_t end = begin;
-    begin -= runs[run];
-    for (std::size_t i = end; i-- > begin;)
-    {
-      const Table& table = this->Tables[tokens[i] >> residual::TokenShift];
-      const Transform& transform = table.Symbols[tokens[i] & residual::TokenMask];
-      std::uint32_t& state = states[(i - begin) & (lanes - 1)];
-      const std::uint32_t bits = (state + transform.DeltaBits) >> 16;
-      written[i] = (state & ((1u << bits) - 1u)) << 4 | bits;
-      total += bits;
-      state = table.Next[static_cast<std::size_t>(
-        static_cast<std::int32_t>(state >> bits) + transform.DeltaState)];
-    }
-  }
-  BitWriter writer(total);
-  writer.Put(static_cast<std::uint32_t>(lanesLog), 2);
-  for (std::size_t lane = 0; lane < lanes; ++lane)
-  {
-    writer.Put(states[lane] - tans::TableSize, tans::TableBits);
-  }
-  std::size_t nextExtra = 0;
-  for (const std::uint16_t run : runs)
-  {
-    const std::size_t end = begin + run;
-    std::size_t i = begin;
-    for (; i + 4 <= end; i += 4) // at most 40 bits
-    {
-      writer.Add(written[i] >> 4, written[i] & 15u);
-      writer.Add(written[i + 1] >> 4, written[i + 1] & 15u);
-      writer.Add(written[i + 2] >> 4, written[i + 2] & 15u);
-      writer.Add(written[i + 3] >> 4, written[i + 3] & 15u);
-      writer.Flush();
-    }
-    for (; i < end; ++i)
-    {
-      writer.Put(written[i] >> 4, written[i] & 15u);
-    }
-    for (i = begin; i < end && nextExtra < extra.size(); ++i)
-    {
-      const int symbol = tokens[i] & residual::TokenMask;
-      if (symbol >= residual::DirectSymbols)
-      {
-        writer.Put(extra[nextExtra++], static_cast<std::uint32_t>(residual::ExtraBits(symbol)));
-      }
-    }
-    begin = end;
-  }
-  return writer.Finish();
-}
-
 namespace
 {
 
@@ -220,6 +44,195 @@ std::size_t SharedWith(const std::vector<tans::Frequencies>& frequencies, std::s
 }
 
 } // namespace
+
+void ContextCounts::Add(const std::vector<std::uint16_t>& tokens)
+{
+  for (const std::uint16_t token : tokens)
+  {
+    ++this->Of[token >> residual::TokenShift][token & residual::TokenMask];
+  }
+}
+
+void ContextCounts::Add(const ContextCounts& other)
+{
+  for (std::size_t c = 0; c < this->Of.size(); ++c)
+  {
+    for (std::size_t s = 0; s < this->Of[c].size(); ++s)
+    {
+      this->Of[c][s] += other.Of[c][s];
+    }
+  }
+}
+
+SymbolTables::SymbolTables(const ContextCounts& each)
+  : Transforms(std::size_t{ residual::ContextCount } << residual::TokenShift)
+{
+  ContextCounts counts = each;
+  ShareContexts(counts);
+  for (const auto& context : counts.Of)
+  {
+    this->Of.push_back(tans::Normalize(context.data()));
+  }
+  for (std::size_t c = 0; c < this->Of.size(); ++c)
+  {
+    this->AddTable(c);
+  }
+}
+
+/// Makes the table of a context, or takes that of one before.
+void SymbolTables::AddTable(std::size_t context)
+{
+  Transform* const to = this->Transforms.data() + (context << residual::TokenShift);
+  const std::size_t shared = SharedWith(this->Of, context);
+  if (shared > 0)
+  {
+    const Transform* const from = to - (shared << residual::TokenShift);
+    std::copy(from, from + tans::SymbolCount, to);
+    return;
+  }
+  if (Same(this->Of[context], tans::Frequencies{}))
+  {
+    return; // it never comes
+  }
+  const tans::EncodeTable encode(this->Of[context]);
+  for (int s = 0; s < tans::SymbolCount; ++s)
+  {
+    const std::uint32_t frequency = encode.Used[s];
+    if (frequency == 0)
+    {
+      continue;
+    }
+    int most = 0; // bits written from the greatest states
+    while ((2u * tans::TableSize - 1u) >> most >= 2 * frequency)
+    {
+      ++most;
+    }
+    to[s].DeltaBits =
+      most == 0 ? 0 : (static_cast<std::uint32_t>(most) << 16) - (frequency << most);
+    to[s].DeltaState = static_cast<std::int32_t>(this->Next.size() + encode.First[s]) -
+                       static_cast<std::int32_t>(frequency);
+  }
+  this->Next.insert(this->Next.end(), encode.Next.begin(), encode.Next.end());
+}
+
+/// More lanes decode faster, but each costs its first state: as many as make a payload about 1 %
+/// larger.
+int SymbolTables::LanesLogFor(const std::vector<std::uint16_t>& tokens) const
+{
+  const std::size_t every = tokens.size() < 1024 ? 1 : 8; // of many, some tell enough
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < tokens.size(); i += every)
+  {
+    bits += (tans::TableSize * 3 / 2 + this->Transforms[tokens[i]].DeltaBits) >> 16;
+  }
+  bits *= every;
+  return bits < 600 ? 0 : bits < 2400 ? 1 : bits < 8000 ? 2 : 3;
+}
+
+/// Writes a payload from its end to its beginning.
+struct SymbolTables::Backwards
+{
+  const Transform* Transforms;
+  const std::uint16_t* Next;
+  BackwardBits Bits;
+  std::uint32_t States[tans::MostLanes];
+
+  void Symbol(std::uint16_t token, std::uint32_t& state)
+  {
+    const Transform transform = this->Transforms[token];
+    const std::uint32_t bits = (state + transform.DeltaBits) >> 16;
+    this->Bits.Add(state & ((1u << bits) - 1u), bits);
+    state = this->Next[static_cast<std::int32_t>(state >> bits) + transform.DeltaState];
+  }
+
+  /// The symbols of a run, which take turns with the states. Unrolled by hand: states are registers only
+  /// where their numbers are constants.
+  template <int Lanes>
+  void Run(const std::uint16_t* tokens, std::size_t count)
+  {
+    for (; count % 8 != 0; --count)
+    {
+      this->Symbol(tokens[count - 1], this->States[(count - 1) % Lanes]);
+      this->Bits.Flush();
+    }
+    for (; count > 0; count -= 8)
+    {
+      const std::uint16_t* const some = tokens + count - 8;
+      this->Symbol(some[7], this->States[7 % Lanes]); // each takes at most 9 bits
+      this->Symbol(some[6], this->States[6 % Lanes]);
+      this->Symbol(some[5], this->States[5 % Lanes]);
+      this->Symbol(some[4], this->States[4 % Lanes]);
+      this->Bits.Flush();
+      this->Symbol(some[3], this->States[3 % Lanes]);
+      this->Symbol(some[2], this->States[2 % Lanes]);
+      this->Symbol(some[1], this->States[1 % Lanes]);
+      this->Symbol(some[0], this->States[0]);
+      this->Bits.Flush();
+    }
+  }
+
+  /// The bits that follow the symbols of a run.
+  /// @param extra behind the last of them
+  /// @return its first
+  const std::uint32_t* Extra(
+    const std::uint16_t* tokens, std::size_t count, const std::uint32_t* extra)
+  {
+    int any = 0;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      any |= static_cast<int>((tokens[i] & residual::TokenMask) >= residual::DirectSymbols);
+    }
+    for (std::size_t i = any != 0 ? count : 0; i-- > 0;)
+    {
+      const int symbol = tokens[i] & residual::TokenMask;
+      if (symbol >= residual::DirectSymbols)
+      {
+        this->Bits.Put(*--extra, static_cast<std::uint32_t>(residual::ExtraBits(symbol)));
+      }
+    }
+    return extra;
+  }
+};
+
+template <int Lanes>
+BANYAN_CLONES void SymbolTables::Write(Backwards& to, const std::vector<std::uint16_t>& tokens,
+  const std::vector<std::uint32_t>& extra, const std::vector<std::uint16_t>& runs)
+{
+  Backwards writer = to; // registers
+  const std::uint16_t* end = tokens.data() + tokens.size();
+  const std::uint32_t* lastExtra = extra.data() + extra.size();
+  for (std::size_t run = runs.size(); run-- > 0;)
+  {
+    end -= runs[run];
+    if (lastExtra != extra.data())
+    {
+      lastExtra = writer.Extra(end, runs[run], lastExtra);
+    }
+    writer.template Run<Lanes>(end, runs[run]);
+  }
+  to = writer;
+}
+
+std::vector<std::uint8_t> SymbolTables::Encode(const std::vector<std::uint16_t>& tokens,
+  const std::vector<std::uint32_t>& extra, const std::vector<std::uint16_t>& runs) const
+{
+  const int lanesLog = this->LanesLogFor(tokens);
+  const std::size_t lanes = std::size_t{ 1 } << lanesLog;
+  Backwards writer{ this->Transforms.data(), this->Next.data(),
+    BackwardBits(2 + tans::TableBits * (lanes + tokens.size()) + 32 * extra.size()), {} };
+  std::fill(writer.States, writer.States + lanes, static_cast<std::uint32_t>(tans::TableSize));
+  const auto write = lanesLog == 0   ? &SymbolTables::Write<1>
+                     : lanesLog == 1 ? &SymbolTables::Write<2>
+                     : lanesLog == 2 ? &SymbolTables::Write<4>
+                                     : &SymbolTables::Write<8>;
+  write(writer, tokens, extra, runs);
+  for (std::size_t lane = lanes; lane-- > 0;)
+  {
+    writer.Bits.Put(writer.States[lane] - tans::TableSize, tans::TableBits);
+  }
+  writer.Bits.Put(static_cast<std::uint32_t>(lanesLog), 2);
+  return writer.Bits.Finish();
+}
 
 std::vector<std::uint8_t> PackFrequencies(const std::vector<tans::Frequencies>& frequencies)
 {

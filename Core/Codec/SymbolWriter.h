@@ -43,15 +43,16 @@ private:
     std::uint32_t DeltaBits = 0; ///< (state + DeltaBits) >> 16 is the number of bits to write
     std::int32_t DeltaState = 0; ///< (state >> bits) + DeltaState is the place in Next
   };
-  struct Table
-  {
-    std::array<Transform, tans::SymbolCount> Symbols;
-    std::array<std::uint16_t, tans::TableSize> Next;
-  };
+  struct Backwards;
+  void AddTable(std::size_t context);
+  template <int Lanes>
+  static void Write(Backwards& to, const std::vector<std::uint16_t>& tokens,
+    const std::vector<std::uint32_t>& extra, const std::vector<std::uint16_t>& runs);
   int LanesLogFor(const std::vector<std::uint16_t>& tokens) const;
 
   std::vector<tans::Frequencies> Of;
-  std::vector<Table> Tables;
+  std::vector<Transform> Transforms; ///< by token
+  std::vector<std::uint16_t> Next;   ///< states of all tables; contexts that are alike have one
 };
 
 /// Frequencies of all contexts as bytes, and back. Throws Error when the bytes are not valid.
