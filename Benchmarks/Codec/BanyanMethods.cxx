@@ -137,6 +137,15 @@ constexpr Variant Variants[] = {
   { "banyan-compact", [](EncodeOptions& options) { options.Profile = EncodeProfile::Compact; } },
   { "banyan-every-step", [](EncodeOptions& options) { options.KeyframeInterval = 1; } },
   { "banyan-32", [](EncodeOptions& options) { options.BrickCells = 32; } },
+  // What each idea is worth.
+  { "banyan-without-roughness",
+    [](EncodeOptions& options) { options.Ideas.TablesByRoughness = false; } },
+  { "banyan-without-sharing", [](EncodeOptions& options) { options.Ideas.SharedTables = false; } },
+  { "banyan-without-axes", [](EncodeOptions& options) { options.Ideas.SmoothestAxisLast = false; } },
+  { "banyan-without-group-before",
+    [](EncodeOptions& options) { options.Ideas.GroupBefore = false; } },
+  { "banyan-without-modes", [](EncodeOptions& options) { options.Ideas.AllModes = false; } },
+  { "banyan-without-trials", [](EncodeOptions& options) { options.Ideas.Trials = false; } },
 };
 
 } // namespace

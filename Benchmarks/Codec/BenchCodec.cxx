@@ -39,7 +39,8 @@ MethodList ChosenMethods(const CodecOptions& options)
   const auto unwanted = [&](const auto& method)
   {
     const auto& names = options.Methods;
-    return !names.empty() && std::find(names.begin(), names.end(), method->Name()) == names.end();
+    return names.empty() ? method->ByNameOnly()
+                         : std::find(names.begin(), names.end(), method->Name()) == names.end();
   };
   methods.erase(std::remove_if(methods.begin(), methods.end(), unwanted), methods.end());
   return methods;

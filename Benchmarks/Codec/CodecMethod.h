@@ -75,6 +75,8 @@ public:
 
   /// As in the CSV. Ours begin with "banyan" and have to keep the error bound.
   const std::string& Name() const { return this->MethodName; }
+  /// Measured only where it is asked for.
+  bool ByNameOnly() const { return this->MethodName.rfind("banyan-without-", 0) == 0; }
   bool Ours() const { return this->MethodName.rfind("banyan", 0) == 0; }
 
   /// Chooses what depends on series and bound; called before `Encode`, and its time is not counted.

@@ -5,6 +5,7 @@
 #include "Codec/SharedContexts.h"
 
 #include <algorithm>
+#include <functional>
 
 // Compiled for processors with quick shifts, too.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
@@ -64,11 +65,32 @@ void ContextCounts::Add(const ContextCounts& other)
   }
 }
 
-SymbolTables::SymbolTables(const ContextCounts& each)
+void ContextCounts::ForgetClasses()
+{
+  const auto merge = [this](std::size_t first, std::size_t count)
+  {
+    std::array<std::uint32_t, tans::SymbolCount> sum = {};
+    for (std::size_t c = first; c < first + count; ++c)
+    {
+      std::transform(sum.begin(), sum.end(), this->Of[c].begin(), sum.begin(), std::plus<>());
+    }
+    std::fill_n(this->Of.begin() + static_cast<std::ptrdiff_t>(first), count, sum);
+  };
+  for (std::size_t band = 0; band < residual::Bands; ++band)
+  {
+    merge(band * residual::Classes, residual::Classes);
+    merge(residual::FlagContext + band * residual::RowClasses, residual::RowClasses);
+  }
+}
+
+SymbolTables::SymbolTables(const ContextCounts& each, bool share)
   : Transforms(std::size_t{ residual::ContextCount } << residual::TokenShift)
 {
   ContextCounts counts = each;
-  ShareContexts(counts);
+  if (share)
+  {
+    ShareContexts(counts);
+  }
   for (const auto& context : counts.Of)
   {
     this->Of.push_back(tans::Normalize(context.data()));

@@ -20,13 +20,16 @@ struct ContextCounts
   /// @param tokens residual::TokenOf(context, symbol)
   void Add(const std::vector<std::uint16_t>& tokens);
   void Add(const ContextCounts& other);
+  /// As if all contexts of a band were one: see EncodeIdeas.
+  void ForgetClasses();
 };
 
 /// The tables of all contexts, for writing.
 class SymbolTables
 {
 public:
-  explicit SymbolTables(const ContextCounts& counts);
+  /// @param share whether contexts that are alike have one table where that is smaller
+  explicit SymbolTables(const ContextCounts& counts, bool share = true);
 
   const std::vector<tans::Frequencies>& Frequencies() const { return this->Of; }
 

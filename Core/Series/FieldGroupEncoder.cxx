@@ -147,7 +147,7 @@ void Encoder<T>::EncodePlanes(
     plane.FineBin = BinOfOctave(this->Out.Head.Bin, static_cast<int>(2 * p));
     plane.Least = this->Out.Head.Least;
     plane.Greatest = this->Out.Head.Greatest;
-    ApplyProfile(this->Field.Profile, plane);
+    ApplyProfile(this->Field.Profile, this->Field.Ideas, plane);
     EncodePlane(plane, work.Decoded[p], work.Tokens[p], this->Pool,
       [&](std::int64_t block) { done(p, block); });
     tell(static_cast<double>(targets.size() - 1 - p) / static_cast<double>(targets.size()));
@@ -227,7 +227,11 @@ void Encoder<T>::WriteSymbols()
           counts.Add(block.Tokens);
         }
       });
-    const SymbolTables tables(counts);
+    if (!this->Field.Ideas.TablesByRoughness)
+    {
+      counts.ForgetClasses();
+    }
+    const SymbolTables tables(counts, this->Field.Ideas.SharedTables);
     this->Out.Head.Frequencies[set] = tables.Frequencies();
     each(
       [&](std::vector<BlockTokens>& tokens, std::vector<EncodedBlock>& blocks)

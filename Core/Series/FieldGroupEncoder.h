@@ -43,6 +43,7 @@ struct FieldGroup
   /// By sample, x fastest: 0 where any value will do. Null: all are needed.
   const std::uint8_t* Needed = nullptr;
   EncodeProfile Profile = EncodeProfile::Balanced;
+  EncodeIdeas Ideas;
   int CompressionLevel = 3;
   /// Of the group before; null: do not refer to it. Used where its lattice is the same.
   const KeyFrame* Before = nullptr;

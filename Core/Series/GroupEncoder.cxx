@@ -136,6 +136,7 @@ FieldOfPlan MakeField(const SeriesIndex& plan, const EncodeOptions& options, std
   field.Map = index.ValueTransform;
   field.Bound = index.ErrorBoundAbsolute;
   field.Profile = options.Profile;
+  field.Ideas = options.Ideas;
   field.CompressionLevel = options.CompressionLevel;
   field.FillValues = index.FillValues;
   field.Expected = IsPromised(index) ? index.PromisedRange : RangeOfGroup(field, tuples, pool);
@@ -280,7 +281,7 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
       };
       FieldOfPlan made = MakeField(plan, options, a, c, steps, pool);
       made.Field.Spare = &spare;
-      if (steps.size() > 1)
+      if (steps.size() > 1 && options.Ideas.GroupBefore)
       {
         tellSteps(0);
         made.Field.Before = stepBefore.Of(a, c, fields.size());

@@ -164,7 +164,8 @@ LatticeTarget<T>::LatticeTarget(
   : Field(field)
   , Head(head)
   , Pool(pool)
-  , AxisOrder(SmoothestLast<T>(field, field.Steps.back()))
+  , AxisOrder(field.Ideas.SmoothestAxisLast ? SmoothestLast<T>(field, field.Steps.back())
+                                           : std::array<std::uint8_t, 3>{ 0, 1, 2 })
   , Decoder(field.Map, head.Origin, head.Step, head.Least, head.Greatest)
   , Fills(field.FillValues)
 {

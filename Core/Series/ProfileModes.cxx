@@ -9,11 +9,11 @@ using block::Interpolation;
 using block::Mode;
 using block::Reference;
 
-std::vector<Mode> CandidatesOf(EncodeProfile profile)
+std::vector<Mode> CandidatesOf(EncodeProfile profile, const EncodeIdeas& ideas)
 {
   const Mode intra{ Reference::None, Interpolation::Cubic };
   const Mode mean{ Reference::Mean, Interpolation::Cubic };
-  if (profile == EncodeProfile::Fast)
+  if (profile == EncodeProfile::Fast || !ideas.AllModes)
   {
     return { intra, mean };
   }
@@ -36,10 +36,11 @@ std::vector<Mode> CandidatesOf(EncodeProfile profile)
 
 } // namespace
 
-void ApplyProfile(EncodeProfile profile, PlaneToEncode& plane)
+void ApplyProfile(EncodeProfile profile, const EncodeIdeas& ideas, PlaneToEncode& plane)
 {
-  plane.Candidates = CandidatesOf(profile);
+  plane.Candidates = CandidatesOf(profile, ideas);
   plane.Trials = profile == EncodeProfile::Compact ? 4 : profile == EncodeProfile::Fast ? 1 : 3;
+  plane.Trials = ideas.Trials ? plane.Trials : 1;
   plane.TrialMargin = profile == EncodeProfile::Compact ? 1000 : 100;
 }
 

@@ -2,6 +2,7 @@
 #define banyan_Series_SeriesEncoder_h
 
 #include "Series/Histogram.h"
+#include "Series/EncodeIdeas.h"
 #include "Series/QuantizerOptions.h"
 #include "Series/SeriesIndex.h"
 
@@ -42,6 +43,7 @@ struct EncodeOptions
   int BrickCells = 0;       ///< 8, 16, 32 or 64; 0 chooses by the size of the grid
   int CompressionLevel = 3; ///< of zstd (exceptions), in [1, 19]
   EncodeProfile Profile = EncodeProfile::Balanced;
+  EncodeIdeas Ideas; ///< for measurements: all of them, otherwise
   QuantizerOptions Quantizer;                               ///< of all arrays
   std::map<std::string, QuantizerOptions> QuantizerOfArray; ///< instead, of arrays by name
   std::shared_ptr<const MeshPlan> Mesh; ///< null: the series is of images
