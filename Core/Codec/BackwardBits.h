@@ -9,8 +9,8 @@
 namespace banyan
 {
 
-/// Collects bits from the last to the first: states take symbols in the order opposite to the one in
-/// which they are read. A thread has one at a time, as all use one piece of its memory.
+/// Collects bits from the last to the first: states take symbols in the order opposite to the one
+/// in which they are read. A thread has one at a time, as all use one piece of its memory.
 class BackwardBits
 {
 public:
@@ -27,8 +27,8 @@ public:
     this->At = this->End;
   }
 
-  /// Puts the lowest bits of a value, the others being 0, before those that are there. At most 56 between
-  /// two calls of Flush.
+  /// Puts the lowest bits of a value, the others being 0, before those that are there. At most 56
+  /// between two calls of Flush.
   void Add(std::uint64_t value, std::uint32_t bits)
   {
     this->Word = this->Word << bits | value;
@@ -52,7 +52,8 @@ public:
   /// All bits, as bytes of which the lowest bit comes first. To be called after Flush.
   std::vector<std::uint8_t> Finish() const
   {
-    // Those that make no whole byte are the highest of the one before: all move down by the rest of it.
+    // Those that make no whole byte are the highest of the one before: all move down by the rest of
+    // it.
     const std::uint32_t down = (8 - this->Filled) & 7;
     const std::uint8_t* from = this->At - (this->Filled > 0 ? 1 : 0);
     const std::size_t bits = 8 * static_cast<std::size_t>(this->End - this->At) + this->Filled;

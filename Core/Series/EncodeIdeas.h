@@ -4,8 +4,9 @@
 namespace banyan
 {
 
-/// Ideas that an encoding can do without, which tells what each is worth (see Documentation/codec.md). What
-/// is written is as valid, and as close to the values, without them; only larger.
+/// Ideas that an encoding can do without, which tells what each is worth (see
+/// Documentation/codec.md). What is written is as valid, and as close to the values, without them;
+/// only larger.
 struct EncodeIdeas
 {
   /// Symbols have tables by what is around them; else by the kind of unit and pass only.
@@ -13,8 +14,10 @@ struct EncodeIdeas
   bool SharedTables = true;      ///< contexts that are alike have one table
   bool SmoothestAxisLast = true; ///< else x, y, z
   bool GroupBefore = true;       ///< a group refers to the key frame of the one before
-  bool AllModes = true;          ///< else cubic interpolation, with the mean of both references or without
-  bool Trials = true;            ///< ways to predict that look alike are tried out
+  bool RestingArrays =
+    true;               ///< an array that stays the same over a whole group is not stored again
+  bool AllModes = true; ///< else cubic interpolation, with the mean of both references or without
+  bool Trials = true;   ///< ways to predict that look alike are tried out
 };
 
 } // namespace banyan

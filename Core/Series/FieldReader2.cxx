@@ -33,6 +33,7 @@ private:
 
   std::shared_ptr<GroupReader> Segment(int step);
   void Touch(const std::shared_ptr<GroupReader>& segment);
+  FieldKey Stored(FieldKey field);
   std::shared_ptr<OpenGroup> Open(const FieldKey& field);
 
   const OpenSeries& Series;
@@ -40,6 +41,8 @@ private:
   std::vector<std::shared_ptr<GroupReader>> Segments;
   std::unordered_map<std::string, std::shared_ptr<const MappedSegment>> Files; ///< by name
   std::list<const GroupReader*> Recent; ///< most recently used first
+  std::mutex RestMutex;
+  std::unordered_map<std::uint64_t, int> Resting; ///< by segment and component; see Stored
   std::mutex OpenMutex;
   std::list<Kept> Opened; ///< most recently used first
   std::atomic<std::uint64_t> Read{ 0 };
@@ -90,6 +93,56 @@ void Reader2::Touch(const std::shared_ptr<GroupReader>& segment)
   }
 }
 
+/// Where a field is stored: as it is asked for or, where it rests, at the last step of the group from which
+/// on it does.
+FieldKey Reader2::Stored(FieldKey field)
+{
+  const std::uint32_t component = this->Series.ComponentOf(field);
+  std::vector<std::uint64_t> passed;
+  for (bool known = false; !known;)
+  {
+    const std::shared_ptr<GroupReader> segment = this->Segment(field.Step);
+    const std::uint64_t key =
+      static_cast<std::uint64_t>(segment->FirstStep()) * this->Series.Components + component;
+    {
+      std::lock_guard<std::mutex> lock(this->RestMutex);
+      const auto found = this->Resting.find(key);
+      if (found != this->Resting.end())
+      {
+        field.Step = found->second < 0 ? field.Step : found->second;
+        break;
+      }
+    }
+    known = !InFile(segment->Path(), 0,
+      [&]
+      {
+        const bool rests = group::Rests(segment->Section(segment->HeadSection(component)));
+        if (rests && segment->FirstStep() == 0)
+        {
+          throw Error("The first segment of a series says that a field is as in the one before it");
+        }
+        return rests;
+      });
+    if (known)
+    {
+      std::lock_guard<std::mutex> lock(this->RestMutex);
+      this->Resting.emplace(key, -1);
+    }
+    else
+    {
+      passed.push_back(key);
+      field.Step = segment->FirstStep() - 1;
+    }
+  }
+  std::lock_guard<std::mutex> lock(this->RestMutex);
+  for (const std::uint64_t key : passed)
+  {
+    this->Resting.emplace(key, field.Step);
+  }
+  return field;
+}
+
+/// @param field as Stored says
 std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
 {
   const std::shared_ptr<GroupReader> segment = this->Segment(field.Step);
@@ -111,7 +164,7 @@ std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
   const auto before = [this, key = FieldKey{ segment->FirstStep() - 1, field.Array,
                                field.Component, 0 }]
   {
-    const std::shared_ptr<OpenGroup> opened = this->Open(key);
+    const std::shared_ptr<OpenGroup> opened = this->Open(this->Stored(key));
     return std::shared_ptr<GroupField>(opened, opened->Field.get());
   };
   InFile(segment->Path(), 0,
@@ -124,7 +177,8 @@ std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
   const group::FieldHead& head = open->Field->Head();
   if (head.Open)
   {
-    open->Before = this->Segment(segment->FirstStep() - 1)->HeaderHash();
+    const FieldKey last{ segment->FirstStep() - 1, field.Array, field.Component, 0 };
+    open->Before = this->Segment(this->Stored(last).Step)->HeaderHash();
   }
   const Transform& map =
     array.Components[static_cast<std::size_t>(field.Component)].ValueTransform;
@@ -155,17 +209,25 @@ std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
   return open;
 }
 
-std::shared_ptr<const std::vector<BrickNode>> Reader2::Nodes(const FieldKey& field)
+std::shared_ptr<const std::vector<BrickNode>> Reader2::Nodes(const FieldKey& asked)
 {
+  const FieldKey field = this->Stored(asked);
   const std::shared_ptr<OpenGroup> open = this->Open(field);
   std::lock_guard<std::mutex> lock(open->NodeMutex);
-  auto& nodes = open->Nodes[{ field.Step, field.Level }];
+  // Where a field rests, nodes are what they were, but nothing is stored for them.
+  const bool rests = field.Step != asked.Step;
+  auto& nodes = open->Nodes[{ rests ? -1 - field.Step : field.Step, field.Level }];
   if (!nodes)
   {
     InFile(open->Field->Segment().Path(), 0,
       [&]
       {
-        nodes = std::make_shared<const std::vector<BrickNode>>(NodesOf(this->Series, *open, field));
+        std::vector<BrickNode> made = NodesOf(this->Series, *open, field);
+        for (BrickNode& node : made)
+        {
+          node.PayloadBytes = rests ? 0 : node.PayloadBytes;
+        }
+        nodes = std::make_shared<const std::vector<BrickNode>>(std::move(made));
       });
     open->NodeBytes += nodes->size() * sizeof(BrickNode);
     this->Read += open->Field->TakeBytesRead();
@@ -173,17 +235,19 @@ std::shared_ptr<const std::vector<BrickNode>> Reader2::Nodes(const FieldKey& fie
   return nodes;
 }
 
-void Reader2::DecodeBrick(const FieldKey& field, std::int64_t brick, void* values)
+void Reader2::DecodeBrick(const FieldKey& asked, std::int64_t brick, void* values)
 {
+  const FieldKey field = this->Stored(asked);
   const std::shared_ptr<OpenGroup> open = this->Open(field);
   InFile(open->Field->Segment().Path(), 0,
     [&] { this->Decoded += DecodeWhole(this->Series, *open, field, brick, values) ? 1 : 0; });
   this->Read += open->Field->TakeBytesRead();
 }
 
-bool Reader2::DecodePart(const FieldKey& field, std::int64_t brick, const Box& part,
+bool Reader2::DecodePart(const FieldKey& asked, std::int64_t brick, const Box& part,
   const glm::i64vec3& stride, void* first)
 {
+  const FieldKey field = this->Stored(asked);
   const std::shared_ptr<OpenGroup> open = this->Open(field);
   const bool done = InFile(open->Field->Segment().Path(), 0,
     [&] { return DecodeSome(this->Series, *open, field, brick, part, stride, first); });
@@ -192,8 +256,9 @@ bool Reader2::DecodePart(const FieldKey& field, std::int64_t brick, const Box& p
   return done;
 }
 
-void Reader2::VerifyBricks(const FieldKey& field, const std::vector<std::int64_t>& bricks)
+void Reader2::VerifyBricks(const FieldKey& asked, const std::vector<std::int64_t>& bricks)
 {
+  const FieldKey field = this->Stored(asked);
   const std::shared_ptr<OpenGroup> open = this->Open(field);
   GroupField& group = *open->Field;
   const int step = field.Step - group.Segment().FirstStep();

@@ -6,9 +6,11 @@
 #include "Series/FieldLattice.h"
 #include "Series/FillValues.h"
 #include "Series/GroupWriter.h"
+#include "Series/Hash.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace banyan
 {
@@ -79,7 +81,8 @@ ClampedSteps Clamp(
   return clamped;
 }
 
-void Measure(const EncodedField& field, ComponentIndex& component, EncodeStatistics& statistics)
+void Measure(const EncodedField& field, std::int64_t steps, ComponentIndex& component,
+  EncodeStatistics& statistics)
 {
   component.Range = field.Errors.Range;
   component.MeasuredMaxError = field.Errors.Maximum;
@@ -93,7 +96,7 @@ void Measure(const EncodedField& field, ComponentIndex& component, EncodeStatist
   statistics.ExceptionVoxels += field.Errors.Exceptions;
   statistics.ChainSum += field.ChainSum;
   statistics.ChainBricks += static_cast<std::int64_t>(
-    field.Steps.empty() ? 0 : field.Steps.size() * field.Steps[0].Planes[0].size());
+    field.Steps.empty() ? 0 : field.Steps[0].Planes[0].size()) * steps;
   statistics.ChainMost = std::max<std::int64_t>(statistics.ChainMost, field.ChainMost);
 }
 
@@ -165,6 +168,12 @@ bool HasOneLattice(ScalarType type, const ComponentIndex& component)
   return IsPromised(component) && !head.Exact;
 }
 
+std::size_t BytesOf(const SeriesIndex& plan, std::size_t array)
+{
+  return static_cast<std::size_t>(plan.Domain.Extent.Count()) * SizeOf(plan.Arrays[array].Type) *
+         plan.Arrays[array].Components.size();
+}
+
 /// What the steps before the groups decode to, one component after the other.
 class StepBeforeGroup
 {
@@ -181,12 +190,33 @@ public:
     if (last != nullptr && last->Group >= 0 && last->Group == group - 1)
     {
       this->Known = std::move(last->Fields);
+      this->KnownValues = std::move(last->Values);
     }
     if (last != nullptr)
     {
       last->Group = -1;
       last->Fields.clear();
+      last->Values.clear();
     }
+  }
+
+  /// Whether an array is the same, to the bit, in all steps as in the step before.
+  bool Rests(std::size_t array, const std::vector<std::vector<ArrayValues>>& steps) const
+  {
+    const std::vector<ComponentIndex>& components = this->Plan.Arrays[array].Components;
+    if (this->First || steps.size() < 2 || !this->Options.Ideas.RestingArrays ||
+        !std::all_of(components.begin(), components.end(), IsPromised))
+    {
+      return false;
+    }
+    this->MustBeKnown(!this->KnownValues.empty());
+    const std::size_t bytes = BytesOf(this->Plan, array);
+    const Hash128 before = this->KnownValues.empty() ? HashOf(this->Values[array].Values, bytes)
+                                                     : this->KnownValues[array];
+    const void* const first = steps[0][array].Values;
+    return HashOf(first, bytes) == before &&
+           std::all_of(steps.begin() + 1, steps.end(), [&](const std::vector<ArrayValues>& step)
+             { return std::memcmp(step[array].Values, first, bytes) == 0; });
   }
 
   /// Null when the group does not refer to it; until the next call.
@@ -203,10 +233,7 @@ public:
       this->Frame = std::move(this->Known[number]);
       return &this->Frame;
     }
-    if (this->Values.empty())
-    {
-      throw Error("A group of steps cannot be encoded without the step before it");
-    }
+    this->MustBeKnown(false);
     const FieldOfPlan made =
       MakeField(this->Plan, this->Options, array, component, { this->Values }, this->Pool);
     this->Frame = EncodeKeyFrame(made.Field, this->Pool);
@@ -217,12 +244,21 @@ public:
   std::vector<PlaneNumbers> Release() { return std::move(this->Frame.Planes); }
 
 private:
+  void MustBeKnown(bool known) const
+  {
+    if (!known && this->Values.empty())
+    {
+      throw Error("A group of steps cannot be encoded without the step before it");
+    }
+  }
+
   const SeriesIndex& Plan;
   const EncodeOptions& Options;
   bool First;
   const std::vector<ArrayValues>& Values;
   ThreadPool& Pool;
   std::vector<KeyFrame> Known;
+  std::vector<Hash128> KnownValues;
   KeyFrame Frame;
 };
 
@@ -235,7 +271,7 @@ bool MayReferBefore(const SeriesIndex& plan)
   {
     for (const ComponentIndex& component : array.Components)
     {
-      may = may || HasOneLattice(array.Type, component);
+      may = may || IsPromised(component);
     }
   }
   return may && plan.KeyframeInterval > 1;
@@ -255,6 +291,7 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
     components += array.Components.size();
   }
   StepBeforeGroup stepBefore(plan, options, number, before, last, pool);
+  const std::int64_t count = static_cast<std::int64_t>(steps.size());
   SparePlanes own;
   SparePlanes& spare = last != nullptr ? last->Spare : own;
   std::vector<EncodedField> fields;
@@ -268,6 +305,11 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
       squares.assign(steps.size(), std::vector<double>(static_cast<std::size_t>(tuples)));
     }
     group.Measured.emplace_back(array.Components.size());
+    const bool rests = stepBefore.Rests(a, steps);
+    if (rests && vectors)
+    {
+      squares.resize(1);
+    }
     for (std::size_t c = 0; c < array.Components.size(); ++c)
     {
       const double done = static_cast<double>(fields.size());
@@ -279,9 +321,10 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
           throw Error("Encoding was interrupted");
         }
       };
-      FieldOfPlan made = MakeField(plan, options, a, c, steps, pool);
+      FieldOfPlan made = rests ? MakeField(plan, options, a, c, { steps.back() }, pool)
+                               : MakeField(plan, options, a, c, steps, pool);
       made.Field.Spare = &spare;
-      if (steps.size() > 1 && options.Ideas.GroupBefore)
+      if (steps.size() > 1 && !rests && options.Ideas.GroupBefore)
       {
         tellSteps(0);
         made.Field.Before = stepBefore.Of(a, c, fields.size());
@@ -293,8 +336,12 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
         spare.push_back(std::move(fields.back().Last.Planes));
         fields.back().Last = {};
       }
-      Measure(fields.back(), group.Measured[a][c], group.Statistics);
-      group.Measured[a][c].ClampedCount = made.Clamped.Count;
+      if (rests)
+      {
+        LetRest(fields.back(), count);
+      }
+      Measure(fields.back(), count, group.Measured[a][c], group.Statistics);
+      group.Measured[a][c].ClampedCount = made.Clamped.Count * (rests ? count : 1);
       group.BytesIn += static_cast<std::uint64_t>(plan.Mesh ? plan.Mesh->Points : tuples) *
                        SizeOf(array.Type) * steps.size();
     }
@@ -302,6 +349,10 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
     for (const std::vector<double>& step : squares)
     {
       group.Magnitudes.back().push_back(MagnitudeRange(step));
+    }
+    if (rests && vectors)
+    {
+      group.Magnitudes.back().resize(steps.size(), group.Magnitudes.back()[0]);
     }
   }
   GroupWriter writer(folder, number);
@@ -317,6 +368,11 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
   {
     for (EncodedField& field : fields)
     {
+      if (field.Head.Rests)
+      {
+        writer.AddRestingStep(field.Steps[0], group.Statistics);
+        continue;
+      }
       writer.AddStep(field.Steps[t], group.Statistics);
       field.Steps[t] = {};
     }
@@ -327,58 +383,16 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
   if (last != nullptr)
   {
     last->Group = number;
+    for (std::size_t a = 0; a < plan.Arrays.size(); ++a)
+    {
+      last->Values.push_back(HashOf(steps.back()[a].Values, BytesOf(plan, a)));
+    }
     for (EncodedField& field : fields)
     {
       last->Fields.push_back(std::move(field.Last));
     }
   }
   return group;
-}
-
-void AddGroup(const EncodedGroup& group, SeriesIndex& index)
-{
-  index.Segments.push_back(group.Segment);
-  index.Times.insert(index.Times.end(), group.Times.begin(), group.Times.end());
-  for (std::size_t a = 0; a < index.Arrays.size(); ++a)
-  {
-    ArrayIndex& array = index.Arrays[a];
-    array.Magnitudes.insert(
-      array.Magnitudes.end(), group.Magnitudes[a].begin(), group.Magnitudes[a].end());
-    for (std::size_t c = 0; c < array.Components.size(); ++c)
-    {
-      ComponentIndex& to = array.Components[c];
-      const ComponentIndex& from = group.Measured[a][c];
-      to.Range.Include(from.Range);
-      to.MeasuredMaxError = std::max(to.MeasuredMaxError, from.MeasuredMaxError);
-      to.MeasuredMaxErrorTransformed =
-        std::max(to.MeasuredMaxErrorTransformed, from.MeasuredMaxErrorTransformed);
-      to.SumSquaredError += from.SumSquaredError;
-      to.FiniteCount += from.FiniteCount;
-      to.NonFiniteCount += from.NonFiniteCount;
-      to.ClampedCount += from.ClampedCount;
-      to.FillCount += from.FillCount;
-      to.InvisibleCount += from.InvisibleCount;
-      to.SumWeightedError += from.SumWeightedError;
-    }
-  }
-  EncodeStatistics& to = index.Statistics;
-  const EncodeStatistics& from = group.Statistics;
-  to.Bricks += from.Bricks;
-  to.MacroVoxelBricks += from.MacroVoxelBricks;
-  to.UnchangedBricks += from.UnchangedBricks;
-  to.MergedBricks += from.MergedBricks;
-  to.RawBricks += from.RawBricks;
-  to.PayloadBytes += from.PayloadBytes;
-  to.TableBytes += from.TableBytes;
-  to.Blocks += from.Blocks;
-  to.EmptyBlocks += from.EmptyBlocks;
-  to.ExceptionVoxels += from.ExceptionVoxels;
-  to.ChainSum += from.ChainSum;
-  to.ChainBricks += from.ChainBricks;
-  to.ChainMost = std::max(to.ChainMost, from.ChainMost);
-  to.RepeatedSegments += from.RepeatedSegments;
-  to.RepeatedBytes += from.RepeatedBytes;
-  index.PayloadBytesIn += group.BytesIn;
 }
 
 } // namespace banyan

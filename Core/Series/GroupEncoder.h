@@ -2,6 +2,7 @@
 #define banyan_Series_GroupEncoder_h
 
 #include "Series/FieldGroupEncoder.h"
+#include "Series/Hash.h"
 #include "Series/SegmentFolder.h"
 #include "Series/SeriesEncoder.h"
 
@@ -31,11 +32,12 @@ struct LastStep
 {
   int Group = -1; ///< -1: there is none
   std::vector<KeyFrame> Fields; ///< by component of all arrays
+  std::vector<Hash128> Values;  ///< of the values as they came, by array
   SparePlanes Spare;            ///< memory of the group before
 };
 
 /// Whether groups of a series may refer to the last step of the group before: where the plan fixes
-/// the lattice of some component.
+/// the range of some component.
 bool MayReferBefore(const SeriesIndex& plan);
 
 /// Encodes a group of consecutive steps into its segment. Groups may be encoded in any order, by any

@@ -14,6 +14,7 @@ namespace
 
 constexpr std::uint8_t HeadExact = 1;
 constexpr std::uint8_t HeadOpen = 2;
+constexpr std::uint8_t HeadRests = 4;
 
 void Append(Bytes& out, const Bytes& more)
 {
@@ -41,7 +42,7 @@ Bytes PackHead(const FieldHead& head)
   Bytes out;
   out.insert(out.end(), head.Axes.begin(), head.Axes.end());
   out.push_back(
-    static_cast<std::uint8_t>((head.Exact ? HeadExact : 0) | (head.Open ? HeadOpen : 0)));
+    static_cast<std::uint8_t>(head.Rests ? HeadRests : head.Exact ? HeadExact : head.Open ? HeadOpen : 0));
   AppendNumber(out, head.Origin);
   AppendNumber(out, head.Step);
   AppendNumber(out, head.Bin);
@@ -54,6 +55,11 @@ Bytes PackHead(const FieldHead& head)
     Append(out, packed);
   }
   return out;
+}
+
+bool Rests(const Bytes& head)
+{
+  return head.size() > 3 && head[3] == HeadRests; // behind the axes
 }
 
 FieldHead UnpackHead(const std::uint8_t* data, std::size_t bytes)
@@ -69,12 +75,13 @@ FieldHead UnpackHead(const std::uint8_t* data, std::size_t bytes)
   const std::uint8_t flags = in.Byte();
   head.Exact = flags == HeadExact;
   head.Open = flags == HeadOpen;
+  head.Rests = flags == HeadRests;
   head.Origin = in.Number<double>();
   head.Step = in.Number<double>();
   head.Bin = in.Number<std::int32_t>();
   head.Least = in.Number<std::int32_t>();
   head.Greatest = in.Number<std::int32_t>();
-  if (seen != 7 || flags > HeadOpen || !std::isfinite(head.Origin) || !std::isfinite(head.Step) ||
+  if (seen != 7 || (flags > HeadOpen && flags != HeadRests) || !std::isfinite(head.Origin) || !std::isfinite(head.Step) ||
       !(head.Step > 0) || head.Bin < 1 || head.Bin % 2 == 0 || head.Least > head.Greatest)
   {
     throw Error("The head of a field of the segment is not valid");

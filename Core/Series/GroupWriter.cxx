@@ -97,6 +97,25 @@ void GroupWriter::AddStep(const EncodedStep& step, EncodeStatistics& statistics)
   this->Tables.push_back(std::move(table));
 }
 
+void GroupWriter::AddRestingStep(const EncodedStep& like, EncodeStatistics& statistics)
+{
+  for (const auto& plane : like.Planes)
+  {
+    statistics.Blocks += static_cast<std::int64_t>(plane.size());
+    statistics.EmptyBlocks += static_cast<std::int64_t>(plane.size());
+  }
+  for (const auto& level : like.Levels)
+  {
+    statistics.Bricks += static_cast<std::int64_t>(level.size());
+    statistics.UnchangedBricks += static_cast<std::int64_t>(level.size());
+    for (const group::NodeEntry& node : level)
+    {
+      statistics.MacroVoxelBricks += node.Uniform ? 1 : 0;
+    }
+  }
+  this->Tables.emplace_back();
+}
+
 group::Section GroupWriter::AddSection(const Bytes& raw, bool compressed)
 {
   Bytes packed;
@@ -157,6 +176,11 @@ SegmentIndex GroupWriter::Finish(
   {
     const std::size_t component = i % heads.size();
     const int step = static_cast<int>(i / heads.size());
+    if (heads[component].Rests)
+    {
+      sections.push_back(this->AddSection({}, false));
+      continue;
+    }
     group::TableReference reference;
     reference.Step = ReferencesOfStep(step, steps, heads[component].Open).B;
     if (reference.Step >= 0)

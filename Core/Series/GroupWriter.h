@@ -22,6 +22,9 @@ public:
   /// Adds a component at the next step: the components of a step in order, then the next step.
   /// @param statistics receives what it came to
   void AddStep(const EncodedStep& step, EncodeStatistics& statistics);
+  /// A step of which nothing is stored, as its field rests.
+  /// @param like what it would be; for the statistics
+  void AddRestingStep(const EncodedStep& like, EncodeStatistics& statistics);
 
   /// @param heads and @param shapes of the components, in order
   SegmentIndex Finish(const std::vector<group::FieldHead>& heads,

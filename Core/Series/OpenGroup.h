@@ -25,7 +25,7 @@ struct OpenGroup
   std::uint64_t Meaning = 0; ///< hash of what turns lattice numbers into values, and orders them
   Hash128 Before; ///< hash of the header of the segment that this one refers to; 0: none
   std::mutex NodeMutex;
-  /// By step of the segment and level.
+  /// By step and level; -1 less the step where a later one rests on it.
   std::map<std::pair<int, int>, std::shared_ptr<const std::vector<BrickNode>>> Nodes;
   std::atomic<std::uint64_t> NodeBytes{ 0 };
 

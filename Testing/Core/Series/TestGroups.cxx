@@ -52,7 +52,8 @@ enum class Kind
   Absolute, ///< without ranges: no group refers to another
   Clamped,
   Hidden,  ///< by an opacity function
-  Repeated ///< the steps of the first group come again and again
+  Repeated, ///< the steps of the first group come again and again
+  Resting   ///< the vectors rest from the last step of the first group on
 };
 
 /// Vectors of floats with some NaN, and scalars of a short type, in two arrays.
@@ -63,14 +64,15 @@ protected:
   {
     for (int step = 0; step < StepCount; ++step)
     {
-      const int s = GetParam() == Kind::Repeated ? step % Interval : step;
+      const int repeated = GetParam() == Kind::Repeated ? step % Interval : step;
+      const int s = GetParam() == Kind::Resting ? std::min(step, Interval - 1) : repeated;
       this->Vectors.push_back(Sample<float>(GridOf(34 * 3, 19, 17), 1,
         [s](int x, int y, int z, int) {
           return x == 5 && y == 3 ? std::nan("") : Wavy<float>(x / 3, y, z + 7 * (x % 3), s);
         }).front());
       this->Scalars.push_back(Sample<std::int16_t>(Domain, 1,
-        [s](int x, int y, int z, int) {
-          return Wavy<std::int16_t>(x, y, z, s);
+        [repeated](int x, int y, int z, int) {
+          return Wavy<std::int16_t>(x, y, z, repeated);
         }).front());
     }
     this->Options.KeyframeInterval = Interval;
@@ -154,11 +156,12 @@ protected:
 };
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Groups,
-  ::testing::Values(Kind::Relative, Kind::Absolute, Kind::Clamped, Kind::Hidden, Kind::Repeated),
+  ::testing::Values(Kind::Relative, Kind::Absolute, Kind::Clamped, Kind::Hidden, Kind::Repeated,
+    Kind::Resting),
   [](const auto& info)
   {
     const std::vector<std::string> names(
-      { "Relative", "Absolute", "Clamped", "Hidden", "Repeated" });
+      { "Relative", "Absolute", "Clamped", "Hidden", "Repeated", "Resting" });
     return names[static_cast<std::size_t>(info.param)];
   });
 
