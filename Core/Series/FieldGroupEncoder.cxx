@@ -46,6 +46,7 @@ private:
   std::vector<PlaneNumbers> TakePlanes() const;
   using BlockBody = std::function<void(std::size_t plane, std::int64_t block)>;
   void EncodePlanes(int step, const BlockBody& done, const std::function<void(double)>& tell);
+  int TrialsOf(int step, std::size_t plane, int usual) const;
   void EncodeStep(
     int step, std::vector<double>* squares, const std::function<void(double)>& tell);
   void WriteSymbols();
@@ -108,6 +109,29 @@ std::vector<PlaneNumbers> Encoder<T>::TakePlanes() const
   return this->Target->NewPlanes();
 }
 
+/// How many ways to predict are tried out. Where blocks cost much, that takes time and gains little: on
+/// planes that are not small, and half of whose samples have symbols in the key frame, none is.
+template <class T>
+int Encoder<T>::TrialsOf(int step, std::size_t plane, int usual) const
+{
+  constexpr std::size_t small = std::size_t{ 1 } << 20;
+  const auto& keyFrame = this->Work.back().Tokens;
+  const glm::ivec3 n = this->Planes[plane];
+  const std::size_t samples =
+    static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) * static_cast<std::size_t>(n.z);
+  if (step + 1 == static_cast<int>(this->Work.size()) || samples < small ||
+      this->Field.Profile == EncodeProfile::Compact)
+  {
+    return usual;
+  }
+  std::size_t tokens = 0;
+  for (const BlockTokens& block : keyFrame[plane])
+  {
+    tokens += block.Tokens.size();
+  }
+  return 2 * tokens > samples ? 1 : usual;
+}
+
 /// @param done called for each block, by any thread, when it is decoded
 template <class T>
 void Encoder<T>::EncodePlanes(
@@ -148,6 +172,7 @@ void Encoder<T>::EncodePlanes(
     plane.Least = this->Out.Head.Least;
     plane.Greatest = this->Out.Head.Greatest;
     ApplyProfile(this->Field.Profile, this->Field.Ideas, plane);
+    plane.Trials = this->TrialsOf(step, p, plane.Trials);
     EncodePlane(plane, work.Decoded[p], work.Tokens[p], this->Pool,
       [&](std::int64_t block) { done(p, block); });
     tell(static_cast<double>(targets.size() - 1 - p) / static_cast<double>(targets.size()));
@@ -362,25 +387,6 @@ EncodedField EncodeFieldGroup(const FieldGroup& field, ThreadPool& pool,
   Dispatch(field.Type, [&](auto tag)
     { result = Encoder<typename decltype(tag)::Type>(field, pool).Run(sumSquares, tell); });
   return result;
-}
-
-void LetRest(EncodedField& field, std::int64_t steps)
-{
-  field.Head.Rests = true;
-  field.Head.Open = false;
-  for (std::vector<tans::Frequencies>& set : field.Head.Frequencies)
-  {
-    std::fill(set.begin(), set.end(), tans::Frequencies{});
-  }
-  FieldErrors& errors = field.Errors;
-  for (std::int64_t* count :
-    { &errors.Finite, &errors.NonFinite, &errors.Exceptions, &errors.Fill, &errors.Invisible })
-  {
-    *count *= steps;
-  }
-  errors.SumSquared *= static_cast<double>(steps);
-  errors.SumWeighted *= static_cast<double>(steps);
-  field.ChainSum *= steps;
 }
 
 KeyFrame EncodeKeyFrame(const FieldGroup& field, ThreadPool& pool)

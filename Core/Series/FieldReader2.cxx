@@ -34,6 +34,7 @@ private:
   std::shared_ptr<GroupReader> Segment(int step);
   void Touch(const std::shared_ptr<GroupReader>& segment);
   FieldKey Stored(FieldKey field);
+  Hash128 HashBefore(const FieldKey& last);
   std::shared_ptr<OpenGroup> Open(const FieldKey& field);
 
   const OpenSeries& Series;
@@ -142,6 +143,20 @@ FieldKey Reader2::Stored(FieldKey field)
   return field;
 }
 
+/// Of the header of the segment where the last step before a group is stored. Those who read it will be told
+/// what is wrong with it; others do not need it.
+Hash128 Reader2::HashBefore(const FieldKey& last)
+{
+  try
+  {
+    return this->Segment(this->Stored(last).Step)->HeaderHash();
+  }
+  catch (const Error&)
+  {
+    return this->Segment(last.Step)->HeaderHash();
+  }
+}
+
 /// @param field as Stored says
 std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
 {
@@ -177,8 +192,7 @@ std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
   const group::FieldHead& head = open->Field->Head();
   if (head.Open)
   {
-    const FieldKey last{ segment->FirstStep() - 1, field.Array, field.Component, 0 };
-    open->Before = this->Segment(this->Stored(last).Step)->HeaderHash();
+    open->Before = this->HashBefore({ segment->FirstStep() - 1, field.Array, field.Component, 0 });
   }
   const Transform& map =
     array.Components[static_cast<std::size_t>(field.Component)].ValueTransform;

@@ -42,7 +42,8 @@ Bytes PackHead(const FieldHead& head)
   Bytes out;
   out.insert(out.end(), head.Axes.begin(), head.Axes.end());
   out.push_back(
-    static_cast<std::uint8_t>(head.Rests ? HeadRests : head.Exact ? HeadExact : head.Open ? HeadOpen : 0));
+    static_cast<std::uint8_t>((head.Exact ? HeadExact : 0) | (head.Open ? HeadOpen : 0) |
+                              (head.Rests ? HeadRests : 0)));
   AppendNumber(out, head.Origin);
   AppendNumber(out, head.Step);
   AppendNumber(out, head.Bin);

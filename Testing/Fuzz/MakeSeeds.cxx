@@ -3,6 +3,7 @@
 #include "Base/ThreadPool.h"
 #include "MeshSeries/StoredMesh.h"
 #include "Series/Exceptions.h"
+#include "Series/GroupFormat.h"
 #include "Series/IndexText.h"
 #include "Series/Varint.h"
 #include "Series/Zstd.h"
@@ -140,10 +141,21 @@ int main(int argc, char** argv)
   }
   for (int kind = 0; kind < banyan::fuzz::SeriesKinds; ++kind)
   {
-    const banyan::fuzz::SmallSeries series(scratch.string(), kind);
+    banyan::fuzz::SmallSeries series(scratch.string(), kind);
     const std::string name = std::to_string(kind);
     Write((folder / "Group" / name).string(), banyan::fuzz::ToInput(kind, series.Parts));
-    if (series.Number == 0)
+    if (series.Number > 0)
+    {
+      banyan::group::FieldHead head =
+        banyan::group::UnpackHead(series.Parts.Sections[0].data(), series.Parts.Sections[0].size());
+      head.Exact = false;
+      head.Open = false;
+      head.Rests = true;
+      series.Parts.Sections[0] = banyan::group::PackHead(head);
+      Write((folder / "Group" / (name + "-resting")).string(),
+        banyan::fuzz::ToInput(kind, series.Parts));
+    }
+    else
     {
       Write((folder / "Index" / name).string(), BodyOf(banyan::IndexToText(series.Index)));
     }

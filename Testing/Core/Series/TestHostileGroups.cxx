@@ -205,6 +205,39 @@ TEST_F(HostileGroups, NothingComesBeforeTheFirstSegment)
       sections[1] = PackHead(head);
     });
   EXPECT_TRUE(Says(this->Complaint(0, 0), "first segment of a series refers to one before"));
+  Rewrite(this->Path, 0,
+    [](Sections& sections, segment::Header&)
+    {
+      group::FieldHead head = HeadOf(sections);
+      head.Open = false;
+      head.Rests = true;
+      sections[1] = PackHead(head);
+    });
+  EXPECT_TRUE(Says(this->Complaint(0, 0), "first segment of a series says that a field is as"));
+}
+
+/// A head that rests takes the place of everything behind it.
+TEST_F(HostileGroups, ASegmentThatRestsIsTheLastStepBefore)
+{
+  const auto last = ReadAll<float>(*SeriesFile::Open(this->Path), { Interval - 1, 0, 0, 0 });
+  Rewrite(this->Path, 1,
+    [](Sections& sections, segment::Header&)
+    {
+      group::FieldHead head = HeadOf(sections);
+      head.Open = false;
+      head.Rests = true;
+      sections[1] = PackHead(head);
+      for (std::size_t step = 2; step < sections.size(); ++step)
+      {
+        sections[step].clear();
+      }
+    });
+  const auto file = SeriesFile::Open(this->Path);
+  for (int step = Interval; step < 2 * Interval; ++step)
+  {
+    EXPECT_EQ(ReadAll<float>(*file, { step, 0, 0, 0 }), last);
+    EXPECT_EQ((*file->Nodes({ step, 0, 0, 0 }))[0].Identity, (*file->Nodes({ Interval - 1, 0, 0, 0 }))[0].Identity);
+  }
 }
 
 TEST_F(HostileGroups, AnotherLatticeBeforeIsRefused)
