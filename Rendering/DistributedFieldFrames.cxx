@@ -46,6 +46,15 @@ void DistributedField::BeginFrame(Communicator& communicator, RayScene& scene)
   }
 }
 
+void DistributedField::BringLevels(Communicator& communicator, const RayScene& scene, int coarsest)
+{
+  if (this->Pieces)
+  {
+    this->Pieces->BringLevels(communicator, scene, coarsest,
+      BrickCache::Process().DecodedBudget() / 8, ThreadPool::Process());
+  }
+}
+
 void DistributedField::ReadAhead()
 {
   const auto* source = dynamic_cast<const SeriesBrickSource*>(this->Bricks.get());

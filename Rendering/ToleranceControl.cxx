@@ -3,6 +3,7 @@
 #include "DistributedField.h"
 
 #include "Base/ThreadPool.h"
+#include "Parallel/LevelZones.h"
 
 #include <algorithm>
 
@@ -18,9 +19,13 @@ constexpr double MostSlack = 16.0;
 double ToleranceControl::Plan(Communicator& communicator, DistributedField& field, RayScene& scene,
   const Wish& wish, std::uint64_t budgetBytes, const std::string& failure, FrameStatistics& frame)
 {
-  // Pieces on ranks have no coarser levels, and still pictures are the same on any number of ranks.
-  const bool levels =
-    field.HasLevels() && (field.Encoded() || (wish.Interacting && communicator.Size() == 1));
+  // Plain data has coarser levels only when they are made; still pictures of it do without.
+  const bool levels = field.HasLevels() && (field.Encoded() || wish.Interacting) &&
+                      LevelsHaveOneOrder(scene, field.Zones(), CoarsestLevel);
+  if (levels)
+  {
+    field.BringLevels(communicator, scene, CoarsestLevel);
+  }
   if (wish.Interacting)
   {
     this->Passes.Interacted();

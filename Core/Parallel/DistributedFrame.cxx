@@ -2,9 +2,8 @@
 
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
+#include "Parallel/LevelZones.h"
 #include "Parallel/Rebalance.h"
-#include "Parallel/Zones.h"
-#include "Render/Viewpoint.h"
 
 #include <algorithm>
 #include <cmath>
@@ -89,7 +88,8 @@ CompositeOptions CompleteOptions(
   CompositeOptions options, const RayScene& scene, const std::vector<Box>& zones)
 {
   options.Combine = CombinationOf(scene.Blend);
-  options.Footprints = FootprintsOfZones(scene.Camera, scene.IndexToWorld, zones, scene.Viewport);
+  options.Footprints =
+    FootprintsOfZones(scene.Camera, scene.IndexToWorld, ZonesAsDrawn(scene, zones), scene.Viewport);
   if (scene.Shading.On)
   {
     options.Brightest = std::max(
@@ -117,7 +117,7 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene, Br
   }
 
   // The order and the footprints depend on what all ranks have alike: no rank fails here alone.
-  const std::vector<int> order = FrontToBack(InIndexSpace(scene.Camera, scene.IndexToWorld), zones);
+  const std::vector<int> order = OrderAsDrawn(scene, zones);
   CompositeOptions options = CompleteOptions(compositing, scene, zones);
   if (failure.empty())
   {

@@ -1,6 +1,6 @@
 #include "Parallel/DistributedPilot.h"
 
-#include "Parallel/Zones.h"
+#include "Parallel/LevelZones.h"
 
 #include <algorithm>
 #include <cstring>
@@ -85,9 +85,9 @@ FloatImage DrawDistributedPilot(Communicator& communicator, const RayScene& scen
   const FloatImage mine = CastOwn(scene, source, zones.at(self), budgetBytes, pool, rays, failure);
 
   // All ranks know these alike.
-  const std::vector<int> order = FrontToBack(InIndexSpace(scene.Camera, scene.IndexToWorld), zones);
+  const std::vector<int> order = OrderAsDrawn(scene, zones);
   const std::vector<Footprint> footprints =
-    FootprintsOfZones(scene.Camera, scene.IndexToWorld, zones, scene.Viewport);
+    FootprintsOfZones(scene.Camera, scene.IndexToWorld, ZonesAsDrawn(scene, zones), scene.Viewport);
   std::size_t most = 0;
   for (const Footprint& footprint : footprints)
   {

@@ -51,7 +51,10 @@ void PieceField::Take(Communicator& communicator, const std::vector<Box>& sample
   ThreadPool& pool)
 {
   this->Bricks.reset();
+  this->Levels.Clear();
   this->Fetched.Clear();
+  this->MostBrickCells = brickCells;
+  this->AllCells = cells;
   std::string failure;
   try
   {
@@ -82,6 +85,7 @@ void PieceField::Take(Communicator& communicator, const std::vector<Box>& sample
   this->Balancer.Start(mode, field, communicator.Size());
   this->Bricks = std::make_unique<PieceSource>(this->Pieces, communicator.Rank(), this->Mine,
     this->Fetched, std::move(this->Known.Bricks), this->Known.Types, this->Known.Masks);
+  this->Bricks->SetLevels(&this->Levels);
 }
 
 PieceField::Wish PieceField::WishOf(
@@ -204,6 +208,19 @@ void PieceField::BeginFrame(Communicator& communicator, RayScene& scene, std::ui
     }
   }
   this->Numbers.BytesMoved += shell;
+}
+
+void PieceField::BringLevels(Communicator& communicator, const RayScene& scene, int coarsest,
+  std::uint64_t budgetBytes, ThreadPool& pool)
+{
+  if (this->Levels.Coarsest() == 0 && coarsest > 0)
+  {
+    this->Levels.Make(communicator, this->Pieces, this->Mine, this->Known.ViewTypes, this->AllCells,
+      this->MostBrickCells, coarsest, pool);
+  }
+  const double received = static_cast<double>(
+    this->Levels.Bring(communicator, scene, this->Zones(), budgetBytes));
+  this->Numbers.BytesMoved += static_cast<std::uint64_t>(AllSum(communicator, received));
 }
 
 } // namespace banyan

@@ -4,6 +4,7 @@
 #include "Parallel/FrameBalancer.h"
 #include "Pieces/FetchedBricks.h"
 #include "Pieces/PieceExchange.h"
+#include "Pieces/PieceLevels.h"
 #include "Pieces/PieceSource.h"
 
 #include <memory>
@@ -60,6 +61,13 @@ public:
   /// @param budgetBytes for fetched bricks on this rank
   /// Throws Error, the same on all ranks, when one fails.
   void BeginFrame(Communicator& communicator, RayScene& scene, std::uint64_t budgetBytes);
+  /// Collective, after BeginFrame, for frames that may be drawn from coarser levels: makes them when
+  /// they are not there yet, and fetches what this rank's zone takes of them.
+  /// @param coarsest the same on all ranks, and from frame to frame
+  /// Throws Error, the same on all ranks, when one fails.
+  void BringLevels(Communicator& communicator, const RayScene& scene, int coarsest,
+    std::uint64_t budgetBytes, ThreadPool& pool);
+
   /// Collective, after the frame was drawn.
   void EndFrame(Communicator& communicator) { this->Balancer.EndFrame(communicator); }
 
@@ -80,6 +88,9 @@ private:
   PieceSummaries Known;
   FetchedBricks Fetched;
   FrameBalancer Balancer;
+  PieceLevels Levels;
+  int MostBrickCells = 0;
+  glm::ivec3 AllCells{ 0 };
   std::unique_ptr<PieceSource> Bricks;
   Statistics Numbers;
 };

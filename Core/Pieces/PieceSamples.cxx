@@ -4,11 +4,7 @@
 
 namespace banyan
 {
-namespace
-{
-
-/// One value that is missing, wherever it is asked for.
-SampledBox Missing(const Box& samples)
+SampledBox MissingSamples(const Box& samples)
 {
   static const double missing = std::numeric_limits<double>::quiet_NaN();
   SampledBox box;
@@ -18,8 +14,6 @@ SampledBox Missing(const Box& samples)
   box.View.Stride[0] = box.View.Stride[1] = box.View.Stride[2] = 0;
   return box;
 }
-
-} // namespace
 
 ScalarType TypeWithMissing(ScalarType type)
 {
@@ -65,7 +59,7 @@ BrickView PieceSamples::View(const Box& samples) const
   {
     return Assemble(parts, samples, this->Type());
   }
-  parts.insert(parts.begin(), Missing(samples));
+  parts.insert(parts.begin(), MissingSamples(samples));
   return Assemble(parts, samples, TypeWithMissing(this->Type()));
 }
 

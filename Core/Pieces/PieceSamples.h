@@ -14,6 +14,9 @@ namespace banyan
 /// Of views of values of a type of which some are missing: NaN.
 ScalarType TypeWithMissing(ScalarType type);
 
+/// One value that is missing, wherever it is asked for.
+SampledBox MissingSamples(const Box& samples);
+
 /// The samples that one rank has of a grid in pieces: its array, which stays where it is, and once
 /// they were received, those around it that bricks with a layer around them take.
 class PieceSamples

@@ -1,6 +1,7 @@
 #include "Pieces/PieceSource.h"
 
 #include "Base/Error.h"
+#include "Pieces/PieceLevels.h"
 
 #include <string>
 
@@ -65,6 +66,12 @@ BrickView PieceSource::LoadAround(std::int64_t brick, Box& samples)
 {
   samples = this->Grid.BrickSamples(brick, true);
   return this->ViewOf(brick, samples);
+}
+
+std::unique_ptr<BrickSource> PieceSource::MakeLevel(int level, const Box&)
+{
+  const bool made = this->Coarser && level <= this->Coarser->Coarsest();
+  return made ? this->Coarser->SourceOf(level, this->Rank) : nullptr;
 }
 
 } // namespace banyan

@@ -12,12 +12,14 @@
 namespace banyan
 {
 
+class PieceLevels;
+
 /// Bricks of a grid of plain data that lies in pieces on the ranks: all of them are known on every
 /// rank, and can be loaded where their samples are, which is where the piece lies, or where they
 /// were fetched to (PieceExchange) before drawing. Which rank draws which brick, and how the grid
 /// is cut into pieces, changes no bit of a sample or of a gradient.
 ///
-/// @par Limits: there are no coarser levels.
+/// Coarser levels are there once they were made (PieceLevels).
 class PieceSource : public BrickSource
 {
 public:
@@ -41,6 +43,12 @@ public:
 
   bool IsOwn(std::int64_t brick) const { return this->Grid.HolderOf(brick) == this->Rank; }
 
+  /// @param levels must stay; those that it has when AtLevel asks for them
+  void SetLevels(const PieceLevels* levels) { this->Coarser = levels; }
+
+protected:
+  std::unique_ptr<BrickSource> MakeLevel(int level, const Box& domain) override;
+
 private:
   const BoxSummary& At(std::int64_t brick) const
   {
@@ -55,6 +63,7 @@ private:
   std::vector<BoxSummary> Summaries;
   std::vector<ScalarType> Types; ///< of the array of each rank
   MaskRange Masks;
+  const PieceLevels* Coarser = nullptr;
 };
 
 } // namespace banyan

@@ -1,0 +1,153 @@
+// Coarser levels of plain data in pieces: the picture is that of one rank's levels.
+#include "Parallel/DistributedFrame.h"
+#include "Pieces/PieceField.h"
+#include "Pieces/Pieces.h"
+#include "Render/RayCaster.h"
+
+#include <gtest/gtest.h>
+
+#include <mutex>
+
+namespace
+{
+
+using namespace pieces;
+
+constexpr std::uint64_t Budget = 4u << 20;
+constexpr int BrickCells = 8;
+constexpr int CoarsestLevel = 3;
+const glm::ivec3 Samples{ 45, 37, 41 };
+const glm::ivec2 Size{ 61, 47 };
+
+struct Drawn
+{
+  int Level;
+  bool Shaded;
+  double Distance; ///< of the eye
+};
+
+const std::vector<Drawn>& Frames()
+{
+  static const std::vector<Drawn> frames = { { 1, false, 1.4 }, { 2, false, 0.8 },
+    { 3, false, 1.2 }, { 1, true, 0.8 }, { 2, true, 0.1 }, { 3, true, 1.4 } };
+  return frames;
+}
+
+RayScene SceneOf(const Drawn& drawn)
+{
+  RayScene scene =
+    scenes::Scene(Samples, Size, glm::dmat4(1.0), drawn.Distance, /*parallel=*/false);
+  scene.Transfer = scenes::Tabulate(scenes::Sparse);
+  scene.Shading.On = drawn.Shaded;
+  scene.Shading.Specular = drawn.Shaded ? 0.3f : 0.0f;
+  scene.Samplings = std::make_shared<const TileSamplings>(
+    Size, std::vector{ RaySampling{ drawn.Level, scene.SampleDistance } });
+  return scene;
+}
+
+template <class T>
+std::vector<FloatImage> PicturesOfOne(const std::vector<T>& values)
+{
+  ThreadPool pool(1);
+  const SampleArray array = scenes::ArrayOf(values, Samples);
+  const ValueRange range = FiniteRange(array, pool);
+  ArrayBrickSource source(array, 16, { range.Low, range.High }, pool);
+  std::vector<FloatImage> pictures;
+  for (const Drawn& drawn : Frames())
+  {
+    const RayScene scene = SceneOf(drawn);
+    FrameStatistics statistics;
+    const auto alone = MakeSelfCommunicator();
+    pictures.push_back(
+      DrawDistributed(*alone, scene, &source, { scene.DomainCells }, Budget, pool, {}, statistics));
+  }
+  return pictures;
+}
+
+template <class T>
+void ExpectPicturesOfOne(const std::vector<T>& values, Deal deal, LoadBalancing mode, int ranks)
+{
+  const std::vector<FloatImage> alone = PicturesOfOne(values);
+  const std::vector<Box> dealt = Dealt(deal, Samples, ranks);
+  RunOnSimulatedRanks(ranks,
+    [&](Communicator& communicator)
+    {
+      const Piece<T> mine(values, Samples, dealt[static_cast<std::size_t>(communicator.Rank())]);
+      ThreadPool pool(1);
+      PieceField field;
+      field.Take(communicator, dealt, mine.Array, Samples - 1, BrickCells, mode, pool);
+      for (std::size_t frame = 0; frame < Frames().size(); ++frame)
+      {
+        RayScene scene = SceneOf(Frames()[frame]);
+        field.BeginFrame(communicator, scene, Budget);
+        field.BringLevels(communicator, scene, CoarsestLevel, Budget, pool);
+        FrameStatistics statistics;
+        const FloatImage picture = DrawDistributed(
+          communicator, scene, field.Source(), field.Zones(), Budget, pool, {}, statistics);
+        field.EndFrame(communicator);
+        if (communicator.Rank() == 0)
+        {
+          EXPECT_LT(MaxDifference(picture, alone[frame]), 1e-5)
+            << "frame " << frame << ", ranks " << ranks << ", deal " << static_cast<int>(deal);
+          EXPECT_GT(statistics.SamplesTaken, 0);
+        }
+      }
+    });
+}
+
+class EveryRankCountOfLevels : public ::testing::TestWithParam<int>
+{
+};
+
+TEST_P(EveryRankCountOfLevels, DrawsThePicturesOfOneRank)
+{
+  const std::vector<float> values = scenes::Sampled<float>(scenes::Standard, Samples);
+  for (const Deal deal : { Deal::Slabs, Deal::Blocks, Deal::Ghosts, Deal::OneHasAll,
+         Deal::Everybody, Deal::SomeIdle, Deal::Pinwheel })
+  {
+    ExpectPicturesOfOne(values, deal, LoadBalancing::Off, GetParam());
+  }
+  ExpectPicturesOfOne(values, Deal::Blocks, LoadBalancing::MeasuredCost, GetParam());
+}
+
+// 24 leave ranks with pieces in which no coarse cell begins, and with none.
+INSTANTIATE_TEST_SUITE_P(Ranks, EveryRankCountOfLevels, ::testing::Values(1, 2, 3, 5, 7, 24));
+
+TEST(PieceLevels, OfBytesAreThoseOfOneRank)
+{
+  std::vector<unsigned char> values;
+  for (const float value : scenes::Sampled<float>(scenes::Standard, Samples))
+  {
+    values.push_back(static_cast<unsigned char>(value > 0.4f ? 1 : 0));
+  }
+  ExpectPicturesOfOne(values, Deal::Blocks, LoadBalancing::Off, 3);
+}
+
+TEST(PieceLevels, PiecesWithAHoleAreDrawnWhereTheyAreKnown)
+{
+  const std::vector<float> values = scenes::Sampled<float>(scenes::Standard, Samples);
+  const std::vector<Box> dealt = Dealt(Deal::Hole, Samples, 4);
+  RunOnSimulatedRanks(4,
+    [&](Communicator& communicator)
+    {
+      const Piece<float> mine(
+        values, Samples, dealt[static_cast<std::size_t>(communicator.Rank())]);
+      ThreadPool pool(1);
+      PieceField field;
+      field.Take(
+        communicator, dealt, mine.Array, Samples - 1, BrickCells, LoadBalancing::Off, pool);
+      RayScene scene = SceneOf({ 1, true, 1.4 });
+      field.BeginFrame(communicator, scene, Budget);
+      field.BringLevels(communicator, scene, CoarsestLevel, Budget, pool);
+      FrameStatistics statistics;
+      const FloatImage picture = DrawDistributed(
+        communicator, scene, field.Source(), field.Zones(), Budget, pool, {}, statistics);
+      EXPECT_GT(statistics.SamplesTaken, 0);
+      for (const glm::vec4& pixel : picture.Pixels)
+      {
+        EXPECT_TRUE(std::isfinite(pixel.r + pixel.g + pixel.b + pixel.a));
+      }
+    });
+}
+
+} // namespace
