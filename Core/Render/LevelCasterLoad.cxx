@@ -63,8 +63,7 @@ KeptBricks::Pointer LevelCaster::Pack(const PlannedBrick& brick) const
   }
   Box around;
   const BrickView view = this->Source.LoadAround(brick.Number, around);
-  return std::make_shared<const PackedBrick>(
-    view, around, brick.Cells, low, this->GradientScale());
+  return std::make_shared<const PackedBrick>(view, around, brick.Cells, low, this->GradientScale());
 }
 
 /// Brings gradients near 1, so that their squares neither overflow nor vanish.
@@ -80,7 +79,7 @@ BrickView LevelCaster::LoadLarge(const PlannedBrick& brick) const
 {
   if (this->Shading)
   {
-    throw Error("Bricks of so many cells per axis cannot be shaded",
+    throw Error("Bricks of so many cells per axis cannot be shaded; cut the data into smaller ones",
       { {}, {}, static_cast<std::uint64_t>(brick.Cells.Size().x),
         static_cast<std::uint64_t>(PackedBrick::LargestEdge) });
   }
