@@ -28,6 +28,63 @@ struct Wanted
   std::uint64_t Bytes = 0;
 };
 
+/// @param scene in the index space of the level
+/// @param zone cells of the level
+/// @param fetched what is there of it counts as used
+void AddMissing(const RayScene& scene, const PieceSource& source, const PieceGrid& grid,
+  const BrickFetch& fetch, const Box& zone, bool around, FetchedBricks& fetched, Wanted& wanted)
+{
+  for (const std::int64_t brick : BricksToLoad(scene, source, zone))
+  {
+    if (source.IsOwn(brick))
+    {
+      continue;
+    }
+    if (fetched.Has(brick, grid.BrickSamples(brick, around)))
+    {
+      fetched.Use(brick);
+      continue;
+    }
+    wanted.Missing.push_back(brick);
+    wanted.Bytes += fetch.BytesOf(brick);
+    ++wanted.Counts[static_cast<std::size_t>(grid.HolderOf(brick))];
+  }
+}
+
+/// Collective, one message for all levels. @return how many bricks each rank wants of each other:
+/// per level `[asking rank][holding rank]`
+/// Throws Error, the same on all ranks, when one has failed.
+std::vector<std::vector<std::int32_t>> GatherCounts(
+  Communicator& communicator, const std::vector<Wanted>& wanted, const std::string& failure)
+{
+  const auto ranks = static_cast<std::size_t>(communicator.Size());
+  std::vector<std::int32_t> mine{ failure.empty() ? 0 : 1 };
+  for (const Wanted& of : wanted)
+  {
+    mine.insert(mine.end(), of.Counts.begin(), of.Counts.end());
+  }
+  std::vector<std::int32_t> all(mine.size() * ranks);
+  communicator.AllGather(mine.data(), mine.size() * sizeof(std::int32_t), all.data());
+  std::vector<std::vector<std::int32_t>> counts(wanted.size());
+  bool failed = false;
+  for (std::size_t rank = 0; rank < ranks; ++rank)
+  {
+    auto next = all.begin() + static_cast<std::ptrdiff_t>(rank * mine.size());
+    failed = failed || *next != 0;
+    ++next;
+    for (std::vector<std::int32_t>& of : counts)
+    {
+      of.insert(of.end(), next, next + static_cast<std::ptrdiff_t>(ranks));
+      next += static_cast<std::ptrdiff_t>(ranks);
+    }
+  }
+  if (failed)
+  {
+    throw Error(AgreeOnError(communicator, failure));
+  }
+  return counts;
+}
+
 } // namespace
 
 void PieceLevels::Make(Communicator& communicator, const PieceGrid& finest,
@@ -58,8 +115,7 @@ std::unique_ptr<PieceSource> PieceLevels::SourceOf(int number, int rank) const
 std::uint64_t PieceLevels::Bring(Communicator& communicator, const RayScene& scene,
   const std::vector<Box>& zones, std::uint64_t budgetBytes)
 {
-  const auto self = static_cast<std::size_t>(communicator.Rank());
-  const std::size_t ranks = zones.size();
+  const int self = communicator.Rank();
   const bool around = scene.Shading.On && scene.Blend.Mode == BlendMode::Composite;
   std::uint64_t bytes = 0;
   std::vector<Wanted> wanted(this->Levels.size());
@@ -74,27 +130,13 @@ std::uint64_t PieceLevels::Bring(Communicator& communicator, const RayScene& sce
     }
     fetches.emplace_back(communicator, level.Grid, level.Known.ViewTypes, level.Samples, around);
     level.Fetched.BeginFrame();
-    wanted[i].Counts.assign(ranks, 0);
+    wanted[i].Counts.assign(zones.size(), 0);
     try
     {
       const int number = static_cast<int>(i) + 1;
-      const std::unique_ptr<PieceSource> source = this->SourceOf(number, communicator.Rank());
-      const Box zone = CoarsePieces::CellsBeginningIn(zones[self], number);
-      for (const std::int64_t brick : BricksToLoad(AtLevel(scene, 1 << number), *source, zone))
-      {
-        if (source->IsOwn(brick))
-        {
-          continue;
-        }
-        if (level.Fetched.Has(brick, level.Grid.BrickSamples(brick, around)))
-        {
-          level.Fetched.Use(brick);
-          continue;
-        }
-        wanted[i].Missing.push_back(brick);
-        wanted[i].Bytes += fetches[i].BytesOf(brick);
-        ++wanted[i].Counts[static_cast<std::size_t>(level.Grid.HolderOf(brick))];
-      }
+      AddMissing(AtLevel(scene, 1 << number), *this->SourceOf(number, self), level.Grid, fetches[i],
+        CoarsePieces::CellsBeginningIn(zones.at(static_cast<std::size_t>(self)), number), around,
+        level.Fetched, wanted[i]);
     }
     catch (const std::exception& error)
     {
@@ -102,46 +144,22 @@ std::uint64_t PieceLevels::Bring(Communicator& communicator, const RayScene& sce
     }
   }
 
-  // One message tells all ranks how many bricks each wants of whom, of all levels.
-  std::vector<std::int32_t> mine{ failure.empty() ? 0 : 1 };
-  for (const Wanted& of : wanted)
+  const std::vector<std::vector<std::int32_t>> counts = GatherCounts(communicator, wanted, failure);
+  for (std::size_t i = 0; i < this->Levels.size(); ++i)
   {
-    mine.insert(mine.end(), of.Counts.begin(), of.Counts.end());
-  }
-  std::vector<std::int32_t> all(mine.size() * ranks);
-  communicator.AllGather(mine.data(), mine.size() * sizeof(std::int32_t), all.data());
-  bool failed = false;
-  for (std::size_t i = 0; i <= this->Levels.size(); ++i)
-  {
-    std::vector<std::int32_t> counts;
-    bool some = false;
-    for (std::size_t rank = 0; rank < ranks; ++rank)
+    if (std::none_of(counts[i].begin(), counts[i].end(), [](std::int32_t n) { return n > 0; }))
     {
-      const std::int32_t* const said = all.data() + rank * mine.size();
-      failed = failed || said[0] != 0;
-      if (i > 0)
-      {
-        const std::int32_t* const first = said + 1 + (i - 1) * ranks;
-        counts.insert(counts.end(), first, first + ranks);
-        some = some || std::any_of(first, first + ranks, [](std::int32_t n) { return n > 0; });
-      }
+      continue;
     }
-    if (failed)
+    FetchedBricks& fetched = this->Levels[i]->Fetched;
+    fetched.MakeRoom(wanted[i].Bytes, budgetBytes / this->Levels.size());
+    const std::string problem =
+      AgreeOnError(communicator, fetches[i].Exchange(wanted[i].Missing, counts[i], fetched));
+    if (!problem.empty())
     {
-      throw Error(AgreeOnError(communicator, failure));
+      throw Error(problem);
     }
-    if (some)
-    {
-      Level& level = *this->Levels[i - 1];
-      level.Fetched.MakeRoom(wanted[i - 1].Bytes, budgetBytes / this->Levels.size());
-      const std::string problem = AgreeOnError(
-        communicator, fetches[i - 1].Exchange(wanted[i - 1].Missing, counts, level.Fetched));
-      if (!problem.empty())
-      {
-        throw Error(problem);
-      }
-      bytes += wanted[i - 1].Bytes;
-    }
+    bytes += wanted[i].Bytes;
   }
   return bytes;
 }

@@ -4,6 +4,7 @@
 
 namespace banyan
 {
+
 SampledBox MissingSamples(const Box& samples)
 {
   static const double missing = std::numeric_limits<double>::quiet_NaN();
