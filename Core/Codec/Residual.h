@@ -63,17 +63,17 @@ inline std::uint8_t MagnitudeOf(std::int32_t residual)
 }
 
 /// A table entry as one word: number of bits to read (8 bits of the word, for shift instructions take
-/// their counts from such a byte), next state (9; zeros up to 16), and from bit 24 the residual, or
-/// EscapeTop and the number of extra bits.
-constexpr int BaseShift = 8;
-constexpr int TopShift = 24;
+/// their counts from such a byte), then 8 bits: the residual, or EscapeTop and the number of extra bits;
+/// and the next state, which nothing is above of.
+constexpr int TopShift = 8;
+constexpr int BaseShift = 16;
 constexpr int EscapeTop = 64;
 inline std::uint32_t Packed(const tans::DecodeEntry& entry)
 {
   const std::uint32_t top = entry.Symbol >= DirectSymbols
                               ? static_cast<std::uint32_t>(EscapeTop + ExtraBits(entry.Symbol))
                               : static_cast<std::uint32_t>(Unzigzag(entry.Symbol));
-  return entry.Bits | static_cast<std::uint32_t>(entry.Base) << BaseShift | top << TopShift;
+  return entry.Bits | (top & 0xffu) << TopShift | static_cast<std::uint32_t>(entry.Base) << BaseShift;
 }
 
 /// Contexts: a band (kind of unit, stride, direction), one of 8 classes of roughness, and whether the

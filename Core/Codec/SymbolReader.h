@@ -80,10 +80,14 @@ public:
     return this->Tables->Entries.data() + this->BandOf(band).First;
   }
 
-  /// The bits from a position on, 57 at least; zeros where it lies beyond the end.
+  /// So many symbols may be read before the position is checked: they leave the payload, but not the
+  /// zeros behind it.
+  static constexpr int MostUnchecked = 256;
+
+  /// The bits from a position on, 57 at least. Positions lie at most MostUnchecked symbols behind the
+  /// end, where all bits are zero.
   HWY_INLINE std::uint64_t Word(std::uint64_t position) const
   {
-    position = std::min(position, this->End);
     std::uint64_t word;
     std::memcpy(&word, this->Buffer.data() + (position >> 3), 8);
     return word >> (position & 7);
@@ -100,7 +104,8 @@ public:
   }
 
 private:
-  static constexpr std::size_t Slack = 16; // a word is read at a time
+  /// Zeros behind the payload: what symbols may take, and a word.
+  static constexpr std::size_t Slack = MostUnchecked * tans::TableBits / 8 + 16;
 
   HWY_INLINE std::uint32_t Take(std::uint32_t bits)
   {

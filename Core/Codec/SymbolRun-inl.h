@@ -10,9 +10,23 @@
 
 #include <hwy/highway.h>
 
+#if HWY_ARCH_X86
+#include <immintrin.h>
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
+
+/// The lowest bits of a word, as many as the lowest byte of an entry says.
+HWY_INLINE std::uint64_t LowBits(std::uint64_t word, std::uint32_t entry)
+{
+#if HWY_ARCH_X86_64 && HWY_TARGET <= HWY_AVX2
+  return _bzhi_u64(word, entry);
+#else
+  return word & ((std::uint64_t{ 1 } << (entry & 63u)) - 1);
+#endif
+}
 
 /// The bits at hand while a run is read.
 struct RunBits
@@ -20,26 +34,25 @@ struct RunBits
   const SymbolReader& Symbols;
   std::uint64_t Position;
   std::uint64_t Word = 0;
-  std::uint32_t Used = 0;
+  std::uint32_t Used = 0; ///< the sum of entries: its lowest byte is that of their bits
 
+  /// Has enough bits for as many symbols as fit into a word.
   HWY_INLINE void Fill()
   {
-    this->Position += this->Used;
+    this->Position += this->Used & 0xffu;
     this->Used = 0;
     this->Word = this->Symbols.Word(this->Position);
   }
 
-  /// A symbol: its entry's top; moves the lane's state.
-  HWY_INLINE std::int8_t Next(
+  /// A symbol's entry; moves the lane's state.
+  HWY_INLINE std::uint32_t Next(
     const std::uint32_t* tables, std::uint16_t place, std::uint64_t& state)
   {
     const std::uint32_t entry = tables[std::uint64_t{ place } + state];
-    const std::uint32_t bits = entry & 0xffu;
-    state = static_cast<std::uint16_t>(entry >> residual::BaseShift) +
-            (this->Word & ((std::uint64_t{ 1 } << bits) - 1));
-    this->Word >>= bits;
-    this->Used += bits;
-    return static_cast<std::int8_t>(entry >> residual::TopShift);
+    state = std::uint64_t{ entry >> residual::BaseShift } + LowBits(this->Word, entry);
+    this->Word >>= entry & 63u;
+    this->Used += entry;
+    return entry;
   }
 };
 
@@ -47,86 +60,114 @@ struct RunBits
 template <int Lanes>
 HWY_INLINE void ReadFew(RunBits& bits, const std::uint32_t* HWY_RESTRICT tables,
   const std::uint16_t* HWY_RESTRICT places, int count, std::uint64_t (&states)[Lanes],
-  std::int8_t* HWY_RESTRICT tops)
+  std::uint32_t* HWY_RESTRICT entries)
 {
   bits.Fill();
-  tops[0] = bits.Next(tables, places[0], states[0]);
+  entries[0] = bits.Next(tables, places[0], states[0]);
   if (count > 1)
   {
-    tops[1] = bits.Next(tables, places[1], states[1 % Lanes]);
+    entries[1] = bits.Next(tables, places[1], states[1 % Lanes]);
   }
   if (count > 2)
   {
-    tops[2] = bits.Next(tables, places[2], states[2 % Lanes]);
+    entries[2] = bits.Next(tables, places[2], states[2 % Lanes]);
   }
   if (count > 3)
   {
-    tops[3] = bits.Next(tables, places[3], states[3 % Lanes]);
+    entries[3] = bits.Next(tables, places[3], states[3 % Lanes]);
     bits.Fill();
   }
   if (count > 4)
   {
-    tops[4] = bits.Next(tables, places[4], states[4 % Lanes]);
+    entries[4] = bits.Next(tables, places[4], states[4 % Lanes]);
   }
   if (count > 5)
   {
-    tops[5] = bits.Next(tables, places[5], states[5 % Lanes]);
+    entries[5] = bits.Next(tables, places[5], states[5 % Lanes]);
   }
   if (count > 6)
   {
-    tops[6] = bits.Next(tables, places[6], states[6 % Lanes]);
+    entries[6] = bits.Next(tables, places[6], states[6 % Lanes]);
   }
 }
 
-/// ReadRun for a number of lanes. By itself, so that all it works with stays in registers: loops are
-/// unrolled by hand, as lanes are registers only where their numbers are constants.
+/// The tops of entries.
+/// @param tops room for a multiple of 16
+HWY_INLINE void TakeTops(const std::uint32_t* HWY_RESTRICT entries, int count, std::int8_t* HWY_RESTRICT tops)
+{
+  typedef std::uint32_t Entries __attribute__((vector_size(64)));
+  typedef std::uint8_t Tops __attribute__((vector_size(16)));
+  for (int k = 0; k < count; k += 16)
+  {
+    Entries some;
+    std::memcpy(&some, entries + k, sizeof(some));
+    const Tops bytes = __builtin_convertvector((some >> residual::TopShift) & 0xffu, Tops);
+    std::memcpy(tops + k, &bytes, sizeof(bytes));
+  }
+}
+
+/// ReadRun for a number of lanes, of at most SymbolReader::MostUnchecked symbols. By itself, so that all
+/// it works with stays in registers: loops are unrolled by hand, as lanes are registers only where their
+/// numbers are constants. Whole entries are kept, which takes an instruction less than their tops.
 template <int Lanes>
 HWY_NOINLINE void ReadRunOf(SymbolReader& symbols, const std::uint32_t* HWY_RESTRICT tables,
-  const std::uint16_t* HWY_RESTRICT places, int count, std::int8_t* HWY_RESTRICT tops)
+  const std::uint16_t* HWY_RESTRICT places, const int count, std::int8_t* HWY_RESTRICT tops)
 {
+  std::uint32_t entries[SymbolReader::MostUnchecked];
   std::uint64_t states[Lanes];
   std::copy(symbols.States, symbols.States + Lanes, states);
   RunBits bits{ symbols, symbols.Position };
-  for (; count >= 8; count -= 8, places += 8, tops += 8)
+  int k = 0;
+  for (; k + 8 <= count; k += 8)
   {
-    bits.Fill(); // four symbols take at most 40 bits
-    tops[0] = bits.Next(tables, places[0], states[0]);
-    tops[1] = bits.Next(tables, places[1], states[1 % Lanes]);
-    tops[2] = bits.Next(tables, places[2], states[2 % Lanes]);
-    tops[3] = bits.Next(tables, places[3], states[3 % Lanes]);
+    bits.Fill(); // four symbols take at most 36 bits
+    entries[k] = bits.Next(tables, places[k], states[0]);
+    entries[k + 1] = bits.Next(tables, places[k + 1], states[1 % Lanes]);
+    entries[k + 2] = bits.Next(tables, places[k + 2], states[2 % Lanes]);
+    entries[k + 3] = bits.Next(tables, places[k + 3], states[3 % Lanes]);
     bits.Fill();
-    tops[4] = bits.Next(tables, places[4], states[4 % Lanes]);
-    tops[5] = bits.Next(tables, places[5], states[5 % Lanes]);
-    tops[6] = bits.Next(tables, places[6], states[6 % Lanes]);
-    tops[7] = bits.Next(tables, places[7], states[7 % Lanes]);
+    entries[k + 4] = bits.Next(tables, places[k + 4], states[4 % Lanes]);
+    entries[k + 5] = bits.Next(tables, places[k + 5], states[5 % Lanes]);
+    entries[k + 6] = bits.Next(tables, places[k + 6], states[6 % Lanes]);
+    entries[k + 7] = bits.Next(tables, places[k + 7], states[7 % Lanes]);
   }
-  if (count > 0)
+  if (k < count)
   {
-    ReadFew<Lanes>(bits, tables, places, count, states, tops);
+    ReadFew<Lanes>(bits, tables, places + k, count - k, states, entries + k);
   }
   std::copy(states, states + Lanes, symbols.States);
-  symbols.Position = bits.Position + bits.Used;
+  symbols.Position = bits.Position + (bits.Used & 0xffu);
   symbols.Check();
+  TakeTops(entries, count, tops);
 }
 
 /// Reads a run of symbols.
 /// @param tables of a band; see SymbolReader::TablesOf
 /// @param places of the symbols' tables among them: DecodeTables::Band::Tables, times tans::TableSize
 /// @param tops receives the residuals, or residual::EscapeTop and more where extra bits follow, which
-/// must be taken then, with SymbolReader::Long
+/// must be taken then, with SymbolReader::Long. Room for a multiple of 16
 HWY_INLINE void ReadRun(SymbolReader& symbols, const std::uint32_t* tables,
   const std::uint16_t* places, int count, std::int8_t* tops)
 {
-  switch (symbols.LanesLog)
+  for (; count > 0; count -= SymbolReader::MostUnchecked)
   {
-    case 0:
-      return ReadRunOf<1>(symbols, tables, places, count, tops);
-    case 1:
-      return ReadRunOf<2>(symbols, tables, places, count, tops);
-    case 2:
-      return ReadRunOf<4>(symbols, tables, places, count, tops);
-    default:
-      return ReadRunOf<8>(symbols, tables, places, count, tops);
+    const int some = std::min(count, SymbolReader::MostUnchecked);
+    switch (symbols.LanesLog)
+    {
+      case 0:
+        ReadRunOf<1>(symbols, tables, places, some, tops);
+        break;
+      case 1:
+        ReadRunOf<2>(symbols, tables, places, some, tops);
+        break;
+      case 2:
+        ReadRunOf<4>(symbols, tables, places, some, tops);
+        break;
+      default:
+        ReadRunOf<8>(symbols, tables, places, some, tops);
+    }
+    places += SymbolReader::MostUnchecked;
+    tops += SymbolReader::MostUnchecked;
   }
 }
 

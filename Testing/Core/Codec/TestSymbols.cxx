@@ -70,7 +70,7 @@ std::vector<std::uint32_t> ReadAll(SymbolReader& reader, const Tokens& tokens)
   {
     // Contexts differ within a run by what is added to the first one.
     std::vector<std::uint16_t> contexts;
-    std::vector<std::int8_t> tops(run);
+    std::vector<std::int8_t> tops(run + 16u);
     for (std::size_t i = 0; i < run; ++i)
     {
       const int context = tokens.Of[begin + i] >> residual::TokenShift;
@@ -78,6 +78,7 @@ std::vector<std::uint32_t> ReadAll(SymbolReader& reader, const Tokens& tokens)
         static_cast<std::uint16_t>(reader.BandOf(0).Tables[context] << tans::TableBits));
     }
     HWY_NAMESPACE::ReadRun(reader, reader.TablesOf(0), contexts.data(), static_cast<int>(run), tops.data());
+    tops.resize(run);
     for (const std::int8_t top : tops)
     {
       codes.push_back(residual::Zigzag(top < residual::EscapeTop
