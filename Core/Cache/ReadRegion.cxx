@@ -47,12 +47,59 @@ void Fill(const Target<T>& target, const Box& part, T value)
   ForRows(target, part,
     [&](T* to, int, int, int)
     {
+      if (target.Stride == 1)
+      {
+        std::fill_n(to, length, value);
+        return;
+      }
       for (int x = 0; x < length; ++x)
       {
         to[x * target.Stride] = value;
       }
     });
 }
+
+/// Fills parts that follow each other against x, those of one value at once: long rows are written
+/// in less time than several short ones.
+template <class T>
+class Filling
+{
+public:
+  explicit Filling(const Target<T>& target)
+    : To(target)
+  {
+  }
+  ~Filling() { this->Finish(); }
+  Filling(const Filling&) = delete;
+  Filling& operator=(const Filling&) = delete;
+
+  /// @param part with the same y and z as those before
+  void Add(const Box& part, T value)
+  {
+    if (!this->Part.Empty() && this->Part.Lo.x == part.Hi.x &&
+        std::memcmp(&this->Value, &value, sizeof(value)) == 0)
+    {
+      this->Part.Lo.x = part.Lo.x;
+      return;
+    }
+    this->Finish();
+    this->Part = part;
+    this->Value = value;
+  }
+
+private:
+  void Finish()
+  {
+    if (!this->Part.Empty())
+    {
+      Fill(this->To, this->Part, this->Value);
+    }
+  }
+
+  const Target<T>& To;
+  Box Part;
+  T Value{};
+};
 
 template <class T>
 void Copy(const Target<T>& target, const Box& part, const BrickValues& brick)
@@ -100,37 +147,48 @@ void Read(
   const std::int64_t count = bricks.Count();
   const bool past =
     static_cast<std::uint64_t>(target.Samples.Count()) * sizeof(T) >= cache.Budget() / 16;
-  ThreadPool::Process().ParallelFor(count,
+  const auto read = [&](const glm::ivec3& position, Filling<T>& filling)
+  {
+    const std::int64_t brick = layout.IndexOf(position);
+    const Box part = PartOf(layout, bricks, position, target.Samples);
+    const BrickNode& node = (*nodes)[static_cast<std::size_t>(brick)];
+    if (part.Empty())
+    {
+      return;
+    }
+    if (node.Uniform)
+    {
+      filling.Add(part, static_cast<T>(node.Range.Low));
+    }
+    else if (const auto held =
+               past ? cache.GetIfHeld(series, field, brick) : cache.Get(series, field, brick))
+    {
+      Copy(target, part, *held);
+    }
+    else
+    {
+      const glm::ivec3 length = target.Samples.Size();
+      series.DecodePart(field, brick, part,
+        { target.Stride, target.Stride * length.x,
+          target.Stride * std::ptrdiff_t{ length.x } * length.y },
+        target.RowAt(part.Lo.x, part.Lo.y, part.Lo.z));
+    }
+  };
+  // A row of bricks at once where that leaves enough of them for all threads.
+  constexpr std::int64_t enough = 32;
+  const int together = count / size.x >= enough ? size.x : 1;
+  ThreadPool::Process().ParallelFor(count / together,
     [&](std::int64_t fromLast)
     {
-      // The last one first: a brick then finds the layers that it shares with others decoded.
-      const std::int64_t i = count - 1 - fromLast;
-      const glm::ivec3 position =
-        bricks.Lo + glm::ivec3(static_cast<int>(i % size.x), static_cast<int>(i / size.x % size.y),
-                      static_cast<int>(i / size.x / size.y));
-      const std::int64_t brick = layout.IndexOf(position);
-      const Box part = PartOf(layout, bricks, position, target.Samples);
-      const BrickNode& node = (*nodes)[static_cast<std::size_t>(brick)];
-      if (part.Empty())
+      Filling<T> filling(target);
+      for (int k = 0; k < together; ++k)
       {
-        return;
-      }
-      if (node.Uniform)
-      {
-        Fill(target, part, static_cast<T>(node.Range.Low));
-      }
-      else if (const auto held = past ? cache.GetIfHeld(series, field, brick)
-                                      : cache.Get(series, field, brick))
-      {
-        Copy(target, part, *held);
-      }
-      else
-      {
-        const glm::ivec3 length = target.Samples.Size();
-        series.DecodePart(field, brick, part,
-          { target.Stride, target.Stride * length.x,
-            target.Stride * std::ptrdiff_t{ length.x } * length.y },
-          target.RowAt(part.Lo.x, part.Lo.y, part.Lo.z));
+        // The last one first: a brick then finds the layers that it shares with others decoded.
+        const std::int64_t i = count - 1 - (fromLast * together + k);
+        read(bricks.Lo + glm::ivec3(static_cast<int>(i % size.x),
+                           static_cast<int>(i / size.x % size.y),
+                           static_cast<int>(i / size.x / size.y)),
+          filling);
       }
     });
 }

@@ -263,6 +263,7 @@ HWY_INLINE void RowClasses(
     const SumVector weights =
       RowWeights<P>(unit.S + (P::D > 1 ? slice * pitch : 0) + row, edge, slice, row);
     SumVector classes{};
+#pragma GCC unroll 16
     for (const std::uint16_t limit : residual::RowLimits)
     {
       classes -= reinterpret_cast<SumVector>(weights > limit); // -1 where it holds

@@ -10,7 +10,9 @@
 #define HWY_TARGET_INCLUDE "Codec/BlockDecoder.cxx"
 #include <hwy/foreach_target.h>
 
-#include "Codec/BlockUnits-inl.h"
+#include "Codec/BoxPlaces-inl.h"
+#include "Codec/DenseFaces-inl.h"
+#include "Codec/DenseInterior-inl.h"
 #include "Codec/SliceDecoder-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,8 +20,10 @@ namespace banyan::HWY_NAMESPACE
 {
 
 template <class Edge, class Number>
-struct BoxDecoder
+struct BoxDecoder : BoxPlaces<Edge, Number>
 {
+  static constexpr bool Dense = HasDense && std::is_same_v<Edge, EdgeIs<16>>;
+
   struct Workspace
   {
     explicit Workspace(int edge)
@@ -33,25 +37,15 @@ struct BoxDecoder
     block::Scratch<Number, 2> Faces;
     block::Scratch<Number, 3> Interior;
     SliceMemory<Number> Slice;
+    std::conditional_t<Dense, DenseWork, int> Vectors{};
     SymbolReader Readers[8];
     /// Magnitudes of the edges of the blocks 1, 2, 4 and 0 of a box, row by row.
     std::uint8_t EdgeMagnitudes[4][3][64];
   };
 
-  Edge B;
   const PlaneCode& Plane;
-  const BoxCodeOf<Number>& Code;
-  View<Number> Box;
-  View<const Number> A, BRef;
+  View<const Number> BRef;
   Workspace& Work;
-
-  int N() const { return this->B() + 1; }
-
-  glm::ivec3 Corner(int owner) const
-  {
-    const int b = this->B();
-    return { owner & 1 ? b : 0, owner & 2 ? b : 0, owner & 4 ? b : 0 };
-  }
 
   References<Number> ReferencesOf(const block::Mode& mode) const
   {
@@ -60,106 +54,6 @@ struct BoxDecoder
       throw Error("A block refers to a step that its group does not have");
     }
     return { mode.From, this->A, this->BRef };
-  }
-
-  void PlaceCoarse() const
-  {
-    const int n = this->B() / 4 + 1;
-    const Number* from = this->Code.Coarse;
-    for (int z = 0; z < n; ++z)
-    {
-      for (int y = 0; y < n; ++y, from += n)
-      {
-        Number* row = this->Box.Row(4 * y, 4 * z);
-        for (int x = 0; x < n; ++x)
-        {
-          row[4 * x] = from[x];
-        }
-      }
-    }
-  }
-
-  /// The decoded box of a neighbour (1, 2 or 4), or null.
-  const Number* NeighbourOf(int owner) const
-  {
-    return owner == 1 || owner == 2 || owner == 4 ? this->Code.Neighbours[owner / 2] : nullptr;
-  }
-
-  /// Whether the edge that a block across an edge of the box owns is in a decoded face.
-  bool HasEdge(int owner) const
-  {
-    for (const int neighbour : { 1, 2, 4 })
-    {
-      if ((neighbour & owner) != 0 && this->NeighbourOf(neighbour) != nullptr)
-      {
-        return true;
-      }
-    }
-    return false;
-  }
-
-  /// The first layer of a decoded neighbour, other owners' edges of it included, is the last one here.
-  void PlaceFace(int owner) const
-  {
-    const int n = this->N();
-    const View<const Number> from{ this->NeighbourOf(owner), this->Box.Stride };
-    const glm::ivec3 corner = this->Corner(owner);
-    const View<Number> to = this->Box.At(corner);
-    if (owner == 1)
-    {
-      for (int z = 0; z < n; ++z)
-      {
-        for (int y = 0; y < n; ++y)
-        {
-          *to.Row(y, z) = *from.Row(y, z);
-        }
-      }
-      return;
-    }
-    for (int j = 0; j < n; ++j)
-    {
-      const int y = owner == 2 ? 0 : j;
-      const int z = owner == 2 ? j : 0;
-      std::copy_n(from.Row(y, z), n, to.Row(y, z));
-    }
-  }
-
-  /// Whether a block takes no decoding: it is uniform, the same as in reference A, or decoded.
-  bool Plain(int owner) const
-  {
-    const BlockCode& block = this->Code.Blocks[owner];
-    return block.Uniform || block.Same || this->NeighbourOf(owner) != nullptr;
-  }
-
-  /// Fills what a plain block owns of the box.
-  void PlacePlain(int owner) const
-  {
-    if (this->NeighbourOf(owner) != nullptr)
-    {
-      return this->PlaceFace(owner);
-    }
-    if (this->Code.Blocks[owner].Same && this->Code.A == nullptr)
-    {
-      throw Error("A block is the same as in a step that its group does not have");
-    }
-    const int n = this->N();
-    const glm::ivec3 low = this->Corner(owner);
-    const glm::ivec3 high{ owner & 1 ? n : n - 1, owner & 2 ? n : n - 1, owner & 4 ? n : n - 1 };
-    for (int z = low.z; z < high.z; ++z)
-    {
-      for (int y = low.y; y < high.y; ++y)
-      {
-        Number* row = this->Box.Row(y, z);
-        if (this->Code.Blocks[owner].Same)
-        {
-          std::copy(this->A.Row(y, z) + low.x, this->A.Row(y, z) + high.x, row + low.x);
-        }
-        else
-        {
-          std::fill(row + low.x, row + high.x, static_cast<Number>(this->Code.Blocks[owner].Value));
-        }
-      }
-    }
   }
 
   /// Decodes the units of D dimensions of a block. Those outside the box only advance the reader.
@@ -192,12 +86,31 @@ struct BoxDecoder
     {
       unit.Limit[number] = InOrderOf<D>(AxesOf<D>(number), block.Limit, this->B());
     }
-    forEachNeeded([&](const View<Number>& samples, const References<Number>& from, Number* w)
-      { LoadUnit<D>(View<const Number>{ samples.Base, samples.Stride }, from, this->B, false, w); });
+    forEachNeeded(
+      [&](const View<Number>& samples, const References<Number>& from, Number* w)
+      {
+        if constexpr (Dense && D == 2)
+        {
+          WithDenseFace(samples, from, w, [](const auto& face) { face.Load(); });
+        }
+        else
+        {
+          LoadUnit<D>(View<const Number>{ samples.Base, samples.Stride }, from, this->B, false, w);
+        }
+      });
     ForEachPass<D>(
       [&](auto pass)
       {
         using P = decltype(pass);
+        if constexpr (Dense && D == 2)
+        {
+          BeginStride<P>(this->Work.Vectors.Faces, symbols);
+          DenseSliceDecoder<P, Number>(unit, this->Work.Vectors.Faces.template At<P::S>(), mode.By,
+            symbols, static_cast<Number>(P::S == 2 ? this->Plane.CoarseBin : this->Plane.FineBin),
+            this->Work.Vectors.Slice)
+            .Run();
+          return;
+        }
         SliceDecoder<P, Edge, Number>(unit, this->B, mode.By, symbols,
           static_cast<Number>(P::S == 2 ? this->Plane.CoarseBin : this->Plane.FineBin),
           this->Work.Slice)
@@ -205,7 +118,20 @@ struct BoxDecoder
       });
     forEachNeeded(
       [&](const View<Number>& samples, const References<Number>& from, Number* w)
-      { StoreUnit<D>(w, from, this->B, this->Plane.Least, this->Plane.Greatest, samples); });
+      {
+        if constexpr (Dense && D == 2)
+        {
+          WithDenseFace(samples, from, w,
+            [this](const auto& face)
+            {
+              face.Store(static_cast<Number>(this->Plane.Least), static_cast<Number>(this->Plane.Greatest));
+            });
+        }
+        else
+        {
+          StoreUnit<D>(w, from, this->B, this->Plane.Least, this->Plane.Greatest, samples);
+        }
+      });
     return unit.Any;
   }
 
@@ -280,7 +206,14 @@ struct BoxDecoder
   bool Faces(
     int owner, SymbolReader* symbols, const std::uint8_t (&edges)[3][64], bool any) const
   {
-    if (symbols != nullptr)
+    if constexpr (Dense)
+    {
+      if (symbols != nullptr)
+      {
+        this->Work.Vectors.BeginFaces(edges, this->Work.Faces.S());
+      }
+    }
+    else if (symbols != nullptr)
     {
       this->Work.Faces.Clear();
       block::PlaceEdges(this->B(), edges, this->Work.Faces.M());
@@ -291,13 +224,33 @@ struct BoxDecoder
 
   void Inside(SymbolReader* symbols, bool any) const
   {
-    if (symbols != nullptr)
+    if constexpr (Dense)
+    {
+      if (symbols != nullptr)
+      {
+        this->Work.Vectors.BeginInterior(
+          block::Shape<3>{ 16 }.SumPitch(), this->Work.Interior.S());
+      }
+    }
+    else if (symbols != nullptr)
     {
       this->Work.Interior.Clear();
       block::PlaceFaces(this->B(), this->Work.Faces.M(), this->Work.Interior.M());
       SumRows<3>(this->Work.Interior.M(), this->B, this->Work.Interior.S());
     }
-    this->template DecodeUnits<3>(0, symbols, this->Work.Interior, any);
+    if constexpr (Dense)
+    {
+      const BlockCode& block = this->Code.Blocks[0];
+      const block::Mode mode = block::ModeOf(block.Mode);
+      Unit<Number, 3> unit{ this->Box.Base, nullptr, nullptr, this->Work.Interior.S(), { block.Limit },
+        any };
+      DecodeDenseInterior(
+        unit, this->ReferencesOf(mode), mode.By, this->Plane, symbols, this->Work.Vectors);
+    }
+    else
+    {
+      this->template DecodeUnits<3>(0, symbols, this->Work.Interior, any);
+    }
     if (symbols != nullptr && !symbols->AtEnd())
     {
       throw Error("The payload of a block is damaged: its symbols do not end where it ends");
@@ -319,7 +272,7 @@ void DecodeBoxOf(
   }
   const std::int64_t n = edge() + 1;
   const glm::i64vec3 strides{ 1, n, n * n };
-  Decoder{ edge, plane, code, { box, strides }, { code.A, strides }, { code.B, strides }, *work }
+  Decoder{ { edge, code, { box, strides }, { code.A, strides } }, plane, { code.B, strides }, *work }
     .Run();
 }
 

@@ -182,11 +182,13 @@ HWY_INLINE RowPlace PlaceOf(const Unit<Number, P::D>& unit, const Edge& edge, in
   return place;
 }
 
-/// Predicts Width lanes of a row, from lane `First + at` on; lanes that the pass does not have hold
-/// anything.
+/// Predicts Width lanes of a row; lanes that the pass does not have hold anything.
+/// @param from lane First + at of the row
+/// @param gap distance of samples that are a stride apart along the axis of the pass
+/// @param position of the row along that axis; any along the first
 template <class P, class Edge, class Number>
-HWY_INLINE typename Numbers<Number>::Unsigned Predict(
-  const Number* w, const Edge& edge, const RowPlace& place, int at, Interpolation by)
+HWY_INLINE typename Numbers<Number>::Unsigned PredictAt(const Number* from, std::ptrdiff_t gap,
+  const Edge& edge, int position, int at, Interpolation by)
 {
   using V = Numbers<Number>;
   using Vector = typename V::Unsigned;
@@ -194,10 +196,6 @@ HWY_INLINE typename Numbers<Number>::Unsigned Predict(
   {
     return Vector{};
   }
-  const block::Shape<P::D> shape{ edge() };
-  const std::ptrdiff_t gap =
-    P::Axis == 0 ? P::S : P::S * (P::Axis == 1 ? shape.Y() : shape.Z());
-  const Number* from = w + place.W + P::First + at;
   const Vector before = V::Load(from - gap);
   const Vector after = V::Load(from + gap);
   if (by == Interpolation::Linear)
@@ -206,7 +204,6 @@ HWY_INLINE typename Numbers<Number>::Unsigned Predict(
   }
   if (P::Axis > 0)
   {
-    const int position = P::Axis == 1 ? place.Y : place.Z;
     if (position == P::S)
     {
       return V::Quadratic(before, after, V::Load(from + 3 * gap));
@@ -231,6 +228,18 @@ HWY_INLINE typename Numbers<Number>::Unsigned Predict(
     result = lanes == static_cast<Number>(end) ? V::Quadratic(after, before, first) : result;
   }
   return result;
+}
+
+/// The same of a unit, as its memory is laid out.
+template <class P, class Edge, class Number>
+HWY_INLINE typename Numbers<Number>::Unsigned Predict(
+  const Number* w, const Edge& edge, const RowPlace& place, int at, Interpolation by)
+{
+  const block::Shape<P::D> shape{ edge() };
+  const std::ptrdiff_t gap =
+    P::Axis == 0 ? P::S : P::S * (P::Axis == 1 ? shape.Y() : shape.Z());
+  return PredictAt<P>(
+    w + place.W + P::First + at, gap, edge, P::Axis == 1 ? place.Y : place.Z, at, by);
 }
 
 /// Sets the lanes of a pass.

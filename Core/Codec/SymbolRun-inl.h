@@ -39,10 +39,10 @@ struct RunBits
   /// Has enough bits for as many symbols as fit into a word.
   HWY_INLINE void Fill()
   {
-    this->Position += this->Used & 0xffu;
     this->Used = 0;
     this->Word = this->Symbols.Word(this->Position);
   }
+  HWY_INLINE void Move() { this->Position += this->Used & 0xffu; }
 
   /// A symbol's entry; moves the lane's state.
   HWY_INLINE std::uint32_t Next(
@@ -75,6 +75,7 @@ HWY_INLINE void ReadFew(RunBits& bits, const std::uint32_t* HWY_RESTRICT tables,
   if (count > 3)
   {
     entries[3] = bits.Next(tables, places[3], states[3 % Lanes]);
+    bits.Move();
     bits.Fill();
   }
   if (count > 4)
@@ -89,11 +90,13 @@ HWY_INLINE void ReadFew(RunBits& bits, const std::uint32_t* HWY_RESTRICT tables,
   {
     entries[6] = bits.Next(tables, places[6], states[6 % Lanes]);
   }
+  bits.Move();
 }
 
 /// The tops of entries.
 /// @param tops room for a multiple of 16
-HWY_INLINE void TakeTops(const std::uint32_t* HWY_RESTRICT entries, int count, std::int8_t* HWY_RESTRICT tops)
+HWY_INLINE void TakeTops(
+  const std::uint32_t* HWY_RESTRICT entries, int count, std::int8_t* HWY_RESTRICT tops)
 {
   typedef std::uint32_t Entries __attribute__((vector_size(64)));
   typedef std::uint8_t Tops __attribute__((vector_size(16)));
@@ -106,16 +109,17 @@ HWY_INLINE void TakeTops(const std::uint32_t* HWY_RESTRICT entries, int count, s
   }
 }
 
-/// ReadRun for a number of lanes, of at most SymbolReader::MostUnchecked symbols. By itself, so that all
-/// it works with stays in registers: loops are unrolled by hand, as lanes are registers only where their
-/// numbers are constants. Whole entries are kept, which takes an instruction less than their tops.
+/// ReadRun for a number of lanes, of at most SymbolReader::MostUnchecked symbols. By itself, so
+/// that all it works with stays in registers: loops are unrolled by hand, as lanes are registers
+/// only where their numbers are constants. Whole entries are kept, which takes an instruction less
+/// than their tops.
 template <int Lanes>
 HWY_NOINLINE void ReadRunOf(SymbolReader& symbols, const std::uint32_t* HWY_RESTRICT tables,
   const std::uint16_t* HWY_RESTRICT places, const int count, std::int8_t* HWY_RESTRICT tops)
 {
   std::uint32_t entries[SymbolReader::MostUnchecked];
   std::uint64_t states[Lanes];
-  std::copy(symbols.States, symbols.States + Lanes, states);
+  std::memcpy(states, symbols.States, sizeof(states));
   RunBits bits{ symbols, symbols.Position };
   int k = 0;
   for (; k + 8 <= count; k += 8)
@@ -125,27 +129,30 @@ HWY_NOINLINE void ReadRunOf(SymbolReader& symbols, const std::uint32_t* HWY_REST
     entries[k + 1] = bits.Next(tables, places[k + 1], states[1 % Lanes]);
     entries[k + 2] = bits.Next(tables, places[k + 2], states[2 % Lanes]);
     entries[k + 3] = bits.Next(tables, places[k + 3], states[3 % Lanes]);
+    bits.Move();
     bits.Fill();
     entries[k + 4] = bits.Next(tables, places[k + 4], states[4 % Lanes]);
     entries[k + 5] = bits.Next(tables, places[k + 5], states[5 % Lanes]);
     entries[k + 6] = bits.Next(tables, places[k + 6], states[6 % Lanes]);
     entries[k + 7] = bits.Next(tables, places[k + 7], states[7 % Lanes]);
+    bits.Move();
   }
   if (k < count)
   {
     ReadFew<Lanes>(bits, tables, places + k, count - k, states, entries + k);
   }
-  std::copy(states, states + Lanes, symbols.States);
-  symbols.Position = bits.Position + (bits.Used & 0xffu);
+  std::memcpy(symbols.States, states, sizeof(states));
+  symbols.Position = bits.Position;
   symbols.Check();
   TakeTops(entries, count, tops);
 }
 
 /// Reads a run of symbols.
 /// @param tables of a band; see SymbolReader::TablesOf
-/// @param places of the symbols' tables among them: DecodeTables::Band::Tables, times tans::TableSize
-/// @param tops receives the residuals, or residual::EscapeTop and more where extra bits follow, which
-/// must be taken then, with SymbolReader::Long. Room for a multiple of 16
+/// @param places of the symbols' tables among them: DecodeTables::Band::Tables, times
+/// tans::TableSize
+/// @param tops receives the residuals, or residual::EscapeTop and more where extra bits follow,
+/// which must be taken then, with SymbolReader::Long. Room for a multiple of 16
 HWY_INLINE void ReadRun(SymbolReader& symbols, const std::uint32_t* tables,
   const std::uint16_t* places, int count, std::int8_t* tops)
 {

@@ -1,0 +1,140 @@
+// Included once per SIMD target: see BlockDecoder.cxx.
+#if defined(banyan_Codec_BoxPlaces_inl_h) == defined(HWY_TARGET_TOGGLE)
+#ifdef banyan_Codec_BoxPlaces_inl_h
+#undef banyan_Codec_BoxPlaces_inl_h
+#else
+#define banyan_Codec_BoxPlaces_inl_h
+#endif
+
+#include "Base/Error.h"
+#include "Codec/BlockDecoder.h"
+#include "Codec/BlockUnits-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace banyan::HWY_NAMESPACE
+{
+
+/// A box, and what comes to it without residuals: samples of the coarser plane, faces of decoded
+/// neighbours, blocks of one number, and those that are the same as in a reference.
+template <class Edge, class Number>
+struct BoxPlaces
+{
+  Edge B;
+  const BoxCodeOf<Number>& Code;
+  View<Number> Box;
+  View<const Number> A;
+
+  int N() const { return this->B() + 1; }
+
+  glm::ivec3 Corner(int owner) const
+  {
+    const int b = this->B();
+    return { owner & 1 ? b : 0, owner & 2 ? b : 0, owner & 4 ? b : 0 };
+  }
+
+  void PlaceCoarse() const
+  {
+    const int n = this->B() / 4 + 1;
+    const Number* from = this->Code.Coarse;
+    for (int z = 0; z < n; ++z)
+    {
+      for (int y = 0; y < n; ++y, from += n)
+      {
+        Number* row = this->Box.Row(4 * y, 4 * z);
+        for (int x = 0; x < n; ++x)
+        {
+          row[4 * x] = from[x];
+        }
+      }
+    }
+  }
+
+  /// The decoded box of a neighbour (1, 2 or 4), or null.
+  const Number* NeighbourOf(int owner) const
+  {
+    return owner == 1 || owner == 2 || owner == 4 ? this->Code.Neighbours[owner / 2] : nullptr;
+  }
+
+  /// Whether the edge that a block across an edge of the box owns is in a decoded face.
+  bool HasEdge(int owner) const
+  {
+    for (const int neighbour : { 1, 2, 4 })
+    {
+      if ((neighbour & owner) != 0 && this->NeighbourOf(neighbour) != nullptr)
+      {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// The first layer of a decoded neighbour, other owners' edges of it included, is the last one
+  /// here.
+  void PlaceFace(int owner) const
+  {
+    const int n = this->N();
+    const View<const Number> from{ this->NeighbourOf(owner), this->Box.Stride };
+    const glm::ivec3 corner = this->Corner(owner);
+    const View<Number> to = this->Box.At(corner);
+    if (owner == 1)
+    {
+      for (int z = 0; z < n; ++z)
+      {
+        for (int y = 0; y < n; ++y)
+        {
+          *to.Row(y, z) = *from.Row(y, z);
+        }
+      }
+      return;
+    }
+    for (int j = 0; j < n; ++j)
+    {
+      const int y = owner == 2 ? 0 : j;
+      const int z = owner == 2 ? j : 0;
+      std::copy_n(from.Row(y, z), n, to.Row(y, z));
+    }
+  }
+
+  /// Whether a block takes no decoding: it is uniform, the same as in reference A, or decoded.
+  bool Plain(int owner) const
+  {
+    const BlockCode& block = this->Code.Blocks[owner];
+    return block.Uniform || block.Same || this->NeighbourOf(owner) != nullptr;
+  }
+
+  /// Fills what a plain block owns of the box.
+  void PlacePlain(int owner) const
+  {
+    if (this->NeighbourOf(owner) != nullptr)
+    {
+      return this->PlaceFace(owner);
+    }
+    if (this->Code.Blocks[owner].Same && this->Code.A == nullptr)
+    {
+      throw Error("A block is the same as in a step that its group does not have");
+    }
+    const int n = this->N();
+    const glm::ivec3 low = this->Corner(owner);
+    const glm::ivec3 high{ owner & 1 ? n : n - 1, owner & 2 ? n : n - 1, owner & 4 ? n : n - 1 };
+    for (int z = low.z; z < high.z; ++z)
+    {
+      for (int y = low.y; y < high.y; ++y)
+      {
+        Number* row = this->Box.Row(y, z);
+        if (this->Code.Blocks[owner].Same)
+        {
+          std::copy(this->A.Row(y, z) + low.x, this->A.Row(y, z) + high.x, row + low.x);
+        }
+        else
+        {
+          std::fill(row + low.x, row + high.x, static_cast<Number>(this->Code.Blocks[owner].Value));
+        }
+      }
+    }
+  }
+};
+
+} // namespace banyan::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

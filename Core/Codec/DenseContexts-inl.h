@@ -1,0 +1,220 @@
+// Included once per SIMD target: see BlockDecoder.cxx.
+#if defined(banyan_Codec_DenseContexts_inl_h) == defined(HWY_TARGET_TOGGLE)
+#ifdef banyan_Codec_DenseContexts_inl_h
+#undef banyan_Codec_DenseContexts_inl_h
+#else
+#define banyan_Codec_DenseContexts_inl_h
+#endif
+
+#include "Codec/BlockContexts-inl.h"
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace banyan::HWY_NAMESPACE
+{
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Vectors must have a number of lanes that is known, and more than one.
+#if HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
+constexpr bool HasDense = true;
+
+/// Magnitudes of the units of blocks of 16 at one stride, without gaps, so that one vector holds
+/// several rows: N = 8 of each axis at stride 2, 16 at stride 1. With stride 2 what lies between is
+/// left out, so that passes of both strides are the same. Rows of three faces lie side by side in a
+/// slice, which has room for a fourth.
+template <int D, int N>
+struct DenseShape
+{
+  static constexpr int Rows = D == 3 ? N : 4; ///< of a slice
+  static constexpr int Slice = Rows * N;
+  static constexpr int Count = N * Slice;
+  /// What vectors read beyond both ends, and ignore.
+  static constexpr int Margin = 128;
+};
+
+/// Memory for the slices of a pass, of all blocks of 16.
+struct DenseMemory
+{
+  static constexpr int Most = 256 + 64;
+
+  alignas(64) std::uint8_t Tables[Most];   ///< of each lane
+  alignas(64) std::int8_t Turned[Most];    ///< -1 where residuals have the other sign
+  alignas(64) std::int8_t Tops[Most];      ///< of each lane; 0 where it has no symbol
+  alignas(64) std::int8_t Kept[2][Most];   ///< residuals of the slices before, from -15 to 15
+  alignas(64) std::int8_t Residuals[Most]; ///< of each lane; of escapes anything
+  alignas(64) std::uint16_t Places[Most];  ///< of symbols, as ReadRun takes them
+  alignas(64) std::int8_t Read[Most];      ///< of symbols
+  std::uint16_t FlagPlaces[32];
+  std::int8_t Flags[32];
+  std::uint8_t RowClass[32]; ///< by number of row
+  std::uint8_t FlagRows[32];
+};
+
+/// Numbers of one byte, as many as a slice or a vector has.
+template <int D, int N>
+using DenseTag = hn::CappedTag<std::uint8_t, DenseShape<D, N>::Slice>;
+
+/// RoughnessOf for all lanes of a vector; those that the pass does not have hold anything.
+/// @param P a pass; N is 16 divided by its stride
+template <class P, int N>
+struct DenseRoughness
+{
+  static constexpr int D = P::D;
+  static constexpr int Row = N;
+  static constexpr int Slice = DenseShape<D, N>::Slice;
+  using Tag = DenseTag<D, N>;
+  using V = hn::VFromD<Tag>;
+  using M = decltype(hn::MaskFromVec(V()));
+  static constexpr int Lanes = static_cast<int>(hn::MaxLanes(Tag()));
+  static constexpr int RowsAtOnce = Lanes / N; ///< of a slice
+
+  const std::uint8_t* From; ///< lane 0
+  int FirstRow;             ///< of the vector's rows, in the slice
+  int Number;               ///< of the slice
+
+  HWY_INLINE V At(std::ptrdiff_t offset) const { return hn::LoadU(Tag(), this->From + offset); }
+  HWY_INLINE V Lane() const { return hn::Iota(Tag(), 0); }
+  HWY_INLINE V InRow() const
+  {
+    return hn::And(this->Lane(), hn::Set(Tag(), static_cast<std::uint8_t>(N - 1)));
+  }
+  static HWY_INLINE M Below(V v, int limit)
+  {
+    return hn::Lt(v, hn::Set(Tag(), static_cast<std::uint8_t>(limit)));
+  }
+
+  /// Both sides; beyond the ends of rows there are zeros. Lane 0 of rows is never asked for.
+  HWY_INLINE V Beside(std::ptrdiff_t offset) const
+  {
+    return hn::Add(this->At(offset - 1),
+      hn::MaskedLoad(Below(this->InRow(), N - 1), Tag(), this->From + offset + 1));
+  }
+  HWY_INLINE V TwoBeside(std::ptrdiff_t offset) const
+  {
+    const V lane = this->InRow();
+    return hn::Add(hn::MaskedLoad(hn::Not(Below(lane, 2)), Tag(), this->From + offset - 2),
+      hn::MaskedLoad(Below(lane, N - 2), Tag(), this->From + offset + 2));
+  }
+
+  /// `up`, which is Step rows on, or `down` where there is no such row.
+  template <int Step>
+  HWY_INLINE V AheadRow(V up, V down) const
+  {
+    const int rows = N - Step - this->FirstRow; // that have one
+    return rows >= RowsAtOnce ? up : hn::IfThenElse(Below(this->Lane(), rows * N), up, down);
+  }
+  /// `down`, which is Step rows before, or `up` where there is no such row.
+  template <int Step>
+  HWY_INLINE V BehindRow(V up, V down) const
+  {
+    return this->FirstRow >= Step
+             ? down
+             : hn::IfThenElse(Below(this->Lane(), (Step - this->FirstRow) * N), up, down);
+  }
+  HWY_INLINE std::ptrdiff_t AheadSlice(int step) const
+  {
+    return (this->Number + step < N ? step : -step) * Slice;
+  }
+
+  static HWY_INLINE V Twice(V v) { return hn::Add(v, v); }
+
+  HWY_INLINE V Ends() const
+  {
+    constexpr int two = 2 * Row;
+    if (P::Axis == 0)
+    {
+      V sum = hn::Add(Twice(this->Beside(0)),
+        hn::Add(this->Beside(-2 * Slice), this->Beside(this->AheadSlice(2))));
+      if (D == 3)
+      {
+        const V down = this->Beside(-two);
+        sum = hn::Add(sum, hn::Add(down, this->template AheadRow<2>(this->Beside(two), down)));
+      }
+      return sum;
+    }
+    if (D == 3 && P::Axis == 1)
+    {
+      const V low = this->At(-Row);
+      const V high = this->template AheadRow<1>(this->At(Row), low);
+      const V besideLow = this->Beside(-Row);
+      const V besideHigh = this->template AheadRow<1>(this->Beside(Row), besideLow);
+      V sum = hn::Add(Twice(hn::Add(low, high)), hn::Add(besideLow, besideHigh));
+      for (const std::ptrdiff_t across : { std::ptrdiff_t{ -2 * Slice }, this->AheadSlice(2) })
+      {
+        const V before = this->At(across - Row);
+        sum =
+          hn::Add(sum, hn::Add(before, this->template AheadRow<1>(this->At(across + Row), before)));
+      }
+      return sum;
+    }
+    const std::ptrdiff_t low = -Slice;
+    const std::ptrdiff_t high = this->AheadSlice(1);
+    V sum = hn::Add(Twice(hn::Add(this->At(low), this->At(high))),
+      hn::Add(this->Beside(low), this->Beside(high)));
+    if (D == 3)
+    {
+      const V lowDown = this->At(low - Row);
+      const V highDown = this->At(high - Row);
+      sum = hn::Add(sum, hn::Add(lowDown, highDown));
+      sum = hn::Add(sum, hn::Add(this->template AheadRow<1>(this->At(low + Row), lowDown),
+                           this->template AheadRow<1>(this->At(high + Row), highDown)));
+    }
+    return sum;
+  }
+
+  HWY_INLINE V Of() const
+  {
+    const V sum = this->Ends();
+    if (this->Number < 2)
+    {
+      return Twice(sum); // the pass has coded none before
+    }
+    constexpr std::ptrdiff_t before = -2 * Slice;
+    V near = P::Axis == 0 ? this->TwoBeside(before) : this->Beside(before);
+    if (D == 3)
+    {
+      constexpr int step = P::RowStep / P::S;
+      const V down = this->At(before - step * Row);
+      const V up = this->template AheadRow<step>(this->At(before + step * Row), down);
+      near = hn::Add(near, hn::Add(up, this->template BehindRow<step>(up, down)));
+    }
+    const V same = this->At(before);
+    const V twice = hn::Add(same, near);
+    return hn::Add(hn::Add(sum, Twice(twice)), Twice(Twice(same)));
+  }
+};
+
+/// ClassesOf.
+template <class Tag, class V = hn::VFromD<Tag>>
+HWY_INLINE V DenseClasses(Tag d, V sum)
+{
+  // As signed numbers, which all targets compare.
+  const hn::RebindToSigned<Tag> s;
+  const auto biased = hn::BitCast(s, hn::Xor(sum, hn::Set(d, std::uint8_t{ 128 })));
+  const auto above = [&](int limit)
+  { return hn::VecFromMask(s, hn::Gt(biased, hn::Set(s, static_cast<std::int8_t>(limit - 128)))); };
+  auto result = hn::Add(above(0), above(5));
+  result = hn::Add(result, hn::Add(above(12), above(22)));
+  result = hn::Add(result, hn::Add(above(36), above(56)));
+  result = hn::Add(result, above(90));
+  return hn::BitCast(d, hn::Neg(result)); // each is -1 where it holds
+}
+
+/// MagnitudesOf.
+template <class Tag, class V = hn::VFromD<Tag>>
+HWY_INLINE V DenseMagnitudes(Tag d, hn::VFromD<hn::RebindToSigned<Tag>> residuals)
+{
+  const V size = hn::BitCast(d, hn::Abs(residuals));
+  alignas(
+    16) static constexpr std::uint8_t of[16] = { 0, 2, 3, 4, 5, 5, 6, 6, 6, 7, 7, 7, 7, 8, 8, 8 };
+  return hn::TableLookupBytes(hn::LoadDup128(d, of), hn::Min(size, hn::Set(d, std::uint8_t{ 15 })));
+}
+#else
+constexpr bool HasDense = false;
+#endif
+
+} // namespace banyan::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,382 @@
+// Included once per SIMD target: see BlockDecoder.cxx.
+#if defined(banyan_Codec_DenseSlices_inl_h) == defined(HWY_TARGET_TOGGLE)
+#ifdef banyan_Codec_DenseSlices_inl_h
+#undef banyan_Codec_DenseSlices_inl_h
+#else
+#define banyan_Codec_DenseSlices_inl_h
+#endif
+
+#include "Codec/DenseContexts-inl.h"
+#include "Codec/SymbolRun-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace banyan::HWY_NAMESPACE
+{
+
+#if HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
+
+/// SliceDecoder for blocks of 16: contexts and magnitudes of whole vectors of rows.
+template <class P, class Number>
+class DenseSliceDecoder
+{
+public:
+  static constexpr int D = P::D;
+  static constexpr int S = P::S;
+  static constexpr int N = 16 / S;
+  using Shape = DenseShape<D, N>;
+  using Tag = DenseTag<D, N>;
+  static constexpr int Lanes = static_cast<int>(hn::MaxLanes(Tag()));
+  static constexpr int RowsAtOnce = Lanes / N;
+  static constexpr int LaneStep = P::Step / S;
+  static constexpr int RowFirst = D == 3 ? P::FirstRow / S : 0;
+  static constexpr int RowStep = D == 3 ? P::RowStep / S : 1;
+  static constexpr int RowEnd = D == 3 ? N : 3;
+
+  /// @param symbols null: all residuals are zero
+  DenseSliceDecoder(Unit<Number, D>& unit, std::uint8_t* magnitudes, Interpolation by,
+    SymbolReader* symbols, Number bin, DenseMemory& memory)
+    : Of(unit)
+    , M(magnitudes)
+    , By(by)
+    , Symbols(symbols)
+    , Bin(bin)
+    , Memory(memory)
+  {
+  }
+
+  HWY_INLINE void Run()
+  {
+    if (this->Symbols != nullptr)
+    {
+      std::memset(this->Memory.Kept[0], 0, Shape::Slice);
+      std::memset(this->Memory.Kept[1], 0, Shape::Slice);
+      for (int row = RowFirst; row < RowEnd; row += RowStep)
+      {
+        const glm::ivec3& limit = this->Of.Limit[D == 3 ? 0 : row];
+        const bool inside = P::First <= limit.x && (D < 3 || row * S <= limit.y);
+        this->LastSlice[D == 3 ? 0 : row] = D == 3 ? limit.z : limit.y;
+        this->Coded[D == 3 ? 0 : row] =
+          P::First <= limit.x ? (std::min(limit.x, 15) - P::First) / P::Step + 1 : 0;
+        this->RowsInside |= inside ? 1u << row : 0u;
+      }
+    }
+    for (int slice = P::FirstSlice / S; slice < N; slice += P::SliceStep / S)
+    {
+      std::int8_t* const kept = this->Memory.Kept[slice / 2 % 2];
+      const unsigned rows = this->Symbols != nullptr ? this->RowsWithSymbols(slice) : 0u;
+      if (rows == 0)
+      {
+        if (this->Symbols != nullptr)
+        {
+          std::memset(kept, 0, Shape::Slice);
+        }
+        this->PlacePredictions(slice);
+        continue;
+      }
+      this->Decode(slice, rows, kept);
+    }
+  }
+
+private:
+  int CodedOf(int row) const { return this->Coded[D == 3 ? 0 : row]; }
+
+  /// -1 for the numbers of rows that the pass has.
+  static HWY_INLINE ByteVector RowsOfPass()
+  {
+    const ByteVector row = LaneNumbers<ByteVector>();
+    if (D < 3)
+    {
+      return reinterpret_cast<ByteVector>(row < std::uint8_t{ 3 });
+    }
+    constexpr std::uint8_t first = P::FirstRow;
+    return reinterpret_cast<ByteVector>(
+      (row >= first) &
+      (((row - first) & static_cast<std::uint8_t>(P::RowStep - 1)) == std::uint8_t{ 0 }));
+  }
+
+  /// Rows of a slice that have symbols, as bits.
+  HWY_INLINE unsigned RowsWithSymbols(int slice)
+  {
+    DenseMemory& memory = this->Memory;
+    unsigned rows = this->RowsInside;
+    if (D == 3)
+    {
+      rows = slice * S <= this->LastSlice[0] ? rows : 0u;
+    }
+    else
+    {
+      for (int row = 0; row < 3; ++row)
+      {
+        rows &= slice * S <= this->LastSlice[row] ? ~0u : ~(1u << row);
+      }
+    }
+    if (this->Of.Any)
+    {
+      RowClasses<P>(this->Of, B, slice * S, memory.RowClass);
+      const ByteVector few = reinterpret_cast<ByteVector>(
+        LoadVector<ByteVector>(memory.RowClass) < static_cast<std::uint8_t>(residual::RowClasses));
+      if (!AnyOf(few & RowsOfPass()))
+      {
+        return rows;
+      }
+    }
+    else
+    {
+      std::memset(memory.RowClass, 0, 16);
+    }
+    const int band = residual::Bands + P::Band;
+    const std::uint8_t* const tables = this->Symbols->BandOf(band).Tables;
+    int flags = 0;
+    for (unsigned left = rows; left != 0; left &= left - 1)
+    {
+      const unsigned row = static_cast<unsigned>(__builtin_ctz(left));
+      const unsigned rowClass = memory.RowClass[D == 3 ? row * S : row];
+      memory.FlagPlaces[flags] =
+        static_cast<std::uint16_t>(tables[rowClass & 15u] << tans::TableBits);
+      memory.FlagRows[flags] = static_cast<std::uint8_t>(row);
+      flags += rowClass < residual::RowClasses ? 1 : 0;
+    }
+    if (flags > 0)
+    {
+      ReadRun(
+        *this->Symbols, this->Symbols->TablesOf(band), memory.FlagPlaces, flags, memory.Flags);
+      for (int flag = 0; flag < flags; ++flag)
+      {
+        rows &= ~((memory.Flags[flag] != 0 ? 1u : 0u) << memory.FlagRows[flag]);
+      }
+    }
+    return rows;
+  }
+
+  /// Tables and signs of the lanes of some rows.
+  HWY_INLINE void Classify(int slice, unsigned rows, const std::int8_t* kept) const
+  {
+    const Tag d;
+    const hn::RebindToSigned<Tag> s;
+    const std::int8_t* const near = this->Memory.Kept[1 - slice / 2 % 2];
+    const auto byClass = hn::LoadDup128(d, this->Symbols->BandOf(P::Band).Tables);
+    constexpr unsigned some = (1u << RowsAtOnce) - 1u;
+    for (int row = 0; row < Shape::Rows; row += RowsAtOnce)
+    {
+      if ((rows >> row & some) == 0)
+      {
+        continue;
+      }
+      const int at = row * N;
+      const auto roughness =
+        DenseRoughness<P, N>{ this->M + slice * Shape::Slice + at, row, slice }.Of();
+      // The slice before the last one is where this one goes.
+      const auto before = hn::Load(s, near + at);
+      auto hint = hn::Add(hn::Add(before, before), hn::Load(s, kept + at));
+      hint =
+        hn::BitCast(s, hn::IfThenZeroElse(hn::Eq(roughness, hn::Zero(d)), hn::BitCast(d, hint)));
+      const auto hinted = hn::IfThenZeroElse(
+        hn::Eq(hint, hn::Zero(s)), hn::Set(s, static_cast<std::int8_t>(residual::Signed)));
+      const auto classes = hn::Add(DenseClasses(d, roughness), hn::BitCast(d, hinted));
+      hn::Store(hn::TableLookupBytes(byClass, classes), d, this->Memory.Tables + at);
+      hn::Store(hn::VecFromMask(s, hn::Lt(hint, hn::Zero(s))), s, this->Memory.Turned + at);
+    }
+  }
+
+  /// The symbols' places of rows, side by side. @return how many
+  HWY_INLINE int TakePlaces(unsigned rows) const
+  {
+    typedef std::uint16_t Wide __attribute__((vector_size(32)));
+    int count = 0;
+    for (unsigned left = rows; left != 0; left &= left - 1)
+    {
+      const int row = __builtin_ctz(left);
+      const ByteVector tables = LoadVector<ByteVector>(this->Memory.Tables + row * N + 1);
+      const Wide wide = __builtin_convertvector(Compressed<LaneStep>(tables), Wide);
+      StoreVector(wide << tans::TableBits, this->Memory.Places + count);
+      count += this->CodedOf(row);
+    }
+    return count;
+  }
+
+  /// Lanes of rows from lane 1 on that have symbols.
+  HWY_INLINE ByteVector CodedLanes(int row) const
+  {
+    const ByteVector lanes = LaneNumbers<ByteVector>();
+    const auto below = reinterpret_cast<ByteVector>(
+      lanes < static_cast<std::uint8_t>(this->CodedOf(row) * LaneStep));
+    return LaneStep == 1
+             ? below
+             : below & ByteVector{ 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0 };
+  }
+
+  HWY_INLINE void Decode(int slice, unsigned rows, std::int8_t* kept)
+  {
+    DenseMemory& memory = this->Memory;
+    if (this->Of.Any)
+    {
+      this->Classify(slice, rows, kept);
+    }
+    else
+    {
+      std::memset(memory.Tables, this->Symbols->BandOf(P::Band).Tables[0], Shape::Slice);
+      std::memset(memory.Turned, 0, Shape::Slice);
+    }
+    const int count = this->TakePlaces(rows);
+    ReadRun(*this->Symbols, this->Symbols->TablesOf(P::Band), memory.Places, count, memory.Read);
+    this->Of.Any = true;
+    // Back to where the lanes are. Rows are written one after the other: each may write zeros
+    // beyond its end.
+    int begin = 0;
+    ByteVector most{};
+    for (int row = 0; row < RowEnd; ++row)
+    {
+      ByteVector tops{};
+      if ((rows >> row & 1u) != 0)
+      {
+        tops =
+          Expanded<LaneStep>(LoadVector<ByteVector>(memory.Read + begin)) & this->CodedLanes(row);
+        begin += this->CodedOf(row);
+        most |= tops & reinterpret_cast<ByteVector>(reinterpret_cast<SignedByteVector>(tops) >=
+                                                    static_cast<std::int8_t>(residual::EscapeTop));
+      }
+      StoreVector(tops, memory.Tops + row * N + 1);
+    }
+    memory.Tops[0] = 0;
+    if (D == 2)
+    {
+      std::memset(memory.Tops + 3 * N + 1, 0, N);
+    }
+    this->Keep(slice, kept);
+    this->Place(slice, rows);
+    if (AnyOf(most))
+    {
+      this->AddLong(slice, kept);
+    }
+  }
+
+  /// Magnitudes, sums of rows and kept residuals of a slice.
+  HWY_INLINE void Keep(int slice, std::int8_t* kept) const
+  {
+    const Tag d;
+    const hn::RebindToSigned<Tag> s;
+    const hn::Repartition<std::uint64_t, Tag> sums;
+    constexpr int words = N / 8; // of a row
+    alignas(64) std::uint64_t sum[Lanes / 8];
+    std::uint16_t* const to = this->Of.S + slice * S * block::Shape<D>{ 16 }.SumPitch();
+    for (int row = 0; row < Shape::Rows; row += RowsAtOnce)
+    {
+      const int at = row * N;
+      std::uint8_t* const m = this->M + slice * Shape::Slice + at;
+      const auto tops = hn::Load(s, this->Memory.Tops + at);
+      const auto turned = hn::Load(s, this->Memory.Turned + at);
+      const auto residuals = hn::Sub(hn::Xor(tops, turned), turned);
+      const auto limit = hn::Set(s, std::int8_t{ 15 });
+      hn::Store(residuals, s, this->Memory.Residuals + at);
+      hn::Store(hn::Max(hn::Min(residuals, limit), hn::Neg(limit)), s, kept + at);
+      const auto magnitudes = DenseMagnitudes(d, tops);
+      hn::Store(hn::Or(magnitudes, hn::Load(d, m)), d, m);
+      hn::Store(hn::SumsOf8(magnitudes), sums, sum);
+      for (int r = 0; r < RowsAtOnce; ++r)
+      {
+        const std::uint64_t total =
+          words == 1 ? sum[r] : sum[words * r] + sum[words * r + words - 1];
+        std::uint16_t& all = to[D == 3 ? (row + r) * S : row + r];
+        all = static_cast<std::uint16_t>(all + total);
+      }
+    }
+  }
+
+  /// Residuals with extra bits, which follow those of their run, instead of those that were placed.
+  HWY_NOINLINE void AddLong(int slice, std::int8_t* kept) const
+  {
+    constexpr std::uint64_t bit = 0x4040404040404040u; // set in escapes, and where the sign is
+    for (int word = 0; word < Shape::Slice; word += 8)
+    {
+      std::uint64_t tops;
+      std::memcpy(&tops, this->Memory.Tops + word, 8);
+      for (std::uint64_t left = tops & ~(tops >> 1) & bit; left != 0; left &= left - 1)
+      {
+        const int at = word + __builtin_ctzll(left) / 8;
+        const int row = at / N;
+        const std::int32_t residual = this->Symbols->Long(
+          static_cast<std::uint32_t>(this->Memory.Tops[at] - residual::EscapeTop));
+        // Wraps where a file of ill intent makes it.
+        using U = std::uint32_t;
+        const U turned = static_cast<U>(std::int32_t{ this->Memory.Turned[at] });
+        const Number value = static_cast<Number>((static_cast<U>(residual) ^ turned) - turned);
+        Number& sample = this->RowAt(slice, row)[(at % N - 1) * S];
+        sample = static_cast<Number>(
+          static_cast<U>(sample) +
+          (static_cast<U>(value) - static_cast<U>(std::int32_t{ this->Memory.Residuals[at] })) *
+            static_cast<U>(this->Bin));
+        kept[at] = static_cast<std::int8_t>(std::min<Number>(std::max<Number>(value, -15), 15));
+      }
+    }
+  }
+
+  /// Lane First of a row. Interiors lie in their box, faces in memory of their own.
+  HWY_INLINE Number* RowAt(int slice, int row) const
+  {
+    const block::Shape<2> faces{ 16 };
+    return this->Of.W + P::First +
+           (D == 3 ? (slice * 17 + row) * (17 * S) : slice * S * faces.Y() + row * faces.Pitch());
+  }
+  static constexpr std::ptrdiff_t Gap()
+  {
+    constexpr std::ptrdiff_t y = D == 3 ? 17 : 3 * (16 + 8); // as block::Shape has it of faces
+    return P::Axis == 0 ? S : P::Axis == 1 ? S * y : S * 17 * 17;
+  }
+  HWY_INLINE typename Numbers<Number>::Unsigned Predicted(int slice, int row) const
+  {
+    return PredictAt<P>(static_cast<const Number*>(this->RowAt(slice, row)), Gap(), B,
+      (P::Axis == D - 1 ? slice : row) * S, 0, this->By);
+  }
+  HWY_INLINE void Set(int slice, int row, typename Numbers<Number>::Unsigned value) const
+  {
+    SetLanes<P>(value, 16 - P::First, this->RowAt(slice, row));
+  }
+
+  HWY_INLINE void PlacePredictions(int slice) const
+  {
+    for (int row = RowFirst; row < RowEnd; row += RowStep)
+    {
+      this->Set(slice, row, this->Predicted(slice, row));
+    }
+  }
+
+  /// Predicts rows and adds their residuals.
+  HWY_INLINE void Place(int slice, unsigned rows) const
+  {
+    using V = Numbers<Number>;
+    using Vector = typename V::Unsigned;
+    for (int row = RowFirst; row < RowEnd; row += RowStep)
+    {
+      Vector value = this->Predicted(slice, row);
+      if ((rows >> row & 1u) != 0)
+      {
+        const auto residuals = LoadVector<SignedByteVector>(this->Memory.Residuals + row * N + 1);
+        value += reinterpret_cast<Vector>(
+                   __builtin_convertvector(Expanded<S>(residuals), typename V::Signed)) *
+                 static_cast<std::make_unsigned_t<Number>>(this->Bin);
+      }
+      this->Set(slice, row, value);
+    }
+  }
+
+  Unit<Number, D>& Of;
+  std::uint8_t* M;
+  static constexpr EdgeIs<16> B{};
+  Interpolation By;
+  SymbolReader* Symbols; ///< null: all residuals are zero
+  Number Bin;
+  DenseMemory& Memory;
+  unsigned RowsInside = 0; ///< the field
+  int Coded[3] = {};       ///< symbols of a row; of each face
+  int LastSlice[3] = {};   ///< within the field, as its position
+};
+
+#else
+template <class P, class Number>
+class DenseSliceDecoder;
+#endif
+
+} // namespace banyan::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
