@@ -189,7 +189,8 @@ vtkDataArray* vtkBanyanTemporalEnhancement::PlainOf(vtkDataArray* array, const P
 /// What the user left open, the series knows.
 banyan::TemporalEnhancement vtkBanyanTemporalEnhancement::HowFor(vtkDataArray* array) const
 {
-  banyan::TemporalEnhancement how{ this->Strength, this->Scale, this->NoiseFloor };
+  banyan::TemporalEnhancement how{ this->Strength, this->Scale, this->NoiseFloor,
+    this->Sensitivity };
   if (const vtkBanyanDeferred::Handle* const handle = vtkBanyanDeferred::From(array))
   {
     const auto& index = handle->Series->Index().Arrays.at(static_cast<std::size_t>(handle->Array));
@@ -207,6 +208,7 @@ void vtkBanyanTemporalEnhancement::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "CompareWith: " << this->CompareWith << "\n";
   os << indent << "StepDistance: " << this->StepDistance << "\n";
   os << indent << "Strength: " << this->Strength << "\n";
+  os << indent << "Sensitivity: " << this->Sensitivity << "\n";
   os << indent << "Scale: " << this->Scale << "\n";
   os << indent << "NoiseFloor: " << this->NoiseFloor << "\n";
 }

@@ -79,6 +79,15 @@ public:
 
   ///@{
   /**
+   * A change from step to step by 1 / Sensitivity of the value counts as full motion: more, where
+   * steps are close. Positive; default 4, for waves of up to 8 steps per period.
+   */
+  vtkSetClampMacro(Sensitivity, double, 1e-6, 1e6);
+  vtkGetMacro(Sensitivity, double);
+  ///@}
+
+  ///@{
+  /**
    * A large magnitude, in units of the array, that stays about where it is. 0 (the default) takes
    * the largest of the whole series where the array knows it, as those of a Banyan series do, and 1
    * otherwise.
@@ -117,6 +126,7 @@ private:
   int CompareWith = BOTH;
   int StepDistance = 1;
   double Strength = 0.5;
+  double Sensitivity = 4.0;
   double Scale = 0.0;
   double NoiseFloor = 0.0;
   banyan::StepWindow Window;

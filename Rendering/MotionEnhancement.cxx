@@ -57,7 +57,9 @@ void MotionEnhancement::Apply(
   }
   const double* const range = property->GetScalarOpacity(0)->GetRange();
   const double scale = std::max(std::abs(range[0]), std::abs(range[1]));
-  piece.Enhancement = { strength, scale > 0.0 ? scale : 1.0, 0.0 };
+  piece.Enhancement = {};
+  piece.Enhancement.Strength = strength;
+  piece.Enhancement.Scale = scale > 0.0 ? scale : 1.0;
   const vtkBanyanDeferred::Handle* const handle = vtkBanyanDeferred::From(piece.Array);
   if (handle && piece.Image && vtkBanyanDeferred::LiesOnSeries(piece.Image, *handle))
   {

@@ -64,7 +64,7 @@ double EnhancedValue(
     return now;
   }
   // Where all is zero, nothing moves.
-  const double contrast = size > 0.0 ? std::min(change / size, 1.0) : 0.0;
+  const double contrast = size > 0.0 ? std::min(how.Sensitivity * (change / size), 1.0) : 0.0;
   return std::copysign(Mean(how, std::abs(now), contrast), now);
 }
 
@@ -74,8 +74,8 @@ ValueRange EnhancedRange(const TemporalEnhancement& how, const ValueRange& range
   {
     return range;
   }
-  // Means round by some units in the last place.
-  constexpr double above = 1.0 + 1e-12;
+  // Bricks are rounded to float32.
+  constexpr double above = 1.0 + 1.0 / (1 << 23);
   ValueRange result = range; // for steps without neighbours
   result.Include(std::copysign(Mean(how, std::abs(range.Low), 1.0) * above, range.Low));
   result.Include(std::copysign(Mean(how, std::abs(range.High), 1.0) * above, range.High));

@@ -19,7 +19,7 @@ struct ArrayIndex;
 /// which does not depend on how strong the motion is; where there is one neighbour only, its terms
 /// alone. The enhanced value mixes it with the value by a weighted geometric mean,
 ///
-///   e = sign(v) |v|^(1 - Strength) (Scale c)^Strength,
+///   e = sign(v) |v|^(1 - Strength) (Scale min(1, Sensitivity c))^Strength,
 ///
 /// so that a range of n decades becomes one of (1 - Strength) n, Scale is left where it is, and
 /// Strength 0 leaves every value as it is. Per value two steps more are read, and nothing else is.
@@ -32,6 +32,10 @@ struct TemporalEnhancement
   double Strength = 0.5;   ///< in [0, 1]
   double Scale = 1.0;      ///< a large magnitude, in units of the data; positive
   double NoiseFloor = 0.0; ///< motion of values well below it is not brought out; not negative
+  /// 1 / contrast that counts as full motion; positive. Of a wave of period T, steps dt apart, the
+  /// contrast is about 2 dt / T on average: with 4, waves of up to 8 steps per period are in full
+  /// motion.
+  double Sensitivity = 4.0;
 };
 
 /// With what the index knows of an array of a series: the scale is the largest magnitude of all
@@ -46,7 +50,8 @@ double EnhancedValue(
   const TemporalEnhancement& how, double now, const double* previous, const double* next);
 
 /// Bounds of what values of a range can become, whatever their neighbours are: at least `range`'s
-/// and those of (|v| / Scale)^(1 - Strength) Scale; empty when `range` is.
+/// and those of (|v| / Scale)^(1 - Strength) Scale, with room for rounding to float32; empty when
+/// `range` is.
 ValueRange EnhancedRange(const TemporalEnhancement& how, const ValueRange& range);
 
 } // namespace banyan

@@ -45,7 +45,8 @@ double Expected(
     return now == 0.0 && strength > 0.0 ? 0.0 : now;
   }
   const double sign = now < 0.0 ? -1.0 : 1.0;
-  return sign * std::pow(std::abs(now), 1.0 - strength) * std::pow(scale * change / size, strength);
+  return sign * std::pow(std::abs(now), 1.0 - strength) *
+         std::pow(scale * std::min(4.0 * change / size, 1.0), strength);
 }
 
 /// A decaying oscillation whose phase and strength differ from sample to sample.

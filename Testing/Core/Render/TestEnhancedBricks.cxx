@@ -14,7 +14,7 @@ namespace
 using namespace banyan;
 
 constexpr int Brick = 8;
-const TemporalEnhancement How{ 0.6, 2.0, 0.01 };
+const TemporalEnhancement How{ 0.6, 2.0, 0.01, 1.5 };
 
 /// A wave that moves through one half of a box; the other half rests at 0.25, but for a part at 0.
 float Value(const glm::ivec3& p, const glm::ivec3& n, int step)
@@ -160,7 +160,7 @@ TEST(EnhancedValues, LieInTheRangeThatIsForetold)
   const double values[] = { -3.0, -1.0, -1e-9, 0.0, 1e-12, 0.5, 1.0, 7.0 };
   for (const double strength : { 0.0, 0.2, 0.5, 1.0 })
   {
-    const TemporalEnhancement how{ strength, 2.5, 0.0 };
+    const TemporalEnhancement how{ strength, 2.5, 0.0, 3.0 };
     for (const double low : values)
     {
       for (const double high : values)
