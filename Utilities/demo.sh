@@ -1,18 +1,23 @@
 #!/usr/bin/env bash
 # Encodes a time series of volumes, measures how exact the result is, and draws it as an animation.
 #
-#   demo.sh [--input FILES...] [--ranks N] [--output DIR] [--error-bound E] [--size N] [--help]
+#   demo.sh [--input FILES... | --earthquake] [--ranks N] [--output DIR] [--error-bound E] [--size N]
+#           [--cells N] [--help]
 #
 #   --input FILES...   a time series of image data that ParaView opens (.vti, .mhd, .vti.series, ...),
 #                      in order of time; without it a flow simulation makes one
+#   --earthquake       simulates an earthquake on a mesh of hexahedra instead, and draws each step
+#                      twice: as it is, and with its motion brought out
 #   --ranks N          MPI processes that draw (default 2)
 #   --output DIR       where the results go (default demo-output)
 #   --error-bound E    largest error of a value, as a share of the range of the whole series
-#                      (default 1/512); 0 keeps every bit
-#   --size N           samples per axis of the simulation (default 80)
+#                      (default 1/512, of an earthquake 1/4096); 0 keeps every bit
+#   --size N           samples per axis of the flow simulation (default 80)
+#   --cells N          cells of the earthquake's mesh, about (default 20000)
 #
 # Leaves in DIR: series.banyan (with its folder series.banyan.d), frame_*.png, animation.mp4 and
-# report.json. Installs and builds what is missing first; a second run does not build again.
+# report.json; of an earthquake plain_*.png and enhanced_*.png, and earthquake.png, which has some
+# of them side by side. Installs and builds what is missing first; a second run does not build again.
 # BANYAN_SKIP_INSTALL=1 leaves the packages of the system alone, BANYAN_SKIP_BUILD=1 the build.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -20,8 +25,10 @@ here="$RepositoryRoot/Utilities"
 inputs=()
 ranks=2
 output="demo-output"
-bound="1/512"
+bound=""
 size=80
+earthquake=0
+cells=20000
 
 parse_arguments()
 {
@@ -40,13 +47,15 @@ parse_arguments()
         done
         [[ ${#inputs[@]} -gt 0 ]] || fail "--input needs at least one file."
         ;;
-      --ranks | --output | --error-bound | --size)
+      --earthquake) earthquake=1 ;;
+      --ranks | --output | --error-bound | --size | --cells)
         [[ $# -gt 0 ]] || fail "$option needs a value."
         case "$option" in
           --ranks) ranks="$1" ;;
           --output) output="$1" ;;
           --error-bound) bound="$1" ;;
           --size) size="$1" ;;
+          --cells) cells="$1" ;;
         esac
         shift
         ;;
@@ -61,6 +70,11 @@ check_arguments()
   local file
   [[ "$ranks" =~ ^[1-9][0-9]{0,3}$ ]] || fail "--ranks needs a number from 1 on, not '$ranks'."
   [[ "$size" =~ ^[0-9]+$ ]] || fail "--size needs a number, not '$size'."
+  [[ "$cells" =~ ^[0-9]+$ ]] || fail "--cells needs a number, not '$cells'."
+  [[ "$earthquake" == 0 || ${#inputs[@]} == 0 ]] ||
+    fail "--earthquake makes its own input: leave one of --earthquake and --input out."
+  # The late waves of an earthquake are far weaker than the first.
+  [[ -n "$bound" ]] || bound="$([[ "$earthquake" == 1 ]] && echo 1/4096 || echo 1/512)"
   [[ -n "$output" ]] || fail "--output needs the name of a folder."
   bound="$(awk -v text="$bound" 'BEGIN {
     number = "^([0-9]+[.]?[0-9]*|[.][0-9]+)([eE][-+]?[0-9]+)?$"
@@ -106,13 +120,19 @@ make_input()
     return
   fi
   local folder="$BuildFolder/demo-input-$size" generator="$BuildFolder/bin/banyan-generate"
+  local options=(--size "$size" --steps 24 --seed 2)
   inputs=("$folder/flow.vti.series")
+  if [[ "$earthquake" == 1 ]]; then
+    folder="$BuildFolder/demo-earthquake-$cells"
+    options=(--series earthquake --cells "$cells" --arrays velocity --format vtu)
+    inputs=("$folder/earthquake.vtu.series")
+  fi
   if [[ "${inputs[0]}" -nt "$generator" ]]; then
     say "      the series in $folder is used again"
     return
   fi
   rm -rf "$folder"
-  "$generator" --output "$folder" --size "$size" --steps 24 --seed 2 2> >(sed 's/^/      /' >&2) ||
+  "$generator" --output "$folder" "${options[@]}" 2> >(sed 's/^/      /' >&2) ||
     fail "the simulation did not succeed."
 }
 
@@ -130,31 +150,54 @@ measure()
 
 draw()
 {
-  "$here/with-display.sh" mpiexec -n "$ranks" pvbatch "$here/demo/demo_draw.py" \
+  local script=demo_draw.py
+  [[ "$earthquake" == 0 ]] || script=demo_earthquake.py
+  "$here/with-display.sh" mpiexec -n "$ranks" pvbatch "$here/demo/$script" \
     "$work/series.banyan" "$work/measure.json" "$work" "$work/draw.json" ||
     fail "the frames could not be drawn."
 }
 
 animate()
 {
-  local frames rate
-  frames="$(find "$work" -name 'frame_*.png' | wc -l)"
+  local first=frame frames rate
+  local pictures=(-i "$work/frame_%04d.png")
+  if [[ "$earthquake" == 1 ]]; then
+    first=plain
+    pictures=(-i "$work/plain_%04d.png" -framerate RATE -i "$work/enhanced_%04d.png"
+      -filter_complex hstack)
+  fi
+  frames="$(find "$work" -name "${first}_*.png" | wc -l)"
   # About three seconds, as smooth as the number of frames allows.
   rate=$((frames / 3))
   rate=$((rate < 2 ? 2 : rate > 25 ? 25 : rate))
   # This pixel format and this order of the file are what browsers play while they load it.
-  ffmpeg -nostdin -loglevel error -y -framerate "$rate" -i "$work/frame_%04d.png" \
+  ffmpeg -nostdin -loglevel error -y -framerate "$rate" "${pictures[@]/RATE/$rate}" \
     -c:v libx264 -crf 18 -pix_fmt yuv420p -movflags +faststart "$work/animation.mp4" >&2 ||
     fail "ffmpeg could not make the animation."
+  [[ "$earthquake" == 0 ]] || side_by_side "$frames"
+}
+
+# Four steps as they are, and below them the same with their motion brought out.
+side_by_side()
+{
+  local kind step files=()
+  for kind in plain enhanced; do
+    for step in 10 20 35 60; do # of 81
+      files+=(-i "$work/$(printf '%s_%04d.png' "$kind" $((step * ($1 - 1) / 80)))")
+    done
+  done
+  ffmpeg -nostdin -loglevel error -y "${files[@]}" -filter_complex \
+    '[0][1][2][3]hstack=4[upper];[4][5][6][7]hstack=4[lower];[upper][lower]vstack,scale=1600:-1' \
+    "$work/earthquake.png" >&2 || fail "ffmpeg could not put the pictures side by side."
 }
 
 # Puts the results where they belong, all of them or none.
 deliver()
 {
   mkdir -p "$output"
-  rm -rf "$output/series.banyan" "$output/series.banyan.d" "$output"/frame_*.png \
-    "$output/animation.mp4" "$output/report.json"
-  mv "$work/series.banyan.d" "$work/series.banyan" "$work"/frame_*.png "$work/animation.mp4" \
+  rm -rf "$output/series.banyan" "$output/series.banyan.d" "$output"/{frame,plain,enhanced}_*.png \
+    "$output/animation.mp4" "$output/earthquake.png" "$output/report.json"
+  mv "$work/series.banyan.d" "$work/series.banyan" "$work"/*.png "$work/animation.mp4" \
     "$work/report.json" "$output/"
 }
 

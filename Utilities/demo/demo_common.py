@@ -39,13 +39,13 @@ def load_plugin():
 
 
 def open_series(files):
-    """Opens files as one time series of image data, with its first step loaded."""
+    """Opens files as one time series of image data or of a mesh, with its first step loaded."""
     reader = simple.OpenDataFile(files if len(files) > 1 else files[0])
     reader.UpdatePipeline()
     information = reader.GetDataInformation()
-    if information.GetDataSetTypeAsString() != "vtkImageData":
+    if information.GetDataSetTypeAsString() not in ("vtkImageData", "vtkUnstructuredGrid"):
         raise DemoError(f"{files[0]} holds {information.GetDataSetTypeAsString()}, "
-                        "and the demonstration draws vtkImageData.")
+                        "and the demonstration draws vtkImageData and vtkUnstructuredGrid.")
     if information.GetNumberOfPoints() == 0:
         raise DemoError(f"nothing could be read from {files[0]}.")
     if reader.PointData.GetNumberOfArrays() == 0:
@@ -61,8 +61,8 @@ def time_values(reader):
     return list(values)
 
 
-def image_at(reader, time):
-    """The vtkImageData of one time step. Serial sessions only."""
+def data_at(reader, time):
+    """The data set of one time step. Serial sessions only."""
     reader.UpdatePipeline(time)
     return reader.GetClientSideObject().GetOutputDataObject(0)
 

@@ -25,22 +25,25 @@ def statistics_of(display):
     return {name: display.GetPropertyValue(name) for name in STATISTICS}
 
 
+def draw_frame(view, display, folder, name, image_size):
+    """Draws the view's present time into a file; what the report says of it."""
+    start = time.perf_counter()
+    simple.SaveScreenshot(os.path.join(folder, name), view, ImageResolution=image_size)
+    seconds = time.perf_counter() - start
+    if not os.path.isfile(os.path.join(folder, name)):
+        raise demo.DemoError(f"{name} was not written; the messages above say why.")
+    return {"file": name, "seconds": seconds, "statistics": statistics_of(display)}
+
+
 def draw_frames(view, display, times, folder):
     frames = []
     for step, value in enumerate(times):
         demo_look.turn_camera(view, step, len(times))
-        start = time.perf_counter()
         view.ViewTime = value
-        name = f"frame_{step:04d}.png"
-        simple.SaveScreenshot(os.path.join(folder, name), view, ImageResolution=IMAGE_SIZE)
-        seconds = time.perf_counter() - start
-        if not os.path.isfile(os.path.join(folder, name)):
-            raise demo.DemoError(f"{name} was not written; the messages above say why.")
-        statistics = statistics_of(display)
-        frames.append({"file": name, "step": step, "time": value, "seconds": seconds,
-                       "statistics": statistics})
-        demo.progress(f"frame {step + 1} of {len(times)}: {seconds:.2f} s, of which "
-                      f"{statistics['TotalSeconds']:.2f} s in the volume")
+        frame = draw_frame(view, display, folder, f"frame_{step:04d}.png", IMAGE_SIZE)
+        frames.append({"step": step, "time": value, **frame})
+        demo.progress(f"frame {step + 1} of {len(times)}: {frame['seconds']:.2f} s, of which "
+                      f"{frame['statistics']['TotalSeconds']:.2f} s in the volume")
     return frames
 
 
@@ -59,4 +62,5 @@ def main():
                              "paraview": demo.paraview_version(), "frames": frames})
 
 
-demo.run(main)
+if __name__ == "__main__":
+    demo.run(main)

@@ -1,6 +1,6 @@
 """pvpython demo_encode.py SERIES ERROR_BOUND REPORT FILES...
 
-Encodes the files, a time series of image data, as SERIES (a .banyan file) with an error bound
+Encodes the files, a time series of image data or of a mesh, as SERIES (a .banyan file) with an error bound
 relative to the range of the whole series, and writes what it took to REPORT (JSON).
 """
 
@@ -19,6 +19,18 @@ def bytes_of(series):
     folder = series + ".d"
     return os.path.getsize(series) + sum(
         os.path.getsize(os.path.join(folder, name)) for name in os.listdir(folder))
+
+
+def describe(information):
+    """What there is per step, for the report and in words."""
+    points = information.GetNumberOfPoints()
+    if information.GetDataSetTypeAsString() != "vtkImageData":
+        cells = information.GetNumberOfCells()
+        return {"points": points, "cells": cells}, f"{cells} cells"
+    extent = information.GetExtent()
+    dimensions = [extent[2 * axis + 1] - extent[2 * axis] + 1 for axis in range(3)]
+    return ({"points": points, "dimensions": dimensions},
+            f"{' x '.join(map(str, dimensions))} voxels")
 
 
 def announce_progress():
@@ -40,11 +52,8 @@ def main():
     demo.load_plugin()
     reader = demo.open_series(files)
     times = demo.time_values(reader)
-    information = reader.GetDataInformation()
-    extent = information.GetExtent()
-    dimensions = [extent[2 * axis + 1] - extent[2 * axis] + 1 for axis in range(3)]
-    demo.progress(f"{len(times)} steps of {' x '.join(map(str, dimensions))} voxels: "
-                  f"{', '.join(demo.array_names(reader))}")
+    grid, words = describe(reader.GetDataInformation())
+    demo.progress(f"{len(times)} steps of {words}: {', '.join(demo.array_names(reader))}")
     announce_progress()
     start = time.perf_counter()
     simple.SaveData(series, proxy=reader, WriteTimeSteps=1, ErrorBound=bound)
@@ -52,7 +61,7 @@ def main():
     if not os.path.isfile(series):
         raise demo.DemoError("the series was not written; the messages above say why.")
     demo.write_json(report, {
-        "files": len(files), "steps": len(times), "dimensions": dimensions,
+        "files": len(files), "steps": len(times), **grid,
         "bytes_encoded": bytes_of(series), "seconds": seconds})
 
 

@@ -59,20 +59,27 @@ def dress(reader, display, view, look):
     edges = [bounds[2 * axis + 1] - bounds[2 * axis] for axis in range(3)]
     display.ScalarOpacityUnitDistance = max(edges) / 20.0
 
-    outline = simple.Outline(Input=reader)
-    box = simple.Show(outline, view)
-    box.ColorArrayName = [None, ""]
-    box.AmbientColor = box.DiffuseColor = (0.45, 0.50, 0.60)
+    outline(reader, view)
     bar = simple.GetScalarBar(colours, view)
     bar.Title, bar.ComponentTitle = name, ""
     bar.ScalarBarLength = 0.4
     bar.LabelFormat = bar.RangeLabelFormat = "%.3g"
     display.SetScalarBarVisibility(view, True)
-    clock = simple.AnnotateTimeFilter(Input=reader, Format="Time {time:.3f}")
-    text = simple.Show(clock, view)
-    text.WindowLocation = "Lower Left Corner"
-    text.FontSize = 20
+    clock(reader, view, "Time {time:.3f}")
     place_camera(view, bounds)
+
+
+def outline(reader, view):
+    box = simple.Show(simple.Outline(Input=reader), view)
+    box.ColorArrayName = [None, ""]
+    box.AmbientColor = box.DiffuseColor = (0.45, 0.50, 0.60)
+
+
+def clock(reader, view, text):
+    """The time of the view in a corner, as `text` formats it."""
+    shown = simple.Show(simple.AnnotateTimeFilter(Input=reader, Format=text), view)
+    shown.WindowLocation = "Lower Left Corner"
+    shown.FontSize = 20
 
 
 def place_camera(view, bounds):

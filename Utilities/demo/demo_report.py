@@ -27,13 +27,13 @@ def main():
     encode, measure, draw = (read(folder, name) for name in
                              ("encode.json", "measure.json", "draw.json"))
     size, raw = encode["bytes_encoded"], measure["bytes_raw"]
-    voxels = encode["steps"] * encode["dimensions"][0] * encode["dimensions"][1] * \
-        encode["dimensions"][2]
+    points = encode["steps"] * encode["points"]
     report = {
         "input": {"files": encode["files"], "steps": encode["steps"],
-                  "dimensions": encode["dimensions"], "bytes": raw},
+                  **{name: encode[name] for name in ("dimensions", "points", "cells")
+                     if name in encode}, "bytes": raw},
         "series": {"file": "series.banyan", "bytes": size, "ratio": raw / size,
-                   "bits_per_voxel": 8.0 * size / voxels, "arrays": measure["arrays"],
+                   "bits_per_point": 8.0 * size / points, "arrays": measure["arrays"],
                    "encode_megabytes_per_second": raw / 1e6 / encode["seconds"]},
         "drawing": {"representation": draw["representation"], "ranks": ranks,
                     "image_size": draw["image_size"], "paraview": draw["paraview"],
