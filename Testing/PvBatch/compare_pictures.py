@@ -57,7 +57,9 @@ def compare_figures(expected, found):
     if "SamplesTaken" not in expected or "SamplesTaken" not in found:
         return None
     samples, reference = found["SamplesTaken"], expected["SamplesTaken"]
-    fewest = 0.9 if expected.get("extremes") else 0.999
+    # Zones cut bricks wherever they have moved to, and the box around what can be seen of a part is
+    # tighter: the samples outside it, which change nothing, are then not taken.
+    fewest = 0.9 if expected.get("extremes") else 0.99
     if not samples >= fewest * reference or not samples <= 1.5 * reference:
         return f"{samples} samples taken instead of {reference}"
     return None
