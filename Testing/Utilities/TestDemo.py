@@ -1,4 +1,4 @@
-"""TestDemo.py whole | arguments | bad-input: runs Utilities/demo.sh from outside and looks at what it leaves behind."""
+"""TestDemo.py whole | earthquake | arguments | bad-input: runs Utilities/demo.sh from outside and looks at what it leaves behind."""
 
 import glob
 import json
@@ -43,6 +43,8 @@ def test_arguments(folder):
     check_refused(folder, "--error-bound needs", "--error-bound", "-0.1")
     check_refused(folder, "--input needs", "--input", "--ranks", "2")
     check_refused(folder, "does not exist", "--input", "nowhere.vti")
+    check_refused(folder, "--earthquake makes its own input", "--earthquake", "--input", "a.vti")
+    check_refused(folder, "--cells needs", "--earthquake", "--cells", "many")
     check_refused(folder, "no option '--rank'", "--rank", "2")
 
 
@@ -92,6 +94,23 @@ def test_demo(folder):
     check_results(output, 1 / 64, 3)
 
 
+def test_earthquake(folder):
+    status, messages = demo(folder, "--earthquake", "--cells", "1000", "--output", "quake")
+    check(status == 0, messages)
+    output = os.path.join(folder, "quake")
+    with open(os.path.join(output, "report.json"), encoding="utf-8") as file:
+        report = json.load(file)
+    for kind in ("plain", "enhanced"):
+        pictures = glob.glob(os.path.join(output, kind + "_*.png"))
+        check(len(pictures) == report["input"]["steps"] == 81, f"{len(pictures)} {kind} pictures")
+    for name in ("earthquake.png", "animation.mp4", "series.banyan"):
+        check(os.path.getsize(os.path.join(output, name)) > 10000 or name == "series.banyan", name)
+    for component in report["series"]["arrays"][0]["components"]:
+        check(component["within_bound"] and component["max_error"] > 0, f"{component}")
+    check(report["series"]["ratio"] > 4, f"ratio {report['series']['ratio']}")
+    check(os.listdir(folder) == ["quake"], f"left over: {os.listdir(folder)}")
+
+
 def test_bad_input(folder):
     data = os.path.join(os.environ.get("BANYAN_DATA_DIR", ""), "malformed_basic")
     if not os.path.isdir(data):
@@ -108,7 +127,8 @@ def test_bad_input(folder):
 
 
 def main():
-    cases = {"arguments": test_arguments, "whole": test_demo, "bad-input": test_bad_input}
+    cases = {"arguments": test_arguments, "whole": test_demo, "earthquake": test_earthquake,
+             "bad-input": test_bad_input}
     with tempfile.TemporaryDirectory() as folder:
         cases[sys.argv[1]](folder)
 

@@ -22,7 +22,7 @@ CAPTIONS = {"plain": "Ground velocity", "enhanced": "Ground velocity, motion bro
 def dress(reader, display, view, look):
     """Colours and opacities for waves that fill the box, and a camera that looks into it."""
     name = look["drawn_array"]
-    high = 0.7 * look["histogram"]["range"][1]
+    high = 0.6 * look["histogram"]["range"][1]
     simple.ColorBy(display, ("POINTS", name, "Magnitude"))
     colours = simple.GetColorTransferFunction(name)
     colours.ApplyPreset(demo_look.COLOUR_MAP, True)
@@ -36,12 +36,12 @@ def dress(reader, display, view, look):
     display.ScalarOpacityUnitDistance = max(edges) / 32.0
     demo_look.outline(reader, view)
     demo_look.clock(reader, view, "{time:.1f} s")
-    view.CameraPosition = [bounds[0] + 0.2 * edges[0], bounds[2] - 0.66 * edges[1],
-                           bounds[5] + 1.1 * edges[2]]
-    view.CameraFocalPoint = [bounds[0] + 0.47 * edges[0], bounds[2] + 0.45 * edges[1],
-                             bounds[5] - 0.45 * edges[2]]
+    view.CameraPosition = [bounds[0] + 0.28 * edges[0], bounds[2] - 0.95 * edges[1],
+                           bounds[5] + 1.35 * edges[2]]
+    view.CameraFocalPoint = [bounds[0] + 0.48 * edges[0], bounds[2] + 0.45 * edges[1],
+                             bounds[5] - 0.5 * edges[2]]
     view.CameraViewUp = (0.0, 0.0, 1.0)
-    view.CameraViewAngle = 42
+    view.CameraViewAngle = 40
 
 
 def caption(view):
