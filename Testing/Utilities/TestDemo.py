@@ -11,10 +11,10 @@ SKIPPED = 77
 DEMO = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Utilities", "demo.sh")
 
 
-def demo(folder, *arguments):
+def demo(folder, *arguments, seconds=280):
     """Runs the demonstration in a folder; returns its exit status and messages."""
     done = subprocess.run([DEMO, *arguments], cwd=folder, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, timeout=280, text=True, check=False)
+                          stderr=subprocess.STDOUT, timeout=seconds, text=True, check=False)
     return done.returncode, done.stdout
 
 
@@ -95,7 +95,8 @@ def test_demo(folder):
 
 
 def test_earthquake(folder):
-    status, messages = demo(folder, "--earthquake", "--cells", "1000", "--output", "quake")
+    status, messages = demo(folder, "--earthquake", "--cells", "1000", "--output", "quake",
+                            seconds=580)
     check(status == 0, messages)
     output = os.path.join(folder, "quake")
     with open(os.path.join(output, "report.json"), encoding="utf-8") as file:
