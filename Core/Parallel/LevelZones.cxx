@@ -14,20 +14,7 @@ namespace
 
 std::set<int> LevelsOf(const RayScene& scene)
 {
-  if (!scene.Samplings)
-  {
-    return { 0 };
-  }
-  std::set<int> levels;
-  const std::vector<bool> used = scene.Samplings->Used();
-  for (std::size_t i = 0; i < used.size(); ++i)
-  {
-    if (used[i])
-    {
-      levels.insert(scene.Samplings->Samplings()[i].Level);
-    }
-  }
-  return levels;
+  return scene.Samplings ? scene.Samplings->UsedLevels() : std::set<int>{ 0 };
 }
 
 std::vector<Box> ZonesAtLevel(const std::vector<Box>& zones, int level, const Box& domain)

@@ -1,6 +1,7 @@
 #include "Render/EnhancedBrickSource.h"
 
-#include <cmath>
+#include "Render/SampledBox.h"
+
 #include <vector>
 
 namespace banyan
@@ -8,61 +9,12 @@ namespace banyan
 namespace
 {
 
-/// Reads a row of a brick's samples.
-void ReadRow(const BrickView& view, int count, int y, int z, double* row)
+/// The samples of a view in double precision, x fastest.
+std::vector<double> InDouble(const BrickView& view, const Box& samples)
 {
-  Dispatch(view.Type,
-    [&](auto tag)
-    {
-      using T = typename decltype(tag)::Type;
-      const T* const from =
-        static_cast<const T*>(view.Values) + z * view.Stride[2] + y * view.Stride[1];
-      for (int x = 0; x < count; ++x)
-      {
-        row[x] = static_cast<double>(from[x * view.Stride[0]]);
-      }
-    });
-}
-
-/// Dense samples of a brick that is being made.
-template <class T>
-BrickView EnhancedView(const TemporalEnhancement& how, const glm::ivec3& samples,
-  const BrickView& now, const BrickView* previous, const BrickView* next, ScalarType type)
-{
-  const auto width = static_cast<std::size_t>(samples.x);
-  const auto values = std::make_shared<std::vector<T>>(width * samples.y * samples.z);
-  std::vector<double> here(width);
-  std::vector<double> before(width);
-  std::vector<double> after(width);
-  T* out = values->data();
-  for (int z = 0; z < samples.z; ++z)
-  {
-    for (int y = 0; y < samples.y; ++y)
-    {
-      ReadRow(now, samples.x, y, z, here.data());
-      if (previous)
-      {
-        ReadRow(*previous, samples.x, y, z, before.data());
-      }
-      if (next)
-      {
-        ReadRow(*next, samples.x, y, z, after.data());
-      }
-      for (std::size_t x = 0; x < width; ++x, ++out)
-      {
-        *out = static_cast<T>(
-          EnhancedValue(how, here[x], previous ? &before[x] : nullptr, next ? &after[x] : nullptr));
-      }
-    }
-  }
-  BrickView view;
-  view.Values = values->data();
-  view.Type = type;
-  view.Stride[0] = 1;
-  view.Stride[1] = samples.x;
-  view.Stride[2] = std::ptrdiff_t{ samples.x } * samples.y;
-  view.Owner = values;
-  return view;
+  std::vector<double> values(static_cast<std::size_t>(samples.Count()));
+  CopySamples({ view, samples }, samples, ScalarType::Float64, values.data());
+  return values;
 }
 
 } // namespace
@@ -146,16 +98,34 @@ std::size_t EnhancedBrickSource::LoadBytes(std::int64_t brick) const
 
 BrickView EnhancedBrickSource::Load(std::int64_t brick)
 {
+  const Box cells = this->CellsOf(brick);
+  const Box samples{ cells.Lo, cells.Hi + 1 };
   const BrickView now = this->Now->Load(brick);
-  const BrickView previous = this->Previous ? this->Previous->Load(brick) : BrickView{};
-  const BrickView next = this->Next ? this->Next->Load(brick) : BrickView{};
-  const glm::ivec3 samples = this->CellsOf(brick).Size() + 1;
-  const BrickView* const before = this->Previous ? &previous : nullptr;
-  const BrickView* const after = this->Next ? &next : nullptr;
-  // Macro voxels come in double precision whatever the array has; one of the steps may be none.
+  std::vector<double> values = InDouble(now, samples);
+  std::vector<double> before;
+  std::vector<double> after;
+  if (this->Previous)
+  {
+    before = InDouble(this->Previous->Load(brick), samples);
+  }
+  if (this->Next)
+  {
+    after = InDouble(this->Next->Load(brick), samples);
+  }
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    values[i] = EnhancedValue(this->How, values[i], this->Previous ? &before[i] : nullptr,
+      this->Next ? &after[i] : nullptr);
+  }
+  // Macro voxels come in double precision whatever the array has.
   const bool wide = now.Type == ScalarType::Float64 && now.Stride[0] != 0;
-  return wide ? EnhancedView<double>(this->How, samples, now, before, after, ScalarType::Float64)
-              : EnhancedView<float>(this->How, samples, now, before, after, ScalarType::Float32);
+  void* enhanced = nullptr;
+  BrickView view =
+    AllocateView(samples, wide ? ScalarType::Float64 : ScalarType::Float32, enhanced);
+  const BrickView all{ values.data(), ScalarType::Float64,
+    { 1, samples.Size().x, std::ptrdiff_t{ samples.Size().x } * samples.Size().y }, {} };
+  CopySamples({ all, samples }, samples, view.Type, enhanced);
+  return view;
 }
 
 } // namespace banyan

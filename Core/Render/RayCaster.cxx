@@ -21,16 +21,7 @@ std::set<int> LevelsOf(const RayScene& scene)
   {
     throw Error("The samplings are those of a picture of another size");
   }
-  std::set<int> levels;
-  const std::vector<bool> used = scene.Samplings->Used();
-  for (std::size_t i = 0; i < used.size(); ++i)
-  {
-    if (used[i])
-    {
-      levels.insert(scene.Samplings->Samplings()[i].Level);
-    }
-  }
-  return levels;
+  return scene.Samplings->UsedLevels();
 }
 
 BrickSource& SourceAt(BrickSource& source, int level, const RayScene& scene)

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <utility>
+#include <set>
 #include <vector>
 
 namespace banyan
@@ -57,6 +58,20 @@ public:
       used[number] = true;
     }
     return used;
+  }
+  /// The levels that tiles are sampled at.
+  std::set<int> UsedLevels() const
+  {
+    std::set<int> levels;
+    const std::vector<bool> used = this->Used();
+    for (std::size_t i = 0; i < used.size(); ++i)
+    {
+      if (used[i])
+      {
+        levels.insert(this->List[i].Level);
+      }
+    }
+    return levels;
   }
 
   /// @param tile inside Tiles()

@@ -9,6 +9,7 @@ import os
 
 from paraview import simple
 
+import picture_scenes
 import pictures
 import session
 
@@ -17,24 +18,13 @@ SCALE = 1.0
 STEP = 1.0
 
 
-def opacity_range(display, array):
-    """Half the largest opacity up to SCALE: dim and strong values are told apart."""
-    simple.ColorBy(display, ("POINTS", array))
-    colors = simple.GetColorTransferFunction(array)
-    colors.RGBPoints = [0.0, 0.1, 0.2, 0.9, 0.5, 0.9, 0.9, 0.4, SCALE, 0.9, 0.1, 0.1]
-    opacities = simple.GetOpacityTransferFunction(array)
-    opacities.Points = [0.0, 0.0, 0.5, 0.0, 0.2, 0.02, 0.5, 0.0, SCALE, 0.4, 0.5, 0.0]
-    display.ScalarOpacityUnitDistance = 1.0
-    display.SampleDistanceVoxels = 0.5
-
-
 def draw(source, array, path, strength=0.0, time=STEP):
     view = session.new_view(SIZE, CameraPosition=[60, -70, 50], CameraFocalPoint=[0, 0, 0],
                             CameraViewUp=[0, 0, 1])
     view.ViewTime = time
-    display = simple.Show(source, view)
-    display.SetRepresentationType(session.REPRESENTATION)
-    opacity_range(display, array)
+    display = picture_scenes.volume(source, view, array, 1.0, (0.0, SCALE),
+                                    opacities=(0.0, 0.1, 0.2, 0.3, 0.4))
+    display.SampleDistanceVoxels = 0.5
     display.TemporalEnhancement = strength
     simple.SaveScreenshot(path, view, ImageResolution=list(SIZE))
     simple.Delete(view)

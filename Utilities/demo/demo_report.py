@@ -14,6 +14,14 @@ def read(folder, name):
         return json.load(file)
 
 
+def medians_by_kind(frames):
+    """Seconds in the volume by the first word of the files' names: plain, enhanced."""
+    kinds = {}
+    for frame in frames:
+        kinds.setdefault(frame["file"].split("_")[0], []).append(frame["statistics"]["TotalSeconds"])
+    return {kind: statistics.median(seconds) for kind, seconds in kinds.items()}
+
+
 def summary(frames):
     """Figures over all frames but the first, which also loads and compiles."""
     steady = frames[1:] or frames
@@ -56,6 +64,10 @@ def main():
     print(f"      {report['drawing']['median_seconds_per_frame']:.2f} s per frame, of which "
           f"{report['drawing']['median_seconds_in_the_volume']:.2f} s in the volume",
           file=sys.stderr)
+    kinds = medians_by_kind(draw["frames"])
+    if len(kinds) > 1:
+        print("      in the volume: " + ", ".join(
+            f"{kind} {1e3 * seconds:.0f} ms" for kind, seconds in kinds.items()), file=sys.stderr)
 
 
 main()
