@@ -1,0 +1,342 @@
+#include "HexSampling/CubeRefiner.h"
+
+#include "Base/Error.h"
+#include "Base/ThreadPool.h"
+#include "HexSampling/CubeDeviation.h"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+
+namespace banyan
+{
+namespace
+{
+
+using Cube = SampledCubes::Cube;
+
+/// What comes of a cube.
+enum class Fate : std::uint8_t
+{
+  Drop,
+  Keep,
+  Split,   ///< because it is too coarse for the cells
+  Improve, ///< to come closer to the field: kept where there are too many cubes
+};
+
+struct Judgement
+{
+  Fate What = Fate::Drop;
+  bool InMesh = false; ///< its middle
+  double Deviation = 0.0;
+};
+
+/// The points of the cubes in a block of 8 x 8 x 8, each looked for once.
+class BlockPoints
+{
+public:
+  static constexpr int Levels = 3;
+
+  explicit BlockPoints(const CellShapes& shapes)
+    : Shapes(shapes)
+  {
+    this->Places.resize(Across * Across * Across);
+  }
+
+  /// @param first halves of cubes' edges from the origin to the block
+  void Begin(const glm::ivec3& first, int level)
+  {
+    this->First = first;
+    this->Half = 0.5 * (1 << level);
+    this->Places.assign(this->Places.size(), {});
+  }
+
+  const PlaceInCell* At(const glm::ivec3& halves, const CellList& cells)
+  {
+    const glm::ivec3 in = halves - this->First;
+    PlaceInCell& place =
+      this->Places[static_cast<std::size_t>(in.x + Across * (in.y + Across * in.z))];
+    if (place.Cell < 0)
+    {
+      place = FindPlace(this->Shapes, cells, this->Half * glm::dvec3(halves));
+    }
+    return &place;
+  }
+
+private:
+  static constexpr int Across = (2 << Levels) + 1;
+  const CellShapes& Shapes;
+  glm::ivec3 First{ 0 };
+  double Half = 0.5;
+  std::vector<PlaceInCell> Places;
+};
+
+class Refiner
+{
+public:
+  Refiner(const CellShapes& shapes, const MeshSampling& sampling, ThreadPool& pool)
+    : Shapes(shapes)
+    , Sampling(sampling)
+    , Pool(pool)
+  {
+  }
+
+  SampledCubes Refine();
+
+private:
+  struct Scratch
+  {
+    explicit Scratch(const CellShapes& shapes)
+      : Points(shapes)
+      , Deviation(shapes)
+    {
+    }
+    BlockPoints Points;
+    CubeDeviation Deviation;
+  };
+
+  void Judge();
+  Judgement JudgeOne(const Cube& cube, BlockPoints& points, CubeDeviation& deviation) const;
+  void Settle();
+  void Halve();
+  void HalveOne(
+    const Cube& cube, std::vector<Cube>& cubes, std::vector<std::uint32_t>& cells) const;
+
+  const CellShapes& Shapes;
+  MeshSampling Sampling;
+  ThreadPool& Pool;
+  int Level = 0;
+  std::vector<Cube> Active; ///< of this level
+  std::vector<std::uint32_t> Cells;
+  std::vector<Judgement> Judgements;
+  SampledCubes Result;
+};
+
+CellList CellsOf(const Cube& cube, const std::vector<std::uint32_t>& cells)
+{
+  return { cells.data() + cube.First, cells.data() + cube.First + cube.Count };
+}
+
+Judgement Refiner::JudgeOne(const Cube& cube, BlockPoints& points, CubeDeviation& deviation) const
+{
+  const CellList cells = CellsOf(cube, this->Cells);
+  const double edge = 1 << this->Level;
+  // Cells that only touch the cube say nothing of what is in it.
+  const glm::dvec3 low = glm::dvec3(PositionOfKey(cube.Key)) + 1e-3;
+  const glm::dvec3 high = low + (edge - 2e-3);
+  double thinnest = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t* cell = cells.Begin; cell != cells.End; ++cell)
+  {
+    if (glm::all(glm::lessThan(this->Shapes.Low(*cell), high)) &&
+        glm::all(glm::greaterThan(this->Shapes.High(*cell), low)))
+    {
+      thinnest = std::min(thinnest, this->Shapes.Height(*cell));
+    }
+  }
+  Judgement judgement;
+  if (std::isinf(thinnest))
+  {
+    return judgement;
+  }
+  if (edge > thinnest && this->Level > 0)
+  {
+    judgement.What = Fate::Split;
+    return judgement;
+  }
+  CubePlaces places;
+  int inside = 0;
+  const glm::ivec3 first = PositionOfKey(cube.Key >> 3 * this->Level) * 2;
+  for (int i = 0; i < 27; ++i)
+  {
+    places[static_cast<std::size_t>(i)] =
+      points.At(first + glm::ivec3(i % 3, i / 3 % 3, i / 9), cells);
+    inside += places[static_cast<std::size_t>(i)]->Inside ? 1 : 0;
+  }
+  if (inside == 0)
+  {
+    return judgement;
+  }
+  judgement.InMesh = places[13]->Inside;
+  judgement.Deviation = deviation.Of(places);
+  const bool border = inside < 27 && std::ldexp(edge, MeshSampling::BorderPart) > thinnest;
+  const bool far = judgement.Deviation > this->Sampling.Tolerance &&
+                   std::ldexp(edge, MeshSampling::FinestPart) > thinnest;
+  judgement.What = (border || far) && this->Level > 0 ? Fate::Improve
+                   : judgement.InMesh                 ? Fate::Keep
+                                                      : Fate::Drop;
+  return judgement;
+}
+
+void Refiner::Judge()
+{
+  this->Judgements.assign(this->Active.size(), {});
+  const int shift = std::min(63, 3 * (this->Level + BlockPoints::Levels));
+  const auto blockOf = [&](std::size_t i) { return this->Active[i].Key >> shift; };
+  std::vector<std::size_t> begins;
+  for (std::size_t i = 0; i < this->Active.size(); ++i)
+  {
+    if (i == 0 || blockOf(i) != blockOf(i - 1))
+    {
+      begins.push_back(i);
+    }
+  }
+  begins.push_back(this->Active.size());
+  std::vector<std::unique_ptr<Scratch>> scratch(static_cast<std::size_t>(this->Pool.Width()));
+  this->Pool.ParallelFor(static_cast<std::int64_t>(begins.size()) - 1,
+    [&](std::int64_t block, int worker)
+    {
+      std::unique_ptr<Scratch>& own = scratch[static_cast<std::size_t>(worker)];
+      own = own ? std::move(own) : std::make_unique<Scratch>(this->Shapes);
+      const std::size_t begin = begins[static_cast<std::size_t>(block)];
+      const std::size_t end = begins[static_cast<std::size_t>(block) + 1];
+      const glm::ivec3 first = PositionOfKey(blockOf(begin)) * (2 << BlockPoints::Levels);
+      own->Points.Begin(first, this->Level);
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        this->Judgements[i] = this->JudgeOne(this->Active[i], own->Points, own->Deviation);
+      }
+    });
+}
+
+/// Takes the cubes that stay, and leaves those that are to be halved.
+void Refiner::Settle()
+{
+  std::int64_t halved = 0;
+  for (const Judgement& judgement : this->Judgements)
+  {
+    halved += judgement.What == Fate::Split || judgement.What == Fate::Improve ? 1 : 0;
+  }
+  const auto kept = static_cast<std::int64_t>(this->Result.Cubes.size());
+  // Of the eight halves of a cube at the border about half stay.
+  const bool full = kept + 8 * halved > this->Sampling.MostCubes;
+  std::vector<Cube> rest;
+  for (std::size_t i = 0; i < this->Active.size(); ++i)
+  {
+    Judgement& judgement = this->Judgements[i];
+    if (judgement.What == Fate::Improve && full)
+    {
+      judgement.What = judgement.InMesh ? Fate::Keep : Fate::Drop;
+    }
+    if (judgement.What == Fate::Keep)
+    {
+      Cube cube = this->Active[i];
+      const CellList cells = CellsOf(cube, this->Cells);
+      cube.First = static_cast<std::uint32_t>(this->Result.Cells.size());
+      this->Result.Cells.insert(this->Result.Cells.end(), cells.Begin, cells.End);
+      this->Result.Cubes.push_back(cube);
+      this->Result.Deviation = std::max(this->Result.Deviation, judgement.Deviation);
+      this->Result.Above += judgement.Deviation > this->Sampling.Tolerance ? 1 : 0;
+    }
+    else if (judgement.What != Fate::Drop)
+    {
+      rest.push_back(this->Active[i]);
+    }
+  }
+  this->Active.swap(rest);
+}
+
+void Refiner::HalveOne(
+  const Cube& cube, std::vector<Cube>& cubes, std::vector<std::uint32_t>& cells) const
+{
+  const CellList all = CellsOf(cube, this->Cells);
+  const int half = 1 << (cube.Level - 1);
+  for (int child = 0; child < 8; ++child)
+  {
+    const glm::dvec3 low(
+      PositionOfKey(cube.Key) + half * glm::ivec3(child & 1, child >> 1 & 1, child >> 2));
+    // Cells that only touch it have to be there: points on faces are in all cells around.
+    const glm::dvec3 high = low + (half + 1e-3);
+    Cube part;
+    part.First = static_cast<std::uint32_t>(cells.size());
+    for (const std::uint32_t* cell = all.Begin; cell != all.End; ++cell)
+    {
+      if (glm::all(glm::lessThanEqual(this->Shapes.Low(*cell), high)) &&
+          glm::all(glm::greaterThanEqual(this->Shapes.High(*cell), low - 1e-3)))
+      {
+        cells.push_back(*cell);
+      }
+    }
+    part.Count = static_cast<std::uint32_t>(cells.size()) - part.First;
+    if (part.Count > 0)
+    {
+      part.Level = cube.Level - 1;
+      part.Key = cube.Key + static_cast<std::uint64_t>(child) * CubeKeys(part.Level);
+      cubes.push_back(part);
+    }
+  }
+}
+
+void Refiner::Halve()
+{
+  struct Part
+  {
+    std::vector<Cube> Cubes;
+    std::vector<std::uint32_t> Cells;
+  };
+  const auto count = static_cast<std::int64_t>(this->Active.size());
+  const std::int64_t length = std::max<std::int64_t>(1, count / (8 * this->Pool.Width()));
+  std::vector<Part> parts(static_cast<std::size_t>((count + length - 1) / length));
+  this->Pool.ParallelFor(static_cast<std::int64_t>(parts.size()),
+    [&](std::int64_t number)
+    {
+      Part& part = parts[static_cast<std::size_t>(number)];
+      for (std::int64_t i = number * length; i < std::min(count, (number + 1) * length); ++i)
+      {
+        this->HalveOne(this->Active[static_cast<std::size_t>(i)], part.Cubes, part.Cells);
+      }
+    });
+  this->Active.clear();
+  this->Cells.clear();
+  for (Part& part : parts)
+  {
+    const auto before = static_cast<std::uint32_t>(this->Cells.size());
+    this->Cells.insert(this->Cells.end(), part.Cells.begin(), part.Cells.end());
+    for (Cube& cube : part.Cubes)
+    {
+      cube.First += before;
+    }
+    this->Active.insert(this->Active.end(), part.Cubes.begin(), part.Cubes.end());
+    part = {};
+  }
+  --this->Level;
+  if (static_cast<std::int64_t>(this->Active.size()) > 8 * this->Sampling.MostCubes)
+  {
+    throw Error("The mesh has cells so thin that more than " +
+                std::to_string(8 * this->Sampling.MostCubes) +
+                " cubes would be needed to sample it: use 'Resample To Image'");
+  }
+}
+
+SampledCubes Refiner::Refine()
+{
+  const glm::ivec3& extent = this->Shapes.Extent();
+  while (1 << this->Level < std::max({ extent.x, extent.y, extent.z }))
+  {
+    ++this->Level;
+  }
+  Cube root;
+  root.Level = this->Level;
+  root.Count = static_cast<std::uint32_t>(this->Shapes.Count());
+  this->Active.push_back(root);
+  this->Cells.resize(root.Count);
+  for (std::uint32_t cell = 0; cell < root.Count; ++cell)
+  {
+    this->Cells[cell] = cell;
+  }
+  while (!this->Active.empty())
+  {
+    this->Judge();
+    this->Settle();
+    this->Halve();
+  }
+  return std::move(this->Result);
+}
+
+} // namespace
+
+SampledCubes RefineCubes(const CellShapes& shapes, const MeshSampling& sampling, ThreadPool& pool)
+{
+  return Refiner(shapes, sampling, pool).Refine();
+}
+
+} // namespace banyan

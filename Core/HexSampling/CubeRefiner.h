@@ -1,0 +1,55 @@
+#ifndef banyan_HexSampling_CubeRefiner_h
+#define banyan_HexSampling_CubeRefiner_h
+
+#include "HexOctree/Morton.h"
+#include "HexSampling/PlaceInCell.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace banyan
+{
+
+class ThreadPool;
+
+/// How closely a mesh of general hexahedra is sampled.
+struct MeshSampling
+{
+  /// Largest CubeDeviation: a part of the spread of the values around.
+  double Tolerance = 1.0 / 4;
+  /// A soft limit: when there are more, cubes stay as they are, and say so.
+  std::int64_t MostCubes = std::int64_t{ 1 } << 22;
+
+  /// Cubes are never smaller than this part of the thinnest cell that they touch, as a power of
+  /// two.
+  static constexpr int FinestPart = 3;
+  /// At the border of the mesh they are not larger than this part of it.
+  static constexpr int BorderPart = 2;
+};
+
+/// Cubes of an octree whose corners a mesh is sampled at.
+struct SampledCubes
+{
+  struct Cube
+  {
+    MortonKey Key = 0; ///< of its first corner, on the lattice of the shapes
+    int Level = 0;
+    std::uint32_t First = 0; ///< of its cells, in Cells
+    std::uint32_t Count = 0;
+  };
+  std::vector<Cube> Cubes;
+  std::vector<std::uint32_t> Cells; ///< those whose boxes touch each cube, in ascending order
+  double Deviation = 0.0;           ///< the largest one of all cubes
+  std::int64_t Above = 0;           ///< cubes with more than the tolerance
+};
+
+/// Halves cubes from one around the whole mesh on: as long as they are larger than the thinnest
+/// cell that they touch, and then as long as their deviation is above the tolerance, or the border
+/// of the mesh goes through them. Those with their middle in the mesh stay. The same for any number
+/// of threads. Throws Error when as many cubes as the thinnest cells ask for would be more than
+/// eight times MostCubes.
+SampledCubes RefineCubes(const CellShapes& shapes, const MeshSampling& sampling, ThreadPool& pool);
+
+} // namespace banyan
+
+#endif
