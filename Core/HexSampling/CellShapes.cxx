@@ -2,6 +2,8 @@
 
 #include "HexOctree/FirstFailure.h"
 
+#include <glm/matrix.hpp>
+
 #include <algorithm>
 #include <mutex>
 
@@ -256,6 +258,7 @@ void CellShapes::ChooseLattice(int refinement, ThreadPool& pool)
 void CellShapes::ToLattice(ThreadPool& pool)
 {
   this->Cells.resize(this->Heights.size());
+  this->Middles.resize(this->Heights.size());
   FirstFailure failure;
   ForRuns(this->Count(), pool, failure,
     [&](std::int64_t begin, std::int64_t end, int)
@@ -266,7 +269,15 @@ void CellShapes::ToLattice(ThreadPool& pool)
           (this->Lows[Index(cell)] - this->LatticeOrigin) / this->FinestEdge;
         this->Highs[Index(cell)] =
           (this->Highs[Index(cell)] - this->LatticeOrigin) / this->FinestEdge;
-        this->Cells[Index(cell)] = this->MakeShape(cell);
+        const TrilinearCell shape = this->MakeShape(cell);
+        this->Cells[Index(cell)] = shape;
+        Middle& middle = this->Middles[Index(cell)];
+        middle.Centre = shape.At(glm::dvec3(0.5));
+        middle.Inverse = glm::inverse(shape.JacobianAt(glm::dvec3(0.5)));
+        const glm::dmat3 sizes(
+          glm::abs(middle.Inverse[0]), glm::abs(middle.Inverse[1]), glm::abs(middle.Inverse[2]));
+        middle.Reach = 0.5 + 1e-6 + sizes * shape.Bend();
+        middle.PerUnit = sizes * glm::dvec3(1.0);
       }
     });
 }

@@ -251,7 +251,8 @@ void Refiner::HalveOne(
     for (const std::uint32_t* cell = all.Begin; cell != all.End; ++cell)
     {
       if (glm::all(glm::lessThanEqual(this->Shapes.Low(*cell), high)) &&
-          glm::all(glm::greaterThanEqual(this->Shapes.High(*cell), low - 1e-3)))
+          glm::all(glm::greaterThanEqual(this->Shapes.High(*cell), low - 1e-3)) &&
+          this->Shapes.MayTouch(*cell, low + 0.5 * half, 0.5 * half + 1e-3))
       {
         cells.push_back(*cell);
       }

@@ -24,8 +24,7 @@ struct CellList
 };
 
 /// Where a point lies: of several cells in the first one, which at faces is the same for all lists
-/// that have these cells. Outside of all, the nearest place in one of the cells as Newton's method
-/// estimates it (exactly the nearest one beside flat faces).
+/// that have these cells. Outside of all, an estimate of the nearest place in the nearest cell.
 /// @param point on the lattice of the shapes
 PlaceInCell FindPlace(const CellShapes& shapes, const CellList& cells, const glm::dvec3& point);
 

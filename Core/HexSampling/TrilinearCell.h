@@ -58,6 +58,16 @@ public:
       this->T + p.y * this->ST + p.x * this->RT + p.x * p.y * this->RST };
   }
 
+  /// How far any point of the cell is at most from where the tangent in its middle puts it, along
+  /// each axis.
+  glm::dvec3 Bend() const
+  {
+    // Of r s that is |(r - 1/2) (s - 1/2)| <= 1/4; of r s t three of these halved, and 1/8.
+    return 0.25 * (glm::abs(this->RS + 0.5 * this->RST) + glm::abs(this->ST + 0.5 * this->RST) +
+                    glm::abs(this->RT + 0.5 * this->RST)) +
+           0.125 * glm::abs(this->RST);
+  }
+
   /// Where in the cell a point lies, by Newton's method; outside of it an estimate.
   /// @param part begins as a guess
   /// @return whether the point was met, within 1e-9 of a cell that is not badly bent. False as soon
