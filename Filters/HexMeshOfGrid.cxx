@@ -1,9 +1,13 @@
 #include "HexMeshOfGrid.h"
 
+#include "VoxelCells.h"
+
 #include "vtkCellArray.h"
 #include "vtkCellTypes.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"
@@ -125,6 +129,24 @@ HexMesh HexMeshOf(vtkUnstructuredGrid* grid)
   }
   mesh.Owner = owners;
   return mesh;
+}
+
+vtkSmartPointer<vtkDataArray> ValuesOfCells(vtkUnstructuredGrid* grid, vtkDataArray* values)
+{
+  vtkUnsignedCharArray* const ghosts = grid ? grid->GetCellGhostArray() : nullptr;
+  if (!values || !HasGhosts(ghosts))
+  {
+    return values;
+  }
+  vtkNew<vtkIdList> kept;
+  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+  {
+    if ((ghosts->GetValue(cell) & GhostBits) == 0)
+    {
+      kept->InsertNextId(cell);
+    }
+  }
+  return Chosen(values, kept);
 }
 
 } // namespace banyan

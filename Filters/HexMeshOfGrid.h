@@ -4,6 +4,9 @@
 #include "BanyanFiltersModule.h" // for export macro
 #include "HexOctree/HexMesh.h"
 
+#include "vtkSmartPointer.h"
+
+class vtkDataArray;
 class vtkUnstructuredGrid;
 
 namespace banyan
@@ -14,6 +17,12 @@ namespace banyan
 /// connectivity; otherwise nothing is copied, and the grid is kept alive. Throws Error with the
 /// first cell of another type, which says what it is and what to do.
 BANYANFILTERS_EXPORT HexMesh HexMeshOf(vtkUnstructuredGrid* grid);
+
+/// Values of the cells that HexMeshOf takes, in its order: the array itself unless cells are left
+/// out.
+/// @param values of all cells of the grid; may be null
+BANYANFILTERS_EXPORT vtkSmartPointer<vtkDataArray> ValuesOfCells(
+  vtkUnstructuredGrid* grid, vtkDataArray* values);
 
 } // namespace banyan
 

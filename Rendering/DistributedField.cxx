@@ -11,6 +11,7 @@
 #include "vtkBanyanDeferred.h"
 
 #include "vtkDataArray.h"
+#include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
 #include "vtkUnstructuredGrid.h"
@@ -95,10 +96,12 @@ std::uint64_t DistributedField::BytesRead() const
 
 bool DistributedField::ChangedHere(const FieldPiece& piece)
 {
-  const std::array<std::uint64_t, 7> stamp{ { reinterpret_cast<std::uintptr_t>(piece.Image),
+  const std::array<std::uint64_t, 10> stamp{ { reinterpret_cast<std::uintptr_t>(piece.Image),
     piece.Image ? piece.Image->GetMTime() : 0, reinterpret_cast<std::uintptr_t>(piece.Array),
     piece.Array ? piece.Array->GetMTime() : 0, static_cast<std::uint64_t>(piece.Component + 1),
-    reinterpret_cast<std::uintptr_t>(piece.Grid), piece.Grid ? piece.Grid->GetMTime() : 0 } };
+    reinterpret_cast<std::uintptr_t>(piece.Grid), piece.Grid ? piece.Grid->GetMTime() : 0,
+    reinterpret_cast<std::uintptr_t>(piece.Leaves), piece.Leaves ? piece.Leaves->GetMTime() : 0,
+    static_cast<std::uint64_t>(piece.Where) } };
   const bool changed = this->Fresh || stamp != this->Stamp ||
                        piece.MeshTolerance != this->StampedTolerance ||
                        piece.Enhancement.Strength != this->Enhancement.Strength ||

@@ -1,6 +1,8 @@
 #ifndef banyan_Rendering_DistributedField_h
 #define banyan_Rendering_DistributedField_h
 
+#include "FieldPiece.h"
+
 #include "Parallel/FrameBalancer.h"
 #include "Render/BrickSource.h"
 #include "Render/TemporalEnhancement.h"
@@ -14,10 +16,6 @@
 #include <string>
 #include <vector>
 
-class vtkDataArray;
-class vtkImageData;
-class vtkUnstructuredGrid;
-
 namespace banyan
 {
 
@@ -26,25 +24,11 @@ class PieceField;
 class SeriesBrickSource;
 class StepAhead;
 
-/// This rank's part of a field of scalars.
-struct FieldPiece
-{
-  vtkImageData* Image = nullptr;       ///< null on ranks without data
-  vtkUnstructuredGrid* Grid = nullptr; ///< in place of Image: hexahedra
-  vtkDataArray* Array = nullptr;       ///< point data of Image or Grid
-  int Component = 0;             ///< -1: Euclidean norm of all components
-  double MeshTolerance = 0.0;    ///< of Grid: see ElementOctree::Find; the same on all ranks
-  /// Of pieces of an encoded series, as they are drawn; plain ones have it already. The same on all
-  /// ranks. Off where Strength is 0.
-  TemporalEnhancement Enhancement{ 0.0, 1.0, 0.0 };
-  std::string Problem;           ///< why this rank's data cannot be drawn; empty if it can
-};
-
 /// One field of scalars that lies distributed over the ranks, agreed upon by all of them: one grid,
 /// and one zone of cells per rank. Pieces of an encoded series that nobody has touched or moved are
 /// drawn from the file, brick by brick, in zones of their own; anything else from the values in
-/// memory, by the rank that has them or by one that fetched them from there (see PieceField). Hexahedral meshes are put together on all ranks, and each draws a
-/// zone (see MeshField).
+/// memory, by the rank that has them or by one that fetched them from there (see PieceField). Hexahedral meshes, and what is made one (see GridOfLeaves), are put
+/// together on all ranks, and each draws a zone (see MeshField).
 class DistributedField
 {
 public:
@@ -113,7 +97,7 @@ private:
   bool ChangedHere(const FieldPiece& piece);
   void Agree(Communicator& communicator, const FieldPiece& piece);
   void AgreeOnRange(Communicator& communicator);
-  bool TakeMesh(Communicator& communicator, const FieldPiece& piece);
+  bool TakeMesh(Communicator& communicator, FieldPiece piece);
   void SetMesh();
   Facts FactsOf(const FieldPiece& piece) const;
   std::string CheckAgainst(const Facts& mine, const Facts& first, int firstRank) const;
@@ -140,7 +124,7 @@ private:
   std::unique_ptr<PieceField> Pieces; ///< null unless it is plain data on several ranks
   std::unique_ptr<BrickSource> Bricks;
   std::shared_ptr<const SeriesFile> Series;
-  std::array<std::uint64_t, 7> Stamp{ {} };
+  std::array<std::uint64_t, 10> Stamp{ {} };
   double StampedTolerance = 0.0;
   TemporalEnhancement Enhancement{ 0.0, 1.0, 0.0 };
   bool Fresh = true;

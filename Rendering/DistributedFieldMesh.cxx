@@ -1,12 +1,14 @@
 // The part of DistributedField that is for hexahedral meshes.
 #include "DistributedField.h"
 
+#include "GridOfLeaves.h"
 #include "MeshField.h"
 
 #include "Pieces/PieceField.h"
 #include "Render/StepAhead.h"
 
 #include "vtkDataArray.h"
+#include "vtkSmartPointer.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
@@ -15,9 +17,11 @@ namespace banyan
 {
 
 /// Collective. @return false when no rank has a mesh
-bool DistributedField::TakeMesh(Communicator& communicator, const FieldPiece& piece)
+bool DistributedField::TakeMesh(Communicator& communicator, FieldPiece piece)
 {
-  if (AllMax(communicator, piece.Grid ? 1.0 : 0.0) == 0.0)
+  const double mine = piece.Leaves ? 2.0 : piece.Grid ? 1.0 : 0.0;
+  const double most = AllMax(communicator, mine);
+  if (most == 0.0)
   {
     this->Mesh.reset();
     return false;
@@ -43,7 +47,13 @@ bool DistributedField::TakeMesh(Communicator& communicator, const FieldPiece& pi
   }
   try
   {
-    this->Mesh->Update(communicator, piece.Grid, piece.Array, piece.Component, piece.MeshTolerance);
+    vtkSmartPointer<vtkUnstructuredGrid> leaves;
+    if (most == 2.0)
+    {
+      TakeLeaves(communicator, piece, leaves);
+    }
+    this->Mesh->Update(communicator, piece.Grid, piece.Array, piece.Where, piece.Component,
+      piece.MeshTolerance);
     this->Bricks = this->Mesh->TakeSource();
     this->SetMesh();
     this->ZoneCells = this->Mesh->Zones(communicator.Size());

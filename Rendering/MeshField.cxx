@@ -8,7 +8,10 @@
 
 #include "vtkDataArray.h"
 #include "vtkSetGet.h"
+#include "vtkSmartPointer.h"
 #include "vtkUnstructuredGrid.h"
+
+#include <algorithm>
 
 namespace banyan
 {
@@ -55,18 +58,36 @@ NodeArray NodesOf(vtkDataArray* values, int component)
   return nodes;
 }
 
+/// Collective: what the ranks that have cells say values belong to.
+ValuesOn Agreed(Communicator& communicator, ValuesOn where, bool cells)
+{
+  const double mine = static_cast<double>(where);
+  const double high = AllMax(communicator, cells ? mine : -1.0);
+  const double low = -AllMax(communicator, cells ? -mine : -3.0);
+  if (low < high)
+  {
+    throw Error("The array to draw lies on points on one rank, and on cells on another one.");
+  }
+  return static_cast<ValuesOn>(static_cast<int>(std::max(high, 0.0)));
+}
+
 } // namespace
 
 void MeshField::Update(Communicator& communicator, vtkUnstructuredGrid* grid, vtkDataArray* values,
-  int component, double tolerance)
+  ValuesOn where, int component, double tolerance)
 {
   HexMesh piece;
   NodeArray nodes;
+  vtkSmartPointer<vtkDataArray> kept;
   std::string failure;
   try
   {
     piece = HexMeshOf(grid);
-    nodes = NodesOf(piece.CellCount > 0 ? values : nullptr, component);
+    if (piece.CellCount > 0)
+    {
+      kept = where == ValuesOn::Cells ? ValuesOfCells(grid, values).GetPointer() : values;
+      nodes = NodesOf(kept, component);
+    }
   }
   catch (const std::exception& error)
   {
@@ -77,6 +98,7 @@ void MeshField::Update(Communicator& communicator, vtkUnstructuredGrid* grid, vt
   {
     piece.PointCount = 0;
   }
+  where = Agreed(communicator, where, piece.CellCount > 0);
   ThreadPool& pool = ThreadPool::Process();
   const bool sameMesh = this->SameMesh(communicator, piece);
   if (!sameMesh || tolerance != this->Tolerance)
@@ -95,8 +117,16 @@ void MeshField::Update(Communicator& communicator, vtkUnstructuredGrid* grid, vt
     }
     StopTogether(communicator, failure);
   }
-  const GatheredValues all = GatherNodes(communicator, nodes, piece.PointCount);
-  this->Source = std::make_unique<HexBrickSource>(this->Bricks, all.Array, pool);
+  const bool onCells = where == ValuesOn::Cells;
+  const GatheredValues all =
+    GatherNodes(communicator, nodes, onCells ? piece.CellCount : piece.PointCount);
+  if (where == ValuesOn::Points)
+  {
+    this->Source = std::make_unique<HexBrickSource>(this->Bricks, all.Array, pool);
+    return;
+  }
+  const CellNodes made(this->Tree(), all.Array, where, pool);
+  this->Source = std::make_unique<HexBrickSource>(this->Bricks, made.Nodes(), pool);
 }
 
 /// Collective: whether the mesh on all ranks is that of the octree.

@@ -1,6 +1,7 @@
 #ifndef banyan_Rendering_MeshField_h
 #define banyan_Rendering_MeshField_h
 
+#include "HexOctree/CellNodes.h"
 #include "HexOctree/HexBrickSource.h"
 #include "Parallel/Communicator.h"
 #include "Series/Hash.h"
@@ -22,11 +23,13 @@ class MeshField
 public:
   /// Collective: takes the pieces of all ranks.
   /// @param grid null on ranks without cells
+  /// @param values of the points or cells of the grid, as `where` says, which may be anything on
+  /// ranks without cells; those of cells are made nodal: see CellNodes
   /// @param component in [0, components), or -1 for the Euclidean norm
   /// @param tolerance see ElementOctree::Find; the same on all ranks
   /// Throws Error when the mesh is no octree, or cannot be read; on all ranks, if one cannot.
   void Update(Communicator& communicator, vtkUnstructuredGrid* grid, vtkDataArray* values,
-    int component, double tolerance);
+    ValuesOn where, int component, double tolerance);
 
   const ElementOctree& Tree() const { return this->Bricks->Tree(); }
   /// A part of the mesh for each rank, in finest cells.

@@ -9,9 +9,10 @@
 #include "vtkBanyanDeferred.h"
 
 #include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkPiecewiseFunction.h"
-#include "vtkPointData.h"
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
@@ -36,9 +37,13 @@ std::uint64_t Address(const void* pointer)
 }
 
 /// Null unless it can be compared with `array`.
-vtkDataArray* Neighbour(vtkDataSet* data, const char* name, vtkDataArray* array)
+vtkDataArray* Neighbour(vtkDataObject* data, const char* name, const FieldPiece& piece)
 {
-  vtkDataArray* const found = data->GetPointData()->GetArray(name);
+  vtkDataArray* const array = piece.Array;
+  vtkDataArray* const found =
+    data
+      ->GetAttributes(piece.Where == ValuesOn::Points ? vtkDataObject::POINT : vtkDataObject::CELL)
+      ->GetArray(name);
   return found && found->GetNumberOfTuples() == array->GetNumberOfTuples() &&
              found->GetNumberOfComponents() == array->GetNumberOfComponents()
            ? found
@@ -48,11 +53,17 @@ vtkDataArray* Neighbour(vtkDataSet* data, const char* name, vtkDataArray* array)
 } // namespace
 
 void MotionEnhancement::Apply(
-  double strength, vtkVolumeProperty* property, vtkDataSet* data, FieldPiece& piece)
+  double strength, vtkVolumeProperty* property, vtkDataObject* data, FieldPiece& piece)
 {
   if (strength == 0.0 || !data || !piece.Array || !piece.Problem.empty())
   {
     this->Enhanced = nullptr;
+    return;
+  }
+  if (piece.Leaves)
+  {
+    piece.Problem = std::string("Motion is not brought out in data of the type ") +
+                    data->GetClassName() + ": set 'Temporal Enhancement' to 0.";
     return;
   }
   const double* const range = property->GetScalarOpacity(0)->GetRange();
@@ -65,8 +76,8 @@ void MotionEnhancement::Apply(
   {
     return;
   }
-  vtkDataArray* const arrays[3] = { piece.Array, Neighbour(data, PreviousName(), piece.Array),
-    Neighbour(data, NextName(), piece.Array) };
+  vtkDataArray* const arrays[3] = { piece.Array, Neighbour(data, PreviousName(), piece),
+    Neighbour(data, NextName(), piece) };
   const std::array<std::uint64_t, 9> stamp{ { Address(arrays[0]), arrays[0]->GetMTime(),
     Address(arrays[1]), arrays[1] ? arrays[1]->GetMTime() : 0, Address(arrays[2]),
     arrays[2] ? arrays[2]->GetMTime() : 0, static_cast<std::uint64_t>(piece.Component + 1),

@@ -10,7 +10,7 @@
 #include <memory>
 
 class vtkDataArray;
-class vtkDataSet;
+class vtkDataObject;
 class vtkVolumeProperty;
 
 namespace banyan
@@ -26,7 +26,7 @@ struct FieldPiece;
 class MotionEnhancement
 {
 public:
-  /// Names of the point arrays of a data set in which the drawn array's values of the step before
+  /// Names of the arrays of a data set, beside the drawn one, in which the drawn array's values of the step before
   /// and after are looked for; without them plain data are drawn as they are.
   static const char* PreviousName() { return "banyan: step before"; }
   static const char* NextName() { return "banyan: step after"; }
@@ -34,8 +34,9 @@ public:
   /// Puts enhanced values in the place of a plain piece's, or notes how those of a series are to be
   /// enhanced. The scale is the largest magnitude that the opacity function knows, so that
   /// functions mean the same with and without.
+  /// Hyper tree grids and AMR become a problem of the piece: they are not enhanced.
   /// @param strength in [0, 1]; 0 does nothing
-  void Apply(double strength, vtkVolumeProperty* property, vtkDataSet* data, FieldPiece& piece);
+  void Apply(double strength, vtkVolumeProperty* property, vtkDataObject* data, FieldPiece& piece);
 
 private:
   vtkSmartPointer<vtkDataArray> Enhanced;

@@ -5,6 +5,7 @@
 #include "FramebufferExchange.h"
 #include "IceTCompositing.h"
 #include "MotionEnhancement.h"
+#include "PieceOfInput.h"
 #include "PixelsBehind.h"
 #include "SceneOptions.h"
 #include "ToleranceControl.h"
@@ -16,20 +17,15 @@
 #include "Parallel/DistributedFrame.h"
 #include "Parallel/MpiCommunicator.h"
 
-#include "vtkAbstractMapper.h"
 #include "vtkAlgorithm.h"
-#include "vtkColorTransferFunction.h"
-#include "vtkDataArray.h"
-#include "vtkImageData.h"
+#include "vtkDataSet.h"
 #include "vtkInformation.h"
 #include "vtkMPI.h"
 #include "vtkMPICommunicator.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
-#include "vtkPointData.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
-#include "vtkUnstructuredGrid.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
 
@@ -47,7 +43,6 @@ struct vtkBanyanVolumeMapper::Internals
   bool BoundsKnown = false;
   banyan::ToleranceControl Tolerance;
 
-  banyan::FieldPiece PieceOf(vtkBanyanVolumeMapper* mapper, vtkVolume* volume);
   void Publish(const banyan::FrameStatistics& frame, std::uint64_t bytesRead,
     const banyan::BrickCache::Statistics& cacheBefore, std::uint64_t aheadBefore, double seconds,
     vtkBanyanFrameStatistics* out) const;
@@ -69,6 +64,8 @@ int vtkBanyanVolumeMapper::FillInputPortInformation(int, vtkInformation* info)
   info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGrid");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkHyperTreeGrid");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkOverlappingAMR");
   // A rank without data takes part in drawing all the same.
   info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   return 1;
@@ -118,63 +115,9 @@ void vtkBanyanVolumeMapper::SetRankOrderBehind(const std::vector<int>& frontToBa
   this->Self->RankOrderBehind = frontToBack;
 }
 
-banyan::FieldPiece vtkBanyanVolumeMapper::Internals::PieceOf(
-  vtkBanyanVolumeMapper* mapper, vtkVolume* volume)
+vtkDataArray* vtkBanyanVolumeMapper::GetArrayToDraw(vtkDataObject* data)
 {
-  banyan::FieldPiece piece;
-  piece.MeshTolerance = mapper->GetMeshTolerance();
-  vtkDataSet* data = vtkDataSet::SafeDownCast(mapper->GetDataObjectInput());
-  vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(data);
-  // Points alone are nothing that a ray meets.
-  if (!data || data->GetNumberOfPoints() == 0 || (grid && grid->GetNumberOfCells() == 0))
-  {
-    return piece;
-  }
-  piece.Image = vtkImageData::SafeDownCast(data);
-  piece.Grid = grid;
-  piece.Array = mapper->GetArrayToDraw(data);
-  if (!piece.Array)
-  {
-    const char* name = mapper->GetArrayName();
-    piece.Problem =
-      name && *name ? "The data has no point array '" + std::string(name) + "' of numbers to draw."
-                    : "The data has no point array to draw: select one in 'Coloring'.";
-  }
-  else if (piece.Array->GetNumberOfTuples() != data->GetNumberOfPoints())
-  {
-    piece.Problem =
-      "The array '" + std::string(mapper->GetArrayName() ? mapper->GetArrayName() : "") +
-      "' lies on cells, and volumes are drawn from point data: apply 'Cell Data to Point Data'.";
-  }
-  else
-  {
-    vtkColorTransferFunction* color = volume->GetProperty()->GetRGBTransferFunction(0);
-    const bool magnitude = color->GetVectorMode() == vtkScalarsToColors::MAGNITUDE;
-    const int components = piece.Array->GetNumberOfComponents();
-    piece.Component = components == 1 ? 0 : magnitude ? -1 : color->GetVectorComponent();
-    if (piece.Component >= components)
-    {
-      piece.Component = -1;
-    }
-  }
-  this->Motion.Apply(mapper->GetTemporalEnhancement(), volume->GetProperty(), data, piece);
-  return piece;
-}
-
-vtkDataArray* vtkBanyanVolumeMapper::GetArrayToDraw(vtkDataSet* data)
-{
-  if (!data)
-  {
-    return nullptr;
-  }
-  int isCellData = 0;
-  vtkDataArray* array = vtkAbstractMapper::GetScalars(data, this->GetScalarMode(),
-    this->GetArrayAccessMode(), this->GetArrayId(), this->GetArrayName(), isCellData);
-  if (!array && this->GetScalarMode() == VTK_SCALAR_MODE_DEFAULT)
-  {
-    array = data->GetPointData()->GetArray(0);
-  }
-  return array;
+  return banyan::ArrayToDraw(this, data).Array;
 }
 
 void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
@@ -186,7 +129,10 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
   Internals& self = *this->Self;
   banyan::ThreadPool::SetProcessWidth(this->NumberOfThreads);
   self.Field.SetLoadBalancing(static_cast<banyan::LoadBalancing>(this->LoadBalancing));
-  self.Field.Update(*self.Communicator, self.PieceOf(this, volume));
+  banyan::FieldPiece piece = banyan::PieceOfInput(this, volume->GetProperty());
+  self.Motion.Apply(
+    this->TemporalEnhancement, volume->GetProperty(), this->GetDataObjectInput(), piece);
+  self.Field.Update(*self.Communicator, piece);
   self.Bounds = self.Field.Bounds();
   self.BoundsKnown = true;
   if (self.Field.Empty())
@@ -204,7 +150,9 @@ double* vtkBanyanVolumeMapper::GetBounds()
 {
   if (!this->Self->BoundsKnown)
   {
-    return this->Superclass::GetBounds();
+    vtkDataObject* const input = this->GetDataObjectInput();
+    return !input || vtkDataSet::SafeDownCast(input) ? this->Superclass::GetBounds()
+                                                     : banyan::BoundsOfLeaves(input, this->Bounds);
   }
   std::copy(this->Self->Bounds.begin(), this->Self->Bounds.end(), this->Bounds);
   return this->Bounds;

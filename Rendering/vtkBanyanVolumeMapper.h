@@ -10,18 +10,18 @@
 
 class vtkBanyanFrameStatistics;
 class vtkDataArray;
-class vtkDataSet;
+class vtkDataObject;
 class vtkMultiProcessController;
 
 /**
  * @class vtkBanyanVolumeMapper
- * @brief draws image data, encoded or plain, and meshes of hexahedra that are the leaves of an octree,
- * on one rank or many, with Banyan's own ray caster
+ * @brief draws image data, encoded or plain, meshes of hexahedra that are the leaves of an octree,
+ * hyper tree grids and overlapping AMR, on one rank or many, with Banyan's own ray caster
  *
  * Use it like any volume mapper: give it image data (the output of vtkBanyanSeriesReader draws
  * without being decoded), or an unstructured grid of axis-aligned hexahedra or voxels (each is
- * drawn as the trilinear element that it is; vtkBanyanHexOctree says what is wrong with others), and
- * put it into a vtkVolume with a colour and an opacity function. Rays end at opaque geometry that
+ * drawn as the trilinear element that it is; vtkBanyanHexOctree says what is wrong with others), a
+ * vtkHyperTreeGrid or a vtkOverlappingAMR (their visible leaves are such elements), and put it into a vtkVolume with a colour and an opacity function. Rays end at opaque geometry that
  * was drawn before.
  *
  * With a controller of several ranks, Render() is collective: each rank draws its zone and rank 0
@@ -34,7 +34,8 @@ class vtkMultiProcessController;
  * the inside of a box; shading; linear interpolation or, as vtkVolumeProperty has it by default,
  * that of the nearest point. All as VTK's own volume mappers know them, and the same on all ranks.
  *
- * @par Limits: point data; component 0 of the property, which draws one component of the data or
+ * @par Limits: point data, and cell data of what is not image data, made nodal (see
+ * banyan::CellNodes); component 0 of the property, which draws one component of the data or
  * their magnitude, as the vector mode of its colour function says; lights other than the viewer's
  * are ignored, and so is shading in modes other than composite. Averages are grey, from the lowest
  * to the highest value of the data (of all steps of an encoded series).
@@ -198,9 +199,10 @@ public:
 
   /**
    * The point or cell array of `data` that the mapper's scalar mode selects; with the default mode
-   * the active scalars, or the first array of numbers. Null if there is none.
+   * the active scalars, or the first array of numbers. Of blocks, that of the first one. Null if there
+   * is none.
    */
-  vtkDataArray* GetArrayToDraw(vtkDataSet* data);
+  vtkDataArray* GetArrayToDraw(vtkDataObject* data);
 
   /**
    * Bounds of the whole field, over all ranks, once UpdateField() or Render() was called; those of

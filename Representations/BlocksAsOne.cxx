@@ -1,5 +1,6 @@
 #include "BlocksAsOne.h"
 
+#include "GridOfHyperTrees.h"
 #include "MotionEnhancement.h"
 #include "StepWindow.h"
 #include "vtkBanyanDeferred.h"
@@ -9,26 +10,34 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkHyperTreeGrid.h"
 #include "vtkImageData.h"
+#include "vtkMath.h"
 #include "vtkNew.h"
+#include "vtkOverlappingAMR.h"
 #include "vtkPointData.h"
 #include "vtkUnstructuredGrid.h"
 
 namespace banyan
 {
 
-vtkSmartPointer<vtkDataSet> BlocksAsOne(vtkDataObject* data)
+vtkSmartPointer<vtkDataObject> BlocksAsOne(vtkDataObject* data)
 {
   vtkCompositeDataSet* const blocks = vtkCompositeDataSet::SafeDownCast(data);
-  if (!blocks)
+  if (!blocks || vtkOverlappingAMR::SafeDownCast(data))
   {
-    return vtkDataSet::SafeDownCast(data);
+    return data;
   }
   vtkNew<vtkAppendFilter> append;
   const auto visit = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
   for (visit->InitTraversal(); !visit->IsDoneWithTraversal(); visit->GoToNextItem())
   {
-    vtkDataSet* const block = vtkDataSet::SafeDownCast(visit->GetCurrentDataObject());
+    vtkSmartPointer<vtkDataSet> block = vtkDataSet::SafeDownCast(visit->GetCurrentDataObject());
+    if (auto* const trees = vtkHyperTreeGrid::SafeDownCast(visit->GetCurrentDataObject()))
+    {
+      block = GridOfHyperTrees(trees).GetPointer();
+    }
     if (block && block->GetNumberOfPoints() > 0)
     {
       append->AddInputData(block);
@@ -42,6 +51,27 @@ vtkSmartPointer<vtkDataSet> BlocksAsOne(vtkDataObject* data)
   return append->GetOutput();
 }
 
+void BoundsOf(vtkDataObject* data, double bounds[6])
+{
+  vtkMath::UninitializeBounds(bounds);
+  if (!data || data->GetNumberOfElements(vtkDataObject::CELL) == 0)
+  {
+    return;
+  }
+  if (auto* const set = vtkDataSet::SafeDownCast(data))
+  {
+    set->GetBounds(bounds);
+  }
+  else if (auto* const trees = vtkHyperTreeGrid::SafeDownCast(data))
+  {
+    trees->GetBounds(bounds);
+  }
+  else if (auto* const blocks = vtkOverlappingAMR::SafeDownCast(data))
+  {
+    blocks->GetBounds(bounds);
+  }
+}
+
 void AddNeighbours(vtkDataArray* array, const StepWindow& steps, vtkDataSet* piece)
 {
   vtkImageData* const image = vtkImageData::SafeDownCast(piece);
@@ -51,16 +81,20 @@ void AddNeighbours(vtkDataArray* array, const StepWindow& steps, vtkDataSet* pie
   {
     return;
   }
+  const int where = piece->GetPointData()->GetArray(array->GetName()) == array
+                      ? vtkDataObject::POINT
+                      : vtkDataObject::CELL;
   const auto add = [&](vtkDataObject* step, const char* name)
   {
-    const vtkSmartPointer<vtkDataSet> data = BlocksAsOne(step);
-    vtkDataArray* const there = data ? data->GetPointData()->GetArray(array->GetName()) : nullptr;
+    const vtkSmartPointer<vtkDataObject> data = BlocksAsOne(step);
+    vtkDataSetAttributes* const values = data ? data->GetAttributes(where) : nullptr;
+    vtkDataArray* const there = values ? values->GetArray(array->GetName()) : nullptr;
     if (there)
     {
       const auto renamed = vtkSmartPointer<vtkDataArray>::Take(there->NewInstance());
       renamed->ShallowCopy(there);
       renamed->SetName(name);
-      piece->GetPointData()->AddArray(renamed);
+      piece->GetAttributes(where)->AddArray(renamed);
     }
   };
   add(steps.Previous(), MotionEnhancement::PreviousName());

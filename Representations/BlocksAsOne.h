@@ -12,8 +12,13 @@ namespace banyan
 
 class StepWindow;
 
-/// A data set, or the blocks of one as one grid; null if there is none.
-vtkSmartPointer<vtkDataSet> BlocksAsOne(vtkDataObject* data);
+/// What can be drawn as it is (data sets, hyper tree grids, overlapping AMR), or blocks as one
+/// grid; null if there is none. Hyper tree grids among blocks become grids of their leaves: throws
+/// Error where one has none (see GridOfHyperTrees).
+vtkSmartPointer<vtkDataObject> BlocksAsOne(vtkDataObject* data);
+
+/// (xmin, xmax, ymin, ymax, zmin, zmax) of any of these; uninitialised where there is nothing.
+void BoundsOf(vtkDataObject* data, double bounds[6]);
 
 /// Adds the values that `array` has in the step before and after to a piece, under the names that
 /// MotionEnhancement looks for. Arrays that decode on first touch are left alone: they are drawn

@@ -42,7 +42,8 @@ int vtkBanyanVolumeRepresentation::FillInputPortInformation(int, vtkInformation*
   info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGrid");
-  // Blocks of hexahedra are drawn as one mesh.
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkHyperTreeGrid");
+  // AMR, and blocks of hexahedra, which are drawn as one mesh.
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
   info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   return 1;
@@ -92,18 +93,28 @@ int vtkBanyanVolumeRepresentation::RequestData(
   vtkDataObject* const now = !hasInput ? nullptr
                              : enhanced ? this->Steps->Now()
                                         : vtkDataObject::GetData(inputVector[0], 0);
-  if (const vtkSmartPointer<vtkDataSet> input = banyan::BlocksAsOne(now))
+  vtkSmartPointer<vtkDataObject> input;
+  try
   {
-    this->Piece = vtkSmartPointer<vtkDataSet>::Take(input->NewInstance());
+    input = banyan::BlocksAsOne(now);
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< "The volume was not drawn. " << error.what());
+  }
+  if (input)
+  {
+    this->Piece = vtkSmartPointer<vtkDataObject>::Take(input->NewInstance());
     this->Piece->ShallowCopy(input);
-    if (enhanced)
+    vtkDataSet* const piece = vtkDataSet::SafeDownCast(this->Piece);
+    if (enhanced && piece)
     {
       this->SelectArray();
-      banyan::AddNeighbours(this->Mapper->GetArrayToDraw(this->Piece), *this->Steps, this->Piece);
+      banyan::AddNeighbours(this->Mapper->GetArrayToDraw(piece), *this->Steps, piece);
     }
-    if (input->GetNumberOfPoints() > 0)
+    banyan::BoundsOf(this->Piece, this->DataBounds);
+    if (vtkMath::AreBoundsInitialized(this->DataBounds))
     {
-      input->GetBounds(this->DataBounds);
       this->DataSize = this->Piece->GetActualMemorySize();
     }
   }
@@ -153,8 +164,7 @@ int vtkBanyanVolumeRepresentation::ProcessViewRequest(
 /// Collective over the ranks that render.
 void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
 {
-  vtkDataSet* data = vtkDataSet::SafeDownCast(piece);
-  this->Mapper->SetInputDataObject(data);
+  this->Mapper->SetInputDataObject(piece);
   this->Mapper->SetController(vtkMultiProcessController::GetGlobalController());
   this->SelectArray();
   this->Property->SetIndependentComponents(1);
@@ -163,7 +173,7 @@ void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
   this->Prop->SetView(vtkPVRenderView::SafeDownCast(this->GetView()));
   if (!this->ColorGiven || !this->OpacityGiven)
   {
-    banyan::UseDefaultFunctions(this->Mapper->GetArrayToDraw(data), !this->ColorGiven,
+    banyan::UseDefaultFunctions(this->Mapper->GetArrayToDraw(piece), piece, !this->ColorGiven,
       !this->OpacityGiven, this->Property);
   }
   this->Mapper->SetBlendMode(this->BlendMode != 0 ? this->BlendMode : this->Projection);

@@ -11,7 +11,7 @@
 class vtkBanyanFrameStatistics;
 class vtkBanyanVolume;
 class vtkBanyanVolumeMapper;
-class vtkDataSet;
+class vtkDataObject;
 
 namespace banyan
 {
@@ -136,7 +136,7 @@ private:
 
   vtkNew<vtkBanyanVolumeMapper> Mapper;
   vtkSmartPointer<vtkBanyanVolume> Prop;
-  vtkSmartPointer<vtkDataSet> Piece;
+  vtkSmartPointer<vtkDataObject> Piece;
   std::unique_ptr<banyan::StepWindow> Steps; ///< around the one drawn, if motion is brought out
   int InterpolationType = 1;
   bool NearestPoint = false;

@@ -8,13 +8,14 @@
 
 namespace banyan
 {
-namespace
-{
 
 bool FitsFloat(ScalarType type)
 {
   return SizeOf(type) <= 2 || type == ScalarType::Float32;
 }
+
+namespace
+{
 
 double ValueOf(const double* tuple, int components)
 {

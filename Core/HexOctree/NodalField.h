@@ -12,12 +12,15 @@ namespace banyan
 
 class ThreadPool;
 
-/// Values at the points of a mesh.
+/// Whether float32 holds all values of a type.
+bool FitsFloat(ScalarType type);
+
+/// Values at the points of a mesh, or of its cells.
 struct NodeArray
 {
   static constexpr int Magnitude = -1;
 
-  const void* Values = nullptr; ///< `[point][component]`
+  const void* Values = nullptr; ///< `[point or cell][component]`
   ScalarType Type = ScalarType::Float32;
   int Components = 1;
   int Component = 0; ///< in [0, Components), or Magnitude: the Euclidean length of all

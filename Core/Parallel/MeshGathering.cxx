@@ -160,8 +160,7 @@ GatheredValues GatherNodes(Communicator& communicator, const NodeArray& piece, s
   {
     return { piece, {} };
   }
-  const bool fitsFloat = SizeOf(piece.Type) <= 2 || piece.Type == ScalarType::Float32;
-  const bool wide = AllMax(communicator, points > 0 && !fitsFloat ? 1.0 : 0.0) > 0.0;
+  const bool wide = AllMax(communicator, points > 0 && !FitsFloat(piece.Type) ? 1.0 : 0.0) > 0.0;
   const std::shared_ptr<std::vector<char>> all =
     wide ? GatherArray(communicator, ComponentOf<double>(piece, points))
          : GatherArray(communicator, ComponentOf<float>(piece, points));

@@ -18,7 +18,7 @@ namespace banyan
 /// Throws Error, on all ranks, when a cell of a piece refers to a point that the piece has not.
 HexMesh GatherMesh(Communicator& communicator, const HexMesh& piece);
 
-/// Values at the points of a gathered mesh, one component of them, on every rank.
+/// Values at the points or cells of a gathered mesh, one component of them, on every rank.
 struct GatheredValues
 {
   NodeArray Array;
@@ -26,8 +26,8 @@ struct GatheredValues
 };
 
 /// Collective.
-/// @param piece values at the points of this rank's piece; the same component on all ranks
-/// @param points of the piece
+/// @param piece values at the points (or cells) of this rank's piece; the same component on all ranks
+/// @param points (or cells) of the piece
 GatheredValues GatherNodes(Communicator& communicator, const NodeArray& piece, std::int64_t points);
 
 } // namespace banyan

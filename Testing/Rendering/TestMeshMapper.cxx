@@ -196,7 +196,7 @@ void Refuses()
 
   const auto bare = Mesh(0);
   bare->GetPointData()->Initialize();
-  ExpectSays(bare, "no point array");
+  ExpectSays(bare, "no array to draw");
 }
 
 } // namespace

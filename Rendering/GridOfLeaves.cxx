@@ -1,0 +1,99 @@
+#include "GridOfLeaves.h"
+
+#include "GridOfAmr.h"
+#include "GridOfHyperTrees.h"
+
+#include "Base/Error.h"
+#include "Parallel/Communicator.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkHyperTreeGrid.h"
+#include "vtkOverlappingAMR.h"
+#include "vtkPointData.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <cstring>
+
+namespace banyan
+{
+namespace
+{
+
+/// Collective.
+std::vector<AmrBox> BoxesOfAll(Communicator& communicator, const std::vector<AmrBox>& mine)
+{
+  std::vector<AmrBox> all;
+  const std::string bytes(reinterpret_cast<const char*>(mine.data()), mine.size() * sizeof(AmrBox));
+  for (const std::string& theirs : AllGatherStrings(communicator, bytes))
+  {
+    const std::size_t before = all.size();
+    all.resize(before + theirs.size() / sizeof(AmrBox));
+    if (!theirs.empty())
+    {
+      std::memcpy(all.data() + before, theirs.data(), theirs.size());
+    }
+  }
+  return all;
+}
+
+/// Collective: on all ranks, when one fails, those that have not say nothing.
+template <class Function>
+void Together(Communicator& communicator, const Function& function)
+{
+  std::string failure;
+  try
+  {
+    function();
+  }
+  catch (const std::exception& error)
+  {
+    failure = error.what();
+  }
+  if (!AgreeOnError(communicator, failure).empty())
+  {
+    throw Error(failure);
+  }
+}
+
+} // namespace
+
+void TakeLeaves(
+  Communicator& communicator, FieldPiece& piece, vtkSmartPointer<vtkUnstructuredGrid>& grid)
+{
+  vtkOverlappingAMR* const blocks = vtkOverlappingAMR::SafeDownCast(piece.Leaves);
+  vtkHyperTreeGrid* const trees = vtkHyperTreeGrid::SafeDownCast(piece.Leaves);
+  std::vector<AmrBox> boxes;
+  Together(communicator,
+    [&]
+    {
+      if (piece.Leaves && !blocks && !trees)
+      {
+        throw Error(std::string("Data of the type ") + piece.Leaves->GetClassName() +
+                    " cannot be drawn: use 'Resample To Image'.");
+      }
+      boxes = BoxesOf(blocks);
+    });
+  boxes = BoxesOfAll(communicator, boxes);
+  Together(communicator,
+    [&]
+    {
+      if (!piece.Leaves)
+      {
+        return;
+      }
+      grid = trees ? GridOfHyperTrees(trees, piece.ArrayName)
+                   : GridOfAmr(blocks, boxes, piece.ArrayName);
+      piece.Grid = grid;
+      vtkDataSetAttributes* const values = grid->GetAttributes(
+        piece.Where == ValuesOn::Cells ? vtkDataObject::CELL : vtkDataObject::POINT);
+      piece.Array = values->GetArray(piece.ArrayName.c_str());
+      if (!piece.Array && grid->GetNumberOfCells() > 0)
+      {
+        throw Error("Not all blocks have the array '" + piece.ArrayName +
+                    "' with the same type and components.");
+      }
+    });
+}
+
+} // namespace banyan
