@@ -1,5 +1,6 @@
 #include "GridOfAmr.h"
 
+#include "RankTalk.h"
 #include "VoxelCells.h"
 
 #include "Base/Error.h"
@@ -8,6 +9,7 @@
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkMultiProcessStream.h"
 #include "vtkOverlappingAMR.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -336,6 +338,39 @@ vtkSmartPointer<vtkUnstructuredGrid> GridOfAmr(
   BlockCollector collector(blocks, all);
   ForBlocks(blocks, [&](unsigned int level, unsigned int index) { collector.Add(level, index); });
   return collector.Grid(array);
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> GridOfAmrOnRanks(
+  vtkOverlappingAMR* blocks, const RankTalk& talk)
+{
+  vtkMultiProcessStream mine;
+  talk.Together(
+    [&]
+    {
+      const std::vector<AmrBox> own = BoxesOf(blocks);
+      mine << static_cast<int>(own.size());
+      for (const AmrBox& box : own)
+      {
+        mine << box.Level << box.Lo[0] << box.Lo[1] << box.Lo[2] << box.Hi[0] << box.Hi[1]
+             << box.Hi[2];
+      }
+    });
+  std::vector<AmrBox> all;
+  for (vtkMultiProcessStream& theirs : talk.Exchange(mine))
+  {
+    int count = 0;
+    theirs >> count;
+    for (int i = 0; i < count; ++i)
+    {
+      AmrBox box;
+      theirs >> box.Level >> box.Lo[0] >> box.Lo[1] >> box.Lo[2] >> box.Hi[0] >> box.Hi[1] >>
+        box.Hi[2];
+      all.push_back(box);
+    }
+  }
+  vtkSmartPointer<vtkUnstructuredGrid> grid;
+  talk.Together([&] { grid = GridOfAmr(blocks, all); });
+  return grid;
 }
 
 } // namespace banyan

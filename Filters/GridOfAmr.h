@@ -40,6 +40,12 @@ BANYANFILTERS_EXPORT std::vector<AmrBox> BoxesOf(vtkOverlappingAMR* blocks);
 BANYANFILTERS_EXPORT vtkSmartPointer<vtkUnstructuredGrid> GridOfAmr(
   vtkOverlappingAMR* blocks, const std::vector<AmrBox>& all, const std::string& array = {});
 
+class RankTalk;
+
+/// Collective: GridOfAmr with the blocks of all ranks. Throws Error, the same on all ranks.
+vtkSmartPointer<vtkUnstructuredGrid> GridOfAmrOnRanks(
+  vtkOverlappingAMR* blocks, const RankTalk& talk);
+
 } // namespace banyan
 
 #endif

@@ -1,6 +1,9 @@
 #include "vtkBanyanHexOctree.h"
 
+#include "GridOfAmr.h"
+#include "GridOfHyperTrees.h"
 #include "HexMeshOfGrid.h"
+#include "RankTalk.h"
 
 #include "Base/ThreadPool.h"
 #include "HexOctree/ElementOctree.h"
@@ -10,10 +13,13 @@
 #include "vtkDoubleArray.h"
 #include "vtkErrorCode.h"
 #include "vtkFieldData.h"
+#include "vtkHyperTreeGrid.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkOverlappingAMR.h"
 #include "vtkPointData.h"
 #include "vtkSignedCharArray.h"
 #include "vtkUnsignedCharArray.h"
@@ -89,17 +95,42 @@ void AddFacts(const banyan::ElementOctree& tree, vtkUnstructuredGrid* grid)
   grid->GetFieldData()->AddArray(array);
 }
 
+/// Collective for AMR.
+vtkSmartPointer<vtkUnstructuredGrid> GridOf(vtkDataObject* data)
+{
+  if (vtkHyperTreeGrid* const trees = vtkHyperTreeGrid::SafeDownCast(data))
+  {
+    return banyan::GridOfHyperTrees(trees);
+  }
+  if (vtkOverlappingAMR* const blocks = vtkOverlappingAMR::SafeDownCast(data))
+  {
+    const banyan::RankTalk talk(vtkMultiProcessController::GetGlobalController());
+    return banyan::GridOfAmrOnRanks(blocks, talk);
+  }
+  return vtkUnstructuredGrid::SafeDownCast(data);
+}
+
 } // namespace
+
+int vtkBanyanHexOctree::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
+  for (const char* type : { "vtkUnstructuredGrid", "vtkHyperTreeGrid", "vtkOverlappingAMR" })
+  {
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), type);
+  }
+  return 1;
+}
 
 int vtkBanyanHexOctree::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->SetErrorCode(vtkErrorCode::NoError);
-  vtkUnstructuredGrid* input = vtkUnstructuredGrid::GetData(inputs[0]);
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputs);
-  output->ShallowCopy(input);
   try
   {
+    const vtkSmartPointer<vtkUnstructuredGrid> input = GridOf(vtkDataObject::GetData(inputs[0]));
+    output->ShallowCopy(input);
     const banyan::HexMesh mesh = banyan::HexMeshOf(input);
     if (mesh.CellCount == 0)
     {

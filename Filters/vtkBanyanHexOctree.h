@@ -1,9 +1,12 @@
 /**
  * @class   vtkBanyanHexOctree
- * @brief   finds the octree that the cells of an unstructured grid are the leaves of
+ * @brief   finds the octree that the cells of an unstructured grid are the leaves of, or those of
+ * hyper trees or AMR
  *
  * Use it to see whether a mesh of axis-aligned hexahedra or voxels is an octree, as "Banyan Volume"
- * needs it, and how it is made. The grid passes unchanged (by reference), with
+ * needs it, and how it is made. Hyper tree grids and
+ * overlapping AMR become grids of their visible leaves. The grid passes unchanged (by reference),
+ * with
  * - the cell array `octree_level`: 0 for the smallest cells, one more for each doubling,
  * - the point array `hanging`: 1 for points that lie inside a face or an edge of a larger cell,
  * - the field array `octree` with a number in each component: origin and finest edge of the lattice
@@ -14,7 +17,8 @@
  * why.
  *
  * @par Source: section 4 of "Visualizing Very Large-Scale Earthquake Simulations".
- * @par Limits: each piece is looked at by itself; of ghost cells the level is -1.
+ * @par Limits: each piece is looked at by itself, but blocks of AMR hide cells of other ranks: with
+ * AMR it is collective over the global controller; of ghost cells the level is -1.
  */
 #ifndef vtkBanyanHexOctree_h
 #define vtkBanyanHexOctree_h
@@ -40,6 +44,7 @@ protected:
   vtkBanyanHexOctree() = default;
   ~vtkBanyanHexOctree() override = default;
 
+  int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 

@@ -1,4 +1,4 @@
-"""Real meshes of hexahedra are drawn by "Banyan Volume", or refused with a sentence that says why.
+"""Real meshes of hexahedra, hyper trees and AMR are drawn by "Banyan Volume", or refused with a sentence.
 
     test_meshes.py --plugin Banyan.so --out FOLDER [--reference FOLDER]
 
@@ -15,9 +15,14 @@ from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 import pictures
 import session
 
+HTG = "htg_derived_hydrogen/hydrogen.htg"
+AMR = "amr_hierarchicalbox/HierarchicalBoxDataset.v1.1.vthb"
 DRAWN = {
-    "hexa": ("hexa/hexa.vtu", "scalars"),
-    "ok_hex": ("malformed_basic/u00_ok_hex.vtu", "s"),
+    "hexa": ("hexa/hexa.vtu", ("POINTS", "scalars")),
+    "ok_hex": ("malformed_basic/u00_ok_hex.vtu", ("POINTS", "s")),
+    "trees": (HTG, ("CELLS", "density")),
+    "amr": (AMR, ("CELLS", "TestX")),
+    "amr_vector": (AMR, ("CELLS", "VectorXYZ")),
 }
 REFUSED = {
     "can/can.vtu": ("Cell 0 is not an axis-aligned box", "DISPL"),
@@ -32,12 +37,45 @@ REFUSED = {
 NOTHING = ("malformed_basic/u06_nocells.vtu", "malformed_basic/u07_empty.vtu")
 STEPS = (0, 5, 13, 26)
 
+INFORMATION = """
+self.GetExecutive().GetOutputInformation(0).Set(self.CAN_HANDLE_PIECE_REQUEST(), 1)
+"""
+# Cells of two sizes; each rank has ghosts of those of the next one.
+CELLS = """
+executive = self.GetExecutive()
+info = executive.GetOutputInformation(0)
+piece = info.Get(executive.UPDATE_PIECE_NUMBER())
+pieces = info.Get(executive.UPDATE_NUMBER_OF_PIECES()) or 1
+import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkPoints
+grid = self.GetUnstructuredGridOutput()
+points, values, ghosts = vtkPoints(), [], []
+grid.Allocate(1000)
+cubes = [(x, y, z, 2) for x in (0, 2) for y in (0, 2) for z in (0, 2)]
+cubes += [(x, y, z, 1) for x in range(4, 8) for y in range(4) for z in range(4)]
+for number, (x, y, z, edge) in enumerate(cubes):
+    if pieces > 1 and number % pieces not in (piece, (piece + 1) % pieces):
+        continue
+    ids = [points.InsertNextPoint(x + edge * (i & 1), y + edge * (i >> 1 & 1), z + edge * (i >> 2))
+           for i in range(8)]
+    grid.InsertNextCell(11, 8, ids)
+    own = number % pieces == piece
+    values.append(number * 37 % 53 if own else 52)
+    ghosts.append(0 if own else 1)
+grid.SetPoints(points)
+for name, array in (("value", numpy.array(values, float)), ("vtkGhostType", numpy.array(ghosts, numpy.uint8))):
+    array = numpy_to_vtk(array, 1)
+    array.SetName(name)
+    grid.GetCellData().AddArray(array)
+"""
+
 
 def show(source, array):
-    """A view of a source as "Banyan Volume", coloured by a point array."""
+    """A view of a source as "Banyan Volume", coloured by an array: of points unless it says more."""
     view = session.new_view((200, 200))
     display = simple.Show(source, view)
-    simple.ColorBy(display, ("POINTS", array))
+    simple.ColorBy(display, array if isinstance(array, tuple) else ("POINTS", array))
     display.SetRepresentationType(session.REPRESENTATION)
     view.ResetCamera()
     return view, display
@@ -60,9 +98,22 @@ def draw_all(data, out):
     drawn = []
     for name, (file, array) in DRAWN.items():
         source = simple.OpenDataFile(os.path.join(data, file))
+        if file == AMR:
+            source.DefaultNumberOfLevels = 10
         drawn.append(os.path.join(out, name + ".png"))
         draw(drawn[-1], source, array)
         session.clear()
+    # Each rank has some of the trees, and of cells that have no points in common.
+    trees = simple.HyperTreeGridRandom(Dimensions=[4, 3, 3], MaxDepth=3, SplitFraction=0.6, Seed=3,
+                                       OutputBounds=[0, 3, 0, 2, 0, 2])
+    cells = simple.ProgrammableSource(Script=CELLS, ScriptRequestInformation=INFORMATION,
+                                      OutputDataSetType="vtkUnstructuredGrid")
+    for name, source, array in (("pieces", trees, "Depth"), ("cells", cells, "value")):
+        drawn.append(os.path.join(out, name + ".png"))
+        view, display = show(source, ("CELLS", array))
+        display.ScalarOpacityUnitDistance = 0.5  # ParaView's own depends on how many ghosts there are
+        draw(drawn[-1], source, None, view)
+    session.clear()
     steps = sorted(glob.glob(data + "/mastodon_seismic_z/*.vtu"))
     session.require(len(steps) == 27, "the seismic column has 27 steps")
     source = simple.OpenDataFile(steps)
@@ -122,7 +173,7 @@ def refuse_all(data, out):
         session.clear()
 
 
-def check_filter(data):
+def check_filter(data, alone):
     source = simple.OpenDataFile(os.path.join(data, DRAWN["hexa"][0]))
     octree = simple.BanyanHexOctree(Input=source)
     octree.UpdatePipeline()
@@ -131,6 +182,19 @@ def check_filter(data):
     session.require(octree.GetPointDataInformation().GetArray("hanging").GetRange() == (0.0, 0.0),
                     "nothing hangs")
     session.clear()
+    for file, cells, levels in ((HTG, 32544, (0, 4)), (AMR, 2241, (0, 2))):
+        source = simple.OpenDataFile(os.path.join(data, file))
+        if file == AMR:
+            source.DefaultNumberOfLevels = 10
+        octree = simple.BanyanHexOctree(Input=source)
+        octree.UpdatePipeline()
+        count = octree.GetDataInformation().GetNumberOfCells()
+        session.require(count == cells, f"{file}: {count} cells")
+        found = octree.GetCellDataInformation().GetArray("octree_level").GetRange()
+        print(f"{file}: {count} cells, levels {found}", flush=True)
+        # Pieces count from their own smallest cells.
+        session.require(found == levels or not alone, f"{file}: levels {found}")
+        session.clear()
 
 
 def main():
@@ -152,7 +216,7 @@ def main():
                 pictures.load(os.path.join(arguments.reference, name)), pictures.load(path))
             print(f"{name}: {int(error.max())}", flush=True)
             session.require(error.max() <= 1, f"{name} differs by {int(error.max())}")
-    check_filter(data)
+    check_filter(data, not arguments.reference)
     if not arguments.reference:
         refuse_all(data, arguments.out)
 
