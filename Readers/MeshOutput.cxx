@@ -42,7 +42,15 @@ void MeshOutput::Open(std::shared_ptr<const SeriesFile> series)
   this->Series = std::move(series);
   this->Mesh.reset();
   this->Grid = nullptr;
+  this->Trees.Forget();
   this->Made[0] = -1;
+}
+
+void MeshOutput::FillTrees(int level, int piece, int pieces, vtkHyperTreeGrid* output)
+{
+  this->Load();
+  level = std::min(level, this->Mesh->Atlas->CoarsestLevel());
+  this->Trees.FillTrees(this->Mesh, level, piece, pieces, output);
 }
 
 void MeshOutput::Load()

@@ -1,6 +1,7 @@
 #ifndef banyan_Readers_MeshOutput_h
 #define banyan_Readers_MeshOutput_h
 
+#include "TreeOutput.h"
 #include "vtkBanyanDeferred.h"
 
 #include "vtkSmartPointer.h"
@@ -8,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+class vtkHyperTreeGrid;
 class vtkUnstructuredGrid;
 class vtkDataArray;
 
@@ -36,6 +38,13 @@ public:
   /// @param handle of the whole image
   vtkSmartPointer<vtkDataArray> Values(const vtkBanyanDeferred::Handle& handle) const;
 
+  /// The mesh as trees in place of a grid, and values in their cells: see TreeOutput. Throws Error.
+  void FillTrees(int level, int piece, int pieces, vtkHyperTreeGrid* output);
+  vtkSmartPointer<vtkDataArray> CellValues(const vtkBanyanDeferred::Handle& handle) const
+  {
+    return this->Trees.Values(handle);
+  }
+
 private:
   void Load();
   void MakeGrid(int level, int piece, int pieces);
@@ -43,6 +52,7 @@ private:
   std::shared_ptr<const SeriesFile> Series;
   std::shared_ptr<const StoredMesh> Mesh;
   vtkSmartPointer<vtkUnstructuredGrid> Grid;
+  TreeOutput Trees;
   int Made[3] = { -1, 0, 0 };         ///< level, piece and pieces of Grid
   std::vector<std::uint32_t> Samples; ///< of its points
 };

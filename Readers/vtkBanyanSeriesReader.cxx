@@ -46,6 +46,7 @@ void vtkBanyanSeriesReader::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n"
      << indent << "Level: " << this->Level << "\n"
+     << indent << "MeshAsHyperTreeGrid: " << this->MeshAsHyperTreeGrid << "\n"
      << indent << "DeferDecoding: " << this->DeferDecoding << "\n"
      << indent << "CacheBudget: " << this->CacheBudget << "\n"
      << indent << "Steps: " << (this->Self->Series ? this->Self->Series->Index().Steps() : 0)

@@ -9,7 +9,7 @@
  *
  * A series of a mesh gives back the vtkUnstructuredGrid that was encoded: its points and cells in
  * their order, with plain arrays. Level L merges cells into cubes of 2^L finest ones. A piece is a run
- * of cells with the points that they use. All values of a step are decoded on each rank.
+ * of cells with the points that they use. MeshAsHyperTreeGrid gives a vtkHyperTreeGrid instead. All values of a step are decoded on each rank.
  *
  * A time between two steps gives the earlier one, a time before the first step gives the first.
  *
@@ -69,6 +69,17 @@ public:
    * Number of levels of the series, at least 1; 0 before the file is open.
    */
   int GetNumberOfLevels();
+
+  ///@{
+  /**
+   * Whether series of meshes come as vtkHyperTreeGrid in place of vtkUnstructuredGrid: with cell data,
+   * the values of the elements at their centres (see banyan::TreeOutput). Off by default. Without
+   * effect on series of image data.
+   */
+  vtkSetMacro(MeshAsHyperTreeGrid, bool);
+  vtkGetMacro(MeshAsHyperTreeGrid, bool);
+  vtkBooleanMacro(MeshAsHyperTreeGrid, bool);
+  ///@}
 
   ///@{
   /**
@@ -160,6 +171,7 @@ private:
   char* FileName = nullptr;
   int Level = 0;
   bool DeferDecoding = true;
+  bool MeshAsHyperTreeGrid = false;
   int CacheBudget = -1;
 
   struct Internals;

@@ -3,10 +3,11 @@
 #include "SeriesReaderInternals.h"
 
 #include "vtkDataArray.h"
-#include "vtkImageData.h"
+#include "vtkDataObjectTypes.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkHyperTreeGrid.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnstructuredGrid.h"
 
@@ -21,7 +22,7 @@ bool vtkBanyanSeriesReader::IsMesh() const
 
 int vtkBanyanSeriesReader::FillOutputPortInformation(int, vtkInformation* info)
 {
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataSet");
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject");
   return 1;
 }
 
@@ -46,13 +47,14 @@ int vtkBanyanSeriesReader::MakeOutput(vtkInformationVector* outputs)
     open = this->OpenOnAllRanks();
   }
   vtkInformation* const info = outputs->GetInformationObject(0);
-  const int type = this->IsMesh() ? VTK_UNSTRUCTURED_GRID : VTK_IMAGE_DATA;
+  const int type = !this->IsMesh()             ? VTK_IMAGE_DATA
+                   : this->MeshAsHyperTreeGrid ? VTK_HYPER_TREE_GRID
+                                               : VTK_UNSTRUCTURED_GRID;
   vtkDataObject* const now = info->Get(vtkDataObject::DATA_OBJECT());
   if (!now || now->GetDataObjectType() != type)
   {
     vtkSmartPointer<vtkDataObject> output;
-    output.TakeReference(this->IsMesh() ? static_cast<vtkDataObject*>(vtkUnstructuredGrid::New())
-                                        : vtkImageData::New());
+    output.TakeReference(vtkDataObjectTypes::NewDataObject(type));
     info->Set(vtkDataObject::DATA_OBJECT(), output);
   }
   return open ? 1 : 0;
@@ -61,10 +63,22 @@ int vtkBanyanSeriesReader::MakeOutput(vtkInformationVector* outputs)
 void vtkBanyanSeriesReader::FillMesh(vtkInformation* outInfo)
 {
   const banyan::SeriesIndex& index = this->Self->Series->Index();
-  vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outInfo);
+  vtkDataObject* const output = outInfo->Get(vtkDataObject::DATA_OBJECT());
+  vtkHyperTreeGrid* const trees = vtkHyperTreeGrid::SafeDownCast(output);
+  banyan::MeshOutput& mesh = this->Self->Mesh;
   const bool told = outInfo->Has(Pipeline::UPDATE_NUMBER_OF_PIECES());
-  this->Self->Mesh.FillGrid(this->Level, told ? outInfo->Get(Pipeline::UPDATE_PIECE_NUMBER()) : 0,
-    told ? std::max(outInfo->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()), 1) : 1, output);
+  const int piece = told ? outInfo->Get(Pipeline::UPDATE_PIECE_NUMBER()) : 0;
+  const int pieces = told ? std::max(outInfo->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()), 1) : 1;
+  if (trees)
+  {
+    mesh.FillTrees(this->Level, piece, pieces, trees);
+  }
+  else
+  {
+    mesh.FillGrid(this->Level, piece, pieces, vtkUnstructuredGrid::SafeDownCast(output));
+  }
+  vtkDataSetAttributes* const values =
+    output->GetAttributes(trees ? vtkDataObject::CELL : vtkDataObject::POINT);
   vtkBanyanDeferred::Handle handle;
   handle.Series = this->Self->Series;
   handle.Step = banyan::StepAt(index, *outInfo);
@@ -76,12 +90,12 @@ void vtkBanyanSeriesReader::FillMesh(vtkInformation* outInfo)
     this->UpdateProgress(static_cast<double>(handle.Array) / arrays);
     if (this->Self->Selection->ArrayIsEnabled(index.Arrays[handle.Array].Name.c_str()))
     {
-      output->GetPointData()->AddArray(this->Self->Mesh.Values(handle));
+      values->AddArray(trees ? mesh.CellValues(handle) : mesh.Values(handle));
     }
   }
-  if (output->GetPointData()->HasArray(index.ActiveScalars.c_str()))
+  if (values->HasArray(index.ActiveScalars.c_str()))
   {
-    output->GetPointData()->SetActiveScalars(index.ActiveScalars.c_str());
+    values->SetActiveScalars(index.ActiveScalars.c_str());
   }
   this->UpdateProgress(1.0);
 }
