@@ -8,6 +8,7 @@
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkIdList.h"
+#include "vtkIdTypeArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -52,8 +53,9 @@ struct Source
 class PieceMerger
 {
 public:
-  explicit PieceMerger(const std::vector<vtkUnstructuredGrid*>& pieces)
+  PieceMerger(const std::vector<vtkUnstructuredGrid*>& pieces, const WantedArrays& wanted)
     : Pieces(pieces)
+    , Wanted(wanted)
   {
   }
 
@@ -68,6 +70,10 @@ public:
     this->MakePoints(grid);
     this->MakeCells(grid);
     this->MakeArrays(grid);
+    this->KeepGlobalIds(
+      this->Points, [](vtkUnstructuredGrid* piece) { return piece->GetPointData(); }, grid);
+    this->KeepGlobalIds(
+      this->Cells, [](vtkUnstructuredGrid* piece) { return piece->GetCellData(); }, grid);
     return grid;
   }
 
@@ -220,34 +226,70 @@ private:
     }
   }
 
+  /// So that what is merged of blocks can be merged with that of other ranks.
+  template <class Attributes>
+  void KeepGlobalIds(
+    const std::vector<Source>& items, Attributes attributes, vtkUnstructuredGrid* grid) const
+  {
+    vtkNew<vtkIdTypeArray> kept;
+    for (const Source& item : items)
+    {
+      vtkDataArray* const global = GlobalIds(attributes(this->Pieces[item.Piece]));
+      if (!global)
+      {
+        return;
+      }
+      kept->SetName(global->GetName());
+      kept->InsertNextValue(static_cast<vtkIdType>(global->GetTuple1(item.Id)));
+    }
+    attributes(grid)->SetGlobalIds(kept);
+  }
+
+  /// Whether an array has values that are to be kept.
+  bool Counts(vtkPointData* points, vtkDataArray* array) const
+  {
+    return array && array->GetName() && array != points->GetGlobalIds() &&
+           std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName()) != 0 &&
+           this->Wanted(array->GetName());
+  }
+
   void MakeArrays(vtkUnstructuredGrid* grid) const
   {
-    vtkPointData* const first = this->Pieces[0]->GetPointData();
-    for (int a = 0; a < first->GetNumberOfArrays(); ++a)
+    // An array that the first piece has not is missed there as well.
+    for (vtkUnstructuredGrid* piece : this->Pieces)
     {
-      vtkDataArray* const array = first->GetArray(a);
-      if (!array || !array->GetName() || array == first->GetGlobalIds() ||
-          std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName()) == 0)
+      vtkPointData* const all = piece->GetPointData();
+      for (int a = 0; a < all->GetNumberOfArrays(); ++a)
       {
-        continue;
-      }
-      std::vector<vtkDataArray*> parts;
-      for (vtkUnstructuredGrid* piece : this->Pieces)
-      {
-        parts.push_back(piece->GetPointData()->GetArray(array->GetName()));
-        if (!parts.back() || parts.back()->GetDataType() != array->GetDataType() ||
-            parts.back()->GetNumberOfComponents() != array->GetNumberOfComponents())
+        vtkDataArray* const array = all->GetArray(a);
+        if (this->Counts(all, array) && !grid->GetPointData()->GetArray(array->GetName()))
         {
-          throw Error(std::string("The point array ") + array->GetName() +
-                      " is not the same in all pieces or blocks of the mesh");
+          grid->GetPointData()->AddArray(this->Joined(array, this->PartsOf(array)));
         }
       }
-      grid->GetPointData()->AddArray(this->Joined(array, parts));
     }
+    vtkPointData* const first = this->Pieces[0]->GetPointData();
     if (first->GetScalars() && first->GetScalars()->GetName())
     {
       grid->GetPointData()->SetActiveScalars(first->GetScalars()->GetName());
     }
+  }
+
+  std::vector<vtkDataArray*> PartsOf(vtkDataArray* like) const
+  {
+    std::vector<vtkDataArray*> parts;
+    for (vtkUnstructuredGrid* piece : this->Pieces)
+    {
+      parts.push_back(piece->GetPointData()->GetArray(like->GetName()));
+      if (!parts.back() || parts.back()->GetDataType() != like->GetDataType() ||
+          parts.back()->GetNumberOfComponents() != like->GetNumberOfComponents())
+      {
+        throw Error(std::string("The point array ") + like->GetName() +
+                    " is not the same in all pieces or blocks of the mesh: choose others with "
+                    "'Point Arrays'");
+      }
+    }
+    return parts;
   }
 
   vtkSmartPointer<vtkDataArray> Joined(
@@ -273,14 +315,15 @@ private:
       };
       if (std::memcmp(at(twin.first), at(twin.second), bytes) != 0)
       {
-        throw Error(std::string("Two ranks have different values of the array ") + like->GetName() +
-                    " at the same point of the mesh: which one should be kept?");
+        throw Error(std::string("Two ranks or blocks have different values of the array ") +
+                    like->GetName() + " at the same point of the mesh: which one should be kept?");
       }
     }
     return whole;
   }
 
   const std::vector<vtkUnstructuredGrid*>& Pieces;
+  const WantedArrays& Wanted;
   std::vector<Source> Points;
   std::vector<Source> Cells;
   std::vector<std::pair<Source, Source>> Twins;
@@ -326,28 +369,18 @@ bool CollectGrids(vtkDataObject* data, std::vector<vtkUnstructuredGrid*>& grids)
   return any;
 }
 
-vtkSmartPointer<vtkUnstructuredGrid> OnlyBlock(const std::vector<vtkUnstructuredGrid*>& blocks)
+vtkSmartPointer<vtkUnstructuredGrid> MergePieces(
+  const std::vector<vtkUnstructuredGrid*>& pieces, const WantedArrays& wanted)
 {
-  if (blocks.empty())
+  if (pieces.empty())
   {
     return vtkSmartPointer<vtkUnstructuredGrid>::New();
   }
-  if (blocks.size() == 1)
-  {
-    return blocks[0];
-  }
-  throw Error("The mesh has " + std::to_string(blocks.size()) +
-              " blocks, and a series holds one: apply the filter 'Merge Blocks' first (with its "
-              "option 'Merge Points', so that blocks meet in common points).");
-}
-
-vtkSmartPointer<vtkUnstructuredGrid> MergePieces(const std::vector<vtkUnstructuredGrid*>& pieces)
-{
   if (pieces.size() == 1 && !HasGhosts(pieces[0]))
   {
     return pieces[0];
   }
-  return PieceMerger(pieces).Merge();
+  return PieceMerger(pieces, wanted).Merge();
 }
 
 } // namespace banyan

@@ -3,6 +3,8 @@
 
 #include "vtkSmartPointer.h"
 
+#include <functional>
+#include <string>
 #include <vector>
 
 class vtkDataObject;
@@ -15,18 +17,20 @@ namespace banyan
 /// when they hold anything else.
 bool CollectGrids(vtkDataObject* data, std::vector<vtkUnstructuredGrid*>& grids);
 
-/// The only block that has cells; an empty grid when there is none. Throws Error when there are
-/// several.
-vtkSmartPointer<vtkUnstructuredGrid> OnlyBlock(const std::vector<vtkUnstructuredGrid*>& blocks);
+/// Which point arrays are wanted, by name.
+using WantedArrays = std::function<bool(const std::string&)>;
 
-/// The pieces of ranks as one grid without ghost cells. Points and cells stand in the order of
-/// their global ids where all pieces have them; otherwise in the order of the ranks. Points of
-/// different ranks at the same place are one; of several points at one place the first of one rank
-/// is the first of another, and so on. Points that only ghost cells use are left out.
+/// The pieces of ranks, or the blocks of a data set, as one grid without ghost cells. Points and
+/// cells stand in the order of their global ids where all pieces have them, which the grid then has
+/// as well; otherwise in the order of the pieces. Points of different pieces at the same place are
+/// one; of several points at one place the first of one piece is the first of another, and so on.
+/// Points that only ghost cells use are left out.
 ///
-/// One piece without ghost cells is handed back as it is.
-/// Throws Error when points that are one have different values, or the pieces different arrays.
-vtkSmartPointer<vtkUnstructuredGrid> MergePieces(const std::vector<vtkUnstructuredGrid*>& pieces);
+/// One piece without ghost cells is handed back as it is; none gives an empty grid.
+/// Throws Error when points that are one have different values, or the pieces different arrays, of
+/// those that are wanted.
+vtkSmartPointer<vtkUnstructuredGrid> MergePieces(
+  const std::vector<vtkUnstructuredGrid*>& pieces, const WantedArrays& wanted);
 
 } // namespace banyan
 

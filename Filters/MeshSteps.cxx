@@ -144,17 +144,23 @@ std::string MeshSteps::Take(vtkSmartPointer<vtkDataObject>& data, const std::str
       throw Error(std::string("Other ranks have a mesh of hexahedra, and this one has ") +
                   data->GetClassName() + " with other cells");
     }
-    piece = OnlyBlock(grids);
+    piece = MergePieces(grids, this->Wanted());
   }
   catch (const std::exception& error)
   {
     mistake = error.what();
   }
   vtkSmartPointer<vtkImageData> image = vtkSmartPointer<vtkImageData>::New();
+  mistake = this->FirstMistake(mistake);
+  if (!mistake.empty())
+  {
+    data = image;
+    return mistake;
+  }
   try
   {
     this->Gather(piece, others);
-    if (this->Talk.Rank() == 0 && mistake.empty())
+    if (this->Talk.Rank() == 0)
     {
       this->Remember(piece);
       image = this->ImageOf(piece);
@@ -170,6 +176,34 @@ std::string MeshSteps::Take(vtkSmartPointer<vtkDataObject>& data, const std::str
   }
   data = image;
   return mistake;
+}
+
+/// Collective: what all ranks then give as the reason, so that nobody goes on with a part of the
+/// mesh.
+std::string MeshSteps::FirstMistake(const std::string& mine) const
+{
+  vtkMultiProcessStream stream;
+  stream << mine;
+  for (vtkMultiProcessStream& theirs : this->Talk.Exchange(stream))
+  {
+    std::string mistake;
+    theirs >> mistake;
+    if (!mistake.empty())
+    {
+      return mistake;
+    }
+  }
+  return {};
+}
+
+/// The arrays that are to be written.
+WantedArrays MeshSteps::Wanted() const
+{
+  return [this](const std::string& name)
+  {
+    return this->Selection->GetNumberOfArrays() == 0 ||
+           this->Selection->ArrayIsEnabled(name.c_str()) != 0;
+  };
 }
 
 /// Brings the pieces of all ranks to rank 0, if others have any.
@@ -197,7 +231,7 @@ void MeshSteps::Gather(vtkSmartPointer<vtkUnstructuredGrid>& piece, bool others)
   {
     pieces.push_back(piece);
   }
-  piece = MergePieces(pieces);
+  piece = MergePieces(pieces, this->Wanted());
 }
 
 void MeshSteps::Remember(vtkUnstructuredGrid* grid)

@@ -1,6 +1,7 @@
 #ifndef banyan_Filters_MeshSteps_h
 #define banyan_Filters_MeshSteps_h
 
+#include "MeshPieces.h"
 #include "RankTalk.h"
 
 #include "MeshSeries/StoredMesh.h"
@@ -53,6 +54,8 @@ public:
   std::shared_ptr<const MeshPlan> Write(SegmentFolder* folder) const;
 
 private:
+  WantedArrays Wanted() const;
+  std::string FirstMistake(const std::string& mine) const;
   void Gather(vtkSmartPointer<vtkUnstructuredGrid>& piece, bool others);
   void Remember(vtkUnstructuredGrid* grid);
   vtkSmartPointer<vtkImageData> ImageOf(vtkUnstructuredGrid* grid) const;

@@ -162,6 +162,94 @@ def check_levels(reader):
     session.require(counts[0] > counts[1] > counts[2], f"cells of levels: {counts}")
 
 
+def centres(grid, names):
+    """The mean of the eight points of each cell, by the middle of the cell; and the types of arrays."""
+    place = vtk_to_numpy(grid.GetPoints().GetData()).astype(float)
+    ids = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 8)
+    middle = place[ids].mean(1)
+    arrays = {name: vtk_to_numpy(grid.GetPointData().GetArray(name)) for name in names}
+    return middle, {name: (array[ids].astype(float), array.dtype) for name, array in arrays.items()}
+
+
+def check_trees(path, names, fill):
+    """The series as hyper tree grid has the values at the centres of the cells, at every level."""
+    alone = vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses() == 1
+    grid, trees = simple.OpenDataFile(path), simple.OpenDataFile(path)
+    trees.MeshAsHyperTreeGrid = 1
+    leaves = simple.HyperTreeGridToUnstructuredGrid(Input=trees)
+    for level in (0, 1, 2):
+        grid.Level = trees.Level = level
+        for time in (grid.TimestepValues[0], grid.TimestepValues[-1]):
+            grid.UpdatePipeline(time)
+            leaves.UpdatePipeline(time)
+            session.require(trees.GetDataInformation().GetDataClassName() == "vtkHyperTreeGrid",
+                            f"{path}: {trees.GetDataInformation().GetDataClassName()}")
+            counts = [s.GetDataInformation().GetNumberOfCells() for s in (grid, leaves)]
+            session.require(counts[0] == counts[1], f"{path}, level {level}: {counts} cells")
+            if not alone:
+                continue
+            middle, expected = centres(servermanager.Fetch(grid), names)
+            one = servermanager.Fetch(leaves)
+            found = centres(one, [])[0]
+            scale = numpy.abs(middle).max() * 1e-6
+            order, other = [numpy.lexsort(numpy.round(m / scale).T) for m in (middle, found)]
+            session.require(numpy.allclose(middle[order], found[other], atol=2 * scale),
+                            f"{path}: other cells")
+            for name, (corners, kind) in expected.items():
+                values = vtk_to_numpy(one.GetCellData().GetArray(name))
+                small = kind == numpy.float32 or kind.itemsize <= 2
+                session.require(values.dtype == (numpy.float32 if small else numpy.float64),
+                                f"{path}: {name} is {values.dtype}")
+                means = corners.mean(1)
+                means[(corners == fill).any(1)] = fill
+                close = numpy.isclose(means[order], values[other].astype(float), rtol=1e-6, atol=1e-6,
+                                      equal_nan=True)
+                session.require(close.all(), f"{path}, level {level}: {name}")
+    simple.Delete(leaves)
+    for source in (grid, trees):
+        simple.Delete(source)
+
+
+def check_blocks(folder):
+    """Blocks are written as one mesh, if they have the same arrays."""
+    whole = simple.Wavelet(WholeExtent=[0, 8, 0, 4, 0, 4])
+    halves = [simple.AppendDatasets(Input=simple.ExtractSubset(Input=whole, VOI=[a, a + 4, 0, 4, 0, 4]))
+              for a in (0, 4)]
+    path = os.path.join(folder, "blocks.banyan")
+    simple.SaveData(path, proxy=simple.GroupDatasets(Input=halves), ErrorBoundMode="Absolute",
+                    ErrorBound=BOUND)
+    reader = simple.OpenDataFile(path)
+    reader.UpdatePipeline()
+    information = reader.GetDataInformation()
+    counts = (information.GetNumberOfCells(), information.GetNumberOfPoints())
+    alone = vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses() == 1
+    session.require(counts[0] == 128 and (counts[1] == 225 or not alone), f"{counts} cells and points")
+    if alone:
+        values = {}
+        for source in (whole, reader):
+            data = servermanager.Fetch(source)
+            array = data.GetPointData().GetArray("RTData")
+            for i in range(data.GetNumberOfPoints()):
+                values.setdefault(data.GetPoint(i), []).append(array.GetValue(i))
+        pairs = numpy.array(list(values.values()))
+        session.require(pairs.shape == (225, 2) and numpy.ptp(pairs, axis=1).max() <= BOUND,
+                        "other values of blocks")
+    simple.Delete(reader)
+    more = simple.Calculator(Input=halves[1], ResultArrayName="extra", Function="2*RTData")
+    uneven = simple.GroupDatasets(Input=[halves[0], more])
+    try:
+        simple.SaveData(path, proxy=uneven)
+    except RuntimeError as error:
+        session.require("The point array extra is not the same in all pieces or blocks" in str(error),
+                        str(error))
+    else:
+        raise AssertionError("blocks with different arrays were written")
+    simple.SaveData(path, proxy=uneven, PointArrays=["RTData"])
+    if vtkMultiProcessController.GetGlobalController().GetLocalProcessId() == 0:
+        os.remove(path)
+        shutil.rmtree(path + ".d")
+
+
 def check_pictures(source, reader, array, out):
     """The picture of the series is that of the mesh."""
     drawn = []
@@ -260,6 +348,9 @@ def main():
         source = shuffled(shared, numbered)
         path = write(source, options.out, name, names, FillValues=[-9999.0])
         compare(source, path, names, [0.0, 1.0, 2.5], SHUFFLED_CELLS)
+    check_trees(os.path.join(options.out, "earthquake.banyan"), arrays, numpy.inf)
+    check_trees(path, names, -9999.0)
+    check_blocks(options.out)
     check_refusals(options.out, quake)
     check_damage(path, options.out)
 
