@@ -7,7 +7,6 @@
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkIdList.h"
-#include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"
@@ -22,26 +21,26 @@ namespace
 
 constexpr int GhostBits = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
 
-void CheckTypes(vtkUnstructuredGrid* grid)
+bool IsHexahedron(int type)
 {
+  return type == VTK_HEXAHEDRON || type == VTK_VOXEL;
+}
+
+OtherCells FindOthers(vtkUnstructuredGrid* grid)
+{
+  OtherCells others;
   const vtkIdType cells = grid->GetNumberOfCells();
   for (vtkIdType cell = 0; cell < cells; ++cell)
   {
     const int type = grid->GetCellType(cell);
-    if (type != VTK_HEXAHEDRON && type != VTK_VOXEL)
+    if (!IsHexahedron(type) && others.Count++ == 0)
     {
       const char* name = vtkCellTypes::GetClassNameFromTypeId(type);
-      throw Error("Cell " + std::to_string(cell) + " is of the type " +
-                  (name ? name : std::to_string(type)) +
-                  ": an octree has hexahedra and voxels only. Extract these with 'Extract Cells By "
-                  "Type', or use 'Resample To Image'.");
+      others.First = cell;
+      others.Type = name ? name : std::to_string(type);
     }
   }
-  // Whatever the types say: it is the points that are read.
-  if (grid->GetCells()->IsHomogeneous() != 8)
-  {
-    throw Error("A hexahedron or voxel of the grid has not 8 points.");
-  }
+  return others;
 }
 
 bool HasGhosts(vtkUnsignedCharArray* ghosts)
@@ -56,19 +55,57 @@ bool HasGhosts(vtkUnsignedCharArray* ghosts)
   return false;
 }
 
-template <class Id>
-std::shared_ptr<std::vector<Id>> WithoutGhosts(
-  const Id* ids, vtkIdType cells, vtkUnsignedCharArray* ghosts)
+/// The cells that count; null when all do.
+vtkSmartPointer<vtkIdList> KeptCells(vtkUnstructuredGrid* grid, const OtherCells& others)
 {
-  auto kept = std::make_shared<std::vector<Id>>();
-  for (vtkIdType cell = 0; cell < cells; ++cell)
+  vtkUnsignedCharArray* const ghosts = grid->GetCellGhostArray();
+  if (others.Count == 0 && !HasGhosts(ghosts))
   {
-    if ((ghosts->GetValue(cell) & GhostBits) == 0)
+    return nullptr;
+  }
+  const auto kept = vtkSmartPointer<vtkIdList>::New();
+  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+  {
+    if ((!ghosts || (ghosts->GetValue(cell) & GhostBits) == 0) &&
+        IsHexahedron(grid->GetCellType(cell)))
     {
-      kept->insert(kept->end(), ids + 8 * cell, ids + 8 * cell + 8);
+      kept->InsertNextId(cell);
     }
   }
   return kept;
+}
+
+/// Throws Error when a cell has not eight points, whatever its type says: it is those that are
+/// read.
+void CheckPoints(vtkUnstructuredGrid* grid, vtkIdList* kept)
+{
+  vtkCellArray* const cells = grid->GetCells();
+  bool eight = cells->IsHomogeneous() == 8;
+  if (!eight && kept)
+  {
+    eight = true;
+    for (vtkIdType i = 0; i < kept->GetNumberOfIds() && eight; ++i)
+    {
+      eight = cells->GetCellSize(kept->GetId(i)) == 8;
+    }
+  }
+  if (!eight)
+  {
+    throw Error("A hexahedron or voxel of the grid has not 8 points.");
+  }
+}
+
+template <class Id>
+std::shared_ptr<std::vector<Id>> IdsOf(vtkUnstructuredGrid* grid, const Id* ids, vtkIdList* kept)
+{
+  auto chosen = std::make_shared<std::vector<Id>>();
+  vtkDataArray* const offsets = grid->GetCells()->GetOffsetsArray();
+  for (vtkIdType i = 0; i < kept->GetNumberOfIds(); ++i)
+  {
+    const auto begin = static_cast<vtkIdType>(offsets->GetTuple1(kept->GetId(i)));
+    chosen->insert(chosen->end(), ids + begin, ids + begin + 8);
+  }
+  return chosen;
 }
 
 /// What keeps a mesh's arrays alive.
@@ -80,31 +117,50 @@ struct Owners
 };
 
 template <class Id>
-void TakeIds(vtkUnstructuredGrid* grid, const Id* ids, HexMesh& mesh, Owners& owners)
+void TakeIds(
+  vtkUnstructuredGrid* grid, const Id* ids, vtkIdList* kept, HexMesh& mesh, Owners& owners)
 {
   mesh.IdType = ScalarTypeOf<Id>();
   mesh.Connectivity = ids;
   mesh.CellCount = grid->GetNumberOfCells();
-  vtkUnsignedCharArray* const ghosts = grid->GetCellGhostArray();
-  if (HasGhosts(ghosts))
+  if (kept)
   {
-    const std::shared_ptr<std::vector<Id>> kept = WithoutGhosts(ids, mesh.CellCount, ghosts);
-    mesh.Connectivity = kept->data();
-    mesh.CellCount = static_cast<std::int64_t>(kept->size() / 8);
-    owners.Ids = kept;
+    const std::shared_ptr<std::vector<Id>> chosen = IdsOf(grid, ids, kept);
+    mesh.Connectivity = chosen->data();
+    mesh.CellCount = static_cast<std::int64_t>(chosen->size() / 8);
+    owners.Ids = chosen;
   }
 }
 
 } // namespace
 
-HexMesh HexMeshOf(vtkUnstructuredGrid* grid)
+std::string OtherCells::Text() const
+{
+  return std::to_string(this->Count) + (this->Count == 1 ? " cell, cell " : " cells, cell ") +
+         std::to_string(this->First) + " of the type " + this->Type +
+         (this->Count == 1 ? "" : " the first of them");
+}
+
+HexMesh HexMeshOf(vtkUnstructuredGrid* grid, OtherCells* others)
 {
   HexMesh mesh;
   if (!grid || grid->GetNumberOfCells() == 0 || grid->GetNumberOfPoints() == 0)
   {
     return mesh;
   }
-  CheckTypes(grid);
+  const OtherCells left = FindOthers(grid);
+  if (left.Count > 0 && !others)
+  {
+    throw Error("Cell " + std::to_string(left.First) + " is of the type " + left.Type +
+                ": an octree has hexahedra and voxels only. Extract these with 'Extract Cells By "
+                "Type', or use 'Resample To Image'.");
+  }
+  if (others)
+  {
+    *others = left;
+  }
+  const vtkSmartPointer<vtkIdList> kept = KeptCells(grid, left);
+  CheckPoints(grid, kept);
   const auto owners = std::make_shared<Owners>();
   owners->Grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   // The arrays of now: the grid itself may get others.
@@ -121,11 +177,11 @@ HexMesh HexMeshOf(vtkUnstructuredGrid* grid)
   vtkCellArray* const cells = grid->GetCells();
   if (cells->IsStorage64Bit())
   {
-    TakeIds(grid, cells->GetConnectivityArray64()->GetPointer(0), mesh, *owners);
+    TakeIds(grid, cells->GetConnectivityArray64()->GetPointer(0), kept, mesh, *owners);
   }
   else
   {
-    TakeIds(grid, cells->GetConnectivityArray32()->GetPointer(0), mesh, *owners);
+    TakeIds(grid, cells->GetConnectivityArray32()->GetPointer(0), kept, mesh, *owners);
   }
   mesh.Owner = owners;
   return mesh;
@@ -133,18 +189,14 @@ HexMesh HexMeshOf(vtkUnstructuredGrid* grid)
 
 vtkSmartPointer<vtkDataArray> ValuesOfCells(vtkUnstructuredGrid* grid, vtkDataArray* values)
 {
-  vtkUnsignedCharArray* const ghosts = grid ? grid->GetCellGhostArray() : nullptr;
-  if (!values || !HasGhosts(ghosts))
+  if (!grid || !values)
   {
     return values;
   }
-  vtkNew<vtkIdList> kept;
-  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+  const vtkSmartPointer<vtkIdList> kept = KeptCells(grid, FindOthers(grid));
+  if (!kept)
   {
-    if ((ghosts->GetValue(cell) & GhostBits) == 0)
-    {
-      kept->InsertNextId(cell);
-    }
+    return values;
   }
   return Chosen(values, kept);
 }

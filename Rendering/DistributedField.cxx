@@ -103,11 +103,11 @@ bool DistributedField::ChangedHere(const FieldPiece& piece)
     reinterpret_cast<std::uintptr_t>(piece.Leaves), piece.Leaves ? piece.Leaves->GetMTime() : 0,
     static_cast<std::uint64_t>(piece.Where) } };
   const bool changed = this->Fresh || stamp != this->Stamp ||
-                       piece.MeshTolerance != this->StampedTolerance ||
+                       !(piece.Mesh == this->StampedOptions) ||
                        piece.Enhancement.Strength != this->Enhancement.Strength ||
                        piece.Enhancement.Scale != this->Enhancement.Scale ||
                        piece.Problem != this->PieceProblem;
-  this->StampedTolerance = piece.MeshTolerance;
+  this->StampedOptions = piece.Mesh;
   this->Enhancement = piece.Enhancement;
   this->Stamp = stamp;
   this->PieceProblem = piece.Problem;

@@ -83,6 +83,11 @@ public:
   /// Whether bricks come from an encoded series.
   bool Encoded() const { return this->Series != nullptr; }
 
+  /// What a user should know of a mesh; empty if nothing. The same on all ranks.
+  std::string MeshNote() const;
+  /// How far the drawn field may be from that of a mesh: see CubeDeviation. 0 where it is exact.
+  double MeshDeviation() const;
+
   /// Whether there are coarser levels of it, wherever one process has all of it.
   bool HasLevels() const { return this->Mesh == nullptr; }
 
@@ -125,7 +130,7 @@ private:
   std::unique_ptr<BrickSource> Bricks;
   std::shared_ptr<const SeriesFile> Series;
   std::array<std::uint64_t, 10> Stamp{ {} };
-  double StampedTolerance = 0.0;
+  MeshOptions StampedOptions;
   TemporalEnhancement Enhancement{ 0.0, 1.0, 0.0 };
   bool Fresh = true;
   std::uint64_t Updates = 0;

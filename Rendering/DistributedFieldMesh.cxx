@@ -52,8 +52,8 @@ bool DistributedField::TakeMesh(Communicator& communicator, FieldPiece piece)
     {
       TakeLeaves(communicator, piece, leaves);
     }
-    this->Mesh->Update(communicator, piece.Grid, piece.Array, piece.Where, piece.Component,
-      piece.MeshTolerance);
+    this->Mesh->Update(
+      communicator, piece.Grid, piece.Array, piece.Where, piece.Component, piece.Mesh);
     this->Bricks = this->Mesh->TakeSource();
     this->SetMesh();
     this->ZoneCells = this->Mesh->Zones(communicator.Size());
@@ -65,6 +65,16 @@ bool DistributedField::TakeMesh(Communicator& communicator, FieldPiece piece)
     this->ProblemText = error.what();
   }
   return true;
+}
+
+std::string DistributedField::MeshNote() const
+{
+  return this->Mesh ? this->Mesh->Note() : std::string();
+}
+
+double DistributedField::MeshDeviation() const
+{
+  return this->Mesh ? this->Mesh->Deviation() : 0.0;
 }
 
 void DistributedField::SetMesh()

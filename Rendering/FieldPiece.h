@@ -1,6 +1,8 @@
 #ifndef banyan_Rendering_FieldPiece_h
 #define banyan_Rendering_FieldPiece_h
 
+#include "MeshOptions.h"
+
 #include "HexOctree/CellNodes.h"
 #include "Render/TemporalEnhancement.h"
 
@@ -24,7 +26,7 @@ struct FieldPiece
   std::string ArrayName;               ///< of Leaves
   ValuesOn Where = ValuesOn::Points;   ///< points of Image; points or cells of Grid or Leaves
   int Component = 0;                   ///< -1: Euclidean norm of all components
-  double MeshTolerance = 0.0;          ///< of Grid: see ElementOctree::Find; the same on all ranks
+  MeshOptions Mesh;                    ///< of Grid and Leaves; the same on all ranks
   /// Of pieces of an encoded series, as they are drawn; plain ones have it already. The same on all
   /// ranks. Off where Strength is 0.
   TemporalEnhancement Enhancement{ 0.0, 1.0, 0.0 };

@@ -1,8 +1,7 @@
 #include "MeshField.h"
 
-#include "HexMeshOfGrid.h"
-
 #include "Base/ThreadPool.h"
+#include "HexSampling/CellMeans.h"
 #include "Parallel/MeshGathering.h"
 #include "Parallel/Zones.h"
 
@@ -74,15 +73,16 @@ ValuesOn Agreed(Communicator& communicator, ValuesOn where, bool cells)
 } // namespace
 
 void MeshField::Update(Communicator& communicator, vtkUnstructuredGrid* grid, vtkDataArray* values,
-  ValuesOn where, int component, double tolerance)
+  ValuesOn where, int component, const MeshOptions& options)
 {
   HexMesh piece;
   NodeArray nodes;
+  OtherCells others;
   vtkSmartPointer<vtkDataArray> kept;
   std::string failure;
   try
   {
-    piece = HexMeshOf(grid);
+    piece = HexMeshOf(grid, &others);
     if (piece.CellCount > 0)
     {
       kept = where == ValuesOn::Cells ? ValuesOfCells(grid, values).GetPointer() : values;
@@ -94,38 +94,110 @@ void MeshField::Update(Communicator& communicator, vtkUnstructuredGrid* grid, vt
     failure = error.what();
   }
   StopTogether(communicator, failure);
+  if (AllMax(communicator, static_cast<double>(piece.CellCount)) == 0.0)
+  {
+    StopTogether(communicator,
+      others.Count == 0 ? failure
+                        : "The mesh has no hexahedra or voxels, but " + others.Text() + ".");
+  }
   if (piece.CellCount == 0)
   {
     piece.PointCount = 0;
   }
   where = Agreed(communicator, where, piece.CellCount > 0);
-  ThreadPool& pool = ThreadPool::Process();
   const bool sameMesh = this->SameMesh(communicator, piece);
-  if (!sameMesh || tolerance != this->Tolerance)
+  if (!sameMesh || !(options == this->Options))
   {
     this->Bricks.reset();
-    this->Tolerance = tolerance;
-    const HexMesh mesh = GatherMesh(communicator, piece);
+    this->Sampled.reset();
+    this->Options = options;
+    this->Mesh = GatherMesh(communicator, piece);
     try
     {
-      this->Bricks = std::make_shared<const HexBricks>(
-        ElementOctree::Find(mesh, pool, tolerance), MeshBrickCells);
+      this->Find(where);
     }
     catch (const std::exception& error)
     {
       failure = error.what();
     }
     StopTogether(communicator, failure);
+    this->Describe(communicator, others);
   }
   const bool onCells = where == ValuesOn::Cells;
   const GatheredValues all =
     GatherNodes(communicator, nodes, onCells ? piece.CellCount : piece.PointCount);
-  if (where == ValuesOn::Points)
+  this->TakeValues(all.Array, where);
+}
+
+/// The octree that the mesh is, or that it is sampled as.
+void MeshField::Find(ValuesOn where)
+{
+  ThreadPool& pool = ThreadPool::Process();
+  HexMesh boxes = this->Mesh;
+  std::shared_ptr<const ElementOctree> tree;
+  try
   {
-    this->Source = std::make_unique<HexBrickSource>(this->Bricks, all.Array, pool);
+    tree = ElementOctree::Find(boxes, pool, this->Options.Tolerance);
+  }
+  catch (const Error&)
+  {
+    if (this->Options.Sampling.Tolerance <= 0.0 || where == ValuesOn::CellCorners)
+    {
+      throw;
+    }
+  }
+  if (!tree)
+  {
+    this->Sampled = SampledMesh::Of(this->Mesh, this->Options.Sampling, pool);
+    boxes = this->Sampled->Boxes();
+    boxes.Owner = this->Sampled;
+    tree = ElementOctree::Find(boxes, pool);
+  }
+  this->Bricks = std::make_shared<const HexBricks>(tree, MeshBrickCells);
+}
+
+void MeshField::Describe(Communicator& communicator, const OtherCells& others)
+{
+  std::string note;
+  if (others.Count > 0)
+  {
+    note = "Of the mesh only hexahedra and voxels are drawn, without " + others.Text() + ". ";
+  }
+  if (this->Sampled && this->Sampled->TangledCells() > 0)
+  {
+    note += std::to_string(this->Sampled->TangledCells()) +
+            " hexahedra are turned inside out at a corner, cell " +
+            std::to_string(this->Sampled->FirstTangledCell()) +
+            " first: what is drawn in them means little. ";
+  }
+  if (this->Sampled && this->Sampled->AboveTolerance() > 0)
+  {
+    note += "The mesh is no octree and is drawn from " +
+            std::to_string(this->Sampled->Boxes().CellCount) + " boxes, of which " +
+            std::to_string(this->Sampled->AboveTolerance()) +
+            " are coarser than MeshSamplingTolerance asks for: allow more (MeshSamplingBoxes). ";
+  }
+  this->NoteText = AgreeOnError(communicator, note);
+}
+
+void MeshField::TakeValues(const NodeArray& values, ValuesOn where)
+{
+  ThreadPool& pool = ThreadPool::Process();
+  if (this->Sampled)
+  {
+    const std::unique_ptr<CellMeans> means =
+      where == ValuesOn::Cells ? std::make_unique<CellMeans>(this->Mesh, values) : nullptr;
+    const SampledMesh::Values sampled =
+      this->Sampled->Sample(means ? means->Nodes() : values, pool);
+    this->Source = std::make_unique<HexBrickSource>(this->Bricks, sampled.Array(), pool);
     return;
   }
-  const CellNodes made(this->Tree(), all.Array, where, pool);
+  if (where == ValuesOn::Points)
+  {
+    this->Source = std::make_unique<HexBrickSource>(this->Bricks, values, pool);
+    return;
+  }
+  const CellNodes made(this->Tree(), values, where, pool);
   this->Source = std::make_unique<HexBrickSource>(this->Bricks, made.Nodes(), pool);
 }
 

@@ -1,12 +1,17 @@
 #ifndef banyan_Rendering_MeshField_h
 #define banyan_Rendering_MeshField_h
 
+#include "HexMeshOfGrid.h"
+#include "MeshOptions.h"
+
 #include "HexOctree/CellNodes.h"
 #include "HexOctree/HexBrickSource.h"
+#include "HexSampling/SampledMesh.h"
 #include "Parallel/Communicator.h"
 #include "Series/Hash.h"
 
 #include <memory>
+#include <string>
 
 class vtkDataArray;
 class vtkUnstructuredGrid;
@@ -26,10 +31,16 @@ public:
   /// @param values of the points or cells of the grid, as `where` says, which may be anything on
   /// ranks without cells; those of cells are made nodal: see CellNodes
   /// @param component in [0, components), or -1 for the Euclidean norm
-  /// @param tolerance see ElementOctree::Find; the same on all ranks
-  /// Throws Error when the mesh is no octree, or cannot be read; on all ranks, if one cannot.
+  /// @param options the same on all ranks
+  /// Throws Error when the mesh cannot be drawn or read; on all ranks, if one cannot.
   void Update(Communicator& communicator, vtkUnstructuredGrid* grid, vtkDataArray* values,
-    ValuesOn where, int component, double tolerance);
+    ValuesOn where, int component, const MeshOptions& options);
+
+  /// What a user should know of the mesh that was found last: cells that were left out, say. Empty
+  /// if nothing. The same on all ranks.
+  const std::string& Note() const { return this->NoteText; }
+  /// CubeDeviation of a mesh that is sampled; 0 of one that is drawn as it is.
+  double Deviation() const { return this->Sampled ? this->Sampled->Deviation() : 0.0; }
 
   const ElementOctree& Tree() const { return this->Bricks->Tree(); }
   /// A part of the mesh for each rank, in finest cells.
@@ -40,11 +51,17 @@ public:
 
 private:
   bool SameMesh(Communicator& communicator, const HexMesh& piece);
+  void Find(ValuesOn where);
+  void Describe(Communicator& communicator, const OtherCells& others);
+  void TakeValues(const NodeArray& values, ValuesOn where);
 
+  HexMesh Mesh;
+  std::shared_ptr<const SampledMesh> Sampled; ///< null for octrees
+  std::string NoteText;
   std::shared_ptr<const HexBricks> Bricks;
   std::unique_ptr<BrickSource> Source;
-  Hash128 PieceHash;      ///< of this rank's points and cells
-  double Tolerance = 0.0; ///< that the octree was found with
+  Hash128 PieceHash;   ///< of this rank's points and cells
+  MeshOptions Options; ///< that the octree was found with
 };
 
 } // namespace banyan

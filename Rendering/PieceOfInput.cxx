@@ -174,7 +174,9 @@ DrawnArray ArrayToDraw(vtkBanyanVolumeMapper* mapper, vtkDataObject* data)
 FieldPiece PieceOfInput(vtkBanyanVolumeMapper* mapper, vtkVolumeProperty* property)
 {
   FieldPiece piece;
-  piece.MeshTolerance = mapper->GetMeshTolerance();
+  piece.Mesh.Tolerance = mapper->GetMeshTolerance();
+  piece.Mesh.Sampling.Tolerance = mapper->GetMeshSamplingTolerance();
+  piece.Mesh.Sampling.MostCubes = mapper->GetMeshSamplingBoxes();
   vtkDataObject* const data = mapper->GetDataObjectInput();
   if (!HasCells(data))
   {

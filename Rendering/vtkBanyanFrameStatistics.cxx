@@ -24,5 +24,6 @@ void vtkBanyanFrameStatistics::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "CacheHits: " << this->CacheHits << "\n"
      << indent << "CacheMisses: " << this->CacheMisses << "\n"
      << indent << "EstimatedImageError: " << this->EstimatedImageError << "\n"
+     << indent << "MeshDeviation: " << this->MeshDeviation << "\n"
      << indent << "Frames: " << this->Frames << "\n";
 }

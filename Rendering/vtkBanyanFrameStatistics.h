@@ -88,6 +88,14 @@ public:
   ///@}
 
   ///@{
+  /// How far the field that is drawn may be from that of a mesh of general hexahedra, at the points
+  /// that were looked at: a part of the spread of the values around (banyan::CubeDeviation). 0 for
+  /// meshes that are octrees, and for image data: they are drawn as they are.
+  vtkSetMacro(MeshDeviation, double);
+  vtkGetMacro(MeshDeviation, double);
+  ///@}
+
+  ///@{
   /// Frames drawn since the object was made.
   vtkSetMacro(Frames, vtkIdType);
   vtkGetMacro(Frames, vtkIdType);
@@ -114,6 +122,7 @@ protected:
   vtkIdType CacheMisses = 0;
   vtkIdType CacheHitsAhead = 0;
   double EstimatedImageError = 0.0;
+  double MeshDeviation = 0.0;
   vtkIdType Frames = 0;
 
 private:

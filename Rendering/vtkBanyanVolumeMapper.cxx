@@ -38,6 +38,7 @@ struct vtkBanyanVolumeMapper::Internals
   banyan::MotionEnhancement Motion;
   banyan::FramebufferExchange Framebuffer;
   std::vector<int> RankOrderBehind;
+  std::string LastNote;
   std::string LastProblem;
   std::array<double, 6> Bounds{ { 1, -1, 1, -1, 1, -1 } };
   bool BoundsKnown = false;
@@ -135,6 +136,7 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
   self.Field.Update(*self.Communicator, piece);
   self.Bounds = self.Field.Bounds();
   self.BoundsKnown = true;
+  this->WarnOnce(self.Field.MeshNote());
   if (self.Field.Empty())
   {
     // Nothing with bounds is there to be rendered, so this may be the only place to say why.
@@ -216,6 +218,18 @@ void vtkBanyanVolumeMapper::ReportOnce(const std::string& problem)
   }
 }
 
+void vtkBanyanVolumeMapper::WarnOnce(const std::string& note)
+{
+  if (note != this->Self->LastNote)
+  {
+    this->Self->LastNote = note;
+    if (!note.empty() && this->Self->Communicator->Rank() == 0)
+    {
+      vtkWarningMacro(<< note);
+    }
+  }
+}
+
 void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
 {
   const banyan::Timer timer;
@@ -269,6 +283,7 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
       ? self.Tolerance.Plan(
           *self.Communicator, self.Field, scene, wish, budget, wanted.Problem, frame)
       : 0.0);
+  this->Statistics->SetMeshDeviation(self.Field.MeshDeviation());
   const banyan::FrameStatistics pilots = frame;
   compositing.Method = static_cast<banyan::CompositingMethod>(this->Compositing);
   compositing.Transport =
@@ -332,6 +347,8 @@ void vtkBanyanVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "RefineInPasses: " << this->RefineInPasses << "\n"
      << indent << "SampleDistanceVoxels: " << this->SampleDistanceVoxels << "\n"
      << indent << "MeshTolerance: " << this->MeshTolerance << "\n"
+     << indent << "MeshSamplingTolerance: " << this->MeshSamplingTolerance << "\n"
+     << indent << "MeshSamplingBoxes: " << this->MeshSamplingBoxes << "\n"
      << indent << "TemporalEnhancement: " << this->TemporalEnhancement << "\n"
      << indent << "Compositing: " << this->Compositing << "\n"
      << indent << "CompositeInFewBits: " << this->CompositeInFewBits << "\n"

@@ -110,6 +110,27 @@ public:
 
   ///@{
   /**
+   * How closely hexahedra that are no octree of boxes (curved, warped, with topography) are sampled:
+   * the largest difference from their own field that is allowed between samples, as a part of the spread of the
+   * values around, whatever they are (banyan::CubeDeviation). Default 1/4; allowed [0, 1]; 0: such meshes are
+   * refused with a sentence that says which cell does not fit. The statistic MeshDeviation says what
+   * was reached.
+   */
+  vtkSetClampMacro(MeshSamplingTolerance, double, 0.0, 1.0);
+  vtkGetMacro(MeshSamplingTolerance, double);
+  ///@}
+
+  ///@{
+  /**
+   * How many boxes they may take; where more would be needed, they stay coarser, with a warning. Default
+   * 2^20; each takes about 200 bytes.
+   */
+  vtkSetClampMacro(MeshSamplingBoxes, int, 1024, 1 << 26);
+  vtkGetMacro(MeshSamplingBoxes, int);
+  ///@}
+
+  ///@{
+  /**
    * Brings out what moves from one step of an encoded series to the next, while it is drawn: the
    * strength of banyan::TemporalEnhancement, in [0, 1]. Its scale is the largest magnitude that the
    * opacity function knows. Of plain data the steps around must be there as point arrays
@@ -226,6 +247,7 @@ private:
 
   void DrawFrame(vtkRenderer* renderer, vtkVolume* volume);
   void ReportOnce(const std::string& problem);
+  void WarnOnce(const std::string& note);
 
   double ImageErrorTolerance = 1.0;
   double InteractiveImageErrorTolerance = 8.0;
@@ -233,6 +255,8 @@ private:
   bool RefineInPasses = false;
   double SampleDistanceVoxels = 0.0;
   double MeshTolerance = 1.0 / 1024;
+  double MeshSamplingTolerance = 0.25;
+  int MeshSamplingBoxes = 1 << 20;
   double TemporalEnhancement = 0.0;
   int Compositing = 0;
   bool CompositeInFewBits = false;

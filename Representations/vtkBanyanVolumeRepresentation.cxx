@@ -345,6 +345,16 @@ void vtkBanyanVolumeRepresentation::SetMeshTolerance(double tolerance)
   this->Mapper->SetMeshTolerance(tolerance);
 }
 
+void vtkBanyanVolumeRepresentation::SetMeshSamplingTolerance(double tolerance)
+{
+  this->Mapper->SetMeshSamplingTolerance(tolerance);
+}
+
+void vtkBanyanVolumeRepresentation::SetMeshSamplingBoxes(int boxes)
+{
+  this->Mapper->SetMeshSamplingBoxes(boxes);
+}
+
 void vtkBanyanVolumeRepresentation::SetTemporalEnhancement(double strength)
 {
   const bool needed = this->Mapper->GetTemporalEnhancement() > 0.0;

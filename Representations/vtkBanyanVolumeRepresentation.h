@@ -94,6 +94,9 @@ public:
 
   /** How far points of hexahedra may lie beside the lattice of their octree, in finest edges. */
   void SetMeshTolerance(double tolerance);
+  /** How closely hexahedra that are no octree are sampled: as vtkBanyanVolumeMapper's. */
+  void SetMeshSamplingTolerance(double tolerance);
+  void SetMeshSamplingBoxes(int boxes);
 
   /** As vtkBanyanVolumeMapper's; steps around the one that is drawn are asked of the pipeline. */
   void SetTemporalEnhancement(double strength);

@@ -15,16 +15,22 @@ class ThreadPool;
 /// How closely a mesh of general hexahedra is sampled.
 struct MeshSampling
 {
-  /// Largest CubeDeviation: a part of the spread of the values around.
+  /// Largest CubeDeviation: a part of the spread of the values around. 0 where general hexahedra
+  /// are not to be sampled at all.
   double Tolerance = 1.0 / 4;
   /// A soft limit: when there are more, cubes stay as they are, and say so.
-  std::int64_t MostCubes = std::int64_t{ 1 } << 22;
+  std::int64_t MostCubes = std::int64_t{ 1 } << 20;
 
   /// Cubes are never smaller than this part of the thinnest cell that they touch, as a power of
   /// two.
   static constexpr int FinestPart = 3;
   /// At the border of the mesh they are not larger than this part of it.
   static constexpr int BorderPart = 2;
+
+  bool operator==(const MeshSampling& other) const
+  {
+    return this->Tolerance == other.Tolerance && this->MostCubes == other.MostCubes;
+  }
 };
 
 /// Cubes of an octree whose corners a mesh is sampled at.

@@ -3,9 +3,9 @@
 #include "Base/ThreadPool.h"
 #include "HexOctree/FirstFailure.h"
 #include "HexOctree/RadixSort.h"
+#include "HexSampling/TakenComponent.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace banyan
@@ -22,23 +22,6 @@ glm::ivec3 CornerOf(const SampledCubes::Cube& cube, int corner)
 {
   return PositionOfKey(cube.Key) +
          (1 << cube.Level) * glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
-}
-
-/// One component of a value, or the length of all.
-template <class In>
-double Taken(const In* tuple, const NodeArray& array)
-{
-  if (array.Component != NodeArray::Magnitude)
-  {
-    return static_cast<double>(tuple[array.Component]);
-  }
-  double sum = 0.0;
-  for (int c = 0; c < array.Components; ++c)
-  {
-    const auto value = static_cast<double>(tuple[c]);
-    sum += value * value;
-  }
-  return std::sqrt(sum);
 }
 
 } // namespace
@@ -147,7 +130,7 @@ void SampledMesh::SampleInto(
         double corners[8];
         for (std::size_t i = 0; i < 8; ++i)
         {
-          corners[i] = Taken(values + nodes[i] * array.Components, array);
+          corners[i] = TakenComponent(values + nodes[i] * array.Components, array);
         }
         out[Index(point)] =
           static_cast<Out>(NodalField::Interpolate(corners, glm::dvec3(place.Part)));
@@ -157,13 +140,7 @@ void SampledMesh::SampleInto(
 
 SampledMesh::Values SampledMesh::Sample(const NodeArray& array, ThreadPool& pool) const
 {
-  const bool exists = array.Component == NodeArray::Magnitude ||
-                      (array.Component >= 0 && array.Component < array.Components);
-  if (array.Components < 1 || !exists || !array.Values)
-  {
-    throw Error("The array to draw has no component " + std::to_string(array.Component) +
-                ", or no values in memory");
-  }
+  RequireComponent(array);
   Values sampled;
   Dispatch(array.Type,
     [&](auto tag)
