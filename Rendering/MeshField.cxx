@@ -170,12 +170,12 @@ void MeshField::Describe(Communicator& communicator, const OtherCells& others)
             std::to_string(this->Sampled->FirstTangledCell()) +
             " first: what is drawn in them means little. ";
   }
-  if (this->Sampled && this->Sampled->AboveTolerance() > 0)
+  if (this->Sampled && this->Sampled->KeptCoarse() > 0)
   {
     note += "The mesh is no octree and is drawn from " +
-            std::to_string(this->Sampled->Boxes().CellCount) + " boxes, of which " +
-            std::to_string(this->Sampled->AboveTolerance()) +
-            " are coarser than MeshSamplingTolerance asks for: allow more (MeshSamplingBoxes). ";
+            std::to_string(this->Sampled->Boxes().CellCount) + " boxes; " +
+            std::to_string(this->Sampled->KeptCoarse()) +
+            " places are coarser than they should be: allow more boxes (MeshSamplingBoxes). ";
   }
   this->NoteText = AgreeOnError(communicator, note);
 }

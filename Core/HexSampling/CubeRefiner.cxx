@@ -216,6 +216,7 @@ void Refiner::Settle()
     if (judgement.What == Fate::Improve && full)
     {
       judgement.What = judgement.InMesh ? Fate::Keep : Fate::Drop;
+      ++this->Result.Denied;
     }
     if (judgement.What == Fate::Keep)
     {

@@ -38,6 +38,7 @@ std::shared_ptr<const SampledMesh> SampledMesh::Of(
   std::shared_ptr<SampledMesh> made(new SampledMesh);
   made->LargestDeviation = cubes.Deviation;
   made->BoxesAbove = cubes.Above;
+  made->Coarse = cubes.Denied;
   made->Tangled = shapes.Tangled();
   made->FirstTangled = shapes.FirstTangled();
   made->NodesOfCells.resize(Index(shapes.Count()));

@@ -38,6 +38,8 @@ public:
   /// What is true of the sampling, for statistics.
   double Deviation() const { return this->LargestDeviation; }
   std::int64_t AboveTolerance() const { return this->BoxesAbove; }
+  /// Boxes that are larger than they should be, for there would be more than MostCubes.
+  std::int64_t KeptCoarse() const { return this->Coarse; }
   std::int64_t TangledCells() const { return this->Tangled; }
   std::int64_t FirstTangledCell() const { return this->FirstTangled; }
 
@@ -76,6 +78,7 @@ private:
   std::vector<std::array<std::int64_t, 8>> NodesOfCells; ///< in the order of TrilinearCell
   double LargestDeviation = 0.0;
   std::int64_t BoxesAbove = 0;
+  std::int64_t Coarse = 0;
   std::int64_t Tangled = 0;
   std::int64_t FirstTangled = -1;
 };

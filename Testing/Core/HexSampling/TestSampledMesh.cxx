@@ -250,6 +250,8 @@ TEST(SampledMesh, LimitsOfBoxesAreKept)
   const auto few = warped::Sample(mesh, sampling);
   EXPECT_LE(few->Boxes().CellCount, 5000);
   EXPECT_GT(few->AboveTolerance(), 0);
+  EXPECT_GT(few->KeptCoarse(), 0);
+  EXPECT_EQ(warped::Sample(mesh)->KeptCoarse(), 0);
   EXPECT_GT(few->Deviation(), sampling.Tolerance);
   sampling.MostCubes = 2;
   EXPECT_THROW(warped::Sample(mesh, sampling), Error);

@@ -1,0 +1,135 @@
+"""Real meshes of curved hexahedra, and of mixed cells, are drawn by "Banyan Volume".
+
+    test_general_meshes.py --plugin Banyan.so --out FOLDER [--reference FOLDER]
+
+With a reference (the folder of a run on one rank) the pictures must be the same: at most 1 of 255.
+Otherwise they are compared with ParaView's own "Volume" of the same data, which cuts cells into tetrahedra.
+Without BANYAN_DATA_DIR there is nothing to do.
+"""
+import os
+import sys
+
+from paraview import simple
+from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
+
+import pictures
+import session
+
+# File, array, boxes allowed, what must be said of it, and the largest mean difference from ParaView's own
+# picture, in 1/255.
+MESHES = {
+    "mountain": ("specfem_mount_st_helens/specfem_mount_st_helens.vtu", ("POINTS", "elevation"),
+                 100000, "", 8.0),
+    "reactor": ("disk_out_ref/disk_out_ref.vtu", ("POINTS", "Temp"), 200000, "", 8.0),
+    "blocks": ("block_crush/block_crush_005.vtu", ("POINTS", "displ_"), 100000,
+               "without 1 cell, cell", None),
+}
+SAMPLING_TOLERANCE = 0.5
+
+
+class Said:
+    """What ParaView says meanwhile."""
+
+    def __enter__(self):
+        self.window = vtkStringOutputWindow()
+        self.before = vtkOutputWindow.GetInstance()
+        vtkOutputWindow.SetInstance(self.window)
+        return self
+
+    def __exit__(self, *_):
+        vtkOutputWindow.SetInstance(self.before)
+
+    def text(self):
+        return self.window.GetOutput()
+
+
+def show(source, array, kind):
+    view = session.new_view((200, 200))
+    display = simple.Show(source, view)
+    simple.ColorBy(display, array)
+    display.SetRepresentationType(kind)
+    bounds = source.GetDataInformation().GetBounds()
+    display.ScalarOpacityUnitDistance = 0.1 * (bounds[5] - bounds[4])
+    view.ResetCamera()
+    simple.GetActiveCamera().Azimuth(30)
+    simple.GetActiveCamera().Elevation(30)
+    view.ResetCamera()
+    return view, display
+
+
+def draw(path, view):
+    simple.Render(view)
+    simple.SaveScreenshot(path, view)
+    return pictures.load(path).astype(float)
+
+
+def draw_mesh(data, out, name, reference):
+    file, array, boxes, sentence, allowed = MESHES[name]
+    source = simple.OpenDataFile(os.path.join(data, file))
+    source.UpdatePipeline()
+    path = os.path.join(out, name + ".png")
+    with Said() as said:
+        view, display = show(source, array, session.REPRESENTATION)
+        display.MeshSamplingTolerance = SAMPLING_TOLERANCE
+        display.MeshSamplingBoxes = boxes
+        picture = draw(path, view)
+        display.UpdatePropertyInformation()
+        deviation = display.GetProperty("MeshDeviation").GetElement(0)
+    print(f"{name}: deviation {deviation:.3f}; {said.text()}", flush=True)
+    session.require("was not drawn" not in said.text(), f"{name} was not drawn")
+    session.require(sentence in said.text(), f"{name}: '{sentence}' was not said")
+    session.require(0.0 < deviation <= 1.0, f"{name}: the deviation is {deviation}")
+    session.require(abs(picture - picture[0, 0]).max() > 60, f"{name} is empty")
+    if reference:
+        error = pictures.difference(
+            pictures.load(os.path.join(reference, name + ".png")), pictures.load(path))
+        print(f"{name}: {int(error.max())} from one rank's", flush=True)
+        session.require(error.max() <= 1, f"{name} differs by {int(error.max())}")
+    elif allowed is not None:
+        camera = view.CameraPosition[:], view.CameraFocalPoint[:]
+        simple.Hide(source, view)
+        view, display = show(source, array, "Volume")
+        display.SelectMapper = "Bunyk ray cast"
+        view.CameraPosition, view.CameraFocalPoint = camera
+        other = draw(os.path.join(out, name + "_paraview.png"), view)
+        mean = abs(picture - other).mean()
+        print(f"{name}: {mean:.2f} of 255 from ParaView's own on average", flush=True)
+        session.require(mean <= allowed, f"{name} is {mean:.2f} from ParaView's own picture")
+    session.clear()
+
+
+def draw_mixed(data, out):
+    """Of hexahedra and others the others are left out; of others alone nothing is drawn."""
+    source = simple.OpenDataFile(os.path.join(data, "malformed_basic/u13_mixed.vtu"))
+    for type_name, sentence in (("Hexahedron", "without 3 cells, cell 1 of the type vtkTetra"),
+                                ("Tetra", "has no hexahedra or voxels, but 1 cell")):
+        cells = source
+        if type_name == "Tetra":
+            cells = simple.ExtractCellsByType(Input=source)
+            cells.CellTypes = ["Tetra"]
+        with Said() as said:
+            view, _ = show(cells, ("POINTS", "s"), session.REPRESENTATION)
+            draw(os.path.join(out, f"mixed_{type_name}.png"), view)
+        print(f"{type_name}: {said.text()}", flush=True)
+        session.require(sentence in said.text(), f"{type_name}: '{sentence}' was not said")
+        session.clear()
+
+
+def main():
+    parser = session.parser(__doc__)
+    parser.add_argument("--out", required=True)
+    parser.add_argument("--reference")
+    arguments = parser.parse_args()
+    data = os.environ.get("BANYAN_DATA_DIR")
+    if not data or not os.path.exists(os.path.join(data, MESHES["reactor"][0])):
+        print("no real data")
+        sys.exit(77)
+    os.makedirs(arguments.out, exist_ok=True)
+    session.begin(arguments)
+    for name in MESHES:
+        draw_mesh(data, arguments.out, name, arguments.reference)
+    if not arguments.reference:
+        draw_mixed(data, arguments.out)
+
+
+main()
