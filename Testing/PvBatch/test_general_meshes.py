@@ -49,7 +49,7 @@ def show(source, array, kind):
     simple.ColorBy(display, array)
     display.SetRepresentationType(kind)
     bounds = source.GetDataInformation().GetBounds()
-    display.ScalarOpacityUnitDistance = 0.1 * (bounds[5] - bounds[4])
+    display.ScalarOpacityUnitDistance = 0.4 * (bounds[5] - bounds[4])
     view.ResetCamera()
     simple.GetActiveCamera().Azimuth(30)
     simple.GetActiveCamera().Elevation(30)
