@@ -79,7 +79,7 @@ build_simulation()
       smpicxx -std=c++17 -O2 -DNDEBUG -fPIC -I"$RepositoryRoot/Core" \
         -I"$paraview/vtkicet/src/include" -I"$paraview" \
         "$here"/Compositing/{SimulateCompositing,IceTMethods,FrameFile}.cxx \
-        "$RepositoryRoot/Core/Parallel/MpiCommunicator.cxx" \
+        "$RepositoryRoot"/Core/Parallel/Mpi{Communicator,Waiting}.cxx \
         -L"$core" -Wl,-rpath,"$core" -lBanyanCore -lvtkIceTCore-pv5.11 -o "$simulation" ||
         fail "the simulation could not be built."
       return

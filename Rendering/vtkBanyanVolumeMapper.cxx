@@ -11,6 +11,7 @@
 #include "ToleranceControl.h"
 #include "vtkBanyanFrameStatistics.h"
 
+#include "Base/Progress.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
 #include "Cache/BrickCache.h"
@@ -85,7 +86,18 @@ void vtkBanyanVolumeMapper::SetController(vtkMultiProcessController* controller)
   if (mpi && controller->GetNumberOfProcesses() > 1)
   {
     const MPI_Comm* handle = mpi->GetMPIComm()->GetHandle();
-    this->Self->Communicator = banyan::MakeMpiCommunicator(handle);
+    banyan::MpiPatience patience{ banyan::MpiPatience::DefaultSeconds, {} };
+    try
+    {
+      patience.Seconds = banyan::MpiPatience::FromEnvironment();
+    }
+    catch (const std::exception& error)
+    {
+      vtkErrorMacro(<< error.what());
+    }
+    patience.Tell = [this](const std::string& sentence) { vtkErrorMacro(<< sentence); };
+    this->Self->Communicator =
+      banyan::MakeMpiCommunicator(handle, std::size_t{ 1 } << 30, patience);
     banyan::ThreadPool::SetRanksOnThisNode(banyan::RanksOnThisNode(handle));
   }
   else
@@ -206,6 +218,7 @@ void vtkBanyanVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   catch (const std::exception& error)
   {
     this->ReportOnce(error.what());
+    this->Self->Communicator->LeaveTogether(error.what());
   }
 }
 
@@ -233,6 +246,7 @@ void vtkBanyanVolumeMapper::WarnOnce(const std::string& note)
 void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
 {
   const banyan::Timer timer;
+  const banyan::PhaseScope beginning(banyan::Phase::Beginning);
   Internals& self = *this->Self;
   const std::string problem = banyan::AgreeOnError(*self.Communicator, self.Field.Problem());
   if (!problem.empty())
@@ -277,7 +291,11 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
     this->InteractiveImageErrorTolerance, this->InteractiveFrameSeconds,
     renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0, this->RefineInPasses };
   const banyan::Timer drawing;
-  self.Field.BeginFrame(*self.Communicator, scene);
+  {
+    const banyan::PhaseScope fetching(banyan::Phase::Fetching);
+    self.Field.BeginFrame(*self.Communicator, scene);
+  }
+  const banyan::PhaseScope sampling(banyan::Phase::Sampling);
   this->Statistics->SetEstimatedImageError(
     !fixed && banyan::CanKeepTolerance(this, volume->GetProperty())
       ? self.Tolerance.Plan(
@@ -300,6 +318,7 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   frame.SamplesTaken += pilots.SamplesTaken;
   frame.BytesComposited += pilots.BytesComposited;
   frame.MessagesComposited += pilots.MessagesComposited;
+  const banyan::PhaseScope balancing(banyan::Phase::Balancing);
   self.Field.EndFrame(*self.Communicator);
   self.Tolerance.FrameTook(wish, banyan::AllMax(*self.Communicator, drawing.Seconds()));
 

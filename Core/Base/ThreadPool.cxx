@@ -1,6 +1,7 @@
 #include "Base/ThreadPool.h"
 
 #include "Base/Error.h"
+#include "Base/Progress.h"
 
 #include <algorithm>
 #include <atomic>
@@ -66,6 +67,7 @@ struct Loop
           this->Failure = std::current_exception();
         }
       }
+      Progress::Note();
       if (++this->Done == this->Count)
       {
         std::lock_guard<std::mutex> lock(this->Mutex);

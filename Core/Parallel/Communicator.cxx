@@ -5,6 +5,10 @@
 namespace banyan
 {
 
+void Communicator::LeaveTogether(const std::string&)
+{
+}
+
 std::vector<std::string> AllGatherStrings(Communicator& communicator, const std::string& mine)
 {
   const std::size_t ranks = static_cast<std::size_t>(communicator.Size());

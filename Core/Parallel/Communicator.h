@@ -46,6 +46,11 @@ public:
   virtual void Broadcast(int root, void* data, std::size_t bytes) = 0;
   /// `all` receives Size() * bytes.
   virtual void AllGather(const void* mine, std::size_t bytes, void* all) = 0;
+
+  /// Collective among ranks that give up what they were at, each by an error. Where that can be
+  /// found out (MPI), the job ends when the others have not failed and would wait for ever.
+  /// @param why this rank's error
+  virtual void LeaveTogether(const std::string& why);
 };
 
 std::unique_ptr<Communicator> MakeSelfCommunicator();

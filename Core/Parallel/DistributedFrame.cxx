@@ -1,5 +1,6 @@
 #include "Parallel/DistributedFrame.h"
 
+#include "Base/Progress.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
 #include "Parallel/LevelZones.h"
@@ -24,6 +25,7 @@ FloatImage CastOwnZone(const RayScene& scene, BrickSource* source, const Box& zo
   }
   try
   {
+    const PhaseScope phase(Phase::Casting);
     return CastRays(scene, *source, zone, budgetBytes, pool, statistics);
   }
   catch (const std::exception& error)
@@ -116,6 +118,7 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene, Br
     compositing.AfterCasting();
   }
 
+  const PhaseScope phase(Phase::Compositing);
   // The order and the footprints depend on what all ranks have alike: no rank fails here alone.
   const std::vector<int> order = OrderAsDrawn(scene, zones);
   CompositeOptions options = CompleteOptions(compositing, scene, zones);

@@ -1,21 +1,15 @@
 #include "Parallel/MpiCommunicator.h"
 
 #include "Base/Error.h"
-
-// The C++ bindings were removed from MPI and would only add a library to link.
-#define OMPI_SKIP_MPICXX 1
-#define MPICH_SKIP_MPICXX 1
-#include <mpi.h>
+#include "Parallel/MpiWaiting.h"
 
 #include <algorithm>
 #include <limits>
 
 namespace banyan
 {
-namespace
-{
 
-void Check(int code, const char* action)
+void CheckMpi(int code, const char* action)
 {
   if (code != MPI_SUCCESS)
   {
@@ -24,6 +18,14 @@ void Check(int code, const char* action)
     MPI_Error_string(code, text, &length);
     throw Error(std::string("MPI could not ") + action + ": " + std::string(text, length));
   }
+}
+
+namespace
+{
+
+void Check(int code, const char* action)
+{
+  CheckMpi(code, action);
 }
 
 MPI_Comm HandleAt(const void* mpiComm)
@@ -51,7 +53,7 @@ void ForEachPart(std::size_t bytes, std::size_t limit, const Part& part)
 class MpiCommunicator final : public Communicator
 {
 public:
-  MpiCommunicator(MPI_Comm original, std::size_t largestMessage)
+  MpiCommunicator(MPI_Comm original, std::size_t largestMessage, const MpiPatience& patience)
     : LargestMessage(largestMessage)
   {
     Check(MPI_Comm_dup(original, &this->Handle), "duplicate a communicator");
@@ -59,10 +61,12 @@ public:
     MPI_Comm_set_errhandler(this->Handle, MPI_ERRORS_RETURN);
     MPI_Comm_rank(this->Handle, &this->Self);
     MPI_Comm_size(this->Handle, &this->Ranks);
+    this->Waiting = std::make_unique<MpiWaiting>(this->Handle, patience);
   }
 
   ~MpiCommunicator() override
   {
+    this->Waiting.reset();
     int finalized = 0;
     MPI_Finalized(&finalized);
     if (finalized)
@@ -117,8 +121,7 @@ public:
     this->Pending.clear();
     this->Expected.clear();
     std::vector<MPI_Status> statuses(requests.size());
-    const int code =
-      MPI_Waitall(static_cast<int>(requests.size()), requests.data(), statuses.data());
+    const int code = this->CompleteAll(requests, statuses);
     for (std::size_t i = 0; i < statuses.size(); ++i)
     {
       Check(code == MPI_ERR_IN_STATUS ? statuses[i].MPI_ERROR : code, "complete a message");
@@ -162,9 +165,7 @@ public:
     MPI_Status status;
     if (this->Open > 0)
     {
-      Check(
-        MPI_Waitany(static_cast<int>(this->Awaited.size()), this->Awaited.data(), &index, &status),
-        "complete a message");
+      Check(this->CompleteAny(index, status), "complete a message");
     }
     if (index == MPI_UNDEFINED)
     {
@@ -176,14 +177,25 @@ public:
     return { static_cast<std::size_t>(index), static_cast<std::size_t>(count) };
   }
 
-  void Barrier() override { Check(MPI_Barrier(this->Handle), "wait for all ranks"); }
+  void Barrier() override
+  {
+    this->Collective(
+      "wait for all ranks", [this] { return MPI_Barrier(this->Handle); },
+      [this](MPI_Request* request) { return MPI_Ibarrier(this->Handle, request); });
+  }
 
   void Broadcast(int root, void* data, std::size_t bytes) override
   {
     char* begin = static_cast<char*>(data);
     ForEachPart(bytes, this->LargestMessage,
       [&](std::size_t offset, int count)
-      { Check(MPI_Bcast(begin + offset, count, MPI_BYTE, root, this->Handle), "broadcast"); });
+      {
+        char* part = begin + offset;
+        this->Collective(
+          "broadcast", [&] { return MPI_Bcast(part, count, MPI_BYTE, root, this->Handle); },
+          [&](MPI_Request* request)
+          { return MPI_Ibcast(part, count, MPI_BYTE, root, this->Handle, request); });
+      });
   }
 
   void AllGather(const void* mine, std::size_t bytes, void* all) override
@@ -191,7 +203,12 @@ public:
     if (bytes <= this->LargestMessage)
     {
       const int count = static_cast<int>(bytes);
-      Check(MPI_Allgather(mine, count, MPI_BYTE, all, count, MPI_BYTE, this->Handle), "gather");
+      this->Collective(
+        "gather",
+        [&] { return MPI_Allgather(mine, count, MPI_BYTE, all, count, MPI_BYTE, this->Handle); },
+        [&](MPI_Request* request) {
+          return MPI_Iallgather(mine, count, MPI_BYTE, all, count, MPI_BYTE, this->Handle, request);
+        });
       return;
     }
     char* target = static_cast<char*>(all);
@@ -202,7 +219,68 @@ public:
     }
   }
 
+  void LeaveTogether(const std::string& why) override { this->Waiting->LeaveTogether(why); }
+
 private:
+  /// As MPI_Waitall. @return MPI's code
+  int CompleteAll(std::vector<MPI_Request>& requests, std::vector<MPI_Status>& statuses)
+  {
+    const int count = static_cast<int>(requests.size());
+    if (!this->Waiting->IsOn())
+    {
+      return MPI_Waitall(count, requests.data(), statuses.data());
+    }
+    int code = MPI_SUCCESS;
+    this->Waiting->Until(
+      [&]
+      {
+        int done = 0;
+        code = MPI_Testall(count, requests.data(), &done, statuses.data());
+        return done != 0 || code != MPI_SUCCESS;
+      });
+    return code;
+  }
+
+  /// As MPI_Waitany, of the messages of ReceiveWhole.
+  int CompleteAny(int& index, MPI_Status& status)
+  {
+    const int count = static_cast<int>(this->Awaited.size());
+    if (!this->Waiting->IsOn())
+    {
+      return MPI_Waitany(count, this->Awaited.data(), &index, &status);
+    }
+    int code = MPI_SUCCESS;
+    this->Waiting->Until(
+      [&]
+      {
+        int done = 0;
+        code = MPI_Testany(count, this->Awaited.data(), &index, &done, &status);
+        return done != 0 || code != MPI_SUCCESS;
+      });
+    return code;
+  }
+
+  /// @param wait the call that waits, as long as it takes
+  /// @param start the same call that does not
+  template <typename Wait, typename Start>
+  void Collective(const char* action, const Wait& wait, const Start& start)
+  {
+    if (!this->Waiting->IsOn())
+    {
+      Check(wait(), action);
+      return;
+    }
+    MPI_Request request = MPI_REQUEST_NULL;
+    Check(start(&request), action);
+    this->Waiting->Until(
+      [&]
+      {
+        int done = 0;
+        Check(MPI_Test(&request, &done, MPI_STATUS_IGNORE), action);
+        return done != 0;
+      });
+  }
+
   static int CountOf(std::size_t bytes)
   {
     constexpr std::size_t most = std::numeric_limits<int>::max();
@@ -235,6 +313,7 @@ private:
   int Self = 0;
   int Ranks = 1;
   std::size_t LargestMessage;
+  std::unique_ptr<MpiWaiting> Waiting;
   std::vector<MPI_Request> Pending;
   std::vector<MPI_Request> Awaited; ///< of ReceiveWhole, since none was open
   std::size_t Open = 0;             ///< of these
@@ -244,7 +323,7 @@ private:
 } // namespace
 
 std::unique_ptr<Communicator> MakeMpiCommunicator(
-  const void* mpiComm, std::size_t largestMessageBytes)
+  const void* mpiComm, std::size_t largestMessageBytes, const MpiPatience& patience)
 {
   if (largestMessageBytes < 1 || largestMessageBytes > (std::size_t{ 1 } << 30))
   {
@@ -253,7 +332,7 @@ std::unique_ptr<Communicator> MakeMpiCommunicator(
     place.Allowed = std::size_t{ 1 } << 30;
     throw Error("One MPI message must hold between 1 byte and 1 GiB.", place);
   }
-  return std::make_unique<MpiCommunicator>(HandleAt(mpiComm), largestMessageBytes);
+  return std::make_unique<MpiCommunicator>(HandleAt(mpiComm), largestMessageBytes, patience);
 }
 
 int RanksOnThisNode(const void* mpiComm)

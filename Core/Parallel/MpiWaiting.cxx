@@ -1,0 +1,253 @@
+#include "Parallel/MpiWaiting.h"
+
+#include "Base/Error.h"
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <thread>
+
+#include <sched.h>
+
+namespace banyan
+{
+namespace
+{
+
+constexpr double LookEvery = 0.1;
+/// Who waits for a lost rank ends the job, in good order. When nobody does, because ranks wait in
+/// calls that are not ours, the threads that give signs end it so much later.
+constexpr double SecondsForWaiters = 4.0;
+
+/// Ranks of this machine, for as long as it takes to arrange something.
+class Neighbours
+{
+public:
+  explicit Neighbours(MPI_Comm all)
+  {
+    CheckMpi(MPI_Comm_split_type(all, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &this->Handle),
+      "find the ranks of this machine");
+    MPI_Comm_rank(this->Handle, &this->Self);
+    MPI_Comm_size(this->Handle, &this->Count);
+  }
+  ~Neighbours() { MPI_Comm_free(&this->Handle); }
+  Neighbours(const Neighbours&) = delete;
+  Neighbours& operator=(const Neighbours&) = delete;
+
+  bool All(bool mine) const
+  {
+    int own = mine ? 1 : 0;
+    int all = 0;
+    MPI_Allreduce(&own, &all, 1, MPI_INT, MPI_MIN, this->Handle);
+    return all == 1;
+  }
+
+  MPI_Comm Handle = MPI_COMM_NULL;
+  int Self = 0;
+  int Count = 1;
+};
+
+/// Collective. Null on all ranks of the machine where there is no memory that they could share.
+std::unique_ptr<RankPulse> MakePulse(const Neighbours& here, int rank, double limitSeconds,
+  const std::function<void(const std::string&)>& lost)
+{
+  std::array<char, 128> name{};
+  std::unique_ptr<RankPulse> pulse;
+  try
+  {
+    if (here.Self == 0)
+    {
+      const std::string made = RankPulse::MakeMemory(here.Count);
+      std::strncpy(name.data(), made.c_str(), name.size() - 1);
+    }
+  }
+  catch (const Error&)
+  {
+    name[0] = 0;
+  }
+  MPI_Bcast(name.data(), static_cast<int>(name.size()), MPI_BYTE, 0, here.Handle);
+  if (name[0] == 0)
+  {
+    return nullptr;
+  }
+  try
+  {
+    pulse =
+      std::make_unique<RankPulse>(name.data(), here.Count, here.Self, rank, limitSeconds, lost);
+  }
+  catch (const Error&)
+  {
+    pulse.reset();
+  }
+  const bool all = here.All(pulse != nullptr);
+  if (here.Self == 0)
+  {
+    RankPulse::ForgetName(name.data());
+  }
+  return all ? std::move(pulse) : nullptr;
+}
+
+} // namespace
+
+double MpiPatience::FromEnvironment()
+{
+  const char* text = std::getenv("BANYAN_RANK_LIMIT_SECONDS");
+  if (!text || !*text)
+  {
+    return DefaultSeconds;
+  }
+  char* end = nullptr;
+  const double seconds = std::strtod(text, &end);
+  if (*end != 0 || !(seconds == 0.0 || (seconds >= 1.0 && seconds <= 1e6)))
+  {
+    throw Error("BANYAN_RANK_LIMIT_SECONDS is '" + std::string(text) +
+                "'; it takes 0 for no limit, or from 1 to 1000000 seconds.");
+  }
+  return seconds;
+}
+
+MpiWaiting::MpiWaiting(MPI_Comm handle, const MpiPatience& patience)
+  : Handle(handle)
+  , Limit(patience.Seconds)
+  , Patience(patience)
+{
+  int ranks = 1;
+  MPI_Comm_rank(handle, &this->Self);
+  MPI_Comm_size(handle, &ranks);
+  CheckMpi(MPI_Bcast(&this->Limit, 1, MPI_DOUBLE, 0, handle), "broadcast");
+  if (ranks == 1 || !this->IsOn())
+  {
+    this->Limit = 0;
+    return;
+  }
+  CheckMpi(MPI_Comm_dup(handle, &this->Leaving), "duplicate a communicator");
+  MPI_Comm_set_errhandler(this->Leaving, MPI_ERRORS_RETURN);
+  const Neighbours here(handle);
+  this->Pulse = MakePulse(here, this->Self, this->Limit + SecondsForWaiters,
+    [this](const std::string& sentence)
+    {
+      int finalized = 0;
+      MPI_Finalized(&finalized);
+      if (finalized)
+      {
+        return;
+      }
+      // Not the thread that speaks MPI, but that one will not speak any more.
+      std::fprintf(stderr, "banyan: %s The job ends.\n", sentence.c_str());
+      MPI_Abort(this->Handle, EXIT_FAILURE);
+    });
+  this->Lost = std::make_unique<LostRanks>(this->Limit, here.Count == ranks);
+}
+
+MpiWaiting::~MpiWaiting()
+{
+  this->Pulse.reset(); // its thread knows the handle
+  int finalized = 0;
+  MPI_Finalized(&finalized);
+  if (!finalized && this->Leaving != MPI_COMM_NULL)
+  {
+    MPI_Comm_free(&this->Leaving);
+  }
+}
+
+void MpiWaiting::Pause(double waited)
+{
+  // Short waits are those of a frame, where each microsecond counts; long ones are for somebody who
+  // still draws, perhaps on this processor.
+  constexpr double spinning = 2e-3;
+  if (waited < spinning)
+  {
+    sched_yield();
+    return;
+  }
+  std::this_thread::sleep_for(std::chrono::microseconds(waited < 0.05 ? 20 : 200));
+  if (this->SinceLook.Seconds() >= LookEvery)
+  {
+    this->LookAround(waited);
+  }
+}
+
+void MpiWaiting::LookAround(double waited)
+{
+  const double seconds = this->SinceLook.Seconds();
+  this->SinceLook.Restart();
+  if (!this->Pulse)
+  {
+    return;
+  }
+  const std::string lost = this->Lost->Tick(seconds, this->Pulse->Place(), this->Pulse->Signs());
+  if (!lost.empty())
+  {
+    this->EndJob(lost + " Rank " + std::to_string(this->Self) + " has waited for " +
+                 std::to_string(std::lround(waited)) + " s while it was " +
+                 NameOf(Progress::Now()) + ".");
+  }
+}
+
+bool MpiWaiting::OthersWork() const
+{
+  if (!this->Pulse)
+  {
+    return false;
+  }
+  const std::vector<RankSigns> signs = this->Pulse->Signs();
+  for (std::size_t i = 0; i < signs.size(); ++i)
+  {
+    if (i != this->Pulse->Place() && signs[i].Doing != Phase::Outside && signs[i].Waits % 2 == 0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+void MpiWaiting::LeaveTogether(const std::string& why)
+{
+  if (!this->IsOn())
+  {
+    return;
+  }
+  MPI_Request request = MPI_REQUEST_NULL;
+  CheckMpi(MPI_Ibarrier(this->Leaving, &request), "wait for all ranks");
+  Timer quiet;
+  this->Until(
+    [&]
+    {
+      int done = 0;
+      CheckMpi(MPI_Test(&request, &done, MPI_STATUS_IGNORE), "wait for all ranks");
+      if (done)
+      {
+        return true;
+      }
+      if (this->OthersWork())
+      {
+        quiet.Restart();
+      }
+      if (quiet.Seconds() >= 0.5 * this->Limit)
+      {
+        this->EndJob("Rank " + std::to_string(this->Self) +
+                     " failed alone, and the others wait for it. " + why);
+      }
+      return false;
+    });
+}
+
+void MpiWaiting::EndJob(const std::string& sentence) const
+{
+  const std::string whole =
+    sentence +
+    " The job ends. (BANYAN_RANK_LIMIT_SECONDS says how long ranks are waited for; 0 is for ever.)";
+  if (this->Patience.Tell)
+  {
+    this->Patience.Tell(whole);
+  }
+  std::fprintf(stderr, "banyan: %s\n", whole.c_str());
+  std::fflush(stderr);
+  MPI_Abort(this->Handle, EXIT_FAILURE);
+  std::abort(); // MPI_Abort does not return
+}
+
+} // namespace banyan

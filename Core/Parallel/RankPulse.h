@@ -1,0 +1,47 @@
+#ifndef banyan_Parallel_RankPulse_h
+#define banyan_Parallel_RankPulse_h
+
+#include "Parallel/RankSigns.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace banyan
+{
+
+/// Signs of life of the ranks of one machine, in memory that they share. A thread of each rank
+/// writes its own ten times a second, whatever the other threads do; any rank may read them all. No
+/// message is needed.
+class RankPulse
+{
+public:
+  /// Makes memory for so many ranks. One of them does. Throws Error.
+  /// @return its name, for all of them
+  static std::string MakeMemory(int ranks);
+  /// When all have opened it: it ends with the last of them, however they end.
+  static void ForgetName(const std::string& name);
+
+  /// Opens it and begins to give signs. Throws Error.
+  /// @param place of this rank in the memory
+  /// @param rank its number in the job
+  /// @param limitSeconds after which `lost` is called, once, by the thread that gives the signs,
+  /// when this rank does not get on (StuckClock) or another one is lost (LostRanks)
+  RankPulse(const std::string& name, int ranks, int place, int rank, double limitSeconds,
+    std::function<void(const std::string& sentence)> lost);
+  ~RankPulse();
+  RankPulse(const RankPulse&) = delete;
+  RankPulse& operator=(const RankPulse&) = delete;
+
+  std::size_t Place() const;
+  std::vector<RankSigns> Signs() const;
+
+private:
+  struct Internals;
+  std::unique_ptr<Internals> Self;
+};
+
+} // namespace banyan
+
+#endif
