@@ -75,7 +75,10 @@ void LevelCaster::PlaceCells(PlannedBrick& brick) const
   const Box own = this->Source.CellsOf(brick.Number);
   const int size = 1 << brick.Level;
   brick.Drawn = Intersection({ own.Lo * size, own.Hi * size }, this->Cells);
-  brick.Cells = { brick.Drawn.Lo / size, (brick.Drawn.Hi + size - 1) / size };
+  // Whole: what is packed stays good when the planes of zones move.
+  brick.Cells = PackedBrick::CanPack(own)
+                  ? own
+                  : Box{ brick.Drawn.Lo / size, (brick.Drawn.Hi + size - 1) / size };
 }
 
 void LevelCaster::SetKeys()
