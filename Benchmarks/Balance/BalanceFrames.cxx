@@ -63,7 +63,8 @@ void DrawSimulated(const BenchScene& scene, const BalanceOptions& options, LoadB
   {
     RayScene drawn = SceneOnPath(scene, options.Path, number, options.Frames);
     const BrickCosts view = ViewCosts(drawn, cells, edge, visible);
-    balancer.BeginFrame(view);
+    const ScreenCuts cuts(drawn);
+    balancer.BeginFrame(view, options.Turns ? &cuts : nullptr);
     const std::vector<Box> zones = ZonesOf(balancer.Tree());
     std::vector<BrickWork> work(static_cast<std::size_t>(ranks));
     BalanceFrame frame;

@@ -37,18 +37,21 @@ const char* const BalanceHelp =
   "  Draws a camera path with zones that are balanced in different ways. Ranks are simulated: "
   "their\n"
   "  zones are drawn one after the other on one thread, and the processor time of each counts.\n"
-  "  --series FILE.json   real data (see banyan-bench-raycast); default the standard scene S2\n"
+  "  --series FILE.json   real data (see banyan-bench-raycast); default a standard scene\n"
+  "  --scene NAME         S1, S2 (default), S1-shaded, S2-shaded\n"
   "  --size N             samples per axis of the standard scene (default 256)\n"
-  "  --path NAME          zoom (default), rest, jumps\n"
+  "  --path NAME          zoom (default), rest, jumps, standard\n"
   "  --picture N          pixels per side (default 512)    --frames N   (default 60)\n"
   "  --ranks LIST         default 2,4,8,16\n"
   "  --modes LIST         default off,slice-step,measured-cost\n"
   "  --plane-step N       cells between places of planes (default 1; encoded series have 8)\n"
+  "  --keep-axes          planes move, but do not turn\n"
   "  --output FILE.csv    default standard output          --append     to it\n"
   "  --rank-times FILE.csv   each rank's milliseconds too\n"
   "  --brick-times FILE.csv  what the bricks of each frame took, and nothing else\n"
   "  --pieces             with --mpi: each rank holds a piece, and bricks go from rank to rank\n"
-  "  --exchange           with --mpi: all ranks fetch the bricks of the first, and nothing is drawn\n"
+  "  --exchange           with --mpi: all ranks fetch the bricks of the first, and nothing is "
+  "drawn\n"
   "  --mpi                on the real ranks of mpirun, in wall-clock time; one thread each\n";
 
 const char* NameOf(LoadBalancing mode)
@@ -70,6 +73,8 @@ BalanceOptions ParseBalanceOptions(const std::vector<std::string>& arguments)
       options.Help = true;
     else if (option == "--append")
       options.Append = true;
+    else if (option == "--keep-axes")
+      options.Turns = false;
     else if (option == "--mpi")
       options.Mpi = true;
     else if (option == "--pieces")
@@ -78,6 +83,8 @@ BalanceOptions ParseBalanceOptions(const std::vector<std::string>& arguments)
       options.Exchange = true;
     else if (option == "--series")
       options.Series = value();
+    else if (option == "--scene")
+      options.Scene = value();
     else if (option == "--path")
       options.Path = value();
     else if (option == "--output")

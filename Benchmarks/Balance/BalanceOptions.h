@@ -12,6 +12,7 @@ namespace banyan::bench
 struct BalanceOptions
 {
   std::string Series; ///< description of a raw series; none draws the standard scene S2
+  std::string Scene = "S2"; ///< of standard scenes
   std::string Path = "zoom";
   std::string Output;     ///< CSV; none prints
   std::string RankTimes;  ///< CSV of each rank's times; none
@@ -23,6 +24,7 @@ struct BalanceOptions
   std::vector<int> Ranks{ 2, 4, 8, 16 };
   std::vector<LoadBalancing> Modes{ LoadBalancing::Off, LoadBalancing::SliceStep,
     LoadBalancing::MeasuredCost };
+  bool Turns = true;   ///< whether measured cost may choose axes
   bool Append = false;
   bool Mpi = false; ///< on the ranks of this job in place of simulated ones
   bool Pieces = false; ///< with Mpi: each rank holds an equal block of the volume, and nothing else

@@ -54,9 +54,15 @@ BenchScene MakeScene(const BalanceOptions& options)
   {
     return RealScene(options.Series, options.Picture);
   }
+  const bool shaded = options.Scene == "S1-shaded" || options.Scene == "S2-shaded";
+  const std::string function = options.Scene.substr(0, 2);
+  if ((function != "S1" && function != "S2") || (options.Scene.size() > 2 && !shaded))
+  {
+    throw Error("There is no standard scene '" + options.Scene + "'; --help lists them.");
+  }
   ThreadPool pool(1);
-  return StandardScene(
-    StandardVolume(options.Size, pool), StandardFunction::S2, false, options.Picture);
+  return StandardScene(StandardVolume(options.Size, pool),
+    function == "S1" ? StandardFunction::S1 : StandardFunction::S2, shaded, options.Picture);
 }
 
 /// Writes frames to both tables.

@@ -74,12 +74,16 @@ Look LookOf(const BenchScene& scene, const std::string& path, int frame, int fra
 
 const std::vector<std::string>& CameraPaths()
 {
-  static const std::vector<std::string> paths{ "zoom", "rest", "jumps" };
+  static const std::vector<std::string> paths{ "zoom", "rest", "jumps", "standard" };
   return paths;
 }
 
 RayScene SceneOnPath(const BenchScene& scene, const std::string& path, int frame, int frames)
 {
+  if (path == "standard")
+  {
+    return ToRayScene(scene, 1.0, 1.0f - 1.0f / 255.0f);
+  }
   const Look look = LookOf(scene, path, frame, frames);
   RayScene drawn = ToRayScene(scene, 1.0, 1.0f - 1.0f / 255.0f);
   const double diagonal = glm::length(scene.Data->Size());

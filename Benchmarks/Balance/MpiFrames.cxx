@@ -37,7 +37,8 @@ void DrawPath(Communicator& communicator, const BenchScene& scene, const Balance
     communicator.Barrier();
     const Timer whole;
     const BrickCosts view = ViewCosts(drawn, cells, edge, visible);
-    balancer.BeginFrame(view);
+    const ScreenCuts cuts(drawn);
+    balancer.BeginFrame(view, options.Turns ? &cuts : nullptr);
     const std::vector<Box> zones = ZonesOf(balancer.Tree());
     BrickWork mine;
     drawn.Work = &mine;

@@ -81,7 +81,9 @@ void FrameBalancer::BeginFrame(RayScene& scene, const BrickSource& source)
   this->LookAgain(scene, source);
   const LoadBalancer::Options& options = this->Balancer->Given();
   this->View = ViewCosts(scene, options.Positions, options.BlockEdge, this->Visible);
-  this->Balancer->BeginFrame(this->View);
+  // Of zones to begin with, bricks travel, and GoBack knows the way: planes move, but do not turn.
+  const ScreenCuts cuts(scene);
+  this->Balancer->BeginFrame(this->View, options.Start.Nodes.empty() ? &cuts : nullptr);
   this->PlaceZones();
   this->Work = BrickWork();
   scene.Work = &this->Work;

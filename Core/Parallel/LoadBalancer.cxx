@@ -18,6 +18,14 @@ constexpr double StopBelow = 1.02;
 constexpr double LeastGain = 0.03;
 constexpr double LeastFurtherGain = 0.01;
 
+/// What a ray that a plane cuts takes once more, in samples: it is made twice, and goes on behind
+/// what would have ended it. See Documentation/balancing.md.
+constexpr double WorkPerCutRay = 24.0;
+/// Axes are chosen anew when frames are expected to be faster by this factor, and not again for
+/// some frames.
+constexpr double TurnGain = 1.15;
+constexpr int FramesBetweenTurns = 8;
+
 /// Moves that made a frame's imbalance worse by more than this factor count as mistakes, twice;
 /// those that made it better make up for one.
 constexpr double MistakeFactor = 1.05;
@@ -98,7 +106,7 @@ LoadBalancer::LoadBalancer(const Options& options)
   this->LastWork = this->OlderWork = this->LongWork;
 }
 
-void LoadBalancer::BeginFrame(const BrickCosts& view)
+void LoadBalancer::BeginFrame(const BrickCosts& view, const ScreenCuts* cuts)
 {
   this->Moved = 0.0;
   if (view.Positions != this->Settings.Positions || view.Edge != this->Settings.BlockEdge ||
@@ -112,7 +120,13 @@ void LoadBalancer::BeginFrame(const BrickCosts& view)
   }
   else if (this->Settings.Mode == LoadBalancing::MeasuredCost && this->Frames > 0)
   {
-    this->MoveToBalance(view);
+    this->MoveToBalance(view, cuts);
+  }
+  else if (this->Settings.Mode == LoadBalancing::MeasuredCost && cuts)
+  {
+    // Nothing is where it would have to be moved from.
+    this->Zones = TurnedTree(
+      this->Zones, CostSums(view), this->Speeds(), this->Settings.PlaneStep, *cuts, WorkPerCutRay);
   }
   this->View = view.Values;
 }
@@ -129,7 +143,7 @@ void LoadBalancer::MoveSlices()
   this->Moved = MovedBetween(before, this->Zones, CostSums(this->DrawnBytes(this->LastWork)));
 }
 
-void LoadBalancer::MoveToBalance(const BrickCosts& view)
+void LoadBalancer::MoveToBalance(const BrickCosts& view, const ScreenCuts* cuts)
 {
   this->Costs[FromView] = this->ExpectedFromView(view);
   this->Costs[FromLast] = this->LastWork;
@@ -155,6 +169,10 @@ void LoadBalancer::MoveToBalance(const BrickCosts& view)
   }
   this->Before = this->Zones;
   Rebalanced next = RebalanceMeasuredCost(this->Zones, costs, this->Speeds(), limits);
+  if (cuts && this->Wait == 0)
+  {
+    this->Turn(costs, bytes, *cuts, next);
+  }
   this->Moving = next.Tree != this->Zones;
   this->Zones = std::move(next.Tree);
   this->Moved = next.BytesMoved;
@@ -162,6 +180,36 @@ void LoadBalancer::MoveToBalance(const BrickCosts& view)
   if (this->Moving && this->Mistakes > MistakesForgiven)
   {
     this->Wait = (1 << (this->Mistakes - MistakesForgiven)) - 1;
+  }
+}
+
+/// Takes a tree with other axes in place of `next` if that is much better.
+void LoadBalancer::Turn(
+  const BrickCosts& costs, const BrickCosts& bytes, const ScreenCuts& cuts, Rebalanced& next)
+{
+  if (this->Rest > 0)
+  {
+    --this->Rest;
+    return;
+  }
+  const CostSums sums(costs);
+  const std::vector<double> speeds = this->Speeds();
+  const double cutNow = RaysCut(this->Zones, sums, cuts);
+  // What was measured has the rays in it that are cut now.
+  const auto slowest = [&](const ZoneTree& tree)
+  {
+    const double least = 0.3 * sums.Total();
+    const double more = WorkPerCutRay * (RaysCut(tree, sums, cuts) - cutNow);
+    return banyan::ExpectedImbalance(tree, sums, speeds) * std::max(sums.Total() + more, least);
+  };
+  ZoneTree turned =
+    TurnedTree(this->Zones, sums, speeds, this->Settings.PlaneStep, cuts, WorkPerCutRay);
+  if (TurnGain * slowest(turned) < slowest(next.Tree))
+  {
+    next.BytesMoved = MovedBetween(this->Zones, turned, CostSums(bytes));
+    next.After = banyan::ExpectedImbalance(turned, sums, speeds);
+    next.Tree = std::move(turned);
+    this->Rest = FramesBetweenTurns;
   }
 }
 

@@ -2,6 +2,7 @@
 #define banyan_Parallel_LoadBalancer_h
 
 #include "Parallel/Rebalance.h"
+#include "Parallel/ScreenCuts.h"
 
 #include <array>
 #include <vector>
@@ -28,8 +29,10 @@ int BlockEdgeFor(const glm::ivec3& positions);
 ///   blocks that were never seen are expected to cost what others do for as much,
 /// - the work of the last two frames,
 /// - the average of many frames.
-/// Speeds of ranks are smoothed. Where moving planes was a mistake, again and again, it waits ever
-/// longer between moves.
+/// Where zones may turn, axes are chosen anew when that is expected to save much work: zones side
+/// by side on the screen do less, in all, than zones behind each other. Such a tree is what it
+/// begins with, too. Speeds of ranks are smoothed. Where moving planes was a mistake, again and
+/// again, it waits ever longer between moves.
 class LoadBalancer
 {
 public:
@@ -49,8 +52,8 @@ public:
     double MostBytes = 32.0 * 1048576.0;
   };
 
-  /// Throws Error when there are no ranks, no positions per block or brick, or zones to begin with of
-  /// another grid or number of ranks.
+  /// Throws Error when there are no ranks, no positions per block or brick, or zones to begin with
+  /// of another grid or number of ranks.
   explicit LoadBalancer(const Options& options);
 
   const Options& Given() const { return this->Settings; }
@@ -58,7 +61,9 @@ public:
 
   /// Before a frame: moves planes.
   /// @param view what is seen of each block (Options::BlockEdge), in any unit that stays the same
-  void BeginFrame(const BrickCosts& view);
+  /// @param cuts from where the camera is; null where axes must stay as they are, because bricks
+  /// travel: what turning moves has no limit but what is drawn
+  void BeginFrame(const BrickCosts& view, const ScreenCuts* cuts = nullptr);
 
   /// Instead of the zones that the last BeginFrame came to: for the frame that was begun.
   void SetTree(const ZoneTree& tree) { this->Zones = tree; }
@@ -83,7 +88,9 @@ private:
   };
 
   void MoveSlices();
-  void MoveToBalance(const BrickCosts& view);
+  void MoveToBalance(const BrickCosts& view, const ScreenCuts* cuts);
+  void Turn(
+    const BrickCosts& costs, const BrickCosts& bytes, const ScreenCuts& cuts, Rebalanced& next);
   std::vector<double> ExpectedFromView(const BrickCosts& view) const;
   BrickCosts DrawnBytes(const std::vector<double>& costs) const;
   BrickCosts CostsOf(const std::vector<double>& values) const;
@@ -122,6 +129,7 @@ private:
   ZoneTree Before;  ///< the last BeginFrame
   int Mistakes = 0; ///< how often moving planes made it worse, lately
   int Wait = 0;     ///< frames until planes may move again
+  int Rest = 0;     ///< frames until axes may be chosen anew
   bool Moving = false;
 };
 
