@@ -2,6 +2,14 @@
 
 namespace banyan
 {
+namespace
+{
+
+thread_local const char ThisThread = 0;
+/// Which thread draws: the address of its own; null for none.
+std::atomic<const char*> Drawing{ nullptr };
+
+} // namespace
 
 const char* NameOf(Phase phase)
 {
@@ -40,6 +48,31 @@ std::atomic<std::uint32_t>& Progress::Waited() noexcept
 {
   static std::atomic<std::uint32_t> waited{ 0 };
   return waited;
+}
+
+PhaseScope::PhaseScope(Phase phase)
+{
+  const char* nobody = nullptr;
+  this->First = Drawing.compare_exchange_strong(nobody, &ThisThread);
+  this->Counts = this->First || Drawing == &ThisThread;
+  if (this->Counts)
+  {
+    Progress::Note();
+    this->Before = Progress::Current().exchange(phase);
+  }
+}
+
+PhaseScope::~PhaseScope()
+{
+  if (this->Counts)
+  {
+    Progress::Note();
+    Progress::Current() = this->Before;
+  }
+  if (this->First)
+  {
+    Drawing = nullptr;
+  }
 }
 
 } // namespace banyan

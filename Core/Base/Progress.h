@@ -41,25 +41,21 @@ private:
   static std::atomic<std::uint32_t>& Waited() noexcept;
 };
 
-/// The phase of the process while an object lives; the one before comes back with its end.
+/// The phase of the process while an object lives; the one before comes back with its end. Only one
+/// thread draws for a process; objects of others, at the same time, have no effect (simulated
+/// ranks).
 class PhaseScope
 {
 public:
-  explicit PhaseScope(Phase phase)
-    : Before(Progress::Current().exchange(phase))
-  {
-    Progress::Note();
-  }
-  ~PhaseScope()
-  {
-    Progress::Note();
-    Progress::Current() = this->Before;
-  }
+  explicit PhaseScope(Phase phase);
+  ~PhaseScope();
   PhaseScope(const PhaseScope&) = delete;
   PhaseScope& operator=(const PhaseScope&) = delete;
 
 private:
-  Phase Before;
+  bool Counts = false;
+  bool First = false; ///< of its thread
+  Phase Before = Phase::Outside;
 };
 
 /// Lives while the drawing thread waits for other ranks. Not to be nested.
