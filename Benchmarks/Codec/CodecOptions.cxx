@@ -18,6 +18,8 @@ CodecOptions ParseCodecOptions(const std::vector<std::string>& arguments)
       options.Help = true;
     else if (option == "--append")
       options.Append = true;
+    else if (option == "--stages")
+      options.Measuring.Stages = true;
     else if (option == "--output")
       options.Output = value();
     else if (option == "--work")
@@ -61,6 +63,8 @@ std::string CodecHelp()
          "                  group-before, modes or trials)\n"
          "  --repeat N      timed passes of each kind, of which the median counts (default 3)\n"
          "  --bricks N      random bricks per pass (default 2000; 0 leaves them out)\n"
+         "  --stages        prints the time of each stage of decoding; needs a build with\n"
+         "                  -DBANYAN_STAGES=ON, whose other times are a little longer\n"
          "  --work FOLDER   for encoded files (default: the folder of FILE.csv)\n";
 }
 

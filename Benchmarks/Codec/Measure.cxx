@@ -99,6 +99,21 @@ double DecodeAllSeconds(EncodedSeries& encoded, const RawSeries& series, Deviati
   return seconds;
 }
 
+/// What the stages of decoding all steps take, by the clock.
+stages::Spent DecodingStages(EncodedSeries& encoded, const RawSeries& series)
+{
+  const stages::Spent before = stages::OfThisThread();
+  DecodeAllSeconds(encoded, series, nullptr);
+  stages::Spent spent = stages::OfThisThread();
+  for (int stage = 0; stage < stages::Count; ++stage)
+  {
+    spent.Ticks[stage] -= before.Ticks[stage];
+    spent.Times[stage] -= before.Times[stage];
+  }
+  spent.SymbolsRead -= before.SymbolsRead;
+  return spent;
+}
+
 struct BrickQuery
 {
   int Step;
@@ -211,6 +226,12 @@ Measurement Measure(
   }
   const double voxels = static_cast<double>(series.VoxelsPerStep()) * series.Steps();
   const double megabytes = voxels * sizeof(float) / 1e6;
+  if (options.Stages)
+  {
+    result.Decoding = DecodingStages(*encoded, series);
+  }
+  result.Samples = voxels;
+  result.SamplesOfStep = series.VoxelsPerStep();
   result.Dataset = series.Name();
   result.Method = method.Name();
   result.BitsOfAccuracy = bits;

@@ -3,6 +3,8 @@
 
 #include "CodecMethod.h"
 
+#include "Codec/DecodeStages.h"
+
 #include <optional>
 #include <string>
 
@@ -14,6 +16,7 @@ struct MeasureOptions
   int Repeat = 3; ///< timed passes; their median counts
   /// No further pass begins once the passes of one kind took this long together.
   double PatienceSeconds = 20;
+  bool Stages = false;    ///< one more pass counts the stages of decoding
   int Bricks = 2000;      ///< random bricks per timed pass
   std::string WorkFolder; ///< exists; each encoding gets a folder of its own in it, removed later
 };
@@ -33,6 +36,9 @@ struct Measurement
   double EncodeMegabytesPerSecond = 0; ///< of float32 values, 10^6 bytes
   double DecodeMegabytesPerSecond = 0;
   std::optional<double> RandomBrickMicroseconds;
+  std::optional<stages::Spent> Decoding; ///< of all samples, of one pass
+  double Samples = 0;                    ///< of all steps
+  std::size_t SamplesOfStep = 0;
 
   /// LargestError / ErrorBound; for a bound of 0 it is 0 or infinite.
   double ErrorOverBound() const;

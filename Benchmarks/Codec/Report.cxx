@@ -1,7 +1,10 @@
 #include "Report.h"
 
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <exception>
+#include <vector>
 
 namespace banyan::bench
 {
@@ -29,6 +32,59 @@ std::string MessageOf(const Measurement& m)
     message += text;
   }
   return message;
+}
+
+/// What writing one value takes where as many are written as a step has, and nothing else is done.
+double TicksOfFilling(std::size_t count)
+{
+  count = std::min(count, std::size_t{ 1 } << 26);
+  std::vector<float> values(count);
+  std::vector<char> others(std::size_t{ 64 } << 20);
+  std::vector<double> times;
+  for (int pass = 0; pass < 5; ++pass)
+  {
+    std::fill(others.begin(), others.end(), static_cast<char>(pass)); // takes the caches
+    const auto begin = std::chrono::steady_clock::now();
+    std::fill(values.begin(), values.end(), static_cast<float>(pass));
+    times.push_back(
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  }
+  std::sort(times.begin(), times.end());
+  return times[times.size() / 2] * stages::TicksPerSecond() / static_cast<double>(count);
+}
+
+/// A line per stage: ticks of the processor's clock per sample, the share of all, how often.
+std::string StagesOf(const Measurement& m)
+{
+  const stages::Spent& spent = *m.Decoding;
+  double all = 0;
+  for (const std::uint64_t ticks : spent.Ticks)
+  {
+    all += static_cast<double>(ticks);
+  }
+  char text[128];
+  std::snprintf(text, sizeof(text), "  %-28s %8s %7s %10s\n", "stage of decoding", "cycles", "%",
+    "times");
+  std::string table = text;
+  for (int stage = 0; stage < stages::Count; ++stage)
+  {
+    const double ticks = static_cast<double>(spent.Ticks[stage]);
+    std::snprintf(text, sizeof(text), "  %-28s %8.3f %7.2f %10llu\n", stages::TextOf(stage),
+      ticks / m.Samples, all > 0 ? 100 * ticks / all : 0.0,
+      static_cast<unsigned long long>(spent.Times[stage]));
+    table += text;
+  }
+  std::snprintf(text, sizeof(text), "  %-28s %8.3f per sample, of %.3g GHz\n", "all",
+    all / m.Samples, stages::TicksPerSecond() / 1e9);
+  table += text;
+  const double symbols = static_cast<double>(spent.SymbolsRead);
+  std::snprintf(text, sizeof(text), "  %-28s %8.3f per sample, of %.3g cycles each\n",
+    "symbols and flags read", symbols / m.Samples,
+    symbols > 0 ? static_cast<double>(spent.Ticks[stages::Symbols]) / symbols : 0.0);
+  table += text;
+  std::snprintf(text, sizeof(text), "  %-28s %8.3f per sample\n", "filling memory, for scale",
+    TicksOfFilling(static_cast<std::size_t>(m.SamplesOfStep)));
+  return table + text;
 }
 
 } // namespace
@@ -63,6 +119,10 @@ bool Report(const RawSeries& series, const MethodList& methods, const std::vecto
         const Measurement measurement = Measure(*method, series, accuracy, options);
         csv << CsvLine(measurement) << std::endl; // at once, so that nothing is lost
         messages << MessageOf(measurement) << std::endl;
+        if (measurement.Decoding)
+        {
+          messages << StagesOf(measurement);
+        }
         if (method->Ours() && measurement.ErrorOverBound() > 1.0)
         {
           messages << method->Name() << " exceeds its error bound." << std::endl;

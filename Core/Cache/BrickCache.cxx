@@ -292,9 +292,9 @@ BrickCache::BrickCache()
 BrickCache::~BrickCache() = default;
 
 std::shared_ptr<const BrickValues> BrickCache::GetIfHeld(
-  const SeriesFile& series, const FieldKey& field, std::int64_t brick)
+  const SeriesFile& series, const FieldKey& field, const BrickNode& node, std::int64_t brick)
 {
-  return this->Self->Find(KeyOf(series, field, NodeOf(series, field, brick), brick));
+  return this->Self->Find(KeyOf(series, field, node, brick));
 }
 
 std::shared_ptr<const BrickValues> BrickCache::Get(

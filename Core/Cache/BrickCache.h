@@ -53,8 +53,9 @@ public:
     const SeriesFile& series, const FieldKey& field, std::int64_t brick);
 
   /// The brick if it is held, otherwise null: for those who decode past the cache.
+  /// @param node of the brick
   std::shared_ptr<const BrickValues> GetIfHeld(
-    const SeriesFile& series, const FieldKey& field, std::int64_t brick);
+    const SeriesFile& series, const FieldKey& field, const BrickNode& node, std::int64_t brick);
 
   /// Decodes a brick before anybody asks for it, if it is not held already. Asking for it later is a
   /// hit, and counted among those of AheadStatistics the first time.

@@ -2,9 +2,11 @@
 
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
+#include "Codec/DecodeStages.h"
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 
 namespace banyan
 {
@@ -92,6 +94,7 @@ private:
   {
     if (!this->Part.Empty())
     {
+      const stages::In stage(stages::Copies);
       Fill(this->To, this->Part, this->Value);
     }
   }
@@ -99,6 +102,44 @@ private:
   const Target<T>& To;
   Box Part;
   T Value{};
+};
+
+/// Decodes bricks that follow each other against x, as many at once as do.
+class Decoding
+{
+public:
+  using Body = std::function<void(std::int64_t first, int count, const Box& part)>;
+  explicit Decoding(const Body& body)
+    : Decode(body)
+  {
+  }
+
+  /// @param part with the same y and z as those before
+  void Add(std::int64_t brick, const Box& part)
+  {
+    if (this->Count > 0 && (this->First != brick + 1 || this->Part.Lo.x != part.Hi.x))
+    {
+      this->Finish();
+    }
+    this->Part = this->Count > 0 ? Box{ part.Lo, this->Part.Hi } : part;
+    this->First = brick;
+    ++this->Count;
+  }
+  /// To be called at the end.
+  void Finish()
+  {
+    if (this->Count > 0)
+    {
+      this->Decode(this->First, this->Count, this->Part);
+      this->Count = 0;
+    }
+  }
+
+private:
+  const Body& Decode;
+  std::int64_t First = 0;
+  int Count = 0;
+  Box Part;
 };
 
 template <class T>
@@ -147,7 +188,15 @@ void Read(
   const std::int64_t count = bricks.Count();
   const bool past =
     static_cast<std::uint64_t>(target.Samples.Count()) * sizeof(T) >= cache.Budget() / 16;
-  const auto read = [&](const glm::ivec3& position, Filling<T>& filling)
+  const Decoding::Body decode = [&](std::int64_t brick, int bricksInRow, const Box& part)
+  {
+    const glm::ivec3 length = target.Samples.Size();
+    series.DecodeRow(field, brick, bricksInRow, part,
+      { target.Stride, target.Stride * length.x,
+        target.Stride * std::ptrdiff_t{ length.x } * length.y },
+      target.RowAt(part.Lo.x, part.Lo.y, part.Lo.z));
+  };
+  const auto read = [&](const glm::ivec3& position, Filling<T>& filling, Decoding& decoding)
   {
     const std::int64_t brick = layout.IndexOf(position);
     const Box part = PartOf(layout, bricks, position, target.Samples);
@@ -161,17 +210,13 @@ void Read(
       filling.Add(part, static_cast<T>(node.Range.Low));
     }
     else if (const auto held =
-               past ? cache.GetIfHeld(series, field, brick) : cache.Get(series, field, brick))
+               past ? cache.GetIfHeld(series, field, node, brick) : cache.Get(series, field, brick))
     {
       Copy(target, part, *held);
     }
     else
     {
-      const glm::ivec3 length = target.Samples.Size();
-      series.DecodePart(field, brick, part,
-        { target.Stride, target.Stride * length.x,
-          target.Stride * std::ptrdiff_t{ length.x } * length.y },
-        target.RowAt(part.Lo.x, part.Lo.y, part.Lo.z));
+      decoding.Add(brick, part);
     }
   };
   // A row of bricks at once where that leaves enough of them for all threads.
@@ -181,6 +226,7 @@ void Read(
     [&](std::int64_t fromLast)
     {
       Filling<T> filling(target);
+      Decoding decoding(decode);
       for (int k = 0; k < together; ++k)
       {
         // The last one first: a brick then finds the layers that it shares with others decoded.
@@ -188,8 +234,9 @@ void Read(
         read(bricks.Lo + glm::ivec3(static_cast<int>(i % size.x),
                            static_cast<int>(i / size.x % size.y),
                            static_cast<int>(i / size.x / size.y)),
-          filling);
+          filling, decoding);
       }
+      decoding.Finish();
     });
 }
 

@@ -2,6 +2,7 @@
 
 #include "Base/Error.h"
 #include "Codec/BlockScratch.h"
+#include "Codec/DecodeStages.h"
 #include "Codec/SymbolReader.h"
 
 #include <memory>
@@ -104,6 +105,7 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
         using P = decltype(pass);
         if constexpr (Dense && D == 2)
         {
+          const stages::In stage(stages::FacePasses);
           BeginStride<P>(this->Work.Vectors.Faces, symbols);
           DenseSliceDecoder<P, Number>(unit, this->Work.Vectors.Faces.template At<P::S>(), mode.By,
             symbols, static_cast<Number>(P::S == 2 ? this->Plane.CoarseBin : this->Plane.FineBin),
@@ -137,17 +139,22 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
 
   void Run() const
   {
-    this->PlaceCoarse();
+    {
+      const stages::In stage(stages::Coarse);
+      this->PlaceCoarse();
+    }
     SymbolReader* readers[8] = {};
     for (int owner = 0; owner < 8; ++owner)
     {
       const BlockCode& block = this->Code.Blocks[owner];
       if (block.Exists && this->Plain(owner))
       {
+        const stages::In stage(stages::Plain);
         this->PlacePlain(owner);
       }
       else if (block.Exists && block.Bytes > 0 && owner != 7 && !this->HasEdge(owner))
       {
+        const stages::In stage(stages::Payload);
         readers[owner] = &this->Work.Readers[owner];
         // Of neighbours no more is read than their edges and faces; no symbol takes more bits.
         const std::size_t b = static_cast<std::size_t>(this->B());
@@ -190,6 +197,7 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
 
   bool Edges(int owner, SymbolReader* symbols) const
   {
+    const stages::In stage(stages::Edges);
     this->Work.Edges.Clear();
     return this->template DecodeUnits<1>(owner, symbols, this->Work.Edges, false);
   }
@@ -206,6 +214,7 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
   bool Faces(
     int owner, SymbolReader* symbols, const std::uint8_t (&edges)[3][64], bool any) const
   {
+    const stages::In stage(stages::FaceCopies);
     if constexpr (Dense)
     {
       if (symbols != nullptr)
@@ -224,6 +233,7 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
 
   void Inside(SymbolReader* symbols, bool any) const
   {
+    const stages::In stage(stages::References);
     if constexpr (Dense)
     {
       if (symbols != nullptr)

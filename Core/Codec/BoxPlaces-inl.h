@@ -76,22 +76,25 @@ struct BoxPlaces
     const View<const Number> from{ this->NeighbourOf(owner), this->Box.Stride };
     const glm::ivec3 corner = this->Corner(owner);
     const View<Number> to = this->Box.At(corner);
+    // Both boxes are without gaps: rows of a layer along z follow each other.
+    const std::size_t row = static_cast<std::size_t>(n) * sizeof(Number);
     if (owner == 1)
+    {
+      for (int i = 0; i < n * n; ++i)
+      {
+        to.Base[i * n] = from.Base[i * n];
+      }
+    }
+    else if (owner == 2)
     {
       for (int z = 0; z < n; ++z)
       {
-        for (int y = 0; y < n; ++y)
-        {
-          *to.Row(y, z) = *from.Row(y, z);
-        }
+        std::memcpy(to.Row(0, z), from.Row(0, z), row); // of a length that is known: no call
       }
-      return;
     }
-    for (int j = 0; j < n; ++j)
+    else
     {
-      const int y = owner == 2 ? 0 : j;
-      const int z = owner == 2 ? j : 0;
-      std::copy_n(from.Row(y, z), n, to.Row(y, z));
+      std::memcpy(to.Base, from.Base, static_cast<std::size_t>(n) * row);
     }
   }
 
@@ -121,9 +124,14 @@ struct BoxPlaces
       for (int y = low.y; y < high.y; ++y)
       {
         Number* row = this->Box.Row(y, z);
-        if (this->Code.Blocks[owner].Same)
+        if (this->Code.Blocks[owner].Same && (owner & 1) == 0)
         {
-          std::copy(this->A.Row(y, z) + low.x, this->A.Row(y, z) + high.x, row + low.x);
+          // Of a length that is known: no call.
+          std::memcpy(row, this->A.Row(y, z), static_cast<std::size_t>(this->B()) * sizeof(Number));
+        }
+        else if (this->Code.Blocks[owner].Same)
+        {
+          row[low.x] = this->A.Row(y, z)[low.x];
         }
         else
         {

@@ -8,6 +8,7 @@
 
 #include "Codec/BlockDecoder.h"
 #include "Codec/BlockUnits-inl.h"
+#include "Codec/DecodeStages.h"
 #include "Codec/DenseWork-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -60,6 +61,7 @@ void DecodeDenseInterior(Unit<Number, 3>& unit, const References<Number>& refere
     [&](auto pass)
     {
       using P = decltype(pass);
+      const stages::In stage(stages::Passes);
       BeginStride<P>(work.Interior, symbols);
       DenseSliceDecoder<P, Number>(unit, work.Interior.template At<P::S>(), by, symbols,
         static_cast<Number>(P::S == 2 ? plane.CoarseBin : plane.FineBin), work.Slice)

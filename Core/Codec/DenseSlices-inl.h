@@ -6,6 +6,7 @@
 #define banyan_Codec_DenseSlices_inl_h
 #endif
 
+#include "Codec/DecodeStages.h"
 #include "Codec/DenseContexts-inl.h"
 #include "Codec/SymbolRun-inl.h"
 
@@ -97,6 +98,7 @@ private:
   /// Rows of a slice that have symbols, as bits.
   HWY_INLINE unsigned RowsWithSymbols(int slice)
   {
+    const stages::In stage(D == 3 ? stages::RowClasses : stages::FaceContexts);
     DenseMemory& memory = this->Memory;
     unsigned rows = this->RowsInside;
     if (D == 3)
@@ -151,6 +153,7 @@ private:
   /// Tables and signs of the lanes of some rows.
   HWY_INLINE void Classify(int slice, unsigned rows, const std::int8_t* kept) const
   {
+    const stages::In stage(D == 3 ? stages::Contexts : stages::FaceContexts);
     const Tag d;
     const hn::RebindToSigned<Tag> s;
     const std::int8_t* const near = this->Memory.Kept[1 - slice / 2 % 2];
@@ -253,6 +256,7 @@ private:
   /// Magnitudes, sums of rows and kept residuals of a slice.
   HWY_INLINE void Keep(int slice, std::int8_t* kept) const
   {
+    const stages::In stage(D == 3 ? stages::Residuals : stages::FaceContexts);
     const Tag d;
     const hn::RebindToSigned<Tag> s;
     const hn::Repartition<std::uint64_t, Tag> sums;

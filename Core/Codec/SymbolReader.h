@@ -93,6 +93,14 @@ public:
     return word >> (position & 7);
   }
 
+  /// Eight bytes from one on; as far behind the end as Word may lie, and eight bytes more.
+  HWY_INLINE std::uint64_t Byte(std::uint64_t byte) const
+  {
+    std::uint64_t word;
+    std::memcpy(&word, this->Buffer.data() + byte, 8);
+    return word;
+  }
+
   /// To be called when the position was moved.
   HWY_INLINE void Check()
   {
@@ -104,8 +112,8 @@ public:
   }
 
 private:
-  /// Zeros behind the payload: what symbols may take, and a word.
-  static constexpr std::size_t Slack = MostUnchecked * tans::TableBits / 8 + 16;
+  /// Zeros behind the payload: what symbols may take, and two words.
+  static constexpr std::size_t Slack = MostUnchecked * tans::TableBits / 8 + 24;
 
   HWY_INLINE std::uint32_t Take(std::uint32_t bits)
   {

@@ -6,6 +6,7 @@
 #define banyan_Codec_SymbolRun_inl_h
 #endif
 
+#include "Codec/DecodeStages.h"
 #include "Codec/SymbolReader.h"
 
 #include <hwy/highway.h>
@@ -28,21 +29,27 @@ HWY_INLINE std::uint64_t LowBits(std::uint64_t word, std::uint32_t entry)
 #endif
 }
 
-/// The bits at hand while a run is read.
-struct RunBits
+/// The bits at hand while a run is read. New ones are put behind those that are left, so that states need
+/// not wait until they are loaded: where they lie is known one filling before.
+class RunBits
 {
-  const SymbolReader& Symbols;
-  std::uint64_t Position;
-  std::uint64_t Word = 0;
-  std::uint32_t Used = 0; ///< the sum of entries: its lowest byte is that of their bits
+public:
+  HWY_INLINE RunBits(const SymbolReader& symbols)
+    : Symbols(symbols)
+    , Word(symbols.Word(symbols.Position))
+    , Next8((symbols.Position >> 3) + 7)
+    , Left(56 - static_cast<std::uint32_t>(symbols.Position & 7))
+  {
+  }
 
-  /// Has enough bits for as many symbols as fit into a word.
+  /// From now on there are enough bits for four symbols; as there are at the beginning.
   HWY_INLINE void Fill()
   {
-    this->Used = 0;
-    this->Word = this->Symbols.Word(this->Position);
+    const std::uint32_t left = this->Left & 63u; // what is above is of no meaning
+    this->Word |= this->Symbols.Byte(this->Next8) << left;
+    this->Next8 += (63u - left) >> 3;
+    this->Left = left | 56u;
   }
-  HWY_INLINE void Move() { this->Position += this->Used & 0xffu; }
 
   /// A symbol's entry; moves the lane's state.
   HWY_INLINE std::uint32_t Next(
@@ -51,9 +58,18 @@ struct RunBits
     const std::uint32_t entry = tables[std::uint64_t{ place } + state];
     state = std::uint64_t{ entry >> residual::BaseShift } + LowBits(this->Word, entry);
     this->Word >>= entry & 63u;
-    this->Used += entry;
+    this->Left -= entry; // whose lowest bits are the symbol's
     return entry;
   }
+
+  /// Of the first bit that was not taken.
+  HWY_INLINE std::uint64_t Position() const { return 8 * this->Next8 - (this->Left & 63u); }
+
+private:
+  const SymbolReader& Symbols;
+  std::uint64_t Word;  ///< the next bits, lowest first; those behind the ones that are left are right, too
+  std::uint64_t Next8; ///< byte that comes behind those that are left
+  std::uint32_t Left;  ///< bits of the word, in its lowest six
 };
 
 /// The last 1 to 7 symbols of a run. Most runs of smooth blocks have no more.
@@ -62,7 +78,6 @@ HWY_INLINE void ReadFew(RunBits& bits, const std::uint32_t* HWY_RESTRICT tables,
   const std::uint16_t* HWY_RESTRICT places, int count, std::uint64_t (&states)[Lanes],
   std::uint32_t* HWY_RESTRICT entries)
 {
-  bits.Fill();
   entries[0] = bits.Next(tables, places[0], states[0]);
   if (count > 1)
   {
@@ -75,7 +90,6 @@ HWY_INLINE void ReadFew(RunBits& bits, const std::uint32_t* HWY_RESTRICT tables,
   if (count > 3)
   {
     entries[3] = bits.Next(tables, places[3], states[3 % Lanes]);
-    bits.Move();
     bits.Fill();
   }
   if (count > 4)
@@ -90,7 +104,6 @@ HWY_INLINE void ReadFew(RunBits& bits, const std::uint32_t* HWY_RESTRICT tables,
   {
     entries[6] = bits.Next(tables, places[6], states[6 % Lanes]);
   }
-  bits.Move();
 }
 
 /// The tops of entries.
@@ -120,29 +133,27 @@ HWY_NOINLINE void ReadRunOf(SymbolReader& symbols, const std::uint32_t* HWY_REST
   std::uint32_t entries[SymbolReader::MostUnchecked];
   std::uint64_t states[Lanes];
   std::memcpy(states, symbols.States, sizeof(states));
-  RunBits bits{ symbols, symbols.Position };
+  RunBits bits(symbols);
   int k = 0;
   for (; k + 8 <= count; k += 8)
   {
-    bits.Fill(); // four symbols take at most 36 bits
     entries[k] = bits.Next(tables, places[k], states[0]);
     entries[k + 1] = bits.Next(tables, places[k + 1], states[1 % Lanes]);
     entries[k + 2] = bits.Next(tables, places[k + 2], states[2 % Lanes]);
     entries[k + 3] = bits.Next(tables, places[k + 3], states[3 % Lanes]);
-    bits.Move();
-    bits.Fill();
+    bits.Fill(); // four symbols take at most 36 bits
     entries[k + 4] = bits.Next(tables, places[k + 4], states[4 % Lanes]);
     entries[k + 5] = bits.Next(tables, places[k + 5], states[5 % Lanes]);
     entries[k + 6] = bits.Next(tables, places[k + 6], states[6 % Lanes]);
     entries[k + 7] = bits.Next(tables, places[k + 7], states[7 % Lanes]);
-    bits.Move();
+    bits.Fill();
   }
   if (k < count)
   {
     ReadFew<Lanes>(bits, tables, places + k, count - k, states, entries + k);
   }
   std::memcpy(symbols.States, states, sizeof(states));
-  symbols.Position = bits.Position;
+  symbols.Position = bits.Position();
   symbols.Check();
   TakeTops(entries, count, tops);
 }
@@ -156,6 +167,8 @@ HWY_NOINLINE void ReadRunOf(SymbolReader& symbols, const std::uint32_t* HWY_REST
 HWY_INLINE void ReadRun(SymbolReader& symbols, const std::uint32_t* tables,
   const std::uint16_t* places, int count, std::int8_t* tops)
 {
+  const stages::In stage(stages::Symbols);
+  stages::CountSymbols(count);
   for (; count > 0; count -= SymbolReader::MostUnchecked)
   {
     const int some = std::min(count, SymbolReader::MostUnchecked);

@@ -1,5 +1,7 @@
 #include "Series/BrickDecoding.h"
 
+#include "Codec/BlockScratch.h"
+#include "Codec/DecodeStages.h"
 #include "Series/Exceptions.h"
 #include "Series/Quantizer.h"
 
@@ -31,6 +33,43 @@ bool InOneBox(const PlaneRegion& region, int edge)
   return inside;
 }
 
+/// Where the numbers of a region lie in the box of its block.
+struct BoxPlace
+{
+  std::ptrdiff_t First = 0; ///< of the region
+  glm::i64vec3 Stride{ 0 }; ///< axes as the data has them
+
+  /// @param skip samples of the region before the first one that is wanted, axes as the data has them
+  BoxPlace(const GroupField& group, const PlaneRegion& region, const glm::ivec3& skip)
+  {
+    const std::ptrdiff_t n = group.Edge() + 1;
+    const std::ptrdiff_t pitch[3] = { 1, n, n * n };
+    for (int a = 0; a < 3; ++a)
+    {
+      const int real = group.Head().Axes[static_cast<std::size_t>(a)];
+      this->Stride[real] = pitch[a];
+      this->First += (region.Low[a] - region.FirstBlock[a] * group.Edge() + skip[real]) * pitch[a];
+    }
+  }
+};
+
+/// Numbers of a box in the data's order of axes: as they lie, or in memory that is given.
+/// @param stride receives how they lie
+template <class Number>
+const Number* InOrder(const Number* numbers, glm::i64vec3& stride, const glm::ivec3& size,
+  std::vector<Number>& memory)
+{
+  if (stride.x == 1)
+  {
+    return numbers;
+  }
+  const stages::In stage(stages::Order);
+  memory.resize(static_cast<std::size_t>(size.x) * size.y * size.z);
+  TransposeBox(numbers, stride, size, memory.data());
+  stride = { 1, size.x, std::int64_t{ size.x } * size.y };
+  return memory.data();
+}
+
 /// The usual case of Decode: one box, no exceptions.
 /// @param skip samples of the brick before the first one that is wanted, and @param size how many
 /// are, axes as the data has them
@@ -39,7 +78,6 @@ void DecodeBox(OpenGroup& open, int step, const PlaneRegion& region,
   const glm::ivec3& skip, const glm::ivec3& size, const glm::i64vec3& strides, T* values)
 {
   GroupField& group = *open.Field;
-  const LatticeDecoder<T>& decoder = DecoderOf<T>(open);
   // The first rows to be written; they ask for those behind.
   for (int y = 0; y < size.y; ++y)
   {
@@ -47,31 +85,56 @@ void DecodeBox(OpenGroup& open, int step, const PlaneRegion& region,
     __builtin_prefetch(values + strides.z + y * strides.y, 1);
   }
   const LatticeCache::Box box = group.Box(step, region.Plane, region.FirstBlock);
-  const std::ptrdiff_t n = group.Edge() + 1;
-  const std::ptrdiff_t pitch[3] = { 1, n, n * n };
-  std::ptrdiff_t first = 0;
-  glm::i64vec3 stride;
-  for (int a = 0; a < 3; ++a)
-  {
-    const int real = group.Head().Axes[static_cast<std::size_t>(a)];
-    stride[real] = pitch[a];
-    first += (region.Low[a] - region.FirstBlock[a] * group.Edge() + skip[real]) * pitch[a];
-  }
+  BoxPlace place(group, region, skip);
   box->Visit(
     [&](const auto* all)
     {
-      const auto* numbers = all + first;
-      if (stride.x != 1)
-      {
-        using Number = std::remove_cv_t<std::remove_reference_t<decltype(*all)>>;
-        thread_local std::vector<Number> ordered;
-        ordered.resize(static_cast<std::size_t>(size.x) * size.y * size.z);
-        TransposeBox(numbers, stride, size, ordered.data());
-        numbers = ordered.data();
-        stride = { 1, size.x, std::int64_t{ size.x } * size.y };
-      }
-      decoder.Decode(numbers, stride, size, values, strides);
+      using Number = std::remove_cv_t<std::remove_reference_t<decltype(*all)>>;
+      thread_local std::vector<Number> ordered;
+      const Number* const numbers = InOrder(all + place.First, place.Stride, size, ordered);
+      const stages::In stage(stages::Values);
+      DecoderOf<T>(open).Decode(numbers, place.Stride, size, values, strides);
     });
+}
+
+/// Bricks of a row whose numbers are kept until their values are written: they fit into a second-level
+/// cache.
+constexpr int LongestRow = 8;
+
+/// What is wanted of a brick of a row.
+struct RowBrick
+{
+  PlaneRegion Region;
+  glm::ivec3 Skip; ///< samples of the brick before the first one that is wanted
+  glm::ivec3 Size;
+};
+
+/// DecodeBox of some bricks that follow each other along x. Their values are written row by row of all of
+/// them: long rows take less time than several short ones.
+/// @param count 1 to LongestRow
+template <class T, class Number>
+void DecodeBoxes(OpenGroup& open, int step, const RowBrick* bricks, int count,
+  const glm::i64vec3& strides, T* values)
+{
+  thread_local std::vector<Number> ordered[LongestRow];
+  LatticeCache::Box boxes[LongestRow];
+  LatticePart<Number> parts[LongestRow];
+  // The last one first: a block then finds the layers that it shares with others decoded.
+  for (int k = count - 1; k >= 0; --k)
+  {
+    const PlaneRegion& region = bricks[k].Region;
+    if (k > 0)
+    {
+      open.Field->Prefetch(step, bricks[k - 1].Region.Plane, bricks[k - 1].Region.FirstBlock);
+    }
+    boxes[k] = open.Field->Box(step, region.Plane, region.FirstBlock);
+    BoxPlace place(*open.Field, region, bricks[k].Skip);
+    const Number* const numbers = InOrder(boxes[k]->template Numbers<Number>() + place.First,
+      place.Stride, bricks[k].Size, ordered[k]);
+    parts[k] = { numbers, place.Stride.y, place.Stride.z, bricks[k].Size.x };
+  }
+  const stages::In stage(stages::Values);
+  DecoderOf<T>(open).DecodeParts(parts, count, bricks[0].Size.y, bricks[0].Size.z, values, strides);
 }
 
 /// @return false when there was nothing to decode: all samples are one value
@@ -231,6 +294,53 @@ bool DecodeSome(const OpenSeries& series, OpenGroup& open, const FieldKey& field
     {
       using T = typename decltype(tag)::Type;
       DecodeBox<T>(open, step, region, skip, part.Size(), stride, static_cast<T*>(first));
+    });
+  return true;
+}
+
+bool DecodeSomeRow(const OpenSeries& series, OpenGroup& open, const FieldKey& field,
+  const BrickRow& row, const Box& part, const glm::i64vec3& stride, void* first)
+{
+  GroupField& group = *open.Field;
+  const int step = field.Step - group.Segment().FirstStep();
+  const std::size_t level = static_cast<std::size_t>(field.Level);
+  const std::vector<group::NodeEntry>& entries = group.Step(step).Levels[level];
+  thread_local std::vector<RowBrick> bricks;
+  bricks.clear();
+  for (int k = 0; k < row.Count; ++k)
+  {
+    const std::int64_t brick = row.First + k;
+    const PlaneRegion region = RegionOf(series, open, field, brick);
+    if (entries[static_cast<std::size_t>(brick)].Uniform || !InOneBox(region, group.Edge()) ||
+        Exceptional(group, step, region))
+    {
+      return false;
+    }
+    const Box own = RowPart(series.Layouts[level], row.First, row.Count, k, part);
+    bricks.push_back({ region, own.Lo - series.Layouts[level].SamplesOf(brick).Lo, own.Size() });
+  }
+  Dispatch(open.Type,
+    [&](auto tag)
+    {
+      using T = typename decltype(tag)::Type;
+      T* values = static_cast<T*>(first) + (part.Size().x) * stride.x;
+      for (int end = row.Count; end > 0; end -= LongestRow)
+      {
+        const int begin = std::max(0, end - LongestRow);
+        for (int k = begin; k < end; ++k)
+        {
+          values -= bricks[static_cast<std::size_t>(k)].Size.x * stride.x;
+        }
+        const RowBrick* const some = bricks.data() + begin;
+        if (block::Narrow(group.Head().Least, group.Head().Greatest))
+        {
+          DecodeBoxes<T, std::int16_t>(open, step, some, end - begin, stride, values);
+        }
+        else
+        {
+          DecodeBoxes<T, std::int32_t>(open, step, some, end - begin, stride, values);
+        }
+      }
     });
   return true;
 }

@@ -17,6 +17,17 @@ bool DecodeWhole(const OpenSeries& series, OpenGroup& open, const FieldKey& fiel
 bool DecodeSome(const OpenSeries& series, OpenGroup& open, const FieldKey& field,
   std::int64_t brick, const Box& part, const glm::i64vec3& stride, void* first);
 
+/// Bricks that follow each other along x.
+struct BrickRow
+{
+  std::int64_t First;
+  int Count;
+};
+
+/// The same of a row of bricks, as SeriesFile::DecodeRow does.
+bool DecodeSomeRow(const OpenSeries& series, OpenGroup& open, const FieldKey& field,
+  const BrickRow& row, const Box& part, const glm::i64vec3& stride, void* first);
+
 } // namespace banyan
 
 #endif

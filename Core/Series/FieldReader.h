@@ -3,6 +3,7 @@
 
 #include "Series/SeriesFile.h"
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string>
@@ -23,6 +24,13 @@ public:
   virtual void DecodeBrick(const FieldKey& field, std::int64_t brick, void* values) = 0;
   /// As SeriesFile::DecodePart. @return false when the caller has to decode the whole brick instead
   virtual bool DecodePart(const FieldKey&, std::int64_t, const Box&, const glm::i64vec3&, void*)
+  {
+    return false;
+  }
+  /// As SeriesFile::DecodeRow, of several bricks. @return false when the caller has to decode them one by
+  /// one
+  virtual bool DecodeRow(
+    const FieldKey&, std::int64_t, int, const Box&, const glm::i64vec3&, void*)
   {
     return false;
   }
@@ -48,6 +56,16 @@ struct OpenSeries
   }
   MaskRange MaskRangeOf(int array, int component) const;
 };
+
+/// What brick k of a row writes of a part.
+inline Box RowPart(const BrickLayout& layout, std::int64_t first, int count, int k, const Box& part)
+{
+  const Box samples = layout.SamplesOf(first + k);
+  Box result = part;
+  result.Lo.x = std::max(part.Lo.x, samples.Lo.x);
+  result.Hi.x = k + 1 < count ? std::min(part.Hi.x, samples.Hi.x - 1) : part.Hi.x;
+  return result;
+}
 
 /// Readers of the two versions. Segments are mapped at once, so that replacing the series does not
 /// take them away from readers. Throw Error.

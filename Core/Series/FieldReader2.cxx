@@ -1,4 +1,5 @@
 #include "Base/Error.h"
+#include "Codec/DecodeStages.h"
 #include "Series/BrickDecoding.h"
 #include "Series/FieldReader.h"
 #include "Series/Hash.h"
@@ -23,6 +24,8 @@ public:
   std::shared_ptr<const std::vector<BrickNode>> Nodes(const FieldKey& field) override;
   void DecodeBrick(const FieldKey& field, std::int64_t brick, void* values) override;
   bool DecodePart(const FieldKey& field, std::int64_t brick, const Box& part,
+    const glm::i64vec3& stride, void* first) override;
+  bool DecodeRow(const FieldKey& field, std::int64_t brick, int count, const Box& part,
     const glm::i64vec3& stride, void* first) override;
   void VerifyBricks(const FieldKey& field, const std::vector<std::int64_t>& bricks) override;
   std::uint64_t BytesRead() const override { return this->Read; }
@@ -173,6 +176,7 @@ std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
     this->Opened.splice(this->Opened.begin(), this->Opened, found);
     return this->Opened.front().second;
   }
+  const stages::In stage(stages::Tables);
   const ArrayIndex& array = this->Series.Index.Arrays[static_cast<std::size_t>(field.Array)];
   auto open = std::make_shared<OpenGroup>();
   open->Type = array.Type;
@@ -230,6 +234,7 @@ std::shared_ptr<const std::vector<BrickNode>> Reader2::Nodes(const FieldKey& ask
   std::lock_guard<std::mutex> lock(open->NodeMutex);
   // Where a field rests, nodes are what they were, but nothing is stored for them.
   const bool rests = field.Step != asked.Step;
+  const stages::In stage(stages::Tables);
   auto& nodes = open->Nodes[{ rests ? -1 - field.Step : field.Step, field.Level }];
   if (!nodes)
   {
@@ -266,6 +271,18 @@ bool Reader2::DecodePart(const FieldKey& asked, std::int64_t brick, const Box& p
   const bool done = InFile(open->Field->Segment().Path(), 0,
     [&] { return DecodeSome(this->Series, *open, field, brick, part, stride, first); });
   this->Decoded += done ? 1 : 0;
+  this->Read += open->Field->TakeBytesRead();
+  return done;
+}
+
+bool Reader2::DecodeRow(const FieldKey& asked, std::int64_t brick, int count, const Box& part,
+  const glm::i64vec3& stride, void* first)
+{
+  const FieldKey field = this->Stored(asked);
+  const std::shared_ptr<OpenGroup> open = this->Open(field);
+  const bool done = InFile(open->Field->Segment().Path(), 0,
+    [&] { return DecodeSomeRow(this->Series, *open, field, { brick, count }, part, stride, first); });
+  this->Decoded += done ? static_cast<std::uint64_t>(count) : 0;
   this->Read += open->Field->TakeBytesRead();
   return done;
 }

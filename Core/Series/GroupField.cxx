@@ -3,6 +3,7 @@
 #include "Codec/BlockEncoder.h"
 #include "Codec/BlockModes.h"
 #include "Codec/BlockScratch.h"
+#include "Codec/DecodeStages.h"
 #include "Codec/GroupOrder.h"
 #include "Codec/SymbolWriter.h"
 #include "Series/FieldReader.h"
@@ -66,6 +67,7 @@ const group::StepTable& GroupField::Step(int step)
   {
     return *table;
   }
+  const stages::In stage(stages::Tables);
   // Under the lock: threads that start on a new step together then load its table once.
   std::lock_guard<std::mutex> lock(this->Mutex);
   return this->Load(step);
@@ -174,6 +176,7 @@ LatticeCache::Box GroupField::ReferenceBox(int step, int plane, const glm::ivec3
   {
     return this->Box(step, plane, block);
   }
+  const stages::In stage(stages::Lookup);
   if (this->BeforeFits)
   {
     if (LatticeCache::Box found = LatticeCache::Process().Find(this->KeyOf(step, plane, block)))
@@ -196,8 +199,14 @@ const Number* GroupField::Coarse(int step, int plane, const glm::ivec3& block)
   const glm::ivec3 coarseBlock = first / this->BrickCells;
   const glm::ivec3 origin = top ? glm::ivec3(0) : coarseBlock * this->BrickCells;
   const glm::ivec3 size = top ? samples : glm::ivec3(this->BrickCells + 1);
+  const stages::In stage(stages::Coarse);
   thread_local std::vector<Number> numbers;
   numbers.resize(static_cast<std::size_t>(n * n * n));
+  int columns[64 / 4 + 1]; // of the largest blocks
+  for (int x = 0; x < n; ++x)
+  {
+    columns[x] = std::min(first.x + x, samples.x - 1) - origin.x;
+  }
   const auto gather = [&](const auto* from)
   {
     Number* to = numbers.data();
@@ -210,7 +219,7 @@ const Number* GroupField::Coarse(int step, int plane, const glm::ivec3& block)
         const auto* row = from + (sz * size.y + sy) * size.x;
         for (int x = 0; x < n; ++x)
         {
-          *to++ = static_cast<Number>(row[std::min(first.x + x, samples.x - 1) - origin.x]);
+          *to++ = static_cast<Number>(row[columns[x]]);
         }
       }
     }
@@ -316,6 +325,7 @@ LatticeCache::Key GroupField::KeyOf(int step, int plane, const glm::ivec3& block
 
 LatticeCache::Box GroupField::Box(int step, int plane, const glm::ivec3& block)
 {
+  const stages::In stage(stages::Lookup);
   LatticeCache& cache = LatticeCache::Process();
   const LatticeCache::Key key = this->KeyOf(step, plane, block);
   if (LatticeCache::Box found = cache.Find(key))

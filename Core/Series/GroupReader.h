@@ -93,6 +93,10 @@ public:
   /// Decodes the box of a block: (edge + 1)^3 lattice numbers.
   LatticeCache::Box Box(int step, int plane, const glm::ivec3& block);
 
+  /// Asks the caches of the processor for what decoding the box will read: boxes of other steps, which
+  /// usually are in memory only. Decodes nothing.
+  void Prefetch(int step, int plane, const glm::ivec3& block);
+
   /// Checks the pages of everything that decoding the box reads.
   void Verify(int step, int plane, const glm::ivec3& block);
 

@@ -54,6 +54,21 @@ public:
     }
   }
 
+  /// Asks for the numbers, which will be read soon: for every other line of the cache, as processors fetch
+  /// pairs of them.
+  void Prefetch() const
+  {
+    this->Visit(
+      [this](const auto* numbers)
+      {
+        const char* const bytes = reinterpret_cast<const char*>(numbers);
+        for (std::uint64_t at = 0; at < this->Bytes(); at += 128)
+        {
+          __builtin_prefetch(bytes + at, 0, 2);
+        }
+      });
+  }
+
   std::uint64_t Bytes() const
   {
     return this->Count * (this->Short ? sizeof(std::int16_t) : sizeof(std::int32_t));

@@ -73,6 +73,27 @@ public:
     }
   }
 
+  /// Decodes boxes of numbers that lie side by side along x, row by row of all of them.
+  /// @param y,z how many rows along these axes; each box has as many
+  template <class Number>
+  void DecodeParts(const LatticePart<Number>* parts, int count, int y, int z, T* decoded,
+    const glm::i64vec3& to) const
+  {
+    if constexpr (std::is_floating_point_v<T>)
+    {
+      if (to.x == 1 && this->Map.IsIdentity())
+      {
+        return ValuesOfParts(parts, count, y, z, this->Origin, this->Step, decoded, to);
+      }
+    }
+    for (int i = 0; i < count; ++i)
+    {
+      this->Decode(
+        parts[i].Numbers, { 1, parts[i].Y, parts[i].Z }, { parts[i].Width, y, z }, decoded, to);
+      decoded += parts[i].Width * to.x;
+    }
+  }
+
   /// Decodes numbers that lie side by side.
   template <class Number>
   void Decode(const Number* numbers, std::size_t count, T* decoded) const

@@ -10,18 +10,51 @@ namespace banyan::HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// Values of numbers that lie side by side.
 template <class Number, class T>
-void Values(const Number* numbers, const glm::i64vec3& pitch, const glm::ivec3& size, double origin,
-  double step, T* values, const glm::i64vec3& to)
+class RowOfValues
 {
-  const hn::ScalableTag<double> real;
-  const hn::Rebind<std::int32_t, decltype(real)> whole;
-  const hn::Rebind<Number, decltype(real)> number;
-  const auto origins = hn::Set(real, origin);
-  const auto steps = hn::Set(real, step);
-  const int lanes = static_cast<int>(hn::Lanes(real));
-  const auto compute = [&](const Number* from, T* at)
+public:
+  RowOfValues(double origin, double step)
+    : Origin(origin)
+    , Step(step)
+    , Origins(hn::Set(Real(), origin))
+    , Steps(hn::Set(Real(), step))
   {
+  }
+
+  HWY_INLINE void Write(const Number* from, int count, T* to) const
+  {
+    const int lanes = static_cast<int>(hn::Lanes(Real()));
+    if (count == 2 * lanes) // what a block has, where vectors are long
+    {
+      this->Compute(from, to);
+      this->Compute(from + lanes, to + lanes);
+      return;
+    }
+    int x = 0;
+    for (; x + lanes <= count; x += lanes)
+    {
+      this->Compute(from + x, to + x);
+    }
+    if (x < count && count >= lanes)
+    {
+      this->Compute(from + count - lanes, to + count - lanes); // the rest, and some once more
+      return;
+    }
+    for (; x < count; ++x)
+    {
+      to[x] = static_cast<T>(this->Origin + static_cast<double>(from[x]) * this->Step);
+    }
+  }
+
+private:
+  using Real = hn::ScalableTag<double>;
+
+  HWY_INLINE void Compute(const Number* from, T* at) const
+  {
+    const Real real;
+    const hn::Rebind<std::int32_t, Real> whole;
     hn::VFromD<decltype(whole)> n;
     if constexpr (sizeof(Number) == sizeof(std::int32_t))
     {
@@ -29,41 +62,56 @@ void Values(const Number* numbers, const glm::i64vec3& pitch, const glm::ivec3& 
     }
     else
     {
-      n = hn::PromoteTo(whole, hn::LoadU(number, from));
+      n = hn::PromoteTo(whole, hn::LoadU(hn::Rebind<Number, Real>(), from));
     }
     // Not fused: a product is rounded before it is added, wherever this runs.
-    const auto y = hn::Add(hn::Mul(hn::PromoteTo(real, n), steps), origins);
+    const auto y = hn::Add(hn::Mul(hn::PromoteTo(real, n), this->Steps), this->Origins);
     if constexpr (sizeof(T) == sizeof(double))
     {
       hn::StoreU(y, real, at);
     }
     else
     {
-      const hn::Rebind<float, decltype(real)> single;
+      const hn::Rebind<float, Real> single;
       hn::StoreU(hn::DemoteTo(single, y), single, at);
     }
-  };
+  }
+
+  double Origin, Step;
+  hn::VFromD<Real> Origins, Steps;
+};
+
+template <class Number, class T>
+void Values(const Number* numbers, const glm::i64vec3& pitch, const glm::ivec3& size, double origin,
+  double step, T* values, const glm::i64vec3& to)
+{
+  const RowOfValues<Number, T> row(origin, step);
   for (int z = 0; z < size.z; ++z)
   {
     for (int y = 0; y < size.y; ++y)
     {
-      const Number* const from = numbers + z * pitch.z + y * pitch.y;
-      T* const row = values + z * to.z + y * to.y;
+      T* const at = values + z * to.z + y * to.y;
       // Rows are lines of the cache that lie far apart: ask for them before they are written.
-      __builtin_prefetch(row + 2 * to.z, 1);
-      int x = 0;
-      for (; x + lanes <= size.x; x += lanes)
+      __builtin_prefetch(at + 2 * to.z, 1);
+      row.Write(numbers + z * pitch.z + y * pitch.y, size.x, at);
+    }
+  }
+}
+
+template <class Number, class T>
+void Parts(const LatticePart<Number>* parts, int count, int y, int z, double origin, double step,
+  T* values, const glm::i64vec3& to)
+{
+  const RowOfValues<Number, T> row(origin, step);
+  for (int k = 0; k < z; ++k)
+  {
+    for (int j = 0; j < y; ++j)
+    {
+      T* at = values + k * to.z + j * to.y;
+      for (int i = 0; i < count; ++i)
       {
-        compute(from + x, row + x);
-      }
-      if (x < size.x && size.x >= lanes)
-      {
-        compute(from + size.x - lanes, row + size.x - lanes); // the rest, and some once more
-        continue;
-      }
-      for (; x < size.x; ++x)
-      {
-        row[x] = static_cast<T>(origin + static_cast<double>(from[x]) * step);
+        row.Write(parts[i].Numbers + k * parts[i].Z + j * parts[i].Y, parts[i].Width, at);
+        at += parts[i].Width;
       }
     }
   }
@@ -175,6 +223,27 @@ void LongDoubles(const std::int32_t* n, const glm::i64vec3& pitch, const glm::iv
   Values(n, pitch, size, origin, step, v, to);
 }
 
+void ShortFloatParts(const LatticePart<std::int16_t>* parts, int count, int y, int z, double origin,
+  double step, float* values, const glm::i64vec3& to)
+{
+  Parts(parts, count, y, z, origin, step, values, to);
+}
+void ShortDoubleParts(const LatticePart<std::int16_t>* parts, int count, int y, int z, double origin,
+  double step, double* values, const glm::i64vec3& to)
+{
+  Parts(parts, count, y, z, origin, step, values, to);
+}
+void LongFloatParts(const LatticePart<std::int32_t>* parts, int count, int y, int z, double origin,
+  double step, float* values, const glm::i64vec3& to)
+{
+  Parts(parts, count, y, z, origin, step, values, to);
+}
+void LongDoubleParts(const LatticePart<std::int32_t>* parts, int count, int y, int z, double origin,
+  double step, double* values, const glm::i64vec3& to)
+{
+  Parts(parts, count, y, z, origin, step, values, to);
+}
+
 void TransposeShorts(const std::int16_t* numbers, const glm::i64vec3& stride,
   const glm::ivec3& size, std::int16_t* ordered)
 {
@@ -197,6 +266,10 @@ HWY_EXPORT(ShortFloats);
 HWY_EXPORT(ShortDoubles);
 HWY_EXPORT(LongFloats);
 HWY_EXPORT(LongDoubles);
+HWY_EXPORT(ShortFloatParts);
+HWY_EXPORT(ShortDoubleParts);
+HWY_EXPORT(LongFloatParts);
+HWY_EXPORT(LongDoubleParts);
 HWY_EXPORT(TransposeShorts);
 HWY_EXPORT(TransposeLongs);
 
@@ -223,6 +296,31 @@ void ValuesOnLattice(const std::int32_t* numbers, const glm::i64vec3& pitch, con
   double origin, double step, double* values, const glm::i64vec3& to)
 {
   HWY_DYNAMIC_DISPATCH(LongDoubles)(numbers, pitch, size, origin, step, values, to);
+}
+
+template <>
+void ValuesOfParts(const LatticePart<std::int16_t>* parts, int count, int y, int z, double origin,
+  double step, float* values, const glm::i64vec3& to)
+{
+  HWY_DYNAMIC_DISPATCH(ShortFloatParts)(parts, count, y, z, origin, step, values, to);
+}
+template <>
+void ValuesOfParts(const LatticePart<std::int16_t>* parts, int count, int y, int z, double origin,
+  double step, double* values, const glm::i64vec3& to)
+{
+  HWY_DYNAMIC_DISPATCH(ShortDoubleParts)(parts, count, y, z, origin, step, values, to);
+}
+template <>
+void ValuesOfParts(const LatticePart<std::int32_t>* parts, int count, int y, int z, double origin,
+  double step, float* values, const glm::i64vec3& to)
+{
+  HWY_DYNAMIC_DISPATCH(LongFloatParts)(parts, count, y, z, origin, step, values, to);
+}
+template <>
+void ValuesOfParts(const LatticePart<std::int32_t>* parts, int count, int y, int z, double origin,
+  double step, double* values, const glm::i64vec3& to)
+{
+  HWY_DYNAMIC_DISPATCH(LongDoubleParts)(parts, count, y, z, origin, step, values, to);
 }
 
 template <>

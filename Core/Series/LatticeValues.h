@@ -19,6 +19,21 @@ template <class Number, class T>
 void ValuesOnLattice(const Number* numbers, const glm::i64vec3& pitch, const glm::ivec3& size,
   double origin, double step, T* values, const glm::i64vec3& to);
 
+/// A box of numbers whose rows lie side by side.
+template <class Number>
+struct LatticePart
+{
+  const Number* Numbers = nullptr;
+  std::int64_t Y = 0, Z = 0; ///< distances of numbers along these axes
+  int Width = 0;             ///< numbers of a row
+};
+
+/// The same of boxes that lie side by side along x, row by row of all of them.
+/// @param y,z how many rows along these axes; each box has as many
+template <class Number, class T>
+void ValuesOfParts(const LatticePart<Number>* parts, int count, int y, int z, double origin,
+  double step, T* values, const glm::i64vec3& to);
+
 /// Numbers of a box in the order of other axes: x fastest, without gaps.
 /// @param stride of the numbers along x, y, z: one of them is 1, and not that of x
 /// @param Number std::int16_t or std::int32_t

@@ -171,6 +171,38 @@ void SeriesFile::DecodePart(const FieldKey& field, std::int64_t brick, const Box
     });
 }
 
+void SeriesFile::DecodeRow(const FieldKey& field, std::int64_t brick, int count, const Box& part,
+  const glm::i64vec3& stride, void* first) const
+{
+  const Internals& self = *this->Self;
+  self.Check(field);
+  self.CheckBrick(field, brick);
+  self.CheckBrick(field, brick + count - 1);
+  const BrickLayout& layout = self.Series.Layouts[static_cast<std::size_t>(field.Level)];
+  const Box begin = layout.SamplesOf(brick);
+  const Box end = layout.SamplesOf(brick + count - 1);
+  if (count < 1 || part.Empty() || begin.Lo.y != end.Lo.y || begin.Lo.z != end.Lo.z ||
+      !begin.Contains({ part.Lo, glm::ivec3(part.Lo.x + (count > 1 ? 2 : 1), part.Hi.y, part.Hi.z) }) ||
+      !end.Contains({ glm::ivec3(part.Hi.x - 1, part.Lo.y, part.Lo.z), part.Hi }))
+  {
+    throw Error("The part to decode is not inside its row of bricks", { self.Series.Path });
+  }
+  if (count > 1 && self.Reader->DecodeRow(field, brick, count, part, stride, first))
+  {
+    return;
+  }
+  // The last one first: a brick then finds the layers that it shares with others decoded.
+  const std::size_t bytes =
+    SizeOf(self.Series.Index.Arrays[static_cast<std::size_t>(field.Array)].Type);
+  for (int k = count - 1; k >= 0; --k)
+  {
+    const Box own = RowPart(layout, brick, count, k, part);
+    this->DecodePart(field, brick + k, own, stride,
+      static_cast<char*>(first) +
+        static_cast<std::ptrdiff_t>(bytes) * (own.Lo.x - part.Lo.x) * stride.x);
+  }
+}
+
 void SeriesFile::VerifyBricks(const FieldKey& field, const std::vector<std::int64_t>& bricks) const
 {
   this->Self->Check(field);

@@ -84,6 +84,13 @@ public:
   void DecodePart(const FieldKey& field, std::int64_t brick, const Box& part,
     const glm::i64vec3& stride, void* first) const;
 
+  /// The same of bricks that follow each other along x, which takes less time than one after the
+  /// other. A sample that two of them hold comes from the latter.
+  /// @param brick the first one, of `count`
+  /// @param part not empty, inside their samples; each of them holds some of it that those behind it do not
+  void DecodeRow(const FieldKey& field, std::int64_t brick, int count, const Box& part,
+    const glm::i64vec3& stride, void* first) const;
+
   /// Checks the checksums of the bricks' payloads without decoding them.
   void VerifyBricks(const FieldKey& field, const std::vector<std::int64_t>& bricks) const;
 

@@ -230,6 +230,7 @@ TEST(Options, AreCheckedBeforeAnythingRuns)
   EXPECT_FALSE(refused({ "--output", "a.csv", "b.json" }));
   EXPECT_EQ(
     ParseCodecOptions({ "--output", "a", "b", "--bits", "6,8" }).Bits, (std::vector<int>{ 6, 8 }));
+  EXPECT_TRUE(ParseCodecOptions({ "--output", "a", "b", "--stages" }).Measuring.Stages);
   EXPECT_TRUE(refused({ "--output", "a.csv" }));
   EXPECT_TRUE(refused({ "--output", "a.csv", "b.json", "--bits", "0" }));
   EXPECT_TRUE(refused({ "--output", "a.csv", "b.json", "--repeat", "3x" }));
