@@ -2,10 +2,7 @@
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
-#include "vtkCompositeDataIterator.h"
-#include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
-#include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
@@ -70,6 +67,7 @@ public:
     this->MakePoints(grid);
     this->MakeCells(grid);
     this->MakeArrays(grid);
+    this->MakeCellArrays(grid);
     this->KeepGlobalIds(
       this->Points, [](vtkUnstructuredGrid* piece) { return piece->GetPointData(); }, grid);
     this->KeepGlobalIds(
@@ -275,6 +273,48 @@ private:
     }
   }
 
+  /// Those that all pieces have.
+  void MakeCellArrays(vtkUnstructuredGrid* grid) const
+  {
+    vtkCellData* const first = this->Pieces[0]->GetCellData();
+    for (int a = 0; a < first->GetNumberOfArrays(); ++a)
+    {
+      vtkDataArray* const like = first->GetArray(a);
+      if (!like || !like->GetName() || like == first->GetGlobalIds() ||
+          std::strcmp(like->GetName(), vtkDataSetAttributes::GhostArrayName()) == 0)
+      {
+        continue;
+      }
+      std::vector<vtkDataArray*> parts;
+      for (vtkUnstructuredGrid* piece : this->Pieces)
+      {
+        vtkDataArray* const part = piece->GetCellData()->GetArray(like->GetName());
+        const bool fits = part && part->GetDataType() == like->GetDataType() &&
+                          part->GetNumberOfComponents() == like->GetNumberOfComponents();
+        parts.push_back(fits ? part : nullptr);
+      }
+      if (std::find(parts.begin(), parts.end(), nullptr) == parts.end())
+      {
+        grid->GetCellData()->AddArray(InOrder(like, this->Cells, parts));
+      }
+    }
+  }
+
+  static vtkSmartPointer<vtkDataArray> InOrder(
+    vtkDataArray* like, const std::vector<Source>& items, const std::vector<vtkDataArray*>& parts)
+  {
+    const auto whole = vtkSmartPointer<vtkDataArray>::Take(like->NewInstance());
+    whole->SetName(like->GetName());
+    whole->SetNumberOfComponents(like->GetNumberOfComponents());
+    whole->CopyComponentNames(like);
+    whole->SetNumberOfTuples(static_cast<vtkIdType>(items.size()));
+    for (std::size_t i = 0; i < items.size(); ++i)
+    {
+      whole->SetTuple(static_cast<vtkIdType>(i), items[i].Id, parts[items[i].Piece]);
+    }
+    return whole;
+  }
+
   std::vector<vtkDataArray*> PartsOf(vtkDataArray* like) const
   {
     std::vector<vtkDataArray*> parts;
@@ -295,15 +335,7 @@ private:
   vtkSmartPointer<vtkDataArray> Joined(
     vtkDataArray* like, const std::vector<vtkDataArray*>& parts) const
   {
-    const auto whole = vtkSmartPointer<vtkDataArray>::Take(like->NewInstance());
-    whole->SetName(like->GetName());
-    whole->SetNumberOfComponents(like->GetNumberOfComponents());
-    whole->CopyComponentNames(like);
-    whole->SetNumberOfTuples(static_cast<vtkIdType>(this->Points.size()));
-    for (std::size_t i = 0; i < this->Points.size(); ++i)
-    {
-      whole->SetTuple(static_cast<vtkIdType>(i), this->Points[i].Id, parts[this->Points[i].Piece]);
-    }
+    auto whole = InOrder(like, this->Points, parts);
     const std::size_t bytes =
       static_cast<std::size_t>(like->GetDataTypeSize()) * like->GetNumberOfComponents();
     for (const auto& twin : this->Twins)
@@ -332,42 +364,6 @@ private:
 };
 
 } // namespace
-
-bool CollectGrids(vtkDataObject* data, std::vector<vtkUnstructuredGrid*>& grids)
-{
-  if (vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(data))
-  {
-    if (grid->GetNumberOfCells() > 0)
-    {
-      grids.push_back(grid);
-    }
-    return true;
-  }
-  vtkCompositeDataSet* const composite = vtkCompositeDataSet::SafeDownCast(data);
-  if (!composite)
-  {
-    return false;
-  }
-  vtkSmartPointer<vtkCompositeDataIterator> blocks;
-  blocks.TakeReference(composite->NewIterator());
-  blocks->SkipEmptyNodesOn();
-  bool any = false;
-  for (blocks->InitTraversal(); !blocks->IsDoneWithTraversal(); blocks->GoToNextItem())
-  {
-    vtkDataSet* const block = vtkDataSet::SafeDownCast(blocks->GetCurrentDataObject());
-    vtkUnstructuredGrid* const grid = vtkUnstructuredGrid::SafeDownCast(block);
-    if (block && !grid && block->GetNumberOfCells() > 0)
-    {
-      return false;
-    }
-    any = any || grid;
-    if (grid && grid->GetNumberOfCells() > 0)
-    {
-      grids.push_back(grid);
-    }
-  }
-  return any;
-}
 
 vtkSmartPointer<vtkUnstructuredGrid> MergePieces(
   const std::vector<vtkUnstructuredGrid*>& pieces, const WantedArrays& wanted)

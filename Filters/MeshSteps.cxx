@@ -1,6 +1,7 @@
 #include "MeshSteps.h"
 
 #include "HexMeshOfGrid.h"
+#include "LeafSteps.h"
 #include "MeshPieces.h"
 #include "PieceValues.h"
 #include "StepReport.h"
@@ -113,6 +114,14 @@ void NameOthers(vtkUnstructuredGrid* grid, vtkImageData* image)
 
 std::string MeshSteps::Take(vtkSmartPointer<vtkDataObject>& data, const std::string& problem)
 {
+  bool leaves = false;
+  const std::string noLeaves = LeavesAsGrid(this->Talk, problem, data, leaves);
+  if (!noLeaves.empty())
+  {
+    this->Found = true;
+    data = vtkSmartPointer<vtkImageData>::New();
+    return noLeaves;
+  }
   std::vector<vtkUnstructuredGrid*> grids;
   const bool mine = problem.empty() && CollectGrids(data, grids);
   vtkMultiProcessStream stream;
@@ -162,7 +171,7 @@ std::string MeshSteps::Take(vtkSmartPointer<vtkDataObject>& data, const std::str
     this->Gather(piece, others);
     if (this->Talk.Rank() == 0)
     {
-      this->Remember(piece);
+      this->Remember(piece, leaves);
       image = this->ImageOf(piece);
     }
   }
@@ -234,7 +243,7 @@ void MeshSteps::Gather(vtkSmartPointer<vtkUnstructuredGrid>& piece, bool others)
   piece = MergePieces(pieces, this->Wanted());
 }
 
-void MeshSteps::Remember(vtkUnstructuredGrid* grid)
+void MeshSteps::Remember(vtkUnstructuredGrid* grid, bool leaves)
 {
   if (this->Mesh)
   {
@@ -242,6 +251,10 @@ void MeshSteps::Remember(vtkUnstructuredGrid* grid)
     if (!change.empty())
     {
       throw Error("The mesh of a series must not change, and " + change + ".");
+    }
+    if (leaves && this->Tree)
+    {
+      MakeNodal(*this->Tree, grid, this->Wanted());
     }
     return;
   }
@@ -251,6 +264,11 @@ void MeshSteps::Remember(vtkUnstructuredGrid* grid)
   this->Mesh = StoreMesh(*tree, grid->GetCellTypesArray()->GetPointer(0));
   this->First = vtkSmartPointer<vtkUnstructuredGrid>::New();
   this->First->CopyStructure(grid);
+  if (leaves)
+  {
+    this->Tree = tree;
+    MakeNodal(*tree, grid, this->Wanted());
+  }
 }
 
 vtkSmartPointer<vtkImageData> MeshSteps::ImageOf(vtkUnstructuredGrid* grid) const

@@ -22,10 +22,13 @@ namespace banyan
 {
 
 class AtlasValues;
+class ElementOctree;
 class SegmentFolder;
 
 /// The steps of a mesh as images, so that they can be written like those of an image: see
 /// AtlasValues. Rank 0 has the whole mesh and makes the images; others have empty ones.
+///
+/// Hyper trees and AMR are meshes of their leaves, with their data made nodal (see MakeNodal).
 ///
 /// The octree is found once, at the first step; the mesh of later steps must be the same.
 class MeshSteps
@@ -57,7 +60,7 @@ private:
   WantedArrays Wanted() const;
   std::string FirstMistake(const std::string& mine) const;
   void Gather(vtkSmartPointer<vtkUnstructuredGrid>& piece, bool others);
-  void Remember(vtkUnstructuredGrid* grid);
+  void Remember(vtkUnstructuredGrid* grid, bool leaves);
   vtkSmartPointer<vtkImageData> ImageOf(vtkUnstructuredGrid* grid) const;
 
   const RankTalk& Talk;
@@ -68,6 +71,8 @@ private:
   // On rank 0:
   vtkSmartPointer<vtkUnstructuredGrid> First; ///< the grid of the first step
   std::shared_ptr<const StoredMesh> Mesh;
+  std::shared_ptr<const ElementOctree>
+    Tree; ///< of hyper trees and AMR only: their data are made nodal
 };
 
 } // namespace banyan

@@ -198,6 +198,41 @@ def check_filter(data, alone):
         session.clear()
 
 
+def check_series(data, out):
+    """Hyper trees and AMR are written as the meshes that are drawn of them."""
+    for file, array, cells in ((HTG, "density", 32544), (AMR, "TestX", 2241)):
+        source = simple.OpenDataFile(os.path.join(data, file))
+        if file == AMR:
+            source.DefaultNumberOfLevels = 10
+        source.UpdatePipeline()
+        path = os.path.join(out, os.path.basename(file) + ".banyan")
+        simple.SaveData(path, proxy=source, ErrorBoundMode="Absolute", ErrorBound=1e-5)
+        series = simple.OpenDataFile(path)
+        series.UpdatePipeline()
+        count = series.GetDataInformation().GetNumberOfCells()
+        session.require(count == cells, f"{path}: {count} cells")
+        drawn, camera = [], None
+        for shown, place in ((source, "CELLS"), (series, "POINTS")):
+            view, display = show(shown, (place, array))
+            display.ScalarOpacityUnitDistance = 1.0
+            display.SampleDistanceVoxels = 0.5  # not as errors are estimated
+            for table in (simple.GetColorTransferFunction(array),
+                          simple.GetOpacityTransferFunction(array)):
+                table.RescaleTransferFunction(*source.CellData[array].GetRange(0))
+            # Bounds of blocks are rounded differently.
+            camera = camera or [view.CameraPosition[:], view.CameraFocalPoint[:]]
+            view.CameraPosition, view.CameraFocalPoint = camera
+            drawn.append(f"{path}.{place}.png")
+            draw(drawn[-1], shown, None, view)
+        one, other = [pictures.load(picture) for picture in drawn]
+        if one is not None:
+            error = pictures.difference(one, other)
+            print(f"{path}: {int(error.max())}", flush=True)
+            session.require(error.max() <= 1, f"{path}: another picture")
+            session.require(not is_empty(drawn[0]), f"{path}: nothing is drawn")
+        session.clear()
+
+
 def main():
     parser = session.parser(__doc__)
     parser.add_argument("--out", required=True)
@@ -218,6 +253,7 @@ def main():
             print(f"{name}: {int(error.max())}", flush=True)
             session.require(error.max() <= 1, f"{name} differs by {int(error.max())}")
     check_filter(data, not arguments.reference)
+    check_series(data, arguments.out)
     if not arguments.reference:
         refuse_all(data, arguments.out)
 
