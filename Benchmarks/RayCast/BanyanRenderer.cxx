@@ -1,6 +1,7 @@
 #include "RayCastRenderer.h"
 
 #include "Base/ThreadPool.h"
+#include "Render/PixelsBetween.h"
 #include "Render/SamplingPlan.h"
 
 namespace banyan::bench
@@ -31,7 +32,7 @@ public:
     {
       settings.push_back({ {}, distance });
     }
-    for (const double tolerance : { 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0 })
+    for (const double tolerance : { 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 255.0 })
     {
       settings.push_back({ tolerance, {} });
     }
@@ -55,7 +56,9 @@ public:
         MaskRange{ this->Scene->Low, this->Scene->High }, this->Pool);
     }
     RayStatistics statistics;
-    FloatImage image = this->Cast(this->SceneWith(this->Settings.at(number), statistics), statistics);
+    const RayScene drawn = this->SceneWith(this->Settings.at(number), statistics);
+    FloatImage image = this->Cast(drawn, statistics);
+    FillBetweenRays(drawn, image, this->Pool);
     clock.StopInto(frame);
     frame.Shown = Rounded(image, this->Scene->Picture);
     frame.Unrounded = std::move(image);

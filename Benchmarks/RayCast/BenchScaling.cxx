@@ -7,6 +7,7 @@
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
 #include "Cache/BrickCache.h"
+#include "Render/PixelsBetween.h"
 #include "Render/SamplingPlan.h"
 #include "Render/SeriesBrickSource.h"
 #include "Series/SeriesEncoder.h"
@@ -184,7 +185,9 @@ Frames DrawFrames(const Options& options, const Timer& sinceStart, BrickSource& 
     { return CastRays(wanted, source, wanted.DomainCells, budget, pool, frames.Statistics); };
     const int finestPilot =
       FinestLevelWithin(scene, source, scene.DomainCells, CoarsestLevel, budget / 2, pool);
-    draw(Sampled(scene, options.Tolerance, finestPilot, draw));
+    const RayScene sampled = Sampled(scene, options.Tolerance, finestPilot, draw);
+    FloatImage picture = draw(sampled);
+    FillBetweenRays(sampled, picture, pool);
     if (i == 0)
       frames.FirstMilliseconds = 1e3 * sinceStart.Seconds();
     else

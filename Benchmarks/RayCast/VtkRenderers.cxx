@@ -186,7 +186,7 @@ public:
   std::string Name() const override { return "vtk-gpu"; }
   std::vector<Setting> SettingsFor(const BenchScene&) const override
   {
-    return SampleDistances({ 0.25, 0.5, 1.0, 2.0, 4.0 });
+    return SampleDistances({ 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0 });
   }
 
 protected:

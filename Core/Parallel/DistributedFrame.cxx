@@ -5,6 +5,7 @@
 #include "Base/Timer.h"
 #include "Parallel/LevelZones.h"
 #include "Parallel/Rebalance.h"
+#include "Render/PixelsBetween.h"
 
 #include <algorithm>
 #include <cmath>
@@ -138,6 +139,7 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene, Br
   options.Agreed = true;
   FloatImage picture = Composite(communicator, mine, order, scene.Viewport, options, sent);
   FinishPicture(scene, picture);
+  FillBetweenRays(scene, picture, pool);
   const double compositeSeconds = composite.Seconds();
 
   const auto number = [](auto value) { return static_cast<double>(value); };

@@ -163,11 +163,9 @@ template <class Values>
 void MarchRays(const PlainMarcher<Values>& marcher, const PixelRect& rect, RayTile& tile)
 {
   const float limit = tile.TransmittanceLimit;
-  for (int y = rect.Lo.y; y < rect.Hi.y; ++y)
-  {
-    for (int x = rect.Lo.x; x < rect.Hi.x; ++x)
+  tile.ForSlotsUnder(rect,
+    [&](int slot)
     {
-      const int slot = tile.SlotOf(x, y);
       if (!tile.IsEmpty(slot) && tile.Transmittance[slot] > limit)
       {
         const float direction[3] = { tile.Direction[0][slot], tile.Direction[1][slot],
@@ -177,8 +175,7 @@ void MarchRays(const PlainMarcher<Values>& marcher, const PixelRect& rect, RayTi
         tile.ActiveRays -= pixel.a > limit ? 0 : 1;
         tile.SetPixel(slot, pixel);
       }
-    }
-  }
+    });
 }
 
 } // namespace

@@ -109,19 +109,16 @@ private:
 template <class T>
 void ProjectRays(const PlainProjector<T>& projector, const PixelRect& rect, RayTile& tile)
 {
-  for (int y = rect.Lo.y; y < rect.Hi.y; ++y)
-  {
-    for (int x = rect.Lo.x; x < rect.Hi.x; ++x)
+  tile.ForSlotsUnder(rect,
+    [&](int slot)
     {
-      const int slot = tile.SlotOf(x, y);
       if (!tile.IsEmpty(slot))
       {
         glm::vec4 pixel = tile.PixelOf(slot);
         tile.SamplesTaken += projector.ProjectRay(tile.RayOf(slot), pixel);
         tile.SetPixel(slot, pixel);
       }
-    }
-  }
+    });
 }
 
 } // namespace

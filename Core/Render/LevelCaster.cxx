@@ -74,6 +74,10 @@ void LevelCaster::MakeTiles()
     const int sampling =
       this->Scene.Samplings ? this->Scene.Samplings->NumberAt(this->Grid.PositionOf(i)) : 0;
     this->Tiles[i].Sampling = this->Samplings.at(static_cast<std::size_t>(sampling)).get();
+    this->Tiles[i].PixelStride =
+      this->Scene.Samplings
+        ? this->Scene.Samplings->Samplings()[static_cast<std::size_t>(sampling)].PixelStride
+        : 1;
     this->Tiles[i].Done = this->Tiles[i].Sampling == nullptr;
   }
   this->Scratch.resize(static_cast<std::size_t>(this->Pool.Width()));
@@ -178,14 +182,18 @@ bool LevelCaster::AnyRayOpen(const PlannedBrick& brick, bool lookAtPixels)
   { return ranked ? pixel.r < brick.HighestRank : pixel.a > limit; };
   bool open = false;
   this->ForTilesUnder(brick.Footprint,
-    [&](const Tile&, const PixelRect& rect)
+    [&](const Tile& tile, const PixelRect& rect)
     {
       const PixelRect part = Intersection(brick.Footprint, rect);
+      const int stride = tile.PixelStride;
+      const glm::ivec2 first = (part.Lo + (stride - 1)) / stride * stride;
       open = open || !lookAtPixels;
-      for (int y = part.Lo.y; y < part.Hi.y && !open; ++y)
+      for (int y = first.y; y < part.Hi.y && !open; y += stride)
       {
-        const glm::vec4* row = &this->Picture->At(part.Lo.x, y);
-        open = std::any_of(row, row + part.Size().x, isOpen);
+        for (int x = first.x; x < part.Hi.x && !open; x += stride)
+        {
+          open = isOpen(this->Picture->At(x, y));
+        }
       }
     });
   return open;
@@ -247,8 +255,8 @@ void LevelCaster::RecordWork(double began)
 std::int64_t LevelCaster::DrawTile(std::size_t number, RayTile& rays, BatchMeter& meter)
 {
   Tile& tile = this->Tiles[number];
-  rays.Open(
-    tile.Sampling->Lattice, this->Grid.RectOf(number), *this->Picture, this->TransmittanceLimit());
+  rays.Open(tile.Sampling->Lattice, this->Grid.RectOf(number), *this->Picture,
+    this->TransmittanceLimit(), tile.PixelStride);
   rays.CellShift = this->Source.CoarsestBrickLevel();
   if (meter.IsOn())
   {

@@ -75,6 +75,7 @@ private:
   struct Tile
   {
     const Sampled* Sampling = nullptr; ///< null for tiles of other levels
+    int PixelStride = 1;
     bool Done = false;                 ///< no ray of the tile needs another brick
     std::vector<int> Bricks;           ///< positions in the batch, front to back
   };

@@ -39,9 +39,7 @@ struct Whole
 template <class Function>
 HWY_INLINE void ForPacketsUnder(const PixelRect& pixels, const RayTile& tile, Function&& function)
 {
-  constexpr int edge = RayTile::PacketEdge;
-  const glm::ivec2 corner = tile.Rect.Lo;
-  const PixelRect packets{ (pixels.Lo - corner) / edge, (pixels.Hi - corner + edge - 1) / edge };
+  const PixelRect packets = tile.PacketsUnder(pixels);
   for (int y = packets.Lo.y; y < packets.Hi.y; ++y)
   {
     for (int x = packets.Lo.x; x < packets.Hi.x; ++x)

@@ -50,6 +50,16 @@ PilotPictures::PilotPictures(
   this->SetSpacing(PilotSpacing(scene));
 }
 
+PilotPictures::PilotPictures(const RayScene& scene,
+  std::function<FloatImage(const RayScene& pilot)> draw, int spacing, double around)
+  : Scene(scene)
+  , DrawScene(std::move(draw))
+  , TilesAround(around)
+  , FixedSpacing(true)
+{
+  this->SetSpacing(spacing);
+}
+
 void PilotPictures::SetSpacing(int pixels)
 {
   this->Spacing = pixels;
@@ -63,7 +73,7 @@ void PilotPictures::SetSpacing(int pixels)
 
 PilotPicture PilotPictures::Draw(const RaySampling& sampling)
 {
-  const bool first = this->Drawn == 0;
+  const bool first = this->Drawn == 0 && !this->FixedSpacing;
   PilotPicture picture = this->DrawAsItIs(sampling);
   // Little of a volume may be seen of which much is on the screen.
   for (bool enough = !first; !enough;)
@@ -196,10 +206,10 @@ TileErrors PilotPictures::ErrorsOf(const PilotErrors& errors, double factor, dou
   return result;
 }
 
-/// Along one axis, the pilots within two and a half tiles of a tile: their positions in View.
+/// Along one axis, the pilots within TilesAround of a tile: their positions in View.
 PilotPictures::PilotsAround PilotPictures::Around(int tile, int axis) const
 {
-  constexpr double around = 2.5 * TileSamplings::Edge;
+  const double around = this->TilesAround * TileSamplings::Edge;
   const double perPixel = static_cast<double>(this->Size[axis]) / this->ImageSize()[axis];
   const double low = tile * static_cast<double>(TileSamplings::Edge) - around;
   const double high = low + (2.0 * around + TileSamplings::Edge);

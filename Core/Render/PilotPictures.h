@@ -43,6 +43,10 @@ class PilotPictures
 public:
   /// @param scene refers to it, which must stay
   PilotPictures(const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw);
+  /// @param spacing of the pilots in pixels, whatever they see
+  /// @param around ErrorsOf looks so many tiles around a tile
+  PilotPictures(const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw,
+    int spacing, double around);
 
   /// The first picture may be drawn several times, until enough of its pixels see something.
   PilotPicture Draw(const RaySampling& sampling);
@@ -52,9 +56,14 @@ public:
 
   PilotErrors Difference(const PilotPicture& a, const PilotPicture& b) const;
 
-  /// Of a tile: the largest error of the pixels within two and a half tiles, times `factor`, and at
-  /// least that of all pixels times `share`.
+  /// Of a tile: the largest error of the pixels within two and a half tiles (or as constructed), times
+  /// `factor`, and at least that of all pixels times `share`.
   TileErrors ErrorsOf(const PilotErrors& errors, double factor, double share) const;
+
+  /// Pixels of the large picture from one pilot to the next.
+  int PixelsApart() const { return this->Spacing; }
+  /// Where the pixels of pictures lie among those of a small picture of all.
+  const PixelRect& Part() const { return this->View; }
 
   glm::ivec2 ImageSize() const { return this->Scene.Camera.ImageSize(); }
   std::size_t TileCount() const;
@@ -78,6 +87,8 @@ private:
   const RayScene& Scene;
   std::function<FloatImage(const RayScene& pilot)> DrawScene;
   int Spacing = 1; ///< pixels of the large picture from one of a small one to the next
+  double TilesAround = 2.5;
+  bool FixedSpacing = false;
   glm::ivec2 Size;
   PixelRect View; ///< the part that is wanted
   int Drawn = 0;

@@ -12,15 +12,20 @@
 namespace banyan
 {
 
-/// How finely a ray is sampled.
+/// How finely a ray is sampled, and how many there are.
 struct RaySampling
 {
   int Level = 0;         ///< of the bricks: cells are 2^Level fine ones long; 0 is the finest
   double Distance = 1.0; ///< world length between samples; > 0
+  /// Only pixels whose coordinates are multiples of it have rays, FillBetweenRays makes the others: 1,
+  /// 2, 4 or 8. They are counted from the lower left corner of the whole picture.
+  int PixelStride = 1;
+
+  static constexpr int LargestStride = 8;
 
   friend bool operator==(const RaySampling& a, const RaySampling& b)
   {
-    return a.Level == b.Level && a.Distance == b.Distance;
+    return a.Level == b.Level && a.Distance == b.Distance && a.PixelStride == b.PixelStride;
   }
 };
 

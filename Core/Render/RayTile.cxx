@@ -325,15 +325,15 @@ bool FillRaysHere(
   constexpr int size = RayTile::PacketSize;
   alignas(64) double x[size];
   alignas(64) double y[size];
-  for (int packet = 0; packet < RayTile::Slots / size; ++packet)
+  const glm::ivec2 packets = tile.PacketsUnder(tile.Rect).Hi;
+  for (int number = 0; number < packets.x * packets.y; ++number)
   {
-    const glm::ivec2 corner =
-      tile.Rect.Lo + glm::ivec2(packet % RayTile::PacketsPerRow, packet / RayTile::PacketsPerRow) *
-                       RayTile::PacketEdge;
+    const int packet = number / packets.x * RayTile::PacketsPerRow + number % packets.x;
     for (int i = 0; i < size; ++i)
     {
-      x[i] = corner.x + i % RayTile::PacketEdge;
-      y[i] = corner.y + i / RayTile::PacketEdge;
+      const glm::ivec2 at = tile.PixelAt(packet * size + i);
+      x[i] = at.x;
+      y[i] = at.y;
     }
     for (int i = 0; i < size; i += lanes)
     {
@@ -356,42 +356,62 @@ namespace banyan
 
 HWY_EXPORT(FillRaysHere);
 
-void RayTile::Open(
-  const RayLattice& lattice, const PixelRect& rect, const FloatImage& picture, float limit)
+void RayTile::Open(const RayLattice& lattice, const PixelRect& rect, const FloatImage& picture,
+  float limit, int stride)
 {
   this->Rect = rect;
+  this->Stride = stride;
+  this->Corner = rect.Lo / stride * stride;
   this->TransmittanceLimit = limit;
   this->SamplesTaken = 0;
   this->PacketsFit = true;
   alignas(64) double ends[Slots];
   alignas(64) double active[Slots];
   const bool geometry = lattice.HasGeometry();
-  for (int slot = 0; slot < Slots; slot += PacketEdge)
+  const auto forRows = [packets = this->PacketsUnder(rect).Hi](auto&& function)
   {
-    const glm::ivec2 at = this->PixelAt(slot);
-    const int width = at.y < rect.Hi.y ? std::clamp(rect.Hi.x - at.x, 0, PacketEdge) : 0;
-    const glm::vec4* row = width > 0 ? &picture.At(at.x, at.y) : nullptr;
-    for (int i = 0; i < PacketEdge; ++i)
+    for (int number = 0; number < packets.x * packets.y; ++number)
     {
-      const glm::vec4 pixel = i < width ? row[i] : glm::vec4(0.0f);
-      const bool wanted = i < width && pixel.a > limit;
-      active[slot + i] = wanted ? 1.0 : 0.0;
-      ends[slot + i] = geometry && wanted ? lattice.GeometryAt(at.x + i, at.y)
-                                          : std::numeric_limits<double>::infinity();
-      this->SetPixel(slot + i, pixel);
+      const int packet = number / packets.x * PacketsPerRow + number % packets.x;
+      for (int row = 0; row < PacketEdge; ++row)
+      {
+        function(packet * PacketSize + row * PacketEdge);
+      }
     }
-  }
+  };
+  forRows(
+    [&](int slot)
+    {
+      const glm::ivec2 at = this->PixelAt(slot);
+      const bool inside = at.y >= rect.Lo.y && at.y < rect.Hi.y;
+      const glm::vec4* const row = inside ? &picture.At(rect.Lo.x, at.y) - rect.Lo.x : nullptr;
+      for (int i = 0; i < PacketEdge; ++i)
+      {
+        const int x = at.x + i * stride;
+        const bool here = inside && x >= rect.Lo.x && x < rect.Hi.x;
+        const glm::vec4 pixel = here ? row[x] : glm::vec4(0.0f);
+        const bool wanted = here && pixel.a > limit;
+        active[slot + i] = wanted ? 1.0 : 0.0;
+        ends[slot + i] = geometry && wanted ? lattice.GeometryAt(x, at.y)
+                                            : std::numeric_limits<double>::infinity();
+        this->SetPixel(slot + i, pixel);
+      }
+    });
   if (!HWY_DYNAMIC_DISPATCH(FillRaysHere)(lattice, ends, active, *this))
   {
     RayLattice::ThrowTooFar();
   }
   this->ActiveRays = 0;
-  for (int slot = 0; slot < Slots; ++slot)
-  {
-    const bool empty = (this->Count[slot] == 0) & (this->Head.Fraction[slot] == 0.0f) &
-                       (this->Tail.Fraction[slot] == 0.0f);
-    this->ActiveRays += empty ? 0 : 1;
-  }
+  forRows(
+    [this](int first)
+    {
+      for (int slot = first; slot < first + PacketEdge; ++slot)
+      {
+        const bool empty = (this->Count[slot] == 0) & (this->Head.Fraction[slot] == 0.0f) &
+                           (this->Tail.Fraction[slot] == 0.0f);
+        this->ActiveRays += empty ? 0 : 1;
+      }
+    });
 }
 
 } // namespace banyan

@@ -11,7 +11,8 @@ namespace banyan
 /// The rays of a rectangle of pixels while bricks are drawn front to back.
 ///
 /// Rays stand in slots, packet by packet: a packet has the rays of 4 x 4 pixels, row by row, so
-/// that rays that are drawn together stay together. Slots without a pixel have an empty ray.
+/// that rays that are drawn together stay together. Slots without a pixel have an empty ray. Where only
+/// every n-th pixel has a ray, these are as close together as if there were no others.
 struct RayTile
 {
   static constexpr int Edge = 32; ///< pixels: rays (about 200 kB) and a brick share the L2 cache
@@ -22,11 +23,11 @@ struct RayTile
   /// Cells that a step may go along an axis for packets to be drawn; see PackedBrick::LargestEdge.
   static constexpr int LongestStep = 16;
 
-  /// @param x, y pixel of the picture, inside Rect
+  /// @param x, y pixel of the picture that has a ray, inside Rect
   int SlotOf(int x, int y) const
   {
-    const int column = x - this->Rect.Lo.x;
-    const int row = y - this->Rect.Lo.y;
+    const int column = (x - this->Corner.x) / this->Stride;
+    const int row = (y - this->Corner.y) / this->Stride;
     const int packet = row / PacketEdge * PacketsPerRow + column / PacketEdge;
     return packet * PacketSize + row % PacketEdge * PacketEdge + column % PacketEdge;
   }
@@ -36,8 +37,30 @@ struct RayTile
   {
     const int packet = slot / PacketSize;
     const int within = slot % PacketSize;
-    return this->Rect.Lo + glm::ivec2(packet % PacketsPerRow * PacketEdge + within % PacketEdge,
-                             packet / PacketsPerRow * PacketEdge + within / PacketEdge);
+    return this->Corner +
+           this->Stride * glm::ivec2(packet % PacketsPerRow * PacketEdge + within % PacketEdge,
+                            packet / PacketsPerRow * PacketEdge + within / PacketEdge);
+  }
+
+  /// Calls function(slot) for the pixels of a rectangle inside Rect that have rays.
+  template <class Function>
+  void ForSlotsUnder(const PixelRect& pixels, Function&& function) const
+  {
+    const glm::ivec2 first = (pixels.Lo + (this->Stride - 1)) / this->Stride * this->Stride;
+    for (int y = first.y; y < pixels.Hi.y; y += this->Stride)
+    {
+      for (int x = first.x; x < pixels.Hi.x; x += this->Stride)
+      {
+        function(this->SlotOf(x, y));
+      }
+    }
+  }
+
+  /// The packets under some pixels inside Rect: from Lo to below Hi in rows of PacketsPerRow.
+  PixelRect PacketsUnder(const PixelRect& pixels) const
+  {
+    const int edge = PacketEdge * this->Stride;
+    return { (pixels.Lo - this->Corner) / edge, (pixels.Hi - this->Corner + edge - 1) / edge };
   }
 
   /// Places the rays of a rectangle of at most Edge x Edge pixels, and takes up what they have met
@@ -45,9 +68,10 @@ struct RayTile
   /// rays that have ended are left empty.
   /// @param picture premultiplied colour, and the *transmittance* (1 - opacity) in the fourth
   ///        component, so that stopping and going on with the next batch changes no bit
+  /// @param stride RaySampling::PixelStride
   /// Throws Error as RayLattice::SamplesOf does.
-  void Open(
-    const RayLattice& lattice, const PixelRect& rect, const FloatImage& picture, float limit);
+  void Open(const RayLattice& lattice, const PixelRect& rect, const FloatImage& picture, float limit,
+    int stride = 1);
 
   /// Puts what the rays have met back into the picture.
   void Close(FloatImage& picture) const;
@@ -76,6 +100,8 @@ struct RayTile
   }
 
   PixelRect Rect;
+  int Stride = 1;         ///< pixels from ray to ray
+  glm::ivec2 Corner{ 0 }; ///< pixel of slot 0, at most Stride - 1 pixels outside of Rect
   float TransmittanceLimit = 0;  ///< a ray ends when its transmittance is not above this
   std::int64_t ActiveRays = 0;   ///< rays with samples that have not ended
   std::int64_t SamplesTaken = 0; ///< since Open

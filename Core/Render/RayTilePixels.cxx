@@ -8,6 +8,16 @@ namespace banyan
 
 void RayTile::Close(FloatImage& picture) const
 {
+  if (this->Stride > 1)
+  {
+    this->ForSlotsUnder(this->Rect,
+      [&](int slot)
+      {
+        const glm::ivec2 at = this->PixelAt(slot);
+        picture.At(at.x, at.y) = this->PixelOf(slot);
+      });
+    return;
+  }
   for (int slot = 0; slot < Slots; slot += PacketEdge)
   {
     const glm::ivec2 at = this->PixelAt(slot);

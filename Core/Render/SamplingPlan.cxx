@@ -2,6 +2,7 @@
 
 #include "Base/Error.h"
 #include "Render/PilotSequence.h"
+#include "Render/StridePilot.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,16 +15,40 @@ namespace
 
 /// Of the tolerance, what rays that end early may leave away.
 constexpr double ShareOfEnds = 0.125;
-/// Distances between samples go from 2^MostDoublings times the usual one to 2^-MostHalvings times.
-constexpr int MostDoublings = 3;
+/// Distances between samples go down to 2^-MostHalvings times the usual one.
 constexpr int MostHalvings = 3;
+/// Without pictures of samples this close, times the usual distance, no tile is content.
+constexpr double FewestSamples = 4.0;
+/// Packets of rays go no further per step: see RayTile::LongestStep.
+constexpr double MostCellsPerStep = 16.0;
 /// What a level costs beside its samples, as bricks are entered: in samples at the usual distance.
 constexpr double CostOfBricks = 0.35;
+/// What a ray costs before it has a sample, in the same, per cell that it goes through.
+constexpr double CostOfRay = 0.05;
+
+/// Distances go up to 2^this times the usual one: small tolerances are not met by the longest ones,
+/// and pilots of these would be drawn for nothing. More than 3 only where rays through the volume
+/// have several samples then: pictures of one sample per ray are alike, and all wrong.
+int MostDoublingsFor(const SamplingWish& wish, const RayScene& scene)
+{
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    shortest = std::min(
+      shortest, scene.DomainCells.Size()[axis] * glm::length(glm::dvec3(scene.IndexToWorld[axis])));
+  }
+  int doublings = wish.Tolerance < 8.0 ? 3 : wish.Tolerance < 64.0 ? 4 : 5;
+  while (doublings > 3 && std::ldexp(wish.Distance, doublings) > 0.25 * shortest)
+  {
+    --doublings;
+  }
+  return doublings;
+}
 
 /// The error that a choice adds to those of others.
 struct Choice
 {
-  double Value = 0.0; ///< a distance or a level
+  double Value = 0.0; ///< a distance, a level or a stride
   TileErrors Errors;
 };
 
@@ -31,7 +56,9 @@ class Planner
 {
 public:
   Planner(const RayScene& scene, const SamplingWish& wish, const DrawPilot& draw)
-    : Wish(wish)
+    : Scene(scene)
+    , DrawScene(draw)
+    , Wish(wish)
     , Pictures(scene, draw)
     , Allowed(wish.Tolerance * (1.0 - ShareOfEnds))
   {
@@ -39,7 +66,7 @@ public:
 
   SamplingPlan Plan()
   {
-    this->TryDistances(MostDoublings);
+    this->TryDistances(MostDoublingsFor(this->Wish, this->Scene));
     if (!this->Pictures.SawSomething())
     {
       // Coarse levels and few samples may miss all that there is to see.
@@ -51,9 +78,10 @@ public:
     if (this->Pictures.SawSomething())
     {
       this->TryLevels();
+      plan.Pilots = this->TryStrides() ? 1 : 0;
       this->Choose(plan);
     }
-    plan.Pilots = this->Pictures.Count();
+    plan.Pilots += this->Pictures.Count();
     return plan;
   }
 
@@ -69,6 +97,7 @@ private:
       (levels ? 0.5 : 1.0) * this->Allowed };
     this->Distances = this->DistancesOf(trial, pictures);
     this->Closest = pictures.Last();
+    this->ClosestDistance = this->Distances.back().Value;
   }
 
   struct Trial
@@ -96,7 +125,9 @@ private:
       {
         break;
       }
-      content = pictures.LastIsWithin(trial.Allowed);
+      // Pictures with few samples may look alike because all of them miss what is thin.
+      content =
+        distance <= FewestSamples * this->Wish.Distance && pictures.LastIsWithin(trial.Allowed);
     }
     const std::vector<TileErrors> errors = pictures.AllErrors();
     for (std::size_t i = 0; i < choices.size(); ++i)
@@ -113,7 +144,7 @@ private:
     PilotSequence pictures(this->Pictures);
     pictures.Add(this->Closest);
     std::vector<Choice> choices{ { static_cast<double>(level), {} } };
-    const double distance = this->Distances.back().Value;
+    const double distance = this->ClosestDistance;
     while (level > this->Wish.FinestPilotLevel && !pictures.LastIsWithin(0.5 * this->Allowed))
     {
       --level;
@@ -136,7 +167,10 @@ private:
       choices[i].Errors = errors[i];
     }
     this->Levels = std::move(choices);
-    this->TryDistancesAgain(level, pictures.Last());
+    if (!this->CoarsestIsEnough())
+    {
+      this->TryDistancesAgain(level, pictures.Last());
+    }
     if (!pictures.LastIsWithin(0.5 * this->Allowed))
     {
       this->ExtrapolateLevels();
@@ -158,22 +192,87 @@ private:
     }
   }
 
-  /// Finer levels show what coarser ones leave out: distances are judged there once more.
-  /// @param known the finest level at the smallest distance so far
+  /// Whether no tile needs another level than the coarsest, where distances have been judged.
+  bool CoarsestIsEnough() const
+  {
+    for (std::size_t tile = 0; tile < this->Pictures.TileCount(); ++tile)
+    {
+      if (this->Levels.front().Errors.Of(tile) > 0.5 * this->Allowed)
+      {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// Finer levels show what coarser ones leave out: distances are judged there once more, from the
+  /// longest that were good enough for some tile before.
+  /// @param known the finest level at ClosestDistance
   void TryDistancesAgain(int level, const PilotPicture& known)
   {
+    double longest = this->ClosestDistance;
+    for (const Choice& choice : this->Distances)
+    {
+      const std::vector<double>& errors = choice.Errors.Tiles;
+      if (*std::min_element(errors.begin(), errors.end()) <= this->Allowed)
+      {
+        longest = std::max(longest, choice.Value);
+      }
+    }
     PilotSequence pictures(this->Pictures);
-    Trial trial{ level, std::ldexp(this->Wish.Distance, MostDoublings),
+    Trial trial{ level,
+      std::min(longest, std::ldexp(MostCellsPerStep * this->Wish.Distance, level)),
       std::ldexp(this->Wish.Distance, -MostHalvings), 0.5 * this->Allowed };
-    trial.KnownDistance = this->Distances.back().Value;
+    trial.KnownDistance = this->ClosestDistance;
     trial.Known = &known;
     this->Distances = this->DistancesOf(trial, pictures);
+  }
+
+  /// One small picture, drawn at little cost, tells which pixels need rays.
+  /// @return whether it was drawn
+  bool TryStrides()
+  {
+    Choice every{ 1.0, {} };
+    every.Errors.Tiles.assign(this->Pictures.TileCount(), 0.0);
+    this->Strides = { std::move(every) };
+    if (this->Wish.LargestPixelStride == 1 ||
+        !StridePilot::MaySay(this->Scene, this->Pictures.PixelsApart()))
+    {
+      return false;
+    }
+    StridePilot pilot(this->Scene, this->DrawScene);
+    pilot.Draw(this->SamplingForStrides());
+    for (int stride = 2; stride <= this->Wish.LargestPixelStride; stride *= 2)
+    {
+      this->Strides.push_back({ static_cast<double>(stride), pilot.ErrorsAt(stride) });
+    }
+    return true;
+  }
+
+  /// The coarsest level, and the longest distance that is good enough in half of the tiles: what is
+  /// wrong in the others looks like edges, and keeps their rays.
+  RaySampling SamplingForStrides() const
+  {
+    const int level = static_cast<int>(this->Levels.front().Value);
+    for (const Choice& choice : this->Distances)
+    {
+      const std::vector<double>& errors = choice.Errors.Tiles;
+      const auto good = std::count_if(
+        errors.begin(), errors.end(), [this](double error) { return error <= this->Allowed; });
+      if (choice.Value >= this->Wish.Distance &&
+          2 * good >= static_cast<std::ptrdiff_t>(errors.size()))
+      {
+        return { level, choice.Value };
+      }
+    }
+    return { level, this->Wish.Distance };
   }
 
   struct Chosen
   {
     std::size_t Level = 0;    ///< position in Levels
     std::size_t Distance = 0; ///< position in Distances
+    std::size_t Stride = 0;   ///< position in Strides
     double Error = 0.0;
   };
 
@@ -188,21 +287,45 @@ private:
     {
       for (std::size_t j = 0; j < this->Distances.size(); ++j)
       {
-        const double error = this->Levels[i].Errors.Of(tile) + this->Distances[j].Errors.Of(tile);
-        const double cost = this->Wish.Distance / this->Distances[j].Value +
-                            std::ldexp(CostOfBricks, -static_cast<int>(this->Levels[i].Value));
-        if (error <= this->Allowed && cost < bestCost)
+        if (!this->Steps(i, j))
         {
-          best = { i, j, error };
-          bestCost = cost;
+          continue;
         }
-        if (error < closest.Error)
+        for (std::size_t k = 0; k < this->Strides.size(); ++k)
         {
-          closest = { i, j, error };
+          const double error = this->Levels[i].Errors.Of(tile) +
+                               this->Distances[j].Errors.Of(tile) +
+                               this->Strides[k].Errors.Of(tile);
+          const double cost = this->CostOf(i, j, k);
+          if (error <= this->Allowed && cost < bestCost)
+          {
+            best = { i, j, k, error };
+            bestCost = cost;
+          }
+          if (error < closest.Error)
+          {
+            closest = { i, j, k, error };
+          }
         }
       }
     }
     return std::isfinite(bestCost) ? best : closest;
+  }
+
+  /// Whether packets can go so far per step.
+  bool Steps(std::size_t level, std::size_t distance) const
+  {
+    return this->Distances[distance].Value <= std::ldexp(MostCellsPerStep * this->Wish.Distance,
+                                                static_cast<int>(this->Levels[level].Value));
+  }
+
+  /// In samples at the usual distance, per cell that a ray goes through.
+  double CostOf(std::size_t level, std::size_t distance, std::size_t stride) const
+  {
+    const double alongRay = this->Wish.Distance / this->Distances[distance].Value +
+                            std::ldexp(CostOfBricks, -static_cast<int>(this->Levels[level].Value)) +
+                            CostOfRay;
+    return alongRay / (this->Strides[stride].Value * this->Strides[stride].Value);
   }
 
   void Choose(SamplingPlan& plan) const
@@ -212,7 +335,11 @@ private:
     {
       for (const Choice& distance : this->Distances)
       {
-        samplings.push_back({ static_cast<int>(level.Value), distance.Value });
+        for (const Choice& stride : this->Strides)
+        {
+          samplings.push_back(
+            { static_cast<int>(level.Value), distance.Value, static_cast<int>(stride.Value) });
+        }
       }
     }
     const auto tiles =
@@ -223,20 +350,24 @@ private:
       const Chosen chosen = this->CheapestFor(tile);
       const glm::ivec2 position(static_cast<int>(tile % static_cast<std::size_t>(tiles->Tiles().x)),
         static_cast<int>(tile / static_cast<std::size_t>(tiles->Tiles().x)));
-      tiles->SetNumber(
-        position, static_cast<int>(chosen.Level * this->Distances.size() + chosen.Distance));
+      const std::size_t pair = chosen.Level * this->Distances.size() + chosen.Distance;
+      tiles->SetNumber(position, static_cast<int>(pair * this->Strides.size() + chosen.Stride));
       largest = std::max(largest, chosen.Error);
     }
     plan.Samplings = tiles;
     plan.EstimatedError = largest + this->Wish.Tolerance * ShareOfEnds;
   }
 
+  const RayScene& Scene;
+  const DrawPilot& DrawScene;
   SamplingWish Wish;
   PilotPictures Pictures;
   double Allowed;
   std::vector<Choice> Distances; ///< from the largest on
   std::vector<Choice> Levels;    ///< from the coarsest on
-  PilotPicture Closest;          ///< of the coarsest level and the smallest distance
+  std::vector<Choice> Strides;   ///< 1 and larger ones
+  PilotPicture Closest;          ///< of the coarsest level and ClosestDistance
+  double ClosestDistance = 1.0;  ///< the smallest that was tried there
 };
 
 void Check(const SamplingWish& wish)
@@ -253,6 +384,12 @@ void Check(const SamplingWish& wish)
   {
     throw Error("There is no level below 0, the finest");
   }
+  const int stride = wish.LargestPixelStride;
+  if (stride < 1 || stride > RaySampling::LargestStride || (stride & (stride - 1)) != 0)
+  {
+    throw Error(
+      "Every pixel, or every 2nd, 4th or 8th may have a ray: the largest stride is no other");
+  }
 }
 
 } // namespace
@@ -262,7 +399,8 @@ SamplingPlan PlanSamplings(const RayScene& scene, SamplingWish wish, const DrawP
   Check(wish);
   const glm::ivec3 cells = scene.DomainCells.Size();
   const int longest = std::max({ cells.x, cells.y, cells.z });
-  while (wish.CoarsestLevel > 0 && longest >> wish.CoarsestLevel < wish.LeastCells)
+  while (wish.CoarsestLevel > 0 &&
+         (longest + (1 << wish.CoarsestLevel) - 1) >> wish.CoarsestLevel < wish.LeastCells)
   {
     --wish.CoarsestLevel;
   }

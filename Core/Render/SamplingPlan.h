@@ -16,7 +16,7 @@ struct SamplingWish
   /// above 0.
   double Tolerance = 1.0;
   /// World length that samples are usually apart: an edge of a cell. Samples are taken from 1/8 of
-  /// it to 8 times as far apart at the finest level.
+  /// it to 8 times as far apart, for large tolerances to 32 times.
   double Distance = 1.0;
   /// The coarsest level that may be drawn from; 0 allows the finest only.
   int CoarsestLevel = 0;
@@ -26,6 +26,9 @@ struct SamplingWish
   /// Levels with fewer cells along the longest axis are not used: two of them may look alike because
   /// both have lost what there is to see.
   int LeastCells = 64;
+  /// The largest RaySampling::PixelStride: whoever draws a plan has to call FillBetweenRays unless it
+  /// is 1.
+  int LargestPixelStride = RaySampling::LargestStride;
 };
 
 /// How a picture is to be sampled so that its error stays within a tolerance.
@@ -50,7 +53,8 @@ using DrawPilot = std::function<FloatImage(const RayScene& pilot)>;
 /// samples at the coarsest level, which costs least, then with ever finer levels at the distance that
 /// was needed, and then with some distances at the finest of these levels again, each until all tiles
 /// are content (PilotSequence). Which level and which distance a tile gets is chosen from the sums of
-/// both errors: finer levels than needed are never loaded.
+/// both errors: finer levels than needed are never loaded. How many pixels need rays of their own one
+/// more small picture tells (StridePilot), and that error counts with the others.
 ///
 /// The error is estimated, then, and not bounded: `ctest -R SamplingPlan` shows that it is above the
 /// true one on the standard scenes.

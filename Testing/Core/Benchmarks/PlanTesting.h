@@ -4,6 +4,7 @@
 #include "BenchScene.h"
 
 #include "Base/ThreadPool.h"
+#include "Render/PixelsBetween.h"
 #include "Render/SamplingPlan.h"
 
 #include <memory>
@@ -36,7 +37,9 @@ public:
     RayScene scene = this->Scene;
     scene.Samplings = plan.Samplings;
     scene.OpacityLimit = plan.OpacityLimit;
-    return this->Cast(scene);
+    FloatImage picture = this->Cast(scene);
+    FillBetweenRays(scene, picture, this->Pool);
+    return picture;
   }
 
   FloatImage Converged()

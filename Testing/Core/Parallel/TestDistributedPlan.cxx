@@ -1,4 +1,5 @@
 // Plans and their pilots on ranks, held to those of one rank.
+#include "Parallel/DistributedFrame.h"
 #include "Parallel/DistributedPilot.h"
 #include "Parallel/DistributedPlan.h"
 #include "Parallel/Zones.h"
@@ -129,6 +130,49 @@ TEST_F(DistributedPlans, ArePlansOfOneRank)
         EXPECT_EQ(plan.Pilots, alone.Pilots);
         EXPECT_NEAR(plan.EstimatedError, alone.EstimatedError, 1e-2 * alone.EstimatedError);
         EXPECT_EQ(plan.Samplings->Samplings().size(), alone.Samplings->Samplings().size());
+      });
+  }
+}
+
+TEST_F(DistributedPlans, PicturesWithFewRaysAreThoseOfOneRank)
+{
+  FloatImage alone;
+  auto tiles = std::make_shared<TileSamplings>(this->Scene.Camera.ImageSize(),
+    std::vector<RaySampling>{ { 0, this->Scene.SampleDistance, 8 },
+      { 0, this->Scene.SampleDistance, 2 }, { 1, 2.0 * this->Scene.SampleDistance, 4 },
+      { 0, this->Scene.SampleDistance, 1 } });
+  for (int y = 0; y < tiles->Tiles().y; ++y)
+  {
+    for (int x = 0; x < tiles->Tiles().x; ++x)
+    {
+      tiles->SetNumber({ x, y }, (x + 2 * y) % 4);
+    }
+  }
+  RayScene scene = this->Scene;
+  scene.Samplings = tiles;
+  for (const int ranks : { 1, 2, 5 })
+  {
+    SCOPED_TRACE(ranks);
+    RunOnSimulatedRanks(ranks,
+      [&](Communicator& communicator)
+      {
+        ThreadPool pool(1);
+        ArrayBrickSource source = this->MakeSource(pool);
+        FrameStatistics took;
+        const FloatImage picture =
+          DrawDistributed(communicator, scene, &source, ZonesOf(ranks), Budget, pool, {}, took);
+        if (communicator.Rank() != 0)
+        {
+          return;
+        }
+        if (ranks == 1)
+        {
+          alone = picture;
+          // Pixels without rays have been filled.
+          EXPECT_GT(alone.At(150, 150).a * alone.At(151, 150).a * alone.At(151, 151).a, 0.0f);
+          return;
+        }
+        EXPECT_LT(MaxDifference(picture, alone), 1e-5);
       });
   }
 }

@@ -1,0 +1,138 @@
+#include "Render/StridePilot.h"
+
+#include "Render/PilotSpacing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace banyan
+{
+namespace
+{
+
+constexpr int Spacing = 4;
+/// Pilots this close leave less to chance than those of samples do.
+constexpr double Safety = 3.0;
+constexpr double TilesAround = 1.5;
+/// At most so many times smaller are errors taken to be at half the stride. Smooth pictures have 4,
+/// but may have an edge that is too faint to be seen beside how they bend.
+constexpr double MostGain = 2.0;
+/// Of the largest error anywhere, what each tile is taken to have at least.
+constexpr double ShareOfLargest = 1.0 / 16.0;
+
+} // namespace
+
+StridePilot::StridePilot(
+  const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw)
+  : Scene(scene)
+  , Pictures(scene, std::move(draw), Spacing, TilesAround)
+{
+}
+
+bool StridePilot::MaySay(const RayScene& scene, int pixelsApart)
+{
+  return pixelsApart >= Spacing && scene.Blend.Mode == BlendMode::Composite;
+}
+
+void StridePilot::Draw(const RaySampling& sampling)
+{
+  const PilotPicture picture = this->Pictures.Draw(sampling);
+  this->Eight = this->Pictures.ErrorsOf(this->ErrorsBetween(picture, 2), 1.0, ShareOfLargest);
+  this->Sixteen = this->Pictures.ErrorsOf(this->ErrorsBetween(picture, 4), 1.0, ShareOfLargest);
+  this->Whole = this->MakeWholeTiles();
+}
+
+TileErrors StridePilot::ErrorsAt(int stride) const
+{
+  TileErrors errors = this->Eight;
+  for (std::size_t tile = 0; tile < errors.Tiles.size(); ++tile)
+  {
+    double& error = errors.Tiles[tile];
+    const double larger = this->Sixteen.Of(tile);
+    const double gain = error > 0.0 ? std::clamp(larger / error, 1.0, MostGain) : 1.0;
+    error *= Safety;
+    for (int i = RaySampling::LargestStride; i > stride; i /= 2)
+    {
+      error /= gain;
+    }
+    if (!this->Whole[tile])
+    {
+      error = std::numeric_limits<double>::infinity();
+    }
+  }
+  return errors;
+}
+
+/// How far each pixel is from what lies between those that are `every` apart, along both axes.
+PilotErrors StridePilot::ErrorsBetween(const PilotPicture& picture, int every) const
+{
+  const PixelRect& part = this->Pictures.Part();
+  const glm::ivec2 size = part.Size();
+  const auto at = [&](int x, int y)
+  {
+    // Around the volume is nothing; at the edge of the picture its last pixels go on.
+    const glm::ivec2 inside = glm::clamp(glm::ivec2(x, y), part.Lo, part.Hi - 1) - part.Lo;
+    return picture.Pixels[static_cast<std::size_t>(inside.y) * size.x + inside.x];
+  };
+  PilotPicture between;
+  between.Pixels.reserve(picture.Pixels.size());
+  for (int y = part.Lo.y; y < part.Hi.y; ++y)
+  {
+    const int below = y / every * every;
+    const float up = static_cast<float>(y - below) / static_cast<float>(every);
+    for (int x = part.Lo.x; x < part.Hi.x; ++x)
+    {
+      const int left = x / every * every;
+      const float right = static_cast<float>(x - left) / static_cast<float>(every);
+      const glm::vec4 low = glm::mix(at(left, below), at(left + every, below), right);
+      const glm::vec4 high =
+        glm::mix(at(left, below + every), at(left + every, below + every), right);
+      between.Pixels.push_back(glm::mix(low, high, up));
+    }
+  }
+  return this->Pictures.Difference(picture, between);
+}
+
+/// FillBetweenRays needs a tile's first pixels, and the first behind it, along both axes: they must
+/// be inside the viewport, or outside of the volume. At the edge of a picture nothing lies behind.
+std::vector<bool> StridePilot::MakeWholeTiles() const
+{
+  const PixelRect& view = this->Scene.Viewport;
+  const PixelRect volume = VolumeOnScreen(this->Scene);
+  const glm::ivec2 tiles = TileSamplings::TilesOf(this->Pictures.ImageSize());
+  std::vector<bool> whole;
+  for (int y = 0; y < tiles.y; ++y)
+  {
+    for (int x = 0; x < tiles.x; ++x)
+    {
+      const glm::ivec2 low = glm::ivec2(x, y) * TileSamplings::Edge;
+      const glm::ivec2 high = low + TileSamplings::Edge;
+      bool inside = true;
+      for (int axis = 0; axis < 2; ++axis)
+      {
+        // What is wanted of the volume ends where the viewport does, or before.
+        inside = inside && (low[axis] >= view.Lo[axis] || volume.Lo[axis] > view.Lo[axis]) &&
+                 (high[axis] < view.Hi[axis] || volume.Hi[axis] < view.Hi[axis]);
+      }
+      whole.push_back(inside && !this->HasGeometry({ low, high + 1 }));
+    }
+  }
+  return whole;
+}
+
+bool StridePilot::HasGeometry(const PixelRect& pixels) const
+{
+  const PixelRect& view = this->Scene.Viewport;
+  const PixelRect part = Intersection(pixels, view);
+  bool found = false;
+  for (int y = part.Lo.y; y < part.Hi.y && !this->Scene.Depth.empty() && !found; ++y)
+  {
+    const float* const row = this->Scene.Depth.data() +
+                             static_cast<std::ptrdiff_t>(y - view.Lo.y) * view.Size().x - view.Lo.x;
+    found = std::any_of(row + part.Lo.x, row + part.Hi.x, [](float depth) { return depth < 1.0f; });
+  }
+  return found;
+}
+
+} // namespace banyan

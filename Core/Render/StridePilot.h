@@ -1,0 +1,50 @@
+#ifndef banyan_Render_StridePilot_h
+#define banyan_Render_StridePilot_h
+
+#include "Render/PilotPictures.h"
+
+#include <optional>
+#include <vector>
+
+namespace banyan
+{
+
+/// What pixels without rays would be off, for each RaySampling::PixelStride: found from one small
+/// picture, whose pixels are every fourth one of the large one. Those of its pixels that every
+/// second or every fourth of it does not hold are compared with what lies between these
+/// (FillBetweenRays), so that a stride of 8 is measured, and how errors grow from 8 to 16 tells
+/// those of 4 and 2: as the square of the stride where the picture is smooth, and not at all at
+/// edges.
+class StridePilot
+{
+public:
+  /// @param scene refers to it, which must stay
+  StridePilot(const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw);
+
+  /// Whether a scene is one of which pixels may be left out: its volume is not narrow.
+  /// @param pixelsApart pilots of it that tell enough
+  static bool MaySay(const RayScene& scene, int pixelsApart);
+
+  /// Draws it. Once.
+  void Draw(const RaySampling& sampling);
+
+  /// What tiles are expected to be off, in 1/255, by leaving pixels out; infinite in tiles that
+  /// need all of their rays: those with geometry, and at the edges of what is drawn.
+  /// @param stride 2, 4 or 8
+  TileErrors ErrorsAt(int stride) const;
+
+private:
+  PilotErrors ErrorsBetween(const PilotPicture& picture, int every) const;
+  std::vector<bool> MakeWholeTiles() const;
+  bool HasGeometry(const PixelRect& pixels) const;
+
+  const RayScene& Scene;
+  PilotPictures Pictures;
+  TileErrors Eight;        ///< measured
+  TileErrors Sixteen;      ///< measured
+  std::vector<bool> Whole; ///< per tile, whether pixels of it may be left out
+};
+
+} // namespace banyan
+
+#endif
