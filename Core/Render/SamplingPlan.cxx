@@ -2,6 +2,7 @@
 
 #include "Base/Error.h"
 #include "Render/PilotSequence.h"
+#include "Render/SamplingChoices.h"
 #include "Render/StridePilot.h"
 
 #include <algorithm>
@@ -19,12 +20,10 @@ constexpr double ShareOfEnds = 0.125;
 constexpr int MostHalvings = 3;
 /// Without pictures of samples this close, times the usual distance, no tile is content.
 constexpr double FewestSamples = 4.0;
-/// Packets of rays go no further per step: see RayTile::LongestStep.
-constexpr double MostCellsPerStep = 16.0;
-/// What a level costs beside its samples, as bricks are entered: in samples at the usual distance.
-constexpr double CostOfBricks = 0.35;
-/// What a ray costs before it has a sample, in the same, per cell that it goes through.
-constexpr double CostOfRay = 0.05;
+/// The picture that judges strides is of a sampling whose errors leave so much of what is allowed,
+/// in so many of the tiles: others keep their rays.
+constexpr double ShareOfStridePilot = 0.75;
+constexpr double TilesOfStridePilot = 0.9;
 
 /// Distances go up to 2^this times the usual one: small tolerances are not met by the longest ones,
 /// and pilots of these would be drawn for nothing. More than 3 only where rays through the volume
@@ -45,13 +44,6 @@ int MostDoublingsFor(const SamplingWish& wish, const RayScene& scene)
   return doublings;
 }
 
-/// The error that a choice adds to those of others.
-struct Choice
-{
-  double Value = 0.0; ///< a distance, a level or a stride
-  TileErrors Errors;
-};
-
 class Planner
 {
 public:
@@ -61,6 +53,7 @@ public:
     , Wish(wish)
     , Pictures(scene, draw)
     , Allowed(wish.Tolerance * (1.0 - ShareOfEnds))
+    , Choices(wish.Distance)
   {
   }
 
@@ -95,9 +88,9 @@ private:
     const Trial trial{ this->Wish.CoarsestLevel, std::ldexp(this->Wish.Distance, doublings),
       levels ? this->Wish.Distance : std::ldexp(this->Wish.Distance, -MostHalvings),
       (levels ? 0.5 : 1.0) * this->Allowed };
-    this->Distances = this->DistancesOf(trial, pictures);
+    this->Choices.Distances = this->DistancesOf(trial, pictures);
     this->Closest = pictures.Last();
-    this->ClosestDistance = this->Distances.back().Value;
+    this->ClosestDistance = this->Choices.Distances.back().Value;
   }
 
   struct Trial
@@ -154,7 +147,7 @@ private:
     if (choices.size() == 1)
     {
       choices.front().Errors.Tiles.assign(this->Pictures.TileCount(), 0.0);
-      this->Levels = std::move(choices);
+      this->Choices.Levels = std::move(choices);
       return;
     }
     if (level == 0)
@@ -166,7 +159,7 @@ private:
     {
       choices[i].Errors = errors[i];
     }
-    this->Levels = std::move(choices);
+    this->Choices.Levels = std::move(choices);
     if (!this->CoarsestIsEnough())
     {
       this->TryDistancesAgain(level, pictures.Last());
@@ -181,14 +174,14 @@ private:
   /// error (a quarter, where the field is smooth), and the finest has none.
   void ExtrapolateLevels()
   {
-    for (int level = static_cast<int>(this->Levels.back().Value) - 1; level >= 0; --level)
+    for (int level = static_cast<int>(this->Choices.Levels.back().Value) - 1; level >= 0; --level)
     {
-      Choice finer{ static_cast<double>(level), this->Levels.back().Errors };
+      Choice finer{ static_cast<double>(level), this->Choices.Levels.back().Errors };
       for (double& error : finer.Errors.Tiles)
       {
         error = level > 0 ? 0.5 * error : 0.0;
       }
-      this->Levels.push_back(std::move(finer));
+      this->Choices.Levels.push_back(std::move(finer));
     }
   }
 
@@ -197,7 +190,7 @@ private:
   {
     for (std::size_t tile = 0; tile < this->Pictures.TileCount(); ++tile)
     {
-      if (this->Levels.front().Errors.Of(tile) > 0.5 * this->Allowed)
+      if (this->Choices.Levels.front().Errors.Of(tile) > 0.5 * this->Allowed)
       {
         return false;
       }
@@ -211,7 +204,7 @@ private:
   void TryDistancesAgain(int level, const PilotPicture& known)
   {
     double longest = this->ClosestDistance;
-    for (const Choice& choice : this->Distances)
+    for (const Choice& choice : this->Choices.Distances)
     {
       const std::vector<double>& errors = choice.Errors.Tiles;
       if (*std::min_element(errors.begin(), errors.end()) <= this->Allowed)
@@ -221,11 +214,11 @@ private:
     }
     PilotSequence pictures(this->Pictures);
     Trial trial{ level,
-      std::min(longest, std::ldexp(MostCellsPerStep * this->Wish.Distance, level)),
+      std::min(longest, std::ldexp(SamplingChoices::MostCellsPerStep * this->Wish.Distance, level)),
       std::ldexp(this->Wish.Distance, -MostHalvings), 0.5 * this->Allowed };
     trial.KnownDistance = this->ClosestDistance;
     trial.Known = &known;
-    this->Distances = this->DistancesOf(trial, pictures);
+    this->Choices.Distances = this->DistancesOf(trial, pictures);
   }
 
   /// One small picture, drawn at little cost, tells which pixels need rays.
@@ -234,124 +227,41 @@ private:
   {
     Choice every{ 1.0, {} };
     every.Errors.Tiles.assign(this->Pictures.TileCount(), 0.0);
-    this->Strides = { std::move(every) };
+    this->Choices.Strides = { std::move(every) };
     if (this->Wish.LargestPixelStride == 1 ||
         !StridePilot::MaySay(this->Scene, this->Pictures.PixelsApart()))
     {
       return false;
     }
+    SamplingChoices::Chosen sampling =
+      this->Choices.CheapestForMost(TilesOfStridePilot, ShareOfStridePilot * this->Allowed);
+    while (this->Choices.Levels[sampling.Level].Value < this->Wish.FinestPilotLevel)
+    {
+      --sampling.Level;
+    }
     StridePilot pilot(this->Scene, this->DrawScene);
-    pilot.Draw(this->SamplingForStrides());
+    RaySampling drawn = this->Choices.SamplingOf(sampling);
+    drawn.Distance = std::max(drawn.Distance, this->Wish.Distance);
+    pilot.Draw(drawn);
     for (int stride = 2; stride <= this->Wish.LargestPixelStride; stride *= 2)
     {
-      this->Strides.push_back({ static_cast<double>(stride), pilot.ErrorsAt(stride) });
+      this->Choices.Strides.push_back({ static_cast<double>(stride), pilot.ErrorsAt(stride) });
     }
+    this->Choices.StridesAreThoseOf(sampling);
     return true;
-  }
-
-  /// The coarsest level, and the longest distance that is good enough in half of the tiles: what is
-  /// wrong in the others looks like edges, and keeps their rays.
-  RaySampling SamplingForStrides() const
-  {
-    const int level = static_cast<int>(this->Levels.front().Value);
-    for (const Choice& choice : this->Distances)
-    {
-      const std::vector<double>& errors = choice.Errors.Tiles;
-      const auto good = std::count_if(
-        errors.begin(), errors.end(), [this](double error) { return error <= this->Allowed; });
-      if (choice.Value >= this->Wish.Distance &&
-          2 * good >= static_cast<std::ptrdiff_t>(errors.size()))
-      {
-        return { level, choice.Value };
-      }
-    }
-    return { level, this->Wish.Distance };
-  }
-
-  struct Chosen
-  {
-    std::size_t Level = 0;    ///< position in Levels
-    std::size_t Distance = 0; ///< position in Distances
-    std::size_t Stride = 0;   ///< position in Strides
-    double Error = 0.0;
-  };
-
-  /// The cheapest sampling that is good enough, or the one with the smallest error.
-  Chosen CheapestFor(std::size_t tile) const
-  {
-    Chosen best;
-    double bestCost = std::numeric_limits<double>::infinity();
-    Chosen closest;
-    closest.Error = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < this->Levels.size(); ++i)
-    {
-      for (std::size_t j = 0; j < this->Distances.size(); ++j)
-      {
-        if (!this->Steps(i, j))
-        {
-          continue;
-        }
-        for (std::size_t k = 0; k < this->Strides.size(); ++k)
-        {
-          const double error = this->Levels[i].Errors.Of(tile) +
-                               this->Distances[j].Errors.Of(tile) +
-                               this->Strides[k].Errors.Of(tile);
-          const double cost = this->CostOf(i, j, k);
-          if (error <= this->Allowed && cost < bestCost)
-          {
-            best = { i, j, k, error };
-            bestCost = cost;
-          }
-          if (error < closest.Error)
-          {
-            closest = { i, j, k, error };
-          }
-        }
-      }
-    }
-    return std::isfinite(bestCost) ? best : closest;
-  }
-
-  /// Whether packets can go so far per step.
-  bool Steps(std::size_t level, std::size_t distance) const
-  {
-    return this->Distances[distance].Value <= std::ldexp(MostCellsPerStep * this->Wish.Distance,
-                                                static_cast<int>(this->Levels[level].Value));
-  }
-
-  /// In samples at the usual distance, per cell that a ray goes through.
-  double CostOf(std::size_t level, std::size_t distance, std::size_t stride) const
-  {
-    const double alongRay = this->Wish.Distance / this->Distances[distance].Value +
-                            std::ldexp(CostOfBricks, -static_cast<int>(this->Levels[level].Value)) +
-                            CostOfRay;
-    return alongRay / (this->Strides[stride].Value * this->Strides[stride].Value);
   }
 
   void Choose(SamplingPlan& plan) const
   {
-    std::vector<RaySampling> samplings;
-    for (const Choice& level : this->Levels)
-    {
-      for (const Choice& distance : this->Distances)
-      {
-        for (const Choice& stride : this->Strides)
-        {
-          samplings.push_back(
-            { static_cast<int>(level.Value), distance.Value, static_cast<int>(stride.Value) });
-        }
-      }
-    }
     const auto tiles =
-      std::make_shared<TileSamplings>(this->Pictures.ImageSize(), std::move(samplings));
+      std::make_shared<TileSamplings>(this->Pictures.ImageSize(), this->Choices.Samplings());
     double largest = 0.0;
     for (std::size_t tile = 0; tile < this->Pictures.TileCount(); ++tile)
     {
-      const Chosen chosen = this->CheapestFor(tile);
+      const SamplingChoices::Chosen chosen = this->Choices.CheapestFor(tile, this->Allowed);
       const glm::ivec2 position(static_cast<int>(tile % static_cast<std::size_t>(tiles->Tiles().x)),
         static_cast<int>(tile / static_cast<std::size_t>(tiles->Tiles().x)));
-      const std::size_t pair = chosen.Level * this->Distances.size() + chosen.Distance;
-      tiles->SetNumber(position, static_cast<int>(pair * this->Strides.size() + chosen.Stride));
+      tiles->SetNumber(position, this->Choices.NumberOf(chosen));
       largest = std::max(largest, chosen.Error);
     }
     plan.Samplings = tiles;
@@ -363,11 +273,9 @@ private:
   SamplingWish Wish;
   PilotPictures Pictures;
   double Allowed;
-  std::vector<Choice> Distances; ///< from the largest on
-  std::vector<Choice> Levels;    ///< from the coarsest on
-  std::vector<Choice> Strides;   ///< 1 and larger ones
-  PilotPicture Closest;          ///< of the coarsest level and ClosestDistance
-  double ClosestDistance = 1.0;  ///< the smallest that was tried there
+  SamplingChoices Choices;
+  PilotPicture Closest;         ///< of the coarsest level and ClosestDistance
+  double ClosestDistance = 1.0; ///< the smallest that was tried there
 };
 
 void Check(const SamplingWish& wish)
