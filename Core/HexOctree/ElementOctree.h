@@ -108,6 +108,7 @@ public:
   std::int64_t UnbalancedNodes() const { return this->Unbalanced; }
 
 private:
+  friend class OctreeCoarsener;
   friend class OctreeFinder;
   friend class NodeFinder;
   ElementOctree() = default;

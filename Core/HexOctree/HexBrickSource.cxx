@@ -10,11 +10,28 @@ namespace banyan
 
 HexBrickSource::HexBrickSource(
   std::shared_ptr<const HexBricks> bricks, const NodeArray& values, ThreadPool& pool)
-  : Cut(std::move(bricks))
   // The octree belongs to the bricks, which stay.
-  , Values(std::shared_ptr<const ElementOctree>(Cut, &Cut->Tree()), values, pool)
+  : HexBrickSource(bricks,
+      NodalField(std::shared_ptr<const ElementOctree>(bricks, &bricks->Tree()), values, pool), pool)
+{
+}
+
+HexBrickSource::HexBrickSource(
+  std::shared_ptr<const HexBricks> bricks, NodalField values, ThreadPool& pool)
+  : Cut(std::move(bricks))
+  , Values(std::move(values))
 {
   this->Summarize(pool);
+}
+
+std::unique_ptr<BrickSource> HexBrickSource::MakeLevel(int level, const Box&)
+{
+  ThreadPool& pool = ThreadPool::Process();
+  const HexBricks::Level& coarser = this->Cut->AtLevel(level, pool);
+  const std::shared_ptr<const HexBricks>& bricks = coarser.Bricks;
+  NodalField values(std::shared_ptr<const ElementOctree>(bricks, &bricks->Tree()), this->Values,
+    coarser.NodeOfPoint);
+  return std::unique_ptr<BrickSource>(new HexBrickSource(bricks, std::move(values), pool));
 }
 
 glm::ivec3 HexBrickSource::Bricks() const

@@ -41,9 +41,19 @@ public:
   BrickView Load(std::int64_t brick) override;
   BrickView LoadAround(std::int64_t brick, Box& samples) override;
 
+  /// Positions are those of the finest elements at all levels: zones cut elements where they like.
+  int CellLevel() const override { return 0; }
+
   const NodalField& Field() const { return this->Values; }
 
+protected:
+  /// Of coarser meshes (HexBricks::AtLevel). Made with the pool of the process: the one that this
+  /// source was made with may be gone.
+  std::unique_ptr<BrickSource> MakeLevel(int level, const Box& domain) override;
+
 private:
+  HexBrickSource(std::shared_ptr<const HexBricks> bricks, NodalField values, ThreadPool& pool);
+
   static std::size_t Index(std::int64_t i) { return static_cast<std::size_t>(i); }
   const HexBrick& Brick(std::int64_t i) const { return this->Cut->List()[Index(i)]; }
 

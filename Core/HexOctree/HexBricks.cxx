@@ -29,6 +29,30 @@ HexBricks::HexBricks(std::shared_ptr<const ElementOctree> tree, int edge)
   }
 }
 
+const HexBricks::Level& HexBricks::AtLevel(int level, ThreadPool& pool) const
+{
+  if (level < 1)
+  {
+    throw Error("Coarser levels of a mesh begin at 1");
+  }
+  const std::lock_guard<std::mutex> lock(this->LevelsMutex);
+  while (static_cast<int>(this->Levels.size()) < level)
+  {
+    const Level* const finer = this->Levels.empty() ? nullptr : this->Levels.back().get();
+    CoarserOctree coarser = CoarserOctreeOf(finer ? finer->Bricks->Tree() : this->Tree(),
+      static_cast<int>(this->Levels.size()) + 1, pool);
+    for (std::uint32_t& node : coarser.NodeOfPoint)
+    {
+      node = finer ? finer->NodeOfPoint[node] : node;
+    }
+    auto made = std::make_unique<Level>();
+    made->Bricks = std::make_shared<const HexBricks>(coarser.Tree, 1 << this->EdgeLevel);
+    made->NodeOfPoint = std::move(coarser.NodeOfPoint);
+    this->Levels.push_back(std::move(made));
+  }
+  return *this->Levels[static_cast<std::size_t>(level) - 1];
+}
+
 void HexBricks::Cut(const Cube& cube)
 {
   if (cube.FirstLeaf == cube.EndLeaf || this->TakeWhole(cube))

@@ -1,10 +1,11 @@
 #ifndef banyan_HexOctree_HexBricks_h
 #define banyan_HexOctree_HexBricks_h
 
-#include "HexOctree/ElementOctree.h"
+#include "HexOctree/CoarserOctree.h"
 #include "Render/Viewpoint.h"
 
 #include <memory>
+#include <mutex>
 #include <vector>
 
 namespace banyan
@@ -39,6 +40,18 @@ public:
   const std::vector<HexBrick>& List() const { return this->Bricks; }
   int CoarsestLevel() const { return this->Coarsest; }
 
+  /// The bricks of a coarser mesh, on the same lattice.
+  struct Level
+  {
+    std::shared_ptr<const HexBricks> Bricks;
+    std::vector<std::uint32_t> NodeOfPoint; ///< of this mesh, for each point of the coarser one
+  };
+  /// Elements that are smaller than 2^level finest edges are merged, where they fill cubes. Made
+  /// when it is first asked for, from the next finer one, and kept: values have no part in it.
+  /// @param level at least 1
+  /// May be called from several threads.
+  const Level& AtLevel(int level, ThreadPool& pool) const;
+
   /// The place of each brick in visibility order. Exact, for the eye inside too: all bricks of one
   /// octant of a cube hide nothing of the octants that are nearer to the eye.
   /// @param view in the space of the lattice
@@ -63,6 +76,9 @@ private:
   int RootLevel = 0;
   int Coarsest = 0;
   std::vector<HexBrick> Bricks; ///< in the order of their first leaves
+  mutable std::mutex LevelsMutex;
+  /// From level 1 on. Each stays where it is.
+  mutable std::vector<std::unique_ptr<const Level>> Levels;
 };
 
 } // namespace banyan

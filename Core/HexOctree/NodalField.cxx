@@ -55,6 +55,22 @@ NodalField::NodalField(
   }
 }
 
+NodalField::NodalField(std::shared_ptr<const ElementOctree> coarser, const NodalField& finer,
+  const std::vector<std::uint32_t>& nodeOfPoint)
+  : Octree(std::move(coarser))
+{
+  const auto take = [&](const auto& from, auto& to)
+  {
+    to.reserve(nodeOfPoint.size());
+    for (const std::uint32_t node : nodeOfPoint)
+    {
+      to.push_back(from[node]);
+    }
+    this->Constrain(to);
+  };
+  finer.Floats.empty() ? take(finer.Doubles, this->Doubles) : take(finer.Floats, this->Floats);
+}
+
 template <class Out>
 void NodalField::Take(const NodeArray& array, std::vector<Out>& values, ThreadPool& pool)
 {

@@ -39,6 +39,11 @@ public:
   /// Throws Error when the array has no such component.
   NodalField(std::shared_ptr<const ElementOctree> tree, const NodeArray& array, ThreadPool& pool);
 
+  /// The field of a coarser mesh: values at points that do not hang there are those of this one.
+  /// @param nodeOfPoint see HexBricks::Level
+  NodalField(std::shared_ptr<const ElementOctree> coarser, const NodalField& finer,
+    const std::vector<std::uint32_t>& nodeOfPoint);
+
   const ElementOctree& Tree() const { return *this->Octree; }
 
   /// Float32, or Float64 where float32 cannot hold the values.

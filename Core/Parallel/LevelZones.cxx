@@ -14,7 +14,8 @@ namespace
 
 std::set<int> LevelsOf(const RayScene& scene)
 {
-  return scene.Samplings ? scene.Samplings->UsedLevels() : std::set<int>{ 0 };
+  return scene.Samplings && !scene.LevelsShareCells ? scene.Samplings->UsedLevels()
+                                                    : std::set<int>{ 0 };
 }
 
 std::vector<Box> ZonesAtLevel(const std::vector<Box>& zones, int level, const Box& domain)
@@ -72,6 +73,7 @@ bool LevelsHaveOneOrder(const RayScene& scene, const std::vector<Box>& zones, in
 {
   const Viewpoint view = InIndexSpace(scene.Camera, scene.IndexToWorld);
   const std::vector<int> order = FrontToBack(view, zones);
+  coarsest = scene.LevelsShareCells ? 0 : coarsest;
   for (int level = 1; level <= coarsest; ++level)
   {
     const std::vector<Box> boxes = ZonesAtLevel(zones, level, scene.DomainCells);

@@ -75,6 +75,10 @@ public:
   /// 0 is the finest. Index space is that of the level: positions are 2^Level fine ones apart.
   int Level() const { return this->LevelNumber; }
 
+  /// The level whose cells positions, and boxes of cells, are counted in: its own, unless levels of a
+  /// source share one index space, as those of octree meshes do. Then zones are the same at all levels.
+  virtual int CellLevel() const { return this->LevelNumber; }
+
   /// The same field at a coarser level, in bricks of as many cells: every 2^level-th sample; where
   /// the last cell is not whole, one more sample repeats the last fine one (see BrickLayout). It
   /// stays with this source.

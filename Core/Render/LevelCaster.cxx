@@ -18,9 +18,10 @@ constexpr std::size_t BricksPerBatch = 512;
 
 } // namespace
 
-LevelCaster::Sampled::Sampled(const RayScene& scene, const RaySampling& sampling, int coarsest)
-  : Lattice(scene, { sampling.Level + coarsest, sampling.Distance }, coarsest)
-  , Table(scene.Transfer, sampling.Distance)
+LevelCaster::Sampled::Sampled(const RayScene& scene, double distance, const BrickSource& source)
+  : Lattice(scene, { source.CellLevel() + source.CoarsestBrickLevel(), distance },
+      source.CoarsestBrickLevel())
+  , Table(scene.Transfer, distance)
 {
   if (scene.Blend.Mode != BlendMode::Composite)
   {
@@ -37,7 +38,7 @@ LevelCaster::LevelCaster(const RayScene& scene, BrickSource& source, const Box& 
   , Pool(pool)
   , Statistics(statistics)
   , Visible(scene.Transfer)
-  , IndexToWorld(IndexToWorldAt(scene, source.Level()))
+  , IndexToWorld(IndexToWorldAt(scene, source.CellLevel()))
   , IndexCamera(scene.Camera.InSpace(IndexToWorld))
   , ClipPlanes(PlanesInIndexSpace(scene.ClipPlanes, IndexToWorld))
 {
@@ -135,8 +136,8 @@ std::size_t LevelCaster::TakeBatch(std::size_t first)
       continue;
     }
     const int position = static_cast<int>(this->Batch.size());
-    this->ForTilesUnder(
-      brick.Footprint, [position](Tile& tile, const PixelRect&) { tile.Bricks.push_back(position); });
+    this->ForTilesUnder(brick.Footprint,
+      [position](Tile& tile, const PixelRect&) { tile.Bricks.push_back(position); });
     this->Batch.push_back(&brick);
     this->Loaded.emplace_back();
     this->Loaded.back().Packed = std::move(kept);
@@ -248,7 +249,8 @@ void LevelCaster::RecordWork(double began)
   {
     cells.push_back(brick->Drawn);
   }
-  AddBatch(*this->Scene.Work, this->Meters, cells, this->Source.Level(), this->Scene.DomainCells);
+  AddBatch(
+    *this->Scene.Work, this->Meters, cells, this->Source.CellLevel(), this->Scene.DomainCells);
 }
 
 /// @return samples taken
@@ -302,9 +304,8 @@ void LevelCaster::DrawBrick(const PlannedBrick& brick, const LoadedBrick& loaded
   {
     const glm::ivec3 corner = this->Source.CellsOf(brick.Number).Lo;
     const BrickPart part{ loaded.View, corner, brick.Drawn };
-    projection
-      ? ProjectBrick(part, *projection, brick.Footprint, rays)
-      : MarchBrick(part, sampling.Table, brick.Footprint, rays, this->Scene.Interpolation);
+    projection ? ProjectBrick(part, *projection, brick.Footprint, rays)
+               : MarchBrick(part, sampling.Table, brick.Footprint, rays, this->Scene.Interpolation);
   }
   else if (projection)
   {

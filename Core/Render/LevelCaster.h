@@ -68,8 +68,7 @@ private:
     std::unique_ptr<const ProjectionTable> Projection; ///< null when samples are composited
 
     /// Rays are made for the largest cells.
-    /// @param coarsest BrickSource::CoarsestBrickLevel
-    Sampled(const RayScene& scene, const RaySampling& sampling, int coarsest);
+    Sampled(const RayScene& scene, double distance, const BrickSource& source);
   };
 
   struct Tile
@@ -117,7 +116,7 @@ private:
   VisibleValues Visible;
   glm::dmat4 IndexToWorld;
   RayCamera IndexCamera;
-  std::vector<glm::dvec4> ClipPlanes; ///< in index space
+  std::vector<glm::dvec4> ClipPlanes;          ///< in index space
   std::unique_ptr<const ShadingTable> Shading; ///< null for none
 
   /// By number of the scene's samplings; null for those of other levels, and that no tile has.

@@ -21,8 +21,8 @@ void LevelCaster::AddSamplings()
     this->Samplings.emplace_back();
     if (used[i] && samplings[i].Level == this->Source.Level())
     {
-      this->Samplings.back() = std::make_unique<const Sampled>(
-        this->Scene, samplings[i], this->Source.CoarsestBrickLevel());
+      this->Samplings.back() =
+        std::make_unique<const Sampled>(this->Scene, samplings[i].Distance, this->Source);
       this->AnySampling = this->Samplings.back().get();
     }
   }
@@ -103,12 +103,13 @@ void LevelCaster::SetKeys()
   }
 }
 
-/// The entry of the table that all samples of a brick have, if nothing else has to be known of them.
+/// The entry of the table that all samples of a brick have, if nothing else has to be known of
+/// them.
 std::optional<int> LevelCaster::EntryOf(std::int64_t brick) const
 {
-  const std::optional<UniformValue> uniform =
-    this->Shading || this->AnySampling->Projection ? std::nullopt
-                                                   : this->Source.UniformValueOf(brick);
+  const std::optional<UniformValue> uniform = this->Shading || this->AnySampling->Projection
+                                                ? std::nullopt
+                                                : this->Source.UniformValueOf(brick);
   if (!uniform)
   {
     return std::nullopt;

@@ -53,8 +53,10 @@ int FinestLevelWithin(const RayScene& scene, BrickSource& source, const Box& cel
   {
     planned.Samplings = std::make_shared<const TileSamplings>(
       scene.Camera.ImageSize(), std::vector{ RaySampling{ level, scene.SampleDistance } });
-    const LevelCaster caster(planned, SourceAt(source, level, scene),
-      CellsAtLevel(Intersection(cells, scene.DomainCells), level), bytes, pool, statistics);
+    BrickSource& at = SourceAt(source, level, scene);
+    const LevelCaster caster(planned, at,
+      CellsAtLevel(Intersection(cells, scene.DomainCells), at.CellLevel()), bytes, pool,
+      statistics);
     if (caster.BytesToDraw() <= bytes)
     {
       break;
@@ -71,8 +73,9 @@ FloatImage CastRays(const RayScene& scene, BrickSource& source, const Box& cells
   std::vector<std::unique_ptr<LevelCaster>> casters;
   for (const int level : LevelsOf(scene))
   {
-    casters.push_back(std::make_unique<LevelCaster>(scene, SourceAt(source, level, scene),
-      CellsAtLevel(inside, level), budgetBytes, pool, statistics));
+    BrickSource& at = SourceAt(source, level, scene);
+    casters.push_back(std::make_unique<LevelCaster>(
+      scene, at, CellsAtLevel(inside, at.CellLevel()), budgetBytes, pool, statistics));
     picture.Rect = Union(picture.Rect, casters.back()->Rect());
   }
   source.Kept().BeginPicture(budgetBytes / 2, /*ages=*/!scene.Pilot);

@@ -174,7 +174,8 @@ private:
   /// error (a quarter, where the field is smooth), and the finest has none.
   void ExtrapolateLevels()
   {
-    for (int level = static_cast<int>(this->Choices.Levels.back().Value) - 1; level >= 0; --level)
+    for (int level = static_cast<int>(this->Choices.Levels.back().Value) - 1;
+         level >= this->Wish.FinestLevel; --level)
     {
       Choice finer{ static_cast<double>(level), this->Choices.Levels.back().Errors };
       for (double& error : finer.Errors.Tiles)
@@ -288,7 +289,7 @@ void Check(const SamplingWish& wish)
   {
     throw Error("The sample distance must be above 0");
   }
-  if (wish.CoarsestLevel < 0 || wish.FinestPilotLevel < 0)
+  if (wish.CoarsestLevel < 0 || wish.FinestPilotLevel < 0 || wish.FinestLevel < 0)
   {
     throw Error("There is no level below 0, the finest");
   }
@@ -313,7 +314,10 @@ SamplingPlan PlanSamplings(const RayScene& scene, SamplingWish wish, const DrawP
     --wish.CoarsestLevel;
   }
   // Of one level alone nothing could be told.
-  wish.FinestPilotLevel = std::min(wish.FinestPilotLevel, std::max(0, wish.CoarsestLevel - 1));
+  const int secondCoarsest = std::max(0, wish.CoarsestLevel - 1);
+  wish.FinestLevel = std::min(wish.FinestLevel, secondCoarsest);
+  wish.FinestPilotLevel =
+    std::max(wish.FinestLevel, std::min(wish.FinestPilotLevel, secondCoarsest));
   RayScene pilots = scene;
   pilots.OpacityLimit =
     static_cast<float>(1.0 - std::min(wish.Tolerance, 32.0) * ShareOfEnds / 255.0);

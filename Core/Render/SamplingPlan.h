@@ -29,6 +29,9 @@ struct SamplingWish
   /// The largest RaySampling::PixelStride: whoever draws a plan has to call FillBetweenRays unless it
   /// is 1.
   int LargestPixelStride = RaySampling::LargestStride;
+  /// The finest level that may be drawn from, whatever the tolerance: see FinestLevelFor. One below the
+  /// coarsest that is used, if need be: of one level alone no error could be told.
+  int FinestLevel = 0;
 };
 
 /// How a picture is to be sampled so that its error stays within a tolerance.
