@@ -35,7 +35,7 @@ public:
   DistributedField();
   ~DistributedField();
 
-  /// How the zones of image data follow what frames cost. For the next Update; the same on all ranks.
+  /// How zones follow what frames cost. For the next Update; the same on all ranks.
   void SetLoadBalancing(LoadBalancing mode);
 
   /// Collective, before a frame: moves the zones, brings what they take, and lets the scene tell what
@@ -88,8 +88,8 @@ public:
   /// How far the drawn field may be from that of a mesh: see CubeDeviation. 0 where it is exact.
   double MeshDeviation() const;
 
-  /// Whether there are coarser levels of it, wherever one process has all of it.
-  bool HasLevels() const { return this->Mesh == nullptr; }
+  /// Whether it is a mesh of hexahedra. Its levels are counted in cells of the finest one.
+  bool IsMesh() const { return this->Mesh != nullptr; }
 
   /// This rank's bricks; null when it has none.
   BrickSource* Source();
@@ -104,6 +104,7 @@ private:
   void AgreeOnRange(Communicator& communicator);
   bool TakeMesh(Communicator& communicator, FieldPiece piece);
   void SetMesh();
+  void PlaceMeshZones();
   Facts FactsOf(const FieldPiece& piece) const;
   std::string CheckAgainst(const Facts& mine, const Facts& first, int firstRank) const;
   void SetGrid(const Facts& facts, const Box& samples);
@@ -121,7 +122,7 @@ private:
   std::unique_ptr<StepAhead> Ahead; ///< null until a series plays
   int Step = 0;                     ///< of the series
   LoadBalancing Balancing = LoadBalancing::Off;
-  FrameBalancer Balancer; ///< of encoded series
+  FrameBalancer Balancer; ///< of encoded series and meshes
   std::array<double, 6> PhysicalBounds{ { 1, -1, 1, -1, 1, -1 } };
   double ShortestEdge = 1.0;
   ValueRange ValuesRange;

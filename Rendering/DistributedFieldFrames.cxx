@@ -1,4 +1,4 @@
-// Zones of image data from frame to frame.
+// Zones from frame to frame.
 #include "DistributedField.h"
 
 #include "Base/ThreadPool.h"
@@ -44,6 +44,11 @@ void DistributedField::BeginFrame(Communicator& communicator, RayScene& scene)
     this->Balancer.BeginFrame(scene, *this->Bricks);
     this->ZoneCells = this->Balancer.Zones();
   }
+  else if (this->IsMesh() && this->Bricks)
+  {
+    this->Balancer.BeginFrame(scene, *this->Bricks);
+    this->PlaceMeshZones();
+  }
 }
 
 void DistributedField::BringLevels(Communicator& communicator, const RayScene& scene, int coarsest)
@@ -84,7 +89,7 @@ void DistributedField::EndFrame(Communicator& communicator)
   {
     this->Pieces->EndFrame(communicator);
   }
-  else if (this->Encoded())
+  else if (this->Encoded() || this->IsMesh())
   {
     this->Balancer.EndFrame(communicator);
   }
@@ -94,7 +99,7 @@ double DistributedField::BytesMoved() const
 {
   return this->Pieces      ? static_cast<double>(this->Pieces->FrameStatistics().BytesMoved)
          : this->Encoded() ? this->Balancer.BytesMoved()
-                           : 0.0;
+                           : 0.0; // all ranks have all of a mesh
 }
 
 std::uint64_t DistributedField::FetchHits() const

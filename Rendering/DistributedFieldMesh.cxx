@@ -4,6 +4,7 @@
 #include "GridOfLeaves.h"
 #include "MeshField.h"
 
+#include "Parallel/MeshZones.h"
 #include "Pieces/PieceField.h"
 #include "Render/StepAhead.h"
 
@@ -56,7 +57,9 @@ bool DistributedField::TakeMesh(Communicator& communicator, FieldPiece piece)
       communicator, piece.Grid, piece.Array, piece.Where, piece.Component, piece.Mesh);
     this->Bricks = this->Mesh->TakeSource();
     this->SetMesh();
-    this->ZoneCells = this->Mesh->Zones(communicator.Size());
+    this->Balancer.Start(this->Balancing,
+      MeshZones(*this->Bricks, this->Domain, communicator.Size()), communicator.Size());
+    this->PlaceMeshZones();
   }
   catch (const std::exception& error)
   {
@@ -75,6 +78,11 @@ std::string DistributedField::MeshNote() const
 double DistributedField::MeshDeviation() const
 {
   return this->Mesh ? this->Mesh->Deviation() : 0.0;
+}
+
+void DistributedField::PlaceMeshZones()
+{
+  this->ZoneCells = ZonesInside(this->Balancer.Zones(), this->Domain);
 }
 
 void DistributedField::SetMesh()

@@ -3,7 +3,6 @@
 #include "Base/ThreadPool.h"
 #include "HexSampling/CellMeans.h"
 #include "Parallel/MeshGathering.h"
-#include "Parallel/Zones.h"
 
 #include "vtkDataArray.h"
 #include "vtkSetGet.h"
@@ -208,19 +207,6 @@ bool MeshField::SameMesh(Communicator& communicator, const HexMesh& piece)
   const bool same = this->Bricks && hash == this->PieceHash;
   this->PieceHash = hash;
   return AllMax(communicator, same ? 0.0 : 1.0) == 0.0;
-}
-
-std::vector<Box> MeshField::Zones(int ranks) const
-{
-  const Box& domain = this->Tree().Domain();
-  const glm::ivec3 blocks = (domain.Size() + MeshBrickCells - 1) / MeshBrickCells;
-  std::vector<Box> zones = StaticZones(blocks, ranks);
-  for (Box& zone : zones)
-  {
-    zone = CellsOfBricks(zone, MeshBrickCells, domain.Size());
-    zone = { zone.Lo + domain.Lo, zone.Hi + domain.Lo };
-  }
-  return zones;
 }
 
 } // namespace banyan

@@ -43,8 +43,6 @@ public:
   double Deviation() const { return this->Sampled ? this->Sampled->Deviation() : 0.0; }
 
   const ElementOctree& Tree() const { return this->Bricks->Tree(); }
-  /// A part of the mesh for each rank, in finest cells.
-  std::vector<Box> Zones(int ranks) const;
 
   /// The bricks of the last Update; can be called once for each.
   std::unique_ptr<BrickSource> TakeSource() { return std::move(this->Source); }

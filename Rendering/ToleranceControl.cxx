@@ -4,6 +4,7 @@
 
 #include "Base/ThreadPool.h"
 #include "Parallel/LevelZones.h"
+#include "Render/ElementsPerPixel.h"
 
 #include <algorithm>
 
@@ -19,12 +20,14 @@ constexpr double MostSlack = 16.0;
 double ToleranceControl::Plan(Communicator& communicator, DistributedField& field, RayScene& scene,
   const Wish& wish, std::uint64_t budgetBytes, const std::string& failure, FrameStatistics& frame)
 {
+  const int coarsest = field.IsMesh() ? CoarsestMeshLevel : CoarsestLevel;
+  scene.LevelsShareCells = field.IsMesh();
   // Plain data has coarser levels only when they are made; still pictures of it do without.
-  const bool levels = field.HasLevels() && (field.Encoded() || wish.Interacting) &&
-                      LevelsHaveOneOrder(scene, field.Zones(), CoarsestLevel);
+  const bool levels = (field.Encoded() || field.IsMesh() || wish.Interacting) &&
+                      LevelsHaveOneOrder(scene, field.Zones(), coarsest);
   if (levels)
   {
-    field.BringLevels(communicator, scene, CoarsestLevel);
+    field.BringLevels(communicator, scene, coarsest);
   }
   if (wish.Interacting)
   {
@@ -34,9 +37,11 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
                              ? wish.Interactive * this->Slack
                              : this->Passes.ToleranceOf(communicator, scene, field.Version(),
                                  { wish.Passes, wish.Still, wish.Interactive });
+  SamplingWish sampling{ tolerance, scene.SampleDistance, levels ? coarsest : 0 };
+  sampling.FinestLevel =
+    field.IsMesh() ? FinestLevelFor(scene, wish.MaxElementsPerPixel, sampling.CoarsestLevel) : 0;
   const SamplingPlan plan = PlanDistributed(communicator, scene, field.Source(), field.Zones(),
-    budgetBytes, ThreadPool::Process(), failure,
-    { tolerance, scene.SampleDistance, levels ? CoarsestLevel : 0 }, frame);
+    budgetBytes, ThreadPool::Process(), failure, sampling, frame);
   scene.Samplings = plan.Samplings;
   scene.OpacityLimit = plan.OpacityLimit;
   return plan.EstimatedError;

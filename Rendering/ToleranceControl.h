@@ -15,7 +15,8 @@ class DistributedField;
 class ToleranceControl
 {
 public:
-  static constexpr int CoarsestLevel = 3; ///< that pictures are sampled at
+  static constexpr int CoarsestLevel = 3;     ///< that pictures are sampled at
+  static constexpr int CoarsestMeshLevel = 5; ///< of meshes, which have elements of several sizes
 
   struct Wish
   {
@@ -24,6 +25,7 @@ public:
     double Seconds = 0.2;     ///< that a frame may take while interacting; 0 for any
     bool Interacting = false;
     bool Passes = false; ///< whether still pictures become better in passes
+    double MaxElementsPerPixel = 0.0; ///< of meshes: see FinestLevelFor
   };
 
   /// Collective: gives the scene its samplings and its opacity limit.

@@ -289,7 +289,8 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   // More than one frame per second: somebody moves the camera. All ranks are told the same rate.
   const banyan::ToleranceControl::Wish wish{ this->ImageErrorTolerance,
     this->InteractiveImageErrorTolerance, this->InteractiveFrameSeconds,
-    renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0, this->RefineInPasses };
+    renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0, this->RefineInPasses,
+    this->MaxElementsPerPixel };
   const banyan::Timer drawing;
   {
     const banyan::PhaseScope fetching(banyan::Phase::Fetching);
@@ -368,6 +369,7 @@ void vtkBanyanVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "MeshTolerance: " << this->MeshTolerance << "\n"
      << indent << "MeshSamplingTolerance: " << this->MeshSamplingTolerance << "\n"
      << indent << "MeshSamplingBoxes: " << this->MeshSamplingBoxes << "\n"
+     << indent << "MaxElementsPerPixel: " << this->MaxElementsPerPixel << "\n"
      << indent << "TemporalEnhancement: " << this->TemporalEnhancement << "\n"
      << indent << "Compositing: " << this->Compositing << "\n"
      << indent << "CompositeInFewBits: " << this->CompositeInFewBits << "\n"

@@ -52,7 +52,7 @@ public:
    * Largest error of a pixel that is wanted, in 1/255 of a channel: of still frames (default 1),
    * and while interacting, that is, while the window asks for more than one frame per second
    * (default 8). It decides how closely each part of the picture is sampled, and from which level
-   * of an encoded series. The error is estimated (see banyan::PlanSamplings) and goes to the
+   * of an encoded series or a mesh of hexahedra. The error is estimated (see banyan::PlanSamplings) and goes to the
    * statistics. Allowed [0.05, 255]. Without effect on projections and nearest interpolation.
    */
   vtkSetClampMacro(ImageErrorTolerance, double, 0.05, 255.0);
@@ -131,6 +131,17 @@ public:
 
   ///@{
   /**
+   * The most elements of a mesh of hexahedra that may show in a pixel: no coarser level shows more where
+   * the mesh is nearest to the eye (banyan::FinestLevelFor), and finer ones are not drawn, whatever
+   * ImageErrorTolerance asks for; the estimated error says what that costs. Default 0: any number, so that
+   * the tolerance alone decides. Without effect on other data, and with SampleDistanceVoxels.
+   */
+  vtkSetClampMacro(MaxElementsPerPixel, double, 0.0, 1e6);
+  vtkGetMacro(MaxElementsPerPixel, double);
+  ///@}
+
+  ///@{
+  /**
    * Brings out what moves from one step of an encoded series to the next, while it is drawn: the
    * strength of banyan::TemporalEnhancement, in [0, 1]. Its scale is the largest magnitude that the
    * opacity function knows. Of plain data the steps around must be there as point arrays
@@ -175,8 +186,8 @@ public:
   ///@{
   /**
    * How the zones of the ranks follow what frames cost: 0 not at all, 1 a slice of bricks per frame
-   * towards the slower side, 2 (default) to where measured costs balance. For image data; bricks of plain
-   * data go from rank to rank for it. The same on all ranks. The picture does not change.
+   * towards the slower side, 2 (default) to where measured costs balance. Bricks of plain image data go
+   * from rank to rank for it; meshes are on all ranks. The same on all ranks. The picture does not change.
    */
   vtkSetClampMacro(LoadBalancing, int, 0, 2);
   vtkGetMacro(LoadBalancing, int);
@@ -257,6 +268,7 @@ private:
   double MeshTolerance = 1.0 / 1024;
   double MeshSamplingTolerance = 0.25;
   int MeshSamplingBoxes = 1 << 20;
+  double MaxElementsPerPixel = 0.0;
   double TemporalEnhancement = 0.0;
   int Compositing = 0;
   bool CompositeInFewBits = false;

@@ -355,6 +355,11 @@ void vtkBanyanVolumeRepresentation::SetMeshSamplingBoxes(int boxes)
   this->Mapper->SetMeshSamplingBoxes(boxes);
 }
 
+void vtkBanyanVolumeRepresentation::SetMaxElementsPerPixel(double most)
+{
+  this->Mapper->SetMaxElementsPerPixel(most);
+}
+
 void vtkBanyanVolumeRepresentation::SetTemporalEnhancement(double strength)
 {
   const bool needed = this->Mapper->GetTemporalEnhancement() > 0.0;

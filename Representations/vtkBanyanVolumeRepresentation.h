@@ -98,6 +98,9 @@ public:
   void SetMeshSamplingTolerance(double tolerance);
   void SetMeshSamplingBoxes(int boxes);
 
+  /** As vtkBanyanVolumeMapper's: the most elements of a mesh that may show in a pixel; 0 for any. */
+  void SetMaxElementsPerPixel(double most);
+
   /** As vtkBanyanVolumeMapper's; steps around the one that is drawn are asked of the pipeline. */
   void SetTemporalEnhancement(double strength);
 
