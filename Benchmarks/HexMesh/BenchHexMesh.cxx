@@ -1,25 +1,21 @@
 // What it takes to find the octree of a mesh of hexahedra, to take up values, and to draw a frame;
 // one line of CSV per run. See README.md.
+#include "BenchMesh.h"
 #include "OptionValues.h"
+#include "PeakMemory.h"
 #include "StandardScenes.h"
 
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
 #include "HexOctree/HexBrickSource.h"
-#include "OctreeMesh.h"
 #include "Render/ImageError.h"
-#include "StandardField.h"
-
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <exception>
-#include <fstream>
 
 namespace
 {
@@ -49,137 +45,6 @@ const char* Help =
 const char* Header =
   "mesh,cells,points,bricks,samples_in_bricks,find_s,find_cpu_s,bricks_s,values_s,memory_mb,"
   "bytes_per_cell,first_frame_ms,frame_ms,against_image_data_255\n";
-
-/// A mesh in memory, in cells of the finest size.
-struct Mesh
-{
-  std::vector<float> Points;
-  std::vector<std::int64_t> Ids;
-
-  std::size_t Cells() const { return this->Ids.size() / 8; }
-  std::size_t PointCount() const { return this->Points.size() / 3; }
-};
-
-Mesh UniformMesh(int n, ThreadPool& pool)
-{
-  const std::int64_t samples = n + 1;
-  Mesh mesh;
-  mesh.Points.resize(static_cast<std::size_t>(3 * samples * samples * samples));
-  mesh.Ids.resize(static_cast<std::size_t>(std::int64_t{ 8 } * n * n * n));
-  pool.ParallelFor(samples,
-    [&](std::int64_t z)
-    {
-      float* point = &mesh.Points[static_cast<std::size_t>(3 * z * samples * samples)];
-      for (std::int64_t y = 0; y < samples; ++y)
-      {
-        for (std::int64_t x = 0; x < samples; ++x)
-        {
-          *point++ = static_cast<float>(x);
-          *point++ = static_cast<float>(y);
-          *point++ = static_cast<float>(z);
-        }
-      }
-      for (std::int64_t i = 0; z < n && i < std::int64_t{ n } * n; ++i)
-      {
-        std::int64_t* ids = &mesh.Ids[static_cast<std::size_t>(8 * (z * n * n + i))];
-        for (int corner = 0; corner < 8; ++corner)
-        {
-          // The order of VTK_HEXAHEDRON.
-          const int round = corner & 3;
-          const std::int64_t p = i % n + (round == 1 || round == 2 ? 1 : 0);
-          const std::int64_t q = i / n + (round >= 2 ? 1 : 0);
-          ids[corner] = p + samples * (q + samples * (z + (corner >> 2)));
-        }
-      }
-    });
-  return mesh;
-}
-
-Mesh GradedMesh(int n, ThreadPool& pool)
-{
-  OctreeMeshShape shape;
-  shape.RootEdge = n;
-  shape.MaxLevel = std::ilogb(n);
-  const double finest = 1.0 / n;
-  const auto tooLarge = [&](const MeshOctant& octant)
-  {
-    // Where values differ by more than a little across a cube.
-    const double edge = std::ldexp(1.0, -octant.Level);
-    double low = 1.0;
-    double high = 0.0;
-    for (int i = 0; i < 27; ++i)
-    {
-      const double x = octant.Corner[0] * finest + 0.5 * edge * (i % 3);
-      const double y = octant.Corner[1] * finest + 0.5 * edge * (i / 3 % 3);
-      const double z = octant.Corner[2] * finest + 0.5 * edge * (i / 9);
-      const double value = StandardField({ x, y, z });
-      low = std::min(low, value);
-      high = std::max(high, value);
-    }
-    return octant.Level < 3 || high - low > 8.0 * finest;
-  };
-  const OctreeMesh tree(shape, tooLarge, pool);
-  Mesh mesh;
-  for (std::size_t node = 0; node < tree.NodeCount(); ++node)
-  {
-    for (const double x : tree.Point(node))
-    {
-      mesh.Points.push_back(static_cast<float>(x));
-    }
-  }
-  for (std::size_t cell = 0; cell < tree.CellCount(); ++cell)
-  {
-    const auto& corners = tree.Corners(cell);
-    mesh.Ids.insert(mesh.Ids.end(), corners.begin(), corners.end());
-  }
-  return mesh;
-}
-
-/// A permutation without a table: steps of a number that shares no divisor with the count.
-void Shuffle(Mesh& mesh)
-{
-  const std::size_t cells = mesh.Cells();
-  std::size_t step = 2654435761u % cells | 1u;
-  const auto divisor = [](std::size_t a, std::size_t b)
-  {
-    while (b != 0)
-    {
-      const std::size_t rest = a % b;
-      a = b;
-      b = rest;
-    }
-    return a;
-  };
-  while (divisor(step, cells) != 1)
-  {
-    step += 2;
-  }
-  std::vector<std::int64_t> ids(mesh.Ids.size());
-  for (std::size_t cell = 0; cell < cells; ++cell)
-  {
-    std::copy_n(&mesh.Ids[8 * (cell * step % cells)], 8, &ids[8 * cell]);
-  }
-  mesh.Ids = std::move(ids);
-}
-
-/// Megabytes that the process has taken at most since the last call of ForgetPeak.
-double PeakMegabytes()
-{
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);)
-  {
-    if (line.rfind("VmHWM:", 0) == 0)
-    {
-      return std::stod(line.substr(6)) / 1024.0;
-    }
-  }
-  return 0.0;
-}
-
-void ForgetPeak()
-{
-  std::ofstream("/proc/self/clear_refs") << "5";
-}
 
 Options ReadOptions(const std::vector<std::string>& arguments)
 {
@@ -250,28 +115,16 @@ double AgainstImageData(const Options& options, const FloatImage& picture, Threa
 void Run(const Options& options)
 {
   ThreadPool pool(options.Threads);
-  Mesh mesh = options.Graded ? GradedMesh(options.Cells, pool) : UniformMesh(options.Cells, pool);
+  bench::BenchMesh mesh = options.Graded ? bench::GradedMesh(options.Cells, pool)
+                                         : bench::UniformMesh(options.Cells, pool);
   if (options.Shuffled)
   {
-    Shuffle(mesh);
+    bench::Shuffle(mesh);
   }
-  std::vector<float> values(mesh.PointCount());
-  const double edge = 1.0 / options.Cells;
-  pool.ParallelFor(static_cast<std::int64_t>(values.size()),
-    [&](std::int64_t i)
-    {
-      const float* p = &mesh.Points[static_cast<std::size_t>(3 * i)];
-      values[static_cast<std::size_t>(i)] =
-        static_cast<float>(StandardField({ p[0] * edge, p[1] * edge, p[2] * edge }));
-    });
-
-  HexMesh input;
-  input.Points = mesh.Points.data();
-  input.PointCount = static_cast<std::int64_t>(mesh.PointCount());
-  input.Connectivity = mesh.Ids.data();
-  input.CellCount = static_cast<std::int64_t>(mesh.Cells());
-  ForgetPeak();
-  const double before = PeakMegabytes();
+  const std::vector<float>& values = mesh.Values;
+  const HexMesh input = mesh.Input();
+  bench::ForgetPeak();
+  const double before = bench::PeakMegabytes();
   const Timer find;
   const std::clock_t findFrom = std::clock();
   const auto tree = ElementOctree::Find(input, pool);
@@ -285,7 +138,7 @@ void Run(const Options& options)
   const Timer take;
   HexBrickSource source(bricks, array, pool);
   const double takeSeconds = take.Seconds();
-  const double megabytes = PeakMegabytes() - before;
+  const double megabytes = bench::PeakMegabytes() - before;
 
   const RayScene scene = SceneOf(options, *tree);
   FloatImage picture;

@@ -1,0 +1,89 @@
+#include "HexMeshRenderer.h"
+
+#include "Base/ThreadPool.h"
+#include "Base/Timer.h"
+#include "HexOctree/HexBrickSource.h"
+#include "Render/ElementsPerPixel.h"
+#include "Render/SamplingPlan.h"
+
+namespace banyan::bench
+{
+namespace
+{
+
+constexpr int BrickCells = 16; // as the mapper has them
+constexpr int CoarsestLevel = 5;
+constexpr float OpacityLimit = 1.0f - 1.0f / 255.0f;
+
+class BanyanHexMeshRenderer : public HexMeshRenderer
+{
+public:
+  BanyanHexMeshRenderer(const HexMeshScene& scene, const HexMeshAccuracy& accuracy, int threads)
+    : Scene(scene)
+    , Accuracy(accuracy)
+    , Pool(threads)
+  {
+  }
+
+  void Open() override {}
+
+  HexMeshFrame Draw() override
+  {
+    const Timer timer;
+    if (!this->Source)
+    {
+      this->SetUp();
+    }
+    RayScene scene = ToRayScene(this->Scene.Look, 1.0, OpacityLimit);
+    scene.IndexToWorld = this->Source->Field().Tree().LatticeToWorld();
+    scene.DomainCells = this->Source->Field().Tree().Domain();
+    scene.LevelsShareCells = true;
+    if (this->Accuracy.Tolerance > 0.0)
+    {
+      SamplingWish wish{ this->Accuracy.Tolerance, scene.SampleDistance, CoarsestLevel };
+      wish.FinestLevel =
+        FinestLevelFor(scene, this->Accuracy.MaxElementsPerPixel, wish.CoarsestLevel);
+      const SamplingPlan plan = PlanSamplings(
+        scene, wish, [this](const RayScene& pilot) { return this->Cast(pilot); });
+      scene.Samplings = plan.Samplings;
+      scene.OpacityLimit = plan.OpacityLimit;
+    }
+    const FloatImage picture = this->Cast(scene);
+    HexMeshFrame frame;
+    frame.Seconds = timer.Seconds();
+    frame.Shown = Rounded(picture, this->Scene.Look.Picture);
+    return frame;
+  }
+
+private:
+  void SetUp()
+  {
+    const auto tree = ElementOctree::Find(this->Scene.Mesh.Input(), this->Pool);
+    NodeArray values;
+    values.Values = this->Scene.Mesh.Values.data();
+    this->Source = std::make_unique<HexBrickSource>(
+      std::make_shared<const HexBricks>(tree, BrickCells), values, this->Pool);
+  }
+
+  FloatImage Cast(const RayScene& scene)
+  {
+    RayStatistics statistics;
+    return CastRays(
+      scene, *this->Source, scene.DomainCells, std::uint64_t{ 4 } << 30, this->Pool, statistics);
+  }
+
+  const HexMeshScene& Scene;
+  HexMeshAccuracy Accuracy;
+  ThreadPool Pool;
+  std::unique_ptr<HexBrickSource> Source;
+};
+
+} // namespace
+
+std::unique_ptr<HexMeshRenderer> MakeBanyanHexMeshRenderer(
+  const HexMeshScene& scene, const HexMeshAccuracy& accuracy, int threads)
+{
+  return std::make_unique<BanyanHexMeshRenderer>(scene, accuracy, threads);
+}
+
+} // namespace banyan::bench

@@ -1,0 +1,31 @@
+#ifndef banyan_Benchmarks_PeakMemory_h
+#define banyan_Benchmarks_PeakMemory_h
+
+#include <fstream>
+#include <string>
+
+namespace banyan::bench
+{
+
+/// Megabytes that the process has taken at most since the last call of ForgetPeak.
+inline double PeakMegabytes()
+{
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+  {
+    if (line.rfind("VmHWM:", 0) == 0)
+    {
+      return std::stod(line.substr(6)) / 1024.0;
+    }
+  }
+  return 0.0;
+}
+
+inline void ForgetPeak()
+{
+  std::ofstream("/proc/self/clear_refs") << "5";
+}
+
+} // namespace banyan::bench
+
+#endif
