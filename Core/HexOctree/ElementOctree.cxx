@@ -16,9 +16,9 @@ glm::dmat4 ElementOctree::LatticeToWorld() const
   return matrix;
 }
 
-void ElementOctree::NodesOfLeaf(std::int64_t leaf, std::int64_t (&nodes)[8]) const
+void ElementOctree::NodesOfCell(std::int64_t number, std::int64_t (&nodes)[8]) const
 {
-  const auto cell = static_cast<std::size_t>(this->CellNumbers[Index(leaf)]);
+  const std::size_t cell = Index(number);
   const std::size_t order = this->OrderOfCell.empty() ? 0 : this->OrderOfCell[cell];
   const std::array<std::uint8_t, 8>& places = this->CornerOrders[order];
   if (this->Cells.IdType == ScalarType::Int64)

@@ -65,15 +65,15 @@ void NodeFinder::Find()
 void NodeFinder::MarkCorners()
 {
   constexpr std::int64_t run = 1 << 14;
-  const std::int64_t leaves = this->Tree.LeafCount();
+  const std::int64_t cells = this->Tree.LeafCount(); // each is a leaf
   std::atomic<std::uint8_t>* const octants = this->Octants.get();
-  this->Pool.ParallelFor((leaves + run - 1) / run,
+  this->Pool.ParallelFor((cells + run - 1) / run,
     [&](std::int64_t part)
     {
       std::int64_t nodes[8];
-      for (std::int64_t leaf = part * run; leaf < std::min(leaves, (part + 1) * run); ++leaf)
+      for (std::int64_t cell = part * run; cell < std::min(cells, (part + 1) * run); ++cell)
       {
-        this->Tree.NodesOfLeaf(leaf, nodes);
+        this->Tree.NodesOfCell(cell, nodes);
         for (unsigned corner = 0; corner < 8; ++corner)
         {
           // A leaf lies on the other side of its corner. Octants are numbered as those of

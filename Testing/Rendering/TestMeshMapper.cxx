@@ -150,6 +150,63 @@ void NewValuesFindNoOctree()
   Check(Difference(stage.Draw(), drawn) <= 1, "the same mesh once more");
 }
 
+/// A rod of 256 x 4 x 4 cells.
+vtkSmartPointer<vtkUnstructuredGrid> Rod(const std::function<float(int x)>& value)
+{
+  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkFloatArray> values;
+  const glm::ivec3 n(257, 5, 5);
+  for (int i = 0; i < n.x * n.y * n.z; ++i)
+  {
+    points->InsertNextPoint(i % n.x, i / n.x % n.y, i / n.x / n.y);
+    values->InsertNextValue(value(i % n.x));
+  }
+  grid->Allocate(4096);
+  for (int i = 0; i < 256 * 4 * 4; ++i)
+  {
+    const vtkIdType first = i % 256 + n.x * (i / 256 % 4 + n.y * (i / 1024));
+    vtkIdType ids[8];
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      ids[corner] = first + (corner & 1) + n.x * ((corner >> 1 & 1) + n.y * (corner >> 2));
+    }
+    grid->InsertNextCell(VTK_VOXEL, 8, ids);
+  }
+  grid->SetPoints(points);
+  grid->GetPointData()->SetScalars(values);
+  return grid;
+}
+
+void ElementsPerPixelAreLimited()
+{
+  const auto rough = [](int x)
+  { return 0.3f + 0.6f * static_cast<float>((x * 37 + x * x * 11) % 64) / 64.0f; };
+  const auto finest = Rod(rough);
+  // What level 1 has of it: every second point.
+  const auto coarser = Rod([&](int x) { return 0.5f * (rough(x - x % 2) + rough(x + x % 2)); });
+  const auto draw = [](vtkUnstructuredGrid* grid, double most, double& estimate)
+  {
+    vtkNew<vtkBanyanVolumeMapper> mapper;
+    mapper->SetInputDataObject(grid);
+    mapper->SetMaxElementsPerPixel(most);
+    Stage stage(mapper);
+    stage.LookAt(grid->GetBounds());
+    const auto picture = stage.Draw();
+    estimate = mapper->GetStatistics()->GetEstimatedImageError();
+    return picture;
+  };
+  double error = 0.0;
+  const auto expected = draw(coarser, 0.0, error);
+  Check(Covered(expected) > 100, "the rod is seen");
+  const auto fine = draw(finest, 0.0, error);
+  Check(Difference(fine, expected) > 3, "the tolerance asks for the finest elements");
+  Check(error <= 1.0, "and keeps it");
+  Check(Difference(draw(finest, 1e-3, error), expected) <= 2, "few elements in a pixel");
+  Check(error > 0.0, "and their error is told");
+  Check(Difference(draw(finest, 1e6, error), fine) == 0, "as many as there are");
+}
+
 /// What a mapper says about data.
 std::string Said(vtkDataSet* data)
 {
@@ -250,6 +307,7 @@ int main()
   DrawsAsImageData();
   NewValuesFindNoOctree();
   DrawsWhatIsNoOctree();
+  ElementsPerPixelAreLimited();
   Refuses();
   return Failures();
 }
