@@ -4,9 +4,10 @@
 #   hexmesh.sh [--quick] [--cells N] [--mesh KIND] [--renderers LIST] [--limit SECONDS] [--repeat N]
 #              [--scaling] [--adaptive] [--output DIR] [--work DIR] [--help]
 #
-#   --quick          a picture of 512^2 and at most 40 seconds per renderer: a few minutes in all
-#   --cells N        cells across (default 100: a million in all; 216: ten millions, for which VTK's
-#                    tetrahedra take tens of gigabytes and most of an hour)
+#   --quick          64 cells across, a picture of 512^2, and at most 60 seconds per renderer: a few
+#                    minutes in all
+#   --cells N        cells across (default 100: a million in all; 216: ten millions, of which VTK's
+#                    tetrahedra are fifty)
 #   --mesh KIND      uniform (default); graded: an octree, N a power of two
 #   --renderers LIST only these, separated by commas; banyan-bench-hexmesh-renderer --list has VTK's
 #   --limit SECONDS  for each renderer, after which it is ended and its row stays empty (default 900)
@@ -42,7 +43,8 @@ parse_arguments()
         exit 0
         ;;
       --quick)
-        limit=40
+        cells="${cells:-64}"
+        limit=60
         repeat=1
         picture=512
         ;;
