@@ -41,6 +41,7 @@ public:
     if (this->Accuracy.Tolerance > 0.0)
     {
       SamplingWish wish{ this->Accuracy.Tolerance, scene.SampleDistance, CoarsestLevel };
+      wish.LargestPixelStride = 1; // a ray for each pixel
       wish.FinestLevel =
         FinestLevelFor(scene, this->Accuracy.MaxElementsPerPixel, wish.CoarsestLevel);
       const SamplingPlan plan = PlanSamplings(

@@ -356,6 +356,7 @@ TEST(HexLevels, PlansKeepTheToleranceWithCoarserLevels)
   {
     SamplingWish wish{ 8.0, scene.SampleDistance, 3 };
     wish.LeastCells = 8;
+    wish.LargestPixelStride = 1;
     wish.FinestLevel = FinestLevelFor(scene, most > 0.0 ? 1.0 / most : 0.0, wish.CoarsestLevel);
     EXPECT_EQ(wish.FinestLevel, most > 0.0 ? 3 : 0);
     const SamplingPlan plan = PlanDistributed(
