@@ -47,7 +47,7 @@ struct SampledCubes
   std::vector<std::uint32_t> Cells; ///< those whose boxes touch each cube, in ascending order
   double Deviation = 0.0;           ///< the largest one of all cubes
   std::int64_t Above = 0;           ///< cubes with more than the tolerance
-  std::int64_t Denied = 0;          ///< those of them, and at the border, that MostCubes kept coarse
+  std::int64_t Denied = 0; ///< those of them, and at the border, that MostCubes kept coarse
 };
 
 /// Halves cubes from one around the whole mesh on: as long as they are larger than the thinnest
