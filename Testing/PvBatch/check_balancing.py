@@ -42,7 +42,7 @@ DATA = {"encoded": picture_scenes.encoded, "plain": picture_scenes.wavelet,
 
 def draw(data, mode, folder):
     """Pictures and figures of all frames in one mode."""
-    view = session.new_view(SIZE, UseFXAA=0, **camera(0))
+    view = session.new_view(SIZE, **camera(0))
     display = DATA[data](view)
     # In place of the tolerance, which pilots may meet with other samples on other ranks.
     display.SampleDistanceVoxels = 0.5

@@ -21,7 +21,7 @@ TOLERANCE = 2
 def draw(source, array, scale, samples, path):
     camera = dict(picture_scenes.CAMERA, CameraPosition=[45 * scale, 40 * scale, 100 * scale])
     # Edge smoothing turns differences of one into larger ones where it begins to see an edge.
-    view = session.new_view(SIZE, UseFXAA=0, **camera)
+    view = session.new_view(SIZE, **camera)
     display = picture_scenes.volume(source, view, array, 2.0 * scale, (0.0, 1.0),
                                     opacities=(0.0, 0.1, 0.2, 0.3, 0.4))
     display.SampleDistanceVoxels = samples

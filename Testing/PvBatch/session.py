@@ -36,6 +36,8 @@ def new_view(size, **properties):
     view.UseColorPaletteForBackground = 0
     view.Background = [0.1, 0.2, 0.3]
     view.OrientationAxesVisibility = 0
+    # It smooths edges that it decides on by thresholds: the last bit of a pixel may change its neighbours a lot.
+    view.UseFXAA = 0
     for name, value in properties.items():
         setattr(view, name, value)
     return view
