@@ -321,9 +321,6 @@ def translucent_surface_beside():
     # Of few cells: ParaView redistributes it through XML, which Debian's parser cuts off.
     nothing = ("nothing", (0, 0, 0), 0, (0, 0, 0))
     glass = ("glass", (-29, 17, 5), 5, (0.9, 0.4, 0.9))
-    # ParaView blends glass on one rank and on many with another rounding, and what looks like an
-    # edge to its smoothing hangs on the last bit.
-    view.UseFXAA = 0
     return Drawn(view, [wavelet(view)], [spheres(view, (nothing, glass), 6, 0.5)],
                  volume_pixels=20000)
 
