@@ -25,46 +25,14 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 output="benchmark-output"
 work=""
-size=256
-picture=512
-frames=80
+quick=0
+frames=""
 ranks="2,4,8,16"
-
-parse_arguments()
-{
-  local given=""
-  while [[ $# -gt 0 ]]; do
-    local option="$1"
-    shift
-    case "$option" in
-      --help)
-        help_of "${BASH_SOURCE[0]}"
-        exit 0
-        ;;
-      --quick)
-        size=128
-        picture=256
-        frames=40
-        ;;
-      --output | --data | --work | --frames | --ranks)
-        [[ $# -gt 0 && -n "$1" ]] || fail "$option needs a value."
-        case "$option" in
-          --output) output="$1" ;;
-          --data) data="$1" ;;
-          --work) work="$1" ;;
-          --frames) given="$1" ;;
-          --ranks) ranks="$1" ;;
-        esac
-        shift
-        ;;
-      *) fail "there is no option '$option'; --help lists them." ;;
-    esac
-  done
-  frames="${given:-$frames}"
-  find_data
-}
-
-parse_arguments "$@"
+read_options "quick" "output data work frames ranks" "$@"
+find_data
+size=$((quick ? 128 : 256))
+picture=$((quick ? 256 : 512))
+frames="${frames:-$((quick ? 40 : 80))}"
 
 stage 1 4 "Installing what is missing and building"
 install_and_build

@@ -20,39 +20,14 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 output="benchmark-output"
 work=""
-size=128
-steps=50
-measuring=()
-
-parse_arguments()
-{
-  while [[ $# -gt 0 ]]; do
-    local option="$1"
-    shift
-    case "$option" in
-      --help)
-        help_of "${BASH_SOURCE[0]}"
-        exit 0
-        ;;
-      --quick)
-        size=64
-        steps=16
-        ;;
-      --output | --data | --work | --repeat | --methods)
-        [[ $# -gt 0 && -n "$1" ]] || fail "$option needs a value."
-        case "$option" in
-          --output) output="$1" ;;
-          --data) data="$1" ;;
-          --work) work="$1" ;;
-          *) measuring+=("$option" "$1") ;;
-        esac
-        shift
-        ;;
-      *) fail "there is no option '$option'; --help lists them." ;;
-    esac
-  done
-  find_data
-}
+quick=0
+repeat=""
+methods=""
+read_options "quick" "output data work repeat methods" "$@"
+find_data
+size=$((quick ? 64 : 128))
+steps=$((quick ? 16 : 50))
+measuring=(${repeat:+--repeat "$repeat"} ${methods:+--methods "$methods"})
 
 # One series into $work, unless it is there; with its description, whose name comes first.
 generate()
@@ -75,8 +50,6 @@ measure()
   "$BuildFolder/bin/banyan-bench-codec" --output "$output/codec.csv" --work "$work/encoded" \
     "${measuring[@]+"${measuring[@]}"}" "$@" || status=1
 }
-
-parse_arguments "$@"
 
 stage 1 5 "Installing what is missing and building"
 install_and_build --with-peers

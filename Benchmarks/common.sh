@@ -18,6 +18,30 @@ help_of()
   sed -n '2,/^source/{/^source/d;s/^# \{0,1\}//p}' "$1"
 }
 
+# Sets variables to what the options of a script say: those of the first list are 1 when they are
+# given, those of the second take a value. `--help` prints the top of the script.
+read_options()
+{
+  local flags="$1" valued="$2" option
+  shift 2
+  while [[ $# -gt 0 ]]; do
+    option="${1#--}"
+    if [[ "$1" == --help ]]; then
+      help_of "${BASH_SOURCE[1]}"
+      exit 0
+    elif [[ "$1" == --?* && " $flags " == *" $option "* ]]; then
+      declare -g "$option=1"
+    elif [[ "$1" == --?* && " $valued " == *" $option "* ]]; then
+      [[ $# -gt 1 && -n "$2" ]] || fail "$1 needs a value."
+      declare -g "$option=$2"
+      shift
+    else
+      fail "there is no option '$1'; --help lists them."
+    fi
+    shift
+  done
+}
+
 # Sets `data` to the folder of real data beside the project, unless it is given.
 find_data()
 {

@@ -34,37 +34,17 @@ scenes=""
 cameras=""
 ranks=""
 networks=""
-
-parse_arguments()
-{
-  while [[ $# -gt 0 ]]; do
-    local option="$1"
-    shift
-    case "$option" in
-      --help)
-        help_of "${BASH_SOURCE[0]}"
-        exit 0
-        ;;
-      --quick) quick=1 ;;
-      --output | --data | --work | --scenes | --cameras | --ranks | --networks)
-        [[ $# -gt 0 && -n "$1" ]] || fail "$option needs a value."
-        declare -g "${option#--}=$1"
-        shift
-        ;;
-      *) fail "there is no option '$option'; --help lists them." ;;
-    esac
-  done
-  find_data
-  if [[ $quick == 1 ]]; then
-    cameras="${cameras:-perspective-full,parallel-zoom}"
-    ranks="${ranks:-2,3,4,8,16,32,64}"
-    networks="${networks:-10}"
-  fi
-  cameras="${cameras:-perspective-full,perspective-zoom,parallel-full,parallel-zoom}"
-  ranks="${ranks:-2,3,4,8,16,32,64,256,512}"
-  networks="${networks:-10,100}"
-  scenes="${scenes:-bonsai,isabel_velmag,turbulence,S2}"
-}
+read_options "quick" "output data work scenes cameras ranks networks" "$@"
+find_data
+if [[ $quick == 1 ]]; then
+  cameras="${cameras:-perspective-full,parallel-zoom}"
+  ranks="${ranks:-2,3,4,8,16,32,64}"
+  networks="${networks:-10}"
+fi
+cameras="${cameras:-perspective-full,perspective-zoom,parallel-full,parallel-zoom}"
+ranks="${ranks:-2,3,4,8,16,32,64,256,512}"
+networks="${networks:-10,100}"
+scenes="${scenes:-bonsai,isabel_velmag,turbulence,S2}"
 
 # The simulation, with the simulator's compiler, the MPI adapter and the unmodified IceT.
 build_simulation()
@@ -153,7 +133,6 @@ simulate()
   rm -rf "$private"
 }
 
-parse_arguments "$@"
 stage 1 4 "Installing what is missing and building"
 install_and_build --with-peers
 build_simulation

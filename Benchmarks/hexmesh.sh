@@ -24,41 +24,19 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 output="benchmark-output"
 work=""
+quick=0
+scaling=0
+adaptive=0
 cells=""
 mesh="uniform"
 renderers=""
-limit=900
-repeat=3
-picture=1024
-kind="renderers"
-
-parse_arguments()
-{
-  while [[ $# -gt 0 ]]; do
-    local option="$1"
-    shift
-    case "$option" in
-      --help)
-        help_of "${BASH_SOURCE[0]}"
-        exit 0
-        ;;
-      --quick)
-        cells="${cells:-64}"
-        limit=60
-        repeat=1
-        picture=512
-        ;;
-      --scaling | --adaptive) kind="${option#--}" ;;
-      --output | --work | --cells | --mesh | --renderers | --limit | --repeat)
-        [[ $# -gt 0 && -n "$1" ]] || fail "$option needs a value."
-        declare -g "${option#--}=$1"
-        shift
-        ;;
-      *) fail "there is no option '$option'; --help lists them." ;;
-    esac
-  done
-  [[ "$limit" =~ ^[1-9][0-9]*$ ]] || fail "--limit takes whole seconds."
-}
+limit=""
+repeat=""
+read_options "quick scaling adaptive" "output work cells mesh renderers limit repeat" "$@"
+limit="${limit:-$((quick ? 60 : 900))}"
+repeat="${repeat:-$((quick ? 1 : 3))}"
+picture=$((quick ? 512 : 1024))
+[[ "$limit" =~ ^[1-9][0-9]*$ ]] || fail "--limit takes whole seconds."
 
 # A line of CSV for each renderer; an empty one for those that need too long, or fail.
 measure()
@@ -110,7 +88,6 @@ measure_adaptive()
   "$python" "$here/HexMesh/report.py" --adaptive "$csv" || fail "the report could not be written."
 }
 
-parse_arguments "$@"
 stage 1 3 "Installing what is missing and building"
 install_and_build
 program="$BuildFolder/bin/banyan-bench-hexmesh-renderer"
@@ -118,19 +95,18 @@ program="$BuildFolder/bin/banyan-bench-hexmesh-renderer"
 work="${work:-$BuildFolder/hexmesh-references}"
 mkdir -p "$work" "$output" || fail "the folders for the results cannot be made."
 stage 2 3 "Measuring"
-case "$kind" in
-  scaling) measure_scaling ;;
-  adaptive)
-    cells="${cells:-200000}"
-    measure_adaptive
-    ;;
-  *)
-    cells="${cells:-100}"
-    renderers="${renderers:-banyan,banyan-full,$("$program" --list | paste -sd,)}"
-    measure
-    ;;
-esac
-[[ "$kind" == renderers ]] || exit 0
+if [[ $scaling == 1 ]]; then
+  measure_scaling
+  exit 0
+fi
+if [[ $adaptive == 1 ]]; then
+  cells="${cells:-200000}"
+  measure_adaptive
+  exit 0
+fi
+cells="${cells:-$((quick ? 64 : 100))}"
+renderers="${renderers:-banyan,banyan-full,$("$program" --list | paste -sd,)}"
+measure
 stage 3 3 "Reporting"
 "$python" "$here/HexMesh/report.py" "$output/hexmesh.csv" "$output/hexmesh.png" ||
   fail "the report could not be written."

@@ -18,20 +18,7 @@ output="benchmark-output/mesh-series"
 cells=20000
 steps=16
 input=""
-while [[ $# -gt 0 ]]; do
-  case "$1" in
-    --help)
-      help_of "${BASH_SOURCE[0]}"
-      exit 0
-      ;;
-    --cells | --steps | --input | --output)
-      [[ $# -gt 1 ]] || fail "$1 needs a value."
-      declare "${1#--}=$2"
-      shift 2
-      ;;
-    *) fail "there is no option '$1'; --help lists them." ;;
-  esac
-done
+read_options "" "cells steps input output" "$@"
 plugin="$BuildFolder/lib/Banyan/Banyan.so"
 [[ -e "$plugin" && -x "$BuildFolder/bin/banyan-bench-codec" ]] ||
   fail "there is no $plugin, or no banyan-bench-codec beside it; both have to be built first."

@@ -31,55 +31,29 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 output="benchmark-output"
 work=""
+quick=0
+scaling=0
+repeat=3
+threads=""
+scenes=""
+renderers=""
+settings=""
+read_options "quick scaling" "output data work repeat threads scenes renderers settings" "$@"
+find_data
+if [[ -z "$threads" ]]; then
+  threads="$([[ $quick == 1 || $(nproc) == 1 ]] && nproc || echo "1,$(nproc)")"
+fi
 size=256
 turbulence=128
 sizes=(64 128 256 512 1024)
-threads=""
-repeat=3
-quick=0
-scaling=0
-measuring=()
-
-parse_arguments()
-{
-  while [[ $# -gt 0 ]]; do
-    local option="$1"
-    shift
-    case "$option" in
-      --help)
-        help_of "${BASH_SOURCE[0]}"
-        exit 0
-        ;;
-      --quick) quick=1 ;;
-      --scaling) scaling=1 ;;
-      --output | --data | --work | --repeat | --threads | --scenes | --renderers | --settings)
-        [[ $# -gt 0 && -n "$1" ]] || fail "$option needs a value."
-        case "$option" in
-          --output) output="$1" ;;
-          --data) data="$1" ;;
-          --work) work="$1" ;;
-          --threads) threads="$1" ;;
-          --repeat) repeat="$1" ;;
-          *) measuring+=("$option" "$1") ;;
-        esac
-        shift
-        ;;
-      *) fail "there is no option '$option'; --help lists them." ;;
-    esac
-  done
-  find_data
-  local all
-  all="$(nproc)"
-  if [[ -z "$threads" ]]; then
-    threads="$([[ $quick == 1 || $all == 1 ]] && echo "$all" || echo "1,$all")"
-  fi
-  if [[ $quick == 1 ]]; then
-    size=128
-    turbulence=64
-    sizes=(64 128 256)
-    measuring+=(--picture 256)
-  fi
-}
+measuring=(${scenes:+--scenes "$scenes"} ${renderers:+--renderers "$renderers"}
+  ${settings:+--settings "$settings"})
+if [[ $quick == 1 ]]; then
+  size=128
+  turbulence=64
+  sizes=(64 128 256)
+  measuring+=(--picture 256)
+fi
 
 # The last step of the turbulence, unless it is there.
 generate_turbulence()
@@ -164,8 +138,6 @@ measure_scaling()
     done
   done
 }
-
-parse_arguments "$@"
 
 stage 1 4 "Installing what is missing and building"
 install_and_build
