@@ -1,6 +1,7 @@
 #include "Render/LevelCaster.h"
 
 #include "Base/ThreadPool.h"
+#include "Render/FunctionTables.h"
 
 #include <glm/matrix.hpp>
 
@@ -21,7 +22,8 @@ constexpr std::size_t BricksPerBatch = 512;
 LevelCaster::Sampled::Sampled(const RayScene& scene, double distance, const BrickSource& source)
   : Lattice(scene, { source.CellLevel() + source.CoarsestBrickLevel(), distance },
       source.CoarsestBrickLevel())
-  , Table(scene.Transfer, distance)
+  , Steps(FunctionTables::Process().StepsOf(scene.Transfer, distance))
+  , Table(*Steps)
 {
   if (scene.Blend.Mode != BlendMode::Composite)
   {
@@ -37,7 +39,8 @@ LevelCaster::LevelCaster(const RayScene& scene, BrickSource& source, const Box& 
   , BudgetBytes(budgetBytes)
   , Pool(pool)
   , Statistics(statistics)
-  , Visible(scene.Transfer)
+  , VisibleOfFunction(FunctionTables::Process().VisibleOf(scene.Transfer))
+  , Visible(*VisibleOfFunction)
   , IndexToWorld(IndexToWorldAt(scene, source.CellLevel()))
   , IndexCamera(scene.Camera.InSpace(IndexToWorld))
   , ClipPlanes(PlanesInIndexSpace(scene.ClipPlanes, IndexToWorld))
@@ -81,7 +84,11 @@ void LevelCaster::MakeTiles()
         : 1;
     this->Tiles[i].Done = this->Tiles[i].Sampling == nullptr;
   }
-  this->Scratch.resize(static_cast<std::size_t>(this->Pool.Width()));
+  // What a tile does not use of its slots need not be set.
+  for (int i = 0; i < this->Pool.Width(); ++i)
+  {
+    this->Scratch.emplace_back(new RayTile);
+  }
   this->Meters.resize(this->Scratch.size());
 }
 
@@ -227,7 +234,7 @@ void LevelCaster::DrawBatch()
     if (!this->Tiles[tile].Bricks.empty())
     {
       const auto mine = static_cast<std::size_t>(worker);
-      samples += this->DrawTile(tile, this->Scratch[mine], this->Meters[mine]);
+      samples += this->DrawTile(tile, *this->Scratch[mine], this->Meters[mine]);
     }
   };
   this->Pool.ParallelFor(static_cast<std::int64_t>(this->Tiles.size()), draw);

@@ -64,7 +64,8 @@ private:
   struct Sampled
   {
     RayLattice Lattice;
-    StepTable Table;
+    std::shared_ptr<const StepTable> Steps;
+    const StepTable& Table;
     std::unique_ptr<const ProjectionTable> Projection; ///< null when samples are composited
 
     /// Rays are made for the largest cells.
@@ -75,8 +76,8 @@ private:
   {
     const Sampled* Sampling = nullptr; ///< null for tiles of other levels
     int PixelStride = 1;
-    bool Done = false;                 ///< no ray of the tile needs another brick
-    std::vector<int> Bricks;           ///< positions in the batch, front to back
+    bool Done = false;       ///< no ray of the tile needs another brick
+    std::vector<int> Bricks; ///< positions in the batch, front to back
   };
 
   void AddSamplings();
@@ -113,7 +114,8 @@ private:
   std::uint64_t BudgetBytes;
   ThreadPool& Pool;
   RayStatistics& Statistics;
-  VisibleValues Visible;
+  std::shared_ptr<const VisibleValues> VisibleOfFunction;
+  const VisibleValues& Visible;
   glm::dmat4 IndexToWorld;
   RayCamera IndexCamera;
   std::vector<glm::dvec4> ClipPlanes;          ///< in index space
@@ -127,9 +129,9 @@ private:
   std::vector<PlannedBrick> Bricks;
   FloatImage* Picture = nullptr;
   TileGrid Grid;
-  std::vector<Tile> Tiles;        ///< of the grid
-  std::vector<RayTile> Scratch;   ///< one per worker
-  std::vector<BatchMeter> Meters; ///< one per worker
+  std::vector<Tile> Tiles;                       ///< of the grid
+  std::vector<std::unique_ptr<RayTile>> Scratch; ///< one per worker
+  std::vector<BatchMeter> Meters;                ///< one per worker
   std::vector<const PlannedBrick*> Batch;
   std::vector<LoadedBrick> Loaded; ///< of the batch
 };

@@ -4,13 +4,73 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace banyan
 {
+namespace
+{
+
+/// The largest power of 2 that is no longer than any window that is not empty.
+int CommonPart(const std::vector<PilotsAround>& windows)
+{
+  int shortest = std::numeric_limits<int>::max();
+  for (const PilotsAround& window : windows)
+  {
+    shortest = window.Begin < window.End ? std::min(shortest, window.End - window.Begin) : shortest;
+  }
+  int part = 1;
+  while (2 * part <= shortest && shortest < std::numeric_limits<int>::max())
+  {
+    part *= 2;
+  }
+  return part;
+}
+
+/// Raises numbers to others.
+void Raise(float* numbers, const float* others, int count)
+{
+  for (int i = 0; i < count; ++i)
+  {
+    numbers[i] = numbers[i] < others[i] ? others[i] : numbers[i];
+  }
+}
+
+/// Makes each row the largest numbers of `part` rows from it on, or of what there is of them.
+/// @param part a power of 2
+void MakeMaxima(float* numbers, int rows, int rowLength, int part)
+{
+  for (int step = 1; step < part; step *= 2)
+  {
+    for (int row = 0; row + step < rows; ++row)
+    {
+      float* const here = numbers + static_cast<std::ptrdiff_t>(row) * rowLength;
+      Raise(here, here + static_cast<std::ptrdiff_t>(step) * rowLength, rowLength);
+    }
+  }
+}
+
+/// Calls function(begin) for parts of one length that cover a window.
+/// @param part no longer than the window
+template <class Function>
+void ForParts(const PilotsAround& window, int part, Function&& function)
+{
+  for (int i = window.Begin; i < window.End; i += part)
+  {
+    function(std::min(i, window.End - part));
+  }
+}
+
+} // namespace
 
 double PilotErrors::Largest() const
 {
   return this->Pixels.empty() ? 0.0 : *std::max_element(this->Pixels.begin(), this->Pixels.end());
+}
+
+double TileErrors::Smallest() const
+{
+  return this->Tiles.empty() ? 0.0 : *std::min_element(this->Tiles.begin(), this->Tiles.end());
 }
 
 double TileErrors::Largest() const
@@ -73,6 +133,13 @@ void PilotPictures::SetSpacing(int pixels)
 
 PilotPicture PilotPictures::Draw(const RaySampling& sampling)
 {
+  for (const auto& [known, picture] : this->Known)
+  {
+    if (known == sampling)
+    {
+      return picture;
+    }
+  }
   const bool first = this->Drawn == 0 && !this->FixedSpacing;
   PilotPicture picture = this->DrawAsItIs(sampling);
   // Little of a volume may be seen of which much is on the screen.
@@ -88,6 +155,7 @@ PilotPicture PilotPictures::Draw(const RaySampling& sampling)
       picture = this->DrawAsItIs(sampling);
     }
   }
+  this->Known.emplace_back(sampling, picture);
   return picture;
 }
 
@@ -157,11 +225,7 @@ PilotErrors PilotPictures::Difference(const PilotPicture& a, const PilotPicture&
   errors.Pixels.resize(count);
   for (std::size_t i = 0; i < count; ++i)
   {
-    const glm::vec4& p = a.Pixels[i];
-    const glm::vec4& q = b.Pixels[i];
-    const float light = std::max(std::abs(p.r - q.r), std::abs(p.g - q.g));
-    const float rest = std::max(std::abs(p.b - q.b), std::abs(p.a - q.a));
-    errors.Pixels[i] = 255.0f * std::max(light, rest);
+    errors.Pixels[i] = PilotErrors::Between(a.Pixels[i], b.Pixels[i]);
   }
   return errors;
 }
@@ -175,39 +239,51 @@ std::size_t PilotPictures::TileCount() const
 TileErrors PilotPictures::ErrorsOf(const PilotErrors& errors, double factor, double share) const
 {
   const glm::ivec2 tiles = TileSamplings::TilesOf(this->ImageSize());
+  const std::vector<PilotsAround> rows = this->AroundAll(tiles.y, 1);
+  const std::vector<PilotsAround> columns = this->AroundAll(tiles.x, 0);
   const int width = this->View.Size().x;
+  const int height = this->View.Size().y;
   const double atLeast = share * errors.Largest();
+
+  // Windows overlap, so what several of them share is looked at once.
+  const int tall = CommonPart(rows);
+  std::vector<float> fromRow = errors.Pixels;
+  MakeMaxima(fromRow.data(), height, width, tall);
+  const int wide = CommonPart(columns);
+  std::vector<float> fromColumn(static_cast<std::size_t>(width));
   TileErrors result;
-  std::vector<float> columns(static_cast<std::size_t>(width));
-  for (int y = 0; y < tiles.y; ++y)
+  result.Tiles.reserve(rows.size() * columns.size());
+  for (const PilotsAround& near : rows)
   {
-    // Columns first: what lies in them is then looked at once for a row of tiles.
-    std::fill(columns.begin(), columns.end(), 0.0f);
-    const PilotsAround rows = this->Around(y, 1);
-    for (int j = rows.Begin; j < rows.End; ++j)
+    std::fill(fromColumn.begin(), fromColumn.end(), 0.0f);
+    ForParts(near, tall,
+      [&](int y) {
+        Raise(fromColumn.data(), fromRow.data() + static_cast<std::ptrdiff_t>(y) * width, width);
+      });
+    MakeMaxima(fromColumn.data(), width, 1, wide);
+    for (const PilotsAround& beside : columns)
     {
-      const float* const row = errors.Pixels.data() + static_cast<std::ptrdiff_t>(j) * width;
-      for (int i = 0; i < width; ++i)
-      {
-        columns[i] = columns[i] < row[i] ? row[i] : columns[i];
-      }
-    }
-    for (int x = 0; x < tiles.x; ++x)
-    {
-      const PilotsAround near = this->Around(x, 0);
       float largest = 0.0f;
-      for (int i = near.Begin; i < near.End; ++i)
-      {
-        largest = std::max(largest, columns[i]);
-      }
+      ForParts(beside, wide, [&](int x) { largest = std::max(largest, fromColumn[x]); });
       result.Tiles.push_back(std::max(factor * largest, atLeast));
     }
   }
   return result;
 }
 
+/// Of all tiles along an axis.
+std::vector<PilotsAround> PilotPictures::AroundAll(int tiles, int axis) const
+{
+  std::vector<PilotsAround> around;
+  for (int tile = 0; tile < tiles; ++tile)
+  {
+    around.push_back(this->Around(tile, axis));
+  }
+  return around;
+}
+
 /// Along one axis, the pilots within TilesAround of a tile: their positions in View.
-PilotPictures::PilotsAround PilotPictures::Around(int tile, int axis) const
+PilotsAround PilotPictures::Around(int tile, int axis) const
 {
   const double around = this->TilesAround * TileSamplings::Edge;
   const double perPixel = static_cast<double>(this->Size[axis]) / this->ImageSize()[axis];

@@ -3,7 +3,10 @@
 
 #include "Render/RayCaster.h"
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
+#include <utility>
 #include <vector>
 
 namespace banyan
@@ -20,7 +23,20 @@ struct PilotErrors
 {
   std::vector<float> Pixels;
 
+  static float Between(const glm::vec4& a, const glm::vec4& b)
+  {
+    const float light = std::max(std::abs(a.r - b.r), std::abs(a.g - b.g));
+    const float rest = std::max(std::abs(a.b - b.b), std::abs(a.a - b.a));
+    return 255.0f * std::max(light, rest);
+  }
   double Largest() const;
+};
+
+/// Pilots along one axis that a tile is judged by.
+struct PilotsAround
+{
+  int Begin;
+  int End;
 };
 
 /// What is expected of the tiles of a picture, in 1/255.
@@ -29,6 +45,7 @@ struct TileErrors
   std::vector<double> Tiles;
 
   double Of(std::size_t tile) const { return this->Tiles[tile]; }
+  double Smallest() const;
   double Largest() const;
   void Add(const TileErrors& other);
   /// Takes the smaller error of each tile.
@@ -48,7 +65,8 @@ public:
   PilotPictures(const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw,
     int spacing, double around);
 
-  /// The first picture may be drawn several times, until enough of its pixels see something.
+  /// The first picture may be drawn several times, until enough of its pixels see something; no
+  /// other one is drawn twice.
   PilotPicture Draw(const RaySampling& sampling);
   int Count() const { return this->Drawn; }
   /// Whether a pixel of any picture had an opacity.
@@ -72,13 +90,8 @@ public:
   float OpacityLimit() const { return this->Scene.OpacityLimit; }
 
 private:
-  struct PilotsAround
-  {
-    int Begin;
-    int End;
-  };
-
   PilotsAround Around(int tile, int axis) const;
+  std::vector<PilotsAround> AroundAll(int tiles, int axis) const;
   void SetSpacing(int pixels);
   PilotPicture DrawAsItIs(const RaySampling& sampling);
   std::vector<float> DepthOf(const RayScene& pilot) const;
@@ -92,6 +105,7 @@ private:
   glm::ivec2 Size;
   PixelRect View; ///< the part that is wanted
   int Drawn = 0;
+  std::vector<std::pair<RaySampling, PilotPicture>> Known;
   bool Saw = false;
 };
 

@@ -20,7 +20,8 @@ void PilotSequence::Add(PilotPicture picture)
     this->Drawn.push_back(std::move(picture));
     return;
   }
-  const PilotErrors difference = this->Pictures.Difference(picture, this->Drawn.back());
+  this->Steps.push_back(this->Pictures.Difference(picture, this->Drawn.back()));
+  const PilotErrors& difference = this->Steps.back();
   const double largest = difference.Largest();
   if (this->Drawn.size() == 1)
   {
@@ -51,15 +52,19 @@ bool PilotSequence::LastIsWithin(double allowed) const
 std::vector<TileErrors> PilotSequence::AllErrors() const
 {
   std::vector<TileErrors> errors = this->Errors;
-  for (std::size_t i = errors.size() - 1; i-- > 0;)
+  const std::size_t last = errors.size() - 1;
+  const auto lower = [&](std::size_t i, std::size_t later, const PilotErrors& difference)
   {
-    for (std::size_t later : { i + 1, errors.size() - 1 })
+    TileErrors bound = this->Pictures.ErrorsOf(difference, PilotPictures::Safety(), ShareOfLargest);
+    bound.Add(errors[later]);
+    errors[i].Lower(bound);
+  };
+  for (std::size_t i = last; i-- > 0;)
+  {
+    lower(i, i + 1, this->Steps[i]);
+    if (i + 1 < last)
     {
-      TileErrors bound =
-        this->Pictures.ErrorsOf(this->Pictures.Difference(this->Drawn[i], this->Drawn[later]),
-          PilotPictures::Safety(), ShareOfLargest);
-      bound.Add(errors[later]);
-      errors[i].Lower(bound);
+      lower(i, last, this->Pictures.Difference(this->Drawn[i], this->Drawn[last]));
     }
   }
   return errors;

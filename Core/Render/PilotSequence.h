@@ -30,7 +30,6 @@ public:
   /// Says that the last picture, of at least two, has no error by definition.
   void LastIsExact();
 
-  const PilotPicture& Last() const { return this->Drawn.back(); }
   /// What is expected of each picture, now that all are there: at least two.
   std::vector<TileErrors> AllErrors() const;
   /// Whether no tile of the last picture is expected to be off by more.
@@ -39,6 +38,7 @@ public:
 private:
   const PilotPictures& Pictures;
   std::vector<PilotPicture> Drawn;
+  std::vector<PilotErrors> Steps; ///< from each picture to the next
   double LargestBefore = 0.0; ///< difference of the last two
   std::vector<TileErrors> Errors;
 };

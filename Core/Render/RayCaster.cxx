@@ -1,8 +1,10 @@
 #include "Render/RayCaster.h"
 
 #include "Base/Error.h"
+#include "Base/ThreadPool.h"
 #include "Render/LevelCaster.h"
 
+#include <algorithm>
 #include <set>
 
 namespace banyan
@@ -32,6 +34,22 @@ BrickSource& SourceAt(BrickSource& source, int level, const RayScene& scene)
     throw Error("There is no level " + std::to_string(level) + " of what is to be drawn");
   }
   return *found;
+}
+
+/// Casters keep the transmittance where the picture has the opacity.
+void MakeOpacities(std::vector<glm::vec4>& pixels, ThreadPool& pool)
+{
+  constexpr std::size_t together = 65536;
+  pool.ParallelFor(static_cast<std::int64_t>((pixels.size() + together - 1) / together),
+    [&](std::int64_t part)
+    {
+      const std::size_t first = static_cast<std::size_t>(part) * together;
+      const std::size_t last = std::min(first + together, pixels.size());
+      for (std::size_t i = first; i < last; ++i)
+      {
+        pixels[i].a = 1.0f - pixels[i].a;
+      }
+    });
 }
 
 /// Cells of a level that begin in cells of the finest one: of disjoint boxes they are disjoint.
@@ -84,11 +102,7 @@ FloatImage CastRays(const RayScene& scene, BrickSource& source, const Box& cells
   {
     caster->Draw(picture);
   }
-  // Casters keep the transmittance where the picture has the opacity.
-  for (glm::vec4& pixel : picture.Pixels)
-  {
-    pixel.a = 1.0f - pixel.a;
-  }
+  MakeOpacities(picture.Pixels, pool);
   return picture;
 }
 

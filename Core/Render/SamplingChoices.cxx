@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace banyan
 {
@@ -16,67 +17,66 @@ constexpr double CostOfRay = 0.05;
 
 } // namespace
 
-/// Calls function(chosen) for all that packets can draw.
-template <class Function>
-void SamplingChoices::ForAll(Function&& function) const
+std::vector<SamplingChoices::Chosen> SamplingChoices::CheapestFirst() const
 {
+  std::vector<std::pair<double, Chosen>> all;
   for (std::size_t i = 0; i < this->Levels.size(); ++i)
   {
     for (std::size_t j = 0; j < this->Distances.size(); ++j)
     {
       for (std::size_t k = 0; k < this->Strides.size() && this->CanStep(i, j); ++k)
       {
-        function(Chosen{ i, j, k });
+        all.emplace_back(this->CostOf({ i, j, k }), Chosen{ i, j, k });
       }
     }
   }
+  std::stable_sort(
+    all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Chosen> order;
+  order.reserve(all.size());
+  for (const auto& [cost, chosen] : all)
+  {
+    order.push_back(chosen);
+  }
+  return order;
 }
 
-SamplingChoices::Chosen SamplingChoices::CheapestFor(std::size_t tile, double allowed) const
+SamplingChoices::Chosen SamplingChoices::CheapestFor(
+  std::size_t tile, double allowed, const std::vector<Chosen>& order) const
 {
-  Chosen best;
-  double bestCost = std::numeric_limits<double>::infinity();
   Chosen closest;
   closest.Error = std::numeric_limits<double>::infinity();
-  this->ForAll(
-    [&](Chosen chosen)
+  for (Chosen chosen : order)
+  {
+    chosen.Error = this->ErrorOf(chosen, tile);
+    if (chosen.Error <= allowed)
     {
-      chosen.Error = this->ErrorOf(chosen, tile);
-      if (chosen.Error <= allowed && this->CostOf(chosen) < bestCost)
-      {
-        best = chosen;
-        bestCost = this->CostOf(chosen);
-      }
-      if (chosen.Error < closest.Error)
-      {
-        closest = chosen;
-      }
-    });
-  return std::isfinite(bestCost) ? best : closest;
+      return chosen;
+    }
+    if (chosen.Error < closest.Error)
+    {
+      closest = chosen;
+    }
+  }
+  return closest;
 }
 
 SamplingChoices::Chosen SamplingChoices::CheapestForMost(double share, double allowed) const
 {
   const std::size_t tiles = this->Levels.front().Errors.Tiles.size();
-  Chosen best{ this->Levels.size() - 1, this->Distances.size() - 1 };
-  double bestCost = std::numeric_limits<double>::infinity();
-  this->ForAll(
-    [&](const Chosen& chosen)
+  for (const Chosen& chosen : this->CheapestFirst())
+  {
+    std::size_t good = 0;
+    for (std::size_t tile = 0; tile < tiles && chosen.Stride == 0; ++tile)
     {
-      std::size_t good = 0;
-      for (std::size_t tile = 0; tile < tiles; ++tile)
-      {
-        good += this->ErrorOf(chosen, tile) <= allowed ? 1 : 0;
-      }
-      const double cost = this->CostOf(chosen);
-      if (chosen.Stride == 0 && static_cast<double>(good) >= share * static_cast<double>(tiles) &&
-          cost < bestCost)
-      {
-        best = chosen;
-        bestCost = cost;
-      }
-    });
-  return best;
+      good += this->ErrorOf(chosen, tile) <= allowed ? 1 : 0;
+    }
+    if (chosen.Stride == 0 && static_cast<double>(good) >= share * static_cast<double>(tiles))
+    {
+      return chosen;
+    }
+  }
+  return { this->Levels.size() - 1, this->Distances.size() - 1 };
 }
 
 std::vector<RaySampling> SamplingChoices::Samplings() const

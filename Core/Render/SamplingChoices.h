@@ -43,8 +43,12 @@ public:
     double Error = 0.0;
   };
 
+  /// All that packets can draw, in the order of what they cost.
+  std::vector<Chosen> CheapestFirst() const;
+
   /// The cheapest sampling of a tile whose error is allowed, or the one with the smallest error.
-  Chosen CheapestFor(std::size_t tile, double allowed) const;
+  /// @param order CheapestFirst()
+  Chosen CheapestFor(std::size_t tile, double allowed, const std::vector<Chosen>& order) const;
 
   /// The cheapest sampling of all rays whose error is allowed in so many tiles of all, or the most
   /// exact.
@@ -64,8 +68,6 @@ private:
   bool CanStep(std::size_t level, std::size_t distance) const;
   double CostOf(const Chosen& chosen) const;
   double ErrorOf(const Chosen& chosen, std::size_t tile) const;
-  template <class Function>
-  void ForAll(Function&& function) const;
 
   double UsualDistance;
   std::optional<Chosen> StridePilot;

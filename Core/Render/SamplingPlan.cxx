@@ -18,6 +18,8 @@ namespace
 constexpr double ShareOfEnds = 0.125;
 /// Distances between samples go down to 2^-MostHalvings times the usual one.
 constexpr int MostHalvings = 3;
+/// Of the usual distance, to begin with.
+constexpr int FirstDoublings = 3;
 /// Without pictures of samples this close, times the usual distance, no tile is content.
 constexpr double FewestSamples = 4.0;
 /// The picture that judges strides is of a sampling whose errors leave so much of what is allowed,
@@ -28,7 +30,7 @@ constexpr double TilesOfStridePilot = 0.9;
 /// Distances go up to 2^this times the usual one: small tolerances are not met by the longest ones,
 /// and pilots of these would be drawn for nothing. More than 3 only where rays through the volume
 /// have several samples then: pictures of one sample per ray are alike, and all wrong.
-int MostDoublingsFor(const SamplingWish& wish, const RayScene& scene)
+int MostDoublings(const SamplingWish& wish, const RayScene& scene)
 {
   double shortest = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis)
@@ -59,7 +61,7 @@ public:
 
   SamplingPlan Plan()
   {
-    this->TryDistances(MostDoublingsFor(this->Wish, this->Scene));
+    this->TryDistances(MostDoublings(this->Wish, this->Scene));
     if (!this->Pictures.SawSomething())
     {
       // Coarse levels and few samples may miss all that there is to see.
@@ -85,11 +87,12 @@ private:
   {
     const bool levels = this->Wish.CoarsestLevel > 0;
     PilotSequence pictures(this->Pictures);
-    const Trial trial{ this->Wish.CoarsestLevel, std::ldexp(this->Wish.Distance, doublings),
+    // Longer ones are tried once it is known which level is needed.
+    const int first = levels ? std::min(doublings, FirstDoublings) : doublings;
+    const Trial trial{ this->Wish.CoarsestLevel, std::ldexp(this->Wish.Distance, first),
       levels ? this->Wish.Distance : std::ldexp(this->Wish.Distance, -MostHalvings),
-      (levels ? 0.5 : 1.0) * this->Allowed };
+      (levels ? 0.5 : 1.0) * this->Allowed, !levels };
     this->Choices.Distances = this->DistancesOf(trial, pictures);
-    this->Closest = pictures.Last();
     this->ClosestDistance = this->Choices.Distances.back().Value;
   }
 
@@ -99,8 +102,7 @@ private:
     double From;
     double To;
     double Allowed;
-    double KnownDistance = 0.0;
-    const PilotPicture* Known = nullptr; ///< need not be drawn again
+    bool OneMore; ///< costs little, and may show that larger distances will do
   };
 
   /// Ever smaller distances, until all tiles are content.
@@ -108,19 +110,15 @@ private:
   {
     std::vector<Choice> choices;
     bool content = false;
-    for (double distance = trial.From; distance >= trial.To; distance *= 0.5)
+    int beyond = trial.OneMore ? -1 : 0;
+    for (double distance = trial.From; distance >= trial.To && beyond <= 0; distance *= 0.5)
     {
-      const bool known = trial.Known && distance == trial.KnownDistance;
-      pictures.Add(known ? *trial.Known : this->Pictures.Draw({ trial.Level, distance }));
+      pictures.Add(this->Pictures.Draw({ trial.Level, distance }));
       choices.push_back({ distance, {} });
-      // One more costs little, and may show that larger distances will do.
-      if (content)
-      {
-        break;
-      }
       // Pictures with few samples may look alike because all of them miss what is thin.
-      content =
-        distance <= FewestSamples * this->Wish.Distance && pictures.LastIsWithin(trial.Allowed);
+      content = content || (distance <= FewestSamples * this->Wish.Distance &&
+                             pictures.LastIsWithin(trial.Allowed));
+      beyond += content ? 1 : 0;
     }
     const std::vector<TileErrors> errors = pictures.AllErrors();
     for (std::size_t i = 0; i < choices.size(); ++i)
@@ -135,9 +133,9 @@ private:
   {
     int level = this->Wish.CoarsestLevel;
     PilotSequence pictures(this->Pictures);
-    pictures.Add(this->Closest);
-    std::vector<Choice> choices{ { static_cast<double>(level), {} } };
     const double distance = this->ClosestDistance;
+    pictures.Add(this->Pictures.Draw({ level, distance }));
+    std::vector<Choice> choices{ { static_cast<double>(level), {} } };
     while (level > this->Wish.FinestPilotLevel && !pictures.LastIsWithin(0.5 * this->Allowed))
     {
       --level;
@@ -160,11 +158,12 @@ private:
       choices[i].Errors = errors[i];
     }
     this->Choices.Levels = std::move(choices);
-    if (!this->CoarsestIsEnough())
-    {
-      this->TryDistancesAgain(level, pictures.Last());
-    }
-    if (!pictures.LastIsWithin(0.5 * this->Allowed))
+    const std::size_t needed = this->FinestThatIsNeeded();
+    const bool last = needed + 1 == this->Choices.Levels.size();
+    // No tile is drawn from a finer level than the one where distances are judged.
+    this->Choices.Levels.resize(needed + 1);
+    this->TryDistancesAgain(static_cast<int>(this->Choices.Levels.back().Value));
+    if (last && !pictures.LastIsWithin(0.5 * this->Allowed))
     {
       this->ExtrapolateLevels();
     }
@@ -186,39 +185,43 @@ private:
     }
   }
 
-  /// Whether no tile needs another level than the coarsest, where distances have been judged.
-  bool CoarsestIsEnough() const
+  /// The first of the levels that is good enough for all tiles, or the last.
+  std::size_t FinestThatIsNeeded() const
   {
-    for (std::size_t tile = 0; tile < this->Pictures.TileCount(); ++tile)
+    std::size_t finest = 0;
+    while (finest + 1 < this->Choices.Levels.size() &&
+           this->Choices.Levels[finest].Errors.Largest() > 0.5 * this->Allowed)
     {
-      if (this->Choices.Levels.front().Errors.Of(tile) > 0.5 * this->Allowed)
-      {
-        return false;
-      }
+      ++finest;
     }
-    return true;
+    return finest;
   }
 
-  /// Finer levels show what coarser ones leave out: distances are judged there once more, from the
-  /// longest that were good enough for some tile before.
-  /// @param known the finest level at ClosestDistance
-  void TryDistancesAgain(int level, const PilotPicture& known)
+  double LongestDistance() const
+  {
+    return std::ldexp(this->Wish.Distance, MostDoublings(this->Wish, this->Scene));
+  }
+
+  /// Finer levels show what coarser ones leave out: distances are judged at the level that is
+  /// needed, from the longest that may be good enough for some tile.
+  void TryDistancesAgain(int level)
   {
     double longest = this->ClosestDistance;
     for (const Choice& choice : this->Choices.Distances)
     {
-      const std::vector<double>& errors = choice.Errors.Tiles;
-      if (*std::min_element(errors.begin(), errors.end()) <= this->Allowed)
+      if (choice.Errors.Smallest() <= this->Allowed)
       {
         longest = std::max(longest, choice.Value);
       }
     }
+    if (longest == this->Choices.Distances.front().Value)
+    {
+      longest = std::max(longest, this->LongestDistance());
+    }
     PilotSequence pictures(this->Pictures);
-    Trial trial{ level,
+    const Trial trial{ level,
       std::min(longest, std::ldexp(SamplingChoices::MostCellsPerStep * this->Wish.Distance, level)),
-      std::ldexp(this->Wish.Distance, -MostHalvings), 0.5 * this->Allowed };
-    trial.KnownDistance = this->ClosestDistance;
-    trial.Known = &known;
+      std::ldexp(this->Wish.Distance, -MostHalvings), 0.5 * this->Allowed, true };
     this->Choices.Distances = this->DistancesOf(trial, pictures);
   }
 
@@ -256,10 +259,11 @@ private:
   {
     const auto tiles =
       std::make_shared<TileSamplings>(this->Pictures.ImageSize(), this->Choices.Samplings());
+    const std::vector<SamplingChoices::Chosen> order = this->Choices.CheapestFirst();
     double largest = 0.0;
     for (std::size_t tile = 0; tile < this->Pictures.TileCount(); ++tile)
     {
-      const SamplingChoices::Chosen chosen = this->Choices.CheapestFor(tile, this->Allowed);
+      const SamplingChoices::Chosen chosen = this->Choices.CheapestFor(tile, this->Allowed, order);
       const glm::ivec2 position(static_cast<int>(tile % static_cast<std::size_t>(tiles->Tiles().x)),
         static_cast<int>(tile / static_cast<std::size_t>(tiles->Tiles().x)));
       tiles->SetNumber(position, this->Choices.NumberOf(chosen));
@@ -275,8 +279,7 @@ private:
   PilotPictures Pictures;
   double Allowed;
   SamplingChoices Choices;
-  PilotPicture Closest;         ///< of the coarsest level and ClosestDistance
-  double ClosestDistance = 1.0; ///< the smallest that was tried there
+  double ClosestDistance = 1.0; ///< the smallest that was tried at the coarsest level
 };
 
 void Check(const SamplingWish& wish)

@@ -52,12 +52,12 @@ using DrawPilot = std::function<FloatImage(const RayScene& pilot)>;
 
 /// Finds for each tile the cheapest sampling that keeps its error within the tolerance.
 ///
-/// How: *pilots*, small pictures whose pixels are PilotSpacing apart, are drawn with ever smaller distances between
-/// samples at the coarsest level, which costs least, then with ever finer levels at the distance that
-/// was needed, and then with some distances at the finest of these levels again, each until all tiles
-/// are content (PilotSequence). Which level and which distance a tile gets is chosen from the sums of
-/// both errors: finer levels than needed are never loaded. How many pixels need rays of their own one
-/// more small picture tells (StridePilot), and that error counts with the others.
+/// How: *pilots*, small pictures whose pixels are PilotSpacing apart, are drawn with ever smaller distances
+/// between samples at the coarsest level, which costs least, then with ever finer levels at the distance that
+/// was needed, and then with distances from the longest on at the coarsest of these levels that is good enough
+/// for all tiles, each until all tiles are content (PilotSequence). Which level and which distance a tile gets
+/// is chosen from the sums of both errors: finer levels than needed are never loaded. How many pixels need rays
+/// of their own one more small picture tells (StridePilot), and that error counts with the others.
 ///
 /// The error is estimated, then, and not bounded: `ctest -R SamplingPlan` shows that it is above the
 /// true one on the standard scenes.

@@ -69,29 +69,40 @@ PilotErrors StridePilot::ErrorsBetween(const PilotPicture& picture, int every) c
 {
   const PixelRect& part = this->Pictures.Part();
   const glm::ivec2 size = part.Size();
-  const auto at = [&](int x, int y)
-  {
-    // Around the volume is nothing; at the edge of the picture its last pixels go on.
-    const glm::ivec2 inside = glm::clamp(glm::ivec2(x, y), part.Lo, part.Hi - 1) - part.Lo;
-    return picture.Pixels[static_cast<std::size_t>(inside.y) * size.x + inside.x];
-  };
-  PilotPicture between;
-  between.Pixels.reserve(picture.Pixels.size());
+  // Around the volume is nothing; at the edge of the picture its last pixels go on.
+  const auto inside = [&](int position, int axis)
+  { return std::clamp(position, part.Lo[axis], part.Hi[axis] - 1) - part.Lo[axis]; };
+  const auto rowAt = [&](int y)
+  { return picture.Pixels.data() + static_cast<std::ptrdiff_t>(inside(y, 1)) * size.x; };
+  const int first = part.Lo.x / every;
+  std::vector<glm::vec4> columns(static_cast<std::size_t>((part.Hi.x - 1) / every - first + 2));
+  PilotErrors errors;
+  errors.Pixels.resize(picture.Pixels.size());
   for (int y = part.Lo.y; y < part.Hi.y; ++y)
   {
     const int below = y / every * every;
     const float up = static_cast<float>(y - below) / static_cast<float>(every);
-    for (int x = part.Lo.x; x < part.Hi.x; ++x)
+    const glm::vec4* const low = rowAt(below);
+    const glm::vec4* const high = rowAt(below + every);
+    for (std::size_t i = 0; i < columns.size(); ++i)
     {
-      const int left = x / every * every;
-      const float right = static_cast<float>(x - left) / static_cast<float>(every);
-      const glm::vec4 low = glm::mix(at(left, below), at(left + every, below), right);
-      const glm::vec4 high =
-        glm::mix(at(left, below + every), at(left + every, below + every), right);
-      between.Pixels.push_back(glm::mix(low, high, up));
+      const int x = inside((first + static_cast<int>(i)) * every, 0);
+      columns[i] = glm::mix(low[x], high[x], up);
+    }
+    const glm::vec4* const row = rowAt(y) - part.Lo.x;
+    float* const error = errors.Pixels.data() + static_cast<std::ptrdiff_t>(y - part.Lo.y) * size.x;
+    for (std::size_t i = 0; i + 1 < columns.size(); ++i)
+    {
+      const int left = (first + static_cast<int>(i)) * every;
+      const glm::vec4 slope = (columns[i + 1] - columns[i]) / static_cast<float>(every);
+      for (int x = std::max(left, part.Lo.x); x < std::min(left + every, part.Hi.x); ++x)
+      {
+        const glm::vec4 between = columns[i] + slope * static_cast<float>(x - left);
+        error[x - part.Lo.x] = PilotErrors::Between(row[x], between);
+      }
     }
   }
-  return this->Pictures.Difference(picture, between);
+  return errors;
 }
 
 /// FillBetweenRays needs a tile's first pixels, and the first behind it, along both axes: they must
