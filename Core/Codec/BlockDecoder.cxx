@@ -105,7 +105,8 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
         using P = decltype(pass);
         if constexpr (Dense && D == 2)
         {
-          const stages::In stage(stages::FacePasses);
+          this->Code.AskAhead(6);
+        const stages::In stage(stages::FacePasses);
           BeginStride<P>(this->Work.Vectors.Faces, symbols);
           DenseSliceDecoder<P, Number>(unit, this->Work.Vectors.Faces.template At<P::S>(), mode.By,
             symbols, static_cast<Number>(P::S == 2 ? this->Plane.CoarseBin : this->Plane.FineBin),
@@ -255,7 +256,8 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
       Unit<Number, 3> unit{ this->Box.Base, nullptr, nullptr, this->Work.Interior.S(), { block.Limit },
         any };
       DecodeDenseInterior(
-        unit, this->ReferencesOf(mode), mode.By, this->Plane, symbols, this->Work.Vectors);
+        unit, this->ReferencesOf(mode), mode.By, this->Plane, symbols, this->Work.Vectors,
+        [this](int lines) { this->Code.AskAhead(lines); });
     }
     else
     {

@@ -2,6 +2,7 @@
 #define banyan_Codec_BlockDecoder_h
 
 #include "Codec/DecodeTables.h"
+#include "Codec/MemoryAhead.h"
 
 #include <glm/vec3.hpp>
 
@@ -50,6 +51,16 @@ struct BoxCodeOf
   /// Decoded boxes of the neighbours that exist along x, y, z and were decoded before; null for others.
   /// Of what is here the faces are not decoded again.
   const Number* Neighbours[3] = {};
+  /// What is asked for meanwhile; or null.
+  MemoryAhead* Ahead = nullptr;
+
+  void AskAhead(int lines) const
+  {
+    if (this->Ahead != nullptr)
+    {
+      this->Ahead->Ask(lines);
+    }
+  }
 };
 using BoxCode = BoxCodeOf<std::int32_t>;
 

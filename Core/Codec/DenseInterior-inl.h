@@ -33,9 +33,9 @@ HWY_INLINE void ForBox(const Body& body, const Last& last)
 /// Decodes the interior of a block of 16 in the box itself. Where there are references they are
 /// subtracted from the whole box, and added again: borders come back as they were.
 /// @param unit its samples are the box, `[z][y][x]`
-template <class Number>
+template <class Number, class Ask>
 void DecodeDenseInterior(Unit<Number, 3>& unit, const References<Number>& references,
-  Interpolation by, const PlaneCode& plane, SymbolReader* symbols, DenseWork& work)
+  Interpolation by, const PlaneCode& plane, SymbolReader* symbols, DenseWork& work, const Ask& ask)
 {
   using V = Numbers<Number>;
   using Signed = typename V::Signed;
@@ -61,6 +61,7 @@ void DecodeDenseInterior(Unit<Number, 3>& unit, const References<Number>& refere
     [&](auto pass)
     {
       using P = decltype(pass);
+      ask(P::S == 2 ? 12 : 48);
       const stages::In stage(stages::Passes);
       BeginStride<P>(work.Interior, symbols);
       DenseSliceDecoder<P, Number>(unit, work.Interior.template At<P::S>(), by, symbols,

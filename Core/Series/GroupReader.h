@@ -2,6 +2,7 @@
 #define banyan_Series_GroupReader_h
 
 #include "Codec/DecodeTables.h"
+#include "Codec/MemoryAhead.h"
 #include "Codec/GroupOrder.h"
 #include "Series/GroupFormat.h"
 #include "Series/Hash.h"
@@ -93,8 +94,8 @@ public:
   /// Decodes the box of a block: (edge + 1)^3 lattice numbers.
   LatticeCache::Box Box(int step, int plane, const glm::ivec3& block);
 
-  /// Asks the caches of the processor for what decoding the box will read: boxes of other steps, which
-  /// usually are in memory only. Decodes nothing.
+  /// Notes what decoding the box will read, boxes of other steps that usually are in memory only: while
+  /// the next box is decoded the caches of the processor are asked for it. Decodes nothing.
   void Prefetch(int step, int plane, const glm::ivec3& block);
 
   /// Checks the pages of everything that decoding the box reads.
@@ -123,6 +124,8 @@ private:
   LatticeCache::Box Decode(int step, int plane, const glm::ivec3& block);
   template <class Number>
   LatticeCache::Box DecodeAs(int step, int plane, const glm::ivec3& block);
+  /// What the calling thread asks for.
+  static MemoryAhead& Ahead();
 
   GroupReader& File;
   std::uint64_t Series;

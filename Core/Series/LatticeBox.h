@@ -1,43 +1,42 @@
 #ifndef banyan_Series_LatticeBox_h
 #define banyan_Series_LatticeBox_h
 
+#include "Series/LatticeMemory.h"
+
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 
 namespace banyan
 {
 
-/// Lattice numbers of a decoded box, in 16 bits each where block::Narrow says so of the lattice: what
-/// decoding waits for is memory.
+/// Lattice numbers of a decoded box, in 16 bits each where block::Narrow says so of the lattice:
+/// what decoding waits for is memory.
 class LatticeBox
 {
 public:
   /// The numbers are not set.
   LatticeBox(std::size_t count, bool narrow)
-    : Short(narrow ? new std::int16_t[count] : nullptr)
-    , Long(narrow ? nullptr : new std::int32_t[count])
-    , Count(count)
+    : Size(count * (narrow ? sizeof(std::int16_t) : sizeof(std::int32_t)))
+    , Short(narrow)
+    , Place(LatticeMemory::Take(this->Size))
   {
   }
+  ~LatticeBox() { LatticeMemory::Give(this->Place, this->Size); }
+  LatticeBox(const LatticeBox&) = delete;
+  LatticeBox& operator=(const LatticeBox&) = delete;
 
   template <class Number>
   const Number* Numbers() const
   {
     return const_cast<LatticeBox*>(this)->Numbers<Number>();
   }
-  /// @param Number std::int16_t or std::int32_t, as the box has them
+  /// @param Number std::int16_t or std::int32_t, as the box has them; else there are none
   template <class Number>
   Number* Numbers()
   {
-    if constexpr (sizeof(Number) == sizeof(std::int16_t))
-    {
-      return this->Short.get();
-    }
-    else
-    {
-      return this->Long.get();
-    }
+    return this->Short == (sizeof(Number) == sizeof(std::int16_t))
+             ? static_cast<Number*>(this->Place)
+             : nullptr;
   }
 
   /// Calls body(pointer to numbers).
@@ -46,38 +45,22 @@ public:
   {
     if (this->Short)
     {
-      body(static_cast<const std::int16_t*>(this->Short.get()));
+      body(this->Numbers<std::int16_t>());
     }
     else
     {
-      body(static_cast<const std::int32_t*>(this->Long.get()));
+      body(this->Numbers<std::int32_t>());
     }
   }
 
-  /// Asks for the numbers, which will be read soon: for every other line of the cache, as processors fetch
-  /// pairs of them.
-  void Prefetch() const
-  {
-    this->Visit(
-      [this](const auto* numbers)
-      {
-        const char* const bytes = reinterpret_cast<const char*>(numbers);
-        for (std::uint64_t at = 0; at < this->Bytes(); at += 128)
-        {
-          __builtin_prefetch(bytes + at, 0, 2);
-        }
-      });
-  }
-
-  std::uint64_t Bytes() const
-  {
-    return this->Count * (this->Short ? sizeof(std::int16_t) : sizeof(std::int32_t));
-  }
+  /// Where the numbers lie.
+  const void* Memory() const { return this->Place; }
+  std::uint64_t Bytes() const { return this->Size; }
 
 private:
-  std::unique_ptr<std::int16_t[]> Short;
-  std::unique_ptr<std::int32_t[]> Long;
-  std::size_t Count;
+  std::size_t Size;
+  bool Short;
+  void* Place;
 };
 
 } // namespace banyan

@@ -37,18 +37,22 @@ LatticeCache& LatticeCache::Process()
   return *cache;
 }
 
+/// The lowest bits are the block's: blocks that follow each other have buckets that do.
 std::size_t LatticeCache::HashOf(const Key& key)
 {
-  std::uint64_t hash = key.Series * 0x9e3779b97f4a7c15ull + key.Block;
+  std::uint64_t hash = key.Series * 0x9e3779b97f4a7c15ull + key.Block / BlocksTogether;
   hash = (hash ^ (hash >> 29)) * 0xbf58476d1ce4e5b9ull;
   hash += (std::uint64_t{ key.Step } << 32) | (std::uint64_t{ key.Component } << 16) | key.Plane;
   hash = (hash ^ (hash >> 32)) * 0x94d049bb133111ebull;
-  return static_cast<std::size_t>(hash ^ (hash >> 31));
+  hash ^= hash >> 31;
+  return static_cast<std::size_t>(hash * BlocksTogether + key.Block % BlocksTogether);
 }
 
 std::int32_t& LatticeCache::BucketOf(Shard& shard, std::size_t hash)
 {
-  return shard.Buckets[hash / ShardCount & (shard.Buckets.size() - 1)];
+  const std::size_t bucket =
+    hash / (BlocksTogether * ShardCount) * BlocksTogether + hash % BlocksTogether;
+  return shard.Buckets[bucket & (shard.Buckets.size() - 1)];
 }
 
 /// -1: it is not there.
@@ -65,7 +69,7 @@ std::int32_t LatticeCache::EntryOf(Shard& shard, std::size_t hash, const Key& ke
 LatticeCache::Box LatticeCache::Find(const Key& key)
 {
   const std::size_t hash = HashOf(key);
-  Shard& shard = this->Shards[hash % ShardCount];
+  Shard& shard = this->Shards[ShardOf(hash)];
   std::lock_guard<std::mutex> lock(shard.Mutex);
   const std::int32_t found = EntryOf(shard, hash, key);
   if (found < 0)
@@ -77,10 +81,25 @@ LatticeCache::Box LatticeCache::Find(const Key& key)
   return kept.Numbers;
 }
 
+const void* LatticeCache::AddressOf(const Key& key)
+{
+  const std::size_t hash = HashOf(key);
+  Shard& shard = this->Shards[ShardOf(hash)];
+  std::lock_guard<std::mutex> lock(shard.Mutex);
+  const std::int32_t found = EntryOf(shard, hash, key);
+  if (found < 0)
+  {
+    return nullptr;
+  }
+  const Kept& kept = shard.Entries[static_cast<std::size_t>(found)];
+  __builtin_prefetch(kept.Numbers.get()); // how many hold it
+  return kept.Memory;
+}
+
 void LatticeCache::Add(const Key& key, const Box& box)
 {
   const std::size_t hash = HashOf(key);
-  Shard& shard = this->Shards[hash % ShardCount];
+  Shard& shard = this->Shards[ShardOf(hash)];
   std::lock_guard<std::mutex> lock(shard.Mutex);
   if (EntryOf(shard, hash, key) >= 0)
   {
@@ -93,7 +112,7 @@ void LatticeCache::Add(const Key& key, const Box& box)
   const std::int32_t entry = shard.Free.back();
   shard.Free.pop_back();
   std::int32_t& bucket = BucketOf(shard, hash);
-  shard.Entries[static_cast<std::size_t>(entry)] = { key, box, bucket, false };
+  shard.Entries[static_cast<std::size_t>(entry)] = { key, box, box->Memory(), bucket, false };
   bucket = entry;
   shard.Bytes += BytesOf(box);
   this->Shrink(shard);

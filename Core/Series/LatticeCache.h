@@ -40,6 +40,9 @@ public:
   /// Null when it is not there.
   Box Find(const Key& key);
   void Add(const Key& key, const Box& box);
+  /// Where the numbers of a box lie, or null: to ask the processor's caches for them. They may be gone at
+  /// any time. Takes part of the time of Find, which counts who holds a box and waits for its memory.
+  const void* AddressOf(const Key& key);
   /// Forgets the boxes of a series.
   void Forget(std::uint64_t series);
 
@@ -56,11 +59,13 @@ private:
   {
     Key Name;
     Box Numbers;            ///< null: the place is free
+    const void* Memory = nullptr; ///< where they lie
     std::int32_t Next = -1; ///< entry of the same bucket
     bool Used = false;      ///< since the hand of the clock came by
   };
   /// Shards have locks of their own, so that threads seldom wait for each other. Entries stay where
-  /// they are: to find one takes two lines of the cache.
+  /// they are: to find one takes two lines of the cache, and these hold some blocks that follow each
+  /// other.
   struct Shard
   {
     mutable std::mutex Mutex;
@@ -72,7 +77,10 @@ private:
   };
   static constexpr std::size_t ShardCount = 16;
 
+  static constexpr std::size_t BlocksTogether = 8;
+
   static std::size_t HashOf(const Key& key);
+  static std::size_t ShardOf(std::size_t hash) { return hash / BlocksTogether % ShardCount; }
   static std::int32_t& BucketOf(Shard& shard, std::size_t hash);
   static std::int32_t EntryOf(Shard& shard, std::size_t hash, const Key& key);
   static void Grow(Shard& shard);

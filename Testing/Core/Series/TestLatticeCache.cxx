@@ -61,7 +61,9 @@ TEST(LatticeCache, BoxesAreFoundUntilTheyAreForgotten)
     const LatticeCache::Box box = cache.Find(KeyOf(static_cast<std::uint64_t>(i)));
     ASSERT_NE(box, nullptr) << i;
     ASSERT_EQ(box->Numbers<std::int16_t>()[0], i);
+    ASSERT_EQ(cache.AddressOf(KeyOf(static_cast<std::uint64_t>(i))), box->Memory());
   }
+  EXPECT_EQ(cache.AddressOf(KeyOf(count)), nullptr);
   EXPECT_EQ(cache.Find(KeyOf(count)), nullptr);
   EXPECT_GE(cache.Bytes(), before + 2 * count * 200);
   cache.Forget(SeriesOfTest);

@@ -1,0 +1,31 @@
+#ifndef banyan_Series_LatticeMemory_h
+#define banyan_Series_LatticeMemory_h
+
+#include <cstddef>
+
+namespace banyan
+{
+
+/// Memory for boxes of lattice numbers: tens of thousands of a few sizes, which come and go. They
+/// lie side by side in slabs, which the system maps with large pages where it can: a box of a block
+/// of 16 takes three small pages, and each has to be looked up. A slab is given back when none of
+/// its boxes is left, but for one of each size. Thread-safe.
+class LatticeMemory
+{
+public:
+  static constexpr std::size_t SlabBytes = std::size_t{ 2 } << 20;
+  /// Larger boxes have memory of their own.
+  static constexpr std::size_t MostBytes = SlabBytes / 8;
+
+  /// Memory that is aligned as lines of the cache are, and not set. Throws std::bad_alloc.
+  static void* Take(std::size_t bytes);
+  /// @param memory from Take, for as many bytes
+  static void Give(void* memory, std::size_t bytes) noexcept;
+
+  /// Of all slabs, for tests.
+  static std::size_t BytesOfSlabs();
+};
+
+} // namespace banyan
+
+#endif

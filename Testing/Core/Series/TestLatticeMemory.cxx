@@ -1,0 +1,106 @@
+#include "Series/LatticeMemory.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <thread>
+#include <vector>
+
+namespace banyan
+{
+namespace
+{
+
+constexpr std::size_t Sizes[] = { 1, 64, 1458, 9826, 71874, LatticeMemory::MostBytes,
+  LatticeMemory::MostBytes + 1 };
+
+struct Piece
+{
+  unsigned char* At;
+  std::size_t Bytes;
+  unsigned char Mark;
+};
+
+/// Takes and gives pieces of some sizes in any order; each must hold what was written to it.
+void TakeAndGive(unsigned seed, int times)
+{
+  std::mt19937 random(seed);
+  std::vector<Piece> pieces;
+  const auto give = [&](std::size_t i)
+  {
+    const Piece piece = pieces[i];
+    ASSERT_TRUE(std::all_of(
+      piece.At, piece.At + piece.Bytes, [&](unsigned char byte) { return byte == piece.Mark; }));
+    LatticeMemory::Give(piece.At, piece.Bytes);
+    pieces[i] = pieces.back();
+    pieces.pop_back();
+  };
+  for (int i = 0; i < times; ++i)
+  {
+    if (!pieces.empty() && random() % 5 < 2)
+    {
+      give(random() % pieces.size());
+      continue;
+    }
+    const std::size_t bytes = Sizes[random() % std::size(Sizes)];
+    auto* const at = static_cast<unsigned char*>(LatticeMemory::Take(bytes));
+    ASSERT_EQ(reinterpret_cast<std::uintptr_t>(at) % 64, 0u);
+    pieces.push_back({ at, bytes, static_cast<unsigned char>(random()) });
+    std::memset(at, pieces.back().Mark, bytes);
+  }
+  while (!pieces.empty())
+  {
+    give(pieces.size() - 1);
+  }
+}
+
+TEST(LatticeMemory, PiecesDoNotMeetAndSlabsAreGivenBack)
+{
+  const std::size_t before = LatticeMemory::BytesOfSlabs();
+  std::vector<std::thread> threads;
+  for (unsigned seed = 0; seed < 3; ++seed)
+  {
+    threads.emplace_back([seed] { TakeAndGive(seed, 3000); });
+  }
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  // One of each size is kept; 1 and 64 bytes are one size, and the last one takes no slab.
+  EXPECT_LE(LatticeMemory::BytesOfSlabs(), before + 5 * LatticeMemory::SlabBytes);
+}
+
+TEST(LatticeMemory, ASlabIsFilledBeforeTheNextOneIsTaken)
+{
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "each piece has memory of its own";
+#endif
+  constexpr std::size_t bytes = 9856; // of no box
+  const std::size_t before = LatticeMemory::BytesOfSlabs();
+  std::vector<void*> pieces;
+  for (int round = 0; round < 3; ++round)
+  {
+    while (pieces.size() < 2 * (LatticeMemory::SlabBytes / bytes - 1))
+    {
+      pieces.push_back(LatticeMemory::Take(bytes));
+    }
+    EXPECT_LE(LatticeMemory::BytesOfSlabs(), before + 2 * LatticeMemory::SlabBytes);
+    std::shuffle(pieces.begin(), pieces.end(), std::mt19937(7));
+    while (pieces.size() > 100)
+    {
+      LatticeMemory::Give(pieces.back(), bytes);
+      pieces.pop_back();
+    }
+  }
+  for (void* piece : pieces)
+  {
+    LatticeMemory::Give(piece, bytes);
+  }
+  EXPECT_LE(LatticeMemory::BytesOfSlabs(), before + LatticeMemory::SlabBytes);
+}
+
+} // namespace
+} // namespace banyan
