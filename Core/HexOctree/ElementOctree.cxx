@@ -16,27 +16,6 @@ glm::dmat4 ElementOctree::LatticeToWorld() const
   return matrix;
 }
 
-void ElementOctree::NodesOfCell(std::int64_t number, std::int64_t (&nodes)[8]) const
-{
-  const std::size_t cell = Index(number);
-  const std::size_t order = this->OrderOfCell.empty() ? 0 : this->OrderOfCell[cell];
-  const std::array<std::uint8_t, 8>& places = this->CornerOrders[order];
-  if (this->Cells.IdType == ScalarType::Int64)
-  {
-    const auto* ids = static_cast<const std::int64_t*>(this->Cells.Connectivity) + 8 * cell;
-    for (std::size_t i = 0; i < 8; ++i)
-    {
-      nodes[places[i]] = ids[i];
-    }
-    return;
-  }
-  const auto* ids = static_cast<const std::int32_t*>(this->Cells.Connectivity) + 8 * cell;
-  for (std::size_t i = 0; i < 8; ++i)
-  {
-    nodes[places[i]] = ids[i];
-  }
-}
-
 /// Starts of runs of keys, about as many as there are 16 leaves: searches are short then.
 void ElementOctree::MakeStarts()
 {

@@ -88,8 +88,37 @@ public:
   {
     this->NodesOfCell(this->CellOfLeaf(leaf), nodes);
   }
-  /// The same of a cell of the mesh: the quicker way through all of them, since they lie one after another.
-  void NodesOfCell(std::int64_t cell, std::int64_t (&nodes)[8]) const;
+  /// The same of a cell of the mesh: the quicker way through all of them, since they lie one after
+  /// another.
+  void NodesOfCell(std::int64_t cell, std::int64_t (&nodes)[8]) const
+  {
+    const std::size_t order = this->OrderOfCell.empty() ? 0 : this->OrderOfCell[Index(cell)];
+    const std::array<std::uint8_t, 8>& places = this->CornerOrders[order];
+    const auto take = [&](const auto* ids)
+    {
+      for (std::size_t i = 0; i < 8; ++i)
+      {
+        nodes[places[i]] = ids[i];
+      }
+    };
+    this->Cells.IdType == ScalarType::Int64
+      ? take(static_cast<const std::int64_t*>(this->Cells.Connectivity) + 8 * cell)
+      : take(static_cast<const std::int32_t*>(this->Cells.Connectivity) + 8 * cell);
+  }
+  /// Begins to read what NodesOfLeaf needs of a leaf soon: leaves that follow one another may be
+  /// cells far from each other.
+  /// @param leaf may lie behind the last one
+  void PrefetchLeaf(std::int64_t leaf) const
+  {
+    if (leaf < this->LeafCount())
+    {
+      const auto bytes = 8 * static_cast<std::int64_t>(SizeOf(this->Cells.IdType));
+      const char* const ids =
+        static_cast<const char*>(this->Cells.Connectivity) + this->CellOfLeaf(leaf) * bytes;
+      __builtin_prefetch(ids);
+      __builtin_prefetch(ids + bytes - 1);
+    }
+  }
 
   /// The leaf that contains a finest cell; -1 in holes and outside.
   std::int64_t LeafAt(const glm::ivec3& cell) const;

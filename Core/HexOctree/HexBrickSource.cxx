@@ -21,7 +21,8 @@ HexBrickSource::HexBrickSource(
   : Cut(std::move(bricks))
   , Values(std::move(values))
 {
-  this->Summarize(pool);
+  this->Values.Type() == ScalarType::Float32 ? this->Summarize<float>(pool)
+                                             : this->Summarize<double>(pool);
 }
 
 std::unique_ptr<BrickSource> HexBrickSource::MakeLevel(int level, const Box&)
@@ -39,50 +40,52 @@ glm::ivec3 HexBrickSource::Bricks() const
   return { static_cast<int>(this->Cut->List().size()), 1, 1 };
 }
 
-/// Calls function(range, special) for the elements of a brick: the extremes of their corners, and
-/// whether one is not finite.
-template <class Function>
-void HexBrickSource::ForElements(std::int64_t number, const Function& function) const
+/// What eight corners span, without those that are not finite.
+ValueRange HexBrickSource::RangeOfElement(const double (&corners)[8], bool& special)
 {
-  double corners[8];
-  const HexBrick& brick = this->Brick(number);
-  for (std::int64_t leaf = brick.FirstLeaf; leaf < brick.EndLeaf; ++leaf)
+  ValueRange range;
+  for (const double value : corners)
   {
-    this->Values.CornersOf(leaf, corners);
-    ValueRange range;
-    bool special = false;
-    for (const double value : corners)
+    if (std::isfinite(value))
     {
-      if (std::isfinite(value))
-      {
-        range.Include(value);
-      }
-      special = special || !std::isfinite(value);
+      range.Include(value);
     }
-    function(range, special);
+    special = special || !std::isfinite(value);
   }
+  return range;
 }
 
-/// Ranges, then masks over the range of all.
+/// Ranges, then masks over the range of all. The elements are read once: what they span is kept in
+/// between.
+template <class Value>
 void HexBrickSource::Summarize(ThreadPool& pool)
 {
+  struct Span
+  {
+    Value Low;
+    Value High; ///< below Low where nothing is finite
+  };
   const auto count = static_cast<std::int64_t>(this->Cut->List().size());
   this->Ranges.resize(Index(count));
   this->Masks.resize(Index(count));
   this->Special.resize(Index(count));
+  // Not set to zero, which would be one thread's work.
+  const std::unique_ptr<Span[]> spans(new Span[Index(this->Cut->Tree().LeafCount())]);
   pool.ParallelFor(count,
     [&](std::int64_t number)
     {
       ValueRange total;
-      bool some = false;
-      this->ForElements(number,
-        [&](const ValueRange& range, bool special)
+      bool special = false;
+      const HexBrick& brick = this->Brick(number);
+      this->Values.ForCorners(brick.FirstLeaf, brick.EndLeaf,
+        [&](std::int64_t leaf, const double(&corners)[8])
         {
+          const ValueRange range = RangeOfElement(corners, special);
+          spans[Index(leaf)] = { static_cast<Value>(range.Low), static_cast<Value>(range.High) };
           total.Include(range);
-          some = some || special;
         });
       this->Ranges[Index(number)] = total;
-      this->Special[Index(number)] = some ? 1 : 0;
+      this->Special[Index(number)] = special ? 1 : 0;
     });
   ValueRange all;
   for (const ValueRange& range : this->Ranges)
@@ -90,24 +93,28 @@ void HexBrickSource::Summarize(ThreadPool& pool)
     all.Include(range);
   }
   this->Over = all.Empty() ? MaskRange{} : MaskRange{ all.Low, all.High };
-  pool.ParallelFor(count, [&](std::int64_t number) { this->MakeMask(number); });
-}
-
-void HexBrickSource::MakeMask(std::int64_t number)
-{
   const auto maskOf = [this](const ValueRange& range)
   {
     return range.Empty() ? ValueMask{ 0 }
                          : MaskOfBins(this->Over.BinOf(range.Low), this->Over.BinOf(range.High));
   };
-  const ValueRange& total = this->Ranges[Index(number)];
-  ValueMask& mask = this->Masks[Index(number)];
-  mask = maskOf(total);
-  if (!total.Empty() && this->Over.BinOf(total.High) - this->Over.BinOf(total.Low) > 1)
-  {
-    mask = 0;
-    this->ForElements(number, [&](const ValueRange& range, bool) { mask |= maskOf(range); });
-  }
+  pool.ParallelFor(count,
+    [&](std::int64_t number)
+    {
+      const HexBrick& brick = this->Brick(number);
+      const ValueRange& total = this->Ranges[Index(number)];
+      ValueMask& mask = this->Masks[Index(number)];
+      mask = maskOf(total);
+      if (!total.Empty() && this->Over.BinOf(total.High) - this->Over.BinOf(total.Low) > 1)
+      {
+        mask = 0;
+        for (std::int64_t leaf = brick.FirstLeaf; leaf < brick.EndLeaf; ++leaf)
+        {
+          const Span& span = spans[Index(leaf)];
+          mask |= maskOf({ span.Low, span.High });
+        }
+      }
+    });
 }
 
 std::optional<UniformValue> HexBrickSource::UniformValueOf(std::int64_t brick) const
@@ -148,10 +155,9 @@ BrickView HexBrickSource::Sampled(const HexBrick& brick, const Box& samples) con
   const auto fill = [&](auto* out)
   {
     this->FillAround(brick, samples, out);
-    for (std::int64_t leaf = brick.FirstLeaf; leaf < brick.EndLeaf; ++leaf)
-    {
-      this->FillLeaf(brick, leaf, samples, out);
-    }
+    this->Values.ForCorners(brick.FirstLeaf, brick.EndLeaf,
+      [&](std::int64_t leaf, const double(&corners)[8])
+      { this->FillLeaf(brick, leaf, corners, samples, out); });
   };
   if (this->Values.Type() == ScalarType::Float32)
   {
@@ -172,12 +178,10 @@ BrickView HexBrickSource::Sampled(const HexBrick& brick, const Box& samples) con
 
 /// The samples that an element of the brick touches.
 template <class Out>
-void HexBrickSource::FillLeaf(
-  const HexBrick& brick, std::int64_t leaf, const Box& samples, Out* out) const
+void HexBrickSource::FillLeaf(const HexBrick& brick, std::int64_t leaf, const double (&corners)[8],
+  const Box& samples, Out* out) const
 {
   const ElementOctree& tree = this->Values.Tree();
-  double corners[8];
-  this->Values.CornersOf(leaf, corners);
   const int edge = 1 << (tree.LevelOfLeaf(leaf) - brick.Level);
   const glm::ivec3 first = tree.CornerOfLeaf(leaf) / (1 << brick.Level) - samples.Lo;
   const glm::ivec3 size = samples.Size();

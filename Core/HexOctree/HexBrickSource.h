@@ -57,12 +57,12 @@ private:
   static std::size_t Index(std::int64_t i) { return static_cast<std::size_t>(i); }
   const HexBrick& Brick(std::int64_t i) const { return this->Cut->List()[Index(i)]; }
 
-  template <class Function>
-  void ForElements(std::int64_t number, const Function& function) const;
+  static ValueRange RangeOfElement(const double (&corners)[8], bool& special);
+  template <class Value>
   void Summarize(ThreadPool& pool);
-  void MakeMask(std::int64_t number);
   template <class Out>
-  void FillLeaf(const HexBrick& brick, std::int64_t leaf, const Box& samples, Out* out) const;
+  void FillLeaf(const HexBrick& brick, std::int64_t leaf, const double (&corners)[8],
+    const Box& samples, Out* out) const;
   template <class Out>
   void FillAround(const HexBrick& brick, const Box& samples, Out* out) const;
   BrickView Sampled(const HexBrick& brick, const Box& samples) const;

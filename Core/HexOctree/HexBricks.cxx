@@ -75,7 +75,7 @@ bool HexBricks::TakeWhole(const Cube& cube)
 {
   HexBrick brick{ cube.Level, {}, cube.FirstLeaf, cube.EndLeaf };
   const int lowest = cube.Level - this->EdgeLevel;
-  Box box;
+  CubeExtent extent;
   std::int64_t filled = 0;
   for (std::int64_t leaf = cube.FirstLeaf; leaf < cube.EndLeaf; ++leaf)
   {
@@ -84,11 +84,11 @@ bool HexBricks::TakeWhole(const Cube& cube)
     {
       return false;
     }
-    const glm::ivec3 corner = this->Octree->CornerOfLeaf(leaf);
-    box = Union(box, Box{ corner, corner + (1 << level) });
+    extent.Include(this->Octree->KeyOfLeaf(leaf), level);
     filled += static_cast<std::int64_t>(CubeKeys(level));
     brick.Level = std::min(brick.Level, level);
   }
+  const Box box = extent.Around();
   if (filled != box.Count())
   {
     return false;

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
 namespace banyan
 {
@@ -64,7 +65,8 @@ private:
 
   bool Place(std::uint64_t bits)
   {
-    std::size_t slot = (bits * 0x9e3779b97f4a7c15u >> 20) & (this->Slots.size() - 1);
+    // Of whole numbers, only the upper bits are set.
+    std::size_t slot = ((bits ^ bits >> 32) * 0x9e3779b97f4a7c15u >> 32) & (this->Slots.size() - 1);
     while (this->Slots[slot] != Empty && this->Slots[slot] != bits)
     {
       slot = (slot + 1) & (this->Slots.size() - 1);
@@ -235,7 +237,8 @@ private:
   {
     part.Shortest[axis] = std::min(part.Shortest[axis], high - low);
     part.Largest[axis] = std::max({ part.Largest[axis], std::abs(low), std::abs(high) });
-    const auto isFloat = [](double x) { return static_cast<double>(static_cast<float>(x)) == x; };
+    const auto isFloat = [](double x)
+    { return std::is_same_v<Real, float> || static_cast<double>(static_cast<float>(x)) == x; };
     part.AllFloat = part.AllFloat && isFloat(low) && isFloat(high);
     part.Planes[axis].Insert(low);
     part.Planes[axis].Insert(high);

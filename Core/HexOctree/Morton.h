@@ -1,8 +1,11 @@
 #ifndef banyan_HexOctree_Morton_h
 #define banyan_HexOctree_Morton_h
 
+#include "Base/Box.h"
+
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <cstdint>
 
 namespace banyan
@@ -57,6 +60,37 @@ inline MortonKey CubeKeys(int level)
 {
   return MortonKey{ 1 } << 3 * level;
 }
+
+/// The box around cubes. The bits of one axis compare as positions do, so that none is gathered
+/// before the end.
+class CubeExtent
+{
+public:
+  /// @param level of a cube of 2^level at this key
+  void Include(MortonKey key, int level)
+  {
+    const MortonKey last = key | (CubeKeys(level) - 1);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const MortonKey bits = SpreadBits(MortonEdge - 1) << axis;
+      this->First[axis] = std::min(this->First[axis], key & bits);
+      this->Last[axis] = std::max(this->Last[axis], last & bits);
+    }
+  }
+
+  /// Empty as long as nothing is included.
+  Box Around() const
+  {
+    return this->First[0] > this->Last[0]
+             ? Box{}
+             : Box{ PositionOfKey(this->First[0] | this->First[1] | this->First[2]),
+                 PositionOfKey(this->Last[0] | this->Last[1] | this->Last[2]) + 1 };
+  }
+
+private:
+  MortonKey First[3] = { ~MortonKey{ 0 }, ~MortonKey{ 0 }, ~MortonKey{ 0 } };
+  MortonKey Last[3] = { 0, 0, 0 };
+};
 
 } // namespace banyan
 

@@ -1,5 +1,6 @@
 #include "HexOctree/OctreeFinder.h"
 
+#include "HexOctree/CellPlacer.h"
 #include "HexOctree/RadixSort.h"
 
 #include <cmath>
@@ -11,142 +12,7 @@ namespace
 
 std::atomic<std::int64_t> Found{ 0 };
 
-std::string Text(const glm::dvec3& v)
-{
-  return std::to_string(v.x) + " x " + std::to_string(v.y) + " x " + std::to_string(v.z);
-}
-
-std::string Text(const glm::ivec3& v)
-{
-  return std::to_string(v.x) + " x " + std::to_string(v.y) + " x " + std::to_string(v.z);
-}
-
-std::string CellText(std::int64_t cell)
-{
-  return "Cell " + std::to_string(cell);
-}
-
-/// The level of a size; -1 when it is no power of two.
-int LevelOf(int size)
-{
-  int level = 0;
-  while (level < 30 && 1 << level < size)
-  {
-    ++level;
-  }
-  return 1 << level == size ? level : -1;
-}
-
 } // namespace
-
-/// Puts cells onto the lattice, one after the other.
-template <class Real, class Id>
-class OctreeFinder::Placer
-{
-public:
-  Placer(const ElementOctree& tree, const Real* points, const Id* ids)
-    : Tree(tree)
-    , Points(points)
-    , Ids(ids)
-    , Origin(tree.LatticeOrigin)
-    , PerEdge(1.0 / tree.FinestEdge)
-    , Allowed(tree.LatticeTolerance / tree.FinestEdge)
-  {
-  }
-
-  /// @return what is wrong with the cell; empty if nothing is
-  std::string Place(std::int64_t cell, Placed& placed) const
-  {
-    glm::ivec3 corners[8];
-    for (int i = 0; i < 8; ++i)
-    {
-      const Real* point = this->Points + 3 * static_cast<std::int64_t>(this->Ids[8 * cell + i]);
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        const double exact = (point[axis] - this->Origin[axis]) * this->PerEdge[axis];
-        // Rounded to a whole number, which takes a function call on processors without SSE4.
-        const double whole = (exact + Rounder) - Rounder;
-        if (!(std::abs(exact - whole) <= this->Allowed[axis]))
-        {
-          return this->Off(cell, i, axis, exact - whole);
-        }
-        corners[i][axis] = static_cast<int>(whole);
-      }
-    }
-    glm::ivec3 low = corners[0];
-    glm::ivec3 high = corners[0];
-    for (const glm::ivec3& corner : corners)
-    {
-      low = glm::min(low, corner);
-      high = glm::max(high, corner);
-    }
-    return this->Fit(cell, corners, low, high, placed);
-  }
-
-private:
-  static constexpr double Rounder = 6755399441055744.0; ///< 1.5 * 2^52
-
-  std::string Off(std::int64_t cell, int corner, int axis, double off) const
-  {
-    return CellText(cell) + " is no box of an octree: its point " +
-           std::to_string(static_cast<std::int64_t>(this->Ids[8 * cell + corner])) + " lies " +
-           std::to_string(std::abs(off)) + " of the finest edge (" +
-           std::to_string(this->Tree.FinestEdge[axis]) +
-           ") beside the lattice of the others along " + "xyz"[axis] + ", and " +
-           std::to_string(this->Allowed[axis]) + " is allowed (MeshTolerance)";
-  }
-
-  std::string Fit(std::int64_t cell, const glm::ivec3 (&corners)[8], const glm::ivec3& low,
-    const glm::ivec3& high, Placed& placed) const
-  {
-    const glm::ivec3 size = high - low;
-    placed.Corner = low;
-    placed.Level = LevelOf(size.x);
-    if (size.y != size.x || size.z != size.x || placed.Level < 0)
-    {
-      return CellText(cell) + " spans " + Text(size) + " of the finest edges (" +
-             Text(this->Tree.FinestEdge) +
-             "); in an octree all cells span the same power of two along all axes";
-    }
-    unsigned seen = 0;
-    for (std::size_t i = 0; i < 8; ++i)
-    {
-      const glm::ivec3 in = corners[i] - low;
-      unsigned place = 0;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        place |= in[axis] == size.x ? 1u << axis : 0u;
-        if (in[axis] != 0 && in[axis] != size.x)
-        {
-          return CellText(cell) + " is not an axis-aligned box: a point of it lies between its " +
-                 "corners along " + "xyz"[axis];
-        }
-      }
-      placed.Order[i] = static_cast<std::uint8_t>(place);
-      seen |= 1u << place;
-    }
-    if (seen != 0xff)
-    {
-      return CellText(cell) + " has two of its points at one corner, and none at another";
-    }
-    const int mask = size.x - 1;
-    if ((low.x & mask) != 0 || (low.y & mask) != 0 || (low.z & mask) != 0)
-    {
-      return CellText(cell) + ", which is " + std::to_string(size.x) +
-             " finest edges long, begins at " + Text(low) +
-             " of them: in an octree cells begin at multiples of their size, seen from cell " +
-             std::to_string(this->Tree.CellNumbers.front()) + " on, one of the largest";
-    }
-    return {};
-  }
-
-  const ElementOctree& Tree;
-  const Real* Points;
-  const Id* Ids;
-  glm::dvec3 Origin;
-  glm::dvec3 PerEdge;
-  glm::dvec3 Allowed;
-};
 
 /// The order of corners that a thread has met last.
 struct OctreeFinder::OrderMemory
@@ -227,7 +93,7 @@ void OctreeFinder::PlaceCells()
   DispatchMesh(tree.Cells,
     [&](const auto* points, const auto* ids)
     {
-      const Placer placer(tree, points, ids);
+      const CellPlacer placer(tree, points, ids);
       FirstFailure failure;
       ForRuns(tree.Cells.CellCount, this->Pool, failure,
         [&](std::int64_t begin, std::int64_t end, int worker)
@@ -235,7 +101,7 @@ void OctreeFinder::PlaceCells()
           OrderMemory& memory = memories[static_cast<std::size_t>(worker)];
           for (std::int64_t cell = begin; cell < end; ++cell)
           {
-            Placed placed;
+            PlacedCell placed;
             const std::string problem = placer.Place(cell, placed);
             if (!problem.empty())
             {
@@ -320,7 +186,7 @@ void OctreeFinder::CheckLeaves()
 {
   struct Sum
   {
-    Box Domain;
+    CubeExtent Domain;
     int Coarsest = 0;
     std::int64_t Covered = 0;
   };
@@ -340,8 +206,7 @@ void OctreeFinder::CheckLeaves()
           failure.Report(static_cast<std::int64_t>(leaf), this->OverlapAt(leaf));
           return;
         }
-        const glm::ivec3 corner = PositionOfKey(tree.Keys[leaf]);
-        sum.Domain = Union(sum.Domain, Box{ corner, corner + (1 << level) });
+        sum.Domain.Include(tree.Keys[leaf], level);
         sum.Coarsest = std::max(sum.Coarsest, level);
         sum.Covered += static_cast<std::int64_t>(CubeKeys(level));
       }
@@ -349,7 +214,7 @@ void OctreeFinder::CheckLeaves()
   std::int64_t covered = 0;
   for (const Sum& sum : sums)
   {
-    tree.DomainCells = Union(tree.DomainCells, sum.Domain);
+    tree.DomainCells = Union(tree.DomainCells, sum.Domain.Around());
     tree.CoarsestLeaf = std::max(tree.CoarsestLeaf, sum.Coarsest);
     covered += sum.Covered;
   }

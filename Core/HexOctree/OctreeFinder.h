@@ -19,15 +19,6 @@ public:
   void Find();
 
 private:
-  /// A cell on the lattice.
-  struct Placed
-  {
-    glm::ivec3 Corner{ 0 };
-    int Level = 0;
-    std::array<std::uint8_t, 8> Order{};
-  };
-  template <class Real, class Id>
-  class Placer;
   struct OrderMemory;
 
   void AlignOrigin(const MeshSurvey& survey);
