@@ -30,7 +30,8 @@ const char* Help =
   "one of\n"
   "                     those that --list prints\n"
   "  --mesh KIND        uniform (default), graded: the standard field, function S1;\n"
-  "                     earthquake: the ground's speed\n"
+  "                     earthquake: the ground's speed; FILE.exo: the same of one that "
+  "banyan-generate made\n"
   "  --cells N          cells across (default 100); of an earthquake, about so many in all\n"
   "  --seconds T        of the earthquake (default 12)\n"
   "  --tolerance E      of banyan, in 1/255 (default 1)\n"
@@ -116,6 +117,12 @@ BenchMesh MeshOf(const Options& options, ThreadPool& pool)
   {
     return EarthquakeMeshAt(options.Cells, options.Seconds, pool);
   }
+  const std::string exodus = ".exo";
+  if (options.Mesh.size() > exodus.size() &&
+      options.Mesh.compare(options.Mesh.size() - exodus.size(), exodus.size(), exodus) == 0)
+  {
+    return ExodusMeshAt(options.Mesh, options.Seconds, pool);
+  }
   if (options.Cells > 1000)
   {
     throw Error("A mesh has at most 1000 cells across");
@@ -198,7 +205,7 @@ BenchScene LookOf(const Options& options, const BenchMesh& mesh, bool whole, Thr
     volume = empty;
   }
   BenchScene look = StandardScene(volume, StandardFunction::S1, false, options.Picture);
-  if (options.Mesh == "earthquake")
+  if (options.Mesh != "uniform" && options.Mesh != "graded")
   {
     LookAtEarthquake(mesh, look);
   }

@@ -4,6 +4,7 @@
 #include "HexOctree/HexMesh.h"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace banyan
@@ -40,6 +41,12 @@ BenchMesh GradedMesh(int n, ThreadPool& pool);
 /// @param cells about so many
 /// @param seconds after the fault began to break
 BenchMesh EarthquakeMeshAt(double cells, double seconds, ThreadPool& pool);
+
+/// The magnitude of the array "velocity" in the first block of a file of Exodus, as
+/// `banyan-generate --series earthquake` writes it. Throws Error when the mesh is no octree, or
+/// the program was built without VTK.
+/// @param seconds the step with the nearest time counts
+BenchMesh ExodusMeshAt(const std::string& file, double seconds, ThreadPool& pool);
 
 /// Puts the cells into another order.
 void Shuffle(BenchMesh& mesh);

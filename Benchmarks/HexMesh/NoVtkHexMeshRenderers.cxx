@@ -1,5 +1,7 @@
 #include "HexMeshRenderer.h"
 
+#include "Base/Error.h"
+
 namespace banyan::bench
 {
 
@@ -12,6 +14,11 @@ std::unique_ptr<HexMeshRenderer> MakeVtkHexMeshRenderer(
 std::vector<std::string> VtkHexMeshRenderers()
 {
   return {};
+}
+
+BenchMesh ExodusMeshAt(const std::string& file, double, ThreadPool&)
+{
+  throw Error("Files of Exodus need VTK, which this program was built without", { file });
 }
 
 } // namespace banyan::bench

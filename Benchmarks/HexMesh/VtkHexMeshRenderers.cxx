@@ -26,6 +26,8 @@
 #include <vtkVolume.h>
 #include <vtkVolumeProperty.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 namespace banyan::bench
@@ -66,8 +68,23 @@ vtkSmartPointer<vtkUnstructuredGrid> GridOf(const BenchMesh& mesh)
   return grid;
 }
 
-vtkSmartPointer<vtkVolumeProperty> PropertyOf(const BenchScene& scene)
+/// What a mapper takes the numbers of a scalar opacity function for.
+enum class OpacityMeans
 {
+  Opacity,    ///< after the unit distance: mappers of images
+  Attenuation ///< per unit distance, the a of 1 - exp(-a): mappers of unstructured grids
+};
+
+/// As nodes have opacities, or as attenuations of which the strongest is 1: projected tetrahedra
+/// keep them in 8 bits, cut off. Of those of S1 per voxel, 0.001 to 0.02, five would be left.
+vtkSmartPointer<vtkVolumeProperty> PropertyOf(const BenchScene& scene, OpacityMeans means)
+{
+  double strongest = 0.0;
+  for (const glm::dvec4& node : scene.Nodes)
+  {
+    strongest = std::max(strongest, -std::log1p(-node.a));
+  }
+  const bool attenuation = means == OpacityMeans::Attenuation;
   vtkNew<vtkColorTransferFunction> colors;
   vtkNew<vtkPiecewiseFunction> opacities;
   for (std::size_t i = 0; i < scene.Nodes.size(); ++i)
@@ -76,12 +93,13 @@ vtkSmartPointer<vtkVolumeProperty> PropertyOf(const BenchScene& scene)
     const double value = scene.Low + part * (scene.High - scene.Low);
     const glm::dvec4& node = scene.Nodes[i];
     colors->AddRGBPoint(value, node.r, node.g, node.b);
-    opacities->AddPoint(value, node.a);
+    opacities->AddPoint(value, attenuation ? -std::log1p(-node.a) / strongest : node.a);
   }
   auto property = vtkSmartPointer<vtkVolumeProperty>::New();
   property->SetColor(colors);
   property->SetScalarOpacity(opacities);
-  property->SetScalarOpacityUnitDistance(scene.UnitDistance);
+  property->SetScalarOpacityUnitDistance(
+    attenuation ? scene.UnitDistance / strongest : scene.UnitDistance);
   property->SetInterpolationTypeToLinear();
   return property;
 }
@@ -147,11 +165,15 @@ struct Way
 {
   const char* Name;
   vtkSmartPointer<vtkAbstractVolumeMapper> (*MapperOf)(vtkUnstructuredGrid*, int threads);
+  OpacityMeans Means;
 };
 
-constexpr Way Ways[] = { { "vtk-projected-tetrahedra", ProjectedTetrahedra },
-  { "vtk-ray-cast", RayCast }, { "vtk-z-sweep", ZSweep }, { "vtk-image-128", AsImage<128> },
-  { "vtk-image-256", AsImage<256> } };
+constexpr Way Ways[] = { { "vtk-projected-tetrahedra", ProjectedTetrahedra,
+                           OpacityMeans::Attenuation },
+  { "vtk-ray-cast", RayCast, OpacityMeans::Attenuation },
+  { "vtk-z-sweep", ZSweep, OpacityMeans::Attenuation },
+  { "vtk-image-128", AsImage<128>, OpacityMeans::Opacity },
+  { "vtk-image-256", AsImage<256>, OpacityMeans::Opacity } };
 
 class VtkHexMeshRenderer : public HexMeshRenderer
 {
@@ -189,7 +211,7 @@ public:
     {
       this->Volume = vtkSmartPointer<vtkVolume>::New();
       this->Volume->SetMapper(this->How.MapperOf(this->Grid, this->Threads));
-      this->Volume->SetProperty(PropertyOf(this->Scene.Look));
+      this->Volume->SetProperty(PropertyOf(this->Scene.Look, this->How.Means));
       this->Renderer->AddVolume(this->Volume);
       this->Renderer->ResetCameraClippingRange();
     }
