@@ -8,12 +8,14 @@
 #                    minutes in all
 #   --cells N        cells across (default 100: a million in all; 216: ten millions, of which VTK's
 #                    tetrahedra are fifty)
-#   --mesh KIND      uniform (default); graded: an octree, N a power of two
+#   --mesh KIND      uniform (default); graded: an octree, N a power of two; FILE.exo: an earthquake
+#                    that banyan-generate made
 #   --renderers LIST only these, separated by commas; banyan-bench-hexmesh-renderer --list has VTK's
 #   --limit SECONDS  for each renderer, after which it is ended and its row stays empty (default 900)
 #   --repeat N       frames after the first one, of which the median counts (default 3; --quick 1)
 #   --scaling        set-up time and bytes per node from 20 thousand to 10 million cells instead
-#   --adaptive       an earthquake of N cells (default 200000) in full and with coarser levels instead
+#   --adaptive       an earthquake of N cells (default 200000; or that of --mesh) in full and with coarser
+#                    levels instead
 #   --output DIR     where hexmesh.csv and hexmesh.png go (default benchmark-output)
 #   --work DIR       keeps converged pictures (default: hexmesh-references in the build folder)
 #
@@ -78,10 +80,10 @@ measure_adaptive()
   local csv="$output/hexmesh-adaptive.csv" options
   "$program" --header > "$csv" || fail "$csv cannot be written."
   for options in "banyan-full" "banyan --tolerance 1" "banyan --tolerance 4" \
-    "banyan --tolerance 1 --max-elements 1"; do
+    "banyan-one-level --max-elements 1" "banyan-one-level --max-elements 0.25"; do
     say "      $options"
     # shellcheck disable=SC2086 # words
-    "$program" --mesh earthquake --cells "$cells" --picture 512 --repeat "$repeat" \
+    "$program" --mesh "$mesh" --cells "$cells" --picture 512 --repeat "$repeat" \
       --threads "$(nproc)" --references "$work" --save "$output/hexmesh-${options// /}.ppm" \
       --renderer $options >> "$csv" || fail "drawing the earthquake failed."
   done
@@ -101,6 +103,7 @@ if [[ $scaling == 1 ]]; then
 fi
 if [[ $adaptive == 1 ]]; then
   cells="${cells:-200000}"
+  [[ "$mesh" == *.exo ]] || mesh=earthquake
   measure_adaptive
   exit 0
 fi

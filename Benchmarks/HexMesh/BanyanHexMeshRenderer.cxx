@@ -6,6 +6,8 @@
 #include "Render/ElementsPerPixel.h"
 #include "Render/SamplingPlan.h"
 
+#include <cmath>
+
 namespace banyan::bench
 {
 namespace
@@ -38,14 +40,21 @@ public:
     scene.IndexToWorld = this->Source->Field().Tree().LatticeToWorld();
     scene.DomainCells = this->Source->Field().Tree().Domain();
     scene.LevelsShareCells = true;
-    if (this->Accuracy.Tolerance > 0.0)
+    if (this->Accuracy.OneLevel)
+    {
+      const int level = FinestLevelFor(scene, this->Accuracy.MaxElementsPerPixel, CoarsestLevel);
+      const RaySampling sampling{ level, std::ldexp(scene.SampleDistance, level) };
+      scene.Samplings = std::make_shared<TileSamplings>(
+        scene.Camera.ImageSize(), std::vector<RaySampling>{ sampling });
+    }
+    else if (this->Accuracy.Tolerance > 0.0)
     {
       SamplingWish wish{ this->Accuracy.Tolerance, scene.SampleDistance, CoarsestLevel };
       wish.LargestPixelStride = 1; // a ray for each pixel
       wish.FinestLevel =
         FinestLevelFor(scene, this->Accuracy.MaxElementsPerPixel, wish.CoarsestLevel);
-      const SamplingPlan plan = PlanSamplings(
-        scene, wish, [this](const RayScene& pilot) { return this->Cast(pilot); });
+      const SamplingPlan plan =
+        PlanSamplings(scene, wish, [this](const RayScene& pilot) { return this->Cast(pilot); });
       scene.Samplings = plan.Samplings;
       scene.OpacityLimit = plan.OpacityLimit;
     }

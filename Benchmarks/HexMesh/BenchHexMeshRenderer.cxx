@@ -26,9 +26,10 @@ using namespace banyan::bench;
 const char* Help =
   "banyan-bench-hexmesh-renderer --renderer NAME [OPTIONS]\n"
   "  Draws a mesh of hexahedra in one of several ways, and prints a line of CSV.\n"
-  "  --renderer NAME    banyan, banyan-full (one sample per finest edge, no coarser levels), or "
-  "one of\n"
-  "                     those that --list prints\n"
+  "  --renderer NAME    banyan, banyan-full (one sample per finest edge, no coarser levels),\n"
+  "                     banyan-one-level (the one that --max-elements gives), or one of those "
+  "that\n"
+  "                     --list prints\n"
   "  --mesh KIND        uniform (default), graded: the standard field, function S1;\n"
   "                     earthquake: the ground's speed; FILE.exo: the same of one that "
   "banyan-generate made\n"
@@ -219,7 +220,8 @@ std::unique_ptr<HexMeshRenderer> RendererOf(const Options& options, const HexMes
   {
     accuracy.Tolerance = 0.0;
   }
-  if (options.Renderer == "banyan" || options.Renderer == "banyan-full")
+  accuracy.OneLevel = options.Renderer == "banyan-one-level";
+  if (options.Renderer == "banyan" || options.Renderer == "banyan-full" || accuracy.OneLevel)
   {
     return MakeBanyanHexMeshRenderer(scene, accuracy, options.Threads);
   }
