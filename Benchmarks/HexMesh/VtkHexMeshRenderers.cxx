@@ -1,11 +1,11 @@
 #include "HexMeshRenderer.h"
+#include "VtkScene.h"
 
 #include "Base/Timer.h"
 
 #include <vtkCamera.h>
 #include <vtkCellArray.h>
 #include <vtkCellType.h>
-#include <vtkColorTransferFunction.h>
 #include <vtkDataSetTriangleFilter.h>
 #include <vtkFloatArray.h>
 #include <vtkGPUVolumeRayCastMapper.h>
@@ -79,28 +79,25 @@ enum class OpacityMeans
 /// keep them in 8 bits, cut off. Of those of S1 per voxel, 0.001 to 0.02, five would be left.
 vtkSmartPointer<vtkVolumeProperty> PropertyOf(const BenchScene& scene, OpacityMeans means)
 {
+  auto property = bench::PropertyOf(scene);
+  if (means == OpacityMeans::Opacity)
+  {
+    return property;
+  }
   double strongest = 0.0;
   for (const glm::dvec4& node : scene.Nodes)
   {
     strongest = std::max(strongest, -std::log1p(-node.a));
   }
-  const bool attenuation = means == OpacityMeans::Attenuation;
-  vtkNew<vtkColorTransferFunction> colors;
-  vtkNew<vtkPiecewiseFunction> opacities;
+  vtkNew<vtkPiecewiseFunction> attenuations;
   for (std::size_t i = 0; i < scene.Nodes.size(); ++i)
   {
     const double part = static_cast<double>(i) / static_cast<double>(scene.Nodes.size() - 1);
-    const double value = scene.Low + part * (scene.High - scene.Low);
-    const glm::dvec4& node = scene.Nodes[i];
-    colors->AddRGBPoint(value, node.r, node.g, node.b);
-    opacities->AddPoint(value, attenuation ? -std::log1p(-node.a) / strongest : node.a);
+    attenuations->AddPoint(
+      scene.Low + part * (scene.High - scene.Low), -std::log1p(-scene.Nodes[i].a) / strongest);
   }
-  auto property = vtkSmartPointer<vtkVolumeProperty>::New();
-  property->SetColor(colors);
-  property->SetScalarOpacity(opacities);
-  property->SetScalarOpacityUnitDistance(
-    attenuation ? scene.UnitDistance / strongest : scene.UnitDistance);
-  property->SetInterpolationTypeToLinear();
+  property->SetScalarOpacity(attenuations);
+  property->SetScalarOpacityUnitDistance(scene.UnitDistance / strongest);
   return property;
 }
 

@@ -1,14 +1,13 @@
 #include "RayCastRenderer.h"
+#include "VtkScene.h"
 
 #include <vtkCamera.h>
-#include <vtkColorTransferFunction.h>
 #include <vtkFixedPointVolumeRayCastMapper.h>
 #include <vtkFloatArray.h>
 #include <vtkGPUVolumeRayCastMapper.h>
 #include <vtkImageData.h>
 #include <vtkMath.h>
 #include <vtkNew.h>
-#include <vtkPiecewiseFunction.h>
 #include <vtkPointData.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
@@ -46,30 +45,6 @@ vtkSmartPointer<vtkImageData> ImageOf(const Volume& volume)
     image->GetPointData()->SetScalars(array);
   }
   return image;
-}
-
-vtkSmartPointer<vtkVolumeProperty> PropertyOf(const BenchScene& scene)
-{
-  vtkNew<vtkColorTransferFunction> colors;
-  vtkNew<vtkPiecewiseFunction> opacities;
-  for (std::size_t i = 0; i < scene.Nodes.size(); ++i)
-  {
-    const double part = static_cast<double>(i) / static_cast<double>(scene.Nodes.size() - 1);
-    const double value = scene.Low + part * (scene.High - scene.Low);
-    const glm::dvec4& node = scene.Nodes[i];
-    colors->AddRGBPoint(value, node.r, node.g, node.b);
-    opacities->AddPoint(value, node.a);
-  }
-  auto property = vtkSmartPointer<vtkVolumeProperty>::New();
-  property->SetColor(colors);
-  property->SetScalarOpacity(opacities);
-  property->SetScalarOpacityUnitDistance(scene.UnitDistance);
-  property->SetInterpolationTypeToLinear();
-  property->SetShade(scene.Shaded ? 1 : 0);
-  property->SetAmbient(0.3);
-  property->SetDiffuse(0.7);
-  property->SetSpecular(0.0);
-  return property;
 }
 
 /// A mapper of VTK in a window of its own. Every setting has a mapper of its own, so that none has
