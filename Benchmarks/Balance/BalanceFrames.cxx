@@ -39,6 +39,7 @@ LoadBalancer::Options BalancerFor(
   options.Ranks = ranks;
   options.SlicePositions = BenchBrickCells;
   options.PlaneStep = given.PlaneStep;
+  options.TurnGain = 1.0 + 0.01 * given.TurnPercent;
   options.BlockEdge = BlockEdgeFor(options.Positions);
   options.BytesPerPosition = static_cast<double>(SizeOf(scene.Data->Type()));
   return options;

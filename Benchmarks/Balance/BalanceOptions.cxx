@@ -46,12 +46,14 @@ const char* const BalanceHelp =
   "  --modes LIST         default off,slice-step,measured-cost\n"
   "  --plane-step N       cells between places of planes (default 1; encoded series have 8)\n"
   "  --keep-axes          planes move, but do not turn\n"
+  "  --turn-percent N     they turn when frames are expected to be so much faster (default 15)\n"
   "  --output FILE.csv    default standard output          --append     to it\n"
   "  --rank-times FILE.csv   each rank's milliseconds too\n"
   "  --brick-times FILE.csv  what the bricks of each frame took, and nothing else\n"
   "  --pieces             with --mpi: each rank holds a piece, and bricks go from rank to rank\n"
   "  --exchange           with --mpi: all ranks fetch the bricks of the first, and nothing is "
   "drawn\n"
+  "  --composite-after    with --mpi: odd frames are composited after the last ray, to compare\n"
   "  --mpi                on the real ranks of mpirun, in wall-clock time; one thread each\n";
 
 const char* NameOf(LoadBalancing mode)
@@ -75,6 +77,10 @@ BalanceOptions ParseBalanceOptions(const std::vector<std::string>& arguments)
       options.Append = true;
     else if (option == "--keep-axes")
       options.Turns = false;
+    else if (option == "--composite-after")
+      options.CompositeAfter = true;
+    else if (option == "--turn-percent")
+      options.TurnPercent = count(1000);
     else if (option == "--mpi")
       options.Mpi = true;
     else if (option == "--pieces")

@@ -11,7 +11,7 @@ namespace banyan::bench
 
 struct BalanceOptions
 {
-  std::string Series; ///< description of a raw series; none draws the standard scene S2
+  std::string Series;       ///< description of a raw series; none draws the standard scene S2
   std::string Scene = "S2"; ///< of standard scenes
   std::string Path = "zoom";
   std::string Output;     ///< CSV; none prints
@@ -24,9 +24,11 @@ struct BalanceOptions
   std::vector<int> Ranks{ 2, 4, 8, 16 };
   std::vector<LoadBalancing> Modes{ LoadBalancing::Off, LoadBalancing::SliceStep,
     LoadBalancing::MeasuredCost };
-  bool Turns = true;   ///< whether measured cost may choose axes
+  bool Turns = true;           ///< whether measured cost may choose axes
+  int TurnPercent = 15;        ///< by which frames must be expected to be faster for that
+  bool CompositeAfter = false; ///< real ranks composite odd frames after the last ray
   bool Append = false;
-  bool Mpi = false; ///< on the ranks of this job in place of simulated ones
+  bool Mpi = false;    ///< on the ranks of this job in place of simulated ones
   bool Pieces = false; ///< with Mpi: each rank holds an equal block of the volume, and nothing else
   bool Exchange = false; ///< with Mpi: only what it takes to fetch a brick
   bool Help = false;

@@ -43,7 +43,10 @@ void DrawPath(Communicator& communicator, const BenchScene& scene, const Balance
     BrickWork mine;
     drawn.Work = &mine;
     FrameStatistics statistics;
-    DrawDistributed(communicator, drawn, &source, zones, ~std::uint64_t{ 0 }, pool, {}, statistics);
+    CompositeOptions compositing;
+    compositing.WhileCasting = !options.CompositeAfter || number % 2 == 0;
+    DrawDistributed(
+      communicator, drawn, &source, zones, ~std::uint64_t{ 0 }, pool, {}, statistics, compositing);
     const FrameWork took = GatherWork(communicator, mine, zones, view);
     balancer.FrameTook(took.Ranks, took.Blocks);
     BalanceFrame frame;
@@ -99,8 +102,10 @@ void DrawPieces(Communicator& communicator, const BenchScene& scene, const Balan
     const Timer whole;
     field.BeginFrame(communicator, drawn, ~std::uint64_t{ 0 });
     FrameStatistics statistics;
+    CompositeOptions compositing;
+    compositing.WhileCasting = !options.CompositeAfter || number % 2 == 0;
     DrawDistributed(communicator, drawn, field.Source(), field.Zones(), ~std::uint64_t{ 0 }, pool,
-      {}, statistics);
+      {}, statistics, compositing);
     field.EndFrame(communicator);
     BalanceFrame frame;
     frame.Milliseconds = 1e3 * AllMax(communicator, whole.Seconds());

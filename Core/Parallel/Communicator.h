@@ -41,6 +41,9 @@ public:
   };
   /// Until one of the messages of `ReceiveWhole` is here. Throws Error when none is awaited.
   virtual Arrival WaitAnyWhole() = 0;
+  /// The same, but does not wait: gives messages that are under way a push, and says whether one of
+  /// `ReceiveWhole` is here. False when none is awaited.
+  virtual bool TakeAnyWhole(Arrival& arrival) = 0;
 
   virtual void Barrier() = 0;
   virtual void Broadcast(int root, void* data, std::size_t bytes) = 0;

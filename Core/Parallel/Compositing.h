@@ -64,6 +64,10 @@ struct CompositeOptions
   /// that method is an Error.
   Compositor External;
 
+  /// Whether DrawDistributed begins to composite while rays are still cast, where that can be done
+  /// (Slic, more than one rank). The picture is the same to the last bit.
+  bool WhileCasting = true;
+
   /// Called by DrawDistributed when this rank has cast its rays: begins what can go on in the
   /// background while pictures are composited and shown. Must not throw.
   std::function<void()> AfterCasting;

@@ -3,6 +3,7 @@
 #include "Base/Progress.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
+#include "Parallel/CompositeWhileCasting.h"
 #include "Parallel/LevelZones.h"
 #include "Parallel/Rebalance.h"
 #include "Render/PixelsBetween.h"
@@ -16,23 +17,59 @@ namespace banyan
 namespace
 {
 
-/// Casts this rank's rays; a failure becomes a sentence for the others.
-FloatImage CastOwnZone(const RayScene& scene, BrickSource* source, const Box& zone,
-  std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics, std::string& failure)
+/// A rank's own part of a frame.
+struct OwnPart
 {
-  if (!failure.empty() || source == nullptr || zone.Empty())
-  {
-    return {};
-  }
+  const RayScene& Scene;
+  BrickSource* Source;
+  Box Zone;
+  std::uint64_t BudgetBytes;
+  ThreadPool& Pool;
+  std::string Failure; ///< empty if all is well
+  const std::function<void()>& AfterCasting;
+
+  RayStatistics Rays;
+  CompositeStatistics Sent;
+  double RenderSeconds = 0;
+  double CompositeSeconds = 0;
+};
+
+/// Casts this rank's rays; a failure becomes a sentence for the others.
+/// @param watcher null for none
+FloatImage CastOwnZone(OwnPart& own, PictureWatcher* watcher)
+{
+  const Timer timer;
+  FloatImage mine;
   try
   {
-    const PhaseScope phase(Phase::Casting);
-    return CastRays(scene, *source, zone, budgetBytes, pool, statistics);
+    if (own.Failure.empty() && own.Source && !own.Zone.Empty())
+    {
+      const PhaseScope phase(Phase::Casting);
+      mine = watcher
+               ? CastRaysWatched(
+                   own.Scene, *own.Source, own.Zone, own.BudgetBytes, own.Pool, own.Rays, *watcher)
+               : CastRays(own.Scene, *own.Source, own.Zone, own.BudgetBytes, own.Pool, own.Rays);
+    }
   }
   catch (const std::exception& error)
   {
-    failure = error.what();
-    return {};
+    own.Failure = error.what();
+  }
+  own.RenderSeconds = timer.Seconds();
+  if (own.AfterCasting)
+  {
+    own.AfterCasting();
+  }
+  return mine;
+}
+
+/// Collective.
+void AgreeOrThrow(Communicator& communicator, const std::string& failure)
+{
+  const std::string agreed = AgreeOnError(communicator, failure);
+  if (!agreed.empty())
+  {
+    throw Error(agreed);
   }
 }
 
@@ -101,6 +138,60 @@ CompositeOptions CompleteOptions(
   return options;
 }
 
+/// @param compositing without what follows from the scene and the zones
+FloatImage CastThenComposite(Communicator& communicator, OwnPart& own,
+  const std::vector<Box>& zones, const CompositeOptions& compositing)
+{
+  const RayScene& scene = own.Scene;
+  const FloatImage mine = CastOwnZone(own, nullptr);
+  const PhaseScope phase(Phase::Compositing);
+  // The order and the footprints depend on what all ranks have alike: no rank fails here alone.
+  const std::vector<int> order = OrderAsDrawn(scene, zones);
+  CompositeOptions options = CompleteOptions(compositing, scene, zones);
+  if (own.Failure.empty())
+  {
+    own.Failure =
+      ProblemOf(communicator.Rank(), communicator.Size(), mine, order, scene.Viewport, options);
+  }
+  AgreeOrThrow(communicator, own.Failure);
+  const Timer timer;
+  options.Agreed = true;
+  FloatImage picture = Composite(communicator, mine, order, scene.Viewport, options, own.Sent);
+  own.CompositeSeconds = timer.Seconds();
+  return picture;
+}
+
+FloatImage CastAndComposite(Communicator& communicator, OwnPart& own, const std::vector<Box>& zones,
+  const CompositeOptions& compositing)
+{
+  const RayScene& scene = own.Scene;
+  const std::vector<int> order = OrderAsDrawn(scene, zones);
+  const CompositeOptions options = CompleteOptions(compositing, scene, zones);
+  const auto problemOf = [&](const FloatImage& image)
+  {
+    return ProblemOf(
+      communicator.Rank(), communicator.Size(), image, order, scene.Viewport, options);
+  };
+  // All ranks have this alike, so that all are here or none is.
+  const std::string problem = problemOf({});
+  if (!problem.empty())
+  {
+    AgreeOrThrow(communicator, problem);
+  }
+  CompositeWhileCasting compositor(communicator, order, scene.Viewport, options, own.Sent);
+  const FloatImage mine = CastOwnZone(own, &compositor);
+  const PhaseScope phase(Phase::Compositing);
+  const Timer timer;
+  if (own.Failure.empty())
+  {
+    own.Failure = problemOf(mine);
+  }
+  FloatImage picture = compositor.Finish(own.Failure.empty() ? &mine : nullptr);
+  AgreeOrThrow(communicator, own.Failure);
+  own.CompositeSeconds = timer.Seconds();
+  return picture;
+}
+
 } // namespace
 
 FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene, BrickSource* source,
@@ -108,45 +199,24 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene, Br
   const std::string& localError, FrameStatistics& statistics, const CompositeOptions& compositing)
 {
   const Timer total;
-  const Timer render;
-  RayStatistics rays;
-  std::string failure = localError;
-  const Box zone = zones.at(static_cast<std::size_t>(communicator.Rank()));
-  const FloatImage mine = CastOwnZone(scene, source, zone, budgetBytes, pool, rays, failure);
-  const double renderSeconds = render.Seconds();
-  if (compositing.AfterCasting)
-  {
-    compositing.AfterCasting();
-  }
-
+  OwnPart own{ scene, source, zones.at(static_cast<std::size_t>(communicator.Rank())), budgetBytes,
+    pool, localError, compositing.AfterCasting, {}, {} };
+  const bool atOnce = compositing.WhileCasting && compositing.Method == CompositingMethod::Slic &&
+                      communicator.Size() > 1;
+  FloatImage picture =
+    (atOnce ? CastAndComposite : CastThenComposite)(communicator, own, zones, compositing);
   const PhaseScope phase(Phase::Compositing);
-  // The order and the footprints depend on what all ranks have alike: no rank fails here alone.
-  const std::vector<int> order = OrderAsDrawn(scene, zones);
-  CompositeOptions options = CompleteOptions(compositing, scene, zones);
-  if (failure.empty())
-  {
-    failure =
-      ProblemOf(communicator.Rank(), communicator.Size(), mine, order, scene.Viewport, options);
-  }
-  const std::string agreed = AgreeOnError(communicator, failure);
-  if (!agreed.empty())
-  {
-    throw Error(agreed);
-  }
-
-  const Timer composite;
-  CompositeStatistics sent;
-  options.Agreed = true;
-  FloatImage picture = Composite(communicator, mine, order, scene.Viewport, options, sent);
+  const Timer finish;
   FinishPicture(scene, picture);
   FillBetweenRays(scene, picture, pool);
-  const double compositeSeconds = composite.Seconds();
+  own.CompositeSeconds += finish.Seconds();
 
   const auto number = [](auto value) { return static_cast<double>(value); };
+  const RayStatistics& rays = own.Rays;
   Publish(communicator,
-    { renderSeconds, compositeSeconds, total.Seconds(), number(rays.SamplesTaken),
+    { own.RenderSeconds, own.CompositeSeconds, total.Seconds(), number(rays.SamplesTaken),
       number(rays.BricksDrawn), number(rays.BricksUniform), number(rays.BricksSkipped),
-      number(sent.BytesSent), number(sent.MessagesSent) },
+      number(own.Sent.BytesSent), number(own.Sent.MessagesSent) },
     statistics);
   return picture;
 }

@@ -15,8 +15,8 @@ struct FrameStatistics
 {
   double TotalSeconds = 0;
   double RenderSeconds = 0;
-  double CompositeSeconds = 0;
-  double Imbalance = 1; ///< slowest rank's render seconds over the mean, >= 1
+  double CompositeSeconds = 0; ///< after the last ray; with waiting, where compositing began before
+  double Imbalance = 1;        ///< slowest rank's render seconds over the mean, >= 1
   std::int64_t SamplesTaken = 0;
   std::int64_t BricksDrawn = 0;
   std::int64_t BricksUniform = 0;
@@ -25,8 +25,8 @@ struct FrameStatistics
   std::uint64_t MessagesComposited = 0; ///< in so many messages
 };
 
-/// Draws one picture on all ranks: each casts rays through the cells of its own zone, then the
-/// pictures are composited. Collective.
+/// Draws one picture on all ranks: each casts rays through the cells of its own zone, and the
+/// pictures are composited, by SLIC from the first parts on that are final. Collective.
 ///
 /// @param scene the same on all ranks (depths included)
 /// @param source this rank's bricks; may be null when its zone is empty

@@ -21,9 +21,7 @@ constexpr double LeastFurtherGain = 0.01;
 /// What a ray that a plane cuts takes once more, in samples: it is made twice, and goes on behind
 /// what would have ended it. See Documentation/balancing.md.
 constexpr double WorkPerCutRay = 24.0;
-/// Axes are chosen anew when frames are expected to be faster by this factor, and not again for
-/// some frames.
-constexpr double TurnGain = 1.15;
+/// Axes that were chosen anew stay for some frames.
 constexpr int FramesBetweenTurns = 8;
 
 /// Moves that made a frame's imbalance worse by more than this factor count as mistakes, twice;
@@ -204,7 +202,7 @@ void LoadBalancer::Turn(
   };
   ZoneTree turned =
     TurnedTree(this->Zones, sums, speeds, this->Settings.PlaneStep, cuts, WorkPerCutRay);
-  if (TurnGain * slowest(turned) < slowest(next.Tree))
+  if (this->Settings.TurnGain * slowest(turned) < slowest(next.Tree))
   {
     next.BytesMoved = MovedBetween(this->Zones, turned, CostSums(bytes));
     next.After = banyan::ExpectedImbalance(turned, sums, speeds);

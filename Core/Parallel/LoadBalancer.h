@@ -50,6 +50,8 @@ public:
     double BytesPerPosition = 4.0;
     /// That may change ranks before a frame: so many, or half of what is drawn if that is more.
     double MostBytes = 32.0 * 1048576.0;
+    /// Axes are chosen anew when frames are expected to be faster by this factor.
+    double TurnGain = 1.15;
   };
 
   /// Throws Error when there are no ranks, no positions per block or brick, or zones to begin with

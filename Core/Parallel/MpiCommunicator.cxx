@@ -171,10 +171,30 @@ public:
     {
       throw Error("Rank " + std::to_string(this->Self) + " waits, but awaits no message.");
     }
-    --this->Open;
-    int count = 0;
-    MPI_Get_count(&status, MPI_BYTE, &count);
-    return { static_cast<std::size_t>(index), static_cast<std::size_t>(count) };
+    return this->ArrivalOf(index, status);
+  }
+
+  bool TakeAnyWhole(Arrival& arrival) override
+  {
+    int here = 0;
+    if (this->Open == 0)
+    {
+      // Sends get on in calls of MPI only, whichever.
+      Check(
+        MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, this->Handle, &here, MPI_STATUS_IGNORE), "look");
+      return false;
+    }
+    int index = MPI_UNDEFINED;
+    MPI_Status status;
+    Check(MPI_Testany(
+            static_cast<int>(this->Awaited.size()), this->Awaited.data(), &index, &here, &status),
+      "complete a message");
+    if (!here || index == MPI_UNDEFINED)
+    {
+      return false;
+    }
+    arrival = this->ArrivalOf(index, status);
+    return true;
   }
 
   void Barrier() override
@@ -222,6 +242,15 @@ public:
   void LeaveTogether(const std::string& why) override { this->Waiting->LeaveTogether(why); }
 
 private:
+  /// Of a message of ReceiveWhole that is complete.
+  Arrival ArrivalOf(int index, const MPI_Status& status)
+  {
+    --this->Open;
+    int count = 0;
+    MPI_Get_count(&status, MPI_BYTE, &count);
+    return { static_cast<std::size_t>(index), static_cast<std::size_t>(count) };
+  }
+
   /// As MPI_Waitall. @return MPI's code
   int CompleteAll(std::vector<MPI_Request>& requests, std::vector<MPI_Status>& statuses)
   {

@@ -62,9 +62,20 @@ public:
       throw Error(this->Released->empty() ? "Another rank failed, so this one cannot go on."
                                           : *this->Released);
     }
-    std::deque<std::vector<char>>& queue = this->Messages[*key];
-    message = std::move(queue.front());
-    queue.pop_front();
+    this->Pop(*key, message);
+    return static_cast<std::size_t>(key - keys.begin());
+  }
+
+  /// Takes a message of one of the keys if one is here. @return which key; none: how many there are
+  std::size_t TakeIfHere(const std::vector<Key>& keys, std::vector<char>& message)
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    const auto key = std::find_if(
+      keys.begin(), keys.end(), [&](const Key& wanted) { return this->Arrived(wanted); });
+    if (key != keys.end())
+    {
+      this->Pop(*key, message);
+    }
     return static_cast<std::size_t>(key - keys.begin());
   }
 
@@ -111,6 +122,13 @@ public:
   std::exception_ptr FirstException() const { return this->First; }
 
 private:
+  void Pop(const Key& key, std::vector<char>& message)
+  {
+    std::deque<std::vector<char>>& queue = this->Messages[key];
+    message = std::move(queue.front());
+    queue.pop_front();
+  }
+
   bool Arrived(const Key& key) const
   {
     const auto found = this->Messages.find(key);
@@ -215,21 +233,19 @@ public:
     }
     std::vector<char> message;
     const std::size_t which = this->Shared->TakeAny(this->Self, this->OpenKeys, message);
-    const std::size_t index = this->OpenIndices[which];
-    const PostedReceive posted = this->Posted[index];
-    this->OpenKeys.erase(this->OpenKeys.begin() + static_cast<std::ptrdiff_t>(which));
-    this->OpenIndices.erase(this->OpenIndices.begin() + static_cast<std::ptrdiff_t>(which));
-    if (message.size() > posted.Bytes)
+    return this->Deliver(which, message);
+  }
+
+  bool TakeAnyWhole(Arrival& arrival) override
+  {
+    std::vector<char> message;
+    const std::size_t which = this->Shared->TakeIfHere(this->OpenKeys, message);
+    const bool here = which < this->OpenKeys.size();
+    if (here)
     {
-      ErrorPlace place;
-      place.Found = message.size();
-      place.Allowed = posted.Bytes;
-      throw Error("Rank " + std::to_string(this->Self) + " received a message from rank " +
-                    std::to_string(posted.From) + " that is longer than it expected.",
-        place);
+      arrival = this->Deliver(which, message);
     }
-    std::copy(message.begin(), message.end(), static_cast<char*>(posted.Data));
-    return { index, message.size() };
+    return here;
   }
 
   void Barrier() override
@@ -277,6 +293,26 @@ private:
     void* Data;
     std::size_t Bytes;
   };
+
+  /// The message of one of OpenKeys goes to where it was posted.
+  Arrival Deliver(std::size_t which, const std::vector<char>& message)
+  {
+    const std::size_t index = this->OpenIndices[which];
+    const PostedReceive posted = this->Posted[index];
+    this->OpenKeys.erase(this->OpenKeys.begin() + static_cast<std::ptrdiff_t>(which));
+    this->OpenIndices.erase(this->OpenIndices.begin() + static_cast<std::ptrdiff_t>(which));
+    if (message.size() > posted.Bytes)
+    {
+      ErrorPlace place;
+      place.Found = message.size();
+      place.Allowed = posted.Bytes;
+      throw Error("Rank " + std::to_string(this->Self) + " received a message from rank " +
+                    std::to_string(posted.From) + " that is longer than it expected.",
+        place);
+    }
+    std::copy(message.begin(), message.end(), static_cast<char*>(posted.Data));
+    return { index, message.size() };
+  }
 
   void Check(int rank, int tag) const
   {

@@ -2,6 +2,7 @@
 
 #include "Base/ThreadPool.h"
 #include "Render/FunctionTables.h"
+#include "Render/PictureWatcher.h"
 
 #include <glm/matrix.hpp>
 
@@ -54,18 +55,22 @@ LevelCaster::LevelCaster(const RayScene& scene, BrickSource& source, const Box& 
   this->Plan();
 }
 
-void LevelCaster::Draw(FloatImage& picture)
+void LevelCaster::Draw(FloatImage& picture, PictureWatcher* watcher)
 {
   this->Picture = &picture;
+  this->Watcher = watcher;
   this->MakeTiles();
-  std::size_t next = 0;
-  while (next < this->Bricks.size())
+  while (this->Taken < this->Bricks.size())
   {
-    next = this->TakeBatch(next);
+    this->Taken = this->TakeBatch(this->Taken);
     if (!this->Batch.empty())
     {
       this->DrawBatch();
     }
+  }
+  for (std::size_t tile = 0; tile < this->Tiles.size(); ++tile)
+  {
+    this->FinishTile(tile);
   }
 }
 
@@ -83,6 +88,11 @@ void LevelCaster::MakeTiles()
         ? this->Scene.Samplings->Samplings()[static_cast<std::size_t>(sampling)].PixelStride
         : 1;
     this->Tiles[i].Done = this->Tiles[i].Sampling == nullptr;
+  }
+  for (std::size_t i = 0; i < this->Bricks.size(); ++i)
+  {
+    this->ForTilesUnder(
+      this->Bricks[i].Footprint, [i](Tile& tile, const PixelRect&) { tile.End = i + 1; });
   }
   // What a tile does not use of its slots need not be set.
   for (int i = 0; i < this->Pool.Width(); ++i)
@@ -231,16 +241,48 @@ void LevelCaster::DrawBatch()
   const std::function<void(std::int64_t, int)> draw = [&](std::int64_t number, int worker)
   {
     const auto tile = static_cast<std::size_t>(number);
-    if (!this->Tiles[tile].Bricks.empty())
+    const bool any = !this->Tiles[tile].Bricks.empty();
+    if (any)
     {
       const auto mine = static_cast<std::size_t>(worker);
       samples += this->DrawTile(tile, *this->Scratch[mine], this->Meters[mine]);
+    }
+    this->FinishTile(tile);
+    // The first worker is the thread that casts.
+    if (any && this->Watcher && worker == 0)
+    {
+      this->Watcher->BetweenTiles();
     }
   };
   this->Pool.ParallelFor(static_cast<std::int64_t>(this->Tiles.size()), draw);
   this->Statistics.SamplesTaken += samples;
   this->RecordWork(began);
   this->Loaded.clear();
+}
+
+/// Makes opacities of the transmittances of a tile of this level, once, if nothing that is not in
+/// the batch comes over it any more.
+void LevelCaster::FinishTile(std::size_t number)
+{
+  Tile& tile = this->Tiles[number];
+  if (!tile.Sampling || tile.Final || !(tile.Done || tile.End <= this->Taken))
+  {
+    return;
+  }
+  const PixelRect rect = this->Grid.RectOf(number);
+  for (int y = rect.Lo.y; y < rect.Hi.y; ++y)
+  {
+    glm::vec4* const row = &this->Picture->At(rect.Lo.x, y);
+    for (int x = 0; x < rect.Size().x; ++x)
+    {
+      row[x].a = 1.0f - row[x].a;
+    }
+  }
+  tile.Final = true;
+  if (this->Watcher)
+  {
+    this->Watcher->TileIsFinal(number);
+  }
 }
 
 /// @param began when drawing the batch did

@@ -14,6 +14,7 @@
 namespace banyan
 {
 
+class PictureWatcher;
 class ThreadPool;
 
 /// Casts the rays of those tiles of a picture that are sampled at one level: CastRays for that
@@ -33,9 +34,11 @@ public:
   /// What all bricks that can be seen take, as loaded and as packed for drawing.
   std::uint64_t BytesToDraw() const;
 
-  /// Draws the tiles of the level.
-  /// @param picture premultiplied colours, and the *transmittance* in the fourth component
-  void Draw(FloatImage& picture);
+  /// Draws the tiles of the level, and makes them final: premultiplied colours and opacities.
+  /// @param picture premultiplied colours, and, of tiles that are not final, the *transmittance* in
+  /// the fourth component
+  /// @param watcher is told of tiles that are final; null for none
+  void Draw(FloatImage& picture, PictureWatcher* watcher);
 
 private:
   struct PlannedBrick
@@ -77,6 +80,8 @@ private:
     const Sampled* Sampling = nullptr; ///< null for tiles of other levels
     int PixelStride = 1;
     bool Done = false;       ///< no ray of the tile needs another brick
+    bool Final = false;      ///< its pixels have opacities
+    std::size_t End = 0;     ///< behind the last brick over it
     std::vector<int> Bricks; ///< positions in the batch, front to back
   };
 
@@ -102,6 +107,7 @@ private:
   float GradientScale() const;
   BrickView LoadLarge(const PlannedBrick& brick) const;
   std::int64_t DrawTile(std::size_t number, RayTile& rays, BatchMeter& meter);
+  void FinishTile(std::size_t number);
   void RecordWork(double began);
   void DrawBrick(const PlannedBrick& brick, const LoadedBrick& loaded, const Sampled& sampling,
     RayTile& rays) const;
@@ -127,7 +133,9 @@ private:
 
   PixelRect Touched;
   std::vector<PlannedBrick> Bricks;
+  std::size_t Taken = 0; ///< bricks that have been in a batch, or need not be
   FloatImage* Picture = nullptr;
+  PictureWatcher* Watcher = nullptr;
   TileGrid Grid;
   std::vector<Tile> Tiles;                       ///< of the grid
   std::vector<std::unique_ptr<RayTile>> Scratch; ///< one per worker

@@ -1,10 +1,9 @@
 #include "Render/RayCaster.h"
 
 #include "Base/Error.h"
-#include "Base/ThreadPool.h"
 #include "Render/LevelCaster.h"
+#include "Render/PictureWatcher.h"
 
-#include <algorithm>
 #include <set>
 
 namespace banyan
@@ -36,27 +35,38 @@ BrickSource& SourceAt(BrickSource& source, int level, const RayScene& scene)
   return *found;
 }
 
-/// Casters keep the transmittance where the picture has the opacity.
-void MakeOpacities(std::vector<glm::vec4>& pixels, ThreadPool& pool)
-{
-  constexpr std::size_t together = 65536;
-  pool.ParallelFor(static_cast<std::int64_t>((pixels.size() + together - 1) / together),
-    [&](std::int64_t part)
-    {
-      const std::size_t first = static_cast<std::size_t>(part) * together;
-      const std::size_t last = std::min(first + together, pixels.size());
-      for (std::size_t i = first; i < last; ++i)
-      {
-        pixels[i].a = 1.0f - pixels[i].a;
-      }
-    });
-}
-
 /// Cells of a level that begin in cells of the finest one: of disjoint boxes they are disjoint.
 Box CellsAtLevel(const Box& cells, int level)
 {
   const int edge = 1 << level;
   return { (cells.Lo + edge - 1) / edge, (cells.Hi + edge - 1) / edge };
+}
+
+/// @param watcher null for none
+FloatImage Cast(const RayScene& scene, BrickSource& source, const Box& cells,
+  std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics, PictureWatcher* watcher)
+{
+  const Box inside = Intersection(cells, scene.DomainCells);
+  FloatImage picture;
+  std::vector<std::unique_ptr<LevelCaster>> casters;
+  for (const int level : LevelsOf(scene))
+  {
+    BrickSource& at = SourceAt(source, level, scene);
+    casters.push_back(std::make_unique<LevelCaster>(
+      scene, at, CellsAtLevel(inside, at.CellLevel()), budgetBytes, pool, statistics));
+    picture.Rect = Union(picture.Rect, casters.back()->Rect());
+  }
+  source.Kept().BeginPicture(budgetBytes / 2, /*ages=*/!scene.Pilot);
+  picture.Pixels.assign(static_cast<std::size_t>(picture.Rect.Count()), glm::vec4(0, 0, 0, 1));
+  if (watcher)
+  {
+    watcher->Begins(picture);
+  }
+  for (const auto& caster : casters)
+  {
+    caster->Draw(picture, watcher);
+  }
+  return picture;
 }
 
 } // namespace
@@ -86,24 +96,13 @@ int FinestLevelWithin(const RayScene& scene, BrickSource& source, const Box& cel
 FloatImage CastRays(const RayScene& scene, BrickSource& source, const Box& cells,
   std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics)
 {
-  const Box inside = Intersection(cells, scene.DomainCells);
-  FloatImage picture;
-  std::vector<std::unique_ptr<LevelCaster>> casters;
-  for (const int level : LevelsOf(scene))
-  {
-    BrickSource& at = SourceAt(source, level, scene);
-    casters.push_back(std::make_unique<LevelCaster>(
-      scene, at, CellsAtLevel(inside, at.CellLevel()), budgetBytes, pool, statistics));
-    picture.Rect = Union(picture.Rect, casters.back()->Rect());
-  }
-  source.Kept().BeginPicture(budgetBytes / 2, /*ages=*/!scene.Pilot);
-  picture.Pixels.assign(static_cast<std::size_t>(picture.Rect.Count()), glm::vec4(0, 0, 0, 1));
-  for (const auto& caster : casters)
-  {
-    caster->Draw(picture);
-  }
-  MakeOpacities(picture.Pixels, pool);
-  return picture;
+  return Cast(scene, source, cells, budgetBytes, pool, statistics, nullptr);
+}
+
+FloatImage CastRaysWatched(const RayScene& scene, BrickSource& source, const Box& cells,
+  std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics, PictureWatcher& watcher)
+{
+  return Cast(scene, source, cells, budgetBytes, pool, statistics, &watcher);
 }
 
 } // namespace banyan

@@ -97,6 +97,51 @@ inline std::string CheckWholeMessages(Communicator& communicator, std::size_t by
   return "";
 }
 
+/// The same without waiting: nothing is there before it has been sent, and then it comes.
+inline std::string CheckTakingMessages(Communicator& communicator, std::size_t bytes)
+{
+  const int self = communicator.Rank();
+  const int size = communicator.Size();
+  Communicator::Arrival arrival;
+  if (communicator.TakeAnyWhole(arrival))
+  {
+    return "a message arrived that was not awaited";
+  }
+  std::vector<std::vector<char>> sent, received;
+  for (int peer = 0; peer < size; ++peer)
+  {
+    sent.push_back(MessageOf(self, peer, 5, bytes + static_cast<std::size_t>(peer)));
+    received.emplace_back(bytes * 2 + static_cast<std::size_t>(size));
+    communicator.ReceiveWhole(peer, 11, received.back().data(), received.back().size());
+  }
+  if (communicator.TakeAnyWhole(arrival))
+  {
+    return "a message arrived before it was sent";
+  }
+  communicator.Barrier();
+  for (int peer = 0; peer < size; ++peer)
+  {
+    communicator.SendWhole(peer, 11, sent[peer].data(), sent[peer].size());
+  }
+  for (int taken = 0; taken < size;)
+  {
+    if (communicator.TakeAnyWhole(arrival))
+    {
+      received[arrival.Posted].resize(arrival.Bytes);
+      ++taken;
+    }
+  }
+  communicator.WaitAll();
+  for (int peer = 0; peer < size; ++peer)
+  {
+    if (received[peer] != MessageOf(peer, self, 5, bytes + static_cast<std::size_t>(self)))
+    {
+      return "a message that was taken is not what was sent";
+    }
+  }
+  return communicator.TakeAnyWhole(arrival) ? "a message arrived twice" : "";
+}
+
 inline std::string CheckCollectives(Communicator& communicator, std::size_t bytes)
 {
   const int size = communicator.Size();
@@ -179,6 +224,8 @@ inline std::string CheckCommunicator(Communicator& communicator)
 {
   std::string wrong = CheckMessages(communicator, 1000);
   wrong += CheckWholeMessages(communicator, 1000);
+  wrong += CheckTakingMessages(communicator, 100);
+  wrong += CheckTakingMessages(communicator, 300000);
   wrong += CheckCollectives(communicator, 0);
   wrong += CheckCollectives(communicator, 777);
   wrong += CheckPostedBeforeCollective(communicator);
