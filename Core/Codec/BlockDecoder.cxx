@@ -12,6 +12,7 @@
 #include <hwy/foreach_target.h>
 
 #include "Codec/BoxPlaces-inl.h"
+#include "Codec/DenseBox-inl.h"
 #include "Codec/DenseFaces-inl.h"
 #include "Codec/DenseInterior-inl.h"
 #include "Codec/SliceDecoder-inl.h"
@@ -39,6 +40,7 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
     block::Scratch<Number, 3> Interior;
     SliceMemory<Number> Slice;
     std::conditional_t<Dense, DenseWork, int> Vectors{};
+    std::conditional_t<Dense, DenseBox<Number>, int> Whole{}; ///< where the box is decoded
     SymbolReader Readers[8];
     /// Magnitudes of the edges of the blocks 1, 2, 4 and 0 of a box, row by row.
     std::uint8_t EdgeMagnitudes[4][3][64];
@@ -47,14 +49,37 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
   const PlaneCode& Plane;
   View<const Number> BRef;
   Workspace& Work;
+  Number* To; ///< the whole box
 
-  References<Number> ReferencesOf(const block::Mode& mode) const
+  References<Number> ReferencesOf(int owner, const block::Mode& mode) const
   {
     if (mode.From != block::Reference::None && (this->Code.A == nullptr || this->Code.B == nullptr))
     {
       throw Error("A block refers to a step that its group does not have");
     }
+    if constexpr (Dense)
+    {
+      if (owner == 0 && mode.From != block::Reference::None)
+      {
+        const View<const Number> both{ this->Work.Whole.Subtracted(), this->A.Stride };
+        return { block::Reference::A, both, both };
+      }
+    }
     return { mode.From, this->A, this->BRef };
+  }
+
+  /// Takes what the block's own references give, once for all of its units.
+  void TakeReferences() const
+  {
+    if constexpr (Dense)
+    {
+      const block::Mode mode = block::ModeOf(this->Code.Blocks[0].Mode);
+      if (!this->Plain(0) && this->ReferencesOf(0, mode).From != block::Reference::None)
+      {
+        const stages::In stage(stages::References);
+        this->Work.Whole.Refer(mode.From, this->Code.A, this->Code.B);
+      }
+    }
   }
 
   /// Decodes the units of D dimensions of a block. Those outside the box only advance the reader.
@@ -68,7 +93,7 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
     const block::Mode mode = block::ModeOf(block.Mode);
     const block::Shape<D> shape{ this->B() };
     const glm::ivec3 corner = this->Corner(owner);
-    const References<Number> references = this->ReferencesOf(mode);
+    const References<Number> references = this->ReferencesOf(owner, mode);
     const auto forEachNeeded = [&](auto&& body)
     {
       for (int number = 0; number < UnitsOf<D>; ++number)
@@ -144,6 +169,7 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
       const stages::In stage(stages::Coarse);
       this->PlaceCoarse();
     }
+    this->TakeReferences();
     SymbolReader* readers[8] = {};
     for (int owner = 0; owner < 8; ++owner)
     {
@@ -193,6 +219,10 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
     if (!this->Plain(0))
     {
       this->Inside(readers[0], any[3]);
+    }
+    else if constexpr (Dense)
+    {
+      this->Work.Whole.Copy(this->To);
     }
   }
 
@@ -255,9 +285,8 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
       const block::Mode mode = block::ModeOf(block.Mode);
       Unit<Number, 3> unit{ this->Box.Base, nullptr, nullptr, this->Work.Interior.S(), { block.Limit },
         any };
-      DecodeDenseInterior(
-        unit, this->ReferencesOf(mode), mode.By, this->Plane, symbols, this->Work.Vectors,
-        [this](int lines) { this->Code.AskAhead(lines); });
+      DecodeDenseInterior(unit, mode, this->Plane, symbols, this->Work.Vectors, this->Work.Whole,
+        [this](int lines) { this->Code.AskAhead(lines); }, this->To);
     }
     else
     {
@@ -284,7 +313,13 @@ void DecodeBoxOf(
   }
   const std::int64_t n = edge() + 1;
   const glm::i64vec3 strides{ 1, n, n * n };
-  Decoder{ { edge, code, { box, strides }, { code.A, strides } }, plane, { code.B, strides }, *work }
+  Number* decoded = box;
+  if constexpr (Decoder::Dense)
+  {
+    decoded = work->Whole.Samples();
+  }
+  Decoder{ { edge, code, { decoded, strides }, { code.A, strides } }, plane, { code.B, strides },
+    *work, box }
     .Run();
 }
 

@@ -51,6 +51,40 @@ struct DenseMemory
   std::uint8_t FlagRows[32];
 };
 
+/// The lanes of a row of N, from lane `First` on and each `Repeat` times, every Step-th of them, as
+/// `__builtin_shuffle` takes their numbers.
+template <int First, int Step, int Repeat>
+HWY_INLINE ByteVector LanesFrom()
+{
+  ByteVector result{};
+  for (int i = 0; i < 16; ++i)
+  {
+    result[i] = static_cast<std::uint8_t>((First + i / Repeat * Step) & 15);
+  }
+  return result;
+}
+
+/// A row of N bytes; those behind it hold anything. It is loaded as it was stored, or as a part of that: what
+/// was stored in two pieces is waited for.
+template <int N>
+HWY_INLINE ByteVector LoadRowOf(const void* from)
+{
+  ByteVector result{};
+  std::memcpy(&result, from, N);
+  return result;
+}
+
+/// Bit i is that of lane i of a mask.
+HWY_INLINE unsigned BitsOf(ByteVector mask)
+{
+  const hn::FixedTag<std::uint8_t, 16> d;
+  alignas(16) std::uint8_t lanes[16];
+  StoreVector(mask, lanes);
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(d, hn::MaskFromVec(hn::Load(d, lanes)), bits);
+  return bits[0] | unsigned{ bits[1] } << 8;
+}
+
 /// Numbers of one byte, as many as a slice or a vector has.
 template <int D, int N>
 using DenseTag = hn::CappedTag<std::uint8_t, DenseShape<D, N>::Slice>;

@@ -9,6 +9,7 @@
 #include "Codec/BlockDecoder.h"
 #include "Codec/BlockUnits-inl.h"
 #include "Codec/DecodeStages.h"
+#include "Codec/DenseBox-inl.h"
 #include "Codec/DenseWork-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -16,47 +17,20 @@ namespace banyan::HWY_NAMESPACE
 {
 #if HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
 
-/// Calls body(index) for the vectors of a box of 17^3 samples and last(index) for the sample behind
-/// them.
-template <class Body, class Last>
-HWY_INLINE void ForBox(const Body& body, const Last& last)
-{
-  constexpr int count = 17 * 17 * 17;
-  static_assert(count % Width == 1, "one sample is left");
-  for (int i = 0; i + Width <= count; i += Width)
-  {
-    body(i);
-  }
-  last(count - 1);
-}
-
-/// Decodes the interior of a block of 16 in the box itself. Where there are references they are
-/// subtracted from the whole box, and added again: borders come back as they were.
-/// @param unit its samples are the box, `[z][y][x]`
+/// Decodes the interior of a block of 16. Where there are references they are subtracted from the whole
+/// box, and added again: borders come back as they were.
+/// @param unit its samples are those of the box
+/// @param to receives the whole box, `[z][y][x]`
+/// @param ask asks for a number of lines of the cache that the next block needs
 template <class Number, class Ask>
-void DecodeDenseInterior(Unit<Number, 3>& unit, const References<Number>& references,
-  Interpolation by, const PlaneCode& plane, SymbolReader* symbols, DenseWork& work, const Ask& ask)
+void DecodeDenseInterior(Unit<Number, 3>& unit, const block::Mode& mode, const PlaneCode& plane,
+  SymbolReader* symbols, DenseWork& work, DenseBox<Number>& box, const Ask& ask, Number* to)
 {
-  using V = Numbers<Number>;
-  using Signed = typename V::Signed;
-  using U = std::make_unsigned_t<Number>;
-  Number* const w = unit.W;
-  const bool refers = references.From != block::Reference::None;
-  const Number* const a = refers ? references.A.Base : w;
-  const Number* const b = refers ? references.B.Base : w;
-  WithReference<Number>(references.From,
-    [&](auto reference)
-    {
-      if (refers)
-      {
-        ForBox([&](int i)
-          { StoreVector(V::Load(w + i) - reference.Of(V::Load(a + i), V::Load(b + i)), w + i); },
-          [&](int i) {
-            w[i] =
-              static_cast<Number>(static_cast<U>(w[i]) - static_cast<U>(reference.Of(a[i], b[i])));
-          });
-      }
-    });
+  const bool refers = mode.From != block::Reference::None;
+  if (refers)
+  {
+    box.Subtract();
+  }
   ForEachPass<3>(
     [&](auto pass)
     {
@@ -64,33 +38,11 @@ void DecodeDenseInterior(Unit<Number, 3>& unit, const References<Number>& refere
       ask(P::S == 2 ? 12 : 48);
       const stages::In stage(stages::Passes);
       BeginStride<P>(work.Interior, symbols);
-      DenseSliceDecoder<P, Number>(unit, work.Interior.template At<P::S>(), by, symbols,
+      DenseSliceDecoder<P, Number>(unit, work.Interior.template At<P::S>(), mode.By, symbols,
         static_cast<Number>(P::S == 2 ? plane.CoarseBin : plane.FineBin), work.Slice)
         .Run();
     });
-  const Number least = static_cast<Number>(plane.Least);
-  const Number greatest = static_cast<Number>(plane.Greatest);
-  const Signed low = Signed{} + least;
-  const Signed high = Signed{} + greatest;
-  WithReference<Number>(references.From,
-    [&](auto reference)
-    {
-      ForBox(
-        [&](int i)
-        {
-          Signed value =
-            reinterpret_cast<Signed>(V::Load(w + i) + reference.Of(V::Load(a + i), V::Load(b + i)));
-          value = value < low ? low : value;
-          value = value > high ? high : value;
-          StoreVector(value, w + i);
-        },
-        [&](int i)
-        {
-          const Number sum =
-            static_cast<Number>(static_cast<U>(w[i]) + static_cast<U>(reference.Of(a[i], b[i])));
-          w[i] = std::min(std::max(sum, least), greatest);
-        });
-    });
+  box.Finish(refers, static_cast<Number>(plane.Least), static_cast<Number>(plane.Greatest), to);
 }
 
 #else

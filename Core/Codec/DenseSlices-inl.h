@@ -7,7 +7,7 @@
 #endif
 
 #include "Codec/DecodeStages.h"
-#include "Codec/DenseContexts-inl.h"
+#include "Codec/DenseLanes-inl.h"
 #include "Codec/SymbolRun-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -21,17 +21,17 @@ template <class P, class Number>
 class DenseSliceDecoder
 {
 public:
+  using InRows = DenseLanes<P>;
   static constexpr int D = P::D;
   static constexpr int S = P::S;
-  static constexpr int N = 16 / S;
+  static constexpr int N = InRows::N;
+  static constexpr int RowFirst = InRows::RowFirst;
+  static constexpr int RowStep = InRows::RowStep;
+  static constexpr int RowEnd = InRows::RowEnd;
   using Shape = DenseShape<D, N>;
   using Tag = DenseTag<D, N>;
   static constexpr int Lanes = static_cast<int>(hn::MaxLanes(Tag()));
   static constexpr int RowsAtOnce = Lanes / N;
-  static constexpr int LaneStep = P::Step / S;
-  static constexpr int RowFirst = D == 3 ? P::FirstRow / S : 0;
-  static constexpr int RowStep = D == 3 ? P::RowStep / S : 1;
-  static constexpr int RowEnd = D == 3 ? N : 3;
 
   /// @param symbols null: all residuals are zero
   DenseSliceDecoder(Unit<Number, D>& unit, std::uint8_t* magnitudes, Interpolation by,
@@ -56,8 +56,7 @@ public:
         const glm::ivec3& limit = this->Of.Limit[D == 3 ? 0 : row];
         const bool inside = P::First <= limit.x && (D < 3 || row * S <= limit.y);
         this->LastSlice[D == 3 ? 0 : row] = D == 3 ? limit.z : limit.y;
-        this->Coded[D == 3 ? 0 : row] =
-          P::First <= limit.x ? (std::min(limit.x, 15) - P::First) / P::Step + 1 : 0;
+        this->InRow.SetLast(row, limit.x);
         this->RowsInside |= inside ? 1u << row : 0u;
       }
     }
@@ -79,8 +78,6 @@ public:
   }
 
 private:
-  int CodedOf(int row) const { return this->Coded[D == 3 ? 0 : row]; }
-
   /// -1 for the numbers of rows that the pass has.
   static HWY_INLINE ByteVector RowsOfPass()
   {
@@ -128,6 +125,14 @@ private:
     }
     const int band = residual::Bands + P::Band;
     const std::uint8_t* const tables = this->Symbols->BandOf(band).Tables;
+    const ByteVector classes =
+      Compressed<D == 3 ? S : 1>(LoadVector<ByteVector>(memory.RowClass));
+    const unsigned flagged =
+      rows & BitsOf(reinterpret_cast<ByteVector>(classes < std::uint8_t{ residual::RowClasses }));
+    if (flagged == InRows::AllRows)
+    {
+      return rows & ~this->RowsOfZeros(band, __builtin_shuffle(LoadVector<ByteVector>(tables), classes));
+    }
     int flags = 0;
     for (unsigned left = rows; left != 0; left &= left - 1)
     {
@@ -148,6 +153,30 @@ private:
       }
     }
     return rows;
+  }
+
+  /// Reads the flags of all rows of the pass. @return those that are all zero, as bits
+  /// @param tables of the flags, by row
+  HWY_INLINE unsigned RowsOfZeros(int band, ByteVector tables)
+  {
+    typedef std::uint16_t Wide __attribute__((vector_size(32)));
+    constexpr int flags = (RowEnd - RowFirst + RowStep - 1) / RowStep;
+    DenseMemory& memory = this->Memory;
+    const Wide wide = __builtin_convertvector(
+      __builtin_shuffle(tables, LanesFrom<RowFirst, RowStep, 1>()), Wide);
+    StoreVector(wide << tans::TableBits, memory.FlagPlaces);
+    ReadRun(
+      *this->Symbols, this->Symbols->TablesOf(band), memory.FlagPlaces, flags, memory.Flags);
+    unsigned zeros =
+      BitsOf(reinterpret_cast<ByteVector>(LoadVector<ByteVector>(memory.Flags) != std::uint8_t{ 0 }));
+    zeros &= (1u << flags) - 1u;
+    if (RowStep == 2)
+    {
+      zeros = (zeros | zeros << 4) & 0x0f0fu;
+      zeros = (zeros | zeros << 2) & 0x3333u;
+      zeros = (zeros | zeros << 1) & 0x5555u;
+    }
+    return zeros << RowFirst;
   }
 
   /// Tables and signs of the lanes of some rows.
@@ -181,33 +210,6 @@ private:
     }
   }
 
-  /// The symbols' places of rows, side by side. @return how many
-  HWY_INLINE int TakePlaces(unsigned rows) const
-  {
-    typedef std::uint16_t Wide __attribute__((vector_size(32)));
-    int count = 0;
-    for (unsigned left = rows; left != 0; left &= left - 1)
-    {
-      const int row = __builtin_ctz(left);
-      const ByteVector tables = LoadVector<ByteVector>(this->Memory.Tables + row * N + 1);
-      const Wide wide = __builtin_convertvector(Compressed<LaneStep>(tables), Wide);
-      StoreVector(wide << tans::TableBits, this->Memory.Places + count);
-      count += this->CodedOf(row);
-    }
-    return count;
-  }
-
-  /// Lanes of rows from lane 1 on that have symbols.
-  HWY_INLINE ByteVector CodedLanes(int row) const
-  {
-    const ByteVector lanes = LaneNumbers<ByteVector>();
-    const auto below = reinterpret_cast<ByteVector>(
-      lanes < static_cast<std::uint8_t>(this->CodedOf(row) * LaneStep));
-    return LaneStep == 1
-             ? below
-             : below & ByteVector{ 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0 };
-  }
-
   HWY_INLINE void Decode(int slice, unsigned rows, std::int8_t* kept)
   {
     DenseMemory& memory = this->Memory;
@@ -220,41 +222,20 @@ private:
       std::memset(memory.Tables, this->Symbols->BandOf(P::Band).Tables[0], Shape::Slice);
       std::memset(memory.Turned, 0, Shape::Slice);
     }
-    const int count = this->TakePlaces(rows);
+    const int count = this->InRow.TakePlaces(rows, memory);
     ReadRun(*this->Symbols, this->Symbols->TablesOf(P::Band), memory.Places, count, memory.Read);
     this->Of.Any = true;
-    // Back to where the lanes are. Rows are written one after the other: each may write zeros
-    // beyond its end.
-    int begin = 0;
-    ByteVector most{};
-    for (int row = 0; row < RowEnd; ++row)
-    {
-      ByteVector tops{};
-      if ((rows >> row & 1u) != 0)
-      {
-        tops =
-          Expanded<LaneStep>(LoadVector<ByteVector>(memory.Read + begin)) & this->CodedLanes(row);
-        begin += this->CodedOf(row);
-        most |= tops & reinterpret_cast<ByteVector>(reinterpret_cast<SignedByteVector>(tops) >=
-                                                    static_cast<std::int8_t>(residual::EscapeTop));
-      }
-      StoreVector(tops, memory.Tops + row * N + 1);
-    }
-    memory.Tops[0] = 0;
-    if (D == 2)
-    {
-      std::memset(memory.Tops + 3 * N + 1, 0, N);
-    }
-    this->Keep(slice, kept);
+    const bool escapes = this->Keep(slice, rows, kept);
     this->Place(slice, rows);
-    if (AnyOf(most))
+    if (escapes)
     {
       this->AddLong(slice, kept);
     }
   }
 
-  /// Magnitudes, sums of rows and kept residuals of a slice.
-  HWY_INLINE void Keep(int slice, std::int8_t* kept) const
+  /// Residuals, magnitudes, sums of rows and kept residuals of a slice.
+  /// @return whether there are escapes
+  HWY_INLINE bool Keep(int slice, unsigned rows, std::int8_t* kept) const
   {
     const stages::In stage(D == 3 ? stages::Residuals : stages::FaceContexts);
     const Tag d;
@@ -262,12 +243,16 @@ private:
     const hn::Repartition<std::uint64_t, Tag> sums;
     constexpr int words = N / 8; // of a row
     alignas(64) std::uint64_t sum[Lanes / 8];
+    const std::int8_t* next = this->Memory.Read;
+    auto most = hn::Zero(s);
     std::uint16_t* const to = this->Of.S + slice * S * block::Shape<D>{ 16 }.SumPitch();
     for (int row = 0; row < Shape::Rows; row += RowsAtOnce)
     {
       const int at = row * N;
       std::uint8_t* const m = this->M + slice * Shape::Slice + at;
-      const auto tops = hn::Load(s, this->Memory.Tops + at);
+      const auto tops = hn::BitCast(s, this->InRow.TopsFrom(d, row, rows, next));
+      most = hn::Max(most, tops);
+      hn::Store(tops, s, this->Memory.Tops + at);
       const auto turned = hn::Load(s, this->Memory.Turned + at);
       const auto residuals = hn::Sub(hn::Xor(tops, turned), turned);
       const auto limit = hn::Set(s, std::int8_t{ 15 });
@@ -284,6 +269,8 @@ private:
         all = static_cast<std::uint16_t>(all + total);
       }
     }
+    const auto direct = hn::Set(s, static_cast<std::int8_t>(residual::EscapeTop - 1));
+    return !hn::AllFalse(s, hn::Gt(most, direct));
   }
 
   /// Residuals with extra bits, which follow those of their run, instead of those that were placed.
@@ -354,9 +341,9 @@ private:
       Vector value = this->Predicted(slice, row);
       if ((rows >> row & 1u) != 0)
       {
-        const auto residuals = LoadVector<SignedByteVector>(this->Memory.Residuals + row * N + 1);
-        value += reinterpret_cast<Vector>(
-                   __builtin_convertvector(Expanded<S>(residuals), typename V::Signed)) *
+        const auto residuals = reinterpret_cast<SignedByteVector>(__builtin_shuffle(
+          LoadRowOf<N>(this->Memory.Residuals + row * N), LanesFrom<1, 1, S>()));
+        value += reinterpret_cast<Vector>(__builtin_convertvector(residuals, typename V::Signed)) *
                  static_cast<std::make_unsigned_t<Number>>(this->Bin);
       }
       this->Set(slice, row, value);
@@ -371,7 +358,7 @@ private:
   Number Bin;
   DenseMemory& Memory;
   unsigned RowsInside = 0; ///< the field
-  int Coded[3] = {};       ///< symbols of a row; of each face
+  InRows InRow;            ///< lanes with symbols
   int LastSlice[3] = {};   ///< within the field, as its position
 };
 

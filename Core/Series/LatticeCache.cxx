@@ -28,6 +28,7 @@ LatticeCache::LatticeCache()
   {
     this->Budget = (static_cast<std::uint64_t>(megabytes) << 20) / 4;
   }
+  LatticeMemory::KeepAtMost(this->Budget);
 }
 
 LatticeCache& LatticeCache::Process()
@@ -193,6 +194,7 @@ void LatticeCache::SetBudgetBytes(std::uint64_t bytes)
     std::lock_guard<std::mutex> lock(shard.Mutex);
     this->Shrink(shard);
   }
+  LatticeMemory::KeepAtMost(bytes);
 }
 
 std::uint64_t LatticeCache::Bytes() const

@@ -103,7 +103,9 @@ struct AllSlabs
 {
   std::mutex Mutex;
   std::vector<SlabsOfSize> Sizes; ///< a handful
-  std::size_t Count = 0;
+  std::vector<void*> Empty;       ///< memory of slabs
+  std::size_t Count = 0;          ///< of slabs, empty ones included
+  std::size_t MostBytes = std::size_t{ 128 } << 20;
 
   SlabsOfSize& Of(std::size_t size)
   {
@@ -120,21 +122,33 @@ struct AllSlabs
 
   void NewSlab(SlabsOfSize& slabs)
   {
-    // All slabs may have room one day: nothing is allocated where memory is given back.
+    // All slabs may have room, or be empty, one day: nothing is allocated where memory is given
+    // back.
     slabs.WithRoom.reserve(this->Count + 1);
-    void* const memory =
-      ::operator new (LatticeMemory::SlabBytes, std::align_val_t{ LatticeMemory::SlabBytes });
+    this->Empty.reserve(this->Count + 1);
+    if (this->Empty.empty())
+    {
+      void* const memory =
+        ::operator new (LatticeMemory::SlabBytes, std::align_val_t{ LatticeMemory::SlabBytes });
 #ifdef MADV_HUGEPAGE
-    (void)madvise(memory, LatticeMemory::SlabBytes, MADV_HUGEPAGE); // small pages do as well
+      (void)madvise(memory, LatticeMemory::SlabBytes, MADV_HUGEPAGE); // small pages do as well
 #endif
-    slabs.Add(new (memory) Slab(slabs.Size));
-    ++this->Count;
+      this->Empty.push_back(memory);
+      ++this->Count;
+    }
+    slabs.Add(new (this->Empty.back()) Slab(slabs.Size));
+    this->Empty.pop_back();
   }
 
-  void Delete(Slab* slab) noexcept
+  /// Gives empty slabs back where there are too many.
+  void Shrink() noexcept
   {
-    ::operator delete (slab, std::align_val_t{ LatticeMemory::SlabBytes });
-    --this->Count;
+    while (!this->Empty.empty() && this->Count * LatticeMemory::SlabBytes > this->MostBytes)
+    {
+      ::operator delete (this->Empty.back(), std::align_val_t{ LatticeMemory::SlabBytes });
+      this->Empty.pop_back();
+      --this->Count;
+    }
   }
 };
 
@@ -187,12 +201,20 @@ void LatticeMemory::Give(void* memory, std::size_t bytes) noexcept
     slabs.Add(slab);
   }
   slab->Give(memory);
-  if (slab->Used == 0 &&
-      slabs.WithRoom.size() > 1) // the last one is kept: a box often follows at once
+  if (slab->Used == 0)
   {
     slabs.Remove(slab);
-    all.Delete(slab);
+    all.Empty.push_back(slab); // there is room: see NewSlab
+    all.Shrink();
   }
+}
+
+void LatticeMemory::KeepAtMost(std::size_t bytes)
+{
+  AllSlabs& all = Slabs();
+  std::lock_guard<std::mutex> lock(all.Mutex);
+  all.MostBytes = bytes;
+  all.Shrink();
 }
 
 std::size_t LatticeMemory::BytesOfSlabs()

@@ -8,8 +8,9 @@ namespace banyan
 
 /// Memory for boxes of lattice numbers: tens of thousands of a few sizes, which come and go. They
 /// lie side by side in slabs, which the system maps with large pages where it can: a box of a block
-/// of 16 takes three small pages, and each has to be looked up. A slab is given back when none of
-/// its boxes is left, but for one of each size. Thread-safe.
+/// of 16 takes three small pages, and each has to be looked up. Slabs without boxes are
+/// kept for the next ones, as long as all slabs together take no more than a limit: the system
+/// would clear their pages anew. Thread-safe.
 class LatticeMemory
 {
 public:
@@ -21,6 +22,9 @@ public:
   static void* Take(std::size_t bytes);
   /// @param memory from Take, for as many bytes
   static void Give(void* memory, std::size_t bytes) noexcept;
+
+  /// Default: 128 MiB. LatticeCache sets it to its budget.
+  static void KeepAtMost(std::size_t bytes);
 
   /// Of all slabs, for tests.
   static std::size_t BytesOfSlabs();

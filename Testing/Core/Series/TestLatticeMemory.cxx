@@ -1,3 +1,4 @@
+#include "Series/LatticeCache.h"
 #include "Series/LatticeMemory.h"
 
 #include <gtest/gtest.h>
@@ -57,8 +58,17 @@ void TakeAndGive(unsigned seed, int times)
   }
 }
 
+/// Slabs that are empty go at once.
+class KeepNone
+{
+public:
+  KeepNone() { LatticeMemory::KeepAtMost(0); }
+  ~KeepNone() { LatticeMemory::KeepAtMost(LatticeCache::Process().BudgetBytes()); }
+};
+
 TEST(LatticeMemory, PiecesDoNotMeetAndSlabsAreGivenBack)
 {
+  const KeepNone none;
   const std::size_t before = LatticeMemory::BytesOfSlabs();
   std::vector<std::thread> threads;
   for (unsigned seed = 0; seed < 3; ++seed)
@@ -69,8 +79,7 @@ TEST(LatticeMemory, PiecesDoNotMeetAndSlabsAreGivenBack)
   {
     thread.join();
   }
-  // One of each size is kept; 1 and 64 bytes are one size, and the last one takes no slab.
-  EXPECT_LE(LatticeMemory::BytesOfSlabs(), before + 5 * LatticeMemory::SlabBytes);
+  EXPECT_EQ(LatticeMemory::BytesOfSlabs(), before);
 }
 
 TEST(LatticeMemory, ASlabIsFilledBeforeTheNextOneIsTaken)
@@ -78,7 +87,8 @@ TEST(LatticeMemory, ASlabIsFilledBeforeTheNextOneIsTaken)
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "each piece has memory of its own";
 #endif
-  constexpr std::size_t bytes = 9856; // of no box
+  const KeepNone none;
+  constexpr std::size_t bytes = 9856;
   const std::size_t before = LatticeMemory::BytesOfSlabs();
   std::vector<void*> pieces;
   for (int round = 0; round < 3; ++round)
@@ -99,7 +109,36 @@ TEST(LatticeMemory, ASlabIsFilledBeforeTheNextOneIsTaken)
   {
     LatticeMemory::Give(piece, bytes);
   }
-  EXPECT_LE(LatticeMemory::BytesOfSlabs(), before + LatticeMemory::SlabBytes);
+  EXPECT_EQ(LatticeMemory::BytesOfSlabs(), before);
+}
+
+TEST(LatticeMemory, EmptySlabsAreKeptUpToALimit)
+{
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "each piece has memory of its own";
+#endif
+  const KeepNone none;
+  constexpr std::size_t bytes = LatticeMemory::MostBytes;
+  const std::size_t before = LatticeMemory::BytesOfSlabs();
+  const std::size_t limit = before + 3 * LatticeMemory::SlabBytes;
+  LatticeMemory::KeepAtMost(limit);
+  std::vector<void*> pieces;
+  for (int i = 0; i < 50; ++i)
+  {
+    pieces.push_back(LatticeMemory::Take(bytes));
+  }
+  EXPECT_GT(LatticeMemory::BytesOfSlabs(), limit);
+  for (void* piece : pieces)
+  {
+    LatticeMemory::Give(piece, bytes);
+  }
+  EXPECT_EQ(LatticeMemory::BytesOfSlabs(), limit);
+  // They do for boxes of any size.
+  void* const other = LatticeMemory::Take(100);
+  EXPECT_EQ(LatticeMemory::BytesOfSlabs(), limit);
+  LatticeMemory::Give(other, 100);
+  LatticeMemory::KeepAtMost(0);
+  EXPECT_EQ(LatticeMemory::BytesOfSlabs(), before);
 }
 
 } // namespace
