@@ -1,6 +1,7 @@
 #include "HexOctree/CellNodes.h"
 
 #include "Base/ThreadPool.h"
+#include "HexOctree/TakenComponent.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,18 +42,7 @@ std::vector<double> Scalars(const NodeArray& array, std::int64_t count, ThreadPo
       InRuns(count, pool,
         [&](std::int64_t i)
         {
-          const T* const tuple = from + i * array.Components;
-          if (array.Component != NodeArray::Magnitude)
-          {
-            values[Index(i)] = static_cast<double>(tuple[array.Component]);
-            return;
-          }
-          double sum = 0.0;
-          for (int c = 0; c < array.Components; ++c)
-          {
-            sum += static_cast<double>(tuple[c]) * static_cast<double>(tuple[c]);
-          }
-          values[Index(i)] = std::sqrt(sum);
+          values[Index(i)] = TakenComponent(from + i * array.Components, array);
         });
     });
   return values;
@@ -88,16 +78,7 @@ struct Sum
 CellNodes::CellNodes(
   const ElementOctree& tree, const NodeArray& values, ValuesOn where, ThreadPool& pool)
 {
-  const bool exists = values.Component == NodeArray::Magnitude ||
-                      (values.Component >= 0 && values.Component < values.Components);
-  if (values.Components < 1 || !exists)
-  {
-    throw Error("The array has no component " + std::to_string(values.Component));
-  }
-  if (!values.Values)
-  {
-    throw Error("The array to draw has no values in memory");
-  }
+  RequireComponent(values);
   const bool onCells = where == ValuesOn::Cells;
   const std::int64_t points = tree.Mesh().PointCount;
   const std::vector<double> given = Scalars(values, onCells ? tree.Mesh().CellCount : points, pool);

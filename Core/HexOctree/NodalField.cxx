@@ -1,6 +1,7 @@
 #include "HexOctree/NodalField.h"
 
 #include "Base/ThreadPool.h"
+#include "HexOctree/TakenComponent.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,35 +15,11 @@ bool FitsFloat(ScalarType type)
   return SizeOf(type) <= 2 || type == ScalarType::Float32;
 }
 
-namespace
-{
-
-double ValueOf(const double* tuple, int components)
-{
-  double sum = 0.0;
-  for (int c = 0; c < components; ++c)
-  {
-    sum += tuple[c] * tuple[c];
-  }
-  return std::sqrt(sum);
-}
-
-} // namespace
-
 NodalField::NodalField(
   std::shared_ptr<const ElementOctree> tree, const NodeArray& array, ThreadPool& pool)
   : Octree(std::move(tree))
 {
-  const bool exists = array.Component == NodeArray::Magnitude ||
-                      (array.Component >= 0 && array.Component < array.Components);
-  if (array.Components < 1 || !exists)
-  {
-    throw Error("The array has no component " + std::to_string(array.Component));
-  }
-  if (!array.Values)
-  {
-    throw Error("The array to draw has no values in memory");
-  }
+  RequireComponent(array);
   if (FitsFloat(array.Type))
   {
     this->Take(array, this->Floats, pool);
@@ -85,19 +62,11 @@ void NodalField::Take(const NodeArray& array, std::vector<Out>& values, ThreadPo
       pool.ParallelFor((count + run - 1) / run,
         [&](std::int64_t part)
         {
-          std::vector<double> tuple(static_cast<std::size_t>(array.Components));
           const std::int64_t end = std::min(count, (part + 1) * run);
           for (std::int64_t node = part * run; node < end; ++node)
           {
-            const T* const here = from + node * array.Components;
-            auto& to = values[static_cast<std::size_t>(node)];
-            if (array.Component != NodeArray::Magnitude)
-            {
-              to = static_cast<Out>(here[array.Component]);
-              continue;
-            }
-            std::copy(here, here + array.Components, tuple.begin());
-            to = static_cast<Out>(ValueOf(tuple.data(), array.Components));
+            values[static_cast<std::size_t>(node)] =
+              static_cast<Out>(TakenComponent(from + node * array.Components, array));
           }
         });
     });

@@ -1,6 +1,6 @@
 #include "HexSampling/CellMeans.h"
 
-#include "HexSampling/TakenComponent.h"
+#include "HexOctree/TakenComponent.h"
 
 namespace banyan
 {

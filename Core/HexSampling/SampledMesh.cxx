@@ -3,7 +3,7 @@
 #include "Base/ThreadPool.h"
 #include "HexOctree/FirstFailure.h"
 #include "HexOctree/RadixSort.h"
-#include "HexSampling/TakenComponent.h"
+#include "HexOctree/TakenComponent.h"
 
 #include <algorithm>
 #include <limits>
@@ -148,7 +148,7 @@ SampledMesh::Values SampledMesh::Sample(const NodeArray& array, ThreadPool& pool
     {
       using T = typename decltype(tag)::Type;
       const T* const values = static_cast<const T*>(array.Values);
-      if (SizeOf(array.Type) <= 2 || array.Type == ScalarType::Float32)
+      if (FitsFloat(array.Type))
       {
         this->SampleInto(values, array, sampled.Floats, pool);
       }

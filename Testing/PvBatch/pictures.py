@@ -37,6 +37,14 @@ def difference(a, b):
     return numpy.abs(a - b).max(axis=2)
 
 
+def require_near(path, reference, allowed=1):
+    """The picture of a file is that of another one, up to so many of 255."""
+    error = difference(load(reference), load(path))
+    print(f"{path}: {int(error.max())} from {reference}", flush=True)
+    if error.max() > allowed:
+        raise AssertionError(f"{path} differs from {reference} by {int(error.max())}")
+
+
 def rim(picture, width=1):
     """Pixels that are at most `width` pixels from a neighbour that looks quite different."""
     result = numpy.zeros(picture.shape[:2], dtype=bool)

@@ -1,6 +1,7 @@
 """What every test script needs first: the server if there is one, and the plugin."""
 import argparse
 import os
+import sys
 
 from paraview import simple
 
@@ -12,6 +13,15 @@ def parser(description):
     result = argparse.ArgumentParser(description=description)
     result.add_argument("--plugin", help="path of Banyan.so")
     return result
+
+
+def real_data(file):
+    """The folder of real data; without it, or this file in it, there is nothing to do."""
+    data = os.environ.get("BANYAN_DATA_DIR")
+    if not data or not os.path.exists(os.path.join(data, file)):
+        print("no real data")
+        sys.exit(77)
+    return data
 
 
 def begin(arguments):

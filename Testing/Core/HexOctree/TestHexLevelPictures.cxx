@@ -1,9 +1,9 @@
 // Pictures of coarser levels of octree meshes, and which levels plans choose.
 #include "HexOctree/LevelMeshes.h"
+#include "HexOctree/PicturesOfRanks.h"
 
 #include "Parallel/DistributedFrame.h"
 #include "Parallel/DistributedPlan.h"
-#include "Parallel/Zones.h"
 #include "Render/Analytic.h"
 #include "Render/ElementsPerPixel.h"
 
@@ -29,27 +29,7 @@ std::shared_ptr<TileSamplings> Mixed(const RayScene& scene, int first, int secon
 
 FloatImage DrawOnRanks(const Made& made, const RayScene& scene, int ranks)
 {
-  FloatImage image;
-  RunOnSimulatedRanks(ranks,
-    [&](Communicator& communicator)
-    {
-      ThreadPool pool(1);
-      HexBrickSource source = made.Source(pool);
-      // Planes of zones stand anywhere, also inside of large elements.
-      std::vector<Box> zones;
-      for (const Box& part : StaticZones({ 13, 7, 7 }, communicator.Size()))
-      {
-        zones.push_back(CellsOfBricks(part, 5, scene.DomainCells.Hi));
-      }
-      FrameStatistics statistics;
-      const FloatImage picture = DrawDistributed(
-        communicator, scene, &source, zones, std::uint64_t{ 1 } << 24, pool, {}, statistics);
-      if (communicator.Rank() == 0)
-      {
-        image = picture;
-      }
-    });
-  return image;
+  return meshes::DrawOnRanks(made, scene, { 13, 7, 7 }, ranks);
 }
 
 TEST(HexLevelPictures, LinearFieldsLookTheSameAtAllLevels)

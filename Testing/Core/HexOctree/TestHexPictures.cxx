@@ -1,9 +1,8 @@
 // Pictures of octree meshes: those of the field that the mesh is of.
+#include "HexOctree/PicturesOfRanks.h"
 #include "HexOctree/TinyMeshes.h"
 
 #include "HexOctree/HexBrickSource.h"
-#include "Parallel/DistributedFrame.h"
-#include "Parallel/Zones.h"
 #include "Render/Analytic.h"
 
 #include <gtest/gtest.h>
@@ -325,29 +324,7 @@ TEST(HexPictures, MaximaAveragesLabelsAndCutsAreThoseOfImageData)
 
 FloatImage DrawOnRanks(const Case& made, const RayScene& scene, int ranks)
 {
-  FloatImage image;
-  RunOnSimulatedRanks(ranks,
-    [&](Communicator& communicator)
-    {
-      ThreadPool pool(1);
-      HexBrickSource source = made.Source(pool);
-      // Planes of zones stand anywhere, also inside of large elements.
-      std::vector<Box> zones;
-      for (const Box& part : StaticZones({ 13, 6, 6 }, communicator.Size()))
-      {
-        zones.push_back(CellsOfBricks(part, 5, scene.DomainCells.Hi));
-      }
-      Box rest = zones.back();
-      rest.Hi = glm::max(rest.Hi, glm::ivec3(0));
-      FrameStatistics statistics;
-      const FloatImage picture = DrawDistributed(
-        communicator, scene, &source, zones, std::uint64_t{ 1 } << 24, pool, {}, statistics);
-      if (communicator.Rank() == 0)
-      {
-        image = picture;
-      }
-    });
-  return image;
+  return meshes::DrawOnRanks(made, scene, { 13, 6, 6 }, ranks);
 }
 
 TEST(HexPictures, RanksDrawThePictureOfOne)

@@ -1,5 +1,5 @@
-#ifndef banyan_HexSampling_TakenComponent_h
-#define banyan_HexSampling_TakenComponent_h
+#ifndef banyan_HexOctree_TakenComponent_h
+#define banyan_HexOctree_TakenComponent_h
 
 #include "Base/Error.h"
 #include "HexOctree/NodalField.h"
@@ -15,10 +15,13 @@ inline void RequireComponent(const NodeArray& array)
 {
   const bool exists = array.Component == NodeArray::Magnitude ||
                       (array.Component >= 0 && array.Component < array.Components);
-  if (array.Components < 1 || !exists || !array.Values)
+  if (array.Components < 1 || !exists)
   {
-    throw Error("The array to draw has no component " + std::to_string(array.Component) +
-                ", or no values in memory");
+    throw Error("The array has no component " + std::to_string(array.Component));
+  }
+  if (!array.Values)
+  {
+    throw Error("The array to draw has no values in memory");
   }
 }
 
