@@ -38,6 +38,10 @@ void CubeDeviation::Collect(const CubePlaces& places)
   std::array<std::size_t, 8> columns{};
   for (std::size_t point = 0; point < 27; ++point)
   {
+    if (places[point] == nullptr)
+    {
+      continue;
+    }
     const PlaceInCell& place = *places[point];
     if (place.Cell != last)
     {
@@ -63,7 +67,7 @@ double CubeDeviation::Of(const CubePlaces& places)
       for (int x = 0; x < 3; ++x)
       {
         const std::size_t point = PointNumber({ x, y, z });
-        if ((x != 1 && y != 1 && z != 1) || !places[point]->Inside)
+        if ((x != 1 && y != 1 && z != 1) || places[point] == nullptr || !places[point]->Inside)
         {
           continue;
         }

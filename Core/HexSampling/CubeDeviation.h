@@ -10,7 +10,7 @@ namespace banyan
 {
 
 /// Places of the 27 points of a cube: its corners, and the middles of its edges, faces and itself,
-/// x fastest.
+/// x fastest. Null for points between corners that lie outside of the mesh.
 using CubePlaces = std::array<const PlaceInCell*, 27>;
 
 /// How far the trilinear interpolant of a cube's corners is from the mesh's own field at the points

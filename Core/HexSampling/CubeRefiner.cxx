@@ -2,6 +2,7 @@
 
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
+#include "HexSampling/BlockPoints.h"
 #include "HexSampling/CubeDeviation.h"
 
 #include <algorithm>
@@ -29,46 +30,8 @@ struct Judgement
   Fate What = Fate::Drop;
   bool InMesh = false; ///< its middle
   double Deviation = 0.0;
-};
 
-/// The points of the cubes in a block of 8 x 8 x 8, each looked for once.
-class BlockPoints
-{
-public:
-  static constexpr int Levels = 3;
-
-  explicit BlockPoints(const CellShapes& shapes)
-    : Shapes(shapes)
-  {
-    this->Places.resize(Across * Across * Across);
-  }
-
-  /// @param first halves of cubes' edges from the origin to the block
-  void Begin(const glm::ivec3& first, int level)
-  {
-    this->First = first;
-    this->Half = 0.5 * (1 << level);
-    this->Places.assign(this->Places.size(), {});
-  }
-
-  const PlaceInCell* At(const glm::ivec3& halves, const CellList& cells)
-  {
-    const glm::ivec3 in = halves - this->First;
-    PlaceInCell& place =
-      this->Places[static_cast<std::size_t>(in.x + Across * (in.y + Across * in.z))];
-    if (place.Cell < 0)
-    {
-      place = FindPlace(this->Shapes, cells, this->Half * glm::dvec3(halves));
-    }
-    return &place;
-  }
-
-private:
-  static constexpr int Across = (2 << Levels) + 1;
-  const CellShapes& Shapes;
-  glm::ivec3 First{ 0 };
-  double Half = 0.5;
-  std::vector<PlaceInCell> Places;
+  static constexpr double NotMeasured = -1.0;
 };
 
 class Refiner
@@ -95,8 +58,14 @@ private:
     CubeDeviation Deviation;
   };
 
+  template <class Body>
+  void ForCubes(const Body& body);
   void Judge();
-  Judgement JudgeOne(const Cube& cube, BlockPoints& points, CubeDeviation& deviation) const;
+  void MeasureDenied();
+  Judgement JudgeOne(const Cube& cube, Scratch& own) const;
+  double Thinnest(const Cube& cube) const;
+  double Measure(const Cube& cube, Scratch& own) const;
+  glm::ivec3 PointOf(const Cube& cube, int number) const;
   void Settle();
   void Halve();
   void HalveOne(
@@ -106,6 +75,7 @@ private:
   MeshSampling Sampling;
   ThreadPool& Pool;
   int Level = 0;
+  bool Measuring = false;   ///< cubes that may have to stay as they are, for there are too many
   std::vector<Cube> Active; ///< of this level
   std::vector<std::uint32_t> Cells;
   std::vector<Judgement> Judgements;
@@ -117,13 +87,20 @@ CellList CellsOf(const Cube& cube, const std::vector<std::uint32_t>& cells)
   return { cells.data() + cube.First, cells.data() + cube.First + cube.Count };
 }
 
-Judgement Refiner::JudgeOne(const Cube& cube, BlockPoints& points, CubeDeviation& deviation) const
+/// One of the 27 points of a cube, in halves of cubes.
+glm::ivec3 Refiner::PointOf(const Cube& cube, int number) const
+{
+  return PositionOfKey(cube.Key >> 3 * this->Level) * 2 +
+         glm::ivec3(number % 3, number / 3 % 3, number / 9);
+}
+
+/// The smallest height of the cells that a cube has a part of; infinite where there is none.
+double Refiner::Thinnest(const Cube& cube) const
 {
   const CellList cells = CellsOf(cube, this->Cells);
-  const double edge = 1 << this->Level;
   // Cells that only touch the cube say nothing of what is in it.
   const glm::dvec3 low = glm::dvec3(PositionOfKey(cube.Key)) + 1e-3;
-  const glm::dvec3 high = low + (edge - 2e-3);
+  const glm::dvec3 high = low + ((1 << this->Level) - 2e-3);
   double thinnest = std::numeric_limits<double>::infinity();
   for (const std::uint32_t* cell = cells.Begin; cell != cells.End; ++cell)
   {
@@ -133,6 +110,28 @@ Judgement Refiner::JudgeOne(const Cube& cube, BlockPoints& points, CubeDeviation
       thinnest = std::min(thinnest, this->Shapes.Height(*cell));
     }
   }
+  return thinnest;
+}
+
+double Refiner::Measure(const Cube& cube, Scratch& own) const
+{
+  const CellList cells = CellsOf(cube, this->Cells);
+  CubePlaces places;
+  for (int i = 0; i < 27; ++i)
+  {
+    const bool corner = i % 3 != 1 && i / 3 % 3 != 1 && i / 9 != 1;
+    const glm::ivec3 at = this->PointOf(cube, i);
+    places[static_cast<std::size_t>(i)] =
+      corner || own.Points.Inside(at, cells) ? own.Points.At(at, cells) : nullptr;
+  }
+  return own.Deviation.Of(places);
+}
+
+Judgement Refiner::JudgeOne(const Cube& cube, Scratch& own) const
+{
+  const CellList cells = CellsOf(cube, this->Cells);
+  const double edge = 1 << this->Level;
+  const double thinnest = this->Thinnest(cube);
   Judgement judgement;
   if (std::isinf(thinnest))
   {
@@ -143,33 +142,42 @@ Judgement Refiner::JudgeOne(const Cube& cube, BlockPoints& points, CubeDeviation
     judgement.What = Fate::Split;
     return judgement;
   }
-  CubePlaces places;
-  int inside = 0;
-  const glm::ivec3 first = PositionOfKey(cube.Key >> 3 * this->Level) * 2;
-  for (int i = 0; i < 27; ++i)
+  constexpr int middle = 13;
+  judgement.InMesh = own.Points.Inside(this->PointOf(cube, middle), cells);
+  const bool large = std::ldexp(edge, MeshSampling::BorderPart) > thinnest && this->Level > 0;
+  bool inside = judgement.InMesh;
+  bool outside = !inside;
+  for (int i = 0; i < 27 && !(large && inside && outside); ++i)
   {
-    places[static_cast<std::size_t>(i)] =
-      points.At(first + glm::ivec3(i % 3, i / 3 % 3, i / 9), cells);
-    inside += places[static_cast<std::size_t>(i)]->Inside ? 1 : 0;
+    (own.Points.Inside(this->PointOf(cube, i), cells) ? inside : outside) = true;
   }
-  if (inside == 0)
+  if (!inside)
   {
     return judgement;
   }
-  judgement.InMesh = places[13]->Inside;
-  judgement.Deviation = deviation.Of(places);
-  const bool border = inside < 27 && std::ldexp(edge, MeshSampling::BorderPart) > thinnest;
+  const bool border = outside && large;
+  if (border)
+  {
+    judgement.What = Fate::Improve;
+    judgement.Deviation = Judgement::NotMeasured;
+    if (!this->Measuring || !judgement.InMesh)
+    {
+      return judgement;
+    }
+  }
+  judgement.Deviation = this->Measure(cube, own);
   const bool far = judgement.Deviation > this->Sampling.Tolerance &&
                    std::ldexp(edge, MeshSampling::FinestPart) > thinnest;
-  judgement.What = (border || far) && this->Level > 0 ? Fate::Improve
+  judgement.What = border || (far && this->Level > 0) ? Fate::Improve
                    : judgement.InMesh                 ? Fate::Keep
                                                       : Fate::Drop;
   return judgement;
 }
 
-void Refiner::Judge()
+/// Calls body(number of a cube, Scratch) for all of this level, those of a block on one thread.
+template <class Body>
+void Refiner::ForCubes(const Body& body)
 {
-  this->Judgements.assign(this->Active.size(), {});
   const int shift = std::min(63, 3 * (this->Level + BlockPoints::Levels));
   const auto blockOf = [&](std::size_t i) { return this->Active[i].Key >> shift; };
   std::vector<std::size_t> begins;
@@ -193,7 +201,32 @@ void Refiner::Judge()
       own->Points.Begin(first, this->Level);
       for (std::size_t i = begin; i < end; ++i)
       {
-        this->Judgements[i] = this->JudgeOne(this->Active[i], own->Points, own->Deviation);
+        body(i, *own);
+      }
+    });
+}
+
+void Refiner::Judge()
+{
+  // Of the cubes at the border about half are in the mesh, of whose halves half stay.
+  const auto expected =
+    static_cast<std::int64_t>(this->Result.Cubes.size() + 2 * this->Active.size());
+  this->Measuring = expected > this->Sampling.MostCubes;
+  this->Judgements.assign(this->Active.size(), {});
+  this->ForCubes([&](std::size_t i, Scratch& own)
+    { this->Judgements[i] = this->JudgeOne(this->Active[i], own); });
+}
+
+/// Of cubes that stay because there are too many.
+void Refiner::MeasureDenied()
+{
+  this->ForCubes(
+    [&](std::size_t i, Scratch& own)
+    {
+      Judgement& judgement = this->Judgements[i];
+      if (judgement.InMesh && judgement.Deviation == Judgement::NotMeasured)
+      {
+        judgement.Deviation = this->Measure(this->Active[i], own);
       }
     });
 }
@@ -209,6 +242,10 @@ void Refiner::Settle()
   const auto kept = static_cast<std::int64_t>(this->Result.Cubes.size());
   // Of the eight halves of a cube at the border about half stay.
   const bool full = kept + 8 * halved > this->Sampling.MostCubes;
+  if (full && !this->Measuring)
+  {
+    this->MeasureDenied();
+  }
   std::vector<Cube> rest;
   for (std::size_t i = 0; i < this->Active.size(); ++i)
   {

@@ -18,7 +18,7 @@ bool IsInUnitCube(const glm::dvec3& part)
 
 } // namespace
 
-PlaceInCell FindPlace(const CellShapes& shapes, const CellList& cells, const glm::dvec3& point)
+PlaceInCell FindInside(const CellShapes& shapes, const CellList& cells, const glm::dvec3& point)
 {
   PlaceInCell place;
   for (const std::uint32_t* cell = cells.Begin; cell != cells.End; ++cell)
@@ -36,6 +36,12 @@ PlaceInCell FindPlace(const CellShapes& shapes, const CellList& cells, const glm
       return place;
     }
   }
+  return place;
+}
+
+PlaceInCell FindNearest(const CellShapes& shapes, const CellList& cells, const glm::dvec3& point)
+{
+  PlaceInCell place;
   double nearest = std::numeric_limits<double>::infinity();
   for (const std::uint32_t* cell = cells.Begin; cell != cells.End; ++cell)
   {
@@ -55,6 +61,12 @@ PlaceInCell FindPlace(const CellShapes& shapes, const CellList& cells, const glm
     place.Part = glm::clamp(place.Part, glm::dvec3(0.0), glm::dvec3(1.0));
   }
   return place;
+}
+
+PlaceInCell FindPlace(const CellShapes& shapes, const CellList& cells, const glm::dvec3& point)
+{
+  const PlaceInCell place = FindInside(shapes, cells, point);
+  return place.Inside ? place : FindNearest(shapes, cells, point);
 }
 
 } // namespace banyan

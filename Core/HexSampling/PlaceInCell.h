@@ -23,6 +23,12 @@ struct CellList
   const std::uint32_t* End = nullptr;
 };
 
+/// The cell that a point lies in, if there is one: the first part of FindPlace.
+PlaceInCell FindInside(const CellShapes& shapes, const CellList& cells, const glm::dvec3& point);
+
+/// An estimate of the nearest place in the nearest cell: the other part.
+PlaceInCell FindNearest(const CellShapes& shapes, const CellList& cells, const glm::dvec3& point);
+
 /// Where a point lies: of several cells in the first one, which at faces is the same for all lists
 /// that have these cells. Outside of all, an estimate of the nearest place in the nearest cell.
 /// @param point on the lattice of the shapes
