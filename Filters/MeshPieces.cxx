@@ -1,11 +1,15 @@
 #include "MeshPieces.h"
 
+#include "MeshArrays.h"
+
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
+#include "vtkIntArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -19,6 +23,7 @@
 #include <cstring>
 #include <map>
 #include <numeric>
+#include <set>
 
 namespace banyan
 {
@@ -273,31 +278,52 @@ private:
     }
   }
 
-  /// Those that all pieces have.
+  /// Those that all pieces have. Others are named in the field data (see InSomePiecesName).
   void MakeCellArrays(vtkUnstructuredGrid* grid) const
   {
-    vtkCellData* const first = this->Pieces[0]->GetCellData();
-    for (int a = 0; a < first->GetNumberOfArrays(); ++a)
+    std::set<std::string> done;
+    for (vtkUnstructuredGrid* piece : this->Pieces)
     {
-      vtkDataArray* const like = first->GetArray(a);
-      if (!like || !like->GetName() || like == first->GetGlobalIds() ||
-          std::strcmp(like->GetName(), vtkDataSetAttributes::GhostArrayName()) == 0)
+      vtkCellData* const all = piece->GetCellData();
+      for (int a = 0; a < all->GetNumberOfArrays(); ++a)
       {
-        continue;
+        vtkDataArray* const like = all->GetArray(a);
+        if (like && like->GetName() && like != all->GetGlobalIds() &&
+            std::strcmp(like->GetName(), vtkDataSetAttributes::GhostArrayName()) != 0 &&
+            done.insert(like->GetName()).second)
+        {
+          this->MakeCellArray(like, grid);
+        }
       }
-      std::vector<vtkDataArray*> parts;
-      for (vtkUnstructuredGrid* piece : this->Pieces)
+      vtkFieldData* const fields = piece->GetFieldData();
+      for (int a = 0; a < fields->GetNumberOfArrays(); ++a)
       {
-        vtkDataArray* const part = piece->GetCellData()->GetArray(like->GetName());
-        const bool fits = part && part->GetDataType() == like->GetDataType() &&
-                          part->GetNumberOfComponents() == like->GetNumberOfComponents();
-        parts.push_back(fits ? part : nullptr);
-      }
-      if (std::find(parts.begin(), parts.end(), nullptr) == parts.end())
-      {
-        grid->GetCellData()->AddArray(InOrder(like, this->Cells, parts));
+        grid->GetFieldData()->AddArray(fields->GetAbstractArray(a));
       }
     }
+  }
+
+  void MakeCellArray(vtkDataArray* like, vtkUnstructuredGrid* grid) const
+  {
+    std::vector<vtkDataArray*> parts;
+    bool everywhere = true;
+    for (vtkUnstructuredGrid* piece : this->Pieces)
+    {
+      vtkDataArray* const part = piece->GetCellData()->GetArray(like->GetName());
+      const bool fits = part && part->GetDataType() == like->GetDataType() &&
+                        part->GetNumberOfComponents() == like->GetNumberOfComponents();
+      parts.push_back(part);
+      everywhere = everywhere && fits;
+    }
+    if (everywhere)
+    {
+      grid->GetCellData()->AddArray(InOrder(like, this->Cells, parts));
+      return;
+    }
+    vtkNew<vtkIntArray> mark;
+    mark->InsertNextValue(0); // empty ones are lost between ranks
+    mark->SetName(InSomePiecesName(like->GetName()).c_str());
+    grid->GetFieldData()->AddArray(mark);
   }
 
   static vtkSmartPointer<vtkDataArray> InOrder(

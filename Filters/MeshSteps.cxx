@@ -4,16 +4,10 @@
 #include "LeafSteps.h"
 #include "MeshPieces.h"
 #include "PieceValues.h"
-#include "StepReport.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellData.h"
 #include "vtkDataArray.h"
-#include "vtkDataArraySelection.h"
-#include "vtkDataSetAttributes.h"
-#include "vtkFieldData.h"
 #include "vtkImageData.h"
-#include "vtkIntArray.h"
 #include "vtkMultiProcessController.h"
 #include "vtkMultiProcessStream.h"
 #include "vtkNew.h"
@@ -29,7 +23,6 @@
 #include "Series/Varint.h"
 #include "Series/Zstd.h"
 
-#include <algorithm>
 #include <cstring>
 #include <vector>
 
@@ -74,48 +67,20 @@ std::string ChangeOf(vtkUnstructuredGrid* before, vtkUnstructuredGrid* now)
   return {};
 }
 
-/// What is not a value of the simulation.
-bool IsNoValue(vtkPointData* points, vtkDataArray* array)
+std::shared_ptr<const std::vector<std::uint8_t>> Unpacked(
+  const std::string& packed, std::uint64_t samples)
 {
-  return array == points->GetGlobalIds() || array == points->GetPedigreeIds() ||
-         (array->GetName() &&
-           std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName()) == 0);
-}
-
-/// Names of arrays for messages: the image has no values for them.
-void NameOthers(vtkUnstructuredGrid* grid, vtkImageData* image)
-{
-  vtkPointData* const points = grid->GetPointData();
-  for (int i = 0; i < points->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* const array = points->GetArray(i);
-    if (array && array->GetName() && IsNoValue(points, array))
-    {
-      vtkNew<vtkIntArray> empty;
-      empty->SetName(LeftOutName(array->GetName()).c_str());
-      image->GetFieldData()->AddArray(empty);
-    }
-  }
-  vtkCellData* const cells = grid->GetCellData();
-  for (int i = 0; i < cells->GetNumberOfArrays(); ++i)
-  {
-    vtkAbstractArray* const array = cells->GetAbstractArray(i);
-    if (array->GetName() && array != cells->GetGlobalIds() && array != cells->GetPedigreeIds() &&
-        std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName()) != 0)
-    {
-      vtkNew<vtkIntArray> empty;
-      empty->SetName(array->GetName());
-      image->GetCellData()->AddArray(empty);
-    }
-  }
+  auto mask = std::make_shared<std::vector<std::uint8_t>>(samples);
+  Decompress(reinterpret_cast<const std::uint8_t*>(packed.data()), packed.size(), mask->data(),
+    mask->size());
+  return mask;
 }
 
 } // namespace
 
 std::string MeshSteps::Take(vtkSmartPointer<vtkDataObject>& data, const std::string& problem)
 {
-  bool leaves = false;
-  const std::string noLeaves = LeavesAsGrid(this->Talk, problem, data, leaves);
+  const std::string noLeaves = LeavesAsGrid(this->Talk, problem, data, this->Leaves);
   if (!noLeaves.empty())
   {
     this->Found = true;
@@ -153,7 +118,7 @@ std::string MeshSteps::Take(vtkSmartPointer<vtkDataObject>& data, const std::str
       throw Error(std::string("Other ranks have a mesh of hexahedra, and this one has ") +
                   data->GetClassName() + " with other cells");
     }
-    piece = MergePieces(grids, this->Wanted());
+    piece = MergePieces(grids, this->Arrays.WantedPoints(this->Leaves));
   }
   catch (const std::exception& error)
   {
@@ -171,7 +136,7 @@ std::string MeshSteps::Take(vtkSmartPointer<vtkDataObject>& data, const std::str
     this->Gather(piece, others);
     if (this->Talk.Rank() == 0)
     {
-      this->Remember(piece, leaves);
+      this->Remember(piece);
       image = this->ImageOf(piece);
     }
   }
@@ -205,16 +170,6 @@ std::string MeshSteps::FirstMistake(const std::string& mine) const
   return {};
 }
 
-/// The arrays that are to be written.
-WantedArrays MeshSteps::Wanted() const
-{
-  return [this](const std::string& name)
-  {
-    return this->Selection->GetNumberOfArrays() == 0 ||
-           this->Selection->ArrayIsEnabled(name.c_str()) != 0;
-  };
-}
-
 /// Brings the pieces of all ranks to rank 0, if others have any.
 void MeshSteps::Gather(vtkSmartPointer<vtkUnstructuredGrid>& piece, bool others)
 {
@@ -240,10 +195,10 @@ void MeshSteps::Gather(vtkSmartPointer<vtkUnstructuredGrid>& piece, bool others)
   {
     pieces.push_back(piece);
   }
-  piece = MergePieces(pieces, this->Wanted());
+  piece = MergePieces(pieces, this->Arrays.WantedPoints(this->Leaves));
 }
 
-void MeshSteps::Remember(vtkUnstructuredGrid* grid, bool leaves)
+void MeshSteps::Remember(vtkUnstructuredGrid* grid)
 {
   if (this->Mesh)
   {
@@ -252,74 +207,88 @@ void MeshSteps::Remember(vtkUnstructuredGrid* grid, bool leaves)
     {
       throw Error("The mesh of a series must not change, and " + change + ".");
     }
-    if (leaves && this->Tree)
+    if (this->Tree)
     {
-      MakeNodal(*this->Tree, grid, this->Wanted());
+      MakeNodal(*this->Tree, grid, this->Arrays.WantedPoints(this->Leaves));
     }
     return;
   }
-  const HexMesh cells = HexMeshOf(grid);
   ThreadPool pool(ThreadPool::DefaultWidth());
-  const std::shared_ptr<const ElementOctree> tree = ElementOctree::Find(cells, pool);
+  std::shared_ptr<const ElementOctree> tree;
+  try
+  {
+    tree = ElementOctree::Find(HexMeshOf(grid), pool);
+  }
+  catch (const Error& error)
+  {
+    std::string reason = error.what();
+    reason.erase(reason.find_last_not_of('.') + 1);
+    throw Error(reason +
+                ". A mesh of general hexahedra can be written as the boxes that it is sampled at: "
+                "see 'Sample General Meshes' of the filter 'Banyan Hex Octree'");
+  }
   this->Mesh = StoreMesh(*tree, grid->GetCellTypesArray()->GetPointer(0));
   this->First = vtkSmartPointer<vtkUnstructuredGrid>::New();
   this->First->CopyStructure(grid);
-  if (leaves)
+  if (this->Leaves)
   {
     this->Tree = tree;
-    MakeNodal(*tree, grid, this->Wanted());
+    MakeNodal(*tree, grid, this->Arrays.WantedPoints(this->Leaves));
   }
 }
 
-vtkSmartPointer<vtkImageData> MeshSteps::ImageOf(vtkUnstructuredGrid* grid) const
+vtkSmartPointer<vtkImageData> MeshSteps::ImageOf(vtkUnstructuredGrid* grid)
 {
-  const AtlasValues values(this->Mesh);
+  const AtlasValues atPoints(this->Mesh);
+  const AtlasValues ofCells(this->Mesh, MeshValues::OfCells);
   const auto image = vtkSmartPointer<vtkImageData>::New();
   const glm::ivec3 size = this->Mesh->Atlas->Samples();
   image->SetDimensions(size.x, size.y, size.z);
   ThreadPool pool(ThreadPool::DefaultWidth());
-  vtkPointData* const points = grid->GetPointData();
-  for (int i = 0; i < points->GetNumberOfArrays(); ++i)
+  this->LeftOut.clear();
+  this->CellArrays.clear();
+  for (const MeshArray& array : this->Arrays.Of(grid, this->Leaves, this->LeftOut))
   {
-    vtkDataArray* const array = points->GetArray(i);
-    if (!array || array->GetDataType() == VTK_BIT || IsNoValue(points, array))
-    {
-      continue;
-    }
-    const std::string name =
-      array->GetName() && *array->GetName() ? array->GetName() : "Unnamed" + std::to_string(i);
-    if (this->Selection->GetNumberOfArrays() > 0 && !this->Selection->ArrayIsEnabled(name.c_str()))
-    {
-      continue;
-    }
-    const auto samples =
-      vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(array->GetDataType()));
-    samples->SetName(name.c_str());
-    samples->SetNumberOfComponents(array->GetNumberOfComponents());
-    samples->CopyComponentNames(array);
+    const auto samples = vtkSmartPointer<vtkDataArray>::Take(
+      vtkDataArray::CreateDataArray(array.Values->GetDataType()));
+    samples->SetName(array.Name.c_str());
+    samples->SetNumberOfComponents(array.Values->GetNumberOfComponents());
+    samples->CopyComponentNames(array.Values);
     samples->SetNumberOfTuples(image->GetNumberOfPoints());
-    values.ToImage(TypeOf(array), array->GetVoidPointer(0), array->GetNumberOfComponents(),
-      this->Options.QuantizerFor(name).FillValues, samples->GetVoidPointer(0), pool);
+    const bool cells = !array.CellArray.empty();
+    (cells ? ofCells : atPoints)
+      .ToImage(TypeOf(array.Values), array.Values->GetVoidPointer(0),
+        array.Values->GetNumberOfComponents(), this->Options.QuantizerFor(array.Name).FillValues,
+        samples->GetVoidPointer(0), pool);
     image->GetPointData()->AddArray(samples);
-    if (array == points->GetScalars())
+    if (array.Values == grid->GetPointData()->GetScalars())
     {
-      image->GetPointData()->SetActiveScalars(name.c_str());
+      image->GetPointData()->SetActiveScalars(array.Name.c_str());
+    }
+    if (cells)
+    {
+      this->CellArrays[array.Name] = array.CellArray;
     }
   }
-  NameOthers(grid, image);
   return image;
 }
 
 std::shared_ptr<const MeshPlan> MeshSteps::Write(SegmentFolder* folder) const
 {
   std::shared_ptr<const MeshPlan> plan;
-  this->Talk.OnRank(0, [&] { plan = WriteMesh(*this->Mesh, *folder); });
+  this->Talk.OnRank(0,
+    [&]
+    {
+      const std::shared_ptr<MeshPlan> made = WriteMesh(*this->Mesh, *folder);
+      made->CellArrays = this->CellArrays;
+      plan = made;
+    });
   if (this->Talk.Ranks() == 1)
   {
     return plan;
   }
-  Bytes numbers, needed;
-  std::string file;
+  Bytes numbers, needed, ofCells;
+  std::vector<std::string> told;
   if (plan)
   {
     const MeshIndex& index = plan->Index;
@@ -330,10 +299,18 @@ std::shared_ptr<const MeshPlan> MeshSteps::Write(SegmentFolder* folder) const
       PutVarint(numbers, number);
     }
     AppendCompressed(plan->Needed->data(), plan->Needed->size(), 1, needed);
-    file = index.File;
+    AppendCompressed(plan->NeededOfCells->data(), plan->NeededOfCells->size(), 1, ofCells);
+    told = { index.File };
+    for (const Bytes& bytes : { numbers, needed, ofCells })
+    {
+      told.emplace_back(bytes.begin(), bytes.end());
+    }
+    for (const auto& array : plan->CellArrays)
+    {
+      told.insert(told.end(), { array.first, array.second });
+    }
   }
-  const std::vector<std::string> told = this->Talk.FromRankZero({ file,
-    std::string(numbers.begin(), numbers.end()), std::string(needed.begin(), needed.end()) });
+  told = this->Talk.FromRankZero(told);
   this->Talk.Together(
     [&]
     {
@@ -350,10 +327,13 @@ std::shared_ptr<const MeshPlan> MeshSteps::Write(SegmentFolder* folder) const
       theirs->Index.HashHigh = reader.Varint();
       theirs->Index.Points = static_cast<std::int64_t>(reader.Varint());
       theirs->Index.Cells = static_cast<std::int64_t>(reader.Varint());
-      auto mask = std::make_shared<std::vector<std::uint8_t>>(reader.Varint());
-      Decompress(reinterpret_cast<const std::uint8_t*>(told[2].data()), told[2].size(),
-        mask->data(), mask->size());
-      theirs->Needed = std::move(mask);
+      const std::uint64_t samples = reader.Varint();
+      theirs->Needed = Unpacked(told[2], samples);
+      theirs->NeededOfCells = Unpacked(told[3], samples);
+      for (std::size_t i = 4; i + 1 < told.size(); i += 2)
+      {
+        theirs->CellArrays[told[i]] = told[i + 1];
+      }
       plan = std::move(theirs);
     });
   return plan;

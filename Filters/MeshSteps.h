@@ -1,7 +1,7 @@
 #ifndef banyan_Filters_MeshSteps_h
 #define banyan_Filters_MeshSteps_h
 
-#include "MeshPieces.h"
+#include "MeshArrays.h"
 #include "RankTalk.h"
 
 #include "MeshSeries/StoredMesh.h"
@@ -9,6 +9,7 @@
 
 #include "vtkSmartPointer.h"
 
+#include <map>
 #include <memory>
 #include <string>
 
@@ -26,7 +27,8 @@ class ElementOctree;
 class SegmentFolder;
 
 /// The steps of a mesh as images, so that they can be written like those of an image: see
-/// AtlasValues. Rank 0 has the whole mesh and makes the images; others have empty ones.
+/// AtlasValues. Cell arrays are images of their own. Rank 0 has the whole mesh and makes the
+/// images; others have empty ones.
 ///
 /// Hyper trees and AMR are meshes of their leaves, with their data made nodal (see MakeNodal).
 ///
@@ -35,11 +37,11 @@ class MeshSteps
 {
 public:
   MeshSteps(const RankTalk& talk, vtkMultiProcessController* controller,
-    const EncodeOptions& options, vtkDataArraySelection* selection)
+    const EncodeOptions& options, vtkDataArraySelection* points, vtkDataArraySelection* cells)
     : Talk(talk)
     , Controller(controller)
     , Options(options)
-    , Selection(selection)
+    , Arrays(points, cells)
   {
   }
 
@@ -51,26 +53,32 @@ public:
   /// @return what is wrong on this rank, or nothing
   std::string Take(vtkSmartPointer<vtkDataObject>& data, const std::string& problem);
 
+  /// A sentence about arrays of the last step that are not written, or nothing. Of rank 0.
+  const std::string& Warning() const { return this->LeftOut; }
+
   /// Collective; throws AgreedError. Rank 0 writes the file of the mesh, and all ranks learn what
   /// encoding must know of it.
   /// @param folder on rank 0
   std::shared_ptr<const MeshPlan> Write(SegmentFolder* folder) const;
 
 private:
-  WantedArrays Wanted() const;
   std::string FirstMistake(const std::string& mine) const;
+  /// Collective: the one mesh of all ranks, on rank 0.
   void Gather(vtkSmartPointer<vtkUnstructuredGrid>& piece, bool others);
-  void Remember(vtkUnstructuredGrid* grid, bool leaves);
-  vtkSmartPointer<vtkImageData> ImageOf(vtkUnstructuredGrid* grid) const;
+  void Remember(vtkUnstructuredGrid* grid);
+  vtkSmartPointer<vtkImageData> ImageOf(vtkUnstructuredGrid* grid);
 
   const RankTalk& Talk;
   vtkMultiProcessController* Controller;
   const EncodeOptions& Options;
-  vtkDataArraySelection* Selection;
+  MeshArrays Arrays;
   bool Found = false;
+  bool Leaves = false; ///< of hyper trees or AMR
   // On rank 0:
   vtkSmartPointer<vtkUnstructuredGrid> First; ///< the grid of the first step
   std::shared_ptr<const StoredMesh> Mesh;
+  std::map<std::string, std::string> CellArrays; ///< as MeshPlan has them
+  std::string LeftOut;
   std::shared_ptr<const ElementOctree>
     Tree; ///< of hyper trees and AMR only: their data are made nodal
 };

@@ -1,11 +1,13 @@
 #include "SeriesWriting.h"
 
 #include "vtkDataArray.h"
+#include "vtkDataArraySelection.h"
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkMultiProcessController.h"
 #include "vtkMultiProcessStream.h"
+#include "vtkNew.h"
 
 #include "Base/ThreadPool.h"
 #include "Series/EncodePlan.h"
@@ -22,7 +24,8 @@ SeriesWriting::SeriesWriting(WritingOrder order)
   , Input(this->Order.Producer, this->Order.Port)
   , Gathering(this->Talk, this->Order.Controller)
   , Histograms(this->Order.Options)
-  , Meshes(this->Talk, this->Order.Controller, this->Order.Options, this->Order.Selection)
+  , Meshes(this->Talk, this->Order.Controller, this->Order.Options, this->Order.Selection,
+      this->Order.CellSelection)
 {
   const bool relative = this->Order.Options.Mode == ErrorBoundMode::RelativeToSeriesRange &&
                         this->Order.Options.ErrorBound > 0.0;
@@ -165,7 +168,14 @@ vtkSmartPointer<vtkDataObject> SeriesWriting::PullMine(int step) const
 
 StepReport SeriesWriting::ReportOfMine(bool withRanges) const
 {
-  StepReport report = ReportOf(this->Data, *this->Order.Selection, withRanges);
+  // The images of a mesh are those that are to be written.
+  const vtkNew<vtkDataArraySelection> all;
+  StepReport report =
+    ReportOf(this->Data, this->Meshes.Active() ? *all : *this->Order.Selection, withRanges);
+  if (this->Meshes.Active())
+  {
+    report.Warning += this->Meshes.Warning();
+  }
   // Values that are decoded or copied on first touch are touched here, where a failure can still
   // be agreed upon.
   for (const WrittenArray& array : report.Arrays)

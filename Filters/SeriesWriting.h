@@ -32,7 +32,8 @@ struct WritingOrder
   EncodeOptions Options;
   vtkAlgorithm* Producer = nullptr; ///< of the image data
   int Port = 0;                     ///< of the producer
-  vtkDataArraySelection* Selection = nullptr;
+  vtkDataArraySelection* Selection = nullptr;     ///< of point arrays
+  vtkDataArraySelection* CellSelection = nullptr; ///< of cell arrays of meshes
   bool AllSteps = true;
   vtkMultiProcessController* Controller = nullptr; ///< may be nullptr: this rank alone
   std::function<void(double)> Progress;            ///< told a value in [0, 1], never a smaller one

@@ -7,7 +7,6 @@
 #include "vtkDataArray.h"
 #include "vtkDataArraySelection.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
 #include "vtkPointData.h"
@@ -123,8 +122,7 @@ std::vector<vtkDataArray*> Choose(
     // ParaView offers the ghost flags like any array and selects them by default. They are not
     // written, but points that they hide are.
     if (selection.GetArraySetting(i) && name != vtkDataSetAttributes::GhostArrayName() &&
-        std::find(available.begin(), available.end(), name) == available.end() &&
-        !image->GetFieldData()->GetAbstractArray(LeftOutName(name).c_str()))
+        std::find(available.begin(), available.end(), name) == available.end())
     {
       report.Problem = "There is no point array " + name +
                        (available.empty() ? "." : "; there are: " + Joined(available) + ".");

@@ -38,13 +38,6 @@ struct StepReport
   void Load(vtkMultiProcessStream& stream);
 };
 
-/// The name of an empty field array of an image, which says that the point array is not written
-/// for a reason that needs no message: numbers of points.
-inline std::string LeftOutName(const std::string& array)
-{
-  return "left out by Banyan: " + array;
-}
-
 /// Looks at a rank's piece.
 /// @param selection names of point arrays; an empty selection means all
 /// @param withRanges whether to go through all values for their ranges

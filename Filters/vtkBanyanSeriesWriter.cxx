@@ -41,6 +41,8 @@ void vtkBanyanSeriesWriter::PrintSelf(ostream& os, vtkIndent indent)
      << this->Quantizer->Text() << indent << "WriteTimeSteps: " << this->WriteTimeSteps << "\n"
      << indent << "PointArraySelection:\n";
   this->Selection->PrintSelf(os, indent.GetNextIndent());
+  os << indent << "CellArraySelection:\n";
+  this->CellSelection->PrintSelf(os, indent.GetNextIndent());
 }
 
 void vtkBanyanSeriesWriter::SetTransform(int transform)
@@ -163,6 +165,11 @@ vtkDataArraySelection* vtkBanyanSeriesWriter::GetPointArraySelection()
   return this->Selection;
 }
 
+vtkDataArraySelection* vtkBanyanSeriesWriter::GetCellArraySelection()
+{
+  return this->CellSelection;
+}
+
 void vtkBanyanSeriesWriter::SetController(vtkMultiProcessController* controller)
 {
   this->Controller = controller;
@@ -207,6 +214,7 @@ void vtkBanyanSeriesWriter::WriteSeries()
     order.Producer = this->GetInputAlgorithm(0, 0, order.Port);
   }
   order.Selection = this->Selection;
+  order.CellSelection = this->CellSelection;
   order.AllSteps = this->WriteTimeSteps;
   order.Controller = this->Controller;
   order.Progress = [this](double value) { this->UpdateProgress(value); };

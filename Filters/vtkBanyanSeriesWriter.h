@@ -197,6 +197,12 @@ public:
    */
   vtkDataArraySelection* GetPointArraySelection();
 
+  /**
+   * Names of the cell arrays of a mesh to write. If neither point nor cell arrays are named, all
+   * are written; otherwise those that are enabled. Cell arrays of images are not written.
+   */
+  vtkDataArraySelection* GetCellArraySelection();
+
   ///@{
   /**
    * Whose ranks write together; by default the global controller. nullptr: this rank alone.
@@ -238,6 +244,7 @@ private:
   bool WriteTimeSteps = true;
   std::string ErrorMessage;
   vtkNew<vtkDataArraySelection> Selection;
+  vtkNew<vtkDataArraySelection> CellSelection;
   std::unique_ptr<banyan::WriterQuantizer> Quantizer;
   vtkSmartPointer<vtkMultiProcessController> Controller;
 };

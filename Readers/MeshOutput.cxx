@@ -8,6 +8,7 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
+#include "MeshSeries/MeanOfLeaves.h"
 #include "MeshSeries/MeshFile.h"
 #include "MeshSeries/MeshLevel.h"
 #include "Series/SeriesFile.h"
@@ -97,6 +98,12 @@ void MeshOutput::MakeGrid(int level, int piece, int pieces)
       this->Samples.push_back(mesh.SampleOfPoint[point]);
     }
   }
+  this->Leaves.clear();
+  for (std::int64_t cell = first; level > 0 && cell <= end; ++cell)
+  {
+    this->Leaves.push_back(cell < count ? coarse.FirstLeaf[static_cast<std::size_t>(cell)]
+                                        : static_cast<std::uint32_t>(mesh.CellCount()));
+  }
   vtkNew<vtkPoints> points;
   points->SetDataType(mesh.PointType == ScalarType::Float64 ? VTK_DOUBLE : VTK_FLOAT);
   points->SetNumberOfPoints(static_cast<vtkIdType>(chosen.size()));
@@ -137,13 +144,55 @@ void MeshOutput::FillGrid(int level, int piece, int pieces, vtkUnstructuredGrid*
   output->ShallowCopy(this->Grid);
 }
 
+/// Of a cell array, in the cells of the grid.
+void MeshOutput::FillCells(const ArrayIndex& array, vtkDataArray* image, vtkDataArray* values) const
+{
+  const StoredMesh& mesh = *this->Mesh;
+  const vtkIdType cells = this->Grid->GetNumberOfCells();
+  const int components = image->GetNumberOfComponents();
+  values->SetNumberOfTuples(cells);
+  if (this->Made[0] == 0)
+  {
+    const auto first = mesh.SampleOfCell.begin() + mesh.CellCount() * this->Made[1] / this->Made[2];
+    CopyTuples(image->GetVoidPointer(0), { first, first + cells },
+      static_cast<std::size_t>(image->GetDataTypeSize()) * static_cast<std::size_t>(components),
+      values->GetVoidPointer(0));
+    return;
+  }
+  Dispatch(array.Type,
+    [&](auto tag)
+    {
+      using T = typename decltype(tag)::Type;
+      const T* const from = static_cast<const T*>(image->GetVoidPointer(0));
+      T* const to = static_cast<T*>(values->GetVoidPointer(0));
+      for (int c = 0; c < components; ++c)
+      {
+        const FillSet<T> fills(array.Components.at(static_cast<std::size_t>(c)).FillValues);
+        for (vtkIdType cell = 0; cell < cells; ++cell)
+        {
+          const auto at = static_cast<std::size_t>(cell);
+          to[cell * components + c] = MeanOfLeaves<T>(
+            mesh, from, components, c, this->Leaves[at], this->Leaves[at + 1], fills);
+        }
+      }
+    });
+}
+
 vtkSmartPointer<vtkDataArray> MeshOutput::Values(const vtkBanyanDeferred::Handle& handle) const
 {
+  const ArrayIndex& array =
+    handle.Series->Index().Arrays.at(static_cast<std::size_t>(handle.Array));
   const vtkSmartPointer<vtkDataArray> image = vtkBanyanDeferred::NewPlain(handle);
   const auto values = vtkSmartPointer<vtkDataArray>::Take(image->NewInstance());
   values->SetName(image->GetName());
   values->SetNumberOfComponents(image->GetNumberOfComponents());
   values->CopyComponentNames(image);
+  if (!array.CellArray.empty())
+  {
+    values->SetName(array.CellArray.c_str());
+    this->FillCells(array, image, values);
+    return values;
+  }
   values->SetNumberOfTuples(static_cast<vtkIdType>(this->Samples.size()));
   CopyTuples(image->GetVoidPointer(0), this->Samples,
     static_cast<std::size_t>(image->GetDataTypeSize()) *

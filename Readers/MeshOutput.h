@@ -17,6 +17,7 @@ namespace banyan
 {
 
 class SeriesFile;
+struct ArrayIndex;
 struct StoredMesh;
 
 /// The mesh of a series as unstructured grids, with the values of a step. The grid is made once for
@@ -34,7 +35,8 @@ public:
   /// the mesh. One piece has all points. Throws Error.
   void FillGrid(int level, int piece, int pieces, vtkUnstructuredGrid* output);
 
-  /// The values of an array at the points of the last FillGrid(). Throws Error.
+  /// The values of an array at the points of the last FillGrid(), or in its cells: at a coarser
+  /// level the mean of those that were merged (see MeanOfLeaves). Throws Error.
   /// @param handle of the whole image
   vtkSmartPointer<vtkDataArray> Values(const vtkBanyanDeferred::Handle& handle) const;
 
@@ -48,6 +50,7 @@ public:
 private:
   void Load();
   void MakeGrid(int level, int piece, int pieces);
+  void FillCells(const ArrayIndex& array, vtkDataArray* image, vtkDataArray* values) const;
 
   std::shared_ptr<const SeriesFile> Series;
   std::shared_ptr<const StoredMesh> Mesh;
@@ -55,6 +58,7 @@ private:
   TreeOutput Trees;
   int Made[3] = { -1, 0, 0 };         ///< level, piece and pieces of Grid
   std::vector<std::uint32_t> Samples; ///< of its points
+  std::vector<std::uint32_t> Leaves;  ///< the first one in each of its cells, and behind the last
 };
 
 } // namespace banyan

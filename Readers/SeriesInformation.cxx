@@ -81,7 +81,7 @@ void DescribeSeries(const SeriesIndex& index, int level, vtkInformation& informa
   information.Set(Pipeline::TIME_RANGE(), range, 2);
 
   const int active = index.FindArray(index.ActiveScalars);
-  if (active >= 0)
+  if (active >= 0 && index.Arrays[active].CellArray.empty())
   {
     vtkDataObject::SetPointDataActiveScalarInfo(&information, VtkTypeOf(index.Arrays[active].Type),
       static_cast<int>(index.Arrays[active].Components.size()));

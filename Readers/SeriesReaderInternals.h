@@ -22,9 +22,18 @@ struct vtkBanyanSeriesReader::Internals
   bool Reopen = false;
   banyan::MeshOutput Mesh;
   banyan::VerifiedBricks Verified;
-  vtkNew<vtkDataArraySelection> Selection;
+  vtkNew<vtkDataArraySelection> Selection;     ///< of point arrays
+  vtkNew<vtkDataArraySelection> CellSelection; ///< of cell arrays of meshes
   vtkSmartPointer<vtkMultiProcessController> Controller;
   std::string ErrorMessage;
+
+  /// Whether an array of the series is to be read.
+  bool Wants(const banyan::ArrayIndex& array) const
+  {
+    return array.CellArray.empty()
+             ? this->Selection->ArrayIsEnabled(array.Name.c_str()) != 0
+             : this->CellSelection->ArrayIsEnabled(array.CellArray.c_str()) != 0;
+  }
 };
 
 #endif

@@ -1,5 +1,6 @@
 #include "TreeOutput.h"
 
+#include "MeshSeries/MeanOfLeaves.h"
 #include "MeshSeries/TreeCells.h"
 #include "Series/SeriesFile.h"
 
@@ -178,9 +179,9 @@ void TreeOutput::FillTrees(std::shared_ptr<const StoredMesh> mesh, int level, in
   output->ShallowCopy(this->Trees);
 }
 
-template <class T, class Out>
+template <class Out, class ValueOfLeaf>
 void TreeOutput::Mean(
-  const T* samples, const FillSet<T>& fills, int components, int component, Out* means) const
+  const ValueOfLeaf& valueOfLeaf, int components, int component, Out* means) const
 {
   std::vector<double> sums(this->LeafOf.size(), 0.0);
   std::vector<int> counts(this->LeafOf.size(), 0);
@@ -191,16 +192,7 @@ void TreeOutput::Mean(
     double value = counts[cell] > 0 ? sums[cell] / counts[cell] : 0.0;
     if (leaf >= 0)
     {
-      T corners[8];
-      for (std::size_t i = 0; i < 8; ++i)
-      {
-        const auto point =
-          static_cast<std::size_t>(this->Cells->Corners[8 * static_cast<std::size_t>(leaf) + i]);
-        corners[i] =
-          samples[static_cast<std::size_t>(components) * this->Mesh->SampleOfPoint[point] +
-                  static_cast<std::size_t>(component)];
-      }
-      value = ValueAtCentre(corners, fills);
+      value = valueOfLeaf(static_cast<std::size_t>(leaf));
     }
     means[cell * static_cast<std::size_t>(components) + static_cast<std::size_t>(component)] =
       static_cast<Out>(value);
@@ -212,6 +204,37 @@ void TreeOutput::Mean(
   }
 }
 
+template <class T, class Out>
+void TreeOutput::FillComponent(const T* samples, const FillSet<T>& fills, bool ofCells,
+  int components, int component, Out* means) const
+{
+  if (ofCells)
+  {
+    this->Mean(
+      [&](std::size_t leaf)
+      {
+        return MeanOfLeaves<double>(*this->Mesh, samples, components, component,
+          this->Cells->FirstCell[leaf], this->Cells->FirstCell[leaf + 1], fills);
+      },
+      components, component, means);
+    return;
+  }
+  this->Mean(
+    [&](std::size_t leaf)
+    {
+      T corners[8];
+      for (std::size_t i = 0; i < 8; ++i)
+      {
+        const auto point = static_cast<std::size_t>(this->Cells->Corners[8 * leaf + i]);
+        corners[i] =
+          samples[static_cast<std::size_t>(components) * this->Mesh->SampleOfPoint[point] +
+                  static_cast<std::size_t>(component)];
+      }
+      return ValueAtCentre(corners, fills);
+    },
+    components, component, means);
+}
+
 vtkSmartPointer<vtkDataArray> TreeOutput::Values(const vtkBanyanDeferred::Handle& handle) const
 {
   const ArrayIndex& array =
@@ -221,6 +244,7 @@ vtkSmartPointer<vtkDataArray> TreeOutput::Values(const vtkBanyanDeferred::Handle
   const auto means = vtkSmartPointer<vtkDataArray>::Take(
     vtkDataArray::CreateDataArray(small ? VTK_FLOAT : VTK_DOUBLE));
   const int components = image->GetNumberOfComponents();
+  const bool ofCells = !array.CellArray.empty();
   means->SetName(image->GetName());
   means->SetNumberOfComponents(components);
   means->CopyComponentNames(image);
@@ -235,11 +259,13 @@ vtkSmartPointer<vtkDataArray> TreeOutput::Values(const vtkBanyanDeferred::Handle
         const FillSet<T> fills(array.Components.at(static_cast<std::size_t>(c)).FillValues);
         if (small)
         {
-          this->Mean(samples, fills, components, c, static_cast<float*>(means->GetVoidPointer(0)));
+          this->FillComponent(
+            samples, fills, ofCells, components, c, static_cast<float*>(means->GetVoidPointer(0)));
         }
         else
         {
-          this->Mean(samples, fills, components, c, static_cast<double*>(means->GetVoidPointer(0)));
+          this->FillComponent(
+            samples, fills, ofCells, components, c, static_cast<double*>(means->GetVoidPointer(0)));
         }
       }
     });

@@ -34,18 +34,21 @@ public:
   void FillTrees(std::shared_ptr<const StoredMesh> mesh, int level, int piece, int pieces,
     vtkHyperTreeGrid* output);
 
-  /// The values of an array in the cells of the last FillTrees(): at the centre of each leaf (see
-  /// ValueAtCentre), and in coarser cells the mean of the eight below, without masked ones. Float32
-  /// where that holds all values of the array's type, otherwise float64. Throws Error.
+  /// The values of an array in the cells of the last FillTrees(): of point arrays at the centre of
+  /// each leaf (see ValueAtCentre), of cell arrays those of the leaves (see MeanOfLeaves); and in
+  /// coarser cells the mean of the eight below, without masked ones. Float32 where that holds all
+  /// values of the array's type, otherwise float64. Throws Error.
   /// @param handle of the whole image
   vtkSmartPointer<vtkDataArray> Values(const vtkBanyanDeferred::Handle& handle) const;
 
 private:
   class Maker;
 
+  template <class Out, class ValueOfLeaf>
+  void Mean(const ValueOfLeaf& valueOfLeaf, int components, int component, Out* means) const;
   template <class T, class Out>
-  void Mean(
-    const T* samples, const FillSet<T>& fills, int components, int component, Out* means) const;
+  void FillComponent(const T* samples, const FillSet<T>& fills, bool ofCells, int components,
+    int component, Out* means) const;
 
   std::shared_ptr<const StoredMesh> Mesh;
   std::unique_ptr<const TreeCells> Cells;

@@ -53,6 +53,8 @@ void vtkBanyanSeriesReader::PrintSelf(ostream& os, vtkIndent indent)
      << "\n";
   os << indent << "PointArraySelection:\n";
   this->Self->Selection->PrintSelf(os, indent.GetNextIndent());
+  os << indent << "CellArraySelection:\n";
+  this->Self->CellSelection->PrintSelf(os, indent.GetNextIndent());
 }
 
 int vtkBanyanSeriesReader::CanReadFile(const char* fileName)
@@ -99,6 +101,11 @@ void vtkBanyanSeriesReader::SetCacheBudget(int mebibytes)
 vtkDataArraySelection* vtkBanyanSeriesReader::GetPointArraySelection()
 {
   return this->Self->Selection;
+}
+
+vtkDataArraySelection* vtkBanyanSeriesReader::GetCellArraySelection()
+{
+  return this->Self->CellSelection;
 }
 
 int vtkBanyanSeriesReader::GetNumberOfPointArrays()
@@ -149,7 +156,8 @@ const char* vtkBanyanSeriesReader::GetErrorMessage()
 
 vtkMTimeType vtkBanyanSeriesReader::GetMTime()
 {
-  return std::max(this->Superclass::GetMTime(), this->Self->Selection->GetMTime());
+  return std::max({ this->Superclass::GetMTime(), this->Self->Selection->GetMTime(),
+    this->Self->CellSelection->GetMTime() });
 }
 
 //--------------------------------------------------------------------------------------------------
@@ -260,7 +268,14 @@ int vtkBanyanSeriesReader::RequestInformation(
   }
   for (const banyan::ArrayIndex& array : this->Self->Series->Index().Arrays)
   {
-    this->Self->Selection->AddArray(array.Name.c_str());
+    if (array.CellArray.empty())
+    {
+      this->Self->Selection->AddArray(array.Name.c_str());
+    }
+    else
+    {
+      this->Self->CellSelection->AddArray(array.CellArray.c_str());
+    }
   }
   banyan::DescribeSeries(
     this->Self->Series->Index(), this->UsedLevel(), *outputs->GetInformationObject(0));

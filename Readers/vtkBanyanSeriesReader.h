@@ -106,6 +106,8 @@ public:
    * RequestInformation().
    */
   vtkDataArraySelection* GetPointArraySelection();
+  /** Of series of meshes: which cell arrays are read. */
+  vtkDataArraySelection* GetCellArraySelection();
   int GetNumberOfPointArrays();
   const char* GetPointArrayName(int index);
   int GetPointArrayStatus(const char* name);

@@ -77,8 +77,6 @@ void vtkBanyanSeriesReader::FillMesh(vtkInformation* outInfo)
   {
     mesh.FillGrid(this->Level, piece, pieces, vtkUnstructuredGrid::SafeDownCast(output));
   }
-  vtkDataSetAttributes* const values =
-    output->GetAttributes(trees ? vtkDataObject::CELL : vtkDataObject::POINT);
   vtkBanyanDeferred::Handle handle;
   handle.Series = this->Self->Series;
   handle.Step = banyan::StepAt(index, *outInfo);
@@ -88,14 +86,20 @@ void vtkBanyanSeriesReader::FillMesh(vtkInformation* outInfo)
   for (handle.Array = 0; handle.Array < arrays; ++handle.Array)
   {
     this->UpdateProgress(static_cast<double>(handle.Array) / arrays);
-    if (this->Self->Selection->ArrayIsEnabled(index.Arrays[handle.Array].Name.c_str()))
+    const banyan::ArrayIndex& array = index.Arrays[handle.Array];
+    if (!this->Self->Wants(array))
     {
-      values->AddArray(trees ? mesh.CellValues(handle) : mesh.Values(handle));
+      continue;
     }
-  }
-  if (values->HasArray(index.ActiveScalars.c_str()))
-  {
-    values->SetActiveScalars(index.ActiveScalars.c_str());
+    vtkDataSetAttributes* const values = output->GetAttributes(
+      trees || !array.CellArray.empty() ? vtkDataObject::CELL : vtkDataObject::POINT);
+    const vtkSmartPointer<vtkDataArray> added =
+      trees ? mesh.CellValues(handle) : mesh.Values(handle);
+    values->AddArray(added);
+    if (array.Name == index.ActiveScalars)
+    {
+      values->SetActiveScalars(added->GetName());
+    }
   }
   this->UpdateProgress(1.0);
 }

@@ -123,7 +123,7 @@ void CheckArrays(const SeriesIndex& index, int step, const SourceStep& source,
   for (const int number : ChosenArrays(index, names))
   {
     const ArrayIndex& array = index.Arrays[static_cast<std::size_t>(number)];
-    const auto fits = [&](const SourceArray& other) { return other.Name == array.Name; };
+    const auto fits = [&](const SourceArray& other) { return other.IsSourceOf(array); };
     const auto count = std::count_if(source.Arrays.begin(), source.Arrays.end(), fits);
     if (count != 1)
     {
@@ -135,7 +135,9 @@ void CheckArrays(const SeriesIndex& index, int step, const SourceStep& source,
   for (std::size_t a = 0; a < source.Arrays.size(); ++a)
   {
     const SourceArray& array = source.Arrays[a];
-    if (names.empty() && source.IsValue(a) && index.FindArray(array.Name) < 0)
+    const bool held = std::any_of(index.Arrays.begin(), index.Arrays.end(),
+      [&](const ArrayIndex& other) { return array.IsSourceOf(other); });
+    if (names.empty() && source.IsValue(a) && !held)
     {
       Refuse(step, "the source has the array \"" + array.Name +
                      "\", which the series does not hold; --array NAME compares only those that "

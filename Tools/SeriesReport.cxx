@@ -238,14 +238,15 @@ CountsBySize ComponentReport::Unchanged() const
 
 std::int64_t SeriesReport::Values() const
 {
-  std::int64_t components = 0;
+  std::int64_t values = 0;
   for (const ArrayIndex& array : this->Index.Arrays)
   {
-    components += static_cast<std::int64_t>(array.Components.size());
+    const std::int64_t tuples = !this->Index.Mesh         ? this->Index.Domain.Extent.Count()
+                                : array.CellArray.empty() ? this->Index.Mesh->Points
+                                                          : this->Index.Mesh->Cells;
+    values += tuples * static_cast<std::int64_t>(array.Components.size());
   }
-  const std::int64_t tuples =
-    this->Index.Mesh ? this->Index.Mesh->Points : this->Index.Domain.Extent.Count();
-  return tuples * this->Index.Steps() * components;
+  return values * this->Index.Steps();
 }
 
 double SeriesReport::BitsPerValue() const

@@ -3,6 +3,7 @@
 
 #include "Base/ScalarType.h"
 #include "Series/Grid.h"
+#include "Series/SeriesIndex.h"
 
 #include <cstdint>
 #include <optional>
@@ -19,6 +20,14 @@ struct SourceArray
   ScalarType Type = ScalarType::Float32;
   int Components = 1;
   std::int64_t Tuples = 0; ///< 0: one per sample
+  bool OfCells = false;    ///< of a mesh: one value per cell
+
+  /// Whether an array of a series was made of it.
+  bool IsSourceOf(const ArrayIndex& array) const
+  {
+    return this->Name == (this->OfCells ? array.CellArray : array.Name) &&
+           this->OfCells != array.CellArray.empty();
+  }
 };
 
 /// What a source says of its mesh, before the values: where it is found among the arrays.

@@ -103,6 +103,11 @@ SourceStep StepFrom(const Json& json)
     {
       step.Mesh->Coordinates = static_cast<int>(step.Arrays.size()) - 1;
     }
+    if (step.Mesh && role == "cells")
+    {
+      step.Arrays.back().OfCells = true;
+      step.Arrays.back().Tuples = step.Mesh->Cells;
+    }
     if (step.Mesh && role == "corners")
     {
       step.Mesh->Corners = static_cast<int>(step.Arrays.size()) - 1;

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 
 namespace banyan
 {
@@ -148,7 +149,7 @@ private:
       for (std::size_t c = 0; c < this->Result.Components.size(); ++c)
       {
         const ComponentVerification& component = this->Result.Components[c];
-        if (this->ArrayOf(component).Name != step.Arrays[a].Name)
+        if (!step.Arrays[a].IsSourceOf(this->ArrayOf(component)))
         {
           continue;
         }
@@ -199,10 +200,12 @@ private:
     std::int64_t count = this->Whole.Count();
     if (this->Mesh)
     {
-      std::vector<std::uint8_t> points(static_cast<std::size_t>(this->Mesh->PointCount()) * size);
-      AtlasValues(this->Mesh).FromImage(array.Type, this->Decoded.data(), 1, points.data());
-      this->Decoded = std::move(points);
-      count = this->Mesh->PointCount();
+      const bool points = array.CellArray.empty();
+      count = points ? this->Mesh->PointCount() : this->Mesh->CellCount();
+      std::vector<std::uint8_t> values(static_cast<std::size_t>(count) * size);
+      AtlasValues(this->Mesh, points ? MeshValues::OfPoints : MeshValues::OfCells)
+        .FromImage(array.Type, this->Decoded.data(), 1, values.data());
+      this->Decoded = std::move(values);
     }
     const std::uint8_t* first =
       original.data() + static_cast<std::size_t>(component.Component) * size;
@@ -235,9 +238,9 @@ private:
     WorstValue worst;
     worst.Step = number;
     worst.Error = errors.WorstError;
-    // Points of a mesh are counted along x.
+    // Points and cells of a mesh are counted along x.
     const glm::ivec3 size =
-      this->Mesh ? glm::ivec3(static_cast<int>(this->Mesh->PointCount()), 1, 1) : this->Whole.Hi;
+      this->Mesh ? glm::ivec3(std::numeric_limits<int>::max(), 1, 1) : this->Whole.Hi;
     const std::int64_t i = errors.Worst;
     worst.Index = this->Series.Index().Domain.Extent.Lo + glm::ivec3(static_cast<int>(i % size.x),
                                                             static_cast<int>(i / size.x % size.y),

@@ -1,43 +1,28 @@
 #include "MeshSeries/AtlasValues.h"
 
 #include "MeshSeries/FreeSamples.h"
+#include "MeshSeries/Rounded.h"
 #include "Series/FillValues.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace banyan
 {
 namespace
 {
 
-/// The number of the type next to a value that lies within its range.
-template <class T>
-T Rounded(double value)
-{
-  if constexpr (std::is_floating_point_v<T>)
-  {
-    return static_cast<T>(value);
-  }
-  else
-  {
-    // The greatest double that is not above the type's greatest number.
-    constexpr double high = sizeof(T) < 8 ? static_cast<double>(std::numeric_limits<T>::max())
-                            : std::is_signed_v<T> ? 9223372036854774784.0
-                                                  : 18446744073709549568.0;
-    constexpr double low = static_cast<double>(std::numeric_limits<T>::lowest());
-    return static_cast<T>(std::min(std::max(std::nearbyint(value), low), high));
-  }
-}
-
 /// One component of an image, from the values at points.
 template <class T>
 class ImageComponent
 {
 public:
-  ImageComponent(const StoredMesh& mesh, const FillSet<T>& fills)
+  /// @param samples of the values; `copies` as StoredMesh has them
+  ImageComponent(const StoredMesh& mesh, const std::vector<std::uint32_t>& samples,
+    const std::vector<std::pair<std::uint32_t, std::uint32_t>>& copies, const FillSet<T>& fills)
     : Mesh(mesh)
+    , Samples(samples)
+    , Copies(copies)
     , Fills(fills)
     , Place(static_cast<std::size_t>(mesh.Atlas->SampleCount()), 0)
   {
@@ -60,12 +45,12 @@ public:
       }
     };
     const T* value = values;
-    for (const std::uint32_t sample : this->Mesh.SampleOfPoint)
+    for (const std::uint32_t sample : this->Samples)
     {
       put(sample, *value);
       value += stride;
     }
-    for (const auto& [to, from] : this->Mesh.Copies)
+    for (const auto& [to, from] : this->Copies)
     {
       if (known[from] != 0)
       {
@@ -84,15 +69,23 @@ public:
 
 private:
   const StoredMesh& Mesh;
+  const std::vector<std::uint32_t>& Samples;
+  const std::vector<std::pair<std::uint32_t, std::uint32_t>>& Copies;
   const FillSet<T>& Fills;
   std::vector<std::uint8_t> Place; ///< whether the sample has its value
 };
 
 } // namespace
 
-AtlasValues::AtlasValues(std::shared_ptr<const StoredMesh> mesh)
+AtlasValues::AtlasValues(std::shared_ptr<const StoredMesh> mesh, MeshValues where)
   : Mesh(std::move(mesh))
+  , Where(where)
 {
+}
+
+const std::vector<std::uint32_t>& AtlasValues::Samples() const
+{
+  return this->Where == MeshValues::OfCells ? this->Mesh->SampleOfCell : this->Mesh->SampleOfPoint;
 }
 
 void AtlasValues::ToImage(ScalarType type, const void* values, int components,
@@ -103,7 +96,10 @@ void AtlasValues::ToImage(ScalarType type, const void* values, int components,
     {
       using T = typename decltype(tag)::Type;
       const FillSet<T> set(fills);
-      ImageComponent<T> component(*this->Mesh, set);
+      // Cells of different levels are no copies of each other.
+      const std::vector<std::pair<std::uint32_t, std::uint32_t>> none;
+      ImageComponent<T> component(*this->Mesh, this->Samples(),
+        this->Where == MeshValues::OfCells ? none : this->Mesh->Copies, set);
       for (int c = 0; c < components; ++c)
       {
         component.Make(
@@ -120,7 +116,7 @@ void AtlasValues::FromImage(ScalarType type, const void* image, int components, 
       using T = typename decltype(tag)::Type;
       const T* from = static_cast<const T*>(image);
       T* to = static_cast<T*>(values);
-      for (const std::uint32_t sample : this->Mesh->SampleOfPoint)
+      for (const std::uint32_t sample : this->Samples())
       {
         to = std::copy_n(from + std::int64_t{ sample } * components, components, to);
       }

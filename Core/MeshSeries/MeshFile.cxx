@@ -8,8 +8,24 @@
 
 namespace banyan
 {
+namespace
+{
 
-std::shared_ptr<const MeshPlan> WriteMesh(const StoredMesh& mesh, SegmentFolder& folder)
+std::shared_ptr<const std::vector<std::uint8_t>> Marked(
+  const StoredMesh& mesh, const std::vector<std::uint32_t>& samples)
+{
+  auto marked = std::make_shared<std::vector<std::uint8_t>>(
+    static_cast<std::size_t>(mesh.Atlas->SampleCount()));
+  for (const std::uint32_t sample : samples)
+  {
+    (*marked)[sample] = 1;
+  }
+  return marked;
+}
+
+} // namespace
+
+std::shared_ptr<MeshPlan> WriteMesh(const StoredMesh& mesh, SegmentFolder& folder)
 {
   const Bytes bytes = MeshToBytes(mesh);
   const Hash128 hash = HashOf(bytes.data(), bytes.size());
@@ -20,13 +36,8 @@ std::shared_ptr<const MeshPlan> WriteMesh(const StoredMesh& mesh, SegmentFolder&
   plan->Index.HashHigh = hash.High;
   plan->Index.Points = mesh.PointCount();
   plan->Index.Cells = mesh.CellCount();
-  auto needed = std::make_shared<std::vector<std::uint8_t>>(
-    static_cast<std::size_t>(mesh.Atlas->SampleCount()));
-  for (const std::uint32_t sample : mesh.SampleOfPoint)
-  {
-    (*needed)[sample] = 1;
-  }
-  plan->Needed = std::move(needed);
+  plan->Needed = Marked(mesh, mesh.SampleOfPoint);
+  plan->NeededOfCells = Marked(mesh, mesh.SampleOfCell);
   AtomicFile file(folder.Path() + "/" + plan->Index.File);
   file.Append(bytes.data(), bytes.size());
   file.Commit();

@@ -14,7 +14,7 @@ class SeriesFile;
 
 /// Writes the file of a mesh into the folder of its series, and says what encoding must know of it.
 /// Throws Error when the file cannot be written.
-std::shared_ptr<const MeshPlan> WriteMesh(const StoredMesh& mesh, SegmentFolder& folder);
+std::shared_ptr<MeshPlan> WriteMesh(const StoredMesh& mesh, SegmentFolder& folder);
 
 /// The grid of the images that values of a mesh become.
 Grid GridOfImages(const StoredMesh& mesh);

@@ -12,6 +12,7 @@ MeshCells CoarserCells(const StoredMesh& mesh, int level)
   merging.ForEach(level,
     [&](const MergedLeaf& element)
     {
+      cells.FirstLeaf.push_back(static_cast<std::uint32_t>(element.First));
       for (int corner = 0; corner < 8; ++corner)
       {
         cells.Connectivity.push_back(

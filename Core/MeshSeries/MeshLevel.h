@@ -12,6 +12,8 @@ namespace banyan
 struct MeshCells
 {
   std::vector<std::int64_t> Connectivity; ///< `[cell][8]`: points of the mesh, corners x fastest
+  /// The leaves that became this cell: from this one on, up to those of the next.
+  std::vector<std::uint32_t> FirstLeaf;
   std::int64_t Count() const { return static_cast<std::int64_t>(this->Connectivity.size() / 8); }
 };
 

@@ -42,6 +42,7 @@ void TakeMesh(const StoredMesh& mesh, TreeCells& cells)
   cells.Corners.reserve(8 * static_cast<std::size_t>(mesh.CellCount()));
   for (std::size_t leaf = 0; leaf < static_cast<std::size_t>(mesh.CellCount()); ++leaf)
   {
+    cells.FirstCell.push_back(static_cast<std::uint32_t>(leaf));
     for (std::size_t corner = 0; corner < 8; ++corner)
     {
       cells.Corners.push_back(mesh.PointAt(leaf, corner));
@@ -51,7 +52,9 @@ void TakeMesh(const StoredMesh& mesh, TreeCells& cells)
 
 void TakeCoarser(const StoredMesh& mesh, int level, TreeCells& cells)
 {
-  cells.Corners = CoarserCells(mesh, level).Connectivity;
+  MeshCells coarser = CoarserCells(mesh, level);
+  cells.Corners = std::move(coarser.Connectivity);
+  cells.FirstCell = std::move(coarser.FirstLeaf);
   for (std::size_t i = 0; i < cells.Corners.size(); i += 8)
   {
     const glm::ivec3 low = PlaceOf(mesh, cells.Corners[i]);
@@ -74,6 +77,7 @@ TreeCells TreeCellsOf(const StoredMesh& mesh, int level)
   {
     TakeCoarser(mesh, level, cells);
   }
+  cells.FirstCell.push_back(static_cast<std::uint32_t>(mesh.CellCount()));
   if (cells.Leaves.Keys.empty())
   {
     return cells;

@@ -21,6 +21,9 @@ struct TreeCells
   // In the order of Morton keys.
   OctreeLeaves Leaves;
   std::vector<std::int64_t> Corners; ///< `[leaf][8]`: points of the mesh, x fastest
+  /// The cells of the mesh in each leaf: from this one on (in the order of keys) up to those of the
+  /// next; one more than there are leaves.
+  std::vector<std::uint32_t> FirstCell;
 
   int RootLevel = 0;         ///< trees have 2^RootLevel finest cells along an axis
   glm::ivec3 FirstRoot{ 0 }; ///< of the grid of trees, in trees

@@ -87,6 +87,28 @@ void CheckOptions(const EncodeOptions& options)
   }
 }
 
+void AddMesh(const MeshPlan& plan, SeriesIndex& index)
+{
+  index.FormatVersion = 3;
+  index.Mesh = plan.Index;
+  for (ArrayIndex& array : index.Arrays)
+  {
+    const auto found = plan.CellArrays.find(array.Name);
+    if (found != plan.CellArrays.end())
+    {
+      array.CellArray = found->second;
+      index.FormatVersion = 4;
+    }
+  }
+  const auto samples = static_cast<std::size_t>(index.Domain.Extent.Count());
+  const bool told = plan.Needed && plan.Needed->size() == samples;
+  const bool toldOfCells = plan.NeededOfCells && plan.NeededOfCells->size() == samples;
+  if (!told || (index.FormatVersion >= 4 && !toldOfCells))
+  {
+    throw Error("It must be said of each sample whether it stands for a point or cell of the mesh");
+  }
+}
+
 } // namespace
 
 const QuantizerOptions& EncodeOptions::QuantizerFor(const std::string& array) const
@@ -133,15 +155,14 @@ SeriesIndex PlanSeries(
   }
   if (options.Mesh)
   {
-    index.FormatVersion = 3;
-    index.Mesh = options.Mesh->Index;
-    if (!options.Mesh->Needed ||
-        options.Mesh->Needed->size() != static_cast<std::size_t>(grid.Extent.Count()))
-    {
-      throw Error("It must be said of each sample whether it stands for a point of the mesh");
-    }
+    AddMesh(*options.Mesh, index);
   }
-  index.ActiveScalars = arrays.empty() ? "" : arrays[0].Name;
+  // Cell arrays are numbers of blocks and the like as often as not.
+  const auto ofPoints = std::find_if(index.Arrays.begin(), index.Arrays.end(),
+    [](const ArrayIndex& array) { return array.CellArray.empty(); });
+  index.ActiveScalars = ofPoints != index.Arrays.end() ? ofPoints->Name
+                        : arrays.empty()               ? ""
+                                                       : arrays[0].Name;
   return index;
 }
 

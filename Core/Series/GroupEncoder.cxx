@@ -144,7 +144,11 @@ FieldOfPlan MakeField(const SeriesIndex& plan, const EncodeOptions& options, std
   field.FillValues = index.FillValues;
   field.Expected = IsPromised(index) ? index.PromisedRange : RangeOfGroup(field, tuples, pool);
   field.Beyond = GoesBeyond(index);
-  field.Needed = options.Mesh ? options.Mesh->Needed->data() : nullptr;
+  if (options.Mesh)
+  {
+    const auto& needed = of.CellArray.empty() ? options.Mesh->Needed : options.Mesh->NeededOfCells;
+    field.Needed = needed->data();
+  }
   if (!index.Opacity.empty())
   {
     field.Opacity.emplace(index.Opacity);
@@ -154,6 +158,14 @@ FieldOfPlan MakeField(const SeriesIndex& plan, const EncodeOptions& options, std
     made.Clamped = Clamp(index, tuples, pool, field);
   }
   return made;
+}
+
+/// Of one component.
+std::int64_t ValuesOfStep(const SeriesIndex& plan, const ArrayIndex& array)
+{
+  return !plan.Mesh                ? plan.Domain.Extent.Count()
+         : array.CellArray.empty() ? plan.Mesh->Points
+                                   : plan.Mesh->Cells;
 }
 
 /// Whether the groups of a component all have one lattice.
@@ -342,8 +354,8 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
       }
       Measure(fields.back(), count, group.Measured[a][c], group.Statistics);
       group.Measured[a][c].ClampedCount = made.Clamped.Count * (rests ? count : 1);
-      group.BytesIn += static_cast<std::uint64_t>(plan.Mesh ? plan.Mesh->Points : tuples) *
-                       SizeOf(array.Type) * steps.size();
+      group.BytesIn += static_cast<std::uint64_t>(ValuesOfStep(plan, array)) * SizeOf(array.Type) *
+                       steps.size();
     }
     group.Magnitudes.emplace_back();
     for (const std::vector<double>& step : squares)

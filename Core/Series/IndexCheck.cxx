@@ -97,7 +97,15 @@ bool IsPlainName(const std::string& file)
 void CheckMesh(const SeriesIndex& index)
 {
   Require((index.FormatVersion >= 3) == index.Mesh.has_value(),
-    "A series of format version 3 is one of a mesh, and only such a series is");
+    "A series of format version 3 or 4 is one of a mesh, and only such a series is");
+  std::set<std::string> cellArrays;
+  for (const ArrayIndex& array : index.Arrays)
+  {
+    Require(array.CellArray.empty() || cellArrays.insert(array.CellArray).second,
+      "Two cell arrays have the name '" + array.CellArray + "'");
+  }
+  Require((index.FormatVersion >= 4) == !cellArrays.empty(),
+    "A series of format version 4 has cell arrays, and only such a series has");
   if (index.Mesh)
   {
     Require(IsPlainName(index.Mesh->File), "The name of the mesh is not a plain file name");

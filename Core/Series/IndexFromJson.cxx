@@ -63,6 +63,10 @@ ArrayIndex ArrayFromJson(const Json& json)
 {
   ArrayIndex array;
   array.Name = TextMember(json, "name");
+  if (json.contains("cellArray"))
+  {
+    array.CellArray = TextMember(json, "cellArray");
+  }
   array.Type = ScalarTypeFromName(TextMember(json, "type"));
   for (const Json& component : ListMember(json, "components"))
   {

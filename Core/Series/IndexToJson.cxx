@@ -46,6 +46,10 @@ Json ArrayToJson(const ArrayIndex& array)
 {
   Json json;
   json["name"] = array.Name;
+  if (!array.CellArray.empty())
+  {
+    json["cellArray"] = array.CellArray;
+  }
   json["type"] = NameOf(array.Type);
   for (const ComponentIndex& component : array.Components)
   {

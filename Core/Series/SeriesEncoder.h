@@ -32,6 +32,11 @@ struct MeshPlan
   /// By sample of an image, x fastest: 0 where it stands for no point of the mesh. Such a sample may
   /// decode to anything, and is not counted.
   std::shared_ptr<const std::vector<std::uint8_t>> Needed;
+  /// The same for cells: what counts in arrays that are values of cells.
+  std::shared_ptr<const std::vector<std::uint8_t>> NeededOfCells;
+  /// The arrays whose values are those of cells, by their names in the series: the names that they
+  /// have as cell arrays.
+  std::map<std::string, std::string> CellArrays;
 };
 
 struct EncodeOptions

@@ -65,7 +65,9 @@ struct ComponentIndex
 
 struct ArrayIndex
 {
-  std::string Name;
+  std::string Name; ///< no two arrays of a series have the same
+  /// Of a mesh: the name of the cell array that this is. Empty: it is a point array.
+  std::string CellArray;
   ScalarType Type = ScalarType::Float32;
   std::vector<ComponentIndex> Components; ///< at least one
   /// Per step, of the length (L2 norm) of the decoded vectors whose components are finite. None for
@@ -119,7 +121,7 @@ struct EncodeStatistics
 /// All that the index file says. See Documentation/format.md.
 struct SeriesIndex
 {
-  int FormatVersion = 2; ///< 1 is read, and never written; 3 is that of meshes
+  int FormatVersion = 2; ///< 1 is read, and never written; 3 and 4 are those of meshes
   Grid Domain;
   std::optional<MeshIndex> Mesh; ///< nothing: the series is of the images themselves
   int BrickCells = 16;

@@ -19,6 +19,7 @@ import pictures
 import session
 
 BOUND = 1e-3
+CELLS = 1  # vtkDataObject.CELL
 STEPS = 5
 QUAKE_CELLS, SHUFFLED_CELLS = 3489, 280
 TIMES = [10.0 * step for step in range(STEPS)]
@@ -80,6 +81,15 @@ special[used % 97 == 5] = numpy.nan
 special[used % 89 == 3] = -9999.0
 add(output.GetPointData(), "special", special)
 add(output.GetPointData(), "count", (x + 10 * y).astype(numpy.int16))
+# (Of all cells at once: the last bit of numpy's sine depends on where in an array a number stands.)
+mx, my, mz = place[cells].mean(1).T
+every = numpy.arange(len(cells))
+mass = (numpy.sin(mx) + my * time).astype(numpy.float32)
+mass[every % 53 == 7] = numpy.nan
+mass[every % 47 == 11] = -9999.0
+add(output.GetCellData(), "mass", mass[own])
+add(output.GetCellData(), "stress", numpy.stack([mx + time, mx * my, numpy.cos(mz)], 1)[own])
+add(output.GetCellData(), "u", (own % 7 + time).astype(numpy.int32))  # the name of a point array
 if GLOBAL:
     for data, values in ((output.GetPointData(), used), (output.GetCellData(), own)):
         ids = numpy_to_vtkIdTypeArray(numpy.ascontiguousarray(values, dtype=numpy.int64), 1)
@@ -98,6 +108,10 @@ info.Set(self.CAN_HANDLE_PIECE_REQUEST(), 1)
 """
 
 
+# A cell array with the name of a point array has another one in trees, which have cell data only.
+CELLS_IN_TREES = {"u": "u of cells"}
+
+
 def shuffled(shared, numbered):
     source = simple.ProgrammableSource(OutputDataSetType="vtkUnstructuredGrid")
     source.Script = f"SHARED, GLOBAL = {shared}, {numbered}\n" + SHUFFLED
@@ -114,9 +128,9 @@ def expect_same_mesh(one, other, where):
         session.require(a.shape == b.shape and (a == b).all(), f"{where}: other {name}")
 
 
-def expect_within(one, other, names, where):
+def expect_within(one, other, names, where, place=0):
     for name in names:
-        a, b = [vtk_to_numpy(g.GetPointData().GetArray(name)) for g in (one, other)]
+        a, b = [vtk_to_numpy(g.GetAttributes(place).GetArray(name)) for g in (one, other)]
         session.require(a.dtype == b.dtype and a.shape == b.shape, f"{where}: {name} is another array")
         fixed = ~numpy.isfinite(a.astype(float)) | (a == -9999.0)
         session.require(a[fixed].tobytes() == b[fixed].tobytes(), f"{where}: {name} without value")
@@ -124,7 +138,7 @@ def expect_within(one, other, names, where):
         session.require(worst <= BOUND, f"{where}: {name} is {worst} away")
 
 
-def compare(source, path, names, times, cells):
+def compare(source, path, names, times, cells, cell_names=()):
     """Each step of a source and of the series that it was written to."""
     reader = simple.OpenDataFile(path)
     session.require(list(reader.TimestepValues) == times,
@@ -137,10 +151,13 @@ def compare(source, path, names, times, cells):
             one, other = servermanager.Fetch(merged), servermanager.Fetch(reader)
             expect_same_mesh(one, other, path)
             expect_within(one, other, names, f"{path}, time {time}")
+            expect_within(one, other, cell_names, f"{path}, cells, time {time}", CELLS)
     read = reader.GetDataInformation()
     session.require(read.GetNumberOfCells() == cells, f"{path}: {read.GetNumberOfCells()} cells")
     for name in names:
         session.require(read.GetPointDataInformation().GetArrayInformation(name), f"{path}: no {name}")
+    for name in cell_names:
+        session.require(read.GetCellDataInformation().GetArrayInformation(name), f"{path}: no {name}")
     simple.Delete(merged)
     return reader
 
@@ -150,6 +167,38 @@ def write(source, folder, name, names, **options):
     simple.SaveData(path, proxy=source, ErrorBoundMode="Absolute", ErrorBound=BOUND,
                     PointArrays=names, WriteTimeSteps=1, KeyframeInterval=2, **options)
     return path
+
+
+def check_cell_levels(path, names, fill):
+    """Of coarser levels: means by volume, found by a search through all cells."""
+    reader = simple.OpenDataFile(path)
+    reader.UpdatePipeline(reader.TimestepValues[-1])
+    fine = servermanager.Fetch(reader)
+    place = vtk_to_numpy(fine.GetPoints().GetData())
+    corners = place[vtk_to_numpy(fine.GetCells().GetConnectivityArray()).reshape(-1, 8)]
+    middle, volume = corners.mean(1), numpy.ptp(corners, axis=1).prod(1)
+    merged = 0
+    for level in (1, 2):
+        reader.Level = level
+        reader.UpdatePipeline(reader.TimestepValues[-1])
+        coarse = servermanager.Fetch(reader)
+        place = vtk_to_numpy(coarse.GetPoints().GetData())
+        corners = place[vtk_to_numpy(coarse.GetCells().GetConnectivityArray()).reshape(-1, 8)]
+        low, high = corners.min(1), corners.max(1)
+        for name in names:
+            values, found = [vtk_to_numpy(g.GetCellData().GetArray(name)) for g in (fine, coarse)]
+            session.require(values.dtype == found.dtype, f"{path}: {name} is {found.dtype}")
+            for cell in range(coarse.GetNumberOfCells()):
+                inside = ((middle > low[cell]) & (middle < high[cell])).all(1)
+                merged += inside.sum() > 1
+                part, size = values[inside].astype(float), volume[inside]
+                mean = numpy.tensordot(size, part, 1) / size.sum()
+                mean = numpy.where((part == fill).any(0), fill, mean)
+                near = 0.5 if values.dtype.kind == "i" else 1e-6
+                session.require(numpy.allclose(mean, found[cell], rtol=1e-6, atol=near, equal_nan=True),
+                                f"{path}, level {level}: {name} of cell {cell}")
+    session.require(merged > 20, f"{merged} cells are merged ones")
+    simple.Delete(reader)
 
 
 def check_levels(reader):
@@ -171,7 +220,7 @@ def centres(grid, names):
     return middle, {name: (array[ids].astype(float), array.dtype) for name, array in arrays.items()}
 
 
-def check_trees(path, names, fill):
+def check_trees(path, names, fill, cell_names=()):
     """The series as hyper tree grid has the values at the centres of the cells, at every level."""
     alone = vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses() == 1
     grid, trees = simple.OpenDataFile(path), simple.OpenDataFile(path)
@@ -205,9 +254,27 @@ def check_trees(path, names, fill):
                 close = numpy.isclose(means[order], values[other].astype(float), rtol=1e-6, atol=1e-6,
                                       equal_nan=True)
                 session.require(close.all(), f"{path}, level {level}: {name}")
+            for name in cell_names:
+                grids = (servermanager.Fetch(grid), name), (one, CELLS_IN_TREES.get(name, name))
+                a, b = [vtk_to_numpy(g.GetCellData().GetArray(n)).astype(float) for g, n in grids]
+                near = 0.5 if name == "u" else 1e-6  # integers are rounded in grids
+                session.require(numpy.allclose(a[order], b[other], rtol=1e-6, atol=near, equal_nan=True),
+                                f"{path}, level {level}: {name} of cells")
     simple.Delete(leaves)
     for source in (grid, trees):
         simple.Delete(source)
+
+
+def check_choice(source, folder):
+    """The chosen arrays are written, and read."""
+    path = os.path.join(folder, "chosen.banyan")
+    simple.SaveData(path, proxy=source, PointArrays=[], CellArrays=["u", "mass"])
+    reader = simple.OpenDataFile(path)
+    reader.CellArrays = ["mass"]
+    reader.UpdatePipeline()
+    found = sorted(reader.PointData.keys()), sorted(reader.CellData.keys())
+    session.require(found == ([], ["mass"]), f"{path}: {found}")
+    simple.Delete(reader)
 
 
 def check_blocks(folder):
@@ -236,6 +303,18 @@ def check_blocks(folder):
                         "other values of blocks")
     simple.Delete(reader)
     more = simple.Calculator(Input=halves[1], ResultArrayName="extra", Function="2*RTData")
+    # A cell array of one block only is left out; those of all are not.
+    averages = [simple.PointDatatoCellData(Input=half) for half in halves]
+    for blocks, count in (([halves[0], averages[1]], None), (averages, 128)):
+        if count is None:
+            blocks[1] = simple.PointDatatoCellData(Input=halves[1], PassPointData=1)
+        simple.SaveData(path, proxy=simple.GroupDatasets(Input=blocks))
+        other = simple.OpenDataFile(path)
+        other.UpdatePipeline()
+        array = other.CellData["RTData"]
+        session.require((array is None) == (count is None), f"{path}: cell array {array}")
+        session.require((other.PointData["RTData"] is None) == (count is not None), f"{path}: point array")
+        simple.Delete(other)
     uneven = simple.GroupDatasets(Input=[halves[0], more])
     try:
         simple.SaveData(path, proxy=uneven)
@@ -298,9 +377,8 @@ def check_refusals(folder, quake):
     refused(moved, "points have moved")
     refused(simple.MergeBlocks(Input=quake, MergePoints=0), "There is no point array nonsense",
             PointArrays=["nonsense"])
-    # Cell data only.
-    averages = simple.PointDatatoCellData(Input=simple.MergeBlocks(Input=quake, MergePoints=0))
-    refused(averages, "only cell arrays")
+    refused(simple.MergeBlocks(Input=quake, MergePoints=0), "There is no cell array nonsense",
+            CellArrays=["nonsense"])
 
 
 def check_damage(path, folder):
@@ -343,13 +421,16 @@ def main():
     reader = compare(quake, path, arrays, TIMES, QUAKE_CELLS)
     check_levels(reader)
     check_pictures(simple.MergeBlocks(Input=quake), reader, "velocity", options.out)
-    names = ["u", "special", "count"]
+    names, cell_names = ["u", "special", "count"], ["mass", "stress", "u"]
     for name, shared, numbered in (("numbered", True, True), ("pieces", False, True)):
         source = shuffled(shared, numbered)
-        path = write(source, options.out, name, names, FillValues=[-9999.0])
-        compare(source, path, names, [0.0, 1.0, 2.5], SHUFFLED_CELLS)
+        path = write(source, options.out, name, names, FillValues=[-9999.0], CellArrays=cell_names)
+        compare(source, path, names, [0.0, 1.0, 2.5], SHUFFLED_CELLS, cell_names)
+    if controller.GetNumberOfProcesses() == 1:
+        check_cell_levels(path, cell_names, -9999.0)
+    check_choice(source, options.out)
     check_trees(os.path.join(options.out, "earthquake.banyan"), arrays, numpy.inf)
-    check_trees(path, names, -9999.0)
+    check_trees(path, names, -9999.0, cell_names)
     check_blocks(options.out)
     check_refusals(options.out, quake)
     check_damage(path, options.out)

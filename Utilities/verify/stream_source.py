@@ -81,21 +81,21 @@ def type_name(values):
     return f"{kind}{8 * values.dtype.itemsize}"
 
 
-def arrays_of(image, wanted):
-    """Names and values ([point][component]) of the point arrays; hidden points are NaN."""
-    ghosts = image.GetPointGhostArray()
+def arrays_of(image, wanted, data=None):
+    """Names and values ([tuple][component]) of the point arrays, or of other data; hidden points are NaN."""
+    ghosts = image.GetPointGhostArray() if data is None else None
     hidden = None if ghosts is None else (vtk_to_numpy(ghosts) & HIDDEN_POINT) != 0
+    data = data or image.GetPointData()
     arrays = []
-    for number in range(image.GetPointData().GetNumberOfArrays()):
-        array = image.GetPointData().GetArray(number)
+    for number in range(data.GetNumberOfArrays()):
+        array = data.GetArray(number)
         # None stands for arrays of other things than numbers.
         if array is None or array.GetName() == GHOSTS or array.GetClassName() == "vtkBitArray":
             continue
         if wanted and array.GetName() not in wanted:
             continue
-        if image.IsA("vtkUnstructuredGrid") and array in (image.GetPointData().GetGlobalIds(),
-                                                          image.GetPointData().GetPedigreeIds()):
-            continue  # names of points, which are no values
+        if image.IsA("vtkUnstructuredGrid") and array in (data.GetGlobalIds(), data.GetPedigreeIds()):
+            continue  # names of points and cells, which are no values
         values = vtk_to_numpy(array).reshape(array.GetNumberOfTuples(), -1)
         if hidden is not None and hidden.any() and values.dtype.kind == "f":
             values = values.copy()
@@ -104,7 +104,7 @@ def arrays_of(image, wanted):
     return arrays
 
 
-def send_mesh(stream, grid, time, arrays):
+def send_mesh(stream, grid, time, arrays, wanted):
     """Points and corners of cells come before the values."""
     points = vtk_to_numpy(grid.GetPoints().GetData())
     corners = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).astype(numpy.int64)
@@ -112,6 +112,7 @@ def send_mesh(stream, grid, time, arrays):
         raise SourceError("The mesh has cells that are no hexahedra.")
     parts = [("", points, "coordinates"), ("", corners.reshape(-1, 8), "corners")]
     parts += [(name, values, "") for name, values in arrays]
+    parts += [(name, values, "cells") for name, values in arrays_of(grid, wanted, grid.GetCellData())]
     header = {"time": time, "mesh": {"points": grid.GetNumberOfPoints(), "cells": grid.GetNumberOfCells()},
               "arrays": [{"name": name, "type": type_name(values), "components": values.shape[1],
                           "role": role} for name, values, role in parts]}
@@ -121,9 +122,9 @@ def send_mesh(stream, grid, time, arrays):
     stream.flush()
 
 
-def send_step(stream, image, time, arrays):
+def send_step(stream, image, time, arrays, wanted):
     if image.IsA("vtkUnstructuredGrid"):
-        send_mesh(stream, image, time, arrays)
+        send_mesh(stream, image, time, arrays, wanted)
         return
     matrix = image.GetDirectionMatrix()
     header = {"time": time, "extent": list(image.GetExtent()), "origin": list(image.GetOrigin()),
@@ -142,7 +143,7 @@ def send(stream, wanted, files):
     reader = open_source(files)
     for time in time_values(reader):
         image = image_at(reader, time, files[0])
-        send_step(stream, image, time, arrays_of(image, wanted))
+        send_step(stream, image, time, arrays_of(image, wanted), wanted)
     stream.write(b'{"end": true}\n')
 
 

@@ -1,0 +1,48 @@
+#ifndef banyan_MeshSeries_MeanOfLeaves_h
+#define banyan_MeshSeries_MeanOfLeaves_h
+
+#include "MeshSeries/Rounded.h"
+#include "MeshSeries/StoredMesh.h"
+#include "Series/FillValues.h"
+
+namespace banyan
+{
+
+/// The value of a cell that leaves were merged into: their mean, weighted by volume, summed in
+/// double precision in the order of their Morton keys. Integers are rounded. NaN if one of them is;
+/// a fill value if one of them is. That of a single leaf is its own, bit for bit.
+/// @param Out the type T of the values, or a real that the mean is wanted as
+/// @param image `[sample][components]`
+/// @param component of the image
+/// @param first, end the leaves; at least one
+template <class Out, class T>
+Out MeanOfLeaves(const StoredMesh& mesh, const T* image, int components, int component,
+  std::size_t first, std::size_t end, const FillSet<T>& fills)
+{
+  const auto valueOf = [&](std::size_t leaf)
+  {
+    return image[std::int64_t{ mesh.SampleOfCell[mesh.CellOfLeaf[leaf]] } * components + component];
+  };
+  if (end - first == 1)
+  {
+    return static_cast<Out>(valueOf(first));
+  }
+  double sum = 0.0;
+  double volume = 0.0;
+  for (std::size_t leaf = first; leaf < end; ++leaf)
+  {
+    const T value = valueOf(leaf);
+    if (fills.Holds(value))
+    {
+      return static_cast<Out>(value);
+    }
+    const auto cells = static_cast<double>(CubeKeys(mesh.Leaves.Levels[leaf]));
+    sum += cells * static_cast<double>(value);
+    volume += cells;
+  }
+  return Rounded<Out>(sum / volume);
+}
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,187 @@
+#include "MeshArrays.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataArraySelection.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
+#include "vtkPointData.h"
+#include "vtkUnstructuredGrid.h"
+
+#include "Base/Error.h"
+
+#include <algorithm>
+#include <set>
+
+namespace banyan
+{
+namespace
+{
+
+bool Enabled(vtkDataArraySelection* selection, const std::string& name)
+{
+  return selection->ArrayIsEnabled(name.c_str()) != 0;
+}
+
+std::string NameOf(vtkAbstractArray* array, int number)
+{
+  const char* const name = array->GetName();
+  return name && *name ? name : "Unnamed" + std::to_string(number);
+}
+
+/// What is not a value of the simulation.
+bool IsNoValue(vtkDataSetAttributes* attributes, vtkAbstractArray* array, const std::string& name)
+{
+  return array == attributes->GetGlobalIds() || array == attributes->GetPedigreeIds() ||
+         name == vtkDataSetAttributes::GhostArrayName();
+}
+
+std::string Joined(const std::set<std::string>& names)
+{
+  std::string text;
+  for (const std::string& name : names)
+  {
+    text += (text.empty() ? "" : ", ") + name;
+  }
+  return text;
+}
+
+/// Arrays of points, or of cells.
+struct Found
+{
+  std::vector<std::pair<std::string, vtkDataArray*>> Numbers;
+  std::set<std::string> Names;  ///< of those and others that are there
+  std::set<std::string> Others; ///< that are no numbers, or not everywhere
+};
+
+Found ArraysOf(vtkDataSetAttributes* attributes, const WantedArrays& wanted)
+{
+  Found found;
+  for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* const array = attributes->GetAbstractArray(i);
+    const std::string name = NameOf(array, i);
+    const bool another = found.Names.insert(name).second;
+    if (!another || IsNoValue(attributes, array, name) || !wanted(name))
+    {
+      continue;
+    }
+    vtkDataArray* const numbers = vtkDataArray::SafeDownCast(array);
+    if (numbers && numbers->GetDataType() != VTK_BIT)
+    {
+      found.Numbers.emplace_back(name, numbers);
+    }
+    else
+    {
+      found.Others.insert(name);
+    }
+  }
+  return found;
+}
+
+/// Throws Error when an array was chosen that is not there.
+void CheckChosen(
+  vtkDataArraySelection* selection, const char* kind, const std::set<std::string>& names)
+{
+  for (int i = 0; i < selection->GetNumberOfArrays(); ++i)
+  {
+    const std::string name = selection->GetArrayName(i);
+    // ParaView offers the ghost flags like any array and selects them by default.
+    if (selection->GetArraySetting(i) && name != vtkDataSetAttributes::GhostArrayName() &&
+        names.count(name) == 0)
+    {
+      throw Error("There is no " + std::string(kind) + " array " + name +
+                  (names.empty() ? "." : "; there are: " + Joined(names) + "."));
+    }
+  }
+}
+
+/// Puts cell arrays that only some pieces have among the others.
+void AddPartial(vtkUnstructuredGrid* grid, const WantedArrays& wanted, Found& cells)
+{
+  const std::string prefix = InSomePiecesName({});
+  vtkFieldData* const fields = grid->GetFieldData();
+  for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
+  {
+    const std::string name = NameOf(fields->GetAbstractArray(i), i);
+    if (name.compare(0, prefix.size(), prefix) == 0)
+    {
+      const std::string array = name.substr(prefix.size());
+      cells.Names.insert(array);
+      if (wanted(array))
+      {
+        cells.Others.insert(array);
+      }
+    }
+  }
+}
+
+std::string UniqueName(const std::string& name, const std::set<std::string>& taken)
+{
+  std::string unique = name;
+  while (taken.count(unique) != 0)
+  {
+    unique += " of cells";
+  }
+  return unique;
+}
+
+} // namespace
+
+bool MeshArrays::Chosen() const
+{
+  return this->Points->GetNumberOfArrays() > 0 || this->Cells->GetNumberOfArrays() > 0;
+}
+
+WantedArrays MeshArrays::WantedPoints(bool leaves) const
+{
+  return [this, leaves](const std::string& name)
+  {
+    return !this->Chosen() || Enabled(this->Points, name) || (leaves && Enabled(this->Cells, name));
+  };
+}
+
+std::vector<MeshArray> MeshArrays::Of(
+  vtkUnstructuredGrid* grid, bool leaves, std::string& warning) const
+{
+  const WantedArrays wantedCells = [this](const std::string& name)
+  { return !this->Chosen() || Enabled(this->Cells, name); };
+  const Found points = ArraysOf(grid->GetPointData(), this->WantedPoints(leaves));
+  Found cells = ArraysOf(grid->GetCellData(), wantedCells);
+  AddPartial(grid, wantedCells, cells);
+  CheckChosen(this->Points, "point", points.Names);
+  CheckChosen(this->Cells, "cell", leaves ? points.Names : cells.Names);
+
+  std::vector<MeshArray> arrays;
+  std::set<std::string> taken;
+  for (const auto& point : points.Numbers)
+  {
+    arrays.push_back({ point.second, point.first, {} });
+    taken.insert(point.first);
+  }
+  for (const auto& cell : cells.Numbers)
+  {
+    const std::string name = UniqueName(cell.first, taken);
+    arrays.push_back({ cell.second, name, cell.first });
+    taken.insert(name);
+  }
+  if (!points.Others.empty())
+  {
+    warning +=
+      "The point arrays " + Joined(points.Others) + " are not numbers and are not written. ";
+  }
+  if (!cells.Others.empty())
+  {
+    warning += "The cell arrays " + Joined(cells.Others) +
+               " are not numbers, or not the same in all pieces or blocks of the mesh, and are not "
+               "written. ";
+  }
+  if (arrays.empty())
+  {
+    throw Error(
+      "There is no array of numbers to write at the points or cells of the mesh. " + warning);
+  }
+  return arrays;
+}
+
+} // namespace banyan
