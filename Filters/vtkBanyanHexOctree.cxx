@@ -3,7 +3,9 @@
 #include "GridOfAmr.h"
 #include "GridOfHyperTrees.h"
 #include "HexMeshOfGrid.h"
+#include "MeshPieces.h"
 #include "RankTalk.h"
+#include "SampledGrid.h"
 
 #include "Base/ThreadPool.h"
 #include "HexOctree/ElementOctree.h"
@@ -107,15 +109,30 @@ vtkSmartPointer<vtkUnstructuredGrid> GridOf(vtkDataObject* data)
     const banyan::RankTalk talk(vtkMultiProcessController::GetGlobalController());
     return banyan::GridOfAmrOnRanks(blocks, talk);
   }
-  return vtkUnstructuredGrid::SafeDownCast(data);
+  std::vector<vtkUnstructuredGrid*> grids;
+  if (!banyan::CollectGrids(data, grids))
+  {
+    throw banyan::Error("The data hold cells that are those of no unstructured grid");
+  }
+  return banyan::MergePieces(grids, [](const std::string&) { return true; });
+}
+
+/// Whether the cells are boxes already, whatever the data.
+bool IsOfBoxes(vtkDataObject* data)
+{
+  return vtkHyperTreeGrid::SafeDownCast(data) || vtkOverlappingAMR::SafeDownCast(data);
 }
 
 } // namespace
 
+vtkBanyanHexOctree::vtkBanyanHexOctree() = default;
+vtkBanyanHexOctree::~vtkBanyanHexOctree() = default;
+
 int vtkBanyanHexOctree::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
-  for (const char* type : { "vtkUnstructuredGrid", "vtkHyperTreeGrid", "vtkOverlappingAMR" })
+  for (const char* type : { "vtkUnstructuredGrid", "vtkHyperTreeGrid", "vtkOverlappingAMR",
+         "vtkMultiBlockDataSet", "vtkPartitionedDataSet", "vtkPartitionedDataSetCollection" })
   {
     info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), type);
   }
@@ -127,33 +144,105 @@ int vtkBanyanHexOctree::RequestData(
 {
   this->SetErrorCode(vtkErrorCode::NoError);
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputs);
+  vtkDataObject* const data = vtkDataObject::GetData(inputs[0]);
   try
   {
-    const vtkSmartPointer<vtkUnstructuredGrid> input = GridOf(vtkDataObject::GetData(inputs[0]));
-    output->ShallowCopy(input);
-    const banyan::HexMesh mesh = banyan::HexMeshOf(input);
-    if (mesh.CellCount == 0)
+    if (!this->SampleGeneralMeshes || IsOfBoxes(data))
     {
+      this->Describe(GridOf(data), output);
       return 1;
     }
-    const auto tree =
-      banyan::ElementOctree::Find(mesh, banyan::ThreadPool::Process(), this->MeshTolerance);
-    AddLevels(*tree, output);
-    AddHanging(*tree, output);
-    AddFacts(*tree, output);
+    const vtkSmartPointer<vtkUnstructuredGrid> all = this->Gathered(data);
+    const banyan::RankTalk talk(vtkMultiProcessController::GetGlobalController());
+    talk.OnRank(0, [&] { this->Describe(all, output); });
     return 1;
   }
   catch (const std::exception& error)
   {
     this->SetErrorCode(vtkErrorCode::UserError);
-    vtkErrorMacro(<< "The mesh is no octree of hexahedra. " << error.what());
+    vtkErrorMacro(<< "The mesh is no octree of hexahedra. " << error.what()
+                  << (this->SampleGeneralMeshes || IsOfBoxes(data)
+                         ? ""
+                         : ". Switch on 'Sample General Meshes' for the boxes that \"Banyan "
+                           "Volume\" draws of such meshes"));
     output->Initialize();
     return 0;
   }
 }
 
+/// Collective: the meshes of all ranks as one, on the first one.
+vtkSmartPointer<vtkUnstructuredGrid> vtkBanyanHexOctree::Gathered(vtkDataObject* data) const
+{
+  vtkMultiProcessController* const controller = vtkMultiProcessController::GetGlobalController();
+  const banyan::RankTalk talk(controller);
+  vtkSmartPointer<vtkUnstructuredGrid> mine;
+  talk.Together([&] { mine = GridOf(data); });
+  if (talk.Ranks() == 1)
+  {
+    return mine;
+  }
+  std::vector<vtkSmartPointer<vtkDataObject>> all;
+  controller->Gather(mine, all, 0);
+  talk.OnRank(0,
+    [&]
+    {
+      std::vector<vtkUnstructuredGrid*> pieces;
+      for (const auto& piece : all)
+      {
+        banyan::CollectGrids(piece, pieces);
+      }
+      mine = banyan::MergePieces(pieces, [](const std::string&) { return true; });
+    });
+  return mine;
+}
+
+/// The input with what is found in it, or the boxes that it is sampled at.
+void vtkBanyanHexOctree::Describe(vtkUnstructuredGrid* input, vtkUnstructuredGrid* output)
+{
+  banyan::ThreadPool& pool = banyan::ThreadPool::Process();
+  vtkSmartPointer<vtkUnstructuredGrid> grid = input;
+  std::shared_ptr<const banyan::ElementOctree> tree;
+  try
+  {
+    const banyan::HexMesh mesh = banyan::HexMeshOf(grid);
+    if (mesh.CellCount == 0)
+    {
+      output->ShallowCopy(grid);
+      return;
+    }
+    tree = banyan::ElementOctree::Find(mesh, pool, this->MeshTolerance);
+  }
+  catch (const banyan::Error&)
+  {
+    if (!this->SampleGeneralMeshes)
+    {
+      throw;
+    }
+  }
+  if (!tree)
+  {
+    if (!this->Sampled)
+    {
+      this->Sampled = std::make_unique<banyan::SampledGrid>();
+    }
+    grid = this->Sampled->Of(input, { this->MeshSamplingTolerance, this->MeshSamplingBoxes });
+    if (!this->Sampled->Note().empty())
+    {
+      vtkWarningMacro(<< this->Sampled->Note());
+    }
+    tree = banyan::ElementOctree::Find(banyan::HexMeshOf(grid), pool);
+  }
+  output->ShallowCopy(grid);
+  AddLevels(*tree, output);
+  AddHanging(*tree, output);
+  AddFacts(*tree, output);
+}
+
 void vtkBanyanHexOctree::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "MeshTolerance: " << this->MeshTolerance << "\n";
+  os << indent << "MeshTolerance: " << this->MeshTolerance << "\n"
+     << indent << "SampleGeneralMeshes: " << this->SampleGeneralMeshes << "\n"
+     << indent << "MeshSamplingTolerance: " << this->MeshSamplingTolerance << "\n"
+     << indent << "MeshSamplingBoxes: " << this->MeshSamplingBoxes << "\n";
 }

@@ -14,17 +14,30 @@
  * hang where neighbours differ by more than one level, points that have the place of another one.
  *
  * A mesh that is no octree is an error, whose message names the first cell that does not fit, and
- * why.
+ * why. With SampleGeneralMeshes the output is instead a grid of the boxes that "Banyan Volume" draws
+ * of it (see SampledGrid): axis-aligned voxels with values at their points, which the writer of
+ * series takes.
+ *
+ * Blocks of a composite data set are one mesh. Points of blocks at one place become one.
  *
  * @par Source: section 4 of "Visualizing Very Large-Scale Earthquake Simulations".
  * @par Limits: each piece is looked at by itself, but blocks of AMR hide cells of other ranks: with
- * AMR it is collective over the global controller; of ghost cells the level is -1.
+ * AMR or SampleGeneralMeshes it is collective over the global controller, and with the latter the
+ * first rank has the whole mesh then; of ghost cells the level is -1.
  */
 #ifndef vtkBanyanHexOctree_h
 #define vtkBanyanHexOctree_h
 
 #include "BanyanFiltersModule.h" // For export macro
+#include "vtkSmartPointer.h"     // For Gathered
 #include "vtkUnstructuredGridAlgorithm.h"
+
+#include <memory> // For Sampled
+
+namespace banyan
+{
+class SampledGrid;
+}
 
 class BANYANFILTERS_EXPORT vtkBanyanHexOctree : public vtkUnstructuredGridAlgorithm
 {
@@ -40,16 +53,45 @@ public:
   vtkGetMacro(MeshTolerance, double);
   ///@}
 
+  ///@{
+  /// Whether meshes that are no octree (curved or warped hexahedra, topography, mixed cells) become
+  /// boxes that they are sampled at. Default: no.
+  vtkSetMacro(SampleGeneralMeshes, bool);
+  vtkGetMacro(SampleGeneralMeshes, bool);
+  vtkBooleanMacro(SampleGeneralMeshes, bool);
+  ///@}
+
+  ///@{
+  /// The largest difference from the mesh's own field between samples, as a part of the spread of
+  /// the values around, whatever they are. Default 1/4; allowed [1/1024, 1].
+  vtkSetClampMacro(MeshSamplingTolerance, double, 1.0 / 1024, 1.0);
+  vtkGetMacro(MeshSamplingTolerance, double);
+  ///@}
+
+  ///@{
+  /// How many boxes there may be: where more would be needed, they stay coarser, with a warning.
+  /// Default 2^20; allowed [2^10, 2^26].
+  vtkSetClampMacro(MeshSamplingBoxes, int, 1 << 10, 1 << 26);
+  vtkGetMacro(MeshSamplingBoxes, int);
+  ///@}
+
 protected:
-  vtkBanyanHexOctree() = default;
-  ~vtkBanyanHexOctree() override = default;
+  vtkBanyanHexOctree();
+  ~vtkBanyanHexOctree() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 private:
+  vtkSmartPointer<vtkUnstructuredGrid> Gathered(vtkDataObject* data) const;
+  void Describe(vtkUnstructuredGrid* input, vtkUnstructuredGrid* output);
+
   double MeshTolerance = 1.0 / 1024;
+  bool SampleGeneralMeshes = false;
+  double MeshSamplingTolerance = 1.0 / 4;
+  int MeshSamplingBoxes = 1 << 20;
+  std::unique_ptr<banyan::SampledGrid> Sampled;
 
   vtkBanyanHexOctree(const vtkBanyanHexOctree&) = delete;
   void operator=(const vtkBanyanHexOctree&) = delete;
