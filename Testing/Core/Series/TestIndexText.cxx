@@ -176,10 +176,13 @@ TEST(IndexText, SaysWhatIsWrong)
   ExpectRejected("", "not a Banyan series");
   ExpectRejected("# vtk DataFile Version 3.0\n", "not a Banyan series");
   std::string other = text;
-  other.replace(14, 1, "4");
-  ExpectRejected(other, "version 4");
-  other.replace(14, 1, "3");
-  ExpectRejected(other, "one of a mesh");
+  other.replace(14, 1, "5");
+  ExpectRejected(other, "version 5");
+  for (const char* const mesh : { "3", "4" })
+  {
+    other.replace(14, 1, mesh);
+    ExpectRejected(other, "one of a mesh");
+  }
   ExpectRejected("banyan-series 99999999999 x", "first line");
   const std::string body = text.substr(text.find('\n') + 1);
   const auto with = [&](const std::string& from, const std::string& to)
