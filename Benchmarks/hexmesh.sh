@@ -80,7 +80,8 @@ measure_adaptive()
   local csv="$output/hexmesh-adaptive.csv" options
   "$program" --header > "$csv" || fail "$csv cannot be written."
   for options in "banyan-full" "banyan --tolerance 1" "banyan --tolerance 4" \
-    "banyan-one-level --max-elements 1" "banyan-one-level --max-elements 0.25"; do
+    "banyan --tolerance 8" "banyan-one-level --max-elements 0.1" \
+    "banyan-one-level --max-elements 0.06"; do
     say "      $options"
     # shellcheck disable=SC2086 # words
     "$program" --mesh "$mesh" --cells "$cells" --picture 512 --repeat "$repeat" \

@@ -33,6 +33,7 @@ vtkSmartPointer<vtkUnstructuredGrid> BlockAt(const std::string& file, double sec
   vtkNew<vtkExodusIIReader> reader;
   reader->SetFileName(file.c_str());
   reader->ApplyDisplacementsOff();
+  reader->SetSqueezePoints(false); // there is one block, and this takes long
   reader->UpdateInformation();
   reader->SetAllArrayStatus(vtkExodusIIReader::NODAL, 0);
   reader->SetPointResultArrayStatus(Drawn, 1);
