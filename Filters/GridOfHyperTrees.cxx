@@ -1,5 +1,6 @@
 #include "GridOfHyperTrees.h"
 
+#include "GhostCells.h"
 #include "VoxelCells.h"
 
 #include "Base/Error.h"
@@ -24,8 +25,6 @@ namespace banyan
 {
 namespace
 {
-
-constexpr int GhostBits = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
 
 class LeafCollector
 {

@@ -1,11 +1,12 @@
 #include "HexMeshOfGrid.h"
 
+#include "GhostCells.h"
+
 #include "VoxelCells.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellTypes.h"
 #include "vtkDataArray.h"
-#include "vtkDataSetAttributes.h"
 #include "vtkIdList.h"
 #include "vtkPoints.h"
 #include "vtkSmartPointer.h"
@@ -18,8 +19,6 @@ namespace banyan
 {
 namespace
 {
-
-constexpr int GhostBits = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
 
 bool IsHexahedron(int type)
 {
@@ -41,18 +40,6 @@ OtherCells FindOthers(vtkUnstructuredGrid* grid)
     }
   }
   return others;
-}
-
-bool HasGhosts(vtkUnsignedCharArray* ghosts)
-{
-  for (vtkIdType cell = 0; ghosts && cell < ghosts->GetNumberOfTuples(); ++cell)
-  {
-    if ((ghosts->GetValue(cell) & GhostBits) != 0)
-    {
-      return true;
-    }
-  }
-  return false;
 }
 
 /// The cells that count; null when all do.

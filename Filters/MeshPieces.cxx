@@ -1,5 +1,6 @@
 #include "MeshPieces.h"
 
+#include "GhostCells.h"
 #include "MeshArrays.h"
 
 #include "vtkCellArray.h"
@@ -29,21 +30,6 @@ namespace banyan
 {
 namespace
 {
-
-constexpr int GhostBits = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
-
-bool HasGhosts(vtkUnstructuredGrid* grid)
-{
-  vtkUnsignedCharArray* const ghosts = grid->GetCellGhostArray();
-  for (vtkIdType cell = 0; ghosts && cell < ghosts->GetNumberOfTuples(); ++cell)
-  {
-    if ((ghosts->GetValue(cell) & GhostBits) != 0)
-    {
-      return true;
-    }
-  }
-  return false;
-}
 
 /// A point or cell of one of the pieces.
 struct Source
@@ -92,7 +78,7 @@ private:
   {
     vtkUnstructuredGrid* const grid = this->Pieces[piece];
     vtkUnsignedCharArray* const ghosts = grid->GetCellGhostArray();
-    const bool some = HasGhosts(grid);
+    const bool some = HasGhosts(ghosts);
     std::vector<char> used(static_cast<std::size_t>(grid->GetNumberOfPoints()), some ? 0 : 1);
     vtkNew<vtkIdList> ids;
     for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
@@ -398,7 +384,7 @@ vtkSmartPointer<vtkUnstructuredGrid> MergePieces(
   {
     return vtkSmartPointer<vtkUnstructuredGrid>::New();
   }
-  if (pieces.size() == 1 && !HasGhosts(pieces[0]))
+  if (pieces.size() == 1 && !HasGhosts(pieces[0]->GetCellGhostArray()))
   {
     return pieces[0];
   }

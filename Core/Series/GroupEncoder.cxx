@@ -2,9 +2,8 @@
 
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
-#include "Series/ComponentRange.h"
 #include "Series/FieldLattice.h"
-#include "Series/FillValues.h"
+#include "Series/FieldOfPlan.h"
 #include "Series/GroupWriter.h"
 #include "Series/Hash.h"
 
@@ -30,57 +29,6 @@ ValueRange MagnitudeRange(const std::vector<double>& squares)
   return range;
 }
 
-ValueRange RangeOfGroup(const FieldGroup& field, std::int64_t tuples, ThreadPool& pool)
-{
-  ValueRange range;
-  if (!field.FillValues.empty())
-  {
-    ValueHistogram values;
-    for (const void* step : field.Steps)
-    {
-      CountComponent(field.Type, step, tuples, field.Components, 0, field.FillValues, values);
-    }
-    return values.Range();
-  }
-  for (const void* step : field.Steps)
-  {
-    range.Include(RangeOfComponent(field.Type, step, tuples, field.Components, 0, pool));
-  }
-  return range;
-}
-
-/// The steps of a component, clamped.
-struct ClampedSteps
-{
-  std::vector<std::vector<std::uint8_t>> Values; ///< kept alive for the field
-  std::int64_t Count = 0;
-};
-
-/// Replaces the values of a field by clamped copies.
-ClampedSteps Clamp(
-  const ComponentIndex& component, std::int64_t tuples, ThreadPool& pool, FieldGroup& field)
-{
-  ClampedSteps clamped;
-  clamped.Values.resize(field.Steps.size());
-  std::vector<std::int64_t> counts(field.Steps.size());
-  pool.ParallelFor(static_cast<std::int64_t>(field.Steps.size()),
-    [&](std::int64_t step)
-    {
-      const std::size_t s = static_cast<std::size_t>(step);
-      clamped.Values[s].resize(static_cast<std::size_t>(tuples) * SizeOf(field.Type));
-      counts[s] = ClampComponent(field.Type, field.Steps[s], field.Components, tuples,
-        component.PromisedRange, component.FillValues, clamped.Values[s].data());
-      field.Steps[s] = clamped.Values[s].data();
-    });
-  for (const std::int64_t count : counts)
-  {
-    clamped.Count += count;
-  }
-  field.Components = 1;
-  field.Component = 0;
-  return clamped;
-}
-
 void Measure(const EncodedField& field, std::int64_t steps, ComponentIndex& component,
   EncodeStatistics& statistics)
 {
@@ -95,69 +43,9 @@ void Measure(const EncodedField& field, std::int64_t steps, ComponentIndex& comp
   component.SumWeightedError = field.Errors.SumWeighted;
   statistics.ExceptionVoxels += field.Errors.Exceptions;
   statistics.ChainSum += field.ChainSum;
-  statistics.ChainBricks += static_cast<std::int64_t>(
-    field.Steps.empty() ? 0 : field.Steps[0].Planes[0].size()) * steps;
+  statistics.ChainBricks +=
+    static_cast<std::int64_t>(field.Steps.empty() ? 0 : field.Steps[0].Planes[0].size()) * steps;
   statistics.ChainMost = std::max<std::int64_t>(statistics.ChainMost, field.ChainMost);
-}
-
-bool IsPromised(const ComponentIndex& component)
-{
-  return !component.PromisedRange.Empty();
-}
-
-bool GoesBeyond(const ComponentIndex& component)
-{
-  return component.RangeFrom != RangeRule::Source::Data && !component.ClampOutside;
-}
-
-/// A component over some steps, with the values that are encoded.
-struct FieldOfPlan
-{
-  FieldGroup Field;
-  ClampedSteps Clamped;
-};
-
-FieldOfPlan MakeField(const SeriesIndex& plan, const EncodeOptions& options, std::size_t array,
-  std::size_t component, const std::vector<std::vector<ArrayValues>>& steps, ThreadPool& pool)
-{
-  const ArrayIndex& of = plan.Arrays[array];
-  const ComponentIndex& index = of.Components[component];
-  const std::int64_t tuples = plan.Domain.Extent.Count();
-  FieldOfPlan made;
-  FieldGroup& field = made.Field;
-  field.Type = of.Type;
-  for (const std::vector<ArrayValues>& step : steps)
-  {
-    field.Steps.push_back(
-      static_cast<const char*>(step[array].Values) + component * SizeOf(of.Type));
-  }
-  field.Components = static_cast<int>(of.Components.size());
-  field.Component = static_cast<int>(component);
-  field.Samples = plan.Domain.Samples();
-  field.BrickCells = plan.BrickCells;
-  field.Levels = plan.Levels;
-  field.Map = index.ValueTransform;
-  field.Bound = index.ErrorBoundAbsolute;
-  field.Profile = options.Profile;
-  field.Ideas = options.Ideas;
-  field.CompressionLevel = options.CompressionLevel;
-  field.FillValues = index.FillValues;
-  field.Expected = IsPromised(index) ? index.PromisedRange : RangeOfGroup(field, tuples, pool);
-  field.Beyond = GoesBeyond(index);
-  if (options.Mesh)
-  {
-    const auto& needed = of.CellArray.empty() ? options.Mesh->Needed : options.Mesh->NeededOfCells;
-    field.Needed = needed->data();
-  }
-  if (!index.Opacity.empty())
-  {
-    field.Opacity.emplace(index.Opacity);
-  }
-  if (index.ClampOutside)
-  {
-    made.Clamped = Clamp(index, tuples, pool, field);
-  }
-  return made;
 }
 
 /// Of one component.
@@ -227,7 +115,8 @@ public:
                                                      : this->KnownValues[array];
     const void* const first = steps[0][array].Values;
     return HashOf(first, bytes) == before &&
-           std::all_of(steps.begin() + 1, steps.end(), [&](const std::vector<ArrayValues>& step)
+           std::all_of(steps.begin() + 1, steps.end(),
+             [&](const std::vector<ArrayValues>& step)
              { return std::memcmp(step[array].Values, first, bytes) == 0; });
   }
 
@@ -354,8 +243,8 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
       }
       Measure(fields.back(), count, group.Measured[a][c], group.Statistics);
       group.Measured[a][c].ClampedCount = made.Clamped.Count * (rests ? count : 1);
-      group.BytesIn += static_cast<std::uint64_t>(ValuesOfStep(plan, array)) * SizeOf(array.Type) *
-                       steps.size();
+      group.BytesIn +=
+        static_cast<std::uint64_t>(ValuesOfStep(plan, array)) * SizeOf(array.Type) * steps.size();
     }
     group.Magnitudes.emplace_back();
     for (const std::vector<double>& step : squares)
@@ -373,8 +262,8 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
   for (const EncodedField& field : fields)
   {
     heads.push_back(field.Head);
-    shapes.push_back(group::ShapeOf(
-      plan.Domain.Samples(), field.Head.Axes, plan.BrickCells, plan.Levels));
+    shapes.push_back(
+      group::ShapeOf(plan.Domain.Samples(), field.Head.Axes, plan.BrickCells, plan.Levels));
   }
   for (std::size_t t = 0; t < steps.size(); ++t)
   {
@@ -389,8 +278,8 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
       field.Steps[t] = {};
     }
   }
-  group.Segment = writer.Finish(
-    heads, shapes, number * plan.KeyframeInterval, static_cast<int>(steps.size()));
+  group.Segment =
+    writer.Finish(heads, shapes, number * plan.KeyframeInterval, static_cast<int>(steps.size()));
   group.Statistics.TableBytes = group.Segment.Bytes - group.Statistics.PayloadBytes;
   if (last != nullptr)
   {

@@ -15,6 +15,7 @@ from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
+import mesh_levels
 import pictures
 import session
 
@@ -108,10 +109,6 @@ info.Set(self.CAN_HANDLE_PIECE_REQUEST(), 1)
 """
 
 
-# A cell array with the name of a point array has another one in trees, which have cell data only.
-CELLS_IN_TREES = {"u": "u of cells"}
-
-
 def shuffled(shared, numbered):
     source = simple.ProgrammableSource(OutputDataSetType="vtkUnstructuredGrid")
     source.Script = f"SHARED, GLOBAL = {shared}, {numbered}\n" + SHUFFLED
@@ -167,102 +164,6 @@ def write(source, folder, name, names, **options):
     simple.SaveData(path, proxy=source, ErrorBoundMode="Absolute", ErrorBound=BOUND,
                     PointArrays=names, WriteTimeSteps=1, KeyframeInterval=2, **options)
     return path
-
-
-def check_cell_levels(path, names, fill):
-    """Of coarser levels: means by volume, found by a search through all cells."""
-    reader = simple.OpenDataFile(path)
-    reader.UpdatePipeline(reader.TimestepValues[-1])
-    fine = servermanager.Fetch(reader)
-    place = vtk_to_numpy(fine.GetPoints().GetData())
-    corners = place[vtk_to_numpy(fine.GetCells().GetConnectivityArray()).reshape(-1, 8)]
-    middle, volume = corners.mean(1), numpy.ptp(corners, axis=1).prod(1)
-    merged = 0
-    for level in (1, 2):
-        reader.Level = level
-        reader.UpdatePipeline(reader.TimestepValues[-1])
-        coarse = servermanager.Fetch(reader)
-        place = vtk_to_numpy(coarse.GetPoints().GetData())
-        corners = place[vtk_to_numpy(coarse.GetCells().GetConnectivityArray()).reshape(-1, 8)]
-        low, high = corners.min(1), corners.max(1)
-        for name in names:
-            values, found = [vtk_to_numpy(g.GetCellData().GetArray(name)) for g in (fine, coarse)]
-            session.require(values.dtype == found.dtype, f"{path}: {name} is {found.dtype}")
-            for cell in range(coarse.GetNumberOfCells()):
-                inside = ((middle > low[cell]) & (middle < high[cell])).all(1)
-                merged += inside.sum() > 1
-                part, size = values[inside].astype(float), volume[inside]
-                mean = numpy.tensordot(size, part, 1) / size.sum()
-                mean = numpy.where((part == fill).any(0), fill, mean)
-                near = 0.5 if values.dtype.kind == "i" else 1e-6
-                session.require(numpy.allclose(mean, found[cell], rtol=1e-6, atol=near, equal_nan=True),
-                                f"{path}, level {level}: {name} of cell {cell}")
-    session.require(merged > 20, f"{merged} cells are merged ones")
-    simple.Delete(reader)
-
-
-def check_levels(reader):
-    counts = []
-    for level in range(4):
-        reader.Level = level
-        reader.UpdatePipeline()
-        counts.append(reader.GetDataInformation().GetNumberOfCells())
-    reader.Level = 0
-    session.require(counts[0] > counts[1] > counts[2], f"cells of levels: {counts}")
-
-
-def centres(grid, names):
-    """The mean of the eight points of each cell, by the middle of the cell; and the types of arrays."""
-    place = vtk_to_numpy(grid.GetPoints().GetData()).astype(float)
-    ids = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 8)
-    middle = place[ids].mean(1)
-    arrays = {name: vtk_to_numpy(grid.GetPointData().GetArray(name)) for name in names}
-    return middle, {name: (array[ids].astype(float), array.dtype) for name, array in arrays.items()}
-
-
-def check_trees(path, names, fill, cell_names=()):
-    """The series as hyper tree grid has the values at the centres of the cells, at every level."""
-    alone = vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses() == 1
-    grid, trees = simple.OpenDataFile(path), simple.OpenDataFile(path)
-    trees.MeshAsHyperTreeGrid = 1
-    leaves = simple.HyperTreeGridToUnstructuredGrid(Input=trees)
-    for level in (0, 1, 2):
-        grid.Level = trees.Level = level
-        for time in (grid.TimestepValues[0], grid.TimestepValues[-1]):
-            grid.UpdatePipeline(time)
-            leaves.UpdatePipeline(time)
-            session.require(trees.GetDataInformation().GetDataClassName() == "vtkHyperTreeGrid",
-                            f"{path}: {trees.GetDataInformation().GetDataClassName()}")
-            counts = [s.GetDataInformation().GetNumberOfCells() for s in (grid, leaves)]
-            session.require(counts[0] == counts[1], f"{path}, level {level}: {counts} cells")
-            if not alone:
-                continue
-            middle, expected = centres(servermanager.Fetch(grid), names)
-            one = servermanager.Fetch(leaves)
-            found = centres(one, [])[0]
-            scale = numpy.abs(middle).max() * 1e-6
-            order, other = [numpy.lexsort(numpy.round(m / scale).T) for m in (middle, found)]
-            session.require(numpy.allclose(middle[order], found[other], atol=2 * scale),
-                            f"{path}: other cells")
-            for name, (corners, kind) in expected.items():
-                values = vtk_to_numpy(one.GetCellData().GetArray(name))
-                small = kind == numpy.float32 or kind.itemsize <= 2
-                session.require(values.dtype == (numpy.float32 if small else numpy.float64),
-                                f"{path}: {name} is {values.dtype}")
-                means = corners.mean(1)
-                means[(corners == fill).any(1)] = fill
-                close = numpy.isclose(means[order], values[other].astype(float), rtol=1e-6, atol=1e-6,
-                                      equal_nan=True)
-                session.require(close.all(), f"{path}, level {level}: {name}")
-            for name in cell_names:
-                grids = (servermanager.Fetch(grid), name), (one, CELLS_IN_TREES.get(name, name))
-                a, b = [vtk_to_numpy(g.GetCellData().GetArray(n)).astype(float) for g, n in grids]
-                near = 0.5 if name == "u" else 1e-6  # integers are rounded in grids
-                session.require(numpy.allclose(a[order], b[other], rtol=1e-6, atol=near, equal_nan=True),
-                                f"{path}, level {level}: {name} of cells")
-    simple.Delete(leaves)
-    for source in (grid, trees):
-        simple.Delete(source)
 
 
 def check_choice(source, folder):
@@ -419,7 +320,7 @@ def main():
     arrays = ["velocity", "ground_displacement"]
     path = write(quake, options.out, "earthquake", arrays + ["ids"])
     reader = compare(quake, path, arrays, TIMES, QUAKE_CELLS)
-    check_levels(reader)
+    mesh_levels.check_levels(reader)
     check_pictures(simple.MergeBlocks(Input=quake), reader, "velocity", options.out)
     names, cell_names = ["u", "special", "count"], ["mass", "stress", "u"]
     for name, shared, numbered in (("numbered", True, True), ("pieces", False, True)):
@@ -427,10 +328,10 @@ def main():
         path = write(source, options.out, name, names, FillValues=[-9999.0], CellArrays=cell_names)
         compare(source, path, names, [0.0, 1.0, 2.5], SHUFFLED_CELLS, cell_names)
     if controller.GetNumberOfProcesses() == 1:
-        check_cell_levels(path, cell_names, -9999.0)
+        mesh_levels.check_cell_levels(path, cell_names, -9999.0)
     check_choice(source, options.out)
-    check_trees(os.path.join(options.out, "earthquake.banyan"), arrays, numpy.inf)
-    check_trees(path, names, -9999.0, cell_names)
+    mesh_levels.check_trees(os.path.join(options.out, "earthquake.banyan"), arrays, numpy.inf)
+    mesh_levels.check_trees(path, names, -9999.0, cell_names)
     check_blocks(options.out)
     check_refusals(options.out, quake)
     check_damage(path, options.out)

@@ -1,0 +1,28 @@
+#ifndef banyan_Filters_GhostCells_h
+#define banyan_Filters_GhostCells_h
+
+#include "vtkDataSetAttributes.h"
+#include "vtkUnsignedCharArray.h"
+
+namespace banyan
+{
+
+/// Cells with any of these flags are those of other pieces, or hidden.
+constexpr int GhostBits = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
+
+/// @param flags of cells, or null
+inline bool HasGhosts(vtkUnsignedCharArray* flags)
+{
+  for (vtkIdType cell = 0; flags && cell < flags->GetNumberOfTuples(); ++cell)
+  {
+    if ((flags->GetValue(cell) & GhostBits) != 0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+} // namespace banyan
+
+#endif
