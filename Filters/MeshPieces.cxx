@@ -2,6 +2,7 @@
 
 #include "GhostCells.h"
 #include "MeshArrays.h"
+#include "PieceItems.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -30,13 +31,6 @@ namespace banyan
 {
 namespace
 {
-
-/// A point or cell of one of the pieces.
-struct Source
-{
-  std::size_t Piece = 0;
-  vtkIdType Id = 0;
-};
 
 class PieceMerger
 {
@@ -137,10 +131,10 @@ private:
 
   template <class Attributes>
   bool Sorted(
-    std::vector<Source>& items, Attributes attributes, std::vector<vtkIdType>& place) const
+    std::vector<PieceItem>& items, Attributes attributes, std::vector<vtkIdType>& place) const
   {
     std::vector<vtkIdType> ids;
-    for (const Source& item : items)
+    for (const PieceItem& item : items)
     {
       vtkDataArray* const global = GlobalIds(attributes(this->Pieces[item.Piece]));
       if (!global)
@@ -153,7 +147,7 @@ private:
     std::iota(order.begin(), order.end(), std::size_t{ 0 });
     std::stable_sort(
       order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return ids[a] < ids[b]; });
-    std::vector<Source> sorted;
+    std::vector<PieceItem> sorted;
     place.resize(items.size());
     for (std::size_t i = 0; i < order.size(); ++i)
     {
@@ -204,7 +198,7 @@ private:
   {
     grid->Allocate(static_cast<vtkIdType>(this->Cells.size()));
     vtkNew<vtkIdList> ids;
-    for (const Source& cell : this->Cells)
+    for (const PieceItem& cell : this->Cells)
     {
       this->Pieces[cell.Piece]->GetCells()->GetCellAtId(cell.Id, ids);
       for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
@@ -218,10 +212,10 @@ private:
   /// So that what is merged of blocks can be merged with that of other ranks.
   template <class Attributes>
   void KeepGlobalIds(
-    const std::vector<Source>& items, Attributes attributes, vtkUnstructuredGrid* grid) const
+    const std::vector<PieceItem>& items, Attributes attributes, vtkUnstructuredGrid* grid) const
   {
     vtkNew<vtkIdTypeArray> kept;
-    for (const Source& item : items)
+    for (const PieceItem& item : items)
     {
       vtkDataArray* const global = GlobalIds(attributes(this->Pieces[item.Piece]));
       if (!global)
@@ -253,7 +247,12 @@ private:
         vtkDataArray* const array = all->GetArray(a);
         if (this->Counts(all, array) && !grid->GetPointData()->GetArray(array->GetName()))
         {
-          grid->GetPointData()->AddArray(this->Joined(array, this->PartsOf(array)));
+          const auto joined = this->Joined(array, this->PartsOf(array));
+          grid->GetPointData()->AddArray(joined);
+          if (array == all->GetPedigreeIds())
+          {
+            grid->GetPointData()->SetPedigreeIds(joined);
+          }
         }
       }
     }
@@ -273,12 +272,23 @@ private:
       vtkCellData* const all = piece->GetCellData();
       for (int a = 0; a < all->GetNumberOfArrays(); ++a)
       {
-        vtkDataArray* const like = all->GetArray(a);
-        if (like && like->GetName() && like != all->GetGlobalIds() &&
-            std::strcmp(like->GetName(), vtkDataSetAttributes::GhostArrayName()) != 0 &&
-            done.insert(like->GetName()).second)
+        vtkAbstractArray* const array = all->GetAbstractArray(a);
+        if (!array->GetName() || array == all->GetGlobalIds() ||
+            std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName()) == 0 ||
+            !done.insert(array->GetName()).second)
         {
-          this->MakeCellArray(like, grid);
+          continue;
+        }
+        vtkDataArray* const like = vtkDataArray::SafeDownCast(array);
+        if (!like)
+        {
+          MarkLeftOut(array->GetName(), grid);
+          continue;
+        }
+        this->MakeCellArray(like, grid);
+        if (array == all->GetPedigreeIds() && grid->GetCellData()->GetArray(array->GetName()))
+        {
+          grid->GetCellData()->SetPedigreeIds(grid->GetCellData()->GetArray(array->GetName()));
         }
       }
       vtkFieldData* const fields = piece->GetFieldData();
@@ -303,28 +313,19 @@ private:
     }
     if (everywhere)
     {
-      grid->GetCellData()->AddArray(InOrder(like, this->Cells, parts));
+      grid->GetCellData()->AddArray(TuplesOf(like, this->Cells, parts));
       return;
     }
-    vtkNew<vtkIntArray> mark;
-    mark->InsertNextValue(0); // empty ones are lost between ranks
-    mark->SetName(InSomePiecesName(like->GetName()).c_str());
-    grid->GetFieldData()->AddArray(mark);
+    MarkLeftOut(like->GetName(), grid);
   }
 
-  static vtkSmartPointer<vtkDataArray> InOrder(
-    vtkDataArray* like, const std::vector<Source>& items, const std::vector<vtkDataArray*>& parts)
+  /// Of a cell array that is not in all pieces, or not one of numbers.
+  static void MarkLeftOut(const char* array, vtkUnstructuredGrid* grid)
   {
-    const auto whole = vtkSmartPointer<vtkDataArray>::Take(like->NewInstance());
-    whole->SetName(like->GetName());
-    whole->SetNumberOfComponents(like->GetNumberOfComponents());
-    whole->CopyComponentNames(like);
-    whole->SetNumberOfTuples(static_cast<vtkIdType>(items.size()));
-    for (std::size_t i = 0; i < items.size(); ++i)
-    {
-      whole->SetTuple(static_cast<vtkIdType>(i), items[i].Id, parts[items[i].Piece]);
-    }
-    return whole;
+    vtkNew<vtkIntArray> mark;
+    mark->InsertNextValue(0); // empty ones are lost between ranks
+    mark->SetName(InSomePiecesName(array).c_str());
+    grid->GetFieldData()->AddArray(mark);
   }
 
   std::vector<vtkDataArray*> PartsOf(vtkDataArray* like) const
@@ -347,12 +348,12 @@ private:
   vtkSmartPointer<vtkDataArray> Joined(
     vtkDataArray* like, const std::vector<vtkDataArray*>& parts) const
   {
-    auto whole = InOrder(like, this->Points, parts);
+    auto whole = TuplesOf(like, this->Points, parts);
     const std::size_t bytes =
       static_cast<std::size_t>(like->GetDataTypeSize()) * like->GetNumberOfComponents();
     for (const auto& twin : this->Twins)
     {
-      const auto at = [&](const Source& point)
+      const auto at = [&](const PieceItem& point)
       {
         return static_cast<const char*>(parts[point.Piece]->GetVoidPointer(0)) +
                static_cast<std::size_t>(point.Id) * bytes;
@@ -368,9 +369,9 @@ private:
 
   const std::vector<vtkUnstructuredGrid*>& Pieces;
   const WantedArrays& Wanted;
-  std::vector<Source> Points;
-  std::vector<Source> Cells;
-  std::vector<std::pair<Source, Source>> Twins;
+  std::vector<PieceItem> Points;
+  std::vector<PieceItem> Cells;
+  std::vector<std::pair<PieceItem, PieceItem>> Twins;
   std::vector<std::vector<vtkIdType>> Merged; ///< by piece and its points; -1: left out
   std::map<Coordinates, std::vector<vtkIdType>> AtPlace;
 };

@@ -67,6 +67,11 @@ std::string ChangeOf(vtkUnstructuredGrid* before, vtkUnstructuredGrid* now)
   return {};
 }
 
+std::string KindOf(const std::string& cellArray)
+{
+  return cellArray.empty() ? "a point array" : "the cell array " + cellArray;
+}
+
 std::shared_ptr<const std::vector<std::uint8_t>> Unpacked(
   const std::string& packed, std::uint64_t samples)
 {
@@ -249,6 +254,12 @@ vtkSmartPointer<vtkImageData> MeshSteps::ImageOf(vtkUnstructuredGrid* grid)
   this->CellArrays.clear();
   for (const MeshArray& array : this->Arrays.Of(grid, this->Leaves, this->LeftOut))
   {
+    const std::string& before = this->Kinds.emplace(array.Name, array.CellArray).first->second;
+    if (before != array.CellArray)
+    {
+      throw Error("The array " + array.Name + " of the series was " + KindOf(before) +
+                  " before, and is " + KindOf(array.CellArray) + ".");
+    }
     const auto samples = vtkSmartPointer<vtkDataArray>::Take(
       vtkDataArray::CreateDataArray(array.Values->GetDataType()));
     samples->SetName(array.Name.c_str());

@@ -109,8 +109,14 @@ vtkSmartPointer<vtkUnstructuredGrid> GridOf(vtkDataObject* data)
     const banyan::RankTalk talk(vtkMultiProcessController::GetGlobalController());
     return banyan::GridOfAmrOnRanks(blocks, talk);
   }
+  if (vtkUnstructuredGrid* const grid = vtkUnstructuredGrid::SafeDownCast(data))
+  {
+    return grid; // with its ghost cells
+  }
   std::vector<vtkUnstructuredGrid*> grids;
-  if (!banyan::CollectGrids(data, grids))
+  // A rank may have none of the blocks.
+  if (!banyan::CollectGrids(data, grids) && data &&
+      data->GetNumberOfElements(vtkDataObject::CELL) > 0)
   {
     throw banyan::Error("The data hold cells that are those of no unstructured grid");
   }
@@ -160,7 +166,9 @@ int vtkBanyanHexOctree::RequestData(
   catch (const std::exception& error)
   {
     this->SetErrorCode(vtkErrorCode::UserError);
-    vtkErrorMacro(<< "The mesh is no octree of hexahedra. " << error.what()
+    std::string reason = error.what();
+    reason.erase(reason.find_last_not_of('.') + 1);
+    vtkErrorMacro(<< "The mesh is no octree of hexahedra. " << reason
                   << (this->SampleGeneralMeshes || IsOfBoxes(data)
                          ? ""
                          : ". Switch on 'Sample General Meshes' for the boxes that \"Banyan "

@@ -9,8 +9,6 @@ namespace banyan
 namespace
 {
 
-using Kind = CompositePlan::Kind;
-
 FloatImage Transparent(const PixelRect& rect)
 {
   return { rect, std::vector<glm::vec4>(static_cast<std::size_t>(rect.Count()), glm::vec4(0.0f)) };
@@ -33,6 +31,20 @@ SlicFrame::SlicFrame(Communicator& communicator, const std::vector<int>& frontTo
   for (std::size_t i = 0; i < frontToBack.size(); ++i)
   {
     this->Position[frontToBack[i]] = static_cast<int>(i);
+  }
+}
+
+SlicFrame::~SlicFrame()
+{
+  if (!this->Finished)
+  {
+    // After an error messages may still be under way, while this process says what is wrong and
+    // ends: their memory is not given back.
+    for (Message& message : this->Expected)
+    {
+      (void)message.Data.release();
+    }
+    (void)new std::vector<std::vector<std::uint8_t>>(std::move(this->Outgoing));
   }
 }
 
@@ -103,23 +115,8 @@ FloatImage SlicFrame::Finish()
     this->SendResults();
   }
   this->Ranks.WaitAll();
+  this->Finished = true;
   return std::move(this->Picture);
-}
-
-FragmentFormat SlicFrame::DirectFormat(Kind kind) const
-{
-  return kind == Kind::Final ? FormatOfFinal(this->Options) : FormatFor(this->Options, 1, 1);
-}
-
-FragmentFormat SlicFrame::SharedFormat(Kind kind, int tile) const
-{
-  return FormatFor(this->Options, this->Plan.Tiles[tile].Meeting, kind == Kind::Final ? 1 : 2);
-}
-
-FragmentFormat SlicFrame::ResultFormat(Kind kind) const
-{
-  return kind == Kind::Final ? FormatOfFinal(this->Options)
-                             : FormatFor(this->Options, kind == Kind::Split ? 2 : 1, 2);
 }
 
 /// Posts the receipt of a message unless it has no parts.

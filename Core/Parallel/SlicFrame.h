@@ -17,6 +17,9 @@ public:
   /// Everything referred to must stay. The arguments are those of CompositeSlic.
   SlicFrame(Communicator& communicator, const std::vector<int>& frontToBack,
     const PixelRect& viewport, const CompositeOptions& options, CompositeStatistics& statistics);
+  SlicFrame(const SlicFrame&) = delete;
+  SlicFrame& operator=(const SlicFrame&) = delete;
+  ~SlicFrame();
 
   const CompositePlan& Schedule() const { return this->Plan; }
 
@@ -36,6 +39,8 @@ public:
   FloatImage Finish();
 
 private:
+  using Kind = CompositePlan::Kind;
+
   struct Message
   {
     int From;
@@ -66,9 +71,19 @@ private:
 
   bool Owns(int rank, int tile) const { return this->Plan.Tiles[tile].Owner == rank; }
   bool BeforeRoot(int rank) const { return this->Position[rank] < this->Position[0]; }
-  FragmentFormat DirectFormat(CompositePlan::Kind kind) const;
-  FragmentFormat SharedFormat(CompositePlan::Kind kind, int tile) const;
-  FragmentFormat ResultFormat(CompositePlan::Kind kind) const;
+  FragmentFormat DirectFormat(Kind kind) const
+  {
+    return kind == Kind::Final ? FormatOfFinal(this->Options) : FormatFor(this->Options, 1, 1);
+  }
+  FragmentFormat SharedFormat(Kind kind, int tile) const
+  {
+    return FormatFor(this->Options, this->Plan.Tiles[tile].Meeting, kind == Kind::Final ? 1 : 2);
+  }
+  FragmentFormat ResultFormat(Kind kind) const
+  {
+    return kind == Kind::Final ? FormatOfFinal(this->Options)
+                               : FormatFor(this->Options, kind == Kind::Split ? 2 : 1, 2);
+  }
 
   template <typename Action>
   void ForEachPart(int from, int to, SlicMessage sort, int chunk, const Action& action)
@@ -104,6 +119,7 @@ private:
   std::size_t Open = 0;    ///< of these
   std::vector<Part> Parts; ///< per chunk
   std::vector<std::vector<std::uint8_t>> Outgoing;
+  bool Finished = false; ///< no message is under way
   std::vector<std::size_t> IndexOfTile;
   CompositePlan::Region Region;
 };

@@ -30,9 +30,9 @@ public:
   std::shared_ptr<const VisibleValues> VisibleOf(const TransferFunction& function);
 
   /// The least recently used ones are let go beyond these numbers. With 4096 entries a table of
-  /// steps takes 128 kB: 4 MB in all.
+  /// steps takes 128 kB: 1.5 MB in all.
   static constexpr std::size_t MostFunctions = 4;
-  static constexpr std::size_t MostTables = 32;
+  static constexpr std::size_t MostTables = 12;
 
 private:
   struct Tables

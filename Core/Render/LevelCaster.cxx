@@ -95,11 +95,9 @@ void LevelCaster::MakeTiles()
       this->Bricks[i].Footprint, [i](Tile& tile, const PixelRect&) { tile.End = i + 1; });
   }
   // What a tile does not use of its slots need not be set.
-  for (int i = 0; i < this->Pool.Width(); ++i)
-  {
-    this->Scratch.emplace_back(new RayTile);
-  }
-  this->Meters.resize(this->Scratch.size());
+  const auto workers = static_cast<std::size_t>(this->Pool.Width());
+  this->Scratch.reset(new RayTile[workers]);
+  this->Meters.resize(workers);
 }
 
 /// Calls function(tile, rect) for the tiles under a footprint that have rays left.
@@ -236,7 +234,9 @@ void LevelCaster::DrawBatch()
   {
     meter.Reset(this->Scene.Work ? this->Batch.size() : 0);
   }
-  const double began = this->Scene.Work ? this->Scene.Work->Clock() : 0.0;
+  const auto now = [this] { return this->Scene.Work ? this->Scene.Work->Clock() : 0.0; };
+  const double began = now();
+  double watched = 0.0; // of the thread that casts, in which it drew nothing
   std::atomic<std::int64_t> samples{ 0 };
   const std::function<void(std::int64_t, int)> draw = [&](std::int64_t number, int worker)
   {
@@ -245,18 +245,21 @@ void LevelCaster::DrawBatch()
     if (any)
     {
       const auto mine = static_cast<std::size_t>(worker);
-      samples += this->DrawTile(tile, *this->Scratch[mine], this->Meters[mine]);
+      samples += this->DrawTile(tile, this->Scratch[mine], this->Meters[mine]);
     }
     this->FinishTile(tile);
     // The first worker is the thread that casts.
     if (any && this->Watcher && worker == 0)
     {
+      const double from = now();
       this->Watcher->BetweenTiles();
+      watched += now() - from;
     }
   };
   this->Pool.ParallelFor(static_cast<std::int64_t>(this->Tiles.size()), draw);
   this->Statistics.SamplesTaken += samples;
-  this->RecordWork(began);
+  // Meanwhile the others have drawn its tiles.
+  this->RecordWork(began + watched / this->Pool.Width());
   this->Loaded.clear();
 }
 

@@ -137,9 +137,9 @@ private:
   FloatImage* Picture = nullptr;
   PictureWatcher* Watcher = nullptr;
   TileGrid Grid;
-  std::vector<Tile> Tiles;                       ///< of the grid
-  std::vector<std::unique_ptr<RayTile>> Scratch; ///< one per worker
-  std::vector<BatchMeter> Meters;                ///< one per worker
+  std::vector<Tile> Tiles;            ///< of the grid
+  std::unique_ptr<RayTile[]> Scratch; ///< one per worker
+  std::vector<BatchMeter> Meters;     ///< one per worker
   std::vector<const PlannedBrick*> Batch;
   std::vector<LoadedBrick> Loaded; ///< of the batch
 };

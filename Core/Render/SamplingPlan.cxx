@@ -160,9 +160,15 @@ private:
     this->Choices.Levels = std::move(choices);
     const std::size_t needed = this->FinestThatIsNeeded();
     const bool last = needed + 1 == this->Choices.Levels.size();
-    // No tile is drawn from a finer level than the one where distances are judged.
+    // No tile is drawn from a finer level than the one where distances are judged, unless what
+    // distances leave of the tolerance asks for it.
+    const std::vector<Choice> all = this->Choices.Levels;
     this->Choices.Levels.resize(needed + 1);
     this->TryDistancesAgain(static_cast<int>(this->Choices.Levels.back().Value));
+    if (this->Choices.Distances.back().Errors.Largest() > 0.5 * this->Allowed)
+    {
+      this->Choices.Levels = all;
+    }
     if (last && !pictures.LastIsWithin(0.5 * this->Allowed))
     {
       this->ExtrapolateLevels();

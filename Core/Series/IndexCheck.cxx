@@ -110,7 +110,8 @@ void CheckMesh(const SeriesIndex& index)
   {
     Require(IsPlainName(index.Mesh->File), "The name of the mesh is not a plain file name");
     Require(index.Mesh->Points >= 8 && index.Mesh->Cells >= 1 &&
-              index.Mesh->Points <= index.Domain.Extent.Count(),
+              index.Mesh->Points <= index.Domain.Extent.Count() &&
+              index.Mesh->Cells <= index.Domain.Extent.Count(),
       "The mesh has an impossible number of points or cells");
   }
 }

@@ -188,13 +188,16 @@ void LatticeCache::Forget(std::uint64_t series)
 
 void LatticeCache::SetBudgetBytes(std::uint64_t bytes)
 {
-  this->Budget = bytes;
+  // A slab goes when all of its boxes have gone: with less room, none stay.
+  const bool less = bytes < this->Budget;
+  this->Budget = less ? 0 : bytes;
   for (Shard& shard : this->Shards)
   {
     std::lock_guard<std::mutex> lock(shard.Mutex);
     this->Shrink(shard);
   }
   LatticeMemory::KeepAtMost(bytes);
+  this->Budget = bytes;
 }
 
 std::uint64_t LatticeCache::Bytes() const

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <mutex>
 #include <new>
+#include <unordered_set>
 #include <vector>
 
 #ifdef __linux__
@@ -17,7 +18,7 @@ namespace
 
 constexpr std::size_t Line = 64;
 // Sanitizers see what is read beyond a box only where it has memory of its own.
-#ifdef __SANITIZE_ADDRESS__
+#ifdef BANYAN_HAS_ADDRESS_SANITIZER
 constexpr std::size_t MostInSlabs = 0;
 #else
 constexpr std::size_t MostInSlabs = LatticeMemory::MostBytes;
@@ -102,9 +103,9 @@ struct SlabsOfSize
 struct AllSlabs
 {
   std::mutex Mutex;
-  std::vector<SlabsOfSize> Sizes; ///< a handful
-  std::vector<void*> Empty;       ///< memory of slabs
-  std::size_t Count = 0;          ///< of slabs, empty ones included
+  std::vector<SlabsOfSize> Sizes;      ///< a handful
+  std::vector<void*> Empty;            ///< memory of slabs
+  std::unordered_set<const void*> All; ///< slabs, empty ones included
   std::size_t MostBytes = std::size_t{ 128 } << 20;
 
   SlabsOfSize& Of(std::size_t size)
@@ -120,12 +121,19 @@ struct AllSlabs
     return this->Sizes.back();
   }
 
+  bool MayHaveMore() const
+  {
+    return !this->Empty.empty() || this->All.size() < LatticeMemory::FewSlabs ||
+           (this->All.size() + 1) * LatticeMemory::SlabBytes <= this->MostBytes;
+  }
+
+  /// MayHaveMore must be true.
   void NewSlab(SlabsOfSize& slabs)
   {
     // All slabs may have room, or be empty, one day: nothing is allocated where memory is given
     // back.
-    slabs.WithRoom.reserve(this->Count + 1);
-    this->Empty.reserve(this->Count + 1);
+    slabs.WithRoom.reserve(this->All.size() + 1);
+    this->Empty.reserve(this->All.size() + 1);
     if (this->Empty.empty())
     {
       void* const memory =
@@ -134,7 +142,7 @@ struct AllSlabs
       (void)madvise(memory, LatticeMemory::SlabBytes, MADV_HUGEPAGE); // small pages do as well
 #endif
       this->Empty.push_back(memory);
-      ++this->Count;
+      this->All.insert(memory);
     }
     slabs.Add(new (this->Empty.back()) Slab(slabs.Size));
     this->Empty.pop_back();
@@ -143,11 +151,11 @@ struct AllSlabs
   /// Gives empty slabs back where there are too many.
   void Shrink() noexcept
   {
-    while (!this->Empty.empty() && this->Count * LatticeMemory::SlabBytes > this->MostBytes)
+    while (!this->Empty.empty() && this->All.size() * LatticeMemory::SlabBytes > this->MostBytes)
     {
+      this->All.erase(this->Empty.back());
       ::operator delete (this->Empty.back(), std::align_val_t{ LatticeMemory::SlabBytes });
       this->Empty.pop_back();
-      --this->Count;
     }
   }
 };
@@ -164,49 +172,55 @@ AllSlabs& Slabs()
 void* LatticeMemory::Take(std::size_t bytes)
 {
   const std::size_t size = Rounded(bytes);
-  if (size > MostInSlabs)
+  if (size <= MostInSlabs)
   {
-    return ::operator new (size, std::align_val_t{ Line });
+    AllSlabs& all = Slabs();
+    std::lock_guard<std::mutex> lock(all.Mutex);
+    SlabsOfSize& slabs = all.Of(size);
+    if (slabs.WithRoom.empty() && all.MayHaveMore())
+    {
+      all.NewSlab(slabs);
+    }
+    if (!slabs.WithRoom.empty())
+    {
+      Slab* const slab = slabs.WithRoom.back();
+      void* const memory = slab->Take();
+      if (slab->Used == slab->Places)
+      {
+        slabs.Remove(slab);
+      }
+      return memory;
+    }
   }
-  AllSlabs& all = Slabs();
-  std::lock_guard<std::mutex> lock(all.Mutex);
-  SlabsOfSize& slabs = all.Of(size);
-  if (slabs.WithRoom.empty())
-  {
-    all.NewSlab(slabs);
-  }
-  Slab* const slab = slabs.WithRoom.back();
-  void* const memory = slab->Take();
-  if (slab->Used == slab->Places)
-  {
-    slabs.Remove(slab);
-  }
-  return memory;
+  return ::operator new (size, std::align_val_t{ Line });
 }
 
 void LatticeMemory::Give(void* memory, std::size_t bytes) noexcept
 {
   const std::size_t size = Rounded(bytes);
-  if (size > MostInSlabs)
+  if (size <= MostInSlabs)
   {
-    ::operator delete (memory, std::align_val_t{ Line });
-    return;
+    AllSlabs& all = Slabs();
+    std::lock_guard<std::mutex> lock(all.Mutex);
+    Slab* const slab = Slab::Of(memory);
+    if (all.All.count(slab) != 0)
+    {
+      SlabsOfSize& slabs = all.Of(size);
+      if (slab->Used == slab->Places)
+      {
+        slabs.Add(slab);
+      }
+      slab->Give(memory);
+      if (slab->Used == 0)
+      {
+        slabs.Remove(slab);
+        all.Empty.push_back(slab); // there is room: see NewSlab
+        all.Shrink();
+      }
+      return;
+    }
   }
-  AllSlabs& all = Slabs();
-  std::lock_guard<std::mutex> lock(all.Mutex);
-  SlabsOfSize& slabs = all.Of(size);
-  Slab* const slab = Slab::Of(memory);
-  if (slab->Used == slab->Places)
-  {
-    slabs.Add(slab);
-  }
-  slab->Give(memory);
-  if (slab->Used == 0)
-  {
-    slabs.Remove(slab);
-    all.Empty.push_back(slab); // there is room: see NewSlab
-    all.Shrink();
-  }
+  ::operator delete (memory, std::align_val_t{ Line });
 }
 
 void LatticeMemory::KeepAtMost(std::size_t bytes)
@@ -221,7 +235,7 @@ std::size_t LatticeMemory::BytesOfSlabs()
 {
   AllSlabs& all = Slabs();
   std::lock_guard<std::mutex> lock(all.Mutex);
-  return all.Count * SlabBytes;
+  return all.All.size() * SlabBytes;
 }
 
 } // namespace banyan

@@ -58,18 +58,25 @@ void TakeAndGive(unsigned seed, int times)
   }
 }
 
-/// Slabs that are empty go at once.
-class KeepNone
+/// There may be so many slabs beside those that there are.
+class MoreSlabs
 {
 public:
-  KeepNone() { LatticeMemory::KeepAtMost(0); }
-  ~KeepNone() { LatticeMemory::KeepAtMost(LatticeCache::Process().BudgetBytes()); }
+  explicit MoreSlabs(std::size_t count)
+  {
+    LatticeMemory::KeepAtMost(0); // empty ones go
+    this->Before = LatticeMemory::BytesOfSlabs();
+    LatticeMemory::KeepAtMost(this->Before + count * LatticeMemory::SlabBytes);
+  }
+  ~MoreSlabs() { LatticeMemory::KeepAtMost(LatticeCache::Process().BudgetBytes()); }
+  std::size_t Bytes() const { return LatticeMemory::BytesOfSlabs() - this->Before; }
+
+private:
+  std::size_t Before = 0;
 };
 
-TEST(LatticeMemory, PiecesDoNotMeetAndSlabsAreGivenBack)
+void TakeAndGiveInThreads()
 {
-  const KeepNone none;
-  const std::size_t before = LatticeMemory::BytesOfSlabs();
   std::vector<std::thread> threads;
   for (unsigned seed = 0; seed < 3; ++seed)
   {
@@ -79,17 +86,27 @@ TEST(LatticeMemory, PiecesDoNotMeetAndSlabsAreGivenBack)
   {
     thread.join();
   }
-  EXPECT_EQ(LatticeMemory::BytesOfSlabs(), before);
+}
+
+TEST(LatticeMemory, PiecesDoNotMeetAndSlabsAreGivenBack)
+{
+  for (const std::size_t count : { 0, 7, 1000 })
+  {
+    const MoreSlabs slabs(count);
+    TakeAndGiveInThreads();
+    EXPECT_LE(slabs.Bytes(), std::max(count, LatticeMemory::FewSlabs) * LatticeMemory::SlabBytes);
+    LatticeMemory::KeepAtMost(0);
+    EXPECT_EQ(slabs.Bytes(), 0u);
+  }
 }
 
 TEST(LatticeMemory, ASlabIsFilledBeforeTheNextOneIsTaken)
 {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef BANYAN_HAS_ADDRESS_SANITIZER
   GTEST_SKIP() << "each piece has memory of its own";
 #endif
-  const KeepNone none;
+  const MoreSlabs slabs(100);
   constexpr std::size_t bytes = 9856;
-  const std::size_t before = LatticeMemory::BytesOfSlabs();
   std::vector<void*> pieces;
   for (int round = 0; round < 3; ++round)
   {
@@ -97,7 +114,7 @@ TEST(LatticeMemory, ASlabIsFilledBeforeTheNextOneIsTaken)
     {
       pieces.push_back(LatticeMemory::Take(bytes));
     }
-    EXPECT_LE(LatticeMemory::BytesOfSlabs(), before + 2 * LatticeMemory::SlabBytes);
+    EXPECT_EQ(slabs.Bytes(), 2 * LatticeMemory::SlabBytes);
     std::shuffle(pieces.begin(), pieces.end(), std::mt19937(7));
     while (pieces.size() > 100)
     {
@@ -109,36 +126,45 @@ TEST(LatticeMemory, ASlabIsFilledBeforeTheNextOneIsTaken)
   {
     LatticeMemory::Give(piece, bytes);
   }
-  EXPECT_EQ(LatticeMemory::BytesOfSlabs(), before);
 }
 
-TEST(LatticeMemory, EmptySlabsAreKeptUpToALimit)
+TEST(LatticeMemory, SlabsAreNotMoreThanTheLimitAndAreKept)
 {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef BANYAN_HAS_ADDRESS_SANITIZER
   GTEST_SKIP() << "each piece has memory of its own";
 #endif
-  const KeepNone none;
+  const MoreSlabs slabs(5);
+  constexpr std::size_t limit = 5 * LatticeMemory::SlabBytes;
   constexpr std::size_t bytes = LatticeMemory::MostBytes;
-  const std::size_t before = LatticeMemory::BytesOfSlabs();
-  const std::size_t limit = before + 3 * LatticeMemory::SlabBytes;
-  LatticeMemory::KeepAtMost(limit);
   std::vector<void*> pieces;
   for (int i = 0; i < 50; ++i)
   {
     pieces.push_back(LatticeMemory::Take(bytes));
   }
-  EXPECT_GT(LatticeMemory::BytesOfSlabs(), limit);
+  EXPECT_EQ(slabs.Bytes(), limit);
   for (void* piece : pieces)
   {
     LatticeMemory::Give(piece, bytes);
   }
-  EXPECT_EQ(LatticeMemory::BytesOfSlabs(), limit);
+  EXPECT_EQ(slabs.Bytes(), limit);
   // They do for boxes of any size.
   void* const other = LatticeMemory::Take(100);
-  EXPECT_EQ(LatticeMemory::BytesOfSlabs(), limit);
+  EXPECT_EQ(slabs.Bytes(), limit);
   LatticeMemory::Give(other, 100);
+}
+
+TEST(LatticeMemory, ALowerLimitHoldsWhenSlabsAreEmpty)
+{
+#ifdef BANYAN_HAS_ADDRESS_SANITIZER
+  GTEST_SKIP() << "each piece has memory of its own";
+#endif
+  const MoreSlabs slabs(3);
+  void* const piece = LatticeMemory::Take(100);
+  EXPECT_EQ(slabs.Bytes(), LatticeMemory::SlabBytes);
   LatticeMemory::KeepAtMost(0);
-  EXPECT_EQ(LatticeMemory::BytesOfSlabs(), before);
+  EXPECT_EQ(slabs.Bytes(), LatticeMemory::SlabBytes);
+  LatticeMemory::Give(piece, 100);
+  EXPECT_EQ(slabs.Bytes(), 0u);
 }
 
 } // namespace
