@@ -14,7 +14,7 @@ namespace banyan
 struct FrameStatistics
 {
   double TotalSeconds = 0;
-  double RenderSeconds = 0;
+  double RenderSeconds = 0;    ///< until the last ray; with what was composited meanwhile
   double CompositeSeconds = 0; ///< after the last ray; with waiting, where compositing began before
   double Imbalance = 1;        ///< slowest rank's render seconds over the mean, >= 1
   std::int64_t SamplesTaken = 0;
