@@ -131,7 +131,7 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
         if constexpr (Dense && D == 2)
         {
           this->Code.AskAhead(6);
-        const stages::In stage(stages::FacePasses);
+          const stages::In stage(stages::FacePasses);
           BeginStride<P>(this->Work.Vectors.Faces, symbols);
           DenseSliceDecoder<P, Number>(unit, this->Work.Vectors.Faces.template At<P::S>(), mode.By,
             symbols, static_cast<Number>(P::S == 2 ? this->Plane.CoarseBin : this->Plane.FineBin),

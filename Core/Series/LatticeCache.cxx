@@ -67,34 +67,42 @@ std::int32_t LatticeCache::EntryOf(Shard& shard, std::size_t hash, const Key& ke
   return entry;
 }
 
-LatticeCache::Box LatticeCache::Find(const Key& key)
+/// @param body called as body(Kept&), while nobody changes it, if the box is there
+template <class Body>
+void LatticeCache::Look(const Key& key, const Body& body)
 {
   const std::size_t hash = HashOf(key);
   Shard& shard = this->Shards[ShardOf(hash)];
   std::lock_guard<std::mutex> lock(shard.Mutex);
   const std::int32_t found = EntryOf(shard, hash, key);
-  if (found < 0)
+  if (found >= 0)
   {
-    return nullptr;
+    body(shard.Entries[static_cast<std::size_t>(found)]);
   }
-  Kept& kept = shard.Entries[static_cast<std::size_t>(found)];
-  kept.Used = true;
-  return kept.Numbers;
+}
+
+LatticeCache::Box LatticeCache::Find(const Key& key)
+{
+  Box box;
+  this->Look(key,
+    [&](Kept& kept)
+    {
+      kept.Used = true;
+      box = kept.Numbers;
+    });
+  return box;
 }
 
 const void* LatticeCache::AddressOf(const Key& key)
 {
-  const std::size_t hash = HashOf(key);
-  Shard& shard = this->Shards[ShardOf(hash)];
-  std::lock_guard<std::mutex> lock(shard.Mutex);
-  const std::int32_t found = EntryOf(shard, hash, key);
-  if (found < 0)
-  {
-    return nullptr;
-  }
-  const Kept& kept = shard.Entries[static_cast<std::size_t>(found)];
-  __builtin_prefetch(kept.Numbers.get()); // how many hold it
-  return kept.Memory;
+  const void* memory = nullptr;
+  this->Look(key,
+    [&](Kept& kept)
+    {
+      __builtin_prefetch(kept.Numbers.get()); // how many hold it
+      memory = kept.Memory;
+    });
+  return memory;
 }
 
 void LatticeCache::Add(const Key& key, const Box& box)

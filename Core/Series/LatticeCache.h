@@ -46,7 +46,7 @@ public:
   /// Forgets the boxes of a series.
   void Forget(std::uint64_t series);
 
-  /// Takes effect at once. Default 128 MiB, or a quarter of BANYAN_CACHE_MB; a new budget of the
+  /// Takes effect at once; with a smaller one all boxes go. Default 128 MiB, or a quarter of BANYAN_CACHE_MB; a new budget of the
   /// process's BrickCache sets it to a quarter of that.
   void SetBudgetBytes(std::uint64_t bytes);
   std::uint64_t BudgetBytes() const { return this->Budget; }
@@ -83,6 +83,8 @@ private:
   static std::size_t ShardOf(std::size_t hash) { return hash / BlocksTogether % ShardCount; }
   static std::int32_t& BucketOf(Shard& shard, std::size_t hash);
   static std::int32_t EntryOf(Shard& shard, std::size_t hash, const Key& key);
+  template <class Body>
+  void Look(const Key& key, const Body& body);
   static void Grow(Shard& shard);
   static void Remove(Shard& shard, std::int32_t entry);
   void Shrink(Shard& shard);
