@@ -8,7 +8,7 @@ class vtkMultiProcessController;
 namespace banyan
 {
 
-/// IceT's radix-k, of ParaView's own library, over the ranks of a controller: in 8 bits, ordered.
+/// IceT's radix-k, of ParaView's own library, over the ranks of a controller: in floats, ordered.
 /// Bytes are those that IceT says it has sent; messages are not known. One rank alone keeps its
 /// picture.
 CompositeOptions::Compositor IceTRadixK(vtkMultiProcessController* controller);

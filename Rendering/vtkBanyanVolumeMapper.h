@@ -156,7 +156,7 @@ public:
   /**
    * How the pictures of several ranks become one: as banyan::CompositingMethod (0, the default:
    * SLIC; 1: SLIC as published; 2: direct send; 3: binary swap; 4: IceT's radix-k, for blend mode
-   * composite only). All make the same picture, but for IceT's, which rounds to 8 bits on the way.
+   * composite only). All make the same picture.
    */
   vtkSetClampMacro(Compositing, int, 0, 4);
   vtkGetMacro(Compositing, int);

@@ -60,7 +60,7 @@ struct CompositeOptions
 
   using Compositor = std::function<FloatImage(Communicator&, const FloatImage& mine,
     const std::vector<int>& frontToBack, const PixelRect& viewport, CompositeStatistics&)>;
-  /// What draws for IceTRadixK, in 8 bits and only Over; without it, and for other combinations,
+  /// What draws for IceTRadixK, in floats and only Over; without it, and for other combinations,
   /// that method is an Error.
   Compositor External;
 
