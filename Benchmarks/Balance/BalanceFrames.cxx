@@ -15,6 +15,9 @@ namespace
 
 constexpr std::uint64_t AllMemory = ~std::uint64_t{ 0 };
 
+/// Of work that is counted, in place of processor time.
+constexpr double SecondsPerSample = 3e-9;
+
 double ProcessorSeconds()
 {
   timespec time;
@@ -39,6 +42,7 @@ LoadBalancer::Options BalancerFor(
   options.Ranks = ranks;
   options.SlicePositions = BenchBrickCells;
   options.PlaneStep = given.PlaneStep;
+  options.Searches = given.Searches;
   options.TurnGain = 1.0 + 0.01 * given.TurnPercent;
   options.BlockEdge = BlockEdgeFor(options.Positions);
   options.BytesPerPosition = static_cast<double>(SizeOf(scene.Data->Type()));
@@ -80,7 +84,12 @@ void DrawSimulated(const BenchScene& scene, const BalanceOptions& options, LoadB
       const double seconds = ProcessorSeconds() - before;
       frame.RankMilliseconds.push_back(1e3 * seconds);
     }
-    const FrameWork took = SumWork(work, view);
+    FrameWork took = SumWork(work, view);
+    for (std::size_t rank = 0; options.Counted && rank < work.size(); ++rank)
+    {
+      took.Ranks[rank].Seconds = SecondsPerSample * took.Ranks[rank].Work;
+      frame.RankMilliseconds[rank] = 1e3 * took.Ranks[rank].Seconds;
+    }
     balancer.FrameTook(took.Ranks, took.Blocks);
     frame.Number = number;
     frame.Mode = mode;

@@ -46,6 +46,10 @@ const char* const BalanceHelp =
   "  --modes LIST         default off,slice-step,measured-cost\n"
   "  --plane-step N       cells between places of planes (default 1; encoded series have 8)\n"
   "  --keep-axes          planes move, but do not turn\n"
+  "  --no-search          views that rest are balanced by what is expected, as others are\n"
+  "  --counted            what ranks did is counted, 3 ns a sample, in place of their time: the "
+  "same\n"
+  "                       whatever else the machine does\n"
   "  --turn-percent N     they turn when frames are expected to be so much faster (default 15)\n"
   "  --output FILE.csv    default standard output          --append     to it\n"
   "  --rank-times FILE.csv   each rank's milliseconds too\n"
@@ -77,6 +81,10 @@ BalanceOptions ParseBalanceOptions(const std::vector<std::string>& arguments)
       options.Append = true;
     else if (option == "--keep-axes")
       options.Turns = false;
+    else if (option == "--no-search")
+      options.Searches = false;
+    else if (option == "--counted")
+      options.Counted = true;
     else if (option == "--composite-after")
       options.CompositeAfter = true;
     else if (option == "--turn-percent")

@@ -24,7 +24,9 @@ struct BalanceOptions
   std::vector<int> Ranks{ 2, 4, 8, 16 };
   std::vector<LoadBalancing> Modes{ LoadBalancing::Off, LoadBalancing::SliceStep,
     LoadBalancing::MeasuredCost };
-  bool Turns = true;           ///< whether measured cost may choose axes
+  bool Turns = true; ///< whether measured cost may choose axes
+  bool Searches = true;
+  bool Counted = false;        ///< work in place of processor time
   int TurnPercent = 15;        ///< by which frames must be expected to be faster for that
   bool CompositeAfter = false; ///< real ranks composite odd frames after the last ray
   bool Append = false;

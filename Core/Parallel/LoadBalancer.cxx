@@ -24,35 +24,16 @@ constexpr double WorkPerCutRay = 24.0;
 /// Axes that were chosen anew stay for some frames.
 constexpr int FramesBetweenTurns = 8;
 
-/// Moves that made a frame's imbalance worse by more than this factor count as mistakes, twice;
-/// those that made it better make up for one.
-constexpr double MistakeFactor = 1.05;
+/// Mistakes after which it waits between moves.
 constexpr int MistakesForgiven = 4;
-constexpr int MostMistakes = 10;
 /// A block's work is never expected to be so many times as much as that of others that are seen as
 /// large.
 constexpr double MostRatio = 8.0;
-/// Weight of a new frame in the errors of expectations.
-constexpr double ErrorWeight = 0.4;
 
 /// Weight of a new frame in averages over many.
 constexpr double LongWeight = 1.0 / 16.0;
-/// The same in the speed of a rank, once it is known: noise must not move planes.
-constexpr double SpeedWeight = 0.1;
-/// Seconds that differ from those of a rank so far by more than this factor are a change when they
-/// come twice, and a disturbance when they come once.
-constexpr double OutlierFactor = 1.5;
-/// A rank's speed is not learned from less than this part of the ranks' mean work.
-constexpr double LeastPart = 0.1;
 
 constexpr std::int64_t MostBlocks = 4096;
-
-double Median(std::vector<double> values)
-{
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double UsualRatio(const std::vector<double>& work, const std::vector<double>& view)
 {
@@ -166,6 +147,14 @@ void LoadBalancer::MoveToBalance(const BrickCosts& view, const ScreenCuts* cuts)
     limits.Tolerated = std::numeric_limits<double>::infinity();
   }
   this->Before = this->Zones;
+  if (view.Values != this->View)
+  {
+    this->Search.Forget();
+  }
+  else if (this->Settings.Searches && this->SearchPlanes(bytes, limits.MostBytes))
+  {
+    return;
+  }
   Rebalanced next = RebalanceMeasuredCost(this->Zones, costs, this->Speeds(), limits);
   if (cuts && this->Wait == 0)
   {
@@ -179,6 +168,37 @@ void LoadBalancer::MoveToBalance(const BrickCosts& view, const ScreenCuts* cuts)
   {
     this->Wait = (1 << (this->Mistakes - MistakesForgiven)) - 1;
   }
+}
+
+/// Goes to the next tree of the search, as far as so many bytes go; false where there is none.
+bool LoadBalancer::SearchPlanes(const BrickCosts& bytes, double mostBytes)
+{
+  std::vector<double> speeds;
+  for (const Pace& pace : this->Paces)
+  {
+    speeds.push_back(1.0 / pace.SecondsPerWork);
+  }
+  const int step = this->Settings.PlaneStep;
+  const std::optional<ZoneTree> found =
+    this->Search.Next(this->CostsOf(this->Costs[FromLast]), speeds, step);
+  if (!found)
+  {
+    return false;
+  }
+  const ZoneTree& now = this->Zones;
+  const CostSums sums(bytes);
+  ZoneTree next = *found;
+  double moved = MovedBetween(now, next, sums);
+  for (double part = 0.5; moved > mostBytes; part *= 0.5)
+  {
+    next = part < 0.01 || !NestAlike(now, *found) ? now : PartOfTheWay(now, *found, part, step);
+    moved = MovedBetween(now, next, sums);
+  }
+  this->Moved = moved;
+  this->Moving = false; // nobody's mistake
+  this->Zones = std::move(next);
+  this->Expected = 1.0;
+  return true;
 }
 
 /// Takes a tree with other axes in place of `next` if that is much better.
@@ -277,6 +297,12 @@ void LoadBalancer::FrameTook(const std::vector<RankWork>& ranks, const BrickCost
     this->LearnSpeeds(ranks, work);
   }
   this->LearnWork(work);
+  std::vector<double> done;
+  for (const RankWork& rank : ranks)
+  {
+    done.push_back(rank.Work);
+  }
+  this->Search.Measured(this->Zones, done);
   ++this->Frames;
 }
 
@@ -295,100 +321,6 @@ void LoadBalancer::LearnWork(const BrickCosts& work)
       this->OlderRatio[i] = this->Ratio[i];
       this->Ratio[i] = std::min(done / seen, most);
     }
-  }
-}
-
-void LoadBalancer::LearnSpeeds(const std::vector<RankWork>& ranks, const BrickCosts& work)
-{
-  double all = 0.0;
-  for (const RankWork& rank : ranks)
-  {
-    all += rank.Work;
-  }
-  const double least = LeastPart * all / static_cast<double>(ranks.size());
-  std::vector<double> known;
-  for (const RankWork& rank : ranks)
-  {
-    if (rank.Work > least && rank.Seconds > 0.0)
-    {
-      known.push_back(rank.Seconds / rank.Work);
-    }
-  }
-  if (known.empty())
-  {
-    return;
-  }
-  const double median = Median(known);
-  const CostSums sums(work);
-  const std::vector<Box> zones = ZonesOf(this->Zones);
-  for (std::size_t i = 0; i < ranks.size(); ++i)
-  {
-    Pace& pace = this->Paces[i];
-    if (!(ranks[i].Work > least) || !(ranks[i].Seconds > 0.0))
-    {
-      pace.Share = 1.0;
-      continue;
-    }
-    pace.Share = std::clamp(sums.In(zones[i]) / ranks[i].Work, 0.5, 2.0);
-    const double now = ranks[i].Seconds / ranks[i].Work / median;
-    const double factor = now / pace.SecondsPerWork;
-    const bool outlier = factor > OutlierFactor || factor < 1.0 / OutlierFactor;
-    if (!outlier)
-    {
-      const double weight = std::max(SpeedWeight, 1.0 / (pace.Frames + 1));
-      pace.SecondsPerWork += weight * (now - pace.SecondsPerWork);
-      ++pace.Frames;
-    }
-    else if (pace.Outlier > 0.0 && (pace.Outlier > pace.SecondsPerWork) == (factor > 1.0))
-    {
-      pace.SecondsPerWork = 0.5 * (now + pace.Outlier);
-      pace.Frames = 2;
-    }
-    pace.Outlier = outlier ? now : 0.0;
-  }
-}
-
-/// How wrong each expectation was about the work of the zones.
-void LoadBalancer::LearnErrors(const BrickCosts& work)
-{
-  if (this->Costs[FromView].empty())
-  {
-    return;
-  }
-  const std::vector<double> speeds(this->Paces.size(), 1.0);
-  const auto parts = [&](const BrickCosts& costs)
-  {
-    const CostSums sums(costs);
-    std::vector<double> zones = ExpectedSeconds(this->Zones, sums, speeds);
-    for (double& zone : zones)
-    {
-      zone *= sums.Total() > 0.0 ? static_cast<double>(zones.size()) / sums.Total() : 0.0;
-    }
-    return zones;
-  };
-  const std::vector<double> truth = parts(work);
-  for (std::size_t way = 0; way < Expectations; ++way)
-  {
-    const std::vector<double> expected = parts(this->CostsOf(this->Costs[way]));
-    double error = 0.0;
-    for (std::size_t rank = 0; rank < truth.size(); ++rank)
-    {
-      error = std::max(error, std::abs(expected[rank] - truth[rank]));
-    }
-    this->Errors[way] += (this->Frames <= 1 ? 1.0 : ErrorWeight) * (error - this->Errors[way]);
-  }
-}
-
-/// Whether it would have been better not to move planes.
-void LoadBalancer::LearnMistakes(const BrickCosts& work)
-{
-  if (this->Moving)
-  {
-    const CostSums sums(work);
-    const double stayed = banyan::ExpectedImbalance(this->Before, sums, this->Speeds());
-    const double moved = banyan::ExpectedImbalance(this->Zones, sums, this->Speeds());
-    const int change = moved > MistakeFactor * stayed ? 2 : moved < stayed ? -1 : 0;
-    this->Mistakes = std::clamp(this->Mistakes + change, 0, MostMistakes);
   }
 }
 

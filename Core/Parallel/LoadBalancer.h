@@ -3,6 +3,7 @@
 
 #include "Parallel/Rebalance.h"
 #include "Parallel/ScreenCuts.h"
+#include "Parallel/TreeSearch.h"
 
 #include <array>
 #include <vector>
@@ -52,6 +53,8 @@ public:
     double MostBytes = 32.0 * 1048576.0;
     /// Axes are chosen anew when frames are expected to be faster by this factor.
     double TurnGain = 1.15;
+    /// Whether planes of a view that rests are searched for by what was measured.
+    bool Searches = true;
   };
 
   /// Throws Error when there are no ranks, no positions per block or brick, or zones to begin with
@@ -91,6 +94,7 @@ private:
 
   void MoveSlices();
   void MoveToBalance(const BrickCosts& view, const ScreenCuts* cuts);
+  bool SearchPlanes(const BrickCosts& bytes, double mostBytes);
   void Turn(
     const BrickCosts& costs, const BrickCosts& bytes, const ScreenCuts& cuts, Rebalanced& next);
   std::vector<double> ExpectedFromView(const BrickCosts& view) const;
@@ -133,6 +137,8 @@ private:
   int Wait = 0;     ///< frames until planes may move again
   int Rest = 0;     ///< frames until axes may be chosen anew
   bool Moving = false;
+
+  TreeSearch Search; ///< of the view of the last frames
 };
 
 } // namespace banyan
