@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 namespace banyan
@@ -25,9 +26,8 @@ constexpr double Worse = 0.05;
 /// Trials without a better tree that end a search, and trials that do in any case.
 constexpr int MostFailures = 8;
 constexpr std::size_t MostTrials = 17;
-/// Failures after which all planes go one step, and ratios that they go for.
+/// Failures after which all planes go one step.
 constexpr int NewtonFailures = 2;
-constexpr double StepAbove = 0.08;
 /// No logarithm of a ratio changes by more at once, nor by more than this part of the largest one,
 /// and none goes all of its way: planes move at the same time, and those of children follow those
 /// of their parents. Each trial that was no better shortens the next step.
@@ -61,19 +61,6 @@ std::vector<double> ExpectedWork(const ZoneTree& tree, const CostSums& model)
     tree, model, std::vector<double>(static_cast<std::size_t>(tree.Ranks()), 1.0));
 }
 
-/// Slowest over what no tree could beat.
-double Imbalance(const std::vector<double>& work, const std::vector<double>& speeds)
-{
-  double slowest = 0.0;
-  for (std::size_t rank = 0; rank < work.size(); ++rank)
-  {
-    slowest = std::max(slowest, work[rank] / speeds[rank]);
-  }
-  const double all = std::accumulate(work.begin(), work.end(), 0.0);
-  const double speed = std::accumulate(speeds.begin(), speeds.end(), 0.0);
-  return all > 0.0 ? slowest * speed / all : 1.0;
-}
-
 double Slowest(const std::vector<double>& work, const std::vector<double>& speeds)
 {
   double slowest = 0.0;
@@ -82,6 +69,14 @@ double Slowest(const std::vector<double>& work, const std::vector<double>& speed
     slowest = std::max(slowest, work[rank] / speeds[rank]);
   }
   return slowest;
+}
+
+/// Slowest over what no tree could beat.
+double Imbalance(const std::vector<double>& work, const std::vector<double>& speeds)
+{
+  const double all = std::accumulate(work.begin(), work.end(), 0.0);
+  const double speed = std::accumulate(speeds.begin(), speeds.end(), 0.0);
+  return all > 0.0 ? Slowest(work, speeds) * speed / all : 1.0;
 }
 
 /// The smallest box around all blocks that cost something.
@@ -97,21 +92,6 @@ Box CostlyPart(const BrickCosts& costs)
     }
   }
   return all;
-}
-
-bool PlanesAreInTheirZones(const ZoneTree& tree)
-{
-  const std::vector<Box> zones = NodeZones(tree);
-  for (std::size_t number = 0; number < zones.size(); ++number)
-  {
-    const ZoneTree::Node& node = tree.Nodes[number];
-    const Box& zone = zones[number];
-    if (!node.IsLeaf() && !(zone.Lo[node.Axis] <= node.Plane && node.Plane <= zone.Hi[node.Axis]))
-    {
-      return false;
-    }
-  }
-  return true;
 }
 
 } // namespace
@@ -131,11 +111,6 @@ const TreeSearch::Trial* TreeSearch::Find(const ZoneTree& tree) const
   const auto found = std::find_if(this->Trials.begin(), this->Trials.end(),
     [&](const Trial& trial) { return trial.Tree == tree; });
   return found == this->Trials.end() ? nullptr : &*found;
-}
-
-bool TreeSearch::IsNew(const ZoneTree& tree) const
-{
-  return PlanesAreInTheirZones(tree) && !this->Find(tree);
 }
 
 void TreeSearch::Measured(const ZoneTree& tree, const std::vector<double>& work)
@@ -293,61 +268,6 @@ std::optional<ZoneTree> TreeSearch::PlanesAt(const ZoneTree& from, const Ratios&
     }
   }
   return this->Find(tree) ? std::nullopt : std::optional<ZoneTree>(tree);
-}
-
-/// All planes that are out of balance by one step; none if that has been tried.
-std::optional<ZoneTree> TreeSearch::AllPlanesAStep(
-  const Trial& from, const std::vector<double>& speeds, int step) const
-{
-  const Ratios ratios = RatiosOf(from.Tree, from.Work, speeds);
-  ZoneTree tree = from.Tree;
-  for (std::size_t number = 0; number < ratios.size(); ++number)
-  {
-    const double ratio = ratios[number];
-    tree.Nodes[number].Plane += ratio > StepAbove ? -step : ratio < -StepAbove ? step : 0;
-  }
-  return this->IsNew(tree) ? std::optional<ZoneTree>(tree) : std::nullopt;
-}
-
-/// Makes the slowest zone smaller by one step of one plane: of those around it the one that is most
-/// out of balance, if that has not been tried.
-std::optional<ZoneTree> TreeSearch::OnePlaneAway(
-  const Trial& from, const std::vector<double>& speeds, int step) const
-{
-  const Ratios ratios = RatiosOf(from.Tree, from.Work, speeds);
-  std::size_t slowest = 0;
-  for (std::size_t rank = 1; rank < speeds.size(); ++rank)
-  {
-    slowest =
-      from.Work[rank] / speeds[rank] > from.Work[slowest] / speeds[slowest] ? rank : slowest;
-  }
-  struct Move
-  {
-    double Excess;
-    std::size_t Node;
-    int Way;
-  };
-  std::vector<Move> moves;
-  for (std::size_t number = 0; !from.Tree.Nodes[number].IsLeaf();)
-  {
-    const ZoneTree::Node& node = from.Tree.Nodes[number];
-    const auto above = static_cast<std::size_t>(node.Above);
-    const bool isAbove = static_cast<int>(slowest) >= from.Tree.Nodes[above].FirstRank;
-    moves.push_back({ isAbove ? -ratios[number] : ratios[number], number, isAbove ? step : -step });
-    number = isAbove ? above : static_cast<std::size_t>(node.Below);
-  }
-  std::stable_sort(
-    moves.begin(), moves.end(), [](const Move& a, const Move& b) { return a.Excess > b.Excess; });
-  for (const Move& move : moves)
-  {
-    ZoneTree tree = from.Tree;
-    tree.Nodes[move.Node].Plane += move.Way;
-    if (this->IsNew(tree))
-    {
-      return tree;
-    }
-  }
-  return std::nullopt;
 }
 
 std::optional<ZoneTree> TreeSearch::Next(
