@@ -1,0 +1,94 @@
+// Which levels a plan may use, from pilots whose errors are known because they are made up.
+#include "Render/SamplingPlan.h"
+
+#include "Render/Scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace banyan;
+
+namespace
+{
+
+/// What each level and each distance adds to every pixel, in 1/255.
+struct Offsets
+{
+  double Level[3];        ///< of level 0, 1 and 2
+  double EverySecondStep; ///< of distances that are odd powers of two
+};
+
+SamplingPlan PlanOf(const Offsets& offsets, double tolerance)
+{
+  const RayScene scene = scenes::Scene(glm::ivec3(65), glm::ivec2(512));
+  const SamplingWish wish{ tolerance, 1.0, 2, 0, /*LeastCells=*/1, /*LargestPixelStride=*/1 };
+  return PlanSamplings(scene, wish,
+    [&](const RayScene& pilot)
+    {
+      const RaySampling& sampling = pilot.Samplings->Samplings().front();
+      const int power = static_cast<int>(std::lround(std::log2(sampling.Distance)));
+      const double off =
+        offsets.Level[sampling.Level] + (power % 2 != 0 ? offsets.EverySecondStep : 0.0);
+      FloatImage image;
+      image.Rect = pilot.Viewport;
+      image.Pixels.assign(static_cast<std::size_t>(image.Rect.Count()),
+        glm::vec4(static_cast<float>(0.5 + off / 255.0), 0.5f, 0.5f, 1.0f));
+      return image;
+    });
+}
+
+int FinestLevelOf(const SamplingPlan& plan)
+{
+  int finest = 99;
+  for (const RaySampling& sampling : plan.Samplings->Samplings())
+  {
+    finest = std::min(finest, sampling.Level);
+  }
+  return finest;
+}
+
+int LevelOfFirstTile(const SamplingPlan& plan)
+{
+  const auto number = static_cast<std::size_t>(plan.Samplings->NumberAt(glm::ivec2(0)));
+  return plan.Samplings->Samplings()[number].Level;
+}
+
+// With a tolerance of 8 a tile may be off by 7, and levels and distances by half of it each. Four
+// times its offset of 0.75, level 2 is off by 3, level 1 by 1 and level 0 not at all; but only when
+// level 0 was drawn is this known, because levels 2 and 1 are 1 apart.
+constexpr Offsets LevelTwoWillDo{ { 0.0, -0.25, 0.75 }, 0.25 };
+
+TEST(SamplingPlanLevels, FinerLevelsThanAreNeededAreNotUsed)
+{
+  const SamplingPlan plan = PlanOf(LevelTwoWillDo, 8.0);
+  ASSERT_TRUE(plan.Samplings);
+  EXPECT_EQ(FinestLevelOf(plan), 2);
+  EXPECT_EQ(LevelOfFirstTile(plan), 2);
+  EXPECT_LE(plan.EstimatedError, 8.0);
+}
+
+TEST(SamplingPlanLevels, FinerLevelsArePutBackWhereDistancesLeaveNoRoom)
+{
+  // However close samples are, they differ by 1.25 from those twice as far apart: off by 5, four
+  // times as much. With the 3 of level 2 that is more than 7, with the 1 of level 1 it is not.
+  Offsets offsets = LevelTwoWillDo;
+  offsets.EverySecondStep = 1.25;
+  const SamplingPlan plan = PlanOf(offsets, 8.0);
+  ASSERT_TRUE(plan.Samplings);
+  EXPECT_EQ(FinestLevelOf(plan), 0);
+  EXPECT_EQ(LevelOfFirstTile(plan), 1);
+  EXPECT_NEAR(plan.EstimatedError, 1.0 + 5.0 + 1.0, 1e-3);
+}
+
+TEST(SamplingPlanLevels, TheLeastErrorIsTakenWhereNoneIsSmallEnough)
+{
+  Offsets offsets = LevelTwoWillDo;
+  offsets.EverySecondStep = 2.5;
+  const SamplingPlan plan = PlanOf(offsets, 8.0);
+  ASSERT_TRUE(plan.Samplings);
+  EXPECT_EQ(LevelOfFirstTile(plan), 0);
+  EXPECT_NEAR(plan.EstimatedError, 10.0 + 1.0, 1e-3);
+}
+
+} // namespace
