@@ -137,8 +137,8 @@ void SymbolTables::AddTable(std::size_t context)
   this->Next.insert(this->Next.end(), encode.Next.begin(), encode.Next.end());
 }
 
-/// More lanes decode faster, but each costs its first state: as many as make a payload about 1 %
-/// larger.
+/// More lanes decode faster, because a symbol waits for the one before in its lane; but each costs its first
+/// state. They make the shortest payloads that have some 15 % larger, and series at most 3 %.
 int SymbolTables::LanesLogFor(const std::vector<std::uint16_t>& tokens) const
 {
   const std::size_t every = tokens.size() < 1024 ? 1 : 8; // of many, some tell enough
@@ -148,7 +148,7 @@ int SymbolTables::LanesLogFor(const std::vector<std::uint16_t>& tokens) const
     bits += (tans::TableSize * 3 / 2 + this->Transforms[tokens[i]].DeltaBits) >> 16;
   }
   bits *= every;
-  return bits < 600 ? 0 : bits < 2400 ? 1 : bits < 8000 ? 2 : 3;
+  return bits < 60 ? 0 : bits < 250 ? 1 : bits < 8000 ? 2 : 3;
 }
 
 /// Writes a payload from its end to its beginning.
