@@ -1,5 +1,6 @@
 #include "TreeOutput.h"
 
+#include "MeshSeries/MeanOfChildren.h"
 #include "MeshSeries/MeanOfLeaves.h"
 #include "MeshSeries/TreeCells.h"
 #include "Series/SeriesFile.h"
@@ -183,23 +184,22 @@ template <class Out, class ValueOfLeaf>
 void TreeOutput::Mean(
   const ValueOfLeaf& valueOfLeaf, int components, int component, Out* means) const
 {
-  std::vector<double> sums(this->LeafOf.size(), 0.0);
-  std::vector<int> counts(this->LeafOf.size(), 0);
+  std::vector<MeanOfChildren> below(this->LeafOf.size());
   // Children come behind their parents.
   for (std::size_t cell = this->LeafOf.size(); cell-- > 0;)
   {
     const std::int64_t leaf = this->LeafOf[cell];
-    double value = counts[cell] > 0 ? sums[cell] / counts[cell] : 0.0;
+    double value = below[cell].Value();
+    bool fill = below[cell].IsFill();
     if (leaf >= 0)
     {
-      value = valueOfLeaf(static_cast<std::size_t>(leaf));
+      value = valueOfLeaf(static_cast<std::size_t>(leaf), fill);
     }
     means[cell * static_cast<std::size_t>(components) + static_cast<std::size_t>(component)] =
       static_cast<Out>(value);
     if (leaf != Masked && this->Parent[cell] >= 0)
     {
-      sums[static_cast<std::size_t>(this->Parent[cell])] += value;
-      ++counts[static_cast<std::size_t>(this->Parent[cell])];
+      below[static_cast<std::size_t>(this->Parent[cell])].Add(value, fill);
     }
   }
 }
@@ -211,16 +211,16 @@ void TreeOutput::FillComponent(const T* samples, const FillSet<T>& fills, bool o
   if (ofCells)
   {
     this->Mean(
-      [&](std::size_t leaf)
+      [&](std::size_t leaf, bool& fill)
       {
         return MeanOfLeaves<double>(*this->Mesh, samples, components, component,
-          this->Cells->FirstCell[leaf], this->Cells->FirstCell[leaf + 1], fills);
+          this->Cells->FirstCell[leaf], this->Cells->FirstCell[leaf + 1], fills, &fill);
       },
       components, component, means);
     return;
   }
   this->Mean(
-    [&](std::size_t leaf)
+    [&](std::size_t leaf, bool& fill)
     {
       T corners[8];
       for (std::size_t i = 0; i < 8; ++i)
@@ -230,7 +230,7 @@ void TreeOutput::FillComponent(const T* samples, const FillSet<T>& fills, bool o
           samples[static_cast<std::size_t>(components) * this->Mesh->SampleOfPoint[point] +
                   static_cast<std::size_t>(component)];
       }
-      return ValueAtCentre(corners, fills);
+      return ValueAtCentre(corners, fills, &fill);
     },
     components, component, means);
 }

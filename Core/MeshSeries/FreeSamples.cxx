@@ -1,6 +1,7 @@
 #include "MeshSeries/FreeSamples.h"
 
 #include "Base/ThreadPool.h"
+#include "MeshSeries/Rounded.h"
 
 #include <glm/common.hpp>
 
@@ -55,7 +56,7 @@ Partial Coarser(const Partial& fine, ThreadPool& pool)
               const std::size_t i = fine.At({ x, y, z });
               if (fine.Known[i] != 0)
               {
-                sum += fine.Values[i];
+                sum += fine.Values[i] / 8.0; // finite where values are as large as can be
                 ++known;
               }
             }
@@ -63,7 +64,7 @@ Partial Coarser(const Partial& fine, ThreadPool& pool)
         }
         const std::size_t i = coarse.At(p);
         coarse.Known[i] = known > 0 ? 1 : 0;
-        coarse.Values[i] = known > 0 ? sum / known : 0.0;
+        coarse.Values[i] = known > 0 ? MeanOfPart(sum, known / 8.0) : 0.0;
       }
     });
   return coarse;

@@ -5,6 +5,8 @@
 #include "MeshSeries/StoredMesh.h"
 #include "Series/FillValues.h"
 
+#include <cmath>
+
 namespace banyan
 {
 
@@ -15,32 +17,42 @@ namespace banyan
 /// @param image `[sample][components]`
 /// @param component of the image
 /// @param first, end the leaves; at least one
+/// @param isFill receives whether it is a fill value; may be null
 template <class Out, class T>
 Out MeanOfLeaves(const StoredMesh& mesh, const T* image, int components, int component,
-  std::size_t first, std::size_t end, const FillSet<T>& fills)
+  std::size_t first, std::size_t end, const FillSet<T>& fills, bool* isFill = nullptr)
 {
   const auto valueOf = [&](std::size_t leaf)
   {
     return image[std::int64_t{ mesh.SampleOfCell[mesh.CellOfLeaf[leaf]] } * components + component];
   };
-  if (end - first == 1)
-  {
-    return static_cast<Out>(valueOf(first));
-  }
-  double sum = 0.0;
+  const auto cellsOf = [&](std::size_t leaf)
+  { return static_cast<double>(CubeKeys(mesh.Leaves.Levels[leaf])); };
   double volume = 0.0;
   for (std::size_t leaf = first; leaf < end; ++leaf)
   {
     const T value = valueOf(leaf);
-    if (fills.Holds(value))
+    const bool fill = fills.Holds(value);
+    if (isFill)
+    {
+      *isFill = fill;
+    }
+    if (fill || end - first == 1)
     {
       return static_cast<Out>(value);
     }
-    const auto cells = static_cast<double>(CubeKeys(mesh.Leaves.Levels[leaf]));
-    sum += cells * static_cast<double>(value);
-    volume += cells;
+    volume += cellsOf(leaf);
   }
-  return Rounded<Out>(sum / volume);
+  // Sums of the largest doubles, as often as there are finest cells, would be infinite. Powers of
+  // two change no digit.
+  int exponent = 0;
+  const double part = std::frexp(volume, &exponent);
+  double sum = 0.0;
+  for (std::size_t leaf = first; leaf < end; ++leaf)
+  {
+    sum += std::ldexp(cellsOf(leaf), -exponent) * static_cast<double>(valueOf(leaf));
+  }
+  return Rounded<Out>(MeanOfPart(sum, part));
 }
 
 } // namespace banyan

@@ -29,6 +29,17 @@ T Rounded(double value)
   }
 }
 
+/// A mean as the quotient of sums that were made smaller, as those of the largest doubles are
+/// infinite: finite where the sum is, also where rounding says otherwise.
+/// @param part of one that the sum was made of
+inline double MeanOfPart(double sum, double part)
+{
+  const double mean = sum / part;
+  return std::isinf(mean) && std::isfinite(sum)
+           ? std::copysign(std::numeric_limits<double>::max(), sum)
+           : mean;
+}
+
 } // namespace banyan
 
 #endif

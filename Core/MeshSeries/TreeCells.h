@@ -35,19 +35,25 @@ TreeCells TreeCellsOf(const StoredMesh& mesh, int level);
 
 /// The value of the element at its centre, which is the mean of its corners.
 /// If one of them is a fill value, that is the result.
+/// @param isFill receives whether it is; may be null
 template <class T>
-double ValueAtCentre(const T (&corners)[8], const FillSet<T>& fills)
+double ValueAtCentre(const T (&corners)[8], const FillSet<T>& fills, bool* isFill = nullptr)
 {
-  double sum = 0.0;
+  double mean = 0.0;
   for (const T value : corners)
   {
-    if (fills.Holds(value))
+    const bool fill = fills.Holds(value);
+    if (isFill)
+    {
+      *isFill = fill;
+    }
+    if (fill)
     {
       return static_cast<double>(value);
     }
-    sum += static_cast<double>(value);
+    mean += static_cast<double>(value) / 8.0; // a sum might be infinite
   }
-  return sum / 8.0;
+  return mean;
 }
 
 } // namespace banyan

@@ -101,6 +101,30 @@ def check_trees(path, names, fill, cell_names=()):
                 near = 0.5 if name == "u" else 1e-6  # integers are rounded in grids
                 session.require(numpy.allclose(a[order], b[other], rtol=1e-6, atol=near, equal_nan=True),
                                 f"{path}, level {level}: {name} of cells")
+    if alone and numpy.isfinite(fill):
+        check_inner_cells(trees, leaves, names, fill)
     simple.Delete(leaves)
     for source in (grid, trees):
+        simple.Delete(source)
+
+
+def check_inner_cells(trees, leaves, names, fill):
+    """Cells above others have a fill value, or a mean of values that are none: nothing in between."""
+    trees.Level = 0
+    trees.UpdatePipeline(trees.TimestepValues[0])
+    limited = simple.HyperTreeGridDepthLimiter(Input=trees, SetDepth=0)
+    above = simple.HyperTreeGridToUnstructuredGrid(Input=limited)
+    above.UpdatePipeline(trees.TimestepValues[0])
+    leaves.UpdatePipeline(trees.TimestepValues[0])
+    fine, coarse = servermanager.Fetch(leaves), servermanager.Fetch(above)
+    session.require(0 < coarse.GetNumberOfCells() < fine.GetNumberOfCells(), "no cells above others")
+    filled = 0
+    for name in names:
+        values, means = [vtk_to_numpy(g.GetCellData().GetArray(name)).astype(float) for g in (fine, coarse)]
+        true, mean = values[(values != fill) & (values == values)], means[(means != fill) & (means == means)]
+        session.require(mean.min() >= true.min() - 1e-6 and mean.max() <= true.max() + 1e-6,
+                        f"{name}: {mean.min()} to {mean.max()} is no mean of {true.min()} to {true.max()}")
+        filled += (means == fill).sum()
+    session.require(filled > 0, "no fill value above leaves")
+    for source in (above, limited):
         simple.Delete(source)

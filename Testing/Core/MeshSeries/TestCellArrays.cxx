@@ -327,6 +327,24 @@ TEST_F(CellArrays, CoarserLevelsHaveMeansByVolume)
   }
 }
 
+TEST_F(CellArrays, MeansOfTheLargestNumbersAreFinite)
+{
+  const meshes::OwnMesh<float> mesh = Basin();
+  const auto stored = meshes::Store(mesh.Mesh());
+  const double most = std::numeric_limits<double>::max();
+  const std::vector<double> image(static_cast<std::size_t>(stored->Atlas->SampleCount()), most);
+  for (int level = 1; level <= 3; ++level)
+  {
+    const TreeCells trees = TreeCellsOf(*stored, level);
+    for (std::size_t i = 0; i + 1 < trees.FirstCell.size(); ++i)
+    {
+      EXPECT_EQ(MeanOfLeaves<double>(*stored, image.data(), 1, 0, trees.FirstCell[i],
+                  trees.FirstCell[i + 1], FillSet<double>({})),
+        most);
+    }
+  }
+}
+
 TEST_F(CellArrays, MeansOfIntegersAreRounded)
 {
   const auto mesh =

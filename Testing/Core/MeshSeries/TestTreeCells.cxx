@@ -1,6 +1,7 @@
 // Cells of a mesh as leaves of trees: the same cells, in as few trees as wanted.
 #include "MeshSeries/StoredMeshes.h"
 
+#include "MeshSeries/MeanOfChildren.h"
 #include "MeshSeries/MeshLevel.h"
 #include "MeshSeries/TreeCells.h"
 
@@ -139,6 +140,45 @@ TEST(TreeCellsTest, ValuesAtCentresAreMeansOfCorners)
   EXPECT_TRUE(std::isnan(ValueAtCentre(special, FillSet<double>({}))));
   const std::int8_t bytes[8] = { 127, 127, 127, 127, 127, 127, 127, 126 };
   EXPECT_EQ(ValueAtCentre(bytes, FillSet<std::int8_t>({})), 126.875);
+  const double most = std::numeric_limits<double>::max();
+  const double large[8] = { most, most, most, most, most, most, most, most };
+  EXPECT_EQ(ValueAtCentre(large, FillSet<double>({})), most);
+  bool fill = true;
+  (void)ValueAtCentre(large, FillSet<double>({ -1.0 }), &fill);
+  EXPECT_FALSE(fill);
+  (void)ValueAtCentre(large, FillSet<double>({ most }), &fill);
+  EXPECT_TRUE(fill);
+}
+
+TEST(TreeCellsTest, CoarseCellsHaveTheMeanOfTheirs)
+{
+  const double most = std::numeric_limits<double>::max();
+  MeanOfChildren none;
+  EXPECT_EQ(none.Value(), 0.0);
+  for (int count = 1; count <= 8; ++count)
+  {
+    MeanOfChildren mean, large;
+    double sum = 0.0;
+    for (int i = 0; i < count; ++i)
+    {
+      mean.Add(0.1 * i * i, false);
+      large.Add(-most, false);
+      sum += 0.1 * i * i;
+    }
+    EXPECT_EQ(mean.Value(), sum / count); // to the bit: eighths change no digit
+    EXPECT_FALSE(mean.IsFill());
+    EXPECT_NEAR(large.Value() / -most, 1.0, 1e-15) << count;
+    mean.Add(-9999.0, true);
+    mean.Add(1.0, false);
+    EXPECT_EQ(mean.Value(), -9999.0);
+    EXPECT_TRUE(mean.IsFill());
+    mean.Add(-1.0, true);
+    EXPECT_EQ(mean.Value(), -1.0);
+  }
+  MeanOfChildren nan;
+  nan.Add(std::numeric_limits<double>::quiet_NaN(), false);
+  nan.Add(1.0, false);
+  EXPECT_TRUE(std::isnan(nan.Value()));
 }
 
 } // namespace
