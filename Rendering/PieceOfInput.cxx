@@ -177,6 +177,11 @@ FieldPiece PieceOfInput(vtkBanyanVolumeMapper* mapper, vtkVolumeProperty* proper
   piece.Mesh.Tolerance = mapper->GetMeshTolerance();
   piece.Mesh.Sampling.Tolerance = mapper->GetMeshSamplingTolerance();
   piece.Mesh.Sampling.MostCubes = mapper->GetMeshSamplingBoxes();
+  piece.Mesh.Sampling.Watch = [mapper](double part)
+  {
+    mapper->UpdateProgress(part);
+    return mapper->GetAbortExecute() == 0;
+  };
   vtkDataObject* const data = mapper->GetDataObjectInput();
   if (!HasCells(data))
   {

@@ -215,7 +215,7 @@ void CellShapes::ChooseLattice(int refinement, ThreadPool& pool)
       std::int64_t first = -1;
       for (std::int64_t cell = begin; cell < end; ++cell)
       {
-        const TrilinearCell shape = this->MakeShape(cell);
+        const TrilinearCell shape(this->CornersOf(cell));
         const double height = HeightOf(shape.JacobianAt(glm::dvec3(0.5)));
         if (!(std::abs(height) > 1e-9))
         {
@@ -259,6 +259,7 @@ void CellShapes::ToLattice(ThreadPool& pool)
 {
   this->Cells.resize(this->Heights.size());
   this->Middles.resize(this->Heights.size());
+  this->Hulls.resize(this->Heights.size());
   FirstFailure failure;
   ForRuns(this->Count(), pool, failure,
     [&](std::int64_t begin, std::int64_t end, int)
@@ -269,7 +270,9 @@ void CellShapes::ToLattice(ThreadPool& pool)
           (this->Lows[Index(cell)] - this->LatticeOrigin) / this->FinestEdge;
         this->Highs[Index(cell)] =
           (this->Highs[Index(cell)] - this->LatticeOrigin) / this->FinestEdge;
-        const TrilinearCell shape = this->MakeShape(cell);
+        const std::array<glm::dvec3, 8> corners = this->CornersOf(cell);
+        const TrilinearCell shape(corners);
+        this->Hulls[Index(cell)] = CellHull(corners);
         this->Cells[Index(cell)] = shape;
         Middle& middle = this->Middles[Index(cell)];
         middle.Centre = shape.At(glm::dvec3(0.5));
@@ -316,7 +319,8 @@ void CellShapes::NodesOf(std::int64_t cell, std::array<std::int64_t, 8>& nodes) 
   }
 }
 
-TrilinearCell CellShapes::MakeShape(std::int64_t cell) const
+/// On the lattice, in the order of TrilinearCell.
+std::array<glm::dvec3, 8> CellShapes::CornersOf(std::int64_t cell) const
 {
   std::array<std::int64_t, 8> nodes;
   this->NodesOf(cell, nodes);
@@ -324,7 +328,7 @@ TrilinearCell CellShapes::MakeShape(std::int64_t cell) const
   std::transform(nodes.begin(), nodes.end(), corners.begin(),
     [this](std::int64_t node)
     { return (this->PointAt(node) - this->LatticeOrigin) / this->FinestEdge; });
-  return TrilinearCell(corners);
+  return corners;
 }
 
 } // namespace banyan

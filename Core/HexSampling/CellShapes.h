@@ -2,6 +2,7 @@
 #define banyan_HexSampling_CellShapes_h
 
 #include "HexOctree/HexMesh.h"
+#include "HexSampling/CellHull.h"
 #include "HexSampling/TrilinearCell.h"
 
 #include <cstdint>
@@ -16,7 +17,7 @@ class ThreadPool;
 /// the medians of the cells' extents along x, y and z, and begin where the mesh does.
 ///
 /// The corners of a cell stand as VTK_HEXAHEDRON has them, or, when the cell is close to an
-/// axis-aligned box (as a VTK_VOXEL is), in any order. Takes 400 bytes per cell.
+/// axis-aligned box (as a VTK_VOXEL is), in any order. Takes 580 bytes per cell.
 class CellShapes
 {
 public:
@@ -48,6 +49,11 @@ public:
     const glm::dvec3 off = glm::abs(middle.Inverse * (centre - middle.Centre));
     const glm::dvec3 reach = middle.Reach + half * middle.PerUnit;
     return off.x <= reach.x && off.y <= reach.y && off.z <= reach.z;
+  }
+  /// False when a point is not in the cell: there are planes between them.
+  bool MayHold(std::int64_t cell, const glm::dvec3& point) const
+  {
+    return this->Hulls[Index(cell)].MayHold(point);
   }
   /// Where in the cell a point is if the cell is taken for this parallelepiped.
   glm::dvec3 LinearPlace(std::int64_t cell, const glm::dvec3& point) const
@@ -88,7 +94,7 @@ private:
   std::array<int, 8> OrderOf(std::int64_t cell, std::array<std::int64_t, 8>& given) const;
   void ChooseLattice(int refinement, ThreadPool& pool);
   void ToLattice(ThreadPool& pool);
-  TrilinearCell MakeShape(std::int64_t cell) const;
+  std::array<glm::dvec3, 8> CornersOf(std::int64_t cell) const;
   glm::dvec3 PointAt(std::int64_t node) const;
 
   HexMesh Mesh;
@@ -99,6 +105,7 @@ private:
   std::vector<glm::dvec3> Highs;
   std::vector<TrilinearCell> Cells;
   std::vector<Middle> Middles;
+  std::vector<CellHull> Hulls;
   std::vector<float> Heights;
   std::vector<Order> Orders;
   std::int64_t TangledCells = 0;

@@ -60,6 +60,7 @@ private:
 
   template <class Body>
   void ForCubes(const Body& body);
+  void Report(std::size_t cubes);
   void Judge();
   void MeasureDenied();
   Judgement JudgeOne(const Cube& cube, Scratch& own) const;
@@ -74,6 +75,7 @@ private:
   const CellShapes& Shapes;
   MeshSampling Sampling;
   ThreadPool& Pool;
+  double Looked = 0.0; ///< cubes that were judged
   int Level = 0;
   bool Measuring = false;   ///< cubes that may have to stay as they are, for there are too many
   std::vector<Cube> Active; ///< of this level
@@ -190,20 +192,42 @@ void Refiner::ForCubes(const Body& body)
   }
   begins.push_back(this->Active.size());
   std::vector<std::unique_ptr<Scratch>> scratch(static_cast<std::size_t>(this->Pool.Width()));
-  this->Pool.ParallelFor(static_cast<std::int64_t>(begins.size()) - 1,
-    [&](std::int64_t block, int worker)
+  const auto look = [&](std::size_t block, int worker)
+  {
+    std::unique_ptr<Scratch>& own = scratch[static_cast<std::size_t>(worker)];
+    own = own ? std::move(own) : std::make_unique<Scratch>(this->Shapes);
+    const std::size_t begin = begins[block];
+    const std::size_t end = begins[block + 1];
+    const glm::ivec3 first = PositionOfKey(blockOf(begin)) * (2 << BlockPoints::Levels);
+    own->Points.Begin(first, this->Level);
+    for (std::size_t i = begin; i < end; ++i)
     {
-      std::unique_ptr<Scratch>& own = scratch[static_cast<std::size_t>(worker)];
-      own = own ? std::move(own) : std::make_unique<Scratch>(this->Shapes);
-      const std::size_t begin = begins[static_cast<std::size_t>(block)];
-      const std::size_t end = begins[static_cast<std::size_t>(block) + 1];
-      const glm::ivec3 first = PositionOfKey(blockOf(begin)) * (2 << BlockPoints::Levels);
-      own->Points.Begin(first, this->Level);
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        body(i, *own);
-      }
-    });
+      body(i, *own);
+    }
+  };
+  // Between runs of blocks, which take about a tenth of a second, somebody may look and stop it.
+  const std::size_t blocks = begins.size() - 1;
+  const std::size_t run = 32 * static_cast<std::size_t>(this->Pool.Width());
+  for (std::size_t from = 0; from < blocks; from += run)
+  {
+    const std::size_t to = std::min(blocks, from + run);
+    this->Pool.ParallelFor(static_cast<std::int64_t>(to - from), [&](std::int64_t block, int worker)
+      { look(from + static_cast<std::size_t>(block), worker); });
+    this->Report(begins[to] - begins[from]);
+  }
+}
+
+/// A mesh that takes as many cubes as it may has about twice as many looked at; most take fewer.
+void Refiner::Report(std::size_t cubes)
+{
+  constexpr double most = 0.9; // then there are the points
+  this->Looked += static_cast<double>(cubes);
+  const double part =
+    std::min(most, most * this->Looked / (2.0 * static_cast<double>(this->Sampling.MostCubes)));
+  if (this->Sampling.Watch && !this->Sampling.Watch(part))
+  {
+    throw Interrupted("Sampling the mesh at boxes was stopped");
+  }
 }
 
 void Refiner::Judge()

@@ -1,16 +1,25 @@
 #ifndef banyan_HexSampling_CubeRefiner_h
 #define banyan_HexSampling_CubeRefiner_h
 
+#include "Base/Error.h"
 #include "HexOctree/Morton.h"
 #include "HexSampling/PlaceInCell.h"
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace banyan
 {
 
 class ThreadPool;
+
+/// Work was stopped as somebody wished.
+class Interrupted : public Error
+{
+public:
+  using Error::Error;
+};
 
 /// How closely a mesh of general hexahedra is sampled.
 struct MeshSampling
@@ -20,6 +29,12 @@ struct MeshSampling
   double Tolerance = 1.0 / 4;
   /// A soft limit: when there are more, cubes stay as they are, and say so.
   std::int64_t MostCubes = std::int64_t{ 1 } << 20;
+
+  /// Called now and then, by the thread that asked for the cubes, with the part of the work that is
+  /// done: from 0 to 1, never less than before, and an estimate, as nobody knows how many cubes a
+  /// mesh will take. When it returns false the work ends with Interrupted. May be empty; what it is
+  /// does not count when samplings are compared.
+  std::function<bool(double)> Watch = {};
 
   /// Cubes are never smaller than this part of the thinnest cell that they touch, as a power of
   /// two.
@@ -53,8 +68,8 @@ struct SampledCubes
 /// Halves cubes from one around the whole mesh on: as long as they are larger than the thinnest
 /// cell that they touch, and then as long as their deviation is above the tolerance, or the border
 /// of the mesh goes through them. Those with their middle in the mesh stay. The same for any number
-/// of threads. Throws Error when as many cubes as the thinnest cells ask for would be more than
-/// eight times MostCubes.
+/// of threads. Throws Interrupted when Watch says so, and Error when as many cubes as the thinnest
+/// cells ask for would be more than eight times MostCubes.
 SampledCubes RefineCubes(const CellShapes& shapes, const MeshSampling& sampling, ThreadPool& pool);
 
 } // namespace banyan

@@ -28,6 +28,11 @@ PlaceInCell FindInside(const CellShapes& shapes, const CellList& cells, const gl
       continue;
     }
     glm::dvec3 part = shapes.LinearPlace(*cell, point);
+    // Newton's method takes longest where there is nothing to find.
+    if (!IsInUnitCube(part) && !shapes.MayHold(*cell, point))
+    {
+      continue;
+    }
     if (shapes.Shape(*cell).Find(point, part) && IsInUnitCube(part))
     {
       place.Cell = *cell;

@@ -47,6 +47,10 @@ std::shared_ptr<const SampledMesh> SampledMesh::Of(
     shapes.NodesOf(cell, made->NodesOfCells[Index(cell)]);
   }
   made->MakeBoxes(shapes, cubes, pool);
+  if (sampling.Watch)
+  {
+    (void)sampling.Watch(1.0); // all is done: too late to be stopped
+  }
   return made;
 }
 

@@ -28,7 +28,8 @@ class ThreadPool;
 class SampledMesh
 {
 public:
-  /// Throws Error: see CellShapes and RefineCubes; and when no box is left.
+  /// Throws Error: see CellShapes and RefineCubes (and Interrupted, which is one); and when no box
+  /// is left.
   static std::shared_ptr<const SampledMesh> Of(
     const HexMesh& mesh, const MeshSampling& sampling, ThreadPool& pool);
 
