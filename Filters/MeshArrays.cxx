@@ -3,6 +3,7 @@
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataArraySelection.h"
+#include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
 #include "vtkPointData.h"
@@ -11,6 +12,7 @@
 #include "Base/Error.h"
 
 #include <algorithm>
+#include <cstring>
 #include <set>
 
 namespace banyan
@@ -29,13 +31,6 @@ std::string NameOf(vtkAbstractArray* array, int number)
   return name && *name ? name : "Unnamed" + std::to_string(number);
 }
 
-/// What is not a value of the simulation.
-bool IsNoValue(vtkDataSetAttributes* attributes, vtkAbstractArray* array, const std::string& name)
-{
-  return array == attributes->GetGlobalIds() || array == attributes->GetPedigreeIds() ||
-         name == vtkDataSetAttributes::GhostArrayName();
-}
-
 std::string Joined(const std::set<std::string>& names)
 {
   std::string text;
@@ -50,6 +45,7 @@ std::string Joined(const std::set<std::string>& names)
 struct Found
 {
   std::vector<std::pair<std::string, vtkDataArray*>> Numbers;
+  std::set<std::string> Ids;    ///< numbers of points or cells, and flags of ghosts
   std::set<std::string> Names;  ///< of those and others that are there
   std::set<std::string> Others; ///< that are no numbers, or not everywhere
 };
@@ -62,8 +58,13 @@ Found ArraysOf(vtkDataSetAttributes* attributes, const WantedArrays& wanted)
     vtkAbstractArray* const array = attributes->GetAbstractArray(i);
     const std::string name = NameOf(array, i);
     const bool another = found.Names.insert(name).second;
-    if (!another || IsNoValue(attributes, array, name) || !wanted(name))
+    if (!another || !wanted(name))
     {
+      continue;
+    }
+    if (IsNoValue(attributes, array))
+    {
+      found.Ids.insert(name);
       continue;
     }
     vtkDataArray* const numbers = vtkDataArray::SafeDownCast(array);
@@ -96,24 +97,50 @@ void CheckChosen(
   }
 }
 
-/// Puts cell arrays that only some pieces have among the others.
-void AddPartial(vtkUnstructuredGrid* grid, const WantedArrays& wanted, Found& cells)
+/// The names of the arrays that were left out of a grid, as not all pieces have them.
+std::set<std::string> LeftOut(vtkUnstructuredGrid* grid, int where)
 {
-  const std::string prefix = InSomePiecesName({});
+  std::set<std::string> names;
+  const std::string prefix = LeftOutName(where, {});
   vtkFieldData* const fields = grid->GetFieldData();
   for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
   {
     const std::string name = NameOf(fields->GetAbstractArray(i), i);
     if (name.compare(0, prefix.size(), prefix) == 0)
     {
-      const std::string array = name.substr(prefix.size());
-      cells.Names.insert(array);
-      if (wanted(array))
-      {
-        cells.Others.insert(array);
-      }
+      names.insert(name.substr(prefix.size()));
     }
   }
+  return names;
+}
+
+/// Puts arrays that only some pieces have among the others. Of points these are ids.
+void AddPartial(vtkUnstructuredGrid* grid, int where, const WantedArrays& wanted, Found& found)
+{
+  for (const std::string& name : LeftOut(grid, where))
+  {
+    found.Names.insert(name);
+    if (wanted(name))
+    {
+      (where == vtkDataObject::POINT ? found.Ids : found.Others).insert(name);
+    }
+  }
+}
+
+/// A sentence about ids that somebody chose to write.
+std::string AboutIds(vtkDataArraySelection* selection, const char* kind, const Found& found)
+{
+  std::set<std::string> chosen;
+  for (const std::string& name : found.Ids)
+  {
+    if (Enabled(selection, name) && name != vtkDataSetAttributes::GhostArrayName())
+    {
+      chosen.insert(name);
+    }
+  }
+  return chosen.empty() ? ""
+                        : "The " + std::string(kind) + " arrays " + Joined(chosen) +
+                            " are ids, not values, and are not written. ";
 }
 
 std::string UniqueName(const std::string& name, const std::set<std::string>& taken)
@@ -127,6 +154,44 @@ std::string UniqueName(const std::string& name, const std::set<std::string>& tak
 }
 
 } // namespace
+
+bool IsNoValue(vtkDataSetAttributes* attributes, vtkAbstractArray* array)
+{
+  return array == attributes->GetGlobalIds() || array == attributes->GetPedigreeIds() ||
+         (array->GetName() &&
+           std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName()) == 0);
+}
+
+std::string LeftOutName(int where, const std::string& array)
+{
+  return (where == vtkDataObject::POINT ? "at points of some pieces only: "
+                                        : "in some pieces only: ") +
+         array;
+}
+
+std::string TakeLeftOut(vtkUnstructuredGrid* grid)
+{
+  std::string sentence;
+  if (!grid)
+  {
+    return sentence;
+  }
+  for (const int where : { vtkDataObject::POINT, vtkDataObject::CELL })
+  {
+    const std::set<std::string> names = LeftOut(grid, where);
+    for (const std::string& name : names)
+    {
+      grid->GetFieldData()->RemoveArray(LeftOutName(where, name).c_str());
+    }
+    if (!names.empty())
+    {
+      sentence += std::string("The ") + (where == vtkDataObject::POINT ? "point" : "cell") +
+                  " arrays " + Joined(names) +
+                  " are left out: not all blocks of the mesh have them, of one type. ";
+    }
+  }
+  return sentence;
+}
 
 bool MeshArrays::Chosen() const
 {
@@ -146,9 +211,10 @@ std::vector<MeshArray> MeshArrays::Of(
 {
   const WantedArrays wantedCells = [this](const std::string& name)
   { return !this->Chosen() || Enabled(this->Cells, name); };
-  const Found points = ArraysOf(grid->GetPointData(), this->WantedPoints(leaves));
+  Found points = ArraysOf(grid->GetPointData(), this->WantedPoints(leaves));
   Found cells = ArraysOf(grid->GetCellData(), wantedCells);
-  AddPartial(grid, wantedCells, cells);
+  AddPartial(grid, vtkDataObject::POINT, this->WantedPoints(leaves), points);
+  AddPartial(grid, vtkDataObject::CELL, wantedCells, cells);
   CheckChosen(this->Points, "point", points.Names);
   CheckChosen(this->Cells, "cell", leaves ? points.Names : cells.Names);
 
@@ -178,8 +244,9 @@ std::vector<MeshArray> MeshArrays::Of(
   }
   if (arrays.empty())
   {
-    throw Error(
-      "There is no array of numbers to write at the points or cells of the mesh. " + warning);
+    throw Error("There is no array of numbers to write at the points or cells of the mesh. " +
+                AboutIds(this->Points, "point", points) + AboutIds(this->Cells, "cell", cells) +
+                warning);
   }
   return arrays;
 }

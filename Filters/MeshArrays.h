@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+class vtkAbstractArray;
 class vtkDataArray;
 class vtkDataArraySelection;
+class vtkDataSetAttributes;
 class vtkUnstructuredGrid;
 
 namespace banyan
@@ -48,12 +50,17 @@ private:
   vtkDataArraySelection* Cells;
 };
 
-/// The name of a field array, which says that a cell array is only in some of the pieces
-/// that a grid was merged of.
-inline std::string InSomePiecesName(const std::string& array)
-{
-  return "in some pieces only: " + array;
-}
+/// Whether an array holds no values of a simulation: global or pedigree ids, or flags of ghosts.
+bool IsNoValue(vtkDataSetAttributes* attributes, vtkAbstractArray* array);
+
+/// The name of a field array, which says that an array is left out of a grid that was merged of
+/// pieces, as not all of them have it.
+/// @param where vtkDataObject::POINT or CELL
+std::string LeftOutName(int where, const std::string& array);
+
+/// Takes such field arrays out of a grid, which may be null.
+/// @return a sentence that names the arrays, or nothing
+std::string TakeLeftOut(vtkUnstructuredGrid* grid);
 
 } // namespace banyan
 

@@ -1,17 +1,15 @@
 #include "MeshPieces.h"
 
 #include "GhostCells.h"
-#include "MeshArrays.h"
+#include "PieceArrays.h"
 #include "PieceItems.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkFieldData.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
-#include "vtkIntArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -22,10 +20,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <map>
 #include <numeric>
-#include <set>
 
 namespace banyan
 {
@@ -35,13 +31,12 @@ namespace
 class PieceMerger
 {
 public:
-  PieceMerger(const std::vector<vtkUnstructuredGrid*>& pieces, const WantedArrays& wanted)
+  explicit PieceMerger(const std::vector<vtkUnstructuredGrid*>& pieces)
     : Pieces(pieces)
-    , Wanted(wanted)
   {
   }
 
-  vtkSmartPointer<vtkUnstructuredGrid> Merge()
+  vtkSmartPointer<vtkUnstructuredGrid> Merge(const PieceArrays& arrays)
   {
     for (std::size_t piece = 0; piece < this->Pieces.size(); ++piece)
     {
@@ -51,8 +46,8 @@ public:
     const auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
     this->MakePoints(grid);
     this->MakeCells(grid);
-    this->MakeArrays(grid);
-    this->MakeCellArrays(grid);
+    arrays.AddPoints(this->Points, this->Twins, grid);
+    arrays.AddCells(this->Cells, grid);
     this->KeepGlobalIds(
       this->Points, [](vtkUnstructuredGrid* piece) { return piece->GetPointData(); }, grid);
     this->KeepGlobalIds(
@@ -228,150 +223,10 @@ private:
     attributes(grid)->SetGlobalIds(kept);
   }
 
-  /// Whether an array has values that are to be kept.
-  bool Counts(vtkPointData* points, vtkDataArray* array) const
-  {
-    return array && array->GetName() && array != points->GetGlobalIds() &&
-           std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName()) != 0 &&
-           this->Wanted(array->GetName());
-  }
-
-  void MakeArrays(vtkUnstructuredGrid* grid) const
-  {
-    // An array that the first piece has not is missed there as well.
-    for (vtkUnstructuredGrid* piece : this->Pieces)
-    {
-      vtkPointData* const all = piece->GetPointData();
-      for (int a = 0; a < all->GetNumberOfArrays(); ++a)
-      {
-        vtkDataArray* const array = all->GetArray(a);
-        if (this->Counts(all, array) && !grid->GetPointData()->GetArray(array->GetName()))
-        {
-          const auto joined = this->Joined(array, this->PartsOf(array));
-          grid->GetPointData()->AddArray(joined);
-          if (array == all->GetPedigreeIds())
-          {
-            grid->GetPointData()->SetPedigreeIds(joined);
-          }
-        }
-      }
-    }
-    vtkPointData* const first = this->Pieces[0]->GetPointData();
-    if (first->GetScalars() && first->GetScalars()->GetName())
-    {
-      grid->GetPointData()->SetActiveScalars(first->GetScalars()->GetName());
-    }
-  }
-
-  /// Those that all pieces have. Others are named in the field data (see InSomePiecesName).
-  void MakeCellArrays(vtkUnstructuredGrid* grid) const
-  {
-    std::set<std::string> done;
-    for (vtkUnstructuredGrid* piece : this->Pieces)
-    {
-      vtkCellData* const all = piece->GetCellData();
-      for (int a = 0; a < all->GetNumberOfArrays(); ++a)
-      {
-        vtkAbstractArray* const array = all->GetAbstractArray(a);
-        if (!array->GetName() || array == all->GetGlobalIds() ||
-            std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName()) == 0 ||
-            !done.insert(array->GetName()).second)
-        {
-          continue;
-        }
-        vtkDataArray* const like = vtkDataArray::SafeDownCast(array);
-        if (!like)
-        {
-          MarkLeftOut(array->GetName(), grid);
-          continue;
-        }
-        this->MakeCellArray(like, grid);
-        if (array == all->GetPedigreeIds() && grid->GetCellData()->GetArray(array->GetName()))
-        {
-          grid->GetCellData()->SetPedigreeIds(grid->GetCellData()->GetArray(array->GetName()));
-        }
-      }
-      vtkFieldData* const fields = piece->GetFieldData();
-      for (int a = 0; a < fields->GetNumberOfArrays(); ++a)
-      {
-        grid->GetFieldData()->AddArray(fields->GetAbstractArray(a));
-      }
-    }
-  }
-
-  void MakeCellArray(vtkDataArray* like, vtkUnstructuredGrid* grid) const
-  {
-    std::vector<vtkDataArray*> parts;
-    bool everywhere = true;
-    for (vtkUnstructuredGrid* piece : this->Pieces)
-    {
-      vtkDataArray* const part = piece->GetCellData()->GetArray(like->GetName());
-      const bool fits = part && part->GetDataType() == like->GetDataType() &&
-                        part->GetNumberOfComponents() == like->GetNumberOfComponents();
-      parts.push_back(part);
-      everywhere = everywhere && fits;
-    }
-    if (everywhere)
-    {
-      grid->GetCellData()->AddArray(TuplesOf(like, this->Cells, parts));
-      return;
-    }
-    MarkLeftOut(like->GetName(), grid);
-  }
-
-  /// Of a cell array that is not in all pieces, or not one of numbers.
-  static void MarkLeftOut(const char* array, vtkUnstructuredGrid* grid)
-  {
-    vtkNew<vtkIntArray> mark;
-    mark->InsertNextValue(0); // empty ones are lost between ranks
-    mark->SetName(InSomePiecesName(array).c_str());
-    grid->GetFieldData()->AddArray(mark);
-  }
-
-  std::vector<vtkDataArray*> PartsOf(vtkDataArray* like) const
-  {
-    std::vector<vtkDataArray*> parts;
-    for (vtkUnstructuredGrid* piece : this->Pieces)
-    {
-      parts.push_back(piece->GetPointData()->GetArray(like->GetName()));
-      if (!parts.back() || parts.back()->GetDataType() != like->GetDataType() ||
-          parts.back()->GetNumberOfComponents() != like->GetNumberOfComponents())
-      {
-        throw Error(std::string("The point array ") + like->GetName() +
-                    " is not the same in all pieces or blocks of the mesh: choose others with "
-                    "'Point Arrays'");
-      }
-    }
-    return parts;
-  }
-
-  vtkSmartPointer<vtkDataArray> Joined(
-    vtkDataArray* like, const std::vector<vtkDataArray*>& parts) const
-  {
-    auto whole = TuplesOf(like, this->Points, parts);
-    const std::size_t bytes =
-      static_cast<std::size_t>(like->GetDataTypeSize()) * like->GetNumberOfComponents();
-    for (const auto& twin : this->Twins)
-    {
-      const auto at = [&](const PieceItem& point)
-      {
-        return static_cast<const char*>(parts[point.Piece]->GetVoidPointer(0)) +
-               static_cast<std::size_t>(point.Id) * bytes;
-      };
-      if (std::memcmp(at(twin.first), at(twin.second), bytes) != 0)
-      {
-        throw Error(std::string("Two ranks or blocks have different values of the array ") +
-                    like->GetName() + " at the same point of the mesh: which one should be kept?");
-      }
-    }
-    return whole;
-  }
-
   const std::vector<vtkUnstructuredGrid*>& Pieces;
-  const WantedArrays& Wanted;
   std::vector<PieceItem> Points;
   std::vector<PieceItem> Cells;
-  std::vector<std::pair<PieceItem, PieceItem>> Twins;
+  PieceArrays::Twins Twins;
   std::vector<std::vector<vtkIdType>> Merged; ///< by piece and its points; -1: left out
   std::map<Coordinates, std::vector<vtkIdType>> AtPlace;
 };
@@ -379,7 +234,7 @@ private:
 } // namespace
 
 vtkSmartPointer<vtkUnstructuredGrid> MergePieces(
-  const std::vector<vtkUnstructuredGrid*>& pieces, const WantedArrays& wanted)
+  const std::vector<vtkUnstructuredGrid*>& pieces, const WantedArrays& wanted, UnevenArrays uneven)
 {
   if (pieces.empty())
   {
@@ -389,7 +244,7 @@ vtkSmartPointer<vtkUnstructuredGrid> MergePieces(
   {
     return pieces[0];
   }
-  return PieceMerger(pieces, wanted).Merge();
+  return PieceMerger(pieces).Merge(PieceArrays(pieces, wanted, uneven));
 }
 
 } // namespace banyan

@@ -1,6 +1,7 @@
 #include "SampledGrid.h"
 
 #include "HexMeshOfGrid.h"
+#include "MeshArrays.h"
 #include "PieceValues.h"
 #include "VoxelCells.h"
 
@@ -19,11 +20,10 @@ namespace banyan
 namespace
 {
 
-bool IsValue(vtkDataSetAttributes* attributes, vtkDataArray* array)
+bool IsSampled(vtkDataSetAttributes* attributes, vtkDataArray* array)
 {
   return array && array->GetName() && array->GetDataType() != VTK_BIT &&
-         array != attributes->GetGlobalIds() && array != attributes->GetPedigreeIds() &&
-         std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName()) != 0;
+         !IsNoValue(attributes, array);
 }
 
 void Copy(const SampledMesh::Values& from, int component, vtkDataArray* to)
@@ -54,6 +54,7 @@ void SampledGrid::Find(const HexMesh& mesh, const MeshSampling& sampling)
   this->PointHash = pointHash;
   this->CellHash = cellHash;
   this->Sampling = sampling;
+  this->Sampling.Watch = nullptr; // may not live as long
   const HexMesh& boxes = this->Sampled->Boxes();
   vtkNew<vtkPoints> places;
   places->SetDataType(VTK_DOUBLE);
@@ -83,7 +84,7 @@ void SampledGrid::AddArrays(
   for (int i = 0; i < from->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* const array = from->GetArray(i);
-    if (!IsValue(from, array) || to->HasArray(array->GetName()))
+    if (!IsSampled(from, array) || to->HasArray(array->GetName()))
     {
       continue;
     }

@@ -24,7 +24,7 @@ class SampledGrid
 {
 public:
   /// The boxes are found once for a mesh and these options; later grids of the same content touch
-  /// values only. Throws Error: see SampledMesh::Of.
+  /// values only. Throws Error: see SampledMesh::Of, as for Interrupted.
   /// @return voxels, with points in float64
   vtkSmartPointer<vtkUnstructuredGrid> Of(vtkUnstructuredGrid* grid, const MeshSampling& sampling);
 

@@ -3,6 +3,7 @@
 #include "GridOfAmr.h"
 #include "GridOfHyperTrees.h"
 #include "HexMeshOfGrid.h"
+#include "MeshArrays.h"
 #include "MeshPieces.h"
 #include "RankTalk.h"
 #include "SampledGrid.h"
@@ -97,6 +98,12 @@ void AddFacts(const banyan::ElementOctree& tree, vtkUnstructuredGrid* grid)
   grid->GetFieldData()->AddArray(array);
 }
 
+vtkSmartPointer<vtkUnstructuredGrid> Merged(const std::vector<vtkUnstructuredGrid*>& pieces)
+{
+  return banyan::MergePieces(
+    pieces, [](const std::string&) { return true; }, banyan::UnevenArrays::LeftOut);
+}
+
 /// Collective for AMR.
 vtkSmartPointer<vtkUnstructuredGrid> GridOf(vtkDataObject* data)
 {
@@ -120,7 +127,7 @@ vtkSmartPointer<vtkUnstructuredGrid> GridOf(vtkDataObject* data)
   {
     throw banyan::Error("The data hold cells that are those of no unstructured grid");
   }
-  return banyan::MergePieces(grids, [](const std::string&) { return true; });
+  return Merged(grids);
 }
 
 /// Whether the cells are boxes already, whatever the data.
@@ -199,7 +206,7 @@ vtkSmartPointer<vtkUnstructuredGrid> vtkBanyanHexOctree::Gathered(vtkDataObject*
       {
         banyan::CollectGrids(piece, pieces);
       }
-      mine = banyan::MergePieces(pieces, [](const std::string&) { return true; });
+      mine = Merged(pieces);
     });
   return mine;
 }
@@ -208,6 +215,11 @@ vtkSmartPointer<vtkUnstructuredGrid> vtkBanyanHexOctree::Gathered(vtkDataObject*
 void vtkBanyanHexOctree::Describe(vtkUnstructuredGrid* input, vtkUnstructuredGrid* output)
 {
   banyan::ThreadPool& pool = banyan::ThreadPool::Process();
+  const std::string leftOut = banyan::TakeLeftOut(input);
+  if (!leftOut.empty())
+  {
+    vtkWarningMacro(<< leftOut);
+  }
   vtkSmartPointer<vtkUnstructuredGrid> grid = input;
   std::shared_ptr<const banyan::ElementOctree> tree;
   try
@@ -233,7 +245,20 @@ void vtkBanyanHexOctree::Describe(vtkUnstructuredGrid* input, vtkUnstructuredGri
     {
       this->Sampled = std::make_unique<banyan::SampledGrid>();
     }
-    grid = this->Sampled->Of(input, { this->MeshSamplingTolerance, this->MeshSamplingBoxes });
+    try
+    {
+      grid = this->Sampled->Of(input, { this->MeshSamplingTolerance, this->MeshSamplingBoxes,
+                                        [this](double part)
+                                        {
+                                          this->UpdateProgress(part);
+                                          return this->GetAbortExecute() == 0;
+                                        } });
+    }
+    catch (const banyan::Interrupted&)
+    {
+      output->Initialize(); // as other filters that are told to stop
+      return;
+    }
     if (!this->Sampled->Note().empty())
     {
       vtkWarningMacro(<< this->Sampled->Note());

@@ -14,11 +14,13 @@
  * hang where neighbours differ by more than one level, points that have the place of another one.
  *
  * A mesh that is no octree is an error, whose message names the first cell that does not fit, and
- * why. With SampleGeneralMeshes the output is instead a grid of the boxes that "Banyan Volume" draws
- * of it (see SampledGrid): axis-aligned voxels with values at their points, which the writer of
- * series takes.
+ * why. With SampleGeneralMeshes the output is instead a grid of the boxes that "Banyan Volume"
+ * draws of it (see SampledGrid): axis-aligned voxels with values at their points, which the writer
+ * of series takes. Finding the boxes shows progress, and ends with an empty output when
+ * AbortExecute is set.
  *
- * Blocks of a composite data set are one mesh. Points of blocks at one place become one.
+ * Blocks of a composite data set are one mesh. Points of blocks at one place become one. Arrays
+ * that not all blocks have are left out, with a warning that names them.
  *
  * @par Source: section 4 of "Visualizing Very Large-Scale Earthquake Simulations".
  * @par Limits: each piece is looked at by itself, but blocks of AMR hide cells of other ranks: with

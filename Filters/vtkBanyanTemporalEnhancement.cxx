@@ -1,6 +1,7 @@
 #include "vtkBanyanTemporalEnhancement.h"
 
 #include "EnhancedArray.h"
+#include "LeafParts.h"
 #include "vtkBanyanDeferred.h"
 
 #include "Series/SeriesFile.h"
@@ -9,11 +10,12 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkErrorCode.h"
+#include "vtkHyperTreeGrid.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
-#include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
@@ -27,11 +29,18 @@ namespace
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-/// The data set at the same place of another step; null where there is none.
-vtkDataSet* Counterpart(vtkDataObject* step, vtkCompositeDataIterator* place)
+/// What lies at the same place of another step; null where there is nothing.
+vtkDataObject* Counterpart(vtkDataObject* step, vtkCompositeDataIterator* place)
 {
   vtkCompositeDataSet* const blocks = vtkCompositeDataSet::SafeDownCast(step);
-  return vtkDataSet::SafeDownCast(blocks && place ? blocks->GetDataSet(place) : step);
+  return blocks && place ? blocks->GetDataSet(place) : step;
+}
+
+bool HasValues(vtkDataObject* data)
+{
+  vtkDataSet* const set = vtkDataSet::SafeDownCast(data);
+  vtkHyperTreeGrid* const trees = vtkHyperTreeGrid::SafeDownCast(data);
+  return (set && set->GetNumberOfPoints() > 0) || (trees && trees->GetNumberOfCells() > 0);
 }
 
 } // namespace
@@ -47,6 +56,7 @@ int vtkBanyanTemporalEnhancement::FillInputPortInformation(int, vtkInformation* 
   // Blocks are walked here: the pipeline's own loop over them does not go with several steps.
   info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkHyperTreeGrid");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
   return 1;
 }
@@ -73,7 +83,7 @@ int vtkBanyanTemporalEnhancement::RequestData(
   try
   {
     this->Window.Take(this);
-    output->ShallowCopy(this->Window.Now());
+    output->ShallowCopy(banyan::CopyOfLeaves(this->Window.Now()));
     this->EnhanceAll(output);
   }
   catch (const std::exception& error)
@@ -90,13 +100,13 @@ void vtkBanyanTemporalEnhancement::EnhanceAll(vtkDataObject* output)
 {
   PlainArrays plain;
   plain.swap(this->Decoded);
-  bool points = false;
+  bool values = false;
   bool found = false;
-  const auto enhance = [&](vtkDataSet* data, vtkCompositeDataIterator* place)
+  const auto enhance = [&](vtkDataObject* data, vtkCompositeDataIterator* place)
   {
-    if (data && data->GetNumberOfPoints() > 0)
+    if (HasValues(data))
     {
-      points = true;
+      values = true;
       found = this->Enhance(data, place, plain) || found;
     }
   };
@@ -105,30 +115,35 @@ void vtkBanyanTemporalEnhancement::EnhanceAll(vtkDataObject* output)
     const auto visit = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
     for (visit->InitTraversal(); !visit->IsDoneWithTraversal(); visit->GoToNextItem())
     {
-      enhance(vtkDataSet::SafeDownCast(visit->GetCurrentDataObject()), visit);
+      enhance(visit->GetCurrentDataObject(), visit);
     }
   }
   else
   {
-    enhance(vtkDataSet::SafeDownCast(output), nullptr);
+    enhance(output, nullptr);
   }
-  if (points && !found)
+  if (values && !found)
   {
-    throw std::runtime_error("there is no point array of the name that was chosen. Choose another "
-                             "one; Cell Data to Point Data makes point arrays of cell arrays.");
+    throw std::runtime_error(
+      "there is no point array of the name that was chosen, and no cell array "
+      "either if one of cells was. Choose another one.");
   }
 }
 
 /// False where there is no such array.
 bool vtkBanyanTemporalEnhancement::Enhance(
-  vtkDataSet* data, vtkCompositeDataIterator* place, PlainArrays& plain)
+  vtkDataObject* data, vtkCompositeDataIterator* place, PlainArrays& plain)
 {
   int association = 0;
   vtkDataArray* const array = this->GetInputArrayToProcess(0, data, association);
-  if (!array || association != vtkDataObject::FIELD_ASSOCIATION_POINTS)
+  if (!array || (association != vtkDataObject::FIELD_ASSOCIATION_POINTS &&
+                  association != vtkDataObject::FIELD_ASSOCIATION_CELLS))
   {
     return false;
   }
+  const bool ofCells = association == vtkDataObject::FIELD_ASSOCIATION_CELLS;
+  const int where = ofCells ? vtkDataObject::CELL : vtkDataObject::POINT;
+  const std::string kind = ofCells ? "cell" : "point";
   vtkDataArray* neighbours[2] = { nullptr, nullptr };
   vtkDataObject* const steps[2] = { this->Window.Previous(), this->Window.Next() };
   for (int i = 0; i < 2; ++i)
@@ -138,18 +153,25 @@ bool vtkBanyanTemporalEnhancement::Enhance(
       continue;
     }
     const std::string which = i == 0 ? "the step before" : "the step after";
-    vtkDataSet* const other = Counterpart(steps[i], place);
-    vtkDataArray* const there = other ? other->GetPointData()->GetArray(array->GetName()) : nullptr;
+    vtkDataObject* const other = Counterpart(steps[i], place);
+    vtkDataSetAttributes* const values = other ? other->GetAttributes(where) : nullptr;
+    vtkDataArray* const there = values ? values->GetArray(array->GetName()) : nullptr;
     if (!there)
     {
-      throw std::runtime_error(which + " has no point array \"" + array->GetName() + "\".");
+      throw std::runtime_error(which + " has no " + kind + " array \"" + array->GetName() + "\".");
+    }
+    if (vtkHyperTreeGrid::SafeDownCast(data) && !banyan::HaveSameLeaves(data, other))
+    {
+      throw std::runtime_error(which +
+                               " has other hyper trees. Only those that stay the same can be "
+                               "compared.");
     }
     if (there->GetNumberOfTuples() != array->GetNumberOfTuples() ||
         there->GetNumberOfComponents() != array->GetNumberOfComponents())
     {
-      const auto shape = [](vtkDataArray* of)
+      const auto shape = [&](vtkDataArray* of)
       {
-        return std::to_string(of->GetNumberOfTuples()) + " points with " +
+        return std::to_string(of->GetNumberOfTuples()) + " " + kind + "s with " +
                std::to_string(of->GetNumberOfComponents()) + " components";
       };
       throw std::runtime_error("\"" + std::string(array->GetName()) + "\" has " + shape(there) +
@@ -160,7 +182,7 @@ bool vtkBanyanTemporalEnhancement::Enhance(
   }
   const auto enhanced = banyan::EnhancedArray(
     this->HowFor(array), this->PlainOf(array, plain), neighbours[0], neighbours[1]);
-  data->GetPointData()->AddArray(enhanced);
+  data->GetAttributes(where)->AddArray(enhanced);
   return true;
 }
 

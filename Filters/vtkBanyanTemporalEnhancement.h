@@ -2,12 +2,12 @@
  * @class   vtkBanyanTemporalEnhancement
  * @brief   brings out what moves in a time series, at all scales
  *
- * Adds the point array `name_enhanced` to image data, unstructured grids, any other data set or
- * blocks of them: each value is mixed with how much it changes from step to step in proportion to
- * itself (banyan::TemporalEnhancement has the formula). So waves stay visible over the whole period
- * although they become weaker by decades, as in an earthquake. The array itself passes unchanged:
- * colour by the one or the other to switch enhancement on and off. Vectors keep their direction;
- * their length is enhanced.
+ * Adds the array `name_enhanced` to the points or cells of image data, unstructured grids, any
+ * other data set or blocks of them, AMR, and to the cells of hyper trees: each value is mixed with
+ * how much it changes from step to step in proportion to itself (banyan::TemporalEnhancement has
+ * the formula). So waves stay visible over the whole period although they become weaker by decades,
+ * as in an earthquake. The array itself passes unchanged: colour by the one or the other to switch
+ * enhancement on and off. Vectors keep their direction; their length is enhanced.
  *
  * At each step the previous and the next one are read too. Steps that were read are kept (by
  * reference), so that playing reads each step once.
@@ -16,9 +16,9 @@
  * Computed in double precision and rounded to float32, or kept in float64 where the array is.
  *
  * @par Limits:
- * Points must be the same at the three steps; where they are not (or the array is missing in one)
- * that is an error. At the first and last step the neighbour that there is counts alone; without
- * any, as in data without time, values pass unchanged.
+ * Points, cells, trees and blocks must be the same at the three steps; where they are not (or the
+ * array is missing in one) that is an error. At the first and last step the neighbour that there is
+ * counts alone; without any, as in data without time, values pass unchanged.
  *
  * @par Source: section 5 of "Visualizing Very Large-Scale Earthquake Simulations".
  */
@@ -35,7 +35,8 @@
 
 class vtkCompositeDataIterator;
 class vtkDataArray;
-class vtkDataSet;
+class vtkDataObject;
+class vtkDataSetAttributes;
 
 namespace banyan
 {
@@ -119,7 +120,7 @@ private:
   using PlainArrays = std::map<vtkSmartPointer<vtkDataArray>, vtkSmartPointer<vtkDataArray>>;
 
   void EnhanceAll(vtkDataObject* output);
-  bool Enhance(vtkDataSet* data, vtkCompositeDataIterator* place, PlainArrays& plain);
+  bool Enhance(vtkDataObject* data, vtkCompositeDataIterator* place, PlainArrays& plain);
   vtkDataArray* PlainOf(vtkDataArray* array, const PlainArrays& before);
   banyan::TemporalEnhancement HowFor(vtkDataArray* array) const;
 

@@ -4,6 +4,7 @@
 
 #include "Cache/BrickCache.h"
 #include "EnhancedArray.h"
+#include "LeafParts.h"
 #include "Render/EnhancedBrickSource.h"
 #include "Render/SeriesBrickSource.h"
 #include "vtkBanyanDeferred.h"
@@ -36,19 +37,51 @@ std::uint64_t Address(const void* pointer)
   return reinterpret_cast<std::uintptr_t>(pointer);
 }
 
-/// Null unless it can be compared with `array`.
-vtkDataArray* Neighbour(vtkDataObject* data, const char* name, const FieldPiece& piece)
+int PlaceOf(const FieldPiece& piece)
 {
-  vtkDataArray* const array = piece.Array;
-  vtkDataArray* const found =
-    data
-      ->GetAttributes(piece.Where == ValuesOn::Points ? vtkDataObject::POINT : vtkDataObject::CELL)
-      ->GetArray(name);
+  return piece.Where == ValuesOn::Cells ? vtkDataObject::CELL : vtkDataObject::POINT;
+}
+
+/// Null unless it can be compared with `array`.
+vtkDataArray* Neighbour(vtkDataSetAttributes* all, const char* name, vtkDataArray* array)
+{
+  vtkDataArray* const found = all->GetArray(name);
   return found && found->GetNumberOfTuples() == array->GetNumberOfTuples() &&
              found->GetNumberOfComponents() == array->GetNumberOfComponents()
            ? found
            : nullptr;
 }
+
+using Neighbours = std::array<vtkDataArray*, 3>; ///< now, before, after
+
+Neighbours NeighboursOf(vtkDataSetAttributes* all, vtkDataArray* array)
+{
+  return { { array, Neighbour(all, MotionEnhancement::PreviousName(), array),
+    Neighbour(all, MotionEnhancement::NextName(), array) } };
+}
+
+/// Null when they cannot be decoded.
+vtkSmartPointer<vtkDataArray> Enhance(const Neighbours& arrays, const FieldPiece& piece)
+{
+  vtkSmartPointer<vtkDataArray> plain[3];
+  for (std::size_t i = 0; i < 3; ++i)
+  {
+    plain[i] = arrays[i] ? vtkBanyanDeferred::Plain(arrays[i]) : nullptr;
+  }
+  return plain[0] ? EnhancedArray(piece.Enhancement, plain[0], plain[1], plain[2],
+                      static_cast<EnhancedPart>(piece.Component))
+                  : nullptr;
+}
+
+std::array<std::uint64_t, 9> StampOf(const Neighbours& arrays, const FieldPiece& piece)
+{
+  return { { Address(arrays[0]), arrays[0]->GetMTime(), Address(arrays[1]),
+    arrays[1] ? arrays[1]->GetMTime() : 0, Address(arrays[2]),
+    arrays[2] ? arrays[2]->GetMTime() : 0, static_cast<std::uint64_t>(piece.Component + 1),
+    Bits(piece.Enhancement.Strength), Bits(piece.Enhancement.Scale) } };
+}
+
+constexpr const char* NotDecoded = "The values to be enhanced cannot be decoded.";
 
 } // namespace
 
@@ -58,12 +91,7 @@ void MotionEnhancement::Apply(
   if (strength == 0.0 || !data || !piece.Array || !piece.Problem.empty())
   {
     this->Enhanced = nullptr;
-    return;
-  }
-  if (piece.Leaves)
-  {
-    piece.Problem = std::string("Motion is not brought out in data of the type ") +
-                    data->GetClassName() + ": set 'Temporal Enhancement' to 0.";
+    this->Leaves = nullptr;
     return;
   }
   const double* const range = property->GetScalarOpacity(0)->GetRange();
@@ -71,33 +99,71 @@ void MotionEnhancement::Apply(
   piece.Enhancement = {};
   piece.Enhancement.Strength = strength;
   piece.Enhancement.Scale = scale > 0.0 ? scale : 1.0;
-  const vtkBanyanDeferred::Handle* const handle = vtkBanyanDeferred::From(piece.Array);
-  if (handle && piece.Image && vtkBanyanDeferred::LiesOnSeries(piece.Image, *handle))
+  if (piece.Leaves)
   {
+    this->ApplyToLeaves(piece);
     return;
   }
-  vtkDataArray* const arrays[3] = { piece.Array, Neighbour(data, PreviousName(), piece),
-    Neighbour(data, NextName(), piece) };
-  const std::array<std::uint64_t, 9> stamp{ { Address(arrays[0]), arrays[0]->GetMTime(),
-    Address(arrays[1]), arrays[1] ? arrays[1]->GetMTime() : 0, Address(arrays[2]),
-    arrays[2] ? arrays[2]->GetMTime() : 0, static_cast<std::uint64_t>(piece.Component + 1),
-    Bits(strength), Bits(piece.Enhancement.Scale) } };
+  this->Leaves = nullptr;
+  const vtkBanyanDeferred::Handle* const handle = vtkBanyanDeferred::From(piece.Array);
+  if (!handle || !piece.Image || !vtkBanyanDeferred::LiesOnSeries(piece.Image, *handle))
+  {
+    this->ApplyToArray(data, piece);
+  }
+}
+
+void MotionEnhancement::ApplyToArray(vtkDataObject* data, FieldPiece& piece)
+{
+  const Neighbours arrays =
+    NeighboursOf(data->GetAttributes(
+                   piece.Where == ValuesOn::Points ? vtkDataObject::POINT : vtkDataObject::CELL),
+      piece.Array);
+  const Stamps stamp = StampOf(arrays, piece);
   if (!this->Enhanced || stamp != this->Stamp)
   {
-    vtkSmartPointer<vtkDataArray> plain[3];
-    for (int i = 0; i < 3; ++i)
+    this->Enhanced = Enhance(arrays, piece);
+    if (!this->Enhanced)
     {
-      plain[i] = arrays[i] ? vtkBanyanDeferred::Plain(arrays[i]) : nullptr;
-    }
-    if (!plain[0])
-    {
-      piece.Problem = "The values to be enhanced cannot be decoded.";
+      piece.Problem = NotDecoded;
       return;
     }
-    this->Enhanced = EnhancedArray(
-      piece.Enhancement, plain[0], plain[1], plain[2], static_cast<EnhancedPart>(piece.Component));
     this->Stamp = stamp;
   }
+  piece.Array = this->Enhanced;
+  piece.Component = 0;
+}
+
+void MotionEnhancement::ApplyToLeaves(FieldPiece& piece)
+{
+  // The array of the first block stands for all of them, and the data for what else is new.
+  Stamps stamp = StampOf({ { piece.Array, nullptr, nullptr } }, piece);
+  stamp[2] = Address(piece.Leaves);
+  stamp[3] = piece.Leaves->GetMTime();
+  if (!this->Leaves || stamp != this->Stamp)
+  {
+    this->Leaves = CopyOfLeaves(piece.Leaves);
+    this->Enhanced = nullptr;
+    for (vtkDataSetAttributes* const values : PartsOfLeaves(this->Leaves, PlaceOf(piece)))
+    {
+      vtkDataArray* const now = values->GetArray(piece.ArrayName.c_str());
+      if (!now)
+      {
+        continue; // which is said when the picture is made
+      }
+      const vtkSmartPointer<vtkDataArray> enhanced = Enhance(NeighboursOf(values, now), piece);
+      if (!enhanced)
+      {
+        this->Leaves = nullptr;
+        piece.Problem = NotDecoded;
+        return;
+      }
+      enhanced->SetName(piece.ArrayName.c_str());
+      values->AddArray(enhanced); // in the place of the one of this name
+      this->Enhanced = this->Enhanced ? this->Enhanced : enhanced;
+    }
+    this->Stamp = stamp;
+  }
+  piece.Leaves = this->Leaves;
   piece.Array = this->Enhanced;
   piece.Component = 0;
 }

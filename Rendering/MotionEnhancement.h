@@ -26,21 +26,27 @@ struct FieldPiece;
 class MotionEnhancement
 {
 public:
-  /// Names of the arrays of a data set, beside the drawn one, in which the drawn array's values of the step before
-  /// and after are looked for; without them plain data are drawn as they are.
+  /// Names of the arrays of a data set, beside the drawn one, in which the drawn array's values of
+  /// the step before and after are looked for; without them plain data are drawn as they are.
   static const char* PreviousName() { return "banyan: step before"; }
   static const char* NextName() { return "banyan: step after"; }
 
   /// Puts enhanced values in the place of a plain piece's, or notes how those of a series are to be
   /// enhanced. The scale is the largest magnitude that the opacity function knows, so that
   /// functions mean the same with and without.
-  /// Hyper tree grids and AMR become a problem of the piece: they are not enhanced.
+  /// Of hyper trees and AMR a copy by reference, with the enhanced array in the place of the drawn
+  /// one, takes their place: in each block, what has as many values as now is compared with.
   /// @param strength in [0, 1]; 0 does nothing
   void Apply(double strength, vtkVolumeProperty* property, vtkDataObject* data, FieldPiece& piece);
 
 private:
+  using Stamps = std::array<std::uint64_t, 9>;
+  void ApplyToArray(vtkDataObject* data, FieldPiece& piece);
+  void ApplyToLeaves(FieldPiece& piece);
+
   vtkSmartPointer<vtkDataArray> Enhanced;
-  std::array<std::uint64_t, 9> Stamp{ {} }; ///< of what it was made of
+  vtkSmartPointer<vtkDataObject> Leaves; ///< with Enhanced in them; null for other data
+  Stamps Stamp{ {} };                    ///< of what it was made of
 };
 
 /// Bricks of a step of an encoded series, enhanced with the steps around it unless Strength is 0.

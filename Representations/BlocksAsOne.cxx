@@ -1,6 +1,7 @@
 #include "BlocksAsOne.h"
 
 #include "GridOfHyperTrees.h"
+#include "LeafParts.h"
 #include "MotionEnhancement.h"
 #include "StepWindow.h"
 #include "vtkBanyanDeferred.h"
@@ -21,6 +22,22 @@
 
 namespace banyan
 {
+namespace
+{
+
+/// Adds an array of another step by reference, under another name.
+void AddRenamed(vtkDataArray* there, const char* name, vtkDataSetAttributes* to)
+{
+  if (there)
+  {
+    const auto renamed = vtkSmartPointer<vtkDataArray>::Take(there->NewInstance());
+    renamed->ShallowCopy(there);
+    renamed->SetName(name);
+    to->AddArray(renamed);
+  }
+}
+
+} // namespace
 
 vtkSmartPointer<vtkDataObject> BlocksAsOne(vtkDataObject* data)
 {
@@ -88,17 +105,43 @@ void AddNeighbours(vtkDataArray* array, const StepWindow& steps, vtkDataSet* pie
   {
     const vtkSmartPointer<vtkDataObject> data = BlocksAsOne(step);
     vtkDataSetAttributes* const values = data ? data->GetAttributes(where) : nullptr;
-    vtkDataArray* const there = values ? values->GetArray(array->GetName()) : nullptr;
-    if (there)
-    {
-      const auto renamed = vtkSmartPointer<vtkDataArray>::Take(there->NewInstance());
-      renamed->ShallowCopy(there);
-      renamed->SetName(name);
-      piece->GetAttributes(where)->AddArray(renamed);
-    }
+    AddRenamed(
+      values ? values->GetArray(array->GetName()) : nullptr, name, piece->GetAttributes(where));
   };
   add(steps.Previous(), MotionEnhancement::PreviousName());
   add(steps.Next(), MotionEnhancement::NextName());
+}
+
+int AddNeighboursToLeaves(vtkDataArray* array, const StepWindow& steps, vtkDataObject* leaves)
+{
+  int others = 0;
+  const auto add = [&](vtkDataObject* step, const char* name)
+  {
+    if (!step)
+    {
+      return;
+    }
+    if (!HaveSameLeaves(leaves, step))
+    {
+      ++others;
+      return;
+    }
+    for (const int where : { vtkDataObject::POINT, vtkDataObject::CELL })
+    {
+      const std::vector<vtkDataSetAttributes*> there = PartsOfLeaves(step, where);
+      const std::vector<vtkDataSetAttributes*> here = PartsOfLeaves(leaves, where);
+      for (std::size_t part = 0; part < here.size(); ++part)
+      {
+        AddRenamed(there[part]->GetArray(array->GetName()), name, here[part]);
+      }
+    }
+  };
+  if (array && array->GetName())
+  {
+    add(steps.Previous(), MotionEnhancement::PreviousName());
+    add(steps.Next(), MotionEnhancement::NextName());
+  }
+  return others;
 }
 
 } // namespace banyan

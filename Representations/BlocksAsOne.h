@@ -25,6 +25,12 @@ void BoundsOf(vtkDataObject* data, double bounds[6]);
 /// from their series, which has the other steps.
 void AddNeighbours(vtkDataArray* array, const StepWindow& steps, vtkDataSet* piece);
 
+/// The same for hyper trees or AMR, which must be a copy (see CopyOfLeaves). Steps with other
+/// leaves are taken for steps that are not there.
+/// @param array the drawn one, of any block
+/// @return how many steps have other leaves
+int AddNeighboursToLeaves(vtkDataArray* array, const StepWindow& steps, vtkDataObject* leaves);
+
 } // namespace banyan
 
 #endif

@@ -2,12 +2,14 @@
 
 #include "BlocksAsOne.h"
 #include "DefaultFunctions.h"
+#include "LeafParts.h"
 #include "StepWindow.h"
 #include "vtkBanyanFrameStatistics.h"
 #include "vtkBanyanVolume.h"
 #include "vtkBanyanVolumeMapper.h"
 
 #include "vtkColorTransferFunction.h"
+#include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -32,6 +34,8 @@ vtkBanyanVolumeRepresentation::vtkBanyanVolumeRepresentation()
   this->Actor->SetProperty(this->Property);
   this->Prop->SetMapper(this->Mapper);
   this->Prop->SetBanyanMapper(this->Mapper);
+  this->Mapper->AddObserver(
+    vtkCommand::ProgressEvent, this, &vtkBanyanVolumeRepresentation::ShowProgress);
   vtkMath::UninitializeBounds(this->DataBounds);
 }
 
@@ -82,6 +86,20 @@ bool vtkBanyanVolumeRepresentation::TakeSteps()
   }
 }
 
+/// Adds what the drawn array is compared with to the piece.
+void vtkBanyanVolumeRepresentation::AddSteps(vtkDataArray* array)
+{
+  if (vtkDataSet* const piece = vtkDataSet::SafeDownCast(this->Piece))
+  {
+    banyan::AddNeighbours(array, *this->Steps, piece);
+  }
+  else if (banyan::AddNeighboursToLeaves(array, *this->Steps, this->Piece) > 0)
+  {
+    vtkWarningMacro(<< "Motion is not brought out against steps that have other hyper trees or AMR "
+                       "blocks than this one.");
+  }
+}
+
 int vtkBanyanVolumeRepresentation::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -90,7 +108,7 @@ int vtkBanyanVolumeRepresentation::RequestData(
   vtkMath::UninitializeBounds(this->DataBounds);
   this->DataSize = 0;
   this->Piece = vtkSmartPointer<vtkImageData>::New().GetPointer();
-  vtkDataObject* const now = !hasInput ? nullptr
+  vtkDataObject* const now = !hasInput  ? nullptr
                              : enhanced ? this->Steps->Now()
                                         : vtkDataObject::GetData(inputVector[0], 0);
   vtkSmartPointer<vtkDataObject> input;
@@ -104,13 +122,11 @@ int vtkBanyanVolumeRepresentation::RequestData(
   }
   if (input)
   {
-    this->Piece = vtkSmartPointer<vtkDataObject>::Take(input->NewInstance());
-    this->Piece->ShallowCopy(input);
-    vtkDataSet* const piece = vtkDataSet::SafeDownCast(this->Piece);
-    if (enhanced && piece)
+    this->Piece = banyan::CopyOfLeaves(input);
+    if (enhanced)
     {
       this->SelectArray();
-      banyan::AddNeighbours(this->Mapper->GetArrayToDraw(piece), *this->Steps, piece);
+      this->AddSteps(this->Mapper->GetArrayToDraw(this->Piece));
     }
     banyan::BoundsOf(this->Piece, this->DataBounds);
     if (vtkMath::AreBoundsInitialized(this->DataBounds))
@@ -161,10 +177,21 @@ int vtkBanyanVolumeRepresentation::ProcessViewRequest(
   return 1;
 }
 
+/// Of what takes long before a picture: ParaView shows progress of representations, not of mappers.
+void vtkBanyanVolumeRepresentation::ShowProgress()
+{
+  this->UpdateProgress(this->Mapper->GetProgress());
+  if (this->GetAbortExecute())
+  {
+    this->Mapper->SetAbortExecute(1);
+  }
+}
+
 /// Collective over the ranks that render.
 void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
 {
   this->Mapper->SetInputDataObject(piece);
+  this->Mapper->SetAbortExecute(0);
   this->Mapper->SetController(vtkMultiProcessController::GetGlobalController());
   this->SelectArray();
   this->Property->SetIndependentComponents(1);

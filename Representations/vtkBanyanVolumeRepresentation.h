@@ -11,6 +11,7 @@
 class vtkBanyanFrameStatistics;
 class vtkBanyanVolume;
 class vtkBanyanVolumeMapper;
+class vtkDataArray;
 class vtkDataObject;
 
 namespace banyan
@@ -136,7 +137,9 @@ private:
   void operator=(const vtkBanyanVolumeRepresentation&) = delete;
 
   bool TakeSteps();
+  void AddSteps(vtkDataArray* array);
   void PrepareRender(vtkDataObject* piece);
+  void ShowProgress();
   void PlaceCroppingBox();
   void SelectArray();
 

@@ -152,6 +152,48 @@ def draw_mixed(data, out):
     session.clear()
 
 
+def watch(algorithm, update, stop_at=None):
+    """The parts that an algorithm says are done while it is updated, which is told to stop at one of them."""
+    parts = []
+
+    def look(shown, _):
+        parts.append(shown.GetProgress())
+        if stop_at is not None and parts[-1] >= stop_at:
+            shown.SetAbortExecute(1)
+
+    observer = algorithm.AddObserver("ProgressEvent", look)
+    update()
+    algorithm.RemoveObserver(observer)
+    algorithm.SetAbortExecute(0)
+    return parts
+
+
+def watch_sampling(data):
+    """Progress is shown while a mesh is sampled, which can be stopped, by the filter and before a picture."""
+    mountain = simple.OpenDataFile(os.path.join(data, MESHES["mountain"][0]))
+    octree = simple.BanyanHexOctree(Input=mountain, SampleGeneralMeshes=1, MeshSamplingBoxes=200000)
+    algorithm = octree.GetClientSideObject()
+    cells = lambda: octree.GetDataInformation().GetNumberOfCells()
+    parts = watch(algorithm, octree.UpdatePipeline, 0.05)
+    # (The pipeline says at the end that all is done.)
+    session.require(0.05 <= max(part for part in parts if part < 1) < 0.5 and cells() == 0, f"it was not stopped: {parts}")
+    octree.MeshSamplingTolerance = 0.5
+    parts = watch(algorithm, octree.UpdatePipeline)
+    session.require(len(set(parts)) > 20 and max(parts) == 1 and cells() > 100000, f"progress: {parts}")
+
+    view, display = show(mountain, ("POINTS", "elevation"), session.REPRESENTATION)
+    display.MeshSamplingBoxes = 200000
+    representation = display.GetClientSideObject().GetActiveRepresentation()
+    with Said() as said:
+        parts = watch(representation, lambda: simple.Render(view), 0.05)
+    session.require(0.05 <= max(parts) < 0.5 and "was stopped" in said.text(),
+                    f"the representation was not stopped: {parts}, {said.text()}")
+    display.MeshSamplingTolerance = SAMPLING_TOLERANCE
+    parts = watch(representation, lambda: simple.Render(view))
+    session.require(len(set(parts)) > 20 and max(parts) == 1, f"progress of the representation: {parts}")
+    session.clear()
+
+
 def main():
     parser = session.parser(__doc__)
     parser.add_argument("--out", required=True)
@@ -166,6 +208,7 @@ def main():
         keep(data, arguments.out, name)
     if not arguments.reference:
         draw_mixed(data, arguments.out)
+        watch_sampling(data)
 
 
 main()

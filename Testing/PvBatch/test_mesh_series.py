@@ -13,6 +13,7 @@ import subprocess
 import numpy
 from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 import mesh_levels
@@ -225,9 +226,66 @@ def check_blocks(folder):
     else:
         raise AssertionError("blocks with different arrays were written")
     simple.SaveData(path, proxy=uneven, PointArrays=["RTData"])
+    if alone:
+        check_uneven_octree(uneven)
     if vtkMultiProcessController.GetGlobalController().GetLocalProcessId() == 0:
         os.remove(path)
         shutil.rmtree(path + ".d")
+
+
+def check_motion_of_trees(path, array, out):
+    """Motion in trees is that in the grid of their leaves, in pictures and behind the filter."""
+    trees = simple.OpenDataFile(path)
+    trees.MeshAsHyperTreeGrid = 1
+    time = trees.TimestepValues[2]
+    leaves = simple.HyperTreeGridToUnstructuredGrid(Input=trees)
+    trees.UpdatePipeline(time)
+    limits = [0.0, trees.CellData[array].GetRange(-1)[1]]
+    found = []
+    for shown in (trees, leaves):
+        enhanced = simple.BanyanTemporalEnhancement(Input=shown, Array=["CELLS", array], Strength=0.8)
+        last = enhanced if shown is leaves else simple.HyperTreeGridToUnstructuredGrid(Input=enhanced)
+        last.UpdatePipeline(time)
+        data = servermanager.Fetch(last)
+        found.append([vtk_to_numpy(data.GetCellData().GetArray(array + end)) for end in ("", "_enhanced")])
+    session.require((found[0][1] == found[1][1]).all() and (found[0][1] != found[0][0]).any(),
+                    "the filter makes other values of trees")
+    drawn = []
+    for name, strength, shown in (("trees", 0.8, trees), ("plain", 0.0, trees), ("leaves", 0.8, leaves)):
+        view = session.new_view((160, 120), ViewTime=time)
+        display = simple.Show(shown, view)
+        simple.ColorBy(display, ("CELLS", array, "Magnitude"))
+        display.SetRepresentationType(session.REPRESENTATION)
+        display.TemporalEnhancement = strength
+        display.SampleDistanceVoxels = 0.5  # not as errors are estimated
+        display.ScalarOpacityUnitDistance = 5000.0
+        for table in (simple.GetColorTransferFunction(array), simple.GetOpacityTransferFunction(array)):
+            table.RescaleTransferFunction(*limits)
+        view.ResetCamera()
+        simple.GetActiveCamera().Elevation(-50)
+        drawn.append(os.path.join(out, f"motion_{name}.png"))
+        simple.Render(view)
+        simple.SaveScreenshot(drawn[-1], view)
+        simple.Delete(view)
+    pictures.require_near(drawn[2], drawn[0])
+    one, other = [pictures.load(picture) for picture in drawn[:2]]
+    session.require(abs(one - one[0, 0]).max() > 30, "nothing is drawn of trees")
+    session.require(abs(one - other).max() > 10, "no motion is brought out")
+
+
+def check_uneven_octree(uneven):
+    """The filter keeps what all blocks have, and names the rest."""
+    window, before = vtkStringOutputWindow(), vtkOutputWindow.GetInstance()
+    vtkOutputWindow.SetInstance(window)
+    octree = simple.BanyanHexOctree(Input=uneven)
+    octree.UpdatePipeline()
+    vtkOutputWindow.SetInstance(before)
+    session.require("point arrays extra are left out" in window.GetOutput(), window.GetOutput())
+    information = octree.GetDataInformation()
+    counts = information.GetNumberOfCells(), octree.PointData.keys(), octree.FieldData.keys()
+    session.require(counts[0] == 128 and "RTData" in counts[1] and "extra" not in counts[1] and
+                    not [name for name in counts[2] if "pieces" in name], f"the octree of blocks has {counts}")
+    simple.Delete(octree)
 
 
 def check_pictures(source, reader, array, out):
@@ -331,6 +389,7 @@ def main():
         mesh_levels.check_cell_levels(path, cell_names, -9999.0)
     check_choice(source, options.out)
     mesh_levels.check_trees(os.path.join(options.out, "earthquake.banyan"), arrays, numpy.inf)
+    check_motion_of_trees(os.path.join(options.out, "earthquake.banyan"), "velocity", options.out)
     mesh_levels.check_trees(path, names, -9999.0, cell_names)
     check_blocks(options.out)
     check_refusals(options.out, quake)

@@ -27,13 +27,16 @@ inline double Wavy(double x, double y, double z)
   return 0.5 + 0.2 * std::sin(9.0 * x + 2.0 * y) + 0.2 * std::cos(7.0 * z - 3.0 * y);
 }
 
-inline std::vector<unsigned char> PictureOf(vtkDataObject* data)
+/// @param enhancement how much of the motion that the arrays beside the drawn one tell is brought
+/// out
+inline std::vector<unsigned char> PictureOf(vtkDataObject* data, double enhancement = 0.0)
 {
   vtkNew<vtkBanyanVolumeMapper> mapper;
   mapper->SetInputDataObject(data);
   mapper->SetScalarModeToUseCellFieldData();
   mapper->SelectScalarArray("field");
   mapper->SetSampleDistanceVoxels(0.5);
+  mapper->SetTemporalEnhancement(enhancement);
   Stage stage(mapper);
   const double bounds[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
   stage.LookAt(bounds);
@@ -65,11 +68,12 @@ inline void ExpectSays(vtkDataObject* data, const std::string& part, const char*
   Check(said.find(part) != std::string::npos, "'" + part + "' in '" + said + "'");
 }
 
-inline void ExpectSame(vtkDataObject* one, vtkDataObject* other, const std::string& what)
+inline void ExpectSame(
+  vtkDataObject* one, vtkDataObject* other, const std::string& what, double enhancement = 0.0)
 {
-  const auto picture = PictureOf(one);
+  const auto picture = PictureOf(one, enhancement);
   Check(Covered(picture) > 3000, what + " is seen");
-  const int difference = Difference(picture, PictureOf(other));
+  const int difference = Difference(picture, PictureOf(other, enhancement));
   Check(
     difference <= 1, what + " is drawn as its cells, and differs by " + std::to_string(difference));
 }

@@ -1,5 +1,6 @@
 // Cell data of hexahedra, hyper tree grids and AMR in a real window: the pictures of meshes that
 // were made of the same cells in another way, and sentences for what has no octree.
+#include "LeafParts.h"
 #include "LeafPictures.h"
 
 #include "vtkAMRBox.h"
@@ -25,6 +26,7 @@ namespace
 {
 
 using namespace leaf_pictures;
+using namespace banyan;
 
 void CellsOfOneSizeAreAsCellDataToPointDataHasThem()
 {
@@ -293,6 +295,52 @@ void AmrIsItsVisibleCells()
   ExpectSays(partly, "Not all blocks have the array 'field'");
 }
 
+/// Values of the steps before and after, made of those of now.
+void AddNeighbours(vtkDataSetAttributes* values)
+{
+  vtkDataArray* const now = values->GetArray("field");
+  for (const bool after : { false, true })
+  {
+    vtkNew<vtkDoubleArray> other;
+    other->SetName(after ? "banyan: step after" : "banyan: step before");
+    for (vtkIdType i = 0; i < now->GetNumberOfTuples(); ++i)
+    {
+      const double value = now->GetTuple1(i);
+      other->InsertNextValue(after ? value * value : 0.9 * value + 0.02);
+    }
+    values->AddArray(other);
+  }
+}
+
+void MotionInLeavesIsThatOfTheirCells()
+{
+  const auto trees = Trees();
+  AddNeighbours(trees->GetCellData());
+  vtkNew<vtkHyperTreeGridToUnstructuredGrid> filter;
+  filter->SetInputDataObject(trees);
+  filter->Update();
+  ExpectSame(trees, filter->GetOutputDataObject(0), "motion in hyper trees", 0.7);
+  Check(Difference(PictureOf(trees), PictureOf(trees, 0.7)) > 20, "motion in trees is seen");
+
+  const auto amr = Blocks(2);
+  Voxels voxels;
+  vtkUnstructuredGrid* const cells = VisibleCells(amr, voxels);
+  AddNeighbours(cells->GetCellData());
+  const auto copy = CopyOfLeaves(amr);
+  for (vtkDataSetAttributes* const block : PartsOfLeaves(copy, vtkDataObject::CELL))
+  {
+    AddNeighbours(block);
+  }
+  ExpectSame(copy, cells, "motion in AMR", 0.7);
+  Check(Difference(PictureOf(amr), PictureOf(copy, 0.7)) > 20, "motion in AMR is seen");
+  Check(amr->GetDataSet(1, 1)->GetCellData()->GetNumberOfArrays() == 1, "blocks stay as they were");
+
+  Check(HaveSameLeaves(trees, Trees()), "the same trees");
+  Check(!HaveSameLeaves(trees, Trees(2, 3, false)), "trees without masks are others");
+  Check(HaveSameLeaves(copy, Blocks(2)), "the same blocks");
+  Check(!HaveSameLeaves(copy, Blocks(2, true, false)), "a block that is missing");
+}
+
 void PointsOfAmrAreTheirs()
 {
   // A linear field at points is the same on all levels: the picture of one mesh.
@@ -346,6 +394,7 @@ int main()
   CellsOfOneSizeAreAsCellDataToPointDataHasThem();
   HyperTreesAreTheirLeaves();
   AmrIsItsVisibleCells();
+  MotionInLeavesIsThatOfTheirCells();
   PointsOfAmrAreTheirs();
   return Failures();
 }

@@ -1,0 +1,32 @@
+#ifndef banyan_Filters_LeafParts_h
+#define banyan_Filters_LeafParts_h
+
+#include "BanyanFiltersModule.h" // For export macro
+
+#include "vtkSmartPointer.h"
+
+#include <vector>
+
+class vtkDataObject;
+class vtkDataSetAttributes;
+
+namespace banyan
+{
+
+/// A copy of data (blocks are those of AMR) by reference, which can be given arrays without
+/// touching the original.
+BANYANFILTERS_EXPORT vtkSmartPointer<vtkDataObject> CopyOfLeaves(vtkDataObject* leaves);
+
+/// What lies on the cells of hyper trees, or on those or the points of each block of AMR, in the
+/// order of the blocks; nothing for other data, and for points of hyper trees.
+/// @param where vtkDataObject::POINT or CELL
+BANYANFILTERS_EXPORT std::vector<vtkDataSetAttributes*> PartsOfLeaves(
+  vtkDataObject* leaves, int where);
+
+/// Whether values of two hyper tree grids, or of two AMR data sets, stand for the same places: the
+/// same trees and cells, numbered in the same way, or the same blocks.
+BANYANFILTERS_EXPORT bool HaveSameLeaves(vtkDataObject* one, vtkDataObject* other);
+
+} // namespace banyan
+
+#endif
