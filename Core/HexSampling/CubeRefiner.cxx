@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <numeric>
 
 namespace banyan
 {
@@ -196,11 +197,9 @@ void Refiner::ForCubes(const Body& body)
   {
     std::unique_ptr<Scratch>& own = scratch[static_cast<std::size_t>(worker)];
     own = own ? std::move(own) : std::make_unique<Scratch>(this->Shapes);
-    const std::size_t begin = begins[block];
-    const std::size_t end = begins[block + 1];
-    const glm::ivec3 first = PositionOfKey(blockOf(begin)) * (2 << BlockPoints::Levels);
+    const glm::ivec3 first = PositionOfKey(blockOf(begins[block])) * (2 << BlockPoints::Levels);
     own->Points.Begin(first, this->Level);
-    for (std::size_t i = begin; i < end; ++i)
+    for (std::size_t i = begins[block]; i < begins[block + 1]; ++i)
     {
       body(i, *own);
     }
@@ -220,11 +219,9 @@ void Refiner::ForCubes(const Body& body)
 /// A mesh that takes as many cubes as it may has about twice as many looked at; most take fewer.
 void Refiner::Report(std::size_t cubes)
 {
-  constexpr double most = 0.9; // then there are the points
   this->Looked += static_cast<double>(cubes);
-  const double part =
-    std::min(most, most * this->Looked / (2.0 * static_cast<double>(this->Sampling.MostCubes)));
-  if (this->Sampling.Watch && !this->Sampling.Watch(part))
+  const double part = this->Looked / (2.0 * static_cast<double>(this->Sampling.MostCubes));
+  if (this->Sampling.Watch && !this->Sampling.Watch(0.9 * std::min(1.0, part))) // then come points
   {
     throw Interrupted("Sampling the mesh at boxes was stopped");
   }
@@ -382,10 +379,7 @@ SampledCubes Refiner::Refine()
   root.Count = static_cast<std::uint32_t>(this->Shapes.Count());
   this->Active.push_back(root);
   this->Cells.resize(root.Count);
-  for (std::uint32_t cell = 0; cell < root.Count; ++cell)
-  {
-    this->Cells[cell] = cell;
-  }
+  std::iota(this->Cells.begin(), this->Cells.end(), 0u);
   while (!this->Active.empty())
   {
     this->Judge();
