@@ -32,21 +32,56 @@ std::vector<Footprint::Interval> CoveredCells(
   return rows;
 }
 
-/// Calls `action(cell)` for all cells of a rank.
-template <typename Action>
-void ForEachCell(const CompositePlan& plan, int rank, const Action& action)
+/// Counts for all cells the ranks other than the root that may draw there, from where the intervals
+/// of ranks begin and end: what a rank takes does not depend on how many cells it covers.
+void CountOthers(CompositePlan& plan)
 {
+  // One more than cells: where the last interval ends.
+  std::vector<int> change(static_cast<std::size_t>(plan.CellCounts.x) + 1);
   for (int y = 0; y < plan.CellCounts.y; ++y)
   {
-    const Footprint::Interval row = plan.Covered[rank][y];
-    for (int x = row.Lo; x < row.Hi; ++x)
+    std::fill(change.begin(), change.end(), 0);
+    for (int rank = 1; rank < plan.Ranks; ++rank)
     {
-      action(x, y);
+      const Footprint::Interval row = plan.Covered[rank][y];
+      if (row.Lo < row.Hi)
+      {
+        ++change[row.Lo];
+        --change[row.Hi];
+      }
+    }
+    CompositePlan::Cell* cells =
+      plan.Cells.data() + static_cast<std::size_t>(y) * plan.CellCounts.x;
+    for (int x = 0, count = 0; x < plan.CellCounts.x; ++x)
+    {
+      count += change[x];
+      cells[x].Others = static_cast<std::uint16_t>(count);
     }
   }
 }
 
-/// Whether some of rank's cells of this tile have an owner, and how many.
+/// How many cells that several ranks other than the root may draw in lie before each cell of a row,
+/// and in all of it: `[y][x]`, one more per row than cells.
+std::vector<int> SharedBefore(const CompositePlan& plan)
+{
+  std::vector<int> before;
+  before.reserve(plan.Cells.size() + static_cast<std::size_t>(plan.CellCounts.y));
+  for (int y = 0; y < plan.CellCounts.y; ++y)
+  {
+    const CompositePlan::Cell* cells =
+      plan.Cells.data() + static_cast<std::size_t>(y) * plan.CellCounts.x;
+    int shared = 0;
+    before.push_back(shared);
+    for (int x = 0; x < plan.CellCounts.x; ++x)
+    {
+      shared += cells[x].Others > 1 ? 1 : 0;
+      before.push_back(shared);
+    }
+  }
+  return before;
+}
+
+/// How many of a rank's cells in a tile have an owner.
 struct Share
 {
   int Rank = 0;
@@ -54,35 +89,46 @@ struct Share
 };
 
 /// Per tile, the ranks that may draw in cells that several ranks other than the root may draw in.
+/// Lists the tiles of each rank too.
 std::vector<std::vector<Share>> SharesOf(CompositePlan& plan)
 {
   std::vector<std::vector<Share>> shares(plan.Tiles.size());
+  const std::vector<int> sharedBefore = SharedBefore(plan);
   const int perTile = plan.TilePixels / CellPixels;
+  constexpr int outside = -1;
+  std::vector<int> shared(static_cast<std::size_t>(plan.TileCounts.x));
   for (int rank = 0; rank < plan.Ranks; ++rank)
   {
-    int last = -1;
-    std::vector<int>& tiles = plan.TilesOfRank[rank];
-    ForEachCell(plan, rank,
-      [&](int x, int y)
+    for (int tileY = 0; tileY < plan.TileCounts.y; ++tileY)
+    {
+      std::fill(shared.begin(), shared.end(), outside);
+      const int end = std::min((tileY + 1) * perTile, plan.CellCounts.y);
+      for (int y = tileY * perTile; y < end; ++y)
       {
-        const int tile = (y / perTile) * plan.TileCounts.x + x / perTile;
-        if (tile != last)
+        const Footprint::Interval row = plan.Covered[rank][y];
+        const int* before =
+          sharedBefore.data() + static_cast<std::size_t>(y) * (plan.CellCounts.x + 1);
+        for (int lo = row.Lo; lo < row.Hi;)
         {
-          tiles.push_back(last = tile);
+          const int tileX = lo / perTile;
+          const int hi = std::min(row.Hi, (tileX + 1) * perTile);
+          shared[tileX] = std::max(shared[tileX], 0) + before[hi] - before[lo];
+          lo = hi;
         }
-        if (rank == 0 || plan.Cells[static_cast<std::size_t>(y) * plan.CellCounts.x + x].Others < 2)
+      }
+      for (int tileX = 0; tileX < plan.TileCounts.x; ++tileX)
+      {
+        const int tile = tileY * plan.TileCounts.x + tileX;
+        if (shared[tileX] != outside)
         {
-          return;
+          plan.TilesOfRank[rank].push_back(tile);
         }
-        std::vector<Share>& ranks = shares[tile];
-        if (ranks.empty() || ranks.back().Rank != rank)
+        if (rank != 0 && shared[tileX] > 0)
         {
-          ranks.push_back({ rank, 0 });
+          shares[tile].push_back({ rank, shared[tileX] });
         }
-        ++ranks.back().Cells;
-      });
-    std::sort(tiles.begin(), tiles.end());
-    tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+      }
+    }
   }
   return shares;
 }
@@ -285,34 +331,26 @@ CompositePlan PlanCompositing(const std::vector<Footprint>& footprints, const Pi
   plan.Cells.resize(static_cast<std::size_t>(plan.CellCounts.x) * plan.CellCounts.y);
   plan.Tiles.resize(static_cast<std::size_t>(plan.TileCounts.x) * plan.TileCounts.y);
   plan.TilesOfRank.resize(footprints.size());
-  const auto cellAt = [&](int x, int y) -> CompositePlan::Cell&
-  { return plan.Cells[static_cast<std::size_t>(y) * plan.CellCounts.x + x]; };
-  for (int rank = 0; rank < plan.Ranks; ++rank)
+  for (const Footprint& footprint : footprints)
   {
-    plan.Covered.push_back(CoveredCells(footprints[rank], viewport, plan.CellCounts));
-    ForEachCell(plan, rank,
-      [&](int x, int y)
-      {
-        CompositePlan::Cell& cell = cellAt(x, y);
-        if (rank == 0)
-        {
-          cell.How = ordered ? CompositePlan::Kind::Split : CompositePlan::Kind::Behind;
-          return;
-        }
-        ++cell.Others;
-        cell.Sole = static_cast<std::uint16_t>(rank);
-      });
+    plan.Covered.push_back(CoveredCells(footprint, viewport, plan.CellCounts));
   }
-  const Footprint covered = FootprintOf(behind, viewport);
-  const auto rows = CoveredCells(covered, viewport, plan.CellCounts);
-  for (int y = 0; y < plan.CellCounts.y; ++y)
+  CountOthers(plan);
+  const auto set = [&](const std::vector<Footprint::Interval>& rows, CompositePlan::Kind how)
   {
-    for (int x = rows[y].Lo; x < rows[y].Hi; ++x)
+    for (int y = 0; y < plan.CellCounts.y; ++y)
     {
-      CompositePlan::Cell& cell = cellAt(x, y);
-      cell.How = cell.How == CompositePlan::Kind::Final ? CompositePlan::Kind::Behind : cell.How;
+      const auto row = plan.Cells.begin() + static_cast<std::ptrdiff_t>(y) * plan.CellCounts.x;
+      for (int x = rows[y].Lo; x < rows[y].Hi; ++x)
+      {
+        row[x].How = how;
+      }
     }
-  }
+  };
+  // What the root has drawn counts before what it will blend over something.
+  const Footprint covered = FootprintOf(behind, viewport);
+  set(CoveredCells(covered, viewport, plan.CellCounts), CompositePlan::Kind::Behind);
+  set(plan.Covered[0], ordered ? CompositePlan::Kind::Split : CompositePlan::Kind::Behind);
   ChooseOwners(plan, SharesOf(plan));
   DescribeTiles(plan);
   ChooseChunks(plan);

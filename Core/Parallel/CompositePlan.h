@@ -47,7 +47,6 @@ struct CompositePlan
   struct Cell
   {
     std::uint16_t Others = 0; ///< ranks other than the root that may draw here
-    std::uint16_t Sole = 0;   ///< the last one of them
     Kind How = Kind::Final;
   };
   struct Tile
