@@ -105,12 +105,14 @@ void MeshField::Update(Communicator& communicator, vtkUnstructuredGrid* grid, vt
   }
   where = Agreed(communicator, where, piece.CellCount > 0);
   const bool sameMesh = this->SameMesh(communicator, piece);
+  MachineRanks machines(communicator);
   if (!sameMesh || !(options == this->Options))
   {
     this->Bricks.reset();
     this->Sampled.reset();
+    this->Mesh = {};
     this->Options = options;
-    this->Mesh = GatherMesh(communicator, piece);
+    this->Mesh = GatherMesh(communicator, machines, piece);
     try
     {
       this->Find(where);
@@ -120,11 +122,16 @@ void MeshField::Update(Communicator& communicator, vtkUnstructuredGrid* grid, vt
       failure = error.what();
     }
     StopTogether(communicator, failure);
-    this->Describe(communicator, others);
+    if (this->Mesh.PointOwner)
+    {
+      this->Mesh.Points = nullptr;
+      this->Mesh.PointOwner.reset();
+    }
+    this->Describe(communicator, others, machines.WhyNot());
   }
   const bool onCells = where == ValuesOn::Cells;
   const GatheredValues all =
-    GatherNodes(communicator, nodes, onCells ? piece.CellCount : piece.PointCount);
+    GatherNodes(communicator, machines, nodes, onCells ? piece.CellCount : piece.PointCount);
   this->TakeValues(all.Array, where);
 }
 
@@ -155,7 +162,8 @@ void MeshField::Find(ValuesOn where)
   this->Bricks = std::make_shared<const HexBricks>(tree, MeshBrickCells);
 }
 
-void MeshField::Describe(Communicator& communicator, const OtherCells& others)
+void MeshField::Describe(
+  Communicator& communicator, const OtherCells& others, const std::string& notShared)
 {
   std::string note;
   if (others.Count > 0)
@@ -175,6 +183,10 @@ void MeshField::Describe(Communicator& communicator, const OtherCells& others)
             std::to_string(this->Sampled->Boxes().CellCount) + " boxes; " +
             std::to_string(this->Sampled->KeptCoarse()) +
             " places are coarser than they should be: allow more boxes (MeshSamplingBoxes). ";
+  }
+  if (!notShared.empty())
+  {
+    note += "Each rank holds the whole mesh for itself: " + notShared + ". ";
   }
   this->NoteText = AgreeOnError(communicator, note);
 }

@@ -22,7 +22,7 @@ namespace banyan
 /// A field on a hexahedral mesh that lies in pieces on the ranks. The octree is found once per
 /// mesh, however often the reader makes new objects of the same points and cells: new values touch
 /// values only. Every rank has the whole mesh and the values of one component of it, and draws a
-/// part.
+/// part; what was gathered of them ranks of a machine have together (MachineRanks).
 class MeshField
 {
 public:
@@ -50,7 +50,7 @@ public:
 private:
   bool SameMesh(Communicator& communicator, const HexMesh& piece);
   void Find(ValuesOn where);
-  void Describe(Communicator& communicator, const OtherCells& others);
+  void Describe(Communicator& communicator, const OtherCells& others, const std::string& notShared);
   void TakeValues(const NodeArray& values, ValuesOn where);
 
   HexMesh Mesh;

@@ -64,6 +64,7 @@ public:
   /// How many were found in this process so far: new values do not add to it.
   static std::int64_t FoundSoFar();
 
+  /// Without its points if they had an owner of their own (HexMesh::PointOwner).
   const HexMesh& Mesh() const { return this->Cells; }
 
   /// World = Origin + position * Edge.

@@ -21,6 +21,9 @@ struct HexMesh
   ScalarType IdType = ScalarType::Int64; ///< or Int32
   std::int64_t CellCount = 0;
   std::shared_ptr<const void> Owner; ///< keeps the arrays alive; may be empty
+  /// Keeps the points alive, if something else than Owner does: ElementOctree lets them go then, as
+  /// soon as it does not need them any more.
+  std::shared_ptr<const void> PointOwner;
 };
 
 /// Calls function(points, ids) with pointers of the types that a mesh has.

@@ -240,6 +240,12 @@ std::shared_ptr<const ElementOctree> ElementOctree::Find(
   tree->Cells = mesh;
   OctreeFinder(*tree, pool, tolerance).Find();
   NodeFinder(*tree, pool).Find();
+  if (tree->Cells.PointOwner)
+  {
+    // What hangs is known: nobody asks for coordinates any more.
+    tree->Cells.Points = nullptr;
+    tree->Cells.PointOwner.reset();
+  }
   ++Found;
   return tree;
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 namespace banyan
@@ -9,31 +10,74 @@ namespace banyan
 namespace
 {
 
-/// Bytes of all ranks, one behind the other, on every rank.
-/// @param begins set to where each rank's bytes begin, and where the last one's end
-std::shared_ptr<std::vector<char>> GatherBytes(
-  Communicator& communicator, const void* mine, std::size_t bytes, std::vector<std::size_t>& begins)
+constexpr int TagOfPieces = 0;
+
+/// Bytes of all ranks, one behind the other.
+struct Gathered
+{
+  std::shared_ptr<char> Memory;
+  std::size_t Bytes = 0;
+};
+
+/// @param begins where each rank's bytes begin
+void SendToMachines(Communicator& communicator, const MachineRanks& machines, char* all,
+  const std::vector<std::size_t>& begins)
+{
+  const auto partOf = [&](int rank)
+  {
+    const auto i = static_cast<std::size_t>(rank);
+    return std::make_pair(all + begins[i], begins[i + 1] - begins[i]);
+  };
+  const int self = communicator.Rank();
+  for (const int leader : machines.Leaders())
+  {
+    const auto part = partOf(self);
+    if (leader != machines.LeaderOf(self) && part.second > 0)
+    {
+      communicator.Send(leader, TagOfPieces, part.first, part.second);
+    }
+  }
+  for (int rank = 0; machines.Leads() && rank < communicator.Size(); ++rank)
+  {
+    const auto part = partOf(rank);
+    if (machines.LeaderOf(rank) != self && part.second > 0)
+    {
+      communicator.Receive(rank, TagOfPieces, part.first, part.second);
+    }
+  }
+  communicator.WaitAll();
+  communicator.Barrier();
+}
+
+/// Ranks that share memory write their own part each; leaders of machines get what the others have.
+Gathered GatherBytes(
+  Communicator& communicator, MachineRanks& machines, const void* mine, std::size_t bytes)
 {
   const auto ranks = static_cast<std::size_t>(communicator.Size());
   const std::uint64_t own = bytes;
   std::vector<std::uint64_t> sizes(ranks);
   communicator.AllGather(&own, sizeof(own), sizes.data());
-  begins.assign(ranks + 1, 0);
+  std::vector<std::size_t> begins(ranks + 1, 0);
   for (std::size_t rank = 0; rank < ranks; ++rank)
   {
     begins[rank + 1] = begins[rank] + sizes[rank];
   }
-  auto all = std::make_shared<std::vector<char>>(begins.back());
+  const Gathered all{ machines.Allocate(communicator, begins.back()), begins.back() };
+  if (bytes > 0)
+  {
+    std::memcpy(
+      all.Memory.get() + begins[static_cast<std::size_t>(communicator.Rank())], mine, bytes);
+  }
+  if (machines.Shares())
+  {
+    SendToMachines(communicator, machines, all.Memory.get(), begins);
+    return all;
+  }
   for (std::size_t rank = 0; rank < ranks; ++rank)
   {
-    char* const part = all->data() + begins[rank];
-    if (static_cast<int>(rank) == communicator.Rank() && bytes > 0)
-    {
-      std::memcpy(part, mine, bytes);
-    }
     if (sizes[rank] > 0)
     {
-      communicator.Broadcast(static_cast<int>(rank), part, sizes[rank]);
+      communicator.Broadcast(static_cast<int>(rank), all.Memory.get() + begins[rank], sizes[rank]);
     }
   }
   return all;
@@ -51,11 +95,9 @@ std::vector<To> Converted(const From* values, std::int64_t count, std::int64_t o
 }
 
 template <class T>
-std::shared_ptr<std::vector<char>> GatherArray(
-  Communicator& communicator, const std::vector<T>& mine)
+Gathered GatherArray(Communicator& communicator, MachineRanks& machines, const std::vector<T>& mine)
 {
-  std::vector<std::size_t> begins;
-  return GatherBytes(communicator, mine.data(), mine.size() * sizeof(T), begins);
+  return GatherBytes(communicator, machines, mine.data(), mine.size() * sizeof(T));
 }
 
 /// A cell that refers to a point that is not there; empty if there is none.
@@ -109,7 +151,7 @@ std::vector<Out> ComponentOf(const NodeArray& array, std::int64_t points)
 
 } // namespace
 
-HexMesh GatherMesh(Communicator& communicator, const HexMesh& piece)
+HexMesh GatherMesh(Communicator& communicator, MachineRanks& machines, const HexMesh& piece)
 {
   if (communicator.Size() == 1)
   {
@@ -133,41 +175,47 @@ HexMesh GatherMesh(Communicator& communicator, const HexMesh& piece)
   const bool wide =
     AllMax(communicator,
       piece.PointCount > 0 && piece.PointType == ScalarType::Float64 ? 1.0 : 0.0) > 0.0;
-  using Owners = std::pair<std::shared_ptr<const void>, std::shared_ptr<const void>>;
-  const auto owners = std::make_shared<Owners>();
+  // Ids are what stays of the mesh: four bytes each where that is enough.
+  const bool longIds = mesh.PointCount > std::numeric_limits<std::int32_t>::max();
   DispatchMesh(piece,
     [&](const auto* points, const auto* ids)
     {
-      const std::shared_ptr<std::vector<char>> allPoints =
-        wide ? GatherArray(communicator, Converted<double>(points, 3 * piece.PointCount))
-             : GatherArray(communicator, Converted<float>(points, 3 * piece.PointCount));
-      const std::shared_ptr<std::vector<char>> allIds =
-        GatherArray(communicator, Converted<std::int64_t>(ids, 8 * piece.CellCount, before));
-      mesh.Points = allPoints->data();
-      mesh.Connectivity = allIds->data();
-      mesh.CellCount = static_cast<std::int64_t>(allIds->size() / (8 * sizeof(std::int64_t)));
-      *owners = { allPoints, allIds };
+      const std::int64_t coordinates = 3 * piece.PointCount;
+      const Gathered allPoints =
+        wide ? GatherArray(communicator, machines, Converted<double>(points, coordinates))
+             : GatherArray(communicator, machines, Converted<float>(points, coordinates));
+      const std::int64_t corners = 8 * piece.CellCount;
+      const Gathered allIds =
+        longIds
+          ? GatherArray(communicator, machines, Converted<std::int64_t>(ids, corners, before))
+          : GatherArray(communicator, machines, Converted<std::int32_t>(ids, corners, before));
+      mesh.Points = allPoints.Memory.get();
+      mesh.PointOwner = allPoints.Memory;
+      mesh.Connectivity = allIds.Memory.get();
+      mesh.Owner = allIds.Memory;
+      mesh.CellCount = static_cast<std::int64_t>(
+        allIds.Bytes / (8 * (longIds ? sizeof(std::int64_t) : sizeof(std::int32_t))));
     });
   mesh.PointType = wide ? ScalarType::Float64 : ScalarType::Float32;
-  mesh.IdType = ScalarType::Int64;
-  mesh.Owner = owners;
+  mesh.IdType = longIds ? ScalarType::Int64 : ScalarType::Int32;
   return mesh;
 }
 
-GatheredValues GatherNodes(Communicator& communicator, const NodeArray& piece, std::int64_t points)
+GatheredValues GatherNodes(
+  Communicator& communicator, MachineRanks& machines, const NodeArray& piece, std::int64_t points)
 {
   if (communicator.Size() == 1)
   {
     return { piece, {} };
   }
   const bool wide = AllMax(communicator, points > 0 && !FitsFloat(piece.Type) ? 1.0 : 0.0) > 0.0;
-  const std::shared_ptr<std::vector<char>> all =
-    wide ? GatherArray(communicator, ComponentOf<double>(piece, points))
-         : GatherArray(communicator, ComponentOf<float>(piece, points));
+  const Gathered all = wide
+                         ? GatherArray(communicator, machines, ComponentOf<double>(piece, points))
+                         : GatherArray(communicator, machines, ComponentOf<float>(piece, points));
   GatheredValues values;
-  values.Array.Values = all->data();
+  values.Array.Values = all.Memory.get();
   values.Array.Type = wide ? ScalarType::Float64 : ScalarType::Float32;
-  values.Owner = all;
+  values.Owner = all.Memory;
   return values;
 }
 

@@ -4,6 +4,7 @@
 #include "CompositingCases.h"
 
 #include "Base/Error.h"
+#include "Parallel/MachineRanks.h"
 #include "Parallel/MpiCommunicator.h"
 
 #define OMPI_SKIP_MPICXX 1
@@ -148,6 +149,30 @@ std::string RanksOfThisNode(Communicator& communicator)
   return ranks == communicator.Size() ? "" : "not all ranks were found on this node";
 }
 
+/// Each rank writes its part of memory that all have together, and reads those of the others.
+std::string MemoryOfThisMachine(Communicator& communicator)
+{
+  MachineRanks machines(communicator);
+  const auto ranks = static_cast<std::size_t>(communicator.Size());
+  constexpr std::size_t part = 100'003;
+  const std::shared_ptr<char> memory = machines.Allocate(communicator, ranks * part);
+  if (!machines.WhyNot().empty())
+  {
+    return machines.WhyNot();
+  }
+  const auto self = static_cast<std::size_t>(communicator.Rank());
+  std::fill_n(memory.get() + self * part, part, static_cast<char>(self + 1));
+  communicator.Barrier();
+  for (std::size_t i = 0; i < ranks * part; ++i)
+  {
+    if (memory.get()[i] != static_cast<char>(i / part + 1))
+    {
+      return "byte " + std::to_string(i) + " is not what its rank has written";
+    }
+  }
+  return machines.LeaderOf(communicator.Rank()) == 0 ? "" : "the first rank does not lead";
+}
+
 struct Check
 {
   const char* Name;
@@ -158,9 +183,9 @@ int RunAll(Communicator& communicator)
 {
   const Check checks[] = { { "communicator", CheckCommunicator }, { "small parts", SmallParts },
     { "several communicators", Several }, { "ranks of this node", RanksOfThisNode },
-    { "compositing", CompositeAllCases }, { "methods", CompositeByAllMethods },
-    { "large picture", CompositeLargePicture }, { "nearest pixels", Nearest },
-    { "errors", Errors } };
+    { "memory of this machine", MemoryOfThisMachine }, { "compositing", CompositeAllCases },
+    { "methods", CompositeByAllMethods }, { "large picture", CompositeLargePicture },
+    { "nearest pixels", Nearest }, { "errors", Errors } };
   int failed = 0;
   for (const Check& check : checks)
   {

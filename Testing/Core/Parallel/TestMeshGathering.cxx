@@ -47,9 +47,11 @@ TEST(MeshGathering, PiecesAreTheMeshThatTheyWereCutFrom)
 {
   const auto whole = meshes::Make(meshes::Ball({ 2, 1, 1 }, 4));
   const std::size_t cells = whole.Ids.size() / 8;
-  for (const int ranks : { 1, 2, 3, 5 })
+  for (const auto& [ranks, perMachine] : std::vector<std::pair<int, int>>{
+         { 1, 1 }, { 2, 2 }, { 3, 1 }, { 3, 2 }, { 5, 5 }, { 5, 2 }, { 6, 3 } })
   {
     std::atomic<int> checked{ 0 };
+    const int onEach = perMachine;
     RunOnSimulatedRanks(ranks,
       [&](Communicator& communicator)
       {
@@ -60,15 +62,19 @@ TEST(MeshGathering, PiecesAreTheMeshThatTheyWereCutFrom)
           cells * std::min<std::size_t>(rank + 1, static_cast<std::size_t>(parts)) /
             static_cast<std::size_t>(parts));
         const HexMesh mine = piece.Mesh.Mesh();
-        const HexMesh mesh = GatherMesh(communicator, mine);
+        MachineRanks machines(communicator, std::to_string(communicator.Rank() / onEach));
+        const HexMesh mesh = GatherMesh(communicator, machines, mine);
+        EXPECT_EQ(machines.Shares(), onEach > 1);
+        EXPECT_EQ(machines.WhyNot(), "");
         ASSERT_EQ(mesh.CellCount, static_cast<std::int64_t>(cells));
         const auto tree = meshes::Find(mesh, 1);
         EXPECT_EQ(tree->HoleCells(), 0);
+        EXPECT_EQ(tree->Mesh().Points == nullptr, communicator.Size() > 1);
         NodeArray array;
         array.Values = piece.Values.data();
         array.Components = 2;
         array.Component = communicator.Size() % 2 == 0 ? NodeArray::Magnitude : 1;
-        const GatheredValues all = GatherNodes(communicator, array, mine.PointCount);
+        const GatheredValues all = GatherNodes(communicator, machines, array, mine.PointCount);
         ThreadPool pool(1);
         const NodalField field(tree, all.Array, pool);
         for (std::size_t i = 0; i < whole.Places.size(); ++i)
@@ -79,7 +85,7 @@ TEST(MeshGathering, PiecesAreTheMeshThatTheyWereCutFrom)
         }
         ++checked;
       });
-    EXPECT_EQ(checked, ranks);
+    EXPECT_EQ(checked.load(), ranks);
   }
 }
 
@@ -97,7 +103,8 @@ TEST(MeshGathering, AStrayPointIsSaidOnAllRanks)
       }
       try
       {
-        GatherMesh(communicator, piece.Mesh.Mesh());
+        MachineRanks machines(communicator);
+        GatherMesh(communicator, machines, piece.Mesh.Mesh());
       }
       catch (const Error& error)
       {
