@@ -1,5 +1,6 @@
 #include "Parallel/MachineRanks.h"
 
+#include "Base/AvailableMemory.h"
 #include "Base/Error.h"
 
 #include <fcntl.h>
@@ -54,28 +55,26 @@ std::string Megabytes(std::size_t bytes)
   return std::to_string((bytes + (std::size_t{ 1 } << 20) - 1) >> 20) + " MB";
 }
 
-/// What the machine can still give to processes; 0 where it does not say.
-std::size_t AvailableBytes()
-{
-  std::ifstream info("/proc/meminfo");
-  std::size_t kilobytes = 0;
-  std::string name;
-  for (std::size_t value = 0; info >> name >> value; info.ignore(64, '\n'))
-  {
-    kilobytes += name == "MemAvailable:" || name == "SwapFree:" ? value : 0;
-  }
-  return kilobytes << 10;
-}
-
 /// Sizes are checked before memory is taken: the kernel would give file and process what it has,
 /// and then end a process of its choice.
-std::string Shortage(std::size_t bytes)
+/// @param times so many ranks of this machine take as much each
+std::string Shortage(std::size_t bytes, int times)
 {
-  const std::size_t available = AvailableBytes();
-  return available == 0 || bytes <= available
+  const std::size_t available = AvailableMemory();
+  return bytes <= available / static_cast<std::size_t>(times)
            ? std::string()
-           : "There is no memory for " + Megabytes(bytes) + " of a mesh: the machine has " +
-               Megabytes(available) + " left";
+           : "There is no memory for " + (times > 1 ? std::to_string(times) + " times " : "") +
+               Megabytes(bytes) + " of a mesh: machine or container have " + Megabytes(available) +
+               " left";
+}
+
+void ThrowTogether(Communicator& communicator, const std::string& failure)
+{
+  const std::string agreed = AgreeOnError(communicator, failure);
+  if (!agreed.empty())
+  {
+    throw Error(agreed);
+  }
 }
 
 /// Null on failure.
@@ -101,6 +100,26 @@ struct FileOfLeader
   std::uint64_t Inode = 0;
 };
 
+/// Gives a file all its pages, in small parts: many kernels end what takes longer when a signal
+/// comes, one of a timer too, and take back what they gave. False, with errno, on failure.
+bool MakeRoom(int file, std::size_t bytes)
+{
+  constexpr std::size_t part = std::size_t{ 2 } << 20;
+  for (std::size_t begin = 0; begin < bytes;)
+  {
+    const std::size_t length = std::min(part, bytes - begin);
+    if (fallocate(file, 0, static_cast<off_t>(begin), static_cast<off_t>(length)) == 0)
+    {
+      begin += length;
+    }
+    else if (errno != EINTR)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// All of the file is there when this has succeeded.
 /// @return what failed; empty if nothing
 std::string MakeFile(std::size_t bytes, FileDescriptor& file, FileOfLeader& place)
@@ -121,8 +140,7 @@ std::string MakeFile(std::size_t bytes, FileDescriptor& file, FileOfLeader& plac
   // Addresses come first: a size that no process can have must not take all memory there is. Then
   // room: pages that are missing later would end the process without a word.
   if (ftruncate(file.Get(), static_cast<off_t>(bytes)) != 0 ||
-      !Mapped(bytes, MAP_SHARED, file.Get()) ||
-      fallocate(file.Get(), 0, 0, static_cast<off_t>(bytes)) != 0 ||
+      !Mapped(bytes, MAP_SHARED, file.Get()) || !MakeRoom(file.Get(), bytes) ||
       fstat(file.Get(), &status) != 0)
   {
     return WithReason("A file in memory cannot have " + Megabytes(bytes));
@@ -205,7 +223,6 @@ void MachineRanks::BeAlone()
   for (std::size_t rank = 0; rank < this->LeaderOfRank.size(); ++rank)
   {
     this->LeaderOfRank[rank] = static_cast<int>(rank);
-    this->RanksOfMachine[rank] = 1;
     this->AllLeaders.push_back(static_cast<int>(rank));
   }
 }
@@ -213,26 +230,20 @@ void MachineRanks::BeAlone()
 std::shared_ptr<char> MachineRanks::Allocate(Communicator& communicator, std::size_t bytes)
 {
   bytes = std::max<std::size_t>(bytes, 1);
-  std::string failure = AgreeOnError(communicator, Shortage(bytes));
-  if (!failure.empty())
-  {
-    throw Error(failure);
-  }
   if (this->Sharing)
   {
+    ThrowTogether(communicator, Shortage(bytes, 1));
     if (std::shared_ptr<char> memory = this->TogetherOrNull(communicator, bytes))
     {
       return memory;
     }
     this->BeAlone();
   }
+  ThrowTogether(
+    communicator, Shortage(bytes, this->RanksOfMachine[static_cast<std::size_t>(this->Self)]));
   const std::shared_ptr<char> own = Mapped(bytes, MAP_PRIVATE | MAP_ANONYMOUS, -1);
-  failure = AgreeOnError(communicator,
+  ThrowTogether(communicator,
     own ? std::string() : "There is no memory for " + Megabytes(bytes) + " of a mesh");
-  if (!failure.empty())
-  {
-    throw Error(failure);
-  }
   return own;
 }
 

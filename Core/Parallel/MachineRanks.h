@@ -59,7 +59,7 @@ private:
   bool Sharing = false;
   std::vector<int> LeaderOfRank;
   std::vector<int> AllLeaders;
-  std::vector<int> RanksOfMachine; ///< per rank
+  std::vector<int> RanksOfMachine; ///< per rank, whether they share or not
   std::string Reason;
 };
 

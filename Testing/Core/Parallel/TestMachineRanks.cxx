@@ -1,4 +1,5 @@
 // Memory that ranks of a machine have together.
+#include "Base/AvailableMemory.h"
 #include "Base/Error.h"
 #include "Parallel/MachineRanks.h"
 
@@ -8,7 +9,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <mutex>
 #include <set>
 #include <sstream>
@@ -36,8 +39,14 @@ std::set<std::string> FilesInMemory()
   return inodes;
 }
 
+std::ptrdiff_t OpenFiles()
+{
+  return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
+}
+
 TEST(MachineRanks, MemoryIsThereOncePerMachine)
 {
+  const std::ptrdiff_t openBefore = OpenFiles();
   for (const int ranks : { 2, 3, 5, 8 })
   {
     for (const int perMachine : { 1, 2, 3, 8 })
@@ -69,6 +78,7 @@ TEST(MachineRanks, MemoryIsThereOncePerMachine)
           communicator.Barrier();
         });
       EXPECT_TRUE(FilesInMemory().empty()) << "memory is given back";
+      EXPECT_EQ(OpenFiles(), openBefore) << "files are closed";
     }
   }
 }
@@ -87,13 +97,26 @@ TEST(MachineRanks, RanksWithoutANameAreOnTheirOwn)
     });
 }
 
+/// No file of this process may be longer while an object of this class lives.
+class LongestFile
+{
+public:
+  explicit LongestFile(rlim_t bytes)
+  {
+    EXPECT_EQ(getrlimit(RLIMIT_FSIZE, &this->Before), 0);
+    rlimit low = this->Before;
+    low.rlim_cur = bytes;
+    EXPECT_EQ(setrlimit(RLIMIT_FSIZE, &low), 0);
+  }
+  ~LongestFile() { EXPECT_EQ(setrlimit(RLIMIT_FSIZE, &this->Before), 0); }
+
+private:
+  rlimit Before = {};
+};
+
 TEST(MachineRanks, WhatCannotBeHadTogetherEachRankHasForItself)
 {
-  rlimit before = {};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
-  rlimit low = before;
-  low.rlim_cur = 4096;
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &low), 0);
+  const LongestFile limit(4096);
   RunOnSimulatedRanks(4,
     [](Communicator& communicator)
     {
@@ -108,7 +131,29 @@ TEST(MachineRanks, WhatCannotBeHadTogetherEachRankHasForItself)
       communicator.Barrier();
       EXPECT_EQ(memory.get()[4999], communicator.Rank() + 1);
     });
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+}
+
+TEST(MachineRanks, WhatEachRankOfAMachineHasForItselfIsTakenSoManyTimes)
+{
+  // Enough for one, and not for three; nobody takes it: a file of that size is not allowed.
+  const std::size_t bytes = AvailableMemory() / 2;
+  const LongestFile limit(4096);
+  std::atomic<int> refused{ 0 };
+  RunOnSimulatedRanks(3,
+    [&](Communicator& communicator)
+    {
+      MachineRanks machines(communicator);
+      try
+      {
+        machines.Allocate(communicator, bytes);
+      }
+      catch (const Error& error)
+      {
+        refused +=
+          std::string(error.what()).find("no memory for 3 times ") != std::string::npos ? 1 : 0;
+      }
+    });
+  EXPECT_EQ(refused, 3);
 }
 
 TEST(MachineRanks, TooMuchIsAnErrorOnAllRanks)

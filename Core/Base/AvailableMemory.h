@@ -1,0 +1,20 @@
+#ifndef banyan_Base_AvailableMemory_h
+#define banyan_Base_AvailableMemory_h
+
+#include <cstddef>
+#include <string>
+
+namespace banyan
+{
+
+/// Bytes that this process can still be given before the kernel ends processes: the least of what
+/// the machine has left, with swap, and of what each control group around the process is allowed
+/// (version 2; pages of files that the kernel can drop count as free). An estimate, true for a
+/// moment.
+/// @param root where proc and sys are, without a slash at its end; for tests
+/// @return the largest number where nothing says
+std::size_t AvailableMemory(const std::string& root = {});
+
+} // namespace banyan
+
+#endif
