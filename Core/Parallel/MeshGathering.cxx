@@ -1,7 +1,7 @@
 #include "Parallel/MeshGathering.h"
 
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -50,11 +50,14 @@ void SendToMachines(Communicator& communicator, const MachineRanks& machines, ch
 }
 
 /// Ranks that share memory write their own part each; leaders of machines get what the others have.
-Gathered GatherBytes(
-  Communicator& communicator, MachineRanks& machines, const void* mine, std::size_t bytes)
+/// @param count of values of this rank
+/// @param fill writes them where it is told, and throws nothing: the others wait already
+template <class T, class Fill>
+Gathered GatherArray(
+  Communicator& communicator, MachineRanks& machines, std::int64_t count, const Fill& fill)
 {
   const auto ranks = static_cast<std::size_t>(communicator.Size());
-  const std::uint64_t own = bytes;
+  const std::uint64_t own = static_cast<std::uint64_t>(count) * sizeof(T);
   std::vector<std::uint64_t> sizes(ranks);
   communicator.AllGather(&own, sizeof(own), sizes.data());
   std::vector<std::size_t> begins(ranks + 1, 0);
@@ -63,41 +66,35 @@ Gathered GatherBytes(
     begins[rank + 1] = begins[rank] + sizes[rank];
   }
   const Gathered all{ machines.Allocate(communicator, begins.back()), begins.back() };
-  if (bytes > 0)
-  {
-    std::memcpy(
-      all.Memory.get() + begins[static_cast<std::size_t>(communicator.Rank())], mine, bytes);
-  }
+  char* const memory = all.Memory.get();
+  fill(reinterpret_cast<T*>(memory + begins[static_cast<std::size_t>(communicator.Rank())]));
   if (machines.Shares())
   {
-    SendToMachines(communicator, machines, all.Memory.get(), begins);
+    SendToMachines(communicator, machines, memory, begins);
     return all;
   }
   for (std::size_t rank = 0; rank < ranks; ++rank)
   {
     if (sizes[rank] > 0)
     {
-      communicator.Broadcast(static_cast<int>(rank), all.Memory.get() + begins[rank], sizes[rank]);
+      communicator.Broadcast(static_cast<int>(rank), memory + begins[rank], sizes[rank]);
     }
   }
   return all;
 }
 
 template <class To, class From>
-std::vector<To> Converted(const From* values, std::int64_t count, std::int64_t offset = 0)
+Gathered GatherConverted(Communicator& communicator, MachineRanks& machines, const From* values,
+  std::int64_t count, std::int64_t offset = 0)
 {
-  std::vector<To> result(static_cast<std::size_t>(count));
-  for (std::size_t i = 0; i < result.size(); ++i)
-  {
-    result[i] = static_cast<To>(values[i]) + static_cast<To>(offset);
-  }
-  return result;
-}
-
-template <class T>
-Gathered GatherArray(Communicator& communicator, MachineRanks& machines, const std::vector<T>& mine)
-{
-  return GatherBytes(communicator, machines, mine.data(), mine.size() * sizeof(T));
+  return GatherArray<To>(communicator, machines, count,
+    [&](To* out)
+    {
+      for (std::int64_t i = 0; i < count; ++i)
+      {
+        out[i] = static_cast<To>(static_cast<To>(values[i]) + static_cast<To>(offset));
+      }
+    });
 }
 
 /// A cell that refers to a point that is not there; empty if there is none.
@@ -120,33 +117,36 @@ std::string StrayPoint(const HexMesh& piece)
 }
 
 template <class Out>
-std::vector<Out> ComponentOf(const NodeArray& array, std::int64_t points)
+void WriteComponent(const NodeArray& array, std::int64_t points, Out* out)
 {
-  std::vector<Out> values(static_cast<std::size_t>(points));
   Dispatch(array.Type,
     [&](auto tag)
     {
       using T = typename decltype(tag)::Type;
       const T* tuple = static_cast<const T*>(array.Values);
-      for (Out& value : values)
+      for (std::int64_t i = 0; i < points; ++i, tuple += array.Components)
       {
         if (array.Component != NodeArray::Magnitude)
         {
-          value = static_cast<Out>(tuple[array.Component]);
+          out[i] = static_cast<Out>(tuple[array.Component]);
+          continue;
         }
-        else
+        double sum = 0.0;
+        for (int c = 0; c < array.Components; ++c)
         {
-          double sum = 0.0;
-          for (int c = 0; c < array.Components; ++c)
-          {
-            sum += static_cast<double>(tuple[c]) * static_cast<double>(tuple[c]);
-          }
-          value = static_cast<Out>(std::sqrt(sum));
+          sum += static_cast<double>(tuple[c]) * static_cast<double>(tuple[c]);
         }
-        tuple += array.Components;
+        out[i] = static_cast<Out>(std::sqrt(sum));
       }
     });
-  return values;
+}
+
+template <class Out>
+Gathered GatherComponent(
+  Communicator& communicator, MachineRanks& machines, const NodeArray& array, std::int64_t points)
+{
+  return GatherArray<Out>(
+    communicator, machines, points, [&](Out* out) { WriteComponent(array, points, out); });
 }
 
 } // namespace
@@ -182,13 +182,12 @@ HexMesh GatherMesh(Communicator& communicator, MachineRanks& machines, const Hex
     {
       const std::int64_t coordinates = 3 * piece.PointCount;
       const Gathered allPoints =
-        wide ? GatherArray(communicator, machines, Converted<double>(points, coordinates))
-             : GatherArray(communicator, machines, Converted<float>(points, coordinates));
+        wide ? GatherConverted<double>(communicator, machines, points, coordinates)
+             : GatherConverted<float>(communicator, machines, points, coordinates);
       const std::int64_t corners = 8 * piece.CellCount;
       const Gathered allIds =
-        longIds
-          ? GatherArray(communicator, machines, Converted<std::int64_t>(ids, corners, before))
-          : GatherArray(communicator, machines, Converted<std::int32_t>(ids, corners, before));
+        longIds ? GatherConverted<std::int64_t>(communicator, machines, ids, corners, before)
+                : GatherConverted<std::int32_t>(communicator, machines, ids, corners, before);
       mesh.Points = allPoints.Memory.get();
       mesh.PointOwner = allPoints.Memory;
       mesh.Connectivity = allIds.Memory.get();
@@ -209,9 +208,8 @@ GatheredValues GatherNodes(
     return { piece, {} };
   }
   const bool wide = AllMax(communicator, points > 0 && !FitsFloat(piece.Type) ? 1.0 : 0.0) > 0.0;
-  const Gathered all = wide
-                         ? GatherArray(communicator, machines, ComponentOf<double>(piece, points))
-                         : GatherArray(communicator, machines, ComponentOf<float>(piece, points));
+  const Gathered all = wide ? GatherComponent<double>(communicator, machines, piece, points)
+                            : GatherComponent<float>(communicator, machines, piece, points);
   GatheredValues values;
   values.Array.Values = all.Memory.get();
   values.Array.Type = wide ? ScalarType::Float64 : ScalarType::Float32;
