@@ -156,6 +156,8 @@ int vtkBanyanHexOctree::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->SetErrorCode(vtkErrorCode::NoError);
+  this->SetAbortExecute(
+    0); // what stopped an update, or came behind its end, was not meant for this
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputs);
   vtkDataObject* const data = vtkDataObject::GetData(inputs[0]);
   try

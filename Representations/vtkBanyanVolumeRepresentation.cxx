@@ -191,6 +191,7 @@ void vtkBanyanVolumeRepresentation::ShowProgress()
 void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
 {
   this->Mapper->SetInputDataObject(piece);
+  this->SetAbortExecute(0); // what stopped another picture was not meant for this one
   this->Mapper->SetAbortExecute(0);
   this->Mapper->SetController(vtkMultiProcessController::GetGlobalController());
   this->SelectArray();

@@ -164,7 +164,6 @@ def watch(algorithm, update, stop_at=None):
     observer = algorithm.AddObserver("ProgressEvent", look)
     update()
     algorithm.RemoveObserver(observer)
-    algorithm.SetAbortExecute(0)
     return parts
 
 
