@@ -31,6 +31,22 @@ def draw(source, array, path, strength=0.0, time=STEP):
     return pictures.load(path)
 
 
+def check_offered(source, array):
+    """Of field arrays no motion can be brought out, and none is offered."""
+    script = """from vtkmodules.vtkCommonCore import vtkDoubleArray
+fact = vtkDoubleArray()
+fact.SetName("fact")
+fact.InsertNextValue(1.0)
+output.GetFieldData().AddArray(fact)"""
+    fields = simple.ProgrammableFilter(Input=source, CopyArrays=1, Script=script)
+    fields.UpdatePipeline()
+    filtered = simple.BanyanTemporalEnhancement(Input=fields)
+    domain = filtered.GetProperty("Array").SMProperty.FindDomain("vtkSMArrayListDomain")
+    offered = [domain.GetString(i) for i in range(domain.GetNumberOfStrings())]
+    if "fact" not in fields.FieldData.keys() or array not in offered or "fact" in offered:
+        raise AssertionError(f"arrays {offered} are offered")
+
+
 def main():
     parser = session.parser(__doc__)
     parser.add_argument("--data", required=True)
@@ -71,6 +87,7 @@ def main():
     of_decoded.Array = ["POINTS", array]
     same(arrays, draw(of_decoded, array + "_enhanced", path("filter_of_decoded")), 1,
          "filter and arrays")
+    check_offered(decoded, array)
     session.clear()
     print("One picture by all ways.")
 
