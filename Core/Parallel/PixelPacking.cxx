@@ -1,6 +1,7 @@
 #include "Parallel/PixelPacking.h"
 
 #include "Base/Error.h"
+#include "Parallel/PixelBits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,83 +13,7 @@ namespace banyan
 namespace
 {
 
-constexpr std::size_t Group = 8;
 constexpr std::size_t Slack = 8; ///< whole words are written where only some bytes count
-
-/// Transposes 8 x 8 bits: byte k of the result holds bit k of each of the 8 bytes. Its own inverse.
-/// (Warren, Hacker's Delight, section 7-3.)
-std::uint64_t Transposed(std::uint64_t x)
-{
-  std::uint64_t t = (x ^ (x >> 7)) & 0x00AA00AA00AA00AAu;
-  x ^= t ^ (t << 7);
-  t = (x ^ (x >> 14)) & 0x0000CCCC0000CCCCu;
-  x ^= t ^ (t << 14);
-  t = (x ^ (x >> 28)) & 0x00000000F0F0F0F0u;
-  return x ^ t ^ (t << 28);
-}
-
-/// The low and the high bytes of eight numbers, the first one lowest.
-struct Halves
-{
-  std::uint64_t Low = 0;
-  std::uint64_t High = 0;
-};
-
-/// Of channel c of the group: numbers[4 * i + c].
-Halves HalvesOf(const std::uint16_t* numbers)
-{
-  Halves halves;
-  for (std::size_t i = 0; i < Group; ++i)
-  {
-    halves.Low |= static_cast<std::uint64_t>(numbers[4 * i] & 0xFFu) << (8 * i);
-    halves.High |= static_cast<std::uint64_t>(numbers[4 * i] >> 8) << (8 * i);
-  }
-  return halves;
-}
-
-std::uint8_t* WriteBits(std::uint8_t* to, const std::uint16_t* numbers, unsigned bits)
-{
-  const Halves halves = HalvesOf(numbers);
-  const std::uint64_t low = Transposed(halves.Low);
-  std::memcpy(to, &low, 8);
-  if (bits <= 8)
-  {
-    return to + bits;
-  }
-  const std::uint64_t high = Transposed(halves.High);
-  std::memcpy(to + 8, &high, 8);
-  return to + bits;
-}
-
-/// @param safe whether 16 bytes can be read from `from`
-const std::uint8_t* ReadBits(
-  const std::uint8_t* from, unsigned bits, bool safe, std::uint16_t* numbers)
-{
-  std::uint8_t copy[16] = {};
-  const std::uint8_t* source = from;
-  if (!safe)
-  {
-    std::memcpy(copy, from, bits);
-    source = copy;
-  }
-  std::uint64_t low = 0;
-  std::uint64_t high = 0;
-  std::memcpy(&low, source, 8);
-  low = bits < 8 ? low & ((std::uint64_t{ 1 } << (8 * bits)) - 1) : low;
-  low = Transposed(low);
-  if (bits > 8)
-  {
-    std::memcpy(&high, source + 8, 8);
-    high = bits < 16 ? high & ((std::uint64_t{ 1 } << (8 * (bits - 8))) - 1) : high;
-    high = Transposed(high);
-  }
-  for (std::size_t i = 0; i < Group; ++i)
-  {
-    const auto value = ((low >> (8 * i)) & 0xFFu) | (((high >> (8 * i)) & 0xFFu) << 8);
-    numbers[4 * i] = static_cast<std::uint16_t>(value);
-  }
-  return from + bits;
-}
 
 unsigned BitsOf(unsigned number)
 {
@@ -105,6 +30,45 @@ unsigned BitsOfCode(unsigned code)
   return code == 15u ? 16u : code;
 }
 
+/// Says that the codes of a group follow as they are.
+constexpr unsigned Anew = 255;
+
+/// The codes of the four channels of a group, red lowest.
+struct Codes
+{
+  unsigned Of[4] = {};
+
+  /// How to get here from those of the group before, in a byte; Anew if it takes more.
+  unsigned StepFrom(const Codes& before) const
+  {
+    unsigned steps = 0;
+    for (unsigned c = 0; c < 4; ++c)
+    {
+      const int step = static_cast<int>(this->Of[c]) - static_cast<int>(before.Of[c]);
+      if (step < -2 || step > 1)
+      {
+        return Anew;
+      }
+      steps |= (step >= 0 ? static_cast<unsigned>(step) : static_cast<unsigned>(1 - step))
+               << (2 * c);
+    }
+    return steps;
+  }
+
+  /// @return false where one would leave the range of codes
+  bool Step(unsigned steps)
+  {
+    constexpr int by[] = { 0, 1, -1, -2 };
+    bool possible = true;
+    for (unsigned c = 0; c < 4; ++c)
+    {
+      this->Of[c] += static_cast<unsigned>(by[(steps >> (2 * c)) & 3u]);
+      possible = possible && this->Of[c] < 16u;
+    }
+    return possible;
+  }
+};
+
 void Fail(std::size_t found, std::size_t allowed)
 {
   ErrorPlace place;
@@ -116,40 +80,70 @@ void Fail(std::size_t found, std::size_t allowed)
 /// Copies a group that is not full, its last pixel repeated.
 void CopyLastGroup(const std::uint16_t* numbers, std::size_t count, std::uint16_t* group)
 {
-  for (std::size_t i = 0; i < Group; ++i)
+  for (std::size_t i = 0; i < PixelGroup; ++i)
   {
     std::memcpy(group + 4 * i, numbers + 4 * std::min(i, count - 1), 4 * sizeof(std::uint16_t));
   }
 }
 
-std::uint8_t* PackGroup(const std::int16_t* differences, std::uint8_t* to)
+/// @param before codes of the group before; becomes those of this one
+std::uint8_t* PackGroup(const std::int16_t* differences, Codes& before, std::uint8_t* to)
 {
-  std::uint16_t zigzag[4 * Group];
+  std::uint16_t zigzag[4 * PixelGroup];
   std::uint16_t any[4] = {};
-  for (std::size_t i = 0; i < 4 * Group; ++i)
+  for (std::size_t i = 0; i < 4 * PixelGroup; ++i)
   {
     const std::int16_t difference = differences[i];
     zigzag[i] = static_cast<std::uint16_t>(
       (static_cast<std::uint16_t>(difference) << 1) ^ static_cast<std::uint16_t>(difference >> 15));
   }
-  for (std::size_t i = 0; i < 4 * Group; ++i)
+  for (std::size_t i = 0; i < 4 * PixelGroup; ++i)
   {
     any[i % 4] = static_cast<std::uint16_t>(any[i % 4] | zigzag[i]);
   }
-  unsigned header = 0;
+  Codes codes;
   for (unsigned c = 0; c < 4; ++c)
   {
-    header |= CodeOf(BitsOf(any[c])) << (4 * c);
+    codes.Of[c] = CodeOf(BitsOf(any[c]));
   }
-  to[0] = static_cast<std::uint8_t>(header & 0xFFu);
-  to[1] = static_cast<std::uint8_t>(header >> 8);
-  to += 2;
+  const unsigned steps = codes.StepFrom(before);
+  *to++ = static_cast<std::uint8_t>(steps);
+  if (steps == Anew)
+  {
+    *to++ = static_cast<std::uint8_t>(codes.Of[0] | codes.Of[1] << 4);
+    *to++ = static_cast<std::uint8_t>(codes.Of[2] | codes.Of[3] << 4);
+  }
   for (unsigned c = 0; c < 4; ++c)
   {
-    const unsigned bits = BitsOfCode((header >> (4 * c)) & 15u);
+    const unsigned bits = BitsOfCode(codes.Of[c]);
     to = bits > 0 ? WriteBits(to, zigzag + c, bits) : to;
   }
+  before = codes;
   return to;
+}
+
+/// Goes on behind the codes of a group.
+/// @param codes of the group before, or 0; receives those of this one
+/// @param bytes that there are in all, for what is said when they are too few
+void ReadCodes(const std::uint8_t*& from, const std::uint8_t* end, std::size_t bytes, Codes& codes)
+{
+  const std::ptrdiff_t needed = from < end && *from == Anew ? 3 : 1;
+  if (end - from < needed)
+  {
+    Fail(bytes, bytes + static_cast<std::size_t>(needed));
+  }
+  if (needed == 3)
+  {
+    for (unsigned c = 0; c < 4; ++c)
+    {
+      codes.Of[c] = (from[1 + c / 2] >> (4 * (c % 2))) & 15u;
+    }
+  }
+  else if (!codes.Step(*from))
+  {
+    Fail(bytes, bytes);
+  }
+  from += needed;
 }
 
 /// What differences of some channels say about those of others, in parts of 32.
@@ -173,9 +167,9 @@ Factors Fitted(const std::int16_t* differences, std::size_t count)
 {
   // Every fourth group: how well they fit matters, not which they are.
   float sums[9] = {};
-  for (std::size_t first = 0; first < count; first += 4 * Group)
+  for (std::size_t first = 0; first < count; first += 4 * PixelGroup)
   {
-    const std::size_t last = std::min(first + Group, count);
+    const std::size_t last = std::min(first + PixelGroup, count);
     for (std::size_t i = first; i < last; ++i)
     {
       const std::int16_t* d = differences + 4 * i;
@@ -228,13 +222,13 @@ void SubtractShares(const Factors& factors, std::int16_t* differences, std::size
 void UndoDifferences(
   const Factors& factors, const std::uint16_t* zigzag, std::uint16_t* before, std::uint16_t* group)
 {
-  std::int16_t d[4 * Group];
-  for (std::size_t i = 0; i < 4 * Group; ++i)
+  std::int16_t d[4 * PixelGroup];
+  for (std::size_t i = 0; i < 4 * PixelGroup; ++i)
   {
     const unsigned z = zigzag[i];
     d[i] = static_cast<std::int16_t>((z >> 1) ^ (0u - (z & 1u)));
   }
-  for (std::size_t i = 0; i < 4 * Group; i += 4)
+  for (std::size_t i = 0; i < 4 * PixelGroup; i += 4)
   {
     const int alpha = d[i + 3];
     const auto green =
@@ -245,7 +239,7 @@ void UndoDifferences(
       d[i + 2] + Share(alpha, factors.BlueOfAlpha, green, factors.BlueOfGreen));
     d[i + 1] = green;
   }
-  for (std::size_t i = 0; i < 4 * Group; ++i)
+  for (std::size_t i = 0; i < 4 * PixelGroup; ++i)
   {
     before[i % 4] = static_cast<std::uint16_t>(before[i % 4] + d[i]);
     group[i] = before[i % 4];
@@ -256,14 +250,14 @@ void UndoDifferences(
 
 std::size_t PackedBytesAtMost(std::size_t count)
 {
-  const std::size_t groups = (count + Group - 1) / Group;
-  return groups * (2 + 4 * 16) + Factors::Bytes + 2 * Slack;
+  const std::size_t groups = (count + PixelGroup - 1) / PixelGroup;
+  return groups * (3 + 4 * 16) + Factors::Bytes + 2 * Slack;
 }
 
 std::size_t PackPixels(const std::uint16_t* numbers, std::size_t count, std::uint8_t* packed)
 {
   // Whole groups: what is missing has differences 0.
-  std::vector<std::int16_t> differences((count + Group - 1) / Group * 4 * Group, 0);
+  std::vector<std::int16_t> differences((count + PixelGroup - 1) / PixelGroup * 4 * PixelGroup, 0);
   for (std::size_t i = 0; i < 4 * count; ++i)
   {
     differences[i] = static_cast<std::int16_t>(numbers[i] - (i < 4 ? 0 : numbers[i - 4]));
@@ -272,9 +266,10 @@ std::size_t PackPixels(const std::uint16_t* numbers, std::size_t count, std::uin
   SubtractShares(factors, differences.data(), count);
   std::memcpy(packed, &factors, Factors::Bytes);
   std::uint8_t* to = packed + Factors::Bytes;
-  for (std::size_t first = 0; first < count; first += Group)
+  Codes codes;
+  for (std::size_t first = 0; first < count; first += PixelGroup)
   {
-    to = PackGroup(differences.data() + 4 * first, to);
+    to = PackGroup(differences.data() + 4 * first, codes, to);
   }
   return static_cast<std::size_t>(to - packed);
 }
@@ -291,18 +286,14 @@ void UnpackPixels(
   const std::uint8_t* from = packed + Factors::Bytes;
   const std::uint8_t* end = packed + bytes;
   std::uint16_t before[4] = {};
-  for (std::size_t first = 0; first < count; first += Group)
+  Codes codes;
+  for (std::size_t first = 0; first < count; first += PixelGroup)
   {
-    if (end - from < 2)
-    {
-      Fail(bytes, bytes + 2);
-    }
-    const unsigned header = from[0] | static_cast<unsigned>(from[1]) << 8;
-    from += 2;
-    std::uint16_t zigzag[4 * Group] = {};
+    ReadCodes(from, end, bytes, codes);
+    std::uint16_t zigzag[4 * PixelGroup] = {};
     for (unsigned c = 0; c < 4; ++c)
     {
-      const unsigned bits = BitsOfCode((header >> (4 * c)) & 15u);
+      const unsigned bits = BitsOfCode(codes.Of[c]);
       const std::ptrdiff_t left = end - from;
       if (left < static_cast<std::ptrdiff_t>(bits))
       {
@@ -310,10 +301,10 @@ void UnpackPixels(
       }
       from = bits > 0 ? ReadBits(from, bits, left >= 16, zigzag + c) : from;
     }
-    std::uint16_t padded[4 * Group];
-    const std::size_t here = std::min(Group, count - first);
-    UndoDifferences(factors, zigzag, before, here == Group ? numbers + 4 * first : padded);
-    if (here < Group)
+    std::uint16_t padded[4 * PixelGroup];
+    const std::size_t here = std::min(PixelGroup, count - first);
+    UndoDifferences(factors, zigzag, before, here == PixelGroup ? numbers + 4 * first : padded);
+    if (here < PixelGroup)
     {
       std::memcpy(numbers + 4 * first, padded, 4 * here * sizeof(std::uint16_t));
     }
@@ -336,11 +327,11 @@ std::size_t WritePlain(const std::uint16_t* numbers, std::size_t count, std::uin
   {
     *to++ = static_cast<std::uint8_t>(BitsOf(any[c]));
   }
-  for (std::size_t first = 0; first < count; first += Group)
+  for (std::size_t first = 0; first < count; first += PixelGroup)
   {
-    std::uint16_t padded[4 * Group];
+    std::uint16_t padded[4 * PixelGroup];
     const std::uint16_t* group = numbers + 4 * first;
-    if (count - first < Group)
+    if (count - first < PixelGroup)
     {
       CopyLastGroup(group, count - first, padded);
       group = padded;
@@ -356,7 +347,7 @@ std::size_t WritePlain(const std::uint16_t* numbers, std::size_t count, std::uin
 void ReadPlain(
   const std::uint8_t* written, std::size_t bytes, std::size_t count, std::uint16_t* numbers)
 {
-  const std::size_t groups = (count + Group - 1) / Group;
+  const std::size_t groups = (count + PixelGroup - 1) / PixelGroup;
   std::size_t expected = 4;
   for (unsigned c = 0; c < 4 && bytes >= 4; ++c)
   {
@@ -368,15 +359,15 @@ void ReadPlain(
   }
   const std::uint8_t* from = written + 4;
   const std::uint8_t* end = written + bytes;
-  for (std::size_t first = 0; first < count; first += Group)
+  for (std::size_t first = 0; first < count; first += PixelGroup)
   {
-    std::uint16_t group[4 * Group] = {};
+    std::uint16_t group[4 * PixelGroup] = {};
     for (unsigned c = 0; c < 4; ++c)
     {
       from = written[c] > 0 ? ReadBits(from, written[c], end - from >= 16, group + c) : from;
     }
     std::memcpy(
-      numbers + 4 * first, group, 4 * std::min(Group, count - first) * sizeof(std::uint16_t));
+      numbers + 4 * first, group, 4 * std::min(PixelGroup, count - first) * sizeof(std::uint16_t));
   }
 }
 

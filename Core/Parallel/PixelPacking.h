@@ -16,9 +16,12 @@ namespace banyan
 ///
 /// Then eight pixels after the other: numbers are made positive by zig-zag (0, -1, 1, -2, ...
 /// become 0, 1, 2, 3, ...), and of these only as many bits are kept as the largest of the eight
-/// needs: 0 to 14, or 16. A group begins with 2 bytes, 4 bits per channel (red lowest; 15 says 16),
-/// then come the bits of each channel: first the lowest ones of the eight numbers in one byte,
-/// first pixel lowest, then the next. Missing pixels of the last group have differences 0.
+/// needs: 0 to 14, or 16, as a code of 4 bits per channel (15 says 16). A group begins with a byte
+/// of four steps from the codes of the group before (0 for the first one), 2 bits per channel, red
+/// lowest: 0, 1, 2, 3 say 0, +1, -1, -2. Where these do not do, it is 255, and 2 bytes of codes
+/// follow, red lowest. Then come the bits of each channel: first the lowest ones of the eight
+/// numbers in one byte, first pixel lowest, then the next. Missing pixels of the last group have
+/// differences 0.
 /// @return bytes written, at most PackedBytesAtMost
 std::size_t PackPixels(const std::uint16_t* numbers, std::size_t count, std::uint8_t* packed);
 

@@ -9,6 +9,32 @@
 namespace banyan::testing
 {
 
+/// What a group begins with.
+inline std::vector<std::uint8_t> StepsSlowly(
+  const std::vector<unsigned>& before, const std::vector<unsigned>& codes)
+{
+  const int possible[] = { 0, 1, -1, -2 };
+  unsigned byte = 0;
+  unsigned found = 0;
+  for (unsigned channel = 0; channel < 4; ++channel)
+  {
+    for (unsigned step = 0; step < 4; ++step)
+    {
+      if (static_cast<int>(before[channel]) + possible[step] == static_cast<int>(codes[channel]))
+      {
+        byte += step << (2 * channel);
+        ++found;
+      }
+    }
+  }
+  if (found == 4 && byte != 255)
+  {
+    return { static_cast<std::uint8_t>(byte) };
+  }
+  return { 255, static_cast<std::uint8_t>(codes[0] + 16 * codes[1]),
+    static_cast<std::uint8_t>(codes[2] + 16 * codes[3]) };
+}
+
 /// @param factors what the packing has fitted, which may be anything
 inline std::vector<std::uint8_t> PackedSlowly(
   const std::vector<std::uint16_t>& numbers, const std::vector<std::int8_t>& factors)
@@ -45,9 +71,10 @@ inline std::vector<std::uint8_t> PackedSlowly(
   {
     packed.push_back(static_cast<std::uint8_t>(factor));
   }
+  std::vector<unsigned> before(4, 0);
   for (std::size_t first = 0; first < count; first += 8)
   {
-    unsigned header = 0;
+    std::vector<unsigned> codes;
     std::vector<std::uint8_t> planes;
     for (std::size_t channel = 0; channel < 4; ++channel)
     {
@@ -63,7 +90,7 @@ inline std::vector<std::uint8_t> PackedSlowly(
         }
       }
       const unsigned code = std::min(bits, 15u);
-      header |= code << (4 * channel);
+      codes.push_back(code);
       for (unsigned bit = 0; bit < (code == 15 ? 16 : code); ++bit)
       {
         unsigned plane = 0;
@@ -74,8 +101,9 @@ inline std::vector<std::uint8_t> PackedSlowly(
         planes.push_back(static_cast<std::uint8_t>(plane));
       }
     }
-    packed.push_back(static_cast<std::uint8_t>(header & 255u));
-    packed.push_back(static_cast<std::uint8_t>(header >> 8));
+    const auto steps = StepsSlowly(before, codes);
+    packed.insert(packed.end(), steps.begin(), steps.end());
+    before = codes;
     packed.insert(packed.end(), planes.begin(), planes.end());
   }
   return packed;

@@ -68,7 +68,7 @@ TEST(PixelPacking, GivesEveryNumberBack)
 TEST(PixelPacking, MakesSmoothPixelsSmall)
 {
   EXPECT_LT(Packed(Walk(1024, 8, 1, 1)).size() * 2, 4 * 1024u);
-  EXPECT_LE(Packed(Walk(1024, 8, 0, 1)).size(), 1024u / 4 + 64);
+  EXPECT_LE(Packed(Walk(1024, 8, 0, 1)).size(), 1024u / 8 + 64);
 }
 
 TEST(PixelPacking, RefusesWhatEndsTooEarlyOrTooLate)
