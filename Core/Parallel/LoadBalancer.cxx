@@ -108,6 +108,7 @@ void LoadBalancer::BeginFrame(const BrickCosts& view, const ScreenCuts* cuts)
       this->Zones, CostSums(view), this->Speeds(), this->Settings.PlaneStep, *cuts, WorkPerCutRay);
   }
   this->View = view.Values;
+  this->Cuts = cuts ? std::make_optional(*cuts) : std::nullopt;
 }
 
 void LoadBalancer::MoveSlices()
@@ -147,7 +148,9 @@ void LoadBalancer::MoveToBalance(const BrickCosts& view, const ScreenCuts* cuts)
     limits.Tolerated = std::numeric_limits<double>::infinity();
   }
   this->Before = this->Zones;
-  if (view.Values != this->View)
+  // Planes may look different even where as much is seen of each block.
+  const bool sameCuts = cuts ? this->Cuts && *this->Cuts == *cuts : !this->Cuts;
+  if (view.Values != this->View || !sameCuts)
   {
     this->Search.Forget();
   }

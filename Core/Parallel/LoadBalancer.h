@@ -6,6 +6,7 @@
 #include "Parallel/TreeSearch.h"
 
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace banyan
@@ -117,6 +118,7 @@ private:
   std::vector<double> OlderWork;
   std::vector<double> LongWork;
   std::vector<double> View;       ///< of the last frame
+  std::optional<ScreenCuts> Cuts; ///< of the last frame, where it had any
   std::vector<double> Ratio;      ///< work over view when a block was last seen; -1: never
   std::vector<double> OlderRatio; ///< and the time before
 

@@ -26,6 +26,12 @@ public:
   /// @param flat cells; Lo and Hi are equal along one axis
   double Pixels(const Box& flat) const;
 
+  /// Whether all planes look the same.
+  bool operator==(const ScreenCuts& other) const
+  {
+    return this->IndexToView == other.IndexToView && this->ViewportPixels == other.ViewportPixels;
+  }
+
 private:
   glm::dmat4 IndexToView{ 1.0 }; ///< homogeneous; the viewport is [-1, 1] x [-1, 1]
   double ViewportPixels = 0.0;
