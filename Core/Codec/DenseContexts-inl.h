@@ -108,6 +108,11 @@ struct DenseRoughness
   int Number;               ///< of the slice
 
   HWY_INLINE V At(std::ptrdiff_t offset) const { return hn::LoadU(Tag(), this->From + offset); }
+  /// Zero where the mask says no. Not MaskedLoad, which wants aligned memory for bytes before AVX-512.
+  HWY_INLINE V AtOr0(M mask, std::ptrdiff_t offset) const
+  {
+    return hn::IfThenElseZero(mask, this->At(offset));
+  }
   HWY_INLINE V Lane() const { return hn::Iota(Tag(), 0); }
   HWY_INLINE V InRow() const
   {
@@ -121,14 +126,13 @@ struct DenseRoughness
   /// Both sides; beyond the ends of rows there are zeros. Lane 0 of rows is never asked for.
   HWY_INLINE V Beside(std::ptrdiff_t offset) const
   {
-    return hn::Add(this->At(offset - 1),
-      hn::MaskedLoad(Below(this->InRow(), N - 1), Tag(), this->From + offset + 1));
+    return hn::Add(this->At(offset - 1), this->AtOr0(Below(this->InRow(), N - 1), offset + 1));
   }
   HWY_INLINE V TwoBeside(std::ptrdiff_t offset) const
   {
     const V lane = this->InRow();
-    return hn::Add(hn::MaskedLoad(hn::Not(Below(lane, 2)), Tag(), this->From + offset - 2),
-      hn::MaskedLoad(Below(lane, N - 2), Tag(), this->From + offset + 2));
+    return hn::Add(this->AtOr0(hn::Not(Below(lane, 2)), offset - 2),
+      this->AtOr0(Below(lane, N - 2), offset + 2));
   }
 
   /// `up`, which is Step rows on, or `down` where there is no such row.
