@@ -137,8 +137,8 @@ void SymbolTables::AddTable(std::size_t context)
   this->Next.insert(this->Next.end(), encode.Next.begin(), encode.Next.end());
 }
 
-/// More lanes decode faster, because a symbol waits for the one before in its lane; but each costs its first
-/// state. They make the shortest payloads that have some 15 % larger, and series at most 3 %.
+/// More lanes decode faster, because a symbol waits for the one before in its lane; but each costs
+/// its first state. They make the shortest payloads that have some 15 % larger, series at most 3 %.
 int SymbolTables::LanesLogFor(const std::vector<std::uint16_t>& tokens) const
 {
   const std::size_t every = tokens.size() < 1024 ? 1 : 8; // of many, some tell enough

@@ -300,12 +300,15 @@ void LoadBalancer::FrameTook(const std::vector<RankWork>& ranks, const BrickCost
     this->LearnSpeeds(ranks, work);
   }
   this->LearnWork(work);
-  std::vector<double> done;
-  for (const RankWork& rank : ranks)
+  if (this->Settings.Mode == LoadBalancing::MeasuredCost && this->Settings.Searches)
   {
-    done.push_back(rank.Work);
+    std::vector<double> done;
+    for (const RankWork& rank : ranks)
+    {
+      done.push_back(rank.Work);
+    }
+    this->Search.Measured(this->Zones, done);
   }
-  this->Search.Measured(this->Zones, done);
   ++this->Frames;
 }
 

@@ -2,6 +2,7 @@
 
 #include "Parallel/Rebalance.h"
 #include "Parallel/ZoneDivision.h"
+#include "Series/AsinhMath.h"
 
 #include <algorithm>
 #include <cmath>
@@ -94,6 +95,19 @@ Box CostlyPart(const BrickCosts& costs)
   return all;
 }
 
+/// ln(r) and e^y, the same bits on every processor, which those of a library need not be: all ranks
+/// must come to the same tree.
+double Logarithm(double r)
+{
+  return asinh_math::ForwardOfAny(0.5 * (r - 1.0 / r), 1.0);
+}
+double Exponential(double y)
+{
+  const double sinh = asinh_math::Inverse(y, 1.0);
+  return y < 0.0 ? 1.0 / (std::sqrt(sinh * sinh + 1.0) - sinh)
+                 : std::sqrt(sinh * sinh + 1.0) + sinh;
+}
+
 } // namespace
 
 void TreeSearch::Forget()
@@ -155,7 +169,7 @@ TreeSearch::Ratios TreeSearch::RatiosOf(
         const auto at = static_cast<std::size_t>(child);
         return std::max(workOf[at] / speedOf[at], least);
       };
-      ratios[number] = std::log(seconds(node.Below) / seconds(node.Above));
+      ratios[number] = Logarithm(seconds(node.Below) / seconds(node.Above));
     }
   }
   return ratios;
@@ -228,7 +242,11 @@ TreeSearch::Ratios TreeSearch::NewtonStep(std::size_t from, const std::vector<do
   {
     most = std::max(most, std::abs(ratio));
   }
-  const double shortened = std::pow(Shortened, this->Failures);
+  double shortened = 1.0;
+  for (int failure = 0; failure < this->Failures; ++failure)
+  {
+    shortened *= Shortened;
+  }
   most = shortened * std::min(LongestStep, LongestPart * most);
   Ratios step = times(now);
   for (double& value : step)
@@ -254,7 +272,7 @@ std::optional<ZoneTree> TreeSearch::PlanesAt(const ZoneTree& from, const Ratios&
     if (!node.IsLeaf())
     {
       const Division division(model, zones[number], node.Axis, step,
-        speedOf[static_cast<std::size_t>(node.Below)] * std::exp(ratios[number]),
+        speedOf[static_cast<std::size_t>(node.Below)] * Exponential(ratios[number]),
         speedOf[static_cast<std::size_t>(node.Above)]);
       // ln(b / a) changes by four times what the middle of b + a = 1 does.
       const Box part = Intersection(zones[number], costly);
