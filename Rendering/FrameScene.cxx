@@ -50,7 +50,7 @@ void WorldBounds(
 } // namespace
 
 FrameScene MakeFrameScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMapper* mapper,
-  const DistributedField& field, double sampleDistanceVoxels)
+  const DistributedField& field, double sampleDistanceVoxels, KeptTransferFunction& function)
 {
   glm::ivec2 size(0);
   glm::ivec2 origin(0);
@@ -59,13 +59,12 @@ FrameScene MakeFrameScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMap
   glm::dvec3 low;
   glm::dvec3 high;
   WorldBounds(field.Bounds(), toWorld, low, high);
-  const RayCamera camera(
-    ToGlm(renderer->GetActiveCamera()->GetCompositeProjectionTransformMatrix(
-      renderer->GetTiledAspectRatio(), -1, 1)),
+  const RayCamera camera(ToGlm(renderer->GetActiveCamera()->GetCompositeProjectionTransformMatrix(
+                           renderer->GetTiledAspectRatio(), -1, 1)),
     size, 0.5 * (low + high));
   vtkVolumeProperty* property = volume->GetProperty();
   FrameScene frame{ { camera.InSpace(toWorld), camera.Footprint(low, high), field.IndexToPhysical(),
-                      field.DomainCells(), MakeTransferFunction(property),
+                      field.DomainCells(), function.Of(property),
                       sampleDistanceVoxels * field.CellSize() },
     {} };
   RayScene& scene = frame.Scene;

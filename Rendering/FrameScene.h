@@ -13,6 +13,7 @@ namespace banyan
 {
 
 class DistributedField;
+class KeptTransferFunction;
 
 /// What VTK's objects say about one picture.
 struct FrameScene
@@ -25,8 +26,9 @@ struct FrameScene
 /// and samplings are left empty.
 /// @param field not Empty
 /// @param sampleDistanceVoxels in edges of the smallest cell; > 0
+/// @param function of the pictures before
 FrameScene MakeFrameScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMapper* mapper,
-  const DistributedField& field, double sampleDistanceVoxels);
+  const DistributedField& field, double sampleDistanceVoxels, KeptTransferFunction& function);
 
 } // namespace banyan
 

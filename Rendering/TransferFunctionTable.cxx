@@ -43,6 +43,7 @@ TransferFunction MakeTransferFunction(vtkVolumeProperty* property, int entries)
 {
   vtkColorTransferFunction* color = property->GetRGBTransferFunction(0);
   vtkPiecewiseFunction* opacity = property->GetScalarOpacity(0);
+  color->Build(); // what discretized colours are looked up in
   TransferFunction function;
   CommonRange(color->GetRange(), color->GetSize() > 0, opacity->GetRange(), opacity->GetSize() > 0,
     function.Low, function.High);
@@ -58,6 +59,23 @@ TransferFunction MakeTransferFunction(vtkVolumeProperty* property, int entries)
     function.Entries[static_cast<std::size_t>(i)] = glm::vec4(rgb[0], rgb[1], rgb[2], alpha);
   }
   return function;
+}
+
+const TransferFunction& KeptTransferFunction::Of(vtkVolumeProperty* property)
+{
+  vtkColorTransferFunction* const color = property->GetRGBTransferFunction(0);
+  vtkPiecewiseFunction* const opacity = property->GetScalarOpacity(0);
+  const std::uint64_t times[] = { color->GetMTime(), opacity->GetMTime() };
+  if (this->Function.Entries.empty() || this->Made[0] != color || this->Made[1] != opacity ||
+      !std::equal(times, times + 2, this->Times))
+  {
+    this->Function = MakeTransferFunction(property);
+    this->Made[0] = color;
+    this->Made[1] = opacity;
+    std::copy(times, times + 2, this->Times);
+  }
+  this->Function.UnitDistance = property->GetScalarOpacityUnitDistance(0);
+  return this->Function;
 }
 
 RayShading MakeShading(vtkVolumeProperty* property)

@@ -9,6 +9,7 @@
 #include "PixelsBehind.h"
 #include "SceneOptions.h"
 #include "ToleranceControl.h"
+#include "TransferFunctionTable.h"
 #include "vtkBanyanFrameStatistics.h"
 
 #include "Base/Progress.h"
@@ -38,6 +39,7 @@ struct vtkBanyanVolumeMapper::Internals
   banyan::DistributedField Field;
   banyan::MotionEnhancement Motion;
   banyan::FramebufferExchange Framebuffer;
+  banyan::KeptTransferFunction Function;
   std::vector<int> RankOrderBehind;
   std::string LastNote;
   std::string LastProblem;
@@ -260,7 +262,7 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
 
   const bool fixed = this->SampleDistanceVoxels > 0.0;
   banyan::FrameScene wanted = banyan::MakeFrameScene(
-    renderer, volume, this, self.Field, fixed ? this->SampleDistanceVoxels : 1.0);
+    renderer, volume, this, self.Field, fixed ? this->SampleDistanceVoxels : 1.0, self.Function);
   banyan::RayScene& scene = wanted.Scene;
   const std::string unclear = banyan::AgreeOnError(*self.Communicator, wanted.Problem);
   if (!unclear.empty())
