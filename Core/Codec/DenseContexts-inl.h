@@ -108,7 +108,8 @@ struct DenseRoughness
   int Number;               ///< of the slice
 
   HWY_INLINE V At(std::ptrdiff_t offset) const { return hn::LoadU(Tag(), this->From + offset); }
-  /// Zero where the mask says no. Not MaskedLoad, which wants aligned memory for bytes before AVX-512.
+  /// Zero where the mask says no. Not MaskedLoad, which wants aligned memory for bytes before
+  /// AVX-512.
   HWY_INLINE V AtOr0(M mask, std::ptrdiff_t offset) const
   {
     return hn::IfThenElseZero(mask, this->At(offset));

@@ -182,8 +182,8 @@ bool LoadBalancer::SearchPlanes(const BrickCosts& bytes, double mostBytes)
     speeds.push_back(1.0 / pace.SecondsPerWork);
   }
   const int step = this->Settings.PlaneStep;
-  const std::optional<ZoneTree> found =
-    this->Search.Next(this->CostsOf(this->Costs[FromLast]), speeds, step);
+  const BrickCosts costs = this->CostsOf(this->Costs[FromLast]);
+  const std::optional<ZoneTree> found = this->Search.Next(costs, speeds, step);
   if (!found)
   {
     return false;
@@ -200,7 +200,7 @@ bool LoadBalancer::SearchPlanes(const BrickCosts& bytes, double mostBytes)
   this->Moved = moved;
   this->Moving = false; // nobody's mistake
   this->Zones = std::move(next);
-  this->Expected = 1.0;
+  this->Expected = banyan::ExpectedImbalance(this->Zones, CostSums(costs), this->Speeds());
   return true;
 }
 

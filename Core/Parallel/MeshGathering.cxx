@@ -1,6 +1,7 @@
 #include "Parallel/MeshGathering.h"
 
-#include <cmath>
+#include "HexOctree/TakenComponent.h"
+
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -126,17 +127,7 @@ void WriteComponent(const NodeArray& array, std::int64_t points, Out* out)
       const T* tuple = static_cast<const T*>(array.Values);
       for (std::int64_t i = 0; i < points; ++i, tuple += array.Components)
       {
-        if (array.Component != NodeArray::Magnitude)
-        {
-          out[i] = static_cast<Out>(tuple[array.Component]);
-          continue;
-        }
-        double sum = 0.0;
-        for (int c = 0; c < array.Components; ++c)
-        {
-          sum += static_cast<double>(tuple[c]) * static_cast<double>(tuple[c]);
-        }
-        out[i] = static_cast<Out>(std::sqrt(sum));
+        out[i] = static_cast<Out>(TakenComponent(tuple, array));
       }
     });
 }
