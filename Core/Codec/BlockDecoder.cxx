@@ -317,6 +317,10 @@ void DecodeBoxOf(
   if constexpr (Decoder::Dense)
   {
     decoded = work->Whole.Samples();
+    if (code.Ahead != nullptr)
+    {
+      code.Ahead->Write(box, DenseBox<Number>::Count * sizeof(Number));
+    }
   }
   Decoder{ { edge, code, { decoded, strides }, { code.A, strides } }, plane, { code.B, strides },
     *work, box }

@@ -6,9 +6,9 @@
 namespace banyan
 {
 
-/// Memory that will be read soon, asked for a few lines of the cache at a time while something else
-/// is computed: a processor takes only some dozen lines at once and waits where it is asked for
-/// more. Nothing is read, so that memory may be gone by then.
+/// Memory that will be read soon, and what the block at hand will be written to, asked for a few lines of
+/// the cache at a time while something else is computed: a processor takes only some dozen lines at once
+/// and waits where it is asked for more. Nothing is read, so that memory may be gone by then.
 class MemoryAhead
 {
 public:
@@ -25,9 +25,21 @@ public:
     }
   }
 
-  /// Asks for some lines.
+  /// What will be written, instead of what was before; null for nothing.
+  void Write(const void* first, std::size_t bytes)
+  {
+    const char* const at = static_cast<const char*>(first);
+    this->Written = { at, at + bytes };
+  }
+
+  /// Asks for some lines of each.
   void Ask(int lines)
   {
+    for (int line = 0; line < lines && this->Written.At < this->Written.End; ++line)
+    {
+      __builtin_prefetch(this->Written.At, 1, 3);
+      this->Written.At += Line;
+    }
     while (this->Begin < this->End)
     {
       Part& part = this->Parts[this->Begin];
@@ -53,6 +65,7 @@ private:
     const char* End;
   };
   Part Parts[MostParts];
+  Part Written{ nullptr, nullptr };
   int Begin = 0, End = 0;
 };
 

@@ -345,29 +345,32 @@ std::vector<tans::Frequencies> UnpackFrequencies(const std::uint8_t* data, std::
 DecodeTables DecodeTablesOf(const std::vector<tans::Frequencies>& frequencies)
 {
   DecodeTables tables;
-  tans::DecodeEntry entries[tans::TableSize];
-  const auto add = [&](std::size_t first, int classes)
+  std::vector<const tans::Frequencies*> known; // those of the tables so far
+  const auto tableOf = [&](const tans::Frequencies& context, std::size_t first)
   {
-    DecodeTables::Band band;
-    band.First = tables.Entries.size();
-    int count = 0;
-    for (int c = 0; c < classes; ++c)
+    const auto same = std::find_if(known.begin() + static_cast<std::ptrdiff_t>(first), known.end(),
+      [&](const tans::Frequencies* other) { return Same(context, *other); });
+    if (same == known.end())
     {
-      const tans::Frequencies& context = frequencies[first + static_cast<std::size_t>(c)];
-      int same = 0;
-      while (same < c && !Same(context, frequencies[first + static_cast<std::size_t>(same)]))
-      {
-        ++same;
-      }
-      band.Tables[c] = same < c ? band.Tables[same] : static_cast<std::uint8_t>(count++);
-      if (same == c)
-      {
-        tans::BuildDecodeTable(context, entries);
-        for (const tans::DecodeEntry& entry : entries)
-        {
-          tables.Entries.push_back(residual::Packed(entry));
-        }
-      }
+      tans::DecodeEntry entries[tans::TableSize];
+      tans::BuildDecodeTable(context, entries);
+      std::transform(std::begin(entries), std::end(entries), std::back_inserter(tables.Entries),
+        residual::Packed);
+      known.push_back(&context);
+      return known.size() - 1;
+    }
+    return static_cast<std::size_t>(same - known.begin());
+  };
+  const auto add = [&](std::size_t context, std::size_t classes)
+  {
+    // Tables that lie too far behind are made again: places of symbols have 16 bits.
+    const std::size_t end = known.size() + classes;
+    const std::size_t first = end - std::min(end, DecodeTables::MostOfBand);
+    DecodeTables::Band band;
+    band.First = first * tans::TableSize;
+    for (std::size_t c = 0; c < classes; ++c)
+    {
+      band.Tables[c] = static_cast<std::uint8_t>(tableOf(frequencies[context + c], first) - first);
     }
     tables.Bands.push_back(band);
   };
