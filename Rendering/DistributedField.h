@@ -4,6 +4,7 @@
 #include "FieldPiece.h"
 
 #include "Parallel/FrameBalancer.h"
+#include "Parallel/MeshBytes.h"
 #include "Render/BrickSource.h"
 #include "Render/TemporalEnhancement.h"
 #include "Series/SeriesFile.h"
@@ -87,6 +88,9 @@ public:
   std::string MeshNote() const;
   /// How far the drawn field may be from that of a mesh: see CubeDeviation. 0 where it is exact.
   double MeshDeviation() const;
+
+  /// What this rank holds of a mesh: its octree, the cells that were gathered for it, and values.
+  MeshBytes BytesOfMesh() const;
 
   /// Whether it is a mesh of hexahedra. Its levels are counted in cells of the finest one.
   bool IsMesh() const { return this->Mesh != nullptr; }

@@ -80,6 +80,16 @@ double DistributedField::MeshDeviation() const
   return this->Mesh ? this->Mesh->Deviation() : 0.0;
 }
 
+MeshBytes DistributedField::BytesOfMesh() const
+{
+  MeshBytes bytes = this->Mesh ? this->Mesh->Bytes() : MeshBytes{};
+  if (const auto* const source = dynamic_cast<const HexBrickSource*>(this->Bricks.get()))
+  {
+    bytes.Own += source->LevelBytes();
+  }
+  return bytes;
+}
+
 void DistributedField::PlaceMeshZones()
 {
   this->ZoneCells = ZonesInside(this->Balancer.Zones(), this->Domain);

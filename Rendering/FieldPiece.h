@@ -1,7 +1,7 @@
 #ifndef banyan_Rendering_FieldPiece_h
 #define banyan_Rendering_FieldPiece_h
 
-#include "MeshOptions.h"
+#include "HexSampling/MeshOptions.h"
 
 #include "HexOctree/CellNodes.h"
 #include "Render/TemporalEnhancement.h"

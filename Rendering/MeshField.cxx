@@ -1,9 +1,5 @@
 #include "MeshField.h"
 
-#include "Base/ThreadPool.h"
-#include "HexSampling/CellMeans.h"
-#include "Parallel/MeshGathering.h"
-
 #include "vtkDataArray.h"
 #include "vtkSetGet.h"
 #include "vtkSmartPointer.h"
@@ -104,119 +100,51 @@ void MeshField::Update(Communicator& communicator, vtkUnstructuredGrid* grid, vt
     piece.PointCount = 0;
   }
   where = Agreed(communicator, where, piece.CellCount > 0);
+  this->Source.reset();
   const bool sameMesh = this->SameMesh(communicator, piece);
-  MachineRanks machines(communicator);
   if (!sameMesh || !(options == this->Options))
   {
-    this->Bricks.reset();
-    this->Sampled.reset();
-    this->Mesh = {};
+    this->Mesh.reset();
     this->Options = options;
-    this->Mesh = GatherMesh(communicator, machines, piece);
-    try
-    {
-      this->Find(where);
-    }
-    catch (const std::exception& error)
-    {
-      failure = error.what();
-    }
-    StopTogether(communicator, failure);
-    if (this->Mesh.PointOwner)
-    {
-      this->Mesh.Points = nullptr;
-      this->Mesh.PointOwner.reset();
-    }
-    this->Describe(communicator, others, machines.WhyNot());
+    this->Mesh = std::make_unique<SharedMesh>(communicator, piece, where, MeshBrickCells, options);
+    this->Describe(communicator, others);
   }
-  const bool onCells = where == ValuesOn::Cells;
-  const GatheredValues all =
-    GatherNodes(communicator, machines, nodes, onCells ? piece.CellCount : piece.PointCount);
-  this->TakeValues(all.Array, where);
+  this->Source = this->Mesh->Field(
+    communicator, nodes, where == ValuesOn::Cells ? piece.CellCount : piece.PointCount, where);
 }
 
-/// The octree that the mesh is, or that it is sampled as.
-void MeshField::Find(ValuesOn where)
+void MeshField::Describe(Communicator& communicator, const OtherCells& others)
 {
-  ThreadPool& pool = ThreadPool::Process();
-  HexMesh boxes = this->Mesh;
-  std::shared_ptr<const ElementOctree> tree;
-  try
-  {
-    tree = ElementOctree::Find(boxes, pool, this->Options.Tolerance);
-  }
-  catch (const Error&)
-  {
-    if (this->Options.Sampling.Tolerance <= 0.0 || where == ValuesOn::CellCorners)
-    {
-      throw;
-    }
-  }
-  if (!tree)
-  {
-    this->Sampled = SampledMesh::Of(this->Mesh, this->Options.Sampling, pool);
-    boxes = this->Sampled->Boxes();
-    boxes.Owner = this->Sampled;
-    tree = ElementOctree::Find(boxes, pool);
-  }
-  this->Bricks = std::make_shared<const HexBricks>(tree, MeshBrickCells);
-}
-
-void MeshField::Describe(
-  Communicator& communicator, const OtherCells& others, const std::string& notShared)
-{
+  const SharedMesh::Facts& facts = this->Mesh->About();
   std::string note;
   if (others.Count > 0)
   {
     note = "Of the mesh only hexahedra and voxels are drawn, without " + others.Text() + ". ";
   }
-  if (this->Sampled && this->Sampled->TangledCells() > 0)
+  if (facts.TangledCells > 0)
   {
-    note += std::to_string(this->Sampled->TangledCells()) +
+    note += std::to_string(facts.TangledCells) +
             " hexahedra are turned inside out at a corner, cell " +
-            std::to_string(this->Sampled->FirstTangledCell()) +
-            " first: what is drawn in them means little. ";
+            std::to_string(facts.FirstTangledCell) + " first: what is drawn in them means little. ";
   }
-  if (this->Sampled && this->Sampled->KeptCoarse() > 0)
+  if (facts.KeptCoarse > 0)
   {
-    note += "The mesh is no octree and is drawn from " +
-            std::to_string(this->Sampled->Boxes().CellCount) + " boxes; " +
-            std::to_string(this->Sampled->KeptCoarse()) +
+    note += "The mesh is no octree and is drawn from " + std::to_string(facts.Boxes) + " boxes; " +
+            std::to_string(facts.KeptCoarse) +
             " places are coarser than they should be: allow more boxes (MeshSamplingBoxes). ";
   }
-  if (!notShared.empty())
+  if (!this->Mesh->WhyNotShared().empty())
   {
-    note += "Each rank holds the whole mesh for itself: " + notShared + ". ";
+    note += "Each rank holds the whole mesh for itself: " + this->Mesh->WhyNotShared() + ". ";
   }
   this->NoteText = AgreeOnError(communicator, note);
-}
-
-void MeshField::TakeValues(const NodeArray& values, ValuesOn where)
-{
-  ThreadPool& pool = ThreadPool::Process();
-  if (this->Sampled)
-  {
-    const std::unique_ptr<CellMeans> means =
-      where == ValuesOn::Cells ? std::make_unique<CellMeans>(this->Mesh, values) : nullptr;
-    const SampledMesh::Values sampled =
-      this->Sampled->Sample(means ? means->Nodes() : values, pool);
-    this->Source = std::make_unique<HexBrickSource>(this->Bricks, sampled.Array(), pool);
-    return;
-  }
-  if (where == ValuesOn::Points)
-  {
-    this->Source = std::make_unique<HexBrickSource>(this->Bricks, values, pool);
-    return;
-  }
-  const CellNodes made(this->Tree(), values, where, pool);
-  this->Source = std::make_unique<HexBrickSource>(this->Bricks, made.Nodes(), pool);
 }
 
 /// Collective: whether the mesh on all ranks is that of the octree.
 bool MeshField::SameMesh(Communicator& communicator, const HexMesh& piece)
 {
   const Hash128 hash = HashOfMesh(piece);
-  const bool same = this->Bricks && hash == this->PieceHash;
+  const bool same = this->Mesh && hash == this->PieceHash;
   this->PieceHash = hash;
   return AllMax(communicator, same ? 0.0 : 1.0) == 0.0;
 }

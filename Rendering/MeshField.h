@@ -2,12 +2,8 @@
 #define banyan_Rendering_MeshField_h
 
 #include "HexMeshOfGrid.h"
-#include "MeshOptions.h"
 
-#include "HexOctree/CellNodes.h"
-#include "HexOctree/HexBrickSource.h"
-#include "HexSampling/SampledMesh.h"
-#include "Parallel/Communicator.h"
+#include "Parallel/SharedMesh.h"
 #include "Series/Hash.h"
 
 #include <memory>
@@ -22,7 +18,7 @@ namespace banyan
 /// A field on a hexahedral mesh that lies in pieces on the ranks. The octree is found once per
 /// mesh, however often the reader makes new objects of the same points and cells: new values touch
 /// values only. Every rank has the whole mesh and the values of one component of it, and draws a
-/// part; what was gathered of them ranks of a machine have together (MachineRanks).
+/// part; ranks of a machine have them together (SharedMesh).
 class MeshField
 {
 public:
@@ -40,24 +36,22 @@ public:
   /// if nothing. The same on all ranks.
   const std::string& Note() const { return this->NoteText; }
   /// CubeDeviation of a mesh that is sampled; 0 of one that is drawn as it is.
-  double Deviation() const { return this->Sampled ? this->Sampled->Deviation() : 0.0; }
+  double Deviation() const { return this->Mesh ? this->Mesh->About().Deviation : 0.0; }
+  /// What this rank holds of the mesh, and of the values of the last Update.
+  MeshBytes Bytes() const { return this->Mesh ? this->Mesh->Bytes() : MeshBytes{}; }
 
-  const ElementOctree& Tree() const { return this->Bricks->Tree(); }
+  const ElementOctree& Tree() const { return this->Mesh->Tree(); }
 
   /// The bricks of the last Update; can be called once for each.
-  std::unique_ptr<BrickSource> TakeSource() { return std::move(this->Source); }
+  std::unique_ptr<HexBrickSource> TakeSource() { return std::move(this->Source); }
 
 private:
   bool SameMesh(Communicator& communicator, const HexMesh& piece);
-  void Find(ValuesOn where);
-  void Describe(Communicator& communicator, const OtherCells& others, const std::string& notShared);
-  void TakeValues(const NodeArray& values, ValuesOn where);
+  void Describe(Communicator& communicator, const OtherCells& others);
 
-  HexMesh Mesh;
-  std::shared_ptr<const SampledMesh> Sampled; ///< null for octrees
+  std::unique_ptr<SharedMesh> Mesh; ///< null when the last one cannot be drawn
   std::string NoteText;
-  std::shared_ptr<const HexBricks> Bricks;
-  std::unique_ptr<BrickSource> Source;
+  std::unique_ptr<HexBrickSource> Source;
   Hash128 PieceHash;   ///< of this rank's points and cells
   MeshOptions Options; ///< that the octree was found with
 };

@@ -19,6 +19,8 @@ void vtkBanyanFrameStatistics::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "MessagesComposited: " << this->MessagesComposited << "\n"
      << indent << "BytesRead: " << this->BytesRead << "\n"
      << indent << "CacheBytes: " << this->CacheBytes << "\n"
+     << indent << "MeshBytes: " << this->MeshBytes << "\n"
+     << indent << "MeshBytesShared: " << this->MeshBytesShared << "\n"
      << indent << "BytesMoved: " << this->BytesMoved << "\n"
      << indent << "CacheHitsAhead: " << this->CacheHitsAhead << "\n"
      << indent << "CacheHits: " << this->CacheHits << "\n"

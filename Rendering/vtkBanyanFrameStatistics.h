@@ -67,6 +67,17 @@ public:
   ///@}
 
   ///@{
+  /// Bytes that all ranks hold of a mesh of hexahedra that is drawn: its octree, its cells where they
+  /// were gathered from several ranks, what it is sampled at, coarser meshes, and values. What ranks
+  /// of a machine have together counts once for each machine: that is MeshBytesShared of it. What the
+  /// pipeline holds does not count.
+  vtkSetMacro(MeshBytes, vtkIdType);
+  vtkGetMacro(MeshBytes, vtkIdType);
+  vtkSetMacro(MeshBytesShared, vtkIdType);
+  vtkGetMacro(MeshBytesShared, vtkIdType);
+  ///@}
+
+  ///@{
   /// Bytes of bricks that went from one rank's zone to another's for this frame, and bricks that the
   /// caches had and had not.
   vtkSetMacro(BytesMoved, vtkIdType);
@@ -117,6 +128,8 @@ protected:
   vtkIdType MessagesComposited = 0;
   vtkIdType BytesRead = 0;
   vtkIdType CacheBytes = 0;
+  vtkIdType MeshBytes = 0;
+  vtkIdType MeshBytesShared = 0;
   vtkIdType BytesMoved = 0;
   vtkIdType CacheHits = 0;
   vtkIdType CacheMisses = 0;

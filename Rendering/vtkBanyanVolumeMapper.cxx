@@ -185,6 +185,10 @@ void vtkBanyanVolumeMapper::Internals::Publish(const banyan::FrameStatistics& fr
   out->SetBytesRead(sum(bytesRead));
   const banyan::BrickCache::Statistics cache = banyan::BrickCache::Process().GetStatistics();
   out->SetCacheBytes(sum(cache.Bytes + this->Field.FetchedBytes()));
+  const banyan::MeshBytes mesh = this->Field.BytesOfMesh();
+  const std::uint64_t together = mesh.Leads ? mesh.Together : 0;
+  out->SetMeshBytes(sum(mesh.Own + together));
+  out->SetMeshBytesShared(sum(together));
   out->SetCacheHits(
     sum(cache.Hits - cacheBefore.Hits) + static_cast<vtkIdType>(this->Field.FetchHits()));
   out->SetCacheMisses(

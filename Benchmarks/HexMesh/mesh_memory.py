@@ -1,14 +1,18 @@
 """What all ranks together hold of a mesh that they draw (Pss_Anon and Pss_Shmem of /proc/PID/smaps_rollup,
-which count memory that processes share once).
+which count memory that processes share once), and how long it takes them.
 
     mpirun -np N pvbatch mesh_memory.py --plugin Banyan.so FILE.exo ARRAY
 
-Prints `ranks, read_mb, drawn_mb, mesh_mb, shared_mb`: of all ranks after the reader has read and after a frame,
-the difference, and how much of the latter is memory that they share. With BANYAN_SHARED_MEMORY=0 each rank holds its own.
+Prints `ranks, read_mb, drawn_mb, mesh_mb, shared_mb, first_s, values_s, again_s, processor_s`: of all ranks after the
+reader has read and after a frame, the difference, and how much of the latter is memory that they share; then the seconds
+of the first frame, of one with another component of the array (the median of five), and of one where nothing has changed,
+and the seconds of processors that all ranks took for the first frame. With BANYAN_SHARED_MEMORY=0 each rank holds its own.
 """
 import argparse
 import os
 import re
+import statistics
+import time
 
 from paraview import servermanager, simple
 
@@ -46,6 +50,21 @@ def measure():
     return everything, shared
 
 
+def processor_seconds():
+    """Of all ranks so far, in their own code and in the kernel's."""
+    ticks = 0
+    for process in ranks():
+        with open(f"/proc/{process}/stat", encoding="ascii") as stat:
+            ticks += sum(int(field) for field in stat.read().rsplit(")", 1)[1].split()[11:13])
+    return ticks / os.sysconf("SC_CLK_TCK")
+
+
+def seconds_of(work):
+    start = time.perf_counter()
+    work()
+    return time.perf_counter() - start
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--plugin", required=True)
@@ -61,14 +80,22 @@ def main():
     before, _ = measure()
     view = simple.CreateView("RenderView")
     view.ViewSize = [400, 400]
+    worked, start = processor_seconds(), time.perf_counter()
     display = simple.Show(blocks, view)
     simple.ColorBy(display, ("POINTS", arguments.array))
     display.SetRepresentationType("Banyan Volume")
     simple.ResetCamera(view)
     simple.Render(view)
+    first, worked = time.perf_counter() - start, processor_seconds() - worked
     after, shared = measure()
-    print("ranks, read_mb, drawn_mb, mesh_mb, shared_mb")
-    print(f"{len(ranks())}, {before:.0f}, {after:.0f}, {after - before:.0f}, {shared:.0f}", flush=True)
+    values = []
+    for component in "XYZXY":
+        simple.ColorBy(display, ("POINTS", arguments.array, component))
+        values.append(seconds_of(lambda: simple.Render(view)))
+    again = seconds_of(lambda: simple.Render(view))
+    print("ranks, read_mb, drawn_mb, mesh_mb, shared_mb, first_s, values_s, again_s, processor_s")
+    print(f"{len(ranks())}, {before:.0f}, {after:.0f}, {after - before:.0f}, {shared:.0f}, {first:.2f}, "
+          f"{statistics.median(values):.2f}, {again:.2f}, {worked:.2f}", flush=True)
 
 
 main()

@@ -1,6 +1,7 @@
 #include "Base/ThreadPool.h"
 
 #include "Base/Error.h"
+#include "Base/ProcessCores.h"
 #include "Base/Progress.h"
 
 #include <algorithm>
@@ -13,8 +14,6 @@
 #include <thread>
 #include <vector>
 
-#include <sched.h>
-
 namespace banyan
 {
 namespace
@@ -24,17 +23,6 @@ thread_local bool InsideLoop = false;
 std::atomic<int> RanksOnThisNode{ 1 };
 std::mutex ProcessPoolMutex;
 std::unique_ptr<ThreadPool> ProcessPool;
-
-int CoresOfThisProcess()
-{
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  if (sched_getaffinity(0, sizeof(set), &set) == 0)
-  {
-    return std::max(1, CPU_COUNT(&set));
-  }
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
 
 /// One ParallelFor call. It outlives the call when a worker still holds it, hence shared_ptr.
 struct Loop
@@ -239,7 +227,7 @@ int ThreadPool::DefaultWidth()
       return threads;
     }
   }
-  return std::max(1, CoresOfThisProcess() / RanksOnThisNode.load());
+  return std::max(1, ProcessCores() / RanksOnThisNode.load());
 }
 
 void ThreadPool::SetRanksOnThisNode(int ranks)

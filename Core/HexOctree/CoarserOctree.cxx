@@ -57,7 +57,7 @@ private:
     tree.LatticeTolerance = this->Finer.LatticeTolerance;
     tree.DomainCells = this->Finer.DomainCells;
     tree.Holes = this->Finer.Holes;
-    tree.CornerOrders = { { 0, 1, 2, 3, 4, 5, 6, 7 } };
+    tree.CornerOrders = std::vector<std::array<std::uint8_t, 8>>{ { 0, 1, 2, 3, 4, 5, 6, 7 } };
   }
 
   void MergeLeaves()
@@ -81,15 +81,21 @@ private:
       }
     }
     const LeafMerging merging(this->Finer.Keys, this->Finer.Levels);
+    std::vector<MortonKey> keys;
+    std::vector<std::uint32_t> cells;
+    std::vector<std::uint8_t> levels;
     merging.ForEach(this->Level,
       [&](const MergedLeaf& element)
       {
-        tree.CellNumbers.push_back(static_cast<std::uint32_t>(tree.Keys.size()));
-        tree.Keys.push_back(element.Key);
-        tree.Levels.push_back(static_cast<std::uint8_t>(element.Level));
+        cells.push_back(static_cast<std::uint32_t>(keys.size()));
+        keys.push_back(element.Key);
+        levels.push_back(static_cast<std::uint8_t>(element.Level));
         tree.CoarsestLeaf = std::max(tree.CoarsestLeaf, element.Level);
         this->AddCorners(merging, element);
       });
+    tree.Keys = std::move(keys);
+    tree.CellNumbers = std::move(cells);
+    tree.Levels = std::move(levels);
   }
 
   void AddCorners(const LeafMerging& merging, const MergedLeaf& element)

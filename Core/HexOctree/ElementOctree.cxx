@@ -30,20 +30,28 @@ void ElementOctree::MakeStarts()
     ++bits;
   }
   this->StartShift = keyBits - bits;
-  this->Starts.assign((std::size_t{ 1 } << bits) + 1, 0);
+  std::vector<std::uint32_t> starts((std::size_t{ 1 } << bits) + 1, 0);
   std::size_t run = 0;
   for (std::size_t leaf = 0; leaf < this->Keys.size(); ++leaf)
   {
     const auto own = static_cast<std::size_t>(this->Keys[leaf] >> this->StartShift);
     for (; run <= own; ++run)
     {
-      this->Starts[run] = static_cast<std::uint32_t>(leaf);
+      starts[run] = static_cast<std::uint32_t>(leaf);
     }
   }
-  for (; run < this->Starts.size(); ++run)
+  for (; run < starts.size(); ++run)
   {
-    this->Starts[run] = static_cast<std::uint32_t>(this->Keys.size());
+    starts[run] = static_cast<std::uint32_t>(this->Keys.size());
   }
+  this->Starts = std::move(starts);
+}
+
+std::size_t ElementOctree::Bytes() const
+{
+  return this->Keys.Bytes() + this->CellNumbers.Bytes() + this->Levels.Bytes() +
+         this->CornerOrders.Bytes() + this->OrderOfCell.Bytes() + this->HangingNodes.Bytes() +
+         this->TwinNodes.Bytes() + this->Starts.Bytes();
 }
 
 std::int64_t ElementOctree::LeafFrom(MortonKey key) const

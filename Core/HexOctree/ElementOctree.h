@@ -2,6 +2,7 @@
 #define banyan_HexOctree_ElementOctree_h
 
 #include "Base/Box.h"
+#include "Base/HeldArray.h"
 #include "HexOctree/HexMesh.h"
 #include "HexOctree/MeshSurvey.h"
 #include "HexOctree/Morton.h"
@@ -10,7 +11,6 @@
 
 #include <array>
 #include <memory>
-#include <vector>
 
 namespace banyan
 {
@@ -132,9 +132,12 @@ public:
 
   /// Those on larger cells first: the corners of a cell that hang themselves come before what hangs
   /// on it.
-  const std::vector<HangingNode>& Hanging() const { return this->HangingNodes; }
+  const HeldArray<HangingNode>& Hanging() const { return this->HangingNodes; }
   /// Some meshes have points of their own for each cell, or for each part.
-  const std::vector<TwinNode>& Twins() const { return this->TwinNodes; }
+  const HeldArray<TwinNode>& Twins() const { return this->TwinNodes; }
+
+  /// Bytes that it takes, beside the mesh that it refers to.
+  std::size_t Bytes() const;
 
   /// Finest cells in the domain that no leaf covers.
   std::int64_t HoleCells() const { return this->Holes; }
@@ -146,6 +149,7 @@ private:
   friend class OctreeCoarsener;
   friend class OctreeFinder;
   friend class NodeFinder;
+  friend class OctreeBytes;
   ElementOctree() = default;
 
   static std::size_t Index(std::int64_t i) { return static_cast<std::size_t>(i); }
@@ -159,16 +163,16 @@ private:
   int CoarsestLeaf = 0;
   std::int64_t Holes = 0;
   std::int64_t Unbalanced = 0;
-  std::vector<MortonKey> Keys;
-  std::vector<std::uint32_t> CellNumbers; ///< of leaves
-  std::vector<std::uint8_t> Levels;       ///< of leaves
+  HeldArray<MortonKey> Keys;
+  HeldArray<std::uint32_t> CellNumbers; ///< of leaves
+  HeldArray<std::uint8_t> Levels;       ///< of leaves
   /// The place in a cell of each corner, three bits each: as cells have it.
-  std::vector<std::array<std::uint8_t, 8>> CornerOrders;
-  std::vector<std::uint16_t> OrderOfCell; ///< empty when all have the first one
-  std::vector<HangingNode> HangingNodes;
-  std::vector<TwinNode> TwinNodes;
+  HeldArray<std::array<std::uint8_t, 8>> CornerOrders;
+  HeldArray<std::uint16_t> OrderOfCell; ///< empty when all have the first one
+  HeldArray<HangingNode> HangingNodes;
+  HeldArray<TwinNode> TwinNodes;
   int StartShift = 0;
-  std::vector<std::uint32_t> Starts; ///< of each run of keys: its first leaf
+  HeldArray<std::uint32_t> Starts; ///< of each run of keys: its first leaf
 };
 
 } // namespace banyan

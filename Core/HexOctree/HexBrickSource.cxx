@@ -20,9 +20,16 @@ HexBrickSource::HexBrickSource(
   std::shared_ptr<const HexBricks> bricks, NodalField values, ThreadPool& pool)
   : Cut(std::move(bricks))
   , Values(std::move(values))
+  , Summary(HexBrickSummary::Of(*this->Cut, this->Values, pool))
 {
-  this->Values.Type() == ScalarType::Float32 ? this->Summarize<float>(pool)
-                                             : this->Summarize<double>(pool);
+}
+
+HexBrickSource::HexBrickSource(
+  std::shared_ptr<const HexBricks> bricks, NodalField values, HexBrickSummary summary)
+  : Cut(std::move(bricks))
+  , Values(std::move(values))
+  , Summary(std::move(summary))
+{
 }
 
 std::unique_ptr<BrickSource> HexBrickSource::MakeLevel(int level, const Box&)
@@ -32,6 +39,7 @@ std::unique_ptr<BrickSource> HexBrickSource::MakeLevel(int level, const Box&)
   const std::shared_ptr<const HexBricks>& bricks = coarser.Bricks;
   NodalField values(std::shared_ptr<const ElementOctree>(bricks, &bricks->Tree()), this->Values,
     coarser.NodeOfPoint);
+  this->BytesOfLevels += values.Bytes();
   return std::unique_ptr<BrickSource>(new HexBrickSource(bricks, std::move(values), pool));
 }
 
@@ -40,87 +48,10 @@ glm::ivec3 HexBrickSource::Bricks() const
   return { static_cast<int>(this->Cut->List().size()), 1, 1 };
 }
 
-/// What eight corners span, without those that are not finite.
-ValueRange HexBrickSource::RangeOfElement(const double (&corners)[8], bool& special)
-{
-  ValueRange range;
-  for (const double value : corners)
-  {
-    if (std::isfinite(value))
-    {
-      range.Include(value);
-    }
-    special = special || !std::isfinite(value);
-  }
-  return range;
-}
-
-/// Ranges, then masks over the range of all. The elements are read once: what they span is kept in
-/// between.
-template <class Value>
-void HexBrickSource::Summarize(ThreadPool& pool)
-{
-  struct Span
-  {
-    Value Low;
-    Value High; ///< below Low where nothing is finite
-  };
-  const auto count = static_cast<std::int64_t>(this->Cut->List().size());
-  this->Ranges.resize(Index(count));
-  this->Masks.resize(Index(count));
-  this->Special.resize(Index(count));
-  // Not set to zero, which would be one thread's work.
-  const std::unique_ptr<Span[]> spans(new Span[Index(this->Cut->Tree().LeafCount())]);
-  pool.ParallelFor(count,
-    [&](std::int64_t number)
-    {
-      ValueRange total;
-      bool special = false;
-      const HexBrick& brick = this->Brick(number);
-      this->Values.ForCorners(brick.FirstLeaf, brick.EndLeaf,
-        [&](std::int64_t leaf, const double(&corners)[8])
-        {
-          const ValueRange range = RangeOfElement(corners, special);
-          spans[Index(leaf)] = { static_cast<Value>(range.Low), static_cast<Value>(range.High) };
-          total.Include(range);
-        });
-      this->Ranges[Index(number)] = total;
-      this->Special[Index(number)] = special ? 1 : 0;
-    });
-  ValueRange all;
-  for (const ValueRange& range : this->Ranges)
-  {
-    all.Include(range);
-  }
-  this->Over = all.Empty() ? MaskRange{} : MaskRange{ all.Low, all.High };
-  const auto maskOf = [this](const ValueRange& range)
-  {
-    return range.Empty() ? ValueMask{ 0 }
-                         : MaskOfBins(this->Over.BinOf(range.Low), this->Over.BinOf(range.High));
-  };
-  pool.ParallelFor(count,
-    [&](std::int64_t number)
-    {
-      const HexBrick& brick = this->Brick(number);
-      const ValueRange& total = this->Ranges[Index(number)];
-      ValueMask& mask = this->Masks[Index(number)];
-      mask = maskOf(total);
-      if (!total.Empty() && this->Over.BinOf(total.High) - this->Over.BinOf(total.Low) > 1)
-      {
-        mask = 0;
-        for (std::int64_t leaf = brick.FirstLeaf; leaf < brick.EndLeaf; ++leaf)
-        {
-          const Span& span = spans[Index(leaf)];
-          mask |= maskOf({ span.Low, span.High });
-        }
-      }
-    });
-}
-
 std::optional<UniformValue> HexBrickSource::UniformValueOf(std::int64_t brick) const
 {
-  const ValueRange& range = this->Ranges[Index(brick)];
-  if (range.Empty() || range.Low != range.High || this->Special[Index(brick)] != 0)
+  const ValueRange& range = this->Summary.Ranges[Index(brick)];
+  if (range.Empty() || range.Low != range.High || this->Summary.Special[Index(brick)] != 0)
   {
     return std::nullopt;
   }

@@ -1,10 +1,13 @@
 #ifndef banyan_HexOctree_HexBrickSource_h
 #define banyan_HexOctree_HexBrickSource_h
 
+#include "HexOctree/HexBrickSummary.h"
 #include "HexOctree/HexBricks.h"
 #include "HexOctree/NodalField.h"
 #include "Render/BrickSource.h"
 
+#include <atomic>
+#include <memory>
 #include <vector>
 
 namespace banyan
@@ -25,6 +28,10 @@ public:
   HexBrickSource(
     std::shared_ptr<const HexBricks> bricks, const NodeArray& values, ThreadPool& pool);
 
+  /// The same of values that are a field already, and of a summary of them in its bricks.
+  HexBrickSource(
+    std::shared_ptr<const HexBricks> bricks, NodalField values, HexBrickSummary summary);
+
   glm::ivec3 Bricks() const override;
   Box CellsOf(std::int64_t brick) const override { return this->Brick(brick).Cells; }
   int BrickLevel(std::int64_t brick) const override { return this->Brick(brick).Level; }
@@ -33,9 +40,12 @@ public:
   {
     return this->Cut->RanksFrontToBack(view);
   }
-  ValueRange RangeOf(std::int64_t brick) const override { return this->Ranges[Index(brick)]; }
-  ValueMask MaskOf(std::int64_t brick) const override { return this->Masks[Index(brick)]; }
-  MaskRange MasksAreOver() const override { return this->Over; }
+  ValueRange RangeOf(std::int64_t brick) const override
+  {
+    return this->Summary.Ranges[Index(brick)];
+  }
+  ValueMask MaskOf(std::int64_t brick) const override { return this->Summary.Masks[Index(brick)]; }
+  MaskRange MasksAreOver() const override { return this->Summary.Over; }
   std::optional<UniformValue> UniformValueOf(std::int64_t brick) const override;
   std::size_t LoadBytes(std::int64_t brick) const override;
   BrickView Load(std::int64_t brick) override;
@@ -45,6 +55,8 @@ public:
   int CellLevel() const override { return 0; }
 
   const NodalField& Field() const { return this->Values; }
+  /// Bytes of the values of coarser meshes that pictures have asked for so far.
+  std::size_t LevelBytes() const { return this->BytesOfLevels; }
 
 protected:
   /// Of coarser meshes (HexBricks::AtLevel). Made with the pool of the process: the one that this
@@ -57,9 +69,6 @@ private:
   static std::size_t Index(std::int64_t i) { return static_cast<std::size_t>(i); }
   const HexBrick& Brick(std::int64_t i) const { return this->Cut->List()[Index(i)]; }
 
-  static ValueRange RangeOfElement(const double (&corners)[8], bool& special);
-  template <class Value>
-  void Summarize(ThreadPool& pool);
   template <class Out>
   void FillLeaf(const HexBrick& brick, std::int64_t leaf, const double (&corners)[8],
     const Box& samples, Out* out) const;
@@ -69,10 +78,8 @@ private:
 
   std::shared_ptr<const HexBricks> Cut;
   NodalField Values;
-  std::vector<ValueRange> Ranges;
-  std::vector<ValueMask> Masks;
-  std::vector<std::uint8_t> Special; ///< whether a corner of an element is not finite
-  MaskRange Over;
+  HexBrickSummary Summary;
+  std::atomic<std::size_t> BytesOfLevels{ 0 };
 };
 
 } // namespace banyan

@@ -53,6 +53,20 @@ const HexBricks::Level& HexBricks::AtLevel(int level, ThreadPool& pool) const
   return *this->Levels[static_cast<std::size_t>(level) - 1];
 }
 
+std::size_t HexBricks::Bytes() const
+{
+  const std::lock_guard<std::mutex> lock(this->LevelsMutex);
+  std::size_t bytes = this->Bricks.size() * sizeof(HexBrick);
+  for (const std::unique_ptr<const Level>& level : this->Levels)
+  {
+    const ElementOctree& tree = level->Bricks->Tree();
+    bytes += level->Bricks->Bytes() + tree.Bytes() +
+             static_cast<std::size_t>(tree.LeafCount()) * 8 * SizeOf(tree.Mesh().IdType) +
+             level->NodeOfPoint.size() * sizeof(level->NodeOfPoint[0]);
+  }
+  return bytes;
+}
+
 void HexBricks::Cut(const Cube& cube)
 {
   if (cube.FirstLeaf == cube.EndLeaf || this->TakeWhole(cube))

@@ -52,6 +52,9 @@ public:
   /// May be called from several threads.
   const Level& AtLevel(int level, ThreadPool& pool) const;
 
+  /// Bytes of bricks and coarser meshes, without those of Tree().
+  std::size_t Bytes() const;
+
   /// The place of each brick in visibility order. Exact, for the eye inside too: all bricks of one
   /// octant of a cube hide nothing of the octants that are nearer to the eye.
   /// @param view in the space of the lattice

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace banyan
 {
@@ -26,9 +25,11 @@ class LeafMerging
 {
 public:
   /// @param keys in ascending order, and levels: of leaves that do not overlap. Both must stay
-  LeafMerging(const std::vector<MortonKey>& keys, const std::vector<std::uint8_t>& levels)
-    : Keys(keys)
-    , Levels(levels)
+  template <class KeyArray, class LevelArray>
+  LeafMerging(const KeyArray& keys, const LevelArray& levels)
+    : Keys(keys.data())
+    , Levels(levels.data())
+    , Count(keys.size())
   {
   }
 
@@ -38,7 +39,7 @@ public:
   void ForEach(int level, Function&& function) const
   {
     level = std::min(level, MortonBits);
-    for (std::size_t leaf = 0; leaf < this->Keys.size();)
+    for (std::size_t leaf = 0; leaf < this->Count;)
     {
       if (this->Levels[leaf] >= level)
       {
@@ -73,15 +74,13 @@ private:
   std::size_t LeafFrom(MortonKey key, std::size_t begin) const
   {
     std::size_t step = 8;
-    while (begin + step < this->Keys.size() && this->Keys[begin + step] < key)
+    while (begin + step < this->Count && this->Keys[begin + step] < key)
     {
       begin += step;
       step *= 2;
     }
-    const auto first = this->Keys.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto last =
-      this->Keys.begin() + static_cast<std::ptrdiff_t>(std::min(begin + step, this->Keys.size()));
-    return static_cast<std::size_t>(std::lower_bound(first, last, key) - this->Keys.begin());
+    const MortonKey* const last = this->Keys + std::min(begin + step, this->Count);
+    return static_cast<std::size_t>(std::lower_bound(this->Keys + begin, last, key) - this->Keys);
   }
 
   /// The leaves [begin, end) lie in a cube, and all are smaller than that or it is the only one.
@@ -117,8 +116,9 @@ private:
     }
   }
 
-  const std::vector<MortonKey>& Keys;
-  const std::vector<std::uint8_t>& Levels;
+  const MortonKey* Keys;
+  const std::uint8_t* Levels;
+  std::size_t Count;
 };
 
 } // namespace banyan

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 namespace banyan
 {
@@ -15,6 +16,33 @@ bool FitsFloat(ScalarType type)
   return SizeOf(type) <= 2 || type == ScalarType::Float32;
 }
 
+namespace
+{
+
+/// Points that hang on larger cells come first: see ElementOctree::Hanging.
+template <class Out>
+void Constrain(const ElementOctree& tree, Out* values)
+{
+  for (const TwinNode& twin : tree.Twins())
+  {
+    values[twin.Node] = values[twin.First];
+  }
+  for (const HangingNode& hanging : tree.Hanging())
+  {
+    std::int64_t nodes[8];
+    double corners[8];
+    tree.NodesOfLeaf(hanging.Leaf, nodes);
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      corners[corner] = double{ values[nodes[corner]] };
+    }
+    values[hanging.Node] =
+      static_cast<Out>(NodalField::Interpolate(corners, glm::dvec3(hanging.Part)));
+  }
+}
+
+} // namespace
+
 NodalField::NodalField(
   std::shared_ptr<const ElementOctree> tree, const NodeArray& array, ThreadPool& pool)
   : Octree(std::move(tree))
@@ -22,14 +50,34 @@ NodalField::NodalField(
   RequireComponent(array);
   if (FitsFloat(array.Type))
   {
-    this->Take(array, this->Floats, pool);
-    this->Constrain(this->Floats);
+    this->Floats = this->Taken<float>(array, pool);
   }
   else
   {
-    this->Take(array, this->Doubles, pool);
-    this->Constrain(this->Doubles);
+    this->Doubles = this->Taken<double>(array, pool);
   }
+}
+
+NodalField::NodalField(std::shared_ptr<const ElementOctree> tree, const NodeArray& values,
+  const std::shared_ptr<const void>& owner)
+  : Octree(std::move(tree))
+{
+  RequireComponent(values);
+  const auto count = static_cast<std::size_t>(this->Octree->Mesh().PointCount);
+  if (values.Type == ScalarType::Float32)
+  {
+    this->Floats = { static_cast<const float*>(values.Values), count, owner };
+  }
+  else
+  {
+    this->Doubles = { static_cast<const double*>(values.Values), count, owner };
+  }
+}
+
+void NodalField::MakeContinuous(const ElementOctree& tree, void* values, ScalarType type)
+{
+  type == ScalarType::Float32 ? Constrain(tree, static_cast<float*>(values))
+                              : Constrain(tree, static_cast<double*>(values));
 }
 
 NodalField::NodalField(std::shared_ptr<const ElementOctree> coarser, const NodalField& finer,
@@ -38,21 +86,23 @@ NodalField::NodalField(std::shared_ptr<const ElementOctree> coarser, const Nodal
 {
   const auto take = [&](const auto& from, auto& to)
   {
-    to.reserve(nodeOfPoint.size());
+    std::vector<std::decay_t<decltype(from[0])>> values;
+    values.reserve(nodeOfPoint.size());
     for (const std::uint32_t node : nodeOfPoint)
     {
-      to.push_back(from[node]);
+      values.push_back(from[node]);
     }
-    this->Constrain(to);
+    Constrain(*this->Octree, values.data());
+    to = std::move(values);
   };
   finer.Floats.empty() ? take(finer.Doubles, this->Doubles) : take(finer.Floats, this->Floats);
 }
 
 template <class Out>
-void NodalField::Take(const NodeArray& array, std::vector<Out>& values, ThreadPool& pool)
+std::vector<Out> NodalField::Taken(const NodeArray& array, ThreadPool& pool) const
 {
   const std::int64_t count = this->Octree->Mesh().PointCount;
-  values.resize(static_cast<std::size_t>(count));
+  std::vector<Out> values(static_cast<std::size_t>(count));
   Dispatch(array.Type,
     [&](auto tag)
     {
@@ -70,22 +120,8 @@ void NodalField::Take(const NodeArray& array, std::vector<Out>& values, ThreadPo
           }
         });
     });
-}
-
-template <class Out>
-void NodalField::Constrain(std::vector<Out>& values)
-{
-  for (const TwinNode& twin : this->Octree->Twins())
-  {
-    values[static_cast<std::size_t>(twin.Node)] = values[static_cast<std::size_t>(twin.First)];
-  }
-  for (const HangingNode& hanging : this->Octree->Hanging())
-  {
-    double corners[8];
-    this->CornersOf(hanging.Leaf, corners);
-    values[static_cast<std::size_t>(hanging.Node)] =
-      static_cast<Out>(Interpolate(corners, glm::dvec3(hanging.Part)));
-  }
+  Constrain(*this->Octree, values.data());
+  return values;
 }
 
 void NodalField::CornersOf(std::int64_t leaf, double (&values)[8]) const

@@ -44,6 +44,17 @@ public:
   NodalField(std::shared_ptr<const ElementOctree> coarser, const NodalField& finer,
     const std::vector<std::uint32_t>& nodeOfPoint);
 
+  /// A field of values that are continuous already (MakeContinuous), which are not copied.
+  /// @param values one per point of the mesh, float32 or float64
+  /// @param owner keeps them
+  NodalField(std::shared_ptr<const ElementOctree> tree, const NodeArray& values,
+    const std::shared_ptr<const void>& owner);
+
+  /// What other constructors do with their copy.
+  /// @param values one per point of the mesh, float32 or float64: those of points that hang, and of
+  /// all but the first one at a place, are replaced
+  static void MakeContinuous(const ElementOctree& tree, void* values, ScalarType type);
+
   const ElementOctree& Tree() const { return *this->Octree; }
 
   /// Float32, or Float64 where float32 cannot hold the values.
@@ -57,6 +68,14 @@ public:
     const auto i = static_cast<std::size_t>(node);
     return this->Floats.empty() ? this->Doubles[i] : double{ this->Floats[i] };
   }
+
+  /// One per point of the mesh.
+  const void* Values() const
+  {
+    return this->Floats.empty() ? static_cast<const void*>(this->Doubles.data())
+                                : static_cast<const void*>(this->Floats.data());
+  }
+  std::size_t Bytes() const { return this->Floats.Bytes() + this->Doubles.Bytes(); }
 
   /// At the eight corners of a leaf, x fastest.
   void CornersOf(std::int64_t leaf, double (&values)[8]) const;
@@ -94,13 +113,11 @@ public:
 
 private:
   template <class Out>
-  void Take(const NodeArray& array, std::vector<Out>& values, ThreadPool& pool);
-  template <class Out>
-  void Constrain(std::vector<Out>& values);
+  std::vector<Out> Taken(const NodeArray& array, ThreadPool& pool) const;
 
   std::shared_ptr<const ElementOctree> Octree;
-  std::vector<float> Floats;
-  std::vector<double> Doubles;
+  HeldArray<float> Floats;
+  HeldArray<double> Doubles;
 };
 
 } // namespace banyan

@@ -50,16 +50,19 @@ void NodeFinder::Find()
         }
       }
     });
-  std::vector<HangingNode>& hanging = this->Tree.HangingNodes;
+  std::vector<HangingNode> hanging;
+  std::vector<TwinNode> twins;
   for (const Found& part : parts)
   {
     hanging.insert(hanging.end(), part.Hanging.begin(), part.Hanging.end());
-    this->Tree.TwinNodes.insert(this->Tree.TwinNodes.end(), part.Twins.begin(), part.Twins.end());
+    twins.insert(twins.end(), part.Twins.begin(), part.Twins.end());
     this->Tree.Unbalanced += part.Unbalanced;
   }
   std::stable_sort(hanging.begin(), hanging.end(),
     [this](const HangingNode& a, const HangingNode& b)
     { return this->Tree.LevelOfLeaf(a.Leaf) > this->Tree.LevelOfLeaf(b.Leaf); });
+  this->Tree.HangingNodes = std::move(hanging);
+  this->Tree.TwinNodes = std::move(twins);
 }
 
 void NodeFinder::MarkCorners()

@@ -62,7 +62,7 @@ void OctreeFinder::AlignOrigin(const MeshSurvey& survey)
                   std::to_string(last[axis]) + ", and 2097152 are allowed");
     }
   }
-  tree.CellNumbers = { static_cast<std::uint32_t>(survey.LongestCell) };
+  tree.CellNumbers = std::vector<std::uint32_t>{ static_cast<std::uint32_t>(survey.LongestCell) };
   DispatchMesh(tree.Cells,
     [&](const auto* points, const auto* ids)
     {
@@ -86,9 +86,9 @@ void OctreeFinder::PlaceCells()
 {
   ElementOctree& tree = this->Tree;
   const auto count = static_cast<std::size_t>(tree.Cells.CellCount);
-  tree.Keys.resize(count);
+  this->Keys.resize(count);
   this->LevelOfCell.resize(count);
-  tree.OrderOfCell.resize(count);
+  std::vector<std::uint16_t> orderOfCell(count);
   std::vector<OrderMemory> memories(static_cast<std::size_t>(this->Pool.Width()));
   DispatchMesh(tree.Cells,
     [&](const auto* points, const auto* ids)
@@ -109,15 +109,16 @@ void OctreeFinder::PlaceCells()
               return;
             }
             const auto index = static_cast<std::size_t>(cell);
-            tree.Keys[index] = KeyOf(placed.Corner);
+            this->Keys[index] = KeyOf(placed.Corner);
             this->LevelOfCell[index] = static_cast<std::uint8_t>(placed.Level);
-            tree.OrderOfCell[index] = this->NumberOfOrder(placed.Order, memory);
+            orderOfCell[index] = this->NumberOfOrder(placed.Order, memory);
           }
         });
     });
-  if (tree.CornerOrders.size() == 1)
+  tree.CornerOrders = std::move(this->Orders);
+  if (tree.CornerOrders.size() > 1)
   {
-    tree.OrderOfCell = {};
+    tree.OrderOfCell = std::move(orderOfCell);
   }
 }
 
@@ -127,18 +128,17 @@ std::uint16_t OctreeFinder::NumberOfOrder(
   if (memory.Number < 0 || memory.Order != order)
   {
     const std::lock_guard<std::mutex> lock(this->OrdersMutex);
-    std::vector<std::array<std::uint8_t, 8>>& orders = this->Tree.CornerOrders;
     std::uint32_t bits = 0;
     for (const std::uint8_t place : order)
     {
       bits = bits << 3 | place;
     }
-    const auto found = this->NumberOfOrders.emplace(bits, static_cast<int>(orders.size()));
+    const auto found = this->NumberOfOrders.emplace(bits, static_cast<int>(this->Orders.size()));
     memory.Number = found.first->second;
     memory.Order = order;
     if (found.second)
     {
-      orders.push_back(order);
+      this->Orders.push_back(order);
     }
   }
   return static_cast<std::uint16_t>(memory.Number);
@@ -147,20 +147,20 @@ std::uint16_t OctreeFinder::NumberOfOrder(
 void OctreeFinder::SortLeaves()
 {
   ElementOctree& tree = this->Tree;
-  tree.CellNumbers.resize(tree.Keys.size());
-  tree.Levels.resize(tree.Keys.size());
+  std::vector<std::uint32_t> cells(this->Keys.size());
+  std::vector<std::uint8_t> levels(this->Keys.size());
   std::atomic<MortonKey> all{ 1 };
   FirstFailure failure;
   const auto forLeaves = [&](const auto& body)
-  { ForRuns(tree.LeafCount(), this->Pool, failure, body); };
+  { ForRuns(tree.Cells.CellCount, this->Pool, failure, body); };
   forLeaves(
     [&](std::int64_t begin, std::int64_t end, int)
     {
       MortonKey bits = 0;
       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
       {
-        tree.CellNumbers[i] = static_cast<std::uint32_t>(i);
-        bits |= tree.Keys[i];
+        cells[i] = static_cast<std::uint32_t>(i);
+        bits |= this->Keys[i];
       }
       all |= bits;
     });
@@ -169,16 +169,19 @@ void OctreeFinder::SortLeaves()
   {
     ++bits;
   }
-  RadixSort(tree.Keys, tree.CellNumbers, bits, this->Pool);
+  RadixSort(this->Keys, cells, bits, this->Pool);
   forLeaves(
     [&](std::int64_t begin, std::int64_t end, int)
     {
       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
       {
-        tree.Levels[i] = this->LevelOfCell[tree.CellNumbers[i]];
+        levels[i] = this->LevelOfCell[cells[i]];
       }
     });
   this->LevelOfCell = {};
+  tree.Keys = std::move(this->Keys);
+  tree.CellNumbers = std::move(cells);
+  tree.Levels = std::move(levels);
 }
 
 /// Overlaps, the domain, and what is left of it.

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 namespace banyan
 {
@@ -32,6 +33,8 @@ private:
   ElementOctree& Tree;
   ThreadPool& Pool;
   double Tolerance;
+  std::vector<MortonKey> Keys; ///< of cells
+  std::vector<std::array<std::uint8_t, 8>> Orders;
   std::mutex OrdersMutex;
   std::unordered_map<std::uint32_t, int> NumberOfOrders; ///< by their bits
   std::vector<std::uint8_t> LevelOfCell;

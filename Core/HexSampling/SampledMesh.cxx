@@ -26,7 +26,7 @@ glm::ivec3 CornerOf(const SampledCubes::Cube& cube, int corner)
 
 } // namespace
 
-std::shared_ptr<const SampledMesh> SampledMesh::Of(
+std::shared_ptr<SampledMesh> SampledMesh::Of(
   const HexMesh& mesh, const MeshSampling& sampling, ThreadPool& pool)
 {
   const CellShapes shapes(mesh, MeshSampling::FinestPart, pool);
@@ -35,7 +35,7 @@ std::shared_ptr<const SampledMesh> SampledMesh::Of(
   {
     throw Error("The mesh has no place that a box fits into");
   }
-  std::shared_ptr<SampledMesh> made(new SampledMesh);
+  const std::shared_ptr<SampledMesh> made(new SampledMesh);
   made->LargestDeviation = cubes.Deviation;
   made->BoxesAbove = cubes.Above;
   made->Coarse = cubes.Denied;
@@ -70,21 +70,24 @@ void SampledMesh::MakeBoxes(const CellShapes& shapes, const SampledCubes& cubes,
     slots[i] = static_cast<std::uint32_t>(i);
   }
   RadixSort(keys, slots, 3 * MortonBits, pool);
-  this->Ids.resize(corners);
+  const auto ids = std::make_shared<std::vector<std::int32_t>>(corners);
+  this->Points = std::make_shared<std::vector<glm::dvec3>>();
   std::vector<std::uint32_t> cubeOfPoint;
   for (std::size_t i = 0; i < corners; ++i)
   {
     if (i == 0 || keys[i] != keys[i - 1])
     {
-      this->Points.push_back(shapes.Origin() + glm::dvec3(PositionOfKey(keys[i])) * shapes.Edge());
+      this->Points->push_back(shapes.Origin() + glm::dvec3(PositionOfKey(keys[i])) * shapes.Edge());
       cubeOfPoint.push_back(slots[i] / 8);
     }
-    this->Ids[slots[i]] = static_cast<std::int32_t>(this->Points.size() - 1);
+    (*ids)[slots[i]] = static_cast<std::int32_t>(this->Points->size() - 1);
   }
-  this->BoxMesh.Points = this->Points.data();
+  this->BoxMesh.Points = this->Points->data();
+  this->BoxMesh.PointOwner = this->Points;
   this->BoxMesh.PointType = ScalarType::Float64;
-  this->BoxMesh.PointCount = static_cast<std::int64_t>(this->Points.size());
-  this->BoxMesh.Connectivity = this->Ids.data();
+  this->BoxMesh.PointCount = static_cast<std::int64_t>(this->Points->size());
+  this->BoxMesh.Connectivity = ids->data();
+  this->BoxMesh.Owner = ids;
   this->BoxMesh.IdType = ScalarType::Int32;
   this->BoxMesh.CellCount = static_cast<std::int64_t>(cubes.Cubes.size());
   this->PlacePoints(shapes, cubes, cubeOfPoint, pool);
@@ -93,7 +96,7 @@ void SampledMesh::MakeBoxes(const CellShapes& shapes, const SampledCubes& cubes,
 void SampledMesh::PlacePoints(const CellShapes& shapes, const SampledCubes& cubes,
   const std::vector<std::uint32_t>& cubeOfPoint, ThreadPool& pool)
 {
-  this->Places.resize(this->Points.size());
+  this->Places.resize(this->Points->size());
   FirstFailure failure;
   ForRuns(this->BoxMesh.PointCount, pool, failure,
     [&](std::int64_t begin, std::int64_t end, int)
@@ -103,11 +106,20 @@ void SampledMesh::PlacePoints(const CellShapes& shapes, const SampledCubes& cube
         const SampledCubes::Cube& cube = cubes.Cubes[cubeOfPoint[Index(point)]];
         const std::uint32_t* const cells = cubes.Cells.data() + cube.First;
         const PlaceInCell place = FindPlace(shapes, { cells, cells + cube.Count },
-          (this->Points[Index(point)] - shapes.Origin()) / shapes.Edge());
+          ((*this->Points)[Index(point)] - shapes.Origin()) / shapes.Edge());
         this->Places[Index(point)] = { static_cast<std::uint32_t>(place.Cell),
           glm::vec3(place.Part) };
       }
     });
+}
+
+void SampledMesh::DropBoxes()
+{
+  this->Points.reset();
+  this->BoxMesh.Points = nullptr;
+  this->BoxMesh.PointOwner.reset();
+  this->BoxMesh.Connectivity = nullptr;
+  this->BoxMesh.Owner.reset();
 }
 
 NodeArray SampledMesh::Values::Array() const

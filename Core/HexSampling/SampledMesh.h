@@ -30,11 +30,13 @@ class SampledMesh
 public:
   /// Throws Error: see CellShapes and RefineCubes (and Interrupted, which is one); and when no box
   /// is left.
-  static std::shared_ptr<const SampledMesh> Of(
+  static std::shared_ptr<SampledMesh> Of(
     const HexMesh& mesh, const MeshSampling& sampling, ThreadPool& pool);
 
-  /// Its points are float64; it lives as long as this does.
+  /// Its points are float64. Copies keep the arrays alive.
   const HexMesh& Boxes() const { return this->BoxMesh; }
+  /// Lets the arrays of Boxes() go: sampling values does not need them.
+  void DropBoxes();
 
   /// What is true of the sampling, for statistics.
   double Deviation() const { return this->LargestDeviation; }
@@ -43,6 +45,13 @@ public:
   std::int64_t KeptCoarse() const { return this->Coarse; }
   std::int64_t TangledCells() const { return this->Tangled; }
   std::int64_t FirstTangledCell() const { return this->FirstTangled; }
+
+  /// Bytes that it takes, without those of Boxes().
+  std::size_t Bytes() const
+  {
+    return this->Places.size() * sizeof(Place) +
+           this->NodesOfCells.size() * sizeof(this->NodesOfCells[0]);
+  }
 
   /// Values at the points of the boxes: one component, or the length of all (taken at the nodes of
   /// the mesh, as NodalField does).
@@ -73,8 +82,7 @@ private:
     const In* values, const NodeArray& array, std::vector<Out>& out, ThreadPool& pool) const;
 
   HexMesh BoxMesh;
-  std::vector<glm::dvec3> Points;
-  std::vector<std::int32_t> Ids;
+  std::shared_ptr<std::vector<glm::dvec3>> Points;
   std::vector<Place> Places;                             ///< of points
   std::vector<std::array<std::int64_t, 8>> NodesOfCells; ///< in the order of TrilinearCell
   double LargestDeviation = 0.0;

@@ -35,6 +35,11 @@ public:
   /// Whether this rank is the lowest one of its machine.
   bool Leads() const { return this->LeaderOf(this->Self) == this->Self; }
   int LeaderOf(int rank) const { return this->LeaderOfRank[static_cast<std::size_t>(rank)]; }
+  /// How many ranks have memory together with this one, itself included.
+  int RanksHere() const
+  {
+    return this->Sharing ? this->RanksOfMachine[static_cast<std::size_t>(this->Self)] : 1;
+  }
   /// The lowest rank of each machine, in ascending order.
   const std::vector<int>& Leaders() const { return this->AllLeaders; }
 

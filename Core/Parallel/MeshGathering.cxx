@@ -204,7 +204,7 @@ GatheredValues GatherNodes(
   GatheredValues values;
   values.Array.Values = all.Memory.get();
   values.Array.Type = wide ? ScalarType::Float64 : ScalarType::Float32;
-  values.Owner = all.Memory;
+  values.Memory = all.Memory;
   return values;
 }
 

@@ -29,7 +29,9 @@ HexMesh GatherMesh(Communicator& communicator, MachineRanks& machines, const Hex
 struct GatheredValues
 {
   NodeArray Array;
-  std::shared_ptr<const void> Owner; ///< keeps the values; empty for those of one process alone
+  /// Keeps the values; empty for those of one process alone, which are not copied. The leader of a
+  /// machine may change what is there, as long as no other rank reads it.
+  std::shared_ptr<char> Memory;
 };
 
 /// Collective.

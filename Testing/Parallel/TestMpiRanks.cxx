@@ -6,6 +6,7 @@
 #include "Base/Error.h"
 #include "Parallel/MachineRanks.h"
 #include "Parallel/MpiCommunicator.h"
+#include "Parallel/SharedMesh.h"
 
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1
@@ -173,6 +174,63 @@ std::string MemoryOfThisMachine(Communicator& communicator)
   return machines.LeaderOf(communicator.Rank()) == 0 ? "" : "the first rank does not lead";
 }
 
+/// An octree and a field that the first rank makes, and all of them read. Each rank has a row of
+/// cubes.
+std::string MeshOfThisMachine(Communicator& communicator)
+{
+  const auto ranks = static_cast<double>(communicator.Size());
+  std::vector<double> points;
+  std::vector<double> values;
+  std::vector<std::int64_t> ids;
+  constexpr int length = 50;
+  for (int i = 0; i < 8 * length; ++i)
+  {
+    const glm::ivec3 at(i / 8 + (i & 1), communicator.Rank() + (i >> 1 & 1), i >> 2 & 1);
+    points.insert(points.end(), { double(at.x), double(at.y), double(at.z) });
+    values.push_back(at.x + 0.5 * at.y * at.z);
+    ids.push_back(i);
+  }
+  HexMesh piece;
+  piece.Points = points.data();
+  piece.PointType = ScalarType::Float64;
+  piece.PointCount = 8 * length;
+  piece.Connectivity = ids.data();
+  piece.CellCount = length;
+  NodeArray array;
+  array.Values = values.data();
+  array.Type = ScalarType::Float64;
+  const std::int64_t before = ElementOctree::FoundSoFar();
+  SharedMesh mesh(communicator, piece, ValuesOn::Points, 16, {});
+  const std::int64_t found = ElementOctree::FoundSoFar() - before;
+  if (AllSum(communicator, static_cast<double>(found)) != 1.0)
+  {
+    return "not one rank found the octree, but " + std::to_string(found) + " on this one";
+  }
+  std::string wrong;
+  for (int step = 0; step < 3; ++step)
+  {
+    const auto field = mesh.Field(communicator, array, piece.PointCount, ValuesOn::Points);
+    for (int i = 0; i < length * communicator.Size(); ++i)
+    {
+      const glm::ivec3 at(i % length, i / length, 1);
+      if (field->Field().AtPoint(at) != (at.x + 0.5 * at.y) * (1 << step))
+      {
+        wrong = "a wrong value in step " + std::to_string(step);
+      }
+    }
+    if (field->MasksAreOver().High != (length + 0.5 * ranks) * (1 << step))
+    {
+      wrong = "not the largest value of all ranks";
+    }
+    for (double& value : values)
+    {
+      value *= 2.0;
+    }
+  }
+  const MeshBytes bytes = mesh.Bytes();
+  return communicator.Size() == 1 || bytes.Together > bytes.Own ? wrong : "little is shared";
+}
+
 struct Check
 {
   const char* Name;
@@ -183,7 +241,8 @@ int RunAll(Communicator& communicator)
 {
   const Check checks[] = { { "communicator", CheckCommunicator }, { "small parts", SmallParts },
     { "several communicators", Several }, { "ranks of this node", RanksOfThisNode },
-    { "memory of this machine", MemoryOfThisMachine }, { "compositing", CompositeAllCases },
+    { "memory of this machine", MemoryOfThisMachine },
+    { "mesh of this machine", MeshOfThisMachine }, { "compositing", CompositeAllCases },
     { "methods", CompositeByAllMethods }, { "large picture", CompositeLargePicture },
     { "nearest pixels", Nearest }, { "errors", Errors } };
   int failed = 0;

@@ -1,43 +1,22 @@
 // Memory that ranks of a machine have together.
 #include "Base/AvailableMemory.h"
 #include "Base/Error.h"
+#include "Parallel/FilesInMemory.h"
 #include "Parallel/MachineRanks.h"
 
 #include <gtest/gtest.h>
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
-#include <mutex>
-#include <set>
-#include <sstream>
 
 namespace
 {
 
 using namespace banyan;
-
-/// The files in memory that this process has mapped: each is memory once, however often mapped.
-std::set<std::string> FilesInMemory()
-{
-  std::set<std::string> inodes;
-  std::ifstream maps("/proc/self/maps");
-  for (std::string line; std::getline(maps, line);)
-  {
-    std::istringstream words(line);
-    std::string addresses, rights, offset, device, inode, name;
-    words >> addresses >> rights >> offset >> device >> inode >> name;
-    if (name.rfind("/memfd:banyan", 0) == 0)
-    {
-      inodes.insert(inode);
-    }
-  }
-  return inodes;
-}
+using files_in_memory::FilesInMemory;
+using files_in_memory::LongestFile;
 
 std::ptrdiff_t OpenFiles()
 {
@@ -96,23 +75,6 @@ TEST(MachineRanks, RanksWithoutANameAreOnTheirOwn)
       EXPECT_EQ(named.LeaderOf(communicator.Rank()), 0);
     });
 }
-
-/// No file of this process may be longer while an object of this class lives.
-class LongestFile
-{
-public:
-  explicit LongestFile(rlim_t bytes)
-  {
-    EXPECT_EQ(getrlimit(RLIMIT_FSIZE, &this->Before), 0);
-    rlimit low = this->Before;
-    low.rlim_cur = bytes;
-    EXPECT_EQ(setrlimit(RLIMIT_FSIZE, &low), 0);
-  }
-  ~LongestFile() { EXPECT_EQ(setrlimit(RLIMIT_FSIZE, &this->Before), 0); }
-
-private:
-  rlimit Before = {};
-};
 
 TEST(MachineRanks, WhatCannotBeHadTogetherEachRankHasForItself)
 {

@@ -2,6 +2,7 @@
 #include "HexOctree/HexBrickSource.h"
 #include "HexOctree/TinyMeshes.h"
 #include "Parallel/MeshGathering.h"
+#include "Parallel/MeshPieces.h"
 
 #include <gtest/gtest.h>
 
@@ -14,34 +15,7 @@ namespace
 
 using namespace banyan;
 
-/// Cells begin to end of a mesh, with the points that they have, as a reader gives pieces.
-struct Piece
-{
-  meshes::OwnMesh<float, std::int32_t> Mesh;
-  std::vector<float> Values; ///< two components
-
-  Piece(const meshes::OwnMesh<double, std::int64_t>& whole, std::size_t begin, std::size_t end)
-  {
-    std::map<std::int64_t, std::int32_t> numbers;
-    for (std::size_t i = 8 * begin; i < 8 * end; ++i)
-    {
-      const std::int64_t id = whole.Ids[i];
-      const auto number = numbers.emplace(id, static_cast<std::int32_t>(numbers.size()));
-      this->Mesh.Ids.push_back(number.first->second);
-      if (number.second)
-      {
-        const glm::ivec3 place = whole.Places[static_cast<std::size_t>(id)];
-        this->Mesh.Places.push_back(place);
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          this->Mesh.Points.push_back(static_cast<float>(place[axis]));
-        }
-        this->Values.push_back(0.0f);
-        this->Values.push_back(static_cast<float>(place.x + 100 * place.y + 10000 * place.z));
-      }
-    }
-  }
-};
+using mesh_pieces::Piece;
 
 TEST(MeshGathering, PiecesAreTheMeshThatTheyWereCutFrom)
 {
@@ -55,12 +29,7 @@ TEST(MeshGathering, PiecesAreTheMeshThatTheyWereCutFrom)
     RunOnSimulatedRanks(ranks,
       [&](Communicator& communicator)
       {
-        // The last rank has no cells where there are several.
-        const int parts = std::max(1, ranks - 1);
-        const auto rank = static_cast<std::size_t>(std::min(communicator.Rank(), parts));
-        const Piece piece(whole, cells * rank / static_cast<std::size_t>(parts),
-          cells * std::min<std::size_t>(rank + 1, static_cast<std::size_t>(parts)) /
-            static_cast<std::size_t>(parts));
+        const Piece piece = mesh_pieces::PieceOf(whole, communicator);
         const HexMesh mine = piece.Mesh.Mesh();
         MachineRanks machines(communicator, std::to_string(communicator.Rank() / onEach));
         const HexMesh mesh = GatherMesh(communicator, machines, mine);

@@ -1,5 +1,5 @@
-#ifndef banyan_Rendering_MeshOptions_h
-#define banyan_Rendering_MeshOptions_h
+#ifndef banyan_HexSampling_MeshOptions_h
+#define banyan_HexSampling_MeshOptions_h
 
 #include "HexSampling/CubeRefiner.h"
 

@@ -1,0 +1,375 @@
+// Octrees and fields that one rank of a machine makes for all of it: those that each rank makes
+// alone.
+#include "HexSampling/CellMeans.h"
+#include "HexSampling/WarpedMeshes.h"
+#include "Parallel/FilesInMemory.h"
+#include "Parallel/MeshPieces.h"
+#include "Parallel/SharedMesh.h"
+
+#include "Base/ThreadPool.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstring>
+
+namespace
+{
+
+using namespace banyan;
+using files_in_memory::FilesInMemory;
+using files_in_memory::LongestFile;
+using mesh_pieces::Piece;
+using mesh_pieces::PieceOf;
+using mesh_pieces::Whole;
+
+constexpr int BrickCells = 4;
+
+MeshOptions Options()
+{
+  MeshOptions options;
+  options.Tolerance = ElementOctree::DefaultTolerance;
+  options.Sampling.MostCubes = 3000;
+  return options;
+}
+
+NodeArray ArrayOf(const Piece& piece, ValuesOn where, int component)
+{
+  NodeArray array;
+  if (where == ValuesOn::Cells)
+  {
+    array.Values = piece.CellValues.data();
+    array.Type = ScalarType::Float64;
+    return array;
+  }
+  array.Values = piece.Values.data();
+  array.Components = 2;
+  array.Component = component;
+  return array;
+}
+
+std::int64_t CountOf(const Piece& piece, ValuesOn where)
+{
+  const HexMesh mesh = piece.Mesh.Mesh();
+  return where == ValuesOn::Cells ? mesh.CellCount : mesh.PointCount;
+}
+
+/// What a rank makes alone, slowly and step by step, of what was gathered.
+struct Alone
+{
+  std::shared_ptr<const SampledMesh> Sampled;
+  std::shared_ptr<const HexBricks> Bricks;
+  std::unique_ptr<HexBrickSource> Source;
+
+  Alone(Communicator& communicator, const Piece& piece, ValuesOn where, int component)
+  {
+    ThreadPool pool(1);
+    MachineRanks machines(communicator, "");
+    HexMesh mesh = GatherMesh(communicator, machines, piece.Mesh.Mesh());
+    const GatheredValues all =
+      GatherNodes(communicator, machines, ArrayOf(piece, where, component), CountOf(piece, where));
+    std::shared_ptr<const ElementOctree> tree;
+    try
+    {
+      tree = ElementOctree::Find(mesh, pool);
+    }
+    catch (const Error&)
+    {
+      this->Sampled = SampledMesh::Of(mesh, Options().Sampling, pool);
+      tree = ElementOctree::Find(this->Sampled->Boxes(), pool);
+    }
+    this->Bricks = std::make_shared<const HexBricks>(tree, BrickCells);
+    const bool onCells = where == ValuesOn::Cells;
+    if (this->Sampled)
+    {
+      const auto means = onCells ? std::make_unique<CellMeans>(mesh, all.Array) : nullptr;
+      const auto sampled = this->Sampled->Sample(means ? means->Nodes() : all.Array, pool);
+      this->Source = std::make_unique<HexBrickSource>(this->Bricks, sampled.Array(), pool);
+      return;
+    }
+    const auto made = where == ValuesOn::Points
+                        ? nullptr
+                        : std::make_unique<CellNodes>(*tree, all.Array, where, pool);
+    this->Source =
+      std::make_unique<HexBrickSource>(this->Bricks, made ? made->Nodes() : all.Array, pool);
+  }
+};
+
+void ExpectSameTree(const ElementOctree& a, const ElementOctree& b)
+{
+  ASSERT_EQ(a.LeafCount(), b.LeafCount());
+  ASSERT_EQ(a.Mesh().PointCount, b.Mesh().PointCount);
+  EXPECT_EQ(a.Origin(), b.Origin());
+  EXPECT_EQ(a.Edge(), b.Edge());
+  EXPECT_EQ(a.Tolerance(), b.Tolerance());
+  EXPECT_TRUE(a.Domain() == b.Domain());
+  EXPECT_EQ(a.CoarsestLevel(), b.CoarsestLevel());
+  EXPECT_EQ(a.HoleCells(), b.HoleCells());
+  EXPECT_EQ(a.UnbalancedNodes(), b.UnbalancedNodes());
+  for (std::int64_t leaf = 0; leaf < a.LeafCount(); ++leaf)
+  {
+    ASSERT_EQ(a.KeyOfLeaf(leaf), b.KeyOfLeaf(leaf));
+    ASSERT_EQ(a.LevelOfLeaf(leaf), b.LevelOfLeaf(leaf));
+    ASSERT_EQ(a.CellOfLeaf(leaf), b.CellOfLeaf(leaf));
+    ASSERT_EQ(a.LeafAt(a.CornerOfLeaf(leaf)), b.LeafAt(a.CornerOfLeaf(leaf)));
+    std::int64_t nodes[2][8];
+    a.NodesOfLeaf(leaf, nodes[0]);
+    b.NodesOfLeaf(leaf, nodes[1]);
+    ASSERT_EQ(std::memcmp(nodes[0], nodes[1], sizeof(nodes[0])), 0);
+  }
+  ASSERT_EQ(a.Hanging().size(), b.Hanging().size());
+  for (std::size_t i = 0; i < a.Hanging().size(); ++i)
+  {
+    ASSERT_EQ(a.Hanging()[i].Node, b.Hanging()[i].Node);
+    ASSERT_EQ(a.Hanging()[i].Leaf, b.Hanging()[i].Leaf);
+    ASSERT_EQ(a.Hanging()[i].Part, b.Hanging()[i].Part);
+  }
+  ASSERT_EQ(a.Twins().size(), b.Twins().size());
+  for (std::size_t i = 0; i < a.Twins().size(); ++i)
+  {
+    ASSERT_EQ(a.Twins()[i].Node, b.Twins()[i].Node);
+    ASSERT_EQ(a.Twins()[i].First, b.Twins()[i].First);
+  }
+}
+
+void ExpectSameField(const HexBrickSource& a, const HexBrickSource& b)
+{
+  ASSERT_EQ(a.Field().Type(), b.Field().Type());
+  for (std::int64_t node = 0; node < a.Field().Tree().Mesh().PointCount; ++node)
+  {
+    ASSERT_EQ(a.Field().AtNode(node), b.Field().AtNode(node)) << node;
+  }
+  ASSERT_EQ(a.Bricks(), b.Bricks());
+  EXPECT_EQ(a.MasksAreOver().Low, b.MasksAreOver().Low);
+  EXPECT_EQ(a.MasksAreOver().High, b.MasksAreOver().High);
+  for (std::int64_t brick = 0; brick < a.Bricks().x; ++brick)
+  {
+    ASSERT_TRUE(a.CellsOf(brick) == b.CellsOf(brick));
+    ASSERT_EQ(a.RangeOf(brick).Low, b.RangeOf(brick).Low);
+    ASSERT_EQ(a.RangeOf(brick).High, b.RangeOf(brick).High);
+    ASSERT_EQ(a.MaskOf(brick), b.MaskOf(brick));
+    ASSERT_EQ(a.UniformValueOf(brick).has_value(), b.UniformValueOf(brick).has_value());
+  }
+}
+
+Whole Octree()
+{
+  return meshes::Make(meshes::Wild({ 2, 1, 1 }, 3, 5), glm::dvec3(0.0), glm::dvec3(1.0), 3);
+}
+
+Whole Curved()
+{
+  return warped::Grid({ 5, 3, 4 }, warped::Bent);
+}
+
+std::string MachineOf(const Communicator& communicator, int perMachine)
+{
+  return std::to_string(communicator.Rank() / perMachine);
+}
+
+const std::vector<std::pair<int, int>> Layouts{ { 1, 1 }, { 2, 1 }, { 2, 2 }, { 3, 2 }, { 4, 4 },
+  { 5, 2 } };
+
+TEST(SharedMesh, OneRankOfAMachineFindsWhatEachFindsAlone)
+{
+  for (const auto& [ranks, perMachine] : Layouts)
+  {
+    const int onEach = perMachine;
+    const int machines = (ranks + perMachine - 1) / perMachine;
+    for (const bool curved : { false, true })
+    {
+      const Whole whole = curved ? Curved() : Octree();
+      const std::int64_t before = ElementOctree::FoundSoFar();
+      std::atomic<std::int64_t> found{ 0 };
+      std::atomic<int> checked{ 0 };
+      RunOnSimulatedRanks(ranks,
+        [&](Communicator& communicator)
+        {
+          const Piece piece = PieceOf(whole, communicator);
+          SharedMesh shared(communicator, piece.Mesh.Mesh(), ValuesOn::Points, BrickCells,
+            Options(), MachineOf(communicator, onEach));
+          communicator.Barrier();
+          found = ElementOctree::FoundSoFar() - before;
+          communicator.Barrier();
+          EXPECT_EQ(shared.WhyNotShared(), "");
+          EXPECT_EQ(shared.About().IsSampled != 0, curved);
+          for (const ValuesOn where : { ValuesOn::Points, ValuesOn::Cells, ValuesOn::CellCorners })
+          {
+            if (curved && where == ValuesOn::CellCorners)
+            {
+              continue;
+            }
+            const int component = ranks % 2 == 0 ? NodeArray::Magnitude : 1;
+            const auto field = shared.Field(
+              communicator, ArrayOf(piece, where, component), CountOf(piece, where), where);
+            const Alone alone(communicator, piece, where, component);
+            ExpectSameTree(shared.Tree(), alone.Bricks->Tree());
+            ExpectSameField(*field, *alone.Source);
+            EXPECT_EQ(shared.About().Deviation, curved ? alone.Sampled->Deviation() : 0.0);
+          }
+          ++checked;
+        });
+      EXPECT_EQ(checked.load(), ranks);
+      EXPECT_EQ(found.load(), machines) << "one octree is found on each machine";
+      EXPECT_TRUE(FilesInMemory().empty()) << "memory is given back";
+    }
+  }
+}
+
+TEST(SharedMesh, MostOfItIsThereOncePerMachine)
+{
+  const Whole whole = Octree();
+  std::vector<MeshBytes> alone(4), together(4);
+  for (const int perMachine : { 1, 4 })
+  {
+    RunOnSimulatedRanks(4,
+      [&](Communicator& communicator)
+      {
+        const Piece piece = PieceOf(whole, communicator);
+        SharedMesh shared(communicator, piece.Mesh.Mesh(), ValuesOn::Points, BrickCells, Options(),
+          MachineOf(communicator, perMachine));
+        const auto field = shared.Field(communicator, ArrayOf(piece, ValuesOn::Points, 1),
+          CountOf(piece, ValuesOn::Points), ValuesOn::Points);
+        (perMachine == 1 ? alone : together)[static_cast<std::size_t>(communicator.Rank())] =
+          shared.Bytes();
+        // Ids, the octree, values and what bricks have of them.
+        EXPECT_EQ(FilesInMemory().size(), perMachine == 1 ? 0u : 4u);
+        communicator.Barrier();
+      });
+  }
+  for (std::size_t rank = 0; rank < 4; ++rank)
+  {
+    EXPECT_EQ(alone[rank].Together, 0u);
+    EXPECT_TRUE(alone[rank].Leads);
+    EXPECT_EQ(together[rank].Leads, rank == 0);
+    EXPECT_EQ(together[rank].Together, together[0].Together);
+    // But for what aligns arrays.
+    EXPECT_NEAR(static_cast<double>(together[rank].Own + together[rank].Together),
+      static_cast<double>(alone[rank].Own), 1200.0);
+    EXPECT_LT(together[rank].Own, alone[rank].Own / 4);
+  }
+}
+
+TEST(SharedMesh, ValuesOfANewStepTakeThePlaceOfOldOnes)
+{
+  const Whole whole = Octree();
+  RunOnSimulatedRanks(3,
+    [&](Communicator& communicator)
+    {
+      Piece piece = PieceOf(whole, communicator);
+      SharedMesh shared(
+        communicator, piece.Mesh.Mesh(), ValuesOn::Points, BrickCells, Options(), "one");
+      std::unique_ptr<HexBrickSource> field;
+      for (int step = 0; step < 4; ++step)
+      {
+        field.reset();
+        field = shared.Field(communicator, ArrayOf(piece, ValuesOn::Points, 1),
+          CountOf(piece, ValuesOn::Points), ValuesOn::Points);
+        communicator.Barrier();
+        EXPECT_EQ(FilesInMemory().size(), 4u);
+        const Alone alone(communicator, piece, ValuesOn::Points, 1);
+        ExpectSameField(*field, *alone.Source);
+        for (float& value : piece.Values)
+        {
+          value = 0.5f * value + 1.0f;
+        }
+      }
+    });
+}
+
+/// Ids of all cells are longer than a file may be then: each rank is on its own from there on. Or
+/// the mesh is there already: leaders go on making what they alone can make, and send it.
+TEST(SharedMesh, WhatCannotBeHadTogetherIsSent)
+{
+  for (const bool curved : { false, true })
+  {
+    const Whole whole = curved ? Curved() : Octree();
+    for (const bool fromTheFirst : { false, true })
+    {
+      std::unique_ptr<LongestFile> limit;
+      RunOnSimulatedRanks(5,
+        [&](Communicator& communicator)
+        {
+          const auto forbid = [&]
+          {
+            communicator.Barrier();
+            if (communicator.Rank() == 0)
+            {
+              limit = std::make_unique<LongestFile>(0);
+            }
+            communicator.Barrier();
+          };
+          if (fromTheFirst)
+          {
+            forbid();
+          }
+          const Piece piece = PieceOf(whole, communicator);
+          SharedMesh shared(communicator, piece.Mesh.Mesh(), ValuesOn::Points, BrickCells,
+            Options(), MachineOf(communicator, 3));
+          EXPECT_EQ(shared.WhyNotShared().empty(), !fromTheFirst);
+          if (!fromTheFirst)
+          {
+            forbid();
+          }
+          for (const ValuesOn where : { ValuesOn::Points, ValuesOn::Cells })
+          {
+            const auto field =
+              shared.Field(communicator, ArrayOf(piece, where, 1), CountOf(piece, where), where);
+            const Alone alone(communicator, piece, where, 1);
+            ExpectSameTree(shared.Tree(), alone.Bricks->Tree());
+            ExpectSameField(*field, *alone.Source);
+          }
+          communicator.Barrier();
+        });
+    }
+  }
+}
+
+/// How many of five ranks fail, and how many of them with this sentence.
+std::pair<int, int> Failing(
+  const Whole& whole, ValuesOn where, const MeshOptions& options, const std::string& sentence)
+{
+  std::atomic<int> failed{ 0 };
+  std::atomic<int> said{ 0 };
+  RunOnSimulatedRanks(5,
+    [&](Communicator& communicator)
+    {
+      const Piece piece = PieceOf(whole, communicator);
+      try
+      {
+        const SharedMesh shared(
+          communicator, piece.Mesh.Mesh(), where, BrickCells, options, MachineOf(communicator, 3));
+      }
+      catch (const Error& error)
+      {
+        ++failed;
+        said += std::string(error.what()).find(sentence) != std::string::npos ? 1 : 0;
+      }
+      communicator.Barrier();
+      EXPECT_TRUE(FilesInMemory().empty()) << "nothing is left of a mesh that is not drawn";
+      communicator.Barrier();
+    });
+  return { failed.load(), said.load() };
+}
+
+TEST(SharedMesh, ARefusalIsSaidOncePerMachineAndFailsOnAllRanks)
+{
+  const std::pair<int, int> expected(5, 2);
+  MeshOptions options = Options();
+  EXPECT_EQ(
+    Failing(Curved(), ValuesOn::CellCorners, options, "is not an axis-aligned box"), expected);
+  options.Sampling.Tolerance = 0.0;
+  EXPECT_EQ(Failing(Curved(), ValuesOn::Points, options, "is not an axis-aligned box"), expected);
+}
+
+TEST(SharedMesh, AnInterruptionLeavesNothing)
+{
+  const std::pair<int, int> expected(5, 2);
+  std::atomic<int> looks{ 0 };
+  MeshOptions options = Options();
+  options.Sampling.Watch = [&](double) { return ++looks < 0; };
+  EXPECT_EQ(Failing(Curved(), ValuesOn::Points, options, "was stopped"), expected);
+  EXPECT_GE(looks.load(), 2);
+}
+
+} // namespace
