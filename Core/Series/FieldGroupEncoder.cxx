@@ -5,6 +5,7 @@
 #include "Codec/BlockScratch.h"
 #include "Codec/GroupOrder.h"
 #include "Codec/SymbolWriter.h"
+#include "Series/ChainLengths.h"
 #include "Series/Exceptions.h"
 #include "Series/FieldLattice.h"
 #include "Series/GroupNodes.h"
@@ -50,7 +51,6 @@ private:
   void EncodeStep(
     int step, std::vector<double>* squares, const std::function<void(double)>& tell);
   void WriteSymbols();
-  void CountChains();
 
   const FieldGroup& Field;
   ThreadPool& Pool;
@@ -281,56 +281,6 @@ void Encoder<T>::WriteSymbols()
 }
 
 template <class T>
-void Encoder<T>::CountChains()
-{
-  const int steps = static_cast<int>(this->Out.Steps.size());
-  if (this->Planes.size() < 2)
-  {
-    return;
-  }
-  const std::size_t blocks = this->Out.Steps[0].Planes[0].size();
-  std::vector<char> needed(static_cast<std::size_t>(steps) + 1); // the step before comes first
-  for (std::size_t b = 0; b < blocks; ++b)
-  {
-    for (int t = 0; t < steps; ++t)
-    {
-      std::fill(needed.begin(), needed.end(), 0);
-      std::vector<int> open{ t };
-      int chain = 0;
-      while (!open.empty())
-      {
-        const int at = open.back();
-        open.pop_back();
-        char& counted = needed[static_cast<std::size_t>(at - StepBefore)];
-        if (counted != 0)
-        {
-          continue;
-        }
-        counted = 1;
-        ++chain;
-        if (at == StepBefore)
-        {
-          continue; // a key frame
-        }
-        const EncodedBlock& block = this->Out.Steps[static_cast<std::size_t>(at)].Planes[0][b];
-        const StepReferences references = ReferencesOfStep(at, steps, this->Out.Head.Open);
-        if (block.Same)
-        {
-          open.push_back(references.A);
-        }
-        else if (!block.Uniform && block::ModeOf(block.Mode).From != block::Reference::None)
-        {
-          open.push_back(references.A);
-          open.push_back(references.B);
-        }
-      }
-      this->Out.ChainSum += chain;
-      this->Out.ChainMost = std::max(this->Out.ChainMost, chain);
-    }
-  }
-}
-
-template <class T>
 EncodedField Encoder<T>::Run(
   std::vector<std::vector<double>>* sumSquares, const std::function<void(double)>& tell)
 {
@@ -351,7 +301,7 @@ EncodedField Encoder<T>::Run(
     decoded.push_back(&work.Decoded);
   }
   MakeNodes<T>(this->Field, this->Out.Head, decoded, this->Out.Steps, this->Pool);
-  this->CountChains();
+  CountChains(this->Out, this->Field.Samples, this->Field.BrickCells);
   this->Out.Last = { this->Out.Head, std::move(this->Work.back().Decoded) };
   this->Work.pop_back();
   if (this->Field.Spare != nullptr)

@@ -89,8 +89,10 @@ struct EncodedField
   std::vector<EncodedStep> Steps;
   FieldErrors Errors;
   KeyFrame Last;
-  /// Steps that must be decoded for a brick of the finest level: sum over all bricks, and most.
+  /// Steps that must be decoded for a brick of the finest level: sum over so many bricks of all steps, and
+  /// most; see ChainLengths.h.
   std::int64_t ChainSum = 0;
+  std::int64_t ChainBricks = 0;
   int ChainMost = 0;
 };
 

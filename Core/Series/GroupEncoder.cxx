@@ -29,7 +29,7 @@ ValueRange MagnitudeRange(const std::vector<double>& squares)
   return range;
 }
 
-void Measure(const EncodedField& field, std::int64_t steps, ComponentIndex& component,
+void Measure(const EncodedField& field, ComponentIndex& component,
   EncodeStatistics& statistics)
 {
   component.Range = field.Errors.Range;
@@ -43,8 +43,7 @@ void Measure(const EncodedField& field, std::int64_t steps, ComponentIndex& comp
   component.SumWeightedError = field.Errors.SumWeighted;
   statistics.ExceptionVoxels += field.Errors.Exceptions;
   statistics.ChainSum += field.ChainSum;
-  statistics.ChainBricks +=
-    static_cast<std::int64_t>(field.Steps.empty() ? 0 : field.Steps[0].Planes[0].size()) * steps;
+  statistics.ChainBricks += field.ChainBricks;
   statistics.ChainMost = std::max<std::int64_t>(statistics.ChainMost, field.ChainMost);
 }
 
@@ -241,7 +240,7 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
       {
         LetRest(fields.back(), count);
       }
-      Measure(fields.back(), count, group.Measured[a][c], group.Statistics);
+      Measure(fields.back(), group.Measured[a][c], group.Statistics);
       group.Measured[a][c].ClampedCount = made.Clamped.Count * (rests ? count : 1);
       group.BytesIn +=
         static_cast<std::uint64_t>(ValuesOfStep(plan, array)) * SizeOf(array.Type) * steps.size();

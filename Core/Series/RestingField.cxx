@@ -23,6 +23,7 @@ void LetRest(EncodedField& field, std::int64_t steps)
   errors.SumSquared *= static_cast<double>(steps);
   errors.SumWeighted *= static_cast<double>(steps);
   field.ChainSum *= steps;
+  field.ChainBricks *= steps;
 }
 
 } // namespace banyan
