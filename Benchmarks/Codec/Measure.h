@@ -48,7 +48,7 @@ struct Measurement
 double ErrorBoundFor(const RawSeries& series, int bits);
 
 /// Encodes all steps, decodes all steps in order, then decodes random bricks by themselves.
-/// Everything that is decoded in the first pass of each kind is compared with the original.
+/// Before the timed passes of decoding comes one that compares what is decoded with the original.
 /// Times are processor time of the whole process, so that threads which a method starts do not help
 /// it, and other users of the machine disturb less.
 /// Throws what the method throws.
