@@ -1,11 +1,11 @@
 #include "Cache/BrickCache.h"
 
+#include "Base/CacheBudget.h"
 #include "Base/Error.h"
 #include "Series/LatticeCache.h"
 
 #include <algorithm>
 #include <condition_variable>
-#include <cstdlib>
 #include <list>
 #include <mutex>
 #include <unordered_map>
@@ -48,18 +48,6 @@ constexpr std::uint64_t OverheadBytes = 256;
 std::uint64_t CostOf(const BrickValues& brick)
 {
   return brick.Bytes.size() + OverheadBytes;
-}
-
-constexpr std::uint64_t DefaultBudget = std::uint64_t{ 512 } << 20;
-
-std::uint64_t BudgetFromEnvironment()
-{
-  const char* text = std::getenv("BANYAN_CACHE_MB");
-  char* end = nullptr;
-  const unsigned long long megabytes = text != nullptr ? std::strtoull(text, &end, 10) : 0;
-  const bool good = text != nullptr && end != text && *end == '\0' && text[0] != '-' &&
-                    megabytes <= (std::uint64_t{ 1 } << 40);
-  return good ? std::uint64_t{ megabytes } << 20 : DefaultBudget;
 }
 
 BrickNode NodeOf(const SeriesFile& series, const FieldKey& field, std::int64_t brick)
@@ -284,7 +272,7 @@ BrickCache::BrickCache(std::uint64_t budgetBytes)
 }
 
 BrickCache::BrickCache()
-  : BrickCache(BudgetFromEnvironment())
+  : BrickCache(CacheBudgetBytes())
 {
   this->Self->Shares = true;
 }

@@ -82,8 +82,8 @@ public:
   void Clear();
   Statistics GetStatistics() const;
 
-  /// The cache of this process; its budget is `BANYAN_CACHE_MB` from the environment if set,
-  /// otherwise 512 MiB.
+  /// The cache of this process; its budget is that of CacheBudget.h: `BANYAN_CACHE_MB` from the
+  /// environment, or 512 MiB.
   static BrickCache& Process();
 
 private:

@@ -1,16 +1,14 @@
 #include "Series/LatticeCache.h"
 
+#include "Base/CacheBudget.h"
 #include "Series/Hash.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 namespace banyan
 {
 namespace
 {
-
-constexpr std::uint64_t DefaultBudget = std::uint64_t{ 128 } << 20;
 
 std::uint64_t BytesOf(const LatticeCache::Box& box)
 {
@@ -20,14 +18,8 @@ std::uint64_t BytesOf(const LatticeCache::Box& box)
 } // namespace
 
 LatticeCache::LatticeCache()
-  : Budget(DefaultBudget)
+  : Budget(CacheBudgetBytes() / 4)
 {
-  const char* text = std::getenv("BANYAN_CACHE_MB");
-  const long megabytes = text != nullptr ? std::strtol(text, nullptr, 10) : 0;
-  if (megabytes > 0)
-  {
-    this->Budget = (static_cast<std::uint64_t>(megabytes) << 20) / 4;
-  }
   LatticeMemory::KeepAtMost(this->Budget);
 }
 

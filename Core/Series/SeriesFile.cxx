@@ -1,5 +1,6 @@
 #include "Series/SeriesFile.h"
 
+#include "Base/CacheBudget.h"
 #include "Base/Error.h"
 #include "Series/AtomicFile.h"
 #include "Series/FieldReader.h"
@@ -69,6 +70,7 @@ SeriesFile::~SeriesFile() = default;
 
 std::shared_ptr<SeriesFile> SeriesFile::Open(const std::string& path)
 {
+  (void)CacheBudgetAskedFor(); // who reads a series hears of a budget that is none
   std::shared_ptr<SeriesFile> file(new SeriesFile);
   Internals& self = *file->Self;
   OpenSeries& series = self.Series;

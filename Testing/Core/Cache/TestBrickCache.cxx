@@ -1,6 +1,8 @@
 #include "Series/SeriesTesting.h"
 
+#include "Base/CacheBudget.h"
 #include "Base/Error.h"
+#include "Series/LatticeCache.h"
 
 #include <atomic>
 #include <fstream>
@@ -244,10 +246,12 @@ TEST(ProcessBrickCache, IsOne)
   EXPECT_GT(BrickCache::Process().Budget(), 0u);
 }
 
+/// Of the whole, when that of lattices is a quarter of it.
 int BudgetWith(const char* megabytes)
 {
   setenv("BANYAN_CACHE_MB", megabytes, 1);
-  return static_cast<int>(BrickCache::Process().Budget() >> 20);
+  const std::uint64_t all = BrickCache::Process().Budget();
+  return LatticeCache::Process().BudgetBytes() == all / 4 ? static_cast<int>(all >> 20) : 99;
 }
 
 TEST(ProcessBrickCacheDeathTest, TakesItsBudgetFromTheEnvironment)
@@ -260,6 +264,64 @@ TEST(ProcessBrickCacheDeathTest, TakesItsBudgetFromTheEnvironment)
   EXPECT_EXIT(_exit(BudgetWith("many") == 512 ? 5 : 6), exits(5), "");
   EXPECT_EXIT(_exit(BudgetWith("-1") == 512 ? 5 : 6), exits(5), "");
   EXPECT_EXIT(_exit(BudgetWith("") == 512 ? 5 : 6), exits(5), "");
+  EXPECT_EXIT(_exit(BudgetWith("64MB") == 512 ? 5 : 6), exits(5), "");
+}
+
+/// Of all of it, with BANYAN_CACHE_MB as it is.
+std::vector<float> FirstBrick(const std::string& path)
+{
+  const auto file = SeriesFile::Open(path);
+  const BrickLayout layout = file->Layout(0);
+  std::vector<float> values(static_cast<std::size_t>(layout.SamplesOf(0).Count()));
+  file->DecodeBrick({ 1, 0, 0, 0 }, 0, values.data());
+  return values;
+}
+
+TEST(ProcessBrickCacheDeathTest, WithoutACacheBricksAreTheSame)
+{
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
+  const TemporaryFolder folder;
+  const auto steps = Sample<float>(GridOf(33, 18, 19), 5, Wavy<float>);
+  Encode(folder / "s.banyan", GridOf(33, 18, 19), steps, {});
+  const auto compare = [&folder]
+  {
+    setenv("BANYAN_CACHE_MB", "0", 1);
+    const std::vector<float> without = FirstBrick(folder / "s.banyan");
+    const bool nothing = LatticeCache::Process().Bytes() == 0;
+    LatticeCache::Process().SetBudgetBytes(1 << 20);
+    return nothing && without == FirstBrick(folder / "s.banyan") ? 5 : 6;
+  };
+  EXPECT_EXIT(_exit(compare()), ::testing::ExitedWithCode(5), "");
+}
+
+TEST(CacheBudget, IsAWholeNumberOfMegabytesOrASentence)
+{
+  const TemporaryFolder folder;
+  Encode(folder / "s.banyan", GridOf(5, 5, 5), Sample<float>(GridOf(5, 5, 5), 1, Wavy<float>), {});
+  for (const char* const text :
+    { "64MB", "many", "-1", "", " 7", "7 ", "1.5", "99999999999999999999" })
+  {
+    setenv("BANYAN_CACHE_MB", text, 1);
+    try
+    {
+      (void)SeriesFile::Open(folder / "s.banyan");
+      ADD_FAILURE() << "'" << text << "' was taken";
+    }
+    catch (const Error& error)
+    {
+      EXPECT_NE(std::string(error.what()).find("BANYAN_CACHE_MB is \"" + std::string(text) + "\""),
+        std::string::npos)
+        << error.what();
+    }
+    EXPECT_EQ(CacheBudgetBytes(), std::uint64_t{ 512 } << 20);
+  }
+  setenv("BANYAN_CACHE_MB", "0", 1);
+  EXPECT_EQ(CacheBudgetAskedFor(), 0u);
+  setenv("BANYAN_CACHE_MB", "64", 1);
+  EXPECT_EQ(CacheBudgetAskedFor(), std::uint64_t{ 64 } << 20);
+  EXPECT_NO_THROW((void)SeriesFile::Open(folder / "s.banyan"));
+  unsetenv("BANYAN_CACHE_MB");
+  EXPECT_EQ(CacheBudgetAskedFor(), std::uint64_t{ 512 } << 20);
 }
 
 } // namespace
