@@ -7,9 +7,10 @@
 #   --quick        128^3 samples, 256^2 pixels and 40 frames instead of 256^3, 512^2 and 80: a minute
 #                  or two
 #   --output DIR   where balance.csv, balance-ranks.csv (each rank's times), balance.png,
-#                  balance-ranks.png and, where there is mpirun, balance-real.csv go; jumps of the
-#                  camera and a camera at rest are in balance-jumps.csv and balance-rest.csv
-#                  (default benchmark-output)
+#                  balance-ranks.png go; jumps of the camera (40 frames) and a camera at rest (200
+#                  frames) are in balance-jumps.csv and balance-rest.csv; where there is mpirun, real
+#                  ranks are in balance-real.csv, and with a half of the volume in the memory of each
+#                  in balance-pieces.csv (default benchmark-output)
 #   --data DIR     folder of real data (default ../shared/data beside the project, if it exists):
 #                  bonsai is zoomed into as well, in balance-bonsai.csv
 #   --work DIR     keeps volumes (default: balance-scenes in the build folder)
@@ -45,11 +46,15 @@ common=(--size "$size" --picture "$picture")
 stage 2 4 "Measuring simulated ranks"
 "$program" "${common[@]}" --frames "$frames" --ranks "$ranks" --output "$output/balance.csv" \
   --rank-times "$output/balance-ranks.csv" || fail "measuring failed."
-for path in jumps rest; do
-  say "      $path"
-  "$program" "${common[@]}" --path "$path" --frames 40 --ranks "$ranks" \
-    --output "$output/balance-$path.csv" || fail "measuring failed."
-done
+# One path of the camera that is not the zoom.
+measure_path()
+{
+  say "      $1, $2 frames"
+  "$program" "${common[@]}" --path "$1" --frames "$2" --ranks "$ranks" \
+    --output "$output/balance-$1.csv" || fail "measuring failed."
+}
+measure_path jumps 40
+measure_path rest 200
 real=()
 if [[ -n "$data" ]]; then
   collect bonsai '*.mhd'
@@ -64,6 +69,9 @@ stage 3 4 "Measuring two real ranks"
 if command -v mpirun > /dev/null; then
   mpirun -np 2 --oversubscribe "$program" --mpi "${common[@]}" --frames "$frames" \
     --output "$output/balance-real.csv" || fail "measuring real ranks failed."
+  say "      each with half of the volume in its memory"
+  mpirun -np 2 --oversubscribe "$program" --mpi --pieces "${common[@]}" --frames "$frames" \
+    --output "$output/balance-pieces.csv" || fail "measuring ranks with pieces failed."
 else
   say "      there is no mpirun"
 fi

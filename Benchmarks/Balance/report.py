@@ -14,6 +14,7 @@ from tables import in_order, read  # noqa: E402
 COLORS = {"off": "tab:red", "slice-step": "tab:orange", "measured-cost": "tab:blue"}
 BALANCED_WITHIN = 5  # frames after a jump of the camera
 JUMP_EVERY = 10      # frames, on the path of jumps
+RESTING_FROM = 20    # frame from which a view at rest should have been searched
 
 
 def table(folder, name):
@@ -107,6 +108,23 @@ def print_settled(name, rows, settled):
         print(line)
 
 
+def print_rest(rows):
+    """Whether planes come to rest where the view does."""
+    if not rows:
+        return
+    print(f"At rest, from frame {RESTING_FROM}: imbalance, and the last frame of all in which bytes moved")
+    for ranks in in_order(rows, "ranks"):
+        for mode in in_order(rows, "mode"):
+            imbalance = curve(rows, ranks, mode, "imbalance")
+            moved = curve(rows, ranks, mode, "bytes_moved")
+            last = max((frame for frame, count in enumerate(moved) if count > 0), default=None)
+            settled = imbalance[RESTING_FROM:]
+            if settled:
+                print(f"{ranks:6g} {mode:14} mean {mean(settled):.3f} smallest {min(settled):.3f} "
+                      f"largest {max(settled):.3f}; "
+                      + ("nothing moved" if last is None else f"frame {last} of {len(moved)}"))
+
+
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
@@ -117,11 +135,13 @@ def main():
     print_zoom("Zoom, simulated ranks", zoom)
     print_zoom("Zoom into bonsai, simulated ranks", table(folder, "balance-bonsai.csv"))
     print_zoom("Zoom, real ranks", table(folder, "balance-real.csv"))
+    print_zoom("Zoom, real ranks with half of the volume each", table(folder, "balance-pieces.csv"))
     print_settled(f"Jumps, from frame {BALANCED_WITHIN} after each",
                   table(folder, "balance-jumps.csv"),
                   lambda frame: frame % JUMP_EVERY >= BALANCED_WITHIN)
-    print_settled("At rest, from frame 5", table(folder, "balance-rest.csv"),
-                  lambda frame: frame >= 5)
+    at_rest = table(folder, "balance-rest.csv")
+    print_settled("At rest, from frame 5", at_rest, lambda frame: frame >= 5)
+    print_rest(at_rest)
 
 
 if __name__ == "__main__":
