@@ -5,7 +5,7 @@
 #   compositing.sh [--quick] [--output DIR] [--data DIR] [--work DIR] [--scenes LIST]
 #                  [--cameras LIST] [--ranks LIST] [--networks LIST] [--help]
 #
-#   --quick          two of the four cameras, 2 to 64 ranks on 10 Gb/s: minutes instead of hours
+#   --quick          two of the four cameras, 2 to 64 ranks: minutes instead of hours
 #   --output DIR     where compositing.csv, compositing-time.png and compositing-bytes.png go (default
 #                    benchmark-output)
 #   --data DIR       folder of real data (default ../shared/data beside the project, if it exists)
@@ -16,7 +16,7 @@
 #   --cameras LIST   of perspective-full, perspective-zoom, parallel-full, parallel-zoom
 #   --ranks LIST     numbers of ranks, up to 512 (default 2,3,4,8,16,32,64 and, unless --quick, 256
 #                    and 512)
-#   --networks LIST  gigabits per second (default 10,100; --quick: 10)
+#   --networks LIST  gigabits per second (default 10,100)
 #
 # The network is SimGrid's: a fat tree of 512 nodes, full bisection, 1 us per link, 95 % of the
 # bandwidth for data, 1 us per message on both sides. Only the network takes time, so that the
@@ -41,7 +41,6 @@ find_data
 if [[ $quick == 1 ]]; then
   cameras="${cameras:-perspective-full,parallel-zoom}"
   ranks="${ranks:-2,3,4,8,16,32,64}"
-  networks="${networks:-10}"
 fi
 cameras="${cameras:-perspective-full,perspective-zoom,parallel-full,parallel-zoom}"
 ranks="${ranks:-2,3,4,8,16,32,64,256,512}"

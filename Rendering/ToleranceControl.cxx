@@ -5,8 +5,10 @@
 #include "Base/ThreadPool.h"
 #include "Parallel/LevelZones.h"
 #include "Render/ElementsPerPixel.h"
+#include "Render/ScreenLevels.h"
 
 #include <algorithm>
+#include <memory>
 
 namespace banyan
 {
@@ -22,12 +24,23 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
 {
   const int coarsest = field.IsMesh() ? CoarsestMeshLevel : CoarsestLevel;
   scene.LevelsShareCells = field.IsMesh();
+  const bool byScreen = wish.ScreenErrorPixels > 0.0;
   // Plain data has coarser levels only when they are made; still pictures of it do without.
-  const bool levels = (field.Encoded() || field.IsMesh() || wish.Interacting) &&
+  const bool levels = (field.Encoded() || field.IsMesh() || wish.Interacting || byScreen) &&
                       LevelsHaveOneOrder(scene, field.Zones(), coarsest);
   if (levels)
   {
     field.BringLevels(communicator, scene, coarsest);
+  }
+  if (byScreen)
+  {
+    const std::string agreed = AgreeOnError(communicator, failure);
+    if (!agreed.empty())
+    {
+      throw Error(agreed);
+    }
+    PlanByScreen(communicator, field, scene, wish, levels ? coarsest : 0);
+    return 0.0;
   }
   if (wish.Interacting)
   {
@@ -40,11 +53,20 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
   SamplingWish sampling{ tolerance, scene.SampleDistance, levels ? coarsest : 0 };
   sampling.FinestLevel =
     field.IsMesh() ? FinestLevelFor(scene, wish.MaxElementsPerPixel, sampling.CoarsestLevel) : 0;
+  sampling.StaysInMemory = wish.Interacting && wish.Seconds > 0.0;
   const SamplingPlan plan = PlanDistributed(communicator, scene, field.Source(), field.Zones(),
     budgetBytes, ThreadPool::Process(), failure, sampling, frame);
   scene.Samplings = plan.Samplings;
   scene.OpacityLimit = plan.OpacityLimit;
   return plan.EstimatedError;
+}
+
+void ToleranceControl::PlanByScreen(Communicator& communicator, DistributedField& field,
+  RayScene& scene, const Wish& wish, int coarsest)
+{
+  const int common = CommonLevel(communicator, field.Source(), scene.DomainCells, coarsest);
+  scene.Samplings = std::make_shared<const TileSamplings>(SamplingsByScreen(
+    scene, wish.ScreenErrorPixels, scene.SampleDistance, common, !wish.FixedDistance));
 }
 
 void ToleranceControl::FrameTook(const Wish& wish, double seconds)

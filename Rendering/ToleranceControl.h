@@ -26,12 +26,15 @@ public:
     bool Interacting = false;
     bool Passes = false; ///< whether still pictures become better in passes
     double MaxElementsPerPixel = 0.0; ///< of meshes: see FinestLevelFor
+    /// Above 0, what cells may measure on the screen, in place of the tolerance: see SamplingsByScreen.
+    double ScreenErrorPixels = 0.0;
+    bool FixedDistance = false; ///< whether the scene's distance between samples is that of all levels
   };
 
   /// Collective: gives the scene its samplings and its opacity limit.
   /// @param failure of this rank, which all ranks then throw
   /// @param frame the pilots' samples and bytes are added
-  /// @return the estimated error in 1/255
+  /// @return the estimated error in 1/255; 0 where the size of cells decides, which tells no error
   double Plan(Communicator& communicator, DistributedField& field, RayScene& scene,
     const Wish& wish, std::uint64_t budgetBytes, const std::string& failure,
     FrameStatistics& frame);
@@ -43,6 +46,9 @@ public:
   bool RefineNext() { return this->Passes.Next(); }
 
 private:
+  static void PlanByScreen(Communicator& communicator, DistributedField& field, RayScene& scene,
+    const Wish& wish, int coarsest);
+
   RefinementPasses Passes;
   double Slack = 1.0; ///< times the interactive tolerance
 };

@@ -296,7 +296,7 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   const banyan::ToleranceControl::Wish wish{ this->ImageErrorTolerance,
     this->InteractiveImageErrorTolerance, this->InteractiveFrameSeconds,
     renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0, this->RefineInPasses,
-    this->MaxElementsPerPixel };
+    this->MaxElementsPerPixel, this->ScreenErrorPixels, fixed };
   const banyan::Timer drawing;
   {
     const banyan::PhaseScope fetching(banyan::Phase::Fetching);
@@ -304,7 +304,8 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   }
   const banyan::PhaseScope sampling(banyan::Phase::Sampling);
   this->Statistics->SetEstimatedImageError(
-    !fixed && banyan::CanKeepTolerance(this, volume->GetProperty())
+    (!fixed || this->ScreenErrorPixels > 0.0) &&
+        banyan::CanKeepTolerance(this, volume->GetProperty())
       ? self.Tolerance.Plan(
           *self.Communicator, self.Field, scene, wish, budget, wanted.Problem, frame)
       : 0.0);
@@ -376,6 +377,7 @@ void vtkBanyanVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "MeshSamplingTolerance: " << this->MeshSamplingTolerance << "\n"
      << indent << "MeshSamplingBoxes: " << this->MeshSamplingBoxes << "\n"
      << indent << "MaxElementsPerPixel: " << this->MaxElementsPerPixel << "\n"
+     << indent << "ScreenErrorPixels: " << this->ScreenErrorPixels << "\n"
      << indent << "TemporalEnhancement: " << this->TemporalEnhancement << "\n"
      << indent << "Compositing: " << this->Compositing << "\n"
      << indent << "CompositeInFewBits: " << this->CompositeInFewBits << "\n"

@@ -100,6 +100,18 @@ public:
 
   ///@{
   /**
+   * How many pixels long cells may be, in place of the tolerance: each tile of 32 x 32 pixels is drawn from
+   * the coarsest level whose cells are no longer where the volume is nearest to the eye
+   * (banyan::SamplingsByScreen), one sample per cell, or as far apart as SampleDistanceVoxels says. The size
+   * of cells decides, whatever their values are: no error is estimated. Default 0: the tolerance decides.
+   * Allowed [0, 1024]. Without effect on projections and nearest interpolation.
+   */
+  vtkSetClampMacro(ScreenErrorPixels, double, 0.0, 1024.0);
+  vtkGetMacro(ScreenErrorPixels, double);
+  ///@}
+
+  ///@{
+  /**
    * How far the points of hexahedra may lie beside the lattice of their octree, in edges of the smallest
    * cell: they are drawn as if they were there. Default 1/1024; allowed [0, 1/16]. More than the default
    * is for meshes whose points were moved by the displacements that they carry.
@@ -265,6 +277,7 @@ private:
   double InteractiveFrameSeconds = 0.2;
   bool RefineInPasses = false;
   double SampleDistanceVoxels = 0.0;
+  double ScreenErrorPixels = 0.0;
   double MeshTolerance = 1.0 / 1024;
   double MeshSamplingTolerance = 0.25;
   int MeshSamplingBoxes = 1 << 20;

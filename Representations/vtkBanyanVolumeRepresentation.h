@@ -51,6 +51,7 @@ public:
   void SetInteractiveImageErrorTolerance(double tolerance);
   void SetInteractiveFrameSeconds(double seconds);
   void SetSampleDistanceVoxels(double voxels);
+  void SetScreenErrorPixels(double pixels);
 
   ///@{
   /** Gradient shading with the light at the viewer, and its coefficients: as vtkVolumeProperty. */

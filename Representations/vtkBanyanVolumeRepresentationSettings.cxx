@@ -27,6 +27,11 @@ void vtkBanyanVolumeRepresentation::SetSampleDistanceVoxels(double voxels)
   this->Mapper->SetSampleDistanceVoxels(voxels);
 }
 
+void vtkBanyanVolumeRepresentation::SetScreenErrorPixels(double pixels)
+{
+  this->Mapper->SetScreenErrorPixels(pixels);
+}
+
 void vtkBanyanVolumeRepresentation::SetShade(bool shade)
 {
   this->Property->SetShade(shade ? 1 : 0);

@@ -2,20 +2,33 @@
 
 #include "Parallel/DistributedPilot.h"
 
+#include <algorithm>
+
 namespace banyan
 {
 namespace
 {
 
-/// The coarsest level, up to `most`, that all ranks with bricks have.
-int CommonLevel(Communicator& communicator, BrickSource* source, const Box& domain, int most)
+/// The largest of what the ranks say, or the error of the first one that fails, on all of them.
+template <class Function>
+int LargestOfAll(Communicator& communicator, Function&& mine)
 {
-  int mine = most;
-  while (source != nullptr && mine > 0 && source->AtLevel(mine, domain) == nullptr)
+  int value = 0;
+  std::string failure;
+  try
   {
-    --mine;
+    value = mine();
   }
-  return -static_cast<int>(AllMax(communicator, -mine));
+  catch (const std::exception& error)
+  {
+    failure = error.what();
+  }
+  const std::string agreed = AgreeOnError(communicator, failure);
+  if (!agreed.empty())
+  {
+    throw Error(agreed);
+  }
+  return static_cast<int>(AllMax(communicator, value));
 }
 
 /// The finest level that all ranks can draw pilots from without loading everything again for each
@@ -28,27 +41,31 @@ int FinestPilotLevel(Communicator& communicator, const RayScene& scene, BrickSou
     return 0;
   }
   const Box& zone = zones.at(static_cast<std::size_t>(communicator.Rank()));
-  int mine = 0;
-  std::string failure;
-  try
-  {
-    mine = source && !zone.Empty()
-             ? FinestLevelWithin(scene, *source, zone, coarsest, budgetBytes / 2, pool)
-             : 0;
-  }
-  catch (const std::exception& error)
-  {
-    failure = error.what();
-  }
-  const std::string agreed = AgreeOnError(communicator, failure);
-  if (!agreed.empty())
-  {
-    throw Error(agreed);
-  }
-  return static_cast<int>(AllMax(communicator, mine));
+  return LargestOfAll(communicator,
+    [&]
+    {
+      return source && !zone.Empty()
+               ? FinestLevelWithin(scene, *source, zone, coarsest, budgetBytes / 2, pool)
+               : 0;
+    });
 }
 
 } // namespace
+
+int CommonLevel(Communicator& communicator, BrickSource* source, const Box& domain, int most)
+{
+  // The least of all is the largest of the negatives.
+  return -LargestOfAll(communicator,
+    [&]
+    {
+      int level = most;
+      while (source != nullptr && level > 0 && source->AtLevel(level, domain) == nullptr)
+      {
+        --level;
+      }
+      return -level;
+    });
+}
 
 SamplingPlan PlanDistributed(Communicator& communicator, const RayScene& scene, BrickSource* source,
   const std::vector<Box>& zones, std::uint64_t budgetBytes, ThreadPool& pool,
@@ -62,6 +79,10 @@ SamplingPlan PlanDistributed(Communicator& communicator, const RayScene& scene, 
   wish.CoarsestLevel = CommonLevel(communicator, source, scene.DomainCells, wish.CoarsestLevel);
   wish.FinestPilotLevel =
     FinestPilotLevel(communicator, scene, source, zones, wish.CoarsestLevel, budgetBytes, pool);
+  if (wish.StaysInMemory)
+  {
+    wish.FinestLevel = std::max(wish.FinestLevel, wish.FinestPilotLevel);
+  }
   return PlanSamplings(scene, wish,
     [&](const RayScene& pilot)
     {

@@ -7,6 +7,11 @@
 namespace banyan
 {
 
+/// The coarsest level, up to `most`, that all ranks with bricks have. Collective, the same on all ranks.
+/// When a rank fails, all ranks throw the same Error.
+/// @param source null on ranks without bricks
+int CommonLevel(Communicator& communicator, BrickSource* source, const Box& domain, int most);
+
 /// Plans how a picture is to be sampled on all ranks: PlanSamplings with pilots that all ranks draw
 /// together. Collective; all ranks get the same plan. The parameters are those of DrawDistributed,
 /// whose picture of `scene` with the plan's samplings and opacity limit then is within the

@@ -32,6 +32,9 @@ struct SamplingWish
   /// The finest level that may be drawn from, whatever the tolerance: see FinestLevelFor. One below the
   /// coarsest that is used, if need be: of one level alone no error could be told.
   int FinestLevel = 0;
+  /// Whether FinestPilotLevel is also the finest level that is drawn from, whatever the tolerance: of finer
+  /// ones more is visible than memory may hold, so that each frame would load it anew.
+  bool StaysInMemory = false;
 };
 
 /// How a picture is to be sampled so that its error stays within a tolerance.

@@ -194,6 +194,16 @@ def camera_inside_encoded():
 
 
 @scene
+def cells_of_pixels():
+    # Levels by the size of cells on the screen: finer in front than beside.
+    view = session.new_view(SIZE, CameraPosition=[30, 14, 24], CameraFocalPoint=[0, 0, 0],
+                            CameraViewUp=[0, 1, 0], CameraViewAngle=60)
+    display = encoded(view)
+    display.ScreenErrorPixels = 16
+    return Drawn(view, [display], [spheres(view)], volume_pixels=60000)
+
+
+@scene
 def placed():
     # Much larger than its data: a client has to know, to see as far.
     view = session.new_view(SIZE, CameraPosition=[180, 160, 400], CameraFocalPoint=[0, 0, 0],

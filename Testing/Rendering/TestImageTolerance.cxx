@@ -103,6 +103,48 @@ void FramesThatTakeTooLongGetALargerTolerance()
   Check(Difference(stage.Draw(), stillPicture) == 0, "still frames know nothing of all that");
 }
 
+/// Larger cells take fewer samples; small ones give the picture of one sample per voxel.
+void CellsAreAsLargeAsAllowedOnTheScreen(const std::string& path)
+{
+  vtkNew<vtkBanyanSeriesReader> reader;
+  reader->SetFileName(path.c_str());
+  for (const bool encoded : { false, true })
+  {
+    const auto draw = [&](double pixels, double distance, vtkIdType& taken)
+    {
+      vtkNew<vtkBanyanVolumeMapper> mapper;
+      if (encoded)
+      {
+        mapper->SetInputConnection(reader->GetOutputPort());
+      }
+      else
+      {
+        mapper->SetInputData(PlainImage(Balls, Samples));
+      }
+      mapper->SetScreenErrorPixels(pixels);
+      mapper->SetSampleDistanceVoxels(distance);
+      Stage stage(mapper);
+      stage.LookAt(Bounds);
+      const auto picture = stage.Draw();
+      Check(EstimateOf(mapper) == 0.0, "nothing is estimated where the size of cells decides");
+      taken = mapper->GetStatistics()->GetSamplesTaken();
+      return picture;
+    };
+    vtkIdType all = 0;
+    vtkIdType some = 0;
+    vtkIdType few = 0;
+    vtkIdType close = 0;
+    const auto exact = draw(0.0, 1.0, all);
+    Check(Difference(draw(0.01, 0.0, some), exact) == 0, "cells that may not be larger are the finest");
+    Check(some == all, "and take a sample each");
+    const auto coarse = draw(40.0, 0.0, few);
+    Check(0 < few && 4 * few < all, "larger cells take fewer samples");
+    Check(Difference(coarse, exact) > 0, "and are seen");
+    draw(40.0, 1.0, close);
+    Check(close > 2 * few, "a fixed distance is kept");
+  }
+}
+
 } // namespace
 
 int main()
@@ -111,6 +153,7 @@ int main()
   PicturesStayWithinTheirTolerance(folder / "series.banyan", Samples);
   PicturesStayWithinTheirTolerance(folder / "column.banyan", ColumnSamples);
   PicturesStayWithinTheirTolerance(folder / "plate.banyan", PlateSamples);
+  CellsAreAsLargeAsAllowedOnTheScreen(folder / "series.banyan");
   FramesThatTakeTooLongGetALargerTolerance();
   return Failures() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
