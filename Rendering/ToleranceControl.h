@@ -24,11 +24,13 @@ public:
     double Interactive = 8.0; ///< 1/255
     double Seconds = 0.2;     ///< that a frame may take while interacting; 0 for any
     bool Interacting = false;
-    bool Passes = false; ///< whether still pictures become better in passes
+    bool Passes = false;              ///< whether still pictures become better in passes
     double MaxElementsPerPixel = 0.0; ///< of meshes: see FinestLevelFor
-    /// Above 0, what cells may measure on the screen, in place of the tolerance: see SamplingsByScreen.
+    /// Above 0, what cells may measure on the screen, in place of the tolerance: see
+    /// SamplingsByScreen.
     double ScreenErrorPixels = 0.0;
-    bool FixedDistance = false; ///< whether the scene's distance between samples is that of all levels
+    bool FixedDistance =
+      false; ///< whether the scene's distance between samples is that of all levels
   };
 
   /// Collective: gives the scene its samplings and its opacity limit.

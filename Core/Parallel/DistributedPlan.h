@@ -7,8 +7,8 @@
 namespace banyan
 {
 
-/// The coarsest level, up to `most`, that all ranks with bricks have. Collective, the same on all ranks.
-/// When a rank fails, all ranks throw the same Error.
+/// The coarsest level, up to `most`, that all ranks with bricks have. Collective, the same on all
+/// ranks. When a rank fails, all ranks throw the same Error.
 /// @param source null on ranks without bricks
 int CommonLevel(Communicator& communicator, BrickSource* source, const Box& domain, int most);
 

@@ -31,7 +31,8 @@ bool OffScreen(const Corners& corners)
          all([](const glm::dvec4& p) { return !(p.w > 0.0); });
 }
 
-/// Per tile, the smallest w of what may be seen of the domain there; infinite where there is nothing.
+/// Per tile, the smallest w of what may be seen of the domain there; infinite where there is
+/// nothing.
 class NearestDepths
 {
 public:
@@ -55,8 +56,7 @@ public:
           Corners corners;
           for (int corner = 0; corner < 8; ++corner)
           {
-            const glm::dvec3 at(
-              x + (corner & 1), y + ((corner >> 1) & 1), z + ((corner >> 2) & 1));
+            const glm::dvec3 at(x + (corner & 1), y + ((corner >> 1) & 1), z + ((corner >> 2) & 1));
             corners[static_cast<std::size_t>(corner)] =
               indexToClip * glm::dvec4(low + size * at / glm::dvec3(counts), 1.0);
           }

@@ -7,20 +7,21 @@ namespace banyan
 {
 
 /// Samplings by what cells measure on the screen, and by nothing else: each tile is drawn from the
-/// coarsest level whose cells are at most so many pixels long where the volume is nearest to the eye
-/// under that tile, with one sample per edge of such a cell. What the values are has no part in it, so
-/// no pilots are drawn, and no error is told.
+/// coarsest level whose cells are at most so many pixels long where the volume is nearest to the
+/// eye under that tile, with one sample per edge of such a cell. What the values are has no part in
+/// it, so no pilots are drawn, and no error is told.
 ///
-/// A cell's length is that of its longest edge, a pixel's that of its shorter side, at the depth of the
-/// nearest corner of the blocks under the tile (the domain is cut into up to 16 x 16 x 16 of them): where a
-/// block is cut by the plane of the eye, the finest level is taken. All ranks get the same result, since it
-/// depends on the camera and on DomainCells only.
+/// A cell's length is that of its longest edge, a pixel's that of its shorter side, at the depth of
+/// the nearest corner of the blocks under the tile (the domain is cut into up to 16 x 16 x 16 of
+/// them): where a block is cut by the plane of the eye, the finest level is taken. All ranks get
+/// the same result, since it depends on the camera and on DomainCells only.
 ///
 /// @param scene Samplings have no part in it
 /// @param pixels above 0; below what a cell of the finest level measures, that level is taken
 /// @param distance world length between samples at the finest level; above 0
 /// @param coarsest the coarsest level that may be taken
-/// @param distanceGrows whether samples of coarser levels are as much farther apart as their cells are larger
+/// @param distanceGrows whether samples of coarser levels are as much farther apart as their cells
+/// are larger
 TileSamplings SamplingsByScreen(
   const RayScene& scene, double pixels, double distance, int coarsest, bool distanceGrows);
 

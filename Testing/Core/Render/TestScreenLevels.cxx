@@ -39,7 +39,8 @@ double DepthOfEntry(const RayScene& scene, int x, int y)
   return (glm::inverse(scene.Camera.ClipToWorldMatrix()) * point).w;
 }
 
-/// Pixels that the longest edge of a finest cell covers at a depth, in the direction that shows most of it.
+/// Pixels that the longest edge of a finest cell covers at a depth, in the direction that shows
+/// most of it.
 double PixelsOfCell(const RayScene& scene, double depth)
 {
   double edge = 0.0;
@@ -66,9 +67,8 @@ TEST(ScreenLevels, CellsAreNoLongerThanAllowedWhereRaysEnter)
   {
     for (const bool parallel : { false, true })
     {
-      const glm::dmat4 stretched =
-        glm::rotate(glm::scale(glm::dmat4(1.0), glm::dvec3(1.0, 0.5, 0.7)), 0.4,
-          glm::dvec3(0.3, 1.0, 0.2));
+      const glm::dmat4 stretched = glm::rotate(
+        glm::scale(glm::dmat4(1.0), glm::dvec3(1.0, 0.5, 0.7)), 0.4, glm::dvec3(0.3, 1.0, 0.2));
       const RayScene scene = scenes::Scene(n, { 230, 170 }, stretched, distance, parallel);
       for (const double pixels : { 0.7, 3.0, 20.0 })
       {
