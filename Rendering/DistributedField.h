@@ -43,7 +43,7 @@ public:
   /// drawing takes. Throws Error, the same on all ranks, when one fails.
   void BeginFrame(Communicator& communicator, RayScene& scene);
   /// Collective, after it, for frames that may be drawn from coarser levels, up to `coarsest`: plain
-  /// data in pieces has them then too. Throws Error, the same on all ranks, when one fails.
+  /// data in pieces and meshes have them then too. Throws Error, the same on all ranks, when one fails.
   void BringLevels(Communicator& communicator, const RayScene& scene, int coarsest);
   /// When this rank has cast the rays of the frame: begins to decode the time step that comes next, if it
   /// is an encoded series that plays. Does not throw.

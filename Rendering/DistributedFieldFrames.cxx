@@ -1,6 +1,8 @@
 // Zones from frame to frame.
 #include "DistributedField.h"
 
+#include "MeshField.h"
+
 #include "Base/ThreadPool.h"
 #include "Cache/BrickCache.h"
 #include "Pieces/PieceField.h"
@@ -57,6 +59,10 @@ void DistributedField::BringLevels(Communicator& communicator, const RayScene& s
   {
     this->Pieces->BringLevels(communicator, scene, coarsest,
       BrickCache::Process().DecodedBudget() / 8, ThreadPool::Process());
+  }
+  else if (this->Mesh)
+  {
+    this->Mesh->BringLevels(communicator, coarsest);
   }
 }
 

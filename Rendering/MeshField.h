@@ -42,6 +42,15 @@ public:
 
   const ElementOctree& Tree() const { return this->Mesh->Tree(); }
 
+  /// Collective: coarser meshes, made by one rank of each machine.
+  void BringLevels(Communicator& communicator, int count)
+  {
+    if (this->Mesh)
+    {
+      this->Mesh->BringLevels(communicator, count);
+    }
+  }
+
   /// The bricks of the last Update; can be called once for each.
   std::unique_ptr<HexBrickSource> TakeSource() { return std::move(this->Source); }
 

@@ -38,33 +38,60 @@ const HexBricks::Level& HexBricks::AtLevel(int level, ThreadPool& pool) const
   const std::lock_guard<std::mutex> lock(this->LevelsMutex);
   while (static_cast<int>(this->Levels.size()) < level)
   {
-    const Level* const finer = this->Levels.empty() ? nullptr : this->Levels.back().get();
-    CoarserOctree coarser = CoarserOctreeOf(finer ? finer->Bricks->Tree() : this->Tree(),
-      static_cast<int>(this->Levels.size()) + 1, pool);
-    for (std::uint32_t& node : coarser.NodeOfPoint)
-    {
-      node = finer ? finer->NodeOfPoint[node] : node;
-    }
-    auto made = std::make_unique<Level>();
-    made->Bricks = std::make_shared<const HexBricks>(coarser.Tree, 1 << this->EdgeLevel);
-    made->NodeOfPoint = std::move(coarser.NodeOfPoint);
-    this->Levels.push_back(std::move(made));
+    Level made = this->MakeNext(pool);
+    const ElementOctree& tree = made.Bricks->Tree();
+    const std::size_t bytes =
+      tree.Bytes() + tree.Mesh().ConnectivityBytes() + made.NodeOfPoint.Bytes();
+    this->Keep(std::move(made), bytes);
   }
   return *this->Levels[static_cast<std::size_t>(level) - 1];
+}
+
+/// From the coarsest one that there is.
+HexBricks::Level HexBricks::MakeNext(ThreadPool& pool) const
+{
+  const Level* const finer = this->Levels.empty() ? nullptr : this->Levels.back().get();
+  CoarserOctree coarser = CoarserOctreeOf(
+    finer ? finer->Bricks->Tree() : this->Tree(), static_cast<int>(this->Levels.size()) + 1, pool);
+  for (std::uint32_t& node : coarser.NodeOfPoint)
+  {
+    node = finer ? finer->NodeOfPoint[node] : node;
+  }
+  return { std::make_shared<const HexBricks>(coarser.Tree, 1 << this->EdgeLevel),
+    std::move(coarser.NodeOfPoint) };
+}
+
+void HexBricks::Keep(Level level, std::size_t bytes) const
+{
+  this->BytesOfLevels += bytes + level.Bricks->Bytes();
+  this->Levels.push_back(std::make_unique<const Level>(std::move(level)));
+}
+
+int HexBricks::LevelCount() const
+{
+  const std::lock_guard<std::mutex> lock(this->LevelsMutex);
+  return static_cast<int>(this->Levels.size());
+}
+
+HexBricks::Level HexBricks::NextLevel(ThreadPool& pool) const
+{
+  const std::lock_guard<std::mutex> lock(this->LevelsMutex);
+  return this->MakeNext(pool);
+}
+
+void HexBricks::AddLevel(std::shared_ptr<const ElementOctree> tree,
+  HeldArray<std::uint32_t> nodeOfPoint, std::size_t bytes)
+{
+  Level level{ std::make_shared<const HexBricks>(std::move(tree), 1 << this->EdgeLevel),
+    std::move(nodeOfPoint) };
+  const std::lock_guard<std::mutex> lock(this->LevelsMutex);
+  this->Keep(std::move(level), bytes);
 }
 
 std::size_t HexBricks::Bytes() const
 {
   const std::lock_guard<std::mutex> lock(this->LevelsMutex);
-  std::size_t bytes = this->Bricks.size() * sizeof(HexBrick);
-  for (const std::unique_ptr<const Level>& level : this->Levels)
-  {
-    const ElementOctree& tree = level->Bricks->Tree();
-    bytes += level->Bricks->Bytes() + tree.Bytes() +
-             static_cast<std::size_t>(tree.LeafCount()) * 8 * SizeOf(tree.Mesh().IdType) +
-             level->NodeOfPoint.size() * sizeof(level->NodeOfPoint[0]);
-  }
-  return bytes;
+  return this->Bricks.size() * sizeof(HexBrick) + this->BytesOfLevels;
 }
 
 void HexBricks::Cut(const Cube& cube)

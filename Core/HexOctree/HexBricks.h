@@ -44,13 +44,21 @@ public:
   struct Level
   {
     std::shared_ptr<const HexBricks> Bricks;
-    std::vector<std::uint32_t> NodeOfPoint; ///< of this mesh, for each point of the coarser one
+    HeldArray<std::uint32_t> NodeOfPoint; ///< of this mesh, for each point of the coarser one
   };
   /// Elements that are smaller than 2^level finest edges are merged, where they fill cubes. Made
   /// when it is first asked for, from the next finer one, and kept: values have no part in it.
   /// @param level at least 1
   /// May be called from several threads.
   const Level& AtLevel(int level, ThreadPool& pool) const;
+
+  /// For those who have levels from somewhere else: how many there are already, the one that
+  /// AtLevel would make next, which does not stay, and what is to stay in its place.
+  int LevelCount() const;
+  Level NextLevel(ThreadPool& pool) const;
+  /// @param bytes what they take of the memory of this process, for Bytes()
+  void AddLevel(std::shared_ptr<const ElementOctree> tree, HeldArray<std::uint32_t> nodeOfPoint,
+    std::size_t bytes);
 
   /// Bytes of bricks and coarser meshes, without those of Tree().
   std::size_t Bytes() const;
@@ -69,6 +77,8 @@ private:
     std::int64_t EndLeaf = 0;
   };
 
+  Level MakeNext(ThreadPool& pool) const;
+  void Keep(Level level, std::size_t bytes) const;
   bool TakeWhole(const Cube& cube);
   void Cut(const Cube& cube);
   void Rank(const Viewpoint& view, MortonKey key, int level, std::size_t first, std::size_t end,
@@ -82,6 +92,7 @@ private:
   mutable std::mutex LevelsMutex;
   /// From level 1 on. Each stays where it is.
   mutable std::vector<std::unique_ptr<const Level>> Levels;
+  mutable std::size_t BytesOfLevels = 0;
 };
 
 } // namespace banyan

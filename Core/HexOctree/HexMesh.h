@@ -20,6 +20,10 @@ struct HexMesh
   const void* Connectivity = nullptr;
   ScalarType IdType = ScalarType::Int64; ///< or Int32
   std::int64_t CellCount = 0;
+  std::size_t ConnectivityBytes() const
+  {
+    return 8 * SizeOf(this->IdType) * static_cast<std::size_t>(this->CellCount);
+  }
   std::shared_ptr<const void> Owner; ///< keeps the arrays alive; may be empty
   /// Keeps the points alive, if something else than Owner does: ElementOctree lets them go then, as
   /// soon as it does not need them any more.

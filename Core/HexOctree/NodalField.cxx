@@ -81,7 +81,7 @@ void NodalField::MakeContinuous(const ElementOctree& tree, void* values, ScalarT
 }
 
 NodalField::NodalField(std::shared_ptr<const ElementOctree> coarser, const NodalField& finer,
-  const std::vector<std::uint32_t>& nodeOfPoint)
+  const HeldArray<std::uint32_t>& nodeOfPoint)
   : Octree(std::move(coarser))
 {
   const auto take = [&](const auto& from, auto& to)

@@ -42,7 +42,7 @@ public:
   /// The field of a coarser mesh: values at points that do not hang there are those of this one.
   /// @param nodeOfPoint see HexBricks::Level
   NodalField(std::shared_ptr<const ElementOctree> coarser, const NodalField& finer,
-    const std::vector<std::uint32_t>& nodeOfPoint);
+    const HeldArray<std::uint32_t>& nodeOfPoint);
 
   /// A field of values that are continuous already (MakeContinuous), which are not copied.
   /// @param values one per point of the mesh, float32 or float64

@@ -53,8 +53,7 @@ OctreeBytes::OctreeBytes(std::shared_ptr<const ElementOctree> tree, bool withCel
   : Octree(std::move(tree))
 {
   const HexMesh& mesh = this->Octree->Cells;
-  this->CellBytes =
-    withCells ? 8 * static_cast<std::size_t>(mesh.CellCount) * SizeOf(mesh.IdType) : 0;
+  this->CellBytes = withCells ? mesh.ConnectivityBytes() : 0;
   this->Bytes = Aligned(sizeof(Header)) + Aligned(this->CellBytes);
   ForArrays(
     *this->Octree, [this](int, const auto& array) { this->Bytes += Aligned(array.Bytes()); });

@@ -73,10 +73,10 @@ SharedMesh::SharedMesh(Communicator& communicator, const HexMesh& piece, ValuesO
     mesh.Points = nullptr;
     mesh.PointOwner.reset();
   }
-  const std::size_t cellBytes = 8 * SizeOf(mesh.IdType) * static_cast<std::size_t>(mesh.CellCount);
   const bool keeps = !sampled || this->Sampled;
   // What one process draws alone is the pipeline's.
-  Add(communicator.Size() > 1 && (keeps || together) ? cellBytes : 0, together, this->OfMesh);
+  Add(communicator.Size() > 1 && (keeps || together) ? mesh.ConnectivityBytes() : 0, together,
+    this->OfMesh);
   if (this->Machines.Shares())
   {
     MachineRanks machines = this->Machines;
@@ -89,18 +89,15 @@ SharedMesh::SharedMesh(Communicator& communicator, const HexMesh& piece, ValuesO
   }
   else
   {
-    const HexMesh& boxes = tree->Mesh();
     Add(tree->Bytes(), false, this->OfMesh);
-    Add(sampled ? 8 * SizeOf(boxes.IdType) * static_cast<std::size_t>(boxes.CellCount) : 0, false,
-      this->OfMesh);
+    Add(sampled ? tree->Mesh().ConnectivityBytes() : 0, false, this->OfMesh);
   }
   if (this->Sampled)
   {
     this->Mesh = mesh;
     Add(this->Sampled->Bytes(), false, this->OfMesh);
   }
-  OnRanks(
-    communicator, true, [&] { this->Cut = std::make_shared<const HexBricks>(tree, brickCells); });
+  OnRanks(communicator, true, [&] { this->Cut = std::make_shared<HexBricks>(tree, brickCells); });
 }
 
 SharedMesh::~SharedMesh() = default;
@@ -215,6 +212,58 @@ std::unique_ptr<HexBrickSource> SharedMesh::Field(
     Add(summary.Bytes(), false, this->OfValues);
   }
   return std::make_unique<HexBrickSource>(this->Cut, std::move(*field), std::move(summary));
+}
+
+void SharedMesh::BringLevels(Communicator& communicator, int count)
+{
+  if (!this->Machines.Shares() || this->LevelsAlone)
+  {
+    return;
+  }
+  MachineRanks machines = this->Machines;
+  try
+  {
+    while (this->Cut->LevelCount() < count)
+    {
+      this->BringLevel(communicator, machines);
+    }
+  }
+  catch (const Error&)
+  {
+    this->LevelsAlone = true;
+  }
+}
+
+/// The next one: the octree, and then the points of the mesh that its points are.
+void SharedMesh::BringLevel(Communicator& communicator, MachineRanks& machines)
+{
+  std::optional<HexBricks::Level> made;
+  std::optional<OctreeBytes> tree;
+  OnLeaders(communicator, machines,
+    [&]
+    {
+      made = this->Cut->NextLevel(this->Threads(machines));
+      const std::shared_ptr<const HexBricks>& bricks = made->Bricks;
+      tree.emplace(std::shared_ptr<const ElementOctree>(bricks, &bricks->Tree()), true);
+    });
+  const MachineBytes bytes =
+    FromLeader(communicator, machines, tree ? tree->Count() + made->NodeOfPoint.Bytes() : 0,
+      [&](char* to)
+      {
+        tree->WriteTo(to);
+        std::memcpy(to + tree->Count(), made->NodeOfPoint.data(), made->NodeOfPoint.Bytes());
+      });
+  OnRanks(communicator, true,
+    [&]
+    {
+      const std::shared_ptr<const ElementOctree> read = OctreeBytes::Read({}, bytes.Memory);
+      const auto points = static_cast<std::size_t>(read->Mesh().PointCount);
+      const char* const end = bytes.Memory.get() + bytes.Count;
+      this->Cut->AddLevel(read,
+        { reinterpret_cast<const std::uint32_t*>(end) - points, points, bytes.Memory },
+        bytes.Together ? 0 : bytes.Count);
+    });
+  this->OfMesh.Together += bytes.Together ? bytes.Count : 0;
 }
 
 MeshBytes SharedMesh::Bytes() const

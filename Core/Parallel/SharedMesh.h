@@ -62,6 +62,12 @@ public:
   std::unique_ptr<HexBrickSource> Field(
     Communicator& communicator, const NodeArray& piece, std::int64_t count, ValuesOn where);
 
+  /// Collective: coarser meshes, for pictures that may be drawn from them: HexBricks::AtLevel has
+  /// them then. Where ranks have no memory together, and where there is none left, each rank makes
+  /// them for itself when it draws from them.
+  /// @param count how many levels: see HexBricks
+  void BringLevels(Communicator& communicator, int count);
+
   /// Of the mesh, and of the values of the last Field.
   MeshBytes Bytes() const;
 
@@ -70,12 +76,14 @@ private:
     const HexMesh& mesh, ValuesOn where, const MeshOptions& options);
   NodalField MakeField(const NodeArray& values, ValuesOn where, ThreadPool& pool) const;
   ThreadPool& Threads(const MachineRanks& machines);
+  void BringLevel(Communicator& communicator, MachineRanks& machines);
 
   MachineRanks Machines;                ///< as they were when the octree was found
   HexMesh Mesh;                         ///< on leaders that sample it; without points
   std::shared_ptr<SampledMesh> Sampled; ///< null for octrees, and on ranks that do not lead
   Facts Known;
-  std::shared_ptr<const HexBricks> Cut;
+  std::shared_ptr<HexBricks> Cut;
+  bool LevelsAlone = false;         ///< whether each rank makes coarser meshes for itself
   std::unique_ptr<ThreadPool> Wide; ///< null where the threads of the process are all there are
   MeshBytes OfMesh;
   MeshBytes OfValues;

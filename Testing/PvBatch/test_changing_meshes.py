@@ -62,6 +62,8 @@ grid.GetPointData().SetScalars(array)
 grid.GetInformation().Set(grid.DATA_TIME_STEP(), time)
 """
 PLAYED = (0, 1, 2, 3, 4, 2, 0)
+# Cells, the octree, five coarser ones, values and what bricks have of them.
+FILES = 9
 
 
 def shared_files():
@@ -118,9 +120,8 @@ def play(out, reference, ranks):
         session.require((ranks > 1) == (shared > 0), "ranks of a machine share it")
         session.require(size - shared < shared or ranks == 1 or step == 3, "most of it is shared")
         if ranks > 1:
-            # Cells, the octree, values and what bricks have of them; the leader keeps the cells of a curved mesh.
             files, still_open = shared_files()
-            session.require(files == 4, f"step {step}: {files} files in memory")
+            session.require(files == FILES, f"step {step}: {files} files in memory")
             session.require(still_open == 0, f"step {step}: {still_open} open files")
         held.append((step, size, shared))
     session.require(held[2][1:] == held[5][1:] and held[0][1:] == held[6][1:],
@@ -147,7 +148,7 @@ def stop(ranks):
     simple.Render(view)
     display.UpdatePropertyInformation()
     session.require(display.GetProperty("MeshBytes").GetElement(0) > 1000, "nothing is drawn afterwards")
-    session.require(shared_files() == (4 if ranks > 1 else 0, 0), f"{shared_files()}")
+    session.require(shared_files() == (FILES if ranks > 1 else 0, 0), f"{shared_files()}")
     session.clear()
 
 

@@ -250,6 +250,49 @@ TEST(SharedMesh, MostOfItIsThereOncePerMachine)
   }
 }
 
+TEST(SharedMesh, CoarserMeshesAreMadeOncePerMachine)
+{
+  for (const bool curved : { false, true })
+  {
+    const Whole whole = curved ? Curved() : Octree();
+    for (const auto& [ranks, perMachine] : Layouts)
+    {
+      const int onEach = perMachine;
+      RunOnSimulatedRanks(ranks,
+        [&](Communicator& communicator)
+        {
+          const Piece piece = PieceOf(whole, communicator);
+          SharedMesh shared(communicator, piece.Mesh.Mesh(), ValuesOn::Points, BrickCells,
+            Options(), MachineOf(communicator, onEach));
+          const auto field = shared.Field(communicator, ArrayOf(piece, ValuesOn::Points, 1),
+            CountOf(piece, ValuesOn::Points), ValuesOn::Points);
+          const Alone alone(communicator, piece, ValuesOn::Points, 1);
+          const MeshBytes before = shared.Bytes();
+          shared.BringLevels(communicator, 2);
+          shared.BringLevels(communicator, 1);
+          shared.BringLevels(communicator, 3);
+          const MeshBytes after = shared.Bytes();
+          // The last rank may be alone on its machine.
+          const int here = std::min(onEach, ranks - communicator.Rank() / onEach * onEach);
+          EXPECT_EQ(shared.Bricks().LevelCount(), onEach > 1 ? 3 : 0);
+          EXPECT_EQ(after.Together > before.Together, here > 1);
+          EXPECT_EQ(after.Own > before.Own, onEach > 1);
+          for (int level = 1; level <= 3; ++level)
+          {
+            const Box& domain = shared.Tree().Domain();
+            const auto& a = dynamic_cast<const HexBrickSource&>(*field->AtLevel(level, domain));
+            const auto& b =
+              dynamic_cast<const HexBrickSource&>(*alone.Source->AtLevel(level, domain));
+            ExpectSameTree(a.Field().Tree(), b.Field().Tree());
+            ExpectSameField(a, b);
+          }
+          communicator.Barrier();
+        });
+      EXPECT_TRUE(FilesInMemory().empty());
+    }
+  }
+}
+
 TEST(SharedMesh, ValuesOfANewStepTakeThePlaceOfOldOnes)
 {
   const Whole whole = Octree();
