@@ -7,6 +7,7 @@
 
 #include "Base/ThreadPool.h"
 #include "HexSampling/CellMeans.h"
+#include "HexSampling/OneNumberPerPlace.h"
 
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
@@ -50,7 +51,15 @@ void SampledGrid::Find(const HexMesh& mesh, const MeshSampling& sampling)
     return;
   }
   this->Sampled.reset();
-  this->Sampled = SampledMesh::Of(mesh, sampling, ThreadPool::Process());
+  const HexMesh one = OneNumberPerPlace(mesh, ThreadPool::Process());
+  this->Sampled = SampledMesh::Of(one, sampling, ThreadPool::Process());
+  this->Renumbered = HexMesh{};
+  if (one.Connectivity != mesh.Connectivity)
+  {
+    this->Renumbered = one;
+    this->Renumbered.Points = nullptr;
+    this->Renumbered.PointOwner.reset();
+  }
   this->PointHash = pointHash;
   this->CellHash = cellHash;
   this->Sampling = sampling;
@@ -109,7 +118,7 @@ void SampledGrid::AddArrays(
       std::optional<CellMeans> means;
       if (cells)
       {
-        means.emplace(mesh, nodes);
+        means.emplace(this->Renumbered.CellCount > 0 ? this->Renumbered : mesh, nodes);
       }
       Copy(this->Sampled->Sample(means ? means->Nodes() : nodes, pool), nodes.Component, sampled);
     }

@@ -38,6 +38,7 @@ private:
     vtkUnstructuredGrid* grid, int where, const HexMesh& mesh, vtkDataSetAttributes* to) const;
 
   std::shared_ptr<const SampledMesh> Sampled;
+  HexMesh Renumbered; ///< the mesh where its points coincide; without points
   MeshSampling Sampling;
   Hash128 PointHash, CellHash; ///< of the mesh
   vtkSmartPointer<vtkUnstructuredGrid> Boxes;

@@ -16,6 +16,20 @@ bool IsInUnitCube(const glm::dvec3& part)
   return off.x <= 0.5 + Margin && off.y <= 0.5 + Margin && off.z <= 0.5 + Margin;
 }
 
+/// Of two cells that are as near, the one that counts: the same in any order of cells.
+bool IsBefore(const TrilinearCell& a, const TrilinearCell& b)
+{
+  const glm::dvec3 middles[2] = { a.At(glm::dvec3(0.5)), b.At(glm::dvec3(0.5)) };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (middles[0][axis] != middles[1][axis])
+    {
+      return middles[0][axis] < middles[1][axis];
+    }
+  }
+  return false;
+}
+
 } // namespace
 
 PlaceInCell FindInside(const CellShapes& shapes, const CellList& cells, const glm::dvec3& point)
@@ -53,9 +67,11 @@ PlaceInCell FindNearest(const CellShapes& shapes, const CellList& cells, const g
     const glm::dvec3 part =
       glm::clamp(shapes.LinearPlace(*cell, point), glm::dvec3(0.0), glm::dvec3(1.0));
     const glm::dvec3 away = shapes.Shape(*cell).At(part) - point;
-    if (glm::dot(away, away) < nearest)
+    const double distance = glm::dot(away, away);
+    if (distance < nearest ||
+        (distance == nearest && IsBefore(shapes.Shape(*cell), shapes.Shape(place.Cell))))
     {
-      nearest = glm::dot(away, away);
+      nearest = distance;
       place.Cell = *cell;
       place.Part = part;
     }

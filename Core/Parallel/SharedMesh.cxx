@@ -4,6 +4,7 @@
 #include "Base/ThreadPool.h"
 #include "HexOctree/OctreeBytes.h"
 #include "HexSampling/CellMeans.h"
+#include "HexSampling/OneNumberPerPlace.h"
 
 #include <algorithm>
 #include <cstring>
@@ -73,10 +74,11 @@ SharedMesh::SharedMesh(Communicator& communicator, const HexMesh& piece, ValuesO
     mesh.Points = nullptr;
     mesh.PointOwner.reset();
   }
-  const bool keeps = !sampled || this->Sampled;
+  const bool renumbered = this->Sampled && this->Mesh.Connectivity != mesh.Connectivity;
   // What one process draws alone is the pipeline's.
-  Add(communicator.Size() > 1 && (keeps || together) ? mesh.ConnectivityBytes() : 0, together,
-    this->OfMesh);
+  Add(
+    communicator.Size() > 1 && !renumbered ? mesh.ConnectivityBytes() : 0, together, this->OfMesh);
+  Add(renumbered ? this->Mesh.ConnectivityBytes() : 0, false, this->OfMesh);
   if (this->Machines.Shares())
   {
     MachineRanks machines = this->Machines;
@@ -94,7 +96,6 @@ SharedMesh::SharedMesh(Communicator& communicator, const HexMesh& piece, ValuesO
   }
   if (this->Sampled)
   {
-    this->Mesh = mesh;
     Add(this->Sampled->Bytes(), false, this->OfMesh);
   }
   OnRanks(communicator, true, [&] { this->Cut = std::make_shared<HexBricks>(tree, brickCells); });
@@ -118,7 +119,10 @@ std::shared_ptr<const ElementOctree> SharedMesh::Find(
       throw;
     }
   }
-  this->Sampled = SampledMesh::Of(mesh, options.Sampling, pool);
+  this->Mesh = OneNumberPerPlace(mesh, pool);
+  this->Sampled = SampledMesh::Of(this->Mesh, options.Sampling, pool);
+  this->Mesh.Points = nullptr;
+  this->Mesh.PointOwner.reset();
   const std::shared_ptr<const ElementOctree> tree =
     ElementOctree::Find(this->Sampled->Boxes(), pool);
   this->Known.IsSampled = 1;

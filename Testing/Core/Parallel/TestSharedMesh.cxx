@@ -1,6 +1,7 @@
 // Octrees and fields that one rank of a machine makes for all of it: those that each rank makes
 // alone.
 #include "HexSampling/CellMeans.h"
+#include "HexSampling/OneNumberPerPlace.h"
 #include "HexSampling/WarpedMeshes.h"
 #include "Parallel/FilesInMemory.h"
 #include "Parallel/MeshPieces.h"
@@ -75,6 +76,7 @@ struct Alone
     }
     catch (const Error&)
     {
+      mesh = OneNumberPerPlace(mesh, pool);
       this->Sampled = SampledMesh::Of(mesh, Options().Sampling, pool);
       tree = ElementOctree::Find(this->Sampled->Boxes(), pool);
     }
@@ -213,6 +215,30 @@ TEST(SharedMesh, OneRankOfAMachineFindsWhatEachFindsAlone)
       EXPECT_EQ(found.load(), machines) << "one octree is found on each machine";
       EXPECT_TRUE(FilesInMemory().empty()) << "memory is given back";
     }
+  }
+}
+
+TEST(SharedMesh, PiecesAreSampledAsTheWholeMeshIs)
+{
+  const Whole whole = Curved();
+  const Piece all(whole, 0, whole.Ids.size() / 8);
+  for (const ValuesOn where : { ValuesOn::Points, ValuesOn::Cells })
+  {
+    RunOnSimulatedRanks(4,
+      [&](Communicator& communicator)
+      {
+        const auto self = MakeSelfCommunicator();
+        SharedMesh one(*self, all.Mesh.Mesh(), where, BrickCells, Options());
+        const auto expected = one.Field(*self, ArrayOf(all, where, 1), CountOf(all, where), where);
+        const Piece piece = PieceOf(whole, communicator);
+        SharedMesh shared(communicator, piece.Mesh.Mesh(), where, BrickCells, Options());
+        const auto field =
+          shared.Field(communicator, ArrayOf(piece, where, 1), CountOf(piece, where), where);
+        ASSERT_EQ(shared.About().Boxes, one.About().Boxes);
+        EXPECT_EQ(shared.About().Deviation, one.About().Deviation);
+        ExpectSameField(*field, *expected);
+        communicator.Barrier();
+      });
   }
 }
 
