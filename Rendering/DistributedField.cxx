@@ -126,6 +126,12 @@ void DistributedField::Update(Communicator& communicator, const FieldPiece& piec
     {
       this->Agree(communicator, piece);
     }
+    // One rank may have failed alone, at the end: what there is to draw is nothing on all of them then.
+    if (!AgreeOnError(communicator, this->ProblemText).empty())
+    {
+      this->Bricks.reset();
+      this->Domain = Box{};
+    }
     this->AgreeOnRange(communicator);
   }
 }

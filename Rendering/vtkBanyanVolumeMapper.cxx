@@ -142,11 +142,20 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
     this->GetInputAlgorithm()->Update();
   }
   Internals& self = *this->Self;
-  banyan::ThreadPool::SetProcessWidth(this->NumberOfThreads);
   self.Field.SetLoadBalancing(static_cast<banyan::LoadBalancing>(this->LoadBalancing));
-  banyan::FieldPiece piece = banyan::PieceOfInput(this, volume->GetProperty());
-  self.Motion.Apply(
-    this->TemporalEnhancement, volume->GetProperty(), this->GetDataObjectInput(), piece);
+  banyan::FieldPiece piece;
+  try
+  {
+    banyan::ThreadPool::SetProcessWidth(this->NumberOfThreads);
+    piece = banyan::PieceOfInput(this, volume->GetProperty());
+    self.Motion.Apply(
+      this->TemporalEnhancement, volume->GetProperty(), this->GetDataObjectInput(), piece);
+  }
+  catch (const std::exception& error)
+  {
+    piece = banyan::FieldPiece();
+    piece.Problem = error.what();
+  }
   self.Field.Update(*self.Communicator, piece);
   self.Bounds = self.Field.Bounds();
   self.BoundsKnown = true;

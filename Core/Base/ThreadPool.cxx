@@ -11,6 +11,7 @@
 #include <deque>
 #include <exception>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -119,6 +120,20 @@ struct ThreadPool::Internals
     }
   }
 
+  /// Ends all threads that have been started.
+  void Join()
+  {
+    {
+      std::lock_guard<std::mutex> lock(this->Mutex);
+      this->Stop = true;
+    }
+    this->Wake.notify_all();
+    for (std::thread& thread : this->Threads)
+    {
+      thread.join();
+    }
+  }
+
   void Remove(const std::shared_ptr<Loop>& loop)
   {
     std::lock_guard<std::mutex> lock(this->Mutex);
@@ -140,23 +155,27 @@ ThreadPool::ThreadPool(int width)
   {
     throw Error("A thread pool needs at least one thread");
   }
-  for (int worker = 1; worker < width; ++worker)
+  try
   {
-    this->Self->Threads.emplace_back([this, worker] { this->Self->Run(worker); });
+    this->Self->Threads.reserve(static_cast<std::size_t>(width - 1));
+    for (int worker = 1; worker < width; ++worker)
+    {
+      this->Self->Threads.emplace_back([this, worker] { this->Self->Run(worker); });
+    }
+  }
+  catch (const std::exception& error)
+  {
+    const std::size_t started = this->Self->Threads.size() + 1;
+    this->Self->Join();
+    throw Error("Of " + std::to_string(width) + " threads " + std::to_string(started) +
+                " could be started (" + error.what() +
+                "). Take fewer: NumberOfThreads, --threads or BANYAN_THREADS.");
   }
 }
 
 ThreadPool::~ThreadPool()
 {
-  {
-    std::lock_guard<std::mutex> lock(this->Self->Mutex);
-    this->Self->Stop = true;
-  }
-  this->Self->Wake.notify_all();
-  for (std::thread& thread : this->Self->Threads)
-  {
-    thread.join();
-  }
+  this->Self->Join();
 }
 
 int ThreadPool::Width() const noexcept

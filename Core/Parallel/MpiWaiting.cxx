@@ -78,7 +78,7 @@ std::unique_ptr<RankPulse> MakePulse(const Neighbours& here, int rank, double li
     pulse =
       std::make_unique<RankPulse>(name.data(), here.Count, here.Self, rank, limitSeconds, lost);
   }
-  catch (const Error&)
+  catch (const std::exception&) // no thread of its own, for example
   {
     pulse.reset();
   }

@@ -141,11 +141,13 @@ std::string RankPulse::MakeMemory(int ranks)
   {
     Fail("made");
   }
-  const bool sized = ftruncate(file, static_cast<off_t>(sizeof(Slot)) * ranks) == 0;
+  // Not ftruncate: where there is no room, the first write would then kill the process.
+  const int problem = posix_fallocate(file, 0, static_cast<off_t>(sizeof(Slot)) * ranks);
   close(file);
-  if (!sized)
+  if (problem != 0)
   {
     ForgetName(name);
+    errno = problem;
     Fail("made");
   }
   return name;

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
+#include <iostream>
 #include <set>
 #include <stdexcept>
 #include <thread>
@@ -33,6 +36,29 @@ TEST(ThreadPool, EachItemOnce)
     }
   }
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST(ThreadPool, ThreadsThatCannotBeStartedAreToldOf)
+{
+  // Stacks of 8 MiB each: a process of 600 MiB has room for some of them.
+  const auto tooMany = []
+  {
+    const rlimit limit{ 600u << 20, 600u << 20 };
+    setrlimit(RLIMIT_AS, &limit);
+    try
+    {
+      const ThreadPool pool(900);
+    }
+    catch (const banyan::Error& error)
+    {
+      std::cerr << error.what() << std::endl;
+      std::_Exit(3);
+    }
+    std::_Exit(0);
+  };
+  EXPECT_EXIT(tooMany(), testing::ExitedWithCode(3), "Of 900 threads [0-9]+ could be started");
+}
+#endif
 
 TEST(ThreadPool, NegativeCountIsNothing)
 {
