@@ -6,7 +6,7 @@
 #define banyan_Codec_BlockChoice_inl_h
 #endif
 
-#include "Codec/BlockAt-inl.h"
+#include "Codec/BlockAtRest-inl.h"
 #include "Codec/SliceTrial-inl.h"
 
 #include <glm/common.hpp>
@@ -142,6 +142,7 @@ struct BlockChooser : BlockAt<Edge, Number>
   {
     const PlaneToEncode& plane = this->Plane();
     const std::int64_t n = this->B() + 1;
+    const std::int64_t next = this->NextBlock();
     Number* to = this->Work.Boxes.data();
     const auto gather = [&](const PlaneNumbers* from)
     {
@@ -154,7 +155,7 @@ struct BlockChooser : BlockAt<Edge, Number>
           for (int y = 0; y < n; ++y, to += n)
           {
             const Number* row = samples.Row(y, z);
-            __builtin_prefetch(row + samples.Stride.z);
+            __builtin_prefetch(row + next);
             std::memcpy(to, row, static_cast<std::size_t>(n) * sizeof(Number));
           }
         }
@@ -176,7 +177,8 @@ struct BlockChooser : BlockAt<Edge, Number>
         plane.Target->Blocks.x +
       this->Position.x);
     BlockTokens& out = (*this->Job.Blocks)[index];
-    if (out.Uniform || out.Same)
+    const BlockAtRest<Edge, Number> rest{ *this };
+    if (rest.PlaceUniform(out) || (plane.A != nullptr && rest.PlaceSame(out)))
     {
       return;
     }
@@ -226,14 +228,14 @@ struct BlockChooser : BlockAt<Edge, Number>
   /// @param enough more than that is as good as any other
   std::int64_t TrialCost(const Boxes& boxes, const block::Mode& mode, std::int64_t enough) const
   {
-    block::Scratch<Number, 3>& scratch = this->Work.Interior;
-    block::Scratch<Number, 3>& target = this->Work.InteriorTarget;
+    UnitMemory<Number, 3>& scratch = this->Work.Interior;
+    UnitMemory<Number, 3>& target = this->Work.InteriorTarget;
     LoadUnit<3>(boxes.Target, boxes.ReferencesOf(mode.From), this->B, true, target.W());
     const block::Shape<3> shape{ this->B() };
     std::copy_n(target.W(), (this->B() + 1) * shape.Z(), scratch.W());
-    scratch.Clear();
+    scratch.Clean();
     Unit<Number, 3> unit{ scratch.W(), scratch.M(), scratch.R(), scratch.S(),
-      { this->Plane().Target->Samples - 1 - this->Position * this->B() }, true };
+      { this->Plane().Target->Samples - 1 - this->Position * this->B() }, false };
     std::int64_t cost = 0;
     ForEachPass<3>(
       [&](auto pass)
@@ -241,11 +243,12 @@ struct BlockChooser : BlockAt<Edge, Number>
         using P = decltype(pass);
         if (cost < enough)
         {
-          cost += SliceTrial<P, Edge, Number>{
-            this->template RowsOf<P>(unit, mode.By, target.W()) }
-                    .Run();
+          cost +=
+            SliceTrial<P, Edge, Number>{ this->template RowsOf<P>(unit, mode.By, target.W()) }.Run(
+              enough - cost);
         }
       });
+    scratch.Used = unit.Any;
     return cost;
   }
 };

@@ -24,8 +24,8 @@ struct BlockCoder : BlockAt<Edge, Number>
   /// Encodes the units of D dimensions of a block.
   /// @param coded false: they are predicted only
   template <int D>
-  void EncodeUnits(BlockTokens& out, bool coded, block::Scratch<Number, D>& scratch,
-    block::Scratch<Number, D>& target, bool& rough) const
+  void EncodeUnits(BlockTokens& out, bool coded, UnitMemory<Number, D>& scratch,
+    UnitMemory<Number, D>& target, bool& rough) const
   {
     const PlaneToEncode& plane = this->Plane();
     const block::Mode mode = block::ModeOf(out.Mode);
@@ -53,10 +53,8 @@ struct BlockCoder : BlockAt<Edge, Number>
       {
         const std::ptrdiff_t at = number * shape.Pitch();
         const View<Number> samples = decoded.Along(axes);
-        LoadUnit<D>(View<const Number>{ samples.Base, samples.Stride }, references.Along(axes),
-          this->B, false, scratch.W() + at);
-        LoadUnit<D>(
-          wanted.Along(axes), references.Along(axes), this->B, true, target.W() + at);
+        LoadBoth<D>(View<const Number>{ samples.Base, samples.Stride }, wanted.Along(axes),
+          references.Along(axes), this->B, scratch.W() + at, target.W() + at);
       }
     }
     this->Work.Tokens.Clear();
@@ -70,6 +68,7 @@ struct BlockCoder : BlockAt<Edge, Number>
       });
     this->Work.Tokens.AppendTo(out);
     rough = unit.Any;
+    scratch.Used = rough;
     for (int number = 0; number < UnitsOf<D>; ++number)
     {
       if (exists[number])
@@ -100,11 +99,12 @@ struct BlockCoder : BlockAt<Edge, Number>
     const int b = this->B();
     const block::Shape<1> edges{ b };
     const block::Shape<2> faces{ b };
+    // Where no residual is known, magnitudes are zero, and nothing needs to be kept or placed.
     if (phase == BlockPhase::Edges)
     {
-      this->Work.Edges.Clear();
+      this->Work.Edges.Clean();
       this->EncodeUnits<1>(out, !beyond, this->Work.Edges, this->Work.EdgesTarget, underway.Rough);
-      if (!beyond)
+      if (underway.Rough && !beyond)
       {
         const std::uint8_t* m = this->Work.Edges.M();
         underway.Magnitudes.assign(m, m + 3 * edges.Pitch());
@@ -112,8 +112,8 @@ struct BlockCoder : BlockAt<Edge, Number>
     }
     else if (phase == BlockPhase::Faces)
     {
-      this->Work.Faces.Clear();
-      if (!beyond)
+      this->Work.Faces.Clean();
+      if (underway.Rough && !beyond)
       {
         std::uint8_t kept[3][64];
         for (int edge = 0; edge < 3; ++edge)
@@ -124,7 +124,7 @@ struct BlockCoder : BlockAt<Edge, Number>
         SumRows<2>(this->Work.Faces.M(), this->B, this->Work.Faces.S());
       }
       this->EncodeUnits<2>(out, !beyond, this->Work.Faces, this->Work.FacesTarget, underway.Rough);
-      if (!beyond)
+      if (underway.Rough && !beyond)
       {
         const std::uint8_t* m = this->Work.Faces.M();
         underway.Magnitudes.assign(m, m + b * faces.Y());
@@ -132,9 +132,12 @@ struct BlockCoder : BlockAt<Edge, Number>
     }
     else if (!beyond)
     {
-      this->Work.Interior.Clear();
-      block::PlaceFaces(b, underway.Magnitudes.data(), this->Work.Interior.M());
-      SumRows<3>(this->Work.Interior.M(), this->B, this->Work.Interior.S());
+      this->Work.Interior.Clean();
+      if (underway.Rough)
+      {
+        block::PlaceFaces(b, underway.Magnitudes.data(), this->Work.Interior.M());
+        SumRows<3>(this->Work.Interior.M(), this->B, this->Work.Interior.S());
+      }
       this->EncodeUnits<3>(
         out, true, this->Work.Interior, this->Work.InteriorTarget, underway.Rough);
       if (!underway.Rough)

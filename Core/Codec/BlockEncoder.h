@@ -75,6 +75,16 @@ public:
   {
     return (std::int64_t{ p.z } * this->Padded.y + p.y) * this->Padded.x + p.x;
   }
+  /// The block before another one, x fastest, which one thread encodes after it; the first one is
+  /// its own.
+  glm::ivec3 BlockBefore(const glm::ivec3& block) const
+  {
+    const glm::ivec3 last = this->Blocks - 1;
+    return block.x > 0   ? glm::ivec3{ block.x - 1, block.y, block.z }
+           : block.y > 0 ? glm::ivec3{ last.x, block.y - 1, block.z }
+           : block.z > 0 ? glm::ivec3{ last.x, last.y, block.z - 1 }
+                         : block;
+  }
   friend bool operator==(const PlaneNumbers& a, const PlaneNumbers& b)
   {
     return a.Edge == b.Edge && a.Samples == b.Samples && a.Short == b.Short && a.Long == b.Long;

@@ -4,7 +4,6 @@
 #include "Base/ThreadPool.h"
 #include "Codec/BlockScratch.h"
 
-#include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
@@ -31,85 +30,6 @@ void PlaceCoarser(const PlaneNumbers& coarser, PlaneNumbers& decoded)
       {
         row[x] = from[std::min(x / 4, last.x)];
       }
-    }
-  }
-}
-
-/// Finds out whether the samples of a block are all the same, and places them.
-template <class Number>
-void PlaceUniform(const PlaneNumbers& target, const glm::ivec3& position, BlockTokens& block,
-  PlaneNumbers& decoded)
-{
-  const glm::ivec3 low = position * target.Edge;
-  const glm::ivec3 high = low + target.Edge;
-  const Number* const numbers = target.Data<Number>();
-  const Number value = numbers[target.IndexOf(low)];
-  for (int z = low.z; z < high.z; ++z)
-  {
-    for (int y = low.y; y < high.y; ++y)
-    {
-      const Number* row = numbers + target.IndexOf({ low.x, y, z });
-      Number other = 0;
-      for (int x = 0; x < target.Edge; ++x)
-      {
-        other = static_cast<Number>(other | (row[x] ^ value));
-      }
-      if (other != 0)
-      {
-        return;
-      }
-    }
-  }
-  block.Uniform = true;
-  block.Value = value;
-  for (int z = low.z; z < high.z; ++z)
-  {
-    for (int y = low.y; y < high.y; ++y)
-    {
-      Number* row = decoded.Data<Number>() + decoded.IndexOf({ low.x, y, z });
-      std::fill(row, row + target.Edge, value);
-    }
-  }
-}
-
-/// Finds out whether a block may stay as it is in reference A, and places it.
-template <class Number>
-void PlaceSame(const PlaneToEncode& plane, const glm::ivec3& position, BlockTokens& block,
-  PlaneNumbers& decoded)
-{
-  // Numbers of 16 bits are of a lattice of 8000: their differences are, too.
-  using Wide = std::conditional_t<sizeof(Number) == 2, Number, std::int64_t>;
-  const PlaneNumbers& target = *plane.Target;
-  const glm::ivec3 low = position * target.Edge;
-  const glm::ivec3 high = low + target.Edge;
-  const glm::ivec3 end = glm::min(high, target.Samples);
-  const Wide most = static_cast<Wide>(plane.FineBin / 2);
-  for (int z = low.z; z < end.z; ++z)
-  {
-    for (int y = low.y; y < end.y; ++y)
-    {
-      const Number* row = target.Data<Number>() + target.IndexOf({ low.x, y, z });
-      const Number* before = plane.A->Data<Number>() + plane.A->IndexOf({ low.x, y, z });
-      int beyond = 0;
-      for (int x = 0; x < end.x - low.x; ++x)
-      {
-        const Wide rest = static_cast<Wide>(static_cast<Wide>(row[x]) - before[x]);
-        beyond |= static_cast<int>(rest > most) | static_cast<int>(rest < -most);
-      }
-      if (beyond != 0)
-      {
-        return;
-      }
-    }
-  }
-  block.Same = true;
-  for (int z = low.z; z < high.z; ++z)
-  {
-    for (int y = low.y; y < high.y; ++y)
-    {
-      const Number* from = plane.A->Data<Number>() + plane.A->IndexOf({ low.x, y, z });
-      std::copy(
-        from, from + target.Edge, decoded.Data<Number>() + decoded.IndexOf({ low.x, y, z }));
     }
   }
 }
@@ -152,22 +72,6 @@ void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded, std::vector<
   blocks.resize(static_cast<std::size_t>(target.BlockCount()));
   std::vector<BlockUnderway> underway(blocks.size());
   const PlaneJob job{ &plane, &decoded, &blocks, &underway };
-  const auto place = [&](std::int64_t i)
-  {
-    const glm::ivec3 position = PositionIn(target.Blocks, i);
-    BlockTokens& block = blocks[static_cast<std::size_t>(i)];
-    target.With(
-      [&](auto* numbers)
-      {
-        using Number = std::remove_const_t<std::remove_pointer_t<decltype(numbers)>>;
-        PlaceUniform<Number>(target, position, block, decoded);
-        if (!block.Uniform && plane.A != nullptr)
-        {
-          PlaceSame<Number>(plane, position, block, decoded);
-        }
-      });
-    EncodeBlock(job, position, BlockPhase::Choose);
-  };
   const glm::ivec3 extended = target.Blocks + 1;
   const std::int64_t count = std::int64_t{ extended.x } * extended.y * extended.z;
   const auto indexOf = [&](const glm::ivec3& position)
@@ -193,7 +97,7 @@ void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded, std::vector<
       const std::int64_t index = indexOf(position);
       if (index >= 0)
       {
-        place(index);
+        EncodeBlock(job, position, BlockPhase::Choose);
       }
       for (const BlockPhase phase : phases)
       {
@@ -206,7 +110,8 @@ void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded, std::vector<
     }
     return;
   }
-  pool.ParallelFor(target.BlockCount(), place);
+  pool.ParallelFor(target.BlockCount(),
+    [&](std::int64_t i) { EncodeBlock(job, PositionIn(target.Blocks, i), BlockPhase::Choose); });
   for (const BlockPhase phase : phases)
   {
     pool.ParallelFor(count,

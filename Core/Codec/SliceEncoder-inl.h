@@ -16,6 +16,20 @@ HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
 
+/// Whether some lane is not 0.
+template <class Vector>
+HWY_INLINE bool AnyLane(const Vector& lanes)
+{
+  std::uint64_t words[sizeof(lanes) / 8];
+  std::memcpy(words, &lanes, sizeof(lanes));
+  std::uint64_t all = 0;
+  for (const std::uint64_t word : words)
+  {
+    all |= word;
+  }
+  return all != 0;
+}
+
 /// Nearest multiples of a bin. The bin is odd, so nothing lies half way, and the arithmetic is far more
 /// exact than what is left to the next half.
 HWY_INLINE Numbers<std::int16_t>::Signed Quantize(
@@ -101,21 +115,9 @@ struct RowQuantizer
   /// Whether some difference is more than half a bin.
   HWY_INLINE bool AnyCoded(Signed difference) const
   {
-    const Number half = static_cast<Number>(this->Bin / 2);
-    return AnyLane(reinterpret_cast<Signed>(difference > half) |
-                   reinterpret_cast<Signed>(difference < static_cast<Number>(-half)));
-  }
-
-  static HWY_INLINE bool AnyLane(Signed lanes)
-  {
-    std::uint64_t words[sizeof(lanes) / 8];
-    std::memcpy(words, &lanes, sizeof(lanes));
-    std::uint64_t all = 0;
-    for (const std::uint64_t word : words)
-    {
-      all |= word;
-    }
-    return all != 0;
+    using Positive = std::make_unsigned_t<Number>;
+    const Positive half = static_cast<Positive>(this->Bin / 2);
+    return AnyLane(reinterpret_cast<Vector>(difference) + half > static_cast<Positive>(2 * half));
   }
 
   /// Sets the magnitudes and kept residuals of lanes from `First + at` on.
@@ -136,6 +138,18 @@ struct RowQuantizer
     }
   }
 };
+
+/// Classes of the rows of a slice: all the least where no residual is known yet.
+template <class P, class Edge, class Number>
+HWY_INLINE void KnownRowClasses(
+  const Unit<Number, P::D>& unit, const Edge& edge, int slice, std::uint8_t* to)
+{
+  if (unit.Any)
+  {
+    return RowClasses<P>(unit, edge, slice, to);
+  }
+  std::fill_n(to, P::EndOfRows(edge()), std::uint8_t{ 0 });
+}
 
 /// What is written down of a block's units.
 struct UnitTokens
@@ -202,7 +216,7 @@ struct SliceEncoder
       std::size_t flagCount = 0;
       std::size_t count = 0;
       bool any = false;
-      RowClasses<P>(this->Rows.Of, edge, slice, this->Out.RowClass);
+      KnownRowClasses<P>(this->Rows.Of, edge, slice, this->Out.RowClass);
       for (int row = P::FirstRow; row < P::EndOfRows(edge()); row += P::RowStep)
       {
         const RowPlace place = PlaceOf<P>(this->Rows.Of, edge, slice, row);
@@ -255,14 +269,7 @@ private:
         const Tokens contexts =
           (__builtin_convertvector(classes, Tokens) + context) << residual::TokenShift;
         StoreVector(Compressed<P::Step>(contexts | each), tokens + lane);
-        std::uint64_t words[sizeof(large) / 8];
-        std::memcpy(words, &large, sizeof(large));
-        std::uint64_t all = 0;
-        for (const std::uint64_t word : words)
-        {
-          all |= word;
-        }
-        if (HWY_UNLIKELY(all != 0))
+        if (HWY_UNLIKELY(AnyLane(large)))
         {
           this->AddLong(place, residual, contexts, lane, tokens);
         }

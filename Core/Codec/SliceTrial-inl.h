@@ -36,15 +36,17 @@ struct SliceTrial
   RowQuantizer<P, Edge, Number> Rows;
 
   /// In 256ths of a bit, about.
-  HWY_INLINE std::int64_t Run() const
+  /// @param enough ends where that is reached
+  HWY_INLINE std::int64_t Run(std::int64_t enough) const
   {
     const Edge& edge = this->Rows.B;
     std::int64_t cost = 0;
     const int slices = P::EndOfSlices(edge());
-    for (int slice = P::FirstSlice; slice < slices; slice += P::SliceStep)
+    for (int slice = P::FirstSlice; slice < slices && cost < enough; slice += P::SliceStep)
     {
       std::uint8_t rowClasses[64 + Width];
-      RowClasses<P>(this->Rows.Of, edge, slice, rowClasses);
+      KnownRowClasses<P>(this->Rows.Of, edge, slice, rowClasses);
+      bool anyOfSlice = false;
       for (int row = P::FirstRow; row < P::EndOfRows(edge()); row += P::RowStep)
       {
         const RowPlace place = PlaceOf<P>(this->Rows.Of, edge, slice, row);
@@ -57,12 +59,14 @@ struct SliceTrial
             symbols += CostOf(
               residual, classes, LaneMask<P, Numbers<std::int16_t>::Signed>((place.Coded - lane) * P::Step));
           });
+        anyOfSlice = anyOfSlice || any;
         if (place.Coded > 0)
         {
           const bool coded = any || rowClass == residual::RowClasses;
           cost += coded ? OtherRowCosts[rowClass] + symbols : ZeroRowCosts[rowClass];
         }
       }
+      this->Rows.Of.Any = this->Rows.Of.Any || anyOfSlice;
     }
     return cost;
   }

@@ -5,6 +5,7 @@
 #include "Series/BrickStatistics.h"
 #include "Series/Hash.h"
 #include "Series/LatticeDecoder.h"
+#include "Series/NumberBox.h"
 
 #include <algorithm>
 #include <cmath>
@@ -103,8 +104,8 @@ public:
     for (std::size_t t = 0; t < this->Steps.size(); ++t)
     {
       group::NodeEntry& node = this->NodeOf(t, brick);
-      const Extremes extremes =
-        this->ExtremesOf((*this->Decoded[t])[plane], (*this->Decoded[t > 0 ? t - 1 : 0])[plane], region);
+      const NumberExtremes extremes = this->ExtremesOf(
+        (*this->Decoded[t])[plane], (*this->Decoded[t > 0 ? t - 1 : 0])[plane], region);
       if (this->HasExceptions(t, region))
       {
         this->Gather((*this->Decoded[t])[plane], region, numbers);
@@ -132,85 +133,54 @@ public:
   }
 
 private:
-  struct Extremes
-  {
-    std::int32_t Low = std::numeric_limits<std::int32_t>::max();
-    std::int32_t High = std::numeric_limits<std::int32_t>::min();
-    bool AsBefore = true; ///< every number is that of the step before
-
-    template <class Number>
-    void Include(const Number* row, const Number* before, int count, int stride)
-    {
-      Number low = row[0], high = row[0];
-      Number changed = 0;
-      if (stride == 1)
-      {
-        for (int x = 0; x < count; ++x)
-        {
-          low = row[x] < low ? row[x] : low;
-          high = high < row[x] ? row[x] : high;
-          changed = static_cast<Number>(changed | (row[x] ^ before[x]));
-        }
-      }
-      else
-      {
-        for (int x = 0; x < count; ++x)
-        {
-          low = std::min(low, row[x * stride]);
-          high = std::max(high, row[x * stride]);
-          changed = static_cast<Number>(changed | (row[x * stride] ^ before[x * stride]));
-        }
-      }
-      this->Low = std::min<std::int32_t>(this->Low, low);
-      this->High = std::max<std::int32_t>(this->High, high);
-      this->AsBefore = this->AsBefore && changed == 0;
-    }
-  };
-
   /// @param before the plane of another step
-  Extremes ExtremesOf(
+  NumberExtremes ExtremesOf(
     const PlaneNumbers& plane, const PlaneNumbers& before, const PlaneRegion& region) const
   {
-    Extremes extremes;
+    NumberExtremes extremes;
     plane.With(
       [&](const auto* numbers)
       {
         using Number = std::remove_const_t<std::remove_pointer_t<decltype(numbers)>>;
-        extremes = this->ExtremesOf(plane, numbers, before.Data<Number>(), region);
+        this->IncludeRegion(plane, numbers, before.Data<Number>(), region, extremes);
       });
     return extremes;
   }
 
   template <class Number>
-  Extremes ExtremesOf(const PlaneNumbers& plane, const Number* numbers, const Number* before,
-    const PlaneRegion& region) const
+  void IncludeRegion(const PlaneNumbers& plane, const Number* numbers, const Number* before,
+    const PlaneRegion& region, NumberExtremes& extremes) const
   {
-    // Samples that stand for what lies beyond the last one come once.
-    int inside = region.Count.x;
-    while (inside > 1 && region.Low.x + (inside - 1) * region.Stride > region.Last.x)
+    // Samples on the plane; what stands for those beyond its last one is looked at once, for each
+    // axis.
+    glm::ivec3 inside = region.Count;
+    glm::ivec3 parts(1);
+    for (int a = 0; a < 3; ++a)
     {
-      --inside;
-    }
-    const std::ptrdiff_t ahead =
-      std::ptrdiff_t{ plane.Padded.x } * plane.Padded.y * region.Stride; // of the next slice
-    Extremes extremes;
-    for (int z = 0; z < region.Count.z; ++z)
-    {
-      for (int y = 0; y < region.Count.y; ++y)
+      while (inside[a] > 1 && region.Low[a] + (inside[a] - 1) * region.Stride > region.Last[a])
       {
-        const glm::ivec3 first{ region.SampleAt(0, 0), region.SampleAt(1, y), region.SampleAt(2, z) };
-        const std::int64_t at = plane.IndexOf(first);
-        __builtin_prefetch(numbers + at + ahead);
-        __builtin_prefetch(before + at + ahead);
-        extremes.Include(numbers + at, before + at, inside, region.Stride);
-        if (inside < region.Count.x)
-        {
-          const std::int64_t last = at + region.Last.x - first.x;
-          extremes.Include(numbers + last, before + last, 1, 1);
-        }
+        --inside[a];
       }
+      parts[a] = inside[a] < region.Count[a] ? 2 : 1;
     }
-    return extremes;
+    const glm::i64vec3 gaps{ 1, plane.Padded.x, std::int64_t{ plane.Padded.x } * plane.Padded.y };
+    for (int part = 0; part < parts.x * parts.y * parts.z; ++part)
+    {
+      const glm::ivec3 beyond{ part % parts.x, part / parts.x % parts.y, part / parts.x / parts.y };
+      const glm::ivec3 first =
+        beyond * region.Last + (1 - beyond) * glm::min(region.Low, region.Last);
+      const glm::ivec3 count = beyond + (1 - beyond) * inside;
+      NumberBox<Number> box;
+      box.Numbers = numbers + plane.IndexOf(first);
+      box.Before = before + plane.IndexOf(first);
+      box.Count = count.x;
+      box.Stride = region.Stride;
+      box.RowGap = region.Stride * gaps.y;
+      box.SliceGap = region.Stride * gaps.z;
+      box.Rows = count.y;
+      box.Slices = count.z;
+      IncludeBox(box, extremes);
+    }
   }
 
   group::NodeEntry& NodeOf(std::size_t step, std::int64_t brick) const

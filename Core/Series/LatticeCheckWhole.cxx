@@ -46,7 +46,8 @@ bool LatticeCheck<T>::WholeBlockOf(const PlaneNumbers& decoded, const glm::ivec3
     rows.Count = n[u];
     rows.Rows = n[v];
     rows.Slices = n[w];
-    rows.Next = low.x >= edge ? -edge * this->Stride.x : 0; // blocks come from the last to the first
+    const glm::i64vec3 next = decoded.BlockBefore(low / edge) * edge - low;
+    rows.Next = next.x * this->Stride.x + next.y * this->Stride.y + next.z * this->Stride.z;
     RowErrors sums;
     if (!ErrorsOnLattice(rows, scale, this->Field.Bound, sums))
     {

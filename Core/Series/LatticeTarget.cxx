@@ -101,6 +101,15 @@ void Coarsen(const PlaneNumbers& fine, PlaneNumbers& coarse)
   Pad<Number>(coarse);
 }
 
+/// The tile that comes after one.
+glm::ivec3 NextTile(const glm::ivec3& low, const glm::ivec3& samples)
+{
+  return low.x + Tile < samples.x   ? glm::ivec3{ low.x + Tile, low.y, low.z }
+         : low.y + Tile < samples.y ? glm::ivec3{ 0, low.y + Tile, low.z }
+         : low.z + Tile < samples.z ? glm::ivec3{ 0, 0, low.z + Tile }
+                                    : low;
+}
+
 /// Whether a type has fast ways to the lattice and back.
 template <class T>
 constexpr bool IsReal = std::is_floating_point_v<T>;
@@ -263,7 +272,7 @@ bool LatticeTarget<T>::FillTileFast(
     rows.Count = n[u];
     rows.Rows = n[v];
     rows.Slices = n[w];
-    rows.Next = low.x + Tile < plane.Samples.x ? Tile * this->Stride.x : 0;
+    rows.Next = this->OffsetOf(NextTile(low, plane.Samples)) - this->OffsetOf(low);
     const bool all = NumbersOnLattice(rows, scale);
     for (int z = 0; !inPlace && z < n.z; ++z)
     {

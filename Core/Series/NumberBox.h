@@ -1,0 +1,36 @@
+#ifndef banyan_Series_NumberBox_h
+#define banyan_Series_NumberBox_h
+
+#include <cstdint>
+
+namespace banyan
+{
+
+/// Samples of a plane of lattice numbers in which a brick is: rows of equally spaced ones. All
+/// distances in elements.
+template <class Number>
+struct NumberBox
+{
+  const Number* Numbers = nullptr; ///< sample 0 of row 0 of slice 0
+  const Number* Before = nullptr;  ///< the same of another step, laid out alike
+  int Count = 1;                   ///< samples of a row
+  int Stride = 1;                  ///< from sample to sample: 1 or 2
+  std::int64_t RowGap = 0, SliceGap = 0;
+  int Rows = 1, Slices = 1;
+};
+
+/// What the table of bricks says of samples.
+struct NumberExtremes
+{
+  std::int32_t Low = INT32_MAX, High = INT32_MIN;
+  bool AsBefore = true; ///< every number is that of the other step
+};
+
+/// Adds the samples of a box.
+/// @param Number std::int16_t or std::int32_t
+template <class Number>
+void IncludeBox(const NumberBox<Number>& box, NumberExtremes& extremes);
+
+} // namespace banyan
+
+#endif
