@@ -13,6 +13,8 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace banyan
@@ -172,6 +174,30 @@ HexMesh HexMeshOf(vtkUnstructuredGrid* grid, OtherCells* others)
   }
   mesh.Owner = owners;
   return mesh;
+}
+
+bool CanBeSampled(vtkUnstructuredGrid* grid)
+{
+  try
+  {
+    OtherCells others;
+    const HexMesh mesh = HexMeshOf(grid, &others);
+    return mesh.CellCount > 0 && DispatchMesh(mesh,
+                                   [&](const auto* points, const auto* ids)
+                                   {
+                                     return std::all_of(ids, ids + 8 * mesh.CellCount,
+                                       [&](std::int64_t id)
+                                       {
+                                         return id >= 0 && id < mesh.PointCount &&
+                                                std::all_of(points + 3 * id, points + 3 * id + 3,
+                                                  [](double x) { return std::isfinite(x); });
+                                       });
+                                   });
+  }
+  catch (const Error&)
+  {
+    return false;
+  }
 }
 
 vtkSmartPointer<vtkDataArray> ValuesOfCells(vtkUnstructuredGrid* grid, vtkDataArray* values)

@@ -33,6 +33,10 @@ struct OtherCells
 /// what to do. Otherwise such cells are left out, and this says which
 BANYANFILTERS_EXPORT HexMesh HexMeshOf(vtkUnstructuredGrid* grid, OtherCells* others = nullptr);
 
+/// Whether there is something that boxes can be sampled of (see SampledGrid): hexahedra or voxels
+/// whose points exist and are finite.
+bool CanBeSampled(vtkUnstructuredGrid* grid);
+
 /// Values of the cells that HexMeshOf takes when it may leave out others, in its order: the array
 /// itself unless cells are left out.
 /// @param values of all cells of the grid; may be null

@@ -1,5 +1,6 @@
 #include "LeafParts.h"
 
+#include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkDataArray.h"
@@ -10,8 +11,10 @@
 #include "vtkNew.h"
 #include "vtkOverlappingAMR.h"
 #include "vtkUniformGrid.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace banyan
 {
@@ -53,6 +56,31 @@ bool AreSame(vtkDataArray* one, vtkDataArray* other)
     }
   }
   return true;
+}
+
+/// To the bit; those of one type only.
+bool HaveSameBits(vtkDataArray* one, vtkDataArray* other)
+{
+  return one == other ||
+         (one->GetDataType() == other->GetDataType() &&
+           one->GetNumberOfValues() == other->GetNumberOfValues() &&
+           (one->GetVoidPointer(0) == other->GetVoidPointer(0) ||
+             std::memcmp(one->GetVoidPointer(0), other->GetVoidPointer(0),
+               static_cast<std::size_t>(one->GetNumberOfValues()) * one->GetDataTypeSize()) == 0));
+}
+
+bool AreSame(vtkDataSet* one, vtkDataSet* other)
+{
+  if (one->GetNumberOfPoints() != other->GetNumberOfPoints() ||
+      one->GetNumberOfCells() != other->GetNumberOfCells())
+  {
+    return false;
+  }
+  vtkUnstructuredGrid* const grid = vtkUnstructuredGrid::SafeDownCast(one);
+  vtkUnstructuredGrid* const otherGrid = vtkUnstructuredGrid::SafeDownCast(other);
+  return !grid || !otherGrid || grid->GetNumberOfCells() == 0 ||
+         HaveSameBits(
+           grid->GetCells()->GetConnectivityArray(), otherGrid->GetCells()->GetConnectivityArray());
 }
 
 /// Of the cells that two cursors point to, and of all below.
@@ -179,6 +207,34 @@ bool HaveSameLeaves(vtkDataObject* one, vtkDataObject* other)
   const std::vector<vtkUniformGrid*> others = BlocksOf(otherAll);
   return std::equal(blocks.begin(), blocks.end(), others.begin(), others.end(),
     [](vtkUniformGrid* a, vtkUniformGrid* b) { return AreSame(a, b); });
+}
+
+bool HaveSameCells(vtkDataObject* one, vtkDataObject* other)
+{
+  vtkDataSet* const set = vtkDataSet::SafeDownCast(one);
+  vtkDataSet* const otherSet = vtkDataSet::SafeDownCast(other);
+  if (set && otherSet)
+  {
+    return AreSame(set, otherSet);
+  }
+  vtkCompositeDataSet* const blocks = vtkCompositeDataSet::SafeDownCast(one);
+  vtkCompositeDataSet* const others = vtkCompositeDataSet::SafeDownCast(other);
+  if (!blocks || !others || vtkOverlappingAMR::SafeDownCast(one))
+  {
+    return HaveSameLeaves(one, other);
+  }
+  const auto a = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
+  const auto b = vtkSmartPointer<vtkCompositeDataIterator>::Take(others->NewIterator());
+  b->InitTraversal();
+  for (a->InitTraversal(); !a->IsDoneWithTraversal(); a->GoToNextItem(), b->GoToNextItem())
+  {
+    if (b->IsDoneWithTraversal() ||
+        !HaveSameCells(a->GetCurrentDataObject(), b->GetCurrentDataObject()))
+    {
+      return false;
+    }
+  }
+  return b->IsDoneWithTraversal() != 0;
 }
 
 } // namespace banyan

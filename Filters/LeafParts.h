@@ -27,6 +27,11 @@ BANYANFILTERS_EXPORT std::vector<vtkDataSetAttributes*> PartsOfLeaves(
 /// same trees and cells, numbered in the same way, or the same blocks.
 BANYANFILTERS_EXPORT bool HaveSameLeaves(vtkDataObject* one, vtkDataObject* other);
 
+/// Whether values of two data objects stand for the same cells and points, counted in the same way:
+/// hyper trees and AMR as above, unstructured grids whose cells have the same points (which may
+/// have moved), other data sets with as many of both, blocks if all of them do.
+BANYANFILTERS_EXPORT bool HaveSameCells(vtkDataObject* one, vtkDataObject* other);
+
 } // namespace banyan
 
 #endif

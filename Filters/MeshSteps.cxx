@@ -226,6 +226,10 @@ void MeshSteps::Remember(vtkUnstructuredGrid* grid)
   }
   catch (const Error& error)
   {
+    if (!CanBeSampled(grid))
+    {
+      throw;
+    }
     std::string reason = error.what();
     reason.erase(reason.find_last_not_of('.') + 1);
     throw Error(reason +

@@ -80,7 +80,9 @@ vtkSmartPointer<vtkDataArray> PieceArrays::Joined(vtkDataArray* like,
     if (std::memcmp(at(twin.first), at(twin.second), bytes) != 0)
     {
       throw Error(std::string("Two ranks or blocks have different values of the array ") +
-                  like->GetName() + " at the same point of the mesh: which one should be kept?");
+                  like->GetName() +
+                  " at the same point of the mesh: which one should be kept? Choose other arrays "
+                  "with 'Point Arrays', or read the blocks that belong together");
     }
   }
   return whole;

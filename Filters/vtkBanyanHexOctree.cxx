@@ -1,5 +1,6 @@
 #include "vtkBanyanHexOctree.h"
 
+#include "ArraysOfRanks.h"
 #include "GridOfAmr.h"
 #include "GridOfHyperTrees.h"
 #include "HexMeshOfGrid.h"
@@ -130,6 +131,18 @@ vtkSmartPointer<vtkUnstructuredGrid> GridOf(vtkDataObject* data)
   return Merged(grids);
 }
 
+/// Collective: what this rank has; all ranks fail when one does.
+vtkSmartPointer<vtkUnstructuredGrid> PieceOf(const banyan::RankTalk& talk, vtkDataObject* data)
+{
+  if (vtkOverlappingAMR::SafeDownCast(data))
+  {
+    return GridOf(data);
+  }
+  vtkSmartPointer<vtkUnstructuredGrid> grid;
+  talk.Together([&] { grid = GridOf(data); });
+  return grid;
+}
+
 /// Whether the cells are boxes already, whatever the data.
 bool IsOfBoxes(vtkDataObject* data)
 {
@@ -160,15 +173,18 @@ int vtkBanyanHexOctree::RequestData(
     0); // what stopped an update, or came behind its end, was not meant for this
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputs);
   vtkDataObject* const data = vtkDataObject::GetData(inputs[0]);
+  vtkSmartPointer<vtkUnstructuredGrid> grid;
   try
   {
+    const banyan::RankTalk talk(vtkMultiProcessController::GetGlobalController());
     if (!this->SampleGeneralMeshes || IsOfBoxes(data))
     {
-      this->Describe(GridOf(data), output);
+      grid = PieceOf(talk, data);
+      grid = banyan::WithArraysOfAllRanks(talk, grid);
+      talk.Together([&] { this->Describe(grid, output); });
       return 1;
     }
     const vtkSmartPointer<vtkUnstructuredGrid> all = this->Gathered(data);
-    const banyan::RankTalk talk(vtkMultiProcessController::GetGlobalController());
     talk.OnRank(0, [&] { this->Describe(all, output); });
     return 1;
   }
@@ -178,7 +194,7 @@ int vtkBanyanHexOctree::RequestData(
     std::string reason = error.what();
     reason.erase(reason.find_last_not_of('.') + 1);
     vtkErrorMacro(<< "The mesh is no octree of hexahedra. " << reason
-                  << (this->SampleGeneralMeshes || IsOfBoxes(data)
+                  << (this->SampleGeneralMeshes || IsOfBoxes(data) || !banyan::CanBeSampled(grid)
                          ? ""
                          : ". Switch on 'Sample General Meshes' for the boxes that \"Banyan "
                            "Volume\" draws of such meshes"));

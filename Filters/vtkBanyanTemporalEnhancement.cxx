@@ -178,6 +178,11 @@ bool vtkBanyanTemporalEnhancement::Enhance(
                                " in " + which + ", and " + shape(array) +
                                " now. Only meshes that stay the same can be compared.");
     }
+    if (!banyan::HaveSameCells(data, other))
+    {
+      throw std::runtime_error(which + " has other cells. Only meshes that stay the same can be "
+                                       "compared.");
+    }
     neighbours[i] = this->PlainOf(there, plain);
   }
   const auto enhanced = banyan::EnhancedArray(

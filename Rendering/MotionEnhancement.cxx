@@ -5,6 +5,7 @@
 #include "Cache/BrickCache.h"
 #include "EnhancedArray.h"
 #include "LeafParts.h"
+#include "Parallel/Communicator.h"
 #include "Render/EnhancedBrickSource.h"
 #include "Render/SeriesBrickSource.h"
 #include "vtkBanyanDeferred.h"
@@ -19,6 +20,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <exception>
+#include <utility>
+#include <vector>
 
 namespace banyan
 {
@@ -54,10 +58,40 @@ vtkDataArray* Neighbour(vtkDataSetAttributes* all, const char* name, vtkDataArra
 
 using Neighbours = std::array<vtkDataArray*, 3>; ///< now, before, after
 
-Neighbours NeighboursOf(vtkDataSetAttributes* all, vtkDataArray* array)
+/// @param compared with the step before, after
+Neighbours NeighboursOf(
+  vtkDataSetAttributes* all, vtkDataArray* array, const std::array<bool, 2>& compared)
 {
-  return { { array, Neighbour(all, MotionEnhancement::PreviousName(), array),
-    Neighbour(all, MotionEnhancement::NextName(), array) } };
+  return { { array,
+    compared[0] ? Neighbour(all, MotionEnhancement::PreviousName(), array) : nullptr,
+    compared[1] ? Neighbour(all, MotionEnhancement::NextName(), array) : nullptr } };
+}
+
+/// Whether bricks of a series are drawn, which has the other steps.
+bool LiesOnSeries(const FieldPiece& piece)
+{
+  const vtkBanyanDeferred::Handle* const handle = vtkBanyanDeferred::From(piece.Array);
+  return handle && piece.Image && vtkBanyanDeferred::LiesOnSeries(piece.Image, *handle);
+}
+
+/// What the drawn array lies in, and the array: of each block.
+std::vector<std::pair<vtkDataSetAttributes*, vtkDataArray*>> PartsOf(
+  vtkDataObject* data, const FieldPiece& piece)
+{
+  if (!piece.Leaves)
+  {
+    return { { data->GetAttributes(PlaceOf(piece)), piece.Array } };
+  }
+  std::vector<std::pair<vtkDataSetAttributes*, vtkDataArray*>> parts;
+  for (vtkDataSetAttributes* const values : PartsOfLeaves(piece.Leaves, PlaceOf(piece)))
+  {
+    // That a block has none is said when the picture is made.
+    if (vtkDataArray* const now = values->GetArray(piece.ArrayName.c_str()))
+    {
+      parts.emplace_back(values, now);
+    }
+  }
+  return parts;
 }
 
 /// Null when they cannot be decoded.
@@ -85,10 +119,62 @@ constexpr const char* NotDecoded = "The values to be enhanced cannot be decoded.
 
 } // namespace
 
-void MotionEnhancement::Apply(
+/// Collective: which steps all ranks with values in memory have.
+void MotionEnhancement::Agree(
+  Communicator& communicator, vtkDataObject* data, const FieldPiece& piece, bool plain)
+{
+  static const char* const names[2] = { PreviousName(), NextName() };
+  static const char* const texts[2] = { "before", "after" };
+  this->NoteText.clear();
+  for (std::size_t i = 0; i < 2; ++i)
+  {
+    bool all = plain;
+    if (plain)
+    {
+      for (const auto& part : PartsOf(data, piece))
+      {
+        all = all && Neighbour(part.first, names[i], part.second);
+      }
+    }
+    const bool has = AllMax(communicator, plain && all ? 1.0 : 0.0) > 0.0;
+    const bool lacks = AllMax(communicator, plain && !all ? 1.0 : 0.0) > 0.0;
+    this->Compared[i] = has && !lacks;
+    if (has && lacks)
+    {
+      this->NoteText += std::string("Motion is not brought out against the step ") + texts[i] +
+                        ": some ranks have other cells, trees or blocks there, or cannot read it. ";
+    }
+  }
+}
+
+void MotionEnhancement::Apply(Communicator& communicator, double strength,
+  vtkVolumeProperty* property, vtkDataObject* data, FieldPiece& piece)
+{
+  const bool drawn = data && piece.Array && piece.Problem.empty();
+  if (strength == 0.0)
+  {
+    this->NoteText.clear();
+  }
+  else
+  {
+    this->Agree(communicator, data, piece, drawn && !LiesOnSeries(piece));
+  }
+  try
+  {
+    this->ApplyHere(drawn ? strength : 0.0, property, data, piece);
+  }
+  catch (const std::exception& error)
+  {
+    this->Enhanced = nullptr;
+    this->Leaves = nullptr;
+    piece.Problem = error.what();
+  }
+}
+
+void MotionEnhancement::ApplyHere(
   double strength, vtkVolumeProperty* property, vtkDataObject* data, FieldPiece& piece)
 {
-  if (strength == 0.0 || !data || !piece.Array || !piece.Problem.empty())
+  if (strength == 0.0)
   {
     this->Enhanced = nullptr;
     this->Leaves = nullptr;
@@ -105,8 +191,7 @@ void MotionEnhancement::Apply(
     return;
   }
   this->Leaves = nullptr;
-  const vtkBanyanDeferred::Handle* const handle = vtkBanyanDeferred::From(piece.Array);
-  if (!handle || !piece.Image || !vtkBanyanDeferred::LiesOnSeries(piece.Image, *handle))
+  if (!LiesOnSeries(piece))
   {
     this->ApplyToArray(data, piece);
   }
@@ -115,9 +200,7 @@ void MotionEnhancement::Apply(
 void MotionEnhancement::ApplyToArray(vtkDataObject* data, FieldPiece& piece)
 {
   const Neighbours arrays =
-    NeighboursOf(data->GetAttributes(
-                   piece.Where == ValuesOn::Points ? vtkDataObject::POINT : vtkDataObject::CELL),
-      piece.Array);
+    NeighboursOf(data->GetAttributes(PlaceOf(piece)), piece.Array, this->Compared);
   const Stamps stamp = StampOf(arrays, piece);
   if (!this->Enhanced || stamp != this->Stamp)
   {
@@ -139,18 +222,18 @@ void MotionEnhancement::ApplyToLeaves(FieldPiece& piece)
   Stamps stamp = StampOf({ { piece.Array, nullptr, nullptr } }, piece);
   stamp[2] = Address(piece.Leaves);
   stamp[3] = piece.Leaves->GetMTime();
+  stamp[4] = (this->Compared[0] ? 1u : 0u) + (this->Compared[1] ? 2u : 0u);
   if (!this->Leaves || stamp != this->Stamp)
   {
     this->Leaves = CopyOfLeaves(piece.Leaves);
     this->Enhanced = nullptr;
-    for (vtkDataSetAttributes* const values : PartsOfLeaves(this->Leaves, PlaceOf(piece)))
+    FieldPiece copy = piece;
+    copy.Leaves = this->Leaves;
+    for (const auto& part : PartsOf(nullptr, copy))
     {
-      vtkDataArray* const now = values->GetArray(piece.ArrayName.c_str());
-      if (!now)
-      {
-        continue; // which is said when the picture is made
-      }
-      const vtkSmartPointer<vtkDataArray> enhanced = Enhance(NeighboursOf(values, now), piece);
+      vtkDataSetAttributes* const values = part.first;
+      const vtkSmartPointer<vtkDataArray> enhanced =
+        Enhance(NeighboursOf(values, part.second, this->Compared), piece);
       if (!enhanced)
       {
         this->Leaves = nullptr;

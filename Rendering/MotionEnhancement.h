@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
 
 class vtkDataArray;
 class vtkDataObject;
@@ -17,6 +18,7 @@ namespace banyan
 {
 
 class BrickSource;
+class Communicator;
 class SeriesFile;
 struct FieldKey;
 struct FieldPiece;
@@ -31,19 +33,32 @@ public:
   static const char* PreviousName() { return "banyan: step before"; }
   static const char* NextName() { return "banyan: step after"; }
 
-  /// Puts enhanced values in the place of a plain piece's, or notes how those of a series are to be
-  /// enhanced. The scale is the largest magnitude that the opacity function knows, so that
-  /// functions mean the same with and without.
-  /// Of hyper trees and AMR a copy by reference, with the enhanced array in the place of the drawn
-  /// one, takes their place: in each block, what has as many values as now is compared with.
-  /// @param strength in [0, 1]; 0 does nothing
-  void Apply(double strength, vtkVolumeProperty* property, vtkDataObject* data, FieldPiece& piece);
+  /// Collective. Puts enhanced values in the place of a plain piece's, or notes how those of a
+  /// series are to be enhanced. The scale is the largest magnitude that the opacity function knows,
+  /// so that functions mean the same with and without. Of hyper trees and AMR a copy by reference,
+  /// with the enhanced array in the place of the drawn one, takes their place: in each block, what
+  /// has as many values as now is compared with.
+  ///
+  /// A step that one rank has nothing to compare with of is compared with on none: the picture is
+  /// that of one rank.
+  /// @param strength in [0, 1], the same on all ranks; 0 does nothing
+  void Apply(Communicator& communicator, double strength, vtkVolumeProperty* property,
+    vtkDataObject* data, FieldPiece& piece);
+
+  /// What a user should know of the last Apply: the step that only some ranks have. Empty if
+  /// nothing. The same on all ranks.
+  const std::string& Note() const { return this->NoteText; }
 
 private:
   using Stamps = std::array<std::uint64_t, 9>;
+  void Agree(Communicator& communicator, vtkDataObject* data, const FieldPiece& piece, bool plain);
+  void ApplyHere(
+    double strength, vtkVolumeProperty* property, vtkDataObject* data, FieldPiece& piece);
   void ApplyToArray(vtkDataObject* data, FieldPiece& piece);
   void ApplyToLeaves(FieldPiece& piece);
 
+  std::array<bool, 2> Compared{ { false, false } }; ///< step before, after: the same on all ranks
+  std::string NoteText;
   vtkSmartPointer<vtkDataArray> Enhanced;
   vtkSmartPointer<vtkDataObject> Leaves; ///< with Enhanced in them; null for other data
   Stamps Stamp{ {} };                    ///< of what it was made of

@@ -73,6 +73,7 @@ DrawnArray ArrayOf(vtkBanyanVolumeMapper* mapper, vtkDataSet* data)
   if (!found.Array && mapper->GetScalarMode() == VTK_SCALAR_MODE_DEFAULT)
   {
     found.Array = data->GetPointData()->GetArray(0);
+    onCells = 0;
     if (!found.Array && !vtkImageData::SafeDownCast(data))
     {
       found.Array = FirstOf(data->GetCellData());

@@ -148,18 +148,18 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
   {
     banyan::ThreadPool::SetProcessWidth(this->NumberOfThreads);
     piece = banyan::PieceOfInput(this, volume->GetProperty());
-    self.Motion.Apply(
-      this->TemporalEnhancement, volume->GetProperty(), this->GetDataObjectInput(), piece);
   }
   catch (const std::exception& error)
   {
     piece = banyan::FieldPiece();
     piece.Problem = error.what();
   }
+  self.Motion.Apply(*self.Communicator, this->TemporalEnhancement, volume->GetProperty(),
+    this->GetDataObjectInput(), piece);
   self.Field.Update(*self.Communicator, piece);
   self.Bounds = self.Field.Bounds();
   self.BoundsKnown = true;
-  this->WarnOnce(self.Field.MeshNote());
+  this->WarnOnce(self.Motion.Note() + self.Field.MeshNote());
   if (self.Field.Empty())
   {
     // Nothing with bounds is there to be rendered, so this may be the only place to say why.

@@ -89,27 +89,42 @@ void BoundsOf(vtkDataObject* data, double bounds[6])
   }
 }
 
-void AddNeighbours(vtkDataArray* array, const StepWindow& steps, vtkDataSet* piece)
+int AddNeighbours(vtkDataArray* array, const StepWindow& steps, vtkDataSet* piece)
 {
   vtkImageData* const image = vtkImageData::SafeDownCast(piece);
   const vtkBanyanDeferred::Handle* const handle = array ? vtkBanyanDeferred::From(array) : nullptr;
   const bool fromSeries = handle && image && vtkBanyanDeferred::LiesOnSeries(image, *handle);
   if (!array || !array->GetName() || fromSeries)
   {
-    return;
+    return 0;
   }
+  int others = 0;
   const int where = piece->GetPointData()->GetArray(array->GetName()) == array
                       ? vtkDataObject::POINT
                       : vtkDataObject::CELL;
   const auto add = [&](vtkDataObject* step, const char* name)
   {
-    const vtkSmartPointer<vtkDataObject> data = BlocksAsOne(step);
+    if (!step)
+    {
+      return;
+    }
+    vtkSmartPointer<vtkDataObject> data;
+    try
+    {
+      data = steps.Now() && HaveSameCells(steps.Now(), step) ? BlocksAsOne(step) : nullptr;
+    }
+    catch (const std::exception&)
+    {
+      data = nullptr;
+    }
+    others += data ? 0 : 1;
     vtkDataSetAttributes* const values = data ? data->GetAttributes(where) : nullptr;
     AddRenamed(
       values ? values->GetArray(array->GetName()) : nullptr, name, piece->GetAttributes(where));
   };
   add(steps.Previous(), MotionEnhancement::PreviousName());
   add(steps.Next(), MotionEnhancement::NextName());
+  return others;
 }
 
 int AddNeighboursToLeaves(vtkDataArray* array, const StepWindow& steps, vtkDataObject* leaves)

@@ -22,11 +22,12 @@ void BoundsOf(vtkDataObject* data, double bounds[6]);
 
 /// Adds the values that `array` has in the step before and after to a piece, under the names that
 /// MotionEnhancement looks for. Arrays that decode on first touch are left alone: they are drawn
-/// from their series, which has the other steps.
-void AddNeighbours(vtkDataArray* array, const StepWindow& steps, vtkDataSet* piece);
+/// from their series, which has the other steps. Steps with other cells (see HaveSameCells), or
+/// that nothing can be drawn of, are taken for steps that are not there. Throws nothing.
+/// @return how many steps have other cells
+int AddNeighbours(vtkDataArray* array, const StepWindow& steps, vtkDataSet* piece);
 
-/// The same for hyper trees or AMR, which must be a copy (see CopyOfLeaves). Steps with other
-/// leaves are taken for steps that are not there.
+/// The same for hyper trees or AMR, which must be a copy (see CopyOfLeaves).
 /// @param array the drawn one, of any block
 /// @return how many steps have other leaves
 int AddNeighboursToLeaves(vtkDataArray* array, const StepWindow& steps, vtkDataObject* leaves);

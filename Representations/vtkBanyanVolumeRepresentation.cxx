@@ -67,36 +67,29 @@ int vtkBanyanVolumeRepresentation::RequestUpdateExtent(
   return done;
 }
 
-/// Whether there are steps to compare with.
-bool vtkBanyanVolumeRepresentation::TakeSteps()
+/// The steps to compare with, as far as they can be read: what others lack, no rank compares with.
+void vtkBanyanVolumeRepresentation::TakeSteps()
 {
-  if (this->Mapper->GetTemporalEnhancement() == 0.0)
-  {
-    return false;
-  }
   try
   {
     this->Steps->Take(this);
-    return true;
   }
   catch (const std::exception& error)
   {
     vtkErrorMacro(<< "Motion is not brought out: " << error.what());
-    return false;
   }
 }
 
 /// Adds what the drawn array is compared with to the piece.
 void vtkBanyanVolumeRepresentation::AddSteps(vtkDataArray* array)
 {
-  if (vtkDataSet* const piece = vtkDataSet::SafeDownCast(this->Piece))
+  vtkDataSet* const piece = vtkDataSet::SafeDownCast(this->Piece);
+  const int others = piece ? banyan::AddNeighbours(array, *this->Steps, piece)
+                           : banyan::AddNeighboursToLeaves(array, *this->Steps, this->Piece);
+  if (others > 0)
   {
-    banyan::AddNeighbours(array, *this->Steps, piece);
-  }
-  else if (banyan::AddNeighboursToLeaves(array, *this->Steps, this->Piece) > 0)
-  {
-    vtkWarningMacro(<< "Motion is not brought out against steps that have other hyper trees or AMR "
-                       "blocks than this one.");
+    vtkWarningMacro(<< "Motion is not brought out against steps that have other cells, hyper trees "
+                       "or AMR blocks than this one.");
   }
 }
 
@@ -104,13 +97,20 @@ int vtkBanyanVolumeRepresentation::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   const bool hasInput = inputVector[0]->GetNumberOfInformationObjects() == 1;
-  const bool enhanced = hasInput && this->TakeSteps();
+  const bool enhanced = hasInput && this->Mapper->GetTemporalEnhancement() > 0.0;
+  if (enhanced)
+  {
+    this->TakeSteps();
+  }
   vtkMath::UninitializeBounds(this->DataBounds);
   this->DataSize = 0;
   this->Piece = vtkSmartPointer<vtkImageData>::New().GetPointer();
-  vtkDataObject* const now = !hasInput  ? nullptr
-                             : enhanced ? this->Steps->Now()
-                                        : vtkDataObject::GetData(inputVector[0], 0);
+  // While steps around it are read, what the input has is another one.
+  vtkDataObject* now = enhanced ? this->Steps->Now() : nullptr;
+  if (hasInput && !now)
+  {
+    now = vtkDataObject::GetData(inputVector[0], 0);
+  }
   vtkSmartPointer<vtkDataObject> input;
   try
   {

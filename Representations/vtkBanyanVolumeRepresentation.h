@@ -137,7 +137,7 @@ private:
   vtkBanyanVolumeRepresentation(const vtkBanyanVolumeRepresentation&) = delete;
   void operator=(const vtkBanyanVolumeRepresentation&) = delete;
 
-  bool TakeSteps();
+  void TakeSteps();
   void AddSteps(vtkDataArray* array);
   void PrepareRender(vtkDataObject* piece);
   void ShowProgress();

@@ -11,6 +11,7 @@
 #include "vtkCellData.h"
 #include "vtkCellType.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkUnstructuredGrid.h"
 
@@ -271,6 +272,19 @@ void DrawsWhatIsNoOctree()
   Check(deviation > 0.0 && deviation <= 1.0, "its deviation is stated");
 }
 
+/// With nothing chosen, and nothing active.
+void DrawsTheFirstArray()
+{
+  const auto mesh = Mesh(0);
+  mesh->GetPointData()->SetActiveScalars(nullptr);
+  vtkNew<vtkBanyanVolumeMapper> mapper;
+  mapper->SetScalarModeToDefault();
+  mapper->SetInputDataObject(mesh);
+  Stage stage(mapper);
+  stage.LookAt(mesh->GetBounds());
+  Check(Covered(stage.Draw()) > 100, "the first array of points is drawn");
+}
+
 void Refuses()
 {
   const auto warped = Mesh(0);
@@ -308,6 +322,7 @@ int main()
   NewValuesFindNoOctree();
   DrawsWhatIsNoOctree();
   ElementsPerPixelAreLimited();
+  DrawsTheFirstArray();
   Refuses();
   return Failures();
 }
