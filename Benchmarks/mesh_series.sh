@@ -9,9 +9,12 @@
 #   --output DIR   where the series and mesh_series.csv go (default benchmark-output/mesh-series)
 #
 # Prints what Utilities/info.sh says of the series of `velocity` (bound: 1/512 of the range), then the
-# bits per value of codes of 8 bits with zstd, levels 3 and 19, on the same values in the order of the mesh's
-# points (banyan-bench-codec, "8 bits").
-# Needs the plugin and the benchmarks built (BANYAN_BUILD_DIR).
+# bits per value of others, within the same bound, on the same values in the order of the mesh's points
+# (banyan-bench-codec, "8 bits"): codes of 8 bits with zstd, levels 3 and 19, and with their bits shuffled;
+# and zfp, which has one dimension here, with the bound as its tolerance and with the largest tolerance whose
+# errors stay within it.
+# Needs the plugin and the benchmarks built (BANYAN_BUILD_DIR, -DBANYAN_BUILD_BENCHMARKS=ON) where zfp and Blosc
+# are installed (Utilities/install-dependencies.sh --with-peers).
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 output="benchmark-output/mesh-series"
@@ -36,9 +39,10 @@ pvpython --force-offscreen-rendering "$here/MeshSeries/measure.py" --plugin "$pl
 "$BuildFolder/bin/banyan-info" "$output/mesh.banyan" | sed -n '1,/encoded: payloads/p'
 
 stage 3 3 "Measuring the others"
+methods="zstd-8bit,zstd-8bit-19,bitshuffle-8bit,zfp,zfp-tuned"
 "$BuildFolder/bin/banyan-bench-codec" --output "$output/mesh_series.csv" --work "$output" --bits 8 \
-  --repeat 1 --bricks 0 --methods zstd-8bit,zstd-8bit-19 "$output"/velocity-*.json ||
-  fail "the measurements failed."
+  --repeat 1 --bricks 0 --methods "$methods" "$output"/velocity-*.json ||
+  fail "the measurements failed; they need zfp and Blosc (Utilities/install-dependencies.sh --with-peers) and -DBANYAN_BUILD_BENCHMARKS=ON."
 "$python" - "$output/mesh_series.csv" << 'PYTHON'
 import csv
 import sys

@@ -17,7 +17,8 @@ class ZfpEncoded : public EncodedSeries
 {
 public:
   ZfpEncoded(const RawSeries& series, double tolerance, bool exact)
-    : Coder(series.Samples(), tolerance, exact)
+    : Line(ZfpCoder::IsLine(series.Samples()))
+    , Coder(series.Samples(), tolerance, exact)
   {
     for (int step = 0; step < series.Steps(); ++step)
     {
@@ -40,7 +41,7 @@ public:
     this->Coder.Decode(this->Steps[static_cast<std::size_t>(step)], values);
   }
 
-  bool DecodesBricks() const override { return true; }
+  bool DecodesBricks() const override { return !this->Line; }
 
   void DecodeBrick(int step, const Box& samples, float* values) override
   {
@@ -48,6 +49,7 @@ public:
   }
 
 private:
+  bool Line;
   ZfpCoder Coder;
   std::vector<ZfpStep> Steps;
 };

@@ -12,6 +12,8 @@ namespace
 
 constexpr int BrickSamplesPerAxis = 16;
 constexpr int BlockSamplesPerAxis = 4;
+/// Pieces of a line are as long as those of volumes are large.
+constexpr int PieceSamplesOfLine = BrickSamplesPerAxis * BrickSamplesPerAxis * BrickSamplesPerAxis;
 
 /// Calls `block(offset, size)` for each block of 4^3 of a brick, with the offset of its first value
 /// in an array of the given strides and the number of its values per axis.
@@ -62,6 +64,35 @@ void DecodeBrickBlocks(
     });
 }
 
+/// Blocks of 4 values: the code of zfp's one-dimensional fields.
+void EncodeLine(zfp_stream* zfp, const float* values, int count)
+{
+  for (int x = 0; x < count; x += BlockSamplesPerAxis)
+  {
+    const int n = std::min(count - x, BlockSamplesPerAxis);
+    n == BlockSamplesPerAxis
+      ? zfp_encode_block_float_1(zfp, values + x)
+      : zfp_encode_partial_block_strided_float_1(zfp, values + x, static_cast<std::size_t>(n), 1);
+  }
+}
+
+void DecodeLine(zfp_stream* zfp, float* values, int count)
+{
+  for (int x = 0; x < count; x += BlockSamplesPerAxis)
+  {
+    const int n = std::min(count - x, BlockSamplesPerAxis);
+    n == BlockSamplesPerAxis
+      ? zfp_decode_block_float_1(zfp, values + x)
+      : zfp_decode_partial_block_strided_float_1(zfp, values + x, static_cast<std::size_t>(n), 1);
+  }
+}
+
+glm::ivec3 BrickSizeOf(const glm::ivec3& samples)
+{
+  return ZfpCoder::IsLine(samples) ? glm::ivec3(PieceSamplesOfLine, 1, 1)
+                                   : glm::ivec3(BrickSamplesPerAxis);
+}
+
 } // namespace
 
 std::uint64_t ZfpStep::Bytes() const
@@ -77,7 +108,8 @@ std::uint64_t ZfpStep::Bytes() const
 
 ZfpCoder::ZfpCoder(const glm::ivec3& samples, double tolerance, bool exact)
   : Samples(samples)
-  , Bricks((samples + BrickSamplesPerAxis - 1) / BrickSamplesPerAxis)
+  , BrickSize(BrickSizeOf(samples))
+  , Bricks((samples + this->BrickSize - 1) / this->BrickSize)
   , Zfp(zfp_stream_open(nullptr))
 {
   if (exact && tolerance > 0)
@@ -90,8 +122,11 @@ ZfpCoder::ZfpCoder(const glm::ivec3& samples, double tolerance, bool exact)
     tolerance = powerOfTwo;
   }
   zfp_stream_set_accuracy(this->Zfp, tolerance);
-  zfp_field* field = zfp_field_3d(nullptr, zfp_type_float, static_cast<std::size_t>(samples.x),
-    static_cast<std::size_t>(samples.y), static_cast<std::size_t>(samples.z));
+  const auto nx = static_cast<std::size_t>(samples.x);
+  zfp_field* field =
+    IsLine(samples) ? zfp_field_1d(nullptr, zfp_type_float, nx)
+                    : zfp_field_3d(nullptr, zfp_type_float, nx, static_cast<std::size_t>(samples.y),
+                        static_cast<std::size_t>(samples.z));
   const std::size_t bytes = zfp_stream_maximum_size(this->Zfp, field);
   zfp_field_free(field);
   this->Buffer.resize(bytes / sizeof(std::uint64_t) + 2);
@@ -115,8 +150,8 @@ Box ZfpCoder::BrickSamples(std::int64_t brick) const
   const auto x = static_cast<int>(brick % this->Bricks.x);
   const auto y = static_cast<int>(brick / this->Bricks.x % this->Bricks.y);
   const auto z = static_cast<int>(brick / this->Bricks.x / this->Bricks.y);
-  const glm::ivec3 low = BrickSamplesPerAxis * glm::ivec3(x, y, z);
-  return { low, glm::min(low + BrickSamplesPerAxis, this->Samples) };
+  const glm::ivec3 low = this->BrickSize * glm::ivec3(x, y, z);
+  return { low, glm::min(low + this->BrickSize, this->Samples) };
 }
 
 void ZfpCoder::Scale(float* values, std::int64_t count) const
@@ -146,7 +181,9 @@ ZfpStep ZfpCoder::Encode(const float* values)
   {
     const Box box = this->BrickSamples(brick);
     step.BitOffsets.push_back(stream_wtell(this->Stream));
-    EncodeBrick(this->Zfp, values + box.Lo.x + box.Lo.y * sy + box.Lo.z * sz, box.Size(), sy, sz);
+    const float* const first = values + box.Lo.x + box.Lo.y * sy + box.Lo.z * sz;
+    IsLine(this->Samples) ? EncodeLine(this->Zfp, first, box.Size().x)
+                          : EncodeBrick(this->Zfp, first, box.Size(), sy, sz);
   }
   step.BitOffsets.push_back(stream_wtell(this->Stream));
   stream_flush(this->Stream);
@@ -172,8 +209,9 @@ void ZfpCoder::Decode(const ZfpStep& step, float* values)
   for (std::int64_t brick = 0; brick < this->BrickCount(); ++brick)
   {
     const Box box = this->BrickSamples(brick);
-    DecodeBrickBlocks(
-      this->Zfp, values + box.Lo.x + box.Lo.y * sy + box.Lo.z * sz, box.Size(), sy, sz);
+    float* const first = values + box.Lo.x + box.Lo.y * sy + box.Lo.z * sz;
+    IsLine(this->Samples) ? DecodeLine(this->Zfp, first, box.Size().x)
+                          : DecodeBrickBlocks(this->Zfp, first, box.Size(), sy, sz);
   }
   zfp_stream_set_bit_stream(this->Zfp, this->Stream);
   stream_close(stream);

@@ -12,7 +12,8 @@ namespace banyan::bench
 {
 
 /// One step in zfp's accuracy mode: the blocks of 4^3 that `zfp_compress` would code, in the order
-/// of bricks of 16^3, so that one brick is one piece of the stream.
+/// of bricks of 16^3, so that one brick is one piece of the stream. Of one row of values (those of
+/// an unstructured mesh in the order of its points) the blocks of 4 of a one-dimensional field.
 struct ZfpStep
 {
   std::vector<std::uint64_t> Words;      ///< the stream, as zfp reads it
@@ -34,8 +35,12 @@ public:
   ZfpCoder(const ZfpCoder&) = delete;
   ZfpCoder& operator=(const ZfpCoder&) = delete;
 
+  /// Whether these are coded as a field of one dimension.
+  static bool IsLine(const glm::ivec3& samples) { return samples.y == 1 && samples.z == 1; }
+
   ZfpStep Encode(const float* values);
   void Decode(const ZfpStep& step, float* values);
+  /// Not of lines.
   void DecodeBrick(const ZfpStep& step, const Box& samples, float* values);
 
 private:
@@ -45,7 +50,8 @@ private:
   bitstream* OpenStream(const std::vector<std::uint64_t>& words);
 
   glm::ivec3 Samples;
-  glm::ivec3 Bricks;
+  glm::ivec3 BrickSize;
+  glm::ivec3 Bricks; ///< how many
   double Factor = 1.0;
   zfp_stream* Zfp = nullptr;
   bitstream* Stream = nullptr;

@@ -35,7 +35,8 @@ def main():
     chosen = times[len(times) // 2:][:options.steps]  # when waves are everywhere
     part = simple.ExtractTimeSteps(Input=source)
     part.TimeStepIndices = [times.index(time) for time in chosen]
-    simple.SaveData(os.path.join(options.out, "mesh.banyan"), proxy=part, PointArrays=[options.array])
+    simple.SaveData(os.path.join(options.out, "mesh.banyan"), proxy=part, PointArrays=[options.array],
+                    CellArrays=[])
     files = []
     for time in chosen:
         source.UpdatePipeline(time)
