@@ -7,6 +7,7 @@
 #include "Parallel/MeshBytes.h"
 #include "Render/BrickSource.h"
 #include "Render/TemporalEnhancement.h"
+#include "Render/ViewAhead.h"
 #include "Series/SeriesFile.h"
 #include "Series/ValueRange.h"
 
@@ -45,9 +46,10 @@ public:
   /// Collective, after it, for frames that may be drawn from coarser levels, up to `coarsest`: plain
   /// data in pieces and meshes have them then too. Throws Error, the same on all ranks, when one fails.
   void BringLevels(Communicator& communicator, const RayScene& scene, int coarsest);
-  /// When this rank has cast the rays of the frame: begins to decode the time step that comes next, if it
-  /// is an encoded series that plays. Does not throw.
-  void ReadAhead();
+  /// When this rank has cast the rays of the frame: begins to decode what the next frame of an encoded
+  /// series needs: the time step that comes next, if it plays, otherwise what comes onto the screen, if the
+  /// camera moves. Does not throw.
+  void ReadAhead(const RayScene& scene, int rank);
   /// Collective, after it.
   void EndFrame(Communicator& communicator);
   /// From rank to rank for the frame that was begun last, over all ranks.
@@ -123,7 +125,8 @@ private:
   Box Domain;
   glm::dmat4 IndexToPhysicalMatrix{ 1.0 };
   std::vector<Box> ZoneCells;
-  std::unique_ptr<StepAhead> Ahead; ///< null until a series plays
+  std::unique_ptr<StepAhead> Ahead; ///< null until something is read ahead
+  ViewAhead View;
   int Step = 0;                     ///< of the series
   LoadBalancing Balancing = LoadBalancing::Off;
   FrameBalancer Balancer; ///< of encoded series and meshes

@@ -9,6 +9,8 @@
 #include "Render/SeriesBrickSource.h"
 #include "Render/StepAhead.h"
 
+#include <utility>
+
 namespace banyan
 {
 
@@ -66,26 +68,32 @@ void DistributedField::BringLevels(Communicator& communicator, const RayScene& s
   }
 }
 
-void DistributedField::ReadAhead()
+void DistributedField::ReadAhead(const RayScene& scene, int rank)
 {
-  const auto* source = dynamic_cast<const SeriesBrickSource*>(this->Bricks.get());
+  auto* const source = dynamic_cast<SeriesBrickSource*>(this->Bricks.get());
   if (!this->Encoded() || !source)
   {
     return;
   }
   try
   {
+    BrickCache& cache = BrickCache::Process();
     if (!this->Ahead)
     {
-      this->Ahead =
-        std::make_unique<StepAhead>(BrickCache::Process(), ThreadPool::Process().Width());
+      this->Ahead = std::make_unique<StepAhead>(cache, ThreadPool::Process().Width());
       this->Ahead->Drawing(*this->Series, this->Step);
     }
     this->Ahead->Drawn(this->Series, *source);
+    std::vector<FieldBricks> coming =
+      this->View.Expected(scene, *source, this->Zones()[static_cast<std::size_t>(rank)]);
+    if (this->Ahead->Next() < 0 && !coming.empty())
+    {
+      this->Ahead->Work().Start(this->Series, std::move(coming), cache.DecodedBudget() / 4);
+    }
   }
   catch (const std::exception&)
   {
-    this->Ahead.reset(); // no threads, no memory: steps are decoded when they are asked for
+    this->Ahead.reset(); // no threads, no memory: bricks are decoded when they are asked for
   }
 }
 

@@ -312,12 +312,11 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
     self.Field.BeginFrame(*self.Communicator, scene);
   }
   const banyan::PhaseScope sampling(banyan::Phase::Sampling);
-  this->Statistics->SetEstimatedImageError(
-    (!fixed || this->ScreenErrorPixels > 0.0) &&
-        banyan::CanKeepTolerance(this, volume->GetProperty())
-      ? self.Tolerance.Plan(
-          *self.Communicator, self.Field, scene, wish, budget, wanted.Problem, frame)
-      : 0.0);
+  this->Statistics->SetEstimatedImageError((!fixed || this->ScreenErrorPixels > 0.0) &&
+                                               banyan::CanKeepTolerance(this, volume->GetProperty())
+                                             ? self.Tolerance.Plan(*self.Communicator, self.Field,
+                                                 scene, wish, budget, wanted.Problem, frame)
+                                             : 0.0);
   this->Statistics->SetMeshDeviation(self.Field.MeshDeviation());
   const banyan::FrameStatistics pilots = frame;
   compositing.Method = static_cast<banyan::CompositingMethod>(this->Compositing);
@@ -326,7 +325,8 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   compositing.External = banyan::IceTRadixK(this->Controller);
   if (this->ReadAhead)
   {
-    compositing.AfterCasting = [&self] { self.Field.ReadAhead(); };
+    compositing.AfterCasting = [&self, &scene]
+    { self.Field.ReadAhead(scene, self.Communicator->Rank()); };
   }
   const banyan::FloatImage picture =
     banyan::DrawDistributed(*self.Communicator, scene, self.Field.Source(), self.Field.Zones(),

@@ -207,9 +207,10 @@ public:
 
   ///@{
   /**
-   * Whether the next time step of an encoded series that plays is decoded in the background while a frame
-   * is composited and shown: the bricks that were drawn of this step, within half of what the cache has
-   * for decoded bricks. Default on.
+   * Whether what the next frame of an encoded series needs is decoded in the background while a frame
+   * is composited and shown. If it plays: the bricks of the next time step that were drawn of this one, within
+   * half of what the cache has for decoded bricks. If the camera moves: bricks that come onto the screen when
+   * it goes on as it went, within a quarter. Default on.
    */
   vtkSetMacro(ReadAhead, bool);
   vtkGetMacro(ReadAhead, bool);

@@ -35,13 +35,6 @@ BrickSource& SourceAt(BrickSource& source, int level, const RayScene& scene)
   return *found;
 }
 
-/// Cells of a level that begin in cells of the finest one: of disjoint boxes they are disjoint.
-Box CellsAtLevel(const Box& cells, int level)
-{
-  const int edge = 1 << level;
-  return { (cells.Lo + edge - 1) / edge, (cells.Hi + edge - 1) / edge };
-}
-
 /// @param watcher null for none
 FloatImage Cast(const RayScene& scene, BrickSource& source, const Box& cells,
   std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics, PictureWatcher* watcher)
@@ -70,6 +63,12 @@ FloatImage Cast(const RayScene& scene, BrickSource& source, const Box& cells,
 }
 
 } // namespace
+
+Box CellsAtLevel(const Box& cells, int level)
+{
+  const int edge = 1 << level;
+  return { (cells.Lo + edge - 1) / edge, (cells.Hi + edge - 1) / edge };
+}
 
 int FinestLevelWithin(const RayScene& scene, BrickSource& source, const Box& cells, int coarsest,
   std::uint64_t bytes, ThreadPool& pool)

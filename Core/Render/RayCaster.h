@@ -102,6 +102,9 @@ FloatImage CastRays(const RayScene& scene, BrickSource& source, const Box& cells
 int FinestLevelWithin(const RayScene& scene, BrickSource& source, const Box& cells, int coarsest,
   std::uint64_t bytes, ThreadPool& pool);
 
+/// Cells of a level that begin in cells of the finest one: of disjoint boxes they are disjoint.
+Box CellsAtLevel(const Box& cells, int level);
+
 /// Bricks of `source` with cells in `cells` in front-to-back order. Exact for bricks that are cut
 /// from a grid by whole planes; the eye may be inside.
 /// @param view in index space

@@ -232,6 +232,16 @@ void SeriesBrickSource::Note(std::int64_t brick) const
   }
 }
 
+std::vector<FieldBricks> SeriesBrickSource::Fields(const std::vector<std::int64_t>& bricks) const
+{
+  std::vector<FieldBricks> fields;
+  for (std::size_t c = 0; c < this->Components.size() && !bricks.empty(); ++c)
+  {
+    fields.push_back({ this->KeyOf(c), bricks });
+  }
+  return fields;
+}
+
 std::vector<FieldBricks> SeriesBrickSource::Loaded() const
 {
   const std::lock_guard<std::mutex> lock(this->LoadedBricks->Mutex);

@@ -36,6 +36,8 @@ public:
 
   /// What was loaded of this source and its levels so far, in the order in which it was.
   std::vector<FieldBricks> Loaded() const;
+  /// What has to be decoded for bricks of this level.
+  std::vector<FieldBricks> Fields(const std::vector<std::int64_t>& bricks) const;
 
 protected:
   std::unique_ptr<BrickSource> MakeLevel(int level, const Box& domain) override;
