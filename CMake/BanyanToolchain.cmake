@@ -10,3 +10,8 @@ if(BANYAN_SANITIZE)
   add_compile_options(-fsanitize=${BANYAN_SANITIZE} -fno-omit-frame-pointer -g)
   add_link_options(-fsanitize=${BANYAN_SANITIZE})
 endif()
+
+# ParaView opens and closes each library in a folder to see which are plugins, and loads those: what one of
+# ours has told another (a hook, a thread) must stay valid. So once opened, they stay.
+string(APPEND CMAKE_SHARED_LINKER_FLAGS " -Wl,-z,nodelete")
+string(APPEND CMAKE_MODULE_LINKER_FLAGS " -Wl,-z,nodelete")
