@@ -1,12 +1,18 @@
 #include "SeriesInformation.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
+#include "vtkInformationDoubleVectorKey.h"
+#include "vtkInformationInformationVectorKey.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTypeTraits.h"
 
 #include "Series/LevelGrid.h"
+#include "Series/PieceRange.h"
 
 #include <algorithm>
 #include <vector>
@@ -98,6 +104,31 @@ int StepAt(const SeriesIndex& index, vtkInformation& information)
   const double time = information.Get(Pipeline::UPDATE_TIME_STEP());
   const auto after = std::upper_bound(times.begin(), times.end(), time);
   return std::max(0, static_cast<int>(after - times.begin()) - 1);
+}
+
+void DescribeRange(const SeriesFile& series, int array, vtkDataArray& values)
+{
+  const PieceRange range = RangeOfSeries(series, array);
+  const auto count = static_cast<int>(range.Components.size());
+  vtkNew<vtkInformationVector> components;
+  components->SetNumberOfInformationObjects(count);
+  for (int c = 0; c < count; ++c)
+  {
+    const ValueRange& of = range.Components[static_cast<std::size_t>(c)];
+    if (of.Empty())
+    {
+      return; // nothing but fill values and NaN, somewhere: VTK knows what to say of that
+    }
+    const double ends[2] = { of.Low, of.High };
+    components->GetInformationObject(c)->Set(vtkDataArray::COMPONENT_RANGE(), ends, 2);
+  }
+  vtkInformation* const information = values.GetInformation();
+  information->Set(vtkAbstractArray::PER_FINITE_COMPONENT(), components);
+  if (count > 1 && !range.Magnitude.Empty())
+  {
+    const double ends[2] = { range.Magnitude.Low, range.Magnitude.High };
+    information->Set(vtkDataArray::L2_NORM_FINITE_RANGE(), ends, 2);
+  }
 }
 
 } // namespace banyan

@@ -2,8 +2,9 @@
 #define banyan_Readers_SeriesInformation_h
 
 #include "Base/Box.h"
-#include "Series/SeriesIndex.h"
+#include "Series/SeriesFile.h"
 
+class vtkDataArray;
 class vtkInformation;
 
 namespace banyan
@@ -20,6 +21,11 @@ void DescribeSeries(const SeriesIndex& index, int level, vtkInformation& informa
 /// The step that shows at the time asked for: the last one not after it; the first one before that,
 /// and when no time is asked for.
 int StepAt(const SeriesIndex& index, vtkInformation& information);
+
+/// Gives a plain array the range of the whole series as its finite range, which ParaView takes
+/// colours from: so they do not depend on the step that is shown first, and do not drift while a
+/// series plays. Until the array is modified.
+void DescribeRange(const SeriesFile& series, int array, vtkDataArray& values);
 
 } // namespace banyan
 

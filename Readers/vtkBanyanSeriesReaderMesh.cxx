@@ -96,6 +96,7 @@ void vtkBanyanSeriesReader::FillMesh(vtkInformation* outInfo)
     const vtkSmartPointer<vtkDataArray> added =
       trees ? mesh.CellValues(handle) : mesh.Values(handle);
     values->AddArray(added);
+    banyan::DescribeRange(*this->Self->Series, handle.Array, *added);
     if (array.Name == index.ActiveScalars)
     {
       values->SetActiveScalars(added->GetName());

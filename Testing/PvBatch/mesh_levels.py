@@ -128,3 +128,34 @@ def check_inner_cells(trees, leaves, names, fill):
     session.require(filled > 0, "no fill value above leaves")
     for source in (above, limited):
         simple.Delete(source)
+
+
+def check_colours(path, array):
+    for trees in (0, 1):
+        check_colours_of(path, array, trees)
+
+
+def check_colours_of(path, array, trees):
+    """Colours reach over all steps, whichever is shown first, and do not drift."""
+    reader = simple.OpenDataFile(path)
+    reader.MeshAsHyperTreeGrid = trees
+    place = "CELLS" if trees else "POINTS"
+    ranges = []
+    for time in reader.TimestepValues:
+        reader.UpdatePipeline(time)
+        ranges.append((reader.CellData if trees else reader.PointData)[array].GetRange(-1))
+    series = min(low for low, _ in ranges), max(high for _, high in ranges)
+    session.require(ranges[0][1] < 0.5 * series[1], "the first step has it all: nothing is shown by this")
+    view = session.new_view((100, 80))
+    view.ViewTime = reader.TimestepValues[0]
+    display = simple.Show(reader, view)
+    simple.ColorBy(display, (place, array))
+    for time in (reader.TimestepValues[0], reader.TimestepValues[-1]):
+        view.ViewTime = time
+        simple.Render(view)
+        points = simple.GetColorTransferFunction(array, display).RGBPoints
+        # Means of corners are less far apart than the points' own values.
+        wrong = points[-4] < series[1] if trees else abs(points[-4] - series[1]) > 1e-6 * series[1]
+        session.require(not wrong, f"colours up to {points[-4]}, the series up to {series[1]}")
+    simple.Delete(view)
+    simple.Delete(reader)

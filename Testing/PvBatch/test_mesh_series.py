@@ -26,8 +26,8 @@ STEPS = 5
 QUAKE_CELLS, SHUFFLED_CELLS = 3489, 280
 TIMES = [10.0 * step for step in range(STEPS)]
 
-# (max and min are others there than those of Python.) Cells of two sizes in any order, with holes, in pieces by ranks that know global numbers of points
-# and cells, and ghost cells.
+# Cells of two sizes in any order, with holes, in pieces by ranks that know global numbers of points and cells,
+# and ghost cells. (max and min are others there than those of Python.)
 SHUFFLED = """
 import numpy
 from vtkmodules.numpy_interface import dataset_adapter
@@ -379,6 +379,7 @@ def main():
     path = write(quake, options.out, "earthquake", arrays + ["ids"])
     reader = compare(quake, path, arrays, TIMES, QUAKE_CELLS)
     mesh_levels.check_levels(reader)
+    mesh_levels.check_colours(path, "velocity")
     check_pictures(simple.MergeBlocks(Input=quake), reader, "velocity", options.out)
     names, cell_names = ["u", "special", "count"], ["mass", "stress", "u"]
     for name, shared, numbered in (("numbered", True, True), ("pieces", False, True)):
