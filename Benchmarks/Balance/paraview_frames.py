@@ -2,8 +2,8 @@
 
     mpirun -np N pvbatch paraview_frames.py --plugin Banyan.so --scene S1|S2 [--shaded] [--frames N]
 
-The field and the functions are those of the standard scenes (Data/StandardField.h,
-RayCast/StandardScenes.cxx), made by each rank for its piece. One worker thread per rank. A still
+The field, the functions and the camera are those of the standard scenes (Data/StandardField.h,
+RayCast/StandardScenes.cxx); each rank makes its piece of the field. One worker thread per rank. A still
 render is timed on the first rank, from the call to the picture, ParaView's own work and compositing
 included. The first frames load, pack and balance; the medians of the others are printed, with what
 the display says it took in all, for drawing and for compositing.
@@ -16,7 +16,6 @@ import time
 from paraview import simple
 
 SIZE = 256
-PICTURE = 512
 NODES = 256
 FIRST_VISIBLE = 64  # node of S2
 FIRST = 4  # frame that is counted
@@ -98,13 +97,14 @@ def main():
     parser.add_argument("--no-fxaa", action="store_true",
                         help="without ParaView's smoothing of edges")
     parser.add_argument("--frames", type=int, default=16)
+    parser.add_argument("--pixels", type=int, default=1024, help="edge of the picture")
     parser.add_argument("--picture", help="writes the last frame to this file")
     arguments = parser.parse_args()
     if arguments.frames <= FIRST:
         parser.error(f"--frames must be more than {FIRST}: the first ones are not counted")
     simple.LoadPlugin(arguments.plugin, remote=False)
     view = simple.CreateView("RenderView")
-    view.ViewSize = [PICTURE, PICTURE]
+    view.ViewSize = [arguments.pixels, arguments.pixels]
     view.OrientationAxesVisibility = 0
     if arguments.no_fxaa:
         view.UseFXAA = 0
@@ -113,7 +113,7 @@ def main():
     view.CameraFocalPoint = [middle] * 3
     view.CameraPosition = [middle + 1.9 * (SIZE - 1) * x for x in (0.48, 0.36, 0.80)]
     view.CameraViewUp = [0, 1, 0]
-    view.CameraViewAngle = 30
+    view.CameraViewAngle = 45
     taken = []
     for _ in range(arguments.frames):
         began = time.monotonic()
@@ -124,7 +124,7 @@ def main():
             "TotalSeconds", "RenderSeconds", "CompositeSeconds", "Imbalance"))))
     medians = [statistics.median(column) for column in zip(*taken[FIRST:])]
     if arguments.picture:
-        simple.SaveScreenshot(arguments.picture, view, ImageResolution=[PICTURE, PICTURE])
+        simple.SaveScreenshot(arguments.picture, view, ImageResolution=[arguments.pixels, arguments.pixels])
     name = arguments.scene + ("-shaded" if arguments.shaded else "")
     print("scene,ms,banyan_ms,render_ms,composite_ms,imbalance")
     print(name + "," + ",".join(f"{1e3 * value:.1f}" for value in medians[:4])
