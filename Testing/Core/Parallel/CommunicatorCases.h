@@ -217,7 +217,10 @@ inline std::string CheckHelpers(Communicator& communicator)
   const std::string agreed = AgreeOnError(communicator, self >= size / 2 ? "No memory." : "");
   const std::string expected =
     size == 1 ? "No memory." : "Rank " + std::to_string(size / 2) + ": No memory.";
-  return agreed == expected ? "" : "ranks agreed on '" + agreed + "'";
+  const std::string again = AgreeOnError(communicator, agreed);
+  return agreed == expected && again == expected
+           ? ""
+           : "ranks agreed on '" + agreed + "' and then on '" + again + "'";
 }
 
 inline std::string CheckCommunicator(Communicator& communicator)
