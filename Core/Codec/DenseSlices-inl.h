@@ -165,11 +165,8 @@ private:
     const Wide wide = __builtin_convertvector(
       __builtin_shuffle(tables, LanesFrom<RowFirst, RowStep, 1>()), Wide);
     StoreVector(wide << tans::TableBits, memory.FlagPlaces);
-    ReadRun(
-      *this->Symbols, this->Symbols->TablesOf(band), memory.FlagPlaces, flags, memory.Flags);
     unsigned zeros =
-      BitsOf(reinterpret_cast<ByteVector>(LoadVector<ByteVector>(memory.Flags) != std::uint8_t{ 0 }));
-    zeros &= (1u << flags) - 1u;
+      ReadFlags<flags>(*this->Symbols, this->Symbols->TablesOf(band), memory.FlagPlaces);
     if (RowStep == 2)
     {
       zeros = (zeros | zeros << 4) & 0x0f0fu;

@@ -158,6 +158,55 @@ HWY_NOINLINE void ReadRunOf(SymbolReader& symbols, const std::uint32_t* HWY_REST
   TakeTops(entries, count, tops);
 }
 
+/// ReadFlags for a number of lanes. All numbers are known, so that nothing is jumped over, and no flag
+/// goes through memory.
+template <int Lanes, int Count>
+HWY_NOINLINE unsigned ReadFlagsOf(SymbolReader& symbols, const std::uint32_t* HWY_RESTRICT tables,
+  const std::uint16_t* HWY_RESTRICT places)
+{
+  constexpr std::uint32_t top = 0xffu << residual::TopShift;
+  std::uint64_t states[Lanes];
+  std::memcpy(states, symbols.States, sizeof(states));
+  RunBits bits(symbols);
+  unsigned set = 0;
+#pragma GCC unroll 16
+  for (int k = 0; k < Count; ++k)
+  {
+    const std::uint32_t entry = bits.Next(tables, places[k], states[k % Lanes]);
+    set |= ((entry & top) != 0 ? 1u : 0u) << k;
+    if (k % 4 == 3 && k + 1 < Count)
+    {
+      bits.Fill(); // four symbols take at most 36 bits
+    }
+  }
+  std::memcpy(symbols.States, states, sizeof(states));
+  symbols.Position = bits.Position();
+  symbols.Check();
+  return set;
+}
+
+/// Reads a run of symbols of which only matters whether they are 0. @return bit k: symbol k is not
+/// @param tables, places as ReadRun has them
+template <int Count>
+HWY_INLINE unsigned ReadFlags(
+  SymbolReader& symbols, const std::uint32_t* tables, const std::uint16_t* places)
+{
+  static_assert(Count <= 16, "a word of bits");
+  const stages::In stage(stages::Symbols);
+  stages::CountSymbols(Count);
+  switch (symbols.LanesLog)
+  {
+    case 0:
+      return ReadFlagsOf<1, Count>(symbols, tables, places);
+    case 1:
+      return ReadFlagsOf<2, Count>(symbols, tables, places);
+    case 2:
+      return ReadFlagsOf<4, Count>(symbols, tables, places);
+    default:
+      return ReadFlagsOf<8, Count>(symbols, tables, places);
+  }
+}
+
 /// Reads a run of symbols.
 /// @param tables of a band; see SymbolReader::TablesOf
 /// @param places of the symbols' tables among them: DecodeTables::Band::Tables, times
