@@ -2,11 +2,11 @@
 
 #include "GridOfHyperTrees.h"
 #include "LeafParts.h"
+#include "MergedBlocks.h"
 #include "MotionEnhancement.h"
 #include "StepWindow.h"
 #include "vtkBanyanDeferred.h"
 
-#include "vtkAppendFilter.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
@@ -15,7 +15,6 @@
 #include "vtkHyperTreeGrid.h"
 #include "vtkImageData.h"
 #include "vtkMath.h"
-#include "vtkNew.h"
 #include "vtkOverlappingAMR.h"
 #include "vtkPointData.h"
 #include "vtkUnstructuredGrid.h"
@@ -39,14 +38,14 @@ void AddRenamed(vtkDataArray* there, const char* name, vtkDataSetAttributes* to)
 
 } // namespace
 
-vtkSmartPointer<vtkDataObject> BlocksAsOne(vtkDataObject* data)
+vtkSmartPointer<vtkDataObject> BlocksAsOne(vtkDataObject* data, MergedBlocks& merged)
 {
   vtkCompositeDataSet* const blocks = vtkCompositeDataSet::SafeDownCast(data);
   if (!blocks || vtkOverlappingAMR::SafeDownCast(data))
   {
     return data;
   }
-  vtkNew<vtkAppendFilter> append;
+  std::vector<vtkSmartPointer<vtkDataSet>> sets;
   const auto visit = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
   for (visit->InitTraversal(); !visit->IsDoneWithTraversal(); visit->GoToNextItem())
   {
@@ -57,15 +56,10 @@ vtkSmartPointer<vtkDataObject> BlocksAsOne(vtkDataObject* data)
     }
     if (block && block->GetNumberOfPoints() > 0)
     {
-      append->AddInputData(block);
+      sets.push_back(block);
     }
   }
-  if (append->GetNumberOfInputConnections(0) == 0)
-  {
-    return nullptr;
-  }
-  append->Update();
-  return append->GetOutput();
+  return sets.empty() ? nullptr : merged.Of(sets);
 }
 
 void BoundsOf(vtkDataObject* data, double bounds[6])
@@ -89,7 +83,8 @@ void BoundsOf(vtkDataObject* data, double bounds[6])
   }
 }
 
-int AddNeighbours(vtkDataArray* array, const StepWindow& steps, vtkDataSet* piece)
+int AddNeighbours(
+  vtkDataArray* array, const StepWindow& steps, vtkDataSet* piece, MergedBlocks& merged)
 {
   vtkImageData* const image = vtkImageData::SafeDownCast(piece);
   const vtkBanyanDeferred::Handle* const handle = array ? vtkBanyanDeferred::From(array) : nullptr;
@@ -111,7 +106,7 @@ int AddNeighbours(vtkDataArray* array, const StepWindow& steps, vtkDataSet* piec
     vtkSmartPointer<vtkDataObject> data;
     try
     {
-      data = steps.Now() && HaveSameCells(steps.Now(), step) ? BlocksAsOne(step) : nullptr;
+      data = steps.Now() && HaveSameCells(steps.Now(), step) ? BlocksAsOne(step, merged) : nullptr;
     }
     catch (const std::exception&)
     {

@@ -10,12 +10,14 @@ class vtkDataSet;
 namespace banyan
 {
 
+class MergedBlocks;
 class StepWindow;
 
 /// What can be drawn as it is (data sets, hyper tree grids, overlapping AMR), or blocks as one
 /// grid; null if there is none. Hyper tree grids among blocks become grids of their leaves: throws
 /// Error where one has none (see GridOfHyperTrees).
-vtkSmartPointer<vtkDataObject> BlocksAsOne(vtkDataObject* data);
+/// @param merged what is kept from step to step
+vtkSmartPointer<vtkDataObject> BlocksAsOne(vtkDataObject* data, MergedBlocks& merged);
 
 /// (xmin, xmax, ymin, ymax, zmin, zmax) of any of these; uninitialised where there is nothing.
 void BoundsOf(vtkDataObject* data, double bounds[6]);
@@ -25,7 +27,8 @@ void BoundsOf(vtkDataObject* data, double bounds[6]);
 /// from their series, which has the other steps. Steps with other cells (see HaveSameCells), or
 /// that nothing can be drawn of, are taken for steps that are not there. Throws nothing.
 /// @return how many steps have other cells
-int AddNeighbours(vtkDataArray* array, const StepWindow& steps, vtkDataSet* piece);
+int AddNeighbours(
+  vtkDataArray* array, const StepWindow& steps, vtkDataSet* piece, MergedBlocks& merged);
 
 /// The same for hyper trees or AMR, which must be a copy (see CopyOfLeaves).
 /// @param array the drawn one, of any block

@@ -3,6 +3,7 @@
 #include "BlocksAsOne.h"
 #include "DefaultFunctions.h"
 #include "LeafParts.h"
+#include "MergedBlocks.h"
 #include "StepWindow.h"
 #include "vtkBanyanFrameStatistics.h"
 #include "vtkBanyanVolume.h"
@@ -27,6 +28,7 @@ vtkStandardNewMacro(vtkBanyanVolumeRepresentation);
 vtkBanyanVolumeRepresentation::vtkBanyanVolumeRepresentation()
   : Prop(vtkSmartPointer<vtkBanyanVolume>::New())
   , Piece(vtkSmartPointer<vtkImageData>::New().GetPointer())
+  , Blocks(std::make_unique<banyan::MergedBlocks>())
   , Steps(std::make_unique<banyan::StepWindow>())
 {
   // The superclass has made a prop of ParaView's own: ours takes its place.
@@ -84,7 +86,7 @@ void vtkBanyanVolumeRepresentation::TakeSteps()
 void vtkBanyanVolumeRepresentation::AddSteps(vtkDataArray* array)
 {
   vtkDataSet* const piece = vtkDataSet::SafeDownCast(this->Piece);
-  const int others = piece ? banyan::AddNeighbours(array, *this->Steps, piece)
+  const int others = piece ? banyan::AddNeighbours(array, *this->Steps, piece, *this->Blocks)
                            : banyan::AddNeighboursToLeaves(array, *this->Steps, this->Piece);
   if (others > 0)
   {
@@ -114,7 +116,7 @@ int vtkBanyanVolumeRepresentation::RequestData(
   vtkSmartPointer<vtkDataObject> input;
   try
   {
-    input = banyan::BlocksAsOne(now);
+    input = banyan::BlocksAsOne(now, *this->Blocks);
   }
   catch (const std::exception& error)
   {

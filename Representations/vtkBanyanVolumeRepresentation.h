@@ -16,6 +16,7 @@ class vtkDataObject;
 
 namespace banyan
 {
+class MergedBlocks;
 class StepWindow;
 }
 
@@ -147,6 +148,7 @@ private:
   vtkNew<vtkBanyanVolumeMapper> Mapper;
   vtkSmartPointer<vtkBanyanVolume> Prop;
   vtkSmartPointer<vtkDataObject> Piece;
+  std::unique_ptr<banyan::MergedBlocks> Blocks; ///< of blocks that are drawn as one mesh
   std::unique_ptr<banyan::StepWindow> Steps; ///< around the one drawn, if motion is brought out
   int InterpolationType = 1;
   bool NearestPoint = false;
