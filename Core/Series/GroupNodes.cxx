@@ -34,7 +34,8 @@ PlaneRegion::PlaneRegion(int level, const Box& box, const std::array<std::uint8_
 }
 
 template <class T>
-void PlaceExceptions(const PlaneRegion& region, int edge, const glm::ivec3& block, const ExceptionList<T>& list, T* values)
+void PlaceExceptions(const PlaneRegion& region, int edge, const glm::ivec3& block,
+  const ExceptionList<T>& list, T* values)
 {
   for (std::size_t i = 0; i < list.Positions.size(); ++i)
   {
@@ -66,7 +67,7 @@ void PlaceExceptions(const PlaneRegion& region, int edge, const glm::ivec3& bloc
         {
           values[(static_cast<std::size_t>(places[2][z]) * region.Count.y + places[1][y]) *
                    region.Count.x +
-            places[0][x]] = list.Values[i];
+                 places[0][x]] = list.Values[i];
         }
       }
     }
@@ -91,6 +92,12 @@ public:
     , Steps(steps)
     , Decoder(field.Map, head.Origin, head.Step, head.Least, head.Greatest)
   {
+    for (const EncodedStep& step : steps)
+    {
+      const auto& blocks = step.Planes[static_cast<std::size_t>(level / 2)];
+      this->Excepted.push_back(std::any_of(blocks.begin(), blocks.end(),
+        [](const EncodedBlock& block) { return !block.Exceptions.empty(); }));
+    }
   }
 
   std::int64_t Count() const { return this->Layout.BrickCount(); }
@@ -101,11 +108,13 @@ public:
     const PlaneRegion region(this->Level, this->Layout.SamplesOf(brick), this->Head.Axes,
       (*this->Decoded[0])[plane].Samples, this->Field.BrickCells);
     std::vector<std::int32_t> numbers;
-    for (std::size_t t = 0; t < this->Steps.size(); ++t)
+    const std::size_t last = this->Steps.size() - 1;
+    for (std::size_t t = 0; t <= last; ++t)
     {
       group::NodeEntry& node = this->NodeOf(t, brick);
-      const NumberExtremes extremes = this->ExtremesOf(
-        (*this->Decoded[t])[plane], (*this->Decoded[t > 0 ? t - 1 : 0])[plane], region);
+      const NumberExtremes extremes =
+        this->ExtremesOf((*this->Decoded[t])[plane], (*this->Decoded[t > 0 ? t - 1 : 0])[plane],
+          region, t < last ? &(*this->Decoded[t + 1])[plane] : nullptr);
       if (this->HasExceptions(t, region))
       {
         this->Gather((*this->Decoded[t])[plane], region, numbers);
@@ -122,7 +131,7 @@ public:
         node.Age = this->NodeOf(t - 1, brick).Age + 1;
       }
     }
-    for (const std::size_t t : { std::size_t{ 0 }, this->Steps.size() - 1 })
+    for (const std::size_t t : { std::size_t{ 0 }, last })
     {
       if (!this->NodeOf(t, brick).Uniform && this->NeedsContent(t, brick, region))
       {
@@ -134,22 +143,24 @@ public:
 
 private:
   /// @param before the plane of another step
-  NumberExtremes ExtremesOf(
-    const PlaneNumbers& plane, const PlaneNumbers& before, const PlaneRegion& region) const
+  /// @param next the plane whose region is looked at after this one, or null
+  NumberExtremes ExtremesOf(const PlaneNumbers& plane, const PlaneNumbers& before,
+    const PlaneRegion& region, const PlaneNumbers* next) const
   {
     NumberExtremes extremes;
     plane.With(
       [&](const auto* numbers)
       {
         using Number = std::remove_const_t<std::remove_pointer_t<decltype(numbers)>>;
-        this->IncludeRegion(plane, numbers, before.Data<Number>(), region, extremes);
+        this->IncludeRegion(plane, numbers, before.Data<Number>(),
+          next != nullptr ? next->Data<Number>() : nullptr, region, extremes);
       });
     return extremes;
   }
 
   template <class Number>
   void IncludeRegion(const PlaneNumbers& plane, const Number* numbers, const Number* before,
-    const PlaneRegion& region, NumberExtremes& extremes) const
+    const Number* next, const PlaneRegion& region, NumberExtremes& extremes) const
   {
     // Samples on the plane; what stands for those beyond its last one is looked at once, for each
     // axis.
@@ -173,6 +184,7 @@ private:
       NumberBox<Number> box;
       box.Numbers = numbers + plane.IndexOf(first);
       box.Before = before + plane.IndexOf(first);
+      box.Next = next != nullptr ? next + plane.IndexOf(first) : nullptr;
       box.Count = count.x;
       box.Stride = region.Stride;
       box.RowGap = region.Stride * gaps.y;
@@ -197,7 +209,8 @@ private:
     if (step == 0 && this->Head.Open)
     {
       const std::size_t plane = static_cast<std::size_t>(region.Plane);
-      return this->ExtremesOf((*this->Decoded[0])[plane], this->Field.Before->Planes[plane], region)
+      return this
+        ->ExtremesOf((*this->Decoded[0])[plane], this->Field.Before->Planes[plane], region, nullptr)
         .AsBefore;
     }
     if (step == 0)
@@ -214,8 +227,8 @@ private:
     return age > 0 || (last == 1 ? known : this->NodeOf(last - 1, brick).Age > 0);
   }
 
-  void Gather(const PlaneNumbers& plane, const PlaneRegion& region,
-    std::vector<std::int32_t>& numbers) const
+  void Gather(
+    const PlaneNumbers& plane, const PlaneRegion& region, std::vector<std::int32_t>& numbers) const
   {
     numbers.resize(static_cast<std::size_t>(region.Count.x) *
                    static_cast<std::size_t>(region.Count.y) *
@@ -265,7 +278,12 @@ private:
   bool HasExceptions(std::size_t step, const PlaneRegion& region) const
   {
     bool any = false;
-    this->ForEachBlock(step, region, [&](std::size_t block, const glm::ivec3&)
+    if (!this->Excepted[step])
+    {
+      return any;
+    }
+    this->ForEachBlock(step, region,
+      [&](std::size_t block, const glm::ivec3&)
       { any = any || !this->ExceptionsOf(step, region, block).empty(); });
     return any;
   }
@@ -273,6 +291,10 @@ private:
   bool SameExceptions(std::size_t step, const PlaneRegion& region) const
   {
     bool same = true;
+    if (!this->Excepted[step] && !this->Excepted[step - 1])
+    {
+      return same;
+    }
     this->ForEachBlock(step, region,
       [&](std::size_t block, const glm::ivec3&)
       {
@@ -282,8 +304,8 @@ private:
     return same;
   }
 
-  std::uint64_t ContentOf(std::size_t step, const PlaneRegion& region,
-    const std::vector<std::int32_t>& numbers) const
+  std::uint64_t ContentOf(
+    std::size_t step, const PlaneRegion& region, const std::vector<std::int32_t>& numbers) const
   {
     const double lattice[] = { this->Head.Origin, this->Head.Step };
     Bytes all(sizeof(lattice) + numbers.size() * sizeof(std::int32_t));
@@ -310,8 +332,7 @@ private:
       values[i] = this->Decoder.ValueOf(numbers[i]);
     }
     const PlaneNumbers& plane = (*this->Decoded[step])[static_cast<std::size_t>(region.Plane)];
-    const std::uint32_t samples =
-      static_cast<std::uint32_t>(plane.Edge * plane.Edge * plane.Edge);
+    const std::uint32_t samples = static_cast<std::uint32_t>(plane.Edge * plane.Edge * plane.Edge);
     this->ForEachBlock(step, region,
       [&](std::size_t block, const glm::ivec3& position)
       {
@@ -338,6 +359,7 @@ private:
   const std::vector<const std::vector<PlaneNumbers>*>& Decoded;
   std::vector<EncodedStep>& Steps;
   LatticeDecoder<T> Decoder;
+  std::vector<bool> Excepted; ///< steps with exceptions on the level's plane
 };
 
 } // namespace
@@ -359,8 +381,8 @@ void MakeNodes(const FieldGroup& field, const group::FieldHead& head,
 }
 
 #define BANYAN_INSTANTIATE(T)                                                                      \
-  template void PlaceExceptions<T>(const PlaneRegion&, int, const glm::ivec3&,                     \
-    const ExceptionList<T>&, T*);                                                                  \
+  template void PlaceExceptions<T>(                                                                \
+    const PlaneRegion&, int, const glm::ivec3&, const ExceptionList<T>&, T*);                      \
   template void MakeNodes<T>(const FieldGroup&, const group::FieldHead&,                           \
     const std::vector<const std::vector<PlaneNumbers>*>&, std::vector<EncodedStep>&, ThreadPool&)
 BANYAN_FOR_EACH_SCALAR_TYPE(BANYAN_INSTANTIATE);

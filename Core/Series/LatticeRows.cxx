@@ -143,15 +143,49 @@ bool Numbers(const LatticeRows<T, Number>& rows, const LatticeScale& scale)
   return hn::AllTrue(real, held);
 }
 
+/// Extremes of numbers, lane by lane.
 template <class Number>
-HWY_INLINE void AddExtremes(const Number* numbers, int count, Number& low, Number& high)
+struct Extremes
 {
-  for (int i = 0; i < count; ++i)
+  using Tag = hn::CappedTag<Number, 16>;
+  hn::Vec<Tag> Low, High;
+
+  /// @param first one of the numbers
+  HWY_INLINE explicit Extremes(Number first)
+    : Low(hn::Set(Tag(), first))
+    , High(Low)
   {
-    low = numbers[i] < low ? numbers[i] : low;
-    high = high < numbers[i] ? numbers[i] : high;
   }
-}
+
+  HWY_INLINE void Include(const Number* numbers, int count)
+  {
+    const Tag tag;
+    const int lanes = static_cast<int>(hn::Lanes(tag));
+    int i = 0;
+    for (; i + lanes <= count; i += lanes)
+    {
+      const auto some = hn::LoadU(tag, numbers + i);
+      this->Low = hn::Min(this->Low, some);
+      this->High = hn::Max(this->High, some);
+    }
+    for (; i < count; ++i)
+    {
+      const auto one = hn::Set(tag, numbers[i]);
+      this->Low = hn::Min(this->Low, one);
+      this->High = hn::Max(this->High, one);
+    }
+  }
+
+  HWY_INLINE void AddTo(std::int32_t& low, std::int32_t& high) const
+  {
+    const Tag tag;
+    Number lows[16], highs[16];
+    hn::StoreU(this->Low, tag, lows);
+    hn::StoreU(this->High, tag, highs);
+    low = std::min<std::int32_t>(low, *std::min_element(lows, lows + hn::Lanes(tag)));
+    high = std::max<std::int32_t>(high, *std::max_element(highs, highs + hn::Lanes(tag)));
+  }
+};
 
 template <class T, class Number>
 bool Errors(const LatticeRows<T, const Number>& rows, const LatticeScale& scale, double bound,
@@ -168,7 +202,7 @@ bool Errors(const LatticeRows<T, const Number>& rows, const LatticeScale& scale,
     squares[part] = hn::LoadU(real, errors.Squares + part * hn::Lanes(real));
   }
   auto within = hn::Eq(origin, origin);
-  Number low = rows.Numbers[0], high = low;
+  Extremes<Number> extremes(rows.Numbers[0]);
   const auto group = [&](const T* from, const Number* number, std::size_t left)
   {
     for (std::size_t part = 0; part < parts; ++part)
@@ -197,15 +231,14 @@ bool Errors(const LatticeRows<T, const Number>& rows, const LatticeScale& scale,
     [&](const T* values, const Number* numbers)
     {
       ForEachGroup(values, numbers, static_cast<std::size_t>(rows.Count), group);
-      AddExtremes(numbers, rows.Count, low, high);
+      extremes.Include(numbers, rows.Count);
     });
   for (std::size_t part = 0; part < parts; ++part)
   {
     hn::StoreU(greatest[part], real, errors.Greatest + part * hn::Lanes(real));
     hn::StoreU(squares[part], real, errors.Squares + part * hn::Lanes(real));
   }
-  errors.Low = std::min<std::int32_t>(errors.Low, low);
-  errors.High = std::max<std::int32_t>(errors.High, high);
+  extremes.AddTo(errors.Low, errors.High);
   return hn::AllTrue(real, within);
 }
 

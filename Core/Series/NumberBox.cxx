@@ -63,8 +63,10 @@ HWY_INLINE void ForEachRow(const NumberBox<Number>& box, const Body& body)
     for (int row = 0; row < box.Rows; ++row)
     {
       const std::int64_t at = slice * box.SliceGap + row * box.RowGap;
-      __builtin_prefetch(box.Numbers + at + box.SliceGap);
-      __builtin_prefetch(box.Before + at + box.SliceGap);
+      if (box.Next != nullptr)
+      {
+        __builtin_prefetch(box.Next + at);
+      }
       body(box.Numbers + at, box.Before + at);
     }
   }

@@ -13,6 +13,7 @@ struct NumberBox
 {
   const Number* Numbers = nullptr; ///< sample 0 of row 0 of slice 0
   const Number* Before = nullptr;  ///< the same of another step, laid out alike
+  const Number* Next = nullptr;    ///< the same of a step that comes next: is asked for; or null
   int Count = 1;                   ///< samples of a row
   int Stride = 1;                  ///< from sample to sample: 1 or 2
   std::int64_t RowGap = 0, SliceGap = 0;

@@ -32,8 +32,9 @@ struct TwoSteps
       this->Now.push_back(static_cast<Number>(i % 2 == 0 ? 7777 : -7777));
       this->Before.push_back(static_cast<Number>(i % 2 == 0 ? -7777 : 7777));
     }
-    this->Box = { this->Now.data() + 1, this->Before.data() + 1, count, stride, stride * Pitch,
-      Slice, 4 / stride, 3 };
+    const Number* const next = count % 2 == 0 ? this->Before.data() + 1 : nullptr;
+    this->Box = { this->Now.data() + 1, this->Before.data() + 1, next, count, stride,
+      stride * Pitch, Slice, 4 / stride, 3 };
     this->ForEachSample(
       [&](Number& now, Number& before)
       {
