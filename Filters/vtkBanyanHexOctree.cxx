@@ -4,6 +4,7 @@
 #include "GridOfAmr.h"
 #include "GridOfHyperTrees.h"
 #include "HexMeshOfGrid.h"
+#include "LatticeOfRanks.h"
 #include "MeshArrays.h"
 #include "MeshPieces.h"
 #include "RankTalk.h"
@@ -50,7 +51,7 @@ std::vector<vtkIdType> CellsWithoutGhosts(vtkUnstructuredGrid* grid)
   return cells;
 }
 
-void AddLevels(const banyan::ElementOctree& tree, vtkUnstructuredGrid* grid)
+void AddLevels(const banyan::ElementOctree& tree, int shift, vtkUnstructuredGrid* grid)
 {
   const std::vector<vtkIdType> cells = CellsWithoutGhosts(grid);
   vtkNew<vtkSignedCharArray> levels;
@@ -60,7 +61,7 @@ void AddLevels(const banyan::ElementOctree& tree, vtkUnstructuredGrid* grid)
   for (std::int64_t leaf = 0; leaf < tree.LeafCount(); ++leaf)
   {
     const vtkIdType cell = cells[static_cast<std::size_t>(tree.CellOfLeaf(leaf))];
-    levels->SetValue(cell, static_cast<signed char>(tree.LevelOfLeaf(leaf)));
+    levels->SetValue(cell, static_cast<signed char>(tree.LevelOfLeaf(leaf) + shift));
   }
   grid->GetCellData()->AddArray(levels);
 }
@@ -78,10 +79,11 @@ void AddHanging(const banyan::ElementOctree& tree, vtkUnstructuredGrid* grid)
   grid->GetPointData()->AddArray(hanging);
 }
 
-void AddFacts(const banyan::ElementOctree& tree, vtkUnstructuredGrid* grid)
+void AddFacts(
+  const banyan::ElementOctree& tree, const banyan::CommonLattice& common, vtkUnstructuredGrid* grid)
 {
-  const double facts[] = { tree.Origin().x, tree.Origin().y, tree.Origin().z, tree.Edge().x,
-    tree.Edge().y, tree.Edge().z, static_cast<double>(tree.CoarsestLevel()),
+  const double facts[] = { common.Origin.x, common.Origin.y, common.Origin.z, common.Edge.x,
+    common.Edge.y, common.Edge.z, static_cast<double>(common.CoarsestLevel),
     static_cast<double>(tree.HoleCells()), static_cast<double>(tree.Hanging().size()),
     static_cast<double>(tree.UnbalancedNodes()), static_cast<double>(tree.Twins().size()) };
   const char* const names[] = { "origin x", "origin y", "origin z", "finest edge x",
@@ -181,11 +183,12 @@ int vtkBanyanHexOctree::RequestData(
     {
       grid = PieceOf(talk, data);
       grid = banyan::WithArraysOfAllRanks(talk, grid);
-      talk.Together([&] { this->Describe(grid, output); });
+      this->Describe(talk, grid, output);
       return 1;
     }
     const vtkSmartPointer<vtkUnstructuredGrid> all = this->Gathered(data);
-    talk.OnRank(0, [&] { this->Describe(all, output); });
+    const banyan::RankTalk alone(nullptr);
+    talk.OnRank(0, [&] { this->Describe(alone, all, output); });
     return 1;
   }
   catch (const std::exception& error)
@@ -229,8 +232,25 @@ vtkSmartPointer<vtkUnstructuredGrid> vtkBanyanHexOctree::Gathered(vtkDataObject*
   return mine;
 }
 
-/// The input with what is found in it, or the boxes that it is sampled at.
-void vtkBanyanHexOctree::Describe(vtkUnstructuredGrid* input, vtkUnstructuredGrid* output)
+/// Collective: the input with what is found in it, or the boxes that it is sampled at.
+void vtkBanyanHexOctree::Describe(
+  const banyan::RankTalk& talk, vtkUnstructuredGrid* input, vtkUnstructuredGrid* output)
+{
+  std::shared_ptr<const banyan::ElementOctree> tree;
+  talk.Together([&] { tree = this->Survey(input, output); });
+  const banyan::CommonLattice common = banyan::LatticeOfRanks(talk, tree.get());
+  if (tree)
+  {
+    AddLevels(*tree, common.Shift, output);
+    AddHanging(*tree, output);
+    AddFacts(*tree, common, output);
+  }
+}
+
+/// @param output is given the input, or the boxes
+/// @return null where there are no cells
+std::shared_ptr<const banyan::ElementOctree> vtkBanyanHexOctree::Survey(
+  vtkUnstructuredGrid* input, vtkUnstructuredGrid* output)
 {
   banyan::ThreadPool& pool = banyan::ThreadPool::Process();
   const std::string leftOut = banyan::TakeLeftOut(input);
@@ -246,7 +266,7 @@ void vtkBanyanHexOctree::Describe(vtkUnstructuredGrid* input, vtkUnstructuredGri
     if (mesh.CellCount == 0)
     {
       output->ShallowCopy(grid);
-      return;
+      return nullptr;
     }
     tree = banyan::ElementOctree::Find(mesh, pool, this->MeshTolerance);
   }
@@ -275,7 +295,7 @@ void vtkBanyanHexOctree::Describe(vtkUnstructuredGrid* input, vtkUnstructuredGri
     catch (const banyan::Interrupted&)
     {
       output->Initialize(); // as other filters that are told to stop
-      return;
+      return nullptr;
     }
     if (!this->Sampled->Note().empty())
     {
@@ -284,9 +304,7 @@ void vtkBanyanHexOctree::Describe(vtkUnstructuredGrid* input, vtkUnstructuredGri
     tree = banyan::ElementOctree::Find(banyan::HexMeshOf(grid), pool);
   }
   output->ShallowCopy(grid);
-  AddLevels(*tree, output);
-  AddHanging(*tree, output);
-  AddFacts(*tree, output);
+  return tree;
 }
 
 void vtkBanyanHexOctree::PrintSelf(ostream& os, vtkIndent indent)

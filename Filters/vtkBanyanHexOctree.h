@@ -23,9 +23,10 @@
  * that not all blocks have are left out, with a warning that names them.
  *
  * @par Source: section 4 of "Visualizing Very Large-Scale Earthquake Simulations".
- * @par Limits: each piece is looked at by itself, but blocks of AMR hide cells of other ranks: with
- * AMR or SampleGeneralMeshes it is collective over the global controller, and with the latter the
- * first rank has the whole mesh then; of ghost cells the level is -1.
+ * @par Limits: it is collective over the global controller. Levels, the lattice and the coarsest
+ * level are those of all ranks. For the rest each piece is looked at by itself: points that hang on
+ * cells of other ranks do not count, nor do cells that overlap those of others. With
+ * SampleGeneralMeshes the first rank has the whole mesh. Of ghost cells the level is -1.
  */
 #ifndef vtkBanyanHexOctree_h
 #define vtkBanyanHexOctree_h
@@ -38,6 +39,8 @@
 
 namespace banyan
 {
+class ElementOctree;
+class RankTalk;
 class SampledGrid;
 }
 
@@ -87,7 +90,10 @@ protected:
 
 private:
   vtkSmartPointer<vtkUnstructuredGrid> Gathered(vtkDataObject* data) const;
-  void Describe(vtkUnstructuredGrid* input, vtkUnstructuredGrid* output);
+  void Describe(
+    const banyan::RankTalk& talk, vtkUnstructuredGrid* input, vtkUnstructuredGrid* output);
+  std::shared_ptr<const banyan::ElementOctree> Survey(
+    vtkUnstructuredGrid* input, vtkUnstructuredGrid* output);
 
   double MeshTolerance = 1.0 / 1024;
   bool SampleGeneralMeshes = false;
