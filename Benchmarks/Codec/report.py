@@ -8,6 +8,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plot  # noqa: E402 (the backend has to be chosen first)
+from matplotlib.lines import Line2D  # noqa: E402
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
 from tables import in_order, read  # noqa: E402
@@ -50,7 +51,7 @@ def style_of(method, methods):
 def draw_curve(axes, rows, value, style):
     rows = [row for row in rows if math.isfinite(value(row))]
     axes.plot([row["bits_per_voxel"] for row in rows], [value(row) for row in rows],
-              label=rows[0]["method"] if rows else None, markersize=0, **style)
+              markersize=0, **style)
     for row in rows:
         # Hollow: the bound is broken.
         axes.plot(row["bits_per_voxel"], value(row), marker=style["marker"], markersize=5,
@@ -89,8 +90,9 @@ def draw(rows, path):
             axes.set_title(dataset)
             axes.set_xlabel("bits per voxel")
             axes.set_ylabel(label)
-    handles, labels = grid[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="lower center", ncol=7, frameon=False)
+    handles = [Line2D([], [], label=method, markersize=5, **style_of(method, methods))
+               for method in methods]
+    figure.legend(handles=handles, loc="lower center", ncol=7, frameon=False)
     figure.tight_layout(rect=(0, 0.07, 1, 1))
     figure.savefig(path, dpi=100, metadata={"Software": None})
 

@@ -1,3 +1,4 @@
+#include "CodecSeeds.h"
 #include "GroupFiles.h"
 
 #include "Base/ThreadPool.h"
@@ -30,7 +31,7 @@ Bytes BodyOf(const std::string& text)
   return { text.begin() + static_cast<std::ptrdiff_t>(text.find('\n') + 1), text.end() };
 }
 
-/// Seeds from series that are there: the indices of all, and segments of version 1.
+/// Seeds from series that are there: the indices of all, segments and bricks of version 1.
 void CopyGolden(const std::filesystem::path& golden, const std::filesystem::path& folder)
 {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(golden))
@@ -46,6 +47,15 @@ void CopyGolden(const std::filesystem::path& golden, const std::filesystem::path
     if (entry.path().extension() == ".banyan")
     {
       Write((folder / "Index" / name).string(), BodyOf(content));
+      if (entry.path().parent_path().filename() == "version-1")
+      {
+        int number = 0;
+        for (const Bytes& brick : banyan::fuzz::BrickSeeds(entry.path().string()))
+        {
+          const std::string numbered = entry.path().stem().string() + "-" + std::to_string(number++);
+          Write((folder / "Brick" / numbered).string(), brick);
+        }
+      }
     }
     else if (entry.path().extension() == ".seg" && content[8] == 1)
     {
@@ -135,7 +145,7 @@ int main(int argc, char** argv)
   const fs::path scratch = folder / "scratch";
   for (const fs::path& part :
     { folder / "Group", folder / "Exceptions", folder / "Index", folder / "Segment",
-      folder / "Mesh", scratch })
+      folder / "Brick", folder / "Block", folder / "Mesh", scratch })
   {
     fs::create_directories(part);
   }
@@ -175,6 +185,11 @@ int main(int argc, char** argv)
   }
   Write((folder / "Mesh" / "shared").string(), SectionsOf(SmallMesh(true)));
   Write((folder / "Mesh" / "own").string(), SectionsOf(SmallMesh(false)));
+  int number = 0;
+  for (const Bytes& block : banyan::fuzz::BlockSeeds())
+  {
+    Write((folder / "Block" / std::to_string(number++)).string(), block);
+  }
   if (argc == 3)
   {
     CopyGolden(argv[2], folder);
@@ -182,6 +197,7 @@ int main(int argc, char** argv)
   else
   {
     fs::remove(folder / "Segment");
+    fs::remove(folder / "Brick");
   }
   fs::remove_all(scratch);
   return 0;
