@@ -38,10 +38,10 @@ def dress(reader, display, view, look):
     demo_look.clock(reader, view, "{time:.1f} s")
     view.CameraPosition = [bounds[0] + 0.28 * edges[0], bounds[2] - 0.95 * edges[1],
                            bounds[5] + 1.35 * edges[2]]
-    view.CameraFocalPoint = [bounds[0] + 0.48 * edges[0], bounds[2] + 0.45 * edges[1],
+    view.CameraFocalPoint = [bounds[0] + 0.5 * edges[0], bounds[2] + 0.45 * edges[1],
                              bounds[5] - 0.5 * edges[2]]
     view.CameraViewUp = (0.0, 0.0, 1.0)
-    view.CameraViewAngle = 40
+    view.CameraViewAngle = 41
 
 
 def caption(view):
