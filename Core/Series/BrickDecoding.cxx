@@ -127,7 +127,7 @@ void DecodeBoxes(OpenGroup& open, int step, const RowBrick* bricks, int count,
     {
       open.Field->Prefetch(step, bricks[k - 1].Region.Plane, bricks[k - 1].Region.FirstBlock);
     }
-    boxes[k] = open.Field->Box(step, region.Plane, region.FirstBlock);
+    boxes[k] = open.Field->Box(step, region.Plane, region.FirstBlock, true);
     BoxPlace place(*open.Field, region, bricks[k].Skip);
     const Number* const numbers = InOrder(boxes[k]->template Numbers<Number>() + place.First,
       place.Stride, bricks[k].Size, ordered[k]);

@@ -324,7 +324,7 @@ LatticeCache::Key GroupField::KeyOf(int step, int plane, const glm::ivec3& block
     static_cast<std::uint16_t>(this->Component), static_cast<std::uint16_t>(plane) };
 }
 
-LatticeCache::Box GroupField::Box(int step, int plane, const glm::ivec3& block)
+LatticeCache::Box GroupField::Box(int step, int plane, const glm::ivec3& block, bool passing)
 {
   const stages::In stage(stages::Lookup);
   LatticeCache& cache = LatticeCache::Process();
@@ -334,7 +334,9 @@ LatticeCache::Box GroupField::Box(int step, int plane, const glm::ivec3& block)
     return found;
   }
   const LatticeCache::Box box = this->Decode(step, plane, block);
-  cache.Add(key, box);
+  // Half of all steps are no references. Of these, boxes are needed until the blocks around are decoded.
+  const bool brief = passing && plane == 0 && ReferenceDistance(step, this->File.Steps()) == 1;
+  cache.Add(key, box, brief);
   return box;
 }
 

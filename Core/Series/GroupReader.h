@@ -92,7 +92,8 @@ public:
   const group::StepTable& Step(int step);
 
   /// Decodes the box of a block: (edge + 1)^3 lattice numbers.
-  LatticeCache::Box Box(int step, int plane, const glm::ivec3& block);
+  /// @param passing whether all of a region is read, which hardly comes back to boxes that are no references
+  LatticeCache::Box Box(int step, int plane, const glm::ivec3& block, bool passing = false);
 
   /// Notes what decoding the box will read, boxes of other steps that usually are in memory only: while
   /// the next box is decoded the caches of the processor are asked for it. Decodes nothing.

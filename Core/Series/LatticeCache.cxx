@@ -97,7 +97,7 @@ const void* LatticeCache::AddressOf(const Key& key)
   return memory;
 }
 
-void LatticeCache::Add(const Key& key, const Box& box)
+void LatticeCache::Add(const Key& key, const Box& box, bool brief)
 {
   const std::size_t hash = HashOf(key);
   Shard& shard = this->Shards[ShardOf(hash)];
@@ -113,10 +113,37 @@ void LatticeCache::Add(const Key& key, const Box& box)
   const std::int32_t entry = shard.Free.back();
   shard.Free.pop_back();
   std::int32_t& bucket = BucketOf(shard, hash);
-  shard.Entries[static_cast<std::size_t>(entry)] = { key, box, box->Memory(), bucket, false };
+  shard.Entries[static_cast<std::size_t>(entry)] = { key, box, box->Memory(), bucket, false, brief };
   bucket = entry;
   shard.Bytes += BytesOf(box);
+  if (brief)
+  {
+    LinkBrief(shard, entry);
+  }
   this->Shrink(shard);
+}
+
+void LatticeCache::LinkBrief(Shard& shard, std::int32_t entry)
+{
+  Kept& kept = shard.Entries[static_cast<std::size_t>(entry)];
+  kept.Older = shard.NewestBrief;
+  std::int32_t& before =
+    kept.Older < 0 ? shard.OldestBrief : shard.Entries[static_cast<std::size_t>(kept.Older)].Newer;
+  before = entry;
+  shard.NewestBrief = entry;
+  shard.BriefBytes += BytesOf(kept.Numbers);
+}
+
+void LatticeCache::UnlinkBrief(Shard& shard, std::int32_t entry)
+{
+  const Kept& kept = shard.Entries[static_cast<std::size_t>(entry)];
+  std::int32_t& before =
+    kept.Older < 0 ? shard.OldestBrief : shard.Entries[static_cast<std::size_t>(kept.Older)].Newer;
+  std::int32_t& after =
+    kept.Newer < 0 ? shard.NewestBrief : shard.Entries[static_cast<std::size_t>(kept.Newer)].Older;
+  before = kept.Newer;
+  after = kept.Older;
+  shard.BriefBytes -= BytesOf(kept.Numbers);
 }
 
 /// Makes room for twice as many boxes.
@@ -151,6 +178,10 @@ void LatticeCache::Remove(Shard& shard, std::int32_t entry)
     link = &shard.Entries[static_cast<std::size_t>(*link)].Next;
   }
   *link = kept.Next;
+  if (kept.Brief)
+  {
+    UnlinkBrief(shard, entry);
+  }
   shard.Bytes -= BytesOf(kept.Numbers);
   kept = {};
   shard.Free.push_back(entry);
@@ -161,6 +192,12 @@ void LatticeCache::Shrink(Shard& shard)
   const std::uint64_t budget = this->Budget / ShardCount;
   while (shard.Bytes > budget)
   {
+    // The newest one is needed by the next block, however large it is.
+    if (shard.BriefBytes > budget / BriefPart && shard.OldestBrief != shard.NewestBrief)
+    {
+      Remove(shard, shard.OldestBrief);
+      continue;
+    }
     shard.Hand = shard.Hand + 1 < shard.Entries.size() ? shard.Hand + 1 : 0;
     Kept& kept = shard.Entries[shard.Hand];
     if (kept.Numbers && !kept.Used)

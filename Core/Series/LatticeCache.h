@@ -39,7 +39,9 @@ public:
 
   /// Null when it is not there.
   Box Find(const Key& key);
-  void Add(const Key& key, const Box& box);
+  /// @param brief whether no other step is predicted from it: where there is no room such boxes go first, the
+  /// oldest ones before others, until they take about a sixteenth of the budget
+  void Add(const Key& key, const Box& box, bool brief = false);
   /// Where the numbers of a box lie, or null: to ask the processor's caches for them. They may be gone at
   /// any time. Takes part of the time of Find, which counts who holds a box and waits for its memory.
   const void* AddressOf(const Key& key);
@@ -62,6 +64,9 @@ private:
     const void* Memory = nullptr; ///< where they lie
     std::int32_t Next = -1; ///< entry of the same bucket
     bool Used = false;      ///< since the hand of the clock came by
+    bool Brief = false;
+    std::int32_t Newer = -1; ///< entry of the next brief box
+    std::int32_t Older = -1; ///< of the one before
   };
   /// Shards have locks of their own, so that threads seldom wait for each other. Entries stay where
   /// they are: to find one takes two lines of the cache, and these hold some blocks that follow each
@@ -73,11 +78,16 @@ private:
     std::vector<std::int32_t> Free;
     std::vector<std::int32_t> Buckets; ///< first entries; -1: none. A power of two of them
     std::size_t Hand = 0;
+    std::int32_t NewestBrief = -1;
+    std::int32_t OldestBrief = -1;
+    std::uint64_t BriefBytes = 0; ///< part of Bytes
     std::uint64_t Bytes = 0;
   };
   static constexpr std::size_t ShardCount = 16;
 
   static constexpr std::size_t BlocksTogether = 8;
+  /// One part of so many is for brief boxes in any case: of 128 MiB a layer of blocks of 384^3 samples.
+  static constexpr std::uint64_t BriefPart = 16;
 
   static std::size_t HashOf(const Key& key);
   static std::size_t ShardOf(std::size_t hash) { return hash / BlocksTogether % ShardCount; }
@@ -87,6 +97,8 @@ private:
   void Look(const Key& key, const Body& body);
   static void Grow(Shard& shard);
   static void Remove(Shard& shard, std::int32_t entry);
+  static void LinkBrief(Shard& shard, std::int32_t entry);
+  static void UnlinkBrief(Shard& shard, std::int32_t entry);
   void Shrink(Shard& shard);
 
   Shard Shards[ShardCount];

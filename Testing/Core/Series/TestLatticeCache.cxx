@@ -105,5 +105,46 @@ TEST(LatticeCache, StaysWithinItsBudgetAndKeepsWhatIsUsed)
   EXPECT_EQ(cache.Find(KeyOf(1)), nullptr);
 }
 
+/// Boxes of one size in a cache with room for about 1600 of them.
+TEST(LatticeCache, BriefBoxesLeaveTheRoomToOthers)
+{
+  const OwnBudget budget(640 * 1000);
+  LatticeCache& cache = LatticeCache::Process();
+  constexpr std::uint64_t others = 1000, briefs = 20000, first = 100000;
+  for (std::uint64_t i = 0; i < others; ++i)
+  {
+    cache.Add(KeyOf(i), BoxOf(static_cast<std::int16_t>(i)));
+  }
+  for (std::uint64_t i = 0; i < briefs; ++i)
+  {
+    cache.Add(KeyOf(first + i), BoxOf(static_cast<std::int16_t>(i)), true);
+    const LatticeCache::Box newest = cache.Find(KeyOf(first + i));
+    ASSERT_NE(newest, nullptr);
+    ASSERT_EQ(newest->Numbers<std::int16_t>()[0], static_cast<std::int16_t>(i));
+    ASSERT_LE(cache.Bytes(), 640u * 1000);
+  }
+  std::uint64_t left = 0;
+  for (std::uint64_t i = 0; i < briefs; ++i)
+  {
+    left += cache.Find(KeyOf(first + i)) ? 1 : 0;
+  }
+  EXPECT_GT(left, 300u);
+  EXPECT_LT(left, 700u); // what others leave
+  for (std::uint64_t i = 0; i < others; ++i)
+  {
+    ASSERT_NE(cache.Find(KeyOf(i)), nullptr) << i;
+  }
+  // Those that others push out are forgotten in every respect.
+  for (std::uint64_t i = 0; i < 4 * others; ++i)
+  {
+    cache.Add(KeyOf(1000000 + i), BoxOf(0), i % 3 == 0);
+    ASSERT_LE(cache.Bytes(), 640u * 1000);
+  }
+  cache.Forget(SeriesOfTest);
+  EXPECT_EQ(cache.Find(KeyOf(first + briefs - 1)), nullptr);
+  cache.Add(KeyOf(1), BoxOf(1), true);
+  EXPECT_NE(cache.Find(KeyOf(1)), nullptr);
+}
+
 } // namespace
 } // namespace banyan
