@@ -23,6 +23,8 @@ InfoOptions ParseInfoOptions(const std::vector<std::string>& arguments)
       options.Csv = left.Value(option);
     else if (option == "--json")
       options.Json = true;
+    else if (option == "--all")
+      options.Octree = options.Time = true;
     else if (option == "--octree")
       options.Octree = true;
     else if (option == "--time")
@@ -50,6 +52,7 @@ std::string InfoHelp()
          "  --array NAME  of one array instead of all\n"
          "  --json        as JSON instead of text\n"
          "  --csv FILE    also writes a table with one line per array, component and step\n"
+         "  --all         all that is known of the series: --octree and --time together\n"
          "  --octree      also says what 8-bit codes in the octrees of the study that Banyan\n"
          "                started from would take for the same data; decodes everything\n"
          "  --time        also measures how long decoding takes, for some seconds\n"

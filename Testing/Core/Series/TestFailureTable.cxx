@@ -232,6 +232,32 @@ TEST(FailureTable, DecadesOfRange)
     [](int x, int y, int z, int step)
     { return Smooth(x, y, z, step) * std::pow(10.0, -2 * step); });
   Check(steps, Unit);
+  constexpr double scale = 1e-10;
+  EncodeOptions options;
+  options.Quantizer.Map = TransformChoice::Asinh;
+  options.Quantizer.AsinhScale = scale;
+  const TemporaryFolder folder;
+  const SeriesIndex index = Encode(folder / "s.banyan", Cube, steps, options);
+  const double bound = index.Arrays[0].Components[0].ErrorBoundAbsolute;
+  EXPECT_LT(bound, 0.1); // of a value far above the scale this is the relative error
+  const auto file = SeriesFile::Open(folder / "s.banyan");
+  for (int s = 0; s < 5; ++s)
+  {
+    const auto decoded = ReadAll<float>(*file, { s, 0, 0, 0 });
+    double greatest = 0, relative = 0;
+    for (std::size_t i = 0; i < decoded.size(); ++i)
+    {
+      const double original = steps[static_cast<std::size_t>(s)][i];
+      greatest =
+        std::max(greatest, std::abs(std::asinh(decoded[i] / scale) - std::asinh(original / scale)));
+      relative = std::abs(original) > 10 * scale
+                   ? std::max(relative, std::abs(decoded[i] - original) / std::abs(original))
+                   : relative;
+    }
+    EXPECT_LE(greatest, bound * (1 + 1e-9)) << "step " << s;
+    EXPECT_GT(greatest, 0.5 * bound) << "step " << s;
+    EXPECT_LT(relative, 0.11) << "step " << s << ", whose values are 10^" << -2 * s;
+  }
   Check(Sample<float>(Cube, 3,
           [](int x, int y, int z, int step)
           { return std::pow(10.0, 38 * Smooth(x, y, z, step) / 1.51); }),
