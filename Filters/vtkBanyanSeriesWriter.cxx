@@ -37,6 +37,7 @@ void vtkBanyanSeriesWriter::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "ErrorBound: " << this->ErrorBound << "\n"
      << indent << "ErrorBoundMode: " << this->ErrorBoundMode << "\n"
      << indent << "KeyframeInterval: " << this->KeyframeInterval << "\n"
+     << indent << "ClosedGroups: " << this->ClosedGroups << "\n"
      << indent << "Profile: " << this->Profile << "\n"
      << this->Quantizer->Text() << indent << "WriteTimeSteps: " << this->WriteTimeSteps << "\n"
      << indent << "PointArraySelection:\n";
@@ -208,6 +209,8 @@ void vtkBanyanSeriesWriter::WriteSeries()
                          ? banyan::ErrorBoundMode::Absolute
                          : banyan::ErrorBoundMode::RelativeToSeriesRange;
   order.Options.KeyframeInterval = this->KeyframeInterval;
+  order.Options.Ideas.GroupBefore = !this->ClosedGroups;
+  order.Options.Ideas.RestingArrays = !this->ClosedGroups;
   order.Options.Profile = static_cast<banyan::EncodeProfile>(this->Profile);
   if (this->GetNumberOfInputConnections(0) > 0)
   {

@@ -184,6 +184,16 @@ public:
 
   ///@{
   /**
+   * Whether each segment file is read by itself. By default (off) its steps are also predicted from the
+   * last step of the one before, which makes most series smaller: a brick is then read from two files.
+   */
+  vtkSetMacro(ClosedGroups, bool);
+  vtkGetMacro(ClosedGroups, bool);
+  vtkBooleanMacro(ClosedGroups, bool);
+  ///@}
+
+  ///@{
+  /**
    * Whether all time steps of the input are written (default), or only the present one.
    */
   vtkSetMacro(WriteTimeSteps, bool);
@@ -240,6 +250,7 @@ private:
   double ErrorBound = 1.0 / 512.0;
   int ErrorBoundMode = RELATIVE_TO_SERIES_RANGE;
   int KeyframeInterval = 8;
+  bool ClosedGroups = false;
   int Profile = BALANCED;
   bool WriteTimeSteps = true;
   std::string ErrorMessage;

@@ -53,6 +53,7 @@ def main():
         for mode, options in MODES.items():
             # 7 steps are 4 groups of 2 (more than ranks, or fewer), or one group for one rank.
             write(arguments.out, f"{kind}_{mode}_2", source, KeyframeInterval=2, **options)
+        write(arguments.out, f"{kind}_closed_groups", source, KeyframeInterval=2, ClosedGroups=1)
         write(arguments.out, f"{kind}_one_group", source)
         write(arguments.out, f"{kind}_groups_of_1", source, KeyframeInterval=1)
     files = [make_series.write_step(arguments.out, "step", step, SAMPLES, (1.0, 1.0, 2.0))

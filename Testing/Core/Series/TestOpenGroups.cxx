@@ -1,8 +1,12 @@
 // Groups of steps that refer to the key frame of the group before.
 #include "Series/SeriesTesting.h"
 
+#include "Base/Error.h"
 #include "Series/GroupFormat.h"
 #include "Series/GroupReader.h"
+#include "Series/LatticeCache.h"
+
+#include <fstream>
 
 namespace banyan::testing
 {
@@ -78,6 +82,64 @@ TEST(OpenGroups, AreNoneWithoutRangesOfTheSeries)
     encoder.AddStep(static_cast<double>(s), { { steps[s].data() } });
   }
   EXPECT_EQ(OpenGroups(path, encoder.Finish()), std::vector<bool>(3, false));
+}
+
+/// As ParaView's writer does for its property ClosedGroups.
+void CloseGroups(EncodeOptions& options)
+{
+  options.Ideas.GroupBefore = false;
+  options.Ideas.RestingArrays = false;
+}
+
+TEST(OpenGroups, AreClosedWhenAsked)
+{
+  const auto steps = Sample<float>(Domain, 13, Wavy<float>);
+  EncodeOptions options = Options();
+  CloseGroups(options);
+  EXPECT_EQ(OpenGroupsOf(steps, options), std::vector<bool>(4, false));
+}
+
+/// Also where every step is the same: an array that rests is then stored in each group.
+TEST(OpenGroups, ClosedGroupsAreReadByThemselves)
+{
+  for (const bool rests : { false, true })
+  {
+    const TemporaryFolder folder;
+    const std::string path = folder / "s.banyan";
+    const auto steps = Sample<float>(Domain, 12, [rests](int x, int y, int z, int s)
+      { return Wavy<float>(x, y, z, rests ? 0 : s); });
+    const auto moving = Sample<float>(Domain, 12, Wavy<float>);
+    EncodeOptions options = Options();
+    CloseGroups(options);
+    ThreadPool pool(2);
+    SeriesEncoder encoder(
+      path, Domain, { Describe(steps, "a"), Describe(moving, "b") }, options, pool);
+    for (std::size_t s = 0; s < steps.size(); ++s)
+    {
+      encoder.AddStep(static_cast<double>(s), { { steps[s].data() }, { moving[s].data() } });
+    }
+    const SeriesIndex index = encoder.Finish();
+    const auto whole = SeriesFile::Open(path);
+    std::vector<std::vector<float>> expected;
+    for (int s = 4; s < 8; ++s)
+    {
+      expected.push_back(ReadAll<float>(*whole, { s, 0, 0, 0 }));
+    }
+    LatticeCache::Process().Forget(whole->Id());
+    // The groups around the second one cannot be read.
+    for (const int other : { 0, 2 })
+    {
+      const std::string name = path + ".d/" + index.Segments[static_cast<std::size_t>(other)].File;
+      const auto bytes = std::filesystem::file_size(name);
+      std::ofstream(name, std::ios::binary | std::ios::trunc) << std::string(bytes, 'x');
+    }
+    const auto file = SeriesFile::Open(path);
+    for (int s = 4; s < 8; ++s)
+    {
+      EXPECT_EQ(ReadAll<float>(*file, { s, 0, 0, 0 }), expected[static_cast<std::size_t>(s - 4)]);
+    }
+    EXPECT_THROW((void)ReadAll<float>(*file, { 1, 0, 0, 0 }), Error);
+  }
 }
 
 TEST(OpenGroups, AreClosedWhereTheAxesChange)
