@@ -11,6 +11,7 @@
 #include "vtkTextureObject.h"
 #include "vtk_glew.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace banyan
@@ -45,24 +46,6 @@ glm::ivec2 OriginOf(vtkRenderer* renderer)
   return origin;
 }
 
-/// glReadPixels of the framebuffer that is bound for reading.
-std::vector<OpaquePixel> ReadBound(const glm::ivec2& corner, const glm::ivec2& size)
-{
-  const auto count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
-  std::vector<float> depths(count);
-  std::vector<std::uint8_t> colors(4 * count);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(corner.x, corner.y, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE, colors.data());
-  glReadPixels(corner.x, corner.y, size.x, size.y, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
-  std::vector<OpaquePixel> pixels(count);
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    pixels[i].Depth = depths[i];
-    std::memcpy(pixels[i].Color, &colors[4 * i], 4);
-  }
-  return pixels;
-}
-
 /// Binds a framebuffer for reading and puts everything back at the end. VTK's cache of the state is
 /// not told: it never notices.
 class ScopedRead
@@ -88,39 +71,6 @@ private:
   GLint BufferBefore = 0;
 };
 
-/// Copies a rectangle of a multisampled framebuffer into a plain one and reads that.
-std::vector<OpaquePixel> ReadResolved(vtkOpenGLRenderWindow* window, GLint framebuffer,
-  GLint buffer, const glm::ivec2& corner, const glm::ivec2& size)
-{
-  vtkOpenGLState* state = window->GetState();
-  vtkNew<vtkOpenGLFramebufferObject> resolved;
-  resolved->SetContext(window);
-  // Depths are only copied between equal formats.
-  GLint depthBits = 0;
-  GLint stencilBits = 0;
-  glGetFramebufferAttachmentParameteriv(
-    GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE, &depthBits);
-  glGetFramebufferAttachmentParameteriv(
-    GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_FRAMEBUFFER_ATTACHMENT_STENCIL_SIZE, &stencilBits);
-  state->PushFramebufferBindings();
-  resolved->PopulateFramebuffer(
-    size.x, size.y, true, 1, VTK_UNSIGNED_CHAR, true, depthBits, 0, stencilBits > 0);
-  {
-    vtkOpenGLState::ScopedglScissor scissor(state);
-    state->vtkglScissor(0, 0, size.x, size.y);
-    const ScopedRead source(framebuffer, buffer);
-    glBlitFramebuffer(corner.x, corner.y, corner.x + size.x, corner.y + size.y, 0, 0, size.x,
-      size.y, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
-  }
-  std::vector<OpaquePixel> pixels;
-  {
-    const ScopedRead copy(static_cast<GLint>(resolved->GetFBOIndex()), GL_COLOR_ATTACHMENT0);
-    pixels = ReadBound(glm::ivec2(0), size);
-  }
-  state->PopFramebufferBindings();
-  return pixels;
-}
-
 void DeleteTexture(vtkTextureObject* texture)
 {
   texture->Delete();
@@ -145,7 +95,58 @@ FramebufferExchange::FramebufferExchange()
 
 FramebufferExchange::~FramebufferExchange() = default;
 
-std::vector<OpaquePixel> FramebufferExchange::Read(vtkRenderer* renderer, const PixelRect& rect)
+/// glReadPixels of the framebuffer that is bound for reading.
+void FramebufferExchange::ReadBound(
+  const glm::ivec2& corner, const glm::ivec2& size, std::vector<OpaquePixel>& pixels)
+{
+  const auto count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+  this->Depths.resize(count);
+  this->Colors.resize(4 * count);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(corner.x, corner.y, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE, this->Colors.data());
+  glReadPixels(
+    corner.x, corner.y, size.x, size.y, GL_DEPTH_COMPONENT, GL_FLOAT, this->Depths.data());
+  pixels.resize(count);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    pixels[i].Depth = this->Depths[i];
+    std::memcpy(pixels[i].Color, &this->Colors[4 * i], 4);
+  }
+}
+
+/// Copies a rectangle of a multisampled framebuffer into a plain one and reads that.
+void FramebufferExchange::ReadResolved(vtkOpenGLRenderWindow* window, int framebuffer, int buffer,
+  const glm::ivec2& corner, const glm::ivec2& size, std::vector<OpaquePixel>& pixels)
+{
+  vtkOpenGLState* state = window->GetState();
+  vtkNew<vtkOpenGLFramebufferObject> resolved;
+  resolved->SetContext(window);
+  // Depths are only copied between equal formats.
+  GLint depthBits = 0;
+  GLint stencilBits = 0;
+  glGetFramebufferAttachmentParameteriv(
+    GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE, &depthBits);
+  glGetFramebufferAttachmentParameteriv(
+    GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_FRAMEBUFFER_ATTACHMENT_STENCIL_SIZE, &stencilBits);
+  state->PushFramebufferBindings();
+  resolved->PopulateFramebuffer(
+    size.x, size.y, true, 1, VTK_UNSIGNED_CHAR, true, depthBits, 0, stencilBits > 0);
+  {
+    vtkOpenGLState::ScopedglScissor scissor(state);
+    state->vtkglScissor(0, 0, size.x, size.y);
+    const ScopedRead source(framebuffer, buffer);
+    glBlitFramebuffer(corner.x, corner.y, corner.x + size.x, corner.y + size.y, 0, 0, size.x,
+      size.y, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+  }
+  {
+    const ScopedRead copy(static_cast<GLint>(resolved->GetFBOIndex()), GL_COLOR_ATTACHMENT0);
+    this->ReadBound(glm::ivec2(0), size, pixels);
+  }
+  state->PopFramebufferBindings();
+}
+
+void FramebufferExchange::Read(
+  vtkRenderer* renderer, const PixelRect& rect, std::vector<OpaquePixel>& pixels)
 {
   vtkOpenGLRenderWindow* window = WindowOf(renderer);
   const glm::ivec2 corner = OriginOf(renderer) + rect.Lo;
@@ -159,10 +160,19 @@ std::vector<OpaquePixel> FramebufferExchange::Read(vtkRenderer* renderer, const 
   glGetIntegerv(GL_SAMPLES, &samples);
   if (samples > 1)
   {
-    return ReadResolved(window, framebuffer, buffer, corner, size);
+    this->ReadResolved(window, framebuffer, buffer, corner, size, pixels);
+    return;
   }
   const ScopedRead bound(framebuffer, buffer);
-  return ReadBound(corner, size);
+  this->ReadBound(corner, size, pixels);
+}
+
+bool FramebufferExchange::Coloured(vtkRenderer* renderer, const glm::ivec2& pixel)
+{
+  std::vector<OpaquePixel> one;
+  this->Read(renderer, { pixel, pixel + 1 }, one);
+  return one[0].Depth < 1.0f ||
+         std::any_of(one[0].Color, one[0].Color + 4, [](std::uint8_t value) { return value != 0; });
 }
 
 void FramebufferExchange::Write(
@@ -173,12 +183,12 @@ void FramebufferExchange::Write(
   const glm::ivec2 corner = OriginOf(renderer) + rect.Lo;
   const glm::ivec2 size = rect.Size();
 
-  std::vector<std::uint8_t> colors(4 * pixels.size());
-  std::vector<float> depths(pixels.size());
+  this->Colors.resize(4 * pixels.size());
+  this->Depths.resize(pixels.size());
   for (std::size_t i = 0; i < pixels.size(); ++i)
   {
-    std::memcpy(&colors[4 * i], pixels[i].Color, 4);
-    depths[i] = pixels[i].Depth;
+    std::memcpy(&this->Colors[4 * i], pixels[i].Color, 4);
+    this->Depths[i] = pixels[i].Depth;
   }
 
   vtkOpenGLState::ScopedglViewport viewport(state);
@@ -206,8 +216,8 @@ void FramebufferExchange::Write(
   window->GetShaderCache()->ReadyShaderProgram(this->Quad->Program);
   const auto width = static_cast<unsigned int>(size.x);
   const auto height = static_cast<unsigned int>(size.y);
-  this->Color->Create2DFromRaw(width, height, 4, VTK_UNSIGNED_CHAR, colors.data());
-  this->Depth->Create2DFromRaw(width, height, 1, VTK_FLOAT, depths.data());
+  this->Color->Create2DFromRaw(width, height, 4, VTK_UNSIGNED_CHAR, this->Colors.data());
+  this->Depth->Create2DFromRaw(width, height, 1, VTK_FLOAT, this->Depths.data());
   this->Color->Activate();
   this->Depth->Activate();
   this->Quad->Program->SetUniformi("colorTexture", this->Color->GetTextureUnit());

@@ -4,6 +4,7 @@
 #include "Parallel/DirectSend.h"
 #include "Render/RayCamera.h"
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -26,7 +27,10 @@ public:
   ~FramebufferExchange();
 
   /// Colours (8 bit) and depths, `[y][x]`, y up. A multisampled framebuffer is resolved first.
-  std::vector<OpaquePixel> Read(vtkRenderer* renderer, const PixelRect& rect);
+  void Read(vtkRenderer* renderer, const PixelRect& rect, std::vector<OpaquePixel>& pixels);
+
+  /// Whether a pixel has any colour or opacity.
+  bool Coloured(vtkRenderer* renderer, const glm::ivec2& pixel);
 
   /// Writes colours and depths of a rectangle; depths always replace what is there.
   /// @param pixels rect.Count() of them, premultiplied
@@ -38,9 +42,16 @@ public:
   void ReleaseGraphicsResources(vtkWindow* window);
 
 private:
+  void ReadBound(
+    const glm::ivec2& corner, const glm::ivec2& size, std::vector<OpaquePixel>& pixels);
+  void ReadResolved(vtkOpenGLRenderWindow* window, int framebuffer, int buffer,
+    const glm::ivec2& corner, const glm::ivec2& size, std::vector<OpaquePixel>& pixels);
+
   std::unique_ptr<vtkOpenGLQuadHelper> Quad;
   std::unique_ptr<vtkTextureObject, void (*)(vtkTextureObject*)> Color;
   std::unique_ptr<vtkTextureObject, void (*)(vtkTextureObject*)> Depth;
+  std::vector<std::uint8_t> Colors; ///< on their way; kept, as pictures come one after the other
+  std::vector<float> Depths;
 };
 
 } // namespace banyan

@@ -48,7 +48,7 @@ private:
 FloatImage Framed(const FloatImage& image, const PixelRect& viewport)
 {
   FloatImage framed{ viewport,
-    std::vector<glm::vec4>(static_cast<std::size_t>(viewport.Count()), glm::vec4(0.0f)) };
+    PixelVector(static_cast<std::size_t>(viewport.Count()), glm::vec4(0.0f)) };
   for (int y = image.Rect.Lo.y; y < image.Rect.Hi.y && !image.Rect.Empty(); ++y)
   {
     const glm::vec4* row = &image.At(image.Rect.Lo.x, y);

@@ -14,7 +14,8 @@ constexpr float CoveredDepth = 0.999999f;
 
 std::uint8_t ToByte(float value)
 {
-  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
+  // As lround does, which loops cannot hold vectors of: sums of doubles are exact here.
+  return static_cast<std::uint8_t>(double{ std::clamp(value, 0.0f, 1.0f) * 255.0f } + 0.5);
 }
 
 /// Replaces the colours on rank 0 by those of all ranks, blended in the given order.

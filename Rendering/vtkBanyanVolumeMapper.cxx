@@ -1,12 +1,11 @@
 #include "vtkBanyanVolumeMapper.h"
 
+#include "Backdrop.h"
 #include "DistributedField.h"
 #include "FrameScene.h"
-#include "FramebufferExchange.h"
 #include "IceTCompositing.h"
 #include "MotionEnhancement.h"
 #include "PieceOfInput.h"
-#include "PixelsBehind.h"
 #include "SceneOptions.h"
 #include "ToleranceControl.h"
 #include "TransferFunctionTable.h"
@@ -38,7 +37,7 @@ struct vtkBanyanVolumeMapper::Internals
   std::unique_ptr<banyan::Communicator> Communicator;
   banyan::DistributedField Field;
   banyan::MotionEnhancement Motion;
-  banyan::FramebufferExchange Framebuffer;
+  banyan::Backdrop Backdrop;
   banyan::KeptTransferFunction Function;
   std::vector<int> RankOrderBehind;
   std::string LastNote;
@@ -287,12 +286,12 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   {
     return;
   }
-  std::vector<banyan::OpaquePixel> pixels = self.Framebuffer.Read(renderer, rect);
   banyan::CompositeStatistics geometry;
   banyan::CompositeOptions compositing;
-  compositing.Behind =
-    banyan::CombineBehind(*self.Communicator, self.RankOrderBehind, rect, pixels, geometry);
-  scene.Depth = banyan::DepthsOf(pixels);
+  self.Backdrop.Read(
+    *self.Communicator, renderer, volume, rect, self.RankOrderBehind, geometry);
+  compositing.Behind = self.Backdrop.Behind();
+  scene.Depth = self.Backdrop.Depths();
 
   const std::uint64_t bytesBefore = self.Field.BytesRead();
   const banyan::BrickCache::Statistics cacheBefore = banyan::BrickCache::Process().GetStatistics();
@@ -339,22 +338,7 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   self.Field.EndFrame(*self.Communicator);
   self.Tolerance.FrameTook(wish, banyan::AllMax(*self.Communicator, drawing.Seconds()));
 
-  // On several ranks the background comes last: the compositor blends the picture over it in 8 bit.
-  // A single rank does the same, for the same picture to the last bit.
-  const bool alone = self.Communicator->Size() == 1;
-  if (alone)
-  {
-    banyan::ClearWithoutGeometry(pixels);
-  }
-  if (self.Communicator->Rank() == 0)
-  {
-    banyan::BlendOver(picture, pixels);
-  }
-  else
-  {
-    std::fill(pixels.begin(), pixels.end(), banyan::OpaquePixel{ 1.0f, { 0, 0, 0, 0 } });
-  }
-  self.Framebuffer.Write(renderer, rect, pixels, /*blend=*/alone);
+  self.Backdrop.Write(*self.Communicator, renderer, picture);
   self.LastProblem.clear();
 
   frame.BytesComposited += static_cast<std::uint64_t>(
@@ -370,7 +354,7 @@ bool vtkBanyanVolumeMapper::RefineNext()
 
 void vtkBanyanVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 {
-  this->Self->Framebuffer.ReleaseGraphicsResources(window);
+  this->Self->Backdrop.ReleaseGraphicsResources(window);
   this->Superclass::ReleaseGraphicsResources(window);
 }
 

@@ -95,7 +95,7 @@ public:
   static FloatImage PartOf(const FloatImage& image, const PixelRect& rect)
   {
     FloatImage part{ rect,
-      std::vector<glm::vec4>(static_cast<std::size_t>(rect.Count()), glm::vec4(0.0f)) };
+      PixelVector(static_cast<std::size_t>(rect.Count()), glm::vec4(0.0f)) };
     const PixelRect kept = Intersection(image.Rect, rect);
     for (int y = kept.Lo.y; y < kept.Hi.y; ++y)
     {

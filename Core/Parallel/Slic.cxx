@@ -11,7 +11,7 @@ namespace
 
 FloatImage Transparent(const PixelRect& rect)
 {
-  return { rect, std::vector<glm::vec4>(static_cast<std::size_t>(rect.Count()), glm::vec4(0.0f)) };
+  return { rect, PixelVector(static_cast<std::size_t>(rect.Count()), glm::vec4(0.0f)) };
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #ifndef banyan_Render_FloatImage_h
 #define banyan_Render_FloatImage_h
 
+#include "Base/RecycledMemory.h"
 #include "Render/RayCamera.h"
 
 #include <glm/vec4.hpp>
@@ -10,11 +11,14 @@
 namespace banyan
 {
 
+/// The next picture finds the memory of the one before.
+using PixelVector = std::vector<glm::vec4, RecycledMemory<glm::vec4>>;
+
 /// A part of a picture: premultiplied RGBA in float, or what FinishPicture makes that of.
 struct FloatImage
 {
   PixelRect Rect;
-  std::vector<glm::vec4> Pixels; ///< `[y][x]`, y up; Rect.Count() of them
+  PixelVector Pixels; ///< `[y][x]`, y up; Rect.Count() of them
 
   glm::vec4& At(int x, int y)
   {

@@ -184,7 +184,7 @@ TEST(FragmentFormat, DoesNoHarmWithPixelsOutOfRange)
 TEST(FragmentMessages, RefuseWhatDoesNotFit)
 {
   const CompositePlan::Region region{ { 0, 0, 9, false }, { 1, 2, 7, true } };
-  FloatImage image{ { { 0, 0 }, { 9, 2 } }, std::vector<glm::vec4>(18, glm::vec4(0.25f)) };
+  FloatImage image{ { { 0, 0 }, { 9, 2 } }, PixelVector(18, glm::vec4(0.25f)) };
   image.At(4, 0) = glm::vec4(0.0f);
   for (const FragmentFormat& format : { FragmentFormat{}, FormatOfFragments(2, 1, 1.0f) })
   {
@@ -193,7 +193,7 @@ TEST(FragmentMessages, RefuseWhatDoesNotFit)
     EXPECT_LE(writer.Bytes.size(), FragmentBytesAtMost(region));
     const auto read = [&](const std::vector<std::uint8_t>& bytes, const CompositePlan::Region& into)
     {
-      FloatImage target{ image.Rect, std::vector<glm::vec4>(18, glm::vec4(0.0f)) };
+      FloatImage target{ image.Rect, PixelVector(18, glm::vec4(0.0f)) };
       FragmentReader reader(bytes.data(), bytes.size());
       reader.Blend(into, target, FragmentReader::Place::Behind, Combination::Over);
       return target;

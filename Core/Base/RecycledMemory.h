@@ -1,0 +1,61 @@
+#ifndef banyan_Base_RecycledMemory_h
+#define banyan_Base_RecycledMemory_h
+
+#include <cstddef>
+
+namespace banyan
+{
+
+/// Large pieces of memory that are needed again soon, such as pictures of frame after frame. Where
+/// they go back to the system in between, it clears each page anew: 16 MB take it longer than
+/// drawing what is in a simple picture. Those given back are kept, up to MostKeptBytes in all. Safe
+/// to use from any thread.
+class LargeMemory
+{
+public:
+  static constexpr std::size_t Smallest = std::size_t{ 1 } << 20; ///< smaller ones are not kept
+  static constexpr std::size_t MostKeptBytes = std::size_t{ 128 } << 20;
+
+  /// Throws std::bad_alloc.
+  static void* Take(std::size_t bytes);
+  /// @param bytes as they were taken
+  static void Give(void* memory, std::size_t bytes) noexcept;
+
+  /// What is kept at present; and all of it back to the system.
+  static std::size_t KeptBytes();
+  static void LetGo() noexcept;
+};
+
+/// An allocator of LargeMemory.
+template <class T>
+struct RecycledMemory
+{
+  using value_type = T;
+
+  RecycledMemory() = default;
+  template <class U>
+  RecycledMemory(const RecycledMemory<U>&) noexcept
+  {
+  }
+
+  T* allocate(std::size_t count) { return static_cast<T*>(LargeMemory::Take(count * sizeof(T))); }
+  void deallocate(T* memory, std::size_t count) noexcept
+  {
+    LargeMemory::Give(memory, count * sizeof(T));
+  }
+
+  template <class U>
+  friend bool operator==(const RecycledMemory&, const RecycledMemory<U>&) noexcept
+  {
+    return true;
+  }
+  template <class U>
+  friend bool operator!=(const RecycledMemory&, const RecycledMemory<U>&) noexcept
+  {
+    return false;
+  }
+};
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,103 @@
+#include "Base/RecycledMemory.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <thread>
+#include <vector>
+
+namespace
+{
+
+using namespace banyan;
+
+constexpr std::size_t Picture = std::size_t{ 16 } << 20;
+
+TEST(RecycledMemory, ThePictureAfterFindsTheMemoryOfTheOneBefore)
+{
+  LargeMemory::LetGo();
+  void* const first = LargeMemory::Take(Picture);
+  std::memset(first, 1, Picture);
+  LargeMemory::Give(first, Picture);
+  EXPECT_GE(LargeMemory::KeptBytes(), Picture);
+  // A little smaller will do.
+  void* const second = LargeMemory::Take(Picture - 4096);
+  EXPECT_EQ(second, first);
+  EXPECT_EQ(LargeMemory::KeptBytes(), 0u);
+  // Much smaller would waste it.
+  LargeMemory::Give(second, Picture - 4096);
+  void* const small = LargeMemory::Take(Picture / 2);
+  EXPECT_NE(small, first);
+  LargeMemory::Give(small, Picture / 2);
+  LargeMemory::LetGo();
+  EXPECT_EQ(LargeMemory::KeptBytes(), 0u);
+}
+
+TEST(RecycledMemory, SmallPiecesAreNotKept)
+{
+  LargeMemory::LetGo();
+  std::vector<float, RecycledMemory<float>> some(1000, 1.0f);
+  some = {};
+  EXPECT_EQ(LargeMemory::KeptBytes(), 0u);
+}
+
+TEST(RecycledMemory, KeepsNoMoreThanItMay)
+{
+  LargeMemory::LetGo();
+  std::vector<void*> pieces;
+  for (int i = 0; i < 20; ++i)
+  {
+    pieces.push_back(LargeMemory::Take(Picture + static_cast<std::size_t>(i) * 100));
+  }
+  for (int i = 0; i < 20; ++i)
+  {
+    LargeMemory::Give(
+      pieces[static_cast<std::size_t>(i)], Picture + static_cast<std::size_t>(i) * 100);
+    EXPECT_LE(LargeMemory::KeptBytes(), LargeMemory::MostKeptBytes);
+  }
+  EXPECT_GT(LargeMemory::KeptBytes(), LargeMemory::MostKeptBytes / 2);
+  LargeMemory::LetGo();
+}
+
+TEST(RecycledMemory, EverySizeHoldsWhatItIsAskedFor)
+{
+  for (std::size_t bytes = 1; bytes < (std::size_t{ 1 } << 24); bytes += bytes / 7 + 1)
+  {
+    auto* const memory = static_cast<char*>(LargeMemory::Take(bytes));
+    memory[0] = memory[bytes - 1] = 7; // a sanitizer would see it
+    LargeMemory::Give(memory, bytes);
+  }
+  EXPECT_THROW(LargeMemory::Take(~std::size_t{ 0 }), std::bad_alloc);
+  LargeMemory::LetGo();
+}
+
+TEST(RecycledMemory, ThreadsNeverShareAPiece)
+{
+  LargeMemory::LetGo();
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 8; ++t)
+  {
+    threads.emplace_back(
+      [t]
+      {
+        for (int i = 0; i < 200; ++i)
+        {
+          const std::size_t bytes =
+            LargeMemory::Smallest + static_cast<std::size_t>(i % 5) * 100000;
+          auto* const memory = static_cast<unsigned char*>(LargeMemory::Take(bytes));
+          memory[0] = memory[bytes - 1] = static_cast<unsigned char>(t);
+          std::this_thread::yield();
+          EXPECT_EQ(memory[0], t);
+          EXPECT_EQ(memory[bytes - 1], t);
+          LargeMemory::Give(memory, bytes);
+        }
+      });
+  }
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  LargeMemory::LetGo();
+}
+
+} // namespace
