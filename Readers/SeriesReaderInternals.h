@@ -2,6 +2,7 @@
 #define banyan_Readers_SeriesReaderInternals_h
 
 #include "MeshOutput.h"
+#include "MeshStepAhead.h"
 #include "VerifiedBricks.h"
 #include "vtkBanyanSeriesReader.h"
 
@@ -21,6 +22,8 @@ struct vtkBanyanSeriesReader::Internals
   std::string OpenName; ///< the FileName that Series was opened from
   bool Reopen = false;
   banyan::MeshOutput Mesh;
+  banyan::MeshStepAhead Ahead;
+  double LoadSeconds = 0; ///< of the last update
   banyan::VerifiedBricks Verified;
   vtkNew<vtkDataArraySelection> Selection;     ///< of point arrays
   vtkNew<vtkDataArraySelection> CellSelection; ///< of cell arrays of meshes

@@ -17,6 +17,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include "Base/Timer.h"
 #include "Cache/BrickCache.h"
 #include "Series/LevelGrid.h"
 #include "Series/SeriesFile.h"
@@ -48,6 +49,7 @@ void vtkBanyanSeriesReader::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "Level: " << this->Level << "\n"
      << indent << "MeshAsHyperTreeGrid: " << this->MeshAsHyperTreeGrid << "\n"
      << indent << "DeferDecoding: " << this->DeferDecoding << "\n"
+     << indent << "ReadAhead: " << this->ReadAhead << "\n"
      << indent << "CacheBudget: " << this->CacheBudget << "\n"
      << indent << "Steps: " << (this->Self->Series ? this->Self->Series->Index().Steps() : 0)
      << "\n";
@@ -142,11 +144,6 @@ void vtkBanyanSeriesReader::SetController(vtkMultiProcessController* controller)
 vtkMultiProcessController* vtkBanyanSeriesReader::GetController()
 {
   return this->Self->Controller;
-}
-
-vtkIdType vtkBanyanSeriesReader::GetBricksDecoded()
-{
-  return this->Self->Series ? static_cast<vtkIdType>(this->Self->Series->BricksDecoded()) : 0;
 }
 
 const char* vtkBanyanSeriesReader::GetErrorMessage()
@@ -295,6 +292,7 @@ int vtkBanyanSeriesReader::RequestData(
     return 0;
   }
   this->Clear();
+  const banyan::Timer timer;
   vtkInformation* outInfo = outputs->GetInformationObject(0);
   vtkDataObject* output = outInfo->Get(vtkDataObject::DATA_OBJECT());
   // The pipeline keeps the scalars of the step before, for those who write into the same memory.
@@ -303,6 +301,7 @@ int vtkBanyanSeriesReader::RequestData(
   vtkBanyanDeferred::ReleaseDownTo(banyan::BrickCache::Process().Budget());
   unsigned long code = vtkErrorCode::NoError;
   const std::string problem = this->TryToFill(outInfo, code);
+  this->Self->LoadSeconds = timer.Seconds();
   if (!this->AllRanksAreWell(code, problem))
   {
     output->Initialize();

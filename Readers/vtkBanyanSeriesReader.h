@@ -92,6 +92,17 @@ public:
 
   ///@{
   /**
+   * Whether the next step of a series of meshes that plays is decoded while this one is drawn: by threads
+   * of low priority, within half of what the cache has for decoded bricks. Default on. Without effect on
+   * series of image data, whose bricks the renderer decodes ahead (vtkBanyanVolumeMapper::SetReadAhead).
+   */
+  vtkSetMacro(ReadAhead, bool);
+  vtkGetMacro(ReadAhead, bool);
+  vtkBooleanMacro(ReadAhead, bool);
+  ///@}
+
+  ///@{
+  /**
    * Budget in MiB of the cache of decoded bricks, which all readers and renderers of the process
    * share. Negative (the default) leaves it as it is: 512 MiB, or BANYAN_CACHE_MB from the
    * environment.
@@ -135,6 +146,16 @@ public:
   vtkIdType GetBricksDecoded();
 
   /**
+   * How many bricks that were decoded ahead this process has been asked for since, for whatever series.
+   */
+  vtkIdType GetBricksReadAhead();
+
+  /**
+   * What the last update took on this process: of image data that decodes on first touch nearly nothing.
+   */
+  double GetLoadSeconds();
+
+  /**
    * What went wrong in the last update, as a sentence; empty if nothing did.
    */
   const char* GetErrorMessage();
@@ -174,6 +195,7 @@ private:
   int Level = 0;
   bool DeferDecoding = true;
   bool MeshAsHyperTreeGrid = false;
+  bool ReadAhead = true;
   int CacheBudget = -1;
 
   struct Internals;

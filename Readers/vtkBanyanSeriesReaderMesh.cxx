@@ -12,6 +12,8 @@
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
@@ -83,6 +85,9 @@ void vtkBanyanSeriesReader::FillMesh(vtkInformation* outInfo)
   handle.Samples = { glm::ivec3{ 0 }, index.Domain.Samples() };
   output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), index.Times[handle.Step]);
   const int arrays = static_cast<int>(index.Arrays.size());
+  banyan::MeshStepAhead& ahead = this->Self->Ahead;
+  ahead.Reading(*handle.Series, handle.Step);
+  std::vector<banyan::FieldKey> fields;
   for (handle.Array = 0; handle.Array < arrays; ++handle.Array)
   {
     this->UpdateProgress(static_cast<double>(handle.Array) / arrays);
@@ -90,6 +95,10 @@ void vtkBanyanSeriesReader::FillMesh(vtkInformation* outInfo)
     if (!this->Self->Wants(array))
     {
       continue;
+    }
+    for (int component = 0; component < static_cast<int>(array.Components.size()); ++component)
+    {
+      fields.push_back({ handle.Step, handle.Array, component, handle.Level });
     }
     vtkDataSetAttributes* const values = output->GetAttributes(
       trees || !array.CellArray.empty() ? vtkDataObject::CELL : vtkDataObject::POINT);
@@ -101,6 +110,10 @@ void vtkBanyanSeriesReader::FillMesh(vtkInformation* outInfo)
     {
       values->SetActiveScalars(added->GetName());
     }
+  }
+  if (this->ReadAhead)
+  {
+    ahead.Read(handle.Series, std::move(fields));
   }
   this->UpdateProgress(1.0);
 }

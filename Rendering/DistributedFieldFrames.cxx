@@ -70,8 +70,7 @@ void DistributedField::BringLevels(Communicator& communicator, const RayScene& s
 
 void DistributedField::ReadAhead(const RayScene& scene, int rank)
 {
-  auto* const source = dynamic_cast<SeriesBrickSource*>(this->Bricks.get());
-  if (!this->Encoded() || !source)
+  if (!this->Encoded() || !this->Bricks)
   {
     return;
   }
@@ -83,9 +82,13 @@ void DistributedField::ReadAhead(const RayScene& scene, int rank)
       this->Ahead = std::make_unique<StepAhead>(cache, ThreadPool::Process().Width());
       this->Ahead->Drawing(*this->Series, this->Step);
     }
-    this->Ahead->Drawn(this->Series, *source);
-    std::vector<FieldBricks> coming =
-      this->View.Expected(scene, *source, this->Zones()[static_cast<std::size_t>(rank)]);
+    this->Ahead->Drawn(this->Series, *this->Bricks);
+    auto* const source = dynamic_cast<SeriesBrickSource*>(this->Bricks.get());
+    std::vector<FieldBricks> coming;
+    if (source)
+    {
+      coming = this->View.Expected(scene, *source, this->Zones()[static_cast<std::size_t>(rank)]);
+    }
     if (this->Ahead->Next() < 0 && !coming.empty())
     {
       this->Ahead->Work().Start(this->Series, std::move(coming), cache.DecodedBudget() / 4);

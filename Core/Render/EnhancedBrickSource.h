@@ -4,6 +4,7 @@
 #include "Render/BrickSource.h"
 #include "Render/TemporalEnhancement.h"
 
+#include <array>
 #include <memory>
 
 namespace banyan
@@ -37,6 +38,12 @@ public:
   std::optional<UniformValue> UniformValueOf(std::int64_t brick) const override;
   std::size_t LoadBytes(std::int64_t brick) const override;
   BrickView Load(std::int64_t brick) override;
+
+  /// The step before, this one and the one after; null where there is none.
+  std::array<const BrickSource*, 3> Steps() const
+  {
+    return { { this->Previous, this->Now, this->Next } };
+  }
 
 protected:
   std::unique_ptr<BrickSource> MakeLevel(int level, const Box& domain) override;

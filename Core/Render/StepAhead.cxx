@@ -1,41 +1,61 @@
 #include "Render/StepAhead.h"
 
+#include "Render/EnhancedBrickSource.h"
 #include "Render/SeriesBrickSource.h"
+
+#include <algorithm>
+#include <utility>
 
 namespace banyan
 {
+namespace
+{
+
+/// What was loaded of a source, of all steps that it is made of; nothing where it is not of a
+/// series.
+void AddLoaded(const BrickSource* source, std::vector<FieldBricks>& loaded)
+{
+  if (const auto* const series = dynamic_cast<const SeriesBrickSource*>(source))
+  {
+    for (FieldBricks& field : series->Loaded())
+    {
+      loaded.push_back(std::move(field));
+    }
+  }
+  else if (const auto* const enhanced = dynamic_cast<const EnhancedBrickSource*>(source))
+  {
+    for (const BrickSource* const step : enhanced->Steps())
+    {
+      AddLoaded(step, loaded);
+    }
+  }
+}
+
+} // namespace
 
 void StepAhead::Drawing(const SeriesFile& series, int step)
 {
   this->Decoder.Stop();
-  if (series.Id() != this->SeriesId)
-  {
-    this->SeriesId = series.Id();
-    this->Step = -1;
-    this->Stride = 0;
-  }
-  if (step != this->Step)
-  {
-    this->Stride = this->Step < 0 ? 0 : step - this->Step;
-    this->Step = step;
-  }
-  const int next = step + this->Stride;
-  const bool exists = next >= 0 && next < series.Index().Steps();
-  this->NextStep = this->Stride != 0 && exists ? next : -1;
+  this->NextStep = this->Direction.Asked(series, step);
 }
 
-void StepAhead::Drawn(
-  const std::shared_ptr<const SeriesFile>& series, const SeriesBrickSource& source)
+void StepAhead::Drawn(const std::shared_ptr<const SeriesFile>& series, const BrickSource& source)
 {
   if (this->NextStep < 0)
   {
     return;
   }
-  std::vector<FieldBricks> wanted = source.Loaded();
+  std::vector<FieldBricks> wanted;
+  AddLoaded(&source, wanted);
+  const int steps = series->Index().Steps();
   for (FieldBricks& field : wanted)
   {
-    field.Field.Step = this->NextStep;
+    field.Field.Step += this->Direction.Stride();
   }
+  wanted.erase(std::remove_if(wanted.begin(), wanted.end(),
+                 [steps](const FieldBricks& field)
+                 { return field.Field.Step < 0 || field.Field.Step >= steps; }),
+    wanted.end());
   this->Decoder.Start(series, std::move(wanted), this->Cache.DecodedBudget() / 2);
 }
 

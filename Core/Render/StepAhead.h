@@ -3,11 +3,12 @@
 
 #include "Cache/AheadDecoder.h"
 #include "Cache/BrickCache.h"
+#include "Cache/PlayDirection.h"
 
 namespace banyan
 {
 
-class SeriesBrickSource;
+class BrickSource;
 
 /// Decodes the next time step of an encoded series in the direction of play, while the picture of
 /// one is composited and shown: the bricks that were drawn of this one, within half of what the
@@ -28,8 +29,8 @@ public:
   /// Before a picture.
   void Drawing(const SeriesFile& series, int step);
   /// After its rays were cast.
-  /// @param source that it was drawn from
-  void Drawn(const std::shared_ptr<const SeriesFile>& series, const SeriesBrickSource& source);
+  /// @param source that it was drawn from: a SeriesBrickSource, or an EnhancedBrickSource of such
+  void Drawn(const std::shared_ptr<const SeriesFile>& series, const BrickSource& source);
 
   /// The step that is expected to be drawn next; -1 for none.
   int Next() const { return this->NextStep; }
@@ -38,9 +39,7 @@ public:
 private:
   BrickCache& Cache;
   AheadDecoder Decoder;
-  std::uint64_t SeriesId = 0;
-  int Step = -1;
-  int Stride = 0; ///< from the step before to this one; 0 while only one was drawn
+  PlayDirection Direction;
   int NextStep = -1;
 };
 

@@ -1,4 +1,6 @@
 """Coarser levels and hyper tree grids of mesh series, for test_mesh_series.py."""
+from time import sleep
+
 import numpy
 from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -40,6 +42,14 @@ def check_cell_levels(path, names, fill):
                                 f"{path}, level {level}: {name} of cell {cell}")
     session.require(merged > 20, f"{merged} cells are merged ones")
     simple.Delete(reader)
+
+
+def check_series(reader, path, array):
+    """What does not depend on the source: levels, colours, steps that are decoded ahead."""
+    check_levels(reader)
+    for trees in (0, 1):
+        check_colours(path, array, trees)
+    check_read_ahead(path, array)
 
 
 def check_levels(reader):
@@ -130,12 +140,7 @@ def check_inner_cells(trees, leaves, names, fill):
         simple.Delete(source)
 
 
-def check_colours(path, array):
-    for trees in (0, 1):
-        check_colours_of(path, array, trees)
-
-
-def check_colours_of(path, array, trees):
+def check_colours(path, array, trees):
     """Colours reach over all steps, whichever is shown first, and do not drift."""
     reader = simple.OpenDataFile(path)
     reader.MeshAsHyperTreeGrid = trees
@@ -159,3 +164,31 @@ def check_colours_of(path, array, trees):
         session.require(not wrong, f"colours up to {points[-4]}, the series up to {series[1]}")
     simple.Delete(view)
     simple.Delete(reader)
+
+
+def check_read_ahead(path, array):
+    """A series that plays finds its steps decoded, and they are the same."""
+    played = {}
+    for ahead in (0, 1):
+        reader = simple.OpenDataFile(path)
+        reader.ReadAhead = ahead
+        for mebibytes in (0, 512):  # what others have decoded goes
+            reader.CacheBudget = mebibytes
+            reader.UpdateVTKObjects()
+        before = reader.GetPropertyValue("BricksReadAhead")
+        for time in reader.TimestepValues:
+            reader.UpdatePipeline(time)
+            grid = servermanager.Fetch(reader)
+            values = grid.GetPointData().GetArray(array) if grid and grid.GetNumberOfPoints() else None
+            played.setdefault(time, []).append(None if values is None else vtk_to_numpy(values).copy())
+            sleep(0.1)  # a display shows it
+        reader.UpdatePropertyInformation()
+        hits = reader.GetPropertyValue("BricksReadAhead") - before
+        seconds = reader.GetPropertyValue("LoadSeconds")
+        print(f"{hits} bricks of {path} were decoded ahead, the last step took {1e3 * seconds:.1f} ms", flush=True)
+        session.require(seconds > 0.0, "no word of what loading took")
+        session.require((hits > 0) == (ahead == 1), f"{hits} bricks were decoded ahead with ReadAhead={ahead}")
+        simple.Delete(reader)
+    for time, (without, with_it) in played.items():
+        same = without is None or without.tobytes() == with_it.tobytes()
+        session.require(same, f"the step at {time} is another one when it is decoded ahead")

@@ -378,8 +378,7 @@ def main():
     arrays = ["velocity", "ground_displacement"]
     path = write(quake, options.out, "earthquake", arrays + ["ids"])
     reader = compare(quake, path, arrays, TIMES, QUAKE_CELLS)
-    mesh_levels.check_levels(reader)
-    mesh_levels.check_colours(path, "velocity")
+    mesh_levels.check_series(reader, path, "velocity")
     check_pictures(simple.MergeBlocks(Input=quake), reader, "velocity", options.out)
     names, cell_names = ["u", "special", "count"], ["mass", "stress", "u"]
     for name, shared, numbered in (("numbered", True, True), ("pieces", False, True)):

@@ -4,6 +4,7 @@
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Cache/BrickCache.h"
+#include "Render/EnhancedBrickSource.h"
 #include "Render/SeriesBrickSource.h"
 #include "Render/StepAhead.h"
 
@@ -179,6 +180,40 @@ TEST_F(Ahead, TheStepThatComesNextInTheDirectionOfPlayIsRead)
   const auto other = SeriesFile::Open(this->Folder / "s.banyan");
   ahead.Drawing(*other, 4);
   EXPECT_EQ(ahead.Next(), -1);
+}
+
+TEST_F(Ahead, AnEnhancedStepNeedsOneThatIsAfterTheNext)
+{
+  BrickCache cache(Plenty);
+  StepAhead ahead(cache, 2);
+  const auto play = [&](int step)
+  {
+    const auto at = [&](int other) -> std::unique_ptr<BrickSource>
+    {
+      return other < 0 || other >= Steps ? nullptr
+                                         : std::make_unique<SeriesBrickSource>(
+                                             this->File, FieldKey{ other, 0, 0, 0 }, 0, cache);
+    };
+    EnhancedBrickSource source({ 0.5, 1.0, 0.0 }, at(step - 1), at(step), at(step + 1));
+    ahead.Drawing(*this->File, step);
+    for (int brick = 2; brick < 9; ++brick)
+    {
+      source.Load(brick);
+    }
+    ahead.Drawn(this->File, source);
+    ahead.Work().Finish();
+  };
+  play(1); // steps 0 to 2
+  EXPECT_EQ(cache.GetAheadStatistics().Decoded, 0u);
+  play(2); // 3 too, then 4
+  EXPECT_EQ(cache.GetAheadStatistics().Decoded, 7u);
+  play(3);
+  EXPECT_EQ(cache.GetAheadStatistics().Hits, 7u);
+  EXPECT_EQ(cache.GetAheadStatistics().Decoded, 14u);
+  play(4);
+  EXPECT_EQ(cache.GetAheadStatistics().Hits, 14u);
+  EXPECT_EQ(cache.GetAheadStatistics().Decoded, 14u) << "there is no step after the last";
+  EXPECT_EQ(cache.GetStatistics().Misses, 6 * 7u);
 }
 
 TEST_F(Ahead, SourcesKnowWhatWasLoadedOfTheirLevels)

@@ -1,0 +1,39 @@
+#ifndef banyan_Readers_MeshStepAhead_h
+#define banyan_Readers_MeshStepAhead_h
+
+#include "Cache/AheadDecoder.h"
+#include "Cache/PlayDirection.h"
+
+#include <memory>
+
+namespace banyan
+{
+
+class BrickCache;
+
+/// Reads and decodes the next step of a series of meshes that plays, while this one is drawn: on
+/// threads of low priority, within half of what the cache has for decoded bricks. What was not
+/// ready in time is decoded when the step is read.
+class MeshStepAhead
+{
+public:
+  /// Before a step is read. What is under way stops, but for the brick that each thread is at.
+  void Reading(const SeriesFile& series, int step);
+
+  /// After it was read.
+  /// @param fields of it; those of the next step are wanted. Does not throw.
+  void Read(const std::shared_ptr<const SeriesFile>& series, std::vector<FieldKey> fields) noexcept;
+
+  void Stop();
+  /// Returns when all is done: for tests.
+  void Finish();
+
+private:
+  std::unique_ptr<AheadDecoder> Decoder; ///< null until a series plays
+  PlayDirection Direction;
+  int NextStep = -1;
+};
+
+} // namespace banyan
+
+#endif
