@@ -96,8 +96,9 @@ Json ErrorToJson(const ComponentReport& component)
   json["psnr"] = OrNull(Decibels(index.ReferenceRange().Width(), component.Rmse()));
   const StepReport* narrowest = component.NarrowestStep();
   json["narrowestStep"] = narrowest ? Json(narrowest->Step) : Json(nullptr);
+  const std::optional<double> rmse = narrowest ? component.RmseOf(*narrowest) : std::nullopt;
   json["psnrOfNarrowestStep"] =
-    narrowest ? OrNull(Decibels(narrowest->Range.Width(), component.Rmse())) : Json(nullptr);
+    rmse ? OrNull(Decibels(narrowest->Range.Width(), *rmse)) : Json(nullptr);
   return json;
 }
 

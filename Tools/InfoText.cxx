@@ -180,13 +180,14 @@ std::string Errors(const SeriesReport& report)
     const ComponentIndex& index = component.Index;
     const double bound = index.ErrorBoundAbsolute;
     const StepReport* narrowest = component.NarrowestStep();
+    const std::optional<double> rmse = narrowest ? component.RmseOf(*narrowest) : std::nullopt;
     table.AddRow({ component.Name,
       index.Range.Empty() ? "-" : Digits(index.Range.Low) + " .. " + Digits(index.Range.High),
       Digits(bound), Digits(index.MeasuredMaxError),
       bound > 0.0 ? Percent(index.MeasuredMaxErrorTransformed / bound) : "-",
       Digits(component.Rmse()), Digits(Decibels(index.ReferenceRange().Width(), component.Rmse())),
       narrowest ? std::to_string(narrowest->Step) : "-",
-      narrowest ? Digits(Decibels(narrowest->Range.Width(), component.Rmse())) : "-",
+      rmse ? Digits(Decibels(narrowest->Range.Width(), *rmse)) : "-",
       std::to_string(index.NonFiniteCount) });
   }
   std::string quantizers;

@@ -192,6 +192,13 @@ double ComponentReport::Rmse() const
   return count > 0 ? std::sqrt(this->Index.SumSquaredError / count) : 0.0;
 }
 
+std::optional<double> ComponentReport::RmseOf(const StepReport& step) const
+{
+  const std::size_t number = static_cast<std::size_t>(step.Step);
+  return number < this->Index.StepRmse.size() ? std::optional<double>(this->Index.StepRmse[number])
+                                              : std::nullopt;
+}
+
 const StepReport* ComponentReport::NarrowestStep() const
 {
   const StepReport* narrowest = nullptr;

@@ -48,6 +48,8 @@ struct ComponentReport
   ScalarType Type = ScalarType::Float32;
   std::vector<StepReport> Steps; ///< those that were asked for
 
+  /// Of one step; nothing where the series does not say it.
+  std::optional<double> RmseOf(const StepReport& step) const;
   double Rmse() const; ///< over all finite values of the series; 0 when there are none
   /// Of the asked steps, the one whose values have the narrowest range that is not 0 wide; null
   /// when there is none. Errors are largest in relation to it.

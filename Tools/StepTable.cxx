@@ -81,6 +81,8 @@ std::vector<StepColumn> StepColumns(const InfoReport& report)
         const ValueRange& range = line.At().Range;
         return range.Empty() ? std::nullopt : std::optional<double>(range.High);
       } },
+    { "rmse", [](const StepLine& line)
+      { return line.Report->Series.Components[line.Component].RmseOf(line.At()); } },
     BrickColumn("bricks", &BrickCounts::Bricks),
     BrickColumn("macro_voxel_bricks", &BrickCounts::MacroVoxels),
     BrickColumn("unchanged_bricks", &BrickCounts::Unchanged),

@@ -23,6 +23,7 @@ void AddGroup(const EncodedGroup& group, SeriesIndex& index)
       to.MeasuredMaxErrorTransformed =
         std::max(to.MeasuredMaxErrorTransformed, from.MeasuredMaxErrorTransformed);
       to.SumSquaredError += from.SumSquaredError;
+      to.StepRmse.insert(to.StepRmse.end(), from.StepRmse.begin(), from.StepRmse.end());
       to.FiniteCount += from.FiniteCount;
       to.NonFiniteCount += from.NonFiniteCount;
       to.ClampedCount += from.ClampedCount;

@@ -13,6 +13,7 @@
 #include "Series/ProfileModes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 
 namespace banyan
@@ -75,6 +76,7 @@ void Encoder<T>::Prepare()
   this->Planes = this->Target->Planes();
   this->Wanted = this->TakePlanes();
   this->Out.Steps.resize(this->Field.Steps.size());
+  this->Out.StepRmse.resize(this->Field.Steps.size());
   this->Work.resize(this->Field.Steps.size());
 }
 
@@ -209,8 +211,11 @@ void Encoder<T>::EncodeStep(
     },
     tell);
   FieldErrors& errors = this->Out.Errors;
+  FieldErrors own;
   for (const FieldErrors& part : parts)
   {
+    own.SumSquared += part.SumSquared;
+    own.Finite += part.Finite;
     errors.Range.Include(part.Range);
     errors.Maximum = std::max(errors.Maximum, part.Maximum);
     errors.MaximumTransformed = std::max(errors.MaximumTransformed, part.MaximumTransformed);
@@ -222,6 +227,8 @@ void Encoder<T>::EncodeStep(
     errors.Invisible += part.Invisible;
     errors.SumWeighted += part.SumWeighted;
   }
+  this->Out.StepRmse[static_cast<std::size_t>(step)] =
+    own.Finite > 0 ? std::sqrt(own.SumSquared / static_cast<double>(own.Finite)) : 0.0;
 }
 
 /// Codes the tokens of all steps with tables made for all of them.

@@ -88,6 +88,7 @@ struct EncodedField
   group::FieldHead Head;
   std::vector<EncodedStep> Steps;
   FieldErrors Errors;
+  std::vector<double> StepRmse; ///< root of the mean squared error of each step
   KeyFrame Last;
   /// Steps that must be decoded for a brick of the finest level: sum over so many bricks of all steps, and
   /// most; see ChainLengths.h.

@@ -36,6 +36,7 @@ void Measure(const EncodedField& field, ComponentIndex& component,
   component.MeasuredMaxError = field.Errors.Maximum;
   component.MeasuredMaxErrorTransformed = field.Errors.MaximumTransformed;
   component.SumSquaredError = field.Errors.SumSquared;
+  component.StepRmse = field.StepRmse;
   component.FiniteCount = field.Errors.Finite;
   component.NonFiniteCount = field.Errors.NonFinite;
   component.FillCount = field.Errors.Fill;

@@ -120,6 +120,7 @@ void Visit(Visitor& visitor, Group& group)
           visitor.Number(component.MeasuredMaxError);
           visitor.Number(component.MeasuredMaxErrorTransformed);
           visitor.Number(component.SumSquaredError);
+          visitor.Items(component.StepRmse, [&](auto& rmse) { visitor.Number(rmse); });
           visitor.Number(component.FiniteCount);
           visitor.Number(component.NonFiniteCount);
           visitor.Number(component.ClampedCount);

@@ -31,7 +31,7 @@ void CheckRange(const ValueRange& range)
     "A range of values is not finite");
 }
 
-void CheckComponent(const ComponentIndex& component)
+void CheckComponent(const ComponentIndex& component, std::size_t steps)
 {
   CheckRange(component.Range);
   CheckRange(component.PromisedRange);
@@ -41,6 +41,12 @@ void CheckComponent(const ComponentIndex& component)
             component.SumSquaredError >= 0,
     "A measured error is negative or not finite");
   Require(component.SumWeightedError >= 0, "A measured error is negative");
+  Require(component.StepRmse.empty() || component.StepRmse.size() == steps,
+    "There are not as many errors of steps as steps");
+  for (const double rmse : component.StepRmse)
+  {
+    Require(rmse >= 0, "A measured error is negative");
+  }
   Require(
     component.FiniteCount >= 0 && component.NonFiniteCount >= 0, "A count of voxels is negative");
 }
@@ -59,7 +65,7 @@ void CheckArrays(const SeriesIndex& index)
     Require(components <= GreatestComponents, "The arrays have too many components in all");
     for (const ComponentIndex& component : array.Components)
     {
-      CheckComponent(component);
+      CheckComponent(component, index.Times.size());
     }
     Require(array.Magnitudes.size() == (array.Components.size() > 1 ? index.Times.size() : 0),
       "The array '" + array.Name + "' does not have a range of magnitudes for each step");

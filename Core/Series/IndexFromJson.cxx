@@ -3,6 +3,7 @@
 #include "Series/IndexJson.h"
 #include "Series/JsonMembers.h"
 #include "Series/QuantizerJson.h"
+#include "Series/ShortNumbers.h"
 #include "Series/TransformJson.h"
 
 #include <limits>
@@ -48,6 +49,10 @@ ComponentIndex ComponentFromJson(const Json& json)
   const Json& squares = Member(json, "sumSquaredError");
   component.SumSquaredError =
     squares.is_null() ? std::numeric_limits<double>::infinity() : Real(squares, "sumSquaredError");
+  if (json.contains("stepRmse"))
+  {
+    component.StepRmse = FromShortNumbers(TextMember(json, "stepRmse"));
+  }
   component.FiniteCount = CountMember(json, "finiteCount");
   component.NonFiniteCount = CountMember(json, "nonFiniteCount");
   const auto transform = json.find("transform");

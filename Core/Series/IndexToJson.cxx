@@ -1,6 +1,7 @@
 #include "Series/Hash.h"
 #include "Series/IndexJson.h"
 #include "Series/QuantizerJson.h"
+#include "Series/ShortNumbers.h"
 #include "Series/TransformJson.h"
 
 #include <cmath>
@@ -32,6 +33,10 @@ Json ComponentToJson(const ComponentIndex& component)
   // The one number that may overflow: squares of large errors.
   json["sumSquaredError"] =
     std::isfinite(component.SumSquaredError) ? Json(component.SumSquaredError) : Json(nullptr);
+  if (!component.StepRmse.empty())
+  {
+    json["stepRmse"] = ShortNumbers(component.StepRmse);
+  }
   json["finiteCount"] = component.FiniteCount;
   json["nonFiniteCount"] = component.NonFiniteCount;
   if (!component.ValueTransform.IsIdentity())

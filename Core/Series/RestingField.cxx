@@ -22,6 +22,7 @@ void LetRest(EncodedField& field, std::int64_t steps)
   }
   errors.SumSquared *= static_cast<double>(steps);
   errors.SumWeighted *= static_cast<double>(steps);
+  field.StepRmse.assign(static_cast<std::size_t>(steps), field.StepRmse.at(0));
   field.ChainSum *= steps;
   field.ChainBricks *= steps;
 }

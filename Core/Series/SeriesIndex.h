@@ -41,6 +41,8 @@ struct ComponentIndex
   /// transform is the identity.
   double MeasuredMaxErrorTransformed = 0;
   double SumSquaredError = 0;    ///< over all finite voxels of all steps; for RMSE and PSNR
+  /// Root of the mean squared error of each step, to three digits; empty in series that do not say it.
+  std::vector<double> StepRmse;
   std::int64_t FiniteCount = 0;  ///< voxels (of all steps) that are finite
   std::int64_t NonFiniteCount = 0; ///< NaN and infinities, kept bit-exact
   /// Of the values before they were put on the lattice; the identity unless the encoder was told.

@@ -335,6 +335,7 @@ TEST(GroupMessage, KeepsEveryBit)
   group.Measured[1][0].MeasuredMaxError = 0.1;
   group.Measured[1][0].MeasuredMaxErrorTransformed = 0.2;
   group.Measured[1][0].FiniteCount = 17;
+  group.Measured[1][0].StepRmse = { 0.25, 0.0 };
   group.Measured[1][0].NonFiniteCount = 18;
   group.Magnitudes = { { {}, { 1.0, 2.0 } }, {} };
   group.Statistics.ChainMost = 9;
@@ -355,6 +356,7 @@ TEST(GroupMessage, KeepsEveryBit)
   EXPECT_EQ(copy.Measured[1][0].MeasuredMaxError, 0.1);
   EXPECT_EQ(copy.Measured[1][0].MeasuredMaxErrorTransformed, 0.2);
   EXPECT_EQ(copy.Measured[1][0].FiniteCount, 17);
+  EXPECT_EQ(copy.Measured[1][0].StepRmse, group.Measured[1][0].StepRmse);
   EXPECT_EQ(copy.Measured[1][0].NonFiniteCount, 18);
   EXPECT_TRUE(copy.Magnitudes[0][0].Empty());
   EXPECT_EQ(copy.Magnitudes[0][1].High, 2.0);

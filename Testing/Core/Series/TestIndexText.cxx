@@ -54,6 +54,7 @@ SeriesIndex MakeIndex(unsigned seed)
   component.Range = {};
   component.PromisedRange = { -0.0, 0.1 };
   component.SumSquaredError = 0.3;
+  component.StepRmse = { 0.0123, 0.0, std::numeric_limits<double>::infinity() };
   component.ValueTransform = Transform::Table({ { -0.1, 0.3 }, { 0.2, 7.0 } });
   array.Components.push_back(component);
   array.Magnitudes = { { 0.0, 0.1 }, {}, { 5e-324, std::abs(RandomDouble(random)) + 1.0 } };
@@ -101,6 +102,7 @@ TEST(IndexText, ComesBackBitExact)
       ExpectSameBits(x.ErrorBoundAbsolute, y.ErrorBoundAbsolute);
       ExpectSameBits(x.MeasuredMaxError, y.MeasuredMaxError);
       ExpectSameBits(x.SumSquaredError, y.SumSquaredError);
+      EXPECT_EQ(x.StepRmse, y.StepRmse);
       EXPECT_EQ(x.FiniteCount, y.FiniteCount);
       EXPECT_TRUE(x.ValueTransform == y.ValueTransform);
     }

@@ -128,6 +128,7 @@ TEST(Info, ErrorsAreThoseOfTheDecodedValues)
   const Corners corners;
   double squares = 0.0;
   double greatest = 0.0;
+  std::vector<double> meanSquares;
   for (int step = 0; step < StepCount; ++step)
   {
     const auto decoded = ReadAll<float>(*corners.File, { step, 0, 0, 0 });
@@ -138,11 +139,19 @@ TEST(Info, ErrorsAreThoseOfTheDecodedValues)
       squares += error * error;
       greatest = std::max(greatest, error);
     }
+    meanSquares.push_back(squares / static_cast<double>(decoded.size()));
   }
   const SeriesReport report = corners.Report().Series;
   const double rmse = std::sqrt(squares / static_cast<double>(report.Values()));
   EXPECT_EQ(report.Values(), 40 * 24 * 17 * StepCount);
   EXPECT_NEAR(report.Components[0].Rmse(), rmse, 1e-12);
+  for (std::size_t step = StepCount; step-- > 0;)
+  {
+    const double before = step > 0 ? meanSquares[step - 1] : 0.0; // sums up to there
+    const double own = std::sqrt(meanSquares[step] - before);
+    const ComponentReport& component = report.Components[0];
+    EXPECT_NEAR(component.RmseOf(component.Steps[step]).value(), own, 0.006 * own);
+  }
   const auto json = nlohmann::json::parse(InfoToJson(corners.Report(), nullptr));
   const auto& error = json["components"][0]["error"];
   EXPECT_EQ(error["max"], greatest);
