@@ -25,7 +25,7 @@ using namespace banyan;
 struct Options
 {
   int Cells = 100;
-  bool Graded = false;
+  std::string Mesh = "uniform";
   bool Shuffled = false;
   int Picture = 1024;
   int Threads = 2;
@@ -37,6 +37,7 @@ const char* Help =
   "  The standard field on a mesh of hexahedra, drawn with the standard function S1.\n"
   "  --cells N    cells across (default 100): N^3 in all, or fewer of several sizes with\n"
   "  --graded     an octree that is fine where the field is steep; N is a power of two then\n"
+  "  --earthquake the mesh of an earthquake, of about N cells in all\n"
   "  --shuffle    cells in any order\n"
   "  --picture N  pixels per side (default 1024)    --threads N  (default 2)\n"
   "  --repeat N   frames, of which the median counts (default 3)\n"
@@ -54,13 +55,17 @@ Options ReadOptions(const std::vector<std::string>& arguments)
     const std::string name = arguments[i];
     const auto count = [&](int low, int high)
     { return bench::CountIn(name, bench::ValueBehind(arguments, i), low, high); };
-    if (name == "--graded" || name == "--shuffle")
+    if (name == "--graded" || name == "--earthquake")
     {
-      (name == "--graded" ? options.Graded : options.Shuffled) = true;
+      options.Mesh = name.substr(2);
+    }
+    else if (name == "--shuffle")
+    {
+      options.Shuffled = true;
     }
     else if (name == "--cells")
     {
-      options.Cells = count(1, 1000);
+      options.Cells = count(1, 100000000);
     }
     else if (name == "--picture")
     {
@@ -79,9 +84,17 @@ Options ReadOptions(const std::vector<std::string>& arguments)
       throw Error("There is no option '" + name + "'.\n" + Help);
     }
   }
-  if (options.Graded && (options.Cells & (options.Cells - 1)) != 0)
+  if (options.Mesh != "earthquake" && options.Cells > 1000)
+  {
+    throw Error("A mesh has at most 1000 cells across.");
+  }
+  if (options.Mesh == "graded" && (options.Cells & (options.Cells - 1)) != 0)
   {
     throw Error("A graded mesh has a power of two cells across.");
+  }
+  if (options.Mesh == "earthquake" && options.Cells < 1000)
+  {
+    throw Error("The mesh of an earthquake has at least 1000 cells.");
   }
   return options;
 }
@@ -90,7 +103,7 @@ RayScene SceneOf(const Options& options, const ElementOctree& tree)
 {
   // The standard scene of as many cells: of its volume, the size alone counts.
   auto volume = std::make_shared<bench::Volume>();
-  volume->Samples = glm::ivec3(options.Cells + 1);
+  volume->Samples = tree.Domain().Size() + 1;
   const bench::BenchScene standard =
     bench::StandardScene(volume, bench::StandardFunction::S1, false, options.Picture);
   RayScene scene = bench::ToRayScene(standard, 1.0, 0.99f);
@@ -112,11 +125,20 @@ double AgainstImageData(const Options& options, const FloatImage& picture, Threa
   return 255.0 * MaxDifference(picture, expected);
 }
 
+bench::BenchMesh MeshOf(const Options& options, ThreadPool& pool)
+{
+  if (options.Mesh == "earthquake")
+  {
+    return bench::GroundMesh(options.Cells, pool);
+  }
+  return options.Mesh == "graded" ? bench::GradedMesh(options.Cells, pool)
+                                  : bench::UniformMesh(options.Cells, pool);
+}
+
 void Run(const Options& options)
 {
   ThreadPool pool(options.Threads);
-  bench::BenchMesh mesh = options.Graded ? bench::GradedMesh(options.Cells, pool)
-                                         : bench::UniformMesh(options.Cells, pool);
+  bench::BenchMesh mesh = MeshOf(options, pool);
   if (options.Shuffled)
   {
     bench::Shuffle(mesh);
@@ -157,12 +179,15 @@ void Run(const Options& options)
     samples += Box{ brick.Cells.Lo, brick.Cells.Hi + 1 }.Count();
   }
   std::sort(frames.begin() + 1, frames.end());
-  std::printf("%s,%zu,%zu,%zu,%lld,%.3f,%.3f,%.3f,%.3f,%.0f,%.1f,%.1f,%.1f,%.3f\n",
-    options.Graded ? "graded" : "uniform", mesh.Cells(), mesh.PointCount(), bricks->List().size(),
+  // Of an earthquake there is no image data of the same size.
+  const std::string difference = options.Mesh == "earthquake"
+                                   ? std::string()
+                                   : std::to_string(AgainstImageData(options, picture, pool));
+  std::printf("%s,%zu,%zu,%zu,%lld,%.3f,%.3f,%.3f,%.3f,%.0f,%.1f,%.1f,%.1f,%s\n",
+    options.Mesh.c_str(), mesh.Cells(), mesh.PointCount(), bricks->List().size(),
     static_cast<long long>(samples), findSeconds, findCpu, cutSeconds, takeSeconds, megabytes,
     megabytes * 1048576.0 / static_cast<double>(mesh.Cells()), frames.front(),
-    frames[1 + static_cast<std::size_t>(options.Repeat) / 2],
-    AgainstImageData(options, picture, pool));
+    frames[1 + static_cast<std::size_t>(options.Repeat) / 2], difference.c_str());
 }
 
 } // namespace

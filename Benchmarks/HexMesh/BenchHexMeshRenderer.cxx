@@ -3,12 +3,14 @@
 #include "BenchMesh.h"
 #include "ConvergedImage.h"
 #include "HexMeshRenderer.h"
+#include "MeshOfKind.h"
 #include "OptionValues.h"
 #include "PeakMemory.h"
 #include "StandardScenes.h"
 
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
+#include "Base/Timer.h"
 #include "HexOctree/NodalField.h"
 
 #include <algorithm>
@@ -29,7 +31,9 @@ const char* Help =
   "  --renderer NAME    banyan, banyan-full (one sample per finest edge, no coarser levels),\n"
   "                     banyan-one-level (the one that --max-elements gives), or one of those "
   "that\n"
-  "                     --list prints\n"
+  "                     --list prints; reference: makes the mesh and the converged picture, "
+  "where\n"
+  "                     they are not kept yet, and prints the number of cells\n"
   "  --mesh KIND        uniform (default), graded: the standard field, function S1;\n"
   "                     earthquake: the ground's speed; FILE.exo: the same of one that "
   "banyan-generate made\n"
@@ -38,12 +42,16 @@ const char* Help =
   "  --tolerance E      of banyan, in 1/255 (default 1)\n"
   "  --max-elements N   of banyan: MaxElementsPerPixel (default 0: any)\n"
   "  --picture N        pixels per side (default 1024)    --threads N  (default 2)\n"
-  "  --repeat N         frames after the first one, of which the median counts (default 3)\n"
-  "  --references DIR   keeps converged pictures (default: the current folder)\n"
+  "  --repeat N         frames after the first one, of which the median counts (default 3); no\n"
+  "                     more begin when they have taken a minute\n"
+  "  --references DIR   keeps meshes and converged pictures (default: the current folder)\n"
   "  --save FILE.ppm    writes the picture\n"
   "  --header, --list   prints the names of the columns, or of VTK's renderers, and ends\n";
 
-const char* Header = "cells,renderer,setup_s,memory_mb,ms_per_frame,psnr_db,max_error_255\n";
+const char* Header = "cells,renderer,setup_s,memory_mb,ms_per_frame,psnr_db,max_error_255,note\n";
+
+/// Of repeated frames.
+constexpr double EnoughSeconds = 60.0;
 
 struct Options
 {
@@ -110,33 +118,6 @@ void SetOption(Options& options, const std::string& name, const std::string& val
   {
     throw Error("There is no option '" + name + "'.\n" + Help);
   }
-}
-
-BenchMesh MeshOf(const Options& options, ThreadPool& pool)
-{
-  if (options.Mesh == "earthquake")
-  {
-    return EarthquakeMeshAt(options.Cells, options.Seconds, pool);
-  }
-  const std::string exodus = ".exo";
-  if (options.Mesh.size() > exodus.size() &&
-      options.Mesh.compare(options.Mesh.size() - exodus.size(), exodus.size(), exodus) == 0)
-  {
-    return ExodusMeshAt(options.Mesh, options.Seconds, pool);
-  }
-  if (options.Cells > 1000)
-  {
-    throw Error("A mesh has at most 1000 cells across");
-  }
-  if (options.Mesh == "uniform")
-  {
-    return UniformMesh(options.Cells, pool);
-  }
-  if (options.Mesh != "graded" || (options.Cells & (options.Cells - 1)) != 0)
-  {
-    throw Error("Meshes are uniform, earthquake, or graded with a power of two cells across");
-  }
-  return GradedMesh(options.Cells, pool);
 }
 
 /// All points of the lattice that the mesh's elements have corners on, at the same places: a
@@ -233,13 +214,27 @@ std::unique_ptr<HexMeshRenderer> RendererOf(const Options& options, const HexMes
   return renderer;
 }
 
+FloatImage ReferenceOf(const Options& options, const BenchMesh& mesh, ThreadPool& pool)
+{
+  constexpr double step = 0.25; // of the finest edge
+  return CachedConvergedImage(LookOf(options, mesh, true, pool), step, options.References, pool);
+}
+
 void Run(const Options& options)
 {
   HexMeshScene scene;
   {
     ThreadPool pool(options.Threads);
-    scene.Mesh = MeshOf(options, pool);
+    scene.Mesh =
+      MeshOfKind({ options.Mesh, options.Cells, options.Seconds }, options.References, pool);
     scene.Look = LookOf(options, scene.Mesh, false, pool);
+  }
+  if (options.Renderer == "reference")
+  {
+    ThreadPool pool(options.Threads);
+    ReferenceOf(options, scene.Mesh, pool);
+    std::printf("%zu\n", scene.Mesh.Cells());
+    return;
   }
   auto renderer = RendererOf(options, scene);
   renderer->Open();
@@ -248,22 +243,20 @@ void Run(const Options& options)
   HexMeshFrame frame = renderer->Draw();
   const double first = frame.Seconds;
   std::vector<double> seconds;
-  for (int i = 0; i < options.Repeat; ++i)
+  const Timer repeated;
+  do
   {
     frame = renderer->Draw();
     seconds.push_back(frame.Seconds);
-  }
+  } while (static_cast<int>(seconds.size()) < options.Repeat && repeated.Seconds() < EnoughSeconds);
   const double megabytes = PeakMegabytes() - before;
   std::sort(seconds.begin(), seconds.end());
   const double median = seconds[seconds.size() / 2];
   renderer.reset();
 
   ThreadPool pool(options.Threads);
-  const BenchScene whole = LookOf(options, scene.Mesh, true, pool);
-  constexpr double step = 0.25; // of the finest edge
-  const PictureError error =
-    ErrorOf(frame.Shown, CachedConvergedImage(whole, step, options.References, pool));
-  std::printf("%zu,%s,%.2f,%.0f,%.1f,%.2f,%.2f\n", scene.Mesh.Cells(), options.Renderer.c_str(),
+  const PictureError error = ErrorOf(frame.Shown, ReferenceOf(options, scene.Mesh, pool));
+  std::printf("%zu,%s,%.2f,%.0f,%.1f,%.2f,%.2f,\n", scene.Mesh.Cells(), options.Renderer.c_str(),
     std::max(0.0, first - median), megabytes, 1000.0 * median, error.PsnrDecibels, error.Largest);
   if (!options.Save.empty())
   {

@@ -42,6 +42,11 @@ BenchMesh GradedMesh(int n, ThreadPool& pool);
 /// @param seconds after the fault began to break
 BenchMesh EarthquakeMeshAt(double cells, double seconds, ThreadPool& pool);
 
+/// The standard field on the mesh of an earthquake, over its longest side: the cells alone, which
+/// no simulation has to be waited for.
+/// @param cells about so many
+BenchMesh GroundMesh(double cells, ThreadPool& pool);
+
 /// The magnitude of the array "velocity" in the first block of a file of Exodus, as
 /// `banyan-generate --series earthquake` writes it. Throws Error when the mesh is no octree, or
 /// the program was built without VTK.

@@ -2,6 +2,7 @@
 #define banyan_Benchmarks_PeakMemory_h
 
 #include <fstream>
+#include <malloc.h>
 #include <string>
 
 namespace banyan::bench
@@ -21,8 +22,10 @@ inline double PeakMegabytes()
   return 0.0;
 }
 
+/// What was freed goes back to the system first, so that it counts when it is taken again.
 inline void ForgetPeak()
 {
+  malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << "5";
 }
 

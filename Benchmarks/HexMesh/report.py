@@ -1,4 +1,5 @@
-"""report.py HEXMESH.csv CHART.png : draws what each renderer of a mesh takes, and prints a table.
+"""report.py HEXMESH.csv CHART.png : draws what each renderer takes of the first mesh, and prints a
+    table of each.
 report.py --scaling SCALING.csv : prints set-up per cell and per node for meshes of all sizes.
 report.py --adaptive ADAPTIVE.csv : prints how much faster pictures with coarser levels are."""
 
@@ -11,16 +12,16 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plot  # noqa: E402 (the backend has to be chosen first)
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
-from tables import read  # noqa: E402
+from tables import in_order, read  # noqa: E402
 
-WORDS = {"renderer", "mesh"}
+WORDS = {"renderer", "mesh", "note"}
 COLUMNS = [("setup_s", "set-up, s", True), ("memory_mb", "memory, MB", True),
            ("ms_per_frame", "ms per frame", True), ("psnr_db", "PSNR, dB", False)]
 GOAL_FASTER = 60.0
 
 
 def draw(rows, path):
-    """Bars, a panel for each column; a cross where a renderer did not finish."""
+    """Bars, a panel for each column; a note where a renderer did not finish."""
     figure, panels = plot.subplots(1, len(COLUMNS), figsize=(15, 0.5 * len(rows) + 1.6), sharey=True)
     places = range(len(rows))
     for axes, (column, label, logarithmic) in zip(panels, COLUMNS):
@@ -32,7 +33,7 @@ def draw(rows, path):
         for place, row in zip(places, rows):
             value = row[column]
             if value is None:
-                axes.annotate("did not finish", (0.02, place), va="center", fontsize=8,
+                axes.annotate(row["note"] or "not known", (0.02, place), va="center", fontsize=8,
                               xycoords=("axes fraction", "data"), color="tab:gray")
                 continue
             ours = row["renderer"].startswith("banyan")
@@ -66,7 +67,7 @@ def print_rows(rows):
         times = time / ours if time is not None and ours else None
         print(f"{row['renderer']:26}{number(row['setup_s'], '.2f'):>10}"
               f"{number(row['memory_mb'], '.0f'):>8}{number(time, '.1f'):>10}"
-              f"{number(row['psnr_db'], '.2f'):>8}{number(times, '.1f'):>8}")
+              f"{number(row['psnr_db'], '.2f'):>8}{number(times, '.1f'):>8}  {row['note']}".rstrip())
     tetrahedra = next((row["ms_per_frame"] for row in rows
                        if row["renderer"] == "vtk-projected-tetrahedra"), None)
     if ours and tetrahedra:
@@ -77,10 +78,12 @@ def print_rows(rows):
 
 def print_scaling(rows):
     """What grows linearly stays the same per cell."""
-    print(f"{'cells':>10}{'set-up s':>10}{'us/cell':>9}{'MB':>8}{'bytes/node':>12}")
+    print(f"{'mesh':12}{'cells':>10}{'set-up s':>10}{'us/cell':>9}{'us/node':>9}{'MB':>8}"
+          f"{'bytes/node':>12}")
     for row in rows:
         setup = row["find_s"] + row["bricks_s"] + row["values_s"]
-        print(f"{row['cells']:>10.0f}{setup:>10.3f}{1e6 * setup / row['cells']:>9.3f}"
+        print(f"{row['mesh']:12}{row['cells']:>10.0f}{setup:>10.3f}"
+              f"{1e6 * setup / row['cells']:>9.3f}{1e6 * setup / row['points']:>9.3f}"
               f"{row['memory_mb']:>8.0f}{1048576 * row['memory_mb'] / row['points']:>12.1f}")
 
 
@@ -100,8 +103,11 @@ def main(arguments):
         print_adaptive(read(arguments[1], WORDS))
     else:
         rows = read(arguments[0], WORDS)
-        draw(rows, arguments[1])
-        print_rows(rows)
+        sizes = in_order(rows, "cells")
+        draw([row for row in rows if row["cells"] == sizes[0]], arguments[1])
+        for cells in sizes:
+            print(f"\n{number(cells, ',.0f')} cells")
+            print_rows([row for row in rows if row["cells"] == cells])
 
 
 if __name__ == "__main__":
