@@ -164,21 +164,28 @@ void BrickFetch::Pack(
 }
 
 void BrickFetch::Unpack(const std::vector<std::int64_t>& bricks, std::size_t first,
-  std::size_t last, const char* in, FetchedBricks& into) const
+  std::size_t last, const char* in, FetchedBricks& into)
 {
-  for (std::size_t i = first; i < last; ++i)
+  try
   {
-    const Box samples = this->Grid.BrickSamples(bricks[i], this->Around);
-    const std::uint64_t bytes = this->BytesOf(bricks[i]);
-    void* values = nullptr;
-    const BrickView view = AllocateView(samples, this->TypeOf(bricks[i]), values);
-    std::copy_n(in, bytes, static_cast<char*>(values));
-    into.Keep(bricks[i], { view, samples }, bytes);
-    in += bytes;
+    for (std::size_t i = first; i < last; ++i)
+    {
+      const Box samples = this->Grid.BrickSamples(bricks[i], this->Around);
+      const std::uint64_t bytes = this->BytesOf(bricks[i]);
+      void* values = nullptr;
+      const BrickView view = AllocateView(samples, this->TypeOf(bricks[i]), values);
+      std::copy_n(in, bytes, static_cast<char*>(values));
+      into.Keep(bricks[i], { view, samples }, bytes);
+      in += bytes;
+    }
+  }
+  catch (const std::exception& error)
+  {
+    this->Failure = error.what();
   }
 }
 
-std::string BrickFetch::Exchange(const std::vector<std::int64_t>& wanted,
+void BrickFetch::Exchange(const std::vector<std::int64_t>& wanted,
   const std::vector<std::int32_t>& counts, FetchedBricks& into)
 {
   const std::size_t ranks = Index(this->Comm.Size());
@@ -227,7 +234,13 @@ std::string BrickFetch::Exchange(const std::vector<std::int64_t>& wanted,
       more = more || received[rank] < from[rank].size();
     }
   }
-  return this->Failure;
+  const std::string agreed = AgreeOnError(this->Comm, this->Failure);
+  if (!agreed.empty())
+  {
+    // What a rank could not give has come as nothing: the next frame must not find it.
+    into.Clear();
+    throw Error(agreed);
+  }
 }
 
 } // namespace banyan

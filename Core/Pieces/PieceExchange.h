@@ -54,9 +54,10 @@ public:
   /// @param wanted of this rank, ascending, held by others
   /// @param counts `[asking rank][holding rank]`: how many bricks of each other all ranks want
   /// @param into receives them
-  /// @return empty, or why this rank could not give what was asked for: to be agreed on
-  std::string Exchange(const std::vector<std::int64_t>& wanted,
-    const std::vector<std::int32_t>& counts, FetchedBricks& into);
+  /// Throws Error, the same on all ranks, when one could not give what was asked for, or keep what
+  /// it got; then nothing is kept, not even what was there before.
+  void Exchange(const std::vector<std::int64_t>& wanted, const std::vector<std::int32_t>& counts,
+    FetchedBricks& into);
 
 private:
   using Lists = std::vector<std::vector<std::int64_t>>; ///< bricks by rank
@@ -69,7 +70,7 @@ private:
   void Pack(
     const std::vector<std::int64_t>& bricks, std::size_t first, std::size_t last, char* out);
   void Unpack(const std::vector<std::int64_t>& bricks, std::size_t first, std::size_t last,
-    const char* in, FetchedBricks& into) const;
+    const char* in, FetchedBricks& into);
 
   Communicator& Comm;
   const PieceGrid& Grid;

@@ -1,5 +1,7 @@
 #include "Pieces/PieceSamples.h"
 
+#include "Base/Error.h"
+
 #include <limits>
 
 namespace banyan
@@ -36,6 +38,10 @@ BrickView PieceSamples::OwnView(const Box& samples) const
 
 BrickView PieceSamples::View(const Box& samples) const
 {
+  if (!this->Own)
+  {
+    throw Error("samples were asked of a rank that has none");
+  }
   if (this->IsInside(samples))
   {
     return this->OwnView(samples);

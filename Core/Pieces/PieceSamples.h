@@ -40,8 +40,8 @@ public:
   /// @param parts those of PieceGrid::ShellOf
   void SetShell(std::vector<SampledBox> parts);
 
-  /// @param samples of the whole grid; what neither the array nor the shell has is NaN. HasData.
-  /// May be called from any thread.
+  /// @param samples of the whole grid; what neither the array nor the shell has is NaN.
+  /// May be called from any thread. Throws Error when this rank has no data.
   BrickView View(const Box& samples) const;
   /// Memory that the view takes beside the array.
   std::size_t ViewBytes(const Box& samples) const;
