@@ -1,5 +1,7 @@
 #include "IceTCompositing.h"
 
+#include "Base/Error.h"
+
 #include "vtkMPI.h"
 #include "vtkMPICommunicator.h"
 #include "vtkMultiProcessController.h"
@@ -57,9 +59,40 @@ FloatImage Framed(const FloatImage& image, const PixelRect& viewport)
   return framed;
 }
 
-FloatImage CompositeByIceT(MPI_Comm ranks, bool root, const FloatImage& mine,
+/// What IceT complained of first since it was asked last, in a sentence; empty if of nothing.
+std::string ComplaintOfIceT()
+{
+  const IceTEnum error = icetGetError();
+  const auto because = [](const char* reason)
+  { return "IceT could not composite: " + std::string(reason); };
+  switch (error)
+  {
+    case ICET_NO_ERROR:
+      return "";
+    case ICET_OUT_OF_MEMORY:
+      return because("memory ran out.");
+    case ICET_INVALID_VALUE:
+    case ICET_INVALID_ENUM:
+    case ICET_BAD_CAST:
+      return because("it was given a value that it does not take.");
+    case ICET_INVALID_OPERATION:
+      return because("it was called when it may not be.");
+    default:
+      return because("it found itself in a wrong state.");
+  }
+}
+
+/// Throws Error, the same on all ranks, when IceT complains on one of them.
+FloatImage CompositeByIceT(Communicator& communicator, MPI_Comm ranks, const FloatImage& mine,
   const std::vector<int>& frontToBack, const PixelRect& viewport, CompositeStatistics& statistics)
 {
+  if (viewport.Empty())
+  {
+    return communicator.Rank() == 0 ? FloatImage{ viewport, {} } : FloatImage{};
+  }
+  // One variable keeps complaints of all contexts: an old one, of ParaView's compositor, is not
+  // ours.
+  (void)icetGetError();
   const ScopedContext context(ranks);
   icetSetColorFormat(ICET_IMAGE_COLOR_RGBA_FLOAT);
   icetSetDepthFormat(ICET_IMAGE_DEPTH_NONE);
@@ -79,7 +112,12 @@ FloatImage CompositeByIceT(MPI_Comm ranks, bool root, const FloatImage& mine,
   IceTInt sent = 0;
   icetGetIntegerv(ICET_BYTES_SENT, &sent);
   statistics.BytesSent += static_cast<std::uint64_t>(sent);
-  if (!root)
+  const std::string complaint = AgreeOnError(communicator, ComplaintOfIceT());
+  if (!complaint.empty())
+  {
+    throw Error(complaint);
+  }
+  if (communicator.Rank() != 0)
   {
     return {};
   }
@@ -107,10 +145,7 @@ CompositeOptions::Compositor IceTRadixK(vtkMultiProcessController* controller)
   return
     [ranks](Communicator& communicator, const FloatImage& mine, const std::vector<int>& frontToBack,
       const PixelRect& viewport, CompositeStatistics& statistics)
-  {
-    return CompositeByIceT(
-      ranks, communicator.Rank() == 0, mine, frontToBack, viewport, statistics);
-  };
+  { return CompositeByIceT(communicator, ranks, mine, frontToBack, viewport, statistics); };
 }
 
 } // namespace banyan
