@@ -13,7 +13,7 @@ namespace
 {
 
 /// Cells per axis of the bricks that meshes are cut into.
-constexpr int MeshBrickCells = 16;
+constexpr int MeshBrickCells = 32;
 
 Hash128 HashOfMesh(const HexMesh& mesh)
 {

@@ -4,6 +4,7 @@
 #include "Base/Timer.h"
 #include "HexOctree/HexBrickSource.h"
 #include "Render/ElementsPerPixel.h"
+#include "Render/PixelsBetween.h"
 #include "Render/SamplingPlan.h"
 
 #include <cmath>
@@ -13,7 +14,7 @@ namespace banyan::bench
 namespace
 {
 
-constexpr int BrickCells = 16; // as the mapper has them
+constexpr int BrickCells = 32; // as the mapper has them
 constexpr int CoarsestLevel = 5;
 constexpr float OpacityLimit = 1.0f - 1.0f / 255.0f;
 
@@ -50,7 +51,6 @@ public:
     else if (this->Accuracy.Tolerance > 0.0)
     {
       SamplingWish wish{ this->Accuracy.Tolerance, scene.SampleDistance, CoarsestLevel };
-      wish.LargestPixelStride = 1; // a ray for each pixel
       wish.FinestLevel =
         FinestLevelFor(scene, this->Accuracy.MaxElementsPerPixel, wish.CoarsestLevel);
       const SamplingPlan plan =
@@ -58,7 +58,8 @@ public:
       scene.Samplings = plan.Samplings;
       scene.OpacityLimit = plan.OpacityLimit;
     }
-    const FloatImage picture = this->Cast(scene);
+    FloatImage picture = this->Cast(scene);
+    FillBetweenRays(scene, picture, this->Pool);
     HexMeshFrame frame;
     frame.Seconds = timer.Seconds();
     frame.Shown = Rounded(picture, this->Scene.Look.Picture);

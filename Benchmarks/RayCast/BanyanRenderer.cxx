@@ -12,7 +12,7 @@ namespace
 /// With fixed sample distances, as VTK's GPU mapper: a ray ends when one step of 8 bits is all that
 /// could follow.
 constexpr float OpacityLimit = 1.0f - 1.0f / 255.0f;
-constexpr int BrickCells = 32; // what the packets are made for
+constexpr int BrickCells = 16; // as the mapper cuts plain data
 constexpr int CoarsestLevel = 3;
 
 class BanyanRenderer : public RayCastRenderer

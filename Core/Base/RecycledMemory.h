@@ -2,6 +2,7 @@
 #define banyan_Base_RecycledMemory_h
 
 #include <cstddef>
+#include <new>
 
 namespace banyan
 {
@@ -42,6 +43,13 @@ struct RecycledMemory
   void deallocate(T* memory, std::size_t count) noexcept
   {
     LargeMemory::Give(memory, count * sizeof(T));
+  }
+
+  /// Elements that `resize` adds are not set: whoever wants zeros says so.
+  template <class U>
+  void construct(U* place)
+  {
+    ::new (static_cast<void*>(place)) U;
   }
 
   template <class U>

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdlib>
 #include <deque>
@@ -24,6 +25,21 @@ thread_local bool InsideLoop = false;
 std::atomic<int> RanksOnThisNode{ 1 };
 std::mutex ProcessPoolMutex;
 std::unique_ptr<ThreadPool> ProcessPool;
+
+/// Loops follow each other closely while a picture is drawn, and to put a thread to sleep and wake
+/// it again takes as long as a short loop: threads look around for so long before they sleep.
+constexpr auto AwakeFor = std::chrono::microseconds(200);
+
+/// Waits until something has come, or for a while.
+template <class Function>
+void StayAwake(Function&& hasCome)
+{
+  const auto end = std::chrono::steady_clock::now() + AwakeFor;
+  while (!hasCome() && std::chrono::steady_clock::now() < end)
+  {
+    std::this_thread::yield();
+  }
+}
 
 /// One ParallelFor call. It outlives the call when a worker still holds it, hence shared_ptr.
 struct Loop
@@ -66,8 +82,12 @@ struct Loop
     InsideLoop = nested;
   }
 
-  void WaitAndRethrow()
+  void WaitAndRethrow(bool awake)
   {
+    if (awake)
+    {
+      StayAwake([this] { return this->Done == this->Count; });
+    }
     std::unique_lock<std::mutex> lock(this->Mutex);
     this->AllDone.wait(lock, [this] { return this->Done == this->Count; });
     if (this->Failure)
@@ -97,6 +117,8 @@ struct ThreadPool::Internals
   std::mutex Mutex;
   std::condition_variable Wake;
   bool Stop = false;
+  std::atomic<std::int64_t> Begun{ 0 }; ///< loops so far, and the end
+  bool Awake = false;                   ///< whether there is a core for each thread
 
   void Run(int worker)
   {
@@ -114,8 +136,13 @@ struct ThreadPool::Internals
         this->Loops.pop_front();
         continue;
       }
+      const std::int64_t begun = this->Begun;
       lock.unlock();
       loop->Work(worker);
+      if (this->Awake)
+      {
+        StayAwake([this, begun] { return this->Begun != begun; });
+      }
       lock.lock();
     }
   }
@@ -126,6 +153,7 @@ struct ThreadPool::Internals
     {
       std::lock_guard<std::mutex> lock(this->Mutex);
       this->Stop = true;
+      ++this->Begun;
     }
     this->Wake.notify_all();
     for (std::thread& thread : this->Threads)
@@ -155,6 +183,7 @@ ThreadPool::ThreadPool(int width)
   {
     throw Error("A thread pool needs at least one thread");
   }
+  this->Self->Awake = width * RanksOnThisNode <= ProcessCores();
   try
   {
     this->Self->Threads.reserve(static_cast<std::size_t>(width - 1));
@@ -197,6 +226,7 @@ void ThreadPool::ParallelFor(
     {
       std::lock_guard<std::mutex> lock(this->Self->Mutex);
       this->Self->Loops.push_back(loop);
+      ++this->Self->Begun;
     }
     this->Self->Wake.notify_all();
   }
@@ -207,7 +237,7 @@ void ThreadPool::ParallelFor(
   {
     this->Self->Remove(loop);
   }
-  loop->WaitAndRethrow();
+  loop->WaitAndRethrow(share && this->Self->Awake);
 }
 
 void ThreadPool::ParallelFor(std::int64_t count, const std::function<void(std::int64_t)>& body)

@@ -65,8 +65,8 @@ ArrayBrickSource::ArrayBrickSource(const ArrayBrickSource& finest, int level)
     const glm::ivec3 position =
       PositionOf(static_cast<std::int64_t>(fine), finest.BrickCounts) / this->Every;
     const std::size_t brick =
-      position.x +
-      this->BrickCounts.x * (position.y + static_cast<std::size_t>(this->BrickCounts.y) * position.z);
+      position.x + this->BrickCounts.x *
+                     (position.y + static_cast<std::size_t>(this->BrickCounts.y) * position.z);
     this->Ranges[brick].Include(finest.Ranges[fine]);
     this->Masks[brick] |= finest.Masks[fine];
     this->Uniform[brick] &= finest.Uniform[fine];
@@ -76,9 +76,8 @@ ArrayBrickSource::ArrayBrickSource(const ArrayBrickSource& finest, int level)
 std::unique_ptr<BrickSource> ArrayBrickSource::MakeLevel(int level, const Box& domain)
 {
   const bool whole = this->Cells == domain && domain.Lo == glm::ivec3(0) && !domain.Empty();
-  return whole && level < 30
-           ? std::unique_ptr<BrickSource>(new ArrayBrickSource(*this, level))
-           : nullptr;
+  return whole && level < 30 ? std::unique_ptr<BrickSource>(new ArrayBrickSource(*this, level))
+                             : nullptr;
 }
 
 void ArrayBrickSource::CutIntoBricks()
@@ -95,7 +94,8 @@ void ArrayBrickSource::CutIntoBricks()
 
 Box ArrayBrickSource::CellsOf(std::int64_t brick) const
 {
-  const glm::ivec3 low = (this->FirstBrick + PositionOf(brick, this->BrickCounts)) * this->BrickCells;
+  const glm::ivec3 low =
+    (this->FirstBrick + PositionOf(brick, this->BrickCounts)) * this->BrickCells;
   return Intersection(Box{ low, low + this->BrickCells }, this->Cells);
 }
 
@@ -103,11 +103,12 @@ Box ArrayBrickSource::CellsOf(std::int64_t brick) const
 Box ArrayBrickSource::SamplesOf(std::int64_t brick) const
 {
   const Box cells = this->CellsOf(brick);
-  return { cells.Lo - this->Values.Array().Samples.Lo, cells.Hi + 1 - this->Values.Array().Samples.Lo };
+  return { cells.Lo - this->Values.Array().Samples.Lo,
+    cells.Hi + 1 - this->Values.Array().Samples.Lo };
 }
 
-/// Signs of zeros and the rounding of magnitudes do not matter: zeros find one entry of a table, and
-/// magnitudes are not known.
+/// Signs of zeros and the rounding of magnitudes do not matter: zeros find one entry of a table,
+/// and magnitudes are not known.
 std::optional<UniformValue> ArrayBrickSource::UniformValueOf(std::int64_t brick) const
 {
   const ValueRange& range = this->Ranges[brick];
@@ -132,9 +133,26 @@ BrickView ArrayBrickSource::Load(std::int64_t brick)
 BrickView ArrayBrickSource::LoadAround(std::int64_t brick, Box& samples)
 {
   const Box own = this->SamplesOf(brick);
-  const Box part =
-    Intersection({ own.Lo - 1, own.Hi + 1 }, { glm::ivec3(0), this->Held });
-  samples = { part.Lo + this->Values.Array().Samples.Lo, part.Hi + this->Values.Array().Samples.Lo };
+  return this->ViewOf({ own.Lo - 1, own.Hi + 1 }, samples);
+}
+
+BrickView ArrayBrickSource::LoadTogether(const Box& bricks, bool around, Box& samples)
+{
+  const auto numberOf = [this](const glm::ivec3& p)
+  { return p.x + this->BrickCounts.x * (p.y + std::int64_t{ this->BrickCounts.y } * p.z); };
+  const Box own{ this->SamplesOf(numberOf(bricks.Lo)).Lo,
+    this->SamplesOf(numberOf(bricks.Hi - 1)).Hi };
+  const int layer = around ? 1 : 0;
+  return this->ViewOf({ own.Lo - layer, own.Hi + layer }, samples);
+}
+
+/// @param wanted positions in the array, of which some may be beyond it
+/// @param samples set to those that the view has
+BrickView ArrayBrickSource::ViewOf(const Box& wanted, Box& samples) const
+{
+  const Box part = Intersection(wanted, { glm::ivec3(0), this->Held });
+  const glm::ivec3& first = this->Values.Array().Samples.Lo;
+  samples = { part.Lo + first, part.Hi + first };
   return this->Values.View(part, this->Every);
 }
 

@@ -32,6 +32,7 @@ public:
   BrickView Load(std::int64_t brick) override;
   /// Takes the samples from the array, also those beyond its bricks' own.
   BrickView LoadAround(std::int64_t brick, Box& samples) override;
+  BrickView LoadTogether(const Box& bricks, bool around, Box& samples) override;
 
 protected:
   /// Exists when the array is the whole grid.
@@ -44,10 +45,11 @@ private:
   /// Cuts `Cells` into bricks.
   void CutIntoBricks();
   Box SamplesOf(std::int64_t brick) const;
+  BrickView ViewOf(const Box& wanted, Box& samples) const;
 
-  ArraySamples Values;    ///< of the finest level
-  int Every = 1;          ///< samples of the array from one of the level to the next
-  glm::ivec3 Held{ 0 };   ///< samples of the level per axis
+  ArraySamples Values;  ///< of the finest level
+  int Every = 1;        ///< samples of the array from one of the level to the next
+  glm::ivec3 Held{ 0 }; ///< samples of the level per axis
   int BrickCells;
   MaskRange Over;
   Box Cells;

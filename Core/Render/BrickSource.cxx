@@ -2,6 +2,7 @@
 
 #include "Render/SampledBox.h"
 
+#include <optional>
 #include <vector>
 
 namespace banyan
@@ -12,6 +13,21 @@ namespace
 bool IsUniform(const BrickView& view)
 {
   return view.Stride[0] == 0 && view.Stride[1] == 0 && view.Stride[2] == 0;
+}
+
+/// Bricks of one value may come in another type, which holds the value all the same. Where the
+/// others have several, float64 holds them all.
+ScalarType TypeOf(const std::vector<SampledBox>& parts)
+{
+  std::optional<ScalarType> type;
+  for (const SampledBox& part : parts)
+  {
+    if (!IsUniform(part.View))
+    {
+      type = type.value_or(part.View.Type) == part.View.Type ? part.View.Type : ScalarType::Float64;
+    }
+  }
+  return type.value_or(parts.front().View.Type);
 }
 
 } // namespace
@@ -68,13 +84,27 @@ BrickView BrickSource::LoadAround(std::int64_t brick, Box& samples)
       neighbours.push_back({ this->Load(number), { cells.Lo, cells.Hi + 1 } });
     }
   }
-  // Bricks of one value may come in another type, which holds the value all the same.
-  ScalarType type = neighbours.front().View.Type;
-  for (const SampledBox& neighbour : neighbours)
+  return Assemble(neighbours, samples, TypeOf(neighbours));
+}
+
+BrickView BrickSource::LoadTogether(const Box& bricks, bool around, Box& samples)
+{
+  const glm::ivec3 counts = this->Bricks();
+  const glm::ivec3 size = bricks.Size();
+  std::vector<SampledBox> parts;
+  samples = {};
+  for (int i = 0; i < static_cast<int>(bricks.Count()); ++i)
   {
-    type = IsUniform(neighbour.View) ? type : neighbour.View.Type;
+    const glm::ivec3 p =
+      bricks.Lo + glm::ivec3(i % size.x, i / size.x % size.y, i / size.x / size.y);
+    const std::int64_t number = p.x + counts.x * (p.y + std::int64_t{ counts.y } * p.z);
+    const Box cells = this->CellsOf(number);
+    SampledBox part{ {}, { cells.Lo, cells.Hi + 1 } };
+    part.View = around ? this->LoadAround(number, part.Samples) : this->Load(number);
+    samples = Union(samples, part.Samples);
+    parts.push_back(std::move(part));
   }
-  return Assemble(neighbours, samples, type);
+  return parts.size() == 1 ? parts.front().View : Assemble(parts, samples, TypeOf(parts));
 }
 
 } // namespace banyan

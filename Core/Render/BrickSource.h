@@ -30,8 +30,8 @@ struct UniformValue
 /// grid (index space, starting at 0); cell c lies between samples c and c + 1.
 ///
 /// Bricks of one source may have cells of different sizes, as those of octree meshes do: brick b
-/// counts in cells of its own, which are 2^BrickLevel(b) cells of the source long. They are drawn in
-/// one picture, exactly.
+/// counts in cells of its own, which are 2^BrickLevel(b) cells of the source long. They are drawn
+/// in one picture, exactly.
 class BrickSource
 {
 public:
@@ -72,11 +72,18 @@ public:
   /// @param samples set to those that the view has; the view starts at samples.Lo
   virtual BrickView LoadAround(std::int64_t brick, Box& samples);
 
+  /// Bricks side by side as one view. Unless a source knows better, it is put together from them.
+  /// @param bricks positions among Bricks()
+  /// @param around with one more layer of samples, as LoadAround
+  /// @param samples set to those that the view has; the view starts at samples.Lo
+  virtual BrickView LoadTogether(const Box& bricks, bool around, Box& samples);
+
   /// 0 is the finest. Index space is that of the level: positions are 2^Level fine ones apart.
   int Level() const { return this->LevelNumber; }
 
-  /// The level whose cells positions, and boxes of cells, are counted in: its own, unless levels of a
-  /// source share one index space, as those of octree meshes do. Then zones are the same at all levels.
+  /// The level whose cells positions, and boxes of cells, are counted in: its own, unless levels of
+  /// a source share one index space, as those of octree meshes do. Then zones are the same at all
+  /// levels.
   virtual int CellLevel() const { return this->LevelNumber; }
 
   /// The same field at a coarser level, in bricks of as many cells: every 2^level-th sample; where

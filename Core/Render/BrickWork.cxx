@@ -1,5 +1,7 @@
 #include "Render/BrickWork.h"
 
+#include <cmath>
+
 namespace banyan
 {
 namespace
@@ -11,6 +13,20 @@ void Add(DrawnWork& sum, const DrawnWork& took)
   sum.Pixels += took.Pixels;
   sum.Rays += took.Rays;
   sum.Seconds += took.Seconds;
+}
+
+/// Of whole numbers, so that all shares add up to them.
+std::int64_t PartOf(std::int64_t whole, const WorkShare& share)
+{
+  const auto number = static_cast<double>(whole);
+  return std::llround(share.To * number) - std::llround(share.From * number);
+}
+
+DrawnWork PartOf(const DrawnWork& work, const WorkShare& share)
+{
+  const double part = share.To - share.From;
+  return { PartOf(work.Samples, share), PartOf(work.Pixels, share), part * work.Rays,
+    part * work.Seconds };
 }
 
 } // namespace
@@ -46,18 +62,19 @@ void BatchMeter::Finish(std::int64_t rays)
   }
 }
 
-void AddBatch(BrickWork& work, const std::vector<BatchMeter>& meters, const std::vector<Box>& cells,
-  int level, const Box& domain)
+void AddBatch(BrickWork& work, const std::vector<BatchMeter>& meters,
+  const std::vector<WorkShare>& shares, int level, const Box& domain)
 {
   const int edge = 1 << level;
-  for (std::size_t brick = 0; brick < cells.size(); ++brick)
+  for (const WorkShare& share : shares)
   {
     BrickWork::Part part;
-    part.Cells = Intersection({ cells[brick].Lo * edge, cells[brick].Hi * edge }, domain);
+    part.Cells = Intersection({ share.Cells.Lo * edge, share.Cells.Hi * edge }, domain);
     for (const BatchMeter& meter : meters)
     {
-      Add(part.Took, meter.Of(brick));
+      Add(part.Took, meter.Of(share.Brick));
     }
+    part.Took = PartOf(part.Took, share);
     work.Parts.push_back(part);
   }
 }

@@ -85,11 +85,19 @@ private:
   std::int64_t Samples = 0;
 };
 
+/// A part of what drawing a brick of a batch took: from one fraction of it to another.
+struct WorkShare
+{
+  std::size_t Brick; ///< position in the batch
+  Box Cells;         ///< of the level
+  double From = 0.0;
+  double To = 1.0;
+};
+
 /// Adds what all workers measured of a batch.
-/// @param cells of the level's bricks, in the order of the batch
 /// @param domain all cells of the finest level
-void AddBatch(BrickWork& work, const std::vector<BatchMeter>& meters, const std::vector<Box>& cells,
-  int level, const Box& domain);
+void AddBatch(BrickWork& work, const std::vector<BatchMeter>& meters,
+  const std::vector<WorkShare>& shares, int level, const Box& domain);
 
 } // namespace banyan
 

@@ -85,6 +85,20 @@ void KeptBricks::KeepVisibility(
   }
 }
 
+GroupList KeptBricks::FindGroups(int level, std::uint64_t visible) const
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  const auto item = this->Groups.find(level);
+  return item != this->Groups.end() && item->second.first == visible ? item->second.second
+                                                                     : nullptr;
+}
+
+void KeptBricks::KeepGroups(int level, std::uint64_t visible, GroupList groups)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  this->Groups[level] = { visible, std::move(groups) };
+}
+
 std::uint64_t KeptBricks::Bytes() const
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);

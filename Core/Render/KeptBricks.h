@@ -1,6 +1,7 @@
 #ifndef banyan_Render_KeptBricks_h
 #define banyan_Render_KeptBricks_h
 
+#include "Render/BrickGroups.h"
 #include "Render/PackedBrick.h"
 
 #include <cstddef>
@@ -9,6 +10,7 @@
 #include <mutex>
 #include <optional>
 #include <unordered_map>
+#include <utility>
 
 namespace banyan
 {
@@ -37,8 +39,12 @@ public:
   /// empty if it was not.
   std::optional<BrickVisibility> FindVisibility(std::int64_t brick, std::uint64_t visible) const;
   /// Without effect when the brick is not kept.
-  void KeepVisibility(
-    std::int64_t brick, std::uint64_t visible, const BrickVisibility& visibility);
+  void KeepVisibility(std::int64_t brick, std::uint64_t visible, const BrickVisibility& visibility);
+
+  /// What is known of the groups of bricks of a level under a number of VisibleValues, as
+  /// KeepGroups was told; null if it was not. Kept for one number per level.
+  GroupList FindGroups(int level, std::uint64_t visible) const;
+  void KeepGroups(int level, std::uint64_t visible, GroupList groups);
 
   std::uint64_t Bytes() const;
 
@@ -55,6 +61,7 @@ private:
   std::uint64_t HeldBytes = 0;
   std::int64_t Picture = 0;
   std::unordered_map<std::int64_t, Item> Items;
+  std::unordered_map<int, std::pair<std::uint64_t, GroupList>> Groups; ///< by level
   mutable std::mutex Mutex;
 };
 

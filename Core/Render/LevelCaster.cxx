@@ -2,12 +2,10 @@
 
 #include "Base/ThreadPool.h"
 #include "Render/FunctionTables.h"
-#include "Render/PictureWatcher.h"
 
 #include <glm/matrix.hpp>
 
 #include <algorithm>
-#include <atomic>
 
 namespace banyan
 {
@@ -17,6 +15,10 @@ namespace
 static_assert(TileSamplings::Edge == RayTile::Edge, "a tile has one sampling");
 /// Bricks loaded before the rays that have become opaque are looked at again.
 constexpr std::size_t BricksPerBatch = 512;
+/// Pilots have so few pixels that threads would wait for each other: they are cut into smaller
+/// tiles until there are so many for each thread, and no further than this.
+constexpr std::size_t TilesPerThread = 4;
+constexpr int SmallestEdge = 8;
 
 } // namespace
 
@@ -76,7 +78,14 @@ void LevelCaster::Draw(FloatImage& picture, PictureWatcher* watcher)
 
 void LevelCaster::MakeTiles()
 {
+  const auto workers = static_cast<std::size_t>(this->Pool.Width());
   this->Grid = TileGrid(this->Picture->Rect);
+  for (int edge = RayTile::Edge / 2; this->Scene.Pilot && workers > 1 && edge >= SmallestEdge &&
+                                     this->Grid.Count() < TilesPerThread * workers;
+       edge /= 2)
+  {
+    this->Grid = TileGrid(this->Picture->Rect, edge);
+  }
   this->Tiles.resize(this->Grid.Count());
   for (std::size_t i = 0; i < this->Tiles.size(); ++i)
   {
@@ -95,7 +104,6 @@ void LevelCaster::MakeTiles()
       this->Bricks[i].Footprint, [i](Tile& tile, const PixelRect&) { tile.End = i + 1; });
   }
   // What a tile does not use of its slots need not be set.
-  const auto workers = static_cast<std::size_t>(this->Pool.Width());
   this->Scratch.reset(new RayTile[workers]);
   this->Meters.resize(workers);
 }
@@ -145,9 +153,9 @@ std::size_t LevelCaster::TakeBatch(std::size_t first)
       break;
     }
     // What is in memory anyway costs less to draw than to look for open pixels.
-    if (!this->AnyRayOpen(brick, !isThere && this->Source.LoadBytes(brick.Number) > 0))
+    if (!this->AnyRayOpen(brick, !isThere && this->LoadBytesOf(brick) > 0))
     {
-      ++this->Statistics.BricksSkipped;
+      this->Statistics.BricksSkipped += BricksIn(brick);
       continue;
     }
     const int position = static_cast<int>(this->Batch.size());
@@ -165,7 +173,7 @@ std::size_t LevelCaster::TakeBatch(std::size_t first)
 std::uint64_t LevelCaster::BytesOf(const PlannedBrick& brick) const
 {
   return brick.Entry ? 0
-                     : this->Source.LoadBytes(brick.Number) +
+                     : this->LoadBytesOf(brick) +
                          PackedBrick::BytesFor(brick.Cells, this->Shading != nullptr);
 }
 
@@ -183,7 +191,7 @@ std::uint64_t LevelCaster::BytesToDraw() const
 KeptBricks::Pointer LevelCaster::FindKept(const PlannedBrick& brick) const
 {
   return brick.Entry ? nullptr
-                     : this->Source.Kept().Find(this->Source.KeptNumber(brick.Number), brick.Cells,
+                     : this->Source.Kept().Find(this->KeptNumberOf(brick), brick.Cells,
                          this->AnySampling->Table.Low(), this->Shading != nullptr);
 }
 
@@ -203,7 +211,7 @@ bool LevelCaster::AnyRayOpen(const PlannedBrick& brick, bool lookAtPixels)
       const PixelRect part = Intersection(brick.Footprint, rect);
       const int stride = tile.PixelStride;
       const glm::ivec2 first = (part.Lo + (stride - 1)) / stride * stride;
-      open = open || !lookAtPixels;
+      open = open || !lookAtPixels || !tile.Begun;
       for (int y = first.y; y < part.Hi.y && !open; y += stride)
       {
         for (int x = first.x; x < part.Hi.x && !open; x += stride)
@@ -219,170 +227,6 @@ bool LevelCaster::AnyRayOpen(const PlannedBrick& brick, bool lookAtPixels)
 float LevelCaster::TransmittanceLimit() const
 {
   return this->AnySampling->Projection ? 0.0f : 1.0f - this->Scene.OpacityLimit;
-}
-
-void LevelCaster::DrawBatch()
-{
-  this->Pool.ParallelFor(static_cast<std::int64_t>(this->Batch.size()),
-    [this](std::int64_t i) { this->Load(*this->Batch[i], this->Loaded[i]); });
-  const auto uniform = std::count_if(this->Batch.begin(), this->Batch.end(),
-    [](const PlannedBrick* brick) { return brick->Entry.has_value(); });
-  this->Statistics.BricksUniform += uniform;
-  this->Statistics.BricksDrawn += static_cast<std::int64_t>(this->Batch.size()) - uniform;
-
-  for (BatchMeter& meter : this->Meters)
-  {
-    meter.Reset(this->Scene.Work ? this->Batch.size() : 0);
-  }
-  const auto now = [this] { return this->Scene.Work ? this->Scene.Work->Clock() : 0.0; };
-  const double began = now();
-  double watched = 0.0; // of the thread that casts, in which it drew nothing
-  std::atomic<std::int64_t> samples{ 0 };
-  const std::function<void(std::int64_t, int)> draw = [&](std::int64_t number, int worker)
-  {
-    const auto tile = static_cast<std::size_t>(number);
-    const bool any = !this->Tiles[tile].Bricks.empty();
-    if (any)
-    {
-      const auto mine = static_cast<std::size_t>(worker);
-      samples += this->DrawTile(tile, this->Scratch[mine], this->Meters[mine]);
-    }
-    this->FinishTile(tile);
-    // The first worker is the thread that casts.
-    if (any && this->Watcher && worker == 0)
-    {
-      const double from = now();
-      this->Watcher->BetweenTiles();
-      watched += now() - from;
-    }
-  };
-  this->Pool.ParallelFor(static_cast<std::int64_t>(this->Tiles.size()), draw);
-  this->Statistics.SamplesTaken += samples;
-  // Meanwhile the others have drawn its tiles.
-  this->RecordWork(began + watched / this->Pool.Width());
-  this->Loaded.clear();
-}
-
-/// Makes opacities of the transmittances of a tile of this level, once, if nothing that is not in
-/// the batch comes over it any more.
-void LevelCaster::FinishTile(std::size_t number)
-{
-  Tile& tile = this->Tiles[number];
-  if (!tile.Sampling || tile.Final || !(tile.Done || tile.End <= this->Taken))
-  {
-    return;
-  }
-  const PixelRect rect = this->Grid.RectOf(number);
-  for (int y = rect.Lo.y; y < rect.Hi.y; ++y)
-  {
-    glm::vec4* const row = &this->Picture->At(rect.Lo.x, y);
-    for (int x = 0; x < rect.Size().x; ++x)
-    {
-      row[x].a = 1.0f - row[x].a;
-    }
-  }
-  tile.Final = true;
-  if (this->Watcher)
-  {
-    this->Watcher->TileIsFinal(number);
-  }
-}
-
-/// @param began when drawing the batch did
-void LevelCaster::RecordWork(double began)
-{
-  if (!this->Scene.Work)
-  {
-    return;
-  }
-  this->Scene.Work->DrawSeconds += this->Scene.Work->Clock() - began;
-  std::vector<Box> cells;
-  for (const PlannedBrick* brick : this->Batch)
-  {
-    cells.push_back(brick->Drawn);
-  }
-  AddBatch(
-    *this->Scene.Work, this->Meters, cells, this->Source.CellLevel(), this->Scene.DomainCells);
-}
-
-/// @return samples taken
-std::int64_t LevelCaster::DrawTile(std::size_t number, RayTile& rays, BatchMeter& meter)
-{
-  Tile& tile = this->Tiles[number];
-  rays.Open(tile.Sampling->Lattice, this->Grid.RectOf(number), *this->Picture,
-    this->TransmittanceLimit(), tile.PixelStride);
-  rays.CellShift = this->Source.CoarsestBrickLevel();
-  if (meter.IsOn())
-  {
-    meter.Start();
-  }
-  for (const int position : tile.Bricks)
-  {
-    if (rays.ActiveRays == 0)
-    {
-      break;
-    }
-    const PlannedBrick& brick = *this->Batch[static_cast<std::size_t>(position)];
-    rays.BrickShift = rays.CellShift - brick.Level;
-    const LoadedBrick& loaded = this->Loaded[static_cast<std::size_t>(position)];
-    this->DrawBrick(brick, loaded, *tile.Sampling, rays);
-    if (meter.IsOn())
-    {
-      const PixelRect& drawn = loaded.Packed ? loaded.Footprint : brick.Footprint;
-      meter.Lap(
-        position, rays.SamplesTaken, Intersection(drawn, this->Grid.RectOf(number)).Count());
-    }
-  }
-  if (meter.IsOn())
-  {
-    meter.Finish(this->Grid.RectOf(number).Count());
-  }
-  rays.Close(*this->Picture);
-  tile.Done = rays.ActiveRays == 0;
-  return rays.SamplesTaken;
-}
-
-void LevelCaster::DrawBrick(const PlannedBrick& brick, const LoadedBrick& loaded,
-  const Sampled& sampling, RayTile& rays) const
-{
-  const ProjectionTable* const projection = sampling.Projection.get();
-  if (brick.Entry)
-  {
-    const bool fits = rays.PacketsFit && PackedBrick::CanPack(brick.Cells);
-    const auto march = fits ? MarchUniform : MarchUniformPlain;
-    march(brick.Drawn, sampling.Table, *brick.Entry, brick.Footprint, rays);
-  }
-  else if (!loaded.Packed)
-  {
-    const glm::ivec3 corner = this->Source.CellsOf(brick.Number).Lo;
-    const BrickPart part{ loaded.View, corner, brick.Drawn };
-    projection ? ProjectBrick(part, *projection, brick.Footprint, rays)
-               : MarchBrick(part, sampling.Table, brick.Footprint, rays, this->Scene.Interpolation);
-  }
-  else if (projection)
-  {
-    this->ProjectPackedBrick(brick, *loaded.Packed, *projection, rays);
-  }
-  else
-  {
-    const auto march = rays.PacketsFit ? MarchPacked : MarchUnpacked;
-    march(*loaded.Packed, loaded.Seen, sampling.Table, this->Shading.get(), loaded.Footprint, rays,
-      this->Scene.Interpolation);
-  }
-}
-
-void LevelCaster::ProjectPackedBrick(const PlannedBrick& brick, const PackedBrick& packed,
-  const ProjectionTable& projection, RayTile& rays) const
-{
-  if (rays.PacketsFit)
-  {
-    const ValueRange range = this->Source.RangeOf(brick.Number);
-    ProjectPacked(packed, brick.Drawn, range, projection, brick.Footprint, rays);
-  }
-  else
-  {
-    ProjectUnpacked(packed, brick.Drawn, projection, brick.Footprint, rays);
-  }
 }
 
 } // namespace banyan

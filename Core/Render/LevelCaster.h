@@ -35,20 +35,22 @@ public:
   std::uint64_t BytesToDraw() const;
 
   /// Draws the tiles of the level, and makes them final: premultiplied colours and opacities.
-  /// @param picture premultiplied colours, and, of tiles that are not final, the *transmittance* in
-  /// the fourth component
+  /// @param picture its pixels in tiles of the level are set, whatever they were; while they are
+  /// drawn, they have the *transmittance* in the fourth component
   /// @param watcher is told of tiles that are final; null for none
   void Draw(FloatImage& picture, PictureWatcher* watcher);
 
 private:
   struct PlannedBrick
   {
-    std::int64_t Number = 0;
+    std::int64_t Number = 0; ///< of several bricks, the first one's
+    Box Together;  ///< positions of several bricks that are drawn as one; empty for one brick
     int Level = 0; ///< BrickSource::BrickLevel
     Box Cells;     ///< to pack, in its own
     Box Drawn;     ///< the part of them to draw, in cells of the source
     PixelRect Footprint;
-    double Key = 0;
+    double Key = 0;        ///< front to back, of its group
+    double KeyWithin = 0;  ///< within its group
     float HighestRank = 0; ///< of a projection
     /// Of the table, where all samples have it and are not shaded: nothing is loaded then.
     std::optional<int> Entry;
@@ -79,6 +81,7 @@ private:
   {
     const Sampled* Sampling = nullptr; ///< null for tiles of other levels
     int PixelStride = 1;
+    bool Begun = false;      ///< its pixels are set
     bool Done = false;       ///< no ray of the tile needs another brick
     bool Final = false;      ///< its pixels have opacities
     std::size_t End = 0;     ///< behind the last brick over it
@@ -87,8 +90,25 @@ private:
 
   void AddSamplings();
   void Plan();
-  void PlaceCells(PlannedBrick& brick) const;
-  void SetKeys();
+  bool MayDrawTogether() const;
+  GroupList MembersOf(const BrickGroups& groups) const;
+  GroupMembers Look(const BrickGroups& groups, const Box& bricks, ValueMask bins) const;
+  bool PlanTogether(const BrickGroups& groups, const Box& bricks, const GroupMembers& members);
+  void PlanBrick(std::int64_t number, bool visible);
+  bool SeeBrick(PlannedBrick& brick) const;
+  bool AllOnScreen(const BrickGroups& groups, const PlannedBrick& brick) const;
+  void PlaceCells(PlannedBrick& brick, const Box& own) const;
+  void SetKeys(std::size_t first, const Box& group, const Viewpoint& view);
+  void TakeIn(PlannedBrick brick);
+  template <class Function>
+  void ForBricksOf(const PlannedBrick& brick, Function&& function) const;
+  ValueRange RangeOf(const PlannedBrick& brick) const;
+  std::uint64_t LoadBytesOf(const PlannedBrick& brick) const;
+  std::int64_t KeptNumberOf(const PlannedBrick& brick) const;
+  static int BricksIn(const PlannedBrick& brick)
+  {
+    return brick.Together.Empty() ? 1 : static_cast<int>(brick.Together.Count());
+  }
   PixelRect FootprintOf(const Box& cells) const;
   std::optional<int> EntryOf(std::int64_t brick) const;
   void MakeTiles();
@@ -107,8 +127,10 @@ private:
   float GradientScale() const;
   BrickView LoadLarge(const PlannedBrick& brick) const;
   std::int64_t DrawTile(std::size_t number, RayTile& rays, BatchMeter& meter);
+  void ClearTile(const PixelRect& rect) const;
   void FinishTile(std::size_t number);
   void RecordWork(double began);
+  void ShareWork(std::size_t number, std::vector<WorkShare>& shares) const;
   void DrawBrick(const PlannedBrick& brick, const LoadedBrick& loaded, const Sampled& sampling,
     RayTile& rays) const;
   void ProjectPackedBrick(const PlannedBrick& brick, const PackedBrick& packed,
@@ -133,7 +155,8 @@ private:
 
   PixelRect Touched;
   std::vector<PlannedBrick> Bricks;
-  std::size_t Taken = 0; ///< bricks that have been in a batch, or need not be
+  std::vector<std::int64_t> Ranks; ///< BrickSource::RanksFrontToBack
+  std::size_t Taken = 0;           ///< bricks that have been in a batch, or need not be
   FloatImage* Picture = nullptr;
   PictureWatcher* Watcher = nullptr;
   TileGrid Grid;
@@ -143,6 +166,26 @@ private:
   std::vector<const PlannedBrick*> Batch;
   std::vector<LoadedBrick> Loaded; ///< of the batch
 };
+
+/// Calls function(number) for each brick that a planned one is made of.
+template <class Function>
+void LevelCaster::ForBricksOf(const PlannedBrick& brick, Function&& function) const
+{
+  if (brick.Together.Empty())
+  {
+    function(brick.Number);
+    return;
+  }
+  const glm::ivec3 counts = this->Source.Bricks();
+  const glm::ivec3 size = brick.Together.Size();
+  for (std::int64_t i = 0; i < brick.Together.Count(); ++i)
+  {
+    const auto place = static_cast<int>(i);
+    const glm::ivec3 p = brick.Together.Lo + glm::ivec3(place % size.x, place / size.x % size.y,
+                                               place / size.x / size.y);
+    function(p.x + counts.x * (p.y + std::int64_t{ counts.y } * p.z));
+  }
+}
 
 } // namespace banyan
 

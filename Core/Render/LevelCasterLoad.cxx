@@ -22,7 +22,7 @@ void LevelCaster::Load(const PlannedBrick& brick, LoadedBrick& loaded) const
       return;
     }
     loaded.Packed = this->Pack(brick);
-    this->Source.Kept().Keep(this->Source.KeptNumber(brick.Number), loaded.Packed);
+    this->Source.Kept().Keep(this->KeptNumberOf(brick), loaded.Packed);
   }
   loaded.Footprint = brick.Footprint;
   if (this->AnySampling->Projection)
@@ -40,14 +40,14 @@ BrickVisibility LevelCaster::VisibilityOf(
   const PlannedBrick& brick, const PackedBrick& packed) const
 {
   KeptBricks& kept = this->Source.Kept();
-  const std::int64_t number = this->Source.KeptNumber(brick.Number);
+  const std::int64_t number = this->KeptNumberOf(brick);
   const std::uint64_t visible = this->Visible.Number();
   const std::optional<BrickVisibility> known = kept.FindVisibility(number, visible);
   if (known)
   {
     return *known;
   }
-  const BrickVisibility seen(packed, this->Source.RangeOf(brick.Number), this->Visible);
+  const BrickVisibility seen(packed, this->RangeOf(brick), this->Visible);
   kept.KeepVisibility(number, visible, seen);
   return seen;
 }
@@ -55,15 +55,28 @@ BrickVisibility LevelCaster::VisibilityOf(
 KeptBricks::Pointer LevelCaster::Pack(const PlannedBrick& brick) const
 {
   const double low = this->AnySampling->Table.Low();
-  if (!this->Shading)
+  const bool shaded = this->Shading != nullptr;
+  Box samples;
+  BrickView view;
+  if (!brick.Together.Empty())
   {
-    const BrickView view = this->Source.Load(brick.Number);
-    const glm::ivec3 corner = this->Source.CellsOf(brick.Number).Lo;
-    return std::make_shared<const PackedBrick>(view, corner, brick.Cells, low);
+    view = this->Source.LoadTogether(brick.Together, shaded, samples);
   }
-  Box around;
-  const BrickView view = this->Source.LoadAround(brick.Number, around);
-  return std::make_shared<const PackedBrick>(view, around, brick.Cells, low, this->GradientScale());
+  else if (shaded)
+  {
+    view = this->Source.LoadAround(brick.Number, samples);
+  }
+  else
+  {
+    view = this->Source.Load(brick.Number);
+    samples.Lo = this->Source.CellsOf(brick.Number).Lo;
+  }
+  if (shaded)
+  {
+    return std::make_shared<const PackedBrick>(
+      view, samples, brick.Cells, low, this->GradientScale());
+  }
+  return std::make_shared<const PackedBrick>(view, samples.Lo, brick.Cells, low);
 }
 
 /// Brings gradients near 1, so that their squares neither overflow nor vanish.

@@ -3,9 +3,19 @@
 #include "Render/VisibilityOrder.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace banyan
 {
+namespace
+{
+
+/// Bricks are put together where so many of what comes of it fit into the budget.
+constexpr std::uint64_t BricksOfBudget = 64;
+/// And in zones whose work is measured, where these have room for so many.
+constexpr std::int64_t FewestGroups = 64;
+
+} // namespace
 
 void LevelCaster::AddSamplings()
 {
@@ -31,48 +41,183 @@ void LevelCaster::AddSamplings()
 /// Finds the bricks that can be seen, front to back, and the rectangle that they cover.
 void LevelCaster::Plan()
 {
-  const glm::ivec3 counts = this->Source.Bricks();
-  const std::int64_t count = std::int64_t{ counts.x } * counts.y * counts.z;
-  const ValueMask visibleBins = this->Scene.Transfer.VisibleBins(this->Source.MasksAreOver());
-  const ProjectionTable* const projection = this->AnySampling->Projection.get();
-  for (std::int64_t number = 0; number < count; ++number)
+  const Viewpoint view = InIndexSpace(this->Scene.Camera, this->IndexToWorld);
+  this->Ranks = this->Source.RanksFrontToBack(view);
+  const BrickGroups groups(this->Source, this->Ranks.empty() && this->MayDrawTogether());
+  const GroupList members = this->MembersOf(groups);
+  for (std::int64_t group = 0; group < groups.Count(); ++group)
   {
-    PlannedBrick brick;
-    brick.Number = number;
-    this->PlaceCells(brick);
-    if (brick.Drawn.Empty())
+    const Box bricks = groups.BricksOf(group);
+    const GroupMembers& has = (*members)[static_cast<std::size_t>(group)];
+    const std::size_t first = this->Bricks.size();
+    if (!this->PlanTogether(groups, bricks, has))
     {
-      continue;
+      ForMembers(groups, bricks,
+        [&](std::int64_t number, int place)
+        { this->PlanBrick(number, (has.Visible >> place & 1) != 0); });
     }
-    const ValueRange range = this->Source.RangeOf(number);
-    brick.HighestRank = projection ? projection->HighestRank(range) : 0.0f;
-    const bool wanted = projection ? brick.HighestRank > 0.0f
-                                   : (this->Source.MaskOf(number) & visibleBins) != 0 &&
-                                       this->Visible.Any(range.Low, range.High);
-    if (wanted && !IsCutAway(this->ClipPlanes, brick.Drawn))
+    if (first < this->Bricks.size())
     {
-      brick.Footprint = Intersection(this->FootprintOf(brick.Drawn), this->Scene.Viewport);
+      this->SetKeys(first, groups.CellsOf(bricks), view);
     }
-    if (brick.Footprint.Empty())
-    {
-      ++this->Statistics.BricksSkipped;
-      continue;
-    }
-    brick.Entry = this->EntryOf(number);
-    this->Touched = Union(this->Touched, brick.Footprint);
-    this->Bricks.push_back(brick);
   }
-  this->SetKeys();
+  const auto order = [](const PlannedBrick& brick)
+  { return std::make_tuple(brick.Key, brick.KeyWithin, brick.Number); };
   std::sort(this->Bricks.begin(), this->Bricks.end(),
-    [](const PlannedBrick& a, const PlannedBrick& b)
-    { return a.Key < b.Key || (a.Key == b.Key && a.Number < b.Number); });
+    [&order](const PlannedBrick& a, const PlannedBrick& b) { return order(a) < order(b); });
+}
+
+/// Zones are balanced by what bricks took: small zones want to know it of small bricks.
+bool LevelCaster::MayDrawTogether() const
+{
+  const std::int64_t cells = std::int64_t{ 8 } * BrickGroups::LargestMember *
+                             BrickGroups::LargestMember * BrickGroups::LargestMember;
+  return !this->Scene.Work || this->Cells.Count() >= FewestGroups * cells;
+}
+
+/// What can be seen of all groups, wherever the camera is.
+GroupList LevelCaster::MembersOf(const BrickGroups& groups) const
+{
+  // What a projection shows is not what the function's opacities say.
+  const bool known = !this->AnySampling->Projection;
+  KeptBricks& kept = this->Source.Kept();
+  const int level = this->Source.Level();
+  GroupList list = known ? kept.FindGroups(level, this->Visible.Number()) : nullptr;
+  // Zones that grow or shrink may have had other groups.
+  if (!list || list->size() != static_cast<std::size_t>(groups.Count()))
+  {
+    const ValueMask bins = this->Scene.Transfer.VisibleBins(this->Source.MasksAreOver());
+    std::vector<GroupMembers> members;
+    members.reserve(static_cast<std::size_t>(groups.Count()));
+    for (std::int64_t group = 0; group < groups.Count(); ++group)
+    {
+      members.push_back(this->Look(groups, groups.BricksOf(group), bins));
+    }
+    list = std::make_shared<const std::vector<GroupMembers>>(std::move(members));
+    if (known)
+    {
+      kept.KeepGroups(level, this->Visible.Number(), list);
+    }
+  }
+  return list;
+}
+
+/// @param bins that can be seen
+GroupMembers LevelCaster::Look(const BrickGroups& groups, const Box& bricks, ValueMask bins) const
+{
+  const ProjectionTable* const projection = this->AnySampling->Projection.get();
+  GroupMembers members;
+  ForMembers(groups, bricks,
+    [&](std::int64_t number, int place)
+    {
+      const auto bit = static_cast<std::uint8_t>(1 << place);
+      const ValueRange range = this->Source.RangeOf(number);
+      const bool visible = projection ? projection->HighestRank(range) > 0.0f
+                                      : (this->Source.MaskOf(number) & bins) != 0 &&
+                                          this->Visible.Any(range.Low, range.High);
+      members.There |= bit;
+      members.Visible |= visible ? bit : 0;
+      members.Uniform |= visible && this->Source.UniformValueOf(number) ? bit : 0;
+    });
+  return members;
+}
+
+/// Plans the bricks of a group as one, if all of them are to be drawn. @return whether it did, or
+/// none of them is on the screen
+bool LevelCaster::PlanTogether(
+  const BrickGroups& groups, const Box& bricks, const GroupMembers& members)
+{
+  const bool macroVoxels = !this->Shading && !this->AnySampling->Projection;
+  if (bricks.Count() == 1 || members.Visible != members.There ||
+      (macroVoxels && members.Uniform != 0) || !this->ClipPlanes.empty())
+  {
+    return false;
+  }
+  PlannedBrick brick;
+  brick.Number = groups.BrickAt(bricks.Lo);
+  brick.Together = bricks;
+  this->PlaceCells(brick, groups.CellsOf(bricks));
+  bool all = PackedBrick::CanPack(brick.Cells);
+  ForMembers(groups, bricks,
+    [&](std::int64_t number, int)
+    { all = all && !Intersection(this->Source.CellsOf(number), brick.Drawn).Empty(); });
+  // A budget that is all but used up by one of them wants small bricks.
+  if (!all || this->BytesOf(brick) > this->BudgetBytes / BricksOfBudget)
+  {
+    return false;
+  }
+  if (!this->SeeBrick(brick))
+  {
+    this->Statistics.BricksSkipped += bricks.Count();
+    return true;
+  }
+  if (!this->AllOnScreen(groups, brick))
+  {
+    return false;
+  }
+  this->TakeIn(brick);
+  return true;
+}
+
+/// Whether each of several bricks is on the screen.
+bool LevelCaster::AllOnScreen(const BrickGroups& groups, const PlannedBrick& brick) const
+{
+  const PixelRect& view = this->Scene.Viewport;
+  const PixelRect& seen = brick.Footprint;
+  if (seen.Lo.x > view.Lo.x && seen.Lo.y > view.Lo.y && seen.Hi.x < view.Hi.x &&
+      seen.Hi.y < view.Hi.y)
+  {
+    return true;
+  }
+  bool all = true;
+  ForMembers(groups, brick.Together,
+    [&](std::int64_t number, int)
+    {
+      const Box drawn = Intersection(this->Source.CellsOf(number), brick.Drawn);
+      all = all && !Intersection(this->FootprintOf(drawn), view).Empty();
+    });
+  return all;
+}
+
+/// @param visible whether some value of it can be seen
+void LevelCaster::PlanBrick(std::int64_t number, bool visible)
+{
+  PlannedBrick brick;
+  brick.Number = number;
+  brick.Level = this->Source.BrickLevel(number);
+  this->PlaceCells(brick, this->Source.CellsOf(number));
+  if (brick.Drawn.Empty())
+  {
+    return;
+  }
+  if (visible && !IsCutAway(this->ClipPlanes, brick.Drawn) && this->SeeBrick(brick))
+  {
+    brick.Entry = this->EntryOf(number);
+    this->TakeIn(brick);
+    return;
+  }
+  ++this->Statistics.BricksSkipped;
+}
+
+/// @return whether it is on the screen
+bool LevelCaster::SeeBrick(PlannedBrick& brick) const
+{
+  brick.Footprint = Intersection(this->FootprintOf(brick.Drawn), this->Scene.Viewport);
+  return !brick.Footprint.Empty();
+}
+
+void LevelCaster::TakeIn(PlannedBrick brick)
+{
+  const ProjectionTable* const projection = this->AnySampling->Projection.get();
+  brick.HighestRank = projection ? projection->HighestRank(this->RangeOf(brick)) : 0.0f;
+  this->Touched = Union(this->Touched, brick.Footprint);
+  this->Bricks.push_back(brick);
 }
 
 /// The part of a brick that is to be drawn, and the cells of it that this takes.
-void LevelCaster::PlaceCells(PlannedBrick& brick) const
+/// @param own all of its cells
+void LevelCaster::PlaceCells(PlannedBrick& brick, const Box& own) const
 {
-  brick.Level = this->Source.BrickLevel(brick.Number);
-  const Box own = this->Source.CellsOf(brick.Number);
   const int size = 1 << brick.Level;
   brick.Drawn = Intersection({ own.Lo * size, own.Hi * size }, this->Cells);
   // Whole: what is packed stays good when the planes of zones move.
@@ -81,26 +226,55 @@ void LevelCaster::PlaceCells(PlannedBrick& brick) const
                   : Box{ brick.Drawn.Lo / size, (brick.Drawn.Hi + size - 1) / size };
 }
 
-void LevelCaster::SetKeys()
+/// Of bricks that were planned last. Groups are cut by whole planes, and so are the bricks of one.
+/// @param first of them
+/// @param group cells of their group
+void LevelCaster::SetKeys(std::size_t first, const Box& group, const Viewpoint& view)
 {
-  const Viewpoint view = InIndexSpace(this->Scene.Camera, this->IndexToWorld);
   const ProjectionTable* const projection = this->AnySampling->Projection.get();
-  const std::vector<std::int64_t> ranks = this->Source.RanksFrontToBack(view);
-  for (PlannedBrick& brick : this->Bricks)
+  for (std::size_t i = first; i < this->Bricks.size(); ++i)
   {
+    PlannedBrick& brick = this->Bricks[i];
     // The best values first: bricks that cannot beat them are then never loaded. Averages are
     // added up front to back, so that they round alike in bricks of all sizes.
     if (projection && !projection->Averages())
     {
       brick.Key = -brick.HighestRank;
     }
+    else if (!this->Ranks.empty())
+    {
+      brick.Key = static_cast<double>(this->Ranks[static_cast<std::size_t>(brick.Number)]);
+    }
     else
     {
-      brick.Key = ranks.empty()
-                    ? VisibilityKey(view, this->Source.CellsOf(brick.Number))
-                    : static_cast<double>(ranks[static_cast<std::size_t>(brick.Number)]);
+      brick.Key = VisibilityKey(view, group);
+      brick.KeyWithin =
+        brick.Together.Empty() ? VisibilityKey(view, this->Source.CellsOf(brick.Number)) : 0.0;
     }
   }
+}
+
+/// Of the finite values anywhere in it.
+ValueRange LevelCaster::RangeOf(const PlannedBrick& brick) const
+{
+  ValueRange range;
+  this->ForBricksOf(
+    brick, [&](std::int64_t number) { range.Include(this->Source.RangeOf(number)); });
+  return range;
+}
+
+std::uint64_t LevelCaster::LoadBytesOf(const PlannedBrick& brick) const
+{
+  std::uint64_t bytes = 0;
+  this->ForBricksOf(brick, [&](std::int64_t number) { bytes += this->Source.LoadBytes(number); });
+  return bytes;
+}
+
+/// Bricks that are packed together have a number of their own.
+std::int64_t LevelCaster::KeptNumberOf(const PlannedBrick& brick) const
+{
+  constexpr std::int64_t together = std::int64_t{ 1 } << 40;
+  return this->Source.KeptNumber(brick.Number) + (brick.Together.Empty() ? 0 : together);
 }
 
 /// The entry of the table that all samples of a brick have, if nothing else has to be known of

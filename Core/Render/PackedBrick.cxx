@@ -239,6 +239,7 @@ BrickView PackedBrick::GradientView(int axis) const
 BrickVisibility::BrickVisibility(
   const PackedBrick& brick, const ValueRange& range, const VisibleValues& visible)
   : Cells(brick.Cells())
+  , MacroEdge(1 << brick.MacroShift())
 {
   if (visible.All(range.Low, range.High))
   {
@@ -272,6 +273,20 @@ BrickVisibility::BrickVisibility(
   const int edge = 1 << brick.MacroShift();
   this->Cells = Intersection(
     { brick.Corner() + seen.Lo * edge, brick.Corner() + seen.Hi * edge }, brick.Cells());
+}
+
+int BrickVisibility::MacrosIn(const Box& cells, const glm::ivec3& corner) const
+{
+  int count = 0;
+  for (int number = 0; number < PackedBrick::MacroCells; ++number)
+  {
+    constexpr int edge = PackedBrick::MacroEdge;
+    const glm::ivec3 macro(number % edge, number / edge % edge, number / edge / edge);
+    const bool shown = (this->Mask[number / 32] >> number % 32 & 1u) != 0;
+    count +=
+      shown && cells.Contains(corner + macro * this->MacroEdge + this->MacroEdge / 2) ? 1 : 0;
+  }
+  return count;
 }
 
 } // namespace banyan

@@ -111,12 +111,17 @@ struct BrickVisibility
   /// @param range of the brick's finite values
   BrickVisibility(const PackedBrick& brick, const ValueRange& range, const VisibleValues& visible);
 
+  /// How many macro cells can be seen whose middle lies in some cells.
+  /// @param corner of the brick
+  int MacrosIn(const Box& cells, const glm::ivec3& corner) const;
+
   /// A box of macro cells around all that can be seen; empty when there are none.
   Box Cells;
   /// Whether some macro cells in Cells cannot be seen.
   bool Holes = false;
   /// A bit per macro cell of the brick that can be seen: `[8][8][8]`, x fastest.
   std::uint32_t Mask[PackedBrick::MacroCells / 32] = {};
+  int MacroEdge = 4; ///< cells per axis of a macro cell
 };
 
 } // namespace banyan

@@ -50,7 +50,8 @@ FloatImage Cast(const RayScene& scene, BrickSource& source, const Box& cells,
     picture.Rect = Union(picture.Rect, casters.back()->Rect());
   }
   source.Kept().BeginPicture(budgetBytes / 2, /*ages=*/!scene.Pilot);
-  picture.Pixels.assign(static_cast<std::size_t>(picture.Rect.Count()), glm::vec4(0, 0, 0, 1));
+  // Casters set all pixels, tile by tile.
+  picture.Pixels.resize(static_cast<std::size_t>(picture.Rect.Count()));
   if (watcher)
   {
     watcher->Begins(picture);

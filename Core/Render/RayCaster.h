@@ -57,8 +57,8 @@ struct RayScene
   RayBlend Blend{};
   /// In place of SampleDistance; of the whole picture. Null samples the finest level everywhere.
   std::shared_ptr<const TileSamplings> Samplings{};
-  /// Whether all levels are counted in cells of the finest one (BrickSource::CellLevel): zones are the
-  /// same at all levels then.
+  /// Whether all levels are counted in cells of the finest one (BrickSource::CellLevel): zones are
+  /// the same at all levels then.
   bool LevelsShareCells = false;
   /// Whether the picture only helps to make another one: packed bricks are kept for that one.
   bool Pilot = false;

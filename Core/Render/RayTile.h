@@ -11,8 +11,8 @@ namespace banyan
 /// The rays of a rectangle of pixels while bricks are drawn front to back.
 ///
 /// Rays stand in slots, packet by packet: a packet has the rays of 4 x 4 pixels, row by row, so
-/// that rays that are drawn together stay together. Slots without a pixel have an empty ray. Where only
-/// every n-th pixel has a ray, these are as close together as if there were no others.
+/// that rays that are drawn together stay together. Slots without a pixel have an empty ray. Where
+/// only every n-th pixel has a ray, these are as close together as if there were no others.
 struct RayTile
 {
   static constexpr int Edge = 32; ///< pixels: rays (about 200 kB) and a brick share the L2 cache
@@ -69,11 +69,12 @@ struct RayTile
   /// @param picture premultiplied colour, and the *transmittance* (1 - opacity) in the fourth
   ///        component, so that stopping and going on with the next batch changes no bit
   /// @param stride RaySampling::PixelStride
+  /// @param begun false when rays have met nothing so far, whatever the picture says
   /// Throws Error as RayLattice::SamplesOf does.
-  void Open(const RayLattice& lattice, const PixelRect& rect, const FloatImage& picture, float limit,
-    int stride = 1);
+  void Open(const RayLattice& lattice, const PixelRect& rect, const FloatImage& picture,
+    float limit, int stride = 1, bool begun = true);
 
-  /// Puts what the rays have met back into the picture.
+  /// Puts what the rays have met back into the picture: only pixels that have one change.
   void Close(FloatImage& picture) const;
 
   /// The samples of one ray, in cells of the brick that is drawn.
@@ -100,17 +101,17 @@ struct RayTile
   }
 
   PixelRect Rect;
-  int Stride = 1;         ///< pixels from ray to ray
-  glm::ivec2 Corner{ 0 }; ///< pixel of slot 0, at most Stride - 1 pixels outside of Rect
+  int Stride = 1;                ///< pixels from ray to ray
+  glm::ivec2 Corner{ 0 };        ///< pixel of slot 0, at most Stride - 1 pixels outside of Rect
   float TransmittanceLimit = 0;  ///< a ray ends when its transmittance is not above this
   std::int64_t ActiveRays = 0;   ///< rays with samples that have not ended
   std::int64_t SamplesTaken = 0; ///< since Open
   bool PacketsFit = true;        ///< no ray steps further than LongestStep, in the finest cells
 
-  /// The brick that is being drawn has cells 2^BrickShift times as short as the index space that rays
-  /// are made in, and the box of it that is drawn counts in cells 2^CellShift times as short. Rays are
-  /// made for the largest cells, so that a position in smaller ones is the same bits, moved up:
-  /// all bricks agree on where a sample is.
+  /// The brick that is being drawn has cells 2^BrickShift times as short as the index space that
+  /// rays are made in, and the box of it that is drawn counts in cells 2^CellShift times as short.
+  /// Rays are made for the largest cells, so that a position in smaller ones is the same bits,
+  /// moved up: all bricks agree on where a sample is.
   int BrickShift = 0;
   int CellShift = 0;
 

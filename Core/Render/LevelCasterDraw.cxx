@@ -1,0 +1,230 @@
+#include "Base/ThreadPool.h"
+#include "Render/LevelCaster.h"
+#include "Render/PictureWatcher.h"
+
+#include <algorithm>
+#include <atomic>
+
+namespace banyan
+{
+
+void LevelCaster::DrawBatch()
+{
+  this->Pool.ParallelFor(static_cast<std::int64_t>(this->Batch.size()),
+    [this](std::int64_t i) { this->Load(*this->Batch[i], this->Loaded[i]); });
+  for (const PlannedBrick* brick : this->Batch)
+  {
+    (brick->Entry ? this->Statistics.BricksUniform : this->Statistics.BricksDrawn) +=
+      BricksIn(*brick);
+  }
+
+  for (BatchMeter& meter : this->Meters)
+  {
+    meter.Reset(this->Scene.Work ? this->Batch.size() : 0);
+  }
+  const auto now = [this] { return this->Scene.Work ? this->Scene.Work->Clock() : 0.0; };
+  const double began = now();
+  double watched = 0.0; // of the thread that casts, in which it drew nothing
+  std::atomic<std::int64_t> samples{ 0 };
+  const std::function<void(std::int64_t, int)> draw = [&](std::int64_t number, int worker)
+  {
+    const auto tile = static_cast<std::size_t>(number);
+    const bool any = !this->Tiles[tile].Bricks.empty();
+    if (any)
+    {
+      const auto mine = static_cast<std::size_t>(worker);
+      samples += this->DrawTile(tile, this->Scratch[mine], this->Meters[mine]);
+    }
+    this->FinishTile(tile);
+    // The first worker is the thread that casts.
+    if (any && this->Watcher && worker == 0)
+    {
+      const double from = now();
+      this->Watcher->BetweenTiles();
+      watched += now() - from;
+    }
+  };
+  this->Pool.ParallelFor(static_cast<std::int64_t>(this->Tiles.size()), draw);
+  this->Statistics.SamplesTaken += samples;
+  // Meanwhile the others have drawn its tiles.
+  this->RecordWork(began + watched / this->Pool.Width());
+  this->Loaded.clear();
+}
+
+void LevelCaster::ClearTile(const PixelRect& rect) const
+{
+  for (int y = rect.Lo.y; y < rect.Hi.y; ++y)
+  {
+    std::fill_n(&this->Picture->At(rect.Lo.x, y), rect.Size().x, glm::vec4(0.0f));
+  }
+}
+
+/// Makes opacities of the transmittances of a tile of this level, once, if nothing that is not in
+/// the batch comes over it any more.
+void LevelCaster::FinishTile(std::size_t number)
+{
+  Tile& tile = this->Tiles[number];
+  if (!tile.Sampling || tile.Final || !(tile.Done || tile.End <= this->Taken))
+  {
+    return;
+  }
+  const PixelRect rect = this->Grid.RectOf(number);
+  if (tile.Begun)
+  {
+    const int stride = tile.PixelStride;
+    const glm::ivec2 first = (rect.Lo + (stride - 1)) / stride * stride;
+    for (int y = first.y; y < rect.Hi.y; y += stride)
+    {
+      glm::vec4* const row = &this->Picture->At(rect.Lo.x, y) - rect.Lo.x;
+      for (int x = first.x; x < rect.Hi.x; x += stride)
+      {
+        row[x].a = 1.0f - row[x].a;
+      }
+    }
+  }
+  else
+  {
+    this->ClearTile(rect);
+  }
+  tile.Final = true;
+  if (this->Watcher)
+  {
+    this->Watcher->TileIsFinal(number);
+  }
+}
+
+/// @param began when drawing the batch did
+void LevelCaster::RecordWork(double began)
+{
+  if (!this->Scene.Work)
+  {
+    return;
+  }
+  this->Scene.Work->DrawSeconds += this->Scene.Work->Clock() - began;
+  std::vector<WorkShare> shares;
+  for (std::size_t i = 0; i < this->Batch.size(); ++i)
+  {
+    this->ShareWork(i, shares);
+  }
+  AddBatch(
+    *this->Scene.Work, this->Meters, shares, this->Source.CellLevel(), this->Scene.DomainCells);
+}
+
+/// What several bricks took that were drawn as one is theirs by what can be seen of each: the part
+/// of its cells, and of the screen.
+void LevelCaster::ShareWork(std::size_t number, std::vector<WorkShare>& shares) const
+{
+  const PlannedBrick& brick = *this->Batch[number];
+  if (brick.Together.Empty())
+  {
+    shares.push_back({ number, brick.Drawn });
+    return;
+  }
+  const BrickVisibility& seen = this->Loaded[number].Seen;
+  const std::size_t first = shares.size();
+  double all = 0.0;
+  this->ForBricksOf(brick,
+    [&](std::int64_t member)
+    {
+      const Box cells = Intersection(this->Source.CellsOf(member), brick.Drawn);
+      const PixelRect pixels = Intersection(this->FootprintOf(cells), this->Scene.Viewport);
+      const double visible = seen.Holes ? seen.MacrosIn(cells, brick.Cells.Lo) : 1.0;
+      const double part = visible * static_cast<double>(pixels.Count());
+      shares.push_back({ number, cells, all, all + part });
+      all += part;
+    });
+  for (std::size_t i = first; i < shares.size(); ++i)
+  {
+    const auto count = static_cast<double>(shares.size() - first);
+    const auto before = static_cast<double>(i - first);
+    shares[i].From = all > 0.0 ? shares[i].From / all : before / count;
+    shares[i].To = all > 0.0 ? shares[i].To / all : (before + 1.0) / count;
+  }
+}
+
+/// @return samples taken
+std::int64_t LevelCaster::DrawTile(std::size_t number, RayTile& rays, BatchMeter& meter)
+{
+  Tile& tile = this->Tiles[number];
+  const PixelRect rect = this->Grid.RectOf(number);
+  rays.Open(tile.Sampling->Lattice, rect, *this->Picture, this->TransmittanceLimit(),
+    tile.PixelStride, tile.Begun);
+  rays.CellShift = this->Source.CoarsestBrickLevel();
+  if (meter.IsOn())
+  {
+    meter.Start();
+  }
+  for (const int position : tile.Bricks)
+  {
+    if (rays.ActiveRays == 0)
+    {
+      break;
+    }
+    const PlannedBrick& brick = *this->Batch[static_cast<std::size_t>(position)];
+    rays.BrickShift = rays.CellShift - brick.Level;
+    const LoadedBrick& loaded = this->Loaded[static_cast<std::size_t>(position)];
+    this->DrawBrick(brick, loaded, *tile.Sampling, rays);
+    if (meter.IsOn())
+    {
+      const PixelRect& drawn = loaded.Packed ? loaded.Footprint : brick.Footprint;
+      meter.Lap(position, rays.SamplesTaken, Intersection(drawn, rect).Count());
+    }
+  }
+  if (meter.IsOn())
+  {
+    meter.Finish(rect.Count());
+  }
+  if (!tile.Begun && tile.PixelStride > 1)
+  {
+    this->ClearTile(rect);
+  }
+  rays.Close(*this->Picture);
+  tile.Begun = true;
+  tile.Done = rays.ActiveRays == 0;
+  return rays.SamplesTaken;
+}
+
+void LevelCaster::DrawBrick(const PlannedBrick& brick, const LoadedBrick& loaded,
+  const Sampled& sampling, RayTile& rays) const
+{
+  const ProjectionTable* const projection = sampling.Projection.get();
+  if (brick.Entry)
+  {
+    const bool fits = rays.PacketsFit && PackedBrick::CanPack(brick.Cells);
+    const auto march = fits ? MarchUniform : MarchUniformPlain;
+    march(brick.Drawn, sampling.Table, *brick.Entry, brick.Footprint, rays);
+  }
+  else if (!loaded.Packed)
+  {
+    const glm::ivec3 corner = this->Source.CellsOf(brick.Number).Lo;
+    const BrickPart part{ loaded.View, corner, brick.Drawn };
+    projection ? ProjectBrick(part, *projection, brick.Footprint, rays)
+               : MarchBrick(part, sampling.Table, brick.Footprint, rays, this->Scene.Interpolation);
+  }
+  else if (projection)
+  {
+    this->ProjectPackedBrick(brick, *loaded.Packed, *projection, rays);
+  }
+  else
+  {
+    const auto march = rays.PacketsFit ? MarchPacked : MarchUnpacked;
+    march(*loaded.Packed, loaded.Seen, sampling.Table, this->Shading.get(), loaded.Footprint, rays,
+      this->Scene.Interpolation);
+  }
+}
+
+void LevelCaster::ProjectPackedBrick(const PlannedBrick& brick, const PackedBrick& packed,
+  const ProjectionTable& projection, RayTile& rays) const
+{
+  if (rays.PacketsFit)
+  {
+    const ValueRange range = this->RangeOf(brick);
+    ProjectPacked(packed, brick.Drawn, range, projection, brick.Footprint, rays);
+  }
+  else
+  {
+    ProjectUnpacked(packed, brick.Drawn, projection, brick.Footprint, rays);
+  }
+}
+
+} // namespace banyan
