@@ -51,8 +51,11 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
                              : this->Passes.ToleranceOf(communicator, scene, field.Version(),
                                  { wish.Passes, wish.Still, wish.Interactive });
   SamplingWish sampling{ tolerance, scene.SampleDistance, levels ? coarsest : 0 };
-  sampling.FinestLevel =
-    field.IsMesh() ? FinestLevelFor(scene, wish.MaxElementsPerPixel, sampling.CoarsestLevel) : 0;
+  if (field.IsMesh() && wish.MaxElementsPerPixel > 0.0)
+  {
+    sampling.FinestLevelOfTile =
+      FinestLevelsOfTiles(scene, wish.MaxElementsPerPixel, sampling.CoarsestLevel);
+  }
   sampling.StaysInMemory = wish.Interacting && wish.Seconds > 0.0;
   const SamplingPlan plan = PlanDistributed(communicator, scene, field.Source(), field.Zones(),
     budgetBytes, ThreadPool::Process(), failure, sampling, frame);

@@ -25,7 +25,7 @@ public:
     double Seconds = 0.2;     ///< that a frame may take while interacting; 0 for any
     bool Interacting = false;
     bool Passes = false;              ///< whether still pictures become better in passes
-    double MaxElementsPerPixel = 0.0; ///< of meshes: see FinestLevelFor
+    double MaxElementsPerPixel = 0.0; ///< of meshes: see FinestLevelsOfTiles
     /// Above 0, what cells may measure on the screen, in place of the tolerance: see
     /// SamplingsByScreen.
     double ScreenErrorPixels = 0.0;

@@ -143,8 +143,8 @@ public:
 
   ///@{
   /**
-   * The most elements of a mesh of hexahedra that may show in a pixel: no coarser level shows more where
-   * the mesh is nearest to the eye (banyan::FinestLevelFor), and finer ones are not drawn, whatever
+   * The most elements of a mesh of hexahedra that may show in a pixel: where more would show under all of
+   * a tile of the picture (banyan::FinestLevelsOfTiles), it is drawn from a coarser level, whatever
    * ImageErrorTolerance asks for; the estimated error says what that costs. Default 0: any number, so that
    * the tolerance alone decides. Without effect on other data, and with SampleDistanceVoxels.
    */

@@ -51,8 +51,8 @@ public:
     else if (this->Accuracy.Tolerance > 0.0)
     {
       SamplingWish wish{ this->Accuracy.Tolerance, scene.SampleDistance, CoarsestLevel };
-      wish.FinestLevel =
-        FinestLevelFor(scene, this->Accuracy.MaxElementsPerPixel, wish.CoarsestLevel);
+      wish.FinestLevelOfTile =
+        FinestLevelsOfTiles(scene, this->Accuracy.MaxElementsPerPixel, wish.CoarsestLevel);
       const SamplingPlan plan =
         PlanSamplings(scene, wish, [this](const RayScene& pilot) { return this->Cast(pilot); });
       scene.Samplings = plan.Samplings;

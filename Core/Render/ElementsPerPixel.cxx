@@ -1,5 +1,7 @@
 #include "Render/ElementsPerPixel.h"
 
+#include "Render/TileDepths.h"
+
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -16,7 +18,6 @@ namespace
 double SmallestPixelArea(const RayScene& scene)
 {
   const glm::dmat4 worldToClip = glm::inverse(scene.Camera.ClipToWorldMatrix());
-  const glm::dmat4 rows = glm::transpose(worldToClip);
   double nearest = std::numeric_limits<double>::infinity();
   for (int corner = 0; corner < 8; ++corner)
   {
@@ -30,9 +31,29 @@ double SmallestPixelArea(const RayScene& scene)
   {
     return 0.0;
   }
-  // Clip space is 2 wide and high where w is 1.
-  const glm::dvec2 pixel = 2.0 * nearest * scene.Camera.PerPixel();
-  return pixel.x / glm::length(glm::dvec3(rows[0])) * pixel.y / glm::length(glm::dvec3(rows[1]));
+  const glm::dvec2 pixel = nearest * PixelSides(scene.Camera);
+  return pixel.x * pixel.y;
+}
+
+double ShortestEdge(const RayScene& scene)
+{
+  double edge = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    edge = std::min(edge, glm::length(glm::dvec3(scene.IndexToWorld[axis])));
+  }
+  return edge;
+}
+
+/// The first level of which at most so many elements show in an area.
+int LevelFor(double area, double edge, double most, int coarsest)
+{
+  int level = 0;
+  while (level < coarsest && area > most * std::ldexp(edge * edge, 2 * level))
+  {
+    ++level;
+  }
+  return level;
 }
 
 } // namespace
@@ -43,18 +64,27 @@ int FinestLevelFor(const RayScene& scene, double most, int coarsest)
   {
     return 0;
   }
-  double edge = std::numeric_limits<double>::infinity();
-  for (int axis = 0; axis < 3; ++axis)
+  return LevelFor(SmallestPixelArea(scene), ShortestEdge(scene), most, coarsest);
+}
+
+std::vector<int> FinestLevelsOfTiles(const RayScene& scene, double most, int coarsest)
+{
+  const glm::ivec2 tiles = TileSamplings::TilesOf(scene.Camera.ImageSize());
+  std::vector<int> levels(static_cast<std::size_t>(tiles.x) * tiles.y, 0);
+  if (!(most > 0.0))
   {
-    edge = std::min(edge, glm::length(glm::dvec3(scene.IndexToWorld[axis])));
+    return levels;
   }
-  const double area = SmallestPixelArea(scene);
-  int level = 0;
-  while (level < coarsest && area > most * std::ldexp(edge * edge, 2 * level))
+  const TileDepths depths(scene);
+  const glm::dvec2 sides = PixelSides(scene.Camera);
+  const double edge = ShortestEdge(scene);
+  for (std::size_t i = 0; i < levels.size(); ++i)
   {
-    ++level;
+    const int tile = static_cast<int>(i);
+    const double depth = depths.At({ tile % tiles.x, tile / tiles.x });
+    levels[i] = LevelFor(depth * depth * sides.x * sides.y, edge, most, coarsest);
   }
-  return level;
+  return levels;
 }
 
 } // namespace banyan

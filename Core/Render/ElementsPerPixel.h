@@ -3,6 +3,8 @@
 
 #include "Render/RayCaster.h"
 
+#include <vector>
+
 namespace banyan
 {
 
@@ -18,6 +20,11 @@ namespace banyan
 /// @param most above 0; 0 or less for any number, which is level 0
 /// @param coarsest the result is at most that
 int FinestLevelFor(const RayScene& scene, double most, int coarsest);
+
+/// The same for each tile of the picture, row by row, with what is nearest to the eye under that
+/// tile (TileDepths): near parts stay fine, far parts get coarser. None is finer than what
+/// FinestLevelFor has for all of the picture. All ranks get the same.
+std::vector<int> FinestLevelsOfTiles(const RayScene& scene, double most, int coarsest);
 
 } // namespace banyan
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace banyan
@@ -261,15 +262,37 @@ private:
     return true;
   }
 
+  /// Two levels are left for each tile, as for the picture.
+  int FinestLevelOf(std::size_t tile) const
+  {
+    const std::vector<int>& levels = this->Wish.FinestLevelOfTile;
+    return levels.empty() ? 0 : std::min(levels[tile], std::max(0, this->Wish.CoarsestLevel - 1));
+  }
+
+  /// Per level, SamplingChoices::CheapestFirst without finer ones: Levels begin with the coarsest.
+  std::vector<std::vector<SamplingChoices::Chosen>> OrdersFromLevels() const
+  {
+    std::vector<std::vector<SamplingChoices::Chosen>> orders{ this->Choices.CheapestFirst() };
+    for (int level = 1; level <= this->Wish.CoarsestLevel; ++level)
+    {
+      orders.emplace_back();
+      std::copy_if(orders[0].begin(), orders[0].end(), std::back_inserter(orders.back()),
+        [&](const SamplingChoices::Chosen& chosen)
+        { return this->Choices.Levels[chosen.Level].Value >= level; });
+    }
+    return orders;
+  }
+
   void Choose(SamplingPlan& plan) const
   {
     const auto tiles =
       std::make_shared<TileSamplings>(this->Pictures.ImageSize(), this->Choices.Samplings());
-    const std::vector<SamplingChoices::Chosen> order = this->Choices.CheapestFirst();
+    const auto orders = this->OrdersFromLevels();
     double largest = 0.0;
     for (std::size_t tile = 0; tile < this->Pictures.TileCount(); ++tile)
     {
-      const SamplingChoices::Chosen chosen = this->Choices.CheapestFor(tile, this->Allowed, order);
+      const SamplingChoices::Chosen chosen = this->Choices.CheapestFor(
+        tile, this->Allowed, orders[static_cast<std::size_t>(this->FinestLevelOf(tile))]);
       const glm::ivec2 position(static_cast<int>(tile % static_cast<std::size_t>(tiles->Tiles().x)),
         static_cast<int>(tile / static_cast<std::size_t>(tiles->Tiles().x)));
       tiles->SetNumber(position, this->Choices.NumberOf(chosen));
@@ -298,7 +321,9 @@ void Check(const SamplingWish& wish)
   {
     throw Error("The sample distance must be above 0");
   }
-  if (wish.CoarsestLevel < 0 || wish.FinestPilotLevel < 0 || wish.FinestLevel < 0)
+  if (wish.CoarsestLevel < 0 || wish.FinestPilotLevel < 0 || wish.FinestLevel < 0 ||
+      std::any_of(wish.FinestLevelOfTile.begin(), wish.FinestLevelOfTile.end(),
+        [](int level) { return level < 0; }))
   {
     throw Error("There is no level below 0, the finest");
   }
@@ -315,12 +340,23 @@ void Check(const SamplingWish& wish)
 SamplingPlan PlanSamplings(const RayScene& scene, SamplingWish wish, const DrawPilot& draw)
 {
   Check(wish);
+  const glm::ivec2 tiles = TileSamplings::TilesOf(scene.Camera.ImageSize());
+  if (!wish.FinestLevelOfTile.empty() &&
+      wish.FinestLevelOfTile.size() != static_cast<std::size_t>(tiles.x) * tiles.y)
+  {
+    throw Error("Each tile of the picture has its finest level, or none has");
+  }
   const glm::ivec3 cells = scene.DomainCells.Size();
   const int longest = std::max({ cells.x, cells.y, cells.z });
   while (wish.CoarsestLevel > 0 &&
          (longest + (1 << wish.CoarsestLevel) - 1) >> wish.CoarsestLevel < wish.LeastCells)
   {
     --wish.CoarsestLevel;
+  }
+  if (!wish.FinestLevelOfTile.empty())
+  {
+    wish.FinestLevel = std::max(wish.FinestLevel,
+      *std::min_element(wish.FinestLevelOfTile.begin(), wish.FinestLevelOfTile.end()));
   }
   // Of one level alone nothing could be told.
   const int secondCoarsest = std::max(0, wish.CoarsestLevel - 1);

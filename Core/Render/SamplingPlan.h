@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 namespace banyan
 {
@@ -32,6 +33,9 @@ struct SamplingWish
   /// The finest level that may be drawn from, whatever the tolerance: see FinestLevelFor. One below the
   /// coarsest that is used, if need be: of one level alone no error could be told.
   int FinestLevel = 0;
+  /// Per tile of the picture, row by row, the same, where it is coarser than FinestLevel: see
+  /// FinestLevelsOfTiles. Empty: nowhere.
+  std::vector<int> FinestLevelOfTile = {};
   /// Whether FinestPilotLevel is also the finest level that is drawn from, whatever the tolerance: of finer
   /// ones more is visible than memory may hold, so that each frame would load it anew.
   bool StaysInMemory = false;

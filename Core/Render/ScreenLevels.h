@@ -11,10 +11,9 @@ namespace banyan
 /// eye under that tile, with one sample per edge of such a cell. What the values are has no part in
 /// it, so no pilots are drawn, and no error is told.
 ///
-/// A cell's length is that of its longest edge, a pixel's that of its shorter side, at the depth of
-/// the nearest corner of the blocks under the tile (the domain is cut into up to 16 x 16 x 16 of
-/// them): where a block is cut by the plane of the eye, the finest level is taken. All ranks get
-/// the same result, since it depends on the camera and on DomainCells only.
+/// A cell's length is that of its longest edge, a pixel's that of its shorter side, at the depth
+/// that TileDepths has for the tile: an eye inside sees the finest level. All ranks get the same
+/// result, since it depends on the camera and on DomainCells only.
 ///
 /// @param scene Samplings have no part in it
 /// @param pixels above 0; below what a cell of the finest level measures, that level is taken

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 namespace
 {
@@ -120,6 +121,69 @@ TEST(HexLevelPictures, PlansKeepTheToleranceWithCoarserLevels)
     {
       EXPECT_GE(*plan.Samplings->UsedLevels().begin(), 2); // two levels, for the error
     }
+  }
+}
+
+TEST(HexLevelPictures, FarPartsAreCoarserAndRanksDrawThePictureOfOne)
+{
+  const Made made(
+    meshes::Leaves({ 64, 32, 32 }, 0, [](const Cube&) { return false; }), scenes::Standard);
+  RayScene scene = made.Scene(1.0);
+  const glm::ivec2 picture(160, 128);
+  const glm::dvec3 eye(1.0, 16.0, 34.0);
+  const glm::dmat4 view = glm::lookAt(eye, eye + glm::dvec3(1.0, 0.0, -0.3), glm::dvec3(0, 0, 1));
+  const glm::dmat4 projection = glm::perspective(std::acos(-1.0) / 2.5, 1.25, 0.01, 200.0);
+  scene.Camera = RayCamera(projection * view, picture, eye);
+  scene.Viewport = { glm::ivec2(0), picture };
+  SamplingWish wish{ 1.0, scene.SampleDistance, 3 };
+  wish.LeastCells = 8;
+  wish.LargestPixelStride = 1;
+  wish.FinestLevelOfTile = FinestLevelsOfTiles(scene, 0.01, wish.CoarsestLevel);
+  FloatImage alone;
+  for (const int ranks : { 1, 2, 3 })
+  {
+    FloatImage image;
+    RunOnSimulatedRanks(ranks,
+      [&](Communicator& communicator)
+      {
+        ThreadPool pool(1);
+        HexBrickSource source = made.Source(pool);
+        std::vector<Box> zones;
+        for (const Box& part : StaticZones({ 13, 7, 7 }, communicator.Size()))
+        {
+          zones.push_back(CellsOfBricks(part, 5, scene.DomainCells.Hi));
+        }
+        FrameStatistics statistics;
+        const SamplingPlan plan = PlanDistributed(communicator, scene, &source, zones,
+          std::uint64_t{ 1 } << 28, pool, {}, wish, statistics);
+        ASSERT_TRUE(plan.Samplings);
+        for (std::size_t i = 0; i < wish.FinestLevelOfTile.size(); ++i)
+        {
+          const int tile = static_cast<int>(i);
+          const int tilesAcross = plan.Samplings->Tiles().x;
+          const int number = plan.Samplings->NumberAt({ tile % tilesAcross, tile / tilesAcross });
+          EXPECT_GE(plan.Samplings->Samplings()[static_cast<std::size_t>(number)].Level,
+            std::min(wish.FinestLevelOfTile[i], 2));
+        }
+        const std::set<int> used = plan.Samplings->UsedLevels();
+        EXPECT_EQ(*used.begin(), 0);
+        EXPECT_GE(*used.rbegin(), 2);
+        RayScene planned = scene;
+        planned.Samplings = plan.Samplings;
+        planned.OpacityLimit = plan.OpacityLimit;
+        const FloatImage drawn = DrawDistributed(
+          communicator, planned, &source, zones, std::uint64_t{ 1 } << 28, pool, {}, statistics);
+        if (communicator.Rank() == 0)
+        {
+          image = drawn;
+        }
+      });
+    if (ranks == 1)
+    {
+      alone = image;
+      EXPECT_GT(alone.At(80, 40).a, 0.1);
+    }
+    EXPECT_LE(MaxDifference(image, alone), OneLevel) << ranks;
   }
 }
 

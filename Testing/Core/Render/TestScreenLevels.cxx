@@ -2,6 +2,9 @@
 
 #include "Render/ScreenLevels.h"
 
+#include "Render/ElementsPerPixel.h"
+#include "Render/TileDepths.h"
+
 #include "Render/Scenes.h"
 
 #include <gtest/gtest.h>
@@ -110,6 +113,69 @@ TEST(ScreenLevels, CellsAreNoLongerThanAllowedWhereRaysEnter)
     }
   }
   EXPECT_GE(used.size(), 4u);
+}
+
+/// A slab of ground, seen from just above it along it: the plane of the eye goes through blocks.
+RayScene OverTheGround()
+{
+  RayScene scene = scenes::Scene({ 257, 129, 33 }, { 320, 256 });
+  const glm::dvec3 eye(3.0, 64.0, 36.0);
+  const glm::dmat4 view = glm::lookAt(eye, eye + glm::dvec3(1.0, 0.05, -0.05), glm::dvec3(0, 0, 1));
+  const glm::dmat4 projection = glm::perspective(std::acos(-1.0) / 3.0, 1.25, 0.01, 1000.0);
+  scene.Camera = RayCamera(projection * view, { 320, 256 }, eye);
+  return scene;
+}
+
+TEST(ScreenLevels, DepthsAreThoseOfRaysNearToFar)
+{
+  const RayScene scene = OverTheGround();
+  const TileDepths depths(scene);
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0.0;
+  for (int y = 0; y < depths.Tiles().y; ++y)
+  {
+    for (int x = 0; x < depths.Tiles().x; ++x)
+    {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (int i = 0; i < 32 * 32; ++i)
+      {
+        nearest = std::min(nearest, DepthOfEntry(scene, 32 * x + i % 32, 32 * y + i / 32));
+      }
+      const double depth = depths.At({ x, y });
+      EXPECT_LE(depth, 1.0001 * nearest);
+      if (std::isfinite(nearest))
+      {
+        // A block is 16 long, 8 wide, and covers tiles that it only touches.
+        EXPECT_GE(depth, nearest - 24.0) << x << ", " << y;
+        EXPECT_GT(depth, 1.0);
+        least = std::min(least, depth);
+        most = std::max(most, depth);
+      }
+    }
+  }
+  EXPECT_LT(least, 8.0);
+  EXPECT_GT(most, 60.0);
+}
+
+TEST(ScreenLevels, ElementsPerPixelAreCountedUnderEachTile)
+{
+  const RayScene scene = OverTheGround();
+  const TileDepths depths(scene);
+  const glm::dvec2 sides = PixelSides(scene.Camera);
+  const double most = 0.002;
+  const std::vector<int> levels = FinestLevelsOfTiles(scene, most, Coarsest);
+  for (std::size_t i = 0; i < levels.size(); ++i)
+  {
+    const int tile = static_cast<int>(i);
+    const double depth = depths.At({ tile % depths.Tiles().x, tile / depths.Tiles().x });
+    const double elements = depth * sides.x * depth * sides.y / std::ldexp(1.0, 2 * levels[i]);
+    EXPECT_TRUE(levels[i] == Coarsest || elements <= most);
+    EXPECT_TRUE(levels[i] == 0 || 4.0 * elements > most);
+    EXPECT_GE(levels[i], FinestLevelFor(scene, most, Coarsest));
+  }
+  EXPECT_GE(std::set<int>(levels.begin(), levels.end()).size(), 4u);
+  const std::vector<int> any = FinestLevelsOfTiles(scene, 0.0, Coarsest);
+  EXPECT_EQ(std::set<int>(any.begin(), any.end()), std::set<int>{ 0 });
 }
 
 TEST(ScreenLevels, AnEyeInsideSeesTheFinestLevel)
