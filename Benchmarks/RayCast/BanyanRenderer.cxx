@@ -56,7 +56,8 @@ public:
         MaskRange{ this->Scene->Low, this->Scene->High }, this->Pool);
     }
     RayStatistics statistics;
-    const RayScene drawn = this->SceneWith(this->Settings.at(number), statistics);
+    const RayScene drawn =
+      this->SceneWith(this->Settings.at(number), statistics, frame.EstimatedError);
     FloatImage image = this->Cast(drawn, statistics);
     FillBetweenRays(drawn, image, this->Pool);
     clock.StopInto(frame);
@@ -74,7 +75,8 @@ private:
   }
 
   /// What finding samplings for a tolerance takes is part of the frame.
-  RayScene SceneWith(const Setting& setting, RayStatistics& statistics)
+  RayScene SceneWith(
+    const Setting& setting, RayStatistics& statistics, std::optional<double>& estimatedError)
   {
     RayScene scene = ToRayScene(*this->Scene, setting.SampleDistance.value_or(1.0), OpacityLimit);
     if (setting.Tolerance)
@@ -84,6 +86,7 @@ private:
           [&](const RayScene& pilot) { return this->Cast(pilot, statistics); });
       scene.Samplings = plan.Samplings;
       scene.OpacityLimit = plan.OpacityLimit;
+      estimatedError = plan.EstimatedError;
     }
     return scene;
   }

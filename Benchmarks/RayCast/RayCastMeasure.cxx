@@ -93,6 +93,7 @@ void JudgeFirst(
     Add(candidate, frame);
   }
   result.Samples = frame.Samples;
+  result.EstimatedError = frame.EstimatedError;
   result.Error = ErrorOf(frame.Shown, reference);
   if (frame.Unrounded)
   {
@@ -162,7 +163,7 @@ std::vector<RayCastMeasurement> MeasureScene(const BenchScene& scene, const Floa
 std::string RayCastCsvHeader()
 {
   return "scene,renderer,threads,tolerance,ms_per_frame,samples,msamples_s,psnr_db,max_error,"
-         "sample_distance,first_frame_ms,processor_ms,max_error_unrounded";
+         "sample_distance,first_frame_ms,processor_ms,max_error_unrounded,estimated_error";
 }
 
 std::string RayCastCsvLine(const RayCastMeasurement& m)
@@ -178,7 +179,8 @@ std::string RayCastCsvLine(const RayCastMeasurement& m)
          Number(m.Accuracy.Tolerance) + "," + Number(m.FrameMilliseconds) + "," + samples + "," +
          rate + "," + Number(m.Error.PsnrDecibels) + "," + Number(m.Error.Largest) + "," +
          Number(m.Accuracy.SampleDistance) + "," + Number(m.FirstFrameMilliseconds) + "," +
-         Number(m.ProcessorMilliseconds) + "," + Number(m.LargestErrorUnrounded);
+         Number(m.ProcessorMilliseconds) + "," + Number(m.LargestErrorUnrounded) + "," +
+         Number(m.EstimatedError);
 }
 
 std::string RayCastMessage(const RayCastMeasurement& m)

@@ -23,6 +23,7 @@ struct RayCastMeasurement
   std::optional<std::int64_t> Samples;
   PictureError Error;                          ///< of the picture in 8 bits
   std::optional<double> LargestErrorUnrounded; ///< in 1/255, where the renderer has floats
+  std::optional<double> EstimatedError;        ///< the same, as the renderer expects it
 };
 
 struct RayCastMeasuring

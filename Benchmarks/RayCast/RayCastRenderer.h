@@ -33,6 +33,8 @@ struct Frame
   Picture Shown;
   std::optional<FloatImage> Unrounded; ///< where the renderer has it
   std::optional<std::int64_t> Samples; ///< where the renderer tells
+  /// In 1/255, where the renderer says how far off its picture may be.
+  std::optional<double> EstimatedError;
 };
 
 /// Takes the times of a frame.

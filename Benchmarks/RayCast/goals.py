@@ -80,6 +80,20 @@ def speed_ups(rows):
                    f"{100.0 * one / all_ / most:.0f} % |")
 
 
+def estimates(rows):
+    """Whether the worst pixel of each scene is off by no more than was estimated, whatever the tolerance."""
+    yield "| scene | tolerances | worst pixel over what was estimated | |"
+    yield "|---|---|---|---|"
+    for scene in in_order(rows, "scene"):
+        found = [(row["max_error_unrounded"] / row["estimated_error"], row["tolerance"]) for row in rows
+                 if row["scene"] == scene and row.get("estimated_error")]
+        if found:
+            missed = ", ".join(f"{tolerance:g}" for ratio_, tolerance in sorted(found, key=lambda f: f[1])
+                               if ratio_ > 1.0)
+            verdict = f"not held at {missed}" if missed else "held"
+            yield f"| {scene} | {len(found)} | {max(found)[0]:.2f} | {verdict} |"
+
+
 def needed(rows):
     """A scene and its settings per line, separated by commas."""
     for scene in in_order(rows, "scene"):
@@ -97,6 +111,8 @@ def main(path):
     rows = read(path, ("scene", "renderer"))
     print("Goals: how many times faster than VTK's GPU mapper, quickest settings that are good enough")
     print("\n".join(lines(rows)))
+    print("\nEstimates: what is said to be the largest error, and what it is")
+    print("\n".join(estimates(rows)))
     print("\nThreads: one sample per voxel")
     print("\n".join(speed_ups(rows)))
 

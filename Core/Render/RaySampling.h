@@ -1,6 +1,8 @@
 #ifndef banyan_Render_RaySampling_h
 #define banyan_Render_RaySampling_h
 
+#include "Base/Error.h"
+
 #include <glm/vec2.hpp>
 
 #include <cstddef>
@@ -37,16 +39,21 @@ class TileSamplings
 {
 public:
   static constexpr int Edge = 32; ///< pixels
+  static constexpr std::size_t MostSamplings = 65536;
 
   TileSamplings() = default;
   /// All tiles have sampling 0 at first.
   /// @param imageSize pixels of the whole picture
-  /// @param samplings 1 to 255 of them
+  /// @param samplings at least one and at most 65536; throws Error otherwise
   TileSamplings(const glm::ivec2& imageSize, std::vector<RaySampling> samplings)
     : TileCounts(TilesOf(imageSize))
     , List(std::move(samplings))
     , Numbers(static_cast<std::size_t>(this->TileCounts.x) * this->TileCounts.y, 0)
   {
+    if (this->List.empty() || this->List.size() > MostSamplings)
+    {
+      throw Error("The tiles of a picture have 1 to 65536 samplings to choose from");
+    }
   }
 
   /// How many tiles a picture has per axis.
@@ -58,7 +65,7 @@ public:
   std::vector<bool> Used() const
   {
     std::vector<bool> used(this->List.size(), false);
-    for (const std::uint8_t number : this->Numbers)
+    for (const std::uint16_t number : this->Numbers)
     {
       used[number] = true;
     }
@@ -83,7 +90,7 @@ public:
   int NumberAt(const glm::ivec2& tile) const { return this->Numbers[this->IndexOf(tile)]; }
   void SetNumber(const glm::ivec2& tile, int number)
   {
-    this->Numbers[this->IndexOf(tile)] = static_cast<std::uint8_t>(number);
+    this->Numbers[this->IndexOf(tile)] = static_cast<std::uint16_t>(number);
   }
 
 private:
@@ -94,7 +101,7 @@ private:
 
   glm::ivec2 TileCounts{ 0 };
   std::vector<RaySampling> List;
-  std::vector<std::uint8_t> Numbers;
+  std::vector<std::uint16_t> Numbers;
 };
 
 } // namespace banyan

@@ -80,6 +80,19 @@ protected:
   }
 };
 
+TEST_F(TileSamplingsTest, AsManyAsLevelsDistancesAndStridesGive)
+{
+  const std::vector<RaySampling> many(700, RaySampling{});
+  TileSamplings samplings({ 90, 70 }, many);
+  samplings.SetNumber({ 1, 2 }, 699);
+  EXPECT_EQ(samplings.NumberAt({ 1, 2 }), 699);
+  EXPECT_EQ(samplings.NumberAt({ 0, 0 }), 0);
+  EXPECT_TRUE(samplings.Used()[699]);
+  EXPECT_FALSE(samplings.Used()[699 - 512]);
+  EXPECT_THROW(TileSamplings({ 90, 70 }, {}), Error);
+  EXPECT_THROW(TileSamplings({ 90, 70 }, std::vector<RaySampling>(65537)), Error);
+}
+
 TEST_F(TileSamplingsTest, OneSamplingIsTheSampleDistance)
 {
   for (const double distance : { 0.7, 2.5 })
