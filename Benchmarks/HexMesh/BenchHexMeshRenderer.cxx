@@ -33,7 +33,9 @@ const char* Help =
   "that\n"
   "                     --list prints; reference: makes the mesh and the converged picture, "
   "where\n"
-  "                     they are not kept yet, and prints the number of cells\n"
+  "                     they are not kept yet, and prints the number of cells; locator: the "
+  "integral\n"
+  "                     through the elements that VTK's cell locator finds, slowly\n"
   "  --mesh KIND        uniform (default), graded: the standard field, function S1;\n"
   "                     earthquake: the ground's speed; FILE.exo: the same of one that "
   "banyan-generate made\n"
@@ -206,7 +208,9 @@ std::unique_ptr<HexMeshRenderer> RendererOf(const Options& options, const HexMes
   {
     return MakeBanyanHexMeshRenderer(scene, accuracy, options.Threads);
   }
-  auto renderer = MakeVtkHexMeshRenderer(options.Renderer, scene, options.Threads);
+  auto renderer = options.Renderer == "locator"
+                    ? MakeLocatorHexMeshRenderer(scene, options.Threads)
+                    : MakeVtkHexMeshRenderer(options.Renderer, scene, options.Threads);
   if (!renderer)
   {
     throw Error("There is no renderer '" + options.Renderer + "'");

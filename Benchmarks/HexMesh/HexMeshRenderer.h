@@ -56,6 +56,10 @@ std::unique_ptr<HexMeshRenderer> MakeBanyanHexMeshRenderer(
 std::unique_ptr<HexMeshRenderer> MakeVtkHexMeshRenderer(
   const std::string& name, const HexMeshScene& scene, int threads);
 
+/// What the converged picture is checked against: the integral through the original elements that
+/// VTK's cell locator finds, in double precision. Null when the program was built without VTK.
+std::unique_ptr<HexMeshRenderer> MakeLocatorHexMeshRenderer(const HexMeshScene& scene, int threads);
+
 /// All names that MakeVtkHexMeshRenderer knows; empty when the program was built without VTK.
 std::vector<std::string> VtkHexMeshRenderers();
 

@@ -11,6 +11,11 @@ std::unique_ptr<HexMeshRenderer> MakeVtkHexMeshRenderer(
   return nullptr;
 }
 
+std::unique_ptr<HexMeshRenderer> MakeLocatorHexMeshRenderer(const HexMeshScene&, int)
+{
+  return nullptr;
+}
+
 std::vector<std::string> VtkHexMeshRenderers()
 {
   return {};

@@ -1,13 +1,11 @@
 #include "HexMeshRenderer.h"
+#include "VtkGridOfMesh.h"
 #include "VtkScene.h"
 
 #include "Base/Timer.h"
 
 #include <vtkCamera.h>
-#include <vtkCellArray.h>
-#include <vtkCellType.h>
 #include <vtkDataSetTriangleFilter.h>
-#include <vtkFloatArray.h>
 #include <vtkGPUVolumeRayCastMapper.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
@@ -18,7 +16,6 @@
 #include <vtkRenderer.h>
 #include <vtkResampleToImage.h>
 #include <vtkSmartPointer.h>
-#include <vtkTypeInt64Array.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridVolumeRayCastMapper.h>
@@ -34,39 +31,6 @@ namespace banyan::bench
 {
 namespace
 {
-
-constexpr int keep = 1; // the memory is not VTK's
-
-/// The mesh as VTK's, sharing its memory.
-vtkSmartPointer<vtkUnstructuredGrid> GridOf(const BenchMesh& mesh)
-{
-  vtkNew<vtkFloatArray> coordinates;
-  coordinates->SetNumberOfComponents(3);
-  coordinates->SetArray(
-    const_cast<float*>(mesh.Points.data()), static_cast<vtkIdType>(mesh.Points.size()), keep);
-  vtkNew<vtkPoints> points;
-  points->SetData(coordinates);
-  vtkNew<vtkTypeInt64Array> ids;
-  ids->SetArray(reinterpret_cast<vtkTypeInt64*>(const_cast<std::int64_t*>(mesh.Ids.data())),
-    static_cast<vtkIdType>(mesh.Ids.size()), keep);
-  vtkNew<vtkTypeInt64Array> offsets;
-  offsets->SetNumberOfValues(static_cast<vtkIdType>(mesh.Cells()) + 1);
-  for (vtkIdType cell = 0; cell < offsets->GetNumberOfValues(); ++cell)
-  {
-    offsets->SetValue(cell, 8 * cell);
-  }
-  vtkNew<vtkCellArray> cells;
-  cells->SetData(offsets, ids);
-  vtkNew<vtkFloatArray> values;
-  values->SetName("value");
-  values->SetArray(
-    const_cast<float*>(mesh.Values.data()), static_cast<vtkIdType>(mesh.Values.size()), keep);
-  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  grid->SetPoints(points);
-  grid->SetCells(mesh.Voxels ? VTK_VOXEL : VTK_HEXAHEDRON, cells);
-  grid->GetPointData()->SetScalars(values);
-  return grid;
-}
 
 /// What a mapper takes the numbers of a scalar opacity function for.
 enum class OpacityMeans
@@ -184,7 +148,7 @@ public:
 
   void Open() override
   {
-    this->Grid = GridOf(this->Scene.Mesh);
+    this->Grid = VtkGridOf(this->Scene.Mesh);
     const BenchScene& look = this->Scene.Look;
     this->Window->SetMultiSamples(0);
     this->Window->OffScreenRenderingOn();
