@@ -354,7 +354,7 @@ void SeriesWriting::Open()
         }
       }
       SeriesIndex plan = PlanSeries(this->First.Whole, descriptions, this->Order.Options);
-      this->RefersBefore = MayReferBefore(plan);
+      this->RefersBefore = MayReferBefore(plan, this->Order.Options);
       this->Encoder = std::make_unique<BackgroundEncoder>(
         std::move(plan), this->Order.Options, *this->Folder, ThreadPool::DefaultWidth());
     });

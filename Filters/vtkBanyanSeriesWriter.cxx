@@ -209,8 +209,7 @@ void vtkBanyanSeriesWriter::WriteSeries()
                          ? banyan::ErrorBoundMode::Absolute
                          : banyan::ErrorBoundMode::RelativeToSeriesRange;
   order.Options.KeyframeInterval = this->KeyframeInterval;
-  order.Options.Ideas.GroupBefore = !this->ClosedGroups;
-  order.Options.Ideas.RestingArrays = !this->ClosedGroups;
+  order.Options.ClosedGroups = this->ClosedGroups;
   order.Options.Profile = static_cast<banyan::EncodeProfile>(this->Profile);
   if (this->GetNumberOfInputConnections(0) > 0)
   {

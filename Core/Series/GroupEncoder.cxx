@@ -104,7 +104,8 @@ public:
   bool Rests(std::size_t array, const std::vector<std::vector<ArrayValues>>& steps) const
   {
     const std::vector<ComponentIndex>& components = this->Plan.Arrays[array].Components;
-    if (this->First || steps.size() < 2 || !this->Options.Ideas.RestingArrays ||
+    if (this->First || steps.size() < 2 || this->Options.ClosedGroups ||
+        !this->Options.Ideas.RestingArrays ||
         !std::all_of(components.begin(), components.end(), IsPromised))
     {
       return false;
@@ -165,7 +166,7 @@ private:
 
 } // namespace
 
-bool MayReferBefore(const SeriesIndex& plan)
+bool MayReferBefore(const SeriesIndex& plan, const EncodeOptions& options)
 {
   bool may = false;
   for (const ArrayIndex& array : plan.Arrays)
@@ -175,7 +176,7 @@ bool MayReferBefore(const SeriesIndex& plan)
       may = may || IsPromised(component);
     }
   }
-  return may && plan.KeyframeInterval > 1;
+  return may && plan.KeyframeInterval > 1 && !options.ClosedGroups;
 }
 
 EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
@@ -225,7 +226,7 @@ EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
       FieldOfPlan made = rests ? MakeField(plan, options, a, c, { steps.back() }, pool)
                                : MakeField(plan, options, a, c, steps, pool);
       made.Field.Spare = &spare;
-      if (steps.size() > 1 && !rests && options.Ideas.GroupBefore)
+      if (steps.size() > 1 && !rests && !options.ClosedGroups && options.Ideas.GroupBefore)
       {
         tellSteps(0);
         made.Field.Before = stepBefore.Of(a, c, fields.size());

@@ -37,8 +37,8 @@ struct LastStep
 };
 
 /// Whether groups of a series may refer to the last step of the group before: where the plan fixes
-/// the range of some component.
-bool MayReferBefore(const SeriesIndex& plan);
+/// the range of some component, and the options do not close groups.
+bool MayReferBefore(const SeriesIndex& plan, const EncodeOptions& options);
 
 /// Encodes a group of consecutive steps into its segment. Groups may be encoded in any order, by any
 /// process that has the same plan, to the same bytes: all that a group needs of the one before is

@@ -45,6 +45,9 @@ struct EncodeOptions
   double ErrorBound = 1.0 / 512.0;
   ErrorBoundMode Mode = ErrorBoundMode::RelativeToSeriesRange;
   int KeyframeInterval = 8; ///< steps per segment, in [1, 1024]
+  /// Whether any brick of any step takes its own segment alone; else also the last step of the one
+  /// before, where that makes series smaller.
+  bool ClosedGroups = false;
   int BrickCells = 0;       ///< 8, 16, 32 or 64; 0 chooses by the size of the grid
   int CompressionLevel = 3; ///< of zstd (exceptions), in [1, 19]
   EncodeProfile Profile = EncodeProfile::Balanced;

@@ -201,15 +201,28 @@ TEST(FailureTable, Denormals)
   Check(SmoothSteps<double>(2, 1e-310), ValueRange{ -1.5e-310, 1.5e-310 });
 }
 
+/// Lattices have up to 2^24 places for the range; with a closer bound all is kept exactly.
 TEST(FailureTable, RangeOverBoundOfTwoToThe31)
 {
-  for (const double power : { 24, 26, 27, 29, 31, 40 })
+  for (const double power : { 16, 20, 22, 23, 24, 26, 27, 29, 31, 40 })
   {
     EncodeOptions options;
     options.ErrorBound = std::pow(2.0, -power);
     auto steps = SmoothSteps<double>(2);
     SCOPED_TRACE(power);
-    Check(steps, Unit, options);
+    const Encoded encoded = Check(steps, Unit, options);
+    if (power <= 23)
+    {
+      EXPECT_EQ(encoded.Exceptions(), 0);
+      EXPECT_LT(encoded.Bits, 0.5 * power);
+    }
+    else
+    {
+      // What is exactly 0 lies on any lattice.
+      EXPECT_GT(static_cast<double>(encoded.Exceptions()), 0.99 * 2 * 32768);
+      EXPECT_EQ(encoded.Index.Arrays[0].Components[0].MeasuredMaxError, 0.0);
+      EXPECT_LT(encoded.Bits, 45.0);
+    }
   }
 }
 

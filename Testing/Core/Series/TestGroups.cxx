@@ -216,7 +216,10 @@ TEST_P(Groups, NeedTheStepBeforeWhereTheyReferToIt)
   SegmentFolder segments(folder / "s.banyan");
   ThreadPool pool(1);
   const bool refers = GetParam() != Kind::Absolute;
-  EXPECT_EQ(MayReferBefore(this->Plan()), refers);
+  EXPECT_EQ(MayReferBefore(this->Plan(), this->Options), refers);
+  EncodeOptions closed = this->Options;
+  closed.ClosedGroups = true;
+  EXPECT_FALSE(MayReferBefore(this->Plan(), closed));
   const auto encode = [&](const std::vector<ArrayValues>& before)
   {
     return EncodeGroup(this->Plan(), this->Options, segments, 1, this->TimesOf(1),

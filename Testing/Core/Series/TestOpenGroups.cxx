@@ -84,18 +84,11 @@ TEST(OpenGroups, AreNoneWithoutRangesOfTheSeries)
   EXPECT_EQ(OpenGroups(path, encoder.Finish()), std::vector<bool>(3, false));
 }
 
-/// As ParaView's writer does for its property ClosedGroups.
-void CloseGroups(EncodeOptions& options)
-{
-  options.Ideas.GroupBefore = false;
-  options.Ideas.RestingArrays = false;
-}
-
 TEST(OpenGroups, AreClosedWhenAsked)
 {
   const auto steps = Sample<float>(Domain, 13, Wavy<float>);
   EncodeOptions options = Options();
-  CloseGroups(options);
+  options.ClosedGroups = true;
   EXPECT_EQ(OpenGroupsOf(steps, options), std::vector<bool>(4, false));
 }
 
@@ -110,7 +103,7 @@ TEST(OpenGroups, ClosedGroupsAreReadByThemselves)
       { return Wavy<float>(x, y, z, rests ? 0 : s); });
     const auto moving = Sample<float>(Domain, 12, Wavy<float>);
     EncodeOptions options = Options();
-    CloseGroups(options);
+    options.ClosedGroups = true;
     ThreadPool pool(2);
     SeriesEncoder encoder(
       path, Domain, { Describe(steps, "a"), Describe(moving, "b") }, options, pool);
