@@ -36,6 +36,7 @@ struct vtkBanyanVolumeMapper::Internals
 {
   std::unique_ptr<banyan::Communicator> Communicator;
   banyan::DistributedField Field;
+  banyan::KeptPlan Plans; ///< of compositing
   banyan::MotionEnhancement Motion;
   banyan::Backdrop Backdrop;
   banyan::KeptTransferFunction Function;
@@ -321,6 +322,7 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   compositing.Method = static_cast<banyan::CompositingMethod>(this->Compositing);
   compositing.Transport =
     this->CompositeInFewBits ? banyan::PixelTransport::WithinOne : banyan::PixelTransport::Floats;
+  compositing.Plans = &self.Plans;
   compositing.External = banyan::IceTRadixK(this->Controller);
   if (this->ReadAhead)
   {

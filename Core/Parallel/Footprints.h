@@ -16,10 +16,19 @@ struct Footprint
   {
     int Lo = 0;
     int Hi = 0; ///< half-open; not above Lo if the row is empty
+
+    friend bool operator==(const Interval& a, const Interval& b)
+    {
+      return a.Lo == b.Lo && a.Hi == b.Hi;
+    }
   };
   PixelRect Rect;             ///< around all of it; empty if nothing can be drawn
   std::vector<Interval> Rows; ///< one per row of Rect
 
+  friend bool operator==(const Footprint& a, const Footprint& b)
+  {
+    return a.Rect == b.Rect && a.Rows == b.Rows;
+  }
   bool Empty() const { return this->Rect.Empty(); }
   /// Of any row of the picture.
   Interval Row(int y) const

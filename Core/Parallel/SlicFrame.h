@@ -112,7 +112,8 @@ private:
   CompositeStatistics& Statistics;
   const bool Ordered;
   const bool Pack;
-  const CompositePlan Plan;
+  const std::shared_ptr<const CompositePlan> SharedPlan;
+  const CompositePlan& Plan; ///< this one
   std::vector<int> Position; ///< of each rank in the visibility order
   FloatImage Picture;
   std::vector<Message> Expected;

@@ -135,6 +135,43 @@ TEST_P(WhileCasting, CompositesTheSamePictureToTheLastBit)
   }
 }
 
+TEST_P(WhileCasting, KeepsTheScheduleWhileNothingMoves)
+{
+  const std::vector<float> values = scenes::Sampled<float>(scenes::Standard, Samples);
+  const int ranks = GetParam();
+  // Twice the same view, another one twice, the first one again; then the root blends its picture
+  // over something.
+  const std::vector<double> distances{ 1.4, 1.4, 0.8, 0.8, 1.4, 1.4 };
+  std::vector<FloatImage> anew;
+  for (const double distance : distances)
+  {
+    anew.push_back(Draw(SceneOf(distance), values, ranks, 1, {}));
+  }
+  RunOnSimulatedRanks(ranks,
+    [&](Communicator& communicator)
+    {
+      ThreadPool pool(1);
+      FailingSource source(values, pool, -1);
+      KeptPlan plans;
+      CompositeOptions options;
+      options.Plans = &plans;
+      for (std::size_t frame = 0; frame < distances.size(); ++frame)
+      {
+        const RayScene scene = SceneOf(distances[frame]);
+        options.Behind = frame == 5 ? scene.Viewport : PixelRect{};
+        FrameStatistics statistics;
+        const FloatImage picture = DrawDistributed(communicator, scene, &source,
+          ZonesFor(scene, ranks), Budget, pool, {}, statistics, options);
+        if (communicator.Rank() == 0)
+        {
+          EXPECT_TRUE(picture.Pixels == anew[frame].Pixels) << "frame " << frame;
+        }
+      }
+      EXPECT_EQ(plans.Derived(), ranks > 1 ? 4 : 0);
+      EXPECT_EQ(plans.Kept(), ranks > 1 ? 2 : 0);
+    });
+}
+
 /// Wherever and whenever a rank fails, others have sent, and wait for, what it has not.
 TEST_P(WhileCasting, AFailureOfOneRankIsThrownOnAll)
 {

@@ -1,0 +1,38 @@
+#ifndef banyan_Parallel_KeptPlan_h
+#define banyan_Parallel_KeptPlan_h
+
+#include "Parallel/CompositePlan.h"
+
+#include <cstdint>
+#include <memory>
+
+namespace banyan
+{
+
+/// The plan of the last frame: it is that of the next one too, where neither the camera nor zones
+/// have moved. Each rank keeps its own; what it gives out is what PlanCompositing would derive, so
+/// ranks need not agree about it.
+class KeptPlan
+{
+public:
+  /// The arguments are those of PlanCompositing.
+  std::shared_ptr<const CompositePlan> Of(const std::vector<Footprint>& footprints,
+    const PixelRect& viewport, const PixelRect& behind, bool ordered);
+
+  /// How often a plan was derived, and how often the last one would do.
+  std::int64_t Derived() const { return this->TimesDerived; }
+  std::int64_t Kept() const { return this->TimesKept; }
+
+private:
+  std::shared_ptr<const CompositePlan> Last; ///< of the following
+  std::vector<Footprint> Footprints;
+  PixelRect Viewport;
+  PixelRect Behind;
+  bool Ordered = false;
+  std::int64_t TimesDerived = 0;
+  std::int64_t TimesKept = 0;
+};
+
+} // namespace banyan
+
+#endif
