@@ -47,6 +47,7 @@ void FrameBalancer::Start(LoadBalancing mode, const Field& field, int ranks)
         now.BytesPerPosition == options.BytesPerPosition && now.Start == options.Start &&
         this->RankOfSeat == field.Start.RankOfSeat)
     {
+      this->Balancer->ValuesChanged();
       return;
     }
   }

@@ -71,6 +71,10 @@ public:
   /// travel: what turning moves has no limit but what is drawn
   void BeginFrame(const BrickCosts& view, const ScreenCuts* cuts = nullptr);
 
+  /// The next frame draws other values, of another step say. What was learned of costs is still the
+  /// best guess, but a view that rests is not the same view any more.
+  void ValuesChanged() { this->Search.Forget(); }
+
   /// Instead of the zones that the last BeginFrame came to: for the frame that was begun.
   void SetTree(const ZoneTree& tree) { this->Zones = tree; }
 
@@ -130,6 +134,7 @@ private:
     double SecondsPerWork = 1.0; ///< in units of the ranks' median
     int Frames = 0;              ///< that the average is over
     double Outlier = 0.0;        ///< of the last frame, if it was one
+    int Outliers = 0;            ///< frames one after the other that were, in the same direction
     double Share = 1.0;          ///< work of the zone by blocks over that by bricks
   };
   std::vector<Pace> Paces;

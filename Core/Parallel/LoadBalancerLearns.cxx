@@ -17,8 +17,10 @@ constexpr double ErrorWeight = 0.4;
 /// Weight of a new frame in the speed of a rank, once it is known: noise must not move planes.
 constexpr double SpeedWeight = 0.1;
 /// Seconds that differ from those of a rank so far by more than this factor are a change when they
-/// come twice, and a disturbance when they come once.
+/// come three times, and a disturbance when they come less often: where every frame is off by a
+/// fifth, two such ones follow each other now and then. By a larger one, twice is enough.
 constexpr double OutlierFactor = 1.5;
+constexpr double LargeFactor = 2.5;
 /// A rank's speed is not learned from less than this part of the ranks' mean work.
 constexpr double LeastPart = 0.1;
 
@@ -72,7 +74,10 @@ void LoadBalancer::LearnSpeeds(const std::vector<RankWork>& ranks, const BrickCo
       pace.SecondsPerWork += weight * (now - pace.SecondsPerWork);
       ++pace.Frames;
     }
-    else if (pace.Outlier > 0.0 && (pace.Outlier > pace.SecondsPerWork) == (factor > 1.0))
+    const bool again = pace.Outlier > 0.0 && (pace.Outlier > pace.SecondsPerWork) == (factor > 1.0);
+    const bool large = factor > LargeFactor || factor < 1.0 / LargeFactor;
+    pace.Outliers = !outlier ? 0 : again ? pace.Outliers + 1 : 1;
+    if (pace.Outliers >= (large ? 2 : 3))
     {
       pace.SecondsPerWork = 0.5 * (now + pace.Outlier);
       pace.Frames = 2;

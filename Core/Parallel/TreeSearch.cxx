@@ -22,8 +22,12 @@ constexpr double SearchAbove = 1.06;
 constexpr double GoodEnough = 1.02;
 /// By which the imbalance must fall for a tree to be better.
 constexpr double LeastGain = 0.005;
-/// By which it must rise for the search to begin anew.
-constexpr double Worse = 0.05;
+/// By which it must rise, by the average speeds of so many frames, for the search to begin anew. A
+/// rank whose speed is another one by this factor begins it at once: noise of single frames, a
+/// fifth say, is less in the speeds that are smoothed.
+constexpr double Worse = 0.1;
+constexpr int FramesOfSpeeds = 32;
+constexpr double OtherSpeed = 1.4;
 /// Trials without a better tree that end a search, and trials that do in any case.
 constexpr int MostFailures = 8;
 constexpr std::size_t MostTrials = 17;
@@ -117,6 +121,7 @@ void TreeSearch::Forget()
   this->Failures = 0;
   this->Model = {};
   this->Kept.reset();
+  this->KeptFrames = 0;
   this->Asked = false;
 }
 
@@ -366,7 +371,21 @@ std::optional<ZoneTree> TreeSearch::NewtonTree(
 std::optional<ZoneTree> TreeSearch::KeepOn(const std::vector<double>& speeds)
 {
   const Trial& kept = this->Trials[*this->Kept];
-  if (Imbalance(kept.Work, speeds) > std::max(SearchAbove, this->BestSoFar + Worse))
+  if (this->KeptFrames == 0)
+  {
+    this->KeptSpeeds = speeds;
+  }
+  this->KeptFrames = std::min(this->KeptFrames + 1, 2 * FramesOfSpeeds);
+  bool other = false;
+  for (std::size_t rank = 0; rank < speeds.size(); ++rank)
+  {
+    double& usual = this->KeptSpeeds[rank];
+    other = other || speeds[rank] > OtherSpeed * usual || usual > OtherSpeed * speeds[rank];
+    usual += (speeds[rank] - usual) / this->KeptFrames;
+  }
+  const bool worse = this->KeptFrames >= FramesOfSpeeds &&
+                     Imbalance(kept.Work, this->KeptSpeeds) > this->BestSoFar + Worse;
+  if (other || worse)
   {
     this->Forget();
     return std::nullopt;

@@ -77,6 +77,8 @@ private:
   bool Asked = false;              ///< whether somebody else could make the first step
   int Failures = 0;                ///< trials since it was found
   std::optional<std::size_t> Kept; ///< the trial that the search ended with
+  std::vector<double> KeptSpeeds;  ///< of the ranks, on average over the frames since
+  int KeptFrames = 0;
 };
 
 } // namespace banyan

@@ -269,6 +269,16 @@ TEST_P(EveryRankCountBalanced, NoiseMovesNothing)
   EXPECT_LE(Mean(ours.Moved, 50), 0.02 * ours.LargestAllowed);
 }
 
+TEST_P(EveryRankCountBalanced, SecondsThatAreOffByAFifthMoveNothingAtRest)
+{
+  const Frame frame = FrameFrom({ 64, 70, 50 }, 60.0);
+  const Outcome ours =
+    Simulate(LoadBalancing::MeasuredCost, GetParam(), 300, [&](int) { return frame; }, 0.2);
+  const auto moved = std::count_if(
+    ours.Moved.begin() + 40, ours.Moved.end(), [](double bytes) { return bytes > 0.0; });
+  EXPECT_LE(moved, 13) << "frames of 260";
+}
+
 INSTANTIATE_TEST_SUITE_P(Ranks, EveryRankCountBalanced, ::testing::Values(2, 5, 16));
 
 TEST(LoadBalancer, RefusesWhatBelongsToOtherZones)

@@ -126,6 +126,41 @@ TEST(TreeSearch, BeginsAnewWhenARankBecomesSlower)
   EXPECT_FALSE(search.Next(blocks, speeds, 1)) << "the balancer is to move planes first";
 }
 
+/// Frames of other values each, then the same ones: how many of these until another tree is tried.
+int FramesUntilItTries(bool told)
+{
+  const BrickCosts fine = Fine();
+  const CostSums sums(fine);
+  const BrickCosts blocks = Blocks(fine);
+  const std::vector<double> speeds(5, 1.0);
+  const ZoneTree tree = CostZoneTree(blocks, speeds);
+  TreeSearch search;
+  for (int frame = 0; frame < 200; ++frame)
+  {
+    const bool plays = frame < 60;
+    if (plays && told)
+    {
+      search.Forget();
+    }
+    if (search.Next(blocks, speeds, 1).value_or(tree) != tree)
+    {
+      return frame - 60;
+    }
+    std::vector<double> work = WorkOf(tree, sums);
+    work[static_cast<std::size_t>(std::min(frame, 59) % 5)] *= 2.0;
+    search.Measured(tree, work);
+  }
+  return 200;
+}
+
+TEST(TreeSearch, BeginsAtOnceAfterValuesThatItWasToldOf)
+{
+  const int told = FramesUntilItTries(true);
+  EXPECT_GE(told, 0);
+  EXPECT_LE(told, 6);
+  EXPECT_GT(FramesUntilItTries(false), 10) << "it waits for frames that are the same";
+}
+
 TEST(TreeSearch, KnowsNothingOfAViewThatItForgot)
 {
   const BrickCosts blocks = Blocks(Fine());
