@@ -95,6 +95,8 @@ void DrawPieces(Communicator& communicator, const BenchScene& scene, const Balan
   PieceField field;
   field.Take(
     communicator, pieces, PartOf(scene.Data->Array(), own), cells, BenchBrickCells, mode, pool);
+  double fetching = 0.0;
+  double drawing = 0.0;
   for (int number = 0; number < options.Frames; ++number)
   {
     RayScene drawn = SceneOnPath(scene, options.Path, number, options.Frames);
@@ -110,6 +112,8 @@ void DrawPieces(Communicator& communicator, const BenchScene& scene, const Balan
     BalanceFrame frame;
     frame.Milliseconds = 1e3 * AllMax(communicator, whole.Seconds());
     frame.RankMilliseconds.assign(1, 1e3 * statistics.RenderSeconds);
+    drawing += frame.Milliseconds;
+    fetching += 1e3 * AllMax(communicator, field.FrameStatistics().FetchSeconds);
     frame.Number = number;
     frame.Mode = mode;
     frame.Imbalance = statistics.Imbalance;
@@ -118,6 +122,11 @@ void DrawPieces(Communicator& communicator, const BenchScene& scene, const Balan
     {
       take(frame);
     }
+  }
+  if (communicator.Rank() == 0)
+  {
+    std::fprintf(stderr, "%s: %.2f ms per frame, of which %.2f until bricks were fetched\n",
+      NameOf(mode), drawing / options.Frames, fetching / options.Frames);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "Pieces/PieceField.h"
 
 #include "Base/Error.h"
+#include "Base/Timer.h"
 #include "Pieces/PieceZones.h"
 #include "Render/VisibleBricks.h"
 
@@ -200,7 +201,9 @@ void PieceField::BeginFrame(Communicator& communicator, RayScene& scene, std::ui
   this->Fetched.MakeRoom(static_cast<std::uint64_t>(wish.Fetched), budgetBytes);
   if (this->Numbers.Misses > 0)
   {
+    const Timer timer;
     fetch.Exchange(wish.Missing, counts, this->Fetched);
+    this->Numbers.FetchSeconds = timer.Seconds();
   }
   this->Numbers.BytesMoved += shell;
 }

@@ -32,7 +32,8 @@ public:
     std::uint64_t BytesMoved = 0; ///< samples received, layers for shading among them
     std::uint64_t Hits = 0;       ///< bricks of other ranks that were still here
     std::uint64_t Misses = 0;     ///< bricks of other ranks that were fetched
-    int StayedBack = 0;           ///< how often planes were put back for the frame
+    double FetchSeconds = 0.0; ///< of this rank, until bricks were there; no ray is cast meanwhile
+    int StayedBack = 0;        ///< how often planes were put back for the frame
   };
 
   /// @param sharesWith a cache whose room for decoded bricks fetched ones take; null for none
@@ -61,8 +62,8 @@ public:
   /// @param budgetBytes for fetched bricks on this rank
   /// Throws Error, the same on all ranks, when one fails.
   void BeginFrame(Communicator& communicator, RayScene& scene, std::uint64_t budgetBytes);
-  /// Collective, after BeginFrame, for frames that may be drawn from coarser levels: makes them when
-  /// they are not there yet, and fetches what this rank's zone takes of them.
+  /// Collective, after BeginFrame, for frames that may be drawn from coarser levels: makes them
+  /// when they are not there yet, and fetches what this rank's zone takes of them.
   /// @param coarsest the same on all ranks, and from frame to frame
   /// Throws Error, the same on all ranks, when one fails.
   void BringLevels(Communicator& communicator, const RayScene& scene, int coarsest,
