@@ -37,15 +37,26 @@ void CommonRange(const double* color, bool hasColor, const double* opacity, bool
   }
 }
 
+/// The function of greys of a property that has one in place of colours; else null.
+vtkPiecewiseFunction* GreysOf(vtkVolumeProperty* property)
+{
+  return property->GetColorChannels(0) == 1 ? property->GetGrayTransferFunction(0) : nullptr;
+}
+
 } // namespace
 
 TransferFunction MakeTransferFunction(vtkVolumeProperty* property, int entries)
 {
-  vtkColorTransferFunction* color = property->GetRGBTransferFunction(0);
-  vtkPiecewiseFunction* opacity = property->GetScalarOpacity(0);
-  color->Build(); // what discretized colours are looked up in
+  vtkPiecewiseFunction* const grey = GreysOf(property);
+  vtkColorTransferFunction* const color = grey ? nullptr : property->GetRGBTransferFunction(0);
+  vtkPiecewiseFunction* const opacity = property->GetScalarOpacity(0);
+  if (color)
+  {
+    color->Build(); // what discretized colours are looked up in
+  }
   TransferFunction function;
-  CommonRange(color->GetRange(), color->GetSize() > 0, opacity->GetRange(), opacity->GetSize() > 0,
+  CommonRange(color ? color->GetRange() : grey->GetRange(),
+    (color ? color->GetSize() : grey->GetSize()) > 0, opacity->GetRange(), opacity->GetSize() > 0,
     function.Low, function.High);
   function.UnitDistance = property->GetScalarOpacityUnitDistance(0);
   function.Entries.resize(static_cast<std::size_t>(entries));
@@ -54,7 +65,14 @@ TransferFunction MakeTransferFunction(vtkVolumeProperty* property, int entries)
     const double value =
       function.Low + (function.High - function.Low) * i / static_cast<double>(entries - 1);
     double rgb[3];
-    color->GetColor(value, rgb);
+    if (color)
+    {
+      color->GetColor(value, rgb);
+    }
+    else
+    {
+      std::fill(rgb, rgb + 3, grey->GetValue(value));
+    }
     const double alpha = std::clamp(opacity->GetValue(value), 0.0, 1.0);
     function.Entries[static_cast<std::size_t>(i)] = glm::vec4(rgb[0], rgb[1], rgb[2], alpha);
   }
@@ -63,7 +81,8 @@ TransferFunction MakeTransferFunction(vtkVolumeProperty* property, int entries)
 
 const TransferFunction& KeptTransferFunction::Of(vtkVolumeProperty* property)
 {
-  vtkColorTransferFunction* const color = property->GetRGBTransferFunction(0);
+  vtkObject* color = GreysOf(property);
+  color = color ? color : property->GetRGBTransferFunction(0);
   vtkPiecewiseFunction* const opacity = property->GetScalarOpacity(0);
   const std::uint64_t times[] = { color->GetMTime(), opacity->GetMTime() };
   if (this->Function.Entries.empty() || this->Made[0] != color || this->Made[1] != opacity ||

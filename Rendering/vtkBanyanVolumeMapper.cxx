@@ -4,6 +4,7 @@
 #include "DistributedField.h"
 #include "FrameScene.h"
 #include "IceTCompositing.h"
+#include "IgnoredOptions.h"
 #include "MotionEnhancement.h"
 #include "PieceOfInput.h"
 #include "SceneOptions.h"
@@ -19,6 +20,7 @@
 #include "Parallel/MpiCommunicator.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkInformation.h"
 #include "vtkMPI.h"
@@ -42,6 +44,7 @@ struct vtkBanyanVolumeMapper::Internals
   banyan::KeptTransferFunction Function;
   std::vector<int> RankOrderBehind;
   std::string LastNote;
+  std::string LastIgnored;
   std::string LastProblem;
   std::array<double, 6> Bounds{ { 1, -1, 1, -1, 1, -1 } };
   bool BoundsKnown = false;
@@ -159,7 +162,9 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
   self.Field.Update(*self.Communicator, piece);
   self.Bounds = self.Field.Bounds();
   self.BoundsKnown = true;
-  this->WarnOnce(self.Motion.Note() + self.Field.MeshNote());
+  this->WarnOnce(self.Motion.Note() + self.Field.MeshNote(), self.LastNote);
+  const int components = piece.Array ? piece.Array->GetNumberOfComponents() : 1;
+  this->WarnOnce(banyan::IgnoredOptions(this, volume->GetProperty(), components), self.LastIgnored);
   if (self.Field.Empty())
   {
     // Nothing with bounds is there to be rendered, so this may be the only place to say why.
@@ -246,11 +251,11 @@ void vtkBanyanVolumeMapper::ReportOnce(const std::string& problem)
   }
 }
 
-void vtkBanyanVolumeMapper::WarnOnce(const std::string& note)
+void vtkBanyanVolumeMapper::WarnOnce(const std::string& note, std::string& last)
 {
-  if (note != this->Self->LastNote)
+  if (note != last)
   {
-    this->Self->LastNote = note;
+    last = note;
     if (!note.empty() && this->Self->Communicator->Rank() == 0)
     {
       vtkWarningMacro(<< note);
@@ -289,8 +294,7 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   }
   banyan::CompositeStatistics geometry;
   banyan::CompositeOptions compositing;
-  self.Backdrop.Read(
-    *self.Communicator, renderer, volume, rect, self.RankOrderBehind, geometry);
+  self.Backdrop.Read(*self.Communicator, renderer, volume, rect, self.RankOrderBehind, geometry);
   compositing.Behind = self.Backdrop.Behind();
   scene.Depth = self.Backdrop.Depths();
 

@@ -38,7 +38,9 @@ class vtkMultiProcessController;
  * banyan::CellNodes); component 0 of the property, which draws one component of the data or
  * their magnitude, as the vector mode of its colour function says; lights other than the viewer's
  * are ignored, and so is shading in modes other than composite. Averages are grey, from the lowest
- * to the highest value of the data (of all steps of an encoded series).
+ * to the highest value of the data (of all steps of an encoded series). Options that are set and
+ * have no effect (gradient opacity, 2D transfer functions, and more: see banyan::IgnoredOptions) are
+ * named in a warning, once.
  */
 class BANYANRENDERING_EXPORT vtkBanyanVolumeMapper : public vtkVolumeMapper
 {
@@ -271,7 +273,7 @@ private:
 
   void DrawFrame(vtkRenderer* renderer, vtkVolume* volume);
   void ReportOnce(const std::string& problem);
-  void WarnOnce(const std::string& note);
+  void WarnOnce(const std::string& note, std::string& last);
 
   double ImageErrorTolerance = 1.0;
   double InteractiveImageErrorTolerance = 8.0;

@@ -197,7 +197,8 @@ void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
   this->Mapper->SetAbortExecute(0);
   this->Mapper->SetController(vtkMultiProcessController::GetGlobalController());
   this->SelectArray();
-  this->Property->SetIndependentComponents(1);
+  // Off has no effect, which the mapper says.
+  this->Property->SetIndependentComponents(this->MapScalars ? 1 : 0);
   this->Property->SetInterpolationType(
     this->NearestPoint ? VTK_NEAREST_INTERPOLATION : this->InterpolationType);
   this->Prop->SetView(vtkPVRenderView::SafeDownCast(this->GetView()));

@@ -206,6 +206,90 @@ void LabelsAreVtks()
   ExpectVtksPicture("nearest", Labels(), nearest, 40.0);
 }
 
+/// VTK's mappers on graphics cards know no greys: they are compared with the colours that they are.
+void GreysAreColours()
+{
+  const auto grey = [](vtkVolumeMapper*, vtkVolume* volume)
+  {
+    vtkNew<vtkPiecewiseFunction> greys;
+    greys->AddPoint(0.2, 0.9);
+    greys->AddPoint(0.8, 0.1);
+    volume->GetProperty()->SetColor(greys);
+  };
+  const auto colour = [](vtkVolumeMapper*, vtkVolume* volume)
+  {
+    vtkNew<vtkColorTransferFunction> colours;
+    colours->AddRGBPoint(0.2, 0.9, 0.9, 0.9);
+    colours->AddRGBPoint(0.8, 0.1, 0.1, 0.1);
+    volume->GetProperty()->SetColor(colours);
+  };
+  const Picture ours = DrawOurs(Field(), grey);
+  Check(Covered(ours) > 3000, "greys are seen");
+  Check(Difference(ours, DrawOurs(Field(), colour)) == 0, "a function of greys gives greys");
+}
+
+/// What is set and has no effect is said once, and drawn as if it were not set.
+void ExpectWarning(const Setting& setting, vtkImageData* image, const std::string& part)
+{
+  vtkNew<vtkBanyanVolumeMapper> mapper;
+  vtkNew<vtkTest::ErrorObserver> messages;
+  mapper->AddObserver(vtkCommand::WarningEvent, messages);
+  mapper->SetInputData(image);
+  Stage stage(mapper);
+  stage.LookAt(image->GetBounds());
+  const Picture without = stage.Draw();
+  Check(!messages->GetWarning(), "no warning without: " + messages->GetWarningMessage());
+  messages->Clear();
+  setting(mapper, stage.Volume);
+  Check(Difference(stage.Draw(), without) == 0, part + " changes nothing");
+  const std::string sentence = messages->GetWarningMessage();
+  Check(sentence.find(part) != std::string::npos, "'" + sentence + "' has '" + part + "'");
+  messages->Clear();
+  stage.Draw();
+  Check(!messages->GetWarning(), part + " is said once");
+}
+
+void OptionsWithoutEffectGetAWarning()
+{
+  const vtkSmartPointer<vtkImageData> field = Field();
+  const auto gradients = [](vtkVolumeMapper*, vtkVolume* volume)
+  {
+    vtkNew<vtkPiecewiseFunction> opacity;
+    opacity->AddPoint(0.0, 0.0);
+    opacity->AddPoint(0.1, 1.0);
+    volume->GetProperty()->SetGradientOpacity(opacity);
+  };
+  ExpectWarning(gradients, field, "GradientOpacity");
+  const auto weight = [](vtkVolumeMapper*, vtkVolume* volume)
+  {
+    volume->GetProperty()->SetComponentWeight(0, 0.5);
+    volume->GetProperty()->SetTransferFunctionModeTo2D();
+  };
+  ExpectWarning(weight, field, "functions are drawn), ComponentWeight.");
+  const auto normals = [](vtkVolumeMapper* mapper, vtkVolume* volume)
+  {
+    mapper->ComputeNormalFromOpacityOn();
+    volume->GetProperty()->SetScatteringAnisotropy(0.5f);
+    volume->GetProperty()->SetUseClippedVoxelIntensity(1);
+  };
+  ExpectWarning(
+    normals, field, "ScatteringAnisotropy, ClippedVoxelIntensity, ComputeNormalFromOpacity");
+  const auto labels = [](vtkVolumeMapper*, vtkVolume* volume)
+  { volume->GetProperty()->SetLabelColor(1, vtkNew<vtkColorTransferFunction>()); };
+  ExpectWarning(labels, field, "functions of labels");
+  vtkNew<vtkImageData> vectors;
+  vectors->SetDimensions(20, 20, 20);
+  vectors->AllocateScalars(VTK_FLOAT, 2);
+  vtkDataArray* values = vectors->GetPointData()->GetScalars();
+  for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i)
+  {
+    values->SetTuple2(i, 0.0001 * static_cast<double>(i), 0.5);
+  }
+  const auto together = [](vtkVolumeMapper*, vtkVolume* volume)
+  { volume->GetProperty()->IndependentComponentsOff(); };
+  ExpectWarning(together, vectors, "IndependentComponents");
+}
+
 /// A picture that is not drawn, and the sentence that says why.
 std::string SentenceOf(const Setting& setting)
 {
@@ -260,6 +344,8 @@ int main(int count, char* arguments[])
   }
   PicturesAreVtks();
   LabelsAreVtks();
+  GreysAreColours();
+  OptionsWithoutEffectGetAWarning();
   UnusableOptionsGetASentence();
   return Failures();
 }

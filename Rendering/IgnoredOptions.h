@@ -1,0 +1,19 @@
+#ifndef banyan_Rendering_IgnoredOptions_h
+#define banyan_Rendering_IgnoredOptions_h
+
+#include <string>
+
+class vtkVolumeMapper;
+class vtkVolumeProperty;
+
+namespace banyan
+{
+
+/// A sentence that names the options of VTK which are set and have no effect on the picture; empty
+/// if there are none.
+/// @param components of the array that is drawn
+std::string IgnoredOptions(vtkVolumeMapper* mapper, vtkVolumeProperty* property, int components);
+
+} // namespace banyan
+
+#endif
