@@ -65,6 +65,18 @@ Json SizeToJson(const SeriesReport& report)
   return json;
 }
 
+/// What a look at one brick takes; null where the series does not say it.
+Json ChainsToJson(const EncodeStatistics& statistics)
+{
+  if (statistics.ChainBricks == 0)
+  {
+    return nullptr;
+  }
+  return { { "mean", static_cast<double>(statistics.ChainSum) /
+                       static_cast<double>(statistics.ChainBricks) },
+    { "most", statistics.ChainMost } };
+}
+
 Json SizesToJson(const SeriesReport& report, const CountsBySize& counts)
 {
   Json json = Json::array();
@@ -193,6 +205,7 @@ std::string InfoToJson(const InfoReport& report, const DecodeTimes* times)
   json["errorBound"] = { { "asked", index.ErrorBound },
     { "mode", index.Mode == ErrorBoundMode::Absolute ? "absolute" : "relative" } };
   json["size"] = SizeToJson(report.Series);
+  json["stepsToDecode"] = ChainsToJson(index.Statistics);
   json["components"] = Json::array();
   for (std::size_t c = 0; c < report.Series.Components.size(); ++c)
   {

@@ -12,6 +12,14 @@ std::optional<double> Count(std::int64_t count)
   return static_cast<double>(count);
 }
 
+/// Decibels against the range of the step itself; none where nothing is wrong, or nothing known.
+std::optional<double> PsnrOfOwnRange(const StepLine& line)
+{
+  const std::optional<double> rmse =
+    line.Report->Series.Components[line.Component].RmseOf(line.At());
+  return rmse ? Decibels(line.At().Range.Width(), *rmse) : std::nullopt;
+}
+
 /// A column of the bricks of the finest level.
 StepColumn BrickColumn(const std::string& name, std::int64_t BrickCounts::*member)
 {
@@ -83,6 +91,7 @@ std::vector<StepColumn> StepColumns(const InfoReport& report)
       } },
     { "rmse", [](const StepLine& line)
       { return line.Report->Series.Components[line.Component].RmseOf(line.At()); } },
+    { "psnr_of_own_range", PsnrOfOwnRange },
     BrickColumn("bricks", &BrickCounts::Bricks),
     BrickColumn("macro_voxel_bricks", &BrickCounts::MacroVoxels),
     BrickColumn("unchanged_bricks", &BrickCounts::Unchanged),

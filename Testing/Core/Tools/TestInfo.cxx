@@ -162,6 +162,27 @@ TEST(Info, ErrorsAreThoseOfTheDecodedValues)
     error["psnr"], 20 * std::log10((range[1].get<double>() - range[0].get<double>()) / rmse), 1e-9);
 }
 
+TEST(Info, JsonHasWhatTheTextSaysOfChainsAndSteps)
+{
+  const Corners corners;
+  const auto json = nlohmann::json::parse(InfoToJson(corners.Report(), nullptr));
+  const EncodeStatistics statistics = corners.File->Index().Statistics;
+  EXPECT_EQ(json["stepsToDecode"]["most"], statistics.ChainMost);
+  EXPECT_GE(json["stepsToDecode"]["mean"], 1.0);
+  EXPECT_LE(json["stepsToDecode"]["mean"], json["stepsToDecode"]["most"]);
+  EXPECT_GT(json["stepsToDecode"]["most"], 1); // steps of a group refer to each other
+  for (const auto& step : json["components"][0]["steps"])
+  {
+    const double width = step["high"].get<double>() - step["low"].get<double>();
+    EXPECT_NEAR(
+      step["psnr_of_own_range"], 20 * std::log10(width / step["rmse"].get<double>()), 1e-9);
+  }
+  // Versions that did not count chains.
+  InfoReport older = corners.Report();
+  older.Series.Index.Statistics.ChainBricks = 0;
+  EXPECT_TRUE(nlohmann::json::parse(InfoToJson(older, nullptr))["stepsToDecode"].is_null());
+}
+
 TEST(Info, SizesAreThoseOnTheDisk)
 {
   const Corners corners;
