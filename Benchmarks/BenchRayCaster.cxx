@@ -5,7 +5,9 @@
 // N^3 samples (default 256) of the standard field, PICTURE^2 pixels (default 1024), unit spacing,
 // one sample per voxel. Processor time says more than the clock on a machine that others use. S1:
 // everything is faintly visible; S2: nine voxels in ten are invisible. Then S1 with nearest
-// interpolation, and its maximum and average along rays.
+// interpolation, and its maximum and average along rays. The rows `flat` are of a field whose lower
+// values are all the same, so that many bricks are of one value (macro voxels, column
+// bricks_uniform); those of `flat-sampled` take samples there all the same.
 #include "Base/Timer.h"
 #include "Render/Scenes.h"
 
@@ -19,6 +21,8 @@ namespace
 {
 
 using namespace banyan;
+
+constexpr float FlatBelow = 0.3f;
 
 TransferFunction StandardFunction(bool sparse)
 {
@@ -66,7 +70,15 @@ RayScene NamedScene(const std::string& name, int n, int picture)
   return scene;
 }
 
-template <class T>
+/// Takes samples in bricks of one value, too.
+class SampledSource : public ArrayBrickSource
+{
+public:
+  using ArrayBrickSource::ArrayBrickSource;
+  std::optional<UniformValue> UniformValueOf(std::int64_t) const override { return std::nullopt; }
+};
+
+template <class Source = ArrayBrickSource, class T>
 void Measure(const char* type, const std::vector<T>& values, int n, double high,
   const std::vector<int>& options, ThreadPool& pool)
 {
@@ -74,7 +86,7 @@ void Measure(const char* type, const std::vector<T>& values, int n, double high,
   for (const int brickCells : { 16, 32 })
   {
     Timer timer;
-    ArrayBrickSource source(scenes::ArrayOf(values, samples), brickCells, { 0.0, high }, pool);
+    Source source(scenes::ArrayOf(values, samples), brickCells, { 0.0, high }, pool);
     const double setUp = timer.Seconds();
     for (const char* name : Scenes)
     {
@@ -96,11 +108,12 @@ void Measure(const char* type, const std::vector<T>& values, int n, double high,
       std::sort(seconds.begin(), seconds.end());
       const double median = seconds[seconds.size() / 2];
       const auto taken = static_cast<double>(statistics.SamplesTaken);
-      std::printf("%s,%d,%d,%s,%d,%.1f,%.1f,%.1f,%.2f,%.1f,%lld,%lld\n", type, n, brickCells, name,
-        pool.Width(), 1e3 * setUp, 1e3 * median, 1e3 * seconds.front(),
+      std::printf("%s,%d,%d,%s,%d,%.1f,%.1f,%.1f,%.2f,%.1f,%lld,%lld,%lld\n", type, n, brickCells,
+        name, pool.Width(), 1e3 * setUp, 1e3 * median, 1e3 * seconds.front(),
         1e9 * cpuSeconds[cpuSeconds.size() / 2] / taken, 1e-6 * taken,
         static_cast<long long>(statistics.BricksDrawn),
-        static_cast<long long>(statistics.BricksSkipped));
+        static_cast<long long>(statistics.BricksSkipped),
+        static_cast<long long>(statistics.BricksUniform));
     }
   }
 }
@@ -130,8 +143,13 @@ int main(int argc, char** argv)
       }
     });
   std::printf("type,n,brick_cells,scene,threads,set_up_ms,median_ms,best_ms,"
-              "cpu_ns_per_sample,million_samples,bricks_drawn,bricks_skipped\n");
+              "cpu_ns_per_sample,million_samples,bricks_drawn,bricks_skipped,bricks_uniform\n");
   Measure("float32", values, n, 1.0, options, pool);
+  std::vector<float> flat(values.size());
+  std::transform(values.begin(), values.end(), flat.begin(),
+    [](float value) { return std::max(value, FlatBelow); });
+  Measure("flat", flat, n, 1.0, options, pool);
+  Measure<SampledSource>("flat-sampled", flat, n, 1.0, options, pool);
   std::vector<std::uint8_t> bytes(values.size());
   std::transform(values.begin(), values.end(), bytes.begin(),
     [](float value) { return static_cast<std::uint8_t>(value * 255.0f + 0.5f); });

@@ -20,7 +20,7 @@
 #                     than the largest measure only settings that the design's goals need, and one
 #                     sample per voxel
 #   --scenes LIST     only these, e.g. S1-256,S2-256-shaded,bonsai (default all)
-#   --renderers LIST  only these: banyan, vtk-gpu, vtk-fixed-point (default all)
+#   --renderers LIST  only these: banyan, banyan-plain, vtk-gpu, vtk-fixed-point (default all)
 #   --settings LIST   only these sample distances and tolerances (default all)
 #
 # Installs what is missing, and builds in build-benchmark (BANYAN_BUILD_DIR names another folder).
@@ -164,6 +164,7 @@ stage 2 4 "Collecting volumes${data:+ from $data}"
 real=()
 if [[ -n "$data" ]]; then
   collect bonsai '*.mhd'
+  collect engine '*.mhd'
   collect isabel_velmag '*.vti'
   collect viscous_fingers_run01 '*.mhd'
 fi

@@ -13,24 +13,31 @@ namespace
 /// could follow.
 constexpr float OpacityLimit = 1.0f - 1.0f / 255.0f;
 constexpr int BrickCells = 16; // as the mapper cuts plain data
+/// Of encoded series, and of all data while somebody moves the camera; still pictures of plain data
+/// do without coarser levels.
 constexpr int CoarsestLevel = 3;
 
 class BanyanRenderer : public RayCastRenderer
 {
 public:
-  explicit BanyanRenderer(int threads)
+  BanyanRenderer(int threads, bool plain)
     : Pool(threads)
+    , Plain(plain)
   {
   }
 
-  std::string Name() const override { return "banyan"; }
+  std::string Name() const override { return this->Plain ? "banyan-plain" : "banyan"; }
 
   std::vector<Setting> SettingsFor(const BenchScene&) const override
   {
     std::vector<Setting> settings;
+    // At fixed distances there are no levels: plain data are drawn like all others.
     for (const double distance : { 0.25, 0.5, 1.0, 2.0, 4.0 })
     {
-      settings.push_back({ {}, distance });
+      if (!this->Plain)
+      {
+        settings.push_back({ {}, distance });
+      }
     }
     for (const double tolerance : { 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 255.0 })
     {
@@ -52,8 +59,9 @@ public:
     const FrameClock clock;
     if (!this->Source)
     {
-      this->Source = std::make_unique<ArrayBrickSource>(this->Scene->Data->Array(), BrickCells,
-        MaskRange{ this->Scene->Low, this->Scene->High }, this->Pool);
+      const Timer tree;
+      this->MakeTree();
+      frame.TreeSeconds = tree.Seconds();
     }
     RayStatistics statistics;
     const RayScene drawn =
@@ -68,6 +76,15 @@ public:
   }
 
 private:
+  /// As for plain data in memory: its range, and ranges and masks of its bricks.
+  void MakeTree()
+  {
+    const SampleArray array = this->Scene->Data->Array();
+    const ValueRange range = FiniteRange(array, this->Pool);
+    this->Source = std::make_unique<ArrayBrickSource>(
+      array, BrickCells, MaskRange{ range.Low, range.High }, this->Pool);
+  }
+
   FloatImage Cast(const RayScene& scene, RayStatistics& statistics)
   {
     return CastRays(
@@ -81,9 +98,9 @@ private:
     RayScene scene = ToRayScene(*this->Scene, setting.SampleDistance.value_or(1.0), OpacityLimit);
     if (setting.Tolerance)
     {
-      const SamplingPlan plan =
-        PlanSamplings(scene, { *setting.Tolerance, scene.SampleDistance, CoarsestLevel },
-          [&](const RayScene& pilot) { return this->Cast(pilot, statistics); });
+      const SamplingPlan plan = PlanSamplings(scene,
+        { *setting.Tolerance, scene.SampleDistance, this->Plain ? 0 : CoarsestLevel },
+        [&](const RayScene& pilot) { return this->Cast(pilot, statistics); });
       scene.Samplings = plan.Samplings;
       scene.OpacityLimit = plan.OpacityLimit;
       estimatedError = plan.EstimatedError;
@@ -92,6 +109,7 @@ private:
   }
 
   ThreadPool Pool;
+  bool Plain;
   const BenchScene* Scene = nullptr;
   std::vector<Setting> Settings;
   std::unique_ptr<ArrayBrickSource> Source; ///< of the scene, once something was drawn
@@ -99,9 +117,9 @@ private:
 
 } // namespace
 
-std::unique_ptr<RayCastRenderer> MakeBanyanRenderer(int threads)
+std::unique_ptr<RayCastRenderer> MakeBanyanRenderer(int threads, bool plain)
 {
-  return std::make_unique<BanyanRenderer>(threads);
+  return std::make_unique<BanyanRenderer>(threads, plain);
 }
 
 } // namespace banyan::bench

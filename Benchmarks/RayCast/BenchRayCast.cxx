@@ -30,7 +30,10 @@ RendererList ChosenRenderers(const RayCastOptions& options)
 {
   std::vector<std::string> missing;
   RendererList renderers = MakeVtkRenderers(options.Measuring.Threads, missing);
-  renderers.insert(renderers.begin(), MakeBanyanRenderer(options.Measuring.Threads));
+  for (const bool plain : { true, false })
+  {
+    renderers.insert(renderers.begin(), MakeBanyanRenderer(options.Measuring.Threads, plain));
+  }
   for (const std::string& peer : missing)
   {
     std::fprintf(stderr,

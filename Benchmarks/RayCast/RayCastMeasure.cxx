@@ -92,6 +92,10 @@ void JudgeFirst(
   {
     Add(candidate, frame);
   }
+  if (frame.TreeSeconds)
+  {
+    result.TreeMilliseconds = 1e3 * *frame.TreeSeconds;
+  }
   result.Samples = frame.Samples;
   result.EstimatedError = frame.EstimatedError;
   result.Error = ErrorOf(frame.Shown, reference);
@@ -163,7 +167,7 @@ std::vector<RayCastMeasurement> MeasureScene(const BenchScene& scene, const Floa
 std::string RayCastCsvHeader()
 {
   return "scene,renderer,threads,tolerance,ms_per_frame,samples,msamples_s,psnr_db,max_error,"
-         "sample_distance,first_frame_ms,processor_ms,max_error_unrounded,estimated_error";
+         "sample_distance,first_frame_ms,processor_ms,max_error_unrounded,estimated_error,tree_ms";
 }
 
 std::string RayCastCsvLine(const RayCastMeasurement& m)
@@ -180,7 +184,7 @@ std::string RayCastCsvLine(const RayCastMeasurement& m)
          rate + "," + Number(m.Error.PsnrDecibels) + "," + Number(m.Error.Largest) + "," +
          Number(m.Accuracy.SampleDistance) + "," + Number(m.FirstFrameMilliseconds) + "," +
          Number(m.ProcessorMilliseconds) + "," + Number(m.LargestErrorUnrounded) + "," +
-         Number(m.EstimatedError);
+         Number(m.EstimatedError) + "," + Number(m.TreeMilliseconds);
 }
 
 std::string RayCastMessage(const RayCastMeasurement& m)

@@ -19,7 +19,8 @@ struct RayCastMeasurement
   Setting Accuracy;
   double FrameMilliseconds = 0; ///< median of the repeated frames
   double FirstFrameMilliseconds = 0;
-  double ProcessorMilliseconds = 0; ///< median, of all threads together
+  std::optional<double> TreeMilliseconds; ///< of the first frame, where it was made
+  double ProcessorMilliseconds = 0;       ///< median, of all threads together
   std::optional<std::int64_t> Samples;
   PictureError Error;                          ///< of the picture in 8 bits
   std::optional<double> LargestErrorUnrounded; ///< in 1/255, where the renderer has floats

@@ -29,6 +29,8 @@ struct Frame
   /// Of a first frame, what had to be done once, where a renderer can do that apart: not in
   /// Seconds.
   std::optional<double> OnceSeconds;
+  /// Of a first frame, what the tree of its values took: in Seconds.
+  std::optional<double> TreeSeconds;
   double ProcessorSeconds = 0; ///< of all threads together
   Picture Shown;
   std::optional<FloatImage> Unrounded; ///< where the renderer has it
@@ -73,7 +75,8 @@ public:
 
 using RendererList = std::vector<std::unique_ptr<RayCastRenderer>>;
 
-std::unique_ptr<RayCastRenderer> MakeBanyanRenderer(int threads);
+/// @param plain as still pictures of plain data are drawn: without coarser levels
+std::unique_ptr<RayCastRenderer> MakeBanyanRenderer(int threads, bool plain);
 
 /// VTK's mappers, those that this program was built with. Must be called before anything else
 /// uses OpenGL: the number of threads is fixed then.

@@ -82,16 +82,28 @@ def speed_ups(rows):
 
 def estimates(rows):
     """Whether the worst pixel of each scene is off by no more than was estimated, whatever the tolerance."""
-    yield "| scene | tolerances | worst pixel over what was estimated | |"
-    yield "|---|---|---|---|"
-    for scene in in_order(rows, "scene"):
+    yield "| scene | renderer | tolerances | worst pixel over what was estimated | |"
+    yield "|---|---|---|---|---|"
+    for scene, renderer in dict.fromkeys((row["scene"], row["renderer"]) for row in rows):
         found = [(row["max_error_unrounded"] / row["estimated_error"], row["tolerance"]) for row in rows
-                 if row["scene"] == scene and row.get("estimated_error")]
+                 if row["scene"] == scene and row["renderer"] == renderer and row.get("estimated_error")]
         if found:
             missed = ", ".join(f"{tolerance:g}" for ratio_, tolerance in sorted(found, key=lambda f: f[1])
                                if ratio_ > 1.0)
             verdict = f"not held at {missed}" if missed else "held"
-            yield f"| {scene} | {len(found)} | {max(found)[0]:.2f} | {verdict} |"
+            yield f"| {scene} | {renderer} | {len(found)} | {max(found)[0]:.2f} | {verdict} |"
+
+
+def trees(rows):
+    """Which part of a first frame the tree of its values takes, where it is made on the fly."""
+    yield "| scene | renderer | threads | at | tree ms | first frame ms | part |"
+    yield "|---|---|---|---|---|---|---|"
+    for row in rows:
+        if row.get("tree_ms"):
+            sampling = (f"tolerance {row['tolerance']:g}" if row["tolerance"]
+                        else f"step {row['sample_distance']:g}")
+            yield (f"| {row['scene']} | {row['renderer']} | {row['threads']:g} | {sampling} | {row['tree_ms']:.1f} | "
+                   f"{row['first_frame_ms']:.1f} | {100.0 * row['tree_ms'] / row['first_frame_ms']:.0f} % |")
 
 
 def needed(rows):
@@ -113,6 +125,8 @@ def main(path):
     print("\n".join(lines(rows)))
     print("\nEstimates: what is said to be the largest error, and what it is")
     print("\n".join(estimates(rows)))
+    print("\nTrees: made on the fly in the first frame of a scene")
+    print("\n".join(trees(rows)))
     print("\nThreads: one sample per voxel")
     print("\n".join(speed_ups(rows)))
 

@@ -16,6 +16,7 @@ from tables import in_order, read  # noqa: E402
 
 OURS = "banyan"
 STYLES = {"banyan": dict(color="tab:red", marker="o", linewidth=2.5, zorder=4),
+          "banyan-plain": dict(color="tab:orange", marker="o", linewidth=1.2, zorder=3),
           "vtk-gpu": dict(color="tab:blue", marker="s", linewidth=1.2, zorder=3),
           "vtk-fixed-point": dict(color="tab:green", marker="v", linewidth=1.2, zorder=2)}
 # Rounding to 8 bits may add a half to an error of 1.
