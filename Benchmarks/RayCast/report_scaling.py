@@ -12,6 +12,8 @@ from matplotlib.ticker import LogLocator, NullFormatter  # noqa: E402
 sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
 from tables import read  # noqa: E402
 
+FIRST_FRAME_SECONDS = 5  # of the largest series, from a cold start
+
 
 def read_scaling(path):
     rows = read(path, ("scene", "source"))
@@ -63,8 +65,21 @@ def print_table(rows):
               f"{row['file_mib']:10.1f}{ratio:>15}")
 
 
+def print_verdicts(rows):
+    """What the design asks of the largest encoded series."""
+    series = [row for row in rows if row["source"] == "series"]
+    for row in series:
+        if row["size"] == max(other["size"] for other in series):
+            held = "met" if row["first_frame_ms"] < 1e3 * FIRST_FRAME_SECONDS else "missed"
+            above = row["peak_mib"] - row["budget_mib"]
+            print(f"{row['scene']}, {row['threads']:g} thread(s), {row['sampling']}: first frame after "
+                  f"{1e-3 * row['first_frame_ms']:.2f} s (goal: less than {FIRST_FRAME_SECONDS} s): {held}; peak of the whole "
+                  f"process {abs(above):.0f} MiB {'above' if above > 0 else 'below'} the budget of its caches")
+
+
 if len(sys.argv) != 3:
     sys.exit(__doc__)
 measurements = read_scaling(sys.argv[1])
 print_table(measurements)
+print_verdicts(measurements)
 draw(measurements, sys.argv[2])
