@@ -28,11 +28,18 @@ constexpr double LeastGain = 0.005;
 constexpr double Worse = 0.1;
 constexpr int FramesOfSpeeds = 32;
 constexpr double OtherSpeed = 1.4;
-/// Trials without a better tree that end a search, and trials that do in any case.
-constexpr int MostFailures = 8;
-constexpr std::size_t MostTrials = 17;
-/// Failures after which all planes go one step.
-constexpr int NewtonFailures = 2;
+/// How much is tried: little, for a trial may be a frame that takes longer; more where a view has
+/// rested for some trials and still is far from balance.
+struct Patience
+{
+  int Failures;       ///< trials without a better tree that end a search
+  std::size_t Trials; ///< that do in any case
+  int NewtonFailures; ///< after which all planes go one step
+};
+constexpr Patience Usual{ 8, 17, 2 };
+constexpr Patience WhereItIsFar{ 12, 50, 6 };
+constexpr std::size_t LateTrials = 8;
+constexpr double FarFromBalance = 1.1;
 /// No logarithm of a ratio changes by more at once, nor by more than this part of the largest one,
 /// and none goes all of its way: planes move at the same time, and those of children follow those
 /// of their parents. Each trial that was no better shortens the next step.
@@ -123,13 +130,6 @@ void TreeSearch::Forget()
   this->Kept.reset();
   this->KeptFrames = 0;
   this->Asked = false;
-}
-
-const TreeSearch::Trial* TreeSearch::Find(const ZoneTree& tree) const
-{
-  const auto found = std::find_if(this->Trials.begin(), this->Trials.end(),
-    [&](const Trial& trial) { return trial.Tree == tree; });
-  return found == this->Trials.end() ? nullptr : &*found;
 }
 
 void TreeSearch::Measured(const ZoneTree& tree, const std::vector<double>& work)
@@ -324,8 +324,10 @@ std::optional<ZoneTree> TreeSearch::Next(
   const bool begins = this->BestSoFar == 0.0;
   this->Failures = begins || imbalance < this->BestSoFar - LeastGain ? 0 : this->Failures + 1;
   this->BestSoFar = begins ? imbalance : std::min(imbalance, this->BestSoFar);
-  if (imbalance <= (begins ? SearchAbove : GoodEnough) || this->Failures >= MostFailures ||
-      this->Trials.size() >= MostTrials)
+  const bool isFar = this->Trials.size() >= LateTrials && this->BestSoFar > FarFromBalance;
+  const Patience& patience = isFar ? WhereItIsFar : Usual;
+  if (imbalance <= (begins ? SearchAbove : GoodEnough) || this->Failures >= patience.Failures ||
+      this->Trials.size() >= patience.Trials)
   {
     this->Kept = number;
     return best.Tree;
@@ -335,11 +337,11 @@ std::optional<ZoneTree> TreeSearch::Next(
     this->Model = model;
   }
   std::optional<ZoneTree> next;
-  if (this->Failures < NewtonFailures)
+  if (this->Failures < patience.NewtonFailures)
   {
     next = this->NewtonTree(number, speeds, step);
   }
-  else if (this->Failures == NewtonFailures)
+  else if (this->Failures == patience.NewtonFailures)
   {
     next = this->AllPlanesAStep(best, speeds, step);
   }

@@ -28,6 +28,13 @@ bool PlanesAreInTheirZones(const ZoneTree& tree)
 
 } // namespace
 
+const TreeSearch::Trial* TreeSearch::Find(const ZoneTree& tree) const
+{
+  const auto found = std::find_if(this->Trials.begin(), this->Trials.end(),
+    [&](const Trial& trial) { return trial.Tree == tree; });
+  return found == this->Trials.end() ? nullptr : &*found;
+}
+
 bool TreeSearch::IsNew(const ZoneTree& tree) const
 {
   return PlanesAreInTheirZones(tree) && !this->Find(tree);
