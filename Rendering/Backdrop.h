@@ -15,9 +15,9 @@ class vtkWindow;
 namespace banyan
 {
 
-/// What other props have drawn where a volume is to be drawn: on all ranks, nearest first. Where no
-/// rank has anything else to show it costs nothing: no pixel is read, none travels, and none is
-/// written but the volume's own.
+/// What other props have drawn where a volume is to be drawn: on all ranks, nearest first. Pixels
+/// are read and travel only in the rectangle where some rank has other props on the screen
+/// (OthersOnScreen): where none has any, it costs nothing.
 class Backdrop
 {
 public:
@@ -33,8 +33,11 @@ public:
   /// At which rays end; empty where nothing is.
   std::vector<float> Depths() const;
 
-  /// Writes the finished volume over it.
-  /// @param picture of the rectangle that was read; only rank 0 has one
+  /// How many pixels this rank has read.
+  long long PixelsRead() const { return this->Inner.Count(); }
+
+  /// Writes the finished volume over it, and over a background that is there already.
+  /// @param picture of all of the rectangle; only rank 0 has one
   void Write(const Communicator& communicator, vtkRenderer* renderer, const FloatImage& picture);
 
   void ReleaseGraphicsResources(vtkWindow* window);
@@ -42,14 +45,11 @@ public:
 private:
   FramebufferExchange Framebuffer;
   PixelRect Rect;
+  PixelRect Inner; ///< where some rank shows something else; the same on all ranks
   PixelRect BehindRect;
-  bool Shows = false; ///< whether any rank shows something else; the same on all
-  std::vector<OpaquePixel> Pixels;
+  std::vector<OpaquePixel> InnerPixels; ///< of Inner
+  std::vector<OpaquePixel> Pixels; ///< kept for its memory, as pictures come one after the other
 };
-
-/// Whether the renderer has something to show but the prop: any other prop that is visible, or,
-/// where several ranks draw, a background that is there already.
-bool ShowsOthers(vtkRenderer* renderer, vtkProp* self);
 
 } // namespace banyan
 

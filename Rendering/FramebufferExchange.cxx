@@ -167,14 +167,6 @@ void FramebufferExchange::Read(
   this->ReadBound(corner, size, pixels);
 }
 
-bool FramebufferExchange::Coloured(vtkRenderer* renderer, const glm::ivec2& pixel)
-{
-  std::vector<OpaquePixel> one;
-  this->Read(renderer, { pixel, pixel + 1 }, one);
-  return one[0].Depth < 1.0f ||
-         std::any_of(one[0].Color, one[0].Color + 4, [](std::uint8_t value) { return value != 0; });
-}
-
 void FramebufferExchange::Write(
   vtkRenderer* renderer, const PixelRect& rect, const std::vector<OpaquePixel>& pixels, bool blend)
 {

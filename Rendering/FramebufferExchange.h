@@ -29,9 +29,6 @@ public:
   /// Colours (8 bit) and depths, `[y][x]`, y up. A multisampled framebuffer is resolved first.
   void Read(vtkRenderer* renderer, const PixelRect& rect, std::vector<OpaquePixel>& pixels);
 
-  /// Whether a pixel has any colour or opacity.
-  bool Coloured(vtkRenderer* renderer, const glm::ivec2& pixel);
-
   /// Writes colours and depths of a rectangle; depths always replace what is there.
   /// @param pixels rect.Count() of them, premultiplied
   /// @param blend over the colours that are there, as ParaView's compositor does with what several

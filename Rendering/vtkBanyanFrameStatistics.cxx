@@ -19,6 +19,7 @@ void vtkBanyanFrameStatistics::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "MessagesComposited: " << this->MessagesComposited << "\n"
      << indent << "BytesRead: " << this->BytesRead << "\n"
      << indent << "CacheBytes: " << this->CacheBytes << "\n"
+     << indent << "PixelsReadBehind: " << this->PixelsReadBehind << "\n"
      << indent << "MeshBytes: " << this->MeshBytes << "\n"
      << indent << "MeshBytesShared: " << this->MeshBytesShared << "\n"
      << indent << "BytesMoved: " << this->BytesMoved << "\n"

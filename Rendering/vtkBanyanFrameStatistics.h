@@ -67,6 +67,12 @@ public:
   ///@}
 
   ///@{
+  /// Pixels that each rank has read back of what other props had drawn.
+  vtkSetMacro(PixelsReadBehind, vtkIdType);
+  vtkGetMacro(PixelsReadBehind, vtkIdType);
+  ///@}
+
+  ///@{
   /// Bytes that all ranks hold of a mesh of hexahedra that is drawn: its octree, its cells where they
   /// were gathered from several ranks, what it is sampled at, coarser meshes, and values. What ranks
   /// of a machine have together counts once for each machine: that is MeshBytesShared of it. What the
@@ -128,6 +134,7 @@ protected:
   vtkIdType MessagesComposited = 0;
   vtkIdType BytesRead = 0;
   vtkIdType CacheBytes = 0;
+  vtkIdType PixelsReadBehind = 0;
   vtkIdType MeshBytes = 0;
   vtkIdType MeshBytesShared = 0;
   vtkIdType BytesMoved = 0;

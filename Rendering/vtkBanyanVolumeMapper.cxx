@@ -297,6 +297,7 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   self.Backdrop.Read(*self.Communicator, renderer, volume, rect, self.RankOrderBehind, geometry);
   compositing.Behind = self.Backdrop.Behind();
   scene.Depth = self.Backdrop.Depths();
+  this->Statistics->SetPixelsReadBehind(static_cast<vtkIdType>(self.Backdrop.PixelsRead()));
 
   const std::uint64_t bytesBefore = self.Field.BytesRead();
   const banyan::BrickCache::Statistics cacheBefore = banyan::BrickCache::Process().GetStatistics();

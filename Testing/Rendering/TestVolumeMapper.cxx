@@ -8,6 +8,8 @@
 
 #include "vtkActor.h"
 #include "vtkCellData.h"
+#include "vtkFollower.h"
+#include "vtkPolyData.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProperty.h"
 #include "vtkSphereSource.h"
@@ -121,11 +123,12 @@ void MatricesMoveTheVolume()
 }
 
 /// Opaque balls before, in, behind and beside the volume.
-void AddBalls(vtkRenderer* renderer)
+void AddBalls(vtkRenderer* renderer, int count = 4)
 {
   const double centers[4][3] = { { 22, 30, 60 }, { 22, 19, 20 }, { 10, 5, -15 }, { 60, 30, 20 } };
-  for (const double* center : centers)
+  for (int i = 0; i < count; ++i)
   {
+    const double* const center = centers[i];
     vtkNew<vtkSphereSource> sphere;
     sphere->SetCenter(center[0], center[1], center[2]);
     sphere->SetRadius(6.0);
@@ -172,6 +175,43 @@ void GeometryEndsRays()
     }
     Check(untouched > 150, "balls before and beside the volume stay as they are");
     Check(tinted > 50, "balls in and behind the volume are seen through it");
+  }
+}
+
+/// Pixels are read back where other props are on the screen, and the picture is the same.
+void OnlyWhatOthersDrawIsReadBack()
+{
+  for (const int samples : { 0, 4 })
+  {
+    vtkNew<vtkBanyanVolumeMapper> mapper;
+    mapper->SetSampleDistanceVoxels(1.0);
+    mapper->SetInputData(PlainImage(Balls, Samples));
+    Stage stage(mapper, samples);
+    const double bounds[6] = { -10, 66, -10, 40, -21, 66 };
+    stage.LookAt(bounds);
+    const auto read = [&] { return mapper->GetStatistics()->GetPixelsReadBehind(); };
+    const Picture bare = stage.Draw();
+    Check(read() == 0, "without other props no pixel is read");
+    AddBalls(stage.Renderer, 1);
+    const Picture some = stage.Draw();
+    const vtkIdType few = read();
+    // Of a prop that may draw beyond its bounds nothing is known: everything is read then.
+    vtkNew<vtkPolyDataMapper> nothing;
+    nothing->SetInputData(vtkNew<vtkPolyData>());
+    vtkNew<vtkFollower> other;
+    other->SetMapper(nothing);
+    stage.Renderer->AddActor(other);
+    Check(Difference(stage.Draw(), some) == 0, "the picture is that of reading all pixels");
+    const vtkIdType all = read();
+    Check(Difference(some, bare) > 50, "a ball is seen");
+    Check(few > 100 && 3 * few < all,
+      "few pixels are read: " + std::to_string(few) + " of " + std::to_string(all));
+    other->VisibilityOff();
+    AddBalls(stage.Renderer, 4);
+    const Picture most = stage.Draw();
+    Check(read() > few && read() < all, "more balls are more pixels");
+    other->VisibilityOn();
+    Check(Difference(stage.Draw(), most) == 0, "that of all balls, too");
   }
 }
 
@@ -313,6 +353,7 @@ int main()
   AMovedImageIsDrawnWhereItLies(folder / "series.banyan");
   MatricesMoveTheVolume();
   GeometryEndsRays();
+  OnlyWhatOthersDrawIsReadBack();
   VectorsAreDrawnByMagnitudeOrComponent();
   MissingValuesAreEmpty();
   SmallVolumesDrawWithoutAWord();

@@ -1,0 +1,21 @@
+#ifndef banyan_Rendering_OthersOnScreen_h
+#define banyan_Rendering_OthersOnScreen_h
+
+#include "Render/RayCamera.h"
+
+class vtkProp;
+class vtkRenderer;
+
+namespace banyan
+{
+
+/// Where other visible props of this rank may have drawn something: the smallest rectangle around
+/// their bounds on the screen, and some pixels for the widths of lines and points. Only of actors
+/// with plain polygons and of volumes are bounds known to hold all that they draw: where anything
+/// else is visible (texts, axes, splats, geometry fixed to the window), it is all of `rect`.
+/// @param self does not count
+PixelRect OthersOnScreen(vtkRenderer* renderer, vtkProp* self, const PixelRect& rect);
+
+} // namespace banyan
+
+#endif
