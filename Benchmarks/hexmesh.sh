@@ -99,11 +99,11 @@ measure_adaptive()
   local csv="$output/hexmesh-adaptive.csv" options
   "$program" --header > "$csv" || fail "$csv cannot be written."
   for options in "banyan-full" "banyan --tolerance 1" "banyan --tolerance 4" \
-    "banyan --tolerance 8" "banyan-one-level --max-elements 0.1" \
-    "banyan-one-level --max-elements 0.06"; do
+    "banyan --tolerance 8" "banyan --tolerance 32" "banyan-one-level --max-elements 0.06" \
+    "banyan-one-level --max-elements 0.015"; do
     say "      $options"
     # shellcheck disable=SC2086 # words
-    "$program" --mesh "$mesh" --cells "$cells" --picture 512 --repeat "$repeat" \
+    "$program" --mesh "$mesh" --cells "$cells" --picture 1024 --repeat "$repeat" \
       --threads "$(nproc)" --references "$work" --save "$output/hexmesh-${options// /}.ppm" \
       --renderer $options >> "$csv" || fail "drawing the earthquake failed."
   done

@@ -28,7 +28,9 @@ def main():
         source.UpdatePipeline(step)
         first, last = source.PointData[0].GetRange(0)
         low, high = min(first, first if low is None else low), max(last, last if high is None else high)
-    samples = source.GetDataInformation().GetNumberOfPoints() * len(source.TimestepValues)
+    extent = source.GetDataInformation().GetExtent()
+    samples = (extent[1] - extent[0] + 1) * (extent[3] - extent[2] + 1) * (extent[5] - extent[4] + 1)
+    samples *= len(source.TimestepValues)
     rank = servermanager.vtkProcessModule.GetProcessModule().GetPartitionId()
     ranks = servermanager.vtkProcessModule.GetProcessModule().GetNumberOfLocalPartitions()
     seconds = []
