@@ -19,6 +19,15 @@ public:
   std::shared_ptr<const CompositePlan> Of(const std::vector<Footprint>& footprints,
     const PixelRect& viewport, const PixelRect& behind, bool ordered);
 
+  /// The same of a plan that is kept nowhere, where `plans` is null.
+  static std::shared_ptr<const CompositePlan> From(KeptPlan* plans,
+    const std::vector<Footprint>& footprints, const PixelRect& viewport, const PixelRect& behind,
+    bool ordered)
+  {
+    KeptPlan once;
+    return (plans ? *plans : once).Of(footprints, viewport, behind, ordered);
+  }
+
   /// How often a plan was derived, and how often the last one would do.
   std::int64_t Derived() const { return this->TimesDerived; }
   std::int64_t Kept() const { return this->TimesKept; }

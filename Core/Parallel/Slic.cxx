@@ -14,14 +14,6 @@ FloatImage Transparent(const PixelRect& rect)
   return { rect, PixelVector(static_cast<std::size_t>(rect.Count()), glm::vec4(0.0f)) };
 }
 
-std::shared_ptr<const CompositePlan> PlanFor(
-  const CompositeOptions& options, const PixelRect& viewport, bool ordered)
-{
-  KeptPlan once;
-  KeptPlan& plans = options.Plans ? *options.Plans : once;
-  return plans.Of(options.Footprints, viewport, options.Behind, ordered);
-}
-
 } // namespace
 
 SlicFrame::SlicFrame(Communicator& communicator, const std::vector<int>& frontToBack,
@@ -32,7 +24,8 @@ SlicFrame::SlicFrame(Communicator& communicator, const std::vector<int>& frontTo
   , Statistics(statistics)
   , Ordered(options.Combine == Combination::Over)
   , Pack(Packs(options))
-  , SharedPlan(PlanFor(options, viewport, this->Ordered))
+  , SharedPlan(KeptPlan::From(
+      options.Plans, options.Footprints, viewport, options.Behind, this->Ordered))
   , Plan(*this->SharedPlan)
   , Position(frontToBack.size())
   , Parts(static_cast<std::size_t>(this->Plan.Chunks))
