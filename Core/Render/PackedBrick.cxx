@@ -277,14 +277,23 @@ BrickVisibility::BrickVisibility(
 
 int BrickVisibility::MacrosIn(const Box& cells, const glm::ivec3& corner) const
 {
+  // The first macro cell whose middle is not before a cell.
+  const int toMiddle = this->MacroEdge / 2;
+  const auto firstFrom = [&](const glm::ivec3& cell)
+  { return glm::min((cell - corner + toMiddle - 1) / this->MacroEdge, PackedBrick::MacroEdge); };
+  const glm::ivec3 low = firstFrom(cells.Lo);
+  const glm::ivec3 high = firstFrom(cells.Hi);
   int count = 0;
-  for (int number = 0; number < PackedBrick::MacroCells; ++number)
+  for (int z = low.z; z < high.z; ++z)
   {
-    constexpr int edge = PackedBrick::MacroEdge;
-    const glm::ivec3 macro(number % edge, number / edge % edge, number / edge / edge);
-    const bool shown = (this->Mask[number / 32] >> number % 32 & 1u) != 0;
-    count +=
-      shown && cells.Contains(corner + macro * this->MacroEdge + this->MacroEdge / 2) ? 1 : 0;
+    for (int y = low.y; y < high.y; ++y)
+    {
+      for (int x = low.x; x < high.x; ++x)
+      {
+        const int number = MacroNumber({ x, y, z });
+        count += static_cast<int>(this->Mask[number / 32] >> number % 32 & 1u);
+      }
+    }
   }
   return count;
 }

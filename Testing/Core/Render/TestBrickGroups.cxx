@@ -219,6 +219,35 @@ TEST(BrickGroups, ChangeNoBitWhereTheyMeetSingleBricks)
   }
 }
 
+TEST(BrickGroups, MacroCellsBelongToTheBrickThatTheirMiddleIsIn)
+{
+  const glm::ivec3 n(33);
+  const std::vector<float> values = scenes::Sampled(scenes::Standard, n);
+  ThreadPool pool(1);
+  ArrayBrickSource source(scenes::ArrayOf(values, n), 32, { 0, 1 }, pool);
+  const Box cells{ glm::ivec3(0), n - 1 };
+  const PackedBrick packed(source.Load(0), glm::ivec3(0), cells, 0.0);
+  const VisibleValues visible(
+    scenes::Tabulate([](double v) { return glm::dvec4(1.0, 1.0, 1.0, v > 0.6 ? 0.5 : 0.0); }));
+  const BrickVisibility seen(packed, source.RangeOf(0), visible);
+  ASSERT_TRUE(seen.Holes);
+  int all = 0;
+  for (const glm::ivec3& low : { glm::ivec3(0), glm::ivec3(16), glm::ivec3(5, 0, 11) })
+  {
+    const Box part{ low, glm::ivec3(low.x == 5 ? 23 : low.x + 16, low.y + 16, low.z + 16) };
+    int expected = 0;
+    for (int number = 0; number < PackedBrick::MacroCells; ++number)
+    {
+      const glm::ivec3 macro(number % 8, number / 8 % 8, number / 64);
+      const bool shown = (seen.Mask[number / 32] >> number % 32 & 1u) != 0;
+      expected += shown && part.Contains(4 * macro + 2) ? 1 : 0;
+    }
+    EXPECT_EQ(seen.MacrosIn(part, packed.Corner()), expected);
+    all += expected;
+  }
+  EXPECT_GT(all, 0);
+}
+
 TEST(BrickGroups, WhatIsKnownOfThemIsKeptForOneFunction)
 {
   KeptBricks kept;
