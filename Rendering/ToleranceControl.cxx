@@ -8,6 +8,7 @@
 #include "Render/ScreenLevels.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 namespace banyan
@@ -22,6 +23,12 @@ constexpr double MostSlack = 16.0;
 double ToleranceControl::Plan(Communicator& communicator, DistributedField& field, RayScene& scene,
   const Wish& wish, std::uint64_t budgetBytes, const std::string& failure, FrameStatistics& frame)
 {
+  this->BySteps = !wish.KeepsTolerance;
+  if (this->BySteps)
+  {
+    this->PlanSteps(communicator, field, scene, wish, failure);
+    return 0.0;
+  }
   const int coarsest = field.IsMesh() ? CoarsestMeshLevel : CoarsestLevel;
   scene.LevelsShareCells = field.IsMesh();
   const bool byScreen = wish.ScreenErrorPixels > 0.0;
@@ -64,6 +71,50 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
   return plan.EstimatedError;
 }
 
+void ToleranceControl::PlanSteps(Communicator& communicator, DistributedField& field,
+  RayScene& scene, const Wish& wish, const std::string& failure)
+{
+  if (wish.Interacting)
+  {
+    this->Passes.Interacted();
+  }
+  // A pass divides its tolerance by four: so each takes one step. Still pictures leave out no rays:
+  // where a coarse level is far off, pixels between rays may be better by chance.
+  const double tolerance =
+    wish.Interacting
+      ? 0.0
+      : this->Passes.ToleranceOf(communicator, scene, field.Version(),
+          { wish.Passes, 1.0,
+            std::ldexp(1.0, 2 * std::min(this->Steps.Step(), this->CoarsestStepLevel)) });
+  const int step = wish.Interacting ? this->Steps.Step() : std::ilogb(tolerance) / 2;
+  if (!wish.Interacting && step == 0)
+  {
+    return;
+  }
+  const int coarsest = field.IsMesh() ? CoarsestMeshLevel : CoarsestLevel;
+  scene.LevelsShareCells = field.IsMesh();
+  // Projections combine in any order.
+  const bool levels =
+    scene.Blend.Mode != BlendMode::Composite || LevelsHaveOneOrder(scene, field.Zones(), coarsest);
+  if (levels)
+  {
+    field.BringLevels(communicator, scene, coarsest);
+  }
+  const std::string agreed = AgreeOnError(communicator, failure);
+  if (!agreed.empty())
+  {
+    throw Error(agreed);
+  }
+  this->CoarsestStepLevel =
+    CommonLevel(communicator, field.Source(), scene.DomainCells, levels ? coarsest : 0);
+  if (step > 0)
+  {
+    scene.Samplings = std::make_shared<const TileSamplings>(scene.Camera.ImageSize(),
+      std::vector<RaySampling>{
+        CoarserSteps::SamplingOf(step, scene.SampleDistance, this->CoarsestStepLevel) });
+  }
+}
+
 void ToleranceControl::PlanByScreen(Communicator& communicator, DistributedField& field,
   RayScene& scene, const Wish& wish, int coarsest)
 {
@@ -76,6 +127,11 @@ void ToleranceControl::FrameTook(const Wish& wish, double seconds)
 {
   if (!wish.Interacting)
   {
+    return;
+  }
+  if (this->BySteps)
+  {
+    this->Steps.FrameTook(seconds, wish.Seconds, this->CoarsestStepLevel);
     return;
   }
   if (!(wish.Seconds > 0.0))

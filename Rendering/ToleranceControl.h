@@ -4,6 +4,7 @@
 #include "RefinementPasses.h"
 
 #include "Parallel/DistributedPlan.h"
+#include "Render/CoarserSteps.h"
 
 namespace banyan
 {
@@ -31,12 +32,14 @@ public:
     double ScreenErrorPixels = 0.0;
     bool FixedDistance =
       false; ///< whether the scene's distance between samples is that of all levels
+    bool KeepsTolerance = true; ///< otherwise the picture is one of CoarserSteps
   };
 
   /// Collective: gives the scene its samplings and its opacity limit.
   /// @param failure of this rank, which all ranks then throw
   /// @param frame the pilots' samples and bytes are added
-  /// @return the estimated error in 1/255; 0 where the size of cells decides, which tells no error
+  /// @return the estimated error in 1/255; 0 where nothing tells it: where the size of cells
+  /// decides, or the promised time
   double Plan(Communicator& communicator, DistributedField& field, RayScene& scene,
     const Wish& wish, std::uint64_t budgetBytes, const std::string& failure,
     FrameStatistics& frame);
@@ -48,11 +51,19 @@ public:
   bool RefineNext() { return this->Passes.Next(); }
 
 private:
+  /// For pictures that keep no tolerance (CoarserSteps): while somebody moves
+  /// the camera they keep the promised time; still ones have all samples, after passes that take
+  /// one step each.
+  void PlanSteps(Communicator& communicator, DistributedField& field, RayScene& scene,
+    const Wish& wish, const std::string& failure);
   static void PlanByScreen(Communicator& communicator, DistributedField& field, RayScene& scene,
     const Wish& wish, int coarsest);
 
   RefinementPasses Passes;
   double Slack = 1.0; ///< times the interactive tolerance
+  StepControl Steps;
+  bool BySteps = false;      ///< the last frame
+  int CoarsestStepLevel = 0; ///< that a frame by steps could have
 };
 
 } // namespace banyan

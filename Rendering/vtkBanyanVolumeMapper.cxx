@@ -49,6 +49,7 @@ struct vtkBanyanVolumeMapper::Internals
   std::array<double, 6> Bounds{ { 1, -1, 1, -1, 1, -1 } };
   bool BoundsKnown = false;
   banyan::ToleranceControl Tolerance;
+  double WriteSeconds = 0.0; ///< of the last frame, to put its picture on the screen
 
   void Publish(const banyan::FrameStatistics& frame, std::uint64_t bytesRead,
     const banyan::BrickCache::Statistics& cacheBefore, std::uint64_t aheadBefore, double seconds,
@@ -310,15 +311,16 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   const banyan::ToleranceControl::Wish wish{ this->ImageErrorTolerance,
     this->InteractiveImageErrorTolerance, this->InteractiveFrameSeconds,
     renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0, this->RefineInPasses,
-    this->MaxElementsPerPixel, this->ScreenErrorPixels, fixed };
+    this->MaxElementsPerPixel, this->ScreenErrorPixels, fixed,
+    banyan::CanKeepTolerance(this, volume->GetProperty()) };
   const banyan::Timer drawing;
   {
     const banyan::PhaseScope fetching(banyan::Phase::Fetching);
     self.Field.BeginFrame(*self.Communicator, scene);
   }
   const banyan::PhaseScope sampling(banyan::Phase::Sampling);
-  this->Statistics->SetEstimatedImageError((!fixed || this->ScreenErrorPixels > 0.0) &&
-                                               banyan::CanKeepTolerance(this, volume->GetProperty())
+  const bool chosen = !fixed || (wish.KeepsTolerance && this->ScreenErrorPixels > 0.0);
+  this->Statistics->SetEstimatedImageError(chosen
                                              ? self.Tolerance.Plan(*self.Communicator, self.Field,
                                                  scene, wish, budget, wanted.Problem, frame)
                                              : 0.0);
@@ -343,9 +345,13 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   frame.MessagesComposited += pilots.MessagesComposited;
   const banyan::PhaseScope balancing(banyan::Phase::Balancing);
   self.Field.EndFrame(*self.Communicator);
-  self.Tolerance.FrameTook(wish, banyan::AllMax(*self.Communicator, drawing.Seconds()));
+  // Putting the picture on the screen takes about what it took the last time.
+  self.Tolerance.FrameTook(
+    wish, banyan::AllMax(*self.Communicator, drawing.Seconds() + self.WriteSeconds));
 
+  const banyan::Timer writing;
   self.Backdrop.Write(*self.Communicator, renderer, picture);
+  self.WriteSeconds = writing.Seconds();
   self.LastProblem.clear();
 
   frame.BytesComposited += static_cast<std::uint64_t>(

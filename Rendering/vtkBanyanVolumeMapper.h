@@ -66,7 +66,8 @@ public:
   ///@{
   /**
    * Seconds that a frame may take while interacting: the tolerance is raised, up to 16-fold, while
-   * frames take longer. Default 0.2; 0 leaves the tolerance as it is.
+   * frames take longer, and projections and labels, which have no tolerance, are drawn from coarser
+   * levels. Default 0.2; 0 for as long as it takes.
    */
   vtkSetClampMacro(InteractiveFrameSeconds, double, 0.0, 3600.0);
   vtkGetMacro(InteractiveFrameSeconds, double);

@@ -150,30 +150,35 @@ TEST_F(DistributedPlans, PicturesWithFewRaysAreThoseOfOneRank)
   }
   RayScene scene = this->Scene;
   scene.Samplings = tiles;
-  for (const int ranks : { 1, 2, 5 })
+  for (const BlendMode mode : { BlendMode::Composite, BlendMode::Maximum, BlendMode::Average })
   {
-    SCOPED_TRACE(ranks);
-    RunOnSimulatedRanks(ranks,
-      [&](Communicator& communicator)
-      {
-        ThreadPool pool(1);
-        ArrayBrickSource source = this->MakeSource(pool);
-        FrameStatistics took;
-        const FloatImage picture =
-          DrawDistributed(communicator, scene, &source, ZonesOf(ranks), Budget, pool, {}, took);
-        if (communicator.Rank() != 0)
+    SCOPED_TRACE(static_cast<int>(mode));
+    scene.Blend.Mode = mode;
+    for (const int ranks : { 1, 2, 5 })
+    {
+      SCOPED_TRACE(ranks);
+      RunOnSimulatedRanks(ranks,
+        [&](Communicator& communicator)
         {
-          return;
-        }
-        if (ranks == 1)
-        {
-          alone = picture;
-          // Pixels without rays have been filled.
-          EXPECT_GT(alone.At(150, 150).a * alone.At(151, 150).a * alone.At(151, 151).a, 0.0f);
-          return;
-        }
-        EXPECT_LT(MaxDifference(picture, alone), 1e-5);
-      });
+          ThreadPool pool(1);
+          ArrayBrickSource source = this->MakeSource(pool);
+          FrameStatistics took;
+          const FloatImage picture =
+            DrawDistributed(communicator, scene, &source, ZonesOf(ranks), Budget, pool, {}, took);
+          if (communicator.Rank() != 0)
+          {
+            return;
+          }
+          if (ranks == 1)
+          {
+            alone = picture;
+            // Pixels without rays have been filled.
+            EXPECT_GT(alone.At(150, 150).a * alone.At(151, 150).a * alone.At(151, 151).a, 0.0f);
+            return;
+          }
+          EXPECT_LT(MaxDifference(picture, alone), 1e-5);
+        });
+    }
   }
 }
 
