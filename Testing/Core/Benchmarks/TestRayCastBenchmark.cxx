@@ -96,24 +96,27 @@ TEST(RayCastBenchmark, TheRayCasterDrawsTheScene)
 TEST(RayCastBenchmark, LightIsThatOfTheGradientAndTheRay)
 {
   banyan::ThreadPool pool(1);
-  // Ramps along an axis: their gradients have one direction up to the faces.
-  for (int axis = 0; axis < 3; ++axis)
+  // Ramps along an axis and across: their gradients have one direction up to the faces.
+  for (const glm::dvec3& slope :
+    { glm::dvec3(0.5, 0, 0), { 0, 0.5, 0 }, { 0, 0, 0.5 }, { 0.3, -0.2, 0.25 } })
   {
     BenchScene scene = FlatScene(false);
     auto ramp = std::make_shared<Volume>(*scene.Data);
     ramp->Floats = scenes::Sampled<float>(
-      [axis](const glm::dvec3& p) { return 0.4 + 0.5 * p[axis]; }, ramp->Samples);
+      [&slope](const glm::dvec3& p) { return 0.4 + glm::dot(slope, p); }, ramp->Samples);
     scene.Data = ramp;
     const banyan::FloatImage plain = ConvergedImage(scene, 0.5, pool);
     scene.Shaded = true;
     const banyan::FloatImage shaded = ConvergedImage(scene, 0.5, pool);
     const banyan::RayCamera camera = ToRayScene(scene, 1.0, 1.0f).Camera;
+    const glm::dvec3 voxels = glm::dvec3(ramp->Samples - 1) * ramp->Spacing;
+    const glm::dvec3 normal = glm::normalize(slope / voxels);
     int lit = 0;
     for (int y = 0; y < Pixels; ++y)
     {
       for (int x = 0; x < Pixels; ++x)
       {
-        const double light = 0.3 + 0.7 * std::abs(camera.RayOf(x, y).Direction[axis]);
+        const double light = 0.3 + 0.7 * std::abs(glm::dot(camera.RayOf(x, y).Direction, normal));
         const glm::vec4& without = plain.At(x, y);
         const glm::vec4& with = shaded.At(x, y);
         EXPECT_NEAR(with.r, light * without.r, 1e-5);
