@@ -172,9 +172,13 @@ generate_turbulence
 stage 3 4 "Measuring"
 measure_renderers
 stage 4 4 "Reporting"
+others=()
+for table in raycast-scaling hexmesh hexmesh-scaling; do
+  [[ ! -e "$output/$table.csv" ]] || others+=("$output/$table.csv")
+done
 "$python" "$here/RayCast/report.py" "$output/raycast.csv" "$output/raycast.png" \
   "$output/raycast-largest.png" &&
-  "$python" "$here/RayCast/goals.py" "$output/raycast.csv" &&
+  "$python" "$here/RayCast/goals.py" "$output/raycast.csv" "${others[@]+"${others[@]}"}" &&
   "$python" "$here/RayCast/compare_pictures.py" "$work/pictures" "$output/raycast-pictures.png" ||
   fail "the report could not be written."
 say "Done: $output/raycast.csv, $output/raycast.png, -largest.png and -pictures.png"

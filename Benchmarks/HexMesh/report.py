@@ -13,11 +13,11 @@ import matplotlib.pyplot as plot  # noqa: E402 (the backend has to be chosen fir
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
 from tables import in_order, read  # noqa: E402
+from verdicts import lines_of, show  # noqa: E402
 
 WORDS = {"renderer", "mesh", "note"}
 COLUMNS = [("setup_s", "set-up, s", True), ("memory_mb", "memory, MB", True),
            ("ms_per_frame", "ms per frame", True), ("psnr_db", "PSNR, dB", False)]
-GOAL_FASTER = 60.0
 
 
 def draw(rows, path):
@@ -68,12 +68,6 @@ def print_rows(rows):
         print(f"{row['renderer']:26}{number(row['setup_s'], '.2f'):>10}"
               f"{number(row['memory_mb'], '.0f'):>8}{number(time, '.1f'):>10}"
               f"{number(row['psnr_db'], '.2f'):>8}{number(times, '.1f'):>8}  {row['note']}".rstrip())
-    tetrahedra = next((row["ms_per_frame"] for row in rows
-                       if row["renderer"] == "vtk-projected-tetrahedra"), None)
-    if ours and tetrahedra:
-        met = "met" if tetrahedra >= GOAL_FASTER * ours else "not met"
-        print(f"\nprojected tetrahedra take {tetrahedra / ours:.1f} times as long; "
-              f"goal {GOAL_FASTER:.0f}: {met}")
 
 
 def print_scaling(rows):
@@ -98,7 +92,10 @@ def print_adaptive(rows):
 def main(arguments):
     """As the top of this file says."""
     if arguments[0] == "--scaling":
-        print_scaling(read(arguments[1], WORDS))
+        rows = read(arguments[1], WORDS)
+        print_scaling(rows)
+        print()
+        show(lines_of(rows))
     elif arguments[0] == "--adaptive":
         print_adaptive(read(arguments[1], WORDS))
     else:
@@ -108,6 +105,8 @@ def main(arguments):
         for cells in sizes:
             print(f"\n{number(cells, ',.0f')} cells")
             print_rows([row for row in rows if row["cells"] == cells])
+        print()
+        show(lines_of(rows))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
-"""goals.py RAYCAST.csv : prints how many times faster than VTK's GPU mapper the ray caster is in the
-standard scenes, beside what the design asks for.
+"""goals.py RAYCAST.csv [TABLE.csv...] : prints how many times faster than VTK's GPU mapper the ray caster
+is in the standard scenes, beside what the design asks for, and the verdicts of more tables (verdicts.py).
 goals.py --needed RAYCAST.csv : prints for each scene which settings say so. Errors do not depend on the
 number of threads, so no other one has to be measured with fewer of them."""
 
@@ -9,6 +9,7 @@ import sys
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
 from tables import in_order, read  # noqa: E402
+from verdicts import WORDS, lines_of, show, verdict  # noqa: E402
 
 OURS = "banyan"
 PEER = "vtk-gpu"
@@ -50,10 +51,17 @@ def milliseconds(value):
     return "-" if math.isnan(value) else "never" if math.isinf(value) else f"{value:.0f}"
 
 
+def judged(ours, peer, goal):
+    """Whether a goal is kept; nothing where there is none, or nothing to compare with."""
+    if not goal or math.isnan(ours) or math.isnan(peer):
+        return ""
+    return verdict(math.isfinite(ours) and peer / ours >= goal)
+
+
 def lines(rows):
     """The table, line by line, in the way that the documents have it."""
-    yield f"| scene | at | threads | {OURS} ms | {PEER} ms | times faster | goal |"
-    yield "|---|---|---|---|---|---|---|"
+    yield f"| scene | at | threads | {OURS} ms | {PEER} ms | times faster | goal | |"
+    yield "|---|---|---|---|---|---|---|---|"
     for scene in filter(is_standard, in_order(rows, "scene")):
         for criterion, good in CRITERIA:
             for threads in in_order(rows, "threads"):
@@ -61,7 +69,7 @@ def lines(rows):
                 ours, peer = (quickest(here, name, good) for name in (OURS, PEER))
                 goal = goal_of(scene, criterion)
                 yield (f"| {scene} | {criterion} | {threads:g} | {milliseconds(ours)} | "
-                       f"{milliseconds(peer)} | {ratio(ours, peer)} | {goal or '-'} |")
+                       f"{milliseconds(peer)} | {ratio(ours, peer)} | {goal or '-'} | {judged(ours, peer, goal)} |")
 
 
 def speed_ups(rows):
@@ -119,7 +127,7 @@ def needed(rows):
         yield f"{scene} " + ",".join(f"{number:g}" for number in sorted(settings))
 
 
-def main(path):
+def main(path, others):
     rows = read(path, ("scene", "renderer"))
     print("Goals: how many times faster than VTK's GPU mapper, quickest settings that are good enough")
     print("\n".join(lines(rows)))
@@ -129,11 +137,15 @@ def main(path):
     print("\n".join(trees(rows)))
     print("\nThreads: one sample per voxel")
     print("\n".join(speed_ups(rows)))
+    verdicts = [line for other in others for line in lines_of(read(other, WORDS))]
+    if verdicts:
+        print("\nSizes and meshes")
+        show(verdicts)
 
 
 if len(sys.argv) == 3 and sys.argv[1] == "--needed":
     print("\n".join(needed(read(sys.argv[2], ("scene", "renderer")))))
-elif len(sys.argv) == 2:
-    main(sys.argv[1])
+elif len(sys.argv) > 1:
+    main(sys.argv[1], sys.argv[2:])
 else:
     sys.exit(__doc__)
