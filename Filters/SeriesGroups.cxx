@@ -12,16 +12,12 @@ namespace banyan
 
 void SeriesWriting::Collect(int step, const StepAgreement& now)
 {
-  const int group = step / this->Order.Options.KeyframeInterval;
-  const int place = step % this->Order.Options.KeyframeInterval;
-  const int owner = group % this->Talk.Ranks();
-  const bool ends = place + 1 == this->StepsOf(group);
-  // A group refers to the last step of the one before. Who encodes both in turn remembers it.
-  const int next = (group + 1) % this->Talk.Ranks();
-  const bool forNext = ends && next != owner && this->RefersBefore &&
-                       step + 1 < static_cast<int>(this->Times.size());
+  const int group = this->Deal.GroupOf(step);
+  const int place = this->Deal.PlaceOf(step);
+  const int owner = this->Deal.OwnerOf(group);
+  const int next = this->Deal.NeedsBefore(step);
   const bool receives = this->Talk.Rank() == owner;
-  const bool receivesForNext = forNext && this->Talk.Rank() == next;
+  const bool receivesForNext = this->Talk.Rank() == next;
   if ((place == 0 && receives) || receivesForNext)
   {
     // Its values are those of the group before until that is encoded.
@@ -35,12 +31,12 @@ void SeriesWriting::Collect(int step, const StepAgreement& now)
   }
   this->Gathering.Gather(
     this->Mine(), now, this->First.Arrays, owner, receives ? this->Values[place] : none);
-  if (forNext)
+  if (next >= 0)
   {
     this->Gathering.Gather(
       this->Mine(), now, this->First.Arrays, next, receivesForNext ? this->ValuesBefore : none);
   }
-  if (ends)
+  if (this->Deal.EndsGroup(step))
   {
     this->Talk.OnRank(owner, [this, group] { this->Encode(group); });
   }
@@ -66,8 +62,7 @@ void SeriesWriting::Encode(int group)
     steps.push_back(borrowed(this->Values[place]));
   }
   this->Encoding = static_cast<int>(steps.size());
-  this->Encoder->Start(
-    group, std::move(times), std::move(steps), borrowed(this->ValuesBefore));
+  this->Encoder->Start(group, std::move(times), std::move(steps), borrowed(this->ValuesBefore));
 }
 
 /// Brings the groups that were encoded meanwhile to rank 0, and the problems to all.

@@ -354,7 +354,8 @@ void SeriesWriting::Open()
         }
       }
       SeriesIndex plan = PlanSeries(this->First.Whole, descriptions, this->Order.Options);
-      this->RefersBefore = MayReferBefore(plan, this->Order.Options);
+      this->Deal = GroupDeal(
+        plan, this->Order.Options, static_cast<int>(this->Times.size()), this->Talk.Ranks());
       this->Encoder = std::make_unique<BackgroundEncoder>(
         std::move(plan), this->Order.Options, *this->Folder, ThreadPool::DefaultWidth());
     });

@@ -9,6 +9,7 @@
 #include "StepReport.h"
 
 #include "Series/BackgroundEncoder.h"
+#include "Series/GroupDeal.h"
 #include "Series/SegmentFolder.h"
 #include "Series/SeriesAssembly.h"
 
@@ -30,8 +31,8 @@ struct WritingOrder
 {
   std::string FileName;
   EncodeOptions Options;
-  vtkAlgorithm* Producer = nullptr; ///< of the image data
-  int Port = 0;                     ///< of the producer
+  vtkAlgorithm* Producer = nullptr;               ///< of the image data
+  int Port = 0;                                   ///< of the producer
   vtkDataArraySelection* Selection = nullptr;     ///< of point arrays
   vtkDataArraySelection* CellSelection = nullptr; ///< of cell arrays of meshes
   bool AllSteps = true;
@@ -41,14 +42,14 @@ struct WritingOrder
   std::function<void(const std::string&)> Warn;    ///< called on rank 0 only
 };
 
-/// Pulls the steps of a series out of a pipeline, each rank its own piece. Meshes become images (see
-/// MeshSteps). Groups of steps are
-/// dealt out to the ranks in turn: the pieces of each step are gathered on the rank that has its
-/// group, which encodes the group in the background while all ranks go on with the steps that
-/// follow. Rank 0 keeps the index. The files are the same, byte for byte, on any number of ranks.
+/// Pulls the steps of a series out of a pipeline, each rank its own piece. Meshes become images
+/// (see MeshSteps). Groups of steps are dealt out to the ranks in turn: the pieces of each step are
+/// gathered on the rank that has its group, which encodes the group in the background while all
+/// ranks go on with the steps that follow. Rank 0 keeps the index. The files are the same, byte for
+/// byte, on any number of ranks.
 ///
-/// Memory: each rank holds the values of one group at a time, and of the step before it. A rank whose group is still being
-/// encoded when it should receive the next one makes the others wait.
+/// Memory: each rank holds the values of one group at a time, and of the step before it. A rank
+/// whose group is still being encoded when it should receive the next one makes the others wait.
 ///
 /// Everything is decided by all ranks together: a problem of one makes all of them throw the same
 /// Error, at the same point. With a relative error bound the steps are pulled twice: first for the
@@ -104,11 +105,11 @@ private:
   std::vector<double> Times;
   StepAgreement First; ///< of step 0; its Ranges are those of the series after the first pass
 
-  std::unique_ptr<SeriesAssembly> Assembly;   ///< on rank 0
-  std::unique_ptr<SegmentFolder> Folder;      ///< of this rank's segments
-  std::vector<StepValues> Values;             ///< of this rank's group, by step
-  StepValues ValuesBefore;                    ///< of the step before them, where another rank has it
-  bool RefersBefore = false;                  ///< whether groups need that at all
+  std::unique_ptr<SeriesAssembly> Assembly; ///< on rank 0
+  std::unique_ptr<SegmentFolder> Folder;    ///< of this rank's segments
+  std::vector<StepValues> Values;           ///< of this rank's group, by step
+  StepValues ValuesBefore;                  ///< of the step before them, where another rank has it
+  GroupDeal Deal;                           ///< which rank encodes and receives what
   std::unique_ptr<BackgroundEncoder> Encoder; ///< of Values, into Folder
   bool Opened = false;                        ///< all ranks have all that
   std::string IndexProblem;                   ///< of rank 0, to be agreed on

@@ -30,7 +30,7 @@ struct EncodedGroup
 /// What the last step of a group decodes to, as the group after it needs it.
 struct LastStep
 {
-  int Group = -1; ///< -1: there is none
+  int Group = -1;               ///< -1: there is none
   std::vector<KeyFrame> Fields; ///< by component of all arrays
   std::vector<Hash128> Values;  ///< of the values as they came, by array
   SparePlanes Spare;            ///< memory of the group before
@@ -40,14 +40,15 @@ struct LastStep
 /// the range of some component, and the options do not close groups.
 bool MayReferBefore(const SeriesIndex& plan, const EncodeOptions& options);
 
-/// Encodes a group of consecutive steps into its segment. Groups may be encoded in any order, by any
-/// process that has the same plan, to the same bytes: all that a group needs of the one before is
-/// what its last step decodes to, which follows from the values of that step alone.
+/// Encodes a group of consecutive steps into its segment. Groups may be encoded in any order, by
+/// any process that has the same plan, to the same bytes: all that a group needs of the one before
+/// is what its last step decodes to, which follows from the values of that step alone.
 /// @param plan the index of the series, with ranges and bounds (see PlanSeries)
 /// @param number of the group in the series
 /// @param steps values by step and array, as SeriesEncoder::AddStep has them
 /// @param before values by array of the step before the first. May be empty for the first group of
-/// the series, where MayReferBefore is false, and where `last` is of the group before
+/// the series, for a single step, where MayReferBefore is false, and where `last` is of the group
+/// before
 /// @param last if not null, replaced by that of this group
 /// @param tell called with a value in [0, 1); may return false to interrupt
 /// Throws Error; the segment is then not there.
