@@ -68,7 +68,8 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
     budgetBytes, ThreadPool::Process(), failure, sampling, frame);
   scene.Samplings = plan.Samplings;
   scene.OpacityLimit = plan.OpacityLimit;
-  return plan.EstimatedError;
+  // No pixel can be off by more; several times what pilots are off can be.
+  return std::min(plan.EstimatedError, 255.0);
 }
 
 void ToleranceControl::PlanSteps(Communicator& communicator, DistributedField& field,

@@ -48,6 +48,8 @@ struct vtkBanyanVolumeMapper::Internals
   std::string LastProblem;
   std::array<double, 6> Bounds{ { 1, -1, 1, -1, 1, -1 } };
   bool BoundsKnown = false;
+  vtkDataObject* BoundsOf = nullptr; ///< only to compare with
+  vtkMTimeType BoundsTime = 0;
   banyan::ToleranceControl Tolerance;
   double WriteSeconds = 0.0; ///< of the last frame, to put its picture on the screen
 
@@ -162,6 +164,8 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
     this->GetDataObjectInput(), piece);
   self.Field.Update(*self.Communicator, piece);
   self.Bounds = self.Field.Bounds();
+  self.BoundsOf = this->GetDataObjectInput();
+  self.BoundsTime = self.BoundsOf ? self.BoundsOf->GetMTime() : 0;
   self.BoundsKnown = true;
   this->WarnOnce(self.Motion.Note() + self.Field.MeshNote(), self.LastNote);
   const int components = piece.Array ? piece.Array->GetNumberOfComponents() : 1;
@@ -179,13 +183,23 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
 
 double* vtkBanyanVolumeMapper::GetBounds()
 {
-  if (!this->Self->BoundsKnown)
+  const Internals& self = *this->Self;
+  const bool alone = self.Communicator->Size() == 1;
+  if (alone && this->GetNumberOfInputConnections(0) > 0)
   {
-    vtkDataObject* const input = this->GetDataObjectInput();
+    this->GetInputAlgorithm()->Update();
+  }
+  vtkDataObject* const input = this->GetDataObjectInput();
+  // Those of the last picture might hide an input that is somewhere else, so that it never came to
+  // be drawn.
+  const bool changed =
+    alone && input && (input != self.BoundsOf || input->GetMTime() != self.BoundsTime);
+  if (!self.BoundsKnown || changed)
+  {
     return !input || vtkDataSet::SafeDownCast(input) ? this->Superclass::GetBounds()
                                                      : banyan::BoundsOfLeaves(input, this->Bounds);
   }
-  std::copy(this->Self->Bounds.begin(), this->Self->Bounds.end(), this->Bounds);
+  std::copy(self.Bounds.begin(), self.Bounds.end(), this->Bounds);
   return this->Bounds;
 }
 

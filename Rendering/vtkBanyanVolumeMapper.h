@@ -254,7 +254,7 @@ public:
 
   /**
    * Bounds of the whole field, over all ranks, once UpdateField() or Render() was called; those of
-   * the input before.
+   * the input before. Of a rank that is alone also those of another input, or one that has changed.
    */
   double* GetBounds() VTK_SIZEHINT(6) override;
   using Superclass::GetBounds;

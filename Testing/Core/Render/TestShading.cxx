@@ -103,10 +103,19 @@ TEST(Shading, AgainstReference)
   glm::dmat4 turned = glm::rotate(glm::dmat4(1.0), 0.8, glm::normalize(glm::dvec3(1, 2, 3)));
   turned = glm::scale(turned, glm::dvec3(0.5, -1.25, 2.0));
   turned[2] += 0.4 * turned[0];
-  for (const glm::dmat4& toWorld :
-    { glm::dmat4(1.0), turned, glm::scale(glm::dmat4(1.0), glm::dvec3(1e-5)) })
+  struct Placed
+  {
+    glm::dmat4 ToWorld;
+    double Distance = 1.4; // of the eye, in diagonals: from farther away columns lie between pixels
+  };
+  for (const auto& [toWorld, distance] : { Placed{ glm::dmat4(1.0) }, Placed{ turned },
+         Placed{ glm::scale(glm::dmat4(1.0), glm::dvec3(1e-5)) },
+         Placed{ glm::translate(glm::dmat4(1.0), glm::dvec3(1e7, -1e7, 3e7)) },
+         Placed{ glm::scale(glm::dmat4(1.0), glm::dvec3(1, 1, 1000)), 0.03 },
+         Placed{ glm::scale(glm::dmat4(1.0), glm::dvec3(300, 1, 1)), 0.03 } })
   {
     RayScene scene = Shaded(n, toWorld);
+    scene.Camera = scenes::Scene(n, { 60, 50 }, toWorld, distance).Camera;
     scene.SampleDistance = toWorld[0][0] < 1e-3 ? 1e-5 : 1.0;
     scene.Transfer.UnitDistance = scene.SampleDistance;
     const FloatImage image = scenes::Draw(scene, scenes::ArrayOf(values, n)).Image;
