@@ -104,8 +104,8 @@ public:
   ///@{
   /**
    * Budget in MiB of the cache of decoded bricks, which all readers and renderers of the process
-   * share. Negative (the default) leaves it as it is: 512 MiB, or BANYAN_CACHE_MB from the
-   * environment.
+   * share. Negative (the default) leaves it as it is: BANYAN_CACHE_MB from the environment,
+   * or an eighth of the machine's memory shared by its ranks, but 512 MiB at least.
    */
   void SetCacheBudget(int mebibytes);
   vtkGetMacro(CacheBudget, int);

@@ -99,6 +99,9 @@ public:
 
   /// This rank's bricks; null when it has none.
   BrickSource* Source();
+  /// What loaded and packed bricks of this rank may take: its part of what the process has for
+  /// drawing, which all volumes that are drawn share.
+  std::uint64_t DrawingBudget();
   /// Bytes read so far from the series by this process; 0 for plain data.
   std::uint64_t BytesRead() const;
 

@@ -33,6 +33,14 @@ BrickSource* DistributedField::Source()
   return this->Pieces ? this->Pieces->Source() : this->Bricks.get();
 }
 
+std::uint64_t DistributedField::DrawingBudget()
+{
+  // Less than the cache has: what one batch holds is then never evicted by that batch itself.
+  constexpr std::uint64_t least = std::uint64_t{ 16 } << 20;
+  const std::uint64_t all = BrickCache::Process().DrawingBudget();
+  return std::max(this->Source() ? this->Source()->Kept().ShareOf(all) : all, least);
+}
+
 void DistributedField::BeginFrame(Communicator& communicator, RayScene& scene)
 {
   if (this->Pieces)

@@ -317,9 +317,6 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   const std::uint64_t bytesBefore = self.Field.BytesRead();
   const banyan::BrickCache::Statistics cacheBefore = banyan::BrickCache::Process().GetStatistics();
   const std::uint64_t aheadBefore = banyan::BrickCache::Process().GetAheadStatistics().Hits;
-  // Less than the cache has: what one batch holds is then never evicted by that batch itself.
-  const std::uint64_t budget =
-    std::max<std::uint64_t>(banyan::BrickCache::Process().DrawingBudget(), 16u << 20);
   banyan::FrameStatistics frame;
   // More than one frame per second: somebody moves the camera. All ranks are told the same rate.
   const banyan::ToleranceControl::Wish wish{ this->ImageErrorTolerance,
@@ -332,6 +329,7 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
     const banyan::PhaseScope fetching(banyan::Phase::Fetching);
     self.Field.BeginFrame(*self.Communicator, scene);
   }
+  const std::uint64_t budget = self.Field.DrawingBudget();
   const banyan::PhaseScope sampling(banyan::Phase::Sampling);
   const bool chosen = !fixed || (wish.KeepsTolerance && this->ScreenErrorPixels > 0.0);
   this->Statistics->SetEstimatedImageError(chosen

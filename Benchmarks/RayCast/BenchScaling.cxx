@@ -42,11 +42,12 @@ struct Options
   int Picture = 1024;
   int Threads = 1;
   int Repeat = 3;
-  int BudgetMiB = 512;
+  int BudgetMiB = 0; ///< 0 for the process's own
   double Tolerance = 0; ///< in 1/255; 0 takes one sample per voxel
 };
 
 constexpr int CoarsestLevel = 3;
+constexpr int BrickCells = 16; // as the mapper cuts plain data
 
 const char* Help = "banyan-bench-scaling --size N [--series FILE.banyan] [OPTIONS]\n"
                    "  Draws the standard scene S2 of N^3 samples, from memory or from the encoded\n"
@@ -54,7 +55,7 @@ const char* Help = "banyan-bench-scaling --size N [--series FILE.banyan] [OPTION
                    "banyan-bench-scaling --encode FILE.raw --size N --series FILE.banyan\n"
                    "  Encodes one step of float32, with the default error bound.\n"
                    "  --threads N  (default 1)    --repeat N   later frames (default 3)\n"
-                   "  --budget MIB cache of decoded bricks (default 512)\n"
+                   "  --budget MIB what bricks may take in all (default: the process's own, see limits.md)\n"
                    "  --picture N  pixels per side (default 1024)\n"
                    "  --tolerance T  samples as the picture needs for an error of T/255, instead of\n"
                    "                 one per voxel; finding out is part of each frame\n"
@@ -184,7 +185,7 @@ Frames DrawFrames(const Options& options, const Timer& sinceStart, BrickSource& 
     const auto draw = [&](const RayScene& wanted)
     { return CastRays(wanted, source, wanted.DomainCells, budget, pool, frames.Statistics); };
     const int finestPilot =
-      FinestLevelWithin(scene, source, scene.DomainCells, CoarsestLevel, budget / 2, pool);
+      FinestLevelWithin(scene, source, scene.DomainCells, CoarsestLevel, KeptBricks::PartOf(budget), pool);
     const RayScene sampled = Sampled(scene, options.Tolerance, finestPilot, draw);
     FloatImage picture = draw(sampled);
     FillBetweenRays(sampled, picture, pool);
@@ -218,27 +219,27 @@ void Report(const Options& options, const Frames& frames)
     frames.FirstMilliseconds,
     frames.Milliseconds[frames.Milliseconds.size() / 2],
     static_cast<long long>(statistics.SamplesTaken), static_cast<long long>(statistics.BricksDrawn),
-    static_cast<long long>(statistics.BricksSkipped), options.BudgetMiB, PeakMiB(),
-    fileBytes / MiB);
+    static_cast<long long>(statistics.BricksSkipped),
+    static_cast<int>(BrickCache::Process().Budget() >> 20), PeakMiB(), fileBytes / MiB);
 }
 
 void Draw(const Options& options)
 {
   ThreadPool::SetProcessWidth(options.Threads);
   ThreadPool& pool = ThreadPool::Process();
-  const auto budget = static_cast<std::uint64_t>(options.BudgetMiB) << 20;
+  BrickCache& cache = BrickCache::Process();
+  if (options.BudgetMiB > 0)
+    cache.SetBudget(static_cast<std::uint64_t>(options.BudgetMiB) << 20);
   if (options.Series.empty())
   {
     const auto volume = bench::StandardVolume(options.Size, pool);
     const Timer sinceStart;
-    ArrayBrickSource source(volume->Array(), 32, { 0.0, 1.0 }, pool);
-    Report(options, DrawFrames(options, sinceStart, source, budget, pool));
+    ArrayBrickSource source(volume->Array(), BrickCells, { 0.0, 1.0 }, pool);
+    Report(options, DrawFrames(options, sinceStart, source, cache.DrawingBudget(), pool));
     return;
   }
   ForFilesOf(options.Series, [](int file) { posix_fadvise(file, 0, 0, POSIX_FADV_DONTNEED); });
   const Timer sinceStart;
-  BrickCache& cache = BrickCache::Process();
-  cache.SetBudget(budget);
   SeriesBrickSource source(SeriesFile::Open(options.Series), {}, 0, cache);
   Report(options, DrawFrames(options, sinceStart, source, cache.DrawingBudget(), pool));
 }

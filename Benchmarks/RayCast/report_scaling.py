@@ -30,7 +30,8 @@ def draw(rows, path):
     most = max(row["threads"] for row in rows)
     for axes, (column, label) in zip(grid, panels):
         for source, color in (("series", "tab:red"), ("memory", "tab:blue")):
-            for sampling, line in (("one per voxel", "--"), ("error 1/255", "-")):
+            for sampling, line in (("one per voxel", ":"), ("error 16/255", "--"), ("error 4/255", "-."),
+                                   ("error 1/255", "-")):
                 curve = [row for row in rows if row["source"] == source
                          and row["threads"] == most and row["sampling"] == sampling]
                 name = "an encoded series" if source == "series" else source

@@ -58,6 +58,20 @@ std::string OwnGroup(const std::string& root)
   return {};
 }
 
+/// Calls function(folder) for the control groups around the process.
+template <class Function>
+void ForGroups(const std::string& root, Function&& function)
+{
+  for (std::string group = OwnGroup(root);; group.resize(group.rfind('/')))
+  {
+    function(root + "/sys/fs/cgroup" + group + "/");
+    if (group.empty())
+    {
+      return;
+    }
+  }
+}
+
 } // namespace
 
 std::size_t AvailableMemory(const std::string& root)
@@ -69,23 +83,36 @@ std::size_t AvailableMemory(const std::string& root)
   {
     least = *kilobytes << 10;
   }
-  for (std::string group = OwnGroup(root);; group.resize(group.rfind('/')))
-  {
-    const std::string folder = root + "/sys/fs/cgroup" + group + "/";
-    if (const auto left = Left(folder, "memory"))
+  ForGroups(root,
+    [&](const std::string& folder)
     {
-      const std::size_t files =
-        SumOfLines(folder + "memory.stat", "inactive_file", "active_file").value_or(0);
-      // Without a limit of its own, swap is what the machine has.
-      const std::size_t swap = Left(folder, "memory.swap")
-                                 .value_or(SumOfLines(machine, "SwapFree:", "").value_or(0) << 10);
-      least = std::min(least, *left + files + swap);
-    }
-    if (group.empty())
+      if (const auto left = Left(folder, "memory"))
+      {
+        const std::size_t files =
+          SumOfLines(folder + "memory.stat", "inactive_file", "active_file").value_or(0);
+        // Without a limit of its own, swap is what the machine has.
+        const std::size_t swap =
+          Left(folder, "memory.swap")
+            .value_or(SumOfLines(machine, "SwapFree:", "").value_or(0) << 10);
+        least = std::min(least, *left + files + swap);
+      }
+    });
+  return least;
+}
+
+std::size_t MachineMemory(const std::string& root)
+{
+  std::size_t least = SumOfLines(root + "/proc/meminfo", "MemTotal:", "").value_or(0) << 10;
+  ForGroups(root,
+    [&](const std::string& folder)
     {
-      return least;
-    }
-  }
+      std::size_t most = 0;
+      if (std::ifstream(folder + "memory.max") >> most)
+      {
+        least = least == 0 ? most : std::min(least, most);
+      }
+    });
+  return least;
 }
 
 } // namespace banyan

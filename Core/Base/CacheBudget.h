@@ -6,9 +6,20 @@
 namespace banyan
 {
 
+/// What the caches of a process may take together unless something else is asked for: its part of
+/// an eighth of the machine's memory, but at least 512 MiB and at most 16 GiB.
+/// @param machineBytes MachineMemory; 0 where it is not known
+/// @param ranks that share the machine; less than 1 counts as 1
+std::uint64_t UsualCacheBudget(std::uint64_t machineBytes, int ranks);
+
+/// How many ranks of a parallel job run on this machine, as those who start them say in the
+/// environment (Open MPI, MPICH, Slurm): before MPI is initialized, and without it. 1 where nobody
+/// says.
+int RanksStartedHere();
+
 /// What the caches of a process may take together unless they are told otherwise: the environment
-/// variable BANYAN_CACHE_MB, a whole number of MiB (0 keeps nothing), else 512 MiB. Throws Error,
-/// with a sentence that says what is wrong, when the variable holds anything else.
+/// variable BANYAN_CACHE_MB, a whole number of MiB (0 keeps nothing), else UsualCacheBudget. Throws
+/// Error, with a sentence that says what is wrong, when the variable holds anything else.
 std::uint64_t CacheBudgetAskedFor();
 
 /// The same, with the default in place of the error. For caches, which are made where nobody

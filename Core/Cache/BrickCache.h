@@ -83,7 +83,7 @@ public:
   Statistics GetStatistics() const;
 
   /// The cache of this process; its budget is that of CacheBudget.h: `BANYAN_CACHE_MB` from the
-  /// environment, or 512 MiB.
+  /// environment, or UsualCacheBudget.
   static BrickCache& Process();
 
 private:

@@ -45,7 +45,7 @@ int FinestPilotLevel(Communicator& communicator, const RayScene& scene, BrickSou
     [&]
     {
       return source && !zone.Empty()
-               ? FinestLevelWithin(scene, *source, zone, coarsest, budgetBytes / 2, pool)
+               ? FinestLevelWithin(scene, *source, zone, coarsest, KeptBricks::PartOf(budgetBytes), pool)
                : 0;
     });
 }

@@ -64,9 +64,7 @@ ArrayBrickSource::ArrayBrickSource(const ArrayBrickSource& finest, int level)
   {
     const glm::ivec3 position =
       PositionOf(static_cast<std::int64_t>(fine), finest.BrickCounts) / this->Every;
-    const std::size_t brick =
-      position.x + this->BrickCounts.x *
-                     (position.y + static_cast<std::size_t>(this->BrickCounts.y) * position.z);
+    const auto brick = static_cast<std::size_t>(NumberOf(position, this->BrickCounts));
     this->Ranges[brick].Include(finest.Ranges[fine]);
     this->Masks[brick] |= finest.Masks[fine];
     this->Uniform[brick] &= finest.Uniform[fine];
@@ -138,10 +136,8 @@ BrickView ArrayBrickSource::LoadAround(std::int64_t brick, Box& samples)
 
 BrickView ArrayBrickSource::LoadTogether(const Box& bricks, bool around, Box& samples)
 {
-  const auto numberOf = [this](const glm::ivec3& p)
-  { return p.x + this->BrickCounts.x * (p.y + std::int64_t{ this->BrickCounts.y } * p.z); };
-  const Box own{ this->SamplesOf(numberOf(bricks.Lo)).Lo,
-    this->SamplesOf(numberOf(bricks.Hi - 1)).Hi };
+  const Box own{ this->SamplesOf(NumberOf(bricks.Lo, this->BrickCounts)).Lo,
+    this->SamplesOf(NumberOf(bricks.Hi - 1, this->BrickCounts)).Hi };
   const int layer = around ? 1 : 0;
   return this->ViewOf({ own.Lo - layer, own.Hi + layer }, samples);
 }

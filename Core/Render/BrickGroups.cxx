@@ -21,6 +21,11 @@ BrickGroups::BrickGroups(const BrickSource& source, bool may)
   this->Counts = (this->Bricks + this->Edge - 1) / this->Edge;
 }
 
+std::int64_t BrickGroups::BrickAt(const glm::ivec3& position) const
+{
+  return BrickSource::NumberOf(position, this->Bricks);
+}
+
 std::int64_t BrickGroups::Count() const
 {
   return Box{ glm::ivec3(0), this->Counts }.Count();

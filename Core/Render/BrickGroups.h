@@ -31,10 +31,7 @@ public:
   /// Positions of a group's bricks in the grid of bricks.
   Box BricksOf(std::int64_t group) const;
   /// The number of a brick.
-  std::int64_t BrickAt(const glm::ivec3& position) const
-  {
-    return position.x + this->Bricks.x * (position.y + std::int64_t{ this->Bricks.y } * position.z);
-  }
+  std::int64_t BrickAt(const glm::ivec3& position) const;
   /// The cells of some bricks together.
   Box CellsOf(const Box& bricks) const;
 

@@ -79,7 +79,7 @@ BrickView BrickSource::LoadAround(std::int64_t brick, Box& samples)
     const glm::ivec3 p = position + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1;
     if (Box{ glm::ivec3(0), counts }.Contains(p))
     {
-      const std::int64_t number = p.x + counts.x * (p.y + std::int64_t{ counts.y } * p.z);
+      const std::int64_t number = NumberOf(p, counts);
       const Box cells = this->CellsOf(number);
       neighbours.push_back({ this->Load(number), { cells.Lo, cells.Hi + 1 } });
     }
@@ -97,7 +97,7 @@ BrickView BrickSource::LoadTogether(const Box& bricks, bool around, Box& samples
   {
     const glm::ivec3 p =
       bricks.Lo + glm::ivec3(i % size.x, i / size.x % size.y, i / size.x / size.y);
-    const std::int64_t number = p.x + counts.x * (p.y + std::int64_t{ counts.y } * p.z);
+    const std::int64_t number = NumberOf(p, counts);
     const Box cells = this->CellsOf(number);
     SampledBox part{ {}, { cells.Lo, cells.Hi + 1 } };
     part.View = around ? this->LoadAround(number, part.Samples) : this->Load(number);

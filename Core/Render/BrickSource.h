@@ -39,6 +39,11 @@ public:
 
   /// Bricks are numbered x fastest over `Bricks()`; brick b owns the cells `CellsOf(b)`, its own.
   virtual glm::ivec3 Bricks() const = 0;
+  /// @param counts Bricks()
+  static std::int64_t NumberOf(const glm::ivec3& position, const glm::ivec3& counts)
+  {
+    return position.x + counts.x * (position.y + std::int64_t{ counts.y } * position.z);
+  }
   virtual Box CellsOf(std::int64_t brick) const = 0;
 
   /// How many times a brick's cells are twice as long as the source's: 0 unless a source has cells

@@ -1,9 +1,14 @@
 #include "Render/KeptBricks.h"
 
+#include <atomic>
+
 namespace banyan
 {
 namespace
 {
+
+/// Those of the process that keep bricks.
+std::atomic<int> Holders{ 0 };
 
 std::uint64_t BytesOf(const PackedBrick& packed)
 {
@@ -11,6 +16,25 @@ std::uint64_t BytesOf(const PackedBrick& packed)
 }
 
 } // namespace
+
+KeptBricks::~KeptBricks()
+{
+  this->SetHeld(0);
+}
+
+/// The caller has the lock, or is alone.
+void KeptBricks::SetHeld(std::uint64_t bytes)
+{
+  Holders += (bytes > 0 ? 1 : 0) - (this->HeldBytes > 0 ? 1 : 0);
+  this->HeldBytes = bytes;
+}
+
+std::uint64_t KeptBricks::ShareOf(std::uint64_t budgetBytes) const
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  const int others = Holders - (this->HeldBytes > 0 ? 1 : 0);
+  return budgetBytes / static_cast<std::uint64_t>(others + 1);
+}
 
 void KeptBricks::BeginPicture(std::uint64_t limitBytes, bool ages)
 {
@@ -22,7 +46,7 @@ void KeptBricks::BeginPicture(std::uint64_t limitBytes, bool ages)
     const bool old = item->second.UsedIn < this->Picture - 2;
     if (old || this->HeldBytes > limitBytes)
     {
-      this->HeldBytes -= BytesOf(*item->second.Packed);
+      this->SetHeld(this->HeldBytes - BytesOf(*item->second.Packed));
       item = this->Items.erase(item);
     }
     else
@@ -54,12 +78,12 @@ void KeptBricks::Keep(std::int64_t brick, const Pointer& packed)
   const auto item = this->Items.find(brick);
   if (item != this->Items.end())
   {
-    this->HeldBytes -= BytesOf(*item->second.Packed);
+    this->SetHeld(this->HeldBytes - BytesOf(*item->second.Packed));
     this->Items.erase(item);
   }
   if (this->HeldBytes + bytes <= this->LimitBytes)
   {
-    this->HeldBytes += bytes;
+    this->SetHeld(this->HeldBytes + bytes);
     this->Items[brick] = { packed, this->Picture, std::nullopt, 0 };
   }
 }

@@ -25,6 +25,18 @@ class KeptBricks
 public:
   using Pointer = std::shared_ptr<const PackedBrick>;
 
+  KeptBricks() = default;
+  ~KeptBricks();
+  KeptBricks(const KeptBricks&) = delete;
+  KeptBricks& operator=(const KeptBricks&) = delete;
+
+  /// Of what drawing may take, what is kept from picture to picture. The rest is for bricks that are
+  /// packed for one picture.
+  static std::uint64_t PartOf(std::uint64_t budgetBytes) { return budgetBytes / 4 * 3; }
+  /// Of what all sources of the process may take, this one's part: those that keep bricks have equal
+  /// ones.
+  std::uint64_t ShareOf(std::uint64_t budgetBytes) const;
+
   /// Lets go of bricks that the last two pictures did not use, and of all beyond the limit.
   /// @param ages false for a picture that only helps to make the next one, and does not count
   void BeginPicture(std::uint64_t limitBytes, bool ages = true);
@@ -56,6 +68,8 @@ private:
     std::optional<BrickVisibility> Visibility;
     std::uint64_t VisibleUnder = 0; ///< VisibleValues::Number
   };
+
+  void SetHeld(std::uint64_t bytes);
 
   std::uint64_t LimitBytes = 0;
   std::uint64_t HeldBytes = 0;

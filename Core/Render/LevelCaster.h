@@ -111,6 +111,7 @@ private:
   }
   PixelRect FootprintOf(const Box& cells) const;
   std::optional<int> EntryOf(std::int64_t brick) const;
+  std::optional<int> EntryOfAll(const BrickGroups& groups, const Box& bricks) const;
   void MakeTiles();
   template <class Function>
   void ForTilesUnder(const PixelRect& footprint, Function&& function);
@@ -183,7 +184,7 @@ void LevelCaster::ForBricksOf(const PlannedBrick& brick, Function&& function) co
     const auto place = static_cast<int>(i);
     const glm::ivec3 p = brick.Together.Lo + glm::ivec3(place % size.x, place / size.x % size.y,
                                                place / size.x / size.y);
-    function(p.x + counts.x * (p.y + std::int64_t{ counts.y } * p.z));
+    function(BrickSource::NumberOf(p, counts));
   }
 }
 

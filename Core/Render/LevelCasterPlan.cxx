@@ -127,13 +127,22 @@ GroupMembers LevelCaster::Look(const BrickGroups& groups, const Box& bricks, Val
 bool LevelCaster::PlanTogether(
   const BrickGroups& groups, const Box& bricks, const GroupMembers& members)
 {
-  const bool macroVoxels = !this->Shading && !this->AnySampling->Projection;
-  if (bricks.Count() == 1 || members.Visible != members.There ||
-      (macroVoxels && members.Uniform != 0) || !this->ClipPlanes.empty())
+  const bool macroVoxels =
+    !this->Shading && !this->AnySampling->Projection && members.Uniform != 0;
+  if (bricks.Count() == 1 || members.Visible != members.There || !this->ClipPlanes.empty() ||
+      (macroVoxels && members.Uniform != members.There))
   {
     return false;
   }
   PlannedBrick brick;
+  if (macroVoxels)
+  {
+    brick.Entry = this->EntryOfAll(groups, bricks);
+    if (!brick.Entry)
+    {
+      return false;
+    }
+  }
   brick.Number = groups.BrickAt(bricks.Lo);
   brick.Together = bricks;
   this->PlaceCells(brick, groups.CellsOf(bricks));
@@ -157,6 +166,16 @@ bool LevelCaster::PlanTogether(
   }
   this->TakeIn(brick);
   return true;
+}
+
+/// The entry that all samples of several bricks have, if they have one.
+std::optional<int> LevelCaster::EntryOfAll(const BrickGroups& groups, const Box& bricks) const
+{
+  const std::optional<int> first = this->EntryOf(groups.BrickAt(bricks.Lo));
+  bool same = first.has_value();
+  ForMembers(groups, bricks,
+    [&](std::int64_t number, int) { same = same && this->EntryOf(number) == first; });
+  return same ? first : std::nullopt;
 }
 
 /// Whether each of several bricks is on the screen.

@@ -48,8 +48,8 @@ public:
   /// Forgets the boxes of a series.
   void Forget(std::uint64_t series);
 
-  /// Takes effect at once; with a smaller one all boxes go. Default: a quarter of CacheBudgetBytes, 128 MiB
-  /// where the environment says nothing; a new budget of the process's BrickCache sets it to a quarter of that.
+  /// Takes effect at once; with a smaller one all boxes go. Default: a quarter of CacheBudgetBytes;
+  /// a new budget of the process's BrickCache sets it to a quarter of that.
   void SetBudgetBytes(std::uint64_t bytes);
   std::uint64_t BudgetBytes() const { return this->Budget; }
   std::uint64_t Bytes() const;

@@ -97,6 +97,18 @@ TEST_F(AvailableMemoryOf, TheTightestOfGroupsInGroupsCounts)
   EXPECT_EQ(AvailableMemory(this->Root), 1690u) << "a group that is not seen";
 }
 
+TEST_F(AvailableMemoryOf, AllOfAMachineIsWhatItHasOrTheTightestGroupMay)
+{
+  EXPECT_EQ(MachineMemory(this->Root), 0u) << "nothing says";
+  this->WriteMachine("7");
+  EXPECT_EQ(MachineMemory(this->Root), std::size_t{ 9000 } * 1024);
+  this->Write("/proc/self/cgroup", "0::/job/step\n");
+  this->WriteGroup("/job/step", "max", "100");
+  EXPECT_EQ(MachineMemory(this->Root), std::size_t{ 9000 } * 1024);
+  this->WriteGroup("/job", "2000", "1900");
+  EXPECT_EQ(MachineMemory(this->Root), 2000u) << "whatever is in use";
+}
+
 TEST(AvailableMemory, OfThisMachineIsSomething)
 {
   EXPECT_GT(AvailableMemory(), std::size_t{ 1 } << 20);

@@ -1,5 +1,6 @@
 #include "Series/SeriesTesting.h"
 
+#include "Base/AvailableMemory.h"
 #include "Base/CacheBudget.h"
 #include "Base/Error.h"
 #include "Series/LatticeCache.h"
@@ -246,6 +247,11 @@ TEST(ProcessBrickCache, IsOne)
   EXPECT_GT(BrickCache::Process().Budget(), 0u);
 }
 
+int UsualMegabytes()
+{
+  return static_cast<int>(UsualCacheBudget(MachineMemory(), RanksStartedHere()) >> 20);
+}
+
 /// Of the whole, when that of lattices is a quarter of it.
 int BudgetWith(const char* megabytes)
 {
@@ -261,10 +267,10 @@ TEST(ProcessBrickCacheDeathTest, TakesItsBudgetFromTheEnvironment)
   const auto exits = [](int code) { return ::testing::ExitedWithCode(code); };
   EXPECT_EXIT(_exit(BudgetWith("7")), exits(7), "");
   EXPECT_EXIT(_exit(BudgetWith("0")), exits(0), "");
-  EXPECT_EXIT(_exit(BudgetWith("many") == 512 ? 5 : 6), exits(5), "");
-  EXPECT_EXIT(_exit(BudgetWith("-1") == 512 ? 5 : 6), exits(5), "");
-  EXPECT_EXIT(_exit(BudgetWith("") == 512 ? 5 : 6), exits(5), "");
-  EXPECT_EXIT(_exit(BudgetWith("64MB") == 512 ? 5 : 6), exits(5), "");
+  for (const char* const wrong : { "many", "-1", "", "64MB" })
+  {
+    EXPECT_EXIT(_exit(BudgetWith(wrong) == UsualMegabytes() ? 5 : 6), exits(5), "");
+  }
 }
 
 /// Of all of it, with BANYAN_CACHE_MB as it is.
@@ -313,7 +319,7 @@ TEST(CacheBudget, IsAWholeNumberOfMegabytesOrASentence)
         std::string::npos)
         << error.what();
     }
-    EXPECT_EQ(CacheBudgetBytes(), std::uint64_t{ 512 } << 20);
+    EXPECT_EQ(CacheBudgetBytes() >> 20, static_cast<std::uint64_t>(UsualMegabytes()));
   }
   setenv("BANYAN_CACHE_MB", "0", 1);
   EXPECT_EQ(CacheBudgetAskedFor(), 0u);
@@ -321,7 +327,43 @@ TEST(CacheBudget, IsAWholeNumberOfMegabytesOrASentence)
   EXPECT_EQ(CacheBudgetAskedFor(), std::uint64_t{ 64 } << 20);
   EXPECT_NO_THROW((void)SeriesFile::Open(folder / "s.banyan"));
   unsetenv("BANYAN_CACHE_MB");
-  EXPECT_EQ(CacheBudgetAskedFor(), std::uint64_t{ 512 } << 20);
+  EXPECT_EQ(CacheBudgetAskedFor() >> 20, static_cast<std::uint64_t>(UsualMegabytes()));
+}
+
+TEST(CacheBudget, IsUsuallyAnEighthOfTheMachineSharedByItsRanks)
+{
+  constexpr std::uint64_t GiB = std::uint64_t{ 1 } << 30;
+  EXPECT_EQ(UsualCacheBudget(64 * GiB, 1), 8 * GiB);
+  EXPECT_EQ(UsualCacheBudget(64 * GiB, 4), 2 * GiB);
+  EXPECT_EQ(UsualCacheBudget(64 * GiB, 0), 8 * GiB);
+  EXPECT_EQ(UsualCacheBudget(64 * GiB, 64), GiB / 2) << "the least";
+  EXPECT_EQ(UsualCacheBudget(0, 1), GiB / 2) << "not known";
+  EXPECT_EQ(UsualCacheBudget(2048 * GiB, 2), 16 * GiB) << "the most";
+  EXPECT_GT(MachineMemory(), 0u);
+}
+
+/// With nothing of it in the environment but one variable.
+int RanksSaidBy(const char* name, const char* text)
+{
+  for (const char* const other :
+    { "OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS", "SLURM_TASKS_PER_NODE" })
+  {
+    unsetenv(other);
+  }
+  setenv(name, text, 1);
+  const int ranks = RanksStartedHere();
+  unsetenv(name);
+  return ranks;
+}
+
+TEST(CacheBudget, KnowsTheRanksOfAMachineFromTheEnvironment)
+{
+  EXPECT_EQ(RanksSaidBy("OMPI_COMM_WORLD_LOCAL_SIZE", "16"), 16);
+  EXPECT_EQ(RanksSaidBy("MPI_LOCALNRANKS", "3"), 3);
+  EXPECT_EQ(RanksSaidBy("SLURM_TASKS_PER_NODE", "4(x2),3"), 4);
+  EXPECT_EQ(RanksSaidBy("MPI_LOCALNRANKS", "many"), 1);
+  EXPECT_EQ(RanksSaidBy("MPI_LOCALNRANKS", "-2"), 1);
+  EXPECT_EQ(RanksSaidBy("HOME_OF_NOBODY", "4"), 1);
 }
 
 } // namespace

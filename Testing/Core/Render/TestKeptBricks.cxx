@@ -70,6 +70,33 @@ TEST(KeptBricks, OtherCellsOrAnotherLowEndAreOtherBricks)
   EXPECT_NE(kept.Find(7, cells, 0.25, false), nullptr);
 }
 
+TEST(KeptBricks, SourcesThatKeepBricksShareTheBudget)
+{
+  constexpr std::uint64_t budget = 600;
+  const KeptBricks::Pointer packed = Pack(std::vector<double>(27, 1.0), 0.0);
+  KeptBricks first;
+  first.BeginPicture(1 << 20);
+  EXPECT_EQ(first.ShareOf(budget), 600u);
+  first.Keep(7, packed);
+  EXPECT_EQ(first.ShareOf(budget), 600u);
+  {
+    KeptBricks second;
+    EXPECT_EQ(second.ShareOf(budget), 300u) << "before it has any itself";
+    second.BeginPicture(1 << 20);
+    EXPECT_EQ(first.ShareOf(budget), 600u) << "one that keeps none needs none";
+    second.Keep(7, packed);
+    second.Keep(8, packed);
+    EXPECT_EQ(first.ShareOf(budget), 300u);
+    EXPECT_EQ(second.ShareOf(budget), 300u);
+    second.BeginPicture(0);
+    EXPECT_EQ(first.ShareOf(budget), 600u) << "it lets go of all";
+    second.BeginPicture(1 << 20);
+    second.Keep(7, packed);
+    EXPECT_EQ(first.ShareOf(budget), 300u);
+  }
+  EXPECT_EQ(first.ShareOf(budget), 600u) << "it is gone";
+}
+
 TEST(KeptBricks, PicturesAreTheSameAndLoadOnce)
 {
   const glm::ivec3 n(33);
@@ -92,7 +119,7 @@ TEST(KeptBricks, PicturesAreTheSameAndLoadOnce)
       EXPECT_EQ(MaxDifference(first, scenes::Draw(scene, scenes::ArrayOf(values, n)).Image), 0.0);
       EXPECT_EQ(source.Loads, budget > 300000 ? 0 : source.Loads.load());
       EXPECT_LT(source.Loads, 64);
-      EXPECT_LE(source.Kept().Bytes(), budget / 2);
+      EXPECT_LE(source.Kept().Bytes(), KeptBricks::PartOf(budget));
       EXPECT_EQ(statistics.BricksDrawn, 128);
     }
   }

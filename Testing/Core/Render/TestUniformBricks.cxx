@@ -46,10 +46,11 @@ struct Drawn
 };
 
 template <class T>
-Drawn Draw(const std::vector<T>& values, const glm::ivec3& n, const RayScene& scene, bool tells)
+Drawn Draw(const std::vector<T>& values, const glm::ivec3& n, const RayScene& scene, bool tells,
+  int cells = Brick)
 {
   ThreadPool pool(2);
-  Telling source(scenes::ArrayOf(values, n), Brick,
+  Telling source(scenes::ArrayOf(values, n), cells,
     { scene.Transfer.Low, scene.Transfer.High }, pool);
   source.Tells = tells;
   Drawn drawn;
@@ -84,6 +85,38 @@ TEST(UniformBricks, ChangeNoBitAndAreNotLoaded)
     ExpectTheSamePicture(values, n, scene);
     scene.Interpolation = SampleInterpolation::Nearest;
     ExpectTheSamePicture(values, n, scene);
+  }
+}
+
+TEST(UniformBricks, AreDrawnTogetherWhereAllOfABlockAreAlike)
+{
+  // Blocks of 2 x 2 x 2 bricks: of one value, of several bricks of one value each, and others.
+  const glm::ivec3 n(97, 90, 65);
+  std::vector<float> values = scenes::Sampled(Plateaus, n);
+  const auto set = [&](const Box& samples, float value)
+  {
+    for (int z = samples.Lo.z; z < samples.Hi.z; ++z)
+    {
+      for (int y = samples.Lo.y; y < samples.Hi.y; ++y)
+      {
+        std::fill_n(&values[samples.Lo.x + n.x * (y + static_cast<std::size_t>(n.y) * z)],
+          samples.Size().x, value);
+      }
+    }
+  };
+  set({ { 64, 0, 0 }, { 97, 33, 33 } }, 0.3f);
+  set({ { 80, 17, 17 }, { 97, 33, 33 } }, 0.6f);
+  for (const bool parallel : { false, true })
+  {
+    RayScene scene = scenes::Scene(n, { 90, 70 }, glm::dmat4(1.0), 1.4, parallel);
+    scene.Transfer = scenes::Tabulate(scenes::Smooth);
+    const Drawn quick = Draw(values, n, scene, true, 16);
+    const Drawn slow = Draw(values, n, scene, false, 16);
+    EXPECT_GT(quick.Statistics.BricksUniform, 40);
+    EXPECT_EQ(quick.Statistics.BricksDrawn + quick.Statistics.BricksUniform,
+      slow.Statistics.BricksDrawn);
+    EXPECT_TRUE(quick.Picture.Pixels == slow.Picture.Pixels);
+    EXPECT_TRUE(quick.Picture.Pixels == Draw(values, n, scene, true, 8).Picture.Pixels);
   }
 }
 
