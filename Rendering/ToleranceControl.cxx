@@ -68,6 +68,9 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
     budgetBytes, ThreadPool::Process(), failure, sampling, frame);
   scene.Samplings = plan.Samplings;
   scene.OpacityLimit = plan.OpacityLimit;
+  frame.PilotSeconds = plan.PilotSeconds;
+  frame.StrideSeconds = plan.StrideSeconds;
+  frame.Pilots = plan.Pilots;
   // No pixel can be off by more; several times what pilots are off can be.
   return std::min(plan.EstimatedError, 255.0);
 }

@@ -30,6 +30,18 @@ public:
   ///@}
 
   ///@{
+  /// What it took, before casting rays, to find out how to sample within the tolerance: for distances
+  /// and levels, for pixels that need no rays, and how many small pictures were drawn for both. 0
+  /// where nothing has to be found out.
+  vtkSetMacro(PilotSeconds, double);
+  vtkGetMacro(PilotSeconds, double);
+  vtkSetMacro(StrideSeconds, double);
+  vtkGetMacro(StrideSeconds, double);
+  vtkSetMacro(Pilots, vtkIdType);
+  vtkGetMacro(Pilots, vtkIdType);
+  ///@}
+
+  ///@{
   /// Render seconds of the slowest rank over the mean of all ranks; 1 is perfect.
   vtkSetMacro(Imbalance, double);
   vtkGetMacro(Imbalance, double);
@@ -125,6 +137,9 @@ protected:
   double TotalSeconds = 0.0;
   double RenderSeconds = 0.0;
   double CompositeSeconds = 0.0;
+  double PilotSeconds = 0.0;
+  double StrideSeconds = 0.0;
+  vtkIdType Pilots = 0;
   double Imbalance = 1.0;
   vtkIdType SamplesTaken = 0;
   vtkIdType BricksDrawn = 0;

@@ -229,6 +229,9 @@ void vtkBanyanVolumeMapper::Internals::Publish(const banyan::FrameStatistics& fr
   out->SetTotalSeconds(seconds);
   out->SetRenderSeconds(frame.RenderSeconds);
   out->SetCompositeSeconds(frame.CompositeSeconds);
+  out->SetPilotSeconds(frame.PilotSeconds);
+  out->SetStrideSeconds(frame.StrideSeconds);
+  out->SetPilots(frame.Pilots);
   out->SetImbalance(frame.Imbalance);
   out->SetSamplesTaken(static_cast<vtkIdType>(frame.SamplesTaken));
   out->SetBricksDrawn(static_cast<vtkIdType>(frame.BricksDrawn));

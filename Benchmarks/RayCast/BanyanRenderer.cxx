@@ -64,8 +64,7 @@ public:
       frame.TreeSeconds = tree.Seconds();
     }
     RayStatistics statistics;
-    const RayScene drawn =
-      this->SceneWith(this->Settings.at(number), statistics, frame.EstimatedError);
+    const RayScene drawn = this->SceneWith(this->Settings.at(number), statistics, frame);
     FloatImage image = this->Cast(drawn, statistics);
     FillBetweenRays(drawn, image, this->Pool);
     clock.StopInto(frame);
@@ -92,8 +91,7 @@ private:
   }
 
   /// What finding samplings for a tolerance takes is part of the frame.
-  RayScene SceneWith(
-    const Setting& setting, RayStatistics& statistics, std::optional<double>& estimatedError)
+  RayScene SceneWith(const Setting& setting, RayStatistics& statistics, Frame& frame)
   {
     RayScene scene = ToRayScene(*this->Scene, setting.SampleDistance.value_or(1.0), OpacityLimit);
     if (setting.Tolerance)
@@ -103,7 +101,9 @@ private:
         [&](const RayScene& pilot) { return this->Cast(pilot, statistics); });
       scene.Samplings = plan.Samplings;
       scene.OpacityLimit = plan.OpacityLimit;
-      estimatedError = plan.EstimatedError;
+      frame.EstimatedError = plan.EstimatedError;
+      frame.PilotSeconds = plan.PilotSeconds;
+      frame.StrideSeconds = plan.StrideSeconds;
     }
     return scene;
   }

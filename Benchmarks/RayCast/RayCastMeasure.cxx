@@ -16,6 +16,8 @@ struct Candidate
   RayCastMeasurement Result;
   std::vector<double> Milliseconds;
   std::vector<double> ProcessorMilliseconds;
+  std::vector<double> PilotMilliseconds;
+  std::vector<double> StrideMilliseconds;
 };
 
 std::string Number(double value)
@@ -81,6 +83,11 @@ void Add(Candidate& candidate, const Frame& frame)
 {
   candidate.Milliseconds.push_back(1e3 * frame.Seconds);
   candidate.ProcessorMilliseconds.push_back(1e3 * frame.ProcessorSeconds);
+  if (frame.PilotSeconds && frame.StrideSeconds)
+  {
+    candidate.PilotMilliseconds.push_back(1e3 * *frame.PilotSeconds);
+    candidate.StrideMilliseconds.push_back(1e3 * *frame.StrideSeconds);
+  }
 }
 
 void JudgeFirst(
@@ -134,7 +141,7 @@ std::vector<RayCastMeasurement> MeasureScene(const BenchScene& scene, const Floa
     }
     for (std::size_t i = 0; i < settings.size(); ++i)
     {
-      Candidate candidate{ renderer.get(), i, {}, {}, {} };
+      Candidate candidate{ renderer.get(), i, {}, {}, {}, {}, {} };
       candidate.Result.Scene = scene.Name;
       candidate.Result.Renderer = renderer->Name();
       candidate.Result.Threads = options.Threads;
@@ -159,6 +166,11 @@ std::vector<RayCastMeasurement> MeasureScene(const BenchScene& scene, const Floa
   {
     candidate.Result.FrameMilliseconds = MedianOf(candidate.Milliseconds);
     candidate.Result.ProcessorMilliseconds = MedianOf(candidate.ProcessorMilliseconds);
+    if (!candidate.PilotMilliseconds.empty())
+    {
+      candidate.Result.PilotMilliseconds = MedianOf(candidate.PilotMilliseconds);
+      candidate.Result.StrideMilliseconds = MedianOf(candidate.StrideMilliseconds);
+    }
     results.push_back(candidate.Result);
   }
   return results;
@@ -167,7 +179,8 @@ std::vector<RayCastMeasurement> MeasureScene(const BenchScene& scene, const Floa
 std::string RayCastCsvHeader()
 {
   return "scene,renderer,threads,tolerance,ms_per_frame,samples,msamples_s,psnr_db,max_error,"
-         "sample_distance,first_frame_ms,processor_ms,max_error_unrounded,estimated_error,tree_ms";
+         "sample_distance,first_frame_ms,processor_ms,max_error_unrounded,estimated_error,tree_ms,"
+         "pilot_ms,stride_ms";
 }
 
 std::string RayCastCsvLine(const RayCastMeasurement& m)
@@ -184,7 +197,8 @@ std::string RayCastCsvLine(const RayCastMeasurement& m)
          rate + "," + Number(m.Error.PsnrDecibels) + "," + Number(m.Error.Largest) + "," +
          Number(m.Accuracy.SampleDistance) + "," + Number(m.FirstFrameMilliseconds) + "," +
          Number(m.ProcessorMilliseconds) + "," + Number(m.LargestErrorUnrounded) + "," +
-         Number(m.EstimatedError) + "," + Number(m.TreeMilliseconds);
+         Number(m.EstimatedError) + "," + Number(m.TreeMilliseconds) + "," +
+         Number(m.PilotMilliseconds) + "," + Number(m.StrideMilliseconds);
 }
 
 std::string RayCastMessage(const RayCastMeasurement& m)

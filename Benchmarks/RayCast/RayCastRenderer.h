@@ -32,6 +32,9 @@ struct Frame
   /// Of a first frame, what the tree of its values took: in Seconds.
   std::optional<double> TreeSeconds;
   double ProcessorSeconds = 0; ///< of all threads together
+  /// Of a tolerance, in Seconds: what finding distances and levels, and pixels without rays, took.
+  std::optional<double> PilotSeconds;
+  std::optional<double> StrideSeconds;
   Picture Shown;
   std::optional<FloatImage> Unrounded; ///< where the renderer has it
   std::optional<std::int64_t> Samples; ///< where the renderer tells

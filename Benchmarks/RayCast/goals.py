@@ -114,6 +114,17 @@ def trees(rows):
                    f"{row['first_frame_ms']:.1f} | {100.0 * row['tree_ms'] / row['first_frame_ms']:.0f} % |")
 
 
+def plans(rows):
+    """Which part of a frame finding its samplings takes."""
+    yield "| scene | renderer | threads | tolerance | frame ms | distances and levels | pixels without rays |"
+    yield "|---|---|---|---|---|---|---|"
+    for row in rows:
+        if row.get("pilot_ms") is not None:
+            parts = (100.0 * row[column] / row["ms_per_frame"] for column in ("pilot_ms", "stride_ms"))
+            yield (f"| {row['scene']} | {row['renderer']} | {row['threads']:g} | {row['tolerance']:g} | "
+                   f"{row['ms_per_frame']:.1f} | " + " | ".join(f"{part:.0f} %" for part in parts) + " |")
+
+
 def needed(rows):
     """A scene and its settings per line, separated by commas."""
     for scene in in_order(rows, "scene"):
@@ -135,6 +146,8 @@ def main(path, others):
     print("\n".join(estimates(rows)))
     print("\nTrees: made on the fly in the first frame of a scene")
     print("\n".join(trees(rows)))
+    print("\nPlans: what is part of a frame, to keep its tolerance")
+    print("\n".join(plans(rows)))
     print("\nThreads: one sample per voxel")
     print("\n".join(speed_ups(rows)))
     verdicts = [line for other in others for line in lines_of(read(other, WORDS))]

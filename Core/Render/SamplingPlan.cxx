@@ -1,6 +1,7 @@
 #include "Render/SamplingPlan.h"
 
 #include "Base/Error.h"
+#include "Base/Timer.h"
 #include "Render/PilotSequence.h"
 #include "Render/SamplingChoices.h"
 #include "Render/StridePilot.h"
@@ -62,6 +63,7 @@ public:
 
   SamplingPlan Plan()
   {
+    const Timer timer;
     this->TryDistances(MostDoublings(this->Wish, this->Scene));
     if (!this->Pictures.SawSomething())
     {
@@ -74,10 +76,13 @@ public:
     if (this->Pictures.SawSomething())
     {
       this->TryLevels();
+      plan.PilotSeconds = timer.Seconds();
       plan.Pilots = this->TryStrides() ? 1 : 0;
+      plan.StrideSeconds = timer.Seconds() - plan.PilotSeconds;
       this->Choose(plan);
     }
     plan.Pilots += this->Pictures.Count();
+    plan.PilotSeconds = std::max(plan.PilotSeconds, timer.Seconds() - plan.StrideSeconds);
     return plan;
   }
 

@@ -52,6 +52,8 @@ struct SamplingPlan
   /// To be used with it: what rays that end early leave away is part of the error.
   float OpacityLimit = 0.999f;
   int Pilots = 0; ///< small pictures that were drawn to find out
+  double PilotSeconds = 0.0;  ///< what finding distances and levels took, by the clock
+  double StrideSeconds = 0.0; ///< what finding the pixels without rays took
 };
 
 /// Draws a small picture of the scene's viewport: all pixels of it, on all ranks alike.

@@ -21,6 +21,16 @@ double EstimateOf(vtkBanyanVolumeMapper* mapper)
   return mapper->GetStatistics()->GetEstimatedImageError();
 }
 
+/// Finding samplings is part of the frame, and none of it where a distance is given.
+void CheckTimes(vtkBanyanVolumeMapper* mapper, bool planned)
+{
+  vtkBanyanFrameStatistics* const frame = mapper->GetStatistics();
+  const double planning = frame->GetPilotSeconds() + frame->GetStrideSeconds();
+  Check(planned == (frame->GetPilotSeconds() > 0.0), "what pilots take is told");
+  Check(planned == (frame->GetPilots() > 1), "how many there were is told");
+  Check(planning <= frame->GetTotalSeconds(), "planning is part of the frame");
+}
+
 /// @param samples of the volume: its proportions decide how many pixels see it
 void PicturesStayWithinTheirTolerance(const std::string& path, const glm::ivec3& samples)
 {
@@ -47,6 +57,7 @@ void PicturesStayWithinTheirTolerance(const std::string& path, const glm::ivec3&
       stage.LookAt(bounds);
       const auto picture = stage.Draw();
       estimate = EstimateOf(mapper);
+      CheckTimes(mapper, distance == 0.0);
       taken = mapper->GetStatistics()->GetSamplesTaken();
       return picture;
     };
