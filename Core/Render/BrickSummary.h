@@ -2,10 +2,10 @@
 #define banyan_Render_BrickSummary_h
 
 #include "Render/SampleReader.h"
+#include "Render/ValueBins.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <type_traits>
 #include <vector>
 
 namespace banyan
@@ -20,7 +20,6 @@ public:
   BrickSummary(const SampleArray& array, const MaskRange& over)
     : Reader(array)
     , Over(over)
-    , BinsPerValue(over.High > over.Low ? 64.0 / (over.High - over.Low) : 0.0)
   {
   }
 
@@ -28,22 +27,26 @@ public:
   void Summarize(const Box& samples, ValueRange& range, ValueMask& mask)
   {
     const glm::ivec3 size = samples.Size();
-    const std::size_t width = size.x;
-    const std::size_t count = width * size.y;
+    const auto pitch = static_cast<std::size_t>(BinRowsOut::PitchOf(size.x));
+    const std::size_t count = pitch * static_cast<std::size_t>(size.y);
     for (Slice* slice : { &this->Raw, &this->Now, &this->Before })
     {
-      slice->Low.resize(count);
-      slice->High.resize(count);
+      slice->Low.assign(count + 1, BinRowsOut::NoBinLow);
+      slice->High.assign(count + 1, BinRowsOut::NoBinHigh);
     }
     range = {};
     mask = 0;
     for (int z = 0; z < size.z; ++z)
     {
-      this->ReadSlice(samples, samples.Lo.z + z, range);
-      // Faces of cells: each position takes in its neighbour up in y (rows did so along x). The
-      // last row stays as it is: edges, which the row before has taken in already.
-      const std::size_t faces = count - width;
-      Extremes(this->Raw, this->Raw, width, faces, this->Now);
+      this->BinSlice(samples, samples.Lo.z + z, range);
+      // Edges of cells: each position takes in its neighbour up in x. There is none behind a row;
+      // that place takes in the first sample of the next one, which adds nothing.
+      Extremes(this->Raw, this->Raw, 1, count, this->Now);
+      std::swap(this->Raw, this->Now);
+      // Faces: each takes in its neighbour up in y. The last row stays as it is: edges, which the
+      // row before has taken in already.
+      const std::size_t faces = count - pitch;
+      Extremes(this->Raw, this->Raw, pitch, faces, this->Now);
       if (size.y == 1)
       {
         std::swap(this->Raw, this->Now);
@@ -53,78 +56,46 @@ public:
       {
         const Slice& other = z > 0 ? this->Before : this->Now;
         Extremes(this->Now, other, 0, kept, this->Raw);
-        mask |= MaskOf(this->Raw, kept);
+        mask |= BinsBetween(this->Raw.Low.data(), this->Raw.High.data(), kept);
       }
       std::swap(this->Now, this->Before);
     }
   }
 
 private:
-  /// Lowest and highest bin per position; nothing finite is (255, 0).
+  /// Lowest and highest bin per position, as BinValues has them.
   struct Slice
   {
     std::vector<std::uint8_t> Low;
     std::vector<std::uint8_t> High;
   };
 
-  void ReadSlice(const Box& samples, int z, ValueRange& range)
+  void BinSlice(const Box& samples, int z, ValueRange& range)
   {
-    const int width = samples.Size().x;
-    this->Row.resize(width);
-    std::size_t at = 0;
-    for (int y = samples.Lo.y; y < samples.Hi.y; ++y, at += width)
+    const glm::ivec3 size = samples.Size();
+    const BinRowsOut out{ this->Raw.Low.data(), this->Raw.High.data() };
+    if constexpr (std::is_floating_point_v<T>)
     {
-      this->Reader.Read(samples.Lo.x, samples.Hi.x, y, z, this->Row.data());
-      this->BinRow(range, &this->Raw.Low[at], &this->Raw.High[at]);
+      if (this->Reader.IsPlain())
+      {
+        const ValueRows<T> rows{ this->Reader.At(samples.Lo.x, samples.Lo.y, z),
+          this->Reader.RowStride(), size.x, size.y };
+        BinValues(rows, this->Over, out, range);
+        return;
+      }
     }
+    this->Values.resize(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
+    double* row = this->Values.data();
+    for (int y = samples.Lo.y; y < samples.Hi.y; ++y, row += size.x)
+    {
+      this->Reader.Read(samples.Lo.x, samples.Hi.x, y, z, row);
+    }
+    BinValues(
+      ValueRows<double>{ this->Values.data(), size.x, size.x, size.y }, this->Over, out, range);
   }
 
   // Bytes may alias anything: the loops below work on local copies and restricted pointers, so that
   // the compiler can vectorize them.
-
-  /// Bins of a row of samples; each takes in its neighbour up in x.
-  void BinRow(ValueRange& range, std::uint8_t* low, std::uint8_t* high) const
-  {
-    const std::size_t width = this->Row.size();
-    IncludeRow(this->Row.data(), width, range);
-    const double* const __restrict row = this->Row.data();
-    std::uint8_t* const __restrict lowest = low;
-    std::uint8_t* const __restrict highest = high;
-    const double base = this->Over.Low;
-    const double scale = this->BinsPerValue;
-    for (std::size_t x = 0; x < width; ++x)
-    {
-      // As MaskRange::BinOf but for rounding at the edges of bins, for which VisibleBins has room.
-      const double position = (row[x] - base) * scale;
-      const double notBelow = position > 0.0 ? position : 0.0;
-      const int bin = static_cast<int>(notBelow < 63.0 ? notBelow : 63.0);
-      const bool finite = std::abs(row[x]) <= std::numeric_limits<double>::max();
-      lowest[x] = static_cast<std::uint8_t>(finite ? bin : 255);
-      highest[x] = static_cast<std::uint8_t>(finite ? bin : 0);
-    }
-    for (std::size_t x = 0; x + 1 < width; ++x)
-    {
-      lowest[x] = std::min(lowest[x], lowest[x + 1]);
-      highest[x] = std::max(highest[x], highest[x + 1]);
-    }
-  }
-
-  static void IncludeRow(const double* row, std::size_t width, ValueRange& range)
-  {
-    double low = range.Low;
-    double high = range.High;
-    for (std::size_t x = 0; x < width; ++x)
-    {
-      // What is not finite is no value: comparisons with these stand-ins change nothing.
-      const bool finite = std::abs(row[x]) <= std::numeric_limits<double>::max();
-      const double forLow = finite ? row[x] : std::numeric_limits<double>::infinity();
-      const double forHigh = finite ? row[x] : -std::numeric_limits<double>::infinity();
-      low = forLow < low ? forLow : low;
-      high = forHigh > high ? forHigh : high;
-    }
-    range.Low = low;
-    range.High = high;
-  }
 
   /// @param result another slice than a and b
   static void Extremes(
@@ -146,30 +117,9 @@ private:
     }
   }
 
-  static ValueMask MaskOf(const Slice& slice, std::size_t count)
-  {
-    const std::uint8_t* const lows = slice.Low.data();
-    const std::uint8_t* const highs = slice.High.data();
-    ValueMask mask = 0;
-    int low = -1;
-    int high = -1;
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      // Neighbours mostly lie in the same bins.
-      if (lows[i] != low || highs[i] != high)
-      {
-        low = lows[i];
-        high = highs[i];
-        mask |= low <= high ? MaskOfBins(low, high) : ValueMask{ 0 };
-      }
-    }
-    return mask;
-  }
-
   SampleReader<T> Reader;
   MaskRange Over;
-  double BinsPerValue;
-  std::vector<double> Row;
+  std::vector<double> Values;
   Slice Raw;
   Slice Now;
   Slice Before;

@@ -37,9 +37,19 @@ public:
     {
       row += this->Array.Component * this->Array.ComponentStride;
       const std::ptrdiff_t stride = this->Array.Stride[0];
-      for (int x = begin; x < end; ++x)
+      if (stride == 1)
       {
-        out[x - begin] = static_cast<Out>(row[x * stride]);
+        for (int x = begin; x < end; ++x)
+        {
+          out[x - begin] = static_cast<Out>(row[x]);
+        }
+      }
+      else
+      {
+        for (int x = begin; x < end; ++x)
+        {
+          out[x - begin] = static_cast<Out>(row[x * stride]);
+        }
       }
     }
     if (this->Array.Flags)
@@ -54,6 +64,20 @@ public:
       }
     }
   }
+
+  /// Whether rows lie in memory as Read would give them.
+  bool IsPlain() const
+  {
+    return this->Array.Component != SampleArray::Magnitude && this->Array.Stride[0] == 1 &&
+           !this->Array.Flags;
+  }
+  /// A sample, if IsPlain.
+  const T* At(int x, int y, int z) const
+  {
+    return this->Values + this->Array.Component * this->Array.ComponentStride + x +
+           y * this->Array.Stride[1] + z * this->Array.Stride[2];
+  }
+  std::ptrdiff_t RowStride() const { return this->Array.Stride[1]; }
 
 private:
   template <class Out>
