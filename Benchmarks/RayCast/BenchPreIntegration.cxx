@@ -6,6 +6,8 @@
 // standard scenes and of real data as banyan-bench-raycast takes it, for three ways to integrate over
 // an interval: the entry of its middle, the mean over the values between its ends, and the mean over
 // those that the slope at its middle spans. Slow and obvious: double precision, no tables but sums.
+// And what a sample takes in a plain loop with tables, and the tables themselves (PreIntegrationTimes.h).
+#include "PreIntegrationTimes.h"
 #include "RealScenes.h"
 #include "StandardScenes.h"
 
@@ -26,13 +28,6 @@ using namespace banyan;
 using namespace banyan::bench;
 
 constexpr int Pixels = 64;
-
-enum class Method
-{
-  Middle,
-  Ends,
-  Slope
-};
 
 class Integrator
 {
@@ -187,8 +182,10 @@ void Compare(const BenchScene& scene, ThreadPool& pool)
         largest = std::max({ largest, error.r, error.g, error.b });
         squares += glm::dot(error, error);
       }
-      std::printf("%s,%s,%g,%.4f,%.4f\n", scene.Name.c_str(), name, voxels, largest,
-        std::sqrt(squares / (3.0 * static_cast<double>(picture.size()))));
+      const MethodTimes times = TimesOf(scene, voxels, method);
+      std::printf("%s,%s,%g,%.4f,%.4f,%.2f,%.2f\n", scene.Name.c_str(), name, voxels, largest,
+        std::sqrt(squares / (3.0 * static_cast<double>(picture.size()))),
+        times.NanosecondsPerSample, times.TableMilliseconds);
     }
   }
 }
@@ -200,7 +197,7 @@ int main(int argc, char** argv)
   try
   {
     ThreadPool& pool = ThreadPool::Process();
-    std::printf("scene,method,sample_distance,max_error,rms_error\n");
+    std::printf("scene,method,sample_distance,max_error,rms_error,ns_per_sample,table_ms\n");
     const auto standard = StandardVolume(256, pool);
     Compare(StandardScene(standard, StandardFunction::S1, false, Pixels), pool);
     Compare(StandardScene(standard, StandardFunction::S2, false, Pixels), pool);
