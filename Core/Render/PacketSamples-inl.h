@@ -59,8 +59,7 @@ HWY_INLINE VF OpacityOf(VF depth)
     sum = hn::Add(hn::Mul(sum, r), hn::Set(d, C::Terms[i]));
   }
   const VF less = hn::Add(hn::Mul(hn::Mul(sum, r), r), r);
-  const VF scale =
-    hn::BitCast(d, hn::ShiftLeft<23>(hn::Add(Truncated(octaves), hn::Set(di, 127))));
+  const VF scale = hn::BitCast(d, hn::ShiftLeft<23>(hn::Add(Truncated(octaves), hn::Set(di, 127))));
   const VF one = hn::Set(d, 1.0f);
   return hn::Sub(hn::Sub(one, scale), hn::Mul(scale, less));
 }
@@ -273,6 +272,14 @@ private:
   HWY_INLINE VF MixedInCell(const Place& place) const
   {
     const std::int32_t* bytes = place.Cell.Bytes + k;
+#if BANYAN_HAS_PAIRS
+    const Pairs alongZ = ForPairs<k>(place.Z);
+    const auto face = [&](const char* from) HWY_ATTR
+    { return Mix(LoadPairs(from, bytes), LoadPairs(from + this->SliceBytes, bytes), alongZ); };
+    const Pairs both =
+      Mix(face(this->Values), face(this->Values + this->RowBytes), ForPairs<k>(place.Y));
+    return Mix(FirstOf(both), SecondOf(both), hn::Broadcast<k>(place.X));
+#else
     const VF z = hn::Broadcast<k>(place.Z);
     const auto edge = [&](const char* from) HWY_ATTR
     { return Mix(LoadBlocks(from, bytes), LoadBlocks(from + this->SliceBytes, bytes), z); };
@@ -281,6 +288,7 @@ private:
     const VF left = Mix(edge(this->Values), edge(this->Values + this->RowBytes), y);
     const VF right = Mix(edge(next), edge(next + this->RowBytes), y);
     return Mix(left, right, hn::Broadcast<k>(place.X));
+#endif
   }
 
   /// The four edges along z of the cells of lanes 4 b + k.

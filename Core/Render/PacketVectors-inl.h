@@ -76,6 +76,73 @@ HWY_INLINE Blocks LoadBlocks(const void* base, const Offsets& offsets)
     LoadBlocks(from, offsets.Bytes + 2), LoadBlocks(from, offsets.Bytes + 3) } };
 }
 
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2
+#undef BANYAN_HAS_PAIRS
+#define BANYAN_HAS_PAIRS 1
+/// Two blocks that lie side by side, of every lane 4 b + k: in two vectors, the first of which has
+/// them for the lower half of b. Half as many loads as of blocks.
+struct Pairs
+{
+  VF Of[2];
+};
+
+template <int half>
+HWY_INLINE VF LoadHalfOfPairs(const char* base, const std::int32_t* bytes)
+{
+  const auto at = [&](int i) HWY_ATTR { return reinterpret_cast<const float*>(base + bytes[i]); };
+#if HWY_TARGET == HWY_AVX3
+  const __m512d v = _mm512_castpd256_pd512(_mm256_castps_pd(_mm256_loadu_ps(at(8 * half))));
+  return VF{ _mm512_castpd_ps(
+    _mm512_insertf64x4(v, _mm256_castps_pd(_mm256_loadu_ps(at(8 * half + 4))), 1)) };
+#else
+  return VF{ _mm256_loadu_ps(at(4 * half)) };
+#endif
+}
+
+/// @param bytes distances; those of numbers 0, 4, 8 ... count
+HWY_INLINE Pairs LoadPairs(const char* base, const std::int32_t* bytes)
+{
+  return { { LoadHalfOfPairs<0>(base, bytes), LoadHalfOfPairs<1>(base, bytes) } };
+}
+
+/// A number of each lane 4 b + k in all places of its pair.
+template <int k>
+HWY_INLINE Pairs ForPairs(VF v)
+{
+#if HWY_TARGET == HWY_AVX3
+  const __m512 inBlocks = _mm512_permute_ps(v.raw, k * 0x55);
+  return { { VF{ _mm512_shuffle_f32x4(inBlocks, inBlocks, _MM_SHUFFLE(1, 1, 0, 0)) },
+    VF{ _mm512_shuffle_f32x4(inBlocks, inBlocks, _MM_SHUFFLE(3, 3, 2, 2)) } } };
+#else
+  const __m256 inBlocks = _mm256_permute_ps(v.raw, k * 0x55);
+  return { { VF{ _mm256_permute2f128_ps(inBlocks, inBlocks, 0x00) },
+    VF{ _mm256_permute2f128_ps(inBlocks, inBlocks, 0x11) } } };
+#endif
+}
+
+/// The first or the second blocks of pairs: block b is that of lane 4 b + k.
+HWY_INLINE VF FirstOf(const Pairs& pairs)
+{
+#if HWY_TARGET == HWY_AVX3
+  return VF{ _mm512_shuffle_f32x4(pairs.Of[0].raw, pairs.Of[1].raw, _MM_SHUFFLE(2, 0, 2, 0)) };
+#else
+  return VF{ _mm256_permute2f128_ps(pairs.Of[0].raw, pairs.Of[1].raw, 0x20) };
+#endif
+}
+
+HWY_INLINE VF SecondOf(const Pairs& pairs)
+{
+#if HWY_TARGET == HWY_AVX3
+  return VF{ _mm512_shuffle_f32x4(pairs.Of[0].raw, pairs.Of[1].raw, _MM_SHUFFLE(3, 1, 3, 1)) };
+#else
+  return VF{ _mm256_permute2f128_ps(pairs.Of[0].raw, pairs.Of[1].raw, 0x31) };
+#endif
+}
+#else
+#undef BANYAN_HAS_PAIRS
+#define BANYAN_HAS_PAIRS 0
+#endif
+
 /// From four floats of a lane side by side to four vectors of them.
 HWY_INLINE Blocks Transposed(const Blocks& blocks)
 {
@@ -96,6 +163,13 @@ HWY_INLINE VF Mix(VF a, VF b, VF part)
 {
   return hn::Add(a, hn::Mul(part, hn::Sub(b, a)));
 }
+
+#if BANYAN_HAS_PAIRS
+HWY_INLINE Pairs Mix(const Pairs& a, const Pairs& b, const Pairs& part)
+{
+  return { { Mix(a.Of[0], b.Of[0], part.Of[0]), Mix(a.Of[1], b.Of[1], part.Of[1]) } };
+}
+#endif
 
 /// Numbers that an integer can hold: without what ConvertTo does for others.
 HWY_INLINE VI Truncated(VF v)
