@@ -1,9 +1,11 @@
 #include "OthersOnScreen.h"
 
 #include "vtkActor.h"
+#include "vtkActor2D.h"
 #include "vtkCamera.h"
 #include "vtkCollection.h"
 #include "vtkMapper.h"
+#include "vtkMapper2D.h"
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
 #include "vtkProp.h"
@@ -32,6 +34,19 @@ bool IsOneOf(vtkObject* object, const std::array<const char*, Count>& names)
 {
   const std::string name = object->GetClassName();
   return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Whether a prop draws nothing before volumes, but over them: texts, scalar bars and such ones are
+/// drawn last. Of classes that are not known here nobody knows.
+bool IsDrawnLast(vtkProp* prop)
+{
+  constexpr std::array<const char*, 7> overlays{ "vtkActor2D", "vtkTextActor", "vtkOpenGLTextActor",
+    "vtkScalarBarActor", "vtkCornerAnnotation", "vtkAxisActor2D", "vtkLegendBoxActor" };
+  constexpr std::array<const char*, 2> mappers{ "vtkPolyDataMapper2D",
+    "vtkOpenGLPolyDataMapper2D" };
+  auto* const actor = vtkActor2D::SafeDownCast(prop);
+  return actor != nullptr && IsOneOf(actor, overlays) &&
+         (actor->GetMapper() == nullptr || IsOneOf(actor->GetMapper(), mappers));
 }
 
 /// Whether all that a prop draws is within its bounds, but for so many pixels.
@@ -93,7 +108,7 @@ PixelRect OthersOnScreen(vtkRenderer* renderer, vtkProp* self, const PixelRect& 
   props->InitTraversal(at);
   while (vtkProp* const prop = props->GetNextProp(at))
   {
-    if (prop == self || !prop->GetVisibility())
+    if (prop == self || !prop->GetVisibility() || IsDrawnLast(prop))
     {
       continue;
     }

@@ -151,6 +151,21 @@ def plain_and_spheres():
 
 
 @scene
+def coloured_background():
+    # Seen through the volume, before which, in which and behind which there are spheres.
+    view = session.new_view(SIZE, **CAMERA, Background=[0.95, 0.55, 0.2])
+    return Drawn(view, [wavelet(view)], [spheres(view)], volume_pixels=20000)
+
+
+@scene
+def gradient_background():
+    # No two rows of the background are of one colour.
+    view = session.new_view(SIZE, **CAMERA, BackgroundColorMode="Gradient",
+                            Background=[0.95, 0.9, 0.2], Background2=[0.1, 0.6, 0.95])
+    return Drawn(view, [encoded(view)], [spheres(view)], volume_pixels=20000)
+
+
+@scene
 def encoded_and_spheres():
     view = session.new_view(SIZE, **CAMERA)
     return Drawn(view, [encoded(view)], [spheres(view)], volume_pixels=20000)
@@ -337,7 +352,7 @@ def translucent_surface_beside():
 
 @scene
 def scalar_bar_and_axes():
-    # Both are drawn in the same layer as the volume, and stay in front of it.
+    # Both are drawn in layers of their own, and stay in front of the volume.
     view = session.new_view(SIZE, **CAMERA)
     display = wavelet(view)
     display.SetScalarBarVisibility(view, True)
