@@ -7,8 +7,9 @@
 #   --quick        128^3 samples, 256^2 pixels and 40 frames instead of 256^3, 512^2 and 80: a minute
 #                  or two
 #   --output DIR   where balance.csv, balance-ranks.csv (each rank's times), balance.png,
-#                  balance-ranks.png go; jumps of the camera (40 frames) and a camera at rest (200
-#                  frames) are in balance-jumps.csv and balance-rest.csv; where there is mpirun, real
+#                  balance-ranks.png go; twenty jumps of the camera and a camera at rest (200 frames
+#                  each, work that is counted in place of time: the same in every run) are in
+#                  balance-jumps.csv and balance-rest.csv; where there is mpirun, real
 #                  ranks are in balance-real.csv, and with a half of the volume in the memory of each
 #                  in balance-pieces.csv (default benchmark-output)
 #   --data DIR     folder of real data (default ../shared/data beside the project, if it exists):
@@ -50,10 +51,10 @@ stage 2 4 "Measuring simulated ranks"
 measure_path()
 {
   say "      $1, $2 frames"
-  "$program" "${common[@]}" --path "$1" --frames "$2" --ranks "$ranks" \
+  "$program" "${common[@]}" --counted --path "$1" --frames "$2" --ranks "$ranks" \
     --output "$output/balance-$1.csv" || fail "measuring failed."
 }
-measure_path jumps 40
+measure_path jumps 200
 measure_path rest 200
 real=()
 if [[ -n "$data" ]]; then

@@ -11,10 +11,14 @@ import matplotlib.pyplot as plot  # noqa: E402 (the backend has to be chosen fir
 sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
 from tables import in_order, read  # noqa: E402
 
+NAMES = {"off": "Off", "slice-step": "Slice step", "measured-cost": "Measured cost"}
 COLORS = {"off": "tab:red", "slice-step": "tab:orange", "measured-cost": "tab:blue"}
 BALANCED_WITHIN = 5  # frames after a jump of the camera
 JUMP_EVERY = 10      # frames, on the path of jumps
 RESTING_FROM = 20    # frame from which a view at rest should have been searched
+# Goals: the imbalance within BALANCED_WITHIN frames of a jump, and at rest.
+AFTER_JUMPS = 1.15
+AT_REST = 1.10
 
 
 def table(folder, name):
@@ -33,18 +37,20 @@ def mean(values):
 def draw_frames(rows, path):
     """The paper's figure 11, and what else there is to a frame."""
     counts = in_order(rows, "ranks")
-    columns = [("ms", "ms of the slowest rank"), ("imbalance", "largest over mean"),
-               ("bytes_moved", "bytes moved")]
+    columns = [("ms", "ms of the slowest rank", 1), ("imbalance", "largest over mean", 1),
+               ("bytes_moved", "MB moved", 1e-6)]
     figure, grid = plot.subplots(len(columns), len(counts), figsize=(4.2 * len(counts), 8.4),
                                  squeeze=False)
     for across, ranks in enumerate(counts):
-        for down, (column, label) in enumerate(columns):
+        for down, (column, label, unit) in enumerate(columns):
             axes = grid[down][across]
             for mode in in_order(rows, "mode"):
-                axes.plot(curve(rows, ranks, mode, column), color=COLORS[mode], label=mode)
+                axes.plot([unit * value for value in curve(rows, ranks, mode, column)],
+                          color=COLORS[mode], label=NAMES[mode])
             axes.set_ylim(bottom=1 if column == "imbalance" else 0)
             axes.grid(True, alpha=0.25)
-            axes.set_xlabel("frame")
+            if down == len(columns) - 1:
+                axes.set_xlabel("frame")
             if across == 0:
                 axes.set_ylabel(label)
         grid[0][across].set_title(f"{ranks:g} ranks")
@@ -64,12 +70,12 @@ def draw_ranks(rows, path):
         for rank in range(int(ranks)):
             axes.plot([row["ms"] for row in rows if row["ranks"] == ranks
                        and row["mode"] == mode and row["rank"] == rank], label=f"rank {rank}")
-        axes.set_title(f"{mode}, {ranks:g} ranks")
+        axes.set_title(f"{NAMES[mode]}, {ranks:g} ranks")
         axes.set_xlabel("frame")
         axes.set_ylim(bottom=0)
         axes.grid(True, alpha=0.25)
     grid[0][0].set_ylabel("ms")
-    grid[0][0].legend(fontsize=7)
+    grid[0][-1].legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.02, 1.0))
     figure.tight_layout()
     figure.savefig(path, dpi=90, metadata={"Software": None})
 
@@ -125,6 +131,32 @@ def print_rest(rows):
                       + ("nothing moved" if last is None else f"frame {last} of {len(moved)}"))
 
 
+def print_goals(zoom, jumps, at_rest):
+    """Each goal beside what was measured of it."""
+    mode = "measured-cost"
+    print("Goals of measured-cost:")
+    for ranks in in_order(jumps, "ranks"):
+        imbalance = curve(jumps, ranks, mode, "imbalance")
+        after = [imbalance[at:at + JUMP_EVERY] for at in range(0, len(imbalance), JUMP_EVERY)]
+        reached = [min(part[:BALANCED_WITHIN + 1]) <= AFTER_JUMPS for part in after]
+        stays = [max(part[BALANCED_WITHIN:], default=0) <= AFTER_JUMPS for part in after]
+        late = sorted(value for part in after for value in part[BALANCED_WITHIN:])
+        if late:
+            print(f"{ranks:6g} ranks: {AFTER_JUMPS} within {BALANCED_WITHIN} frames of a jump: "
+                  f"{sum(reached)} of {len(after)}; in all frames that follow: {sum(stays)}; "
+                  f"in the middle {late[len(late) // 2]:.3f}, mean {mean(late):.3f}, "
+                  f"largest {late[-1]:.3f}")
+    for ranks in in_order(at_rest, "ranks"):
+        imbalance = curve(at_rest, ranks, mode, "imbalance")
+        above = [frame for frame, value in enumerate(imbalance) if value > AT_REST]
+        print(f"{ranks:6g} ranks: last frame above {AT_REST} at rest: "
+              f"{above[-1] if above else 'none'} of {len(imbalance)}; at the end {imbalance[-1]:.3f}")
+    for ranks in in_order(zoom, "ranks"):
+        ours = mean(curve(zoom, ranks, mode, "ms"))
+        published = mean(curve(zoom, ranks, "slice-step", "ms"))
+        print(f"{ranks:6g} ranks: ms of the zoom over those of slice-step: {ours / published:.2f}")
+
+
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
@@ -142,6 +174,7 @@ def main():
     at_rest = table(folder, "balance-rest.csv")
     print_settled("At rest, from frame 5", at_rest, lambda frame: frame >= 5)
     print_rest(at_rest)
+    print_goals(zoom, table(folder, "balance-jumps.csv"), at_rest)
 
 
 if __name__ == "__main__":

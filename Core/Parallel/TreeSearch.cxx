@@ -22,6 +22,8 @@ constexpr double SearchAbove = 1.06;
 constexpr double GoodEnough = 1.02;
 /// By which the imbalance must fall for a tree to be better.
 constexpr double LeastGain = 0.005;
+/// Trees of somebody else that take so much less time than all before lead on: the search waits.
+constexpr double GainThatLeadsOn = 0.1;
 /// By which it must rise, by the average speeds of so many frames, for the search to begin anew. A
 /// rank whose speed is another one by this factor begins it at once: noise of single frames, a
 /// fifth say, is less in the speeds that are smoothed.
@@ -129,12 +131,13 @@ void TreeSearch::Forget()
   this->Model = {};
   this->Kept.reset();
   this->KeptFrames = 0;
-  this->Asked = false;
+  this->Begun = false;
 }
 
 void TreeSearch::Measured(const ZoneTree& tree, const std::vector<double>& work)
 {
   const Trial* const before = this->Find(tree);
+  this->LastWasNew = !before;
   if (!before)
   {
     this->Trials.push_back({ tree, work, {} });
@@ -191,6 +194,19 @@ std::size_t TreeSearch::Best(const std::vector<double>& speeds) const
     }
   }
   return best;
+}
+
+/// Whether the last frame had a new tree, and it took much less than those before.
+bool TreeSearch::GotBetter(std::size_t best, const std::vector<double>& speeds) const
+{
+  if (!this->LastWasNew || best + 1 != this->Trials.size())
+  {
+    return false;
+  }
+  const double now = Slowest(this->Trials[best].Work, speeds);
+  return std::all_of(this->Trials.begin(), this->Trials.end() - 1,
+    [&](const Trial& before)
+    { return now < (1.0 - GainThatLeadsOn) * Slowest(before.Work, speeds); });
 }
 
 /// How the model's ratios of a trial should change for the true ones to be 0.
@@ -305,21 +321,21 @@ std::optional<ZoneTree> TreeSearch::Next(
   {
     return std::nullopt;
   }
-  if (!this->Repeats)
-  {
-    return this->Trials.back().Tree; // once more
-  }
-  if (!this->Asked)
-  {
-    this->Asked = true;
-    return std::nullopt; // what the balancer would do is the first step
-  }
   if (this->Kept)
   {
     return this->KeepOn(speeds);
   }
   const std::size_t number = this->Best(speeds);
   const Trial& best = this->Trials[number];
+  if (!this->Begun && this->GotBetter(number, speeds))
+  {
+    return std::nullopt; // what is expected of costs leads on
+  }
+  if (!this->Repeats)
+  {
+    return best.Tree; // once more
+  }
+  this->Begun = true;
   const double imbalance = Imbalance(best.Work, speeds);
   const bool begins = this->BestSoFar == 0.0;
   this->Failures = begins || imbalance < this->BestSoFar - LeastGain ? 0 : this->Failures + 1;

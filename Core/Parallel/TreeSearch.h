@@ -19,6 +19,8 @@ namespace banyan
 /// method); where that comes to no new tree, single planes go one step. The best tree that was
 /// measured is kept in the end.
 ///
+/// It begins where the trees of somebody else get no better any more.
+///
 /// Frames must be repeatable for that: the search begins when a tree that was drawn twice has taken
 /// the same twice, and stops, for ever more frames, when it did not.
 /// @par Source: C. G. Broyden, "A class of methods for solving nonlinear simultaneous equations",
@@ -58,6 +60,7 @@ private:
   const Trial* Find(const ZoneTree& tree) const;
   bool IsNew(const ZoneTree& tree) const;
   std::size_t Best(const std::vector<double>& speeds) const;
+  bool GotBetter(std::size_t best, const std::vector<double>& speeds) const;
   Ratios NewtonStep(std::size_t from, const std::vector<double>& speeds) const;
   std::optional<ZoneTree> NewtonTree(std::size_t from, const std::vector<double>& speeds, int step);
   std::optional<ZoneTree> PlanesAt(const ZoneTree& from, const Ratios& ratios,
@@ -74,7 +77,8 @@ private:
   int Doubts = 0;                  ///< how often it did not, lately
   int Wait = 0;                    ///< frames until it is tried again
   double BestSoFar = 0.0;          ///< imbalance; 0 before the search
-  bool Asked = false;              ///< whether somebody else could make the first step
+  bool LastWasNew = false;         ///< the tree of the last frame
+  bool Begun = false;              ///< whether somebody else's trees got no better any more
   int Failures = 0;                ///< trials since it was found
   std::optional<std::size_t> Kept; ///< the trial that the search ended with
   std::vector<double> KeptSpeeds;  ///< of the ranks, on average over the frames since

@@ -90,7 +90,6 @@ private:
 
   void AddSamplings();
   void Plan();
-  bool MayDrawTogether() const;
   GroupList MembersOf(const BrickGroups& groups) const;
   GroupMembers Look(const BrickGroups& groups, const Box& bricks, ValueMask bins) const;
   bool PlanTogether(const BrickGroups& groups, const Box& bricks, const GroupMembers& members);

@@ -12,8 +12,6 @@ namespace
 
 /// Bricks are put together where so many of what comes of it fit into the budget.
 constexpr std::uint64_t BricksOfBudget = 64;
-/// And in zones whose work is measured, where these have room for so many.
-constexpr std::int64_t FewestGroups = 64;
 
 } // namespace
 
@@ -43,7 +41,7 @@ void LevelCaster::Plan()
 {
   const Viewpoint view = InIndexSpace(this->Scene.Camera, this->IndexToWorld);
   this->Ranks = this->Source.RanksFrontToBack(view);
-  const BrickGroups groups(this->Source, this->Ranks.empty() && this->MayDrawTogether());
+  const BrickGroups groups(this->Source, this->Ranks.empty());
   const GroupList members = this->MembersOf(groups);
   for (std::int64_t group = 0; group < groups.Count(); ++group)
   {
@@ -65,14 +63,6 @@ void LevelCaster::Plan()
   { return std::make_tuple(brick.Key, brick.KeyWithin, brick.Number); };
   std::sort(this->Bricks.begin(), this->Bricks.end(),
     [&order](const PlannedBrick& a, const PlannedBrick& b) { return order(a) < order(b); });
-}
-
-/// Zones are balanced by what bricks took: small zones want to know it of small bricks.
-bool LevelCaster::MayDrawTogether() const
-{
-  const std::int64_t cells = std::int64_t{ 8 } * BrickGroups::LargestMember *
-                             BrickGroups::LargestMember * BrickGroups::LargestMember;
-  return !this->Scene.Work || this->Cells.Count() >= FewestGroups * cells;
 }
 
 /// What can be seen of all groups, wherever the camera is.

@@ -108,6 +108,31 @@ TEST(TreeSearch, DoesNotBeginWhereFramesAreNeverTheSame)
   EXPECT_LE(asked, 10) << "it waits ever longer";
 }
 
+TEST(TreeSearch, LeavesItToOthersWhileTheirTreesGetMuchBetterAndReturnsToTheBest)
+{
+  const BrickCosts blocks = Blocks(Fine());
+  const std::vector<double> speeds(2, 1.0);
+  const auto treeAt = [&](int plane)
+  {
+    ZoneTree tree = CostZoneTree(blocks, speeds);
+    tree.Nodes.front().Plane = plane;
+    return tree;
+  };
+  TreeSearch search;
+  // The slower rank takes less and less, and then a little less only.
+  const double slower[] = { 8.0, 6.0, 4.5, 4.4 };
+  for (int frame = 0; frame < 4; ++frame)
+  {
+    search.Measured(treeAt(10 + frame), { slower[frame], 1.0 });
+    EXPECT_EQ(search.Next(blocks, speeds, 1).has_value(), frame == 3) << frame;
+  }
+  search.Forget();
+  search.Measured(treeAt(10), { 4.0, 1.0 });
+  EXPECT_FALSE(search.Next(blocks, speeds, 1));
+  search.Measured(treeAt(11), { 7.0, 1.0 });
+  EXPECT_EQ(search.Next(blocks, speeds, 1), treeAt(10)) << "the last one was worse";
+}
+
 TEST(TreeSearch, BeginsAnewWhenARankBecomesSlower)
 {
   const BrickCosts fine = Fine();
