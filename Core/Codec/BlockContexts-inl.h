@@ -303,10 +303,12 @@ HWY_INLINE Vector Expanded(Vector v)
 }
 
 /// About 2 log2(1 + |r|): sums of these say how rough the neighbourhood is, over any scale. From 15 on
-/// it grows no more.
+/// it grows no more. Lanes behind the last symbol hold anything, also what has no opposite.
 HWY_INLINE ByteVector MagnitudesOf(SignedByteVector residuals)
 {
-  const SignedByteVector size = residuals < 0 ? -residuals : residuals;
+  const SignedByteVector opposite =
+    reinterpret_cast<SignedByteVector>(-reinterpret_cast<ByteVector>(residuals));
+  const SignedByteVector size = residuals < 0 ? opposite : residuals;
   const SignedByteVector most = SignedByteVector{} + std::int8_t{ 15 };
   const SignedByteVector index = size < most ? size : most;
   return __builtin_shuffle(ByteVector{ 0, 2, 3, 4, 5, 5, 6, 6, 6, 7, 7, 7, 7, 8, 8, 8 },

@@ -268,8 +268,10 @@ private:
       SignedByteVector kept;
       if constexpr (std::is_same_v<Residual, std::int8_t>)
       {
-        const auto turn = LoadVector<SignedByteVector>(turned + k);
-        kept = (LoadVector<SignedByteVector>(residuals + k) ^ turn) - turn;
+        // As unsigned numbers: lanes behind the last symbol hold anything, also what has no opposite.
+        const auto turn = LoadVector<ByteVector>(turned + k);
+        kept =
+          reinterpret_cast<SignedByteVector>((LoadVector<ByteVector>(residuals + k) ^ turn) - turn);
         residual = reinterpret_cast<Vector>(__builtin_convertvector(kept, typename V::Signed));
         kept = Limited(kept, std::int8_t{ 15 });
       }
