@@ -111,7 +111,9 @@ void DrawPieces(Communicator& communicator, const BenchScene& scene, const Balan
     field.EndFrame(communicator);
     BalanceFrame frame;
     frame.Milliseconds = 1e3 * AllMax(communicator, whole.Seconds());
-    frame.RankMilliseconds.assign(1, 1e3 * statistics.RenderSeconds);
+    const double mine = 1e3 * statistics.RenderSeconds;
+    frame.RankMilliseconds.resize(static_cast<std::size_t>(communicator.Size()));
+    communicator.AllGather(&mine, sizeof(mine), frame.RankMilliseconds.data());
     drawing += frame.Milliseconds;
     fetching += 1e3 * AllMax(communicator, field.FrameStatistics().FetchSeconds);
     frame.Number = number;
