@@ -27,9 +27,14 @@ void Check(const RayBlend& blend)
   }
 }
 
-/// The values that interpolations, which round in float, may give of a range.
+/// The values that interpolations, which round in float, may give of a range. Between equal values
+/// there is no other.
 ValueRange Widened(const ValueRange& range)
 {
+  if (range.Low == range.High)
+  {
+    return range;
+  }
   const double slack = 4e-7 * std::max(std::abs(range.Low), std::abs(range.High));
   return { range.Low - slack, range.High + slack };
 }
@@ -38,6 +43,19 @@ float ToFloat(double value)
 {
   constexpr double largest = std::numeric_limits<float>::max();
   return static_cast<float>(std::clamp(value, -largest, largest));
+}
+
+/// Finite ones that are no lower, and no higher, than a finite value, or that it is rounded to.
+float FloatAbove(double value)
+{
+  const float rounded = ToFloat(value);
+  constexpr float largest = std::numeric_limits<float>::max();
+  return rounded < value ? std::min(std::nextafter(rounded, largest), largest) : rounded;
+}
+
+float FloatBelow(double value)
+{
+  return -FloatAbove(-value);
 }
 
 glm::vec4 ColourOfRank(const RayScene& scene, float rank)
@@ -63,8 +81,6 @@ ProjectionTable::ProjectionTable(const RayScene& scene, const StepTable& steps)
   , NearestSamples(scene.Interpolation == SampleInterpolation::Nearest)
   , RelativeTo(steps.Low())
   , Visible(scene.Transfer)
-  , FunctionLow(scene.Transfer.Low)
-  , EntriesPerValue(steps.Lookup().Scale)
   , LowestCounted(scene.Blend.AveragedLow)
   , HighestCounted(scene.Blend.AveragedHigh)
 {
@@ -107,14 +123,15 @@ float ProjectionTable::HighestRank(const ValueRange& range) const
   {
     return 0.0f;
   }
-  // Positions are computed in float: about 1e-7 of the table's length off.
-  const double last = this->Transparent() - 1.0;
-  const double margin = 2.0 + 1e-6 * last;
+  // Finding entries is monotonic, rounding included: no sample has a better one than the best
+  // value.
   const bool lowest = this->Mode == BlendMode::Minimum;
-  const double position =
-    ((lowest ? values.Low : values.High) - this->FunctionLow) * this->EntriesPerValue;
-  const double best = lowest ? std::floor(position - margin) : std::ceil(position + margin);
-  return this->RankOf(static_cast<int>(std::clamp(best, 0.0, last)));
+  const auto entryOf = [lowest](const TableLookup& lookup, const ValueRange& of)
+  { return lookup.IndexOf(lowest ? FloatBelow(of.Low) : FloatAbove(of.High)); };
+  const ValueRange shifted =
+    Widened({ range.Low - this->RelativeTo, range.High - this->RelativeTo });
+  const float absolute = this->RankOf(entryOf(this->Absolute.Lookup, values));
+  return std::max(absolute, this->RankOf(entryOf(this->Relative.Lookup, shifted)));
 }
 
 bool ProjectionTable::OnlyCounts(const ValueRange& range) const

@@ -68,8 +68,6 @@ private:
   double RelativeTo;
   std::vector<float> Opacities;
   VisibleValues Visible;
-  double FunctionLow;
-  double EntriesPerValue;
   double LowestCounted;
   double HighestCounted;
   Scale Absolute;
