@@ -18,7 +18,7 @@ namespace banyan
 ///
 /// Without gradients, beside each sample stands its neighbour in y. The four corners of a cell's
 /// lower or upper face are then 16 bytes side by side, and a sample takes two loads. With
-/// gradients, a sample is its value and its gradient, and takes eight loads.
+/// gradients, a sample is its value and its gradient, and takes eight loads, or four wider ones.
 ///
 /// Exactness: each value is the float that an interpolation of the brick itself works with
 /// (CornerValue), so that packing changes no bit of the picture. Gradients are differences of these
