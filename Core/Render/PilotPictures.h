@@ -74,14 +74,16 @@ public:
 
   PilotErrors Difference(const PilotPicture& a, const PilotPicture& b) const;
 
-  /// Of a tile: the largest error of the pixels within two and a half tiles (or as constructed), times
-  /// `factor`, and at least that of all pixels times `share`.
+  /// Of a tile: the largest error of the pixels within two and a half tiles (or as constructed),
+  /// times `factor`, and at least that of all pixels times `share`.
   TileErrors ErrorsOf(const PilotErrors& errors, double factor, double share) const;
 
   /// Pixels of the large picture from one pilot to the next.
   int PixelsApart() const { return this->Spacing; }
   /// Where the pixels of pictures lie among those of a small picture of all.
   const PixelRect& Part() const { return this->View; }
+  /// The picture that was drawn last; there must be one.
+  const PilotPicture& Last() const { return this->Known.back().second; }
 
   glm::ivec2 ImageSize() const { return this->Scene.Camera.ImageSize(); }
   std::size_t TileCount() const;

@@ -245,7 +245,8 @@ private:
     every.Errors.Tiles.assign(this->Pictures.TileCount(), 0.0);
     this->Choices.Strides = { std::move(every) };
     if (this->Wish.LargestPixelStride == 1 ||
-        !StridePilot::MaySay(this->Scene, this->Pictures.PixelsApart()))
+        !StridePilot::MaySay(this->Scene, this->Pictures.PixelsApart()) ||
+        !StridePilot::MayPay(this->Pictures, this->Allowed))
     {
       return false;
     }

@@ -21,53 +21,10 @@ constexpr double MostGain = 2.0;
 /// Of the largest error anywhere, what each tile is taken to have at least.
 constexpr double ShareOfLargest = 1.0 / 16.0;
 
-} // namespace
-
-StridePilot::StridePilot(
-  const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw)
-  : Scene(scene)
-  , Pictures(scene, std::move(draw), Spacing, TilesAround)
-{
-}
-
-bool StridePilot::MaySay(const RayScene& scene, int pixelsApart)
-{
-  return pixelsApart >= Spacing && scene.Blend.Mode == BlendMode::Composite;
-}
-
-void StridePilot::Draw(const RaySampling& sampling)
-{
-  const PilotPicture picture = this->Pictures.Draw(sampling);
-  this->Eight = this->Pictures.ErrorsOf(this->ErrorsBetween(picture, 2), 1.0, ShareOfLargest);
-  this->Sixteen = this->Pictures.ErrorsOf(this->ErrorsBetween(picture, 4), 1.0, ShareOfLargest);
-  this->Whole = this->MakeWholeTiles();
-}
-
-TileErrors StridePilot::ErrorsAt(int stride) const
-{
-  TileErrors errors = this->Eight;
-  for (std::size_t tile = 0; tile < errors.Tiles.size(); ++tile)
-  {
-    double& error = errors.Tiles[tile];
-    const double larger = this->Sixteen.Of(tile);
-    const double gain = error > 0.0 ? std::clamp(larger / error, 1.0, MostGain) : 1.0;
-    error *= Safety;
-    for (int i = RaySampling::LargestStride; i > stride; i /= 2)
-    {
-      error /= gain;
-    }
-    if (!this->Whole[tile])
-    {
-      error = std::numeric_limits<double>::infinity();
-    }
-  }
-  return errors;
-}
-
 /// How far each pixel is from what lies between those that are `every` apart, along both axes.
-PilotErrors StridePilot::ErrorsBetween(const PilotPicture& picture, int every) const
+/// @param part of the image that the picture is
+PilotErrors ErrorsBetween(const PilotPicture& picture, const PixelRect& part, int every)
 {
-  const PixelRect& part = this->Pictures.Part();
   const glm::ivec2 size = part.Size();
   // Around the volume is nothing; at the edge of the picture its last pixels go on.
   const auto inside = [&](int position, int axis)
@@ -100,6 +57,63 @@ PilotErrors StridePilot::ErrorsBetween(const PilotPicture& picture, int every) c
         const glm::vec4 between = columns[i] + slope * static_cast<float>(x - left);
         error[x - part.Lo.x] = PilotErrors::Between(row[x], between);
       }
+    }
+  }
+  return errors;
+}
+
+} // namespace
+
+StridePilot::StridePilot(
+  const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw)
+  : Scene(scene)
+  , Pictures(scene, std::move(draw), Spacing, TilesAround)
+{
+}
+
+bool StridePilot::MaySay(const RayScene& scene, int pixelsApart)
+{
+  return pixelsApart >= Spacing && scene.Blend.Mode == BlendMode::Composite;
+}
+
+bool StridePilot::MayPay(const PilotPictures& samples, double allowed)
+{
+  const double apart = samples.PixelsApart();
+  const double near = ErrorsBetween(samples.Last(), samples.Part(), 2).Largest();
+  const double far = ErrorsBetween(samples.Last(), samples.Part(), 4).Largest();
+  // Smooth pictures have 4.
+  const double gain = near > 0.0 ? std::clamp(far / near, 1.0, 4.0) : 1.0;
+  const double eight = near * std::pow(gain, std::log2(RaySampling::LargestStride / (2.0 * apart)));
+  const double least = Safety * ShareOfLargest * eight / (MostGain * MostGain);
+  return least <= allowed;
+}
+
+void StridePilot::Draw(const RaySampling& sampling)
+{
+  const PilotPicture picture = this->Pictures.Draw(sampling);
+  this->Eight =
+    this->Pictures.ErrorsOf(ErrorsBetween(picture, this->Pictures.Part(), 2), 1.0, ShareOfLargest);
+  this->Sixteen =
+    this->Pictures.ErrorsOf(ErrorsBetween(picture, this->Pictures.Part(), 4), 1.0, ShareOfLargest);
+  this->Whole = this->MakeWholeTiles();
+}
+
+TileErrors StridePilot::ErrorsAt(int stride) const
+{
+  TileErrors errors = this->Eight;
+  for (std::size_t tile = 0; tile < errors.Tiles.size(); ++tile)
+  {
+    double& error = errors.Tiles[tile];
+    const double larger = this->Sixteen.Of(tile);
+    const double gain = error > 0.0 ? std::clamp(larger / error, 1.0, MostGain) : 1.0;
+    error *= Safety;
+    for (int i = RaySampling::LargestStride; i > stride; i /= 2)
+    {
+      error /= gain;
+    }
+    if (!this->Whole[tile])
+    {
+      error = std::numeric_limits<double>::infinity();
     }
   }
   return errors;

@@ -25,6 +25,14 @@ public:
   /// @param pixelsApart pilots of it that tell enough
   static bool MaySay(const RayScene& scene, int pixelsApart);
 
+  /// Whether it may be worth its time, which is that of an eighth of the picture and more: whether
+  /// any tile may be content with every second pixel. No tile is taken to be much better than the
+  /// worst one, and how much that one is off between pixels is told by pictures of samples: by what
+  /// lies between theirs, and how fast it falls as they come closer.
+  /// @param samples of which some were drawn
+  /// @param allowed in 1/255
+  static bool MayPay(const PilotPictures& samples, double allowed);
+
   /// Draws it. Once.
   void Draw(const RaySampling& sampling);
 
@@ -34,7 +42,6 @@ public:
   TileErrors ErrorsAt(int stride) const;
 
 private:
-  PilotErrors ErrorsBetween(const PilotPicture& picture, int every) const;
   std::vector<bool> MakeWholeTiles() const;
   bool HasGeometry(const PixelRect& pixels) const;
 
