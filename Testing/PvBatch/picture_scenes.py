@@ -158,16 +158,16 @@ def coloured_background():
 
 
 @scene
-def gradient_background():
-    # No two rows of the background are of one colour.
-    view = session.new_view(SIZE, **CAMERA, BackgroundColorMode="Gradient",
-                            Background=[0.95, 0.9, 0.2], Background2=[0.1, 0.6, 0.95])
+def encoded_and_spheres():
+    view = session.new_view(SIZE, **CAMERA)
     return Drawn(view, [encoded(view)], [spheres(view)], volume_pixels=20000)
 
 
 @scene
-def encoded_and_spheres():
-    view = session.new_view(SIZE, **CAMERA)
+def gradient_background():
+    # No two rows of the background are of one colour.
+    view = session.new_view(SIZE, **CAMERA, BackgroundColorMode="Gradient",
+                            Background=[0.95, 0.9, 0.2], Background2=[0.1, 0.6, 0.95])
     return Drawn(view, [encoded(view)], [spheres(view)], volume_pixels=20000)
 
 
