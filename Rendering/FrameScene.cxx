@@ -1,11 +1,10 @@
 #include "FrameScene.h"
 
 #include "DistributedField.h"
+#include "RendererCamera.h"
 #include "SceneOptions.h"
 #include "TransferFunctionTable.h"
 
-#include "vtkCamera.h"
-#include "vtkMatrix4x4.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
 #include "vtkVolumeMapper.h"
@@ -17,19 +16,6 @@ namespace banyan
 {
 namespace
 {
-
-glm::dmat4 ToGlm(vtkMatrix4x4* matrix)
-{
-  glm::dmat4 result;
-  for (int row = 0; row < 4; ++row)
-  {
-    for (int column = 0; column < 4; ++column)
-    {
-      result[column][row] = matrix->GetElement(row, column);
-    }
-  }
-  return result;
-}
 
 /// Bounds in world space of a box of physical space.
 void WorldBounds(
@@ -52,16 +38,11 @@ void WorldBounds(
 FrameScene MakeFrameScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMapper* mapper,
   const DistributedField& field, double sampleDistanceVoxels, KeptTransferFunction& function)
 {
-  glm::ivec2 size(0);
-  glm::ivec2 origin(0);
-  renderer->GetTiledSizeAndOrigin(&size.x, &size.y, &origin.x, &origin.y);
   const glm::dmat4 toWorld = ToGlm(volume->GetMatrix());
   glm::dvec3 low;
   glm::dvec3 high;
   WorldBounds(field.Bounds(), toWorld, low, high);
-  const RayCamera camera(ToGlm(renderer->GetActiveCamera()->GetCompositeProjectionTransformMatrix(
-                           renderer->GetTiledAspectRatio(), -1, 1)),
-    size, 0.5 * (low + high));
+  const RayCamera camera = CameraOf(renderer, 0.5 * (low + high));
   vtkVolumeProperty* property = volume->GetProperty();
   FrameScene frame{ { camera.InSpace(toWorld), camera.Footprint(low, high), field.IndexToPhysical(),
                       field.DomainCells(), function.Of(property),

@@ -1,13 +1,13 @@
 #include "OthersOnScreen.h"
 
+#include "RendererCamera.h"
+
 #include "vtkActor.h"
 #include "vtkActor2D.h"
-#include "vtkCamera.h"
 #include "vtkCollection.h"
 #include "vtkMapper.h"
 #include "vtkMapper2D.h"
 #include "vtkMath.h"
-#include "vtkMatrix4x4.h"
 #include "vtkProp.h"
 #include "vtkPropCollection.h"
 #include "vtkProperty.h"
@@ -78,24 +78,6 @@ bool StaysInBounds(vtkProp* prop, int& pixels)
     std::max(actor->GetProperty()->GetLineWidth(), actor->GetProperty()->GetPointSize());
   pixels = static_cast<int>(std::min(widest, 1e6)) + 1;
   return mapper != nullptr && IsOneOf(mapper, mappers);
-}
-
-RayCamera CameraOf(vtkRenderer* renderer, const glm::dvec3& anchor)
-{
-  glm::ivec2 size(0);
-  glm::ivec2 origin(0);
-  renderer->GetTiledSizeAndOrigin(&size.x, &size.y, &origin.x, &origin.y);
-  vtkMatrix4x4* const matrix = renderer->GetActiveCamera()->GetCompositeProjectionTransformMatrix(
-    renderer->GetTiledAspectRatio(), -1, 1);
-  glm::dmat4 worldToClip;
-  for (int row = 0; row < 4; ++row)
-  {
-    for (int column = 0; column < 4; ++column)
-    {
-      worldToClip[column][row] = matrix->GetElement(row, column);
-    }
-  }
-  return RayCamera(worldToClip, size, anchor);
 }
 
 } // namespace

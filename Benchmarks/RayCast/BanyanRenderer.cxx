@@ -12,7 +12,6 @@ namespace
 /// With fixed sample distances, as VTK's GPU mapper: a ray ends when one step of 8 bits is all that
 /// could follow.
 constexpr float OpacityLimit = 1.0f - 1.0f / 255.0f;
-constexpr int BrickCells = 16; // as the mapper cuts plain data
 /// Of encoded series, and of all data while somebody moves the camera; still pictures of plain data
 /// do without coarser levels.
 constexpr int CoarsestLevel = 3;

@@ -42,24 +42,24 @@ struct Options
   int Picture = 1024;
   int Threads = 1;
   int Repeat = 3;
-  int BudgetMiB = 0; ///< 0 for the process's own
+  int BudgetMiB = 0;    ///< 0 for the process's own
   double Tolerance = 0; ///< in 1/255; 0 takes one sample per voxel
 };
 
 constexpr int CoarsestLevel = 3;
-constexpr int BrickCells = 16; // as the mapper cuts plain data
 
-const char* Help = "banyan-bench-scaling --size N [--series FILE.banyan] [OPTIONS]\n"
-                   "  Draws the standard scene S2 of N^3 samples, from memory or from the encoded\n"
-                   "  series, whose files are dropped from the system's cache before.\n"
-                   "banyan-bench-scaling --encode FILE.raw --size N --series FILE.banyan\n"
-                   "  Encodes one step of float32, with the default error bound.\n"
-                   "  --threads N  (default 1)    --repeat N   later frames (default 3)\n"
-                   "  --budget MIB what bricks may take in all (default: the process's own, see limits.md)\n"
-                   "  --picture N  pixels per side (default 1024)\n"
-                   "  --tolerance T  samples as the picture needs for an error of T/255, instead of\n"
-                   "                 one per voxel; finding out is part of each frame\n"
-                   "  --header     prints the names of the columns and ends\n";
+const char* Help =
+  "banyan-bench-scaling --size N [--series FILE.banyan] [OPTIONS]\n"
+  "  Draws the standard scene S2 of N^3 samples, from memory or from the encoded\n"
+  "  series, whose files are dropped from the system's cache before.\n"
+  "banyan-bench-scaling --encode FILE.raw --size N --series FILE.banyan\n"
+  "  Encodes one step of float32, with the default error bound.\n"
+  "  --threads N  (default 1)    --repeat N   later frames (default 3)\n"
+  "  --budget MIB what bricks may take in all (default: the process's own, see limits.md)\n"
+  "  --picture N  pixels per side (default 1024)\n"
+  "  --tolerance T  samples as the picture needs for an error of T/255, instead of\n"
+  "                 one per voxel; finding out is part of each frame\n"
+  "  --header     prints the names of the columns and ends\n";
 
 /// A file's bytes, mapped for reading.
 class MappedFile
@@ -150,8 +150,7 @@ double PeakMiB()
 }
 
 /// The scene as it is to be sampled.
-RayScene Sampled(
-  RayScene scene, double tolerance, int finestPilotLevel, const DrawPilot& draw)
+RayScene Sampled(RayScene scene, double tolerance, int finestPilotLevel, const DrawPilot& draw)
 {
   if (tolerance > 0.0)
   {
@@ -184,8 +183,8 @@ Frames DrawFrames(const Options& options, const Timer& sinceStart, BrickSource& 
     frames.Statistics = {};
     const auto draw = [&](const RayScene& wanted)
     { return CastRays(wanted, source, wanted.DomainCells, budget, pool, frames.Statistics); };
-    const int finestPilot =
-      FinestLevelWithin(scene, source, scene.DomainCells, CoarsestLevel, KeptBricks::PartOf(budget), pool);
+    const int finestPilot = FinestLevelWithin(
+      scene, source, scene.DomainCells, CoarsestLevel, KeptBricks::PartOf(budget), pool);
     const RayScene sampled = Sampled(scene, options.Tolerance, finestPilot, draw);
     FloatImage picture = draw(sampled);
     FillBetweenRays(sampled, picture, pool);
@@ -216,8 +215,7 @@ void Report(const Options& options, const Frames& frames)
   }
   std::printf("S2-%d,%s,%d,%s,%.6g,%.6g,%lld,%lld,%lld,%d,%.6g,%.6g\n", options.Size,
     options.Series.empty() ? "memory" : "series", options.Threads, tolerance,
-    frames.FirstMilliseconds,
-    frames.Milliseconds[frames.Milliseconds.size() / 2],
+    frames.FirstMilliseconds, frames.Milliseconds[frames.Milliseconds.size() / 2],
     static_cast<long long>(statistics.SamplesTaken), static_cast<long long>(statistics.BricksDrawn),
     static_cast<long long>(statistics.BricksSkipped),
     static_cast<int>(BrickCache::Process().Budget() >> 20), PeakMiB(), fileBytes / MiB);
@@ -234,7 +232,7 @@ void Draw(const Options& options)
   {
     const auto volume = bench::StandardVolume(options.Size, pool);
     const Timer sinceStart;
-    ArrayBrickSource source(volume->Array(), BrickCells, { 0.0, 1.0 }, pool);
+    ArrayBrickSource source(volume->Array(), bench::BrickCells, { 0.0, 1.0 }, pool);
     Report(options, DrawFrames(options, sinceStart, source, cache.DrawingBudget(), pool));
     return;
   }

@@ -8,12 +8,40 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace banyan::bench
 {
+
+/// Cells per axis of the bricks that values in memory are cut into, as the mapper does.
+constexpr int BrickCells = 16;
+
+/// Where a ray is inside a volume, in multiples of `way`: from Near and up to Far of the ray at
+/// most. A ray inside a face gives NaN, which changes nothing.
+/// @param origin, way of the ray, in samples
+/// @param last sample of each axis
+struct RayInterval
+{
+  double Enter;
+  double Exit;
+
+  RayInterval(
+    const Ray& ray, const glm::dvec3& origin, const glm::dvec3& way, const glm::ivec3& last)
+    : Enter(ray.Near)
+    , Exit(ray.Far)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double a = -origin[axis] / way[axis];
+      const double b = (last[axis] - origin[axis]) / way[axis];
+      this->Enter = std::max(this->Enter, std::min(a, b));
+      this->Exit = std::min(this->Exit, std::max(a, b));
+    }
+  }
+};
 
 /// Samples of a regular grid, x fastest, with sample (0, 0, 0) at the origin.
 struct Volume

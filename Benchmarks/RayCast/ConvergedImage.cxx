@@ -56,16 +56,7 @@ public:
     const glm::dvec3 spacing = this->Scene.Data->Spacing;
     const glm::dvec3 origin = ray.Origin / spacing;
     const glm::dvec3 way = ray.Direction / spacing;
-    double enter = ray.Near;
-    double exit = ray.Far;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      // A ray inside a face gives NaN, which changes nothing.
-      const double a = -origin[axis] / way[axis];
-      const double b = (this->Last[axis] - origin[axis]) / way[axis];
-      enter = std::max(enter, std::min(a, b));
-      exit = std::min(exit, std::max(a, b));
-    }
+    const auto [enter, exit] = RayInterval(ray, origin, way, this->Last);
     glm::dvec3 color(0.0);
     double transmittance = 1.0;
     for (double k = std::floor(enter / this->Step);

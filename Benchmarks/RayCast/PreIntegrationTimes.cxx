@@ -108,15 +108,7 @@ private:
     const glm::dmat4 toIndex = glm::inverse(this->Scene.IndexToWorld);
     const glm::dvec3 origin(toIndex * glm::dvec4(ray.Origin, 1.0));
     const glm::dvec3 way = glm::dmat3(toIndex) * ray.Direction;
-    double enter = ray.Near;
-    double exit = ray.Far;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const double a = -origin[axis] / way[axis];
-      const double b = (this->Last[axis] - origin[axis]) / way[axis];
-      enter = std::max(enter, std::min(a, b));
-      exit = std::min(exit, std::max(a, b));
-    }
+    const auto [enter, exit] = RayInterval(ray, origin, way, this->Last);
     const auto count = static_cast<std::int64_t>(std::max(0.0, (exit - enter) / this->Step));
     const glm::vec3 step(way * this->Step);
     glm::vec3 at(origin + way * (Way == Method::Ends ? enter : enter + 0.5 * this->Step));

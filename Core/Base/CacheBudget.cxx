@@ -19,7 +19,8 @@ constexpr std::uint64_t MostMegabytes = std::uint64_t{ 1 } << 40; // in bytes st
 
 std::uint64_t UsualHere()
 {
-  return UsualCacheBudget(MachineMemory(), RanksStartedHere());
+  static const std::size_t machineBytes = MachineMemory();
+  return UsualCacheBudget(machineBytes, RanksStartedHere());
 }
 
 } // namespace

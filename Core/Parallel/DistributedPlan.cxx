@@ -44,9 +44,9 @@ int FinestPilotLevel(Communicator& communicator, const RayScene& scene, BrickSou
   return LargestOfAll(communicator,
     [&]
     {
-      return source && !zone.Empty()
-               ? FinestLevelWithin(scene, *source, zone, coarsest, KeptBricks::PartOf(budgetBytes), pool)
-               : 0;
+      return source && !zone.Empty() ? FinestLevelWithin(scene, *source, zone, coarsest,
+                                         KeptBricks::PartOf(budgetBytes), pool)
+                                     : 0;
     });
 }
 

@@ -300,7 +300,7 @@ private:
     { return Mix(LoadPairs(from, bytes), LoadPairs(from + this->SliceBytes, bytes), alongZ); };
     const Pairs both =
       Mix(face(this->Values), face(this->Values + this->RowBytes), ForPairs<k>(place.Y));
-    return Mix(FirstOf(both), SecondOf(both), hn::Broadcast<k>(place.X));
+    return Mix(BlocksOf<0>(both), BlocksOf<1>(both), hn::Broadcast<k>(place.X));
 #else
     const VF z = hn::Broadcast<k>(place.Z);
     const auto edge = [&](const char* from) HWY_ATTR

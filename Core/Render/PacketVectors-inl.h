@@ -120,22 +120,16 @@ HWY_INLINE Pairs ForPairs(VF v)
 #endif
 }
 
-/// The first or the second blocks of pairs: block b is that of lane 4 b + k.
-HWY_INLINE VF FirstOf(const Pairs& pairs)
+/// The first (0) or the second (1) blocks of pairs: block b is that of lane 4 b + k.
+template <int which>
+HWY_INLINE VF BlocksOf(const Pairs& pairs)
 {
+  const auto low = pairs.Of[0].raw;
+  const auto high = pairs.Of[1].raw;
 #if HWY_TARGET == HWY_AVX3
-  return VF{ _mm512_shuffle_f32x4(pairs.Of[0].raw, pairs.Of[1].raw, _MM_SHUFFLE(2, 0, 2, 0)) };
+  return VF{ _mm512_shuffle_f32x4(low, high, _MM_SHUFFLE(2 + which, which, 2 + which, which)) };
 #else
-  return VF{ _mm256_permute2f128_ps(pairs.Of[0].raw, pairs.Of[1].raw, 0x20) };
-#endif
-}
-
-HWY_INLINE VF SecondOf(const Pairs& pairs)
-{
-#if HWY_TARGET == HWY_AVX3
-  return VF{ _mm512_shuffle_f32x4(pairs.Of[0].raw, pairs.Of[1].raw, _MM_SHUFFLE(3, 1, 3, 1)) };
-#else
-  return VF{ _mm256_permute2f128_ps(pairs.Of[0].raw, pairs.Of[1].raw, 0x31) };
+  return VF{ _mm256_permute2f128_ps(low, high, 0x20 + 0x11 * which) };
 #endif
 }
 #else

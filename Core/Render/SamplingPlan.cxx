@@ -76,13 +76,13 @@ public:
     if (this->Pictures.SawSomething())
     {
       this->TryLevels();
-      plan.PilotSeconds = timer.Seconds();
+      const Timer strides;
       plan.Pilots = this->TryStrides() ? 1 : 0;
-      plan.StrideSeconds = timer.Seconds() - plan.PilotSeconds;
+      plan.StrideSeconds = strides.Seconds();
       this->Choose(plan);
     }
     plan.Pilots += this->Pictures.Count();
-    plan.PilotSeconds = std::max(plan.PilotSeconds, timer.Seconds() - plan.StrideSeconds);
+    plan.PilotSeconds = timer.Seconds() - plan.StrideSeconds;
     return plan;
   }
 

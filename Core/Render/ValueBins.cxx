@@ -1,6 +1,5 @@
 #include "Render/ValueBins.h"
 
-#include <cmath>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
