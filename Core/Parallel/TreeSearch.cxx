@@ -22,8 +22,8 @@ constexpr double LeastGain = 0.005;
 /// Trees of somebody else that take so much less time than all before lead on: the search waits.
 constexpr double GainThatLeadsOn = 0.1;
 /// By which it must rise, by the average speeds of so many frames, for the search to begin anew. A
-/// rank whose speed is another one by this factor begins it at once: noise of single frames, a
-/// fifth say, is less in the speeds that are smoothed.
+/// rank whose speed is another one by this factor begins it at once, whether the search has ended
+/// or not: noise of single frames, a fifth say, is less in the speeds that are smoothed.
 constexpr double Worse = 0.1;
 constexpr int FramesOfSpeeds = 32;
 constexpr double OtherSpeed = 1.4;
@@ -68,6 +68,8 @@ void TreeSearch::Forget()
   this->Model = {};
   this->Kept.reset();
   this->KeptFrames = 0;
+  this->UsualSpeeds.clear();
+  this->SpeedFrames = 0;
   this->Begun = false;
 }
 
@@ -135,9 +137,14 @@ std::optional<ZoneTree> TreeSearch::Next(
   {
     return std::nullopt;
   }
+  if (this->SpeedsAreOthers(speeds))
+  {
+    this->Forget();
+    return std::nullopt; // what is expected of costs leads there in fewer frames
+  }
   if (this->Kept)
   {
-    return this->KeepOn(speeds);
+    return this->KeepOn();
   }
   const std::size_t number = this->Best(speeds);
   const Trial& best = this->Trials[number];
@@ -183,25 +190,28 @@ std::optional<ZoneTree> TreeSearch::Next(
   return next ? next : best.Tree;
 }
 
-/// The tree that the search ended with, unless a rank has become slower.
-std::optional<ZoneTree> TreeSearch::KeepOn(const std::vector<double>& speeds)
+/// Whether a rank has another speed than on average since the search knows of the view.
+bool TreeSearch::SpeedsAreOthers(const std::vector<double>& speeds)
 {
-  const Trial& kept = this->Trials[*this->Kept];
-  if (this->KeptFrames == 0)
-  {
-    this->KeptSpeeds = speeds;
-  }
-  this->KeptFrames = std::min(this->KeptFrames + 1, 2 * FramesOfSpeeds);
-  bool other = false;
+  this->UsualSpeeds = this->UsualSpeeds.empty() ? speeds : this->UsualSpeeds;
+  this->SpeedFrames = std::min(this->SpeedFrames + 1, 2 * FramesOfSpeeds);
+  bool others = false;
   for (std::size_t rank = 0; rank < speeds.size(); ++rank)
   {
-    double& usual = this->KeptSpeeds[rank];
-    other = other || speeds[rank] > OtherSpeed * usual || usual > OtherSpeed * speeds[rank];
-    usual += (speeds[rank] - usual) / this->KeptFrames;
+    double& usual = this->UsualSpeeds[rank];
+    others = others || speeds[rank] > OtherSpeed * usual || usual > OtherSpeed * speeds[rank];
+    usual += (speeds[rank] - usual) / this->SpeedFrames;
   }
-  const bool worse = this->KeptFrames >= FramesOfSpeeds &&
-                     Imbalance(kept.Work, this->KeptSpeeds) > this->BestSoFar + Worse;
-  if (other || worse)
+  return others;
+}
+
+/// The tree that the search ended with, unless ranks have slowly become slower.
+std::optional<ZoneTree> TreeSearch::KeepOn()
+{
+  const Trial& kept = this->Trials[*this->Kept];
+  this->KeptFrames = std::min(this->KeptFrames + 1, FramesOfSpeeds);
+  if (this->KeptFrames == FramesOfSpeeds &&
+      Imbalance(kept.Work, this->UsualSpeeds) > this->BestSoFar + Worse)
   {
     this->Forget();
     return std::nullopt;

@@ -67,7 +67,8 @@ private:
     const CostSums& model, const std::vector<double>& speeds, int step) const;
   std::optional<ZoneTree> AllPlanesAStep(
     const Trial& from, const std::vector<double>& speeds, int step) const;
-  std::optional<ZoneTree> KeepOn(const std::vector<double>& speeds);
+  bool SpeedsAreOthers(const std::vector<double>& speeds);
+  std::optional<ZoneTree> KeepOn();
   std::optional<ZoneTree> OnePlaneAway(
     const Trial& from, const std::vector<double>& speeds, int step) const;
 
@@ -81,8 +82,9 @@ private:
   bool Begun = false;              ///< whether somebody else's trees got no better any more
   int Failures = 0;                ///< trials since it was found
   std::optional<std::size_t> Kept; ///< the trial that the search ended with
-  std::vector<double> KeptSpeeds;  ///< of the ranks, on average over the frames since
-  int KeptFrames = 0;
+  int KeptFrames = 0;              ///< since then
+  std::vector<double> UsualSpeeds; ///< of the ranks, on average over the frames of the view
+  int SpeedFrames = 0;
 };
 
 } // namespace banyan

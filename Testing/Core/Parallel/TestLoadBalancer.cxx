@@ -183,6 +183,23 @@ TEST_P(EveryRankCountBalanced, ARankThatIsSuddenlyFiveTimesSlowerGetsLess)
   EXPECT_LE(Mean(ours.Moved, 380), 1e-3 * ours.LargestAllowed);
 }
 
+TEST_P(EveryRankCountBalanced, ARankThatBecomesSlowerIsHelpedSoonWheneverThatIs)
+{
+  const auto ranks = static_cast<std::size_t>(GetParam());
+  for (int since = 2; since < 40; ++since)
+  {
+    const auto frameAt = [&](int number)
+    {
+      Frame frame = FrameFrom({ 64, 70, 50 }, 60.0);
+      frame.Speeds.assign(ranks, 1.0);
+      frame.Speeds[ranks / 2] = number >= since ? 0.2 : 1.0;
+      return frame;
+    };
+    const Outcome ours = Simulate(LoadBalancing::MeasuredCost, GetParam(), since + 20, frameAt);
+    EXPECT_LE(Mean(ours.Imbalance, static_cast<std::size_t>(since) + 8), 1.25) << since;
+  }
+}
+
 TEST_P(EveryRankCountBalanced, CostsThatFlipMoveNothingForLong)
 {
   const Frame one = FrameFrom({ 30, 40, 50 }, 30.0);
@@ -272,8 +289,8 @@ TEST_P(EveryRankCountBalanced, NoiseMovesNothing)
 TEST_P(EveryRankCountBalanced, SecondsThatAreOffByAFifthMoveNothingAtRest)
 {
   const Frame frame = FrameFrom({ 64, 70, 50 }, 60.0);
-  const Outcome ours =
-    Simulate(LoadBalancing::MeasuredCost, GetParam(), 300, [&](int) { return frame; }, 0.2);
+  const Outcome ours = Simulate(
+    LoadBalancing::MeasuredCost, GetParam(), 300, [&](int) { return frame; }, 0.2);
   const auto moved = std::count_if(
     ours.Moved.begin() + 40, ours.Moved.end(), [](double bytes) { return bytes > 0.0; });
   EXPECT_LE(moved, 13) << "frames of 260";

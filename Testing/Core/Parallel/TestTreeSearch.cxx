@@ -133,22 +133,25 @@ TEST(TreeSearch, LeavesItToOthersWhileTheirTreesGetMuchBetterAndReturnsToTheBest
   EXPECT_EQ(search.Next(blocks, speeds, 1), treeAt(10)) << "the last one was worse";
 }
 
-TEST(TreeSearch, BeginsAnewWhenARankBecomesSlower)
+TEST(TreeSearch, LeavesItToOthersAtOnceWhenARankBecomesSlowerWhateverItIsAt)
 {
   const BrickCosts fine = Fine();
   const CostSums sums(fine);
   const BrickCosts blocks = Blocks(fine);
-  std::vector<double> speeds(4, 1.0);
-  ZoneTree tree = CostZoneTree(blocks, speeds);
-  TreeSearch search;
-  for (int frame = 0; frame < 40; ++frame)
+  for (int slowFrom = 1; slowFrom < 40; ++slowFrom)
   {
+    std::vector<double> speeds(4, 1.0);
+    ZoneTree tree = CostZoneTree(blocks, speeds);
+    TreeSearch search;
+    for (int frame = 0; frame < slowFrom; ++frame)
+    {
+      search.Measured(tree, WorkOf(tree, sums));
+      tree = search.Next(blocks, speeds, 1).value_or(tree);
+    }
+    speeds[1] = 0.5;
     search.Measured(tree, WorkOf(tree, sums));
-    tree = search.Next(blocks, speeds, 1).value_or(tree);
+    EXPECT_FALSE(search.Next(blocks, speeds, 1)) << "after " << slowFrom << " frames";
   }
-  speeds[1] = 0.5;
-  search.Measured(tree, WorkOf(tree, sums));
-  EXPECT_FALSE(search.Next(blocks, speeds, 1)) << "the balancer is to move planes first";
 }
 
 /// Frames of other values each, then the same ones: how many of these until another tree is tried.
