@@ -4,6 +4,7 @@
 #include "LeafSteps.h"
 #include "MeshPieces.h"
 #include "PieceValues.h"
+#include "RestPoints.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
@@ -44,7 +45,8 @@ bool SameValues(vtkDataArray* a, vtkDataArray* b)
 }
 
 /// What changed between the meshes of two steps, or nothing.
-std::string ChangeOf(vtkUnstructuredGrid* before, vtkUnstructuredGrid* now)
+std::string ChangeOf(
+  vtkUnstructuredGrid* before, vtkUnstructuredGrid* now, const std::string& displacements)
 {
   if (before->GetNumberOfCells() != now->GetNumberOfCells() ||
       before->GetNumberOfPoints() != now->GetNumberOfPoints())
@@ -54,9 +56,10 @@ std::string ChangeOf(vtkUnstructuredGrid* before, vtkUnstructuredGrid* now)
            std::to_string(now->GetNumberOfCells()) + " and " +
            std::to_string(now->GetNumberOfPoints());
   }
-  if (!SameValues(before->GetPoints()->GetData(), now->GetPoints()->GetData()))
+  const std::string moved = HowPointsMoved(before, now, displacements);
+  if (!moved.empty())
   {
-    return "points have moved (if they carry displacements, read the mesh without applying them)";
+    return moved;
   }
   if (!SameValues(
         before->GetCells()->GetConnectivityArray(), now->GetCells()->GetConnectivityArray()) ||
@@ -122,6 +125,12 @@ std::string MeshSteps::Take(vtkSmartPointer<vtkDataObject>& data, const std::str
     {
       throw Error(std::string("Other ranks have a mesh of hexahedra, and this one has ") +
                   data->GetClassName() + " with other cells");
+    }
+    std::vector<vtkSmartPointer<vtkUnstructuredGrid>> rest;
+    for (vtkUnstructuredGrid*& grid : grids)
+    {
+      rest.push_back(AtRest(grid, this->Leaves ? "" : this->Displacements));
+      grid = rest.back();
     }
     piece = MergePieces(grids, this->Arrays.WantedPoints(this->Leaves));
   }
@@ -207,7 +216,7 @@ void MeshSteps::Remember(vtkUnstructuredGrid* grid)
 {
   if (this->Mesh)
   {
-    const std::string change = ChangeOf(this->First, grid);
+    const std::string change = ChangeOf(this->First, grid, this->Displacements);
     if (!change.empty())
     {
       throw Error("The mesh of a series must not change, and " + change + ".");

@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 
 class vtkDataArraySelection;
 class vtkDataObject;
@@ -32,16 +33,19 @@ class SegmentFolder;
 ///
 /// Hyper trees and AMR are meshes of their leaves, with their data made nodal (see MakeNodal).
 ///
-/// The octree is found once, at the first step; the mesh of later steps must be the same.
+/// The octree is found once, at the first step; the mesh of later steps must be the same, apart
+/// from displacements that it carries and that are named.
 class MeshSteps
 {
 public:
   MeshSteps(const RankTalk& talk, vtkMultiProcessController* controller,
-    const EncodeOptions& options, vtkDataArraySelection* points, vtkDataArraySelection* cells)
+    const EncodeOptions& options, vtkDataArraySelection* points, vtkDataArraySelection* cells,
+    std::string displacements)
     : Talk(talk)
     , Controller(controller)
     , Options(options)
     , Arrays(points, cells)
+    , Displacements(std::move(displacements))
   {
   }
 
@@ -72,6 +76,7 @@ private:
   vtkMultiProcessController* Controller;
   const EncodeOptions& Options;
   MeshArrays Arrays;
+  std::string Displacements; ///< see AtRest()
   bool Found = false;
   bool Leaves = false; ///< of hyper trees or AMR
   // On rank 0:

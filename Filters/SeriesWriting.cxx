@@ -25,7 +25,7 @@ SeriesWriting::SeriesWriting(WritingOrder order)
   , Gathering(this->Talk, this->Order.Controller)
   , Histograms(this->Order.Options)
   , Meshes(this->Talk, this->Order.Controller, this->Order.Options, this->Order.Selection,
-      this->Order.CellSelection)
+      this->Order.CellSelection, this->Order.Displacements)
 {
   const bool relative = this->Order.Options.Mode == ErrorBoundMode::RelativeToSeriesRange &&
                         this->Order.Options.ErrorBound > 0.0;

@@ -35,6 +35,7 @@ struct WritingOrder
   int Port = 0;                                   ///< of the producer
   vtkDataArraySelection* Selection = nullptr;     ///< of point arrays
   vtkDataArraySelection* CellSelection = nullptr; ///< of cell arrays of meshes
+  std::string Displacements;                      ///< of the points of meshes: see AtRest()
   bool AllSteps = true;
   vtkMultiProcessController* Controller = nullptr; ///< may be nullptr: this rank alone
   std::function<void(double)> Progress;            ///< told a value in [0, 1], never a smaller one

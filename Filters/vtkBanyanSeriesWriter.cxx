@@ -39,11 +39,22 @@ void vtkBanyanSeriesWriter::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "KeyframeInterval: " << this->KeyframeInterval << "\n"
      << indent << "ClosedGroups: " << this->ClosedGroups << "\n"
      << indent << "Profile: " << this->Profile << "\n"
+     << indent << "DisplacementArray: " << this->DisplacementArray << "\n"
      << this->Quantizer->Text() << indent << "WriteTimeSteps: " << this->WriteTimeSteps << "\n"
      << indent << "PointArraySelection:\n";
   this->Selection->PrintSelf(os, indent.GetNextIndent());
   os << indent << "CellArraySelection:\n";
   this->CellSelection->PrintSelf(os, indent.GetNextIndent());
+}
+
+void vtkBanyanSeriesWriter::SetDisplacementArray(const char* name)
+{
+  const std::string array = name ? name : "";
+  if (this->DisplacementArray != array)
+  {
+    this->DisplacementArray = array;
+    this->Modified();
+  }
 }
 
 void vtkBanyanSeriesWriter::SetTransform(int transform)
@@ -217,6 +228,7 @@ void vtkBanyanSeriesWriter::WriteSeries()
   }
   order.Selection = this->Selection;
   order.CellSelection = this->CellSelection;
+  order.Displacements = this->DisplacementArray;
   order.AllSteps = this->WriteTimeSteps;
   order.Controller = this->Controller;
   order.Progress = [this](double value) { this->UpdateProgress(value); };

@@ -215,6 +215,16 @@ public:
 
   ///@{
   /**
+   * Of meshes whose points move from step to step: the point array that holds their displacements.
+   * Points are then written as they are without these, which must be the same at all steps (to the
+   * rounding of float32); the array is written like others. Empty (default): points must not move.
+   */
+  void SetDisplacementArray(const char* name);
+  const char* GetDisplacementArray() { return this->DisplacementArray.c_str(); }
+  ///@}
+
+  ///@{
+  /**
    * Whose ranks write together; by default the global controller. nullptr: this rank alone.
    */
   void SetController(vtkMultiProcessController* controller);
@@ -253,6 +263,7 @@ private:
   bool ClosedGroups = false;
   int Profile = BALANCED;
   bool WriteTimeSteps = true;
+  std::string DisplacementArray;
   std::string ErrorMessage;
   vtkNew<vtkDataArraySelection> Selection;
   vtkNew<vtkDataArraySelection> CellSelection;

@@ -329,11 +329,6 @@ def check_refusals(folder, quake):
         raise AssertionError(f"was written, and not refused with '{sentence}'")
 
     refused(simple.Tetrahedralize(Input=simple.Wavelet(WholeExtent=[0, 3, 0, 3, 0, 3])), "is of the type vtkTetra")
-    # Points that move.
-    moved = simple.WarpByVector(Input=simple.MergeBlocks(Input=quake, MergePoints=0))
-    moved.Vectors = ["POINTS", "ground_displacement"]
-    moved.ScaleFactor = 1.0
-    refused(moved, "points have moved")
     refused(simple.MergeBlocks(Input=quake, MergePoints=0), "There is no point array nonsense",
             PointArrays=["nonsense"])
     refused(simple.MergeBlocks(Input=quake, MergePoints=0), "There is no cell array nonsense",
