@@ -4,6 +4,7 @@
 #include "PixelsBehind.h"
 
 #include "Parallel/Communicator.h"
+#include "Render/CoveredParts.h"
 
 #include <algorithm>
 
@@ -27,27 +28,17 @@ PixelRect UnionOfAll(Communicator& communicator, const PixelRect& mine)
   return around;
 }
 
-/// Calls with the positions, in the pixels of both rectangles, where rows of the inner one begin.
-template <class Function>
-void ForRows(const PixelRect& outer, const PixelRect& inner, const Function& function)
+/// Copies a part of one rectangle of pixels to the same place in another one.
+template <class Pixel>
+void CopyPart(const PixelRect& part, const PixelRect& fromRect, const std::vector<Pixel>& from,
+  const PixelRect& toRect, std::vector<Pixel>& to)
 {
-  const auto width = static_cast<std::ptrdiff_t>(inner.Size().x);
-  for (int y = 0; y < inner.Size().y; ++y)
+  const auto at = [&part](const PixelRect& rect, int y)
+  { return std::ptrdiff_t{ y - rect.Lo.y } * rect.Size().x + (part.Lo.x - rect.Lo.x); };
+  for (int y = part.Lo.y; y < part.Hi.y; ++y)
   {
-    const glm::ivec2 place = inner.Lo - outer.Lo + glm::ivec2(0, y);
-    function(std::ptrdiff_t{ place.y } * outer.Size().x + place.x, y * width, width);
+    std::copy_n(from.begin() + at(fromRect, y), part.Size().x, to.begin() + at(toRect, y));
   }
-}
-
-FloatImage Part(const FloatImage& picture, const PixelRect& rect)
-{
-  FloatImage part;
-  part.Rect = rect;
-  part.Pixels.resize(static_cast<std::size_t>(rect.Count()));
-  ForRows(picture.Rect, rect,
-    [&](std::ptrdiff_t from, std::ptrdiff_t to, std::ptrdiff_t count)
-    { std::copy_n(picture.Pixels.begin() + from, count, part.Pixels.begin() + to); });
-  return part;
 }
 
 } // namespace
@@ -75,9 +66,7 @@ std::vector<float> Backdrop::Depths() const
     return inner;
   }
   std::vector<float> depths(static_cast<std::size_t>(this->Rect.Count()), 1.0f);
-  ForRows(this->Rect, this->Inner,
-    [&](std::ptrdiff_t to, std::ptrdiff_t from, std::ptrdiff_t count)
-    { std::copy_n(inner.begin() + from, count, depths.begin() + to); });
+  CopyPart(this->Inner, this->Inner, inner, this->Rect, depths);
   return depths;
 }
 
@@ -89,7 +78,8 @@ void Backdrop::Write(
     if (!this->Inner.Empty())
     {
       this->Pixels.assign(static_cast<std::size_t>(this->Inner.Count()), Blank);
-      this->Framebuffer.Write(renderer, this->Inner, this->Pixels, /*blend=*/false);
+      this->Framebuffer.Write(
+        renderer, this->Inner, this->Pixels, { this->Inner }, /*blend=*/false);
     }
     return;
   }
@@ -99,28 +89,41 @@ void Backdrop::Write(
   const bool alone = communicator.Size() == 1;
   if (alone || !(this->Inner == this->Rect))
   {
-    this->Pixels.assign(static_cast<std::size_t>(this->Rect.Count()), Blank);
-    if (alone)
-    {
-      ClearWithoutGeometry(this->InnerPixels);
-      ForRows(this->Rect, this->Inner,
-        [this](std::ptrdiff_t to, std::ptrdiff_t from, std::ptrdiff_t count)
-        { std::copy_n(this->InnerPixels.begin() + from, count, this->Pixels.begin() + to); });
-    }
-    BlendOver(picture, this->Pixels);
-    if (!alone)
-    {
-      ForRows(this->Rect, this->Inner,
-        [this](std::ptrdiff_t to, std::ptrdiff_t, std::ptrdiff_t n)
-        { std::fill_n(this->Pixels.begin() + to, n, Blank); });
-    }
-    this->Framebuffer.Write(renderer, this->Rect, this->Pixels, /*blend=*/true);
+    this->WriteOverBackground(renderer, picture, alone);
   }
   if (!alone && !this->Inner.Empty())
   {
-    BlendOver(Part(picture, this->Inner), this->InnerPixels);
-    this->Framebuffer.Write(renderer, this->Inner, this->InnerPixels, /*blend=*/false);
+    BlendOver(picture, this->Inner, this->Inner, this->InnerPixels);
+    this->Framebuffer.Write(
+      renderer, this->Inner, this->InnerPixels, { this->Inner }, /*blend=*/false);
   }
+}
+
+void Backdrop::WriteOverBackground(vtkRenderer* renderer, const FloatImage& picture, bool alone)
+{
+  // Blank pixels change nothing: most of some pictures need not be drawn.
+  const std::vector<PixelRect> parts = CoveredParts(picture);
+  PixelRect around;
+  for (const PixelRect& part : parts)
+  {
+    around = Union(around, part);
+  }
+  if (around.Empty())
+  {
+    return;
+  }
+  this->Pixels.assign(static_cast<std::size_t>(around.Count()), Blank);
+  if (alone)
+  {
+    ClearWithoutGeometry(this->InnerPixels);
+    CopyPart(
+      Intersection(this->Inner, around), this->Inner, this->InnerPixels, around, this->Pixels);
+  }
+  for (const PixelRect& part : parts)
+  {
+    BlendOver(picture, part, around, this->Pixels);
+  }
+  this->Framebuffer.Write(renderer, around, this->Pixels, parts, /*blend=*/true);
 }
 
 void Backdrop::ReleaseGraphicsResources(vtkWindow* window)

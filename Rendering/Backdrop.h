@@ -43,6 +43,8 @@ public:
   void ReleaseGraphicsResources(vtkWindow* window);
 
 private:
+  void WriteOverBackground(vtkRenderer* renderer, const FloatImage& picture, bool alone);
+
   FramebufferExchange Framebuffer;
   PixelRect Rect;
   PixelRect Inner; ///< where some rank shows something else; the same on all ranks

@@ -26,8 +26,9 @@ uniform sampler2D depthTexture;
 //VTK::Output::Dec
 void main()
 {
-  gl_FragDepth = texture(depthTexture, texCoord).r;
-  gl_FragData[0] = texture(colorTexture, texCoord);
+  ivec2 at = ivec2(texCoord * vec2(textureSize(colorTexture, 0)));
+  gl_FragDepth = texelFetch(depthTexture, at, 0).r;
+  gl_FragData[0] = texelFetch(colorTexture, at, 0);
 }
 )";
 
@@ -167,8 +168,8 @@ void FramebufferExchange::Read(
   this->ReadBound(corner, size, pixels);
 }
 
-void FramebufferExchange::Write(
-  vtkRenderer* renderer, const PixelRect& rect, const std::vector<OpaquePixel>& pixels, bool blend)
+void FramebufferExchange::Write(vtkRenderer* renderer, const PixelRect& rect,
+  const std::vector<OpaquePixel>& pixels, const std::vector<PixelRect>& parts, bool blend)
 {
   vtkOpenGLRenderWindow* window = WindowOf(renderer);
   vtkOpenGLState* state = window->GetState();
@@ -191,7 +192,6 @@ void FramebufferExchange::Write(
   vtkOpenGLState::ScopedglDepthMask depthMask(state);
   vtkOpenGLState::ScopedglDepthFunc depthFunction(state);
   state->vtkglViewport(corner.x, corner.y, size.x, size.y);
-  state->vtkglScissor(corner.x, corner.y, size.x, size.y);
   state->SetEnumState(GL_BLEND, blend);
   state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   // Depths are written only while the test is on.
@@ -214,7 +214,12 @@ void FramebufferExchange::Write(
   this->Depth->Activate();
   this->Quad->Program->SetUniformi("colorTexture", this->Color->GetTextureUnit());
   this->Quad->Program->SetUniformi("depthTexture", this->Depth->GetTextureUnit());
-  this->Quad->Render();
+  for (const PixelRect& part : parts)
+  {
+    const glm::ivec2 low = corner + part.Lo - rect.Lo;
+    state->vtkglScissor(low.x, low.y, part.Size().x, part.Size().y);
+    this->Quad->Render();
+  }
   this->Depth->Deactivate();
   this->Color->Deactivate();
 }

@@ -29,12 +29,14 @@ public:
   /// Colours (8 bit) and depths, `[y][x]`, y up. A multisampled framebuffer is resolved first.
   void Read(vtkRenderer* renderer, const PixelRect& rect, std::vector<OpaquePixel>& pixels);
 
-  /// Writes colours and depths of a rectangle; depths always replace what is there.
+  /// Writes colours and depths of parts of a rectangle; depths always replace what is there.
   /// @param pixels rect.Count() of them, premultiplied
+  /// @param parts in `rect`: nothing else is drawn, which is what takes time where OpenGL is
+  /// software
   /// @param blend over the colours that are there, as ParaView's compositor does with what several
   ///        ranks have drawn; otherwise replaces them
   void Write(vtkRenderer* renderer, const PixelRect& rect, const std::vector<OpaquePixel>& pixels,
-    bool blend);
+    const std::vector<PixelRect>& parts, bool blend);
 
   void ReleaseGraphicsResources(vtkWindow* window);
 

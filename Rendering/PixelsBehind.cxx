@@ -113,21 +113,27 @@ void ClearWithoutGeometry(std::vector<OpaquePixel>& pixels)
   }
 }
 
-void BlendOver(const FloatImage& picture, std::vector<OpaquePixel>& pixels)
+void BlendOver(const FloatImage& picture, const PixelRect& part, const PixelRect& rect,
+  std::vector<OpaquePixel>& pixels)
 {
-  for (std::size_t i = 0; i < pixels.size(); ++i)
+  for (int y = part.Lo.y; y < part.Hi.y; ++y)
   {
-    const glm::vec4& front = picture.Pixels[i];
-    if (front.a <= 0.0f)
+    const glm::vec4* front = &picture.At(part.Lo.x, y);
+    const glm::vec4* const end = front + part.Size().x;
+    OpaquePixel* pixel =
+      &pixels[static_cast<std::size_t>(y - rect.Lo.y) * rect.Size().x + (part.Lo.x - rect.Lo.x)];
+    for (; front != end; ++front, ++pixel)
     {
-      continue;
+      if (front->a <= 0.0f)
+      {
+        continue;
+      }
+      for (int c = 0; c < 4; ++c)
+      {
+        pixel->Color[c] = ToByte((*front)[c] + (1.0f - front->a) * (pixel->Color[c] / 255.0f));
+      }
+      pixel->Depth = std::min(pixel->Depth, CoveredDepth);
     }
-    OpaquePixel& pixel = pixels[i];
-    for (int c = 0; c < 4; ++c)
-    {
-      pixel.Color[c] = ToByte(front[c] + (1.0f - front.a) * (pixel.Color[c] / 255.0f));
-    }
-    pixel.Depth = std::min(pixel.Depth, CoveredDepth);
   }
 }
 

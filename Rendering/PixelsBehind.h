@@ -23,10 +23,11 @@ std::vector<float> DepthsOf(const std::vector<OpaquePixel>& pixels);
 /// Makes pixels transparent where there is no opaque geometry.
 void ClearWithoutGeometry(std::vector<OpaquePixel>& pixels);
 
-/// Blends a premultiplied picture over the pixels of the same rectangle: in float, rounded to 8 bit
-/// once. Covered pixels get a depth below 1, so that a compositor that compares depths prefers them
-/// to blank ones.
-void BlendOver(const FloatImage& picture, std::vector<OpaquePixel>& pixels);
+/// Blends a part of a premultiplied picture over the pixels of a rectangle that holds it: in float,
+/// rounded to 8 bit once. Covered pixels get a depth below 1, so that a compositor that compares
+/// depths prefers them to blank ones.
+void BlendOver(const FloatImage& picture, const PixelRect& part, const PixelRect& rect,
+  std::vector<OpaquePixel>& pixels);
 
 } // namespace banyan
 

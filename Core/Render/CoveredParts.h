@@ -1,0 +1,17 @@
+#ifndef banyan_Rendering_CoveredParts_h
+#define banyan_Rendering_CoveredParts_h
+
+#include "Render/FloatImage.h"
+
+#include <vector>
+
+namespace banyan
+{
+
+/// Few rectangles that hold all pixels of a picture that are not quite transparent, and little
+/// else: whole tiles, side by side ones as one. They do not overlap.
+std::vector<PixelRect> CoveredParts(const FloatImage& picture);
+
+} // namespace banyan
+
+#endif
