@@ -21,7 +21,7 @@ constexpr double LeastFurtherGain = 0.01;
 /// What a ray that a plane cuts takes once more, in samples: it is made twice, and goes on behind
 /// what would have ended it. See Documentation/balancing.md.
 constexpr double WorkPerCutRay = 24.0;
-/// Axes that were chosen anew stay for some frames.
+/// Axes that were chosen anew stay for some frames, unless the view rests.
 constexpr int FramesBetweenTurns = 8;
 
 /// Mistakes after which it waits between moves.
@@ -150,7 +150,8 @@ void LoadBalancer::MoveToBalance(const BrickCosts& view, const ScreenCuts* cuts)
   this->Before = this->Zones;
   // Planes may look different even where as much is seen of each block.
   const bool sameCuts = cuts ? this->Cuts && *this->Cuts == *cuts : !this->Cuts;
-  if (view.Values != this->View || !sameCuts)
+  const bool sameView = view.Values == this->View && sameCuts;
+  if (!sameView)
   {
     this->Search.Forget();
   }
@@ -161,8 +162,11 @@ void LoadBalancer::MoveToBalance(const BrickCosts& view, const ScreenCuts* cuts)
   Rebalanced next = RebalanceMeasuredCost(this->Zones, costs, this->Speeds(), limits);
   if (cuts && this->Wait == 0)
   {
+    // What a new view takes is known after its first frame: axes need not be what was expected.
+    this->Rest = sameView && !this->SameViewBefore ? 0 : this->Rest;
     this->Turn(costs, bytes, *cuts, next);
   }
+  this->SameViewBefore = sameView;
   this->Moving = next.Tree != this->Zones;
   this->Zones = std::move(next.Tree);
   this->Moved = next.BytesMoved;

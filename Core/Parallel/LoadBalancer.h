@@ -144,6 +144,7 @@ private:
   int Wait = 0;     ///< frames until planes may move again
   int Rest = 0;     ///< frames until axes may be chosen anew
   bool Moving = false;
+  bool SameViewBefore = false; ///< whether the last frame had the view of the one before
 
   TreeSearch Search; ///< of the view of the last frames
 };

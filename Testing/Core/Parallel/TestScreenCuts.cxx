@@ -246,6 +246,19 @@ TEST_F(Turning, ACameraThatFliesAroundTurnsZonesNowAndThen)
   EXPECT_LE(turns, 200 / 8);
 }
 
+TEST_F(Turning, AViewThatRestsTurnsZonesAtOnce)
+{
+  const glm::dvec3 front(32, 32, 100);
+  this->Draw(front, 24.0);
+  this->Draw(glm::dvec3(100, 32, 32), 24.0);
+  EXPECT_EQ(std::string::npos, AxesOf(this->Balancer.Tree()).find('x'));
+  // Not in the next frame of a camera that flies about, but as soon as it rests.
+  this->Draw(front, 24.0);
+  EXPECT_NE(std::string::npos, AxesOf(this->Balancer.Tree()).find('z'));
+  this->Draw(front, 24.0);
+  EXPECT_EQ(std::string::npos, AxesOf(this->Balancer.Tree()).find('z'));
+}
+
 TEST_F(Turning, WithoutAViewAxesStay)
 {
   const std::string axes = AxesOf(this->Balancer.Tree());
