@@ -15,9 +15,6 @@ namespace
 
 constexpr std::uint64_t AllMemory = ~std::uint64_t{ 0 };
 
-/// Of work that is counted, in place of processor time.
-constexpr double SecondsPerSample = 3e-9;
-
 double ProcessorSeconds()
 {
   timespec time;
@@ -87,7 +84,7 @@ void DrawSimulated(const BenchScene& scene, const BalanceOptions& options, LoadB
     FrameWork took = SumWork(work, view);
     for (std::size_t rank = 0; options.Counted && rank < work.size(); ++rank)
     {
-      took.Ranks[rank].Seconds = SecondsPerSample * took.Ranks[rank].Work;
+      took.Ranks[rank].Seconds = CountedSeconds(took.Ranks[rank].Work);
       frame.RankMilliseconds[rank] = 1e3 * took.Ranks[rank].Seconds;
     }
     balancer.FrameTook(took.Ranks, took.Blocks);

@@ -54,9 +54,15 @@ const char* const BalanceHelp =
   "  --output FILE.csv    default standard output          --append     to it\n"
   "  --rank-times FILE.csv   each rank's milliseconds too\n"
   "  --brick-times FILE.csv  what the bricks of each frame took, and nothing else\n"
+  "  --best-divisions FILE.csv   the least work of the slowest rank that planes can be put to, for "
+  "every\n"
+  "                       tenth frame: searched by drawing each zone that is tried; nothing else\n"
   "  --pieces             with --mpi: each rank holds a piece, and bricks go from rank to rank\n"
   "  --exchange           with --mpi: all ranks fetch the bricks of the first, and nothing is "
   "drawn\n"
+  "  --disk FILE.banyan   with --exchange: how long reading and decoding them takes, too; encodes "
+  "the\n"
+  "                       volume first if there is no such file\n"
   "  --composite-after    with --mpi: odd frames are composited after the last ray, to compare\n"
   "  --mpi                on the real ranks of mpirun, in wall-clock time; one thread each\n";
 
@@ -107,6 +113,10 @@ BalanceOptions ParseBalanceOptions(const std::vector<std::string>& arguments)
       options.RankTimes = value();
     else if (option == "--brick-times")
       options.BrickTimes = value();
+    else if (option == "--best-divisions")
+      options.BestDivisions = value();
+    else if (option == "--disk")
+      options.Disk = value();
     else if (option == "--size")
       options.Size = count(2048);
     else if (option == "--picture")

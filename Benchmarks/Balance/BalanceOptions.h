@@ -14,10 +14,11 @@ struct BalanceOptions
   std::string Series;       ///< description of a raw series; none draws the standard scene S2
   std::string Scene = "S2"; ///< of standard scenes
   std::string Path = "zoom";
-  std::string Output;     ///< CSV; none prints
-  std::string RankTimes;  ///< CSV of each rank's times; none
-  std::string BrickTimes; ///< CSV of what each brick of the first frame took; none
-  int Size = 256;         ///< samples per axis of the standard scene
+  std::string Output;        ///< CSV; none prints
+  std::string RankTimes;     ///< CSV of each rank's times; none
+  std::string BrickTimes;    ///< CSV of what each brick of the first frame took; none
+  std::string BestDivisions; ///< CSV of the best that planes can do for the views; none
+  int Size = 256;            ///< samples per axis of the standard scene
   int Picture = 512;
   int Frames = 60;
   int PlaneStep = 1; ///< cells
@@ -33,6 +34,7 @@ struct BalanceOptions
   bool Mpi = false;    ///< on the ranks of this job in place of simulated ones
   bool Pieces = false; ///< with Mpi: each rank holds an equal block of the volume, and nothing else
   bool Exchange = false; ///< with Mpi: only what it takes to fetch a brick
+  std::string Disk;      ///< with Exchange: a series, read from the disk as well; none
   bool Help = false;
 };
 

@@ -1,6 +1,7 @@
 // Frames and per-rank times of a camera path with zones that are balanced in different ways:
 // figures 11 and 12 of "Dynamic load balancing for parallel volume rendering". See README.md.
 #include "BalanceFrames.h"
+#include "BestDivision.h"
 #include "CameraPath.h"
 #include "RealScenes.h"
 #include "StandardScenes.h"
@@ -114,6 +115,12 @@ void Run(const BalanceOptions& options)
   {
     const Table table(options.BrickTimes, true, "");
     WriteBrickTimes(scene, options, table.Get());
+    return;
+  }
+  if (!options.BestDivisions.empty())
+  {
+    const Table table(options.BestDivisions, false, "frame,ranks,imbalance,ms,zones_drawn");
+    WriteBestDivisions(scene, options, table.Get());
     return;
   }
   Tables tables(options);

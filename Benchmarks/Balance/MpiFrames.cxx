@@ -1,5 +1,6 @@
 #include "BalanceFrames.h"
 
+#include "BricksFromDisk.h"
 #include "CameraPath.h"
 
 #include "Base/ThreadPool.h"
@@ -186,6 +187,12 @@ void DrawOnMpiRanks(const std::function<BenchScene()>& makeScene, const BalanceO
     if (options.Exchange)
     {
       FetchAll(*communicator, scene);
+      if (!options.Disk.empty() && communicator->Rank() == 0)
+      {
+        EncodeForDisk(scene, options.Disk);
+        ReadBricks(options.Disk);
+      }
+      communicator->Barrier();
     }
     for (const LoadBalancing mode : options.Exchange ? std::vector<LoadBalancing>{} : options.Modes)
     {

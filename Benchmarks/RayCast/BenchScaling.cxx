@@ -1,6 +1,7 @@
 // Time of the first and of later frames against the size of the volume (scene S2), one line of CSV
 // per run. Without VTK, so that memory and start-up are the ray caster's own. See README.md.
 #include "OptionValues.h"
+#include "SeriesFiles.h"
 #include "StandardScenes.h"
 
 #include "Base/Error.h"
@@ -91,32 +92,6 @@ private:
   void* Data = MAP_FAILED;
 };
 
-std::vector<fs::path> FilesOf(const std::string& series)
-{
-  std::vector<fs::path> files{ series };
-  for (const auto& entry : fs::directory_iterator(series + ".d"))
-  {
-    files.push_back(entry.path());
-  }
-  return files;
-}
-
-/// Calls function(descriptor) for each file of a series.
-template <class Function>
-void ForFilesOf(const std::string& series, Function&& function)
-{
-  for (const fs::path& path : FilesOf(series))
-  {
-    const int file = open(path.c_str(), O_RDONLY);
-    if (file < 0)
-    {
-      throw Error("The file cannot be read.", { path.string() });
-    }
-    function(file);
-    close(file);
-  }
-}
-
 void Encode(const Options& options)
 {
   const std::size_t n = options.Size;
@@ -131,8 +106,7 @@ void Encode(const Options& options)
   SeriesEncoder encoder(options.Series, grid, { array }, {}, pool);
   encoder.AddStep(0.0, { { raw.Get() } });
   encoder.Finish();
-  // Only what is on the disk can be dropped from the system's cache later.
-  ForFilesOf(options.Series, [](int file) { fsync(file); });
+  bench::BringToDisk(options.Series);
 }
 
 /// Most memory that this process has had, the pages of mapped files included.
@@ -199,14 +173,7 @@ Frames DrawFrames(const Options& options, const Timer& sinceStart, BrickSource& 
 
 void Report(const Options& options, const Frames& frames)
 {
-  double fileBytes = 0.0;
-  if (!options.Series.empty())
-  {
-    for (const fs::path& path : FilesOf(options.Series))
-    {
-      fileBytes += static_cast<double>(fs::file_size(path));
-    }
-  }
+  const double fileBytes = options.Series.empty() ? 0.0 : bench::BytesOf(options.Series);
   const RayStatistics& statistics = frames.Statistics;
   char tolerance[32] = "";
   if (options.Tolerance > 0.0)
@@ -236,7 +203,7 @@ void Draw(const Options& options)
     Report(options, DrawFrames(options, sinceStart, source, cache.DrawingBudget(), pool));
     return;
   }
-  ForFilesOf(options.Series, [](int file) { posix_fadvise(file, 0, 0, POSIX_FADV_DONTNEED); });
+  bench::DropFromCache(options.Series);
   const Timer sinceStart;
   SeriesBrickSource source(SeriesFile::Open(options.Series), {}, 0, cache);
   Report(options, DrawFrames(options, sinceStart, source, cache.DrawingBudget(), pool));
