@@ -7,6 +7,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define BANYAN_TEST_SANITIZED
+#elif defined(__has_feature) // clang
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define BANYAN_TEST_SANITIZED
+#endif
+#endif
+
 namespace banyan::testing
 {
 namespace
@@ -85,7 +93,7 @@ std::int64_t PeakBytes(int groups)
 
 TEST(EncodingMemory, GoesWithAGroup)
 {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef BANYAN_TEST_SANITIZED
   GTEST_SKIP() << "Sanitizers keep what was given back.";
 #endif
   const std::int64_t nothing = PeakBytes(0);
@@ -96,8 +104,8 @@ TEST(EncodingMemory, GoesWithAGroup)
     static_cast<double>(two - nothing) / group, static_cast<double>(six - nothing) / group);
   EXPECT_GT(static_cast<double>(two - nothing), group);
   EXPECT_LT(static_cast<double>(six - nothing), 1.1 * static_cast<double>(two - nothing));
-  // As limits.md says.
-  EXPECT_LT(static_cast<double>(six - nothing), 4.0 * group);
+  // 2.7, as limits.md says, and not one more copy of the values.
+  EXPECT_LT(static_cast<double>(six - nothing), 3.4 * group);
 }
 
 } // namespace
