@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Runs tests of Core under the address and undefined-behaviour sanitizers, and under the thread sanitizer.
 #
-#   sanitize.sh [asan] [tsan] [--help]
+#   sanitize.sh [asan] [avx2] [tsan] [--help]
 #
 #   asan   all tests of the codec, of series, of series of meshes and of caches (preset asan)
+#   avx2   the same with kernels for AVX2, built with clang as the fuzzers are (preset fuzz)
 #   tsan   16 threads that read one file, encoding on several threads, and the caches (preset tsan)
 #
-# Without arguments both. Builds what it runs, which takes a while. Fails when a test does, or when a
+# Without arguments all. Builds what it runs, which takes a while. Fails when a test does, or when a
 # sanitizer finds anything. BANYAN_SKIP_BUILD=1 leaves the build away.
 source "$(dirname "${BASH_SOURCE[0]}")/../Utilities/common.sh"
 
@@ -37,14 +38,15 @@ export ASAN_OPTIONS="detect_stack_use_after_return=1:${ASAN_OPTIONS:-}"
 export UBSAN_OPTIONS="halt_on_error=1:print_stacktrace=1:${UBSAN_OPTIONS:-}"
 export TSAN_OPTIONS="halt_on_error=1:${TSAN_OPTIONS:-}"
 status=0
-[[ $# -gt 0 ]] || set -- asan tsan
-for preset in "$@"; do
-  case "$preset" in
-    asan)
+[[ $# -gt 0 ]] || set -- asan avx2 tsan
+for kind in "$@"; do
+  case "$kind" in
+    asan | avx2)
       programs=(TestCodec TestSeries TestMeshSeries TestCache)
-      build asan "${programs[@]}"
+      preset="${kind/avx2/fuzz}"
+      build "$preset" "${programs[@]}"
       for program in "${programs[@]}"; do
-        run asan "$RepositoryRoot/build-asan/bin/$program"
+        run "$kind" "$RepositoryRoot/build-$preset/bin/$program"
       done
       ;;
     tsan)
@@ -52,7 +54,7 @@ for preset in "$@"; do
       run tsan "$RepositoryRoot/build-tsan/bin/TestSeries" --gtest_filter="$Threads"
       run tsan "$RepositoryRoot/build-tsan/bin/TestCache"
       ;;
-    *) fail "'$preset' is neither 'asan' nor 'tsan'." ;;
+    *) fail "'$kind' is none of 'asan', 'avx2' and 'tsan'." ;;
   esac
 done
 exit "$status"

@@ -45,11 +45,7 @@ done
 build_all()
 {
   command -v clang++ >/dev/null || fail "clang is missing."
-  # One set of vector instructions: AVX2.
-  cmake -S "$RepositoryRoot" -B "$build" -G Ninja -DCMAKE_C_COMPILER=clang \
-    -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-    -DCMAKE_CXX_FLAGS="-march=haswell -maes" -DBANYAN_WITH_PARAVIEW=OFF \
-    -DBANYAN_BUILD_FUZZERS=ON -DBANYAN_SANITIZE=address,undefined,fuzzer-no-link >&2 &&
+  cmake -S "$RepositoryRoot" --preset fuzz -B "$build" >&2 &&
     cmake --build "$build" --parallel "$(jobs_for_memory 2000)" \
       --target MakeSeeds "${names[@]/#/Fuzz}" >&2 || fail "the fuzzers could not be built."
 }
