@@ -126,6 +126,8 @@ private:
   KeptBricks::Pointer Pack(const PlannedBrick& brick) const;
   float GradientScale() const;
   BrickView LoadLarge(const PlannedBrick& brick) const;
+  PixelRect DrawnPixelsOf(const Tile& tile, const PixelRect& rect) const;
+  const PixelRect& PixelsOf(std::size_t position) const;
   std::int64_t DrawTile(std::size_t number, RayTile& rays, BatchMeter& meter);
   void ClearTile(const PixelRect& rect) const;
   void FinishTile(std::size_t number);

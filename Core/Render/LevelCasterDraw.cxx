@@ -142,13 +142,41 @@ void LevelCaster::ShareWork(std::size_t number, std::vector<WorkShare>& shares) 
   }
 }
 
+/// The pixels of a tile that bricks of the batch may change: all of them if bricks of later batches
+/// lie over it, for it is not known which rays these need.
+PixelRect LevelCaster::DrawnPixelsOf(const Tile& tile, const PixelRect& rect) const
+{
+  if (tile.End > this->Taken)
+  {
+    return rect;
+  }
+  PixelRect drawn;
+  for (const int position : tile.Bricks)
+  {
+    drawn = Union(drawn, Intersection(this->PixelsOf(static_cast<std::size_t>(position)), rect));
+  }
+  return drawn;
+}
+
+/// Of a brick of the batch: those that it is drawn to.
+const PixelRect& LevelCaster::PixelsOf(std::size_t position) const
+{
+  const LoadedBrick& loaded = this->Loaded[position];
+  return loaded.Packed ? loaded.Footprint : this->Batch[position]->Footprint;
+}
+
 /// @return samples taken
 std::int64_t LevelCaster::DrawTile(std::size_t number, RayTile& rays, BatchMeter& meter)
 {
   Tile& tile = this->Tiles[number];
   const PixelRect rect = this->Grid.RectOf(number);
+  const PixelRect drawn = this->DrawnPixelsOf(tile, rect);
+  if (drawn.Empty())
+  {
+    return 0;
+  }
   rays.Open(tile.Sampling->Lattice, rect, *this->Picture, this->TransmittanceLimit(),
-    tile.PixelStride, tile.Begun);
+    tile.PixelStride, tile.Begun, drawn);
   rays.CellShift = this->Source.CoarsestBrickLevel();
   if (meter.IsOn())
   {
@@ -166,8 +194,8 @@ std::int64_t LevelCaster::DrawTile(std::size_t number, RayTile& rays, BatchMeter
     this->DrawBrick(brick, loaded, *tile.Sampling, rays);
     if (meter.IsOn())
     {
-      const PixelRect& drawn = loaded.Packed ? loaded.Footprint : brick.Footprint;
-      meter.Lap(position, rays.SamplesTaken, Intersection(drawn, rect).Count());
+      const PixelRect& pixels = this->PixelsOf(static_cast<std::size_t>(position));
+      meter.Lap(position, rays.SamplesTaken, Intersection(pixels, rect).Count());
     }
   }
   if (meter.IsOn())

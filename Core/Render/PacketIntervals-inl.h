@@ -119,6 +119,13 @@ public:
     const VI one = hn::Set(di, 1);
     VU step[3];
     Whole result;
+    // Rays that miss the box begin behind their last sample. A sixth of all vectors has no others.
+    if (hn::AllFalse(di, hn::Lt(estimate.Begin, estimate.Counts)))
+    {
+      result.First[0] = result.First[1] = result.First[2] = hn::Zero(DU());
+      result.Count = hn::Zero(di);
+      return result;
+    }
     for (int axis = 0; axis < 3; ++axis)
     {
       step[axis] = this->InBrickCells(this->Tile.Step[axis] + slot);

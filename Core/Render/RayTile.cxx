@@ -56,7 +56,7 @@ namespace banyan
 HWY_EXPORT(FillRaysHere);
 
 void RayTile::Open(const RayLattice& lattice, const PixelRect& rect, const FloatImage& picture,
-  float limit, int stride, bool begun)
+  float limit, int stride, bool begun, const PixelRect& drawn)
 {
   this->Rect = rect;
   this->Stride = stride;
@@ -83,6 +83,7 @@ void RayTile::Open(const RayLattice& lattice, const PixelRect& rect, const Float
     {
       const glm::ivec2 at = this->PixelAt(slot);
       const bool inside = at.y >= rect.Lo.y && at.y < rect.Hi.y;
+      const bool drawnRow = at.y >= drawn.Lo.y && at.y < drawn.Hi.y;
       const glm::vec4* const row =
         inside && begun ? &picture.At(rect.Lo.x, at.y) - rect.Lo.x : nullptr;
       for (int i = 0; i < PacketEdge; ++i)
@@ -90,7 +91,8 @@ void RayTile::Open(const RayLattice& lattice, const PixelRect& rect, const Float
         const int x = at.x + i * stride;
         const bool here = inside && x >= rect.Lo.x && x < rect.Hi.x;
         const glm::vec4 pixel = row && here ? row[x] : glm::vec4(0, 0, 0, here ? 1 : 0);
-        const bool wanted = here && pixel.a > limit;
+        const bool wanted =
+          here && drawnRow && x >= drawn.Lo.x && x < drawn.Hi.x && pixel.a > limit;
         active[slot + i] = wanted ? 1.0 : 0.0;
         ends[slot + i] = geometry && wanted ? lattice.GeometryAt(x, at.y)
                                             : std::numeric_limits<double>::infinity();

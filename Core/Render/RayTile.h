@@ -70,9 +70,15 @@ struct RayTile
   ///        component, so that stopping and going on with the next batch changes no bit
   /// @param stride RaySampling::PixelStride
   /// @param begun false when rays have met nothing so far, whatever the picture says
+  /// @param drawn rays of other pixels are left empty, and the pixels as they are
   /// Throws Error as RayLattice::SamplesOf does.
   void Open(const RayLattice& lattice, const PixelRect& rect, const FloatImage& picture,
-    float limit, int stride = 1, bool begun = true);
+    float limit, int stride, bool begun, const PixelRect& drawn);
+  void Open(
+    const RayLattice& lattice, const PixelRect& rect, const FloatImage& picture, float limit)
+  {
+    this->Open(lattice, rect, picture, limit, 1, true, rect);
+  }
 
   /// Puts what the rays have met back into the picture: only pixels that have one change.
   void Close(FloatImage& picture) const;

@@ -24,6 +24,13 @@ constexpr int MostHalvings = 3;
 constexpr int FirstDoublings = 3;
 /// Without pictures of samples this close, times the usual distance, no tile is content.
 constexpr double FewestSamples = 4.0;
+/// No picture beyond the one that all tiles are content with has closer samples than these, times
+/// the usual distance: it would cost more than it may save.
+constexpr double ClosestBeyond = 1.0;
+/// From this tolerance on frames take so little that distances are not tried that fewer of the
+/// tiles than this part of them may take.
+constexpr double LargeTolerance = 64.0;
+constexpr double FewTiles = 0.05;
 /// The picture that judges strides is of a sampling whose errors leave so much of what is allowed,
 /// in so many of the tiles: others keep their rays.
 constexpr double ShareOfStridePilot = 0.75;
@@ -108,7 +115,7 @@ private:
     double From;
     double To;
     double Allowed;
-    bool OneMore; ///< costs little, and may show that larger distances will do
+    bool OneMore; ///< may show that larger distances will do
   };
 
   /// Ever smaller distances, until all tiles are content.
@@ -119,6 +126,10 @@ private:
     int beyond = trial.OneMore ? -1 : 0;
     for (double distance = trial.From; distance >= trial.To && beyond <= 0; distance *= 0.5)
     {
+      if (content && distance < ClosestBeyond * this->Wish.Distance)
+      {
+        break;
+      }
       pictures.Add(this->Pictures.Draw({ trial.Level, distance }));
       choices.push_back({ distance, {} });
       // Pictures with few samples may look alike because all of them miss what is thin.
@@ -209,6 +220,12 @@ private:
     return finest;
   }
 
+  bool ManyMayTake(const Choice& distance) const
+  {
+    return this->Wish.Tolerance < LargeTolerance ||
+           this->Choices.PartThatMayTake(distance, this->Allowed) >= FewTiles;
+  }
+
   double LongestDistance() const
   {
     return std::ldexp(this->Wish.Distance, MostDoublings(this->Wish, this->Scene));
@@ -221,7 +238,7 @@ private:
     double longest = this->ClosestDistance;
     for (const Choice& choice : this->Choices.Distances)
     {
-      if (choice.Errors.Smallest() <= this->Allowed)
+      if (choice.Errors.Smallest() <= this->Allowed && this->ManyMayTake(choice))
       {
         longest = std::max(longest, choice.Value);
       }

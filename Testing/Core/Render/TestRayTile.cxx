@@ -206,6 +206,32 @@ TEST(RayTile, EndedRaysAreLeftEmpty)
   EXPECT_EQ(picture.At(4, 3), glm::vec4(0, 0, 0, 1));
 }
 
+TEST(RayTile, RaysOfPixelsThatAreNotDrawnAreLeftEmpty)
+{
+  const RayScene scene = scenes::Scene(glm::ivec3(33), { 30, 30 });
+  const RayLattice lattice(scene);
+  FloatImage picture = Untouched(scene);
+  picture.At(2, 20) = { 0.5f, 0.25f, 0.125f, 0.5f };
+  const FloatImage before = picture;
+  const auto all = std::make_unique<RayTile>();
+  all->Open(lattice, scene.Viewport, picture, 0.01f);
+  const auto tile = std::make_unique<RayTile>();
+  const PixelRect drawn{ { 5, 9 }, { 22, 18 } };
+  tile->Open(lattice, scene.Viewport, picture, 0.01f, 1, true, drawn);
+  for (int y = 0; y < 30; ++y)
+  {
+    for (int x = 0; x < 30; ++x)
+    {
+      const int slot = tile->SlotOf(x, y);
+      const bool here = x >= drawn.Lo.x && x < drawn.Hi.x && y >= drawn.Lo.y && y < drawn.Hi.y;
+      EXPECT_EQ(tile->IsEmpty(slot), !here || all->IsEmpty(slot)) << x << ' ' << y;
+      EXPECT_TRUE(!here || tile->Count[slot] == all->Count[slot]) << x << ' ' << y;
+    }
+  }
+  tile->Close(picture);
+  EXPECT_EQ(picture.Pixels, before.Pixels);
+}
+
 TEST(RayTile, TooManySamplesAreRefused)
 {
   RayScene scene = scenes::Scene(glm::ivec3(9), { 20, 20 });
