@@ -8,6 +8,7 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
+#include "Cache/BrickCache.h"
 #include "MeshSeries/MeanOfLeaves.h"
 #include "MeshSeries/MeshFile.h"
 #include "MeshSeries/MeshLevel.h"
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 
 namespace banyan
 {
@@ -88,15 +90,23 @@ void MeshOutput::MakeGrid(int level, int piece, int pieces)
     place[static_cast<std::size_t>(corners[static_cast<std::size_t>(i)])] = 0;
   }
   std::vector<std::uint32_t> chosen;
-  this->Samples.clear();
+  std::vector<std::uint32_t> samples;
   for (std::size_t point = 0; point < place.size(); ++point)
   {
     if (place[point] == 0)
     {
       place[point] = static_cast<std::int64_t>(chosen.size());
       chosen.push_back(static_cast<std::uint32_t>(point));
-      this->Samples.push_back(mesh.SampleOfPoint[point]);
+      samples.push_back(mesh.SampleOfPoint[point]);
     }
+  }
+  const BrickLayout layout = this->Series->Layout(0);
+  this->PointSamples = ChosenSamples(layout, samples);
+  this->CellSamples = {};
+  if (level == 0)
+  {
+    const auto of = mesh.SampleOfCell.begin();
+    this->CellSamples = ChosenSamples(layout, { of + first, of + end });
   }
   this->Leaves.clear();
   for (std::int64_t cell = first; level > 0 && cell <= end; ++cell)
@@ -144,21 +154,22 @@ void MeshOutput::FillGrid(int level, int piece, int pieces, vtkUnstructuredGrid*
   output->ShallowCopy(this->Grid);
 }
 
-/// Of a cell array, in the cells of the grid.
-void MeshOutput::FillCells(const ArrayIndex& array, vtkDataArray* image, vtkDataArray* values) const
+/// Whether values are made of others than those of single samples.
+bool MeshOutput::NeedsImage(const ArrayIndex& array) const
+{
+  return !array.CellArray.empty() && this->Made[0] > 0;
+}
+
+/// Of a cell array, in the cells of a coarser grid.
+void MeshOutput::FillCells(const vtkBanyanDeferred::Handle& handle, vtkDataArray* values) const
 {
   const StoredMesh& mesh = *this->Mesh;
+  const ArrayIndex& array =
+    handle.Series->Index().Arrays.at(static_cast<std::size_t>(handle.Array));
+  const vtkSmartPointer<vtkDataArray> image = vtkBanyanDeferred::NewPlain(handle);
   const vtkIdType cells = this->Grid->GetNumberOfCells();
   const int components = image->GetNumberOfComponents();
   values->SetNumberOfTuples(cells);
-  if (this->Made[0] == 0)
-  {
-    const auto first = mesh.SampleOfCell.begin() + mesh.CellCount() * this->Made[1] / this->Made[2];
-    CopyTuples(image->GetVoidPointer(0), { first, first + cells },
-      static_cast<std::size_t>(image->GetDataTypeSize()) * static_cast<std::size_t>(components),
-      values->GetVoidPointer(0));
-    return;
-  }
   Dispatch(array.Type,
     [&](auto tag)
     {
@@ -182,23 +193,38 @@ vtkSmartPointer<vtkDataArray> MeshOutput::Values(const vtkBanyanDeferred::Handle
 {
   const ArrayIndex& array =
     handle.Series->Index().Arrays.at(static_cast<std::size_t>(handle.Array));
-  const vtkSmartPointer<vtkDataArray> image = vtkBanyanDeferred::NewPlain(handle);
-  const auto values = vtkSmartPointer<vtkDataArray>::Take(image->NewInstance());
-  values->SetName(image->GetName());
-  values->SetNumberOfComponents(image->GetNumberOfComponents());
-  values->CopyComponentNames(image);
-  if (!array.CellArray.empty())
+  const vtkSmartPointer<vtkDataArray> values = vtkBanyanDeferred::NewEmpty(handle);
+  const bool ofCells = !array.CellArray.empty();
+  if (ofCells)
   {
     values->SetName(array.CellArray.c_str());
-    this->FillCells(array, image, values);
+  }
+  if (this->NeedsImage(array))
+  {
+    this->FillCells(handle, values);
     return values;
   }
-  values->SetNumberOfTuples(static_cast<vtkIdType>(this->Samples.size()));
-  CopyTuples(image->GetVoidPointer(0), this->Samples,
-    static_cast<std::size_t>(image->GetDataTypeSize()) *
-      static_cast<std::size_t>(image->GetNumberOfComponents()),
-    values->GetVoidPointer(0));
+  const ChosenSamples& samples = ofCells ? this->CellSamples : this->PointSamples;
+  values->SetNumberOfTuples(samples.Count());
+  const int components = values->GetNumberOfComponents();
+  for (int component = 0; component < components; ++component)
+  {
+    samples.Read(BrickCache::Process(), *handle.Series,
+      { handle.Step, handle.Array, component, handle.Level }, values->GetVoidPointer(0), components,
+      component);
+  }
   return values;
+}
+
+std::vector<std::int64_t> MeshOutput::BricksOf(const ArrayIndex& array, bool trees) const
+{
+  if (!trees && !this->NeedsImage(array))
+  {
+    return (array.CellArray.empty() ? this->PointSamples : this->CellSamples).Bricks();
+  }
+  std::vector<std::int64_t> all(static_cast<std::size_t>(this->Series->Layout(0).BrickCount()));
+  std::iota(all.begin(), all.end(), std::int64_t{ 0 });
+  return all;
 }
 
 } // namespace banyan

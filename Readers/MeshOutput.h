@@ -6,6 +6,8 @@
 
 #include "vtkSmartPointer.h"
 
+#include "Cache/ChosenSamples.h"
+
 #include <memory>
 #include <vector>
 
@@ -40,6 +42,10 @@ public:
   /// @param handle of the whole image
   vtkSmartPointer<vtkDataArray> Values(const vtkBanyanDeferred::Handle& handle) const;
 
+  /// The bricks that Values() decodes an array from, or CellValues() where `trees` is set: all of
+  /// them there.
+  std::vector<std::int64_t> BricksOf(const ArrayIndex& array, bool trees) const;
+
   /// The mesh as trees in place of a grid, and values in their cells: see TreeOutput. Throws Error.
   void FillTrees(int level, int piece, int pieces, vtkHyperTreeGrid* output);
   vtkSmartPointer<vtkDataArray> CellValues(const vtkBanyanDeferred::Handle& handle) const
@@ -50,15 +56,17 @@ public:
 private:
   void Load();
   void MakeGrid(int level, int piece, int pieces);
-  void FillCells(const ArrayIndex& array, vtkDataArray* image, vtkDataArray* values) const;
+  bool NeedsImage(const ArrayIndex& array) const;
+  void FillCells(const vtkBanyanDeferred::Handle& handle, vtkDataArray* values) const;
 
   std::shared_ptr<const SeriesFile> Series;
   std::shared_ptr<const StoredMesh> Mesh;
   vtkSmartPointer<vtkUnstructuredGrid> Grid;
   TreeOutput Trees;
-  int Made[3] = { -1, 0, 0 };         ///< level, piece and pieces of Grid
-  std::vector<std::uint32_t> Samples; ///< of its points
-  std::vector<std::uint32_t> Leaves;  ///< the first one in each of its cells, and behind the last
+  int Made[3] = { -1, 0, 0 };        ///< level, piece and pieces of Grid
+  ChosenSamples PointSamples;        ///< of its points
+  ChosenSamples CellSamples;         ///< of its cells, at level 0
+  std::vector<std::uint32_t> Leaves; ///< the first one in each of its cells, and behind the last
 };
 
 } // namespace banyan

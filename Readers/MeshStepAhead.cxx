@@ -4,7 +4,6 @@
 #include "Cache/BrickCache.h"
 
 #include <exception>
-#include <numeric>
 #include <utility>
 
 namespace banyan
@@ -17,7 +16,7 @@ void MeshStepAhead::Reading(const SeriesFile& series, int step)
 }
 
 void MeshStepAhead::Read(
-  const std::shared_ptr<const SeriesFile>& series, std::vector<FieldKey> fields) noexcept
+  const std::shared_ptr<const SeriesFile>& series, std::vector<FieldBricks> bricks) noexcept
 {
   if (this->NextStep < 0)
   {
@@ -26,21 +25,15 @@ void MeshStepAhead::Read(
   try
   {
     BrickCache& cache = BrickCache::Process();
-    std::vector<FieldBricks> wanted;
-    for (FieldKey& field : fields)
+    for (FieldBricks& wanted : bricks)
     {
-      const glm::ivec3 counts = series->Layout(field.Level).Bricks();
-      std::vector<std::int64_t> bricks(
-        static_cast<std::size_t>(std::int64_t{ counts.x } * counts.y * counts.z));
-      std::iota(bricks.begin(), bricks.end(), std::int64_t{ 0 });
-      field.Step = this->NextStep;
-      wanted.push_back({ field, std::move(bricks) });
+      wanted.Field.Step = this->NextStep;
     }
     if (!this->Decoder)
     {
       this->Decoder = std::make_unique<AheadDecoder>(cache, ThreadPool::Process().Width());
     }
-    this->Decoder->Start(series, std::move(wanted), cache.DecodedBudget() / 2);
+    this->Decoder->Start(series, std::move(bricks), cache.DecodedBudget() / 2);
   }
   catch (const std::exception&)
   {

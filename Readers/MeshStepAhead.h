@@ -21,8 +21,9 @@ public:
   void Reading(const SeriesFile& series, int step);
 
   /// After it was read.
-  /// @param fields of it; those of the next step are wanted. Does not throw.
-  void Read(const std::shared_ptr<const SeriesFile>& series, std::vector<FieldKey> fields) noexcept;
+  /// @param bricks of it; those of the next step are wanted. Does not throw.
+  void Read(
+    const std::shared_ptr<const SeriesFile>& series, std::vector<FieldBricks> bricks) noexcept;
 
   void Stop();
   /// Returns when all is done: for tests.

@@ -23,9 +23,8 @@ bool FitsDouble(const banyan::ArrayIndex& index)
 }
 
 template <class T>
-vtkSmartPointer<vtkDataArray> MakePlain(const vtkBanyanDeferred::Handle& handle)
+vtkSmartPointer<vtkDataArray> MakeEmpty(const banyan::ArrayIndex& index)
 {
-  const banyan::ArrayIndex& index = handle.Series->Index().Arrays.at(handle.Array);
   auto array = vtkSmartPointer<vtkDataArray>::Take(
     vtkDataArray::CreateDataArray(vtkTypeTraits<T>::VTK_TYPE_ID));
   array->SetName(index.Name.c_str());
@@ -37,8 +36,6 @@ vtkSmartPointer<vtkDataArray> MakePlain(const vtkBanyanDeferred::Handle& handle)
       array->SetComponentName(static_cast<vtkIdType>(c), index.Components[c].Name.c_str());
     }
   }
-  array->SetNumberOfTuples(handle.Samples.Count());
-  vtkBanyanDeferred::ReadInto(handle, array->GetVoidPointer(0));
   return array;
 }
 
@@ -60,9 +57,17 @@ vtkSmartPointer<vtkDataArray> vtkBanyanDeferred::New(const Handle& handle)
     });
 }
 
-vtkSmartPointer<vtkDataArray> vtkBanyanDeferred::NewPlain(const Handle& handle)
+vtkSmartPointer<vtkDataArray> vtkBanyanDeferred::NewEmpty(const Handle& handle)
 {
   const banyan::ArrayIndex& index = handle.Series->Index().Arrays.at(handle.Array);
   return banyan::Dispatch(
-    index.Type, [&](auto tag) { return MakePlain<typename decltype(tag)::Type>(handle); });
+    index.Type, [&](auto tag) { return MakeEmpty<typename decltype(tag)::Type>(index); });
+}
+
+vtkSmartPointer<vtkDataArray> vtkBanyanDeferred::NewPlain(const Handle& handle)
+{
+  const vtkSmartPointer<vtkDataArray> array = NewEmpty(handle);
+  array->SetNumberOfTuples(handle.Samples.Count());
+  ReadInto(handle, array->GetVoidPointer(0));
+  return array;
 }

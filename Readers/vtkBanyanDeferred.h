@@ -90,6 +90,12 @@ public:
   static vtkSmartPointer<vtkDataArray> NewPlain(const Handle& handle);
 
   /**
+   * A plain array of the type, name, components and component names that an array of a series has,
+   * without tuples.
+   */
+  static vtkSmartPointer<vtkDataArray> NewEmpty(const Handle& handle);
+
+  /**
    * Decodes the values of a handle, through the brick cache of the process and on its thread pool.
    * @param values receives Samples.Count() tuples of the array's own type, components fastest,
    * then x.

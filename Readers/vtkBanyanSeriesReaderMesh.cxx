@@ -87,7 +87,7 @@ void vtkBanyanSeriesReader::FillMesh(vtkInformation* outInfo)
   const int arrays = static_cast<int>(index.Arrays.size());
   banyan::MeshStepAhead& ahead = this->Self->Ahead;
   ahead.Reading(*handle.Series, handle.Step);
-  std::vector<banyan::FieldKey> fields;
+  std::vector<banyan::FieldBricks> bricks;
   for (handle.Array = 0; handle.Array < arrays; ++handle.Array)
   {
     this->UpdateProgress(static_cast<double>(handle.Array) / arrays);
@@ -96,9 +96,11 @@ void vtkBanyanSeriesReader::FillMesh(vtkInformation* outInfo)
     {
       continue;
     }
-    for (int component = 0; component < static_cast<int>(array.Components.size()); ++component)
+    for (int component = 0;
+         this->ReadAhead && component < static_cast<int>(array.Components.size()); ++component)
     {
-      fields.push_back({ handle.Step, handle.Array, component, handle.Level });
+      bricks.push_back(
+        { { handle.Step, handle.Array, component, handle.Level }, mesh.BricksOf(array, trees) });
     }
     vtkDataSetAttributes* const values = output->GetAttributes(
       trees || !array.CellArray.empty() ? vtkDataObject::CELL : vtkDataObject::POINT);
@@ -113,7 +115,7 @@ void vtkBanyanSeriesReader::FillMesh(vtkInformation* outInfo)
   }
   if (this->ReadAhead)
   {
-    ahead.Read(handle.Series, std::move(fields));
+    ahead.Read(handle.Series, std::move(bricks));
   }
   this->UpdateProgress(1.0);
 }
