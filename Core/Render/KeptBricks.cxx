@@ -41,6 +41,10 @@ void KeptBricks::BeginPicture(std::uint64_t limitBytes, bool ages)
   const std::lock_guard<std::mutex> lock(this->Mutex);
   this->LimitBytes = limitBytes;
   this->Picture += ages ? 1 : 0;
+  if (!ages && this->HeldBytes <= limitBytes)
+  {
+    return; // none has become old, and all have room
+  }
   for (auto item = this->Items.begin(); item != this->Items.end();)
   {
     const bool old = item->second.UsedIn < this->Picture - 2;
