@@ -41,22 +41,6 @@ std::vector<SamplingChoices::Chosen> SamplingChoices::CheapestFirst() const
   return order;
 }
 
-double SamplingChoices::PartThatMayTake(const Choice& distance, double allowed) const
-{
-  // A tile that sees nothing has the error that none is below.
-  const TileErrors& largest = this->Distances.front().Errors;
-  const double nothing = largest.Smallest();
-  int see = 0;
-  int take = 0;
-  for (std::size_t tile = 0; tile < largest.Tiles.size(); ++tile)
-  {
-    const bool sees = largest.Of(tile) > nothing;
-    see += sees ? 1 : 0;
-    take += sees && distance.Errors.Of(tile) <= allowed ? 1 : 0;
-  }
-  return see > 0 ? static_cast<double>(take) / see : 1.0;
-}
-
 SamplingChoices::Chosen SamplingChoices::CheapestFor(
   std::size_t tile, double allowed, const std::vector<Chosen>& order) const
 {

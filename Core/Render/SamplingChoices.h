@@ -54,10 +54,6 @@ public:
   /// exact.
   Chosen CheapestForMost(double share, double allowed) const;
 
-  /// The part of the tiles that see anything whose error by a distance is allowed; 1 where none
-  /// does.
-  double PartThatMayTake(const Choice& distance, double allowed) const;
-
   /// Says that strides were judged by a picture of this sampling. Finer levels show more, so tiles
   /// whose pixels are left out have the errors of its level at least. Closer samples show less: too
   /// few of them look like edges.

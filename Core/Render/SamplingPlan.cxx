@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
 namespace banyan
 {
@@ -20,40 +19,15 @@ namespace
 constexpr double ShareOfEnds = 0.125;
 /// Distances between samples go down to 2^-MostHalvings times the usual one.
 constexpr int MostHalvings = 3;
-/// Of the usual distance, to begin with.
-constexpr int FirstDoublings = 3;
+/// They go up to 2^MostDoublings times it. Longer ones save nothing: frames then take what rays and
+/// bricks do, and pilots of such distances cost as much as what they save.
+constexpr int MostDoublings = 3;
 /// Without pictures of samples this close, times the usual distance, no tile is content.
 constexpr double FewestSamples = 4.0;
-/// No picture beyond the one that all tiles are content with has closer samples than these, times
-/// the usual distance: it would cost more than it may save.
-constexpr double ClosestBeyond = 1.0;
-/// From this tolerance on frames take so little that distances are not tried that fewer of the
-/// tiles than this part of them may take.
-constexpr double LargeTolerance = 64.0;
-constexpr double FewTiles = 0.05;
 /// The picture that judges strides is of a sampling whose errors leave so much of what is allowed,
 /// in so many of the tiles: others keep their rays.
 constexpr double ShareOfStridePilot = 0.75;
 constexpr double TilesOfStridePilot = 0.9;
-
-/// Distances go up to 2^this times the usual one: small tolerances are not met by the longest ones,
-/// and pilots of these would be drawn for nothing. More than 3 only where rays through the volume
-/// have several samples then: pictures of one sample per ray are alike, and all wrong.
-int MostDoublings(const SamplingWish& wish, const RayScene& scene)
-{
-  double shortest = std::numeric_limits<double>::infinity();
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    shortest = std::min(
-      shortest, scene.DomainCells.Size()[axis] * glm::length(glm::dvec3(scene.IndexToWorld[axis])));
-  }
-  int doublings = wish.Tolerance < 8.0 ? 3 : wish.Tolerance < 64.0 ? 4 : 5;
-  while (doublings > 3 && std::ldexp(wish.Distance, doublings) > 0.25 * shortest)
-  {
-    --doublings;
-  }
-  return doublings;
-}
 
 class Planner
 {
@@ -71,7 +45,7 @@ public:
   SamplingPlan Plan()
   {
     const Timer timer;
-    this->TryDistances(MostDoublings(this->Wish, this->Scene));
+    this->TryDistances(MostDoublings);
     if (!this->Pictures.SawSomething())
     {
       // Coarse levels and few samples may miss all that there is to see.
@@ -100,11 +74,9 @@ private:
   {
     const bool levels = this->Wish.CoarsestLevel > 0;
     PilotSequence pictures(this->Pictures);
-    // Longer ones are tried once it is known which level is needed.
-    const int first = levels ? std::min(doublings, FirstDoublings) : doublings;
-    const Trial trial{ this->Wish.CoarsestLevel, std::ldexp(this->Wish.Distance, first),
+    const Trial trial{ this->Wish.CoarsestLevel, std::ldexp(this->Wish.Distance, doublings),
       levels ? this->Wish.Distance : std::ldexp(this->Wish.Distance, -MostHalvings),
-      (levels ? 0.5 : 1.0) * this->Allowed, !levels };
+      (levels ? 0.5 : 1.0) * this->Allowed };
     this->Choices.Distances = this->DistancesOf(trial, pictures);
     this->ClosestDistance = this->Choices.Distances.back().Value;
   }
@@ -115,7 +87,6 @@ private:
     double From;
     double To;
     double Allowed;
-    bool OneMore; ///< may show that larger distances will do
   };
 
   /// Ever smaller distances, until all tiles are content.
@@ -123,19 +94,13 @@ private:
   {
     std::vector<Choice> choices;
     bool content = false;
-    int beyond = trial.OneMore ? -1 : 0;
-    for (double distance = trial.From; distance >= trial.To && beyond <= 0; distance *= 0.5)
+    for (double distance = trial.From; distance >= trial.To && !content; distance *= 0.5)
     {
-      if (content && distance < ClosestBeyond * this->Wish.Distance)
-      {
-        break;
-      }
       pictures.Add(this->Pictures.Draw({ trial.Level, distance }));
       choices.push_back({ distance, {} });
       // Pictures with few samples may look alike because all of them miss what is thin.
-      content = content || (distance <= FewestSamples * this->Wish.Distance &&
-                             pictures.LastIsWithin(trial.Allowed));
-      beyond += content ? 1 : 0;
+      content =
+        distance <= FewestSamples * this->Wish.Distance && pictures.LastIsWithin(trial.Allowed);
     }
     const std::vector<TileErrors> errors = pictures.AllErrors();
     for (std::size_t i = 0; i < choices.size(); ++i)
@@ -220,17 +185,6 @@ private:
     return finest;
   }
 
-  bool ManyMayTake(const Choice& distance) const
-  {
-    return this->Wish.Tolerance < LargeTolerance ||
-           this->Choices.PartThatMayTake(distance, this->Allowed) >= FewTiles;
-  }
-
-  double LongestDistance() const
-  {
-    return std::ldexp(this->Wish.Distance, MostDoublings(this->Wish, this->Scene));
-  }
-
   /// Finer levels show what coarser ones leave out: distances are judged at the level that is
   /// needed, from the longest that may be good enough for some tile.
   void TryDistancesAgain(int level)
@@ -238,19 +192,15 @@ private:
     double longest = this->ClosestDistance;
     for (const Choice& choice : this->Choices.Distances)
     {
-      if (choice.Errors.Smallest() <= this->Allowed && this->ManyMayTake(choice))
+      if (choice.Errors.Smallest() <= this->Allowed)
       {
         longest = std::max(longest, choice.Value);
       }
     }
-    if (longest == this->Choices.Distances.front().Value)
-    {
-      longest = std::max(longest, this->LongestDistance());
-    }
     PilotSequence pictures(this->Pictures);
     const Trial trial{ level,
       std::min(longest, std::ldexp(SamplingChoices::MostCellsPerStep * this->Wish.Distance, level)),
-      std::ldexp(this->Wish.Distance, -MostHalvings), 0.5 * this->Allowed, true };
+      std::ldexp(this->Wish.Distance, -MostHalvings), 0.5 * this->Allowed };
     this->Choices.Distances = this->DistancesOf(trial, pictures);
   }
 
