@@ -121,6 +121,33 @@ void TakeIds(
   }
 }
 
+/// Whether the corners of a cell exist and lie apart along x, y and z.
+template <class Coordinate, class Id>
+bool Extends(const Coordinate* points, std::int64_t count, const Id* corners)
+{
+  double low[3];
+  double high[3];
+  for (int i = 0; i < 8; ++i)
+  {
+    const auto id = static_cast<std::int64_t>(corners[i]);
+    if (id < 0 || id >= count)
+    {
+      return false;
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double at = points[3 * id + axis];
+      if (!std::isfinite(at))
+      {
+        return false;
+      }
+      low[axis] = i == 0 ? at : std::min(low[axis], at);
+      high[axis] = i == 0 ? at : std::max(high[axis], at);
+    }
+  }
+  return high[0] > low[0] && high[1] > low[1] && high[2] > low[2];
+}
+
 } // namespace
 
 std::string OtherCells::Text() const
@@ -182,17 +209,17 @@ bool CanBeSampled(vtkUnstructuredGrid* grid)
   {
     OtherCells others;
     const HexMesh mesh = HexMeshOf(grid, &others);
-    return mesh.CellCount > 0 && DispatchMesh(mesh,
-                                   [&](const auto* points, const auto* ids)
-                                   {
-                                     return std::all_of(ids, ids + 8 * mesh.CellCount,
-                                       [&](std::int64_t id)
-                                       {
-                                         return id >= 0 && id < mesh.PointCount &&
-                                                std::all_of(points + 3 * id, points + 3 * id + 3,
-                                                  [](double x) { return std::isfinite(x); });
-                                       });
-                                   });
+    return mesh.CellCount > 0 &&
+           DispatchMesh(mesh,
+             [&](const auto* points, const auto* ids)
+             {
+               bool all = true;
+               for (std::int64_t cell = 0; cell < mesh.CellCount && all; ++cell)
+               {
+                 all = Extends(points, mesh.PointCount, ids + 8 * cell);
+               }
+               return all;
+             });
   }
   catch (const Error&)
   {

@@ -34,7 +34,7 @@ struct OtherCells
 BANYANFILTERS_EXPORT HexMesh HexMeshOf(vtkUnstructuredGrid* grid, OtherCells* others = nullptr);
 
 /// Whether there is something that boxes can be sampled of (see SampledGrid): hexahedra or voxels
-/// whose points exist and are finite.
+/// whose points exist, are finite, and lie apart along x, y and z.
 bool CanBeSampled(vtkUnstructuredGrid* grid);
 
 /// Values of the cells that HexMeshOf takes when it may leave out others, in its order: the array

@@ -1,4 +1,4 @@
-#include "CoveredParts.h"
+#include "Render/CoveredParts.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
-#ifndef banyan_Rendering_CoveredParts_h
-#define banyan_Rendering_CoveredParts_h
+#ifndef banyan_Render_CoveredParts_h
+#define banyan_Render_CoveredParts_h
 
 #include "Render/FloatImage.h"
 

@@ -68,7 +68,9 @@ def main():
         boxes = simple.BanyanHexOctree(Input=source, SampleGeneralMeshes=1)
         waves = simple.BanyanTemporalEnhancement(Input=source, Array=["POINTS", "value"])
         expected = of_octrees(name, bent, said)
-        check(f"{name}, octree", said_by(octree.UpdatePipeline), expected)
+        answer = said_by(octree.UpdatePipeline)
+        check(f"{name}, octree", answer, expected)
+        session.require(name != "flat" or "Sample General" not in answer, f"a way that is none: {answer}")
         check(f"{name}, boxes", said_by(boxes.UpdatePipeline), of_boxes(said))
         # Values are looked at alone, whatever the mesh is.
         check(f"{name}, waves", said_by(waves.UpdatePipeline), None)
