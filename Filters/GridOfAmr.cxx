@@ -1,5 +1,6 @@
 #include "GridOfAmr.h"
 
+#include "ArrayLength.h"
 #include "RankTalk.h"
 #include "VoxelCells.h"
 
@@ -229,7 +230,9 @@ private:
   void ChooseCells(const AmrBox& box, unsigned int index, vtkIdList* kept) const
   {
     const auto level = static_cast<unsigned int>(box.Level);
-    vtkUnsignedCharArray* const flags = this->Blocks->GetDataSet(level, index)->GetCellGhostArray();
+    vtkUniformGrid* const block = this->Blocks->GetDataSet(level, index);
+    CheckLength(GhostFlags(block->GetCellData()), vtkDataObject::CELL, block->GetNumberOfCells());
+    vtkUnsignedCharArray* const flags = block->GetCellGhostArray();
     const int scale = ScaleOf(this->Blocks, level);
     const bool finer = std::any_of(this->All.begin(), this->All.end(),
       [&](const AmrBox& other) { return other.Level == box.Level + 1; });
@@ -297,6 +300,7 @@ private:
       {
         return nullptr;
       }
+      CheckLength(part, where, used.Block->GetNumberOfElements(where));
       const vtkIdType before = whole->GetNumberOfTuples();
       if (where == vtkDataObject::POINT)
       {

@@ -80,6 +80,7 @@ public:
   vtkNew<vtkPoints> Points;
   VoxelCells Voxels;
   vtkNew<vtkIdList> Numbers; ///< of the leaves, in the cell data of the trees
+  vtkIdType Last = -1;       ///< the largest of them
 
 private:
   /// @param corner in finest cells; the cell has 2^level of them along each axis
@@ -109,6 +110,11 @@ private:
 
   void Take(vtkIdType number, const std::array<std::int64_t, 3>& corner, int level)
   {
+    if (this->Ghosts && number >= this->Ghosts->GetNumberOfTuples())
+    {
+      throw Error("The hyper tree grid has " + std::to_string(this->Ghosts->GetNumberOfTuples()) +
+                  " ghost flags, and a cell " + std::to_string(number) + ".");
+    }
     if (this->Ghosts && (this->Ghosts->GetValue(number) & GhostBits) != 0)
     {
       return;
@@ -122,6 +128,7 @@ private:
     }
     this->Voxels.Add(points);
     this->Numbers->InsertNextId(number);
+    this->Last = std::max(this->Last, number);
   }
 
   vtkIdType PointAt(const std::array<std::int64_t, 3>& place)
@@ -191,6 +198,12 @@ vtkSmartPointer<vtkUnstructuredGrid> GridOfHyperTrees(
     const std::string name = all && all->GetName() ? all->GetName() : "";
     if (all && name != vtkDataSetAttributes::GhostArrayName() && (array.empty() || name == array))
     {
+      if (leaves.Last >= all->GetNumberOfTuples())
+      {
+        throw Error("The cell array " + name + " of the hyper tree grid has " +
+                    std::to_string(all->GetNumberOfTuples()) + " values, and there is a cell " +
+                    std::to_string(leaves.Last) + ".");
+      }
       grid->GetCellData()->AddArray(Chosen(all, leaves.Numbers));
     }
   }

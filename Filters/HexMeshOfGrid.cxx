@@ -1,10 +1,11 @@
 #include "HexMeshOfGrid.h"
 
+#include "ArrayLength.h"
 #include "GhostCells.h"
-
 #include "VoxelCells.h"
 
 #include "vtkCellArray.h"
+#include "vtkCellData.h"
 #include "vtkCellTypes.h"
 #include "vtkDataArray.h"
 #include "vtkIdList.h"
@@ -25,6 +26,22 @@ namespace
 bool IsHexahedron(int type)
 {
   return type == VTK_HEXAHEDRON || type == VTK_VOXEL;
+}
+
+/// Throws Error when cells have no points at all, or not each cell has a type and a flag.
+void CheckWhole(vtkUnstructuredGrid* grid)
+{
+  const vtkIdType cells = grid->GetNumberOfCells();
+  if (grid->GetNumberOfPoints() == 0)
+  {
+    throw Error("The mesh has " + std::to_string(cells) + " cells, and no points");
+  }
+  if (grid->GetCellTypesArray()->GetNumberOfTuples() != cells)
+  {
+    throw Error("The mesh has " + std::to_string(cells) + " cells, and the types of " +
+                std::to_string(grid->GetCellTypesArray()->GetNumberOfTuples()));
+  }
+  CheckLength(GhostFlags(grid->GetCellData()), vtkDataObject::CELL, cells);
 }
 
 OtherCells FindOthers(vtkUnstructuredGrid* grid)
@@ -160,10 +177,11 @@ std::string OtherCells::Text() const
 HexMesh HexMeshOf(vtkUnstructuredGrid* grid, OtherCells* others)
 {
   HexMesh mesh;
-  if (!grid || grid->GetNumberOfCells() == 0 || grid->GetNumberOfPoints() == 0)
+  if (!grid || grid->GetNumberOfCells() == 0)
   {
     return mesh;
   }
+  CheckWhole(grid);
   const OtherCells left = FindOthers(grid);
   if (left.Count > 0 && !others)
   {

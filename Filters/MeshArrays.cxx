@@ -1,5 +1,7 @@
 #include "MeshArrays.h"
 
+#include "ArrayLength.h"
+
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataArraySelection.h"
@@ -222,11 +224,13 @@ std::vector<MeshArray> MeshArrays::Of(
   std::set<std::string> taken;
   for (const auto& point : points.Numbers)
   {
+    CheckLength(point.second, vtkDataObject::POINT, grid->GetNumberOfPoints());
     arrays.push_back({ point.second, point.first, {} });
     taken.insert(point.first);
   }
   for (const auto& cell : cells.Numbers)
   {
+    CheckLength(cell.second, vtkDataObject::CELL, grid->GetNumberOfCells());
     const std::string name = UniqueName(cell.first, taken);
     arrays.push_back({ cell.second, name, cell.first });
     taken.insert(name);

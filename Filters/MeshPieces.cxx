@@ -1,5 +1,6 @@
 #include "MeshPieces.h"
 
+#include "ArrayLength.h"
 #include "GhostCells.h"
 #include "PieceArrays.h"
 #include "PieceItems.h"
@@ -66,6 +67,7 @@ private:
   void AddPiece(std::size_t piece)
   {
     vtkUnstructuredGrid* const grid = this->Pieces[piece];
+    CheckLength(GhostFlags(grid->GetCellData()), vtkDataObject::CELL, grid->GetNumberOfCells());
     vtkUnsignedCharArray* const ghosts = grid->GetCellGhostArray();
     const bool some = HasGhosts(ghosts);
     std::vector<char> used(static_cast<std::size_t>(grid->GetNumberOfPoints()), some ? 0 : 1);

@@ -1,5 +1,6 @@
 #include "PieceArrays.h"
 
+#include "ArrayLength.h"
 #include "MeshArrays.h"
 
 #include "vtkDataArray.h"
@@ -58,6 +59,7 @@ std::vector<vtkDataArray*> PieceArrays::PartsOf(int where, vtkDataArray* like) c
     {
       return {};
     }
+    CheckLength(part, where, piece->GetNumberOfElements(where));
     parts.push_back(part);
   }
   return parts;

@@ -1,5 +1,7 @@
 #include "RestPoints.h"
 
+#include "ArrayLength.h"
+
 #include "vtkDataArray.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
@@ -85,7 +87,8 @@ std::string DisplacementsOf(vtkUnstructuredGrid* first, vtkUnstructuredGrid* now
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* const array = arrays->GetArray(i);
-    if (!array || !array->GetName() || array->GetNumberOfComponents() != 3)
+    if (!array || !array->GetName() || array->GetNumberOfComponents() != 3 ||
+        array->GetNumberOfTuples() != now->GetNumberOfPoints())
     {
       continue;
     }
@@ -116,6 +119,7 @@ vtkSmartPointer<vtkUnstructuredGrid> AtRest(
              : "The point array " + displacements + " holds no displacements: it has " +
                  std::to_string(array->GetNumberOfComponents()) + " components, not 3");
   }
+  CheckLength(array, vtkDataObject::POINT, grid->GetNumberOfPoints());
   vtkNew<vtkPoints> points;
   points->SetDataType(grid->GetPoints()->GetDataType());
   points->SetNumberOfPoints(grid->GetNumberOfPoints());

@@ -1,5 +1,6 @@
 #include "SampledGrid.h"
 
+#include "ArrayLength.h"
 #include "HexMeshOfGrid.h"
 #include "MeshArrays.h"
 #include "PieceValues.h"
@@ -97,6 +98,7 @@ void SampledGrid::AddArrays(
     {
       continue;
     }
+    CheckLength(array, where, grid->GetNumberOfElements(where));
     const bool cells = where == vtkDataObject::CELL;
     vtkSmartPointer<vtkDataArray> values = array;
     if (cells)

@@ -1,5 +1,6 @@
 #include "StepReport.h"
 
+#include "ArrayLength.h"
 #include "PieceValues.h"
 
 #include "vtkAbstractArray.h"
@@ -13,6 +14,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace banyan
 {
@@ -86,6 +88,18 @@ WrittenArray Describe(vtkDataArray* array, const std::string& name)
   return written;
 }
 
+/// Compared with those of other steps, NaN is a change: so this comes first.
+void CheckPlacement(const Grid& grid, StepReport& report)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (!std::isfinite(grid.Origin[axis]) || !std::isfinite(grid.Spacing[axis]))
+    {
+      report.Problem = "The origin or the spacing of the image is not finite.";
+    }
+  }
+}
+
 /// The arrays to write of a piece that is not empty; says in `report` what is not written.
 std::vector<vtkDataArray*> Choose(
   vtkImageData* image, vtkDataArraySelection& selection, StepReport& report)
@@ -108,6 +122,9 @@ std::vector<vtkDataArray*> Choose(
     vtkDataArray* values = vtkDataArray::SafeDownCast(array);
     if (wanted && values && values->GetDataType() != VTK_BIT)
     {
+      report.Problem = report.Problem.empty()
+                         ? WrongLength(values, vtkDataObject::POINT, image->GetNumberOfPoints())
+                         : report.Problem;
       chosen.push_back(values);
       report.Arrays.push_back(Describe(values, name));
     }
@@ -153,6 +170,16 @@ std::vector<vtkDataArray*> Choose(
 
 void CheckBlanking(vtkImageData* image, StepReport& report)
 {
+  for (const int where : { vtkDataObject::POINT, vtkDataObject::CELL })
+  {
+    const std::string problem = WrongLength(
+      GhostFlags(image->GetAttributes(where)), where, image->GetNumberOfElements(where));
+    if (!problem.empty())
+    {
+      report.Problem = problem;
+      return;
+    }
+  }
   // Not HasAnyBlankCells(), which is also true when points are hidden.
   vtkUnsignedCharArray* flags = image->GetCellGhostArray();
   const unsigned char* first = flags ? flags->GetPointer(0) : nullptr;
@@ -189,10 +216,11 @@ StepReport ReportOf(vtkDataObject* data, vtkDataArraySelection& selection, bool 
   vtkImageData* image = vtkImageData::SafeDownCast(data);
   if (!image)
   {
-    report.Problem = std::string("A Banyan series is made from image data (a regular grid) or from an "
-                                 "unstructured grid of hexahedra, and the input is ") +
-                     (data ? data->GetClassName() : "nothing") +
-                     ": apply a filter such as 'Resample To Image' first.";
+    report.Problem =
+      std::string("A Banyan series is made from image data (a regular grid) or from an "
+                  "unstructured grid of hexahedra, and the input is ") +
+      (data ? data->GetClassName() : "nothing") +
+      ": apply a filter such as 'Resample To Image' first.";
     return report;
   }
   report.Piece = GridOf(image);
@@ -201,6 +229,7 @@ StepReport ReportOf(vtkDataObject* data, vtkDataArraySelection& selection, bool 
     return report;
   }
   const std::vector<vtkDataArray*> chosen = Choose(image, selection, report);
+  CheckPlacement(report.Piece, report);
   CheckBlanking(image, report);
   if (vtkDataArray* active = image->GetPointData()->GetScalars())
   {

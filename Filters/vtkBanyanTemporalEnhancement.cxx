@@ -141,7 +141,9 @@ bool vtkBanyanTemporalEnhancement::Enhance(
   {
     return false;
   }
-  const bool ofCells = association == vtkDataObject::FIELD_ASSOCIATION_CELLS;
+  // Hyper trees have cells only, and VTK finds these when it is asked for points.
+  const bool ofCells = association == vtkDataObject::FIELD_ASSOCIATION_CELLS ||
+                       vtkHyperTreeGrid::SafeDownCast(data);
   const int where = ofCells ? vtkDataObject::CELL : vtkDataObject::POINT;
   const std::string kind = ofCells ? "cell" : "point";
   vtkDataArray* neighbours[2] = { nullptr, nullptr };

@@ -6,6 +6,7 @@
 #include "vtkCellData.h"
 #include "vtkColorTransferFunction.h"
 #include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
@@ -114,8 +115,8 @@ bool HasCells(vtkDataObject* data)
   if (vtkDataSet* const set = vtkDataSet::SafeDownCast(data))
   {
     // Points alone are nothing that a ray meets.
-    return set->GetNumberOfPoints() > 0 &&
-           (!vtkUnstructuredGrid::SafeDownCast(set) || set->GetNumberOfCells() > 0);
+    return vtkUnstructuredGrid::SafeDownCast(set) ? set->GetNumberOfCells() > 0
+                                                  : set->GetNumberOfPoints() > 0;
   }
   return data && data->GetNumberOfElements(vtkDataObject::CELL) > 0;
 }
@@ -124,6 +125,20 @@ std::string MissingArray(const char* name)
 {
   return name && *name ? "The data has no array '" + std::string(name) + "' of numbers to draw."
                        : "The data has no array to draw: select one in 'Coloring'.";
+}
+
+/// What is no error of VTK's own, such as blocks that come from an object instead of a filter.
+std::string WrongType(vtkDataObject* data)
+{
+  if (vtkImageData::SafeDownCast(data) || vtkUnstructuredGrid::SafeDownCast(data) ||
+      vtkHyperTreeGrid::SafeDownCast(data) || vtkOverlappingAMR::SafeDownCast(data))
+  {
+    return {};
+  }
+  return std::string("Data of the type ") + data->GetClassName() + " cannot be drawn: " +
+         (vtkCompositeDataSet::SafeDownCast(data)
+             ? "make one unstructured grid of its blocks ('Merge Blocks', vtkAppendFilter)."
+             : "use 'Resample To Image'.");
 }
 
 std::string WrongPlace(const DrawnArray& drawn, vtkDataObject* data)
@@ -191,6 +206,12 @@ FieldPiece PieceOfInput(vtkBanyanVolumeMapper* mapper, vtkVolumeProperty* proper
   piece.Image = vtkImageData::SafeDownCast(data);
   piece.Grid = vtkUnstructuredGrid::SafeDownCast(data);
   piece.Leaves = piece.Image || piece.Grid ? nullptr : data;
+  piece.Problem = WrongType(data);
+  if (!piece.Problem.empty())
+  {
+    piece.Leaves = nullptr;
+    return piece;
+  }
   const DrawnArray drawn = ArrayToDraw(mapper, data);
   if (!drawn.Array)
   {
@@ -201,6 +222,10 @@ FieldPiece PieceOfInput(vtkBanyanVolumeMapper* mapper, vtkVolumeProperty* proper
   piece.Where = drawn.Where;
   piece.ArrayName = drawn.Array->GetName() ? drawn.Array->GetName() : "";
   piece.Problem = WrongPlace(drawn, data);
+  if (piece.Leaves && piece.ArrayName.empty())
+  {
+    piece.Problem = "The array to draw has no name, by which blocks and trees know theirs.";
+  }
   piece.Component = ComponentOf(drawn.Array, property);
   return piece;
 }
@@ -214,7 +239,10 @@ double* BoundsOfLeaves(vtkDataObject* data, double* bounds)
   }
   else if (vtkOverlappingAMR* const blocks = vtkOverlappingAMR::SafeDownCast(data))
   {
-    blocks->GetBounds(bounds);
+    if (blocks->GetAMRInfo()) // none before Initialize()
+    {
+      blocks->GetBounds(bounds);
+    }
   }
   return bounds;
 }

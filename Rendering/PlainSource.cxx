@@ -1,5 +1,6 @@
 #include "PlainSource.h"
 
+#include "ArrayLength.h"
 #include "Base/ThreadPool.h"
 #include "Render/ArrayBrickSource.h"
 #include "vtkBanyanDeferred.h"
@@ -49,6 +50,7 @@ const std::uint8_t* HiddenPoints(vtkImageData* image)
   {
     return nullptr;
   }
+  CheckLength(flags, vtkDataObject::POINT, image->GetNumberOfPoints());
   const std::uint8_t* first = flags->GetPointer(0);
   const std::uint8_t* last = first + flags->GetNumberOfTuples();
   const bool some = std::any_of(
