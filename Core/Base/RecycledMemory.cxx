@@ -24,11 +24,11 @@ Shelf& TheShelf()
   return *shelf;
 }
 
-/// Eight sizes for each power of two, so that pictures of nearly one size take each other's memory.
+/// Sixteen sizes for each power of two: pictures of nearly one size take each other's memory.
 std::size_t RoundedUp(std::size_t bytes)
 {
-  std::size_t unit = LargeMemory::Smallest / 8;
-  while (bytes / unit >= 16)
+  std::size_t unit = LargeMemory::Smallest / 16;
+  while (bytes / unit >= 32)
   {
     unit *= 2;
   }

@@ -7,14 +7,14 @@
 namespace banyan
 {
 
-/// Large pieces of memory that are needed again soon, such as pictures of frame after frame. Where
-/// they go back to the system in between, it clears each page anew: 16 MB take it longer than
-/// drawing what is in a simple picture. Those given back are kept, up to MostKeptBytes in all. Safe
-/// to use from any thread.
+/// Large pieces of memory that are needed again soon, such as pictures of frame after frame, and
+/// bricks that are packed for one picture. Where they go back to the system in between, it clears
+/// each page anew: 16 MB take it longer than drawing what is in a simple picture. Those given back
+/// are kept, up to MostKeptBytes in all. Safe to use from any thread.
 class LargeMemory
 {
 public:
-  static constexpr std::size_t Smallest = std::size_t{ 1 } << 20; ///< smaller ones are not kept
+  static constexpr std::size_t Smallest = std::size_t{ 1 } << 16; ///< smaller ones are not kept
   static constexpr std::size_t MostKeptBytes = std::size_t{ 128 } << 20;
 
   /// Throws std::bad_alloc.

@@ -130,7 +130,7 @@ void PackedBrick::Allocate(int perSample)
   {
     ++this->Shift;
   }
-  this->Samples.reset(new float[static_cast<std::size_t>(this->Slice * samples.z)]);
+  this->Samples.resize(static_cast<std::size_t>(this->Slice * samples.z));
 }
 
 PackedBrick::PackedBrick(
@@ -160,7 +160,7 @@ void PackedBrick::PlacePairs(const Dense& dense)
   const float* row = dense.Values.data();
   for (int z = 0; z < samples.z; ++z)
   {
-    float* out = this->Samples.get() + z * this->Slice;
+    float* out = this->Samples.data() + z * this->Slice;
     for (int y = 0; y < samples.y; ++y, row += samples.x, out += this->Row)
     {
       // The last row is its own neighbour, so that it can be read as the others are, one value
@@ -221,7 +221,7 @@ void PackedBrick::FindExtremes(const Dense& dense)
 BrickView PackedBrick::View() const
 {
   BrickView view;
-  view.Values = this->Samples.get();
+  view.Values = this->Samples.data();
   view.Type = ScalarType::Float32;
   view.Stride[0] = this->PerSample;
   view.Stride[1] = this->Row;
@@ -232,7 +232,7 @@ BrickView PackedBrick::View() const
 BrickView PackedBrick::GradientView(int axis) const
 {
   BrickView view = this->View();
-  view.Values = this->Samples.get() + 1 + axis;
+  view.Values = this->Samples.data() + 1 + axis;
   return view;
 }
 

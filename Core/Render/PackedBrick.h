@@ -2,6 +2,7 @@
 #define banyan_Render_PackedBrick_h
 
 #include "Base/Box.h"
+#include "Base/RecycledMemory.h"
 #include "Render/BrickView.h"
 #include "Render/TransferFunction.h"
 #include "Series/ValueRange.h"
@@ -54,7 +55,7 @@ public:
   /// Of the gradient along an axis, at the same samples. HasGradients.
   BrickView GradientView(int axis) const;
 
-  const float* Values() const { return this->Samples.get(); }
+  const float* Values() const { return this->Samples.data(); }
   std::ptrdiff_t StrideY() const { return this->Row; }
   std::ptrdiff_t StrideZ() const { return this->Slice; }
 
@@ -70,11 +71,14 @@ public:
   ValueRange RangeOfMacro(const glm::ivec3& macro) const;
 
 private:
+  /// Bricks that are packed for one picture come and go by thousands.
+  using Floats = std::vector<float, RecycledMemory<float>>;
+
   /// Values as interpolations take them, one after the other.
   struct Dense
   {
     Box Samples;
-    std::vector<float> Values;
+    Floats Values;
 
     const float* At(int x, int y, int z) const
     {
@@ -99,7 +103,7 @@ private:
   bool IsRelativeToLow = false;
   bool HasSpecial = false;
   double RelativeTo = 0.0;
-  std::unique_ptr<float[]> Samples;
+  Floats Samples;
   float Lowest[MacroCells];
   float Highest[MacroCells];
 };

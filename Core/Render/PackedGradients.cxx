@@ -69,7 +69,7 @@ void PackedBrick::PlaceGradients(const Dense& dense, float scale)
     for (int y = 0; y <= this->Whole.Size().y; ++y)
     {
       this->PlaceGradientRow(dense, this->Whole.Lo.y + y, this->Whole.Lo.z + z, scale,
-        this->Samples.get() + z * this->Slice + y * this->Row);
+        this->Samples.data() + z * this->Slice + y * this->Row);
     }
   }
 }

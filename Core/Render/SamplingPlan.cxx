@@ -223,7 +223,7 @@ private:
     {
       --sampling.Level;
     }
-    StridePilot pilot(this->Scene, this->DrawScene);
+    StridePilot pilot(this->Scene, this->DrawScene, this->Allowed);
     RaySampling drawn = this->Choices.SamplingOf(sampling);
     drawn.Distance = std::max(drawn.Distance, this->Wish.Distance);
     pilot.Draw(drawn);

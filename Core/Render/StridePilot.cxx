@@ -12,6 +12,8 @@ namespace
 {
 
 constexpr int Spacing = 4;
+/// Where so much is allowed, a quarter of the pilots will do.
+constexpr double MuchAllowed = 12.0;
 /// Pilots this close leave less to chance than those of samples do.
 constexpr double Safety = 3.0;
 constexpr double TilesAround = 1.5;
@@ -65,9 +67,9 @@ PilotErrors ErrorsBetween(const PilotPicture& picture, const PixelRect& part, in
 } // namespace
 
 StridePilot::StridePilot(
-  const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw)
+  const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw, double allowed)
   : Scene(scene)
-  , Pictures(scene, std::move(draw), Spacing, TilesAround)
+  , Pictures(scene, std::move(draw), allowed < MuchAllowed ? Spacing : 2 * Spacing, TilesAround)
 {
 }
 
@@ -91,23 +93,23 @@ bool StridePilot::MayPay(const PilotPictures& samples, double allowed)
 void StridePilot::Draw(const RaySampling& sampling)
 {
   const PilotPicture picture = this->Pictures.Draw(sampling);
-  this->Eight =
+  this->Near =
     this->Pictures.ErrorsOf(ErrorsBetween(picture, this->Pictures.Part(), 2), 1.0, ShareOfLargest);
-  this->Sixteen =
+  this->Far =
     this->Pictures.ErrorsOf(ErrorsBetween(picture, this->Pictures.Part(), 4), 1.0, ShareOfLargest);
   this->Whole = this->MakeWholeTiles();
 }
 
 TileErrors StridePilot::ErrorsAt(int stride) const
 {
-  TileErrors errors = this->Eight;
+  TileErrors errors = this->Near;
   for (std::size_t tile = 0; tile < errors.Tiles.size(); ++tile)
   {
     double& error = errors.Tiles[tile];
-    const double larger = this->Sixteen.Of(tile);
+    const double larger = this->Far.Of(tile);
     const double gain = error > 0.0 ? std::clamp(larger / error, 1.0, MostGain) : 1.0;
     error *= Safety;
-    for (int i = RaySampling::LargestStride; i > stride; i /= 2)
+    for (int i = 2 * this->Pictures.PixelsApart(); i > stride; i /= 2)
     {
       error /= gain;
     }

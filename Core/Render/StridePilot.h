@@ -14,12 +14,14 @@ namespace banyan
 /// second or every fourth of it does not hold are compared with what lies between these
 /// (FillBetweenRays), so that a stride of 8 is measured, and how errors grow from 8 to 16 tells
 /// those of 4 and 2: as the square of the stride where the picture is smooth, and not at all at
-/// edges.
+/// edges. Where much is allowed, its pixels are every eighth one, and strides of 16 and 32 tell.
 class StridePilot
 {
 public:
   /// @param scene refers to it, which must stay
-  StridePilot(const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw);
+  /// @param allowed errors of the picture, in 1/255
+  StridePilot(
+    const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw, double allowed);
 
   /// Whether a scene is one of which pixels may be left out: its volume is not narrow.
   /// @param pixelsApart pilots of it that tell enough
@@ -47,8 +49,8 @@ private:
 
   const RayScene& Scene;
   PilotPictures Pictures;
-  TileErrors Eight;        ///< measured
-  TileErrors Sixteen;      ///< measured
+  TileErrors Near;         ///< measured: of a stride of two pilots
+  TileErrors Far;          ///< of four
   std::vector<bool> Whole; ///< per tile, whether pixels of it may be left out
 };
 

@@ -70,6 +70,27 @@ TEST(KeptBricks, OtherCellsOrAnotherLowEndAreOtherBricks)
   EXPECT_NE(kept.Find(7, cells, 0.25, false), nullptr);
 }
 
+TEST(KeptBricks, BricksThatGoLeaveTheirMemoryToTheNext)
+{
+  LargeMemory::LetGo();
+  const std::vector<float> values(std::size_t{ 33 } * 33 * 33, 1.0f);
+  const BrickView view{ values.data(), ScalarType::Float32, { 1, 33, 33 * 33 }, {} };
+  const Box cells{ glm::ivec3(0), glm::ivec3(32) };
+  const auto pack = [&]
+  { return std::make_unique<const PackedBrick>(view, glm::ivec3(0), cells, 0.0); };
+  std::unique_ptr<const PackedBrick> packed = pack();
+  const std::size_t beside = LargeMemory::KeptBytes(); // what packing took for itself
+  const float* const first = packed->Values();
+  packed.reset();
+  EXPECT_GE(
+    LargeMemory::KeptBytes() - beside, PackedBrick::BytesFor(cells, false) - sizeof(PackedBrick));
+  packed = pack();
+  EXPECT_EQ(packed->Values(), first);
+  EXPECT_EQ(LargeMemory::KeptBytes(), beside);
+  packed.reset();
+  LargeMemory::LetGo();
+}
+
 TEST(KeptBricks, SourcesThatKeepBricksShareTheBudget)
 {
   constexpr std::uint64_t budget = 600;
@@ -133,9 +154,8 @@ TEST(KeptBricks, WhatCanBeSeenChangesWithTheTransferFunction)
   ThreadPool pool(2);
   Counting source(scenes::ArrayOf(values, n), 16, { 0, 1 }, pool);
   std::int64_t before = 0;
-  for (const scenes::Function& function :
-    { scenes::Function(scenes::Sparse), scenes::Function(scenes::Smooth),
-      scenes::Function(scenes::Sparse) })
+  for (const scenes::Function& function : { scenes::Function(scenes::Sparse),
+         scenes::Function(scenes::Smooth), scenes::Function(scenes::Sparse) })
   {
     scene.Transfer = scenes::Tabulate(function);
     RayStatistics statistics;

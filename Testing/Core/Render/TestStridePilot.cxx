@@ -13,8 +13,7 @@ using namespace banyan;
 namespace
 {
 
-constexpr int Edge = 512;
-constexpr int StridePilotEdge = Edge / 4;
+constexpr int Edge = 1024;
 
 /// Of a pixel by its place in the picture.
 using Pattern = std::function<double(const glm::dvec2&)>;
@@ -26,21 +25,21 @@ double Smooth(const glm::dvec2& at)
 
 double Striped(const glm::dvec2& at)
 {
-  return static_cast<int>(at.x / 37.0) % 2;
+  return static_cast<int>(at.x / 75.0) % 2;
 }
 
-/// Whether it is drawn for a picture.
-bool IsDrawn(const Pattern& pattern, double tolerance)
+/// How many pixels are apart of which it is drawn for a picture; 0 if it is not drawn.
+int PixelsApart(const Pattern& pattern, double tolerance)
 {
   const RayScene scene = scenes::Scene(glm::ivec3(65), glm::ivec2(Edge));
   const SamplingWish wish{ tolerance, 1.0, 2, 0, /*LeastCells=*/1, /*LargestPixelStride=*/8 };
-  bool drawn = false;
+  int apart = 0;
   const SamplingPlan plan = PlanSamplings(scene, wish,
     [&](const RayScene& pilot)
     {
       const int edge = pilot.Camera.ImageSize().x;
-      EXPECT_FALSE(drawn) << "it is the last one";
-      drawn = drawn || edge == StridePilotEdge;
+      EXPECT_EQ(apart, 0) << "it is the last one";
+      apart = edge > Edge / 16 ? Edge / edge : 0;
       FloatImage image;
       image.Rect = pilot.Viewport;
       for (int y = image.Rect.Lo.y; y < image.Rect.Hi.y; ++y)
@@ -59,24 +58,29 @@ bool IsDrawn(const Pattern& pattern, double tolerance)
   {
     some = some || sampling.PixelStride > 1;
   }
-  EXPECT_TRUE(drawn || !some) << "no pixel is left out unknown";
-  return drawn;
+  EXPECT_TRUE(apart > 0 || !some) << "no pixel is left out unknown";
+  return apart;
 }
 
 TEST(StridePilot, IsDrawnWhereSomeTileMayDoWithoutPixels)
 {
-  for (const double tolerance : { 1.0, 8.0, 255.0 })
+  for (const double tolerance : { 1.0, 8.0 })
   {
-    EXPECT_TRUE(IsDrawn(Smooth, tolerance)) << tolerance;
+    EXPECT_EQ(PixelsApart(Smooth, tolerance), 4) << tolerance;
   }
-  EXPECT_TRUE(IsDrawn(Striped, 255.0));
+  // A quarter of the pixels will do where much is allowed.
+  for (const double tolerance : { 16.0, 255.0 })
+  {
+    EXPECT_EQ(PixelsApart(Smooth, tolerance), 8) << tolerance;
+  }
+  EXPECT_EQ(PixelsApart(Striped, 255.0), 8);
 }
 
 TEST(StridePilot, IsNotDrawnWhereNoneMay)
 {
-  for (const double tolerance : { 0.25, 1.0, 4.0 })
+  for (const double tolerance : { 0.25, 1.0, 2.0 })
   {
-    EXPECT_FALSE(IsDrawn(Striped, tolerance)) << tolerance;
+    EXPECT_EQ(PixelsApart(Striped, tolerance), 0) << tolerance;
   }
 }
 
