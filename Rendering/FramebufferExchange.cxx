@@ -8,6 +8,7 @@
 #include "vtkOpenGLState.h"
 #include "vtkRenderer.h"
 #include "vtkShaderProgram.h"
+#include "vtkSmartPointer.h"
 #include "vtkTextureObject.h"
 #include "vtk_glew.h"
 
@@ -72,14 +73,9 @@ private:
   GLint BufferBefore = 0;
 };
 
-void DeleteTexture(vtkTextureObject* texture)
+vtkSmartPointer<vtkTextureObject> NewTexture(vtkOpenGLRenderWindow* window)
 {
-  texture->Delete();
-}
-
-vtkTextureObject* NewTexture(vtkOpenGLRenderWindow* window)
-{
-  vtkTextureObject* texture = vtkTextureObject::New();
+  auto texture = vtkSmartPointer<vtkTextureObject>::New();
   texture->SetContext(window);
   texture->SetMinificationFilter(vtkTextureObject::Nearest);
   texture->SetMagnificationFilter(vtkTextureObject::Nearest);
@@ -88,12 +84,29 @@ vtkTextureObject* NewTexture(vtkOpenGLRenderWindow* window)
 
 } // namespace
 
-FramebufferExchange::FramebufferExchange()
-  : Color(nullptr, &DeleteTexture)
-  , Depth(nullptr, &DeleteTexture)
+/// What pixels are put on the screen with.
+struct FramebufferExchange::Resources
 {
-}
+  explicit Resources(vtkOpenGLRenderWindow* window)
+    : Quad(window, nullptr, FragmentShader, nullptr)
+    , Color(NewTexture(window))
+    , Depth(NewTexture(window))
+  {
+  }
 
+  void Release(vtkWindow* window)
+  {
+    this->Quad.ReleaseGraphicsResources(window);
+    this->Color->ReleaseGraphicsResources(window);
+    this->Depth->ReleaseGraphicsResources(window);
+  }
+
+  vtkOpenGLQuadHelper Quad;
+  vtkSmartPointer<vtkTextureObject> Color;
+  vtkSmartPointer<vtkTextureObject> Depth;
+};
+
+FramebufferExchange::FramebufferExchange() = default;
 FramebufferExchange::~FramebufferExchange() = default;
 
 /// glReadPixels of the framebuffer that is bound for reading.
@@ -199,41 +212,42 @@ void FramebufferExchange::Write(vtkRenderer* renderer, const PixelRect& rect,
   state->vtkglDepthFunc(GL_ALWAYS);
   state->vtkglDepthMask(GL_TRUE);
 
-  if (!this->Quad)
+  std::unique_ptr<Resources>& own = this->OfWindow[window];
+  if (!own)
   {
-    this->Quad = std::make_unique<vtkOpenGLQuadHelper>(window, nullptr, FragmentShader, nullptr);
-    this->Color.reset(NewTexture(window));
-    this->Depth.reset(NewTexture(window));
+    own = std::make_unique<Resources>(window);
   }
-  window->GetShaderCache()->ReadyShaderProgram(this->Quad->Program);
+  vtkShaderProgram* const program = own->Quad.Program;
+  window->GetShaderCache()->ReadyShaderProgram(program);
   const auto width = static_cast<unsigned int>(size.x);
   const auto height = static_cast<unsigned int>(size.y);
-  this->Color->Create2DFromRaw(width, height, 4, VTK_UNSIGNED_CHAR, this->Colors.data());
-  this->Depth->Create2DFromRaw(width, height, 1, VTK_FLOAT, this->Depths.data());
-  this->Color->Activate();
-  this->Depth->Activate();
-  this->Quad->Program->SetUniformi("colorTexture", this->Color->GetTextureUnit());
-  this->Quad->Program->SetUniformi("depthTexture", this->Depth->GetTextureUnit());
+  own->Color->Create2DFromRaw(width, height, 4, VTK_UNSIGNED_CHAR, this->Colors.data());
+  own->Depth->Create2DFromRaw(width, height, 1, VTK_FLOAT, this->Depths.data());
+  own->Color->Activate();
+  own->Depth->Activate();
+  program->SetUniformi("colorTexture", own->Color->GetTextureUnit());
+  program->SetUniformi("depthTexture", own->Depth->GetTextureUnit());
   for (const PixelRect& part : parts)
   {
     const glm::ivec2 low = corner + part.Lo - rect.Lo;
     state->vtkglScissor(low.x, low.y, part.Size().x, part.Size().y);
-    this->Quad->Render();
+    own->Quad.Render();
   }
-  this->Depth->Deactivate();
-  this->Color->Deactivate();
+  own->Depth->Deactivate();
+  own->Color->Deactivate();
 }
 
 void FramebufferExchange::ReleaseGraphicsResources(vtkWindow* window)
 {
-  if (this->Quad)
+  for (auto own = this->OfWindow.begin(); own != this->OfWindow.end();)
   {
-    this->Quad->ReleaseGraphicsResources(window);
-    this->Color->ReleaseGraphicsResources(window);
-    this->Depth->ReleaseGraphicsResources(window);
-    this->Quad.reset();
-    this->Color.reset();
-    this->Depth.reset();
+    if (window && own->first != window)
+    {
+      ++own;
+      continue;
+    }
+    own->second->Release(window);
+    own = this->OfWindow.erase(own);
   }
 }
 

@@ -5,13 +5,12 @@
 #include "Render/RayCamera.h"
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <vector>
 
-class vtkOpenGLQuadHelper;
 class vtkOpenGLRenderWindow;
 class vtkRenderer;
-class vtkTextureObject;
 class vtkWindow;
 
 namespace banyan
@@ -38,17 +37,18 @@ public:
   void Write(vtkRenderer* renderer, const PixelRect& rect, const std::vector<OpaquePixel>& pixels,
     const std::vector<PixelRect>& parts, bool blend);
 
+  /// Of one window, with its context current; of all of them when it is null.
   void ReleaseGraphicsResources(vtkWindow* window);
 
 private:
+  struct Resources;
+
   void ReadBound(
     const glm::ivec2& corner, const glm::ivec2& size, std::vector<OpaquePixel>& pixels);
   void ReadResolved(vtkOpenGLRenderWindow* window, int framebuffer, int buffer,
     const glm::ivec2& corner, const glm::ivec2& size, std::vector<OpaquePixel>& pixels);
 
-  std::unique_ptr<vtkOpenGLQuadHelper> Quad;
-  std::unique_ptr<vtkTextureObject, void (*)(vtkTextureObject*)> Color;
-  std::unique_ptr<vtkTextureObject, void (*)(vtkTextureObject*)> Depth;
+  std::map<vtkWindow*, std::unique_ptr<Resources>> OfWindow; ///< each has a context of its own
   std::vector<std::uint8_t> Colors; ///< on their way; kept, as pictures come one after the other
   std::vector<float> Depths;
 };

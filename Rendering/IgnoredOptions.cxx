@@ -1,10 +1,37 @@
 #include "IgnoredOptions.h"
 
+#include "vtkPiecewiseFunction.h"
 #include "vtkVolumeMapper.h"
 #include "vtkVolumeProperty.h"
 
 namespace banyan
 {
+
+namespace
+{
+
+/// Copies of properties have a function that is 1 everywhere.
+bool HasGradientOpacity(vtkVolumeProperty* property)
+{
+  if (property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D ||
+      !property->HasGradientOpacity(0) || property->GetDisableGradientOpacity(0) != 0)
+  {
+    return false;
+  }
+  vtkPiecewiseFunction* const function = property->GetGradientOpacity(0);
+  for (int i = 0; i < function->GetSize(); ++i)
+  {
+    double node[4];
+    function->GetNodeValue(i, node);
+    if (node[1] != 1.0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+} // namespace
 
 std::string IgnoredOptions(vtkVolumeMapper* mapper, vtkVolumeProperty* property, int components)
 {
@@ -16,8 +43,7 @@ std::string IgnoredOptions(vtkVolumeMapper* mapper, vtkVolumeProperty* property,
       names += names.empty() ? option : std::string(", ") + option;
     }
   };
-  name(property->HasGradientOpacity(0) && property->GetDisableGradientOpacity(0) == 0,
-    "GradientOpacity (opacity follows the value alone)");
+  name(HasGradientOpacity(property), "GradientOpacity (opacity follows the value alone)");
   name(property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D,
     "TransferFunctionMode 2D (the one-dimensional functions are drawn)");
   name(property->GetIndependentComponents() == 0 && components > 1,

@@ -40,7 +40,12 @@ class vtkMultiProcessController;
  * are ignored, and so is shading in modes other than composite. Averages are grey, from the lowest
  * to the highest value of the data (of all steps of an encoded series). Options that are set and
  * have no effect (gradient opacity, 2D transfer functions, and more: see banyan::IgnoredOptions) are
- * named in a warning, once.
+ * named in a warning, once. vtkVolumePicker and vtkCellPicker pick image data; hardware selection
+ * (vtkPropPicker, vtkHardwareSelector) does not see the volume. SetAbortExecute(1) stops what a general
+ * mesh takes before its first picture: it is not drawn until the mesh, or an option of it, is another.
+ *
+ * @par Errors: Render() throws nothing. What cannot be drawn is said by an ErrorEvent, once as long as
+ * it stays the same; nothing of the volume is drawn then, on any rank.
  */
 class BANYANRENDERING_EXPORT vtkBanyanVolumeMapper : public vtkVolumeMapper
 {
