@@ -19,9 +19,10 @@ struct Offsets
   double EverySecondStep; ///< of distances that are odd powers of two
 };
 
-SamplingPlan PlanOf(const Offsets& offsets, double tolerance)
+SamplingPlan PlanOf(const Offsets& offsets, double tolerance, bool shaded = false)
 {
-  const RayScene scene = scenes::Scene(glm::ivec3(65), glm::ivec2(512));
+  RayScene scene = scenes::Scene(glm::ivec3(65), glm::ivec2(512));
+  scene.Shading.On = shaded;
   const SamplingWish wish{ tolerance, 1.0, 2, 0, /*LeastCells=*/1, /*LargestPixelStride=*/1 };
   return PlanSamplings(scene, wish,
     [&](const RayScene& pilot)
@@ -52,6 +53,17 @@ int LevelOfFirstTile(const SamplingPlan& plan)
 {
   const auto number = static_cast<std::size_t>(plan.Samplings->NumberAt(glm::ivec2(0)));
   return plan.Samplings->Samplings()[number].Level;
+}
+
+double LongestDistanceOf(const SamplingPlan& plan)
+{
+  const std::vector<bool> used = plan.Samplings->Used();
+  double longest = 0.0;
+  for (std::size_t i = 0; i < used.size(); ++i)
+  {
+    longest = std::max(longest, used[i] ? plan.Samplings->Samplings()[i].Distance : 0.0);
+  }
+  return longest;
 }
 
 // With a tolerance of 8 a tile may be off by 7, and levels and distances by half of it each. Four
@@ -89,6 +101,21 @@ TEST(SamplingPlanLevels, TheLeastErrorIsTakenWhereNoneIsSmallEnough)
   ASSERT_TRUE(plan.Samplings);
   EXPECT_EQ(LevelOfFirstTile(plan), 0);
   EXPECT_NEAR(plan.EstimatedError, 10.0 + 1.0, 1e-3);
+}
+
+// Where a ray meets a place without a gradient, no pilot says how far single pixels are off.
+TEST(SamplingPlanLevels, ShadedSamplesAreNoFurtherApartThanNormalsAllow)
+{
+  constexpr Offsets allAlike{ { 0.0, 0.0, 0.0 }, 0.0 };
+  for (const double tolerance : { 0.5, 1.0, 2.0, 8.0 })
+  {
+    const SamplingPlan shaded = PlanOf(allAlike, tolerance, /*shaded=*/true);
+    const double distance = LongestDistanceOf(shaded);
+    EXPECT_LE(1.1 * std::pow(distance, 1.7), tolerance);
+    EXPECT_GE(shaded.EstimatedError, 1.1 * std::pow(distance, 1.7));
+    EXPECT_GE(1.1 * std::pow(2.0 * distance, 1.7), 0.4 * tolerance) << "and not much closer";
+    EXPECT_GE(LongestDistanceOf(PlanOf(allAlike, tolerance)), 4.0) << "unshaded";
+  }
 }
 
 } // namespace
