@@ -43,11 +43,5 @@ set_property(GLOBAL PROPERTY
 paraview_plugin_build(
   PLUGINS ${banyan_plugins}
   PLUGINS_FILE_NAME "banyan.plugins.xml"
+  HEADERS_DESTINATION "${BANYAN_INSTALL_HEADERS}"
   DISABLE_XML_DOCUMENTATION ON)
-
-# find_package(Banyan) in another project finds the modules in this build folder.
-export(TARGETS BanyanCore BanyanReaders BanyanFilters BanyanRendering
-  NAMESPACE Banyan::
-  FILE "${CMAKE_BINARY_DIR}/BanyanTargets.cmake")
-configure_file("${CMAKE_CURRENT_LIST_DIR}/BanyanConfig.cmake.in"
-  "${CMAKE_BINARY_DIR}/BanyanConfig.cmake" @ONLY)
