@@ -297,7 +297,8 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
     this->InteractiveImageErrorTolerance, this->InteractiveFrameSeconds,
     renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0, this->RefineInPasses,
     this->MaxElementsPerPixel, this->ScreenErrorPixels, fixed,
-    banyan::CanKeepTolerance(this, volume->GetProperty()) };
+    banyan::CanKeepTolerance(this, volume->GetProperty()) &&
+      (!fixed || this->ScreenErrorPixels > 0.0) };
   const banyan::Timer drawing;
   {
     const banyan::PhaseScope fetching(banyan::Phase::Fetching);
@@ -305,11 +306,8 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   }
   const std::uint64_t budget = self.Field.DrawingBudget();
   const banyan::PhaseScope sampling(banyan::Phase::Sampling);
-  const bool chosen = !fixed || (wish.KeepsTolerance && this->ScreenErrorPixels > 0.0);
-  this->Statistics->SetEstimatedImageError(chosen
-                                             ? self.Tolerance.Plan(*self.Communicator, self.Field,
-                                                 scene, wish, budget, wanted.Problem, frame)
-                                             : 0.0);
+  this->Statistics->SetEstimatedImageError(self.Tolerance.Plan(
+    *self.Communicator, self.Field, scene, wish, budget, wanted.Problem, frame));
   this->Statistics->SetMeshDeviation(self.Field.MeshDeviation());
   const banyan::FrameStatistics pilots = frame;
   compositing.Method = static_cast<banyan::CompositingMethod>(this->Compositing);

@@ -99,8 +99,10 @@ public:
   ///@{
   /**
    * A fixed distance between samples along a ray, in edges of the smallest cell, in place of the
-   * tolerance. Opacities are corrected for it. Default 0: the tolerance decides (projections and
-   * nearest interpolation take 1). Allowed [0, 100].
+   * tolerance. Opacities are corrected for it. While interacting, frames that take longer than
+   * InteractiveFrameSeconds are drawn from coarser levels, whose distances are longer by as much.
+   * Default 0: the tolerance decides (projections and nearest interpolation take 1). Allowed
+   * [0, 100].
    */
   vtkSetClampMacro(SampleDistanceVoxels, double, 0.0, 100.0);
   vtkGetMacro(SampleDistanceVoxels, double);

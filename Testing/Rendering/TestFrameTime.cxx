@@ -37,6 +37,13 @@ struct Kind
   std::string Name;
   int BlendMode = vtkVolumeMapper::COMPOSITE_BLEND;
   int Interpolation = VTK_LINEAR_INTERPOLATION;
+  double SampleDistanceVoxels = 0.0;
+
+  bool HasTolerance() const
+  {
+    return this->BlendMode == vtkVolumeMapper::COMPOSITE_BLEND &&
+           this->Interpolation == VTK_LINEAR_INTERPOLATION && this->SampleDistanceVoxels == 0.0;
+  }
 };
 
 class Turning
@@ -49,6 +56,7 @@ public:
     mapper->SetInteractiveImageErrorTolerance(0.5);
     mapper->SetNumberOfThreads(1);
     mapper->SetBlendMode(kind.BlendMode);
+    mapper->SetSampleDistanceVoxels(kind.SampleDistanceVoxels);
     this->Shown.Volume->GetProperty()->SetInterpolationType(kind.Interpolation);
     this->Shown.Window->SetSize(640, 640);
     this->Shown.Window->SetDesiredUpdateRate(5.0);
@@ -159,8 +167,7 @@ void Try(vtkBanyanVolumeMapper* mapper, const Kind& kind)
 {
   Turning scene(mapper, kind);
   HeavyScenesKeepThePromise(scene, kind.Name);
-  if (kind.BlendMode != vtkVolumeMapper::COMPOSITE_BLEND ||
-      kind.Interpolation == VTK_NEAREST_INTERPOLATION)
+  if (!kind.HasTolerance())
   {
     StillPicturesAreExact(scene, mapper, kind.Name);
   }
@@ -176,6 +183,7 @@ int main()
   Try(plain, { "plain" });
   Try(plain, { "labels", vtkVolumeMapper::COMPOSITE_BLEND, VTK_NEAREST_INTERPOLATION });
   Try(plain, { "plain maximum", vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND });
+  Try(plain, { "fixed distance", vtkVolumeMapper::COMPOSITE_BLEND, VTK_LINEAR_INTERPOLATION, 0.5 });
   WriteSeries(folder / "series.banyan", Waves, Samples, 1, 1e-4);
   vtkNew<vtkBanyanSeriesReader> reader;
   reader->SetFileName((folder / "series.banyan").c_str());
