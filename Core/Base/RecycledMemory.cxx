@@ -1,20 +1,92 @@
 #include "Base/RecycledMemory.h"
 
-#include <map>
 #include <mutex>
 #include <new>
+#include <vector>
 
 namespace banyan
 {
 namespace
 {
 
-/// Pieces that were given back, by what they hold.
-struct Shelf
+struct Piece
 {
+  void* Memory;
+  std::size_t Bytes;
+};
+
+/// Pieces that were given back.
+class Shelf
+{
+public:
+  /// @return null where there is none of this size
+  void* Take(std::size_t bytes)
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    // What was given last is asked for next, as a rule.
+    for (std::size_t i = this->OldestFirst.size(); i-- > 0;)
+    {
+      if (this->OldestFirst[i].Bytes == bytes)
+      {
+        return this->Remove(i);
+      }
+    }
+    return nullptr;
+  }
+
+  /// Those that lie longest make room. @return false if it is not kept
+  bool Give(void* memory, std::size_t bytes) noexcept
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    if (bytes > LargeMemory::MostKeptBytes)
+    {
+      return false;
+    }
+    try
+    {
+      this->OldestFirst.push_back({ memory, bytes });
+    }
+    catch (const std::bad_alloc&)
+    {
+      return false;
+    }
+    this->Held += bytes;
+    this->Shrink(LargeMemory::MostKeptBytes);
+    return true;
+  }
+
+  void Clear() noexcept
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->Shrink(0);
+  }
+
+  std::size_t Bytes()
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    return this->Held;
+  }
+
+private:
+  void* Remove(std::size_t number) noexcept
+  {
+    const Piece piece = this->OldestFirst[number];
+    this->OldestFirst.erase(this->OldestFirst.begin() + static_cast<std::ptrdiff_t>(number));
+    this->Held -= piece.Bytes;
+    return piece.Memory;
+  }
+
+  void Shrink(std::size_t most) noexcept
+  {
+    while (this->Held > most)
+    {
+      ::operator delete(this->Remove(0));
+    }
+  }
+
   std::mutex Mutex;
-  std::multimap<std::size_t, void*> Pieces;
-  std::size_t Bytes = 0;
+  std::vector<Piece> OldestFirst; ///< at most 2048
+  std::size_t Held = 0;
 };
 
 /// Never destroyed: pictures may live as long as the process.
@@ -48,61 +120,26 @@ void* LargeMemory::Take(std::size_t bytes)
   {
     throw std::bad_alloc();
   }
-  Shelf& shelf = TheShelf();
-  {
-    const std::lock_guard<std::mutex> lock(shelf.Mutex);
-    const auto found = shelf.Pieces.find(held);
-    if (found != shelf.Pieces.end())
-    {
-      void* const memory = found->second;
-      shelf.Pieces.erase(found);
-      shelf.Bytes -= held;
-      return memory;
-    }
-  }
-  return ::operator new(held);
+  void* const memory = TheShelf().Take(held);
+  return memory ? memory : ::operator new(held);
 }
 
 void LargeMemory::Give(void* memory, std::size_t bytes) noexcept
 {
-  if (bytes >= Smallest)
+  if (bytes < Smallest || !TheShelf().Give(memory, RoundedUp(bytes)))
   {
-    const std::size_t held = RoundedUp(bytes);
-    Shelf& shelf = TheShelf();
-    const std::lock_guard<std::mutex> lock(shelf.Mutex);
-    try
-    {
-      if (shelf.Bytes + held <= MostKeptBytes)
-      {
-        shelf.Pieces.emplace(held, memory);
-        shelf.Bytes += held;
-        return;
-      }
-    }
-    catch (const std::bad_alloc&)
-    {
-    }
+    ::operator delete(memory);
   }
-  ::operator delete(memory);
 }
 
 std::size_t LargeMemory::KeptBytes()
 {
-  Shelf& shelf = TheShelf();
-  const std::lock_guard<std::mutex> lock(shelf.Mutex);
-  return shelf.Bytes;
+  return TheShelf().Bytes();
 }
 
 void LargeMemory::LetGo() noexcept
 {
-  Shelf& shelf = TheShelf();
-  const std::lock_guard<std::mutex> lock(shelf.Mutex);
-  for (const auto& piece : shelf.Pieces)
-  {
-    ::operator delete(piece.second);
-  }
-  shelf.Pieces.clear();
-  shelf.Bytes = 0;
+  TheShelf().Clear();
 }
 
 } // namespace banyan

@@ -10,7 +10,7 @@ namespace banyan
 /// Large pieces of memory that are needed again soon, such as pictures of frame after frame, and
 /// bricks that are packed for one picture. Where they go back to the system in between, it clears
 /// each page anew: 16 MB take it longer than drawing what is in a simple picture. Those given back
-/// are kept, up to MostKeptBytes in all. Safe to use from any thread.
+/// last are kept, up to MostKeptBytes in all. Safe to use from any thread.
 class LargeMemory
 {
 public:
@@ -28,21 +28,34 @@ public:
 };
 
 /// An allocator of LargeMemory.
-template <class T>
+/// @tparam Smallest pieces of fewer bytes are not kept: of those whose size is ever another one,
+/// such as small pictures, more and more would be
+template <class T, std::size_t Smallest = std::size_t{ 1 } << 20>
 struct RecycledMemory
 {
+  static_assert(Smallest >= LargeMemory::Smallest, "smaller ones are not kept anyway");
   using value_type = T;
 
   RecycledMemory() = default;
   template <class U>
-  RecycledMemory(const RecycledMemory<U>&) noexcept
+  struct rebind
+  {
+    using other = RecycledMemory<U, Smallest>;
+  };
+  template <class U>
+  RecycledMemory(const RecycledMemory<U, Smallest>&) noexcept
   {
   }
 
-  T* allocate(std::size_t count) { return static_cast<T*>(LargeMemory::Take(count * sizeof(T))); }
+  T* allocate(std::size_t count)
+  {
+    const std::size_t bytes = count * sizeof(T);
+    return static_cast<T*>(bytes < Smallest ? ::operator new(bytes) : LargeMemory::Take(bytes));
+  }
   void deallocate(T* memory, std::size_t count) noexcept
   {
-    LargeMemory::Give(memory, count * sizeof(T));
+    const std::size_t bytes = count * sizeof(T);
+    bytes < Smallest ? ::operator delete(memory) : LargeMemory::Give(memory, bytes);
   }
 
   /// Elements that `resize` adds are not set: whoever wants zeros says so.
@@ -53,12 +66,12 @@ struct RecycledMemory
   }
 
   template <class U>
-  friend bool operator==(const RecycledMemory&, const RecycledMemory<U>&) noexcept
+  friend bool operator==(const RecycledMemory&, const RecycledMemory<U, Smallest>&) noexcept
   {
     return true;
   }
   template <class U>
-  friend bool operator!=(const RecycledMemory&, const RecycledMemory<U>&) noexcept
+  friend bool operator!=(const RecycledMemory&, const RecycledMemory<U, Smallest>&) noexcept
   {
     return false;
   }

@@ -72,7 +72,7 @@ public:
 
 private:
   /// Bricks that are packed for one picture come and go by thousands.
-  using Floats = std::vector<float, RecycledMemory<float>>;
+  using Floats = std::vector<float, RecycledMemory<float, LargeMemory::Smallest>>;
 
   /// Values as interpolations take them, one after the other.
   struct Dense

@@ -36,9 +36,47 @@ TEST(RecycledMemory, ThePictureAfterFindsTheMemoryOfTheOneBefore)
 TEST(RecycledMemory, SmallPiecesAreNotKept)
 {
   LargeMemory::LetGo();
-  std::vector<float, RecycledMemory<float>> some(1000, 1.0f);
-  some = {};
+  {
+    const std::vector<float, RecycledMemory<float>> some(1000, 1.0f);
+  }
   EXPECT_EQ(LargeMemory::KeptBytes(), 0u);
+}
+
+TEST(RecycledMemory, IsKeptFromTheSizeOnThatItsOwnerSays)
+{
+  LargeMemory::LetGo();
+  constexpr std::size_t floats = LargeMemory::Smallest / sizeof(float);
+  {
+    const std::vector<float, RecycledMemory<float>> picture(floats);
+  }
+  EXPECT_EQ(LargeMemory::KeptBytes(), 0u);
+  {
+    const std::vector<float, RecycledMemory<float, LargeMemory::Smallest>> brick(floats);
+  }
+  EXPECT_EQ(LargeMemory::KeptBytes(), LargeMemory::Smallest);
+  LargeMemory::LetGo();
+}
+
+// Otherwise memory of sizes that nobody asks for any more would fill the room of others.
+TEST(RecycledMemory, WhatLiesLongestMakesRoom)
+{
+  LargeMemory::LetGo();
+  constexpr std::size_t piece = std::size_t{ 1 } << 20;
+  std::vector<void*> old;
+  for (std::size_t i = 0; i < LargeMemory::MostKeptBytes / piece; ++i)
+  {
+    old.push_back(LargeMemory::Take(piece));
+  }
+  for (void* memory : old)
+  {
+    LargeMemory::Give(memory, piece);
+  }
+  void* const picture = LargeMemory::Take(Picture);
+  LargeMemory::Give(picture, Picture);
+  EXPECT_LE(LargeMemory::KeptBytes(), LargeMemory::MostKeptBytes);
+  EXPECT_EQ(LargeMemory::Take(Picture), picture);
+  LargeMemory::Give(picture, Picture);
+  LargeMemory::LetGo();
 }
 
 TEST(RecycledMemory, KeepsNoMoreThanItMay)
