@@ -1,6 +1,7 @@
 #include "Render/KeptBricks.h"
 
 #include <atomic>
+#include <mutex>
 
 namespace banyan
 {
@@ -31,14 +32,14 @@ void KeptBricks::SetHeld(std::uint64_t bytes)
 
 std::uint64_t KeptBricks::ShareOf(std::uint64_t budgetBytes) const
 {
-  const std::lock_guard<std::mutex> lock(this->Mutex);
+  const std::shared_lock<std::shared_mutex> lock(this->Mutex);
   const int others = Holders - (this->HeldBytes > 0 ? 1 : 0);
   return budgetBytes / static_cast<std::uint64_t>(others + 1);
 }
 
 void KeptBricks::BeginPicture(std::uint64_t limitBytes, bool ages)
 {
-  const std::lock_guard<std::mutex> lock(this->Mutex);
+  const std::lock_guard<std::shared_mutex> lock(this->Mutex);
   this->LimitBytes = limitBytes;
   this->Picture += ages ? 1 : 0;
   if (!ages && this->HeldBytes <= limitBytes)
@@ -60,25 +61,46 @@ void KeptBricks::BeginPicture(std::uint64_t limitBytes, bool ages)
   }
 }
 
-KeptBricks::Pointer KeptBricks::Find(
-  std::int64_t brick, const Box& cells, double low, bool gradients)
+/// The caller has the lock. Notes that the brick is used.
+const KeptBricks::Item* KeptBricks::FindHere(const Wanted& wanted) const
 {
-  const std::lock_guard<std::mutex> lock(this->Mutex);
-  const auto item = this->Items.find(brick);
-  if (item == this->Items.end() || item->second.Packed->Cells() != cells ||
-      item->second.Packed->HasGradients() != gradients ||
-      (item->second.Packed->Relative() && item->second.Packed->Low() != low))
+  const auto item = this->Items.find(wanted.Brick);
+  if (item == this->Items.end())
   {
     return nullptr;
   }
-  item->second.UsedIn = this->Picture;
-  return item->second.Packed;
+  const PackedBrick& packed = *item->second.Packed;
+  if (packed.Cells() != wanted.Cells || packed.HasGradients() != wanted.Gradients ||
+      (packed.Relative() && packed.Low() != wanted.Low))
+  {
+    return nullptr;
+  }
+  item->second.UsedIn.store(this->Picture, std::memory_order_relaxed);
+  return &item->second;
+}
+
+void KeptBricks::Find(
+  const Wanted* wanted, std::size_t count, std::uint64_t visible, Found* found) const
+{
+  const std::shared_lock<std::shared_mutex> lock(this->Mutex);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const Item* const item = wanted[i].Brick < 0 ? nullptr : this->FindHere(wanted[i]);
+    if (item)
+    {
+      found[i].Packed = item->Packed;
+      if (item->VisibleUnder == visible)
+      {
+        found[i].Visibility = item->Visibility;
+      }
+    }
+  }
 }
 
 void KeptBricks::Keep(std::int64_t brick, const Pointer& packed)
 {
   const std::uint64_t bytes = BytesOf(*packed);
-  const std::lock_guard<std::mutex> lock(this->Mutex);
+  const std::lock_guard<std::shared_mutex> lock(this->Mutex);
   const auto item = this->Items.find(brick);
   if (item != this->Items.end())
   {
@@ -88,23 +110,14 @@ void KeptBricks::Keep(std::int64_t brick, const Pointer& packed)
   if (this->HeldBytes + bytes <= this->LimitBytes)
   {
     this->SetHeld(this->HeldBytes + bytes);
-    this->Items[brick] = { packed, this->Picture, std::nullopt, 0 };
+    this->Items.try_emplace(brick, packed, this->Picture);
   }
-}
-
-std::optional<BrickVisibility> KeptBricks::FindVisibility(
-  std::int64_t brick, std::uint64_t visible) const
-{
-  const std::lock_guard<std::mutex> lock(this->Mutex);
-  const auto item = this->Items.find(brick);
-  const bool known = item != this->Items.end() && item->second.VisibleUnder == visible;
-  return known ? item->second.Visibility : std::nullopt;
 }
 
 void KeptBricks::KeepVisibility(
   std::int64_t brick, std::uint64_t visible, const BrickVisibility& visibility)
 {
-  const std::lock_guard<std::mutex> lock(this->Mutex);
+  const std::lock_guard<std::shared_mutex> lock(this->Mutex);
   const auto item = this->Items.find(brick);
   if (item != this->Items.end())
   {
@@ -115,7 +128,7 @@ void KeptBricks::KeepVisibility(
 
 GroupList KeptBricks::FindGroups(int level, std::uint64_t visible) const
 {
-  const std::lock_guard<std::mutex> lock(this->Mutex);
+  const std::shared_lock<std::shared_mutex> lock(this->Mutex);
   const auto item = this->Groups.find(level);
   return item != this->Groups.end() && item->second.first == visible ? item->second.second
                                                                      : nullptr;
@@ -123,13 +136,13 @@ GroupList KeptBricks::FindGroups(int level, std::uint64_t visible) const
 
 void KeptBricks::KeepGroups(int level, std::uint64_t visible, GroupList groups)
 {
-  const std::lock_guard<std::mutex> lock(this->Mutex);
+  const std::lock_guard<std::shared_mutex> lock(this->Mutex);
   this->Groups[level] = { visible, std::move(groups) };
 }
 
 std::uint64_t KeptBricks::Bytes() const
 {
-  const std::lock_guard<std::mutex> lock(this->Mutex);
+  const std::shared_lock<std::shared_mutex> lock(this->Mutex);
   return this->HeldBytes;
 }
 

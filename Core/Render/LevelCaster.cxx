@@ -19,6 +19,8 @@ constexpr std::size_t BricksPerBatch = 512;
 /// tiles until there are so many for each thread, and no further than this.
 constexpr std::size_t TilesPerThread = 4;
 constexpr int SmallestEdge = 8;
+/// Kept bricks that a thread looks for in one go.
+constexpr std::size_t FoundTogether = 64;
 
 } // namespace
 
@@ -62,6 +64,7 @@ void LevelCaster::Draw(FloatImage& picture, PictureWatcher* watcher)
   this->Picture = &picture;
   this->Watcher = watcher;
   this->MakeTiles();
+  this->FindKept();
   while (this->Taken < this->Bricks.size())
   {
     this->Taken = this->TakeBatch(this->Taken);
@@ -100,15 +103,15 @@ void LevelCaster::MakeTiles()
   }
   for (std::size_t i = 0; i < this->Bricks.size(); ++i)
   {
-    this->ForTilesUnder(
-      this->Bricks[i].Footprint, [i](Tile& tile, const PixelRect&) { tile.End = i + 1; });
+    this->ForTilesUnder(this->Bricks[i].Footprint,
+      [&](std::size_t number, const PixelRect&) { this->Tiles[number].End = i + 1; });
   }
   // What a tile does not use of its slots need not be set.
   this->Scratch.reset(new RayTile[workers]);
   this->Meters.resize(workers);
 }
 
-/// Calls function(tile, rect) for the tiles under a footprint that have rays left.
+/// Calls function(number, rect) for the tiles under a footprint that have rays left.
 template <class Function>
 void LevelCaster::ForTilesUnder(const PixelRect& footprint, Function&& function)
 {
@@ -117,7 +120,7 @@ void LevelCaster::ForTilesUnder(const PixelRect& footprint, Function&& function)
     {
       if (!this->Tiles[number].Done)
       {
-        function(this->Tiles[number], this->Grid.RectOf(number));
+        function(number, this->Grid.RectOf(number));
       }
     });
 }
@@ -134,39 +137,71 @@ std::size_t LevelCaster::TakeBatch(std::size_t first)
 {
   this->Batch.clear();
   this->Loaded.clear();
-  for (Tile& tile : this->Tiles)
-  {
-    tile.Bricks.clear();
-  }
+  std::vector<std::size_t> tiles; // under the bricks of the batch
+  std::vector<std::size_t> ends;  // of each brick's
   const std::uint64_t left = this->BytesLeft();
   std::uint64_t bytes = 0;
   std::size_t next = first;
   for (; next < this->Bricks.size(); ++next)
   {
     const PlannedBrick& brick = this->Bricks[next];
-    KeptBricks::Pointer kept = this->FindKept(brick);
-    const bool isThere = kept || brick.Entry;
+    KeptBricks::Found& kept = this->Kept[next];
+    const bool isThere = kept.Packed || brick.Entry;
     const std::uint64_t brickBytes = isThere ? 0 : this->BytesOf(brick);
     const bool full = bytes + brickBytes > left || this->Batch.size() >= BricksPerBatch;
     if (full && !this->Batch.empty())
     {
       break;
     }
+    const std::size_t before = tiles.size();
+    this->ForTilesUnder(
+      brick.Footprint, [&](std::size_t number, const PixelRect&) { tiles.push_back(number); });
     // What is in memory anyway costs less to draw than to look for open pixels.
-    if (!this->AnyRayOpen(brick, !isThere && this->LoadBytesOf(brick) > 0))
+    const bool look = !isThere && this->LoadBytesOf(brick) > 0;
+    if (tiles.size() == before || (look && !this->AnyRayOpen(brick)))
     {
+      tiles.resize(before);
       this->Statistics.BricksSkipped += BricksIn(brick);
       continue;
     }
-    const int position = static_cast<int>(this->Batch.size());
-    this->ForTilesUnder(brick.Footprint,
-      [position](Tile& tile, const PixelRect&) { tile.Bricks.push_back(position); });
+    ends.push_back(tiles.size());
     this->Batch.push_back(&brick);
     this->Loaded.emplace_back();
-    this->Loaded.back().Packed = std::move(kept);
+    this->Loaded.back().Packed = std::move(kept.Packed);
+    this->Loaded.back().Known = std::move(kept.Visibility);
     bytes += brickBytes;
   }
+  this->EnterInTiles(tiles, ends);
   return next;
+}
+
+/// Makes the lists of the tiles.
+/// @param tiles under the first brick of the batch, under the second, and so on
+/// @param ends of each brick's tiles in these
+void LevelCaster::EnterInTiles(
+  const std::vector<std::size_t>& tiles, const std::vector<std::size_t>& ends)
+{
+  std::vector<std::size_t> counts(this->Tiles.size(), 0);
+  for (const std::size_t tile : tiles)
+  {
+    ++counts[tile];
+  }
+  std::size_t first = 0;
+  for (std::size_t tile = 0; tile < this->Tiles.size(); ++tile)
+  {
+    this->Tiles[tile].FirstBrick = first;
+    this->Tiles[tile].EndOfBricks = first;
+    first += counts[tile];
+  }
+  this->BricksOfTiles.resize(tiles.size());
+  std::size_t i = 0;
+  for (std::size_t brick = 0; brick < ends.size(); ++brick)
+  {
+    for (; i < ends[brick]; ++i)
+    {
+      this->BricksOfTiles[this->Tiles[tiles[i]].EndOfBricks++] = static_cast<int>(brick);
+    }
+  }
 }
 
 /// As loaded and as packed.
@@ -187,17 +222,30 @@ std::uint64_t LevelCaster::BytesToDraw() const
   return bytes;
 }
 
-/// Null for bricks that are not kept, or need not be.
-KeptBricks::Pointer LevelCaster::FindKept(const PlannedBrick& brick) const
+/// Looks which bricks are kept, of those that need to be.
+void LevelCaster::FindKept()
 {
-  return brick.Entry ? nullptr
-                     : this->Source.Kept().Find(this->KeptNumberOf(brick), brick.Cells,
-                         this->AnySampling->Table.Low(), this->Shading != nullptr);
+  const double low = this->AnySampling->Table.Low();
+  const bool shaded = this->Shading != nullptr;
+  const std::size_t count = this->Bricks.size();
+  this->Kept.assign(count, {});
+  this->Pool.ParallelFor(static_cast<std::int64_t>((count + FoundTogether - 1) / FoundTogether),
+    [&](std::int64_t part)
+    {
+      const std::size_t first = static_cast<std::size_t>(part) * FoundTogether;
+      const std::size_t some = std::min(FoundTogether, count - first);
+      KeptBricks::Wanted wanted[FoundTogether];
+      for (std::size_t i = 0; i < some; ++i)
+      {
+        const PlannedBrick& brick = this->Bricks[first + i];
+        wanted[i] = { brick.Entry ? -1 : this->KeptNumberOf(brick), brick.Cells, low, shaded };
+      }
+      this->Source.Kept().Find(wanted, some, this->Visible.Number(), &this->Kept[first]);
+    });
 }
 
-/// Whether a tile under a brick has rays left; if asked to look at pixels, whether one of them has
-/// not reached the opacity limit, or a better rank.
-bool LevelCaster::AnyRayOpen(const PlannedBrick& brick, bool lookAtPixels)
+/// Whether a pixel under a brick has not reached the opacity limit, or a better rank.
+bool LevelCaster::AnyRayOpen(const PlannedBrick& brick)
 {
   const float limit = this->TransmittanceLimit();
   const ProjectionTable* const projection = this->AnySampling->Projection.get();
@@ -206,12 +254,13 @@ bool LevelCaster::AnyRayOpen(const PlannedBrick& brick, bool lookAtPixels)
   { return ranked ? pixel.r < brick.HighestRank : pixel.a > limit; };
   bool open = false;
   this->ForTilesUnder(brick.Footprint,
-    [&](const Tile& tile, const PixelRect& rect)
+    [&](std::size_t number, const PixelRect& rect)
     {
+      const Tile& tile = this->Tiles[number];
       const PixelRect part = Intersection(brick.Footprint, rect);
       const int stride = tile.PixelStride;
       const glm::ivec2 first = (part.Lo + (stride - 1)) / stride * stride;
-      open = open || !lookAtPixels || !tile.Begun;
+      open = open || !tile.Begun;
       for (int y = first.y; y < part.Hi.y && !open; y += stride)
       {
         for (int x = first.x; x < part.Hi.x && !open; x += stride)

@@ -56,10 +56,19 @@ private:
     std::optional<int> Entry;
   };
 
+  /// Of some of the bricks.
+  struct PartOfPlan
+  {
+    std::vector<PlannedBrick> Bricks;
+    PixelRect Touched;
+    std::int64_t Skipped = 0;
+  };
+
   /// Packed, or as the source gives it where it cannot be packed, or nothing where all is known.
   struct LoadedBrick
   {
     std::shared_ptr<const PackedBrick> Packed;
+    std::optional<BrickVisibility> Known; ///< Seen, of a brick that was kept
     BrickVisibility Seen;
     PixelRect Footprint; ///< of what can be seen
     BrickView View;
@@ -81,24 +90,28 @@ private:
   {
     const Sampled* Sampling = nullptr; ///< null for tiles of other levels
     int PixelStride = 1;
-    bool Begun = false;      ///< its pixels are set
-    bool Done = false;       ///< no ray of the tile needs another brick
-    bool Final = false;      ///< its pixels have opacities
-    std::size_t End = 0;     ///< behind the last brick over it
-    std::vector<int> Bricks; ///< positions in the batch, front to back
+    bool Begun = false;         ///< its pixels are set
+    bool Done = false;          ///< no ray of the tile needs another brick
+    bool Final = false;         ///< its pixels have opacities
+    std::size_t End = 0;        ///< behind the last brick over it
+    std::size_t FirstBrick = 0; ///< in BricksOfTiles
+    std::size_t EndOfBricks = 0;
   };
 
   void AddSamplings();
   void Plan();
   GroupList MembersOf(const BrickGroups& groups) const;
   GroupMembers Look(const BrickGroups& groups, const Box& bricks, ValueMask bins) const;
-  bool PlanTogether(const BrickGroups& groups, const Box& bricks, const GroupMembers& members);
-  void PlanBrick(std::int64_t number, bool visible);
+  void PlanGroup(const BrickGroups& groups, std::int64_t group, const GroupMembers& members,
+    const Viewpoint& view, PartOfPlan& plan) const;
+  bool PlanTogether(const BrickGroups& groups, const Box& bricks, const GroupMembers& members,
+    PartOfPlan& plan) const;
+  void PlanBrick(std::int64_t number, bool visible, PartOfPlan& plan) const;
   bool SeeBrick(PlannedBrick& brick) const;
   bool AllOnScreen(const BrickGroups& groups, const PlannedBrick& brick) const;
   void PlaceCells(PlannedBrick& brick, const Box& own) const;
-  void SetKeys(std::size_t first, const Box& group, const Viewpoint& view);
-  void TakeIn(PlannedBrick brick);
+  void SetKeys(std::size_t first, const Box& group, const Viewpoint& view, PartOfPlan& plan) const;
+  void TakeIn(PlannedBrick brick, PartOfPlan& plan) const;
   template <class Function>
   void ForBricksOf(const PlannedBrick& brick, Function&& function) const;
   ValueRange RangeOf(const PlannedBrick& brick) const;
@@ -117,12 +130,13 @@ private:
   std::uint64_t BytesLeft() const;
   std::size_t TakeBatch(std::size_t first);
   std::uint64_t BytesOf(const PlannedBrick& brick) const;
-  KeptBricks::Pointer FindKept(const PlannedBrick& brick) const;
-  bool AnyRayOpen(const PlannedBrick& brick, bool lookAtPixels);
+  void EnterInTiles(const std::vector<std::size_t>& tiles, const std::vector<std::size_t>& ends);
+  void FindKept();
+  bool AnyRayOpen(const PlannedBrick& brick);
   float TransmittanceLimit() const;
   void DrawBatch();
   void Load(const PlannedBrick& brick, LoadedBrick& loaded) const;
-  BrickVisibility VisibilityOf(const PlannedBrick& brick, const PackedBrick& packed) const;
+  BrickVisibility LookAt(const PlannedBrick& brick, const PackedBrick& packed) const;
   KeptBricks::Pointer Pack(const PlannedBrick& brick) const;
   float GradientScale() const;
   BrickView LoadLarge(const PlannedBrick& brick) const;
@@ -162,9 +176,11 @@ private:
   FloatImage* Picture = nullptr;
   PictureWatcher* Watcher = nullptr;
   TileGrid Grid;
-  std::vector<Tile> Tiles;            ///< of the grid
-  std::unique_ptr<RayTile[]> Scratch; ///< one per worker
-  std::vector<BatchMeter> Meters;     ///< one per worker
+  std::vector<Tile> Tiles;             ///< of the grid
+  std::vector<int> BricksOfTiles;      ///< positions in the batch, front to back
+  std::unique_ptr<RayTile[]> Scratch;  ///< one per worker
+  std::vector<BatchMeter> Meters;      ///< one per worker
+  std::vector<KeptBricks::Found> Kept; ///< of all planned bricks
   std::vector<const PlannedBrick*> Batch;
   std::vector<LoadedBrick> Loaded; ///< of the batch
 };

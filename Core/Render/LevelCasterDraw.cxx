@@ -29,7 +29,7 @@ void LevelCaster::DrawBatch()
   const std::function<void(std::int64_t, int)> draw = [&](std::int64_t number, int worker)
   {
     const auto tile = static_cast<std::size_t>(number);
-    const bool any = !this->Tiles[tile].Bricks.empty();
+    const bool any = this->Tiles[tile].EndOfBricks > this->Tiles[tile].FirstBrick;
     if (any)
     {
       const auto mine = static_cast<std::size_t>(worker);
@@ -151,9 +151,10 @@ PixelRect LevelCaster::DrawnPixelsOf(const Tile& tile, const PixelRect& rect) co
     return rect;
   }
   PixelRect drawn;
-  for (const int position : tile.Bricks)
+  for (std::size_t i = tile.FirstBrick; i < tile.EndOfBricks; ++i)
   {
-    drawn = Union(drawn, Intersection(this->PixelsOf(static_cast<std::size_t>(position)), rect));
+    const auto position = static_cast<std::size_t>(this->BricksOfTiles[i]);
+    drawn = Union(drawn, Intersection(this->PixelsOf(position), rect));
   }
   return drawn;
 }
@@ -182,12 +183,13 @@ std::int64_t LevelCaster::DrawTile(std::size_t number, RayTile& rays, BatchMeter
   {
     meter.Start();
   }
-  for (const int position : tile.Bricks)
+  for (std::size_t i = tile.FirstBrick; i < tile.EndOfBricks; ++i)
   {
     if (rays.ActiveRays == 0)
     {
       break;
     }
+    const int position = this->BricksOfTiles[i];
     const PlannedBrick& brick = *this->Batch[static_cast<std::size_t>(position)];
     rays.BrickShift = rays.CellShift - brick.Level;
     const LoadedBrick& loaded = this->Loaded[static_cast<std::size_t>(position)];

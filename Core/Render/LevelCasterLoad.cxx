@@ -29,26 +29,18 @@ void LevelCaster::Load(const PlannedBrick& brick, LoadedBrick& loaded) const
   {
     return;
   }
-  loaded.Seen = this->VisibilityOf(brick, *loaded.Packed);
+  loaded.Seen = loaded.Known ? *loaded.Known : this->LookAt(brick, *loaded.Packed);
   Box& seen = loaded.Seen.Cells;
   const int size = 1 << brick.Level;
   seen = Intersection({ seen.Lo * size, seen.Hi * size }, brick.Drawn);
   loaded.Footprint = seen == brick.Drawn ? brick.Footprint : this->FootprintOf(seen);
 }
 
-BrickVisibility LevelCaster::VisibilityOf(
-  const PlannedBrick& brick, const PackedBrick& packed) const
+/// What can be seen of a brick, which is noted if the brick is kept.
+BrickVisibility LevelCaster::LookAt(const PlannedBrick& brick, const PackedBrick& packed) const
 {
-  KeptBricks& kept = this->Source.Kept();
-  const std::int64_t number = this->KeptNumberOf(brick);
-  const std::uint64_t visible = this->Visible.Number();
-  const std::optional<BrickVisibility> known = kept.FindVisibility(number, visible);
-  if (known)
-  {
-    return *known;
-  }
   const BrickVisibility seen(packed, this->RangeOf(brick), this->Visible);
-  kept.KeepVisibility(number, visible, seen);
+  this->Source.Kept().KeepVisibility(this->KeptNumberOf(brick), this->Visible.Number(), seen);
   return seen;
 }
 

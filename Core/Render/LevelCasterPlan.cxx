@@ -1,3 +1,4 @@
+#include "Base/ThreadPool.h"
 #include "Render/Interpolators.h"
 #include "Render/LevelCaster.h"
 #include "Render/VisibilityOrder.h"
@@ -12,6 +13,8 @@ namespace
 
 /// Bricks are put together where so many of what comes of it fit into the budget.
 constexpr std::uint64_t BricksOfBudget = 64;
+/// Groups that a thread plans in one go.
+constexpr std::int64_t GroupsTogether = 64;
 
 } // namespace
 
@@ -43,26 +46,46 @@ void LevelCaster::Plan()
   this->Ranks = this->Source.RanksFrontToBack(view);
   const BrickGroups groups(this->Source, this->Ranks.empty());
   const GroupList members = this->MembersOf(groups);
-  for (std::int64_t group = 0; group < groups.Count(); ++group)
+  const std::int64_t count = groups.Count();
+  std::vector<PartOfPlan> parts(
+    static_cast<std::size_t>((count + GroupsTogether - 1) / GroupsTogether));
+  this->Pool.ParallelFor(static_cast<std::int64_t>(parts.size()),
+    [&](std::int64_t part)
+    {
+      const std::int64_t end = std::min(count, (part + 1) * GroupsTogether);
+      for (std::int64_t group = part * GroupsTogether; group < end; ++group)
+      {
+        this->PlanGroup(groups, group, (*members)[static_cast<std::size_t>(group)], view,
+          parts[static_cast<std::size_t>(part)]);
+      }
+    });
+  for (const PartOfPlan& part : parts)
   {
-    const Box bricks = groups.BricksOf(group);
-    const GroupMembers& has = (*members)[static_cast<std::size_t>(group)];
-    const std::size_t first = this->Bricks.size();
-    if (!this->PlanTogether(groups, bricks, has))
-    {
-      ForMembers(groups, bricks,
-        [&](std::int64_t number, int place)
-        { this->PlanBrick(number, (has.Visible >> place & 1) != 0); });
-    }
-    if (first < this->Bricks.size())
-    {
-      this->SetKeys(first, groups.CellsOf(bricks), view);
-    }
+    this->Bricks.insert(this->Bricks.end(), part.Bricks.begin(), part.Bricks.end());
+    this->Touched = Union(this->Touched, part.Touched);
+    this->Statistics.BricksSkipped += part.Skipped;
   }
   const auto order = [](const PlannedBrick& brick)
   { return std::make_tuple(brick.Key, brick.KeyWithin, brick.Number); };
   std::sort(this->Bricks.begin(), this->Bricks.end(),
     [&order](const PlannedBrick& a, const PlannedBrick& b) { return order(a) < order(b); });
+}
+
+void LevelCaster::PlanGroup(const BrickGroups& groups, std::int64_t group,
+  const GroupMembers& members, const Viewpoint& view, PartOfPlan& plan) const
+{
+  const Box bricks = groups.BricksOf(group);
+  const std::size_t first = plan.Bricks.size();
+  if (!this->PlanTogether(groups, bricks, members, plan))
+  {
+    ForMembers(groups, bricks,
+      [&](std::int64_t number, int place)
+      { this->PlanBrick(number, (members.Visible >> place & 1) != 0, plan); });
+  }
+  if (first < plan.Bricks.size())
+  {
+    this->SetKeys(first, groups.CellsOf(bricks), view, plan);
+  }
 }
 
 /// What can be seen of all groups, wherever the camera is.
@@ -115,10 +138,9 @@ GroupMembers LevelCaster::Look(const BrickGroups& groups, const Box& bricks, Val
 /// Plans the bricks of a group as one, if all of them are to be drawn. @return whether it did, or
 /// none of them is on the screen
 bool LevelCaster::PlanTogether(
-  const BrickGroups& groups, const Box& bricks, const GroupMembers& members)
+  const BrickGroups& groups, const Box& bricks, const GroupMembers& members, PartOfPlan& plan) const
 {
-  const bool macroVoxels =
-    !this->Shading && !this->AnySampling->Projection && members.Uniform != 0;
+  const bool macroVoxels = !this->Shading && !this->AnySampling->Projection && members.Uniform != 0;
   if (bricks.Count() == 1 || members.Visible != members.There || !this->ClipPlanes.empty() ||
       (macroVoxels && members.Uniform != members.There))
   {
@@ -147,14 +169,14 @@ bool LevelCaster::PlanTogether(
   }
   if (!this->SeeBrick(brick))
   {
-    this->Statistics.BricksSkipped += bricks.Count();
+    plan.Skipped += bricks.Count();
     return true;
   }
   if (!this->AllOnScreen(groups, brick))
   {
     return false;
   }
-  this->TakeIn(brick);
+  this->TakeIn(brick, plan);
   return true;
 }
 
@@ -189,7 +211,7 @@ bool LevelCaster::AllOnScreen(const BrickGroups& groups, const PlannedBrick& bri
 }
 
 /// @param visible whether some value of it can be seen
-void LevelCaster::PlanBrick(std::int64_t number, bool visible)
+void LevelCaster::PlanBrick(std::int64_t number, bool visible, PartOfPlan& plan) const
 {
   PlannedBrick brick;
   brick.Number = number;
@@ -202,10 +224,10 @@ void LevelCaster::PlanBrick(std::int64_t number, bool visible)
   if (visible && !IsCutAway(this->ClipPlanes, brick.Drawn) && this->SeeBrick(brick))
   {
     brick.Entry = this->EntryOf(number);
-    this->TakeIn(brick);
+    this->TakeIn(brick, plan);
     return;
   }
-  ++this->Statistics.BricksSkipped;
+  ++plan.Skipped;
 }
 
 /// @return whether it is on the screen
@@ -215,12 +237,12 @@ bool LevelCaster::SeeBrick(PlannedBrick& brick) const
   return !brick.Footprint.Empty();
 }
 
-void LevelCaster::TakeIn(PlannedBrick brick)
+void LevelCaster::TakeIn(PlannedBrick brick, PartOfPlan& plan) const
 {
   const ProjectionTable* const projection = this->AnySampling->Projection.get();
   brick.HighestRank = projection ? projection->HighestRank(this->RangeOf(brick)) : 0.0f;
-  this->Touched = Union(this->Touched, brick.Footprint);
-  this->Bricks.push_back(brick);
+  plan.Touched = Union(plan.Touched, brick.Footprint);
+  plan.Bricks.push_back(brick);
 }
 
 /// The part of a brick that is to be drawn, and the cells of it that this takes.
@@ -238,12 +260,13 @@ void LevelCaster::PlaceCells(PlannedBrick& brick, const Box& own) const
 /// Of bricks that were planned last. Groups are cut by whole planes, and so are the bricks of one.
 /// @param first of them
 /// @param group cells of their group
-void LevelCaster::SetKeys(std::size_t first, const Box& group, const Viewpoint& view)
+void LevelCaster::SetKeys(
+  std::size_t first, const Box& group, const Viewpoint& view, PartOfPlan& plan) const
 {
   const ProjectionTable* const projection = this->AnySampling->Projection.get();
-  for (std::size_t i = first; i < this->Bricks.size(); ++i)
+  for (std::size_t i = first; i < plan.Bricks.size(); ++i)
   {
-    PlannedBrick& brick = this->Bricks[i];
+    PlannedBrick& brick = plan.Bricks[i];
     // The best values first: bricks that cannot beat them are then never loaded. Averages are
     // added up front to back, so that they round alike in bricks of all sizes.
     if (projection && !projection->Averages())

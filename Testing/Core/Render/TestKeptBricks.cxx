@@ -28,6 +28,15 @@ KeptBricks::Pointer Pack(const std::vector<double>& values, double low)
     view, glm::ivec3(0), Box{ glm::ivec3(0), glm::ivec3(2) }, low);
 }
 
+KeptBricks::Pointer Find(
+  const KeptBricks& kept, std::int64_t brick, const Box& cells, double low = 0.0)
+{
+  const KeptBricks::Wanted wanted{ brick, cells, low, false };
+  KeptBricks::Found found;
+  kept.Find(&wanted, 1, 0, &found);
+  return found.Packed;
+}
+
 TEST(KeptBricks, StayWithinTheLimitAndAsLongAsTheyAreUsed)
 {
   const std::vector<double> values(27, 1.0);
@@ -37,18 +46,18 @@ TEST(KeptBricks, StayWithinTheLimitAndAsLongAsTheyAreUsed)
   kept.BeginPicture(2 * bytes);
   for (int brick = 0; brick < 3; ++brick)
   {
-    EXPECT_EQ(kept.Find(brick, cells, 0.0, false), nullptr);
+    EXPECT_EQ(Find(kept, brick, cells), nullptr);
     kept.Keep(brick, Pack(values, 0.0));
   }
   EXPECT_EQ(kept.Bytes(), 2 * bytes);
-  EXPECT_NE(kept.Find(1, cells, 0.0, false), nullptr);
-  EXPECT_EQ(kept.Find(2, cells, 0.0, false), nullptr);
+  EXPECT_NE(Find(kept, 1, cells), nullptr);
+  EXPECT_EQ(Find(kept, 2, cells), nullptr);
   for (int picture = 0; picture < 3; ++picture)
   {
     kept.BeginPicture(2 * bytes);
-    EXPECT_NE(kept.Find(0, cells, 0.0, false), nullptr);
+    EXPECT_NE(Find(kept, 0, cells), nullptr);
   }
-  EXPECT_EQ(kept.Find(1, cells, 0.0, false), nullptr);
+  EXPECT_EQ(Find(kept, 1, cells), nullptr);
   EXPECT_EQ(kept.Bytes(), bytes);
   kept.BeginPicture(bytes - 1);
   EXPECT_EQ(kept.Bytes(), 0u);
@@ -61,13 +70,44 @@ TEST(KeptBricks, OtherCellsOrAnotherLowEndAreOtherBricks)
   KeptBricks kept;
   kept.BeginPicture(1 << 20);
   kept.Keep(7, Pack(values, 0.5));
-  EXPECT_NE(kept.Find(7, cells, 0.5, false), nullptr);
-  EXPECT_EQ(kept.Find(7, cells, 0.25, false), nullptr);
-  EXPECT_EQ(kept.Find(7, Box{ glm::ivec3(0), glm::ivec3(1, 2, 2) }, 0.5, false), nullptr);
+  EXPECT_NE(Find(kept, 7, cells, 0.5), nullptr);
+  EXPECT_EQ(Find(kept, 7, cells, 0.25), nullptr);
+  EXPECT_EQ(Find(kept, 7, Box{ glm::ivec3(0), glm::ivec3(1, 2, 2) }, 0.5), nullptr);
   const std::uint64_t bytes = kept.Bytes();
   kept.Keep(7, Pack(values, 0.25));
   EXPECT_EQ(kept.Bytes(), bytes);
-  EXPECT_NE(kept.Find(7, cells, 0.25, false), nullptr);
+  EXPECT_NE(Find(kept, 7, cells, 0.25), nullptr);
+}
+
+TEST(KeptBricks, SeveralAreFoundInOneGoWithWhatCanBeSeenOfThem)
+{
+  const std::vector<double> values(27, 1.0);
+  const Box cells{ glm::ivec3(0), glm::ivec3(2) };
+  KeptBricks kept;
+  kept.BeginPicture(1 << 20);
+  const KeptBricks::Pointer packed = Pack(values, 0.0);
+  kept.Keep(3, packed);
+  kept.Keep(4, Pack(values, 0.0));
+  BrickVisibility seen;
+  seen.MacroEdge = 2;
+  kept.KeepVisibility(3, 11, seen);
+  const KeptBricks::Wanted wanted[] = { { 4, cells, 0.0, false }, { -1, cells, 0.0, false },
+    { 3, cells, 0.0, false }, { 5, cells, 0.0, false }, { 3, cells, 0.0, true } };
+  KeptBricks::Found found[5];
+  kept.Find(wanted, 5, 11, found);
+  EXPECT_NE(found[0].Packed, nullptr);
+  EXPECT_FALSE(found[0].Visibility);
+  EXPECT_EQ(found[1].Packed, nullptr);
+  EXPECT_EQ(found[2].Packed, packed);
+  ASSERT_TRUE(found[2].Visibility);
+  EXPECT_EQ(found[2].Visibility->MacroEdge, 2);
+  EXPECT_EQ(found[3].Packed, nullptr);
+  EXPECT_EQ(found[4].Packed, nullptr);
+
+  KeptBricks::Found under;
+  kept.Find(&wanted[2], 1, 12, &under); // another function
+  EXPECT_EQ(under.Packed, packed);
+  EXPECT_FALSE(under.Visibility);
 }
 
 TEST(KeptBricks, BricksThatGoLeaveTheirMemoryToTheNext)
