@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace banyan
@@ -61,18 +62,6 @@ int ConvertRow(const T* values, std::ptrdiff_t stride, int count, double low, fl
   return special;
 }
 
-void Interleave(const float* first, const float* second, int count, float* out)
-{
-  const float* const __restrict a = first;
-  const float* const __restrict b = second;
-  float* const __restrict to = out;
-  for (int x = 0; x < count; ++x)
-  {
-    to[2 * x] = a[x];
-    to[2 * x + 1] = b[x];
-  }
-}
-
 } // namespace
 
 bool PackedBrick::CanPack(const Box& cells)
@@ -84,7 +73,7 @@ bool PackedBrick::CanPack(const Box& cells)
 std::size_t PackedBrick::BytesFor(const Box& cells, bool gradients)
 {
   const glm::i64vec3 samples = glm::i64vec3(cells.Size()) + std::int64_t{ 1 };
-  return static_cast<std::size_t>(samples.x * samples.y * samples.z) * (gradients ? 4 : 2) *
+  return static_cast<std::size_t>(samples.x * samples.y * samples.z) * (gradients ? 4 : 1) *
            sizeof(float) +
          sizeof(PackedBrick);
 }
@@ -120,7 +109,8 @@ PackedBrick::Dense PackedBrick::Convert(
   return dense;
 }
 
-void PackedBrick::Allocate(int perSample)
+/// @param perSample floats
+void PackedBrick::Lay(int perSample)
 {
   const glm::ivec3 samples = this->Whole.Size() + 1;
   this->PerSample = perSample;
@@ -130,44 +120,28 @@ void PackedBrick::Allocate(int perSample)
   {
     ++this->Shift;
   }
-  this->Samples.resize(static_cast<std::size_t>(this->Slice * samples.z));
 }
 
 PackedBrick::PackedBrick(
   const BrickView& view, const glm::ivec3& corner, const Box& cells, double low)
   : Whole(cells)
 {
-  this->Allocate(2);
-  const Dense dense = this->Convert(view, corner, { cells.Lo, cells.Hi + 1 }, low);
+  this->Lay(1);
+  Dense dense = this->Convert(view, corner, { cells.Lo, cells.Hi + 1 }, low);
   this->FindExtremes(dense);
-  this->PlacePairs(dense);
+  this->Samples = std::move(dense.Values);
 }
 
 PackedBrick::PackedBrick(
   const BrickView& view, const Box& around, const Box& cells, double low, float scale)
   : Whole(cells)
 {
-  this->Allocate(4);
+  this->Lay(4);
   const Box wanted{ cells.Lo - 1, cells.Hi + 2 };
   const Dense dense = this->Convert(view, around.Lo, Intersection(around, wanted), low);
   this->FindExtremes(dense);
+  this->Samples.resize(static_cast<std::size_t>(this->Slice) * (cells.Size().z + 1));
   this->PlaceGradients(dense, scale);
-}
-
-void PackedBrick::PlacePairs(const Dense& dense)
-{
-  const glm::ivec3 samples = this->Whole.Size() + 1;
-  const float* row = dense.Values.data();
-  for (int z = 0; z < samples.z; ++z)
-  {
-    float* out = this->Samples.data() + z * this->Slice;
-    for (int y = 0; y < samples.y; ++y, row += samples.x, out += this->Row)
-    {
-      // The last row is its own neighbour, so that it can be read as the others are, one value
-      // after the other.
-      Interleave(row, y + 1 < samples.y ? row + samples.x : row, samples.x, out);
-    }
-  }
 }
 
 glm::ivec3 PackedBrick::Macros() const

@@ -17,9 +17,10 @@ namespace banyan
 
 /// A brick laid out for packets of rays, in float32, and the extremes of its macro cells.
 ///
-/// Without gradients, beside each sample stands its neighbour in y. The four corners of a cell's
-/// lower or upper face are then 16 bytes side by side, and a sample takes two loads. With
-/// gradients, a sample is its value and its gradient, and takes eight loads, or four wider ones.
+/// Without gradients, values lie one after the other, and a sample takes four loads of two: a brick
+/// takes no more of the processor's caches than it must, which is what samples that are far apart
+/// wait for. With gradients, a sample is its value and its gradient, and takes eight loads, or four
+/// wider ones.
 ///
 /// Exactness: each value is the float that an interpolation of the brick itself works with
 /// (CornerValue), so that packing changes no bit of the picture. Gradients are differences of these
@@ -89,8 +90,7 @@ private:
   };
 
   Dense Convert(const BrickView& view, const glm::ivec3& corner, const Box& samples, double low);
-  void Allocate(int perSample);
-  void PlacePairs(const Dense& dense);
+  void Lay(int perSample);
   void PlaceGradients(const Dense& dense, float scale);
   void PlaceGradientRow(const Dense& dense, int y, int z, float scale, float* out) const;
   void FindExtremes(const Dense& dense);
@@ -99,7 +99,7 @@ private:
   std::ptrdiff_t Row = 0;
   std::ptrdiff_t Slice = 0;
   int Shift = 2;
-  int PerSample = 2;
+  int PerSample = 1;
   bool IsRelativeToLow = false;
   bool HasSpecial = false;
   double RelativeTo = 0.0;

@@ -118,7 +118,7 @@ public:
   HWY_INLINE void Locate(const Position& position, Mask mask, Place& place) const
   {
     const DI d;
-    const VI bytes = hn::Add(hn::ShiftLeft < Shaded ? 4 : 3 > (CellOf(position.X)),
+    const VI bytes = hn::Add(hn::ShiftLeft < Shaded ? 4 : 2 > (CellOf(position.X)),
       hn::Add(hn::Mul(CellOf(position.Y), hn::Set(d, this->RowBytes)),
         hn::Mul(CellOf(position.Z), hn::Set(d, this->SliceBytes))));
     place.Cell.Set(hn::IfThenElseZero(hn::RebindMask(d, mask), bytes));
@@ -162,7 +162,7 @@ public:
   /// Without gradients.
   HWY_INLINE VF ValueOf(const Place& place) const
   {
-    static_assert(!Shaded, "two floats per sample");
+    static_assert(!Shaded, "one float per sample");
     if constexpr (Nearest)
     {
       const auto* values = reinterpret_cast<const float*>(this->Values);
@@ -173,7 +173,7 @@ public:
       const Blocks edges = Transposed({ { this->MixedAlongZ<0>(place), this->MixedAlongZ<1>(place),
         this->MixedAlongZ<2>(place), this->MixedAlongZ<3>(place) } });
       return Mix(
-        Mix(edges.Of[0], edges.Of[1], place.Y), Mix(edges.Of[2], edges.Of[3], place.Y), place.X);
+        Mix(edges.Of[0], edges.Of[2], place.Y), Mix(edges.Of[1], edges.Of[3], place.Y), place.X);
     }
   }
 
@@ -318,8 +318,8 @@ private:
   HWY_INLINE VF MixedAlongZ(const Place& place) const
   {
     const std::int32_t* bytes = place.Cell.Bytes + k;
-    return Mix(LoadBlocks(this->Values, bytes), LoadBlocks(this->Values + this->SliceBytes, bytes),
-      hn::Broadcast<k>(place.Z));
+    return Mix(LoadFaces(this->Values, bytes, this->RowBytes),
+      LoadFaces(this->Values + this->SliceBytes, bytes, this->RowBytes), hn::Broadcast<k>(place.Z));
   }
 
   /// The cell, or the nearest sample.

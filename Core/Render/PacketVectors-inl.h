@@ -69,6 +69,40 @@ HWY_INLINE VF LoadBlocks(const char* base, const std::int32_t* bytes)
 #endif
 }
 
+/// As LoadBlocks; each block is two floats and the two that lie a row further.
+/// @param row bytes
+HWY_INLINE VF LoadFaces(const char* base, const std::int32_t* bytes, std::ptrdiff_t row)
+{
+#if HWY_ARCH_X86
+  const auto at = [&](int i) HWY_ATTR
+  {
+    const auto* const from = reinterpret_cast<const double*>(base + bytes[i]);
+    const auto* const next = reinterpret_cast<const double*>(base + bytes[i] + row);
+    return _mm_castpd_ps(_mm_loadh_pd(_mm_load_sd(from), next));
+  };
+#else
+  const auto at = [&](int i) HWY_ATTR
+  {
+    const hn::Full64<float> two;
+    const auto* const from = reinterpret_cast<const float*>(base + bytes[i]);
+    const auto* const next = reinterpret_cast<const float*>(base + bytes[i] + row);
+    return hn::Combine(D(), hn::LoadU(two, next), hn::LoadU(two, from));
+  };
+#endif
+#if HWY_TARGET == HWY_AVX3
+  __m512 v = _mm512_castps128_ps512(at(0));
+  v = _mm512_insertf32x4(v, at(4), 1);
+  v = _mm512_insertf32x4(v, at(8), 2);
+  return VF{ _mm512_insertf32x4(v, at(12), 3) };
+#elif HWY_TARGET == HWY_AVX2
+  return VF{ _mm256_insertf128_ps(_mm256_castps128_ps256(at(0)), at(4), 1) };
+#elif HWY_ARCH_X86
+  return VF{ at(0) };
+#else
+  return at(0);
+#endif
+}
+
 HWY_INLINE Blocks LoadBlocks(const void* base, const Offsets& offsets)
 {
   const auto* from = static_cast<const char*>(base);
