@@ -13,7 +13,7 @@ std::atomic<int> Holders{ 0 };
 
 std::uint64_t BytesOf(const PackedBrick& packed)
 {
-  return PackedBrick::BytesFor(packed.Cells(), packed.HasGradients());
+  return packed.Bytes();
 }
 
 } // namespace

@@ -141,6 +141,7 @@ std::size_t LevelCaster::TakeBatch(std::size_t first)
   std::vector<std::size_t> ends;  // of each brick's
   const std::uint64_t left = this->BytesLeft();
   std::uint64_t bytes = 0;
+  std::size_t unkept = 0;
   std::size_t next = first;
   for (; next < this->Bricks.size(); ++next)
   {
@@ -148,7 +149,7 @@ std::size_t LevelCaster::TakeBatch(std::size_t first)
     KeptBricks::Found& kept = this->Kept[next];
     const bool isThere = kept.Packed || brick.Entry;
     const std::uint64_t brickBytes = isThere ? 0 : this->BytesOf(brick);
-    const bool full = bytes + brickBytes > left || this->Batch.size() >= BricksPerBatch;
+    const bool full = bytes + brickBytes > left || (!isThere && unkept >= BricksPerBatch);
     if (full && !this->Batch.empty())
     {
       break;
@@ -169,6 +170,7 @@ std::size_t LevelCaster::TakeBatch(std::size_t first)
     this->Loaded.emplace_back();
     this->Loaded.back().Packed = std::move(kept.Packed);
     this->Loaded.back().Known = std::move(kept.Visibility);
+    unkept += isThere ? 0 : 1;
     bytes += brickBytes;
   }
   this->EnterInTiles(tiles, ends);

@@ -138,6 +138,7 @@ private:
   void Load(const PlannedBrick& brick, LoadedBrick& loaded) const;
   BrickVisibility LookAt(const PlannedBrick& brick, const PackedBrick& packed) const;
   KeptBricks::Pointer Pack(const PlannedBrick& brick) const;
+  double StepToPack(ScalarType type) const;
   float GradientScale() const;
   BrickView LoadLarge(const PlannedBrick& brick) const;
   PixelRect DrawnPixelsOf(const Tile& tile, const PixelRect& rect) const;

@@ -68,7 +68,25 @@ KeptBricks::Pointer LevelCaster::Pack(const PlannedBrick& brick) const
     return std::make_shared<const PackedBrick>(
       view, samples, brick.Cells, low, this->GradientScale());
   }
-  return std::make_shared<const PackedBrick>(view, samples.Lo, brick.Cells, low);
+  return std::make_shared<const PackedBrick>(
+    view, samples.Lo, brick.Cells, low, this->StepToPack(view.Type));
+}
+
+/// Of values for which numbers are to be packed; 0 for none. Frames of volumes that the processor's
+/// caches hold nearly as a whole take longer with numbers, those of larger ones less time.
+double LevelCaster::StepToPack(ScalarType type) const
+{
+  constexpr std::int64_t many = std::int64_t{ 1 } << 25;
+  const glm::i64vec3 bricks = this->Source.Bricks();
+  const std::int64_t last = bricks.x * bricks.y * bricks.z - 1;
+  const glm::i64vec3 samples = this->Source.CellsOf(last).Hi;
+  if (samples.x * samples.y * samples.z < many)
+  {
+    return 0.0;
+  }
+  const bool small = type == ScalarType::Int8 || type == ScalarType::UInt8 ||
+                     type == ScalarType::Int16 || type == ScalarType::UInt16;
+  return small ? 1.0 : this->Source.StepOfValues();
 }
 
 /// Brings gradients near 1, so that their squares neither overflow nor vanish.

@@ -122,14 +122,42 @@ void PackedBrick::Lay(int perSample)
   }
 }
 
-PackedBrick::PackedBrick(
-  const BrickView& view, const glm::ivec3& corner, const Box& cells, double low)
+PackedBrick::PackedBrick(const BrickView& view, const glm::ivec3& corner, const Box& cells,
+  double low, double step)
   : Whole(cells)
 {
   this->Lay(1);
   Dense dense = this->Convert(view, corner, { cells.Lo, cells.Hi + 1 }, low);
   this->FindExtremes(dense);
-  this->Samples = std::move(dense.Values);
+  if (!this->TakeNumbers(dense.Values, step))
+  {
+    this->Samples = std::move(dense.Values);
+  }
+}
+
+/// @return false: there are no numbers for these values
+bool PackedBrick::TakeNumbers(const Floats& values, double step)
+{
+  if (!(step > 0.0) || this->HasSpecial || this->IsRelativeToLow)
+  {
+    return false;
+  }
+  // The last one may be read with one behind it.
+  this->Numbers.resize(values.size() + 1);
+  this->Numbers.back() = 0;
+  if (!NumbersOfValues(values.data(), values.size(), step, this->ScaleOfNumbers,
+        this->Numbers.data()))
+  {
+    this->Numbers = {};
+    return false;
+  }
+  return true;
+}
+
+std::size_t PackedBrick::Bytes() const
+{
+  return sizeof(PackedBrick) + this->Samples.size() * sizeof(float) +
+         this->Numbers.size() * sizeof(std::int16_t);
 }
 
 PackedBrick::PackedBrick(
@@ -196,6 +224,14 @@ BrickView PackedBrick::View() const
 {
   BrickView view;
   view.Values = this->Samples.data();
+  if (this->HasNumbers())
+  {
+    const auto values = std::make_shared<Floats>(this->Numbers.size());
+    std::transform(this->Numbers.begin(), this->Numbers.end(), values->begin(),
+      [this](std::int16_t number) { return ValueOfNumber(number, this->ScaleOfNumbers); });
+    view.Values = values->data();
+    view.Owner = values;
+  }
   view.Type = ScalarType::Float32;
   view.Stride[0] = this->PerSample;
   view.Stride[1] = this->Row;

@@ -4,6 +4,7 @@
 #include "Base/Box.h"
 #include "Base/RecycledMemory.h"
 #include "Render/BrickView.h"
+#include "Render/PackedNumbers.h"
 #include "Render/TransferFunction.h"
 #include "Series/ValueRange.h"
 
@@ -24,7 +25,9 @@ namespace banyan
 ///
 /// Exactness: each value is the float that an interpolation of the brick itself works with
 /// (CornerValue), so that packing changes no bit of the picture. Gradients are differences of these
-/// floats, the same ones whatever brick a sample is in.
+/// floats, the same ones whatever brick a sample is in. Where all values are whole multiples of a step
+/// that is known, as those of integers and of encoded series are, 16-bit numbers stand for them and
+/// give the same bits: half of the memory again.
 class PackedBrick
 {
 public:
@@ -35,20 +38,25 @@ public:
   static constexpr int MacroCells = MacroEdge * MacroEdge * MacroEdge;
 
   static bool CanPack(const Box& cells);
+  /// At most.
   static std::size_t BytesFor(const Box& cells, bool gradients);
+  std::size_t Bytes() const;
 
   /// @param view the brick
   /// @param corner the sample (index space) that view.Values points at
   /// @param cells those to pack, inside the brick; CanPack
   /// @param low what values of types that float cannot hold are relative to (see IsRelative)
-  PackedBrick(const BrickView& view, const glm::ivec3& corner, const Box& cells, double low);
+  /// @param step numbers are taken if all values are whole multiples of it, each rounded to float32;
+  /// 0: no numbers
+  PackedBrick(const BrickView& view, const glm::ivec3& corner, const Box& cells, double low,
+    double step = 0.0);
 
   /// With gradients.
   /// @param around samples that the view has: where there is one, a layer more than the brick's
   /// @param scale of gradients: a power of two, the same for all bricks of a volume
   PackedBrick(const BrickView& view, const Box& around, const Box& cells, double low, float scale);
 
-  /// The packed values as a view of Cells(), whose corner is Corner().
+  /// The packed values as a view of Cells(), whose corner is Corner(). Takes memory and time if HasNumbers.
   BrickView View() const;
   const glm::ivec3& Corner() const { return this->Whole.Lo; }
   const Box& Cells() const { return this->Whole; }
@@ -56,7 +64,11 @@ public:
   /// Of the gradient along an axis, at the same samples. HasGradients.
   BrickView GradientView(int axis) const;
 
+  /// Unless HasNumbers.
   const float* Values() const { return this->Samples.data(); }
+  bool HasNumbers() const { return !this->Numbers.empty(); }
+  const std::int16_t* NumbersOfSamples() const { return this->Numbers.data(); }
+  const NumberScale& Scale() const { return this->ScaleOfNumbers; }
   std::ptrdiff_t StrideY() const { return this->Row; }
   std::ptrdiff_t StrideZ() const { return this->Slice; }
 
@@ -73,7 +85,9 @@ public:
 
 private:
   /// Bricks that are packed for one picture come and go by thousands.
-  using Floats = std::vector<float, RecycledMemory<float, LargeMemory::Smallest>>;
+  template <class T>
+  using Many = std::vector<T, RecycledMemory<T, LargeMemory::Smallest>>;
+  using Floats = Many<float>;
 
   /// Values as interpolations take them, one after the other.
   struct Dense
@@ -91,6 +105,7 @@ private:
 
   Dense Convert(const BrickView& view, const glm::ivec3& corner, const Box& samples, double low);
   void Lay(int perSample);
+  bool TakeNumbers(const Floats& values, double step);
   void PlaceGradients(const Dense& dense, float scale);
   void PlaceGradientRow(const Dense& dense, int y, int z, float scale, float* out) const;
   void FindExtremes(const Dense& dense);
@@ -104,6 +119,8 @@ private:
   bool HasSpecial = false;
   double RelativeTo = 0.0;
   Floats Samples;
+  Many<std::int16_t> Numbers; ///< in place of Samples
+  NumberScale ScaleOfNumbers;
   float Lowest[MacroCells];
   float Highest[MacroCells];
 };

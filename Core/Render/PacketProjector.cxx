@@ -139,7 +139,8 @@ private:
 
 /// Takes the samples of one brick into as many rays at a time as a vector has lanes.
 /// @tparam Average whether values are averaged, not ranked
-template <bool Special, bool Nearest, bool Average>
+/// @tparam Numbers whether the brick has 16-bit numbers; it is not special then
+template <bool Special, bool Nearest, bool Average, bool Numbers>
 class PacketProjector
 {
 public:
@@ -172,7 +173,7 @@ public:
   }
 
 private:
-  using Place = typename PacketSamples<Special, false, Nearest>::Place;
+  using Place = typename PacketSamples<Special, false, Nearest, Numbers>::Place;
 
   HWY_INLINE void ProjectLanes(int slot)
   {
@@ -291,7 +292,7 @@ private:
 
   const ProjectionTable& Table;
   PacketIntervals Intervals;
-  PacketSamples<Special, false, Nearest> Samples;
+  PacketSamples<Special, false, Nearest, Numbers> Samples;
   RayTile& Tile;
   bool Relative;
   bool OnlyCounts;
@@ -300,11 +301,11 @@ private:
   std::uint32_t Offset[3];  ///< from the cells' low corner to the brick's
 };
 
-template <bool Special, bool Nearest, bool Average>
+template <bool Special, bool Nearest, bool Average, bool Numbers = false>
 void ProjectPackets(const PackedBrick& brick, const Box& cells, const ValueRange& range,
   const ProjectionTable& table, const PixelRect& pixels, RayTile& tile)
 {
-  PacketProjector<Special, Nearest, Average> projector(brick, cells, range, table, tile);
+  PacketProjector<Special, Nearest, Average, Numbers> projector(brick, cells, range, table, tile);
   ForPacketsUnder(
     pixels, tile, [&projector](int packet) HWY_ATTR { projector.ProjectPacket(packet); });
 }
@@ -319,6 +320,18 @@ void ProjectPackedHere(const PackedBrick& brick, const Box& cells, const ValueRa
     ProjectPackets<true, true, false>, ProjectPackets<false, false, true>,
     ProjectPackets<true, false, true>, ProjectPackets<false, true, true>,
     ProjectPackets<true, true, true> };
+  if (brick.HasNumbers())
+  {
+#if BANYAN_HAS_NUMBERS
+    static constexpr Project numbers[4] = { ProjectPackets<false, false, false, true>,
+      ProjectPackets<false, true, false, true>, ProjectPackets<false, false, true, true>,
+      ProjectPackets<false, true, true, true> };
+    const int way = (table.Nearest() ? 1 : 0) + (table.Averages() ? 2 : 0);
+    return numbers[way](brick, cells, range, table, pixels, tile);
+#else
+    return ProjectUnpacked(brick, cells, table, pixels, tile);
+#endif
+  }
   const int which =
     (brick.Special() ? 1 : 0) + (table.Nearest() ? 2 : 0) + (table.Averages() ? 4 : 0);
   projects[which](brick, cells, range, table, pixels, tile);

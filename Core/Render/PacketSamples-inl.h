@@ -79,7 +79,8 @@ HWY_INLINE Steps OverFraction(const Blocks& depths, VF fraction)
 /// @tparam Special whether values may not be finite
 /// @tparam Shaded whether the brick has gradients, and samples are shaded by them
 /// @tparam Nearest whether samples are those of the grid nearest by
-template <bool Special, bool Shaded, bool Nearest>
+/// @tparam Numbers whether the brick has 16-bit numbers; it is neither special nor shaded
+template <bool Special, bool Shaded, bool Nearest, bool Numbers = false>
 class PacketSamples
 {
 public:
@@ -95,9 +96,11 @@ public:
 
   /// For values and their entries alone.
   PacketSamples(const PackedBrick& brick, const TableLookup& lookup)
-    : Values(reinterpret_cast<const char*>(brick.Values()))
-    , RowBytes(static_cast<std::int32_t>(brick.StrideY() * sizeof(float)))
-    , SliceBytes(static_cast<std::int32_t>(brick.StrideZ() * sizeof(float)))
+    : Values(Numbers ? reinterpret_cast<const char*>(brick.NumbersOfSamples())
+                     : reinterpret_cast<const char*>(brick.Values()))
+    , RowBytes(static_cast<std::int32_t>(brick.StrideY() * UnitBytes))
+    , SliceBytes(static_cast<std::int32_t>(brick.StrideZ() * UnitBytes))
+    , Scale(brick.Scale())
     , Lookup(lookup)
   {
   }
@@ -118,7 +121,7 @@ public:
   HWY_INLINE void Locate(const Position& position, Mask mask, Place& place) const
   {
     const DI d;
-    const VI bytes = hn::Add(hn::ShiftLeft < Shaded ? 4 : 2 > (CellOf(position.X)),
+    const VI bytes = hn::Add(hn::ShiftLeft < Shaded ? 4 : Numbers ? 1 : 2 > (CellOf(position.X)),
       hn::Add(hn::Mul(CellOf(position.Y), hn::Set(d, this->RowBytes)),
         hn::Mul(CellOf(position.Z), hn::Set(d, this->SliceBytes))));
     place.Cell.Set(hn::IfThenElseZero(hn::RebindMask(d, mask), bytes));
@@ -166,6 +169,13 @@ public:
     if constexpr (Nearest)
     {
       const auto* values = reinterpret_cast<const float*>(this->Values);
+      if constexpr (Numbers)
+      {
+        // Two of them, of which the latter goes.
+        const VI two = hn::GatherOffset(DI(), reinterpret_cast<const std::int32_t*>(this->Values),
+          hn::Load(DI(), place.Cell.Bytes));
+        return this->ValuesOf(hn::ConvertTo(D(), hn::ShiftRight<16>(hn::ShiftLeft<16>(two))));
+      }
       return hn::GatherOffset(D(), values, hn::Load(DI(), place.Cell.Bytes));
     }
     else
@@ -318,8 +328,29 @@ private:
   HWY_INLINE VF MixedAlongZ(const Place& place) const
   {
     const std::int32_t* bytes = place.Cell.Bytes + k;
-    return Mix(LoadFaces(this->Values, bytes, this->RowBytes),
-      LoadFaces(this->Values + this->SliceBytes, bytes, this->RowBytes), hn::Broadcast<k>(place.Z));
+    return Mix(this->FacesAt(this->Values, bytes), this->FacesAt(this->Values + this->SliceBytes, bytes),
+      hn::Broadcast<k>(place.Z));
+  }
+
+  /// Of the cells of every fourth lane.
+  HWY_INLINE VF FacesAt(const char* values, const std::int32_t* bytes) const
+  {
+    if constexpr (Numbers)
+    {
+      return this->ValuesOf(LoadNumberFaces(values, bytes, this->RowBytes));
+    }
+    else
+    {
+      return LoadFaces(values, bytes, this->RowBytes);
+    }
+  }
+
+  /// As ValueOfNumber.
+  HWY_INLINE VF ValuesOf(VF numbers) const
+  {
+    const D d;
+    return hn::MulAdd(numbers, hn::Set(d, this->Scale.High),
+      hn::Mul(numbers, hn::Set(d, this->Scale.Low)));
   }
 
   /// The cell, or the nearest sample.
@@ -339,9 +370,12 @@ private:
     return hn::Mul(hn::ConvertTo(D(), hn::BitCast(DI(), bits)), hn::Set(D(), UsedUnit));
   }
 
+  static constexpr std::ptrdiff_t UnitBytes = Numbers ? sizeof(std::int16_t) : sizeof(float);
+
   const char* Values;
   std::int32_t RowBytes;
   std::int32_t SliceBytes;
+  NumberScale Scale;
   TableLookup Lookup;
   const glm::vec4* Table = nullptr;
   const glm::vec4* Depths = nullptr;

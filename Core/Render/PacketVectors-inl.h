@@ -10,6 +10,8 @@
 
 #include <hwy/highway.h>
 
+#include <cstring>
+
 HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
@@ -100,6 +102,44 @@ HWY_INLINE VF LoadFaces(const char* base, const std::int32_t* bytes, std::ptrdif
   return VF{ at(0) };
 #else
   return at(0);
+#endif
+}
+
+/// Whether 16-bit numbers give the bits of their values: not without fused operations.
+#undef BANYAN_HAS_NUMBERS
+#define BANYAN_HAS_NUMBERS HWY_NATIVE_FMA
+
+/// As LoadFaces, of 16-bit numbers, as floats.
+HWY_INLINE VF LoadNumberFaces(const char* base, const std::int32_t* bytes, std::ptrdiff_t row)
+{
+  const auto two = [](const char* from) HWY_ATTR
+  {
+    std::int32_t numbers;
+    std::memcpy(&numbers, from, sizeof(numbers));
+    return numbers;
+  };
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2
+  const auto faces = [&](int i) HWY_ATTR
+  {
+    const char* const first = base + bytes[i];
+    const char* const second = base + bytes[i + 4];
+    __m128i v = _mm_cvtsi32_si128(two(first));
+    v = _mm_insert_epi32(v, two(first + row), 1);
+    v = _mm_insert_epi32(v, two(second), 2);
+    return _mm_insert_epi32(v, two(second + row), 3);
+  };
+#endif
+#if HWY_TARGET == HWY_AVX3
+  const __m256i all = _mm256_inserti128_si256(_mm256_castsi128_si256(faces(0)), faces(8), 1);
+  return VF{ _mm512_cvtepi32_ps(_mm512_cvtepi16_epi32(all)) };
+#elif HWY_TARGET == HWY_AVX2
+  return VF{ _mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(faces(0))) };
+#else
+  const char* const from = base + bytes[0];
+  const std::int32_t face[2] = { two(from), two(from + row) };
+  const hn::Rebind<std::int16_t, D> narrow;
+  const auto numbers = hn::LoadU(narrow, reinterpret_cast<const std::int16_t*>(face));
+  return hn::ConvertTo(D(), hn::PromoteTo(DI(), numbers));
 #endif
 }
 

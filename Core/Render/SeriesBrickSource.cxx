@@ -112,6 +112,8 @@ SeriesBrickSource::SeriesBrickSource(
   else
   {
     this->Masks = this->Series->MaskRangeOf(field.Array, this->Components.front());
+    this->Step =
+      this->Type == ScalarType::Float32 ? this->Series->StepOfValues(this->KeyOf(0)) : 0.0;
   }
 }
 

@@ -31,6 +31,7 @@ public:
   /// Not known of magnitudes.
   std::optional<UniformValue> UniformValueOf(std::int64_t brick) const override;
   MaskRange MasksAreOver() const override { return this->Masks; }
+  double StepOfValues() const override { return this->Step; }
   std::size_t LoadBytes(std::int64_t brick) const override;
   BrickView Load(std::int64_t brick) override;
 
@@ -71,6 +72,7 @@ private:
   MaskRange Masks;
   ScalarType Type;
   bool Magnitude;
+  double Step = 0.0;
   std::vector<int> Components; ///< the one drawn, or all of them for the magnitude
   std::vector<NodeList> Nodes; ///< one list per entry of Components
   std::shared_ptr<LoadRecord> LoadedBricks = std::make_shared<LoadRecord>(); ///< shared with the levels

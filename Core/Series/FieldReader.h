@@ -34,6 +34,8 @@ public:
   {
     return false;
   }
+  /// See SeriesFile.
+  virtual double StepOfValues(const FieldKey&) { return 0.0; }
   virtual void VerifyBricks(const FieldKey& field, const std::vector<std::int64_t>& bricks) = 0;
   virtual std::uint64_t BytesRead() const = 0;
   virtual std::uint64_t BricksDecoded() const = 0;

@@ -27,6 +27,7 @@ public:
     const glm::i64vec3& stride, void* first) override;
   bool DecodeRow(const FieldKey& field, std::int64_t brick, int count, const Box& part,
     const glm::i64vec3& stride, void* first) override;
+  double StepOfValues(const FieldKey& field) override;
   void VerifyBricks(const FieldKey& field, const std::vector<std::int64_t>& bricks) override;
   std::uint64_t BytesRead() const override { return this->Read; }
   std::uint64_t BricksDecoded() const override { return this->Decoded; }
@@ -285,6 +286,15 @@ bool Reader2::DecodeRow(const FieldKey& asked, std::int64_t brick, int count, co
   this->Decoded += done ? static_cast<std::uint64_t>(count) : 0;
   this->Read += open->Field->TakeBytesRead();
   return done;
+}
+
+double Reader2::StepOfValues(const FieldKey& field)
+{
+  const ArrayIndex& array = this->Series.Index.Arrays[static_cast<std::size_t>(field.Array)];
+  const group::FieldHead& head = this->Open(this->Stored(field))->Field->Head();
+  const bool plain =
+    array.Components[static_cast<std::size_t>(field.Component)].ValueTransform.IsIdentity();
+  return plain && !head.Exact ? head.Step : 0.0;
 }
 
 void Reader2::VerifyBricks(const FieldKey& asked, const std::vector<std::int64_t>& bricks)

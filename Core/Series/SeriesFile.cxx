@@ -121,6 +121,12 @@ MaskRange SeriesFile::MaskRangeOf(int array, int component) const
   return this->Self->Series.MaskRangeOf(array, component);
 }
 
+double SeriesFile::StepOfValues(const FieldKey& field) const
+{
+  this->Self->Check(field);
+  return this->Self->Reader->StepOfValues(field);
+}
+
 std::shared_ptr<const std::vector<BrickNode>> SeriesFile::Nodes(const FieldKey& field) const
 {
   this->Self->Check(field);

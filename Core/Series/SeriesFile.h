@@ -91,6 +91,10 @@ public:
   void DecodeRow(const FieldKey& field, std::int64_t brick, int count, const Box& part,
     const glm::i64vec3& stride, void* first) const;
 
+  /// Of values that are whole multiples of a step, each rounded to the array's type: the step. Some values may
+  /// be others (exceptions, and all where the lattice does not go through 0). 0 where none is known.
+  double StepOfValues(const FieldKey& field) const;
+
   /// Checks the checksums of the bricks' payloads without decoding them.
   void VerifyBricks(const FieldKey& field, const std::vector<std::int64_t>& bricks) const;
 

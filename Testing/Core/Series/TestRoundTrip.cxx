@@ -60,5 +60,35 @@ TYPED_TEST(RoundTripOf, BoundZeroIsBitExact)
   RoundTrip(grid, Sample<TypeParam>(grid, 2, Wavy<TypeParam>), options);
 }
 
+/// What packing takes for granted, and what it does not.
+TEST(RoundTrip, ValuesAreMultiplesOfTheStepThatIsTold)
+{
+  const Grid grid = GridOf(40, 33, 20);
+  auto steps = Sample<float>(grid, 3, Wavy<float>);
+  steps[1][777] = std::numeric_limits<float>::quiet_NaN();
+  const TemporaryFolder folder;
+  EncodeOptions options;
+  Encode(folder / "bounded.banyan", grid, steps, options);
+  const auto file = SeriesFile::Open(folder / "bounded.banyan");
+  for (int s = 0; s < 3; ++s)
+  {
+    const double step = file->StepOfValues({ s, 0, 0, 0 });
+    ASSERT_GT(step, 0.0);
+    const std::vector<float> values = ReadAll<float>(*file, { s, 0, 0, 0 });
+    for (std::size_t i = 0; i < values.size(); ++i)
+    {
+      if (s == 1 && i == 777)
+      {
+        EXPECT_TRUE(std::isnan(values[i]));
+        continue;
+      }
+      ASSERT_EQ(values[i], static_cast<float>(std::round(values[i] / step) * step)) << i;
+    }
+  }
+  options.ErrorBound = 0;
+  Encode(folder / "lossless.banyan", grid, steps, options);
+  EXPECT_EQ(SeriesFile::Open(folder / "lossless.banyan")->StepOfValues({ 0, 0, 0, 0 }), 0.0);
+}
+
 } // namespace
 } // namespace banyan::testing
