@@ -77,10 +77,7 @@ KeptBricks::Pointer LevelCaster::Pack(const PlannedBrick& brick) const
 double LevelCaster::StepToPack(ScalarType type) const
 {
   constexpr std::int64_t many = std::int64_t{ 1 } << 25;
-  const glm::i64vec3 bricks = this->Source.Bricks();
-  const std::int64_t last = bricks.x * bricks.y * bricks.z - 1;
-  const glm::i64vec3 samples = this->Source.CellsOf(last).Hi;
-  if (samples.x * samples.y * samples.z < many)
+  if (this->Scene.DomainCells.Count() >> 3 * this->Source.Level() < many)
   {
     return 0.0;
   }

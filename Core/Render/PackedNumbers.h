@@ -21,8 +21,8 @@ struct NumberScale
 /// Exactness: bit-exact, zeros of either sign apart. Every value is compared with what its number
 /// stands for.
 /// @param step > 0
-/// @return false when some value is no such multiple, or a number has no room in 16 bits; and on
-/// processors without AVX2, which draw from values
+/// @return false when some value is no such multiple, or its number is not in [-32768, 32767]; and on
+/// processors without fused operations, which draw from values
 bool NumbersOfValues(const float* values, std::size_t count, double step, NumberScale& scale,
   std::int16_t* numbers);
 

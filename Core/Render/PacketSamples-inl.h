@@ -168,15 +168,18 @@ public:
     static_assert(!Shaded, "one float per sample");
     if constexpr (Nearest)
     {
-      const auto* values = reinterpret_cast<const float*>(this->Values);
+      const VI bytes = hn::Load(DI(), place.Cell.Bytes);
       if constexpr (Numbers)
       {
         // Two of them, of which the latter goes.
-        const VI two = hn::GatherOffset(DI(), reinterpret_cast<const std::int32_t*>(this->Values),
-          hn::Load(DI(), place.Cell.Bytes));
+        const auto* numbers = reinterpret_cast<const std::int32_t*>(this->Values);
+        const VI two = hn::GatherOffset(DI(), numbers, bytes);
         return this->ValuesOf(hn::ConvertTo(D(), hn::ShiftRight<16>(hn::ShiftLeft<16>(two))));
       }
-      return hn::GatherOffset(D(), values, hn::Load(DI(), place.Cell.Bytes));
+      else
+      {
+        return hn::GatherOffset(D(), reinterpret_cast<const float*>(this->Values), bytes);
+      }
     }
     else
     {
