@@ -32,18 +32,15 @@ GroupWriter::GroupWriter(SegmentFolder& folder, int number)
   , Output(folder.Path() + "/" + folder.TemporaryNameOf(number))
   , Payloads(segment::HeaderBytes)
 {
-  this->Output.Append(this->Payloads.data(), this->Payloads.size());
 }
 
 group::Place GroupWriter::Store(const Bytes& payload, EncodeStatistics& statistics)
 {
   const Hash128 hash = HashOf(payload.data(), payload.size());
-  const std::string key = ToHex(hash);
-  const auto [place, isNew] = this->Stored.try_emplace(key, group::Place{});
+  const auto [place, isNew] = this->Stored.try_emplace(hash, group::Place{});
   if (isNew)
   {
-    place->second = { this->Output.Size(), static_cast<std::uint32_t>(payload.size()) };
-    this->Output.Append(payload.data(), payload.size());
+    place->second = { this->Payloads.size(), static_cast<std::uint32_t>(payload.size()) };
     this->Payloads.insert(this->Payloads.end(), payload.begin(), payload.end());
     statistics.PayloadBytes += payload.size();
   }
@@ -57,7 +54,7 @@ group::Place GroupWriter::Store(const Bytes& payload, EncodeStatistics& statisti
 void GroupWriter::AddStep(const EncodedStep& step, EncodeStatistics& statistics)
 {
   group::StepTable table;
-  table.FirstPayload = this->Output.Size();
+  table.FirstPayload = this->Payloads.size();
   table.Top = step.Top;
   table.Levels = step.Levels;
   for (const auto& plane : step.Planes)
@@ -163,6 +160,7 @@ SegmentIndex GroupWriter::Finish(
   const std::vector<group::FieldHead>& heads, const std::vector<group::TableShape>& shapes,
   int firstStep, int steps)
 {
+  this->Output.Append(this->Payloads.data(), this->Payloads.size());
   segment::Header header;
   header.Version = group::Version;
   header.PayloadEnd = this->Output.Size();

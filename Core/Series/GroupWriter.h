@@ -3,10 +3,10 @@
 
 #include "Series/AtomicFile.h"
 #include "Series/FieldGroupEncoder.h"
+#include "Series/Hash.h"
 #include "Series/SegmentFolder.h"
 #include "Series/SeriesIndex.h"
 
-#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -31,14 +31,18 @@ public:
     const std::vector<group::TableShape>& shapes, int firstStep, int steps);
 
 private:
+  struct PlaceByHash
+  {
+    std::size_t operator()(const Hash128& hash) const { return static_cast<std::size_t>(hash.Low); }
+  };
   group::Place Store(const Bytes& payload, EncodeStatistics& statistics);
   group::Section AddSection(const Bytes& raw, bool compressed);
   Bytes PageHashes() const;
 
   SegmentFolder& Folder;
   AtomicFile Output;
-  Bytes Payloads; ///< all bytes up to here, to hash their pages
-  std::unordered_map<std::string, group::Place> Stored;
+  Bytes Payloads; ///< header and payloads, which are written together: each by itself would take longer
+  std::unordered_map<Hash128, group::Place, PlaceByHash> Stored;
   std::vector<group::StepTable> Tables;
 };
 
