@@ -1,6 +1,7 @@
 #ifndef banyan_Codec_BlockEncoder_h
 #define banyan_Codec_BlockEncoder_h
 
+#include "Base/LargePages.h"
 #include "Codec/BlockModes.h"
 
 #include <glm/vec3.hpp>
@@ -91,8 +92,8 @@ public:
   }
 
 private:
-  std::vector<std::int16_t> Short; ///< one of both is empty
-  std::vector<std::int32_t> Long;
+  std::vector<std::int16_t, InLargePages<std::int16_t>> Short; ///< one of both is empty
+  std::vector<std::int32_t, InLargePages<std::int32_t>> Long;
 };
 
 /// Samples per axis of the next coarser plane, which keeps every fourth sample; where the last gap
@@ -129,10 +130,14 @@ struct PlaneToEncode
 /// Codes all blocks of a plane.
 /// @param decoded a plane like the target (of which nothing is kept); receives exactly what DecodeBox
 /// will give
-/// @param done called for each block, by any thread, when it is decoded: its numbers are still at hand
+/// @param done called for each block, by any thread, when it is decoded, with the layer behind it: its
+/// numbers are still at hand
+/// @param begin if not null, called for each block, by any thread, before its numbers to code are asked
+/// for: it may make them then
 /// The result does not depend on the number of threads.
 void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded, std::vector<BlockTokens>& blocks,
-  ThreadPool& pool, const std::function<void(std::int64_t block)>& done);
+  ThreadPool& pool, const std::function<void(std::int64_t block)>& done,
+  const std::function<void(std::int64_t block)>& begin = nullptr);
 
 } // namespace banyan
 

@@ -49,8 +49,8 @@ PlaneNumbers::PlaneNumbers(const glm::ivec3& samples, int edge, bool narrow)
   , Padded(Blocks * edge + 1)
   , Narrow(narrow)
 {
-  const std::size_t count = static_cast<std::size_t>(
-    std::int64_t{ this->Padded.x } * this->Padded.y * this->Padded.z);
+  const std::size_t count =
+    static_cast<std::size_t>(std::int64_t{ this->Padded.x } * this->Padded.y * this->Padded.z);
   narrow ? this->Short.resize(count) : this->Long.resize(count);
 }
 
@@ -59,8 +59,9 @@ glm::ivec3 CoarserSamples(const glm::ivec3& samples)
   return (samples - 1 + 3) / 4 + 1;
 }
 
-void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded, std::vector<BlockTokens>& blocks,
-  ThreadPool& pool, const std::function<void(std::int64_t)>& done)
+void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded,
+  std::vector<BlockTokens>& blocks, ThreadPool& pool, const std::function<void(std::int64_t)>& done,
+  const std::function<void(std::int64_t)>& begin)
 {
   const PlaneNumbers& target = *plane.Target;
   if (target.Narrow != block::Narrow(plane.Least, plane.Greatest) ||
@@ -77,7 +78,8 @@ void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded, std::vector<
   const auto indexOf = [&](const glm::ivec3& position)
   {
     return glm::all(glm::lessThan(position, target.Blocks))
-             ? (std::int64_t{ position.z } * target.Blocks.y + position.y) * target.Blocks.x + position.x
+             ? (std::int64_t{ position.z } * target.Blocks.y + position.y) * target.Blocks.x +
+                 position.x
              : -1;
   };
   target.With(
@@ -97,6 +99,10 @@ void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded, std::vector<
       const std::int64_t index = indexOf(position);
       if (index >= 0)
       {
+        if (begin)
+        {
+          begin(index);
+        }
         EncodeBlock(job, position, BlockPhase::Choose);
       }
       for (const BlockPhase phase : phases)
@@ -109,6 +115,11 @@ void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded, std::vector<
       }
     }
     return;
+  }
+  if (begin)
+  {
+    pool.ParallelFor(
+      target.BlockCount(), [&](std::int64_t i) { begin(target.BlockCount() - 1 - i); });
   }
   pool.ParallelFor(target.BlockCount(),
     [&](std::int64_t i) { EncodeBlock(job, PositionIn(target.Blocks, i), BlockPhase::Choose); });

@@ -21,12 +21,7 @@ namespace banyan
 namespace
 {
 
-/// Everything that is kept of a step until the group is written.
-struct StepWork
-{
-  std::vector<PlaneNumbers> Decoded; ///< by plane
-  std::vector<std::vector<BlockTokens>> Tokens;
-};
+using StepTokens = std::vector<std::vector<BlockTokens>>; ///< of a step, by plane
 
 template <class T>
 class Encoder
@@ -58,7 +53,8 @@ private:
   std::unique_ptr<LatticeTarget<T>> Target;
   std::vector<glm::ivec3> Planes; ///< samples
   std::vector<PlaneNumbers> Wanted; ///< of the step under way
-  std::vector<StepWork> Work;
+  std::vector<DecodedStep> Decoded; ///< all steps, as all else is kept until the group is written
+  std::vector<StepTokens> Tokens;
   EncodedField Out;
 };
 
@@ -77,7 +73,8 @@ void Encoder<T>::Prepare()
   this->Wanted = this->TakePlanes();
   this->Out.Steps.resize(this->Field.Steps.size());
   this->Out.StepRmse.resize(this->Field.Steps.size());
-  this->Work.resize(this->Field.Steps.size());
+  this->Decoded.resize(this->Field.Steps.size());
+  this->Tokens.resize(this->Field.Steps.size());
 }
 
 /// The planes of a step that was encoded before, or of the key frame before the group.
@@ -85,7 +82,7 @@ template <class T>
 const std::vector<PlaneNumbers>* Encoder<T>::DecodedAt(int step) const
 {
   return step == StepBefore ? &this->Field.Before->Planes
-                            : &this->Work[static_cast<std::size_t>(step)].Decoded;
+                            : &this->Decoded[static_cast<std::size_t>(step)].Planes;
 }
 
 /// Spare planes where there are such ones that fit, else new ones.
@@ -117,11 +114,11 @@ template <class T>
 int Encoder<T>::TrialsOf(int step, std::size_t plane, int usual) const
 {
   constexpr std::size_t small = std::size_t{ 1 } << 20;
-  const auto& keyFrame = this->Work.back().Tokens;
+  const StepTokens& keyFrame = this->Tokens.back();
   const glm::ivec3 n = this->Planes[plane];
   const std::size_t samples =
     static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) * static_cast<std::size_t>(n.z);
-  if (step + 1 == static_cast<int>(this->Work.size()) || samples < small ||
+  if (step + 1 == static_cast<int>(this->Tokens.size()) || samples < small ||
       this->Field.Profile == EncodeProfile::Compact)
   {
     return usual;
@@ -140,14 +137,17 @@ void Encoder<T>::EncodePlanes(
   int step, const BlockBody& done, const std::function<void(double)>& tell)
 {
   std::vector<PlaneNumbers>& targets = this->Wanted;
-  this->Target->Make(this->Field.Steps[static_cast<std::size_t>(step)], targets);
-  StepWork& work = this->Work[static_cast<std::size_t>(step)];
+  const void* const values = this->Field.Steps[static_cast<std::size_t>(step)];
+  const bool blockwise = this->Target->MakeCoarser(values, targets);
+  const auto make = [&](std::int64_t block) { this->Target->MakeBlock(values, block, targets[0]); };
+  std::vector<PlaneNumbers>& decoded = this->Decoded[static_cast<std::size_t>(step)].Planes;
+  StepTokens& tokens = this->Tokens[static_cast<std::size_t>(step)];
   EncodedStep& out = this->Out.Steps[static_cast<std::size_t>(step)];
   const StepReferences references =
     ReferencesOfStep(step, static_cast<int>(this->Field.Steps.size()), this->Out.Head.Open);
-  work.Decoded = this->TakePlanes();
-  work.Tokens.resize(targets.size() - 1);
-  work.Decoded.back() = targets.back();
+  decoded = this->TakePlanes();
+  tokens.resize(targets.size() - 1);
+  decoded.back() = targets.back();
   const PlaneNumbers& top = targets.back();
   for (int z = 0; z < top.Samples.z; ++z)
   {
@@ -163,7 +163,7 @@ void Encoder<T>::EncodePlanes(
   {
     PlaneToEncode plane;
     plane.Target = &targets[p];
-    plane.Coarser = &work.Decoded[p + 1];
+    plane.Coarser = &decoded[p + 1];
     if (references.Any())
     {
       plane.A = &(*this->DecodedAt(references.A))[p];
@@ -175,8 +175,9 @@ void Encoder<T>::EncodePlanes(
     plane.Greatest = this->Out.Head.Greatest;
     ApplyProfile(this->Field.Profile, this->Field.Ideas, plane);
     plane.Trials = this->TrialsOf(step, p, plane.Trials);
-    EncodePlane(plane, work.Decoded[p], work.Tokens[p], this->Pool,
-      [&](std::int64_t block) { done(p, block); });
+    EncodePlane(plane, decoded[p], tokens[p], this->Pool,
+      [&](std::int64_t block) { done(p, block); },
+      p == 0 && blockwise ? std::function<void(std::int64_t)>(make) : nullptr);
     tell(static_cast<double>(targets.size() - 1 - p) / static_cast<double>(targets.size()));
   }
 }
@@ -188,11 +189,13 @@ void Encoder<T>::EncodeStep(
   int step, std::vector<double>* squares, const std::function<void(double)>& tell)
 {
   const void* const values = this->Field.Steps[static_cast<std::size_t>(step)];
-  const std::vector<PlaneNumbers>& decoded = this->Work[static_cast<std::size_t>(step)].Decoded;
+  DecodedStep& decoded = this->Decoded[static_cast<std::size_t>(step)];
   EncodedStep& out = this->Out.Steps[static_cast<std::size_t>(step)];
   for (std::size_t p = 0; p + 1 < this->Planes.size(); ++p)
   {
-    out.Planes.emplace_back(static_cast<std::size_t>(this->Wanted[p].BlockCount()));
+    const std::size_t blocks = static_cast<std::size_t>(this->Wanted[p].BlockCount());
+    out.Planes.emplace_back(blocks);
+    decoded.Extremes.emplace_back(blocks);
   }
   std::vector<FieldErrors> parts(out.Planes.empty() ? 0 : out.Planes[0].size());
   this->EncodePlanes(step,
@@ -200,11 +203,14 @@ void Encoder<T>::EncodeStep(
     {
       ExceptionList<T> list;
       FieldErrors coarse; // counted on the finest plane only
-      this->Target->Verify(values, decoded[plane], static_cast<int>(plane), i, list,
+      const PlaneNumbers& numbers = decoded.Planes[plane];
+      decoded.Extremes[plane][static_cast<std::size_t>(i)] =
+        ExtremesOfBlock(numbers, static_cast<int>(plane), i, this->Field.Levels);
+      this->Target->Verify(values, numbers, static_cast<int>(plane), i, list,
         plane == 0 ? parts[static_cast<std::size_t>(i)] : coarse, plane == 0 ? squares : nullptr);
       if (!list.Positions.empty())
       {
-        const std::uint32_t edge = static_cast<std::uint32_t>(decoded[plane].Edge);
+        const std::uint32_t edge = static_cast<std::uint32_t>(numbers.Edge);
         out.Planes[plane][static_cast<std::size_t>(i)].Exceptions =
           PackExceptions(list, edge * edge * edge, this->Field.CompressionLevel);
       }
@@ -240,13 +246,13 @@ void Encoder<T>::WriteSymbols()
     ContextCounts counts;
     const auto each = [&](auto&& body)
     {
-      for (std::size_t t = 0; t < this->Work.size(); ++t)
+      for (std::size_t t = 0; t < this->Tokens.size(); ++t)
       {
-        for (std::size_t p = 0; p < this->Work[t].Tokens.size(); ++p)
+        for (std::size_t p = 0; p < this->Tokens[t].size(); ++p)
         {
           if ((p > 0 ? 1 : 0) == set)
           {
-            body(this->Work[t].Tokens[p], this->Out.Steps[t].Planes[p]);
+            body(this->Tokens[t][p], this->Out.Steps[t].Planes[p]);
           }
         }
       }
@@ -302,21 +308,16 @@ EncodedField Encoder<T>::Run(
     tell(++done);
   }
   this->WriteSymbols();
-  std::vector<const std::vector<PlaneNumbers>*> decoded;
-  for (const StepWork& work : this->Work)
-  {
-    decoded.push_back(&work.Decoded);
-  }
-  MakeNodes<T>(this->Field, this->Out.Head, decoded, this->Out.Steps, this->Pool);
+  MakeNodes<T>(this->Field, this->Out.Head, this->Decoded, this->Out.Steps, this->Pool);
   CountChains(this->Out, this->Field.Samples, this->Field.BrickCells);
-  this->Out.Last = { this->Out.Head, std::move(this->Work.back().Decoded) };
-  this->Work.pop_back();
+  this->Out.Last = { this->Out.Head, std::move(this->Decoded.back().Planes) };
+  this->Decoded.pop_back();
   if (this->Field.Spare != nullptr)
   {
     this->Field.Spare->push_back(std::move(this->Wanted));
-    for (StepWork& work : this->Work)
+    for (DecodedStep& step : this->Decoded)
     {
-      this->Field.Spare->push_back(std::move(work.Decoded));
+      this->Field.Spare->push_back(std::move(step.Planes));
     }
   }
   for (auto& set : this->Out.Last.Head.Frequencies)
@@ -332,7 +333,7 @@ KeyFrame Encoder<T>::RunKeyFrame()
   this->Prepare();
   const int last = static_cast<int>(this->Field.Steps.size()) - 1;
   this->EncodePlanes(last, [](std::size_t, std::int64_t) {}, [](double) {});
-  return { this->Out.Head, std::move(this->Work.back().Decoded) };
+  return { this->Out.Head, std::move(this->Decoded.back().Planes) };
 }
 
 } // namespace

@@ -5,7 +5,6 @@
 #include "Series/BrickStatistics.h"
 #include "Series/Hash.h"
 #include "Series/LatticeDecoder.h"
-#include "Series/NumberBox.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,23 +14,6 @@
 
 namespace banyan
 {
-
-PlaneRegion::PlaneRegion(int level, const Box& box, const std::array<std::uint8_t, 3>& axes,
-  const glm::ivec3& samples, int edge)
-  : Plane(level / 2)
-  , Stride(level % 2 == 0 ? 1 : 2)
-{
-  const glm::ivec3 size = box.Size();
-  for (int a = 0; a < 3; ++a)
-  {
-    const int real = axes[static_cast<std::size_t>(a)];
-    this->Low[a] = box.Lo[real] * this->Stride;
-    this->Count[a] = size[real];
-    this->Last[a] = samples[a] - 1;
-    this->FirstBlock[a] = this->SampleAt(a, 0) / edge;
-    this->EndBlock[a] = this->SampleAt(a, this->Count[a] - 1) / edge + 1;
-  }
-}
 
 template <class T>
 void PlaceExceptions(const PlaneRegion& region, int edge, const glm::ivec3& block,
@@ -83,7 +65,7 @@ class LevelNodes
 {
 public:
   LevelNodes(const FieldGroup& field, const group::FieldHead& head, int level,
-    const std::vector<const std::vector<PlaneNumbers>*>& decoded, std::vector<EncodedStep>& steps)
+    const std::vector<DecodedStep>& decoded, std::vector<EncodedStep>& steps)
     : Field(field)
     , Head(head)
     , Level(level)
@@ -106,18 +88,19 @@ public:
   {
     const std::size_t plane = static_cast<std::size_t>(this->Level / 2);
     const PlaneRegion region(this->Level, this->Layout.SamplesOf(brick), this->Head.Axes,
-      (*this->Decoded[0])[plane].Samples, this->Field.BrickCells);
+      this->Decoded[0].Planes[plane].Samples, this->Field.BrickCells);
     std::vector<std::int32_t> numbers;
     const std::size_t last = this->Steps.size() - 1;
+    NumberExtremes before;
     for (std::size_t t = 0; t <= last; ++t)
     {
       group::NodeEntry& node = this->NodeOf(t, brick);
+      const DecodedStep& step = this->Decoded[t];
       const NumberExtremes extremes =
-        this->ExtremesOf((*this->Decoded[t])[plane], (*this->Decoded[t > 0 ? t - 1 : 0])[plane],
-          region, t < last ? &(*this->Decoded[t + 1])[plane] : nullptr);
+        ExtremesOfBlocks(step.Extremes[plane], step.Planes[plane], region);
       if (this->HasExceptions(t, region))
       {
-        this->Gather((*this->Decoded[t])[plane], region, numbers);
+        this->Gather(step.Planes[plane], region, numbers);
         this->Describe(t, region, numbers, node);
       }
       else
@@ -126,75 +109,27 @@ public:
         node.High = extremes.High;
         node.Uniform = node.Low == node.High;
       }
-      if (t > 0 && extremes.AsBefore && this->SameExceptions(t, region))
+      // What moves differs in its first rows, if not in its extremes: little is read of it.
+      const bool asBefore = t > 0 && extremes == before &&
+                            SameInRegion(step.Planes[plane], this->Decoded[t - 1].Planes[plane],
+                              t < last ? &this->Decoded[t + 1].Planes[plane] : nullptr, region);
+      if (asBefore && this->SameExceptions(t, region))
       {
         node.Age = this->NodeOf(t - 1, brick).Age + 1;
       }
+      before = extremes;
     }
     for (const std::size_t t : { std::size_t{ 0 }, last })
     {
       if (!this->NodeOf(t, brick).Uniform && this->NeedsContent(t, brick, region))
       {
-        this->Gather((*this->Decoded[t])[plane], region, numbers);
+        this->Gather(this->Decoded[t].Planes[plane], region, numbers);
         this->NodeOf(t, brick).Content = this->ContentOf(t, region, numbers);
       }
     }
   }
 
 private:
-  /// @param before the plane of another step
-  /// @param next the plane whose region is looked at after this one, or null
-  NumberExtremes ExtremesOf(const PlaneNumbers& plane, const PlaneNumbers& before,
-    const PlaneRegion& region, const PlaneNumbers* next) const
-  {
-    NumberExtremes extremes;
-    plane.With(
-      [&](const auto* numbers)
-      {
-        using Number = std::remove_const_t<std::remove_pointer_t<decltype(numbers)>>;
-        this->IncludeRegion(plane, numbers, before.Data<Number>(),
-          next != nullptr ? next->Data<Number>() : nullptr, region, extremes);
-      });
-    return extremes;
-  }
-
-  template <class Number>
-  void IncludeRegion(const PlaneNumbers& plane, const Number* numbers, const Number* before,
-    const Number* next, const PlaneRegion& region, NumberExtremes& extremes) const
-  {
-    // Samples on the plane; what stands for those beyond its last one is looked at once, for each
-    // axis.
-    glm::ivec3 inside = region.Count;
-    glm::ivec3 parts(1);
-    for (int a = 0; a < 3; ++a)
-    {
-      while (inside[a] > 1 && region.Low[a] + (inside[a] - 1) * region.Stride > region.Last[a])
-      {
-        --inside[a];
-      }
-      parts[a] = inside[a] < region.Count[a] ? 2 : 1;
-    }
-    const glm::i64vec3 gaps{ 1, plane.Padded.x, std::int64_t{ plane.Padded.x } * plane.Padded.y };
-    for (int part = 0; part < parts.x * parts.y * parts.z; ++part)
-    {
-      const glm::ivec3 beyond{ part % parts.x, part / parts.x % parts.y, part / parts.x / parts.y };
-      const glm::ivec3 first =
-        beyond * region.Last + (1 - beyond) * glm::min(region.Low, region.Last);
-      const glm::ivec3 count = beyond + (1 - beyond) * inside;
-      NumberBox<Number> box;
-      box.Numbers = numbers + plane.IndexOf(first);
-      box.Before = before + plane.IndexOf(first);
-      box.Next = next != nullptr ? next + plane.IndexOf(first) : nullptr;
-      box.Count = count.x;
-      box.Stride = region.Stride;
-      box.RowGap = region.Stride * gaps.y;
-      box.SliceGap = region.Stride * gaps.z;
-      box.Rows = count.y;
-      box.Slices = count.z;
-      IncludeBox(box, extremes);
-    }
-  }
-
   group::NodeEntry& NodeOf(std::size_t step, std::int64_t brick) const
   {
     return this->Steps[step]
@@ -209,9 +144,8 @@ private:
     if (step == 0 && this->Head.Open)
     {
       const std::size_t plane = static_cast<std::size_t>(region.Plane);
-      return this
-        ->ExtremesOf((*this->Decoded[0])[plane], this->Field.Before->Planes[plane], region, nullptr)
-        .AsBefore;
+      return SameInRegion(
+        this->Decoded[0].Planes[plane], this->Field.Before->Planes[plane], nullptr, region);
     }
     if (step == 0)
     {
@@ -255,7 +189,7 @@ private:
   void ForEachBlock(std::size_t step, const PlaneRegion& region, Body&& body) const
   {
     const std::size_t plane = static_cast<std::size_t>(region.Plane);
-    const glm::ivec3 blocks = (*this->Decoded[step])[plane].Blocks;
+    const glm::ivec3 blocks = this->Decoded[step].Planes[plane].Blocks;
     for (int z = region.FirstBlock.z; z < region.EndBlock.z; ++z)
     {
       for (int y = region.FirstBlock.y; y < region.EndBlock.y; ++y)
@@ -331,7 +265,7 @@ private:
     {
       values[i] = this->Decoder.ValueOf(numbers[i]);
     }
-    const PlaneNumbers& plane = (*this->Decoded[step])[static_cast<std::size_t>(region.Plane)];
+    const PlaneNumbers& plane = this->Decoded[step].Planes[static_cast<std::size_t>(region.Plane)];
     const std::uint32_t samples = static_cast<std::uint32_t>(plane.Edge * plane.Edge * plane.Edge);
     this->ForEachBlock(step, region,
       [&](std::size_t block, const glm::ivec3& position)
@@ -356,7 +290,7 @@ private:
   const group::FieldHead& Head;
   int Level;
   BrickLayout Layout;
-  const std::vector<const std::vector<PlaneNumbers>*>& Decoded;
+  const std::vector<DecodedStep>& Decoded;
   std::vector<EncodedStep>& Steps;
   LatticeDecoder<T> Decoder;
   std::vector<bool> Excepted; ///< steps with exceptions on the level's plane
@@ -366,8 +300,7 @@ private:
 
 template <class T>
 void MakeNodes(const FieldGroup& field, const group::FieldHead& head,
-  const std::vector<const std::vector<PlaneNumbers>*>& decoded, std::vector<EncodedStep>& steps,
-  ThreadPool& pool)
+  const std::vector<DecodedStep>& decoded, std::vector<EncodedStep>& steps, ThreadPool& pool)
 {
   for (int level = 0; level < field.Levels; ++level)
   {
@@ -384,7 +317,7 @@ void MakeNodes(const FieldGroup& field, const group::FieldHead& head,
   template void PlaceExceptions<T>(                                                                \
     const PlaneRegion&, int, const glm::ivec3&, const ExceptionList<T>&, T*);                      \
   template void MakeNodes<T>(const FieldGroup&, const group::FieldHead&,                           \
-    const std::vector<const std::vector<PlaneNumbers>*>&, std::vector<EncodedStep>&, ThreadPool&)
+    const std::vector<DecodedStep>&, std::vector<EncodedStep>&, ThreadPool&)
 BANYAN_FOR_EACH_SCALAR_TYPE(BANYAN_INSTANTIATE);
 #undef BANYAN_INSTANTIATE
 

@@ -6,10 +6,10 @@
 #include "Series/FieldLattice.h"
 #include "Series/GatherTile.h"
 #include "Series/LatticeCheck.h"
+#include "Series/PlaneFilling.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <atomic>
 #include <type_traits>
 
 namespace banyan
@@ -23,82 +23,6 @@ glm::ivec3 PositionIn(const glm::ivec3& size, std::int64_t index)
 {
   return { static_cast<int>(index % size.x), static_cast<int>(index / size.x % size.y),
     static_cast<int>(index / size.x / size.y) };
-}
-
-glm::i64vec3 StridesOf(const FieldGroup& field)
-{
-  const std::int64_t row = std::int64_t{ field.Components } * field.Samples.x;
-  return { field.Components, row, row * field.Samples.y };
-}
-
-/// Numbers for samples that are not held: on the line between those around, so that predictions
-/// cost nothing there.
-/// @param otherwise when none is held
-template <class Number>
-void FillGaps(const bool* held, int count, std::int32_t otherwise, Number* numbers)
-{
-  int before = -1;
-  for (int x = 0; x < count;)
-  {
-    if (held[x])
-    {
-      before = x++;
-      continue;
-    }
-    const int after = static_cast<int>(std::find(held + x, held + count, true) - held);
-    const std::int64_t right = after < count ? numbers[after] : before >= 0 ? numbers[before] : otherwise;
-    const std::int64_t left = before >= 0 ? numbers[before] : right;
-    for (; x < after; ++x)
-    {
-      numbers[x] = static_cast<Number>(left + (right - left) * (x - before) / (after - before));
-    }
-  }
-}
-
-/// Repeats the last samples beyond the field's end.
-template <class Number>
-void Pad(PlaneNumbers& plane)
-{
-  const glm::ivec3 n = plane.Samples;
-  const auto row = [&plane](int y, int z)
-  { return plane.Data<Number>() + plane.IndexOf({ 0, y, z }); };
-  for (int z = 0; z < plane.Padded.z; ++z)
-  {
-    for (int y = 0; y < plane.Padded.y; ++y)
-    {
-      Number* to = row(y, z);
-      if (y >= n.y || z >= n.z)
-      {
-        const Number* from = row(std::min(y, n.y - 1), std::min(z, n.z - 1));
-        std::copy(from, from + plane.Padded.x, to);
-      }
-      else
-      {
-        std::fill(to + n.x, to + plane.Padded.x, to[n.x - 1]);
-      }
-    }
-  }
-}
-
-/// Every fourth sample.
-template <class Number>
-void Coarsen(const PlaneNumbers& fine, PlaneNumbers& coarse)
-{
-  const glm::ivec3 last = fine.Samples - 1;
-  for (int z = 0; z < coarse.Samples.z; ++z)
-  {
-    for (int y = 0; y < coarse.Samples.y; ++y)
-    {
-      const Number* from =
-        fine.Data<Number>() + fine.IndexOf({ 0, std::min(4 * y, last.y), std::min(4 * z, last.z) });
-      Number* to = coarse.Data<Number>() + coarse.IndexOf({ 0, y, z });
-      for (int x = 0; x < coarse.Samples.x; ++x)
-      {
-        to[x] = from[std::min(4 * x, last.x)];
-      }
-    }
-  }
-  Pad<Number>(coarse);
 }
 
 /// The tile that comes after one.
@@ -117,64 +41,13 @@ constexpr bool IsReal = std::is_floating_point_v<T>;
 } // namespace
 
 template <class T>
-std::array<std::uint8_t, 3> SmoothestLast(const FieldGroup& field, const void* step)
-{
-  const T* values = static_cast<const T*>(step);
-  const glm::i64vec3 stride = StridesOf(field);
-  // A sparse grid of samples is enough to tell the axes apart.
-  glm::ivec3 gap;
-  for (int a = 0; a < 3; ++a)
-  {
-    gap[a] = std::max(1, field.Samples[a] / 24);
-  }
-  double roughness[3] = {};
-  // No outlier decides alone.
-  const double most =
-    field.Expected.Empty() ? std::numeric_limits<double>::max() : field.Expected.Width();
-  for (int a = 0; a < 3; ++a)
-  {
-    if (field.Samples[a] < 3)
-    {
-      roughness[a] = std::numeric_limits<double>::infinity();
-      continue;
-    }
-    for (int z = a == 2 ? 1 : 0; z < field.Samples.z - (a == 2 ? 1 : 0); z += gap.z)
-    {
-      for (int y = a == 1 ? 1 : 0; y < field.Samples.y - (a == 1 ? 1 : 0); y += gap.y)
-      {
-        for (int x = a == 0 ? 1 : 0; x < field.Samples.x - (a == 0 ? 1 : 0); x += gap.x)
-        {
-          const T* at = values + x * stride.x + y * stride.y + z * stride.z;
-          const double bend = static_cast<double>(at[stride[a]]) +
-                              static_cast<double>(at[-stride[a]]) -
-                              2.0 * static_cast<double>(at[0]);
-          roughness[a] += std::isfinite(bend) ? std::min(std::abs(bend), most) : 0.0;
-        }
-      }
-    }
-  }
-  std::array<std::uint8_t, 3> axes{ 0, 1, 2 };
-  // Only what is clearly smoother goes behind, so that groups that are alike have the same order and
-  // may refer to each other.
-  constexpr double clearly = 1.125;
-  for (const std::size_t a : { 0, 1, 0 })
-  {
-    if (roughness[axes[a]] * clearly < roughness[axes[a + 1]])
-    {
-      std::swap(axes[a], axes[a + 1]);
-    }
-  }
-  return axes;
-}
-
-template <class T>
 LatticeTarget<T>::LatticeTarget(
   const FieldGroup& field, const group::FieldHead& head, ThreadPool& pool)
   : Field(field)
   , Head(head)
   , Pool(pool)
   , AxisOrder(field.Ideas.SmoothestAxisLast ? SmoothestLast<T>(field, field.Steps.back())
-                                           : std::array<std::uint8_t, 3>{ 0, 1, 2 })
+                                            : std::array<std::uint8_t, 3>{ 0, 1, 2 })
   , Decoder(field.Map, head.Origin, head.Step, head.Least, head.Greatest)
   , Fills(field.FillValues)
 {
@@ -201,6 +74,12 @@ LatticeTarget<T>::LatticeTarget(
   {
     this->Hidden = std::move(hidden);
   }
+}
+
+template <class T>
+bool LatticeTarget<T>::Plain() const
+{
+  return IsReal<T> && this->Field.Map.IsIdentity() && this->Fills.Empty();
 }
 
 template <class T>
@@ -246,11 +125,12 @@ void LatticeTarget<T>::FillRow(const T* values, int count, Number* numbers) cons
 }
 
 /// Fills a tile from values that lie side by side where its numbers do.
+/// @param next the first sample of the tile that comes next
 /// @return false: some value is not held
 template <class T>
 template <class Number>
-bool LatticeTarget<T>::FillTileFast(
-  const T* values, const glm::ivec3& low, const glm::ivec3& n, PlaneNumbers& plane) const
+bool LatticeTarget<T>::FillTileFast(const T* values, const glm::ivec3& low, const glm::ivec3& next,
+  const glm::ivec3& n, PlaneNumbers& plane) const
 {
   if constexpr (IsReal<T>)
   {
@@ -272,7 +152,7 @@ bool LatticeTarget<T>::FillTileFast(
     rows.Count = n[u];
     rows.Rows = n[v];
     rows.Slices = n[w];
-    rows.Next = this->OffsetOf(NextTile(low, plane.Samples)) - this->OffsetOf(low);
+    rows.Next = this->OffsetOf(next) - this->OffsetOf(low);
     const bool all = NumbersOnLattice(rows, scale);
     for (int z = 0; !inPlace && z < n.z; ++z)
     {
@@ -292,17 +172,17 @@ bool LatticeTarget<T>::FillTileFast(
 
 template <class T>
 template <class Number>
-void LatticeTarget<T>::FillTile(const T* values, const glm::ivec3& low, PlaneNumbers& plane) const
+void LatticeTarget<T>::FillTile(
+  const T* values, const glm::ivec3& low, const glm::ivec3& next, PlaneNumbers& plane) const
 {
   const glm::ivec3 n = glm::min(glm::ivec3(Tile), plane.Samples - low);
-  const bool plain = IsReal<T> && this->Field.Map.IsIdentity() && this->Fills.Empty();
-  if (plain && this->FillTileFast<Number>(values, low, n, plane))
+  if (this->Plain() && this->FillTileFast<Number>(values, low, next, n, plane))
   {
     return;
   }
   T tile[Tile * Tile * Tile];
-  GatherTile(values + this->OffsetOf(low), this->Stride, n, glm::i64vec3{ 1, Tile, Tile * Tile },
-    tile);
+  GatherTile(
+    values + this->OffsetOf(low), this->Stride, n, glm::i64vec3{ 1, Tile, Tile * Tile }, tile);
   for (int z = 0; z < n.z; ++z)
   {
     for (int y = 0; y < n.y; ++y)
@@ -361,17 +241,112 @@ void LatticeTarget<T>::Make(const void* values, std::vector<PlaneNumbers>& plane
     {
       using Number = std::remove_pointer_t<decltype(numbers)>;
       const T* from = static_cast<const T*>(values);
-      this->Pool.ParallelFor(std::int64_t{ tiles.x } * tiles.y * tiles.z, [&](std::int64_t i)
-        { this->FillTile<Number>(from, PositionIn(tiles, i) * Tile, planes[0]); });
+      this->Pool.ParallelFor(std::int64_t{ tiles.x } * tiles.y * tiles.z,
+        [&](std::int64_t i)
+        {
+          const glm::ivec3 low = PositionIn(tiles, i) * Tile;
+          this->FillTile<Number>(from, low, NextTile(low, planes[0].Samples), planes[0]);
+        });
       if (this->Hidden)
       {
         this->HideBlocks<Number>(from, planes[0]);
       }
-      Pad<Number>(planes[0]);
+      Pad<Number>(planes[0], glm::ivec3(0), planes[0].Samples);
       for (std::size_t p = 1; p < planes.size(); ++p)
       {
         Coarsen<Number>(planes[p - 1], planes[p]);
       }
+    });
+}
+
+/// The plane after the finest one, straight from values.
+/// @return false: some value is not held
+template <class T>
+template <class Number>
+bool LatticeTarget<T>::FillCoarser(const T* values, PlaneNumbers& coarse) const
+{
+  constexpr int most = 64;
+  const LatticeScale scale = this->Scale();
+  const glm::ivec3 last = this->PlaneSamples[0] - 1;
+  std::atomic<bool> held{ true };
+  this->Pool.ParallelFor(coarse.Samples.z,
+    [&](std::int64_t slice)
+    {
+      const int z = static_cast<int>(slice);
+      T some[most];
+      LatticeRows<T, Number> rows;
+      rows.Values = some;
+      rows.Rows = rows.Slices = 1;
+      for (int y = 0; y < coarse.Samples.y; ++y)
+      {
+        const T* row =
+          values + this->OffsetOf({ 0, std::min(4 * y, last.y), std::min(4 * z, last.z) });
+        for (int x = 0; x < coarse.Samples.x; x += most)
+        {
+          rows.Count = std::min(most, coarse.Samples.x - x);
+          rows.Numbers = coarse.Data<Number>() + coarse.IndexOf({ x, y, z });
+          for (int i = 0; i < rows.Count; ++i)
+          {
+            some[i] = row[std::min(4 * (x + i), last.x) * this->Stride.x];
+          }
+          if (!NumbersOnLattice(rows, scale))
+          {
+            held = false;
+          }
+        }
+      }
+    });
+  Pad<Number>(coarse, glm::ivec3(0), coarse.Samples);
+  return held;
+}
+
+template <class T>
+bool LatticeTarget<T>::MakeCoarser(const void* values, std::vector<PlaneNumbers>& planes) const
+{
+  bool apart = this->Plain() && !this->Hidden && planes.size() > 1 && planes[0].Edge % Tile == 0;
+  if constexpr (IsReal<T>)
+  {
+    planes[0].With(
+      [&](auto* numbers)
+      {
+        using Number = std::remove_pointer_t<decltype(numbers)>;
+        apart = apart && this->FillCoarser<Number>(static_cast<const T*>(values), planes[1]);
+        for (std::size_t p = 2; apart && p < planes.size(); ++p)
+        {
+          Coarsen<Number>(planes[p - 1], planes[p]);
+        }
+      });
+  }
+  if (!apart)
+  {
+    this->Make(values, planes);
+  }
+  return apart;
+}
+
+template <class T>
+void LatticeTarget<T>::MakeBlock(const void* values, std::int64_t block, PlaneNumbers& plane) const
+{
+  const glm::ivec3 position = PositionIn(plane.Blocks, block);
+  const glm::ivec3 low = position * plane.Edge;
+  const glm::ivec3 high = glm::min(low + plane.Edge, plane.Samples);
+  const glm::ivec3 next = plane.BlockBefore(position) * plane.Edge - low;
+  plane.With(
+    [&](auto* numbers)
+    {
+      using Number = std::remove_pointer_t<decltype(numbers)>;
+      for (int z = low.z; z < high.z; z += Tile)
+      {
+        for (int y = low.y; y < high.y; y += Tile)
+        {
+          for (int x = low.x; x < high.x; x += Tile)
+          {
+            const glm::ivec3 tile{ x, y, z };
+            this->FillTile<Number>(static_cast<const T*>(values), tile, tile + next, plane);
+          }
+        }
+      }
+      Pad<Number>(plane, low, high);
     });
 }
 
@@ -385,9 +360,7 @@ void LatticeTarget<T>::Verify(const void* values, const PlaneNumbers& decoded, i
   check.Block(decoded, plane, block, list, errors, squares);
 }
 
-#define BANYAN_INSTANTIATE(T)                                                                      \
-  template std::array<std::uint8_t, 3> SmoothestLast<T>(const FieldGroup&, const void*);           \
-  template class LatticeTarget<T>
+#define BANYAN_INSTANTIATE(T) template class LatticeTarget<T>
 BANYAN_FOR_EACH_SCALAR_TYPE(BANYAN_INSTANTIATE);
 #undef BANYAN_INSTANTIATE
 

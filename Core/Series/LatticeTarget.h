@@ -16,8 +16,12 @@
 namespace banyan
 {
 
+/// Distances of the values of a component along the axes of the data.
+glm::i64vec3 StridesOf(const FieldGroup& field);
+
 /// The axes of a field in the order that predicts best: predictions run along the last axis last,
-/// where half of all samples are, so that is the smoothest one. Axes that hardly differ stay in order.
+/// where half of all samples are, so that is the smoothest one. Axes that hardly differ stay in
+/// order.
 /// @param step values of one step, as FieldGroup has them
 template <class T>
 std::array<std::uint8_t, 3> SmoothestLast(const FieldGroup& field, const void* step);
@@ -42,6 +46,13 @@ public:
   /// @param planes as NewPlanes makes them; whatever they hold is replaced
   void Make(const void* values, std::vector<PlaneNumbers>& planes) const;
 
+  /// As Make, but where values may well wait, the finest plane is left out: its blocks follow by
+  /// MakeBlock, so that their values come from memory once for that and to be compared.
+  /// @return whether they have to; if not, all is made
+  bool MakeCoarser(const void* values, std::vector<PlaneNumbers>& planes) const;
+  /// @param plane the finest one, whose numbers of a block are replaced
+  void MakeBlock(const void* values, std::int64_t block, PlaneNumbers& plane) const;
+
   /// Decodes the samples of a block and compares them with the originals: within the bound, or both
   /// in one invisible interval where the sample is of an invisible block. Fill values must be the
   /// same bits.
@@ -52,16 +63,21 @@ public:
     ExceptionList<T>& list, FieldErrors& errors, std::vector<double>* squares) const;
 
 private:
+  /// Whether values are on the lattice as they are, and all of them may be.
+  bool Plain() const;
   LatticeScale Scale() const;
   std::int64_t OffsetOf(const glm::ivec3& sample) const
   {
     return sample.x * this->Stride.x + sample.y * this->Stride.y + sample.z * this->Stride.z;
   }
   template <class Number>
-  void FillTile(const T* values, const glm::ivec3& low, PlaneNumbers& plane) const;
+  void FillTile(
+    const T* values, const glm::ivec3& low, const glm::ivec3& next, PlaneNumbers& plane) const;
   template <class Number>
-  bool FillTileFast(
-    const T* values, const glm::ivec3& low, const glm::ivec3& n, PlaneNumbers& plane) const;
+  bool FillTileFast(const T* values, const glm::ivec3& low, const glm::ivec3& next,
+    const glm::ivec3& n, PlaneNumbers& plane) const;
+  template <class Number>
+  bool FillCoarser(const T* values, PlaneNumbers& coarse) const;
   template <class Number>
   void FillRow(const T* values, int count, Number* numbers) const;
   template <class Number>

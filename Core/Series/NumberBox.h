@@ -12,7 +12,7 @@ template <class Number>
 struct NumberBox
 {
   const Number* Numbers = nullptr; ///< sample 0 of row 0 of slice 0
-  const Number* Before = nullptr;  ///< the same of another step, laid out alike
+  const Number* Before = nullptr;  ///< the same of another step, laid out alike; or null
   const Number* Next = nullptr;    ///< the same of a step that comes next: is asked for; or null
   int Count = 1;                   ///< samples of a row
   int Stride = 1;                  ///< from sample to sample: 1 or 2
@@ -24,13 +24,21 @@ struct NumberBox
 struct NumberExtremes
 {
   std::int32_t Low = INT32_MAX, High = INT32_MIN;
-  bool AsBefore = true; ///< every number is that of the other step
+  friend bool operator==(const NumberExtremes& a, const NumberExtremes& b)
+  {
+    return a.Low == b.Low && a.High == b.High;
+  }
 };
 
 /// Adds the samples of a box.
 /// @param Number std::int16_t or std::int32_t
 template <class Number>
 void IncludeBox(const NumberBox<Number>& box, NumberExtremes& extremes);
+
+/// Whether every sample is that of the other step.
+/// @param box with `Before`
+template <class Number>
+bool SameAsBefore(const NumberBox<Number>& box);
 
 } // namespace banyan
 

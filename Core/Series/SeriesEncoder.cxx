@@ -1,6 +1,7 @@
 #include "Series/SeriesEncoder.h"
 
 #include "Base/Error.h"
+#include "Base/LargePages.h"
 #include "Base/ThreadPool.h"
 #include "Series/EncodePlan.h"
 #include "Series/GroupEncoder.h"
@@ -19,8 +20,9 @@ struct SeriesEncoder::Internals
   ~Internals();
 
   void CheckStep(double time, const std::vector<ArrayValues>& arrays) const;
-  void Keep(double time, const std::vector<ArrayValues>& arrays);
-  void EncodeKept();
+  void Keep(const std::vector<ArrayValues>& arrays);
+  /// @param last values of the last step, where they were not kept
+  void EncodeKept(const std::vector<ArrayValues>& last = {});
 
   std::string Path;
   EncodeOptions Options;
@@ -30,8 +32,9 @@ struct SeriesEncoder::Internals
   bool Finished = false;
   std::unique_ptr<SegmentFolder> Folder;
   std::vector<double> Times;                                  ///< of the group under way
-  std::vector<std::vector<std::vector<std::uint8_t>>> Values; ///< its steps and arrays
-  std::vector<std::vector<std::vector<std::uint8_t>>> Spare;  ///< memory for them
+  using KeptArray = std::vector<std::uint8_t, InLargePages<std::uint8_t>>;
+  std::vector<std::vector<KeptArray>> Values; ///< its steps and arrays
+  std::vector<std::vector<KeptArray>> Spare;  ///< memory for them
   LastStep Last; ///< of the group before
   std::function<bool(double)> Progress;
 };
@@ -77,10 +80,9 @@ void SeriesEncoder::Internals::CheckStep(double time, const std::vector<ArrayVal
   }
 }
 
-void SeriesEncoder::Internals::Keep(double time, const std::vector<ArrayValues>& arrays)
+void SeriesEncoder::Internals::Keep(const std::vector<ArrayValues>& arrays)
 {
   const SeriesIndex& index = this->Assembly.Index();
-  this->Times.push_back(time);
   this->Values.emplace_back();
   if (!this->Spare.empty())
   {
@@ -98,7 +100,7 @@ void SeriesEncoder::Internals::Keep(double time, const std::vector<ArrayValues>&
   }
 }
 
-void SeriesEncoder::Internals::EncodeKept()
+void SeriesEncoder::Internals::EncodeKept(const std::vector<ArrayValues>& last)
 {
   std::vector<std::vector<ArrayValues>> steps;
   for (const auto& step : this->Values)
@@ -108,6 +110,10 @@ void SeriesEncoder::Internals::EncodeKept()
     {
       steps.back().push_back({ values.data() });
     }
+  }
+  if (!last.empty())
+  {
+    steps.push_back(last);
   }
   const int number = static_cast<int>(this->Assembly.Index().Segments.size());
   this->Assembly.Add(number, EncodeGroup(this->Assembly.Index(), this->Options, *this->Folder,
@@ -142,10 +148,14 @@ void SeriesEncoder::AddStep(double time, const std::vector<ArrayValues>& arrays)
   // A bad call does not spoil what was encoded, but the contract says that nothing can follow it.
   self.Failed = true;
   self.CheckStep(time, arrays);
-  self.Keep(time, arrays);
+  self.Times.push_back(time);
   if (static_cast<int>(self.Times.size()) == self.Options.KeyframeInterval)
   {
-    self.EncodeKept();
+    self.EncodeKept(arrays); // these values are at hand until all is encoded
+  }
+  else
+  {
+    self.Keep(arrays);
   }
   self.Failed = false;
 }

@@ -210,18 +210,7 @@ TEST_P(Blocks, EachIsToldOfOnceWhenItIsDecoded)
     std::vector<BlockTokens> blocks;
     std::vector<std::vector<std::int32_t>> seen(static_cast<std::size_t>(decoded.BlockCount()));
     ThreadPool pool(threads);
-    // The layer that neighbours own may still change.
-    const auto inside = [&](std::int64_t i)
-    {
-      const std::vector<std::int32_t> box = BoxNumbers(decoded, BlockAt(decoded, i));
-      std::vector<std::int32_t> own;
-      for (int at = 0; at < edge * edge * edge; ++at)
-      {
-        own.push_back(box[static_cast<std::size_t>(
-          (at / edge / edge * (edge + 1) + at / edge % edge) * (edge + 1) + at % edge)]);
-      }
-      return own;
-    };
+    const auto inside = [&](std::int64_t i) { return BoxNumbers(decoded, BlockAt(decoded, i)); };
     EncodePlane(plane, decoded, blocks, pool,
       [&](std::int64_t i)
       {
@@ -231,6 +220,47 @@ TEST_P(Blocks, EachIsToldOfOnceWhenItIsDecoded)
     for (std::int64_t i = 0; i < decoded.BlockCount(); ++i)
     {
       EXPECT_EQ(seen[static_cast<std::size_t>(i)], inside(i)) << "block " << i;
+    }
+  }
+}
+
+TEST_P(Blocks, NumbersMayBeMadeWhenABlockBegins)
+{
+  const int edge = GetParam();
+  const MixedPlanes planes({ edge + 3, 2 * edge, 9 }, edge, 4);
+  PlaneToEncode plane = planes.With(AllModes(), true);
+  const PlaneNumbers& whole = *plane.Target;
+  const EncodedPlane expected = EncodeWhole(plane);
+  for (const int threads : { 1, 3 })
+  {
+    PlaneNumbers decoded(whole.Samples, edge, false), made(whole.Samples, edge, false);
+    std::vector<BlockTokens> blocks;
+    ThreadPool pool(threads);
+    plane.Target = &made;
+    EncodePlane(plane, decoded, blocks, pool, [](std::int64_t) {},
+      [&](std::int64_t i)
+      {
+        const glm::ivec3 block = BlockAt(made, i), low = block * edge;
+        glm::ivec3 end;
+        for (int a = 0; a < 3; ++a)
+        {
+          end[a] = low[a] + edge + (block[a] + 1 == made.Blocks[a] ? 1 : 0);
+        }
+        for (int z = low.z; z < end.z; ++z)
+        {
+          for (int y = low.y; y < end.y; ++y)
+          {
+            const std::int64_t row = made.IndexOf({ low.x, y, z });
+            std::copy_n(whole.Data<std::int32_t>() + row, end.x - low.x,
+              made.Data<std::int32_t>() + row);
+          }
+        }
+      });
+    EXPECT_TRUE(decoded == expected.Decoded);
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+    {
+      EXPECT_EQ(blocks[i].Mode, expected.Blocks[i].Mode) << "block " << i;
+      EXPECT_EQ(blocks[i].Tokens, expected.Blocks[i].Tokens) << "block " << i;
     }
   }
 }

@@ -75,7 +75,7 @@ void ExpectExtremesOfEveryCount()
       IncludeBox(steps.Box, found);
       ASSERT_EQ(found.Low, steps.Expected.Low);
       ASSERT_EQ(found.High, steps.Expected.High);
-      ASSERT_TRUE(found.AsBefore);
+      ASSERT_TRUE(SameAsBefore(steps.Box));
       // Each sample counts.
       steps.ForEachSample(
         [&](Number& now, Number& before)
@@ -87,15 +87,11 @@ void ExpectExtremesOfEveryCount()
             NumberExtremes other;
             IncludeBox(steps.Box, other);
             ASSERT_EQ(extreme < 0 ? other.Low : other.High, extreme);
-            ASSERT_TRUE(other.AsBefore);
+            ASSERT_TRUE(SameAsBefore(steps.Box));
           }
           now = was;
           before = static_cast<Number>(was + 1);
-          NumberExtremes other;
-          IncludeBox(steps.Box, other);
-          ASSERT_FALSE(other.AsBefore);
-          ASSERT_EQ(other.Low, steps.Expected.Low);
-          ASSERT_EQ(other.High, steps.Expected.High);
+          ASSERT_FALSE(SameAsBefore(steps.Box));
           before = was;
         });
     }
@@ -123,7 +119,7 @@ TEST(NumberBox, SeveralBoxesAddUp)
     box.Numbers = &now[i];
     box.Before = &before[i];
     IncludeBox(box, found);
-    EXPECT_EQ(found.AsBefore, i < 2);
+    EXPECT_EQ(SameAsBefore(box), i < 2);
   }
   EXPECT_EQ(found.Low, -2);
   EXPECT_EQ(found.High, 9);
