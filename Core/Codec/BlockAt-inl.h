@@ -54,7 +54,8 @@ struct BlockMemory
   UnitMemory<Number, 3> Interior, InteriorTarget;
   UnitTokens Tokens;
   std::vector<Number> Boxes; ///< of the target and both references
-  std::vector<std::pair<std::int64_t, block::Mode>> Costs;
+  std::vector<std::pair<std::int64_t, std::size_t>> Costs; ///< of candidates, by their numbers
+  std::size_t Likely = 0; ///< the candidate that the block before took
 };
 
 /// Takes units with their borders from what is decoded, and from what they are to become, less what

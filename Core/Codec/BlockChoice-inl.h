@@ -51,9 +51,23 @@ struct BlockChooser : BlockAt<Edge, Number>
       });
   }
 
+  static std::int64_t SumOf(const Costs& costs)
+  {
+    typedef std::uint64_t Sums __attribute__((vector_size(64)));
+    const Sums pairs = reinterpret_cast<Sums>(costs); // none is negative
+    const Sums sums = (pairs & 0xffffffffu) + (pairs >> 32);
+    std::uint64_t total = 0;
+    for (int x = 0; x < 8; ++x)
+    {
+      total += sums[x];
+    }
+    return static_cast<std::int64_t>(total);
+  }
+
   /// Guesses the bits that residuals take, from some rows of each pass, with what is to be coded in
   /// place of what will have been decoded.
-  std::int64_t Estimate(const Number* w, Interpolation by) const
+  /// @param enough where there are more, the sum so far will do
+  std::int64_t Estimate(const Number* w, Interpolation by, std::int64_t enough) const
   {
     const int b = this->B();
     const glm::ivec3 last =
@@ -81,6 +95,14 @@ struct BlockChooser : BlockAt<Edge, Number>
         add(Pass<3, 1, 1>{}, k, j, 2);
         add(Pass<3, 0, 1>{}, k - 1, j, 2);
       }
+      if (k % 4 == 3)
+      {
+        const std::int64_t most = SumOf(costs);
+        if (most > enough)
+        {
+          return most;
+        }
+      }
     }
     for (int k = 2; k < b; k += 4)
     {
@@ -93,12 +115,7 @@ struct BlockChooser : BlockAt<Edge, Number>
         }
       }
     }
-    std::int64_t total = 0;
-    for (int x = 0; x < Width; ++x)
-    {
-      total += costs[x];
-    }
-    return total;
+    return SumOf(costs);
   }
 
   /// Of a row, in 2^-13 bits, about. What is less than half a bin costs little, and much less the
@@ -142,7 +159,6 @@ struct BlockChooser : BlockAt<Edge, Number>
   {
     const PlaneToEncode& plane = this->Plane();
     const std::int64_t n = this->B() + 1;
-    const std::int64_t next = this->NextBlock();
     Number* to = this->Work.Boxes.data();
     const auto gather = [&](const PlaneNumbers* from)
     {
@@ -154,9 +170,7 @@ struct BlockChooser : BlockAt<Edge, Number>
         {
           for (int y = 0; y < n; ++y, to += n)
           {
-            const Number* row = samples.Row(y, z);
-            __builtin_prefetch(row + next);
-            std::memcpy(to, row, static_cast<std::size_t>(n) * sizeof(Number));
+            std::memcpy(to, samples.Row(y, z), static_cast<std::size_t>(n) * sizeof(Number));
           }
         }
       }
@@ -167,6 +181,86 @@ struct BlockChooser : BlockAt<Edge, Number>
     boxes.A = gather(plane.A);
     boxes.B = plane.B == plane.A ? boxes.A : gather(plane.B);
     return boxes;
+  }
+
+  /// Asks for the samples that the next block is chosen by. One part of them after the other: more at
+  /// a time would be waited for.
+  void AskAhead(std::size_t part, std::size_t parts) const
+  {
+    const PlaneToEncode& plane = this->Plane();
+    const std::size_t n = static_cast<std::size_t>(this->B()) + 1;
+    const std::int64_t next = this->NextBlock();
+    for (const PlaneNumbers* from : { plane.Target, plane.A, plane.B != plane.A ? plane.B : nullptr })
+    {
+      if (from == nullptr)
+      {
+        continue;
+      }
+      const View<const Number> samples = this->ViewOf(*from);
+      for (std::size_t z = part * n / parts; z < (part + 1) * n / parts; ++z)
+      {
+        for (std::size_t y = 0; y < n; ++y)
+        {
+          __builtin_prefetch(samples.Row(static_cast<int>(y), static_cast<int>(z)) + next);
+        }
+      }
+    }
+  }
+
+  std::size_t Trials() const { return static_cast<std::size_t>(std::max(this->Plane().Trials, 1)); }
+
+  /// What candidates cost at most that are tried out beside one of these costs. Where one looks clearly
+  /// best, it is: by so many per cent, or, of what costs much anyway, by as much as that is of a tenth of
+  /// a bit per sample.
+  std::int64_t CloseTo(std::int64_t cost) const
+  {
+    constexpr std::int64_t tenth = (1 << 13) / 10 / 100;
+    const std::int64_t samples = std::int64_t{ this->B() } * this->B() * this->B();
+    return cost + std::min(cost / 100, tenth * samples) * this->Plane().TrialMargin;
+  }
+
+  /// Estimates candidates: those that may be tried out come first in Work.Costs, the best ones first, and
+  /// of equal ones those that come first among the candidates.
+  void EstimateAll(const Boxes& boxes) const
+  {
+    const std::vector<block::Mode>& modes = this->Plane().Candidates;
+    std::vector<std::pair<std::int64_t, std::size_t>>& costs = this->Work.Costs;
+    costs.clear();
+    const bool alone = this->Plane().A == nullptr || this->Plane().B == nullptr;
+    Number* const w = this->Work.Interior.W();
+    std::size_t loaded = modes.size();
+    std::int64_t enough = std::numeric_limits<std::int64_t>::max();
+    const auto estimate = [&](std::size_t i)
+    {
+      const block::Mode& mode = modes[i];
+      if (alone && mode.From != block::Reference::None)
+      {
+        return;
+      }
+      if (loaded == modes.size() || mode.From != modes[loaded].From)
+      {
+        this->LoadLooked(boxes.Target, boxes.ReferencesOf(mode.From), w);
+        loaded = i;
+      }
+      const std::pair<std::int64_t, std::size_t> cost{ this->Estimate(w, mode.By, enough), i };
+      costs.insert(std::upper_bound(costs.begin(), costs.end(), cost), cost);
+      enough = this->CloseTo(costs[0].first);
+      if (costs.size() >= this->Trials())
+      {
+        enough = std::min(enough, costs[this->Trials() - 1].first);
+      }
+    };
+    // What the block before took is likely good again: others need not be looked at in full.
+    const std::size_t likely = std::min(this->Work.Likely, modes.size() - 1);
+    estimate(likely);
+    for (std::size_t i = 0; i < modes.size(); ++i)
+    {
+      this->AskAhead(i, modes.size());
+      if (i != likely)
+      {
+        estimate(i);
+      }
+    }
   }
 
   void Choose() const
@@ -183,44 +277,23 @@ struct BlockChooser : BlockAt<Edge, Number>
       return;
     }
     const Boxes boxes = this->GatherBoxes();
-    block::Scratch<Number, 3>& scratch = this->Work.Interior;
-    std::vector<std::pair<std::int64_t, block::Mode>>& costs = this->Work.Costs;
-    costs.clear();
-    block::Reference loaded = block::Reference::None;
-    for (const block::Mode& mode : plane.Candidates)
-    {
-      if (mode.From != block::Reference::None && (plane.A == nullptr || plane.B == nullptr))
-      {
-        continue;
-      }
-      if (costs.empty() || mode.From != loaded)
-      {
-        this->LoadLooked(boxes.Target, boxes.ReferencesOf(mode.From), scratch.W());
-        loaded = mode.From;
-      }
-      costs.emplace_back(this->Estimate(scratch.W(), mode.By), mode);
-    }
-    std::stable_sort(costs.begin(), costs.end(),
-      [](const auto& a, const auto& b) { return a.first < b.first; });
-    // Where one looks clearly best, it is: by so many per cent, or, of what costs much anyway, by as much
-    // as that is of a tenth of a bit per sample.
-    constexpr std::int64_t tenth = (1 << 13) / 10 / 100;
-    const std::int64_t samples = std::int64_t{ this->B() } * this->B() * this->B();
-    const std::int64_t close =
-      costs[0].first + std::min(costs[0].first / 100, tenth * samples) * plane.TrialMargin;
+    this->EstimateAll(boxes);
+    const std::vector<std::pair<std::int64_t, std::size_t>>& costs = this->Work.Costs;
+    const std::int64_t close = this->CloseTo(costs[0].first);
     const auto end = std::find_if(costs.begin() + 1, costs.end(),
       [close](const auto& cost) { return cost.first > close; });
-    const std::size_t trials = std::min<std::size_t>(static_cast<std::size_t>(end - costs.begin()),
-      static_cast<std::size_t>(std::max(plane.Trials, 1)));
+    const std::size_t trials =
+      std::min<std::size_t>(static_cast<std::size_t>(end - costs.begin()), this->Trials());
     std::size_t best = 0;
     std::int64_t least = std::numeric_limits<std::int64_t>::max();
     for (std::size_t i = 0; trials > 1 && i < trials; ++i)
     {
-      const std::int64_t cost = this->TrialCost(boxes, costs[i].second, least);
+      const std::int64_t cost = this->TrialCost(boxes, plane.Candidates[costs[i].second], least);
       best = cost < least ? i : best;
       least = std::min(cost, least);
     }
-    out.Mode = static_cast<std::uint8_t>(block::NumberOf(costs[best].second));
+    this->Work.Likely = costs[best].second;
+    out.Mode = static_cast<std::uint8_t>(block::NumberOf(plane.Candidates[costs[best].second]));
   }
 
   /// What the interior of a block would cost, with borders as they are to be in place of what they

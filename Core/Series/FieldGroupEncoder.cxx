@@ -47,6 +47,8 @@ private:
   void EncodeStep(
     int step, std::vector<double>* squares, const std::function<void(double)>& tell);
   void WriteSymbols();
+  void WriteSymbols(const SymbolTables& tables, std::vector<BlockTokens>& tokens,
+    std::vector<EncodedBlock>& blocks) const;
 
   const FieldGroup& Field;
   ThreadPool& Pool;
@@ -55,6 +57,7 @@ private:
   std::vector<PlaneNumbers> Wanted; ///< of the step under way
   std::vector<DecodedStep> Decoded; ///< all steps, as all else is kept until the group is written
   std::vector<StepTokens> Tokens;
+  TokenCounter Counters[2]; ///< of the finest planes, and of all others
   EncodedField Out;
 };
 
@@ -178,6 +181,10 @@ void Encoder<T>::EncodePlanes(
     EncodePlane(plane, decoded[p], tokens[p], this->Pool,
       [&](std::int64_t block) { done(p, block); },
       p == 0 && blockwise ? std::function<void(std::int64_t)>(make) : nullptr);
+    for (const BlockTokens& block : tokens[p])
+    {
+      this->Counters[p > 0 ? 1 : 0].Add(block.Tokens);
+    }
     tell(static_cast<double>(targets.size() - 1 - p) / static_cast<double>(targets.size()));
   }
 }
@@ -243,54 +250,46 @@ void Encoder<T>::WriteSymbols()
 {
   for (int set = 0; set < 2; ++set)
   {
-    ContextCounts counts;
-    const auto each = [&](auto&& body)
-    {
-      for (std::size_t t = 0; t < this->Tokens.size(); ++t)
-      {
-        for (std::size_t p = 0; p < this->Tokens[t].size(); ++p)
-        {
-          if ((p > 0 ? 1 : 0) == set)
-          {
-            body(this->Tokens[t][p], this->Out.Steps[t].Planes[p]);
-          }
-        }
-      }
-    };
-    each(
-      [&](std::vector<BlockTokens>& tokens, std::vector<EncodedBlock>&)
-      {
-        for (const BlockTokens& block : tokens)
-        {
-          counts.Add(block.Tokens);
-        }
-      });
+    ContextCounts counts = this->Counters[set].Counts();
     if (!this->Field.Ideas.TablesByRoughness)
     {
       counts.ForgetClasses();
     }
     const SymbolTables tables(counts, this->Field.Ideas.SharedTables);
     this->Out.Head.Frequencies[set] = tables.Frequencies();
-    each(
-      [&](std::vector<BlockTokens>& tokens, std::vector<EncodedBlock>& blocks)
+    for (std::size_t t = 0; t < this->Tokens.size(); ++t)
+    {
+      for (std::size_t p = 0; p < this->Tokens[t].size(); ++p)
       {
-        this->Pool.ParallelFor(static_cast<std::int64_t>(tokens.size()),
-          [&](std::int64_t i)
-          {
-            BlockTokens& from = tokens[static_cast<std::size_t>(i)];
-            EncodedBlock& to = blocks[static_cast<std::size_t>(i)];
-            to.Mode = from.Uniform || from.Same ? 0 : from.Mode;
-            to.Uniform = from.Uniform;
-            to.Same = from.Same;
-            to.Value = from.Value;
-            if (!from.Tokens.empty())
-            {
-              to.Payload = tables.Encode(from.Tokens, from.Extra, from.Runs);
-            }
-            from = {};
-          });
-      });
+        if ((p > 0 ? 1 : 0) == set)
+        {
+          this->WriteSymbols(tables, this->Tokens[t][p], this->Out.Steps[t].Planes[p]);
+        }
+      }
+    }
   }
+}
+
+/// Codes the tokens of the blocks of a plane, and lets go of them.
+template <class T>
+void Encoder<T>::WriteSymbols(const SymbolTables& tables, std::vector<BlockTokens>& tokens,
+  std::vector<EncodedBlock>& blocks) const
+{
+  this->Pool.ParallelFor(static_cast<std::int64_t>(tokens.size()),
+    [&](std::int64_t i)
+    {
+      BlockTokens& from = tokens[static_cast<std::size_t>(i)];
+      EncodedBlock& to = blocks[static_cast<std::size_t>(i)];
+      to.Mode = from.Uniform || from.Same ? 0 : from.Mode;
+      to.Uniform = from.Uniform;
+      to.Same = from.Same;
+      to.Value = from.Value;
+      if (!from.Tokens.empty())
+      {
+        to.Payload = tables.Encode(from.Tokens, from.Extra, from.Runs);
+      }
+      from = {};
+    });
 }
 
 template <class T>

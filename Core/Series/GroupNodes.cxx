@@ -109,8 +109,8 @@ public:
         node.High = extremes.High;
         node.Uniform = node.Low == node.High;
       }
-      // What moves differs in its first rows, if not in its extremes: little is read of it.
-      const bool asBefore = t > 0 && extremes == before &&
+      // Of what moves, hardly anything is read again.
+      const bool asBefore = t > 0 && extremes.MayBeThoseOf(before) &&
                             SameInRegion(step.Planes[plane], this->Decoded[t - 1].Planes[plane],
                               t < last ? &this->Decoded[t + 1].Planes[plane] : nullptr, region);
       if (asBefore && this->SameExceptions(t, region))

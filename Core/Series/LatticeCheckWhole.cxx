@@ -2,6 +2,7 @@
 #include "Series/GatherTile.h"
 #include "Series/LatticeCheck.h"
 #include "Series/LatticeRows.h"
+#include "Series/TransposedRows.h"
 
 #include <algorithm>
 #include <type_traits>
@@ -20,21 +21,22 @@ bool LatticeCheck<T>::WholeBlockOf(const PlaneNumbers& decoded, const glm::ivec3
     const MemoryOrder order(this->Stride);
     const auto [u, v, w] = order.Axes;
     const Number* const numbers = decoded.Data<Number>();
+    const glm::i64vec3 gaps{ 1, decoded.Padded.x,
+      std::int64_t{ decoded.Padded.x } * decoded.Padded.y };
     thread_local std::vector<Number> tile;
     if (u != 0)
     {
       tile.resize(static_cast<std::size_t>(edge) * edge * edge);
-      for (int z = 0; z < n.z; ++z)
+      const int third = 3 - u;
+      for (int i = 0; i < n[third]; ++i)
       {
-        for (int y = 0; y < n.y; ++y)
-        {
-          CopyRow(numbers + decoded.IndexOf(low + glm::ivec3{ 0, y, z }), 1, n.x,
-            tile.data() + order.PlaceOf(edge, { 0, y, z }), order.PlaceOf(edge, { 1, 0, 0 }));
-        }
+        glm::ivec3 slice(0);
+        slice[third] = i;
+        CopyTransposed<Number>(numbers + decoded.IndexOf(low + slice), gaps[u], n[u], n.x,
+          tile.data() + order.PlaceOf(edge, slice), order.PlaceOf(edge, { 1, 0, 0 }));
       }
     }
     const LatticeScale scale{ this->Head.Origin, this->Head.Step };
-    const glm::i64vec3 gaps{ 1, decoded.Padded.x, std::int64_t{ decoded.Padded.x } * decoded.Padded.y };
     LatticeRows<T, const Number> rows;
     rows.Values = this->Values + low.x * this->Stride.x + low.y * this->Stride.y + low.z * this->Stride.z;
     rows.Gap = this->Stride[u];

@@ -7,6 +7,7 @@
 #include "Series/GatherTile.h"
 #include "Series/LatticeCheck.h"
 #include "Series/PlaneFilling.h"
+#include "Series/TransposedRows.h"
 
 #include <algorithm>
 #include <atomic>
@@ -154,13 +155,14 @@ bool LatticeTarget<T>::FillTileFast(const T* values, const glm::ivec3& low, cons
     rows.Slices = n[w];
     rows.Next = this->OffsetOf(next) - this->OffsetOf(low);
     const bool all = NumbersOnLattice(rows, scale);
-    for (int z = 0; !inPlace && z < n.z; ++z)
+    // Rows of the tile along axis u become rows along x, for each place along the third one.
+    const int third = 3 - u;
+    for (int i = 0; !inPlace && i < n[third]; ++i)
     {
-      for (int y = 0; y < n.y; ++y)
-      {
-        CopyRow(tile + order.PlaceOf(Tile, { 0, y, z }), order.PlaceOf(Tile, { 1, 0, 0 }), n.x,
-          numbers + plane.IndexOf(low + glm::ivec3(0, y, z)), 1);
-      }
+      glm::ivec3 slice(0);
+      slice[third] = i;
+      CopyTransposed<Number>(tile + order.PlaceOf(Tile, slice), order.PlaceOf(Tile, { 1, 0, 0 }),
+        n.x, n[u], numbers + plane.IndexOf(low + slice), gaps[u]);
     }
     return all;
   }

@@ -86,7 +86,7 @@ void IncludeVectors(const NumberBox<Number>& box, NumberExtremes& result)
 {
   const LanesOf<Number> tag;
   const int length = LengthOf(box), lanes = static_cast<int>(hn::Lanes(tag));
-  auto low = hn::Set(tag, box.Numbers[0]), high = low;
+  auto low = hn::Set(tag, box.Numbers[0]), high = low, sum = hn::Zero(tag);
   ForEachRow(box,
     [&](std::int64_t at)
     {
@@ -97,16 +97,19 @@ void IncludeVectors(const NumberBox<Number>& box, NumberExtremes& result)
           const auto some = SamplesOf<Stride>(row + x, x);
           low = hn::Min(low, some);
           high = hn::Max(high, some);
+          sum = hn::Add(sum, some); // wraps
         });
       return true;
     });
-  Number lows[16], highs[16];
+  Number lows[16], highs[16], sums[16];
   hn::StoreU(low, tag, lows);
   hn::StoreU(high, tag, highs);
+  hn::StoreU(sum, tag, sums);
   for (int lane = 0; lane < lanes; lane += Stride)
   {
     result.Low = std::min<std::int32_t>(result.Low, lows[lane]);
     result.High = std::max<std::int32_t>(result.High, highs[lane]);
+    result.Check = 31 * result.Check + static_cast<std::uint32_t>(sums[lane]);
   }
 }
 
@@ -124,6 +127,7 @@ void IncludeBoxHere(const NumberBox<Number>& box, NumberExtremes& result)
       {
         result.Low = std::min<std::int32_t>(result.Low, box.Numbers[at + x]);
         result.High = std::max<std::int32_t>(result.High, box.Numbers[at + x]);
+        result.Check = 31 * result.Check + static_cast<std::uint32_t>(box.Numbers[at + x]);
       }
       return true;
     });

@@ -24,6 +24,14 @@ struct NumberBox
 struct NumberExtremes
 {
   std::int32_t Low = INT32_MAX, High = INT32_MIN;
+  /// The same for the same numbers of boxes that are laid out alike, and hardly for others.
+  std::uint32_t Check = 0;
+
+  /// Whether numbers of boxes that are laid out alike may be the same.
+  bool MayBeThoseOf(const NumberExtremes& other) const
+  {
+    return *this == other && this->Check == other.Check;
+  }
   friend bool operator==(const NumberExtremes& a, const NumberExtremes& b)
   {
     return a.Low == b.Low && a.High == b.High;

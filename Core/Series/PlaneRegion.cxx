@@ -142,6 +142,7 @@ NumberExtremes ExtremesOfBlocks(
         const NumberExtremes& block = blocks[index].OfLevel[region.Stride - 1];
         extremes.Low = std::min(extremes.Low, block.Low);
         extremes.High = std::max(extremes.High, block.High);
+        extremes.Check = 31 * extremes.Check + block.Check;
       }
     }
   }
