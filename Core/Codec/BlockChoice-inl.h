@@ -282,8 +282,9 @@ struct BlockChooser : BlockAt<Edge, Number>
     const std::int64_t close = this->CloseTo(costs[0].first);
     const auto end = std::find_if(costs.begin() + 1, costs.end(),
       [close](const auto& cost) { return cost.first > close; });
-    const std::size_t trials =
-      std::min<std::size_t>(static_cast<std::size_t>(end - costs.begin()), this->Trials());
+    const std::size_t trials = costs[0].first < std::int64_t{ plane.LeastTriedBits } << 13
+                                 ? 1
+                                 : std::min(static_cast<std::size_t>(end - costs.begin()), this->Trials());
     std::size_t best = 0;
     std::int64_t least = std::numeric_limits<std::int64_t>::max();
     for (std::size_t i = 0; trials > 1 && i < trials; ++i)

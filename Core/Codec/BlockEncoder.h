@@ -125,6 +125,8 @@ struct PlaneToEncode
   /// Those that look worse by more per cent, or, where blocks cost much, by more of a tenth of a bit per
   /// sample, are not.
   int TrialMargin = 1000;
+  /// Where the interior of a block is estimated to take fewer bits than this, none is tried out.
+  int LeastTriedBits = 0;
 };
 
 /// Codes all blocks of a plane.

@@ -43,6 +43,7 @@ private:
   std::vector<PlaneNumbers> TakePlanes() const;
   using BlockBody = std::function<void(std::size_t plane, std::int64_t block)>;
   void EncodePlanes(int step, const BlockBody& done, const std::function<void(double)>& tell);
+  void NoteOrigins(int step, int before, std::size_t plane);
   int TrialsOf(int step, std::size_t plane, int usual) const;
   void EncodeStep(
     int step, std::vector<double>* squares, const std::function<void(double)>& tell);
@@ -134,6 +135,26 @@ int Encoder<T>::TrialsOf(int step, std::size_t plane, int usual) const
   return 2 * tokens > samples ? 1 : usual;
 }
 
+/// See DecodedStep::Origins.
+/// @param before reference A
+template <class T>
+void Encoder<T>::NoteOrigins(int step, int before, std::size_t plane)
+{
+  const std::vector<BlockTokens>& blocks = this->Tokens[static_cast<std::size_t>(step)][plane];
+  std::vector<std::vector<int>>& origins = this->Decoded[static_cast<std::size_t>(step)].Origins;
+  origins.resize(std::max(origins.size(), plane + 1));
+  origins[plane].assign(blocks.size(), step);
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+  {
+    if (blocks[i].Same)
+    {
+      origins[plane][i] = before == StepBefore
+                            ? StepBefore
+                            : this->Decoded[static_cast<std::size_t>(before)].Origins[plane][i];
+    }
+  }
+}
+
 /// @param done called for each block, by any thread, when it is decoded
 template <class T>
 void Encoder<T>::EncodePlanes(
@@ -185,6 +206,7 @@ void Encoder<T>::EncodePlanes(
     {
       this->Counters[p > 0 ? 1 : 0].Add(block.Tokens);
     }
+    this->NoteOrigins(step, references.A, p);
     tell(static_cast<double>(targets.size() - 1 - p) / static_cast<double>(targets.size()));
   }
 }

@@ -109,10 +109,8 @@ public:
         node.High = extremes.High;
         node.Uniform = node.Low == node.High;
       }
-      // Of what moves, hardly anything is read again.
-      const bool asBefore = t > 0 && extremes.MayBeThoseOf(before) &&
-                            SameInRegion(step.Planes[plane], this->Decoded[t - 1].Planes[plane],
-                              t < last ? &this->Decoded[t + 1].Planes[plane] : nullptr, region);
+      const bool asBefore =
+        t > 0 && extremes.MayBeThoseOf(before) && this->IsAsBefore(t, region, extremes);
       if (asBefore && this->SameExceptions(t, region))
       {
         node.Age = this->NodeOf(t - 1, brick).Age + 1;
@@ -130,6 +128,24 @@ public:
   }
 
 private:
+  /// Whether all numbers of a brick are those of the step before. They are compared only where
+  /// nothing else tells, as they have left the processor's caches by now.
+  /// @param extremes of both steps
+  bool IsAsBefore(std::size_t step, const PlaneRegion& region, const NumberExtremes& extremes) const
+  {
+    const std::size_t plane = static_cast<std::size_t>(region.Plane);
+    const DecodedStep& now = this->Decoded[step];
+    const DecodedStep& before = this->Decoded[step - 1];
+    bool left = true;
+    this->ForEachBlock(step, region,
+      [&](std::size_t block, const glm::ivec3&)
+      { left = left && now.Origins[plane][block] == before.Origins[plane][block]; });
+    return left || extremes.Low == extremes.High ||
+           SameInRegion(now.Planes[plane], before.Planes[plane],
+             step + 1 < this->Decoded.size() ? &this->Decoded[step + 1].Planes[plane] : nullptr,
+             region);
+  }
+
   group::NodeEntry& NodeOf(std::size_t step, std::int64_t brick) const
   {
     return this->Steps[step]
@@ -168,21 +184,38 @@ private:
                    static_cast<std::size_t>(region.Count.y) *
                    static_cast<std::size_t>(region.Count.z));
     std::int32_t* to = numbers.data();
-    for (int z = 0; z < region.Count.z; ++z)
-    {
-      for (int y = 0; y < region.Count.y; ++y)
+    plane.With(
+      [&](const auto* from)
       {
-        const std::int64_t row = plane.IndexOf({ 0, region.SampleAt(1, y), region.SampleAt(2, z) });
-        plane.With(
-          [&](const auto* from)
+        for (int z = 0; z < region.Count.z; ++z)
+        {
+          for (int y = 0; y < region.Count.y; ++y, to += region.Count.x)
           {
-            for (int x = 0; x < region.Count.x; ++x)
-            {
-              *to++ = from[row + region.SampleAt(0, x)];
-            }
-          });
+            GatherRow(from + plane.IndexOf({ 0, region.SampleAt(1, y), region.SampleAt(2, z) }),
+              region, to);
+          }
+        }
+      });
+  }
+
+  /// @param row sample 0 of the row
+  template <class Number>
+  static void GatherRow(const Number* row, const PlaneRegion& region, std::int32_t* to)
+  {
+    const int last = region.Count.x - 1; // the only one that may lie beyond the plane's last sample
+    const Number* const first = row + region.Low.x;
+    if (region.Stride == 1)
+    {
+      std::copy(first, first + last, to);
+    }
+    else
+    {
+      for (int x = 0; x < last; ++x)
+      {
+        to[x] = first[2 * x];
       }
     }
+    to[last] = row[region.SampleAt(0, last)];
   }
 
   template <class Body>

@@ -15,13 +15,18 @@ namespace banyan
 /// @param block position of the block that the list belongs to
 /// @param values `[z][y][x]` of the region
 template <class T>
-void PlaceExceptions(const PlaneRegion& region, int edge, const glm::ivec3& block, const ExceptionList<T>& list, T* values);
+void PlaceExceptions(const PlaneRegion& region, int edge, const glm::ivec3& block,
+  const ExceptionList<T>& list, T* values);
 
 /// What a step decodes to.
 struct DecodedStep
 {
   std::vector<PlaneNumbers> Planes;
-  std::vector<std::vector<BlockExtremes>> Extremes; ///< of the blocks of each plane but the coarsest
+  std::vector<std::vector<BlockExtremes>>
+    Extremes; ///< of the blocks of each plane but the coarsest
+  /// The steps that these blocks' numbers are those of: their own, or one that they were left as
+  /// they are in, which may be StepBefore.
+  std::vector<std::vector<int>> Origins;
 };
 
 /// Fills the nodes of all steps and levels.

@@ -194,14 +194,12 @@ bool Errors(const LatticeRows<T, const Number>& rows, const LatticeScale& scale,
   const Reals real;
   constexpr std::size_t parts = RowErrors::Lanes / hn::MaxLanes(Reals());
   const Real origin = hn::Set(real, scale.Origin), step = hn::Set(real, scale.Step);
-  const Real most = hn::Set(real, bound);
   Real greatest[parts], squares[parts];
   for (std::size_t part = 0; part < parts; ++part)
   {
     greatest[part] = hn::LoadU(real, errors.Greatest + part * hn::Lanes(real));
     squares[part] = hn::LoadU(real, errors.Squares + part * hn::Lanes(real));
   }
-  auto within = hn::Eq(origin, origin);
   Extremes<Number> extremes(rows.Numbers[0]);
   const auto group = [&](const T* from, const Number* number, std::size_t left)
   {
@@ -222,7 +220,6 @@ bool Errors(const LatticeRows<T, const Number>& rows, const LatticeScale& scale,
         difference =
           hn::IfThenElseZero(hn::Lt(hn::Iota(real, static_cast<double>(i)), end), difference);
       }
-      within = hn::And(within, hn::Le(difference, most)); // not for NaN
       greatest[part] = hn::Max(greatest[part], difference);
       squares[part] = hn::Add(squares[part], hn::Mul(difference, difference));
     }
@@ -233,8 +230,12 @@ bool Errors(const LatticeRows<T, const Number>& rows, const LatticeScale& scale,
       ForEachGroup(values, numbers, static_cast<std::size_t>(rows.Count), group);
       extremes.Include(numbers, rows.Count);
     });
+  const Real most = hn::Set(real, bound);
+  auto within = hn::Eq(origin, origin);
   for (std::size_t part = 0; part < parts; ++part)
   {
+    within = hn::And(within, hn::Le(greatest[part], most));
+    within = hn::And(within, hn::Eq(squares[part], squares[part])); // a NaN stays in the sum
     hn::StoreU(greatest[part], real, errors.Greatest + part * hn::Lanes(real));
     hn::StoreU(squares[part], real, errors.Squares + part * hn::Lanes(real));
   }

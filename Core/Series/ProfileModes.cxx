@@ -42,6 +42,9 @@ void ApplyProfile(EncodeProfile profile, const EncodeIdeas& ideas, PlaneToEncode
   plane.Trials = profile == EncodeProfile::Compact ? 4 : profile == EncodeProfile::Fast ? 1 : 3;
   plane.Trials = ideas.Trials ? plane.Trials : 1;
   plane.TrialMargin = profile == EncodeProfile::Compact ? 1000 : 100;
+  // There is next to nothing to be gained by trials of such blocks, which are most of a smooth
+  // series'.
+  plane.LeastTriedBits = profile == EncodeProfile::Compact ? 0 : 16;
 }
 
 } // namespace banyan
