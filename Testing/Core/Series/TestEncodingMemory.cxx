@@ -104,7 +104,7 @@ TEST(EncodingMemory, GoesWithAGroup)
     static_cast<double>(two - nothing) / group, static_cast<double>(six - nothing) / group);
   EXPECT_GT(static_cast<double>(two - nothing), group);
   EXPECT_LT(static_cast<double>(six - nothing), 1.1 * static_cast<double>(two - nothing));
-  // 2.7, as limits.md says, and not one more copy of the values.
+  // 2.6, as limits.md says, and not one more copy of the values.
   EXPECT_LT(static_cast<double>(six - nothing), 3.4 * group);
 }
 
