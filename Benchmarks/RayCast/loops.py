@@ -18,13 +18,17 @@ def output_of(*command):
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
 
 
+def function_of(symbol):
+    """Without its arguments, which are not always there."""
+    return symbol.split("::March")[0]
+
+
 def marchers(library):
     """Name, address and bytes of the functions for the newest processors."""
     for line in output_of("nm", "-C", "--defined-only", "-S", library):
-        match = re.match(r"([0-9a-f]+) ([0-9a-f]+) t (.*N_AVX3::" + MARCHER + ".*)", line)
+        match = re.match(r"([0-9a-f]+) ([0-9a-f]+) [tW] (.*N_AVX3::" + MARCHER + ".*)", line)
         if match:
-            name = match[3].split("(int)")[0].split("::{lambda")[0]
-            yield name, int(match[1], 16), int(match[2], 16)
+            yield function_of(match[3]), int(match[1], 16), int(match[2], 16)
 
 
 def loops_of(library, start, size):
@@ -49,7 +53,7 @@ def of_time(library, data):
         total += 1
         match = re.match(r"\s*[0-9a-f]+ (.*)\+0x([0-9a-f]+)$", line)
         if match and MARCHER in match[1]:
-            hits[match[1].split("::{lambda")[0]][int(match[2], 16)] += 1
+            hits[function_of(match[1])][int(match[2], 16)] += 1
     print(f"{total} samples in all")
     for name, start, size in marchers(library):
         here = hits.get(name, {})

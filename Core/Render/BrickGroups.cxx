@@ -7,16 +7,20 @@
 namespace banyan
 {
 
-BrickGroups::BrickGroups(const BrickSource& source, bool may)
+BrickGroups::BrickGroups(const BrickSource& source, int cells)
   : Source(source)
   , Bricks(source.Bricks())
 {
-  if (may && this->Bricks.x > 0 && this->Bricks.y > 0 && this->Bricks.z > 0)
+  if (cells > 0 && this->Bricks.x > 0 && this->Bricks.y > 0 && this->Bricks.z > 0)
   {
     // The first and the last ones may be cut off.
     const glm::ivec3 size = source.CellsOf(this->BrickAt(this->Bricks / 2)).Size();
-    const int cells = std::max({ size.x, size.y, size.z });
-    this->Edge = cells <= LargestMember && cells > LargestMember / 2 ? 2 : 1;
+    const int longest = std::max({ size.x, size.y, size.z });
+    // Of tiny bricks a group would have too many.
+    while (2 * this->Edge * longest <= cells && this->Edge < 4 && longest > 8)
+    {
+      this->Edge *= 2;
+    }
   }
   this->Counts = (this->Bricks + this->Edge - 1) / this->Edge;
 }

@@ -13,20 +13,23 @@ namespace banyan
 class BrickSource;
 
 /// Small bricks side by side, which are drawn as one brick where all of them can be seen. Bricks of
-/// 16^3 are good units to store, to decode and to leave out; packets of rays want bricks of 32^3:
-/// of one half as long they take few samples for what entering it costs. No bit of a picture
-/// depends on it.
+/// 16^3 are good units to store, to decode and to leave out; packets of rays want bricks of 32^3,
+/// and in large volumes of 64^3: of smaller ones they take few samples for what entering each
+/// costs. No bit of a picture depends on it.
 class BrickGroups
 {
 public:
-  /// Cells per axis of bricks that are put together, two along each axis.
-  static constexpr int LargestMember = 16;
+  /// Cells per axis of a group, and of one in a large volume.
+  static constexpr int Cells = 32;
+  static constexpr int CellsOfLarge = 64;
 
   /// @param source must stay
-  /// @param may whether bricks are cut by whole planes and may be put together; otherwise each is a
-  /// group of its own
-  BrickGroups(const BrickSource& source, bool may);
+  /// @param cells per axis that a group has at most; 0 where bricks are not cut by whole planes and
+  /// may not be put together: each is a group of its own then
+  BrickGroups(const BrickSource& source, int cells);
 
+  /// Bricks per axis: 1, 2 or 4.
+  int BricksPerAxis() const { return this->Edge; }
   std::int64_t Count() const;
   /// Positions of a group's bricks in the grid of bricks.
   Box BricksOf(std::int64_t group) const;
@@ -34,6 +37,12 @@ public:
   std::int64_t BrickAt(const glm::ivec3& position) const;
   /// The cells of some bricks together.
   Box CellsOf(const Box& bricks) const;
+  /// A brick's place in its group, of 64 or fewer.
+  int PlaceOf(const glm::ivec3& position) const
+  {
+    const glm::ivec3 in = position % this->Edge;
+    return in.x + this->Edge * (in.y + this->Edge * in.z);
+  }
 
 private:
   const BrickSource& Source;
@@ -42,7 +51,7 @@ private:
   glm::ivec3 Counts{ 0 };
 };
 
-/// Calls function(number, place) for the bricks of a group: place counts them from 0 to 7.
+/// Calls function(number, place) for bricks of a group.
 template <class Function>
 void ForMembers(const BrickGroups& groups, const Box& bricks, Function&& function)
 {
@@ -52,8 +61,7 @@ void ForMembers(const BrickGroups& groups, const Box& bricks, Function&& functio
     {
       for (int x = bricks.Lo.x; x < bricks.Hi.x; ++x)
       {
-        const glm::ivec3 in = glm::ivec3(x, y, z) - bricks.Lo;
-        function(groups.BrickAt({ x, y, z }), in.x + 2 * in.y + 4 * in.z);
+        function(groups.BrickAt({ x, y, z }), groups.PlaceOf({ x, y, z }));
       }
     }
   }
@@ -62,9 +70,16 @@ void ForMembers(const BrickGroups& groups, const Box& bricks, Function&& functio
 /// What is known of a group's bricks whatever the camera, a bit per place.
 struct GroupMembers
 {
-  std::uint8_t There = 0;
-  std::uint8_t Visible = 0; ///< some value can be seen
-  std::uint8_t Uniform = 0; ///< visible, and of one value: not loaded where nothing is shaded
+  std::uint64_t There = 0;
+  std::uint64_t Visible = 0; ///< some value can be seen
+  std::uint64_t Uniform = 0; ///< visible, and of one value: not loaded where nothing is shaded
+
+  /// Of some bricks of the group alone.
+  /// @param places of these
+  GroupMembers Of(std::uint64_t places) const
+  {
+    return { this->There & places, this->Visible & places, this->Uniform & places };
+  }
 };
 
 using GroupList = std::shared_ptr<const std::vector<GroupMembers>>;

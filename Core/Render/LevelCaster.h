@@ -49,8 +49,8 @@ private:
     Box Cells;     ///< to pack, in its own
     Box Drawn;     ///< the part of them to draw, in cells of the source
     PixelRect Footprint;
-    double Key = 0;        ///< front to back, of its group
-    double KeyWithin = 0;  ///< within its group
+    /// Front to back: of its group, of the eighth of that, and its own; 0 behind what is one brick.
+    double Keys[3] = {};
     float HighestRank = 0; ///< of a projection
     /// Of the table, where all samples have it and are not shaded: nothing is loaded then.
     std::optional<int> Entry;
@@ -102,15 +102,17 @@ private:
   void Plan();
   GroupList MembersOf(const BrickGroups& groups) const;
   GroupMembers Look(const BrickGroups& groups, const Box& bricks, ValueMask bins) const;
-  void PlanGroup(const BrickGroups& groups, std::int64_t group, const GroupMembers& members,
-    const Viewpoint& view, PartOfPlan& plan) const;
+  void SkipAll(const BrickGroups& groups, const Box& bricks, PartOfPlan& plan) const;
+  void PlanSome(const BrickGroups& groups, const Box& bricks, const GroupMembers& members,
+    const Viewpoint& view, int depth, PartOfPlan& plan) const;
   bool PlanTogether(const BrickGroups& groups, const Box& bricks, const GroupMembers& members,
     PartOfPlan& plan) const;
   void PlanBrick(std::int64_t number, bool visible, PartOfPlan& plan) const;
   bool SeeBrick(PlannedBrick& brick) const;
   bool AllOnScreen(const BrickGroups& groups, const PlannedBrick& brick) const;
   void PlaceCells(PlannedBrick& brick, const Box& own) const;
-  void SetKeys(std::size_t first, const Box& group, const Viewpoint& view, PartOfPlan& plan) const;
+  void SetKeys(
+    std::size_t first, const Box& cells, const Viewpoint& view, int depth, PartOfPlan& plan) const;
   void TakeIn(PlannedBrick brick, PartOfPlan& plan) const;
   template <class Function>
   void ForBricksOf(const PlannedBrick& brick, Function&& function) const;
@@ -138,12 +140,16 @@ private:
   void Load(const PlannedBrick& brick, LoadedBrick& loaded) const;
   BrickVisibility LookAt(const PlannedBrick& brick, const PackedBrick& packed) const;
   KeptBricks::Pointer Pack(const PlannedBrick& brick) const;
+  bool IsLarge() const;
   double StepToPack(ScalarType type) const;
   float GradientScale() const;
   BrickView LoadLarge(const PlannedBrick& brick) const;
   PixelRect DrawnPixelsOf(const Tile& tile, const PixelRect& rect) const;
   const PixelRect& PixelsOf(std::size_t position) const;
   std::int64_t DrawTile(std::size_t number, RayTile& rays, BatchMeter& meter);
+  CornerRays CornersOf(const PixelRect& rect) const;
+  BrickAhead Ahead(std::size_t place, const Tile& tile, const CornerRays& corners,
+    const PixelRect& rect, const RayTile& rays) const;
   void ClearTile(const PixelRect& rect) const;
   void FinishTile(std::size_t number);
   void RecordWork(double began);

@@ -183,12 +183,14 @@ std::int64_t LevelCaster::DrawTile(std::size_t number, RayTile& rays, BatchMeter
   {
     meter.Start();
   }
+  const CornerRays corners = this->CornersOf(drawn);
   for (std::size_t i = tile.FirstBrick; i < tile.EndOfBricks; ++i)
   {
     if (rays.ActiveRays == 0)
     {
       break;
     }
+    rays.Ahead = this->Ahead(i, tile, corners, rect, rays);
     const int position = this->BricksOfTiles[i];
     const PlannedBrick& brick = *this->Batch[static_cast<std::size_t>(position)];
     rays.BrickShift = rays.CellShift - brick.Level;
@@ -212,6 +214,37 @@ std::int64_t LevelCaster::DrawTile(std::size_t number, RayTile& rays, BatchMeter
   tile.Begun = true;
   tile.Done = rays.ActiveRays == 0;
   return rays.SamplesTaken;
+}
+
+CornerRays LevelCaster::CornersOf(const PixelRect& rect) const
+{
+  const glm::ivec2 last = rect.Hi - 1;
+  return { this->IndexCamera.RayOf(rect.Lo.x, rect.Lo.y),
+    this->IndexCamera.RayOf(last.x, rect.Lo.y), this->IndexCamera.RayOf(rect.Lo.x, last.y),
+    this->IndexCamera.RayOf(last.x, last.y) };
+}
+
+/// What asks the caches for the brick that comes behind another one, if that is packed.
+/// @param place of the one before it, in BricksOfTiles
+/// @param corners of the tile
+/// @param rect of the tile
+BrickAhead LevelCaster::Ahead(std::size_t place, const Tile& tile, const CornerRays& corners,
+  const PixelRect& rect, const RayTile& rays) const
+{
+  if (place + 1 >= tile.EndOfBricks)
+  {
+    return {};
+  }
+  const auto position = static_cast<std::size_t>(this->BricksOfTiles[place + 1]);
+  const LoadedBrick& next = this->Loaded[position];
+  // Rays are in cells of the source, which those of the brick may be smaller than.
+  if (!next.Packed || this->Batch[position]->Level != 0)
+  {
+    return {};
+  }
+  const auto now = static_cast<std::size_t>(this->BricksOfTiles[place]);
+  const PixelRect packets = rays.PacketsUnder(Intersection(this->PixelsOf(now), rect));
+  return { *next.Packed, next.Seen.Cells, corners, packets.Count() };
 }
 
 void LevelCaster::DrawBrick(const PlannedBrick& brick, const LoadedBrick& loaded,

@@ -72,12 +72,19 @@ KeptBricks::Pointer LevelCaster::Pack(const PlannedBrick& brick) const
     view, samples.Lo, brick.Cells, low, this->StepToPack(view.Type));
 }
 
+/// Whether the level is much larger than the processor's caches: samples wait for memory then, and
+/// rays meet many bricks.
+bool LevelCaster::IsLarge() const
+{
+  constexpr std::int64_t many = std::int64_t{ 1 } << 25; // cells
+  return this->Scene.DomainCells.Count() >> 3 * this->Source.Level() >= many;
+}
+
 /// Of values for which numbers are to be packed; 0 for none. Frames of volumes that the processor's
 /// caches hold nearly as a whole take longer with numbers, those of larger ones less time.
 double LevelCaster::StepToPack(ScalarType type) const
 {
-  constexpr std::int64_t many = std::int64_t{ 1 } << 25;
-  if (this->Scene.DomainCells.Count() >> 3 * this->Source.Level() < many)
+  if (!this->IsLarge())
   {
     return 0.0;
   }

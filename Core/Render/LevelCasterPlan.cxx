@@ -16,6 +16,23 @@ constexpr std::uint64_t BricksOfBudget = 64;
 /// Groups that a thread plans in one go.
 constexpr std::int64_t GroupsTogether = 64;
 
+/// Calls function(bricks) for the parts of a box of bricks, of so many along each axis.
+template <class Function>
+void ForEighths(const Box& bricks, int edge, Function&& function)
+{
+  for (int z = bricks.Lo.z; z < bricks.Hi.z; z += edge)
+  {
+    for (int y = bricks.Lo.y; y < bricks.Hi.y; y += edge)
+    {
+      for (int x = bricks.Lo.x; x < bricks.Hi.x; x += edge)
+      {
+        const glm::ivec3 low(x, y, z);
+        function(Box{ low, glm::min(low + edge, bricks.Hi) });
+      }
+    }
+  }
+}
+
 } // namespace
 
 void LevelCaster::AddSamplings()
@@ -44,7 +61,8 @@ void LevelCaster::Plan()
 {
   const Viewpoint view = InIndexSpace(this->Scene.Camera, this->IndexToWorld);
   this->Ranks = this->Source.RanksFrontToBack(view);
-  const BrickGroups groups(this->Source, this->Ranks.empty());
+  const int together = this->IsLarge() ? BrickGroups::CellsOfLarge : BrickGroups::Cells;
+  const BrickGroups groups(this->Source, this->Ranks.empty() ? together : 0);
   const GroupList members = this->MembersOf(groups);
   const std::int64_t count = groups.Count();
   std::vector<PartOfPlan> parts(
@@ -55,8 +73,8 @@ void LevelCaster::Plan()
       const std::int64_t end = std::min(count, (part + 1) * GroupsTogether);
       for (std::int64_t group = part * GroupsTogether; group < end; ++group)
       {
-        this->PlanGroup(groups, group, (*members)[static_cast<std::size_t>(group)], view,
-          parts[static_cast<std::size_t>(part)]);
+        this->PlanSome(groups, groups.BricksOf(group), (*members)[static_cast<std::size_t>(group)],
+          view, 0, parts[static_cast<std::size_t>(part)]);
       }
     });
   for (const PartOfPlan& part : parts)
@@ -66,25 +84,41 @@ void LevelCaster::Plan()
     this->Statistics.BricksSkipped += part.Skipped;
   }
   const auto order = [](const PlannedBrick& brick)
-  { return std::make_tuple(brick.Key, brick.KeyWithin, brick.Number); };
+  { return std::make_tuple(brick.Keys[0], brick.Keys[1], brick.Keys[2], brick.Number); };
   std::sort(this->Bricks.begin(), this->Bricks.end(),
     [&order](const PlannedBrick& a, const PlannedBrick& b) { return order(a) < order(b); });
 }
 
-void LevelCaster::PlanGroup(const BrickGroups& groups, std::int64_t group,
-  const GroupMembers& members, const Viewpoint& view, PartOfPlan& plan) const
+/// Plans bricks of a group: as one, or eighths of them, or each by itself.
+/// @param members of these bricks
+/// @param depth 0 for all of a group
+void LevelCaster::PlanSome(const BrickGroups& groups, const Box& bricks,
+  const GroupMembers& members, const Viewpoint& view, int depth, PartOfPlan& plan) const
 {
-  const Box bricks = groups.BricksOf(group);
   const std::size_t first = plan.Bricks.size();
-  if (!this->PlanTogether(groups, bricks, members, plan))
+  const int edge = groups.BricksPerAxis() >> depth;
+  if (edge == 1)
   {
-    ForMembers(groups, bricks,
-      [&](std::int64_t number, int place)
-      { this->PlanBrick(number, (members.Visible >> place & 1) != 0, plan); });
+    this->PlanBrick(groups.BrickAt(bricks.Lo), members.Visible != 0, plan);
+  }
+  else if (members.Visible == 0)
+  {
+    this->SkipAll(groups, bricks, plan);
+  }
+  else if (!this->PlanTogether(groups, bricks, members, plan))
+  {
+    ForEighths(bricks, edge / 2,
+      [&](const Box& some)
+      {
+        std::uint64_t places = 0;
+        ForMembers(
+          groups, some, [&](std::int64_t, int place) { places |= std::uint64_t{ 1 } << place; });
+        this->PlanSome(groups, some, members.Of(places), view, depth + 1, plan);
+      });
   }
   if (first < plan.Bricks.size())
   {
-    this->SetKeys(first, groups.CellsOf(bricks), view, plan);
+    this->SetKeys(first, groups.CellsOf(bricks), view, depth, plan);
   }
 }
 
@@ -123,7 +157,7 @@ GroupMembers LevelCaster::Look(const BrickGroups& groups, const Box& bricks, Val
   ForMembers(groups, bricks,
     [&](std::int64_t number, int place)
     {
-      const auto bit = static_cast<std::uint8_t>(1 << place);
+      const std::uint64_t bit = std::uint64_t{ 1 } << place;
       const ValueRange range = this->Source.RangeOf(number);
       const bool visible = projection ? projection->HighestRank(range) > 0.0f
                                       : (this->Source.MaskOf(number) & bins) != 0 &&
@@ -178,6 +212,18 @@ bool LevelCaster::PlanTogether(
   }
   this->TakeIn(brick, plan);
   return true;
+}
+
+/// Counts bricks of which nothing can be seen, as far as they are to be drawn at all.
+void LevelCaster::SkipAll(const BrickGroups& groups, const Box& bricks, PartOfPlan& plan) const
+{
+  if (this->Cells.Contains(groups.CellsOf(bricks)))
+  {
+    plan.Skipped += bricks.Count();
+    return;
+  }
+  ForMembers(
+    groups, bricks, [&](std::int64_t number, int) { this->PlanBrick(number, false, plan); });
 }
 
 /// The entry that all samples of several bricks have, if they have one.
@@ -259,9 +305,10 @@ void LevelCaster::PlaceCells(PlannedBrick& brick, const Box& own) const
 
 /// Of bricks that were planned last. Groups are cut by whole planes, and so are the bricks of one.
 /// @param first of them
-/// @param group cells of their group
+/// @param cells that they are in
+/// @param depth as PlanSome has it
 void LevelCaster::SetKeys(
-  std::size_t first, const Box& group, const Viewpoint& view, PartOfPlan& plan) const
+  std::size_t first, const Box& cells, const Viewpoint& view, int depth, PartOfPlan& plan) const
 {
   const ProjectionTable* const projection = this->AnySampling->Projection.get();
   for (std::size_t i = first; i < plan.Bricks.size(); ++i)
@@ -271,17 +318,15 @@ void LevelCaster::SetKeys(
     // added up front to back, so that they round alike in bricks of all sizes.
     if (projection && !projection->Averages())
     {
-      brick.Key = -brick.HighestRank;
+      brick.Keys[0] = -brick.HighestRank;
     }
     else if (!this->Ranks.empty())
     {
-      brick.Key = static_cast<double>(this->Ranks[static_cast<std::size_t>(brick.Number)]);
+      brick.Keys[0] = static_cast<double>(this->Ranks[static_cast<std::size_t>(brick.Number)]);
     }
     else
     {
-      brick.Key = VisibilityKey(view, group);
-      brick.KeyWithin =
-        brick.Together.Empty() ? VisibilityKey(view, this->Source.CellsOf(brick.Number)) : 0.0;
+      brick.Keys[depth] = VisibilityKey(view, cells);
     }
   }
 }

@@ -48,8 +48,12 @@ public:
   /// All packets under some pixels of the tile.
   void March(const PixelRect& pixels)
   {
-    ForPacketsUnder(
-      pixels, this->Tile, [this](int packet) HWY_ATTR { this->MarchPacket(packet); });
+    ForPacketsUnder(pixels, this->Tile,
+      [this](int packet) HWY_ATTR
+      {
+        this->Tile.Ahead.Ask();
+        this->MarchPacket(packet);
+      });
   }
 
 private:

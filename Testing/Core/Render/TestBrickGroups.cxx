@@ -17,7 +17,7 @@ constexpr std::uint64_t NoLimit = std::uint64_t{ 1 } << 40;
 
 std::int64_t NumberOf(const BrickSource& source, const glm::ivec3& p)
 {
-  return BrickGroups(source, true).BrickAt(p);
+  return BrickGroups(source, BrickGroups::Cells).BrickAt(p);
 }
 
 /// Notes which bricks are loaded alone, and which together.
@@ -35,7 +35,7 @@ public:
 
   BrickView LoadTogether(const Box& bricks, bool around, Box& samples) override
   {
-    const BrickGroups groups(*this, true);
+    const BrickGroups groups(*this, BrickGroups::Cells);
     const std::lock_guard<std::mutex> lock(this->Mutex);
     ForMembers(groups, bricks,
       [&](std::int64_t brick, int) { EXPECT_TRUE(this->Together.insert(brick).second); });
@@ -55,23 +55,28 @@ TEST(BrickGroups, HaveEachBrickOnce)
   for (const int cells : { 8, 9, 16, 17 })
   {
     const ArrayBrickSource source(scenes::ArrayOf(values, n), cells, { 0, 1 }, pool);
-    for (const bool may : { false, true })
+    for (const int most : { 0, BrickGroups::Cells, BrickGroups::CellsOfLarge })
     {
-      const BrickGroups groups(source, may);
+      const BrickGroups groups(source, most);
+      const int edge = most == 0 || cells == 8 ? 1
+                       : most == 64            ? (cells <= 16 ? 4 : 2)
+                                               : (cells <= 16 ? 2 : 1);
+      EXPECT_EQ(groups.BricksPerAxis(), edge) << cells << " of " << most;
       std::set<std::int64_t> seen;
       for (std::int64_t group = 0; group < groups.Count(); ++group)
       {
         const Box bricks = groups.BricksOf(group);
         Box together;
+        std::set<int> places;
         ForMembers(groups, bricks,
           [&](std::int64_t brick, int place)
           {
             EXPECT_TRUE(seen.insert(brick).second);
-            EXPECT_LT(place, 8);
+            EXPECT_LT(place, edge * edge * edge);
+            EXPECT_TRUE(places.insert(place).second);
             together = Union(together, source.CellsOf(brick));
           });
         EXPECT_EQ(groups.CellsOf(bricks), together);
-        EXPECT_LE(bricks.Count(), may && cells > 8 && cells <= 16 ? 8 : 1);
       }
       const glm::ivec3 counts = source.Bricks();
       EXPECT_EQ(seen.size(), static_cast<std::size_t>(counts.x * counts.y * counts.z));
@@ -86,7 +91,7 @@ TEST(BrickGroups, AreLoadedAsTheArrayIs)
   values[0] = std::numeric_limits<float>::quiet_NaN();
   ThreadPool pool(1);
   ArrayBrickSource source(scenes::ArrayOf(values, n), 11, { 0, 1 }, pool);
-  const BrickGroups groups(source, true);
+  const BrickGroups groups(source, BrickGroups::Cells);
   for (std::int64_t group = 0; group < groups.Count(); ++group)
   {
     for (const bool around : { false, true })

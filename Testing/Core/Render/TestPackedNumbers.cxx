@@ -281,7 +281,9 @@ TEST(PackedNumbers, LargeVolumesOfMultiplesTakeHalfTheMemoryAndGiveTheSameBits)
   // A smaller volume, whose bricks the caches of the processor hold, keeps its values.
   Ruled<std::uint8_t> small(2, 0.0);
   (void)DrawPartOf(small, bytes[3]);
-  EXPECT_EQ(bytes[3], bytes[0]);
+  // In more blocks, which share more samples.
+  EXPECT_GE(bytes[3], bytes[0]);
+  EXPECT_LE(bytes[3], bytes[0] * 11 / 10);
   const std::uint64_t expected = FusesHere() ? bytes[0] * 3 / 5 : bytes[0] + 1;
   EXPECT_LT(bytes[1], expected);
   EXPECT_LT(bytes[2], expected);
