@@ -189,6 +189,7 @@ private:
   std::vector<BatchMeter> Meters;      ///< one per worker
   std::vector<KeptBricks::Found> Kept; ///< of all planned bricks
   std::vector<const PlannedBrick*> Batch;
+  bool AsksAhead = false; ///< caches are asked for bricks of the batch
   std::vector<LoadedBrick> Loaded; ///< of the batch
 };
 

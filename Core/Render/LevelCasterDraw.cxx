@@ -7,6 +7,16 @@
 
 namespace banyan
 {
+namespace
+{
+
+/// More than the last cache of a processor holds, usually. Of fewer bytes most are still there from
+/// the picture before: to ask for them takes longer than it saves.
+constexpr std::size_t CacheBytes = std::size_t{ 48 } << 20;
+/// Pixels from ray to ray, at most, where caches are asked for all that lies between.
+constexpr int DensePixels = 2;
+
+} // namespace
 
 void LevelCaster::DrawBatch()
 {
@@ -17,6 +27,13 @@ void LevelCaster::DrawBatch()
     (brick->Entry ? this->Statistics.BricksUniform : this->Statistics.BricksDrawn) +=
       BricksIn(*brick);
   }
+  std::size_t packed = 0;
+  for (const LoadedBrick& loaded : this->Loaded)
+  {
+    packed += loaded.Packed ? loaded.Packed->Bytes() : 0;
+  }
+  // Rays of pilots are far apart, and most of what lies between them is not needed.
+  this->AsksAhead = packed > CacheBytes && !this->Scene.Pilot;
 
   for (BatchMeter& meter : this->Meters)
   {
@@ -224,14 +241,14 @@ CornerRays LevelCaster::CornersOf(const PixelRect& rect) const
     this->IndexCamera.RayOf(last.x, last.y) };
 }
 
-/// What asks the caches for the brick that comes behind another one, if that is packed.
+/// What asks the caches for the brick that comes behind another one, where it is likely not there.
 /// @param place of the one before it, in BricksOfTiles
 /// @param corners of the tile
 /// @param rect of the tile
 BrickAhead LevelCaster::Ahead(std::size_t place, const Tile& tile, const CornerRays& corners,
   const PixelRect& rect, const RayTile& rays) const
 {
-  if (place + 1 >= tile.EndOfBricks)
+  if (!this->AsksAhead || tile.PixelStride > DensePixels || place + 1 >= tile.EndOfBricks)
   {
     return {};
   }

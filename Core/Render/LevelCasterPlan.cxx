@@ -347,11 +347,13 @@ std::uint64_t LevelCaster::LoadBytesOf(const PlannedBrick& brick) const
   return bytes;
 }
 
-/// Bricks that are packed together have a number of their own.
+/// Bricks that are packed together have a number of their own, and so have those of large blocks.
 std::int64_t LevelCaster::KeptNumberOf(const PlannedBrick& brick) const
 {
   constexpr std::int64_t together = std::int64_t{ 1 } << 40;
-  return this->Source.KeptNumber(brick.Number) + (brick.Together.Empty() ? 0 : together);
+  const std::int64_t bricks = brick.Together.Count();
+  return this->Source.KeptNumber(brick.Number) +
+         (bricks == 0 ? 0 : bricks <= 8 ? together : 2 * together);
 }
 
 /// The entry of the table that all samples of a brick have, if nothing else has to be known of
