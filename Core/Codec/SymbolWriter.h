@@ -24,21 +24,6 @@ struct ContextCounts
   void ForgetClasses();
 };
 
-/// Counts the tokens of many blocks.
-class TokenCounter
-{
-public:
-  void Add(const std::vector<std::uint16_t>& tokens);
-  ContextCounts Counts() const;
-
-private:
-  /// By token. Neighbours go to tables of their own: they are often the same, and the second one would
-  /// wait for the count of the first.
-  static constexpr std::size_t Tables = 2;
-  std::vector<std::uint32_t> Of = std::vector<std::uint32_t>(
-    Tables * (std::size_t{ residual::ContextCount } << residual::TokenShift));
-};
-
 /// The tables of all contexts, for writing.
 class SymbolTables
 {

@@ -148,8 +148,8 @@ private:
   const PixelRect& PixelsOf(std::size_t position) const;
   std::int64_t DrawTile(std::size_t number, RayTile& rays, BatchMeter& meter);
   CornerRays CornersOf(const PixelRect& rect) const;
-  BrickAhead Ahead(std::size_t place, const Tile& tile, const CornerRays& corners,
-    const PixelRect& rect, const RayTile& rays) const;
+  BrickAhead Ahead(std::size_t place, const CornerRays& corners, const PixelRect& rect,
+    const RayTile& rays) const;
   void ClearTile(const PixelRect& rect) const;
   void FinishTile(std::size_t number);
   void RecordWork(double began);

@@ -200,14 +200,16 @@ std::int64_t LevelCaster::DrawTile(std::size_t number, RayTile& rays, BatchMeter
   {
     meter.Start();
   }
-  const CornerRays corners = this->CornersOf(drawn);
+  const bool asks = this->AsksAhead && tile.PixelStride <= DensePixels;
+  const CornerRays corners = asks ? this->CornersOf(drawn) : CornerRays{};
   for (std::size_t i = tile.FirstBrick; i < tile.EndOfBricks; ++i)
   {
     if (rays.ActiveRays == 0)
     {
       break;
     }
-    rays.Ahead = this->Ahead(i, tile, corners, rect, rays);
+    rays.Ahead =
+      asks && i + 1 < tile.EndOfBricks ? this->Ahead(i, corners, rect, rays) : BrickAhead();
     const int position = this->BricksOfTiles[i];
     const PlannedBrick& brick = *this->Batch[static_cast<std::size_t>(position)];
     rays.BrickShift = rays.CellShift - brick.Level;
@@ -241,17 +243,13 @@ CornerRays LevelCaster::CornersOf(const PixelRect& rect) const
     this->IndexCamera.RayOf(last.x, last.y) };
 }
 
-/// What asks the caches for the brick that comes behind another one, where it is likely not there.
-/// @param place of the one before it, in BricksOfTiles
+/// What asks the caches for the brick that comes behind another one.
+/// @param place of the one before it, in BricksOfTiles; not a tile's last one
 /// @param corners of the tile
 /// @param rect of the tile
-BrickAhead LevelCaster::Ahead(std::size_t place, const Tile& tile, const CornerRays& corners,
-  const PixelRect& rect, const RayTile& rays) const
+BrickAhead LevelCaster::Ahead(
+  std::size_t place, const CornerRays& corners, const PixelRect& rect, const RayTile& rays) const
 {
-  if (!this->AsksAhead || tile.PixelStride > DensePixels || place + 1 >= tile.EndOfBricks)
-  {
-    return {};
-  }
   const auto position = static_cast<std::size_t>(this->BricksOfTiles[place + 1]);
   const LoadedBrick& next = this->Loaded[position];
   // Rays are in cells of the source, which those of the brick may be smaller than.

@@ -5,6 +5,7 @@
 #include "Codec/BlockScratch.h"
 #include "Codec/GroupOrder.h"
 #include "Codec/SymbolWriter.h"
+#include "Codec/TokenCounter.h"
 #include "Series/ChainLengths.h"
 #include "Series/Exceptions.h"
 #include "Series/FieldLattice.h"

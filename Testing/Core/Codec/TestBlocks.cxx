@@ -2,6 +2,8 @@
 
 #include "Base/Error.h"
 
+#include <glm/vector_relational.hpp>
+
 namespace banyan::testing
 {
 namespace
@@ -259,11 +261,7 @@ TEST_P(Blocks, NumbersMayBeMadeWhenABlockBegins)
       [&](std::int64_t i)
       {
         const glm::ivec3 block = BlockAt(made, i), low = block * edge;
-        glm::ivec3 end;
-        for (int a = 0; a < 3; ++a)
-        {
-          end[a] = low[a] + edge + (block[a] + 1 == made.Blocks[a] ? 1 : 0);
-        }
+        const glm::ivec3 end = low + edge + glm::ivec3(glm::equal(block + 1, made.Blocks));
         for (int z = low.z; z < end.z; ++z)
         {
           for (int y = low.y; y < end.y; ++y)
