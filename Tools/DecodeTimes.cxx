@@ -1,6 +1,7 @@
 #include "DecodeTimes.h"
 
 #include "Base/Timer.h"
+#include "Series/LatticeCache.h"
 #include "Series/SeriesFile.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace
 {
 
 // Enough for a median that repeats within a few per cent, in seconds even when a brick takes long.
-constexpr int WarmSteps = 8;
+constexpr int StepsMeasured = 8;
 constexpr std::size_t WarmBricksPerStep = 125;
 constexpr int ColdBricks = 100;
 
@@ -113,40 +114,88 @@ void MeasureCold(const std::string& path, int array, std::mt19937_64& random, De
   times.Open = Summarize(std::move(opening));
 }
 
+/// @param forget called before each brick
+template <class Forget>
+void TimeBricks(const SeriesFile& file, const FieldKey& field,
+  const std::vector<std::int64_t>& bricks, const Forget& forget, std::vector<double>& microseconds)
+{
+  std::vector<std::uint8_t> values = BrickBuffer(file, field);
+  for (const std::int64_t brick : bricks)
+  {
+    forget();
+    const Timer decode;
+    file.DecodeBrick(field, brick, values.data());
+    microseconds.push_back(Microseconds(decode));
+  }
+}
+
+/// Of a step, its payloads.
+/// @return the bricks that have any, in order
+std::vector<std::int64_t> BringIntoMemory(const SeriesFile& file, const FieldKey& field)
+{
+  std::vector<std::int64_t> bricks = BricksWithPayload(file, field);
+  file.VerifyBricks(field, bricks);
+  return bricks;
+}
+
 void MeasureWarm(const std::string& path, int array, std::mt19937_64& random, DecodeTimes& times)
 {
   const auto file = SeriesFile::Open(path);
-  std::vector<double> warm;
-  double seconds = 0.0;
-  double bytes = 0.0;
-  for (int i = 0; i < std::min(WarmSteps, file->Index().Steps()); ++i)
+  LatticeCache& decoded = LatticeCache::Process();
+  std::vector<double> warm, finest;
+  for (int i = 0; i < std::min(StepsMeasured, file->Index().Steps()); ++i)
   {
     FieldKey field;
     field.Step = static_cast<int>(random() % static_cast<std::uint64_t>(file->Index().Steps()));
     field.Array = array;
-    std::vector<std::uint8_t> values = BrickBuffer(*file, field);
-    std::vector<std::int64_t> bricks = BricksWithPayload(*file, field);
-    file->VerifyBricks(field, bricks); // brings the payloads into memory
-    const std::vector<std::int64_t> ordered = bricks;
+    std::vector<std::int64_t> bricks = BringIntoMemory(*file, field);
     std::shuffle(bricks.begin(), bricks.end(), random);
     bricks.resize(std::min(bricks.size(), WarmBricksPerStep));
-    for (const std::int64_t brick : bricks)
+    TimeBricks(
+      *file, field, bricks, [&] { decoded.ForgetAll(); }, warm);
+    std::vector<double> first; // leaves the coarser planes behind
+    TimeBricks(
+      *file, field, bricks, [&] { decoded.ForgetFinest(); }, first);
+    TimeBricks(
+      *file, field, bricks, [&] { decoded.ForgetFinest(); }, finest);
+  }
+  times.Warm = Summarize(std::move(warm));
+  times.Finest = Summarize(std::move(finest));
+}
+
+/// Steps one after the other, from the first one of a group on.
+void MeasureInOrder(const std::string& path, int array, std::mt19937_64& random, DecodeTimes& times)
+{
+  const auto file = SeriesFile::Open(path);
+  const int steps = file->Index().Steps();
+  const auto& segments = file->Index().Segments;
+  const int first = segments[random() % segments.size()].FirstStep;
+  double bytes = 0.0;
+  std::vector<std::vector<std::int64_t>> bricks;
+  FieldKey field;
+  field.Array = array;
+  for (field.Step = first; field.Step < std::min(first + StepsMeasured, steps); ++field.Step)
+  {
+    bricks.push_back(BringIntoMemory(*file, field));
+    for (const std::int64_t brick : bricks.back())
     {
-      const Timer decode;
-      file->DecodeBrick(field, brick, values.data());
-      warm.push_back(Microseconds(decode));
-    }
-    const Timer inOrder;
-    for (const std::int64_t brick : ordered)
-    {
-      file->DecodeBrick(field, brick, values.data());
       bytes +=
         static_cast<double>(file->Layout(0).SamplesOf(brick).Count()) *
         static_cast<double>(SizeOf(file->Index().Arrays[static_cast<std::size_t>(array)].Type));
     }
-    seconds += inOrder.Seconds();
   }
-  times.Warm = Summarize(std::move(warm));
+  std::vector<std::uint8_t> values = BrickBuffer(*file, field);
+  LatticeCache::Process().ForgetAll();
+  const Timer inOrder;
+  for (std::size_t i = 0; i < bricks.size(); ++i)
+  {
+    field.Step = first + static_cast<int>(i);
+    for (const std::int64_t brick : bricks[i])
+    {
+      file->DecodeBrick(field, brick, values.data());
+    }
+  }
+  const double seconds = inOrder.Seconds();
   times.SequentialBytesPerSecond = seconds > 0.0 ? bytes / seconds : 0.0;
 }
 
@@ -176,6 +225,7 @@ DecodeTimes MeasureDecodeTimes(const std::string& path, int array, std::uint64_t
   DecodeTimes times;
   MeasureCold(path, array, random, times);
   MeasureWarm(path, array, random, times);
+  MeasureInOrder(path, array, random, times);
   return times;
 }
 

@@ -24,15 +24,17 @@ TimeSummary Summarize(std::vector<double> microseconds);
 /// out.
 struct DecodeTimes
 {
-  /// A random brick: the node table at hand, the bytes of the payload in memory.
+  /// A random brick: tables at hand, the bytes of payloads in memory, nothing decoded. What other
+  /// bricks around it or at later steps leave in the cache of this process makes them faster.
   TimeSummary Warm;
+  TimeSummary Finest; ///< the same where the coarser planes that it is predicted from are decoded
   /// A random brick and the node table it needs, of a series that was opened just before (opening
   /// itself is not in it), after the system was told to forget the file; how far it does is up to
   /// the system.
   TimeSummary Cold;
   TimeSummary Open; ///< opening the series
-  /// All bricks in order, of the steps that the warm bricks were taken from: bytes of decoded
-  /// values, macro voxels left out, over seconds.
+  /// All bricks of some steps in order, from the first step of a group on, nothing being decoded
+  /// before: bytes of decoded values, macro voxels left out, over seconds.
   double SequentialBytesPerSecond = 0.0;
 };
 

@@ -224,6 +224,7 @@ std::string InfoToJson(const InfoReport& report, const DecodeTimes* times)
   if (times)
   {
     json["microseconds"] = { { "warmBrick", SummaryToJson(times->Warm) },
+      { "finestPlaneOfBrick", SummaryToJson(times->Finest) },
       { "coldBrick", SummaryToJson(times->Cold) }, { "open", SummaryToJson(times->Open) } };
     json["sequentialBytesPerSecond"] = times->SequentialBytesPerSecond;
   }

@@ -311,6 +311,7 @@ std::string Times(const DecodeTimes& times)
       std::to_string(summary.Count) });
   };
   row("a random brick, warm", times.Warm);
+  row("its finest plane alone", times.Finest);
   row("a random brick, cold", times.Cold);
   row("opening the series", times.Open);
   return "\n" + table.Text() +

@@ -3,6 +3,7 @@
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Cache/BrickCache.h"
+#include "Series/LatticeCache.h"
 #include "Series/SeriesEncoder.h"
 #include "Series/SeriesFile.h"
 
@@ -56,7 +57,22 @@ public:
 
   bool DecodesBricks() const override { return true; }
 
-  /// Past the cache of bricks: each call decodes.
+  bool KeepsDecoded() const override { return true; }
+
+  void Keep(Decoded what) override
+  {
+    switch (what)
+    {
+      case Decoded::Nothing:
+        return LatticeCache::Process().ForgetAll();
+      case Decoded::CoarserPlanes:
+        return LatticeCache::Process().ForgetFinest();
+      case Decoded::All:
+        return;
+    }
+  }
+
+  /// Past the cache of bricks, but not past that of the numbers that bricks are predicted from.
   void DecodeBrick(int step, const Box& samples, float* values) override
   {
     const FieldKey field{ step, 0, 0, 0 };
@@ -76,8 +92,8 @@ public:
           }
           const glm::ivec3 size = samples.Size(), low = part.Lo - samples.Lo;
           const glm::i64vec3 stride{ 1, size.x, std::int64_t{ size.x } * size.y };
-          this->File->DecodePart(field, brick, part, stride,
-            values + low.x + low.y * stride.y + low.z * stride.z);
+          this->File->DecodePart(
+            field, brick, part, stride, values + low.x + low.y * stride.y + low.z * stride.z);
         }
       }
     }
@@ -142,7 +158,8 @@ constexpr Variant Variants[] = {
   { "banyan-without-roughness",
     [](EncodeOptions& options) { options.Ideas.TablesByRoughness = false; } },
   { "banyan-without-sharing", [](EncodeOptions& options) { options.Ideas.SharedTables = false; } },
-  { "banyan-without-axes", [](EncodeOptions& options) { options.Ideas.SmoothestAxisLast = false; } },
+  { "banyan-without-axes",
+    [](EncodeOptions& options) { options.Ideas.SmoothestAxisLast = false; } },
   { "banyan-without-group-before",
     [](EncodeOptions& options) { options.Ideas.GroupBefore = false; } },
   { "banyan-without-modes", [](EncodeOptions& options) { options.Ideas.AllModes = false; } },

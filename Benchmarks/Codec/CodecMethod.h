@@ -37,6 +37,15 @@ struct SeriesShape
   }
 };
 
+/// What a decoder still has of earlier calls when a brick is asked for. Files and tables are at
+/// hand anyway.
+enum class Decoded
+{
+  Nothing,
+  CoarserPlanes, ///< those that the finest one is predicted from
+  All            ///< what fits into its cache
+};
+
 /// The outcome of one encoding: in memory, or as files in the work folder.
 class EncodedSeries
 {
@@ -55,6 +64,12 @@ public:
 
   /// Whether `DecodeBrick` works without decoding a whole step.
   virtual bool DecodesBricks() const { return false; }
+
+  /// Whether calls leave something behind that later ones need not decode.
+  virtual bool KeepsDecoded() const { return false; }
+
+  /// Drops all else that calls left behind.
+  virtual void Keep(Decoded) {}
 
   /// Decodes an aligned brick of at most 16^3 samples by itself, in any order.
   /// @param samples Lo is a multiple of 16; cut at the end of the grid

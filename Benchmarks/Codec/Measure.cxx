@@ -156,30 +156,65 @@ std::vector<float> BrickOf(const RawSeries& series, const BrickQuery& query)
   return values;
 }
 
-/// The first pass brings everything into memory and compares; it is not timed.
-double RandomBrickSeconds(EncodedSeries& encoded, const RawSeries& series,
-  const MeasureOptions& options, Deviation& deviation)
+/// Bricks by themselves. Each is decoded once more and compared, which brings files into memory and
+/// is not timed.
+class RandomBrickTimes
 {
-  const std::vector<BrickQuery> queries = RandomBricks(series, options.Bricks);
-  std::vector<float> values(16 * 16 * 16);
-  for (const BrickQuery& query : queries)
+public:
+  RandomBrickTimes(EncodedSeries& encoded, const RawSeries& series, const MeasureOptions& options)
+    : Encoded(encoded)
+    , Options(options)
+    , Queries(RandomBricks(series, options.Bricks))
+    , Values(16 * 16 * 16)
   {
-    encoded.DecodeBrick(query.Step, query.Samples, values.data());
-    const std::vector<float> original = BrickOf(series, query);
-    deviation.Include(original.data(), values.data(), original.size());
-  }
-  const double seconds = MedianSeconds(options,
-    [&]
+    for (const BrickQuery& query : this->Queries)
     {
-      const double start = ProcessorSeconds();
-      for (const BrickQuery& query : queries)
+      this->Decode(query);
+      const std::vector<float> original = BrickOf(series, query);
+      this->Difference.Include(original.data(), this->Values.data(), original.size());
+    }
+  }
+
+  const Deviation& Found() const { return this->Difference; }
+
+  /// @param kept of what was decoded, before each brick
+  double Microseconds(Decoded kept)
+  {
+    this->Encoded.Keep(Decoded::Nothing);
+    this->Pass(kept); // leaves behind what may be kept
+    const double seconds = MedianSeconds(this->Options, [&] { return this->Pass(kept); });
+    return 1e6 * seconds / static_cast<double>(this->Queries.size());
+  }
+
+private:
+  void Decode(const BrickQuery& query)
+  {
+    this->Encoded.DecodeBrick(query.Step, query.Samples, this->Values.data());
+  }
+
+  double Pass(Decoded kept)
+  {
+    double seconds = 0;
+    double start = ProcessorSeconds();
+    for (const BrickQuery& query : this->Queries)
+    {
+      if (kept != Decoded::All && this->Encoded.KeepsDecoded())
       {
-        encoded.DecodeBrick(query.Step, query.Samples, values.data());
+        seconds += ProcessorSeconds() - start;
+        this->Encoded.Keep(kept);
+        start = ProcessorSeconds();
       }
-      return ProcessorSeconds() - start;
-    });
-  return seconds / static_cast<double>(queries.size());
-}
+      this->Decode(query);
+    }
+    return seconds + ProcessorSeconds() - start;
+  }
+
+  EncodedSeries& Encoded;
+  const MeasureOptions& Options;
+  std::vector<BrickQuery> Queries;
+  std::vector<float> Values;
+  Deviation Difference;
+};
 
 } // namespace
 
@@ -220,10 +255,17 @@ Measurement Measure(
     MedianSeconds(options, [&] { return DecodeAllSeconds(*encoded, series, nullptr); });
 
   Measurement result;
-  Deviation bricks;
+  double worstBrick = 0;
   if (encoded->DecodesBricks() && options.Bricks > 0)
   {
-    result.RandomBrickMicroseconds = 1e6 * RandomBrickSeconds(*encoded, series, options, bricks);
+    RandomBrickTimes bricks(*encoded, series, options);
+    worstBrick = bricks.Found().Largest();
+    result.RandomBrickMicroseconds = bricks.Microseconds(Decoded::Nothing);
+    if (encoded->KeepsDecoded())
+    {
+      result.FinestBrickMicroseconds = bricks.Microseconds(Decoded::CoarserPlanes);
+      result.KeptBrickMicroseconds = bricks.Microseconds(Decoded::All);
+    }
   }
   const double voxels = static_cast<double>(series.VoxelsPerStep()) * series.Steps();
   const double megabytes = voxels * sizeof(float) / 1e6;
@@ -237,7 +279,7 @@ Measurement Measure(
   result.Method = method.Name();
   result.BitsOfAccuracy = bits;
   result.ErrorBound = settings.ErrorBound;
-  result.LargestError = std::max(whole.Largest(), bricks.Largest());
+  result.LargestError = std::max(whole.Largest(), worstBrick);
   result.Range = series.BoundRange().Width();
   result.SignalToNoiseDecibels = whole.SignalToNoiseDecibels(result.Range);
   result.Bytes = encoded->Bytes();

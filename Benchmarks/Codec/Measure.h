@@ -35,9 +35,11 @@ struct Measurement
   double BitsPerVoxel = 0;
   double EncodeMegabytesPerSecond = 0; ///< of float32 values, 10^6 bytes
   double DecodeMegabytesPerSecond = 0;
-  std::optional<double> RandomBrickMicroseconds;
-  std::optional<stages::Spent> Decoding; ///< of all samples, of one pass
-  double Samples = 0;                    ///< of all steps
+  std::optional<double> RandomBrickMicroseconds; ///< nothing is decoded before
+  std::optional<double> FinestBrickMicroseconds; ///< the coarser planes are, where they are kept
+  std::optional<double> KeptBrickMicroseconds;   ///< the brick itself is, where it is kept
+  std::optional<stages::Spent> Decoding;         ///< of all samples, of one pass
+  double Samples = 0;                            ///< of all steps
   std::size_t SamplesOfStep = 0;
 
   /// LargestError / ErrorBound; for a bound of 0 it is 0 or infinite.
@@ -47,11 +49,11 @@ struct Measurement
 /// The absolute bound that `bits` of accuracy stand for.
 double ErrorBoundFor(const RawSeries& series, int bits);
 
-/// Encodes all steps, decodes all steps in order, then decodes random bricks by themselves.
-/// Before the timed passes of decoding comes one that compares what is decoded with the original.
-/// Times are processor time of the whole process, so that threads which a method starts do not help
-/// it, and other users of the machine disturb less.
-/// Throws what the method throws.
+/// Encodes all steps, decodes all steps in order, then decodes random bricks by themselves: with
+/// nothing decoded before, and with what the decoder keeps. Before the timed passes of decoding
+/// comes one that compares what is decoded with the original. Times are processor time of the whole
+/// process, so that threads which a method starts do not help it, and other users of the machine
+/// disturb less. Throws what the method throws.
 Measurement Measure(
   CodecMethod& method, const RawSeries& series, int bits, const MeasureOptions& options);
 

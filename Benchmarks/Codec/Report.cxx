@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <optional>
 #include <vector>
 
 namespace banyan::bench
@@ -18,6 +19,11 @@ std::string Number(double value)
   return text;
 }
 
+std::string NumberOr(const std::optional<double>& value)
+{
+  return value ? Number(*value) : std::string();
+}
+
 std::string MessageOf(const Measurement& m)
 {
   char text[256];
@@ -29,6 +35,12 @@ std::string MessageOf(const Measurement& m)
   if (m.RandomBrickMicroseconds)
   {
     std::snprintf(text, sizeof(text), "  %7.1f us/brick", *m.RandomBrickMicroseconds);
+    message += text;
+  }
+  if (m.FinestBrickMicroseconds && m.KeptBrickMicroseconds)
+  {
+    std::snprintf(text, sizeof(text), " (coarser planes kept: %.1f, all kept: %.1f)",
+      *m.FinestBrickMicroseconds, *m.KeptBrickMicroseconds);
     message += text;
   }
   return message;
@@ -63,8 +75,8 @@ std::string StagesOf(const Measurement& m)
     all += static_cast<double>(ticks);
   }
   char text[128];
-  std::snprintf(text, sizeof(text), "  %-28s %8s %7s %10s\n", "stage of decoding", "cycles", "%",
-    "times");
+  std::snprintf(
+    text, sizeof(text), "  %-28s %8s %7s %10s\n", "stage of decoding", "cycles", "%", "times");
   std::string table = text;
   for (int stage = 0; stage < stages::Count; ++stage)
   {
@@ -92,18 +104,17 @@ std::string StagesOf(const Measurement& m)
 std::string CsvHeader()
 {
   return "dataset,method,bits_of_accuracy,max_error_over_bound,psnr_db,bits_per_voxel,encode_mb_s,"
-         "decode_mb_s,random_brick_us,error_bound,range,bytes";
+         "decode_mb_s,random_brick_us,error_bound,range,bytes,finest_brick_us,kept_brick_us";
 }
 
 std::string CsvLine(const Measurement& m)
 {
-  const std::string brick =
-    m.RandomBrickMicroseconds ? Number(*m.RandomBrickMicroseconds) : std::string();
   return m.Dataset + "," + m.Method + "," + std::to_string(m.BitsOfAccuracy) + "," +
          Number(m.ErrorOverBound()) + "," + Number(m.SignalToNoiseDecibels) + "," +
          Number(m.BitsPerVoxel) + "," + Number(m.EncodeMegabytesPerSecond) + "," +
-         Number(m.DecodeMegabytesPerSecond) + "," + brick + "," + Number(m.ErrorBound) + "," +
-         Number(m.Range) + "," + std::to_string(m.Bytes);
+         Number(m.DecodeMegabytesPerSecond) + "," + NumberOr(m.RandomBrickMicroseconds) + "," +
+         Number(m.ErrorBound) + "," + Number(m.Range) + "," + std::to_string(m.Bytes) + "," +
+         NumberOr(m.FinestBrickMicroseconds) + "," + NumberOr(m.KeptBrickMicroseconds);
 }
 
 bool Report(const RawSeries& series, const MethodList& methods, const std::vector<int>& bits,

@@ -274,6 +274,7 @@ struct BlockChooser : BlockAt<Edge, Number>
     const BlockAtRest<Edge, Number> rest{ *this };
     if (rest.PlaceUniform(out) || (plane.A != nullptr && rest.PlaceSame(out)))
     {
+      this->AskAhead(0, 1); // there is little to be done meanwhile
       return;
     }
     const Boxes boxes = this->GatherBoxes();

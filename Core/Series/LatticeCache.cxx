@@ -208,19 +208,45 @@ void LatticeCache::Shrink(Shard& shard)
   }
 }
 
-void LatticeCache::Forget(std::uint64_t series)
+/// @param which called as bool(const Key&), while nobody changes the boxes
+template <class Which>
+void LatticeCache::RemoveThose(const Which& which)
 {
   for (Shard& shard : this->Shards)
   {
     std::lock_guard<std::mutex> lock(shard.Mutex);
     for (std::size_t i = 0; i < shard.Entries.size(); ++i)
     {
-      if (shard.Entries[i].Numbers && shard.Entries[i].Name.Series == series)
+      if (shard.Entries[i].Numbers && which(shard.Entries[i].Name))
       {
         Remove(shard, static_cast<std::int32_t>(i));
       }
     }
   }
+}
+
+void LatticeCache::Forget(std::uint64_t series)
+{
+  this->RemoveThose([series](const Key& key) { return key.Series == series; });
+}
+
+void LatticeCache::ForgetAll()
+{
+  for (Shard& shard : this->Shards)
+  {
+    std::lock_guard<std::mutex> lock(shard.Mutex);
+    shard.Entries.clear();
+    shard.Free.clear();
+    shard.Buckets.clear();
+    shard.Hand = 0;
+    shard.NewestBrief = shard.OldestBrief = -1;
+    shard.Bytes = shard.BriefBytes = 0;
+  }
+}
+
+void LatticeCache::ForgetFinest()
+{
+  this->RemoveThose([](const Key& key) { return key.Plane == 0; });
 }
 
 void LatticeCache::SetBudgetBytes(std::uint64_t bytes)

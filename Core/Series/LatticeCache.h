@@ -47,6 +47,10 @@ public:
   const void* AddressOf(const Key& key);
   /// Forgets the boxes of a series.
   void Forget(std::uint64_t series);
+  /// Forgets the boxes of all series and planes, or those of the finest planes only: to measure what decoding
+  /// takes.
+  void ForgetAll();
+  void ForgetFinest();
 
   /// Takes effect at once; with a smaller one all boxes go. Default: a quarter of CacheBudgetBytes;
   /// a new budget of the process's BrickCache sets it to a quarter of that.
@@ -97,6 +101,8 @@ private:
   void Look(const Key& key, const Body& body);
   static void Grow(Shard& shard);
   static void Remove(Shard& shard, std::int32_t entry);
+  template <class Which>
+  void RemoveThose(const Which& which);
   static void LinkBrief(Shard& shard, std::int32_t entry);
   static void UnlinkBrief(Shard& shard, std::int32_t entry);
   void Shrink(Shard& shard);

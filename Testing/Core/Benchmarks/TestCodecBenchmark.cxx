@@ -277,6 +277,8 @@ TEST(Program, WritesALinePerMethodAndAccuracy)
     EXPECT_GT(std::stod(cells[4]), 30.0) << line;
     EXPECT_GT(std::stod(cells[5]), 0.0) << line;
     EXPECT_EQ(cells[8].empty(), cells[1] == "paper") << line;
+    EXPECT_EQ(cells[12].empty(), cells[1] == "paper") << line;
+    EXPECT_EQ(cells[13].empty(), cells[1] == "paper") << line;
   }
   EXPECT_EQ(lines, 6);
 }

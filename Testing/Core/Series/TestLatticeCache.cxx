@@ -73,6 +73,41 @@ TEST(LatticeCache, BoxesAreFoundUntilTheyAreForgotten)
   EXPECT_EQ(cache.Bytes(), before);
 }
 
+TEST(LatticeCache, ForgetsTheFinestPlanesOrAll)
+{
+  const OwnBudget budget(std::uint64_t{ 64 } << 20);
+  LatticeCache& cache = LatticeCache::Process();
+  const auto keyOf = [](int i)
+  {
+    return LatticeCache::Key{ SeriesOfTest, static_cast<std::uint64_t>(i), 0, 0,
+      static_cast<std::uint16_t>(i % 3) };
+  };
+  constexpr int count = 3000;
+  const auto fill = [&]
+  {
+    for (int i = 0; i < count; ++i)
+    {
+      cache.Add(keyOf(i), BoxOf(static_cast<std::int16_t>(i)), i % 3 == 0 && i % 2 == 0);
+    }
+  };
+  fill();
+  const std::uint64_t all = cache.Bytes();
+  cache.ForgetFinest();
+  EXPECT_EQ(cache.Bytes(), all / 3 * 2);
+  for (int i = 0; i < count; ++i)
+  {
+    ASSERT_EQ(cache.Find(keyOf(i)) != nullptr, i % 3 != 0) << i;
+  }
+  cache.ForgetAll();
+  EXPECT_EQ(cache.Bytes(), 0u);
+  EXPECT_EQ(cache.Find(keyOf(1)), nullptr);
+  EXPECT_EQ(cache.AddressOf(keyOf(1)), nullptr);
+  fill(); // there is room again
+  EXPECT_EQ(cache.Bytes(), all);
+  ASSERT_NE(cache.Find(keyOf(count - 1)), nullptr);
+  EXPECT_EQ(cache.Find(keyOf(count - 1))->Numbers<std::int16_t>()[0], count - 1);
+}
+
 TEST(LatticeCache, StaysWithinItsBudgetAndKeepsWhatIsUsed)
 {
   const OwnBudget budget(400 * 1000);

@@ -363,6 +363,7 @@ TEST(Info, TimesAreMeasuredWhereThereIsSomethingToDecode)
   EXPECT_GT(times.SequentialBytesPerSecond, 0.0);
   const auto json = nlohmann::json::parse(InfoToJson(corners.Report(), &times));
   EXPECT_EQ(json["microseconds"]["warmBrick"]["count"], times.Warm.Count);
+  EXPECT_EQ(json["microseconds"]["finestPlaneOfBrick"]["count"], times.Warm.Count);
 }
 
 TEST(Info, SummariesOfTimes)
