@@ -163,7 +163,6 @@ constexpr Variant Variants[] = {
   { "banyan-without-group-before",
     [](EncodeOptions& options) { options.Ideas.GroupBefore = false; } },
   { "banyan-without-modes", [](EncodeOptions& options) { options.Ideas.AllModes = false; } },
-  { "banyan-without-trials", [](EncodeOptions& options) { options.Ideas.Trials = false; } },
 };
 
 } // namespace

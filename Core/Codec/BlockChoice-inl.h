@@ -210,13 +210,11 @@ struct BlockChooser : BlockAt<Edge, Number>
   std::size_t Trials() const { return static_cast<std::size_t>(std::max(this->Plane().Trials, 1)); }
 
   /// What candidates cost at most that are tried out beside one of these costs. Where one looks clearly
-  /// best, it is: by so many per cent, or, of what costs much anyway, by as much as that is of a tenth of
-  /// a bit per sample.
+  /// best, it is: eleven times, or, of what costs much anyway, by a bit per sample.
   std::int64_t CloseTo(std::int64_t cost) const
   {
-    constexpr std::int64_t tenth = (1 << 13) / 10 / 100;
     const std::int64_t samples = std::int64_t{ this->B() } * this->B() * this->B();
-    return cost + std::min(cost / 100, tenth * samples) * this->Plane().TrialMargin;
+    return cost + std::min(10 * cost, samples << 13);
   }
 
   /// Estimates candidates: those that may be tried out come first in Work.Costs, the best ones first, and
@@ -283,9 +281,7 @@ struct BlockChooser : BlockAt<Edge, Number>
     const std::int64_t close = this->CloseTo(costs[0].first);
     const auto end = std::find_if(costs.begin() + 1, costs.end(),
       [close](const auto& cost) { return cost.first > close; });
-    const std::size_t trials = costs[0].first < std::int64_t{ plane.LeastTriedBits } << 13
-                                 ? 1
-                                 : std::min(static_cast<std::size_t>(end - costs.begin()), this->Trials());
+    const std::size_t trials = std::min(static_cast<std::size_t>(end - costs.begin()), this->Trials());
     std::size_t best = 0;
     std::int64_t least = std::numeric_limits<std::int64_t>::max();
     for (std::size_t i = 0; trials > 1 && i < trials; ++i)

@@ -335,6 +335,10 @@ void DecodeBoxOf(
   {
     return DecodeBoxOf(EdgeIs<16>{}, plane, code, box);
   }
+  if (edge == 32)
+  {
+    return DecodeBoxOf(EdgeIs<32>{}, plane, code, box);
+  }
   DecodeBoxOf(EdgeIs<0>{ edge }, plane, code, box);
 }
 

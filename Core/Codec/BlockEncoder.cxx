@@ -177,6 +177,10 @@ void EncodeBlockOf(const PlaneJob& job, const glm::ivec3& position, BlockPhase p
   {
     return EncodeBlockOf<EdgeIs<16>, Number>({}, job, position, phase);
   }
+  if (job.Decoded->Edge == 32)
+  {
+    return EncodeBlockOf<EdgeIs<32>, Number>({}, job, position, phase);
+  }
   EncodeBlockOf<EdgeIs<0>, Number>({ job.Decoded->Edge }, job, position, phase);
 }
 

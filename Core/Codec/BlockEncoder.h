@@ -121,12 +121,8 @@ struct PlaneToEncode
   std::int32_t CoarseBin = 1, FineBin = 1;
   std::int32_t Least = 0, Greatest = 0;
   std::vector<block::Mode> Candidates; ///< to choose from; at least one without references
-  int Trials = 1; ///< how many of them, those that look best, are encoded to see what they cost
-  /// Those that look worse by more per cent, or, where blocks cost much, by more of a tenth of a bit per
-  /// sample, are not.
-  int TrialMargin = 1000;
-  /// Where the interior of a block is estimated to take fewer bits than this, none is tried out.
-  int LeastTriedBits = 0;
+  /// How many of them, those that look best, are encoded to see what they cost; 1: what looks best is taken.
+  int Trials = 1;
 };
 
 /// Codes all blocks of a plane.

@@ -17,7 +17,6 @@ struct EncodeIdeas
   bool RestingArrays =
     true;               ///< an array that stays the same over a whole group is not stored again
   bool AllModes = true; ///< else cubic interpolation, with the mean of both references or without
-  bool Trials = true;   ///< ways to predict that look alike are tried out
 };
 
 } // namespace banyan

@@ -45,7 +45,6 @@ private:
   using BlockBody = std::function<void(std::size_t plane, std::int64_t block)>;
   void EncodePlanes(int step, const BlockBody& done, const std::function<void(double)>& tell);
   void NoteOrigins(int step, int before, std::size_t plane);
-  int TrialsOf(int step, std::size_t plane, int usual) const;
   void EncodeStep(
     int step, std::vector<double>* squares, const std::function<void(double)>& tell);
   void WriteSymbols();
@@ -113,29 +112,6 @@ std::vector<PlaneNumbers> Encoder<T>::TakePlanes() const
   return this->Target->NewPlanes();
 }
 
-/// How many ways to predict are tried out. Where blocks cost much, that takes time and gains little: on
-/// planes that are not small, and half of whose samples have symbols in the key frame, none is.
-template <class T>
-int Encoder<T>::TrialsOf(int step, std::size_t plane, int usual) const
-{
-  constexpr std::size_t small = std::size_t{ 1 } << 20;
-  const StepTokens& keyFrame = this->Tokens.back();
-  const glm::ivec3 n = this->Planes[plane];
-  const std::size_t samples =
-    static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) * static_cast<std::size_t>(n.z);
-  if (step + 1 == static_cast<int>(this->Tokens.size()) || samples < small ||
-      this->Field.Profile == EncodeProfile::Compact)
-  {
-    return usual;
-  }
-  std::size_t tokens = 0;
-  for (const BlockTokens& block : keyFrame[plane])
-  {
-    tokens += block.Tokens.size();
-  }
-  return 2 * tokens > samples ? 1 : usual;
-}
-
 /// See DecodedStep::Origins.
 /// @param before reference A
 template <class T>
@@ -199,7 +175,6 @@ void Encoder<T>::EncodePlanes(
     plane.Least = this->Out.Head.Least;
     plane.Greatest = this->Out.Head.Greatest;
     ApplyProfile(this->Field.Profile, this->Field.Ideas, plane);
-    plane.Trials = this->TrialsOf(step, p, plane.Trials);
     EncodePlane(plane, decoded[p], tokens[p], this->Pool,
       [&](std::int64_t block) { done(p, block); },
       p == 0 && blockwise ? std::function<void(std::int64_t)>(make) : nullptr);

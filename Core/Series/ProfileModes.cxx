@@ -39,12 +39,7 @@ std::vector<Mode> CandidatesOf(EncodeProfile profile, const EncodeIdeas& ideas)
 void ApplyProfile(EncodeProfile profile, const EncodeIdeas& ideas, PlaneToEncode& plane)
 {
   plane.Candidates = CandidatesOf(profile, ideas);
-  plane.Trials = profile == EncodeProfile::Compact ? 4 : profile == EncodeProfile::Fast ? 1 : 2;
-  plane.Trials = ideas.Trials ? plane.Trials : 1;
-  plane.TrialMargin = profile == EncodeProfile::Compact ? 1000 : 100;
-  // There is next to nothing to be gained by trials of such blocks, which are most of a smooth
-  // series'.
-  plane.LeastTriedBits = profile == EncodeProfile::Compact ? 0 : 16;
+  plane.Trials = profile == EncodeProfile::Compact ? 4 : 1;
 }
 
 } // namespace banyan

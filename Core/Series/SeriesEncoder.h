@@ -20,9 +20,9 @@ class ThreadPool;
 /// What encoding aims at. Every profile keeps the bound and is read by every reader.
 enum class EncodeProfile
 {
-  Fast,     ///< in situ: fewer ways to predict are tried
+  Fast,     ///< in situ: few ways to predict are looked at
   Balanced, ///< the default
-  Compact   ///< archives: all of them, with more care
+  Compact   ///< archives: all of them, and those that look best are tried out
 };
 
 /// What encoding has to know of the mesh that images stand for.

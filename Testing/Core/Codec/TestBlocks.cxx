@@ -226,19 +226,16 @@ TEST_P(Blocks, EachIsToldOfOnceWhenItIsDecoded)
   }
 }
 
-TEST_P(Blocks, CheapOnesTakeWhatLooksBest)
+TEST_P(Blocks, TrialsChangeWhatIsTaken)
 {
   const MixedPlanes planes({ 35, 34, 33 }, GetParam(), 4);
   PlaneToEncode plane = planes.With(AllModes(), true);
   const EncodedPlane looked = EncodeWhole(plane);
   plane.Trials = 3;
   const EncodedPlane tried = EncodeWhole(plane);
-  plane.LeastTriedBits = 1 << 30;
-  const EncodedPlane cheap = EncodeWhole(plane);
   bool differs = false;
   for (std::size_t i = 0; i < looked.Blocks.size(); ++i)
   {
-    EXPECT_EQ(cheap.Blocks[i].Mode, looked.Blocks[i].Mode) << "block " << i;
     differs = differs || tried.Blocks[i].Mode != looked.Blocks[i].Mode;
   }
   EXPECT_TRUE(differs || looked.Blocks.size() < 100) << "trials change nothing";
