@@ -174,6 +174,7 @@ void MeasureInOrder(const std::string& path, int array, std::mt19937_64& random,
   std::vector<std::vector<std::int64_t>> bricks;
   FieldKey field;
   field.Array = array;
+  std::vector<std::uint8_t> values = BrickBuffer(*file, field);
   for (field.Step = first; field.Step < std::min(first + StepsMeasured, steps); ++field.Step)
   {
     bricks.push_back(BringIntoMemory(*file, field));
@@ -184,7 +185,6 @@ void MeasureInOrder(const std::string& path, int array, std::mt19937_64& random,
         static_cast<double>(SizeOf(file->Index().Arrays[static_cast<std::size_t>(array)].Type));
     }
   }
-  std::vector<std::uint8_t> values = BrickBuffer(*file, field);
   LatticeCache::Process().ForgetAll();
   const Timer inOrder;
   for (std::size_t i = 0; i < bricks.size(); ++i)

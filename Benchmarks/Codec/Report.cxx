@@ -19,7 +19,7 @@ std::string Number(double value)
   return text;
 }
 
-std::string NumberOr(const std::optional<double>& value)
+std::string NumberOrNothing(const std::optional<double>& value)
 {
   return value ? Number(*value) : std::string();
 }
@@ -112,9 +112,9 @@ std::string CsvLine(const Measurement& m)
   return m.Dataset + "," + m.Method + "," + std::to_string(m.BitsOfAccuracy) + "," +
          Number(m.ErrorOverBound()) + "," + Number(m.SignalToNoiseDecibels) + "," +
          Number(m.BitsPerVoxel) + "," + Number(m.EncodeMegabytesPerSecond) + "," +
-         Number(m.DecodeMegabytesPerSecond) + "," + NumberOr(m.RandomBrickMicroseconds) + "," +
+         Number(m.DecodeMegabytesPerSecond) + "," + NumberOrNothing(m.RandomBrickMicroseconds) + "," +
          Number(m.ErrorBound) + "," + Number(m.Range) + "," + std::to_string(m.Bytes) + "," +
-         NumberOr(m.FinestBrickMicroseconds) + "," + NumberOr(m.KeptBrickMicroseconds);
+         NumberOrNothing(m.FinestBrickMicroseconds) + "," + NumberOrNothing(m.KeptBrickMicroseconds);
 }
 
 bool Report(const RawSeries& series, const MethodList& methods, const std::vector<int>& bits,

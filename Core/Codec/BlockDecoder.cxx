@@ -331,15 +331,7 @@ template <class Number>
 void DecodeBoxOf(
   int edge, const PlaneCode& plane, const BoxCodeOf<Number>& code, Number* box)
 {
-  if (edge == 16)
-  {
-    return DecodeBoxOf(EdgeIs<16>{}, plane, code, box);
-  }
-  if (edge == 32)
-  {
-    return DecodeBoxOf(EdgeIs<32>{}, plane, code, box);
-  }
-  DecodeBoxOf(EdgeIs<0>{ edge }, plane, code, box);
+  WithEdge(edge, [&](const auto& known) { DecodeBoxOf(known, plane, code, box); });
 }
 
 void DecodeShort(

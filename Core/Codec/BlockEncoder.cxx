@@ -173,15 +173,9 @@ void EncodeBlockOf(
 template <class Number>
 void EncodeBlockOf(const PlaneJob& job, const glm::ivec3& position, BlockPhase phase)
 {
-  if (job.Decoded->Edge == 16)
-  {
-    return EncodeBlockOf<EdgeIs<16>, Number>({}, job, position, phase);
-  }
-  if (job.Decoded->Edge == 32)
-  {
-    return EncodeBlockOf<EdgeIs<32>, Number>({}, job, position, phase);
-  }
-  EncodeBlockOf<EdgeIs<0>, Number>({ job.Decoded->Edge }, job, position, phase);
+  WithEdge(job.Decoded->Edge,
+    [&](const auto& edge)
+    { EncodeBlockOf<std::decay_t<decltype(edge)>, Number>(edge, job, position, phase); });
 }
 
 void EncodeBlockHere(const PlaneJob& job, const glm::ivec3& position, BlockPhase phase)

@@ -33,6 +33,21 @@ struct EdgeIs<0>
   HWY_INLINE int operator()() const { return this->B; }
 };
 
+/// Calls body(edge) with one that is known for the blocks that the encoder takes by itself.
+template <class Body>
+HWY_INLINE void WithEdge(int edge, const Body& body)
+{
+  switch (edge)
+  {
+    case 16:
+      return body(EdgeIs<16>{});
+    case 32:
+      return body(EdgeIs<32>{});
+    default:
+      return body(EdgeIs<0>{ edge });
+  }
+}
+
 /// Lanes that are worked on together (vectors of the compiler: it splits them for every target).
 constexpr int Width = 16;
 

@@ -47,8 +47,8 @@ public:
   const void* AddressOf(const Key& key);
   /// Forgets the boxes of a series.
   void Forget(std::uint64_t series);
-  /// Forgets the boxes of all series and planes, or those of the finest planes only: to measure what decoding
-  /// takes.
+  /// Forgets the boxes of all series and planes, and the room that their names take, or the boxes of the finest
+  /// planes only: to measure what decoding takes.
   void ForgetAll();
   void ForgetFinest();
 

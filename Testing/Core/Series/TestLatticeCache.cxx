@@ -82,6 +82,7 @@ TEST(LatticeCache, ForgetsTheFinestPlanesOrAll)
     return LatticeCache::Key{ SeriesOfTest, static_cast<std::uint64_t>(i), 0, 0,
       static_cast<std::uint16_t>(i % 3) };
   };
+  cache.ForgetAll(); // what other tests left
   constexpr int count = 3000;
   const auto fill = [&]
   {
