@@ -24,7 +24,8 @@ namespace banyan::HWY_NAMESPACE
 template <class Edge, class Number>
 struct BoxDecoder : BoxPlaces<Edge, Number>
 {
-  static constexpr bool Dense = HasDense && std::is_same_v<Edge, EdgeIs<16>>;
+  static constexpr bool Dense = HasDense<Edge>;
+  static constexpr int KnownEdge = Edge::Known; ///< 0: it is not known
 
   struct Workspace
   {
@@ -39,8 +40,8 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
     block::Scratch<Number, 2> Faces;
     block::Scratch<Number, 3> Interior;
     SliceMemory<Number> Slice;
-    std::conditional_t<Dense, DenseWork, int> Vectors{};
-    std::conditional_t<Dense, DenseBox<Number>, int> Whole{}; ///< where the box is decoded
+    std::conditional_t<Dense, DenseWork<KnownEdge>, int> Vectors{};
+    std::conditional_t<Dense, DenseBox<Number, KnownEdge>, int> Whole{}; ///< where the box is decoded
     SymbolReader Readers[8];
     /// Magnitudes of the edges of the blocks 1, 2, 4 and 0 of a box, row by row.
     std::uint8_t EdgeMagnitudes[4][3][64];
@@ -117,7 +118,7 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
       {
         if constexpr (Dense && D == 2)
         {
-          WithDenseFace(samples, from, w, [](const auto& face) { face.Load(); });
+          WithDenseFace<KnownEdge>(samples, from, w, [](const auto& face) { face.Load(); });
         }
         else
         {
@@ -133,7 +134,7 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
           this->Code.AskAhead(6);
           const stages::In stage(stages::FacePasses);
           BeginStride<P>(this->Work.Vectors.Faces, symbols);
-          DenseSliceDecoder<P, Number>(unit, this->Work.Vectors.Faces.template At<P::S>(), mode.By,
+          DenseSliceDecoder<P, KnownEdge, Number>(unit, this->Work.Vectors.Faces.template At<P::S>(), mode.By,
             symbols, static_cast<Number>(P::S == 2 ? this->Plane.CoarseBin : this->Plane.FineBin),
             this->Work.Vectors.Slice)
             .Run();
@@ -149,7 +150,7 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
       {
         if constexpr (Dense && D == 2)
         {
-          WithDenseFace(samples, from, w,
+          WithDenseFace<KnownEdge>(samples, from, w,
             [this](const auto& face)
             {
               face.Store(static_cast<Number>(this->Plane.Least), static_cast<Number>(this->Plane.Greatest));
@@ -269,8 +270,7 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
     {
       if (symbols != nullptr)
       {
-        this->Work.Vectors.BeginInterior(
-          block::Shape<3>{ 16 }.SumPitch(), this->Work.Interior.S());
+        this->Work.Vectors.BeginInterior(this->Work.Interior.S());
       }
     }
     else if (symbols != nullptr)
@@ -319,7 +319,7 @@ void DecodeBoxOf(
     decoded = work->Whole.Samples();
     if (code.Ahead != nullptr)
     {
-      code.Ahead->Write(box, DenseBox<Number>::Count * sizeof(Number));
+      code.Ahead->Write(box, DenseBox<Number, Decoder::KnownEdge>::Count * sizeof(Number));
     }
   }
   Decoder{ { edge, code, { decoded, strides }, { code.A, strides } }, plane, { code.B, strides },

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <type_traits>
 
 #include <hwy/highway.h>
 
@@ -24,11 +25,13 @@ using block::Interpolation;
 template <int B>
 struct EdgeIs
 {
+  static constexpr int Known = B;
   HWY_INLINE constexpr int operator()() const { return B; }
 };
 template <>
 struct EdgeIs<0>
 {
+  static constexpr int Known = 0;
   int B;
   HWY_INLINE int operator()() const { return this->B; }
 };
@@ -51,19 +54,12 @@ HWY_INLINE void WithEdge(int edge, const Body& body)
 /// Lanes that are worked on together (vectors of the compiler: it splits them for every target).
 constexpr int Width = 16;
 
-template <class Number>
-struct VectorsOf;
-template <>
-struct VectorsOf<std::int16_t>
+template <class Number, int Lanes>
+struct VectorsOf
 {
-  typedef std::int16_t Signed __attribute__((vector_size(32)));
-  typedef std::uint16_t Unsigned __attribute__((vector_size(32)));
-};
-template <>
-struct VectorsOf<std::int32_t>
-{
-  typedef std::int32_t Signed __attribute__((vector_size(64)));
-  typedef std::uint32_t Unsigned __attribute__((vector_size(64)));
+  static constexpr int Bytes = Lanes * static_cast<int>(sizeof(Number));
+  typedef Number Signed __attribute__((vector_size(Bytes)));
+  typedef std::make_unsigned_t<Number> Unsigned __attribute__((vector_size(Bytes)));
 };
 typedef std::uint8_t ByteVector __attribute__((vector_size(16)));
 typedef std::int8_t SignedByteVector __attribute__((vector_size(16)));
@@ -84,11 +80,11 @@ HWY_INLINE void StoreVector(const Vector& value, Element* to)
 /// Predictions of whole vectors. Arithmetic wraps: files made with ill intent must not reach undefined
 /// behaviour. The formulas are the usual ones, rounded, in an order that needs no more bits than
 /// samples have.
-template <class Number>
+template <class Number, int Lanes = Width>
 struct Numbers
 {
-  using Signed = typename VectorsOf<Number>::Signed;
-  using Unsigned = typename VectorsOf<Number>::Unsigned;
+  using Signed = typename VectorsOf<Number, Lanes>::Signed;
+  using Unsigned = typename VectorsOf<Number, Lanes>::Unsigned;
 
   static HWY_INLINE Unsigned Load(const Number* from) { return LoadVector<Unsigned>(from); }
   static HWY_INLINE Unsigned Shift(Unsigned value, int bits)
@@ -110,11 +106,19 @@ struct Numbers
   static HWY_INLINE Unsigned Linear(Unsigned a, Unsigned b) { return Shift(a + b + Number{ 1 }, 1); }
 };
 
-/// Lane numbers of a vector.
+/// Lane numbers of a vector of 16 or 32.
 template <class Vector>
 HWY_INLINE Vector LaneNumbers()
 {
-  return Vector{ 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15 };
+  if constexpr (sizeof(Vector) == Width * sizeof(Vector{}[0]))
+  {
+    return Vector{ 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15 };
+  }
+  else
+  {
+    return Vector{ 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23,
+      24, 25, 26, 27, 28, 29, 30, 31 };
+  }
 }
 
 /// A pass: which samples it predicts, along which axis, from how far away.
@@ -142,7 +146,7 @@ struct Pass
   static int LanesOf(int edge) { return (edge - First + Step - 1) / Step; }
 };
 
-/// -1 for the lanes (of Width from the first one of a vector on) that a pass predicts.
+/// -1 for the lanes of a vector that a pass predicts.
 /// @param left lanes up to the edge
 template <class P, class Vector>
 HWY_INLINE Vector LaneMask(int left)
@@ -197,15 +201,15 @@ HWY_INLINE RowPlace PlaceOf(const Unit<Number, P::D>& unit, const Edge& edge, in
   return place;
 }
 
-/// Predicts Width lanes of a row; lanes that the pass does not have hold anything.
+/// Predicts some lanes of a row; those that the pass does not have hold anything.
 /// @param from lane First + at of the row
 /// @param gap distance of samples that are a stride apart along the axis of the pass
 /// @param position of the row along that axis; any along the first
-template <class P, class Edge, class Number>
-HWY_INLINE typename Numbers<Number>::Unsigned PredictAt(const Number* from, std::ptrdiff_t gap,
-  const Edge& edge, int position, int at, Interpolation by)
+template <class P, int Lanes = Width, class Edge, class Number>
+HWY_INLINE typename Numbers<Number, Lanes>::Unsigned PredictAt(const Number* from,
+  std::ptrdiff_t gap, const Edge& edge, int position, int at, Interpolation by)
 {
-  using V = Numbers<Number>;
+  using V = Numbers<Number, Lanes>;
   using Vector = typename V::Unsigned;
   if (by == Interpolation::None)
   {
@@ -238,7 +242,7 @@ HWY_INLINE typename Numbers<Number>::Unsigned PredictAt(const Number* from, std:
     result = lanes == Number{ 0 } ? V::Quadratic(before, after, last) : result;
   }
   const int end = edge() - 2 * P::S - at; // the last lane, from here
-  if (end < Width)
+  if (end < Lanes)
   {
     result = lanes == static_cast<Number>(end) ? V::Quadratic(after, before, first) : result;
   }
@@ -259,10 +263,9 @@ HWY_INLINE typename Numbers<Number>::Unsigned Predict(
 
 /// Sets the lanes of a pass.
 /// @param to lane First + at of a row, and @param left how many lanes there are up to the edge
-template <class P, class Number>
-HWY_INLINE void SetLanes(typename Numbers<Number>::Unsigned value, int left, Number* to)
+template <class P, class Vector, class Number>
+HWY_INLINE void SetLanes(Vector value, int left, Number* to)
 {
-  using Vector = typename Numbers<Number>::Unsigned;
   const Vector mask = LaneMask<P, Vector>(left);
   StoreVector((value & mask) | (LoadVector<Vector>(to) & ~mask), to);
 }

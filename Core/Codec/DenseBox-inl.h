@@ -16,13 +16,14 @@ namespace banyan::HWY_NAMESPACE
 namespace hn = hwy::HWY_NAMESPACE;
 #if HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
 
-/// Where a block of 16 is decoded, and what its references give: memory that is at hand, while that
+/// Where a block is decoded, and what its references give: memory that is at hand, while that
 /// of the box itself usually is not and is written once, from its first sample to its last one.
-template <class Number>
+/// @param B edge of the block
+template <class Number, int B>
 class DenseBox
 {
 public:
-  static constexpr int Count = 17 * 17 * 17;
+  static constexpr int Count = (B + 1) * (B + 1) * (B + 1);
 
   /// The box, `[z][y][x]`.
   Number* Samples() { return this->W; }
@@ -102,7 +103,7 @@ private:
 };
 
 #else
-template <class Number>
+template <class Number, int B>
 class DenseBox;
 #endif
 } // namespace banyan::HWY_NAMESPACE

@@ -15,14 +15,22 @@ namespace banyan::HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Vectors must have a number of lanes that is known, and more than one.
-#if HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
-constexpr bool HasDense = true;
+/// Whether blocks have kernels of whole slices. Vectors must have a number of lanes that is known, and as
+/// many as a row.
+template <class Edge>
+constexpr bool HasDense = false;
 
-/// Magnitudes of the units of blocks of 16 at one stride, without gaps, so that one vector holds
-/// several rows: N = 8 of each axis at stride 2, 16 at stride 1. With stride 2 what lies between is
-/// left out, so that passes of both strides are the same. Rows of three faces lie side by side in a
-/// slice, which has room for a fourth.
+#if HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
+constexpr int VectorBytes = static_cast<int>(hn::MaxLanes(hn::ScalableTag<std::uint8_t>()));
+template <>
+constexpr bool HasDense<EdgeIs<16>> = true;
+template <>
+constexpr bool HasDense<EdgeIs<32>> = VectorBytes >= 32;
+
+/// Magnitudes of the units of blocks of 16 or 32 at one stride, without gaps, so that one vector holds
+/// several rows: N = 8 or 16 of each axis at stride 2, 16 or 32 at stride 1. With stride 2 what lies
+/// between is left out, so that passes of both strides are the same. Rows of three faces lie side by
+/// side in a slice, which has room for a fourth.
 template <int D, int N>
 struct DenseShape
 {
@@ -33,10 +41,12 @@ struct DenseShape
   static constexpr int Margin = 128;
 };
 
-/// Memory for the slices of a pass, of all blocks of 16.
+/// Memory for the slices of a pass of blocks.
+/// @param B their edge
+template <int B>
 struct DenseMemory
 {
-  static constexpr int Most = 256 + 64;
+  static constexpr int Most = B * B + 64;
 
   alignas(64) std::uint8_t Tables[Most];   ///< of each lane
   alignas(64) std::int8_t Turned[Most];    ///< -1 where residuals have the other sign
@@ -45,13 +55,13 @@ struct DenseMemory
   alignas(64) std::int8_t Residuals[Most]; ///< of each lane; of escapes anything
   alignas(64) std::uint16_t Places[Most];  ///< of symbols, as ReadRun takes them
   alignas(64) std::int8_t Read[Most];      ///< of symbols
-  std::uint16_t FlagPlaces[32];
-  std::int8_t Flags[32];
-  std::uint8_t RowClass[32]; ///< by number of row
-  std::uint8_t FlagRows[32];
+  std::uint16_t FlagPlaces[B + 16];
+  std::int8_t Flags[B + 16];
+  std::uint8_t RowClass[B + 16]; ///< by position of the row
+  std::uint8_t FlagRows[B + 16];
 };
 
-/// The lanes of a row of N, from lane `First` on and each `Repeat` times, every Step-th of them, as
+/// The lanes of a vector from lane `First` on and each `Repeat` times, every Step-th of them, as
 /// `__builtin_shuffle` takes their numbers.
 template <int First, int Step, int Repeat>
 HWY_INLINE ByteVector LanesFrom()
@@ -64,13 +74,13 @@ HWY_INLINE ByteVector LanesFrom()
   return result;
 }
 
-/// A row of N bytes; those behind it hold anything. It is loaded as it was stored, or as a part of that: what
+/// A row of N bytes, or 16 of a longer one; those behind it hold anything. It is loaded as it was stored, or as a part of that: what
 /// was stored in two pieces is waited for.
 template <int N>
 HWY_INLINE ByteVector LoadRowOf(const void* from)
 {
   ByteVector result{};
-  std::memcpy(&result, from, N);
+  std::memcpy(&result, from, std::min(N, Width));
   return result;
 }
 
@@ -90,7 +100,7 @@ template <int D, int N>
 using DenseTag = hn::CappedTag<std::uint8_t, DenseShape<D, N>::Slice>;
 
 /// RoughnessOf for all lanes of a vector; those that the pass does not have hold anything.
-/// @param P a pass; N is 16 divided by its stride
+/// @param P a pass; N is the edge of blocks divided by its stride
 template <class P, int N>
 struct DenseRoughness
 {
@@ -140,7 +150,7 @@ struct DenseRoughness
   template <int Step>
   HWY_INLINE V AheadRow(V up, V down) const
   {
-    const int rows = N - Step - this->FirstRow; // that have one
+    const int rows = std::max(N - Step - this->FirstRow, 0); // that have one
     return rows >= RowsAtOnce ? up : hn::IfThenElse(Below(this->Lane(), rows * N), up, down);
   }
   /// `down`, which is Step rows before, or `up` where there is no such row.
@@ -249,8 +259,6 @@ HWY_INLINE V DenseMagnitudes(Tag d, hn::VFromD<hn::RebindToSigned<Tag>> residual
     16) static constexpr std::uint8_t of[16] = { 0, 2, 3, 4, 5, 5, 6, 6, 6, 7, 7, 7, 7, 8, 8, 8 };
   return hn::TableLookupBytes(hn::LoadDup128(d, of), hn::Min(size, hn::Set(d, std::uint8_t{ 15 })));
 }
-#else
-constexpr bool HasDense = false;
 #endif
 
 } // namespace banyan::HWY_NAMESPACE

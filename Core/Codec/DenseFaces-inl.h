@@ -12,14 +12,14 @@ HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
 
-/// A face of a box of 17^3 samples, and those of the references there, on their way to memory of
-/// their own and back: LoadUnit and StoreUnit for one edge, and with all arrays laid out alike.
-template <class Number, class Reference>
+/// A face of a box, and those of the references there, on their way to memory of
+/// their own and back: LoadUnit and StoreUnit for an edge that is known, a multiple of 16, and with all
+/// arrays laid out alike.
+template <int Edge, class Number, class Reference>
 struct DenseFace
 {
   using V = Numbers<Number>;
   using U = std::make_unsigned_t<Number>;
-  static constexpr int Edge = 16;
   static constexpr std::ptrdiff_t Pitch = 3 * (Edge + 8); // block::Shape<2>: rows of three faces
 
   Number* X; ///< the face's first sample, of the box
@@ -51,7 +51,10 @@ struct DenseFace
       Number* const w = this->W + v * Pitch;
       if (this->AlongU == 1)
       {
-        StoreVector(V::Load(this->X + at) - this->SubtractedFrom(at), w);
+        for (int u = 0; u < Edge; u += Width)
+        {
+          StoreVector(V::Load(this->X + at + u) - this->SubtractedFrom(at + u), w + u);
+        }
         this->LoadOne(at, Edge, w);
         continue;
       }
@@ -79,19 +82,25 @@ struct DenseFace
     for (int v = 1; v < Edge; ++v)
     {
       const std::ptrdiff_t at = v * this->AlongV + this->AlongU;
-      const typename V::Unsigned w = V::Load(this->W + v * Pitch + 1);
+      const Number* const w = this->W + v * Pitch + 1;
       if (this->AlongU == 1)
       {
-        StoreVector(limited(w + this->SubtractedFrom(at)), this->X + at);
+        for (int u = 0; u < Edge; u += Width)
+        {
+          StoreVector(limited(V::Load(w + u) + this->SubtractedFrom(at + u)), this->X + at + u);
+        }
         continue;
       }
-      Number row[Width];
+      Number row[Edge];
       for (int u = 0; u < Edge - 1; ++u)
       {
         row[u] = static_cast<Number>(this->SubtractedAt(at + u * this->AlongU));
       }
       row[Edge - 1] = 0;
-      StoreVector(limited(w + V::Load(row)), row);
+      for (int u = 0; u < Edge; u += Width)
+      {
+        StoreVector(limited(V::Load(w + u) + V::Load(row + u)), row + u);
+      }
       for (int u = 0; u < Edge - 1; ++u)
       {
         this->X[at + u * this->AlongU] = row[u];
@@ -102,7 +111,7 @@ struct DenseFace
 
 /// Calls body(face). @param samples of the face, @param from the references there; strides are the
 /// same
-template <class Number, class Body>
+template <int Edge, class Number, class Body>
 HWY_INLINE void WithDenseFace(
   const View<Number>& samples, const References<Number>& from, Number* w, const Body& body)
 {
@@ -111,7 +120,7 @@ HWY_INLINE void WithDenseFace(
     [&](auto reference)
     {
       body(
-        DenseFace<Number, decltype(reference)>{ samples.Base, refers ? from.A.Base : samples.Base,
+        DenseFace<Edge, Number, decltype(reference)>{ samples.Base, refers ? from.A.Base : samples.Base,
           refers ? from.B.Base : samples.Base, static_cast<std::ptrdiff_t>(samples.Stride.x),
           static_cast<std::ptrdiff_t>(samples.Stride.y), w });
     });

@@ -17,14 +17,14 @@ namespace banyan::HWY_NAMESPACE
 {
 #if HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
 
-/// Decodes the interior of a block of 16. Where there are references they are subtracted from the whole
+/// Decodes the interior of a block of edge B. Where there are references they are subtracted from the whole
 /// box, and added again: borders come back as they were.
 /// @param unit its samples are those of the box
 /// @param to receives the whole box, `[z][y][x]`
 /// @param ask asks for a number of lines of the cache that the next block needs
-template <class Number, class Ask>
+template <int B, class Number, class Ask>
 void DecodeDenseInterior(Unit<Number, 3>& unit, const block::Mode& mode, const PlaneCode& plane,
-  SymbolReader* symbols, DenseWork& work, DenseBox<Number>& box, const Ask& ask, Number* to)
+  SymbolReader* symbols, DenseWork<B>& work, DenseBox<Number, B>& box, const Ask& ask, Number* to)
 {
   const bool refers = mode.From != block::Reference::None;
   if (refers)
@@ -38,7 +38,7 @@ void DecodeDenseInterior(Unit<Number, 3>& unit, const block::Mode& mode, const P
       ask(P::S == 2 ? 12 : 48);
       const stages::In stage(stages::Passes);
       BeginStride<P>(work.Interior, symbols);
-      DenseSliceDecoder<P, Number>(unit, work.Interior.template At<P::S>(), mode.By, symbols,
+      DenseSliceDecoder<P, B, Number>(unit, work.Interior.template At<P::S>(), mode.By, symbols,
         static_cast<Number>(P::S == 2 ? plane.CoarseBin : plane.FineBin), work.Slice)
         .Run();
     });
@@ -46,7 +46,7 @@ void DecodeDenseInterior(Unit<Number, 3>& unit, const block::Mode& mode, const P
 }
 
 #else
-template <class Number, class... Arguments>
+template <int B, class Number, class... Arguments>
 void DecodeDenseInterior(Unit<Number, 3>&, const Arguments&...);
 template <class P, class Units>
 void BeginStride(Units&, const SymbolReader*);

@@ -7,7 +7,7 @@
 #endif
 
 #include "Codec/DecodeStages.h"
-#include "Codec/DenseLanes-inl.h"
+#include "Codec/DensePlaces-inl.h"
 #include "Codec/SymbolRun-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -16,12 +16,13 @@ namespace banyan::HWY_NAMESPACE
 
 #if HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
 
-/// SliceDecoder for blocks of 16: contexts and magnitudes of whole vectors of rows.
-template <class P, class Number>
+/// SliceDecoder for blocks of 16 or 32: contexts and magnitudes of whole vectors of rows.
+/// @param B edge of the blocks
+template <class P, int B, class Number>
 class DenseSliceDecoder
 {
 public:
-  using InRows = DenseLanes<P>;
+  using InRows = DenseLanes<P, B>;
   static constexpr int D = P::D;
   static constexpr int S = P::S;
   static constexpr int N = InRows::N;
@@ -35,13 +36,12 @@ public:
 
   /// @param symbols null: all residuals are zero
   DenseSliceDecoder(Unit<Number, D>& unit, std::uint8_t* magnitudes, Interpolation by,
-    SymbolReader* symbols, Number bin, DenseMemory& memory)
+    SymbolReader* symbols, Number bin, DenseMemory<B>& memory)
     : Of(unit)
     , M(magnitudes)
-    , By(by)
     , Symbols(symbols)
-    , Bin(bin)
     , Memory(memory)
+    , Places{ unit.W, by, bin }
   {
   }
 
@@ -70,7 +70,7 @@ public:
         {
           std::memset(kept, 0, Shape::Slice);
         }
-        this->PlacePredictions(slice);
+        this->Places.Predictions(slice);
         continue;
       }
       this->Decode(slice, rows, kept);
@@ -78,25 +78,11 @@ public:
   }
 
 private:
-  /// -1 for the numbers of rows that the pass has.
-  static HWY_INLINE ByteVector RowsOfPass()
-  {
-    const ByteVector row = LaneNumbers<ByteVector>();
-    if (D < 3)
-    {
-      return reinterpret_cast<ByteVector>(row < std::uint8_t{ 3 });
-    }
-    constexpr std::uint8_t first = P::FirstRow;
-    return reinterpret_cast<ByteVector>(
-      (row >= first) &
-      (((row - first) & static_cast<std::uint8_t>(P::RowStep - 1)) == std::uint8_t{ 0 }));
-  }
-
   /// Rows of a slice that have symbols, as bits.
   HWY_INLINE unsigned RowsWithSymbols(int slice)
   {
     const stages::In stage(D == 3 ? stages::RowClasses : stages::FaceContexts);
-    DenseMemory& memory = this->Memory;
+    DenseMemory<B>& memory = this->Memory;
     unsigned rows = this->RowsInside;
     if (D == 3)
     {
@@ -111,28 +97,24 @@ private:
     }
     if (this->Of.Any)
     {
-      RowClasses<P>(this->Of, B, slice * S, memory.RowClass);
-      const ByteVector few = reinterpret_cast<ByteVector>(
-        LoadVector<ByteVector>(memory.RowClass) < static_cast<std::uint8_t>(residual::RowClasses));
-      if (!AnyOf(few & RowsOfPass()))
-      {
-        return rows;
-      }
+      RowClasses<P>(this->Of, EdgeIs<B>{}, slice * S, memory.RowClass);
     }
     else
     {
-      std::memset(memory.RowClass, 0, 16);
+      std::memset(memory.RowClass, 0, B);
+    }
+    const ByteVector classes[2] = { this->ClassesFrom(0), this->ClassesFrom(N > Width ? Width : 0) };
+    const unsigned flagged = (FlaggedOf(classes[0]) | FlaggedOf(classes[1]) << Width) & InRows::AllRows;
+    if (flagged == 0)
+    {
+      return rows;
     }
     const int band = residual::Bands + P::Band;
-    const std::uint8_t* const tables = this->Symbols->BandOf(band).Tables;
-    const ByteVector classes =
-      Compressed<D == 3 ? S : 1>(LoadVector<ByteVector>(memory.RowClass));
-    const unsigned flagged =
-      rows & BitsOf(reinterpret_cast<ByteVector>(classes < std::uint8_t{ residual::RowClasses }));
-    if (flagged == InRows::AllRows)
+    if ((flagged & rows) == InRows::AllRows)
     {
-      return rows & ~this->RowsOfZeros(band, __builtin_shuffle(LoadVector<ByteVector>(tables), classes));
+      return rows & ~this->RowsOfZeros(band, classes);
     }
+    const std::uint8_t* const tables = this->Symbols->BandOf(band).Tables;
     int flags = 0;
     for (unsigned left = rows; left != 0; left &= left - 1)
     {
@@ -155,23 +137,54 @@ private:
     return rows;
   }
 
+  /// Classes of 16 rows of a slice, from one on.
+  HWY_INLINE ByteVector ClassesFrom(int row) const
+  {
+    const std::uint8_t* const from = this->Memory.RowClass;
+    if constexpr (D == 3 && S == 2 && B == 32)
+    {
+      const ByteVector second = Compressed<2>(LoadVector<ByteVector>(from + Width));
+      ByteVector classes = Compressed<2>(LoadVector<ByteVector>(from));
+      std::memcpy(reinterpret_cast<char*>(&classes) + 8, &second, 8);
+      return classes;
+    }
+    return Compressed<D == 3 ? S : 1>(LoadVector<ByteVector>(from + row));
+  }
+  /// Those that have flags, as bits.
+  static HWY_INLINE unsigned FlaggedOf(ByteVector classes)
+  {
+    return BitsOf(reinterpret_cast<ByteVector>(classes < std::uint8_t{ residual::RowClasses }));
+  }
+
   /// Reads the flags of all rows of the pass. @return those that are all zero, as bits
-  /// @param tables of the flags, by row
-  HWY_INLINE unsigned RowsOfZeros(int band, ByteVector tables)
+  /// @param classes of rows, 16 each
+  HWY_INLINE unsigned RowsOfZeros(int band, const ByteVector (&classes)[2])
   {
     typedef std::uint16_t Wide __attribute__((vector_size(32)));
     constexpr int flags = (RowEnd - RowFirst + RowStep - 1) / RowStep;
-    DenseMemory& memory = this->Memory;
-    const Wide wide = __builtin_convertvector(
-      __builtin_shuffle(tables, LanesFrom<RowFirst, RowStep, 1>()), Wide);
-    StoreVector(wide << tans::TableBits, memory.FlagPlaces);
+    constexpr int inFirst = (Width - RowFirst + RowStep - 1) / RowStep;
+    DenseMemory<B>& memory = this->Memory;
+    const ByteVector tables = LoadVector<ByteVector>(this->Symbols->BandOf(band).Tables);
+    const auto place = [&](ByteVector rows, std::uint16_t* to)
+    {
+      const ByteVector places = __builtin_shuffle(tables, rows);
+      StoreVector(__builtin_convertvector(places, Wide) << tans::TableBits, to);
+    };
+    place(__builtin_shuffle(classes[0], LanesFrom<RowFirst, RowStep, 1>()), memory.FlagPlaces);
+    if constexpr (flags > inFirst)
+    {
+      constexpr int first = RowFirst + inFirst * RowStep - Width;
+      place(
+        __builtin_shuffle(classes[1], LanesFrom<first, RowStep, 1>()), memory.FlagPlaces + inFirst);
+    }
     unsigned zeros =
       ReadFlags<flags>(*this->Symbols, this->Symbols->TablesOf(band), memory.FlagPlaces);
     if (RowStep == 2)
     {
-      zeros = (zeros | zeros << 4) & 0x0f0fu;
-      zeros = (zeros | zeros << 2) & 0x3333u;
-      zeros = (zeros | zeros << 1) & 0x5555u;
+      zeros = (zeros | zeros << 8) & 0x00ff00ffu;
+      zeros = (zeros | zeros << 4) & 0x0f0f0f0fu;
+      zeros = (zeros | zeros << 2) & 0x33333333u;
+      zeros = (zeros | zeros << 1) & 0x55555555u;
     }
     return zeros << RowFirst;
   }
@@ -209,7 +222,7 @@ private:
 
   HWY_INLINE void Decode(int slice, unsigned rows, std::int8_t* kept)
   {
-    DenseMemory& memory = this->Memory;
+    DenseMemory<B>& memory = this->Memory;
     if (this->Of.Any)
     {
       this->Classify(slice, rows, kept);
@@ -223,7 +236,7 @@ private:
     ReadRun(*this->Symbols, this->Symbols->TablesOf(P::Band), memory.Places, count, memory.Read);
     this->Of.Any = true;
     const bool escapes = this->Keep(slice, rows, kept);
-    this->Place(slice, rows);
+    this->Places.WithResiduals(slice, rows, memory.Residuals);
     if (escapes)
     {
       this->AddLong(slice, kept);
@@ -242,7 +255,7 @@ private:
     alignas(64) std::uint64_t sum[Lanes / 8];
     const std::int8_t* next = this->Memory.Read;
     auto most = hn::Zero(s);
-    std::uint16_t* const to = this->Of.S + slice * S * block::Shape<D>{ 16 }.SumPitch();
+    std::uint16_t* const to = this->Of.S + slice * S * block::Shape<D>{ B }.SumPitch();
     for (int row = 0; row < Shape::Rows; row += RowsAtOnce)
     {
       const int at = row * N;
@@ -260,8 +273,11 @@ private:
       hn::Store(hn::SumsOf8(magnitudes), sums, sum);
       for (int r = 0; r < RowsAtOnce; ++r)
       {
-        const std::uint64_t total =
-          words == 1 ? sum[r] : sum[words * r] + sum[words * r + words - 1];
+        std::uint64_t total = sum[words * r];
+        for (int word = 1; word < words; ++word)
+        {
+          total += sum[words * r + word];
+        }
         std::uint16_t& all = to[D == 3 ? (row + r) * S : row + r];
         all = static_cast<std::uint16_t>(all + total);
       }
@@ -288,79 +304,28 @@ private:
         using U = std::uint32_t;
         const U turned = static_cast<U>(std::int32_t{ this->Memory.Turned[at] });
         const Number value = static_cast<Number>((static_cast<U>(residual) ^ turned) - turned);
-        Number& sample = this->RowAt(slice, row)[(at % N - 1) * S];
+        Number& sample = this->Places.RowAt(slice, row)[(at % N - 1) * S];
         sample = static_cast<Number>(
           static_cast<U>(sample) +
           (static_cast<U>(value) - static_cast<U>(std::int32_t{ this->Memory.Residuals[at] })) *
-            static_cast<U>(this->Bin));
+            static_cast<U>(this->Places.Bin));
         kept[at] = static_cast<std::int8_t>(std::min<Number>(std::max<Number>(value, -15), 15));
       }
     }
   }
 
-  /// Lane First of a row. Interiors lie in their box, faces in memory of their own.
-  HWY_INLINE Number* RowAt(int slice, int row) const
-  {
-    const block::Shape<2> faces{ 16 };
-    return this->Of.W + P::First +
-           (D == 3 ? (slice * 17 + row) * (17 * S) : slice * S * faces.Y() + row * faces.Pitch());
-  }
-  static constexpr std::ptrdiff_t Gap()
-  {
-    constexpr std::ptrdiff_t y = D == 3 ? 17 : 3 * (16 + 8); // as block::Shape has it of faces
-    return P::Axis == 0 ? S : P::Axis == 1 ? S * y : S * 17 * 17;
-  }
-  HWY_INLINE typename Numbers<Number>::Unsigned Predicted(int slice, int row) const
-  {
-    return PredictAt<P>(static_cast<const Number*>(this->RowAt(slice, row)), Gap(), B,
-      (P::Axis == D - 1 ? slice : row) * S, 0, this->By);
-  }
-  HWY_INLINE void Set(int slice, int row, typename Numbers<Number>::Unsigned value) const
-  {
-    SetLanes<P>(value, 16 - P::First, this->RowAt(slice, row));
-  }
-
-  HWY_INLINE void PlacePredictions(int slice) const
-  {
-    for (int row = RowFirst; row < RowEnd; row += RowStep)
-    {
-      this->Set(slice, row, this->Predicted(slice, row));
-    }
-  }
-
-  /// Predicts rows and adds their residuals.
-  HWY_INLINE void Place(int slice, unsigned rows) const
-  {
-    using V = Numbers<Number>;
-    using Vector = typename V::Unsigned;
-    for (int row = RowFirst; row < RowEnd; row += RowStep)
-    {
-      Vector value = this->Predicted(slice, row);
-      if ((rows >> row & 1u) != 0)
-      {
-        const auto residuals = reinterpret_cast<SignedByteVector>(__builtin_shuffle(
-          LoadRowOf<N>(this->Memory.Residuals + row * N), LanesFrom<1, 1, S>()));
-        value += reinterpret_cast<Vector>(__builtin_convertvector(residuals, typename V::Signed)) *
-                 static_cast<std::make_unsigned_t<Number>>(this->Bin);
-      }
-      this->Set(slice, row, value);
-    }
-  }
-
   Unit<Number, D>& Of;
   std::uint8_t* M;
-  static constexpr EdgeIs<16> B{};
-  Interpolation By;
   SymbolReader* Symbols; ///< null: all residuals are zero
-  Number Bin;
-  DenseMemory& Memory;
+  DenseMemory<B>& Memory;
+  DensePlaces<P, B, Number> Places;
   unsigned RowsInside = 0; ///< the field
   InRows InRow;            ///< lanes with symbols
   int LastSlice[3] = {};   ///< within the field, as its position
 };
 
 #else
-template <class P, class Number>
+template <class P, int B, class Number>
 class DenseSliceDecoder;
 #endif
 

@@ -29,11 +29,11 @@ struct DenseMagnitudesOf
 
 /// Magnitudes of units at both strides: what is known before is there at both, and what stride 2
 /// adds comes to the other when it begins.
-template <int D>
+template <int D, int B>
 struct DenseUnits
 {
-  DenseMagnitudesOf<D, 8> Coarse;
-  DenseMagnitudesOf<D, 16> Fine;
+  DenseMagnitudesOf<D, B / 2> Coarse;
+  DenseMagnitudesOf<D, B> Fine;
 
   static constexpr int RowsOf(int n) { return D == 3 ? n : 3; }
 
@@ -55,8 +55,11 @@ struct DenseUnits
     this->ForEachRow(
       [](std::uint8_t* coarse, const std::uint8_t* fine)
       {
-        const ByteVector even = Compressed<2>(LoadVector<ByteVector>(fine));
-        std::memcpy(coarse, &even, 8);
+        for (int x = 0; x < B; x += Width)
+        {
+          const ByteVector even = Compressed<2>(LoadVector<ByteVector>(fine + x));
+          std::memcpy(coarse + x / 2, &even, 8);
+        }
       });
   }
   /// To be called between the strides.
@@ -67,9 +70,12 @@ struct DenseUnits
       {
         // Number i to byte 2 i.
         const ByteVector mask{ 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0 };
-        StoreVector(
-          LoadVector<ByteVector>(fine) | (Expanded<2>(LoadVector<ByteVector>(coarse)) & mask),
-          fine);
+        for (int x = 0; x < B; x += Width)
+        {
+          StoreVector(LoadVector<ByteVector>(fine + x) |
+                        (Expanded<2>(LoadVector<ByteVector>(coarse + x / 2)) & mask),
+            fine + x);
+        }
       });
   }
 
@@ -77,9 +83,9 @@ private:
   template <class Body>
   HWY_INLINE void ForEachRow(const Body& body)
   {
-    for (int slice = 0; slice < 8; ++slice)
+    for (int slice = 0; slice < B / 2; ++slice)
     {
-      for (int row = 0; row < RowsOf(8); ++row)
+      for (int row = 0; row < RowsOf(B / 2); ++row)
       {
         body(this->Coarse.Row(slice, row), this->Fine.Row(2 * slice, D == 3 ? 2 * row : row));
       }
@@ -87,57 +93,73 @@ private:
   }
 };
 
-/// What contexts of blocks of 16 are computed with, where vectors have a known number of lanes.
+/// What contexts of blocks are computed with.
+/// @param B their edge
+template <int B>
 struct DenseWork
 {
-  DenseUnits<2> Faces;
-  DenseUnits<3> Interior;
-  DenseMemory Slice;
+  DenseUnits<2, B> Faces;
+  DenseUnits<3, B> Interior;
+  DenseMemory<B> Slice;
 
   /// Magnitudes of faces begin with those of the edges around them.
   void BeginFaces(const std::uint8_t (&edges)[3][64], std::uint16_t* sums)
   {
+    const std::ptrdiff_t pitch = block::Shape<2>{ B }.SumPitch();
     this->Faces.Clear();
     constexpr int axes[3][2] = { { 0, 1 }, { 0, 2 }, { 1, 2 } };
     for (int face = 0; face < 3; ++face)
     {
-      std::memcpy(this->Faces.Fine.Row(0, face), edges[axes[face][0]], 16);
-      sums[face] = SumOf(LoadVector<ByteVector>(edges[axes[face][0]]));
-      for (int y = 1; y < 16; ++y)
+      std::memcpy(this->Faces.Fine.Row(0, face), edges[axes[face][0]], B);
+      sums[face] = SumOfRow(edges[axes[face][0]]);
+      for (int y = 1; y < B; ++y)
       {
         *this->Faces.Fine.Row(y, face) = edges[axes[face][1]][y];
-        sums[y * 16 + face] = edges[axes[face][1]][y];
+        sums[y * pitch + face] = edges[axes[face][1]][y];
       }
     }
     this->Faces.Coarsen();
   }
 
   /// Those of the interior begin with those of the faces, edges included.
-  /// @param pitch of sums, from slice to slice
-  void BeginInterior(std::ptrdiff_t pitch, std::uint16_t* sums)
+  void BeginInterior(std::uint16_t* sums)
   {
+    const std::ptrdiff_t pitch = block::Shape<3>{ B }.SumPitch();
     this->Interior.Clear();
     auto& faces = this->Faces.Fine;
     auto& to = this->Interior.Fine;
-    for (int y = 0; y < 16; ++y)
+    for (int y = 0; y < B; ++y)
     {
-      const auto row = LoadVector<ByteVector>(faces.Row(y, 0));
-      StoreVector(row, to.Row(0, y));
-      sums[y] = SumOf(row);
+      std::memcpy(to.Row(0, y), faces.Row(y, 0), B);
+      sums[y] = SumOfRow(faces.Row(y, 0));
     }
-    for (int z = 1; z < 16; ++z)
+    for (int z = 1; z < B; ++z)
     {
-      const auto first = LoadVector<ByteVector>(faces.Row(z, 2));
-      StoreVector(__builtin_convertvector(first, SumVector), sums + z * pitch);
-      const auto row = LoadVector<ByteVector>(faces.Row(z, 1));
-      StoreVector(row, to.Row(z, 0));
-      sums[z * pitch] = SumOf(row);
-      for (int y = 1; y < 16; ++y)
+      const std::uint8_t* const first = faces.Row(z, 2);
+      for (int y = 0; y < B; y += Width)
+      {
+        StoreVector(__builtin_convertvector(LoadVector<ByteVector>(first + y), SumVector),
+          sums + z * pitch + y);
+      }
+      std::memcpy(to.Row(z, 0), faces.Row(z, 1), B);
+      sums[z * pitch] = SumOfRow(faces.Row(z, 1));
+      for (int y = 1; y < B; ++y)
       {
         *to.Row(z, y) = first[y];
       }
     }
     this->Interior.Coarsen();
+  }
+
+private:
+  static HWY_INLINE std::uint16_t SumOfRow(const std::uint8_t* row)
+  {
+    std::uint16_t sum = 0;
+    for (int x = 0; x < B; x += Width)
+    {
+      sum = static_cast<std::uint16_t>(sum + SumOf(LoadVector<ByteVector>(row + x)));
+    }
+    return sum;
   }
 };
 
@@ -152,6 +174,7 @@ HWY_INLINE void BeginStride(Units& units, const SymbolReader* symbols)
 }
 
 #else
+template <int B>
 struct DenseWork;
 #endif
 } // namespace banyan::HWY_NAMESPACE

@@ -169,7 +169,7 @@ HWY_NOINLINE unsigned ReadFlagsOf(SymbolReader& symbols, const std::uint32_t* HW
   std::memcpy(states, symbols.States, sizeof(states));
   RunBits bits(symbols);
   unsigned set = 0;
-#pragma GCC unroll 16
+#pragma GCC unroll 32
   for (int k = 0; k < Count; ++k)
   {
     const std::uint32_t entry = bits.Next(tables, places[k], states[k % Lanes]);
@@ -191,7 +191,7 @@ template <int Count>
 HWY_INLINE unsigned ReadFlags(
   SymbolReader& symbols, const std::uint32_t* tables, const std::uint16_t* places)
 {
-  static_assert(Count <= 16, "a word of bits");
+  static_assert(Count <= 32, "a word of bits");
   const stages::In stage(stages::Symbols);
   stages::CountSymbols(Count);
   switch (symbols.LanesLog)
