@@ -1,5 +1,7 @@
 #include "MeshOutput.h"
 
+#include "LargeArrays.h"
+
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
 #include "vtkIdTypeArray.h"
@@ -169,7 +171,7 @@ void MeshOutput::FillCells(const vtkBanyanDeferred::Handle& handle, vtkDataArray
   const vtkSmartPointer<vtkDataArray> image = vtkBanyanDeferred::NewPlain(handle);
   const vtkIdType cells = this->Grid->GetNumberOfCells();
   const int components = image->GetNumberOfComponents();
-  values->SetNumberOfTuples(cells);
+  SetTuples(values, cells);
   Dispatch(array.Type,
     [&](auto tag)
     {
@@ -205,7 +207,7 @@ vtkSmartPointer<vtkDataArray> MeshOutput::Values(const vtkBanyanDeferred::Handle
     return values;
   }
   const ChosenSamples& samples = ofCells ? this->CellSamples : this->PointSamples;
-  values->SetNumberOfTuples(samples.Count());
+  SetTuples(values, samples.Count());
   const int components = values->GetNumberOfComponents();
   for (int component = 0; component < components; ++component)
   {

@@ -1,5 +1,7 @@
 #include "TreeOutput.h"
 
+#include "LargeArrays.h"
+
 #include "MeshSeries/MeanOfChildren.h"
 #include "MeshSeries/MeanOfLeaves.h"
 #include "MeshSeries/TreeCells.h"
@@ -248,7 +250,7 @@ vtkSmartPointer<vtkDataArray> TreeOutput::Values(const vtkBanyanDeferred::Handle
   means->SetName(image->GetName());
   means->SetNumberOfComponents(components);
   means->CopyComponentNames(image);
-  means->SetNumberOfTuples(static_cast<vtkIdType>(this->LeafOf.size()));
+  SetTuples(means, static_cast<vtkIdType>(this->LeafOf.size()));
   Dispatch(array.Type,
     [&](auto tag)
     {

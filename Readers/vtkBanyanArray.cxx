@@ -1,5 +1,7 @@
 #include "vtkBanyanArray.txx"
 
+#include "LargeArrays.h"
+
 namespace
 {
 
@@ -67,7 +69,7 @@ vtkSmartPointer<vtkDataArray> vtkBanyanDeferred::NewEmpty(const Handle& handle)
 vtkSmartPointer<vtkDataArray> vtkBanyanDeferred::NewPlain(const Handle& handle)
 {
   const vtkSmartPointer<vtkDataArray> array = NewEmpty(handle);
-  array->SetNumberOfTuples(handle.Samples.Count());
+  banyan::SetTuples(array, handle.Samples.Count());
   ReadInto(handle, array->GetVoidPointer(0));
   return array;
 }

@@ -32,6 +32,7 @@
 #include "vtkGenericDataArray.h"
 #include "vtkObjectFactory.h"
 
+#include "Base/LargePages.h"
 #include "Series/PieceRange.h"
 
 #include <algorithm>
@@ -154,7 +155,7 @@ private:
   banyan::PieceRange OfPiece;
   banyan::PieceRange OfSeries;
   mutable std::mutex Decoding;
-  mutable std::unique_ptr<ValueType[]> Storage;
+  mutable banyan::ArrayInLargePages<ValueType> Storage;
   mutable std::atomic<ValueType*> Data{ nullptr };
   mutable std::atomic<bool> GivenAway{ false };
   bool Written = false;

@@ -53,7 +53,7 @@ T* vtkBanyanArray<T>::Decode() const
   }
   // An array is never without values, so that 0 is free to say "not decoded".
   const std::size_t count = this->Size > 0 ? static_cast<std::size_t>(this->Size) : 1;
-  this->Storage.reset(new T[count]);
+  this->Storage = banyan::NewInLargePages<T>(count);
   try
   {
     if (this->Source.Series)
@@ -90,8 +90,12 @@ template <class T>
 bool vtkBanyanArray<T>::Own(vtkIdType tuples, bool keep)
 {
   const std::size_t count = static_cast<std::size_t>(tuples) * this->NumberOfComponents;
-  std::unique_ptr<T[]> storage(new (std::nothrow) T[count > 0 ? count : 1]);
-  if (!storage)
+  banyan::ArrayInLargePages<T> storage;
+  try
+  {
+    storage = banyan::NewInLargePages<T>(std::max<std::size_t>(count, 1));
+  }
+  catch (const std::bad_alloc&)
   {
     return false;
   }

@@ -1,5 +1,7 @@
 #include "vtkBanyanDeferred.h"
 
+#include "LargeArrays.h"
+
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
@@ -102,7 +104,7 @@ vtkSmartPointer<vtkDataArray> vtkBanyanDeferred::Plain(vtkDataArray* array)
     {
       plain.TakeReference(array->NewInstance());
       plain->SetNumberOfComponents(array->GetNumberOfComponents());
-      plain->SetNumberOfTuples(array->GetNumberOfTuples());
+      banyan::SetTuples(plain, array->GetNumberOfTuples());
       array->ExportToVoidPointer(plain->GetVoidPointer(0));
       plain->CopyComponentNames(array);
     }

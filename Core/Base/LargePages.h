@@ -2,7 +2,9 @@
 #define banyan_Base_LargePages_h
 
 #include <cstddef>
+#include <memory>
 #include <new>
+#include <type_traits>
 
 namespace banyan
 {
@@ -55,6 +57,24 @@ struct InLargePages
     return false;
   }
 };
+
+/// Gives back what NewInLargePages took.
+template <class T>
+struct GiveArray
+{
+  std::size_t Count = 0;
+  void operator()(T* memory) const noexcept { InLargePages<T>().deallocate(memory, this->Count); }
+};
+template <class T>
+using ArrayInLargePages = std::unique_ptr<T[], GiveArray<T>>;
+
+/// An array of numbers, which hold anything at first. Throws std::bad_alloc.
+template <class T>
+ArrayInLargePages<T> NewInLargePages(std::size_t count)
+{
+  static_assert(std::is_arithmetic_v<T>, "nothing is constructed");
+  return ArrayInLargePages<T>(InLargePages<T>().allocate(count), { count });
+}
 
 } // namespace banyan
 

@@ -220,7 +220,7 @@ void Read(
     }
   };
   // A row of bricks at once where that leaves enough of them for all threads.
-  constexpr std::int64_t enough = 32;
+  const std::int64_t enough = std::min(32, 4 * ThreadPool::Process().Width());
   const int together = count / size.x >= enough ? size.x : 1;
   ThreadPool::Process().ParallelFor(count / together,
     [&](std::int64_t fromLast)
