@@ -95,9 +95,10 @@ private:
 };
 
 /// Copies the part `samples` of a field into a caller's array, decoding (in parallel) only the bricks
-/// that it touches. They come from the cache and go there; but a part of a sixteenth or more of the
+/// that it touches. They come from the cache and go there. But a part of a sixteenth or more of the
 /// cache's budget goes past it, because it would push out everything else and be gone itself before
-/// it comes again.
+/// it comes again; and so does a part of 1 MiB or more whose values are multiples of a step
+/// (SeriesFile::StepOfValues), because the numbers are kept and values are soon made of them.
 /// @param samples of the field's level, inside the layout's samples
 /// @param values receives samples.Count() tuples; the value goes to
 /// `values[tupleIndex * stride + component]`, x fastest, in the array's own type.

@@ -177,6 +177,17 @@ Box PartOf(
   return Intersection(part, region);
 }
 
+/// Whether bricks are decoded to where they are wanted instead of into the cache.
+/// @param bytes of the part
+bool GoesPast(
+  const BrickCache& cache, const SeriesFile& series, const FieldKey& field, std::uint64_t bytes)
+{
+  // Lattice numbers are kept where they are decoded (LatticeCache): to make values of them again takes no
+  // longer than to copy values, and to give bricks memory takes longer than to decode them.
+  constexpr std::uint64_t some = std::uint64_t{ 1 } << 20;
+  return bytes >= cache.Budget() / 16 || (bytes >= some && series.StepOfValues(field) > 0);
+}
+
 template <class T>
 void Read(
   BrickCache& cache, const SeriesFile& series, const FieldKey& field, const Target<T>& target)
@@ -187,7 +198,7 @@ void Read(
   const glm::ivec3 size = bricks.Size();
   const std::int64_t count = bricks.Count();
   const bool past =
-    static_cast<std::uint64_t>(target.Samples.Count()) * sizeof(T) >= cache.Budget() / 16;
+    GoesPast(cache, series, field, static_cast<std::uint64_t>(target.Samples.Count()) * sizeof(T));
   const Decoding::Body decode = [&](std::int64_t brick, int bricksInRow, const Box& part)
   {
     const glm::ivec3 length = target.Samples.Size();
