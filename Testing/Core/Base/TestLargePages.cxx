@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace banyan
@@ -30,6 +31,21 @@ TEST(LargePages, LargePiecesBeginWithAPage)
 {
   std::vector<std::int16_t, InLargePages<std::int16_t>> memory(LargePages::PageBytes / 2);
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(memory.data()) % LargePages::PageBytes, 0u);
+}
+
+TEST(LargePages, ArraysOfAnySizeAreGivenBack)
+{
+  for (const std::size_t count : { std::size_t{ 1 }, LargePages::PageBytes / 4 - 1,
+         LargePages::PageBytes / 4, LargePages::PageBytes })
+  {
+    ArrayInLargePages<float> array = NewInLargePages<float>(count);
+    std::fill_n(array.get(), count, 2.5f);
+    ArrayInLargePages<float> moved = std::move(array);
+    EXPECT_EQ(array, nullptr);
+    EXPECT_EQ(std::count(moved.get(), moved.get() + count, 2.5f), static_cast<std::ptrdiff_t>(count));
+    moved = NewInLargePages<float>(1);
+    moved.reset();
+  }
 }
 
 } // namespace

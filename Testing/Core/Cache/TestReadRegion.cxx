@@ -95,6 +95,38 @@ TEST(ReadRegion, LargePartsGoPastTheCache)
   EXPECT_EQ(small.GetStatistics().Hits, 1u);
 }
 
+/// Numbers of bricks that were decoded are kept, so that values need not be; where that is not so, they are.
+TEST(ReadRegion, LargePartsOfKeptNumbersGoPastTheCache)
+{
+  const TemporaryFolder folder;
+  const Grid grid = GridOf(70, 65, 65);
+  const auto steps = Sample<float>(grid, 1, Wavy<float>);
+  for (const bool multiples : { true, false })
+  {
+    EncodeOptions options;
+    options.BrickCells = 16;
+    options.ErrorBound = multiples ? 0.001 : 0.0;
+    Encode(folder / "s.banyan", grid, steps, options);
+    const auto file = SeriesFile::Open(folder / "s.banyan");
+    EXPECT_EQ(file->StepOfValues({}) > 0, multiples);
+    const Box whole{ glm::ivec3(0), file->Layout(0).Samples() };
+    const std::vector<float> expected = ReadAll<float>(*file, {});
+    BrickCache cache(std::uint64_t{ 1 } << 30);
+    std::vector<float> values(expected.size());
+    ReadRegion(cache, *file, {}, whole, values.data(), 1, 0);
+    EXPECT_EQ(values, expected);
+    EXPECT_EQ(cache.GetStatistics().Misses, multiples ? 0u : 80u);
+    const std::uint64_t decoded = file->BricksDecoded();
+    std::fill(values.begin(), values.end(), 0.0f);
+    ReadRegion(cache, *file, {}, whole, values.data(), 1, 0);
+    EXPECT_EQ(values, expected);
+    EXPECT_EQ(file->BricksDecoded() == decoded, !multiples); // values are made once more
+    // A smaller part goes through it.
+    ReadRegion(cache, *file, {}, { { 1, 1, 1 }, { 9, 9, 9 } }, values.data(), 1, 0);
+    EXPECT_EQ(cache.GetStatistics().Misses, multiples ? 1u : 80u);
+  }
+}
+
 TEST(DecodePart, IsThePartOfTheBrickAndNoMore)
 {
   const TemporaryFolder folder;
