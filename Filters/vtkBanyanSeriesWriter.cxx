@@ -37,6 +37,7 @@ void vtkBanyanSeriesWriter::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "ErrorBound: " << this->ErrorBound << "\n"
      << indent << "ErrorBoundMode: " << this->ErrorBoundMode << "\n"
      << indent << "KeyframeInterval: " << this->KeyframeInterval << "\n"
+     << indent << "BrickCells: " << this->BrickCells << "\n"
      << indent << "ClosedGroups: " << this->ClosedGroups << "\n"
      << indent << "Profile: " << this->Profile << "\n"
      << indent << "DisplacementArray: " << this->DisplacementArray << "\n"
@@ -220,6 +221,7 @@ void vtkBanyanSeriesWriter::WriteSeries()
                          ? banyan::ErrorBoundMode::Absolute
                          : banyan::ErrorBoundMode::RelativeToSeriesRange;
   order.Options.KeyframeInterval = this->KeyframeInterval;
+  order.Options.BrickCells = this->BrickCells;
   order.Options.ClosedGroups = this->ClosedGroups;
   order.Options.Profile = static_cast<banyan::EncodeProfile>(this->Profile);
   if (this->GetNumberOfInputConnections(0) > 0)

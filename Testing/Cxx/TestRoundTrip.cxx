@@ -14,6 +14,8 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 
+#include "Series/SeriesFile.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -104,6 +106,27 @@ TEST(RoundTrip, WideIntegersBeyondDoubleAreBitExactWithoutError)
   const auto a = ImageAt(source, 0.0);
   const auto b = ImageAt(Reader(folder / "a.banyan"), 0.0);
   EXPECT_TRUE(SameBits(a->GetPointData()->GetArray(0), b->GetPointData()->GetArray(0)));
+}
+
+TEST(RoundTrip, BricksOfEverySizeComeBackWithinTheBound)
+{
+  double scale = 0.0;
+  double offset = 0.0;
+  GoodRange(ScalarType::Float32, scale, offset);
+  for (const int cells : { 0, 8, 16, 32, 64 })
+  {
+    TemporaryFolder folder;
+    const std::vector<double> times{ 0.0, 0.5, 2.0 };
+    const auto source = WaveSource(SimpleGrid({ 70, 41, 36 }), times, ScalarType::Float32);
+    const auto change = [cells](vtkBanyanSeriesWriter* w) { w->SetBrickCells(cells); };
+    WriteSeries(source, folder / "a.banyan", change);
+    EXPECT_EQ(banyan::SeriesFile::Open(folder / "a.banyan")->Index().BrickCells, cells > 0 ? cells : 16);
+    const auto reader = Reader(folder / "a.banyan");
+    for (const double time : times)
+    {
+      ExpectStep(source, reader, time, 2.0 * scale / 512.0);
+    }
+  }
 }
 
 class AllSizes : public testing::TestWithParam<std::tuple<int, int, int>>
