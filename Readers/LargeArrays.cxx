@@ -18,7 +18,7 @@ void SetTuples(vtkDataArray* array, vtkIdType tuples)
     return;
   }
   array->SetVoidArray(LargePages::Take(bytes), values, 0, vtkAbstractArray::VTK_DATA_ARRAY_USER_DEFINED);
-  array->SetArrayFreeFunction([](void* memory) { LargePages::Give(memory); });
+  array->SetArrayFreeFunction(LargePages::Give);
 }
 
 } // namespace banyan

@@ -74,14 +74,20 @@ HWY_INLINE ByteVector LanesFrom()
   return result;
 }
 
-/// A row of N bytes, or 16 of a longer one; those behind it hold anything. It is loaded as it was stored, or as a part of that: what
-/// was stored in two pieces is waited for.
+/// A row of N bytes, or 16 of a longer one; those behind it hold anything. It is loaded as it was stored, or
+/// as a part of that: what was stored in two pieces is waited for.
 template <int N>
 HWY_INLINE ByteVector LoadRowOf(const void* from)
 {
   ByteVector result{};
   std::memcpy(&result, from, std::min(N, Width));
   return result;
+}
+
+/// Places of symbols, as ReadRun takes them, by the numbers of their tables.
+HWY_INLINE void StorePlaces(ByteVector tables, std::uint16_t* to)
+{
+  StoreVector(__builtin_convertvector(tables, SumVector) << tans::TableBits, to);
 }
 
 /// Bit i is that of lane i of a mask.

@@ -43,17 +43,15 @@ public:
   /// The symbols' places of rows, side by side. @return how many
   HWY_INLINE int TakePlaces(unsigned rows, DenseMemory<B>& memory) const
   {
-    typedef std::uint16_t Wide __attribute__((vector_size(32)));
-    const auto place = [](ByteVector tables, std::uint16_t* to)
-    { StoreVector(__builtin_convertvector(tables, Wide) << tans::TableBits, to); };
-    const auto take = [&](int row, int begin)
+    const auto take = [&memory](int row, int begin)
     {
       const std::uint8_t* const from = memory.Tables + row * N;
-      place(
+      StorePlaces(
         __builtin_shuffle(LoadRowOf<N>(from), LanesFrom<1, LaneStep, 1>()), memory.Places + begin);
       if constexpr (N > Width)
       {
-        place(__builtin_shuffle(LoadRowOf<N>(from + Width), LanesFrom<LaneStep - 1, LaneStep, 1>()),
+        StorePlaces(
+          __builtin_shuffle(LoadRowOf<N>(from + Width), LanesFrom<LaneStep - 1, LaneStep, 1>()),
           memory.Places + begin + InFirst);
       }
     };
@@ -116,7 +114,7 @@ public:
       else if constexpr (N > Width)
       {
         alignas(16) std::uint8_t second[16];
-        StoreVector(this->TopsOf<Parts - 1>(row, rows, next), second);
+        StoreVector(this->TopsOf<1>(row, rows, next), second);
         const hn::Half<Bytes> half;
         return hn::Combine(d, hn::Load(half, second), hn::Load(half, first));
       }

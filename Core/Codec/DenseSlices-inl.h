@@ -160,16 +160,12 @@ private:
   /// @param classes of rows, 16 each
   HWY_INLINE unsigned RowsOfZeros(int band, const ByteVector (&classes)[2])
   {
-    typedef std::uint16_t Wide __attribute__((vector_size(32)));
     constexpr int flags = (RowEnd - RowFirst + RowStep - 1) / RowStep;
     constexpr int inFirst = (Width - RowFirst + RowStep - 1) / RowStep;
     DenseMemory<B>& memory = this->Memory;
     const ByteVector tables = LoadVector<ByteVector>(this->Symbols->BandOf(band).Tables);
-    const auto place = [&](ByteVector rows, std::uint16_t* to)
-    {
-      const ByteVector places = __builtin_shuffle(tables, rows);
-      StoreVector(__builtin_convertvector(places, Wide) << tans::TableBits, to);
-    };
+    const auto place = [&tables](ByteVector rows, std::uint16_t* to)
+    { StorePlaces(__builtin_shuffle(tables, rows), to); };
     place(__builtin_shuffle(classes[0], LanesFrom<RowFirst, RowStep, 1>()), memory.FlagPlaces);
     if constexpr (flags > inFirst)
     {

@@ -16,13 +16,11 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtkVariant.h"
 
-#include "Base/LargePages.h"
 #include "Cache/BrickCache.h"
 #include "Series/SeriesFile.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -126,32 +124,6 @@ TEST_F(DeferredArray, RangesAreTheStepsAndTheSeries)
   EXPECT_EQ(series[0], all[0]);
   EXPECT_EQ(series[1], all[1]);
   EXPECT_TRUE(vtkBanyanDeferred::IsUntouched(this->Array));
-}
-
-/// And are arrays as any other: they grow, and keep their values.
-TEST_F(DeferredArray, LargeArraysLieInLargePages)
-{
-  this->Make(SimpleGrid({ 90, 85, 80 }), ScalarType::Float32, 1);
-  const auto reader = Reader(this->Folder / "a.banyan");
-  reader->DeferDecodingOff();
-  reader->UpdateTimeStep(1.0);
-  vtkDataArray* const plain = reader->GetOutput()->GetPointData()->GetScalars();
-  const vtkIdType count = plain->GetNumberOfValues();
-  ASSERT_GE(static_cast<std::size_t>(count) * sizeof(float), banyan::LargePages::PageBytes);
-  for (vtkDataArray* const array : { this->Array, plain })
-  {
-    const auto address = reinterpret_cast<std::uintptr_t>(array->GetVoidPointer(0));
-    EXPECT_EQ(address % banyan::LargePages::PageBytes, 0u) << array->GetClassName();
-    const float last = static_cast<float>(array->GetTuple1(count - 1));
-    array->InsertNextTuple1(4711.0);
-    array->Squeeze();
-    EXPECT_EQ(array->GetNumberOfValues(), count + 1);
-    EXPECT_EQ(array->GetTuple1(count), 4711.0);
-    EXPECT_EQ(array->GetTuple1(count - 1), last);
-  }
-  const float* const one = static_cast<const float*>(this->Array->GetVoidPointer(0));
-  const float* const other = static_cast<const float*>(plain->GetVoidPointer(0));
-  EXPECT_TRUE(std::equal(one, one + count, other));
 }
 
 TEST_F(DeferredArray, RangesOfPiecesContainTheTruthAndBecomeExact)
