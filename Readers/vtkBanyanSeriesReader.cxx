@@ -19,6 +19,7 @@
 
 #include "Base/Timer.h"
 #include "Cache/BrickCache.h"
+#include "Series/IndexText.h"
 #include "Series/LevelGrid.h"
 #include "Series/SeriesFile.h"
 
@@ -61,14 +62,11 @@ void vtkBanyanSeriesReader::PrintSelf(ostream& os, vtkIndent indent)
 
 int vtkBanyanSeriesReader::CanReadFile(const char* fileName)
 {
-  try
-  {
-    return fileName && banyan::SeriesFile::Open(fileName) ? 1 : 0;
-  }
-  catch (const std::exception&)
-  {
-    return 0;
-  }
+  static const std::string suffix = ".banyan";
+  const std::string path = fileName ? fileName : "";
+  const bool named =
+    path.size() > suffix.size() && path.compare(path.size() - suffix.size(), suffix.size(), suffix) == 0;
+  return named || banyan::BeginsAsSeries(path) ? 1 : 0;
 }
 
 int vtkBanyanSeriesReader::GetNumberOfLevels()

@@ -45,14 +45,16 @@ public:
 
   ///@{
   /**
-   * Path of the index file. The segments lie in a folder of the same name with ".d" at its end.
+   * Path of the index file, or of a link to it. The segments lie in a folder of the same name with ".d" at its
+   * end, beside the link or what it leads to (see banyan::FindSeriesFolder).
    */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
   ///@}
 
   /**
-   * Whether the file can be opened as a Banyan series; silent. Not collective.
+   * Whether this is the reader for the file: it begins as the index of a series does, or is named *.banyan.
+   * What is damaged or missing is said by the update. Silent, reads some bytes. Not collective.
    */
   int CanReadFile(const char* fileName);
 

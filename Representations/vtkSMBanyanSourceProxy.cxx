@@ -11,6 +11,12 @@ void vtkSMBanyanSourceProxy::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
 }
 
+void vtkSMBanyanSourceProxy::UpdatePipelineInformation()
+{
+  this->Superclass::UpdatePipelineInformation();
+  banyan::RaiseErrorOf(this);
+}
+
 void vtkSMBanyanSourceProxy::UpdatePipeline()
 {
   this->Superclass::UpdatePipeline();

@@ -2,7 +2,7 @@
  * @class   vtkSMBanyanSourceProxy
  * @brief   the proxy of a reader whose failure raises an exception in Python
  *
- * UpdatePipeline() and Show() raise RuntimeError with the reader's own sentence, which it says in
+ * OpenDataFile(), UpdatePipeline() and Show() raise RuntimeError with the reader's own sentence, which it says in
  * its information property ErrorMessage.
  *
  * @par Limits:
@@ -21,6 +21,7 @@ public:
   vtkTypeMacro(vtkSMBanyanSourceProxy, vtkSMSourceProxy);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  void UpdatePipelineInformation() override;
   void UpdatePipeline() override;
   void UpdatePipeline(double time) override;
 

@@ -54,12 +54,13 @@ void ForgetFile(const std::string& path)
   }
 }
 
-void ForgetSeries(const std::string& path, const std::vector<SegmentIndex>& segments)
+void ForgetSeries(
+  const std::string& path, const std::string& folder, const std::vector<SegmentIndex>& segments)
 {
   ForgetFile(path);
   for (const SegmentIndex& segment : segments)
   {
-    ForgetFile(path + ".d/" + segment.File);
+    ForgetFile(folder + "/" + segment.File);
   }
 }
 
@@ -96,12 +97,18 @@ std::vector<Choice> ChooseBricks(const std::string& path, int array, std::mt1993
 
 void MeasureCold(const std::string& path, int array, std::mt19937_64& random, DecodeTimes& times)
 {
-  const std::vector<SegmentIndex> segments = SeriesFile::Open(path)->Index().Segments;
+  std::string folder;
+  std::vector<SegmentIndex> segments;
+  {
+    const auto file = SeriesFile::Open(path);
+    folder = file->Folder();
+    segments = file->Index().Segments;
+  }
   std::vector<double> cold;
   std::vector<double> opening;
   for (const Choice& choice : ChooseBricks(path, array, random))
   {
-    ForgetSeries(path, segments);
+    ForgetSeries(path, folder, segments);
     const Timer open;
     const auto file = SeriesFile::Open(path);
     opening.push_back(Microseconds(open));

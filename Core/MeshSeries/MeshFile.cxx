@@ -58,7 +58,7 @@ std::shared_ptr<const StoredMesh> ReadMesh(const SeriesFile& series)
     throw Error("The series is not one of a mesh", { series.Path() });
   }
   const MeshIndex& index = *series.Index().Mesh;
-  const std::string path = series.Path() + ".d/" + index.File;
+  const std::string path = series.Folder() + "/" + index.File;
   const std::string content = ReadWholeFile(path, index.Bytes);
   const Hash128 hash = HashOf(content.data(), content.size());
   if (content.size() != index.Bytes || hash != Hash128{ index.HashLow, index.HashHigh })

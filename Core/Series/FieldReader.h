@@ -45,6 +45,7 @@ public:
 struct OpenSeries
 {
   std::string Path;
+  std::string Folder; ///< of the segments
   SeriesIndex Index;
   std::uint64_t Id = 0;
   std::vector<BrickLayout> Layouts;           ///< by level

@@ -73,7 +73,7 @@ const SegmentReader& Reader1::Segment(int step)
   std::unique_ptr<SegmentReader>& segment = this->Segments[number];
   if (!segment)
   {
-    segment = std::make_unique<SegmentReader>(this->Series.Path + ".d", index, this->TablesPerStep);
+    segment = std::make_unique<SegmentReader>(this->Series.Folder, index, this->TablesPerStep);
   }
   return *segment;
 }

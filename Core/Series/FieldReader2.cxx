@@ -75,7 +75,7 @@ std::shared_ptr<GroupReader> Reader2::Segment(int step)
     std::shared_ptr<const MappedSegment>& file = this->Files[index.File];
     if (!file)
     {
-      file = std::make_shared<const MappedSegment>(this->Series.Path + ".d", index);
+      file = std::make_shared<const MappedSegment>(this->Series.Folder, index);
     }
     segment = std::make_shared<GroupReader>(file, index, this->Series.Components);
   }

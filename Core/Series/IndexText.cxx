@@ -4,6 +4,9 @@
 #include "Series/Hash.h"
 #include "Series/IndexJson.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 namespace banyan
 {
 namespace
@@ -47,6 +50,20 @@ std::string CheckedBody(const std::string& text, int& formatVersion)
 }
 
 } // namespace
+
+bool BeginsAsSeries(const std::string& path)
+{
+  // Not blocking: a pipe of that name must not hang the caller.
+  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0)
+  {
+    return false;
+  }
+  std::string begin(Word.size(), '\0');
+  const ssize_t got = read(descriptor, begin.data(), begin.size());
+  (void)close(descriptor);
+  return got == static_cast<ssize_t>(begin.size()) && begin == Word;
+}
 
 std::string IndexToText(const SeriesIndex& index)
 {

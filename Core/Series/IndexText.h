@@ -11,6 +11,10 @@ namespace banyan
 /// Greatest size of an index file, checked before it is read.
 constexpr std::uint64_t GreatestIndexBytes = std::uint64_t{ 256 } << 20;
 
+/// Whether a file begins with the word that all indexes begin with. False for what cannot be read.
+/// Reads some bytes and nothing else.
+bool BeginsAsSeries(const std::string& path);
+
 /// The content of an index file: see Documentation/format.md. Throws Error when a name is not UTF-8
 /// or a number that must be finite is not.
 std::string IndexToText(const SeriesIndex& index);

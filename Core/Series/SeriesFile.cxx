@@ -5,6 +5,7 @@
 #include "Series/AtomicFile.h"
 #include "Series/FieldReader.h"
 #include "Series/IndexText.h"
+#include "Series/SeriesFolder.h"
 
 #include <atomic>
 
@@ -77,6 +78,7 @@ std::shared_ptr<SeriesFile> SeriesFile::Open(const std::string& path)
   series.Path = path;
   series.Id = NextId++;
   series.Index = IndexFromText(ReadWholeFile(path, GreatestIndexBytes), path);
+  series.Folder = FindSeriesFolder(path, series.Index);
   for (int level = 0; level < series.Index.Levels; ++level)
   {
     series.Layouts.emplace_back(series.Index.Domain.Samples(), series.Index.BrickCells, level);
@@ -94,6 +96,11 @@ std::shared_ptr<SeriesFile> SeriesFile::Open(const std::string& path)
 const std::string& SeriesFile::Path() const
 {
   return this->Self->Series.Path;
+}
+
+const std::string& SeriesFile::Folder() const
+{
+  return this->Self->Series.Folder;
 }
 
 const SeriesIndex& SeriesFile::Index() const

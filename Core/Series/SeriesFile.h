@@ -58,6 +58,8 @@ public:
   ~SeriesFile();
 
   const std::string& Path() const;
+  /// Where the segments are: see FindSeriesFolder.
+  const std::string& Folder() const;
   const SeriesIndex& Index() const;
   /// A number that no other open series of this process has.
   std::uint64_t Id() const;

@@ -1,0 +1,23 @@
+#ifndef banyan_Series_SeriesFolder_h
+#define banyan_Series_SeriesFolder_h
+
+#include "Series/SeriesIndex.h"
+
+#include <string>
+
+namespace banyan
+{
+
+/// The folder that holds all files which an index names. Looked for in this order: `path + ".d"`;
+/// the same beside the file that `path` leads to, where it is a symbolic link; and every other
+/// folder
+/// `*.d` at these two places, for an index that was renamed without its folder.
+/// @param path of the index
+/// Throws Error, a sentence that says which files are missing where and what to do, when no folder
+/// holds all of them, or when several do and none of them has the right name. A folder of the right
+/// name whose files are all there in a wrong size is given back: who opens them says which.
+std::string FindSeriesFolder(const std::string& path, const SeriesIndex& index);
+
+} // namespace banyan
+
+#endif
