@@ -208,6 +208,21 @@ void CheckBlanking(vtkImageData* image, StepReport& report)
   }
 }
 
+/// Why data of another kind cannot be written, and what to do.
+std::string OtherKind(vtkDataObject* data)
+{
+  const std::string kinds = "A Banyan series is made from image data (a regular grid) or from an "
+                            "unstructured grid of hexahedra, and the input is ";
+  if (!data)
+  {
+    return kinds + "nothing: see what its source says.";
+  }
+  const bool table = data->IsA("vtkTable");
+  return kinds + data->GetClassName() + ": " +
+         (table ? "make a grid of it with 'Table To Structured Grid', and then " : "") +
+         "apply 'Resample To Image' first.";
+}
+
 } // namespace
 
 StepReport ReportOf(vtkDataObject* data, vtkDataArraySelection& selection, bool withRanges)
@@ -216,11 +231,7 @@ StepReport ReportOf(vtkDataObject* data, vtkDataArraySelection& selection, bool 
   vtkImageData* image = vtkImageData::SafeDownCast(data);
   if (!image)
   {
-    report.Problem =
-      std::string("A Banyan series is made from image data (a regular grid) or from an "
-                  "unstructured grid of hexahedra, and the input is ") +
-      (data ? data->GetClassName() : "nothing") +
-      ": apply a filter such as 'Resample To Image' first.";
+    report.Problem = OtherKind(data);
     return report;
   }
   report.Piece = GridOf(image);

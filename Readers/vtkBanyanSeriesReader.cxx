@@ -62,11 +62,13 @@ void vtkBanyanSeriesReader::PrintSelf(ostream& os, vtkIndent indent)
 
 int vtkBanyanSeriesReader::CanReadFile(const char* fileName)
 {
-  static const std::string suffix = ".banyan";
   const std::string path = fileName ? fileName : "";
-  const bool named =
-    path.size() > suffix.size() && path.compare(path.size() - suffix.size(), suffix.size(), suffix) == 0;
-  return named || banyan::BeginsAsSeries(path) ? 1 : 0;
+  const auto endsWith = [&path](const std::string& suffix)
+  {
+    return path.size() > suffix.size() &&
+           path.compare(path.size() - suffix.size(), suffix.size(), suffix) == 0;
+  };
+  return endsWith(".banyan") || endsWith(".banyan.d") || banyan::BeginsAsSeries(path) ? 1 : 0;
 }
 
 int vtkBanyanSeriesReader::GetNumberOfLevels()

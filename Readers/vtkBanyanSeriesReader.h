@@ -53,7 +53,8 @@ public:
   ///@}
 
   /**
-   * Whether this is the reader for the file: it begins as the index of a series does, or is named *.banyan.
+   * Whether this is the reader for the file: it begins as the index of a series does, or is named *.banyan
+   * (or *.banyan.d).
    * What is damaged or missing is said by the update. Silent, reads some bytes. Not collective.
    */
   int CanReadFile(const char* fileName);

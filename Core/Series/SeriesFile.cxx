@@ -77,6 +77,7 @@ std::shared_ptr<SeriesFile> SeriesFile::Open(const std::string& path)
   OpenSeries& series = self.Series;
   series.Path = path;
   series.Id = NextId++;
+  RefuseFolder(path);
   series.Index = IndexFromText(ReadWholeFile(path, GreatestIndexBytes), path);
   series.Folder = FindSeriesFolder(path, series.Index);
   for (int level = 0; level < series.Index.Levels; ++level)

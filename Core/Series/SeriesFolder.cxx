@@ -161,6 +161,21 @@ std::string BesideTarget(const std::string& path)
 
 } // namespace
 
+void RefuseFolder(const std::string& path)
+{
+  struct stat status = {};
+  if (stat(path.c_str(), &status) != 0 || !S_ISDIR(status.st_mode))
+  {
+    return;
+  }
+  const std::string folder = path.substr(0, path.find_last_not_of('/') + 1);
+  const std::string stem = folder.substr(0, folder.size() - std::min(folder.size(), Suffix.size()));
+  const bool ofSeries = stem + Suffix == folder && stat(stem.c_str(), &status) == 0;
+  throw Error("This is a folder: open the file of the series" +
+                (ofSeries ? ", " + NameOf(stem) + " beside it" : std::string(", name.banyan")),
+    { path });
+}
+
 std::string FindSeriesFolder(const std::string& path, const SeriesIndex& index)
 {
   const std::map<std::string, std::uint64_t> files = FilesOf(index);

@@ -8,6 +8,9 @@
 namespace banyan
 {
 
+/// Throws Error, which says what to open instead, when a path leads to a folder.
+void RefuseFolder(const std::string& path);
+
 /// The folder that holds all files which an index names. Looked for in this order: `path + ".d"`;
 /// the same beside the file that `path` leads to, where it is a symbolic link; and every other
 /// folder

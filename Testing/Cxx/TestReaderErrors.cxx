@@ -57,7 +57,6 @@ protected:
   {
     const auto reader = Reader(path);
     Messages messages(reader);
-    EXPECT_EQ(reader->CanReadFile(path.c_str()), 0);
     reader->Update();
     EXPECT_NE(reader->GetErrorCode(), static_cast<unsigned long>(vtkErrorCode::NoError));
     EXPECT_NE(messages.Errors.find(path), std::string::npos) << messages.Errors;
@@ -98,6 +97,37 @@ TEST_F(ReaderRobustness, AFolder)
 {
   fs::create_directory(this->Folder / "c.banyan");
   this->ExpectRefused(this->Folder / "c.banyan", "c.banyan");
+}
+
+/// Whoever claims a file may say what is wrong with it; others' files are left to others.
+TEST_F(ReaderRobustness, ClaimsWhatBeginsOrIsNamedAsASeries)
+{
+  vtkNew<vtkBanyanSeriesReader> reader;
+  const auto claims = [&](const std::string& name, const std::string& text)
+  {
+    Write(this->Folder / name, text);
+    return reader->CanReadFile((this->Folder / name).c_str()) != 0;
+  };
+  EXPECT_TRUE(claims("cut.banyan", "banyan-series 2"));
+  EXPECT_TRUE(claims("other.banyan", "<VTKFile/>"));
+  EXPECT_TRUE(claims("empty.banyan", ""));
+  EXPECT_TRUE(claims("copy of a series", Content(this->Path)));
+  EXPECT_FALSE(claims("a.vti", "<VTKFile/>"));
+  EXPECT_FALSE(reader->CanReadFile(nullptr));
+}
+
+TEST_F(ReaderRobustness, WithoutItsFolder)
+{
+  fs::rename(this->Path + ".d", this->Folder / "elsewhere");
+  this->ExpectRefused(this->Path, "a.banyan.d");
+}
+
+TEST_F(ReaderRobustness, ThroughALink)
+{
+  fs::create_directory(this->Folder / "work");
+  fs::create_symlink("../a.banyan", this->Folder / "work/b.banyan");
+  EXPECT_TRUE(SameBits(ImageAt(Reader(this->Folder / "work/b.banyan"), 1.0)->GetPointData()->GetScalars(),
+    this->Good[1]->GetPointData()->GetScalars()));
 }
 
 TEST_F(ReaderRobustness, MissingSegment)

@@ -7,6 +7,7 @@ them only what can be made here is tested.
 """
 import glob
 import os
+import shutil
 import sys
 
 import numpy
@@ -119,10 +120,51 @@ def damaged_series(folder):
     middle = len(good) // 2
     flipped = good[:middle] + bytes([good[middle] ^ 1]) + good[middle + 1:]
     with_bytes("segment, one bit", flipped, update, "damaged.banyan")
-    with_bytes("segment, cut", good[:middle], lambda: simple.OpenDataFile(path), "not readable")
-    with_bytes("index, cut", index[:-9], lambda: simple.OpenDataFile(path), "not readable")
+    with_bytes("segment, cut", good[:middle], lambda: simple.OpenDataFile(path), "it is cut short")
+    with_bytes("index, cut", index[:-9], lambda: simple.OpenDataFile(path), "cut short")
     with_bytes("index, other", b"what is this?", update, "not a Banyan series")
+    with_bytes("index, empty", b"", lambda: simple.OpenDataFile(path), "not a Banyan series")
     update()
+
+
+def half_copied(folder):
+    """A series without its folder, under another name, and through links."""
+    data, work = os.path.join(folder, "data"), os.path.join(folder, "work")
+    for place in (data, work):
+        shutil.rmtree(place, ignore_errors=True)
+        os.makedirs(place)
+    path = os.path.join(data, "whole.banyan")
+    simple.SaveData(path, proxy=simple.Wavelet(WholeExtent=[0, 4] * 3))
+    renamed, linked = os.path.join(data, "renamed.banyan"), os.path.join(work, "linked.banyan")
+    alone = os.path.join(work, "alone.banyan")
+    shutil.copy(path, renamed)
+    shutil.copy(path, alone)
+    os.symlink("../data/whole.banyan", linked)
+    for good in (path, renamed, linked):
+        reader = simple.OpenDataFile(good)
+        reader.UpdatePipeline()
+        session.require(reader.GetDataInformation().GetExtent() == (0, 4) * 3, good)
+    for mention in ("alone.banyan.d", "copy or move both"):
+        expect_refusal("alone", lambda: simple.OpenDataFile(alone), mention)
+    expect_refusal("folder", lambda: simple.OpenDataFile(path + ".d"), "open the file of the series")
+
+
+def other_kinds(folder):
+    """What cannot be a series: the writer claims the name, and says what to do."""
+    wavelet = simple.Wavelet(WholeExtent=[0, 4] * 3)
+    kinds = {
+        "surface": (simple.Sphere(), "'Resample To Image'"),
+        "tetrahedra": (simple.Tetrahedralize(Input=wavelet), "'Resample To Image'"),
+        "blocks": (simple.GroupDatasets(Input=[simple.Sphere(), simple.Cone()]), "vtkMultiBlock"),
+        "table": (simple.ProgrammableSource(OutputDataSetType="vtkTable"), "'Table To Structured Grid'"),
+        "rectilinear": (simple.ProgrammableSource(OutputDataSetType="vtkRectilinearGrid"),
+                        "'Resample To Image'"),
+        "curvilinear": (simple.ProgrammableSource(OutputDataSetType="vtkStructuredGrid"),
+                        "'Resample To Image'"),
+        "failure": (simple.LegacyVTKReader(FileNames=["nowhere.vtk"]), "nowhere.vtk"),
+    }
+    for what, (source, mention) in kinds.items():
+        expect_no_series(what, source, folder, mention)
 
 
 def main():
@@ -141,6 +183,8 @@ def main():
     bad_options(arguments.out)
     changing_series(arguments.out)
     damaged_series(arguments.out)
+    half_copied(arguments.out)
+    other_kinds(arguments.out)
     data = os.path.join(os.environ.get("BANYAN_DATA_DIR", ""), "malformed_basic")
     if os.path.isdir(data):
         broken_files(data, arguments.out)

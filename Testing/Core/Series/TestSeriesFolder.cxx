@@ -174,6 +174,14 @@ TEST_F(SeriesPlaces, AFolderThatIsAFile)
   this->Expect(this->Folder / "data/a.banyan", false, { "a.banyan.d", "Not a directory" });
 }
 
+TEST_F(SeriesPlaces, AFolderInPlaceOfItsFile)
+{
+  this->Expect(
+    this->Folder / "made/s.banyan.d", false, { "This is a folder", "s.banyan beside it" });
+  this->Expect(this->Folder / "made/s.banyan.d/", false, { "This is a folder", "s.banyan beside it" });
+  this->Expect(this->Folder / "made", false, { "This is a folder", "name.banyan" });
+}
+
 TEST_F(SeriesPlaces, LinksThatLeadNowhere)
 {
   fs::create_symlink("nothing", this->Folder / "data/dangling.banyan");
