@@ -144,11 +144,12 @@ std::string BesideTarget(const std::string& path)
   {
     struct stat status = {};
     const bool there = stat(best.Folder.c_str(), &status) == 0;
-    sentence =
-      "The folder " + wanted + " with the " + std::to_string(files) +
-      (files == 1 ? " segment" : " segments") + " of the series " +
-      (there ? "has none of them" : "is missing beside " + NameOf(path) + BesideTarget(path)) +
-      ": a series is its file and its folder, copy or move both";
+    const std::string segments = std::to_string(files) + (files == 1 ? " segment" : " segments");
+    sentence = "The folder " + wanted +
+               (there ? " has none of the " + segments + " of the series"
+                      : " is missing beside " + NameOf(path) + BesideTarget(path) +
+                          ": it holds the " + segments + " of the series") +
+               ". A series is its file and its folder: copy or move both";
   }
   for (const Holding& other : others)
   {

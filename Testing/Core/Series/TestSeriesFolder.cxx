@@ -85,7 +85,7 @@ enum class Lies
 TEST_F(SeriesPlaces, HundredsOfArrangements)
 {
   std::mt19937 random(20261125);
-  for (int i = 0; i < 300; ++i)
+  for (int i = 0; i < 150; ++i)
   {
     for (const char* place : { "data", "work", "store" })
     {
