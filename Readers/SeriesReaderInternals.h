@@ -10,6 +10,7 @@
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
+#include "vtkTimeStamp.h"
 
 #include "Series/SeriesFile.h"
 
@@ -29,6 +30,8 @@ struct vtkBanyanSeriesReader::Internals
   vtkNew<vtkDataArraySelection> CellSelection; ///< of cell arrays of meshes
   vtkSmartPointer<vtkMultiProcessController> Controller;
   std::string ErrorMessage;
+  bool GaveDeferred = false; ///< whether the output has arrays that decode on first touch
+  vtkTimeStamp PlainWanted;  ///< when somebody came who needs plain ones instead
 
   /// Whether an array of the series is to be read.
   bool Wants(const banyan::ArrayIndex& array) const

@@ -1,6 +1,21 @@
 #include "vtkBanyanArray.txx"
 
 #include "LargeArrays.h"
+#include "vtkBanyanDecodedArray.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkIntArray.h"
+#include "vtkLongArray.h"
+#include "vtkShortArray.h"
+#include "vtkSignedCharArray.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnsignedIntArray.h"
+#include "vtkUnsignedLongArray.h"
+#include "vtkUnsignedShortArray.h"
+
+#include <tuple>
+#include <type_traits>
 
 namespace
 {
@@ -24,22 +39,13 @@ bool FitsDouble(const banyan::ArrayIndex& index)
   return true;
 }
 
+/// VTK's class of plain arrays of T, in the order of banyan::ScalarType.
+using PlainArrays = std::tuple<vtkSignedCharArray, vtkUnsignedCharArray, vtkShortArray,
+  vtkUnsignedShortArray, vtkIntArray, vtkUnsignedIntArray, vtkLongArray, vtkUnsignedLongArray,
+  vtkFloatArray, vtkDoubleArray>;
 template <class T>
-vtkSmartPointer<vtkDataArray> MakeEmpty(const banyan::ArrayIndex& index)
-{
-  auto array = vtkSmartPointer<vtkDataArray>::Take(
-    vtkDataArray::CreateDataArray(vtkTypeTraits<T>::VTK_TYPE_ID));
-  array->SetName(index.Name.c_str());
-  array->SetNumberOfComponents(static_cast<int>(index.Components.size()));
-  for (std::size_t c = 0; c < index.Components.size(); ++c)
-  {
-    if (!index.Components[c].Name.empty())
-    {
-      array->SetComponentName(static_cast<vtkIdType>(c), index.Components[c].Name.c_str());
-    }
-  }
-  return array;
-}
+using PlainArray =
+  std::tuple_element_t<static_cast<std::size_t>(banyan::ScalarTypeOf<T>()), PlainArrays>;
 
 } // namespace
 
@@ -62,8 +68,15 @@ vtkSmartPointer<vtkDataArray> vtkBanyanDeferred::New(const Handle& handle)
 vtkSmartPointer<vtkDataArray> vtkBanyanDeferred::NewEmpty(const Handle& handle)
 {
   const banyan::ArrayIndex& index = handle.Series->Index().Arrays.at(handle.Array);
-  return banyan::Dispatch(
-    index.Type, [&](auto tag) { return MakeEmpty<typename decltype(tag)::Type>(index); });
+  return banyan::Dispatch(index.Type,
+    [&](auto tag)
+    {
+      using T = typename decltype(tag)::Type;
+      auto array = vtkSmartPointer<vtkDataArray>::Take(
+        vtkDataArray::CreateDataArray(vtkTypeTraits<T>::VTK_TYPE_ID));
+      Label(*array, index);
+      return array;
+    });
 }
 
 vtkSmartPointer<vtkDataArray> vtkBanyanDeferred::NewPlain(const Handle& handle)
@@ -72,4 +85,34 @@ vtkSmartPointer<vtkDataArray> vtkBanyanDeferred::NewPlain(const Handle& handle)
   banyan::SetTuples(array, handle.Samples.Count());
   ReadInto(handle, array->GetVoidPointer(0));
   return array;
+}
+
+vtkSmartPointer<vtkDataArray> vtkBanyanDeferred::NewDecoded(const Handle& handle)
+{
+  const banyan::ArrayIndex& index = handle.Series->Index().Arrays.at(handle.Array);
+  return banyan::Dispatch(index.Type,
+    [&](auto tag) -> vtkSmartPointer<vtkDataArray>
+    {
+      using T = typename decltype(tag)::Type;
+      static_assert(std::is_same_v<typename PlainArray<T>::ValueType, T>);
+      const auto array = vtkSmartPointer<vtkBanyanDecodedArray<PlainArray<T>>>::New();
+      Label(*array, index);
+      banyan::SetTuples(array, handle.Samples.Count());
+      ReadInto(handle, array->GetVoidPointer(0));
+      array->SetSource(handle);
+      return array;
+    });
+}
+
+void vtkBanyanDeferred::Label(vtkDataArray& array, const banyan::ArrayIndex& index)
+{
+  array.SetName(index.Name.c_str());
+  array.SetNumberOfComponents(static_cast<int>(index.Components.size()));
+  for (std::size_t c = 0; c < index.Components.size(); ++c)
+  {
+    if (!index.Components[c].Name.empty())
+    {
+      array.SetComponentName(static_cast<vtkIdType>(c), index.Components[c].Name.c_str());
+    }
+  }
 }

@@ -29,15 +29,7 @@ void vtkBanyanArray<T>::SetSource(const Handle& source)
   this->OfSeries = banyan::RangeOfSeries(series, source.Array);
 
   const banyan::ArrayIndex& index = series.Index().Arrays[source.Array];
-  this->SetName(index.Name.c_str());
-  this->SetNumberOfComponents(static_cast<int>(index.Components.size()));
-  for (std::size_t c = 0; c < index.Components.size(); ++c)
-  {
-    if (!index.Components[c].Name.empty())
-    {
-      this->SetComponentName(static_cast<vtkIdType>(c), index.Components[c].Name.c_str());
-    }
-  }
+  Label(*this, index);
   this->Size = source.Samples.Count() * this->NumberOfComponents;
   this->MaxId = this->Size - 1;
   this->UnchangedSince = this->GetMTime();

@@ -50,13 +50,14 @@ const vtkBanyanDeferred::Handle* vtkBanyanDeferred::From(vtkAbstractArray* array
 
 bool vtkBanyanDeferred::IsDeferred(vtkAbstractArray* array)
 {
-  return Cast(array) != nullptr;
+  const vtkBanyanDeferred* deferred = Cast(array);
+  return deferred && !deferred->IsPlain();
 }
 
 bool vtkBanyanDeferred::IsUntouched(vtkAbstractArray* array)
 {
   const vtkBanyanDeferred* deferred = Cast(array);
-  return deferred && deferred->DecodedBytes() == 0;
+  return deferred && !deferred->IsPlain() && deferred->DecodedBytes() == 0;
 }
 
 bool vtkBanyanDeferred::LiesOnSeries(vtkImageData* image, const Handle& handle)
@@ -89,7 +90,7 @@ bool vtkBanyanDeferred::LiesOnSeries(vtkImageData* image, const Handle& handle)
 vtkSmartPointer<vtkDataArray> vtkBanyanDeferred::Plain(vtkDataArray* array)
 {
   const vtkBanyanDeferred* deferred = Cast(array);
-  if (!deferred)
+  if (!deferred || deferred->IsPlain())
   {
     return array;
   }

@@ -27,6 +27,7 @@ class vtkImageData;
 namespace banyan
 {
 class SeriesFile;
+struct ArrayIndex;
 }
 
 class BANYANREADERS_EXPORT vtkBanyanDeferred
@@ -90,6 +91,12 @@ public:
   static vtkSmartPointer<vtkDataArray> NewPlain(const Handle& handle);
 
   /**
+   * As NewPlain(), but the array knows its handle (From() gives it), and its finite range is that of
+   * the series: see vtkBanyanDecodedArray.
+   */
+  static vtkSmartPointer<vtkDataArray> NewDecoded(const Handle& handle);
+
+  /**
    * A plain array of the type, name, components and component names that an array of a series has,
    * without tuples.
    */
@@ -124,6 +131,8 @@ protected:
 
   /// Whether the values are still the series'.
   virtual bool IsPristine() const = 0;
+  /// Whether the array is one of VTK's plain ones, decoded from the start.
+  virtual bool IsPlain() const { return false; }
   /// Bytes of decoded values that are held; 0 when untouched.
   virtual std::uint64_t DecodedBytes() const = 0;
   /// Frees decoded values unless a pointer to them was given away; returns whether it did.
@@ -132,6 +141,8 @@ protected:
   /// To be called when values have been decoded, and before they are destroyed.
   void Remember() const;
   void Forget();
+  /// Gives an array the name, number of components and their names.
+  static void Label(vtkDataArray& array, const banyan::ArrayIndex& index);
 
   Handle Source;
 };

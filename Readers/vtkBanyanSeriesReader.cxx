@@ -298,6 +298,7 @@ int vtkBanyanSeriesReader::RequestData(
   // The pipeline keeps the scalars of the step before, for those who write into the same memory.
   output->Initialize();
   // No filter is at work now: the time to let go what was decoded for others.
+  this->DecideOnDeferring();
   vtkBanyanDeferred::ReleaseDownTo(banyan::BrickCache::Process().Budget());
   unsigned long code = vtkErrorCode::NoError;
   const std::string problem = this->TryToFill(outInfo, code);
@@ -365,29 +366,6 @@ void vtkBanyanSeriesReader::FillOutput(vtkInformation* outInfo)
   output->SetDirectionMatrix(outInfo->Get(vtkDataObject::DIRECTION()));
   output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), index.Times[handle.Step]);
 
-  const int arrays = static_cast<int>(index.Arrays.size());
-  for (handle.Array = 0; handle.Array < arrays; ++handle.Array)
-  {
-    this->UpdateProgress(static_cast<double>(handle.Array) / arrays);
-    const banyan::ArrayIndex& array = index.Arrays[handle.Array];
-    if (!this->Self->Selection->ArrayIsEnabled(array.Name.c_str()))
-    {
-      continue;
-    }
-    const bool defer = this->DeferDecoding && !wanted.Empty();
-    const int components = static_cast<int>(array.Components.size());
-    for (int component = 0; defer && component < components; ++component)
-    {
-      this->Self->Verified.Verify(
-        series, { handle.Step, handle.Array, component, handle.Level }, handle.Samples);
-    }
-    const vtkSmartPointer<vtkDataArray> values =
-      defer ? vtkBanyanDeferred::New(handle) : vtkBanyanDeferred::NewPlain(handle);
-    output->GetPointData()->AddArray(values);
-  }
-  if (output->GetPointData()->HasArray(index.ActiveScalars.c_str()))
-  {
-    output->GetPointData()->SetActiveScalars(index.ActiveScalars.c_str());
-  }
+  this->AddImageArrays(handle, output->GetPointData());
   this->UpdateProgress(1.0);
 }

@@ -29,12 +29,14 @@
 #define vtkBanyanSeriesReader_h
 
 #include "BanyanReadersModule.h" // For export macro
+#include "vtkBanyanDeferred.h"   // For vtkBanyanDeferred::Handle
 #include "vtkImageAlgorithm.h"
 
 #include <memory> // For Internals
 
 class vtkDataArraySelection;
 class vtkMultiProcessController;
+class vtkPointData;
 
 class BANYANREADERS_EXPORT vtkBanyanSeriesReader : public vtkImageAlgorithm
 {
@@ -165,6 +167,10 @@ public:
 
   vtkMTimeType GetMTime() override;
 
+  /// Later than GetMTime() when somebody was connected who needs plain arrays where deferred ones are.
+  int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** inputs,
+    vtkInformationVector* outputs, int port, vtkMTimeType* mtime) override;
+
 protected:
   vtkBanyanSeriesReader();
   ~vtkBanyanSeriesReader() override;
@@ -188,6 +194,8 @@ private:
   bool IsMesh() const;
   int MakeOutput(vtkInformationVector* outputs);
   void FillOutput(vtkInformation* outInfo);
+  void DecideOnDeferring();
+  void AddImageArrays(vtkBanyanDeferred::Handle handle, vtkPointData* output);
   void FillMesh(vtkInformation* outInfo);
   bool AllRanksAreWell(unsigned long code, const std::string& problem);
   void Fail(unsigned long code, const std::string& sentence);

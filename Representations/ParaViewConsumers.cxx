@@ -1,0 +1,45 @@
+// What ParaView itself connects to a reader, and how it treats arrays that decode on first touch.
+#include "DeferredConsumers.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkExecutive.h"
+#include "vtkInformation.h"
+#include "vtkInformationExecutivePortVectorKey.h"
+#include "vtkPVDataRepresentation.h"
+
+namespace
+{
+
+banyan::DeferredUse JudgeRepresentation(vtkPVDataRepresentation& representation)
+{
+  // A display has one representation per way to show the data. All are connected, and the one that
+  // is chosen is visible. The others never ask for data.
+  const bool reads = !representation.GetVisibility() ||
+                     representation.IsA("vtkBanyanVolumeRepresentation") ||
+                     representation.IsA("vtkOutlineRepresentation");
+  return reads ? banyan::DeferredUse::Fine : banyan::DeferredUse::Unknown;
+}
+
+banyan::DeferredUse JudgeParaView(vtkAlgorithm& consumer)
+{
+  if (auto* representation = vtkPVDataRepresentation::SafeDownCast(&consumer))
+  {
+    return JudgeRepresentation(*representation);
+  }
+  if (consumer.IsA("vtkPVPostFilter"))
+  {
+    // It stands behind each source. Alone, it is asked for information, not for values.
+    const bool alone = vtkExecutive::CONSUMERS()->Length(consumer.GetOutputInformation(0)) == 0;
+    return alone ? banyan::DeferredUse::Fine : banyan::DeferredUse::HandedOn;
+  }
+  if (consumer.IsA("vtkPVExtractSelection") && consumer.GetNumberOfInputConnections(1) == 0)
+  {
+    // It stands beside each display. Without a selection its output is empty.
+    return banyan::DeferredUse::Fine;
+  }
+  return banyan::DeferredUse::Unknown;
+}
+
+const bool Added = (banyan::AddDeferredJudge(&JudgeParaView), true);
+
+} // namespace
