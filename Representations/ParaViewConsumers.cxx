@@ -14,10 +14,13 @@ banyan::DeferredUse JudgeRepresentation(vtkPVDataRepresentation& representation)
 {
   // A display has one representation per way to show the data. All are connected, and the one that
   // is chosen is visible. The others never ask for data.
-  const bool reads = !representation.GetVisibility() ||
-                     representation.IsA("vtkBanyanVolumeRepresentation") ||
-                     representation.IsA("vtkOutlineRepresentation");
-  return reads ? banyan::DeferredUse::Fine : banyan::DeferredUse::Unknown;
+  bool fine = !representation.GetVisibility();
+  for (const char* name : { "vtkBanyanVolumeRepresentation", "vtkOutlineRepresentation",
+         "vtkPVGridAxes3DRepresentation", "vtkPolarAxesRepresentation" })
+  {
+    fine = fine || representation.IsA(name);
+  }
+  return fine ? banyan::DeferredUse::Fine : banyan::DeferredUse::Unknown;
 }
 
 banyan::DeferredUse JudgeParaView(vtkAlgorithm& consumer)

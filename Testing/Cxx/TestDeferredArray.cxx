@@ -39,6 +39,7 @@ protected:
     this->Source = WaveSource(grid, { 0.0, 1.0, 2.0 }, type, components);
     WriteSeries(this->Source, this->Folder / "a.banyan");
     this->Read = Reader(this->Folder / "a.banyan");
+    this->ReadsDeferred->SetInputConnection(this->Read->GetOutputPort());
     this->Read->UpdateTimeStep(1.0);
     this->Image = this->Read->GetOutput();
     this->Array = this->Image->GetPointData()->GetScalars();
@@ -56,6 +57,7 @@ protected:
   TemporaryFolder Folder;
   vtkSmartPointer<TestSource> Source;
   vtkSmartPointer<vtkBanyanSeriesReader> Read;
+  vtkNew<vtkBanyanDecode> ReadsDeferred; ///< connected, so that arrays are deferred
   vtkSmartPointer<vtkImageData> PlainImage;
   vtkImageData* Image = nullptr;
   vtkDataArray* Array = nullptr;
@@ -354,6 +356,7 @@ TEST_F(DeferredArray, NaNDoesNotCountInRanges)
   this->Source->Modified();
   WriteSeries(this->Source, this->Folder / "nan.banyan");
   const auto reader = Reader(this->Folder / "nan.banyan");
+  this->ReadsDeferred->SetInputConnection(reader->GetOutputPort());
   reader->UpdateTimeStep(1.0);
   vtkDataArray* array = reader->GetOutput()->GetPointData()->GetScalars();
   double told[2];
@@ -378,6 +381,7 @@ TEST_F(DeferredArray, NothingButNaNGivesVtksEmptyRange)
   this->Source->Modified();
   WriteSeries(this->Source, this->Folder / "nan.banyan");
   const auto reader = Reader(this->Folder / "nan.banyan");
+  this->ReadsDeferred->SetInputConnection(reader->GetOutputPort());
   reader->UpdateTimeStep(1.0);
   vtkDataArray* array = reader->GetOutput()->GetPointData()->GetScalars();
   for (int touched = 0; touched < 2; ++touched)

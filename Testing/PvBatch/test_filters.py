@@ -52,12 +52,12 @@ def fields(step):
     return p.astype("f4").reshape(-1), v.astype("f4").reshape(-1, 3)
 
 
-def write_steps(folder):
+def write_steps(folder, make):
     """One .vti per step, with values inline: appended values do not survive every libexpat."""
     for step in range(STEPS):
         image = vtkImageData()
         image.SetDimensions(SAMPLES)
-        for name, values in zip("pv", fields(step)):
+        for name, values in make(step).items():
             array = numpy_to_vtk(values, deep=True)
             array.SetName(name)
             image.GetPointData().AddArray(array)
@@ -69,11 +69,15 @@ def write_steps(folder):
         session.require(writer.Write(), "a step was not written")
 
 
-def make_series(folder):
-    """The path of a series of the steps above."""
+def named_fields(step):
+    return dict(zip("pv", fields(step)))
+
+
+def make_series(folder, make=named_fields):
+    """The path of a series of these steps."""
     if controller().GetLocalProcessId() == 0:
         os.makedirs(folder, exist_ok=True)
-        write_steps(folder)
+        write_steps(folder, make)
     controller().Barrier()
     source = simple.XMLImageDataReader(FileName=sorted(glob.glob(folder + "/step_*.vti")))
     path = os.path.join(folder, "series.banyan")
