@@ -1,5 +1,6 @@
 #include "DistributedField.h"
 
+#include "HiddenInImage.h"
 #include "MeshField.h"
 #include "MotionEnhancement.h"
 #include "ToleranceControl.h"
@@ -40,6 +41,13 @@ glm::ivec3 ExposedSamples(const SeriesFile& series, int level)
     ((fine.x - 1) >> level) + 1, ((fine.y - 1) >> level) + 1, ((fine.z - 1) >> level) + 1);
 }
 
+/// What of a piece is hidden: bits.
+enum HiddenThere : std::int32_t
+{
+  SomeCells = 1,
+  SomePoints = 2
+};
+
 } // namespace
 
 /// What a rank tells the others about its piece. Plain memory: it is sent as it is.
@@ -50,7 +58,7 @@ struct DistributedField::Facts
   std::int32_t Components = 0;
   std::int32_t Lo[3] = { 0, 0, 0 }; ///< samples, half-open
   std::int32_t Hi[3] = { 0, 0, 0 };
-  std::int32_t Padding = 0;
+  std::int32_t Hidden = 0; ///< HiddenThere
   double Origin[3] = { 0, 0, 0 };
   double Spacing[3] = { 1, 1, 1 };
   double Direction[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 }; ///< row by row
@@ -136,26 +144,6 @@ void DistributedField::Update(Communicator& communicator, const FieldPiece& piec
   }
 }
 
-void DistributedField::AgreeOnRange(Communicator& communicator)
-{
-  ValueRange range;
-  if (this->Bricks && this->Series)
-  {
-    const MaskRange all = this->Bricks->MasksAreOver();
-    range = { all.Low, all.High };
-  }
-  else if (const BrickSource* const source = this->Source())
-  {
-    const glm::ivec3 counts = source->Bricks();
-    for (std::int64_t i = 0; i < std::int64_t{ counts.x } * counts.y * counts.z; ++i)
-    {
-      range.Include(source->RangeOf(i));
-    }
-  }
-  this->ValuesRange.Low = -AllMax(communicator, -range.Low);
-  this->ValuesRange.High = AllMax(communicator, range.High);
-}
-
 DistributedField::Facts DistributedField::FactsOf(const FieldPiece& piece) const
 {
   Facts facts;
@@ -175,6 +163,9 @@ DistributedField::Facts DistributedField::FactsOf(const FieldPiece& piece) const
   piece.Image->GetOrigin(facts.Origin);
   piece.Image->GetSpacing(facts.Spacing);
   std::copy_n(piece.Image->GetDirectionMatrix()->GetData(), 9, facts.Direction);
+
+  facts.Hidden = (FlagsOfHiddenCells(piece.Image) ? SomeCells : 0) |
+                 (FlagsOfHiddenPoints(piece.Image) ? SomePoints : 0);
 
   const vtkBanyanDeferred::Handle* handle = vtkBanyanDeferred::From(piece.Array);
   if (handle && vtkBanyanDeferred::LiesOnSeries(piece.Image, *handle))
@@ -249,7 +240,15 @@ void DistributedField::SetGrid(const Facts& facts, const Box& samples)
 
 void DistributedField::Agree(Communicator& communicator, const FieldPiece& piece)
 {
-  const Facts mine = this->FactsOf(piece);
+  Facts mine;
+  try
+  {
+    mine = this->FactsOf(piece);
+  }
+  catch (const std::exception& error)
+  {
+    this->ProblemText = error.what();
+  }
   std::vector<Facts> all(static_cast<std::size_t>(communicator.Size()));
   communicator.AllGather(&mine, sizeof(mine), all.data());
 
@@ -278,20 +277,41 @@ void DistributedField::Agree(Communicator& communicator, const FieldPiece& piece
 
   const bool deferred = std::all_of(all.begin(), all.end(),
     [](const Facts& facts) { return facts.HasData == 0 || facts.Deferred != 0; });
+  const auto hidden = [&all](HiddenThere what)
+  {
+    return std::any_of(
+      all.begin(), all.end(), [what](const Facts& facts) { return (facts.Hidden & what) != 0; });
+  };
   // Which series it is must be agreed as well; strings do not fit into the facts.
   const vtkBanyanDeferred::Handle* handle =
     deferred && mine.HasData ? vtkBanyanDeferred::From(piece.Array) : nullptr;
   const std::shared_ptr<const SeriesFile> held = handle ? handle->Series : nullptr;
-  if (deferred && this->TakeSeries(communicator, held, all, samples))
+  // Bricks of a series have values at hidden points, too: plain ones have none there.
+  if (deferred && !hidden(SomePoints) && this->TakeSeries(communicator, held, all, samples))
   {
     this->Pieces.reset();
-    return;
   }
+  else
+  {
+    this->TakePlain(communicator, piece, all, samples, deferred);
+  }
+  if (hidden(SomeCells))
+  {
+    this->HideCells(communicator, piece, samples.Lo);
+  }
+}
+
+/// Values in memory, of all pieces.
+/// @param deferred whether they could be those of a series
+void DistributedField::TakePlain(Communicator& communicator, const FieldPiece& piece,
+  const std::vector<Facts>& all, const Box& samples, bool deferred)
+{
   this->Series.reset();
   if (deferred && this->Enhancement.Strength > 0.0 && this->ProblemText.empty())
   {
-    this->ProblemText = "Of an encoded series only whole steps can be enhanced while they are drawn: put "
-                        "the filter 'Banyan Temporal Enhancement' behind the reader.";
+    this->ProblemText = "Of an encoded series only whole steps without hidden points can be enhanced "
+                        "while they are drawn: put the filter 'Banyan Temporal Enhancement' behind "
+                        "the reader.";
   }
   std::vector<Box> pieces;
   for (const Facts& facts : all)

@@ -120,6 +120,9 @@ private:
   bool TakeSeries(Communicator& communicator, const std::shared_ptr<const SeriesFile>& held,
     const std::vector<Facts>& all, const Box& samples);
   void MakeSeriesZones(const Facts& field, Communicator& communicator);
+  void TakePlain(Communicator& communicator, const FieldPiece& piece, const std::vector<Facts>& all,
+    const Box& samples, bool deferred);
+  void HideCells(Communicator& communicator, const FieldPiece& piece, const glm::ivec3& first);
   void TakePieces(Communicator& communicator, const FieldPiece& piece,
     const std::vector<Box>& pieces, const glm::ivec3& first);
 

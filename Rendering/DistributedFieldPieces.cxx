@@ -1,6 +1,7 @@
 // The part of DistributedField that is for plain image data.
 #include "DistributedField.h"
 
+#include "HiddenInImage.h"
 #include "PlainSource.h"
 
 #include "Base/ThreadPool.h"
@@ -10,6 +11,25 @@
 
 namespace banyan
 {
+
+/// Collective, where some cell of some rank is hidden.
+void DistributedField::HideCells(
+  Communicator& communicator, const FieldPiece& piece, const glm::ivec3& first)
+{
+  try
+  {
+    const std::shared_ptr<const HiddenCells> hidden =
+      GatherHiddenCells(communicator, piece.Array ? piece.Image : nullptr, first, this->Domain.Hi);
+    if (BrickSource* const source = this->Source())
+    {
+      source->Hide(hidden);
+    }
+  }
+  catch (const std::exception& error)
+  {
+    this->ProblemText = error.what();
+  }
+}
 
 /// Values that are in memory.
 void DistributedField::TakePieces(Communicator& communicator, const FieldPiece& piece,
@@ -53,6 +73,27 @@ void DistributedField::TakePieces(Communicator& communicator, const FieldPiece& 
     this->Pieces.reset();
     this->ProblemText = error.what();
   }
+}
+
+/// Of the values of all sources.
+void DistributedField::AgreeOnRange(Communicator& communicator)
+{
+  ValueRange range;
+  if (this->Bricks && this->Series)
+  {
+    const MaskRange all = this->Bricks->MasksAreOver();
+    range = { all.Low, all.High };
+  }
+  else if (const BrickSource* const source = this->Source())
+  {
+    const glm::ivec3 counts = source->Bricks();
+    for (std::int64_t i = 0; i < std::int64_t{ counts.x } * counts.y * counts.z; ++i)
+    {
+      range.Include(source->RangeOf(i));
+    }
+  }
+  this->ValuesRange.Low = -AllMax(communicator, -range.Low);
+  this->ValuesRange.High = AllMax(communicator, range.High);
 }
 
 } // namespace banyan

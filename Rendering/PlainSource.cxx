@@ -1,17 +1,15 @@
 #include "PlainSource.h"
 
-#include "ArrayLength.h"
+#include "HiddenInImage.h"
+
 #include "Base/ThreadPool.h"
 #include "Render/ArrayBrickSource.h"
 #include "vtkBanyanDeferred.h"
 
 #include "vtkDataArray.h"
-#include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkSmartPointer.h"
-#include "vtkUnsignedCharArray.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace banyan
@@ -42,22 +40,6 @@ std::shared_ptr<const void> HoldAlive(vtkDataArray* array, vtkImageData* image)
   return std::make_shared<const Pair>(array, image);
 }
 
-/// Bytes that mark hidden points, or null when no point is hidden.
-const std::uint8_t* HiddenPoints(vtkImageData* image)
-{
-  vtkUnsignedCharArray* flags = image->GetPointGhostArray();
-  if (!flags)
-  {
-    return nullptr;
-  }
-  CheckLength(flags, vtkDataObject::POINT, image->GetNumberOfPoints());
-  const std::uint8_t* first = flags->GetPointer(0);
-  const std::uint8_t* last = first + flags->GetNumberOfTuples();
-  const bool some = std::any_of(
-    first, last, [](std::uint8_t bits) { return (bits & vtkDataSetAttributes::HIDDENPOINT) != 0; });
-  return some ? first : nullptr;
-}
-
 } // namespace
 
 SampleArray PlainSamples(
@@ -81,7 +63,7 @@ SampleArray PlainSamples(
   array.Stride[0] = array.Components;
   array.Stride[1] = array.Stride[0] * samples.x;
   array.Stride[2] = array.Stride[1] * samples.y;
-  array.Flags = HiddenPoints(image);
+  array.Flags = FlagsOfHiddenPoints(image);
   array.Owner = HoldAlive(plain, image);
   return array;
 }

@@ -214,7 +214,7 @@ void PieceField::BringLevels(Communicator& communicator, const RayScene& scene, 
   if (this->Levels.Coarsest() == 0 && coarsest > 0)
   {
     this->Levels.Make(communicator, this->Pieces, this->Mine, this->Known.ViewTypes, this->AllCells,
-      this->MostBrickCells, coarsest, pool);
+      this->MostBrickCells, coarsest, pool, this->Bricks->Hidden());
   }
   const double received = static_cast<double>(
     this->Levels.Bring(communicator, scene, this->Zones(), budgetBytes));

@@ -89,7 +89,8 @@ std::vector<std::vector<std::int32_t>> GatherCounts(
 
 void PieceLevels::Make(Communicator& communicator, const PieceGrid& finest,
   const PieceSamples& mine, const std::vector<ScalarType>& viewTypes, const glm::ivec3& cells,
-  int brickCells, int coarsest, ThreadPool& pool)
+  int brickCells, int coarsest, ThreadPool& pool,
+  const std::shared_ptr<const HiddenCells>& hidden)
 {
   this->Clear();
   std::vector<std::unique_ptr<Level>> made;
@@ -100,6 +101,10 @@ void PieceLevels::Make(Communicator& communicator, const PieceGrid& finest,
     level->Samples = pieces.Gather(communicator, mine, viewTypes);
     level->Grid = PieceGrid(pieces.All(), brickCells);
     level->Known = GatherSummaries(communicator, level->Grid, level->Samples, pool);
+    if (hidden)
+    {
+      level->Hidden = std::make_shared<const HiddenCells>(hidden->Coarser(number));
+    }
     made.push_back(std::move(level));
   }
   this->Levels = std::move(made);
@@ -108,8 +113,10 @@ void PieceLevels::Make(Communicator& communicator, const PieceGrid& finest,
 std::unique_ptr<PieceSource> PieceLevels::SourceOf(int number, int rank) const
 {
   const Level& level = *this->Levels.at(static_cast<std::size_t>(number) - 1);
-  return std::make_unique<PieceSource>(level.Grid, rank, level.Samples, level.Fetched,
+  auto source = std::make_unique<PieceSource>(level.Grid, rank, level.Samples, level.Fetched,
     level.Known.Bricks, level.Known.Types, level.Known.Masks);
+  source->Hide(level.Hidden);
+  return source;
 }
 
 std::uint64_t PieceLevels::Bring(Communicator& communicator, const RayScene& scene,

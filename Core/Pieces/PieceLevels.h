@@ -32,10 +32,11 @@ public:
   /// @param viewTypes PieceSamples::Type of each rank
   /// @param cells of the whole grid
   /// @param brickCells as for PieceGrid
+  /// @param hidden cells of the whole grid; null for none
   /// Throws Error, the same on all ranks, when one cannot; there are no levels then.
   void Make(Communicator& communicator, const PieceGrid& finest, const PieceSamples& mine,
     const std::vector<ScalarType>& viewTypes, const glm::ivec3& cells, int brickCells, int coarsest,
-    ThreadPool& pool);
+    ThreadPool& pool, const std::shared_ptr<const HiddenCells>& hidden = nullptr);
   void Clear() { this->Levels.clear(); }
 
   /// 0 while there is none but the finest.
@@ -59,6 +60,7 @@ private:
     PieceSamples Samples;
     PieceSummaries Known;
     FetchedBricks Fetched;
+    std::shared_ptr<const HiddenCells> Hidden;
   };
 
   std::vector<std::unique_ptr<Level>> Levels; ///< from level 1 on

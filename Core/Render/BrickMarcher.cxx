@@ -43,20 +43,26 @@ class BrickEntries
 {
 public:
   /// @param relative whether values become relative to the table's low end, or are already
-  BrickEntries(const BrickView& view, const StepTable& table, bool relative, bool nearest)
+  /// @param hidden null for none
+  BrickEntries(const BrickView& view, const StepTable& table, bool relative, bool nearest,
+    const HiddenInBrick* hidden)
     : Lookup(relative ? table.RelativeLookup() : table.Lookup())
     , Values(view, table.Low(), nearest)
+    , Hidden(hidden)
   {
   }
 
   int At(const std::int64_t (&position)[3]) const
   {
-    return this->Lookup.IndexOf(this->Values.At(position));
+    return this->Hidden && this->Hidden->At(CellAt(position))
+             ? this->Lookup.Transparent
+             : this->Lookup.IndexOf(this->Values.At(position));
   }
 
 private:
   TableLookup Lookup;
   PlainInterpolator<T> Values;
+  const HiddenInBrick* Hidden;
 };
 
 /// Where all values have one entry.
@@ -188,7 +194,7 @@ void MarchBrick(const BrickPart& part, const StepTable& table, const PixelRect& 
     [&](auto tag)
     {
       using T = typename decltype(tag)::Type;
-      const BrickEntries<T> entries(part.View, table, IsRelative<T>, nearest);
+      const BrickEntries<T> entries(part.View, table, IsRelative<T>, nearest, part.Hidden);
       const PlainMarcher marcher(entries, part.Cells, part.Corner, table, tile);
       MarchRays(marcher, Intersection(pixels, tile.Rect), tile);
     });
@@ -205,7 +211,7 @@ void MarchUnpacked(const PackedBrick& brick, const BrickVisibility& seen, const 
   {
     shader = std::make_unique<const GradientShader>(brick, *shading, nearest);
   }
-  const BrickEntries<float> entries(view, table, brick.Relative(), nearest);
+  const BrickEntries<float> entries(view, table, brick.Relative(), nearest, &brick.Hidden());
   const PlainMarcher marcher(entries, seen.Cells, brick.Corner(), table, tile, shader.get());
   MarchRays(marcher, Intersection(pixels, tile.Rect), tile);
 }

@@ -16,6 +16,7 @@ struct BrickPart
   const BrickView& View;
   glm::ivec3 Corner; ///< the sample (index space) that View.Values points at
   Box Cells;         ///< the cells to draw, inside the brick; see RayTile::CellShift
+  const HiddenInBrick* Hidden = nullptr; ///< of all cells from Corner on; null for none
 };
 
 /// Blends the samples that lie in `part` behind what the rays of `tile` have met so far: one sample
@@ -24,7 +25,7 @@ struct BrickPart
 /// A sample is the trilinear interpolant of the eight corners of its cell, in float, from 24-bit
 /// fractions; the result does not depend on the brick around the cell. A sample with a corner that
 /// is not finite is transparent. With nearest interpolation a sample has the value of the nearest
-/// corner, and is transparent when that is not finite.
+/// corner, and is transparent when that is not finite. So is a sample in a hidden cell.
 /// @param pixels those whose rays may meet the part; only these are tried
 void MarchBrick(const BrickPart& part, const StepTable& table, const PixelRect& pixels,
   RayTile& tile, SampleInterpolation interpolation = SampleInterpolation::Linear);

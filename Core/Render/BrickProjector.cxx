@@ -18,6 +18,7 @@ public:
     : Table(table)
     , Scale(table.ScaleOf(relative))
     , Values(part.View, table.Low(), table.Nearest())
+    , Hidden(part.Hidden)
     , Cells(part.Cells, tile.CellShift - tile.BrickShift)
   {
     for (int axis = 0; axis < 3; ++axis)
@@ -84,7 +85,8 @@ private:
     const std::int64_t inBrick[3] = { position[0] - this->Corner[0], position[1] - this->Corner[1],
       position[2] - this->Corner[2] };
     const float value = this->Values.At(inBrick);
-    const int entry = this->Scale.Lookup.IndexOf(value);
+    const bool hidden = this->Hidden && this->Hidden->At(CellAt(inBrick));
+    const int entry = hidden ? this->Table.Transparent() : this->Scale.Lookup.IndexOf(value);
     const bool counts = entry != this->Table.Transparent() && value >= this->Scale.LowestCounted &&
                         value <= this->Scale.HighestCounted;
     counted = counts ? 1.0f : 0.0f;
@@ -103,6 +105,7 @@ private:
   const ProjectionTable& Table;
   const ProjectionTable::Scale& Scale;
   PlainInterpolator<T> Values;
+  const HiddenInBrick* Hidden;
   FixedBox Cells;
 };
 
@@ -140,7 +143,7 @@ void ProjectUnpacked(const PackedBrick& brick, const Box& cells, const Projectio
 {
   const BrickView view = brick.View();
   const PlainProjector<float> projector(
-    { view, brick.Corner(), cells }, table, brick.Relative(), tile);
+    { view, brick.Corner(), cells, &brick.Hidden() }, table, brick.Relative(), tile);
   ProjectRays(projector, Intersection(pixels, tile.Rect), tile);
 }
 

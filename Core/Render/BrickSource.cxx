@@ -54,6 +54,10 @@ BrickSource* BrickSource::AtLevel(int level, const Box& domain)
   {
     source->LevelNumber = level;
     source->KeptOfSource = this->KeptOfSource;
+    if (this->HiddenHere && !source->HiddenHere)
+    {
+      source->Hide(std::make_shared<const HiddenCells>(this->HiddenHere->Coarser(level)));
+    }
   }
   return (this->Levels[level] = std::move(source)).get();
 }

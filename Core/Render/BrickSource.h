@@ -3,6 +3,7 @@
 
 #include "Base/Box.h"
 #include "Render/BrickView.h"
+#include "Render/HiddenCells.h"
 #include "Render/KeptBricks.h"
 #include "Render/Viewpoint.h"
 #include "Series/SeriesIndex.h"
@@ -14,6 +15,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace banyan
@@ -104,6 +106,25 @@ public:
   /// May be called from any thread.
   BrickSource* AtLevel(int level, const Box& domain);
 
+  /// Says which cells are not drawn, at this level and, as far as they are not told by themselves, at
+  /// coarser ones that are asked for from now on. Before anything is drawn.
+  /// @param hidden of the whole grid, at this source's level; null for none
+  void Hide(std::shared_ptr<const HiddenCells> hidden) { this->HiddenHere = std::move(hidden); }
+  /// Null where nothing is hidden.
+  const std::shared_ptr<const HiddenCells>& Hidden() const { return this->HiddenHere; }
+  /// Whether no cell of a brick is drawn.
+  bool AllHidden(std::int64_t brick) const
+  {
+    return this->HiddenHere && this->HiddenHere->All(this->CellsOf(brick));
+  }
+  /// Whether a brick is of one value all over, without hidden cells: it is not loaded where nothing
+  /// is shaded.
+  bool IsMacroVoxel(std::int64_t brick) const
+  {
+    return this->UniformValueOf(brick) &&
+           !(this->HiddenHere && this->HiddenHere->Any(this->CellsOf(brick)));
+  }
+
   /// What the ray caster keeps of this source and its levels from picture to picture. Values must
   /// not change while the source lives.
   KeptBricks& Kept() const { return *this->KeptOfSource; }
@@ -118,6 +139,7 @@ protected:
   virtual std::unique_ptr<BrickSource> MakeLevel(int level, const Box& domain);
 
 private:
+  std::shared_ptr<const HiddenCells> HiddenHere;
   std::shared_ptr<KeptBricks> KeptOfSource = std::make_shared<KeptBricks>();
   int LevelNumber = 0;
   std::map<int, std::unique_ptr<BrickSource>> Levels; ///< that were asked for

@@ -17,6 +17,13 @@ namespace banyan
 template <class T>
 constexpr bool IsRelative = sizeof(T) >= 4 && !std::is_same_v<T, float>;
 
+/// The cell that a fixed-point position lies in.
+inline glm::ivec3 CellAt(const std::int64_t (&position)[3])
+{
+  return { static_cast<int>(position[0] >> FractionBits),
+    static_cast<int>(position[1] >> FractionBits), static_cast<int>(position[2] >> FractionBits) };
+}
+
 /// Bits of a fixed-point position that an interpolation uses: as many as float holds exactly.
 constexpr int UsedBits = 24;
 constexpr float UsedUnit = 1.0f / (1 << UsedBits);

@@ -211,7 +211,8 @@ std::uint64_t LevelCaster::BytesOf(const PlannedBrick& brick) const
 {
   return brick.Entry ? 0
                      : this->LoadBytesOf(brick) +
-                         PackedBrick::BytesFor(brick.Cells, this->Shading != nullptr);
+                         PackedBrick::BytesFor(brick.Cells, this->Shading != nullptr) +
+                         (this->Source.Hidden() ? HiddenInBrick::BytesFor(brick.Cells) : 0);
 }
 
 std::uint64_t LevelCaster::BytesToDraw() const

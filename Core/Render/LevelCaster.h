@@ -72,6 +72,7 @@ private:
     BrickVisibility Seen;
     PixelRect Footprint; ///< of what can be seen
     BrickView View;
+    HiddenInBrick Hidden; ///< of View
   };
 
   /// A sampling that tiles of the level have.

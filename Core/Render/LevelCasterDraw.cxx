@@ -275,7 +275,7 @@ void LevelCaster::DrawBrick(const PlannedBrick& brick, const LoadedBrick& loaded
   else if (!loaded.Packed)
   {
     const glm::ivec3 corner = this->Source.CellsOf(brick.Number).Lo;
-    const BrickPart part{ loaded.View, corner, brick.Drawn };
+    const BrickPart part{ loaded.View, corner, brick.Drawn, &loaded.Hidden };
     projection ? ProjectBrick(part, *projection, brick.Footprint, rays)
                : MarchBrick(part, sampling.Table, brick.Footprint, rays, this->Scene.Interpolation);
   }

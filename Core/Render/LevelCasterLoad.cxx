@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace banyan
 {
@@ -19,6 +20,8 @@ void LevelCaster::Load(const PlannedBrick& brick, LoadedBrick& loaded) const
     if (!PackedBrick::CanPack(brick.Cells))
     {
       loaded.View = this->LoadLarge(brick);
+      loaded.Hidden = HiddenInBrick(
+        this->Source.Hidden().get(), this->Source.CellsOf(brick.Number));
       return;
     }
     loaded.Packed = this->Pack(brick);
@@ -63,13 +66,17 @@ KeptBricks::Pointer LevelCaster::Pack(const PlannedBrick& brick) const
     view = this->Source.Load(brick.Number);
     samples.Lo = this->Source.CellsOf(brick.Number).Lo;
   }
-  if (shaded)
+  HiddenInBrick hidden(this->Source.Hidden().get(), brick.Cells);
+  const double step = hidden.Any() ? 0.0 : this->StepToPack(view.Type);
+  const std::shared_ptr<PackedBrick> packed =
+    shaded
+      ? std::make_shared<PackedBrick>(view, samples, brick.Cells, low, this->GradientScale())
+      : std::make_shared<PackedBrick>(view, samples.Lo, brick.Cells, low, step);
+  if (hidden.Any())
   {
-    return std::make_shared<const PackedBrick>(
-      view, samples, brick.Cells, low, this->GradientScale());
+    packed->Hide(std::move(hidden));
   }
-  return std::make_shared<const PackedBrick>(
-    view, samples.Lo, brick.Cells, low, this->StepToPack(view.Type));
+  return packed;
 }
 
 /// Whether the level is much larger than the processor's caches: samples wait for memory then, and

@@ -159,12 +159,13 @@ GroupMembers LevelCaster::Look(const BrickGroups& groups, const Box& bricks, Val
     {
       const std::uint64_t bit = std::uint64_t{ 1 } << place;
       const ValueRange range = this->Source.RangeOf(number);
-      const bool visible = projection ? projection->HighestRank(range) > 0.0f
-                                      : (this->Source.MaskOf(number) & bins) != 0 &&
-                                          this->Visible.Any(range.Low, range.High);
+      const bool seen = projection ? projection->HighestRank(range) > 0.0f
+                                   : (this->Source.MaskOf(number) & bins) != 0 &&
+                                       this->Visible.Any(range.Low, range.High);
+      const bool visible = seen && !this->Source.AllHidden(number);
       members.There |= bit;
       members.Visible |= visible ? bit : 0;
-      members.Uniform |= visible && this->Source.UniformValueOf(number) ? bit : 0;
+      members.Uniform |= visible && this->Source.IsMacroVoxel(number) ? bit : 0;
     });
   return members;
 }
@@ -360,13 +361,11 @@ std::int64_t LevelCaster::KeptNumberOf(const PlannedBrick& brick) const
 /// them.
 std::optional<int> LevelCaster::EntryOf(std::int64_t brick) const
 {
-  const std::optional<UniformValue> uniform = this->Shading || this->AnySampling->Projection
-                                                ? std::nullopt
-                                                : this->Source.UniformValueOf(brick);
-  if (!uniform)
+  if (this->Shading || this->AnySampling->Projection || !this->Source.IsMacroVoxel(brick))
   {
     return std::nullopt;
   }
+  const std::optional<UniformValue> uniform = this->Source.UniformValueOf(brick);
   // As a sample between eight such corners finds it.
   const StepTable& table = this->AnySampling->Table;
   std::optional<int> entry;

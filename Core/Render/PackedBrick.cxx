@@ -157,7 +157,31 @@ bool PackedBrick::TakeNumbers(const Floats& values, double step)
 std::size_t PackedBrick::Bytes() const
 {
   return sizeof(PackedBrick) + this->Samples.size() * sizeof(float) +
-         this->Numbers.size() * sizeof(std::int16_t);
+         this->Numbers.size() * sizeof(std::int16_t) + this->HiddenHere.Bytes();
+}
+
+void PackedBrick::Hide(HiddenInBrick hidden)
+{
+  this->HiddenHere = std::move(hidden);
+  this->HasSpecial = this->HasSpecial || this->HiddenHere.Any();
+  const glm::ivec3 macros = this->Macros();
+  const int edge = 1 << this->Shift;
+  for (int z = 0; z < macros.z; ++z)
+  {
+    for (int y = 0; y < macros.y; ++y)
+    {
+      for (int x = 0; x < macros.x; ++x)
+      {
+        const glm::ivec3 first = glm::ivec3(x, y, z) * edge;
+        if (this->HiddenHere.All({ first, glm::min(first + edge, this->Whole.Size()) }))
+        {
+          const int number = MacroNumber({ x, y, z });
+          this->Lowest[number] = std::numeric_limits<float>::infinity();
+          this->Highest[number] = -std::numeric_limits<float>::infinity();
+        }
+      }
+    }
+  }
 }
 
 PackedBrick::PackedBrick(
@@ -251,7 +275,7 @@ BrickVisibility::BrickVisibility(
   : Cells(brick.Cells())
   , MacroEdge(1 << brick.MacroShift())
 {
-  if (visible.All(range.Low, range.High))
+  if (visible.All(range.Low, range.High) && !brick.Hidden().Any())
   {
     return;
   }

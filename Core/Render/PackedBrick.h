@@ -4,6 +4,7 @@
 #include "Base/Box.h"
 #include "Base/RecycledMemory.h"
 #include "Render/BrickView.h"
+#include "Render/HiddenInBrick.h"
 #include "Render/PackedNumbers.h"
 #include "Render/TransferFunction.h"
 #include "Series/ValueRange.h"
@@ -64,6 +65,10 @@ public:
   /// Of the gradient along an axis, at the same samples. HasGradients.
   BrickView GradientView(int axis) const;
 
+  /// Says which cells are not drawn. Not for a brick that HasNumbers.
+  void Hide(HiddenInBrick hidden);
+  const HiddenInBrick& Hidden() const { return this->HiddenHere; }
+
   /// Unless HasNumbers.
   const float* Values() const { return this->Samples.data(); }
   bool HasNumbers() const { return !this->Numbers.empty(); }
@@ -75,12 +80,14 @@ public:
   bool HasGradients() const { return this->PerSample == 4; }
   bool Relative() const { return this->IsRelativeToLow; }
   double Low() const { return this->RelativeTo; } ///< 0 unless Relative
-  /// Whether a value is not finite, or so large that interpolating might give such a value.
+  /// Whether a value is not finite, or so large that interpolating might give such a value; or some
+  /// cell is hidden.
   bool Special() const { return this->HasSpecial; }
 
   int MacroShift() const { return this->Shift; } ///< a macro cell has 2^shift cells per axis
   glm::ivec3 Macros() const;
-  /// Extremes of the values at the corners of a macro cell's cells, NaN apart; empty: low > high.
+  /// Extremes of the values at the corners of a macro cell's cells, NaN apart; empty: low > high, as it
+  /// is where all of them are hidden.
   ValueRange RangeOfMacro(const glm::ivec3& macro) const;
 
 private:
@@ -120,6 +127,7 @@ private:
   double RelativeTo = 0.0;
   Floats Samples;
   Many<std::int16_t> Numbers; ///< in place of Samples
+  HiddenInBrick HiddenHere;
   NumberScale ScaleOfNumbers;
   float Lowest[MacroCells];
   float Highest[MacroCells];

@@ -102,6 +102,9 @@ public:
     , SliceBytes(static_cast<std::int32_t>(brick.StrideZ() * UnitBytes))
     , Scale(brick.Scale())
     , Lookup(lookup)
+    , HiddenWords(brick.Hidden().Words())
+    , HiddenPerRow(brick.Hidden().WordsPerRow())
+    , HiddenRows(brick.Hidden().RowsPerSlice())
   {
   }
 
@@ -114,6 +117,7 @@ public:
     VF X;
     VF Y;
     VF Z;
+    VI Hidden; ///< set if Special: not 0 in lanes whose cell is hidden
   };
 
   /// @param mask lanes whose position is inside the brick
@@ -125,6 +129,10 @@ public:
       hn::Add(hn::Mul(CellOf(position.Y), hn::Set(d, this->RowBytes)),
         hn::Mul(CellOf(position.Z), hn::Set(d, this->SliceBytes))));
     place.Cell.Set(hn::IfThenElseZero(hn::RebindMask(d, mask), bytes));
+    if constexpr (Special)
+    {
+      place.Hidden = this->HiddenWords ? this->HiddenAt(position, mask) : hn::Zero(d);
+    }
     if constexpr (Shaded)
     {
       this->AskAhead(place);
@@ -154,6 +162,7 @@ public:
       const Blocks mixed = this->ValuesAndGradients(place);
       value = mixed.Of[0];
       this->ShadeOf(mixed.Of[1], mixed.Of[2], mixed.Of[3], direction, found);
+      value = ShownOf(place, value);
     }
     else
     {
@@ -162,32 +171,10 @@ public:
     found.Entries.Set(hn::ShiftLeft<4>(this->IndicesOf(value)));
   }
 
-  /// Without gradients.
+  /// Without gradients; not a number in hidden cells.
   HWY_INLINE VF ValueOf(const Place& place) const
   {
-    static_assert(!Shaded, "one float per sample");
-    if constexpr (Nearest)
-    {
-      const VI bytes = hn::Load(DI(), place.Cell.Bytes);
-      if constexpr (Numbers)
-      {
-        // Two of them, of which the latter goes.
-        const auto* numbers = reinterpret_cast<const std::int32_t*>(this->Values);
-        const VI two = hn::GatherOffset(DI(), numbers, bytes);
-        return this->ValuesOf(hn::ConvertTo(D(), hn::ShiftRight<16>(hn::ShiftLeft<16>(two))));
-      }
-      else
-      {
-        return hn::GatherOffset(D(), reinterpret_cast<const float*>(this->Values), bytes);
-      }
-    }
-    else
-    {
-      const Blocks edges = Transposed({ { this->MixedAlongZ<0>(place), this->MixedAlongZ<1>(place),
-        this->MixedAlongZ<2>(place), this->MixedAlongZ<3>(place) } });
-      return Mix(
-        Mix(edges.Of[0], edges.Of[2], place.Y), Mix(edges.Of[1], edges.Of[3], place.Y), place.X);
-    }
+    return ShownOf(place, this->MixedValueOf(place));
   }
 
   /// As TableLookup::IndexOf.
@@ -224,6 +211,61 @@ public:
   }
 
 private:
+  static HWY_INLINE VF ShownOf([[maybe_unused]] const Place& place, VF value)
+  {
+    if constexpr (Special)
+    {
+      const auto shown = hn::RebindMask(D(), hn::Eq(place.Hidden, hn::Zero(DI())));
+      const VF none = hn::Set(D(), std::numeric_limits<float>::quiet_NaN());
+      return hn::IfThenElse(shown, value, none);
+    }
+    return value;
+  }
+
+  /// The bit of the cell, hidden where it is not 0.
+  template <class Mask>
+  HWY_INLINE VI HiddenAt(const Position& position, Mask mask) const
+  {
+    const DI d;
+    const DU du;
+    const auto cells = [](VU along) HWY_ATTR
+    { return hn::BitCast(DI(), hn::ShiftRight<FractionBits>(along)); };
+    const VI row = hn::Add(cells(position.Y), hn::Mul(cells(position.Z), hn::Set(d, this->HiddenRows)));
+    const VI x = cells(position.X);
+    const VI word = hn::Add(hn::Mul(row, hn::Set(d, this->HiddenPerRow)), hn::ShiftRight<5>(x));
+    const VI words = hn::GatherIndex(d, reinterpret_cast<const std::int32_t*>(this->HiddenWords),
+      hn::IfThenElseZero(hn::RebindMask(d, mask), word));
+    const VU bit = hn::Shl(hn::Set(du, 1u), hn::BitCast(du, hn::And(x, hn::Set(d, 31))));
+    return hn::And(words, hn::BitCast(d, bit));
+  }
+
+  HWY_INLINE VF MixedValueOf(const Place& place) const
+  {
+    static_assert(!Shaded, "one float per sample");
+    if constexpr (Nearest)
+    {
+      const VI bytes = hn::Load(DI(), place.Cell.Bytes);
+      if constexpr (Numbers)
+      {
+        // Two of them, of which the latter goes.
+        const auto* numbers = reinterpret_cast<const std::int32_t*>(this->Values);
+        const VI two = hn::GatherOffset(DI(), numbers, bytes);
+        return this->ValuesOf(hn::ConvertTo(D(), hn::ShiftRight<16>(hn::ShiftLeft<16>(two))));
+      }
+      else
+      {
+        return hn::GatherOffset(D(), reinterpret_cast<const float*>(this->Values), bytes);
+      }
+    }
+    else
+    {
+      const Blocks edges = Transposed({ { this->MixedAlongZ<0>(place), this->MixedAlongZ<1>(place),
+        this->MixedAlongZ<2>(place), this->MixedAlongZ<3>(place) } });
+      return Mix(
+        Mix(edges.Of[0], edges.Of[2], place.Y), Mix(edges.Of[1], edges.Of[3], place.Y), place.X);
+    }
+  }
+
   HWY_INLINE Steps Lit(const Steps& steps, const Found& found) const
   {
     if constexpr (!Shaded)
@@ -383,6 +425,9 @@ private:
   const glm::vec4* Table = nullptr;
   const glm::vec4* Depths = nullptr;
   const ShadingTable* Shading = nullptr;
+  const std::uint32_t* HiddenWords; ///< null where no cell is hidden
+  std::int32_t HiddenPerRow;
+  std::int32_t HiddenRows;
 };
 
 } // namespace banyan::HWY_NAMESPACE

@@ -117,10 +117,12 @@ std::vector<std::int64_t> VisibilityOrder(
 /// with CastRays, but of its code only the camera.
 /// Draws all that a scene may ask for but shading.
 /// @param value gives the sample at an index position (0-based) or NaN
+/// @param hidden says which cells are not drawn; empty for none
 /// @return the whole viewport
 FloatImage ReferenceImage(const RayScene& scene,
   const std::function<double(const glm::ivec3&)>& value,
-  const std::function<glm::dvec4(double)>& function);
+  const std::function<glm::dvec4(double)>& function,
+  const std::function<bool(const glm::ivec3&)>& hidden = {});
 
 } // namespace banyan
 

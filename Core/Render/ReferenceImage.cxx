@@ -17,10 +17,12 @@ class ReferenceRay
 {
 public:
   ReferenceRay(const RayScene& scene, const std::function<double(const glm::ivec3&)>& value,
-    const std::function<glm::dvec4(double)>& function)
+    const std::function<glm::dvec4(double)>& function,
+    const std::function<bool(const glm::ivec3&)>& hidden)
     : Scene(scene)
     , Value(value)
     , Function(function)
+    , Hidden(hidden)
     , WorldToIndex(glm::inverse(scene.IndexToWorld))
   {
   }
@@ -40,8 +42,9 @@ public:
     {
       const double begin = std::max(k * step, enter);
       const double end = std::min((k + 1.0) * step, exit);
-      const double value = this->Interpolate(this->IndexAt(ray, 0.5 * (begin + end)));
-      if (std::isfinite(value) && end > begin)
+      const glm::dvec3 position = this->IndexAt(ray, 0.5 * (begin + end));
+      const double value = this->Interpolate(position);
+      if (std::isfinite(value) && end > begin && !(this->Hidden && this->Hidden(this->CellAt(position))))
       {
         this->Add(value, end - begin, met);
       }
@@ -160,21 +163,20 @@ private:
     return this->Value(glm::clamp(nearest, cells.Lo, cells.Hi));
   }
 
+  glm::ivec3 CellAt(const glm::dvec3& position) const
+  {
+    const Box& cells = this->Scene.DomainCells;
+    return glm::clamp(glm::ivec3(glm::floor(position)), cells.Lo, cells.Hi - 1);
+  }
+
   double Interpolate(const glm::dvec3& position) const
   {
     if (this->Scene.Interpolation == SampleInterpolation::Nearest)
     {
       return this->NearestTo(position);
     }
-    const Box& cells = this->Scene.DomainCells;
-    glm::ivec3 cell;
-    glm::dvec3 part;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const int floor = static_cast<int>(std::floor(position[axis]));
-      cell[axis] = std::clamp(floor, cells.Lo[axis], cells.Hi[axis] - 1);
-      part[axis] = std::clamp(position[axis] - cell[axis], 0.0, 1.0);
-    }
+    const glm::ivec3 cell = this->CellAt(position);
+    const glm::dvec3 part = glm::clamp(position - glm::dvec3(cell), 0.0, 1.0);
     double sum = 0.0;
     for (int corner = 0; corner < 8; ++corner)
     {
@@ -193,6 +195,7 @@ private:
   const RayScene& Scene;
   const std::function<double(const glm::ivec3&)>& Value;
   const std::function<glm::dvec4(double)>& Function;
+  const std::function<bool(const glm::ivec3&)>& Hidden;
   glm::dmat4 WorldToIndex;
 };
 
@@ -200,9 +203,10 @@ private:
 
 FloatImage ReferenceImage(const RayScene& scene,
   const std::function<double(const glm::ivec3&)>& value,
-  const std::function<glm::dvec4(double)>& function)
+  const std::function<glm::dvec4(double)>& function,
+  const std::function<bool(const glm::ivec3&)>& hidden)
 {
-  const ReferenceRay ray(scene, value, function);
+  const ReferenceRay ray(scene, value, function, hidden);
   FloatImage image;
   image.Rect = scene.Viewport;
   image.Pixels.reserve(static_cast<std::size_t>(scene.Viewport.Count()));

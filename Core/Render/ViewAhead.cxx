@@ -72,7 +72,7 @@ public:
     }
     else if (!this->Now.MayShow(part) && this->Visible.Contains(first) &&
              !IsCutAway(this->Planes, part) &&
-             (this->Sampled || !this->Source.UniformValueOf(first)))
+             (this->Sampled || !this->Source.IsMacroVoxel(first)))
     {
       this->Found.push_back(first);
     }

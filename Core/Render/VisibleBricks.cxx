@@ -23,7 +23,8 @@ VisibleBricks::VisibleBricks(const RayScene& scene, const BrickSource& source)
 bool VisibleBricks::Contains(std::int64_t brick) const
 {
   const ValueRange range = this->Source.RangeOf(brick);
-  return !range.Empty() && (!this->Composited || ((this->Source.MaskOf(brick) & this->Bins) != 0 &&
+  return !range.Empty() && !this->Source.AllHidden(brick) &&
+         (!this->Composited || ((this->Source.MaskOf(brick) & this->Bins) != 0 &&
                                                    this->Visible.Any(range.Low, range.High)));
 }
 
@@ -40,7 +41,7 @@ std::vector<std::int64_t> BricksToLoad(
   {
     const Box part = Intersection(source.CellsOf(brick), cells);
     if (!part.Empty() && visible.Contains(brick) && !IsCutAway(planes, part) &&
-        screen.MayShow(part) && (sampled || !source.UniformValueOf(brick)))
+        screen.MayShow(part) && (sampled || !source.IsMacroVoxel(brick)))
     {
       bricks.push_back(brick);
     }
