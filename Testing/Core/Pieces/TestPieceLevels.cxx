@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <mutex>
+#include <random>
 
 namespace
 {
@@ -46,12 +47,14 @@ RayScene SceneOf(const Drawn& drawn)
 }
 
 template <class T>
-std::vector<FloatImage> PicturesOfOne(const std::vector<T>& values)
+std::vector<FloatImage> PicturesOfOne(
+  const std::vector<T>& values, const std::shared_ptr<const HiddenCells>& hidden = nullptr)
 {
   ThreadPool pool(1);
   const SampleArray array = scenes::ArrayOf(values, Samples);
   const ValueRange range = FiniteRange(array, pool);
   ArrayBrickSource source(array, 16, { range.Low, range.High }, pool);
+  source.Hide(hidden);
   std::vector<FloatImage> pictures;
   for (const Drawn& drawn : Frames())
   {
@@ -65,9 +68,10 @@ std::vector<FloatImage> PicturesOfOne(const std::vector<T>& values)
 }
 
 template <class T>
-void ExpectPicturesOfOne(const std::vector<T>& values, Deal deal, LoadBalancing mode, int ranks)
+void ExpectPicturesOfOne(const std::vector<T>& values, Deal deal, LoadBalancing mode, int ranks,
+  const std::shared_ptr<const HiddenCells>& hidden = nullptr)
 {
-  const std::vector<FloatImage> alone = PicturesOfOne(values);
+  const std::vector<FloatImage> alone = PicturesOfOne(values, hidden);
   const std::vector<Box> dealt = Dealt(deal, Samples, ranks);
   RunOnSimulatedRanks(ranks,
     [&](Communicator& communicator)
@@ -76,6 +80,7 @@ void ExpectPicturesOfOne(const std::vector<T>& values, Deal deal, LoadBalancing 
       ThreadPool pool(1);
       PieceField field;
       field.Take(communicator, dealt, mine.Array, Samples - 1, BrickCells, mode, pool);
+      field.Source()->Hide(hidden);
       for (std::size_t frame = 0; frame < Frames().size(); ++frame)
       {
         RayScene scene = SceneOf(Frames()[frame]);
@@ -121,6 +126,33 @@ TEST(PieceLevels, OfBytesAreThoseOfOneRank)
     values.push_back(static_cast<unsigned char>(value > 0.4f ? 1 : 0));
   }
   ExpectPicturesOfOne(values, Deal::Blocks, LoadBalancing::Off, 3);
+}
+
+/// Cells that are hidden on one rank and drawn by another, at all levels; bricks of one value too.
+TEST(PieceLevels, HiddenCellsAreThoseOfOneRank)
+{
+  const glm::ivec3 cells = Samples - 1;
+  std::mt19937 random(5);
+  for (const bool uniform : { false, true })
+  {
+    const std::vector<float> values = scenes::Sampled<float>(
+      [uniform](const glm::dvec3& p) { return uniform ? 0.75 : scenes::Standard(p); }, Samples);
+    std::vector<std::uint8_t> flags(static_cast<std::size_t>(cells.x) * cells.y * cells.z);
+    for (std::size_t i = 0; i < flags.size(); ++i)
+    {
+      const auto x = static_cast<int>(i) % cells.x;
+      flags[i] = x > 20 && x < 30 ? 32 : random() % 20 == 0 ? 33 : 1;
+    }
+    const auto hidden = std::make_shared<HiddenCells>(cells);
+    hidden->Hide({ glm::ivec3(0), cells }, flags.data(), 32);
+    for (const LoadBalancing mode : { LoadBalancing::Off, LoadBalancing::MeasuredCost })
+    {
+      ExpectPicturesOfOne(values, Deal::Blocks, mode, 3, hidden);
+      ExpectPicturesOfOne(values, Deal::OneHasAll, mode, 3, hidden);
+    }
+    const FloatImage whole = PicturesOfOne(values)[0];
+    EXPECT_GT(MaxDifference(whole, PicturesOfOne(values, hidden)[0]), 0.05);
+  }
 }
 
 TEST(PieceLevels, PiecesWithAHoleAreDrawnWhereTheyAreKnown)
