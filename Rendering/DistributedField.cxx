@@ -1,6 +1,5 @@
-#include "DistributedField.h"
+#include "DistributedFieldFacts.h"
 
-#include "HiddenInImage.h"
 #include "MeshField.h"
 #include "MotionEnhancement.h"
 #include "ToleranceControl.h"
@@ -14,24 +13,16 @@
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
-#include "vtkMatrix3x3.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 namespace banyan
 {
 namespace
 {
-
-/// Whether two numbers that were computed in slightly different ways mean the same place.
-bool Same(double a, double b, double scale)
-{
-  return std::abs(a - b) <= 1e-9 * std::max({ std::abs(a), std::abs(b), scale });
-}
 
 /// Samples per axis of a level as the reader gives them to VTK: those that are also fine ones.
 glm::ivec3 ExposedSamples(const SeriesFile& series, int level)
@@ -41,53 +32,7 @@ glm::ivec3 ExposedSamples(const SeriesFile& series, int level)
     ((fine.x - 1) >> level) + 1, ((fine.y - 1) >> level) + 1, ((fine.z - 1) >> level) + 1);
 }
 
-/// What of a piece is hidden: bits.
-enum HiddenThere : std::int32_t
-{
-  SomeCells = 1,
-  SomePoints = 2
-};
-
 } // namespace
-
-/// What a rank tells the others about its piece. Plain memory: it is sent as it is.
-struct DistributedField::Facts
-{
-  std::int32_t HasData = 0;
-  std::int32_t Deferred = 0; ///< drawn from the file, if all ranks can
-  std::int32_t Components = 0;
-  std::int32_t Lo[3] = { 0, 0, 0 }; ///< samples, half-open
-  std::int32_t Hi[3] = { 0, 0, 0 };
-  std::int32_t Hidden = 0; ///< HiddenThere
-  double Origin[3] = { 0, 0, 0 };
-  double Spacing[3] = { 1, 1, 1 };
-  double Direction[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 }; ///< row by row
-  std::int32_t Step = 0;
-  std::int32_t Array = 0;
-  std::int32_t Component = 0;
-  std::int32_t Level = 0;
-
-  Box Samples() const
-  {
-    return { { this->Lo[0], this->Lo[1], this->Lo[2] }, { this->Hi[0], this->Hi[1], this->Hi[2] } };
-  }
-
-  Grid Geometry() const
-  {
-    Grid grid;
-    grid.Extent = this->Samples();
-    for (int i = 0; i < 3; ++i)
-    {
-      grid.Origin[i] = this->Origin[i];
-      grid.Spacing[i] = this->Spacing[i];
-      for (int j = 0; j < 3; ++j)
-      {
-        grid.Direction[j][i] = this->Direction[3 * i + j];
-      }
-    }
-    return grid;
-  }
-};
 
 DistributedField::DistributedField() = default;
 DistributedField::~DistributedField() = default;
@@ -129,6 +74,7 @@ void DistributedField::Update(Communicator& communicator, const FieldPiece& piec
   if (AllMax(communicator, changed ? 1.0 : 0.0) > 0.0)
   {
     ++this->Updates;
+    this->LargestEncodingError = 0.0;
     this->ProblemText = piece.Problem;
     if (!this->TakeMesh(communicator, piece))
     {
@@ -142,72 +88,6 @@ void DistributedField::Update(Communicator& communicator, const FieldPiece& piec
     }
     this->AgreeOnRange(communicator);
   }
-}
-
-DistributedField::Facts DistributedField::FactsOf(const FieldPiece& piece) const
-{
-  Facts facts;
-  if (!piece.Image || !piece.Array)
-  {
-    return facts;
-  }
-  facts.HasData = 1;
-  facts.Components = piece.Array->GetNumberOfComponents();
-  facts.Component = piece.Component;
-  const int* extent = piece.Image->GetExtent();
-  for (int i = 0; i < 3; ++i)
-  {
-    facts.Lo[i] = extent[2 * i];
-    facts.Hi[i] = extent[2 * i + 1] + 1;
-  }
-  piece.Image->GetOrigin(facts.Origin);
-  piece.Image->GetSpacing(facts.Spacing);
-  std::copy_n(piece.Image->GetDirectionMatrix()->GetData(), 9, facts.Direction);
-
-  facts.Hidden = (FlagsOfHiddenCells(piece.Image) ? SomeCells : 0) |
-                 (FlagsOfHiddenPoints(piece.Image) ? SomePoints : 0);
-
-  const vtkBanyanDeferred::Handle* handle = vtkBanyanDeferred::From(piece.Array);
-  if (handle && vtkBanyanDeferred::LiesOnSeries(piece.Image, *handle))
-  {
-    facts.Deferred = 1;
-    facts.Step = handle->Step;
-    facts.Array = handle->Array;
-    facts.Level = handle->Level;
-  }
-  return facts;
-}
-
-/// Empty if a rank's piece belongs to the same grid as the first one's; otherwise what differs.
-std::string DistributedField::CheckAgainst(
-  const Facts& mine, const Facts& first, int firstRank) const
-{
-  const auto differs = [&](const std::string& what)
-  {
-    return "The pieces of the data do not belong to one grid: " + what +
-           " differs from that on rank " + std::to_string(firstRank) +
-           ". Draw such data one block at a time.";
-  };
-  const double scale = *std::max_element(first.Spacing, first.Spacing + 3);
-  for (int i = 0; i < 3; ++i)
-  {
-    if (!Same(mine.Origin[i], first.Origin[i], scale))
-    {
-      return differs("the origin");
-    }
-    if (!Same(mine.Spacing[i], first.Spacing[i], 0.0))
-    {
-      return differs("the spacing");
-    }
-  }
-  for (int i = 0; i < 9; ++i)
-  {
-    if (!Same(mine.Direction[i], first.Direction[i], 1.0))
-    {
-      return differs("the direction");
-    }
-  }
-  return mine.Components == first.Components ? std::string() : differs("the number of components");
 }
 
 void DistributedField::SetGrid(const Facts& facts, const Box& samples)
@@ -282,6 +162,10 @@ void DistributedField::Agree(Communicator& communicator, const FieldPiece& piece
     return std::any_of(
       all.begin(), all.end(), [what](const Facts& facts) { return (facts.Hidden & what) != 0; });
   };
+  for (const Facts& facts : all)
+  {
+    this->LargestEncodingError = std::max(this->LargestEncodingError, facts.EncodingError);
+  }
   // Which series it is must be agreed as well; strings do not fit into the facts.
   const vtkBanyanDeferred::Handle* handle =
     deferred && mine.HasData ? vtkBanyanDeferred::From(piece.Array) : nullptr;

@@ -83,6 +83,9 @@ public:
   double CellSize() const { return this->ShortestEdge; }
   /// Of the values of all ranks; of all steps, where they come from an encoded series.
   const ValueRange& Range() const { return this->ValuesRange; }
+  /// The largest error of values, of all steps, that encoding has made as far as it is known: of the
+  /// drawn component, or of the length. 0 for plain data and meshes. The same on all ranks.
+  double EncodingError() const { return this->LargestEncodingError; }
   /// Whether bricks come from an encoded series.
   bool Encoded() const { return this->Series != nullptr; }
 
@@ -139,6 +142,7 @@ private:
   std::array<double, 6> PhysicalBounds{ { 1, -1, 1, -1, 1, -1 } };
   double ShortestEdge = 1.0;
   ValueRange ValuesRange;
+  double LargestEncodingError = 0.0;
   std::unique_ptr<MeshField> Mesh; ///< null unless it is one of hexahedra
   std::unique_ptr<PieceField> Pieces; ///< null unless it is plain data on several ranks
   std::unique_ptr<BrickSource> Bricks;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
 
 namespace banyan
@@ -18,11 +19,57 @@ namespace
 
 constexpr double MostSlack = 16.0;
 
+/// Whether a value that occurs is opaque however short its part of a ray.
+bool HasOpaqueValues(const TransferFunction& function, const ValueRange& values)
+{
+  const auto last = static_cast<double>(function.Entries.size()) - 1.0;
+  const auto entryOf = [&](double value)
+  {
+    const double position = (value - function.Low) / (function.High - function.Low) * last + 0.5;
+    return static_cast<std::ptrdiff_t>(std::clamp(position, 0.0, last));
+  };
+  const auto first = function.Entries.begin();
+  return !function.Entries.empty() && !values.Empty() && function.High > function.Low &&
+         std::any_of(first + entryOf(values.Low), first + entryOf(values.High) + 1,
+           [](const glm::vec4& entry) { return entry.a >= 1.0f; });
+}
+
+/// @param wanted tolerance, in 1/255
+/// @param planned the one that the plan had
+std::string LimitOf(const SamplingPlan& plan, double wanted, double planned,
+  const ToleranceControl::Wish& wish, bool opaque)
+{
+  std::string text;
+  if (plan.Limit == SamplingLimit::Distance)
+  {
+    text = "The finest sampling was reached: samples get no closer than 1/8 of a voxel. Where the "
+           "opacity function jumps, single pixels may be off by more than the estimated error. ";
+  }
+  else if (plan.Limit == SamplingLimit::Level)
+  {
+    text = wish.Interacting ? "While the camera moves, no finer level is drawn than memory may hold. "
+                            : "Max Elements Per Pixel allows no finer elements. ";
+  }
+  else if (planned > wanted)
+  {
+    text = wish.Interacting ? "Interactive Frame Seconds were exceeded: the tolerance is larger than "
+                              "the one that was set. "
+                            : "The picture is still being refined. ";
+  }
+  if (opaque)
+  {
+    text += "The opacity function reaches 1: a single sample of such a value hides all that is behind "
+            "it, and single pixels may be off by more than the estimated error. ";
+  }
+  return text.substr(0, text.find_last_not_of(' ') + 1);
+}
+
 } // namespace
 
 double ToleranceControl::Plan(Communicator& communicator, DistributedField& field, RayScene& scene,
   const Wish& wish, std::uint64_t budgetBytes, const std::string& failure, FrameStatistics& frame)
 {
+  this->LimitText.clear();
   this->BySteps = !wish.KeepsTolerance;
   if (this->BySteps)
   {
@@ -71,6 +118,8 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
   frame.PilotSeconds = plan.PilotSeconds;
   frame.StrideSeconds = plan.StrideSeconds;
   frame.Pilots = plan.Pilots;
+  this->LimitText = LimitOf(plan, wish.Interacting ? wish.Interactive : wish.Still, tolerance, wish,
+    HasOpaqueValues(scene.Transfer, field.Range()));
   // No pixel can be off by more; several times what pilots are off can be.
   return std::min(plan.EstimatedError, 255.0);
 }

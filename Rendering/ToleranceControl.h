@@ -6,6 +6,8 @@
 #include "Parallel/DistributedPlan.h"
 #include "Render/CoarserSteps.h"
 
+#include <string>
+
 namespace banyan
 {
 
@@ -44,6 +46,11 @@ public:
     const Wish& wish, std::uint64_t budgetBytes, const std::string& failure,
     FrameStatistics& frame);
 
+  /// What is to be known beside the estimated error of the frame that was planned last, in sentences
+  /// for the user: why it is above the tolerance that was wanted, or what it may have missed. Empty if
+  /// nothing. The same on all ranks.
+  const std::string& Limit() const { return this->LimitText; }
+
   /// Tells what the frame took that was planned last: the same number on all ranks.
   void FrameTook(const Wish& wish, double seconds);
 
@@ -59,6 +66,7 @@ private:
   static void PlanByScreen(Communicator& communicator, DistributedField& field, RayScene& scene,
     const Wish& wish, int coarsest);
 
+  std::string LimitText;
   RefinementPasses Passes;
   double Slack = 1.0; ///< times the interactive tolerance
   StepControl Steps;

@@ -30,6 +30,8 @@ void vtkBanyanFrameStatistics::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "CacheHits: " << this->CacheHits << "\n"
      << indent << "CacheMisses: " << this->CacheMisses << "\n"
      << indent << "EstimatedImageError: " << this->EstimatedImageError << "\n"
+     << indent << "ImageErrorLimit: " << this->ImageErrorLimit << "\n"
+     << indent << "EncodingErrorOfValues: " << this->EncodingErrorOfValues << "\n"
      << indent << "MeshDeviation: " << this->MeshDeviation << "\n"
      << indent << "Frames: " << this->Frames << "\n";
 }

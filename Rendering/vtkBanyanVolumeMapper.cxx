@@ -308,6 +308,8 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   const banyan::PhaseScope sampling(banyan::Phase::Sampling);
   this->Statistics->SetEstimatedImageError(self.Tolerance.Plan(
     *self.Communicator, self.Field, scene, wish, budget, wanted.Problem, frame));
+  this->Statistics->SetImageErrorLimit(self.Tolerance.Limit().c_str());
+  this->Statistics->SetEncodingErrorOfValues(self.Field.EncodingError());
   this->Statistics->SetMeshDeviation(self.Field.MeshDeviation());
   const banyan::FrameStatistics pilots = frame;
   compositing.Method = static_cast<banyan::CompositingMethod>(this->Compositing);

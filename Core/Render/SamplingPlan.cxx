@@ -263,6 +263,12 @@ private:
     return levels.empty() ? 0 : std::min(levels[tile], std::max(0, this->Wish.CoarsestLevel - 1));
   }
 
+  /// Whether a tile might have been drawn from a finer level but for the wish.
+  bool LevelIsHeld(std::size_t tile) const
+  {
+    return std::max(this->Wish.FinestLevel, this->FinestLevelOf(tile)) > 0;
+  }
+
   /// Per level, SamplingChoices::CheapestFirst without finer ones: Levels begin with the coarsest.
   std::vector<std::vector<SamplingChoices::Chosen>> OrdersFromLevels() const
   {
@@ -291,6 +297,10 @@ private:
         static_cast<int>(tile / static_cast<std::size_t>(tiles->Tiles().x)));
       tiles->SetNumber(position, this->Choices.NumberOf(chosen));
       largest = std::max(largest, chosen.Error);
+      if (chosen.Error > this->Allowed && plan.Limit != SamplingLimit::Distance)
+      {
+        plan.Limit = this->LevelIsHeld(tile) ? SamplingLimit::Level : SamplingLimit::Distance;
+      }
     }
     plan.Samplings = tiles;
     plan.EstimatedError = largest + this->Wish.Tolerance * ShareOfEnds;
