@@ -45,14 +45,14 @@ FrameScene MakeFrameScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMap
   const RayCamera camera = CameraOf(renderer, 0.5 * (low + high));
   vtkVolumeProperty* property = volume->GetProperty();
   FrameScene frame{ { camera.InSpace(toWorld), camera.Footprint(low, high), field.IndexToPhysical(),
-                      field.DomainCells(), function.Of(property),
-                      sampleDistanceVoxels * field.CellSize() },
+                      field.DomainCells(), {}, sampleDistanceVoxels * field.CellSize() },
     {} };
   RayScene& scene = frame.Scene;
   scene.Shading = MakeShading(property);
   scene.Interpolation = MakeInterpolation(property);
   try
   {
+    scene.Transfer = function.Of(property);
     scene.ClipPlanes = MakeClipPlanes(mapper, toWorld);
     scene.Blend = MakeBlend(mapper, field.Range());
   }

@@ -1,5 +1,7 @@
 #include "SceneOptions.h"
 
+#include "TransferFunctionTable.h"
+
 #include "Base/Error.h"
 
 #include "vtkPlane.h"
@@ -94,7 +96,7 @@ RayBlend MakeBlend(vtkVolumeMapper* mapper, const ValueRange& data)
 
 SampleInterpolation MakeInterpolation(vtkVolumeProperty* property)
 {
-  return property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION
+  return property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION || ShowsCategories(property)
            ? SampleInterpolation::Nearest
            : SampleInterpolation::Linear;
 }

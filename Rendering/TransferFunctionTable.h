@@ -11,9 +11,17 @@ namespace banyan
 {
 
 /// The transfer function of component 0 of a volume property: colour, scalar opacity and its unit
-/// distance, tabulated over the range of both functions.
-/// @param entries of the table, at least 2
-TransferFunction MakeTransferFunction(vtkVolumeProperty* property, int entries = 4096);
+/// distance, as VTK evaluates them (GetColor, GetValue), tabulated by TabulateFunction: its colours
+/// below and above the range, its steps and logarithms included.
+///
+/// Of categories (an indexed look-up), numbers that are labels have their colours, to the precision
+/// of float32, and all others that of NaN. What is not a number is transparent whatever the map
+/// says. Throws Error when a logarithmic opacity function begins at 0 or below, or a value has
+/// none.
+TransferFunction MakeTransferFunction(vtkVolumeProperty* property);
+
+/// Whether values are labels with a colour each: a value between two labels then means nothing.
+bool ShowsCategories(vtkVolumeProperty* property);
 
 /// The same, made anew only when the property has other functions or these have changed: thousands
 /// of values are looked up for each, which takes longer than some pictures.

@@ -62,7 +62,7 @@ void FrameBalancer::LookAgain(const RayScene& scene, const BrickSource& source)
   const TransferFunction& seenBy = this->SeenBy;
   if (this->SeenOf == &source && this->SeenAs == scene.Blend.Mode &&
       seenBy.Low == scene.Transfer.Low && seenBy.High == scene.Transfer.High &&
-      seenBy.Entries == scene.Transfer.Entries)
+      seenBy.Entries == scene.Transfer.Entries && seenBy.Edges == scene.Transfer.Edges)
   {
     return;
   }

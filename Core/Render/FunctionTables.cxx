@@ -14,6 +14,7 @@ bool AreSame(const TransferFunction& a, const TransferFunction& b)
   const double first[3] = { a.Low, a.High, a.UnitDistance };
   const double second[3] = { b.Low, b.High, b.UnitDistance };
   return std::memcmp(first, second, sizeof(first)) == 0 && a.Entries.size() == b.Entries.size() &&
+         a.Edges == b.Edges &&
          (a.Entries.empty() || std::memcmp(a.Entries.data(), b.Entries.data(),
                                  a.Entries.size() * sizeof(a.Entries[0])) == 0);
 }

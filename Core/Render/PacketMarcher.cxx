@@ -68,14 +68,17 @@ void MarchPackedHere(const PackedBrick& brick, const BrickVisibility& seen, cons
   static constexpr March nearest[4] = { MarchPackets<true, false, false, true>,
     MarchPackets<true, true, false, true>, MarchPackets<true, false, true, true>,
     MarchPackets<true, true, true, true> };
+  const bool hasEdges = table.Lookup().Edges != nullptr;
   if (brick.HasNumbers())
   {
 #if BANYAN_HAS_NUMBERS
-    static constexpr March numbers[4] = { MarchPackets<false, false, false, false, true>,
+    static constexpr March numbers[8] = { MarchPackets<false, false, false, false, true>,
       MarchPackets<false, true, false, false, true>, MarchPackets<false, false, false, true, true>,
-      MarchPackets<false, true, false, true, true> };
-    const int way =
-      (seen.Holes ? 1 : 0) + (interpolation == SampleInterpolation::Nearest ? 2 : 0);
+      MarchPackets<false, true, false, true, true>, MarchPackets<true, false, false, false, true>,
+      MarchPackets<true, true, false, false, true>, MarchPackets<true, false, false, true, true>,
+      MarchPackets<true, true, false, true, true> };
+    const int way = (seen.Holes ? 1 : 0) +
+                    (interpolation == SampleInterpolation::Nearest ? 2 : 0) + (hasEdges ? 4 : 0);
     return numbers[way](brick, seen, table, shading, pixels, tile);
 #else
     return MarchUnpacked(brick, seen, table, shading, pixels, tile, interpolation);
@@ -84,7 +87,7 @@ void MarchPackedHere(const PackedBrick& brick, const BrickVisibility& seen, cons
   const int which = (seen.Holes ? 1 : 0) + (shading ? 2 : 0);
   const March march = interpolation == SampleInterpolation::Nearest
                         ? nearest[which]
-                        : linear[2 * which + (brick.Special() ? 1 : 0)];
+                        : linear[2 * which + (brick.Special() || hasEdges ? 1 : 0)];
   march(brick, seen, table, shading, pixels, tile);
 }
 

@@ -320,20 +320,24 @@ void ProjectPackedHere(const PackedBrick& brick, const Box& cells, const ValueRa
     ProjectPackets<true, true, false>, ProjectPackets<false, false, true>,
     ProjectPackets<true, false, true>, ProjectPackets<false, true, true>,
     ProjectPackets<true, true, true> };
+  const bool hasEdges = table.ScaleOf(brick.Relative()).Lookup.Edges != nullptr;
   if (brick.HasNumbers())
   {
 #if BANYAN_HAS_NUMBERS
-    static constexpr Project numbers[4] = { ProjectPackets<false, false, false, true>,
+    static constexpr Project numbers[8] = { ProjectPackets<false, false, false, true>,
       ProjectPackets<false, true, false, true>, ProjectPackets<false, false, true, true>,
-      ProjectPackets<false, true, true, true> };
-    const int way = (table.Nearest() ? 1 : 0) + (table.Averages() ? 2 : 0);
+      ProjectPackets<false, true, true, true>, ProjectPackets<true, false, false, true>,
+      ProjectPackets<true, true, false, true>, ProjectPackets<true, false, true, true>,
+      ProjectPackets<true, true, true, true> };
+    const int way =
+      (table.Nearest() ? 1 : 0) + (table.Averages() ? 2 : 0) + (hasEdges ? 4 : 0);
     return numbers[way](brick, cells, range, table, pixels, tile);
 #else
     return ProjectUnpacked(brick, cells, table, pixels, tile);
 #endif
   }
   const int which =
-    (brick.Special() ? 1 : 0) + (table.Nearest() ? 2 : 0) + (table.Averages() ? 4 : 0);
+    (brick.Special() || hasEdges ? 1 : 0) + (table.Nearest() ? 2 : 0) + (table.Averages() ? 4 : 0);
   projects[which](brick, cells, range, table, pixels, tile);
 }
 

@@ -76,10 +76,10 @@ HWY_INLINE Steps OverFraction(const Blocks& depths, VF fraction)
 }
 
 /// Samples of a packed brick: value by value what PlainInterpolator and TableLookup give.
-/// @tparam Special whether values may not be finite
+/// @tparam Special whether values may not be finite, or the table may have edges
 /// @tparam Shaded whether the brick has gradients, and samples are shaded by them
 /// @tparam Nearest whether samples are those of the grid nearest by
-/// @tparam Numbers whether the brick has 16-bit numbers; it is neither special nor shaded
+/// @tparam Numbers whether the brick has 16-bit numbers; it is not shaded
 template <bool Special, bool Shaded, bool Nearest, bool Numbers = false>
 class PacketSamples
 {
@@ -191,7 +191,11 @@ public:
       return Truncated(inside);
     }
     const VF notBelow = hn::IfThenElseZero(hn::Gt(position, hn::Zero(d)), position);
-    const VI index = Truncated(hn::IfThenElse(hn::Lt(notBelow, last), notBelow, last));
+    VI index = Truncated(hn::IfThenElse(hn::Lt(notBelow, last), notBelow, last));
+    if (this->Lookup.Edges)
+    {
+      index = EntriesOf(this->Lookup, index, value);
+    }
     const auto finite = hn::Le(hn::Abs(value), hn::Set(d, std::numeric_limits<float>::max()));
     return hn::IfThenElse(
       hn::RebindMask(DI(), finite), index, hn::Set(DI(), this->Lookup.Transparent));

@@ -7,6 +7,7 @@
 #endif
 
 #include "Render/RayTile.h"
+#include "Render/TransferFunction.h"
 
 #include <hwy/highway.h>
 
@@ -251,6 +252,21 @@ HWY_INLINE VI Truncated(VF v)
 #else
   return hn::ConvertTo(DI(), v);
 #endif
+}
+
+/// As TableLookup::IndexOf of a table with edges.
+HWY_INLINE VI EntriesOf(const TableLookup& lookup, VI buckets, VF value)
+{
+  const D d;
+  const DI di;
+  VI entries = hn::GatherIndex(di, lookup.First, buckets);
+  for (int step = 1 << lookup.Steps >> 1; step > 0; step >>= 1)
+  {
+    const VI last = hn::Add(entries, hn::Set(di, step - 1));
+    const auto above = hn::RebindMask(di, hn::Ge(value, hn::GatherIndex(d, lookup.Edges, last)));
+    entries = hn::Add(entries, hn::IfThenElseZero(above, hn::Set(di, step)));
+  }
+  return entries;
 }
 
 } // namespace banyan::HWY_NAMESPACE

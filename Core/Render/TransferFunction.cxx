@@ -22,6 +22,41 @@ double EntriesPerValue(const TransferFunction& function)
   return width > 0.0 ? std::min(entries / width, steepest) : steepest;
 }
 
+/// The lowest float that takes the entry above an edge.
+float FloatEdge(const FunctionEdge& edge, double relativeTo, bool relative)
+{
+  constexpr double largest = std::numeric_limits<float>::max();
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const double value = std::clamp(edge.Value - relativeTo, -largest, largest);
+  const auto rounded = static_cast<float>(value);
+  // Relative values are rounded as the edge is; others are floats already.
+  const double exact = relative ? double{ rounded } : value;
+  const bool isAbove = edge.Below ? double{ rounded } > exact : double{ rounded } >= exact;
+  return isAbove ? rounded : std::nextafter(rounded, infinity);
+}
+
+void CheckEdges(const TransferFunction& function)
+{
+  const std::vector<FunctionEdge>& edges = function.Edges;
+  if (edges.empty())
+  {
+    return;
+  }
+  if (edges.size() + 1 != function.Entries.size())
+  {
+    throw Error("A transfer function needs an edge between any two entries",
+      { {}, {}, static_cast<std::uint64_t>(edges.size()),
+        static_cast<std::uint64_t>(function.Entries.size()) - 1 });
+  }
+  for (std::size_t i = 0; i < edges.size(); ++i)
+  {
+    if (!std::isfinite(edges[i].Value) || (i > 0 && edges[i].Value < edges[i - 1].Value))
+    {
+      throw Error("The edges of a transfer function do not rise: edge " + std::to_string(i));
+    }
+  }
+}
+
 } // namespace
 
 void TransferFunction::Check() const
@@ -39,6 +74,7 @@ void TransferFunction::Check() const
   {
     throw Error("The opacity unit distance must be above 0");
   }
+  CheckEdges(*this);
   for (std::size_t i = 0; i < this->Entries.size(); ++i)
   {
     const glm::vec4& entry = this->Entries[i];
@@ -90,14 +126,33 @@ VisibleValues::VisibleValues(const TransferFunction& function)
   }
   // Positions are computed in float by the marcher: about 1e-7 of the table's length off.
   this->Margin = 1.0 + 1e-6 * static_cast<double>(function.Entries.size());
+  for (const FunctionEdge& edge : function.Edges)
+  {
+    this->Edges.push_back(edge.Value);
+  }
   const double range[2] = { this->Low, this->Scale };
-  this->Hash = HashOf(this->VisibleBefore.data(), this->VisibleBefore.size() * sizeof(int),
-    ShortHashOf(range, sizeof(range)))
-                 .Low;
+  const std::uint64_t edges = ShortHashOf(this->Edges.data(), this->Edges.size() * sizeof(double)) ^
+                              ShortHashOf(range, sizeof(range));
+  this->Hash =
+    HashOf(this->VisibleBefore.data(), this->VisibleBefore.size() * sizeof(int), edges).Low;
 }
 
 VisibleValues::Span VisibleValues::EntriesOf(double low, double high) const
 {
+  if (!this->Edges.empty())
+  {
+    // Interpolations round in float, and so do values that are relative to the low end.
+    double largest = 0.0;
+    for (const double value : { low, high, low - this->Low, high - this->Low })
+    {
+      largest = std::isfinite(value) ? std::max(largest, std::abs(value)) : largest;
+    }
+    const double slack = 4e-7 * largest;
+    const auto begin = this->Edges.begin();
+    const auto first = std::lower_bound(begin, this->Edges.end(), low - slack);
+    const auto last = std::upper_bound(first, this->Edges.end(), high + slack);
+    return { static_cast<std::size_t>(first - begin), static_cast<std::size_t>(last - begin) };
+  }
   const double last = static_cast<double>(this->VisibleBefore.size()) - 2.0;
   const auto position = [&](double value) { return (value - this->Low) * this->Scale; };
   return { static_cast<std::size_t>(
@@ -143,6 +198,52 @@ float OpacityOfDepth::Of(float depth)
   return (1.0f - scale) - scale * less;
 }
 
+EdgeTable::EdgeTable(const std::vector<FunctionEdge>& edges, double relativeTo, bool relative)
+{
+  for (const FunctionEdge& edge : edges)
+  {
+    this->Edges.push_back(FloatEdge(edge, relativeTo, relative));
+  }
+  constexpr std::size_t most = 4096;
+  const std::size_t buckets = std::min(most, 4 * edges.size());
+  const double width = double{ this->Edges.back() } - double{ this->Edges.front() };
+  const double perValue = width > 0.0 ? static_cast<double>(buckets) / width : 0.0;
+  this->Lookup.Low = this->Edges.front();
+  this->Lookup.Scale = static_cast<float>(std::min(perValue, 1e30));
+  this->Lookup.Bias = 0.0f;
+  this->Lookup.Last = static_cast<float>(buckets) - 0.5f;
+  // Finding a bucket is monotonic, rounding included: edges of other buckets are known to be below,
+  // or above, all values of this one.
+  std::vector<std::int32_t> edgesOf(buckets, 0);
+  for (const float edge : this->Edges)
+  {
+    ++edgesOf[static_cast<std::size_t>(this->Lookup.PositionOf(edge))];
+  }
+  std::int32_t before = 0;
+  std::int32_t largest = 0;
+  for (const std::int32_t count : edgesOf)
+  {
+    this->First.push_back(before);
+    before += count;
+    largest = std::max(largest, count);
+  }
+  while (largest >> this->Lookup.Steps > 0)
+  {
+    ++this->Lookup.Steps;
+  }
+  this->Edges.resize(this->Edges.size() + (std::size_t{ 1 } << this->Lookup.Steps),
+    std::numeric_limits<float>::infinity());
+}
+
+void EdgeTable::Complete(TableLookup& lookup) const
+{
+  const int transparent = lookup.Transparent;
+  lookup = this->Lookup;
+  lookup.Transparent = transparent;
+  lookup.Edges = this->Edges.data();
+  lookup.First = this->First.data();
+}
+
 StepTable::StepTable(const TransferFunction& function, double sampleDistance)
 {
   function.Check();
@@ -178,6 +279,13 @@ StepTable::StepTable(const TransferFunction& function, double sampleDistance)
   this->Relative = this->Absolute;
   this->Relative.Low = 0.0f;
   this->Relative.Bias = 0.5f;
+  if (!function.Edges.empty())
+  {
+    this->AbsoluteEdges = std::make_shared<const EdgeTable>(function.Edges, 0.0, false);
+    this->RelativeEdges = std::make_shared<const EdgeTable>(function.Edges, function.Low, true);
+    this->AbsoluteEdges->Complete(this->Absolute);
+    this->RelativeEdges->Complete(this->Relative);
+  }
 }
 
 } // namespace banyan

@@ -6,22 +6,40 @@
 #include <glm/vec4.hpp>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace banyan
 {
 
-/// A transfer function as a table of colour (not premultiplied) and opacity per unit distance,
-/// equally spaced over [Low, High]; values outside take the first or last entry. Look-ups take the
-/// nearest entry: make the table fine (4096 is the default everywhere). When High <= Low, values up
-/// to Low take the first entry and those above the last.
+/// Where one entry of a table ends and the next one begins.
+struct FunctionEdge
+{
+  double Value = 0.0;
+  bool Below = false; ///< whether Value itself takes the entry below
+
+  bool operator==(const FunctionEdge& other) const
+  {
+    return this->Value == other.Value && this->Below == other.Below;
+  }
+};
+
+/// A transfer function as a table of colour (not premultiplied) and opacity per unit distance.
+/// TabulateFunction makes one that is as fine as its function demands.
+///
+/// Without Edges, entries are equally spaced over [Low, High]; values outside take the first or
+/// last entry, and look-ups take the nearest one. When High <= Low, values up to Low take the first
+/// entry and those above the last. With Edges, entry i holds the values from edge i - 1 to edge i,
+/// and the first and last entries all values beyond: look-ups are exact, and take somewhat longer.
 struct TransferFunction
 {
   double Low = 0.0;
   double High = 1.0;
-  std::vector<glm::vec4> Entries; ///< at least 2: r, g, b, opacity in [0, 1] over UnitDistance
-  double UnitDistance = 1.0;      ///< world length over which an entry's opacity applies; > 0
+  std::vector<glm::vec4> Entries;  ///< at least 2: r, g, b, opacity in [0, 1] over UnitDistance
+  double UnitDistance = 1.0;       ///< world length over which an entry's opacity applies; > 0
+  std::vector<FunctionEdge> Edges; ///< none, or one fewer than entries; rising
 
   /// Values of the series range's bins that may be visible (opacity > 0 somewhere in the bin).
   /// Conservative, as VisibleValues.
@@ -32,8 +50,9 @@ struct TransferFunction
   /// proportion to the entries; ask a VisibleValues when there are many intervals.
   bool AnyVisible(double low, double high) const;
 
-  /// Throws Error when there are fewer than two entries, when the range or the unit distance is
-  /// not usable, or when a colour or opacity is not finite or an opacity outside [0, 1].
+  /// Throws Error when there are fewer than two entries, when the range, the edges or the unit
+  /// distance are not usable, or when a colour or opacity is not finite or an opacity outside [0,
+  /// 1].
   void Check() const;
 };
 
@@ -63,6 +82,7 @@ private:
   Span EntriesOf(double low, double high) const;
 
   std::vector<int> VisibleBefore; ///< entries with opacity > 0 before entry i
+  std::vector<double> Edges;      ///< of the function, if it has any
   double Low = 0.0;
   double Scale = 0.0;
   double Margin = 1.0; ///< entries
@@ -70,7 +90,9 @@ private:
 };
 
 /// How values find their entry in a table: (value - Low) * Scale + Bias, clamped to [0, Last],
-/// rounded down; what is not finite takes the entry Transparent.
+/// rounded down; what is not finite takes the entry Transparent. Where there are Edges, that is the
+/// number of a bucket, and the entry is the number of edges up to the value: First of the bucket,
+/// and as many more as a search in a number of Steps finds.
 struct TableLookup
 {
   float Low = 0;
@@ -78,16 +100,56 @@ struct TableLookup
   float Bias = 0.5f;
   float Last = 0;
   int Transparent = 0;
+  int Steps = 0;
+  const float* Edges = nullptr; ///< rising; 2^Steps infinite ones at the end
+  const std::int32_t* First = nullptr;
 
   int IndexOf(float value) const
   {
-    // No NaN is ever converted: comparing with it is false.
+    constexpr float largest = std::numeric_limits<float>::max();
+    if (!(value <= largest && value >= -largest))
+    {
+      return this->Transparent;
+    }
+    const int position = this->PositionOf(value);
+    return this->Edges ? this->EntryFrom(this->First[position], value) : position;
+  }
+
+  /// The entry, or the bucket; of numbers alone.
+  int PositionOf(float value) const
+  {
     const float position = (value - this->Low) * this->Scale + this->Bias;
     const float notBelow = position > 0.0f ? position : 0.0f;
-    const float inside = notBelow < this->Last ? notBelow : this->Last;
-    constexpr float largest = std::numeric_limits<float>::max();
-    return value <= largest && value >= -largest ? static_cast<int>(inside) : this->Transparent;
+    return static_cast<int>(notBelow < this->Last ? notBelow : this->Last);
   }
+
+private:
+  int EntryFrom(int entry, float value) const
+  {
+    for (int step = 1 << this->Steps >> 1; step > 0; step >>= 1)
+    {
+      entry += value >= this->Edges[entry + step - 1] ? step : 0;
+    }
+    return entry;
+  }
+};
+
+/// Edges of a function in float, and how they are found.
+class EdgeTable
+{
+public:
+  /// @param edges not empty
+  /// @param relativeTo what is subtracted from values in double before they become float; 0 where
+  ///   values are floats from the beginning
+  EdgeTable(const std::vector<FunctionEdge>& edges, double relativeTo, bool relative);
+
+  /// Sets what of a look-up is about edges.
+  void Complete(TableLookup& lookup) const;
+
+private:
+  TableLookup Lookup;
+  std::vector<float> Edges;
+  std::vector<std::int32_t> First;
 };
 
 /// Opacity of an optical depth, 1 - exp(-depth), for depths from 0 to infinity: within 3e-7 of the
@@ -149,6 +211,8 @@ private:
   double LowDouble = 0;
   TableLookup Absolute;
   TableLookup Relative;
+  std::shared_ptr<const EdgeTable> AbsoluteEdges; ///< null without
+  std::shared_ptr<const EdgeTable> RelativeEdges;
 };
 
 } // namespace banyan

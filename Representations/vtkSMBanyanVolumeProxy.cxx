@@ -1,0 +1,101 @@
+#include "vtkSMBanyanVolumeProxy.h"
+
+#include "vtkCommand.h"
+#include "vtkDataObject.h"
+#include "vtkObjectFactory.h"
+#include "vtkSMArrayListDomain.h"
+#include "vtkSMPVRepresentationProxy.h"
+#include "vtkSMProperty.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMSessionProxyManager.h"
+
+#include <string>
+
+vtkStandardNewMacro(vtkSMBanyanVolumeProxy);
+
+namespace
+{
+
+/// Point arrays come first: cells of images are not drawn.
+unsigned int FirstArray(vtkSMArrayListDomain* arrays)
+{
+  for (unsigned int i = 0; i < arrays->GetNumberOfStrings(); ++i)
+  {
+    if (arrays->GetFieldAssociation(i) == vtkDataObject::POINT)
+    {
+      return i;
+    }
+  }
+  return 0;
+}
+
+bool IsUsedByAnother(vtkSMProxy* map, vtkSMProxy* display)
+{
+  for (unsigned int i = 0; i < map->GetNumberOfConsumers(); ++i)
+  {
+    vtkSMProxy* const consumer = map->GetConsumerProxy(i);
+    vtkSMProxy* const whole = consumer ? consumer->GetTrueParentProxy() : nullptr;
+    if (whole != display && vtkSMPVRepresentationProxy::SafeDownCast(whole))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+} // namespace
+
+void vtkSMBanyanVolumeProxy::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+}
+
+void vtkSMBanyanVolumeProxy::CreateVTKObjects()
+{
+  const bool existed = this->ObjectsCreated != 0;
+  this->Superclass::CreateVTKObjects();
+  vtkSMPVRepresentationProxy* const display = this->Display();
+  vtkSMProperty* const type = display ? display->GetProperty("Representation") : nullptr;
+  if (!existed && type)
+  {
+    type->AddObserver(vtkCommand::ModifiedEvent, this, &vtkSMBanyanVolumeProxy::TypeChanged);
+  }
+}
+
+vtkSMPVRepresentationProxy* vtkSMBanyanVolumeProxy::Display()
+{
+  return vtkSMPVRepresentationProxy::SafeDownCast(this->GetTrueParentProxy());
+}
+
+void vtkSMBanyanVolumeProxy::TypeChanged()
+{
+  vtkSMPVRepresentationProxy* const display = this->Display();
+  vtkSMSessionProxyManager* const manager = this->GetSessionProxyManager();
+  const char* const type =
+    display ? vtkSMPropertyHelper(display, "Representation").GetAsString() : nullptr;
+  // A state says itself what is coloured by, "Solid Color" included.
+  if (!type || std::string(type) != "Banyan Volume" || display->GetUsingScalarColoring() ||
+    !manager || manager->GetInLoadXMLState())
+  {
+    return;
+  }
+  vtkSMProperty* const chosen = display->GetProperty("ColorArrayName");
+  auto* const arrays = chosen ? chosen->FindDomain<vtkSMArrayListDomain>() : nullptr;
+  if (!arrays || arrays->GetNumberOfStrings() == 0)
+  {
+    return;
+  }
+  const unsigned int first = FirstArray(arrays);
+  if (!display->SetScalarColoring(arrays->GetString(first), arrays->GetFieldAssociation(first)))
+  {
+    return;
+  }
+  vtkSMProxy* const map = vtkSMPropertyHelper(display, "LookupTable").GetAsProxy();
+  // The range of a map that was made for this display, by a script, is what the script wants.
+  const bool isNew =
+    map && vtkSMPropertyHelper(map, "ScalarRangeInitialized", true).GetAsDouble() == 0.0;
+  if (map && (isNew || IsUsedByAnother(map, display)))
+  {
+    display->RescaleTransferFunctionToDataRange(/*extend=*/true, /*force=*/false);
+  }
+}
