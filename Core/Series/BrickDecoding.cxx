@@ -221,6 +221,8 @@ bool Decode(const OpenSeries& series, OpenGroup& open, const FieldKey& field, st
   if (exceptional)
   {
     const std::uint32_t whole = static_cast<std::uint32_t>(edge) * edge * edge;
+    PayloadPages& payloads = group.Segment().Payloads();
+    const PayloadPages::Hold hold = payloads.InMemory();
     ForEachBlock(region,
       [&](const glm::ivec3& block)
       {
@@ -228,7 +230,8 @@ bool Decode(const OpenSeries& series, OpenGroup& open, const FieldKey& field, st
         if (payload.Exceptions.Bytes > 0)
         {
           PlaceExceptions(region, edge, block,
-            UnpackExceptions<T>(group.Segment().Payload(payload.Exceptions),
+            UnpackExceptions<T>(
+              payloads.At(hold, payload.Exceptions.Offset, payload.Exceptions.Bytes),
               payload.Exceptions.Bytes, whole),
             ordered.data());
         }

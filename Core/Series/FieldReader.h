@@ -70,18 +70,13 @@ inline Box RowPart(const BrickLayout& layout, std::int64_t first, int count, int
   return result;
 }
 
-/// Readers of the two versions. Segments are mapped at once, so that replacing the series does not
-/// take them away from readers. Throw Error.
+/// Readers of the two versions. Segments are opened at once, so that replacing the series does not
+/// take them away from readers (see SegmentFile). Throw Error.
 std::unique_ptr<FieldReader> MakeFieldReader1(const OpenSeries& series);
 std::unique_ptr<FieldReader> MakeFieldReader2(const OpenSeries& series);
 
-/// Segments mapped when a series is opened: the kernel allows 65,530 mappings, so the rest of a very
-/// long series waits.
-constexpr std::size_t MappedAtOnce = 16384;
-
-/// Mapped pages count as this process's memory once they are read: playing a long series must not
-/// collect all of them.
-constexpr std::size_t SegmentsInMemory = 4;
+/// Segments that are looked at when a series is opened: the rest of a very long one waits.
+constexpr std::size_t OpenedAtOnce = 16384;
 
 constexpr std::size_t KeptTables = 64;
 constexpr std::uint64_t KeptTableBytes = std::uint64_t{ 128 } << 20;

@@ -38,16 +38,15 @@ private:
   using Kept = std::pair<std::uint64_t, std::shared_ptr<const OpenField>>;
 
   const SegmentReader& Segment(int step);
-  void Touch(const SegmentReader& segment);
   std::shared_ptr<const OpenField> Load(const FieldKey& field, std::uint32_t table);
   std::shared_ptr<const OpenField> Open(const FieldKey& field);
-  void CheckPayload(const OpenField& open, std::int64_t brick);
+  /// The payload of a brick, checked; nothing where there is none.
+  Bytes Payload(const OpenField& open, std::int64_t brick);
 
   const OpenSeries& Series;
   std::uint32_t TablesPerStep = 0;
   std::mutex SegmentMutex;
   std::vector<std::unique_ptr<SegmentReader>> Segments;
-  std::list<const SegmentReader*> Recent; ///< most recently used first
   std::mutex TableMutex;
   std::list<Kept> Tables; ///< most recently used first
   std::atomic<std::uint64_t> Read{ 0 };
@@ -59,7 +58,7 @@ Reader1::Reader1(const OpenSeries& series)
   , TablesPerStep(series.Components * static_cast<std::uint32_t>(series.Index.Levels))
   , Segments(series.Index.Segments.size())
 {
-  for (std::size_t i = 0; i < std::min(this->Segments.size(), MappedAtOnce); ++i)
+  for (std::size_t i = 0; i < std::min(this->Segments.size(), OpenedAtOnce); ++i)
   {
     (void)this->Segment(series.Index.Segments[i].FirstStep);
   }
@@ -76,22 +75,6 @@ const SegmentReader& Reader1::Segment(int step)
     segment = std::make_unique<SegmentReader>(this->Series.Folder, index, this->TablesPerStep);
   }
   return *segment;
-}
-
-void Reader1::Touch(const SegmentReader& segment)
-{
-  std::lock_guard<std::mutex> lock(this->SegmentMutex);
-  if (!this->Recent.empty() && this->Recent.front() == &segment)
-  {
-    return;
-  }
-  this->Recent.remove(&segment);
-  this->Recent.push_front(&segment);
-  if (this->Recent.size() > SegmentsInMemory)
-  {
-    this->Recent.back()->LetGo();
-    this->Recent.pop_back();
-  }
 }
 
 std::shared_ptr<const OpenField> Reader1::Load(
@@ -129,13 +112,11 @@ std::shared_ptr<const OpenField> Reader1::Open(const FieldKey& field)
   if (found != this->Tables.end())
   {
     this->Tables.splice(this->Tables.begin(), this->Tables, found);
-    this->Touch(*this->Tables.front().second->Segment);
     return this->Tables.front().second;
   }
   const std::uint32_t step =
     static_cast<std::uint32_t>(field.Step - this->Series.Index.SegmentOf(field.Step).FirstStep);
   this->Tables.emplace_front(key, this->Load(field, step * this->TablesPerStep + inStep));
-  this->Touch(*this->Tables.front().second->Segment);
   std::uint64_t bytes = 0;
   std::size_t count = 0;
   for (auto kept = this->Tables.begin(); kept != this->Tables.end();)
@@ -148,17 +129,18 @@ std::shared_ptr<const OpenField> Reader1::Open(const FieldKey& field)
   return this->Tables.front().second;
 }
 
-void Reader1::CheckPayload(const OpenField& open, std::int64_t brick)
+Bytes Reader1::Payload(const OpenField& open, std::int64_t brick)
 {
   const BrickNode& node = open.Table.Nodes[static_cast<std::size_t>(brick)];
   const PayloadReference& payload = open.Table.Payloads[static_cast<std::size_t>(brick)];
   if (node.Uniform)
   {
-    return;
+    return {};
   }
+  Bytes bytes = open.Segment->Payload(payload, node.PayloadBytes);
   const glm::ivec3 samples = open.Layout.SamplesOf(brick).Size();
-  const Hash128 hash = IdentityOf(payload.Mode, open.Segment->Payload(payload), node.PayloadBytes,
-    open.Lattice, open.Type, samples);
+  const Hash128 hash = IdentityOf(
+    payload.Mode, bytes.data(), bytes.size(), open.Lattice, open.Type, samples);
   this->Read += node.PayloadBytes;
   if (!(PayloadIdentity{ hash.Low, hash.High } == node.Identity))
   {
@@ -166,6 +148,7 @@ void Reader1::CheckPayload(const OpenField& open, std::int64_t brick)
       "The payload of brick " + std::to_string(brick) + " is damaged: its checksum does not fit",
       { open.Segment->Path(), payload.Offset });
   }
+  return bytes;
 }
 
 std::shared_ptr<const std::vector<BrickNode>> Reader1::Nodes(const FieldKey& field)
@@ -179,12 +162,11 @@ void Reader1::DecodeBrick(const FieldKey& field, std::int64_t brick, void* value
   const std::shared_ptr<const OpenField> open = this->Open(field);
   const BrickNode& node = open->Table.Nodes[static_cast<std::size_t>(brick)];
   const PayloadReference& payload = open->Table.Payloads[static_cast<std::size_t>(brick)];
-  this->CheckPayload(*open, brick);
+  const Bytes bytes = this->Payload(*open, brick);
   InFile(open->Segment->Path(), payload.Offset,
     [&]
     {
-      banyan::DecodeBrick(payload.Mode, open->Segment->Payload(payload), node.PayloadBytes,
-        open->Lattice, open->Type, open->Layout.SamplesOf(brick).Size(), node.Range.Low, values);
+      banyan::DecodeBrick(payload.Mode, bytes.data(), bytes.size(), open->Lattice, open->Type, open->Layout.SamplesOf(brick).Size(), node.Range.Low, values);
     });
   this->Decoded += node.Uniform ? 0 : 1;
 }
@@ -194,7 +176,7 @@ void Reader1::VerifyBricks(const FieldKey& field, const std::vector<std::int64_t
   const std::shared_ptr<const OpenField> open = this->Open(field);
   for (const std::int64_t brick : bricks)
   {
-      this->CheckPayload(*open, brick);
+    (void)this->Payload(*open, brick);
   }
 }
 

@@ -36,7 +36,6 @@ private:
   using Kept = std::pair<std::uint64_t, std::shared_ptr<OpenGroup>>;
 
   std::shared_ptr<GroupReader> Segment(int step);
-  void Touch(const std::shared_ptr<GroupReader>& segment);
   FieldKey Stored(FieldKey field);
   Hash128 HashBefore(const FieldKey& last);
   std::shared_ptr<OpenGroup> Open(const FieldKey& field);
@@ -44,8 +43,7 @@ private:
   const OpenSeries& Series;
   std::mutex SegmentMutex;
   std::vector<std::shared_ptr<GroupReader>> Segments;
-  std::unordered_map<std::string, std::shared_ptr<const MappedSegment>> Files; ///< by name
-  std::list<const GroupReader*> Recent; ///< most recently used first
+  std::unordered_map<std::string, std::shared_ptr<const SegmentFile>> Files; ///< by name
   std::mutex RestMutex;
   std::unordered_map<std::uint64_t, int> Resting; ///< by segment and component; see Stored
   std::mutex OpenMutex;
@@ -58,7 +56,7 @@ Reader2::Reader2(const OpenSeries& series)
   : Series(series)
   , Segments(series.Index.Segments.size())
 {
-  for (std::size_t i = 0; i < std::min(this->Segments.size(), MappedAtOnce); ++i)
+  for (std::size_t i = 0; i < std::min(this->Segments.size(), OpenedAtOnce); ++i)
   {
     (void)this->Segment(series.Index.Segments[i].FirstStep);
   }
@@ -72,30 +70,14 @@ std::shared_ptr<GroupReader> Reader2::Segment(int step)
   std::shared_ptr<GroupReader>& segment = this->Segments[number];
   if (!segment)
   {
-    std::shared_ptr<const MappedSegment>& file = this->Files[index.File];
+    std::shared_ptr<const SegmentFile>& file = this->Files[index.File];
     if (!file)
     {
-      file = std::make_shared<const MappedSegment>(this->Series.Folder, index);
+      file = std::make_shared<const SegmentFile>(this->Series.Folder, index);
     }
     segment = std::make_shared<GroupReader>(file, index, this->Series.Components);
   }
   return segment;
-}
-
-void Reader2::Touch(const std::shared_ptr<GroupReader>& segment)
-{
-  std::lock_guard<std::mutex> lock(this->SegmentMutex);
-  if (!this->Recent.empty() && this->Recent.front() == segment.get())
-  {
-    return;
-  }
-  this->Recent.remove(segment.get());
-  this->Recent.push_front(segment.get());
-  if (this->Recent.size() > SegmentsInMemory)
-  {
-    this->Recent.back()->LetGo();
-    this->Recent.pop_back();
-  }
 }
 
 /// Where a field is stored: as it is asked for or, where it rests, at the last step of the group from which
@@ -165,7 +147,6 @@ Hash128 Reader2::HashBefore(const FieldKey& last)
 std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
 {
   const std::shared_ptr<GroupReader> segment = this->Segment(field.Step);
-  this->Touch(segment);
   const std::uint32_t component = this->Series.ComponentOf(field);
   const std::uint64_t key =
     static_cast<std::uint64_t>(segment->FirstStep()) * this->Series.Components + component;

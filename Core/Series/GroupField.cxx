@@ -258,6 +258,8 @@ LatticeCache::Box GroupField::DecodeAs(int step, int plane, const glm::ivec3& bl
   BoxCodeOf<Number> code;
   bool refers = false;
   bool same = true;
+  PayloadPages& payloads = this->File.Payloads();
+  const PayloadPages::Hold hold = payloads.InMemory();
   for (int bits = 0; bits < 8; ++bits)
   {
     const glm::ivec3 at = NeighbourOf(block, bits);
@@ -278,7 +280,7 @@ LatticeCache::Box GroupField::DecodeAs(int step, int plane, const glm::ivec3& bl
     same = same && entry.Same;
     if (entry.Payload.Bytes > 0 && bits != 7)
     {
-      to.Data = this->File.Payload(entry.Payload);
+      to.Data = payloads.At(hold, entry.Payload.Offset, entry.Payload.Bytes);
       to.Bytes = entry.Payload.Bytes;
     }
   }
@@ -354,6 +356,8 @@ void GroupField::Verify(int step, int plane, const glm::ivec3& block, Visited& v
   }
   const auto& entries = this->Step(step).Planes[static_cast<std::size_t>(plane)];
   const glm::ivec3 blocks = this->BlocksOf(plane);
+  PayloadPages& payloads = this->File.Payloads();
+  const PayloadPages::Hold hold = payloads.InMemory();
   for (int bits = 0; bits < 8; ++bits)
   {
     const glm::ivec3 at = NeighbourOf(block, bits);
@@ -366,7 +370,7 @@ void GroupField::Verify(int step, int plane, const glm::ivec3& block, Visited& v
     {
       if (place.Bytes > 0)
       {
-        (void)this->File.Payload(place);
+        (void)payloads.At(hold, place.Offset, place.Bytes);
       }
     }
   }

@@ -12,11 +12,11 @@ namespace banyan
 
 GroupReader::GroupReader(
   const std::string& folder, const SegmentIndex& index, std::uint32_t components)
-  : GroupReader(std::make_shared<const MappedSegment>(folder, index), index, components)
+  : GroupReader(std::make_shared<const SegmentFile>(folder, index), index, components)
 {
 }
 
-GroupReader::GroupReader(std::shared_ptr<const MappedSegment> file, const SegmentIndex& index,
+GroupReader::GroupReader(std::shared_ptr<const SegmentFile> file, const SegmentIndex& index,
   std::uint32_t components)
   : File(std::move(file))
   , Index(index)
@@ -32,8 +32,9 @@ void GroupReader::Check()
   {
     return;
   }
-  this->Head = segment::LoadHeader(this->File->Data(), group::Version);
-  if (HashOf(this->File->Data(), segment::HeaderBytes) != this->Expected)
+  const Bytes header = this->File->Read(0, segment::HeaderBytes);
+  this->Head = segment::LoadHeader(header.data(), group::Version);
+  if (HashOf(header.data(), header.size()) != this->Expected)
   {
     throw Error("The segment is not the one that the index names");
   }
@@ -50,8 +51,9 @@ void GroupReader::Check()
   {
     throw Error("The header of the segment does not fit the index");
   }
-  if (ShortHashOf(this->File->Data() + this->Head.DirectoryOffset,
-        static_cast<std::size_t>(directoryBytes)) != this->Head.DirectoryHash)
+  this->Directory =
+    this->File->Read(this->Head.DirectoryOffset, static_cast<std::size_t>(directoryBytes));
+  if (ShortHashOf(this->Directory.data(), this->Directory.size()) != this->Head.DirectoryHash)
   {
     throw Error("The directory of the segment is damaged");
   }
@@ -67,8 +69,7 @@ std::uint64_t GroupReader::PayloadEnd()
 Bytes GroupReader::Section(std::uint32_t number)
 {
   this->Check();
-  const std::uint8_t* entry =
-    this->File->Data() + this->Head.DirectoryOffset + std::uint64_t{ number } * group::EntryBytes;
+  const std::uint8_t* entry = this->Directory.data() + std::size_t{ number } * group::EntryBytes;
   const auto offset = LoadNumber<std::uint64_t>(entry);
   const auto stored = LoadNumber<std::uint32_t>(entry + 8);
   const auto raw = LoadNumber<std::uint32_t>(entry + 12);
@@ -78,55 +79,38 @@ Bytes GroupReader::Section(std::uint32_t number)
   {
     throw Error("An entry of the directory is not valid");
   }
-  if (ShortHashOf(this->File->Data() + offset, stored) != LoadNumber<std::uint64_t>(entry + 16))
+  Bytes packed = this->File->Read(offset, stored);
+  if (ShortHashOf(packed.data(), packed.size()) != LoadNumber<std::uint64_t>(entry + 16))
   {
     throw Error("A table of the segment is damaged: its checksum does not fit");
   }
   if (stored == raw)
   {
-    return { this->File->Data() + offset, this->File->Data() + offset + stored };
+    return packed;
   }
   Bytes bytes(raw);
-  Decompress(this->File->Data() + offset, stored, bytes.data(), bytes.size());
+  Decompress(packed.data(), packed.size(), bytes.data(), bytes.size());
   return bytes;
 }
 
-const std::uint8_t* GroupReader::Payload(const group::Place& place)
+PayloadPages& GroupReader::Payloads()
 {
   std::call_once(this->PagesOnce,
     [this]
     {
       const Bytes hashes = this->Section(0);
-      this->PageBytes = PageBytesOf(this->Head.PayloadEnd);
-      const std::uint64_t pages = (this->Head.PayloadEnd + this->PageBytes - 1) / this->PageBytes;
+      const std::uint64_t end = this->Head.PayloadEnd;
+      const std::uint64_t page = PageBytesOf(end);
+      const std::uint64_t pages = (end + page - 1) / page;
       if (hashes.size() != pages * sizeof(std::uint32_t))
       {
         throw Error("The hashes of the segment's pages are not as many as its pages");
       }
-      this->PageHashes.resize(static_cast<std::size_t>(pages));
-      std::memcpy(this->PageHashes.data(), hashes.data(), hashes.size());
-      this->PageGood = std::vector<std::atomic<bool>>(static_cast<std::size_t>(pages));
+      std::vector<std::uint32_t> numbers(static_cast<std::size_t>(pages));
+      std::memcpy(numbers.data(), hashes.data(), hashes.size());
+      this->Pages = std::make_unique<PayloadPages>(*this->File, end, std::move(numbers));
     });
-  const std::uint64_t end = place.Offset + place.Bytes; // inside: tables were checked
-  for (std::uint64_t page = place.Offset / this->PageBytes; page * this->PageBytes < end; ++page)
-  {
-    std::atomic<bool>& good = this->PageGood[static_cast<std::size_t>(page)];
-    if (good.load(std::memory_order_relaxed))
-    {
-      continue;
-    }
-    const std::uint64_t from =
-      std::max<std::uint64_t>(page * this->PageBytes, segment::HeaderBytes);
-    const std::uint64_t to = std::min((page + 1) * this->PageBytes, this->Head.PayloadEnd);
-    if (static_cast<std::uint32_t>(ShortHashOf(this->File->Data() + from, to - from)) !=
-        this->PageHashes[static_cast<std::size_t>(page)])
-    {
-      throw Error("Payloads of the segment are damaged: their checksum does not fit",
-        { this->Path(), from });
-    }
-    good.store(true, std::memory_order_relaxed);
-  }
-  return this->File->Data() + place.Offset;
+  return *this->Pages;
 }
 
 } // namespace banyan

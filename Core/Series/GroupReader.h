@@ -7,7 +7,7 @@
 #include "Series/GroupFormat.h"
 #include "Series/Hash.h"
 #include "Series/LatticeCache.h"
-#include "Series/MappedSegment.h"
+#include "Series/PayloadPages.h"
 #include "Series/SegmentFormat.h"
 
 #include <atomic>
@@ -29,13 +29,12 @@ public:
   /// @param components of all arrays of the series
   GroupReader(const std::string& folder, const SegmentIndex& index, std::uint32_t components);
   /// @param file of several readers, where the index names it for several groups
-  GroupReader(std::shared_ptr<const MappedSegment> file, const SegmentIndex& index,
+  GroupReader(std::shared_ptr<const SegmentFile> file, const SegmentIndex& index,
     std::uint32_t components);
 
   const std::string& Path() const { return this->File->Path(); }
   int FirstStep() const { return this->Index.FirstStep; }
   int Steps() const { return this->Index.Steps; }
-  void LetGo() const { this->File->LetGo(); }
 
   /// Unpacks a section: 0 holds the hashes of pages, then come the heads, then the steps' tables.
   Bytes Section(std::uint32_t number);
@@ -46,25 +45,24 @@ public:
   }
   std::uint64_t PayloadEnd();
 
-  /// First byte of a place that a table names, after its pages were checked (once each). Throws
-  /// Error when they are damaged.
-  const std::uint8_t* Payload(const group::Place& place);
+  /// The payloads of the segment, read and checked as they are needed. Throws Error when the table of
+  /// their checksums is damaged.
+  PayloadPages& Payloads();
 
   const Hash128& HeaderHash() const { return this->Expected; }
 
 private:
   void Check();
 
-  std::shared_ptr<const MappedSegment> File;
+  std::shared_ptr<const SegmentFile> File;
   SegmentIndex Index;
   std::uint32_t Components;
   Hash128 Expected;
   std::mutex Mutex;
   bool Checked = false;
   segment::Header Head;
-  std::vector<std::uint32_t> PageHashes;
-  std::vector<std::atomic<bool>> PageGood;
-  std::uint64_t PageBytes = 4096;
+  Bytes Directory;
+  std::unique_ptr<PayloadPages> Pages;
   std::once_flag PagesOnce;
 };
 

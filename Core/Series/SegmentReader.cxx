@@ -13,14 +13,14 @@ SegmentReader::SegmentReader(
   : File(folder, index)
   , Index(index)
   , TableCount(tablesPerStep * static_cast<std::uint32_t>(index.Steps))
-  , Data(File.Data())
 {
 }
 
 void SegmentReader::CheckHeader() const
 {
-  this->Head = segment::LoadHeader(this->Data);
-  const Hash128 hash = HashOf(this->Data, segment::HeaderBytes);
+  const Bytes header = this->File.Read(0, segment::HeaderBytes);
+  this->Head = segment::LoadHeader(header.data());
+  const Hash128 hash = HashOf(header.data(), header.size());
   if (hash != Hash128{ this->Index.HashLow, this->Index.HashHigh })
   {
     throw Error("The segment is not the one that the index names");
@@ -36,8 +36,8 @@ void SegmentReader::CheckHeader() const
   {
     throw Error("The header of the segment does not fit the index");
   }
-  if (ShortHashOf(this->Data + offset, static_cast<std::size_t>(directoryBytes)) !=
-      this->Head.DirectoryHash)
+  this->Directory = this->File.Read(offset, static_cast<std::size_t>(directoryBytes));
+  if (ShortHashOf(this->Directory.data(), this->Directory.size()) != this->Head.DirectoryHash)
   {
     throw Error("The directory of the segment is damaged");
   }
@@ -52,7 +52,7 @@ segment::TableEntry SegmentReader::Entry(std::uint32_t table) const
     this->Checked = true;
   }
   const segment::TableEntry entry = segment::LoadEntry(
-    this->Data + this->Head.DirectoryOffset + std::uint64_t{ table } * segment::EntryBytes);
+    this->Directory.data() + std::size_t{ table } * segment::EntryBytes);
   const std::uint64_t end = this->Head.DirectoryOffset;
   if (entry.Offset < this->Head.PayloadEnd || entry.Offset > end ||
       entry.Offset % segment::SectionAlignment != 0 || entry.StoredBytes > end - entry.Offset ||
@@ -66,12 +66,13 @@ segment::TableEntry SegmentReader::Entry(std::uint32_t table) const
 NodeTable SegmentReader::Table(
   const segment::TableEntry& entry, const BrickLayout& layout, ScalarType type) const
 {
-  const std::uint8_t* stored = this->Data + entry.Offset;
-  if (ShortHashOf(stored, static_cast<std::size_t>(entry.StoredBytes)) != entry.Hash)
+  const Bytes stored =
+    this->File.Read(entry.Offset, static_cast<std::size_t>(entry.StoredBytes));
+  if (ShortHashOf(stored.data(), stored.size()) != entry.Hash)
   {
     throw Error("A node table is damaged: its checksum does not fit");
   }
-  return UnpackNodeTable(stored, entry, layout, type, this->Head.PayloadEnd);
+  return UnpackNodeTable(stored.data(), entry, layout, type, this->Head.PayloadEnd);
 }
 
 } // namespace banyan

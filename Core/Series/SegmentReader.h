@@ -1,8 +1,8 @@
 #ifndef banyan_Series_SegmentReader_h
 #define banyan_Series_SegmentReader_h
 
-#include "Series/MappedSegment.h"
 #include "Series/NodeTable.h"
+#include "Series/SegmentFile.h"
 
 #include <mutex>
 #include <string>
@@ -10,12 +10,12 @@
 namespace banyan
 {
 
-/// One mapped segment file of version 1. Every access is checked against the index that names it;
+/// One segment file of version 1. Every access is checked against the index that names it;
 /// may be used from any thread.
 class SegmentReader
 {
 public:
-  /// Maps the file. Throws Error when it is missing or has another size than `index` says.
+  /// Opens the file. Throws Error when it is missing or has another size than `index` says.
   /// @param tables number of node tables per step
   SegmentReader(const std::string& folder, const SegmentIndex& index, std::uint32_t tablesPerStep);
 
@@ -28,25 +28,22 @@ public:
   NodeTable Table(
     const segment::TableEntry& entry, const BrickLayout& layout, ScalarType type) const;
 
-  /// First byte of a payload of a table that `Table` returned.
-  const std::uint8_t* Payload(const PayloadReference& payload) const
+  /// A payload of a table that `Table` returned, not checked.
+  Bytes Payload(const PayloadReference& payload, std::size_t bytes) const
   {
-    return this->Data + payload.Offset;
+    return this->File.Read(payload.Offset, bytes);
   }
-
-  /// See MappedSegment.
-  void LetGo() const { this->File.LetGo(); }
 
 private:
   void CheckHeader() const;
 
-  MappedSegment File;
+  SegmentFile File;
   SegmentIndex Index;
   std::uint32_t TableCount;
-  const std::uint8_t* Data;
   mutable std::mutex Mutex;
   mutable bool Checked = false;
   mutable segment::Header Head;
+  mutable Bytes Directory;
 };
 
 } // namespace banyan

@@ -46,8 +46,8 @@ void AddTable(const SegmentReader& segment, std::uint32_t number, const BrickLay
     Put(input, entry.QuantizerStep);
     if (!table.Nodes[i].Uniform)
     {
-      const std::uint8_t* from = segment.Payload(payload);
-      input.insert(input.end(), from, from + table.Nodes[i].PayloadBytes);
+      const Bytes bytes = segment.Payload(payload, table.Nodes[i].PayloadBytes);
+      input.insert(input.end(), bytes.begin(), bytes.end());
     }
     auto& kept = shortest[{ static_cast<int>(type), payload.Mode }];
     if (kept.empty() || input.size() < kept.size())

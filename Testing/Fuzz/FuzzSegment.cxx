@@ -57,11 +57,9 @@ void ReadTables(const Bytes& file, const std::string& name)
     const auto type = static_cast<banyan::ScalarType>(entry.QuantizerStep % 10);
     const banyan::BrickLayout layout({ 20, 20, 20 }, 8, static_cast<int>(t % 3));
     const banyan::NodeTable table = reader.Table(entry, layout, type);
-    for (const banyan::PayloadReference& payload : table.Payloads)
+    for (std::size_t i = 0; i < table.Payloads.size(); ++i)
     {
-      // The offsets must lie inside: touch them.
-      static volatile std::uint8_t sink;
-      sink = *reader.Payload(payload);
+      (void)reader.Payload(table.Payloads[i], table.Nodes[i].PayloadBytes); // must lie inside
     }
   }
 }
