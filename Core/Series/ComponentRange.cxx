@@ -13,13 +13,14 @@ namespace
 {
 
 template <class T>
-ValueRange RangeOfTuples(const T* values, std::int64_t first, std::int64_t last, int components)
+ValueRange RangeOfTuples(const T* values, std::int64_t first, std::int64_t last, int components,
+  const std::uint8_t* hidden)
 {
   ValueRange range;
   for (std::int64_t i = first; i < last; ++i)
   {
     const T value = values[i * components];
-    if (std::isfinite(static_cast<double>(value)))
+    if ((hidden == nullptr || hidden[i] == 0) && std::isfinite(static_cast<double>(value)))
     {
       range.Include({ DoubleNotAbove(value), DoubleNotBelow(value) });
     }
@@ -30,7 +31,7 @@ ValueRange RangeOfTuples(const T* values, std::int64_t first, std::int64_t last,
 } // namespace
 
 ValueRange RangeOfComponent(ScalarType type, const void* values, std::int64_t tuples,
-  int components, int component, ThreadPool& pool)
+  int components, int component, ThreadPool& pool, const std::uint8_t* hidden)
 {
   constexpr std::int64_t chunk = 65536;
   std::vector<ValueRange> parts(static_cast<std::size_t>((tuples + chunk - 1) / chunk));
@@ -43,7 +44,7 @@ ValueRange RangeOfComponent(ScalarType type, const void* values, std::int64_t tu
         [&](std::int64_t i)
         {
           parts[static_cast<std::size_t>(i)] =
-            RangeOfTuples(start, i * chunk, std::min(tuples, (i + 1) * chunk), components);
+            RangeOfTuples(start, i * chunk, std::min(tuples, (i + 1) * chunk), components, hidden);
         });
     });
   ValueRange range;

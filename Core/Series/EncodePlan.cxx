@@ -51,8 +51,25 @@ void CheckDescription(const ArrayDescription& description, const EncodeOptions& 
   }
 }
 
+ArrayIndex MakeFlags(const ArrayDescription& description)
+{
+  ArrayIndex array;
+  array.Name = description.Name;
+  array.Type = description.Type;
+  array.Flags = description.Flags;
+  ComponentIndex component;
+  const int bits = array.Flags == ArrayFlags::OfPoints ? HiddenPointBits : HiddenCellBits;
+  component.PromisedRange = { 0.0, static_cast<double>(bits) };
+  array.Components.push_back(std::move(component));
+  return array;
+}
+
 ArrayIndex MakeArray(const ArrayDescription& description, const EncodeOptions& options)
 {
+  if (description.Flags != ArrayFlags::None)
+  {
+    return MakeFlags(description);
+  }
   CheckDescription(description, options);
   ArrayIndex array;
   array.Name = description.Name;
@@ -117,6 +134,16 @@ const QuantizerOptions& EncodeOptions::QuantizerFor(const std::string& array) co
   return own == this->QuantizerOfArray.end() ? this->Quantizer : own->second;
 }
 
+ArrayDescription DescriptionOfFlags(ArrayFlags flags)
+{
+  ArrayDescription description;
+  description.Name = flags == ArrayFlags::OfPoints ? FlagsName : CellFlagsName;
+  description.Type = ScalarType::UInt8;
+  description.ComponentNames = { "" };
+  description.Flags = flags;
+  return description;
+}
+
 bool EncodeOptions::NeedsHistogram(const std::string& array) const
 {
   return this->QuantizerFor(array).NeedsHistogram(IsRelative(*this));
@@ -144,6 +171,7 @@ SeriesIndex PlanSeries(
   for (const ArrayDescription& array : arrays)
   {
     index.Arrays.push_back(MakeArray(array, options));
+    index.FormatVersion = array.Flags != ArrayFlags::None ? 5 : index.FormatVersion;
   }
   for (const auto& own : options.QuantizerOfArray)
   {
@@ -159,7 +187,7 @@ SeriesIndex PlanSeries(
   }
   // Cell arrays are numbers of blocks and the like as often as not.
   const auto ofPoints = std::find_if(index.Arrays.begin(), index.Arrays.end(),
-    [](const ArrayIndex& array) { return array.CellArray.empty(); });
+    [](const ArrayIndex& array) { return array.CellArray.empty() && array.Flags == ArrayFlags::None; });
   index.ActiveScalars = ofPoints != index.Arrays.end() ? ofPoints->Name
                         : arrays.empty()               ? ""
                                                        : arrays[0].Name;

@@ -138,9 +138,9 @@ void Encoder<T>::EncodePlanes(
   int step, const BlockBody& done, const std::function<void(double)>& tell)
 {
   std::vector<PlaneNumbers>& targets = this->Wanted;
-  const void* const values = this->Field.Steps[static_cast<std::size_t>(step)];
-  const bool blockwise = this->Target->MakeCoarser(values, targets);
-  const auto make = [&](std::int64_t block) { this->Target->MakeBlock(values, block, targets[0]); };
+  const std::size_t number = static_cast<std::size_t>(step);
+  const bool blockwise = this->Target->MakeCoarser(number, targets);
+  const auto make = [&](std::int64_t block) { this->Target->MakeBlock(number, block, targets[0]); };
   std::vector<PlaneNumbers>& decoded = this->Decoded[static_cast<std::size_t>(step)].Planes;
   StepTokens& tokens = this->Tokens[static_cast<std::size_t>(step)];
   EncodedStep& out = this->Out.Steps[static_cast<std::size_t>(step)];
@@ -193,7 +193,6 @@ template <class T>
 void Encoder<T>::EncodeStep(
   int step, std::vector<double>* squares, const std::function<void(double)>& tell)
 {
-  const void* const values = this->Field.Steps[static_cast<std::size_t>(step)];
   DecodedStep& decoded = this->Decoded[static_cast<std::size_t>(step)];
   EncodedStep& out = this->Out.Steps[static_cast<std::size_t>(step)];
   for (std::size_t p = 0; p + 1 < this->Planes.size(); ++p)
@@ -211,7 +210,7 @@ void Encoder<T>::EncodeStep(
       const PlaneNumbers& numbers = decoded.Planes[plane];
       decoded.Extremes[plane][static_cast<std::size_t>(i)] =
         ExtremesOfBlock(numbers, static_cast<int>(plane), i, this->Field.Levels);
-      this->Target->Verify(values, numbers, static_cast<int>(plane), i, list,
+      this->Target->Verify(static_cast<std::size_t>(step), numbers, static_cast<int>(plane), i, list,
         plane == 0 ? parts[static_cast<std::size_t>(i)] : coarse, plane == 0 ? squares : nullptr);
       if (!list.Positions.empty())
       {

@@ -4,6 +4,8 @@
 #include "Series/ComponentRange.h"
 #include "Series/FillValues.h"
 
+#include <algorithm>
+
 namespace banyan
 {
 namespace
@@ -15,15 +17,17 @@ ValueRange RangeOfGroup(const FieldGroup& field, std::int64_t tuples, ThreadPool
   if (!field.FillValues.empty())
   {
     ValueHistogram values;
-    for (const void* step : field.Steps)
+    for (std::size_t s = 0; s < field.Steps.size(); ++s)
     {
-      CountComponent(field.Type, step, tuples, field.Components, 0, field.FillValues, values);
+      CountComponent(field.Type, field.Steps[s], tuples, field.Components, 0, field.FillValues, values,
+        field.HiddenAt(s));
     }
     return values.Range();
   }
-  for (const void* step : field.Steps)
+  for (std::size_t s = 0; s < field.Steps.size(); ++s)
   {
-    range.Include(RangeOfComponent(field.Type, step, tuples, field.Components, 0, pool));
+    range.Include(RangeOfComponent(
+      field.Type, field.Steps[s], tuples, field.Components, 0, pool, field.HiddenAt(s)));
   }
   return range;
 }
@@ -41,7 +45,7 @@ ClampedSteps Clamp(
       const std::size_t s = static_cast<std::size_t>(step);
       clamped.Values[s].resize(static_cast<std::size_t>(tuples) * SizeOf(field.Type));
       counts[s] = ClampComponent(field.Type, field.Steps[s], field.Components, tuples,
-        component.PromisedRange, component.FillValues, clamped.Values[s].data());
+        component.PromisedRange, component.FillValues, field.HiddenAt(s), clamped.Values[s].data());
       field.Steps[s] = clamped.Values[s].data();
     });
   for (const std::int64_t count : counts)
@@ -51,6 +55,21 @@ ClampedSteps Clamp(
   field.Components = 1;
   field.Component = 0;
   return clamped;
+}
+
+/// Of each step, the flags of points; null where none is hidden.
+std::vector<const std::uint8_t*> HiddenOf(
+  const std::vector<std::vector<ArrayValues>>& steps, std::size_t flags, std::int64_t tuples)
+{
+  std::vector<const std::uint8_t*> hidden;
+  for (const std::vector<ArrayValues>& step : steps)
+  {
+    const auto* const bytes = static_cast<const std::uint8_t*>(step[flags].Values);
+    const bool some =
+      std::any_of(bytes, bytes + tuples, [](std::uint8_t flag) { return flag != 0; });
+    hidden.push_back(some ? bytes : nullptr);
+  }
+  return hidden;
 }
 
 } // namespace
@@ -80,8 +99,13 @@ FieldOfPlan MakeField(const SeriesIndex& plan, const EncodeOptions& options, std
   field.Ideas = options.Ideas;
   field.CompressionLevel = options.CompressionLevel;
   field.FillValues = index.FillValues;
-  field.Expected = IsPromised(index) ? index.PromisedRange : RangeOfGroup(field, tuples, pool);
   field.Beyond = GoesBeyond(index);
+  const int flags = plan.FindFlags(ArrayFlags::OfPoints);
+  if (flags >= 0 && of.Flags == ArrayFlags::None)
+  {
+    field.Hidden = HiddenOf(steps, static_cast<std::size_t>(flags), tuples);
+  }
+  field.Expected = IsPromised(index) ? index.PromisedRange : RangeOfGroup(field, tuples, pool);
   if (options.Mesh)
   {
     const auto& needed = of.CellArray.empty() ? options.Mesh->Needed : options.Mesh->NeededOfCells;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <type_traits>
 
@@ -37,7 +38,8 @@ FillSet<T>::FillSet(const std::vector<double>& values)
 }
 
 void CountComponent(ScalarType type, const void* values, std::int64_t tuples, int components,
-  int component, const std::vector<double>& fillValues, ValueHistogram& histogram)
+  int component, const std::vector<double>& fillValues, ValueHistogram& histogram,
+  const std::uint8_t* hidden)
 {
   Dispatch(type,
     [&](auto tag)
@@ -51,7 +53,7 @@ void CountComponent(ScalarType type, const void* values, std::int64_t tuples, in
       {
         const T value = from[i * components];
         packed[count] = value;
-        count += fills.Holds(value) ? 0 : 1;
+        count += fills.Holds(value) || (hidden != nullptr && hidden[i] != 0) ? 0 : 1;
         if (count == Tile)
         {
           histogram.Add(packed, count);
@@ -63,7 +65,8 @@ void CountComponent(ScalarType type, const void* values, std::int64_t tuples, in
 }
 
 std::int64_t ClampComponent(ScalarType type, const void* values, int stride, std::int64_t count,
-  const ValueRange& range, const std::vector<double>& fillValues, void* clamped)
+  const ValueRange& range, const std::vector<double>& fillValues, const std::uint8_t* hidden,
+  void* clamped)
 {
   std::int64_t replaced = 0;
   Dispatch(type,
@@ -78,10 +81,11 @@ std::int64_t ClampComponent(ScalarType type, const void* values, int stride, std
         to[i] = from[i * stride];
       }
       replaced = ClampToRange(range, to, static_cast<std::size_t>(count), to);
-      for (std::int64_t i = 0; i < count && !fills.Empty(); ++i)
+      for (std::int64_t i = 0; i < count && (!fills.Empty() || hidden != nullptr); ++i)
       {
         const T original = from[i * stride];
-        if (fills.Holds(original) && to[i] != original)
+        const bool stays = fills.Holds(original) || (hidden != nullptr && hidden[i] != 0);
+        if (stays && std::memcmp(&to[i], &original, sizeof(T)) != 0)
         {
           to[i] = original;
           --replaced;

@@ -41,17 +41,21 @@ private:
 
 /// Adds a component to a histogram, fill values left out.
 /// @param values `[tuples][components]`
+/// @param hidden by tuple: those where it is not 0 are left out; may be null
 void CountComponent(ScalarType type, const void* values, std::int64_t tuples, int components,
-  int component, const std::vector<double>& fillValues, ValueHistogram& histogram);
+  int component, const std::vector<double>& fillValues, ValueHistogram& histogram,
+  const std::uint8_t* hidden = nullptr);
 
 /// Copies a component with finite values beyond a range replaced by its nearer end (see
-/// ClampToRange); fill values, NaN and infinities stay.
+/// ClampToRange); fill values, NaN, infinities and what is hidden stay.
 /// @param values the component's first value, `stride` from one to the next
+/// @param hidden by value: not 0 where it is; may be null
 /// @param clamped receives `count` values without gaps
 /// @return how many values were replaced
 /// Throws Error when no value of the type lies within the range.
 std::int64_t ClampComponent(ScalarType type, const void* values, int stride, std::int64_t count,
-  const ValueRange& range, const std::vector<double>& fillValues, void* clamped);
+  const ValueRange& range, const std::vector<double>& fillValues, const std::uint8_t* hidden,
+  void* clamped);
 
 } // namespace banyan
 

@@ -100,25 +100,12 @@ public:
     }
   }
 
-  /// Whether an array is the same, to the bit, in all steps as in the step before.
+  /// Whether an array is the same, to the bit, in all steps as in the step before, and so is what is hidden.
   bool Rests(std::size_t array, const std::vector<std::vector<ArrayValues>>& steps) const
   {
-    const std::vector<ComponentIndex>& components = this->Plan.Arrays[array].Components;
-    if (this->First || steps.size() < 2 || this->Options.ClosedGroups ||
-        !this->Options.Ideas.RestingArrays ||
-        !std::all_of(components.begin(), components.end(), IsPromised))
-    {
-      return false;
-    }
-    this->MustBeKnown(!this->KnownValues.empty());
-    const std::size_t bytes = BytesOf(this->Plan, array);
-    const Hash128 before = this->KnownValues.empty() ? HashOf(this->Values[array].Values, bytes)
-                                                     : this->KnownValues[array];
-    const void* const first = steps[0][array].Values;
-    return HashOf(first, bytes) == before &&
-           std::all_of(steps.begin() + 1, steps.end(),
-             [&](const std::vector<ArrayValues>& step)
-             { return std::memcmp(step[array].Values, first, bytes) == 0; });
+    const int flags = this->Plan.FindFlags(ArrayFlags::OfPoints);
+    return this->ValuesRest(array, steps) &&
+           (flags < 0 || this->ValuesRest(static_cast<std::size_t>(flags), steps));
   }
 
   /// Null when the group does not refer to it; until the next call.
@@ -146,6 +133,26 @@ public:
   std::vector<PlaneNumbers> Release() { return std::move(this->Frame.Planes); }
 
 private:
+  bool ValuesRest(std::size_t array, const std::vector<std::vector<ArrayValues>>& steps) const
+  {
+    const std::vector<ComponentIndex>& components = this->Plan.Arrays[array].Components;
+    if (this->First || steps.size() < 2 || this->Options.ClosedGroups ||
+        !this->Options.Ideas.RestingArrays ||
+        !std::all_of(components.begin(), components.end(), IsPromised))
+    {
+      return false;
+    }
+    this->MustBeKnown(!this->KnownValues.empty());
+    const std::size_t bytes = BytesOf(this->Plan, array);
+    const Hash128 before = this->KnownValues.empty() ? HashOf(this->Values[array].Values, bytes)
+                                                     : this->KnownValues[array];
+    const void* const first = steps[0][array].Values;
+    return HashOf(first, bytes) == before &&
+           std::all_of(steps.begin() + 1, steps.end(),
+             [&](const std::vector<ArrayValues>& step)
+             { return std::memcmp(step[array].Values, first, bytes) == 0; });
+  }
+
   void MustBeKnown(bool known) const
   {
     if (!known && this->Values.empty())

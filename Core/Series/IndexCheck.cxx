@@ -102,7 +102,7 @@ bool IsPlainName(const std::string& file)
 
 void CheckMesh(const SeriesIndex& index)
 {
-  Require((index.FormatVersion >= 3) == index.Mesh.has_value(),
+  Require((index.FormatVersion == 3 || index.FormatVersion == 4) == index.Mesh.has_value(),
     "A series of format version 3 or 4 is one of a mesh, and only such a series is");
   std::set<std::string> cellArrays;
   for (const ArrayIndex& array : index.Arrays)
@@ -110,7 +110,7 @@ void CheckMesh(const SeriesIndex& index)
     Require(array.CellArray.empty() || cellArrays.insert(array.CellArray).second,
       "Two cell arrays have the name '" + array.CellArray + "'");
   }
-  Require((index.FormatVersion >= 4) == !cellArrays.empty(),
+  Require((index.FormatVersion == 4) == !cellArrays.empty(),
     "A series of format version 4 has cell arrays, and only such a series has");
   if (index.Mesh)
   {
@@ -120,6 +120,25 @@ void CheckMesh(const SeriesIndex& index)
               index.Mesh->Cells <= index.Domain.Extent.Count(),
       "The mesh has an impossible number of points or cells");
   }
+}
+
+void CheckFlags(const SeriesIndex& index)
+{
+  int count[3] = {};
+  bool values = false;
+  for (const ArrayIndex& array : index.Arrays)
+  {
+    ++count[static_cast<int>(array.Flags)];
+    Require(array.Flags == ArrayFlags::None ||
+              (!values && array.Type == ScalarType::UInt8 && array.Components.size() == 1 &&
+                array.Components[0].ErrorBoundAbsolute == 0),
+      "Flags of points or cells must be exact bytes, and come before other arrays");
+    values = values || array.Flags == ArrayFlags::None;
+  }
+  Require(count[1] <= 1 && count[2] <= 1, "There are several arrays of flags");
+  Require(values, "A series needs at least one array");
+  Require((index.FormatVersion == 5) == (count[1] + count[2] > 0),
+    "A series of format version 5 has hidden points or cells, and only such a series has");
 }
 
 void CheckSegments(const SeriesIndex& index)
@@ -181,6 +200,7 @@ void CheckIndex(const SeriesIndex& index)
     "The error bound must be finite and not negative");
   CheckMesh(index);
   CheckArrays(index);
+  CheckFlags(index);
   CheckTimes(index.Times);
   CheckSegments(index);
 }

@@ -72,6 +72,15 @@ ArrayIndex ArrayFromJson(const Json& json)
   {
     array.CellArray = TextMember(json, "cellArray");
   }
+  if (json.contains("flags"))
+  {
+    const std::string flags = TextMember(json, "flags");
+    if (flags != "points" && flags != "cells")
+    {
+      throw Error("The flags of the array '" + array.Name + "' are neither those of points nor of cells");
+    }
+    array.Flags = flags == "points" ? ArrayFlags::OfPoints : ArrayFlags::OfCells;
+  }
   array.Type = ScalarTypeFromName(TextMember(json, "type"));
   for (const Json& component : ListMember(json, "components"))
   {

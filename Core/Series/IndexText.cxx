@@ -14,7 +14,7 @@ namespace
 
 const std::string Word = "banyan-series ";
 constexpr int OldestVersion = 1;
-constexpr int NewestVersion = 4;
+constexpr int NewestVersion = 5;
 
 /// Splits off the first line, having checked that it fits the rest.
 std::string CheckedBody(const std::string& text, int& formatVersion)

@@ -55,6 +55,10 @@ Json ArrayToJson(const ArrayIndex& array)
   {
     json["cellArray"] = array.CellArray;
   }
+  if (array.Flags != ArrayFlags::None)
+  {
+    json["flags"] = array.Flags == ArrayFlags::OfPoints ? "points" : "cells";
+  }
   json["type"] = NameOf(array.Type);
   for (const ComponentIndex& component : array.Components)
   {

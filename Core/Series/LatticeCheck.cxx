@@ -88,17 +88,18 @@ ValueRange RangeOfRow(const T* values, int count)
 
 template <class T>
 LatticeCheck<T>::LatticeCheck(const FieldGroup& field, const group::FieldHead& head,
-  const LatticeDecoder<T>& decoder, const FillSet<T>& fills, const InvisibleBlocks<T>* hidden,
-  const glm::i64vec3& stride, const glm::ivec3& last, const T* values)
+  const LatticeDecoder<T>& decoder, const FillSet<T>& fills, const InvisibleBlocks<T>* invisible,
+  const glm::i64vec3& stride, const glm::ivec3& last, const T* values, const std::uint8_t* hidden)
   : Field(field)
   , Head(head)
   , Decoder(decoder)
   , Fills(fills)
-  , Hidden(hidden)
+  , Invisible(invisible)
   , Stride(stride)
   , Last(last)
   , Values(values)
-  , Plain(!head.Exact && field.Bound > 0 && fills.Empty() && !field.Opacity)
+  , Hidden(hidden)
+  , Plain(!head.Exact && field.Bound > 0 && fills.Empty() && !field.Opacity && hidden == nullptr)
 {
 }
 
@@ -185,7 +186,7 @@ bool LatticeCheck<T>::Within(T original, T decoded, double& error, double& trans
 template <class T>
 bool LatticeCheck<T>::BothInvisible(const glm::ivec3& sample, T original, T decoded)
 {
-  if (!this->Hidden)
+  if (!this->Invisible)
   {
     return false;
   }
@@ -195,10 +196,10 @@ bool LatticeCheck<T>::BothInvisible(const glm::ivec3& sample, T original, T deco
   auto found = this->Intervals.find(key);
   if (found == this->Intervals.end())
   {
-    found = this->Intervals.emplace(key, this->Hidden->IntervalOf(this->Values, block)).first;
+    found = this->Intervals.emplace(key, this->Invisible->IntervalOf(this->Values, block)).first;
   }
-  return found->second >= 0 && this->Hidden->Holds(found->second, original) &&
-         this->Hidden->Holds(found->second, decoded);
+  return found->second >= 0 && this->Invisible->Holds(found->second, original) &&
+         this->Invisible->Holds(found->second, decoded);
 }
 
 /// Whether a sample may decode to that; adds to `errors` if so.
@@ -246,6 +247,14 @@ bool LatticeCheck<T>::Needs(const Row& row, std::size_t x) const
          this->Field.Needed[row.At / this->Field.Components + this->Tuples[x]] != 0;
 }
 
+/// Whether a sample of a row is hidden.
+template <class T>
+bool LatticeCheck<T>::IsHidden(const Row& row, std::size_t x) const
+{
+  return this->Hidden != nullptr &&
+         this->Hidden[row.At / this->Field.Components + this->Tuples[x]] != 0;
+}
+
 /// Sample by sample; `Decoded` becomes what decoding gives with the exceptions.
 template <class T>
 void LatticeCheck<T>::EachSample(const Row& row, int plane, const glm::ivec3& low, int edge,
@@ -265,14 +274,15 @@ void LatticeCheck<T>::EachSample(const Row& row, int plane, const glm::ivec3& lo
     {
       continue;
     }
-    if (!this->MayStay({ column, y, z }, original, decoded, errors))
+    const bool hidden = this->IsHidden(row, static_cast<std::size_t>(x));
+    if (hidden || !this->MayStay({ column, y, z }, original, decoded, errors))
     {
       ++errors.Exceptions;
       list.Positions.push_back(first + static_cast<std::uint32_t>(x));
       list.Values.push_back(original);
       decoded = original;
     }
-    if (std::isfinite(static_cast<double>(original)))
+    if (!hidden && std::isfinite(static_cast<double>(original)))
     {
       errors.Range.Include({ DoubleNotAbove(decoded), DoubleNotBelow(decoded) });
       ++errors.Finite;
@@ -338,9 +348,10 @@ void LatticeCheck<T>::Block(const PlaneNumbers& decoded, int plane, std::int64_t
       const std::int64_t tuple = row.At / this->Field.Components;
       for (int x = 0; squares != nullptr && x < row.Count; ++x)
       {
-        // A vector with a fill value has no length.
+        // A vector with a fill value, or a hidden one, has no length.
         const std::size_t i = static_cast<std::size_t>(x);
-        const double value = this->Fills.Holds(this->Originals[i]) || !this->Needs(row, i)
+        const double value = this->Fills.Holds(this->Originals[i]) || !this->Needs(row, i) ||
+                                 this->IsHidden(row, i)
                                ? std::numeric_limits<double>::quiet_NaN()
                                : static_cast<double>(this->Decoded[i]);
         (*squares)[static_cast<std::size_t>(tuple + this->Tuples[i])] += value * value;

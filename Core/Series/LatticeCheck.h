@@ -21,10 +21,12 @@ class LatticeCheck
 public:
   /// @param values of the step, as FieldGroup has them
   /// @param stride of values along the codec's axes, and @param last sample of the finest plane
-  /// @param hidden null: every value counts
+  /// @param invisible null: every value counts
+  /// @param hidden of the step, as FieldGroup has them; may be null
   LatticeCheck(const FieldGroup& field, const group::FieldHead& head,
-    const LatticeDecoder<T>& decoder, const FillSet<T>& fills, const InvisibleBlocks<T>* hidden,
-    const glm::i64vec3& stride, const glm::ivec3& last, const T* values);
+    const LatticeDecoder<T>& decoder, const FillSet<T>& fills, const InvisibleBlocks<T>* invisible,
+    const glm::i64vec3& stride, const glm::ivec3& last, const T* values,
+    const std::uint8_t* hidden);
 
   /// See LatticeTarget::Verify.
   void Block(const PlaneNumbers& decoded, int plane, std::int64_t block, ExceptionList<T>& list,
@@ -50,6 +52,7 @@ private:
   void LoadRow(const PlaneNumbers& decoded, const Row& row);
   bool AllWithin(int count, FieldErrors& errors);
   bool Needs(const Row& row, std::size_t x) const;
+  bool IsHidden(const Row& row, std::size_t x) const;
   void EachSample(const Row& row, int plane, const glm::ivec3& low, int edge,
     ExceptionList<T>& list, FieldErrors& errors);
   bool Within(T original, T decoded, double& error, double& transformed) const;
@@ -60,10 +63,11 @@ private:
   const group::FieldHead& Head;
   const LatticeDecoder<T>& Decoder;
   const FillSet<T>& Fills;
-  const InvisibleBlocks<T>* Hidden;
+  const InvisibleBlocks<T>* Invisible;
   glm::i64vec3 Stride;
   glm::ivec3 Last;
   const T* Values;
+  const std::uint8_t* Hidden; ///< by tuple; may be null
   bool Plain; ///< rows may be taken as a whole
 
   /// Of the block's samples along a row, among the values, and among tuples of them.

@@ -91,9 +91,11 @@ LatticeScale LatticeTarget<T>::Scale() const
 }
 
 /// Values, at most a tile's row of them, to numbers one by one.
+/// @param hidden of these; may be null
 template <class T>
 template <class Number>
-void LatticeTarget<T>::FillRow(const T* values, int count, Number* numbers) const
+void LatticeTarget<T>::FillRow(
+  const T* values, const std::uint8_t* hidden, int count, Number* numbers) const
 {
   double y[Tile];
   for (int x = 0; x < count; ++x)
@@ -111,7 +113,7 @@ void LatticeTarget<T>::FillRow(const T* values, int count, Number* numbers) cons
   for (int x = 0; x < count; ++x)
   {
     held[x] = y[x] >= this->Nearest && y[x] <= this->Furthest; // not for NaN
-    held[x] = held[x] && !this->Fills.Holds(values[x]);
+    held[x] = held[x] && !this->Fills.Holds(values[x]) && (hidden == nullptr || hidden[x] == 0);
     all = all && held[x];
     const double number = held[x] ? (y[x] - this->Head.Origin) * inverse : 0.0;
     const double bounded =
@@ -175,21 +177,31 @@ bool LatticeTarget<T>::FillTileFast(const T* values, const glm::ivec3& low, cons
 template <class T>
 template <class Number>
 void LatticeTarget<T>::FillTile(
-  const T* values, const glm::ivec3& low, const glm::ivec3& next, PlaneNumbers& plane) const
+  std::size_t step, const glm::ivec3& low, const glm::ivec3& next, PlaneNumbers& plane) const
 {
+  const T* const values = this->ValuesAt(step);
+  const std::uint8_t* const hidden = this->Field.HiddenAt(step);
   const glm::ivec3 n = glm::min(glm::ivec3(Tile), plane.Samples - low);
-  if (this->Plain() && this->FillTileFast<Number>(values, low, next, n, plane))
+  if (this->Plain() && hidden == nullptr && this->FillTileFast<Number>(values, low, next, n, plane))
   {
     return;
   }
   T tile[Tile * Tile * Tile];
   GatherTile(
     values + this->OffsetOf(low), this->Stride, n, glm::i64vec3{ 1, Tile, Tile * Tile }, tile);
+  std::uint8_t hiddenTile[Tile * Tile * Tile];
+  if (hidden != nullptr)
+  {
+    GatherTile(hidden + this->OffsetOf(low) / this->Field.Components,
+      this->Stride / std::int64_t{ this->Field.Components }, n, glm::i64vec3{ 1, Tile, Tile * Tile },
+      hiddenTile);
+  }
   for (int z = 0; z < n.z; ++z)
   {
     for (int y = 0; y < n.y; ++y)
     {
-      this->FillRow(tile + (z * Tile + y) * Tile, n.x,
+      const int row = (z * Tile + y) * Tile;
+      this->FillRow(tile + row, hidden != nullptr ? hiddenTile + row : nullptr, n.x,
         plane.Data<Number>() + plane.IndexOf(low + glm::ivec3(0, y, z)));
     }
   }
@@ -235,23 +247,22 @@ std::vector<PlaneNumbers> LatticeTarget<T>::NewPlanes() const
 }
 
 template <class T>
-void LatticeTarget<T>::Make(const void* values, std::vector<PlaneNumbers>& planes) const
+void LatticeTarget<T>::Make(std::size_t step, std::vector<PlaneNumbers>& planes) const
 {
   const glm::ivec3 tiles = (this->PlaneSamples[0] + Tile - 1) / Tile;
   planes[0].With(
     [&](auto* numbers)
     {
       using Number = std::remove_pointer_t<decltype(numbers)>;
-      const T* from = static_cast<const T*>(values);
       this->Pool.ParallelFor(std::int64_t{ tiles.x } * tiles.y * tiles.z,
         [&](std::int64_t i)
         {
           const glm::ivec3 low = PositionIn(tiles, i) * Tile;
-          this->FillTile<Number>(from, low, NextTile(low, planes[0].Samples), planes[0]);
+          this->FillTile<Number>(step, low, NextTile(low, planes[0].Samples), planes[0]);
         });
       if (this->Hidden)
       {
-        this->HideBlocks<Number>(from, planes[0]);
+        this->HideBlocks<Number>(this->ValuesAt(step), planes[0]);
       }
       Pad<Number>(planes[0], glm::ivec3(0), planes[0].Samples);
       for (std::size_t p = 1; p < planes.size(); ++p)
@@ -303,16 +314,16 @@ bool LatticeTarget<T>::FillCoarser(const T* values, PlaneNumbers& coarse) const
 }
 
 template <class T>
-bool LatticeTarget<T>::MakeCoarser(const void* values, std::vector<PlaneNumbers>& planes) const
+bool LatticeTarget<T>::MakeCoarser(std::size_t step, std::vector<PlaneNumbers>& planes) const
 {
-  bool apart = this->Plain() && !this->Hidden && planes.size() > 1 && planes[0].Edge % Tile == 0;
+  bool apart = this->Plain() && this->Field.HiddenAt(step) == nullptr && !this->Hidden && planes.size() > 1 && planes[0].Edge % Tile == 0;
   if constexpr (IsReal<T>)
   {
     planes[0].With(
       [&](auto* numbers)
       {
         using Number = std::remove_pointer_t<decltype(numbers)>;
-        apart = apart && this->FillCoarser<Number>(static_cast<const T*>(values), planes[1]);
+        apart = apart && this->FillCoarser<Number>(this->ValuesAt(step), planes[1]);
         for (std::size_t p = 2; apart && p < planes.size(); ++p)
         {
           Coarsen<Number>(planes[p - 1], planes[p]);
@@ -321,13 +332,13 @@ bool LatticeTarget<T>::MakeCoarser(const void* values, std::vector<PlaneNumbers>
   }
   if (!apart)
   {
-    this->Make(values, planes);
+    this->Make(step, planes);
   }
   return apart;
 }
 
 template <class T>
-void LatticeTarget<T>::MakeBlock(const void* values, std::int64_t block, PlaneNumbers& plane) const
+void LatticeTarget<T>::MakeBlock(std::size_t step, std::int64_t block, PlaneNumbers& plane) const
 {
   const glm::ivec3 position = PositionIn(plane.Blocks, block);
   const glm::ivec3 low = position * plane.Edge;
@@ -344,7 +355,7 @@ void LatticeTarget<T>::MakeBlock(const void* values, std::int64_t block, PlaneNu
           for (int x = low.x; x < high.x; x += Tile)
           {
             const glm::ivec3 tile{ x, y, z };
-            this->FillTile<Number>(static_cast<const T*>(values), tile, tile + next, plane);
+            this->FillTile<Number>(step, tile, tile + next, plane);
           }
         }
       }
@@ -353,12 +364,12 @@ void LatticeTarget<T>::MakeBlock(const void* values, std::int64_t block, PlaneNu
 }
 
 template <class T>
-void LatticeTarget<T>::Verify(const void* values, const PlaneNumbers& decoded, int plane,
+void LatticeTarget<T>::Verify(std::size_t step, const PlaneNumbers& decoded, int plane,
   std::int64_t block, ExceptionList<T>& list, FieldErrors& errors,
   std::vector<double>* squares) const
 {
   LatticeCheck<T> check(this->Field, this->Head, this->Decoder, this->Fills, this->Hidden.get(),
-    this->Stride, this->PlaneSamples[0] - 1, static_cast<const T*>(values));
+    this->Stride, this->PlaneSamples[0] - 1, this->ValuesAt(step), this->Field.HiddenAt(step));
   check.Block(decoded, plane, block, list, errors, squares);
 }
 

@@ -44,42 +44,46 @@ public:
   /// The lattice numbers of a step on all planes. What the lattice cannot hold gets a number of its
   /// neighbourhood; blocks that nobody can see (InvisibleBlocks) get one number.
   /// @param planes as NewPlanes makes them; whatever they hold is replaced
-  void Make(const void* values, std::vector<PlaneNumbers>& planes) const;
+  void Make(std::size_t step, std::vector<PlaneNumbers>& planes) const;
 
   /// As Make, but where values may well wait, the finest plane is left out: its blocks follow by
   /// MakeBlock, so that their values come from memory once for that and to be compared.
   /// @return whether they have to; if not, all is made
-  bool MakeCoarser(const void* values, std::vector<PlaneNumbers>& planes) const;
+  bool MakeCoarser(std::size_t step, std::vector<PlaneNumbers>& planes) const;
   /// @param plane the finest one, whose numbers of a block are replaced
-  void MakeBlock(const void* values, std::int64_t block, PlaneNumbers& plane) const;
+  void MakeBlock(std::size_t step, std::int64_t block, PlaneNumbers& plane) const;
 
   /// Decodes the samples of a block and compares them with the originals: within the bound, or both
   /// in one invisible interval where the sample is of an invisible block. Fill values must be the
-  /// same bits.
+  /// same bits. Hidden samples are always listed.
   /// @param list receives those that are not within the bound
   /// @param errors of the block; decoded values include exceptions
   /// @param squares if not null, of all voxels: the square of what each decodes to is added
-  void Verify(const void* values, const PlaneNumbers& decoded, int plane, std::int64_t block,
+  void Verify(std::size_t step, const PlaneNumbers& decoded, int plane, std::int64_t block,
     ExceptionList<T>& list, FieldErrors& errors, std::vector<double>* squares) const;
 
 private:
   /// Whether values are on the lattice as they are, and all of them may be.
   bool Plain() const;
   LatticeScale Scale() const;
+  const T* ValuesAt(std::size_t step) const
+  {
+    return static_cast<const T*>(this->Field.Steps[step]);
+  }
   std::int64_t OffsetOf(const glm::ivec3& sample) const
   {
     return sample.x * this->Stride.x + sample.y * this->Stride.y + sample.z * this->Stride.z;
   }
   template <class Number>
   void FillTile(
-    const T* values, const glm::ivec3& low, const glm::ivec3& next, PlaneNumbers& plane) const;
+    std::size_t step, const glm::ivec3& low, const glm::ivec3& next, PlaneNumbers& plane) const;
   template <class Number>
   bool FillTileFast(const T* values, const glm::ivec3& low, const glm::ivec3& next,
     const glm::ivec3& n, PlaneNumbers& plane) const;
   template <class Number>
   bool FillCoarser(const T* values, PlaneNumbers& coarse) const;
   template <class Number>
-  void FillRow(const T* values, int count, Number* numbers) const;
+  void FillRow(const T* values, const std::uint8_t* hidden, int count, Number* numbers) const;
   template <class Number>
   void HideBlocks(const T* values, PlaneNumbers& plane) const;
 

@@ -72,7 +72,13 @@ struct ArrayDescription
   /// One per component, or none: of all finite values over all steps but fill values
   /// (CountComponent). Ranges of the data come from here when there are histograms.
   std::vector<ValueHistogram> Histograms;
+  /// Flags are bytes with the bits of HiddenPointBits or HiddenCellBits alone, kept bit-exact. They come
+  /// before all other arrays, and none of the other members but name and type counts.
+  ArrayFlags Flags = ArrayFlags::None;
 };
+
+/// What says which points of an image, or which cells, are hidden.
+ArrayDescription DescriptionOfFlags(ArrayFlags flags);
 
 /// Values of one array at one step: `[nz][ny][nx][components]`, x (and components) fastest, the
 /// whole extent. Borrowed, not owned.
@@ -90,7 +96,7 @@ struct ArrayValues
 ///
 /// Exactness: every finite voxel is bounded by ErrorBoundAbsolute in its own type, verified here
 /// voxel by voxel (with a transform, in what it makes of them); NaN (payload bits included),
-/// infinities and fill values are bit-exact.
+/// infinities, fill values and values at hidden points are bit-exact.
 ///
 /// Threads: `AddStep` uses the pool; one thread at a time may use an encoder.
 class SeriesEncoder

@@ -22,6 +22,13 @@ const ValueRange& ComponentIndex::ReferenceRange() const
   return chosen && !this->PromisedRange.Empty() ? this->PromisedRange : this->Range;
 }
 
+int SeriesIndex::FindFlags(ArrayFlags flags) const
+{
+  const auto found = std::find_if(this->Arrays.begin(), this->Arrays.end(),
+    [&](const ArrayIndex& array) { return array.Flags == flags; });
+  return found == this->Arrays.end() ? -1 : static_cast<int>(found - this->Arrays.begin());
+}
+
 int SeriesIndex::FindArray(const std::string& name) const
 {
   const auto found = std::find_if(this->Arrays.begin(), this->Arrays.end(),

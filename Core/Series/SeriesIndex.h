@@ -65,11 +65,26 @@ struct ComponentIndex
   const ValueRange& ReferenceRange() const;
 };
 
+/// What the numbers of an array are.
+enum class ArrayFlags
+{
+  None,    ///< values
+  OfPoints, ///< of an image: not 0 where a point is hidden and has no value
+  OfCells  ///< of an image, at the lowest corners of cells: see HiddenCellBits
+};
+
+/// Name and bits of flags: vtkGhostType, HIDDENPOINT, and HIDDENCELL with REFINEDCELL of VTK.
+constexpr const char* FlagsName = "vtkGhostType";
+constexpr const char* CellFlagsName = "vtkGhostType of cells";
+constexpr std::uint8_t HiddenPointBits = 2;
+constexpr std::uint8_t HiddenCellBits = 32 | 8;
+
 struct ArrayIndex
 {
   std::string Name; ///< no two arrays of a series have the same
   /// Of a mesh: the name of the cell array that this is. Empty: it is a point array.
   std::string CellArray;
+  ArrayFlags Flags = ArrayFlags::None;
   ScalarType Type = ScalarType::Float32;
   std::vector<ComponentIndex> Components; ///< at least one
   /// Per step, of the length (L2 norm) of the decoded vectors whose components are finite. None for
@@ -123,7 +138,7 @@ struct EncodeStatistics
 /// All that the index file says. See Documentation/format.md.
 struct SeriesIndex
 {
-  int FormatVersion = 2; ///< 1 is read, and never written; 3 and 4 are those of meshes
+  int FormatVersion = 2; ///< 1 is read, and never written; 3 and 4 are those of meshes, 5 has hidden points or cells
   Grid Domain;
   std::optional<MeshIndex> Mesh; ///< nothing: the series is of the images themselves
   int BrickCells = 16;
@@ -140,6 +155,8 @@ struct SeriesIndex
   EncodeStatistics Statistics;
 
   int Steps() const { return static_cast<int>(this->Times.size()); }
+  /// Index of the array with these flags, or -1.
+  int FindFlags(ArrayFlags flags) const;
   /// Index of the array of that name, or -1.
   int FindArray(const std::string& name) const;
   /// The segment that holds a step. Throws Error when the step does not exist.
