@@ -10,12 +10,12 @@ namespace banyan
 /// Cells with any of these flags are those of other pieces, or hidden.
 constexpr int GhostBits = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
 
-/// @param flags of cells, or null
-inline bool HasGhosts(vtkUnsignedCharArray* flags)
+/// @param flags of cells, or of points, or null
+inline bool HasGhosts(vtkUnsignedCharArray* flags, int bits = GhostBits)
 {
   for (vtkIdType cell = 0; flags && cell < flags->GetNumberOfTuples(); ++cell)
   {
-    if ((flags->GetValue(cell) & GhostBits) != 0)
+    if ((flags->GetValue(cell) & bits) != 0)
     {
       return true;
     }

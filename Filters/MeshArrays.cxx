@@ -208,6 +208,29 @@ WantedArrays MeshArrays::WantedPoints(bool leaves) const
   };
 }
 
+std::vector<std::string> MeshArrays::NotChosen(vtkUnstructuredGrid* grid, bool leaves) const
+{
+  std::vector<std::string> names;
+  for (const int where : { vtkDataObject::POINT, vtkDataObject::CELL })
+  {
+    const bool points = where == vtkDataObject::POINT;
+    vtkDataSetAttributes* const attributes = grid->GetAttributes(where);
+    const WantedArrays wanted = this->WantedPoints(leaves);
+    for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
+    {
+      vtkDataArray* const array = attributes->GetArray(i);
+      const std::string name = array ? NameOf(array, i) : "";
+      const bool isWanted = points || leaves ? wanted(name)
+                                             : !this->Chosen() || Enabled(this->Cells, name);
+      if (array && array->GetDataType() != VTK_BIT && !IsNoValue(attributes, array) && !isWanted)
+      {
+        names.push_back((points ? "point array " : "cell array ") + name);
+      }
+    }
+  }
+  return names;
+}
+
 std::vector<MeshArray> MeshArrays::Of(
   vtkUnstructuredGrid* grid, bool leaves, std::string& warning) const
 {

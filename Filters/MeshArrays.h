@@ -37,6 +37,10 @@ public:
   /// does not matter then in which list a name stands
   WantedArrays WantedPoints(bool leaves) const;
 
+  /// Arrays of numbers of a grid that are not written, as others were chosen: "point array p".
+  /// @param leaves see WantedPoints
+  std::vector<std::string> NotChosen(vtkUnstructuredGrid* grid, bool leaves) const;
+
   /// The arrays of numbers that are to be written. Numbers of points and cells, and flags of
   /// ghosts, are left out. A cell array with the name of a point array that is written gets another
   /// one in the series. Throws Error when there is none, or one that was chosen is not there.

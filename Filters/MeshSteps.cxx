@@ -1,5 +1,6 @@
 #include "MeshSteps.h"
 
+#include "GhostCells.h"
 #include "HexMeshOfGrid.h"
 #include "LeafSteps.h"
 #include "MeshPieces.h"
@@ -126,6 +127,7 @@ std::string MeshSteps::Take(vtkSmartPointer<vtkDataObject>& data, const std::str
       throw Error(std::string("Other ranks have a mesh of hexahedra, and this one has ") +
                   data->GetClassName() + " with other cells");
     }
+    this->LookAt(grids);
     std::vector<vtkSmartPointer<vtkUnstructuredGrid>> rest;
     for (vtkUnstructuredGrid*& grid : grids)
     {
@@ -164,6 +166,22 @@ std::string MeshSteps::Take(vtkSmartPointer<vtkDataObject>& data, const std::str
   }
   data = image;
   return mistake;
+}
+
+/// Notes what is not written of this rank's part.
+void MeshSteps::LookAt(const std::vector<vtkUnstructuredGrid*>& grids)
+{
+  this->OthersThere.clear();
+  bool hidden = false;
+  for (vtkUnstructuredGrid* grid : grids)
+  {
+    const std::vector<std::string> names = this->Arrays.NotChosen(grid, this->Leaves);
+    this->OthersThere.insert(this->OthersThere.end(), names.begin(), names.end());
+    hidden = hidden || HasGhosts(grid->GetCellGhostArray(), vtkDataSetAttributes::HIDDENCELL) ||
+             HasGhosts(grid->GetPointGhostArray(), vtkDataSetAttributes::HIDDENPOINT);
+  }
+  this->HiddenParts =
+    hidden ? "Hidden cells of the mesh are not written, and hidden points like all others. " : "";
 }
 
 /// Collective: what all ranks then give as the reason, so that nobody goes on with a part of the

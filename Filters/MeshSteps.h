@@ -13,6 +13,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 class vtkDataArraySelection;
 class vtkDataObject;
@@ -57,8 +58,11 @@ public:
   /// @return what is wrong on this rank, or nothing
   std::string Take(vtkSmartPointer<vtkDataObject>& data, const std::string& problem);
 
-  /// A sentence about arrays of the last step that are not written, or nothing. Of rank 0.
-  const std::string& Warning() const { return this->LeftOut; }
+  /// Sentences about what is not written of the last step, or nothing: of arrays on rank 0 alone.
+  std::string Warning() const { return this->LeftOut + this->HiddenParts; }
+
+  /// See StepReport::NotChosen.
+  const std::vector<std::string>& NotChosen() const { return this->OthersThere; }
 
   /// Collective; throws AgreedError. Rank 0 writes the file of the mesh, and all ranks learn what
   /// encoding must know of it.
@@ -67,6 +71,7 @@ public:
 
 private:
   std::string FirstMistake(const std::string& mine) const;
+  void LookAt(const std::vector<vtkUnstructuredGrid*>& grids);
   /// Collective: the one mesh of all ranks, on rank 0.
   void Gather(vtkSmartPointer<vtkUnstructuredGrid>& piece, bool others);
   void Remember(vtkUnstructuredGrid* grid);
@@ -79,6 +84,8 @@ private:
   std::string Displacements; ///< see AtRest()
   bool Found = false;
   bool Leaves = false; ///< of hyper trees or AMR
+  std::vector<std::string> OthersThere; ///< arrays of this rank's part of the last step
+  std::string HiddenParts;              ///< a sentence, if any are hidden
   // On rank 0:
   vtkSmartPointer<vtkUnstructuredGrid> First; ///< the grid of the first step
   std::shared_ptr<const StoredMesh> Mesh;

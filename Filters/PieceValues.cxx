@@ -8,9 +8,9 @@
 #include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 namespace banyan
 {
@@ -26,6 +26,17 @@ const unsigned char* HidingFlags(vtkImageData* image)
 bool IsHidden(unsigned char flags)
 {
   return (flags & vtkDataSetAttributes::HIDDENPOINT) != 0;
+}
+
+vtkUnsignedCharArray* FlagsOf(vtkImageData* image, ArrayFlags flags)
+{
+  return flags == ArrayFlags::OfPoints ? image->GetPointGhostArray() : image->GetCellGhostArray();
+}
+
+/// Those of them that a series keeps: pieces and their neighbours are none of its own.
+unsigned char BitsOf(ArrayFlags flags)
+{
+  return flags == ArrayFlags::OfPoints ? HiddenPointBits : HiddenCellBits;
 }
 
 /// The values as one block of tuples; arrays of another layout are copied into `keep` first.
@@ -61,21 +72,6 @@ std::vector<ValueRange> Ranges(
     }
   }
   return ranges;
-}
-
-template <class T>
-void HideRow(T* row, const unsigned char* flags, int tuples, int components)
-{
-  if constexpr (std::numeric_limits<T>::has_quiet_NaN)
-  {
-    for (int i = 0; i < tuples; ++i)
-    {
-      for (int c = 0; c < components && IsHidden(flags[i]); ++c)
-      {
-        row[i * components + c] = std::numeric_limits<T>::quiet_NaN();
-      }
-    }
-  }
 }
 
 /// Calls `row(first tuple in the box, first tuple in the part)` for each row of samples.
@@ -137,25 +133,51 @@ void CopyPart(vtkImageData* image, vtkDataArray* array, const Box& part, void* v
   vtkSmartPointer<vtkDataArray> keep;
   const auto* from = static_cast<const unsigned char*>(Block(array, keep));
   auto* to = static_cast<unsigned char*>(values);
-  const unsigned char* flags = HidingFlags(image);
-  const int components = array->GetNumberOfComponents();
-  const ScalarType type = TypeOf(array);
-  const std::size_t tupleBytes = SizeOf(type) * components;
+  const std::size_t tupleBytes = SizeOf(TypeOf(array)) * array->GetNumberOfComponents();
   const int tuples = part.Size().x;
   ForEachRow(part, ExtentOf(image),
     [&](std::int64_t inBox, std::int64_t inPart)
     {
-      unsigned char* row = to + inPart * tupleBytes;
-      std::memcpy(row, from + inBox * tupleBytes, tuples * tupleBytes);
-      if (flags)
-      {
-        Dispatch(type,
-          [&](auto tag)
-          {
-            HideRow(reinterpret_cast<typename decltype(tag)::Type*>(row), flags + inBox, tuples,
-              components);
-          });
-      }
+      std::memcpy(to + inPart * tupleBytes, from + inBox * tupleBytes, tuples * tupleBytes);
+    });
+}
+
+bool Hides(vtkImageData* image, ArrayFlags flags)
+{
+  vtkUnsignedCharArray* const array = FlagsOf(image, flags);
+  const unsigned char* const first = array ? array->GetPointer(0) : nullptr;
+  return array && std::any_of(first, first + array->GetNumberOfTuples(),
+                    [bits = BitsOf(flags)](unsigned char flag) { return (flag & bits) != 0; });
+}
+
+Box CellsIn(const Box& samples, const Box& whole)
+{
+  Box cells = samples;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    cells.Hi[axis] -= whole.Size()[axis] > 1 ? 1 : 0;
+  }
+  return cells.Empty() ? Box{} : cells;
+}
+
+void CopyFlags(vtkImageData* image, ArrayFlags flags, const Box& part, std::uint8_t* bytes)
+{
+  vtkUnsignedCharArray* const array = FlagsOf(image, flags);
+  if (!array)
+  {
+    std::fill_n(bytes, part.Count(), std::uint8_t{ 0 });
+    return;
+  }
+  const Box extent = ExtentOf(image);
+  const Box box = flags == ArrayFlags::OfPoints ? extent : CellsIn(extent, extent);
+  const unsigned char bits = BitsOf(flags);
+  const int count = part.Size().x;
+  ForEachRow(part, box,
+    [&](std::int64_t inBox, std::int64_t inPart)
+    {
+      const unsigned char* const from = array->GetPointer(0) + inBox;
+      std::transform(from, from + count, bytes + inPart,
+        [bits](unsigned char flag) { return static_cast<std::uint8_t>(flag & bits); });
     });
 }
 

@@ -24,11 +24,23 @@ bool IsOneBlock(vtkDataArray* array);
 std::vector<ValueRange> FiniteRangesOf(vtkImageData* image, vtkDataArray* array);
 
 /// Copies a part of an image's point array, `[z][y][x][components]`, x and components fastest, in
-/// the array's own type. Hidden points become NaN (in arrays of float or double; integers are
-/// copied as they are).
+/// the array's own type.
 /// @param part inside the image's extent
 /// @param values room for part.Count() tuples
 void CopyPart(vtkImageData* image, vtkDataArray* array, const Box& part, void* values);
+
+/// Whether an image hides points, or cells.
+bool Hides(vtkImageData* image, ArrayFlags flags);
+
+/// Cells as boxes: the cell whose lowest corner is a sample has the place of that.
+/// @param samples of the image, or of a piece of it
+/// @param whole all samples of the image
+Box CellsIn(const Box& samples, const Box& whole);
+
+/// Which points or cells of a part are hidden, as a series has it; none where an image has no flags.
+/// @param part samples, or cells (see CellsIn), inside the image
+/// @param bytes room for part.Count()
+void CopyFlags(vtkImageData* image, ArrayFlags flags, const Box& part, std::uint8_t* bytes);
 
 /// Copies tuples that are packed as `part` says into their place in a whole.
 /// @param part inside `whole`

@@ -113,7 +113,7 @@ std::vector<vtkAlgorithm*> PipelineInput::Sources() const
   return sources;
 }
 
-std::vector<double> PipelineInput::Times() const
+std::vector<double> PipelineInput::Times(bool wanted) const
 {
   if (!this->Producer)
   {
@@ -127,7 +127,7 @@ std::vector<double> PipelineInput::Times() const
     throw Error("The input does not say what it holds" + Said(errors));
   }
   vtkInformation* info = this->Producer->GetOutputInformation(this->Port);
-  if (!info->Has(Pipeline::TIME_STEPS()))
+  if (!wanted || !info->Has(Pipeline::TIME_STEPS()))
   {
     return {};
   }

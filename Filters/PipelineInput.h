@@ -25,7 +25,8 @@ public:
 
   /// The times of the input, or none; throws Error when they do not increase, or when the input
   /// does not say what it holds. Files are read anew from here on (see SourceInspector::Forget).
-  std::vector<double> Times() const;
+  /// @param wanted false: none are returned, whatever they are
+  std::vector<double> Times(bool wanted) const;
 
   /// Updates the input to one piece of the whole extent.
   /// @param time nullptr leaves the time as it was

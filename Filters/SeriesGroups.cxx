@@ -30,11 +30,11 @@ void SeriesWriting::Collect(int step, const StepAgreement& now)
     this->Values.resize(std::max<std::size_t>(this->Values.size(), place + 1));
   }
   this->Gathering.Gather(
-    this->Mine(), now, this->First.Arrays, owner, receives ? this->Values[place] : none);
+    this->Mine(), now, this->Written, owner, receives ? this->Values[place] : none);
   if (next >= 0)
   {
     this->Gathering.Gather(
-      this->Mine(), now, this->First.Arrays, next, receivesForNext ? this->ValuesBefore : none);
+      this->Mine(), now, this->Written, next, receivesForNext ? this->ValuesBefore : none);
   }
   if (this->Deal.EndsGroup(step))
   {

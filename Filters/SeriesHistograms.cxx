@@ -48,6 +48,7 @@ HistogramMessage Load(vtkMultiProcessStream& stream)
 void SeriesHistograms::Count(vtkImageData* image, const StepAgreement& step, int rank)
 {
   std::vector<unsigned char> values;
+  std::vector<std::uint8_t> hidden;
   for (const WrittenArray& array : step.Arrays)
   {
     if (!this->Options.NeedsHistogram(array.Name))
@@ -69,10 +70,15 @@ void SeriesHistograms::Count(vtkImageData* image, const StepAgreement& step, int
         values.resize(
           static_cast<std::size_t>(slice.Count()) * array.Components.size() * SizeOf(array.Type));
         CopyPart(image, ArrayOf(image, array.Name), slice, values.data());
+        hidden.resize(step.HidesPoints ? static_cast<std::size_t>(slice.Count()) : 0);
+        if (step.HidesPoints)
+        {
+          CopyFlags(image, ArrayFlags::OfPoints, slice, hidden.data());
+        }
         for (int c = 0; c < components; ++c)
         {
           CountComponent(array.Type, values.data(), slice.Count(), components, c, fills,
-            counts[static_cast<std::size_t>(c)]);
+            counts[static_cast<std::size_t>(c)], step.HidesPoints ? hidden.data() : nullptr);
         }
       }
     }

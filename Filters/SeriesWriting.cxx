@@ -17,7 +17,6 @@
 
 namespace banyan
 {
-
 SeriesWriting::SeriesWriting(WritingOrder order)
   : Order(std::move(order))
   , Talk(this->Order.Controller)
@@ -40,7 +39,15 @@ void SeriesWriting::Run()
 {
   try
   {
-    this->Write();
+    try
+    {
+      this->Write();
+    }
+    catch (const LateHiding&)
+    {
+      this->StartAnew();
+      this->Write();
+    }
   }
   catch (const Interruption&)
   {
@@ -125,8 +132,8 @@ void SeriesWriting::AskForTimes()
     {
       throw Error("No file name is set for the series.");
     }
-    this->Times = this->Input.Times();
-    this->HasTimes = this->Order.AllSteps && !this->Times.empty();
+    this->Times = this->Input.Times(this->Order.AllSteps);
+    this->HasTimes = !this->Times.empty();
     if (!this->HasTimes)
     {
       this->Times.assign(1, 0.0);
@@ -162,8 +169,10 @@ void SeriesWriting::AskForTimes()
 vtkSmartPointer<vtkDataObject> SeriesWriting::PullMine(int step) const
 {
   const bool seenBefore = this->TwoPasses && this->InSecondPass;
-  return this->Input.Pull(this->Talk.Rank(), this->Talk.Ranks(),
+  vtkSmartPointer<vtkDataObject> data = this->Input.Pull(this->Talk.Rank(), this->Talk.Ranks(),
     this->HasTimes ? &this->Times[step] : nullptr, !seenBefore);
+  this->CheckTime(step, data);
+  return data;
 }
 
 StepReport SeriesWriting::ReportOfMine(bool withRanges) const
@@ -175,6 +184,7 @@ StepReport SeriesWriting::ReportOfMine(bool withRanges) const
   if (this->Meshes.Active())
   {
     report.Warning += this->Meshes.Warning();
+    report.NotChosen = this->Meshes.NotChosen();
   }
   // Values that are decoded or copied on first touch are touched here, where a failure can still
   // be agreed upon.
@@ -233,32 +243,8 @@ StepAgreement SeriesWriting::Pull(int step, bool withRanges)
   return now;
 }
 
-void SeriesWriting::CompareWithFirst(int step, const StepAgreement& now) const
-{
-  const std::string change = ChangeBetween(this->First, now);
-  if (!change.empty())
-  {
-    throw AgreedError("The data change at " + this->Named(step) + ": " + change +
-                      ". All steps of a series need the same grid and the same arrays.");
-  }
-}
-
 //--------------------------------------------------------------------------------------------------
 // Passes
-
-void SeriesWriting::Remember(int step, const StepAgreement& now)
-{
-  if (step > 0)
-  {
-    this->CompareWithFirst(step, now);
-    return;
-  }
-  this->First = now;
-  if (!now.Warning.empty() && this->Talk.Rank() == 0)
-  {
-    this->Order.Warn(now.Warning);
-  }
-}
 
 void SeriesWriting::FirstPass()
 {
@@ -291,12 +277,13 @@ void SeriesWriting::SecondPass()
     this->Step = step;
     this->Report();
     const StepAgreement now = this->Pull(step, false);
-    if (step > 0 || this->TwoPasses)
+    if (this->TwoPasses)
     {
       this->CompareWithFirst(step, now);
     }
     else
     {
+      this->MustHideAlready(step, now);
       this->Remember(step, now);
     }
     if (step == 0)
@@ -310,12 +297,7 @@ void SeriesWriting::SecondPass()
 
 void SeriesWriting::Open()
 {
-  std::vector<ArrayDescription> descriptions;
-  for (const WrittenArray& array : this->First.Arrays)
-  {
-    descriptions.push_back(
-      { array.Name, array.Type, array.Components, array.Ranges, this->Histograms.Of(array.Name) });
-  }
+  const std::vector<ArrayDescription> descriptions = this->DescribeArrays();
   if (this->Meshes.Active())
   {
     this->Talk.OnRank(

@@ -15,6 +15,7 @@
 
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -55,7 +56,8 @@ struct WritingOrder
 /// Everything is decided by all ranks together: a problem of one makes all of them throw the same
 /// Error, at the same point. With a relative error bound the steps are pulled twice: first for the
 /// ranges of the whole series; the same where a transform or a range is chosen from the values.
-/// Changes of grid, type or arrays between steps are refused in the first pass.
+/// Changes of grid, type or arrays between steps are refused in the first pass. Where it is only found in
+/// the second one that points or cells are hidden, all starts anew with a first one.
 class SeriesWriting
 {
 public:
@@ -71,13 +73,25 @@ public:
   int StepsKept() const { return this->Kept; }
 
 private:
+  /// A step hides points or cells, and the files so far say that none does.
+  class LateHiding : public AgreedError
+  {
+  public:
+    using AgreedError::AgreedError;
+  };
+
   void Write();
   void AskForTimes();
   vtkSmartPointer<vtkDataObject> PullMine(int step) const;
+  void CheckTime(int step, vtkDataObject* data) const;
   StepReport ReportOfMine(bool withRanges) const;
   StepAgreement Pull(int step, bool withRanges);
   void Remember(int step, const StepAgreement& now);
   void CompareWithFirst(int step, const StepAgreement& now) const;
+  void WarnOf(int step, const StepAgreement& now);
+  void MustHideAlready(int step, const StepAgreement& now) const;
+  std::vector<ArrayDescription> DescribeArrays();
+  void StartAnew();
   void FirstPass();
   void SecondPass();
   void Open();
@@ -105,6 +119,8 @@ private:
   bool HasTimes = false; ///< whether the input has time steps that we go through
   std::vector<double> Times;
   StepAgreement First; ///< of step 0; its Ranges are those of the series after the first pass
+  std::vector<WrittenArray> Written; ///< what hides points and cells, if any is hidden; arrays of First
+  std::set<std::string> Warned;      ///< what users know already
 
   std::unique_ptr<SeriesAssembly> Assembly; ///< on rank 0
   std::unique_ptr<SegmentFolder> Folder;    ///< of this rank's segments

@@ -1,6 +1,10 @@
 #include "StepReport.h"
 
+#include "PieceValues.h"
+
 #include "vtkMultiProcessStream.h"
+
+#include "Series/SeriesEncoder.h"
 
 #include <algorithm>
 #include <sstream>
@@ -157,6 +161,12 @@ void StepReport::Save(vtkMultiProcessStream& stream) const
   {
     banyan::Save(array, stream);
   }
+  stream << static_cast<int>(this->HidesPoints) << static_cast<int>(this->HidesCells)
+         << static_cast<int>(this->NotChosen.size());
+  for (const std::string& name : this->NotChosen)
+  {
+    stream << name;
+  }
 }
 
 void StepReport::Load(vtkMultiProcessStream& stream)
@@ -180,6 +190,15 @@ void StepReport::Load(vtkMultiProcessStream& stream)
   {
     this->Arrays.push_back(LoadArray(stream));
   }
+  int hidesPoints = 0, hidesCells = 0, notChosen = 0;
+  stream >> hidesPoints >> hidesCells >> notChosen;
+  this->HidesPoints = hidesPoints != 0;
+  this->HidesCells = hidesCells != 0;
+  this->NotChosen.resize(notChosen);
+  for (std::string& name : this->NotChosen)
+  {
+    stream >> name;
+  }
 }
 
 StepAgreement Agree(const std::vector<StepReport>& reports)
@@ -191,6 +210,9 @@ StepAgreement Agree(const std::vector<StepReport>& reports)
     const StepReport& report = reports[rank];
     pieces.push_back(report.Piece.Extent);
     agreement.Aborted = agreement.Aborted || report.Aborted;
+    agreement.HidesPoints = agreement.HidesPoints || report.HidesPoints;
+    agreement.HidesCells = agreement.HidesCells || report.HidesCells;
+    agreement.NotChosen.insert(report.NotChosen.begin(), report.NotChosen.end());
     if (agreement.Warning.empty())
     {
       agreement.Warning = report.Warning;
@@ -211,6 +233,16 @@ StepAgreement Agree(const std::vector<StepReport>& reports)
                         "that could not be read, an earlier message says why.";
   }
   agreement.Plan = PlanGathering(agreement.Whole.Extent, pieces);
+  if (agreement.HidesCells)
+  {
+    std::vector<Box> cells;
+    for (const Box& piece : pieces)
+    {
+      cells.push_back(CellsIn(piece, agreement.Whole.Extent));
+    }
+    agreement.CellPlan =
+      PlanGathering(CellsIn(agreement.Whole.Extent, agreement.Whole.Extent), cells);
+  }
   for (const Box& piece : pieces)
   {
     agreement.HoldsWhole.push_back(piece == agreement.Whole.Extent);
@@ -222,6 +254,17 @@ StepAgreement Agree(const std::vector<StepReport>& reports)
                         Text(agreement.Whole.Extent) + ".";
   }
   return agreement;
+}
+
+WrittenArray HiddenFlags(ArrayFlags flags)
+{
+  const ArrayDescription description = DescriptionOfFlags(flags);
+  WrittenArray array;
+  array.Name = description.Name;
+  array.Type = description.Type;
+  array.Components = description.ComponentNames;
+  array.Flags = flags;
+  return array;
 }
 
 std::string ChangeBetween(const Grid& before, const Grid& now)

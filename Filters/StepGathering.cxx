@@ -89,7 +89,20 @@ void StepGathering::Gather(vtkImageData* mine, const StepAgreement& step,
   this->Problem.clear();
   for (std::size_t i = 0; i < arrays.size(); ++i)
   {
-    if (!step.HoldsWhole[static_cast<std::size_t>(owner)])
+    const bool flags = arrays[i].Flags != ArrayFlags::None;
+    if (flags && receives)
+    {
+      // Not all of them may come: see CellsIn.
+      std::fill(whole[i].begin(), whole[i].end(), 0);
+    }
+    if (flags && !(arrays[i].Flags == ArrayFlags::OfPoints ? step.HidesPoints : step.HidesCells))
+    {
+      continue;
+    }
+    // Cells lie beside each other otherwise than the samples that have their places.
+    const bool direct = step.HoldsWhole[static_cast<std::size_t>(owner)] &&
+                        arrays[i].Flags != ArrayFlags::OfCells;
+    if (!direct)
     {
       this->Transfer(mine, step, arrays[i], owner, receives ? &whole[i] : nullptr);
     }
@@ -107,7 +120,14 @@ void StepGathering::Copy(
 {
   try
   {
-    CopyPart(mine, ArrayOf(mine, array.Name), part, to);
+    if (array.Flags == ArrayFlags::None)
+    {
+      CopyPart(mine, ArrayOf(mine, array.Name), part, to);
+    }
+    else
+    {
+      CopyFlags(mine, array.Flags, part, to);
+    }
   }
   catch (const std::exception& error)
   {
@@ -119,7 +139,8 @@ void StepGathering::Transfer(vtkImageData* mine, const StepAgreement& step,
   const WrittenArray& array, int owner, std::vector<unsigned char>* whole)
 {
   const std::size_t tupleBytes = TupleBytes(array);
-  for (const GatherPlan::Part& message : Messages(step.Plan, tupleBytes))
+  const GatherPlan& plan = array.Flags == ArrayFlags::OfCells ? step.CellPlan : step.Plan;
+  for (const GatherPlan::Part& message : Messages(plan, tupleBytes))
   {
     const auto bytes = message.Samples.Count() * static_cast<vtkIdType>(tupleBytes);
     const bool sends = this->Talk.Rank() == message.Rank;

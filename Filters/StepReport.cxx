@@ -128,6 +128,10 @@ std::vector<vtkDataArray*> Choose(
       chosen.push_back(values);
       report.Arrays.push_back(Describe(values, name));
     }
+    else if (!wanted && values && values->GetDataType() != VTK_BIT)
+    {
+      report.NotChosen.push_back("point array " + name);
+    }
     else if (wanted)
     {
       unfit.push_back(name + " (" + array->GetDataTypeAsString() + ")");
@@ -136,8 +140,8 @@ std::vector<vtkDataArray*> Choose(
   for (int i = 0; i < selection.GetNumberOfArrays(); ++i)
   {
     const std::string name = selection.GetArrayName(i);
-    // ParaView offers the ghost flags like any array and selects them by default. They are not
-    // written, but points that they hide are.
+    // ParaView offers the ghost flags like any array and selects them by default. What they hide is
+    // written whether they are chosen or not.
     if (selection.GetArraySetting(i) && name != vtkDataSetAttributes::GhostArrayName() &&
         std::find(available.begin(), available.end(), name) == available.end())
     {
@@ -180,32 +184,8 @@ void CheckBlanking(vtkImageData* image, StepReport& report)
       return;
     }
   }
-  // Not HasAnyBlankCells(), which is also true when points are hidden.
-  vtkUnsignedCharArray* flags = image->GetCellGhostArray();
-  const unsigned char* first = flags ? flags->GetPointer(0) : nullptr;
-  const bool hiddenCells =
-    flags && std::any_of(first, first + flags->GetNumberOfTuples(),
-               [](unsigned char flag) { return (flag & vtkDataSetAttributes::HIDDENCELL) != 0; });
-  if (hiddenCells)
-  {
-    report.Problem = "The image has hidden (blanked) cells, which a series cannot hold: hide the "
-                     "points instead, or apply 'Cell Data to Point Data'.";
-    return;
-  }
-  if (!image->HasAnyBlankPoints())
-  {
-    return;
-  }
-  for (const WrittenArray& array : report.Arrays)
-  {
-    if (array.Type != ScalarType::Float32 && array.Type != ScalarType::Float64)
-    {
-      report.Problem = "The image has hidden (blanked) points, which are written as NaN, and the "
-                       "integer array " +
-                       array.Name +
-                       " has no NaN: convert it to float or double first (Calculator).";
-    }
-  }
+  report.HidesPoints = Hides(image, ArrayFlags::OfPoints);
+  report.HidesCells = Hides(image, ArrayFlags::OfCells);
 }
 
 /// Why data of another kind cannot be written, and what to do.

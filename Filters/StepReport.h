@@ -5,6 +5,7 @@
 #include "Series/Grid.h"
 #include "Series/SeriesIndex.h"
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct WrittenArray
   ScalarType Type = ScalarType::Float32;
   std::vector<std::string> Components; ///< names, which may be empty
   std::vector<ValueRange> Ranges;      ///< of the finite values, one per component
+  ArrayFlags Flags = ArrayFlags::None; ///< not among those that are agreed on: see Hides
 };
 
 /// What one rank says about its piece of a step.
@@ -33,6 +35,10 @@ struct StepReport
   Grid Piece;                       ///< Extent is the rank's own and may be empty
   std::string ActiveScalars;        ///< may be empty
   std::vector<WrittenArray> Arrays; ///< sorted by name; none when the piece is empty
+  /// Arrays of numbers that are there and were not chosen ("point array p"), while others were.
+  std::vector<std::string> NotChosen;
+  bool HidesPoints = false; ///< some of the piece
+  bool HidesCells = false;
 
   void Save(vtkMultiProcessStream& stream) const;
   void Load(vtkMultiProcessStream& stream);
@@ -54,10 +60,17 @@ struct StepAgreement
   std::string ActiveScalars;
   std::vector<WrittenArray> Arrays;
   GatherPlan Plan;
+  GatherPlan CellPlan; ///< of cells (see CellsIn); where some are hidden
+  std::set<std::string> NotChosen; ///< on any rank
+  bool HidesPoints = false;
+  bool HidesCells = false;
   std::vector<bool> HoldsWhole; ///< by rank: its piece is the whole extent
 };
 
 StepAgreement Agree(const std::vector<StepReport>& reports);
+
+/// What a series is to say of hidden points and cells.
+WrittenArray HiddenFlags(ArrayFlags flags);
 
 /// What changed between two grids, as half a sentence ("the spacing was ... and is ..."), or
 /// nothing.

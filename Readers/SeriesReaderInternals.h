@@ -36,7 +36,8 @@ struct vtkBanyanSeriesReader::Internals
   /// Whether an array of the series is to be read.
   bool Wants(const banyan::ArrayIndex& array) const
   {
-    return array.CellArray.empty()
+    return array.Flags != banyan::ArrayFlags::None ? false
+           : array.CellArray.empty()
              ? this->Selection->ArrayIsEnabled(array.Name.c_str()) != 0
              : this->CellSelection->ArrayIsEnabled(array.CellArray.c_str()) != 0;
   }

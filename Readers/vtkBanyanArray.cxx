@@ -23,13 +23,18 @@ namespace
 /// VTK's general path through unknown arrays goes by double; larger integers would change there.
 constexpr double LargestExactInteger = 9007199254740992.0; // 2^53
 
-bool FitsDouble(const banyan::ArrayIndex& index)
+/// Ranges do not tell of hidden values.
+bool FitsDouble(const banyan::ArrayIndex& index, bool hidden)
 {
   const bool wide =
     index.Type == banyan::ScalarType::Int64 || index.Type == banyan::ScalarType::UInt64;
   for (const banyan::ComponentIndex& component : index.Components)
   {
     const banyan::ValueRange& range = component.Range;
+    if (wide && hidden)
+    {
+      return false;
+    }
     if (wide && !range.Empty() &&
         (range.Low < -LargestExactInteger || range.High > LargestExactInteger))
     {
@@ -52,7 +57,7 @@ using PlainArray =
 vtkSmartPointer<vtkDataArray> vtkBanyanDeferred::New(const Handle& handle)
 {
   const banyan::ArrayIndex& index = handle.Series->Index().Arrays.at(handle.Array);
-  if (!FitsDouble(index))
+  if (!FitsDouble(index, handle.Flags != nullptr))
   {
     return NewPlain(handle);
   }

@@ -14,7 +14,9 @@
  *   vtkPVArrayInformation only, to choose colour ranges, which therefore do not drift over time.
  *   (In VTK 9.2, vtkVolumeTexture and vtkPVExtractHistogram2D ask it too; they need a range that
  *   contains the values and get one.)
- * - With a ghost array: decodes, and gives what a plain array gives.
+ * - With a ghost array: decodes, and gives what a plain array gives. With the ghost array that the
+ *   reader made: as without one, as the tree does not count hidden points.
+ * - Without it, GetRange() of a series with hidden points decodes, as their values count then.
  * - Of magnitudes: the same; the index holds them per step.
  *
  * @par Limits:
@@ -147,7 +149,9 @@ private:
   /// Ranges of a part of the values: NumberOfComponents of them, and the magnitude last.
   std::vector<banyan::ValueRange> Scan(
     const unsigned char* ghosts, unsigned char skip, Infinities infinities) const;
-  /// The same from the tree, or from the values once they are there.
+  /// Whether these are flags that the tree knows of.
+  bool AreOwn(const unsigned char* ghosts, unsigned char skip) const;
+  /// The same without hidden points, from the tree, or from the values once they are there.
   std::vector<banyan::ValueRange> Told(Infinities infinities);
   std::vector<banyan::ValueRange> Answer(
     const unsigned char* ghosts, unsigned char skip, Infinities infinities);

@@ -4,6 +4,8 @@
 // What vtkBanyanArray answers when it is asked for ranges.
 #include "vtkBanyanArray.h"
 
+#include "vtkUnsignedCharArray.h"
+
 #include <cmath>
 
 template <class T>
@@ -48,6 +50,15 @@ std::vector<banyan::ValueRange> vtkBanyanArray<T>::Scan(
 }
 
 template <class T>
+bool vtkBanyanArray<T>::AreOwn(const unsigned char* ghosts, unsigned char skip) const
+{
+  vtkUnsignedCharArray* const flags = this->Source.Flags;
+  return flags ? ghosts && ghosts == flags->GetPointer(0) && this->Source.HasFlags(flags) &&
+                   (skip & banyan::HiddenPointBits) != 0
+               : !ghosts;
+}
+
+template <class T>
 std::vector<banyan::ValueRange> vtkBanyanArray<T>::Told(Infinities infinities)
 {
   if (this->DecodedBytes() == 0)
@@ -59,7 +70,9 @@ std::vector<banyan::ValueRange> vtkBanyanArray<T>::Told(Infinities infinities)
   std::vector<banyan::ValueRange>& ranges = this->Scanned[static_cast<int>(infinities)];
   if (ranges.empty())
   {
-    ranges = this->Scan(nullptr, 0, infinities);
+    const bool some = this->Source.Flags != nullptr;
+    ranges = this->Scan(
+      some ? this->Source.Flags->GetPointer(0) : nullptr, banyan::HiddenPointBits, infinities);
   }
   return ranges;
 }
@@ -69,8 +82,8 @@ std::vector<banyan::ValueRange> vtkBanyanArray<T>::Answer(
   const unsigned char* ghosts, unsigned char skip, Infinities infinities)
 {
   // Values that were changed are nobody's but the array's: no memory of them is kept either.
-  return ghosts || !this->IsPristine() ? this->Scan(ghosts, skip, infinities)
-                                       : this->Told(infinities);
+  return this->IsPristine() && this->AreOwn(ghosts, skip) ? this->Told(infinities)
+                                                          : this->Scan(ghosts, skip, infinities);
 }
 
 namespace vtkBanyanArrayDetail
@@ -131,6 +144,11 @@ template <class T>
 void vtkBanyanArray<T>::ComputeFiniteRange(
   double range[2], int component, const unsigned char* ghosts, unsigned char skip)
 {
+  if (ghosts && this->IsPristine() && this->AreOwn(ghosts, skip))
+  {
+    this->ComputeFiniteRange(range, component);
+    return;
+  }
   vtkBanyanArrayDetail::WriteOne(this->Answer(ghosts, skip, Infinities::Skip), component, range);
 }
 

@@ -5,6 +5,7 @@
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
+#include "vtkUnsignedCharArray.h"
 
 #include "Cache/BrickCache.h"
 #include "Series/LevelGrid.h"
@@ -60,6 +61,11 @@ bool vtkBanyanDeferred::IsUntouched(vtkAbstractArray* array)
   return deferred && !deferred->IsPlain() && deferred->DecodedBytes() == 0;
 }
 
+bool vtkBanyanDeferred::Handle::HasFlags(vtkUnsignedCharArray* flags) const
+{
+  return flags == this->Flags && (!flags || flags->GetMTime() == this->FlagsTime);
+}
+
 bool vtkBanyanDeferred::LiesOnSeries(vtkImageData* image, const Handle& handle)
 {
   const banyan::Grid grid = banyan::GridOfLevel(handle.Series->Index().Domain, handle.Level);
@@ -67,6 +73,10 @@ bool vtkBanyanDeferred::LiesOnSeries(vtkImageData* image, const Handle& handle)
   const double* origin = image->GetOrigin();
   const double* spacing = image->GetSpacing();
   const vtkMatrix3x3* direction = image->GetDirectionMatrix();
+  if (handle.Flags ? !handle.HasFlags(image->GetPointGhostArray()) : image->HasAnyBlankPoints())
+  {
+    return false;
+  }
   for (int axis = 0; axis < 3; ++axis)
   {
     const int first = handle.Samples.Lo[axis] + grid.Extent.Lo[axis];

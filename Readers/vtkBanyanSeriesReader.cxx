@@ -1,5 +1,6 @@
 #include "vtkBanyanSeriesReader.h"
 
+#include "HiddenFlags.h"
 #include "SeriesInformation.h"
 #include "SeriesReaderInternals.h"
 #include "vtkBanyanDeferred.h"
@@ -265,13 +266,11 @@ int vtkBanyanSeriesReader::RequestInformation(
   }
   for (const banyan::ArrayIndex& array : this->Self->Series->Index().Arrays)
   {
-    if (array.CellArray.empty())
+    if (array.Flags == banyan::ArrayFlags::None) // these come with whatever is chosen
     {
-      this->Self->Selection->AddArray(array.Name.c_str());
-    }
-    else
-    {
-      this->Self->CellSelection->AddArray(array.CellArray.c_str());
+      const bool ofCells = !array.CellArray.empty();
+      (ofCells ? this->Self->CellSelection : this->Self->Selection)
+        ->AddArray((ofCells ? array.CellArray : array.Name).c_str());
     }
   }
   banyan::DescribeSeries(
@@ -366,6 +365,10 @@ void vtkBanyanSeriesReader::FillOutput(vtkInformation* outInfo)
   output->SetDirectionMatrix(outInfo->Get(vtkDataObject::DIRECTION()));
   output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), index.Times[handle.Step]);
 
+  if (!wanted.Empty())
+  {
+    banyan::AddHiddenFlags(output, handle);
+  }
   this->AddImageArrays(handle, output->GetPointData());
   this->UpdateProgress(1.0);
 }

@@ -1,7 +1,10 @@
 #include "Render/SeriesBrickSource.h"
 
+#include "Render/ArraySamples.h"
+
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace banyan
 {
@@ -103,6 +106,11 @@ SeriesBrickSource::SeriesBrickSource(
       this->Nodes.push_back(this->Series->Nodes(this->KeyOf(this->Components.size() - 1)));
       ranges.push_back(array.Components[static_cast<std::size_t>(c)].Range);
     }
+  }
+  this->Flags = { field.Step, this->Series->Index().FindFlags(ArrayFlags::OfPoints), 0, field.Level };
+  if (this->Flags.Array >= 0)
+  {
+    this->NodesOfFlags = this->Series->Nodes(this->Flags);
   }
   if (this->Magnitude)
   {
@@ -215,10 +223,30 @@ BrickView SeriesBrickSource::LoadMagnitude(std::int64_t brick) const
   return view;
 }
 
+/// A copy: what is hidden changes from step to step, and the cache has values for all of them.
+BrickView SeriesBrickSource::WithoutHidden(std::int64_t brick, const BrickView& view) const
+{
+  const auto flags = this->Cache.Get(*this->Series, this->Flags, brick);
+  SampleArray array;
+  array.Values = view.Values;
+  array.Type = view.Type;
+  std::copy(std::begin(view.Stride), std::end(view.Stride), array.Stride);
+  array.Samples = { glm::ivec3(0), flags->Samples.Size() };
+  array.Flags = reinterpret_cast<const std::uint8_t*>(flags->Bytes.data());
+  return ArraySamples(array).View(array.Samples);
+}
+
 BrickView SeriesBrickSource::Load(std::int64_t brick)
 {
   this->Note(brick);
-  return this->Magnitude ? this->LoadMagnitude(brick) : this->LoadComponent(brick, 0);
+  const BrickView view =
+    this->Magnitude ? this->LoadMagnitude(brick) : this->LoadComponent(brick, 0);
+  if (!this->NodesOfFlags)
+  {
+    return view;
+  }
+  const BrickNode& flags = (*this->NodesOfFlags)[static_cast<std::size_t>(brick)];
+  return flags.Uniform && flags.Range.Low == 0.0 ? view : this->WithoutHidden(brick, view);
 }
 
 void SeriesBrickSource::Note(std::int64_t brick) const

@@ -15,7 +15,7 @@ namespace banyan
 {
 
 /// Bricks of an encoded series, decoded through a cache when the ray caster asks for them and not
-/// before. Macro voxels are served from their node and decode nothing.
+/// before. Macro voxels are served from their node and decode nothing. Points that the series hides are NaN.
 class SeriesBrickSource : public BrickSource
 {
 public:
@@ -62,6 +62,7 @@ private:
   FieldKey KeyOf(std::size_t component) const;
   BrickView LoadComponent(std::int64_t brick, std::size_t component) const;
   BrickView LoadMagnitude(std::int64_t brick) const;
+  BrickView WithoutHidden(std::int64_t brick, const BrickView& view) const;
   ValueRange MagnitudeRange(std::int64_t brick) const;
 
   std::shared_ptr<const SeriesFile> Series;
@@ -75,6 +76,8 @@ private:
   double Step = 0.0;
   std::vector<int> Components; ///< the one drawn, or all of them for the magnitude
   std::vector<NodeList> Nodes; ///< one list per entry of Components
+  FieldKey Flags;         ///< of points
+  NodeList NodesOfFlags; ///< null: no point is hidden
   std::shared_ptr<LoadRecord> LoadedBricks = std::make_shared<LoadRecord>(); ///< shared with the levels
 };
 
