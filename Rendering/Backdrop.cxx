@@ -43,12 +43,13 @@ void CopyPart(const PixelRect& part, const PixelRect& fromRect, const std::vecto
 
 } // namespace
 
-void Backdrop::Read(Communicator& communicator, vtkRenderer* renderer, vtkProp* self,
-  const PixelRect& rect, const std::vector<int>& rankOrder, CompositeStatistics& statistics)
+void Backdrop::Read(Communicator& communicator, vtkRenderer* renderer,
+  const std::vector<vtkVolume*>& own, const PixelRect& rect, const std::vector<int>& rankOrder,
+  CompositeStatistics& statistics)
 {
   this->Rect = rect;
   this->BehindRect = {};
-  this->Inner = UnionOfAll(communicator, OthersOnScreen(renderer, self, rect));
+  this->Inner = UnionOfAll(communicator, OthersOnScreen(renderer, own, rect));
   this->InnerPixels.clear();
   if (!this->Inner.Empty())
   {
@@ -58,15 +59,20 @@ void Backdrop::Read(Communicator& communicator, vtkRenderer* renderer, vtkProp* 
   }
 }
 
-std::vector<float> Backdrop::Depths() const
+std::vector<float> Backdrop::Depths(const PixelRect& part) const
 {
   const std::vector<float> inner = DepthsOf(this->InnerPixels);
-  if (inner.empty() || this->Inner == this->Rect)
+  if (inner.empty() || this->Inner == part)
   {
     return inner;
   }
-  std::vector<float> depths(static_cast<std::size_t>(this->Rect.Count()), 1.0f);
-  CopyPart(this->Inner, this->Inner, inner, this->Rect, depths);
+  const PixelRect common = Intersection(this->Inner, part);
+  if (common.Empty())
+  {
+    return {};
+  }
+  std::vector<float> depths(static_cast<std::size_t>(part.Count()), 1.0f);
+  CopyPart(common, this->Inner, inner, part, depths);
   return depths;
 }
 

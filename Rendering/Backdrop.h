@@ -8,35 +8,35 @@
 
 #include <vector>
 
-class vtkProp;
 class vtkRenderer;
+class vtkVolume;
 class vtkWindow;
 
 namespace banyan
 {
 
-/// What other props have drawn where a volume is to be drawn: on all ranks, nearest first. Pixels
+/// What other props have drawn where volumes are to be drawn: on all ranks, nearest first. Pixels
 /// are read and travel only in the rectangle where some rank has other props on the screen
 /// (OthersOnScreen): where none has any, it costs nothing.
 class Backdrop
 {
 public:
   /// Collective.
-  /// @param self the volume's prop
+  /// @param own the volumes' props
   /// @param rankOrder see CombineBehind
   /// @param statistics is added to
-  void Read(Communicator& communicator, vtkRenderer* renderer, vtkProp* self, const PixelRect& rect,
-    const std::vector<int>& rankOrder, CompositeStatistics& statistics);
+  void Read(Communicator& communicator, vtkRenderer* renderer, const std::vector<vtkVolume*>& own,
+    const PixelRect& rect, const std::vector<int>& rankOrder, CompositeStatistics& statistics);
 
-  /// The rectangle around what rank 0 blends the volume over; the same on all ranks.
+  /// The rectangle around what rank 0 blends volumes over; the same on all ranks.
   const PixelRect& Behind() const { return this->BehindRect; }
-  /// At which rays end; empty where nothing is.
-  std::vector<float> Depths() const;
+  /// At which rays end in a part of the rectangle; empty where nothing is.
+  std::vector<float> Depths(const PixelRect& part) const;
 
   /// How many pixels this rank has read.
   long long PixelsRead() const { return this->Inner.Count(); }
 
-  /// Writes the finished volume over it, and over a background that is there already.
+  /// Writes the finished picture over it, and over a background that is there already.
   /// @param picture of all of the rectangle; only rank 0 has one
   void Write(const Communicator& communicator, vtkRenderer* renderer, const FloatImage& picture);
 

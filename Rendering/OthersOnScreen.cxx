@@ -82,7 +82,8 @@ bool StaysInBounds(vtkProp* prop, int& pixels)
 
 } // namespace
 
-PixelRect OthersOnScreen(vtkRenderer* renderer, vtkProp* self, const PixelRect& rect)
+PixelRect OthersOnScreen(
+  vtkRenderer* renderer, const std::vector<vtkVolume*>& own, const PixelRect& rect)
 {
   PixelRect around;
   vtkPropCollection* const props = renderer->GetViewProps();
@@ -90,7 +91,8 @@ PixelRect OthersOnScreen(vtkRenderer* renderer, vtkProp* self, const PixelRect& 
   props->InitTraversal(at);
   while (vtkProp* const prop = props->GetNextProp(at))
   {
-    if (prop == self || !prop->GetVisibility() || IsDrawnLast(prop))
+    if (std::find(own.begin(), own.end(), prop) != own.end() || !prop->GetVisibility() ||
+        IsDrawnLast(prop))
     {
       continue;
     }

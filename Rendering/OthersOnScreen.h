@@ -3,8 +3,10 @@
 
 #include "Render/RayCamera.h"
 
-class vtkProp;
+#include <vector>
+
 class vtkRenderer;
+class vtkVolume;
 
 namespace banyan
 {
@@ -14,8 +16,9 @@ namespace banyan
 /// with plain polygons and of volumes are bounds known to hold all that they draw: where anything
 /// else is visible (axes, splats, geometry fixed to the window), it is all of `rect`. Texts, scalar
 /// bars and other 2-D actors of VTK do not count: they are drawn over volumes, after them.
-/// @param self does not count
-PixelRect OthersOnScreen(vtkRenderer* renderer, vtkProp* self, const PixelRect& rect);
+/// @param own do not count
+PixelRect OthersOnScreen(
+  vtkRenderer* renderer, const std::vector<vtkVolume*>& own, const PixelRect& rect);
 
 } // namespace banyan
 

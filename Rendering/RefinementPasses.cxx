@@ -69,6 +69,7 @@ constexpr double Step = 0.25;
 double RefinementPasses::ToleranceOf(
   Communicator& communicator, const RayScene& scene, std::uint64_t values, const Wish& wish)
 {
+  this->Fresh = true;
   if (!wish.Passes)
   {
     this->IsLast = true;
@@ -96,7 +97,8 @@ double RefinementPasses::ToleranceOf(
 
 bool RefinementPasses::Next()
 {
-  this->Asked = !this->IsLast;
+  this->Asked = this->Fresh && !this->IsLast;
+  this->Fresh = false;
   return this->Asked;
 }
 

@@ -33,7 +33,7 @@ public:
   void Interacted() { this->AfterInteraction = true; }
 
   /// Asks for the next pass. To be called on all ranks. @return false when there is none: the last
-  /// picture kept the tolerance that is wanted
+  /// picture kept the tolerance that is wanted, or was not drawn again since the last call
   bool Next();
 
 private:
@@ -42,6 +42,7 @@ private:
   bool AfterInteraction = false;
   bool IsLast = true;
   bool Asked = false;
+  bool Fresh = false; ///< whether a picture was drawn since Next
 };
 
 } // namespace banyan

@@ -1,8 +1,11 @@
 #include "RendererCamera.h"
 
-#include "vtkCamera.h"
 #include "vtkMatrix4x4.h"
+#include "vtkOpenGLCamera.h"
+#include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
+
+#include <glm/matrix.hpp>
 
 namespace banyan
 {
@@ -25,9 +28,22 @@ RayCamera CameraOf(vtkRenderer* renderer, const glm::dvec3& anchor)
   glm::ivec2 size(0);
   glm::ivec2 origin(0);
   renderer->GetTiledSizeAndOrigin(&size.x, &size.y, &origin.x, &origin.y);
-  return RayCamera(ToGlm(renderer->GetActiveCamera()->GetCompositeProjectionTransformMatrix(
-                     renderer->GetTiledAspectRatio(), -1, 1)),
-    size, anchor);
+  // Surfaces are drawn with these. GetCompositeProjectionTransformMatrix leaves out the eyes.
+  auto* const camera = static_cast<vtkOpenGLCamera*>(renderer->GetActiveCamera());
+  vtkMatrix4x4* worldToView = nullptr;
+  vtkMatrix3x3* normals = nullptr;
+  vtkMatrix4x4* viewToClip = nullptr;
+  vtkMatrix4x4* worldToClip = nullptr;
+  camera->GetKeyMatrices(renderer, worldToView, normals, viewToClip, worldToClip);
+  return RayCamera(glm::transpose(ToGlm(worldToClip)), size, anchor);
+}
+
+int EyeOf(vtkRenderer* renderer)
+{
+  vtkRenderWindow* const window = renderer->GetRenderWindow();
+  const bool both = window->GetStereoRender() && window->GetStereoType() != VTK_STEREO_LEFT &&
+                    window->GetStereoType() != VTK_STEREO_RIGHT;
+  return both && !renderer->GetActiveCamera()->GetLeftEye() ? 1 : 0;
 }
 
 } // namespace banyan

@@ -98,11 +98,11 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
   }
   if (wish.Interacting)
   {
-    this->Passes.Interacted();
+    this->Passes.at(wish.Eye).Interacted();
   }
   const double tolerance = wish.Interacting
                              ? wish.Interactive * this->Slack
-                             : this->Passes.ToleranceOf(communicator, scene, field.Version(),
+                             : this->Passes.at(wish.Eye).ToleranceOf(communicator, scene, field.Version(),
                                  { wish.Passes, wish.Still, wish.Interactive });
   SamplingWish sampling{ tolerance, scene.SampleDistance, levels ? coarsest : 0 };
   if (field.IsMesh() && wish.MaxElementsPerPixel > 0.0)
@@ -129,14 +129,14 @@ void ToleranceControl::PlanSteps(Communicator& communicator, DistributedField& f
 {
   if (wish.Interacting)
   {
-    this->Passes.Interacted();
+    this->Passes.at(wish.Eye).Interacted();
   }
   // A pass divides its tolerance by four: so each takes one step. Still pictures leave out no rays:
   // where a coarse level is far off, pixels between rays may be better by chance.
   const double tolerance =
     wish.Interacting
       ? 0.0
-      : this->Passes.ToleranceOf(communicator, scene, field.Version(),
+      : this->Passes.at(wish.Eye).ToleranceOf(communicator, scene, field.Version(),
           { wish.Passes, 1.0,
             std::ldexp(1.0, 2 * std::min(this->Steps.Step(), this->CoarsestStepLevel)) });
   const int step = wish.Interacting ? this->Steps.Step() : std::ilogb(tolerance) / 2;
@@ -174,6 +174,13 @@ void ToleranceControl::PlanByScreen(Communicator& communicator, DistributedField
   const int common = CommonLevel(communicator, field.Source(), scene.DomainCells, coarsest);
   scene.Samplings = std::make_shared<const TileSamplings>(SamplingsByScreen(
     scene, wish.ScreenErrorPixels, scene.SampleDistance, common, !wish.FixedDistance));
+}
+
+bool ToleranceControl::RefineNext()
+{
+  const bool first = this->Passes[0].Next();
+  const bool second = this->Passes[1].Next();
+  return first || second;
 }
 
 void ToleranceControl::FrameTook(const Wish& wish, double seconds)

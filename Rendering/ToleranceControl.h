@@ -6,6 +6,7 @@
 #include "Parallel/DistributedPlan.h"
 #include "Render/CoarserSteps.h"
 
+#include <array>
 #include <string>
 
 namespace banyan
@@ -35,6 +36,7 @@ public:
     bool FixedDistance =
       false; ///< whether the scene's distance between samples is that of all levels
     bool KeepsTolerance = true; ///< otherwise the picture is one of CoarserSteps
+    int Eye = 0; ///< 1 for the second picture of a frame, where both eyes get one
   };
 
   /// Collective: gives the scene its samplings and its opacity limit.
@@ -54,8 +56,8 @@ public:
   /// Tells what the frame took that was planned last: the same number on all ranks.
   void FrameTook(const Wish& wish, double seconds);
 
-  /// As RefinementPasses::Next.
-  bool RefineNext() { return this->Passes.Next(); }
+  /// As RefinementPasses::Next, of the pictures of both eyes.
+  bool RefineNext();
 
 private:
   /// For pictures that keep no tolerance (CoarserSteps): while somebody moves
@@ -67,7 +69,7 @@ private:
     const Wish& wish, int coarsest);
 
   std::string LimitText;
-  RefinementPasses Passes;
+  std::array<RefinementPasses, 2> Passes; ///< of each eye
   double Slack = 1.0; ///< times the interactive tolerance
   StepControl Steps;
   bool BySteps = false;      ///< the last frame

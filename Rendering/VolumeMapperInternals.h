@@ -3,22 +3,27 @@
 
 #include "Backdrop.h"
 #include "DistributedField.h"
+#include "FrameScene.h"
 #include "MotionEnhancement.h"
 #include "ToleranceControl.h"
 #include "TransferFunctionTable.h"
 #include "vtkBanyanVolumeMapper.h"
 
+#include "Base/Timer.h"
 #include "Cache/BrickCache.h"
 #include "Parallel/DistributedFrame.h"
 
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 class vtkBanyanFrameStatistics;
 class vtkDataObject;
+class vtkVolume;
 
 /// What a mapper keeps from frame to frame.
 struct vtkBanyanVolumeMapper::Internals
@@ -39,10 +44,27 @@ struct vtkBanyanVolumeMapper::Internals
   vtkMTimeType BoundsTime = 0;
   banyan::ToleranceControl Tolerance;
   double WriteSeconds = 0.0; ///< of the last frame, to put its picture on the screen
+  std::set<const vtkVolume*> DrawnByOthers; ///< of the renderer's present frame; only to compare with
+  unsigned long FrameEnds = 0;              ///< observes that
+  unsigned char ToldNotInDepth = 0;         ///< bits of banyan::NotInDepth
 
   void Publish(const banyan::FrameStatistics& frame, std::uint64_t bytesRead,
     const banyan::BrickCache::Statistics& cacheBefore, std::uint64_t aheadBefore, double seconds,
     vtkBanyanFrameStatistics* out) const;
+};
+
+/// A volume in the picture that is under way.
+struct vtkBanyanVolumeMapper::Frame
+{
+  vtkBanyanVolumeMapper* Mapper = nullptr;
+  vtkVolume* Volume = nullptr;
+  banyan::Timer Began;
+  std::optional<banyan::FrameScene> Wanted; ///< none where it cannot be drawn
+  banyan::ToleranceControl::Wish Wish;
+  banyan::FrameStatistics Statistics;
+  std::uint64_t BytesBefore = 0;
+  std::uint64_t AheadBefore = 0;
+  banyan::BrickCache::Statistics CacheBefore;
 };
 
 #endif

@@ -4,6 +4,7 @@
 #include "IceTCompositing.h"
 #include "IgnoredOptions.h"
 #include "PieceOfInput.h"
+#include "RendererCamera.h"
 #include "SceneOptions.h"
 #include "VolumeMapperInternals.h"
 #include "vtkBanyanFrameStatistics.h"
@@ -18,8 +19,6 @@
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkInformation.h"
-#include "vtkMPI.h"
-#include "vtkMPICommunicator.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkRenderWindow.h"
@@ -50,40 +49,6 @@ int vtkBanyanVolumeMapper::FillInputPortInformation(int, vtkInformation* info)
   // A rank without data takes part in drawing all the same.
   info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   return 1;
-}
-
-void vtkBanyanVolumeMapper::SetController(vtkMultiProcessController* controller)
-{
-  if (this->Controller == controller)
-  {
-    return;
-  }
-  this->Controller = controller;
-  this->Self->Field.Reset();
-  vtkMPICommunicator* mpi =
-    controller ? vtkMPICommunicator::SafeDownCast(controller->GetCommunicator()) : nullptr;
-  if (mpi && controller->GetNumberOfProcesses() > 1)
-  {
-    const MPI_Comm* handle = mpi->GetMPIComm()->GetHandle();
-    banyan::MpiPatience patience{ banyan::MpiPatience::DefaultSeconds, {} };
-    try
-    {
-      patience.Seconds = banyan::MpiPatience::FromEnvironment();
-    }
-    catch (const std::exception& error)
-    {
-      vtkErrorMacro(<< error.what());
-    }
-    patience.Tell = [this](const std::string& sentence) { vtkErrorMacro(<< sentence); };
-    this->Self->Communicator =
-      banyan::MakeMpiCommunicator(handle, std::size_t{ 1 } << 30, patience);
-    banyan::ThreadPool::SetRanksOnThisNode(banyan::RanksOnThisNode(handle));
-  }
-  else
-  {
-    this->Self->Communicator = banyan::MakeSelfCommunicator();
-  }
-  this->Modified();
 }
 
 vtkMultiProcessController* vtkBanyanVolumeMapper::GetController()
@@ -213,24 +178,6 @@ void vtkBanyanVolumeMapper::Internals::Publish(const banyan::FrameStatistics& fr
   out->SetFrames(out->GetFrames() + 1);
 }
 
-void vtkBanyanVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
-{
-  if (renderer->GetSelector())
-  {
-    return;
-  }
-  try
-  {
-    this->UpdateField(volume);
-    this->DrawFrame(renderer, volume);
-  }
-  catch (const std::exception& error)
-  {
-    this->ReportOnce(error.what());
-    this->Self->Communicator->LeaveTogether(error.what());
-  }
-}
-
 void vtkBanyanVolumeMapper::ReportOnce(const std::string& problem)
 {
   if (problem != this->Self->LastProblem)
@@ -252,9 +199,9 @@ void vtkBanyanVolumeMapper::WarnOnce(const std::string& note, std::string& last)
   }
 }
 
-void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
+/// Collective. @return whether the volume is on the screen
+bool vtkBanyanVolumeMapper::PrepareFrame(vtkRenderer* renderer, Frame& frame)
 {
-  const banyan::Timer timer;
   const banyan::PhaseScope beginning(banyan::Phase::Beginning);
   Internals& self = *this->Self;
   const std::string problem = banyan::AgreeOnError(*self.Communicator, self.Field.Problem());
@@ -264,41 +211,46 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   }
   if (self.Field.Empty())
   {
-    return;
+    return false;
   }
 
   const bool fixed = this->SampleDistanceVoxels > 0.0;
-  banyan::FrameScene wanted = banyan::MakeFrameScene(
-    renderer, volume, this, self.Field, fixed ? this->SampleDistanceVoxels : 1.0, self.Function);
-  banyan::RayScene& scene = wanted.Scene;
-  const std::string unclear = banyan::AgreeOnError(*self.Communicator, wanted.Problem);
+  frame.Wanted.emplace(banyan::MakeFrameScene(renderer, frame.Volume, this, self.Field,
+    fixed ? this->SampleDistanceVoxels : 1.0, self.Function));
+  const std::string unclear = banyan::AgreeOnError(*self.Communicator, frame.Wanted->Problem);
   if (!unclear.empty())
   {
     throw banyan::Error(unclear);
   }
-  const banyan::PixelRect rect = scene.Viewport;
-  if (rect.Empty())
-  {
-    return;
-  }
-  banyan::CompositeStatistics geometry;
-  banyan::CompositeOptions compositing;
-  self.Backdrop.Read(*self.Communicator, renderer, volume, rect, self.RankOrderBehind, geometry);
-  compositing.Behind = self.Backdrop.Behind();
-  scene.Depth = self.Backdrop.Depths();
-  this->Statistics->SetPixelsReadBehind(static_cast<vtkIdType>(self.Backdrop.PixelsRead()));
+  return !frame.Wanted->Scene.Viewport.Empty();
+}
 
-  const std::uint64_t bytesBefore = self.Field.BytesRead();
-  const banyan::BrickCache::Statistics cacheBefore = banyan::BrickCache::Process().GetStatistics();
-  const std::uint64_t aheadBefore = banyan::BrickCache::Process().GetAheadStatistics().Hits;
-  banyan::FrameStatistics frame;
+/// @return the volume's picture, on rank 0
+banyan::FloatImage vtkBanyanVolumeMapper::CastFrame(
+  vtkRenderer* renderer, const banyan::Backdrop& backdrop, int volumes, Frame& drawn)
+{
+  Internals& self = *this->Self;
+  banyan::FrameScene& wanted = *drawn.Wanted;
+  banyan::RayScene& scene = wanted.Scene;
+  const bool fixed = this->SampleDistanceVoxels > 0.0;
+  banyan::CompositeOptions compositing;
+  compositing.Behind = backdrop.Behind();
+  scene.Depth = backdrop.Depths(scene.Viewport);
+  this->Statistics->SetPixelsReadBehind(static_cast<vtkIdType>(backdrop.PixelsRead()));
+
+  drawn.BytesBefore = self.Field.BytesRead();
+  drawn.CacheBefore = banyan::BrickCache::Process().GetStatistics();
+  drawn.AheadBefore = banyan::BrickCache::Process().GetAheadStatistics().Hits;
+  banyan::FrameStatistics& frame = drawn.Statistics;
   // More than one frame per second: somebody moves the camera. All ranks are told the same rate.
-  const banyan::ToleranceControl::Wish wish{ this->ImageErrorTolerance,
-    this->InteractiveImageErrorTolerance, this->InteractiveFrameSeconds,
+  // Volumes that are drawn one after the other share the time of a frame.
+  drawn.Wish = { this->ImageErrorTolerance, this->InteractiveImageErrorTolerance,
+    this->InteractiveFrameSeconds / volumes,
     renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0, this->RefineInPasses,
     this->MaxElementsPerPixel, this->ScreenErrorPixels, fixed,
-    banyan::CanKeepTolerance(this, volume->GetProperty()) &&
+    banyan::CanKeepTolerance(this, drawn.Volume->GetProperty()) &&
       (!fixed || this->ScreenErrorPixels > 0.0) };
+  drawn.Wish.Eye = banyan::EyeOf(renderer);
   const banyan::Timer drawing;
   {
     const banyan::PhaseScope fetching(banyan::Phase::Fetching);
@@ -307,22 +259,25 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   const std::uint64_t budget = self.Field.DrawingBudget();
   const banyan::PhaseScope sampling(banyan::Phase::Sampling);
   this->Statistics->SetEstimatedImageError(self.Tolerance.Plan(
-    *self.Communicator, self.Field, scene, wish, budget, wanted.Problem, frame));
+    *self.Communicator, self.Field, scene, drawn.Wish, budget, wanted.Problem, frame));
   this->Statistics->SetImageErrorLimit(self.Tolerance.Limit().c_str());
   this->Statistics->SetEncodingErrorOfValues(self.Field.EncodingError());
   this->Statistics->SetMeshDeviation(self.Field.MeshDeviation());
   const banyan::FrameStatistics pilots = frame;
   compositing.Method = static_cast<banyan::CompositingMethod>(this->Compositing);
-  compositing.Transport =
-    this->CompositeInFewBits ? banyan::PixelTransport::WithinOne : banyan::PixelTransport::Floats;
+  // What few bits are off by adds up where volumes are blended over each other.
+  compositing.Transport = this->CompositeInFewBits && volumes == 1
+                            ? banyan::PixelTransport::WithinOne
+                            : banyan::PixelTransport::Floats;
   compositing.Plans = &self.Plans;
   compositing.External = banyan::IceTRadixK(this->Controller);
-  if (this->ReadAhead)
+  // The other eye's picture is no step of a camera that moves.
+  if (this->ReadAhead && drawn.Wish.Eye == 0)
   {
     compositing.AfterCasting = [&self, &scene]
     { self.Field.ReadAhead(scene, self.Communicator->Rank()); };
   }
-  const banyan::FloatImage picture =
+  banyan::FloatImage picture =
     banyan::DrawDistributed(*self.Communicator, scene, self.Field.Source(), self.Field.Zones(),
       budget, banyan::ThreadPool::Process(), wanted.Problem, frame, compositing);
 
@@ -333,17 +288,21 @@ void vtkBanyanVolumeMapper::DrawFrame(vtkRenderer* renderer, vtkVolume* volume)
   self.Field.EndFrame(*self.Communicator);
   // Putting the picture on the screen takes about what it took the last time.
   self.Tolerance.FrameTook(
-    wish, banyan::AllMax(*self.Communicator, drawing.Seconds() + self.WriteSeconds));
+    drawn.Wish, banyan::AllMax(*self.Communicator, drawing.Seconds() + self.WriteSeconds));
+  return picture;
+}
 
-  const banyan::Timer writing;
-  self.Backdrop.Write(*self.Communicator, renderer, picture);
-  self.WriteSeconds = writing.Seconds();
+void vtkBanyanVolumeMapper::FinishFrame(
+  const Frame& drawn, const banyan::CompositeStatistics& geometry, double writeSeconds)
+{
+  Internals& self = *this->Self;
+  self.WriteSeconds = writeSeconds;
   self.LastProblem.clear();
-
+  banyan::FrameStatistics frame = drawn.Statistics;
   frame.BytesComposited += static_cast<std::uint64_t>(
     banyan::AllSum(*self.Communicator, static_cast<double>(geometry.BytesSent)));
-  self.Publish(frame, self.Field.BytesRead() - bytesBefore, cacheBefore, aheadBefore,
-    timer.Seconds(), this->Statistics);
+  self.Publish(frame, self.Field.BytesRead() - drawn.BytesBefore, drawn.CacheBefore,
+    drawn.AheadBefore, drawn.Began.Seconds(), this->Statistics);
 }
 
 bool vtkBanyanVolumeMapper::RefineNext()

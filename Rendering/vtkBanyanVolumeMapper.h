@@ -5,8 +5,18 @@
 #include "vtkSmartPointer.h"       // for member
 #include "vtkVolumeMapper.h"
 
-#include <memory> // for member
-#include <vector> // for argument
+#include <functional> // for argument
+#include <memory>     // for member
+#include <vector>     // for argument
+
+namespace banyan
+{
+class Backdrop;
+class DepthOrder;
+struct CompositeStatistics;
+struct FloatImage;
+struct VolumeOnScreen;
+}
 
 class vtkBanyanFrameStatistics;
 class vtkDataArray;
@@ -29,6 +39,10 @@ class vtkMultiProcessController;
  * blank where the volume may be, so that a sort-last compositor keeps rank 0's pixels.
  *
  * The picture does not depend on the number of ranks or threads: at most 1/255 per channel.
+ *
+ * Of several volumes in one renderer, on the same ranks, the first one that is rendered draws all, in
+ * the order of depth, wherever a plane separates their boxes; for others, and for translucent
+ * surfaces or other volumes that are not behind them, a warning says once what is not exact.
  *
  * Blend modes composite, maximum, minimum and average intensity; clipping planes, and cropping to
  * the inside of a box; shading; linear interpolation or, as vtkVolumeProperty has it by default,
@@ -279,7 +293,19 @@ private:
   vtkBanyanVolumeMapper(const vtkBanyanVolumeMapper&) = delete;
   void operator=(const vtkBanyanVolumeMapper&) = delete;
 
-  void DrawFrame(vtkRenderer* renderer, vtkVolume* volume);
+  struct Frame;
+
+  bool PrepareFrame(vtkRenderer* renderer, Frame& frame);
+  banyan::FloatImage CastFrame(
+    vtkRenderer* renderer, const banyan::Backdrop& backdrop, int volumes, Frame& drawn);
+  void FinishFrame(
+    const Frame& drawn, const banyan::CompositeStatistics& geometry, double writeSeconds);
+  void DrawTogether(vtkRenderer* renderer, std::vector<Frame>& frames);
+  void DrawPrepared(vtkRenderer* renderer, std::vector<Frame>& frames);
+  void TellNotInDepth(vtkRenderer* renderer, const std::vector<Frame>& frames,
+    const std::vector<banyan::VolumeOnScreen>& volumes, const banyan::DepthOrder& order);
+  bool Attempt(const std::function<bool()>& work);
+  void EndFrame(vtkObject* caller, unsigned long event, void* data);
   void ReportOnce(const std::string& problem);
   void WarnOnce(const std::string& note, std::string& last);
 

@@ -1,0 +1,167 @@
+#include "VolumesInDepth.h"
+
+#include "DistributedField.h"
+#include "RendererCamera.h"
+#include "vtkBanyanVolumeMapper.h"
+
+#include "vtkCollection.h"
+#include "vtkMath.h"
+#include "vtkPropCollection.h"
+#include "vtkRenderer.h"
+#include "vtkVolume.h"
+
+#include <algorithm>
+#include <array>
+
+namespace banyan
+{
+namespace
+{
+
+vtkBanyanVolumeMapper* MapperOf(vtkProp* prop)
+{
+  auto* const volume = vtkVolume::SafeDownCast(prop);
+  return volume ? vtkBanyanVolumeMapper::SafeDownCast(volume->GetMapper()) : nullptr;
+}
+
+/// The bit of a prop that is drawn before our volumes, and that shows what is behind it; 0 for
+/// others.
+unsigned char KindOf(vtkProp* prop)
+{
+  if (!prop->GetVisibility() || MapperOf(prop))
+  {
+    return 0;
+  }
+  if (vtkVolume::SafeDownCast(prop))
+  {
+    return NotInDepth::Stranger;
+  }
+  return prop->HasTranslucentPolygonalGeometry() ? NotInDepth::Surface : 0;
+}
+
+/// Whether a prop may show at pixels of a volume, and is not behind it.
+bool IsNotBehind(vtkProp* prop, const VolumeOnScreen& volume, const RayCamera& camera)
+{
+  const double* const bounds = prop->GetBounds();
+  if (bounds == nullptr || !vtkMath::AreBoundsInitialized(bounds))
+  {
+    return false;
+  }
+  const glm::dvec3 low(bounds[0], bounds[2], bounds[4]);
+  const glm::dvec3 high(bounds[1], bounds[3], bounds[5]);
+  if (Intersection(camera.Footprint(low, high), volume.Viewport).Empty())
+  {
+    return false;
+  }
+  const DepthRelation relation =
+    RelationInDepth(volume.Body, { PlaceBox(low, high, glm::dmat4(1.0)) }, camera);
+  return relation == DepthRelation::SecondNearer || relation == DepthRelation::Unknown;
+}
+
+std::vector<unsigned char> UnitedOverRanks(
+  Communicator& communicator, const std::vector<unsigned char>& mine)
+{
+  std::vector<unsigned char> all(mine.size() * static_cast<std::size_t>(communicator.Size()));
+  communicator.AllGather(mine.data(), mine.size(), all.data());
+  std::vector<unsigned char> united(mine.size(), 0);
+  for (std::size_t i = 0; i < all.size(); ++i)
+  {
+    united[i % mine.size()] |= all[i];
+  }
+  return united;
+}
+
+} // namespace
+
+std::vector<vtkVolume*> VolumesDrawnWith(vtkRenderer* renderer, vtkVolume* self)
+{
+  vtkBanyanVolumeMapper* const mine = MapperOf(self);
+  std::vector<vtkVolume*> volumes;
+  vtkPropCollection* const props = renderer->GetViewProps();
+  vtkCollectionSimpleIterator at;
+  props->InitTraversal(at);
+  while (vtkProp* const prop = props->GetNextProp(at))
+  {
+    vtkBanyanVolumeMapper* const mapper = MapperOf(prop);
+    if (prop == self || (mine && mapper && prop->GetVisibility() &&
+                          mapper->GetController() == mine->GetController()))
+    {
+      volumes.push_back(static_cast<vtkVolume*>(prop));
+    }
+  }
+  const bool found = std::find(volumes.begin(), volumes.end(), self) != volumes.end();
+  return found ? volumes : std::vector<vtkVolume*>{ self };
+}
+
+PlacedBody BodyOf(
+  vtkVolume* volume, vtkVolumeMapper* mapper, const DistributedField& field, const RayScene& scene)
+{
+  const glm::dmat4 toWorld = ToGlm(volume->GetMatrix());
+  const Box& cells = scene.DomainCells;
+  const std::array<double, 6>& bounds = field.Bounds();
+  glm::dvec3 low(bounds[0], bounds[2], bounds[4]);
+  glm::dvec3 high(bounds[1], bounds[3], bounds[5]);
+  if (mapper->GetCropping())
+  {
+    const double* box = mapper->GetCroppingRegionPlanes();
+    low = glm::max(low, glm::min(glm::dvec3(box[0], box[2], box[4]), high));
+    high = glm::min(high, glm::max(glm::dvec3(box[1], box[3], box[5]), low));
+  }
+  return { PlaceBox(low, high, toWorld),
+    PlaceBox(glm::dvec3(cells.Lo), glm::dvec3(cells.Hi), toWorld * scene.IndexToWorld) };
+}
+
+std::vector<unsigned char> FindNotInDepth(Communicator& communicator, vtkRenderer* renderer,
+  const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order)
+{
+  std::vector<unsigned char> bits(volumes.size(), 0);
+  for (const std::array<int, 2>& pair : order.Unknown())
+  {
+    for (const int volume : pair)
+    {
+      bits[static_cast<std::size_t>(volume)] |= NotInDepth::SharedSpace;
+    }
+  }
+  const RayCamera camera = CameraOf(renderer, glm::dvec3(0.0));
+  vtkPropCollection* const props = renderer->GetViewProps();
+  vtkCollectionSimpleIterator at;
+  props->InitTraversal(at);
+  while (vtkProp* const prop = props->GetNextProp(at))
+  {
+    const unsigned char kind = KindOf(prop);
+    for (std::size_t i = 0; kind != 0 && i < volumes.size(); ++i)
+    {
+      bits[i] |= IsNotBehind(prop, volumes[i], camera) ? kind : 0;
+    }
+  }
+  return UnitedOverRanks(communicator, bits);
+}
+
+std::string TellNotInDepth(unsigned char bits)
+{
+  std::string text;
+  const auto tell = [&](unsigned char bit, const char* sentences)
+  {
+    if ((bits & bit) != 0)
+    {
+      text += text.empty() ? sentences : std::string(" ") + sentences;
+    }
+  };
+  tell(NotInDepth::SharedSpace, "Banyan Volumes share a part of space: the one whose middle is "
+                                "nearer is drawn before the whole "
+                                "of the other one, so the picture is not exact where they meet. "
+                                "Move, crop or hide one of them, "
+                                "or join their data.");
+  tell(NotInDepth::Surface,
+    "A translucent surface is before a Banyan Volume or inside it, and is drawn as if it were "
+    "behind "
+    "the volume: the picture is not exact there. Make the surface opaque, move or hide it, or show "
+    "the volume as 'Volume'.");
+  tell(NotInDepth::Stranger,
+    "Another kind of volume is before a Banyan Volume or inside it, and is drawn as if it were "
+    "behind "
+    "that: the picture is not exact there. Show both as 'Banyan Volume', or both as 'Volume'.");
+  return text;
+}
+
+} // namespace banyan

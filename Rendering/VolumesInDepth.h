@@ -1,0 +1,55 @@
+#ifndef banyan_Rendering_VolumesInDepth_h
+#define banyan_Rendering_VolumesInDepth_h
+
+#include "Parallel/Communicator.h"
+#include "Render/DepthOrder.h"
+#include "Render/RayCaster.h"
+
+#include <string>
+#include <vector>
+
+class vtkRenderer;
+class vtkVolume;
+class vtkVolumeMapper;
+
+namespace banyan
+{
+
+class DistributedField;
+
+/// Visible volumes of a renderer that vtkBanyanVolumeMapper draws on the same ranks as `self`, in
+/// the order in which they were added: the same list on all ranks. `self` alone where it stands in
+/// an assembly.
+std::vector<vtkVolume*> VolumesDrawnWith(vtkRenderer* renderer, vtkVolume* self);
+
+/// Where a volume may show something, in world space: in its grid, its bounds and its cropping box.
+/// @param field not Empty
+PlacedBody BodyOf(
+  vtkVolume* volume, vtkVolumeMapper* mapper, const DistributedField& field, const RayScene& scene);
+
+/// A volume of ours as it stands in the picture.
+struct VolumeOnScreen
+{
+  PlacedBody Body;
+  PixelRect Viewport;
+};
+
+/// Why a volume is not blended in the order of depth: one bit each.
+enum NotInDepth : unsigned char
+{
+  SharedSpace = 1, ///< with another volume of ours
+  Surface = 2,     ///< a translucent surface is before it, or in it
+  Stranger = 4     ///< a volume that others draw is
+};
+
+/// Collective. Surfaces and volumes of others are drawn before ours: right where they are behind.
+/// @return bits of NotInDepth for each volume, the same on all ranks
+std::vector<unsigned char> FindNotInDepth(Communicator& communicator, vtkRenderer* renderer,
+  const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order);
+
+/// Sentences for users: what is not exact, and what to do.
+std::string TellNotInDepth(unsigned char bits);
+
+} // namespace banyan
+
+#endif
