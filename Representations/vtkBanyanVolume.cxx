@@ -32,12 +32,17 @@ void vtkBanyanVolume::SetView(vtkPVRenderView* view)
   this->View = view;
 }
 
+bool vtkBanyanVolume::CanDrawInView()
+{
+  return !this->View || !(this->View->InTileDisplayMode() || this->View->InCaveDisplayMode());
+}
+
 int vtkBanyanVolume::RenderOpaqueGeometry(vtkViewport* viewport)
 {
   // VTK smooths edges (FXAA) before volumes are drawn, ParaView on several ranks after everything
   // is. For one picture on any number of ranks, a single rank does as many do.
   auto* renderer = vtkOpenGLRenderer::SafeDownCast(viewport);
-  if (renderer && renderer->GetUseFXAA() && !renderer->GetSelector())
+  if (renderer && renderer->GetUseFXAA() && !renderer->GetSelector() && this->CanDrawInView())
   {
     renderer->SetUseFXAA(false);
     this->SmoothAtEnd =
@@ -90,22 +95,13 @@ vtkTypeBool vtkBanyanVolume::HasTranslucentPolygonalGeometry()
 int vtkBanyanVolume::RenderOverlay(vtkViewport* viewport)
 {
   vtkRenderer* renderer = vtkRenderer::SafeDownCast(viewport);
-  if (!renderer || !this->BanyanMapper || renderer->GetSelector())
+  if (!renderer || !this->BanyanMapper || renderer->GetSelector() || !this->CanDrawInView())
   {
     return 0;
   }
   std::vector<int> order;
   if (this->View)
   {
-    if (this->View->InTileDisplayMode())
-    {
-      if (!this->TileDisplayReported)
-      {
-        vtkErrorMacro(<< "'Banyan Volume' cannot draw on tile displays: use 'Volume' there.");
-        this->TileDisplayReported = true;
-      }
-      return 0;
-    }
     auto* delivery =
       vtkPVRenderViewDataDeliveryManager::SafeDownCast(this->View->GetDeliveryManager());
     if (delivery && this->View->GetUseOrderedCompositing())

@@ -32,6 +32,9 @@ public:
   /** The view that draws this prop; decides how pixels of other ranks combine. Not owned. */
   void SetView(vtkPVRenderView* view);
 
+  /** False on tile displays and in CAVEs, where each rank has a picture of its own. */
+  bool CanDrawInView();
+
   int RenderOpaqueGeometry(vtkViewport* viewport) override;
   int RenderVolumetricGeometry(vtkViewport* viewport) override;
   int RenderTranslucentPolygonalGeometry(vtkViewport* viewport) override;
@@ -58,7 +61,6 @@ private:
   vtkWeakPointer<vtkPVRenderView> View;
   vtkSmartPointer<vtkOpenGLFXAAFilter> EdgeFilter;
   unsigned long SmoothAtEnd = 0;
-  bool TileDisplayReported = false;
 };
 
 #endif

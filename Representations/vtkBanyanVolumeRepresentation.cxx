@@ -9,6 +9,7 @@
 #include "vtkBanyanVolume.h"
 #include "vtkBanyanVolumeMapper.h"
 
+#include "vtkCamera.h"
 #include "vtkColorTransferFunction.h"
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
@@ -20,8 +21,25 @@
 #include "vtkObjectFactory.h"
 #include "vtkPVRenderView.h"
 #include "vtkPiecewiseFunction.h"
+#include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkVolumeProperty.h"
+
+namespace
+{
+
+/// VTK keeps the matrices of a camera when stereo is switched on or off: on one rank, the picture of
+/// the left eye would be that of none.
+void UseBothEyes(vtkPVRenderView* view)
+{
+  vtkCamera* const camera = view ? view->GetActiveCamera() : nullptr;
+  if (camera && camera->GetStereo() != view->GetRenderWindow()->GetStereoRender())
+  {
+    camera->Modified();
+  }
+}
+
+} // namespace
 
 vtkStandardNewMacro(vtkBanyanVolumeRepresentation);
 
@@ -148,7 +166,13 @@ int vtkBanyanVolumeRepresentation::ProcessViewRequest(
   }
   if (request == vtkPVView::REQUEST_UPDATE())
   {
-    vtkPVRenderView::SetPiece(inInfo, this, this->Piece, this->DataSize);
+    auto* const view = vtkPVRenderView::SafeDownCast(this->GetView());
+    this->Prop->SetView(view);
+    // Walls get copies of all data.
+    const bool shown = this->Prop->CanDrawInView();
+    vtkNew<vtkImageData> nothing;
+    vtkPVRenderView::SetPiece(
+      inInfo, this, shown ? this->Piece.GetPointer() : nothing, shown ? this->DataSize : 0);
     // Placed as it is drawn: a client without data takes its clipping planes from here.
     vtkPVRenderView::SetGeometryBounds(inInfo, this, this->DataBounds, this->Actor->GetMatrix());
     vtkPVRenderView::SetDeliverToClientAndRenderingProcesses(inInfo, this, false, false);
@@ -192,6 +216,21 @@ void vtkBanyanVolumeRepresentation::ShowProgress()
 /// Collective over the ranks that render.
 void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
 {
+  auto* const view = vtkPVRenderView::SafeDownCast(this->GetView());
+  this->Prop->SetView(view);
+  if (!this->Prop->CanDrawInView())
+  {
+    // On servers, ranks are not called alike: nothing that waits for others may begin.
+    if (!this->RefusalReported)
+    {
+      this->RefusalReported = true;
+      vtkErrorMacro(
+        << "'Banyan Volume' cannot draw on tile displays and in CAVEs: the volume is left out of "
+           "the picture. Show it as 'Volume' there, or start the server without displays.");
+    }
+    return;
+  }
+  UseBothEyes(view);
   this->Mapper->SetInputDataObject(piece);
   this->SetAbortExecute(0); // what stopped another picture was not meant for this one
   this->Mapper->SetAbortExecute(0);
@@ -201,7 +240,6 @@ void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
   this->Property->SetIndependentComponents(this->MapScalars ? 1 : 0);
   this->Property->SetInterpolationType(
     this->NearestPoint ? VTK_NEAREST_INTERPOLATION : this->InterpolationType);
-  this->Prop->SetView(vtkPVRenderView::SafeDownCast(this->GetView()));
   if (!this->ColorGiven || !this->OpacityGiven)
   {
     banyan::UseDefaultFunctions(this->Mapper->GetArrayToDraw(piece), piece, !this->ColorGiven,

@@ -29,7 +29,7 @@ class StepWindow;
  * function and opacity unit distance are those of ParaView's own "Volume". With no array selected
  * ("Solid Color") the active or first point array is drawn with a default colour map.
  *
- * @par Limits: as vtkBanyanVolumeMapper; tile displays are refused with a message.
+ * @par Limits: as vtkBanyanVolumeMapper; tile displays and CAVEs are refused with a message.
  */
 class BANYANREPRESENTATIONS_EXPORT vtkBanyanVolumeRepresentation : public vtkVolumeRepresentation
 {
@@ -158,6 +158,7 @@ private:
   double CroppingScale[3] = { 1.0, 1.0, 1.0 };
   bool ColorGiven = false;
   bool OpacityGiven = false;
+  bool RefusalReported = false;
 };
 
 #endif
