@@ -28,13 +28,20 @@
 namespace
 {
 
-/// VTK keeps the matrices of a camera when stereo is switched on or off: on one rank, the picture of
-/// the left eye would be that of none.
-void UseBothEyes(vtkPVRenderView* view)
+/// Only VTK's cameras set it.
+struct StereoOfCamera : vtkCamera
+{
+  static void Set(vtkCamera* camera, int stereo) { camera->*(&StereoOfCamera::Stereo) = stereo; }
+};
+
+/// ParaView's render passes do not tell cameras that stereo was switched on or off: the first
+/// picture, which may be the left eye's, would be that of the camera before.
+void TellStereo(vtkPVRenderView* view)
 {
   vtkCamera* const camera = view ? view->GetActiveCamera() : nullptr;
   if (camera && camera->GetStereo() != view->GetRenderWindow()->GetStereoRender())
   {
+    StereoOfCamera::Set(camera, view->GetRenderWindow()->GetStereoRender());
     camera->Modified();
   }
 }
@@ -230,7 +237,7 @@ void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
     }
     return;
   }
-  UseBothEyes(view);
+  TellStereo(view);
   this->Mapper->SetInputDataObject(piece);
   this->SetAbortExecute(0); // what stopped another picture was not meant for this one
   this->Mapper->SetAbortExecute(0);
