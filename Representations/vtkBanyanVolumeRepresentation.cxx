@@ -243,8 +243,8 @@ void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
   this->Mapper->SetAbortExecute(0);
   this->Mapper->SetController(vtkMultiProcessController::GetGlobalController());
   this->SelectArray();
-  // Off has no effect, which the mapper says.
-  this->Property->SetIndependentComponents(this->MapScalars ? 1 : 0);
+  // 'Map Scalars' off has no effect, which vtkSMBanyanVolumeProxy says.
+  this->Property->SetIndependentComponents(1);
   this->Property->SetInterpolationType(
     this->NearestPoint ? VTK_NEAREST_INTERPOLATION : this->InterpolationType);
   if (!this->ColorGiven || !this->OpacityGiven)

@@ -1,7 +1,10 @@
 #include "vtkSMBanyanVolumeProxy.h"
 
+#include "OptionsWithoutEffect.h"
+
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkSMArrayListDomain.h"
 #include "vtkSMPVRepresentationProxy.h"
@@ -67,15 +70,39 @@ vtkSMPVRepresentationProxy* vtkSMBanyanVolumeProxy::Display()
   return vtkSMPVRepresentationProxy::SafeDownCast(this->GetTrueParentProxy());
 }
 
+bool vtkSMBanyanVolumeProxy::IsShown()
+{
+  vtkSMPVRepresentationProxy* const display = this->Display();
+  const char* const type =
+    display ? vtkSMPropertyHelper(display, "Representation").GetAsString() : nullptr;
+  return type && std::string(type) == "Banyan Volume";
+}
+
+void vtkSMBanyanVolumeProxy::ViewUpdated(vtkSMProxy* view)
+{
+  this->Superclass::ViewUpdated(view);
+  // Where each rank runs the script, each has this proxy.
+  vtkMultiProcessController* const ranks = vtkMultiProcessController::GetGlobalController();
+  if (!this->IsShown() || (ranks && ranks->GetLocalProcessId() != 0))
+  {
+    return;
+  }
+  for (const auto& [property, sentence] : banyan::OptionsWithoutEffect(this->Display(), view))
+  {
+    if (this->Said.insert(property).second)
+    {
+      vtkWarningMacro(<< sentence);
+    }
+  }
+}
+
 void vtkSMBanyanVolumeProxy::TypeChanged()
 {
   vtkSMPVRepresentationProxy* const display = this->Display();
   vtkSMSessionProxyManager* const manager = this->GetSessionProxyManager();
-  const char* const type =
-    display ? vtkSMPropertyHelper(display, "Representation").GetAsString() : nullptr;
   // A state says itself what is coloured by, "Solid Color" included.
-  if (!type || std::string(type) != "Banyan Volume" || display->GetUsingScalarColoring() ||
-    !manager || manager->GetInLoadXMLState())
+  if (!this->IsShown() || display->GetUsingScalarColoring() || !manager ||
+      manager->GetInLoadXMLState())
   {
     return;
   }

@@ -3,19 +3,25 @@
  * @brief   the proxy of "Banyan Volume", which chooses an array as ParaView's own "Volume" does
  *
  * When the representation type of the display that this proxy is a part of becomes "Banyan Volume",
- * and the display has no array to colour by, the first point array (else the first array) is chosen,
- * with its colour map and opacity function. Their range becomes that of the data, or grows to it where
- * another display uses the map and the map may be rescaled. An array that was chosen stays, and so does
- * what a state file says.
+ * and the display has no array to colour by, the first point array (else the first array) is
+ * chosen, with its colour map and opacity function. Their range becomes that of the data, or grows
+ * to it where another display uses the map and the map may be rescaled. An array that was chosen
+ * stays, and so does what a state file says.
  *
- * ParaView does this itself, in vtkSMPVRepresentationProxy::SetRepresentationType, but only for types
- * that it knows by name.
+ * ParaView does this itself, in vtkSMPVRepresentationProxy::SetRepresentationType, but only for
+ * types that it knows by name.
+ *
+ * It also says, once each, which properties of the display are set and have no effect on this type:
+ * here, because proxies are where the user is, whatever processes draw.
  */
 #ifndef vtkSMBanyanVolumeProxy_h
 #define vtkSMBanyanVolumeProxy_h
 
 #include "BanyanRepresentationsModule.h" // For export macro
 #include "vtkSMRepresentationProxy.h"
+
+#include <set>    // for members
+#include <string> // for members
 
 class vtkSMPVRepresentationProxy;
 
@@ -25,6 +31,8 @@ public:
   static vtkSMBanyanVolumeProxy* New();
   vtkTypeMacro(vtkSMBanyanVolumeProxy, vtkSMRepresentationProxy);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  void ViewUpdated(vtkSMProxy* view) override;
 
 protected:
   vtkSMBanyanVolumeProxy() = default;
@@ -37,7 +45,10 @@ private:
   void operator=(const vtkSMBanyanVolumeProxy&) = delete;
 
   vtkSMPVRepresentationProxy* Display();
+  bool IsShown();
   void TypeChanged();
+
+  std::set<std::string> Said; ///< properties without effect
 };
 
 #endif

@@ -1,0 +1,99 @@
+#include "OptionsWithoutEffect.h"
+
+#include "vtkPVArrayInformation.h"
+#include "vtkSMPVRepresentationProxy.h"
+#include "vtkSMProperty.h"
+#include "vtkSMPropertyHelper.h"
+
+namespace banyan
+{
+namespace
+{
+
+struct Option
+{
+  const char* Property;
+  double WithoutEffectAt; ///< the value that asks for nothing
+  const char* Advice;
+};
+
+constexpr Option Options[] = {
+  { "UseTransfer2D", 0.0,
+    "colours and opacities follow the one array that is coloured by. For a two-dimensional "
+    "transfer "
+    "function choose 'Volume'" },
+  { "UseSeparateOpacityArray", 0.0,
+    "the array that is coloured by decides the opacity, too. For an opacity array choose "
+    "'Volume'" },
+  { "MultiComponentsMapping", 0.0,
+    "one component, or the magnitude, decides colour and opacity. For two components choose "
+    "'Volume'" },
+  { "GlobalIlluminationReach", 0.0, "there are no shadows. For shadows choose 'Volume'" },
+  { "VolumetricScatteringBlending", 0.0,
+    "light is not scattered. For scattered light choose 'Volume'" },
+  { "VolumeAnisotropy", 0.0, "light is not scattered. For scattered light choose 'Volume'" },
+  { "VolumeRenderingMode", 0.0,
+    "it has one way of drawing, on the processor. To choose between ParaView's choose 'Volume'" },
+  { "Opacity", 1.0,
+    "it is as opaque as the opacity function says. Edit that in the Color Map Editor, or set "
+    "'Scalar "
+    "Opacity Unit Distance'" },
+};
+
+std::string Sentence(vtkSMProperty* property, const std::string& advice)
+{
+  const char* const label = property->GetXMLLabel();
+  return "'" + std::string(label ? label : property->GetXMLName()) +
+         "' has no effect on 'Banyan Volume': " + advice + ".";
+}
+
+/// Whether the components of the array are meant as colours.
+std::string OfComponents(vtkSMPVRepresentationProxy* display)
+{
+  vtkSMProperty* const map = display->GetProperty("MapScalars");
+  vtkPVArrayInformation* const array = display->GetArrayInformationForColorArray();
+  const int components = array ? array->GetNumberOfComponents() : 1;
+  if (!map || vtkSMPropertyHelper(map).GetAsInt() != 0 || components < 2)
+  {
+    return {};
+  }
+  const std::string name = array->GetName();
+  return components >= 3
+           ? "RGBA data are not drawn as colours: the magnitude (or one component) of '" + name +
+               "' is coloured by its map. For the colours themselves choose 'Volume'."
+           : Sentence(
+               map, "the magnitude (or one component) of '" + name +
+                      "' is coloured by its map. For components that are drawn as they are choose "
+                      "'Volume'");
+}
+
+} // namespace
+
+std::map<std::string, std::string> OptionsWithoutEffect(
+  vtkSMPVRepresentationProxy* display, vtkSMProxy* view)
+{
+  std::map<std::string, std::string> sentences;
+  for (const Option& option : Options)
+  {
+    vtkSMProperty* const property = display->GetProperty(option.Property);
+    if (property && vtkSMPropertyHelper(property).GetAsDouble() != option.WithoutEffectAt)
+    {
+      sentences[option.Property] = Sentence(property, option.Advice);
+    }
+  }
+  const std::string components = OfComponents(display);
+  if (!components.empty())
+  {
+    sentences["MapScalars"] = components;
+  }
+  vtkSMProperty* const lights = view ? view->GetProperty("AdditionalLights") : nullptr;
+  if (lights && vtkSMPropertyHelper(display, "Shade", true).GetAsInt() != 0 &&
+      vtkSMPropertyHelper(lights).GetNumberOfElements() > 0)
+  {
+    sentences["AdditionalLights"] =
+      Sentence(lights, "'Shade' lights it in white, from the viewer. For lights choose 'Volume'");
+  }
+  return sentences;
+}
+
+} // namespace banyan
