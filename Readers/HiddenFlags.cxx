@@ -3,13 +3,13 @@
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkIdList.h"
 #include "vtkImageData.h"
-#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
 
 #include "Series/SeriesFile.h"
+
+#include <glm/common.hpp>
 
 namespace banyan
 {
@@ -23,19 +23,30 @@ vtkSmartPointer<vtkUnsignedCharArray> Read(const vtkBanyanDeferred::Handle& hand
   return vtkUnsignedCharArray::SafeDownCast(array);
 }
 
-/// What subsampling leaves of cells does not know of corners that the fine cell does not have.
-void HideCellsOfHiddenCorners(
-  vtkImageData* image, vtkUnsignedCharArray* points, vtkUnsignedCharArray* cells)
+/// Calls `body(cell, whether a corner is hidden)` for each cell of a piece.
+/// @param samples of the piece, per axis
+/// @param points null: none is hidden
+template <class Body>
+void ForEachCell(const glm::ivec3& samples, const unsigned char* points, Body&& body)
 {
-  vtkNew<vtkIdList> corners;
-  for (vtkIdType cell = 0; cell < cells->GetNumberOfTuples(); ++cell)
+  const glm::ivec3 cells = glm::max(samples - 1, 1);
+  const glm::ivec3 next = glm::min(samples - 1, 1); // 0 along an axis without cells
+  const auto at = [&](int x, int y, int z)
+  { return (static_cast<vtkIdType>(z) * samples.y + y) * samples.x + x; };
+  vtkIdType cell = 0;
+  for (int z = 0; z < cells.z; ++z)
   {
-    image->GetCellPoints(cell, corners);
-    for (vtkIdType corner = 0; corner < corners->GetNumberOfIds(); ++corner)
+    for (int y = 0; y < cells.y; ++y)
     {
-      if (points->GetValue(corners->GetId(corner)) != 0)
+      for (int x = 0; x < cells.x; ++x, ++cell)
       {
-        cells->SetValue(cell, cells->GetValue(cell) | vtkDataSetAttributes::HIDDENCELL);
+        bool hidden = false;
+        for (int corner = 0; corner < 8 && points; ++corner)
+        {
+          hidden = hidden || points[at(x + (corner & 1) * next.x, y + (corner >> 1 & 1) * next.y,
+                               z + (corner >> 2) * next.z)] != 0;
+        }
+        body(cell, hidden);
       }
     }
   }
@@ -63,11 +74,21 @@ void AddHiddenFlags(vtkImageData* image, vtkBanyanDeferred::Handle& handle)
       own.Samples.Hi[axis] -= own.Samples.Size()[axis] > 1 ? 1 : 0;
     }
     const vtkSmartPointer<vtkUnsignedCharArray> cells = Read(own);
-    if (handle.Level > 0 && handle.Flags)
-    {
-      HideCellsOfHiddenCorners(image, handle.Flags, cells);
-    }
+    bool follow = true;
+    ForEachCell(handle.Samples.Size(), handle.Flags ? handle.Flags->GetPointer(0) : nullptr,
+      [&](vtkIdType cell, bool hiddenCorner)
+      {
+        unsigned char& flag = *cells->GetPointer(cell);
+        // Every second cell does not know of corners that the fine cell does not have.
+        flag |= handle.Level > 0 && hiddenCorner ? vtkDataSetAttributes::HIDDENCELL : 0;
+        follow = follow && (flag == 0 || hiddenCorner);
+      });
     image->GetCellData()->AddArray(cells);
+    if (follow)
+    {
+      handle.CellFlags = cells;
+      handle.CellFlagsTime = cells->GetMTime();
+    }
   }
 }
 

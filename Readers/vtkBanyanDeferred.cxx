@@ -66,6 +66,22 @@ bool vtkBanyanDeferred::Handle::HasFlags(vtkUnsignedCharArray* flags) const
   return flags == this->Flags && (!flags || flags->GetMTime() == this->FlagsTime);
 }
 
+bool vtkBanyanDeferred::Handle::HidesAs(vtkImageData* image) const
+{
+  if (this->Flags ? !this->HasFlags(image->GetPointGhostArray()) : image->HasAnyBlankPoints())
+  {
+    return false;
+  }
+  vtkUnsignedCharArray* const cells = image->GetCellGhostArray();
+  if (!cells || (cells == this->CellFlags && cells->GetMTime() == this->CellFlagsTime))
+  {
+    return true;
+  }
+  const unsigned char* const first = cells->GetPointer(0);
+  return std::none_of(first, first + cells->GetNumberOfTuples(),
+    [](unsigned char flag) { return (flag & banyan::HiddenCellBits) != 0; });
+}
+
 bool vtkBanyanDeferred::LiesOnSeries(vtkImageData* image, const Handle& handle)
 {
   const banyan::Grid grid = banyan::GridOfLevel(handle.Series->Index().Domain, handle.Level);
@@ -73,7 +89,7 @@ bool vtkBanyanDeferred::LiesOnSeries(vtkImageData* image, const Handle& handle)
   const double* origin = image->GetOrigin();
   const double* spacing = image->GetSpacing();
   const vtkMatrix3x3* direction = image->GetDirectionMatrix();
-  if (handle.Flags ? !handle.HasFlags(image->GetPointGhostArray()) : image->HasAnyBlankPoints())
+  if (!handle.HidesAs(image))
   {
     return false;
   }

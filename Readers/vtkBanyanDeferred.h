@@ -47,8 +47,13 @@ public:
     /// Where the series has hidden points: the ghost array that the reader gave the image, and its time then.
     vtkSmartPointer<vtkUnsignedCharArray> Flags;
     vtkMTimeType FlagsTime = 0;
-    /// Whether these flags are the ones that the series has.
+    /// The same of cells, if each hidden one has a hidden corner; null otherwise.
+    vtkSmartPointer<vtkUnsignedCharArray> CellFlags;
+    vtkMTimeType CellFlagsTime = 0;
+    /// Whether these flags of points are the ones that the series has.
     bool HasFlags(vtkUnsignedCharArray* flags) const;
+    /// Whether what an image hides is hidden by bricks whose hidden points are left out.
+    bool HidesAs(vtkImageData* image) const;
   };
 
   /**

@@ -273,24 +273,6 @@ TEST(RoundTrip, NaNAndInfinityKeepTheirBits)
   }
 }
 
-TEST(RoundTrip, HiddenPointsBecomeNaN)
-{
-  TemporaryFolder folder;
-  const auto source = WaveSource(SimpleGrid({ 9, 9, 9 }), {});
-  const auto fill = source->Fill;
-  source->Fill = [fill](vtkImageData* image, double time)
-  {
-    fill(image, time);
-    image->AllocatePointGhostArray()->SetValue(17, vtkDataSetAttributes::HIDDENPOINT);
-  };
-  WriteSeries(source, folder / "a.banyan");
-  const auto image = ImageAt(Reader(folder / "a.banyan"), 0.0);
-  vtkDataArray* values = image->GetPointData()->GetScalars();
-  ASSERT_TRUE(values);
-  EXPECT_TRUE(std::isnan(values->GetComponent(17, 0)));
-  EXPECT_FALSE(std::isnan(values->GetComponent(18, 0)));
-}
-
 TEST(RoundTrip, OnlyThePresentStep)
 {
   TemporaryFolder folder;

@@ -198,25 +198,6 @@ TEST_P(WriterRobustness, AnEmptyImage)
   this->ExpectRefused(Produce(vtkNew<vtkImageData>()), { "empty" });
 }
 
-TEST_P(WriterRobustness, HiddenPointsOfIntegers)
-{
-  const auto image = Image();
-  image->AllocateScalars(VTK_INT, 1);
-  image->GetPointData()->GetScalars()->SetName("i");
-  image->GetPointData()->GetScalars()->Fill(3.0);
-  image->AllocatePointGhostArray()->SetValue(5, vtkDataSetAttributes::HIDDENPOINT);
-  this->ExpectRefused(Produce(image), { "hidden", "integer array i" });
-}
-
-TEST_P(WriterRobustness, HiddenCells)
-{
-  const auto image = Image();
-  image->AllocateScalars(VTK_FLOAT, 1);
-  image->GetPointData()->GetScalars()->Fill(3.0);
-  image->AllocateCellGhostArray()->SetValue(5, vtkDataSetAttributes::HIDDENCELL);
-  this->ExpectRefused(Produce(image), { "hidden (blanked) cells" });
-}
-
 TEST_P(WriterRobustness, NoInput)
 {
   this->ExpectRefused(nullptr, { "no input" });
