@@ -125,6 +125,10 @@ void CheckArrays(const SeriesIndex& index, int step, const SourceStep& source,
     const ArrayIndex& array = index.Arrays[static_cast<std::size_t>(number)];
     const auto fits = [&](const SourceArray& other) { return other.IsSourceOf(array); };
     const auto count = std::count_if(source.Arrays.begin(), source.Arrays.end(), fits);
+    if (count == 0 && array.Flags != ArrayFlags::None)
+    {
+      continue; // a source speaks of them where it hides something
+    }
     if (count != 1)
     {
       Refuse(step, "the source has " + std::string(count == 0 ? "no array" : "several arrays") +
@@ -137,6 +141,13 @@ void CheckArrays(const SeriesIndex& index, int step, const SourceStep& source,
     const SourceArray& array = source.Arrays[a];
     const bool held = std::any_of(index.Arrays.begin(), index.Arrays.end(),
       [&](const ArrayIndex& other) { return array.IsSourceOf(other); });
+    if (!held && (array.Name == FlagsName || array.Name == CellFlagsName))
+    {
+      Refuse(step, std::string("the source has hidden ") +
+                     (array.Name == FlagsName ? "points" : "cells") +
+                     ", and the series does not say which: it was made of other data, or by an older "
+                     "version.");
+    }
     if (names.empty() && source.IsValue(a) && !held)
     {
       Refuse(step, "the source has the array \"" + array.Name +
@@ -163,7 +174,9 @@ std::vector<int> ChosenArrays(const SeriesIndex& index, const std::vector<std::s
   std::vector<int> numbers;
   for (std::size_t a = 0; a < index.Arrays.size(); ++a)
   {
-    if (names.empty() || std::count(names.begin(), names.end(), index.Arrays[a].Name) > 0)
+    // Values cannot be judged without the flags.
+    if (names.empty() || index.Arrays[a].Flags != ArrayFlags::None ||
+        std::count(names.begin(), names.end(), index.Arrays[a].Name) > 0)
     {
       numbers.push_back(static_cast<int>(a));
     }

@@ -54,12 +54,13 @@ class PartComparison
 {
 public:
   PartComparison(const Judgement& judgement, const T* original, std::size_t stride,
-    const T* decoded, std::int64_t count)
+    const T* decoded, std::int64_t count, const std::uint8_t* hidden)
     : Rule(judgement)
     , Original(original)
     , Stride(stride)
     , Decoded(decoded)
     , Count(count)
+    , Hidden(hidden)
     , Fills(judgement.FillValues)
   {
   }
@@ -75,7 +76,7 @@ public:
     {
       const std::size_t at = static_cast<std::size_t>(i);
       const T original = this->Original[at * this->Stride];
-      if (IsFinite(original))
+      if (IsFinite(original) && (this->Hidden == nullptr || this->Hidden[at] == 0))
       {
         this->AddFinite(i, original, this->Decoded[at]);
         this->Errors.OtherClass += before[at] != after[at] ? 1 : 0;
@@ -197,6 +198,7 @@ private:
   std::size_t Stride;
   const T* Decoded;
   std::int64_t Count;
+  const std::uint8_t* Hidden;
   FillSet<T> Fills;
   std::vector<double> OriginalMapped; ///< empty without a transform
   std::vector<double> DecodedMapped;
@@ -262,7 +264,8 @@ ValueErrors CompareValues(ScalarType type, const void* original, int stride, con
           const std::int64_t first = part * PartValues;
           parts[static_cast<std::size_t>(part)] = PartComparison<T>(judgement,
             static_cast<const T*>(original) + first * stride, static_cast<std::size_t>(stride),
-            static_cast<const T*>(decoded) + first, std::min(PartValues, count - first))
+            static_cast<const T*>(decoded) + first, std::min(PartValues, count - first),
+            judgement.Hidden != nullptr ? judgement.Hidden + first : nullptr)
                                                     .Run();
         });
     });

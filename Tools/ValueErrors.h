@@ -18,7 +18,7 @@ class ThreadPool;
 struct ValueErrors
 {
   std::int64_t Finite = 0;
-  std::int64_t NonFinite = 0;        ///< originals that are NaN or infinite
+  std::int64_t NonFinite = 0;        ///< originals that are NaN or infinite, or hidden
   std::int64_t NonFiniteChanged = 0; ///< of these, those that are not bit-exact
   std::int64_t OutOfBound = 0;       ///< finite originals
   std::int64_t Fill = 0;       ///< finite originals that are fill values; wrong unless bit-exact
@@ -59,6 +59,9 @@ struct Judgement
   /// Beyond the bound, a value may become another one of its interval.
   InvisibleIntervals Invisible;
   std::vector<double> FillValues; ///< must keep their bits
+  /// By value: not 0 where a point is hidden. Such a value must keep its bits, and counts as one that is not
+  /// finite. Null: none is.
+  const std::uint8_t* Hidden = nullptr;
 };
 
 /// Compares `count` values of one component.

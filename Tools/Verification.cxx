@@ -136,6 +136,8 @@ public:
 private:
   void CompareStep(int number, const SourceStep& step)
   {
+    this->Hidden.clear();
+    this->CompareMissingFlags(number, step);
     std::vector<std::uint8_t> original;
     for (std::size_t a = 0; a < step.Arrays.size(); ++a)
     {
@@ -158,7 +160,27 @@ private:
           this->Source.ReadValues(a, original);
           read = true;
         }
+        if (this->ArrayOf(component).Flags == ArrayFlags::OfPoints)
+        {
+          this->Hidden = original; // flags come first
+        }
         this->CompareComponent(number, c, original);
+      }
+    }
+  }
+
+  /// A source that does not speak of flags at a step hides nothing then.
+  void CompareMissingFlags(int number, const SourceStep& step)
+  {
+    for (std::size_t c = 0; c < this->Result.Components.size(); ++c)
+    {
+      const ArrayIndex& array = this->ArrayOf(this->Result.Components[c]);
+      const bool there = std::any_of(step.Arrays.begin(), step.Arrays.end(),
+        [&](const SourceArray& other) { return other.IsSourceOf(array); });
+      if (array.Flags != ArrayFlags::None && !there)
+      {
+        this->CompareComponent(
+          number, c, std::vector<std::uint8_t>(static_cast<std::size_t>(this->Whole.Count()), 0));
       }
     }
   }
@@ -210,18 +232,20 @@ private:
     const std::uint8_t* first =
       original.data() + static_cast<std::size_t>(component.Component) * size;
     const ComponentIndex& index = array.Components[static_cast<std::size_t>(component.Component)];
+    const std::uint8_t* const hidden =
+      this->Hidden.empty() || array.Flags != ArrayFlags::None ? nullptr : this->Hidden.data();
     std::vector<std::uint8_t> clamped;
     if (index.ClampOutside)
     {
       // What the series promises is nearness to the clamped values.
       clamped.resize(this->Decoded.size());
       component.Clamped += ClampComponent(array.Type, first, stride, count,
-        index.PromisedRange, index.FillValues, clamped.data());
+        index.PromisedRange, index.FillValues, hidden, clamped.data());
       first = clamped.data();
       stride = 1;
     }
     const Judgement judgement{ component.Bound, index.ValueTransform, { RangeOf(index), 8 },
-      &this->Opacities[c], IntervalsOf(index), index.FillValues };
+      &this->Opacities[c], IntervalsOf(index), index.FillValues, hidden };
     const ValueErrors errors = CompareValues(array.Type, first, stride, this->Decoded.data(),
       count, judgement, ThreadPool::Process());
     if (errors.WorstError > component.All.WorstError)
@@ -287,6 +311,7 @@ private:
   std::shared_ptr<const StoredMesh> Mesh; ///< null: the series is of images
   std::vector<OpacityFunction> Opacities; ///< one per component of the result
   std::vector<std::uint8_t> Decoded;
+  std::vector<std::uint8_t> Hidden; ///< of the source at the step under way; empty: none is
   Verification Result;
 };
 

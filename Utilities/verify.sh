@@ -16,8 +16,8 @@
 #                      of the study that Banyan started from); a ramp over the range by default
 #   --json             the report as JSON instead of text
 #
-# Exit status 0: every finite value of every step is within the bound, and NaN and infinities are
-# the same bits; 1: not so, and the worst value is named; 2: the two cannot be compared (steps,
+# Exit status 0: every finite value of every step is within the bound, NaN and infinities are the same
+# bits, and so are which points and cells are hidden and the values at hidden points; 1: not so, and the worst value is named; 2: the two cannot be compared (steps,
 # times, grids, arrays or types differ, or something cannot be read). Neither raw files nor .banyan
 # need ParaView. Builds what it needs when it is missing.
 # How to read the report: Documentation/howto/how-good.md.

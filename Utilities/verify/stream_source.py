@@ -13,8 +13,8 @@ import numpy
 from paraview import simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-HIDDEN_POINT = 2  # of vtkDataSetAttributes; the writer of series makes NaN of such points
 GHOSTS = "vtkGhostType"
+HIDDEN_POINT, HIDDEN_OR_REFINED_CELL = 2, 32 | 8  # of vtkDataSetAttributes
 
 
 class SourceError(Exception):
@@ -82,9 +82,7 @@ def type_name(values):
 
 
 def arrays_of(image, wanted, data=None):
-    """Names and values ([tuple][component]) of the point arrays, or of other data; hidden points are NaN."""
-    ghosts = image.GetPointGhostArray() if data is None else None
-    hidden = None if ghosts is None else (vtk_to_numpy(ghosts) & HIDDEN_POINT) != 0
+    """Names and values ([tuple][component]) of the point arrays, or of other data."""
     data = data or image.GetPointData()
     arrays = []
     for number in range(data.GetNumberOfArrays()):
@@ -97,11 +95,25 @@ def arrays_of(image, wanted, data=None):
         if image.IsA("vtkUnstructuredGrid") and array in (data.GetGlobalIds(), data.GetPedigreeIds()):
             continue  # names of points and cells, which are no values
         values = vtk_to_numpy(array).reshape(array.GetNumberOfTuples(), -1)
-        if hidden is not None and hidden.any() and values.dtype.kind == "f":
-            values = values.copy()
-            values[hidden] = numpy.nan
         arrays.append((array.GetName(), numpy.ascontiguousarray(values)))
     return arrays
+
+
+def flags_of(image):
+    """What says which points and cells are hidden, as arrays of the image; none where nothing is."""
+    size = image.GetDimensions()
+    flags = []
+    if image.GetPointGhostArray() is not None:
+        points = vtk_to_numpy(image.GetPointGhostArray()) & numpy.uint8(HIDDEN_POINT)
+        flags.append((GHOSTS, points.reshape(-1, 1)))
+    if image.GetCellGhostArray() is not None:
+        cells = vtk_to_numpy(image.GetCellGhostArray()) & numpy.uint8(HIDDEN_OR_REFINED_CELL)
+        # Each cell has the place of its lowest corner.
+        corners = numpy.zeros(size[::-1], numpy.uint8)
+        shape = [max(n - 1, 1) for n in size[::-1]]
+        corners[tuple(slice(n) for n in shape)] = cells.reshape(shape)
+        flags.append((GHOSTS + " of cells", corners.reshape(-1, 1)))
+    return [(name, numpy.ascontiguousarray(values)) for name, values in flags if values.any()]
 
 
 def send_mesh(stream, grid, time, arrays, wanted):
@@ -126,6 +138,7 @@ def send_step(stream, image, time, arrays, wanted):
     if image.IsA("vtkUnstructuredGrid"):
         send_mesh(stream, image, time, arrays, wanted)
         return
+    arrays = flags_of(image) + arrays  # by which the others are judged
     matrix = image.GetDirectionMatrix()
     header = {"time": time, "extent": list(image.GetExtent()), "origin": list(image.GetOrigin()),
               "spacing": list(image.GetSpacing()),
