@@ -69,7 +69,7 @@ void SeriesWriting::Remember(int step, const StepAgreement& now)
 /// Of what was not asked for, as it was not there to be chosen, and of what cannot be written.
 void SeriesWriting::WarnOf(int step, const StepAgreement& now)
 {
-  std::string warning = now.Warning;
+  std::string warning = this->Warned.insert(now.Warning).second ? now.Warning : "";
   for (const std::string& name : now.NotChosen)
   {
     // Who left out some of the first step's arrays does not want all of them.
@@ -79,7 +79,7 @@ void SeriesWriting::WarnOf(int step, const StepAgreement& now)
                  " and is not written: a series has the arrays of its first step, at all steps. ";
     }
   }
-  if (!warning.empty() && this->Warned.insert(warning).second && this->Talk.Rank() == 0)
+  if (!warning.empty() && this->Talk.Rank() == 0)
   {
     this->Order.Warn(warning);
   }

@@ -11,6 +11,7 @@ from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 STEPS = 3
 NAN, HIDDEN, CHANGED = 17, 40, 55  # numbers of points
+CELL = 150
 
 
 def image_at(step):
@@ -28,6 +29,18 @@ def image_at(step):
         wind.InsertNextTuple3(i % 300 - 150, step, 1000 * step)
     image.GetPointData().AddArray(heat)
     image.GetPointData().AddArray(wind)
+    return image
+
+
+def hiding_at(step):
+    """One array, with a hidden point, whose value is far from all others, and a hidden cell."""
+    image = image_at(step)
+    image.GetPointData().RemoveArray("wind")
+    image.GetPointData().GetArray("heat").SetValue(HIDDEN, -1e20)
+    image.AllocatePointGhostArray()
+    image.GetPointGhostArray().SetValue(HIDDEN, vtkDataSetAttributes.HIDDENPOINT)
+    image.AllocateCellGhostArray()
+    image.GetCellGhostArray().SetValue(CELL, vtkDataSetAttributes.HIDDENCELL)
     return image
 
 
@@ -67,12 +80,15 @@ def main():
 
     hiding = [os.path.join(folder, f"hiding_{step}.vti") for step in range(2)]
     for step, path in enumerate(hiding):
-        image = image_at(step)
-        image.GetPointData().RemoveArray("wind")
-        image.AllocatePointGhostArray()
-        image.GetPointGhostArray().SetValue(HIDDEN, vtkDataSetAttributes.HIDDENPOINT)
-        write(image, path)
+        write(hiding_at(step), path)
     encode(hiding, os.path.join(folder, "hiding.banyan"), PointArrays=["heat"])
+    for name, change in (("bits", lambda image: image.GetPointData().GetArray("heat").SetValue(HIDDEN, 1e20)),
+                         ("points", lambda image: image.GetPointGhostArray().SetValue(CHANGED, 2)),
+                         ("cells", lambda image: image.GetCellGhostArray().SetValue(CELL, 0)),
+                         ("bare", lambda image: image.GetPointData().RemoveArray("vtkGhostType"))):
+        image = hiding_at(1)
+        change(image)
+        write(image, os.path.join(folder, f"hiding_{name}.vti"))
 
 
 main()
