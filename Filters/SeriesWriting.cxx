@@ -11,6 +11,7 @@
 
 #include "Base/ThreadPool.h"
 #include "Series/EncodePlan.h"
+#include "Series/SeriesPath.h"
 
 #include <algorithm>
 #include <sstream>
@@ -64,6 +65,7 @@ void SeriesWriting::Run()
 void SeriesWriting::Write()
 {
   this->AskForTimes();
+  this->TakeLock();
   if (this->TwoPasses)
   {
     this->FirstPass();
@@ -79,8 +81,21 @@ void SeriesWriting::Write()
         throw Error(this->IndexProblem);
       }
       this->Assembly->Finish();
-      this->Folder->RemoveAllBut(this->Assembly->FilesInFile());
+      this->Folder->RemoveReplaced(this->Assembly->FilesBefore(), this->Assembly->FilesInFile());
     });
+}
+
+/// Collective. Before anything is computed: it may take hours.
+void SeriesWriting::TakeLock()
+{
+  std::string path;
+  this->Talk.OnRank(0,
+    [&]
+    {
+      path = FollowLinks(this->Order.FileName);
+      this->Lock = std::make_unique<SeriesLock>(path);
+    });
+  this->Order.FileName = this->Talk.FromRankZero({ path })[0];
 }
 
 std::string SeriesWriting::Named(int step) const

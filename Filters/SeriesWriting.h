@@ -12,6 +12,7 @@
 #include "Series/GroupDeal.h"
 #include "Series/SegmentFolder.h"
 #include "Series/SeriesAssembly.h"
+#include "Series/SeriesLock.h"
 
 #include <functional>
 #include <memory>
@@ -54,7 +55,7 @@ struct WritingOrder
 /// whose group is still being encoded when it should receive the next one makes the others wait.
 ///
 /// Everything is decided by all ranks together: a problem of one makes all of them throw the same
-/// Error, at the same point. With a relative error bound the steps are pulled twice: first for the
+/// Error, at the same point, that another save of the series is under way included. With a relative error bound the steps are pulled twice: first for the
 /// ranges of the whole series; the same where a transform or a range is chosen from the values.
 /// Changes of grid, type or arrays between steps are refused in the first pass. Where it is only found in
 /// the second one that points or cells are hidden, all starts anew with a first one.
@@ -81,6 +82,7 @@ private:
   };
 
   void Write();
+  void TakeLock();
   void AskForTimes();
   vtkSmartPointer<vtkDataObject> PullMine(int step) const;
   void CheckTime(int step, vtkDataObject* data) const;
@@ -122,6 +124,7 @@ private:
   std::vector<WrittenArray> Written; ///< what hides points and cells, if any is hidden; arrays of First
   std::set<std::string> Warned;      ///< what users know already
 
+  std::unique_ptr<SeriesLock> Lock;         ///< on rank 0, for all
   std::unique_ptr<SeriesAssembly> Assembly; ///< on rank 0
   std::unique_ptr<SegmentFolder> Folder;    ///< of this rank's segments
   std::vector<StepValues> Values;           ///< of this rank's group, by step

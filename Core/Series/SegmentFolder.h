@@ -4,8 +4,11 @@
 #include "Series/Hash.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include <sys/types.h>
 
 namespace banyan
 {
@@ -13,11 +16,17 @@ namespace banyan
 /// The folder `<series>.d` while a series is written. Segments are named by their content, so that
 /// a new series never touches the segments of the one it is going to replace, the same data gives
 /// the same files whoever encodes it, and what is equal is stored once, wherever it occurs.
+///
+/// Nothing is removed but what a save of this series wrote: each keeps a list of its files in the folder,
+/// which goes at its end, so that those of one that was killed are known.
 class SegmentFolder
 {
 public:
   /// Makes the folder where it is not there yet. Throws Error.
   explicit SegmentFolder(const std::string& seriesPath);
+  ~SegmentFolder();
+  SegmentFolder(const SegmentFolder&) = delete;
+  SegmentFolder& operator=(const SegmentFolder&) = delete;
 
   const std::string& Path() const { return this->FolderPath; }
 
@@ -38,13 +47,25 @@ public:
   /// empty.
   void RemoveOwn(const std::vector<std::string>& names = {}) noexcept;
 
-  /// Removes segments (whole or unfinished) of any run but those named. Other files stay.
-  void RemoveAllBut(const std::vector<std::string>& names) noexcept;
+  /// Removes segments of the series that was replaced. Nothing where the folder is a link to that of
+  /// another series.
+  /// @param old files that its index named
+  /// @param names of those that stay
+  void RemoveReplaced(
+    const std::vector<std::string>& old, const std::vector<std::string>& names) noexcept;
+
+  /// Removes what saves that were killed have left in a folder, but files that an index names. To be
+  /// called when no save is under way.
+  /// @param named none: it is not known which ones, and only unfinished files are removed
+  static void RemoveLeftovers(
+    const std::string& folder, const std::optional<std::vector<std::string>>& named) noexcept;
 
 private:
   std::string NameOf(const Hash128& content, const std::string& suffix);
+  std::string ListPath() const;
 
   std::string FolderPath;
+  pid_t Process;
   std::string Run;
   std::vector<std::string> Own;
   bool Made = false;

@@ -23,9 +23,36 @@ bool Exists(const std::string& path)
 SeriesAssembly::SeriesAssembly(const std::string& path, SeriesIndex plan)
   : Path(path)
   , Current(std::move(plan))
+  , Before(FilesOfIndex(path).value_or(std::vector<std::string>{}))
   , KeepOld(Exists(path))
 {
   (void)IndexToText(this->Current); // says now what could not be written later
+}
+
+std::optional<std::vector<std::string>> FilesOfIndex(const std::string& path)
+{
+  std::vector<std::string> files;
+  if (!Exists(path))
+  {
+    return files;
+  }
+  try
+  {
+    const SeriesIndex index = IndexFromText(ReadWholeFile(path, GreatestIndexBytes), path);
+    for (const SegmentIndex& segment : index.Segments)
+    {
+      files.push_back(segment.File);
+    }
+    if (index.Mesh)
+    {
+      files.push_back(index.Mesh->File);
+    }
+  }
+  catch (const Error&)
+  {
+    return std::nullopt;
+  }
+  return files;
 }
 
 void SeriesAssembly::SetActiveScalars(const std::string& name)

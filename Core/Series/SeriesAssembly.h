@@ -4,6 +4,7 @@
 #include "Series/GroupEncoder.h"
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -46,15 +47,22 @@ public:
   std::vector<std::string> SegmentsInFile() const;
   /// The same, and the file of the mesh.
   std::vector<std::string> FilesInFile() const;
+  /// The files that the index named which was there before; none where it could not be read.
+  const std::vector<std::string>& FilesBefore() const { return this->Before; }
 
 private:
   std::string Path;
   SeriesIndex Current;
   std::map<int, EncodedGroup> Waiting; ///< for those before them
   std::set<std::string> Files;         ///< that the groups in order have
+  std::vector<std::string> Before;
   bool KeepOld;                        ///< a file of that name was there: it stays until Finish
   int InFile = 0;                      ///< groups that the index file names
 };
+
+/// The files in its folder that an index file names, that of a mesh included: none when there is no
+/// such file, and nothing when it cannot be read.
+std::optional<std::vector<std::string>> FilesOfIndex(const std::string& path);
 
 } // namespace banyan
 

@@ -7,8 +7,12 @@
 #include "Series/GroupEncoder.h"
 #include "Series/SegmentFolder.h"
 #include "Series/SeriesAssembly.h"
+#include "Series/SeriesLock.h"
+#include "Series/SeriesPath.h"
 
 #include <cmath>
+
+#include <unistd.h>
 
 namespace banyan
 {
@@ -27,7 +31,9 @@ struct SeriesEncoder::Internals
   std::string Path;
   EncodeOptions Options;
   ThreadPool& Pool;
+  std::unique_ptr<SeriesLock> Lock; ///< until the series is finished or given up
   SeriesAssembly Assembly;
+  const pid_t Process = getpid();
   bool Failed = false;
   bool Finished = false;
   std::unique_ptr<SegmentFolder> Folder;
@@ -41,17 +47,18 @@ struct SeriesEncoder::Internals
 
 SeriesEncoder::Internals::Internals(const std::string& path, const Grid& grid,
   const std::vector<ArrayDescription>& arrays, const EncodeOptions& options, ThreadPool& pool)
-  : Path(path)
+  : Path(FollowLinks(path))
   , Options(options)
   , Pool(pool)
-  , Assembly(path, PlanSeries(grid, arrays, options))
+  , Lock(std::make_unique<SeriesLock>(this->Path))
+  , Assembly(this->Path, PlanSeries(grid, arrays, options))
 {
-  this->Folder = std::make_unique<SegmentFolder>(path);
+  this->Folder = std::make_unique<SegmentFolder>(this->Path);
 }
 
 SeriesEncoder::Internals::~Internals()
 {
-  if (!this->Finished && this->Folder)
+  if (!this->Finished && this->Folder && this->Process == getpid())
   {
     this->Assembly.Withdraw();
     this->Folder->RemoveOwn();
@@ -176,7 +183,9 @@ SeriesIndex SeriesEncoder::Finish()
   }
   const SeriesIndex& index = self.Assembly.Finish();
   self.Finished = true;
-  self.Folder->RemoveAllBut(self.Assembly.FilesInFile());
+  self.Folder->RemoveReplaced(self.Assembly.FilesBefore(), self.Assembly.FilesInFile());
+  self.Folder.reset();
+  self.Lock.reset();
   return index;
 }
 

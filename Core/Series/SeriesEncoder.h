@@ -92,7 +92,7 @@ struct ArrayValues
 /// The index file appears (and grows) with each whole segment when no series of that name existed;
 /// an existing series stays untouched until `Finish()` replaces it. An encoder that is destroyed
 /// without `Finish()` removes what it wrote. A killed process leaves the segments that were indexed
-/// readable.
+/// readable. From its construction to Finish() it holds the series' lock (see SeriesLock).
 ///
 /// Exactness: every finite voxel is bounded by ErrorBoundAbsolute in its own type, verified here
 /// voxel by voxel (with a transform, in what it makes of them); NaN (payload bits included),
@@ -102,8 +102,9 @@ struct ArrayValues
 class SeriesEncoder
 {
 public:
-  /// @param path of the index file; segments go to `path + ".d"`. Throws Error when the
-  /// description or an option is out of range, or the folder cannot be made.
+  /// @param path of the index file; segments go to `path + ".d"`. Where it is a symbolic link, the series
+  /// that it leads to is written or replaced. Throws Error when the description or an option is out of
+  /// range, the folder cannot be made, or another save of the series is under way.
   SeriesEncoder(const std::string& path, const Grid& grid,
     const std::vector<ArrayDescription>& arrays, const EncodeOptions& options, ThreadPool& pool);
   ~SeriesEncoder();

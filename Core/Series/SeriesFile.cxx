@@ -23,6 +23,8 @@ struct SeriesFile::Internals
   OpenSeries Series;
   std::unique_ptr<FieldReader> Reader;
 
+  /// @param text of the index
+  void Read(const std::string& path, const std::string& text);
   void Check(const FieldKey& field) const;
   void CheckBrick(const FieldKey& field, std::int64_t brick) const;
 };
@@ -72,13 +74,35 @@ SeriesFile::~SeriesFile() = default;
 std::shared_ptr<SeriesFile> SeriesFile::Open(const std::string& path)
 {
   (void)CacheBudgetAskedFor(); // who reads a series hears of a budget that is none
-  std::shared_ptr<SeriesFile> file(new SeriesFile);
-  Internals& self = *file->Self;
-  OpenSeries& series = self.Series;
+  RefuseFolder(path);
+  std::string text = ReadWholeFile(path, GreatestIndexBytes);
+  for (int attempt = 0;; ++attempt)
+  {
+    try
+    {
+      std::shared_ptr<SeriesFile> file(new SeriesFile);
+      file->Self->Read(path, text);
+      return file;
+    }
+    catch (const Error&)
+    {
+      // Segments go when a series is replaced, and there is then another index.
+      const std::string now = ReadWholeFile(path, GreatestIndexBytes);
+      if (now == text || attempt == 5)
+      {
+        throw;
+      }
+      text = now;
+    }
+  }
+}
+
+void SeriesFile::Internals::Read(const std::string& path, const std::string& text)
+{
+  OpenSeries& series = this->Series;
   series.Path = path;
   series.Id = NextId++;
-  RefuseFolder(path);
-  series.Index = IndexFromText(ReadWholeFile(path, GreatestIndexBytes), path);
+  series.Index = IndexFromText(text, path);
   series.Folder = FindSeriesFolder(path, series.Index);
   for (int level = 0; level < series.Index.Levels; ++level)
   {
@@ -89,9 +113,8 @@ std::shared_ptr<SeriesFile> SeriesFile::Open(const std::string& path)
     series.FirstComponents.push_back(series.Components);
     series.Components += static_cast<std::uint32_t>(array.Components.size());
   }
-  self.Reader =
+  this->Reader =
     series.Index.FormatVersion == 1 ? MakeFieldReader1(series) : MakeFieldReader2(series);
-  return file;
 }
 
 const std::string& SeriesFile::Path() const

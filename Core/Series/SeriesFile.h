@@ -55,6 +55,7 @@ struct BrickNode
 class SeriesFile
 {
 public:
+  /// @param path of the index file; where it is a symbolic link, segments may lie beside what it leads to
   static std::shared_ptr<SeriesFile> Open(const std::string& path);
   ~SeriesFile();
 
