@@ -1,8 +1,10 @@
 #include "WriterQuantizer.h"
 
 #include "Base/Error.h"
+#include "Base/PropertyNumber.h"
 
 #include <sstream>
+#include <utility>
 
 namespace banyan
 {
@@ -41,6 +43,25 @@ void Print(std::ostringstream& text, const char* name, const std::vector<double>
 
 QuantizerOptions WriterQuantizer::Options() const
 {
+  RequireNumber("AsinhScale", this->AsinhScale);
+  for (const double share : this->RangePercentiles)
+  {
+    RequireNumber("RangePercentiles", share);
+  }
+  for (const double end : this->Range)
+  {
+    RequireNumber("Range", end, true);
+  }
+  const std::pair<const char*, const std::vector<double>*> lists[] = {
+    { "TransformTable", &this->TransformTable }, { "FillValues", &this->FillValues },
+    { "OpacityFunction", &this->OpacityFunction } };
+  for (const auto& [property, numbers] : lists)
+  {
+    for (const double number : *numbers)
+    {
+      RequireNumber(property, number, true);
+    }
+  }
   QuantizerOptions options;
   options.Map = static_cast<TransformChoice>(this->Transform);
   options.AsinhScale = this->AsinhScale;

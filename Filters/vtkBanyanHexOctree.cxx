@@ -1,5 +1,6 @@
 #include "vtkBanyanHexOctree.h"
 
+#include "SetNumber.h"
 #include "ArraysOfRanks.h"
 #include "GridOfAmr.h"
 #include "GridOfHyperTrees.h"
@@ -31,6 +32,8 @@
 #include "vtkUnstructuredGrid.h"
 
 vtkStandardNewMacro(vtkBanyanHexOctree);
+banyanSetNumberMacro(vtkBanyanHexOctree, MeshTolerance, 0.0, 0.0625)
+banyanSetNumberMacro(vtkBanyanHexOctree, MeshSamplingTolerance, 1.0 / 1024, 1.0)
 
 namespace
 {

@@ -53,8 +53,8 @@ public:
 
   ///@{
   /// How far a point may lie beside the lattice, in edges of the smallest cell. Default 1/1024;
-  /// allowed [0, 1/16].
-  vtkSetClampMacro(MeshTolerance, double, 0.0, 0.0625);
+  /// allowed [0, 1/16]. NaN, infinities and negative numbers are refused, here and below.
+  virtual void SetMeshTolerance(double number);
   vtkGetMacro(MeshTolerance, double);
   ///@}
 
@@ -69,7 +69,7 @@ public:
   ///@{
   /// The largest difference from the mesh's own field between samples, as a part of the spread of
   /// the values around, whatever they are. Default 1/4; allowed [1/1024, 1].
-  vtkSetClampMacro(MeshSamplingTolerance, double, 1.0 / 1024, 1.0);
+  virtual void SetMeshSamplingTolerance(double number);
   vtkGetMacro(MeshSamplingTolerance, double);
   ///@}
 

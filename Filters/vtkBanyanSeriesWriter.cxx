@@ -239,6 +239,7 @@ void vtkBanyanSeriesWriter::WriteSeries()
   order.Warn = [this](const std::string& sentence) { vtkWarningMacro(<< sentence); };
   try
   {
+    banyan::RequireNumber("ErrorBound", this->ErrorBound);
     order.Options.Quantizer = this->Quantizer->Options();
   }
   catch (const banyan::Error& error)

@@ -1,5 +1,6 @@
 #include "vtkBanyanTemporalEnhancement.h"
 
+#include "SetNumber.h"
 #include "EnhancedArray.h"
 #include "LeafParts.h"
 #include "vtkBanyanDeferred.h"
@@ -23,6 +24,10 @@
 #include <stdexcept>
 
 vtkStandardNewMacro(vtkBanyanTemporalEnhancement);
+banyanSetNumberMacro(vtkBanyanTemporalEnhancement, Strength, 0.0, 1.0)
+banyanSetNumberMacro(vtkBanyanTemporalEnhancement, Sensitivity, 1e-6, 1e6)
+banyanSetNumberMacro(vtkBanyanTemporalEnhancement, Scale, 0.0, VTK_DOUBLE_MAX)
+banyanSetNumberMacro(vtkBanyanTemporalEnhancement, NoiseFloor, 0.0, VTK_DOUBLE_MAX)
 
 namespace
 {

@@ -74,7 +74,7 @@ public:
 
   ///@{
   /** 0 changes nothing, 1 leaves the relative change only. In [0, 1]; default 0.5. */
-  vtkSetClampMacro(Strength, double, 0.0, 1.0);
+  virtual void SetStrength(double number);
   vtkGetMacro(Strength, double);
   ///@}
 
@@ -83,7 +83,7 @@ public:
    * A change from step to step by 1 / Sensitivity of the value counts as full motion: more, where
    * steps are close. Positive; default 4, for waves of up to 8 steps per period.
    */
-  vtkSetClampMacro(Sensitivity, double, 1e-6, 1e6);
+  virtual void SetSensitivity(double number);
   vtkGetMacro(Sensitivity, double);
   ///@}
 
@@ -93,7 +93,7 @@ public:
    * the largest of the whole series where the array knows it, as those of a Banyan series do, and 1
    * otherwise.
    */
-  vtkSetClampMacro(Scale, double, 0.0, VTK_DOUBLE_MAX);
+  virtual void SetScale(double number);
   vtkGetMacro(Scale, double);
   ///@}
 
@@ -102,7 +102,7 @@ public:
    * Motion of values well below it, in units of the array, is not brought out. 0 (the default)
    * takes the error bound of the array if it is a Banyan series', and nothing otherwise.
    */
-  vtkSetClampMacro(NoiseFloor, double, 0.0, VTK_DOUBLE_MAX);
+  virtual void SetNoiseFloor(double number);
   vtkGetMacro(NoiseFloor, double);
   ///@}
 

@@ -90,6 +90,12 @@ int vtkBanyanSeriesReader::GetNumberOfLevels()
 
 void vtkBanyanSeriesReader::SetCacheBudget(int mebibytes)
 {
+  if (mebibytes < -1)
+  {
+    vtkErrorMacro(<< "CacheBudget must be a number of MiB, or -1 for the one of the process, and is "
+                  << mebibytes << ". It stays " << this->CacheBudget << ".");
+    return;
+  }
   if (mebibytes >= 0)
   {
     banyan::BrickCache::Process().SetBudget(static_cast<std::uint64_t>(mebibytes) << 20);

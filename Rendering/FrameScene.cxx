@@ -10,6 +10,8 @@
 #include "vtkVolumeMapper.h"
 #include "vtkVolumeProperty.h"
 
+#include "Base/PropertyNumber.h"
+
 #include <limits>
 
 namespace banyan
@@ -52,6 +54,12 @@ FrameScene MakeFrameScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMap
   scene.Interpolation = MakeInterpolation(property);
   try
   {
+    RequireNumber("ScalarOpacityUnitDistance", property->GetScalarOpacityUnitDistance(0));
+    for (int i = 0; i < 16; ++i)
+    {
+      RequireNumber("A number of the volume's position, scale and orientation",
+        toWorld[i / 4][i % 4], true);
+    }
     scene.Transfer = function.Of(property);
     scene.ClipPlanes = MakeClipPlanes(mapper, toWorld);
     scene.Blend = MakeBlend(mapper, field.Range());

@@ -76,9 +76,9 @@ public:
    * of an encoded series or a mesh of hexahedra. The error is estimated (see banyan::PlanSamplings) and goes to the
    * statistics. Allowed [0.05, 255]. Without effect on projections and nearest interpolation.
    */
-  vtkSetClampMacro(ImageErrorTolerance, double, 0.05, 255.0);
+  virtual void SetImageErrorTolerance(double number);
   vtkGetMacro(ImageErrorTolerance, double);
-  vtkSetClampMacro(InteractiveImageErrorTolerance, double, 0.05, 255.0);
+  virtual void SetInteractiveImageErrorTolerance(double number);
   vtkGetMacro(InteractiveImageErrorTolerance, double);
   ///@}
 
@@ -88,7 +88,7 @@ public:
    * frames take longer, and projections and labels, which have no tolerance, are drawn from coarser
    * levels. Default 0.2; 0 for as long as it takes.
    */
-  vtkSetClampMacro(InteractiveFrameSeconds, double, 0.0, 3600.0);
+  virtual void SetInteractiveFrameSeconds(double number);
   vtkGetMacro(InteractiveFrameSeconds, double);
   ///@}
 
@@ -118,7 +118,7 @@ public:
    * Default 0: the tolerance decides (projections and nearest interpolation take 1). Allowed
    * [0, 100].
    */
-  vtkSetClampMacro(SampleDistanceVoxels, double, 0.0, 100.0);
+  virtual void SetSampleDistanceVoxels(double number);
   vtkGetMacro(SampleDistanceVoxels, double);
   ///@}
 
@@ -130,7 +130,7 @@ public:
    * of cells decides, whatever their values are: no error is estimated. Default 0: the tolerance decides.
    * Allowed [0, 1024]. Without effect on projections and nearest interpolation.
    */
-  vtkSetClampMacro(ScreenErrorPixels, double, 0.0, 1024.0);
+  virtual void SetScreenErrorPixels(double number);
   vtkGetMacro(ScreenErrorPixels, double);
   ///@}
 
@@ -140,7 +140,7 @@ public:
    * cell: they are drawn as if they were there. Default 1/1024; allowed [0, 1/16]. More than the default
    * is for meshes whose points were moved by the displacements that they carry.
    */
-  vtkSetClampMacro(MeshTolerance, double, 0.0, 0.0625);
+  virtual void SetMeshTolerance(double number);
   vtkGetMacro(MeshTolerance, double);
   ///@}
 
@@ -152,7 +152,7 @@ public:
    * refused with a sentence that says which cell does not fit. The statistic MeshDeviation says what
    * was reached.
    */
-  vtkSetClampMacro(MeshSamplingTolerance, double, 0.0, 1.0);
+  virtual void SetMeshSamplingTolerance(double number);
   vtkGetMacro(MeshSamplingTolerance, double);
   ///@}
 
@@ -172,7 +172,7 @@ public:
    * ImageErrorTolerance asks for; the estimated error says what that costs. Default 0: any number, so that
    * the tolerance alone decides. Without effect on other data, and with SampleDistanceVoxels.
    */
-  vtkSetClampMacro(MaxElementsPerPixel, double, 0.0, 1e6);
+  virtual void SetMaxElementsPerPixel(double number);
   vtkGetMacro(MaxElementsPerPixel, double);
   ///@}
 
@@ -184,7 +184,7 @@ public:
    * (banyan::MotionEnhancement); the representation sees to that. Default 0: values are drawn as they
    * are. vtkBanyanTemporalEnhancement does the same to data.
    */
-  vtkSetClampMacro(TemporalEnhancement, double, 0.0, 1.0);
+  virtual void SetTemporalEnhancement(double number);
   vtkGetMacro(TemporalEnhancement, double);
   ///@}
 

@@ -135,6 +135,8 @@ protected:
   bool RemoveFromView(vtkView* view) override;
 
 private:
+  bool IsNumber(const char* property, double value, bool mayBeNegative = false);
+
   vtkBanyanVolumeRepresentation(const vtkBanyanVolumeRepresentation&) = delete;
   void operator=(const vtkBanyanVolumeRepresentation&) = delete;
 

@@ -7,6 +7,19 @@
 
 #include "vtkVolumeProperty.h"
 
+#include "Base/PropertyNumber.h"
+
+/// Says what is wrong with a number, if anything is: then the property stays as it was.
+bool vtkBanyanVolumeRepresentation::IsNumber(const char* property, double value, bool mayBeNegative)
+{
+  const std::string problem = banyan::ProblemOfNumber(property, value, mayBeNegative);
+  if (!problem.empty())
+  {
+    vtkErrorMacro(<< problem << ". It stays as it was.");
+  }
+  return problem.empty();
+}
+
 void vtkBanyanVolumeRepresentation::SetImageErrorTolerance(double tolerance)
 {
   this->Mapper->SetImageErrorTolerance(tolerance);
@@ -39,22 +52,34 @@ void vtkBanyanVolumeRepresentation::SetShade(bool shade)
 
 void vtkBanyanVolumeRepresentation::SetAmbient(double coefficient)
 {
-  this->Property->SetAmbient(coefficient);
+  if (this->IsNumber("Ambient", coefficient))
+  {
+    this->Property->SetAmbient(coefficient);
+  }
 }
 
 void vtkBanyanVolumeRepresentation::SetDiffuse(double coefficient)
 {
-  this->Property->SetDiffuse(coefficient);
+  if (this->IsNumber("Diffuse", coefficient))
+  {
+    this->Property->SetDiffuse(coefficient);
+  }
 }
 
 void vtkBanyanVolumeRepresentation::SetSpecular(double coefficient)
 {
-  this->Property->SetSpecular(coefficient);
+  if (this->IsNumber("Specular", coefficient))
+  {
+    this->Property->SetSpecular(coefficient);
+  }
 }
 
 void vtkBanyanVolumeRepresentation::SetSpecularPower(double power)
 {
-  this->Property->SetSpecularPower(power);
+  if (this->IsNumber("SpecularPower", power))
+  {
+    this->Property->SetSpecularPower(power);
+  }
 }
 
 void vtkBanyanVolumeRepresentation::SetInterpolationType(int type)
@@ -84,6 +109,11 @@ void vtkBanyanVolumeRepresentation::SetCropping(int cropping)
 
 void vtkBanyanVolumeRepresentation::SetCroppingOrigin(double x, double y, double z)
 {
+  if (!this->IsNumber("CroppingOrigin", x, true) || !this->IsNumber("CroppingOrigin", y, true) ||
+      !this->IsNumber("CroppingOrigin", z, true))
+  {
+    return;
+  }
   this->CroppingOrigin[0] = x;
   this->CroppingOrigin[1] = y;
   this->CroppingOrigin[2] = z;
@@ -96,6 +126,11 @@ void vtkBanyanVolumeRepresentation::SetCroppingOrigin(double origin[3])
 
 void vtkBanyanVolumeRepresentation::SetCroppingScale(double x, double y, double z)
 {
+  if (!this->IsNumber("CroppingScale", x) || !this->IsNumber("CroppingScale", y) ||
+      !this->IsNumber("CroppingScale", z))
+  {
+    return;
+  }
   this->CroppingScale[0] = x;
   this->CroppingScale[1] = y;
   this->CroppingScale[2] = z;

@@ -4,11 +4,20 @@
 #include "Series/IndexText.h"
 
 #include <cmath>
+#include <limits>
 
 namespace banyan
 {
 namespace
 {
+
+/// A bound so small that doubles lie as far apart as it is large: rounded, it might be twice what was
+/// asked for.
+double NotAbove(long double bound)
+{
+  const double rounded = static_cast<double>(bound);
+  return static_cast<long double>(rounded) > bound ? std::nextafter(rounded, 0.0) : rounded;
+}
 
 double AbsoluteBound(
   const EncodeOptions& options, const Transform& transform, const ValueRange& range)
@@ -24,6 +33,12 @@ double AbsoluteBound(
   if (!std::isfinite(bound))
   {
     throw Error("The error bound times the range of the series is not a finite number");
+  }
+  if (bound < 2 * std::numeric_limits<double>::min())
+  {
+    return NotAbove(static_cast<long double>(options.ErrorBound) *
+                    (static_cast<long double>(transform.Forward(range.High)) -
+                      static_cast<long double>(transform.Forward(range.Low))));
   }
   return bound;
 }
@@ -96,7 +111,8 @@ void CheckOptions(const EncodeOptions& options)
 {
   if (!std::isfinite(options.ErrorBound) || options.ErrorBound < 0)
   {
-    throw Error("The error bound must be a finite number that is not negative");
+    throw Error("The error bound must be a finite number that is not negative, and is " +
+                std::to_string(options.ErrorBound));
   }
   if (options.CompressionLevel < 1 || options.CompressionLevel > 19)
   {

@@ -41,7 +41,10 @@ std::map<std::string, std::string> FilesOf(const std::string& path)
   files["index"] = Content(path);
   for (const auto& entry : fs::directory_iterator(path + ".d"))
   {
-    files[entry.path().filename().string()] = Content(entry.path().string());
+    if (entry.path().extension() != ".files") // goes when its SegmentFolder does
+    {
+      files[entry.path().filename().string()] = Content(entry.path().string());
+    }
   }
   return files;
 }

@@ -1,0 +1,285 @@
+"""What becomes of a series on the disk while it is read, drawn and saved: right values or a sentence.
+
+    test_damage.py --plugin Banyan.so --out FOLDER [--ranks N]
+
+Bits flip in segments that were read before, segments are cut short, others save under the same name,
+and properties are set to what is no number.
+"""
+import argparse
+import glob
+import math
+import os
+import random
+import shutil
+import subprocess
+import sys
+
+os.environ["BANYAN_CACHE_MB"] = "0"  # everything is read and decoded again
+
+import numpy
+from paraview import simple
+from paraview.vtk.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
+
+import session
+
+WINDOW = vtkStringOutputWindow()
+
+
+def said():
+    """What was written into the window since the last call."""
+    text = WINDOW.GetOutput()
+    WINDOW.Initialize()
+    return text
+
+
+class Flips:
+    """Flips a bit of one segment, and back."""
+
+    def __init__(self, path, seed):
+        self.files = sorted(glob.glob(path + ".d/*.seg"))
+        self.random = random.Random(seed)
+
+    def __enter__(self):
+        self.file = self.random.choice(self.files)
+        self.place = self.random.randrange(os.path.getsize(self.file))
+        self.bit = 1 << self.random.randrange(8)
+        self._flip()
+
+    def __exit__(self, *_):
+        self._flip()
+
+    def _flip(self):
+        with open(self.file, "r+b") as file:
+            file.seek(self.place)
+            old = file.read(1)[0]
+            file.seek(self.place)
+            file.write(bytes([old ^ self.bit]))
+
+
+def values(reader, array):
+    """Read anew, decoded at once or when they are touched."""
+    reader.DeferDecoding = 1 - int(reader.DeferDecoding)
+    reader.UpdatePipeline()
+    data = reader.GetClientSideObject().GetOutputDataObject(0).GetPointData()
+    return vtk_to_numpy(data.GetArray(array)).copy()
+
+
+def outcome(read, right, mention):
+    """'same', or 'error' where that names array and file."""
+    said()
+    try:
+        got = read()
+    except RuntimeError as error:
+        session.require(".banyan.d/" in str(error), f"no file in: {error}")
+        return "error"
+    text = said()
+    if (got == right).all():
+        return "same"
+    session.require(".banyan.d/" in text and mention in text, f"other values, and said is: {text}")
+    session.require(got.dtype.kind != "f" or numpy.isnan(got).any(), "values that are wrong")
+    return "error"
+
+
+def flips_of_values(path, source, array, count):
+    simple.SaveData(path, proxy=source, ErrorBound=0.001)
+    reader = simple.OpenDataFile(path)
+    right = values(reader, array)
+    count = {"same": 0, "error": 0, "flips": count}
+    flips = Flips(path, 1)
+    for _ in range(count.pop("flips")):
+        with flips:
+            count[outcome(lambda: values(reader, array), right, array)] += 1
+        if not (values(reader, array) == right).all():
+            sys.exit("good again, and other values")
+    print(os.path.basename(path), count, flush=True)
+    session.require(count["error"] > 10, "hardly anything was noticed")
+    cut = sorted(glob.glob(path + ".d/*.seg"))[0]
+    os.truncate(cut, 100)
+    session.require(outcome(lambda: values(reader, array), right, array) == "error", "cut short")
+    simple.Delete(reader)
+
+
+def picture(view):
+    simple.Render(view)
+    image = view.CaptureWindow(1)
+    return vtk_to_numpy(image.GetPointData().GetScalars()).copy()
+
+
+def flips_of_pictures(path, count):
+    simple.SaveData(path, proxy=simple.Wavelet(WholeExtent=[-20, 20] * 3), ErrorBound=0.001)
+    reader = simple.OpenDataFile(path)
+    view = simple.CreateView("RenderView")
+    view.ViewSize = [100, 100]
+    view.OrientationAxesVisibility = 0
+    display = simple.Show(reader, view)
+    display.SetRepresentationType("Banyan Volume")
+    simple.ColorBy(display, ("POINTS", "RTData"))
+    simple.ResetCamera(view)
+    right = picture(view)
+    session.require(right.max() > right.min(), "nothing is drawn")
+    count = {"same": 0, "error": 0, "flips": count}
+    flips = Flips(path, 2)
+    camera = numpy.array(view.CameraPosition)
+    for turn in range(count.pop("flips")):
+        said()
+        with flips:
+            view.CameraPosition = list(camera * 1.001)  # other pixels: it is drawn anew
+            picture(view)
+            view.CameraPosition = list(camera)
+            now = picture(view)
+        text = said()
+        same = int(abs(now.astype(int) - right).max()) <= 1
+        session.require(same or ".banyan.d/" in text, f"another picture at turn {turn}: {text}")
+        count["same" if same else "error"] += 1
+    print("pictures", count, flush=True)
+    for segment in glob.glob(path + ".d/*.seg"):
+        os.truncate(segment, 100)
+    picture(view)  # and lives
+    numbers_of_display(display, view)
+    simple.Delete(view)
+
+
+DISPLAY = ("ImageErrorTolerance", "InteractiveImageErrorTolerance", "InteractiveFrameSeconds",
+           "SampleDistanceVoxels", "ScreenErrorPixels", "MeshTolerance", "MeshSamplingTolerance",
+           "MaxElementsPerPixel", "TemporalEnhancement", "Ambient", "Diffuse", "Specular",
+           "SpecularPower")
+BAD = (math.nan, math.inf, -math.inf, -0.5)
+
+
+def expect_refused(proxy, name, good, bad):
+    said()
+    setattr(proxy, name, bad)
+    text = said()
+    session.require(name in text and f"{bad:g}" in text, f"{name} = {bad}: {text or 'nothing is said'}")
+    setattr(proxy, name, good)
+    session.require(not said(), f"{name} = {good} is refused")
+
+
+def numbers_of_display(display, view):
+    for name in DISPLAY:
+        good = getattr(display, name)
+        for bad in BAD:
+            expect_refused(display, name, good, bad)
+    for name in ("CroppingOrigin", "CroppingScale"):
+        expect_refused(display, name, list(getattr(display, name)), [math.nan] * 3)
+    good = display.ScalarOpacityUnitDistance
+    said()
+    display.ScalarOpacityUnitDistance = math.nan
+    simple.Render(view)
+    session.require("ScalarOpacityUnitDistance" in said(), "a unit distance that is no number")
+    display.ScalarOpacityUnitDistance = good
+
+
+def numbers_of_filters_and_files(path):
+    source = simple.Wavelet(WholeExtent=[0, 8] * 3)
+    for kind, names in (("BanyanHexOctree", ("MeshTolerance", "MeshSamplingTolerance")),
+                        ("BanyanTemporalEnhancement", ("Strength", "Sensitivity", "Scale", "NoiseFloor"))):
+        proxy = getattr(simple, kind)(Input=source)
+        for name in names:
+            for bad in BAD:
+                expect_refused(proxy, name, getattr(proxy, name), bad)
+        simple.Delete(proxy)
+    refused = {"ErrorBound": BAD, "AsinhScale": BAD, "RangePercentiles": [[b, 99] for b in BAD],
+               "Range": [[b, 1] for b in BAD[:3]], "FillValues": [[b] for b in BAD[:3]],
+               "TransformTable": [[b, 0, 1, 1] for b in BAD[:3]],
+               "OpacityFunction": [[b, 0, 1, 1] for b in BAD[:3]]}
+    for name, bad in refused.items():
+        for value in bad:
+            number = value[0] if isinstance(value, list) else value
+            try:
+                simple.SaveData(path, proxy=source, **{name: value})
+            except RuntimeError as error:
+                session.require(name in str(error) and f"{number:g}" in str(error), f"{name}: {error}")
+            else:
+                sys.exit(f"{name} = {value} was taken")
+    session.require(not glob.glob(path + "*"), "something was left behind")
+    simple.SaveData(path, proxy=source)
+    reader = simple.OpenDataFile(path)
+    expect_refused(reader, "CacheBudget", -1, -2)
+
+
+SAVER = """
+import sys, time
+from paraview import simple
+simple.LoadPlugin(sys.argv[1], ns=globals())
+time.sleep(float(sys.argv[4]))
+source = simple.Wavelet(WholeExtent=[-16, 16] * 3)
+try:
+    simple.SaveData(sys.argv[2], proxy=source, ErrorBoundMode="Absolute", ErrorBound=float(sys.argv[3]))
+except RuntimeError as error:
+    print("refused:", error)
+    sys.exit(3)
+"""
+
+
+def two_savers(plugin, path):
+    """Both begin at once; one may be refused, and what is there is whole."""
+    with open(path + ".py", "w", encoding="utf-8") as file:
+        file.write(SAVER)
+    savers = [subprocess.Popen(["pvpython", path + ".py", plugin, path, bound, "0"], text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+              for bound in ("0.001", "0.01")]
+    for saver in savers:
+        output, _ = saver.communicate(timeout=60)
+        session.require(saver.returncode in (0, 3), output)
+        session.require(saver.returncode == 0 or "under way" in output, output)
+    session.require(any(saver.returncode == 0 for saver in savers), "neither was saved")
+    reader = simple.OpenDataFile(path)
+    reader.UpdatePipeline()
+    session.require(reader.GetDataInformation().GetNumberOfPoints() == 33**3, "it does not open")
+    simple.Delete(reader)
+
+
+def held_by_another(path):
+    """All ranks hear of a lock that another process holds, and of one that it has left."""
+    source = simple.Wavelet(WholeExtent=[0, 8] * 3)
+    simple.SaveData(path, proxy=source)
+    code = ("import fcntl, sys, time; f = open(sys.argv[1], 'w'); fcntl.lockf(f, fcntl.LOCK_EX); "
+            "f.write('process 7 on elsewhere, since 2020-01-01'); f.flush(); print(); "
+            "sys.stdout.flush(); time.sleep(60)")
+    holder = subprocess.Popen([sys.executable if "python" in sys.executable else "python3", "-c", code,
+                               path + ".d/saving.lock"], stdout=subprocess.PIPE)
+    holder.stdout.readline()
+    before = sorted(os.listdir(path + ".d"))
+    try:
+        simple.SaveData(path, proxy=source)
+    except RuntimeError as error:
+        print(error, flush=True)
+        session.require("process 7 on elsewhere" in str(error) and path in str(error), str(error))
+    else:
+        sys.exit("saved while another one saves")
+    session.require(sorted(os.listdir(path + ".d")) == before, "files have changed")
+    holder.kill()
+    holder.wait()
+    simple.SaveData(path, proxy=source, ErrorBound=0.01)
+    session.require(len(os.listdir(path + ".d")) == 1, str(os.listdir(path + ".d")))
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--plugin", required=True)
+    parser.add_argument("--out", required=True)
+    parser.add_argument("--alone", action="store_true", help="one process, which may start others")
+    arguments = parser.parse_args()
+    simple.LoadPlugin(arguments.plugin, ns=globals())
+    shutil.rmtree(arguments.out, ignore_errors=True)
+    os.makedirs(arguments.out)
+    vtkOutputWindow.SetInstance(WINDOW)
+
+    def path(name):
+        return os.path.join(arguments.out, name)
+
+    held_by_another(path("held.banyan"))
+    flips_of_pictures(path("drawn.banyan"), 20)
+    if arguments.alone:
+        two_savers(arguments.plugin, path("two.banyan"))
+        numbers_of_filters_and_files(path("numbers.banyan"))
+        image = simple.Wavelet(WholeExtent=[-20, 20] * 3)
+        flips_of_values(path("image.banyan"), image, "RTData", 150)
+        mesh = simple.AppendDatasets(Input=simple.Wavelet(WholeExtent=[-10, 10] * 3))
+        flips_of_values(path("mesh.banyan"), mesh, "RTData", 60)
+
+
+if __name__ == "__main__":
+    main()
