@@ -1,6 +1,7 @@
 // Arrays of the reader that are large.
 #include "VtkIoTesting.h"
 
+#include "vtkBanyanDecode.h"
 #include "vtkBanyanSeriesReader.h"
 
 #include "vtkDataArray.h"
@@ -30,7 +31,11 @@ TEST(LargeArrays, LieInLargePages)
   {
     SCOPED_TRACE(deferred ? "deferred" : "at once");
     const auto reader = Reader(folder / "a.banyan");
-    reader->SetDeferDecoding(deferred);
+    vtkNew<vtkBanyanDecode> readsDeferred;
+    if (deferred)
+    {
+      readsDeferred->SetInputConnection(reader->GetOutputPort());
+    }
     reader->UpdateTimeStep(1.0);
     vtkDataArray* const array = reader->GetOutput()->GetPointData()->GetScalars();
     const vtkIdType count = array->GetNumberOfValues();

@@ -1,6 +1,7 @@
 // Times, pieces, sub-extents, levels and array selection of the reader, and what they decode.
 #include "VtkIoTesting.h"
 
+#include "vtkBanyanDecode.h"
 #include "vtkBanyanDeferred.h"
 #include "vtkBanyanSeriesReader.h"
 
@@ -95,6 +96,8 @@ TEST(Reader, SubExtentsDecodeOnlyTheBricksTheyTouch)
     banyan::BrickCache::Process().Clear();
     const auto fresh = Reader(series.Path());
     fresh->UpdateInformation();
+    vtkNew<vtkBanyanDecode> readsDeferred; // connected, so that nothing is decoded yet
+    readsDeferred->SetInputConnection(fresh->GetOutputPort());
     fresh->UpdateTimeStep(0.5, -1, 1, 0, extent.data());
     const vtkBanyanDeferred::Handle handle = *HandleOf(fresh);
     EXPECT_EQ(handle.Series->BricksDecoded(), 0u);
