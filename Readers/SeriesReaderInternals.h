@@ -6,6 +6,7 @@
 #include "VerifiedBricks.h"
 #include "vtkBanyanSeriesReader.h"
 
+#include "vtkDataArray.h"
 #include "vtkDataArraySelection.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
@@ -16,6 +17,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 struct vtkBanyanSeriesReader::Internals
 {
@@ -32,6 +34,10 @@ struct vtkBanyanSeriesReader::Internals
   std::string ErrorMessage;
   bool GaveDeferred = false; ///< whether the output has arrays that decode on first touch
   vtkTimeStamp PlainWanted;  ///< when somebody came who needs plain ones instead
+  vtkTimeStamp Executed;
+  /// What plain arrays took the place of: ParaView's 2D histogram keeps pointers to arrays that it
+  /// saw before the update.
+  std::vector<vtkSmartPointer<vtkDataArray>> Replaced;
 
   /// Whether an array of the series is to be read.
   bool Wants(const banyan::ArrayIndex& array) const

@@ -4,6 +4,7 @@
 #include "vtkBanyanDeferred.h"
 
 #include "vtkDataArray.h"
+#include "vtkImageData.h"
 #include "vtkPointData.h"
 
 #include <algorithm>
@@ -16,6 +17,11 @@ int vtkBanyanSeriesReader::ComputePipelineMTime(
   {
     this->Self->GaveDeferred = false;
     this->Self->PlainWanted.Modified();
+    auto* const image = vtkImageData::SafeDownCast(this->GetOutputDataObject(0));
+    for (int i = 0; image && i < image->GetPointData()->GetNumberOfArrays(); ++i)
+    {
+      this->Self->Replaced.emplace_back(image->GetPointData()->GetArray(i));
+    }
   }
   *mtime = std::max(this->GetMTime(), this->Self->PlainWanted.GetMTime());
   return 1;
@@ -24,6 +30,11 @@ int vtkBanyanSeriesReader::ComputePipelineMTime(
 /// To be called by all ranks, with or without a piece: they execute again together, or not.
 void vtkBanyanSeriesReader::DecideOnDeferring()
 {
+  if (this->Self->PlainWanted < this->Self->Executed)
+  {
+    this->Self->Replaced.clear();
+  }
+  this->Self->Executed.Modified();
   this->Self->GaveDeferred =
     this->DeferDecoding && !this->IsMesh() && banyan::ConsumersReadDeferred(*this);
 }

@@ -97,8 +97,9 @@ def worker(options):
 
     def compare_filter(group, name, path):
         deferred, plain = test_filters.readers(path)
-        # Defaults of filters depend on what the data have.
+        # Defaults of filters depend on what the data have; some keep pointers to arrays of then.
         plain.UpdatePipeline(TIMES[0])
+        deferred.UpdatePipeline(TIMES[0])
         theirs = make(group, name, plain)
         if theirs is None or not theirs.IsA("vtkSMSourceProxy") or not inputs_of(theirs):
             return None

@@ -136,6 +136,34 @@ def statistics(s):
     return isolated("DescriptiveStatistics", s, VariablesofInterest=["p"], TrainingFraction=1.0)
 
 
+def statistics_over_time(s):
+    return isolated("TemporalStatistics", s)
+
+
+def averages_over_time(s):
+    """VTK 9.2 ends the process here when arrays are deferred."""
+    return isolated("TemporalStatistics", s, ComputeStandardDeviation=0)
+
+
+def contingency(s):
+    return isolated("ContingencyStatistics", s, VariablesofInterest=["n", "p"],
+                    TrainingFraction=1.0)
+
+
+def deflect_normals(s):
+    """VTK 9.2 gives nothing but an error when vectors are deferred."""
+    return isolated("DeflectNormals", s, UseUserNormal=1, Vectors=["POINTS", "v"])
+
+
+def histogram_of_two(s):
+    """ParaView looks at arrays before the update, and goes through them after it."""
+    s.UpdatePipeline(1.0)
+    return isolated("Histogram2D", s, InputArrayforXAxis=["POINTS", "p"],
+                    InputArrayforYAxis=["POINTS", "v"], UseCustomBinRangesforXAxis=1,
+                    CustomBinRangesforXAxis=[0, 1], UseCustomBinRangesforYAxis=1,
+                    CustomBinRangesforYAxis=[-1, 1], NumberofBins=[17, 19])
+
+
 FILTERS = {
     "slice": slice_,
     "clip": clip,
@@ -177,6 +205,11 @@ FILTERS = {
     "append attributes": lambda s: simple.AppendAttributes(Input=[s, calculator(s)]),
     "pass arrays": lambda s: isolated("PassArrays", s, PointDataArrays=["p"]),
     "group datasets": lambda s: simple.GroupDatasets(Input=[s, slice_(s)]),
+    "temporal statistics": statistics_over_time,
+    "averages over time": averages_over_time,
+    "contingency statistics": contingency,
+    "deflect normals": deflect_normals,
+    "2D histogram": histogram_of_two,
     "temporal interpolator": lambda s: isolated("TemporalInterpolator", s),
     "outline": lambda s: isolated("Outline", s),
     "image to points": lambda s: isolated("ImageDatatoPointSet", s),

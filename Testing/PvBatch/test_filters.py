@@ -5,8 +5,8 @@
 Runs on any number of ranks, each of which compares its own piece. Every filter is made twice, on
 two readers of one series: one defers decoding (the default) and one does not.
 
-TemporalStatistics of VTK 9.2 is wrong for arrays that VTK's dispatch does not know; it is shown
-here that it is right after BanyanDecode.
+Some filters of VTK 9.2 go wrong on arrays that VTK's dispatch does not know. crawl_filters.py finds
+them; one of each kind is here.
 """
 import filecmp
 import glob
@@ -70,7 +70,9 @@ def write_steps(folder, make):
 
 
 def named_fields(step):
-    return dict(zip("pv", fields(step)))
+    """These, and integers: VTK rounds what it interpolates, or not, by whether it knows the type."""
+    p, v = fields(step)
+    return {"p": p, "v": v, "w": (30 * v).astype("i2"), "n": (20 * p).astype("u1")}
 
 
 def make_series(folder, make=named_fields):
@@ -146,10 +148,15 @@ def compare_values(path):
     return wrong
 
 
-def compare_statistics(path):
+def compare_averages(path):
+    """Temporal Statistics straight behind the reader, with the averages by their definition."""
     deferred, plain = readers(path)
-    decoded = simple.TemporalStatistics(Input=simple.BanyanDecode(Input=deferred))
-    return compare_data.compare(updated(decoded), updated(simple.TemporalStatistics(Input=plain)))
+    found = updated(simple.TemporalStatistics(Input=deferred)).GetPointData()
+    steps = [compare_data.as_numpy(updated(plain, float(step)).GetPointData().GetArray("v"))
+             for step in range(STEPS)]
+    averages = numpy.mean(numpy.array(steps, dtype="f8"), axis=0)
+    error = numpy.abs(compare_data.as_numpy(found.GetArray("v_average")) - averages).max()
+    return [] if error < 1e-5 else [f"averages are wrong by {error}"]
 
 
 def main():
@@ -178,8 +185,8 @@ def main():
             note("writer of " + extension,
                  compare_writer(extension, options, reader, path, arguments.out))
         note("values", compare_values(path))
-        note("temporal statistics of decoded arrays", compare_statistics(path))
-        session.require(total >= 30, f"only {total} filters gave anything on this rank")
+        note("averages over time", compare_averages(path))
+        session.require(total >= 36, f"only {total} filters gave anything on this rank")
     if failures:
         sys.exit("different on deferred arrays: " + ", ".join(failures))
 
