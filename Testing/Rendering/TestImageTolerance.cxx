@@ -6,6 +6,8 @@
 #include "vtkBanyanSeriesReader.h"
 #include "vtkBanyanVolumeMapper.h"
 
+#include "vtkDataArray.h"
+
 using namespace mapper_testing;
 
 namespace
@@ -19,6 +21,11 @@ const glm::ivec3 PlateSamples{ 121, 5, 97 };
 double EstimateOf(vtkBanyanVolumeMapper* mapper)
 {
   return mapper->GetStatistics()->GetEstimatedImageError();
+}
+
+bool Says(vtkBanyanVolumeMapper* mapper, const std::string& words)
+{
+  return std::string(mapper->GetStatistics()->GetImageErrorLimit()).find(words) != std::string::npos;
 }
 
 /// Finding samplings is part of the frame, and none of it where a distance is given.
@@ -38,6 +45,7 @@ void PicturesStayWithinTheirTolerance(const std::string& path, const glm::ivec3&
   WriteSeries(path, Balls, samples, 1, 0.0);
   vtkNew<vtkBanyanSeriesReader> reader;
   reader->SetFileName(path.c_str());
+  std::string limit;
   for (const bool encoded : { false, true })
   {
     const auto draw = [&](double tolerance, double distance, double& estimate, vtkIdType& taken)
@@ -57,6 +65,7 @@ void PicturesStayWithinTheirTolerance(const std::string& path, const glm::ivec3&
       stage.LookAt(bounds);
       const auto picture = stage.Draw();
       estimate = EstimateOf(mapper);
+      limit = mapper->GetStatistics()->GetImageErrorLimit();
       CheckTimes(mapper, distance == 0.0);
       taken = mapper->GetStatistics()->GetSamplesTaken();
       return picture;
@@ -70,6 +79,7 @@ void PicturesStayWithinTheirTolerance(const std::string& path, const glm::ivec3&
     {
       const auto picture = draw(tolerance, 0.0, estimate, taken);
       Check(estimate > 0.0 && estimate <= tolerance, "the estimate is within the tolerance");
+      Check(limit.empty(), "nothing keeps it from that: " + limit);
       // Both pictures are rounded to 8 bits, and the exact one's rays end at an opacity of 0.999.
       const double ownErrors = 1.0 + 0.001 * 255.0;
       const double error = Difference(picture, exact);
@@ -104,6 +114,7 @@ void FramesThatTakeTooLongGetALargerTolerance()
   }
   const double last = EstimateOf(mapper);
   Check(last > 2.0 && last <= 32.0, "it grows while frames take too long, up to 16 times");
+  Check(Says(mapper, "Interactive Frame Seconds were exceeded"), "and that is said");
   mapper->SetInteractiveFrameSeconds(1000.0);
   for (int i = 0; i < 6; ++i)
   {
@@ -159,6 +170,73 @@ void CellsAreAsLargeAsAllowedOnTheScreen(const std::string& path)
   }
 }
 
+void WhatLimitsAnEstimateIsSaid()
+{
+  vtkNew<vtkBanyanVolumeMapper> mapper;
+  mapper->SetInputData(PlainImage(Balls, Samples));
+  mapper->SetImageErrorTolerance(0.001);
+  Stage stage(mapper);
+  stage.LookAt(Bounds);
+  stage.Draw();
+  Check(EstimateOf(mapper) > 0.001, "no sampling keeps such a tolerance");
+  Check(Says(mapper, "The finest sampling was reached"), "that is said");
+  Check(!Says(mapper, "reaches 1"), "the opacity does not");
+  mapper->SetImageErrorTolerance(20.0);
+  stage.Draw();
+  Check(EstimateOf(mapper) <= 20.0 && Says(mapper, "") &&
+      std::string(mapper->GetStatistics()->GetImageErrorLimit()).empty(),
+    "a tolerance that is kept needs no words");
+  vtkNew<vtkPiecewiseFunction> opaque;
+  opaque->AddPoint(0.25, 0.0);
+  opaque->AddPoint(0.8, 1.0);
+  stage.Volume->GetProperty()->SetScalarOpacity(opaque);
+  stage.Draw();
+  Check(Says(mapper, "The opacity function reaches 1"), "values that hide everything are told");
+  opaque->RemoveAllPoints();
+  opaque->AddPoint(0.25, 0.0);
+  opaque->AddPoint(5.0, 1.0);
+  stage.Draw();
+  Check(!Says(mapper, "reaches 1"), "but for those that do not occur");
+  mapper->SetSampleDistanceVoxels(1.0);
+  stage.Draw();
+  Check(std::string(mapper->GetStatistics()->GetImageErrorLimit()).empty(),
+    "nothing is estimated where the sample distance is fixed");
+}
+
+/// The largest difference of what is decoded to what was written.
+void ErrorsOfEncodingAreTold(const TemporaryFolder& folder)
+{
+  const std::vector<float> values = Sampled(Balls, Samples, 0);
+  for (const double bound : { 0.0, 0.001, 0.01 })
+  {
+    const std::string path = folder / ("bound" + std::to_string(bound) + ".banyan");
+    WriteSeries(path, Balls, Samples, 1, bound);
+    vtkNew<vtkBanyanSeriesReader> reader;
+    reader->SetFileName(path.c_str());
+    vtkNew<vtkBanyanVolumeMapper> mapper;
+    mapper->SetInputConnection(reader->GetOutputPort());
+    Stage stage(mapper);
+    stage.LookAt(Bounds);
+    stage.Draw();
+    const double told = mapper->GetStatistics()->GetEncodingErrorOfValues();
+    vtkDataArray* const decoded = reader->GetOutput()->GetPointData()->GetArray("field");
+    double largest = 0.0;
+    for (vtkIdType i = 0; i < decoded->GetNumberOfTuples(); ++i)
+    {
+      largest = std::max(
+        largest, std::abs(decoded->GetComponent(i, 0) - values[static_cast<std::size_t>(i)]));
+    }
+    Check(std::abs(told - largest) <= 1e-6 * bound, "the largest error of values is told: " +
+                                                      std::to_string(told) + ", " +
+                                                      std::to_string(largest));
+    Check(told <= bound && (told > 0.5 * bound || bound == 0.0), "it is near the bound");
+    mapper->SetInputConnection(nullptr);
+    mapper->SetInputData(PlainImage(Balls, Samples));
+    stage.Draw();
+    Check(mapper->GetStatistics()->GetEncodingErrorOfValues() == 0.0, "plain data have none");
+  }
+}
+
 } // namespace
 
 int main()
@@ -169,5 +247,7 @@ int main()
   PicturesStayWithinTheirTolerance(folder / "plate.banyan", PlateSamples);
   CellsAreAsLargeAsAllowedOnTheScreen(folder / "series.banyan");
   FramesThatTakeTooLongGetALargerTolerance();
+  WhatLimitsAnEstimateIsSaid();
+  ErrorsOfEncodingAreTold(folder);
   return Failures() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

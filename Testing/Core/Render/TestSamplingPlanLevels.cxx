@@ -19,11 +19,13 @@ struct Offsets
   double EverySecondStep; ///< of distances that are odd powers of two
 };
 
-SamplingPlan PlanOf(const Offsets& offsets, double tolerance, bool shaded = false)
+SamplingPlan PlanOf(
+  const Offsets& offsets, double tolerance, bool shaded = false, int finestLevel = 0)
 {
   RayScene scene = scenes::Scene(glm::ivec3(65), glm::ivec2(512));
   scene.Shading.On = shaded;
-  const SamplingWish wish{ tolerance, 1.0, 2, 0, /*LeastCells=*/1, /*LargestPixelStride=*/1 };
+  SamplingWish wish{ tolerance, 1.0, 2, 0, /*LeastCells=*/1, /*LargestPixelStride=*/1 };
+  wish.FinestLevel = finestLevel;
   return PlanSamplings(scene, wish,
     [&](const RayScene& pilot)
     {
@@ -101,6 +103,17 @@ TEST(SamplingPlanLevels, TheLeastErrorIsTakenWhereNoneIsSmallEnough)
   ASSERT_TRUE(plan.Samplings);
   EXPECT_EQ(LevelOfFirstTile(plan), 0);
   EXPECT_NEAR(plan.EstimatedError, 10.0 + 1.0, 1e-3);
+}
+
+TEST(SamplingPlanLevels, WhatKeepsAPlanFromItsToleranceIsSaid)
+{
+  EXPECT_EQ(PlanOf(LevelTwoWillDo, 8.0).Limit, SamplingLimit::None);
+  Offsets offsets = LevelTwoWillDo;
+  offsets.EverySecondStep = 2.5;
+  EXPECT_EQ(PlanOf(offsets, 8.0).Limit, SamplingLimit::Distance);
+  const SamplingPlan held = PlanOf({ { 0.0, 5.0, 9.0 }, 0.0 }, 8.0, false, /*finestLevel=*/1);
+  EXPECT_EQ(held.Limit, SamplingLimit::Level);
+  EXPECT_GT(held.EstimatedError, 8.0);
 }
 
 // Where a ray meets a place without a gradient, no pilot says how far single pixels are off.
