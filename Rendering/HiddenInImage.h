@@ -24,8 +24,8 @@ const std::uint8_t* FlagsOfHiddenPoints(vtkImageData* image);
 /// Throws Error when there is not one for each cell.
 const std::uint8_t* FlagsOfHiddenCells(vtkImageData* image);
 
-/// Collective: the hidden cells of all ranks' pieces. Where pieces overlap, a cell is hidden that is
-/// hidden in one of them.
+/// Collective: the hidden cells of all ranks' pieces. Where pieces overlap, a cell is hidden that
+/// is hidden in one of them.
 /// @param image this rank's piece; null for none
 /// @param first sample of the whole grid, in the extents of pieces
 /// @param cells of the whole grid

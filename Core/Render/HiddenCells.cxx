@@ -32,7 +32,8 @@ HiddenCells::HiddenCells(const glm::ivec3& cells)
 
 std::int64_t HiddenCells::NumberOf(const glm::ivec3& block) const
 {
-  return block.x + std::int64_t{ this->Blocks.x } * (block.y + std::int64_t{ this->Blocks.y } * block.z);
+  return block.x +
+         std::int64_t{ this->Blocks.x } * (block.y + std::int64_t{ this->Blocks.y } * block.z);
 }
 
 Box HiddenCells::CellsOf(const glm::ivec3& block) const
@@ -66,8 +67,7 @@ void HiddenCells::ForBlocks(const Box& cells, Function&& function) const
 
 /// Calls function(y, z, bits) for the rows of a part of a block, with the bits of the part.
 template <class Function>
-void HiddenCells::ForRows(
-  const Rows& bits, const Box& block, const Box& part, Function&& function)
+void HiddenCells::ForRows(const Rows& bits, const Box& block, const Box& part, Function&& function)
 {
   const std::uint16_t mask = BitsBetween(part.Lo.x - block.Lo.x, part.Hi.x - block.Lo.x);
   for (int z = part.Lo.z; z < part.Hi.z; ++z)
@@ -118,7 +118,8 @@ void HiddenCells::HideIn(const glm::ivec3& block, const Rows& bits)
 {
   const std::int64_t number = this->NumberOf(block);
   State& state = this->States[static_cast<std::size_t>(number)];
-  const bool any = std::any_of(bits.begin(), bits.end(), [](std::uint16_t row) { return row != 0; });
+  const bool any =
+    std::any_of(bits.begin(), bits.end(), [](std::uint16_t row) { return row != 0; });
   if (!any || state == State::All)
   {
     return;
@@ -212,8 +213,9 @@ HiddenCells HiddenCells::Coarser(int level) const
   const int edge = 1 << level;
   HiddenCells coarse((this->Cells + (edge - 1)) / edge);
   const Box whole{ glm::ivec3(0), this->Cells };
-  const auto fine = [&](const Box& cells)
-  { return Intersection({ cells.Lo * edge, cells.Hi * edge }, whole); };
+  const auto fine = [&](const Box& cells) {
+    return Intersection({ cells.Lo * edge, cells.Hi * edge }, whole);
+  };
   coarse.ForBlocks({ glm::ivec3(0), coarse.Cells },
     [&](const glm::ivec3& block, const Box& cells)
     {

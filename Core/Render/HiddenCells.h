@@ -15,7 +15,8 @@ namespace banyan
 /// Which cells of a whole grid are hidden: a sample in one has no colour. The corners of a hidden
 /// cell keep their values, so its neighbours are drawn as ever.
 ///
-/// A bit per cell in blocks of which some cells are hidden; other blocks take no memory of their own.
+/// A bit per cell in blocks of which some cells are hidden; other blocks take no memory of their
+/// own.
 class HiddenCells
 {
 public:

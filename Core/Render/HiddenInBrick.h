@@ -40,7 +40,8 @@ private:
   bool Has(const glm::ivec3& cell) const
   {
     const std::ptrdiff_t row = std::ptrdiff_t{ cell.z } * this->Rows + cell.y;
-    const std::uint32_t word = this->Bits[static_cast<std::size_t>(row * this->RowWords + cell.x / 32)];
+    const std::uint32_t word =
+      this->Bits[static_cast<std::size_t>(row * this->RowWords + cell.x / 32)];
     return (word >> cell.x % 32 & 1u) != 0;
   }
 

@@ -65,8 +65,13 @@ class Refinement:
         interactive = self.statistic("EstimatedImageError")
         session.require(interactive > TOLERANCE, f"interaction is coarse ({interactive})")
         self.view.SMProxy.StillRender()
+        limit = self.statistic("ImageErrorLimit")
+        session.require("still being refined" in limit, f"coarse pictures say so: {limit}")
         passes = self.passes()
         print("passes:", passes)
+        limit = self.statistic("ImageErrorLimit")
+        session.require(not limit, f"the last one needs no words: {limit}")
+        session.require(self.statistic("EncodingErrorOfValues") == 0, "plain data were not encoded")
         errors = [error for error, _ in passes]
         session.require(len(passes) >= 3, f"there are several passes: {passes}")
         session.require(errors == sorted(errors, reverse=True), f"errors go down: {errors}")

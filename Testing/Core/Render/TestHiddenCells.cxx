@@ -81,8 +81,8 @@ FloatImage Draw(const RayScene& scene, const SampleArray& array,
   ArrayBrickSource source(array, brickCells, masks, pool);
   source.Hide(std::move(hidden));
   RayStatistics here;
-  FloatImage image = CastRays(
-    scene, source, cells, std::uint64_t{ 1 } << 30, pool, statistics ? *statistics : here);
+  FloatImage image =
+    CastRays(scene, source, cells, std::uint64_t{ 1 } << 30, pool, statistics ? *statistics : here);
   FinishPicture(scene, image);
   return image;
 }
@@ -91,8 +91,8 @@ FloatImage Draw(const RayScene& scene, const SampleArray& array,
 RayScene RandomScene(std::mt19937& random, const glm::ivec3& n)
 {
   const double distances[] = { 0.2, 1.2, 1.4 };
-  RayScene scene = scenes::Scene(n, { 24, 20 }, glm::dmat4(1.0), distances[random() % 3],
-    random() % 2 == 0);
+  RayScene scene =
+    scenes::Scene(n, { 24, 20 }, glm::dmat4(1.0), distances[random() % 3], random() % 2 == 0);
   const BlendMode modes[] = { BlendMode::Composite, BlendMode::Composite, BlendMode::Maximum,
     BlendMode::Minimum, BlendMode::Average };
   scene.Blend.Mode = modes[random() % 5];
@@ -130,8 +130,7 @@ template <class T>
 int PixelsOffOf(unsigned seed, double scale, double tolerance)
 {
   std::mt19937 random(seed);
-  const glm::ivec3 n(
-    Between(random, 2, 21), Between(random, 2, 21), Between(random, 2, 21));
+  const glm::ivec3 n(Between(random, 2, 21), Between(random, 2, 21), Between(random, 2, 21));
   const bool uniform = random() % 4 == 0;
   const std::vector<T> values = scenes::Sampled<T>(
     [&](const glm::dvec3& p) { return uniform ? 0.75 : scenes::Standard(p); }, n, scale);
@@ -159,8 +158,8 @@ int PixelsOffOf(unsigned seed, double scale, double tolerance)
   return PixelsOff(image, reference, tolerance);
 }
 
-/// 160 masks. The tolerance is a neighbouring entry of the table, where values round apart. Of 77000
-/// pixels one has a sample so near the face of a hidden cell that positions round apart, too.
+/// 160 masks. The tolerance is a neighbouring entry of the table, where values round apart. Of
+/// 77000 pixels one has a sample so near the face of a hidden cell that positions round apart, too.
 TEST(HiddenCells, AreLeftOutAsByTheReference)
 {
   constexpr double tolerance = 1e-3;
@@ -260,8 +259,8 @@ TEST(HiddenCells, ChangeWithNoBrickSize)
     const FloatImage image = Draw(scene, scenes::ArrayOf(values, n), hidden, scene.DomainCells, 16);
     for (const int brickCells : { 7, 32, 64 })
     {
-      EXPECT_EQ(MaxDifference(image, Draw(scene, scenes::ArrayOf(values, n), hidden,
-                                       scene.DomainCells, brickCells)),
+      EXPECT_EQ(MaxDifference(image,
+                  Draw(scene, scenes::ArrayOf(values, n), hidden, scene.DomainCells, brickCells)),
         0.0);
     }
   }
@@ -280,8 +279,8 @@ TEST(HiddenCells, AreNeitherLoadedNorSampledWhereABrickHasNoOthers)
   EXPECT_EQ(BricksToLoad(scene, source, scene.DomainCells), (std::vector<std::int64_t>{ 1 }));
   RayStatistics statistics;
   RayStatistics all;
-  (void)Draw(scene, scenes::ArrayOf(values, n), Hidden(flags, n - 1), scene.DomainCells, 16,
-    &statistics);
+  (void)Draw(
+    scene, scenes::ArrayOf(values, n), Hidden(flags, n - 1), scene.DomainCells, 16, &statistics);
   (void)Draw(scene, scenes::ArrayOf(values, n), nullptr, scene.DomainCells, 16, &all);
   EXPECT_EQ(statistics.BricksDrawn, 1);
   EXPECT_EQ(statistics.BricksSkipped, 1);
@@ -296,8 +295,8 @@ TEST(HiddenCells, OfABrickOfOneValueHaveNoColour)
   const auto middle = [&](const Flags& flags)
   {
     RayStatistics statistics;
-    const FloatImage image = Draw(scene, scenes::ArrayOf(values, n), Hidden(flags, n - 1),
-      scene.DomainCells, 16, &statistics);
+    const FloatImage image = Draw(
+      scene, scenes::ArrayOf(values, n), Hidden(flags, n - 1), scene.DomainCells, 16, &statistics);
     return std::make_pair(image.Rect.Empty() ? 0.0f : image.At(15, 15).a, statistics.BricksUniform);
   };
   const float whole = middle(Flags(4096, 0)).first;
@@ -319,10 +318,10 @@ TEST(HiddenCells, AreCountedAndToldCellByCell)
   for (unsigned seed = 0; seed < 100; ++seed)
   {
     std::mt19937 random(seed);
-    const glm::ivec3 cells(
-      Between(random, 1, 40), Between(random, 1, 40), Between(random, 1, 20));
+    const glm::ivec3 cells(Between(random, 1, 40), Between(random, 1, 40), Between(random, 1, 20));
     const Flags flags = RandomFlags(random, cells);
-    const auto isHidden = [&](const glm::ivec3& p) { return (flags[At(p, cells)] & HiddenBit) != 0; };
+    const auto isHidden = [&](const glm::ivec3& p)
+    { return (flags[At(p, cells)] & HiddenBit) != 0; };
     const auto countIn = [&](const Box& box)
     {
       std::int64_t count = 0;
@@ -350,8 +349,8 @@ TEST(HiddenCells, AreCountedAndToldCellByCell)
     ForAll((cells + ((1 << level) - 1)) >> level,
       [&](const glm::ivec3& p)
       {
-        const Box fine =
-          Intersection(Box{ p * (1 << level), (p + 1) * (1 << level) }, Box{ glm::ivec3(0), cells });
+        const Box fine = Intersection(
+          Box{ p * (1 << level), (p + 1) * (1 << level) }, Box{ glm::ivec3(0), cells });
         ASSERT_EQ(coarse.Any({ p, p + 1 }), 2 * countIn(fine) >= fine.Count()) << seed;
       });
   }

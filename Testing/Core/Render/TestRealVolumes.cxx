@@ -165,8 +165,8 @@ class RealVolumes : public testing::TestWithParam<int>
 {
 };
 
-/// Either the tolerance is kept, or the plan says what keeps it from that. True errors are below the
-/// estimate, but for single pixels where the function jumps or its opacity reaches 1.
+/// Either the tolerance is kept, or the plan says what keeps it from that. True errors are below
+/// the estimate, but for single pixels where the function jumps or its opacity reaches 1.
 TEST_P(RealVolumes, KeepTheToleranceOrSayWhatLimitsIt)
 {
   const std::optional<Volume> volume = Real(GetParam());
@@ -197,8 +197,8 @@ TEST_P(RealVolumes, KeepTheToleranceOrSayWhatLimitsIt)
       FloatImage picture = draw(planned);
       FillBetweenRays(planned, picture, pool);
       const std::vector<double> errors = ErrorsOf(picture, truth);
-      const auto beyond = std::count_if(errors.begin(), errors.end(),
-        [&](double error) { return error > plan.EstimatedError; });
+      const auto beyond = std::count_if(
+        errors.begin(), errors.end(), [&](double error) { return error > plan.EstimatedError; });
       std::printf("%s, %s: tolerance %.2f, estimated %.2f, largest %.2f, beyond %d of %d pixels\n",
         volume->Name.c_str(), function.Name, tolerance, plan.EstimatedError, Largest(errors),
         static_cast<int>(beyond), static_cast<int>(errors.size()));
@@ -214,8 +214,8 @@ TEST_P(RealVolumes, KeepTheToleranceOrSayWhatLimitsIt)
   }
 }
 
-/// Noise within the bound stands for the error of encoding. What it does to a picture is not told by
-/// drawing pilots with all values moved by the bound: that is several times too much in smooth
+/// Noise within the bound stands for the error of encoding. What it does to a picture is not told
+/// by drawing pilots with all values moved by the bound: that is several times too much in smooth
 /// scenes, and much too little where the function jumps.
 TEST_P(RealVolumes, ErrorsOfValuesAreNotToldByMovingThemAll)
 {
