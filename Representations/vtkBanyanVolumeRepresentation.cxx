@@ -21,6 +21,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkPVRenderView.h"
 #include "vtkPiecewiseFunction.h"
+#include "vtkProcessModule.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkVolumeProperty.h"
@@ -228,7 +229,9 @@ void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
   if (!this->Prop->CanDrawInView())
   {
     // On servers, ranks are not called alike: nothing that waits for others may begin.
-    if (!this->RefusalReported)
+    // Clients are told, too, and are where somebody reads it.
+    if (!this->RefusalReported &&
+        vtkProcessModule::GetProcessType() == vtkProcessModule::PROCESS_CLIENT)
     {
       this->RefusalReported = true;
       vtkErrorMacro(

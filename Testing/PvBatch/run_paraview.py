@@ -1,6 +1,7 @@
 """Runs a Python script in ParaView: builtin, on the ranks of pvbatch, or as client of a pvserver.
 
-    run_paraview.py [--mode builtin|batch|server] [--ranks N] [--seconds S] -- SCRIPT [ARGUMENTS]
+    run_paraview.py [--mode builtin|batch|server] [--ranks N] [--seconds S] [--server-option O ...]
+                    -- SCRIPT [ARGUMENTS]
 
 Nothing may hang: every process it starts is ended when the time is over. The script of a client
 finds host and port of its server in the environment variable BANYAN_TEST_SERVER. Exits with the
@@ -75,10 +76,10 @@ def mpi(ranks):
 class Server:
     """A pvserver on several ranks whose output is passed on."""
 
-    def __init__(self, ranks):
+    def __init__(self, ranks, options):
         self.port = free_port()
         self.process = start(
-            mpi(ranks) + ["pvserver", "--hostname=localhost", f"--server-port={self.port}"],
+            mpi(ranks) + ["pvserver", "--hostname=localhost", f"--server-port={self.port}"] + options,
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.told = threading.Event()  # whether it listens, or why not
         self.listens = False
@@ -103,9 +104,9 @@ def run_with_server(server, command, deadline):
     return status or left
 
 
-def run_client(command, ranks, deadline):
+def run_client(command, ranks, options, deadline):
     while True:
-        server = Server(ranks)
+        server = Server(ranks, options)
         try:
             if not server.told.wait(max(0.0, deadline - time.monotonic())):
                 print("run_paraview.py: the server did not start in time", file=sys.stderr)
@@ -124,6 +125,7 @@ def main():
     parser.add_argument("--mode", choices=("builtin", "batch", "server"), default="builtin")
     parser.add_argument("--ranks", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=120)
+    parser.add_argument("--server-option", action="append", default=[], help="as --server-option=-tdx=2")
     parser.add_argument("command", nargs="+")
     arguments = parser.parse_args()
 
@@ -131,7 +133,7 @@ def main():
     deadline = time.monotonic() + arguments.seconds
     python = ["pvpython", "--force-offscreen-rendering"]
     if arguments.mode == "server":
-        return run_client(python + arguments.command, arguments.ranks, deadline)
+        return run_client(python + arguments.command, arguments.ranks, arguments.server_option, deadline)
     if arguments.mode == "batch":
         return wait(start(mpi(arguments.ranks) + ["pvbatch"] + arguments.command), deadline)
     return wait(start(python + arguments.command), deadline)
