@@ -196,6 +196,12 @@ void vtkBanyanVolumeMapper::DrawPrepared(vtkRenderer* renderer, std::vector<Fram
   {
     const auto cast = [&]
     {
+      // One mapper may draw several volumes, each with a component of its own.
+      const auto same = [&](const Frame& frame) { return frame.Mapper == frames[i].Mapper; };
+      if (std::count_if(frames.begin(), frames.end(), same) > 1)
+      {
+        frames[i].Mapper->UpdateField(frames[i].Volume);
+      }
       pictures[i] = frames[i].Mapper->CastFrame(
         renderer, self.Backdrop, static_cast<int>(frames.size()), frames[i]);
       return true;

@@ -69,6 +69,50 @@ void WindowsTakeTurns()
   Check(Difference(Shown(mapper).Draw(), expected) == 0, "renderers may go before their windows");
 }
 
+/// Two volumes of one renderer, side by side, that one mapper draws: each with a component of its own.
+void VolumesOfOneRenderer()
+{
+  vtkSmartPointer<vtkImageData> image = PlainImage(Balls, { 24, 22, 20 });
+  vtkNew<vtkFloatArray> two;
+  two->SetName("two");
+  two->SetNumberOfComponents(2);
+  two->SetNumberOfTuples(image->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  {
+    const float value = static_cast<float>(image->GetPointData()->GetScalars()->GetTuple1(i));
+    two->SetTuple2(i, value, 1.0f - value);
+  }
+  image->GetPointData()->SetScalars(two);
+  const auto draw = [&](bool shared, int shown)
+  {
+    vtkNew<vtkBanyanVolumeMapper> mapper;
+    vtkNew<vtkBanyanVolumeMapper> own;
+    mapper->SetInputDataObject(image);
+    own->SetInputDataObject(image);
+    Stage stage(mapper);
+    vtkNew<vtkVolume> second;
+    vtkNew<vtkVolumeProperty> property;
+    property->DeepCopy(stage.Volume->GetProperty());
+    property->GetRGBTransferFunction()->SetVectorModeToComponent();
+    property->GetRGBTransferFunction()->SetVectorComponent(1);
+    stage.Volume->GetProperty()->GetRGBTransferFunction()->SetVectorModeToComponent();
+    second->SetProperty(property);
+    second->SetMapper(shared ? mapper : own);
+    second->SetPosition(30, 0, 0);
+    stage.Renderer->AddVolume(second);
+    const double bounds[6] = { 0, 54, 0, 22, 0, 20 };
+    stage.LookAt(bounds);
+    stage.Volume->SetVisibility(shown != 1);
+    second->SetVisibility(shown != 0);
+    stage.Draw();
+    return stage.Draw();
+  };
+  const Picture expected = draw(false, 2);
+  Check(Difference(expected, draw(false, 0)) > 20 && Difference(expected, draw(false, 1)) > 20,
+    "both volumes are seen");
+  Check(Difference(draw(true, 2), expected) == 0, "one mapper draws both as two mappers do");
+}
+
 /// Of a property that was copied, gradient opacity is a function that is 1 everywhere.
 void CopiesSayNothing()
 {
@@ -94,6 +138,7 @@ void CopiesSayNothing()
 int main()
 {
   WindowsTakeTurns();
+  VolumesOfOneRenderer();
   CopiesSayNothing();
   return Failures();
 }
