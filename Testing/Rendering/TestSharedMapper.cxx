@@ -69,7 +69,8 @@ void WindowsTakeTurns()
   Check(Difference(Shown(mapper).Draw(), expected) == 0, "renderers may go before their windows");
 }
 
-/// Two volumes of one renderer, side by side, that one mapper draws: each with a component of its own.
+/// Two volumes of one renderer, side by side, that one mapper draws: each with a component of its
+/// own.
 void VolumesOfOneRenderer()
 {
   vtkSmartPointer<vtkImageData> image = PlainImage(Balls, { 24, 22, 20 });

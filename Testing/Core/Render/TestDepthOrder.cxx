@@ -1,4 +1,6 @@
 // Which of several turned boxes hides which, against rays that are cut with each of them.
+#include "Dice.h"
+
 #include "Render/DepthOrder.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -7,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <random>
 
 namespace
 {
@@ -16,24 +17,11 @@ using namespace banyan;
 
 const glm::ivec2 Picture(24, 18);
 
-class Dice
+class BoxDice : public Dice
 {
 public:
-  explicit Dice(unsigned seed)
-    : Engine(seed)
-  {
-  }
-  double In(double low, double high)
-  {
-    return std::uniform_real_distribution<double>(low, high)(this->Engine);
-  }
-  glm::dvec3 Point(double size) { return { In(-size, size), In(-size, size), In(-size, size) }; }
-  glm::dvec3 Direction()
-  {
-    const glm::dvec3 point = this->Point(1.0);
-    const double length = glm::length(point);
-    return length > 0.1 && length < 1.0 ? point / length : this->Direction();
-  }
+  using Dice::Dice;
+
   /// Turned, scaled and often sheared, around its middle.
   PlacedBox Box(const glm::dvec3& middle, double size)
   {
@@ -53,9 +41,6 @@ public:
              ? RayCamera(glm::perspective(0.8, 4.0 / 3.0, 0.1, 50.0) * view, Picture, {})
              : RayCamera(glm::ortho(-4.0, 4.0, -3.0, 3.0, 0.1, 50.0) * view, Picture, {});
   }
-
-private:
-  std::mt19937 Engine;
 };
 
 double Highest(const PlacedBox& box, const glm::dvec3& direction)
@@ -69,7 +54,7 @@ double Highest(const PlacedBox& box, const glm::dvec3& direction)
 }
 
 /// Two boxes on the two sides of a plane; touching it, or each other, now and then.
-std::pair<PlacedBox, PlacedBox> Separated(Dice& dice)
+std::pair<PlacedBox, PlacedBox> Separated(BoxDice& dice)
 {
   const glm::dvec3 normal = dice.Direction();
   const double plane = dice.In(-2.0, 2.0);
@@ -128,7 +113,7 @@ TEST(DepthOrder, BoxesOnTwoSidesOfAPlaneAreInTheOrderOfRays)
   for (unsigned seed = 0; seed < 800; ++seed)
   {
     SCOPED_TRACE(seed);
-    Dice dice(seed);
+    BoxDice dice(seed);
     const auto boxes = Separated(dice);
     const RayCamera camera = dice.Camera();
     const DepthRelation relation = RelationInDepth({ boxes.first }, { boxes.second }, camera);
@@ -146,7 +131,7 @@ TEST(DepthOrder, BoxesWithAPointInCommonHaveNone)
   for (unsigned seed = 0; seed < 400; ++seed)
   {
     SCOPED_TRACE(seed);
-    Dice dice(seed);
+    BoxDice dice(seed);
     const glm::dvec3 common = dice.Point(2.0);
     std::array<PlacedBox, 2> boxes;
     for (PlacedBox& box : boxes)
