@@ -20,7 +20,7 @@ from placed_volumes import SIZE, Stage, blended, shown, window_of
 
 ARRANGEMENTS = 16
 COMPARED_WITH_SINGLE_ONES = 6  # of them, on one rank
-RIM_PIXELS = 12
+RIM_PART = 1 / 2000  # of the pixels
 ROUNDING = 4  # of 255: several rounded pictures are multiplied
 STEREO = ("No stereo", "Left Eye Only", "Right Eye Only", "Red-Blue", "Interlaced", "Anaglyph",
           "Checkerboard", "Side-by-Side Horizontal", "Dresden")
@@ -29,7 +29,7 @@ STEREO = ("No stereo", "Left Eye Only", "Right Eye Only", "Red-Blue", "Interlace
 def on_rims(picture, beyond):
     """Few pixels on rims of spheres: what OpenGL draws there depends on what else a rank draws."""
     rims = beyond & pictures.rim(picture, width=2)
-    return rims if rims.sum() <= RIM_PIXELS else numpy.zeros_like(rims)
+    return rims if rims.sum() <= RIM_PART * rims.size else numpy.zeros_like(rims)
 
 
 class Pictures:
