@@ -4,6 +4,7 @@
 #include "RendererCamera.h"
 #include "vtkBanyanVolumeMapper.h"
 
+#include "vtkActor.h"
 #include "vtkCollection.h"
 #include "vtkMath.h"
 #include "vtkPropCollection.h"
@@ -36,7 +37,9 @@ unsigned char KindOf(vtkProp* prop)
   {
     return NotInDepth::Stranger;
   }
-  return prop->HasTranslucentPolygonalGeometry() ? NotInDepth::Surface : 0;
+  // Axes with labels call themselves translucent, too.
+  const bool surface = vtkActor::SafeDownCast(prop) != nullptr;
+  return surface && prop->HasTranslucentPolygonalGeometry() ? NotInDepth::Surface : 0;
 }
 
 /// Whether a prop may show at pixels of a volume, and is not behind it.

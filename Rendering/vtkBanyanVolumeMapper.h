@@ -203,7 +203,8 @@ public:
    * Whether pixels travel between ranks in as few bits as keep each of them within 1/255 of one
    * rank's, and packed: far fewer bytes than floats. Where a background is blended behind
    * the picture later, in 8 bits, as ParaView does, a few pixels may then differ by 2/255. Default
-   * off: floats, which are within 1/255 there too. Without effect on IceT and on projections.
+   * off: floats, which are within 1/255 there too. Without effect on IceT, on projections, and while
+   * several volumes are on the screen.
    */
   vtkSetMacro(CompositeInFewBits, bool);
   vtkGetMacro(CompositeInFewBits, bool);

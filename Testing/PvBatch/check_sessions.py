@@ -48,7 +48,7 @@ class Sessions:
         session.clear()
 
     def two_volumes(self):
-        # Side by side as seen: volumes are not sorted by depth among each other.
+        # Side by side as seen.
         view = session.new_view(picture_scenes.SIZE, CameraPosition=[0, 0, 150],
                                 CameraFocalPoint=[0, 0, 0], CameraViewUp=[0, 1, 0])
         left = picture_scenes.encoded(view)
