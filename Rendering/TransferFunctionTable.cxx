@@ -96,25 +96,11 @@ public:
     this->Labels.erase(std::unique(this->Labels.begin(), this->Labels.end()), this->Labels.end());
   }
 
-  /// Labels that a file keeps in float32 are what they are rounded to.
-  double RoomAround(std::size_t label) const
-  {
-    const double at = this->Labels[label];
-    double room = std::min(1e-7 * std::abs(at), 0.25);
-    for (const std::size_t other : { label - 1, label + 1 })
-    {
-      room = other < this->Labels.size() ? std::min(room, 0.25 * std::abs(at - this->Labels[other]))
-                                         : room;
-    }
-    return room;
-  }
-
   void AddCorners(std::vector<double>& corners) const
   {
-    for (std::size_t i = 0; i < this->Labels.size(); ++i)
+    for (const double label : this->Labels)
     {
-      const double room = this->RoomAround(i);
-      corners.insert(corners.end(), { this->Labels[i] - room, this->Labels[i] + room });
+      corners.insert(corners.end(), { label, Rounded(label) });
     }
   }
 
@@ -123,18 +109,20 @@ public:
     const auto above = std::lower_bound(this->Labels.begin(), this->Labels.end(), value);
     for (const auto label : { above, above == this->Labels.begin() ? above : above - 1 })
     {
-      if (label != this->Labels.end() &&
-          std::abs(*label - value) <=
-            this->RoomAround(static_cast<std::size_t>(label - this->Labels.begin())))
+      if (label != this->Labels.end() && std::min(*label, Rounded(*label)) <= value &&
+          value <= std::max(*label, Rounded(*label)))
       {
         this->Function->GetColor(*label, rgb);
         return;
       }
     }
-    this->Function->GetNanColor(rgb);
+    this->Function->GetColor(value, rgb);
   }
 
 private:
+  /// What data in float32 have of a label.
+  static double Rounded(double label) { return static_cast<float>(label); }
+
   vtkDiscretizableColorTransferFunction* Function;
   std::vector<double> Labels;
 };
@@ -148,6 +136,13 @@ void CheckLogScale(bool logarithmic, const double* range, const char* which)
                 ": a logarithmic scale needs a range above 0. Rescale the range to one above 0, or "
                 "switch the logarithmic scale off");
   }
+}
+
+/// VTK knows no colour and no opacity of what has no logarithm: all values below a range have the
+/// same.
+double WithLogarithm(double value, double lowest)
+{
+  return value < lowest && lowest > 0.0 ? 0.5 * lowest : value;
 }
 
 /// The colours of a property, as VTK gives them.
@@ -165,6 +160,8 @@ public:
       return;
     }
     this->Colours->Build(); // what discretized colours are looked up in
+    const double* const range = this->Colours->GetRange();
+    corners.insert(corners.end(), { range[0], range[1] });
     auto* const discrete = vtkDiscretizableColorTransferFunction::SafeDownCast(this->Colours);
     if (discrete && discrete->GetIndexedLookup())
     {
@@ -173,19 +170,28 @@ public:
       return;
     }
     banyan::AddCorners(this->Colours, corners);
-    const double* const range = this->Colours->GetRange();
-    corners.insert(corners.end(), { range[0], range[1] });
     if (discrete && discrete->GetDiscretize())
     {
       AddColourSteps(discrete, corners);
     }
   }
 
+  /// Equal parts of the range of colours in which these are the same; 0 if there are none.
+  int EqualParts() const
+  {
+    auto* const discrete = vtkDiscretizableColorTransferFunction::SafeDownCast(this->Colours);
+    return discrete && discrete->GetDiscretize() && !discrete->UsingLogScale()
+             ? static_cast<int>(discrete->GetNumberOfValues())
+             : 0;
+  }
+
   void Get(double value, double (&rgb)[3]) const
   {
     if (this->Greys)
     {
-      std::fill(rgb, rgb + 3, this->Greys->GetValue(value));
+      const double lowest =
+        this->Greys->GetUseLogScale() ? this->Greys->GetRange()[0] : -VTK_DOUBLE_MAX;
+      std::fill(rgb, rgb + 3, this->Greys->GetValue(WithLogarithm(value, lowest)));
     }
     else if (this->Labels)
     {
@@ -193,7 +199,9 @@ public:
     }
     else
     {
-      this->Colours->GetColor(value, rgb);
+      const bool byRatio = this->Colours->GetScale() == VTK_CTF_LOG10;
+      const double lowest = byRatio ? this->Colours->GetRange()[0] : -VTK_DOUBLE_MAX;
+      this->Colours->GetColor(WithLogarithm(value, lowest), rgb);
     }
   }
 
@@ -217,17 +225,15 @@ TransferFunction MakeTransferFunction(vtkVolumeProperty* property)
   std::vector<double> corners;
   const ColoursOfProperty colours(property, corners);
   AddCorners(opacity, corners);
-  // A logarithm of what is below the range may be none.
   const double lowest = opacity->GetUseLogScale() ? opacity->GetRange()[0] : -VTK_DOUBLE_MAX;
   const auto function = [&](double value)
   {
     double rgb[3];
     colours.Get(value, rgb);
-    const bool outside = value < lowest && !opacity->GetClamping();
-    const double alpha = outside ? 0.0 : opacity->GetValue(std::max(value, lowest));
+    const double alpha = opacity->GetValue(WithLogarithm(value, lowest));
     return glm::dvec4(rgb[0], rgb[1], rgb[2], std::clamp(alpha, 0.0, 1.0));
   };
-  TransferFunction table = TabulateFunction(function, std::move(corners));
+  TransferFunction table = TabulateFunction(function, std::move(corners), colours.EqualParts());
   table.UnitDistance = property->GetScalarOpacityUnitDistance(0);
   return table;
 }

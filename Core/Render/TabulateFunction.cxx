@@ -65,13 +65,18 @@ std::vector<double> Usable(std::vector<double> corners)
 class EvenTable
 {
 public:
-  EvenTable(const CheckedFunction& function, const std::vector<double>& corners, int entries)
+  /// @param aligned whether entries begin and end at the ends of equal parts of the range, not in
+  ///   the middle between two of them
+  EvenTable(const CheckedFunction& function, const std::vector<double>& corners, int entries,
+    bool aligned = false)
     : Function(function)
     , Corners(corners)
     , Width(corners.back() - corners.front())
+    , LargestStep(aligned ? LargestAlignedStep : TabulationError::Colour)
   {
-    this->Table.Low = corners.front();
-    this->Table.High = corners.back();
+    const double inset = aligned ? 0.5 * this->Width / entries : 0.0;
+    this->Table.Low = corners.front() + inset;
+    this->Table.High = corners.back() - inset;
     for (int i = 0; i < entries; ++i)
     {
       const double part = i / static_cast<double>(entries - 1);
@@ -98,7 +103,8 @@ public:
     for (std::size_t i = 1; i < this->Exact.size(); ++i)
     {
       // An entry reaches half way to the next one.
-      if (!this->AreClose(this->Exact[i - 1], this->Exact[i], 2.0))
+      const double colour = std::max(2.0 * TabulationError::Colour, this->LargestStep);
+      if (!this->AreClose(this->Exact[i - 1], this->Exact[i], colour, 2.0))
       {
         return false;
       }
@@ -120,26 +126,34 @@ public:
   TransferFunction Take() { return std::move(this->Table); }
 
 private:
-  /// @param times the error that is allowed
-  bool AreClose(const glm::dvec4& a, const glm::dvec4& b, double times) const
+  /// Steps this small may be off by what is rounded in float.
+  static constexpr double LargestAlignedStep = 8.0 / 255.0;
+
+  /// @param times the error of opacities that is allowed
+  bool AreClose(const glm::dvec4& a, const glm::dvec4& b, double colour, double times) const
   {
     using Error = TabulationError;
     const double opacity =
       Error::OpacityOfItself * std::max(a.a, b.a) + Error::OpacityOfHighest * this->Highest;
-    return LargestDifference(a, b) <= times * Error::Colour &&
-           std::abs(a.a - b.a) <= times * opacity;
+    return LargestDifference(a, b) <= colour && std::abs(a.a - b.a) <= times * opacity;
   }
 
   bool IsCloseAt(double value) const
   {
     const double last = static_cast<double>(this->Exact.size()) - 1.0;
-    const double position = (value - this->Table.Low) / this->Width * last + 0.5;
-    const glm::dvec4& entry =
-      this->Exact[static_cast<std::size_t>(std::clamp(std::floor(position), 0.0, last))];
+    const double width = this->Table.High - this->Table.Low;
+    const double position = (value - this->Table.Low) / width * last + 0.5;
     const glm::dvec4 exact = this->Function(value);
-    // What can be seen must not be skipped.
-    return this->AreClose(entry, exact, 1.0) &&
-           (entry.a > 0.0 || exact.a <= this->Highest / 4096.0);
+    const auto isClose = [&](double at)
+    {
+      const glm::dvec4& entry =
+        this->Exact[static_cast<std::size_t>(std::clamp(std::floor(at), 0.0, last))];
+      // What can be seen must not be skipped.
+      return this->AreClose(entry, exact, TabulationError::Colour, 1.0) &&
+             (entry.a > 0.0 || exact.a <= this->Highest / 4096.0);
+    };
+    // Between two entries either will do.
+    return isClose(position - 1e-6) || isClose(position + 1e-6);
   }
 
   bool JumpsAt(double corner) const
@@ -151,7 +165,7 @@ private:
       const glm::dvec4 other = this->Function(beside);
       const bool appears =
         (at.a > 0.0) != (other.a > 0.0) && std::abs(at.a - other.a) > 1e-6 * this->Highest;
-      if (appears || !this->AreClose(at, other, 1.0))
+      if (appears || !this->AreClose(at, other, this->LargestStep, 1.0))
       {
         return true;
       }
@@ -162,6 +176,7 @@ private:
   const CheckedFunction& Function;
   const std::vector<double>& Corners;
   double Width;
+  double LargestStep; ///< of colours, from one entry to the next
   double Highest = 0.0;
   std::vector<glm::dvec4> Exact;
   TransferFunction Table;
@@ -185,7 +200,13 @@ public:
         this->Highest = std::max(this->Highest, function(Between(corners, i, part)).a);
       }
     }
-    this->Add({}, function(std::nextafter(corners.front(), -Infinity)));
+    // Where a function ends it may round.
+    const double room = 1e-6 * (0.5 * corners.back() - 0.5 * corners.front());
+    const double first = corners.front() - room;
+    const double last = corners.back() + room;
+    this->Add({}, function(first));
+    this->AddBetween(this->PointAt(first),
+      this->PointAt(std::nextafter(corners.front(), -Infinity)), MostHalvings);
     for (std::size_t i = 0; i < corners.size(); ++i)
     {
       this->AddCorner(corners[i]);
@@ -195,10 +216,12 @@ public:
           part == 0 ? std::nextafter(corners[i], Infinity) : Between(corners, i, part);
         const double to = part + 1 == Parts ? std::nextafter(corners[i + 1], -Infinity)
                                             : Between(corners, i, part + 1);
-        this->AddBetween({ from, function(from) }, { to, function(to) }, MostHalvings);
+        this->AddBetween(this->PointAt(from), this->PointAt(to), MostHalvings);
       }
     }
-    this->Add(this->EdgeAt(corners.back()), function(std::nextafter(corners.back(), Infinity)));
+    this->AddBetween(
+      this->PointAt(std::nextafter(corners.back(), Infinity)), this->PointAt(last), MostHalvings);
+    this->Add(this->EdgeAt(last), function(last));
     if (this->Table.Entries.size() == 1)
     {
       this->Table.Edges.push_back({ corners.back(), true });
@@ -214,6 +237,8 @@ private:
     double Value;
     glm::dvec4 Is;
   };
+
+  Point PointAt(double value) const { return { value, this->Function(value) }; }
 
   static constexpr int MostHalvings = 80;
   static constexpr double ColourStep = 1.0 / 255.0;
@@ -327,10 +352,19 @@ private:
 } // namespace
 
 TransferFunction TabulateFunction(
-  const FunctionOfValue& unchecked, std::vector<double> corners, int entries)
+  const FunctionOfValue& unchecked, std::vector<double> corners, int equalParts, int entries)
 {
   const CheckedFunction function(unchecked);
   corners = Usable(std::move(corners));
+  if (equalParts > 1 && equalParts <= entries)
+  {
+    const int perPart = (entries + equalParts - 1) / equalParts;
+    EvenTable aligned(function, corners, perPart * equalParts, true);
+    if (aligned.MayBecomeClose() && aligned.IsClose())
+    {
+      return aligned.Take();
+    }
+  }
   EvenTable even(function, corners, entries);
   if (even.MayBecomeClose())
   {

@@ -33,8 +33,8 @@ struct TabulationError
 ///   too, but whatever lies within a hundredth of the way from one corner to the next may be
 ///   missed. In any order; what is not finite is left out
 /// The unit distance is left at 1. Throws Error when the function gives what is not a number.
-TransferFunction TabulateFunction(
-  const FunctionOfValue& function, std::vector<double> corners, int entries = 4096);
+TransferFunction TabulateFunction(const FunctionOfValue& function, std::vector<double> corners,
+  int equalParts = 0, int entries = 4096);
 
 } // namespace banyan
 
