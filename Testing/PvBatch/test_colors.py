@@ -216,20 +216,23 @@ def main():
     parser = session.parser(__doc__)
     parser.add_argument("--out", required=True)
     parser.add_argument("--reference")
+    parser.add_argument("--only", choices=["pictures", "choices"])
     arguments = parser.parse_args()
     session.begin(arguments)
     os.makedirs(arguments.out, exist_ok=True)
     shots = Shots(arguments.out, arguments.reference)
-    chosen(image, "RTData")  # first: maps are new
-    chosen(mesh, "RTData")
-    chosen(trees, "Depth")
-    chosen(blocks, "RTData")
-    beyond_the_range(shots)
-    for kind in LABELS:
-        categories(shots, kind)
-    choice_is_kept()
-    options_without_effect()
-    colors_without_map()
+    if arguments.only != "pictures":
+        chosen(image, "RTData")  # first: maps are new
+        chosen(mesh, "RTData")
+        chosen(trees, "Depth")
+        chosen(blocks, "RTData")
+        choice_is_kept()
+        options_without_effect()
+        colors_without_map()
+    if arguments.only != "choices":
+        beyond_the_range(shots)
+        for kind in ("gaps",) if arguments.only else LABELS:
+            categories(shots, kind)
 
 
 main()
