@@ -9,18 +9,19 @@
  * updated twice per step: once to learn the ranges of the whole series, once to encode.
  *
  * What is written: point arrays of numbers, of any scalar type and any number of components; the
- * extent, origin, spacing, direction and times. Ghost arrays are not written. Cell arrays, strings
- * and bits are not written, with a warning that names them; when there is nothing else, writing
- * fails. Field data are not written. Hidden (blanked) points become NaN in float and double arrays,
- * and writing fails when there are integer arrays or hidden cells.
+ * extent, origin, spacing, direction and times; which points and cells of an image are hidden. Of
+ * ghost arrays nothing else is written. Cell arrays, strings and bits are not written, with a warning
+ * that names them; when there is nothing else, writing fails. Field data are not written.
+ * Arrays that the selection names (all of the first step, if it names none) must be there in all
+ * steps. If it names all of the first step, a warning names those that come later.
  *
  * Unstructured grids (alone or as the only block of composite data) whose cells are hexahedra that
  * are the leaves of an octree are written as meshes: see Documentation/hexahedra.md. Rank 0 gathers
  * them. Global and pedigree ids are not written.
  *
  * @par Exactness:
- * |decoded - original| <= error bound for each finite value, verified in the array's type; NaN and
- * infinities are bit-exact. ErrorBound 0 keeps every bit. With a Transform the bound is one on the
+ * |decoded - original| <= error bound for each finite value, verified in the array's type; NaN,
+ * infinities and values at hidden points are bit-exact. ErrorBound 0 keeps every bit. With a Transform the bound is one on the
  * transformed values; with ClampOutside on the clamped ones.
  *
  * @par Errors:

@@ -4,6 +4,7 @@
  *
  * The output is vtkImageData with the extent, origin, spacing, direction, arrays and times of what
  * was encoded. Any piece or sub-extent can be asked for; only bricks that it touches are read.
+ * Points and cells that were hidden are so again (vtkGhostType), whatever arrays are chosen.
  * With DeferDecoding (the default) nothing is decoded until somebody asks for a value: see
  * vtkBanyanArray, and vtkBanyanDeferred for renderers that draw from the series itself.
  *
@@ -17,7 +18,8 @@
  * int8 as signed char.
  *
  * @par Exactness:
- * Every finite value is bounded by the error bound in the index; NaN and infinities are bit-exact.
+ * Every finite value is bounded by the error bound in the index; NaN, infinities and values at
+ * hidden points are bit-exact.
  *
  * @par Errors:
  * vtkErrorMacro and GetErrorCode(); the update fails. The sentence names the file, the array and
