@@ -5,7 +5,7 @@
 import json
 import os
 
-from paraview import simple, vtk
+from paraview import servermanager, simple, vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
@@ -95,7 +95,7 @@ def in_files(folder):
 
 MESH = """
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 executive = self.GetExecutive()
 info = executive.GetOutputInformation(0)
 time = info.Get(executive.UPDATE_TIME_STEP()) if info.Has(executive.UPDATE_TIME_STEP()) else 0.0
@@ -108,15 +108,16 @@ append = vtk.vtkAppendFilter()
 append.AddInputData(image)
 append.Update()
 grid.ShallowCopy(append.GetOutput())
-def add(data, name, count):
-    array = numpy_to_vtk(numpy.arange(count, dtype="f4") + time, deep=1)
+heights = vtk_to_numpy(grid.GetPoints().GetData())[:, 2].astype("f4")
+def add(data, name, values):
+    array = numpy_to_vtk(numpy.ascontiguousarray(values + time), deep=1)
     array.SetName(name)
     data.AddArray(array)
-add(grid.GetPointData(), "p", 64)
-add(grid.GetCellData(), "c", 27)
+add(grid.GetPointData(), "p", heights)
+add(grid.GetCellData(), "c", numpy.arange(27, dtype="f4"))
 if time > 0:
-    add(grid.GetPointData(), "late p", 64)
-    add(grid.GetCellData(), "late c", 27)
+    add(grid.GetPointData(), "late p", heights)
+    add(grid.GetCellData(), "late c", numpy.arange(27, dtype="f4"))
 if HIDES:
     flags = numpy_to_vtk(numpy.array([32] + 26 * [0], dtype="u1"), deep=1)
     flags.SetName("vtkGhostType")
@@ -144,6 +145,28 @@ def of_meshes(folder):
         for name in ("point array late p", "cell array late c"):
             session.require(f"{name} first appears at step 1 (time 1)" in said, f"mesh: {said}")
         session.require(("Hidden cells of the mesh are not written" in said) == hides, f"mesh: {said}")
+
+
+PRESENT = """
+image = self.GetOutputDataObject(0)
+image.SetExtent(self.GetExecutive().GetOutputInformation(0).Get(self.GetExecutive().UPDATE_EXTENT()))
+values = vtk.vtkFloatArray()
+values.SetName("a")
+values.SetNumberOfTuples(image.GetNumberOfPoints())
+values.Fill(3)
+image.GetPointData().AddArray(values)
+image.GetInformation().Set(vtk.vtkDataObject.DATA_TIME_STEP(), 5.0)
+"""
+
+
+def present_on_all_ranks(folder):
+    extent = "info.Set(executive.WHOLE_EXTENT(), 0, 5, 0, 5, 0, 5)\n"
+    source = simple.ProgrammableSource(OutputDataSetType="vtkImageData", Script=PRESENT,
+                                       ScriptRequestInformation=MESH_INFORMATION + extent)
+    for mode in ({}, {"ErrorBoundMode": "Absolute", "ErrorBound": 0.5}):
+        expect_no_series("present on all ranks", source, folder, "delivers data of time 5", **mode)
+        _, _, times = write_series(os.path.join(folder, "present.banyan"), source, WriteTimeSteps=0, **mode)
+        session.require(times == [5.0], f"{times} instead of 5")
 
 
 def present_only(folder):
@@ -177,7 +200,9 @@ def main():
     os.makedirs(arguments.out, exist_ok=True)
     in_files(arguments.out)
     of_meshes(arguments.out)
-    present_only(arguments.out)
+    present_on_all_ranks(arguments.out)
+    if servermanager.vtkProcessModule.GetProcessModule().GetNumberOfLocalPartitions() == 1:
+        present_only(arguments.out)
 
 
 if __name__ == "__main__":
