@@ -138,7 +138,7 @@ std::string Complaint(const ComponentVerification& component, const std::vector<
   if (component.All.NonFiniteChanged > 0)
   {
     text += Times(component.All.NonFiniteChanged, "value") +
-            " that are NaN or infinite did not keep their bits. ";
+            " that are NaN, infinite or hidden did not keep their bits. ";
   }
   if (component.Worst && !component.All.Proven())
   {

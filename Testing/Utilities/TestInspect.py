@@ -47,16 +47,13 @@ def test_verify(folder):
     expect(0, "PROVEN", "verify.sh", series, "--against", series)
     expect(0, "PROVEN", "verify.sh", path("hiding.banyan"), "--against", path("hiding_0.vti"),
            path("hiding_1.vti"))
-    expect(0, "PROVEN", "verify.sh", path("hiding.banyan"), "--array", "heat", "--against", path("hiding_0.vti"),
-           path("hiding_1.vti"))
-    for name, mention in (("bits", "Worst: step 1 (time 1), i j k = 2 3 3, original 1e+20, decoded"),
-                          ("points", "vtkGhostType: 1 value out of bound"),
+    for name, mention in (("bits", "Worst: step 1 (time 1), i j k = 2 3 3, original 1.00000002e+20, decoded"),
                           ("cells", "vtkGhostType of cells: 1 value out of bound"),
                           ("bare", "vtkGhostType: 1 value out of bound")):
         expect(1, mention, "verify.sh", path("hiding.banyan"), "--against", path("hiding_0.vti"),
                path(f"hiding_{name}.vti"))
-    expect(2, "the source has hidden points, and the series does not say which", "verify.sh", series, "--against",
-           path("hiding_0.vti"))
+    expect(2, "the source has hidden points, and the series does not say which", "verify.sh", series, "--array", "heat",
+           "--against", path("hiding_0.vti"))
     status, output, messages = run("verify.sh", series, "--json", "--opacity", "0:0,10:1",
                                    "--against", *source)
     check(status == 0, messages)

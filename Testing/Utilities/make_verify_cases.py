@@ -83,7 +83,6 @@ def main():
         write(hiding_at(step), path)
     encode(hiding, os.path.join(folder, "hiding.banyan"), PointArrays=["heat"])
     for name, change in (("bits", lambda image: image.GetPointData().GetArray("heat").SetValue(HIDDEN, 1e20)),
-                         ("points", lambda image: image.GetPointGhostArray().SetValue(CHANGED, 2)),
                          ("cells", lambda image: image.GetCellGhostArray().SetValue(CELL, 0)),
                          ("bare", lambda image: image.GetPointData().RemoveArray("vtkGhostType"))):
         image = hiding_at(1)
