@@ -220,8 +220,8 @@ std::vector<std::string> MeshArrays::NotChosen(vtkUnstructuredGrid* grid, bool l
     {
       vtkDataArray* const array = attributes->GetArray(i);
       const std::string name = array ? NameOf(array, i) : "";
-      const bool isWanted = points || leaves ? wanted(name)
-                                             : !this->Chosen() || Enabled(this->Cells, name);
+      const bool isWanted =
+        points || leaves ? wanted(name) : !this->Chosen() || Enabled(this->Cells, name);
       if (array && array->GetDataType() != VTK_BIT && !IsNoValue(attributes, array) && !isWanted)
       {
         names.push_back((points ? "point array " : "cell array ") + name);

@@ -137,9 +137,7 @@ void CopyPart(vtkImageData* image, vtkDataArray* array, const Box& part, void* v
   const int tuples = part.Size().x;
   ForEachRow(part, ExtentOf(image),
     [&](std::int64_t inBox, std::int64_t inPart)
-    {
-      std::memcpy(to + inPart * tupleBytes, from + inBox * tupleBytes, tuples * tupleBytes);
-    });
+    { std::memcpy(to + inPart * tupleBytes, from + inBox * tupleBytes, tuples * tupleBytes); });
 }
 
 bool Hides(vtkImageData* image, ArrayFlags flags)

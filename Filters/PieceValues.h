@@ -37,7 +37,8 @@ bool Hides(vtkImageData* image, ArrayFlags flags);
 /// @param whole all samples of the image
 Box CellsIn(const Box& samples, const Box& whole);
 
-/// Which points or cells of a part are hidden, as a series has it; none where an image has no flags.
+/// Which points or cells of a part are hidden, as a series has it; none where an image has no
+/// flags.
 /// @param part samples, or cells (see CellsIn), inside the image
 /// @param bytes room for part.Count()
 void CopyFlags(vtkImageData* image, ArrayFlags flags, const Box& part, std::uint8_t* bytes);

@@ -57,8 +57,8 @@ struct WritingOrder
 /// Everything is decided by all ranks together: a problem of one makes all of them throw the same
 /// Error, at the same point, that another save of the series is under way included. With a relative error bound the steps are pulled twice: first for the
 /// ranges of the whole series; the same where a transform or a range is chosen from the values.
-/// Changes of grid, type or arrays between steps are refused in the first pass. Where it is only found in
-/// the second one that points or cells are hidden, all starts anew with a first one.
+/// Changes of grid, type or arrays between steps are refused in the first pass. Where it is only
+/// found in the second one that points or cells are hidden, all starts anew with a first one.
 class SeriesWriting
 {
 public:
@@ -121,8 +121,9 @@ private:
   bool HasTimes = false; ///< whether the input has time steps that we go through
   std::vector<double> Times;
   StepAgreement First; ///< of step 0; its Ranges are those of the series after the first pass
-  std::vector<WrittenArray> Written; ///< what hides points and cells, if any is hidden; arrays of First
-  std::set<std::string> Warned;      ///< what users know already
+  std::vector<WrittenArray>
+    Written;                    ///< what hides points and cells, if any is hidden; arrays of First
+  std::set<std::string> Warned; ///< what users know already
 
   std::unique_ptr<SeriesLock> Lock;         ///< on rank 0, for all
   std::unique_ptr<SeriesAssembly> Assembly; ///< on rank 0

@@ -100,8 +100,8 @@ void StepGathering::Gather(vtkImageData* mine, const StepAgreement& step,
       continue;
     }
     // Cells lie beside each other otherwise than the samples that have their places.
-    const bool direct = step.HoldsWhole[static_cast<std::size_t>(owner)] &&
-                        arrays[i].Flags != ArrayFlags::OfCells;
+    const bool direct =
+      step.HoldsWhole[static_cast<std::size_t>(owner)] && arrays[i].Flags != ArrayFlags::OfCells;
     if (!direct)
     {
       this->Transfer(mine, step, arrays[i], owner, receives ? &whole[i] : nullptr);

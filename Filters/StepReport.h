@@ -60,7 +60,7 @@ struct StepAgreement
   std::string ActiveScalars;
   std::vector<WrittenArray> Arrays;
   GatherPlan Plan;
-  GatherPlan CellPlan; ///< of cells (see CellsIn); where some are hidden
+  GatherPlan CellPlan;             ///< of cells (see CellsIn); where some are hidden
   std::set<std::string> NotChosen; ///< on any rank
   bool HidesPoints = false;
   bool HidesCells = false;

@@ -10,8 +10,8 @@
  *
  * What is written: point arrays of numbers, of any scalar type and any number of components; the
  * extent, origin, spacing, direction and times; which points and cells of an image are hidden. Of
- * ghost arrays nothing else is written. Cell arrays, strings and bits are not written, with a warning
- * that names them; when there is nothing else, writing fails. Field data are not written.
+ * ghost arrays nothing else is written. Cell arrays, strings and bits are not written, with a
+ * warning that names them; when there is nothing else, writing fails. Field data are not written.
  * Arrays that the selection names (all of the first step, if it names none) must be there in all
  * steps. If it names all of the first step, a warning names those that come later.
  *
@@ -21,8 +21,8 @@
  *
  * @par Exactness:
  * |decoded - original| <= error bound for each finite value, verified in the array's type; NaN,
- * infinities and values at hidden points are bit-exact. ErrorBound 0 keeps every bit. With a Transform the bound is one on the
- * transformed values; with ClampOutside on the clamped ones.
+ * infinities and values at hidden points are bit-exact. ErrorBound 0 keeps every bit. With a
+ * Transform the bound is one on the transformed values; with ClampOutside on the clamped ones.
  *
  * @par Errors:
  * Write() returns 0, GetErrorCode() is set and an error message says what is wrong, at which step

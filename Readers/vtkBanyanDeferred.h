@@ -44,7 +44,8 @@ public:
     /// The samples of that level, starting at 0 in each axis (see banyan::BrickLayout), that the
     /// array's tuples stand for, x fastest.
     banyan::Box Samples;
-    /// Where the series has hidden points: the ghost array that the reader gave the image, and its time then.
+    /// Where the series has hidden points: the ghost array that the reader gave the image, and its
+    /// time then.
     vtkSmartPointer<vtkUnsignedCharArray> Flags;
     vtkMTimeType FlagsTime = 0;
     /// The same of cells, if each hidden one has a hidden corner; null otherwise.
@@ -76,7 +77,8 @@ public:
 
   /**
    * Whether the image's extent, origin, spacing and direction say that its points are the samples
-   * of the handle, and it hides the points that the series does: only then may the series be drawn in the place of the image.
+   * of the handle, and it hides the points that the series does: only then may the series be drawn
+   * in the place of the image.
    */
   static bool LiesOnSeries(vtkImageData* image, const Handle& handle);
 

@@ -9,8 +9,9 @@
  * vtkBanyanArray, and vtkBanyanDeferred for renderers that draw from the series itself.
  *
  * A series of a mesh gives back the vtkUnstructuredGrid that was encoded: its points and cells in
- * their order, with plain arrays. Level L merges cells into cubes of 2^L finest ones. A piece is a run
- * of cells with the points that they use. MeshAsHyperTreeGrid gives a vtkHyperTreeGrid instead. All values of a step are decoded on each rank.
+ * their order, with plain arrays. Level L merges cells into cubes of 2^L finest ones. A piece is a
+ * run of cells with the points that they use. MeshAsHyperTreeGrid gives a vtkHyperTreeGrid instead.
+ * All values of a step are decoded on each rank.
  *
  * A time between two steps gives the earlier one, a time before the first step gives the first.
  *

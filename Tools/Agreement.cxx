@@ -143,10 +143,10 @@ void CheckArrays(const SeriesIndex& index, int step, const SourceStep& source,
       [&](const ArrayIndex& other) { return array.IsSourceOf(other); });
     if (!held && (array.Name == FlagsName || array.Name == CellFlagsName))
     {
-      Refuse(step, std::string("the source has hidden ") +
-                     (array.Name == FlagsName ? "points" : "cells") +
-                     ", and the series does not say which: it was made of other data, or by an older "
-                     "version.");
+      Refuse(step,
+        std::string("the source has hidden ") + (array.Name == FlagsName ? "points" : "cells") +
+          ", and the series does not say which: it was made of other data, or by an older "
+          "version.");
     }
     if (names.empty() && source.IsValue(a) && !held)
     {

@@ -59,8 +59,8 @@ struct Judgement
   /// Beyond the bound, a value may become another one of its interval.
   InvisibleIntervals Invisible;
   std::vector<double> FillValues; ///< must keep their bits
-  /// By value: not 0 where a point is hidden. Such a value must keep its bits, and counts as one that is not
-  /// finite. Null: none is.
+  /// By value: not 0 where a point is hidden. Such a value must keep its bits, and counts as one
+  /// that is not finite. Null: none is.
   const std::uint8_t* Hidden = nullptr;
 };
 

@@ -239,8 +239,8 @@ private:
     {
       // What the series promises is nearness to the clamped values.
       clamped.resize(this->Decoded.size());
-      component.Clamped += ClampComponent(array.Type, first, stride, count,
-        index.PromisedRange, index.FillValues, hidden, clamped.data());
+      component.Clamped += ClampComponent(array.Type, first, stride, count, index.PromisedRange,
+        index.FillValues, hidden, clamped.data());
       first = clamped.data();
       stride = 1;
     }

@@ -107,7 +107,8 @@ SeriesBrickSource::SeriesBrickSource(
       ranges.push_back(array.Components[static_cast<std::size_t>(c)].Range);
     }
   }
-  this->Flags = { field.Step, this->Series->Index().FindFlags(ArrayFlags::OfPoints), 0, field.Level };
+  this->Flags = { field.Step, this->Series->Index().FindFlags(ArrayFlags::OfPoints), 0,
+    field.Level };
   if (this->Flags.Array >= 0)
   {
     this->NodesOfFlags = this->Series->Nodes(this->Flags);

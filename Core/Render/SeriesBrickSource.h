@@ -15,7 +15,8 @@ namespace banyan
 {
 
 /// Bricks of an encoded series, decoded through a cache when the ray caster asks for them and not
-/// before. Macro voxels are served from their node and decode nothing. Points that the series hides are NaN.
+/// before. Macro voxels are served from their node and decode nothing. Points that the series hides
+/// are NaN.
 class SeriesBrickSource : public BrickSource
 {
 public:
@@ -76,8 +77,8 @@ private:
   double Step = 0.0;
   std::vector<int> Components; ///< the one drawn, or all of them for the magnitude
   std::vector<NodeList> Nodes; ///< one list per entry of Components
-  FieldKey Flags;         ///< of points
-  NodeList NodesOfFlags; ///< null: no point is hidden
+  FieldKey Flags;              ///< of points
+  NodeList NodesOfFlags;       ///< null: no point is hidden
   std::shared_ptr<LoadRecord> LoadedBricks = std::make_shared<LoadRecord>(); ///< shared with the levels
 };
 

@@ -203,7 +203,8 @@ SeriesIndex PlanSeries(
   }
   // Cell arrays are numbers of blocks and the like as often as not.
   const auto ofPoints = std::find_if(index.Arrays.begin(), index.Arrays.end(),
-    [](const ArrayIndex& array) { return array.CellArray.empty() && array.Flags == ArrayFlags::None; });
+    [](const ArrayIndex& array)
+    { return array.CellArray.empty() && array.Flags == ArrayFlags::None; });
   index.ActiveScalars = ofPoints != index.Arrays.end() ? ofPoints->Name
                         : arrays.empty()               ? ""
                                                        : arrays[0].Name;

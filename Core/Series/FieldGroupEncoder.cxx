@@ -210,8 +210,9 @@ void Encoder<T>::EncodeStep(
       const PlaneNumbers& numbers = decoded.Planes[plane];
       decoded.Extremes[plane][static_cast<std::size_t>(i)] =
         ExtremesOfBlock(numbers, static_cast<int>(plane), i, this->Field.Levels);
-      this->Target->Verify(static_cast<std::size_t>(step), numbers, static_cast<int>(plane), i, list,
-        plane == 0 ? parts[static_cast<std::size_t>(i)] : coarse, plane == 0 ? squares : nullptr);
+      this->Target->Verify(static_cast<std::size_t>(step), numbers, static_cast<int>(plane), i,
+        list, plane == 0 ? parts[static_cast<std::size_t>(i)] : coarse,
+        plane == 0 ? squares : nullptr);
       if (!list.Positions.empty())
       {
         const std::uint32_t edge = static_cast<std::uint32_t>(numbers.Edge);

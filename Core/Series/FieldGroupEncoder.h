@@ -42,8 +42,8 @@ struct FieldGroup
   std::optional<OpacityFunction> Opacity; ///< nothing: every value counts
   /// By sample, x fastest: 0 where any value will do. Null: all are needed.
   const std::uint8_t* Needed = nullptr;
-  /// By step: of each sample, x fastest, not 0 where it is hidden: it keeps its bits, and counts as one that is
-  /// not finite. Null for a step without such samples; may be empty.
+  /// By step: of each sample, x fastest, not 0 where it is hidden: it keeps its bits, and counts as
+  /// one that is not finite. Null for a step without such samples; may be empty.
   std::vector<const std::uint8_t*> Hidden;
   const std::uint8_t* HiddenAt(std::size_t step) const
   {

@@ -19,8 +19,8 @@ ValueRange RangeOfGroup(const FieldGroup& field, std::int64_t tuples, ThreadPool
     ValueHistogram values;
     for (std::size_t s = 0; s < field.Steps.size(); ++s)
     {
-      CountComponent(field.Type, field.Steps[s], tuples, field.Components, 0, field.FillValues, values,
-        field.HiddenAt(s));
+      CountComponent(field.Type, field.Steps[s], tuples, field.Components, 0, field.FillValues,
+        values, field.HiddenAt(s));
     }
     return values.Range();
   }

@@ -100,7 +100,8 @@ public:
     }
   }
 
-  /// Whether an array is the same, to the bit, in all steps as in the step before, and so is what is hidden.
+  /// Whether an array is the same, to the bit, in all steps as in the step before, and so is what
+  /// is hidden.
   bool Rests(std::size_t array, const std::vector<std::vector<ArrayValues>>& steps) const
   {
     const int flags = this->Plan.FindFlags(ArrayFlags::OfPoints);

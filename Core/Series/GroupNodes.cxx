@@ -4,6 +4,7 @@
 #include "Base/ThreadPool.h"
 #include "Series/BrickStatistics.h"
 #include "Series/Hash.h"
+#include "Series/HiddenSamples.h"
 #include "Series/LatticeDecoder.h"
 
 #include <algorithm>
@@ -111,7 +112,8 @@ public:
       }
       const bool asBefore =
         t > 0 && extremes.MayBeThoseOf(before) && this->IsAsBefore(t, region, extremes);
-      if (asBefore && this->SameExceptions(t, region) && this->SameHidden(t, region))
+      if (asBefore && this->SameExceptions(t, region) &&
+          SameHidden(this->Field, this->Head.Axes, t, region))
       {
         node.Age = this->NodeOf(t - 1, brick).Age + 1;
       }
@@ -271,78 +273,6 @@ private:
     return same;
   }
 
-  /// Calls `body(number in the region, number among all samples)` for each sample of a region.
-  template <class Body>
-  void ForEachSample(const PlaneRegion& region, Body&& body) const
-  {
-    const glm::ivec3 size = this->Field.Samples;
-    const std::int64_t strides[3] = { 1, size.x, std::int64_t{ size.x } * size.y };
-    const auto at = [&](int axis, int place)
-    {
-      const int real = this->Head.Axes[static_cast<std::size_t>(axis)];
-      return strides[real] *
-             std::min(region.SampleAt(axis, place) << (2 * region.Plane), size[real] - 1);
-    };
-    std::size_t number = 0;
-    for (int z = 0; z < region.Count.z; ++z)
-    {
-      for (int y = 0; y < region.Count.y; ++y)
-      {
-        for (int x = 0; x < region.Count.x; ++x, ++number)
-        {
-          body(number, at(2, z) + at(1, y) + at(0, x));
-        }
-      }
-    }
-  }
-
-  /// Whether the same samples are hidden as in the step before.
-  bool SameHidden(std::size_t step, const PlaneRegion& region) const
-  {
-    const std::uint8_t* const now = this->Field.HiddenAt(step);
-    const std::uint8_t* const before = this->Field.HiddenAt(step - 1);
-    bool same = true;
-    if (now != before)
-    {
-      const auto hidden = [](const std::uint8_t* flags, std::int64_t sample)
-      { return flags != nullptr && flags[sample] != 0; };
-      this->ForEachSample(region, [&](std::size_t, std::int64_t sample)
-        { same = same && hidden(now, sample) == hidden(before, sample); });
-    }
-    return same;
-  }
-
-  /// Replaces hidden values by the first that is not, so that they do not count.
-  /// @return whether some are hidden, and sets `none` if all are
-  bool LeaveOutHidden(
-    std::size_t step, const PlaneRegion& region, std::vector<T>& values, bool& none) const
-  {
-    const std::uint8_t* const flags = this->Field.HiddenAt(step);
-    std::vector<std::size_t> hidden;
-    if (flags != nullptr)
-    {
-      this->ForEachSample(region,
-        [&](std::size_t number, std::int64_t sample)
-        {
-          if (flags[sample] != 0)
-          {
-            hidden.push_back(number);
-          }
-        });
-    }
-    none = hidden.size() == values.size();
-    std::size_t seen = 0; // the first that is not hidden
-    while (seen < hidden.size() && hidden[seen] == seen)
-    {
-      ++seen;
-    }
-    for (const std::size_t number : hidden)
-    {
-      values[number] = none ? T{} : values[seen];
-    }
-    return !hidden.empty();
-  }
-
   std::uint64_t ContentOf(
     std::size_t step, const PlaneRegion& region, const std::vector<std::int32_t>& numbers) const
   {
@@ -382,12 +312,12 @@ private:
             UnpackExceptions<T>(payload.data(), payload.size(), samples), values.data());
         }
       });
-    bool allHidden = false;
-    const bool someHidden = this->LeaveOutHidden(step, region, values, allHidden);
+    const std::vector<std::size_t> hidden = HiddenIn(this->Field, this->Head.Axes, step, region);
+    LeaveOut(hidden, values);
     const BrickSummary summary = Summarize(values.data(), values.size());
-    node.HasNonFinite = summary.HasNonFinite || someHidden;
-    node.NothingFinite = summary.Range.Empty() || allHidden;
-    node.Uniform = summary.Uniform && !someHidden;
+    node.HasNonFinite = summary.HasNonFinite || !hidden.empty();
+    node.NothingFinite = summary.Range.Empty() || hidden.size() == values.size();
+    node.Uniform = summary.Uniform && hidden.empty();
     node.Explicit = !node.NothingFinite;
     node.LowValue = node.NothingFinite ? 0 : summary.Range.Low;
     node.HighValue = node.NothingFinite ? 0 : summary.Range.High;

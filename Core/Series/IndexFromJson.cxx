@@ -77,7 +77,8 @@ ArrayIndex ArrayFromJson(const Json& json)
     const std::string flags = TextMember(json, "flags");
     if (flags != "points" && flags != "cells")
     {
-      throw Error("The flags of the array '" + array.Name + "' are neither those of points nor of cells");
+      throw Error(
+        "The flags of the array '" + array.Name + "' are neither those of points nor of cells");
     }
     array.Flags = flags == "points" ? ArrayFlags::OfPoints : ArrayFlags::OfCells;
   }

@@ -350,10 +350,10 @@ void LatticeCheck<T>::Block(const PlaneNumbers& decoded, int plane, std::int64_t
       {
         // A vector with a fill value, or a hidden one, has no length.
         const std::size_t i = static_cast<std::size_t>(x);
-        const double value = this->Fills.Holds(this->Originals[i]) || !this->Needs(row, i) ||
-                                 this->IsHidden(row, i)
-                               ? std::numeric_limits<double>::quiet_NaN()
-                               : static_cast<double>(this->Decoded[i]);
+        const double value =
+          this->Fills.Holds(this->Originals[i]) || !this->Needs(row, i) || this->IsHidden(row, i)
+            ? std::numeric_limits<double>::quiet_NaN()
+            : static_cast<double>(this->Decoded[i]);
         (*squares)[static_cast<std::size_t>(tuple + this->Tuples[i])] += value * value;
       }
     }

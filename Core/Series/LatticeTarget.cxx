@@ -193,8 +193,8 @@ void LatticeTarget<T>::FillTile(
   if (hidden != nullptr)
   {
     GatherTile(hidden + this->OffsetOf(low) / this->Field.Components,
-      this->Stride / std::int64_t{ this->Field.Components }, n, glm::i64vec3{ 1, Tile, Tile * Tile },
-      hiddenTile);
+      this->Stride / std::int64_t{ this->Field.Components }, n,
+      glm::i64vec3{ 1, Tile, Tile * Tile }, hiddenTile);
   }
   for (int z = 0; z < n.z; ++z)
   {
@@ -316,7 +316,8 @@ bool LatticeTarget<T>::FillCoarser(const T* values, PlaneNumbers& coarse) const
 template <class T>
 bool LatticeTarget<T>::MakeCoarser(std::size_t step, std::vector<PlaneNumbers>& planes) const
 {
-  bool apart = this->Plain() && this->Field.HiddenAt(step) == nullptr && !this->Hidden && planes.size() > 1 && planes[0].Edge % Tile == 0;
+  bool apart = this->Plain() && this->Field.HiddenAt(step) == nullptr && !this->Hidden &&
+               planes.size() > 1 && planes[0].Edge % Tile == 0;
   if constexpr (IsReal<T>)
   {
     planes[0].With(

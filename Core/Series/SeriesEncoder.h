@@ -72,8 +72,8 @@ struct ArrayDescription
   /// One per component, or none: of all finite values over all steps but fill values
   /// (CountComponent). Ranges of the data come from here when there are histograms.
   std::vector<ValueHistogram> Histograms;
-  /// Flags are bytes with the bits of HiddenPointBits or HiddenCellBits alone, kept bit-exact. They come
-  /// before all other arrays, and none of the other members but name and type counts.
+  /// Flags are bytes with the bits of HiddenPointBits or HiddenCellBits alone, kept bit-exact. They
+  /// come before all other arrays, and none of the other members but name and type counts.
   ArrayFlags Flags = ArrayFlags::None;
 };
 

@@ -68,9 +68,9 @@ struct ComponentIndex
 /// What the numbers of an array are.
 enum class ArrayFlags
 {
-  None,    ///< values
+  None,     ///< values
   OfPoints, ///< of an image: not 0 where a point is hidden and has no value
-  OfCells  ///< of an image, at the lowest corners of cells: see HiddenCellBits
+  OfCells   ///< of an image, at the lowest corners of cells: see HiddenCellBits
 };
 
 /// Name and bits of flags: vtkGhostType, HIDDENPOINT, and HIDDENCELL with REFINEDCELL of VTK.
@@ -138,7 +138,8 @@ struct EncodeStatistics
 /// All that the index file says. See Documentation/format.md.
 struct SeriesIndex
 {
-  int FormatVersion = 2; ///< 1 is read, and never written; 3 and 4 are those of meshes, 5 has hidden points or cells
+  int FormatVersion =
+    2; ///< 1 is read, and never written; 3 and 4 are those of meshes, 5 has hidden points or cells
   Grid Domain;
   std::optional<MeshIndex> Mesh; ///< nothing: the series is of the images themselves
   int BrickCells = 16;
