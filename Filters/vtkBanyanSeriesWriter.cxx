@@ -11,6 +11,7 @@
 #include "vtkObjectFactory.h"
 
 #include "Base/InterruptSignals.h"
+#include "Base/PropertyNumber.h"
 
 #include "Base/Error.h"
 
