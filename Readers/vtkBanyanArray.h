@@ -20,9 +20,10 @@
  * - Of magnitudes: the same; the index holds them per step.
  *
  * @par Limits:
- * VTK's array dispatch does not know this type, so filters take their general path, which is
- * slower (1 to 4 times) and, in vtkTemporalStatistics, wrong: use vtkBanyanDecode before it, or
- * switch the reader's DeferDecoding off.
+ * VTK's array dispatch does not know this type. Filters then take their general path, if they have
+ * one: it is slower (1 to 4 times), rounds integers where the other cuts them off, and in some
+ * filters it is wrong. So only those get such arrays who are known to read them rightly: see
+ * DeferredConsumers.h.
  * A value access cannot report an error: the reader checks the checksums of all that a piece needs.
  * When decoding fails nevertheless, an error message says so, and the values are NaN (0 for
  * integers).

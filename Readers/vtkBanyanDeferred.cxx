@@ -116,9 +116,15 @@ bool vtkBanyanDeferred::LiesOnSeries(vtkImageData* image, const Handle& handle)
 vtkSmartPointer<vtkDataArray> vtkBanyanDeferred::Plain(vtkDataArray* array)
 {
   const vtkBanyanDeferred* deferred = Cast(array);
-  if (!deferred || deferred->IsPlain())
+  if (!deferred)
   {
     return array;
+  }
+  if (deferred->IsPlain())
+  {
+    const auto stripped = vtkSmartPointer<vtkDataArray>::Take(array->NewInstance());
+    stripped->ShallowCopy(array);
+    return stripped;
   }
   try
   {

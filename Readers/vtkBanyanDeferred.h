@@ -1,9 +1,11 @@
 /**
  * @class   vtkBanyanDeferred
- * @brief   what a point array of a Banyan series that decodes on first touch says about itself
+ * @brief   what a point array of a Banyan series says about where its values come from
  *
  * vtkBanyanSeriesReader gives its point arrays this second base class, so that a renderer can read
  * bricks from the series instead of values from the array, without knowing the array's template.
+ * Deferred ones (vtkBanyanArray) decode on first touch. Plain ones (vtkBanyanDecodedArray) are for
+ * filters; DeferredConsumers.h says who gets which.
  *
  * @par Limits:
  * A handle says where the values come from, never where the points lie: filters such as Transform
@@ -83,8 +85,9 @@ public:
   static bool LiesOnSeries(vtkImageData* image, const Handle& handle);
 
   /**
-   * The array with its values in ordinary memory: `array` itself when it is not deferred, else a
-   * new array of the same name, type, components and information. Decodes straight into the new
+   * The array with its values in ordinary memory, and no handle: `array` itself when it has none, else a
+   * new array of the same name, type, components and information. It shares the memory of one that
+   * NewDecoded() made. Decodes straight into the new
    * array when the values are not there yet. nullptr when they cannot be decoded (after an error
    * message) or there is no memory for them.
    */

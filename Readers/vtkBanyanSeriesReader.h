@@ -5,8 +5,11 @@
  * The output is vtkImageData with the extent, origin, spacing, direction, arrays and times of what
  * was encoded. Any piece or sub-extent can be asked for; only bricks that it touches are read.
  * Points and cells that were hidden are so again (vtkGhostType), whatever arrays are chosen.
- * With DeferDecoding (the default) nothing is decoded until somebody asks for a value: see
- * vtkBanyanArray, and vtkBanyanDeferred for renderers that draw from the series itself.
+ * With DeferDecoding (the default) nothing is decoded until somebody asks for a value, as long as
+ * all that is connected reads such arrays: see DeferredConsumers.h, vtkBanyanArray, and
+ * vtkBanyanDeferred for renderers that draw from the series itself. Everybody else, and who takes
+ * GetOutput() of a reader without consumers, gets plain arrays (vtkBanyanDecodedArray). The reader
+ * executes again when the first of them is connected to one that is up to date.
  *
  * A series of a mesh gives back the vtkUnstructuredGrid that was encoded: its points and cells in
  * their order, with plain arrays. Level L merges cells into cubes of 2^L finest ones. A piece is a
@@ -91,7 +94,8 @@ public:
 
   ///@{
   /**
-   * Whether arrays decode on first touch (default) or at once into plain arrays.
+   * Whether arrays may decode on first touch (default), or all come at once as plain arrays that know
+   * nothing of the series.
    */
   vtkSetMacro(DeferDecoding, bool);
   vtkGetMacro(DeferDecoding, bool);

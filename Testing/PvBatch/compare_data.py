@@ -118,4 +118,5 @@ def compare(a, b, tolerance=0.0):
 def size(data):
     """Number of points or rows, to see that there was something to compare."""
     return sum(part.GetNumberOfRows() if part.IsA("vtkTable") else part.GetNumberOfPoints()
-               for part in leaves(data) if part is not None)
+               for part in leaves(data) if part is not None and
+               (part.IsA("vtkDataSet") or part.IsA("vtkTable")))

@@ -19,7 +19,7 @@ import subprocess
 import sys
 import threading
 
-SECONDS_PER_PROXY = 40
+SECONDS_PER_PROXY = 100
 NOTHING = 1 << 30
 TIMES = (0.0, 1.25, 2.0)
 # They wait for others, look for files, or give something else each time.
