@@ -1,11 +1,15 @@
 #include "DeferredConsumers.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkCallbackCommand.h"
 #include "vtkExecutive.h"
 #include "vtkInformation.h"
 #include "vtkInformationExecutivePortVectorKey.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
 
 #include <set>
+#include <utility>
 #include <vector>
 
 namespace banyan
@@ -48,23 +52,124 @@ DeferredUse Judge(vtkAlgorithm& consumer)
   return DeferredUse::Unknown;
 }
 
-std::vector<vtkAlgorithm*> ConsumersOf(vtkAlgorithm& producer)
+/// Executives that are alive: each is observed until it is destroyed.
+std::set<vtkExecutive*>& Alive()
 {
-  std::vector<vtkAlgorithm*> consumers;
-  for (int port = 0; port < producer.GetNumberOfOutputPorts(); ++port)
+  static auto* const alive = new std::set<vtkExecutive*>; // executives may outlive static objects
+  return *alive;
+}
+
+void ForgetExecutive(vtkObject* executive, unsigned long, void*, void*)
+{
+  Alive().erase(static_cast<vtkExecutive*>(executive));
+}
+
+void Observe(vtkExecutive* executive)
+{
+  vtkNew<vtkCallbackCommand> command;
+  command->SetCallback(&ForgetExecutive);
+  executive->AddObserver(vtkCommand::DeleteEvent, command);
+  Alive().insert(executive);
+}
+
+using Connections = std::vector<std::pair<vtkExecutive*, int>>;
+
+/// How often an executive has the information of somebody's output on an input port of its own.
+std::size_t TimesConnected(vtkExecutive* executive, int input, vtkInformation* port)
+{
+  std::size_t times = 0;
+  if (input < executive->GetNumberOfInputPorts())
   {
-    vtkInformation* const info = producer.GetOutputInformation(port);
-    const int count = vtkExecutive::CONSUMERS()->Length(info);
-    vtkExecutive** const executives = vtkExecutive::CONSUMERS()->GetExecutives(info);
-    for (int i = 0; i < count; ++i)
+    vtkInformationVector* const inputs = executive->GetInputInformation(input);
+    for (int i = 0; i < inputs->GetNumberOfInformationObjects(); ++i)
     {
-      if (executives[i] && executives[i]->GetAlgorithm())
-      {
-        consumers.push_back(executives[i]->GetAlgorithm());
-      }
+      times += inputs->GetInformationObject(i) == port;
     }
   }
-  return consumers;
+  return times;
+}
+
+/**
+ * What is connected to a port; false where that cannot be told.
+ *
+ * VTK's list of consumers keeps pointers to those that were destroyed without being disconnected.
+ * But each that lives holds a reference to the information of the port: it is its input
+ * information.
+ */
+bool LivingConsumers(vtkInformation* port, std::set<vtkExecutive*>& living)
+{
+  const int count = vtkExecutive::CONSUMERS()->Length(port);
+  vtkExecutive** const executives = vtkExecutive::CONSUMERS()->GetExecutives(port);
+  int* const ports = vtkExecutive::CONSUMERS()->GetPorts(port);
+  std::set<std::pair<vtkExecutive*, int>> known;
+  Connections others;
+  for (int i = 0; i < count; ++i)
+  {
+    if (Alive().count(executives[i]))
+    {
+      known.emplace(executives[i], ports[i]);
+    }
+    else
+    {
+      others.emplace_back(executives[i], ports[i]);
+    }
+  }
+  std::size_t accounted = 0;
+  living.clear();
+  for (const auto& [executive, input] : known)
+  {
+    const std::size_t times = TimesConnected(executive, input, port);
+    accounted += times;
+    if (times > 0)
+    {
+      living.insert(executive);
+    }
+  }
+  // One reference is the port's own.
+  const auto references = static_cast<std::size_t>(port->GetReferenceCount() - 1);
+  if (references == accounted)
+  {
+    for (const auto& [executive, input] : others)
+    {
+      vtkExecutive::CONSUMERS()->Remove(port, executive, input);
+    }
+    return true;
+  }
+  if (references != accounted + others.size())
+  {
+    return false;
+  }
+  for (const auto& other : others)
+  {
+    if (living.insert(other.first).second)
+    {
+      Observe(other.first);
+    }
+  }
+  return true;
+}
+
+/// Algorithms that are connected to any port; false where that cannot be told.
+bool ConsumersOf(vtkAlgorithm& producer, std::vector<vtkAlgorithm*>& consumers)
+{
+  consumers.clear();
+  for (int port = 0; port < producer.GetNumberOfOutputPorts(); ++port)
+  {
+    std::set<vtkExecutive*> living;
+    if (!LivingConsumers(producer.GetOutputInformation(port), living))
+    {
+      return false;
+    }
+    for (vtkExecutive* const executive : living)
+    {
+      if (!executive->GetAlgorithm())
+      {
+        return false;
+      }
+      consumers.push_back(executive->GetAlgorithm());
+    }
+  }
+  return true;
 }
 
 } // namespace
@@ -77,26 +182,26 @@ void AddDeferredJudge(DeferredJudge judge)
 bool ConsumersReadDeferred(vtkAlgorithm& producer)
 {
   std::set<vtkAlgorithm*> seen{ &producer };
-  std::vector<vtkAlgorithm*> open{ &producer };
+  std::vector<std::pair<vtkAlgorithm*, DeferredUse>> open{ { &producer, DeferredUse::HandedOn } };
   while (!open.empty())
   {
-    vtkAlgorithm* const at = open.back();
+    const auto [at, use] = open.back();
     open.pop_back();
-    const std::vector<vtkAlgorithm*> consumers = ConsumersOf(*at);
-    if (consumers.empty())
+    std::vector<vtkAlgorithm*> consumers;
+    if (!ConsumersOf(*at, consumers) || (consumers.empty() && use == DeferredUse::HandedOn))
     {
       return false;
     }
     for (vtkAlgorithm* const consumer : consumers)
     {
-      const DeferredUse use = Judge(*consumer);
-      if (use == DeferredUse::Unknown)
+      const DeferredUse next = Judge(*consumer);
+      if (next == DeferredUse::Unknown)
       {
         return false;
       }
-      if (use == DeferredUse::HandedOn && seen.insert(consumer).second)
+      if (next != DeferredUse::Fine && seen.insert(consumer).second)
       {
-        open.push_back(consumer);
+        open.emplace_back(consumer, next);
       }
     }
   }

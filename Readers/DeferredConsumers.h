@@ -16,9 +16,10 @@ namespace banyan
 /// What an algorithm does with deferred arrays of its input.
 enum class DeferredUse
 {
-  Unknown, ///< nobody knows: it needs plain arrays
-  Fine,    ///< reads them rightly, or does not look at values; its output has none of them
-  HandedOn ///< the same, but they are in its output, too
+  Unknown,        ///< nobody knows: it needs plain arrays
+  Fine,           ///< reads them rightly, or does not look at values; its output has none of them
+  HandedOn,       ///< the same, but they are in its output, too
+  HandedOnIfAsked ///< the same, and nobody takes its output where nothing is connected to it
 };
 
 using DeferredJudge = DeferredUse (*)(vtkAlgorithm& consumer);

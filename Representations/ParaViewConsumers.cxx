@@ -2,9 +2,6 @@
 #include "DeferredConsumers.h"
 
 #include "vtkAlgorithm.h"
-#include "vtkExecutive.h"
-#include "vtkInformation.h"
-#include "vtkInformationExecutivePortVectorKey.h"
 #include "vtkPVDataRepresentation.h"
 
 namespace
@@ -32,8 +29,7 @@ banyan::DeferredUse JudgeParaView(vtkAlgorithm& consumer)
   if (consumer.IsA("vtkPVPostFilter"))
   {
     // It stands behind each source. Alone, it is asked for information, not for values.
-    const bool alone = vtkExecutive::CONSUMERS()->Length(consumer.GetOutputInformation(0)) == 0;
-    return alone ? banyan::DeferredUse::Fine : banyan::DeferredUse::HandedOn;
+    return banyan::DeferredUse::HandedOnIfAsked;
   }
   if (consumer.IsA("vtkPVExtractSelection") && consumer.GetNumberOfInputConnections(1) == 0)
   {

@@ -196,6 +196,75 @@ TEST_F(DeferredConsumers, OnlyThoseWhoReadThemGetDeferredArrays)
   EXPECT_TRUE(vtkBanyanDeferred::IsUntouched(this->Array));
 }
 
+/// VTK's list of consumers keeps those that were destroyed while they were connected.
+TEST_F(DeferredConsumers, DestroyedOnesNeedNothing)
+{
+  this->Make();
+  std::mt19937 random(28);
+  auto decode = vtkSmartPointer<vtkBanyanDecode>::New();
+  decode->SetInputConnection(this->Read->GetOutputPort());
+  std::vector<vtkSmartPointer<vtkContourFilter>> filters;
+  for (int round = 0; round < 200; ++round)
+  {
+    const int action = static_cast<int>(random() % 5);
+    if (action == 0)
+    {
+      filters.emplace_back(vtkSmartPointer<vtkContourFilter>::New());
+      filters.back()->SetInputConnection(this->Read->GetOutputPort());
+    }
+    else if (action == 1 && !filters.empty())
+    {
+      filters.erase(filters.begin() + static_cast<long>(random() % filters.size()));
+    }
+    else if (action == 2)
+    {
+      vtkNew<vtkContourFilter> brief;
+      brief->SetInputConnection(this->Read->GetOutputPort());
+    }
+    else if (action == 3)
+    {
+      decode = vtkSmartPointer<vtkBanyanDecode>::New();
+      decode->SetInputConnection(this->Read->GetOutputPort());
+    }
+    else
+    {
+      vtkNew<vtkElevationFilter> elsewhere; // in the same place in memory, perhaps
+      elsewhere->Update();
+    }
+    if (random() % 2 == 0)
+    {
+      this->Update(this->Times[random() % 3]);
+      if (!filters.empty())
+      {
+        ASSERT_FALSE(vtkBanyanDeferred::IsDeferred(this->Array)) << "round " << round;
+      }
+    }
+  }
+}
+
+TEST_F(DeferredConsumers, AfterOthersAreGoneArraysAreDeferredAgain)
+{
+  this->Make();
+  vtkNew<vtkBanyanDecode> decode;
+  decode->SetInputConnection(this->Read->GetOutputPort());
+  this->Update(0.0);
+  {
+    vtkNew<vtkContourFilter> neverUpdated;
+    neverUpdated->SetInputConnection(this->Read->GetOutputPort());
+  }
+  this->Update(1.0);
+  EXPECT_TRUE(vtkBanyanDeferred::IsDeferred(this->Array));
+  {
+    vtkNew<vtkContourFilter> contour;
+    contour->SetInputConnection(this->Read->GetOutputPort());
+    contour->Update();
+    this->Update(2.0);
+    EXPECT_FALSE(vtkBanyanDeferred::IsDeferred(this->Array));
+  }
+  this->Update(0.0);
+  EXPECT_TRUE(vtkBanyanDeferred::IsDeferred(this->Array));
+}
+
 TEST_F(DeferredConsumers, ChainsAreFollowed)
 {
   this->Make();
