@@ -103,7 +103,6 @@ void SeriesFile::Internals::Read(const std::string& path, const std::string& tex
   series.Path = path;
   series.Id = NextId++;
   series.Index = IndexFromText(text, path);
-  series.Folder = FindSeriesFolder(path, series.Index);
   for (int level = 0; level < series.Index.Levels; ++level)
   {
     series.Layouts.emplace_back(series.Index.Domain.Samples(), series.Index.BrickCells, level);
@@ -113,8 +112,27 @@ void SeriesFile::Internals::Read(const std::string& path, const std::string& tex
     series.FirstComponents.push_back(series.Components);
     series.Components += static_cast<std::uint32_t>(array.Components.size());
   }
-  this->Reader =
-    series.Index.FormatVersion == 1 ? MakeFieldReader1(series) : MakeFieldReader2(series);
+  const auto openIn = [this, &series](const std::string& folder)
+  {
+    series.Folder = folder;
+    this->Reader =
+      series.Index.FormatVersion == 1 ? MakeFieldReader1(series) : MakeFieldReader2(series);
+  };
+  // Looking at every file first would make opening a third slower, where there are thousands.
+  const bool usual = BeginsInFolder(path + ".d", series.Index);
+  try
+  {
+    openIn(usual ? path + ".d" : FindSeriesFolder(path, series.Index));
+  }
+  catch (const Error&)
+  {
+    const std::string other = usual ? FindSeriesFolder(path, series.Index) : series.Folder;
+    if (other == series.Folder)
+    {
+      throw;
+    }
+    openIn(other);
+  }
 }
 
 const std::string& SeriesFile::Path() const

@@ -162,6 +162,17 @@ std::string BesideTarget(const std::string& path)
 
 } // namespace
 
+bool BeginsInFolder(const std::string& folder, const SeriesIndex& index)
+{
+  const auto has = [&folder](const std::string& name)
+  {
+    struct stat status = {};
+    return stat((folder + "/" + name).c_str(), &status) == 0;
+  };
+  return (index.Segments.empty() || has(index.Segments.front().File)) &&
+         (!index.Mesh || has(index.Mesh->File));
+}
+
 void RefuseFolder(const std::string& path)
 {
   struct stat status = {};

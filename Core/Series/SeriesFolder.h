@@ -11,6 +11,9 @@ namespace banyan
 /// Throws Error, which says what to open instead, when a path leads to a folder.
 void RefuseFolder(const std::string& path);
 
+/// Whether a folder has the first segment of an index, and its mesh: a quick look.
+bool BeginsInFolder(const std::string& folder, const SeriesIndex& index);
+
 /// The folder that holds all files which an index names. Looked for in this order: `path + ".d"`;
 /// the same beside the file that `path` leads to, where it is a symbolic link; and every other
 /// folder
