@@ -193,9 +193,10 @@ void DistributedField::TakePlain(Communicator& communicator, const FieldPiece& p
   this->Series.reset();
   if (deferred && this->Enhancement.Strength > 0.0 && this->ProblemText.empty())
   {
-    this->ProblemText = "Of an encoded series only whole steps without hidden points can be enhanced "
-                        "while they are drawn: put the filter 'Banyan Temporal Enhancement' behind "
-                        "the reader.";
+    this->ProblemText =
+      "Of an encoded series only whole steps without hidden points can be enhanced "
+      "while they are drawn: put the filter 'Banyan Temporal Enhancement' behind "
+      "the reader.";
   }
   std::vector<Box> pieces;
   for (const Facts& facts : all)

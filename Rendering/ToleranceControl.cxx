@@ -47,19 +47,22 @@ std::string LimitOf(const SamplingPlan& plan, double wanted, double planned,
   }
   else if (plan.Limit == SamplingLimit::Level)
   {
-    text = wish.Interacting ? "While the camera moves, no finer level is drawn than memory may hold. "
-                            : "Max Elements Per Pixel allows no finer elements. ";
+    text = wish.Interacting
+             ? "While the camera moves, no finer level is drawn than memory may hold. "
+             : "Max Elements Per Pixel allows no finer elements. ";
   }
   else if (planned > wanted)
   {
-    text = wish.Interacting ? "Interactive Frame Seconds were exceeded: the tolerance is larger than "
-                              "the one that was set. "
-                            : "The picture is still being refined. ";
+    text = wish.Interacting
+             ? "Interactive Frame Seconds were exceeded: the tolerance is larger than "
+               "the one that was set. "
+             : "The picture is still being refined. ";
   }
   if (opaque)
   {
-    text += "The opacity function reaches 1: a single sample of such a value hides all that is behind "
-            "it, and single pixels may be off by more than the estimated error. ";
+    text +=
+      "The opacity function reaches 1: a single sample of such a value hides all that is behind "
+      "it, and single pixels may be off by more than the estimated error. ";
   }
   return text.substr(0, text.find_last_not_of(' ') + 1);
 }

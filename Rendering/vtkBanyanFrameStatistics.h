@@ -113,18 +113,18 @@ public:
 
   ///@{
   /// The largest error that is expected of a pixel, in 1/255 of a channel, by sampling: against the
-  /// integral over the values that are drawn, without the error of their encoding. 0 where the sample
-  /// distance was fixed. Estimated.
+  /// integral over the values that are drawn, without the error of their encoding. 0 where the
+  /// sample distance was fixed. Estimated.
   vtkSetMacro(EstimatedImageError, double);
   vtkGetMacro(EstimatedImageError, double);
-  /// Sentences: what keeps EstimatedImageError above the tolerance that was set, or what it may have
-  /// missed. Empty if nothing.
+  /// Sentences: what keeps EstimatedImageError above the tolerance that was set, or what it may
+  /// have missed. Empty if nothing.
   vtkSetStdStringFromCharMacro(ImageErrorLimit);
   vtkGetCharFromStdStringMacro(ImageErrorLimit);
   /// The largest error of the drawn values that encoding them has made, over all steps, as it was
   /// measured then; in the units of the data. What it does to the picture is not estimated:
-  /// Documentation/accuracy.md says what it does usually. 0 for plain data, and for meshes, of which
-  /// it is not known here.
+  /// Documentation/accuracy.md says what it does usually. 0 for plain data, and for meshes, of
+  /// which it is not known here.
   vtkSetMacro(EncodingErrorOfValues, double);
   vtkGetMacro(EncodingErrorOfValues, double);
   ///@}

@@ -89,8 +89,7 @@ std::vector<std::vector<std::int32_t>> GatherCounts(
 
 void PieceLevels::Make(Communicator& communicator, const PieceGrid& finest,
   const PieceSamples& mine, const std::vector<ScalarType>& viewTypes, const glm::ivec3& cells,
-  int brickCells, int coarsest, ThreadPool& pool,
-  const std::shared_ptr<const HiddenCells>& hidden)
+  int brickCells, int coarsest, ThreadPool& pool, const std::shared_ptr<const HiddenCells>& hidden)
 {
   this->Clear();
   std::vector<std::unique_ptr<Level>> made;

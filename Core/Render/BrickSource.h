@@ -106,8 +106,8 @@ public:
   /// May be called from any thread.
   BrickSource* AtLevel(int level, const Box& domain);
 
-  /// Says which cells are not drawn, at this level and, as far as they are not told by themselves, at
-  /// coarser ones that are asked for from now on. Before anything is drawn.
+  /// Says which cells are not drawn, at this level and, as far as they are not told by themselves,
+  /// at coarser ones that are asked for from now on. Before anything is drawn.
   /// @param hidden of the whole grid, at this source's level; null for none
   void Hide(std::shared_ptr<const HiddenCells> hidden) { this->HiddenHere = std::move(hidden); }
   /// Null where nothing is hidden.

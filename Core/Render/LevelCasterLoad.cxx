@@ -20,8 +20,8 @@ void LevelCaster::Load(const PlannedBrick& brick, LoadedBrick& loaded) const
     if (!PackedBrick::CanPack(brick.Cells))
     {
       loaded.View = this->LoadLarge(brick);
-      loaded.Hidden = HiddenInBrick(
-        this->Source.Hidden().get(), this->Source.CellsOf(brick.Number));
+      loaded.Hidden =
+        HiddenInBrick(this->Source.Hidden().get(), this->Source.CellsOf(brick.Number));
       return;
     }
     loaded.Packed = this->Pack(brick);
@@ -69,9 +69,8 @@ KeptBricks::Pointer LevelCaster::Pack(const PlannedBrick& brick) const
   HiddenInBrick hidden(this->Source.Hidden().get(), brick.Cells);
   const double step = hidden.Any() ? 0.0 : this->StepToPack(view.Type);
   const std::shared_ptr<PackedBrick> packed =
-    shaded
-      ? std::make_shared<PackedBrick>(view, samples, brick.Cells, low, this->GradientScale())
-      : std::make_shared<PackedBrick>(view, samples.Lo, brick.Cells, low, step);
+    shaded ? std::make_shared<PackedBrick>(view, samples, brick.Cells, low, this->GradientScale())
+           : std::make_shared<PackedBrick>(view, samples.Lo, brick.Cells, low, step);
   if (hidden.Any())
   {
     packed->Hide(std::move(hidden));

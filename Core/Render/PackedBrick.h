@@ -86,8 +86,8 @@ public:
 
   int MacroShift() const { return this->Shift; } ///< a macro cell has 2^shift cells per axis
   glm::ivec3 Macros() const;
-  /// Extremes of the values at the corners of a macro cell's cells, NaN apart; empty: low > high, as it
-  /// is where all of them are hidden.
+  /// Extremes of the values at the corners of a macro cell's cells, NaN apart; empty: low > high,
+  /// as it is where all of them are hidden.
   ValueRange RangeOfMacro(const glm::ivec3& macro) const;
 
 private:

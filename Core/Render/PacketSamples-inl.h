@@ -6,6 +6,7 @@
 #define banyan_Render_PacketSamples_inl_h
 #endif
 
+#include "Render/HiddenLanes-inl.h"
 #include "Render/Interpolators.h"
 #include "Render/PackedBrick.h"
 #include "Render/PacketVectors-inl.h"
@@ -44,28 +45,6 @@ struct Steps
   VF Transmittance;
 };
 
-/// As OpacityOfDepth::Of.
-HWY_INLINE VF OpacityOf(VF depth)
-{
-  using C = OpacityOfDepth;
-  const D d;
-  const DI di;
-  const VF x = hn::Sub(hn::Zero(d), hn::Min(depth, hn::Set(d, C::Largest)));
-  const VF round = hn::Set(d, C::Round);
-  const VF octaves = hn::Sub(hn::Add(hn::Mul(x, hn::Set(d, C::PerOctave)), round), round);
-  const VF r = hn::Sub(hn::Sub(x, hn::Mul(octaves, hn::Set(d, C::OctaveHigh))),
-    hn::Mul(octaves, hn::Set(d, C::OctaveLow)));
-  VF sum = hn::Set(d, C::Terms[0]);
-  for (int i = 1; i < 6; ++i)
-  {
-    sum = hn::Add(hn::Mul(sum, r), hn::Set(d, C::Terms[i]));
-  }
-  const VF less = hn::Add(hn::Mul(hn::Mul(sum, r), r), r);
-  const VF scale = hn::BitCast(d, hn::ShiftLeft<23>(hn::Add(Truncated(octaves), hn::Set(di, 127))));
-  const VF one = hn::Set(d, 1.0f);
-  return hn::Sub(hn::Sub(one, scale), hn::Mul(scale, less));
-}
-
 /// As StepTable::Partial, with transmittance in place of opacity.
 /// @param depths of entries: colour and optical depth
 HWY_INLINE Steps OverFraction(const Blocks& depths, VF fraction)
@@ -102,9 +81,7 @@ public:
     , SliceBytes(static_cast<std::int32_t>(brick.StrideZ() * UnitBytes))
     , Scale(brick.Scale())
     , Lookup(lookup)
-    , HiddenWords(brick.Hidden().Words())
-    , HiddenPerRow(brick.Hidden().WordsPerRow())
-    , HiddenRows(brick.Hidden().RowsPerSlice())
+    , Hidden(brick.Hidden())
   {
   }
 
@@ -131,7 +108,9 @@ public:
     place.Cell.Set(hn::IfThenElseZero(hn::RebindMask(d, mask), bytes));
     if constexpr (Special)
     {
-      place.Hidden = this->HiddenWords ? this->HiddenAt(position, mask) : hn::Zero(d);
+      place.Hidden = this->Hidden.Any()
+                       ? this->Hidden.At(position.X, position.Y, position.Z, hn::RebindMask(d, mask))
+                       : hn::Zero(d);
     }
     if constexpr (Shaded)
     {
@@ -224,23 +203,6 @@ private:
       return hn::IfThenElse(shown, value, none);
     }
     return value;
-  }
-
-  /// The bit of the cell, hidden where it is not 0.
-  template <class Mask>
-  HWY_INLINE VI HiddenAt(const Position& position, Mask mask) const
-  {
-    const DI d;
-    const DU du;
-    const auto cells = [](VU along) HWY_ATTR
-    { return hn::BitCast(DI(), hn::ShiftRight<FractionBits>(along)); };
-    const VI row = hn::Add(cells(position.Y), hn::Mul(cells(position.Z), hn::Set(d, this->HiddenRows)));
-    const VI x = cells(position.X);
-    const VI word = hn::Add(hn::Mul(row, hn::Set(d, this->HiddenPerRow)), hn::ShiftRight<5>(x));
-    const VI words = hn::GatherIndex(d, reinterpret_cast<const std::int32_t*>(this->HiddenWords),
-      hn::IfThenElseZero(hn::RebindMask(d, mask), word));
-    const VU bit = hn::Shl(hn::Set(du, 1u), hn::BitCast(du, hn::And(x, hn::Set(d, 31))));
-    return hn::And(words, hn::BitCast(d, bit));
   }
 
   HWY_INLINE VF MixedValueOf(const Place& place) const
@@ -429,9 +391,7 @@ private:
   const glm::vec4* Table = nullptr;
   const glm::vec4* Depths = nullptr;
   const ShadingTable* Shading = nullptr;
-  const std::uint32_t* HiddenWords; ///< null where no cell is hidden
-  std::int32_t HiddenPerRow;
-  std::int32_t HiddenRows;
+  HiddenLanes Hidden;
 };
 
 } // namespace banyan::HWY_NAMESPACE

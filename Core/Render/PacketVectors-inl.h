@@ -269,6 +269,28 @@ HWY_INLINE VI EntriesOf(const TableLookup& lookup, VI buckets, VF value)
   return entries;
 }
 
+/// As OpacityOfDepth::Of.
+HWY_INLINE VF OpacityOf(VF depth)
+{
+  using C = OpacityOfDepth;
+  const D d;
+  const DI di;
+  const VF x = hn::Sub(hn::Zero(d), hn::Min(depth, hn::Set(d, C::Largest)));
+  const VF round = hn::Set(d, C::Round);
+  const VF octaves = hn::Sub(hn::Add(hn::Mul(x, hn::Set(d, C::PerOctave)), round), round);
+  const VF r = hn::Sub(hn::Sub(x, hn::Mul(octaves, hn::Set(d, C::OctaveHigh))),
+    hn::Mul(octaves, hn::Set(d, C::OctaveLow)));
+  VF sum = hn::Set(d, C::Terms[0]);
+  for (int i = 1; i < 6; ++i)
+  {
+    sum = hn::Add(hn::Mul(sum, r), hn::Set(d, C::Terms[i]));
+  }
+  const VF less = hn::Add(hn::Mul(hn::Mul(sum, r), r), r);
+  const VF scale = hn::BitCast(d, hn::ShiftLeft<23>(hn::Add(Truncated(octaves), hn::Set(di, 127))));
+  const VF one = hn::Set(d, 1.0f);
+  return hn::Sub(hn::Sub(one, scale), hn::Mul(scale, less));
+}
+
 } // namespace banyan::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -44,7 +44,8 @@ public:
       const double end = std::min((k + 1.0) * step, exit);
       const glm::dvec3 position = this->IndexAt(ray, 0.5 * (begin + end));
       const double value = this->Interpolate(position);
-      if (std::isfinite(value) && end > begin && !(this->Hidden && this->Hidden(this->CellAt(position))))
+      if (std::isfinite(value) && end > begin &&
+          !(this->Hidden && this->Hidden(this->CellAt(position))))
       {
         this->Add(value, end - begin, met);
       }

@@ -57,7 +57,8 @@ struct SamplingPlan
   /// The largest error expected of any tile, in 1/255. Estimated: see PlanSamplings. It is above
   /// the tolerance where even the finest sampling is not expected to meet it.
   double EstimatedError = 0.0;
-  SamplingLimit Limit = SamplingLimit::None; ///< not None where EstimatedError is above the tolerance
+  SamplingLimit Limit =
+    SamplingLimit::None; ///< not None where EstimatedError is above the tolerance
   /// To be used with it: what rays that end early leave away is part of the error.
   float OpacityLimit = 0.999f;
   int Pilots = 0;             ///< small pictures that were drawn to find out
@@ -79,8 +80,8 @@ using DrawPilot = std::function<FloatImage(const RayScene& pilot)>;
 /// more small picture tells (StridePilot), and that error counts with the others.
 ///
 /// The error is estimated, then, and not bounded: `ctest -R SamplingPlan` shows that it is above
-/// the true one on the standard scenes. Where the opacity function jumps, or reaches 1, single pixels
-/// may be off by more: no pilot met them.
+/// the true one on the standard scenes. Where the opacity function jumps, or reaches 1, single
+/// pixels may be off by more: no pilot met them.
 ///
 /// Why not from bounds on the values: they take no account of how errors cancel along a ray, and
 /// are 30 to 100 times too large for smooth scenes (Documentation/rendering.md).

@@ -71,8 +71,7 @@ public:
       this->Look(half);
     }
     else if (!this->Now.MayShow(part) && this->Visible.Contains(first) &&
-             !IsCutAway(this->Planes, part) &&
-             (this->Sampled || !this->Source.IsMacroVoxel(first)))
+             !IsCutAway(this->Planes, part) && (this->Sampled || !this->Source.IsMacroVoxel(first)))
     {
       this->Found.push_back(first);
     }

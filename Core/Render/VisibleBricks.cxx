@@ -25,7 +25,7 @@ bool VisibleBricks::Contains(std::int64_t brick) const
   const ValueRange range = this->Source.RangeOf(brick);
   return !range.Empty() && !this->Source.AllHidden(brick) &&
          (!this->Composited || ((this->Source.MaskOf(brick) & this->Bins) != 0 &&
-                                                   this->Visible.Any(range.Low, range.High)));
+                                 this->Visible.Any(range.Low, range.High)));
 }
 
 std::vector<std::int64_t> BricksToLoad(

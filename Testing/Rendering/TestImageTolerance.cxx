@@ -25,7 +25,8 @@ double EstimateOf(vtkBanyanVolumeMapper* mapper)
 
 bool Says(vtkBanyanVolumeMapper* mapper, const std::string& words)
 {
-  return std::string(mapper->GetStatistics()->GetImageErrorLimit()).find(words) != std::string::npos;
+  return std::string(mapper->GetStatistics()->GetImageErrorLimit()).find(words) !=
+         std::string::npos;
 }
 
 /// Finding samplings is part of the frame, and none of it where a distance is given.
@@ -184,7 +185,7 @@ void WhatLimitsAnEstimateIsSaid()
   mapper->SetImageErrorTolerance(20.0);
   stage.Draw();
   Check(EstimateOf(mapper) <= 20.0 && Says(mapper, "") &&
-      std::string(mapper->GetStatistics()->GetImageErrorLimit()).empty(),
+          std::string(mapper->GetStatistics()->GetImageErrorLimit()).empty(),
     "a tolerance that is kept needs no words");
   vtkNew<vtkPiecewiseFunction> opaque;
   opaque->AddPoint(0.25, 0.0);
@@ -226,9 +227,9 @@ void ErrorsOfEncodingAreTold(const TemporaryFolder& folder)
       largest = std::max(
         largest, std::abs(decoded->GetComponent(i, 0) - values[static_cast<std::size_t>(i)]));
     }
-    Check(std::abs(told - largest) <= 1e-6 * bound, "the largest error of values is told: " +
-                                                      std::to_string(told) + ", " +
-                                                      std::to_string(largest));
+    Check(std::abs(told - largest) <= 1e-6 * bound,
+      "the largest error of values is told: " + std::to_string(told) + ", " +
+        std::to_string(largest));
     Check(told <= bound && (told > 0.5 * bound || bound == 0.0), "it is near the bound");
     mapper->SetInputConnection(nullptr);
     mapper->SetInputData(PlainImage(Balls, Samples));

@@ -44,8 +44,8 @@ TEST_P(StandardScenesPlan, TheErrorStaysBelowTheEstimate)
       const double error = ErrorOf(drawer.Draw(plan), converged).Largest;
       EXPECT_LE(error, plan.EstimatedError);
       EXPECT_GT(plan.EstimatedError, 0.0);
-      EXPECT_EQ(
-        plan.Limit, plan.EstimatedError > tolerance ? SamplingLimit::Distance : SamplingLimit::None);
+      EXPECT_EQ(plan.Limit,
+        plan.EstimatedError > tolerance ? SamplingLimit::Distance : SamplingLimit::None);
       if (plan.EstimatedError > tolerance)
       {
         // Then it is only because samples get no closer.
