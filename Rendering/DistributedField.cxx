@@ -157,11 +157,6 @@ void DistributedField::Agree(Communicator& communicator, const FieldPiece& piece
 
   const bool deferred = std::all_of(all.begin(), all.end(),
     [](const Facts& facts) { return facts.HasData == 0 || facts.Deferred != 0; });
-  const auto hidden = [&all](HiddenThere what)
-  {
-    return std::any_of(
-      all.begin(), all.end(), [what](const Facts& facts) { return (facts.Hidden & what) != 0; });
-  };
   for (const Facts& facts : all)
   {
     this->LargestEncodingError = std::max(this->LargestEncodingError, facts.EncodingError);
@@ -170,8 +165,7 @@ void DistributedField::Agree(Communicator& communicator, const FieldPiece& piece
   const vtkBanyanDeferred::Handle* handle =
     deferred && mine.HasData ? vtkBanyanDeferred::From(piece.Array) : nullptr;
   const std::shared_ptr<const SeriesFile> held = handle ? handle->Series : nullptr;
-  // Bricks of a series have values at hidden points, too: plain ones have none there.
-  if (deferred && !hidden(SomePoints) && this->TakeSeries(communicator, held, all, samples))
+  if (deferred && this->TakeSeries(communicator, held, all, samples))
   {
     this->Pieces.reset();
   }
@@ -179,7 +173,8 @@ void DistributedField::Agree(Communicator& communicator, const FieldPiece& piece
   {
     this->TakePlain(communicator, piece, all, samples, deferred);
   }
-  if (hidden(SomeCells))
+  if (std::any_of(
+        all.begin(), all.end(), [](const Facts& facts) { return facts.HiddenCells != 0; }))
   {
     this->HideCells(communicator, piece, samples.Lo);
   }
@@ -194,9 +189,8 @@ void DistributedField::TakePlain(Communicator& communicator, const FieldPiece& p
   if (deferred && this->Enhancement.Strength > 0.0 && this->ProblemText.empty())
   {
     this->ProblemText =
-      "Of an encoded series only whole steps without hidden points can be enhanced "
-      "while they are drawn: put the filter 'Banyan Temporal Enhancement' behind "
-      "the reader.";
+      "Of an encoded series only whole steps can be enhanced while they are drawn: put "
+      "the filter 'Banyan Temporal Enhancement' behind the reader.";
   }
   std::vector<Box> pieces;
   for (const Facts& facts : all)

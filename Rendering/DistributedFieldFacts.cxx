@@ -63,8 +63,7 @@ DistributedField::Facts DistributedField::FactsOf(const FieldPiece& piece) const
   piece.Image->GetSpacing(facts.Spacing);
   std::copy_n(piece.Image->GetDirectionMatrix()->GetData(), 9, facts.Direction);
 
-  facts.Hidden = (FlagsOfHiddenCells(piece.Image) ? SomeCells : 0) |
-                 (FlagsOfHiddenPoints(piece.Image) ? SomePoints : 0);
+  facts.HiddenCells = FlagsOfHiddenCells(piece.Image) ? 1 : 0;
 
   const vtkBanyanDeferred::Handle* handle = vtkBanyanDeferred::From(piece.Array);
   facts.EncodingError = handle ? EncodingErrorOf(*handle, piece.Component) : 0.0;

@@ -10,13 +10,6 @@
 namespace banyan
 {
 
-/// What of a piece is hidden: bits.
-enum HiddenThere : std::int32_t
-{
-  SomeCells = 1,
-  SomePoints = 2
-};
-
 /// What a rank tells the others about its piece. Plain memory: it is sent as it is.
 struct DistributedField::Facts
 {
@@ -25,7 +18,7 @@ struct DistributedField::Facts
   std::int32_t Components = 0;
   std::int32_t Lo[3] = { 0, 0, 0 }; ///< samples, half-open
   std::int32_t Hi[3] = { 0, 0, 0 };
-  std::int32_t Hidden = 0; ///< HiddenThere
+  std::int32_t HiddenCells = 0; ///< whether there are some
   double Origin[3] = { 0, 0, 0 };
   double Spacing[3] = { 1, 1, 1 };
   double Direction[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 }; ///< row by row

@@ -22,14 +22,23 @@ constexpr double MostSlack = 16.0;
 /// Whether a value that occurs is opaque however short its part of a ray.
 bool HasOpaqueValues(const TransferFunction& function, const ValueRange& values)
 {
-  const auto last = static_cast<double>(function.Entries.size()) - 1.0;
-  const auto entryOf = [&](double value)
+  const auto last = static_cast<std::ptrdiff_t>(function.Entries.size()) - 1;
+  const auto entryOf = [&](double value) -> std::ptrdiff_t
   {
-    const double position = (value - function.Low) / (function.High - function.Low) * last + 0.5;
-    return static_cast<std::ptrdiff_t>(std::clamp(position, 0.0, last));
+    if (!function.Edges.empty())
+    {
+      const auto above = std::find_if(function.Edges.begin(), function.Edges.end(),
+        [&](const FunctionEdge& edge)
+        { return edge.Value > value || (edge.Below && edge.Value == value); });
+      return above - function.Edges.begin();
+    }
+    const double part = (value - function.Low) / (function.High - function.Low);
+    const bool flat = !(function.High > function.Low);
+    const double position = flat ? (value > function.Low ? 1.0 : 0.0) : std::clamp(part, 0.0, 1.0);
+    return static_cast<std::ptrdiff_t>(std::lround(position * static_cast<double>(last)));
   };
   const auto first = function.Entries.begin();
-  return !function.Entries.empty() && !values.Empty() && function.High > function.Low &&
+  return last >= 0 && !values.Empty() &&
          std::any_of(first + entryOf(values.Low), first + entryOf(values.High) + 1,
            [](const glm::vec4& entry) { return entry.a >= 1.0f; });
 }

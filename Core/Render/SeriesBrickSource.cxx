@@ -177,7 +177,7 @@ ValueMask SeriesBrickSource::MaskOf(std::int64_t brick) const
 std::optional<UniformValue> SeriesBrickSource::UniformValueOf(std::int64_t brick) const
 {
   const BrickNode& node = (*this->Nodes.front())[static_cast<std::size_t>(brick)];
-  if (this->Magnitude || !node.Uniform)
+  if (this->Magnitude || !node.Uniform || this->HidesPointsOf(brick))
   {
     return std::nullopt;
   }
@@ -224,6 +224,16 @@ BrickView SeriesBrickSource::LoadMagnitude(std::int64_t brick) const
   return view;
 }
 
+bool SeriesBrickSource::HidesPointsOf(std::int64_t brick) const
+{
+  if (!this->NodesOfFlags)
+  {
+    return false;
+  }
+  const BrickNode& flags = (*this->NodesOfFlags)[static_cast<std::size_t>(brick)];
+  return !flags.Uniform || flags.Range.Low != 0.0;
+}
+
 /// A copy: what is hidden changes from step to step, and the cache has values for all of them.
 BrickView SeriesBrickSource::WithoutHidden(std::int64_t brick, const BrickView& view) const
 {
@@ -242,12 +252,7 @@ BrickView SeriesBrickSource::Load(std::int64_t brick)
   this->Note(brick);
   const BrickView view =
     this->Magnitude ? this->LoadMagnitude(brick) : this->LoadComponent(brick, 0);
-  if (!this->NodesOfFlags)
-  {
-    return view;
-  }
-  const BrickNode& flags = (*this->NodesOfFlags)[static_cast<std::size_t>(brick)];
-  return flags.Uniform && flags.Range.Low == 0.0 ? view : this->WithoutHidden(brick, view);
+  return this->HidesPointsOf(brick) ? this->WithoutHidden(brick, view) : view;
 }
 
 void SeriesBrickSource::Note(std::int64_t brick) const

@@ -63,6 +63,7 @@ private:
   FieldKey KeyOf(std::size_t component) const;
   BrickView LoadComponent(std::int64_t brick, std::size_t component) const;
   BrickView LoadMagnitude(std::int64_t brick) const;
+  bool HidesPointsOf(std::int64_t brick) const;
   BrickView WithoutHidden(std::int64_t brick, const BrickView& view) const;
   ValueRange MagnitudeRange(std::int64_t brick) const;
 

@@ -50,6 +50,8 @@ def add(data, name, values):
     array.SetName(name)
     data.AddArray(array)
 
+if {flat}:
+    blob[:] = 0.7
 add(image.GetPointData(), "{name}", blob.astype("f4"))
 image.GetPointData().SetActiveScalars("{name}")
 flags = numpy.zeros((40, 40, 40), "u1")
@@ -87,8 +89,9 @@ if {points}:
 """
 
 
-def blob(name, cells=True, points=False):
-    script = BLOB.replace("{name}", name).replace("{cells}", str(cells)).replace("{points}", str(points))
+def blob(name, cells=True, points=False, flat=False):
+    script = BLOB.replace("{name}", name).replace("{cells}", str(cells))
+    script = script.replace("{points}", str(points)).replace("{flat}", str(flat))
     return simple.ProgrammableSource(
         OutputDataSetType="vtkImageData", Script=script, ScriptRequestInformation=INFORMATION)
 
@@ -184,6 +187,14 @@ def draw_series(drawing):
             Input=reader, Script=FLAGS.replace("{points}", str(points)))
         drawing.draw("series " + name, flagged, "cells")
         drawing.require_alike("series " + name, name, 60)
+    # One value everywhere, and what is hidden in the file: its bricks are drawn without being loaded, but for these.
+    flat = blob("cells", points=True, flat=True)
+    drawing.draw("flat", flat, "cells")
+    path = path.replace("series.banyan", "flat.banyan")
+    if not drawing.arguments.reference:
+        simple.SaveData(path, proxy=flat, ErrorBound=0)
+    drawing.draw("series flat", simple.OpenDataFile(path), "cells")
+    drawing.require_alike("series flat", "flat", 60)
 
 
 def main():
