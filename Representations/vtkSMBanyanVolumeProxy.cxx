@@ -10,8 +10,11 @@
 #include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMProxyManager.h"
 #include "vtkSMSessionProxyManager.h"
+#include "vtkSMViewProxy.h"
 
+#include <set>
 #include <string>
 
 vtkStandardNewMacro(vtkSMBanyanVolumeProxy);
@@ -44,6 +47,29 @@ bool IsUsedByAnother(vtkSMProxy* map, vtkSMProxy* display)
     }
   }
   return false;
+}
+
+/// As the window does for "Volume", which it knows by name. Scripts get a scalar bar of neither:
+/// only the window keeps what can be undone.
+void ShowScalarBars(vtkSMPVRepresentationProxy* display)
+{
+  if (!vtkSMProxyManager::GetProxyManager()->GetUndoStackBuilder())
+  {
+    return;
+  }
+  std::set<vtkSMProxy*> views;
+  for (unsigned int i = 0; i < display->GetNumberOfConsumers(); ++i)
+  {
+    vtkSMProxy* const consumer = display->GetConsumerProxy(i);
+    if (vtkSMViewProxy::SafeDownCast(consumer))
+    {
+      views.insert(consumer);
+    }
+  }
+  for (vtkSMProxy* const view : views)
+  {
+    display->SetScalarBarVisibility(view, true);
+  }
 }
 
 } // namespace
@@ -125,4 +151,5 @@ void vtkSMBanyanVolumeProxy::TypeChanged()
   {
     display->RescaleTransferFunctionToDataRange(/*extend=*/true, /*force=*/false);
   }
+  ShowScalarBars(display);
 }
