@@ -7,37 +7,6 @@
 
 namespace banyan
 {
-namespace
-{
-
-/// Checksums do not tell that an index and its segments do not belong together, such as an index with
-/// another extent: bricks at the end of the grid are then not as long as their payloads.
-void DecodeSomeAtTheEnd(
-  const SeriesFile& series, const FieldKey& field, const std::vector<std::int64_t>& bricks)
-{
-  const BrickLayout layout = series.Layout(field.Level);
-  std::vector<std::int64_t> last;
-  for (const std::int64_t brick : bricks)
-  {
-    const glm::ivec3 behind = layout.PositionOf(brick) + 1;
-    if (behind.x == layout.Bricks().x || behind.y == layout.Bricks().y || behind.z == layout.Bricks().z)
-    {
-      last.push_back(brick);
-    }
-  }
-  constexpr std::size_t most = 16; // some milliseconds
-  const std::size_t stride = (last.size() + most - 1) / most;
-  for (std::size_t i = 0; i < last.size(); i += stride)
-  {
-    const std::int64_t brick = last[last.size() - 1 - i];
-    const ScalarType type = series.Index().Arrays[static_cast<std::size_t>(field.Array)].Type;
-    std::vector<char> values(
-      static_cast<std::size_t>(layout.SamplesOf(brick).Count()) * SizeOf(type));
-    series.DecodeBrick(field, brick, values.data());
-  }
-}
-
-} // namespace
 
 void VerifiedBricks::Verify(const SeriesFile& series, const FieldKey& field, const Box& samples)
 {
@@ -47,7 +16,6 @@ void VerifiedBricks::Verify(const SeriesFile& series, const FieldKey& field, con
     this->Series = series.Id();
   }
   const auto nodes = series.Nodes(field);
-  const bool first = this->Checked.count({ field.Array, field.Component, field.Level }) == 0;
   std::vector<PayloadIdentity>& checked =
     this->Checked[{ field.Array, field.Component, field.Level }];
   checked.resize(nodes->size());
@@ -71,10 +39,6 @@ void VerifiedBricks::Verify(const SeriesFile& series, const FieldKey& field, con
         unchecked.begin() + std::min<std::size_t>((batch + 1) * BatchBricks, unchecked.size());
       series.VerifyBricks(field, { first, last });
     });
-  if (first)
-  {
-    DecodeSomeAtTheEnd(series, field, unchecked);
-  }
   for (const std::int64_t brick : unchecked)
   {
     checked[brick] = (*nodes)[brick].Identity;

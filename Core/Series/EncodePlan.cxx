@@ -34,7 +34,7 @@ double AbsoluteBound(
   {
     throw Error("The error bound times the range of the series is not a finite number");
   }
-  if (bound < 2 * std::numeric_limits<double>::min())
+  if (bound < 2 * std::numeric_limits<double>::min() && !range.Empty())
   {
     return NotAbove(static_cast<long double>(options.ErrorBound) *
                     (static_cast<long double>(transform.Forward(range.High)) -

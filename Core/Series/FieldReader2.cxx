@@ -292,6 +292,12 @@ void Reader2::VerifyBricks(const FieldKey& asked, const std::vector<std::int64_t
         const PlaneRegion region = RegionOf(this->Series, *open, field, brick);
         ForEachBlock(region,
           [&](const glm::ivec3& block) { group.Verify(step, region.Plane, block); });
+        const BrickLayout& layout = this->Series.Layouts[static_cast<std::size_t>(field.Level)];
+        const glm::ivec3 behind = layout.Bricks() - layout.PositionOf(brick) - 1;
+        if (behind.x * behind.y * behind.z == 0 && open->EndsToCheck > 0 && open->EndsToCheck-- > 0)
+        {
+          (void)group.Box(step, region.Plane, region.FirstBlock, true);
+        }
       }
     });
 }

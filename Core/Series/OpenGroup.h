@@ -28,6 +28,7 @@ struct OpenGroup
   /// By step and level; -1 less the step where a later one rests on it.
   std::map<std::pair<int, int>, std::shared_ptr<const std::vector<BrickNode>>> Nodes;
   std::atomic<std::uint64_t> NodeBytes{ 0 };
+  std::atomic<int> EndsToCheck{ 16 }; ///< bricks, for some milliseconds; see FieldReader::VerifyBricks
 
   std::uint64_t MemoryBytes() const { return this->Field->MemoryBytes() + this->NodeBytes; }
 };

@@ -141,6 +141,7 @@ def flips_of_pictures(path, count):
     view = simple.CreateView("RenderView")
     view.ViewSize = [100, 100]
     view.OrientationAxesVisibility = 0
+    view.UseFXAA = 0  # which single pixels are smoothed is another matter
     display = simple.Show(reader, view)
     display.SetRepresentationType("Banyan Volume")
     simple.ColorBy(display, ("POINTS", "RTData"))

@@ -6,6 +6,7 @@
 #include "Series/AtomicFile.h"
 
 #include <limits>
+#include <numeric>
 
 namespace banyan::testing
 {
@@ -49,6 +50,12 @@ TEST(TinyBounds, AreTakenAsTheyAreGiven)
   }
 }
 
+TEST(TinyBounds, OfNothingFiniteIsNone)
+{
+  const auto steps = Sample<double>(GridOf(4, 4, 4), 2, [](int, int, int, int) { return std::nan(""); });
+  EXPECT_EQ(RoundTrip(GridOf(4, 4, 4), steps, {}).Arrays[0].Components[0].ErrorBoundAbsolute, 0.0);
+}
+
 TEST(TinyBounds, ThatAreNoneAreRefused)
 {
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -67,13 +74,13 @@ TEST(ForgedExtents, AreErrorsOrChangeNothing)
   const std::string path = folder / "s.banyan";
   const SeriesIndex good = Encode(path, Small, SmallSteps(4), TwoPerSegment());
   std::mt19937 random(1);
-  int refused = 0;
+  int refused = 0, early = 0;
   for (int i = 0; i < 100; ++i)
   {
     SeriesIndex forged = good;
     const int axis = static_cast<int>(random() % 3);
     const int change = static_cast<int>(random() % 80) - 20;
-    if (change == 0)
+    if (change == 0 || good.Domain.Samples()[axis] + change < 1)
     {
       continue;
     }
@@ -82,17 +89,24 @@ TEST(ForgedExtents, AreErrorsOrChangeNothing)
       forged.Domain.Extent.Hi[axis] += change;
       forged.Levels = BrickLayout::LevelCount(forged.Domain.Samples(), forged.BrickCells);
       WriteFileAtomically(path, IndexToText(forged));
+      const FieldKey field{ static_cast<int>(random() % 4), 0, 0, 0 };
+      ++early; // before arrays are handed out that decode later
       const auto file = SeriesFile::Open(path);
-      (void)ReadAll<float>(*file, { static_cast<int>(random() % 4), 0, 0, 0 });
+      std::vector<std::int64_t> bricks(file->Nodes(field)->size());
+      std::iota(bricks.begin(), bricks.end(), 0);
+      file->VerifyBricks(field, bricks);
+      --early;
+      (void)ReadAll<float>(*file, field);
       ADD_FAILURE() << "axis " << axis << " by " << change << ": no error";
     }
     catch (const Error& error)
     {
-      EXPECT_NE(std::string(error.what()).size(), 0u);
+      EXPECT_NE(std::string(error.what()).find("s.banyan"), std::string::npos) << error.what();
       ++refused;
     }
   }
   EXPECT_GT(refused, 50);
+  EXPECT_EQ(early, refused);
 }
 
 } // namespace
