@@ -150,7 +150,7 @@ def flips_of_pictures(path, count):
     right = [picture(view, step) for step in range(4)]
     session.require(right[0].max() > right[0].min(), "nothing is drawn")
     count = {"same": 0, "error": 0, "flips": count}
-    flips = Flips(path, 2, bits=8)
+    flips = Flips(path, 2, bits=2)
     for turn in range(count.pop("flips")):
         said()
         with flips:
@@ -162,12 +162,12 @@ def flips_of_pictures(path, count):
         same = int(abs(now.astype(int) - right[turn % 4]).max()) <= 1
         session.require(same or ".banyan.d/" in text, f"another picture at turn {turn}: {text}")
         count["same" if same else "error"] += 1
-        now = picture(view, turn % 4 + 1 if turn % 4 < 3 else 0)
-        wanted = right[(turn + 1) % 4]
+        now = picture(view, (turn + 2) % 4)  # neither this step nor the next turn's, which must be read
+        wanted = right[(turn + 2) % 4]
         difference = int(abs(now.astype(int) - wanted).max())
         session.require(difference <= 1, f"good again, and not drawn: {difference}, {said()}")
     tell("pictures", count)
-    session.require(count["error"] > 0, "nothing was noticed")
+    session.require(count["error"] > 5, "hardly anything was noticed")
     for segment in glob.glob(path + ".d/*.seg"):
         os.truncate(segment, 100)
     try:
