@@ -7,8 +7,8 @@
 
 #include <algorithm>
 
-/// Defines a setter of a double that is kept within limits. NaN, infinities and negative numbers are
-/// refused with an error message; the property stays as it was.
+/// Defines a setter of a double that is kept within limits. NaN, infinities and negative numbers
+/// are refused with an error message; the property stays as it was.
 #define banyanSetNumberMacro(Class, Property, least, most)                                         \
   void Class::Set##Property(double number)                                                         \
   {                                                                                                \

@@ -6,10 +6,9 @@
 namespace banyan
 {
 
-/// What is wrong with the number that a property was set to: NaN, infinite or, where it may not be, negative.
-/// A sentence that names both, or nothing.
-std::string ProblemOfNumber(
-  const std::string& property, double value, bool mayBeNegative = false);
+/// What is wrong with the number that a property was set to: NaN, infinite or, where it may not be,
+/// negative. A sentence that names both, or nothing.
+std::string ProblemOfNumber(const std::string& property, double value, bool mayBeNegative = false);
 
 /// The same as an Error.
 void RequireNumber(const std::string& property, double value, bool mayBeNegative = false);

@@ -32,8 +32,8 @@ Registry& Process()
   return *registry;
 }
 
-/// A page that is missing brings so many bytes of the file to the system's memory: blocks are decoded
-/// backwards, which the system does not foresee.
+/// A page that is missing brings so many bytes of the file to the system's memory: blocks are
+/// decoded backwards, which the system does not foresee.
 constexpr std::uint64_t WindowBytes = 128 * 1024;
 /// Memory is taken in pieces of so many bytes, or of a page where that is larger.
 constexpr std::uint64_t PieceBytes = 64 * 1024;
@@ -83,11 +83,12 @@ public:
   /// Makes room for what lies in the piece at an offset. Under the lock of the piece.
   void MakeRoom(std::uint64_t offset)
   {
-    std::atomic<std::uint8_t*>& piece = this->Pieces[static_cast<std::size_t>(offset / this->EachBytes)];
+    std::atomic<std::uint8_t*>& piece =
+      this->Pieces[static_cast<std::size_t>(offset / this->EachBytes)];
     if (piece == nullptr)
     {
-      piece = static_cast<std::uint8_t*>(
-        LatticeMemory::Take(static_cast<std::size_t>(this->EachBytes)));
+      piece =
+        static_cast<std::uint8_t*>(LatticeMemory::Take(static_cast<std::size_t>(this->EachBytes)));
       this->Count(this->EachBytes);
     }
   }
@@ -137,7 +138,8 @@ PayloadPages::~PayloadPages()
 {
   Registry& registry = Process();
   std::lock_guard<std::mutex> lock(registry.Mutex);
-  registry.All.erase(std::remove(registry.All.begin(), registry.All.end(), this), registry.All.end());
+  registry.All.erase(
+    std::remove(registry.All.begin(), registry.All.end(), this), registry.All.end());
 }
 
 std::uint64_t PayloadPages::BytesInMemory()

@@ -12,12 +12,12 @@
 namespace banyan
 {
 
-/// The payloads of a segment of version 2 in memory of this process. Pages are read when they are needed
-/// first, and their checksums are those of what was read: what happens to the file later does not
-/// matter. May be used from any thread.
+/// The payloads of a segment of version 2 in memory of this process. Pages are read when they are
+/// needed first, and their checksums are those of what was read: what happens to the file later
+/// does not matter. May be used from any thread.
 ///
-/// All segments together keep so many bytes (BudgetBytes()). Beyond, all pages of the segment that was
-/// used least recently go, and are read and checked again.
+/// All segments together keep so many bytes (BudgetBytes()). Beyond, all pages of the segment that
+/// was used least recently go, and are read and checked again.
 class PayloadPages
 {
 public:
@@ -36,7 +36,8 @@ public:
   /// The memory of now.
   Hold InMemory();
 
-  /// First of some bytes, valid as long as `hold`. Throws Error when they are damaged or cannot be read.
+  /// First of some bytes, valid as long as `hold`. Throws Error when they are damaged or cannot be
+  /// read.
   /// @param offset and @param bytes lie between the header and the end of the payloads
   const std::uint8_t* At(const Hold& hold, std::uint64_t offset, std::uint64_t bytes);
 

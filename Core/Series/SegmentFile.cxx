@@ -36,7 +36,8 @@ struct SegmentFile::Pool
   std::vector<const SegmentFile*> Files;
   std::uint64_t Clock = 0;
 
-  /// Closes the file that was read least recently, once nobody reads it. @return false: there is none
+  /// Closes the file that was read least recently, once nobody reads it. @return false: there is
+  /// none
   bool CloseOne()
   {
     const auto oldest = std::min_element(this->Files.begin(), this->Files.end(),
@@ -112,9 +113,9 @@ std::shared_ptr<const SegmentFile::Descriptor> SegmentFile::OpenNow() const
   if (number < 0)
   {
     const int code = errno;
-    throw Error(std::string("A segment of the series cannot be opened: ") + std::strerror(code) +
-                  (code == ENOENT ? ". If the series was replaced or moved meanwhile, open it again"
-                                   : ""),
+    throw Error(
+      std::string("A segment of the series cannot be opened: ") + std::strerror(code) +
+        (code == ENOENT ? ". If the series was replaced or moved meanwhile, open it again" : ""),
       { this->FilePath });
   }
   auto descriptor = std::make_shared<const Descriptor>(number);
@@ -167,8 +168,8 @@ void SegmentFile::Read(std::uint64_t offset, void* to, std::size_t bytes) const
     if (got <= 0)
     {
       throw Error(got < 0
-          ? std::string("A segment of the series cannot be read: ") + std::strerror(errno)
-          : "A segment of the series was cut short while it was open",
+                    ? std::string("A segment of the series cannot be read: ") + std::strerror(errno)
+                    : "A segment of the series was cut short while it was open",
         { this->FilePath, offset });
     }
     next += got;

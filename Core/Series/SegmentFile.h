@@ -12,11 +12,11 @@
 namespace banyan
 {
 
-/// A segment file of the size that the index says. It is read, never mapped: whatever becomes of the
-/// file while it is open, reading gives bytes or throws. May be used from any thread.
+/// A segment file of the size that the index says. It is read, never mapped: whatever becomes of
+/// the file while it is open, reading gives bytes or throws. May be used from any thread.
 ///
-/// A file that is open here is read on when it is deleted or replaced. A process has so many of them
-/// open at once (MostOpen()); others are opened anew when they are read.
+/// A file that is open here is read on when it is deleted or replaced. A process has so many of
+/// them open at once (MostOpen()); others are opened anew when they are read.
 class SegmentFile
 {
 public:

@@ -37,7 +37,8 @@ struct Holders
 
 Holders& OfProcess()
 {
-  static Holders* const holders = new Holders; // never destroyed: saves may last as long as the process
+  static Holders* const holders =
+    new Holders; // never destroyed: saves may last as long as the process
   return *holders;
 }
 
@@ -66,7 +67,8 @@ std::string HolderIn(int descriptor)
     length = pread(descriptor, text, sizeof(text), 0);
   }
   std::string who(text, static_cast<std::size_t>(std::max<ssize_t>(length, 0)));
-  who.erase(std::find_if(who.begin(), who.end(), [](char c) { return c < ' ' || c > '~'; }), who.end());
+  who.erase(
+    std::find_if(who.begin(), who.end(), [](char c) { return c < ' ' || c > '~'; }), who.end());
   return who.empty() ? "another process" : who;
 }
 
@@ -79,12 +81,14 @@ std::string HolderIn(int descriptor)
 
 [[noreturn]] void Fail(const std::string& folder, int code)
 {
-  throw Error(std::string("The folder of the series cannot be written: ") + std::strerror(code), { folder });
+  throw Error(
+    std::string("The folder of the series cannot be written: ") + std::strerror(code), { folder });
 }
 
 bool HasNoLocks(int code)
 {
-  return code == ENOLCK || code == ENOSYS || code == ENOTSUP || code == EOPNOTSUPP || code == EINVAL;
+  return code == ENOLCK || code == ENOSYS || code == ENOTSUP || code == EOPNOTSUPP ||
+         code == EINVAL;
 }
 
 } // namespace
@@ -128,7 +132,8 @@ SeriesLock::SeriesLock(const std::string& seriesPath)
       return;
     }
   }
-  throw Error("The lock of the series cannot be taken: others take it and give it back all the time",
+  throw Error(
+    "The lock of the series cannot be taken: others take it and give it back all the time",
     { this->Path });
 }
 

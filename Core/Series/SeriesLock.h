@@ -11,15 +11,15 @@ namespace banyan
 /// One save of a series at a time: held from before the first file is written until the last one is
 /// there. Of several processes that save one series together, one holds it for all.
 ///
-/// It is a lock of the system on a file in the series' folder, of which the file says who holds it. It
-/// ends with the process, however that ends; a file that is left behind, and processes that this one
-/// started, hold nothing. It also holds between threads of a process. Where the file system has no
-/// locks (some network file systems), everybody gets it.
+/// It is a lock of the system on a file in the series' folder, of which the file says who holds it.
+/// It ends with the process, however that ends; a file that is left behind, and processes that this
+/// one started, hold nothing. It also holds between threads of a process. Where the file system has
+/// no locks (some network file systems), everybody gets it.
 class SeriesLock
 {
 public:
-  /// Makes the folder where it is not there yet, and clears away what saves that were killed have left
-  /// in it, apart from what the index of the series names.
+  /// Makes the folder where it is not there yet, and clears away what saves that were killed have
+  /// left in it, apart from what the index of the series names.
   /// @param seriesPath of the index file, which is no link (see FollowLinks)
   /// Throws Error that says who holds the lock, that the folder cannot be written, or that what
   /// has the name of the series is no ordinary file.

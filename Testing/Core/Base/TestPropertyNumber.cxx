@@ -19,7 +19,8 @@ TEST(PropertyNumber, NamesPropertyAndValue)
   EXPECT_EQ(ProblemOfNumber("Width", -1.5, true), "");
   EXPECT_EQ(ProblemOfNumber("Width", -1.5),
     "Width must be a finite number that is not negative, and is -1.5");
-  EXPECT_EQ(ProblemOfNumber("Place", std::nan(""), true), "Place must be a finite number, and is nan");
+  EXPECT_EQ(
+    ProblemOfNumber("Place", std::nan(""), true), "Place must be a finite number, and is nan");
   for (const bool negative : { false, true })
   {
     EXPECT_NE(ProblemOfNumber("Width", infinity, negative).find("inf"), std::string::npos);

@@ -76,8 +76,8 @@ struct Outcomes
   {
     try
     {
-      const bool same = Same(
-        ReadAll<T>(file, { step, 0, 0, level }), right[static_cast<std::size_t>(step)]);
+      const bool same =
+        Same(ReadAll<T>(file, { step, 0, 0, level }), right[static_cast<std::size_t>(step)]);
       EXPECT_TRUE(same) << "other values, and nothing said";
       ++this->Right;
     }
@@ -163,7 +163,8 @@ TYPED_TEST(FilesWhileOpen, AFileThatIsCutShortIsASentence)
     fs::resize_file(file, random() % fs::file_size(file)); // the same file: it is open
     ForgetAll();
     const int level = static_cast<int>(random() % 2);
-    outcomes.Read<TypeParam>(*this->File, this->Right[level], static_cast<int>(random() % 7), level);
+    outcomes.Read<TypeParam>(
+      *this->File, this->Right[level], static_cast<int>(random() % 7), level);
     fs::copy_file(whole, file, fs::copy_options::overwrite_existing);
     fs::remove(whole);
   }
@@ -224,8 +225,8 @@ TYPED_TEST(FilesWhileOpen, MayBeForgottenWhileThreadsRead)
           const std::size_t step = random() % 7;
           wrong += Same(ReadAll<TypeParam>(*this->File, { static_cast<int>(step), 0, 0, 0 }),
                      this->Right[0][step])
-            ? 0
-            : 1;
+                     ? 0
+                     : 1;
         }
         --running;
       });

@@ -148,7 +148,8 @@ TEST(SeriesLock, OfManySaversAtOnceNoneSpoilsAnother)
     saved += static_cast<int>(succeeded.size());
     if (!succeeded.empty() || replaces)
     {
-      // It opens, and every segment that it names is there: of one that succeeded, or as it was before.
+      // It opens, and every segment that it names is there: of one that succeeded, or as it was
+      // before.
       const auto file = SeriesFile::Open(path);
       const auto values = ReadAll<float>(*file, { 3, 0, 0, 0 });
       const double bound = file->Index().Arrays[0].Components[0].ErrorBoundAbsolute;
@@ -276,7 +277,8 @@ TEST(SeriesLock, HoldsBetweenThreads)
           }
           catch (const Error& error)
           {
-            EXPECT_NE(std::string(error.what()).find("under way"), std::string::npos) << error.what();
+            EXPECT_NE(std::string(error.what()).find("under way"), std::string::npos)
+              << error.what();
             ++refused;
             std::this_thread::sleep_for(std::chrono::microseconds(20));
           }
@@ -316,7 +318,8 @@ int WithSmallDisk(const std::string& folder, int kilobytes, const std::function<
   if (child == 0)
   {
     const std::string size = "size=" + std::to_string(kilobytes) + "k";
-    if (unshare(CLONE_NEWNS) != 0 || mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
+    if (unshare(CLONE_NEWNS) != 0 ||
+        mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
         mount("tmpfs", folder.c_str(), "tmpfs", 0, size.c_str()) != 0)
     {
       _exit(77);
@@ -349,7 +352,8 @@ TEST(SeriesLock, AFullDiskLosesNothing)
           catch (const Error& error)
           {
             const std::string said = error.what();
-            if (said.find("No space left") == std::string::npos || said.find(name) == std::string::npos)
+            if (said.find("No space left") == std::string::npos ||
+                said.find(name) == std::string::npos)
             {
               return 3;
             }

@@ -2,8 +2,8 @@
 #include "Series/ContainerTesting.h"
 #include "Series/SeriesTesting.h"
 
-#include "Series/IndexText.h"
 #include "Series/AtomicFile.h"
+#include "Series/IndexText.h"
 
 #include <limits>
 #include <numeric>
@@ -30,7 +30,8 @@ TEST(TinyBounds, AreNeverRoundedUp)
                               (static_cast<long double>(range.High) - range.Low);
     const SeriesIndex index = RoundTrip(grid, steps, options);
     const long double stated = index.Arrays[0].Components[0].ErrorBoundAbsolute;
-    EXPECT_LE(stated, asked * (1 + 1e-15L)) << "asked " << options.ErrorBound << " of " << range.High;
+    EXPECT_LE(stated, asked * (1 + 1e-15L))
+      << "asked " << options.ErrorBound << " of " << range.High;
     EXPECT_GE(stated + least, asked * (1 - 1e-15L));
   }
 }
@@ -38,8 +39,8 @@ TEST(TinyBounds, AreNeverRoundedUp)
 TEST(TinyBounds, AreTakenAsTheyAreGiven)
 {
   constexpr double least = std::numeric_limits<double>::denorm_min();
-  const auto steps =
-    Sample<double>(GridOf(9, 6, 5), 2, [](int x, int y, int z, int s) { return least * (x * y + z + s); });
+  const auto steps = Sample<double>(
+    GridOf(9, 6, 5), 2, [](int x, int y, int z, int s) { return least * (x * y + z + s); });
   for (const double bound : { least, 3 * least, 100 * least })
   {
     EncodeOptions options;
@@ -52,7 +53,8 @@ TEST(TinyBounds, AreTakenAsTheyAreGiven)
 
 TEST(TinyBounds, OfNothingFiniteIsNone)
 {
-  const auto steps = Sample<double>(GridOf(4, 4, 4), 2, [](int, int, int, int) { return std::nan(""); });
+  const auto steps =
+    Sample<double>(GridOf(4, 4, 4), 2, [](int, int, int, int) { return std::nan(""); });
   EXPECT_EQ(RoundTrip(GridOf(4, 4, 4), steps, {}).Arrays[0].Components[0].ErrorBoundAbsolute, 0.0);
 }
 
