@@ -26,6 +26,14 @@ TIMES = (0.0, 1.25, 2.0)
 LEFT_OUT = re.compile("|".join((
     "Catalyst", "LiveSource", "ProgrammableAnnotation", "RandomAttributes", "RandomVectors",
     "AddFieldArrays", "EnvironmentAnnotation")))
+# What is different although no value is: reasons by the names of proxies.
+KNOWN = {
+    "BanyanTemporalEnhancement": "takes its scale from the series, where there is one",
+    "BrownianPoints|RandomAttribute.*": "random numbers",
+    "ExtractHistogram2D|ExtractBlock|InSituParticlePath|ValidateCells|XML(Hier|Multi|PVAni|Uniform).*|"
+    "XMLPartitionedDataSetColl.*": "fails on plain arrays, too",
+    "(XML|JSON|DataSet|Xdmf).*Writer": "writes ranges that ParaView asked for, times, or its path",
+}
 # Lines and pieces that come in another order each time.
 UNORDERED = re.compile("StreamTracer|StreakLine|Particle|PathLines")
 
@@ -48,6 +56,7 @@ def worker(options):
     from paraview import servermanager, simple
 
     import compare_data
+    import pictures
     import session
     import test_filters
 
@@ -126,8 +135,6 @@ def worker(options):
             proxy = make(group, name, source)
             if proxy is None or not proxy.GetProperty("FileName"):
                 return None
-            extensions = servermanager._getPyProxy(proxy).GetProperty("FileExtensions")
-            del extensions
             proxy.GetProperty("FileName").SetElement(0, os.path.join(folder, "file.out"))
             proxy.UpdateVTKObjects()
             proxy.UpdatePipeline(1.0)
@@ -137,6 +144,29 @@ def worker(options):
         same = filecmp.dircmp(*folders)
         wrong = [f"{file} differs" for file in same.diff_files + same.left_only + same.right_only]
         return wrong, sizes[1]
+
+    def compare_display(group, name, path):
+        """Pictures of a way to show the data."""
+        shots = []
+        for kind, source in zip(("deferred", "plain"), test_filters.readers(path)):
+            view = session.new_view((160, 120))
+            display = simple.Show(source, view)
+            display.SetRepresentationType(name)
+            simple.ColorBy(display, ("POINTS", "p"))
+            functions = simple.GetColorTransferFunction("p"), simple.GetOpacityTransferFunction("p")
+            for function in functions:
+                function.RescaleTransferFunction(0.0, 1.0)
+            for time in TIMES:
+                view.ViewTime = time
+                file = os.path.join(options.out, f"{kind}.png")
+                simple.SaveScreenshot(file, view)
+                shots.append(pictures.load(file))
+            session.clear()
+        count = len(TIMES)
+        wrong = [f"at {time}: pictures differ by {pictures.difference(a, b).max()}"
+                 for time, a, b in zip(TIMES, shots[:count], shots[count:])
+                 if pictures.difference(a, b).max() > 1]
+        return wrong, shots[0].size
 
     session.begin(options)
     path = os.path.join(options.out, "series.banyan")
@@ -151,13 +181,17 @@ def worker(options):
             names.append((group, iterator.GetProxyName()))
             iterator.GoToNextItem()
     names.sort()
+    shown = simple.Show(test_filters.readers(path)[0], session.new_view((160, 120)))
+    names += [("displays", name) for name in shown.GetProperty("Representation").Available]
+    session.clear()
     simple._DisableFirstRenderCameraReset()
     for number, (group, name) in enumerate(names):
         if (number < options.worker or LEFT_OUT.search(name)
                 or options.only and name not in options.only):
             continue
         print(f"\n@begin {number} {group} {name}", flush=True)
-        compare = compare_filter if group == "filters" else compare_writer
+        compare = {"filters": compare_filter, "writers": compare_writer,
+                   "displays": compare_display}[group]
         try:
             result = compare(group, name, path)
         except Exception as error:  # pylint: disable=broad-except
@@ -199,7 +233,7 @@ def run_worker(options, first, log, ranks):
                 break
             log.write(line)
             if line.startswith("@begin"):
-                _, number, _, current = line.split()
+                _, number, _, current = line.strip().split(maxsplit=3)
                 begun = int(number)
                 ended.setdefault("names", {})[begun] = current
             elif line.startswith("@end"):
@@ -234,8 +268,9 @@ def main():
     for number in sorted(names):
         for text in sorted(set(results.get(number, ["no answer"]))):
             if not text.endswith("equal") and text != "skipped":
-                different += 1
-                print(f"{names[number]}: {text[:400]}")
+                why = [reason for name, reason in KNOWN.items() if re.fullmatch(name, names[number])]
+                different += not why
+                print(f"{names[number]}: {text[:400]}{''.join(f' ({reason})' for reason in why)}")
     compared = sum(any(t.split()[0] not in ("0", "skipped") for t in results.get(n, []))
                    for n in names)
     print(f"{len(names)} proxies, {compared} gave something to compare, {different} differ")
