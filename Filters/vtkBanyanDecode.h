@@ -2,9 +2,9 @@
  * @class   vtkBanyanDecode
  * @brief   replaces point arrays that decode on first touch by plain, decoded ones
  *
- * The reader gives plain arrays to filters that are connected to it. This filter makes them where the
- * data come another way, or where the series behind them is to be forgotten. Everything else passes unchanged;
- * arrays that are plain and know of no series are passed by reference.
+ * The reader gives plain arrays to filters that are connected to it. This filter makes them where
+ * the data come another way, or where the series behind them is to be forgotten. Everything else
+ * passes unchanged; arrays that are plain and know of no series are passed by reference.
  *
  * @par Exactness:
  * The values are bit-exact those of the deferred array. Ranges become those of the values: the

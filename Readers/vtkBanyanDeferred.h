@@ -85,11 +85,11 @@ public:
   static bool LiesOnSeries(vtkImageData* image, const Handle& handle);
 
   /**
-   * The array with its values in ordinary memory, and no handle: `array` itself when it has none, else a
-   * new array of the same name, type, components and information. It shares the memory of one that
-   * NewDecoded() made. Decodes straight into the new
-   * array when the values are not there yet. nullptr when they cannot be decoded (after an error
-   * message) or there is no memory for them.
+   * The array with its values in ordinary memory, and no handle: `array` itself when it has none,
+   * else a new array of the same name, type, components and information. It shares the memory of
+   * one that NewDecoded() made. Decodes straight into the new array when the values are not there
+   * yet. nullptr when they cannot be decoded (after an error message) or there is no memory for
+   * them.
    */
   static vtkSmartPointer<vtkDataArray> Plain(vtkDataArray* array);
 
@@ -107,8 +107,8 @@ public:
   static vtkSmartPointer<vtkDataArray> NewPlain(const Handle& handle);
 
   /**
-   * As NewPlain(), but the array knows its handle (From() gives it), and its finite range is that of
-   * the series: see vtkBanyanDecodedArray.
+   * As NewPlain(), but the array knows its handle (From() gives it), and its finite range is that
+   * of the series: see vtkBanyanDecodedArray.
    */
   static vtkSmartPointer<vtkDataArray> NewDecoded(const Handle& handle);
 

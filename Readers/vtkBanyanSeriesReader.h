@@ -94,8 +94,8 @@ public:
 
   ///@{
   /**
-   * Whether arrays may decode on first touch (default), or all come at once as plain arrays that know
-   * nothing of the series.
+   * Whether arrays may decode on first touch (default), or all come at once as plain arrays that
+   * know nothing of the series.
    */
   vtkSetMacro(DeferDecoding, bool);
   vtkGetMacro(DeferDecoding, bool);
@@ -174,7 +174,8 @@ public:
 
   vtkMTimeType GetMTime() override;
 
-  /// Later than GetMTime() when somebody was connected who needs plain arrays where deferred ones are.
+  /// Later than GetMTime() when somebody was connected who needs plain arrays where deferred ones
+  /// are.
   int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** inputs,
     vtkInformationVector* outputs, int port, vtkMTimeType* mtime) override;
 

@@ -1,8 +1,8 @@
 // Files that are not what they should be: an error that says so, and no output.
 #include "VtkIoTesting.h"
 
-#include "vtkBanyanDeferred.h"
 #include "vtkBanyanDecode.h"
+#include "vtkBanyanDeferred.h"
 #include "vtkBanyanSeriesReader.h"
 
 #include "vtkDataArray.h"
