@@ -77,6 +77,7 @@ def check_drawing(reader, display, view, of_series, path):
     session.require(close(colour_range(display), of_series), "colours change with plain arrays")
     simple.Delete(part)
     del part
+    simple.Delete(simple.Shrink(Input=reader))  # which was never updated
     view.ViewTime = reader.TimestepValues[0]
     simple.Render(view)
     session.require(kilobytes(reader) < 100, "without the slice values are held")
