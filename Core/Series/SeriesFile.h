@@ -48,9 +48,10 @@ struct BrickNode
 
 /// An open series. All methods may be called from any thread.
 ///
-/// Opening reads the index and checks that segments exist with their right sizes; node tables and
-/// payloads are read and checked against their checksums when they are needed: what becomes of the files
-/// while they are open is an error, or does not matter.
+/// Opening reads the index, finds the folder (see FindSeriesFolder) and checks that segments exist
+/// with their right sizes. Node tables and payloads are read and checked against their checksums
+/// when they are needed: what becomes of the files while they are open is an error, or does not
+/// matter.
 /// Everything that does not fit throws Error: never garbage, never a crash.
 class SeriesFile
 {

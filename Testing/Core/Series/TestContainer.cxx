@@ -268,7 +268,7 @@ TEST(Container, MissingLongAndShortSegmentsAreNoticedWhenOpening)
   fs::create_directory(segment);
   ExpectError([&] { SeriesFile::Open(path); }, index.Segments[1].File);
   ExpectError([&] { SeriesFile::Open(folder / "nothing.banyan"); }, "nothing.banyan");
-  ExpectError([&] { SeriesFile::Open(folder.Path()); }, "ordinary file");
+  ExpectError([&] { SeriesFile::Open(folder.Path()); }, "This is a folder");
 }
 
 TEST(Container, SegmentsOfAnotherSeriesAreNoticed)
