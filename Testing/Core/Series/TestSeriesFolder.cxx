@@ -17,6 +17,22 @@ namespace
 
 namespace fs = std::filesystem;
 
+/// What a case makes: an index, links to it, and a folder somewhere.
+enum class Lies
+{
+  BesideTarget,   ///< under its name, beside the file
+  BesideLink,     ///< under the link's name, beside the link
+  Linked,         ///< a link of the right name leads to it
+  OldName,        ///< the index was renamed
+  OldNameForeign, ///< and a folder of another series has the new name
+  TwoOldNames,
+  Nowhere,
+  OneMissing,
+  OneShort,
+  OneOfOldName, ///< renamed, and only one segment is there
+  Count
+};
+
 /// A series of 3 segments in `made/`, and the places into which cases put copies of its parts.
 class SeriesPlaces : public ::testing::Test
 {
@@ -61,25 +77,115 @@ protected:
     }
   }
 
+  /// One case: the path that is opened, and where its parts may lie.
+  struct Places
+  {
+    Lies Kind;
+    std::string Target; ///< the index
+    std::string Path;   ///< the same, or a link
+    std::string Beside; ///< a folder of the right name
+    std::string Old;    ///< a folder of another name
+    std::string Victim; ///< a segment
+  };
+
+  struct Expected
+  {
+    bool Opens = true;
+    std::vector<std::string> Words;
+  };
+
+  Places MakePlaces(Lies kind, std::mt19937& random)
+  {
+    for (const char* place : { "data", "work", "store" })
+    {
+      fs::remove_all(this->Folder / place);
+      fs::create_directory(this->Folder / place);
+    }
+    Places places;
+    places.Kind = kind;
+    places.Target = this->Folder / (random() % 2 ? "data/t.banyan" : "data/without suffix");
+    this->CopyIndex(places.Target);
+    places.Path = places.Target;
+    const unsigned links = random() % 3; // a file, a link, or a link to a link
+    for (unsigned link = 0; link < links; ++link)
+    {
+      const std::string from = this->Folder / ("work/l" + std::to_string(link) + ".banyan");
+      fs::create_symlink(
+        random() % 2 ? places.Path : fs::relative(places.Path, this->Folder / "work").string(),
+        from);
+      places.Path = from;
+    }
+    places.Beside = (kind == Lies::BesideLink ? places.Path : places.Target) + ".d";
+    places.Old = this->Folder / (links > 0 && random() % 2 ? "work/old.d" : "data/old.d");
+    places.Victim = this->Segments[random() % 3];
+    return places;
+  }
+
+  /// Puts the folder where the case has it.
+  Expected Arrange(const Places& places)
+  {
+    Expected expected{ true, { places.Path } };
+    switch (places.Kind)
+    {
+      case Lies::BesideTarget:
+      case Lies::BesideLink:
+        this->CopyFolder(places.Beside);
+        break;
+      case Lies::Linked:
+        this->CopyFolder(this->Folder / "store/x");
+        fs::create_directory_symlink(this->Folder / "store/x", places.Beside);
+        break;
+      case Lies::OldNameForeign:
+        fs::create_directory(places.Beside);
+        std::ofstream(places.Beside + "/other.seg") << "of another series";
+        [[fallthrough]];
+      case Lies::OldName:
+        this->CopyFolder(places.Old);
+        break;
+      case Lies::TwoOldNames:
+        this->CopyFolder(this->Folder / "data/old.d");
+        this->CopyFolder(this->Folder / "data/older.d");
+        expected.Opens = false;
+        expected.Words.insert(expected.Words.end(), { "data/old.d", "data/older.d", "rename" });
+        break;
+      case Lies::OneMissing:
+        this->CopyFolder(places.Beside);
+        fs::remove(places.Beside + "/" + places.Victim);
+        expected.Opens = false;
+        expected.Words.insert(expected.Words.end(),
+          { places.Beside, places.Victim, "1 of the 3 files", "copy the folder again" });
+        break;
+      case Lies::OneShort:
+        this->CopyFolder(places.Beside);
+        fs::resize_file(places.Beside + "/" + places.Victim, 100);
+        expected.Opens = false;
+        expected.Words.insert(
+          expected.Words.begin(), { places.Beside, places.Victim, "cut short" });
+        expected.Words.pop_back(); // the file that is short is named, not the index
+        break;
+      case Lies::OneOfOldName:
+        fs::create_directory(places.Old);
+        fs::copy(
+          this->Folder / ("made/s.banyan.d/" + places.Victim), places.Old + "/" + places.Victim);
+        expected.Opens = false;
+        expected.Words.insert(expected.Words.end(), { places.Old, "with 1 of them" });
+        [[fallthrough]];
+      default:
+        expected.Opens = false;
+        expected.Words.insert(
+          expected.Words.end(), { fs::path(places.Path).filename().string() + ".d", "3 segments",
+                                  "is missing beside", "copy or move both" });
+        if (places.Path != places.Target)
+        {
+          expected.Words.push_back(fs::canonical(places.Target).string());
+        }
+    }
+    return expected;
+  }
+
   TemporaryFolder Folder;
   const Steps<float> Values = SmallSteps(5);
   std::vector<std::string> Segments;
-};
-
-/// What a case makes: an index, links to it, and a folder somewhere.
-enum class Lies
-{
-  BesideTarget,   ///< under its name, beside the file
-  BesideLink,     ///< under the link's name, beside the link
-  Linked,         ///< a link of the right name leads to it
-  OldName,        ///< the index was renamed
-  OldNameForeign, ///< and a folder of another series has the new name
-  TwoOldNames,
-  Nowhere,
-  OneMissing,
-  OneShort,
-  OneOfOldName, ///< renamed, and only one segment is there
-  Count
 };
 
 TEST_F(SeriesPlaces, HundredsOfArrangements)
@@ -87,83 +193,11 @@ TEST_F(SeriesPlaces, HundredsOfArrangements)
   std::mt19937 random(20261125);
   for (int i = 0; i < 150; ++i)
   {
-    for (const char* place : { "data", "work", "store" })
-    {
-      fs::remove_all(this->Folder / place);
-      fs::create_directory(this->Folder / place);
-    }
-    const auto lies = static_cast<Lies>(i % static_cast<int>(Lies::Count));
-    const std::string target =
-      this->Folder / (random() % 2 ? "data/t.banyan" : "data/without suffix");
-    this->CopyIndex(target);
-    std::string path = target;
-    const unsigned links = random() % 3; // a file, a link, or a link to a link
-    for (unsigned link = 0; link < links; ++link)
-    {
-      const std::string from = this->Folder / ("work/l" + std::to_string(link) + ".banyan");
-      fs::create_symlink(
-        random() % 2 ? path : fs::relative(path, this->Folder / "work").string(), from);
-      path = from;
-    }
-    const std::string beside = lies == Lies::BesideLink ? path + ".d" : target + ".d";
-    const std::string old =
-      this->Folder / (links > 0 && random() % 2 ? "work/old.d" : "data/old.d");
-    const std::string victim = this->Segments[random() % 3];
-    bool opens = true;
-    std::vector<std::string> words = { path };
-    switch (lies)
-    {
-      case Lies::BesideTarget:
-      case Lies::BesideLink:
-        this->CopyFolder(beside);
-        break;
-      case Lies::Linked:
-        this->CopyFolder(this->Folder / "store/x");
-        fs::create_directory_symlink(this->Folder / "store/x", beside);
-        break;
-      case Lies::OldNameForeign:
-        fs::create_directory(beside);
-        std::ofstream(beside + "/other.seg") << "of another series";
-        [[fallthrough]];
-      case Lies::OldName:
-        this->CopyFolder(old);
-        break;
-      case Lies::TwoOldNames:
-        this->CopyFolder(this->Folder / "data/old.d");
-        this->CopyFolder(this->Folder / "data/older.d");
-        opens = false;
-        words.insert(words.end(), { "data/old.d", "data/older.d", "rename" });
-        break;
-      case Lies::OneMissing:
-        this->CopyFolder(beside);
-        fs::remove(beside + "/" + victim);
-        opens = false;
-        words.insert(words.end(), { beside, victim, "1 of the 3 files", "copy the folder again" });
-        break;
-      case Lies::OneShort:
-        this->CopyFolder(beside);
-        fs::resize_file(beside + "/" + victim, 100);
-        opens = false;
-        words.insert(words.begin(), { beside, victim, "cut short" });
-        words.pop_back(); // the file that is short is named, not the index
-        break;
-      case Lies::OneOfOldName:
-        fs::create_directory(old);
-        fs::copy(this->Folder / ("made/s.banyan.d/" + victim), old + "/" + victim);
-        opens = false;
-        words.insert(words.end(), { old, "with 1 of them" });
-        [[fallthrough]];
-      default:
-        opens = false;
-        words.insert(words.end(), { fs::path(path).filename().string() + ".d", "3 segments",
-                                    "is missing beside", "copy or move both" });
-        if (links > 0)
-        {
-          words.push_back(fs::canonical(target).string());
-        }
-    }
-    SCOPED_TRACE("case " + std::to_string(i) + ", kind " + std::to_string(static_cast<int>(lies)));
-    this->Expect(path, opens, words);
+    SCOPED_TRACE("case " + std::to_string(i));
+    const Places places =
+      this->MakePlaces(static_cast<Lies>(i % static_cast<int>(Lies::Count)), random);
+    const Expected expected = this->Arrange(places);
+    this->Expect(places.Path, expected.Opens, expected.Words);
   }
 }
 
@@ -178,7 +212,8 @@ TEST_F(SeriesPlaces, AFolderInPlaceOfItsFile)
 {
   this->Expect(
     this->Folder / "made/s.banyan.d", false, { "This is a folder", "s.banyan beside it" });
-  this->Expect(this->Folder / "made/s.banyan.d/", false, { "This is a folder", "s.banyan beside it" });
+  this->Expect(
+    this->Folder / "made/s.banyan.d/", false, { "This is a folder", "s.banyan beside it" });
   this->Expect(this->Folder / "made", false, { "This is a folder", "name.banyan" });
 }
 
