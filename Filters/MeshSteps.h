@@ -83,7 +83,7 @@ private:
   MeshArrays Arrays;
   std::string Displacements; ///< see AtRest()
   bool Found = false;
-  bool Leaves = false; ///< of hyper trees or AMR
+  bool Leaves = false;                  ///< of hyper trees or AMR
   std::vector<std::string> OthersThere; ///< arrays of this rank's part of the last step
   std::string HiddenParts;              ///< a sentence, if any are hidden
   // On rank 0:

@@ -55,10 +55,11 @@ struct WritingOrder
 /// whose group is still being encoded when it should receive the next one makes the others wait.
 ///
 /// Everything is decided by all ranks together: a problem of one makes all of them throw the same
-/// Error, at the same point, that another save of the series is under way included. With a relative error bound the steps are pulled twice: first for the
-/// ranges of the whole series; the same where a transform or a range is chosen from the values.
-/// Changes of grid, type or arrays between steps are refused in the first pass. Where it is only
-/// found in the second one that points or cells are hidden, all starts anew with a first one.
+/// Error, at the same point, that another save of the series is under way included. With a relative
+/// error bound the steps are pulled twice: first for the ranges of the whole series; the same where
+/// a transform or a range is chosen from the values. Changes of grid, type or arrays between steps
+/// are refused in the first pass. Where it is only found in the second one that points or cells are
+/// hidden, all starts anew with a first one.
 class SeriesWriting
 {
 public:

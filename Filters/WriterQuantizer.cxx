@@ -52,9 +52,9 @@ QuantizerOptions WriterQuantizer::Options() const
   {
     RequireNumber("Range", end, true);
   }
-  const std::pair<const char*, const std::vector<double>*> lists[] = {
-    { "TransformTable", &this->TransformTable }, { "FillValues", &this->FillValues },
-    { "OpacityFunction", &this->OpacityFunction } };
+  const std::pair<const char*, const std::vector<double>*> lists[] = { { "TransformTable",
+                                                                         &this->TransformTable },
+    { "FillValues", &this->FillValues }, { "OpacityFunction", &this->OpacityFunction } };
   for (const auto& [property, numbers] : lists)
   {
     for (const double number : *numbers)

@@ -1,6 +1,5 @@
 #include "vtkBanyanHexOctree.h"
 
-#include "SetNumber.h"
 #include "ArraysOfRanks.h"
 #include "GridOfAmr.h"
 #include "GridOfHyperTrees.h"
@@ -10,6 +9,7 @@
 #include "MeshPieces.h"
 #include "RankTalk.h"
 #include "SampledGrid.h"
+#include "SetNumber.h"
 
 #include "Base/ThreadPool.h"
 #include "HexOctree/ElementOctree.h"
@@ -32,8 +32,8 @@
 #include "vtkUnstructuredGrid.h"
 
 vtkStandardNewMacro(vtkBanyanHexOctree);
-banyanSetNumberMacro(vtkBanyanHexOctree, MeshTolerance, 0.0, 0.0625)
-banyanSetNumberMacro(vtkBanyanHexOctree, MeshSamplingTolerance, 1.0 / 1024, 1.0)
+banyanSetNumberMacro(vtkBanyanHexOctree, MeshTolerance, 0.0, 0.0625);
+banyanSetNumberMacro(vtkBanyanHexOctree, MeshSamplingTolerance, 1.0 / 1024, 1.0);
 
 namespace
 {

@@ -1,8 +1,8 @@
 #include "vtkBanyanTemporalEnhancement.h"
 
-#include "SetNumber.h"
 #include "EnhancedArray.h"
 #include "LeafParts.h"
+#include "SetNumber.h"
 #include "vtkBanyanDeferred.h"
 
 #include "Series/SeriesFile.h"
@@ -24,10 +24,10 @@
 #include <stdexcept>
 
 vtkStandardNewMacro(vtkBanyanTemporalEnhancement);
-banyanSetNumberMacro(vtkBanyanTemporalEnhancement, Strength, 0.0, 1.0)
-banyanSetNumberMacro(vtkBanyanTemporalEnhancement, Sensitivity, 1e-6, 1e6)
-banyanSetNumberMacro(vtkBanyanTemporalEnhancement, Scale, 0.0, VTK_DOUBLE_MAX)
-banyanSetNumberMacro(vtkBanyanTemporalEnhancement, NoiseFloor, 0.0, VTK_DOUBLE_MAX)
+banyanSetNumberMacro(vtkBanyanTemporalEnhancement, Strength, 0.0, 1.0);
+banyanSetNumberMacro(vtkBanyanTemporalEnhancement, Sensitivity, 1e-6, 1e6);
+banyanSetNumberMacro(vtkBanyanTemporalEnhancement, Scale, 0.0, VTK_DOUBLE_MAX);
+banyanSetNumberMacro(vtkBanyanTemporalEnhancement, NoiseFloor, 0.0, VTK_DOUBLE_MAX);
 
 namespace
 {
@@ -147,8 +147,8 @@ bool vtkBanyanTemporalEnhancement::Enhance(
     return false;
   }
   // Hyper trees have cells only, and VTK finds these when it is asked for points.
-  const bool ofCells = association == vtkDataObject::FIELD_ASSOCIATION_CELLS ||
-                       vtkHyperTreeGrid::SafeDownCast(data);
+  const bool ofCells =
+    association == vtkDataObject::FIELD_ASSOCIATION_CELLS || vtkHyperTreeGrid::SafeDownCast(data);
   const int where = ofCells ? vtkDataObject::CELL : vtkDataObject::POINT;
   const std::string kind = ofCells ? "cell" : "point";
   vtkDataArray* neighbours[2] = { nullptr, nullptr };

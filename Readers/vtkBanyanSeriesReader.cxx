@@ -92,8 +92,9 @@ void vtkBanyanSeriesReader::SetCacheBudget(int mebibytes)
 {
   if (mebibytes < -1)
   {
-    vtkErrorMacro(<< "CacheBudget must be a number of MiB, or -1 for the one of the process, and is "
-                  << mebibytes << ". It stays " << this->CacheBudget << ".");
+    vtkErrorMacro(
+      << "CacheBudget must be a number of MiB, or -1 for the one of the process, and is "
+      << mebibytes << ". It stays " << this->CacheBudget << ".");
     return;
   }
   if (mebibytes >= 0)

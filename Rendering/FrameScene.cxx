@@ -57,8 +57,8 @@ FrameScene MakeFrameScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMap
     RequireNumber("ScalarOpacityUnitDistance", property->GetScalarOpacityUnitDistance(0));
     for (int i = 0; i < 16; ++i)
     {
-      RequireNumber("A number of the volume's position, scale and orientation",
-        toWorld[i / 4][i % 4], true);
+      RequireNumber(
+        "A number of the volume's position, scale and orientation", toWorld[i / 4][i % 4], true);
     }
     scene.Transfer = function.Of(property);
     scene.ClipPlanes = MakeClipPlanes(mapper, toWorld);

@@ -47,7 +47,8 @@ std::string IgnoredOptions(vtkVolumeMapper* mapper, vtkVolumeProperty* property,
   name(property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D,
     "TransferFunctionMode 2D (the one-dimensional functions are drawn)");
   name(property->GetIndependentComponents() == 0 && components > 1,
-    "IndependentComponents off (RGBA data are not drawn as colours: one component or the magnitude is "
+    "IndependentComponents off (RGBA data are not drawn as colours: one component or the magnitude "
+    "is "
     "coloured)");
   name(property->GetComponentWeight(0) != 1.0, "ComponentWeight");
   name(property->GetNumberOfLabels() > 0, "functions of labels");

@@ -114,8 +114,8 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
   }
   const double tolerance = wish.Interacting
                              ? wish.Interactive * this->Slack
-                             : this->Passes.at(wish.Eye).ToleranceOf(communicator, scene, field.Version(),
-                                 { wish.Passes, wish.Still, wish.Interactive });
+                             : this->Passes.at(wish.Eye).ToleranceOf(communicator, scene,
+                                 field.Version(), { wish.Passes, wish.Still, wish.Interactive });
   SamplingWish sampling{ tolerance, scene.SampleDistance, levels ? coarsest : 0 };
   if (field.IsMesh() && wish.MaxElementsPerPixel > 0.0)
   {

@@ -36,7 +36,7 @@ public:
     bool FixedDistance =
       false; ///< whether the scene's distance between samples is that of all levels
     bool KeepsTolerance = true; ///< otherwise the picture is one of CoarserSteps
-    int Eye = 0; ///< 1 for the second picture of a frame, where both eyes get one
+    int Eye = 0;                ///< 1 for the second picture of a frame, where both eyes get one
   };
 
   /// Collective: gives the scene its samplings and its opacity limit.
@@ -48,9 +48,9 @@ public:
     const Wish& wish, std::uint64_t budgetBytes, const std::string& failure,
     FrameStatistics& frame);
 
-  /// What is to be known beside the estimated error of the frame that was planned last, in sentences
-  /// for the user: why it is above the tolerance that was wanted, or what it may have missed. Empty if
-  /// nothing. The same on all ranks.
+  /// What is to be known beside the estimated error of the frame that was planned last, in
+  /// sentences for the user: why it is above the tolerance that was wanted, or what it may have
+  /// missed. Empty if nothing. The same on all ranks.
   const std::string& Limit() const { return this->LimitText; }
 
   /// Tells what the frame took that was planned last: the same number on all ranks.
@@ -70,7 +70,7 @@ private:
 
   std::string LimitText;
   std::array<RefinementPasses, 2> Passes; ///< of each eye
-  double Slack = 1.0; ///< times the interactive tolerance
+  double Slack = 1.0;                     ///< times the interactive tolerance
   StepControl Steps;
   bool BySteps = false;      ///< the last frame
   int CoarsestStepLevel = 0; ///< that a frame by steps could have

@@ -44,9 +44,10 @@ struct vtkBanyanVolumeMapper::Internals
   vtkMTimeType BoundsTime = 0;
   banyan::ToleranceControl Tolerance;
   double WriteSeconds = 0.0; ///< of the last frame, to put its picture on the screen
-  std::set<const vtkVolume*> DrawnByOthers; ///< of the renderer's present frame; only to compare with
-  unsigned long FrameEnds = 0;              ///< observes that
-  unsigned char ToldNotInDepth = 0;         ///< bits of banyan::NotInDepth
+  std::set<const vtkVolume*>
+    DrawnByOthers;                  ///< of the renderer's present frame; only to compare with
+  unsigned long FrameEnds = 0;      ///< observes that
+  unsigned char ToldNotInDepth = 0; ///< bits of banyan::NotInDepth
 
   void Publish(const banyan::FrameStatistics& frame, std::uint64_t bytesRead,
     const banyan::BrickCache::Statistics& cacheBefore, std::uint64_t aheadBefore, double seconds,

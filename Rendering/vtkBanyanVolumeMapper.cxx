@@ -1,12 +1,12 @@
 #include "vtkBanyanVolumeMapper.h"
 
-#include "SetNumber.h"
 #include "FrameScene.h"
 #include "IceTCompositing.h"
 #include "IgnoredOptions.h"
 #include "PieceOfInput.h"
 #include "RendererCamera.h"
 #include "SceneOptions.h"
+#include "SetNumber.h"
 #include "VolumeMapperInternals.h"
 #include "vtkBanyanFrameStatistics.h"
 
@@ -30,15 +30,15 @@
 #include <algorithm>
 
 vtkStandardNewMacro(vtkBanyanVolumeMapper);
-banyanSetNumberMacro(vtkBanyanVolumeMapper, ImageErrorTolerance, 0.05, 255.0)
-banyanSetNumberMacro(vtkBanyanVolumeMapper, InteractiveImageErrorTolerance, 0.05, 255.0)
-banyanSetNumberMacro(vtkBanyanVolumeMapper, InteractiveFrameSeconds, 0.0, 3600.0)
-banyanSetNumberMacro(vtkBanyanVolumeMapper, SampleDistanceVoxels, 0.0, 100.0)
-banyanSetNumberMacro(vtkBanyanVolumeMapper, ScreenErrorPixels, 0.0, 1024.0)
-banyanSetNumberMacro(vtkBanyanVolumeMapper, MeshTolerance, 0.0, 0.0625)
-banyanSetNumberMacro(vtkBanyanVolumeMapper, MeshSamplingTolerance, 0.0, 1.0)
-banyanSetNumberMacro(vtkBanyanVolumeMapper, MaxElementsPerPixel, 0.0, 1e6)
-banyanSetNumberMacro(vtkBanyanVolumeMapper, TemporalEnhancement, 0.0, 1.0)
+banyanSetNumberMacro(vtkBanyanVolumeMapper, ImageErrorTolerance, 0.05, 255.0);
+banyanSetNumberMacro(vtkBanyanVolumeMapper, InteractiveImageErrorTolerance, 0.05, 255.0);
+banyanSetNumberMacro(vtkBanyanVolumeMapper, InteractiveFrameSeconds, 0.0, 3600.0);
+banyanSetNumberMacro(vtkBanyanVolumeMapper, SampleDistanceVoxels, 0.0, 100.0);
+banyanSetNumberMacro(vtkBanyanVolumeMapper, ScreenErrorPixels, 0.0, 1024.0);
+banyanSetNumberMacro(vtkBanyanVolumeMapper, MeshTolerance, 0.0, 0.0625);
+banyanSetNumberMacro(vtkBanyanVolumeMapper, MeshSamplingTolerance, 0.0, 1.0);
+banyanSetNumberMacro(vtkBanyanVolumeMapper, MaxElementsPerPixel, 0.0, 1e6);
+banyanSetNumberMacro(vtkBanyanVolumeMapper, TemporalEnhancement, 0.0, 1.0);
 
 vtkBanyanVolumeMapper::vtkBanyanVolumeMapper()
   : Statistics(vtkSmartPointer<vtkBanyanFrameStatistics>::New())

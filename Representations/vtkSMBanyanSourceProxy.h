@@ -2,8 +2,8 @@
  * @class   vtkSMBanyanSourceProxy
  * @brief   the proxy of a reader whose failure raises an exception in Python
  *
- * OpenDataFile(), UpdatePipeline() and Show() raise RuntimeError with the reader's own sentence, which it says in
- * its information property ErrorMessage.
+ * OpenDataFile(), UpdatePipeline() and Show() raise RuntimeError with the reader's own sentence,
+ * which it says in its information property ErrorMessage.
  *
  * @par Limits:
  * Updates that come from a filter or a view print the error and raise nothing.

@@ -28,12 +28,12 @@ struct TabulationError
 /// that jumps, or changes within less than these can tell, gets entries with edges: as many as it
 /// takes, and its jumps are exact.
 /// @param function evaluated in double, up to some 100,000 times; constant beyond the corners
-/// @param corners where the function may jump, bend or have a value of its own, in any order; what is
-/// not finite is left out. It may jump elsewhere too, but what begins and ends within an eighth of the
-/// way from one corner to the next may be missed
-/// @param equalParts of the range, in each of which colours are the same: small steps from one part to
-/// the next then fall between equally spaced entries. 0 if there are none
-/// The unit distance is left at 1. Throws Error when the function gives what is not a number.
+/// @param corners where the function may jump, bend or have a value of its own, in any order; what
+/// is not finite is left out. It may jump elsewhere too, but what begins and ends within an eighth
+/// of the way from one corner to the next may be missed
+/// @param equalParts of the range, in each of which colours are the same: small steps from one part
+/// to the next then fall between equally spaced entries. 0 if there are none The unit distance is
+/// left at 1. Throws Error when the function gives what is not a number.
 TransferFunction TabulateFunction(const FunctionOfValue& function, std::vector<double> corners,
   int equalParts = 0, int entries = 4096);
 

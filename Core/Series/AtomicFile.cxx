@@ -42,8 +42,7 @@ AtomicFile::AtomicFile(const std::string& path)
 {
   // What a killed process left goes; what a link of that name leads to stays.
   (void)unlink(this->PartPath.c_str());
-  this->Descriptor =
-    open(this->PartPath.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+  this->Descriptor = open(this->PartPath.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
   if (this->Descriptor < 0)
   {
     throw Error(

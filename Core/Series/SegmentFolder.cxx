@@ -193,8 +193,8 @@ void SegmentFolder::RemoveReplaced(
   {
     return;
   }
-  RemoveWhere(this->FolderPath, [&](const std::string& name)
-    { return Contains(old, name) && !Contains(names, name); });
+  RemoveWhere(this->FolderPath,
+    [&](const std::string& name) { return Contains(old, name) && !Contains(names, name); });
 }
 
 void SegmentFolder::RemoveLeftovers(

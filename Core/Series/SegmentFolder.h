@@ -17,8 +17,8 @@ namespace banyan
 /// a new series never touches the segments of the one it is going to replace, the same data gives
 /// the same files whoever encodes it, and what is equal is stored once, wherever it occurs.
 ///
-/// Nothing is removed but what a save of this series wrote: each keeps a list of its files in the folder,
-/// which goes at its end, so that those of one that was killed are known.
+/// Nothing is removed but what a save of this series wrote: each keeps a list of its files in the
+/// folder, which goes at its end, so that those of one that was killed are known.
 class SegmentFolder
 {
 public:
@@ -47,15 +47,15 @@ public:
   /// empty.
   void RemoveOwn(const std::vector<std::string>& names = {}) noexcept;
 
-  /// Removes segments of the series that was replaced. Nothing where the folder is a link to that of
-  /// another series.
+  /// Removes segments of the series that was replaced. Nothing where the folder is a link to that
+  /// of another series.
   /// @param old files that its index named
   /// @param names of those that stay
   void RemoveReplaced(
     const std::vector<std::string>& old, const std::vector<std::string>& names) noexcept;
 
-  /// Removes what saves that were killed have left in a folder, but files that an index names. To be
-  /// called when no save is under way.
+  /// Removes what saves that were killed have left in a folder, but files that an index names. To
+  /// be called when no save is under way.
   /// @param named none: it is not known which ones, and only unfinished files are removed
   static void RemoveLeftovers(
     const std::string& folder, const std::optional<std::vector<std::string>>& named) noexcept;

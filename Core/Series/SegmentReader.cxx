@@ -51,8 +51,8 @@ segment::TableEntry SegmentReader::Entry(std::uint32_t table) const
     this->CheckHeader();
     this->Checked = true;
   }
-  const segment::TableEntry entry = segment::LoadEntry(
-    this->Directory.data() + std::size_t{ table } * segment::EntryBytes);
+  const segment::TableEntry entry =
+    segment::LoadEntry(this->Directory.data() + std::size_t{ table } * segment::EntryBytes);
   const std::uint64_t end = this->Head.DirectoryOffset;
   if (entry.Offset < this->Head.PayloadEnd || entry.Offset > end ||
       entry.Offset % segment::SectionAlignment != 0 || entry.StoredBytes > end - entry.Offset ||
@@ -66,8 +66,7 @@ segment::TableEntry SegmentReader::Entry(std::uint32_t table) const
 NodeTable SegmentReader::Table(
   const segment::TableEntry& entry, const BrickLayout& layout, ScalarType type) const
 {
-  const Bytes stored =
-    this->File.Read(entry.Offset, static_cast<std::size_t>(entry.StoredBytes));
+  const Bytes stored = this->File.Read(entry.Offset, static_cast<std::size_t>(entry.StoredBytes));
   if (ShortHashOf(stored.data(), stored.size()) != entry.Hash)
   {
     throw Error("A node table is damaged: its checksum does not fit");

@@ -56,8 +56,8 @@ private:
   std::map<int, EncodedGroup> Waiting; ///< for those before them
   std::set<std::string> Files;         ///< that the groups in order have
   std::vector<std::string> Before;
-  bool KeepOld;                        ///< a file of that name was there: it stays until Finish
-  int InFile = 0;                      ///< groups that the index file names
+  bool KeepOld;   ///< a file of that name was there: it stays until Finish
+  int InFile = 0; ///< groups that the index file names
 };
 
 /// The files in its folder that an index file names, that of a mesh included: none when there is no

@@ -127,8 +127,9 @@ TEST_F(ReaderRobustness, ThroughALink)
 {
   fs::create_directory(this->Folder / "work");
   fs::create_symlink("../a.banyan", this->Folder / "work/b.banyan");
-  EXPECT_TRUE(SameBits(ImageAt(Reader(this->Folder / "work/b.banyan"), 1.0)->GetPointData()->GetScalars(),
-    this->Good[1]->GetPointData()->GetScalars()));
+  EXPECT_TRUE(
+    SameBits(ImageAt(Reader(this->Folder / "work/b.banyan"), 1.0)->GetPointData()->GetScalars(),
+      this->Good[1]->GetPointData()->GetScalars()));
 }
 
 TEST_F(ReaderRobustness, MissingSegment)
