@@ -40,6 +40,8 @@ void SeriesWriting::Run()
 {
   try
   {
+    this->AskForTimes();
+    this->TakeLock();
     try
     {
       this->Write();
@@ -64,8 +66,6 @@ void SeriesWriting::Run()
 
 void SeriesWriting::Write()
 {
-  this->AskForTimes();
-  this->TakeLock();
   if (this->TwoPasses)
   {
     this->FirstPass();
