@@ -88,7 +88,7 @@ def cell_data(folder):
 
 def bad_options(folder):
     wavelet = simple.Wavelet()
-    expect_no_series("bound", wavelet, folder, "error bound", ErrorBound=-1)
+    expect_no_series("bound", wavelet, folder, "ErrorBound", ErrorBound=-1)
     expect_no_series("interval", wavelet, folder, "key-frame interval", KeyframeInterval=0)
     expect_no_series("array", wavelet, folder, "there are: RTData", PointArrays=["nothere"])
     expect_refusal("folder", lambda: simple.SaveData(
