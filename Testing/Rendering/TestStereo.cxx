@@ -9,6 +9,9 @@
 #include "vtkCubeSource.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProperty.h"
+#include "vtkSphereSource.h"
+
+#include <cmath>
 
 using namespace mapper_testing;
 
@@ -136,6 +139,60 @@ void EachKindOfCamera()
   CheckAlike(cube, "off axis without stereo");
 }
 
+/// Column in the middle of what is not background.
+double MiddleColumn(const Picture& picture, int width)
+{
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < picture.size(); i += 3)
+  {
+    if (std::abs(int{ picture[i] } - int{ picture[0] }) > 60)
+    {
+      sum += static_cast<double>(i / 3 % static_cast<std::size_t>(width));
+      count += 1.0;
+    }
+  }
+  return count > 0.0 ? sum / count : -1.0;
+}
+
+/// A cube's outline says nothing of rays that begin between the eyes: they enter at the right place
+/// and go on in a wrong direction. A ball within the volume must stand where its surface does.
+void WhatLiesInside()
+{
+  vtkNew<vtkBanyanVolumeMapper> mapper;
+  Cube cube(mapper);
+  mapper->SetInputDataObject(PlainImage([](double x, double y, double z, int)
+    { return std::hypot(x - 0.5, y - 0.5, z - 0.5) < 0.2 ? 1.0f : 0.0f; },
+    glm::ivec3(65)));
+  cube.Volume->SetScale(8.0 / 64);
+  vtkPiecewiseFunction* const opacity = cube.Volume->GetProperty()->GetScalarOpacity();
+  opacity->RemoveAllPoints();
+  opacity->AddPoint(0.45, 0.0);
+  opacity->AddPoint(0.55, 1.0);
+  vtkNew<vtkSphereSource> ball;
+  ball->SetCenter(4, 4, 4);
+  ball->SetRadius(1.6);
+  ball->SetThetaResolution(64);
+  ball->SetPhiResolution(64);
+  vtkNew<vtkPolyDataMapper> polygons;
+  polygons->SetInputConnection(ball->GetOutputPort());
+  cube.Surface->SetMapper(polygons);
+  cube.Window->StereoRenderOn();
+  const int width = cube.Window->GetSize()[0];
+  double columns[2] = { 0.0, 0.0 };
+  for (const bool right : { false, true })
+  {
+    cube.Window->SetStereoType(right ? VTK_STEREO_RIGHT : VTK_STEREO_LEFT);
+    cube.Renderer->GetActiveCamera()->Modified(); // VTK forgets that stereo is on
+    const double volume = MiddleColumn(cube.DrawOne(true), width);
+    const double surface = MiddleColumn(cube.DrawOne(false), width);
+    Check(std::abs(volume - surface) < 0.5, "a ball inside is at column " + std::to_string(volume) +
+                                              ", its surface at " + std::to_string(surface));
+    columns[right ? 1 : 0] = volume;
+  }
+  Check(std::abs(columns[0] - columns[1]) > 2.0, "and the eyes see it in two places");
+}
+
 /// Passes end for both eyes, and for one that is left.
 void RefinementEnds()
 {
@@ -169,6 +226,7 @@ int main()
 {
   EachKindOfStereo();
   EachKindOfCamera();
+  WhatLiesInside();
   RefinementEnds();
   return Failures();
 }
