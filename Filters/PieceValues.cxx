@@ -33,7 +33,7 @@ vtkUnsignedCharArray* FlagsOf(vtkImageData* image, ArrayFlags flags)
   return flags == ArrayFlags::OfPoints ? image->GetPointGhostArray() : image->GetCellGhostArray();
 }
 
-/// Those of them that a series keeps: pieces and their neighbours are none of its own.
+/// The flags that a series keeps: pieces and their neighbours are none of its own.
 unsigned char BitsOf(ArrayFlags flags)
 {
   return flags == ArrayFlags::OfPoints ? HiddenPointBits : HiddenCellBits;

@@ -66,7 +66,7 @@ void SeriesWriting::Remember(int step, const StepAgreement& now)
   this->WarnOf(step, now);
 }
 
-/// Of what was not asked for, as it was not there to be chosen, and of what cannot be written.
+/// Warns of arrays that were not there to be chosen, and of those that cannot be written.
 void SeriesWriting::WarnOf(int step, const StepAgreement& now)
 {
   std::string warning = this->Warned.insert(now.Warning).second ? now.Warning : "";

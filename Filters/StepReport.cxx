@@ -140,8 +140,8 @@ std::vector<vtkDataArray*> Choose(
   for (int i = 0; i < selection.GetNumberOfArrays(); ++i)
   {
     const std::string name = selection.GetArrayName(i);
-    // ParaView offers the ghost flags like any array and selects them by default. What they hide is
-    // written whether they are chosen or not.
+    // ParaView offers the ghost flags like any array and selects them by default. Hidden points
+    // are written whether they are chosen or not.
     if (selection.GetArraySetting(i) && name != vtkDataSetAttributes::GhostArrayName() &&
         std::find(available.begin(), available.end(), name) == available.end())
     {

@@ -69,7 +69,7 @@ struct StepAgreement
 
 StepAgreement Agree(const std::vector<StepReport>& reports);
 
-/// What a series is to say of hidden points and cells.
+/// The array of a series that says which points or cells are hidden.
 WrittenArray HiddenFlags(ArrayFlags flags);
 
 /// What changed between two grids, as half a sentence ("the spacing was ... and is ..."), or

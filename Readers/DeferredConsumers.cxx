@@ -90,7 +90,7 @@ std::size_t TimesConnected(vtkExecutive* executive, int input, vtkInformation* p
 }
 
 /**
- * What is connected to a port; false where that cannot be told.
+ * Finds out what is connected to a port; false where that cannot be told.
  *
  * VTK's list of consumers keeps pointers to those that were destroyed without being disconnected.
  * But each that lives holds a reference to the information of the port: it is its input

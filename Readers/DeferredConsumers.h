@@ -13,7 +13,7 @@ class vtkAlgorithm;
 namespace banyan
 {
 
-/// What an algorithm does with deferred arrays of its input.
+/// The use that an algorithm makes of deferred arrays of its input.
 enum class DeferredUse
 {
   Unknown,        ///< nobody knows: it needs plain arrays

@@ -35,7 +35,7 @@ struct vtkBanyanSeriesReader::Internals
   bool GaveDeferred = false; ///< whether the output has arrays that decode on first touch
   vtkTimeStamp PlainWanted;  ///< when somebody came who needs plain ones instead
   vtkTimeStamp Executed;
-  /// What plain arrays took the place of: ParaView's 2D histogram keeps pointers to arrays that it
+  /// Arrays that plain ones have replaced: ParaView's 2D histogram keeps pointers to arrays that it
   /// saw before the update.
   std::vector<vtkSmartPointer<vtkDataArray>> Replaced;
 

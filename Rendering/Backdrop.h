@@ -15,7 +15,7 @@ class vtkWindow;
 namespace banyan
 {
 
-/// What other props have drawn where volumes are to be drawn: on all ranks, nearest first. Pixels
+/// The picture of other props where volumes are to be drawn: on all ranks, nearest first. Pixels
 /// are read and travel only in the rectangle where some rank has other props on the screen
 /// (OthersOnScreen): where none has any, it costs nothing.
 class Backdrop

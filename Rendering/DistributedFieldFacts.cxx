@@ -1,4 +1,4 @@
-// What ranks tell each other about their pieces of image data.
+// Facts that ranks tell each other about their pieces of image data.
 #include "DistributedFieldFacts.h"
 
 #include "HiddenInImage.h"

@@ -10,7 +10,7 @@
 namespace banyan
 {
 
-/// What a rank tells the others about its piece. Plain memory: it is sent as it is.
+/// Facts that a rank tells the others about its piece. Plain memory: it is sent as it is.
 struct DistributedField::Facts
 {
   std::int32_t HasData = 0;

@@ -75,7 +75,7 @@ void DistributedField::TakePieces(Communicator& communicator, const FieldPiece& 
   }
 }
 
-/// Of the values of all sources.
+/// Agrees on the range of the values of all sources.
 void DistributedField::AgreeOnRange(Communicator& communicator)
 {
   ValueRange range;

@@ -48,15 +48,15 @@ public:
     const Wish& wish, std::uint64_t budgetBytes, const std::string& failure,
     FrameStatistics& frame);
 
-  /// What is to be known beside the estimated error of the frame that was planned last, in
-  /// sentences for the user: why it is above the tolerance that was wanted, or what it may have
+  /// Remarks on the estimated error of the frame that was planned last, in sentences for the
+  /// user: why it is above the tolerance that was wanted, or what it may have
   /// missed. Empty if nothing. The same on all ranks.
   const std::string& Limit() const { return this->LimitText; }
 
   /// Tells what the frame took that was planned last: the same number on all ranks.
   void FrameTook(const Wish& wish, double seconds);
 
-  /// As RefinementPasses::Next, of the pictures of both eyes.
+  /// The same as RefinementPasses::Next, for the pictures of both eyes.
   bool RefineNext();
 
 private:

@@ -120,7 +120,7 @@ public:
   }
 
 private:
-  /// What data in float32 have of a label.
+  /// A label as data in float32 have it.
   static double Rounded(double label) { return static_cast<float>(label); }
 
   vtkDiscretizableColorTransferFunction* Function;

@@ -14,10 +14,10 @@ namespace banyan
 /// distance, as VTK evaluates them (GetColor, GetValue), tabulated by TabulateFunction: its colours
 /// below and above the range, its steps and logarithms included.
 ///
-/// Of categories (an indexed look-up), numbers that are labels (or are rounded to them in float32)
+/// In categories (an indexed look-up), numbers that are labels (or are rounded to them in float32)
 /// have their colours, and all others those that the map has for them: of NaN, or beyond the range.
-/// What is not a number is transparent whatever the map says. Throws Error when a logarithmic
-/// opacity function begins at 0 or below, or a value has none.
+/// A value that is not a number is transparent whatever the map says. Throws Error when a
+/// logarithmic opacity function begins at 0 or below, or a value has none.
 TransferFunction MakeTransferFunction(vtkVolumeProperty* property);
 
 /// Whether values are labels with a colour each: a value between two labels then means nothing.

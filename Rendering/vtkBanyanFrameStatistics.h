@@ -122,7 +122,7 @@ public:
   vtkSetStdStringFromCharMacro(ImageErrorLimit);
   vtkGetCharFromStdStringMacro(ImageErrorLimit);
   /// The largest error of the drawn values that encoding them has made, over all steps, as it was
-  /// measured then; in the units of the data. What it does to the picture is not estimated:
+  /// measured then; in the units of the data. Its effect on the picture is not estimated:
   /// Documentation/accuracy.md says what it does usually. 0 for plain data, and for meshes, of
   /// which it is not known here.
   vtkSetMacro(EncodingErrorOfValues, double);

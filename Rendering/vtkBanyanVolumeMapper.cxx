@@ -275,7 +275,7 @@ banyan::FloatImage vtkBanyanVolumeMapper::CastFrame(
   this->Statistics->SetMeshDeviation(self.Field.MeshDeviation());
   const banyan::FrameStatistics pilots = frame;
   compositing.Method = static_cast<banyan::CompositingMethod>(this->Compositing);
-  // What few bits are off by adds up where volumes are blended over each other.
+  // Errors of few bits add up where volumes are blended over each other.
   compositing.Transport = this->CompositeInFewBits && volumes == 1
                             ? banyan::PixelTransport::WithinOne
                             : banyan::PixelTransport::Floats;

@@ -40,7 +40,7 @@ class vtkMultiProcessController;
  *
  * The picture does not depend on the number of ranks or threads: at most 1/255 per channel.
  *
- * Of several volumes in one renderer, on the same ranks, the first one that is rendered draws all, in
+ * With several volumes in one renderer, on the same ranks, the first that is rendered draws all, in
  * the order of depth, wherever a plane separates their boxes; for others, and for translucent
  * surfaces or other volumes that are not behind them, a warning says once what is not exact.
  *

@@ -1,4 +1,4 @@
-// What a mapper does together with other ranks, and with the other volumes of a picture.
+// Work of a mapper together with other ranks, and with the other volumes of a picture.
 
 #include "RendererCamera.h"
 #include "VolumeMapperInternals.h"
@@ -168,7 +168,7 @@ void vtkBanyanVolumeMapper::DrawTogether(vtkRenderer* renderer, std::vector<Fram
   }
 }
 
-/// Of the first one of those that show something, which is the same on all ranks.
+/// Called for the first mapper that shows something, which is the same one on all ranks.
 void vtkBanyanVolumeMapper::DrawPrepared(vtkRenderer* renderer, std::vector<Frame>& frames)
 {
   const banyan::PhaseScope beginning(banyan::Phase::Beginning);

@@ -1,4 +1,5 @@
-// What ParaView itself connects to a reader, and how it treats arrays that decode on first touch.
+// Algorithms that ParaView itself connects to a reader, and how they treat arrays that decode on
+// first touch.
 #include "DeferredConsumers.h"
 
 #include "vtkAlgorithm.h"

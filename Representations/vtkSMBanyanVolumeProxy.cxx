@@ -49,7 +49,7 @@ bool IsUsedByAnother(vtkSMProxy* map, vtkSMProxy* display)
   return false;
 }
 
-/// As the window does for "Volume", which it knows by name. Scripts get a scalar bar of neither:
+/// The window does so for "Volume", which it knows by name. Scripts get a scalar bar of neither:
 /// only the window keeps what can be undone.
 void ShowScalarBars(vtkSMPVRepresentationProxy* display)
 {

@@ -6,8 +6,8 @@
 namespace banyan
 {
 
-/// What is wrong with the number that a property was set to: NaN, infinite or, where it may not be,
-/// negative. A sentence that names both, or nothing.
+/// Says what is wrong with the number that a property was set to: NaN, infinite or, where it may
+/// not be, negative. A sentence that names both, or nothing.
 std::string ProblemOfNumber(const std::string& property, double value, bool mayBeNegative = false);
 
 /// The same as an Error.

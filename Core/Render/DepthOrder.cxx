@@ -13,7 +13,7 @@ namespace banyan
 namespace
 {
 
-/// What bodies may overlap and still count as side by side, as a part of the smaller one's size:
+/// Bodies that overlap by less than this part of the smaller one's size count as side by side:
 /// far more than rounding, far less than a voxel.
 constexpr double Touching = 1e-6;
 

@@ -169,7 +169,7 @@ bool HiddenCells::All(const Box& cells) const
   return !inside.Empty() && this->CountIn(inside) == inside.Count();
 }
 
-/// Of a block of which some or all cells are hidden.
+/// The bits of a block of which some or all cells are hidden.
 HiddenCells::Rows HiddenCells::RowsOf(std::int64_t number) const
 {
   const auto mixed = this->Mixed.find(number);

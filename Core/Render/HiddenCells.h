@@ -42,7 +42,7 @@ public:
   /// @param words `[z][y][wordsPerRow]`, all 0; bit i of a row is that of its cell i
   void CopyBits(const Box& cells, int wordsPerRow, std::uint32_t* words) const;
 
-  /// Of the grid whose cells are 2^level as long: hidden are those of which at least half is.
+  /// Hidden cells of the grid whose cells are 2^level as long: those of which at least half is.
   HiddenCells Coarser(int level) const;
 
   /// For ranks to tell each other what is hidden in their pieces.

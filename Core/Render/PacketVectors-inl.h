@@ -254,7 +254,7 @@ HWY_INLINE VI Truncated(VF v)
 #endif
 }
 
-/// As TableLookup::IndexOf of a table with edges.
+/// The same as TableLookup::IndexOf of a table with edges.
 HWY_INLINE VI EntriesOf(const TableLookup& lookup, VI buckets, VF value)
 {
   const D d;

@@ -41,7 +41,7 @@ struct SamplingWish
   bool StaysInMemory = false;
 };
 
-/// What keeps a plan from its tolerance.
+/// The reason why a plan misses its tolerance.
 enum class SamplingLimit
 {
   None,     ///< nothing: the tolerance is kept

@@ -148,7 +148,7 @@ private:
     {
       const glm::dvec4& entry =
         this->Exact[static_cast<std::size_t>(std::clamp(std::floor(at), 0.0, last))];
-      // What can be seen must not be skipped.
+      // Visible values must not be skipped.
       return this->AreClose(entry, exact, TabulationError::Colour, 1.0) &&
              (entry.a > 0.0 || exact.a <= this->Highest / 4096.0);
     };
@@ -250,7 +250,7 @@ private:
     return corners[i] * (1.0 - way) + corners[i + 1] * way;
   }
 
-  /// What comes from an edge on; nothing if it is what came before.
+  /// Adds the entry that begins at an edge, unless it is the same as the one before.
   void Add(const FunctionEdge& edge, const glm::dvec4& is)
   {
     const glm::vec4 entry(is);
@@ -265,7 +265,7 @@ private:
     }
   }
 
-  /// A corner belongs to what comes before or after it, or stands alone. What comes next knows its
+  /// A corner belongs to what comes before or after it, or stands alone. The next entry takes its
   /// edge from here.
   void AddCorner(double corner)
   {

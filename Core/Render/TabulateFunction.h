@@ -14,9 +14,9 @@ using FunctionOfValue = std::function<glm::dvec4(double)>;
 /// How far an entry of TabulateFunction's may be from the function, at any value of the entry.
 struct TabulationError
 {
-  /// Of each channel of a colour.
+  /// Largest error of each channel of a colour.
   static constexpr double Colour = 2.0 / 255.0;
-  /// Of opacities: in parts of the opacity itself, and of the highest one of the function.
+  /// Largest error of opacities: a part of the opacity itself, and of the function's highest one.
   static constexpr double OpacityOfItself = 1.0 / 64.0;
   static constexpr double OpacityOfHighest = 1.0 / 256.0;
 };

@@ -40,7 +40,7 @@ AtomicFile::AtomicFile(const std::string& path)
   : Path(path)
   , PartPath(path + ".part")
 {
-  // What a killed process left goes; what a link of that name leads to stays.
+  // Leftovers of a killed process go; the target of a link of that name stays.
   (void)unlink(this->PartPath.c_str());
   this->Descriptor = open(this->PartPath.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
   if (this->Descriptor < 0)

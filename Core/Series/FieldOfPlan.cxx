@@ -57,7 +57,7 @@ ClampedSteps Clamp(
   return clamped;
 }
 
-/// Of each step, the flags of points; null where none is hidden.
+/// The flags of points, of each step; null where none is hidden.
 std::vector<const std::uint8_t*> HiddenOf(
   const std::vector<std::vector<ArrayValues>>& steps, std::size_t flags, std::int64_t tuples)
 {

@@ -92,7 +92,7 @@ public:
       this->Count(this->EachBytes);
     }
   }
-  /// What lies in several pieces, in one.
+  /// Bytes that lie in several pieces, in one.
   const std::uint8_t* Joined(std::uint64_t offset, std::uint64_t bytes)
   {
     std::lock_guard<std::mutex> lock(this->JoinedMutex);

@@ -21,7 +21,7 @@ namespace banyan
 class PayloadPages
 {
 public:
-  /// What keeps pages where they are.
+  /// Keeps pages where they are.
   class Memory;
   using Hold = std::shared_ptr<Memory>;
 
@@ -41,7 +41,7 @@ public:
   /// @param offset and @param bytes lie between the header and the end of the payloads
   const std::uint8_t* At(const Hold& hold, std::uint64_t offset, std::uint64_t bytes);
 
-  /// Of all segments of the process.
+  /// Bytes of all segments of the process.
   static std::uint64_t BytesInMemory();
   /// An eighth of what LatticeCache keeps.
   static std::uint64_t BudgetBytes();

@@ -77,7 +77,7 @@ struct ArrayDescription
   ArrayFlags Flags = ArrayFlags::None;
 };
 
-/// What says which points of an image, or which cells, are hidden.
+/// Says which points of an image, or which cells, are hidden.
 ArrayDescription DescriptionOfFlags(ArrayFlags flags);
 
 /// Values of one array at one step: `[nz][ny][nx][components]`, x (and components) fastest, the

@@ -41,7 +41,7 @@ std::string NameOf(const std::string& path)
   return path.substr(path.find_last_of('/') + 1);
 }
 
-/// What a folder has of a series.
+/// How much of a series a folder has.
 struct Holding
 {
   std::string Folder;

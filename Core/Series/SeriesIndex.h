@@ -65,7 +65,7 @@ struct ComponentIndex
   const ValueRange& ReferenceRange() const;
 };
 
-/// What the numbers of an array are.
+/// The kind of numbers of an array.
 enum class ArrayFlags
 {
   None,     ///< values

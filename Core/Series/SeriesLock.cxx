@@ -53,7 +53,7 @@ std::string Me()
   return "process " + std::to_string(getpid()) + " on " + host + ", since " + time;
 }
 
-/// What the file of a lock says. Its holder may not have written it yet.
+/// The text in the file of a lock. Its holder may not have written it yet.
 std::string HolderIn(int descriptor)
 {
   char text[512];
@@ -137,7 +137,7 @@ SeriesLock::SeriesLock(const std::string& seriesPath)
     { this->Path });
 }
 
-/// What would otherwise be found out when everything is encoded.
+/// Finds out early what would otherwise fail when everything is encoded.
 void SeriesLock::CheckPath() const
 {
   struct stat status = {};

@@ -9,7 +9,7 @@ namespace banyan
 {
 
 /// One save of a series at a time: held from before the first file is written until the last one is
-/// there. Of several processes that save one series together, one holds it for all.
+/// there. Where several processes save one series together, one holds it for all.
 ///
 /// It is a lock of the system on a file in the series' folder, of which the file says who holds it.
 /// It ends with the process, however that ends; a file that is left behind, and processes that this

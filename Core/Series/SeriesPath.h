@@ -7,7 +7,7 @@ namespace banyan
 {
 
 /// Where a file lies that is reached through symbolic links, as a path beside which the folder of
-/// its series belongs: the path itself where it is no link. What the last link leads to need not
+/// its series belongs: the path itself where it is no link. The last link's target need not
 /// exist. Throws Error when links lead in a circle.
 std::string FollowLinks(const std::string& path);
 

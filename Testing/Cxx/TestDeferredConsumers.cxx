@@ -70,7 +70,7 @@ protected:
   vtkDataArray* Array = nullptr;
 };
 
-/// What vtkTemporalStatistics documents, in double precision and by the definitions.
+/// The result that vtkTemporalStatistics documents, in double precision and by the definitions.
 void ExpectStatistics(vtkDataSet* output, const std::vector<vtkSmartPointer<vtkDataArray>>& steps,
   bool deviation, const std::string& what)
 {

@@ -61,7 +61,7 @@ void HidePoints(const Case& one, double time, vtkImageData* image)
   for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
   {
     const bool hidden = time >= one.Late && some(random);
-    // What neighbours share is none of the series' business.
+    // Points that neighbours share are none of the series' business.
     flags->SetValue(i, (hidden ? vtkDataSetAttributes::HIDDENPOINT : 0) | (i % 5 == 0 ? 1 : 0));
     auto* const raw = static_cast<unsigned char*>(values->GetVoidPointer(0)) + i * bytes;
     for (std::size_t b = 0; b < bytes && hidden; ++b)
@@ -211,7 +211,7 @@ void RoundTrip(const Case& one)
       writer->SetKeyframeInterval(2);
       if (one.Seed % 4 == 1)
       {
-        // As ParaView's Save Data of one array; what is hidden comes along.
+        // ParaView's Save Data of one array does so; what is hidden comes along.
         writer->GetPointArraySelection()->EnableArray("wave");
       }
     });
@@ -287,7 +287,7 @@ TEST(HiddenParts, OfCoarserLevels)
   }
 }
 
-/// What others hide is not what the series hides: then its bricks are no picture of the image.
+/// Where others hide more than the series, its bricks are no picture of the image.
 TEST(HiddenParts, OfOthersAreDrawnFromTheImage)
 {
   TemporaryFolder folder;

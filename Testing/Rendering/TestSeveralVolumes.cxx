@@ -53,7 +53,7 @@ void Arrange(Scene& scene, Dice& dice)
         shown.Reaches(side.first) < side.second + 1e-7 && shown.Volume->GetVisibility());
     }
   }
-  // Those that found no place are left out.
+  // Volumes that found no place are left out.
   for (std::size_t i = scene.Volumes.size(); i-- > 0;)
   {
     if (!scene.Volumes[i]->Volume->GetVisibility())
@@ -70,7 +70,7 @@ void Arrange(Scene& scene, Dice& dice)
   scene.Look(dice.Direction() * distance, dice.Point(1.0), dice.In(0.0, 1.0) < 0.4);
 }
 
-/// What volumes show alone, over what is there without them.
+/// The pictures of volumes alone, over what is there without them.
 class Reference
 {
 public:

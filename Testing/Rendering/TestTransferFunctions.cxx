@@ -64,7 +64,7 @@ public:
     }
   }
 
-  /// As VTK has it.
+  /// The map in VTK's own form.
   glm::dvec4 At(double value) const
   {
     // VTK has none for what has no logarithm: that of all values below the range.

@@ -1,4 +1,4 @@
-// What is told of errors in pictures of real data: by sampling, and by encoding.
+// Estimates of errors in pictures of real data: by sampling, and by encoding.
 #include "Render/PixelsBetween.h"
 #include "Render/SamplingPlan.h"
 #include "Render/Scenes.h"
@@ -123,7 +123,7 @@ private:
   ArrayBrickSource Source;
 };
 
-/// What pixels of a picture are off, in 1/255, where one of both has something.
+/// How far pixels of a picture are off, in 1/255, where one of both has something.
 std::vector<double> ErrorsOf(const FloatImage& image, const FloatImage& truth, int every = 1)
 {
   const auto at = [](const FloatImage& of, int x, int y)
@@ -214,7 +214,7 @@ TEST_P(RealVolumes, KeepTheToleranceOrSayWhatLimitsIt)
   }
 }
 
-/// Noise within the bound stands for the error of encoding. What it does to a picture is not told
+/// Noise within the bound stands for the error of encoding. Its effect on a picture is not told
 /// by drawing pilots with all values moved by the bound: that is several times too much in smooth
 /// scenes, and much too little where the function jumps.
 TEST_P(RealVolumes, ErrorsOfValuesAreNotToldByMovingThemAll)

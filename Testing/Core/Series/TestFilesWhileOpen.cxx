@@ -1,4 +1,4 @@
-// What becomes of the files of a series while it is open: wrong values never.
+// Whatever becomes of the files of a series while it is open, values are never wrong.
 #include "Series/ContainerTesting.h"
 #include "Series/SeriesTesting.h"
 
@@ -243,7 +243,7 @@ TYPED_TEST(FilesWhileOpen, MayBeForgottenWhileThreadsRead)
   EXPECT_EQ(wrong, 0);
 }
 
-/// What a process says that may open only a few files.
+/// The answer of a process that may open only a few files.
 std::string SaidWithFewFiles(const std::string& path, bool replaced)
 {
   int ends[2] = {};

@@ -93,7 +93,7 @@ struct Case
   EncodeOptions Options;
 };
 
-/// What visible values of a component have for a range, over all steps and of one brick.
+/// The range of visible values of a component, over all steps and of one brick.
 template <class T>
 void ExpectTree(
   const SeriesFile& file, const FieldKey& key, const std::vector<T>& decoded, const Flags& flags)

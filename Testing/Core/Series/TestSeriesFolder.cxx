@@ -17,7 +17,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// What a case makes: an index, links to it, and a folder somewhere.
+/// The files of a case: an index, links to it, and a folder somewhere.
 enum class Lies
 {
   BesideTarget,   ///< under its name, beside the file

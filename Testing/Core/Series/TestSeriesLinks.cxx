@@ -91,7 +91,7 @@ TEST_F(SeriesLinks, InACircleAreAnError)
   ExpectError([&] { (void)SeriesFile::Open(this->Folder / "a.banyan"); }, "symbolic links");
 }
 
-/// As from a store of files that links stand for.
+/// So does a store of files that links stand for.
 TEST_F(SeriesLinks, OfFilesOneByOneAreRead)
 {
   this->Save(this->Real, 5);

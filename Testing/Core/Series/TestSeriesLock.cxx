@@ -160,7 +160,7 @@ TEST(SeriesLock, OfManySaversAtOnceNoneSpoilsAnother)
       }
       EXPECT_TRUE(known) << "round " << round;
     }
-    // What those that were killed have left is no hindrance, and goes.
+    // Leftovers of savers that were killed are no hindrance, and go.
     Encode(path, Tiny, TinySteps(7), OneStepEach(), 1);
     ExpectExactly(path, TinySteps(7));
   }
