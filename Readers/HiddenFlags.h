@@ -13,7 +13,7 @@ namespace banyan
 /// corner.
 /// @param image of which the extent is set
 /// @param handle of the step, level and samples; its array does not count. Receives the flags of
-/// points Throws Error.
+/// points. Throws Error.
 void AddHiddenFlags(vtkImageData* image, vtkBanyanDeferred::Handle& handle);
 
 } // namespace banyan

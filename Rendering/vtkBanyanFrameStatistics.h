@@ -123,7 +123,7 @@ public:
   vtkGetCharFromStdStringMacro(ImageErrorLimit);
   /// The largest error of the drawn values that encoding them has made, over all steps, as it was
   /// measured then; in the units of the data. Its effect on the picture is not estimated:
-  /// Documentation/accuracy.md says what it does usually. 0 for plain data, and for meshes, of
+  /// Documentation/accuracy.md says what it does usually. 0 for plain data. NaN for meshes, of
   /// which it is not known here.
   vtkSetMacro(EncodingErrorOfValues, double);
   vtkGetMacro(EncodingErrorOfValues, double);

@@ -28,6 +28,7 @@
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
+#include <limits>
 
 vtkStandardNewMacro(vtkBanyanVolumeMapper);
 banyanSetNumberMacro(vtkBanyanVolumeMapper, ImageErrorTolerance, 0.05, 255.0);
@@ -271,7 +272,8 @@ banyan::FloatImage vtkBanyanVolumeMapper::CastFrame(
   this->Statistics->SetEstimatedImageError(self.Tolerance.Plan(
     *self.Communicator, self.Field, scene, drawn.Wish, budget, wanted.Problem, frame));
   this->Statistics->SetImageErrorLimit(self.Tolerance.Limit().c_str());
-  this->Statistics->SetEncodingErrorOfValues(self.Field.EncodingError());
+  this->Statistics->SetEncodingErrorOfValues(
+    self.Field.IsMesh() ? std::numeric_limits<double>::quiet_NaN() : self.Field.EncodingError());
   this->Statistics->SetMeshDeviation(self.Field.MeshDeviation());
   const banyan::FrameStatistics pilots = frame;
   compositing.Method = static_cast<banyan::CompositingMethod>(this->Compositing);

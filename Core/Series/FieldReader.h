@@ -36,8 +36,8 @@ public:
   }
   /// See SeriesFile.
   virtual double StepOfValues(const FieldKey&) { return 0.0; }
-  /// Decodes some bricks at the end of the grid as well: that an index and its segments do not belong together,
-  /// such as an index with another extent, checksums do not tell.
+  /// Decodes some bricks at the end of the grid as well. Checksums do not tell that an index and
+  /// its segments do not belong together, such as an index with another extent.
   virtual void VerifyBricks(const FieldKey& field, const std::vector<std::int64_t>& bricks) = 0;
   virtual std::uint64_t BytesRead() const = 0;
   virtual std::uint64_t BricksDecoded() const = 0;

@@ -166,7 +166,8 @@ void Reader1::DecodeBrick(const FieldKey& field, std::int64_t brick, void* value
   InFile(open->Segment->Path(), payload.Offset,
     [&]
     {
-      banyan::DecodeBrick(payload.Mode, bytes.data(), bytes.size(), open->Lattice, open->Type, open->Layout.SamplesOf(brick).Size(), node.Range.Low, values);
+      banyan::DecodeBrick(payload.Mode, bytes.data(), bytes.size(), open->Lattice, open->Type,
+        open->Layout.SamplesOf(brick).Size(), node.Range.Low, values);
     });
   this->Decoded += node.Uniform ? 0 : 1;
 }

@@ -16,8 +16,7 @@ bool BeginsInFolder(const std::string& folder, const SeriesIndex& index);
 
 /// The folder that holds all files which an index names. Looked for in this order: `path + ".d"`;
 /// the same beside the file that `path` leads to, where it is a symbolic link; and every other
-/// folder
-/// `*.d` at these two places, for an index that was renamed without its folder.
+/// folder `*.d` at these two places, for an index that was renamed without its folder.
 /// @param path of the index
 /// Throws Error, a sentence that says which files are missing where and what to do, when no folder
 /// holds all of them, or when several do and none of them has the right name. A folder of the right

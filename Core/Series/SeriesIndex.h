@@ -138,8 +138,8 @@ struct EncodeStatistics
 /// All that the index file says. See Documentation/format.md.
 struct SeriesIndex
 {
-  int FormatVersion =
-    2; ///< 1 is read, and never written; 3 and 4 are those of meshes, 5 has hidden points or cells
+  /// 1 is read, and never written; 3 and 4 are those of meshes; 5 has hidden points or cells.
+  int FormatVersion = 2;
   Grid Domain;
   std::optional<MeshIndex> Mesh; ///< nothing: the series is of the images themselves
   int BrickCells = 16;

@@ -15,6 +15,7 @@
 #include "vtkPoints.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <cmath>
 #include <map>
 #include <tuple>
 
@@ -254,6 +255,8 @@ void DrawsWhatIsNoOctree()
   Check(Difference(expected, stage.Draw()) == 0, "hexahedra of mixed cells are drawn");
   Check(said.find("without 1 cell, cell 1184 of the type vtkTetra") != std::string::npos, said);
   Check(mapper->GetStatistics()->GetMeshDeviation() == 0.0, "an octree is drawn as it is");
+  Check(std::isnan(mapper->GetStatistics()->GetEncodingErrorOfValues()),
+    "an error that is not known is not told to be none");
   stage.Draw();
   Check(said.find("vtkTetra") == said.rfind("vtkTetra"), "it is said once");
 
