@@ -67,6 +67,12 @@ std::string LimitOf(const SamplingPlan& plan, double wanted, double planned,
                "the one that was set. "
              : "The picture is still being refined. ";
   }
+  if (plan.Extrapolated)
+  {
+    text += "More can be seen than the cache budget holds: what the finest levels "
+            "are off was extrapolated from coarser ones, and other budgets or numbers of ranks may "
+            "sample otherwise. ";
+  }
   if (opaque)
   {
     text +=

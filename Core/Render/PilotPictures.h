@@ -89,7 +89,6 @@ public:
   std::size_t TileCount() const;
   /// The worst pixel of a tile may be so many times worse than the worst of its pilots.
   static constexpr double Safety() { return 4.0; }
-  float OpacityLimit() const { return this->Scene.OpacityLimit; }
 
 private:
   PilotsAround Around(int tile, int axis) const;

@@ -17,6 +17,9 @@ namespace
 
 /// Of the tolerance, what rays that end early may leave away.
 constexpr double ShareOfEnds = 0.125;
+/// In pilots it is much less. A ray that ends in one zone goes on in the next one, and what is left
+/// away then decides otherwise: plans would depend on the number of ranks.
+constexpr double ShareOfPilotEnds = ShareOfEnds / 64.0;
 /// Distances between samples go down to 2^-MostHalvings times the usual one.
 constexpr int MostHalvings = 3;
 /// They go up to 2^MostDoublings times it. Longer ones save nothing: frames then take what rays and
@@ -36,6 +39,12 @@ constexpr double TilesOfStridePilot = 0.9;
 double ErrorOfNormals(double distanceInCells)
 {
   return 1.1 * (distanceInCells < 1.0 ? std::pow(distanceInCells, 1.7) : distanceInCells);
+}
+
+/// The opacity at which rays end that may leave away a share of a tolerance.
+float OpacityLimitFor(double tolerance, double share)
+{
+  return static_cast<float>(1.0 - std::min(tolerance, 32.0) * share / 255.0);
 }
 
 class Planner
@@ -62,7 +71,7 @@ public:
       this->TryDistances(1);
     }
     SamplingPlan plan;
-    plan.OpacityLimit = this->Pictures.OpacityLimit();
+    plan.OpacityLimit = OpacityLimitFor(this->Wish.Tolerance, ShareOfEnds);
     if (this->Pictures.SawSomething())
     {
       this->TryLevels();
@@ -297,6 +306,8 @@ private:
         static_cast<int>(tile / static_cast<std::size_t>(tiles->Tiles().x)));
       tiles->SetNumber(position, this->Choices.NumberOf(chosen));
       largest = std::max(largest, chosen.Error);
+      plan.Extrapolated =
+        plan.Extrapolated || this->Choices.Levels[chosen.Level].Value < this->Wish.FinestPilotLevel;
       if (chosen.Error > this->Allowed && plan.Limit != SamplingLimit::Distance)
       {
         plan.Limit = this->LevelIsHeld(tile) ? SamplingLimit::Level : SamplingLimit::Distance;
@@ -368,8 +379,7 @@ SamplingPlan PlanSamplings(const RayScene& scene, SamplingWish wish, const DrawP
   wish.FinestPilotLevel =
     std::max(wish.FinestLevel, std::min(wish.FinestPilotLevel, secondCoarsest));
   RayScene pilots = scene;
-  pilots.OpacityLimit =
-    static_cast<float>(1.0 - std::min(wish.Tolerance, 32.0) * ShareOfEnds / 255.0);
+  pilots.OpacityLimit = OpacityLimitFor(wish.Tolerance, ShareOfPilotEnds);
   return Planner(pilots, wish, draw).Plan();
 }
 

@@ -59,6 +59,9 @@ struct SamplingPlan
   double EstimatedError = 0.0;
   SamplingLimit Limit =
     SamplingLimit::None; ///< not None where EstimatedError is above the tolerance
+  /// Whether the error of finer levels was extrapolated: FinestPilotLevel allowed no pilots of
+  /// them.
+  bool Extrapolated = false;
   /// To be used with it: what rays that end early leave away is part of the error.
   float OpacityLimit = 0.999f;
   int Pilots = 0;             ///< small pictures that were drawn to find out

@@ -32,7 +32,7 @@ from vtkmodules.vtkParallelCore import vtkMultiProcessController
 controller = vtkMultiProcessController.GetGlobalController()
 everything = vtkAppendPolyData()
 for number, (name, center, radius, _) in enumerate({spheres}):
-    if number % controller.GetNumberOfProcesses() != controller.GetLocalProcessId():
+    if ({first} + number) % controller.GetNumberOfProcesses() != controller.GetLocalProcessId():
         continue
     sphere = vtkSphereSource()
     sphere.SetRadius(radius)
@@ -69,10 +69,14 @@ class Settings:
     representation = session.REPRESENTATION
 
 
-def spheres(view, listed=SPHERES, resolution=24, opacity=1.0):
-    """Shows spheres, all in one source (making and showing many takes longer than drawing them)."""
+def spheres(view, listed=SPHERES, resolution=24, opacity=1.0, first=0):
+    """Shows spheres, all in one source (making and showing many takes longer than drawing them).
+
+    Sphere i of them is on rank `first` + i modulo the number of ranks.
+    """
     array = "Sphere" + "".join(name for name, *_ in listed)
-    script = SPHERE_SCRIPT.format(spheres=listed, resolution=resolution, array=array)
+    script = SPHERE_SCRIPT.format(spheres=listed, resolution=resolution, array=array,
+                                  first=first)
     source = session.kept(script, lambda: simple.ProgrammableSource(
         OutputDataSetType="vtkPolyData", Script=script))
     display = simple.Show(source, view)

@@ -32,6 +32,29 @@ def window_of(view):
     return values.reshape(height, width, -1)[:, :, :3].astype(int)
 
 
+class Spheres:
+    """Opaque ones, each a mesh of its own, whole on one rank. (The depth that OpenGL draws for a part of a
+    mesh depends on the rest of it in the last bits, and rays end there.)"""
+
+    def __init__(self, view):
+        listed = (("a", (0, 0, 0), 3, (0.9, 0.2, 0.1)), ("b", (9, 3, -6), 4, (0.1, 0.9, 0.2)),
+                  ("c", (-8, 5, 8), 3, (0.2, 0.3, 1.0)))
+        self.displays = [picture_scenes.spheres(view, [sphere], first=rank)
+                         for rank, sphere in enumerate(listed)]
+        self.colors = [list(display.LookupTable.RGBPoints) for display in self.displays]
+
+    def set(self, name, value):
+        for display in self.displays:
+            setattr(display, name, value)
+
+    def paint(self, grey):
+        """All over in one grey, without light; None: as they were."""
+        for display, colors in zip(self.displays, self.colors):
+            display.LookupTable.RGBPoints = [number if grey is None or i % 4 == 0 else grey
+                                             for i, number in enumerate(colors)]
+            display.Ambient, display.Diffuse = (0, 1) if grey is None else (1, 0)
+
+
 class Placed:
     """A display, and where its box is."""
 
@@ -100,9 +123,7 @@ class Stage:
             simple.Wavelet(WholeExtent=[0, 9, 0, 9, 0, 9], XFreq=20), self.view, "RTData",
             value_range=(130, 280)), [0, 9, 0, 9, 0, 9])
         self.volumes = [first, second, third, fourth]
-        self.spheres = picture_scenes.spheres(
-            self.view, [("a", (0, 0, 0), 3, (0.9, 0.2, 0.1)), ("b", (9, 3, -6), 4, (0.1, 0.9, 0.2)),
-                        ("c", (-8, 5, 8), 3, (0.2, 0.3, 1.0))])
+        self.spheres = Spheres(self.view)
 
     def arrange(self, rng):
         """Stacks the boxes along a direction, some touching; returns what tells their order."""
@@ -126,7 +147,7 @@ class Stage:
         self.view.CameraViewUp = list(unit(rng))
         self.view.CameraParallelProjection = int(rng.random() < 0.4)
         self.view.CameraParallelScale = 22
-        self.spheres.Visibility = int(rng.random() < 0.8)
+        self.spheres.set("Visibility", int(rng.random() < 0.8))
         return along, there
 
     def far_to_near(self, along, there):
@@ -145,19 +166,15 @@ class Stage:
             volume.display.Visibility = 0
         behind = shown(self.view)
         single = {}
-        lookup = self.spheres.LookupTable
-        kept_colors, kept_background = list(lookup.RGBPoints), list(self.view.Background)
+        kept_background = list(self.view.Background)
         for volume in order:
             volume.display.Visibility = 1
             over = []
             for grey in (0.0, 1.0):
                 self.view.Background = [grey] * 3
-                self.spheres.LookupTable.RGBPoints = [
-                    kept_colors[i] if i % 4 == 0 else grey for i in range(len(kept_colors))]
-                self.spheres.Ambient, self.spheres.Diffuse = 1, 0
+                self.spheres.paint(grey)
                 over.append(shown(self.view))
-            self.spheres.Ambient, self.spheres.Diffuse = 0, 1
-            self.spheres.LookupTable.RGBPoints = kept_colors
+            self.spheres.paint(None)
             self.view.Background = kept_background
             volume.display.Visibility = 0
             single[volume] = over

@@ -134,6 +134,70 @@ TEST_F(DistributedPlans, ArePlansOfOneRank)
   }
 }
 
+/// Tiles that two plans sample otherwise.
+int TilesThatDiffer(const TileSamplings& a, const TileSamplings& b)
+{
+  int differ = 0;
+  for (int y = 0; y < a.Tiles().y; ++y)
+  {
+    for (int x = 0; x < a.Tiles().x; ++x)
+    {
+      differ += !(a.Samplings()[a.NumberAt({ x, y })] == b.Samplings()[b.NumberAt({ x, y })]);
+    }
+  }
+  return differ;
+}
+
+/// Rays that end early end elsewhere where zones are others. What is expected of samplings, and
+/// which one is chosen, does not depend on that.
+TEST_F(DistributedPlans, AreThoseOfOneRankWhereRaysEndEarly)
+{
+  const auto waves = [](const glm::dvec3& p)
+  {
+    const glm::dvec3 from = p - 0.5;
+    return 0.75 * std::exp(-2.0 * glm::dot(from, from)) + 0.03 * std::sin(62.0 * p.x) +
+           0.06 * std::sin(30.0 * p.y) + 0.02 * std::sin(40.0 * p.z);
+  };
+  this->Values = scenes::Sampled<float>(waves, Samples);
+  int tiles = 0;
+  int differ = 0;
+  for (const double distance : { 0.7, 1.0, 1.3 })
+  {
+    RayScene scene = scenes::Scene(Samples, { 310, 290 }, glm::dmat4(1.0), distance, false);
+    scene.Transfer =
+      scenes::Tabulate([](double x) { return glm::dvec4(x, 1.0 - x, 0.5, 0.99 * x); });
+    SamplingPlan alone;
+    for (const int ranks : { 1, 2, 5 })
+    {
+      SCOPED_TRACE(ranks);
+      std::mutex mutex;
+      RunOnSimulatedRanks(ranks,
+        [&](Communicator& communicator)
+        {
+          ThreadPool pool(1);
+          ArrayBrickSource source = this->MakeSource(pool);
+          FrameStatistics took;
+          const SamplingPlan plan = PlanDistributed(
+            communicator, scene, &source, ZonesOf(ranks), Budget, pool, {}, this->Wish, took);
+          const std::lock_guard<std::mutex> lock(mutex);
+          ASSERT_TRUE(plan.Samplings);
+          if (ranks == 1)
+          {
+            alone = plan;
+          }
+          else if (communicator.Rank() == 0)
+          {
+            EXPECT_NEAR(plan.EstimatedError, alone.EstimatedError, 5e-3 * alone.EstimatedError);
+            EXPECT_EQ(plan.OpacityLimit, alone.OpacityLimit);
+            tiles += plan.Samplings->Tiles().x * plan.Samplings->Tiles().y;
+            differ += TilesThatDiffer(*plan.Samplings, *alone.Samplings);
+          }
+        });
+    }
+  }
+  EXPECT_LE(differ, tiles / 200);
+}
+
 TEST_F(DistributedPlans, PicturesWithFewRaysAreThoseOfOneRank)
 {
   FloatImage alone;
