@@ -87,6 +87,7 @@ TEST(SamplingPlan, LevelsWithoutPilotsAreExtrapolated)
   const BenchScene scene =
     StandardScene(StandardVolume(Samples, pool), StandardFunction::S2, false, Pixels);
   const FloatImage converged = ConvergedImage(scene, 1.0 / 16.0, pool);
+  int extrapolated = 0;
   for (const int finestPilot : { 1, 2 })
   {
     for (const double tolerance : { 2.0, 16.0 })
@@ -104,8 +105,10 @@ TEST(SamplingPlan, LevelsWithoutPilotsAreExtrapolated)
       EXPECT_EQ(plan.Extrapolated, tolerance < 4.0)
         << "the coarser levels show that one more is needed";
       EXPECT_LE(ErrorOf(drawer.Draw(plan), converged).Largest, plan.EstimatedError);
+      extrapolated += plan.Extrapolated;
     }
   }
+  EXPECT_GT(extrapolated, 0);
 }
 
 TEST(SamplingPlan, LevelsOfFewCellsAreNotTrusted)
