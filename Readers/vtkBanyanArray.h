@@ -23,7 +23,8 @@
  * VTK's array dispatch does not know this type. Filters then take their general path, if they have
  * one: it is slower (1 to 4 times), rounds integers where the other cuts them off, and in some
  * filters it is wrong. So only those get such arrays who are known to read them rightly: see
- * DeferredConsumers.h.
+ * DeferredConsumers.h. A program may give the reader's output to other filters by itself: the first
+ * value that is not read by a pointer then brings a warning, once for each series.
  * A value access cannot report an error: the reader checks the checksums of all that a piece needs.
  * When decoding fails nevertheless, an error message says so, and the values are NaN (0 for
  * integers).
@@ -65,11 +66,11 @@ public:
 
   ///@{
   /// The concept methods of vtkGenericDataArray.
-  ValueType GetValue(vtkIdType index) const { return this->Values()[index]; }
+  ValueType GetValue(vtkIdType index) const { return this->ValuesOneByOne()[index]; }
   void SetValue(vtkIdType index, ValueType value) { this->Writable()[index] = value; }
   void GetTypedTuple(vtkIdType tuple, ValueType* values) const
   {
-    const ValueType* from = this->Values() + tuple * this->NumberOfComponents;
+    const ValueType* from = this->ValuesOneByOne() + tuple * this->NumberOfComponents;
     std::copy_n(from, this->NumberOfComponents, values);
   }
   void SetTypedTuple(vtkIdType tuple, const ValueType* values)
@@ -79,7 +80,7 @@ public:
   }
   ValueType GetTypedComponent(vtkIdType tuple, int component) const
   {
-    return this->Values()[tuple * this->NumberOfComponents + component];
+    return this->ValuesOneByOne()[tuple * this->NumberOfComponents + component];
   }
   void SetTypedComponent(vtkIdType tuple, int component, ValueType value)
   {
@@ -144,6 +145,13 @@ private:
     const ValueType* values = this->Data.load(std::memory_order_acquire);
     return values ? values : this->Decode();
   }
+  /// The same for the general path of filters: the first of them is told of its limits.
+  const ValueType* ValuesOneByOne() const
+  {
+    const ValueType* values = this->OneByOne.load(std::memory_order_acquire);
+    return values ? values : this->FirstOneByOne();
+  }
+  const ValueType* FirstOneByOne() const;
   ValueType* Decode() const;
   ValueType* Writable();
   bool Own(vtkIdType tuples, bool keep);
@@ -162,6 +170,7 @@ private:
   mutable std::mutex Decoding;
   mutable banyan::ArrayInLargePages<ValueType> Storage;
   mutable std::atomic<ValueType*> Data{ nullptr };
+  mutable std::atomic<const ValueType*> OneByOne{ nullptr }; ///< Data, once that was told
   mutable std::atomic<bool> GivenAway{ false };
   bool Written = false;
   vtkMTimeType UnchangedSince = 0;

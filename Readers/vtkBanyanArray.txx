@@ -71,6 +71,18 @@ T* vtkBanyanArray<T>::Decode() const
 }
 
 template <class T>
+const T* vtkBanyanArray<T>::FirstOneByOne() const
+{
+  if (!this->Written)
+  {
+    this->WarnOfFilters(const_cast<SelfType*>(this)->GetName());
+  }
+  const T* const values = this->Values();
+  this->OneByOne.store(values, std::memory_order_release);
+  return values;
+}
+
+template <class T>
 T* vtkBanyanArray<T>::Writable()
 {
   T* values = const_cast<T*>(this->Values());
@@ -96,6 +108,7 @@ bool vtkBanyanArray<T>::Own(vtkIdType tuples, bool keep)
     std::copy_n(this->Values(), std::min<std::size_t>(count, this->Size), storage.get());
   }
   const std::lock_guard<std::mutex> lock(this->Decoding);
+  this->OneByOne.store(nullptr);
   this->Storage = std::move(storage);
   this->Data.store(this->Storage.get(), std::memory_order_release);
   this->Written = true;
@@ -199,6 +212,7 @@ bool vtkBanyanArray<T>::Release()
   {
     return false;
   }
+  this->OneByOne.store(nullptr);
   this->Data.store(nullptr);
   this->Storage.reset();
   return true;

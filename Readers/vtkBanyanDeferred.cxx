@@ -14,6 +14,8 @@
 #include <algorithm>
 #include <mutex>
 #include <new>
+#include <set>
+#include <string>
 #include <vector>
 
 namespace
@@ -59,6 +61,14 @@ bool vtkBanyanDeferred::IsUntouched(vtkAbstractArray* array)
 {
   const vtkBanyanDeferred* deferred = Cast(array);
   return deferred && !deferred->IsPlain() && deferred->DecodedBytes() == 0;
+}
+
+void vtkBanyanDeferred::Supersede(vtkAbstractArray* array)
+{
+  if (vtkBanyanDeferred* const deferred = Cast(array))
+  {
+    deferred->Superseded = true;
+  }
 }
 
 bool vtkBanyanDeferred::Handle::HasFlags(vtkUnsignedCharArray* flags) const
@@ -173,6 +183,31 @@ void vtkBanyanDeferred::ReadInto(const Handle& handle, void* values)
       { handle.Step, handle.Array, component, handle.Level }, handle.Samples, values, components,
       component);
   }
+}
+
+void vtkBanyanDeferred::WarnOfFilters(const char* name) const
+{
+  static std::mutex mutex;
+  static auto* const told = new std::set<std::string>; // arrays may outlive static objects
+  if (!this->Source.Series || this->Superseded)
+  {
+    return;
+  }
+  const std::string& file = this->Source.Series->Path();
+  {
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (!told->insert(file).second)
+    {
+      return;
+    }
+  }
+  vtkGenericWarningMacro(
+    "The values of the array "
+    << name << " of " << file
+    << " are asked for one by one, by a program or filter that is not connected to the reader. "
+       "They "
+       "are right, but with such arrays some filters are not: connect the filter to the reader, or "
+       "put Banyan Decode between.");
 }
 
 void vtkBanyanDeferred::Remember() const

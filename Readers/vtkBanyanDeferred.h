@@ -19,6 +19,7 @@
 
 #include "Base/Box.h"
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 
@@ -76,6 +77,12 @@ public:
    * again): it holds no decoded values now.
    */
   static bool IsUntouched(vtkAbstractArray* array);
+
+  /**
+   * Says that the reader is about to give plain values in the place of an array: filters may look
+   * at the old one until then, and no warning is due.
+   */
+  static void Supersede(vtkAbstractArray* array);
 
   /**
    * Whether the image's extent, origin, spacing and direction say that its points are the samples
@@ -153,6 +160,10 @@ protected:
   virtual std::uint64_t DecodedBytes() const = 0;
   /// Frees decoded values unless a pointer to them was given away; returns whether it did.
   virtual bool Release() = 0;
+
+  /// Says, once for each series, that filters which the reader does not know may be wrong.
+  void WarnOfFilters(const char* name) const;
+  std::atomic<bool> Superseded{ false };
 
   /// To be called when values have been decoded, and before they are destroyed.
   void Remember() const;

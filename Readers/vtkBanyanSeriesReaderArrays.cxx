@@ -21,6 +21,7 @@ int vtkBanyanSeriesReader::ComputePipelineMTime(
     for (int i = 0; image && i < image->GetPointData()->GetNumberOfArrays(); ++i)
     {
       this->Self->Replaced.emplace_back(image->GetPointData()->GetArray(i));
+      vtkBanyanDeferred::Supersede(this->Self->Replaced.back());
     }
   }
   *mtime = std::max(this->GetMTime(), this->Self->PlainWanted.GetMTime());

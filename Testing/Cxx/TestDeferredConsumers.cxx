@@ -13,7 +13,9 @@
 #include "vtkElevationFilter.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
+#include "vtkOutputWindow.h"
 #include "vtkPointData.h"
+#include "vtkStringOutputWindow.h"
 #include "vtkTemporalStatistics.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -369,6 +371,38 @@ TEST_F(DeferredConsumers, ChangedArraysForgetTheirSeries)
   double range[2];
   this->Array->GetFiniteRange(range, 0);
   EXPECT_EQ(range[1], 1000.0);
+}
+
+/// A program may give the output to filters that nobody knows of.
+TEST_F(DeferredConsumers, ValuesOneByOneAreRightAndBringOneWarning)
+{
+  this->Make();
+  vtkNew<vtkBanyanDecode> decode;
+  decode->SetInputConnection(this->Read->GetOutputPort());
+  const auto right = this->PlainAt(0.0);
+  vtkNew<vtkStringOutputWindow> told;
+  const vtkSmartPointer<vtkOutputWindow> before = vtkOutputWindow::GetInstance();
+  vtkOutputWindow::SetInstance(told);
+  this->Update();
+  ASSERT_TRUE(vtkBanyanDeferred::IsUntouched(this->Array));
+  const auto* const first = static_cast<const float*>(this->Array->GetVoidPointer(0));
+  EXPECT_EQ(first[3], right->GetComponent(3, 0));
+  EXPECT_EQ(told->GetOutput(), "") << "pointers are what such arrays give to everybody";
+  for (const double time : { 1.0, 2.0, 0.0 })
+  {
+    this->Update(time);
+    const auto plain = this->PlainAt(time);
+    for (vtkIdType i = 0; i < plain->GetNumberOfTuples(); ++i)
+    {
+      ASSERT_EQ(this->Array->GetComponent(i, 0), plain->GetComponent(i, 0));
+    }
+  }
+  vtkOutputWindow::SetInstance(before);
+  const std::string text = told->GetOutput();
+  const std::size_t place = text.find("The values of the array wave of ");
+  ASSERT_NE(place, std::string::npos) << text;
+  EXPECT_NE(text.find("a.banyan", place), std::string::npos) << text;
+  EXPECT_EQ(text.find("The values of the array", place + 1), std::string::npos) << "said twice";
 }
 
 } // namespace

@@ -15,7 +15,10 @@ import sys
 
 import numpy
 from paraview import simple
+from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkFiltersStatistics import vtkContingencyStatistics
+from vtkmodules.vtkInfovisCore import vtkDataObjectToTable
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
@@ -159,6 +162,28 @@ def compare_averages(path):
     return [] if error < 1e-5 else [f"averages are wrong by {error}"]
 
 
+def handed_by_script(path):
+    """What a script takes from the reader and gives to a filter of VTK: numbers are right, the filter is doubted."""
+    reader = simple.OpenDataFile(path)
+    image = updated(reader)
+    told = vtkStringOutputWindow()
+    before = vtkOutputWindow.GetInstance()
+    vtkOutputWindow.SetInstance(told)
+    compare_data.as_numpy(image.GetPointData().GetArray("p"))
+    wrong = ["numpy brings: " + told.GetOutput()] if told.GetOutput() else []
+    statistics = vtkContingencyStatistics()
+    table = vtkDataObjectToTable()
+    table.SetInputData(image)
+    table.SetFieldType(vtkDataObjectToTable.POINT_DATA)
+    statistics.SetInputConnection(table.GetOutputPort())
+    statistics.AddColumnPair("n", "w")
+    statistics.Update()
+    vtkOutputWindow.SetInstance(before)
+    if image.GetNumberOfPoints() and told.GetOutput().count("put Banyan Decode between") != 1:
+        wrong.append("no warning of the filter: " + told.GetOutput())
+    return wrong
+
+
 def main():
     parser = session.parser(__doc__)
     parser.add_argument("--out", required=True)
@@ -186,6 +211,7 @@ def main():
                  compare_writer(extension, options, reader, path, arguments.out))
         note("values", compare_values(path))
         note("averages over time", compare_averages(path))
+        note("handed by a script", handed_by_script(path))
         session.require(total >= 36, f"only {total} filters gave anything on this rank")
     if failures:
         sys.exit("different on deferred arrays: " + ", ".join(failures))
