@@ -160,6 +160,19 @@ def choice_is_kept():
     session.clear()
 
 
+def solid_color(shots):
+    """'Solid Color' draws with ParaView's colours, not on with those of the map that was chosen before."""
+    green = [0, 0, 1, 0, 300, 0, 1, 0]
+    view, display = show(calculated("Green", "RTData"), "Green", green, [0, 0, 0.5, 0, 300, 0.5, 0.5, 0])
+    before = shots.take(view, "green")
+    session.require(before[:, :, 0].max() < 40, "the map is not the green one")
+    simple.ColorBy(display, None)
+    session.require(not display.LookupTable, "'Solid Color' has a map")
+    after = shots.take(view, "solid")
+    session.require(after[:, :, 0].max() > 150, "'Solid Color' shows the map that was chosen before")
+    session.clear()
+
+
 def said(view, display, changes):
     sentences = []
 
@@ -231,6 +244,7 @@ def main():
         colors_without_map()
     if arguments.only != "choices":
         beyond_the_range(shots)
+        solid_color(shots)
         for kind in ("gaps",) if arguments.only else LABELS:
             categories(shots, kind)
 
