@@ -199,6 +199,7 @@ void FramebufferExchange::Write(vtkRenderer* renderer, const PixelRect& rect,
 
   vtkOpenGLState::ScopedglViewport viewport(state);
   vtkOpenGLState::ScopedglScissor scissor(state);
+  vtkOpenGLState::ScopedglEnableDisable scissorTest(state, GL_SCISSOR_TEST);
   vtkOpenGLState::ScopedglEnableDisable blending(state, GL_BLEND);
   vtkOpenGLState::ScopedglBlendFuncSeparate blendFunction(state);
   vtkOpenGLState::ScopedglEnableDisable depthTest(state, GL_DEPTH_TEST);
@@ -207,6 +208,8 @@ void FramebufferExchange::Write(vtkRenderer* renderer, const PixelRect& rect,
   state->vtkglViewport(corner.x, corner.y, size.x, size.y);
   state->SetEnumState(GL_BLEND, blend);
   state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  // Some props leave it off (Surface LIC): each part would be blended over the whole rectangle.
+  state->vtkglEnable(GL_SCISSOR_TEST);
   // Depths are written only while the test is on.
   state->vtkglEnable(GL_DEPTH_TEST);
   state->vtkglDepthFunc(GL_ALWAYS);

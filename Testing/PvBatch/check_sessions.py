@@ -1,8 +1,8 @@
 """Checks what people do in a session beyond one picture, on any number of ranks: nothing may hang.
 
-Two views, two volumes, interactive rendering, playing a series, switching representations, removing
-the data, an array that is not there, a series that is damaged. Each step must leave the following
-ones right: the same scene is drawn again at the end and must be the same picture.
+Two views, two volumes, interactive rendering, playing a series, switching representations, a Surface
+LIC beside, removing the data, an array that is not there, a series that is damaged. Each step must
+leave the following ones right: the same scene is drawn again at the end and must be the same picture.
 """
 import glob
 import os
@@ -109,6 +109,18 @@ class Sessions:
         self.expect(pictures.difference(first, shown).max() <= 1, "a shown volume is drawn again")
         session.clear()
 
+    def surface_lic(self):
+        """It draws in ways of its own, which must not change how the volume is drawn beside it."""
+        view = session.new_view(picture_scenes.SIZE, **picture_scenes.CAMERA)
+        picture_scenes.wavelet(view)
+        beside = simple.Show(simple.Sphere(Center=[-32, 0, 0], Radius=4), view)
+        taken = []
+        for name in ("Surface", "Surface LIC"):
+            beside.SetRepresentationType(name)
+            taken.append(self.take(view, "beside " + name)[:, picture_scenes.SIZE[0] // 2:])
+        self.expect(pictures.difference(*taken).max() <= 1, "a Surface LIC leaves the volume as it is")
+        session.clear()
+
     def missing_array(self):
         drawn, first = self.scene()
         drawn.volumes[0].ColorArrayName = ["POINTS", "no such array"]
@@ -151,7 +163,7 @@ class Sessions:
         _, first = self.scene()
         session.clear()
         for step in (self.two_views, self.two_volumes, self.interaction, self.playing,
-                     self.representations, self.missing_array, self.damaged):
+                     self.representations, self.surface_lic, self.missing_array, self.damaged):
             print(f"--- {step.__name__}", flush=True)
             step()
         _, last = self.scene()
