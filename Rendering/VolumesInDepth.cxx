@@ -5,6 +5,7 @@
 #include "vtkBanyanVolumeMapper.h"
 
 #include "vtkActor.h"
+#include "vtkBillboardTextActor3D.h"
 #include "vtkCollection.h"
 #include "vtkMath.h"
 #include "vtkPropCollection.h"
@@ -38,7 +39,8 @@ unsigned char KindOf(vtkProp* prop)
     return NotInDepth::Stranger;
   }
   // Axes with labels call themselves translucent, too.
-  const bool surface = vtkActor::SafeDownCast(prop) != nullptr;
+  const bool surface = vtkActor::SafeDownCast(prop) != nullptr ||
+                       vtkBillboardTextActor3D::SafeDownCast(prop) != nullptr;
   return surface && prop->HasTranslucentPolygonalGeometry() ? NotInDepth::Surface : 0;
 }
 
@@ -155,11 +157,11 @@ std::string TellNotInDepth(unsigned char bits)
                                 "of the other one, so the picture is not exact where they meet. "
                                 "Move, crop or hide one of them, "
                                 "or join their data.");
-  tell(NotInDepth::Surface,
-    "A translucent surface is before a Banyan Volume or inside it, and is drawn as if it were "
-    "behind "
-    "the volume: the picture is not exact there. Make the surface opaque, move or hide it, or show "
-    "the volume as 'Volume'.");
+  tell(NotInDepth::Surface, "A translucent surface, or a text in space, is before a Banyan Volume "
+                            "or inside it, and is drawn "
+                            "as if it were behind the volume: the picture is not exact there. Make "
+                            "the surface opaque, move "
+                            "or hide it, or show the volume as 'Volume'.");
   tell(NotInDepth::Stranger,
     "Another kind of volume is before a Banyan Volume or inside it, and is drawn as if it were "
     "behind "

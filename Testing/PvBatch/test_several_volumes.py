@@ -129,6 +129,20 @@ def warnings(stage):
             shown(stage.view)
         session.require(told.GetOutput().count("translucent surface") == 1,
                         "translucent surfaces are told of once: " + told.GetOutput())
+        for shape in (stage.spheres, stage.volumes[0].display, stage.volumes[1].display):
+            shape.Visibility = 0
+        alone = stage.volumes[2]
+        alone.place(Random(2), 8.0)
+        alone.display.Visibility = 1
+        text = simple.Text(Text="Before the volume")
+        label = simple.Show(text, stage.view)
+        label.TextPropMode = "Billboard 3D Text"
+        for z in (-30, 30, 31):
+            label.BillboardPosition = [0, 0, z]
+            shown(stage.view)
+            session.require(told.GetOutput().count("text in space") == (1 if z < 0 else 2),
+                            "a text before a volume is told of once: " + told.GetOutput())
+        simple.Delete(text)
     finally:
         vtkOutputWindow.SetInstance(before)
 
