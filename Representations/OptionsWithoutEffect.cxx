@@ -1,9 +1,11 @@
 #include "OptionsWithoutEffect.h"
 
 #include "vtkPVArrayInformation.h"
+#include "vtkPVDataInformation.h"
 #include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMSourceProxy.h"
 
 namespace banyan
 {
@@ -57,14 +59,32 @@ std::string OfComponents(vtkSMPVRepresentationProxy* display)
   {
     return {};
   }
-  const std::string name = array->GetName();
-  return components >= 3
-           ? "RGBA data are not drawn as colours: the magnitude (or one component) of '" + name +
-               "' is coloured by its map. For the colours themselves choose 'Volume'."
-           : Sentence(
-               map, "the magnitude (or one component) of '" + name +
-                      "' is coloured by its map. For components that are drawn as they are choose "
-                      "'Volume'");
+  const std::string colored = "the magnitude (or one component) of '" +
+                              std::string(array->GetName()) + "' is coloured by its map. ";
+  switch (components)
+  {
+    case 2:
+      return Sentence(map, colored + "For components that are drawn as they are choose 'Volume'");
+    case 4:
+      return "RGBA data are not drawn as colours: " + colored +
+             "For the colours themselves choose 'Volume'.";
+    default:
+      return Sentence(map, colored + "For the colours themselves add their opacity as a fourth "
+                                     "component, and choose 'Volume'");
+  }
+}
+
+/// Whether motion is asked for of data that do not move.
+bool HasNoMotion(vtkSMPVRepresentationProxy* display)
+{
+  vtkSMProperty* const strength = display->GetProperty("TemporalEnhancement");
+  if (!strength || vtkSMPropertyHelper(strength).GetAsDouble() <= 0.0)
+  {
+    return false;
+  }
+  vtkSMPropertyHelper input(display, "Input");
+  auto* const source = vtkSMSourceProxy::SafeDownCast(input.GetAsProxy());
+  return source && source->GetDataInformation(input.GetOutputPort())->GetNumberOfTimeSteps() < 2;
 }
 
 } // namespace
@@ -85,6 +105,11 @@ std::map<std::string, std::string> OptionsWithoutEffect(
   if (!components.empty())
   {
     sentences["MapScalars"] = components;
+  }
+  if (HasNoMotion(display))
+  {
+    sentences["TemporalEnhancement"] = Sentence(display->GetProperty("TemporalEnhancement"),
+      "the data has no other time steps to tell motion from");
   }
   vtkSMProperty* const lights = view ? view->GetProperty("AdditionalLights") : nullptr;
   if (lights && vtkSMPropertyHelper(display, "Shade", true).GetAsInt() != 0 &&

@@ -201,7 +201,8 @@ def options_without_effect():
             ("MultiComponentsMapping", 1, "Multi Components Mapping"),
             ("GlobalIlluminationReach", 0.5, "Global Illumination Reach"),
             ("VolumetricScatteringBlending", 0.5, "Volumetric Scattering Blending"),
-            ("VolumeRenderingMode", "Ray Cast Only", "Volume Rendering Mode")):
+            ("VolumeRenderingMode", "Ray Cast Only", "Volume Rendering Mode"),
+            ("TemporalEnhancement", 0.5, "Temporal Enhancement")):
         sentences = said(view, display, {name: value})
         session.require(len(sentences) == 1 and f"'{label}' has no effect" in sentences[0],
                         f"{name}: {sentences}")
@@ -214,14 +215,18 @@ def options_without_effect():
 
 
 def colors_without_map():
-    view = session.new_view(SIZE)
-    source = calculated("Rgb", "iHat*coordsX+jHat*coordsY+kHat*coordsZ")
-    display = simple.Show(source, view)
-    simple.ColorBy(display, ("POINTS", "Rgb"))
-    display.SetRepresentationType(session.REPRESENTATION)
-    sentences = said(view, display, {"MapScalars": 0})
-    session.require(len(sentences) == 1 and "RGBA data are not drawn as colours" in sentences[0],
-                    f"RGBA: {sentences}")
+    rgb = calculated("Rgb", "iHat*coordsX+jHat*coordsY+kHat*coordsZ")
+    rgba = simple.PythonCalculator(Input=rgb, ArrayName="Rgba",
+                                   Expression="numpy.concatenate([Rgb, Rgb[:, :1]], axis=1)")
+    for source, name, words in (
+            (rgb, "Rgb", "add their opacity as a fourth component, and choose 'Volume'"),
+            (rgba, "Rgba", "RGBA data are not drawn as colours")):
+        view = session.new_view(SIZE)
+        display = simple.Show(source, view)
+        simple.ColorBy(display, ("POINTS", name))
+        display.SetRepresentationType(session.REPRESENTATION)
+        sentences = said(view, display, {"MapScalars": 0})
+        session.require(len(sentences) == 1 and words in sentences[0], f"{name}: {sentences}")
     session.clear()
 
 
