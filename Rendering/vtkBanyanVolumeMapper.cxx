@@ -17,6 +17,7 @@
 #include "Parallel/MpiCommunicator.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkCamera.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkInformation.h"
@@ -29,6 +30,14 @@
 
 #include <algorithm>
 #include <limits>
+
+namespace
+{
+
+/// A part of a volume's size that nobody can see.
+constexpr double LeastRange = 1e-12;
+
+} // namespace
 
 vtkStandardNewMacro(vtkBanyanVolumeMapper);
 banyanSetNumberMacro(vtkBanyanVolumeMapper, ImageErrorTolerance, 0.05, 255.0);
@@ -220,7 +229,9 @@ bool vtkBanyanVolumeMapper::PrepareFrame(vtkRenderer* renderer, Frame& frame)
   {
     throw banyan::Error(problem);
   }
-  if (self.Field.Empty())
+  // VTK's clipping range has no length where the eye is on a face and looks away.
+  const double far = renderer->GetActiveCamera()->GetClippingRange()[1];
+  if (self.Field.Empty() || far < LeastRange * frame.Volume->GetLength())
   {
     return false;
   }

@@ -101,8 +101,8 @@ RayCamera::RayCamera(
   }
   if (!AllFinite(worldToClip) || !AllFinite(this->ClipToWorld))
   {
-    throw Error("The camera's matrix cannot be inverted; check its view angle, clipping range and "
-                "view-up direction");
+    throw Error("The matrix of the camera, or of what it sees, cannot be inverted; check its view "
+                "angle, clipping range and view-up direction, and whether the volume's scale is 0");
   }
   // A projective matrix means the same when it is negated. Make the one of the two for which
   // points in front of the eye have a positive w.

@@ -143,6 +143,15 @@ def warnings(stage):
             session.require(told.GetOutput().count("text in space") == (1 if z < 0 else 2),
                             "a text before a volume is told of once: " + told.GetOutput())
         simple.Delete(text)
+        # Nothing is wrong where the eye is on a face and looks away.
+        alone.turn, alone.scale = [0, 0, 0], numpy.ones(3)
+        alone.move(numpy.zeros(3))
+        stage.view.LockBounds = 0
+        stage.view.CameraPosition = [alone.half[0], 0, 0]
+        stage.view.CameraFocalPoint = [2 * alone.half[0], 0, 0]
+        stage.view.CameraViewUp = [0, 1, 0]
+        shown(stage.view)
+        session.require("not drawn" not in told.GetOutput(), told.GetOutput())
     finally:
         vtkOutputWindow.SetInstance(before)
 
