@@ -5,6 +5,7 @@
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
 #include "vtkMultiProcessController.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkSMArrayListDomain.h"
 #include "vtkSMPVRepresentationProxy.h"
@@ -12,6 +13,7 @@
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxyManager.h"
 #include "vtkSMSessionProxyManager.h"
+#include "vtkSMTransferFunctionManager.h"
 #include "vtkSMViewProxy.h"
 
 #include <set>
@@ -49,14 +51,14 @@ bool IsUsedByAnother(vtkSMProxy* map, vtkSMProxy* display)
   return false;
 }
 
-/// The window does so for "Volume", which it knows by name. Scripts get a scalar bar of neither:
-/// only the window keeps what can be undone.
-void ShowScalarBars(vtkSMPVRepresentationProxy* display)
+/// Only the window keeps what can be undone.
+bool IsInWindow()
 {
-  if (!vtkSMProxyManager::GetProxyManager()->GetUndoStackBuilder())
-  {
-    return;
-  }
+  return vtkSMProxyManager::GetProxyManager()->GetUndoStackBuilder() != nullptr;
+}
+
+std::set<vtkSMProxy*> ViewsOf(vtkSMProxy* display)
+{
   std::set<vtkSMProxy*> views;
   for (unsigned int i = 0; i < display->GetNumberOfConsumers(); ++i)
   {
@@ -66,10 +68,7 @@ void ShowScalarBars(vtkSMPVRepresentationProxy* display)
       views.insert(consumer);
     }
   }
-  for (vtkSMProxy* const view : views)
-  {
-    display->SetScalarBarVisibility(view, true);
-  }
+  return views;
 }
 
 } // namespace
@@ -88,6 +87,14 @@ void vtkSMBanyanVolumeProxy::CreateVTKObjects()
   if (!existed && type)
   {
     type->AddObserver(vtkCommand::ModifiedEvent, this, &vtkSMBanyanVolumeProxy::TypeChanged);
+    for (const char* const name : { "ColorArrayName", "LookupTable" })
+    {
+      if (vtkSMProperty* const colors = display->GetProperty(name))
+      {
+        colors->AddObserver(
+          vtkCommand::ModifiedEvent, this, &vtkSMBanyanVolumeProxy::ColorsChanged);
+      }
+    }
   }
 }
 
@@ -151,5 +158,27 @@ void vtkSMBanyanVolumeProxy::TypeChanged()
   {
     display->RescaleTransferFunctionToDataRange(/*extend=*/true, /*force=*/false);
   }
-  ShowScalarBars(display);
+  // The window shows a scalar bar of "Volume", which it knows by name. Scripts get one of neither.
+  if (IsInWindow())
+  {
+    for (vtkSMProxy* const view : ViewsOf(display))
+    {
+      display->SetScalarBarVisibility(view, true);
+    }
+    this->MapOfBar = map;
+  }
+}
+
+void vtkSMBanyanVolumeProxy::ColorsChanged()
+{
+  if (!this->MapOfBar)
+  {
+    return;
+  }
+  vtkNew<vtkSMTransferFunctionManager> bars;
+  for (vtkSMProxy* const view : ViewsOf(this->Display()))
+  {
+    // Where something else has colours of the map, the bar stays.
+    bars->HideScalarBarIfNotNeeded(this->MapOfBar, view);
+  }
 }

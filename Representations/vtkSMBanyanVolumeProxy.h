@@ -19,6 +19,7 @@
 
 #include "BanyanRepresentationsModule.h" // For export macro
 #include "vtkSMRepresentationProxy.h"
+#include "vtkWeakPointer.h" // for members
 
 #include <set>    // for members
 #include <string> // for members
@@ -47,8 +48,12 @@ private:
   vtkSMPVRepresentationProxy* Display();
   bool IsShown();
   void TypeChanged();
+  /// Hides the scalar bar that was shown for the chosen array, once nothing has its colours: the
+  /// window does so only where the colours are changed by hand, not by a script that runs in it.
+  void ColorsChanged();
 
-  std::set<std::string> Said; ///< properties without effect
+  std::set<std::string> Said;          ///< properties without effect
+  vtkWeakPointer<vtkSMProxy> MapOfBar; ///< whose scalar bar was shown when the array was chosen
 };
 
 #endif

@@ -6,7 +6,7 @@ was chosen. Properties without effect are named once, in the words of the panel.
 """
 import os
 
-from paraview import simple
+from paraview import servermanager, simple
 from vtkmodules.vtkCommonCore import VTK_STRING, vtkOutputWindow
 
 import pictures
@@ -173,6 +173,32 @@ def solid_color(shots):
     session.clear()
 
 
+def scalar_bars(view):
+    """The arrays that have a scalar bar on the screen."""
+    return [shown.Title for shown in view.Representations
+            if shown.GetXMLName() == "ScalarBarWidgetRepresentation" and shown.Visibility]
+
+
+def bar_of_another_array():
+    """In the window choosing shows a scalar bar. It goes when a script takes another array."""
+    manager = servermanager.vtkSMProxyManager.GetProxyManager()
+    before = manager.GetUndoStackBuilder()
+    manager.SetUndoStackBuilder(servermanager.vtkSMUndoStackBuilder())  # the mark of the window
+    view = session.new_view(SIZE)
+    source = calculated("Bars", "3*RTData")
+    display = simple.Show(source, view)
+    display.SetRepresentationType(session.REPRESENTATION)
+    first = scalar_bars(view)
+    session.require(first == ["Bars"], f"scalar bars {first} of the array that was chosen")
+    simple.ColorBy(display, ("POINTS", "RTData"))
+    session.require(not scalar_bars(view), f"scalar bars {scalar_bars(view)} of no array that is shown")
+    display.SetScalarBarVisibility(view, True)
+    simple.Render(view)
+    session.require(scalar_bars(view) == ["RTData"], f"scalar bars {scalar_bars(view)}")
+    manager.SetUndoStackBuilder(before)
+    session.clear()
+
+
 def said(view, display, changes):
     sentences = []
 
@@ -245,6 +271,7 @@ def main():
         chosen(trees, "Depth")
         chosen(blocks, "RTData")
         choice_is_kept()
+        bar_of_another_array()
         options_without_effect()
         colors_without_map()
     if arguments.only != "choices":
