@@ -121,10 +121,18 @@ bool HasCells(vtkDataObject* data)
   return data && data->GetNumberOfElements(vtkDataObject::CELL) > 0;
 }
 
-std::string MissingArray(const char* name)
+std::string MissingArray(vtkVolumeMapper* mapper)
 {
-  return name && *name ? "The data has no array '" + std::string(name) + "' of numbers to draw."
-                       : "The data has no array to draw: select one in 'Coloring'.";
+  const char* const name = mapper->GetArrayName();
+  if (!name || !*name)
+  {
+    return "The data has no array to draw: select one in 'Coloring'.";
+  }
+  const int mode = mapper->GetScalarMode();
+  const char* const where = mode == VTK_SCALAR_MODE_USE_POINT_FIELD_DATA  ? " on points"
+                            : mode == VTK_SCALAR_MODE_USE_CELL_FIELD_DATA ? " on cells"
+                                                                          : "";
+  return "The data has no array '" + std::string(name) + "' of numbers" + where + " to draw.";
 }
 
 /// What is no error of VTK's own, such as blocks that come from an object instead of a filter.
@@ -215,7 +223,7 @@ FieldPiece PieceOfInput(vtkBanyanVolumeMapper* mapper, vtkVolumeProperty* proper
   const DrawnArray drawn = ArrayToDraw(mapper, data);
   if (!drawn.Array)
   {
-    piece.Problem = MissingArray(mapper->GetArrayName());
+    piece.Problem = MissingArray(mapper);
     return piece;
   }
   piece.Array = drawn.Array;

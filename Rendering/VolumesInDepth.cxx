@@ -9,6 +9,7 @@
 #include "vtkCollection.h"
 #include "vtkMath.h"
 #include "vtkPropCollection.h"
+#include "vtkProperty.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
 
@@ -38,9 +39,13 @@ unsigned char KindOf(vtkProp* prop)
   {
     return NotInDepth::Stranger;
   }
+  vtkActor* const actor = vtkActor::SafeDownCast(prop);
+  if (actor && actor->GetProperty()->GetOpacity() <= 0.0)
+  {
+    return 0;
+  }
   // Axes with labels call themselves translucent, too.
-  const bool surface = vtkActor::SafeDownCast(prop) != nullptr ||
-                       vtkBillboardTextActor3D::SafeDownCast(prop) != nullptr;
+  const bool surface = actor || vtkBillboardTextActor3D::SafeDownCast(prop);
   return surface && prop->HasTranslucentPolygonalGeometry() ? NotInDepth::Surface : 0;
 }
 

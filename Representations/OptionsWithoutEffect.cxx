@@ -101,6 +101,15 @@ std::map<std::string, std::string> OptionsWithoutEffect(
       sentences[option.Property] = Sentence(property, option.Advice);
     }
   }
+  for (const char* const name : { "SelectMapper", "ResamplingMode" })
+  {
+    vtkSMProperty* const property = display->GetProperty(name);
+    if (property && !property->IsValueDefault())
+    {
+      sentences[name] = Sentence(
+        property, "it draws cells and blocks as they are. To resample them choose 'Volume'");
+    }
+  }
   const std::string components = OfComponents(display);
   if (!components.empty())
   {

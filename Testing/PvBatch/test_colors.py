@@ -233,6 +233,19 @@ def options_without_effect():
         session.require(len(sentences) == 1 and f"'{label}' has no effect" in sentences[0],
                         f"{name}: {sentences}")
     session.require(not said(view, display, {"Opacity": 0.7}), "'Opacity' is named twice")
+    for source, array, name, value in (
+            (simple.UnstructuredCellTypes(CellType="Hex", BlocksDimensions=[3, 3, 3]),
+             ("POINTS", "DistanceToCenter"), "SelectMapper", "Resample To Image"),
+            (simple.HierarchicalFractal(Dimensions=4, MaximumLevel=2),
+             ("CELLS", "Fractal Volume Fraction"), "ResamplingMode", "Using View Frustum")):
+        other = simple.Show(source, view)
+        other.SetRepresentationType(session.REPRESENTATION)
+        simple.ColorBy(other, array)
+        simple.Render(view)
+        session.require(not said(view, other, {}), f"{name} is named without need")
+        sentences = said(view, other, {name: value})
+        session.require(len(sentences) == 1 and "To resample them choose 'Volume'" in sentences[0],
+                        f"{name}: {sentences}")
     light = simple.AddLight(view=view)
     light.DiffuseColor = [1, 0, 0]
     sentences = said(view, display, {"Shade": 1})

@@ -123,14 +123,18 @@ def warnings(stage):
         session.require(told.GetOutput().count("share a part of space") == 1,
                         "overlapping volumes are told of once: " + told.GetOutput())
         stage.spheres.set("Visibility", 1)
+        stage.spheres.set("Opacity", 0.0)
+        shown(stage.view)
+        session.require("translucent surface" not in told.GetOutput(), "one that nobody sees is told of")
         stage.spheres.set("Opacity", 0.5)
         for x in range(3):
             stage.view.CameraPosition = [5 + x, 3, 90]
             shown(stage.view)
         session.require(told.GetOutput().count("translucent surface") == 1,
                         "translucent surfaces are told of once: " + told.GetOutput())
-        for shape in (stage.spheres, stage.volumes[0].display, stage.volumes[1].display):
-            shape.Visibility = 0
+        stage.spheres.set("Visibility", 0)
+        for volume in stage.volumes[:2]:
+            volume.display.Visibility = 0
         alone = stage.volumes[2]
         alone.place(Random(2), 8.0)
         alone.display.Visibility = 1
