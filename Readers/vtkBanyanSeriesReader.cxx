@@ -215,46 +215,6 @@ bool vtkBanyanSeriesReader::AllRanksAreWell(unsigned long code, const std::strin
   return failingRanks == 0;
 }
 
-std::string vtkBanyanSeriesReader::TryToOpen()
-{
-  this->Self->Series.reset();
-  if (!this->FileName || !*this->FileName)
-  {
-    return "No file name is set: set FileName to the path of a .banyan file.";
-  }
-  try
-  {
-    this->Self->Series = banyan::SeriesFile::Open(this->FileName);
-    this->Self->OpenName = this->FileName;
-    this->Self->Mesh.Open(this->Self->Series);
-    return {};
-  }
-  catch (const std::exception& error)
-  {
-    return this->Place() + " cannot be opened as a Banyan series: " + error.what();
-  }
-}
-
-bool vtkBanyanSeriesReader::OpenOnAllRanks()
-{
-  const std::string wanted = this->FileName ? this->FileName : "";
-  // Every rank comes to the same decision here: after a failure no rank has a series.
-  if (this->Self->Series && this->Self->OpenName == wanted && !this->Self->Reopen)
-  {
-    return true;
-  }
-  this->Self->Reopen = false;
-  const std::string problem = this->TryToOpen();
-  const bool named = this->FileName && *this->FileName;
-  if (!this->AllRanksAreWell(
-        named ? vtkErrorCode::CannotOpenFileError : vtkErrorCode::NoFileNameError, problem))
-  {
-    this->Self->Series.reset();
-    return false;
-  }
-  return true;
-}
-
 //--------------------------------------------------------------------------------------------------
 // Information
 

@@ -196,6 +196,7 @@ private:
   void operator=(const vtkBanyanSeriesReader&) = delete;
 
   bool OpenOnAllRanks();
+  bool AllRanksHaveTheSame() const;
   std::string TryToOpen();
   std::string TryToFill(vtkInformation* outInfo, unsigned long& code);
   int UsedLevel() const;

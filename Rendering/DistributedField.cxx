@@ -208,8 +208,10 @@ bool DistributedField::TakeSeries(Communicator& communicator,
 {
   const std::vector<std::string> paths =
     AllGatherStrings(communicator, held ? held->Path() : std::string());
+  const std::vector<std::string> fingerprints =
+    AllGatherStrings(communicator, held ? ToHex(held->Fingerprint()) : std::string());
   const Facts* first = nullptr;
-  std::string path;
+  std::string path, fingerprint;
   for (std::size_t rank = 0; rank < all.size(); ++rank)
   {
     const Facts& facts = all[rank];
@@ -221,9 +223,11 @@ bool DistributedField::TakeSeries(Communicator& communicator,
     {
       first = &facts;
       path = paths[rank];
+      fingerprint = fingerprints[rank];
     }
-    if (paths[rank] != path || facts.Step != first->Step || facts.Array != first->Array ||
-        facts.Component != first->Component || facts.Level != first->Level)
+    if (paths[rank] != path || fingerprints[rank] != fingerprint || facts.Step != first->Step ||
+        facts.Array != first->Array || facts.Component != first->Component ||
+        facts.Level != first->Level)
     {
       return false;
     }
@@ -236,9 +240,15 @@ bool DistributedField::TakeSeries(Communicator& communicator,
     {
       this->Series = held;
     }
-    else if (!this->Series || this->Series->Path() != path)
+    else if (!this->Series || this->Series->Path() != path ||
+             ToHex(this->Series->Fingerprint()) != fingerprint)
     {
       this->Series = SeriesFile::Open(path);
+      if (ToHex(this->Series->Fingerprint()) != fingerprint)
+      {
+        throw Error(
+          "The series was replaced, or is not the same on all ranks: open it again", { path });
+      }
     }
     whole = ExposedSamples(*this->Series, first->Level) == samples.Size();
     if (whole && this->ProblemText.empty())

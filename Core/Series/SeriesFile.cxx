@@ -22,6 +22,7 @@ struct SeriesFile::Internals
 {
   OpenSeries Series;
   std::unique_ptr<FieldReader> Reader;
+  Hash128 Fingerprint;
 
   /// @param text of the index
   void Read(const std::string& path, const std::string& text);
@@ -103,6 +104,7 @@ void SeriesFile::Internals::Read(const std::string& path, const std::string& tex
   series.Path = path;
   series.Id = NextId++;
   series.Index = IndexFromText(text, path);
+  this->Fingerprint = HashOf(text.data(), text.size());
   for (int level = 0; level < series.Index.Levels; ++level)
   {
     series.Layouts.emplace_back(series.Index.Domain.Samples(), series.Index.BrickCells, level);
@@ -153,6 +155,11 @@ const SeriesIndex& SeriesFile::Index() const
 std::uint64_t SeriesFile::Id() const
 {
   return this->Self->Series.Id;
+}
+
+Hash128 SeriesFile::Fingerprint() const
+{
+  return this->Self->Fingerprint;
 }
 
 BrickLayout SeriesFile::Layout(int level) const

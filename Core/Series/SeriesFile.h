@@ -1,6 +1,7 @@
 #ifndef banyan_Series_SeriesFile_h
 #define banyan_Series_SeriesFile_h
 
+#include "Series/Hash.h"
 #include "Series/SeriesIndex.h"
 #include "Series/ValueMask.h"
 
@@ -66,6 +67,9 @@ public:
   const SeriesIndex& Index() const;
   /// A number that no other open series of this process has.
   std::uint64_t Id() const;
+  /// A hash of the index, which names all segments by their content: a series that replaces another
+  /// one has another fingerprint, and so have files of one name that are not the same.
+  Hash128 Fingerprint() const;
 
   BrickLayout Layout(int level) const;
   /// The range that the masks of a component are made over (the promised range of the

@@ -3,7 +3,7 @@
     test_damage.py --plugin Banyan.so --out FOLDER [--ranks N]
 
 Bits flip in segments that were read before, segments are cut short, others save under the same name,
-and properties are set to what is no number.
+ranks see other files than others, and properties are set to what is no number.
 """
 import argparse
 import glob
@@ -295,6 +295,69 @@ def held_by_another(path):
     session.require(len(os.listdir(path + ".d")) == 1, str(os.listdir(path + ".d")))
 
 
+WALK = """
+import os
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+rank = vtkMultiProcessController.GetGlobalController().GetLocalProcessId()
+os.chdir({folders}[1 if rank else 0])
+"""
+
+
+def walk(rank_zero, others):
+    """Ranks go to folders, where relative names lead to other files."""
+    source = simple.ProgrammableSource(Script=WALK.format(folders=[rank_zero, others]))
+    source.UpdatePipeline()
+    simple.Delete(source)
+
+
+def other_files_of_ranks(folder, ranks):
+    """One name, and not the same files on all machines: refused by all ranks."""
+    home = os.getcwd()
+    for name, size in (("a", 8), ("b", 8), ("c", 12)):
+        os.makedirs(os.path.join(folder, name))
+        source = simple.Wavelet(WholeExtent=[0, size] * 3, Maximum=ord(name))
+        simple.SaveData(os.path.join(folder, name, "one.banyan"), proxy=source)
+    for name in ("b", "c"):
+        walk(*(os.path.abspath(os.path.join(folder, n)) for n in ("a", name)))
+        try:
+            simple.OpenDataFile("one.banyan")
+        except RuntimeError as error:
+            session.require("the ranks see different series" in str(error), str(error))
+            session.require(ranks > 1, str(error))
+        else:
+            session.require(ranks == 1, f"ranks read a and {name}")
+        walk(home, home)
+
+
+def rank_without_data(path):
+    """It reads what replaces a series, too: its zone may have something of it."""
+    pictures = []
+    for name, value in ((path, 1), (path, 8), (path + ".banyan", 8)):
+        image = simple.Wavelet(WholeExtent=[0, 1] * 3)
+        source = simple.Calculator(Input=image, ResultArrayName="v", Function=f"{value}+coordsX/9")
+        simple.SaveData(name, proxy=source, PointArrays=["v"])
+        if value == 1 or name != path:
+            reader = simple.OpenDataFile(name)
+            view = simple.CreateView("RenderView")
+            view.ViewSize = [100, 100]
+            view.OrientationAxesVisibility = 0
+            view.UseFXAA = 0
+            display = simple.Show(reader, view)
+            display.SetRepresentationType("Banyan Volume")
+            display.LoadBalancing = 0
+            simple.ColorBy(display, ("POINTS", "v"))
+            simple.GetColorTransferFunction("v").RescaleTransferFunction(0, 10)
+            simple.GetOpacityTransferFunction("v").RescaleTransferFunction(0, 10)
+            simple.ResetCamera(view)
+        else:
+            simple.ReloadFiles(reader)
+        pictures.append(picture(view, 0).astype(int))
+    session.require(abs(pictures[0] - pictures[1]).max() > 20, "the old one is drawn")
+    difference = abs(pictures[1] - pictures[2]).max()
+    session.require(difference <= 1, f"a part of the old one is drawn: {difference}")
+    simple.Delete(view)
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--plugin", required=True)
@@ -324,6 +387,9 @@ def main():
         session.require("MeshTolerance" in display.ListProperties(), "the display of a mesh")
         numbers_of_display(display, view)
         simple.Delete(view)
+    rank_without_data(path("tiny.banyan"))
+    # Last: ParaView's scripts import names into this one.
+    other_files_of_ranks(path("ranks"), 1 if arguments.alone else 3)
 
 
 if __name__ == "__main__":
