@@ -1,6 +1,7 @@
 #include "Series/SeriesLock.h"
 
 #include "Base/Error.h"
+#include "Series/AtomicFile.h"
 #include "Series/SegmentFolder.h"
 #include "Series/SeriesAssembly.h"
 
@@ -115,8 +116,9 @@ SeriesLock::SeriesLock(const std::string& seriesPath)
       {
         continue; // it went meanwhile
       }
-      throw Error(std::string("The folder of the series cannot be made: ") + std::strerror(code),
-        { this->Folder });
+      const std::string why =
+        code == EEXIST ? "a file, or a link that leads nowhere, has its name" : std::strerror(code);
+      throw Error("The folder of the series cannot be made: " + why, { this->Folder });
     }
     this->Device = status.st_dev;
     this->Inode = status.st_ino;
@@ -129,6 +131,15 @@ SeriesLock::SeriesLock(const std::string& seriesPath)
     {
       holders.ByFolder[{ this->Device, this->Inode }] = { this->Process, Me() };
       this->ClearLeftovers();
+      try
+      {
+        this->TryIndex();
+      }
+      catch (const Error&)
+      {
+        this->GiveBack();
+        throw;
+      }
       return;
     }
   }
@@ -220,6 +231,15 @@ void SeriesLock::ClearLeftovers() const
   }
 }
 
+/// Finds out early, too: the index comes last, into another folder, and may have a name too long.
+void SeriesLock::TryIndex() const
+{
+  if (this->Locked)
+  {
+    const AtomicFile index(this->Path); // and goes
+  }
+}
+
 SeriesLock::~SeriesLock()
 {
   if (this->Process != getpid())
@@ -227,15 +247,20 @@ SeriesLock::~SeriesLock()
     (void)close(this->Descriptor); // a copy, which holds nothing
     return;
   }
-  Holders& holders = OfProcess();
-  std::lock_guard<std::mutex> lock(holders.Mutex);
+  std::lock_guard<std::mutex> lock(OfProcess().Mutex);
+  this->GiveBack();
+}
+
+/// The mutex of the holders is locked.
+void SeriesLock::GiveBack()
+{
   (void)unlink(this->File.c_str()); // while it is held: nobody takes one that has no name
   (void)close(this->Descriptor);
   if (this->Made)
   {
     (void)rmdir(this->Folder.c_str());
   }
-  holders.ByFolder.erase({ this->Device, this->Inode });
+  OfProcess().ByFolder.erase({ this->Device, this->Inode });
 }
 
 } // namespace banyan

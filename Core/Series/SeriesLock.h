@@ -21,8 +21,8 @@ public:
   /// Makes the folder where it is not there yet, and clears away what saves that were killed have
   /// left in it, apart from what the index of the series names.
   /// @param seriesPath of the index file, which is no link (see FollowLinks)
-  /// Throws Error that says who holds the lock, that the folder cannot be written, or that what
-  /// has the name of the series is no ordinary file.
+  /// Throws Error that says who holds the lock, that the folder or the index cannot be written, or
+  /// that what has the name of the series is no ordinary file.
   explicit SeriesLock(const std::string& seriesPath);
   /// The folder goes as well if it was made here and is empty.
   ~SeriesLock();
@@ -33,6 +33,8 @@ private:
   bool TryTake();
   void CheckPath() const;
   void ClearLeftovers() const;
+  void TryIndex() const;
+  void GiveBack();
 
   std::string Path;
   std::string Folder;

@@ -306,7 +306,14 @@ TEST(SeriesLock, RefusesAtOnceWhatCannotBeWritten)
   ExpectError([&] { encode("file.banyan"); }, "file.banyan.d");
   ExpectError([&] { encode("missing/s.banyan"); }, "No such file or directory");
   fs::create_symlink("nowhere", folder / "lost.banyan.d");
-  ExpectError([&] { encode("lost.banyan"); }, "lost.banyan.d");
+  ExpectError([&] { encode("lost.banyan"); }, "a link that leads nowhere");
+  // Not only when all is encoded, and somebody waits for the index.
+  const auto take = [&](const std::string& name) { const SeriesLock lock(folder / name); };
+  ExpectError([&] { take(std::string(251, 'x')); }, "too long");
+  fs::create_directory(folder / "full.banyan.part");
+  ExpectError([&] { take("full.banyan"); }, "full.banyan.part");
+  fs::remove(folder / "full.banyan.part");
+  take("full.banyan");
   EXPECT_EQ(NamesIn(folder.Path()),
     (std::set<std::string>{ "folder.banyan", "pipe.banyan", "file.banyan.d", "lost.banyan.d" }));
 }
