@@ -12,6 +12,7 @@
 #include "vtkNew.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <cmath>
 #include <sstream>
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -133,9 +134,15 @@ std::vector<double> PipelineInput::Times(bool wanted) const
   }
   const double* first = info->Get(Pipeline::TIME_STEPS());
   std::vector<double> times(first, first + info->Length(Pipeline::TIME_STEPS()));
-  for (std::size_t i = 1; i < times.size(); ++i)
+  for (std::size_t i = 0; i < times.size(); ++i)
   {
-    if (!(times[i] > times[i - 1]))
+    if (!std::isfinite(times[i]))
+    {
+      std::ostringstream text;
+      text << "The time of step " << i << " of the input is " << times[i] << ", which is no time.";
+      throw Error(text.str());
+    }
+    if (i > 0 && !(times[i] > times[i - 1]))
     {
       std::ostringstream text;
       text << "The times of the input do not increase: " << times[i] << " (step " << i

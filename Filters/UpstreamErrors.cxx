@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <sstream>
 #include <streambuf>
 
 namespace banyan
@@ -29,6 +30,36 @@ std::string Plain(std::string text)
   }
   text.erase(std::min(text.find('\n'), text.size()));
   return text;
+}
+
+/// What vtkErrorMacro makes: where it was called, or a class and an address. All that scripts write
+/// to Python's standard error comes to the window as well, piece by piece.
+bool IsOfVtk(const std::string& text)
+{
+  const std::size_t address = text.find(" (");
+  const std::size_t end = text.find("): ");
+  return text.rfind("ERROR: In ", 0) == 0 ||
+         (address != std::string::npos && end != std::string::npos &&
+           text.find_first_of(" \n") == address && text.find('\n') > end);
+}
+
+/// The line of an exception in what scripts have written, or nothing: warnings are no errors.
+std::string PythonError(const std::string& written)
+{
+  std::istringstream lines(written);
+  bool inTraceback = false;
+  for (std::string line; std::getline(lines, line);)
+  {
+    const bool ofSyntax = line.rfind("SyntaxError: ", 0) == 0 ||
+                          line.rfind("IndentationError: ", 0) == 0 ||
+                          line.rfind("TabError: ", 0) == 0;
+    if (ofSyntax || (inTraceback && !line.empty() && line[0] != ' '))
+    {
+      return line;
+    }
+    inTraceback = inTraceback || line == "Traceback (most recent call last):";
+  }
+  return inTraceback ? "a script failed" : "";
 }
 
 } // namespace
@@ -97,7 +128,12 @@ UpstreamErrors::~UpstreamErrors()
 
 std::string UpstreamErrors::First() const
 {
-  return this->Text.empty() ? this->StandardError->Complaint() : this->Text;
+  if (!this->Text.empty())
+  {
+    return this->Text;
+  }
+  const std::string ofScripts = PythonError(this->Scripts);
+  return ofScripts.empty() ? this->StandardError->Complaint() : ofScripts;
 }
 
 void UpstreamErrors::ListenTo(vtkObject* object)
@@ -130,12 +166,20 @@ void UpstreamErrors::ListenUpstream(vtkAlgorithm* algorithm)
   }
 }
 
-void UpstreamErrors::Take(vtkObject*, unsigned long, void* text)
+void UpstreamErrors::Take(vtkObject* speaker, unsigned long, void* text)
 {
-  if (this->Text.empty() && text)
+  if (!this->Text.empty() || !text)
   {
-    this->Text = Plain(static_cast<const char*>(text));
+    return;
   }
+  const std::string said = static_cast<const char*>(text);
+  if (vtkOutputWindow::SafeDownCast(speaker) && !IsOfVtk(said))
+  {
+    this->Scripts += said;
+    return;
+  }
+  const std::string before = PythonError(this->Scripts);
+  this->Text = before.empty() ? Plain(said) : before;
 }
 
 } // namespace banyan

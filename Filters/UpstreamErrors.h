@@ -16,6 +16,8 @@ namespace banyan
 /// say that they cannot read a file and then report success with whatever is in memory; nothing
 /// but the message tells. (For a raw file that is too short, MetaIO's line on std::cerr does.)
 ///
+/// Exceptions of Python scripts, which report success as well, count; their warnings do not.
+///
 /// Messages are still shown where they would be shown without this. For the main thread.
 class UpstreamErrors
 {
@@ -39,6 +41,7 @@ private:
   std::vector<std::pair<vtkObject*, unsigned long>> Observers;
   std::unique_ptr<Tee> StandardError;
   std::string Text;
+  std::string Scripts; ///< what they wrote to Python's standard error
 };
 
 } // namespace banyan

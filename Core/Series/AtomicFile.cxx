@@ -36,9 +36,14 @@ std::string FolderOf(const std::string& path)
   return slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
 }
 
+std::string AtomicFile::PartOf(const std::string& path)
+{
+  return path + ".part";
+}
+
 AtomicFile::AtomicFile(const std::string& path)
   : Path(path)
-  , PartPath(path + ".part")
+  , PartPath(PartOf(path))
 {
   // Leftovers of a killed process go; the target of a link of that name stays.
   (void)unlink(this->PartPath.c_str());

@@ -13,7 +13,9 @@ namespace banyan
 class AtomicFile
 {
 public:
-  /// Creates `path + ".part"`. Throws Error when it cannot.
+  /// The temporary name: `path + ".part"`.
+  static std::string PartOf(const std::string& path);
+  /// Creates it; one that was there goes. Throws Error when it cannot.
   explicit AtomicFile(const std::string& path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;

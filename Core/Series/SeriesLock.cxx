@@ -2,6 +2,7 @@
 
 #include "Base/Error.h"
 #include "Series/AtomicFile.h"
+#include "Series/IndexText.h"
 #include "Series/SegmentFolder.h"
 #include "Series/SeriesAssembly.h"
 
@@ -178,6 +179,12 @@ bool SeriesLock::TryTake()
     {
       (void)rmdir(this->Folder.c_str());
     }
+    if (code == EISDIR || code == ELOOP)
+    {
+      throw Error(
+        "The lock of the series cannot be made: a folder or a link has its name. Remove that",
+        { this->File });
+    }
     Fail(this->Folder, code);
   }
   // Whoever may write into the folder may lock it.
@@ -234,10 +241,20 @@ void SeriesLock::ClearLeftovers() const
 /// Finds out early, too: the index comes last, into another folder, and may have a name too long.
 void SeriesLock::TryIndex() const
 {
-  if (this->Locked)
+  if (!this->Locked)
   {
-    const AtomicFile index(this->Path); // and goes
+    return;
   }
+  const std::string part = AtomicFile::PartOf(this->Path);
+  struct stat status = {};
+  if (stat(part.c_str(), &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0 &&
+      !BeginsAsSeries(part))
+  {
+    throw Error("A file that is no series has the name that the new index has while it is written. "
+                "Move it, or give it another name",
+      { part });
+  }
+  const AtomicFile index(this->Path); // and goes
 }
 
 SeriesLock::~SeriesLock()

@@ -12,6 +12,7 @@
 #include "vtkInformation.h"
 #include "vtkMetaImageReader.h"
 #include "vtkMultiBlockDataSet.h"
+#include "vtkOutputWindow.h"
 #include "vtkPointData.h"
 #include "vtkSphereSource.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -112,6 +113,40 @@ TEST_P(WriterRobustness, InputFailsMidway)
   const auto source = this->SourceThatChanges([](vtkImageData*) {});
   source->FailingStep = 2;
   this->ExpectRefused(source, { "step 2 (time 1.5)", "cannot be read" });
+}
+
+/// All that scripts write to their standard error comes to the output window, piece by piece.
+TEST_P(WriterRobustness, ExceptionsOfScriptsAreErrorsAndWarningsAreNot)
+{
+  const auto saying = [this](const std::vector<const char*>& pieces)
+  {
+    return this->SourceThatChanges(
+      [pieces](vtkImageData*)
+      {
+        for (const char* const piece : pieces)
+        {
+          vtkOutputWindowDisplayErrorText(piece);
+        }
+      });
+  };
+  this->ExpectRefused(
+    saying({ "Traceback (most recent call last):\n", "  File \"script\", line 2, in <module>\n",
+      "    raise ValueError('no such wind')\n", "ValueError: ", "no such wind\n" }),
+    { "step 2 (time 1.5)", "cannot be read: ValueError: no such wind" });
+  this->ExpectRefused(saying({ "  File \"script\", line 1\n", "SyntaxError: invalid syntax\n" }),
+    { "step 2 (time 1.5)", "SyntaxError: invalid syntax" });
+  WriteSeries(saying({ "script:2: RuntimeWarning: divide by zero encountered in log\n",
+                "  return numpy.log(w)\n", ".", "step done\n" }),
+    this->Folder / "warned.banyan");
+}
+
+TEST_P(WriterRobustness, TimesAreNumbers)
+{
+  for (const double time : { std::nan(""), HUGE_VAL })
+  {
+    const auto source = WaveSource(SimpleGrid({ 7, 7, 7 }), { 0.0, 1.0, time });
+    this->ExpectRefused(source, { "step 2", "no time" });
+  }
 }
 
 TEST_P(WriterRobustness, AnOlderSeriesStays)
@@ -231,8 +266,7 @@ TEST_P(WriterRobustness, BadOptions)
   for (const int cells : { -16, 7, 24, 128 })
   {
     this->Change = [cells](vtkBanyanSeriesWriter* w) { w->SetBrickCells(cells); };
-    this->ExpectRefused(
-      WaveSource(SimpleGrid({ 4, 4, 4 }), {}), { "a.banyan", "8, 16, 32 or 64" });
+    this->ExpectRefused(WaveSource(SimpleGrid({ 4, 4, 4 }), {}), { "a.banyan", "8, 16, 32 or 64" });
   }
 }
 

@@ -313,7 +313,18 @@ TEST(SeriesLock, RefusesAtOnceWhatCannotBeWritten)
   fs::create_directory(folder / "full.banyan.part");
   ExpectError([&] { take("full.banyan"); }, "full.banyan.part");
   fs::remove(folder / "full.banyan.part");
+  // A download of somebody's stays, and a leftover of a killed save goes.
+  std::ofstream(folder / "full.banyan.part") << "a download";
+  ExpectError([&] { take("full.banyan"); }, "full.banyan.part");
+  EXPECT_EQ(fs::file_size(folder / "full.banyan.part"), 10u);
+  std::ofstream(folder / "full.banyan.part") << "banyan-series 5 0123";
   take("full.banyan");
+  fs::create_directories(folder / "locked.banyan.d/saving.lock");
+  ExpectError([&] { take("locked.banyan"); }, "locked.banyan.d/saving.lock");
+  fs::remove(folder / "locked.banyan.d/saving.lock");
+  fs::create_symlink("saving.lock", folder / "locked.banyan.d/saving.lock");
+  ExpectError([&] { take("locked.banyan"); }, "locked.banyan.d/saving.lock");
+  fs::remove_all(folder / "locked.banyan.d");
   EXPECT_EQ(NamesIn(folder.Path()),
     (std::set<std::string>{ "folder.banyan", "pipe.banyan", "file.banyan.d", "lost.banyan.d" }));
 }
