@@ -247,7 +247,7 @@ void SeriesLock::TryIndex() const
   }
   const std::string part = AtomicFile::PartOf(this->Path);
   struct stat status = {};
-  if (stat(part.c_str(), &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0 &&
+  if (lstat(part.c_str(), &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0 &&
       !BeginsAsSeries(part))
   {
     throw Error("A file that is no series has the name that the new index has while it is written. "
