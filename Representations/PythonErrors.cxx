@@ -4,6 +4,8 @@
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
 
+#include <cstddef>
+
 #include <dlfcn.h>
 
 namespace banyan
@@ -19,17 +21,36 @@ Function* Find(const char* name)
   return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
 }
 
-} // namespace
-
-void RaiseInPython(const std::string& sentence)
+/// Whether this thread is inside of Python, and may call it.
+bool IsInPython()
 {
   const auto isInitialized = Find<int()>("Py_IsInitialized");
   const auto holdsLock = Find<int()>("PyGILState_Check");
   const auto frame = Find<void*()>("PyEval_GetFrame");
+  return isInitialized && holdsLock && frame && isInitialized() && holdsLock() && frame();
+}
+
+} // namespace
+
+void ForgetGarbageOfPython()
+{
+  const auto setInSystem = Find<int(const char*, void*)>("PySys_SetObject");
+  const auto collect = Find<std::ptrdiff_t()>("PyGC_Collect");
+  if (setInSystem && collect && IsInPython())
+  {
+    for (const char* name : { "last_traceback", "last_value", "last_type", "last_exc" })
+    {
+      (void)setInSystem(name, nullptr);
+    }
+    (void)collect();
+  }
+}
+
+void RaiseInPython(const std::string& sentence)
+{
   const auto setError = Find<void(void*, const char*)>("PyErr_SetString");
   void** runtimeError = reinterpret_cast<void**>(dlsym(RTLD_DEFAULT, "PyExc_RuntimeError"));
-  if (isInitialized && holdsLock && frame && setError && runtimeError && isInitialized() &&
-      holdsLock() && frame())
+  if (setError && runtimeError && IsInPython())
   {
     // VTK's wrappers look for an error when the C++ method returns.
     setError(*runtimeError, sentence.c_str());

@@ -13,12 +13,14 @@ void vtkSMBanyanWriterProxy::PrintSelf(ostream& os, vtkIndent indent)
 
 void vtkSMBanyanWriterProxy::UpdatePipeline()
 {
+  banyan::ForgetGarbageOfPython();
   this->Superclass::UpdatePipeline();
   banyan::RaiseErrorOf(this);
 }
 
 void vtkSMBanyanWriterProxy::UpdatePipeline(double time)
 {
+  banyan::ForgetGarbageOfPython();
   this->Superclass::UpdatePipeline(time);
   banyan::RaiseErrorOf(this);
 }

@@ -167,6 +167,44 @@ def other_kinds(folder):
         expect_no_series(what, source, folder, mention)
 
 
+STEPS = """
+executive = self.GetExecutive()
+info = executive.GetOutputInformation(0)
+info.Set(executive.WHOLE_EXTENT(), 0, 4, 0, 4, 0, 4)
+for time in (0.0, 1.0, 2.0):
+    info.Append(executive.TIME_STEPS(), time)
+info.Set(executive.TIME_RANGE(), [0.0, 2.0], 2)
+"""
+STEP = """
+import sys
+import numpy
+executive = self.GetExecutive()
+info = executive.GetOutputInformation(0)
+time = info.Get(executive.UPDATE_TIME_STEP()) if info.Has(executive.UPDATE_TIME_STEP()) else 0.0
+self.GetOutputDataObject(0).SetExtent(info.Get(executive.UPDATE_EXTENT()))
+count = self.GetOutputDataObject(0).GetNumberOfPoints()
+output.PointData.append(numpy.log(numpy.arange(count) + 0.0), "a")
+print("step", time, "done", file=sys.stderr)
+"""
+
+
+def scripts(folder):
+    """A script's warnings, and what else it writes to its standard error, are no failure of it."""
+    path = os.path.join(folder, "warns.banyan")
+    for mode in MODES:
+        warns = simple.ProgrammableSource(
+            OutputDataSetType="vtkImageData", Script=STEP, ScriptRequestInformation=STEPS)
+        simple.SaveData(path, proxy=warns, **mode)
+        times = list(simple.OpenDataFile(path).TimestepValues)
+        session.require(times == [0, 1, 2], f"warnings: {times}")
+        for line in ("if time == 1: raise ValueError('no such file: alpha')", "work(", "nothere"):
+            raises = simple.ProgrammableSource(OutputDataSetType="vtkImageData", Script=STEP + line,
+                                               ScriptRequestInformation=STEPS)
+            mention = {"i": "ValueError: no such file: alpha", "w": "SyntaxError: ",
+                       "n": "NameError: name 'nothere'"}[line[0]]
+            expect_no_series("script", raises, folder, "The input cannot be read: " + mention, **mode)
+
+
 def main():
     parser = session.parser(__doc__)
     parser.add_argument("--out", required=True)
@@ -185,6 +223,7 @@ def main():
     damaged_series(arguments.out)
     half_copied(arguments.out)
     other_kinds(arguments.out)
+    scripts(arguments.out)
     data = os.path.join(os.environ.get("BANYAN_DATA_DIR", ""), "malformed_basic")
     if os.path.isdir(data):
         broken_files(data, arguments.out)
