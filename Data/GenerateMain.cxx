@@ -139,7 +139,8 @@ int main(int argc, char** argv)
   }
   catch (const std::bad_alloc&)
   {
-    std::fprintf(stderr, "banyan-generate: There is not enough memory for this --size or --cells.\n");
+    std::fprintf(
+      stderr, "banyan-generate: There is not enough memory for this --size or --cells.\n");
   }
   catch (const std::exception& error)
   {

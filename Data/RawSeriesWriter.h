@@ -20,8 +20,8 @@ public:
   RawSeriesWriter(const RawSeriesWriter&) = delete;
   RawSeriesWriter& operator=(const RawSeriesWriter&) = delete;
 
-  /// Also takes a part of a step, when the parts come in order of memory. Throws Error when the disk
-  /// is full.
+  /// Also takes a part of a step, when the parts come in order of memory. Throws Error when the
+  /// disk is full.
   void AddStep(const std::vector<float>& values);
   void Finish();
 

@@ -185,9 +185,9 @@ public:
 
   ///@{
   /**
-   * Cells of a brick along each axis: 8, 16, 32 or 64; or 0 (default), which takes 32 from 2^24 samples on
-   * and 16 below. Larger bricks make smaller files, and whole steps are read faster; of smaller ones more is
-   * left out that cannot be seen, and a single one is read faster.
+   * Cells of a brick along each axis: 8, 16, 32 or 64; or 0 (default), which takes 32 from 2^24
+   * samples on and 16 below. Larger bricks make smaller files, and whole steps are read faster; of
+   * smaller ones more is left out that cannot be seen, and a single one is read faster.
    */
   vtkSetMacro(BrickCells, int);
   vtkGetMacro(BrickCells, int);
@@ -195,8 +195,9 @@ public:
 
   ///@{
   /**
-   * Whether each segment file is read by itself. By default (off) its steps are also predicted from the
-   * last step of the one before, which makes most series smaller: a brick is then read from two files.
+   * Whether each segment file is read by itself. By default (off) its steps are also predicted from
+   * the last step of the one before, which makes most series smaller: a brick is then read from two
+   * files.
    */
   vtkSetMacro(ClosedGroups, bool);
   vtkGetMacro(ClosedGroups, bool);

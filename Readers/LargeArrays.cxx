@@ -17,7 +17,8 @@ void SetTuples(vtkDataArray* array, vtkIdType tuples)
     array->SetNumberOfTuples(tuples);
     return;
   }
-  array->SetVoidArray(LargePages::Take(bytes), values, 0, vtkAbstractArray::VTK_DATA_ARRAY_USER_DEFINED);
+  array->SetVoidArray(
+    LargePages::Take(bytes), values, 0, vtkAbstractArray::VTK_DATA_ARRAY_USER_DEFINED);
   array->SetArrayFreeFunction(LargePages::Give);
 }
 

@@ -8,9 +8,9 @@ class vtkDataArray;
 namespace banyan
 {
 
-/// SetNumberOfTuples of a plain array without values. Large ones lie in large pages: the system clears
-/// new memory page by page, which takes longer than decoding where pages are small.
-/// Throws std::bad_alloc.
+/// SetNumberOfTuples of a plain array without values. Large ones lie in large pages: the system
+/// clears new memory page by page, which takes longer than decoding where pages are small. Throws
+/// std::bad_alloc.
 void SetTuples(vtkDataArray* array, vtkIdType tuples);
 
 } // namespace banyan

@@ -53,17 +53,17 @@ public:
 
   ///@{
   /**
-   * Path of the index file, or of a link to it. The segments lie in a folder of the same name with ".d" at its
-   * end, beside the link or what it leads to (see banyan::FindSeriesFolder).
+   * Path of the index file, or of a link to it. The segments lie in a folder of the same name with
+   * ".d" at its end, beside the link or what it leads to (see banyan::FindSeriesFolder).
    */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
   ///@}
 
   /**
-   * Whether this is the reader for the file: it begins as the index of a series does, or is named *.banyan
-   * (or *.banyan.d).
-   * What is damaged or missing is said by the update. Silent, reads some bytes. Not collective.
+   * Whether this is the reader for the file: it begins as the index of a series does, or is named
+   * *.banyan (or *.banyan.d). What is damaged or missing is said by the update. Silent, reads some
+   * bytes. Not collective.
    */
   int CanReadFile(const char* fileName);
 
@@ -83,9 +83,9 @@ public:
 
   ///@{
   /**
-   * Whether series of meshes come as vtkHyperTreeGrid in place of vtkUnstructuredGrid: with cell data,
-   * the values of the elements at their centres (see banyan::TreeOutput). Off by default. Without
-   * effect on series of image data.
+   * Whether series of meshes come as vtkHyperTreeGrid in place of vtkUnstructuredGrid: with cell
+   * data, the values of the elements at their centres (see banyan::TreeOutput). Off by default.
+   * Without effect on series of image data.
    */
   vtkSetMacro(MeshAsHyperTreeGrid, bool);
   vtkGetMacro(MeshAsHyperTreeGrid, bool);
@@ -104,9 +104,10 @@ public:
 
   ///@{
   /**
-   * Whether the next step of a series of meshes that plays is decoded while this one is drawn: by threads
-   * of low priority, within half of what the cache has for decoded bricks. Default on. Without effect on
-   * series of image data, whose bricks the renderer decodes ahead (vtkBanyanVolumeMapper::SetReadAhead).
+   * Whether the next step of a series of meshes that plays is decoded while this one is drawn: by
+   * threads of low priority, within half of what the cache has for decoded bricks. Default on.
+   * Without effect on series of image data, whose bricks the renderer decodes ahead
+   * (vtkBanyanVolumeMapper::SetReadAhead).
    */
   vtkSetMacro(ReadAhead, bool);
   vtkGetMacro(ReadAhead, bool);
@@ -158,12 +159,14 @@ public:
   vtkIdType GetBricksDecoded();
 
   /**
-   * How many bricks that were decoded ahead this process has been asked for since, for whatever series.
+   * How many bricks that were decoded ahead this process has been asked for since, for whatever
+   * series.
    */
   vtkIdType GetBricksReadAhead();
 
   /**
-   * What the last update took on this process: of image data that decodes on first touch nearly nothing.
+   * What the last update took on this process: of image data that decodes on first touch nearly
+   * nothing.
    */
   double GetLoadSeconds();
 
@@ -184,8 +187,8 @@ protected:
   ~vtkBanyanSeriesReader() override;
 
   int FillOutputPortInformation(int port, vtkInformation* info) override;
-  vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
-    vtkInformationVector* outputs) override;
+  vtkTypeBool ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestInformation(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(

@@ -55,11 +55,10 @@ bool DistributedField::ChangedHere(const FieldPiece& piece)
     reinterpret_cast<std::uintptr_t>(piece.Grid), piece.Grid ? piece.Grid->GetMTime() : 0,
     reinterpret_cast<std::uintptr_t>(piece.Leaves), piece.Leaves ? piece.Leaves->GetMTime() : 0,
     static_cast<std::uint64_t>(piece.Where) } };
-  const bool changed = this->Fresh || stamp != this->Stamp ||
-                       !(piece.Mesh == this->StampedOptions) ||
-                       piece.Enhancement.Strength != this->Enhancement.Strength ||
-                       piece.Enhancement.Scale != this->Enhancement.Scale ||
-                       piece.Problem != this->PieceProblem;
+  const bool changed =
+    this->Fresh || stamp != this->Stamp || !(piece.Mesh == this->StampedOptions) ||
+    piece.Enhancement.Strength != this->Enhancement.Strength ||
+    piece.Enhancement.Scale != this->Enhancement.Scale || piece.Problem != this->PieceProblem;
   this->StampedOptions = piece.Mesh;
   this->Enhancement = piece.Enhancement;
   this->Stamp = stamp;
@@ -80,7 +79,8 @@ void DistributedField::Update(Communicator& communicator, const FieldPiece& piec
     {
       this->Agree(communicator, piece);
     }
-    // One rank may have failed alone, at the end: what there is to draw is nothing on all of them then.
+    // One rank may have failed alone, at the end: what there is to draw is nothing on all of them
+    // then.
     if (!AgreeOnError(communicator, this->ProblemText).empty())
     {
       this->Bricks.reset();

@@ -29,8 +29,9 @@ class StepAhead;
 /// One field of scalars that lies distributed over the ranks, agreed upon by all of them: one grid,
 /// and one zone of cells per rank. Pieces of an encoded series that nobody has touched or moved are
 /// drawn from the file, brick by brick, in zones of their own; anything else from the values in
-/// memory, by the rank that has them or by one that fetched them from there (see PieceField). Hexahedral meshes, and what is made one (see GridOfLeaves), are put
-/// together on all ranks, and each draws a zone (see MeshField).
+/// memory, by the rank that has them or by one that fetched them from there (see PieceField).
+/// Hexahedral meshes, and what is made one (see GridOfLeaves), are put together on all ranks, and
+/// each draws a zone (see MeshField).
 class DistributedField
 {
 public:
@@ -40,22 +41,23 @@ public:
   /// How zones follow what frames cost. For the next Update; the same on all ranks.
   void SetLoadBalancing(LoadBalancing mode);
 
-  /// Collective, before a frame: moves the zones, brings what they take, and lets the scene tell what
-  /// drawing takes. Throws Error, the same on all ranks, when one fails.
+  /// Collective, before a frame: moves the zones, brings what they take, and lets the scene tell
+  /// what drawing takes. Throws Error, the same on all ranks, when one fails.
   void BeginFrame(Communicator& communicator, RayScene& scene);
-  /// Collective, after it, for frames that may be drawn from coarser levels, up to `coarsest`: plain
-  /// data in pieces and meshes have them then too. Throws Error, the same on all ranks, when one fails.
+  /// Collective, after it, for frames that may be drawn from coarser levels, up to `coarsest`:
+  /// plain data in pieces and meshes have them then too. Throws Error, the same on all ranks, when
+  /// one fails.
   void BringLevels(Communicator& communicator, const RayScene& scene, int coarsest);
-  /// When this rank has cast the rays of the frame: begins to decode what the next frame of an encoded
-  /// series needs: the time step that comes next, if it plays, otherwise what comes onto the screen, if the
-  /// camera moves. Does not throw.
+  /// When this rank has cast the rays of the frame: begins to decode what the next frame of an
+  /// encoded series needs: the time step that comes next, if it plays, otherwise what comes onto
+  /// the screen, if the camera moves. Does not throw.
   void ReadAhead(const RayScene& scene, int rank);
   /// Collective, after it.
   void EndFrame(Communicator& communicator);
   /// From rank to rank for the frame that was begun last, over all ranks.
   double BytesMoved() const;
-  /// Bricks of other ranks that were still here for it, and that were not, over all ranks; and bytes
-  /// of such bricks on this rank.
+  /// Bricks of other ranks that were still here for it, and that were not, over all ranks; and
+  /// bytes of such bricks on this rank.
   std::uint64_t FetchHits() const;
   std::uint64_t FetchMisses() const;
   std::uint64_t FetchedBytes() const;
@@ -83,8 +85,8 @@ public:
   double CellSize() const { return this->ShortestEdge; }
   /// Of the values of all ranks; of all steps, where they come from an encoded series.
   const ValueRange& Range() const { return this->ValuesRange; }
-  /// The largest error of values, of all steps, that encoding has made as far as it is known: of the
-  /// drawn component, or of the length. 0 for plain data and meshes. The same on all ranks.
+  /// The largest error of values, of all steps, that encoding has made as far as it is known: of
+  /// the drawn component, or of the length. 0 for plain data and meshes. The same on all ranks.
   double EncodingError() const { return this->LargestEncodingError; }
   /// Whether bricks come from an encoded series.
   bool Encoded() const { return this->Series != nullptr; }
@@ -136,14 +138,14 @@ private:
   std::vector<Box> ZoneCells;
   std::unique_ptr<StepAhead> Ahead; ///< null until something is read ahead
   ViewAhead View;
-  int Step = 0;                     ///< of the series
+  int Step = 0; ///< of the series
   LoadBalancing Balancing = LoadBalancing::Off;
   FrameBalancer Balancer; ///< of encoded series and meshes
   std::array<double, 6> PhysicalBounds{ { 1, -1, 1, -1, 1, -1 } };
   double ShortestEdge = 1.0;
   ValueRange ValuesRange;
   double LargestEncodingError = 0.0;
-  std::unique_ptr<MeshField> Mesh; ///< null unless it is one of hexahedra
+  std::unique_ptr<MeshField> Mesh;    ///< null unless it is one of hexahedra
   std::unique_ptr<PieceField> Pieces; ///< null unless it is plain data on several ranks
   std::unique_ptr<BrickSource> Bricks;
   std::shared_ptr<const SeriesFile> Series;

@@ -10,9 +10,10 @@ namespace banyan
 {
 
 /// Draws the still pictures that follow an interaction in passes: the first with the tolerance of
-/// interaction, each of the next ones with a quarter of the one before, until the one that is wanted.
-/// A picture of the same scene is never drawn with a larger tolerance than the one before it. Other
-/// still pictures (those of scripts, and of the files that people save) keep the tolerance at once.
+/// interaction, each of the next ones with a quarter of the one before, until the one that is
+/// wanted. A picture of the same scene is never drawn with a larger tolerance than the one before
+/// it. Other still pictures (those of scripts, and of the files that people save) keep the
+/// tolerance at once.
 class RefinementPasses
 {
 public:
@@ -26,8 +27,8 @@ public:
   /// Collective: the tolerance of the next still picture, the same on all ranks.
   /// @param scene all that decides the picture, its samplings apart
   /// @param values a number that changes with the values that are drawn
-  double ToleranceOf(Communicator& communicator, const RayScene& scene, std::uint64_t values,
-    const Wish& wish);
+  double ToleranceOf(
+    Communicator& communicator, const RayScene& scene, std::uint64_t values, const Wish& wish);
 
   /// Tells that a picture was drawn while somebody moved the camera.
   void Interacted() { this->AfterInteraction = true; }

@@ -32,9 +32,9 @@ public:
   ///@}
 
   ///@{
-  /// What it took, before casting rays, to find out how to sample within the tolerance: for distances
-  /// and levels, for pixels that need no rays, and how many small pictures were drawn for both. 0
-  /// where nothing has to be found out.
+  /// What it took, before casting rays, to find out how to sample within the tolerance: for
+  /// distances and levels, for pixels that need no rays, and how many small pictures were drawn for
+  /// both. 0 where nothing has to be found out.
   vtkSetMacro(PilotSeconds, double);
   vtkGetMacro(PilotSeconds, double);
   vtkSetMacro(StrideSeconds, double);
@@ -87,10 +87,10 @@ public:
   ///@}
 
   ///@{
-  /// Bytes that all ranks hold of a mesh of hexahedra that is drawn: its octree, its cells where they
-  /// were gathered from several ranks, what it is sampled at, coarser meshes, and values. What ranks
-  /// of a machine have together counts once for each machine: that is MeshBytesShared of it. What the
-  /// pipeline holds does not count.
+  /// Bytes that all ranks hold of a mesh of hexahedra that is drawn: its octree, its cells where
+  /// they were gathered from several ranks, what it is sampled at, coarser meshes, and values. What
+  /// ranks of a machine have together counts once for each machine: that is MeshBytesShared of it.
+  /// What the pipeline holds does not count.
   vtkSetMacro(MeshBytes, vtkIdType);
   vtkGetMacro(MeshBytes, vtkIdType);
   vtkSetMacro(MeshBytesShared, vtkIdType);
@@ -98,8 +98,8 @@ public:
   ///@}
 
   ///@{
-  /// Bytes of bricks that went from one rank's zone to another's for this frame, and bricks that the
-  /// caches had and had not.
+  /// Bytes of bricks that went from one rank's zone to another's for this frame, and bricks that
+  /// the caches had and had not.
   vtkSetMacro(BytesMoved, vtkIdType);
   vtkGetMacro(BytesMoved, vtkIdType);
   vtkSetMacro(CacheHits, vtkIdType);

@@ -31,8 +31,9 @@ class vtkMultiProcessController;
  * Use it like any volume mapper: give it image data (the output of vtkBanyanSeriesReader draws
  * without being decoded), or an unstructured grid of axis-aligned hexahedra or voxels (each is
  * drawn as the trilinear element that it is; vtkBanyanHexOctree says what is wrong with others), a
- * vtkHyperTreeGrid or a vtkOverlappingAMR (their visible leaves are such elements), and put it into a vtkVolume with a colour and an opacity function. Rays end at opaque geometry that
- * was drawn before.
+ * vtkHyperTreeGrid or a vtkOverlappingAMR (their visible leaves are such elements), and put it into
+ * a vtkVolume with a colour and an opacity function. Rays end at opaque geometry that was drawn
+ * before.
  *
  * With a controller of several ranks, Render() is collective: each rank draws its zone and rank 0
  * receives the finished picture, opaque geometry of all ranks included; the other ranks are left
@@ -53,13 +54,14 @@ class vtkMultiProcessController;
  * their magnitude, as the vector mode of its colour function says; lights other than the viewer's
  * are ignored, and so is shading in modes other than composite. Averages are grey, from the lowest
  * to the highest value of the data (of all steps of an encoded series). Options that are set and
- * have no effect (gradient opacity, 2D transfer functions, and more: see banyan::IgnoredOptions) are
- * named in a warning, once. vtkVolumePicker and vtkCellPicker pick image data; hardware selection
- * (vtkPropPicker, vtkHardwareSelector) does not see the volume. SetAbortExecute(1) stops what a general
- * mesh takes before its first picture: it is not drawn until the mesh, or an option of it, is another.
+ * have no effect (gradient opacity, 2D transfer functions, and more: see banyan::IgnoredOptions)
+ * are named in a warning, once. vtkVolumePicker and vtkCellPicker pick image data; hardware
+ * selection (vtkPropPicker, vtkHardwareSelector) does not see the volume. SetAbortExecute(1) stops
+ * what a general mesh takes before its first picture: it is not drawn until the mesh, or an option
+ * of it, is another.
  *
- * @par Errors: Render() throws nothing. What cannot be drawn is said by an ErrorEvent, once as long as
- * it stays the same; nothing of the volume is drawn then, on any rank.
+ * @par Errors: Render() throws nothing. What cannot be drawn is said by an ErrorEvent, once as long
+ * as it stays the same; nothing of the volume is drawn then, on any rank.
  */
 class BANYANRENDERING_EXPORT vtkBanyanVolumeMapper : public vtkVolumeMapper
 {
@@ -73,8 +75,9 @@ public:
    * Largest error of a pixel that is wanted, in 1/255 of a channel: of still frames (default 1),
    * and while interacting, that is, while the window asks for more than one frame per second
    * (default 8). It decides how closely each part of the picture is sampled, and from which level
-   * of an encoded series or a mesh of hexahedra. The error is estimated (see banyan::PlanSamplings) and goes to the
-   * statistics. Allowed [0.05, 255]. Without effect on projections and nearest interpolation.
+   * of an encoded series or a mesh of hexahedra. The error is estimated (see banyan::PlanSamplings)
+   * and goes to the statistics. Allowed [0.05, 255]. Without effect on projections and nearest
+   * interpolation.
    */
   virtual void SetImageErrorTolerance(double number);
   vtkGetMacro(ImageErrorTolerance, double);
@@ -124,11 +127,11 @@ public:
 
   ///@{
   /**
-   * How many pixels long cells may be, in place of the tolerance: each tile of 32 x 32 pixels is drawn from
-   * the coarsest level whose cells are no longer where the volume is nearest to the eye
-   * (banyan::SamplingsByScreen), one sample per cell, or as far apart as SampleDistanceVoxels says. The size
-   * of cells decides, whatever their values are: no error is estimated. Default 0: the tolerance decides.
-   * Allowed [0, 1024]. Without effect on projections and nearest interpolation.
+   * How many pixels long cells may be, in place of the tolerance: each tile of 32 x 32 pixels is
+   * drawn from the coarsest level whose cells are no longer where the volume is nearest to the eye
+   * (banyan::SamplingsByScreen), one sample per cell, or as far apart as SampleDistanceVoxels says.
+   * The size of cells decides, whatever their values are: no error is estimated. Default 0: the
+   * tolerance decides. Allowed [0, 1024]. Without effect on projections and nearest interpolation.
    */
   virtual void SetScreenErrorPixels(double number);
   vtkGetMacro(ScreenErrorPixels, double);
@@ -136,9 +139,9 @@ public:
 
   ///@{
   /**
-   * How far the points of hexahedra may lie beside the lattice of their octree, in edges of the smallest
-   * cell: they are drawn as if they were there. Default 1/1024; allowed [0, 1/16]. More than the default
-   * is for meshes whose points were moved by the displacements that they carry.
+   * How far the points of hexahedra may lie beside the lattice of their octree, in edges of the
+   * smallest cell: they are drawn as if they were there. Default 1/1024; allowed [0, 1/16]. More
+   * than the default is for meshes whose points were moved by the displacements that they carry.
    */
   virtual void SetMeshTolerance(double number);
   vtkGetMacro(MeshTolerance, double);
@@ -146,11 +149,11 @@ public:
 
   ///@{
   /**
-   * How closely hexahedra that are no octree of boxes (curved, warped, with topography) are sampled:
-   * the largest difference from their own field that is allowed between samples, as a part of the spread of the
-   * values around, whatever they are (banyan::CubeDeviation). Default 1/4; allowed [0, 1]; 0: such meshes are
-   * refused with a sentence that says which cell does not fit. The statistic MeshDeviation says what
-   * was reached.
+   * How closely hexahedra that are no octree of boxes (curved, warped, with topography) are
+   * sampled: the largest difference from their own field that is allowed between samples, as a part
+   * of the spread of the values around, whatever they are (banyan::CubeDeviation). Default 1/4;
+   * allowed [0, 1]; 0: such meshes are refused with a sentence that says which cell does not fit.
+   * The statistic MeshDeviation says what was reached.
    */
   virtual void SetMeshSamplingTolerance(double number);
   vtkGetMacro(MeshSamplingTolerance, double);
@@ -158,8 +161,8 @@ public:
 
   ///@{
   /**
-   * How many boxes they may take; where more would be needed, they stay coarser, with a warning. Default
-   * 2^20; each takes about 200 bytes.
+   * How many boxes they may take; where more would be needed, they stay coarser, with a warning.
+   * Default 2^20; each takes about 200 bytes.
    */
   vtkSetClampMacro(MeshSamplingBoxes, int, 1024, 1 << 26);
   vtkGetMacro(MeshSamplingBoxes, int);
@@ -167,10 +170,11 @@ public:
 
   ///@{
   /**
-   * The most elements of a mesh of hexahedra that may show in a pixel: where more would show under all of
-   * a tile of the picture (banyan::FinestLevelsOfTiles), it is drawn from a coarser level, whatever
-   * ImageErrorTolerance asks for; the estimated error says what that costs. Default 0: any number, so that
-   * the tolerance alone decides. Without effect on other data, and with SampleDistanceVoxels.
+   * The most elements of a mesh of hexahedra that may show in a pixel: where more would show under
+   * all of a tile of the picture (banyan::FinestLevelsOfTiles), it is drawn from a coarser level,
+   * whatever ImageErrorTolerance asks for; the estimated error says what that costs. Default 0: any
+   * number, so that the tolerance alone decides. Without effect on other data, and with
+   * SampleDistanceVoxels.
    */
   virtual void SetMaxElementsPerPixel(double number);
   vtkGetMacro(MaxElementsPerPixel, double);
@@ -181,8 +185,8 @@ public:
    * Brings out what moves from one step of an encoded series to the next, while it is drawn: the
    * strength of banyan::TemporalEnhancement, in [0, 1]. Its scale is the largest magnitude that the
    * opacity function knows. Of plain data the steps around must be there as point arrays
-   * (banyan::MotionEnhancement); the representation sees to that. Default 0: values are drawn as they
-   * are. vtkBanyanTemporalEnhancement does the same to data.
+   * (banyan::MotionEnhancement); the representation sees to that. Default 0: values are drawn as
+   * they are. vtkBanyanTemporalEnhancement does the same to data.
    */
   virtual void SetTemporalEnhancement(double number);
   vtkGetMacro(TemporalEnhancement, double);
@@ -203,8 +207,8 @@ public:
    * Whether pixels travel between ranks in as few bits as keep each of them within 1/255 of one
    * rank's, and packed: far fewer bytes than floats. Where a background is blended behind
    * the picture later, in 8 bits, as ParaView does, a few pixels may then differ by 2/255. Default
-   * off: floats, which are within 1/255 there too. Without effect on IceT, on projections, and while
-   * several volumes are on the screen.
+   * off: floats, which are within 1/255 there too. Without effect on IceT, on projections, and
+   * while several volumes are on the screen.
    */
   vtkSetMacro(CompositeInFewBits, bool);
   vtkGetMacro(CompositeInFewBits, bool);
@@ -223,8 +227,9 @@ public:
   ///@{
   /**
    * How the zones of the ranks follow what frames cost: 0 not at all, 1 a slice of bricks per frame
-   * towards the slower side, 2 (default) to where measured costs balance. Bricks of plain image data go
-   * from rank to rank for it; meshes are on all ranks. The same on all ranks. The picture does not change.
+   * towards the slower side, 2 (default) to where measured costs balance. Bricks of plain image
+   * data go from rank to rank for it; meshes are on all ranks. The same on all ranks. The picture
+   * does not change.
    */
   vtkSetClampMacro(LoadBalancing, int, 0, 2);
   vtkGetMacro(LoadBalancing, int);
@@ -232,10 +237,10 @@ public:
 
   ///@{
   /**
-   * Whether what the next frame of an encoded series needs is decoded in the background while a frame
-   * is composited and shown. If it plays: the bricks of the next time step that were drawn of this one, within
-   * half of what the cache has for decoded bricks. If the camera moves: bricks that come onto the screen when
-   * it goes on as it went, within a quarter. Default on.
+   * Whether what the next frame of an encoded series needs is decoded in the background while a
+   * frame is composited and shown. If it plays: the bricks of the next time step that were drawn of
+   * this one, within half of what the cache has for decoded bricks. If the camera moves: bricks
+   * that come onto the screen when it goes on as it went, within a quarter. Default on.
    */
   vtkSetMacro(ReadAhead, bool);
   vtkGetMacro(ReadAhead, bool);
@@ -269,8 +274,8 @@ public:
 
   /**
    * The point or cell array of `data` that the mapper's scalar mode selects; with the default mode
-   * the active scalars, or the first array of numbers. Of blocks, that of the first one. Null if there
-   * is none.
+   * the active scalars, or the first array of numbers. Of blocks, that of the first one. Null if
+   * there is none.
    */
   vtkDataArray* GetArrayToDraw(vtkDataObject* data);
 

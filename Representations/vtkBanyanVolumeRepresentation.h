@@ -22,8 +22,8 @@ class StepWindow;
 
 /**
  * @class vtkBanyanVolumeRepresentation
- * @brief ParaView's representation "Banyan Volume" of image data, encoded or plain, and of hexahedral
- * octree meshes
+ * @brief ParaView's representation "Banyan Volume" of image data, encoded or plain, and of
+ * hexahedral octree meshes
  *
  * Draws in parallel with its own compositing; data is never redistributed. Colour map, opacity
  * function and opacity unit distance are those of ParaView's own "Volume". With no array selected
@@ -101,7 +101,8 @@ public:
   void SetMeshSamplingTolerance(double tolerance);
   void SetMeshSamplingBoxes(int boxes);
 
-  /** As vtkBanyanVolumeMapper's: the most elements of a mesh that may show in a pixel; 0 for any. */
+  /** As vtkBanyanVolumeMapper's: the most elements of a mesh that may show in a pixel; 0 for any.
+   */
   void SetMaxElementsPerPixel(double most);
 
   /** As vtkBanyanVolumeMapper's; steps around the one that is drawn are asked of the pipeline. */
@@ -151,7 +152,7 @@ private:
   vtkSmartPointer<vtkBanyanVolume> Prop;
   vtkSmartPointer<vtkDataObject> Piece;
   std::unique_ptr<banyan::MergedBlocks> Blocks; ///< of blocks that are drawn as one mesh
-  std::unique_ptr<banyan::StepWindow> Steps; ///< around the one drawn, if motion is brought out
+  std::unique_ptr<banyan::StepWindow> Steps;    ///< around the one drawn, if motion is brought out
   int InterpolationType = 1;
   bool NearestPoint = false;
   int BlendMode = 0;

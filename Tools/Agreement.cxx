@@ -55,9 +55,10 @@ void CheckMeshes(const SeriesIndex& index, int step, const SourceStep& source)
 {
   if (!source.Mesh || !index.Mesh)
   {
-    Refuse(step, index.Mesh ? "the source has no mesh, and the series is one of a mesh. It is compared "
-                              "with files of the mesh that it was made from."
-                            : "the source is a mesh, and the series is one of images.");
+    Refuse(step, index.Mesh
+                   ? "the source has no mesh, and the series is one of a mesh. It is compared "
+                     "with files of the mesh that it was made from."
+                   : "the source is a mesh, and the series is one of images.");
   }
   if (source.Samples.x != index.Mesh->Points || source.Mesh->Cells != index.Mesh->Cells)
   {

@@ -38,8 +38,8 @@ std::string Heading(const SeriesReport& report)
   const SeriesIndex& index = report.Index;
   const glm::ivec3 n = index.Domain.Samples();
   const Box& extent = index.Domain.Extent;
-  const std::string samples = std::to_string(n.x) + " x " + std::to_string(n.y) + " x " +
-                              std::to_string(n.z) + " samples";
+  const std::string samples =
+    std::to_string(n.x) + " x " + std::to_string(n.y) + " x " + std::to_string(n.z) + " samples";
   std::string text = report.File + "\n  " +
                      (index.Mesh ? "a mesh of " + std::to_string(index.Mesh->Cells) +
                                      " cells and " + std::to_string(index.Mesh->Points) + " points"
@@ -59,16 +59,16 @@ std::string Heading(const SeriesReport& report)
   }
   for (int axis = 0; !index.Mesh && axis < 3; ++axis)
   {
-    text += std::string(axis == 0 ? "  extent" : "") + " " + std::to_string(extent.Lo[axis]) + ".." +
-            std::to_string(extent.Hi[axis] - 1);
+    text += std::string(axis == 0 ? "  extent" : "") + " " + std::to_string(extent.Lo[axis]) +
+            ".." + std::to_string(extent.Hi[axis] - 1);
   }
   if (!index.Mesh)
   {
-    text += ", origin " + Numbers(index.Domain.Origin) + ", spacing " +
-            Numbers(index.Domain.Spacing);
+    text +=
+      ", origin " + Numbers(index.Domain.Origin) + ", spacing " + Numbers(index.Domain.Spacing);
   }
-  text += "\n  bricks of " + std::to_string(index.BrickCells) +
-          "^3 cells, " + Counted(static_cast<std::size_t>(index.Levels), "level") + ", " +
+  text += "\n  bricks of " + std::to_string(index.BrickCells) + "^3 cells, " +
+          Counted(static_cast<std::size_t>(index.Levels), "level") + ", " +
           Counted(index.Segments.size(), "segment") + " of up to " +
           Counted(static_cast<std::size_t>(index.KeyframeInterval), "step") + "\n";
   return text;
@@ -94,8 +94,8 @@ std::string Chains(const EncodeStatistics& statistics)
     return "";
   }
   return "  steps to decode for a brick of one: " +
-         Digits(static_cast<double>(statistics.ChainSum) /
-                static_cast<double>(statistics.ChainBricks)) +
+         Digits(
+           static_cast<double>(statistics.ChainSum) / static_cast<double>(statistics.ChainBricks)) +
          " in the mean, " + std::to_string(statistics.ChainMost) + " at most\n";
 }
 
@@ -114,9 +114,8 @@ std::string Size(const SeriesReport& report)
          Megabytes(report.Index.Statistics.PayloadBytes) + ", tables " +
          Megabytes(report.SegmentBytes - report.Index.Statistics.PayloadBytes) + ", index " +
          Megabytes(report.IndexBytes) +
-         (report.Index.Mesh ? ", mesh " + Megabytes(report.Index.Mesh->Bytes) : std::string()) + "\n" +
-         Repeated(report.Index.Statistics) +
-         Chains(report.Index.Statistics);
+         (report.Index.Mesh ? ", mesh " + Megabytes(report.Index.Mesh->Bytes) : std::string()) +
+         "\n" + Repeated(report.Index.Statistics) + Chains(report.Index.Statistics);
 }
 
 std::string Described(const Transform& transform)

@@ -78,8 +78,8 @@ inline std::size_t BytesOf(const SourceArray& array, const glm::ivec3& samples)
 {
   const std::int64_t tuples =
     array.Tuples > 0 ? array.Tuples : Box{ glm::ivec3(0), samples }.Count();
-  return static_cast<std::size_t>(tuples) *
-         static_cast<std::size_t>(array.Components) * SizeOf(array.Type);
+  return static_cast<std::size_t>(tuples) * static_cast<std::size_t>(array.Components) *
+         SizeOf(array.Type);
 }
 
 } // namespace banyan

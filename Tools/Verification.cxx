@@ -144,7 +144,8 @@ private:
       if (!step.IsValue(a))
       {
         this->Source.ReadValues(a, original);
-        this->CompareMesh(number, step.Arrays[a], static_cast<int>(a) == step.Mesh->Corners, original);
+        this->CompareMesh(
+          number, step.Arrays[a], static_cast<int>(a) == step.Mesh->Corners, original);
         continue;
       }
       bool read = false;
@@ -246,8 +247,8 @@ private:
     }
     const Judgement judgement{ component.Bound, index.ValueTransform, { RangeOf(index), 8 },
       &this->Opacities[c], IntervalsOf(index), index.FillValues, hidden };
-    const ValueErrors errors = CompareValues(array.Type, first, stride, this->Decoded.data(),
-      count, judgement, ThreadPool::Process());
+    const ValueErrors errors = CompareValues(
+      array.Type, first, stride, this->Decoded.data(), count, judgement, ThreadPool::Process());
     if (errors.WorstError > component.All.WorstError)
     {
       component.Worst = this->Describe(number, array.Type, errors, first, stride);

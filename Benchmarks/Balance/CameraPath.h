@@ -10,8 +10,8 @@ namespace banyan::bench
 {
 
 /// Names of the paths: `zoom` (the paper's: from afar into a part of the volume), `rest` (the same
-/// camera, close by, all the time), `jumps` (another place every tenth frame), `standard` (the scene's
-/// own camera all the time).
+/// camera, close by, all the time), `jumps` (another place every tenth frame), `standard` (the
+/// scene's own camera all the time).
 const std::vector<std::string>& CameraPaths();
 
 /// The scene as frame `frame` of `frames` sees it. Throws Error for paths that do not exist.

@@ -65,7 +65,8 @@ bool Run(CodecOptions options)
 {
   if (options.Measuring.Stages && !banyan::stages::Counted())
   {
-    throw banyan::Error("--stages needs a build that counts them: configure with -DBANYAN_STAGES=ON.");
+    throw banyan::Error(
+      "--stages needs a build that counts them: configure with -DBANYAN_STAGES=ON.");
   }
   // Decoding through the cache of bricks uses the pool of the process.
   banyan::ThreadPool::SetProcessWidth(1);

@@ -112,9 +112,10 @@ std::string CsvLine(const Measurement& m)
   return m.Dataset + "," + m.Method + "," + std::to_string(m.BitsOfAccuracy) + "," +
          Number(m.ErrorOverBound()) + "," + Number(m.SignalToNoiseDecibels) + "," +
          Number(m.BitsPerVoxel) + "," + Number(m.EncodeMegabytesPerSecond) + "," +
-         Number(m.DecodeMegabytesPerSecond) + "," + NumberOrNothing(m.RandomBrickMicroseconds) + "," +
-         Number(m.ErrorBound) + "," + Number(m.Range) + "," + std::to_string(m.Bytes) + "," +
-         NumberOrNothing(m.FinestBrickMicroseconds) + "," + NumberOrNothing(m.KeptBrickMicroseconds);
+         Number(m.DecodeMegabytesPerSecond) + "," + NumberOrNothing(m.RandomBrickMicroseconds) +
+         "," + Number(m.ErrorBound) + "," + Number(m.Range) + "," + std::to_string(m.Bytes) + "," +
+         NumberOrNothing(m.FinestBrickMicroseconds) + "," +
+         NumberOrNothing(m.KeptBrickMicroseconds);
 }
 
 bool Report(const RawSeries& series, const MethodList& methods, const std::vector<int>& bits,

@@ -44,8 +44,8 @@ struct HexMeshAccuracy
 {
   double Tolerance = 1.0; ///< in 1/255; 0: one sample per finest edge, of the elements as they are
   double MaxElementsPerPixel = 0.0; ///< see FinestLevelsOfTiles
-  /// All of the picture from the level that MaxElementsPerPixel gives, one sample per finest edge of
-  /// it, whatever the error: as the study of the earthquake does it.
+  /// All of the picture from the level that MaxElementsPerPixel gives, one sample per finest edge
+  /// of it, whatever the error: as the study of the earthquake does it.
   bool OneLevel = false;
 };
 

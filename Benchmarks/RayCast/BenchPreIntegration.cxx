@@ -3,10 +3,11 @@
 //   banyan-bench-preintegration [SERIES.json...]
 //
 // Prints, as CSV, errors of pictures of 64^2 pixels against samples 1/16 of a voxel apart, of the
-// standard scenes and of real data as banyan-bench-raycast takes it, for three ways to integrate over
-// an interval: the entry of its middle, the mean over the values between its ends, and the mean over
-// those that the slope at its middle spans. Slow and obvious: double precision, no tables but sums.
-// And what a sample takes in a plain loop with tables, and the tables themselves (PreIntegrationTimes.h).
+// standard scenes and of real data as banyan-bench-raycast takes it, for three ways to integrate
+// over an interval: the entry of its middle, the mean over the values between its ends, and the
+// mean over those that the slope at its middle spans. Slow and obvious: double precision, no tables
+// but sums. And what a sample takes in a plain loop with tables, and the tables themselves
+// (PreIntegrationTimes.h).
 #include "PreIntegrationTimes.h"
 #include "RealScenes.h"
 #include "StandardScenes.h"
@@ -42,8 +43,9 @@ public:
       const double opacity = std::min<double>(entry.a, 1.0 - 1e-7);
       const double extinction = -std::log1p(-opacity) / this->Scene.Transfer.UnitDistance;
       const glm::dvec4 now(glm::dvec3(entry) * extinction, extinction);
-      this->Sums.push_back(
-        this->Sums.empty() ? glm::dvec4(0.0) : this->Sums.back() + 0.5 * (this->Entries.back() + now));
+      this->Sums.push_back(this->Sums.empty()
+                             ? glm::dvec4(0.0)
+                             : this->Sums.back() + 0.5 * (this->Entries.back() + now));
       this->Entries.push_back(now);
     }
   }
@@ -64,7 +66,8 @@ public:
       enter = std::max(enter, std::min(low, high));
       exit = std::min(exit, std::max(low, high));
     }
-    const auto value = [&](double t) { return this->EntryOf(this->ValueAt(origin + direction * t)); };
+    const auto value = [&](double t)
+    { return this->EntryOf(this->ValueAt(origin + direction * t)); };
     const double step = voxels * this->Data.VoxelLength();
     glm::dvec3 colour(0.0);
     double transmittance = 1.0;
@@ -76,7 +79,8 @@ public:
       {
         const glm::dvec4 mean = this->MeanOf(value, begin, length, method);
         const double opacity = -std::expm1(-mean.a * length);
-        colour += transmittance * opacity * (mean.a > 0.0 ? glm::dvec3(mean) / mean.a : glm::dvec3(0.0));
+        colour +=
+          transmittance * opacity * (mean.a > 0.0 ? glm::dvec3(mean) / mean.a : glm::dvec3(0.0));
         transmittance *= 1.0 - opacity;
       }
     }
@@ -95,7 +99,8 @@ private:
     if (method == Method::Slope)
     {
       const double away = 1e-3 * this->Data.VoxelLength();
-      const double rise = (value(middle + away) - value(middle - away)) / (2.0 * away) * 0.5 * length;
+      const double rise =
+        (value(middle + away) - value(middle - away)) / (2.0 * away) * 0.5 * length;
       return this->MeanBetween(value(middle) - rise, value(middle) + rise, value(middle));
     }
     return this->Entries[Nearest(value(middle))];
@@ -136,7 +141,8 @@ private:
       const glm::ivec3 at = cell + far;
       const std::size_t index =
         at.x + static_cast<std::size_t>(n.x) * (at.y + static_cast<std::size_t>(n.y) * at.z);
-      const double value = this->Data.Codes.empty() ? this->Data.Floats[index] : this->Data.Codes[index];
+      const double value =
+        this->Data.Codes.empty() ? this->Data.Floats[index] : this->Data.Codes[index];
       const glm::dvec3 weight = glm::mix(1.0 - part, part, glm::dvec3(far));
       sum += value * weight.x * weight.y * weight.z;
     }

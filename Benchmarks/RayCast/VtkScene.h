@@ -9,7 +9,8 @@ namespace banyan::bench
 
 struct BenchScene;
 
-/// A scene's colours, opacities and light as VTK's mappers take them: linear between the scene's nodes.
+/// A scene's colours, opacities and light as VTK's mappers take them: linear between the scene's
+/// nodes.
 vtkSmartPointer<vtkVolumeProperty> PropertyOf(const BenchScene& scene);
 
 } // namespace banyan::bench

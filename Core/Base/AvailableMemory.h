@@ -16,8 +16,8 @@ namespace banyan
 std::size_t AvailableMemory(const std::string& root = {});
 
 /// Bytes of memory, without swap, that this process may have at most: the least of what the machine
-/// has and of what each control group around the process is allowed (version 2), whatever of them is
-/// in use. The same from start to end.
+/// has and of what each control group around the process is allowed (version 2), whatever of them
+/// is in use. The same from start to end.
 /// @param root as above
 /// @return 0 where nothing says
 std::size_t MachineMemory(const std::string& root = {});

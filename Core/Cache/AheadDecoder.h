@@ -41,7 +41,8 @@ public:
   void Start(std::shared_ptr<const SeriesFile> series, std::vector<FieldBricks> wanted,
     std::uint64_t mostBytes);
 
-  /// Begins no further brick, and does not wait for those that were begun: each thread may be at one.
+  /// Begins no further brick, and does not wait for those that were begun: each thread may be at
+  /// one.
   void Stop();
   /// Returns when all is done: for tests and benchmarks.
   void Finish();

@@ -57,8 +57,8 @@ public:
   std::shared_ptr<const BrickValues> GetIfHeld(
     const SeriesFile& series, const FieldKey& field, const BrickNode& node, std::int64_t brick);
 
-  /// Decodes a brick before anybody asks for it, if it is not held already. Asking for it later is a
-  /// hit, and counted among those of AheadStatistics the first time.
+  /// Decodes a brick before anybody asks for it, if it is not held already. Asking for it later is
+  /// a hit, and counted among those of AheadStatistics the first time.
   /// @return bytes that the cache holds more
   std::uint64_t GetAhead(const SeriesFile& series, const FieldKey& field, std::int64_t brick);
   struct AheadStatistics
@@ -77,7 +77,8 @@ public:
   std::uint64_t DrawingBudget() const { return this->Budget() / 8 * 3; }
   /// What decoded bricks may take: the budget, or their share of the process's.
   std::uint64_t DecodedBudget() const;
-  /// Others take so much more (or less) of that: bricks that ranks fetch from each other. Evicts at once.
+  /// Others take so much more (or less) of that: bricks that ranks fetch from each other. Evicts at
+  /// once.
   void Reserve(std::int64_t change);
   void Clear();
   Statistics GetStatistics() const;
@@ -94,10 +95,10 @@ private:
   std::unique_ptr<Internals> Self;
 };
 
-/// Copies the part `samples` of a field into a caller's array, decoding (in parallel) only the bricks
-/// that it touches. They come from the cache and go there. But a part of a sixteenth or more of the
-/// cache's budget goes past it, because it would push out everything else and be gone itself before
-/// it comes again; and so does a part of 1 MiB or more whose values are multiples of a step
+/// Copies the part `samples` of a field into a caller's array, decoding (in parallel) only the
+/// bricks that it touches. They come from the cache and go there. But a part of a sixteenth or more
+/// of the cache's budget goes past it, because it would push out everything else and be gone itself
+/// before it comes again; and so does a part of 1 MiB or more whose values are multiples of a step
 /// (SeriesFile::StepOfValues), because the numbers are kept and values are soon made of them.
 /// @param samples of the field's level, inside the layout's samples
 /// @param values receives samples.Count() tuples; the value goes to

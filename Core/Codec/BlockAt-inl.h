@@ -53,7 +53,7 @@ struct BlockMemory
   UnitMemory<Number, 2> Faces, FacesTarget;
   UnitMemory<Number, 3> Interior, InteriorTarget;
   UnitTokens Tokens;
-  std::vector<Number> Boxes; ///< of the target and both references
+  std::vector<Number> Boxes;                               ///< of the target and both references
   std::vector<std::pair<std::int64_t, std::size_t>> Costs; ///< of candidates, by their numbers
   std::size_t Likely = 0; ///< the candidate that the block before took
 };

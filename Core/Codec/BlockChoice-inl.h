@@ -31,7 +31,8 @@ struct BlockChooser : BlockAt<Edge, Number>
   static bool Looked(int y) { return y % 16 == 3 || y % 16 == 8 || y % 16 == 12; }
 
   /// Takes what Estimate looks at, less its reference.
-  void LoadLooked(const View<const Number>& samples, const References<Number>& from, Number* w) const
+  void LoadLooked(
+    const View<const Number>& samples, const References<Number>& from, Number* w) const
   {
     const block::Shape<3> shape{ this->B() };
     const int n = this->B();
@@ -44,7 +45,8 @@ struct BlockChooser : BlockAt<Edge, Number>
           {
             if (Looked(y) || (z & 3) == 0)
             {
-              LoadRow(reference, RowOf(samples, from, y, z), 0, n, w + z * shape.Z() + y * shape.Y());
+              LoadRow(
+                reference, RowOf(samples, from, y, z), 0, n, w + z * shape.Z() + y * shape.Y());
             }
           }
         }
@@ -132,8 +134,8 @@ struct BlockChooser : BlockAt<Edge, Number>
     Costs sum{};
     for (int at = 0; at < left; at += Width)
     {
-      Signed rest = reinterpret_cast<Signed>(Numbers<Number>::Load(w + place.W + P::First + at) -
-                                             Predict<P>(w, this->B, place, at, by));
+      Signed rest = reinterpret_cast<Signed>(
+        Numbers<Number>::Load(w + place.W + P::First + at) - Predict<P>(w, this->B, place, at, by));
       rest &= LaneMask<P, Signed>(left - at);
       const Floats bins = __builtin_convertvector(rest, Floats) * scale;
       const Floats squares = bins * bins;
@@ -183,14 +185,15 @@ struct BlockChooser : BlockAt<Edge, Number>
     return boxes;
   }
 
-  /// Asks for the samples that the next block is chosen by. One part of them after the other: more at
-  /// a time would be waited for.
+  /// Asks for the samples that the next block is chosen by. One part of them after the other: more
+  /// at a time would be waited for.
   void AskAhead(std::size_t part, std::size_t parts) const
   {
     const PlaneToEncode& plane = this->Plane();
     const std::size_t n = static_cast<std::size_t>(this->B()) + 1;
     const std::int64_t next = this->NextBlock();
-    for (const PlaneNumbers* from : { plane.Target, plane.A, plane.B != plane.A ? plane.B : nullptr })
+    for (const PlaneNumbers* from :
+      { plane.Target, plane.A, plane.B != plane.A ? plane.B : nullptr })
     {
       if (from == nullptr)
       {
@@ -209,16 +212,16 @@ struct BlockChooser : BlockAt<Edge, Number>
 
   std::size_t Trials() const { return static_cast<std::size_t>(std::max(this->Plane().Trials, 1)); }
 
-  /// What candidates cost at most that are tried out beside one of these costs. Where one looks clearly
-  /// best, it is: eleven times, or, of what costs much anyway, by a bit per sample.
+  /// What candidates cost at most that are tried out beside one of these costs. Where one looks
+  /// clearly best, it is: eleven times, or, of what costs much anyway, by a bit per sample.
   std::int64_t CloseTo(std::int64_t cost) const
   {
     const std::int64_t samples = std::int64_t{ this->B() } * this->B() * this->B();
     return cost + std::min(10 * cost, samples << 13);
   }
 
-  /// Estimates candidates: those that may be tried out come first in Work.Costs, the best ones first, and
-  /// of equal ones those that come first among the candidates.
+  /// Estimates candidates: those that may be tried out come first in Work.Costs, the best ones
+  /// first, and of equal ones those that come first among the candidates.
   void EstimateAll(const Boxes& boxes) const
   {
     const std::vector<block::Mode>& modes = this->Plane().Candidates;
@@ -279,9 +282,10 @@ struct BlockChooser : BlockAt<Edge, Number>
     this->EstimateAll(boxes);
     const std::vector<std::pair<std::int64_t, std::size_t>>& costs = this->Work.Costs;
     const std::int64_t close = this->CloseTo(costs[0].first);
-    const auto end = std::find_if(costs.begin() + 1, costs.end(),
-      [close](const auto& cost) { return cost.first > close; });
-    const std::size_t trials = std::min(static_cast<std::size_t>(end - costs.begin()), this->Trials());
+    const auto end = std::find_if(
+      costs.begin() + 1, costs.end(), [close](const auto& cost) { return cost.first > close; });
+    const std::size_t trials =
+      std::min(static_cast<std::size_t>(end - costs.begin()), this->Trials());
     std::size_t best = 0;
     std::int64_t least = std::numeric_limits<std::int64_t>::max();
     for (std::size_t i = 0; trials > 1 && i < trials; ++i)

@@ -12,9 +12,9 @@ HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
 
-/// Sum of the magnitudes of residuals around that are known when a slice is coded: those at and beside
-/// both ends of the interpolation, and those of the slice that the same pass coded before, which count
-/// most. At most 26 times 8.
+/// Sum of the magnitudes of residuals around that are known when a slice is coded: those at and
+/// beside both ends of the interpolation, and those of the slice that the same pass coded before,
+/// which count most. At most 26 times 8.
 /// @param m lane First + at of a row
 template <class P, class Edge>
 HWY_INLINE ByteVector RoughnessOf(const std::uint8_t* m, const Edge& edge, const RowPlace& place)
@@ -81,8 +81,8 @@ HWY_INLINE ByteVector RoughnessOf(const std::uint8_t* m, const Edge& edge, const
   return sum + twice + twice + (same + same) + (same + same);
 }
 
-/// What the residuals at the same place in the two slices before, of the same pass, hint at: its sign is
-/// likely that of the residual. 0 where there are none, or the place is not rough.
+/// What the residuals at the same place in the two slices before, of the same pass, hint at: its
+/// sign is likely that of the residual. 0 where there are none, or the place is not rough.
 /// @param r lane First + at of a row
 template <class P, class Edge>
 HWY_INLINE SignedByteVector HintOf(
@@ -150,8 +150,8 @@ HWY_INLINE std::uint16_t SumOf(ByteVector magnitudes)
   return static_cast<std::uint16_t>(((words[0] + words[1]) * 0x0101010101010101u) >> 56);
 }
 
-/// Sets the sums of rows to those of the magnitudes that a unit starts with: those of its first slice,
-/// and of the first row and the first lane of others.
+/// Sets the sums of rows to those of the magnitudes that a unit starts with: those of its first
+/// slice, and of the first row and the first lane of others.
 template <int D, class Edge>
 HWY_INLINE void SumRows(const std::uint8_t* m, const Edge& edge, std::uint16_t* s)
 {
@@ -162,8 +162,7 @@ HWY_INLINE void SumRows(const std::uint8_t* m, const Edge& edge, std::uint16_t* 
     for (int x = 0; x < edge(); x += Width)
     {
       const ByteVector inside = LaneMask<Pass<3, 2, 1>, ByteVector>(edge() - x);
-      result = static_cast<std::uint16_t>(
-        result + SumOf(LoadVector<ByteVector>(row + x) & inside));
+      result = static_cast<std::uint16_t>(result + SumOf(LoadVector<ByteVector>(row + x) & inside));
     }
     return result;
   };
@@ -180,7 +179,8 @@ HWY_INLINE void SumRows(const std::uint8_t* m, const Edge& edge, std::uint16_t* 
   }
 }
 
-/// How likely rows of a slice have residuals: weighted sums of the magnitudes around, as in RoughnessOf.
+/// How likely rows of a slice have residuals: weighted sums of the magnitudes around, as in
+/// RoughnessOf.
 /// @param s of the slice's row `first`
 template <class P, class Edge>
 HWY_INLINE SumVector RowWeights(const std::uint16_t* s, const Edge& edge, int slice, int first)
@@ -242,15 +242,14 @@ HWY_INLINE SumVector RowWeights(const std::uint16_t* s, const Edge& edge, int sl
   {
     constexpr int step = P::RowStep;
     const SumVector up = ahead(before, step);
-    const SumVector down =
-      rows >= static_cast<std::uint16_t>(step) ? load(before - step) : up;
+    const SumVector down = rows >= static_cast<std::uint16_t>(step) ? load(before - step) : up;
     sum += (up + down) * std::uint16_t{ 2 };
   }
   return sum;
 }
 
-/// Classes of the rows of a slice, by what is around them: RowClasses and more where residuals are so
-/// likely that rows have no flags.
+/// Classes of the rows of a slice, by what is around them: RowClasses and more where residuals are
+/// so likely that rows have no flags.
 /// @param to of all rows from 0 on, those included that the pass does not have
 template <class P, class Edge, class Number>
 HWY_INLINE void RowClasses(
@@ -302,8 +301,8 @@ HWY_INLINE Vector Expanded(Vector v)
   return v;
 }
 
-/// About 2 log2(1 + |r|): sums of these say how rough the neighbourhood is, over any scale. From 15 on
-/// it grows no more. Lanes behind the last symbol hold anything, also what has no opposite.
+/// About 2 log2(1 + |r|): sums of these say how rough the neighbourhood is, over any scale. From 15
+/// on it grows no more. Lanes behind the last symbol hold anything, also what has no opposite.
 HWY_INLINE ByteVector MagnitudesOf(SignedByteVector residuals)
 {
   const SignedByteVector opposite =

@@ -41,7 +41,8 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
     block::Scratch<Number, 3> Interior;
     SliceMemory<Number> Slice;
     std::conditional_t<Dense, DenseWork<KnownEdge>, int> Vectors{};
-    std::conditional_t<Dense, DenseBox<Number, KnownEdge>, int> Whole{}; ///< where the box is decoded
+    std::conditional_t<Dense, DenseBox<Number, KnownEdge>, int>
+      Whole{}; ///< where the box is decoded
     SymbolReader Readers[8];
     /// Magnitudes of the edges of the blocks 1, 2, 4 and 0 of a box, row by row.
     std::uint8_t EdgeMagnitudes[4][3][64];
@@ -134,8 +135,9 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
           this->Code.AskAhead(6);
           const stages::In stage(stages::FacePasses);
           BeginStride<P>(this->Work.Vectors.Faces, symbols);
-          DenseSliceDecoder<P, KnownEdge, Number>(unit, this->Work.Vectors.Faces.template At<P::S>(), mode.By,
-            symbols, static_cast<Number>(P::S == 2 ? this->Plane.CoarseBin : this->Plane.FineBin),
+          DenseSliceDecoder<P, KnownEdge, Number>(unit,
+            this->Work.Vectors.Faces.template At<P::S>(), mode.By, symbols,
+            static_cast<Number>(P::S == 2 ? this->Plane.CoarseBin : this->Plane.FineBin),
             this->Work.Vectors.Slice)
             .Run();
           return;
@@ -151,9 +153,9 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
         if constexpr (Dense && D == 2)
         {
           WithDenseFace<KnownEdge>(samples, from, w,
-            [this](const auto& face)
-            {
-              face.Store(static_cast<Number>(this->Plane.Least), static_cast<Number>(this->Plane.Greatest));
+            [this](const auto& face) {
+              face.Store(
+                static_cast<Number>(this->Plane.Least), static_cast<Number>(this->Plane.Greatest));
             });
         }
         else
@@ -243,8 +245,7 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
     }
   }
 
-  bool Faces(
-    int owner, SymbolReader* symbols, const std::uint8_t (&edges)[3][64], bool any) const
+  bool Faces(int owner, SymbolReader* symbols, const std::uint8_t (&edges)[3][64], bool any) const
   {
     const stages::In stage(stages::FaceCopies);
     if constexpr (Dense)
@@ -283,9 +284,10 @@ struct BoxDecoder : BoxPlaces<Edge, Number>
     {
       const BlockCode& block = this->Code.Blocks[0];
       const block::Mode mode = block::ModeOf(block.Mode);
-      Unit<Number, 3> unit{ this->Box.Base, nullptr, nullptr, this->Work.Interior.S(), { block.Limit },
-        any };
-      DecodeDenseInterior(unit, mode, this->Plane, symbols, this->Work.Vectors, this->Work.Whole,
+      Unit<Number, 3> unit{ this->Box.Base, nullptr, nullptr, this->Work.Interior.S(),
+        { block.Limit }, any };
+      DecodeDenseInterior(
+        unit, mode, this->Plane, symbols, this->Work.Vectors, this->Work.Whole,
         [this](int lines) { this->Code.AskAhead(lines); }, this->To);
     }
     else
@@ -328,8 +330,7 @@ void DecodeBoxOf(
 }
 
 template <class Number>
-void DecodeBoxOf(
-  int edge, const PlaneCode& plane, const BoxCodeOf<Number>& code, Number* box)
+void DecodeBoxOf(int edge, const PlaneCode& plane, const BoxCodeOf<Number>& code, Number* box)
 {
   WithEdge(edge, [&](const auto& known) { DecodeBoxOf(known, plane, code, box); });
 }

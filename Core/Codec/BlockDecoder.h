@@ -15,13 +15,13 @@ namespace banyan
 /// A block as the file holds it.
 struct BlockCode
 {
-  bool Exists = false;         ///< not beyond the field's end
-  bool Uniform = false;        ///< all its samples are `Value`
-  bool Same = false;           ///< all its samples are those of reference A
+  bool Exists = false;  ///< not beyond the field's end
+  bool Uniform = false; ///< all its samples are `Value`
+  bool Same = false;    ///< all its samples are those of reference A
   std::int32_t Value = 0;
-  std::uint8_t Mode = 0;       ///< see BlockModes.h
+  std::uint8_t Mode = 0; ///< see BlockModes.h
   const std::uint8_t* Data = nullptr;
-  std::size_t Bytes = 0;       ///< 0: all residuals are zero
+  std::size_t Bytes = 0; ///< 0: all residuals are zero
   /// The field's last sample, seen from the block's first one: beyond, there are no residuals.
   glm::ivec3 Limit{ -1 };
 };
@@ -48,8 +48,8 @@ struct BoxCodeOf
   /// Decoded boxes of the references; must be given when a mode asks for them.
   const Number* A = nullptr;
   const Number* B = nullptr;
-  /// Decoded boxes of the neighbours that exist along x, y, z and were decoded before; null for others.
-  /// Of what is here the faces are not decoded again.
+  /// Decoded boxes of the neighbours that exist along x, y, z and were decoded before; null for
+  /// others. Of what is here the faces are not decoded again.
   const Number* Neighbours[3] = {};
   /// What is asked for meanwhile; or null.
   MemoryAhead* Ahead = nullptr;

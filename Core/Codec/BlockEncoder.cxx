@@ -46,8 +46,8 @@ struct BlockCoder : BlockAt<Edge, Number>
       unit.Limit[number] = glm::ivec3(-1);
       if (coded)
       {
-        unit.Limit[number] = InOrderOf<D>(
-          axes, plane.Target->Samples - 1 - this->Position * this->B(), this->B());
+        unit.Limit[number] =
+          InOrderOf<D>(axes, plane.Target->Samples - 1 - this->Position * this->B(), this->B());
       }
       if (exists[number])
       {
@@ -173,8 +173,7 @@ void EncodeBlockOf(
 template <class Number>
 void EncodeBlockOf(const PlaneJob& job, const glm::ivec3& position, BlockPhase phase)
 {
-  WithEdge(job.Decoded->Edge,
-    [&](const auto& edge)
+  WithEdge(job.Decoded->Edge, [&](const auto& edge)
     { EncodeBlockOf<std::decay_t<decltype(edge)>, Number>(edge, job, position, phase); });
 }
 

@@ -121,20 +121,21 @@ struct PlaneToEncode
   std::int32_t CoarseBin = 1, FineBin = 1;
   std::int32_t Least = 0, Greatest = 0;
   std::vector<block::Mode> Candidates; ///< to choose from; at least one without references
-  /// How many of them, those that look best, are encoded to see what they cost; 1: what looks best is taken.
+  /// How many of them, those that look best, are encoded to see what they cost; 1: what looks best
+  /// is taken.
   int Trials = 1;
 };
 
 /// Codes all blocks of a plane.
-/// @param decoded a plane like the target (of which nothing is kept); receives exactly what DecodeBox
-/// will give
-/// @param done called for each block, by any thread, when it is decoded, with the layer behind it: its
-/// numbers are still at hand
-/// @param begin if not null, called for each block, by any thread, before its numbers to code are asked
-/// for: it may make them then
-/// The result does not depend on the number of threads.
-void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded, std::vector<BlockTokens>& blocks,
-  ThreadPool& pool, const std::function<void(std::int64_t block)>& done,
+/// @param decoded a plane like the target (of which nothing is kept); receives exactly what
+/// DecodeBox will give
+/// @param done called for each block, by any thread, when it is decoded, with the layer behind it:
+/// its numbers are still at hand
+/// @param begin if not null, called for each block, by any thread, before its numbers to code are
+/// asked for: it may make them then The result does not depend on the number of threads.
+void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded,
+  std::vector<BlockTokens>& blocks, ThreadPool& pool,
+  const std::function<void(std::int64_t block)>& done,
   const std::function<void(std::int64_t block)>& begin = nullptr);
 
 } // namespace banyan

@@ -77,9 +77,9 @@ HWY_INLINE void StoreVector(const Vector& value, Element* to)
   std::memcpy(to, &value, sizeof(value));
 }
 
-/// Predictions of whole vectors. Arithmetic wraps: files made with ill intent must not reach undefined
-/// behaviour. The formulas are the usual ones, rounded, in an order that needs no more bits than
-/// samples have.
+/// Predictions of whole vectors. Arithmetic wraps: files made with ill intent must not reach
+/// undefined behaviour. The formulas are the usual ones, rounded, in an order that needs no more
+/// bits than samples have.
 template <class Number, int Lanes = Width>
 struct Numbers
 {
@@ -103,7 +103,10 @@ struct Numbers
   {
     return other + Shift((near - other) + Shift(near - far + Number{ 4 }, 1), 2);
   }
-  static HWY_INLINE Unsigned Linear(Unsigned a, Unsigned b) { return Shift(a + b + Number{ 1 }, 1); }
+  static HWY_INLINE Unsigned Linear(Unsigned a, Unsigned b)
+  {
+    return Shift(a + b + Number{ 1 }, 1);
+  }
 };
 
 /// Lane numbers of a vector of 16 or 32.
@@ -116,8 +119,8 @@ HWY_INLINE Vector LaneNumbers()
   }
   else
   {
-    return Vector{ 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23,
-      24, 25, 26, 27, 28, 29, 30, 31 };
+    return Vector{ 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22,
+      23, 24, 25, 26, 27, 28, 29, 30, 31 };
   }
 }
 
@@ -128,14 +131,15 @@ struct Pass
   static constexpr int D = D_;
   static constexpr int Axis = Axis_;
   static constexpr int S = S_;
-  static constexpr int Band =
-    D == 1 ? 2 - S : D == 2 ? (S == 2 ? 2 : 3 + Axis) : (S == 2 ? 5 : 8) + Axis;
+  static constexpr int Band = D == 1   ? 2 - S
+                              : D == 2 ? (S == 2 ? 2 : 3 + Axis)
+                                       : (S == 2 ? 5 : 8) + Axis;
   /// Lanes of a row: First, First + Step, ... below the edge.
   static constexpr int First = S;
   static constexpr int Step = Axis > 0 ? S : 2 * S;
 
-  /// Rows are coded in slices: those of one z of an interior, those of one y of the three faces, all
-  /// three edges.
+  /// Rows are coded in slices: those of one z of an interior, those of one y of the three faces,
+  /// all three edges.
   static constexpr int FirstSlice = D == 1 ? 0 : D - 1 <= Axis ? S : 2 * S;
   static constexpr int SliceStep = 2 * S;
   static int EndOfSlices(int edge) { return D == 1 ? 1 : edge; }
@@ -177,7 +181,7 @@ struct Unit
 {
   Number* W;
   std::uint8_t* M;
-  std::int8_t* R; ///< residuals, from -15 to 15; same places
+  std::int8_t* R;   ///< residuals, from -15 to 15; same places
   std::uint16_t* S; ///< sums of the magnitudes of rows
   /// Greatest position per axis that carries residuals; of each face and edge.
   glm::ivec3 Limit[3];
@@ -192,8 +196,14 @@ HWY_INLINE RowPlace PlaceOf(const Unit<Number, P::D>& unit, const Edge& edge, in
   place.Y = P::D == 3 ? row : slice;
   place.Z = slice;
   place.Row = row;
-  place.W = (P::D == 3 ? slice * shape.Z() : P::D == 2 ? slice * shape.Y() : 0) + row * shape.Pitch();
-  place.M = (P::D == 3 ? slice * shape.ZM() : P::D == 2 ? slice * shape.Y() : 0) + row * shape.Pitch();
+  place.W = (P::D == 3    ? slice * shape.Z()
+              : P::D == 2 ? slice * shape.Y()
+                          : 0) +
+            row * shape.Pitch();
+  place.M = (P::D == 3    ? slice * shape.ZM()
+              : P::D == 2 ? slice * shape.Y()
+                          : 0) +
+            row * shape.Pitch();
   const glm::ivec3& limit = unit.Limit[P::D < 3 ? row : 0];
   const bool inside =
     (P::D < 2 || place.Y <= limit.y) && (P::D < 3 || place.Z <= limit.z) && P::First <= limit.x;
@@ -206,8 +216,8 @@ HWY_INLINE RowPlace PlaceOf(const Unit<Number, P::D>& unit, const Edge& edge, in
 /// @param gap distance of samples that are a stride apart along the axis of the pass
 /// @param position of the row along that axis; any along the first
 template <class P, int Lanes = Width, class Edge, class Number>
-HWY_INLINE typename Numbers<Number, Lanes>::Unsigned PredictAt(const Number* from,
-  std::ptrdiff_t gap, const Edge& edge, int position, int at, Interpolation by)
+HWY_INLINE typename Numbers<Number, Lanes>::Unsigned PredictAt(
+  const Number* from, std::ptrdiff_t gap, const Edge& edge, int position, int at, Interpolation by)
 {
   using V = Numbers<Number, Lanes>;
   using Vector = typename V::Unsigned;
@@ -255,8 +265,7 @@ HWY_INLINE typename Numbers<Number>::Unsigned Predict(
   const Number* w, const Edge& edge, const RowPlace& place, int at, Interpolation by)
 {
   const block::Shape<P::D> shape{ edge() };
-  const std::ptrdiff_t gap =
-    P::Axis == 0 ? P::S : P::S * (P::Axis == 1 ? shape.Y() : shape.Z());
+  const std::ptrdiff_t gap = P::Axis == 0 ? P::S : P::S * (P::Axis == 1 ? shape.Y() : shape.Z());
   return PredictAt<P>(
     w + place.W + P::First + at, gap, edge, P::Axis == 1 ? place.Y : place.Z, at, by);
 }

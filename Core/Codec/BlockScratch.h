@@ -11,12 +11,12 @@
 namespace banyan::block
 {
 
-/// How the memory of units is laid out. A unit is what is left of a block between what is known: its
-/// three edges (one dimension), its three faces (two), or its interior (three). Edges, and faces, are
-/// coded together: their rows lie side by side, number 0 to 2.
+/// How the memory of units is laid out. A unit is what is left of a block between what is known:
+/// its three edges (one dimension), its three faces (two), or its interior (three). Edges, and
+/// faces, are coded together: their rows lie side by side, number 0 to 2.
 ///
-/// Rows have room on both sides, because predictions of whole vectors read (and ignore) lanes beyond
-/// the ends; so have magnitudes, with zeros before the first lane.
+/// Rows have room on both sides, because predictions of whole vectors read (and ignore) lanes
+/// beyond the ends; so have magnitudes, with zeros before the first lane.
 template <int D>
 struct Shape
 {
@@ -121,8 +121,8 @@ inline void PlaceFaces(int edge, const std::uint8_t* faces, std::uint8_t* interi
   }
 }
 
-/// Lattices that are no larger have predictions in 16-bit arithmetic (which wraps), others in 32-bit.
-/// Part of the file format.
+/// Lattices that are no larger have predictions in 16-bit arithmetic (which wraps), others in
+/// 32-bit. Part of the file format.
 inline bool Narrow(std::int32_t least, std::int32_t greatest)
 {
   constexpr std::int32_t most = 8000;

@@ -24,8 +24,7 @@ struct View
   /// The same array with its axes in another order; see AxesOf.
   View Along(const glm::ivec3& axes) const
   {
-    return { this->Base,
-      { this->Stride[axes.x], this->Stride[axes.y], this->Stride[axes.z] } };
+    return { this->Base, { this->Stride[axes.x], this->Stride[axes.y], this->Stride[axes.z] } };
   }
   View At(const glm::ivec3& position) const
   {
@@ -33,10 +32,7 @@ struct View
                position.z * this->Stride.z,
       this->Stride };
   }
-  Sample* Row(int y, int z) const
-  {
-    return this->Base + y * this->Stride.y + z * this->Stride.z;
-  }
+  Sample* Row(int y, int z) const { return this->Base + y * this->Stride.y + z * this->Stride.z; }
 };
 
 /// Where the samples of references lie; the same place as the unit's own.
@@ -62,18 +58,22 @@ struct References
 template <int D>
 constexpr int UnitsOf = D < 3 ? 3 : 1;
 
-/// The axes of an edge, a face or an interior in the unit's own order: the free ones first. Edges run
-/// along x, y, z; faces along x and y, x and z, y and z.
+/// The axes of an edge, a face or an interior in the unit's own order: the free ones first. Edges
+/// run along x, y, z; faces along x and y, x and z, y and z.
 template <int D>
 HWY_INLINE glm::ivec3 AxesOf(int number)
 {
   if (D == 1)
   {
-    return number == 1 ? glm::ivec3{ 1, 0, 2 } : number == 2 ? glm::ivec3{ 2, 0, 1 } : glm::ivec3{ 0, 1, 2 };
+    return number == 1   ? glm::ivec3{ 1, 0, 2 }
+           : number == 2 ? glm::ivec3{ 2, 0, 1 }
+                         : glm::ivec3{ 0, 1, 2 };
   }
   if (D == 2)
   {
-    return number == 1 ? glm::ivec3{ 0, 2, 1 } : number == 2 ? glm::ivec3{ 1, 2, 0 } : glm::ivec3{ 0, 1, 2 };
+    return number == 1   ? glm::ivec3{ 0, 2, 1 }
+           : number == 2 ? glm::ivec3{ 1, 2, 0 }
+                         : glm::ivec3{ 0, 1, 2 };
   }
   return { 0, 1, 2 };
 }
@@ -165,8 +165,7 @@ HWY_INLINE typename Numbers<Number>::Unsigned LoadSamples(const Sample* from)
   }
   else
   {
-    return __builtin_convertvector(
-      LoadVector<typename Numbers<Sample>::Unsigned>(from), Vector);
+    return __builtin_convertvector(LoadVector<typename Numbers<Sample>::Unsigned>(from), Vector);
   }
 }
 
@@ -189,8 +188,8 @@ HWY_INLINE SampleRow<Other> RowOf(
     Other* row = samples.Row(y, z);
     return { row, row, row, samples.Stride.x, samples.Stride.x, samples.Stride.x };
   }
-  return { samples.Row(y, z), from.A.Row(y, z), from.B.Row(y, z), samples.Stride.x,
-    from.A.Stride.x, from.B.Stride.x };
+  return { samples.Row(y, z), from.A.Row(y, z), from.B.Row(y, z), samples.Stride.x, from.A.Stride.x,
+    from.B.Stride.x };
 }
 
 /// Takes samples first to last of a row, less their references.
@@ -217,16 +216,16 @@ HWY_INLINE void LoadRow(
   for (; x <= last; ++x)
   {
     using U = std::make_unsigned_t<Number>;
-    const Number reference = Reference::Of(static_cast<Number>(row.A[x * row.StrideA]),
-      static_cast<Number>(row.B[x * row.StrideB]));
+    const Number reference = Reference::Of(
+      static_cast<Number>(row.A[x * row.StrideA]), static_cast<Number>(row.B[x * row.StrideB]));
     w[x] = static_cast<Number>(
       static_cast<U>(static_cast<U>(row.X[x * row.StrideX]) - static_cast<U>(reference)));
   }
 }
 
 /// Takes a unit with its borders (edge + 1 samples per free axis), less its reference.
-/// @param all false: what is known before the unit is decoded, its borders and every fourth sample, is
-/// enough; the rest is anything
+/// @param all false: what is known before the unit is decoded, its borders and every fourth sample,
+/// is enough; the rest is anything
 /// @param w its sample 0
 template <int D, class Number, class Edge, class Sample>
 HWY_INLINE void LoadUnit(const View<const Sample>& samples, const References<Sample>& from,
@@ -307,8 +306,8 @@ HWY_INLINE void StoreUnit(const Number* w, const References<Sample>& from, const
           {
             for (; x + Width <= n; x += Width)
             {
-              const auto sum = V::Load(in + x) +
-                reference.Of(LoadSamples<Number>(row.A + x), LoadSamples<Number>(row.B + x));
+              const auto sum = V::Load(in + x) + reference.Of(LoadSamples<Number>(row.A + x),
+                                                   LoadSamples<Number>(row.B + x));
               Signed value = reinterpret_cast<Signed>(sum);
               value = value < low ? low : value;
               value = value > high ? high : value;
@@ -320,9 +319,10 @@ HWY_INLINE void StoreUnit(const Number* w, const References<Sample>& from, const
             using U = std::make_unsigned_t<Number>;
             const Number subtracted = reference.Of(static_cast<Number>(row.A[x * row.StrideA]),
               static_cast<Number>(row.B[x * row.StrideB]));
-            const Number sum =
-              static_cast<Number>(static_cast<U>(static_cast<U>(in[x]) + static_cast<U>(subtracted)));
-            row.X[x * row.StrideX] = std::min(std::max<Sample>(sum, least), static_cast<Sample>(greatest));
+            const Number sum = static_cast<Number>(
+              static_cast<U>(static_cast<U>(in[x]) + static_cast<U>(subtracted)));
+            row.X[x * row.StrideX] =
+              std::min(std::max<Sample>(sum, least), static_cast<Sample>(greatest));
           }
         }
       }

@@ -10,8 +10,8 @@
 namespace banyan
 {
 
-/// Decode tables of all contexts, as SymbolReader takes them. Contexts that have the same frequencies have one
-/// table: what is decoded with should fit into a near cache.
+/// Decode tables of all contexts, as SymbolReader takes them. Contexts that have the same
+/// frequencies have one table: what is decoded with should fit into a near cache.
 struct DecodeTables
 {
   struct Band

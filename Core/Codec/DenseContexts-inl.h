@@ -15,8 +15,8 @@ namespace banyan::HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Whether blocks have kernels of whole slices. Vectors must have a number of lanes that is known, and as
-/// many as a row.
+/// Whether blocks have kernels of whole slices. Vectors must have a number of lanes that is known,
+/// and as many as a row.
 template <class Edge>
 constexpr bool HasDense = false;
 
@@ -27,10 +27,10 @@ constexpr bool HasDense<EdgeIs<16>> = true;
 template <>
 constexpr bool HasDense<EdgeIs<32>> = VectorBytes >= 32;
 
-/// Magnitudes of the units of blocks of 16 or 32 at one stride, without gaps, so that one vector holds
-/// several rows: N = 8 or 16 of each axis at stride 2, 16 or 32 at stride 1. With stride 2 what lies
-/// between is left out, so that passes of both strides are the same. Rows of three faces lie side by
-/// side in a slice, which has room for a fourth.
+/// Magnitudes of the units of blocks of 16 or 32 at one stride, without gaps, so that one vector
+/// holds several rows: N = 8 or 16 of each axis at stride 2, 16 or 32 at stride 1. With stride 2
+/// what lies between is left out, so that passes of both strides are the same. Rows of three faces
+/// lie side by side in a slice, which has room for a fourth.
 template <int D, int N>
 struct DenseShape
 {
@@ -74,8 +74,8 @@ HWY_INLINE ByteVector LanesFrom()
   return result;
 }
 
-/// A row of N bytes, or 16 of a longer one; those behind it hold anything. It is loaded as it was stored, or
-/// as a part of that: what was stored in two pieces is waited for.
+/// A row of N bytes, or 16 of a longer one; those behind it hold anything. It is loaded as it was
+/// stored, or as a part of that: what was stored in two pieces is waited for.
 template <int N>
 HWY_INLINE ByteVector LoadRowOf(const void* from)
 {

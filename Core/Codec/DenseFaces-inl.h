@@ -13,8 +13,8 @@ namespace banyan::HWY_NAMESPACE
 {
 
 /// A face of a box, and those of the references there, on their way to memory of
-/// their own and back: LoadUnit and StoreUnit for an edge that is known, a multiple of 16, and with all
-/// arrays laid out alike.
+/// their own and back: LoadUnit and StoreUnit for an edge that is known, a multiple of 16, and with
+/// all arrays laid out alike.
 template <int Edge, class Number, class Reference>
 struct DenseFace
 {
@@ -119,10 +119,10 @@ HWY_INLINE void WithDenseFace(
   WithReference<Number>(from.From,
     [&](auto reference)
     {
-      body(
-        DenseFace<Edge, Number, decltype(reference)>{ samples.Base, refers ? from.A.Base : samples.Base,
-          refers ? from.B.Base : samples.Base, static_cast<std::ptrdiff_t>(samples.Stride.x),
-          static_cast<std::ptrdiff_t>(samples.Stride.y), w });
+      body(DenseFace<Edge, Number, decltype(reference)>{ samples.Base,
+        refers ? from.A.Base : samples.Base, refers ? from.B.Base : samples.Base,
+        static_cast<std::ptrdiff_t>(samples.Stride.x),
+        static_cast<std::ptrdiff_t>(samples.Stride.y), w });
     });
 }
 

@@ -17,8 +17,8 @@ namespace banyan::HWY_NAMESPACE
 {
 #if HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
 
-/// Decodes the interior of a block of edge B. Where there are references they are subtracted from the whole
-/// box, and added again: borders come back as they were.
+/// Decodes the interior of a block of edge B. Where there are references they are subtracted from
+/// the whole box, and added again: borders come back as they were.
 /// @param unit its samples are those of the box
 /// @param to receives the whole box, `[z][y][x]`
 /// @param ask asks for a number of lines of the cache that the next block needs

@@ -130,8 +130,8 @@ public:
   }
 
 private:
-  static constexpr int Parts = N > Width ? 2 : 1;           ///< of a row, 16 lanes each
-  static constexpr int InFirst = LaneStep == 1 ? 15 : 8;    ///< symbols of the first one
+  static constexpr int Parts = N > Width ? 2 : 1;        ///< of a row, 16 lanes each
+  static constexpr int InFirst = LaneStep == 1 ? 15 : 8; ///< symbols of the first one
 
   int CodedOf(int row) const { return this->Coded[D == 3 ? 0 : row]; }
 

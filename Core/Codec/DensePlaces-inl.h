@@ -24,8 +24,8 @@ struct DensePlaces
   static constexpr int D = P::D;
   static constexpr int S = P::S;
   static constexpr int N = InRows::N;
-  /// Lanes that are worked on together: a row of 32 where a vector holds one. (At stride 2 half of them
-  /// are left out anyway.)
+  /// Lanes that are worked on together: a row of 32 where a vector holds one. (At stride 2 half of
+  /// them are left out anyway.)
   static constexpr int Together =
     B == 32 && S == 1 && 32 * static_cast<int>(sizeof(Number)) <= VectorBytes ? 32 : Width;
   using V = Numbers<Number, Together>;

@@ -103,8 +103,10 @@ private:
     {
       std::memset(memory.RowClass, 0, B);
     }
-    const ByteVector classes[2] = { this->ClassesFrom(0), this->ClassesFrom(N > Width ? Width : 0) };
-    const unsigned flagged = (FlaggedOf(classes[0]) | FlaggedOf(classes[1]) << Width) & InRows::AllRows;
+    const ByteVector classes[2] = { this->ClassesFrom(0),
+      this->ClassesFrom(N > Width ? Width : 0) };
+    const unsigned flagged =
+      (FlaggedOf(classes[0]) | FlaggedOf(classes[1]) << Width) & InRows::AllRows;
     if (flagged == 0)
     {
       return rows;
@@ -148,7 +150,7 @@ private:
       std::memcpy(reinterpret_cast<char*>(&classes) + 8, &second, 8);
       return classes;
     }
-    return Compressed<D == 3 ? S : 1>(LoadVector<ByteVector>(from + row));
+    return Compressed < D == 3 ? S : 1 > (LoadVector<ByteVector>(from + row));
   }
   /// Those that have flags, as bits.
   static HWY_INLINE unsigned FlaggedOf(ByteVector classes)

@@ -56,8 +56,7 @@ inline std::vector<int> DyadicOrder(int steps)
   }
   const auto rank = [steps](int step)
   { return step + 1 == steps ? 2 * steps : ReferenceDistance(step, steps); };
-  std::stable_sort(
-    order.begin(), order.end(), [&rank](int a, int b) { return rank(a) > rank(b); });
+  std::stable_sort(order.begin(), order.end(), [&rank](int a, int b) { return rank(a) > rank(b); });
   return order;
 }
 

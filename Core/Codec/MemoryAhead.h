@@ -6,9 +6,10 @@
 namespace banyan
 {
 
-/// Memory that will be read soon, and what the block at hand will be written to, asked for a few lines of
-/// the cache at a time while something else is computed: a processor takes only some dozen lines at once
-/// and waits where it is asked for more. Nothing is read, so that memory may be gone by then.
+/// Memory that will be read soon, and what the block at hand will be written to, asked for a few
+/// lines of the cache at a time while something else is computed: a processor takes only some dozen
+/// lines at once and waits where it is asked for more. Nothing is read, so that memory may be gone
+/// by then.
 class MemoryAhead
 {
 public:

@@ -15,8 +15,7 @@ constexpr int DirectSymbols = 40;
 
 inline std::uint32_t Zigzag(std::int32_t residual)
 {
-  return (static_cast<std::uint32_t>(residual) << 1) ^
-         static_cast<std::uint32_t>(residual >> 31);
+  return (static_cast<std::uint32_t>(residual) << 1) ^ static_cast<std::uint32_t>(residual >> 31);
 }
 
 inline std::int32_t Unzigzag(std::uint32_t code)
@@ -47,24 +46,23 @@ inline int SymbolOf(std::uint32_t code, std::uint32_t& extra)
 /// Inverse of SymbolOf; any input is safe.
 inline std::uint32_t CodeOf(int symbol, std::uint32_t extra)
 {
-  return symbol < DirectSymbols
-           ? static_cast<std::uint32_t>(symbol)
-           : DirectSymbols - 1 + (1u << (symbol - DirectSymbols)) + extra;
+  return symbol < DirectSymbols ? static_cast<std::uint32_t>(symbol)
+                                : DirectSymbols - 1 + (1u << (symbol - DirectSymbols)) + extra;
 }
 
-/// About 2 log2(1 + |r|): sums of these say how rough the neighbourhood is, over any scale. From 15 on it
-/// grows no more.
+/// About 2 log2(1 + |r|): sums of these say how rough the neighbourhood is, over any scale. From 15
+/// on it grows no more.
 inline std::uint8_t MagnitudeOf(std::int32_t residual)
 {
   constexpr std::uint8_t of[16] = { 0, 2, 3, 4, 5, 5, 6, 6, 6, 7, 7, 7, 7, 8, 8, 8 };
-  const std::uint32_t size = residual < 0 ? 0u - static_cast<std::uint32_t>(residual)
-                                          : static_cast<std::uint32_t>(residual);
+  const std::uint32_t size =
+    residual < 0 ? 0u - static_cast<std::uint32_t>(residual) : static_cast<std::uint32_t>(residual);
   return of[size < 15 ? size : 15];
 }
 
-/// A table entry as one word: number of bits to read (8 bits of the word, for shift instructions take
-/// their counts from such a byte), then 8 bits: the residual, or EscapeTop and the number of extra bits;
-/// and the next state, which nothing is above of.
+/// A table entry as one word: number of bits to read (8 bits of the word, for shift instructions
+/// take their counts from such a byte), then 8 bits: the residual, or EscapeTop and the number of
+/// extra bits; and the next state, which nothing is above of.
 constexpr int TopShift = 8;
 constexpr int BaseShift = 16;
 constexpr int EscapeTop = 64;
@@ -73,18 +71,20 @@ inline std::uint32_t Packed(const tans::DecodeEntry& entry)
   const std::uint32_t top = entry.Symbol >= DirectSymbols
                               ? static_cast<std::uint32_t>(EscapeTop + ExtraBits(entry.Symbol))
                               : static_cast<std::uint32_t>(Unzigzag(entry.Symbol));
-  return entry.Bits | (top & 0xffu) << TopShift | static_cast<std::uint32_t>(entry.Base) << BaseShift;
+  return entry.Bits | (top & 0xffu) << TopShift |
+         static_cast<std::uint32_t>(entry.Base) << BaseShift;
 }
 
-/// Contexts: a band (kind of unit, stride, direction), one of 8 classes of roughness, and whether the
-/// residuals in the slices before hint at a sign; and contexts for the flag "this row is all zero", by the
-/// weight of what is around a row.
+/// Contexts: a band (kind of unit, stride, direction), one of 8 classes of roughness, and whether
+/// the residuals in the slices before hint at a sign; and contexts for the flag "this row is all
+/// zero", by the weight of what is around a row.
 constexpr int Bands = 11;
 constexpr int Signed = 8; ///< added to the class where there is such a hint
 constexpr int Classes = 16;
 constexpr int RowClasses = 12; ///< of rows that begin with a flag
 /// A row's class is how many of these its weight exceeds; beyond the last one it has no flag.
-constexpr std::uint16_t RowLimits[RowClasses] = { 0, 8, 16, 28, 44, 64, 90, 125, 170, 230, 310, 420 };
+constexpr std::uint16_t RowLimits[RowClasses] = { 0, 8, 16, 28, 44, 64, 90, 125, 170, 230, 310,
+  420 };
 constexpr int FlagContext = Bands * Classes;
 constexpr int ContextCount = FlagContext + Bands * RowClasses;
 

@@ -23,7 +23,8 @@ std::int64_t LogarithmOf(std::uint64_t value)
 {
   const int whole = 63 - __builtin_clzll(value);
   std::int64_t result = whole;
-  std::uint64_t part = whole > 31 ? value >> (whole - 31) : value << (31 - whole); // 1 to 2, as 2^31
+  std::uint64_t part =
+    whole > 31 ? value >> (whole - 31) : value << (31 - whole); // 1 to 2, as 2^31
   for (int bit = 0; bit < BitShift; ++bit)
   {
     part = (part * part) >> 31;

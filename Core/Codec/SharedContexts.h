@@ -6,9 +6,9 @@
 namespace banyan
 {
 
-/// Lets contexts that are alike have one table, where that costs less than tables of their own: sums
-/// up their counts, so that their frequencies are the same. Matters where few symbols are coded, and
-/// leaves fewer tables to decode with.
+/// Lets contexts that are alike have one table, where that costs less than tables of their own:
+/// sums up their counts, so that their frequencies are the same. Matters where few symbols are
+/// coded, and leaves fewer tables to decode with.
 ///
 /// Integer arithmetic: the same on every machine.
 void ShareContexts(ContextCounts& counts);

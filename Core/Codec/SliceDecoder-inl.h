@@ -29,14 +29,14 @@ struct SliceMemory
   {
   }
 
-  std::vector<std::uint16_t> Tables;  ///< of each symbol, as ReadRun takes them
-  std::vector<std::int8_t> Tops;      ///< residuals, or escapes
-  std::vector<std::int8_t> Turned;    ///< -1 where residuals have the other sign
-  std::vector<Number> Long;           ///< residuals, where there are escapes
+  std::vector<std::uint16_t> Tables; ///< of each symbol, as ReadRun takes them
+  std::vector<std::int8_t> Tops;     ///< residuals, or escapes
+  std::vector<std::int8_t> Turned;   ///< -1 where residuals have the other sign
+  std::vector<Number> Long;          ///< residuals, where there are escapes
   RowPlace Rows[MostRows];
-  int Begin[MostRows]; ///< of a row's symbols; -1: it has none
-  std::uint8_t RowClass[MostRows + Width];      ///< by number of row
-  std::uint16_t FlagTables[MostRows + Width];   ///< of each flag, as ReadRun takes them
+  int Begin[MostRows];                        ///< of a row's symbols; -1: it has none
+  std::uint8_t RowClass[MostRows + Width];    ///< by number of row
+  std::uint16_t FlagTables[MostRows + Width]; ///< of each flag, as ReadRun takes them
   std::int8_t Flags[MostRows + Width];
 };
 
@@ -105,8 +105,8 @@ private:
     }
     if (flags > 0)
     {
-      ReadRun(*this->Symbols, this->Symbols->TablesOf(flagBand), memory.FlagTables, flags,
-        memory.Flags);
+      ReadRun(
+        *this->Symbols, this->Symbols->TablesOf(flagBand), memory.FlagTables, flags, memory.Flags);
     }
     int count = 0;
     int flag = 0;
@@ -114,8 +114,8 @@ private:
     {
       const RowPlace& place = memory.Rows[r];
       memory.Begin[r] = -1;
-      if (place.Coded > 0 && (memory.RowClass[place.Row] >= residual::RowClasses ||
-                               memory.Flags[flag++] == 0))
+      if (place.Coded > 0 &&
+          (memory.RowClass[place.Row] >= residual::RowClasses || memory.Flags[flag++] == 0))
       {
         memory.Begin[r] = count;
         this->Classify(place, count);
@@ -142,8 +142,7 @@ private:
     const std::uint8_t* const tablesOf = this->Symbols->BandOf(P::Band).Tables;
     if (!this->Of.Any)
     {
-      std::fill_n(
-        tables, place.Coded, static_cast<std::uint16_t>(tablesOf[0] << tans::TableBits));
+      std::fill_n(tables, place.Coded, static_cast<std::uint16_t>(tablesOf[0] << tans::TableBits));
       std::fill_n(turned, place.Coded, std::int8_t{ 0 });
       return;
     }
@@ -157,8 +156,8 @@ private:
       const SignedByteVector hint = HintOf<P>(r + at, this->B, place, sum);
       const ByteVector hinted = reinterpret_cast<ByteVector>(hint != std::int8_t{ 0 });
       const ByteVector classes = ClassesOf(sum) + (hinted & std::uint8_t{ residual::Signed });
-      const Tables16 wide = __builtin_convertvector(
-        Compressed<P::Step>(__builtin_shuffle(byClass, classes)), Tables16);
+      const Tables16 wide =
+        __builtin_convertvector(Compressed<P::Step>(__builtin_shuffle(byClass, classes)), Tables16);
       StoreVector(
         Compressed<P::Step>(reinterpret_cast<ByteVector>(hint < std::int8_t{ 0 })), turned);
       StoreVector(wide << tans::TableBits, tables);
@@ -191,12 +190,13 @@ private:
     const std::int8_t* tops = this->Memory.Tops.data();
     for (int k = 0; k < this->Count; ++k)
     {
-      const std::int32_t residual = tops[k] < residual::EscapeTop
-        ? tops[k]
-        : this->Symbols->Long(static_cast<std::uint32_t>(tops[k] - residual::EscapeTop));
+      const std::int32_t residual =
+        tops[k] < residual::EscapeTop
+          ? tops[k]
+          : this->Symbols->Long(static_cast<std::uint32_t>(tops[k] - residual::EscapeTop));
       // Wraps where a file of ill intent makes it.
-      const std::uint32_t turned =
-        static_cast<std::uint32_t>(std::int32_t{ this->Memory.Turned[static_cast<std::size_t>(k)] });
+      const std::uint32_t turned = static_cast<std::uint32_t>(
+        std::int32_t{ this->Memory.Turned[static_cast<std::size_t>(k)] });
       this->Memory.Long[static_cast<std::size_t>(k)] =
         static_cast<Number>((static_cast<std::uint32_t>(residual) ^ turned) - turned);
     }
@@ -251,9 +251,8 @@ private:
   }
 
   template <class Residual>
-  HWY_INLINE void PlaceRow(
-    const RowPlace& place, const Residual* residuals, const std::int8_t* tops,
-    const std::int8_t* turned) const
+  HWY_INLINE void PlaceRow(const RowPlace& place, const Residual* residuals,
+    const std::int8_t* tops, const std::int8_t* turned) const
   {
     using V = Numbers<Number>;
     using Vector = typename V::Unsigned;
@@ -268,7 +267,8 @@ private:
       SignedByteVector kept;
       if constexpr (std::is_same_v<Residual, std::int8_t>)
       {
-        // As unsigned numbers: lanes behind the last symbol hold anything, also what has no opposite.
+        // As unsigned numbers: lanes behind the last symbol hold anything, also what has no
+        // opposite.
         const auto turn = LoadVector<ByteVector>(turned + k);
         kept =
           reinterpret_cast<SignedByteVector>((LoadVector<ByteVector>(residuals + k) ^ turn) - turn);
@@ -281,8 +281,9 @@ private:
         kept = __builtin_convertvector(
           Limited(reinterpret_cast<typename V::Signed>(residual), Number{ 15 }), SignedByteVector);
       }
-      const Vector value = Predict<P>(this->Of.W, this->B, place, at, this->By) +
-                           Expanded<P::Step>(residual) * static_cast<std::make_unsigned_t<Number>>(this->Bin);
+      const Vector value =
+        Predict<P>(this->Of.W, this->B, place, at, this->By) +
+        Expanded<P::Step>(residual) * static_cast<std::make_unsigned_t<Number>>(this->Bin);
       SetLanes<P>(value, left - at, w + at);
       const ByteVector mask = LaneMask<P, ByteVector>(left - at);
       const ByteVector size =
@@ -291,14 +292,13 @@ private:
       StoreVector(size | (LoadVector<ByteVector>(m + at) & ~mask), m + at);
       if (P::D > 1)
       {
-        KeepResiduals(reinterpret_cast<SignedByteVector>(
-                        Expanded<P::Step>(reinterpret_cast<ByteVector>(kept))),
+        KeepResiduals(
+          reinterpret_cast<SignedByteVector>(Expanded<P::Step>(reinterpret_cast<ByteVector>(kept))),
           mask, r + at);
       }
     }
     const int slice = P::D == 3 ? place.Z : P::D == 2 ? place.Y : 0;
-    std::uint16_t& sum =
-      this->Of.S[slice * block::Shape<P::D>{ this->B() }.SumPitch() + place.Row];
+    std::uint16_t& sum = this->Of.S[slice * block::Shape<P::D>{ this->B() }.SumPitch() + place.Row];
     sum = static_cast<std::uint16_t>(sum + total);
   }
 

@@ -30,16 +30,16 @@ HWY_INLINE bool AnyLane(const Vector& lanes)
   return all != 0;
 }
 
-/// Nearest multiples of a bin. The bin is odd, so nothing lies half way, and the arithmetic is far more
-/// exact than what is left to the next half.
+/// Nearest multiples of a bin. The bin is odd, so nothing lies half way, and the arithmetic is far
+/// more exact than what is left to the next half.
 HWY_INLINE Numbers<std::int16_t>::Signed Quantize(
   Numbers<std::int16_t>::Signed rest, std::int16_t bin)
 {
   typedef float Floats __attribute__((vector_size(64)));
   constexpr float rounder = 12582912.0f; // 1.5 * 2^23: adding it rounds
   const Floats bins = __builtin_convertvector(rest, Floats) * (1.0f / bin);
-  return __builtin_convertvector(__builtin_convertvector((bins + rounder) - rounder,
-                                   Numbers<std::int32_t>::Signed),
+  return __builtin_convertvector(
+    __builtin_convertvector((bins + rounder) - rounder, Numbers<std::int32_t>::Signed),
     Numbers<std::int16_t>::Signed);
 }
 HWY_INLINE Numbers<std::int32_t>::Signed Quantize(
@@ -48,8 +48,7 @@ HWY_INLINE Numbers<std::int32_t>::Signed Quantize(
   typedef double Doubles __attribute__((vector_size(128)));
   constexpr double rounder = 6755399441055744.0; // 1.5 * 2^52
   const Doubles bins = __builtin_convertvector(rest, Doubles) * (1.0 / bin);
-  return __builtin_convertvector(
-    (bins + rounder) - rounder, Numbers<std::int32_t>::Signed);
+  return __builtin_convertvector((bins + rounder) - rounder, Numbers<std::int32_t>::Signed);
 }
 
 /// Quantizes the residuals of rows, and sets rows and magnitudes to what they decode to.
@@ -66,10 +65,10 @@ struct RowQuantizer
   const Number* Target; ///< same layout as the unit's samples, what they are to become
   Number Bin;
 
-  /// Calls body(residuals of Width lanes, others 0; lane of the pass where they begin; classes; what
-  /// residuals before hint at).
-  /// @param flagged whether nobody asks for the residuals where all of a row are 0; magnitudes must be 0
-  /// already
+  /// Calls body(residuals of Width lanes, others 0; lane of the pass where they begin; classes;
+  /// what residuals before hint at).
+  /// @param flagged whether nobody asks for the residuals where all of a row are 0; magnitudes must
+  /// be 0 already
   /// @return whether some residual is not 0
   template <class Body>
   HWY_INLINE bool Row(const RowPlace& place, bool rough, bool flagged, Body&& body) const
@@ -129,8 +128,7 @@ struct RowQuantizer
     const ByteVector mask = LaneMask<P, ByteVector>(this->B() - P::First - at);
     StoreVector((size & mask) | (LoadVector<ByteVector>(m) & ~mask), m);
     const int slice = P::D == 3 ? place.Z : P::D == 2 ? place.Y : 0;
-    std::uint16_t& sum =
-      this->Of.S[slice * block::Shape<P::D>{ this->B() }.SumPitch() + place.Row];
+    std::uint16_t& sum = this->Of.S[slice * block::Shape<P::D>{ this->B() }.SumPitch() + place.Row];
     sum = static_cast<std::uint16_t>(sum + SumOf(size & mask));
     if (P::D > 1)
     {
@@ -248,14 +246,15 @@ private:
       [&](Signed residual, int lane, ByteVector classes, SignedByteVector hint)
       {
         this->Rows.Keep(place, lane * P::Step, residual);
-        const Signed turned =
-          __builtin_convertvector(reinterpret_cast<SignedByteVector>(hint < std::int8_t{ 0 }), Signed);
+        const Signed turned = __builtin_convertvector(
+          reinterpret_cast<SignedByteVector>(hint < std::int8_t{ 0 }), Signed);
         residual = (residual ^ turned) - turned;
-        classes += reinterpret_cast<ByteVector>(hint != std::int8_t{ 0 }) &
-                   std::uint8_t{ residual::Signed };
+        classes +=
+          reinterpret_cast<ByteVector>(hint != std::int8_t{ 0 }) & std::uint8_t{ residual::Signed };
         const auto codes = reinterpret_cast<typename Numbers<Number>::Unsigned>(
           (residual << 1) ^ (residual >> (8 * sizeof(Number) - 1)));
-        const auto large = codes >= static_cast<std::make_unsigned_t<Number>>(residual::DirectSymbols);
+        const auto large =
+          codes >= static_cast<std::make_unsigned_t<Number>>(residual::DirectSymbols);
         constexpr std::uint16_t context = P::Band * residual::Classes;
         Tokens each;
         if constexpr (sizeof(Number) == 2)
@@ -266,8 +265,8 @@ private:
         {
           each = __builtin_convertvector(codes, Tokens);
         }
-        const Tokens contexts =
-          (__builtin_convertvector(classes, Tokens) + context) << residual::TokenShift;
+        const Tokens contexts = (__builtin_convertvector(classes, Tokens) + context)
+                                << residual::TokenShift;
         StoreVector(Compressed<P::Step>(contexts | each), tokens + lane);
         if (HWY_UNLIKELY(AnyLane(large)))
         {
@@ -278,8 +277,8 @@ private:
 
   /// Tokens of a vector in which some symbols have extra bits.
   template <class Contexts>
-  HWY_NOINLINE void AddLong(const RowPlace& place, const Signed& residuals, const Contexts& contexts,
-    int lane, std::uint16_t* tokens) const
+  HWY_NOINLINE void AddLong(const RowPlace& place, const Signed& residuals,
+    const Contexts& contexts, int lane, std::uint16_t* tokens) const
   {
     for (int x = 0; x < Width && lane + x / P::Step < place.Coded; x += P::Step)
     {

@@ -13,12 +13,12 @@
 namespace banyan
 {
 
-/// What flags of rows take by the class of the row, in 256ths of a bit, as smooth series have them; rows of
-/// the last class have none.
+/// What flags of rows take by the class of the row, in 256ths of a bit, as smooth series have them;
+/// rows of the last class have none.
 constexpr std::int64_t ZeroRowCosts[residual::RowClasses + 1] = { 11, 19, 31, 56, 78, 101, 137, 171,
   208, 287, 409, 512, 0 };
-constexpr std::int64_t OtherRowCosts[residual::RowClasses + 1] = { 1295, 1107, 933, 726, 613, 527, 432,
-  367, 312, 228, 148, 106, 0 };
+constexpr std::int64_t OtherRowCosts[residual::RowClasses + 1] = { 1295, 1107, 933, 726, 613, 527,
+  432, 367, 312, 228, 148, 106, 0 };
 
 } // namespace banyan
 #endif
@@ -56,8 +56,8 @@ struct SliceTrial
           [&](Signed residual, int lane, ByteVector classes, SignedByteVector)
           {
             this->Rows.Keep(place, lane * P::Step, residual);
-            symbols += CostOf(
-              residual, classes, LaneMask<P, Numbers<std::int16_t>::Signed>((place.Coded - lane) * P::Step));
+            symbols += CostOf(residual, classes,
+              LaneMask<P, Numbers<std::int16_t>::Signed>((place.Coded - lane) * P::Step));
           });
         anyOfSlice = anyOfSlice || any;
         if (place.Coded > 0)
@@ -72,8 +72,9 @@ struct SliceTrial
   }
 
 private:
-  /// About how many 256ths of a bit residuals take in their classes of roughness: as if they fell off
-  /// geometrically, with means from 0.02 to 5. Integers, so that every machine chooses the same.
+  /// About how many 256ths of a bit residuals take in their classes of roughness: as if they fell
+  /// off geometrically, with means from 0.02 to 5. Integers, so that every machine chooses the
+  /// same.
   static HWY_INLINE std::int64_t CostOf(
     Signed residual, ByteVector classes, Numbers<std::int16_t>::Signed lanes)
   {

@@ -25,8 +25,8 @@ class SymbolReader
 public:
   /// @param tables must live as long as symbols are read
   /// @param most bytes that will be read at most
-  void Open(const DecodeTables& tables, const std::uint8_t* data, std::size_t bytes,
-    std::size_t most)
+  void Open(
+    const DecodeTables& tables, const std::uint8_t* data, std::size_t bytes, std::size_t most)
   {
     bytes = std::min(bytes, most);
     if (this->Buffer.size() < bytes + Slack)
@@ -80,12 +80,12 @@ public:
     return this->Tables->Entries.data() + this->BandOf(band).First;
   }
 
-  /// So many symbols may be read before the position is checked: they leave the payload, but not the
-  /// zeros behind it.
+  /// So many symbols may be read before the position is checked: they leave the payload, but not
+  /// the zeros behind it.
   static constexpr int MostUnchecked = 256;
 
-  /// The bits from a position on, 57 at least. Positions lie at most MostUnchecked symbols behind the
-  /// end, where all bits are zero.
+  /// The bits from a position on, 57 at least. Positions lie at most MostUnchecked symbols behind
+  /// the end, where all bits are zero.
   HWY_INLINE std::uint64_t Word(std::uint64_t position) const
   {
     std::uint64_t word;
@@ -117,8 +117,7 @@ private:
 
   HWY_INLINE std::uint32_t Take(std::uint32_t bits)
   {
-    const std::uint64_t value =
-      this->Word(this->Position) & ((std::uint64_t{ 1 } << bits) - 1);
+    const std::uint64_t value = this->Word(this->Position) & ((std::uint64_t{ 1 } << bits) - 1);
     this->Position += bits;
     this->Check();
     return static_cast<std::uint32_t>(value);

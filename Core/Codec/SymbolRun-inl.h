@@ -29,8 +29,8 @@ HWY_INLINE std::uint64_t LowBits(std::uint64_t word, std::uint32_t entry)
 #endif
 }
 
-/// The bits at hand while a run is read. New ones are put behind those that are left, so that states need
-/// not wait until they are loaded: where they lie is known one filling before.
+/// The bits at hand while a run is read. New ones are put behind those that are left, so that
+/// states need not wait until they are loaded: where they lie is known one filling before.
 class RunBits
 {
 public:
@@ -67,7 +67,8 @@ public:
 
 private:
   const SymbolReader& Symbols;
-  std::uint64_t Word;  ///< the next bits, lowest first; those behind the ones that are left are right, too
+  std::uint64_t
+    Word; ///< the next bits, lowest first; those behind the ones that are left are right, too
   std::uint64_t Next8; ///< byte that comes behind those that are left
   std::uint32_t Left;  ///< bits of the word, in its lowest six
 };
@@ -158,8 +159,8 @@ HWY_NOINLINE void ReadRunOf(SymbolReader& symbols, const std::uint32_t* HWY_REST
   TakeTops(entries, count, tops);
 }
 
-/// ReadFlags for a number of lanes. All numbers are known, so that nothing is jumped over, and no flag
-/// goes through memory.
+/// ReadFlags for a number of lanes. All numbers are known, so that nothing is jumped over, and no
+/// flag goes through memory.
 template <int Lanes, int Count>
 HWY_NOINLINE unsigned ReadFlagsOf(SymbolReader& symbols, const std::uint32_t* HWY_RESTRICT tables,
   const std::uint16_t* HWY_RESTRICT places)

@@ -8,7 +8,8 @@
 #include <functional>
 
 // Compiled for processors with quick shifts, too.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                             \
+  !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define BANYAN_CLONES __attribute__((target_clones("arch=haswell", "default")))
 #else
 #define BANYAN_CLONES
@@ -167,8 +168,8 @@ struct SymbolTables::Backwards
     state = this->Next[static_cast<std::int32_t>(state >> bits) + transform.DeltaState];
   }
 
-  /// The symbols of a run, which take turns with the states. Unrolled by hand: states are registers only
-  /// where their numbers are constants.
+  /// The symbols of a run, which take turns with the states. Unrolled by hand: states are registers
+  /// only where their numbers are constants.
   template <int Lanes>
   void Run(const std::uint16_t* tokens, std::size_t count)
   {

@@ -60,9 +60,10 @@ Frequencies Normalize(const std::uint32_t* counts)
       {
         continue;
       }
-      const std::uint64_t gain = more ? (std::uint64_t{ counts[s] } << 16) / (2 * slots + 1)
-                                      : (std::uint64_t{ 1 } << 62) /
-                                          ((std::uint64_t{ counts[s] } << 16) / (2 * slots - 1) + 1);
+      const std::uint64_t gain =
+        more
+          ? (std::uint64_t{ counts[s] } << 16) / (2 * slots + 1)
+          : (std::uint64_t{ 1 } << 62) / ((std::uint64_t{ counts[s] } << 16) / (2 * slots - 1) + 1);
       if (best < 0 || gain > bestGain)
       {
         best = s;

@@ -16,8 +16,8 @@ namespace banyan::tans
 constexpr int TableBits = 9;
 constexpr int TableSize = 1 << TableBits;
 
-/// A payload has 1, 2, 4 or 8 states that take turns, so that look-ups of successive symbols overlap:
-/// few where each of their first values weighs much.
+/// A payload has 1, 2, 4 or 8 states that take turns, so that look-ups of successive symbols
+/// overlap: few where each of their first values weighs much.
 constexpr int MostLanes = 8;
 
 /// Symbols are numbered 0 to SymbolCount - 1.
@@ -55,7 +55,7 @@ struct EncodeTable
   /// Whether the symbol can be coded.
   bool Has(int symbol) const { return this->Used[symbol] != 0; }
 
-  std::uint16_t Used[SymbolCount] = {}; ///< frequency
+  std::uint16_t Used[SymbolCount] = {};  ///< frequency
   std::uint16_t First[SymbolCount] = {}; ///< into Next
   std::vector<std::uint16_t> Next;       ///< states, by symbol and then by rank
 

@@ -41,9 +41,7 @@ std::vector<double> Scalars(const NodeArray& array, std::int64_t count, ThreadPo
       const T* const from = static_cast<const T*>(array.Values);
       InRuns(count, pool,
         [&](std::int64_t i)
-        {
-          values[Index(i)] = TakenComponent(from + i * array.Components, array);
-        });
+        { values[Index(i)] = TakenComponent(from + i * array.Components, array); });
     });
   return values;
 }

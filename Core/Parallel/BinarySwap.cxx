@@ -94,8 +94,7 @@ public:
   /// The part of `image` inside `rect`, and nothing around it.
   static FloatImage PartOf(const FloatImage& image, const PixelRect& rect)
   {
-    FloatImage part{ rect,
-      PixelVector(static_cast<std::size_t>(rect.Count()), glm::vec4(0.0f)) };
+    FloatImage part{ rect, PixelVector(static_cast<std::size_t>(rect.Count()), glm::vec4(0.0f)) };
     const PixelRect kept = Intersection(image.Rect, rect);
     for (int y = kept.Lo.y; y < kept.Hi.y; ++y)
     {

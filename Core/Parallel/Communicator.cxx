@@ -5,9 +5,7 @@
 namespace banyan
 {
 
-void Communicator::LeaveTogether(const std::string&)
-{
-}
+void Communicator::LeaveTogether(const std::string&) {}
 
 std::vector<std::string> AllGatherStrings(Communicator& communicator, const std::string& mine)
 {

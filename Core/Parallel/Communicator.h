@@ -72,7 +72,8 @@ std::vector<double> AllGatherValues(Communicator& communicator, double mine);
 
 /// Collective: all ranks learn whether one of them failed.
 /// @param mine this rank's error sentence; empty if all is well
-/// @return empty if no rank failed; else the sentence of the lowest failing rank, which names it (once:
+/// @return empty if no rank failed; else the sentence of the lowest failing rank, which names it
+/// (once:
 ///         what all ranks have agreed on before stays as it is)
 std::string AgreeOnError(Communicator& communicator, const std::string& mine);
 

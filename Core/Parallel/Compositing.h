@@ -4,8 +4,8 @@
 #include "Parallel/Communicator.h"
 #include "Parallel/CompositePlan.h"
 #include "Parallel/CompositeStatistics.h"
-#include "Parallel/KeptPlan.h"
 #include "Parallel/FragmentFormat.h"
+#include "Parallel/KeptPlan.h"
 #include "Render/FloatImage.h"
 #include "Render/ProjectionTable.h"
 

@@ -43,9 +43,8 @@ void FrameBalancer::Start(LoadBalancing mode, const Field& field, int ranks)
     const LoadBalancer::Options& now = this->Balancer->Given();
     if (now.Mode == options.Mode && now.Positions == options.Positions &&
         now.Ranks == options.Ranks && now.SlicePositions == options.SlicePositions &&
-        now.PlaneStep == options.PlaneStep &&
-        now.BytesPerPosition == options.BytesPerPosition && now.Start == options.Start &&
-        this->RankOfSeat == field.Start.RankOfSeat)
+        now.PlaneStep == options.PlaneStep && now.BytesPerPosition == options.BytesPerPosition &&
+        now.Start == options.Start && this->RankOfSeat == field.Start.RankOfSeat)
     {
       this->Balancer->ValuesChanged();
       return;

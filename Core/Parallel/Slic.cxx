@@ -24,8 +24,8 @@ SlicFrame::SlicFrame(Communicator& communicator, const std::vector<int>& frontTo
   , Statistics(statistics)
   , Ordered(options.Combine == Combination::Over)
   , Pack(Packs(options))
-  , SharedPlan(KeptPlan::From(
-      options.Plans, options.Footprints, viewport, options.Behind, this->Ordered))
+  , SharedPlan(
+      KeptPlan::From(options.Plans, options.Footprints, viewport, options.Behind, this->Ordered))
   , Plan(*this->SharedPlan)
   , Position(frontToBack.size())
   , Parts(static_cast<std::size_t>(this->Plan.Chunks))

@@ -10,8 +10,8 @@
 namespace banyan
 {
 
-/// The zones of EqualZoneTree: one per rank, half-open boxes of brick positions, disjoint. They cover
-/// the grid; with more ranks than bricks some are empty.
+/// The zones of EqualZoneTree: one per rank, half-open boxes of brick positions, disjoint. They
+/// cover the grid; with more ranks than bricks some are empty.
 std::vector<Box> StaticZones(const glm::ivec3& bricks, int ranks);
 
 /// Cells of a zone of bricks.

@@ -216,8 +216,8 @@ void PieceField::BringLevels(Communicator& communicator, const RayScene& scene, 
     this->Levels.Make(communicator, this->Pieces, this->Mine, this->Known.ViewTypes, this->AllCells,
       this->MostBrickCells, coarsest, pool, this->Bricks->Hidden());
   }
-  const double received = static_cast<double>(
-    this->Levels.Bring(communicator, scene, this->Zones(), budgetBytes));
+  const double received =
+    static_cast<double>(this->Levels.Bring(communicator, scene, this->Zones(), budgetBytes));
   this->Numbers.BytesMoved += static_cast<std::uint64_t>(AllSum(communicator, received));
 }
 

@@ -45,8 +45,8 @@ void MarchPacked(const PackedBrick& brick, const BrickVisibility& seen, const St
   SampleInterpolation interpolation = SampleInterpolation::Linear);
 
 /// The same for a brick of which all samples, at most PackedBrick::LargestEdge cells per axis, have
-/// one entry of the table: the samples that lie in `cells` are known from where rays enter and leave,
-/// and none is taken (equation 4 of "Rendering time-varying data with octrees and difference
+/// one entry of the table: the samples that lie in `cells` are known from where rays enter and
+/// leave, and none is taken (equation 4 of "Rendering time-varying data with octrees and difference
 /// encoding" sums them up; here they are added one by one, which changes no bit of the picture).
 /// Without shading. `tile.SamplesTaken` stays as it is.
 /// @param tile PacketsFit

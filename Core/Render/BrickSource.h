@@ -68,8 +68,8 @@ public:
   /// loading it. Empty when they have not, or when it is not known.
   virtual std::optional<UniformValue> UniformValueOf(std::int64_t brick) const;
 
-  /// Of values that are whole multiples of a step, each rounded to float32, but for exceptions: the step.
-  /// 0 where none is known.
+  /// Of values that are whole multiples of a step, each rounded to float32, but for exceptions: the
+  /// step. 0 where none is known.
   virtual double StepOfValues() const { return 0.0; }
 
   /// Memory that one loaded brick takes (0 when the values are in memory anyway).

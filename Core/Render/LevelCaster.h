@@ -149,8 +149,8 @@ private:
   const PixelRect& PixelsOf(std::size_t position) const;
   std::int64_t DrawTile(std::size_t number, RayTile& rays, BatchMeter& meter);
   CornerRays CornersOf(const PixelRect& rect) const;
-  BrickAhead Ahead(std::size_t place, const CornerRays& corners, const PixelRect& rect,
-    const RayTile& rays) const;
+  BrickAhead Ahead(
+    std::size_t place, const CornerRays& corners, const PixelRect& rect, const RayTile& rays) const;
   void ClearTile(const PixelRect& rect) const;
   void FinishTile(std::size_t number);
   void RecordWork(double began);
@@ -190,7 +190,7 @@ private:
   std::vector<BatchMeter> Meters;      ///< one per worker
   std::vector<KeptBricks::Found> Kept; ///< of all planned bricks
   std::vector<const PlannedBrick*> Batch;
-  bool AsksAhead = false; ///< caches are asked for bricks of the batch
+  bool AsksAhead = false;          ///< caches are asked for bricks of the batch
   std::vector<LoadedBrick> Loaded; ///< of the batch
 };
 

@@ -353,8 +353,9 @@ std::int64_t LevelCaster::KeptNumberOf(const PlannedBrick& brick) const
 {
   constexpr std::int64_t together = std::int64_t{ 1 } << 40;
   const std::int64_t bricks = brick.Together.Count();
-  return this->Source.KeptNumber(brick.Number) +
-         (bricks == 0 ? 0 : bricks <= 8 ? together : 2 * together);
+  return this->Source.KeptNumber(brick.Number) + (bricks == 0    ? 0
+                                                   : bricks <= 8 ? together
+                                                                 : 2 * together);
 }
 
 /// The entry of the table that all samples of a brick have, if nothing else has to be known of

@@ -122,8 +122,8 @@ void PackedBrick::Lay(int perSample)
   }
 }
 
-PackedBrick::PackedBrick(const BrickView& view, const glm::ivec3& corner, const Box& cells,
-  double low, double step)
+PackedBrick::PackedBrick(
+  const BrickView& view, const glm::ivec3& corner, const Box& cells, double low, double step)
   : Whole(cells)
 {
   this->Lay(1);
@@ -145,8 +145,8 @@ bool PackedBrick::TakeNumbers(const Floats& values, double step)
   // The last one may be read with one behind it.
   this->Numbers.resize(values.size() + 1);
   this->Numbers.back() = 0;
-  if (!NumbersOfValues(values.data(), values.size(), step, this->ScaleOfNumbers,
-        this->Numbers.data()))
+  if (!NumbersOfValues(
+        values.data(), values.size(), step, this->ScaleOfNumbers, this->Numbers.data()))
   {
     this->Numbers = {};
     return false;

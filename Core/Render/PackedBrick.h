@@ -26,9 +26,9 @@ namespace banyan
 ///
 /// Exactness: each value is the float that an interpolation of the brick itself works with
 /// (CornerValue), so that packing changes no bit of the picture. Gradients are differences of these
-/// floats, the same ones whatever brick a sample is in. Where all values are whole multiples of a step
-/// that is known, as those of integers and of encoded series are, 16-bit numbers stand for them and
-/// give the same bits: half of the memory again.
+/// floats, the same ones whatever brick a sample is in. Where all values are whole multiples of a
+/// step that is known, as those of integers and of encoded series are, 16-bit numbers stand for
+/// them and give the same bits: half of the memory again.
 class PackedBrick
 {
 public:
@@ -47,8 +47,8 @@ public:
   /// @param corner the sample (index space) that view.Values points at
   /// @param cells those to pack, inside the brick; CanPack
   /// @param low what values of types that float cannot hold are relative to (see IsRelative)
-  /// @param step numbers are taken if all values are whole multiples of it, each rounded to float32;
-  /// 0: no numbers
+  /// @param step numbers are taken if all values are whole multiples of it, each rounded to
+  /// float32; 0: no numbers
   PackedBrick(const BrickView& view, const glm::ivec3& corner, const Box& cells, double low,
     double step = 0.0);
 
@@ -57,7 +57,8 @@ public:
   /// @param scale of gradients: a power of two, the same for all bricks of a volume
   PackedBrick(const BrickView& view, const Box& around, const Box& cells, double low, float scale);
 
-  /// The packed values as a view of Cells(), whose corner is Corner(). Takes memory and time if HasNumbers.
+  /// The packed values as a view of Cells(), whose corner is Corner(). Takes memory and time if
+  /// HasNumbers.
   BrickView View() const;
   const glm::ivec3& Corner() const { return this->Whole.Lo; }
   const Box& Cells() const { return this->Whole; }

@@ -29,8 +29,7 @@ HWY_INLINE hn::Mask<D> TakeNumbers(
   const auto number = hn::DemoteTo(narrow, hn::NearestInt(hn::Mul(value, inverse))); // saturates
   hn::StoreU(number, narrow, numbers);
   const VF n = hn::ConvertTo(d, hn::PromoteTo(DI(), number));
-  const VF stands =
-    hn::MulAdd(n, hn::Set(d, scale.High), hn::Mul(n, hn::Set(d, scale.Low)));
+  const VF stands = hn::MulAdd(n, hn::Set(d, scale.High), hn::Mul(n, hn::Set(d, scale.Low)));
   return hn::Eq(stands, value); // not for NaN
 }
 
@@ -75,10 +74,11 @@ namespace banyan
 
 HWY_EXPORT(NumbersHere);
 
-bool NumbersOfValues(const float* values, std::size_t count, double step, NumberScale& scale,
-  std::int16_t* numbers)
+bool NumbersOfValues(
+  const float* values, std::size_t count, double step, NumberScale& scale, std::int16_t* numbers)
 {
-  // What float32 leaves of the step, times any number, is a normal number then, and nothing overflows.
+  // What float32 leaves of the step, times any number, is a normal number then, and nothing
+  // overflows.
   constexpr double least = 1e-25;
   constexpr double most = 1e30;
   if (!(step >= least && step <= most))

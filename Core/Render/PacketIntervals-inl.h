@@ -87,12 +87,9 @@ public:
       const VU fraction =
         hn::And(hn::Load(du, ends.Position[axis] + slot), hn::Set(du, (1u << FractionBits) - 1));
       const VU part = hn::ShiftRightSame(fraction, FractionBits - this->Tile.CellShift);
-      const VU cell =
-        hn::Or(hn::BitCast(du, hn::ShiftLeftSame(large, this->Tile.CellShift)), part);
-      const VU from =
-        hn::Sub(cell, hn::Set(du, static_cast<std::uint32_t>(this->LowCell[axis])));
-      inside =
-        hn::And(inside, hn::RebindMask(d, hn::Lt(from, hn::Set(du, this->CellCount[axis]))));
+      const VU cell = hn::Or(hn::BitCast(du, hn::ShiftLeftSame(large, this->Tile.CellShift)), part);
+      const VU from = hn::Sub(cell, hn::Set(du, static_cast<std::uint32_t>(this->LowCell[axis])));
+      inside = hn::And(inside, hn::RebindMask(d, hn::Lt(from, hn::Set(du, this->CellCount[axis]))));
     }
     return inside;
   }

@@ -280,8 +280,8 @@ private:
     VU position[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      position[axis] = hn::Add(this->Intervals.InBrickCells(ends.Position[axis] + slot),
-        hn::Set(du, this->ToBrick[axis]));
+      position[axis] = hn::Add(
+        this->Intervals.InBrickCells(ends.Position[axis] + slot), hn::Set(du, this->ToBrick[axis]));
     }
     Place place;
     Found found;

@@ -77,8 +77,8 @@ void MarchPackedHere(const PackedBrick& brick, const BrickVisibility& seen, cons
       MarchPackets<false, true, false, true, true>, MarchPackets<true, false, false, false, true>,
       MarchPackets<true, true, false, false, true>, MarchPackets<true, false, false, true, true>,
       MarchPackets<true, true, false, true, true> };
-    const int way = (seen.Holes ? 1 : 0) +
-                    (interpolation == SampleInterpolation::Nearest ? 2 : 0) + (hasEdges ? 4 : 0);
+    const int way = (seen.Holes ? 1 : 0) + (interpolation == SampleInterpolation::Nearest ? 2 : 0) +
+                    (hasEdges ? 4 : 0);
     return numbers[way](brick, seen, table, shading, pixels, tile);
 #else
     return MarchUnpacked(brick, seen, table, shading, pixels, tile, interpolation);

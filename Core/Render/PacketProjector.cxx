@@ -159,8 +159,7 @@ public:
     {
       const std::int64_t corner = ToFixed(brick.Corner()[axis]);
       this->ToBrick[axis] = static_cast<std::uint32_t>(-corner);
-      this->Offset[axis] =
-        static_cast<std::uint32_t>((ToFixed(cells.Lo[axis]) >> larger) - corner);
+      this->Offset[axis] = static_cast<std::uint32_t>((ToFixed(cells.Lo[axis]) >> larger) - corner);
     }
   }
 
@@ -269,8 +268,8 @@ private:
     VU position[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      position[axis] = hn::Add(this->Intervals.InBrickCells(ends.Position[axis] + slot),
-        hn::Set(du, this->ToBrick[axis]));
+      position[axis] = hn::Add(
+        this->Intervals.InBrickCells(ends.Position[axis] + slot), hn::Set(du, this->ToBrick[axis]));
     }
     auto met = this->MetAt(slot);
     if constexpr (Average)
@@ -329,8 +328,7 @@ void ProjectPackedHere(const PackedBrick& brick, const Box& cells, const ValueRa
       ProjectPackets<false, true, true, true>, ProjectPackets<true, false, false, true>,
       ProjectPackets<true, true, false, true>, ProjectPackets<true, false, true, true>,
       ProjectPackets<true, true, true, true> };
-    const int way =
-      (table.Nearest() ? 1 : 0) + (table.Averages() ? 2 : 0) + (hasEdges ? 4 : 0);
+    const int way = (table.Nearest() ? 1 : 0) + (table.Averages() ? 2 : 0) + (hasEdges ? 4 : 0);
     return numbers[way](brick, cells, range, table, pixels, tile);
 #else
     return ProjectUnpacked(brick, cells, table, pixels, tile);

@@ -102,15 +102,17 @@ public:
   HWY_INLINE void Locate(const Position& position, Mask mask, Place& place) const
   {
     const DI d;
-    const VI bytes = hn::Add(hn::ShiftLeft < Shaded ? 4 : Numbers ? 1 : 2 > (CellOf(position.X)),
+    const VI bytes = hn::Add(hn::ShiftLeft < Shaded ? 4
+                             : Numbers              ? 1
+                                                    : 2 > (CellOf(position.X)),
       hn::Add(hn::Mul(CellOf(position.Y), hn::Set(d, this->RowBytes)),
         hn::Mul(CellOf(position.Z), hn::Set(d, this->SliceBytes))));
     place.Cell.Set(hn::IfThenElseZero(hn::RebindMask(d, mask), bytes));
     if constexpr (Special)
     {
-      place.Hidden = this->Hidden.Any()
-                       ? this->Hidden.At(position.X, position.Y, position.Z, hn::RebindMask(d, mask))
-                       : hn::Zero(d);
+      place.Hidden = this->Hidden.Any() ? this->Hidden.At(position.X, position.Y, position.Z,
+                                            hn::RebindMask(d, mask))
+                                        : hn::Zero(d);
     }
     if constexpr (Shaded)
     {
@@ -339,8 +341,8 @@ private:
   HWY_INLINE VF MixedAlongZ(const Place& place) const
   {
     const std::int32_t* bytes = place.Cell.Bytes + k;
-    return Mix(this->FacesAt(this->Values, bytes), this->FacesAt(this->Values + this->SliceBytes, bytes),
-      hn::Broadcast<k>(place.Z));
+    return Mix(this->FacesAt(this->Values, bytes),
+      this->FacesAt(this->Values + this->SliceBytes, bytes), hn::Broadcast<k>(place.Z));
   }
 
   /// Of the cells of every fourth lane.
@@ -360,8 +362,8 @@ private:
   HWY_INLINE VF ValuesOf(VF numbers) const
   {
     const D d;
-    return hn::MulAdd(numbers, hn::Set(d, this->Scale.High),
-      hn::Mul(numbers, hn::Set(d, this->Scale.Low)));
+    return hn::MulAdd(
+      numbers, hn::Set(d, this->Scale.High), hn::Mul(numbers, hn::Set(d, this->Scale.Low)));
   }
 
   /// The cell, or the nearest sample.

@@ -10,12 +10,13 @@ namespace banyan
 
 /// Small pictures that come ever closer to the truth, and how far off each is expected to be: the
 /// difference to the picture before, divided by r - 1, where r is how much larger the difference
-/// before that was (Richardson's extrapolation, r held between 1.7 and 4). The difference to a later
-/// picture, and that one's error, bound the error too, and so does what is expected of an earlier one.
+/// before that was (Richardson's extrapolation, r held between 1.7 and 4). The difference to a
+/// later picture, and that one's error, bound the error too, and so does what is expected of an
+/// earlier one.
 ///
-/// Errors of tiles are those of the pilots in and around them, times a factor of safety, because the
-/// worst of a thousand pixels is worse than that of a few; and at least the largest error anywhere,
-/// because pilots may miss what is thin.
+/// Errors of tiles are those of the pilots in and around them, times a factor of safety, because
+/// the worst of a thousand pixels is worse than that of a few; and at least the largest error
+/// anywhere, because pilots may miss what is thin.
 class PilotSequence
 {
 public:
@@ -39,7 +40,7 @@ private:
   const PilotPictures& Pictures;
   std::vector<PilotPicture> Drawn;
   std::vector<PilotErrors> Steps; ///< from each picture to the next
-  double LargestBefore = 0.0; ///< difference of the last two
+  double LargestBefore = 0.0;     ///< difference of the last two
   std::vector<TileErrors> Errors;
 };
 

@@ -164,13 +164,14 @@ struct LatticeSetup
 };
 
 /// Makes the samples of rays from what all ranks know: the camera, the domain, the clip planes, the
-/// depth and the sampling. The values and their distribution have no part in it. Index space is that
-/// of the sampling's level: the domain may end inside a cell there.
+/// depth and the sampling. The values and their distribution have no part in it. Index space is
+/// that of the sampling's level: the domain may end inside a cell there.
 class RayLattice
 {
 public:
   /// Refers to `scene`, which must stay. Throws Error when the scene is not usable.
-  /// @param smaller how many times the smallest cells are half as long as those of the sampling's level
+  /// @param smaller how many times the smallest cells are half as long as those of the sampling's
+  /// level
   RayLattice(const RayScene& scene, const RaySampling& sampling, int smaller = 0);
   /// At the finest level, with the scene's sample distance.
   explicit RayLattice(const RayScene& scene);
@@ -233,7 +234,7 @@ private:
   double Distance;
   double PerDistance; ///< 1 / Distance
   double SmallestPerCell;
-  glm::dvec3 Low;     ///< of the domain, in cells
+  glm::dvec3 Low; ///< of the domain, in cells
   glm::dvec3 High;
 };
 

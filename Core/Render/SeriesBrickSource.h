@@ -80,7 +80,8 @@ private:
   std::vector<NodeList> Nodes; ///< one list per entry of Components
   FieldKey Flags;              ///< of points
   NodeList NodesOfFlags;       ///< null: no point is hidden
-  std::shared_ptr<LoadRecord> LoadedBricks = std::make_shared<LoadRecord>(); ///< shared with the levels
+  std::shared_ptr<LoadRecord> LoadedBricks =
+    std::make_shared<LoadRecord>(); ///< shared with the levels
 };
 
 /// Bounds of the Euclidean norm of vectors whose components lie in the given ranges; empty when one

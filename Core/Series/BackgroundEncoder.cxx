@@ -36,8 +36,8 @@ void BackgroundEncoder::Start(int number, std::vector<double> times,
   this->Working = true;
   try
   {
-    this->Worker = std::thread([this, number, times = std::move(times), steps = std::move(steps),
-                                 before = std::move(before)]
+    this->Worker = std::thread(
+      [this, number, times = std::move(times), steps = std::move(steps), before = std::move(before)]
       { this->Encode(number, times, steps, before); });
   }
   catch (const std::system_error& error)
@@ -66,9 +66,8 @@ void BackgroundEncoder::Encode(int number, const std::vector<double>& times,
     {
       this->Last = {};
     }
-    result.emplace(number,
-      EncodeGroup(this->Plan, this->Options, this->Folder, number, times, steps, before, last,
-        this->Pool, tell));
+    result.emplace(number, EncodeGroup(this->Plan, this->Options, this->Folder, number, times,
+                             steps, before, last, this->Pool, tell));
   }
   catch (...)
   {

@@ -39,7 +39,8 @@ struct BoxPlace
   std::ptrdiff_t First = 0; ///< of the region
   glm::i64vec3 Stride{ 0 }; ///< axes as the data has them
 
-  /// @param skip samples of the region before the first one that is wanted, axes as the data has them
+  /// @param skip samples of the region before the first one that is wanted, axes as the data has
+  /// them
   BoxPlace(const GroupField& group, const PlaneRegion& region, const glm::ivec3& skip)
   {
     const std::ptrdiff_t n = group.Edge() + 1;
@@ -56,8 +57,8 @@ struct BoxPlace
 /// Numbers of a box in the data's order of axes: as they lie, or in memory that is given.
 /// @param stride receives how they lie
 template <class Number>
-const Number* InOrder(const Number* numbers, glm::i64vec3& stride, const glm::ivec3& size,
-  std::vector<Number>& memory)
+const Number* InOrder(
+  const Number* numbers, glm::i64vec3& stride, const glm::ivec3& size, std::vector<Number>& memory)
 {
   if (stride.x == 1)
   {
@@ -74,8 +75,8 @@ const Number* InOrder(const Number* numbers, glm::i64vec3& stride, const glm::iv
 /// @param skip samples of the brick before the first one that is wanted, and @param size how many
 /// are, axes as the data has them
 template <class T>
-void DecodeBox(OpenGroup& open, int step, const PlaneRegion& region,
-  const glm::ivec3& skip, const glm::ivec3& size, const glm::i64vec3& strides, T* values)
+void DecodeBox(OpenGroup& open, int step, const PlaneRegion& region, const glm::ivec3& skip,
+  const glm::ivec3& size, const glm::i64vec3& strides, T* values)
 {
   GroupField& group = *open.Field;
   // The first rows to be written; they ask for those behind.
@@ -97,8 +98,8 @@ void DecodeBox(OpenGroup& open, int step, const PlaneRegion& region,
     });
 }
 
-/// Bricks of a row whose numbers are kept until their values are written: they fit into a second-level
-/// cache.
+/// Bricks of a row whose numbers are kept until their values are written: they fit into a
+/// second-level cache.
 constexpr int LongestRow = 8;
 
 /// What is wanted of a brick of a row.
@@ -109,8 +110,8 @@ struct RowBrick
   glm::ivec3 Size;
 };
 
-/// DecodeBox of some bricks that follow each other along x. Their values are written row by row of all of
-/// them: long rows take less time than several short ones.
+/// DecodeBox of some bricks that follow each other along x. Their values are written row by row of
+/// all of them: long rows take less time than several short ones.
 /// @param count 1 to LongestRow
 template <class T, class Number>
 void DecodeBoxes(OpenGroup& open, int step, const RowBrick* bricks, int count,
@@ -129,8 +130,8 @@ void DecodeBoxes(OpenGroup& open, int step, const RowBrick* bricks, int count,
     }
     boxes[k] = open.Field->Box(step, region.Plane, region.FirstBlock, true);
     BoxPlace place(*open.Field, region, bricks[k].Skip);
-    const Number* const numbers = InOrder(boxes[k]->template Numbers<Number>() + place.First,
-      place.Stride, bricks[k].Size, ordered[k]);
+    const Number* const numbers = InOrder(
+      boxes[k]->template Numbers<Number>() + place.First, place.Stride, bricks[k].Size, ordered[k]);
     parts[k] = { numbers, place.Stride.y, place.Stride.z, bricks[k].Size.x };
   }
   const stages::In stage(stages::Values);
@@ -139,15 +140,15 @@ void DecodeBoxes(OpenGroup& open, int step, const RowBrick* bricks, int count,
 
 /// @return false when there was nothing to decode: all samples are one value
 template <class T>
-bool Decode(const OpenSeries& series, OpenGroup& open, const FieldKey& field, std::int64_t brick,
-  T* values)
+bool Decode(
+  const OpenSeries& series, OpenGroup& open, const FieldKey& field, std::int64_t brick, T* values)
 {
   GroupField& group = *open.Field;
   const int step = field.Step - group.Segment().FirstStep();
   const LatticeDecoder<T>& decoder = DecoderOf<T>(open);
   const PlaneRegion region = RegionOf(series, open, field, brick);
-  const group::NodeEntry& entry = group.Step(step).Levels[static_cast<std::size_t>(
-    field.Level)][static_cast<std::size_t>(brick)];
+  const group::NodeEntry& entry =
+    group.Step(step).Levels[static_cast<std::size_t>(field.Level)][static_cast<std::size_t>(brick)];
   const std::size_t count = static_cast<std::size_t>(region.Count.x) *
                             static_cast<std::size_t>(region.Count.y) *
                             static_cast<std::size_t>(region.Count.z);
@@ -198,24 +199,27 @@ bool Decode(const OpenSeries& series, OpenGroup& open, const FieldKey& field, st
       {
         columns[x] = region.SampleAt(0, x) - origin.x;
       }
-      group.Box(step, region.Plane, block)->Visit(
-        [&](const auto* numbers)
-        {
-          for (int z = from.z; z <= to.z; ++z)
+      group.Box(step, region.Plane, block)
+        ->Visit(
+          [&](const auto* numbers)
           {
-            for (int y = from.y; y <= to.y; ++y)
+            for (int z = from.z; z <= to.z; ++z)
             {
-              const auto* row = numbers +
-                ((region.SampleAt(2, z) - origin.z) * n + region.SampleAt(1, y) - origin.y) * n;
-              std::uint32_t* out = offsets.data() +
-                (static_cast<std::size_t>(z) * region.Count.y + y) * region.Count.x;
-              for (int x = from.x; x <= to.x; ++x)
+              for (int y = from.y; y <= to.y; ++y)
               {
-                out[x] = static_cast<std::uint32_t>(row[columns[x]]) - least;
+                const auto* row =
+                  numbers +
+                  ((region.SampleAt(2, z) - origin.z) * n + region.SampleAt(1, y) - origin.y) * n;
+                std::uint32_t* out =
+                  offsets.data() +
+                  (static_cast<std::size_t>(z) * region.Count.y + y) * region.Count.x;
+                for (int x = from.x; x <= to.x; ++x)
+                {
+                  out[x] = static_cast<std::uint32_t>(row[columns[x]]) - least;
+                }
               }
             }
-          }
-        });
+          });
     });
   decoder.Decode(group.Head().Least, offsets.data(), count, ordered.data());
   if (exceptional)
@@ -285,8 +289,7 @@ bool DecodeSome(const OpenSeries& series, OpenGroup& open, const FieldKey& field
   const int step = field.Step - group.Segment().FirstStep();
   const PlaneRegion region = RegionOf(series, open, field, brick);
   const std::size_t level = static_cast<std::size_t>(field.Level);
-  const group::NodeEntry& entry =
-    group.Step(step).Levels[level][static_cast<std::size_t>(brick)];
+  const group::NodeEntry& entry = group.Step(step).Levels[level][static_cast<std::size_t>(brick)];
   if (entry.Uniform || !InOneBox(region, group.Edge()) || Exceptional(group, step, region))
   {
     return false;

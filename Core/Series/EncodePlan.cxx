@@ -11,8 +11,8 @@ namespace banyan
 namespace
 {
 
-/// A bound so small that doubles lie as far apart as it is large: rounded, it might be twice what was
-/// asked for.
+/// A bound so small that doubles lie as far apart as it is large: rounded, it might be twice what
+/// was asked for.
 double NotAbove(long double bound)
 {
   const double rounded = static_cast<double>(bound);
@@ -97,7 +97,8 @@ ArrayIndex MakeArray(const ArrayDescription& description, const EncodeOptions& o
       description.Histograms.empty() ? nullptr : &description.Histograms[c],
       description.SeriesRanges.empty() ? ValueRange{} : description.SeriesRanges[c],
       IsRelative(options), component);
-    // Which of two zeros was met first depends on who looked; adding a zero leaves the positive one.
+    // Which of two zeros was met first depends on who looked; adding a zero leaves the positive
+    // one.
     component.PromisedRange.Low += 0.0;
     component.PromisedRange.High += 0.0;
     component.ErrorBoundAbsolute =

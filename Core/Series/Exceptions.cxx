@@ -88,8 +88,7 @@ std::vector<T> ReadValues(const std::uint8_t* planes, std::size_t count)
   return values;
 }
 
-void AppendPositions(
-  const std::vector<std::uint32_t>& positions, std::uint32_t samples, Bytes& out)
+void AppendPositions(const std::vector<std::uint32_t>& positions, std::uint32_t samples, Bytes& out)
 {
   if (positions.size() == samples)
   {
@@ -202,8 +201,8 @@ ExceptionList<T> UnpackExceptions(
   ByteReader values(data, size);
   ExceptionList<T> list;
   list.Positions = ReadPositions(values, count, samples);
-  list.Values = ReadValues<T>(
-    values.Skip(list.Positions.size() * sizeof(T)), list.Positions.size());
+  list.Values =
+    ReadValues<T>(values.Skip(list.Positions.size() * sizeof(T)), list.Positions.size());
   values.MustBeDone();
   return list;
 }

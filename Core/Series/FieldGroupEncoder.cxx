@@ -45,8 +45,7 @@ private:
   using BlockBody = std::function<void(std::size_t plane, std::int64_t block)>;
   void EncodePlanes(int step, const BlockBody& done, const std::function<void(double)>& tell);
   void NoteOrigins(int step, int before, std::size_t plane);
-  void EncodeStep(
-    int step, std::vector<double>* squares, const std::function<void(double)>& tell);
+  void EncodeStep(int step, std::vector<double>* squares, const std::function<void(double)>& tell);
   void WriteSymbols();
   void WriteSymbols(const SymbolTables& tables, std::vector<BlockTokens>& tokens,
     std::vector<EncodedBlock>& blocks) const;
@@ -54,7 +53,7 @@ private:
   const FieldGroup& Field;
   ThreadPool& Pool;
   std::unique_ptr<LatticeTarget<T>> Target;
-  std::vector<glm::ivec3> Planes; ///< samples
+  std::vector<glm::ivec3> Planes;   ///< samples
   std::vector<PlaneNumbers> Wanted; ///< of the step under way
   std::vector<DecodedStep> Decoded; ///< all steps, as all else is kept until the group is written
   std::vector<StepTokens> Tokens;
@@ -175,8 +174,8 @@ void Encoder<T>::EncodePlanes(
     plane.Least = this->Out.Head.Least;
     plane.Greatest = this->Out.Head.Greatest;
     ApplyProfile(this->Field.Profile, this->Field.Ideas, plane);
-    EncodePlane(plane, decoded[p], tokens[p], this->Pool,
-      [&](std::int64_t block) { done(p, block); },
+    EncodePlane(
+      plane, decoded[p], tokens[p], this->Pool, [&](std::int64_t block) { done(p, block); },
       p == 0 && blockwise ? std::function<void(std::int64_t)>(make) : nullptr);
     for (const BlockTokens& block : tokens[p])
     {
@@ -187,8 +186,8 @@ void Encoder<T>::EncodePlanes(
   }
 }
 
-/// Encodes a step and compares what the samples of each block decode to with the originals; what is out
-/// of bounds becomes an exception.
+/// Encodes a step and compares what the samples of each block decode to with the originals; what is
+/// out of bounds becomes an exception.
 template <class T>
 void Encoder<T>::EncodeStep(
   int step, std::vector<double>* squares, const std::function<void(double)>& tell)
@@ -202,7 +201,8 @@ void Encoder<T>::EncodeStep(
     decoded.Extremes.emplace_back(blocks);
   }
   std::vector<FieldErrors> parts(out.Planes.empty() ? 0 : out.Planes[0].size());
-  this->EncodePlanes(step,
+  this->EncodePlanes(
+    step,
     [&](std::size_t plane, std::int64_t i)
     {
       ExceptionList<T> list;
@@ -329,7 +329,8 @@ KeyFrame Encoder<T>::RunKeyFrame()
 {
   this->Prepare();
   const int last = static_cast<int>(this->Field.Steps.size()) - 1;
-  this->EncodePlanes(last, [](std::size_t, std::int64_t) {}, [](double) {});
+  this->EncodePlanes(
+    last, [](std::size_t, std::int64_t) {}, [](double) {});
   return { this->Out.Head, std::move(this->Decoded.back().Planes) };
 }
 
@@ -347,8 +348,8 @@ EncodedField EncodeFieldGroup(const FieldGroup& field, ThreadPool& pool,
 KeyFrame EncodeKeyFrame(const FieldGroup& field, ThreadPool& pool)
 {
   KeyFrame result;
-  Dispatch(field.Type, [&](auto tag)
-    { result = Encoder<typename decltype(tag)::Type>(field, pool).RunKeyFrame(); });
+  Dispatch(field.Type,
+    [&](auto tag) { result = Encoder<typename decltype(tag)::Type>(field, pool).RunKeyFrame(); });
   return result;
 }
 

@@ -97,8 +97,8 @@ struct EncodedField
   FieldErrors Errors;
   std::vector<double> StepRmse; ///< root of the mean squared error of each step
   KeyFrame Last;
-  /// Steps that must be decoded for a brick of the finest level: sum over so many bricks of all steps, and
-  /// most; see ChainLengths.h.
+  /// Steps that must be decoded for a brick of the finest level: sum over so many bricks of all
+  /// steps, and most; see ChainLengths.h.
   std::int64_t ChainSum = 0;
   std::int64_t ChainBricks = 0;
   int ChainMost = 0;
@@ -111,8 +111,8 @@ struct EncodedField
 EncodedField EncodeFieldGroup(const FieldGroup& field, ThreadPool& pool,
   std::vector<std::vector<double>>* sumSquares, const std::function<void(double)>& tell);
 
-/// A field of one step becomes one that rests over as many: nothing of it needs to be stored, and what was
-/// measured counts as often.
+/// A field of one step becomes one that rests over as many: nothing of it needs to be stored, and
+/// what was measured counts as often.
 void LetRest(EncodedField& field, std::int64_t steps);
 
 /// The key frame of a group, as EncodeFieldGroup encodes it, from its values alone.

@@ -27,10 +27,9 @@ public:
   {
     return false;
   }
-  /// As SeriesFile::DecodeRow, of several bricks. @return false when the caller has to decode them one by
-  /// one
-  virtual bool DecodeRow(
-    const FieldKey&, std::int64_t, int, const Box&, const glm::i64vec3&, void*)
+  /// As SeriesFile::DecodeRow, of several bricks. @return false when the caller has to decode them
+  /// one by one
+  virtual bool DecodeRow(const FieldKey&, std::int64_t, int, const Box&, const glm::i64vec3&, void*)
   {
     return false;
   }

@@ -77,8 +77,7 @@ const SegmentReader& Reader1::Segment(int step)
   return *segment;
 }
 
-std::shared_ptr<const OpenField> Reader1::Load(
-  const FieldKey& field, std::uint32_t table)
+std::shared_ptr<const OpenField> Reader1::Load(const FieldKey& field, std::uint32_t table)
 {
   const SegmentReader& segment = this->Segment(field.Step);
   return InFile(segment.Path(), 0,
@@ -101,9 +100,9 @@ std::shared_ptr<const OpenField> Reader1::Load(
 
 std::shared_ptr<const OpenField> Reader1::Open(const FieldKey& field)
 {
-  const std::uint32_t inStep = this->Series.ComponentOf(field) *
-                                 static_cast<std::uint32_t>(this->Series.Index.Levels) +
-                               static_cast<std::uint32_t>(field.Level);
+  const std::uint32_t inStep =
+    this->Series.ComponentOf(field) * static_cast<std::uint32_t>(this->Series.Index.Levels) +
+    static_cast<std::uint32_t>(field.Level);
   const std::uint64_t key = static_cast<std::uint64_t>(field.Step) * this->TablesPerStep + inStep;
   // Loading under the lock: threads that start on a new step together then load its table once.
   std::lock_guard<std::mutex> lock(this->TableMutex);
@@ -139,8 +138,8 @@ Bytes Reader1::Payload(const OpenField& open, std::int64_t brick)
   }
   Bytes bytes = open.Segment->Payload(payload, node.PayloadBytes);
   const glm::ivec3 samples = open.Layout.SamplesOf(brick).Size();
-  const Hash128 hash = IdentityOf(
-    payload.Mode, bytes.data(), bytes.size(), open.Lattice, open.Type, samples);
+  const Hash128 hash =
+    IdentityOf(payload.Mode, bytes.data(), bytes.size(), open.Lattice, open.Type, samples);
   this->Read += node.PayloadBytes;
   if (!(PayloadIdentity{ hash.Low, hash.High } == node.Identity))
   {

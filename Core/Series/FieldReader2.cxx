@@ -80,8 +80,8 @@ std::shared_ptr<GroupReader> Reader2::Segment(int step)
   return segment;
 }
 
-/// Where a field is stored: as it is asked for or, where it rests, at the last step of the group from which
-/// on it does.
+/// Where a field is stored: as it is asked for or, where it rests, at the last step of the group
+/// from which on it does.
 FieldKey Reader2::Stored(FieldKey field)
 {
   const std::uint32_t component = this->Series.ComponentOf(field);
@@ -129,8 +129,8 @@ FieldKey Reader2::Stored(FieldKey field)
   return field;
 }
 
-/// Of the header of the segment where the last step before a group is stored. Those who read it will be told
-/// what is wrong with it; others do not need it.
+/// Of the header of the segment where the last step before a group is stored. Those who read it
+/// will be told what is wrong with it; others do not need it.
 Hash128 Reader2::HashBefore(const FieldKey& last)
 {
   try
@@ -162,8 +162,8 @@ std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
   const ArrayIndex& array = this->Series.Index.Arrays[static_cast<std::size_t>(field.Array)];
   auto open = std::make_shared<OpenGroup>();
   open->Type = array.Type;
-  const auto before = [this, key = FieldKey{ segment->FirstStep() - 1, field.Array,
-                               field.Component, 0 }]
+  const auto before =
+    [this, key = FieldKey{ segment->FirstStep() - 1, field.Array, field.Component, 0 }]
   {
     const std::shared_ptr<OpenGroup> opened = this->Open(this->Stored(key));
     return std::shared_ptr<GroupField>(opened, opened->Field.get());
@@ -172,16 +172,15 @@ std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
     [&]
     {
       open->Field = std::make_unique<GroupField>(*segment, this->Series.Id, component,
-        this->Series.Index.Domain.Samples(), this->Series.Index.BrickCells, this->Series.Index.Levels,
-        before);
+        this->Series.Index.Domain.Samples(), this->Series.Index.BrickCells,
+        this->Series.Index.Levels, before);
     });
   const group::FieldHead& head = open->Field->Head();
   if (head.Open)
   {
     open->Before = this->HashBefore({ segment->FirstStep() - 1, field.Array, field.Component, 0 });
   }
-  const Transform& map =
-    array.Components[static_cast<std::size_t>(field.Component)].ValueTransform;
+  const Transform& map = array.Components[static_cast<std::size_t>(field.Component)].ValueTransform;
   Dispatch(array.Type,
     [&](auto tag)
     {
@@ -189,8 +188,8 @@ std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
       open->Decoder = std::make_shared<const LatticeDecoder<T>>(
         map, head.Origin, head.Step, head.Least, head.Greatest);
     });
-  const std::string meaning = TransformToJson(map).dump() +
-                              std::string(head.Axes.begin(), head.Axes.end());
+  const std::string meaning =
+    TransformToJson(map).dump() + std::string(head.Axes.begin(), head.Axes.end());
   open->Meaning = ShortHashOf(meaning.data(), meaning.size());
   this->Opened.emplace_front(key, open);
   std::uint64_t bytes = 0;
@@ -201,9 +200,10 @@ std::shared_ptr<OpenGroup> Reader2::Open(const FieldKey& field)
     ++count;
     // Of each component the segment at hand and the one before it; others as the budget allows: the
     // tables of a segment take more than a megabyte.
-    const bool keep = count <= 2 * std::size_t{ this->Series.Components } ||
-                      (count <= KeptTables * std::size_t{ this->Series.Components } &&
-                        bytes <= std::min(KeptTableBytes, LatticeCache::Process().BudgetBytes() / 2));
+    const bool keep =
+      count <= 2 * std::size_t{ this->Series.Components } ||
+      (count <= KeptTables * std::size_t{ this->Series.Components } &&
+        bytes <= std::min(KeptTableBytes, LatticeCache::Process().BudgetBytes() / 2));
     kept = keep ? std::next(kept) : this->Opened.erase(kept);
   }
   return open;
@@ -263,7 +263,9 @@ bool Reader2::DecodeRow(const FieldKey& asked, std::int64_t brick, int count, co
   const FieldKey field = this->Stored(asked);
   const std::shared_ptr<OpenGroup> open = this->Open(field);
   const bool done = InFile(open->Field->Segment().Path(), 0,
-    [&] { return DecodeSomeRow(this->Series, *open, field, { brick, count }, part, stride, first); });
+    [&] {
+      return DecodeSomeRow(this->Series, *open, field, { brick, count }, part, stride, first);
+    });
   this->Decoded += done ? static_cast<std::uint64_t>(count) : 0;
   this->Read += open->Field->TakeBytesRead();
   return done;
@@ -290,8 +292,8 @@ void Reader2::VerifyBricks(const FieldKey& asked, const std::vector<std::int64_t
       for (const std::int64_t brick : bricks)
       {
         const PlaneRegion region = RegionOf(this->Series, *open, field, brick);
-        ForEachBlock(region,
-          [&](const glm::ivec3& block) { group.Verify(step, region.Plane, block); });
+        ForEachBlock(
+          region, [&](const glm::ivec3& block) { group.Verify(step, region.Plane, block); });
         const BrickLayout& layout = this->Series.Layouts[static_cast<std::size_t>(field.Level)];
         const glm::ivec3 behind = layout.Bricks() - layout.PositionOf(brick) - 1;
         if (behind.x * behind.y * behind.z == 0 && open->EndsToCheck > 0 && open->EndsToCheck-- > 0)

@@ -27,9 +27,8 @@ FillSet<T>::FillSet(const std::vector<double>& values)
   for (const double value : values)
   {
     const T fill = ValueFromReal<T>(value);
-    const bool stands = std::is_floating_point_v<T>
-                          ? std::isfinite(static_cast<double>(fill))
-                          : static_cast<double>(fill) == value;
+    const bool stands = std::is_floating_point_v<T> ? std::isfinite(static_cast<double>(fill))
+                                                    : static_cast<double>(fill) == value;
     if (stands)
     {
       this->Values.push_back(fill);

@@ -29,8 +29,7 @@ ValueRange MagnitudeRange(const std::vector<double>& squares)
   return range;
 }
 
-void Measure(const EncodedField& field, ComponentIndex& component,
-  EncodeStatistics& statistics)
+void Measure(const EncodedField& field, ComponentIndex& component, EncodeStatistics& statistics)
 {
   component.Range = field.Errors.Range;
   component.MeasuredMaxError = field.Errors.Maximum;

@@ -29,8 +29,7 @@ glm::ivec3 NeighbourOf(const glm::ivec3& block, int bits)
 /// Whether a block is predicted from other steps.
 bool Refers(const group::BlockEntry& entry)
 {
-  return entry.Same ||
-         (!entry.Uniform && block::ModeOf(entry.Mode).From != block::Reference::None);
+  return entry.Same || (!entry.Uniform && block::ModeOf(entry.Mode).From != block::Reference::None);
 }
 
 } // namespace
@@ -79,8 +78,7 @@ const group::StepTable& GroupField::Load(int step)
   if (!table)
   {
     const int reference = ReferencesOfStep(step, this->File.Steps(), this->FieldHead.Open).B;
-    const group::TableReference from{ reference,
-      reference < 0 ? nullptr : &this->Load(reference) };
+    const group::TableReference from{ reference, reference < 0 ? nullptr : &this->Load(reference) };
     const Bytes bytes = this->File.Section(this->File.StepSection(step, this->Component));
     table = std::make_unique<group::StepTable>(group::UnpackStep(
       bytes.data(), bytes.size(), this->Shape, step, from, this->File.PayloadEnd()));
@@ -336,7 +334,8 @@ LatticeCache::Box GroupField::Box(int step, int plane, const glm::ivec3& block, 
     return found;
   }
   const LatticeCache::Box box = this->Decode(step, plane, block);
-  // Half of all steps are no references. Of these, boxes are needed until the blocks around are decoded.
+  // Half of all steps are no references. Of these, boxes are needed until the blocks around are
+  // decoded.
   const bool brief = passing && plane == 0 && ReferenceDistance(step, this->File.Steps()) == 1;
   cache.Add(key, box, brief);
   return box;

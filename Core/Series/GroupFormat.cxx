@@ -41,9 +41,8 @@ Bytes PackHead(const FieldHead& head)
 {
   Bytes out;
   out.insert(out.end(), head.Axes.begin(), head.Axes.end());
-  out.push_back(
-    static_cast<std::uint8_t>((head.Exact ? HeadExact : 0) | (head.Open ? HeadOpen : 0) |
-                              (head.Rests ? HeadRests : 0)));
+  out.push_back(static_cast<std::uint8_t>(
+    (head.Exact ? HeadExact : 0) | (head.Open ? HeadOpen : 0) | (head.Rests ? HeadRests : 0)));
   AppendNumber(out, head.Origin);
   AppendNumber(out, head.Step);
   AppendNumber(out, head.Bin);
@@ -82,8 +81,9 @@ FieldHead UnpackHead(const std::uint8_t* data, std::size_t bytes)
   head.Bin = in.Number<std::int32_t>();
   head.Least = in.Number<std::int32_t>();
   head.Greatest = in.Number<std::int32_t>();
-  if (seen != 7 || (flags > HeadOpen && flags != HeadRests) || !std::isfinite(head.Origin) || !std::isfinite(head.Step) ||
-      !(head.Step > 0) || head.Bin < 1 || head.Bin % 2 == 0 || head.Least > head.Greatest)
+  if (seen != 7 || (flags > HeadOpen && flags != HeadRests) || !std::isfinite(head.Origin) ||
+      !std::isfinite(head.Step) || !(head.Step > 0) || head.Bin < 1 || head.Bin % 2 == 0 ||
+      head.Least > head.Greatest)
   {
     throw Error("The head of a field of the segment is not valid");
   }
@@ -121,8 +121,8 @@ std::vector<glm::ivec3> PlanesOf(glm::ivec3 samples)
   return planes;
 }
 
-TableShape ShapeOf(const glm::ivec3& samples, const std::array<std::uint8_t, 3>& axes,
-  int brickCells, int levels)
+TableShape ShapeOf(
+  const glm::ivec3& samples, const std::array<std::uint8_t, 3>& axes, int brickCells, int levels)
 {
   glm::ivec3 ordered;
   for (int a = 0; a < 3; ++a)

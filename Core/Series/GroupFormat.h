@@ -82,8 +82,8 @@ struct NodeEntry
   std::uint32_t Age = 0;
   std::int32_t Low = 0, High = 0; ///< extremes, in lattice numbers
   double LowValue = 0, HighValue = 0;
-  /// Hash of the decoded samples, ContentBits of it, by which bricks of different segments are known
-  /// to be the same; only some bricks of the first and of the last step have it. 0: none.
+  /// Hash of the decoded samples, ContentBits of it, by which bricks of different segments are
+  /// known to be the same; only some bricks of the first and of the last step have it. 0: none.
   std::uint64_t Content = 0;
 };
 
@@ -99,8 +99,8 @@ struct StepTable
 };
 
 /// Samples per axis of each plane of a field, in the order of the codec's axes: each keeps every
-/// fourth sample of the one before, until no axis has more than 2; at least two planes. The last one
-/// is not cut into blocks.
+/// fourth sample of the one before, until no axis has more than 2; at least two planes. The last
+/// one is not cut into blocks.
 std::vector<glm::ivec3> PlanesOf(glm::ivec3 samples);
 
 /// What the tables of a component look like, the same in all steps.
@@ -111,19 +111,19 @@ struct TableShape
   std::vector<glm::ivec3> Bricks; ///< of each level, in the data's order of axes
 };
 
-TableShape ShapeOf(const glm::ivec3& samples, const std::array<std::uint8_t, 3>& axes,
-  int brickCells, int levels);
+TableShape ShapeOf(
+  const glm::ivec3& samples, const std::array<std::uint8_t, 3>& axes, int brickCells, int levels);
 
 /// The table that another one is coded relative to.
 struct TableReference
 {
-  int Step = -1; ///< of the segment
+  int Step = -1;                    ///< of the segment
   const StepTable* Table = nullptr; ///< null: there is none
 };
 
 /// @param step of the segment, whose first is 0
-/// Of nodes' contents only those are kept that are in the first step or in one without reference, and
-/// not of uniform bricks.
+/// Of nodes' contents only those are kept that are in the first step or in one without reference,
+/// and not of uniform bricks.
 Bytes PackStep(
   const StepTable& table, const TableShape& shape, int step, const TableReference& reference);
 

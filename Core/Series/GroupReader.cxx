@@ -16,8 +16,8 @@ GroupReader::GroupReader(
 {
 }
 
-GroupReader::GroupReader(std::shared_ptr<const SegmentFile> file, const SegmentIndex& index,
-  std::uint32_t components)
+GroupReader::GroupReader(
+  std::shared_ptr<const SegmentFile> file, const SegmentIndex& index, std::uint32_t components)
   : File(std::move(file))
   , Index(index)
   , Components(components)

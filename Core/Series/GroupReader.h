@@ -2,8 +2,8 @@
 #define banyan_Series_GroupReader_h
 
 #include "Codec/DecodeTables.h"
-#include "Codec/MemoryAhead.h"
 #include "Codec/GroupOrder.h"
+#include "Codec/MemoryAhead.h"
 #include "Series/GroupFormat.h"
 #include "Series/Hash.h"
 #include "Series/LatticeCache.h"
@@ -29,8 +29,8 @@ public:
   /// @param components of all arrays of the series
   GroupReader(const std::string& folder, const SegmentIndex& index, std::uint32_t components);
   /// @param file of several readers, where the index names it for several groups
-  GroupReader(std::shared_ptr<const SegmentFile> file, const SegmentIndex& index,
-    std::uint32_t components);
+  GroupReader(
+    std::shared_ptr<const SegmentFile> file, const SegmentIndex& index, std::uint32_t components);
 
   const std::string& Path() const { return this->File->Path(); }
   int FirstStep() const { return this->Index.FirstStep; }
@@ -45,8 +45,8 @@ public:
   }
   std::uint64_t PayloadEnd();
 
-  /// The payloads of the segment, read and checked as they are needed. Throws Error when the table of
-  /// their checksums is damaged.
+  /// The payloads of the segment, read and checked as they are needed. Throws Error when the table
+  /// of their checksums is damaged.
   PayloadPages& Payloads();
 
   const Hash128& HeaderHash() const { return this->Expected; }
@@ -90,11 +90,12 @@ public:
   const group::StepTable& Step(int step);
 
   /// Decodes the box of a block: (edge + 1)^3 lattice numbers.
-  /// @param passing whether all of a region is read, which hardly comes back to boxes that are no references
+  /// @param passing whether all of a region is read, which hardly comes back to boxes that are no
+  /// references
   LatticeCache::Box Box(int step, int plane, const glm::ivec3& block, bool passing = false);
 
-  /// Notes what decoding the box will read, boxes of other steps that usually are in memory only: while
-  /// the next box is decoded the caches of the processor are asked for it. Decodes nothing.
+  /// Notes what decoding the box will read, boxes of other steps that usually are in memory only:
+  /// while the next box is decoded the caches of the processor are asked for it. Decodes nothing.
   void Prefetch(int step, int plane, const glm::ivec3& block);
 
   /// Checks the pages of everything that decoding the box reads.

@@ -156,9 +156,8 @@ Bytes GroupWriter::PageHashes() const
   return hashes;
 }
 
-SegmentIndex GroupWriter::Finish(
-  const std::vector<group::FieldHead>& heads, const std::vector<group::TableShape>& shapes,
-  int firstStep, int steps)
+SegmentIndex GroupWriter::Finish(const std::vector<group::FieldHead>& heads,
+  const std::vector<group::TableShape>& shapes, int firstStep, int steps)
 {
   this->Output.Append(this->Payloads.data(), this->Payloads.size());
   segment::Header header;
@@ -199,8 +198,8 @@ SegmentIndex GroupWriter::Finish(
     StoreNumber(to + 16, sections[i].Hash);
   }
   header.Steps = static_cast<std::uint32_t>(steps);
-  const std::uint64_t content = ShortHashOf(this->Payloads.data() + segment::HeaderBytes,
-    this->Payloads.size() - segment::HeaderBytes);
+  const std::uint64_t content = ShortHashOf(
+    this->Payloads.data() + segment::HeaderBytes, this->Payloads.size() - segment::HeaderBytes);
   header.FirstStep = static_cast<std::uint32_t>(content >> 32); // pages have the low half of theirs
   header.Tables = static_cast<std::uint32_t>(sections.size());
   header.DirectoryOffset = this->Output.Size();

@@ -41,7 +41,8 @@ private:
 
   SegmentFolder& Folder;
   AtomicFile Output;
-  Bytes Payloads; ///< header and payloads, which are written together: each by itself would take longer
+  Bytes
+    Payloads; ///< header and payloads, which are written together: each by itself would take longer
   std::unordered_map<Hash128, group::Place, PlaceByHash> Stored;
   std::vector<group::StepTable> Tables;
 };

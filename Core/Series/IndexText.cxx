@@ -78,8 +78,8 @@ std::string IndexToText(const SeriesIndex& index)
   {
     throw Error("The name of an array or component is not valid UTF-8");
   }
-  return Word + std::to_string(index.FormatVersion) + " " + ToHex(HashOf(body.data(), body.size())) + "\n" +
-         body;
+  return Word + std::to_string(index.FormatVersion) + " " +
+         ToHex(HashOf(body.data(), body.size())) + "\n" + body;
 }
 
 SeriesIndex IndexFromText(const std::string& text, const std::string& path)

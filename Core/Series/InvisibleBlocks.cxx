@@ -41,8 +41,7 @@ InvisibleBlocks<T>::InvisibleBlocks(const FieldGroup& field, const group::FieldH
 template <class T>
 void InvisibleBlocks<T>::CollectInto(std::vector<std::vector<double>>& values) const
 {
-  const std::int64_t count =
-    std::int64_t{ this->Samples.x } * this->Samples.y * this->Samples.z;
+  const std::int64_t count = std::int64_t{ this->Samples.x } * this->Samples.y * this->Samples.z;
   const std::int64_t gap = count / ValuesToSee + 1;
   const T* keyFrame = static_cast<const T*>(this->Field.Steps.back());
   for (std::int64_t i = 0; i < count; i += gap)
@@ -57,8 +56,8 @@ void InvisibleBlocks<T>::CollectInto(std::vector<std::vector<double>>& values) c
 }
 
 template <class T>
-typename InvisibleBlocks<T>::Choice InvisibleBlocks<T>::Choose(const ValueRange& interval,
-  std::vector<double>& values, const LatticeDecoder<T>& decoder) const
+typename InvisibleBlocks<T>::Choice InvisibleBlocks<T>::Choose(
+  const ValueRange& interval, std::vector<double>& values, const LatticeDecoder<T>& decoder) const
 {
   Choice choice;
   // What a block decodes to may be the bound away from what it became.
@@ -77,8 +76,8 @@ typename InvisibleBlocks<T>::Choice InvisibleBlocks<T>::Choose(const ValueRange&
     y = std::min(std::max(this->Field.Map.Forward(*middle), low), high);
   }
   const double number = std::round((y - this->Head.Origin) / this->Head.Step);
-  choice.Number = static_cast<std::int32_t>(std::min(
-    std::max(number, double(this->Head.Least)), double(this->Head.Greatest)));
+  choice.Number = static_cast<std::int32_t>(
+    std::min(std::max(number, double(this->Head.Least)), double(this->Head.Greatest)));
   const double decoded = static_cast<double>(decoder.ValueOf(choice.Number));
   choice.Usable = decoded >= interval.Low && decoded <= interval.High;
   return choice;

@@ -13,10 +13,10 @@ namespace banyan
 /// Which blocks of a field nobody can see, and what they may decode to instead.
 ///
 /// A block is invisible when all its samples, and those around it (one more at either side along
-/// each axis), lie in one interval of values whose opacity is 0. Cells that touch a sample of such a
-/// block then have all corners in that interval, so that no interpolant of the finest level becomes
-/// visible, or stops being so, whatever other values of the interval the block gets. Samples with
-/// NaN, infinities or fill values are not invisible.
+/// each axis), lie in one interval of values whose opacity is 0. Cells that touch a sample of such
+/// a block then have all corners in that interval, so that no interpolant of the finest level
+/// becomes visible, or stops being so, whatever other values of the interval the block gets.
+/// Samples with NaN, infinities or fill values are not invisible.
 template <class T>
 class InvisibleBlocks
 {

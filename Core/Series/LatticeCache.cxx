@@ -113,7 +113,8 @@ void LatticeCache::Add(const Key& key, const Box& box, bool brief)
   const std::int32_t entry = shard.Free.back();
   shard.Free.pop_back();
   std::int32_t& bucket = BucketOf(shard, hash);
-  shard.Entries[static_cast<std::size_t>(entry)] = { key, box, box->Memory(), bucket, false, brief };
+  shard.Entries[static_cast<std::size_t>(entry)] = { key, box, box->Memory(), bucket, false,
+    brief };
   bucket = entry;
   shard.Bytes += BytesOf(box);
   if (brief)

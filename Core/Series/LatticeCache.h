@@ -12,9 +12,9 @@
 namespace banyan
 {
 
-/// Decoded boxes (lattice numbers) that other steps and finer blocks are predicted from, kept within
-/// a byte budget. What goes out is found as by the hand of a clock, which spares once what was used since
-/// it came by. One for the process. Thread-safe.
+/// Decoded boxes (lattice numbers) that other steps and finer blocks are predicted from, kept
+/// within a byte budget. What goes out is found as by the hand of a clock, which spares once what
+/// was used since it came by. One for the process. Thread-safe.
 class LatticeCache
 {
 public:
@@ -39,16 +39,17 @@ public:
 
   /// Null when it is not there.
   Box Find(const Key& key);
-  /// @param brief whether no other step is predicted from it: where there is no room such boxes go first, the
-  /// oldest ones before others, until they take about a sixteenth of the budget
+  /// @param brief whether no other step is predicted from it: where there is no room such boxes go
+  /// first, the oldest ones before others, until they take about a sixteenth of the budget
   void Add(const Key& key, const Box& box, bool brief = false);
-  /// Where the numbers of a box lie, or null: to ask the processor's caches for them. They may be gone at
-  /// any time. Takes part of the time of Find, which counts who holds a box and waits for its memory.
+  /// Where the numbers of a box lie, or null: to ask the processor's caches for them. They may be
+  /// gone at any time. Takes part of the time of Find, which counts who holds a box and waits for
+  /// its memory.
   const void* AddressOf(const Key& key);
   /// Forgets the boxes of a series.
   void Forget(std::uint64_t series);
-  /// Forgets the boxes of all series and planes, and the room that their names take, or the boxes of the finest
-  /// planes only: to measure what decoding takes.
+  /// Forgets the boxes of all series and planes, and the room that their names take, or the boxes
+  /// of the finest planes only: to measure what decoding takes.
   void ForgetAll();
   void ForgetFinest();
 
@@ -64,17 +65,17 @@ private:
   struct Kept
   {
     Key Name;
-    Box Numbers;            ///< null: the place is free
+    Box Numbers;                  ///< null: the place is free
     const void* Memory = nullptr; ///< where they lie
-    std::int32_t Next = -1; ///< entry of the same bucket
-    bool Used = false;      ///< since the hand of the clock came by
+    std::int32_t Next = -1;       ///< entry of the same bucket
+    bool Used = false;            ///< since the hand of the clock came by
     bool Brief = false;
     std::int32_t Newer = -1; ///< entry of the next brief box
     std::int32_t Older = -1; ///< of the one before
   };
   /// Shards have locks of their own, so that threads seldom wait for each other. Entries stay where
-  /// they are: to find one takes two lines of the cache, and these hold some blocks that follow each
-  /// other.
+  /// they are: to find one takes two lines of the cache, and these hold some blocks that follow
+  /// each other.
   struct Shard
   {
     mutable std::mutex Mutex;
@@ -90,7 +91,8 @@ private:
   static constexpr std::size_t ShardCount = 16;
 
   static constexpr std::size_t BlocksTogether = 8;
-  /// One part of so many is for brief boxes in any case: of 128 MiB a layer of blocks of 384^3 samples.
+  /// One part of so many is for brief boxes in any case: of 128 MiB a layer of blocks of 384^3
+  /// samples.
   static constexpr std::uint64_t BriefPart = 16;
 
   static std::size_t HashOf(const Key& key);

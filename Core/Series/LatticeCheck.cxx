@@ -32,7 +32,8 @@ struct RowDifference
 };
 
 // Compiled for newer processors, too; no operation is fused, so that results are the same bits.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                             \
+  !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define BANYAN_CLONES __attribute__((target_clones("avx2", "default")))
 #else
 #define BANYAN_CLONES
@@ -304,8 +305,8 @@ void LatticeCheck<T>::Block(const PlaneNumbers& decoded, int plane, std::int64_t
     static_cast<int>(block / decoded.Blocks.x / decoded.Blocks.y) };
   const glm::ivec3 low = position * edge;
   const glm::ivec3 high = glm::min(low + edge, decoded.Samples);
-  if (plane == 0 && this->Plain && !this->Field.Needed && this->Field.Map.IsIdentity() && squares == nullptr &&
-      this->WholeBlock(decoded, low, high - low, errors))
+  if (plane == 0 && this->Plain && !this->Field.Needed && this->Field.Map.IsIdentity() &&
+      squares == nullptr && this->WholeBlock(decoded, low, high - low, errors))
   {
     return;
   }
@@ -326,7 +327,8 @@ void LatticeCheck<T>::Block(const PlaneNumbers& decoded, int plane, std::int64_t
   if (plane == 0)
   {
     this->Tile.resize(static_cast<std::size_t>(edge) * edge * edge);
-    GatherTile(this->Values + low.x * this->Stride.x + low.y * this->Stride.y + low.z * this->Stride.z,
+    GatherTile(
+      this->Values + low.x * this->Stride.x + low.y * this->Stride.y + low.z * this->Stride.z,
       this->Stride, high - low, glm::i64vec3{ 1, edge, edge * edge }, this->Tile.data());
   }
   Row row;

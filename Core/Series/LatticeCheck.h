@@ -42,8 +42,8 @@ private:
     const T* Values = nullptr; ///< its originals one after the other; null: take them by Columns
   };
 
-  /// Whether all of a block of the finest plane is within the bound, all its values being ordinary ones
-  /// that are not transformed; adds to `errors` if so.
+  /// Whether all of a block of the finest plane is within the bound, all its values being ordinary
+  /// ones that are not transformed; adds to `errors` if so.
   bool WholeBlock(const PlaneNumbers& decoded, const glm::ivec3& low, const glm::ivec3& n,
     FieldErrors& errors) const;
   template <class Number>
@@ -68,7 +68,7 @@ private:
   glm::ivec3 Last;
   const T* Values;
   const std::uint8_t* Hidden; ///< by tuple; may be null
-  bool Plain; ///< rows may be taken as a whole
+  bool Plain;                 ///< rows may be taken as a whole
 
   /// Of the block's samples along a row, among the values, and among tuples of them.
   std::vector<std::int64_t> Columns, Tuples;

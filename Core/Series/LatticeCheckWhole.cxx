@@ -38,7 +38,8 @@ bool LatticeCheck<T>::WholeBlockOf(const PlaneNumbers& decoded, const glm::ivec3
     }
     const LatticeScale scale{ this->Head.Origin, this->Head.Step };
     LatticeRows<T, const Number> rows;
-    rows.Values = this->Values + low.x * this->Stride.x + low.y * this->Stride.y + low.z * this->Stride.z;
+    rows.Values =
+      this->Values + low.x * this->Stride.x + low.y * this->Stride.y + low.z * this->Stride.z;
     rows.Gap = this->Stride[u];
     rows.ValueRow = this->Stride[v];
     rows.ValueSlice = this->Stride[w];

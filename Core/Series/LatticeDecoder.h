@@ -16,9 +16,9 @@ namespace banyan
 /// precision.
 ///
 /// Lattices of a few thousand numbers are what error bounds for pictures give, so that the results
-/// fit into a table, which is what transforms take then; without a transform floating-point values are
-/// computed, in vectors. So are numbers outside the table; the bits are the same either way. Thread-safe
-/// once built.
+/// fit into a table, which is what transforms take then; without a transform floating-point values
+/// are computed, in vectors. So are numbers outside the table; the bits are the same either way.
+/// Thread-safe once built.
 template <class T>
 class LatticeDecoder
 {

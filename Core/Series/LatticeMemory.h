@@ -16,9 +16,9 @@ namespace banyan
 
 /// Memory for boxes of lattice numbers: tens of thousands of a few sizes, which come and go. They
 /// lie side by side in slabs, which the system maps with large pages where it can: a box of a block
-/// of 16 takes three small pages, and each has to be looked up. All slabs together take no more than
-/// a limit, or 8 MiB; boxes beyond that have memory of their own. Slabs without boxes are kept for the next
-/// ones: the system would clear their pages anew. Thread-safe.
+/// of 16 takes three small pages, and each has to be looked up. All slabs together take no more
+/// than a limit, or 8 MiB; boxes beyond that have memory of their own. Slabs without boxes are kept
+/// for the next ones: the system would clear their pages anew. Thread-safe.
 class LatticeMemory
 {
 public:

@@ -15,8 +15,8 @@ struct LatticeScale
   std::int32_t Least = 0, Greatest = 0;
 };
 
-/// Where the values of a box and their numbers lie: rows of values one after the other, or with gaps
-/// between them, in slices. All distances in elements.
+/// Where the values of a box and their numbers lie: rows of values one after the other, or with
+/// gaps between them, in slices. All distances in elements.
 template <class T, class Number>
 struct LatticeRows
 {
@@ -36,8 +36,8 @@ struct LatticeRows
 template <class T, class Number>
 bool NumbersOnLattice(const LatticeRows<T, Number>& rows, const LatticeScale& scale);
 
-/// What values and what their numbers decode to differ by. Sums are taken over every eighth value of
-/// rows, so that they are the same bits on every processor.
+/// What values and what their numbers decode to differ by. Sums are taken over every eighth value
+/// of rows, so that they are the same bits on every processor.
 struct RowErrors
 {
   static constexpr int Lanes = 8;

@@ -103,8 +103,8 @@ void Parts(const LatticePart<Number>* parts, int count, int y, int z, double ori
   T* values, const glm::i64vec3& to)
 {
   const RowOfValues<Number, T> row(origin, step);
-  // Boxes that did not have to be decoded are not at hand: some rows ahead they are asked for. They may
-  // end before.
+  // Boxes that did not have to be decoded are not at hand: some rows ahead they are asked for. They
+  // may end before.
   constexpr std::uintptr_t ahead = 256;
   for (int k = 0; k < z; ++k)
   {
@@ -201,8 +201,7 @@ void Transpose(
       for (int j = 0; j < size[v]; j += tile)
       {
         const int row = j + tile <= size[v] ? j : size[v] - tile;
-        TransposeTile(
-          from + column * stride.x + row, stride.x, at + column + row * to[v], to[v]);
+        TransposeTile(from + column * stride.x + row, stride.x, at + column + row * to[v], to[v]);
       }
     }
   }
@@ -234,8 +233,8 @@ void ShortFloatParts(const LatticePart<std::int16_t>* parts, int count, int y, i
 {
   Parts(parts, count, y, z, origin, step, values, to);
 }
-void ShortDoubleParts(const LatticePart<std::int16_t>* parts, int count, int y, int z, double origin,
-  double step, double* values, const glm::i64vec3& to)
+void ShortDoubleParts(const LatticePart<std::int16_t>* parts, int count, int y, int z,
+  double origin, double step, double* values, const glm::i64vec3& to)
 {
   Parts(parts, count, y, z, origin, step, values, to);
 }
@@ -255,8 +254,8 @@ void TransposeShorts(const std::int16_t* numbers, const glm::i64vec3& stride,
 {
   Transpose(numbers, stride, size, ordered);
 }
-void TransposeLongs(const std::int32_t* numbers, const glm::i64vec3& stride,
-  const glm::ivec3& size, std::int32_t* ordered)
+void TransposeLongs(const std::int32_t* numbers, const glm::i64vec3& stride, const glm::ivec3& size,
+  std::int32_t* ordered)
 {
   Transpose(numbers, stride, size, ordered);
 }

@@ -9,8 +9,8 @@
 namespace banyan
 {
 
-/// values = (T) (origin + number * step) of a box of numbers, in double precision: the same bits on every
-/// machine.
+/// values = (T) (origin + number * step) of a box of numbers, in double precision: the same bits on
+/// every machine.
 /// @param size along x, y, z; rows of numbers, and of values, lie side by side
 /// @param pitch of the numbers along y and z (x is 1), and @param to of the values
 /// @param T float or double

@@ -9,8 +9,8 @@
 namespace banyan
 {
 
-/// Brings numbers back from their 3-D Lorenzo residuals modulo 2^bits of C, which is unsigned: first
-/// differences along x, then y, then z, with zeros outside. In place.
+/// Brings numbers back from their 3-D Lorenzo residuals modulo 2^bits of C, which is unsigned:
+/// first differences along x, then y, then z, with zeros outside. In place.
 /// @param values `[z][y][x]`
 template <class C>
 void FromLorenzo(C* values, const glm::ivec3& samples)

@@ -30,8 +30,8 @@ struct NodeTable
   }
 };
 
-/// Reads the compressed bytes of a table, `NodeBytes` times the number of nodes when decompressed, and
-/// checks every field. Identities of macro voxels are made anew.
+/// Reads the compressed bytes of a table, `NodeBytes` times the number of nodes when decompressed,
+/// and checks every field. Identities of macro voxels are made anew.
 /// @param layout of the level: says how many nodes there must be
 /// @param payloadEnd end of the payload section, which payloads must lie in
 /// Throws Error when anything does not fit.

@@ -46,8 +46,7 @@ BrickNode MakeNode(
   const BrickLayout& layout = series.Layouts[static_cast<std::size_t>(field.Level)];
   if (node.Uniform)
   {
-    node.Identity =
-      MacroVoxelIdentity(open.Type, layout.SamplesOf(brick).Size(), node.Range.Low);
+    node.Identity = MacroVoxelIdentity(open.Type, layout.SamplesOf(brick).Size(), node.Range.Low);
     return node;
   }
   const int changed = step - static_cast<int>(entry.Age);
@@ -64,7 +63,8 @@ BrickNode MakeNode(
     group.Segment().HeaderHash().High, open.Before.Low, open.Before.High };
   const std::uint64_t content[] = { std::uint64_t(open.Type), open.Meaning, shared,
     BitCast<std::uint64_t>(node.Range.Low), BitCast<std::uint64_t>(node.Range.High),
-    std::uint64_t(layout.SamplesOf(brick).Size().x), std::uint64_t(layout.SamplesOf(brick).Size().y),
+    std::uint64_t(layout.SamplesOf(brick).Size().x),
+    std::uint64_t(layout.SamplesOf(brick).Size().y),
     std::uint64_t(layout.SamplesOf(brick).Size().z) };
   const Hash128 hash = shared != 0 ? HashOf(content, sizeof(content)) : HashOf(seed, sizeof(seed));
   node.Identity = { hash.Low, hash.High };
@@ -99,8 +99,7 @@ BrickNode MakeNode(
 std::vector<BrickNode> NodesOf(const OpenSeries& series, OpenGroup& open, const FieldKey& field)
 {
   std::vector<BrickNode> nodes;
-  const std::int64_t count =
-    series.Layouts[static_cast<std::size_t>(field.Level)].BrickCount();
+  const std::int64_t count = series.Layouts[static_cast<std::size_t>(field.Level)].BrickCount();
   nodes.reserve(static_cast<std::size_t>(count));
   for (std::int64_t brick = 0; brick < count; ++brick)
   {

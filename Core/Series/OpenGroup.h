@@ -23,12 +23,14 @@ struct OpenGroup
   ScalarType Type = ScalarType::Float32;
   std::shared_ptr<const void> Decoder; ///< LatticeDecoder of the type
   std::uint64_t Meaning = 0; ///< hash of what turns lattice numbers into values, and orders them
-  Hash128 Before; ///< hash of the header of the segment that this one refers to; 0: none
+  Hash128 Before;            ///< hash of the header of the segment that this one refers to; 0: none
   std::mutex NodeMutex;
   /// By step and level; -1 less the step where a later one rests on it.
   std::map<std::pair<int, int>, std::shared_ptr<const std::vector<BrickNode>>> Nodes;
   std::atomic<std::uint64_t> NodeBytes{ 0 };
-  std::atomic<int> EndsToCheck{ 16 }; ///< bricks, for some milliseconds; see FieldReader::VerifyBricks
+  std::atomic<int> EndsToCheck{
+    16
+  }; ///< bricks, for some milliseconds; see FieldReader::VerifyBricks
 
   std::uint64_t MemoryBytes() const { return this->Field->MemoryBytes() + this->NodeBytes; }
 };
@@ -44,8 +46,7 @@ inline PlaneRegion RegionOf(
   const OpenSeries& series, const OpenGroup& open, const FieldKey& field, std::int64_t brick)
 {
   return PlaneRegion(field.Level,
-    series.Layouts[static_cast<std::size_t>(field.Level)].SamplesOf(brick),
-    open.Field->Head().Axes,
+    series.Layouts[static_cast<std::size_t>(field.Level)].SamplesOf(brick), open.Field->Head().Axes,
     open.Field->Planes()[static_cast<std::size_t>(field.Level / 2)], open.Field->Edge());
 }
 
@@ -69,11 +70,11 @@ inline const group::BlockEntry& EntryOf(
   GroupField& field, int step, const PlaneRegion& region, const glm::ivec3& block)
 {
   const glm::ivec3 blocks = field.BlocksOf(region.Plane);
-  return field.Step(step).Planes[static_cast<std::size_t>(region.Plane)]
-    [(static_cast<std::size_t>(block.z) * static_cast<std::size_t>(blocks.y) +
-       static_cast<std::size_t>(block.y)) *
-        static_cast<std::size_t>(blocks.x) +
-      static_cast<std::size_t>(block.x)];
+  return field.Step(step).Planes[static_cast<std::size_t>(
+    region.Plane)][(static_cast<std::size_t>(block.z) * static_cast<std::size_t>(blocks.y) +
+                     static_cast<std::size_t>(block.y)) *
+                     static_cast<std::size_t>(blocks.x) +
+                   static_cast<std::size_t>(block.x)];
 }
 
 /// The nodes of a step and level. Throws Error when the segment is damaged.

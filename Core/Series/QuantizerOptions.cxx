@@ -16,9 +16,8 @@ Transform MakeTransform(
   switch (options.Map)
   {
     case TransformChoice::Asinh:
-      return Transform::Asinh(options.AsinhScale > 0
-                                ? options.AsinhScale
-                                : AsinhScale(*values, range, options.Scaling));
+      return Transform::Asinh(
+        options.AsinhScale > 0 ? options.AsinhScale : AsinhScale(*values, range, options.Scaling));
     case TransformChoice::Table:
       return Transform::Table(options.Knots);
     case TransformChoice::Adaptive:

@@ -37,11 +37,11 @@ struct SeriesEncoder::Internals
   bool Failed = false;
   bool Finished = false;
   std::unique_ptr<SegmentFolder> Folder;
-  std::vector<double> Times;                                  ///< of the group under way
+  std::vector<double> Times; ///< of the group under way
   using KeptArray = std::vector<std::uint8_t, InLargePages<std::uint8_t>>;
   std::vector<std::vector<KeptArray>> Values; ///< its steps and arrays
   std::vector<std::vector<KeptArray>> Spare;  ///< memory for them
-  LastStep Last; ///< of the group before
+  LastStep Last;                              ///< of the group before
   std::function<bool(double)> Progress;
 };
 
@@ -123,9 +123,9 @@ void SeriesEncoder::Internals::EncodeKept(const std::vector<ArrayValues>& last)
     steps.push_back(last);
   }
   const int number = static_cast<int>(this->Assembly.Index().Segments.size());
-  this->Assembly.Add(number, EncodeGroup(this->Assembly.Index(), this->Options, *this->Folder,
-                               number, this->Times, steps, {}, &this->Last, this->Pool,
-                               this->Progress));
+  this->Assembly.Add(
+    number, EncodeGroup(this->Assembly.Index(), this->Options, *this->Folder, number, this->Times,
+              steps, {}, &this->Last, this->Pool, this->Progress));
   this->Times.clear();
   this->Spare = std::move(this->Values); // new memory takes longer than to copy
   this->Values.clear();

@@ -1,8 +1,8 @@
 #ifndef banyan_Series_SeriesEncoder_h
 #define banyan_Series_SeriesEncoder_h
 
-#include "Series/Histogram.h"
 #include "Series/EncodeIdeas.h"
+#include "Series/Histogram.h"
 #include "Series/QuantizerOptions.h"
 #include "Series/SeriesIndex.h"
 
@@ -29,8 +29,8 @@ enum class EncodeProfile
 struct MeshPlan
 {
   MeshIndex Index;
-  /// By sample of an image, x fastest: 0 where it stands for no point of the mesh. Such a sample may
-  /// decode to anything, and is not counted.
+  /// By sample of an image, x fastest: 0 where it stands for no point of the mesh. Such a sample
+  /// may decode to anything, and is not counted.
   std::shared_ptr<const std::vector<std::uint8_t>> Needed;
   /// The same for cells: what counts in arrays that are values of cells.
   std::shared_ptr<const std::vector<std::uint8_t>> NeededOfCells;
@@ -51,10 +51,10 @@ struct EncodeOptions
   int BrickCells = 0;       ///< 8, 16, 32 or 64; 0 chooses by the size of the grid
   int CompressionLevel = 3; ///< of zstd (exceptions), in [1, 19]
   EncodeProfile Profile = EncodeProfile::Balanced;
-  EncodeIdeas Ideas; ///< for measurements: all of them, otherwise
-  QuantizerOptions Quantizer;                               ///< of all arrays
+  EncodeIdeas Ideas;          ///< for measurements: all of them, otherwise
+  QuantizerOptions Quantizer; ///< of all arrays
   std::map<std::string, QuantizerOptions> QuantizerOfArray; ///< instead, of arrays by name
-  std::shared_ptr<const MeshPlan> Mesh; ///< null: the series is of images
+  std::shared_ptr<const MeshPlan> Mesh;                     ///< null: the series is of images
 
   const QuantizerOptions& QuantizerFor(const std::string& array) const;
   /// Whether an array needs ArrayDescription::Histograms.
@@ -102,9 +102,9 @@ struct ArrayValues
 class SeriesEncoder
 {
 public:
-  /// @param path of the index file; segments go to `path + ".d"`. Where it is a symbolic link, the series
-  /// that it leads to is written or replaced. Throws Error when the description or an option is out of
-  /// range, the folder cannot be made, or another save of the series is under way.
+  /// @param path of the index file; segments go to `path + ".d"`. Where it is a symbolic link, the
+  /// series that it leads to is written or replaced. Throws Error when the description or an option
+  /// is out of range, the folder cannot be made, or another save of the series is under way.
   SeriesEncoder(const std::string& path, const Grid& grid,
     const std::vector<ArrayDescription>& arrays, const EncodeOptions& options, ThreadPool& pool);
   ~SeriesEncoder();

@@ -43,12 +43,15 @@ void SeriesFile::Internals::Check(const FieldKey& field) const
   (void)this->Series.Index.SegmentOf(field.Step);
   if (field.Array < 0 || field.Array >= static_cast<int>(this->Series.Index.Arrays.size()))
   {
-    throw Error("The series has no array number " + std::to_string(field.Array), { this->Series.Path });
+    throw Error(
+      "The series has no array number " + std::to_string(field.Array), { this->Series.Path });
   }
-  const auto& components = this->Series.Index.Arrays[static_cast<std::size_t>(field.Array)].Components;
+  const auto& components =
+    this->Series.Index.Arrays[static_cast<std::size_t>(field.Array)].Components;
   if (field.Component < 0 || field.Component >= static_cast<int>(components.size()))
   {
-    throw Error("The array has no component " + std::to_string(field.Component), { this->Series.Path });
+    throw Error(
+      "The array has no component " + std::to_string(field.Component), { this->Series.Path });
   }
   if (field.Level < 0 || field.Level >= this->Series.Index.Levels)
   {
@@ -202,8 +205,7 @@ void SeriesFile::DecodePart(const FieldKey& field, std::int64_t brick, const Box
   const Internals& self = *this->Self;
   self.Check(field);
   self.CheckBrick(field, brick);
-  const Box samples =
-    self.Series.Layouts[static_cast<std::size_t>(field.Level)].SamplesOf(brick);
+  const Box samples = self.Series.Layouts[static_cast<std::size_t>(field.Level)].SamplesOf(brick);
   if (part.Empty() || !samples.Contains(part))
   {
     throw Error("The part to decode is not inside its brick", { self.Series.Path });
@@ -246,7 +248,8 @@ void SeriesFile::DecodeRow(const FieldKey& field, std::int64_t brick, int count,
   const Box begin = layout.SamplesOf(brick);
   const Box end = layout.SamplesOf(brick + count - 1);
   if (count < 1 || part.Empty() || begin.Lo.y != end.Lo.y || begin.Lo.z != end.Lo.z ||
-      !begin.Contains({ part.Lo, glm::ivec3(part.Lo.x + (count > 1 ? 2 : 1), part.Hi.y, part.Hi.z) }) ||
+      !begin.Contains(
+        { part.Lo, glm::ivec3(part.Lo.x + (count > 1 ? 2 : 1), part.Hi.y, part.Hi.z) }) ||
       !end.Contains({ glm::ivec3(part.Hi.x - 1, part.Lo.y, part.Lo.z), part.Hi }))
   {
     throw Error("The part to decode is not inside its row of bricks", { self.Series.Path });

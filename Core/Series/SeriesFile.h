@@ -57,7 +57,8 @@ struct BrickNode
 class SeriesFile
 {
 public:
-  /// @param path of the index file; where it is a symbolic link, segments may lie beside what it leads to
+  /// @param path of the index file; where it is a symbolic link, segments may lie beside what it
+  /// leads to
   static std::shared_ptr<SeriesFile> Open(const std::string& path);
   ~SeriesFile();
 
@@ -96,12 +97,14 @@ public:
   /// The same of bricks that follow each other along x, which takes less time than one after the
   /// other. A sample that two of them hold comes from the latter.
   /// @param brick the first one, of `count`
-  /// @param part not empty, inside their samples; each of them holds some of it that those behind it do not
+  /// @param part not empty, inside their samples; each of them holds some of it that those behind
+  /// it do not
   void DecodeRow(const FieldKey& field, std::int64_t brick, int count, const Box& part,
     const glm::i64vec3& stride, void* first) const;
 
-  /// Of values that are whole multiples of a step, each rounded to the array's type: the step. Some values may
-  /// be others (exceptions, and all where the lattice does not go through 0). 0 where none is known.
+  /// Of values that are whole multiples of a step, each rounded to the array's type: the step. Some
+  /// values may be others (exceptions, and all where the lattice does not go through 0). 0 where
+  /// none is known.
   double StepOfValues(const FieldKey& field) const;
 
   /// Checks the checksums of the bricks' payloads without decoding them.

@@ -40,10 +40,11 @@ struct ComponentIndex
   /// The largest error in the transformed domain, where the bound holds; MeasuredMaxError when the
   /// transform is the identity.
   double MeasuredMaxErrorTransformed = 0;
-  double SumSquaredError = 0;    ///< over all finite voxels of all steps; for RMSE and PSNR
-  /// Root of the mean squared error of each step, to three digits; empty in series that do not say it.
+  double SumSquaredError = 0; ///< over all finite voxels of all steps; for RMSE and PSNR
+  /// Root of the mean squared error of each step, to three digits; empty in series that do not say
+  /// it.
   std::vector<double> StepRmse;
-  std::int64_t FiniteCount = 0;  ///< voxels (of all steps) that are finite
+  std::int64_t FiniteCount = 0;    ///< voxels (of all steps) that are finite
   std::int64_t NonFiniteCount = 0; ///< NaN and infinities, kept bit-exact
   /// Of the values before they were put on the lattice; the identity unless the encoder was told.
   Transform ValueTransform;
@@ -122,15 +123,15 @@ struct EncodeStatistics
   std::int64_t UnchangedBricks = 0;  ///< as at the step before, of the same segment
   std::int64_t MergedBricks = 0;     ///< payload shared with an earlier brick of the segment
   std::int64_t RawBricks = 0;        ///< with samples that are kept beside the lattice
-  std::uint64_t PayloadBytes = 0; ///< stored in segments
-  std::uint64_t TableBytes = 0;   ///< stored in segments: node tables, directories, headers
+  std::uint64_t PayloadBytes = 0;    ///< stored in segments
+  std::uint64_t TableBytes = 0;      ///< stored in segments: node tables, directories, headers
   // Of format version 2; 0 otherwise.
-  std::int64_t EmptyBlocks = 0;     ///< without payload: as predicted, or of one value
-  std::int64_t Blocks = 0;          ///< what payloads are made of: blocks of all planes
-  std::int64_t ExceptionVoxels = 0; ///< of the finest level, kept bit-exact beside the lattice
-  std::int64_t ChainSum = 0;        ///< steps to decode for a brick of the finest level, summed
-  std::int64_t ChainBricks = 0;     ///< over this many bricks
-  std::int64_t ChainMost = 0;       ///< and the greatest
+  std::int64_t EmptyBlocks = 0;      ///< without payload: as predicted, or of one value
+  std::int64_t Blocks = 0;           ///< what payloads are made of: blocks of all planes
+  std::int64_t ExceptionVoxels = 0;  ///< of the finest level, kept bit-exact beside the lattice
+  std::int64_t ChainSum = 0;         ///< steps to decode for a brick of the finest level, summed
+  std::int64_t ChainBricks = 0;      ///< over this many bricks
+  std::int64_t ChainMost = 0;        ///< and the greatest
   std::int64_t RepeatedSegments = 0; ///< groups whose segment was there already
   std::uint64_t RepeatedBytes = 0;   ///< that these would take; not among Payload- and TableBytes
 };

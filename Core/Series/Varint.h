@@ -20,7 +20,8 @@ inline void PutVarint(Bytes& out, std::uint64_t value)
 
 inline void PutSigned(Bytes& out, std::int64_t value)
 {
-  PutVarint(out, (static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63));
+  PutVarint(
+    out, (static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63));
 }
 
 /// Reads what a table holds, checking its end.

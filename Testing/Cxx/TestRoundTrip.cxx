@@ -120,7 +120,8 @@ TEST(RoundTrip, BricksOfEverySizeComeBackWithinTheBound)
     const auto source = WaveSource(SimpleGrid({ 70, 41, 36 }), times, ScalarType::Float32);
     const auto change = [cells](vtkBanyanSeriesWriter* w) { w->SetBrickCells(cells); };
     WriteSeries(source, folder / "a.banyan", change);
-    EXPECT_EQ(banyan::SeriesFile::Open(folder / "a.banyan")->Index().BrickCells, cells > 0 ? cells : 16);
+    EXPECT_EQ(
+      banyan::SeriesFile::Open(folder / "a.banyan")->Index().BrickCells, cells > 0 ? cells : 16);
     const auto reader = Reader(folder / "a.banyan");
     for (const double time : times)
     {

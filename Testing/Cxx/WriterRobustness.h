@@ -73,8 +73,8 @@ protected:
   }
 
   /// Four steps, of which the third is changed.
-  vtkSmartPointer<TestSource> SourceThatChanges(
-    const std::function<void(vtkImageData*)>& change, banyan::ScalarType type = banyan::ScalarType::Float32)
+  vtkSmartPointer<TestSource> SourceThatChanges(const std::function<void(vtkImageData*)>& change,
+    banyan::ScalarType type = banyan::ScalarType::Float32)
   {
     const auto source = WaveSource(SimpleGrid({ 12, 11, 10 }), { 0.0, 0.5, 1.5, 2.0 }, type);
     const auto fill = source->Fill;

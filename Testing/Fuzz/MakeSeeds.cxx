@@ -52,7 +52,8 @@ void CopyGolden(const std::filesystem::path& golden, const std::filesystem::path
         int number = 0;
         for (const Bytes& brick : banyan::fuzz::BrickSeeds(entry.path().string()))
         {
-          const std::string numbered = entry.path().stem().string() + "-" + std::to_string(number++);
+          const std::string numbered =
+            entry.path().stem().string() + "-" + std::to_string(number++);
           Write((folder / "Brick" / numbered).string(), brick);
         }
       }
@@ -125,8 +126,7 @@ Bytes SmallMesh(bool shared)
   mesh.Connectivity = ids.data();
   mesh.CellCount = 9;
   banyan::ThreadPool pool(1);
-  return banyan::MeshToBytes(
-    *banyan::StoreMesh(*banyan::ElementOctree::Find(mesh, pool), nullptr));
+  return banyan::MeshToBytes(*banyan::StoreMesh(*banyan::ElementOctree::Find(mesh, pool), nullptr));
 }
 
 } // namespace
@@ -143,9 +143,8 @@ int main(int argc, char** argv)
   }
   const fs::path folder = argv[1];
   const fs::path scratch = folder / "scratch";
-  for (const fs::path& part :
-    { folder / "Group", folder / "Exceptions", folder / "Index", folder / "Segment",
-      folder / "Brick", folder / "Block", folder / "Mesh", scratch })
+  for (const fs::path& part : { folder / "Group", folder / "Exceptions", folder / "Index",
+         folder / "Segment", folder / "Brick", folder / "Block", folder / "Mesh", scratch })
   {
     fs::create_directories(part);
   }

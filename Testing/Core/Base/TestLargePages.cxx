@@ -42,7 +42,8 @@ TEST(LargePages, ArraysOfAnySizeAreGivenBack)
     std::fill_n(array.get(), count, 2.5f);
     ArrayInLargePages<float> moved = std::move(array);
     EXPECT_EQ(array, nullptr);
-    EXPECT_EQ(std::count(moved.get(), moved.get() + count, 2.5f), static_cast<std::ptrdiff_t>(count));
+    EXPECT_EQ(
+      std::count(moved.get(), moved.get() + count, 2.5f), static_cast<std::ptrdiff_t>(count));
     moved = NewInLargePages<float>(1);
     moved.reset();
   }

@@ -97,7 +97,8 @@ TEST(ReadRegion, LargePartsGoPastTheCache)
   EXPECT_EQ(small.GetStatistics().Hits, 1u);
 }
 
-/// Numbers of bricks that were decoded are kept, so that values need not be; where that is not so, they are.
+/// Numbers of bricks that were decoded are kept, so that values need not be; where that is not so,
+/// they are.
 TEST(ReadRegion, LargePartsOfKeptNumbersGoPastTheCache)
 {
   const TemporaryFolder folder;
@@ -164,7 +165,8 @@ TEST(DecodePart, IsThePartOfTheBrickAndNoMore)
         }
       }
     }
-    EXPECT_EQ(std::memcmp(values.data(), expected.data(), values.size() * sizeof(float)), 0) << brick;
+    EXPECT_EQ(std::memcmp(values.data(), expected.data(), values.size() * sizeof(float)), 0)
+      << brick;
     EXPECT_THROW(
       file->DecodePart({}, brick, { samples.Lo, samples.Hi + 1 }, stride, values.data()), Error);
   }

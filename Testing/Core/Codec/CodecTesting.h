@@ -34,8 +34,8 @@ PlaneNumbers PlaneOf(const glm::ivec3& samples, int edge, Function&& f, bool nar
         {
           for (int x = 0; x < plane.Padded.x; ++x)
           {
-            *numbers++ = static_cast<std::remove_pointer_t<decltype(numbers)>>(
-              f(std::min(x, samples.x - 1), std::min(y, samples.y - 1), std::min(z, samples.z - 1)));
+            *numbers++ = static_cast<std::remove_pointer_t<decltype(numbers)>>(f(
+              std::min(x, samples.x - 1), std::min(y, samples.y - 1), std::min(z, samples.z - 1)));
           }
         }
       }
@@ -268,8 +268,11 @@ struct MixedPlanes
   {
     for (PlaneNumbers* plane : { &this->Target, &this->Coarser, &this->A, &this->B })
     {
-      *plane = PlaneOf(plane->Samples, plane->Edge,
-        [old = *plane](int x, int y, int z) { return std::clamp(old.At({ x, y, z }), -3500, 4500); },
+      *plane = PlaneOf(
+        plane->Samples, plane->Edge,
+        [old = *plane](int x, int y, int z) {
+          return std::clamp(old.At({ x, y, z }), -3500, 4500);
+        },
         true);
     }
     PlaneToEncode plane = this->With(std::move(candidates), references);

@@ -113,8 +113,8 @@ private:
       blocks.emplace_back();
       if (code.Exists && code.Bytes > 0)
       {
-        blocks.back() = ReadResiduals(
-          this->Edge, tables, code.Limit, this->Narrow(), code.Data, code.Bytes);
+        blocks.back() =
+          ReadResiduals(this->Edge, tables, code.Limit, this->Narrow(), code.Data, code.Bytes);
       }
     }
     return blocks;

@@ -34,15 +34,11 @@ public:
   {
   }
 
-  std::int32_t& At(const Position& p)
-  {
-    return this->Residuals[this->IndexOf(p)];
-  }
+  std::int32_t& At(const Position& p) { return this->Residuals[this->IndexOf(p)]; }
 
   void Read(const glm::ivec3& limit, Symbols& symbols)
   {
-    ForEachSlice(this->Edge,
-      [&](int stride, int axis, const std::vector<RowToRead>& rows, int step)
+    ForEachSlice(this->Edge, [&](int stride, int axis, const std::vector<RowToRead>& rows, int step)
       { this->ReadSlice(rows, limit, stride, axis, step, symbols); });
   }
 
@@ -96,8 +92,8 @@ private:
           contextClass += roughness > limitOfClass ? 1 : 0;
         }
         const int hint = contextClass > 0 ? this->Hint(row.Axes, stride, at) : 0;
-        samples.push_back({ InBlock(row.Axes, at),
-          16 * band + contextClass + (hint != 0 ? 8 : 0), hint < 0 });
+        samples.push_back(
+          { InBlock(row.Axes, at), 16 * band + contextClass + (hint != 0 ? 8 : 0), hint < 0 });
       }
       if (!samples.empty())
       {
@@ -129,7 +125,8 @@ private:
     {
       const std::int32_t residual = symbols.Residual(read[i]);
       const std::int32_t turned =
-        run[i].Turned ? static_cast<std::int32_t>(0u - static_cast<std::uint32_t>(residual)) : residual;
+        run[i].Turned ? static_cast<std::int32_t>(0u - static_cast<std::uint32_t>(residual))
+                      : residual;
       this->At(run[i].Where) = this->Narrow ? static_cast<std::int16_t>(turned) : turned;
       this->Large[this->IndexOf(run[i].Where)] = read[i] >= 40;
     }

@@ -254,7 +254,8 @@ TEST_P(Blocks, NumbersMayBeMadeWhenABlockBegins)
     std::vector<BlockTokens> blocks;
     ThreadPool pool(threads);
     plane.Target = &made;
-    EncodePlane(plane, decoded, blocks, pool, [](std::int64_t) {},
+    EncodePlane(
+      plane, decoded, blocks, pool, [](std::int64_t) {},
       [&](std::int64_t i)
       {
         const glm::ivec3 block = BlockAt(made, i), low = block * edge;
@@ -264,8 +265,8 @@ TEST_P(Blocks, NumbersMayBeMadeWhenABlockBegins)
           for (int y = low.y; y < end.y; ++y)
           {
             const std::int64_t row = made.IndexOf({ low.x, y, z });
-            std::copy_n(whole.Data<std::int32_t>() + row, end.x - low.x,
-              made.Data<std::int32_t>() + row);
+            std::copy_n(
+              whole.Data<std::int32_t>() + row, end.x - low.x, made.Data<std::int32_t>() + row);
           }
         }
       });
@@ -347,8 +348,8 @@ TEST_P(Blocks, DamagedPayloadsGiveAnErrorOrWhatTheSlowDecoderReads)
   for (const bool narrow : { false, true })
   {
     MixedPlanes planes({ edge + 2, edge + 1, edge == 64 ? 5 : edge }, edge, 5);
-    EncodedPlane encoded = EncodeWhole(
-      narrow ? planes.NarrowWith(AllModes(), true) : planes.With(AllModes(), true));
+    EncodedPlane encoded =
+      EncodeWhole(narrow ? planes.NarrowWith(AllModes(), true) : planes.With(AllModes(), true));
     std::mt19937 random(7);
     int errors = 0;
     const int trials = edge == 64 ? 20 : edge == 32 ? 80 : 300;

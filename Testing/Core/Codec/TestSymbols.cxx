@@ -77,13 +77,15 @@ std::vector<std::uint32_t> ReadAll(SymbolReader& reader, const Tokens& tokens)
       contexts.push_back(
         static_cast<std::uint16_t>(reader.BandOf(0).Tables[context] << tans::TableBits));
     }
-    HWY_NAMESPACE::ReadRun(reader, reader.TablesOf(0), contexts.data(), static_cast<int>(run), tops.data());
+    HWY_NAMESPACE::ReadRun(
+      reader, reader.TablesOf(0), contexts.data(), static_cast<int>(run), tops.data());
     tops.resize(run);
     for (const std::int8_t top : tops)
     {
-      codes.push_back(residual::Zigzag(top < residual::EscapeTop
-          ? top
-          : reader.Long(static_cast<std::uint32_t>(top - residual::EscapeTop))));
+      codes.push_back(
+        residual::Zigzag(top < residual::EscapeTop
+                           ? top
+                           : reader.Long(static_cast<std::uint32_t>(top - residual::EscapeTop))));
     }
     begin += run;
   }

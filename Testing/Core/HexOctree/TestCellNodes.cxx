@@ -194,7 +194,8 @@ TEST_F(CellNodesTest, KeepLinearFieldsInsideWhateverTheSizesAre)
     const glm::dvec3 away = glm::dvec3(cube.Corner) + 0.5 * edge - 11.0;
     return cube.Level == 3 || glm::length(away) < 1.8 * edge;
   };
-  for (const auto& cubes : { meshes::Leaves({ 3, 3, 3 }, 3, near), meshes::Wild({ 3, 3, 3 }, 3, 6) })
+  for (const auto& cubes :
+    { meshes::Leaves({ 3, 3, 3 }, 3, near), meshes::Wild({ 3, 3, 3 }, 3, 6) })
   {
     const auto mesh = meshes::Make(cubes, glm::dvec3(0.0), glm::dvec3(1.0), 9);
     const NodalField field = this->FieldOf(mesh, OfCells(mesh, AtCentre));

@@ -174,16 +174,16 @@ void ExpectPacketsGiveTheBitsOfSingleRays(const RayScene& scene, const std::vect
   EXPECT_GT(taken, 1000);
   const PackedBrick packed(view, glm::ivec3(0), cells, table.Low());
   std::int64_t samples = 0;
-  const FloatImage unpacked =
-    DrawTiles(scene, samples, [&](RayTile& tile) { ProjectUnpacked(packed, packed.Cells(), table, all, tile); });
+  const FloatImage unpacked = DrawTiles(scene, samples,
+    [&](RayTile& tile) { ProjectUnpacked(packed, packed.Cells(), table, all, tile); });
   EXPECT_EQ(MaxDifference(unpacked, plain), 0.0);
   EXPECT_EQ(samples, taken);
   for (const std::int64_t target : targets::OfThisMachine())
   {
     SCOPED_TRACE(hwy::TargetName(target));
     const targets::OnlyTarget only(target);
-    const FloatImage drawn = DrawTiles(
-      scene, samples, [&](RayTile& tile) { ProjectPacked(packed, packed.Cells(), range, table, all, tile); });
+    const FloatImage drawn = DrawTiles(scene, samples,
+      [&](RayTile& tile) { ProjectPacked(packed, packed.Cells(), range, table, all, tile); });
     EXPECT_EQ(MaxDifference(drawn, plain), 0.0);
     EXPECT_LE(samples, taken);
   }

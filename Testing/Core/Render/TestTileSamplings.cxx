@@ -56,7 +56,8 @@ protected:
 
   FloatImage Draw(const RayScene& scene, int brickCells = 16, int threads = 1)
   {
-    return scenes::Draw(scene, scenes::ArrayOf(this->Values, this->N), { brickCells, threads }).Image;
+    return scenes::Draw(scene, scenes::ArrayOf(this->Values, this->N), { brickCells, threads })
+      .Image;
   }
 
   RayScene With(const std::vector<RaySampling>& samplings,
@@ -121,8 +122,8 @@ TEST_F(TileSamplingsTest, EachTileHasItsOwn)
           const glm::ivec2 low = glm::ivec2(x, y) * TileSamplings::Edge;
           if (number({ x, y }) == i)
           {
-            ExpectSame(mixed, pure,
-              Intersection({ low, low + TileSamplings::Edge }, this->Scene.Viewport));
+            ExpectSame(
+              mixed, pure, Intersection({ low, low + TileSamplings::Edge }, this->Scene.Viewport));
           }
         }
       }

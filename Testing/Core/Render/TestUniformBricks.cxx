@@ -50,8 +50,8 @@ Drawn Draw(const std::vector<T>& values, const glm::ivec3& n, const RayScene& sc
   int cells = Brick)
 {
   ThreadPool pool(2);
-  Telling source(scenes::ArrayOf(values, n), cells,
-    { scene.Transfer.Low, scene.Transfer.High }, pool);
+  Telling source(
+    scenes::ArrayOf(values, n), cells, { scene.Transfer.Low, scene.Transfer.High }, pool);
   source.Tells = tells;
   Drawn drawn;
   drawn.Picture = CastRays(scene, source, scene.DomainCells, 1 << 24, pool, drawn.Statistics);
@@ -66,8 +66,8 @@ void ExpectTheSamePicture(const std::vector<T>& values, const glm::ivec3& n, con
   const Drawn slow = Draw(values, n, scene, false);
   EXPECT_GT(quick.Statistics.BricksUniform, 0);
   EXPECT_EQ(slow.Statistics.BricksUniform, 0);
-  EXPECT_EQ(quick.Statistics.BricksDrawn + quick.Statistics.BricksUniform,
-    slow.Statistics.BricksDrawn);
+  EXPECT_EQ(
+    quick.Statistics.BricksDrawn + quick.Statistics.BricksUniform, slow.Statistics.BricksDrawn);
   EXPECT_EQ(quick.Loads, quick.Statistics.BricksDrawn);
   EXPECT_LT(quick.Statistics.SamplesTaken, slow.Statistics.SamplesTaken);
   ASSERT_EQ(quick.Picture.Pixels.size(), slow.Picture.Pixels.size());
@@ -113,8 +113,8 @@ TEST(UniformBricks, AreDrawnTogetherWhereAllOfABlockAreAlike)
     const Drawn quick = Draw(values, n, scene, true, 16);
     const Drawn slow = Draw(values, n, scene, false, 16);
     EXPECT_GT(quick.Statistics.BricksUniform, 40);
-    EXPECT_EQ(quick.Statistics.BricksDrawn + quick.Statistics.BricksUniform,
-      slow.Statistics.BricksDrawn);
+    EXPECT_EQ(
+      quick.Statistics.BricksDrawn + quick.Statistics.BricksUniform, slow.Statistics.BricksDrawn);
     EXPECT_TRUE(quick.Picture.Pixels == slow.Picture.Pixels);
     EXPECT_TRUE(quick.Picture.Pixels == Draw(values, n, scene, true, 8).Picture.Pixels);
   }
@@ -172,8 +172,8 @@ TEST(UniformBricks, OfTheWholeVolumeGiveTheIntegral)
   const Drawn drawn = Draw(values, n, scene, true);
   EXPECT_EQ(drawn.Loads, 0);
   EXPECT_EQ(drawn.Statistics.SamplesTaken, 0);
-  const FloatImage reference = ReferenceImage(scene, scenes::ValueOf(values, n),
-    [](double) { return glm::dvec4(1.0, 0.5, 0.25, 0.03); });
+  const FloatImage reference = ReferenceImage(
+    scene, scenes::ValueOf(values, n), [](double) { return glm::dvec4(1.0, 0.5, 0.25, 0.03); });
   EXPECT_LT(MaxDifference(drawn.Picture, reference), 1e-4);
 }
 

@@ -301,8 +301,8 @@ TEST(GoldenCoverage, EveryCodingOfVersion2Occurs)
     "head open", "head without lattice", "head closed, first", "head closed, another lattice",
     "head closed, one step", "section stored", "section packed", "brick not finite",
     "brick nothing finite", "brick uniform", "brick with values", "brick at rest",
-    "brick with content", "shared", "context with another one's table", "group of 1", "group of 2", "group of 3", "group of 4",
-    "group of 8" };
+    "brick with content", "shared", "context with another one's table", "group of 1", "group of 2",
+    "group of 3", "group of 4", "group of 8" };
   for (int mode = 0; mode < 15; ++mode)
   {
     if (mode != 2) // neither a reference nor interpolation: no encoder takes it

@@ -54,7 +54,7 @@ enum class Kind
   Relative,
   Absolute, ///< without ranges: no group refers to another
   Clamped,
-  Hidden,  ///< by an opacity function
+  Hidden,   ///< by an opacity function
   Repeated, ///< the steps of the first group come again and again
   Resting   ///< the vectors rest from the last step of the first group on
 };
@@ -159,8 +159,8 @@ protected:
 };
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Groups,
-  ::testing::Values(Kind::Relative, Kind::Absolute, Kind::Clamped, Kind::Hidden, Kind::Repeated,
-    Kind::Resting),
+  ::testing::Values(
+    Kind::Relative, Kind::Absolute, Kind::Clamped, Kind::Hidden, Kind::Repeated, Kind::Resting),
   [](const auto& info)
   {
     const std::vector<std::string> names(
@@ -225,8 +225,8 @@ TEST_P(Groups, NeedTheStepBeforeWhereTheyReferToIt)
   EXPECT_FALSE(MayReferBefore(this->Plan(), closed));
   const auto encode = [&](const std::vector<ArrayValues>& before)
   {
-    return EncodeGroup(this->Plan(), this->Options, segments, 1, this->TimesOf(1),
-      this->StepsOf(1), before, nullptr, pool, nullptr)
+    return EncodeGroup(this->Plan(), this->Options, segments, 1, this->TimesOf(1), this->StepsOf(1),
+      before, nullptr, pool, nullptr)
       .Segment;
   };
   const SegmentIndex whole = encode(this->Before(1));
@@ -314,9 +314,9 @@ TEST_P(Groups, MissingOnesAreNoticedAndWithdrawnOnesLeaveNothing)
   EXPECT_THROW(assembly.Finish(), Error);
   for (const int group : { 0, 2 })
   {
-    assembly.Add(group, EncodeGroup(this->Plan(), this->Options, group == 0 ? first : second, group,
-                          this->TimesOf(group), this->StepsOf(group), this->Before(group), nullptr, pool,
-                          nullptr));
+    assembly.Add(group,
+      EncodeGroup(this->Plan(), this->Options, group == 0 ? first : second, group,
+        this->TimesOf(group), this->StepsOf(group), this->Before(group), nullptr, pool, nullptr));
   }
   EXPECT_THROW(assembly.Finish(), Error);
   second.RemoveOwn(assembly.SegmentsInFile());

@@ -156,7 +156,8 @@ TEST_F(HostileGroups, RewritingAloneHurtsNothing)
 {
   for (const std::size_t segment : { 0, 1, 2 })
   {
-    Rewrite(this->Path, segment, [segment](Sections& sections, segment::Header&)
+    Rewrite(this->Path, segment,
+      [segment](Sections& sections, segment::Header&)
       { ASSERT_EQ(HeadOf(sections).Open, segment > 0); });
   }
   for (int step = 0; step < 12; ++step)
@@ -236,7 +237,8 @@ TEST_F(HostileGroups, ASegmentThatRestsIsTheLastStepBefore)
   for (int step = Interval; step < 2 * Interval; ++step)
   {
     EXPECT_EQ(ReadAll<float>(*file, { step, 0, 0, 0 }), last);
-    EXPECT_EQ((*file->Nodes({ step, 0, 0, 0 }))[0].Identity, (*file->Nodes({ Interval - 1, 0, 0, 0 }))[0].Identity);
+    EXPECT_EQ((*file->Nodes({ step, 0, 0, 0 }))[0].Identity,
+      (*file->Nodes({ Interval - 1, 0, 0, 0 }))[0].Identity);
   }
 }
 

@@ -123,8 +123,9 @@ void ExpectBoxesAreTransposed()
   for (const glm::i64vec3& stride : { glm::i64vec3{ 17, 1, 289 }, glm::i64vec3{ 289, 1, 17 },
          glm::i64vec3{ 17, 289, 1 }, glm::i64vec3{ 289, 17, 1 } })
   {
-    for (const glm::ivec3& size : { glm::ivec3{ 17, 17, 17 }, glm::ivec3{ 16, 16, 16 },
-           glm::ivec3{ 8, 9, 7 }, glm::ivec3{ 9, 7, 8 }, glm::ivec3{ 1, 1, 1 }, glm::ivec3{ 15, 8, 17 } })
+    for (const glm::ivec3& size :
+      { glm::ivec3{ 17, 17, 17 }, glm::ivec3{ 16, 16, 16 }, glm::ivec3{ 8, 9, 7 },
+        glm::ivec3{ 9, 7, 8 }, glm::ivec3{ 1, 1, 1 }, glm::ivec3{ 15, 8, 17 } })
     {
       std::vector<Number> ordered(static_cast<std::size_t>(size.x * size.y * size.z) + 1);
       TransposeBox(numbers.data(), stride, size, ordered.data());

@@ -111,8 +111,7 @@ void ExpectErrorsOfEveryCount()
     RowErrors expected;
     for (std::size_t i = 0; i < count; ++i)
     {
-      const T decoded =
-        static_cast<T>(Scale.Origin + static_cast<double>(numbers[i]) * Scale.Step);
+      const T decoded = static_cast<T>(Scale.Origin + static_cast<double>(numbers[i]) * Scale.Step);
       const double error = std::abs(static_cast<double>(values[i]) - static_cast<double>(decoded));
       for (RowErrors* to : { &expected, &slow })
       {
@@ -183,11 +182,13 @@ void ExpectBoxesOfAnyStrides(int gap)
   {
     const int x = i % 20, y = i / 20 % 10, z = i / 200;
     const bool inside = x < count && y < height && z < slices;
-    const double value = inside ? values[static_cast<std::size_t>(z * slice + y * row + x * gap)] : 0;
+    const double value =
+      inside ? values[static_cast<std::size_t>(z * slice + y * row + x * gap)] : 0;
     const std::int32_t number = numbers[static_cast<std::size_t>(i)];
     ASSERT_EQ(number, inside ? SlowNumber<std::int32_t>(value) : 77) << i;
     const T decoded = static_cast<T>(Scale.Origin + number * Scale.Step);
-    greatest = inside ? std::max(greatest, std::abs(value - static_cast<double>(decoded))) : greatest;
+    greatest =
+      inside ? std::max(greatest, std::abs(value - static_cast<double>(decoded))) : greatest;
   }
   LatticeRows<T, const std::int32_t> all;
   all.Values = rows.Values;

@@ -99,8 +99,8 @@ TEST(OpenGroups, ClosedGroupsAreReadByThemselves)
   {
     const TemporaryFolder folder;
     const std::string path = folder / "s.banyan";
-    const auto steps = Sample<float>(Domain, 12, [rests](int x, int y, int z, int s)
-      { return Wavy<float>(x, y, z, rests ? 0 : s); });
+    const auto steps = Sample<float>(Domain, 12,
+      [rests](int x, int y, int z, int s) { return Wavy<float>(x, y, z, rests ? 0 : s); });
     const auto moving = Sample<float>(Domain, 12, Wavy<float>);
     EncodeOptions options = Options();
     options.ClosedGroups = true;
@@ -147,8 +147,8 @@ TEST(OpenGroups, AreClosedWhereTheAxesChange)
   EXPECT_EQ(OpenGroupsOf(steps, Options()), (std::vector<bool>{ false, true, false, true }));
 }
 
-/// What a cache relies on: bricks are known to be the same exactly when they are, from step to step,
-/// in one segment as across two.
+/// What a cache relies on: bricks are known to be the same exactly when they are, from step to
+/// step, in one segment as across two.
 TEST(OpenGroups, BricksThatRestKeepTheirIdentity)
 {
   const TemporaryFolder folder;
