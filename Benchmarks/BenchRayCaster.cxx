@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Milliseconds per frame of the ray caster on the project's standard scenes, as CSV.
 //
 //   BanyanBenchRayCaster [N [PICTURE [THREADS [REPETITIONS]]]]

@@ -17,6 +17,7 @@
 # Fails when one of our methods exceeds its error bound; asserts nothing about times.
 # BANYAN_SKIP_INSTALL=1 leaves the packages of the system alone, BANYAN_SKIP_BUILD=1 the build.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+# SPDX-License-Identifier: BSD-3-Clause
 
 output="benchmark-output"
 work=""

@@ -1,6 +1,7 @@
 # Shared by the scripts of this folder: source it, do not run it.
 # shellcheck shell=bash
 
+# SPDX-License-Identifier: BSD-3-Clause
 # Not the folder of the whole project, whose settings are others.
 BANYAN_BUILD_DIR="${BANYAN_BUILD_DIR:-$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")/build-benchmark}"
 export BANYAN_BUILD_DIR

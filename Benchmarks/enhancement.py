@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What bringing out motion costs: steps of a series played, and frames of one step, with and without.
 
     pvbatch enhancement.py --plugin Banyan.so [--size N] [--steps N] [--strength S] FILE ARRAY [FILE ARRAY...]

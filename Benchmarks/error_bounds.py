@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What error bounds come to on a series: size, and how far pictures, surfaces and gradients may be off.
 
     pvbatch Benchmarks/error_bounds.py --plugin build/lib/Banyan/Banyan.so FILES...

@@ -16,6 +16,7 @@
 # Needs the plugin and the benchmarks built (BANYAN_BUILD_DIR, -DBANYAN_BUILD_BENCHMARKS=ON) where zfp and Blosc
 # are installed (Utilities/install-dependencies.sh --with-peers).
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+# SPDX-License-Identifier: BSD-3-Clause
 
 output="benchmark-output/mesh-series"
 cells=20000

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """verdicts.py TABLE.csv... : prints whether what was measured keeps the design's goals. Tables are those
 of raycast.sh --scaling, hexmesh.sh and hexmesh.sh --scaling; which is which is told by its columns."""
 

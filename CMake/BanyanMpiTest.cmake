@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Tests on several MPI ranks that can neither hang nor depend on how the machine is set up.
 
 # What Open MPI wants to be told for root, in containers and beyond the number of cores. Other MPI

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # find_package(Banyan) in another project finds the libraries, in this build folder or installed.
 include(CMakePackageConfigHelpers)
 

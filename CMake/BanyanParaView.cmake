@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Finds ParaView (unless this is ParaView's own build), checks that it fits, and builds the plugin.
 set(BANYAN_PARAVIEW_VERSION 5.11)
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Tests that are Python scripts in ParaView, with a display of their own and a watchdog.
 find_program(BANYAN_PYTHON3 NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
 find_program(BANYAN_PYTHON3 NAMES python3)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Compiler-wide settings: ccache, link order, sanitizers. Nothing here is needed to build.
 find_program(BANYAN_CCACHE ccache)
 if(BANYAN_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)

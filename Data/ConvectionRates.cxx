@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The right-hand sides of ConvectionSimulation, where its time is spent: rows of cells in loops
 // that compilers turn into vector instructions.
 #include "ConvectionSimulation.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The differences of ElasticWaveSimulation, where its time is spent: rows of cells in loops that
 // compilers turn into vector instructions.
 #include "ElasticWaveSimulation.h"

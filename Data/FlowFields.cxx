@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a FlowSimulation tells about its state.
 #include "FlowSimulation.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What HexWaveSimulation works with: masses, losses, sources, and who hangs on whom.
 #include "HexWaveSimulation.h"
 

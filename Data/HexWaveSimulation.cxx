@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The time steps of HexWaveSimulation; HexWaveSetup.cxx prepares them.
 #include "HexWaveSimulation.h"
 

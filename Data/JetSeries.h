@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Data_JetSeries_h
 #define banyan_Data_JetSeries_h
 

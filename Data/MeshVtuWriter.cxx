@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "ImageSeriesWriter.h"
 #include "MeshSeriesWriter.h"
 #include "OctreeMesh.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which cubes an OctreeMesh is made of: division and balance.
 #include "OctreeMeshKeys.h"
 

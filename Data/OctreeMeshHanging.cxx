@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The hanging nodes of an OctreeMesh.
 #include "OctreeMeshKeys.h"
 

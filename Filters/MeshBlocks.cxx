@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "MeshPieces.h"
 
 #include "vtkCompositeDataIterator.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "PieceValues.h"
 
 #include "vtkBanyanDeferred.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How steps may differ from the first one.
 #include "SeriesWriting.h"
 

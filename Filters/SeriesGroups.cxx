@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How SeriesWriting deals groups of steps out to the ranks, and what becomes of them.
 #include "SeriesWriting.h"
 

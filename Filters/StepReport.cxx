@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "StepReport.h"
 
 #include "ArrayLength.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Filters_StepReport_h
 #define banyan_Filters_StepReport_h
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkBanyanDecode
  * @brief   replaces point arrays that decode on first touch by plain, decoded ones

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkBanyanHexOctree
  * @brief   finds the octree that the cells of an unstructured grid are the leaves of, or those of

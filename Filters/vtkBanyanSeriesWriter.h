@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkBanyanSeriesWriter
  * @brief   writes a time series of image data, or of a mesh, as a Banyan series (name.banyan)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkBanyanTemporalEnhancement
  * @brief   brings out what moves in a time series, at all scales

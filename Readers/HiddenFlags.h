@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Readers_HiddenFlags_h
 #define banyan_Readers_HiddenFlags_h
 

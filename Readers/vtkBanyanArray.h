@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkBanyanArray
  * @brief   a point array of a Banyan series that decodes its piece when a value is first asked for

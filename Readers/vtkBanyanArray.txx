@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef vtkBanyanArray_txx
 #define vtkBanyanArray_txx
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef vtkBanyanArrayRanges_txx
 #define vtkBanyanArrayRanges_txx
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkBanyanDecodedArray
  * @brief   a plain point array of a Banyan series that still knows where its values come from

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkBanyanDeferred
  * @brief   what a point array of a Banyan series says about where its values come from

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkBanyanSeriesReader
  * @brief   reads a Banyan series (name.banyan) with time steps: image data, or an unstructured grid

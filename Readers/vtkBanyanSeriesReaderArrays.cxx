@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arrays of image data: for whom they decode on first touch, and for whom they are plain.
 #include "DeferredConsumers.h"
 #include "SeriesReaderInternals.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the reader tells of its work.
 #include "SeriesReaderInternals.h"
 

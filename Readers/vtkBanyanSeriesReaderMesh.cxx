@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the reader does differently for series of meshes.
 #include "SeriesInformation.h"
 #include "SeriesReaderInternals.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How all ranks open one series.
 #include "SeriesReaderInternals.h"
 

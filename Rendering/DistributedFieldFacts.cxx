@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Facts that ranks tell each other about their pieces of image data.
 #include "DistributedFieldFacts.h"
 

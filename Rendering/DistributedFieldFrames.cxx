@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Zones from frame to frame.
 #include "DistributedField.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The part of DistributedField that is for plain image data.
 #include "DistributedField.h"
 

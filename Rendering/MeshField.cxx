@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "MeshField.h"
 
 #include "vtkDataArray.h"

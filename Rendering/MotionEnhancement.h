@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Rendering_MotionEnhancement_h
 #define banyan_Rendering_MotionEnhancement_h
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "RefinementPasses.h"
 
 #include "Series/Hash.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef vtkBanyanFrameStatistics_h
 #define vtkBanyanFrameStatistics_h
 

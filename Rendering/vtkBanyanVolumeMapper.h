@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef vtkBanyanVolumeMapper_h
 #define vtkBanyanVolumeMapper_h
 

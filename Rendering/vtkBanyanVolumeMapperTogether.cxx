@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Work of a mapper together with other ranks, and with the other volumes of a picture.
 
 #include "RendererCamera.h"

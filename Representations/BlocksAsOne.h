@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Representations_BlocksAsOne_h
 #define banyan_Representations_BlocksAsOne_h
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Algorithms that ParaView itself connects to a reader, and how they treat arrays that decode on
 // first touch.
 #include "DeferredConsumers.h"

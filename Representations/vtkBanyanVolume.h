@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef vtkBanyanVolume_h
 #define vtkBanyanVolume_h
 

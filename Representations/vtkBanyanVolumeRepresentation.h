@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef vtkBanyanVolumeRepresentation_h
 #define vtkBanyanVolumeRepresentation_h
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The part of vtkBanyanVolumeRepresentation that hands settings on.
 #include "vtkBanyanVolumeRepresentation.h"
 
@@ -165,7 +166,7 @@ void vtkBanyanVolumeRepresentation::SetTemporalEnhancement(double strength)
 {
   const bool needed = this->Mapper->GetTemporalEnhancement() > 0.0;
   this->Mapper->SetTemporalEnhancement(strength);
-  if (needed != this->Mapper->GetTemporalEnhancement() > 0.0)
+  if (needed != (this->Mapper->GetTemporalEnhancement() > 0.0))
   {
     this->MarkModified(); // other steps are needed, or no longer
   }

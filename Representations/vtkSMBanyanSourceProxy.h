@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkSMBanyanSourceProxy
  * @brief   the proxy of a reader whose failure raises an exception in Python

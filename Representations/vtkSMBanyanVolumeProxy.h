@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkSMBanyanVolumeProxy
  * @brief   the proxy of "Banyan Volume", which chooses an array as ParaView's own "Volume" does

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkSMBanyanWriterProxy
  * @brief   the proxy of a writer whose failure raises an exception in Python

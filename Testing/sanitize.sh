@@ -10,6 +10,7 @@
 # Without arguments all. Builds what it runs, which takes a while. Fails when a test does, or when a
 # sanitizer finds anything. BANYAN_SKIP_BUILD=1 leaves the build away.
 source "$(dirname "${BASH_SOURCE[0]}")/../Utilities/common.sh"
+# SPDX-License-Identifier: BSD-3-Clause
 
 [[ "${1:-}" != --help ]] || {
   sed -n '2,/^source/{/^source/d;s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Tools_Agreement_h
 #define banyan_Tools_Agreement_h
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "DecodeTimes.h"
 #include "InfoJson.h"
 #include "InfoOptions.h"

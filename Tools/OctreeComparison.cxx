@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "OctreeComparison.h"
 
 #include "Cache/BrickCache.h"

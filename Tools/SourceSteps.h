@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Tools_SourceSteps_h
 #define banyan_Tools_SourceSteps_h
 
@@ -46,7 +47,7 @@ struct SourceStep
   std::optional<Grid> Domain;
   glm::ivec3 Samples{ 0 };
   std::vector<SourceArray> Arrays;
-  std::optional<SourceMesh> Mesh; ///< samples are points, along x, then
+  std::optional<SourceMesh> Mesh{}; ///< samples are points, along x, then
 
   /// Whether an array holds values, and not the mesh.
   bool IsValue(std::size_t array) const

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Tools_ValueErrors_h
 #define banyan_Tools_ValueErrors_h
 
@@ -57,8 +58,8 @@ struct Judgement
   PaperQuantizer Classes;                   ///< the 8-bit classes
   const OpacityFunction* Opacity = nullptr; ///< null: 1 everywhere
   /// Beyond the bound, a value may become another one of its interval.
-  InvisibleIntervals Invisible;
-  std::vector<double> FillValues; ///< must keep their bits
+  InvisibleIntervals Invisible{};
+  std::vector<double> FillValues{}; ///< must keep their bits
   /// By value: not 0 where a point is hidden. Such a value must keep its bits, and counts as one
   /// that is not finite. Null: none is.
   const std::uint8_t* Hidden = nullptr;

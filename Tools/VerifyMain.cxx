@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "RawSource.h"
 #include "SeriesSource.h"
 #include "StreamSource.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "VerifyReport.h"
 
 #include "Series/QuantizationError.h"

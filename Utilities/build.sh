@@ -2,6 +2,7 @@
 # Configures and builds everything with the preset "release", in build/.
 #   build.sh [CMAKE OPTIONS...]      e.g. build.sh -DBANYAN_WITH_PARAVIEW=OFF
 # BANYAN_BUILD_DIR names another build folder, BANYAN_JOBS the number of parallel compilers.
+# SPDX-License-Identifier: BSD-3-Clause
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 if [[ "${1:-}" == --help ]]; then

@@ -1,5 +1,6 @@
 # Shared by the scripts of this folder: source it, do not run it.
 # shellcheck shell=bash
+# SPDX-License-Identifier: BSD-3-Clause
 
 set -euo pipefail
 

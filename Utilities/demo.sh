@@ -20,6 +20,7 @@
 # of them side by side. Installs and builds what is missing first; a second run does not build again.
 # BANYAN_SKIP_INSTALL=1 leaves the packages of the system alone, BANYAN_SKIP_BUILD=1 the build.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+# SPDX-License-Identifier: BSD-3-Clause
 
 here="$RepositoryRoot/Utilities"
 inputs=()

@@ -17,6 +17,7 @@
 #
 # Builds what it needs when it is missing. How to read the report: Documentation/howto/how-good.md.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+# SPDX-License-Identifier: BSD-3-Clause
 
 arguments=()
 figure=""

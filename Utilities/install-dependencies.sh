@@ -2,8 +2,10 @@
 # Installs the Debian packages that Banyan is built, tested and demonstrated with.
 #   install-dependencies.sh          installs those that are missing (as root, or through sudo)
 #   install-dependencies.sh --list   prints their names
+#   install-dependencies.sh --with-checks  also what Utilities/check-style.sh needs
 #   install-dependencies.sh --with-peers   also the codecs and the network simulator of Benchmarks
 # Does nothing, and needs neither root nor network, when all are there.
+# SPDX-License-Identifier: BSD-3-Clause
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 Packages=(
@@ -25,11 +27,14 @@ Packages=(
 
 PeerPackages=(libsimgrid-dev libzfp-dev libblosc-dev libopenvdb-dev libnanovdb-dev libimath-dev libtbb-dev)
 
+CheckPackages=(clang-format clang-tidy codespell)
+
 case "${1:-}" in
   "") ;;
+  --with-checks) Packages+=("${CheckPackages[@]}") ;;
   --with-peers) Packages+=("${PeerPackages[@]}") ;;
   --list) printf '%s\n' "${Packages[@]}"; exit 0 ;;
-  *) sed -n '2,6s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+  *) sed -n '2,7s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
 esac
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then

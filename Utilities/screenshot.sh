@@ -3,6 +3,7 @@
 # README. Needs the plugin (build.sh), Xvfb, openbox and ImageMagick's import.
 #
 #   Utilities/screenshot.sh SERIES.banyan PICTURE.png
+# SPDX-License-Identifier: BSD-3-Clause
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 [[ $# == 2 ]] || fail "usage: Utilities/screenshot.sh SERIES.banyan PICTURE.png"

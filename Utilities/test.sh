@@ -2,6 +2,7 @@
 # Installs what is missing, builds, and runs every test.
 #   test.sh [CTEST OPTIONS...]       e.g. test.sh -L core, test.sh -R Codec
 # BANYAN_SKIP_INSTALL=1 leaves the packages of the system alone.
+# SPDX-License-Identifier: BSD-3-Clause
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 if [[ "${1:-}" == --help ]]; then

@@ -22,6 +22,7 @@
 # need ParaView. Builds what it needs when it is missing.
 # How to read the report: Documentation/howto/how-good.md.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+# SPDX-License-Identifier: BSD-3-Clause
 
 NotComparable=2
 arguments=() # of the program that compares

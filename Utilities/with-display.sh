@@ -3,6 +3,7 @@
 #   with-display.sh COMMAND [ARGUMENTS...]
 # Exits with the command's own status. BANYAN_SCREEN is the size and depth of a virtual display
 # (default 1600x1200x24).
+# SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 
 if [[ $# == 0 || "$1" == --help ]]; then

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Frames and per-rank times of a camera path with zones that are balanced in different ways:
 // figures 11 and 12 of "Dynamic load balancing for parallel volume rendering". See README.md.
 #include "BalanceFrames.h"

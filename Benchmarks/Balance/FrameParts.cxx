@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Loaded before ParaView (LD_PRELOAD): what the parts of still renders take. Functions of ParaView,
 // IceT and Banyan that exported symbols lead to are wrapped; a part does not count those inside it.
 // OpenGL draws later than it is asked to: it is made to finish at the ends of parts, so that its

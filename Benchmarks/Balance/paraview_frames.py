@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Times still renders of a standard scene inside ParaView, as a user of pvbatch has them.
 
     mpirun -np N pvbatch paraview_frames.py --plugin Banyan.so --scene S1|S2 [--shaded] [--frames N]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """report.py DIR : draws the charts of the tables that balance.sh left in DIR, and prints a summary."""
 
 import pathlib

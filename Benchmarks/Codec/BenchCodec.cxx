@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Size, error and speed of this codec and of its peers on raw series, as CSV. See README.md.
 #include "CodecOptions.h"
 #include "Report.h"

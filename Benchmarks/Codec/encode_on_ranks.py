@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """How long it takes ranks and threads to write a series.
 
     BANYAN_THREADS=T mpirun -np N pvbatch encode_on_ranks.py --plugin Banyan.so --output FILE.banyan

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """read_images.py NAME OUTPUT.raw IMAGES... : one raw series out of image files, for the benchmark.
 
 The images, in order of time, are VTK XML image data (.vti, arrays written inline as "binary") or

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """pvbatch read_steps.py PLUGIN SERIES.banyan : how fast ParaView's reader gives whole steps, MB/s of values.
 
 Each pass reads all steps in order: the first one opens the series, those after it find in the cache what

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """report.py CODEC.csv CHART.png : draws rates and distortions, and prints sizes as a table."""
 
 import math

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How long one rank takes to derive the schedule of all, from the footprints of a recorded frame.
 //
 //   banyan-bench-schedule FRAME...

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Draws the pictures of the zones of 2 to many ranks with the ray caster, for the simulation of
 // compositing.
 //

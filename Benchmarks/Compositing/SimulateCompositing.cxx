@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Composites one recorded frame by all methods on simulated ranks, and prints lines of the table.
 //
 //   smpirun ... banyan-simulate-compositing FRAME SCENE CAMERA NETWORK BYTES_PER_SECOND [METHODS]

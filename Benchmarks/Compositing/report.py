@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """report.py TABLE.csv TIME.png BYTES.png : charts of the simulated compositing, and ratios.
 
 Prints, per network and number of ranks, over all frames: our time over that of the best strategy of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What it takes to find the octree of a mesh of hexahedra, to take up values, and to draw a frame;
 // one line of CSV per run. See README.md.
 #include "BenchMesh.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One way to draw a mesh of hexahedra: what it takes to set up and to draw, and how exact the
 // picture is; one line of CSV. See README.md.
 #include "BenchMesh.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Benchmarks_PeakMemory_h
 #define banyan_Benchmarks_PeakMemory_h
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What MaxElementsPerPixel saves and costs, from outside, from just outside of a corner, and from inside of a mesh.
 
     pvbatch elements_per_pixel.py --plugin Banyan.so FILE.banyan ARRAY

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What all ranks together hold of a mesh that they draw (Pss_Anon and Pss_Shmem of /proc/PID/smaps_rollup,
 which count memory that processes share once), and how long it takes them.
 

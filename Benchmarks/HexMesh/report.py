@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """report.py HEXMESH.csv CHART.png : draws what each renderer takes of the first mesh, and prints a
     table of each.
 report.py --scaling SCALING.csv : prints set-up per cell and per node for meshes of all sizes.

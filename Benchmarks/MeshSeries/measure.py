@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Encodes a mesh series, and writes its values as raw series for banyan-bench-codec.
 
     pvpython measure.py --plugin Banyan.so --file EARTHQUAKE.exo --array velocity --steps N --out FOLDER

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What each rank takes to read the steps of a mesh series: memory, time, bricks.
 
     mpirun -np N pvbatch --sym read_steps.py --plugin Banyan.so FILE.banyan

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Would integrals over the values between samples (pre-integration) be worth their second look-up?
 //
 //   banyan-bench-preintegration [SERIES.json...]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Time and error of the ray caster and of its peers, as CSV. See README.md.
 #include "ConvergedImage.h"
 #include "RayCastMeasure.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Time of the first and of later frames against the size of the volume (scene S2), one line of CSV
 // per run. Without VTK, so that memory and start-up are the ray caster's own. See README.md.
 #include "OptionValues.h"

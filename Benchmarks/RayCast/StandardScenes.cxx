@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "StandardScenes.h"
 
 #include "StandardField.h"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """compare_pictures.py FOLDER SHEET.png : one row per scene, the converged picture first, then each
 renderer's, and under each of them eight times its difference from the first."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """goals.py RAYCAST.csv [TABLE.csv...] : prints how many times faster than VTK's GPU mapper the ray caster
 is in the standard scenes, beside what the design asks for, and the verdicts of more tables (verdicts.py).
 goals.py --needed RAYCAST.csv : prints for each scene which settings say so. Errors do not depend on the

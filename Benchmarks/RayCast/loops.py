@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """loops.py perf LIBRARY PERF.data : prints which part of the time of PacketMarcher's functions goes into each
 of their loops, from `perf record`.
 loops.py callgrind FILE.out : prints how often the instructions of MarchPackets were executed, those that were as often

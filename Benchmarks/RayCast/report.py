@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """report.py RAYCAST.csv CHART.png CHART-OF-LARGEST.png : draws time against the error of whole
 pictures and against that of the worst pixel, and prints ratios as tables."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """report_scaling.py SCALING.csv CHART.png : draws time and memory against the volume's size."""
 
 import pathlib

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Base/AvailableMemory.h"
 
 #include <algorithm>

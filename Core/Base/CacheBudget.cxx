@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Base/CacheBudget.h"
 
 #include "Base/AvailableMemory.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Base_RecycledMemory_h
 #define banyan_Base_RecycledMemory_h
 

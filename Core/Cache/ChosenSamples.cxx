@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Cache/ChosenSamples.h"
 
 #include "Base/Error.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Cache_ChosenSamples_h
 #define banyan_Cache_ChosenSamples_h
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Codec_BackwardBits_h
 #define banyan_Codec_BackwardBits_h
 

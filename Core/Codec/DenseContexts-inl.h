@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Included once per SIMD target: see BlockDecoder.cxx.
 #if defined(banyan_Codec_DenseContexts_inl_h) == defined(HWY_TARGET_TOGGLE)
 #ifdef banyan_Codec_DenseContexts_inl_h

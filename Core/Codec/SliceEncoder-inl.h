@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Included once per SIMD target: see BlockEncoder.cxx.
 #if defined(banyan_Codec_SliceEncoder_inl_h) == defined(HWY_TARGET_TOGGLE)
 #ifdef banyan_Codec_SliceEncoder_inl_h

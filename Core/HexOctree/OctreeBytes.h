@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_HexOctree_OctreeBytes_h
 #define banyan_HexOctree_OctreeBytes_h
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_HexSampling_BlockPoints_h
 #define banyan_HexSampling_BlockPoints_h
 

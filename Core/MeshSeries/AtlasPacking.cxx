@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Boxes for the leaves of an octree, and their places in an image.
 #include "Base/Box.h"
 #include "MeshSeries/MeshAtlas.h"

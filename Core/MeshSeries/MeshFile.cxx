@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "MeshSeries/MeshFile.h"
 
 #include "Base/Error.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "MeshSeries/MeshLevel.h"
 
 #include "HexOctree/MergedLeaves.h"

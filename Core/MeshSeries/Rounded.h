@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_MeshSeries_Rounded_h
 #define banyan_MeshSeries_Rounded_h
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "MeshSeries/TreeCells.h"
 
 #include "MeshSeries/MeshLevel.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Compositing.h"
 #include "Parallel/FragmentMessage.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/CompositeWhileCasting.h"
 
 #include "Render/TileGrid.h"

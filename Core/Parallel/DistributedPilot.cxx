@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/DistributedPilot.h"
 
 #include "Parallel/LevelZones.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Parallel_Footprints_h
 #define banyan_Parallel_Footprints_h
 

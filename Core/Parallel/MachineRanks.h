@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Parallel_MachineRanks_h
 #define banyan_Parallel_MachineRanks_h
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/MpiCommunicator.h"
 
 #include "Base/Error.h"

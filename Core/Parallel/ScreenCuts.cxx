@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/ScreenCuts.h"
 
 #include "Parallel/ZoneDivision.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Steps of single planes, where the search knows no better tree.
 #include "Parallel/TreeSearch.h"
 

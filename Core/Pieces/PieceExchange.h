@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Pieces_PieceExchange_h
 #define banyan_Pieces_PieceExchange_h
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Pieces/PieceField.h"
 
 #include "Base/Error.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Pieces/PieceSamples.h"
 
 #include "Base/Error.h"

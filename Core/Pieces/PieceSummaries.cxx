@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What all ranks know of each other's bricks.
 #include "Base/Error.h"
 #include "Pieces/PieceExchange.h"

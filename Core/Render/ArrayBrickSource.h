@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Render_ArrayBrickSource_h
 #define banyan_Render_ArrayBrickSource_h
 

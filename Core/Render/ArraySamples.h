@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Render_ArraySamples_h
 #define banyan_Render_ArraySamples_h
 

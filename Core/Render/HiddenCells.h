@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Render_HiddenCells_h
 #define banyan_Render_HiddenCells_h
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Included once per SIMD target: see PacketMarcher.cxx.
 #if defined(banyan_Render_PacketMarcher_inl_h) == defined(HWY_TARGET_TOGGLE)
 #ifdef banyan_Render_PacketMarcher_inl_h

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Render/PilotPictures.h"
 
 #include "Render/PilotSpacing.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Included once per SIMD target: see RayTile.cxx.
 #if defined(banyan_Render_RayFiller_inl_h) == defined(HWY_TARGET_TOGGLE)
 #ifdef banyan_Render_RayFiller_inl_h

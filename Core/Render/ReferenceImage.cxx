@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Render/RayCaster.h"
 
 #include <glm/geometric.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Render/TileDepths.h"
 
 #include <glm/common.hpp>

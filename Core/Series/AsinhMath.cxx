@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Series/AsinhMath.h"
 
 // One source, compiled twice: for any processor, and with registers twice as wide.

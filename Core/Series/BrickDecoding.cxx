@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Series/BrickDecoding.h"
 
 #include "Codec/BlockScratch.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Series_BrickTree_h
 #define banyan_Series_BrickTree_h
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Series/FieldReader.h"
 
 #include "Base/Error.h"

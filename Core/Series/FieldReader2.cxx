@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Base/Error.h"
 #include "Codec/DecodeStages.h"
 #include "Series/BrickDecoding.h"

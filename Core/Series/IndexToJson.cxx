@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Series/Hash.h"
 #include "Series/IndexJson.h"
 #include "Series/QuantizerJson.h"

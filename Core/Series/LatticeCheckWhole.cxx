@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Base/ForEachScalarType.h"
 #include "Series/GatherTile.h"
 #include "Series/LatticeCheck.h"

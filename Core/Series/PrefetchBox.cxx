@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Codec/BlockModes.h"
 #include "Codec/BlockScratch.h"
 #include "Codec/DecodeStages.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Series_SeriesEncoder_h
 #define banyan_Series_SeriesEncoder_h
 
@@ -71,7 +72,7 @@ struct ArrayDescription
   std::vector<ValueRange> SeriesRanges; ///< one per component: of the finite values over all steps
   /// One per component, or none: of all finite values over all steps but fill values
   /// (CountComponent). Ranges of the data come from here when there are histograms.
-  std::vector<ValueHistogram> Histograms;
+  std::vector<ValueHistogram> Histograms{};
   /// Flags are bytes with the bits of HiddenPointBits or HiddenCellBits alone, kept bit-exact. They
   /// come before all other arrays, and none of the other members but name and type counts.
   ArrayFlags Flags = ArrayFlags::None;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Codec/BlockModes.h"
 #include "Series/AdaptiveBits.h"
 #include "Series/GroupFormat.h"

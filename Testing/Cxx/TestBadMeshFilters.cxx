@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes, trees and images as a program without ParaView may hand them to filters and the writer,
 // broken in one way each: a sentence that says what is wrong and of which array, or a result; never
 // a crash, and never values that lie behind the end of an array.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arrays that come and go, and sources that do not have the times that they list: nothing is lost
 // without a word.
 #include "WriterRobustness.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The array that decodes on first touch: what touches it, what does not, and that it gives what a
 // plain array gives.
 #include "VtkIoTesting.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // For whom the reader's arrays decode on first touch, and for whom they are plain: whoever is
 // connected, and whenever, gets the right values.
 #include "VtkIoTesting.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Hidden points and cells of images come back from a series as they were, with the values below.
 #include "VtkIoTesting.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arrays of the reader that are large.
 #include "VtkIoTesting.h"
 

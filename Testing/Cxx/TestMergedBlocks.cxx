@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Blocks that are drawn as one mesh: what VTK's own filter makes of them, but cells are merged
 // once.
 #include "MergedBlocks.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Times, pieces, sub-extents, levels and array selection of the reader, and what they decode.
 #include "VtkIoTesting.h"
 

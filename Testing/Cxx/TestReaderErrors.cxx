@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Files that are not what they should be: an error that says so, and no output.
 #include "VtkIoTesting.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Real data, and files that are awkward but right; skipped where the data are not there.
 #include "VtkIoTesting.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is written comes back: values within the bound, everything else exactly.
 #include "VtkIoTesting.h"
 

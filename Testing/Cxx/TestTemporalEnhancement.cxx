@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What moves is brought out at all scales: the filter against the formula, value by value, and what
 // it reads.
 #include "VtkIoTesting.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A writer that is told to stop leaves whole steps that open, or what was there before.
 #include "WriterRobustness.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What cannot be written is refused with a sentence that says why and where, and leaves nothing.
 #include "WriterRobustness.h"
 

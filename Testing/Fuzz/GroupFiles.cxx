@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "GroupFiles.h"
 
 #include "Base/ThreadPool.h"

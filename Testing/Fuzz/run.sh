@@ -14,6 +14,7 @@
 # BANYAN_SKIP_BUILD=1 leaves that away. Ends with a line for each: executions, edges covered, and what
 # was found. Fails when anything was.
 source "$(dirname "${BASH_SOURCE[0]}")/../../Utilities/common.sh"
+# SPDX-License-Identifier: BSD-3-Clause
 
 build="${BANYAN_BUILD_DIR:-$RepositoryRoot/build-fuzz}"
 seconds=600

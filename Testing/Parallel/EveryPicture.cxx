@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "EveryPicture.h"
 
 #include "Parallel/DistributedFrame.h"

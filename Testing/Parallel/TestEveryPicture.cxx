@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every way to draw a picture on the ranks of this job, by IceT too where ParaView is there.
 #include "EveryPicture.h"
 #include "MpiProgram.h"

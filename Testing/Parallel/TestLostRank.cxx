@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Frames of several ranks, of which one is lost in the middle: what the others do is the test (see
 // lost_rank.py). Never ends by itself when it waits for ever.
 #include "Base/Error.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The tests of the simulated ranks again, on real MPI ranks. Every check is collective; each rank
 // prints what it finds wrong, and the exit status is that of the worst rank.
 #include "CommunicatorCases.h"

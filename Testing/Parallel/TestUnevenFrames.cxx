@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Many frames on the ranks of this job whose costs are uneven in ways that nobody can foresee: what
 // becomes of balance, of what moves, and of memory. See Documentation/balancing.md, "Stability".
 #include "MpiProgram.h"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What happens to a job when something happens to one of its ranks.
 
     lost_rank.py MISHAP LIMIT LAUNCHER...

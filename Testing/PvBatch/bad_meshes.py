@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Meshes of hexahedra that are broken, one for each way.
 """
 from paraview import simple

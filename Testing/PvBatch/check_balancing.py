@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Checks that zones move on real ranks, and that the picture does not change by it.
 
 A camera comes closer to a part of an encoded series, and of plain data that lies in pieces, with each

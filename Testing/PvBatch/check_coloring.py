@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Checks colouring from Python: ColorBy, rescaling, opacities, components, visibility, placing.
 
 Everything a script does to ParaView's own Volume must do the same to ours, so each picture is also

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Checks the figures that runs of draw_scenes.py have read from the representation.
 
     check_figures.py FOLDER=RANKS...      e.g. pictures/builtin=1 pictures/Server3=3

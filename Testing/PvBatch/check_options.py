@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Checks the options that ParaView's own Volume has as well, and those that its panel leaves out.
 
 A script that sets shading, nearest interpolation, cropping or a blend mode on "Volume" must get the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Checks that the scenes show what they are meant to: equal pictures of nothing prove nothing.
 
     check_parts.py OUT        (drawn by draw_scenes.py --parts)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Checks that still pictures after an interaction become better in passes, and never worse.
 
 With streaming on (a setting of ParaView) the first still picture may be as coarse as those of the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Checks what people do in a session beyond one picture, on any number of ranks: nothing may hang.
 
 Two views, two volumes, interactive rendering, playing a series, switching representations, a Surface

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Checks that pictures do not depend on the sample distance, nor on the unit of length.
 
 With smooth colours and opacities, half and a quarter of the sample distance give the same picture

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Compares two VTK data objects value by value."""
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy

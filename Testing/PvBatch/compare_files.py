@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Series in folders must be the same, byte for byte: index files, and names and bytes of segments.
 
     compare_files.py [--fewest SERIES] REFERENCE FOLDER...

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Compares the pictures of two runs of draw_scenes.py: they must show the same.
 
     compare_pictures.py REFERENCE OUT [--tolerance 1]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Compares our pictures of real data with those of ParaView's own "Volume".
 
 Same data, colours, opacities, unit distance and camera; at least 38 dB are asked for. What remains:

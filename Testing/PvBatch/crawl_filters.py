@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Every filter, writer and representation of ParaView gives on a series what it gives on plain arrays.
 
     python3 crawl_filters.py --plugin Banyan.so --out FOLDER [--ranks N] [--only NAME...]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Draws frames until it is ended, and says when it has drawn one."""
 from paraview import simple
 

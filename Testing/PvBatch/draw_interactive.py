@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Draws what is shown while somebody moves the camera, for comparison with other modes.
 
 Pictures of interactive frames: coarser levels, longer steps and pixels without rays of their own, each

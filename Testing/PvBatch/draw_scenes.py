@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Draws the scenes of picture_scenes.py into OUT/<scene>.png, in any mode of ParaView.
 
 With --parts it also draws each scene without its volume (<scene>.bare.png) and without its

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The filters that test_filters.py compares: name -> function from a source to the filter."""
 from paraview import simple
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Writes the encoded series that the scenes draw: OUT/swirl.banyan and OUT/small.banyan.
 
 swirl: 41 x 33 x 29 samples, 3 steps, unit spacing: 3 x 3 x 2 bricks, none of the last ones whole.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Coarser levels and hyper tree grids of mesh series, for test_mesh_series.py."""
 from time import sleep
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A field that is known everywhere, as a source of ParaView: whole on each rank, or cut into pieces.
 
 `source` makes a Programmable Source; `value` is what it holds. The scripts run inside ParaView's

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The scenes whose pictures must not depend on how many processes draw them, or where.
 
 Each scene is a function that shows data in a view that it makes, and returns a `Drawn`. `scenes()`

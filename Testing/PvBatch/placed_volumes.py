@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Volumes of several kinds in random places of one view, and what each of them shows alone.
 
 A module of its own: scripts of programmable sources replace names of the main one.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Runs a Python script in ParaView: builtin, on the ranks of pvbatch, or as client of a pvserver.
 
     run_paraview.py [--mode builtin|batch|server] [--ranks N] [--seconds S] [--server-option O ...]

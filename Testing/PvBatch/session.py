@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What every test script needs first: the server if there is one, and the plugin."""
 import argparse
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Ranks agree on what they can do with a mesh, also where it is what it was before on some of them only.
 
     test_agreement.py --plugin Banyan.so --out FOLDER [--reference FOLDER]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Broken meshes in the filters and the writer: a sentence that says what is wrong and where, or a result; never a crash.
 
     test_bad_mesh_filters.py --plugin Banyan.so --out FOLDER

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Broken meshes at default options end in a sentence, or in the picture of what is sound in them: never in a crash.
 
     test_bad_meshes.py --plugin Banyan.so --out FOLDER [--reference FOLDER]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Arrays that come later, and sources that have the present step alone: saved with a word, or not at all.
 
     test_changing_arrays.py --plugin Banyan.so --out FOLDER

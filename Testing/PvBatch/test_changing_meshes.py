@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A mesh that is another one from some steps on, while it is played: N ranks draw the pictures of one, no step
 leaves memory behind, and whoever stops the sampling of a mesh leaves none either.
 

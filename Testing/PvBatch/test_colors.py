@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Colours that tables of equal steps cannot tell, the array that is chosen, and what has no effect.
 
 Colours beyond the range and those of categories, whatever the labels, must be those of a map that

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What becomes of a series on the disk while it is read, drawn and saved: right values or a sentence.
 
     test_damage.py --plugin Banyan.so --out FOLDER [--ranks N]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """ParaView opens the series "earthquake" in each of its formats: all steps, all cells, equal values.
 
     test_earthquake.py --generate BANYAN_GENERATE --out DIR

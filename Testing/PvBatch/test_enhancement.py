@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Motion is brought out in ParaView: the filter and the representation give one picture.
 
 Drawn are an encoded series (its bricks are enhanced while they are drawn), the same series decoded

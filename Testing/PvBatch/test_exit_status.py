@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A script that does not catch a refusal ends with status 1, and says why.
 
     test_exit_status.py ARGUMENTS...      (those of run_paraview.py)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Common filters give on arrays that decode on first touch what they give on plain arrays.
 
     pvbatch --sym test_filters.py --plugin Banyan.so --out FOLDER

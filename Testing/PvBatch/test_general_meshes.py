@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Real meshes of curved hexahedra, and of mixed cells, are drawn by "Banyan Volume".
 
     test_general_meshes.py --plugin Banyan.so --out FOLDER [--reference FOLDER]

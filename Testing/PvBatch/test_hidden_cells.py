@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Hidden (blanked) cells of images are not drawn: beside ParaView's own Volume, on one rank and on several, whose pieces
 have ghost cells, with hidden points as well, with flags that change from step to step, and of an encoded series.
 

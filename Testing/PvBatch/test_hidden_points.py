@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What images hide comes back from a series to the bit: points, cells, the values below, and the picture.
 
     test_hidden_points.py --plugin Banyan.so --out FOLDER [--reference FOLDER]

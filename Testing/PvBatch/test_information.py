@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What ParaView asks of a series without needing values decodes nothing; colours get the range of
 the whole series.
 

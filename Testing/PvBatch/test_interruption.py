@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """pvbatch that is interrupted while it writes leaves a series that opens, and nothing else.
 
     test_interruption.py --plugin Banyan.so --out FOLDER [--ranks N]

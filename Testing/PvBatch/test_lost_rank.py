@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A rank of ParaView that is stopped or killed while frames are drawn: the job ends, and says why.
 
     test_lost_rank.py stopped|killed ARGUMENTS...      (those of run_paraview.py)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Ranks that are interrupted while one of them samples a mesh, and the others wait for it, end, and leave nothing.
 
     test_mesh_interruption.py --plugin Banyan.so --out FOLDER

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Meshes and hyper trees have the options of work on many ranks, and each of them gives the same picture.
 
     test_mesh_options.py --plugin Banyan.so --out FOLDER [--reference FOLDER]

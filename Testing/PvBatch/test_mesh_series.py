@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Meshes of hexahedra are saved as Banyan series, come back, and are drawn.
 
     test_mesh_series.py --plugin Banyan.so --generate BANYAN_GENERATE --out FOLDER

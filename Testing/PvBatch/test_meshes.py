@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Real meshes of hexahedra, hyper trees and AMR are drawn by "Banyan Volume", or refused with a sentence.
 
     test_meshes.py --plugin Banyan.so --out FOLDER [--reference FOLDER]

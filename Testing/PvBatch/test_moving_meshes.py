@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Meshes whose points move by displacements that they carry are written as they are at rest.
 
     test_moving_meshes.py --plugin Banyan.so --generate BANYAN_GENERATE --out FOLDER

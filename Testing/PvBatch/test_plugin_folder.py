@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The plugin is found in the folder that its libraries lie in, which ParaView opens and closes one by one.
 
     test_plugin_folder.py --plugin Banyan.so

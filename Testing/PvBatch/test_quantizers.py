@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What the writer's properties ask for is what is in the series: read back and judged with numpy.
 
     pvbatch --sym test_quantizers.py --plugin Banyan.so --out FOLDER

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Real meshes of general hexahedra at the options that a new user has.
 
     test_real_meshes.py --plugin Banyan.so --out FOLDER [--reference FOLDER]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Bad input makes SaveData and OpenDataFile raise, with a sentence that says why, and leaves nothing.
 
     test_refusals.py --plugin Banyan.so --out FOLDER

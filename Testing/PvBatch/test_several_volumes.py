@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Several volumes in one view: plain data, a series and a mesh in random places, apart from each other.
 
     test_several_volumes.py --plugin PLUGIN --data FOLDER --out OUT [--reference OUT_OF_ONE_RANK]

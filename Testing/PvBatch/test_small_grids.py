@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Grids with fewer samples than there are ranks, or flat ones, are written, read and filtered.
 
     test_small_grids.py --plugin Banyan.so --out FOLDER

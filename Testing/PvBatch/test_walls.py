@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """On tile displays and in CAVEs volumes are refused in a sentence: nothing hangs, and surfaces are drawn.
 
     test_walls.py --plugin PLUGIN --data FOLDER    as client of a server with displays

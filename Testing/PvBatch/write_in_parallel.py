@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Writes series of all kinds that must not depend on the number of ranks, for compare_files.py.
 
     write_in_parallel.py --plugin Banyan.so --out FOLDER

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Writes a series that takes long, for test_interruption.py, or checks what is left of one.
 
     write_long.py --plugin Banyan.so [--steps N] [--fail RANK [--disk-full]] --write SERIES

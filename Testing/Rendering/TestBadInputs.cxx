@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Data that the mapper cannot draw: a sentence that says what is wrong with which array, no crash,
 // and the next input is drawn.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The promised time of a frame while somebody turns a scene that is too heavy for it.
 
 #include "MapperTesting.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Images that ray casters fail at, through the mapper: far from the origin, with cells a thousand
 // times as long as wide, without any cell, and with the eye inside.
 

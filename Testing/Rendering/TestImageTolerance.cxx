@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The tolerance for errors of vtkBanyanVolumeMapper's pictures, still and while somebody interacts.
 
 #include "MapperTesting.h"

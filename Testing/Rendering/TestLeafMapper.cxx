@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cell data of hexahedra, hyper tree grids and AMR in a real window: the pictures of meshes that
 // were made of the same cells in another way, and sentences for what has no octree.
 #include "LeafParts.h"

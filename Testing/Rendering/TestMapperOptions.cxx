@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Options that vtkBanyanVolumeMapper shares with VTK's own volume mappers: the pictures of both.
 // With an argument the pictures are kept in that folder.
 

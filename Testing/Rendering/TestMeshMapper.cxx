@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Hexahedra in a real window: the picture of image data, from new values without a new octree, and
 // sentences for what cannot be drawn.
 #include "MapperTesting.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An octree mesh with hanging points against an integrator that knows nothing of octrees: VTK's
 // cell locator finds the original element of each sample, and VTK interpolates in it.
 #include "MapperTesting.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Playing a long series keeps memory flat: at most the cache's budget and one decoded step more
 // than after the first frame.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Texts, scalar bars and other 2-D actors are drawn over a volume, after it: no pixel is read back
 // for them, and the picture is the one of reading all pixels.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A series that plays, and a camera that moves, find bricks decoded, and look as they do without.
 
 #include "MapperTesting.h"

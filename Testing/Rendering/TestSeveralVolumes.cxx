@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Several volumes in one renderer, in random places, with opaque spheres between them: each pixel
 // is what the volumes show there alone, blended in the order in which its ray enters their boxes.
 

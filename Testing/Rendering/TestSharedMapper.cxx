@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One mapper in several windows, renderers and volumes, and windows that come and go: each picture
 // is that of a mapper of its own.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Each eye, and each kind of camera, sees a volume where it sees surfaces: a full cube in both
 // ways.
 

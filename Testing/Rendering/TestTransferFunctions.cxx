@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Tables of random maps of VTK against VTK's own evaluation of them, value by value; and what a
 // logarithmic opacity function over 0 is told.
 #include "MapperTesting.h"

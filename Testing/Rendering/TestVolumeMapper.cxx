@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // vtkBanyanVolumeMapper in a real window: equal pictures from different ways to the same answer.
 
 #include "MapperTesting.h"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """TestDemo.py whole | earthquake | arguments | bad-input: runs Utilities/demo.sh from outside and looks at what it leaves behind."""
 
 import glob

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """TestDocuments.py links | example | blocks: what the documents promise must be there, run and show."""
 
 import glob

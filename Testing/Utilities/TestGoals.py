@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """TestGoals.py tables : the verdicts of Benchmarks/verdicts.py, on tables made for both sides of each goal."""
 
 import os

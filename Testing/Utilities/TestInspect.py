@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """TestInspect.py info | verify: runs Utilities/info.sh and verify.sh from outside."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """pvpython make_verify_cases.py FOLDER: a small series of .vti files, the same encoded, and copies
 of its second file with one value changed, one NaN changed, and an array left out."""
 

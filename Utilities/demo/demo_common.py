@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What the scripts of the demonstration share: messages, opening files, reading values."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """mpiexec -n N pvbatch demo_draw.py SERIES LOOK FOLDER REPORT
 
 Draws each time step of the encoded SERIES with the representation Banyan Volume into FOLDER, as

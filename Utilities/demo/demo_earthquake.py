@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """mpiexec -n N pvbatch demo_earthquake.py SERIES LOOK FOLDER REPORT
 
 Draws each time step of an earthquake, a mesh of hexahedra in an encoded SERIES, with the

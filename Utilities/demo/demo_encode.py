@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """pvpython demo_encode.py SERIES ERROR_BOUND REPORT FILES...
 
 Encodes the files, a time series of image data or of a mesh, as SERIES (a .banyan file) with an error bound

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """How the demonstration looks: view, camera, colours and opacities, for any scalar volume."""
 
 import math

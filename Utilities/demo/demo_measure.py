@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """pvpython demo_measure.py SERIES ERROR_BOUND REPORT FILES...
 
 Reads the files and the encoded SERIES side by side, compares every value of every step, and writes

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """python3 demo_report.py FOLDER RANKS STAGE=SECONDS...
 
 Puts the reports of the stages together as FOLDER/report.json and prints its main figures.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """plot_steps.py TABLE PICTURE: draws the number of unchanged subtrees by size over the time steps.
 
 TABLE is what banyan-info --csv writes. Each array has a row of its own: the bricks of the series on

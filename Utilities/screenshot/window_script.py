@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Runs inside the ParaView client: opens a series, shows it as 'Banyan Volume', says when it is done.
 
 Environment: BANYAN_SERIES (path of a .banyan file), BANYAN_READY (file to make when the picture

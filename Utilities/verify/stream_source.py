@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """pvpython stream_source.py [--array NAME]... FILES...: sends image data through a pipe.
 
 Reads the files, one series in order of time, with ParaView, and writes each step to the standard

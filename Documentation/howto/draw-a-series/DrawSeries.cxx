@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Writes a time series, reads it back and draws it, with VTK alone: no ParaView at run time.
 //
 //   DrawSeries SERIES.banyan PICTURE.png

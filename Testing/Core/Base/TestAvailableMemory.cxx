@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is left of memory, by what files in /proc and /sys say: of made-up machines, and of this
 // one.
 #include "Base/AvailableMemory.h"

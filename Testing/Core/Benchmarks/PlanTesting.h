@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Testing_PlanTesting_h
 #define banyan_Testing_PlanTesting_h
 

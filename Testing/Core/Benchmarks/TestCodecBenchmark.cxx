@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The benchmark of the codec: what it measures is true, and it fails when it has to.
 #include "CodecOptions.h"
 #include "Deviation.h"

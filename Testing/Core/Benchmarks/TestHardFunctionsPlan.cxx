@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Transfer functions with steps, and shells thinner than a cell: is the error still below the
 // estimate?
 #include "ConvergedImage.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Volumes of which few pixels see something: is the error still below the estimate?
 #include "ConvergedImage.h"
 #include "Picture.h"

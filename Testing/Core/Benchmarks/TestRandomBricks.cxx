@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What random bricks are measured with.
 #include "Measure.h"
 

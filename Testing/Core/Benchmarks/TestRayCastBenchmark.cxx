@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the ray caster is measured with: scenes, the converged picture and the judgement of errors.
 #include "ConvergedImage.h"
 #include "Picture.h"

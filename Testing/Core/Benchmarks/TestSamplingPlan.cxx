@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The samplings that are chosen for a tolerance: is the picture as good as they say?
 #include "ConvergedImage.h"
 #include "Picture.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which pixels of a picture have rays: is it as good as the plan says, and where does it keep all
 // rays?
 #include "ConvergedImage.h"

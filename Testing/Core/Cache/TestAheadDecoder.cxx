@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Bricks that are decoded before anybody asks for them are those that are asked for later.
 #include "Series/SeriesTesting.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Codec/ScalarResiduals.h"
 
 #include "Codec/ScalarSymbols.h"

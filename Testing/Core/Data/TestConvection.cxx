@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The side-heated box against exact solutions, balances, symmetries and published heat fluxes.
 #include "BoxPoisson.h"
 #include "ConvectionSimulation.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The ground and the fault of the series "earthquake", its mesh, and the series itself.
 #include "EarthquakeMesh.h"
 #include "NorthridgeModel.h"

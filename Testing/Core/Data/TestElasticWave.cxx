@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Elastic waves against the exact solution of Stokes, arrival times, energy, and the free surface.
 #include "BasinModel.h"
 #include "ElasticWaveSimulation.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The flow against exact solutions of the equations it claims to solve. Single precision carries
 // about seven digits; tolerances below are a few hundred roundings of it, unless said otherwise.
 #include "FlowSimulation.h"

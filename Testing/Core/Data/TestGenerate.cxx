@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The parts of banyan-generate around the physics, and the program itself.
 #include "GenerateFixture.h"
 #include "GenerateOptions.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Elastic forces of octree meshes against matrices from numerical integration, and the patch test.
 #include "HexElementForce-inl.h"
 #include "HexForces.h"

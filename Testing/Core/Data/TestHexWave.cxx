@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Elastic waves on octree meshes against the exact solution of Stokes: arrivals, polarity, width of
 // cells, borders between sizes of cells.
 #include "HexWaveSimulation.h"

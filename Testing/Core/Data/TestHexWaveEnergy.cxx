@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Energy of elastic waves on octree meshes, what open sides take out of it, threads, and errors.
 #include "HexWaveSimulation.h"
 #include "WaveMesh.h"

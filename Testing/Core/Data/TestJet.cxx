@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The jet: its inflow, and the budget of the fluid that comes out of its nozzle.
 #include "JetSimulation.h"
 

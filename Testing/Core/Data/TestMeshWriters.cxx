@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the writers of series on meshes write, read back; and the program with the series
 // earthquake.
 #include "GenerateFixture.h"

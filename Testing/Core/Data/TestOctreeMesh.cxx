@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Octree meshes against definitions: tiling, balance, the nodes that hang and on what.
 #include "OctreeMesh.h"
 #include "OctreeMeshKeys.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The transport of a scalar against exact solutions and against what it promises: bounds, totals.
 #include "FlowSimulation.h"
 #include "RandomSpectrum.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The catalogue's entries "convection", "wave" and "wavep".
 #include "SeriesCatalog.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The field of the standard scenes: as written down a second time by the tests of the ray caster,
 // and the same whichever way it is made.
 #include "SeriesCatalog.h"

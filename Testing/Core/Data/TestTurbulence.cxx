@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Turbulence: the random start, and what must hold of any flow that has developed from it.
 #include "FlowSimulation.h"
 #include "RandomSpectrum.h"

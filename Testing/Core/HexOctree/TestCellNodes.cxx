@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Values of cells at points, against a search through all cells, and on fields that are known.
 #include "HexOctree/TinyMeshes.h"
 

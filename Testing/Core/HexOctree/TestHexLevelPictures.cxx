@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pictures of coarser levels of octree meshes, and which levels plans choose.
 #include "HexOctree/LevelMeshes.h"
 #include "HexOctree/PicturesOfRanks.h"

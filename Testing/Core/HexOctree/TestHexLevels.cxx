@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Coarser levels of octree meshes: which elements they have, and their values.
 #include "HexOctree/LevelMeshes.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pictures of octree meshes: those of the field that the mesh is of.
 #include "HexOctree/PicturesOfRanks.h"
 #include "HexOctree/TinyMeshes.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Zones of meshes, from frame to frame.
 #include "HexOctree/TinyMeshes.h"
 

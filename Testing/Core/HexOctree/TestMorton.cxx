@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "HexOctree/Morton.h"
 #include "HexOctree/RadixSort.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes that are no octrees: each is refused with a sentence that names the cell and the reason.
 #include "HexOctree/TinyMeshes.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Points at one place: whatever they are called, and in whatever order cells come, a mesh is
 // sampled alike.
 #include "HexSampling/OneNumberPerPlace.h"

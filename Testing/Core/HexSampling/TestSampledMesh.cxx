@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes of general hexahedra as boxes of an octree.
 #include "HexSampling/WarpedMeshes.h"
 

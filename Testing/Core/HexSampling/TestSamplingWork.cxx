@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What finding the boxes of a mesh spares, shows and lets be stopped.
 #include "HexSampling/WarpedMeshes.h"
 

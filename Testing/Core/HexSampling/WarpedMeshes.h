@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Testing_Core_HexSampling_WarpedMeshes_h
 #define banyan_Testing_Core_HexSampling_WarpedMeshes_h
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cells of a mesh as leaves of trees: the same cells, in as few trees as wanted.
 #include "MeshSeries/StoredMeshes.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Testing_Core_Parallel_MeshMadeAlone_h
 #define banyan_Testing_Core_Parallel_MeshMadeAlone_h
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/DistributedFrame.h"
 #include "Parallel/Zones.h"
 #include "Render/ArrayBrickSource.h"

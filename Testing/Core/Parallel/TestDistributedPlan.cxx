@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Plans and their pilots on ranks, held to those of one rank.
 #include "Parallel/DistributedFrame.h"
 #include "Parallel/DistributedPilot.h"

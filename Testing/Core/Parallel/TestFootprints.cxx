@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/CompositePlan.h"
 #include "Parallel/Footprints.h"
 #include "Parallel/Zones.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Whatever moves zones, the picture is that of one rank.
 #include "Parallel/DistributedFrame.h"
 #include "Parallel/FrameBalancer.h"

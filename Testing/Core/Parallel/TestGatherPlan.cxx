@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Who sends what when pieces are gathered.
 #include "Parallel/GatherPlan.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Load balancing on simulated costs: what a frame takes is known for each position, and nothing but
 // what ranks would measure is told to the balancer.
 #include "Parallel/LoadBalancer.h"

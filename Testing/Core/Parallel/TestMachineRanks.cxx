@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Memory that ranks of a machine have together.
 #include "Base/AvailableMemory.h"
 #include "Base/Error.h"

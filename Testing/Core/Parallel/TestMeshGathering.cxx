@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes in pieces on ranks.
 #include "HexOctree/HexBrickSource.h"
 #include "HexOctree/TinyMeshes.h"

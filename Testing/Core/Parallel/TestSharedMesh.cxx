@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Octrees and fields that one rank of a machine makes for all of it: those that each rank makes
 // alone.
 #include "HexSampling/WarpedMeshes.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Planes for a view that rests: what zones do is known to the test, and the search is told what
 // ranks would measure.
 #include "Parallel/TreeSearch.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Testing_Core_Pieces_Pieces_h
 #define banyan_Testing_Core_Pieces_Pieces_h
 

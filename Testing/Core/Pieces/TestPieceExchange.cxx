@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Bricks that go from rank to rank, and what is left of them when a rank cannot give its own.
 #include "Base/Error.h"
 #include "Pieces/PieceExchange.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Wherever plain data lies and whoever draws it, the picture is that of one rank.
 #include "Parallel/DistributedFrame.h"
 #include "Pieces/PieceField.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Who holds what, and the zones in which everything is drawn where it lies.
 #include "Base/Error.h"
 #include "Pieces/PieceZones.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Coarser levels of plain data in pieces: the picture is that of one rank's levels.
 #include "Parallel/DistributedFrame.h"
 #include "Pieces/PieceField.h"

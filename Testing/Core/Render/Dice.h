@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #ifndef banyan_Testing_Dice_h
 #define banyan_Testing_Dice_h
 

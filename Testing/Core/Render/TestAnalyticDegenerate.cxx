@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Cameras and values at the edge of sense: pictures stay numbers in [0, 1], and where the integral
 // is known they still show it.
 #include "Render/Analytic.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What must not change a picture by more than one level of 8 bits: steps, the grid that the samples
 // of one and the same function lie on, bricks, types, and levels of detail.
 #include "Render/Analytic.h"

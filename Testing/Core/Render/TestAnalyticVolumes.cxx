@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Volumes whose picture is known in closed form.
 #include "Render/Analytic.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Render/BrickAhead.h"
 
 #include "Render/PackedBrick.h"

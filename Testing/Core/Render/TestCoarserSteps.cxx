@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Render/CoarserSteps.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +26,7 @@ struct Frames
   double Seconds;
   double Times;
   double Promised = 0.2;
-  StepControl Control;
+  StepControl Control{};
 
   double Draw()
   {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rectangles around what is covered of a picture.
 #include "Render/CoveredParts.h"
 

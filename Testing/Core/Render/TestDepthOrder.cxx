@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which of several turned boxes hides which, against rays that are cut with each of them.
 #include "Dice.h"
 

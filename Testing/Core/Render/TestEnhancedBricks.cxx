@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Steps whose motion is brought out while they are drawn: brick by brick what whole arrays give.
 #include "Render/EnhancedBrickSource.h"
 #include "Render/RayCaster.h"

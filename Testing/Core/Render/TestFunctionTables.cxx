@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Tables that pictures share: are they those that would be made anew?
 #include "Render/FunctionTables.h"
 

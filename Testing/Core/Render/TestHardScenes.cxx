@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Scenes in which ray casters fail: functions with steps, shells thinner than a cell, eyes and rays
 // in the faces of bricks, cells a thousand times as long as wide, grids far from the origin, and
 // columns of one cell. Each is held to the reference in double, in all ways to blend.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A sample in a hidden cell has no colour; its neighbours are drawn as ever.
 #include "Base/Error.h"
 #include "Render/Scenes.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Blocks of 64^3 cells of volumes of 2^25 cells and more.
 #include "Render/BrickGroups.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Render/BrickMarcher.h"
 #include "Render/Scenes.h"
 #include "Targets.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What pilots say of tiles, beside a slow way to find it; and how often they are drawn.
 #include "Render/PilotPictures.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pictures of which only some pixels have rays, and what fills the others.
 #include "Base/ThreadPool.h"
 #include "Render/PixelsBetween.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which bricks a maximum or minimum leaves out: none that could change a pixel, and all of one
 // value that another one has already.
 #include "Render/Interpolators.h"

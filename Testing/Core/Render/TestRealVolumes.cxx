@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Estimates of errors in pictures of real data: by sampling, and by encoding.
 #include "Render/PixelsBetween.h"
 #include "Render/SamplingPlan.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which levels a plan may use, from pilots whose errors are known because they are made up.
 #include "Render/SamplingPlan.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Levels by what cells measure on the screen: against the nearest point of each ray, one by one.
 
 #include "Render/ScreenLevels.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // When the picture that tells which pixels need rays is worth drawing, from made-up pilots.
 #include "Render/SamplingPlan.h"
 

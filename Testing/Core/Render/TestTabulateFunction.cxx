@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Tables of functions are as fine as these demand: random maps against the functions themselves.
 #include "Base/Error.h"
 #include "RandomMaps.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Bins of rows of values, and masks of what lies between, against one value after the other.
 #include "Render/ValueBins.h"
 

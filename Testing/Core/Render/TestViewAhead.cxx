@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a camera that moves shows next.
 #include "Scenes.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Series/GoldenBuilders.h"
 
 #include <cmath>

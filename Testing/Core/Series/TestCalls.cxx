@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is asked for in a wrong way, or interrupted, is an error.
 #include "Series/ContainerTesting.h"
 

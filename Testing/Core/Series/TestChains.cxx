@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How many steps a look at one brick takes: what an encoding tells is what a reader decodes.
 #include "Series/SeriesTesting.h"
 

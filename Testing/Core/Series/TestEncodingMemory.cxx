@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Memory that encoding takes goes with a group, and not with the series.
 #include "Series/SeriesTesting.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "Series/SeriesTesting.h"
 
 #include "Series/FieldLattice.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Whatever becomes of the files of a series while it is open, values are never wrong.
 #include "Series/ContainerTesting.h"
 #include "Series/SeriesTesting.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// Series that were written once and have to be read as they were for ever; see Golden/README.md.
 ///
 /// To write such files with the encoder as it is:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// What the golden files of version 2 cover, told by a walk over their bytes that follows
 /// Documentation/format.md and shares no code with the readers (but for zstd, and the number of
 /// blocks and bricks).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How many steps each rank receives that encodes groups of a series.
 #include "Series/SeriesTesting.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Groups of steps, encoded apart from each other, make the same series as one encoder does.
 #include "Series/SeriesTesting.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Points that have no value: their bits, their flags, and what the tree says of all others.
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Files of groups that refer to the one before, damaged or made with ill intent.
 #include "Series/SeriesTesting.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Groups of steps that refer to the key frame of the group before.
 #include "Series/SeriesTesting.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Ranges told from the tree, the grids of levels, and the lengths of vectors.
 #include "Series/SeriesTesting.h"
 

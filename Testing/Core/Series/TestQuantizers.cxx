@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Each way to quantize, encoded, read back and judged here by arithmetic that is not the encoder's.
 #include "Series/QuantizersTesting.h"
 

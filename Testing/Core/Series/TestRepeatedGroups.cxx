@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// Groups of equal content, which are stored once over the whole series.
 #include "Series/ContainerTesting.h"
 

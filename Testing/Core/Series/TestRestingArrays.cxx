@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// Arrays that stay the same beside others that move: they are stored once.
 #include "Series/SeriesTesting.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// Blocks that rest between steps where they move, at the field's end: what lies beyond the end is
 /// predicted anew at each step, and later steps refer to it.
 #include "Series/SeriesTesting.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where segments are looked for: indexes that were moved, renamed or linked, with their folders or
 // without.
 #include "Series/ContainerTesting.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Series that are reached through links are those that the links lead to.
 #include "Series/ContainerTesting.h"
 #include "Series/SeriesTesting.h"

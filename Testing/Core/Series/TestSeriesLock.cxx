@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Who may save a series, and what a save removes.
 #include "Series/ContainerTesting.h"
 #include "Series/SeriesTesting.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Bounds that are so small that doubles lie as far apart as they are large.
 #include "Series/ContainerTesting.h"
 #include "Series/SeriesTesting.h"

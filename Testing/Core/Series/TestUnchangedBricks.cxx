@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which bricks are those of the step before.
 #include "Series/SeriesTesting.h"
 
