@@ -4,7 +4,7 @@
 #include "Base/ThreadPool.h"
 #include "Series/Bytes.h"
 #include "Series/FillValues.h"
-#include "Series/Quantizer.h"
+#include "Series/ValueArithmetic.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "Codec/BlockScratch.h"
 #include "Codec/DecodeStages.h"
 #include "Series/Exceptions.h"
-#include "Series/Quantizer.h"
+#include "Series/ValueArithmetic.h"
 
 #include <algorithm>
 

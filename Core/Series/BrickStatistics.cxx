@@ -2,7 +2,7 @@
 #include "Series/BrickStatistics.h"
 
 #include "Base/ForEachScalarType.h"
-#include "Series/Quantizer.h"
+#include "Series/ValueArithmetic.h"
 
 #include <cmath>
 #include <cstring>

@@ -40,13 +40,6 @@ To BitCast(From from)
   return to;
 }
 
-/// The least multiple of `alignment` (a power of two) that is not below `value`; the caller has
-/// checked that it does not overflow.
-inline std::uint64_t AlignUp(std::uint64_t value, std::uint64_t alignment)
-{
-  return (value + alignment - 1) & ~(alignment - 1);
-}
-
 /// Byte p of number i goes to `planes[p * count + i]`: bytes of equal weight lie together.
 template <class T>
 void ToPlanes(const T* numbers, std::size_t count, std::uint8_t* planes)

@@ -2,7 +2,7 @@
 #include "Series/ComponentRange.h"
 
 #include "Base/ThreadPool.h"
-#include "Series/Quantizer.h"
+#include "Series/ValueArithmetic.h"
 
 #include <algorithm>
 #include <cmath>

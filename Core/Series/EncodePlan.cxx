@@ -124,21 +124,21 @@ void CheckOptions(const EncodeOptions& options)
 
 void AddMesh(const MeshPlan& plan, SeriesIndex& index)
 {
-  index.FormatVersion = 3;
   index.Mesh = plan.Index;
+  bool cellArrays = false;
   for (ArrayIndex& array : index.Arrays)
   {
     const auto found = plan.CellArrays.find(array.Name);
     if (found != plan.CellArrays.end())
     {
       array.CellArray = found->second;
-      index.FormatVersion = 4;
+      cellArrays = true;
     }
   }
   const auto samples = static_cast<std::size_t>(index.Domain.Extent.Count());
   const bool told = plan.Needed && plan.Needed->size() == samples;
   const bool toldOfCells = plan.NeededOfCells && plan.NeededOfCells->size() == samples;
-  if (!told || (index.FormatVersion >= 4 && !toldOfCells))
+  if (!told || (cellArrays && !toldOfCells))
   {
     throw Error("It must be said of each sample whether it stands for a point or cell of the mesh");
   }
@@ -189,7 +189,6 @@ SeriesIndex PlanSeries(
   for (const ArrayDescription& array : arrays)
   {
     index.Arrays.push_back(MakeArray(array, options));
-    index.FormatVersion = array.Flags != ArrayFlags::None ? 5 : index.FormatVersion;
   }
   for (const auto& own : options.QuantizerOfArray)
   {

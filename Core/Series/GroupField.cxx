@@ -7,8 +7,8 @@
 #include "Codec/DecodeStages.h"
 #include "Codec/GroupOrder.h"
 #include "Codec/SymbolWriter.h"
-#include "Series/FieldReader.h"
 #include "Series/GroupReader.h"
+#include "Series/OpenSeries.h"
 
 #include <algorithm>
 

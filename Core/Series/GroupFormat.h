@@ -10,11 +10,10 @@
 #include <cstdint>
 #include <vector>
 
-/// The tables of a segment of version 2: see Documentation/format.md, "A segment, version 2".
+/// The sections of a segment: see Documentation/format.md, "A segment".
 namespace banyan::group
 {
 
-constexpr std::uint32_t Version = 2;
 constexpr std::size_t EntryBytes = 24;
 constexpr int GreatestPlanes = 16;
 constexpr int ContentBits = 48;

@@ -34,7 +34,7 @@ void GroupReader::Check()
     return;
   }
   const Bytes header = this->File->Read(0, segment::HeaderBytes);
-  this->Head = segment::LoadHeader(header.data(), group::Version);
+  this->Head = segment::LoadHeader(header.data());
   if (HashOf(header.data(), header.size()) != this->Expected)
   {
     throw Error("The segment is not the one that the index names");
@@ -45,7 +45,7 @@ void GroupReader::Check()
   const std::uint64_t directoryBytes = sections * group::EntryBytes;
   if (this->Head.FileBytes != bytes ||
       this->Head.Steps != static_cast<std::uint32_t>(this->Index.Steps) ||
-      this->Head.Tables != sections || directoryBytes > bytes ||
+      this->Head.Sections != sections || directoryBytes > bytes ||
       this->Head.DirectoryOffset != bytes - directoryBytes ||
       this->Head.PayloadEnd < segment::HeaderBytes ||
       this->Head.PayloadEnd > this->Head.DirectoryOffset)

@@ -22,7 +22,7 @@
 namespace banyan
 {
 
-/// One segment of version 2. Every access is checked against the index that names it; may be used
+/// One segment. Every access is checked against the index that names it; may be used
 /// from any thread.
 class GroupReader
 {

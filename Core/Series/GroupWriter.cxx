@@ -162,7 +162,6 @@ SegmentIndex GroupWriter::Finish(const std::vector<group::FieldHead>& heads,
 {
   this->Output.Append(this->Payloads.data(), this->Payloads.size());
   segment::Header header;
-  header.Version = group::Version;
   header.PayloadEnd = this->Output.Size();
   std::vector<group::Section> sections;
   sections.push_back(this->AddSection(this->PageHashes(), true));
@@ -201,8 +200,9 @@ SegmentIndex GroupWriter::Finish(const std::vector<group::FieldHead>& heads,
   header.Steps = static_cast<std::uint32_t>(steps);
   const std::uint64_t content = ShortHashOf(
     this->Payloads.data() + segment::HeaderBytes, this->Payloads.size() - segment::HeaderBytes);
-  header.FirstStep = static_cast<std::uint32_t>(content >> 32); // pages have the low half of theirs
-  header.Tables = static_cast<std::uint32_t>(sections.size());
+  header.PayloadHash =
+    static_cast<std::uint32_t>(content >> 32); // pages have the low half of theirs
+  header.Sections = static_cast<std::uint32_t>(sections.size());
   header.DirectoryOffset = this->Output.Size();
   header.DirectoryHash = ShortHashOf(directory.data(), directory.size());
   this->Output.Append(directory.data(), directory.size());

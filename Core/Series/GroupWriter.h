@@ -14,7 +14,7 @@
 namespace banyan
 {
 
-/// Writes one segment of version 2. Nothing is left behind when it is destroyed before Finish().
+/// Writes one segment. Nothing is left behind when it is destroyed before Finish().
 class GroupWriter
 {
 public:

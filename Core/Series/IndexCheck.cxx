@@ -103,16 +103,13 @@ bool IsPlainName(const std::string& file)
 
 void CheckMesh(const SeriesIndex& index)
 {
-  Require((index.FormatVersion == 3 || index.FormatVersion == 4) == index.Mesh.has_value(),
-    "A series of format version 3 or 4 is one of a mesh, and only such a series is");
   std::set<std::string> cellArrays;
   for (const ArrayIndex& array : index.Arrays)
   {
     Require(array.CellArray.empty() || cellArrays.insert(array.CellArray).second,
       "Two cell arrays have the name '" + array.CellArray + "'");
   }
-  Require((index.FormatVersion == 4) == !cellArrays.empty(),
-    "A series of format version 4 has cell arrays, and only such a series has");
+  Require(index.Mesh || cellArrays.empty(), "A series without a mesh has cell arrays");
   if (index.Mesh)
   {
     Require(IsPlainName(index.Mesh->File), "The name of the mesh is not a plain file name");
@@ -138,8 +135,7 @@ void CheckFlags(const SeriesIndex& index)
   }
   Require(count[1] <= 1 && count[2] <= 1, "There are several arrays of flags");
   Require(values, "A series needs at least one array");
-  Require((index.FormatVersion == 5) == (count[1] + count[2] > 0),
-    "A series of format version 5 has hidden points or cells, and only such a series has");
+  Require(!index.Mesh || count[1] + count[2] == 0, "A series of a mesh has hidden points or cells");
 }
 
 void CheckSegments(const SeriesIndex& index)
@@ -150,7 +146,7 @@ void CheckSegments(const SeriesIndex& index)
   {
     Require(IsPlainName(segment.File), "The name of a segment is not a plain file name");
     const SegmentIndex& first = *files.emplace(segment.File, &segment).first->second;
-    Require(&first == &segment || (index.FormatVersion > 1 && SameContent(first, segment)),
+    Require(&first == &segment || SameContent(first, segment),
       "Two segments have the same file, and not the same content");
     Require(
       segment.FirstStep == next && segment.Steps >= 1 && segment.Steps <= index.KeyframeInterval,

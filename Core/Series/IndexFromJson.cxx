@@ -131,16 +131,14 @@ EncodeStatistics StatisticsFromJson(const Json& json)
   statistics.RawBricks = CountMember(json, "rawBricks");
   statistics.PayloadBytes = static_cast<std::uint64_t>(CountMember(json, "payloadBytes"));
   statistics.TableBytes = static_cast<std::uint64_t>(CountMember(json, "tableBytes"));
-  const auto later = [&json](const char* name)
-  { return json.contains(name) ? CountMember(json, name) : std::int64_t{ 0 }; };
-  statistics.Blocks = later("blocks");
-  statistics.EmptyBlocks = later("emptyBlocks");
-  statistics.ExceptionVoxels = later("exceptionVoxels");
-  statistics.ChainSum = later("chainSum");
-  statistics.ChainBricks = later("chainBricks");
-  statistics.ChainMost = later("chainMost");
-  statistics.RepeatedSegments = later("repeatedSegments");
-  statistics.RepeatedBytes = static_cast<std::uint64_t>(later("repeatedBytes"));
+  statistics.Blocks = CountMember(json, "blocks");
+  statistics.EmptyBlocks = CountMember(json, "emptyBlocks");
+  statistics.ExceptionVoxels = CountMember(json, "exceptionVoxels");
+  statistics.ChainSum = CountMember(json, "chainSum");
+  statistics.ChainBricks = CountMember(json, "chainBricks");
+  statistics.ChainMost = CountMember(json, "chainMost");
+  statistics.RepeatedSegments = CountMember(json, "repeatedSegments");
+  statistics.RepeatedBytes = static_cast<std::uint64_t>(CountMember(json, "repeatedBytes"));
   return statistics;
 }
 
@@ -176,10 +174,6 @@ Grid GridFromJson(const Json& json)
 
 SeriesIndex IndexFromJson(const Json& json)
 {
-  if (!json.is_object())
-  {
-    throw Error("The index is not a JSON object");
-  }
   SeriesIndex index;
   index.Domain = GridFromJson(json);
   const auto mesh = json.find("mesh");

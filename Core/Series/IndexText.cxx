@@ -4,6 +4,10 @@
 #include "Base/Error.h"
 #include "Series/Hash.h"
 #include "Series/IndexJson.h"
+#include "Series/JsonMembers.h"
+
+#include <algorithm>
+#include <iterator>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -13,30 +17,36 @@ namespace banyan
 namespace
 {
 
-const std::string Word = "banyan-series ";
-constexpr int OldestVersion = 1;
-constexpr int NewestVersion = 5;
+const std::string Word = "BanyanSeries ";
+const std::string DevelopmentWord = "banyan-series "; ///< before there was a version 1
+constexpr int Version = 1;
+constexpr const char* KnownFeatures[] = { "mesh", "cell arrays", "hidden" };
 
 /// Splits off the first line, having checked that it fits the rest.
-std::string CheckedBody(const std::string& text, int& formatVersion)
+std::string CheckedBody(const std::string& text)
 {
+  if (text.compare(0, DevelopmentWord.size(), DevelopmentWord) == 0)
+  {
+    throw Error(
+      "This series was written by a development version of Banyan, before version 1 of the "
+      "format, and cannot be read: encode it anew from the original data");
+  }
   if (text.compare(0, Word.size(), Word) != 0)
   {
-    throw Error("This is not a Banyan series: it does not start with 'banyan-series'");
+    throw Error("This is not a Banyan series: it does not start with 'BanyanSeries'");
   }
   const std::size_t end = text.find_first_of(" \n", Word.size());
   const std::string version =
     end == std::string::npos ? "" : text.substr(Word.size(), end - Word.size());
-  if (version.empty() || version.size() > 9 ||
+  if (version.empty() || version[0] == '0' || version.size() > 9 ||
       version.find_first_not_of("0123456789") != std::string::npos)
   {
     throw Error("The first line of the index is damaged");
   }
-  formatVersion = std::stoi(version);
-  if (formatVersion < OldestVersion || formatVersion > NewestVersion)
+  if (std::stoi(version) > Version)
   {
-    throw Error("The series has format version " + version + ", and this Banyan reads versions " +
-                std::to_string(OldestVersion) + " to " + std::to_string(NewestVersion));
+    throw Error("This series needs a newer Banyan: it has format version " + version +
+                ", and this Banyan reads version " + std::to_string(Version));
   }
   const std::size_t start = end + 1 + 32 + 1;
   if (text[end] != ' ' || text.size() < start || text[start - 1] != '\n')
@@ -50,7 +60,46 @@ std::string CheckedBody(const std::string& text, int& formatVersion)
   return text.substr(start);
 }
 
+/// Before anything else, so that a newer index is not said to be damaged.
+void CheckFeatures(const Json& json)
+{
+  if (!json.is_object())
+  {
+    throw Error("The index is not a JSON object");
+  }
+  for (const Json& feature : json_members::ListMember(json, "features"))
+  {
+    const std::string name = feature.is_string() ? feature.get<std::string>() : feature.dump();
+    if (std::find(std::begin(KnownFeatures), std::end(KnownFeatures), name) ==
+        std::end(KnownFeatures))
+    {
+      throw Error("This series needs a newer Banyan, which knows '" + name + "'");
+    }
+  }
+}
+
 } // namespace
+
+std::vector<std::string> FeaturesOf(const SeriesIndex& index)
+{
+  bool cellArrays = false;
+  bool hidden = false;
+  for (const ArrayIndex& array : index.Arrays)
+  {
+    cellArrays = cellArrays || !array.CellArray.empty();
+    hidden = hidden || array.Flags != ArrayFlags::None;
+  }
+  const bool has[] = { index.Mesh.has_value(), cellArrays, hidden };
+  std::vector<std::string> features;
+  for (std::size_t i = 0; i < std::size(KnownFeatures); ++i)
+  {
+    if (has[i])
+    {
+      features.push_back(KnownFeatures[i]);
+    }
+  }
+  return features;
+}
 
 bool BeginsAsSeries(const std::string& path)
 {
@@ -60,10 +109,11 @@ bool BeginsAsSeries(const std::string& path)
   {
     return false;
   }
-  std::string begin(Word.size(), '\0');
+  std::string begin(DevelopmentWord.size(), '\0');
   const ssize_t got = read(descriptor, begin.data(), begin.size());
   (void)close(descriptor);
-  return got == static_cast<ssize_t>(begin.size()) && begin == Word;
+  begin.resize(static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+  return begin.compare(0, Word.size(), Word) == 0 || begin == DevelopmentWord;
 }
 
 std::string IndexToText(const SeriesIndex& index)
@@ -79,19 +129,22 @@ std::string IndexToText(const SeriesIndex& index)
   {
     throw Error("The name of an array or component is not valid UTF-8");
   }
-  return Word + std::to_string(index.FormatVersion) + " " +
-         ToHex(HashOf(body.data(), body.size())) + "\n" + body;
+  return Word + std::to_string(Version) + " " + ToHex(HashOf(body.data(), body.size())) + "\n" +
+         body;
 }
 
 SeriesIndex IndexFromText(const std::string& text, const std::string& path)
 {
   try
   {
-    int version = 0;
-    const std::string body = CheckedBody(text, version);
-    SeriesIndex index = IndexFromJson(Json::parse(body));
-    index.FormatVersion = version;
+    const Json json = Json::parse(CheckedBody(text));
+    CheckFeatures(json);
+    SeriesIndex index = IndexFromJson(json);
     CheckIndex(index);
+    if (json.at("features").get<std::vector<std::string>>() != FeaturesOf(index))
+    {
+      throw Error("The features that the index names are not those that the series has");
+    }
     return index;
   }
   catch (const nlohmann::json::exception& failure)

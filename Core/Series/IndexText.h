@@ -5,6 +5,7 @@
 #include "Series/SeriesIndex.h"
 
 #include <string>
+#include <vector>
 
 namespace banyan
 {
@@ -21,8 +22,13 @@ bool BeginsAsSeries(const std::string& path);
 std::string IndexToText(const SeriesIndex& index);
 
 /// Inverse of `IndexToText`; doubles come back bit-exact. Throws Error that names `path` when the
-/// text is no index, of another version, damaged, or says what cannot be.
+/// text is no index, of another version, with features that are not known, damaged, or says what
+/// cannot be.
 SeriesIndex IndexFromText(const std::string& text, const std::string& path);
+
+/// What a reader must know to read the series, by the names of Documentation/format.md, in its
+/// order.
+std::vector<std::string> FeaturesOf(const SeriesIndex& index);
 
 /// Checks what encoder and reader both need to hold: sizes, limits, names, finite numbers, order.
 /// Throws Error.

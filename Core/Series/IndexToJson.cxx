@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Series/Hash.h"
 #include "Series/IndexJson.h"
+#include "Series/IndexText.h"
 #include "Series/QuantizerJson.h"
 #include "Series/ShortNumbers.h"
 #include "Series/TransformJson.h"
@@ -142,7 +143,9 @@ Json GridToJson(const Grid& grid)
 
 Json IndexToJson(const SeriesIndex& index)
 {
-  Json json = GridToJson(index.Domain);
+  Json json;
+  json["features"] = FeaturesOf(index);
+  json.update(GridToJson(index.Domain));
   if (index.Mesh)
   {
     json["mesh"] = MeshToJson(*index.Mesh);

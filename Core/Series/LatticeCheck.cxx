@@ -3,7 +3,7 @@
 
 #include "Base/ForEachScalarType.h"
 #include "Series/GatherTile.h"
-#include "Series/Quantizer.h"
+#include "Series/ValueArithmetic.h"
 
 #include <algorithm>
 #include <array>

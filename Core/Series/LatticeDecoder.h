@@ -36,7 +36,7 @@ public:
   /// What one number decodes to.
   T ValueOf(std::int64_t number) const;
 
-  /// decoded[i] from the number base + offsets[i], as Dequantize of Quantizer.h has it. Any input
+  /// decoded[i] from the number base + offsets[i]. Any input
   /// is safe.
   void Decode(std::int64_t base, const std::uint32_t* offsets, std::size_t count, T* decoded) const;
 

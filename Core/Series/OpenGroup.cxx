@@ -2,12 +2,22 @@
 #include "Series/OpenGroup.h"
 
 #include "Series/Hash.h"
-#include "Series/NodeTable.h"
+#include "Series/ValueArithmetic.h"
 
 namespace banyan
 {
 namespace
 {
+
+PayloadIdentity MacroVoxelIdentity(ScalarType type, const glm::ivec3& samples, double value)
+{
+  std::uint8_t context[32] = { 0, static_cast<std::uint8_t>(type) };
+  StoreNumber(context + 4, std::int32_t{ samples.x });
+  StoreNumber(context + 8, std::int32_t{ samples.y });
+  StoreNumber(context + 12, std::int32_t{ samples.z });
+  const Hash128 hash = HashOf(&value, sizeof(value), ShortHashOf(context, sizeof(context)));
+  return { hash.Low, hash.High };
+}
 
 BrickNode MakeNode(
   const OpenSeries& series, OpenGroup& open, const FieldKey& field, std::int64_t brick)

@@ -2,10 +2,10 @@
 #ifndef banyan_Series_OpenGroup_h
 #define banyan_Series_OpenGroup_h
 
-#include "Series/FieldReader.h"
 #include "Series/GroupNodes.h"
 #include "Series/GroupReader.h"
 #include "Series/LatticeDecoder.h"
+#include "Series/OpenSeries.h"
 
 #include <atomic>
 #include <map>

@@ -13,7 +13,7 @@
 namespace banyan
 {
 
-/// The payloads of a segment of version 2 in memory of this process. Pages are read when they are
+/// The payloads of a segment in memory of this process. Pages are read when they are
 /// needed first, and their checksums are those of what was read: what happens to the file later
 /// does not matter. May be used from any thread.
 ///

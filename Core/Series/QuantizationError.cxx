@@ -3,7 +3,7 @@
 
 #include "Base/Error.h"
 #include "Base/ForEachScalarType.h"
-#include "Series/Quantizer.h"
+#include "Series/ValueArithmetic.h"
 
 #include <algorithm>
 #include <cmath>

@@ -121,8 +121,7 @@ void SeriesFile::Internals::Read(const std::string& path, const std::string& tex
   const auto openIn = [this, &series](const std::string& folder)
   {
     series.Folder = folder;
-    this->Reader =
-      series.Index.FormatVersion == 1 ? MakeFieldReader1(series) : MakeFieldReader2(series);
+    this->Reader = std::make_unique<FieldReader>(series);
   };
   // Looking at every file first would make opening a third slower, where there are thousands.
   const bool usual = BeginsInFolder(path + ".d", series.Index);

@@ -126,7 +126,6 @@ struct EncodeStatistics
   std::int64_t RawBricks = 0;        ///< with samples that are kept beside the lattice
   std::uint64_t PayloadBytes = 0;    ///< stored in segments
   std::uint64_t TableBytes = 0;      ///< stored in segments: node tables, directories, headers
-  // Of format version 2; 0 otherwise.
   std::int64_t EmptyBlocks = 0;      ///< without payload: as predicted, or of one value
   std::int64_t Blocks = 0;           ///< what payloads are made of: blocks of all planes
   std::int64_t ExceptionVoxels = 0;  ///< of the finest level, kept bit-exact beside the lattice
@@ -140,8 +139,6 @@ struct EncodeStatistics
 /// All that the index file says. See Documentation/format.md.
 struct SeriesIndex
 {
-  /// 1 is read, and never written; 3 and 4 are those of meshes; 5 has hidden points or cells.
-  int FormatVersion = 2;
   Grid Domain;
   std::optional<MeshIndex> Mesh; ///< nothing: the series is of the images themselves
   int BrickCells = 16;

@@ -90,9 +90,9 @@ SmallSeries::SmallSeries(const std::string& folder, int kind)
   std::ifstream stream(this->Path + ".d/" + this->Changed().File, std::ios::binary);
   const std::string file{ std::istreambuf_iterator<char>(stream), {} };
   const auto* data = reinterpret_cast<const std::uint8_t*>(file.data());
-  const segment::Header header = segment::LoadHeader(data, group::Version);
+  const segment::Header header = segment::LoadHeader(data);
   this->Parts.Payloads.assign(data + segment::HeaderBytes, data + header.PayloadEnd);
-  for (std::uint32_t i = 1; i < header.Tables; ++i)
+  for (std::uint32_t i = 1; i < header.Sections; ++i)
   {
     const std::uint8_t* entry = data + header.DirectoryOffset + i * group::EntryBytes;
     Bytes section(LoadNumber<std::uint32_t>(entry + 12));
@@ -140,7 +140,6 @@ Bytes Assemble(const GroupParts& parts, const SegmentIndex& segment)
   Bytes file(segment::HeaderBytes);
   file.insert(file.end(), parts.Payloads.begin(), parts.Payloads.end());
   segment::Header header;
-  header.Version = group::Version;
   header.Steps = static_cast<std::uint32_t>(segment.Steps);
   header.PayloadEnd = file.size();
   Bytes pages;
@@ -168,7 +167,7 @@ Bytes Assemble(const GroupParts& parts, const SegmentIndex& segment)
     StoreNumber(entry + 16, ShortHashOf(file.data() + offset, stored));
     directory.insert(directory.end(), entry, entry + sizeof(entry));
   }
-  header.Tables = static_cast<std::uint32_t>(sections.size());
+  header.Sections = static_cast<std::uint32_t>(sections.size());
   header.DirectoryOffset = file.size();
   header.DirectoryHash = ShortHashOf(directory.data(), directory.size());
   file.insert(file.end(), directory.begin(), directory.end());

@@ -12,7 +12,7 @@ namespace banyan::fuzz
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// What a segment of version 2 holds behind its checksums and compression.
+/// What a segment holds behind its checksums and compression.
 struct GroupParts
 {
   Bytes Payloads;              ///< from offset 64 on

@@ -32,36 +32,16 @@ Bytes BodyOf(const std::string& text)
   return { text.begin() + static_cast<std::ptrdiff_t>(text.find('\n') + 1), text.end() };
 }
 
-/// Seeds from series that are there: the indices of all, segments and bricks of version 1.
+/// Seeds from series that are there: the indices of all.
 void CopyGolden(const std::filesystem::path& golden, const std::filesystem::path& folder)
 {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(golden))
   {
-    if (!entry.is_regular_file())
+    if (entry.is_regular_file() && entry.path().extension() == ".banyan")
     {
-      continue;
-    }
-    std::ifstream stream(entry.path(), std::ios::binary);
-    const std::string content{ std::istreambuf_iterator<char>(stream), {} };
-    const std::string name =
-      entry.path().parent_path().filename().string() + "-" + entry.path().filename().string();
-    if (entry.path().extension() == ".banyan")
-    {
-      Write((folder / "Index" / name).string(), BodyOf(content));
-      if (entry.path().parent_path().filename() == "version-1")
-      {
-        int number = 0;
-        for (const Bytes& brick : banyan::fuzz::BrickSeeds(entry.path().string()))
-        {
-          const std::string numbered =
-            entry.path().stem().string() + "-" + std::to_string(number++);
-          Write((folder / "Brick" / numbered).string(), brick);
-        }
-      }
-    }
-    else if (entry.path().extension() == ".seg" && content[8] == 1)
-    {
-      Write((folder / "Segment" / name).string(), { content.begin(), content.end() });
+      std::ifstream stream(entry.path(), std::ios::binary);
+      const std::string content{ std::istreambuf_iterator<char>(stream), {} };
+      Write((folder / "Index" / entry.path().filename()).string(), BodyOf(content));
     }
   }
 }
@@ -145,7 +125,7 @@ int main(int argc, char** argv)
   const fs::path folder = argv[1];
   const fs::path scratch = folder / "scratch";
   for (const fs::path& part : { folder / "Group", folder / "Exceptions", folder / "Index",
-         folder / "Segment", folder / "Brick", folder / "Block", folder / "Mesh", scratch })
+         folder / "Block", folder / "Mesh", scratch })
   {
     fs::create_directories(part);
   }
@@ -193,11 +173,6 @@ int main(int argc, char** argv)
   if (argc == 3)
   {
     CopyGolden(argv[2], folder);
-  }
-  else
-  {
-    fs::remove(folder / "Segment");
-    fs::remove(folder / "Brick");
   }
   fs::remove_all(scratch);
   return 0;

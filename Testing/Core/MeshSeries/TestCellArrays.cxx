@@ -226,27 +226,20 @@ TEST_F(CellArrays, EachCellHasASampleOfItsOwn)
 TEST_F(CellArrays, TheIndexSaysWhichTheyAre)
 {
   const SeriesIndex index = this->Encode<float>(0.1);
-  EXPECT_EQ(index.FormatVersion, 4);
+  EXPECT_EQ(FeaturesOf(index), (std::vector<std::string>{ "mesh", "cell arrays" }));
   EXPECT_EQ(index.ActiveScalars, "u");
   const std::string text = IndexToText(index);
-  EXPECT_EQ(text.rfind("banyan-series 4 ", 0), 0u);
+  EXPECT_EQ(text.rfind("BanyanSeries 1 ", 0), 0u);
   const SeriesIndex back = IndexFromText(text, "text");
   EXPECT_EQ(back.Arrays[0].CellArray, "");
   EXPECT_EQ(back.Arrays[1].Name, "u of cells");
   EXPECT_EQ(back.Arrays[1].CellArray, "u");
-  for (const int version : { 2, 3 }) // what readers of old would take for point arrays
-  {
-    SeriesIndex other = index;
-    other.FormatVersion = version;
-    EXPECT_THROW((void)IndexToText(other), Error);
-  }
   SeriesIndex other = index;
   other.Arrays[0].CellArray = "u";
   EXPECT_THROW((void)IndexToText(other), Error);
   other = index;
   other.Arrays[1].CellArray.clear();
-  EXPECT_THROW((void)IndexToText(other), Error);
-  other.FormatVersion = 3;
+  EXPECT_EQ(FeaturesOf(other), std::vector<std::string>{ "mesh" });
   EXPECT_NO_THROW((void)IndexToText(other));
 }
 

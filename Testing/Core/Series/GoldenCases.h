@@ -58,7 +58,7 @@ struct GoldenCase
 /// The list; it does not depend on the version of the format.
 std::vector<GoldenCase> GoldenCases();
 
-/// Those of them that came with version 2: groups of steps, all ways of prediction, quantizers.
+/// More of them: groups of steps, all ways of prediction, quantizers.
 std::vector<GoldenCase> GoldenGroupCases();
 
 /// Values of one array at a step, `[z][y][x][component]`, as bytes.

@@ -3,7 +3,6 @@
 
 #include "Series/AtomicFile.h"
 #include "Series/Hash.h"
-#include "Series/IndexText.h"
 #include "Series/SeriesTesting.h"
 
 #include <cstdio>
@@ -111,13 +110,9 @@ std::string EncodingText(const SeriesIndex& index)
       << index.ActiveScalars << "', bytes in " << index.PayloadBytesIn << ", bricks " << s.Bricks
       << ", macro voxels " << s.MacroVoxelBricks << ", unchanged " << s.UnchangedBricks
       << ", merged " << s.MergedBricks << ", raw " << s.RawBricks << ", payload bytes "
-      << s.PayloadBytes << ", table bytes " << s.TableBytes;
-  if (index.FormatVersion > 1)
-  {
-    out << ", blocks " << s.Blocks << ", empty " << s.EmptyBlocks << ", exceptions "
-        << s.ExceptionVoxels << ", chains " << s.ChainSum << " over " << s.ChainBricks
-        << ", longest " << s.ChainMost;
-  }
+      << s.PayloadBytes << ", table bytes " << s.TableBytes << ", blocks " << s.Blocks << ", empty "
+      << s.EmptyBlocks << ", exceptions " << s.ExceptionVoxels << ", chains " << s.ChainSum
+      << " over " << s.ChainBricks << ", longest " << s.ChainMost;
   return out.str();
 }
 
@@ -358,15 +353,7 @@ SeriesIndex WriteGoldenSeries(const std::string& folder, const GoldenCase& serie
     }
     encoder.AddStep(GoldenTime(step), borrowed);
   }
-  SeriesIndex index = encoder.Finish();
-  for (SegmentIndex& segment : index.Segments)
-  {
-    const std::string name = "golden" + segment.File.substr(segment.File.rfind('-'));
-    fs::rename(path + ".d/" + segment.File, path + ".d/" + name);
-    segment.File = name;
-  }
-  WriteFileAtomically(path, IndexToText(index));
-  return index;
+  return encoder.Finish();
 }
 
 int VersionOf(const std::string& indexPath)

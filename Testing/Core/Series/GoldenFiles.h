@@ -29,7 +29,7 @@ void SaveChecksums(const std::string& folder, const GoldenParts& parts);
 /// One sentence per part that is not the same in both, or is in one only.
 std::vector<std::string> Differences(const GoldenParts& expected, const GoldenParts& found);
 
-/// Encodes a series into a folder. Segments get names that do not differ from run to run.
+/// Encodes a series into a folder.
 SeriesIndex WriteGoldenSeries(const std::string& folder, const GoldenCase& series);
 
 /// Version that the first line of an index names.

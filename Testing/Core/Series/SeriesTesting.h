@@ -4,9 +4,9 @@
 
 #include "Base/ThreadPool.h"
 #include "Cache/BrickCache.h"
-#include "Series/Quantizer.h"
 #include "Series/SeriesEncoder.h"
 #include "Series/SeriesFile.h"
+#include "Series/ValueArithmetic.h"
 
 #include <gtest/gtest.h>
 

@@ -301,44 +301,5 @@ TEST(FilesWhileOpen, MoreThanTheProcessMayOpen)
   EXPECT_NE(said.find("open it again"), std::string::npos) << said;
 }
 
-TEST(FilesWhileOpen, OfVersionOne)
-{
-  std::mt19937 random(3);
-  Outcomes outcomes;
-  for (const auto& entry : fs::directory_iterator(std::string(BANYAN_GOLDEN_DIR) + "/version-1"))
-  {
-    if (entry.path().extension() != ".banyan")
-    {
-      continue;
-    }
-    const TemporaryFolder folder;
-    const std::string path = folder / "s.banyan";
-    fs::copy(entry.path(), path);
-    fs::copy(entry.path().string() + ".d", path + ".d");
-    const auto file = SeriesFile::Open(path);
-    if (file->Index().Arrays[0].Type != ScalarType::Float32)
-    {
-      continue;
-    }
-    const auto right = ReadSteps<float>(*file, 0);
-    const auto files = SegmentsOf(path);
-    for (int i = 0; i < 30; ++i)
-    {
-      const std::string& name = files[random() % files.size()];
-      const std::uint64_t place = random() % fs::file_size(name);
-      Flip(name, place, 3);
-      outcomes.Read<float>(*file, right, static_cast<int>(random() % right.size()), 0);
-      Flip(name, place, 3);
-    }
-    for (const std::string& name : files)
-    {
-      fs::resize_file(name, 100);
-      outcomes.Read<float>(*file, right, 0, 0);
-    }
-  }
-  EXPECT_GT(outcomes.Right, 20);
-  EXPECT_GT(outcomes.Refused, 5);
-}
-
 } // namespace
 } // namespace banyan::testing

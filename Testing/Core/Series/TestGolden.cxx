@@ -58,6 +58,11 @@ std::string MessageOf(const std::string& path, const FieldKey* field)
   return "nothing is wrong";
 }
 
+std::string FirstSegment(const std::string& path)
+{
+  return SeriesFile::Open(path)->Index().Segments.at(0).File;
+}
+
 /// In place and without waiting for the disk, which is what takes the time of tests.
 void Overwrite(const std::string& path, const std::string& content)
 {
@@ -141,9 +146,8 @@ TEST(Golden, EveryVersionIsReadAsItWasWritten)
 {
   const std::vector<std::string> folders = GoldenVersions();
   ASSERT_FALSE(folders.empty());
-  ASSERT_EQ(folders.size(), 2u);
+  ASSERT_EQ(folders.size(), 1u);
   EXPECT_EQ(fs::path(folders[0]).filename(), "version-1");
-  EXPECT_EQ(fs::path(folders[1]).filename(), "version-2");
   for (const std::string& folder : folders)
   {
     int series = 0;
@@ -225,7 +229,8 @@ TEST(Golden, OneChangedByteIsNoticed)
     const GoldenParts expected = LoadChecksums(folder);
     std::mt19937 random(7);
     int noticed = 0;
-    for (const std::string name : { "line.banyan", "line.banyan.d/golden-000000.seg" })
+    for (const std::string& name :
+      { std::string("line.banyan"), "line.banyan.d/" + FirstSegment(folder + "/line.banyan") })
     {
       const TemporaryFolder temporary;
       fs::create_directory(temporary / "copy");
@@ -266,21 +271,22 @@ TEST(Golden, NewerVersionsAreRefusedInOneSentence)
     const FieldKey field;
     EXPECT_EQ(MessageOf(path, &field), "nothing is wrong");
 
-    const std::string segment = path + ".d/golden-000000.seg";
+    const std::string name = FirstSegment(path);
+    const std::string segment = path + ".d/" + name;
     const std::string whole = ReadWholeFile(segment, 1 << 24);
     Overwrite(segment, WithByte(whole, 8, 9));
     std::string message = MessageOf(path, &field);
     EXPECT_NE(message.find("format version"), std::string::npos) << message;
-    EXPECT_NE(message.find("golden-000000.seg"), std::string::npos) << message;
+    EXPECT_NE(message.find(name), std::string::npos) << message;
     EXPECT_NE(message.find('9'), std::string::npos) << message;
     Overwrite(segment, whole);
 
     // A newer index may hold anything after the version; its number has to be said all the same.
     const std::string index = ReadWholeFile(path, 1 << 24);
-    const std::size_t rest = index.find(' ', std::string("banyan-series ").size());
+    const std::size_t rest = index.find(' ', std::string("BanyanSeries ").size());
     for (const std::string& after : { index.substr(rest), std::string("\n"), std::string(" ?") })
     {
-      Overwrite(path, "banyan-series 9" + after);
+      Overwrite(path, "BanyanSeries 9" + after);
       message = MessageOf(path, nullptr);
       EXPECT_NE(message.find("format version 9"), std::string::npos) << message;
       EXPECT_NE(message.find("this Banyan reads version"), std::string::npos) << message;

@@ -176,7 +176,7 @@ void Check(const Case& one)
     encoder.AddStep(double(step), { { flags[step].data() }, { values[step].data() } });
   }
   const SeriesIndex index = encoder.Finish();
-  EXPECT_EQ(index.FormatVersion, 5);
+  EXPECT_EQ(FeaturesOf(index), std::vector<std::string>{ "hidden" });
   EXPECT_EQ(index.ActiveScalars, "a");
   const auto file = SeriesFile::Open(path);
   for (int step = 0; step < steps; ++step)
@@ -288,8 +288,7 @@ TEST(HiddenPoints, IndexIsRefusedWhereFlagsDoNotFit)
     change(bad);
     EXPECT_THROW(CheckIndex(bad), Error);
   };
-  refused([](SeriesIndex& index) { index.FormatVersion = 2; });
-  refused([](SeriesIndex& index) { index.Arrays[0].Flags = ArrayFlags::None; });
+  refused([](SeriesIndex& index) { index.Mesh = MeshIndex{ "a.mesh", 1, 0, 0, 8, 1 }; });
   refused([](SeriesIndex& index) { index.Arrays[0].Type = ScalarType::Int8; });
   refused([](SeriesIndex& index) { index.Arrays[0].Components[0].ErrorBoundAbsolute = 1; });
   refused([](SeriesIndex& index) { std::swap(index.Arrays[0], index.Arrays[1]); });

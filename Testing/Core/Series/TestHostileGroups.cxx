@@ -51,9 +51,9 @@ void Rewrite(const std::string& path, std::size_t segment,
   SegmentIndex& at = index.Segments[segment];
   const std::string old = Content(path + ".d/" + at.File);
   const auto* data = reinterpret_cast<const std::uint8_t*>(old.data());
-  segment::Header header = segment::LoadHeader(data, group::Version);
+  segment::Header header = segment::LoadHeader(data);
   Sections sections;
-  for (std::uint32_t i = 0; i < header.Tables; ++i)
+  for (std::uint32_t i = 0; i < header.Sections; ++i)
   {
     const std::uint8_t* entry = data + header.DirectoryOffset + i * group::EntryBytes;
     const std::uint8_t* stored = data + LoadNumber<std::uint64_t>(entry);

@@ -170,7 +170,7 @@ TEST(IndexText, EveryFlippedBitAndEveryTruncationIsNoticed)
 /// The body with a first line that fits it.
 std::string Seal(const std::string& body)
 {
-  return "banyan-series 1 " + ToHex(HashOf(body.data(), body.size())) + "\n" + body;
+  return "BanyanSeries 1 " + ToHex(HashOf(body.data(), body.size())) + "\n" + body;
 }
 
 TEST(IndexText, SaysWhatIsWrong)
@@ -179,14 +179,15 @@ TEST(IndexText, SaysWhatIsWrong)
   ExpectRejected("", "not a Banyan series");
   ExpectRejected("# vtk DataFile Version 3.0\n", "not a Banyan series");
   std::string other = text;
-  other.replace(14, 1, "5");
-  ExpectRejected(other, "version 5");
-  for (const char* const mesh : { "3", "4" })
+  other.replace(13, 1, "5");
+  ExpectRejected(other, "newer Banyan: it has format version 5");
+  other.replace(13, 1, "0");
+  ExpectRejected(other, "first line");
+  for (const char* const version : { "1", "2", "3", "4", "5" })
   {
-    other.replace(14, 1, mesh);
-    ExpectRejected(other, "one of a mesh");
+    ExpectRejected("banyan-series " + std::string(version) + text.substr(14), "encode it anew");
   }
-  ExpectRejected("banyan-series 99999999999 x", "first line");
+  ExpectRejected("BanyanSeries 99999999999 x", "first line");
   const std::string body = text.substr(text.find('\n') + 1);
   const auto with = [&](const std::string& from, const std::string& to)
   {
@@ -196,6 +197,18 @@ TEST(IndexText, SaysWhatIsWrong)
   };
   ExpectRejected(Seal("[1]"), "not a JSON object");
   ExpectRejected(Seal("{"), "cannot be understood");
+  ExpectRejected(with("\"features\": []", "\"features\": [\"clouds\"]"), "knows 'clouds'");
+  ExpectRejected(
+    with("\"features\": []", "\"features\": [\"mesh\", \"clouds\"]"), "knows 'clouds'");
+  ExpectRejected(with("\"features\": []", "\"features\": [[1]]"), "knows '[1]'");
+  ExpectRejected(Seal("{ \"features\": [\"clouds\"] }"), "knows 'clouds'");
+  for (const char* const feature : { "mesh", "cell arrays", "hidden" })
+  {
+    ExpectRejected(with("\"features\": []", "\"features\": [\"" + std::string(feature) + "\"]"),
+      "not those that the series has");
+  }
+  ExpectRejected(with("\"features\": []", "\"features\": \"mesh\""), "features");
+  ExpectRejected(with("\"features\"", "\"creatures\""), "'features' is missing");
   ExpectRejected(with("\"levels\": 4", "\"levels\": 5"), "levels");
   ExpectRejected(with("\"levels\": 4", "\"lovels\": 4"), "'levels' is missing");
   ExpectRejected(with("\"levels\": 4", "\"levels\": 4.5"), "levels");

@@ -3,6 +3,7 @@
 
 #include "Base/Error.h"
 #include "Series/Bytes.h"
+#include "Series/GroupFormat.h"
 #include "Series/Hash.h"
 #include "Series/IndexText.h"
 #include "Series/SegmentFormat.h"
@@ -243,14 +244,15 @@ void Reseal(Files& files)
     std::string& bytes = files["s.banyan.d/" + segment.File];
     auto* data = reinterpret_cast<std::uint8_t*>(bytes.data());
     const auto offset = LoadNumber<std::uint64_t>(data + 24);
-    if (offset < bytes.size() && (bytes.size() - offset) % segment::EntryBytes == 0)
+    if (offset < bytes.size() && (bytes.size() - offset) % group::EntryBytes == 0)
     {
-      for (std::uint64_t at = offset; at < bytes.size(); at += segment::EntryBytes)
+      for (std::uint64_t at = offset; at < bytes.size(); at += group::EntryBytes)
       {
-        const segment::TableEntry entry = segment::LoadEntry(data + at);
-        if (entry.Offset < bytes.size() && entry.StoredBytes < bytes.size() - entry.Offset)
+        const auto section = LoadNumber<std::uint64_t>(data + at);
+        const auto stored = LoadNumber<std::uint32_t>(data + at + 8);
+        if (section < bytes.size() && stored < bytes.size() - section)
         {
-          StoreNumber(data + at + 24, ShortHashOf(data + entry.Offset, entry.StoredBytes));
+          StoreNumber(data + at + 16, ShortHashOf(data + section, stored));
         }
       }
       StoreNumber(data + 32, ShortHashOf(data + offset, bytes.size() - offset));

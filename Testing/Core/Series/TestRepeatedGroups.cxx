@@ -253,9 +253,6 @@ TEST(RepeatedGroups, HaveTheSameContentInTheIndex)
   shorter.Times.pop_back();
   shorter.Arrays[0].Components[0].StepRmse.pop_back();
   ExpectError([&] { (void)IndexToText(shorter); }, "not the same content");
-  SeriesIndex old = good;
-  old.FormatVersion = 1; // whose segments say which step is their first
-  ExpectError([&] { (void)IndexToText(old); }, "not the same content");
 }
 
 TEST(RepeatedGroups, OfTheSeriesThatIsReplacedStayWithIt)

@@ -234,9 +234,10 @@ TEST_F(SeriesPlaces, AFileIsKnownByItsBeginning)
     return BeginsAsSeries(this->Folder / "data/x");
   };
   EXPECT_TRUE(BeginsAsSeries(this->Folder / "made/s.banyan"));
-  EXPECT_TRUE(begins("banyan-series 9")) << "of a later version, or cut short";
-  EXPECT_FALSE(begins("banyan-serie"));
-  EXPECT_FALSE(begins("banyan-seriesX2 "));
+  EXPECT_TRUE(begins("BanyanSeries 9")) << "of a later version, or cut short";
+  EXPECT_TRUE(begins("banyan-series 5 0")) << "of a development version";
+  EXPECT_FALSE(begins("BanyanSerie"));
+  EXPECT_FALSE(begins("BanyanSeriesX2 "));
   EXPECT_FALSE(begins(""));
   EXPECT_FALSE(BeginsAsSeries(this->Folder / "data"));
   EXPECT_FALSE(BeginsAsSeries(this->Folder / "nothing"));

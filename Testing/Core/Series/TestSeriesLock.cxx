@@ -318,7 +318,7 @@ TEST(SeriesLock, RefusesAtOnceWhatCannotBeWritten)
   std::ofstream(folder / "full.banyan.part") << "a download";
   ExpectError([&] { take("full.banyan"); }, "full.banyan.part");
   EXPECT_EQ(fs::file_size(folder / "full.banyan.part"), 10u);
-  std::ofstream(folder / "full.banyan.part") << "banyan-series 5 0123";
+  std::ofstream(folder / "full.banyan.part") << "BanyanSeries 1 0123";
   take("full.banyan");
   fs::create_directories(folder / "locked.banyan.d/saving.lock");
   ExpectError([&] { take("locked.banyan"); }, "locked.banyan.d/saving.lock");
