@@ -62,7 +62,7 @@ Json SizeToJson(const SeriesReport& report)
   json["bitsPerValue"] = report.BitsPerValue();
   json["ratio"] = static_cast<double>(report.Index.PayloadBytesIn) / encoded;
   json["savedAgainstRaw"] = 1.0 - encoded / static_cast<double>(report.Index.PayloadBytesIn);
-  json["savedAgainst8Bit"] = SavedShare(8 * report.EncodedBytes(), report.Values(), 8);
+  json["savedAgainst8Bit"] = 1.0 - report.BitsPerValue() / 8.0;
   return json;
 }
 
@@ -140,21 +140,9 @@ Json QuantizerToJson(const ComponentIndex& index)
   return json;
 }
 
-Json OctreeToJson(const OctreeComparison& octree)
+Json ComponentToJson(const SeriesReport& report, std::size_t number)
 {
-  const double voxels = static_cast<double>(octree.Voxels);
-  Json json;
-  json["bitsPerVoxel"] = static_cast<double>(octree.UniformBits) / voxels;
-  json["bitsPerVoxelOfCodes"] = static_cast<double>(octree.UniformCodes) / voxels;
-  json["bitsPerVoxelAdaptive"] = static_cast<double>(octree.AdaptiveBits) / voxels;
-  json["savedAgainst8Bit"] = SavedShare(octree.UniformBits, octree.Voxels, 8);
-  json["savedAgainst8BitAdaptive"] = SavedShare(octree.AdaptiveBits, octree.Voxels, 8);
-  return json;
-}
-
-Json ComponentToJson(const InfoReport& report, std::size_t number)
-{
-  const ComponentReport& component = report.Series.Components[number];
+  const ComponentReport& component = report.Components[number];
   Json json;
   json["name"] = component.Name;
   json["type"] = NameOf(component.Type);
@@ -166,16 +154,12 @@ Json ComponentToJson(const InfoReport& report, std::size_t number)
   json["nonFinite"] = component.Index.NonFiniteCount;
   json["error"] = ErrorToJson(component);
   json["levels"] = Json::array();
-  for (int level = 0; level < report.Series.Index.Levels; ++level)
+  for (int level = 0; level < report.Index.Levels; ++level)
   {
     json["levels"].push_back(LevelToJson(component.Sum(level)));
   }
-  json["macroVoxelsBySize"] = SizesToJson(report.Series, component.MacroVoxels());
-  json["unchangedBySize"] = SizesToJson(report.Series, component.Unchanged());
-  if (!report.Octrees.empty())
-  {
-    json["octree"] = OctreeToJson(report.Octrees[number]);
-  }
+  json["macroVoxelsBySize"] = SizesToJson(report, component.MacroVoxels());
+  json["unchangedBySize"] = SizesToJson(report, component.Unchanged());
   json["steps"] = Json::array();
   return json;
 }
@@ -188,11 +172,11 @@ Json SummaryToJson(const TimeSummary& summary)
 
 } // namespace
 
-std::string InfoToJson(const InfoReport& report, const DecodeTimes* times)
+std::string InfoToJson(const SeriesReport& report, const DecodeTimes* times)
 {
-  const SeriesIndex& index = report.Series.Index;
+  const SeriesIndex& index = report.Index;
   Json json;
-  json["file"] = report.Series.File;
+  json["file"] = report.File;
   if (index.Mesh)
   {
     json["mesh"] = { { "points", index.Mesh->Points }, { "cells", index.Mesh->Cells },
@@ -205,10 +189,10 @@ std::string InfoToJson(const InfoReport& report, const DecodeTimes* times)
   json["levels"] = index.Levels;
   json["errorBound"] = { { "asked", index.ErrorBound },
     { "mode", index.Mode == ErrorBoundMode::Absolute ? "absolute" : "relative" } };
-  json["size"] = SizeToJson(report.Series);
+  json["size"] = SizeToJson(report);
   json["stepsToDecode"] = ChainsToJson(index.Statistics);
   json["components"] = Json::array();
-  for (std::size_t c = 0; c < report.Series.Components.size(); ++c)
+  for (std::size_t c = 0; c < report.Components.size(); ++c)
   {
     json["components"].push_back(ComponentToJson(report, c));
   }

@@ -13,7 +13,7 @@ namespace banyan
 /// The report as a JSON object; Documentation/howto/how-good.md explains its members. Numbers that
 /// do not exist are null.
 /// @param times nullptr when they were not measured
-std::string InfoToJson(const InfoReport& report, const DecodeTimes* times);
+std::string InfoToJson(const SeriesReport& report, const DecodeTimes* times);
 
 } // namespace banyan
 

@@ -15,30 +15,15 @@
 namespace
 {
 
-/// What the file says; the file is closed again, because measuring times wants it for itself.
-banyan::InfoReport Collect(const banyan::InfoOptions& options)
-{
-  const auto file = banyan::SeriesFile::Open(options.File);
-  banyan::InfoReport report;
-  report.Series = banyan::ReportSeries(*file, options.Choice);
-  for (const banyan::ComponentReport& component : report.Series.Components)
-  {
-    if (options.Octree)
-    {
-      report.Octrees.push_back(banyan::CompareWithOctree(*file, component.Array,
-        component.Component, component.Steps.front().Step, component.Steps.back().Step + 1));
-    }
-  }
-  return report;
-}
-
 void Inform(const banyan::InfoOptions& options)
 {
-  const banyan::InfoReport report = Collect(options);
+  // Closed again at once: measuring times wants the file for itself.
+  const banyan::SeriesReport report =
+    banyan::ReportSeries(*banyan::SeriesFile::Open(options.File), options.Choice);
   std::optional<banyan::DecodeTimes> times;
   if (options.Time)
   {
-    times = banyan::MeasureDecodeTimes(options.File, report.Series.Components[0].Array, 1);
+    times = banyan::MeasureDecodeTimes(options.File, report.Components[0].Array, 1);
   }
   if (!options.Csv.empty())
   {

@@ -24,10 +24,6 @@ InfoOptions ParseInfoOptions(const std::vector<std::string>& arguments)
       options.Csv = left.Value(option);
     else if (option == "--json")
       options.Json = true;
-    else if (option == "--all")
-      options.Octree = options.Time = true;
-    else if (option == "--octree")
-      options.Octree = true;
     else if (option == "--time")
       options.Time = true;
     else if (option.rfind("--", 0) == 0)
@@ -53,9 +49,6 @@ std::string InfoHelp()
          "  --array NAME  of one array instead of all\n"
          "  --json        as JSON instead of text\n"
          "  --csv FILE    also writes a table with one line per array, component and step\n"
-         "  --all         all that is known of the series: --octree and --time together\n"
-         "  --octree      also says what 8-bit codes in the octrees of the study that Banyan\n"
-         "                started from would take for the same data; decodes everything\n"
          "  --time        also measures how long decoding takes, for some seconds\n"
          "  --help        this text\n";
 }

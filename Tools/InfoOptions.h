@@ -17,7 +17,6 @@ struct InfoOptions
   ReportChoice Choice;
   std::string Csv; ///< file for the table by steps; empty: none
   bool Json = false;
-  bool Octree = false;
   bool Time = false;
   bool Help = false;
 };

@@ -223,13 +223,12 @@ std::string Bricks(const SeriesReport& report)
 }
 
 std::vector<std::string> SizeHeadings(
-  const std::string& first, const SeriesReport& report, std::size_t sizes, bool bricks)
+  const std::string& first, const SeriesReport& report, std::size_t sizes)
 {
   std::vector<std::string> headings{ first };
   for (std::size_t level = 0; level < sizes; ++level)
   {
-    headings.push_back(std::to_string(
-      bricks ? report.VoxelsBelow(level) : report.VoxelsOf(std::int64_t{ 1 } << level)));
+    headings.push_back(std::to_string(report.VoxelsBelow(level)));
   }
   return headings;
 }
@@ -260,7 +259,7 @@ std::vector<std::size_t> Shown(std::size_t steps)
 std::string BySize(const SeriesReport& report, const ComponentReport& component)
 {
   const std::size_t sizes = component.Steps[0].Unchanged.size();
-  TextTable table(SizeHeadings(component.Name + ", by size in voxels", report, sizes, true));
+  TextTable table(SizeHeadings(component.Name + ", by size in voxels", report, sizes));
   table.AddRow(SizeRow("macro voxels", component.MacroVoxels()));
   table.AddRow(SizeRow("unchanged subtrees", component.Unchanged()));
   const CountsBySize all = component.Unchanged();
@@ -271,35 +270,6 @@ std::string BySize(const SeriesReport& report, const ComponentReport& component)
       "  at step " + std::to_string(component.Steps[i].Step), component.Steps[i].Unchanged));
   }
   return "\n" + table.Text();
-}
-
-std::string Octree(
-  const SeriesReport& report, const std::string& name, const OctreeComparison& octree)
-{
-  const double voxels = static_cast<double>(octree.Voxels);
-  TextTable table({ name + " in the study's octrees", "bits per value", "saved of 8 bits" });
-  const auto row = [&](const std::string& what, std::uint64_t bits)
-  {
-    table.AddRow({ what, Digits(static_cast<double>(bits) / voxels),
-      Percent(SavedShare(bits, octree.Voxels, 8)) });
-  };
-  row("uniform quantizer", octree.UniformBits);
-  row("  its codes alone", octree.UniformCodes);
-  row("adaptive quantizer", octree.AdaptiveBits);
-  CountsBySize macro(octree.Steps[0].MacroVoxels.size(), 0);
-  CountsBySize merged(macro.size(), 0);
-  for (const PaperOctreeCounts& step : octree.Steps)
-  {
-    for (std::size_t level = 0; level < macro.size(); ++level)
-    {
-      macro[level] += step.MacroVoxels[level];
-      merged[level] += step.MergedSubtrees[level];
-    }
-  }
-  TextTable sizes(SizeHeadings("its nodes by size in voxels", report, macro.size(), false));
-  sizes.AddRow(SizeRow("macro voxels", macro));
-  sizes.AddRow(SizeRow("merged subtrees", merged));
-  return "\n" + table.Text() + "\n" + sizes.Text();
 }
 
 std::string Times(const DecodeTimes& times)
@@ -321,17 +291,12 @@ std::string Times(const DecodeTimes& times)
 
 } // namespace
 
-std::string InfoToText(const InfoReport& report, const DecodeTimes* times)
+std::string InfoToText(const SeriesReport& series, const DecodeTimes* times)
 {
-  const SeriesReport& series = report.Series;
   std::string text = Heading(series) + Size(series) + Errors(series) + Bricks(series);
   for (const ComponentReport& component : series.Components)
   {
     text += BySize(series, component);
-  }
-  for (std::size_t c = 0; c < report.Octrees.size(); ++c)
-  {
-    text += Octree(series, series.Components[c].Name, report.Octrees[c]);
   }
   return times ? text + Times(*times) : text;
 }

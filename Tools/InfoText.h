@@ -12,7 +12,7 @@ namespace banyan
 
 /// The report for people.
 /// @param times nullptr when they were not measured
-std::string InfoToText(const InfoReport& report, const DecodeTimes* times);
+std::string InfoToText(const SeriesReport& series, const DecodeTimes* times);
 
 } // namespace banyan
 

@@ -16,8 +16,7 @@ std::optional<double> Count(std::int64_t count)
 /// Decibels against the range of the step itself; none where nothing is wrong, or nothing known.
 std::optional<double> PsnrOfOwnRange(const StepLine& line)
 {
-  const std::optional<double> rmse =
-    line.Report->Series.Components[line.Component].RmseOf(line.At());
+  const std::optional<double> rmse = line.Report->Components[line.Component].RmseOf(line.At());
   return rmse ? Decibels(line.At().Range.Width(), *rmse) : std::nullopt;
 }
 
@@ -28,36 +27,13 @@ StepColumn BrickColumn(const std::string& name, std::int64_t BrickCounts::*membe
 }
 
 /// A column per size of nodes.
-void AddSizes(std::vector<StepColumn>& columns, const InfoReport& report, const std::string& name,
+void AddSizes(std::vector<StepColumn>& columns, const SeriesReport& report, const std::string& name,
   CountsBySize StepReport::*member)
 {
-  for (std::size_t size = 0; size < (report.Series.Components[0].Steps[0].*member).size(); ++size)
+  for (std::size_t size = 0; size < (report.Components[0].Steps[0].*member).size(); ++size)
   {
-    columns.push_back({ name + "_" + std::to_string(report.Series.VoxelsBelow(size)),
+    columns.push_back({ name + "_" + std::to_string(report.VoxelsBelow(size)),
       [member, size](const StepLine& line) { return Count((line.At().*member)[size]); } });
-  }
-}
-
-const PaperOctreeCounts& OctreeOf(const StepLine& line)
-{
-  return line.Report->Octrees[line.Component].Steps[line.Step];
-}
-
-void AddOctree(std::vector<StepColumn>& columns, const InfoReport& report)
-{
-  columns.push_back({ "octree_bits",
-    [](const StepLine& line) { return static_cast<double>(OctreeOf(line).Bits()); } });
-  for (std::size_t l = 0; l < report.Octrees[0].Steps[0].MacroVoxels.size(); ++l)
-  {
-    columns.push_back(
-      { "octree_macro_voxels_" + std::to_string(report.Series.VoxelsOf(std::int64_t{ 1 } << l)),
-        [l](const StepLine& line) { return Count(OctreeOf(line).MacroVoxels[l]); } });
-  }
-  for (std::size_t l = 0; l < report.Octrees[0].Steps[0].MergedSubtrees.size(); ++l)
-  {
-    columns.push_back(
-      { "octree_merged_" + std::to_string(report.Series.VoxelsOf(std::int64_t{ 1 } << l)),
-        [l](const StepLine& line) { return Count(OctreeOf(line).MergedSubtrees[l]); } });
   }
 }
 
@@ -73,7 +49,7 @@ std::string Quoted(const std::string& text)
 
 } // namespace
 
-std::vector<StepColumn> StepColumns(const InfoReport& report)
+std::vector<StepColumn> StepColumns(const SeriesReport& report)
 {
   std::vector<StepColumn> columns{
     { "step", [](const StepLine& line) { return Count(line.At().Step); } },
@@ -91,7 +67,7 @@ std::vector<StepColumn> StepColumns(const InfoReport& report)
         return range.Empty() ? std::nullopt : std::optional<double>(range.High);
       } },
     { "rmse", [](const StepLine& line)
-      { return line.Report->Series.Components[line.Component].RmseOf(line.At()); } },
+      { return line.Report->Components[line.Component].RmseOf(line.At()); } },
     { "psnr_of_own_range", PsnrOfOwnRange },
     BrickColumn("bricks", &BrickCounts::Bricks),
     BrickColumn("macro_voxel_bricks", &BrickCounts::MacroVoxels),
@@ -112,19 +88,15 @@ std::vector<StepColumn> StepColumns(const InfoReport& report)
   };
   AddSizes(columns, report, "macro_voxels", &StepReport::MacroVoxels);
   AddSizes(columns, report, "unchanged", &StepReport::Unchanged);
-  if (!report.Octrees.empty())
-  {
-    AddOctree(columns, report);
-  }
   return columns;
 }
 
-std::vector<StepLine> StepLines(const InfoReport& report)
+std::vector<StepLine> StepLines(const SeriesReport& report)
 {
   std::vector<StepLine> lines;
-  for (std::size_t c = 0; c < report.Series.Components.size(); ++c)
+  for (std::size_t c = 0; c < report.Components.size(); ++c)
   {
-    for (std::size_t s = 0; s < report.Series.Components[c].Steps.size(); ++s)
+    for (std::size_t s = 0; s < report.Components[c].Steps.size(); ++s)
     {
       lines.push_back({ &report, c, s });
     }
@@ -132,7 +104,7 @@ std::vector<StepLine> StepLines(const InfoReport& report)
   return lines;
 }
 
-std::string StepCsv(const InfoReport& report)
+std::string StepCsv(const SeriesReport& report)
 {
   const std::vector<StepColumn> columns = StepColumns(report);
   std::string text = "array";

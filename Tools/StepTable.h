@@ -2,7 +2,6 @@
 #ifndef banyan_Tools_StepTable_h
 #define banyan_Tools_StepTable_h
 
-#include "OctreeComparison.h"
 #include "SeriesReport.h"
 
 #include <functional>
@@ -14,22 +13,14 @@
 namespace banyan
 {
 
-/// Everything that banyan-info found out.
-struct InfoReport
-{
-  SeriesReport Series;
-  /// One per component of the report, when it was asked for.
-  std::vector<OctreeComparison> Octrees;
-};
-
 /// One line of the table by steps, with what its columns are made from.
 struct StepLine
 {
-  const InfoReport* Report = nullptr;
+  const SeriesReport* Report = nullptr;
   std::size_t Component = 0; ///< in the report
   std::size_t Step = 0;      ///< in the component's steps
 
-  const ComponentReport& Of() const { return this->Report->Series.Components[this->Component]; }
+  const ComponentReport& Of() const { return this->Report->Components[this->Component]; }
   const StepReport& At() const { return this->Of().Steps[this->Step]; }
 };
 
@@ -43,14 +34,14 @@ struct StepColumn
 };
 
 /// Columns "unchanged_4096" and the like count the greatest nodes of at most that many voxels.
-std::vector<StepColumn> StepColumns(const InfoReport& report);
+std::vector<StepColumn> StepColumns(const SeriesReport& report);
 
 /// All lines: components in their order, steps within.
-std::vector<StepLine> StepLines(const InfoReport& report);
+std::vector<StepLine> StepLines(const SeriesReport& report);
 
 /// The table as comma-separated values with a line of headings; the first columns are array (with
 /// the component) and the rest as `StepColumns`. Nothing is an empty field.
-std::string StepCsv(const InfoReport& report);
+std::string StepCsv(const SeriesReport& report);
 
 } // namespace banyan
 

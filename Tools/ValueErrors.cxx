@@ -68,10 +68,7 @@ public:
 
   ValueErrors Run()
   {
-    const ScalarType type = ScalarTypeOf<T>();
-    const auto before = QuantizeUniform(
-      this->Rule.Classes, type, this->Original, this->Count, static_cast<int>(this->Stride));
-    const auto after = QuantizeUniform(this->Rule.Classes, type, this->Decoded, this->Count);
+    const ValueClasses& classes = this->Rule.Classes;
     this->TransformValues();
     for (std::int64_t i = 0; i < this->Count; ++i)
     {
@@ -80,7 +77,10 @@ public:
       if (IsFinite(original) && (this->Hidden == nullptr || this->Hidden[at] == 0))
       {
         this->AddFinite(i, original, this->Decoded[at]);
-        this->Errors.OtherClass += before[at] != after[at] ? 1 : 0;
+        this->Errors.OtherClass += classes.ClassOf(static_cast<double>(original)) !=
+                                       classes.ClassOf(static_cast<double>(this->Decoded[at]))
+                                     ? 1
+                                     : 0;
       }
       else
       {
@@ -207,6 +207,14 @@ private:
 };
 
 } // namespace
+
+ValueClasses::ValueClasses(const ValueRange& range)
+  : HalfLow(0.5 * range.Low)
+{
+  const double half = range.Empty() ? 0.0 : 0.5 * range.High - 0.5 * range.Low;
+  const double width = half / 256.0;
+  this->ClassesPerHalf = width > 0.0 ? 1.0 / width : 0.0;
+}
 
 void ValueErrors::Merge(const ValueErrors& other, std::int64_t first)
 {

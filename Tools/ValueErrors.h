@@ -4,8 +4,8 @@
 
 #include "Base/ScalarType.h"
 #include "Series/OpacityWeight.h"
-#include "Series/PaperQuantizer.h"
 #include "Series/Transform.h"
+#include "Series/ValueRange.h"
 
 #include <cstdint>
 #include <vector>
@@ -50,12 +50,35 @@ struct ValueErrors
   double OtherClassShare() const;
 };
 
+/// The 8-bit classes of the study that Banyan started from: 256 parts of a range, equally wide.
+/// @par Source: "A study of time-varying octree and difference encoding", section 3.1.
+class ValueClasses
+{
+public:
+  ValueClasses() = default;
+  /// With an empty range, or one without width, there is one class.
+  explicit ValueClasses(const ValueRange& range);
+
+  /// Values outside of the range are in the first or last class, NaN in the first.
+  int ClassOf(double value) const
+  {
+    // Halves, because the width of a range of doubles may overflow. In this order NaN becomes 0.
+    const double position = (0.5 * value - this->HalfLow) * this->ClassesPerHalf;
+    const double number = position > 0.0 ? position : 0.0;
+    return static_cast<int>(number < 255.0 ? number : 255.0);
+  }
+
+private:
+  double HalfLow = 0.0;
+  double ClassesPerHalf = 0.0;
+};
+
 /// What values are judged by.
 struct Judgement
 {
-  double Bound = 0.0;                       ///< |f(decoded) - f(original)| <= this
-  Transform Map;                            ///< f
-  PaperQuantizer Classes;                   ///< the 8-bit classes
+  double Bound = 0.0; ///< |f(decoded) - f(original)| <= this
+  Transform Map;      ///< f
+  ValueClasses Classes;
   const OpacityFunction* Opacity = nullptr; ///< null: 1 everywhere
   /// Beyond the bound, a value may become another one of its interval.
   InvisibleIntervals Invisible{};

@@ -246,7 +246,7 @@ private:
       first = clamped.data();
       stride = 1;
     }
-    const Judgement judgement{ component.Bound, index.ValueTransform, { RangeOf(index), 8 },
+    const Judgement judgement{ component.Bound, index.ValueTransform, ValueClasses(RangeOf(index)),
       &this->Opacities[c], IntervalsOf(index), index.FillValues, hidden };
     const ValueErrors errors = CompareValues(
       array.Type, first, stride, this->Decoded.data(), count, judgement, ThreadPool::Process());

@@ -1,15 +1,12 @@
 #!/usr/bin/env bash
 # Tells what an encoded series holds, how small it is, how exact, and what its tree is made of.
 #
-#   info.sh FILE [--step N] [--array NAME] [--json] [--all] [--octree] [--time] [--figure PICTURE] [--help]
+#   info.sh FILE [--step N] [--array NAME] [--json] [--time] [--figure PICTURE] [--help]
 #
 #   FILE               the series, name.banyan
 #   --step N           of one time step (the first is 0) instead of all
 #   --array NAME       of one array instead of all
 #   --json             as JSON instead of text
-#   --all              all that is known of the series: --octree and --time together
-#   --octree           also compares with the octrees of the study that Banyan started from:
-#                      what 8-bit codes of the same data would take (its table 2); decodes everything
 #   --time             also measures how long decoding takes, for some seconds
 #   --figure PICTURE   draws how many subtrees are unchanged, by size, over the time steps (figure 9
 #                      of the study), as .png, .svg or .pdf; .csv writes the table behind it, with

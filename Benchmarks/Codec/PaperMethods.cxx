@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "UniformCodes.h"
 
-#include "Series/PaperOctree.h"
+#include "Papers/PaperOctree.h"
 
 namespace banyan::bench
 {

@@ -87,7 +87,7 @@ def test_verify(folder):
 
 def test_info(folder):
     series = os.path.join(folder, "series.banyan")
-    expect(0, "12 x 11 x 6 samples, 3 steps", "info.sh", series, "--octree")
+    expect(0, "12 x 11 x 6 samples, 3 steps", "info.sh", series)
     status, output, messages = run("info.sh", series, "--json", "--step", "1")
     check(status == 0, messages)
     check(json.loads(output)["size"]["values"] == 12 * 11 * 6 * 3 * 4, output)

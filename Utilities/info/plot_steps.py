@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """plot_steps.py TABLE PICTURE: draws the number of unchanged subtrees by size over the time steps.
 
-TABLE is what banyan-info --csv writes. Each array has a row of its own: the bricks of the series on
-the left and, when the table has them, the study's octrees on the right (its figure 9).
+TABLE is what banyan-info --csv writes. Each array has a picture of its own (figure 9 of the study).
 """
 
 import csv
@@ -14,7 +13,7 @@ import matplotlib
 matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402 (the line before decides how it draws)
 
-KINDS = {"unchanged": "unchanged subtrees of bricks", "octree_merged": "merged subtrees of 8-bit codes"}
+KIND = "unchanged"
 
 
 def read(path):
@@ -22,20 +21,20 @@ def read(path):
         return list(csv.DictReader(file))
 
 
-def sizes_of(rows, kind):
-    """Names of the columns of a kind, and the voxels that they stand for."""
+def sizes_of(rows):
+    """Names of the columns with counts, and the voxels that they stand for."""
     found = [(int(match.group(1)), name) for name in rows[0]
-             if (match := re.fullmatch(kind + r"_(\d+)", name))]
+             if (match := re.fullmatch(KIND + r"_(\d+)", name))]
     return sorted(found)
 
 
-def draw(axes, rows, kind):
+def draw(axes, rows):
     # Nothing comes before the first step, so nothing of it can be unchanged.
     rows = [row for row in rows if row["step"] != "0"] or rows
     steps = [int(row["step"]) for row in rows]
     marker = "o" if len(steps) == 1 else None
     highest = 1.0
-    for voxels, name in sizes_of(rows, kind):
+    for voxels, name in sizes_of(rows):
         counts = [float(row[name]) for row in rows]
         highest = max(highest, *counts)
         if any(counts):
@@ -45,7 +44,7 @@ def draw(axes, rows, kind):
     axes.xaxis.get_major_locator().set_params(integer=True)
     axes.set_xlabel("time step")
     axes.set_ylabel("number of blocks")
-    axes.set_title(f"{rows[0]['array']}: {KINDS[kind]}", fontsize="medium")
+    axes.set_title(f"{rows[0]['array']}: unchanged subtrees of bricks", fontsize="medium")
     if axes.lines:
         axes.legend(fontsize="x-small", ncol=2)
     else:
@@ -56,12 +55,10 @@ def main():
     table, picture = sys.argv[1:3]
     rows = read(table)
     names = list(dict.fromkeys(row["array"] for row in rows))
-    kinds = [kind for kind in KINDS if sizes_of(rows, kind)]
-    figure, axes = pyplot.subplots(len(names), len(kinds), squeeze=False, layout="constrained",
-                                   figsize=(6.4 * len(kinds), 4.0 * len(names)))
-    for line, name in zip(axes, names):
-        for place, kind in zip(line, kinds):
-            draw(place, [row for row in rows if row["array"] == name], kind)
+    figure, axes = pyplot.subplots(len(names), squeeze=False, layout="constrained",
+                                   figsize=(6.4, 4.0 * len(names)))
+    for place, name in zip(axes[:, 0], names):
+        draw(place, [row for row in rows if row["array"] == name])
     figure.savefig(picture, dpi=150)
 
 

@@ -4,7 +4,6 @@
 #include "DecodeTimes.h"
 #include "InfoJson.h"
 #include "InfoText.h"
-#include "OctreeComparison.h"
 #include "SeriesReport.h"
 #include "StepTable.h"
 
@@ -41,9 +40,9 @@ struct Corners
     this->File = SeriesFile::Open(this->Path);
   }
 
-  InfoReport Report(const ReportChoice& choice = {}) const
+  SeriesReport Report(const ReportChoice& choice = {}) const
   {
-    return { ReportSeries(*this->File, choice), {} };
+    return ReportSeries(*this->File, choice);
   }
 
   std::vector<float> Brick(int step, std::int64_t brick) const
@@ -58,7 +57,7 @@ struct Corners
 TEST(Info, BricksAreCountedAsTheyDecode)
 {
   const Corners corners;
-  const SeriesReport report = corners.Report().Series;
+  const SeriesReport report = corners.Report();
   ASSERT_EQ(report.Components.size(), 1u);
   ASSERT_EQ(report.Components[0].Steps.size(), std::size_t{ StepCount });
   const BrickLayout layout = corners.File->Layout(0);
@@ -91,7 +90,7 @@ TEST(Info, BricksAreCountedAsTheyDecode)
 TEST(Info, UnchangedSubtreesCoverTheUnchangedBricks)
 {
   const Corners corners;
-  const SeriesReport report = corners.Report().Series;
+  const SeriesReport report = corners.Report();
   for (const StepReport& step : report.Components[0].Steps)
   {
     // A node stands over at most 8^level bricks, and each unchanged brick is below exactly one.
@@ -111,7 +110,7 @@ TEST(Info, UnchangedSubtreesCoverTheUnchangedBricks)
 TEST(Info, PayloadsAreCountedOncePerSegment)
 {
   const Corners corners;
-  const ComponentReport component = corners.Report().Series.Components[0];
+  const ComponentReport component = corners.Report().Components[0];
   std::uint64_t bytes = 0;
   for (int level = 0; level < corners.File->Index().Levels; ++level)
   {
@@ -142,7 +141,7 @@ TEST(Info, ErrorsAreThoseOfTheDecodedValues)
     }
     meanSquares.push_back(squares / static_cast<double>(decoded.size()));
   }
-  const SeriesReport report = corners.Report().Series;
+  const SeriesReport report = corners.Report();
   const double rmse = std::sqrt(squares / static_cast<double>(report.Values()));
   EXPECT_EQ(report.Values(), 40 * 24 * 17 * StepCount);
   EXPECT_NEAR(report.Components[0].Rmse(), rmse, 1e-12);
@@ -179,8 +178,8 @@ TEST(Info, JsonHasWhatTheTextSaysOfChainsAndSteps)
       step["psnr_of_own_range"], 20 * std::log10(width / step["rmse"].get<double>()), 1e-9);
   }
   // Versions that did not count chains.
-  InfoReport older = corners.Report();
-  older.Series.Index.Statistics.ChainBricks = 0;
+  SeriesReport older = corners.Report();
+  older.Index.Statistics.ChainBricks = 0;
   EXPECT_TRUE(nlohmann::json::parse(InfoToJson(older, nullptr))["stepsToDecode"].is_null());
 }
 
@@ -201,44 +200,13 @@ TEST(Info, SizesAreThoseOnTheDisk)
   EXPECT_DOUBLE_EQ(json["savedAgainst8Bit"], 1 - static_cast<double>(bytes) / values);
 }
 
-TEST(Info, TheOctreeIsThatOfTheDecodedCodes)
-{
-  const Corners corners;
-  const OctreeComparison all = CompareWithOctree(*corners.File, 0, 0, 0, StepCount);
-  const ValueRange range = corners.File->Index().Arrays[0].Components[0].Range;
-  std::uint64_t bytes = 0;
-  std::vector<std::uint16_t> previous;
-  for (int step = 0; step < StepCount; ++step)
-  {
-    std::vector<std::uint16_t> codes;
-    for (const float value : ReadAll<float>(*corners.File, { step, 0, 0, 0 }))
-    {
-      codes.push_back(static_cast<std::uint16_t>(
-        std::min(255.0, std::floor((value - range.Low) / (range.High - range.Low) * 256))));
-    }
-    bytes += EncodePaperOctree(
-      codes.data(), previous.empty() ? nullptr : previous.data(), { 40, 24, 17 }, 8)
-               .Stream.size();
-    previous = codes;
-  }
-  EXPECT_EQ(all.UniformBits, 8 * bytes);
-  EXPECT_LT(all.UniformCodes, all.UniformBits);
-  EXPECT_GT(all.AdaptiveBits, 0u);
-  EXPECT_EQ(all.Voxels, 40 * 24 * 17 * StepCount);
-  // One step by itself is encoded after the one before.
-  const OctreeComparison one = CompareWithOctree(*corners.File, 0, 0, 2, 3);
-  ASSERT_EQ(one.Steps.size(), 1u);
-  EXPECT_EQ(one.Steps[0].Bits(), all.Steps[2].Bits());
-  EXPECT_EQ(one.Steps[0].MergedSubtrees, all.Steps[2].MergedSubtrees);
-}
-
 TEST(Info, ChoosesStepsAndArrays)
 {
   const Corners corners;
-  const ComponentReport whole = corners.Report().Series.Components[0];
+  const ComponentReport whole = corners.Report().Components[0];
   for (const int step : { 0, 4, StepCount - 1 })
   {
-    const ComponentReport one = corners.Report({ step, "values" }).Series.Components[0];
+    const ComponentReport one = corners.Report({ step, "values" }).Components[0];
     ASSERT_EQ(one.Steps.size(), 1u);
     const BrickCounts& a = one.Steps[0].Levels[0];
     const BrickCounts& b = whole.Steps[static_cast<std::size_t>(step)].Levels[0];
@@ -266,7 +234,7 @@ TEST(Info, SegmentsThatAreStoredOnceAreCountedOnce)
   }
   Encode(path, CornersGrid(), steps, CornersOptions()); // 3 steps per segment
   const auto file = SeriesFile::Open(path);
-  const InfoReport report{ ReportSeries(*file, {}), {} };
+  const SeriesReport report = ReportSeries(*file, {});
   // All but the first refer to the same step before.
   ASSERT_EQ(file->Index().Statistics.RepeatedSegments, 3);
   std::uint64_t bytes = 0;
@@ -274,16 +242,16 @@ TEST(Info, SegmentsThatAreStoredOnceAreCountedOnce)
   {
     bytes += entry.file_size();
   }
-  EXPECT_EQ(report.Series.SegmentBytes, bytes);
+  EXPECT_EQ(report.SegmentBytes, bytes);
   std::uint64_t stored = 0;
   for (int level = 0; level < file->Index().Levels; ++level)
   {
-    stored += report.Series.Components[0].Sum(level).StoredBytes;
+    stored += report.Components[0].Sum(level).StoredBytes;
   }
   EXPECT_LE(stored, file->Index().Statistics.PayloadBytes);
-  EXPECT_GT(report.Series.Components[0].Steps[3].Levels[0].Stored, 0);
-  EXPECT_EQ(report.Series.Components[0].Steps[9].Levels[0].Stored, 0);
-  EXPECT_GT(report.Series.Components[0].Steps[9].Levels[0].Shared, 0);
+  EXPECT_GT(report.Components[0].Steps[3].Levels[0].Stored, 0);
+  EXPECT_EQ(report.Components[0].Steps[9].Levels[0].Stored, 0);
+  EXPECT_GT(report.Components[0].Steps[9].Levels[0].Shared, 0);
   const auto size = nlohmann::json::parse(InfoToJson(report, nullptr))["size"];
   EXPECT_EQ(size["segmentBytes"], bytes);
   EXPECT_EQ(size["repeatedSegments"], 3);
@@ -294,8 +262,7 @@ TEST(Info, SegmentsThatAreStoredOnceAreCountedOnce)
 TEST(Info, TheTableOfStepsIsTheSameInCsvAndJson)
 {
   const Corners corners;
-  InfoReport report = corners.Report();
-  report.Octrees.push_back(CompareWithOctree(*corners.File, 0, 0, 0, StepCount));
+  const SeriesReport report = corners.Report();
   const auto steps = nlohmann::json::parse(InfoToJson(report, nullptr))["components"][0]["steps"];
   std::istringstream csv(StepCsv(report));
   std::vector<std::vector<std::string>> rows;
@@ -319,8 +286,7 @@ TEST(Info, TheTableOfStepsIsTheSameInCsvAndJson)
       EXPECT_EQ(std::stod(rows[r][c]), steps[r - 1][rows[0][c]].get<double>()) << rows[0][c];
     }
   }
-  for (const char* name :
-    { "unchanged_512", "macro_voxels_4096", "octree_merged_1", "octree_bits" })
+  for (const char* name : { "unchanged_512", "macro_voxels_4096" })
   {
     EXPECT_EQ(std::count(rows[0].begin(), rows[0].end(), name), 1) << name;
   }
@@ -342,10 +308,10 @@ TEST(Info, VectorsFlatGridsAndMissingValuesAreReported)
   SeriesEncoder encoder(path, grid, { description }, CornersOptions(), pool);
   encoder.AddStep(0.5, { { values.data() } });
   encoder.Finish();
-  const InfoReport report{ ReportSeries(*SeriesFile::Open(path), {}), {} };
-  ASSERT_EQ(report.Series.Components.size(), 2u);
-  EXPECT_EQ(report.Series.Components[0].Name, "wind[u]");
-  EXPECT_EQ(report.Series.VoxelsBelow(1), 256); // 16 x 16 of a flat grid
+  const SeriesReport report = ReportSeries(*SeriesFile::Open(path), {});
+  ASSERT_EQ(report.Components.size(), 2u);
+  EXPECT_EQ(report.Components[0].Name, "wind[u]");
+  EXPECT_EQ(report.VoxelsBelow(1), 256); // 16 x 16 of a flat grid
   const auto json = nlohmann::json::parse(InfoToJson(report, nullptr));
   EXPECT_TRUE(json["components"][1]["range"].is_null());
   EXPECT_TRUE(json["components"][1]["error"]["psnr"].is_null());

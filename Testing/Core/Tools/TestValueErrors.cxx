@@ -42,7 +42,7 @@ ValueErrors Slowly(
     errors.Range.Include(static_cast<double>(a));
     errors.OutOfBound += error > static_cast<long double>(rule.Bound) ? 1 : 0;
     errors.OtherClass +=
-      rule.Classes.CodeOf(static_cast<double>(a)) != rule.Classes.CodeOf(static_cast<double>(b))
+      rule.Classes.ClassOf(static_cast<double>(a)) != rule.Classes.ClassOf(static_cast<double>(b))
         ? 1
         : 0;
     errors.SumSquared += static_cast<double>(error * error);
@@ -71,7 +71,7 @@ TYPED_TEST(ValueErrorsOf, AreThoseOfASlowComparison)
     decoded[i] = static_cast<T>(static_cast<double>(original[2 * i]) + random() % 5 - 2);
   }
   const OpacityFunction opacity({ { 10, 0 }, { 50, 1 }, { 99, 0.25 } });
-  const Judgement rule{ 1.0, {}, { { 10, 99 }, 8 }, &opacity };
+  const Judgement rule{ 1.0, {}, ValueClasses({ 10, 99 }), &opacity };
   const ValueErrors slow = Slowly(original, 2, decoded, rule);
   for (const int threads : { 1, 3 })
   {
@@ -99,7 +99,8 @@ ValueErrors Compare(const std::vector<T>& original, const std::vector<T>& decode
 {
   ThreadPool pool(1);
   return CompareValues(ScalarTypeOf<T>(), original.data(), 1, decoded.data(),
-    static_cast<std::int64_t>(original.size()), { bound, {}, { { 0, 1 }, 8 }, nullptr }, pool);
+    static_cast<std::int64_t>(original.size()), { bound, {}, ValueClasses({ 0, 1 }), nullptr },
+    pool);
 }
 
 TEST(ValueErrors, DecideToTheLastBit)
@@ -133,7 +134,7 @@ TEST(ValueErrors, WithATransformTheBoundIsOneOnWhatValuesBecome)
   const auto compare = [&](double bound)
   {
     return CompareValues(ScalarType::Float32, original.data(), 1, decoded.data(), 3,
-      { bound, Transform::Asinh(1.0), { { 0, 1 }, 8 }, nullptr }, pool);
+      { bound, Transform::Asinh(1.0), ValueClasses({ 0, 1 }), nullptr }, pool);
   };
   const double low = std::asinh(double{ decoded[0] }) - std::asinh(double{ original[0] });
   const double high = std::asinh(double{ decoded[1] }) - std::asinh(double{ original[1] });
@@ -200,6 +201,24 @@ TEST(ValueErrors, MergingInOrderKeepsTheFirstOfTheWorst)
   EXPECT_EQ(all.OutOfBound, 3);
   EXPECT_EQ(all.Finite, 6);
   EXPECT_DOUBLE_EQ(all.MeanSquared(), 1.0);
+}
+
+TEST(ValueClasses, AreEquallyWideAndTakeEveryValue)
+{
+  const ValueClasses classes({ 0.0, 256.0 });
+  for (int number = 0; number < 256; ++number)
+  {
+    EXPECT_EQ(classes.ClassOf(number), number);
+    EXPECT_EQ(classes.ClassOf(number + 0.999), number);
+  }
+  EXPECT_EQ(classes.ClassOf(256.0), 255);
+  EXPECT_EQ(classes.ClassOf(-1e300), 0);
+  EXPECT_EQ(classes.ClassOf(INFINITY), 255);
+  EXPECT_EQ(classes.ClassOf(std::nan("")), 0);
+  const double most = std::numeric_limits<double>::max();
+  EXPECT_EQ(ValueClasses({ -most, most }).ClassOf(0.0), 128);
+  EXPECT_EQ(ValueClasses({ 3.0, 3.0 }).ClassOf(4.0), 0);
+  EXPECT_EQ(ValueClasses(ValueRange()).ClassOf(4.0), 0);
 }
 
 } // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Series/PaperQuantizer.h"
+#include "Papers/PaperQuantizer.h"
 
 #include "Base/Box.h"
 #include "Base/Error.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Base/Error.h"
-#include "Series/PaperOctree.h"
-#include "Series/PaperQuantizer.h"
+#include "Papers/PaperOctree.h"
+#include "Papers/PaperQuantizer.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Base/Error.h"
-#include "Series/PaperOctree.h"
+#include "Papers/PaperOctree.h"
 
 #include <gtest/gtest.h>
 

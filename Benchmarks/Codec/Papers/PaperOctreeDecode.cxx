@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Series/PaperOctree.h"
-#include "Series/PaperOctreeStream.h"
+#include "Papers/PaperOctree.h"
+#include "Papers/PaperOctreeStream.h"
 
 #include <algorithm>
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Series_PaperOctreeStream_h
-#define banyan_Series_PaperOctreeStream_h
+#ifndef banyan_Benchmarks_PaperOctreeStream_h
+#define banyan_Benchmarks_PaperOctreeStream_h
 
 #include "Base/Box.h"
 #include "Base/Error.h"

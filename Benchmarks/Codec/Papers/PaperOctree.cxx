@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Series/PaperOctree.h"
+#include "Papers/PaperOctree.h"
 
-#include "Series/PaperOctreeStream.h"
+#include "Papers/PaperOctreeStream.h"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Series_PaperQuantizer_h
-#define banyan_Series_PaperQuantizer_h
+#ifndef banyan_Benchmarks_PaperQuantizer_h
+#define banyan_Benchmarks_PaperQuantizer_h
 
 #include "Base/ScalarType.h"
 #include "Series/SeriesIndex.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "OctreeComparison.h"
+#include "Papers/OctreeComparison.h"
 
 #include "Cache/BrickCache.h"
-#include "Series/PaperQuantizer.h"
+#include "Papers/PaperQuantizer.h"
 
 #include <algorithm>
 #include <utility>

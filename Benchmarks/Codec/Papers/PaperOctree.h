@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Series_PaperOctree_h
-#define banyan_Series_PaperOctree_h
+#ifndef banyan_Benchmarks_PaperOctree_h
+#define banyan_Benchmarks_PaperOctree_h
 
 #include "Series/BrickTree.h"
 #include "Series/Bytes.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Tools_OctreeComparison_h
-#define banyan_Tools_OctreeComparison_h
+#ifndef banyan_Benchmarks_OctreeComparison_h
+#define banyan_Benchmarks_OctreeComparison_h
 
-#include "Series/PaperOctree.h"
+#include "Papers/PaperOctree.h"
 #include "Series/SeriesFile.h"
 
 #include <cstdint>
