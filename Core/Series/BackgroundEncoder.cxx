@@ -67,8 +67,8 @@ void BackgroundEncoder::Encode(int number, const std::vector<double>& times,
     {
       this->Last = {};
     }
-    result.emplace(number, EncodeGroup(this->Plan, this->Options, this->Folder, number, times,
-                             steps, before, last, this->Pool, tell));
+    result.emplace(number, EncodeGroup(this->Plan, this->Options, this->Folder,
+                             { number, times, steps, before }, last, this->Pool, tell));
   }
   catch (...)
   {

@@ -139,6 +139,121 @@ void DecodeBoxes(OpenGroup& open, int step, const RowBrick* bricks, int count,
   DecoderOf<T>(open).DecodeParts(parts, count, bricks[0].Size.y, bricks[0].Size.z, values, strides);
 }
 
+/// The places of a region that the box of a block holds, and no earlier block's box does.
+Box PlacesOf(const PlaneRegion& region, int edge, const glm::ivec3& block)
+{
+  Box places;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int low = block[a] * edge + (block[a] > region.FirstBlock[a] ? 1 : 0);
+    places.Lo[a] = std::max(0, (low - region.Low[a] + region.Stride - 1) / region.Stride);
+    places.Hi[a] = region.Count[a];
+    while (
+      places.Hi[a] > places.Lo[a] && region.SampleAt(a, places.Hi[a] - 1) > block[a] * edge + edge)
+    {
+      --places.Hi[a];
+    }
+  }
+  return places;
+}
+
+/// Copies lattice numbers, less the least one, from the box of a block to the region.
+/// @param offsets of the region
+template <class Number>
+void GatherBlock(const PlaneRegion& region, int edge, const glm::ivec3& block, const Box& places,
+  const Number* numbers, std::uint32_t least, std::uint32_t* offsets)
+{
+  const int n = edge + 1;
+  const glm::ivec3 origin = block * edge;
+  int columns[2 * 64 + 1]; // places per row: at most a brick of the largest edge
+  for (int x = places.Lo.x; x < places.Hi.x; ++x)
+  {
+    columns[x] = region.SampleAt(0, x) - origin.x;
+  }
+  for (int z = places.Lo.z; z < places.Hi.z; ++z)
+  {
+    for (int y = places.Lo.y; y < places.Hi.y; ++y)
+    {
+      const Number* row =
+        numbers + ((region.SampleAt(2, z) - origin.z) * n + region.SampleAt(1, y) - origin.y) * n;
+      std::uint32_t* out =
+        offsets + (static_cast<std::size_t>(z) * region.Count.y + y) * region.Count.x;
+      for (int x = places.Lo.x; x < places.Hi.x; ++x)
+      {
+        out[x] = static_cast<std::uint32_t>(row[columns[x]]) - least;
+      }
+    }
+  }
+}
+
+/// Lattice numbers of a region, less the least one, in the codec's order.
+void GatherRegion(GroupField& group, int step, const PlaneRegion& region, std::uint32_t* offsets)
+{
+  const int edge = group.Edge();
+  const auto least = static_cast<std::uint32_t>(group.Head().Least);
+  ForEachBlock(region,
+    [&](const glm::ivec3& block)
+    {
+      const Box places = PlacesOf(region, edge, block);
+      if (places.Empty())
+      {
+        return; // only the block after the last face: its samples are in the box before
+      }
+      group.Box(step, region.Plane, block)
+        ->Visit([&](const auto* numbers)
+          { GatherBlock(region, edge, block, places, numbers, least, offsets); });
+    });
+}
+
+template <class T>
+void ReplaceExceptions(GroupField& group, int step, const PlaneRegion& region, T* values)
+{
+  const int edge = group.Edge();
+  const std::uint32_t whole = static_cast<std::uint32_t>(edge) * edge * edge;
+  PayloadPages& payloads = group.Segment().Payloads();
+  const PayloadPages::Hold hold = payloads.InMemory();
+  ForEachBlock(region,
+    [&](const glm::ivec3& block)
+    {
+      const group::Place& place = EntryOf(group, step, region, block).Exceptions;
+      if (place.Bytes > 0)
+      {
+        PlaceExceptions(region, edge, block,
+          UnpackExceptions<T>(payloads.At(hold, place.Offset, place.Bytes), place.Bytes, whole),
+          values);
+      }
+    });
+}
+
+/// From the codec's order of axes to the data's; the values are written one after the other.
+template <class T>
+void CopyInDataOrder(
+  const GroupField& group, const PlaneRegion& region, const T* ordered, T* values)
+{
+  const std::int64_t strides[3] = { 1, region.Count.x,
+    std::int64_t{ region.Count.x } * region.Count.y };
+  std::int64_t stride[3] = {};
+  int size[3] = {};
+  for (int a = 0; a < 3; ++a)
+  {
+    const std::size_t real = group.Head().Axes[static_cast<std::size_t>(a)];
+    stride[real] = strides[a];
+    size[real] = region.Count[a];
+  }
+  for (int z = 0; z < size[2]; ++z)
+  {
+    for (int y = 0; y < size[1]; ++y)
+    {
+      const T* from = ordered + z * stride[2] + y * stride[1];
+      for (int x = 0; x < size[0]; ++x)
+      {
+        values[x] = from[x * stride[0]];
+      }
+      values += size[0];
+    }
+  }
+}
+
 /// @return false when there was nothing to decode: all samples are one value
 template <class T>
 bool Decode(
@@ -172,99 +287,13 @@ bool Decode(
   thread_local std::vector<T> ordered;
   offsets.resize(count);
   ordered.resize(count);
-  const int edge = group.Edge();
-  const int n = edge + 1;
-  const std::uint32_t least = static_cast<std::uint32_t>(group.Head().Least);
-  ForEachBlock(region,
-    [&](const glm::ivec3& block)
-    {
-      // Places of the region that this block's box holds and no earlier block's does.
-      glm::ivec3 from(0), to(0);
-      for (int a = 0; a < 3; ++a)
-      {
-        const int low = block[a] * edge + (block[a] > region.FirstBlock[a] ? 1 : 0);
-        from[a] = std::max(0, (low - region.Low[a] + region.Stride - 1) / region.Stride);
-        to[a] = region.Count[a] - 1;
-        while (to[a] >= from[a] && region.SampleAt(a, to[a]) > block[a] * edge + edge)
-        {
-          --to[a];
-        }
-      }
-      if (from.x > to.x || from.y > to.y || from.z > to.z)
-      {
-        return; // only the block after the last face: its samples are in the box before
-      }
-      const glm::ivec3 origin = block * edge;
-      int columns[2 * 64 + 1]; // places per row: at most a brick of the largest edge
-      for (int x = from.x; x <= to.x; ++x)
-      {
-        columns[x] = region.SampleAt(0, x) - origin.x;
-      }
-      group.Box(step, region.Plane, block)
-        ->Visit(
-          [&](const auto* numbers)
-          {
-            for (int z = from.z; z <= to.z; ++z)
-            {
-              for (int y = from.y; y <= to.y; ++y)
-              {
-                const auto* row =
-                  numbers +
-                  ((region.SampleAt(2, z) - origin.z) * n + region.SampleAt(1, y) - origin.y) * n;
-                std::uint32_t* out =
-                  offsets.data() +
-                  (static_cast<std::size_t>(z) * region.Count.y + y) * region.Count.x;
-                for (int x = from.x; x <= to.x; ++x)
-                {
-                  out[x] = static_cast<std::uint32_t>(row[columns[x]]) - least;
-                }
-              }
-            }
-          });
-    });
+  GatherRegion(group, step, region, offsets.data());
   decoder.Decode(group.Head().Least, offsets.data(), count, ordered.data());
   if (exceptional)
   {
-    const std::uint32_t whole = static_cast<std::uint32_t>(edge) * edge * edge;
-    PayloadPages& payloads = group.Segment().Payloads();
-    const PayloadPages::Hold hold = payloads.InMemory();
-    ForEachBlock(region,
-      [&](const glm::ivec3& block)
-      {
-        const group::BlockEntry& payload = EntryOf(group, step, region, block);
-        if (payload.Exceptions.Bytes > 0)
-        {
-          PlaceExceptions(region, edge, block,
-            UnpackExceptions<T>(
-              payloads.At(hold, payload.Exceptions.Offset, payload.Exceptions.Bytes),
-              payload.Exceptions.Bytes, whole),
-            ordered.data());
-        }
-      });
+    ReplaceExceptions(group, step, region, ordered.data());
   }
-  // From the codec's order of axes to the data's; the values are written one after the other.
-  const std::int64_t strides[3] = { 1, region.Count.x,
-    std::int64_t{ region.Count.x } * region.Count.y };
-  std::int64_t stride[3] = {};
-  int size[3] = {};
-  for (int a = 0; a < 3; ++a)
-  {
-    const std::size_t real = group.Head().Axes[static_cast<std::size_t>(a)];
-    stride[real] = strides[a];
-    size[real] = region.Count[a];
-  }
-  for (int z = 0; z < size[2]; ++z)
-  {
-    for (int y = 0; y < size[1]; ++y)
-    {
-      const T* from = ordered.data() + z * stride[2] + y * stride[1];
-      for (int x = 0; x < size[0]; ++x)
-      {
-        values[x] = from[x * stride[0]];
-      }
-      values += size[0];
-    }
-  }
+  CopyInDataOrder(group, region, ordered.data(), values);
   return true;
 }
 

@@ -39,16 +39,6 @@ struct MemoryOrder
   }
 };
 
-/// Copies numbers that have gaps of one kind to where they have gaps of another.
-template <class T>
-void CopyRow(const T* from, std::ptrdiff_t fromGap, int count, T* to, std::ptrdiff_t toGap)
-{
-  for (int i = 0; i < count; ++i)
-  {
-    to[i * toGap] = from[i * fromGap];
-  }
-}
-
 /// Copies a small box of values whose axes are in any order in memory: along the axis that is
 /// contiguous there, or nearest to it. Reading across it instead would touch a page per value.
 /// @param stride of the values along x, y, z; @param count how many

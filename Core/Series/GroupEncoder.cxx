@@ -172,6 +172,175 @@ private:
   KeyFrame Frame;
 };
 
+/// Encodes one group: the fields first, then its segment.
+class GroupEncoding
+{
+public:
+  GroupEncoding(const SeriesIndex& plan, const EncodeOptions& options, const GroupSteps& steps,
+    LastStep* last, ThreadPool& pool, const std::function<bool(double)>& tell)
+    : Plan(plan)
+    , Options(options)
+    , Steps(steps)
+    , Last(last)
+    , Pool(pool)
+    , Tell(tell)
+    , Before(plan, options, steps.Number, steps.Before, last, pool)
+    , Spare(last != nullptr ? last->Spare : this->OwnSpare)
+  {
+    for (const ArrayIndex& array : plan.Arrays)
+    {
+      this->Components += array.Components.size();
+    }
+  }
+
+  EncodedGroup Run(SegmentFolder& folder)
+  {
+    this->Group.Times = this->Steps.Times;
+    for (std::size_t a = 0; a < this->Plan.Arrays.size(); ++a)
+    {
+      this->EncodeArray(a);
+    }
+    this->Write(folder);
+    this->KeepLastStep();
+    return std::move(this->Group);
+  }
+
+private:
+  std::size_t Count() const { return this->Steps.Values.size(); }
+
+  void EncodeArray(std::size_t a)
+  {
+    const ArrayIndex& array = this->Plan.Arrays[a];
+    const bool rests = this->Before.Rests(a, this->Steps.Values);
+    std::vector<std::vector<double>> squares; // of the lengths of vectors, by step
+    if (array.Components.size() > 1)
+    {
+      const auto tuples = static_cast<std::size_t>(this->Plan.Domain.Extent.Count());
+      squares.assign(rests ? 1 : this->Count(), std::vector<double>(tuples));
+    }
+    this->Group.Measured.emplace_back(array.Components.size());
+    for (std::size_t c = 0; c < array.Components.size(); ++c)
+    {
+      this->EncodeComponent(a, c, rests, squares.empty() ? nullptr : &squares);
+    }
+    std::vector<ValueRange>& magnitudes = this->Group.Magnitudes.emplace_back();
+    for (const std::vector<double>& step : squares)
+    {
+      magnitudes.push_back(MagnitudeRange(step));
+    }
+    if (!magnitudes.empty())
+    {
+      magnitudes.resize(this->Count(), ValueRange(magnitudes[0]));
+    }
+  }
+
+  void EncodeComponent(
+    std::size_t a, std::size_t c, bool rests, std::vector<std::vector<double>>* squares)
+  {
+    const ArrayIndex& array = this->Plan.Arrays[a];
+    const double done = static_cast<double>(this->Fields.size());
+    const auto tell = [&](double more)
+    {
+      const double share =
+        (done + more / static_cast<double>(this->Count())) / static_cast<double>(this->Components);
+      if (this->Tell && !this->Tell(std::min(share, 0.999999)))
+      {
+        throw Error("Encoding was interrupted");
+      }
+    };
+    FieldOfPlan made =
+      rests ? MakeField(this->Plan, this->Options, a, c, { this->Steps.Values.back() }, this->Pool)
+            : MakeField(this->Plan, this->Options, a, c, this->Steps.Values, this->Pool);
+    made.Field.Spare = &this->Spare;
+    if (this->Count() > 1 && !rests && !this->Options.ClosedGroups &&
+        this->Options.Ideas.GroupBefore)
+    {
+      tell(0);
+      made.Field.Before = this->Before.Of(a, c, this->Fields.size());
+    }
+    EncodedField& field =
+      this->Fields.emplace_back(EncodeFieldGroup(made.Field, this->Pool, squares, tell));
+    this->Spare.push_back(this->Before.Release());
+    if (this->Last == nullptr || !HasOneLattice(array.Type, array.Components[c]))
+    {
+      this->Spare.push_back(std::move(field.Last.Planes));
+      field.Last = {};
+    }
+    const auto count = static_cast<std::int64_t>(this->Count());
+    if (rests)
+    {
+      LetRest(field, count);
+    }
+    ComponentIndex& measured = this->Group.Measured[a][c];
+    Measure(field, measured, this->Group.Statistics);
+    measured.ClampedCount = made.Clamped.Count * (rests ? count : 1);
+    this->Group.BytesIn += static_cast<std::uint64_t>(ValuesOfStep(this->Plan, array)) *
+                           SizeOf(array.Type) * this->Count();
+  }
+
+  /// Frees the tables of the fields on its way.
+  void Write(SegmentFolder& folder)
+  {
+    GroupWriter writer(folder, this->Steps.Number);
+    std::vector<group::FieldHead> heads;
+    std::vector<group::TableShape> shapes;
+    for (const EncodedField& field : this->Fields)
+    {
+      heads.push_back(field.Head);
+      shapes.push_back(group::ShapeOf(
+        this->Plan.Domain.Samples(), field.Head.Axes, this->Plan.BrickCells, this->Plan.Levels));
+    }
+    EncodeStatistics& statistics = this->Group.Statistics;
+    for (std::size_t t = 0; t < this->Count(); ++t)
+    {
+      for (EncodedField& field : this->Fields)
+      {
+        if (field.Head.Rests)
+        {
+          writer.AddRestingStep(field.Steps[0], statistics);
+          continue;
+        }
+        writer.AddStep(field.Steps[t], statistics);
+        field.Steps[t] = {};
+      }
+    }
+    this->Group.Segment = writer.Finish(heads, shapes,
+      this->Steps.Number * this->Plan.KeyframeInterval, static_cast<int>(this->Count()));
+    statistics.TableBytes = this->Group.Segment.Bytes - statistics.PayloadBytes;
+  }
+
+  void KeepLastStep()
+  {
+    if (this->Last == nullptr)
+    {
+      return;
+    }
+    this->Last->Group = this->Steps.Number;
+    for (std::size_t a = 0; a < this->Plan.Arrays.size(); ++a)
+    {
+      this->Last->Values.push_back(
+        HashOf(this->Steps.Values.back()[a].Values, BytesOf(this->Plan, a)));
+    }
+    for (EncodedField& field : this->Fields)
+    {
+      this->Last->Fields.push_back(std::move(field.Last));
+    }
+  }
+
+  const SeriesIndex& Plan;
+  const EncodeOptions& Options;
+  const GroupSteps& Steps;
+  LastStep* Last;
+  ThreadPool& Pool;
+  const std::function<bool(double)>& Tell;
+  StepBeforeGroup Before;
+  SparePlanes OwnSpare;
+  SparePlanes& Spare;
+  std::size_t Components = 0; ///< of all arrays
+  std::vector<EncodedField> Fields;
+  EncodedGroup Group;
+};
+
 } // namespace
 
 bool MayReferBefore(const SeriesIndex& plan, const EncodeOptions& options)
@@ -188,121 +357,10 @@ bool MayReferBefore(const SeriesIndex& plan, const EncodeOptions& options)
 }
 
 EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
-  SegmentFolder& folder, int number, const std::vector<double>& times,
-  const std::vector<std::vector<ArrayValues>>& steps, const std::vector<ArrayValues>& before,
-  LastStep* last, ThreadPool& pool, const std::function<bool(double)>& tell)
+  SegmentFolder& folder, const GroupSteps& steps, LastStep* last, ThreadPool& pool,
+  const std::function<bool(double)>& tell)
 {
-  EncodedGroup group;
-  group.Times = times;
-  const std::int64_t tuples = plan.Domain.Extent.Count();
-  std::size_t components = 0;
-  for (const ArrayIndex& array : plan.Arrays)
-  {
-    components += array.Components.size();
-  }
-  StepBeforeGroup stepBefore(plan, options, number, before, last, pool);
-  const std::int64_t count = static_cast<std::int64_t>(steps.size());
-  SparePlanes own;
-  SparePlanes& spare = last != nullptr ? last->Spare : own;
-  std::vector<EncodedField> fields;
-  for (std::size_t a = 0; a < plan.Arrays.size(); ++a)
-  {
-    const ArrayIndex& array = plan.Arrays[a];
-    const bool vectors = array.Components.size() > 1;
-    std::vector<std::vector<double>> squares;
-    if (vectors)
-    {
-      squares.assign(steps.size(), std::vector<double>(static_cast<std::size_t>(tuples)));
-    }
-    group.Measured.emplace_back(array.Components.size());
-    const bool rests = stepBefore.Rests(a, steps);
-    if (rests && vectors)
-    {
-      squares.resize(1);
-    }
-    for (std::size_t c = 0; c < array.Components.size(); ++c)
-    {
-      const double done = static_cast<double>(fields.size());
-      const auto tellSteps = [&](double more)
-      {
-        const double share = (done + more / double(steps.size())) / double(components);
-        if (tell && !tell(std::min(share, 0.999999)))
-        {
-          throw Error("Encoding was interrupted");
-        }
-      };
-      FieldOfPlan made = rests ? MakeField(plan, options, a, c, { steps.back() }, pool)
-                               : MakeField(plan, options, a, c, steps, pool);
-      made.Field.Spare = &spare;
-      if (steps.size() > 1 && !rests && !options.ClosedGroups && options.Ideas.GroupBefore)
-      {
-        tellSteps(0);
-        made.Field.Before = stepBefore.Of(a, c, fields.size());
-      }
-      fields.push_back(EncodeFieldGroup(made.Field, pool, vectors ? &squares : nullptr, tellSteps));
-      spare.push_back(stepBefore.Release());
-      if (last == nullptr || !HasOneLattice(array.Type, array.Components[c]))
-      {
-        spare.push_back(std::move(fields.back().Last.Planes));
-        fields.back().Last = {};
-      }
-      if (rests)
-      {
-        LetRest(fields.back(), count);
-      }
-      Measure(fields.back(), group.Measured[a][c], group.Statistics);
-      group.Measured[a][c].ClampedCount = made.Clamped.Count * (rests ? count : 1);
-      group.BytesIn +=
-        static_cast<std::uint64_t>(ValuesOfStep(plan, array)) * SizeOf(array.Type) * steps.size();
-    }
-    group.Magnitudes.emplace_back();
-    for (const std::vector<double>& step : squares)
-    {
-      group.Magnitudes.back().push_back(MagnitudeRange(step));
-    }
-    if (rests && vectors)
-    {
-      group.Magnitudes.back().resize(steps.size(), group.Magnitudes.back()[0]);
-    }
-  }
-  GroupWriter writer(folder, number);
-  std::vector<group::FieldHead> heads;
-  std::vector<group::TableShape> shapes;
-  for (const EncodedField& field : fields)
-  {
-    heads.push_back(field.Head);
-    shapes.push_back(
-      group::ShapeOf(plan.Domain.Samples(), field.Head.Axes, plan.BrickCells, plan.Levels));
-  }
-  for (std::size_t t = 0; t < steps.size(); ++t)
-  {
-    for (EncodedField& field : fields)
-    {
-      if (field.Head.Rests)
-      {
-        writer.AddRestingStep(field.Steps[0], group.Statistics);
-        continue;
-      }
-      writer.AddStep(field.Steps[t], group.Statistics);
-      field.Steps[t] = {};
-    }
-  }
-  group.Segment =
-    writer.Finish(heads, shapes, number * plan.KeyframeInterval, static_cast<int>(steps.size()));
-  group.Statistics.TableBytes = group.Segment.Bytes - group.Statistics.PayloadBytes;
-  if (last != nullptr)
-  {
-    last->Group = number;
-    for (std::size_t a = 0; a < plan.Arrays.size(); ++a)
-    {
-      last->Values.push_back(HashOf(steps.back()[a].Values, BytesOf(plan, a)));
-    }
-    for (EncodedField& field : fields)
-    {
-      last->Fields.push_back(std::move(field.Last));
-    }
-  }
-  return group;
+  return GroupEncoding(plan, options, steps, last, pool, tell).Run(folder);
 }
 
 } // namespace banyan

@@ -37,6 +37,19 @@ struct LastStep
   SparePlanes Spare;            ///< memory of the group before
 };
 
+/// A group as it comes, borrowed.
+struct GroupSteps
+{
+  int Number; ///< in the series
+  const std::vector<double>& Times;
+  /// By step and array, as SeriesEncoder::AddStep has them.
+  const std::vector<std::vector<ArrayValues>>& Values;
+  /// By array, of the step before the first. May be empty for the first group of the series, for a
+  /// single step, where MayReferBefore is false, and where the encoder is told the last step of
+  /// the group before.
+  const std::vector<ArrayValues>& Before;
+};
+
 /// Whether groups of a series may refer to the last step of the group before: where the plan fixes
 /// the range of some component, and the options do not close groups.
 bool MayReferBefore(const SeriesIndex& plan, const EncodeOptions& options);
@@ -45,21 +58,12 @@ bool MayReferBefore(const SeriesIndex& plan, const EncodeOptions& options);
 /// any process that has the same plan, to the same bytes: all that a group needs of the one before
 /// is what its last step decodes to, which follows from the values of that step alone.
 /// @param plan the index of the series, with ranges and bounds (see PlanSeries)
-/// @param number of the group in the series
-/// @param steps values by step and array, as SeriesEncoder::AddStep has them
-/// @param before values by array of the step before the first. May be empty for the first group of
-/// the series, for a single step, where MayReferBefore is false, and where `last` is of the group
-/// before
 /// @param last if not null, replaced by that of this group
 /// @param tell called with a value in [0, 1); may return false to interrupt
 /// Throws Error; the segment is then not there.
 EncodedGroup EncodeGroup(const SeriesIndex& plan, const EncodeOptions& options,
-  SegmentFolder& folder, int number, const std::vector<double>& times,
-  const std::vector<std::vector<ArrayValues>>& steps, const std::vector<ArrayValues>& before,
-  LastStep* last, ThreadPool& pool, const std::function<bool(double)>& tell);
-
-/// Adds a group to the index; groups in order.
-void AddGroup(const EncodedGroup& group, SeriesIndex& index);
+  SegmentFolder& folder, const GroupSteps& steps, LastStep* last, ThreadPool& pool,
+  const std::function<bool(double)>& tell);
 
 } // namespace banyan
 

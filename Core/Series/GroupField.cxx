@@ -284,7 +284,6 @@ LatticeCache::Box GroupField::DecodeAs(int step, int plane, const glm::ivec3& bl
     }
   }
   this->BytesRead += code.Blocks[0].Bytes;
-  this->PayloadsRead += code.Blocks[0].Bytes > 0 ? 1 : 0;
   if (same)
   {
     return this->ReferenceBox(this->ReferencesOf(step).A, plane, block);

@@ -103,7 +103,6 @@ public:
   void Verify(int step, int plane, const glm::ivec3& block);
 
   std::uint64_t MemoryBytes() const { return this->Memory; }
-  std::uint64_t BlocksRead() const { return this->PayloadsRead; }
   std::uint64_t TakeBytesRead() { return this->BytesRead.exchange(0); }
 
 private:
@@ -141,7 +140,6 @@ private:
   std::vector<std::unique_ptr<group::StepTable>> StepTables;
   std::vector<std::atomic<const group::StepTable*>> Loaded; ///< the same, without the lock
   std::atomic<std::uint64_t> Memory{ 0 };
-  std::atomic<std::uint64_t> PayloadsRead{ 0 };
   std::atomic<std::uint64_t> BytesRead{ 0 };
 };
 

@@ -125,8 +125,8 @@ void SeriesEncoder::Internals::EncodeKept(const std::vector<ArrayValues>& last)
   }
   const int number = static_cast<int>(this->Assembly.Index().Segments.size());
   this->Assembly.Add(
-    number, EncodeGroup(this->Assembly.Index(), this->Options, *this->Folder, number, this->Times,
-              steps, {}, &this->Last, this->Pool, this->Progress));
+    number, EncodeGroup(this->Assembly.Index(), this->Options, *this->Folder,
+              { number, this->Times, steps, {} }, &this->Last, this->Pool, this->Progress));
   this->Times.clear();
   this->Spare = std::move(this->Values); // new memory takes longer than to copy
   this->Values.clear();

@@ -62,17 +62,6 @@ public:
     return static_cast<std::int64_t>((code >> 1) ^ (0 - (code & 1)));
   }
 
-  /// A signed number that must fit into 32 bits.
-  std::int32_t Signed32()
-  {
-    const std::int64_t value = this->Signed();
-    if (value != static_cast<std::int32_t>(value))
-    {
-      throw Error("A table of the segment holds a number that is out of range");
-    }
-    return static_cast<std::int32_t>(value);
-  }
-
   template <class T>
   T Number()
   {

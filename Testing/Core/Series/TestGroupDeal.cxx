@@ -105,8 +105,9 @@ TEST(GroupDeal, AgreesWithTheEncoder)
           steps.push_back({ { values[static_cast<std::size_t>(s)].data() } });
         }
         const int group = deal.GroupOf(first);
-        const auto encode = [&]
-        { EncodeGroup(plan, options, segments, group, times, steps, {}, nullptr, pool, nullptr); };
+        const auto encode = [&] {
+          EncodeGroup(plan, options, segments, { group, times, steps, {} }, nullptr, pool, nullptr);
+        };
         if (deal.NeedsBefore(first - 1) >= 0)
         {
           EXPECT_EQ(deal.NeedsBefore(first - 1), deal.OwnerOf(group));

@@ -188,8 +188,9 @@ TEST_P(Groups, OfAnyProcessInAnyOrderGiveTheSameBytes)
     {
       ThreadPool pool(1);
       SegmentFolder segments(path);
-      const Bytes message = PackGroup(EncodeGroup(this->Plan(), this->Options, segments, group,
-        this->TimesOf(group), this->StepsOf(group), this->Before(group), nullptr, pool, nullptr));
+      const Bytes message = PackGroup(EncodeGroup(this->Plan(), this->Options, segments,
+        { group, this->TimesOf(group), this->StepsOf(group), this->Before(group) }, nullptr, pool,
+        nullptr));
       std::ofstream file(folder / "message", std::ios::binary);
       file.write(reinterpret_cast<const char*>(message.data()),
         static_cast<std::streamsize>(message.size()));
@@ -226,8 +227,8 @@ TEST_P(Groups, NeedTheStepBeforeWhereTheyReferToIt)
   EXPECT_FALSE(MayReferBefore(this->Plan(), closed));
   const auto encode = [&](const std::vector<ArrayValues>& before)
   {
-    return EncodeGroup(this->Plan(), this->Options, segments, 1, this->TimesOf(1), this->StepsOf(1),
-      before, nullptr, pool, nullptr)
+    return EncodeGroup(this->Plan(), this->Options, segments,
+      { 1, this->TimesOf(1), this->StepsOf(1), before }, nullptr, pool, nullptr)
       .Segment;
   };
   const SegmentIndex whole = encode(this->Before(1));
@@ -315,9 +316,10 @@ TEST_P(Groups, MissingOnesAreNoticedAndWithdrawnOnesLeaveNothing)
   EXPECT_THROW(assembly.Finish(), Error);
   for (const int group : { 0, 2 })
   {
-    assembly.Add(group,
-      EncodeGroup(this->Plan(), this->Options, group == 0 ? first : second, group,
-        this->TimesOf(group), this->StepsOf(group), this->Before(group), nullptr, pool, nullptr));
+    assembly.Add(
+      group, EncodeGroup(this->Plan(), this->Options, group == 0 ? first : second,
+               { group, this->TimesOf(group), this->StepsOf(group), this->Before(group) }, nullptr,
+               pool, nullptr));
   }
   EXPECT_THROW(assembly.Finish(), Error);
   second.RemoveOwn(assembly.SegmentsInFile());
