@@ -2,7 +2,7 @@
 #ifndef banyan_Series_ChainLengths_h
 #define banyan_Series_ChainLengths_h
 
-#include "Series/FieldGroupEncoder.h"
+#include "Series/FieldGroup.h"
 
 namespace banyan
 {

@@ -2,7 +2,7 @@
 #ifndef banyan_Series_FieldOfPlan_h
 #define banyan_Series_FieldOfPlan_h
 
-#include "Series/FieldGroupEncoder.h"
+#include "Series/FieldGroup.h"
 #include "Series/SeriesEncoder.h"
 
 #include <cstdint>

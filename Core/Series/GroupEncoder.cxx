@@ -3,6 +3,7 @@
 
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
+#include "Series/FieldGroupEncoder.h"
 #include "Series/FieldLattice.h"
 #include "Series/FieldOfPlan.h"
 #include "Series/GroupWriter.h"

@@ -2,7 +2,7 @@
 #ifndef banyan_Series_GroupEncoder_h
 #define banyan_Series_GroupEncoder_h
 
-#include "Series/FieldGroupEncoder.h"
+#include "Series/FieldGroup.h"
 #include "Series/Hash.h"
 #include "Series/SegmentFolder.h"
 #include "Series/SeriesEncoder.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Series/GroupField.h"
 #include "Base/Error.h"
 #include "Codec/BlockDecoder.h"
 #include "Codec/BlockEncoder.h"
@@ -7,7 +8,6 @@
 #include "Codec/DecodeStages.h"
 #include "Codec/GroupOrder.h"
 #include "Codec/SymbolWriter.h"
-#include "Series/GroupReader.h"
 #include "Series/OpenSeries.h"
 
 #include <algorithm>

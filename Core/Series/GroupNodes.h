@@ -4,7 +4,7 @@
 
 #include "Codec/BlockEncoder.h"
 #include "Series/Exceptions.h"
-#include "Series/FieldGroupEncoder.h"
+#include "Series/FieldGroup.h"
 #include "Series/PlaneRegion.h"
 
 #include <vector>

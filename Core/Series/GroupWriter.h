@@ -3,7 +3,7 @@
 #define banyan_Series_GroupWriter_h
 
 #include "Series/AtomicFile.h"
-#include "Series/FieldGroupEncoder.h"
+#include "Series/FieldGroup.h"
 #include "Series/Hash.h"
 #include "Series/SegmentFolder.h"
 #include "Series/SeriesIndex.h"

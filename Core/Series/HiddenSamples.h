@@ -2,7 +2,7 @@
 #ifndef banyan_Series_HiddenSamples_h
 #define banyan_Series_HiddenSamples_h
 
-#include "Series/FieldGroupEncoder.h"
+#include "Series/FieldGroup.h"
 #include "Series/PlaneRegion.h"
 
 #include <array>

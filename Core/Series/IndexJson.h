@@ -2,15 +2,11 @@
 #ifndef banyan_Series_IndexJson_h
 #define banyan_Series_IndexJson_h
 
+#include "Series/Json.h"
 #include "Series/SeriesIndex.h"
-
-#include <nlohmann/json.hpp>
 
 namespace banyan
 {
-
-/// Keeps members in the order they are written in, which is the order of Documentation/format.md.
-using Json = nlohmann::ordered_json;
 
 Json IndexToJson(const SeriesIndex& index);
 

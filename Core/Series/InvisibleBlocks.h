@@ -2,7 +2,7 @@
 #ifndef banyan_Series_InvisibleBlocks_h
 #define banyan_Series_InvisibleBlocks_h
 
-#include "Series/FieldGroupEncoder.h"
+#include "Series/FieldGroup.h"
 #include "Series/FillValues.h"
 #include "Series/LatticeDecoder.h"
 

@@ -2,7 +2,7 @@
 #ifndef banyan_Series_JsonMembers_h
 #define banyan_Series_JsonMembers_h
 
-#include "Series/IndexJson.h"
+#include "Series/Json.h"
 
 #include <cstdint>
 #include <string>

@@ -2,8 +2,8 @@
 #ifndef banyan_Series_OpenGroup_h
 #define banyan_Series_OpenGroup_h
 
+#include "Series/GroupField.h"
 #include "Series/GroupNodes.h"
-#include "Series/GroupReader.h"
 #include "Series/LatticeDecoder.h"
 #include "Series/OpenSeries.h"
 

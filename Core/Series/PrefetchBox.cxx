@@ -3,7 +3,7 @@
 #include "Codec/BlockScratch.h"
 #include "Codec/DecodeStages.h"
 #include "Codec/GroupOrder.h"
-#include "Series/GroupReader.h"
+#include "Series/GroupField.h"
 
 namespace banyan
 {

@@ -2,7 +2,7 @@
 #ifndef banyan_Series_QuantizerJson_h
 #define banyan_Series_QuantizerJson_h
 
-#include "Series/IndexJson.h"
+#include "Series/Json.h"
 #include "Series/SeriesIndex.h"
 
 namespace banyan

@@ -2,7 +2,7 @@
 #ifndef banyan_Series_TransformJson_h
 #define banyan_Series_TransformJson_h
 
-#include "Series/IndexJson.h"
+#include "Series/Json.h"
 #include "Series/Transform.h"
 
 namespace banyan
