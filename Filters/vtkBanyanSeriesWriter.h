@@ -186,7 +186,7 @@ public:
 
   ///@{
   /**
-   * Cells of a brick along each axis: 8, 16, 32 or 64; or 0 (default), which takes 32 from 2^24
+   * Cells of a brick along each axis: 16 or 32; or 0 (default), which takes 32 from 2^24
    * samples on and 16 below. Larger bricks make smaller files, and whole steps are read faster; of
    * smaller ones more is left out that cannot be seen, and a single one is read faster.
    */

@@ -153,7 +153,6 @@ constexpr Variant Variants[] = {
   { "banyan-fast", [](EncodeOptions& options) { options.Profile = EncodeProfile::Fast; } },
   { "banyan-compact", [](EncodeOptions& options) { options.Profile = EncodeProfile::Compact; } },
   { "banyan-every-step", [](EncodeOptions& options) { options.KeyframeInterval = 1; } },
-  { "banyan-8", [](EncodeOptions& options) { options.BrickCells = 8; } },
   { "banyan-32", [](EncodeOptions& options) { options.BrickCells = 32; } },
   // What each idea is worth.
   { "banyan-without-roughness",

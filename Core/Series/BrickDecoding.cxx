@@ -165,7 +165,7 @@ void GatherBlock(const PlaneRegion& region, int edge, const glm::ivec3& block, c
 {
   const int n = edge + 1;
   const glm::ivec3 origin = block * edge;
-  int columns[2 * 64 + 1]; // places per row: at most a brick of the largest edge
+  int columns[2 * 32 + 1]; // places per row: at most a brick of the largest edge
   for (int x = places.Lo.x; x < places.Hi.x; ++x)
   {
     columns[x] = region.SampleAt(0, x) - origin.x;

@@ -201,7 +201,7 @@ const Number* GroupField::Coarse(int step, int plane, const glm::ivec3& block)
   const stages::In stage(stages::Coarse);
   thread_local std::vector<Number> numbers;
   numbers.resize(static_cast<std::size_t>(n * n * n));
-  int columns[64 / 4 + 1]; // of the largest blocks
+  int columns[32 / 4 + 1]; // of the largest blocks
   for (int x = 0; x < n; ++x)
   {
     columns[x] = std::min(first.x + x, samples.x - 1) - origin.x;

@@ -163,8 +163,7 @@ void CheckGrid(const Grid& grid, int brickCells)
 {
   std::int64_t volume = 1;
   std::int64_t bricks = 1;
-  Require(brickCells == 8 || brickCells == 16 || brickCells == 32 || brickCells == 64,
-    "A brick must have 8, 16, 32 or 64 cells per axis");
+  Require(brickCells == 16 || brickCells == 32, "A brick must have 16 or 32 cells per axis");
   for (int axis = 0; axis < 3; ++axis)
   {
     const std::int64_t lo = grid.Extent.Lo[axis];

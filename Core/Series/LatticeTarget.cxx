@@ -317,8 +317,8 @@ bool LatticeTarget<T>::FillCoarser(const T* values, PlaneNumbers& coarse) const
 template <class T>
 bool LatticeTarget<T>::MakeCoarser(std::size_t step, std::vector<PlaneNumbers>& planes) const
 {
-  bool apart = this->Plain() && this->Field.HiddenAt(step) == nullptr && !this->Hidden &&
-               planes.size() > 1 && planes[0].Edge % Tile == 0;
+  bool apart =
+    this->Plain() && this->Field.HiddenAt(step) == nullptr && !this->Hidden && planes.size() > 1;
   if constexpr (IsReal<T>)
   {
     planes[0].With(

@@ -49,7 +49,7 @@ struct EncodeOptions
   /// Whether any brick of any step takes its own segment alone; else also the last step of the one
   /// before, where that makes series smaller.
   bool ClosedGroups = false;
-  int BrickCells = 0;       ///< 8, 16, 32 or 64; 0 chooses by the size of the grid
+  int BrickCells = 0;       ///< 16 or 32; 0 chooses by the size of the grid
   int CompressionLevel = 3; ///< of zstd (exceptions), in [1, 19]
   EncodeProfile Profile = EncodeProfile::Balanced;
   EncodeIdeas Ideas;          ///< for measurements: all of them, otherwise

@@ -264,10 +264,10 @@ TEST_P(WriterRobustness, BadOptions)
     this->Change = [interval](vtkBanyanSeriesWriter* w) { w->SetKeyframeInterval(interval); };
     this->ExpectRefused(WaveSource(SimpleGrid({ 4, 4, 4 }), {}), { "a.banyan" });
   }
-  for (const int cells : { -16, 7, 24, 128 })
+  for (const int cells : { -16, 7, 8, 24, 64 })
   {
     this->Change = [cells](vtkBanyanSeriesWriter* w) { w->SetBrickCells(cells); };
-    this->ExpectRefused(WaveSource(SimpleGrid({ 4, 4, 4 }), {}), { "a.banyan", "8, 16, 32 or 64" });
+    this->ExpectRefused(WaveSource(SimpleGrid({ 4, 4, 4 }), {}), { "a.banyan", "16 or 32" });
   }
 }
 

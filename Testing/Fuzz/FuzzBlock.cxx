@@ -120,7 +120,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 {
   fuzz::Input in(data, size);
   const std::uint8_t head = in.Take<std::uint8_t>();
-  const int edge = 8 << (head % 8 == 7 ? 3 : head % 4 % 3);
+  const int edge = head % 4 == 3 ? 32 : 16;
   PlaneCode plane;
   plane.Tables = &TablesOf(head >> 3);
   plane.CoarseBin = in.Take<std::int32_t>();

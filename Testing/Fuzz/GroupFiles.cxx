@@ -80,7 +80,7 @@ SmallSeries::SmallSeries(const std::string& folder, int kind)
 {
   EncodeOptions options;
   options.KeyframeInterval = Interval;
-  options.BrickCells = 8;
+  options.BrickCells = 16;
   const int type = kind % 4;
   options.ErrorBound = type == 3 ? 0 : 1.0 / 512;
   this->Index = type == 0   ? Encode<float>(this->Path, 1, options)

@@ -80,8 +80,8 @@ void CheckChosen(const glm::ivec3& size, int cells)
 TEST(ChosenSamples, AreThoseOfTheImage)
 {
   CheckChosen<float>({ 33, 34, 17 }, 16);
-  CheckChosen<double>({ 20, 9, 31 }, 8);
-  CheckChosen<std::int16_t>({ 18, 1, 5 }, 8);
+  CheckChosen<double>({ 40, 17, 61 }, 16);
+  CheckChosen<std::int16_t>({ 36, 1, 9 }, 16);
   CheckChosen<float>({ 1, 1, 1 }, 16);
 }
 

@@ -93,11 +93,11 @@ void CheckRows(const glm::ivec3& size, int cells)
 
 TEST(DecodeRow, IsWhatItsBricksHold)
 {
-  CheckRows<float>({ 90, 20, 9 }, 8); // longer than what is kept at once
+  CheckRows<float>({ 180, 40, 17 }, 16); // longer than what is kept at once
   CheckRows<float>({ 50, 33, 17 }, 16);
   CheckRows<double>({ 33, 34, 18 }, 16);
-  CheckRows<std::int16_t>({ 50, 9, 17 }, 8);
-  CheckRows<float>({ 1, 20, 20 }, 8);
+  CheckRows<std::int16_t>({ 100, 17, 33 }, 16);
+  CheckRows<float>({ 1, 40, 40 }, 16);
 }
 
 TEST(DecodeRow, HoldsForAnyOrderOfAxes)
@@ -121,35 +121,35 @@ TEST(DecodeRow, HoldsForAnyOrderOfAxes)
 
 TEST(DecodeRow, HoldsWithExceptionsAndBricksOfOneValue)
 {
-  auto steps = Sample<float>(GridOf(70, 18, 18), 3, Wavy<float>);
+  auto steps = Sample<float>(GridOf(140, 36, 36), 3, Wavy<float>);
   steps[1][40] = std::numeric_limits<float>::quiet_NaN();
-  CheckRows<float>({ 70, 18, 18 }, steps, 8);
+  CheckRows<float>({ 140, 36, 36 }, steps, 16);
   const auto flat = [](int x, int y, int, int step)
-  { return x < 30 ? 5.0 : std::sin(0.2 * x + 0.1 * y + step); };
-  CheckRows<float>({ 70, 18, 18 }, Sample<float>(GridOf(70, 18, 18), 3, flat), 8);
+  { return x < 60 ? 5.0 : std::sin(0.2 * x + 0.1 * y + step); };
+  CheckRows<float>({ 140, 36, 36 }, Sample<float>(GridOf(140, 36, 36), 3, flat), 16);
 }
 
 TEST(DecodeRow, RefusesPartsOutsideOfTheRow)
 {
   const TemporaryFolder folder;
-  const Grid grid = GridOf(40, 20, 20);
+  const Grid grid = GridOf(70, 36, 36);
   EncodeOptions options;
-  options.BrickCells = 8;
+  options.BrickCells = 16;
   Encode(folder / "s.banyan", grid, Sample<float>(grid, 1, Wavy<float>), options);
   const auto file = SeriesFile::Open(folder / "s.banyan");
-  std::vector<float> values(40 * 40 * 40);
+  std::vector<float> values(70 * 70 * 36);
   const auto refused = [&](std::int64_t first, int count, const Box& part) {
-    EXPECT_THROW(file->DecodeRow({}, first, count, part, { 1, 40, 1600 }, values.data()), Error);
+    EXPECT_THROW(file->DecodeRow({}, first, count, part, { 1, 70, 4900 }, values.data()), Error);
   };
   const int bricks = file->Layout(0).Bricks().x;
-  file->DecodeRow({}, 0, 2, { { 0, 0, 0 }, { 17, 9, 9 } }, { 1, 40, 1600 }, values.data());
-  refused(0, 2, { { 0, 0, 0 }, { 18, 9, 9 } });
-  refused(0, 2, { { 0, 0, 0 }, { 17, 10, 9 } });
-  refused(1, 2, { { 7, 0, 0 }, { 20, 9, 9 } });
-  refused(0, 2, { { 9, 0, 0 }, { 17, 9, 9 } }); // the first brick would hold none of it
-  refused(0, 0, { { 0, 0, 0 }, { 8, 9, 9 } });
-  refused(0, bricks + 1, { { 0, 0, 0 }, { 40, 9, 9 } }); // goes on in the next row
-  refused(0, 2, { { 4, 4, 4 }, { 4, 9, 9 } });
+  file->DecodeRow({}, 0, 2, { { 0, 0, 0 }, { 33, 17, 17 } }, { 1, 70, 4900 }, values.data());
+  refused(0, 2, { { 0, 0, 0 }, { 34, 17, 17 } });
+  refused(0, 2, { { 0, 0, 0 }, { 33, 18, 17 } });
+  refused(1, 2, { { 15, 0, 0 }, { 40, 17, 17 } });
+  refused(0, 2, { { 17, 0, 0 }, { 33, 17, 17 } }); // the first brick would hold none of it
+  refused(0, 0, { { 0, 0, 0 }, { 16, 17, 17 } });
+  refused(0, bricks + 1, { { 0, 0, 0 }, { 70, 17, 17 } }); // goes on in the next row
+  refused(0, 2, { { 4, 4, 4 }, { 4, 17, 17 } });
 }
 
 } // namespace banyan::testing

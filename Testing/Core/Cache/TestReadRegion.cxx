@@ -134,11 +134,11 @@ TEST(ReadRegion, LargePartsOfKeptNumbersGoPastTheCache)
 TEST(DecodePart, IsThePartOfTheBrickAndNoMore)
 {
   const TemporaryFolder folder;
-  const Grid grid = GridOf(20, 20, 20);
+  const Grid grid = GridOf(36, 36, 36);
   auto steps = Sample<float>(grid, 1, Wavy<float>);
   steps[0][5] = std::numeric_limits<float>::quiet_NaN(); // the first brick goes another way
   EncodeOptions options;
-  options.BrickCells = 8;
+  options.BrickCells = 16;
   Encode(folder / "s.banyan", grid, steps, options);
   const auto file = SeriesFile::Open(folder / "s.banyan");
   const BrickLayout layout = file->Layout(0);
@@ -175,10 +175,10 @@ TEST(DecodePart, IsThePartOfTheBrickAndNoMore)
 
 TEST(ReadRegion, AnyBoxGivesWhatTheWholeGives)
 {
-  CheckRegions<float>({ 50, 33, 17 }, 8);
+  CheckRegions<float>({ 50, 33, 17 }, 32);
   CheckRegions<float>({ 50, 33, 17 }, 16);
-  CheckRegions<std::int8_t>({ 1, 40, 23 }, 8);
-  CheckRegions<std::uint16_t>({ 29, 1, 1 }, 8);
+  CheckRegions<std::int8_t>({ 1, 80, 45 }, 16);
+  CheckRegions<std::uint16_t>({ 57, 1, 1 }, 16);
   CheckRegions<double>({ 16, 17, 18 }, 16);
 }
 

@@ -30,7 +30,7 @@ public:
     ThreadPool pool(2);
     EncodeOptions options;
     options.ErrorBound = 0.0;
-    options.BrickCells = 8;
+    options.BrickCells = 16;
     SeriesEncoder encoder(this->Folder / "field.banyan", banyan::testing::GridOf(41, 33, 37),
       { { "field", ScalarType::Float32, { "" }, { banyan::testing::RangeOf(this->Values) } } },
       options, pool);

@@ -11,8 +11,8 @@ using Pattern = GoldenPattern;
 /// Every scalar type on a lattice, by an absolute bound.
 GoldenCase Types()
 {
-  GoldenCase series{ "types", At({ 0, 0, 0 }, { 11, 4, 3 }),
-    Within(2.5, ErrorBoundMode::Absolute, 8), 1, {} };
+  GoldenCase series{ "types", At({ 0, 0, 0 }, { 19, 4, 3 }),
+    Within(2.5, ErrorBoundMode::Absolute, 16), 1, {} };
   for (int type = 0; type < 10; ++type)
   {
     const ScalarType scalar = static_cast<ScalarType>(type);
@@ -29,7 +29,7 @@ GoldenCase Types()
 GoldenCase Exact()
 {
   GoldenCase series{ "exact", At({ 3, -2, 5 }, { 9, 4, 3 }),
-    Within(0.0, ErrorBoundMode::RelativeToSeriesRange, 8), 1, {} };
+    Within(0.0, ErrorBoundMode::RelativeToSeriesRange, 16), 1, {} };
   series.Arrays = {
     Array("not a double", ScalarType::Int64, Pattern::Constant, (std::int64_t{ 1 } << 53) + 1),
     Array("wide", ScalarType::UInt64, Pattern::Noise),
@@ -58,8 +58,8 @@ GoldenCase Exact()
 /// that stay, that are one value, and that two arrays share.
 GoldenCase Moving()
 {
-  GoldenCase series{ "moving", At({ -4, 7, 2 }, { 17, 6, 5 }),
-    Within(1.0 / 256, ErrorBoundMode::RelativeToSeriesRange, 8), 5, {} };
+  GoldenCase series{ "moving", At({ -4, 7, 2 }, { 33, 6, 5 }),
+    Within(1.0 / 256, ErrorBoundMode::RelativeToSeriesRange, 16), 5, {} };
   series.Options.KeyframeInterval = 2;
   series.Options.CompressionLevel = 19;
   series.Domain.Origin = { -1.25, 1e6, 3.0 };
@@ -67,13 +67,13 @@ GoldenCase Moving()
   series.Domain.Direction =
     glm::dmat3(glm::dvec3(0, 1, 0), glm::dvec3(-0.6, 0, 0.8), glm::dvec3(0.8, 0, 0.6));
   GoldenArray scalar = Array("temperature", ScalarType::Float32, Pattern::Bumps, 4096, 7, -4);
-  scalar.QuietBelow = 9;
+  scalar.QuietBelow = 17;
   scalar.Hold = 2;
   GoldenArray twin = scalar;
   twin.Name = "twin";
   GoldenArray vector = Array("velocity", ScalarType::Float32, Pattern::Bumps, -300, 1, -6);
   vector.Components = { "x", "y", "z" };
-  vector.QuietBelow = 9;
+  vector.QuietBelow = 17;
   vector.Hold = 4;
   vector.NonFiniteOneIn = 700;
   series.Arrays = { scalar, vector, twin };
@@ -119,15 +119,15 @@ GoldenCase Tiny()
 /// Axes without cells.
 std::vector<GoldenCase> Flat()
 {
-  const EncodeOptions options = Within(1.0 / 64, ErrorBoundMode::RelativeToSeriesRange, 8);
+  const EncodeOptions options = Within(1.0 / 64, ErrorBoundMode::RelativeToSeriesRange, 16);
   GoldenArray plane = Array("plane", ScalarType::UInt16, Pattern::Bumps, 1000, 5);
   GoldenArray line = Array("line", ScalarType::Float32, Pattern::Bumps, 0, 1, -5);
   line.NonFiniteOneIn = 13;
   GoldenArray point = Array("point", ScalarType::Float32, Pattern::Bumps, 12345, 1, -7);
   GoldenArray hole = Array("hole", ScalarType::Float32, Pattern::Constant);
   hole.NonFiniteOneIn = 1;
-  return { { "flat", At({ 0, 9, 0 }, { 18, 1, 10 }), options, 1, { plane } },
-    { "line", At({ 0, 0, -3 }, { 1, 1, 35 }), options, 2, { line } },
+  return { { "flat", At({ 0, 9, 0 }, { 34, 1, 18 }), options, 1, { plane } },
+    { "line", At({ 0, 0, -3 }, { 1, 1, 67 }), options, 2, { line } },
     { "point", At({ 5, 5, 5 }, { 1, 1, 1 }), options, 2, { point, hole } } };
 }
 

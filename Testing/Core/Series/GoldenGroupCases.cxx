@@ -14,15 +14,15 @@ using Pattern = GoldenPattern;
 /// nobody told) differs from group to group, one that rests for some steps, and vectors with holes.
 GoldenCase Groups()
 {
-  GoldenCase series{ "groups", At({ 2, 0, -7 }, { 10, 8, 3 }),
-    Within(2, ErrorBoundMode::Absolute, 8), 19, {} };
+  GoldenCase series{ "groups", At({ 2, 0, -7 }, { 18, 8, 3 }),
+    Within(2, ErrorBoundMode::Absolute, 16), 19, {} };
   GoldenArray wave = Array("wave", ScalarType::Float32, Pattern::Bumps, -100, 1, -1);
   GoldenArray drift = Array("drift", ScalarType::Float32, Pattern::Bumps, 0, 1, -2);
   drift.Promised = false;
   drift.Rise = 40;
   GoldenArray rests = Array("rests", ScalarType::Int16, Pattern::Noise, 500, 1);
   rests.Bits = 5;
-  rests.QuietBelow = 4;
+  rests.QuietBelow = 17;
   rests.Hold = 5;
   GoldenArray vector = Array("vector", ScalarType::Float64, Pattern::Bumps, 7, 1, -2);
   vector.Components = { "along", "across" };
@@ -35,8 +35,8 @@ GoldenCase Groups()
 /// Groups of 3 steps and one of a single step.
 GoldenCase Thirds()
 {
-  GoldenCase series{ "thirds", At({ 0, 0, 0 }, { 9, 10, 5 }),
-    Within(1.0 / 128, ErrorBoundMode::RelativeToSeriesRange, 8), 7, {} };
+  GoldenCase series{ "thirds", At({ 0, 0, 0 }, { 17, 18, 5 }),
+    Within(1.0 / 128, ErrorBoundMode::RelativeToSeriesRange, 16), 7, {} };
   series.Options.KeyframeInterval = 3;
   series.Options.Profile = EncodeProfile::Fast;
   GoldenArray counts = Array("counts", ScalarType::UInt8, Pattern::Noise);
@@ -50,8 +50,8 @@ GoldenCase Thirds()
 /// Every step by itself.
 GoldenCase Singles()
 {
-  GoldenCase series{ "singles", At({ 0, 0, 0 }, { 10, 7, 5 }),
-    Within(1.0 / 64, ErrorBoundMode::RelativeToSeriesRange, 8), 3, {} };
+  GoldenCase series{ "singles", At({ 0, 0, 0 }, { 18, 7, 5 }),
+    Within(1.0 / 64, ErrorBoundMode::RelativeToSeriesRange, 16), 3, {} };
   series.Options.KeyframeInterval = 1;
   series.Arrays = { Array("real", ScalarType::Float64, Pattern::Bumps, 9, 1, 3),
     Array("count", ScalarType::Int32, Pattern::Bumps, -70000, 300) };
@@ -61,8 +61,8 @@ GoldenCase Singles()
 /// Blocks of every way of prediction, in two groups of 4 of which the second refers to the first.
 GoldenCase Modes()
 {
-  GoldenCase series{ "modes", At({ 0, 0, 0 }, { 64, 8, 8 }), Within(1, ErrorBoundMode::Absolute, 8),
-    6, {} };
+  GoldenCase series{ "modes", At({ 0, 0, 0 }, { 128, 8, 8 }),
+    Within(1, ErrorBoundMode::Absolute, 16), 6, {} };
   series.Options.KeyframeInterval = 4;
   series.Options.Profile = EncodeProfile::Compact;
   series.Arrays = { Array("fates", ScalarType::Float32, Pattern::Fates, -37, 1, 0) };
@@ -74,8 +74,10 @@ std::vector<GoldenCase> Large()
 {
   GoldenArray noise = Array("noise", ScalarType::UInt8, Pattern::Noise);
   noise.Bits = 3;
+  GoldenArray holes = Array("holes", ScalarType::Float32, Pattern::Bumps, 0, 1, -3);
+  holes.NonFiniteOneIn = 3;
   GoldenCase dense{ "dense", At({ 0, 0, 0 }, { 17, 16, 9 }),
-    Within(0.5, ErrorBoundMode::Absolute, 16), 2, { noise } };
+    Within(0.5, ErrorBoundMode::Absolute, 16), 2, { noise, holes } };
   GoldenArray smooth = Array("smooth", ScalarType::Float32, Pattern::Bumps, 1, 1, -4);
   smooth.QuietBelow = 7;
   smooth.NonFiniteOneIn = 2000;
@@ -85,11 +87,11 @@ std::vector<GoldenCase> Large()
   thin.Type = ScalarType::UInt16;
   thin.NonFiniteOneIn = 0;
   GoldenCase wider{ "wider", At({ 0, 0, 0 }, { 67, 3, 2 }),
-    Within(1.0 / 64, ErrorBoundMode::RelativeToSeriesRange, 64), 2, { thin } };
+    Within(1.0 / 64, ErrorBoundMode::RelativeToSeriesRange, 32), 2, { thin } };
   GoldenArray random = Array("random", ScalarType::UInt32, Pattern::Noise);
   random.Bits = 32;
-  GoldenCase full{ "full", At({ 0, 0, 0 }, { 8, 8, 8 }),
-    Within(0, ErrorBoundMode::RelativeToSeriesRange, 8), 1, { random } };
+  GoldenCase full{ "full", At({ 0, 0, 0 }, { 16, 16, 16 }),
+    Within(0, ErrorBoundMode::RelativeToSeriesRange, 16), 1, { random } };
   return { dense, wide, wider, full };
 }
 
@@ -105,7 +107,7 @@ QuantizerOptions AsinhOf(double scale)
 GoldenCase Quantizers()
 {
   GoldenCase series{ "quantizers", At({ 0, 3, 0 }, { 9, 7, 4 }),
-    Within(1.0 / 128, ErrorBoundMode::RelativeToSeriesRange, 8), 5, {} };
+    Within(1.0 / 128, ErrorBoundMode::RelativeToSeriesRange, 16), 5, {} };
   series.Options.KeyframeInterval = 2;
   auto& told = series.Options.QuantizerOfArray;
   const auto add = [&](const std::string& name, ScalarType type, std::int64_t low, int exponent)

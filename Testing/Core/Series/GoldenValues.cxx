@@ -49,11 +49,11 @@ std::int64_t NoiseAt(const GoldenArray& array, Place p, int step, int bits)
   return static_cast<std::int64_t>(Mix(array.Seed, NumberOf(p)) & ((1ull << bits) - 1));
 }
 
-/// What GoldenPattern::Fates says: for every 8 samples along x another way to follow from the steps
-/// around, plus another kind of change from step to step.
+/// What GoldenPattern::Fates says: for every 16 samples along x another way to follow from the
+/// steps around, plus another kind of change from step to step.
 std::int64_t FateAt(const GoldenArray& array, const Place& p)
 {
-  const int kind = p.X / 8;
+  const int kind = p.X / 16;
   const std::int64_t rest =
     kind < 4 ? NoiseAt(array, p, 1000 + p.Step, 4)
              : (2 + 3 * (p.Step % 2)) * (Parabola(p.X + p.Y + p.Step) + Parabola(p.Z + p.Y));

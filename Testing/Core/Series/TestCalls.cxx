@@ -28,7 +28,10 @@ TEST(Calls, BadCallsAreRejected)
   EXPECT_THROW(make(Small, { good }, with([](auto& o) { o.ErrorBound = -1; })), Error);
   EXPECT_THROW(make(Small, { good }, with([](auto& o) { o.ErrorBound = NAN; })), Error);
   EXPECT_THROW(make(Small, { good }, with([](auto& o) { o.KeyframeInterval = 0; })), Error);
-  EXPECT_THROW(make(Small, { good }, with([](auto& o) { o.BrickCells = 12; })), Error);
+  for (const int cells : { 8, 12, 64 })
+  {
+    EXPECT_THROW(make(Small, { good }, with([cells](auto& o) { o.BrickCells = cells; })), Error);
+  }
   EXPECT_THROW(make(Small, { good }, with([](auto& o) { o.CompressionLevel = 20; })), Error);
   ArrayDescription bad = good;
   bad.SeriesRanges.clear();

@@ -101,9 +101,9 @@ TEST_P(Chains, AreAsLongAsToldStartingWithNothingInMemory)
 }
 
 INSTANTIATE_TEST_SUITE_P(Series, Chains,
-  ::testing::Values(Case{ GridOf(41, 33, 37), 8, 8, 0.4 }, Case{ GridOf(70, 20, 19), 16, 4, 0.5 },
-    Case{ GridOf(33, 17, 17), 16, 5, 0.0 }, Case{ GridOf(17, 35, 18), 8, 1, 0.0 },
-    Case{ GridOf(9, 9, 9), 8, 70, 0.0 }, Case{ GridOf(1, 30, 30), 8, 3, 0.0 }));
+  ::testing::Values(Case{ GridOf(73, 65, 69), 16, 8, 0.4 }, Case{ GridOf(70, 20, 19), 16, 4, 0.5 },
+    Case{ GridOf(33, 17, 17), 16, 5, 0.0 }, Case{ GridOf(33, 67, 34), 32, 1, 0.0 },
+    Case{ GridOf(17, 17, 17), 16, 70, 0.0 }, Case{ GridOf(1, 60, 60), 16, 3, 0.0 }));
 
 } // namespace
 } // namespace banyan::testing

@@ -17,12 +17,12 @@ TEST(ConcurrentReading, SixteenThreadsReadWhatOneReads)
 {
   const TemporaryFolder folder;
   const std::string path = folder / "s.banyan";
-  const Grid grid = GridOf(17, 17, 12);
+  const Grid grid = GridOf(33, 33, 20);
   auto steps = Sample<float>(grid, 6, Wavy<float>);
   steps[2][100] = NAN;
   EncodeOptions options;
   options.KeyframeInterval = 3;
-  options.BrickCells = 8;
+  options.BrickCells = 16;
   Encode(path, grid, steps, options);
   std::vector<std::vector<float>> expected;
   std::vector<std::pair<FieldKey, std::int64_t>> places;
@@ -85,11 +85,11 @@ TEST(ConcurrentReading, WholeFieldsAndBricksAtTheSameTime)
 {
   const TemporaryFolder folder;
   const std::string path = folder / "s.banyan";
-  const Grid grid = GridOf(18, 17, 11);
+  const Grid grid = GridOf(34, 33, 19);
   const auto steps = Sample<float>(grid, 6, Wavy<float>);
   EncodeOptions options;
   options.KeyframeInterval = 3;
-  options.BrickCells = 8;
+  options.BrickCells = 16;
   Encode(path, grid, steps, options);
   std::vector<FieldKey> fields;
   std::vector<std::vector<float>> expected;

@@ -276,9 +276,9 @@ TEST(Container, SegmentsOfAnotherSeriesAreNoticed)
 {
   // One brick of bytes that cannot be compressed: the segments differ in nothing but values.
   const TemporaryFolder folder;
-  const Grid grid = GridOf(9, 9, 9);
+  const Grid grid = GridOf(17, 17, 17);
   EncodeOptions options;
-  options.BrickCells = 8;
+  options.BrickCells = 16;
   options.ErrorBound = 0;
   std::mt19937 random(8);
   const auto make = [&](const std::string& name)

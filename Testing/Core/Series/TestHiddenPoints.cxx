@@ -140,7 +140,7 @@ template <class T>
 void Check(const Case& one)
 {
   std::mt19937 random(one.Seed);
-  std::uniform_int_distribution<int> edge(1, 19);
+  std::uniform_int_distribution<int> edge(1, 35);
   const Grid grid = GridOf(edge(random), edge(random) / 2 + 1, edge(random) + 3);
   constexpr int steps = 4;
   std::vector<Flags> flags;
@@ -225,7 +225,7 @@ void CheckSome(unsigned first)
     one.Options.Mode =
       number % 3 == 2 ? ErrorBoundMode::Absolute : ErrorBoundMode::RelativeToSeriesRange;
     one.Options.ClosedGroups = number % 4 == 3;
-    one.Options.BrickCells = number % 2 == 0 ? 8 : 16;
+    one.Options.BrickCells = number % 2 == 0 ? 16 : 32;
     SCOPED_TRACE(std::string(NameOf(ScalarTypeOf<T>())) + ", seed " + std::to_string(one.Seed));
     Check<T>(one);
   }

@@ -20,7 +20,7 @@ namespace
 {
 
 constexpr int Interval = 4;
-const Grid Domain = GridOf(21, 17, 19);
+const Grid Domain = GridOf(37, 33, 35);
 
 std::string Content(const std::string& path)
 {
@@ -37,7 +37,7 @@ EncodeOptions Options()
 {
   EncodeOptions options;
   options.KeyframeInterval = Interval;
-  options.BrickCells = 8;
+  options.BrickCells = 16;
   return options;
 }
 
@@ -269,7 +269,7 @@ TEST_F(HostileGroups, AKeyFrameThatRefersToOthersIsRefused)
     [this](Sections& sections, segment::Header& header)
     {
       const group::TableShape shape =
-        group::ShapeOf(Domain.Samples(), HeadOf(sections).Axes, 8, this->Index.Levels);
+        group::ShapeOf(Domain.Samples(), HeadOf(sections).Axes, 16, this->Index.Levels);
       Bytes& keyFrame = sections.back();
       group::StepTable table = group::UnpackStep(
         keyFrame.data(), keyFrame.size(), shape, Interval - 1, {}, header.PayloadEnd);

@@ -104,12 +104,5 @@ TEST(LatticeTarget, ValuesThatAreNotHeldAreFilledInAlike)
   coarse.ExpectTheSame(false);
 }
 
-TEST(LatticeTarget, BlocksSmallerThanTilesAreMadeAtOnce)
-{
-  OneStep step({ 33, 17, 40 }, 0, 0.01);
-  step.Field.BrickCells = 8;
-  step.ExpectTheSame(false);
-}
-
 } // namespace
 } // namespace banyan

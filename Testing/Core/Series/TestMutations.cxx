@@ -66,14 +66,14 @@ std::vector<std::vector<float>> ReadEverything(const std::string& path)
 Original MakeOriginal(const TemporaryFolder& folder)
 {
   const std::string path = folder / "s.banyan";
-  const Grid grid = GridOf(19, 17, 18);
+  const Grid grid = GridOf(35, 33, 34);
   auto steps = Sample<float>(grid, 5,
     [](int x, int y, int z, int s)
-    { return z < 8 && x < 8 ? 1.0f : static_cast<float>(Wavy<float>(x, y, z, y < 8 ? 0 : s)); });
+    { return z < 16 && x < 16 ? 1.0f : static_cast<float>(Wavy<float>(x, y, z, y < 16 ? 0 : s)); });
   steps[3][77] = NAN;
   EncodeOptions options;
   options.KeyframeInterval = 2;
-  options.BrickCells = 8;
+  options.BrickCells = 16;
   Encode(path, grid, steps, options);
   Original original;
   original.Values = ReadEverything(path);
@@ -192,12 +192,12 @@ TEST(Mutations, EveryByteOutsideThePayloadsIsGuarded)
 {
   const TemporaryFolder folder;
   const std::string path = folder / "s.banyan";
-  const Grid grid = GridOf(12, 10, 9);
+  const Grid grid = GridOf(20, 18, 17);
   EncodeOptions options;
-  options.BrickCells = 8;
+  options.BrickCells = 16;
   const SeriesIndex index = Encode(path, grid,
     Sample<float>(
-      grid, 1, [](int x, int y, int z, int) { return x < 9 ? 0.25 : Wavy<float>(x, y, z, 0); }),
+      grid, 1, [](int x, int y, int z, int) { return x < 17 ? 0.25 : Wavy<float>(x, y, z, 0); }),
     options);
   const auto expected = ReadEverything(path);
   const std::string segment = path + ".d/" + index.Segments[0].File;

@@ -15,7 +15,7 @@ namespace
 {
 
 constexpr int Interval = 4;
-const Grid Domain = GridOf(21, 17, 19);
+const Grid Domain = GridOf(37, 33, 35);
 
 /// Which groups of a series with one component refer to the one before.
 std::vector<bool> OpenGroups(const std::string& path, const SeriesIndex& index)
@@ -34,7 +34,7 @@ EncodeOptions Options()
 {
   EncodeOptions options;
   options.KeyframeInterval = Interval;
-  options.BrickCells = 8;
+  options.BrickCells = 16;
   return options;
 }
 

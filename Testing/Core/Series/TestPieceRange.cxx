@@ -43,7 +43,7 @@ protected:
   void SetUp() override
   {
     EncodeOptions options;
-    options.BrickCells = 8;
+    options.BrickCells = 16;
     options.KeyframeInterval = 2;
     options.ErrorBound = 0.01;
     options.Mode = ErrorBoundMode::Absolute;
@@ -105,7 +105,7 @@ protected:
     EXPECT_EQ(a.High, b.High);
   }
 
-  Grid Domain = GridOf(21, 30, 17);
+  Grid Domain = GridOf(37, 46, 33);
   TemporaryFolder Folder;
   std::shared_ptr<SeriesFile> Series;
 };
@@ -138,9 +138,9 @@ TEST_F(PieceRanges, OfPartsContainTheTruthAndTogetherGiveIt)
   const PieceRange step = this->Decoded(1, 0, whole);
   PieceRange together;
   together.Components.resize(Components);
-  for (int z = 0; z < 17; z += 5)
+  for (int z = 0; z < 33; z += 10)
   {
-    const Box part{ { 0, 0, z }, { 21, 30, std::min(z + 6, 17) } };
+    const Box part{ { 0, 0, z }, { 37, 46, std::min(z + 11, 33) } };
     const PieceRange told = RangeOfPiece(*this->Series, 1, 0, 0, part);
     const PieceRange truth = this->Decoded(1, 0, part);
     EXPECT_FALSE(told.Exact);

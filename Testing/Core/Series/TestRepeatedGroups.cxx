@@ -25,7 +25,7 @@ EncodeOptions Options()
 {
   EncodeOptions options;
   options.KeyframeInterval = Interval;
-  options.BrickCells = 8;
+  options.BrickCells = 16;
   return options;
 }
 

@@ -116,11 +116,11 @@ TEST_P(SeekAndPlay, GiveTheSameBits)
 {
   const TemporaryFolder folder;
   const std::string path = folder / "s.banyan";
-  const Grid grid = GridOf(21, 17, 19);
+  const Grid grid = GridOf(37, 33, 35);
   const auto steps = MovingSteps(grid, 11);
   EncodeOptions options;
   options.KeyframeInterval = GetParam();
-  options.BrickCells = 8;
+  options.BrickCells = 16;
   const SeriesIndex index = EncodeMoving(path, grid, steps, options, 2);
   std::vector<std::vector<float>> played;
   {
@@ -162,10 +162,10 @@ TEST_P(SeekAndPlay, BrickCachesChangeNothing)
 {
   const TemporaryFolder folder;
   const std::string path = folder / "s.banyan";
-  const Grid grid = GridOf(18, 17, 9);
+  const Grid grid = GridOf(34, 33, 17);
   EncodeOptions options;
   options.KeyframeInterval = GetParam();
-  options.BrickCells = 8;
+  options.BrickCells = 16;
   EncodeMoving(path, grid, MovingSteps(grid, 9), options, 2);
   const auto file = SeriesFile::Open(path);
   std::vector<Place> places = AllPlaces(*file);
@@ -231,10 +231,10 @@ TEST_P(SeekAndPlay, TwoSegmentsAreEnough)
 {
   const TemporaryFolder folder;
   const std::string path = folder / "s.banyan";
-  const Grid grid = GridOf(18, 9, 17);
+  const Grid grid = GridOf(34, 17, 33);
   EncodeOptions options;
   options.KeyframeInterval = GetParam();
-  options.BrickCells = 8;
+  options.BrickCells = 16;
   const SeriesIndex index = EncodeMoving(path, grid, MovingSteps(grid, 17), options, 2);
   std::vector<std::vector<float>> expected;
   {
@@ -278,11 +278,11 @@ TEST_P(SeekAndPlay, TwoSegmentsAreEnough)
 /// Every length of a series: groups that are cut short have their key frame earlier.
 TEST_P(SeekAndPlay, OfAnyLengthStayInBound)
 {
-  const Grid grid = GridOf(11, 9, 10);
+  const Grid grid = GridOf(19, 17, 18);
   const auto steps = MovingSteps(grid, 17);
   EncodeOptions options;
   options.KeyframeInterval = GetParam();
-  options.BrickCells = 8;
+  options.BrickCells = 16;
   for (std::size_t count = 1; count <= steps.size(); ++count)
   {
     const TemporaryFolder folder;

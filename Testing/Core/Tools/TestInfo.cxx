@@ -143,7 +143,7 @@ TEST(Info, ErrorsAreThoseOfTheDecodedValues)
   }
   const SeriesReport report = corners.Report();
   const double rmse = std::sqrt(squares / static_cast<double>(report.Values()));
-  EXPECT_EQ(report.Values(), 40 * 24 * 17 * StepCount);
+  EXPECT_EQ(report.Values(), 80 * 48 * 34 * StepCount);
   EXPECT_NEAR(report.Components[0].Rmse(), rmse, 1e-12);
   for (std::size_t step = StepCount; step-- > 0;)
   {
@@ -192,7 +192,7 @@ TEST(Info, SizesAreThoseOnTheDisk)
     bytes += entry.file_size();
   }
   const auto json = nlohmann::json::parse(InfoToJson(corners.Report(), nullptr))["size"];
-  const double values = 40.0 * 24 * 17 * StepCount;
+  const double values = 80.0 * 48 * 34 * StepCount;
   EXPECT_EQ(json["encodedBytes"], bytes);
   EXPECT_EQ(json["rawBytes"], 4 * values);
   EXPECT_DOUBLE_EQ(json["bitsPerValue"], 8.0 * static_cast<double>(bytes) / values);
@@ -286,7 +286,7 @@ TEST(Info, TheTableOfStepsIsTheSameInCsvAndJson)
       EXPECT_EQ(std::stod(rows[r][c]), steps[r - 1][rows[0][c]].get<double>()) << rows[0][c];
     }
   }
-  for (const char* name : { "unchanged_512", "macro_voxels_4096" })
+  for (const char* name : { "unchanged_4096", "macro_voxels_32768" })
   {
     EXPECT_EQ(std::count(rows[0].begin(), rows[0].end(), name), 1) << name;
   }
@@ -311,13 +311,13 @@ TEST(Info, VectorsFlatGridsAndMissingValuesAreReported)
   const SeriesReport report = ReportSeries(*SeriesFile::Open(path), {});
   ASSERT_EQ(report.Components.size(), 2u);
   EXPECT_EQ(report.Components[0].Name, "wind[u]");
-  EXPECT_EQ(report.VoxelsBelow(1), 256); // 16 x 16 of a flat grid
+  EXPECT_EQ(report.VoxelsBelow(1), 1024); // 32 x 32 of a flat grid
   const auto json = nlohmann::json::parse(InfoToJson(report, nullptr));
   EXPECT_TRUE(json["components"][1]["range"].is_null());
   EXPECT_TRUE(json["components"][1]["error"]["psnr"].is_null());
   EXPECT_TRUE(json["components"][1]["steps"][0]["low"].is_null());
   EXPECT_EQ(json["components"][1]["nonFinite"], 400);
-  EXPECT_EQ(json["components"][1]["levels"][0]["withNonFinite"], 9);
+  EXPECT_EQ(json["components"][1]["levels"][0]["withNonFinite"], 4);
   EXPECT_NE(InfoToText(report, nullptr).find("wind[v]"), std::string::npos);
 }
 

@@ -27,7 +27,7 @@ TEST(InfoProgram, PrintsTextJsonAndTheTable)
   const ProgramResult text = RunProgram(info + " --time");
   EXPECT_EQ(text.Status, 0);
   for (const char* phrase :
-    { "40 x 24 x 17 samples, 4 steps", "1/512 of the range", "bits per value",
+    { "80 x 48 x 34 samples, 4 steps", "1/512 of the range", "bits per value",
       "steps to decode for a brick", "unchanged subtrees", "a random brick, cold" })
   {
     EXPECT_NE(text.Output.find(phrase), std::string::npos) << phrase << "\n" << text.Output;
@@ -38,7 +38,7 @@ TEST(InfoProgram, PrintsTextJsonAndTheTable)
   const auto parsed = nlohmann::json::parse(json.Output);
   EXPECT_EQ(parsed["components"][0]["steps"].size(), 1u);
   EXPECT_EQ(parsed["components"][0]["steps"][0]["step"], 2);
-  EXPECT_EQ(parsed["grid"]["extent"], (std::vector<int>{ 0, 39, 0, 23, 0, 16 }));
+  EXPECT_EQ(parsed["grid"]["extent"], (std::vector<int>{ 0, 79, 0, 47, 0, 33 }));
   EXPECT_FALSE(parsed.contains("microseconds"));
   std::ifstream csv(folder / "steps.csv");
   std::string heading;

@@ -22,7 +22,7 @@ struct RawSeries
   TemporaryFolder Folder;
   std::string Path = Folder / "series.banyan";
   std::string Raw = Folder / "source.raw";
-  std::string Options = " --raw-type float32 --dims 40 24 17";
+  std::string Options = " --raw-type float32 --dims 80 48 34";
 
   RawSeries()
   {
@@ -55,7 +55,7 @@ TEST(VerifyProgram, ItsExitStatusIsTheVerdict)
   EXPECT_EQ(series.Run("--against " + series.Path).Status, 0);
   {
     std::fstream file(series.Raw, std::ios::binary | std::ios::in | std::ios::out);
-    file.seekp(4 * (40 * 24 * 17 + 41)); // step 1, (1, 1, 0)
+    file.seekp(4 * (80 * 48 * 34 + 81)); // step 1, (1, 1, 0)
     const float other = -5.0f;
     file.write(reinterpret_cast<const char*>(&other), 4);
   }
@@ -82,11 +82,11 @@ TEST(VerifyProgram, SaysWhatCannotBeCompared)
   expect(against, "raw files need --raw-type and --dims");
   expect(against + " --raw-type float32", "--raw-type and --dims are needed together");
   expect(against + " --raw-type float16 --dims 1 1 1", "float16");
-  expect(against + " --raw-type float32 --dims 40 24", "Option --dims needs a value");
-  expect(against + " --raw-type float32 --dims 40 24 0", "Option --dims needs a whole number");
+  expect(against + " --raw-type float32 --dims 80 48", "Option --dims needs a value");
+  expect(against + " --raw-type float32 --dims 80 48 0", "Option --dims needs a whole number");
   expect(against + " --raw-type float32 --dims 17 24 40", "the number of samples of the source");
   expect(against + " --raw-type float32 --dims 41 24 17", "is not a multiple of");
-  expect(against + " --raw-type int32 --dims 40 24 17", "is int32 in the source");
+  expect(against + " --raw-type int32 --dims 80 48 34", "is int32 in the source");
   expect(against + series.Options + " --array other", "The series has no array \"other\"");
   expect(against + series.Options + " --opacity 3", "pairs value:opacity");
   expect(against + series.Options + " --opacity 3:x", "Option --opacity needs a number");

@@ -39,29 +39,29 @@ inline ProgramResult RunProgram(const std::string& command)
 }
 
 /// A field that is rough in one corner, still in another, and empty elsewhere: macro voxels,
-/// unchanged bricks and changing ones of a 40 x 24 x 17 grid with bricks of 8 cells.
+/// unchanged bricks and changing ones of an 80 x 48 x 34 grid with bricks of 16 cells.
 inline double CornersAt(int x, int y, int z, int step)
 {
-  if (x < 14 && y < 14 && z < 14)
+  if (x < 28 && y < 28 && z < 28)
   {
     return 10.0 + std::sin(0.7 * x + 0.3 * step) * std::cos(0.9 * y - 0.2 * z);
   }
-  if (x > 24 && y > 14)
+  if (x > 48 && y > 28)
   {
     return 3.0 + std::sin(1.3 * x) * std::cos(0.8 * y + z); // does not change
   }
-  return step < 4 ? 0.0 : 1.0; // empty, and changes once
+  return step < 3 ? 0.0 : 1.0; // empty, and changes once
 }
 
 inline Grid CornersGrid()
 {
-  return GridOf(40, 24, 17);
+  return GridOf(80, 48, 34);
 }
 
 inline EncodeOptions CornersOptions()
 {
   EncodeOptions options;
-  options.BrickCells = 8;
+  options.BrickCells = 16;
   options.KeyframeInterval = 3;
   return options;
 }
