@@ -66,7 +66,7 @@ struct BoxCodeOf
 using BoxCode = BoxCodeOf<std::int32_t>;
 
 /// Decodes a box: the (edge + 1)^3 samples of a block and the layer that neighbours own.
-/// @param edge 8, 16, 32 or 64
+/// @param edge 16 or 32
 /// @param box receives lattice numbers `[z][y][x]`
 /// Throws Error when a payload is damaged; any input is safe. Integer arithmetic: bit-exact on
 /// every machine.

@@ -16,7 +16,7 @@ namespace banyan
 
 class ThreadPool;
 
-/// Lattice numbers of one plane of a field, cut into blocks of Edge^3 samples.
+/// Lattice numbers of one plane of a field, cut into blocks of Edge^3 samples; Edge is 16 or 32.
 ///
 /// Numbers are padded: there are Blocks * Edge + 1 per axis, x fastest, so that each block has its
 /// box of (Edge + 1)^3. Beyond the field's end they are what a decoder predicts there.
@@ -121,7 +121,7 @@ struct PlaneToEncode
   const PlaneNumbers* B = nullptr;
   std::int32_t CoarseBin = 1, FineBin = 1;
   std::int32_t Least = 0, Greatest = 0;
-  std::vector<block::Mode> Candidates; ///< to choose from; at least one without references
+  std::vector<block::Mode> CandidateModes; ///< to choose from; at least one without references
   /// How many of them, those that look best, are encoded to see what they cost; 1: what looks best
   /// is taken.
   int Trials = 1;
@@ -133,7 +133,9 @@ struct PlaneToEncode
 /// @param done called for each block, by any thread, when it is decoded, with the layer behind it:
 /// its numbers are still at hand
 /// @param begin if not null, called for each block, by any thread, before its numbers to code are
-/// asked for: it may make them then The result does not depend on the number of threads.
+/// asked for: it may make them then
+///
+/// The result does not depend on the number of threads.
 void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded,
   std::vector<BlockTokens>& blocks, ThreadPool& pool,
   const std::function<void(std::int64_t block)>& done,

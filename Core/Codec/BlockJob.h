@@ -35,10 +35,6 @@ enum class BlockPhase
   Interior
 };
 
-/// Runs a phase of the block at a position, with the instructions of this processor. Positions may
-/// lie one beyond the last block: what the field's last blocks share with none is predicted only.
-void EncodeBlock(const PlaneJob& job, const glm::ivec3& position, BlockPhase phase);
-
 } // namespace banyan
 
 #endif

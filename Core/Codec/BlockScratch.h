@@ -12,6 +12,9 @@
 namespace banyan::block
 {
 
+/// The largest edge of blocks; the other one is 16.
+constexpr int MostEdge = 32;
+
 /// How the memory of units is laid out. A unit is what is left of a block between what is known:
 /// its three edges (one dimension), its three faces (two), or its interior (three). Edges, and
 /// faces, are coded together: their rows lie side by side, number 0 to 2.
@@ -23,19 +26,19 @@ struct Shape
 {
   int Edge;
 
-  std::ptrdiff_t Pitch() const { return this->Edge + 8; }
+  constexpr std::ptrdiff_t Pitch() const { return this->Edge + 8; }
   /// Distance of rows that follow each other along y, and along z.
-  std::ptrdiff_t Y() const { return D == 2 ? 3 * this->Pitch() : this->Pitch(); }
-  std::ptrdiff_t Z() const { return D > 2 ? (this->Edge + 1) * this->Pitch() : 0; }
+  constexpr std::ptrdiff_t Y() const { return D == 2 ? 3 * this->Pitch() : this->Pitch(); }
+  constexpr std::ptrdiff_t Z() const { return D > 2 ? (this->Edge + 1) * this->Pitch() : 0; }
   /// The same for magnitudes, which have no last row.
-  std::ptrdiff_t ZM() const { return D > 2 ? this->Edge * this->Pitch() : 0; }
+  constexpr std::ptrdiff_t MagnitudeZ() const { return D > 2 ? this->Edge * this->Pitch() : 0; }
 
-  std::size_t Samples() const
+  constexpr std::size_t Samples() const
   {
     const std::ptrdiff_t n = this->Edge + 1;
     return static_cast<std::size_t>((D == 1 ? 3 : D == 2 ? 3 * n : n * n) * this->Pitch() + 48);
   }
-  std::size_t Magnitudes() const
+  constexpr std::size_t Magnitudes() const
   {
     const std::ptrdiff_t n = this->Edge;
     return static_cast<std::size_t>((D == 1 ? 3 : D == 2 ? 3 * n : n * n) * this->Pitch() + 48);
@@ -43,8 +46,8 @@ struct Shape
 
   /// Distance of the sums of magnitudes of rows, from slice to slice; those of a slice lie side by
   /// side: along y, or those of three faces or edges.
-  std::ptrdiff_t SumPitch() const { return D > 2 ? this->Edge + 16 : 16; }
-  std::size_t Sums() const
+  constexpr std::ptrdiff_t SumPitch() const { return D > 2 ? this->Edge + 16 : 16; }
+  constexpr std::size_t Sums() const
   {
     return static_cast<std::size_t>((D == 1 ? 1 : this->Edge) * this->SumPitch() + 32);
   }
@@ -64,13 +67,13 @@ public:
   }
 
   /// Sample 0 of the first row. Samples 0 to edge of each axis.
-  Number* W() { return this->SamplesAt.data() + 16; }
+  Number* Samples() { return this->SamplesAt.data() + 16; }
   /// Magnitude of the residual there. 0 to edge - 1 of each axis.
-  std::uint8_t* M() { return this->MagnitudesAt.data() + 16; }
+  std::uint8_t* Magnitudes() { return this->MagnitudesAt.data() + 16; }
   /// The residuals of the unit itself, from -15 to 15; of edges none is kept.
-  std::int8_t* R() { return this->ResidualsAt.data() + 16; }
+  std::int8_t* Residuals() { return this->ResidualsAt.data() + 16; }
   /// Sums of the magnitudes of rows.
-  std::uint16_t* S() { return this->SumsAt.data() + 16; }
+  std::uint16_t* RowSums() { return this->SumsAt.data() + 16; }
   void Clear()
   {
     std::fill(this->SumsAt.begin(), this->SumsAt.end(), std::uint16_t{ 0 });
@@ -87,7 +90,7 @@ private:
 
 /// Magnitudes of faces start with those of the edges around them.
 /// @param edges along x, y, z
-inline void PlaceEdges(int edge, const std::uint8_t (&edges)[3][64], std::uint8_t* faces)
+inline void PlaceEdges(int edge, const std::uint8_t (&edges)[3][MostEdge], std::uint8_t* faces)
 {
   const Shape<2> shape{ edge };
   constexpr int axes[3][2] = { { 0, 1 }, { 0, 2 }, { 1, 2 } };
@@ -113,11 +116,11 @@ inline void PlaceFaces(int edge, const std::uint8_t* faces, std::uint8_t* interi
   }
   for (int k = 1; k < edge; ++k)
   {
-    std::copy_n(faces + from.Pitch() + k * from.Y(), edge, interior + k * to.ZM());
+    std::copy_n(faces + from.Pitch() + k * from.Y(), edge, interior + k * to.MagnitudeZ());
     const std::uint8_t* yz = faces + 2 * from.Pitch() + k * from.Y();
     for (int j = 1; j < edge; ++j)
     {
-      interior[k * to.ZM() + j * to.Y()] = yz[j];
+      interior[k * to.MagnitudeZ() + j * to.Y()] = yz[j];
     }
   }
 }

@@ -4,6 +4,7 @@
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Codec/BlockScratch.h"
+#include "Codec/Simd/BoxKernels.h"
 
 #include <glm/vector_relational.hpp>
 
@@ -41,6 +42,99 @@ glm::ivec3 PositionIn(const glm::ivec3& size, std::int64_t index)
     static_cast<int>(index / size.x / size.y) };
 }
 
+using BlockCallback = std::function<void(std::int64_t)>;
+
+constexpr BlockPhase CodingPhases[] = { BlockPhase::Edges, BlockPhase::Faces,
+  BlockPhase::Interior };
+
+void EncodeBlock(const PlaneJob& job, const glm::ivec3& position, BlockPhase phase)
+{
+  job.Decoded->Narrow ? EncodeBlockNarrow(job, position, phase)
+                      : EncodeBlockWide(job, position, phase);
+}
+
+/// The blocks of a plane, and one more along each axis: what the last ones share with none.
+struct ExtendedBlocks
+{
+  explicit ExtendedBlocks(const PlaneNumbers& plane)
+    : Blocks(plane.Blocks)
+    , Extended(plane.Blocks + 1)
+    , Count(std::int64_t{ this->Extended.x } * this->Extended.y * this->Extended.z)
+  {
+  }
+
+  glm::ivec3 PositionOf(std::int64_t i) const { return PositionIn(this->Extended, i); }
+
+  /// The number of a block; -1 for those beyond.
+  std::int64_t IndexOf(const glm::ivec3& position) const
+  {
+    return glm::all(glm::lessThan(position, this->Blocks))
+             ? (std::int64_t{ position.z } * this->Blocks.y + position.y) * this->Blocks.x +
+                 position.x
+             : -1;
+  }
+
+  glm::ivec3 Blocks, Extended;
+  std::int64_t Count;
+};
+
+/// Units begin at what the neighbours behind own: from the last block to the first, each can be
+/// done as a whole, while its numbers are at hand.
+void EncodeOneByOne(const PlaneJob& job, const BlockCallback& done, const BlockCallback& begin)
+{
+  const ExtendedBlocks blocks(*job.Plane->Target);
+  for (std::int64_t i = blocks.Count; i-- > 0;)
+  {
+    const glm::ivec3 position = blocks.PositionOf(i);
+    const std::int64_t index = blocks.IndexOf(position);
+    if (index >= 0)
+    {
+      if (begin)
+      {
+        begin(index);
+      }
+      EncodeBlock(job, position, BlockPhase::Choose);
+    }
+    for (const BlockPhase phase : CodingPhases)
+    {
+      EncodeBlock(job, position, phase);
+    }
+    if (index >= 0)
+    {
+      done(index);
+    }
+  }
+}
+
+/// Each phase of all blocks after the one before.
+void EncodeInPhases(
+  const PlaneJob& job, ThreadPool& pool, const BlockCallback& done, const BlockCallback& begin)
+{
+  const PlaneNumbers& target = *job.Plane->Target;
+  const ExtendedBlocks blocks(target);
+  if (begin)
+  {
+    pool.ParallelFor(
+      target.BlockCount(), [&](std::int64_t i) { begin(target.BlockCount() - 1 - i); });
+  }
+  pool.ParallelFor(target.BlockCount(),
+    [&](std::int64_t i) { EncodeBlock(job, PositionIn(target.Blocks, i), BlockPhase::Choose); });
+  for (const BlockPhase phase : CodingPhases)
+  {
+    pool.ParallelFor(blocks.Count,
+      [&](std::int64_t i)
+      {
+        const glm::ivec3 position = blocks.PositionOf(i);
+        EncodeBlock(job, position, phase);
+        const std::int64_t index = phase == BlockPhase::Interior ? blocks.IndexOf(position) : -1;
+        if (index >= 0)
+        {
+          done(index);
+        }
+      });
+  }
+}
+
 } // namespace
 
 PlaneNumbers::PlaneNumbers(const glm::ivec3& samples, int edge, bool narrow)
@@ -61,10 +155,14 @@ glm::ivec3 CoarserSamples(const glm::ivec3& samples)
 }
 
 void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded,
-  std::vector<BlockTokens>& blocks, ThreadPool& pool, const std::function<void(std::int64_t)>& done,
-  const std::function<void(std::int64_t)>& begin)
+  std::vector<BlockTokens>& blocks, ThreadPool& pool, const BlockCallback& done,
+  const BlockCallback& begin)
 {
   const PlaneNumbers& target = *plane.Target;
+  if (target.Edge != 16 && target.Edge != 32)
+  {
+    throw Error("A block must have an edge of 16 or 32 samples");
+  }
   if (target.Narrow != block::Narrow(plane.Least, plane.Greatest) ||
       decoded.Narrow != target.Narrow || decoded.Padded != target.Padded)
   {
@@ -74,70 +172,13 @@ void EncodePlane(const PlaneToEncode& plane, PlaneNumbers& decoded,
   blocks.resize(static_cast<std::size_t>(target.BlockCount()));
   std::vector<BlockUnderway> underway(blocks.size());
   const PlaneJob job{ &plane, &decoded, &blocks, &underway };
-  const glm::ivec3 extended = target.Blocks + 1;
-  const std::int64_t count = std::int64_t{ extended.x } * extended.y * extended.z;
-  const auto indexOf = [&](const glm::ivec3& position)
-  {
-    return glm::all(glm::lessThan(position, target.Blocks))
-             ? (std::int64_t{ position.z } * target.Blocks.y + position.y) * target.Blocks.x +
-                 position.x
-             : -1;
-  };
   target.With(
     [&](auto* numbers)
     {
       PlaceCoarser<std::remove_const_t<std::remove_pointer_t<decltype(numbers)>>>(
         *plane.Coarser, decoded);
     });
-  constexpr BlockPhase phases[] = { BlockPhase::Edges, BlockPhase::Faces, BlockPhase::Interior };
-  if (pool.Width() == 1)
-  {
-    // Units begin at what the neighbours behind own: from the last block to the first, each can be
-    // done as a whole, while its numbers are at hand.
-    for (std::int64_t i = count; i-- > 0;)
-    {
-      const glm::ivec3 position = PositionIn(extended, i);
-      const std::int64_t index = indexOf(position);
-      if (index >= 0)
-      {
-        if (begin)
-        {
-          begin(index);
-        }
-        EncodeBlock(job, position, BlockPhase::Choose);
-      }
-      for (const BlockPhase phase : phases)
-      {
-        EncodeBlock(job, position, phase);
-      }
-      if (index >= 0)
-      {
-        done(index);
-      }
-    }
-    return;
-  }
-  if (begin)
-  {
-    pool.ParallelFor(
-      target.BlockCount(), [&](std::int64_t i) { begin(target.BlockCount() - 1 - i); });
-  }
-  pool.ParallelFor(target.BlockCount(),
-    [&](std::int64_t i) { EncodeBlock(job, PositionIn(target.Blocks, i), BlockPhase::Choose); });
-  for (const BlockPhase phase : phases)
-  {
-    pool.ParallelFor(count,
-      [&](std::int64_t i)
-      {
-        const glm::ivec3 position = PositionIn(extended, i);
-        EncodeBlock(job, position, phase);
-        const std::int64_t index = phase == BlockPhase::Interior ? indexOf(position) : -1;
-        if (index >= 0)
-        {
-          done(index);
-        }
-      });
-  }
+  pool.Width() == 1 ? EncodeOneByOne(job, done, begin) : EncodeInPhases(job, pool, done, begin);
 }
 
 } // namespace banyan

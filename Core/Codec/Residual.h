@@ -62,17 +62,18 @@ inline std::uint8_t MagnitudeOf(std::int32_t residual)
 }
 
 /// A table entry as one word: number of bits to read (8 bits of the word, for shift instructions
-/// take their counts from such a byte), then 8 bits: the residual, or EscapeTop and the number of
-/// extra bits; and the next state, which nothing is above of.
-constexpr int TopShift = 8;
+/// take their counts from such a byte), then 8 bits: the residual, or EscapeSymbol and the number
+/// of extra bits; and the next state, which nothing is above of.
+constexpr int SymbolShift = 8;
 constexpr int BaseShift = 16;
-constexpr int EscapeTop = 64;
+constexpr int EscapeSymbol = 64;
 inline std::uint32_t Packed(const tans::DecodeEntry& entry)
 {
-  const std::uint32_t top = entry.Symbol >= DirectSymbols
-                              ? static_cast<std::uint32_t>(EscapeTop + ExtraBits(entry.Symbol))
-                              : static_cast<std::uint32_t>(Unzigzag(entry.Symbol));
-  return entry.Bits | (top & 0xffu) << TopShift |
+  const std::uint32_t symbol =
+    entry.Symbol >= DirectSymbols
+      ? static_cast<std::uint32_t>(EscapeSymbol + ExtraBits(entry.Symbol))
+      : static_cast<std::uint32_t>(Unzigzag(entry.Symbol));
+  return entry.Bits | (symbol & 0xffu) << SymbolShift |
          static_cast<std::uint32_t>(entry.Base) << BaseShift;
 }
 

@@ -39,7 +39,7 @@ std::vector<Mode> CandidatesOf(EncodeProfile profile, const EncodeIdeas& ideas)
 
 void ApplyProfile(EncodeProfile profile, const EncodeIdeas& ideas, PlaneToEncode& plane)
 {
-  plane.Candidates = CandidatesOf(profile, ideas);
+  plane.CandidateModes = CandidatesOf(profile, ideas);
   plane.Trials = profile == EncodeProfile::Compact ? 4 : 1;
 }
 

@@ -6,7 +6,7 @@
 #include "Codec/BlockDecoder.h"
 #include "Codec/BlockEncoder.h"
 #include "Codec/BlockScratch.h"
-#include "Codec/ScalarBlock.h"
+#include "Codec/Scalar/ScalarBox.h"
 #include "Codec/SymbolWriter.h"
 
 #include <gtest/gtest.h>
@@ -218,8 +218,16 @@ inline std::vector<std::int32_t> DecodeFast(
 inline std::vector<std::int32_t> DecodeSlow(const EncodedPlane& encoded, const Box3& box)
 {
   const PlaneToEncode& plane = encoded.Plane;
-  return DecodeBoxSlowly(plane.Target->Edge,
-    { encoded.Frequencies, plane.CoarseBin, plane.FineBin, plane.Least, plane.Greatest }, box.Code);
+  // States by their own rules, not from the tables that the kernels read.
+  std::vector<std::vector<scalar::State>> states;
+  for (const tans::Frequencies& context : encoded.Frequencies)
+  {
+    states.push_back(scalar::StatesFrom(context));
+  }
+  const auto stateOf = [&states](int context, std::uint32_t state)
+  { return states[static_cast<std::size_t>(context)][state]; };
+  return scalar::Decode(plane.Target->Edge,
+    { stateOf, plane.CoarseBin, plane.FineBin, plane.Least, plane.Greatest }, box.Code);
 }
 
 /// A plane of mixed numbers with a coarser one and two references, as neighbours in time have them.
@@ -259,7 +267,7 @@ struct MixedPlanes
     plane.FineBin = 31;
     plane.Least = -6000;
     plane.Greatest = 120000000;
-    plane.Candidates = std::move(candidates);
+    plane.CandidateModes = std::move(candidates);
     return plane;
   }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Base/Error.h"
-#include "Codec/SymbolRun-inl.h"
+#include "Codec/Simd/SymbolRun-inl.h"
 #include "Codec/SymbolWriter.h"
 
 #include <gtest/gtest.h>
@@ -83,10 +83,10 @@ std::vector<std::uint32_t> ReadAll(SymbolReader& reader, const Tokens& tokens)
     tops.resize(run);
     for (const std::int8_t top : tops)
     {
-      codes.push_back(
-        residual::Zigzag(top < residual::EscapeTop
-                           ? top
-                           : reader.Long(static_cast<std::uint32_t>(top - residual::EscapeTop))));
+      codes.push_back(residual::Zigzag(
+        top < residual::EscapeSymbol
+          ? top
+          : reader.Long(static_cast<std::uint32_t>(top - residual::EscapeSymbol))));
     }
     begin += run;
   }
