@@ -2,7 +2,7 @@
 #include "Codec/BlockDecoder.h"
 
 #include "Base/Error.h"
-#include "Codec/Simd/BoxKernels.h"
+#include "Codec/Simd/BlockKernels.h"
 
 namespace banyan
 {

@@ -3,7 +3,7 @@
 #define banyan_Codec_BlockDecoder_h
 
 #include "Codec/DecodeTables.h"
-#include "Codec/MemoryAhead.h"
+#include "Codec/LinePrefetcher.h"
 
 #include <glm/vec3.hpp>
 
@@ -53,13 +53,13 @@ struct BoxCodeOf
   /// others. Of what is here the faces are not decoded again.
   const Number* Neighbours[3] = {};
   /// What is asked for meanwhile; or null.
-  MemoryAhead* Ahead = nullptr;
+  LinePrefetcher* Prefetcher = nullptr;
 
-  void AskAhead(int lines) const
+  void Prefetch(int lines) const
   {
-    if (this->Ahead != nullptr)
+    if (this->Prefetcher != nullptr)
     {
-      this->Ahead->Ask(lines);
+      this->Prefetcher->Ask(lines);
     }
   }
 };

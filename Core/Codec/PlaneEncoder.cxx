@@ -4,7 +4,7 @@
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Codec/BlockScratch.h"
-#include "Codec/Simd/BoxKernels.h"
+#include "Codec/Simd/BlockKernels.h"
 
 #include <glm/vector_relational.hpp>
 
@@ -49,8 +49,13 @@ constexpr BlockPhase CodingPhases[] = { BlockPhase::Edges, BlockPhase::Faces,
 
 void EncodeBlock(const PlaneJob& job, const glm::ivec3& position, BlockPhase phase)
 {
-  job.Decoded->Narrow ? EncodeBlockNarrow(job, position, phase)
-                      : EncodeBlockWide(job, position, phase);
+  if (job.Decoded->Narrow)
+  {
+    return job.Decoded->Edge == 16 ? EncodeBlockNarrow16(job, position, phase)
+                                   : EncodeBlockNarrow32(job, position, phase);
+  }
+  job.Decoded->Edge == 16 ? EncodeBlockWide16(job, position, phase)
+                          : EncodeBlockWide32(job, position, phase);
 }
 
 /// The blocks of a plane, and one more along each axis: what the last ones share with none.

@@ -51,8 +51,8 @@ inline std::uint32_t CodeOf(int symbol, std::uint32_t extra)
                                 : DirectSymbols - 1 + (1u << (symbol - DirectSymbols)) + extra;
 }
 
-/// About 2 log2(1 + |r|): sums of these say how rough the neighbourhood is, over any scale. From 15
-/// on it grows no more.
+/// About 2 log2(1 + |r|): sums of these say how active the neighbourhood is, over any scale. From
+/// 15 on it grows no more.
 inline std::uint8_t MagnitudeOf(std::int32_t residual)
 {
   constexpr std::uint8_t of[16] = { 0, 2, 3, 4, 5, 5, 6, 6, 6, 7, 7, 7, 7, 8, 8, 8 };
@@ -77,7 +77,7 @@ inline std::uint32_t Packed(const tans::DecodeEntry& entry)
          static_cast<std::uint32_t>(entry.Base) << BaseShift;
 }
 
-/// Contexts: a band (kind of unit, stride, direction), one of 8 classes of roughness, and whether
+/// Contexts: a band (kind of unit, stride, direction), one of 8 classes of activity, and whether
 /// the residuals in the slices before hint at a sign; and contexts for the flag "this row is all
 /// zero", by the weight of what is around a row.
 constexpr int Bands = 11;

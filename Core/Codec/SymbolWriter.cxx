@@ -2,8 +2,8 @@
 #include "Codec/SymbolWriter.h"
 
 #include "Base/Error.h"
-#include "Codec/BackwardBits.h"
-#include "Codec/SharedContexts.h"
+#include "Codec/ContextClustering.h"
+#include "Codec/ReverseBitWriter.h"
 
 #include <algorithm>
 #include <functional>
@@ -91,7 +91,7 @@ SymbolTables::SymbolTables(const ContextCounts& each, bool share)
   ContextCounts counts = each;
   if (share)
   {
-    ShareContexts(counts);
+    ClusterContexts(counts);
   }
   for (const auto& context : counts.Of)
   {
@@ -158,7 +158,7 @@ struct SymbolTables::Backwards
 {
   const Transform* Transforms;
   const std::uint16_t* Next;
-  BackwardBits Bits;
+  ReverseBitWriter Bits;
   std::uint32_t States[tans::MostLanes];
 
   void Symbol(std::uint16_t token, std::uint32_t& state)
@@ -243,7 +243,7 @@ std::vector<std::uint8_t> SymbolTables::Encode(const std::vector<std::uint16_t>&
   const int lanesLog = this->LanesLogFor(tokens);
   const std::size_t lanes = std::size_t{ 1 } << lanesLog;
   Backwards writer{ this->Transforms.data(), this->Next.data(),
-    BackwardBits(2 + tans::TableBits * (lanes + tokens.size()) + 32 * extra.size()), {} };
+    ReverseBitWriter(2 + tans::TableBits * (lanes + tokens.size()) + 32 * extra.size()), {} };
   std::fill(writer.States, writer.States + lanes, static_cast<std::uint32_t>(tans::TableSize));
   const auto write = lanesLog == 0   ? &SymbolTables::Write<1>
                      : lanesLog == 1 ? &SymbolTables::Write<2>

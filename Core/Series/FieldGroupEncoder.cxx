@@ -6,7 +6,7 @@
 #include "Codec/BlockScratch.h"
 #include "Codec/GroupOrder.h"
 #include "Codec/SymbolWriter.h"
-#include "Codec/TokenCounter.h"
+#include "Codec/TokenHistogram.h"
 #include "Series/ChainLengths.h"
 #include "Series/Exceptions.h"
 #include "Series/FieldLattice.h"
@@ -58,7 +58,7 @@ private:
   std::vector<PlaneNumbers> Wanted; ///< of the step under way
   std::vector<DecodedStep> Decoded; ///< all steps, as all else is kept until the group is written
   std::vector<StepTokens> Tokens;
-  TokenCounter Counters[2]; ///< of the finest planes, and of all others
+  TokenHistogram Counters[2]; ///< of the finest planes, and of all others
   EncodedField Out;
 };
 

@@ -310,7 +310,7 @@ LatticeCache::Box GroupField::DecodeAs(int step, int plane, const glm::ivec3& bl
     code.B = b->Numbers<Number>();
   }
   code.Coarse = this->Coarse<Number>(step, plane, block);
-  code.Ahead = &Ahead();
+  code.Prefetcher = &Ahead();
   const std::size_t n = static_cast<std::size_t>(this->BrickCells) + 1;
   const auto box = std::make_shared<LatticeBox>(n * n * n, sizeof(Number) == sizeof(std::int16_t));
   DecodeBox(this->BrickCells, shared, code, box->Numbers<Number>());

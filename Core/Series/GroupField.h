@@ -4,7 +4,7 @@
 
 #include "Codec/DecodeTables.h"
 #include "Codec/GroupOrder.h"
-#include "Codec/MemoryAhead.h"
+#include "Codec/LinePrefetcher.h"
 #include "Series/GroupReader.h"
 #include "Series/LatticeCache.h"
 
@@ -77,7 +77,7 @@ private:
   template <class Number>
   LatticeCache::Box DecodeAs(int step, int plane, const glm::ivec3& block);
   /// What the calling thread asks for.
-  static MemoryAhead& Ahead();
+  static LinePrefetcher& Ahead();
 
   GroupReader& File;
   std::uint64_t Series;

@@ -8,9 +8,9 @@
 namespace banyan
 {
 
-MemoryAhead& GroupField::Ahead()
+LinePrefetcher& GroupField::Ahead()
 {
-  thread_local MemoryAhead ahead;
+  thread_local LinePrefetcher ahead;
   return ahead;
 }
 
@@ -23,7 +23,7 @@ void GroupField::Prefetch(int step, int plane, const glm::ivec3& block)
   const std::size_t row = static_cast<std::size_t>(this->BrickCells + 1) * number;
   const std::size_t layer = static_cast<std::size_t>(this->BrickCells + 1) * row;
   const std::size_t whole = static_cast<std::size_t>(this->BrickCells + 1) * layer;
-  MemoryAhead& ahead = Ahead();
+  LinePrefetcher& ahead = Ahead();
   ahead.Clear();
   const auto fetch = [&](int from)
   {

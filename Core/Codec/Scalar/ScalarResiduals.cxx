@@ -61,60 +61,71 @@ private:
     return p;
   }
 
+  struct Sample
+  {
+    Position Where; ///< in the block
+    int Context;
+    bool Opposite; ///< what is coded has the other sign
+  };
+
+  static int BandOf(int dimensions, int stride, int axis)
+  {
+    return dimensions == 1   ? 2 - stride
+           : dimensions == 2 ? (stride == 2 ? 2 : 3 + axis)
+                             : (stride == 2 ? 5 : 8) + axis;
+  }
+
+  /// The samples of a row within the field.
+  std::vector<Sample> SamplesOf(
+    const RowToRead& row, const glm::ivec3& limit, int stride, int axis, int step)
+  {
+    const int band = BandOf(static_cast<int>(row.Axes.size()), stride, axis);
+    std::vector<Sample> samples;
+    for (Position at = row.First; at[0] < this->Edge && Inside(row.Axes, at, limit); at[0] += step)
+    {
+      const int activity = this->Activity(row.Axes, stride, axis, at);
+      int contextClass = 0;
+      for (const int limitOfClass : { 0, 5, 12, 22, 36, 56, 90 })
+      {
+        contextClass += activity > limitOfClass ? 1 : 0;
+      }
+      const int hint = contextClass > 0 ? this->Hint(row.Axes, stride, at) : 0;
+      samples.push_back(
+        { InBlock(row.Axes, at), 16 * band + contextClass + (hint != 0 ? 8 : 0), hint < 0 });
+    }
+    return samples;
+  }
+
+  /// How likely a row has residuals, 0 to 12.
+  int RowClass(const RowToRead& row, int stride, int axis)
+  {
+    const int weight = this->RowWeight(row.Axes, stride, axis, row.First);
+    int rowClass = 0;
+    for (const int limitOfClass : { 0, 8, 16, 28, 44, 64, 90, 125, 170, 230, 310, 420 })
+    {
+      rowClass += weight > limitOfClass ? 1 : 0;
+    }
+    return rowClass;
+  }
+
+  /// Residuals of a slice are no context for the same slice: all of it is read, and then set.
   void ReadSlice(const std::vector<RowToRead>& rows, const glm::ivec3& limit, int stride, int axis,
     int step, Symbols& symbols)
   {
-    const int dimensions = static_cast<int>(rows[0].Axes.size());
-    const int band = dimensions == 1   ? 2 - stride
-                     : dimensions == 2 ? (stride == 2 ? 2 : 3 + axis)
-                                       : (stride == 2 ? 5 : 8) + axis;
-    struct Sample
-    {
-      Position Where; ///< in the block
-      int Context;
-      bool Opposite; ///< what is coded has the other sign
-    };
-    // Residuals of a slice are no context for the same slice: all of it is read, and then set.
-    std::vector<std::vector<Sample>> withSymbols;
-    std::vector<int> classes;
-    for (const RowToRead& row : rows)
-    {
-      std::vector<Sample> samples;
-      for (Position at = row.First; at[0] < this->Edge; at[0] += step)
-      {
-        if (!Inside(row.Axes, at, limit))
-        {
-          break;
-        }
-        const int activity = this->Activity(row.Axes, stride, axis, at);
-        int contextClass = 0;
-        for (const int limitOfClass : { 0, 5, 12, 22, 36, 56, 90 })
-        {
-          contextClass += activity > limitOfClass ? 1 : 0;
-        }
-        const int hint = contextClass > 0 ? this->Hint(row.Axes, stride, at) : 0;
-        samples.push_back(
-          { InBlock(row.Axes, at), 16 * band + contextClass + (hint != 0 ? 8 : 0), hint < 0 });
-      }
-      if (!samples.empty())
-      {
-        int rowClass = 0;
-        const int weight = this->RowWeight(row.Axes, stride, axis, row.First);
-        for (const int limitOfClass : { 0, 8, 16, 28, 44, 64, 90, 125, 170, 230, 310, 420 })
-        {
-          rowClass += weight > limitOfClass ? 1 : 0;
-        }
-        withSymbols.push_back(samples);
-        classes.push_back(rowClass);
-      }
-    }
+    const int band = BandOf(static_cast<int>(rows[0].Axes.size()), stride, axis);
     std::size_t flag = 0;
     std::vector<Sample> run;
-    for (std::size_t r = 0; r < withSymbols.size(); ++r)
+    for (const RowToRead& row : rows)
     {
-      if (classes[r] == 12 || symbols.Next(176 + 12 * band + classes[r], flag++) == 0)
+      const std::vector<Sample> samples = this->SamplesOf(row, limit, stride, axis, step);
+      if (samples.empty())
       {
-        run.insert(run.end(), withSymbols[r].begin(), withSymbols[r].end());
+        continue;
+      }
+      const int rowClass = this->RowClass(row, stride, axis);
+      if (rowClass == 12 || symbols.Next(176 + 12 * band + rowClass, flag++) == 0)
+      {
+        run.insert(run.end(), samples.begin(), samples.end());
       }
     }
     std::vector<int> read;
@@ -158,62 +169,29 @@ private:
     return inside;
   }
 
+  /// The next row or slice along an axis, or the one before where there is none.
+  int Next(int position, int step) const
+  {
+    return position + step < this->Edge ? position + step : position - step;
+  }
+
+  int MagnitudeAt(const std::vector<int>& axes, int x, int y, int z)
+  {
+    return x < 0 || x >= this->Edge ? 0 : this->Magnitude(axes, { x, y, z });
+  }
+
   /// Weighted sum of magnitudes around a sample of a unit.
   int Activity(const std::vector<int>& axes, int s, int axis, const Position& at)
   {
     const int dimensions = static_cast<int>(axes.size());
-    const auto m = [&](int x, int y, int z)
-    {
-      if (x < 0 || x >= this->Edge)
-      {
-        return 0;
-      }
-      return this->Magnitude(axes, { x, y, z });
-    };
-    // The next row of that axis, or the one before where there is none.
-    const auto next = [&](int position, int step)
-    { return position + step < this->Edge ? position + step : position - step; };
-    const auto [x, y, z] = at;
-    int sum = 0;
-    if (axis == 0)
-    {
-      sum += 2 * (m(x - s, y, z) + m(x + s, y, z));
-      if (dimensions > 1)
-      {
-        for (const int e : { y - 2 * s, next(y, 2 * s) })
-        {
-          sum += m(x - s, e, z) + m(x + s, e, z);
-        }
-      }
-      if (dimensions > 2)
-      {
-        for (const int e : { z - 2 * s, next(z, 2 * s) })
-        {
-          sum += m(x - s, y, e) + m(x + s, y, e);
-        }
-      }
-    }
-    else if (axis == 1)
-    {
-      for (const int end : { y - s, next(y, s) })
-      {
-        sum += 2 * m(x, end, z) + m(x - s, end, z) + m(x + s, end, z);
-        sum += dimensions > 2 ? m(x, end, z - 2 * s) + m(x, end, next(z, 2 * s)) : 0;
-      }
-    }
-    else
-    {
-      for (const int end : { z - s, next(z, s) })
-      {
-        sum += 2 * m(x, y, end) + m(x - s, y, end) + m(x + s, y, end);
-        sum += m(x, y - s, end) + m(x, next(y, s), end);
-      }
-    }
+    const int sum = this->ActivityAtEnds(axes, s, axis, at);
     if (dimensions == 1)
     {
       return sum;
     }
     // The slice before, of the same pass.
+    const auto m = [&](int x, int y, int z) { return this->MagnitudeAt(axes, x, y, z); };
+    const auto [x, y, z] = at;
     const int across = axis == 0 ? 2 * s : s;
     if (dimensions == 2)
     {
@@ -227,10 +205,54 @@ private:
     }
     const int e = z - 2 * s;
     const int up = axis == 2 ? s : 2 * s;
-    const int after = next(y, up);
+    const int after = this->Next(y, up);
     const int before = y >= up ? y - up : after;
     return sum + 6 * m(x, y, e) +
            2 * (m(x - across, y, e) + m(x + across, y, e) + m(x, before, e) + m(x, after, e));
+  }
+
+  /// The same of what is at and beside both ends of the interpolation.
+  int ActivityAtEnds(const std::vector<int>& axes, int s, int axis, const Position& at)
+  {
+    const int dimensions = static_cast<int>(axes.size());
+    const auto m = [&](int x, int y, int z) { return this->MagnitudeAt(axes, x, y, z); };
+    const auto [x, y, z] = at;
+    int sum = 0;
+    if (axis == 0)
+    {
+      sum += 2 * (m(x - s, y, z) + m(x + s, y, z));
+      if (dimensions > 1)
+      {
+        for (const int e : { y - 2 * s, this->Next(y, 2 * s) })
+        {
+          sum += m(x - s, e, z) + m(x + s, e, z);
+        }
+      }
+      if (dimensions > 2)
+      {
+        for (const int e : { z - 2 * s, this->Next(z, 2 * s) })
+        {
+          sum += m(x - s, y, e) + m(x + s, y, e);
+        }
+      }
+    }
+    else if (axis == 1)
+    {
+      for (const int end : { y - s, this->Next(y, s) })
+      {
+        sum += 2 * m(x, end, z) + m(x - s, end, z) + m(x + s, end, z);
+        sum += dimensions > 2 ? m(x, end, z - 2 * s) + m(x, end, this->Next(z, 2 * s)) : 0;
+      }
+    }
+    else
+    {
+      for (const int end : { z - s, this->Next(z, s) })
+      {
+        sum += 2 * m(x, y, end) + m(x - s, y, end) + m(x + s, y, end);
+        sum += m(x, y - s, end) + m(x, this->Next(y, s), end);
+      }
+    }
+    return sum;
   }
 
   /// Weighted sum of the magnitudes in the rows around a row of a unit.
@@ -246,30 +268,28 @@ private:
       }
       return all;
     };
-    const auto next = [&](int position, int step)
-    { return position + step < this->Edge ? position + step : position - step; };
     const int y = first[1];
     const int z = first[2];
     int weight = 0;
     if (axis == 0)
     {
       weight = 4 * sum(y, z);
-      weight += dimensions > 1 ? 2 * (sum(y - 2 * s, z) + sum(next(y, 2 * s), z)) : 0;
-      weight += dimensions > 2 ? 2 * (sum(y, z - 2 * s) + sum(y, next(z, 2 * s))) : 0;
+      weight += dimensions > 1 ? 2 * (sum(y - 2 * s, z) + sum(this->Next(y, 2 * s), z)) : 0;
+      weight += dimensions > 2 ? 2 * (sum(y, z - 2 * s) + sum(y, this->Next(z, 2 * s))) : 0;
     }
     else if (axis == 1)
     {
-      for (const int end : { y - s, next(y, s) })
+      for (const int end : { y - s, this->Next(y, s) })
       {
         weight += 4 * sum(end, z);
-        weight += dimensions > 2 ? sum(end, z - 2 * s) + sum(end, next(z, 2 * s)) : 0;
+        weight += dimensions > 2 ? sum(end, z - 2 * s) + sum(end, this->Next(z, 2 * s)) : 0;
       }
     }
     else
     {
-      for (const int end : { z - s, next(z, s) })
+      for (const int end : { z - s, this->Next(z, s) })
       {
-        weight += 4 * sum(y, end) + sum(y - s, end) + sum(next(y, s), end);
+        weight += 4 * sum(y, end) + sum(y - s, end) + sum(this->Next(y, s), end);
       }
     }
     if (dimensions == 1)
@@ -287,7 +307,7 @@ private:
     }
     const int e = z - 2 * s;
     const int step = axis == 2 ? s : 2 * s;
-    const int after = next(y, step);
+    const int after = this->Next(y, step);
     const int before = y >= step ? y - step : after;
     return weight + 10 * sum(y, e) + 2 * (sum(before, e) + sum(after, e));
   }

@@ -184,7 +184,7 @@ struct BoxDecoder : BoxPlaces<B, Number>
       [&](auto pass)
       {
         using P = decltype(pass);
-        this->Code.AskAhead(6);
+        this->Code.Prefetch(6);
         const stages::In passes(stages::FacePasses);
         auto& magnitudes = this->Work.Magnitudes;
         BeginStride<P>(magnitudes.Faces, reader);
@@ -216,7 +216,7 @@ struct BoxDecoder : BoxPlaces<B, Number>
     Unit<Number, 3> unit{ this->Box.Base, nullptr, nullptr, sums, { block.Limit }, any };
     DecodeInterior(
       unit, block::ModeOf(block.Mode), this->Plane, reader, this->Work.Magnitudes, this->Work.Box,
-      [this](int lines) { this->Code.AskAhead(lines); }, this->To);
+      [this](int lines) { this->Code.Prefetch(lines); }, this->To);
     if (reader != nullptr && !reader->AtEnd())
     {
       throw Error("The payload of a block is damaged: its symbols do not end where it ends");
@@ -300,9 +300,9 @@ HWY_INLINE void DecodeBoxOf(const PlaneCode& plane, const BoxCodeOf<Number>& cod
   thread_local const auto work = std::make_unique<BoxWorkspace<B, Number>>();
   constexpr std::int64_t n = B + 1;
   const glm::i64vec3 strides{ 1, n, n * n };
-  if (code.Ahead != nullptr)
+  if (code.Prefetcher != nullptr)
   {
-    code.Ahead->Write(box, BoxMemory<Number, B>::Count * sizeof(Number));
+    code.Prefetcher->Write(box, BoxMemory<Number, B>::Count * sizeof(Number));
   }
   BoxDecoder<B, Number>{ { code, { work->Box.Decoded(), strides }, { code.A, strides } }, plane,
     { code.B, strides }, *work, box }

@@ -14,6 +14,95 @@ HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
 
+/// What magnitudes around a row say.
+/// @param P a pass, @param B edge of the block
+template <class P, int B>
+struct ActivityAround
+{
+  static constexpr block::Shape<P::D> Shape{ B };
+  static constexpr std::ptrdiff_t Y = Shape.Y();
+  static constexpr std::ptrdiff_t Z = Shape.MagnitudeZ();
+
+  const std::uint8_t* From; ///< lane First + at of the row
+  const RowPlace& Place;
+
+  HWY_INLINE Bytes At(std::ptrdiff_t offset) const { return Bytes::Load(this->From + offset); }
+  HWY_INLINE Bytes Beside(std::ptrdiff_t offset, std::ptrdiff_t distance) const
+  {
+    return this->At(offset - distance) + this->At(offset + distance);
+  }
+  /// Beyond the last row nothing of this block is known: the other side stands for it.
+  static std::ptrdiff_t Ahead(int position, int step, std::ptrdiff_t gap)
+  {
+    return position + step < B ? gap : -gap;
+  }
+
+  /// At and beside both ends of the interpolation.
+  HWY_INLINE Bytes Ends() const
+  {
+    constexpr int s = P::S;
+    if constexpr (P::Axis == 0)
+    {
+      const Bytes ends = this->Beside(0, s);
+      Bytes sum = ends + ends;
+      if constexpr (P::D > 1)
+      {
+        constexpr std::ptrdiff_t gap = 2 * s * Y;
+        sum += this->Beside(-gap, s) + this->Beside(Ahead(this->Place.Y, 2 * s, gap), s);
+      }
+      if constexpr (P::D > 2)
+      {
+        constexpr std::ptrdiff_t gap = 2 * s * Z;
+        sum += this->Beside(-gap, s) + this->Beside(Ahead(this->Place.Z, 2 * s, gap), s);
+      }
+      return sum;
+    }
+    else
+    {
+      constexpr std::ptrdiff_t gap = s * (P::Axis == 1 ? Y : Z);
+      const std::ptrdiff_t next = Ahead(P::Axis == 1 ? this->Place.Y : this->Place.Z, s, gap);
+      const Bytes ends = this->At(-gap) + this->At(next);
+      Bytes sum = ends + ends + this->Beside(-gap, s) + this->Beside(next, s);
+      if constexpr (P::D > 2)
+      {
+        constexpr std::ptrdiff_t across = P::Axis == 1 ? 2 * s * Z : s * Y;
+        const std::ptrdiff_t beside =
+          P::Axis == 1 ? Ahead(this->Place.Z, 2 * s, across) : Ahead(this->Place.Y, s, across);
+        sum += this->At(-gap - across) + this->At(next - across) + this->At(-gap + beside) +
+               this->At(next + beside);
+      }
+      return sum;
+    }
+  }
+
+  /// Ends, and the slice that the same pass coded before.
+  HWY_INLINE Bytes All() const
+  {
+    const Bytes sum = this->Ends();
+    if constexpr (P::D == 1)
+    {
+      return sum;
+    }
+    constexpr int s = P::S;
+    if ((P::D == 2 ? this->Place.Y : this->Place.Z) < 2 * s)
+    {
+      return sum + sum; // there is none
+    }
+    constexpr std::ptrdiff_t before = 2 * s * (P::D == 2 ? Y : Z);
+    Bytes near = this->Beside(-before, P::Step);
+    if constexpr (P::D > 2)
+    {
+      constexpr int step = P::RowStep;
+      constexpr std::ptrdiff_t gap = step * Y;
+      const std::ptrdiff_t up = Ahead(this->Place.Y, step, gap);
+      near += this->At(-before + (this->Place.Y >= step ? -gap : up)) + this->At(-before + up);
+    }
+    const Bytes same = this->At(-before);
+    const Bytes twice = same + near;
+    return sum + twice + twice + (same + same) + (same + same);
+  }
+};
+
 /// Sum of the magnitudes of residuals around that are known when a slice is coded: those at and
 /// beside both ends of the interpolation, and those of the slice that the same pass coded before,
 /// which count most. At most 26 times 8.
@@ -21,66 +110,7 @@ namespace banyan::HWY_NAMESPACE
 template <class P, int B>
 HWY_INLINE Bytes LocalActivity(const std::uint8_t* m, const RowPlace& place)
 {
-  constexpr block::Shape<P::D> shape{ B };
-  constexpr int s = P::S;
-  const auto load = [m](std::ptrdiff_t offset) { return Bytes::Load(m + offset); };
-  const auto sides = [&](std::ptrdiff_t offset, std::ptrdiff_t distance)
-  { return load(offset - distance) + load(offset + distance); };
-  // Beyond the last row nothing of this block is known: the other side stands for it.
-  const auto ahead = [&](int position, int step, std::ptrdiff_t gap)
-  { return position + step < B ? gap : -gap; };
-  constexpr std::ptrdiff_t y = shape.Y();
-  constexpr std::ptrdiff_t z = shape.MagnitudeZ();
-  Bytes sum;
-  if constexpr (P::Axis == 0)
-  {
-    const Bytes ends = sides(0, s);
-    sum = ends + ends;
-    if constexpr (P::D > 1)
-    {
-      constexpr std::ptrdiff_t gap = 2 * s * y;
-      sum += sides(-gap, s) + sides(ahead(place.Y, 2 * s, gap), s);
-    }
-    if constexpr (P::D > 2)
-    {
-      constexpr std::ptrdiff_t gap = 2 * s * z;
-      sum += sides(-gap, s) + sides(ahead(place.Z, 2 * s, gap), s);
-    }
-  }
-  else
-  {
-    constexpr std::ptrdiff_t gap = s * (P::Axis == 1 ? y : z);
-    const std::ptrdiff_t next = ahead(P::Axis == 1 ? place.Y : place.Z, s, gap);
-    const Bytes ends = load(-gap) + load(next);
-    sum = ends + ends + sides(-gap, s) + sides(next, s);
-    if constexpr (P::D > 2)
-    {
-      constexpr std::ptrdiff_t across = P::Axis == 1 ? 2 * s * z : s * y;
-      const std::ptrdiff_t beside =
-        P::Axis == 1 ? ahead(place.Z, 2 * s, across) : ahead(place.Y, s, across);
-      sum += load(-gap - across) + load(next - across) + load(-gap + beside) + load(next + beside);
-    }
-  }
-  if constexpr (P::D > 1)
-  {
-    if ((P::D == 2 ? place.Y : place.Z) < 2 * s)
-    {
-      return sum + sum; // the pass has coded none before
-    }
-    constexpr std::ptrdiff_t before = 2 * s * (P::D == 2 ? y : z);
-    Bytes near = sides(-before, P::Step);
-    if constexpr (P::D > 2)
-    {
-      constexpr int step = P::RowStep;
-      constexpr std::ptrdiff_t gap = step * y;
-      const std::ptrdiff_t up = ahead(place.Y, step, gap);
-      near += load(-before + (place.Y >= step ? -gap : up)) + load(-before + up);
-    }
-    const Bytes same = load(-before);
-    const Bytes twice = same + near;
-    return sum + twice + twice + (same + same) + (same + same);
-  }
-  return sum;
+  return ActivityAround<P, B>{ m, place }.All();
 }
 
 /// What the residuals at the same place in the two slices before, of the same pass, hint at: its
@@ -168,19 +198,22 @@ HWY_INLINE void SumRows(const std::uint8_t* m, std::uint16_t* sums)
 /// How likely rows of a slice have residuals: weighted sums of the magnitudes around, as in
 /// LocalActivity.
 /// @param FirstRow number of the first of these rows
-/// @param s of that row of the slice
 template <class P, int B, int FirstRow>
-HWY_INLINE RowSums RowWeights(const std::uint16_t* s, int slice)
+struct RowWeights
 {
-  constexpr block::Shape<P::D> shape{ B };
-  constexpr int S = P::S;
-  constexpr std::ptrdiff_t pitch = shape.SumPitch();
-  const auto load = [s](std::ptrdiff_t offset) { return RowSums::Load(s + offset); };
-  // Beyond the last row or slice the other side stands for it.
-  const auto ahead = [&](std::ptrdiff_t offset, auto step)
+  static constexpr int S = P::S;
+  static constexpr std::ptrdiff_t Pitch = block::Shape<P::D>{ B }.SumPitch();
+
+  const std::uint16_t* From; ///< that row of the slice
+  int Slice;
+
+  HWY_INLINE RowSums At(std::ptrdiff_t offset) const { return RowSums::Load(this->From + offset); }
+  /// Beyond the last row or slice the other side stands for it.
+  template <int Step>
+  HWY_INLINE RowSums Ahead(std::ptrdiff_t offset) const
   {
-    constexpr int there = B - step() - FirstRow; // rows that have one
-    const RowSums up = load(offset + step());
+    constexpr int there = B - Step - FirstRow; // rows that have one
+    const RowSums up = this->At(offset + Step);
     if constexpr (there >= Width)
     {
       return up;
@@ -188,66 +221,83 @@ HWY_INLINE RowSums RowWeights(const std::uint16_t* s, int slice)
     else
     {
       return Select(
-        ConstantLanes<std::uint16_t, Width, EveryOf<1, there>>::Get(), up, load(offset - step()));
+        ConstantLanes<std::uint16_t, Width, EveryOf<1, there>>::Get(), up, this->At(offset - Step));
     }
-  };
-  const auto slices = [&](int step) { return (slice + step < B ? step : -step) * pitch; };
-  constexpr std::integral_constant<int, S> one{};
-  constexpr std::integral_constant<int, 2 * S> two{};
-  if constexpr (P::D == 1)
-  {
-    return ShiftLeft<2>(load(0));
   }
-  RowSums sum;
-  if constexpr (P::Axis == 0)
+  HWY_INLINE std::ptrdiff_t SliceAhead(int step) const
   {
-    sum = load(-2 * S * pitch) + load(slices(2 * S));
+    return (this->Slice + step < B ? step : -step) * Pitch;
+  }
+
+  /// At and beside both ends of the interpolation.
+  HWY_INLINE RowSums Ends() const
+  {
+    if constexpr (P::D == 1)
+    {
+      return ShiftLeft<2>(this->At(0));
+    }
+    else if constexpr (P::Axis == 0)
+    {
+      RowSums sum = this->At(-2 * S * Pitch) + this->At(this->SliceAhead(2 * S));
+      if constexpr (P::D > 2)
+      {
+        sum += this->At(-2 * S) + this->template Ahead<2 * S>(0);
+      }
+      return ShiftLeft<1>(sum + this->At(0) + this->At(0));
+    }
+    else if constexpr (P::D == 2)
+    {
+      return ShiftLeft<2>(this->At(-S * Pitch) + this->At(this->SliceAhead(S)));
+    }
+    else if constexpr (P::Axis == 1)
+    {
+      RowSums sum = ShiftLeft<2>(this->At(-S) + this->template Ahead<S>(0));
+      for (const std::ptrdiff_t beside : { -2 * S * Pitch, this->SliceAhead(2 * S) })
+      {
+        sum += this->At(beside - S) + this->template Ahead<S>(beside);
+      }
+      return sum;
+    }
+    else
+    {
+      RowSums sum = RowSums::Set(0);
+      for (const std::ptrdiff_t end : { -S * Pitch, this->SliceAhead(S) })
+      {
+        sum += ShiftLeft<2>(this->At(end)) + this->At(end - S) + this->template Ahead<S>(end);
+      }
+      return sum;
+    }
+  }
+
+  /// Ends, and the slice that the same pass coded before.
+  HWY_INLINE RowSums All() const
+  {
+    RowSums sum = this->Ends();
+    if constexpr (P::D == 1)
+    {
+      return sum;
+    }
+    if (this->Slice < 2 * S)
+    {
+      return sum + sum; // there is none
+    }
+    constexpr std::ptrdiff_t before = -2 * S * Pitch;
+    sum += this->At(before) * RowSums::Set(10);
     if constexpr (P::D > 2)
     {
-      sum += load(-2 * S) + ahead(0, two);
+      constexpr int step = P::RowStep;
+      const RowSums up = this->template Ahead<step>(before);
+      RowSums down = this->At(before - step);
+      if constexpr (FirstRow < step)
+      {
+        down =
+          Select(ConstantLanes<std::uint16_t, Width, EveryOf<1, step - FirstRow>>::Get(), up, down);
+      }
+      sum += ShiftLeft<1>(up + down);
     }
-    sum = ShiftLeft<1>(sum + load(0) + load(0));
+    return sum;
   }
-  else if constexpr (P::D == 2)
-  {
-    sum = ShiftLeft<2>(load(-S * pitch) + load(slices(S)));
-  }
-  else if constexpr (P::Axis == 1)
-  {
-    sum = ShiftLeft<2>(load(-S) + ahead(0, one));
-    for (const std::ptrdiff_t beside : { -2 * S * pitch, slices(2 * S) })
-    {
-      sum += load(beside - S) + ahead(beside, one);
-    }
-  }
-  else
-  {
-    sum = RowSums::Set(0);
-    for (const std::ptrdiff_t end : { -S * pitch, slices(S) })
-    {
-      sum += ShiftLeft<2>(load(end)) + load(end - S) + ahead(end, one);
-    }
-  }
-  if (slice < 2 * S)
-  {
-    return sum + sum;
-  }
-  constexpr std::ptrdiff_t before = -2 * S * pitch;
-  sum += load(before) * RowSums::Set(10);
-  if constexpr (P::D > 2)
-  {
-    constexpr std::integral_constant<int, P::RowStep> step{};
-    const RowSums up = ahead(before, step);
-    RowSums down = load(before - step());
-    if constexpr (FirstRow < P::RowStep)
-    {
-      down = Select(
-        ConstantLanes<std::uint16_t, Width, EveryOf<1, P::RowStep - FirstRow>>::Get(), up, down);
-    }
-    sum += ShiftLeft<1>(up + down);
-  }
-  return sum;
-}
+};
 
 /// Classes of the rows of a slice, by what is around them: RowClasses and more where residuals are
 /// so likely that rows have no flags.
@@ -260,7 +310,8 @@ HWY_INLINE void RowClasses(const Unit<Number, P::D>& unit, int slice, std::uint8
     [&](auto first)
     {
       const auto weights = BitsAs<std::int16_t>(
-        RowWeights<P, B, first()>(unit.RowSums + (P::D > 1 ? slice * pitch : 0) + first(), slice));
+        RowWeights<P, B, first()>{ unit.RowSums + (P::D > 1 ? slice * pitch : 0) + first(), slice }
+          .All());
       auto classes = decltype(weights)::Set(0);
       for (const std::uint16_t limit : residual::RowLimits)
       {

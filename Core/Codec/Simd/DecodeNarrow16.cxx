@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One of four sources for the same kernels: together they would take minutes to compile.
-#include "Codec/Simd/BoxKernels.h"
+#include "Codec/Simd/BlockKernels.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "Codec/Simd/DecodeNarrow16.cxx"

@@ -20,11 +20,11 @@ namespace banyan::HWY_NAMESPACE
 /// the whole box, and added again: borders come back as they were.
 /// @param unit its samples are those of the box
 /// @param to receives the whole box, `[z][y][x]`
-/// @param ask asks for a number of lines of the cache that the next block needs
-template <int B, class Number, class Ask>
+/// @param prefetch asks for a number of lines of the cache that the next block needs
+template <int B, class Number, class Prefetch>
 void DecodeInterior(Unit<Number, 3>& unit, const block::Mode& mode, const PlaneCode& plane,
-  SymbolReader* reader, BoxMagnitudes<B>& magnitudes, BoxMemory<Number, B>& box, const Ask& ask,
-  Number* to)
+  SymbolReader* reader, BoxMagnitudes<B>& magnitudes, BoxMemory<Number, B>& box,
+  const Prefetch& prefetch, Number* to)
 {
   const bool refers = mode.From != block::Reference::None;
   if (refers)
@@ -35,7 +35,7 @@ void DecodeInterior(Unit<Number, 3>& unit, const block::Mode& mode, const PlaneC
     [&](auto pass)
     {
       using P = decltype(pass);
-      ask(P::S == 2 ? 12 : 48);
+      prefetch(P::S == 2 ? 12 : 48);
       const stages::In stage(stages::Passes);
       BeginStride<P>(magnitudes.Interior, reader);
       SliceDecoder<P, B, Number>(unit, magnitudes.Interior.template At<P::S>(), mode.By, reader,

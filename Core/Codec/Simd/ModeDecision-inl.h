@@ -195,7 +195,7 @@ struct ModeDecision : BlockAt<B, Number>
 
   /// Asks for the samples that the next block is chosen by. One part of them after the other: more
   /// at a time would be waited for.
-  void AskAhead(std::size_t part, std::size_t parts) const
+  void Prefetch(std::size_t part, std::size_t parts) const
   {
     const PlaneToEncode& plane = this->Plane();
     constexpr std::size_t n = B + 1;
@@ -264,7 +264,7 @@ struct ModeDecision : BlockAt<B, Number>
     estimate(previous);
     for (std::size_t i = 0; i < modes.size(); ++i)
     {
-      this->AskAhead(i, modes.size());
+      this->Prefetch(i, modes.size());
       if (i != previous)
       {
         estimate(i);
@@ -283,7 +283,7 @@ struct ModeDecision : BlockAt<B, Number>
     const StaticBlock<B, Number> still{ *this };
     if (still.PlaceUniform(out) || (plane.A != nullptr && still.PlaceSame(out)))
     {
-      this->AskAhead(0, 1); // there is little to be done meanwhile
+      this->Prefetch(0, 1); // there is little to be done meanwhile
       return;
     }
     const Boxes boxes = this->GatherBoxes();

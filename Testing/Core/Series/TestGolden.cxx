@@ -41,12 +41,6 @@ std::vector<std::string> GoldenVersions()
   return folders;
 }
 
-/// The only segment of a series.
-std::string SegmentOf(const std::string& path)
-{
-  return fs::directory_iterator(path + ".d")->path().string();
-}
-
 std::string MessageOf(const std::string& path, const FieldKey* field)
 {
   try

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Codec_TokenCounter_h
-#define banyan_Codec_TokenCounter_h
+#ifndef banyan_Codec_TokenHistogram_h
+#define banyan_Codec_TokenHistogram_h
 
 #include "Codec/SymbolWriter.h"
 
@@ -12,7 +12,7 @@ namespace banyan
 {
 
 /// Counts the tokens of many blocks: what ContextCounts::Add gives, in less time.
-class TokenCounter
+class TokenHistogram
 {
 public:
   void Add(const std::vector<std::uint16_t>& tokens);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Codec/SharedContexts.h"
+#include "Codec/ContextClustering.h"
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ void Fill(std::array<std::uint32_t, tans::SymbolCount>& counts, double total, do
   }
 }
 
-TEST(SharedContexts, FewSymbolsShareTablesAndManyDoNot)
+TEST(ContextClustering, FewSymbolsShareTablesAndManyDoNot)
 {
   ContextCounts few, many;
   for (std::size_t c = 0; c < few.Of.size(); ++c)
@@ -32,8 +32,8 @@ TEST(SharedContexts, FewSymbolsShareTablesAndManyDoNot)
     Fill(many.Of[c], 4e6, ratio);
   }
   few.Of[5] = {};
-  ShareContexts(few);
-  ShareContexts(many);
+  ClusterContexts(few);
+  ClusterContexts(many);
   std::size_t distinct = 0, distinctOfMany = 0;
   for (std::size_t c = 1; c < 16; ++c)
   {
@@ -46,7 +46,7 @@ TEST(SharedContexts, FewSymbolsShareTablesAndManyDoNot)
 }
 
 /// Whatever is shared, all symbols that come have a code, and tables that are shared take less.
-TEST(SharedContexts, AllSymbolsCanBeCoded)
+TEST(ContextClustering, AllSymbolsCanBeCoded)
 {
   std::mt19937 random(11);
   ContextCounts counts;

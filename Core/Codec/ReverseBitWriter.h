@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Codec_BackwardBits_h
-#define banyan_Codec_BackwardBits_h
+#ifndef banyan_Codec_ReverseBitWriter_h
+#define banyan_Codec_ReverseBitWriter_h
 
 #include <cstddef>
 #include <cstdint>
@@ -12,11 +12,11 @@ namespace banyan
 
 /// Collects bits from the last to the first: states take symbols in the order opposite to the one
 /// in which they are read. A thread has one at a time, as all use one piece of its memory.
-class BackwardBits
+class ReverseBitWriter
 {
 public:
   /// @param bits that will be put at most
-  explicit BackwardBits(std::size_t bits)
+  explicit ReverseBitWriter(std::size_t bits)
   {
     thread_local std::vector<std::uint8_t> memory;
     const std::size_t bytes = bits / 8 + 32;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Codec_SharedContexts_h
-#define banyan_Codec_SharedContexts_h
+#ifndef banyan_Codec_ContextClustering_h
+#define banyan_Codec_ContextClustering_h
 
 #include "Codec/SymbolWriter.h"
 
@@ -12,7 +12,7 @@ namespace banyan
 /// coded, and leaves fewer tables to decode with.
 ///
 /// Integer arithmetic: the same on every machine.
-void ShareContexts(ContextCounts& counts);
+void ClusterContexts(ContextCounts& counts);
 
 } // namespace banyan
 

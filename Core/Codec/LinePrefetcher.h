@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Codec_MemoryAhead_h
-#define banyan_Codec_MemoryAhead_h
+#ifndef banyan_Codec_LinePrefetcher_h
+#define banyan_Codec_LinePrefetcher_h
 
 #include <cstddef>
 
@@ -11,7 +11,7 @@ namespace banyan
 /// lines of the cache at a time while something else is computed: a processor takes only some dozen
 /// lines at once and waits where it is asked for more. Nothing is read, so that memory may be gone
 /// by then.
-class MemoryAhead
+class LinePrefetcher
 {
 public:
   /// What was added before is forgotten.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Codec/SharedContexts.h"
+#include "Codec/ContextClustering.h"
 
 #include <algorithm>
 #include <numeric>
@@ -71,10 +71,10 @@ struct Pair
   std::int64_t Gain = 0; ///< of having one table
 };
 
-class Sharing
+class Clustering
 {
 public:
-  explicit Sharing(ContextCounts& counts)
+  explicit Clustering(ContextCounts& counts)
     : All(counts.Of)
   {
     std::iota(std::begin(this->Parent), std::end(this->Parent), 0);
@@ -187,9 +187,9 @@ private:
 
 } // namespace
 
-void ShareContexts(ContextCounts& counts)
+void ClusterContexts(ContextCounts& counts)
 {
-  Sharing(counts).Run();
+  Clustering(counts).Run();
 }
 
 } // namespace banyan

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Codec/TokenCounter.h"
+#include "Codec/TokenHistogram.h"
 
 namespace banyan
 {
 
-void TokenCounter::Add(const std::vector<std::uint16_t>& tokens)
+void TokenHistogram::Add(const std::vector<std::uint16_t>& tokens)
 {
   std::uint32_t* const first = this->Of.data();
   std::uint32_t* const second = first + this->Of.size() / Tables;
@@ -20,7 +20,7 @@ void TokenCounter::Add(const std::vector<std::uint16_t>& tokens)
   }
 }
 
-ContextCounts TokenCounter::Counts() const
+ContextCounts TokenHistogram::Counts() const
 {
   const std::uint32_t* const first = this->Of.data();
   const std::uint32_t* const second = first + this->Of.size() / Tables;

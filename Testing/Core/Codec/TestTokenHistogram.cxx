@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Codec/TokenCounter.h"
+#include "Codec/TokenHistogram.h"
 
 #include <gtest/gtest.h>
 
@@ -10,12 +10,12 @@ namespace
 
 using namespace banyan;
 
-TEST(TokenCounter, CountsAsContextCountsDo)
+TEST(TokenHistogram, CountsAsContextCountsDo)
 {
   std::mt19937 random(7);
   std::uniform_int_distribution<std::size_t> context(0, residual::ContextCount - 1);
   std::uniform_int_distribution<std::size_t> symbol(0, tans::SymbolCount - 1);
-  TokenCounter counter;
+  TokenHistogram counter;
   ContextCounts expected;
   // None, odd numbers and even ones, and the same token often.
   for (const int count : { 0, 1, 2, 7, 500, 501 })
