@@ -27,7 +27,7 @@ struct BlockCode
   glm::ivec3 Limit{ -1 };
 };
 
-/// What a field's blocks of one plane share.
+/// Properties that all blocks of one plane of a field share.
 struct PlaneCode
 {
   const DecodeTables* Tables = nullptr;
@@ -50,9 +50,9 @@ struct BoxCodeOf
   const Number* A = nullptr;
   const Number* B = nullptr;
   /// Decoded boxes of the neighbours that exist along x, y, z and were decoded before; null for
-  /// others. Of what is here the faces are not decoded again.
+  /// others. Faces that are here are not decoded again.
   const Number* Neighbours[3] = {};
-  /// What is asked for meanwhile; or null.
+  /// Loads memory into caches meanwhile; or null.
   LinePrefetcher* Prefetcher = nullptr;
 
   void Prefetch(int lines) const

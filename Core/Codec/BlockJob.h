@@ -10,7 +10,7 @@
 namespace banyan
 {
 
-/// What is kept of a block between its edges, faces and interior.
+/// State of a block between its edges, faces and interior.
 struct BlockUnderway
 {
   std::vector<std::uint8_t> Magnitudes; ///< of its edges, and then of its faces with them
@@ -25,7 +25,7 @@ struct PlaneJob
   std::vector<BlockUnderway>* Underway;
 };
 
-/// What a block is encoded in. Each phase needs those before of all blocks, because units begin at
+/// Phases of encoding. Each needs the ones before of all blocks, because units begin at
 /// what neighbours own.
 enum class BlockPhase
 {

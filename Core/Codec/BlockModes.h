@@ -36,7 +36,7 @@ struct Mode
   friend bool operator==(const Mode& a, const Mode& b) { return a.From == b.From && a.By == b.By; }
 };
 
-/// As one number, 0 to ModeCount - 1.
+/// A mode as one number, 0 to ModeCount - 1.
 constexpr int ModeCount = References * Interpolations;
 constexpr int NumberOf(Mode mode)
 {

@@ -14,7 +14,7 @@ using Counts = std::array<std::uint32_t, tans::SymbolCount>;
 /// In 65536ths of a bit, as all costs here.
 constexpr int BitShift = 16;
 
-/// What a table takes in the head, about: six bits for each frequency, compressed.
+/// Cost of a table in the head, about: six bits for each frequency, compressed.
 constexpr std::int64_t FrequencyCost = std::int64_t{ 6 } << BitShift;
 /// Saying that a table is another context's.
 constexpr std::int64_t ShareCost = std::int64_t{ 5 } << BitShift;
@@ -36,7 +36,7 @@ std::int64_t LogarithmOf(std::uint64_t value)
   return result;
 }
 
-/// What the symbols of a context and its table take.
+/// Cost of the symbols of a context and of its table.
 std::int64_t CostOf(const Counts& counts)
 {
   std::uint64_t total = 0;

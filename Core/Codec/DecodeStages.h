@@ -34,7 +34,7 @@ enum Name : int
   Count
 };
 
-/// What this thread has spent since it began, by stage.
+/// Ticks that a thread has spent since it began, by stage.
 struct Spent
 {
   std::uint64_t Ticks[Count] = {};
@@ -49,7 +49,7 @@ const char* TextOf(int stage);
 bool Counted();
 /// Ticks of a second.
 double TicksPerSecond();
-/// What the calling thread has spent until now.
+/// Ticks that the calling thread has spent until now.
 Spent OfThisThread();
 
 #ifdef BANYAN_STAGES
@@ -82,7 +82,7 @@ private:
   int Before;
 };
 #else
-class In
+class [[maybe_unused]] In
 {
 public:
   constexpr explicit In(Name) {}

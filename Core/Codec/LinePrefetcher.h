@@ -14,7 +14,7 @@ namespace banyan
 class LinePrefetcher
 {
 public:
-  /// What was added before is forgotten.
+  /// Forgets all that was added before.
   void Clear() { this->Begin = this->End = 0; }
 
   /// @param bytes those that do not fit any more are left out
@@ -27,7 +27,7 @@ public:
     }
   }
 
-  /// What will be written, instead of what was before; null for nothing.
+  /// Sets the memory that will be written, in place of the last one; null for none.
   void Write(const void* first, std::size_t bytes)
   {
     const char* const at = static_cast<const char*>(first);

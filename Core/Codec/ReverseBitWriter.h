@@ -53,7 +53,7 @@ public:
   /// All bits, as bytes of which the lowest bit comes first. To be called after Flush.
   std::vector<std::uint8_t> Finish() const
   {
-    // Those that make no whole byte are the highest of the one before: all move down by the rest of
+    // Bits that make no whole byte are the highest of the one before: all move down by the rest of
     // it.
     const std::uint32_t down = (8 - this->Filled) & 7;
     const std::uint8_t* from = this->At - (this->Filled > 0 ? 1 : 0);

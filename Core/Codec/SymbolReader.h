@@ -67,7 +67,7 @@ public:
     return !this->Overrun && this->End - this->Position < 8 && states == 0;
   }
 
-  /// What ReadRun moves.
+  /// State that ReadRun moves.
   std::uint64_t Position = 0;
   std::uint64_t States[tans::MostLanes] = {};
   int LanesLog = 0;

@@ -21,7 +21,7 @@ struct ContextCounts
   /// @param tokens residual::TokenOf(context, symbol)
   void Add(const std::vector<std::uint16_t>& tokens);
   void Add(const ContextCounts& other);
-  /// As if all contexts of a band were one: see EncodeIdeas.
+  /// Makes one context of all those of a band: see EncodeIdeas.
   void ForgetClasses();
 };
 

@@ -47,8 +47,8 @@ Frequencies Normalize(const std::uint32_t* counts)
       sum += result.Count[s];
     }
   }
-  // What rounding left over or took too much goes where one more or less changes the least: to the
-  // symbol with the most slots per count.
+  // The rest that rounding left, or took too much, goes where one more or less changes the least:
+  // to the symbol with the most slots per count.
   while (sum != TableSize)
   {
     const bool more = sum < TableSize;

@@ -143,7 +143,7 @@ private:
     return this->Narrow() ? static_cast<std::int16_t>(number) : static_cast<std::int32_t>(number);
   }
 
-  /// What mode m / 3 subtracts from a sample.
+  /// The number that reference m / 3 of a mode m subtracts from a sample.
   std::int64_t Reference(int mode, const Position& p) const
   {
     const auto sample = [&](const std::int32_t* box)
@@ -270,7 +270,7 @@ private:
   std::vector<bool> Known;
 };
 
-/// What a state decodes to, from the tables of the kernels.
+/// A state in the tables of the kernels.
 State StateIn(const DecodeTables& tables, int context, std::uint32_t state)
 {
   const bool flag = context >= residual::FlagContext;

@@ -11,7 +11,7 @@
 namespace banyan::scalar
 {
 
-/// What the blocks of a plane share, as the head of a field says it.
+/// Properties that all blocks of a plane share, as the head of a field has them.
 struct Plane
 {
   StateOf States; ///< of all contexts

@@ -58,8 +58,8 @@ struct RowToRead
   Position First;        ///< of its samples, in the unit
 };
 
-/// What a payload is read in: the passes of all edges, of all faces and of the interior, each slice
-/// by slice.
+/// The order in which a payload is read: the passes of all edges, of all faces and of the interior,
+/// each slice by slice.
 /// @param body called as body(stride, axis, rows, step) for each slice
 template <class Body>
 void ForEachSlice(int edge, Body&& body)

@@ -14,7 +14,7 @@
 namespace banyan::scalar
 {
 
-/// What a state of a context decodes to.
+/// The symbol that a state of a context decodes to, and the way to the next state.
 struct State
 {
   int Symbol;

@@ -35,7 +35,7 @@ struct UnitMemory : block::Scratch<Number, D>
   }
 };
 
-/// What a thread encodes blocks with.
+/// Memory that a thread encodes blocks with.
 template <int B, class Number>
 struct BlockMemory
 {
@@ -43,7 +43,7 @@ struct BlockMemory
   UnitMemory<Number, 2> Faces{ B }, FacesTarget{ B };
   UnitMemory<Number, 3> Interior{ B }, InteriorTarget{ B };
   UnitTokens<B> Tokens;
-  /// Of the target and both references.
+  /// Boxes of the target and both references.
   std::vector<Number> Boxes =
     std::vector<Number>(3 * static_cast<std::size_t>((B + 1) * (B + 1) * (B + 1)));
   std::vector<std::pair<std::int64_t, std::size_t>> Costs; ///< of candidates, by their numbers

@@ -40,7 +40,7 @@ HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
 
-/// What a thread decodes boxes with.
+/// Memory that a thread decodes boxes with.
 template <int B, class Number>
 struct BoxWorkspace
 {
@@ -128,7 +128,7 @@ struct BoxDecoder : BoxPlaces<B, Number>
     return static_cast<Number>(P::S == 2 ? this->Plane.CoarseBin : this->Plane.FineBin);
   }
 
-  /// Decodes the edges of a block. Those outside the box only advance the reader.
+  /// Decodes the edges of a block. Edges outside the box only advance the reader.
   /// @return whether some magnitudes are not 0
   bool DecodeEdges(int owner, SymbolReader* reader) const
   {
@@ -162,7 +162,7 @@ struct BoxDecoder : BoxPlaces<B, Number>
     }
   }
 
-  /// Decodes the faces of a block. Those outside the box only advance the reader.
+  /// Decodes the faces of a block. Faces outside the box only advance the reader.
   /// @param edges magnitudes of its edges
   /// @param any whether some of them are not 0
   /// @return the same of edges and faces

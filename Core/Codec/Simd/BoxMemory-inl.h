@@ -24,7 +24,7 @@ public:
 
   /// The box, `[z][y][x]`.
   Number* Decoded() { return this->Box; }
-  /// What is subtracted from it.
+  /// The numbers that are subtracted from it.
   const Number* Subtracted() const { return this->FromReferences; }
 
   /// Takes what two references give.

@@ -123,7 +123,7 @@ struct BoxPlaces
         Number* row = this->Box.Row(y, z);
         if (this->Code.Blocks[owner].Same && (owner & 1) == 0)
         {
-          // Of a length that is known: no call.
+          // The length is known: no call.
           std::memcpy(row, this->ReferenceA.Row(y, z), B * sizeof(Number));
         }
         else if (this->Code.Blocks[owner].Same)

@@ -14,7 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
 
-/// What magnitudes around a row say.
+/// Sums of the magnitudes around a row.
 /// @param P a pass, @param B edge of the block
 template <class P, int B>
 struct ActivityAround
@@ -113,8 +113,8 @@ HWY_INLINE Bytes LocalActivity(const std::uint8_t* m, const RowPlace& place)
   return ActivityAround<P, B>{ m, place }.All();
 }
 
-/// What the residuals at the same place in the two slices before, of the same pass, hint at: its
-/// sign is likely that of the residual. 0 where there are none, or the place is not active.
+/// A hint from the residuals at the same place in the two slices before, of the same pass: its sign
+/// is likely that of the residual. 0 where there are none, or the place is not active.
 /// @param r lane First + at of a row
 template <class P, int B>
 HWY_INLINE SignedBytes HintOf(const std::int8_t* r, const RowPlace& place, const Bytes& activity)
@@ -147,7 +147,7 @@ template <int N, bool One>
 HWY_INLINE PackOf<std::uint8_t, N, One> ActivityClasses(const PackOf<std::uint8_t, N, One>& sum)
 {
   using V = PackOf<std::uint8_t, N, One>;
-  // As signed numbers, which all targets compare.
+  // Signed numbers, which all targets compare.
   const auto biased = BitsAs<std::int8_t>(sum ^ V::Set(128));
   const auto above = [&](int limit)
   { return biased > decltype(biased)::Set(static_cast<std::int8_t>(limit - 128)); };

@@ -43,7 +43,7 @@ struct FaceCopy
     at += u * this->AlongU;
     w[u] = static_cast<Number>(static_cast<U>(this->X[at]) - this->SubtractedAt(at));
   }
-  /// What is known of the face: its borders and every fourth sample.
+  /// Loads all that is known of the face: its borders and every fourth sample.
   HWY_INLINE void Load() const
   {
     for (int v = 0; v <= B; ++v)

@@ -114,7 +114,7 @@ struct ModeDecision : BlockAt<B, Number>
     return SumOf(costs);
   }
 
-  /// Of a row, in 2^-13 bits, about. What is less than half a bin costs little, and much less the
+  /// The same for a row, in 2^-13 bits, about. Less than half a bin costs little, and much less the
   /// less it is: it is 0 once it is quantized, like what is around it.
   template <class P>
   HWY_INLINE Costs RowEstimate(const Number* w, int y, int z, Interpolation by, int last) const
@@ -220,7 +220,7 @@ struct ModeDecision : BlockAt<B, Number>
 
   std::size_t Trials() const { return static_cast<std::size_t>(std::max(this->Plane().Trials, 1)); }
 
-  /// What candidates cost at most that are tried out beside one of these costs. Where one looks
+  /// Greatest cost of candidates that are tried out beside one of this cost. Where one looks
   /// clearly best, it is: eleven times, or, of what costs much anyway, by a bit per sample.
   std::int64_t CloseTo(std::int64_t cost) const
   {
@@ -259,7 +259,7 @@ struct ModeDecision : BlockAt<B, Number>
         enough = std::min(enough, costs[this->Trials() - 1].first);
       }
     };
-    // What the block before took is likely good again: others need not be looked at in full.
+    // The mode of the block before is likely good again: others need not be looked at in full.
     const std::size_t previous = std::min(this->Work.PreviousMode, modes.size() - 1);
     estimate(previous);
     for (std::size_t i = 0; i < modes.size(); ++i)
@@ -307,7 +307,7 @@ struct ModeDecision : BlockAt<B, Number>
     out.Mode = static_cast<std::uint8_t>(block::NumberOf(plane.CandidateModes[costs[best].second]));
   }
 
-  /// What the interior of a block would cost, with borders as they are to be in place of what they
+  /// Cost of the interior of a block, with borders as they are to be in place of what they
   /// will have been decoded to.
   /// @param enough more than that is as good as any other
   std::int64_t ExactCost(const Boxes& boxes, const block::Mode& mode, std::int64_t enough) const

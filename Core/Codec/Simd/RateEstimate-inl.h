@@ -14,7 +14,7 @@
 namespace banyan
 {
 
-/// What flags of rows take by the class of the row, in 256ths of a bit, as smooth series have them;
+/// Costs of flags of rows by the class of the row, in 256ths of a bit, measured on smooth series;
 /// rows of the last class have none.
 constexpr std::int64_t ZeroRowCosts[residual::RowClasses + 1] = { 11, 19, 31, 56, 78, 101, 137, 171,
   208, 287, 409, 512, 0 };

@@ -17,6 +17,8 @@ namespace banyan::HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
+static_assert(!HWY_HAVE_SCALABLE, "vectors of a size that is known: see Core/CMakeLists.txt");
+
 /// How many numbers of a type one register holds.
 template <class T>
 constexpr int RegisterLanes = static_cast<int>(hn::MaxLanes(hn::ScalableTag<T>()));

@@ -24,7 +24,7 @@ struct SliceShape
   static constexpr int Rows = D == 3 ? N : 4; ///< of a slice
   static constexpr int Slice = Rows * N;
   static constexpr int Count = N * Slice;
-  /// What vectors read beyond both ends, and ignore.
+  /// Vectors read so much beyond both ends, and ignore it.
   static constexpr int Margin = 128;
 };
 

@@ -149,7 +149,7 @@ private:
     }
     return Picked<0, (D == 3 ? S : 1), 1>(Bytes::Load(from + row));
   }
-  /// Those that have flags, as bits.
+  /// Rows that have flags, as bits.
   static HWY_INLINE unsigned FlaggedOf(const Bytes& classes)
   {
     return BitsOf(BitsAs<std::uint8_t>(

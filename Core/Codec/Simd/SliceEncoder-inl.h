@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
 
-/// What is written down of a block's units.
+/// Tokens of a block's units.
 template <int B>
 struct UnitTokens
 {

@@ -61,7 +61,7 @@ struct StaticBlock : BlockAt<B, Number>
     const View<const Number> target = this->ViewOf(*plane.Target);
     const View<const Number> before = this->ViewOf(*plane.A);
     const std::int64_t next = this->NextBlock();
-    // What lies beyond the field's end does not matter.
+    // Samples beyond the field's end do not matter.
     const glm::ivec3 end = glm::min(glm::ivec3(B), plane.Target->Samples - this->Position * B);
     const Number most = static_cast<Number>(plane.FineBin / 2), least = static_cast<Number>(-most);
     const bool same = this->ForEachSlice(

@@ -62,7 +62,7 @@ public:
     return entry;
   }
 
-  /// Of the first bit that was not taken.
+  /// Position of the first bit that was not taken.
   HWY_INLINE std::uint64_t Position() const { return 8 * this->Next8 - (this->Left & 63u); }
 
 private:
@@ -116,7 +116,7 @@ HWY_INLINE void TakeSymbols(
   for (int k = 0; k < count; k += 16)
   {
     const auto some = Entries::Load(reinterpret_cast<const std::int32_t*>(entries) + k);
-    // As signed numbers, which bytes hold.
+    // Signed numbers, which bytes hold.
     constexpr int above = 24 - residual::SymbolShift;
     Narrow<std::int8_t>(ShiftRight<24>(ShiftLeft<above>(some))).Store(symbols + k);
   }

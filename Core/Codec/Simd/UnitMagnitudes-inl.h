@@ -92,7 +92,7 @@ private:
   }
 };
 
-/// What contexts of blocks are computed with.
+/// Magnitudes of a block's faces and interior, and memory for a slice.
 /// @param B their edge
 template <int B>
 struct BoxMagnitudes
@@ -120,7 +120,7 @@ struct BoxMagnitudes
     this->Faces.Coarsen();
   }
 
-  /// Those of the interior begin with those of the faces, edges included.
+  /// Magnitudes of the interior begin with those of the faces, edges included.
   void BeginInterior(std::uint16_t* sums)
   {
     const std::ptrdiff_t pitch = block::Shape<3>{ B }.SumPitch();

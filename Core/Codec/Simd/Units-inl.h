@@ -95,7 +95,8 @@ HWY_INLINE glm::ivec3 InOrderOf(const glm::ivec3& axes, const glm::ivec3& v, int
   return { v[axes.x], D > 1 ? v[axes.y] : edge, D > 2 ? v[axes.z] : edge };
 }
 
-/// What is subtracted from samples, whose kind the compiler knows. Arithmetic wraps.
+/// A reference as it is subtracted from samples, of a kind that the compiler knows. Arithmetic
+/// wraps.
 template <class Number, block::Reference From>
 struct Subtracted
 {
