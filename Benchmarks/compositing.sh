@@ -56,11 +56,12 @@ build_simulation()
   [[ -e "$paraview/vtkicet/src/include/IceT.h" ]] ||
     fail "IceT's headers are missing: install paraview-dev."
   simulation="$BuildFolder/bin/banyan-simulate-compositing"
-  for source in "$here"/Compositing/*.{cxx,h} "$RepositoryRoot"/Core/Parallel/*.{cxx,h}; do
+  for source in "$here"/Compositing/{,Peers/}*.{cxx,h} "$RepositoryRoot"/Core/Parallel/*.{cxx,h}; do
     if [[ ! -e "$simulation" || "$source" -nt "$simulation" ]]; then
       smpicxx -std=c++17 -O2 -DNDEBUG -fPIC -I"$RepositoryRoot/Core" \
         -I"$paraview/vtkicet/src/include" -I"$paraview" \
-        "$here"/Compositing/{SimulateCompositing,IceTMethods,FrameFile}.cxx \
+        -I"$here/Compositing" "$here"/Compositing/{SimulateCompositing,FrameFile}.cxx \
+        "$here"/Compositing/Peers/*.cxx \
         "$RepositoryRoot"/Core/Parallel/Mpi{Communicator,Waiting}.cxx \
         -L"$core" -Wl,-rpath,"$core" -lBanyanCore -lvtkIceTCore-pv5.11 -o "$simulation" ||
         fail "the simulation could not be built."
@@ -126,7 +127,7 @@ simulate()
   scene="${name%_*_*}"
   methods=""
   if [[ "$count" -gt 64 ]]; then
-    methods="banyan,banyan-raw,binary-swap,icet-direct,icet-reduce,icet-tree,icet-bswap"
+    methods="banyan,banyan-raw,banyan-floats,binary-swap,icet-direct,icet-reduce,icet-tree,icet-bswap"
     methods+=",icet-bswap-folding,icet-radixk,icet-radixkr"
   fi
   private="$(mktemp -d "$work/run.XXXXXX")"

@@ -4,7 +4,7 @@
 
 #include "FramebufferExchange.h"
 
-#include "Parallel/DirectSend.h"
+#include "Parallel/ReduceNearest.h"
 #include "Render/FloatImage.h"
 
 #include <vector>

@@ -2,7 +2,7 @@
 #ifndef banyan_Rendering_FramebufferExchange_h
 #define banyan_Rendering_FramebufferExchange_h
 
-#include "Parallel/DirectSend.h"
+#include "Parallel/ReduceNearest.h"
 #include "Render/RayCamera.h"
 
 #include <cstdint>

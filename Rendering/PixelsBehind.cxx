@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PixelsBehind.h"
 
+#include "Parallel/Compositing.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -40,7 +42,7 @@ void OverBlendInOrder(Communicator& communicator, const std::vector<int>& rankOr
       order.push_back(rank);
     }
   }
-  const FloatImage blended = CompositeDirectSend(communicator, mine, order, rect, statistics);
+  const FloatImage blended = Composite(communicator, mine, order, rect, {}, statistics);
   for (std::size_t i = 0; i < blended.Pixels.size(); ++i)
   {
     for (int c = 0; c < 4; ++c)

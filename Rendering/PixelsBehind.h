@@ -2,7 +2,7 @@
 #ifndef banyan_Rendering_PixelsBehind_h
 #define banyan_Rendering_PixelsBehind_h
 
-#include "Parallel/DirectSend.h"
+#include "Parallel/ReduceNearest.h"
 
 #include <vector>
 

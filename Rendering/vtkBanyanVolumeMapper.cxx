@@ -2,7 +2,6 @@
 #include "vtkBanyanVolumeMapper.h"
 
 #include "FrameScene.h"
-#include "IceTCompositing.h"
 #include "IgnoredOptions.h"
 #include "PieceOfInput.h"
 #include "RendererCamera.h"
@@ -288,13 +287,11 @@ banyan::FloatImage vtkBanyanVolumeMapper::CastFrame(
     self.Field.IsMesh() ? std::numeric_limits<double>::quiet_NaN() : self.Field.EncodingError());
   this->Statistics->SetMeshDeviation(self.Field.MeshDeviation());
   const banyan::FrameStatistics pilots = frame;
-  compositing.Method = static_cast<banyan::CompositingMethod>(this->Compositing);
   // Errors of few bits add up where volumes are blended over each other.
   compositing.Transport = this->CompositeInFewBits && volumes == 1
                             ? banyan::PixelTransport::WithinOne
                             : banyan::PixelTransport::Floats;
   compositing.Plans = &self.Plans;
-  compositing.External = banyan::IceTRadixK(this->Controller);
   // The other eye's picture is no step of a camera that moves.
   if (this->ReadAhead && drawn.Wish.Eye == 0)
   {
@@ -354,7 +351,6 @@ void vtkBanyanVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "MaxElementsPerPixel: " << this->MaxElementsPerPixel << "\n"
      << indent << "ScreenErrorPixels: " << this->ScreenErrorPixels << "\n"
      << indent << "TemporalEnhancement: " << this->TemporalEnhancement << "\n"
-     << indent << "Compositing: " << this->Compositing << "\n"
      << indent << "CompositeInFewBits: " << this->CompositeInFewBits << "\n"
      << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"
      << indent << "LoadBalancing: " << this->LoadBalancing << "\n"

@@ -195,20 +195,10 @@ public:
 
   ///@{
   /**
-   * How the pictures of several ranks become one: as banyan::CompositingMethod (0, the default:
-   * SLIC; 1: SLIC as published; 2: direct send; 3: binary swap; 4: IceT's radix-k, for blend mode
-   * composite only). All make the same picture.
-   */
-  vtkSetClampMacro(Compositing, int, 0, 4);
-  vtkGetMacro(Compositing, int);
-  ///@}
-
-  ///@{
-  /**
    * Whether pixels travel between ranks in as few bits as keep each of them within 1/255 of one
    * rank's, and packed: far fewer bytes than floats. Where a background is blended behind
    * the picture later, in 8 bits, as ParaView does, a few pixels may then differ by 2/255. Default
-   * off: floats, which are within 1/255 there too. Without effect on IceT, on projections, and
+   * off: floats, which are within 1/255 there too. Without effect on projections, and
    * while several volumes are on the screen.
    */
   vtkSetMacro(CompositeInFewBits, bool);
@@ -327,7 +317,6 @@ private:
   int MeshSamplingBoxes = 1 << 20;
   double MaxElementsPerPixel = 0.0;
   double TemporalEnhancement = 0.0;
-  int Compositing = 0;
   bool CompositeInFewBits = false;
   int NumberOfThreads = 0;
   int LoadBalancing = 2;

@@ -37,6 +37,7 @@ constexpr Option Options[] = {
   { "VolumeAnisotropy", 0.0, "light is not scattered. For scattered light choose 'Volume'" },
   { "VolumeRenderingMode", 0.0,
     "it has one way of drawing, on the processor. To choose between ParaView's choose 'Volume'" },
+  { "Compositing", 0.0, "all methods made the same picture, and one is left" },
   { "Opacity", 1.0,
     "it is as opaque as the opacity function says. Edit that in the Color Map Editor, or set "
     "'Scalar "

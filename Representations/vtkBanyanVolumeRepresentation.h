@@ -109,8 +109,6 @@ public:
   /** As vtkBanyanVolumeMapper's; steps around the one that is drawn are asked of the pipeline. */
   void SetTemporalEnhancement(double strength);
 
-  /** How the pictures of ranks become one; see vtkBanyanVolumeMapper::SetCompositing. */
-  void SetCompositing(int method);
   /** Whether pixels of ranks travel packed; see vtkBanyanVolumeMapper::SetCompositeInFewBits. */
   void SetCompositeInFewBits(bool few);
 

@@ -172,11 +172,6 @@ void vtkBanyanVolumeRepresentation::SetTemporalEnhancement(double strength)
   }
 }
 
-void vtkBanyanVolumeRepresentation::SetCompositing(int method)
-{
-  this->Mapper->SetCompositing(method);
-}
-
 void vtkBanyanVolumeRepresentation::SetCompositeInFewBits(bool few)
 {
   this->Mapper->SetCompositeInFewBits(few);

@@ -6,7 +6,8 @@
 // Built by compositing.sh with the simulator's compiler. Every picture is compared with the one
 // that one rank would blend; a wrong one ends the run.
 #include "FrameFile.h"
-#include "IceTMethods.h"
+#include "Peers/IceTMethods.h"
+#include "Peers/PeerFrame.h"
 
 #include "Base/Error.h"
 #include "Parallel/Compositing.h"
@@ -59,33 +60,35 @@ int Rounded(float value)
   return static_cast<int>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
 }
 
+/// The compositor: `banyan` in few bits, packed; `banyan-raw` in few bits; `banyan-floats`, which
+/// is the default.
 CompositeOptions OptionsOf(const std::string& method, const FrameHead& head, double bytesPerSecond)
 {
   CompositeOptions options;
   options.Footprints = head.Footprints;
   options.Agreed = true;
   options.Costs.BytesPerSecond = bytesPerSecond;
-  // The peers travel in 8 bits, whatever that does to the picture.
-  options.Transport = PixelTransport::Bytes;
-  if (method == "slic-published")
-  {
-    options.Method = CompositingMethod::SlicAsPublished;
-  }
-  else if (method == "direct-send")
-  {
-    options.Method = CompositingMethod::DirectSend;
-  }
-  else if (method == "binary-swap")
-  {
-    options.Method = CompositingMethod::BinarySwap;
-  }
-  else
-  {
-    options.Method = CompositingMethod::Slic;
-    options.Transport = PixelTransport::WithinOne;
-    options.Packing = method == "banyan" ? PixelPacking::Always : PixelPacking::Never;
-  }
+  options.Transport =
+    method == "banyan-floats" ? PixelTransport::Floats : PixelTransport::WithinOne;
+  options.Packing = method == "banyan" ? PixelPacking::Always : PixelPacking::Never;
   return options;
+}
+
+/// The peers travel in 8 bits, whatever that does to the picture.
+FloatImage CompositeAsPeer(const std::string& method, Communicator& communicator,
+  const FloatImage& mine, const FrameHead& head, CompositeStatistics& statistics)
+{
+  FragmentFormat bytes;
+  bytes.Kind = FragmentFormat::Bytes;
+  const PeerFrame frame{ mine, head.Order, head.Viewport, head.Footprints, bytes };
+  return method == "slic-published" ? CompositeSlicAsPublished(communicator, frame, statistics)
+         : method == "direct-send"  ? CompositeDirectSend(communicator, frame, statistics)
+                                    : CompositeBinarySwap(communicator, frame, statistics);
+}
+
+bool IsOurs(const std::string& method)
+{
+  return method.rfind("banyan", 0) == 0;
 }
 
 class Simulation
@@ -113,7 +116,10 @@ public:
 
   Measured Run(const std::string& method)
   {
-    return method.rfind("icet-", 0) == 0 ? this->RunIceT(method.substr(5)) : this->RunOwn(method);
+    const std::string floats = "icet-floats-";
+    return method.rfind(floats, 0) == 0    ? this->RunIceT(method.substr(floats.size()), true)
+           : method.rfind("icet-", 0) == 0 ? this->RunIceT(method.substr(5), false)
+                                           : this->RunOwn(method);
   }
 
   Communicator& World() { return *this->Ranks; }
@@ -138,8 +144,10 @@ private:
     measured.Seconds = this->Timed(
       [&]
       {
-        picture = Composite(
-          *this->Ranks, this->Mine, head.Order, head.Viewport, options, measured.Statistics);
+        picture = IsOurs(method)
+                    ? Composite(*this->Ranks, this->Mine, head.Order, head.Viewport, options,
+                        measured.Statistics)
+                    : CompositeAsPeer(method, *this->Ranks, this->Mine, head, measured.Statistics);
       });
     for (std::size_t i = 0; i < picture.Pixels.size(); ++i)
     {
@@ -152,27 +160,29 @@ private:
     return measured;
   }
 
-  Measured RunIceT(const std::string& strategy)
+  Measured RunIceT(const std::string& strategy, bool floats)
   {
     Measured measured;
-    if (this->Bytes.Pixels.empty())
+    if (!this->IceT || this->IceTFloats != floats)
     {
-      this->Bytes = ToBytes(this->Mine, this->Frame.Head().Viewport);
-      this->IceT = std::make_unique<IceTCompositor>();
+      this->Picture = PictureOf(this->Mine, this->Frame.Head().Viewport, floats);
+      this->IceT = std::make_unique<IceTCompositor>(floats);
+      this->IceTFloats = floats;
     }
-    const std::uint8_t* picture = nullptr;
+    bool isHere = false;
     measured.Seconds = this->Timed(
       [&]
       {
-        picture = this->IceT->Composite(
-          strategy, this->Bytes, this->Frame.Head().Order, measured.Statistics);
+        isHere = this->IceT->Composite(
+          strategy, this->Picture, this->Frame.Head().Order, measured.Statistics);
       });
-    for (std::size_t i = 0; picture && i < this->Reference.size(); ++i)
+    for (std::size_t i = 0; isHere && i < this->Reference.size(); ++i)
     {
       for (int c = 0; c < 4; ++c)
       {
-        const int error = picture[4 * i + c] - Rounded(this->Reference[i][c]);
-        measured.WorstError = std::max<double>(measured.WorstError, std::abs(error));
+        const double error =
+          std::round(this->IceT->Channel(4 * i + c)) - Rounded(this->Reference[i][c]);
+        measured.WorstError = std::max(measured.WorstError, std::abs(error));
       }
     }
     return measured;
@@ -183,8 +193,9 @@ private:
   std::unique_ptr<Communicator> Ranks;
   FloatImage Mine;
   std::vector<glm::vec4> Reference;
-  BytesImage Bytes;
+  IceTPicture Picture;
   std::unique_ptr<IceTCompositor> IceT;
+  bool IceTFloats = false;
 };
 
 void Report(Simulation& simulation, const std::string& method, const Measured& measured,
@@ -201,8 +212,7 @@ void Report(Simulation& simulation, const std::string& method, const Measured& m
   std::printf("%s,%s,%d,%s,%s,%.4f,%.0f,%.0f,%.0f\n", scene.c_str(), camera.c_str(), ranks.Size(),
     network.c_str(), method.c_str(), 1e3 * measured.Seconds, bytes, messages, largest);
   std::fflush(stdout);
-  const bool ours = method.rfind("banyan", 0) == 0;
-  const double allowed = ours ? 1.0 : ranks.Size() + 1.0;
+  const double allowed = IsOurs(method) ? 1.0 : ranks.Size() + 1.0;
   if (measured.WorstError > allowed)
   {
     throw Error(
@@ -216,11 +226,14 @@ void Run(int argc, char** argv)
   {
     throw Error("A frame, the names of scene, camera and network, and a bandwidth are needed.");
   }
-  std::vector<std::string> methods{ "banyan", "banyan-raw", "slic-published", "direct-send",
-    "binary-swap" };
-  for (const std::string& strategy : IceTStrategies())
+  std::vector<std::string> methods{ "banyan", "banyan-raw", "banyan-floats", "slic-published",
+    "direct-send", "binary-swap" };
+  for (const char* const pixels : { "icet-", "icet-floats-" })
   {
-    methods.push_back("icet-" + strategy);
+    for (const std::string& strategy : IceTStrategies())
+    {
+      methods.push_back(pixels + strategy);
+    }
   }
   if (argc > 6)
   {

@@ -2,8 +2,9 @@
 """report.py TABLE.csv TIME.png BYTES.png : charts of the simulated compositing, and ratios.
 
 Prints, per network and number of ranks, over all frames: our time over that of the best strategy of
-IceT, our bytes over the fewest of any of them (mean and worst), and the same for raw pixels; then
-which frames miss the goals: half of the time, 0.6 of the bytes.
+IceT, our bytes over the fewest of any of them (mean and worst), and the time of raw pixels; then time
+and bytes of floats, the default, over those of IceT in bytes, as it is in ParaView, and in floats; then which
+frames miss the goals of few bits: half of the time, 0.6 of the bytes.
 """
 
 import collections
@@ -15,7 +16,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as pyplot
 
-OWN = ["banyan", "banyan-raw", "slic-published", "direct-send", "binary-swap"]
+OWN = ["banyan", "banyan-raw", "banyan-floats", "slic-published", "direct-send", "binary-swap"]
 
 
 def read(path):
@@ -28,9 +29,29 @@ def read(path):
     return frames
 
 
+def peers_of(methods, prefix):
+    """The rows of IceT with pixels of one kind."""
+    floats = prefix == "icet-floats-"
+    return [row for name, row in methods.items()
+            if name.startswith(prefix) and name.startswith("icet-floats-") == floats]
+
+
+def float_ratios_of(methods):
+    """Time and bytes of floats over IceT's least in bytes, and in floats; None where unknown."""
+    found = []
+    for prefix in ("icet-", "icet-floats-"):
+        peers = peers_of(methods, prefix)
+        for column in ("ms", "bytes"):
+            best = min((float(row[column]) for row in peers), default=0.0)
+            if best <= 0 or "banyan-floats" not in methods:
+                return None
+            found.append(float(methods["banyan-floats"][column]) / best)
+    return tuple(found)
+
+
 def ratios_of(methods):
     """Time, bytes and time without packing over IceT's least; None where these are unknown."""
-    peers = [row for name, row in methods.items() if name.startswith("icet-")]
+    peers = peers_of(methods, "icet-")
     if not peers or "banyan" not in methods or "banyan-raw" not in methods:
         return None
     best = min(float(row["ms"]) for row in peers)
@@ -41,13 +62,13 @@ def ratios_of(methods):
             float(methods["banyan-raw"]["ms"]) / best)
 
 
-def ratios(frames):
+def ratios(frames, of):
     """Lists of ratios per (network, ranks)."""
     result = collections.OrderedDict()
     for (_, _, ranks, network), methods in frames.items():
-        found = ratios_of(methods)
+        found = of(methods)
         if found:
-            lists = result.setdefault((network, ranks), ([], [], []))
+            lists = result.setdefault((network, ranks), [[] for _ in found])
             for values, value in zip(lists, found):
                 values.append(value)
     return result
@@ -75,9 +96,9 @@ def print_goals(frames):
     print(f"goals at 10 Gb/s: {checked - missed} of {checked} frames meet all")
 
 
-def print_ratios(result):
-    print("network   ranks  frames   time/best IceT   bytes/fewest IceT   raw time/best IceT")
-    print("                          mean   worst     mean   worst        mean   worst")
+def print_ratios(result, *titles):
+    print("network   ranks  frames  " + "  ".join(f"{title:>17}" for title in titles))
+    print("                         " + "  ".join("   mean     worst " for _ in titles))
     for (network, ranks), lists in sorted(result.items(), key=lambda item: (item[0][0], item[0][1])):
         if not lists[0]:
             continue
@@ -113,7 +134,7 @@ def chart(frames, column, factor, unit, path):
             points = [point for point in sorted(curves.get(name, [])) if point[1] > 0]
             if points:
                 axes.plot(*zip(*points), label=name, color=colours[name],
-                          linewidth=2.4 if name in ("banyan", "banyan-raw") else 1.1,
+                          linewidth=2.4 if name in ("banyan", "banyan-raw", "banyan-floats") else 1.1,
                           linestyle="-" if name in OWN else "--", marker=".")
         label(axes, ", ".join(key), unit)
     for axes in grid.flat[len(panels):]:
@@ -134,7 +155,9 @@ def main():
         sys.exit("There is nothing in " + table + ".")
     chart(frames, "ms", 1.0, "ms until the picture is on the root", times)
     chart(frames, "bytes", 1e-6, "MB on the network", sizes)
-    print_ratios(ratios(frames))
+    print_ratios(ratios(frames, ratios_of), "time/best IceT", "bytes/fewest IceT", "raw time/best")
+    print_ratios(ratios(frames, float_ratios_of), "floats: time/IceT", "bytes", "time/IceT floats",
+                 "bytes")
     print_goals(frames)
 
 

@@ -2,6 +2,7 @@
 #include "Parallel/Compositing.h"
 
 #include "Base/Error.h"
+#include "Parallel/SlicFrame.h"
 
 #include <algorithm>
 #include <iterator>
@@ -80,7 +81,6 @@ std::uint64_t Fingerprint(
       add(value);
     }
   }
-  add(static_cast<int>(options.Method));
   add(static_cast<int>(options.Combine));
   add(static_cast<int>(options.Transport));
   add(Packs(options) ? 1 : 0);
@@ -119,7 +119,7 @@ std::vector<Footprint> Announce(Communicator& communicator, const FloatImage& mi
     {
       throw Error(
         "Rank " + std::to_string(rank) +
-        " and rank 0 disagree about the viewport, the visibility order or the way of compositing, "
+        " and rank 0 disagree about the viewport, the visibility order or how pixels travel, "
         "so no picture could be put together.");
     }
     if (options.Footprints.empty())
@@ -128,26 +128,6 @@ std::vector<Footprint> Announce(Communicator& communicator, const FloatImage& mi
     }
   }
   return footprints;
-}
-
-FloatImage CompositeBy(Communicator& communicator, const FloatImage& mine,
-  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
-  CompositeStatistics& statistics)
-{
-  switch (options.Method)
-  {
-    case CompositingMethod::SlicAsPublished:
-      return CompositeSlicAsPublished(
-        communicator, mine, frontToBack, viewport, options, statistics);
-    case CompositingMethod::DirectSend:
-      return CompositeDirectSend(communicator, mine, frontToBack, viewport, options, statistics);
-    case CompositingMethod::BinarySwap:
-      return CompositeBinarySwap(communicator, mine, frontToBack, viewport, options, statistics);
-    case CompositingMethod::IceTRadixK:
-      return options.External(communicator, mine, frontToBack, viewport, statistics);
-    default:
-      return CompositeSlic(communicator, mine, frontToBack, viewport, options, statistics);
-  }
 }
 
 } // namespace
@@ -182,9 +162,7 @@ FragmentFormat FormatFor(const CompositeOptions& options, int meeting, int share
   {
     return {};
   }
-  return options.Transport == PixelTransport::Bytes
-           ? FormatOfFinal(options)
-           : FormatOfFragments(meeting, shares, options.Brightest);
+  return FormatOfFragments(meeting, shares, options.Brightest);
 }
 
 FragmentFormat FormatOfFinal(const CompositeOptions& options)
@@ -213,14 +191,6 @@ std::string ProblemOf(int rank, int ranks, const FloatImage& mine,
       static_cast<long long>(mine.Pixels.size()) != mine.Rect.Count())
   {
     return "An image does not fit into the viewport, so no picture could be put together.";
-  }
-  if (options.Method == CompositingMethod::IceTRadixK &&
-      (!options.External || options.Combine != Combination::Over))
-  {
-    return options.External
-             ? "IceT blends only composited volumes: choose another way of compositing for "
-               "projections."
-             : "IceT is not part of this program: choose another way of compositing.";
   }
   if (options.Footprints.empty())
   {
@@ -251,11 +221,11 @@ FloatImage Composite(Communicator& communicator, const FloatImage& mine,
 {
   if (options.Agreed && !options.Footprints.empty())
   {
-    return CompositeBy(communicator, mine, frontToBack, viewport, options, statistics);
+    return CompositeSlic(communicator, mine, frontToBack, viewport, options, statistics);
   }
   CompositeOptions complete = options;
   complete.Footprints = Announce(communicator, mine, frontToBack, viewport, options);
-  return CompositeBy(communicator, mine, frontToBack, viewport, complete, statistics);
+  return CompositeSlic(communicator, mine, frontToBack, viewport, complete, statistics);
 }
 
 } // namespace banyan

@@ -17,22 +17,11 @@
 namespace banyan
 {
 
-/// Ways to make one picture of those of all ranks. All make the same one.
-enum class CompositingMethod
-{
-  Slic,            ///< CompositePlan: tile owners, the root stays, active pixels, packed
-  SlicAsPublished, ///< spans with the set of ranks that may draw there, dense
-  DirectSend,      ///< a strip of rows per rank
-  BinarySwap,      ///< pairs exchange halves, for any number of ranks
-  IceTRadixK       ///< IceT's, where the caller brings it (CompositeOptions::External)
-};
-
 /// How exactly pixels travel.
 enum class PixelTransport
 {
-  Floats,    ///< as they are: the picture is within 1e-5 of one rank's
-  WithinOne, ///< as few bits as keep each pixel, rounded to 8 bits, within 1 of one rank's
-  Bytes      ///< 8 bits each time, as other compositors do: off by up to 1 per two fragments
+  Floats,   ///< as they are: the picture is within 1e-5 of one rank's
+  WithinOne ///< as few bits as keep each pixel, rounded to 8 bits, within 1 of one rank's
 };
 
 enum class PixelPacking
@@ -44,7 +33,6 @@ enum class PixelPacking
 
 struct CompositeOptions
 {
-  CompositingMethod Method = CompositingMethod::Slic;
   /// What is done with the pixels of two ranks; all but Over always travel as floats.
   Combination Combine = Combination::Over;
   PixelTransport Transport = PixelTransport::Floats;
@@ -56,20 +44,14 @@ struct CompositeOptions
   PixelRect Behind;
   /// Largest colour over opacity of a pixel: above 1 where there are highlights.
   float Brightest = 1.0f;
-  /// Where the plan of SLIC is kept from frame to frame; null for nowhere.
+  /// Where the schedule is kept from frame to frame; null for nowhere.
   KeptPlan* Plans = nullptr;
   /// Whether the ranks know already that ProblemOf finds nothing, and that all have the same
   /// options, order and viewport: saves a collective message.
   bool Agreed = false;
 
-  using Compositor = std::function<FloatImage(Communicator&, const FloatImage& mine,
-    const std::vector<int>& frontToBack, const PixelRect& viewport, CompositeStatistics&)>;
-  /// What draws for IceTRadixK, in floats and only Over; without it, and for other combinations,
-  /// that method is an Error.
-  Compositor External;
-
-  /// Whether DrawDistributed begins to composite while rays are still cast, where that can be done
-  /// (Slic, more than one rank). The picture is the same to the last bit.
+  /// Whether DrawDistributed begins to composite while rays are still cast, on more than one
+  /// rank. The picture is the same to the last bit.
   bool WhileCasting = true;
 
   /// Called by DrawDistributed when this rank has cast its rays: begins what can go on in the
@@ -101,25 +83,6 @@ FragmentFormat FormatFor(const CompositeOptions& options, int meeting, int share
 /// And those that are not blended any more.
 FragmentFormat FormatOfFinal(const CompositeOptions& options);
 bool Packs(const CompositeOptions& options);
-
-/// The methods. The arguments have been checked, footprints are there.
-/// @{
-FloatImage CompositeSlic(Communicator& communicator, const FloatImage& mine,
-  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
-  CompositeStatistics& statistics);
-/// @par Source: "A parallel visualization pipeline for terascale earthquake simulations",
-/// section 4.2
-FloatImage CompositeSlicAsPublished(Communicator& communicator, const FloatImage& mine,
-  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
-  CompositeStatistics& statistics);
-FloatImage CompositeDirectSend(Communicator& communicator, const FloatImage& mine,
-  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
-  CompositeStatistics& statistics);
-/// @par Source: "Dynamic load balancing for parallel volume rendering", section 3 (compositing)
-FloatImage CompositeBinarySwap(Communicator& communicator, const FloatImage& mine,
-  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
-  CompositeStatistics& statistics);
-/// @}
 
 } // namespace banyan
 

@@ -202,8 +202,7 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene, Br
   const Timer total;
   OwnPart own{ scene, source, zones.at(static_cast<std::size_t>(communicator.Rank())), budgetBytes,
     pool, localError, compositing.AfterCasting, {}, {} };
-  const bool atOnce = compositing.WhileCasting && compositing.Method == CompositingMethod::Slic &&
-                      communicator.Size() > 1;
+  const bool atOnce = compositing.WhileCasting && communicator.Size() > 1;
   FloatImage picture =
     (atOnce ? CastAndComposite : CastThenComposite)(communicator, own, zones, compositing);
   const PhaseScope phase(Phase::Compositing);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/DirectSend.h"
+#include "Parallel/ReduceNearest.h"
 
 #include "Base/Error.h"
 

@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Parallel_DirectSend_h
-#define banyan_Parallel_DirectSend_h
+#ifndef banyan_Parallel_ReduceNearest_h
+#define banyan_Parallel_ReduceNearest_h
 
-#include "Parallel/Compositing.h"
+#include "Parallel/Communicator.h"
+#include "Parallel/CompositeStatistics.h"
+#include "Render/FloatImage.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace banyan
 {
-
-/// Composite by direct send, in floats: the picture is cut into one strip of rows per rank, every
-/// rank sends each strip's owner its pixels there, the owner blends them in visibility order, and
-/// the strips go to the root. Exact: the over operator in float in visibility order, as a single
-/// rank would blend; largest numbers are those of any order, and sums are made in visibility order.
-FloatImage CompositeDirectSend(Communicator& communicator, const FloatImage& mine,
-  const std::vector<int>& frontToBack, const PixelRect& viewport, CompositeStatistics& statistics,
-  Combination combination = Combination::Over);
 
 /// Opaque geometry as one rank sees it: nearest depth in [0, 1] and 8-bit colour per pixel.
 struct OpaquePixel

@@ -126,6 +126,11 @@ private:
   CompositePlan::Region Region;
 };
 
+/// Composite, with arguments that have been checked, footprints among them.
+FloatImage CompositeSlic(Communicator& communicator, const FloatImage& mine,
+  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
+  CompositeStatistics& statistics);
+
 } // namespace banyan
 
 #endif

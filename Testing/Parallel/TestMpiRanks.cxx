@@ -34,37 +34,29 @@ std::string CompositeAllCases(Communicator& communicator)
   {
     for (const PixelRect& viewport : Viewports())
     {
-      wrong += CheckComposite(communicator, static_cast<Case>(which), viewport);
+      wrong += CheckComposite(communicator,
+        PreparedCase(static_cast<Case>(which), communicator.Size(), viewport, Combination::Over));
     }
   }
   return wrong;
 }
 
-/// Every method, as floats and in few bits, with pictures that need several messages.
-std::string CompositeByAllMethods(Communicator& communicator)
+/// As floats and in few bits, with pictures that need several messages.
+std::string CompositeLargePictures(Communicator& communicator)
 {
   std::string wrong;
   for (const Case which : { Case::BackgroundCorrect, Case::AllOverlap, Case::SparseCopy })
   {
     const PreparedCase prepared(
       which, communicator.Size(), { { -3, 2 }, { 290, 203 } }, Combination::Over);
-    for (const CompositingMethod method : Methods())
+    for (const PixelTransport transport : { PixelTransport::Floats, PixelTransport::WithinOne })
     {
       CompositeOptions options;
-      options.Method = method;
-      for (const PixelTransport transport : { PixelTransport::Floats, PixelTransport::WithinOne })
-      {
-        options.Transport = transport;
-        wrong += CheckMethod(communicator, prepared, options);
-      }
+      options.Transport = transport;
+      wrong += CheckComposite(communicator, prepared, options);
     }
   }
   return wrong;
-}
-
-std::string CompositeLargePicture(Communicator& communicator)
-{
-  return CheckComposite(communicator, Case::AllOverlap, { { 0, 0 }, { 517, 389 } });
 }
 
 std::string Nearest(Communicator& communicator)
@@ -85,7 +77,8 @@ std::string SmallParts(Communicator&)
   std::string wrong = CheckCommunicator(*communicator);
   wrong += CheckMessages(*communicator, 64);
   wrong += CheckMessages(*communicator, 65);
-  wrong += CheckComposite(*communicator, Case::AllOverlap, { { 0, 0 }, { 31, 17 } });
+  wrong += CheckComposite(*communicator, PreparedCase(Case::AllOverlap, communicator->Size(),
+                                           { { 0, 0 }, { 31, 17 } }, Combination::Over));
   return wrong;
 }
 
@@ -244,8 +237,8 @@ int RunAll(Communicator& communicator)
     { "several communicators", Several }, { "ranks of this node", RanksOfThisNode },
     { "memory of this machine", MemoryOfThisMachine },
     { "mesh of this machine", MeshOfThisMachine }, { "compositing", CompositeAllCases },
-    { "methods", CompositeByAllMethods }, { "large picture", CompositeLargePicture },
-    { "nearest pixels", Nearest }, { "errors", Errors } };
+    { "large pictures", CompositeLargePictures }, { "nearest pixels", Nearest },
+    { "errors", Errors } };
   int failed = 0;
   for (const Check& check : checks)
   {

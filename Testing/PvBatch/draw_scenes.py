@@ -34,8 +34,6 @@ def draw(name, arguments):
     drawn = picture_scenes.scenes()[name]()
     if arguments.threshold is not None:
         drawn.view.RemoteRenderThreshold = arguments.threshold
-    for display in drawn.volumes if arguments.compositing else []:
-        display.Compositing = arguments.compositing
     path = os.path.join(arguments.out, name)
     screenshot(drawn, path + ".png")
     figures = {"volume_pixels": drawn.volume_pixels, "geometry": len(drawn.geometry),
@@ -65,7 +63,6 @@ def main():
     parser.add_argument("--parts", action="store_true")
     parser.add_argument("--figures", action="store_true")
     parser.add_argument("--threshold", type=float, help="RemoteRenderThreshold of the views")
-    parser.add_argument("--compositing", help="how the pictures of ranks become one")
     arguments = parser.parse_args()
     session.begin(arguments)
     picture_scenes.Settings.data = arguments.data

@@ -229,6 +229,7 @@ def options_without_effect():
             ("GlobalIlluminationReach", 0.5, "Global Illumination Reach"),
             ("VolumetricScatteringBlending", 0.5, "Volumetric Scattering Blending"),
             ("VolumeRenderingMode", "Ray Cast Only", "Volume Rendering Mode"),
+            ("Compositing", "Binary swap", "Compositing"),
             ("TemporalEnhancement", 0.5, "Temporal Enhancement")):
         sentences = said(view, display, {name: value})
         session.require(len(sentences) == 1 and f"'{label}' has no effect" in sentences[0],

@@ -14,7 +14,6 @@ import session
 
 SIZE = (200, 160)
 BALANCING = ("Off", "Slice step", "Measured cost")
-COMPOSITING = ("SLIC", "SLIC as published", "Direct send", "Binary swap", "IceT radix-k")
 FIGURES = ("BytesMoved", "CacheHits", "CacheMisses", "CacheHitsAhead", "MessagesComposited",
            "BytesComposited", "BricksDrawn", "MeshBytes")
 FRAMES = 3
@@ -63,19 +62,17 @@ def main():
         display.CompositeInFewBits = 0
         first = None
         for balancing in BALANCING:
-            for compositing in COMPOSITING:
-                display.LoadBalancing = balancing
-                display.Compositing = compositing
-                name = f"{make.__name__}.{balancing}.{compositing}.png".replace(" ", "")
-                picture = draw(view, os.path.join(arguments.out, name))
-                if picture is None:  # of another rank than the root
-                    continue
-                first = picture if first is None else first
-                error = int(pictures.difference(first, picture).max())
-                session.require(error <= 1, f"{name} differs by {error}")
-                if arguments.reference:
-                    pictures.require_near(os.path.join(arguments.out, name),
-                                          os.path.join(arguments.reference, name))
+            display.LoadBalancing = balancing
+            name = f"{make.__name__}.{balancing}.png".replace(" ", "")
+            picture = draw(view, os.path.join(arguments.out, name))
+            if picture is None:  # of another rank than the root
+                continue
+            first = picture if first is None else first
+            error = int(pictures.difference(first, picture).max())
+            session.require(error <= 1, f"{name} differs by {error}")
+            if arguments.reference:
+                pictures.require_near(os.path.join(arguments.out, name),
+                                      os.path.join(arguments.reference, name))
         display.UpdatePropertyInformation()
         figures = {name: display.GetPropertyValue(name) for name in FIGURES}
         print(make.__name__, figures, flush=True)

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/Compositing.h"
-#include "Parallel/FragmentMessage.h"
+#include "PeerFrame.h"
 
 #include "Base/Error.h"
+#include "Parallel/Compositing.h"
+#include "Parallel/FragmentMessage.h"
 
 #include <algorithm>
 #include <cstring>
 #include <memory>
 
-namespace banyan
+namespace banyan::bench
 {
 namespace
 {
@@ -20,10 +21,10 @@ constexpr int TagGather = 39;
 class RectMessages
 {
 public:
-  RectMessages(Communicator& communicator, const CompositeOptions& options,
-    const PixelRect& viewport, CompositeStatistics& statistics)
+  RectMessages(Communicator& communicator, const FragmentFormat& format, const PixelRect& viewport,
+    CompositeStatistics& statistics)
     : Ranks(communicator)
-    , Options(options)
+    , Format(format)
     , Viewport(viewport)
     , Statistics(statistics)
   {
@@ -40,14 +41,13 @@ public:
   }
 
   /// What of `image` is drawn inside `rect`.
-  void Send(
-    int to, int tag, const FloatImage& image, const PixelRect& rect, const FragmentFormat& format)
+  void Send(int to, int tag, const FloatImage& image, const PixelRect& rect)
   {
     const PixelRect active = ActiveRect(image, rect);
     FragmentWriter writer;
     writer.Bytes.resize(sizeof(active));
     std::memcpy(writer.Bytes.data(), &active, sizeof(active));
-    writer.Append(RowsOf(active), image, format, false, true);
+    writer.Append(RowsOf(active), image, this->Format, false, true);
     this->Sent.push_back(std::move(writer.Bytes));
     this->Ranks.SendWhole(to, tag, this->Sent.back().data(), this->Sent.back().size());
     this->Statistics.Sent(this->Sent.back().size());
@@ -82,7 +82,7 @@ public:
       target = PartOf(target, Union(target.Rect, rect));
     }
     FragmentReader reader(data + sizeof(rect), arrival.Bytes - sizeof(rect));
-    reader.Blend(RowsOf(rect), target, place, this->Options.Combine);
+    reader.Blend(RowsOf(rect), target, place, Combination::Over);
   }
 
   void Finish()
@@ -107,7 +107,7 @@ public:
 
 private:
   Communicator& Ranks;
-  const CompositeOptions& Options;
+  FragmentFormat Format;
   PixelRect Viewport;
   CompositeStatistics& Statistics;
   std::vector<std::vector<std::uint8_t>> Sent;
@@ -149,83 +149,115 @@ PixelRect HalfOf(const PixelRect& rect, bool upper)
   return half;
 }
 
+/// One rank's part of a frame.
+class SwapFrame
+{
+public:
+  SwapFrame(Communicator& communicator, const PeerFrame& frame, CompositeStatistics& statistics)
+    : Order(frame.FrontToBack)
+    , Viewport(frame.Viewport)
+    , Ranks(communicator.Size())
+    , Messages(communicator, frame.Format, frame.Viewport, statistics)
+    , Image(RectMessages::PartOf(frame.Mine, ActiveRect(frame.Mine, frame.Viewport)))
+  {
+    this->Position = static_cast<int>(
+      std::find(this->Order.begin(), this->Order.end(), communicator.Rank()) - this->Order.begin());
+    this->Group = this->Ranks.GroupOf(this->Position);
+    this->IsSecond = this->Ranks.PositionOf(this->Group) != this->Position;
+  }
+
+  /// The second rank of a pair gives its picture to the first.
+  void JoinPairs()
+  {
+    if (this->Group < this->Ranks.Pairs && this->IsSecond)
+    {
+      this->Messages.Send(this->Order[this->Position - 1], FirstTag, this->Image, this->Viewport);
+      this->Image = {};
+    }
+    else if (this->Group < this->Ranks.Pairs)
+    {
+      this->Messages.Expect(this->Order[this->Position + 1], FirstTag, this->Viewport);
+      this->Messages.BlendNext(this->Image, FragmentReader::Place::Behind);
+    }
+    this->Messages.Finish();
+  }
+
+  void ExchangeHalves()
+  {
+    this->Part = this->IsSecond ? PixelRect{} : this->Viewport;
+    for (int stage = 0; stage < this->Ranks.Stages && !this->IsSecond; ++stage)
+    {
+      const int peer = this->Group ^ (1 << stage);
+      const bool upper = (this->Group & (1 << stage)) != 0;
+      const int peerRank = this->Order[this->Ranks.PositionOf(peer)];
+      const PixelRect kept = HalfOf(this->Part, upper);
+      const PixelRect given = HalfOf(this->Part, !upper);
+      this->Messages.Expect(peerRank, FirstTag + 1 + stage, kept);
+      this->Messages.Send(peerRank, FirstTag + 1 + stage, this->Image, given);
+      this->Image = RectMessages::PartOf(this->Image, ActiveRect(this->Image, kept));
+      this->Messages.BlendNext(this->Image,
+        peer < this->Group ? FragmentReader::Place::Before : FragmentReader::Place::Behind);
+      this->Messages.Finish();
+      this->Part = kept;
+    }
+  }
+
+  void SendPart()
+  {
+    if (!this->IsSecond)
+    {
+      this->Messages.Send(0, TagGather, this->Image, this->Part);
+    }
+    this->Messages.Finish();
+  }
+
+  FloatImage Gather()
+  {
+    FloatImage picture = RectMessages::PartOf(this->Image, this->Viewport);
+    int gathered = 0;
+    for (int group = 0; group < this->Ranks.Count; ++group)
+    {
+      const int rank = this->Order[this->Ranks.PositionOf(group)];
+      if (rank != 0)
+      {
+        this->Messages.Expect(rank, TagGather, this->Viewport);
+        ++gathered;
+      }
+    }
+    for (int i = 0; i < gathered; ++i)
+    {
+      this->Messages.BlendNext(picture, FragmentReader::Place::Behind);
+    }
+    this->Messages.Finish();
+    return picture;
+  }
+
+private:
+  const std::vector<int>& Order;
+  PixelRect Viewport;
+  Groups Ranks;
+  RectMessages Messages;
+  FloatImage Image;
+  PixelRect Part; ///< of the viewport, that this rank has blended
+  int Position = 0;
+  int Group = 0;
+  bool IsSecond = false;
+};
+
 } // namespace
 
-FloatImage CompositeBinarySwap(Communicator& communicator, const FloatImage& mine,
-  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
-  CompositeStatistics& statistics)
+FloatImage CompositeBinarySwap(
+  Communicator& communicator, const PeerFrame& frame, CompositeStatistics& statistics)
 {
-  const int ranks = communicator.Size();
-  const Groups groups(ranks);
-  const int position = static_cast<int>(
-    std::find(frontToBack.begin(), frontToBack.end(), communicator.Rank()) - frontToBack.begin());
-  const int group = groups.GroupOf(position);
-  const bool second = groups.PositionOf(group) != position;
-  const int behind = options.Behind.Empty() ? 0 : 1;
-  // All fragments that meet in a pixel are rounded once per stage at most.
-  const FragmentFormat format =
-    FormatFor(options, ranks, std::max(1, groups.Stages + (groups.Pairs > 0 ? 1 : 0) + behind));
-
-  RectMessages messages(communicator, options, viewport, statistics);
-  FloatImage image = RectMessages::PartOf(mine, ActiveRect(mine, viewport));
-
-  if (group < groups.Pairs)
+  SwapFrame swap(communicator, frame, statistics);
+  swap.JoinPairs();
+  swap.ExchangeHalves();
+  if (communicator.Rank() == 0)
   {
-    if (second)
-    {
-      messages.Send(frontToBack[position - 1], FirstTag, image, viewport, format);
-      image = {};
-    }
-    else
-    {
-      messages.Expect(frontToBack[position + 1], FirstTag, viewport);
-      messages.BlendNext(image, FragmentReader::Place::Behind);
-    }
-    messages.Finish();
+    return swap.Gather();
   }
-  PixelRect part = second ? PixelRect{} : viewport;
-  for (int stage = 0; stage < groups.Stages && !second; ++stage)
-  {
-    const int peer = group ^ (1 << stage);
-    const bool upper = (group & (1 << stage)) != 0;
-    const int peerRank = frontToBack[groups.PositionOf(peer)];
-    const PixelRect kept = HalfOf(part, upper);
-    messages.Expect(peerRank, FirstTag + 1 + stage, kept);
-    messages.Send(peerRank, FirstTag + 1 + stage, image, HalfOf(part, !upper), format);
-    image = RectMessages::PartOf(image, ActiveRect(image, kept));
-    messages.BlendNext(
-      image, peer < group ? FragmentReader::Place::Before : FragmentReader::Place::Behind);
-    messages.Finish();
-    part = kept;
-  }
-
-  if (communicator.Rank() != 0)
-  {
-    if (!second)
-    {
-      messages.Send(0, TagGather, image, part,
-        behind != 0 ? FormatFor(options, 1, groups.Stages + 2) : FormatOfFinal(options));
-    }
-    messages.Finish();
-    return {};
-  }
-  FloatImage picture = RectMessages::PartOf(image, viewport);
-  int gathered = 0;
-  for (int other = 0; other < groups.Count; ++other)
-  {
-    const int rank = frontToBack[groups.PositionOf(other)];
-    if (rank != 0)
-    {
-      messages.Expect(rank, TagGather, viewport);
-      ++gathered;
-    }
-  }
-  for (int i = 0; i < gathered; ++i)
-  {
-    messages.BlendNext(picture, FragmentReader::Place::Behind);
-  }
-  messages.Finish();
-  return picture;
+  swap.SendPart();
+  return {};
 }
 
-} // namespace banyan
+} // namespace banyan::bench

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/DirectSend.h"
-
-#include "Parallel/OwnedSpans.h"
+#include "OwnedSpans.h"
 
 #include <algorithm>
 
-namespace banyan
+namespace banyan::bench
 {
 namespace
 {
@@ -36,17 +34,16 @@ std::vector<int> OwnersOfRows(const std::vector<Footprint>& footprints, const Pi
 
 } // namespace
 
-FloatImage CompositeDirectSend(Communicator& communicator, const FloatImage& mine,
-  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
-  CompositeStatistics& statistics)
+FloatImage CompositeDirectSend(
+  Communicator& communicator, const PeerFrame& frame, CompositeStatistics& statistics)
 {
-  const std::vector<int> owners = OwnersOfRows(options.Footprints, viewport);
+  const std::vector<int> owners = OwnersOfRows(frame.Footprints, frame.Viewport);
   std::vector<OwnedSpan> spans;
   for (std::size_t row = 0; row < owners.size(); ++row)
   {
-    const int y = viewport.Lo.y + static_cast<int>(row);
-    OwnedSpan span{ y, viewport.Hi.x, viewport.Lo.x, owners[row], false };
-    for (const Footprint& footprint : options.Footprints)
+    const int y = frame.Viewport.Lo.y + static_cast<int>(row);
+    OwnedSpan span{ y, frame.Viewport.Hi.x, frame.Viewport.Lo.x, owners[row] };
+    for (const Footprint& footprint : frame.Footprints)
     {
       const Footprint::Interval drawn = footprint.Row(y);
       span.Lo = drawn.Lo < drawn.Hi ? std::min(span.Lo, drawn.Lo) : span.Lo;
@@ -57,19 +54,7 @@ FloatImage CompositeDirectSend(Communicator& communicator, const FloatImage& min
       spans.push_back(span);
     }
   }
-  const int meeting = std::max(1, communicator.Size() - 1);
-  return CompositeOwnedSpans(
-    communicator, mine, frontToBack, viewport, options, statistics, spans, meeting, false);
+  return CompositeOwnedSpans(communicator, frame, spans, false, statistics);
 }
 
-FloatImage CompositeDirectSend(Communicator& communicator, const FloatImage& mine,
-  const std::vector<int>& frontToBack, const PixelRect& viewport, CompositeStatistics& statistics,
-  Combination combination)
-{
-  CompositeOptions options;
-  options.Method = CompositingMethod::DirectSend;
-  options.Combine = combination;
-  return Composite(communicator, mine, frontToBack, viewport, options, statistics);
-}
-
-} // namespace banyan
+} // namespace banyan::bench

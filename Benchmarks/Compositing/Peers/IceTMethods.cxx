@@ -283,6 +283,9 @@ struct IceTCompositor::Internals
   IceTCommunicator Communicator = nullptr;
   IceTContext Context = nullptr;
   CompositeStatistics Statistics;
+  bool Floats = false;
+  const std::uint8_t* PictureBytes = nullptr; ///< IceT's, until it is called again
+  const float* PictureFloats = nullptr;
 };
 
 std::vector<std::string> IceTStrategies()
@@ -295,36 +298,44 @@ std::vector<std::string> IceTStrategies()
   return names;
 }
 
-BytesImage ToBytes(const FloatImage& image, const PixelRect& viewport)
+IceTPicture PictureOf(const FloatImage& image, const PixelRect& viewport, bool floats)
 {
-  BytesImage bytes{ viewport, ActiveRect(image, viewport), {} };
-  bytes.Pixels.assign(4 * static_cast<std::size_t>(viewport.Count()), 0);
+  IceTPicture picture{ viewport, ActiveRect(image, viewport), {}, {} };
+  picture.Floats.assign(4 * static_cast<std::size_t>(viewport.Count()), 0.0f);
   for (int y = image.Rect.Lo.y; y < image.Rect.Hi.y && !image.Rect.Empty(); ++y)
   {
     const glm::ivec2 at = glm::ivec2(image.Rect.Lo.x, y) - viewport.Lo;
-    std::uint8_t* to =
-      &bytes.Pixels[4 * (static_cast<std::size_t>(at.y) * viewport.Size().x + at.x)];
+    float* to = &picture.Floats[4 * (static_cast<std::size_t>(at.y) * viewport.Size().x + at.x)];
     for (int x = image.Rect.Lo.x; x < image.Rect.Hi.x; ++x)
     {
       for (int c = 0; c < 4; ++c)
       {
-        const float value = std::clamp(image.At(x, y)[c], 0.0f, 1.0f);
-        *to++ = static_cast<std::uint8_t>(std::lround(255.0f * value));
+        *to++ = image.At(x, y)[c];
       }
     }
   }
-  return bytes;
+  if (!floats)
+  {
+    for (const float value : picture.Floats)
+    {
+      picture.Bytes.push_back(
+        static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f))));
+    }
+    picture.Floats.clear();
+  }
+  return picture;
 }
 
-IceTCompositor::IceTCompositor()
+IceTCompositor::IceTCompositor(bool floats)
   : Self(new Internals)
 {
   MPI_Comm copy;
   MPI_Comm_dup(MPI_COMM_WORLD, &copy);
+  this->Self->Floats = floats;
   this->Self->Communicator = Make(copy, &this->Self->Statistics);
   this->Self->Context = icetCreateContext(this->Self->Communicator);
   icetDiagnostics(ICET_DIAG_ERRORS | ICET_DIAG_WARNINGS);
-  icetSetColorFormat(ICET_IMAGE_COLOR_RGBA_UBYTE);
+  icetSetColorFormat(floats ? ICET_IMAGE_COLOR_RGBA_FLOAT : ICET_IMAGE_COLOR_RGBA_UBYTE);
   icetSetDepthFormat(ICET_IMAGE_DEPTH_NONE);
   icetCompositeMode(ICET_COMPOSITE_MODE_BLEND);
   icetEnable(ICET_ORDERED_COMPOSITE);
@@ -336,7 +347,7 @@ IceTCompositor::~IceTCompositor()
   delete this->Self;
 }
 
-const std::uint8_t* IceTCompositor::Composite(const std::string& strategy, const BytesImage& mine,
+bool IceTCompositor::Composite(const std::string& strategy, const IceTPicture& mine,
   const std::vector<int>& frontToBack, CompositeStatistics& statistics)
 {
   const auto found = std::find_if(std::begin(Strategies), std::end(Strategies),
@@ -356,12 +367,27 @@ const std::uint8_t* IceTCompositor::Composite(const std::string& strategy, const
   const IceTInt valid[] = { mine.Active.Empty() ? 0 : low.x, mine.Active.Empty() ? 0 : low.y,
     mine.Active.Size().x, mine.Active.Size().y };
   const IceTFloat background[] = { 0.0f, 0.0f, 0.0f, 0.0f };
-  const IceTImage image =
-    icetCompositeImage(mine.Pixels.data(), nullptr, valid, nullptr, nullptr, background);
+  const void* const pixels =
+    this->Self->Floats ? static_cast<const void*>(mine.Floats.data()) : mine.Bytes.data();
+  const IceTImage image = icetCompositeImage(pixels, nullptr, valid, nullptr, nullptr, background);
   const bool root = Comm_rank(this->Self->Communicator) == 0;
+  if (root && this->Self->Floats)
+  {
+    this->Self->PictureFloats = icetImageGetColorcf(image);
+  }
+  else if (root)
+  {
+    this->Self->PictureBytes = icetImageGetColorcub(image);
+  }
   statistics = this->Self->Statistics;
   this->Self->Statistics = {};
-  return root ? icetImageGetColorcub(image) : nullptr;
+  return root;
+}
+
+double IceTCompositor::Channel(std::size_t index) const
+{
+  return this->Self->Floats ? 255.0 * std::clamp(this->Self->PictureFloats[index], 0.0f, 1.0f)
+                            : this->Self->PictureBytes[index];
 }
 
 } // namespace banyan::bench

@@ -13,27 +13,32 @@ namespace banyan::bench
 /// The strategies of IceT that blend in an order, by the names that the table has.
 std::vector<std::string> IceTStrategies();
 
-/// A picture of 8 bits per channel, as IceT wants it: the whole viewport, `[y][x]`, premultiplied.
-struct BytesImage
+/// A picture as IceT wants it: the whole viewport, `[y][x]`, RGBA, premultiplied.
+struct IceTPicture
 {
   PixelRect Viewport;
   PixelRect Active;
-  std::vector<std::uint8_t> Pixels;
+  std::vector<std::uint8_t> Bytes; ///< 4 per pixel; empty for floats
+  std::vector<float> Floats;       ///< 4 per pixel; empty for bytes
 };
-BytesImage ToBytes(const FloatImage& image, const PixelRect& viewport);
+IceTPicture PictureOf(const FloatImage& image, const PixelRect& viewport, bool floats);
 
 /// IceT, unmodified, over MPI_COMM_WORLD: a communicator of our own counts what it sends.
 class IceTCompositor
 {
 public:
-  IceTCompositor();
+  /// @param floats whether pixels are floats; otherwise they have 8 bits per channel
+  explicit IceTCompositor(bool floats);
   ~IceTCompositor();
   IceTCompositor(const IceTCompositor&) = delete;
   IceTCompositor& operator=(const IceTCompositor&) = delete;
 
-  /// @return the picture on rank 0, RGBA, until the next call; null elsewhere
-  const std::uint8_t* Composite(const std::string& strategy, const BytesImage& mine,
+  /// @param mine floats or bytes, as the compositor
+  /// @return whether the picture is here: on rank 0
+  bool Composite(const std::string& strategy, const IceTPicture& mine,
     const std::vector<int>& frontToBack, CompositeStatistics& statistics);
+  /// A channel of the last picture, in [0, 255].
+  double Channel(std::size_t index) const;
 
 private:
   struct Internals;

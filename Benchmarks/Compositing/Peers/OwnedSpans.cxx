@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/OwnedSpans.h"
+#include "OwnedSpans.h"
 
 #include "Parallel/FragmentMessage.h"
 
@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-namespace banyan
+namespace banyan::bench
 {
 namespace
 {
@@ -15,75 +15,86 @@ namespace
 constexpr int TagFragments = 32;
 constexpr int TagResults = 33;
 
-/// What one rank sends to another: spans that are still to be blended, and those that are not.
-struct Parcel
-{
-  CompositePlan::Region Shared;
-  CompositePlan::Region Sole;
+using Region = CompositePlan::Region;
 
-  bool Empty() const { return this->Shared.empty() && this->Sole.empty(); }
-};
-
-void AddSpan(const OwnedSpan& span, const Footprint& footprint, Parcel& parcel)
+void AddSpan(const OwnedSpan& span, const Footprint& footprint, Region& region)
 {
   const Footprint::Interval row = footprint.Row(span.Y);
   const int lo = std::max(row.Lo, span.Lo);
   const int hi = std::min(row.Hi, span.Hi);
   if (lo < hi)
   {
-    (span.Sole ? parcel.Sole : parcel.Shared).push_back({ span.Y, lo, hi, false });
+    region.push_back({ span.Y, lo, hi, false });
   }
 }
 
 struct Incoming
 {
   int From = 0;
-  Parcel Pixels;
+  Region Pixels;
   std::unique_ptr<std::uint8_t[]> Data;
   std::size_t Bytes = 0;
 };
 
-class SpanFrame
+/// What each rank sends to each other, in two rounds: fragments to owners, and results to the root.
+struct Regions
+{
+  Regions(const PeerFrame& frame, const std::vector<OwnedSpan>& spans, int self)
+    : Outgoing(frame.Footprints.size())
+    , Incoming(frame.Footprints.size())
+    , Results(frame.Footprints.size())
+  {
+    for (const OwnedSpan& span : spans)
+    {
+      AddSpan(span, frame.Footprints[static_cast<std::size_t>(self)], this->Outgoing[span.Owner]);
+      for (std::size_t rank = 0; rank < this->Incoming.size() && span.Owner == self; ++rank)
+      {
+        AddSpan(span, frame.Footprints[rank], this->Incoming[rank]);
+      }
+      this->Results[span.Owner].push_back({ span.Y, span.Lo, span.Hi, false });
+    }
+  }
+
+  std::vector<Region> Outgoing; ///< by owner
+  std::vector<Region> Incoming; ///< by sender, of spans that this rank owns
+  std::vector<Region> Results;  ///< by owner
+};
+
+/// The messages of one rank.
+class SpanMessages
 {
 public:
-  SpanFrame(Communicator& communicator, const CompositeOptions& options,
-    CompositeStatistics& statistics, int meeting, bool dense)
+  SpanMessages(Communicator& communicator, const FragmentFormat& format, bool dense,
+    CompositeStatistics& statistics)
     : Ranks(communicator)
-    , Options(options)
-    , Statistics(statistics)
-    , SoleFormat(options.Behind.Empty() ? FormatOfFinal(options) : FormatFor(options, 1, 1))
-    , SharedFormat(FormatFor(options, meeting, options.Behind.Empty() ? 1 : 2))
-    , ResultFormat(options.Behind.Empty() ? FormatOfFinal(options) : FormatFor(options, 1, 2))
+    , Format(format)
     , Dense(dense)
+    , Statistics(statistics)
   {
   }
 
-  void Write(const Parcel& parcel, const FloatImage& image, int to, int tag)
+  void Send(const Region& region, const FloatImage& image, int to, int tag)
   {
-    if (parcel.Empty())
+    if (region.empty())
     {
       return;
     }
     FragmentWriter writer;
-    const bool results = tag == TagResults;
-    writer.Append(
-      parcel.Shared, image, results ? this->ResultFormat : this->SharedFormat, false, this->Dense);
-    writer.Append(parcel.Sole, image, this->SoleFormat, false, this->Dense);
+    writer.Append(region, image, this->Format, false, this->Dense);
     this->Outgoing.push_back(std::move(writer.Bytes));
     this->Ranks.SendWhole(to, tag, this->Outgoing.back().data(), this->Outgoing.back().size());
     this->Statistics.Sent(this->Outgoing.back().size());
   }
 
-  void Expect(int from, Parcel parcel, int tag)
+  void Expect(int from, const Region& region, int tag)
   {
-    if (parcel.Empty())
+    if (region.empty())
     {
       return;
     }
-    const std::size_t capacity =
-      FragmentBytesAtMost(parcel.Shared) + FragmentBytesAtMost(parcel.Sole);
+    const std::size_t capacity = FragmentBytesAtMost(region);
     this->Expected.push_back(
-      { from, std::move(parcel), std::unique_ptr<std::uint8_t[]>(new std::uint8_t[capacity]), 0 });
+      { from, region, std::unique_ptr<std::uint8_t[]>(new std::uint8_t[capacity]), 0 });
     this->Ranks.ReceiveWhole(from, tag, this->Expected.back().Data.get(), capacity);
   }
 
@@ -101,125 +112,107 @@ public:
     return std::exchange(this->Expected, {});
   }
 
-  void Blend(const Incoming& message, FloatImage& target) const
-  {
-    FragmentReader reader(message.Data.get(), message.Bytes);
-    for (const CompositePlan::Region* region : { &message.Pixels.Shared, &message.Pixels.Sole })
-    {
-      reader.Blend(*region, target, FragmentReader::Place::Behind, this->Options.Combine);
-    }
-  }
-
 private:
   Communicator& Ranks;
-  const CompositeOptions& Options;
-  CompositeStatistics& Statistics;
-  FragmentFormat SoleFormat;
-  FragmentFormat SharedFormat;
-  FragmentFormat ResultFormat;
+  FragmentFormat Format;
   bool Dense;
+  CompositeStatistics& Statistics;
   std::vector<Incoming> Expected;
   std::vector<std::vector<std::uint8_t>> Outgoing;
 };
 
-void BlendMine(
-  const Parcel& parcel, const FloatImage& mine, FloatImage& target, Combination combination)
+void Blend(const Incoming& message, FloatImage& target)
 {
-  for (const CompositePlan::Region* region : { &parcel.Shared, &parcel.Sole })
+  FragmentReader(message.Data.get(), message.Bytes)
+    .Blend(message.Pixels, target, FragmentReader::Place::Behind, Combination::Over);
+}
+
+void BlendMine(const Region& region, const FloatImage& mine, FloatImage& target)
+{
+  for (const CompositePlan::Run& run : region)
   {
-    for (const CompositePlan::Run& run : *region)
+    const bool inside = run.Y >= mine.Rect.Lo.y && run.Y < mine.Rect.Hi.y;
+    const int hi = inside ? std::min(run.Hi, mine.Rect.Hi.x) : run.Lo;
+    for (int x = std::max(run.Lo, mine.Rect.Lo.x); x < hi; ++x)
     {
-      const bool inside = run.Y >= mine.Rect.Lo.y && run.Y < mine.Rect.Hi.y;
-      const int hi = inside ? std::min(run.Hi, mine.Rect.Hi.x) : run.Lo;
-      for (int x = std::max(run.Lo, mine.Rect.Lo.x); x < hi; ++x)
-      {
-        glm::vec4& pixel = target.At(x, run.Y);
-        pixel = Combined(pixel, mine.At(x, run.Y), combination);
-      }
+      glm::vec4& pixel = target.At(x, run.Y);
+      pixel = Combined(pixel, mine.At(x, run.Y), Combination::Over);
     }
   }
 }
 
 /// Around all spans of an owner, so that it needs no memory for the whole picture.
-PixelRect RectOf(const std::vector<OwnedSpan>& spans, int owner)
+PixelRect RectOf(const Region& region)
 {
   PixelRect rect;
-  for (const OwnedSpan& span : spans)
+  for (const CompositePlan::Run& run : region)
   {
-    if (span.Owner == owner)
-    {
-      rect = Union(rect, { { span.Lo, span.Y }, { span.Hi, span.Y + 1 } });
-    }
+    rect = Union(rect, { { run.Lo, run.Y }, { run.Hi, run.Y + 1 } });
   }
   return rect;
 }
 
-} // namespace
-
-FloatImage CompositeOwnedSpans(Communicator& communicator, const FloatImage& mine,
-  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
-  CompositeStatistics& statistics, const std::vector<OwnedSpan>& spans, int meeting, bool dense)
+/// This rank's pixels and those that others have sent, in visibility order.
+FloatImage BlendOwned(
+  const PeerFrame& frame, const Regions& regions, const std::vector<Incoming>& fragments, int self)
 {
-  const int self = communicator.Rank();
-  const std::size_t ranks = options.Footprints.size();
-  SpanFrame frame(communicator, options, statistics, meeting, dense);
-  std::vector<Parcel> outgoing(ranks);
-  std::vector<Parcel> incoming(ranks);
-  std::vector<Parcel> results(ranks);
-  for (const OwnedSpan& span : spans)
-  {
-    AddSpan(span, options.Footprints[self], outgoing[span.Owner]);
-    for (std::size_t rank = 0; rank < ranks && span.Owner == self; ++rank)
-    {
-      AddSpan(span, options.Footprints[rank], incoming[rank]);
-    }
-    results[span.Owner].Shared.push_back({ span.Y, span.Lo, span.Hi, false });
-  }
-  for (std::size_t i = 1; i < ranks; ++i)
-  {
-    const std::size_t peer = (static_cast<std::size_t>(self) + i) % ranks;
-    frame.Expect(static_cast<int>(peer), incoming[peer], TagFragments);
-  }
-  for (std::size_t i = 1; i < ranks; ++i)
-  {
-    const std::size_t peer = (static_cast<std::size_t>(self) + i) % ranks;
-    frame.Write(outgoing[peer], mine, static_cast<int>(peer), TagFragments);
-  }
-  const std::vector<Incoming> fragments = frame.TakeAll();
-  std::vector<const Incoming*> from(ranks, nullptr);
+  std::vector<const Incoming*> from(regions.Incoming.size(), nullptr);
   for (const Incoming& message : fragments)
   {
     from[message.From] = &message;
   }
   FloatImage picture;
-  picture.Rect = self == 0 ? viewport : RectOf(spans, self);
+  picture.Rect = self == 0 ? frame.Viewport : RectOf(regions.Results[self]);
   picture.Pixels.assign(static_cast<std::size_t>(picture.Rect.Count()), glm::vec4(0.0f));
-  for (const int rank : frontToBack)
+  for (const int rank : frame.FrontToBack)
   {
     if (rank == self)
     {
-      BlendMine(incoming[self], mine, picture, options.Combine);
+      BlendMine(regions.Incoming[self], frame.Mine, picture);
     }
     else if (from[rank])
     {
-      frame.Blend(*from[rank], picture);
+      Blend(*from[rank], picture);
     }
-  }
-  if (self != 0)
-  {
-    frame.Write(results[self], picture, 0, TagResults);
-    frame.TakeAll();
-    return {};
-  }
-  for (std::size_t rank = 1; rank < ranks; ++rank)
-  {
-    frame.Expect(static_cast<int>(rank), results[rank], TagResults);
-  }
-  for (const Incoming& message : frame.TakeAll())
-  {
-    frame.Blend(message, picture);
   }
   return picture;
 }
 
-} // namespace banyan
+} // namespace
+
+FloatImage CompositeOwnedSpans(Communicator& communicator, const PeerFrame& frame,
+  const std::vector<OwnedSpan>& spans, bool dense, CompositeStatistics& statistics)
+{
+  const int self = communicator.Rank();
+  const int ranks = communicator.Size();
+  SpanMessages messages(communicator, frame.Format, dense, statistics);
+  const Regions regions(frame, spans, self);
+  for (int i = 1; i < ranks; ++i)
+  {
+    const int peer = (self + i) % ranks;
+    messages.Expect(peer, regions.Incoming[peer], TagFragments);
+  }
+  for (int i = 1; i < ranks; ++i)
+  {
+    const int peer = (self + i) % ranks;
+    messages.Send(regions.Outgoing[peer], frame.Mine, peer, TagFragments);
+  }
+  FloatImage picture = BlendOwned(frame, regions, messages.TakeAll(), self);
+  if (self != 0)
+  {
+    messages.Send(regions.Results[self], picture, 0, TagResults);
+    messages.TakeAll();
+    return {};
+  }
+  for (int rank = 1; rank < ranks; ++rank)
+  {
+    messages.Expect(rank, regions.Results[rank], TagResults);
+  }
+  for (const Incoming& message : messages.TakeAll())
+  {
+    Blend(message, picture);
+  }
+  return picture;
+}
+
+} // namespace banyan::bench

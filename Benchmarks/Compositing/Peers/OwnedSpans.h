@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Parallel_OwnedSpans_h
-#define banyan_Parallel_OwnedSpans_h
+#ifndef banyan_Benchmarks_OwnedSpans_h
+#define banyan_Benchmarks_OwnedSpans_h
 
-#include "Parallel/Compositing.h"
+#include "PeerFrame.h"
 
 #include <vector>
 
-namespace banyan
+namespace banyan::bench
 {
 
 /// Pixels of one row that one rank blends: those that may draw there send it theirs.
@@ -16,20 +16,16 @@ struct OwnedSpan
   int Lo = 0;
   int Hi = 0;
   int Owner = 0;
-  /// Whether only one rank may draw there: then its pixels are not blended any more.
-  bool Sole = false;
 };
 
 /// Composites by a list of spans that all ranks have alike: every rank sends the owners its pixels
 /// there, owners blend them in visibility order, and their spans go to the root. One message per
 /// pair of ranks each time.
 /// @param spans disjoint; what lies in none is background
-/// @param meeting most fragments that travel for one pixel
 /// @param dense whether all pixels of spans travel, not only drawn ones
-FloatImage CompositeOwnedSpans(Communicator& communicator, const FloatImage& mine,
-  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
-  CompositeStatistics& statistics, const std::vector<OwnedSpan>& spans, int meeting, bool dense);
+FloatImage CompositeOwnedSpans(Communicator& communicator, const PeerFrame& frame,
+  const std::vector<OwnedSpan>& spans, bool dense, CompositeStatistics& statistics);
 
-} // namespace banyan
+} // namespace banyan::bench
 
 #endif

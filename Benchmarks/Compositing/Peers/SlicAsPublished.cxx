@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/OwnedSpans.h"
+#include "OwnedSpans.h"
 
 #include <algorithm>
 
-namespace banyan
+namespace banyan::bench
 {
 namespace
 {
 
 /// Cuts one row where the set of ranks that may draw changes, and gives each span to one of them.
 void CutRow(const std::vector<Footprint>& footprints, int y, std::vector<int>& cuts,
-  std::vector<int>& present, std::vector<OwnedSpan>& spans, int& meeting)
+  std::vector<int>& present, std::vector<OwnedSpan>& spans)
 {
   cuts.clear();
   present.clear();
@@ -42,7 +42,7 @@ void CutRow(const std::vector<Footprint>& footprints, int y, std::vector<int>& c
     {
       continue;
     }
-    OwnedSpan span{ y, cuts[i], cuts[i + 1], 0, here.size() == 1 };
+    OwnedSpan span{ y, cuts[i], cuts[i + 1], 0 };
     if (here.size() > 1)
     {
       // Multiplicative hashing (Knuth) of where the span begins.
@@ -50,27 +50,23 @@ void CutRow(const std::vector<Footprint>& footprints, int y, std::vector<int>& c
         (static_cast<std::uint32_t>(y) * 4099u + static_cast<std::uint32_t>(span.Lo)) * 2654435761u;
       span.Owner = here[(hash >> 8) % here.size()];
     }
-    meeting = std::max(meeting, static_cast<int>(here.size()) - 1);
     spans.push_back(span);
   }
 }
 
 } // namespace
 
-FloatImage CompositeSlicAsPublished(Communicator& communicator, const FloatImage& mine,
-  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
-  CompositeStatistics& statistics)
+FloatImage CompositeSlicAsPublished(
+  Communicator& communicator, const PeerFrame& frame, CompositeStatistics& statistics)
 {
   std::vector<OwnedSpan> spans;
   std::vector<int> cuts;
   std::vector<int> present;
-  int meeting = 1;
-  for (int y = viewport.Lo.y; y < viewport.Hi.y; ++y)
+  for (int y = frame.Viewport.Lo.y; y < frame.Viewport.Hi.y; ++y)
   {
-    CutRow(options.Footprints, y, cuts, present, spans, meeting);
+    CutRow(frame.Footprints, y, cuts, present, spans);
   }
-  return CompositeOwnedSpans(
-    communicator, mine, frontToBack, viewport, options, statistics, spans, meeting, true);
+  return CompositeOwnedSpans(communicator, frame, spans, true, statistics);
 }
 
-} // namespace banyan
+} // namespace banyan::bench

@@ -3,7 +3,7 @@
 #define banyan_Testing_CompositingCases_h
 
 #include "Parallel/Compositing.h"
-#include "Parallel/DirectSend.h"
+#include "Parallel/ReduceNearest.h"
 
 #include <algorithm>
 #include <cmath>
@@ -115,73 +115,6 @@ inline std::vector<int> OrderOf(Case which, int size)
   return order;
 }
 
-/// The obvious way: pixel by pixel, front to back, in the arithmetic of `Vector`.
-template <typename Vector>
-std::vector<Vector> BlendedSerially(Case which, int size, const PixelRect& viewport)
-{
-  std::vector<Vector> picture(static_cast<std::size_t>(viewport.Count()), Vector(0));
-  for (const int rank : OrderOf(which, size))
-  {
-    const FloatImage image = ImageOf(which, rank, size, viewport);
-    std::size_t next = 0;
-    for (int y = image.Rect.Lo.y; y < image.Rect.Hi.y; ++y)
-    {
-      for (int x = image.Rect.Lo.x; x < image.Rect.Hi.x; ++x, ++next)
-      {
-        Vector& pixel = picture[static_cast<std::size_t>(y - viewport.Lo.y) * viewport.Size().x +
-                                x - viewport.Lo.x];
-        pixel = pixel + (1 - pixel.a) * Vector(image.Pixels[next]);
-      }
-    }
-  }
-  return picture;
-}
-
-/// Composites and compares with the serial blend on rank 0.
-/// @return what is wrong, or an empty string
-inline std::string CheckComposite(Communicator& communicator, Case which, const PixelRect& viewport)
-{
-  const int size = communicator.Size();
-  CompositeStatistics statistics;
-  const FloatImage picture =
-    CompositeDirectSend(communicator, ImageOf(which, communicator.Rank(), size, viewport),
-      OrderOf(which, size), viewport, statistics);
-  const std::string where = NameOf(which) + " on " + std::to_string(size) + " ranks, viewport " +
-                            std::to_string(viewport.Size().x) + "x" +
-                            std::to_string(viewport.Size().y) + ": ";
-  if (communicator.Rank() != 0)
-  {
-    return picture.Pixels.empty() ? "" : where + "a rank other than the root got a picture";
-  }
-  if (!(picture.Rect == viewport) ||
-      static_cast<long long>(picture.Pixels.size()) != viewport.Count())
-  {
-    return where + "the picture is not the viewport";
-  }
-  const auto exact = BlendedSerially<glm::vec4>(which, size, viewport);
-  const auto reference = BlendedSerially<glm::dvec4>(which, size, viewport);
-  for (std::size_t i = 0; i < exact.size(); ++i)
-  {
-    const glm::dvec4 error = glm::abs(glm::dvec4(picture.Pixels[i]) - reference[i]);
-    if (std::max({ error.r, error.g, error.b, error.a }) > 1e-6)
-    {
-      return where + "pixel " + std::to_string(i) + " differs from the reference";
-    }
-    if (picture.Pixels[i] != exact[i])
-    {
-      return where + "pixel " + std::to_string(i) + " has other bits than one rank would blend";
-    }
-  }
-  return "";
-}
-
-/// The methods that Core has.
-inline std::vector<CompositingMethod> Methods()
-{
-  return { CompositingMethod::Slic, CompositingMethod::SlicAsPublished,
-    CompositingMethod::DirectSend, CompositingMethod::BinarySwap };
-}
-
 /// Numbers of two pixels made into one, in the arithmetic of doubles.
 inline glm::dvec4 CombinedSlowly(
   const glm::dvec4& front, const glm::dvec4& back, Combination combination)
@@ -198,7 +131,7 @@ inline glm::dvec4 CombinedSlowly(
 }
 
 /// A case with the images of all ranks, and the picture as it must be, made in the obvious way;
-/// made once for all methods and ranks.
+/// made once for all ranks.
 struct PreparedCase
 {
   PreparedCase(Case which, int size, const PixelRect& viewport, Combination combination)
@@ -237,41 +170,31 @@ struct PreparedCase
   std::vector<glm::dvec4> Reference;
 };
 
-/// Composites as the options say and compares with the slow picture on rank 0: as floats within
-/// 1e-5, otherwise rounded to 8 bits within 1, over black and, where the options say that the root
-/// blends, over white too.
+/// Compares a picture with the slow one on rank 0: as floats within 1e-5, otherwise rounded to 8
+/// bits within 1, over black and, inside `behind`, over white too.
 /// @return what is wrong, or an empty string
-inline std::string CheckMethod(
-  Communicator& communicator, const PreparedCase& prepared, CompositeOptions options)
+inline std::string CheckPicture(const Communicator& communicator, const PreparedCase& prepared,
+  const FloatImage& picture, bool floats, const PixelRect& behind = {})
 {
-  options.Combine = prepared.Combine;
   const PixelRect& viewport = prepared.Viewport;
-  CompositeStatistics statistics;
-  const FloatImage picture = Composite(communicator, prepared.Images[communicator.Rank()],
-    prepared.Order, viewport, options, statistics);
-  const std::string where = "method " + std::to_string(static_cast<int>(options.Method)) +
-                            ", combination " + std::to_string(static_cast<int>(options.Combine)) +
-                            ", transport " + std::to_string(static_cast<int>(options.Transport)) +
-                            ", " + prepared.Name + ": ";
   if (communicator.Rank() != 0)
   {
-    return picture.Pixels.empty() ? "" : where + "a rank other than the root got a picture";
+    return picture.Pixels.empty() ? ""
+                                  : prepared.Name + ": a rank other than the root has a picture";
   }
   if (!(picture.Rect == viewport) ||
       static_cast<long long>(picture.Pixels.size()) != viewport.Count())
   {
-    return where + "the picture is not the viewport";
+    return prepared.Name + ": the picture is not the viewport";
   }
-  const bool floats =
-    options.Transport == PixelTransport::Floats || options.Combine != Combination::Over;
   const auto rounded = [](double value) { return std::lround(255.0 * std::min(value, 1.0)); };
   const std::vector<glm::dvec4>& reference = prepared.Reference;
   for (std::size_t i = 0; i < reference.size(); ++i)
   {
     const glm::dvec4 got(picture.Pixels[i]);
     const glm::ivec2 at = viewport.Lo + glm::ivec2(i % viewport.Size().x, i / viewport.Size().x);
-    const bool blended = at.x >= options.Behind.Lo.x && at.x < options.Behind.Hi.x &&
-                         at.y >= options.Behind.Lo.y && at.y < options.Behind.Hi.y;
+    const bool blended =
+      at.x >= behind.Lo.x && at.x < behind.Hi.x && at.y >= behind.Lo.y && at.y < behind.Hi.y;
     for (int c = 0; c < 4; ++c)
     {
       const double right = reference[i][c];
@@ -282,12 +205,30 @@ inline std::string CheckMethod(
                    std::abs(rounded(got[c] + 1 - got.a) - rounded(right + 1 - reference[i].a)) > 1);
       if (wrong)
       {
-        return where + "channel " + std::to_string(c) + " of pixel " + std::to_string(i) + " is " +
-               std::to_string(got[c]) + " instead of " + std::to_string(right);
+        return prepared.Name + ": channel " + std::to_string(c) + " of pixel " + std::to_string(i) +
+               " is " + std::to_string(got[c]) + " instead of " + std::to_string(right);
       }
     }
   }
   return "";
+}
+
+/// Composites a case as the options say, and compares with the slow picture.
+/// @return what is wrong, or an empty string
+inline std::string CheckComposite(
+  Communicator& communicator, const PreparedCase& prepared, CompositeOptions options = {})
+{
+  options.Combine = prepared.Combine;
+  CompositeStatistics statistics;
+  const FloatImage picture = Composite(communicator, prepared.Images[communicator.Rank()],
+    prepared.Order, prepared.Viewport, options, statistics);
+  const bool floats =
+    options.Transport == PixelTransport::Floats || options.Combine != Combination::Over;
+  const std::string wrong = CheckPicture(communicator, prepared, picture, floats, options.Behind);
+  return wrong.empty()
+           ? wrong
+           : "combination " + std::to_string(static_cast<int>(options.Combine)) + ", transport " +
+               std::to_string(static_cast<int>(options.Transport)) + ", " + wrong;
 }
 
 /// Opaque pixels of a rank: few different depths, so that ties are common; the colour tells whose.

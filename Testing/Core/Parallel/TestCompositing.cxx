@@ -13,19 +13,52 @@ namespace banyan::testing
 namespace
 {
 
-CompositeOptions OptionsOf(CompositingMethod method, PixelTransport transport)
+CompositeOptions OptionsOf(PixelTransport transport)
 {
   CompositeOptions options;
-  options.Method = method;
   options.Transport = transport;
   return options;
+}
+
+// Without this the tests below could pass on pictures that hold nothing.
+TEST(CompositingCases, AreNotTrivial)
+{
+  const PixelRect viewport = Viewports()[0];
+  for (int which = 0; which < static_cast<int>(Case::Count); ++which)
+  {
+    const auto picture =
+      PreparedCase(static_cast<Case>(which), 4, viewport, Combination::Over).Reference;
+    const auto drawn = std::count_if(
+      picture.begin(), picture.end(), [](const glm::dvec4& pixel) { return pixel.a > 0; });
+    if (static_cast<Case>(which) == Case::RenderEmpty)
+    {
+      EXPECT_EQ(drawn, 0);
+    }
+    else
+    {
+      EXPECT_GT(drawn, 20) << NameOf(static_cast<Case>(which));
+    }
+  }
+}
+
+TEST(CompositingCases, OrderMatters)
+{
+  const PixelRect viewport = Viewports()[0];
+  glm::vec4 forward(0.0f), backward(0.0f);
+  for (int rank = 0; rank < 4; ++rank)
+  {
+    const glm::vec4 pixel = ImageOf(Case::AllOverlap, rank, 4, viewport).Pixels[5];
+    forward = Combined(forward, pixel, Combination::Over);
+    backward = Combined(pixel, backward, Combination::Over);
+  }
+  EXPECT_GT(glm::abs(forward.r - backward.r), 1e-3f);
 }
 
 class Compositing : public ::testing::TestWithParam<int>
 {
 };
 
-/// All cases and methods on one number of ranks.
+/// All cases on one number of ranks.
 void CheckAll(int size, const std::vector<PixelRect>& viewports, PixelTransport transport,
   Combination combination, bool behind)
 {
@@ -37,12 +70,9 @@ void CheckAll(int size, const std::vector<PixelRect>& viewports, PixelTransport 
       RunOnSimulatedRanks(size,
         [&](Communicator& communicator)
         {
-          for (const CompositingMethod method : Methods())
-          {
-            CompositeOptions options = OptionsOf(method, transport);
-            options.Behind = behind ? viewport : PixelRect{};
-            EXPECT_EQ(CheckMethod(communicator, prepared, options), "");
-          }
+          CompositeOptions options = OptionsOf(transport);
+          options.Behind = behind ? viewport : PixelRect{};
+          EXPECT_EQ(CheckComposite(communicator, prepared, options), "");
         });
     }
   }
@@ -83,15 +113,12 @@ std::string CheckDepth(int size, PixelTransport transport, PixelPacking packing)
   RunOnSimulatedRanks(size,
     [&](Communicator& communicator)
     {
-      for (const CompositingMethod method : Methods())
-      {
-        CompositeOptions options = OptionsOf(method, transport);
-        options.Packing = packing;
-        options.Behind = { { 0, 0 }, { 9, 40 } };
-        const std::string here = CheckMethod(communicator, prepared, options);
-        const std::lock_guard<std::mutex> lock(mutex);
-        wrong += here;
-      }
+      CompositeOptions options = OptionsOf(transport);
+      options.Packing = packing;
+      options.Behind = { { 0, 0 }, { 9, 40 } };
+      const std::string here = CheckComposite(communicator, prepared, options);
+      const std::lock_guard<std::mutex> lock(mutex);
+      wrong += here;
     });
   return wrong;
 }
@@ -101,8 +128,6 @@ TEST(CompositingDepth, Of64RanksIsRight)
   EXPECT_EQ(CheckDepth(64, PixelTransport::Floats, PixelPacking::Always), "");
   EXPECT_EQ(CheckDepth(64, PixelTransport::WithinOne, PixelPacking::Always), "");
   EXPECT_EQ(CheckDepth(64, PixelTransport::WithinOne, PixelPacking::Never), "");
-  // What the bits are for: without them, this many fragments are too many.
-  EXPECT_NE(CheckDepth(64, PixelTransport::Bytes, PixelPacking::Always), "");
 }
 
 TEST(CompositingDepth, OfLargePicturesIsRight)
@@ -112,12 +137,9 @@ TEST(CompositingDepth, OfLargePicturesIsRight)
   RunOnSimulatedRanks(3,
     [&](Communicator& communicator)
     {
-      for (const CompositingMethod method : Methods())
+      for (const PixelTransport transport : { PixelTransport::Floats, PixelTransport::WithinOne })
       {
-        for (const PixelTransport transport : { PixelTransport::Floats, PixelTransport::WithinOne })
-        {
-          EXPECT_EQ(CheckMethod(communicator, prepared, OptionsOf(method, transport)), "");
-        }
+        EXPECT_EQ(CheckComposite(communicator, prepared, OptionsOf(transport)), "");
       }
     });
 }
@@ -151,26 +173,21 @@ TEST(CompositingTraffic, IsOnlyWhatIsDrawn)
 {
   const PixelRect viewport{ { 0, 0 }, { 128, 128 } };
   const std::uint64_t pixels = 128 * 128;
-  for (const CompositingMethod method : Methods())
-  {
-    CompositeOptions options = OptionsOf(method, PixelTransport::WithinOne);
-    options.Packing = PixelPacking::Never;
-    const Traffic alone = TrafficOf(Case::AllOverlap, 1, viewport, options);
-    EXPECT_EQ(alone.Bytes, 0u);
-    EXPECT_EQ(alone.Messages, 0u);
-    // Binary swap tells who has nothing; the others know.
-    const Traffic nothing = TrafficOf(Case::RenderEmpty, 4, viewport, options);
-    EXPECT_LE(nothing.Bytes, method == CompositingMethod::BinarySwap ? 12u * 16u : 0u);
-    const Traffic all = TrafficOf(Case::AllOverlap, 4, viewport, options);
-    EXPECT_EQ(all.Bytes, all.BytesIn);
-    EXPECT_GT(all.Bytes, 3 * pixels);
-  }
+  CompositeOptions options = OptionsOf(PixelTransport::WithinOne);
+  options.Packing = PixelPacking::Never;
+  const Traffic alone = TrafficOf(Case::AllOverlap, 1, viewport, options);
+  EXPECT_EQ(alone.Bytes, 0u);
+  EXPECT_EQ(alone.Messages, 0u);
+  EXPECT_EQ(TrafficOf(Case::RenderEmpty, 4, viewport, options).Bytes, 0u);
+  const Traffic all = TrafficOf(Case::AllOverlap, 4, viewport, options);
+  EXPECT_EQ(all.Bytes, all.BytesIn);
+  EXPECT_GT(all.Bytes, 3 * pixels);
 }
 
 TEST(CompositingTraffic, OfOneRankGoesToTheRootAtOnceAndAsBytes)
 {
   const PixelRect viewport{ { 0, 0 }, { 128, 128 } };
-  CompositeOptions options = OptionsOf(CompositingMethod::Slic, PixelTransport::WithinOne);
+  CompositeOptions options = OptionsOf(PixelTransport::WithinOne);
   options.Packing = PixelPacking::Never;
   const Traffic traffic = TrafficOf(Case::OneRankHasAll, 5, viewport, options);
   // Plain bytes, without the highest bit, because no pixel is above 0.4.
@@ -181,48 +198,42 @@ TEST(CompositingTraffic, OfOneRankGoesToTheRootAtOnceAndAsBytes)
 
 TEST(CompositingTraffic, IsTheSameInEveryRun)
 {
-  for (const CompositingMethod method : Methods())
-  {
-    const CompositeOptions options = OptionsOf(method, PixelTransport::WithinOne);
-    const PixelRect viewport = Viewports()[0];
-    const Traffic first = TrafficOf(Case::BackgroundCorrect, 7, viewport, options);
-    EXPECT_EQ(first.Bytes, TrafficOf(Case::BackgroundCorrect, 7, viewport, options).Bytes);
-  }
+  const CompositeOptions options = OptionsOf(PixelTransport::WithinOne);
+  const PixelRect viewport = Viewports()[0];
+  const Traffic first = TrafficOf(Case::BackgroundCorrect, 7, viewport, options);
+  EXPECT_EQ(first.Bytes, TrafficOf(Case::BackgroundCorrect, 7, viewport, options).Bytes);
 }
 
 /// Runs a compositing in which rank 1 is called wrongly: all ranks must throw, and none may hang.
 void ExpectAllRanksThrow(
   const std::function<void(FloatImage&, std::vector<int>&, CompositeOptions&)>& spoil)
 {
-  for (const CompositingMethod method : Methods())
-  {
-    std::mutex mutex;
-    int thrown = 0;
-    RunOnSimulatedRanks(3,
-      [&](Communicator& communicator)
+  std::mutex mutex;
+  int thrown = 0;
+  RunOnSimulatedRanks(3,
+    [&](Communicator& communicator)
+    {
+      const PixelRect viewport{ { 0, 0 }, { 8, 8 } };
+      FloatImage mine = ImageOf(Case::AllOverlap, communicator.Rank(), 3, viewport);
+      std::vector<int> order{ 2, 0, 1 };
+      CompositeOptions options = OptionsOf(PixelTransport::WithinOne);
+      options.Footprints.assign(3, FootprintOf(viewport, viewport));
+      if (communicator.Rank() == 1)
       {
-        const PixelRect viewport{ { 0, 0 }, { 8, 8 } };
-        FloatImage mine = ImageOf(Case::AllOverlap, communicator.Rank(), 3, viewport);
-        std::vector<int> order{ 2, 0, 1 };
-        CompositeOptions options = OptionsOf(method, PixelTransport::WithinOne);
-        options.Footprints.assign(3, FootprintOf(viewport, viewport));
-        if (communicator.Rank() == 1)
-        {
-          spoil(mine, order, options);
-        }
-        CompositeStatistics statistics;
-        try
-        {
-          Composite(communicator, mine, order, viewport, options, statistics);
-        }
-        catch (const Error& error)
-        {
-          const std::lock_guard<std::mutex> lock(mutex);
-          thrown += std::string(error.what()).find("ank 1") != std::string::npos ? 1 : 0;
-        }
-      });
-    EXPECT_EQ(thrown, 3);
-  }
+        spoil(mine, order, options);
+      }
+      CompositeStatistics statistics;
+      try
+      {
+        Composite(communicator, mine, order, viewport, options, statistics);
+      }
+      catch (const Error& error)
+      {
+        const std::lock_guard<std::mutex> lock(mutex);
+        thrown += std::string(error.what()).find("ank 1") != std::string::npos ? 1 : 0;
+      }
+    });
+  EXPECT_EQ(thrown, 3);
 }
 
 TEST(CompositingErrors, AreThrownOnAllRanks)
@@ -243,26 +254,11 @@ TEST(CompositingErrors, AreThrownOnAllRanks)
     { options.Footprints.pop_back(); });
   ExpectAllRanksThrow(
     [](FloatImage&, std::vector<int>&, CompositeOptions& options) { options.Footprints[1] = {}; });
-  ExpectAllRanksThrow([](FloatImage&, std::vector<int>&, CompositeOptions& options)
-    { options.Method = CompositingMethod::IceTRadixK; });
-}
-
-TEST(CompositingErrors, AreWhatIsBroughtFromElsewhere)
-{
-  RunOnSimulatedRanks(2,
-    [](Communicator& communicator)
+  ExpectAllRanksThrow(
+    [](FloatImage& mine, std::vector<int>&, CompositeOptions&)
     {
-      const PixelRect viewport{ { 0, 0 }, { 8, 8 } };
-      CompositeOptions options =
-        OptionsOf(CompositingMethod::IceTRadixK, PixelTransport::WithinOne);
-      options.External = [](Communicator&, const FloatImage& mine, const std::vector<int>&,
-                           const PixelRect&, CompositeStatistics&) { return mine; };
-      CompositeStatistics statistics;
-      const FloatImage mine = ImageOf(Case::AllOverlap, communicator.Rank(), 2, viewport);
-      EXPECT_EQ(
-        Composite(communicator, mine, { 0, 1 }, viewport, options, statistics).Pixels, mine.Pixels);
-      options.Combine = Combination::Sum;
-      EXPECT_THROW(Composite(communicator, mine, { 0, 1 }, viewport, options, statistics), Error);
+      mine.Rect.Lo.x -= 1;
+      mine.Rect.Hi.x -= 1;
     });
 }
 
