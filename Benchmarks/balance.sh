@@ -73,6 +73,7 @@ if command -v mpirun > /dev/null; then
     --output "$output/balance-real.csv" || fail "measuring real ranks failed."
   say "      each with half of the volume in its memory"
   mpirun -np 2 --oversubscribe "$program" --mpi --pieces "${common[@]}" --frames "$frames" \
+    --modes off,measured-cost \
     --output "$output/balance-pieces.csv" || fail "measuring ranks with pieces failed."
 else
   say "      there is no mpirun"

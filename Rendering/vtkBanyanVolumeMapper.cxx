@@ -104,7 +104,8 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
     this->GetInputAlgorithm()->Update();
   }
   Internals& self = *this->Self;
-  self.Field.SetLoadBalancing(static_cast<banyan::LoadBalancing>(this->LoadBalancing));
+  self.Field.SetLoadBalancing(
+    this->LoadBalancing == 0 ? banyan::LoadBalancing::Off : banyan::LoadBalancing::MeasuredCost);
   banyan::FieldPiece piece;
   try
   {

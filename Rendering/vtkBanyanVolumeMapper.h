@@ -217,10 +217,10 @@ public:
 
   ///@{
   /**
-   * How the zones of the ranks follow what frames cost: 0 not at all, 1 a slice of bricks per frame
-   * towards the slower side, 2 (default) to where measured costs balance. Bricks of plain image
-   * data go from rank to rank for it; meshes are on all ranks. The same on all ranks. The picture
-   * does not change.
+   * How the zones of the ranks follow what frames cost: 0 not at all, 2 (default) to where
+   * measured costs balance, and 1, which was another way, the same. Bricks of plain image data go
+   * from rank to rank for it; meshes are on all ranks. The same on all ranks. The picture does not
+   * change.
    */
   vtkSetClampMacro(LoadBalancing, int, 0, 2);
   vtkGetMacro(LoadBalancing, int);

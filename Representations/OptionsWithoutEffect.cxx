@@ -103,6 +103,12 @@ std::map<std::string, std::string> OptionsWithoutEffect(
       sentences[option.Property] = Sentence(property, option.Advice);
     }
   }
+  vtkSMProperty* const balancing = display->GetProperty("LoadBalancing");
+  if (balancing && vtkSMPropertyHelper(balancing).GetAsInt() == 1)
+  {
+    sentences["LoadBalancing"] = "'Slice step' of '" + std::string(balancing->GetXMLLabel()) +
+                                 "' has no effect any more: 'Measured cost' balances in its place.";
+  }
   for (const char* const name : { "SelectMapper", "ResamplingMode" })
   {
     vtkSMProperty* const property = display->GetProperty(name);

@@ -115,7 +115,7 @@ public:
   /** Threads per process; 0 (default) shares the cores of a machine among its ranks. */
   void SetNumberOfThreads(int threads);
 
-  /** 0 off, 1 slice step, 2 measured cost; see vtkBanyanVolumeMapper. */
+  /** 0 off, 2 measured cost; see vtkBanyanVolumeMapper. */
   void SetLoadBalancing(int mode);
   void SetReadAhead(bool on);
 

@@ -2,6 +2,7 @@
 #include "BalanceFrames.h"
 
 #include "CameraPath.h"
+#include "PathBalancer.h"
 
 #include "Base/ThreadPool.h"
 
@@ -31,35 +32,32 @@ std::unique_ptr<ArrayBrickSource> SourceOf(const BenchScene& scene, ThreadPool& 
 
 } // namespace
 
-LoadBalancer::Options BalancerFor(
-  const BenchScene& scene, const BalanceOptions& given, LoadBalancing mode, int ranks)
+LoadBalancer::Options BalancerFor(const BenchScene& scene, const BalanceOptions& given, int ranks)
 {
   LoadBalancer::Options options;
-  options.Mode = mode;
   options.Positions = scene.Data->Samples - 1;
   options.Ranks = ranks;
-  options.SlicePositions = BenchBrickCells;
+  options.BrickPositions = BenchBrickCells;
   options.PlaneStep = given.PlaneStep;
-  options.Searches = given.Searches;
   options.TurnGain = 1.0 + 0.01 * given.TurnPercent;
   options.BlockEdge = BlockEdgeFor(options.Positions);
   options.BytesPerPosition = static_cast<double>(SizeOf(scene.Data->Type()));
   return options;
 }
 
-void DrawSimulated(const BenchScene& scene, const BalanceOptions& options, LoadBalancing mode,
+void DrawSimulated(const BenchScene& scene, const BalanceOptions& options, BalanceMode mode,
   int ranks, const TakeFrame& take)
 {
   ThreadPool pool(1);
-  LoadBalancer balancer(BalancerFor(scene, options, mode, ranks));
+  PathBalancer balancer(mode, BalancerFor(scene, options, ranks));
   // One for each rank, as each has packed bricks of its own.
   std::vector<std::unique_ptr<ArrayBrickSource>> sources;
   for (int rank = 0; rank < ranks; ++rank)
   {
     sources.push_back(SourceOf(scene, pool));
   }
-  const glm::ivec3 cells = balancer.Given().Positions;
-  const int edge = balancer.Given().BlockEdge;
+  const glm::ivec3 cells = balancer.GetOptions().Positions;
+  const int edge = balancer.GetOptions().BlockEdge;
   const std::vector<float> visible = VisibleParts(
     SceneOnPath(scene, options.Path, 0, options.Frames), *sources.front(), cells, edge);
   for (int number = 0; number < options.Frames; ++number)

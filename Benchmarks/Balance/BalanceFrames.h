@@ -6,6 +6,7 @@
 #include "BenchScene.h"
 
 #include "Parallel/FrameWork.h"
+#include "Parallel/LoadBalancer.h"
 
 #include <cstdio>
 #include <functional>
@@ -20,7 +21,7 @@ namespace banyan::bench
 struct BalanceFrame
 {
   int Number = 0;
-  LoadBalancing Mode = LoadBalancing::Off;
+  BalanceMode Mode = BalanceMode::Off;
   std::vector<double> RankMilliseconds; ///< of casting rays, loading included
   double Imbalance = 1.0;               ///< of these
   double Milliseconds = 0;              ///< of the slowest; with MPI, until the picture is complete
@@ -39,10 +40,10 @@ inline double CountedSeconds(double work)
 
 /// Settings of the balancer for a volume in memory.
 LoadBalancer::Options BalancerFor(
-  const BenchScene& scene, const BalanceOptions& options, LoadBalancing mode, int ranks);
+  const BenchScene& scene, const BalanceOptions& options, int ranks);
 
 /// All frames of the path in one mode on simulated ranks.
-void DrawSimulated(const BenchScene& scene, const BalanceOptions& options, LoadBalancing mode,
+void DrawSimulated(const BenchScene& scene, const BalanceOptions& options, BalanceMode mode,
   int ranks, const TakeFrame& take);
 
 /// Collective: all modes on the ranks of this job; the first rank takes the frames. Throws Error

@@ -12,16 +12,16 @@ namespace banyan::bench
 namespace
 {
 
-const LoadBalancing AllModes[] = { LoadBalancing::Off, LoadBalancing::SliceStep,
-  LoadBalancing::MeasuredCost };
+const BalanceMode AllModes[] = { BalanceMode::Off, BalanceMode::SliceStep,
+  BalanceMode::MeasuredCost };
 
-std::vector<LoadBalancing> ModesIn(const std::string& text)
+std::vector<BalanceMode> ModesIn(const std::string& text)
 {
-  std::vector<LoadBalancing> modes;
+  std::vector<BalanceMode> modes;
   for (const std::string& name : SplitAtCommas(text))
   {
     const auto* found = std::find_if(std::begin(AllModes), std::end(AllModes),
-      [&](LoadBalancing mode) { return name == NameOf(mode); });
+      [&](BalanceMode mode) { return name == NameOf(mode); });
     if (found == std::end(AllModes))
     {
       throw Error("There is no mode '" + name + "': off, slice-step and measured-cost are there.");
@@ -47,7 +47,6 @@ const char* const BalanceHelp =
   "  --modes LIST         default off,slice-step,measured-cost\n"
   "  --plane-step N       cells between places of planes (default 1; encoded series have 8)\n"
   "  --keep-axes          planes move, but do not turn\n"
-  "  --no-search          views that rest are balanced by what is expected, as others are\n"
   "  --counted            what ranks did is counted, 3 ns a sample, in place of their time: the "
   "same\n"
   "                       whatever else the machine does\n"
@@ -67,11 +66,11 @@ const char* const BalanceHelp =
   "  --composite-after    with --mpi: odd frames are composited after the last ray, to compare\n"
   "  --mpi                on the real ranks of mpirun, in wall-clock time; one thread each\n";
 
-const char* NameOf(LoadBalancing mode)
+const char* NameOf(BalanceMode mode)
 {
-  return mode == LoadBalancing::Off         ? "off"
-         : mode == LoadBalancing::SliceStep ? "slice-step"
-                                            : "measured-cost";
+  return mode == BalanceMode::Off         ? "off"
+         : mode == BalanceMode::SliceStep ? "slice-step"
+                                          : "measured-cost";
 }
 
 BalanceOptions ParseBalanceOptions(const std::vector<std::string>& arguments)
@@ -88,8 +87,6 @@ BalanceOptions ParseBalanceOptions(const std::vector<std::string>& arguments)
       options.Append = true;
     else if (option == "--keep-axes")
       options.Turns = false;
-    else if (option == "--no-search")
-      options.Searches = false;
     else if (option == "--counted")
       options.Counted = true;
     else if (option == "--composite-after")

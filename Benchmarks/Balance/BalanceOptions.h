@@ -2,13 +2,19 @@
 #ifndef banyan_Benchmarks_BalanceOptions_h
 #define banyan_Benchmarks_BalanceOptions_h
 
-#include "Parallel/Rebalance.h"
-
 #include <string>
 #include <vector>
 
 namespace banyan::bench
 {
+
+/// How zones follow what frames cost.
+enum class BalanceMode
+{
+  Off,
+  SliceStep,   ///< RebalanceSliceStep
+  MeasuredCost ///< LoadBalancer
+};
 
 struct BalanceOptions
 {
@@ -24,10 +30,9 @@ struct BalanceOptions
   int Frames = 60;
   int PlaneStep = 1; ///< cells
   std::vector<int> Ranks{ 2, 4, 8, 16 };
-  std::vector<LoadBalancing> Modes{ LoadBalancing::Off, LoadBalancing::SliceStep,
-    LoadBalancing::MeasuredCost };
-  bool Turns = true; ///< whether measured cost may choose axes
-  bool Searches = true;
+  std::vector<BalanceMode> Modes{ BalanceMode::Off, BalanceMode::SliceStep,
+    BalanceMode::MeasuredCost };
+  bool Turns = true;           ///< whether measured cost may choose axes
   bool Counted = false;        ///< work in place of processor time
   int TurnPercent = 15;        ///< by which frames must be expected to be faster for that
   bool CompositeAfter = false; ///< real ranks composite odd frames after the last ray
@@ -45,7 +50,7 @@ extern const char* const BalanceHelp;
 BalanceOptions ParseBalanceOptions(const std::vector<std::string>& arguments);
 
 /// As in the column `mode`.
-const char* NameOf(LoadBalancing mode);
+const char* NameOf(BalanceMode mode);
 
 } // namespace banyan::bench
 

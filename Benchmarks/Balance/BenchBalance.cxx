@@ -127,7 +127,7 @@ void Run(const BalanceOptions& options)
   Tables tables(options);
   for (const int ranks : options.Ranks)
   {
-    for (const LoadBalancing mode : options.Modes)
+    for (const BalanceMode mode : options.Modes)
     {
       DrawSimulated(
         scene, options, mode, ranks, [&](const BalanceFrame& frame) { tables.Take(frame); });

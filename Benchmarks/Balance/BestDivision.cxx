@@ -20,7 +20,6 @@ namespace
 constexpr int Every = 10;     ///< frames
 constexpr int MostTries = 8;  ///< of a plane, with the planes under it
 constexpr double Even = 0.01; ///< of the larger side, by which the two of a plane may differ
-constexpr double WorkPerCutRay = 24.0;
 
 /// Counts what zones of a view take; each one once.
 class ZoneWork

@@ -3,7 +3,9 @@
 
 #include "BricksFromDisk.h"
 #include "CameraPath.h"
+#include "PathBalancer.h"
 
+#include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
 #include "Parallel/DistributedFrame.h"
@@ -23,14 +25,14 @@ namespace
 {
 
 void DrawPath(Communicator& communicator, const BenchScene& scene, const BalanceOptions& options,
-  LoadBalancing mode, const TakeFrame& take)
+  BalanceMode mode, const TakeFrame& take)
 {
   ThreadPool pool(1);
-  LoadBalancer balancer(BalancerFor(scene, options, mode, communicator.Size()));
+  PathBalancer balancer(mode, BalancerFor(scene, options, communicator.Size()));
   ArrayBrickSource source(
     scene.Data->Array(), BenchBrickCells, MaskRange{ scene.Low, scene.High }, pool);
-  const glm::ivec3 cells = balancer.Given().Positions;
-  const int edge = balancer.Given().BlockEdge;
+  const glm::ivec3 cells = balancer.GetOptions().Positions;
+  const int edge = balancer.GetOptions().BlockEdge;
   const std::vector<float> visible =
     VisibleParts(SceneOnPath(scene, options.Path, 0, options.Frames), source, cells, edge);
   for (int number = 0; number < options.Frames; ++number)
@@ -84,7 +86,7 @@ SampleArray PartOf(const SampleArray& whole, const Box& samples)
 }
 
 void DrawPieces(Communicator& communicator, const BenchScene& scene, const BalanceOptions& options,
-  LoadBalancing mode, const TakeFrame& take)
+  BalanceMode mode, const TakeFrame& take)
 {
   ThreadPool pool(1);
   const glm::ivec3 cells = scene.Data->Samples - 1;
@@ -95,8 +97,12 @@ void DrawPieces(Communicator& communicator, const BenchScene& scene, const Balan
   }
   const Box& own = pieces[static_cast<std::size_t>(communicator.Rank())];
   PieceField field;
-  field.Take(
-    communicator, pieces, PartOf(scene.Data->Array(), own), cells, BenchBrickCells, mode, pool);
+  if (mode == BalanceMode::SliceStep)
+  {
+    throw Error("Pieces do not follow slice-step: --modes off,measured-cost.");
+  }
+  field.Take(communicator, pieces, PartOf(scene.Data->Array(), own), cells, BenchBrickCells,
+    mode == BalanceMode::Off ? LoadBalancing::Off : LoadBalancing::MeasuredCost, pool);
   double fetching = 0.0;
   double drawing = 0.0;
   for (int number = 0; number < options.Frames; ++number)
@@ -195,7 +201,7 @@ void DrawOnMpiRanks(const std::function<BenchScene()>& makeScene, const BalanceO
       }
       communicator->Barrier();
     }
-    for (const LoadBalancing mode : options.Exchange ? std::vector<LoadBalancing>{} : options.Modes)
+    for (const BalanceMode mode : options.Exchange ? std::vector<BalanceMode>{} : options.Modes)
     {
       (options.Pieces ? DrawPieces : DrawPath)(*communicator, scene, options, mode, take);
     }

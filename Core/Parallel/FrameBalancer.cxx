@@ -29,11 +29,10 @@ void FrameBalancer::PlaceZones()
 void FrameBalancer::Start(LoadBalancing mode, const Field& field, int ranks)
 {
   LoadBalancer::Options options;
-  options.Mode = mode;
   options.Positions = field.Cells;
   options.Ranks = ranks;
   options.Start = field.Start.Tree;
-  options.SlicePositions = field.BrickCells;
+  options.BrickPositions = field.BrickCells;
   options.PlaneStep = 1 << field.CoarsestLevel;
   options.BlockEdge = BlockEdgeFor(field.Cells);
   options.BytesPerPosition = field.BytesPerCell;
@@ -41,16 +40,17 @@ void FrameBalancer::Start(LoadBalancing mode, const Field& field, int ranks)
   this->SeenOf = nullptr;
   if (this->Balancer)
   {
-    const LoadBalancer::Options& now = this->Balancer->Given();
-    if (now.Mode == options.Mode && now.Positions == options.Positions &&
-        now.Ranks == options.Ranks && now.SlicePositions == options.SlicePositions &&
-        now.PlaneStep == options.PlaneStep && now.BytesPerPosition == options.BytesPerPosition &&
-        now.Start == options.Start && this->RankOfSeat == field.Start.RankOfSeat)
+    const LoadBalancer::Options& now = this->Balancer->GetOptions();
+    if (this->Mode == mode && now.Positions == options.Positions && now.Ranks == options.Ranks &&
+        now.BrickPositions == options.BrickPositions && now.PlaneStep == options.PlaneStep &&
+        now.BytesPerPosition == options.BytesPerPosition && now.Start == options.Start &&
+        this->RankOfSeat == field.Start.RankOfSeat)
     {
       this->Balancer->ValuesChanged();
       return;
     }
   }
+  this->Mode = mode;
   this->Balancer.emplace(options);
   this->RankOfSeat = field.Start.RankOfSeat;
   this->PlaceZones();
@@ -66,7 +66,7 @@ void FrameBalancer::LookAgain(const RayScene& scene, const BrickSource& source)
   {
     return;
   }
-  const LoadBalancer::Options& options = this->Balancer->Given();
+  const LoadBalancer::Options& options = this->Balancer->GetOptions();
   this->Visible = VisibleParts(scene, source, options.Positions, options.BlockEdge);
   this->SeenOf = &source;
   this->SeenAs = scene.Blend.Mode;
@@ -80,7 +80,7 @@ void FrameBalancer::BeginFrame(RayScene& scene, const BrickSource& source)
     return;
   }
   this->LookAgain(scene, source);
-  const LoadBalancer::Options& options = this->Balancer->Given();
+  const LoadBalancer::Options& options = this->Balancer->GetOptions();
   this->View = ViewCosts(scene, options.Positions, options.BlockEdge, this->Visible);
   // Of zones to begin with, bricks travel, and GoBack knows the way: planes move, but do not turn.
   const ScreenCuts cuts(scene);
@@ -94,7 +94,7 @@ void FrameBalancer::GoBack(double part)
 {
   if (!this->IsOff())
   {
-    const LoadBalancer::Options& options = this->Balancer->Given();
+    const LoadBalancer::Options& options = this->Balancer->GetOptions();
     const ZoneTree& start = options.Start;
     this->Balancer->SetTree(
       part > 0.0 ? PartOfTheWay(start, this->Balancer->Tree(), part, 1) : start);

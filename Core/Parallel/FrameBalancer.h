@@ -4,6 +4,7 @@
 
 #include "Parallel/Communicator.h"
 #include "Parallel/FrameWork.h"
+#include "Parallel/LoadBalancer.h"
 #include "Render/RayBlend.h"
 #include "Render/TransferFunction.h"
 
@@ -12,6 +13,13 @@
 
 namespace banyan
 {
+
+/// How zones follow what frames cost.
+enum class LoadBalancing
+{
+  Off,         ///< they stay as they are
+  MeasuredCost ///< LoadBalancer
+};
 
 /// A tree of zones, and the ranks that draw them in the order of its leaves.
 struct ZonesOfRanks
@@ -51,8 +59,6 @@ public:
   void GoBack(double part);
   /// Whether zones can have moved from where they were at the start.
   bool Moves() const { return !this->IsOff(); }
-  /// Most bytes that should change ranks before a frame, as far as balancing goes.
-  double MostBytes() const { return this->Balancer ? this->Balancer->Given().MostBytes : 0.0; }
 
   /// In cells.
   const std::vector<Box>& Zones() const { return this->ZoneCells; }
@@ -66,13 +72,14 @@ public:
 private:
   bool IsOff() const
   {
-    return !this->Balancer || this->Balancer->Given().Ranks == 1 ||
-           this->Balancer->Given().Mode == LoadBalancing::Off;
+    return this->Mode == LoadBalancing::Off || !this->Balancer ||
+           this->Balancer->GetOptions().Ranks == 1;
   }
   void LookAgain(const RayScene& scene, const BrickSource& source);
 
   void PlaceZones();
 
+  LoadBalancing Mode = LoadBalancing::Off;
   std::optional<LoadBalancer> Balancer;
   std::vector<int> RankOfSeat; ///< as in ZonesOfRanks
   std::vector<Box> ZoneCells;

@@ -104,7 +104,7 @@ public:
     {
       return 0.0;
     }
-    if (before < 8 || whole > 0.1 * static_cast<double>(all.Count()))
+    if (before < 8 || whole > static_cast<double>(all.Count()))
     {
       return this->SamplesNearTheEye(block);
     }

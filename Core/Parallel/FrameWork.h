@@ -2,8 +2,9 @@
 #ifndef banyan_Parallel_FrameWork_h
 #define banyan_Parallel_FrameWork_h
 
+#include "Parallel/BrickCosts.h"
 #include "Parallel/Communicator.h"
-#include "Parallel/LoadBalancer.h"
+#include "Parallel/RankSpeeds.h"
 #include "Render/BrickWork.h"
 
 #include <vector>

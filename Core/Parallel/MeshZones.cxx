@@ -29,12 +29,9 @@ FrameBalancer::Field MeshZones(const BrickSource& source, const Box& domain, int
     filled.Add(cells, static_cast<double>(cells.Count()));
   }
   const glm::ivec3 cubes = (field.Cells + FirstCubeEdge - 1) / FirstCubeEdge;
-  RebalanceLimits limits;
-  limits.PlaneStep = FirstCubeEdge;
   field.Start.Tree =
     RebalanceMeasuredCost(Refined(EqualZoneTree(cubes, ranks), FirstCubeEdge, field.Cells), filled,
-      std::vector<double>(static_cast<std::size_t>(ranks), 1.0), limits)
-      .Tree;
+      std::vector<double>(static_cast<std::size_t>(ranks), 1.0), 0.0, FirstCubeEdge);
   return field;
 }
 

@@ -24,43 +24,20 @@ void CheckRanks(const ZoneTree& tree, std::size_t ranks)
   }
 }
 
-/// Positions along each axis that the zones under each node need to be `slice` thick.
-std::vector<glm::ivec3> NeededSizes(const ZoneTree& tree, int slice)
+/// Puts planes back into their zones.
+void KeepNested(ZoneTree& tree)
 {
-  std::vector<glm::ivec3> needed(tree.Nodes.size(), glm::ivec3(slice));
-  for (std::size_t number = needed.size(); number-- > 0;)
-  {
-    const Node& node = tree.Nodes[number];
-    if (!node.IsLeaf())
-    {
-      const glm::ivec3 below = needed[static_cast<std::size_t>(node.Below)];
-      const glm::ivec3 above = needed[static_cast<std::size_t>(node.Above)];
-      needed[number] = glm::max(below, above);
-      needed[number][node.Axis] = below[node.Axis] + above[node.Axis];
-    }
-  }
-  return needed;
-}
-
-/// Puts planes back into their zones, so far from the edges that all zones have room.
-void KeepApart(ZoneTree& tree, int slice)
-{
-  const std::vector<glm::ivec3> needed = NeededSizes(tree, slice);
   std::vector<Box> zones(tree.Nodes.size());
   zones.front() = tree.Whole();
   for (std::size_t number = 0; number < zones.size(); ++number)
   {
     Node& node = tree.Nodes[number];
-    if (node.IsLeaf())
+    if (!node.IsLeaf())
     {
-      continue;
+      const Box& zone = zones[number];
+      node.Plane = std::clamp(node.Plane, zone.Lo[node.Axis], zone.Hi[node.Axis]);
+      Cut(zone, node, zones);
     }
-    const Box& zone = zones[number];
-    const int low = zone.Lo[node.Axis] + needed[static_cast<std::size_t>(node.Below)][node.Axis];
-    const int high = zone.Hi[node.Axis] - needed[static_cast<std::size_t>(node.Above)][node.Axis];
-    node.Plane = low <= high ? std::clamp(node.Plane, low, high)
-                             : std::clamp(node.Plane, zone.Lo[node.Axis], zone.Hi[node.Axis]);
-    Cut(zone, node, zones);
   }
 }
 
@@ -87,26 +64,15 @@ ZoneTree BalancedTree(
   return balanced;
 }
 
-/// As far as `most` bytes go.
-ZoneTree WithinBytes(const ZoneTree& from, const ZoneTree& to, const CostSums& bytes, double most,
-  int step, double& moved)
+/// Whether two trees differ in nothing but where planes stand.
+bool AxesAgree(const ZoneTree& a, const ZoneTree& b)
 {
-  moved = MovedBetween(from, to, bytes);
-  if (moved <= most)
+  ZoneTree same = a;
+  for (std::size_t number = 0; number < same.Nodes.size() && number < b.Nodes.size(); ++number)
   {
-    return to;
+    same.Nodes[number].Plane = b.Nodes[number].Plane;
   }
-  double low = 0.0;
-  double high = 1.0;
-  for (int i = 0; i < 12; ++i)
-  {
-    const double middle = 0.5 * (low + high);
-    (MovedBetween(from, PartOfTheWay(from, to, middle, step), bytes) <= most ? low : high) = middle;
-  }
-  // Where even the first step of all planes is too much, `from`.
-  ZoneTree tree = low > 0.0 ? PartOfTheWay(from, to, low, step) : from;
-  moved = MovedBetween(from, tree, bytes);
-  return tree;
+  return same == b;
 }
 
 /// One plane by one step towards `to`: the first from the root on for which `most` bytes are
@@ -120,7 +86,7 @@ ZoneTree OnePlaneAStep(
     const int length = std::min(std::abs(way), step);
     ZoneTree tree = from;
     tree.Nodes[number].Plane += way > 0 ? length : -length;
-    KeepApart(tree, 0);
+    KeepNested(tree);
     if (way != 0 && MovedBetween(from, tree, bytes) <= most)
     {
       return tree;
@@ -144,6 +110,25 @@ ZoneTree PartOfTheWay(const ZoneTree& from, const ZoneTree& to, double part, int
   return tree;
 }
 
+ZoneTree WithinBytes(
+  const ZoneTree& from, const ZoneTree& to, const CostSums& bytes, double most, int step)
+{
+  if (MovedBetween(from, to, bytes) <= most || !AxesAgree(from, to))
+  {
+    return to;
+  }
+  double low = 0.0;
+  double high = 1.0;
+  for (int i = 0; i < 12; ++i)
+  {
+    const double middle = 0.5 * (low + high);
+    (MovedBetween(from, PartOfTheWay(from, to, middle, step), bytes) <= most ? low : high) = middle;
+  }
+  // Where even the first step of all planes is too much, that of one.
+  ZoneTree tree = low > 0.0 ? PartOfTheWay(from, to, low, step) : from;
+  return tree == from ? OnePlaneAStep(from, to, bytes, most, step) : tree;
+}
+
 double ImbalanceOf(const std::vector<double>& seconds)
 {
   double sum = 0.0;
@@ -156,40 +141,11 @@ double ImbalanceOf(const std::vector<double>& seconds)
   return sum > 0.0 ? largest * static_cast<double>(seconds.size()) / sum : 1.0;
 }
 
-ZoneTree RebalanceSliceStep(const ZoneTree& tree, const std::vector<double>& rankSeconds, int slice)
-{
-  CheckRanks(tree, rankSeconds.size());
-  if (slice < 1)
-  {
-    throw Error("A plane moves by at least one position.");
-  }
-  const std::vector<double> cost = SumsOfNodes(tree, rankSeconds);
-  ZoneTree moved = tree;
-  for (Node& node : moved.Nodes)
-  {
-    if (node.IsLeaf())
-    {
-      continue;
-    }
-    const auto below = static_cast<std::size_t>(node.Below);
-    const auto above = static_cast<std::size_t>(node.Above);
-    const double perRankBelow = cost[below] / tree.Nodes[below].Ranks;
-    const double perRankAbove = cost[above] / tree.Nodes[above].Ranks;
-    node.Plane += perRankBelow > perRankAbove ? -slice : perRankBelow < perRankAbove ? slice : 0;
-  }
-  if (!moved.Nodes.empty())
-  {
-    KeepApart(moved, slice);
-  }
-  return moved;
-}
-
-Rebalanced RebalanceMeasuredCost(const ZoneTree& tree, const BrickCosts& costs,
-  const std::vector<double>& speeds, const RebalanceLimits& limits)
+ZoneTree RebalanceMeasuredCost(const ZoneTree& tree, const BrickCosts& costs,
+  const std::vector<double>& speeds, double leastGain, int step)
 {
   CheckRanks(tree, speeds.size());
-  if (costs.Positions != tree.Positions ||
-      (limits.Bytes && limits.Bytes->Positions != tree.Positions))
+  if (costs.Positions != tree.Positions)
   {
     throw Error("The costs are those of another grid than the zones.");
   }
@@ -198,48 +154,21 @@ Rebalanced RebalanceMeasuredCost(const ZoneTree& tree, const BrickCosts& costs,
   {
     throw Error("The speed of a rank is not a positive number.");
   }
-  if (limits.PlaneStep < 1)
+  if (step < 1)
   {
     throw Error("Planes move by at least one position.");
   }
   const CostSums sums(costs);
-  Rebalanced result{ tree };
-  result.Before = result.After = ExpectedImbalance(tree, sums, speeds);
-  if (result.Before <= limits.Tolerated)
-  {
-    return result;
-  }
-  double moved = 0.0;
-  const ZoneTree target = BalancedTree(tree, sums, speeds, limits.PlaneStep);
-  if (result.Before - ExpectedImbalance(target, sums, speeds) < limits.LeastGain)
-  {
-    return result;
-  }
-  ZoneTree balanced = target;
-  if (limits.Bytes)
-  {
-    balanced =
-      WithinBytes(tree, target, CostSums(*limits.Bytes), limits.MostBytes, limits.PlaneStep, moved);
-  }
-  if (limits.Bytes && balanced == tree)
-  {
-    const CostSums bytes(*limits.Bytes);
-    balanced = OnePlaneAStep(tree, target, bytes, limits.MostBytes, limits.PlaneStep);
-    moved = MovedBetween(tree, balanced, bytes);
-  }
-  result.Tree = std::move(balanced);
-  result.After = ExpectedImbalance(result.Tree, sums, speeds);
-  result.BytesMoved = moved;
-  return result;
+  ZoneTree target = BalancedTree(tree, sums, speeds, step);
+  const double gain =
+    ExpectedImbalance(tree, sums, speeds) - ExpectedImbalance(target, sums, speeds);
+  return gain > 0.0 && gain >= leastGain ? target : tree;
 }
 
 ZoneTree CostZoneTree(const BrickCosts& costs, const std::vector<double>& speeds)
 {
-  RebalanceLimits limits;
-  limits.Tolerated = 1.0;
-  limits.LeastGain = 0.0;
   const ZoneTree equal = EqualZoneTree(costs.Positions, static_cast<int>(speeds.size()));
-  return RebalanceMeasuredCost(equal, costs, speeds, limits).Tree;
+  return RebalanceMeasuredCost(equal, costs, speeds);
 }
 
 std::vector<double> ExpectedSeconds(

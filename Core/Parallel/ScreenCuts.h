@@ -38,6 +38,10 @@ private:
   double ViewportPixels = 0.0;
 };
 
+/// What a ray that a plane cuts takes once more, in samples: it is made twice, and goes on behind
+/// what would have ended it.
+constexpr double WorkPerCutRay = 24.0;
+
 /// Rays that planes of a tree cut, of those that meet what costs something; a ray counts as often
 /// as it is cut.
 double RaysCut(const ZoneTree& tree, const CostSums& costs, const ScreenCuts& cuts);

@@ -109,16 +109,6 @@ bool operator==(const ZoneTree& a, const ZoneTree& b)
            });
 }
 
-bool NestAlike(const ZoneTree& a, const ZoneTree& b)
-{
-  ZoneTree moved = a;
-  for (std::size_t i = 0; i < std::min(a.Nodes.size(), b.Nodes.size()); ++i)
-  {
-    moved.Nodes[i].Plane = b.Nodes[i].Plane;
-  }
-  return moved == b;
-}
-
 ZoneTree EqualZoneTree(const glm::ivec3& positions, int ranks)
 {
   if (ranks < 1)

@@ -48,9 +48,6 @@ struct ZoneTree
 /// @param ranks at least 1; throws Error otherwise
 ZoneTree EqualZoneTree(const glm::ivec3& positions, int ranks);
 
-/// Whether two trees differ in nothing but where planes stand.
-bool NestAlike(const ZoneTree& a, const ZoneTree& b);
-
 /// The zone of each node: of the whole for the root, of ranks for leaves.
 std::vector<Box> NodeZones(const ZoneTree& tree);
 

@@ -171,7 +171,7 @@ bool PieceField::Fits(
   }
   this->Numbers.BytesMoved = static_cast<std::uint64_t>(fetched);
   // As the balancer has it.
-  return sum[3] == 0.0 && fetched <= std::max(this->Balancer.MostBytes(), 0.5 * drawn);
+  return sum[3] == 0.0 && fetched <= LoadBalancer::MostBytes(drawn);
 }
 
 void PieceField::BeginFrame(Communicator& communicator, RayScene& scene, std::uint64_t budgetBytes)

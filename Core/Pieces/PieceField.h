@@ -22,8 +22,8 @@ class ThreadPool;
 /// there, and kept. Used alike on all ranks.
 ///
 /// Zones begin as the pieces lie, and move as the balancer wants, but never so far that a frame
-/// would move more bytes than MostBytes, or that a rank would have to hold more fetched bricks than
-/// its budget: planes then stay back, on all ranks alike.
+/// would move more bytes than LoadBalancer::MostBytes, or that a rank would have to hold more
+/// fetched bricks than its budget: planes then stay back, on all ranks alike.
 class PieceField
 {
 public:

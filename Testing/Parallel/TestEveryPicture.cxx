@@ -128,7 +128,7 @@ std::string CheckEveryPicture(Communicator& communicator)
     }
   };
   for (const LoadBalancing mode :
-    { LoadBalancing::Off, LoadBalancing::SliceStep, LoadBalancing::MeasuredCost })
+    { LoadBalancing::Off, LoadBalancing::MeasuredCost })
   {
     for (const PixelTransport transport : { PixelTransport::Floats, PixelTransport::WithinOne })
     {

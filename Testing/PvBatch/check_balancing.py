@@ -16,7 +16,7 @@ import pictures
 import session
 
 SIZE = (240, 200)
-MODES = ("Off", "Slice step", "Measured cost")
+MODES = ("Off", "Measured cost")
 FRAMES = {"encoded": 7, "plain": 6, "shaded": 3}
 TOLERANCE = 1
 FIGURES = ("Imbalance", "BytesMoved", "CacheHits", "CacheMisses", "BricksDrawn")

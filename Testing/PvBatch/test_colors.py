@@ -235,6 +235,9 @@ def options_without_effect():
         session.require(len(sentences) == 1 and f"'{label}' has no effect" in sentences[0],
                         f"{name}: {sentences}")
     session.require(not said(view, display, {"Opacity": 0.7}), "'Opacity' is named twice")
+    session.require(not said(view, display, {"LoadBalancing": "Off"}), "'Off' has an effect")
+    sentences = said(view, display, {"LoadBalancing": "Slice step"})
+    session.require(len(sentences) == 1 and "'Slice step' of" in sentences[0], f"{sentences}")
     for source, array, name, value in (
             (simple.UnstructuredCellTypes(CellType="Hex", BlocksDimensions=[3, 3, 3]),
              ("POINTS", "DistanceToCenter"), "SelectMapper", "Resample To Image"),

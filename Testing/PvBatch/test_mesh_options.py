@@ -13,7 +13,7 @@ import pictures
 import session
 
 SIZE = (200, 160)
-BALANCING = ("Off", "Slice step", "Measured cost")
+BALANCING = ("Off", "Measured cost")
 FIGURES = ("BytesMoved", "CacheHits", "CacheMisses", "CacheHitsAhead", "MessagesComposited",
            "BytesComposited", "BricksDrawn", "MeshBytes")
 FRAMES = 3

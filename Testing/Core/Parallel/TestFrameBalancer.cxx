@@ -116,8 +116,7 @@ TEST_P(EveryBalancing, DrawsThePicturesOfOneRank)
   for (const bool levels : { false, true })
   {
     const Outcome alone = DrawFrames(field, LoadBalancing::Off, 1, levels);
-    for (const LoadBalancing mode :
-      { LoadBalancing::Off, LoadBalancing::SliceStep, LoadBalancing::MeasuredCost })
+    for (const LoadBalancing mode : { LoadBalancing::Off, LoadBalancing::MeasuredCost })
     {
       const Outcome together = DrawFrames(field, mode, GetParam(), levels);
       ASSERT_EQ(together.Pictures.size(), 5u);
@@ -139,13 +138,13 @@ TEST(FrameBalancer, KeepsWhatItLearnedUntilSomethingElseIsDrawn)
   FrameBalancer balancer;
   FrameBalancer::Field field;
   field.Cells = glm::ivec3(40);
-  balancer.Start(LoadBalancing::SliceStep, field, 3);
+  balancer.Start(LoadBalancing::MeasuredCost, field, 3);
   const std::vector<Box> first = balancer.Zones();
   EXPECT_EQ(first.size(), 3u);
-  balancer.Start(LoadBalancing::SliceStep, field, 4);
+  balancer.Start(LoadBalancing::MeasuredCost, field, 4);
   EXPECT_EQ(balancer.Zones().size(), 4u);
   field.Cells.z = 41;
-  balancer.Start(LoadBalancing::SliceStep, field, 4);
+  balancer.Start(LoadBalancing::MeasuredCost, field, 4);
   Box all;
   for (const Box& zone : balancer.Zones())
   {

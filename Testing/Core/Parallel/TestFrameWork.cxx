@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/FrameWork.h"
+#include "Parallel/ZoneTree.h"
 #include "Parallel/Zones.h"
 #include "Render/ImageError.h"
 #include "Render/Scenes.h"

@@ -101,72 +101,6 @@ TEST(BrickCosts, SpreadWhatIsAddedOverBricks)
   EXPECT_NEAR(CostSums(costs).Total(), 728.0, 1e-9);
 }
 
-TEST(SliceStep, MovesEachPlaneOneSliceTowardsTheCostlierChild)
-{
-  // The paper's tree of eight; ranks 0 to 7 from the lowest corner on.
-  const ZoneTree tree = EqualZoneTree(glm::ivec3(16), 8);
-  const std::vector<double> seconds{ 4, 1, 2, 2, 3, 3, 9, 0 };
-  const ZoneTree next = RebalanceSliceStep(tree, seconds);
-  for (std::size_t number = 0; number < tree.Nodes.size(); ++number)
-  {
-    const ZoneTree::Node& node = tree.Nodes[number];
-    EXPECT_EQ(next.Nodes[number].Axis, node.Axis);
-    double below = 0.0;
-    double above = 0.0;
-    for (int rank = node.FirstRank; rank < node.FirstRank + node.Ranks && !node.IsLeaf(); ++rank)
-    {
-      (rank < tree.Nodes[node.Above].FirstRank ? below : above) += seconds[rank];
-    }
-    const int step = below > above ? -1 : below < above ? 1 : 0;
-    EXPECT_EQ(next.Nodes[number].Plane, node.Plane + step) << number;
-  }
-}
-
-TEST(SliceStep, ComparesSecondsPerRank)
-{
-  const ZoneTree tree = EqualZoneTree({ 12, 1, 1 }, 3); // two ranks on one side of the root
-  const ZoneTree::Node& root = tree.Nodes.front();
-  const ZoneTree same = RebalanceSliceStep(tree, { 2, 2, 2 });
-  EXPECT_EQ(same, tree);
-  const int first = tree.Nodes[root.Below].Ranks == 1 ? 0 : 2;
-  std::vector<double> seconds(3, 2.0);
-  seconds[first] = 3.0;
-  EXPECT_EQ(
-    RebalanceSliceStep(tree, seconds).Nodes.front().Plane, root.Plane + (first == 0 ? -1 : 1));
-  EXPECT_THROW(RebalanceSliceStep(tree, { 1, 2 }), Error);
-  EXPECT_THROW(RebalanceSliceStep(tree, seconds, 0), Error);
-}
-
-TEST(SliceStep, NeverLosesAZone)
-{
-  for (const int ranks : { 2, 3, 5, 8, 13 })
-  {
-    ZoneTree tree = EqualZoneTree(glm::ivec3(16, 12, 9), ranks);
-    for (int frame = 0; frame < 60; ++frame)
-    {
-      std::vector<double> seconds(static_cast<std::size_t>(ranks), 0.0);
-      seconds[static_cast<std::size_t>(frame / 30 % ranks)] = 1.0;
-      tree = RebalanceSliceStep(tree, seconds);
-      for (const Box& zone : ZonesOf(tree))
-      {
-        EXPECT_FALSE(zone.Empty());
-      }
-    }
-  }
-  // Where there is no room, zones stay nested.
-  ZoneTree tree = EqualZoneTree({ 2, 1, 1 }, 5);
-  for (int frame = 0; frame < 20; ++frame)
-  {
-    tree = RebalanceSliceStep(tree, { 0, 0, 1, 5, 0 });
-    std::int64_t count = 0;
-    for (const Box& zone : ZonesOf(tree))
-    {
-      count += zone.Count();
-    }
-    EXPECT_EQ(count, 2);
-  }
-}
-
 TEST(MeasuredCost, BalancesAtOnceWherePositionsAreFine)
 {
   for (int ranks = 2; ranks <= 64; ranks += ranks < 17 ? 1 : 9)
@@ -225,20 +159,14 @@ TEST(MeasuredCost, StaysWhereItIsBalancedEnoughOrNothingIsGained)
   const std::vector<double> speeds(8, 1.0);
   BrickCosts even(glm::ivec3(64), 8);
   std::fill(even.Values.begin(), even.Values.end(), 1.0);
-  EXPECT_EQ(RebalanceMeasuredCost(tree, even, speeds).Tree, tree);
-  even.Values[0] = 3.0; // a little more: tolerated
-  const Rebalanced same = RebalanceMeasuredCost(tree, even, speeds);
-  EXPECT_EQ(same.Tree, tree);
-  EXPECT_GT(same.Before, 1.0);
-  RebalanceLimits limits;
-  limits.Tolerated = 1.0;
-  EXPECT_EQ(RebalanceMeasuredCost(tree, even, speeds, limits).Tree, tree); // a slab is more
+  EXPECT_EQ(RebalanceMeasuredCost(tree, even, speeds), tree);
+  even.Values[0] = 3.0; // a little more: a slab is more
+  EXPECT_EQ(RebalanceMeasuredCost(tree, even, speeds), tree);
   even.Values[0] = 30.0;
-  EXPECT_NE(RebalanceMeasuredCost(tree, even, speeds, limits).Tree, tree);
-  limits.LeastGain = 0.5;
-  EXPECT_EQ(RebalanceMeasuredCost(tree, even, speeds, limits).Tree, tree);
+  EXPECT_NE(RebalanceMeasuredCost(tree, even, speeds), tree);
+  EXPECT_EQ(RebalanceMeasuredCost(tree, even, speeds, 0.5), tree);
   // Nothing is drawn at all: nothing moves.
-  EXPECT_EQ(RebalanceMeasuredCost(tree, BrickCosts(glm::ivec3(64), 8), speeds).Tree, tree);
+  EXPECT_EQ(RebalanceMeasuredCost(tree, BrickCosts(glm::ivec3(64), 8), speeds), tree);
 }
 
 TEST(MeasuredCost, MovesNoMoreBytesThanAllowedAndArrivesAllTheSame)
@@ -250,29 +178,27 @@ TEST(MeasuredCost, MovesNoMoreBytesThanAllowedAndArrivesAllTheSame)
   {
     bytes.Values[i] = costs.Values[i] > 1e-3 ? 2048.0 : 0.0;
   }
-  RebalanceLimits limits;
-  limits.Bytes = &bytes;
-  limits.MostBytes = 0.1 * CostSums(bytes).Total();
-  limits.LeastGain = 0.0;
+  const CostSums sums(bytes);
+  const double most = 0.1 * sums.Total();
   ZoneTree tree = EqualZoneTree(glm::ivec3(128), 16);
   double moved = 0.0;
   int frames = 0;
   while (ImbalanceWith(tree, costs, speeds) > 1.06 && frames < 30)
   {
-    const Rebalanced next = RebalanceMeasuredCost(tree, costs, speeds, limits);
-    EXPECT_LE(next.BytesMoved, limits.MostBytes);
-    EXPECT_NEAR(next.BytesMoved, MovedBetween(tree, next.Tree, CostSums(bytes)), 1.0);
+    const ZoneTree next =
+      WithinBytes(tree, RebalanceMeasuredCost(tree, costs, speeds), sums, most, 1);
+    EXPECT_LE(MovedBetween(tree, next, sums), most);
     for (std::size_t number = 0; number < tree.Nodes.size(); ++number)
     {
-      EXPECT_EQ(next.Tree.Nodes[number].Axis, tree.Nodes[number].Axis);
+      EXPECT_EQ(next.Nodes[number].Axis, tree.Nodes[number].Axis);
     }
-    tree = next.Tree;
-    moved += next.BytesMoved;
+    moved += MovedBetween(tree, next, sums);
+    tree = next;
     ++frames;
   }
   EXPECT_GT(frames, 3);
   EXPECT_LE(frames, 20);
-  EXPECT_GT(moved, 3.0 * limits.MostBytes);
+  EXPECT_GT(moved, 3.0 * most);
 }
 
 TEST(MeasuredCost, PlanesStandAtMultiplesOfTheStep)
@@ -284,19 +210,15 @@ TEST(MeasuredCost, PlanesStandAtMultiplesOfTheStep)
   const std::vector<double> speeds(7, 1.0);
   for (const int step : { 1, 4, 8, 16 })
   {
-    RebalanceLimits limits;
-    limits.PlaneStep = step;
-    limits.Bytes = &bytes;
-    limits.MostBytes = (step == 16 ? 0.15 : 0.1) * CostSums(bytes).Total();
-    limits.LeastGain = 0.0;
+    const CostSums sums(bytes);
+    const double most = (step == 16 ? 0.15 : 0.1) * sums.Total();
     ZoneTree tree = Refined(EqualZoneTree((size + 15) / 16, 7), 16, size);
-    RebalanceLimits unlimited;
-    unlimited.PlaneStep = step;
     const double best =
-      ImbalanceWith(RebalanceMeasuredCost(tree, costs, speeds, unlimited).Tree, costs, speeds);
+      ImbalanceWith(RebalanceMeasuredCost(tree, costs, speeds, 0.0, step), costs, speeds);
     for (int frame = 0; frame < 40; ++frame)
     {
-      tree = RebalanceMeasuredCost(tree, costs, speeds, limits).Tree;
+      tree =
+        WithinBytes(tree, RebalanceMeasuredCost(tree, costs, speeds, 0.0, step), sums, most, step);
       const std::vector<Box> zones = NodeZones(tree);
       for (std::size_t number = 0; number < zones.size(); ++number)
       {
@@ -308,10 +230,8 @@ TEST(MeasuredCost, PlanesStandAtMultiplesOfTheStep)
     }
     EXPECT_LE(ImbalanceWith(tree, costs, speeds), (step < 16 ? 1.1 : 1.2) * best) << step;
   }
-  RebalanceLimits limits;
-  limits.PlaneStep = 0;
   EXPECT_THROW(
-    RebalanceMeasuredCost(EqualZoneTree(size, 2), BrickCosts(size, 8), { 1, 1 }, limits), Error);
+    RebalanceMeasuredCost(EqualZoneTree(size, 2), BrickCosts(size, 8), { 1, 1 }, 0.0, 0), Error);
 }
 
 TEST(MeasuredCost, RefusesWhatDoesNotFitTogether)

@@ -181,7 +181,6 @@ protected:
   static LoadBalancer::Options OptionsFor(int ranks)
   {
     LoadBalancer::Options options;
-    options.Mode = LoadBalancing::MeasuredCost;
     options.Positions = Cells.Hi;
     options.Ranks = ranks;
     return options;

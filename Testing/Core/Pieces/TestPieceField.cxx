@@ -128,7 +128,7 @@ TEST_P(EveryRankCountOfPieces, DrawsThePicturesOfOneRank)
   {
     const std::vector<FloatImage> alone = PicturesOfOne(values, shaded);
     for (const LoadBalancing mode :
-      { LoadBalancing::Off, LoadBalancing::SliceStep, LoadBalancing::MeasuredCost })
+      { LoadBalancing::Off, LoadBalancing::MeasuredCost })
     {
       SCOPED_TRACE(::testing::Message() << "mode " << static_cast<int>(mode) << shaded);
       const Outcome together = DrawFrames(values, { Deal::Blocks, mode, shaded }, GetParam());
@@ -156,7 +156,7 @@ TEST_P(EveryDeal, DrawsThePicturesOfOneRank)
     for (const int ranks : { 2, 6 })
     {
       for (const LoadBalancing mode :
-        { LoadBalancing::Off, LoadBalancing::SliceStep, LoadBalancing::MeasuredCost })
+        { LoadBalancing::Off, LoadBalancing::MeasuredCost })
       {
         SCOPED_TRACE(::testing::Message() << ranks << " ranks, mode " << static_cast<int>(mode));
         ExpectSame(alone, DrawFrames(values, { GetParam(), mode, shaded }, ranks).Pictures, 1e-5);
@@ -208,7 +208,7 @@ TEST(PieceField, MovesValuesOfAllTypes)
     for (const bool shaded : { false, true })
     {
       const Outcome outcome =
-        DrawFrames(values, { Deal::Slabs, LoadBalancing::SliceStep, shaded }, 3);
+        DrawFrames(values, { Deal::Slabs, LoadBalancing::MeasuredCost, shaded }, 3);
       EXPECT_GT(outcome.Misses, 0u);
       ExpectSame(PicturesOfOne(values, shaded), outcome.Pictures, 1e-5);
     }

@@ -152,10 +152,11 @@ TEST(PieceZones, IdleRanksCanTakePartOfAnothersZone)
   const ZonesOfRanks zones = ZonesOfPieces(grid, glm::ivec3(64));
   BrickCosts costs(glm::ivec3(64), 8);
   std::fill(costs.Values.begin(), costs.Values.end(), 1.0);
-  const Rebalanced balanced =
-    RebalanceMeasuredCost(zones.Tree, costs, std::vector<double>(4, 1.0), {});
-  EXPECT_NEAR(balanced.Before, 4.0, 1e-9);
-  EXPECT_NEAR(balanced.After, 1.0, 1e-9);
+  const std::vector<double> speeds(4, 1.0);
+  const CostSums sums(costs);
+  EXPECT_NEAR(ExpectedImbalance(zones.Tree, sums, speeds), 4.0, 1e-9);
+  const ZoneTree balanced = RebalanceMeasuredCost(zones.Tree, costs, speeds);
+  EXPECT_NEAR(ExpectedImbalance(balanced, sums, speeds), 1.0, 1e-9);
 }
 
 TEST(PieceGrid, RefusesWhatIsNoGrid)
