@@ -62,7 +62,7 @@ build_simulation()
         -I"$paraview/vtkicet/src/include" -I"$paraview" \
         -I"$here/Compositing" "$here"/Compositing/{SimulateCompositing,FrameFile}.cxx \
         "$here"/Compositing/Peers/*.cxx \
-        "$RepositoryRoot"/Core/Parallel/Mpi{Communicator,Waiting}.cxx \
+        "$RepositoryRoot"/Core/Parallel/Mpi{Communicator,Watchdog}.cxx \
         -L"$core" -Wl,-rpath,"$core" -lBanyanCore -lvtkIceTCore-pv5.11 -o "$simulation" ||
         fail "the simulation could not be built."
       return

@@ -130,8 +130,9 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
       FinestLevelsOfTiles(scene, wish.MaxElementsPerPixel, sampling.CoarsestLevel);
   }
   sampling.StaysInMemory = wish.Interacting && wish.Seconds > 0.0;
-  const SamplingPlan plan = PlanDistributed(communicator, scene, field.Source(), field.Zones(),
-    budgetBytes, ThreadPool::Process(), failure, sampling, frame);
+  const SamplingPlan plan = PlanDistributed(communicator, scene,
+    { field.Source(), field.Zones(), budgetBytes, ThreadPool::Process(), failure }, sampling,
+    frame);
   scene.Samplings = plan.Samplings;
   scene.OpacityLimit = plan.OpacityLimit;
   frame.PilotSeconds = plan.PilotSeconds;

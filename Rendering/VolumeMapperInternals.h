@@ -31,7 +31,7 @@ struct vtkBanyanVolumeMapper::Internals
 {
   std::unique_ptr<banyan::Communicator> Communicator;
   banyan::DistributedField Field;
-  banyan::KeptPlan Plans; ///< of compositing
+  banyan::CompositePlanCache Plans; ///< of compositing
   banyan::MotionEnhancement Motion;
   banyan::Backdrop Backdrop;
   banyan::KeptTransferFunction Function;

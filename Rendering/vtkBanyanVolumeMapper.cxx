@@ -299,9 +299,10 @@ banyan::FloatImage vtkBanyanVolumeMapper::CastFrame(
     compositing.AfterCasting = [&self, &scene]
     { self.Field.ReadAhead(scene, self.Communicator->Rank()); };
   }
-  banyan::FloatImage picture =
-    banyan::DrawDistributed(*self.Communicator, scene, self.Field.Source(), self.Field.Zones(),
-      budget, banyan::ThreadPool::Process(), wanted.Problem, frame, compositing);
+  banyan::FloatImage picture = banyan::DrawDistributed(*self.Communicator, scene,
+    { self.Field.Source(), self.Field.Zones(), budget, banyan::ThreadPool::Process(),
+      wanted.Problem },
+    frame, compositing);
 
   frame.SamplesTaken += pilots.SamplesTaken;
   frame.BytesComposited += pilots.BytesComposited;

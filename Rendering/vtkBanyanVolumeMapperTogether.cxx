@@ -35,18 +35,17 @@ void vtkBanyanVolumeMapper::SetController(vtkMultiProcessController* controller)
   if (mpi && controller->GetNumberOfProcesses() > 1)
   {
     const MPI_Comm* handle = mpi->GetMPIComm()->GetHandle();
-    banyan::MpiPatience patience{ banyan::MpiPatience::DefaultSeconds, {} };
+    banyan::MpiTimeout timeout{ banyan::MpiTimeout::DefaultSeconds, {} };
     try
     {
-      patience.Seconds = banyan::MpiPatience::FromEnvironment();
+      timeout.Seconds = banyan::MpiTimeout::FromEnvironment();
     }
     catch (const std::exception& error)
     {
       vtkErrorMacro(<< error.what());
     }
-    patience.Tell = [this](const std::string& sentence) { vtkErrorMacro(<< sentence); };
-    this->Self->Communicator =
-      banyan::MakeMpiCommunicator(handle, std::size_t{ 1 } << 30, patience);
+    timeout.Tell = [this](const std::string& sentence) { vtkErrorMacro(<< sentence); };
+    this->Self->Communicator = banyan::MakeMpiCommunicator(handle, std::size_t{ 1 } << 30, timeout);
     banyan::ThreadPool::SetRanksOnThisNode(banyan::RanksOnThisNode(handle));
   }
   else

@@ -80,7 +80,7 @@ void DrawSimulated(const BenchScene& scene, const BalanceOptions& options, Balan
       const double seconds = ProcessorSeconds() - before;
       frame.RankMilliseconds.push_back(1e3 * seconds);
     }
-    FrameWork took = SumWork(work, view);
+    FrameCost took = SumCost(work, view);
     for (std::size_t rank = 0; options.Counted && rank < work.size(); ++rank)
     {
       took.Ranks[rank].Seconds = CountedSeconds(took.Ranks[rank].Work);

@@ -5,7 +5,7 @@
 #include "BalanceOptions.h"
 #include "BenchScene.h"
 
-#include "Parallel/FrameWork.h"
+#include "Parallel/FrameCost.h"
 #include "Parallel/LoadBalancer.h"
 
 #include <cstdio>

@@ -51,7 +51,7 @@ public:
     const int edge = BlockEdgeFor(cells);
     const BrickCosts view =
       ViewCosts(this->Scene, cells, edge, VisibleParts(this->Scene, this->Source, cells, edge));
-    const FrameWork all = SumWork({ this->Draw({ glm::ivec3(0), cells }) }, view);
+    const FrameCost all = SumCost({ this->Draw({ glm::ivec3(0), cells }) }, view);
     const std::vector<double> alike(static_cast<std::size_t>(ranks), 1.0);
     return TurnedTree(EqualZoneTree(cells, ranks), CostSums(all.Blocks), alike, 1,
       ScreenCuts(this->Scene), WorkPerCutRay);

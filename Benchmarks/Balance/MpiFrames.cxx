@@ -50,8 +50,8 @@ void DrawPath(Communicator& communicator, const BenchScene& scene, const Balance
     CompositeOptions compositing;
     compositing.WhileCasting = !options.CompositeAfter || number % 2 == 0;
     DrawDistributed(
-      communicator, drawn, &source, zones, ~std::uint64_t{ 0 }, pool, {}, statistics, compositing);
-    const FrameWork took = GatherWork(communicator, mine, zones, view);
+      communicator, drawn, { &source, zones, ~std::uint64_t{ 0 }, pool }, statistics, compositing);
+    const FrameCost took = GatherCost(communicator, mine, zones, view);
     balancer.FrameTook(took.Ranks, took.Blocks);
     BalanceFrame frame;
     frame.Milliseconds = 1e3 * AllMax(communicator, whole.Seconds());
@@ -116,8 +116,8 @@ void DrawPieces(Communicator& communicator, const BenchScene& scene, const Balan
     FrameStatistics statistics;
     CompositeOptions compositing;
     compositing.WhileCasting = !options.CompositeAfter || number % 2 == 0;
-    DrawDistributed(communicator, drawn, field.Source(), field.Zones(), ~std::uint64_t{ 0 }, pool,
-      {}, statistics, compositing);
+    DrawDistributed(communicator, drawn,
+      { field.Source(), field.Zones(), ~std::uint64_t{ 0 }, pool }, statistics, compositing);
     field.EndFrame(communicator);
     BalanceFrame frame;
     frame.Milliseconds = 1e3 * AllMax(communicator, whole.Seconds());

@@ -8,7 +8,7 @@
 // will do. Frames come from banyan-record-frames.
 #include "FrameFile.h"
 
-#include "Parallel/KeptPlan.h"
+#include "Parallel/CompositePlanCache.h"
 
 #include <algorithm>
 #include <chrono>
@@ -24,7 +24,7 @@ using namespace banyan;
 using namespace banyan::bench;
 
 /// @param plans with the schedule in it, or without
-double MicrosecondsOfOne(const FrameHead& head, KeptPlan& plans)
+double MicrosecondsOfOne(const FrameHead& head, CompositePlanCache& plans)
 {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point begin = Clock::now();
@@ -46,7 +46,7 @@ void Measure(const char* path)
   std::vector<double> kept;
   for (int run = 0; run < runs; ++run)
   {
-    KeptPlan plans;
+    CompositePlanCache plans;
     derived.push_back(MicrosecondsOfOne(frame.Head(), plans));
     kept.push_back(MicrosecondsOfOne(frame.Head(), plans));
   }

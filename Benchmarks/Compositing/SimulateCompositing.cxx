@@ -100,9 +100,9 @@ public:
   {
     const MPI_Comm world = MPI_COMM_WORLD;
     // Simulated time stands still while a rank looks whether a message has come.
-    MpiPatience patience;
-    patience.Seconds = 0;
-    this->Ranks = MakeMpiCommunicator(&world, std::size_t{ 1 } << 30, patience);
+    MpiTimeout timeout;
+    timeout.Seconds = 0;
+    this->Ranks = MakeMpiCommunicator(&world, std::size_t{ 1 } << 30, timeout);
     if (static_cast<std::size_t>(this->Ranks->Size()) != this->Frame.Head().Order.size())
     {
       throw Error("The frame was recorded for another number of ranks.");

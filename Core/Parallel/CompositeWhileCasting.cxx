@@ -13,14 +13,14 @@ CompositeWhileCasting::CompositeWhileCasting(Communicator& communicator,
   CompositeStatistics& statistics)
   : Self(communicator.Rank())
   , Frame(communicator, frontToBack, viewport, options, statistics)
-  , Added(static_cast<std::size_t>(this->Frame.Schedule().Chunks), false)
+  , Added(static_cast<std::size_t>(this->Frame.GetPlan().Chunks), false)
 {
   this->Frame.Begin();
 }
 
 void CompositeWhileCasting::Begins(const FloatImage& picture)
 {
-  const CompositePlan& plan = this->Frame.Schedule();
+  const CompositePlan& plan = this->Frame.GetPlan();
   const TileGrid grid(picture.Rect);
   this->Picture = &picture;
   this->TilesLeft = std::make_unique<std::atomic<int>[]>(this->Added.size());

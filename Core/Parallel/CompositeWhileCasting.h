@@ -2,7 +2,7 @@
 #ifndef banyan_Parallel_CompositeWhileCasting_h
 #define banyan_Parallel_CompositeWhileCasting_h
 
-#include "Parallel/SlicFrame.h"
+#include "Parallel/TileOwnerCompositor.h"
 #include "Render/PictureWatcher.h"
 
 #include <atomic>
@@ -13,16 +13,16 @@
 namespace banyan
 {
 
-/// Begins to composite while rays are still cast: sends chunks of SLIC's schedule as soon as their
+/// Begins to composite while rays are still cast: sends chunks of the plan as soon as their
 /// tiles are final, and blends what comes, all in the thread that casts, between its tiles. Other
-/// threads only count tiles. The picture is that of CompositeSlic to the last bit.
+/// threads only count tiles. The picture is that of CompositeByTileOwners to the last bit.
 ///
 /// Ranks do not know of each other's failures before they send: one that fails sends empty messages
 /// in the place of what is left. They have to agree on errors after `Finish`, on all ranks.
 class CompositeWhileCasting final : public PictureWatcher
 {
 public:
-  /// Everything referred to must stay. The arguments are those of CompositeSlic.
+  /// Everything referred to must stay. The arguments are those of CompositeByTileOwners.
   CompositeWhileCasting(Communicator& communicator, const std::vector<int>& frontToBack,
     const PixelRect& viewport, const CompositeOptions& options, CompositeStatistics& statistics);
 
@@ -32,7 +32,7 @@ public:
 
   /// What there is left to do when rays have been cast. Throws what compositing has thrown so far.
   /// @param mine what has been cast; null when that has failed
-  /// @return as CompositeSlic; of no use when a rank has failed
+  /// @return as CompositeByTileOwners; of no use when a rank has failed
   FloatImage Finish(const FloatImage* mine);
 
   /// Parts of the picture that this rank had dealt with before its last ray was cast.
@@ -40,7 +40,7 @@ public:
 
 private:
   int Self = 0;
-  SlicFrame Frame;
+  TileOwnerCompositor Frame;
   const FloatImage* Picture = nullptr;        ///< while it is being cast
   std::vector<std::vector<int>> ChunksOfTile; ///< per tile of the picture
   /// Per chunk, tiles of the picture that are not final; chunks of which this rank draws nothing

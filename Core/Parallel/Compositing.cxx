@@ -2,7 +2,7 @@
 #include "Parallel/Compositing.h"
 
 #include "Base/Error.h"
-#include "Parallel/SlicFrame.h"
+#include "Parallel/TileOwnerCompositor.h"
 
 #include <algorithm>
 #include <iterator>
@@ -221,11 +221,11 @@ FloatImage Composite(Communicator& communicator, const FloatImage& mine,
 {
   if (options.Agreed && !options.Footprints.empty())
   {
-    return CompositeSlic(communicator, mine, frontToBack, viewport, options, statistics);
+    return CompositeByTileOwners(communicator, mine, frontToBack, viewport, options, statistics);
   }
   CompositeOptions complete = options;
   complete.Footprints = Announce(communicator, mine, frontToBack, viewport, options);
-  return CompositeSlic(communicator, mine, frontToBack, viewport, complete, statistics);
+  return CompositeByTileOwners(communicator, mine, frontToBack, viewport, complete, statistics);
 }
 
 } // namespace banyan

@@ -4,9 +4,9 @@
 
 #include "Parallel/Communicator.h"
 #include "Parallel/CompositePlan.h"
+#include "Parallel/CompositePlanCache.h"
 #include "Parallel/CompositeStatistics.h"
 #include "Parallel/FragmentFormat.h"
-#include "Parallel/KeptPlan.h"
 #include "Render/FloatImage.h"
 #include "Render/ProjectionTable.h"
 
@@ -44,8 +44,8 @@ struct CompositeOptions
   PixelRect Behind;
   /// Largest colour over opacity of a pixel: above 1 where there are highlights.
   float Brightest = 1.0f;
-  /// Where the schedule is kept from frame to frame; null for nowhere.
-  KeptPlan* Plans = nullptr;
+  /// Where the plan is kept from frame to frame; null for nowhere.
+  CompositePlanCache* Plans = nullptr;
   /// Whether the ranks know already that ProblemOf finds nothing, and that all have the same
   /// options, order and viewport: saves a collective message.
   bool Agreed = false;

@@ -195,20 +195,20 @@ FloatImage CastAndComposite(Communicator& communicator, OwnPart& own, const std:
 
 } // namespace
 
-FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene, BrickSource* source,
-  const std::vector<Box>& zones, std::uint64_t budgetBytes, ThreadPool& pool,
-  const std::string& localError, FrameStatistics& statistics, const CompositeOptions& compositing)
+FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene,
+  const RankShare& share, FrameStatistics& statistics, const CompositeOptions& compositing)
 {
   const Timer total;
-  OwnPart own{ scene, source, zones.at(static_cast<std::size_t>(communicator.Rank())), budgetBytes,
-    pool, localError, compositing.AfterCasting, {}, {} };
+  const std::vector<Box>& zones = share.Zones;
+  OwnPart own{ scene, share.Source, zones.at(static_cast<std::size_t>(communicator.Rank())),
+    share.BudgetBytes, share.Pool, share.Failure, compositing.AfterCasting, {}, {} };
   const bool atOnce = compositing.WhileCasting && communicator.Size() > 1;
   FloatImage picture =
     (atOnce ? CastAndComposite : CastThenComposite)(communicator, own, zones, compositing);
   const PhaseScope phase(Phase::Compositing);
   const Timer finish;
   FinishPicture(scene, picture);
-  FillBetweenRays(scene, picture, pool);
+  FillBetweenRays(scene, picture, share.Pool);
   own.CompositeSeconds += finish.Seconds();
 
   const auto number = [](auto value) { return static_cast<double>(value); };

@@ -6,6 +6,7 @@
 #include "Parallel/Compositing.h"
 #include "Render/RayCaster.h"
 
+#include <string>
 #include <vector>
 
 namespace banyan
@@ -29,24 +30,28 @@ struct FrameStatistics
   std::uint64_t MessagesComposited = 0; ///< in so many messages
 };
 
+/// What a rank brings to a picture of all ranks.
+struct RankShare
+{
+  BrickSource* Source;       ///< this rank's bricks; may be null when its zone is empty
+  std::vector<Box> Zones;    ///< cells of each rank, disjoint, the same list on all ranks
+  std::uint64_t BudgetBytes; ///< working memory for loaded bricks on this rank
+  ThreadPool& Pool;
+  std::string Failure = {}; ///< if not empty, this rank cannot draw: all ranks throw it
+};
+
 /// Draws one picture on all ranks: each casts rays through the cells of its own zone, and the
-/// pictures are composited, by SLIC from the first parts on that are final. Collective.
+/// pictures are composited, from the first parts on that are final. Collective.
 ///
 /// @param scene the same on all ranks (depths included)
-/// @param source this rank's bricks; may be null when its zone is empty
-/// @param zones cells of each rank, disjoint, the same list on all ranks
-/// @param budgetBytes working memory for loaded bricks on this rank
-/// @param localError if not empty, this rank cannot draw: all ranks throw it
 /// @param compositing how the pictures are put together; the same on all ranks. What follows from
 /// the scene and the zones (combination, footprints, brightest colours) is set here.
 /// @return the scene's viewport on rank 0, premultiplied; empty elsewhere. The picture does not
 /// depend on the number of ranks: within 1e-5 in float when no ray ends early, within
 /// 1 - OpacityLimit otherwise; with PixelTransport::WithinOne, 1 of 255 more.
 /// When a rank fails, all ranks throw the same Error.
-FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene, BrickSource* source,
-  const std::vector<Box>& zones, std::uint64_t budgetBytes, ThreadPool& pool,
-  const std::string& localError, FrameStatistics& statistics,
-  const CompositeOptions& compositing = {});
+FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene,
+  const RankShare& share, FrameStatistics& statistics, const CompositeOptions& compositing = {});
 
 } // namespace banyan
 

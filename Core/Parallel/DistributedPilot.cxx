@@ -29,13 +29,15 @@ std::size_t PixelsOf(const Footprint& footprint)
 }
 
 /// Casts this rank's rays; a failure becomes a sentence for the others.
-FloatImage CastOwn(const RayScene& scene, BrickSource* source, const Box& zone,
-  std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics, std::string& failure)
+FloatImage CastOwn(const RayScene& scene, const RankShare& share, std::size_t self,
+  RayStatistics& statistics, std::string& failure)
 {
+  const Box& zone = share.Zones.at(self);
   try
   {
-    return source && !zone.Empty() ? CastRays(scene, *source, zone, budgetBytes, pool, statistics)
-                                   : FloatImage{};
+    return share.Source && !zone.Empty()
+             ? CastRays(scene, *share.Source, zone, share.BudgetBytes, share.Pool, statistics)
+             : FloatImage{};
   }
   catch (const std::exception& error)
   {
@@ -76,19 +78,18 @@ void BlendUnder(const glm::vec4* pixels, const Footprint& footprint, FloatImage&
 } // namespace
 
 FloatImage DrawDistributedPilot(Communicator& communicator, const RayScene& scene,
-  BrickSource* source, const std::vector<Box>& zones, std::uint64_t budgetBytes, ThreadPool& pool,
-  FrameStatistics& statistics)
+  const RankShare& share, FrameStatistics& statistics)
 {
   const auto self = static_cast<std::size_t>(communicator.Rank());
   const auto ranks = static_cast<std::size_t>(communicator.Size());
   RayStatistics rays;
   std::string failure;
-  const FloatImage mine = CastOwn(scene, source, zones.at(self), budgetBytes, pool, rays, failure);
+  const FloatImage mine = CastOwn(scene, share, self, rays, failure);
 
   // All ranks know these alike.
-  const std::vector<int> order = OrderAsDrawn(scene, zones);
-  const std::vector<Footprint> footprints =
-    FootprintsOfZones(scene.Camera, scene.IndexToWorld, ZonesAsDrawn(scene, zones), scene.Viewport);
+  const std::vector<int> order = OrderAsDrawn(scene, share.Zones);
+  const std::vector<Footprint> footprints = FootprintsOfZones(
+    scene.Camera, scene.IndexToWorld, ZonesAsDrawn(scene, share.Zones), scene.Viewport);
   std::size_t most = 0;
   for (const Footprint& footprint : footprints)
   {

@@ -16,12 +16,12 @@ namespace banyan
 ///
 /// Collective; the parameters are those of DrawDistributed.
 /// @param scene composited samples only
+/// @param share its Failure has been agreed on: it is empty
 /// @param statistics SamplesTaken and BytesComposited of all ranks are added; the rest stays
 /// @return the scene's viewport, on every rank
 /// When a rank fails, all ranks throw the same Error.
 FloatImage DrawDistributedPilot(Communicator& communicator, const RayScene& scene,
-  BrickSource* source, const std::vector<Box>& zones, std::uint64_t budgetBytes, ThreadPool& pool,
-  FrameStatistics& statistics);
+  const RankShare& share, FrameStatistics& statistics);
 
 } // namespace banyan
 

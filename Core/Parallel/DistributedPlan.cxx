@@ -34,20 +34,20 @@ int LargestOfAll(Communicator& communicator, Function&& mine)
 
 /// The finest level that all ranks can draw pilots from without loading everything again for each
 /// of them: half the budget is for bricks that are kept.
-int FinestPilotLevel(Communicator& communicator, const RayScene& scene, BrickSource* source,
-  const std::vector<Box>& zones, int coarsest, std::uint64_t budgetBytes, ThreadPool& pool)
+int FinestPilotLevel(
+  Communicator& communicator, const RayScene& scene, const RankShare& share, int coarsest)
 {
   if (coarsest == 0)
   {
     return 0;
   }
-  const Box& zone = zones.at(static_cast<std::size_t>(communicator.Rank()));
+  const Box& zone = share.Zones.at(static_cast<std::size_t>(communicator.Rank()));
   return LargestOfAll(communicator,
     [&]
     {
-      return source && !zone.Empty() ? FinestLevelWithin(scene, *source, zone, coarsest,
-                                         KeptBricks::PartOf(budgetBytes), pool)
-                                     : 0;
+      return share.Source && !zone.Empty() ? FinestLevelWithin(scene, *share.Source, zone, coarsest,
+                                               KeptBricks::PartOf(share.BudgetBytes), share.Pool)
+                                           : 0;
     });
 }
 
@@ -68,28 +68,24 @@ int CommonLevel(Communicator& communicator, BrickSource* source, const Box& doma
     });
 }
 
-SamplingPlan PlanDistributed(Communicator& communicator, const RayScene& scene, BrickSource* source,
-  const std::vector<Box>& zones, std::uint64_t budgetBytes, ThreadPool& pool,
-  const std::string& localError, SamplingWish wish, FrameStatistics& statistics)
+SamplingPlan PlanDistributed(Communicator& communicator, const RayScene& scene,
+  const RankShare& share, SamplingWish wish, FrameStatistics& statistics)
 {
-  const std::string agreed = AgreeOnError(communicator, localError);
+  const std::string agreed = AgreeOnError(communicator, share.Failure);
   if (!agreed.empty())
   {
     throw Error(agreed);
   }
-  wish.CoarsestLevel = CommonLevel(communicator, source, scene.DomainCells, wish.CoarsestLevel);
-  wish.FinestPilotLevel =
-    FinestPilotLevel(communicator, scene, source, zones, wish.CoarsestLevel, budgetBytes, pool);
+  wish.CoarsestLevel =
+    CommonLevel(communicator, share.Source, scene.DomainCells, wish.CoarsestLevel);
+  wish.FinestPilotLevel = FinestPilotLevel(communicator, scene, share, wish.CoarsestLevel);
   if (wish.StaysInMemory)
   {
     wish.FinestLevel = std::max(wish.FinestLevel, wish.FinestPilotLevel);
   }
   return PlanSamplings(scene, wish,
     [&](const RayScene& pilot)
-    {
-      return DrawDistributedPilot(
-        communicator, pilot, source, zones, budgetBytes, pool, statistics);
-    });
+    { return DrawDistributedPilot(communicator, pilot, share, statistics); });
 }
 
 } // namespace banyan

@@ -21,9 +21,8 @@ int CommonLevel(Communicator& communicator, BrickSource* source, const Box& doma
 /// @param wish its coarsest level is lowered to what the bricks of all ranks have
 /// @param statistics samples and bytes of the pilots are added; the rest stays
 /// When a rank fails, all ranks throw the same Error.
-SamplingPlan PlanDistributed(Communicator& communicator, const RayScene& scene, BrickSource* source,
-  const std::vector<Box>& zones, std::uint64_t budgetBytes, ThreadPool& pool,
-  const std::string& localError, SamplingWish wish, FrameStatistics& statistics);
+SamplingPlan PlanDistributed(Communicator& communicator, const RayScene& scene,
+  const RankShare& share, SamplingWish wish, FrameStatistics& statistics);
 
 } // namespace banyan
 

@@ -108,7 +108,7 @@ void FrameBalancer::EndFrame(Communicator& communicator)
   {
     return;
   }
-  const FrameWork took = GatherWork(communicator, this->Work, this->ZoneCells, this->View);
+  const FrameCost took = GatherCost(communicator, this->Work, this->ZoneCells, this->View);
   std::vector<RankWork> seats = took.Ranks;
   for (std::size_t seat = 0; seat < this->RankOfSeat.size(); ++seat)
   {

@@ -3,7 +3,7 @@
 #define banyan_Parallel_FrameBalancer_h
 
 #include "Parallel/Communicator.h"
-#include "Parallel/FrameWork.h"
+#include "Parallel/FrameCost.h"
 #include "Parallel/LoadBalancer.h"
 #include "Render/RayBlend.h"
 #include "Render/TransferFunction.h"

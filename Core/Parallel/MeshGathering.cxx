@@ -22,7 +22,7 @@ struct Gathered
 };
 
 /// @param begins where each rank's bytes begin
-void SendToMachines(Communicator& communicator, const MachineRanks& machines, char* all,
+void SendToMachines(Communicator& communicator, const NodeCommunicator& machines, char* all,
   const std::vector<std::size_t>& begins)
 {
   const auto partOf = [&](int rank)
@@ -56,7 +56,7 @@ void SendToMachines(Communicator& communicator, const MachineRanks& machines, ch
 /// @param fill writes them where it is told, and throws nothing: the others wait already
 template <class T, class Fill>
 Gathered GatherArray(
-  Communicator& communicator, MachineRanks& machines, std::int64_t count, const Fill& fill)
+  Communicator& communicator, NodeCommunicator& machines, std::int64_t count, const Fill& fill)
 {
   const auto ranks = static_cast<std::size_t>(communicator.Size());
   const std::uint64_t own = static_cast<std::uint64_t>(count) * sizeof(T);
@@ -86,7 +86,7 @@ Gathered GatherArray(
 }
 
 template <class To, class From>
-Gathered GatherConverted(Communicator& communicator, MachineRanks& machines, const From* values,
+Gathered GatherConverted(Communicator& communicator, NodeCommunicator& machines, const From* values,
   std::int64_t count, std::int64_t offset = 0)
 {
   return GatherArray<To>(communicator, machines, count,
@@ -134,8 +134,8 @@ void WriteComponent(const NodeArray& array, std::int64_t points, Out* out)
 }
 
 template <class Out>
-Gathered GatherComponent(
-  Communicator& communicator, MachineRanks& machines, const NodeArray& array, std::int64_t points)
+Gathered GatherComponent(Communicator& communicator, NodeCommunicator& machines,
+  const NodeArray& array, std::int64_t points)
 {
   return GatherArray<Out>(
     communicator, machines, points, [&](Out* out) { WriteComponent(array, points, out); });
@@ -143,7 +143,7 @@ Gathered GatherComponent(
 
 } // namespace
 
-HexMesh GatherMesh(Communicator& communicator, MachineRanks& machines, const HexMesh& piece)
+HexMesh GatherMesh(Communicator& communicator, NodeCommunicator& machines, const HexMesh& piece)
 {
   if (communicator.Size() == 1)
   {
@@ -192,8 +192,8 @@ HexMesh GatherMesh(Communicator& communicator, MachineRanks& machines, const Hex
   return mesh;
 }
 
-GatheredValues GatherNodes(
-  Communicator& communicator, MachineRanks& machines, const NodeArray& piece, std::int64_t points)
+GatheredValues GatherNodes(Communicator& communicator, NodeCommunicator& machines,
+  const NodeArray& piece, std::int64_t points)
 {
   if (communicator.Size() == 1)
   {

@@ -5,7 +5,7 @@
 #include "HexOctree/HexMesh.h"
 #include "HexOctree/NodalField.h"
 #include "Parallel/Communicator.h"
-#include "Parallel/MachineRanks.h"
+#include "Parallel/NodeCommunicator.h"
 
 #include <memory>
 
@@ -23,7 +23,7 @@ namespace banyan
 /// @param piece of this rank; may have no cells
 /// Throws Error, on all ranks, when a cell of a piece refers to a point that the piece has not, and
 /// when there is not enough memory.
-HexMesh GatherMesh(Communicator& communicator, MachineRanks& machines, const HexMesh& piece);
+HexMesh GatherMesh(Communicator& communicator, NodeCommunicator& machines, const HexMesh& piece);
 
 /// Values at the points or cells of a gathered mesh, one component of them, for every rank;
 /// those of a machine have them together, if they can.
@@ -39,8 +39,8 @@ struct GatheredValues
 /// @param piece values at the points (or cells) of this rank's piece; the same component on all
 /// ranks
 /// @param points (or cells) of the piece
-GatheredValues GatherNodes(
-  Communicator& communicator, MachineRanks& machines, const NodeArray& piece, std::int64_t points);
+GatheredValues GatherNodes(Communicator& communicator, NodeCommunicator& machines,
+  const NodeArray& piece, std::int64_t points);
 
 } // namespace banyan
 

@@ -2,7 +2,8 @@
 #include "Parallel/MpiCommunicator.h"
 
 #include "Base/Error.h"
-#include "Parallel/MpiWaiting.h"
+#include "Parallel/MpiError.h"
+#include "Parallel/MpiWatchdog.h"
 
 #include <algorithm>
 #include <limits>
@@ -10,24 +11,8 @@
 namespace banyan
 {
 
-void CheckMpi(int code, const char* action)
-{
-  if (code != MPI_SUCCESS)
-  {
-    char text[MPI_MAX_ERROR_STRING] = {};
-    int length = 0;
-    MPI_Error_string(code, text, &length);
-    throw Error(std::string("MPI could not ") + action + ": " + std::string(text, length));
-  }
-}
-
 namespace
 {
-
-void Check(int code, const char* action)
-{
-  CheckMpi(code, action);
-}
 
 MPI_Comm HandleAt(const void* mpiComm)
 {
@@ -54,20 +39,20 @@ void ForEachPart(std::size_t bytes, std::size_t limit, const Part& part)
 class MpiCommunicator final : public Communicator
 {
 public:
-  MpiCommunicator(MPI_Comm original, std::size_t largestMessage, const MpiPatience& patience)
+  MpiCommunicator(MPI_Comm original, std::size_t largestMessage, const MpiTimeout& timeout)
     : LargestMessage(largestMessage)
   {
-    Check(MPI_Comm_dup(original, &this->Handle), "duplicate a communicator");
+    CheckMpi(MPI_Comm_dup(original, &this->Handle), "duplicate a communicator");
     // Errors of the duplicate come back as codes, to be thrown; the original keeps its handler.
     MPI_Comm_set_errhandler(this->Handle, MPI_ERRORS_RETURN);
     MPI_Comm_rank(this->Handle, &this->Self);
     MPI_Comm_size(this->Handle, &this->Ranks);
-    this->Waiting = std::make_unique<MpiWaiting>(this->Handle, patience);
+    this->Watchdog = MpiWatchdog::Attach(this->Handle, timeout);
   }
 
   ~MpiCommunicator() override
   {
-    this->Waiting.reset();
+    this->Watchdog.reset();
     int finalized = 0;
     MPI_Finalized(&finalized);
     if (finalized)
@@ -125,7 +110,7 @@ public:
     const int code = this->CompleteAll(requests, statuses);
     for (std::size_t i = 0; i < statuses.size(); ++i)
     {
-      Check(code == MPI_ERR_IN_STATUS ? statuses[i].MPI_ERROR : code, "complete a message");
+      CheckMpi(code == MPI_ERR_IN_STATUS ? statuses[i].MPI_ERROR : code, "complete a message");
       int count = 0;
       MPI_Get_count(&statuses[i], MPI_BYTE, &count);
       if (expected[i] >= 0 && count != expected[i])
@@ -155,7 +140,7 @@ public:
       this->Awaited.clear();
     }
     this->Awaited.push_back(MPI_REQUEST_NULL);
-    Check(MPI_Irecv(data, count, MPI_BYTE, from, tag, this->Handle, &this->Awaited.back()),
+    CheckMpi(MPI_Irecv(data, count, MPI_BYTE, from, tag, this->Handle, &this->Awaited.back()),
       "start a message");
     ++this->Open;
   }
@@ -166,7 +151,7 @@ public:
     MPI_Status status;
     if (this->Open > 0)
     {
-      Check(this->CompleteAny(index, status), "complete a message");
+      CheckMpi(this->CompleteAny(index, status), "complete a message");
     }
     if (index == MPI_UNDEFINED)
     {
@@ -181,14 +166,14 @@ public:
     if (this->Open == 0)
     {
       // Sends get on in calls of MPI only, whichever.
-      Check(
+      CheckMpi(
         MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, this->Handle, &here, MPI_STATUS_IGNORE), "look");
       return false;
     }
     int index = MPI_UNDEFINED;
     MPI_Status status;
-    Check(MPI_Testany(
-            static_cast<int>(this->Awaited.size()), this->Awaited.data(), &index, &here, &status),
+    CheckMpi(MPI_Testany(static_cast<int>(this->Awaited.size()), this->Awaited.data(), &index,
+               &here, &status),
       "complete a message");
     if (!here || index == MPI_UNDEFINED)
     {
@@ -240,7 +225,13 @@ public:
     }
   }
 
-  void LeaveTogether(const std::string& why) override { this->Waiting->LeaveTogether(why); }
+  void LeaveTogether(const std::string& why) override
+  {
+    if (this->Watchdog)
+    {
+      this->Watchdog->LeaveTogether(why);
+    }
+  }
 
 private:
   /// Of a message of ReceiveWhole that is complete.
@@ -256,12 +247,12 @@ private:
   int CompleteAll(std::vector<MPI_Request>& requests, std::vector<MPI_Status>& statuses)
   {
     const int count = static_cast<int>(requests.size());
-    if (!this->Waiting->IsOn())
+    if (!this->Watchdog)
     {
       return MPI_Waitall(count, requests.data(), statuses.data());
     }
     int code = MPI_SUCCESS;
-    this->Waiting->Until(
+    this->Watchdog->Until(
       [&]
       {
         int done = 0;
@@ -275,12 +266,12 @@ private:
   int CompleteAny(int& index, MPI_Status& status)
   {
     const int count = static_cast<int>(this->Awaited.size());
-    if (!this->Waiting->IsOn())
+    if (!this->Watchdog)
     {
       return MPI_Waitany(count, this->Awaited.data(), &index, &status);
     }
     int code = MPI_SUCCESS;
-    this->Waiting->Until(
+    this->Watchdog->Until(
       [&]
       {
         int done = 0;
@@ -295,18 +286,18 @@ private:
   template <typename Wait, typename Start>
   void Collective(const char* action, const Wait& wait, const Start& start)
   {
-    if (!this->Waiting->IsOn())
+    if (!this->Watchdog)
     {
-      Check(wait(), action);
+      CheckMpi(wait(), action);
       return;
     }
     MPI_Request request = MPI_REQUEST_NULL;
-    Check(start(&request), action);
-    this->Waiting->Until(
+    CheckMpi(start(&request), action);
+    this->Watchdog->Until(
       [&]
       {
         int done = 0;
-        Check(MPI_Test(&request, &done, MPI_STATUS_IGNORE), action);
+        CheckMpi(MPI_Test(&request, &done, MPI_STATUS_IGNORE), action);
         return done != 0;
       });
   }
@@ -335,7 +326,7 @@ private:
     {
       this->Pending.pop_back();
       this->Expected.pop_back();
-      Check(code, "start a message");
+      CheckMpi(code, "start a message");
     }
   }
 
@@ -343,7 +334,7 @@ private:
   int Self = 0;
   int Ranks = 1;
   std::size_t LargestMessage;
-  std::unique_ptr<MpiWaiting> Waiting;
+  std::unique_ptr<MpiWatchdog> Watchdog; ///< null: ranks are waited for as long as it takes
   std::vector<MPI_Request> Pending;
   std::vector<MPI_Request> Awaited; ///< of ReceiveWhole, since none was open
   std::size_t Open = 0;             ///< of these
@@ -353,7 +344,7 @@ private:
 } // namespace
 
 std::unique_ptr<Communicator> MakeMpiCommunicator(
-  const void* mpiComm, std::size_t largestMessageBytes, const MpiPatience& patience)
+  const void* mpiComm, std::size_t largestMessageBytes, const MpiTimeout& timeout)
 {
   if (largestMessageBytes < 1 || largestMessageBytes > (std::size_t{ 1 } << 30))
   {
@@ -362,13 +353,13 @@ std::unique_ptr<Communicator> MakeMpiCommunicator(
     place.Allowed = std::size_t{ 1 } << 30;
     throw Error("One MPI message must hold between 1 byte and 1 GiB.", place);
   }
-  return std::make_unique<MpiCommunicator>(HandleAt(mpiComm), largestMessageBytes, patience);
+  return std::make_unique<MpiCommunicator>(HandleAt(mpiComm), largestMessageBytes, timeout);
 }
 
 int RanksOnThisNode(const void* mpiComm)
 {
   MPI_Comm node = MPI_COMM_NULL;
-  Check(MPI_Comm_split_type(HandleAt(mpiComm), MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node),
+  CheckMpi(MPI_Comm_split_type(HandleAt(mpiComm), MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node),
     "find the ranks of this node");
   int ranks = 1;
   MPI_Comm_size(node, &ranks);

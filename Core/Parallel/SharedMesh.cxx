@@ -33,14 +33,14 @@ SharedMesh::Facts FirstFacts(Communicator& communicator, const SharedMesh::Facts
 
 /// Collective: a field that leaders have, for all ranks.
 /// @param field empty on other ranks
-NodalField GiveField(Communicator& communicator, MachineRanks& machines,
+NodalField GiveField(Communicator& communicator, NodeCommunicator& machines,
   const std::shared_ptr<const ElementOctree>& tree, std::optional<NodalField>& field,
   MeshBytes& sum)
 {
   const bool leads = machines.Leads();
   const bool wide =
     AllMax(communicator, leads && field->Type() == ScalarType::Float64 ? 1.0 : 0.0) > 0.0;
-  const MachineBytes bytes = FromLeader(communicator, machines, leads ? field->Bytes() : 0,
+  const MachineBytes bytes = NodeBroadcast(communicator, machines, leads ? field->Bytes() : 0,
     [&](char* to) { std::memcpy(to, field->Values(), field->Bytes()); });
   Add(bytes.Count, bytes.Together, sum);
   NodeArray array;
@@ -49,10 +49,10 @@ NodalField GiveField(Communicator& communicator, MachineRanks& machines,
   return NodalField(tree, array, bytes.Memory);
 }
 
-HexBrickSummary GiveSummary(Communicator& communicator, MachineRanks& machines, std::size_t bricks,
-  const HexBrickSummary& summary, MeshBytes& sum)
+HexBrickSummary GiveSummary(Communicator& communicator, NodeCommunicator& machines,
+  std::size_t bricks, const HexBrickSummary& summary, MeshBytes& sum)
 {
-  const MachineBytes bytes = FromLeader(communicator, machines,
+  const MachineBytes bytes = NodeBroadcast(communicator, machines,
     HexBrickSummary::PackedBytes(bricks), [&](char* to) { summary.WriteTo(to); });
   Add(bytes.Count, bytes.Together, sum);
   return HexBrickSummary::Read(bricks, bytes.Memory);
@@ -82,10 +82,10 @@ SharedMesh::SharedMesh(Communicator& communicator, const HexMesh& piece, ValuesO
   Add(renumbered ? this->Mesh.ConnectivityBytes() : 0, false, this->OfMesh);
   if (this->Machines.Shares())
   {
-    MachineRanks machines = this->Machines;
+    NodeCommunicator machines = this->Machines;
     std::optional<OctreeBytes> packed;
     OnLeaders(communicator, machines, [&] { packed.emplace(tree, sampled); });
-    const MachineBytes bytes = FromLeader(
+    const MachineBytes bytes = NodeBroadcast(
       communicator, machines, packed ? packed->Count() : 0, [&](char* to) { packed->WriteTo(to); });
     OnRanks(communicator, true, [&] { tree = OctreeBytes::Read(mesh, bytes.Memory); });
     Add(bytes.Count, bytes.Together, this->OfMesh);
@@ -137,7 +137,7 @@ std::shared_ptr<const ElementOctree> SharedMesh::Find(
 }
 
 /// Those of all ranks of the machine: the others wait.
-ThreadPool& SharedMesh::Threads(const MachineRanks& machines)
+ThreadPool& SharedMesh::Threads(const NodeCommunicator& machines)
 {
   ThreadPool& own = ThreadPool::Process();
   const int width = std::min(own.Width() * machines.RanksHere(), ProcessCores());
@@ -176,11 +176,11 @@ std::unique_ptr<HexBrickSource> SharedMesh::Field(
 {
   this->OfValues = {};
   const std::shared_ptr<const ElementOctree> tree(this->Cut, &this->Tree());
-  MachineRanks gathering = this->Machines;
+  NodeCommunicator gathering = this->Machines;
   GatheredValues all = GatherNodes(communicator, gathering, piece, count);
   // Where memory cannot be had together any more, leaders still make what others have no octree,
   // or no samples, for: they were agreed on with the mesh.
-  MachineRanks machines = this->Machines;
+  NodeCommunicator machines = this->Machines;
   std::optional<NodalField> field;
   if (where == ValuesOn::Points && this->Known.IsSampled == 0 && all.Memory &&
       gathering.Shares() == machines.Shares())
@@ -225,7 +225,7 @@ void SharedMesh::BringLevels(Communicator& communicator, int count)
   {
     return;
   }
-  MachineRanks machines = this->Machines;
+  NodeCommunicator machines = this->Machines;
   try
   {
     while (this->Cut->LevelCount() < count)
@@ -240,7 +240,7 @@ void SharedMesh::BringLevels(Communicator& communicator, int count)
 }
 
 /// The next one: the octree, and then the points of the mesh that its points are.
-void SharedMesh::BringLevel(Communicator& communicator, MachineRanks& machines)
+void SharedMesh::BringLevel(Communicator& communicator, NodeCommunicator& machines)
 {
   std::optional<HexBricks::Level> made;
   std::optional<OctreeBytes> tree;
@@ -252,7 +252,7 @@ void SharedMesh::BringLevel(Communicator& communicator, MachineRanks& machines)
       tree.emplace(std::shared_ptr<const ElementOctree>(bricks, &bricks->Tree()), true);
     });
   const MachineBytes bytes =
-    FromLeader(communicator, machines, tree ? tree->Count() + made->NodeOfPoint.Bytes() : 0,
+    NodeBroadcast(communicator, machines, tree ? tree->Count() + made->NodeOfPoint.Bytes() : 0,
       [&](char* to)
       {
         tree->WriteTo(to);

@@ -6,9 +6,9 @@
 #include "HexOctree/HexBrickSource.h"
 #include "HexSampling/MeshOptions.h"
 #include "HexSampling/SampledMesh.h"
-#include "Parallel/FromLeader.h"
 #include "Parallel/MeshBytes.h"
 #include "Parallel/MeshGathering.h"
+#include "Parallel/NodeBroadcast.h"
 
 #include <cstdint>
 #include <memory>
@@ -22,8 +22,8 @@ class ThreadPool;
 /// A mesh of hexahedra that lies in pieces on the ranks, as the octree that all of them draw. One
 /// rank of each machine, its leader, finds the octree (or samples the mesh at the boxes of one) and
 /// makes fields of values; the others of the machine wait, and read what it has made. Meanwhile the
-/// leader has as many threads as all of them. Ranks that have no memory together (MachineRanks) all
-/// lead.
+/// leader has as many threads as all of them. Ranks that have no memory together (NodeCommunicator)
+/// all lead.
 class SharedMesh
 {
 public:
@@ -46,7 +46,7 @@ public:
   /// @param machine of this rank
   /// Throws Error on all ranks when the mesh cannot be drawn: see OnLeaders.
   SharedMesh(Communicator& communicator, const HexMesh& piece, ValuesOn where, int brickCells,
-    const MeshOptions& options, const std::string& machine = MachineRanks::ThisMachine());
+    const MeshOptions& options, const std::string& machine = NodeCommunicator::ThisMachine());
   ~SharedMesh();
 
   const Facts& About() const { return this->Known; }
@@ -76,10 +76,10 @@ private:
   std::shared_ptr<const ElementOctree> Find(
     const HexMesh& mesh, ValuesOn where, const MeshOptions& options);
   NodalField MakeField(const NodeArray& values, ValuesOn where, ThreadPool& pool) const;
-  ThreadPool& Threads(const MachineRanks& machines);
-  void BringLevel(Communicator& communicator, MachineRanks& machines);
+  ThreadPool& Threads(const NodeCommunicator& machines);
+  void BringLevel(Communicator& communicator, NodeCommunicator& machines);
 
-  MachineRanks Machines;                ///< as they were when the octree was found
+  NodeCommunicator Machines;            ///< as they were when the octree was found
   HexMesh Mesh;                         ///< on leaders that sample it; without points
   std::shared_ptr<SampledMesh> Sampled; ///< null for octrees, and on ranks that do not lead
   Facts Known;

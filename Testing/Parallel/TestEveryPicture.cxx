@@ -70,7 +70,7 @@ std::vector<FloatImage> DrawFrames(
     balancer.BeginFrame(scene, source);
     FrameStatistics statistics;
     pictures.push_back(DrawDistributed(
-      communicator, scene, &source, balancer.Zones(), Budget, pool, {}, statistics, compositing));
+      communicator, scene, { &source, balancer.Zones(), Budget, pool }, statistics, compositing));
     balancer.EndFrame(communicator);
   }
   return pictures;
@@ -127,8 +127,7 @@ std::string CheckEveryPicture(Communicator& communicator)
       }
     }
   };
-  for (const LoadBalancing mode :
-    { LoadBalancing::Off, LoadBalancing::MeasuredCost })
+  for (const LoadBalancing mode : { LoadBalancing::Off, LoadBalancing::MeasuredCost })
   {
     for (const PixelTransport transport : { PixelTransport::Floats, PixelTransport::WithinOne })
     {

@@ -45,7 +45,7 @@ void Spin(double seconds)
 /// What happens to the rank, among its work.
 void Mishap(const std::string& what, Communicator& communicator)
 {
-  const double limit = MpiPatience::FromEnvironment();
+  const double limit = MpiTimeout::FromEnvironment();
   if (what == "killed")
   {
     std::raise(SIGKILL);
@@ -124,7 +124,7 @@ void DrawAll(Communicator& communicator, const std::string& mishap)
     {
       if (now && unlucky && mishap == "pipeline")
       {
-        Sleep(2.5 * MpiPatience::FromEnvironment());
+        Sleep(2.5 * MpiTimeout::FromEnvironment());
       }
       if (now && mishap == "stopped-elsewhere")
       {
@@ -158,9 +158,9 @@ int main(int argc, char** argv)
   const std::string mishap = argc > 1 ? argv[1] : "";
   {
     const MPI_Comm world = MPI_COMM_WORLD;
-    MpiPatience patience;
-    patience.Tell = [](const std::string&) { std::fprintf(stderr, "told before\n"); };
-    const auto communicator = MakeMpiCommunicator(&world, std::size_t{ 1 } << 30, patience);
+    MpiTimeout timeout;
+    timeout.Tell = [](const std::string&) { std::fprintf(stderr, "told before\n"); };
+    const auto communicator = MakeMpiCommunicator(&world, std::size_t{ 1 } << 30, timeout);
     const bool first = communicator->Rank() == 0;
     DrawAll(*communicator, mishap);
     if (first)

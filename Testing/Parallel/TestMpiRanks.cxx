@@ -5,8 +5,8 @@
 #include "CompositingCases.h"
 
 #include "Base/Error.h"
-#include "Parallel/MachineRanks.h"
 #include "Parallel/MpiCommunicator.h"
+#include "Parallel/NodeCommunicator.h"
 #include "Parallel/SharedMesh.h"
 
 #define OMPI_SKIP_MPICXX 1
@@ -147,7 +147,7 @@ std::string RanksOfThisNode(Communicator& communicator)
 /// Each rank writes its part of memory that all have together, and reads those of the others.
 std::string MemoryOfThisMachine(Communicator& communicator)
 {
-  MachineRanks machines(communicator);
+  NodeCommunicator machines(communicator);
   const auto ranks = static_cast<std::size_t>(communicator.Size());
   constexpr std::size_t part = 100'003;
   const std::shared_ptr<char> memory = machines.Allocate(communicator, ranks * part);

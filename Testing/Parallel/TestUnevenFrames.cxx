@@ -158,7 +158,7 @@ Outcome Tell(Communicator& communicator, const std::vector<float>& values, Story
     }
     FrameStatistics statistics;
     const FloatImage picture = DrawDistributed(
-      communicator, scene, field.Source(), field.Zones(), Budget, pool, {}, statistics);
+      communicator, scene, { field.Source(), field.Zones(), Budget, pool }, statistics);
     outcome.Imbalance.push_back(
       ImbalanceOf(AllGatherValues(communicator, work ? work->DrawSeconds : 1.0)));
     field.EndFrame(communicator);
@@ -172,7 +172,7 @@ Outcome Tell(Communicator& communicator, const std::vector<float>& values, Story
       scene.Work = nullptr;
       FrameStatistics ignored;
       const FloatImage right =
-        DrawDistributed(*alone, scene, &whole, { scene.DomainCells }, Budget, pool, {}, ignored);
+        DrawDistributed(*alone, scene, { &whole, { scene.DomainCells }, Budget, pool }, ignored);
       if (MaxDifference(right, picture) > 1e-5)
       {
         outcome.Wrong = "frame " + std::to_string(frame) + " is not that of one rank";

@@ -32,7 +32,7 @@ banyan::FloatImage DrawOnRanks(
       }
       banyan::FrameStatistics statistics;
       const banyan::FloatImage picture = banyan::DrawDistributed(
-        communicator, scene, &source, zones, std::uint64_t{ 1 } << 24, pool, {}, statistics);
+        communicator, scene, { &source, zones, std::uint64_t{ 1 } << 24, pool }, statistics);
       if (communicator.Rank() == 0)
       {
         image = picture;

@@ -106,7 +106,7 @@ TEST(HexLevelPictures, PlansKeepTheToleranceWithCoarserLevels)
     wish.FinestLevel = FinestLevelFor(scene, most > 0.0 ? 1.0 / most : 0.0, wish.CoarsestLevel);
     EXPECT_EQ(wish.FinestLevel, most > 0.0 ? 3 : 0);
     const SamplingPlan plan = PlanDistributed(
-      *alone, scene, &source, zones, std::uint64_t{ 1 } << 28, pool, {}, wish, statistics);
+      *alone, scene, { &source, zones, std::uint64_t{ 1 } << 28, pool }, wish, statistics);
     ASSERT_TRUE(plan.Samplings);
     EXPECT_GT(*plan.Samplings->UsedLevels().rbegin(), 0);
     RayScene planned = scene;
@@ -155,8 +155,8 @@ TEST(HexLevelPictures, FarPartsAreCoarserAndRanksDrawThePictureOfOne)
           zones.push_back(CellsOfBricks(part, 5, scene.DomainCells.Hi));
         }
         FrameStatistics statistics;
-        const SamplingPlan plan = PlanDistributed(communicator, scene, &source, zones,
-          std::uint64_t{ 1 } << 28, pool, {}, wish, statistics);
+        const SamplingPlan plan = PlanDistributed(communicator, scene,
+          { &source, zones, std::uint64_t{ 1 } << 28, pool }, wish, statistics);
         ASSERT_TRUE(plan.Samplings);
         for (std::size_t i = 0; i < wish.FinestLevelOfTile.size(); ++i)
         {
@@ -173,7 +173,7 @@ TEST(HexLevelPictures, FarPartsAreCoarserAndRanksDrawThePictureOfOne)
         planned.Samplings = plan.Samplings;
         planned.OpacityLimit = plan.OpacityLimit;
         const FloatImage drawn = DrawDistributed(
-          communicator, planned, &source, zones, std::uint64_t{ 1 } << 28, pool, {}, statistics);
+          communicator, planned, { &source, zones, std::uint64_t{ 1 } << 28, pool }, statistics);
         if (communicator.Rank() == 0)
         {
           image = drawn;

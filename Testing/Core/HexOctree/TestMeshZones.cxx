@@ -123,7 +123,7 @@ std::pair<double, double> DrawFrames(
         const std::vector<Box> zones = ZonesInside(balancer.Zones(), scene.DomainCells);
         FrameStatistics statistics;
         const FloatImage picture = DrawDistributed(
-          communicator, scene, &source, zones, std::uint64_t{ 1 } << 24, pool, {}, statistics);
+          communicator, scene, { &source, zones, std::uint64_t{ 1 } << 24, pool }, statistics);
         const double mine = scene.Work ? WorkOf(scene.Work->Total()) : 0.0;
         std::vector<double> all(static_cast<std::size_t>(communicator.Size()));
         communicator.AllGather(&mine, sizeof(mine), all.data());
@@ -153,7 +153,7 @@ TEST(MeshZones, FollowWhatFramesTakeAndChangeNoPicture)
   const auto alone = MakeSelfCommunicator();
   FrameStatistics statistics;
   const FloatImage drawn = DrawDistributed(
-    *alone, scene, &source, { scene.DomainCells }, std::uint64_t{ 1 } << 24, pool, {}, statistics);
+    *alone, scene, { &source, { scene.DomainCells }, std::uint64_t{ 1 } << 24, pool }, statistics);
   for (const int ranks : { 2, 3 })
   {
     DrawFrames(made, LoadBalancing::Off, ranks, drawn);

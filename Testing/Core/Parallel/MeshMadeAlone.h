@@ -63,7 +63,7 @@ struct Alone
   Alone(Communicator& communicator, const Piece& piece, ValuesOn where, int component)
   {
     ThreadPool pool(1);
-    MachineRanks machines(communicator, "");
+    NodeCommunicator machines(communicator, "");
     HexMesh mesh = GatherMesh(communicator, machines, piece.Mesh.Mesh());
     const GatheredValues all =
       GatherNodes(communicator, machines, ArrayOf(piece, where, component), CountOf(piece, where));

@@ -73,8 +73,8 @@ FloatImage Draw(const RayScene& scene, const std::vector<float>& values, int ran
       ThreadPool pool(threads);
       FailingSource source(values, pool, -1);
       FrameStatistics statistics;
-      FloatImage picture = DrawDistributed(communicator, scene, &source, ZonesFor(scene, ranks),
-        Budget, pool, {}, statistics, compositing);
+      FloatImage picture = DrawDistributed(communicator, scene,
+        { &source, ZonesFor(scene, ranks), Budget, pool }, statistics, compositing);
       if (communicator.Rank() == 0)
       {
         drawn = std::move(picture);
@@ -153,7 +153,7 @@ TEST_P(WhileCasting, KeepsTheScheduleWhileNothingMoves)
     {
       ThreadPool pool(1);
       FailingSource source(values, pool, -1);
-      KeptPlan plans;
+      CompositePlanCache plans;
       CompositeOptions options;
       options.Plans = &plans;
       for (std::size_t frame = 0; frame < distances.size(); ++frame)
@@ -161,15 +161,15 @@ TEST_P(WhileCasting, KeepsTheScheduleWhileNothingMoves)
         const RayScene scene = SceneOf(distances[frame]);
         options.Behind = frame == 5 ? scene.Viewport : PixelRect{};
         FrameStatistics statistics;
-        const FloatImage picture = DrawDistributed(communicator, scene, &source,
-          ZonesFor(scene, ranks), Budget, pool, {}, statistics, options);
+        const FloatImage picture = DrawDistributed(communicator, scene,
+          { &source, ZonesFor(scene, ranks), Budget, pool }, statistics, options);
         if (communicator.Rank() == 0)
         {
           EXPECT_TRUE(picture.Pixels == anew[frame].Pixels) << "frame " << frame;
         }
       }
-      EXPECT_EQ(plans.Derived(), ranks > 1 ? 4 : 0);
-      EXPECT_EQ(plans.Kept(), ranks > 1 ? 2 : 0);
+      EXPECT_EQ(plans.Misses(), ranks > 1 ? 4 : 0);
+      EXPECT_EQ(plans.Hits(), ranks > 1 ? 2 : 0);
     });
 }
 
@@ -194,7 +194,7 @@ TEST_P(WhileCasting, AFailureOfOneRankIsThrownOnAll)
           try
           {
             DrawDistributed(
-              communicator, scene, &source, ZonesFor(scene, ranks), 4096, pool, {}, statistics);
+              communicator, scene, { &source, ZonesFor(scene, ranks), 4096, pool }, statistics);
           }
           catch (const Error& error)
           {

@@ -71,7 +71,7 @@ Outcome DrawSeries(const EncodedField& field, const RayScene& scene, int ranks,
       ThreadPool pool(1);
       FrameStatistics statistics;
       const FloatImage picture = DrawDistributed(
-        communicator, scene, &source, zones, Budget, pool, {}, statistics, compositing);
+        communicator, scene, { &source, zones, Budget, pool }, statistics, compositing);
       if (communicator.Rank() == 0)
       {
         outcome = { picture, statistics };
@@ -217,8 +217,10 @@ TEST(DistributedFrame, AFailureOnOneRankIsThrownOnAll)
       const std::vector<Box> zones(4, Box{});
       try
       {
-        DrawDistributed(communicator, scene, &source, zones, Budget, pool,
-          communicator.Rank() == 2 ? "The disk of this rank is gone." : "", statistics);
+        DrawDistributed(communicator, scene,
+          { &source, zones, Budget, pool,
+            communicator.Rank() == 2 ? "The disk of this rank is gone." : "" },
+          statistics);
       }
       catch (const Error& error)
       {

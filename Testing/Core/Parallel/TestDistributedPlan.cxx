@@ -86,8 +86,8 @@ TEST_F(DistributedPlans, PilotsAreThePicturesOfOneRankOnEveryRank)
           ThreadPool pool(1);
           ArrayBrickSource source = this->MakeSource(pool);
           FrameStatistics took;
-          const FloatImage picture =
-            DrawDistributedPilot(communicator, scene, &source, ZonesOf(ranks), Budget, pool, took);
+          const FloatImage picture = DrawDistributedPilot(
+            communicator, scene, { &source, ZonesOf(ranks), Budget, pool }, took);
           const std::lock_guard<std::mutex> lock(mutex);
           EXPECT_EQ(took.BytesComposited > 0, ranks > 1);
           EXPECT_EQ(picture.Rect, scene.Viewport);
@@ -119,7 +119,7 @@ TEST_F(DistributedPlans, ArePlansOfOneRank)
         ArrayBrickSource source = this->MakeSource(pool);
         FrameStatistics took;
         const SamplingPlan plan = PlanDistributed(
-          communicator, this->Scene, &source, ZonesOf(ranks), Budget, pool, {}, this->Wish, took);
+          communicator, this->Scene, { &source, ZonesOf(ranks), Budget, pool }, this->Wish, took);
         const std::lock_guard<std::mutex> lock(mutex);
         ASSERT_TRUE(plan.Samplings);
         EXPECT_GT(took.SamplesTaken, 0);
@@ -179,7 +179,7 @@ TEST_F(DistributedPlans, AreThoseOfOneRankWhereRaysEndEarly)
           ArrayBrickSource source = this->MakeSource(pool);
           FrameStatistics took;
           const SamplingPlan plan = PlanDistributed(
-            communicator, scene, &source, ZonesOf(ranks), Budget, pool, {}, this->Wish, took);
+            communicator, scene, { &source, ZonesOf(ranks), Budget, pool }, this->Wish, took);
           const std::lock_guard<std::mutex> lock(mutex);
           ASSERT_TRUE(plan.Samplings);
           if (ranks == 1)
@@ -229,7 +229,7 @@ TEST_F(DistributedPlans, PicturesWithFewRaysAreThoseOfOneRank)
           ArrayBrickSource source = this->MakeSource(pool);
           FrameStatistics took;
           const FloatImage picture =
-            DrawDistributed(communicator, scene, &source, ZonesOf(ranks), Budget, pool, {}, took);
+            DrawDistributed(communicator, scene, { &source, ZonesOf(ranks), Budget, pool }, took);
           if (communicator.Rank() != 0)
           {
             return;
@@ -264,7 +264,7 @@ TEST_F(DistributedPlans, AFailureOnOneRankIsThrownOnAll)
       {
         SamplingWish wish = this->Wish;
         wish.CoarsestLevel = 0;
-        PlanDistributed(communicator, this->Scene, mine, ZonesOf(4), Budget, pool, {}, wish, took);
+        PlanDistributed(communicator, this->Scene, { mine, ZonesOf(4), Budget, pool }, wish, took);
       }
       catch (const Error& error)
       {

@@ -94,7 +94,7 @@ Outcome DrawFrames(const EncodedField& field, LoadBalancing mode, int ranks, boo
         balancer.BeginFrame(scene, source);
         FrameStatistics statistics;
         FloatImage picture = DrawDistributed(
-          communicator, scene, &source, balancer.Zones(), Budget, pool, {}, statistics);
+          communicator, scene, { &source, balancer.Zones(), Budget, pool }, statistics);
         balancer.EndFrame(communicator);
         if (communicator.Rank() == 0)
         {

@@ -32,7 +32,7 @@ TEST(MeshGathering, PiecesAreTheMeshThatTheyWereCutFrom)
       {
         const Piece piece = mesh_pieces::PieceOf(whole, communicator);
         const HexMesh mine = piece.Mesh.Mesh();
-        MachineRanks machines(communicator, std::to_string(communicator.Rank() / onEach));
+        NodeCommunicator machines(communicator, std::to_string(communicator.Rank() / onEach));
         const HexMesh mesh = GatherMesh(communicator, machines, mine);
         EXPECT_EQ(machines.Shares(), onEach > 1);
         EXPECT_EQ(machines.WhyNot(), "");
@@ -73,7 +73,7 @@ TEST(MeshGathering, AStrayPointIsSaidOnAllRanks)
       }
       try
       {
-        MachineRanks machines(communicator);
+        NodeCommunicator machines(communicator);
         GatherMesh(communicator, machines, piece.Mesh.Mesh());
       }
       catch (const Error& error)

@@ -67,7 +67,7 @@ Outcome DrawFrames(const std::vector<T>& values, const Case& drawn, int ranks)
         field.BeginFrame(communicator, scene, drawn.Budget);
         FrameStatistics statistics;
         FloatImage picture = DrawDistributed(
-          communicator, scene, field.Source(), field.Zones(), Budget, pool, {}, statistics);
+          communicator, scene, { field.Source(), field.Zones(), Budget, pool }, statistics);
         field.EndFrame(communicator);
         const std::lock_guard<std::mutex> lock(mutex);
         outcome.MostHeld = std::max(outcome.MostHeld, field.FetchedBytes());
@@ -98,7 +98,7 @@ std::vector<FloatImage> PicturesOfOne(const std::vector<T>& values, bool shaded)
     FrameStatistics statistics;
     const auto alone = MakeSelfCommunicator();
     pictures.push_back(
-      DrawDistributed(*alone, scene, &source, { scene.DomainCells }, Budget, pool, {}, statistics));
+      DrawDistributed(*alone, scene, { &source, { scene.DomainCells }, Budget, pool }, statistics));
   }
   return pictures;
 }
@@ -127,8 +127,7 @@ TEST_P(EveryRankCountOfPieces, DrawsThePicturesOfOneRank)
   for (const bool shaded : { false, true })
   {
     const std::vector<FloatImage> alone = PicturesOfOne(values, shaded);
-    for (const LoadBalancing mode :
-      { LoadBalancing::Off, LoadBalancing::MeasuredCost })
+    for (const LoadBalancing mode : { LoadBalancing::Off, LoadBalancing::MeasuredCost })
     {
       SCOPED_TRACE(::testing::Message() << "mode " << static_cast<int>(mode) << shaded);
       const Outcome together = DrawFrames(values, { Deal::Blocks, mode, shaded }, GetParam());
@@ -155,8 +154,7 @@ TEST_P(EveryDeal, DrawsThePicturesOfOneRank)
     const std::vector<FloatImage> alone = PicturesOfOne(values, shaded);
     for (const int ranks : { 2, 6 })
     {
-      for (const LoadBalancing mode :
-        { LoadBalancing::Off, LoadBalancing::MeasuredCost })
+      for (const LoadBalancing mode : { LoadBalancing::Off, LoadBalancing::MeasuredCost })
       {
         SCOPED_TRACE(::testing::Message() << ranks << " ranks, mode " << static_cast<int>(mode));
         ExpectSame(alone, DrawFrames(values, { GetParam(), mode, shaded }, ranks).Pictures, 1e-5);

@@ -63,7 +63,7 @@ std::vector<FloatImage> PicturesOfOne(
     FrameStatistics statistics;
     const auto alone = MakeSelfCommunicator();
     pictures.push_back(
-      DrawDistributed(*alone, scene, &source, { scene.DomainCells }, Budget, pool, {}, statistics));
+      DrawDistributed(*alone, scene, { &source, { scene.DomainCells }, Budget, pool }, statistics));
   }
   return pictures;
 }
@@ -89,7 +89,7 @@ void ExpectPicturesOfOne(const std::vector<T>& values, Deal deal, LoadBalancing 
         field.BringLevels(communicator, scene, CoarsestLevel, Budget, pool);
         FrameStatistics statistics;
         const FloatImage picture = DrawDistributed(
-          communicator, scene, field.Source(), field.Zones(), Budget, pool, {}, statistics);
+          communicator, scene, { field.Source(), field.Zones(), Budget, pool }, statistics);
         field.EndFrame(communicator);
         if (communicator.Rank() == 0)
         {
@@ -174,7 +174,7 @@ TEST(PieceLevels, PiecesWithAHoleAreDrawnWhereTheyAreKnown)
       field.BringLevels(communicator, scene, CoarsestLevel, Budget, pool);
       FrameStatistics statistics;
       const FloatImage picture = DrawDistributed(
-        communicator, scene, field.Source(), field.Zones(), Budget, pool, {}, statistics);
+        communicator, scene, { field.Source(), field.Zones(), Budget, pool }, statistics);
       EXPECT_GT(statistics.SamplesTaken, 0);
       for (const glm::vec4& pixel : picture.Pixels)
       {

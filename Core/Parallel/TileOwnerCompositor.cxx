@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/SlicFrame.h"
+#include "Parallel/TileOwnerCompositor.h"
 
 #include "Parallel/FragmentMessage.h"
 
@@ -17,16 +17,17 @@ FloatImage Transparent(const PixelRect& rect)
 
 } // namespace
 
-SlicFrame::SlicFrame(Communicator& communicator, const std::vector<int>& frontToBack,
-  const PixelRect& viewport, const CompositeOptions& options, CompositeStatistics& statistics)
+TileOwnerCompositor::TileOwnerCompositor(Communicator& communicator,
+  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
+  CompositeStatistics& statistics)
   : Ranks(communicator)
   , Order(frontToBack)
   , Options(options)
   , Statistics(statistics)
   , Ordered(options.Combine == Combination::Over)
   , Pack(Packs(options))
-  , SharedPlan(
-      KeptPlan::From(options.Plans, options.Footprints, viewport, options.Behind, this->Ordered))
+  , SharedPlan(CompositePlanCache::From(
+      options.Plans, options.Footprints, viewport, options.Behind, this->Ordered))
   , Plan(*this->SharedPlan)
   , Position(frontToBack.size())
   , Parts(static_cast<std::size_t>(this->Plan.Chunks))
@@ -37,7 +38,7 @@ SlicFrame::SlicFrame(Communicator& communicator, const std::vector<int>& frontTo
   }
 }
 
-SlicFrame::~SlicFrame()
+TileOwnerCompositor::~TileOwnerCompositor()
 {
   if (!this->Finished)
   {
@@ -51,7 +52,7 @@ SlicFrame::~SlicFrame()
   }
 }
 
-void SlicFrame::Begin()
+void TileOwnerCompositor::Begin()
 {
   if (this->Ranks.Rank() == 0)
   {
@@ -60,8 +61,8 @@ void SlicFrame::Begin()
     {
       for (int rank = 1; rank < this->Ranks.Size(); ++rank)
       {
-        this->Expect(rank, SlicMessage::Direct, chunk);
-        this->Expect(rank, SlicMessage::Result, chunk);
+        this->Expect(rank, TileMessage::Direct, chunk);
+        this->Expect(rank, TileMessage::Result, chunk);
       }
     }
   }
@@ -71,7 +72,7 @@ void SlicFrame::Begin()
   }
 }
 
-void SlicFrame::Add(int chunk, const FloatImage* mine)
+void TileOwnerCompositor::Add(int chunk, const FloatImage* mine)
 {
   Part& part = this->Parts[chunk];
   part.Added = true;
@@ -99,7 +100,7 @@ void SlicFrame::Add(int chunk, const FloatImage* mine)
   }
 }
 
-void SlicFrame::Poll()
+void TileOwnerCompositor::Poll()
 {
   Communicator::Arrival arrival;
   while (this->Ranks.TakeAnyWhole(arrival))
@@ -109,7 +110,7 @@ void SlicFrame::Poll()
   this->SendResults();
 }
 
-FloatImage SlicFrame::Finish()
+FloatImage TileOwnerCompositor::Finish()
 {
   this->SendResults();
   while (this->Open > 0)
@@ -123,13 +124,13 @@ FloatImage SlicFrame::Finish()
 }
 
 /// Posts the receipt of a message unless it has no parts.
-bool SlicFrame::Expect(int from, SlicMessage sort, int chunk)
+bool TileOwnerCompositor::Expect(int from, TileMessage sort, int chunk)
 {
   std::size_t capacity = 0;
   this->ForEachPart(from, this->Ranks.Rank(), sort, chunk,
     [&](int, Kind kind, const CompositePlan::Region& region)
     {
-      const int parts = sort == SlicMessage::Result && kind == Kind::Split ? 2 : 1;
+      const int parts = sort == TileMessage::Result && kind == Kind::Split ? 2 : 1;
       capacity += parts * FragmentBytesAtMost(region);
     });
   if (capacity == 0)
@@ -138,13 +139,12 @@ bool SlicFrame::Expect(int from, SlicMessage sort, int chunk)
   }
   this->Expected.push_back(
     { from, sort, chunk, std::unique_ptr<std::uint8_t[]>(new std::uint8_t[capacity]), 0, false });
-  this->Ranks.ReceiveWhole(
-    from, TagOfSlic(sort, chunk), this->Expected.back().Data.get(), capacity);
+  this->Ranks.ReceiveWhole(from, TagOf(sort, chunk), this->Expected.back().Data.get(), capacity);
   ++this->Open;
   return true;
 }
 
-void SlicFrame::ExpectAsOwner()
+void TileOwnerCompositor::ExpectAsOwner()
 {
   const int self = this->Ranks.Rank();
   for (int chunk = 0; chunk < this->Plan.Chunks; ++chunk)
@@ -158,7 +158,7 @@ void SlicFrame::ExpectAsOwner()
     missing = 0;
     for (int rank = 1; rank < this->Ranks.Size(); ++rank)
     {
-      missing += rank != self && this->Expect(rank, SlicMessage::Shared, chunk) ? 1 : 0;
+      missing += rank != self && this->Expect(rank, TileMessage::Shared, chunk) ? 1 : 0;
     }
   }
 }
@@ -167,7 +167,7 @@ void SlicFrame::ExpectAsOwner()
 /// @param failed sends an empty one then
 /// @param write called as write(writer, tile, kind, region) for each part
 template <typename Write>
-void SlicFrame::Send(int to, SlicMessage sort, int chunk, bool failed, const Write& write)
+void TileOwnerCompositor::Send(int to, TileMessage sort, int chunk, bool failed, const Write& write)
 {
   FragmentWriter writer;
   bool any = false;
@@ -186,18 +186,18 @@ void SlicFrame::Send(int to, SlicMessage sort, int chunk, bool failed, const Wri
   }
   this->Outgoing.push_back(std::move(writer.Bytes));
   const std::vector<std::uint8_t>& kept = this->Outgoing.back();
-  this->Ranks.SendWhole(to, TagOfSlic(sort, chunk), kept.data(), kept.size());
+  this->Ranks.SendWhole(to, TagOf(sort, chunk), kept.data(), kept.size());
   this->Statistics.Sent(kept.size());
 }
 
-void SlicFrame::SendDirect(int chunk, const FloatImage* mine)
+void TileOwnerCompositor::SendDirect(int chunk, const FloatImage* mine)
 {
-  this->Send(0, SlicMessage::Direct, chunk, !mine,
+  this->Send(0, TileMessage::Direct, chunk, !mine,
     [&](FragmentWriter& writer, int, Kind kind, const CompositePlan::Region& region)
     { writer.Append(region, *mine, this->DirectFormat(kind), this->Pack); });
 }
 
-void SlicFrame::SendShared(int chunk, const FloatImage* mine)
+void TileOwnerCompositor::SendShared(int chunk, const FloatImage* mine)
 {
   // Everybody begins with another owner, so that not all send to the same one at once.
   const int ranks = this->Ranks.Size();
@@ -212,7 +212,7 @@ void SlicFrame::SendShared(int chunk, const FloatImage* mine)
     const int to = (self + i) % ranks;
     if (owns[to + 1])
     {
-      this->Send(to, SlicMessage::Shared, chunk, !mine,
+      this->Send(to, TileMessage::Shared, chunk, !mine,
         [&](FragmentWriter& writer, int tile, Kind kind, const CompositePlan::Region& region)
         { writer.Append(region, *mine, this->SharedFormat(kind, tile), this->Pack); });
     }
@@ -220,7 +220,7 @@ void SlicFrame::SendShared(int chunk, const FloatImage* mine)
 }
 
 /// Of a message that has arrived.
-void SlicFrame::Take(const Communicator::Arrival& arrival)
+void TileOwnerCompositor::Take(const Communicator::Arrival& arrival)
 {
   Message& message = this->Expected[arrival.Posted];
   message.Bytes = arrival.Bytes;
@@ -239,7 +239,7 @@ void SlicFrame::Take(const Communicator::Arrival& arrival)
   }
 }
 
-void SlicFrame::BlendAtRoot(Message& message)
+void TileOwnerCompositor::BlendAtRoot(Message& message)
 {
   FragmentReader reader(message.Data.get(), message.Bytes);
   const auto blend = [&](const CompositePlan::Region& region, bool before)
@@ -253,7 +253,7 @@ void SlicFrame::BlendAtRoot(Message& message)
     this->ForEachPart(message.From, 0, message.Sort, message.Chunk,
       [&](int, Kind kind, const CompositePlan::Region& region)
       {
-        if (message.Sort == SlicMessage::Direct)
+        if (message.Sort == TileMessage::Direct)
         {
           blend(region, this->BeforeRoot(message.From));
           return;
@@ -269,7 +269,7 @@ void SlicFrame::BlendAtRoot(Message& message)
 }
 
 /// The pixels of the root need not go anywhere.
-void SlicFrame::CopyOwn(int chunk, const FloatImage& mine)
+void TileOwnerCompositor::CopyOwn(int chunk, const FloatImage& mine)
 {
   for (const int tile : this->Plan.TilesOfRank[0])
   {
@@ -285,21 +285,21 @@ void SlicFrame::CopyOwn(int chunk, const FloatImage& mine)
 }
 
 /// Written and read as others' pixels are, but as floats: nothing is lost.
-void SlicFrame::KeepOwn(int chunk, const FloatImage& mine)
+void TileOwnerCompositor::KeepOwn(int chunk, const FloatImage& mine)
 {
   const int self = this->Ranks.Rank();
   FragmentWriter writer;
-  this->ForEachPart(self, self, SlicMessage::Shared, chunk,
+  this->ForEachPart(self, self, TileMessage::Shared, chunk,
     [&](int, Kind, const CompositePlan::Region& region)
     { writer.Append(region, mine, FragmentFormat{}, false); });
   this->Parts[chunk].Own = std::move(writer.Bytes);
 }
 
-void SlicFrame::BlendFrom(
+void TileOwnerCompositor::BlendFrom(
   int from, int chunk, const std::uint8_t* data, std::size_t bytes, std::vector<Halves>& tiles)
 {
   FragmentReader reader(data, bytes);
-  this->ForEachPart(from, this->Ranks.Rank(), SlicMessage::Shared, chunk,
+  this->ForEachPart(from, this->Ranks.Rank(), TileMessage::Shared, chunk,
     [&](int tile, Kind kind, const CompositePlan::Region& region)
     {
       Halves& halves = tiles[this->IndexOfTile[tile]];
@@ -310,7 +310,7 @@ void SlicFrame::BlendFrom(
 }
 
 /// Of all chunks that are complete.
-void SlicFrame::SendResults()
+void TileOwnerCompositor::SendResults()
 {
   for (std::size_t chunk = 0; chunk < this->Parts.size(); ++chunk)
   {
@@ -324,7 +324,7 @@ void SlicFrame::SendResults()
 }
 
 /// Blends the tiles that this rank owns.
-std::vector<SlicFrame::Halves> SlicFrame::BlendTiles(int chunk)
+std::vector<TileOwnerCompositor::Halves> TileOwnerCompositor::BlendTiles(int chunk)
 {
   const int self = this->Ranks.Rank();
   std::vector<Halves> tiles;
@@ -367,11 +367,11 @@ std::vector<SlicFrame::Halves> SlicFrame::BlendTiles(int chunk)
   return tiles;
 }
 
-void SlicFrame::SendResult(int chunk)
+void TileOwnerCompositor::SendResult(int chunk)
 {
   const bool failed = this->Parts[chunk].Failed;
   const std::vector<Halves> tiles = failed ? std::vector<Halves>{} : this->BlendTiles(chunk);
-  this->Send(0, SlicMessage::Result, chunk, failed,
+  this->Send(0, TileMessage::Result, chunk, failed,
     [&](FragmentWriter& writer, int tile, Kind kind, const CompositePlan::Region& region)
     {
       const Halves& halves = tiles[this->IndexOfTile[tile]];
@@ -383,13 +383,13 @@ void SlicFrame::SendResult(int chunk)
     });
 }
 
-FloatImage CompositeSlic(Communicator& communicator, const FloatImage& mine,
+FloatImage CompositeByTileOwners(Communicator& communicator, const FloatImage& mine,
   const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
   CompositeStatistics& statistics)
 {
-  SlicFrame frame(communicator, frontToBack, viewport, options, statistics);
+  TileOwnerCompositor frame(communicator, frontToBack, viewport, options, statistics);
   frame.Begin();
-  for (int chunk = 0; chunk < frame.Schedule().Chunks; ++chunk)
+  for (int chunk = 0; chunk < frame.GetPlan().Chunks; ++chunk)
   {
     frame.Add(chunk, &mine);
   }

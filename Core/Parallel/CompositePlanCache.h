@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Parallel_KeptPlan_h
-#define banyan_Parallel_KeptPlan_h
+#ifndef banyan_Parallel_CompositePlanCache_h
+#define banyan_Parallel_CompositePlanCache_h
 
 #include "Parallel/CompositePlan.h"
 
@@ -13,7 +13,7 @@ namespace banyan
 /// The plan of the last frame: it is that of the next one too, where neither the camera nor zones
 /// have moved. Each rank keeps its own; what it gives out is what PlanCompositing would derive, so
 /// ranks need not agree about it.
-class KeptPlan
+class CompositePlanCache
 {
 public:
   /// The arguments are those of PlanCompositing.
@@ -21,17 +21,17 @@ public:
     const PixelRect& viewport, const PixelRect& behind, bool ordered);
 
   /// The same of a plan that is kept nowhere, where `plans` is null.
-  static std::shared_ptr<const CompositePlan> From(KeptPlan* plans,
+  static std::shared_ptr<const CompositePlan> From(CompositePlanCache* plans,
     const std::vector<Footprint>& footprints, const PixelRect& viewport, const PixelRect& behind,
     bool ordered)
   {
-    KeptPlan once;
+    CompositePlanCache once;
     return (plans ? *plans : once).Of(footprints, viewport, behind, ordered);
   }
 
-  /// How often a plan was derived, and how often the last one would do.
-  std::int64_t Derived() const { return this->TimesDerived; }
-  std::int64_t Kept() const { return this->TimesKept; }
+  /// How often a plan was derived, and how often the last one was used again.
+  std::int64_t Misses() const { return this->MissCount; }
+  std::int64_t Hits() const { return this->HitCount; }
 
 private:
   std::shared_ptr<const CompositePlan> Last; ///< of the following
@@ -39,8 +39,8 @@ private:
   PixelRect Viewport;
   PixelRect Behind;
   bool Ordered = false;
-  std::int64_t TimesDerived = 0;
-  std::int64_t TimesKept = 0;
+  std::int64_t MissCount = 0;
+  std::int64_t HitCount = 0;
 };
 
 } // namespace banyan

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Parallel_FromLeader_h
-#define banyan_Parallel_FromLeader_h
+#ifndef banyan_Parallel_NodeBroadcast_h
+#define banyan_Parallel_NodeBroadcast_h
 
-#include "Parallel/MachineRanks.h"
+#include "Parallel/NodeCommunicator.h"
 
 #include <cstddef>
 #include <functional>
@@ -19,7 +19,7 @@ void OnRanks(Communicator& communicator, bool mine, const std::function<void()>&
 
 /// The same for those who lead a machine.
 void OnLeaders(
-  Communicator& communicator, const MachineRanks& machines, const std::function<void()>& work);
+  Communicator& communicator, const NodeCommunicator& machines, const std::function<void()>& work);
 
 /// Bytes that all ranks of a machine read.
 struct MachineBytes
@@ -35,8 +35,8 @@ struct MachineBytes
 /// @param bytes that leaders write, the same on all of them; without effect on other ranks
 /// @param write throws nothing: the others wait already
 /// Throws Error on all ranks when there is not enough memory.
-MachineBytes FromLeader(Communicator& communicator, MachineRanks& machines, std::size_t bytes,
-  const std::function<void(char*)>& write);
+MachineBytes NodeBroadcast(Communicator& communicator, NodeCommunicator& machines,
+  std::size_t bytes, const std::function<void(char*)>& write);
 
 } // namespace banyan
 

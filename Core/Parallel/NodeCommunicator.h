@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Parallel_MachineRanks_h
-#define banyan_Parallel_MachineRanks_h
+#ifndef banyan_Parallel_NodeCommunicator_h
+#define banyan_Parallel_NodeCommunicator_h
 
 #include "Parallel/Communicator.h"
 
@@ -19,7 +19,7 @@ namespace banyan
 /// is gone with the last process that has it, however that ends. Others open it below /proc. All of
 /// it is there before it is written to: what does not fit is an Error, not a signal.
 /// @par Limits: Linux. Ranks in containers of their own count as on machines of their own.
-class MachineRanks
+class NodeCommunicator
 {
 public:
   /// The same for processes that can have memory together: the running kernel, the namespace of
@@ -29,7 +29,7 @@ public:
 
   /// Collective.
   /// @param machine of this rank
-  explicit MachineRanks(Communicator& communicator, const std::string& machine = ThisMachine());
+  explicit NodeCommunicator(Communicator& communicator, const std::string& machine = ThisMachine());
 
   /// Whether some machine has several ranks, and they have memory together.
   bool Shares() const { return this->Sharing; }

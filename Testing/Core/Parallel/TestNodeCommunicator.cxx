@@ -3,7 +3,7 @@
 #include "Base/AvailableMemory.h"
 #include "Base/Error.h"
 #include "Parallel/FilesInMemory.h"
-#include "Parallel/MachineRanks.h"
+#include "Parallel/NodeCommunicator.h"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ std::ptrdiff_t OpenFiles()
   return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
 }
 
-TEST(MachineRanks, MemoryIsThereOncePerMachine)
+TEST(NodeCommunicator, MemoryIsThereOncePerMachine)
 {
   const std::ptrdiff_t openBefore = OpenFiles();
   for (const int ranks : { 2, 3, 5, 8 })
@@ -37,7 +37,7 @@ TEST(MachineRanks, MemoryIsThereOncePerMachine)
         [&](Communicator& communicator)
         {
           const int self = communicator.Rank();
-          MachineRanks machines(communicator, std::to_string(self / perMachine));
+          NodeCommunicator machines(communicator, std::to_string(self / perMachine));
           EXPECT_EQ(machines.Shares(), machineCount < ranks);
           EXPECT_EQ(machines.Leads(), self % perMachine == 0);
           EXPECT_EQ(machines.Leaders().size(), static_cast<std::size_t>(machineCount));
@@ -63,27 +63,27 @@ TEST(MachineRanks, MemoryIsThereOncePerMachine)
   }
 }
 
-TEST(MachineRanks, RanksWithoutANameAreOnTheirOwn)
+TEST(NodeCommunicator, RanksWithoutANameAreOnTheirOwn)
 {
   RunOnSimulatedRanks(3,
     [](Communicator& communicator)
     {
-      const MachineRanks machines(communicator, "");
+      const NodeCommunicator machines(communicator, "");
       EXPECT_FALSE(machines.Shares());
       EXPECT_TRUE(machines.Leads());
-      const MachineRanks named(communicator);
+      const NodeCommunicator named(communicator);
       EXPECT_TRUE(named.Shares());
       EXPECT_EQ(named.LeaderOf(communicator.Rank()), 0);
     });
 }
 
-TEST(MachineRanks, WhatCannotBeHadTogetherEachRankHasForItself)
+TEST(NodeCommunicator, WhatCannotBeHadTogetherEachRankHasForItself)
 {
   const LongestFile limit(4096);
   RunOnSimulatedRanks(4,
     [](Communicator& communicator)
     {
-      MachineRanks machines(communicator, std::to_string(communicator.Rank() / 2));
+      NodeCommunicator machines(communicator, std::to_string(communicator.Rank() / 2));
       const std::shared_ptr<char> small = machines.Allocate(communicator, 4096);
       EXPECT_TRUE(machines.Shares());
       const std::shared_ptr<char> memory = machines.Allocate(communicator, 5000);
@@ -96,7 +96,7 @@ TEST(MachineRanks, WhatCannotBeHadTogetherEachRankHasForItself)
     });
 }
 
-TEST(MachineRanks, WhatEachRankOfAMachineHasForItselfIsTakenSoManyTimes)
+TEST(NodeCommunicator, WhatEachRankOfAMachineHasForItselfIsTakenSoManyTimes)
 {
   // Enough for one, and not for three; nobody takes it: a file of that size is not allowed.
   const std::size_t bytes = AvailableMemory() / 2;
@@ -105,7 +105,7 @@ TEST(MachineRanks, WhatEachRankOfAMachineHasForItselfIsTakenSoManyTimes)
   RunOnSimulatedRanks(3,
     [&](Communicator& communicator)
     {
-      MachineRanks machines(communicator);
+      NodeCommunicator machines(communicator);
       try
       {
         machines.Allocate(communicator, bytes);
@@ -119,13 +119,13 @@ TEST(MachineRanks, WhatEachRankOfAMachineHasForItselfIsTakenSoManyTimes)
   EXPECT_EQ(refused, 3);
 }
 
-TEST(MachineRanks, TooMuchIsAnErrorOnAllRanks)
+TEST(NodeCommunicator, TooMuchIsAnErrorOnAllRanks)
 {
   std::atomic<int> refused{ 0 };
   RunOnSimulatedRanks(3,
     [&](Communicator& communicator)
     {
-      MachineRanks machines(communicator);
+      NodeCommunicator machines(communicator);
       try
       {
         machines.Allocate(communicator, std::size_t{ 1 } << 52);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Parallel_SlicParts_h
-#define banyan_Parallel_SlicParts_h
+#ifndef banyan_Parallel_TileOwnerMessages_h
+#define banyan_Parallel_TileOwnerMessages_h
 
 #include "Parallel/CompositePlan.h"
 
@@ -9,8 +9,8 @@
 namespace banyan
 {
 
-/// What the messages of SLIC are for.
-enum class SlicMessage
+/// Which message it is; README.md draws them.
+enum class TileMessage
 {
   Direct, ///< pixels that nobody else but the root draws, to the root
   Shared, ///< to the owner of a tile
@@ -18,7 +18,7 @@ enum class SlicMessage
 };
 
 /// One per sort of message and chunk.
-inline int TagOfSlic(SlicMessage sort, int chunk)
+inline int TagOf(TileMessage sort, int chunk)
 {
   constexpr int first = 64; // others use lower ones
   return first + 3 * chunk + static_cast<int>(sort);
@@ -28,14 +28,14 @@ inline int TagOfSlic(SlicMessage sort, int chunk)
 /// it, and leaves out the empty ones. Sender and receiver alike.
 /// @param region memory to use
 template <typename Action>
-void ForEachSlicPart(const CompositePlan& plan, int from, int to, SlicMessage sort, int chunk,
+void ForEachRegion(const CompositePlan& plan, int from, int to, TileMessage sort, int chunk,
   CompositePlan::Region& region, const Action& action)
 {
-  const bool result = sort == SlicMessage::Result;
+  const bool result = sort == TileMessage::Result;
   for (const int index : result ? plan.TilesOfChunk[chunk] : plan.TilesOfRank[from])
   {
     const CompositePlan::Tile& tile = plan.Tiles[index];
-    if (tile.Chunk != chunk || (sort == SlicMessage::Shared && tile.Owner != to) ||
+    if (tile.Chunk != chunk || (sort == TileMessage::Shared && tile.Owner != to) ||
         (result && tile.Owner != from))
     {
       continue;
@@ -51,7 +51,7 @@ void ForEachSlicPart(const CompositePlan& plan, int from, int to, SlicMessage so
       {
         plan.ResultRegion(index, kind, region);
       }
-      else if (sort == SlicMessage::Direct)
+      else if (sort == TileMessage::Direct)
       {
         plan.DirectRegion(from, index, kind, region);
       }

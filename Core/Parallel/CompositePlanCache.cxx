@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/KeptPlan.h"
+#include "Parallel/CompositePlanCache.h"
 
 namespace banyan
 {
 
-std::shared_ptr<const CompositePlan> KeptPlan::Of(const std::vector<Footprint>& footprints,
-  const PixelRect& viewport, const PixelRect& behind, bool ordered)
+std::shared_ptr<const CompositePlan> CompositePlanCache::Of(
+  const std::vector<Footprint>& footprints, const PixelRect& viewport, const PixelRect& behind,
+  bool ordered)
 {
   if (this->Last && this->Ordered == ordered && this->Viewport == viewport &&
       this->Behind == behind && this->Footprints == footprints)
   {
-    ++this->TimesKept;
+    ++this->HitCount;
     return this->Last;
   }
   this->Last.reset(); // should deriving fail, nothing is kept
@@ -20,7 +21,7 @@ std::shared_ptr<const CompositePlan> KeptPlan::Of(const std::vector<Footprint>& 
   this->Viewport = viewport;
   this->Behind = behind;
   this->Ordered = ordered;
-  ++this->TimesDerived;
+  ++this->MissCount;
   return this->Last;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/FromLeader.h"
+#include "Parallel/NodeBroadcast.h"
 
 #include "Base/Error.h"
 
@@ -36,13 +36,13 @@ void OnRanks(Communicator& communicator, bool mine, const std::function<void()>&
 }
 
 void OnLeaders(
-  Communicator& communicator, const MachineRanks& machines, const std::function<void()>& work)
+  Communicator& communicator, const NodeCommunicator& machines, const std::function<void()>& work)
 {
   OnRanks(communicator, machines.Leads(), work);
 }
 
-MachineBytes FromLeader(Communicator& communicator, MachineRanks& machines, std::size_t bytes,
-  const std::function<void(char*)>& write)
+MachineBytes NodeBroadcast(Communicator& communicator, NodeCommunicator& machines,
+  std::size_t bytes, const std::function<void(char*)>& write)
 {
   // Those who lead now: each rank does when memory cannot be had together.
   std::vector<int> leaders;

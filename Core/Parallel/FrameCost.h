@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Parallel_FrameWork_h
-#define banyan_Parallel_FrameWork_h
+#ifndef banyan_Parallel_FrameCost_h
+#define banyan_Parallel_FrameCost_h
 
 #include "Parallel/BrickCosts.h"
 #include "Parallel/Communicator.h"
@@ -32,7 +32,7 @@ BrickCosts ViewCosts(const RayScene& scene, const glm::ivec3& cells, int blockEd
 double WorkOf(const DrawnWork& took);
 
 /// What all ranks did for a frame.
-struct FrameWork
+struct FrameCost
 {
   std::vector<RankWork> Ranks;
   BrickCosts Blocks; ///< work by blocks of cells
@@ -42,11 +42,11 @@ struct FrameWork
 /// @param zones of the frame, in cells
 /// @param view ViewCosts of the frame: what a brick took is divided among its blocks by what is
 /// seen
-FrameWork GatherWork(Communicator& communicator, const BrickWork& mine,
+FrameCost GatherCost(Communicator& communicator, const BrickWork& mine,
   const std::vector<Box>& zones, const BrickCosts& view);
 
 /// The same on one rank, from what each of several did.
-FrameWork SumWork(const std::vector<BrickWork>& ranks, const BrickCosts& view);
+FrameCost SumCost(const std::vector<BrickWork>& ranks, const BrickCosts& view);
 
 } // namespace banyan
 

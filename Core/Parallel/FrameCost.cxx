@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/FrameWork.h"
+#include "Parallel/FrameCost.h"
 
 #include "Base/Error.h"
 #include "Render/VisibleBricks.h"
@@ -244,9 +244,9 @@ double WorkOf(const DrawnWork& took)
          SamplesPerRay * took.Rays;
 }
 
-FrameWork SumWork(const std::vector<BrickWork>& ranks, const BrickCosts& view)
+FrameCost SumCost(const std::vector<BrickWork>& ranks, const BrickCosts& view)
 {
-  FrameWork sum;
+  FrameCost sum;
   sum.Blocks = BrickCosts(view.Positions, view.Edge);
   for (const BrickWork& rank : ranks)
   {
@@ -256,12 +256,12 @@ FrameWork SumWork(const std::vector<BrickWork>& ranks, const BrickCosts& view)
   return sum;
 }
 
-FrameWork GatherWork(Communicator& communicator, const BrickWork& mine,
+FrameCost GatherCost(Communicator& communicator, const BrickWork& mine,
   const std::vector<Box>& zones, const BrickCosts& view)
 {
   const auto self = static_cast<std::size_t>(communicator.Rank());
   const auto ranks = static_cast<std::size_t>(communicator.Size());
-  FrameWork all;
+  FrameCost all;
   all.Blocks = BrickCosts(view.Positions, view.Edge);
   all.Ranks.resize(ranks);
   BrickCosts own = all.Blocks;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/FrameWork.h"
+#include "Parallel/FrameCost.h"
 #include "Parallel/ZoneTree.h"
 #include "Parallel/Zones.h"
 #include "Render/ImageError.h"
@@ -27,10 +27,10 @@ struct Drawn
   BrickWork Work;
 };
 
-class FrameWorkTest : public ::testing::Test
+class FrameCostTest : public ::testing::Test
 {
 protected:
-  FrameWorkTest()
+  FrameCostTest()
     : Pool(3)
     , Values(scenes::Sampled<float>(scenes::Standard, Samples))
     , Source(scenes::ArrayOf(this->Values, Samples), 16, { 0.0, 1.0 }, this->Pool)
@@ -54,7 +54,7 @@ protected:
   RayScene Scene;
 };
 
-TEST_F(FrameWorkTest, EverySampleIsThatOfABrickAndThePictureIsTheSame)
+TEST_F(FrameCostTest, EverySampleIsThatOfABrickAndThePictureIsTheSame)
 {
   const Drawn measured = this->Draw(this->Scene.DomainCells);
   const Drawn plain = this->Draw(this->Scene.DomainCells, false);
@@ -77,7 +77,7 @@ TEST_F(FrameWorkTest, EverySampleIsThatOfABrickAndThePictureIsTheSame)
   EXPECT_TRUE(plain.Work.Parts.empty());
 }
 
-TEST_F(FrameWorkTest, CellsOfCoarserLevelsAreThoseOfTheFinest)
+TEST_F(FrameCostTest, CellsOfCoarserLevelsAreThoseOfTheFinest)
 {
   auto samplings = std::make_shared<TileSamplings>(
     this->Scene.Camera.ImageSize(), std::vector<RaySampling>{ { 2, this->Scene.SampleDistance } });
@@ -93,7 +93,7 @@ TEST_F(FrameWorkTest, CellsOfCoarserLevelsAreThoseOfTheFinest)
   EXPECT_GT(all.Count(), this->Scene.DomainCells.Count() / 2);
 }
 
-TEST_F(FrameWorkTest, AllRanksGatherWhatOneWouldAddUp)
+TEST_F(FrameCostTest, AllRanksGatherWhatOneWouldAddUp)
 {
   for (const int ranks : { 1, 3, 7 })
   {
@@ -105,11 +105,11 @@ TEST_F(FrameWorkTest, AllRanksGatherWhatOneWouldAddUp)
     {
       work.push_back(this->Draw(zone).Work);
     }
-    const FrameWork expected = SumWork(work, view);
+    const FrameCost expected = SumCost(work, view);
     RunOnSimulatedRanks(ranks,
       [&](Communicator& communicator)
       {
-        const FrameWork all = GatherWork(
+        const FrameCost all = GatherCost(
           communicator, work[static_cast<std::size_t>(communicator.Rank())], zones, view);
         for (int rank = 0; rank < ranks; ++rank)
         {
@@ -125,7 +125,7 @@ TEST_F(FrameWorkTest, AllRanksGatherWhatOneWouldAddUp)
   }
 }
 
-TEST_F(FrameWorkTest, TheViewTellsWhatBlocksTake)
+TEST_F(FrameCostTest, TheViewTellsWhatBlocksTake)
 {
   // Everything visible and nothing hidden: samples are those of the volume on the screen.
   for (glm::vec4& entry : this->Scene.Transfer.Entries)
@@ -162,7 +162,7 @@ TEST_F(FrameWorkTest, TheViewTellsWhatBlocksTake)
   }
 }
 
-TEST_F(FrameWorkTest, PartsThatCanBeSeenAreThoseOfBricks)
+TEST_F(FrameCostTest, PartsThatCanBeSeenAreThoseOfBricks)
 {
   const glm::ivec3 cells = this->Scene.DomainCells.Hi;
   for (const float part : VisibleParts(this->Scene, this->Source, cells, 32))

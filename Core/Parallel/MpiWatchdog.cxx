@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/MpiWaiting.h"
+#include "Parallel/MpiWatchdog.h"
 
 #include "Base/Error.h"
+#include "Parallel/MpiError.h"
 
 #include <array>
 #include <chrono>
@@ -52,16 +53,16 @@ public:
 };
 
 /// Collective. Null on all ranks of the machine where there is no memory that they could share.
-std::unique_ptr<RankPulse> MakePulse(const Neighbours& here, int rank, double limitSeconds,
+std::unique_ptr<Heartbeat> MakeHeartbeat(const Neighbours& here, int rank, double limitSeconds,
   const std::function<void(const std::string&)>& lost)
 {
   std::array<char, 128> name{};
-  std::unique_ptr<RankPulse> pulse;
+  std::unique_ptr<Heartbeat> beat;
   try
   {
     if (here.Self == 0)
     {
-      const std::string made = RankPulse::MakeMemory(here.Count);
+      const std::string made = Heartbeat::MakeMemory(here.Count);
       std::strncpy(name.data(), made.c_str(), name.size() - 1);
     }
   }
@@ -76,24 +77,24 @@ std::unique_ptr<RankPulse> MakePulse(const Neighbours& here, int rank, double li
   }
   try
   {
-    pulse =
-      std::make_unique<RankPulse>(name.data(), here.Count, here.Self, rank, limitSeconds, lost);
+    beat =
+      std::make_unique<Heartbeat>(name.data(), here.Count, here.Self, rank, limitSeconds, lost);
   }
   catch (const std::exception&) // no thread of its own, for example
   {
-    pulse.reset();
+    beat.reset();
   }
-  const bool all = here.All(pulse != nullptr);
+  const bool all = here.All(beat != nullptr);
   if (here.Self == 0)
   {
-    RankPulse::ForgetName(name.data());
+    Heartbeat::ForgetName(name.data());
   }
-  return all ? std::move(pulse) : nullptr;
+  return all ? std::move(beat) : nullptr;
 }
 
 } // namespace
 
-double MpiPatience::FromEnvironment()
+double MpiTimeout::FromEnvironment()
 {
   const char* text = std::getenv("BANYAN_RANK_LIMIT_SECONDS");
   if (!text || !*text)
@@ -110,24 +111,28 @@ double MpiPatience::FromEnvironment()
   return seconds;
 }
 
-MpiWaiting::MpiWaiting(MPI_Comm handle, const MpiPatience& patience)
+std::unique_ptr<MpiWatchdog> MpiWatchdog::Attach(MPI_Comm handle, const MpiTimeout& timeout)
+{
+  MpiTimeout common = timeout;
+  int ranks = 1;
+  MPI_Comm_size(handle, &ranks);
+  CheckMpi(MPI_Bcast(&common.Seconds, 1, MPI_DOUBLE, 0, handle), "broadcast");
+  return ranks == 1 || !(common.Seconds > 0.0)
+           ? nullptr
+           : std::unique_ptr<MpiWatchdog>(new MpiWatchdog(handle, common));
+}
+
+MpiWatchdog::MpiWatchdog(MPI_Comm handle, const MpiTimeout& timeout)
   : Handle(handle)
-  , Limit(patience.Seconds)
-  , Patience(patience)
+  , Timeout(timeout)
 {
   int ranks = 1;
   MPI_Comm_rank(handle, &this->Self);
   MPI_Comm_size(handle, &ranks);
-  CheckMpi(MPI_Bcast(&this->Limit, 1, MPI_DOUBLE, 0, handle), "broadcast");
-  if (ranks == 1 || !this->IsOn())
-  {
-    this->Limit = 0;
-    return;
-  }
   CheckMpi(MPI_Comm_dup(handle, &this->Leaving), "duplicate a communicator");
   MPI_Comm_set_errhandler(this->Leaving, MPI_ERRORS_RETURN);
   const Neighbours here(handle);
-  this->Pulse = MakePulse(here, this->Self, this->Limit + SecondsForWaiters,
+  this->Beat = MakeHeartbeat(here, this->Self, this->Timeout.Seconds + SecondsForWaiters,
     [this](const std::string& sentence)
     {
       int finalized = 0;
@@ -140,12 +145,12 @@ MpiWaiting::MpiWaiting(MPI_Comm handle, const MpiPatience& patience)
       std::fprintf(stderr, "banyan: %s The job ends.\n", sentence.c_str());
       MPI_Abort(this->Handle, EXIT_FAILURE);
     });
-  this->Lost = std::make_unique<LostRanks>(this->Limit, here.Count == ranks);
+  this->Lost = std::make_unique<LostRankDetector>(this->Timeout.Seconds, here.Count == ranks);
 }
 
-MpiWaiting::~MpiWaiting()
+MpiWatchdog::~MpiWatchdog()
 {
-  this->Pulse.reset(); // its thread knows the handle
+  this->Beat.reset(); // its thread knows the handle
   int finalized = 0;
   MPI_Finalized(&finalized);
   if (!finalized && this->Leaving != MPI_COMM_NULL)
@@ -154,7 +159,7 @@ MpiWaiting::~MpiWaiting()
   }
 }
 
-void MpiWaiting::Pause(double waited)
+void MpiWatchdog::Pause(double waited)
 {
   // Short waits are those of a frame, where each microsecond counts; long ones are for somebody who
   // still draws, perhaps on this processor.
@@ -171,15 +176,15 @@ void MpiWaiting::Pause(double waited)
   }
 }
 
-void MpiWaiting::LookAround(double waited)
+void MpiWatchdog::LookAround(double waited)
 {
   const double seconds = this->SinceLook.Seconds();
   this->SinceLook.Restart();
-  if (!this->Pulse)
+  if (!this->Beat)
   {
     return;
   }
-  const std::string lost = this->Lost->Tick(seconds, this->Pulse->Place(), this->Pulse->Signs());
+  const std::string lost = this->Lost->Tick(seconds, this->Beat->Place(), this->Beat->States());
   if (!lost.empty())
   {
     this->EndJob(lost + " Rank " + std::to_string(this->Self) + " has waited for " +
@@ -188,16 +193,16 @@ void MpiWaiting::LookAround(double waited)
   }
 }
 
-bool MpiWaiting::OthersWork() const
+bool MpiWatchdog::OthersWork() const
 {
-  if (!this->Pulse)
+  if (!this->Beat)
   {
     return false;
   }
-  const std::vector<RankSigns> signs = this->Pulse->Signs();
-  for (std::size_t i = 0; i < signs.size(); ++i)
+  const std::vector<RankState> states = this->Beat->States();
+  for (std::size_t i = 0; i < states.size(); ++i)
   {
-    if (i != this->Pulse->Place() && signs[i].Doing != Phase::Outside && signs[i].Waits % 2 == 0)
+    if (i != this->Beat->Place() && states[i].Doing != Phase::Outside && states[i].Waits % 2 == 0)
     {
       return true;
     }
@@ -205,12 +210,8 @@ bool MpiWaiting::OthersWork() const
   return false;
 }
 
-void MpiWaiting::LeaveTogether(const std::string& why)
+void MpiWatchdog::LeaveTogether(const std::string& why)
 {
-  if (!this->IsOn())
-  {
-    return;
-  }
   MPI_Request request = MPI_REQUEST_NULL;
   CheckMpi(MPI_Ibarrier(this->Leaving, &request), "wait for all ranks");
   Timer quiet;
@@ -227,7 +228,7 @@ void MpiWaiting::LeaveTogether(const std::string& why)
       {
         quiet.Restart();
       }
-      if (quiet.Seconds() >= 0.5 * this->Limit)
+      if (quiet.Seconds() >= 0.5 * this->Timeout.Seconds)
       {
         this->EndJob("Rank " + std::to_string(this->Self) +
                      " failed alone, and the others wait for it. " + why);
@@ -236,14 +237,14 @@ void MpiWaiting::LeaveTogether(const std::string& why)
     });
 }
 
-void MpiWaiting::EndJob(const std::string& sentence) const
+void MpiWatchdog::EndJob(const std::string& sentence) const
 {
   const std::string whole =
     sentence +
     " The job ends. (BANYAN_RANK_LIMIT_SECONDS says how long ranks are waited for; 0 is for ever.)";
-  if (this->Patience.Tell)
+  if (this->Timeout.Tell)
   {
-    this->Patience.Tell(whole);
+    this->Timeout.Tell(whole);
   }
   std::fprintf(stderr, "banyan: %s\n", whole.c_str());
   std::fflush(stderr);

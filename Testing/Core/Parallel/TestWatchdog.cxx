@@ -2,7 +2,7 @@
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
-#include "Parallel/RankPulse.h"
+#include "Parallel/Heartbeat.h"
 
 #include <gtest/gtest.h>
 
@@ -17,32 +17,32 @@ namespace
 
 using namespace banyan;
 
-std::vector<RankSigns> Three(std::uint32_t beats)
+std::vector<RankState> Three(std::uint32_t beats)
 {
   return { { 0, 100, beats, 1, 0, Phase::Compositing }, { 1, 101, beats, 0, 0, Phase::Casting },
     { 2, 102, beats, 2, 0, Phase::Outside } };
 }
 
-TEST(RankSigns, WhoWorksOrIsElsewhereIsNotLost)
+TEST(LostRankDetector, WhoWorksOrIsElsewhereIsNotLost)
 {
-  LostRanks lost(5.0, true);
+  LostRankDetector lost(5.0, true);
   for (std::uint32_t tick = 1; tick < 1000; ++tick)
   {
     ASSERT_EQ("", lost.Tick(0.1, 0, Three(tick)));
   }
 }
 
-TEST(RankSigns, WhoGivesNoSignIsLostAfterTheLimit)
+TEST(LostRankDetector, WhoGivesNoSignIsLostAfterTheLimit)
 {
-  LostRanks lost(5.0, true);
+  LostRankDetector lost(5.0, true);
   lost.Tick(0.1, 0, Three(1));
   int ticks = 0;
   std::string sentence;
   for (std::uint32_t beat = 2; sentence.empty() && ticks < 1000; ++beat, ++ticks)
   {
-    std::vector<RankSigns> signs = Three(beat);
-    signs[1].Beats = 1;
-    sentence = lost.Tick(0.1, 0, signs);
+    std::vector<RankState> states = Three(beat);
+    states[1].Beats = 1;
+    sentence = lost.Tick(0.1, 0, states);
   }
   EXPECT_NEAR(50, ticks, 1);
   EXPECT_EQ("Rank 1 (process 101) has given no sign of life for 5 s; the last thing known is that "
@@ -50,77 +50,77 @@ TEST(RankSigns, WhoGivesNoSignIsLostAfterTheLimit)
     sentence);
 }
 
-TEST(RankSigns, WhoHasEndedIsMissedByThoseWhoWait)
+TEST(LostRankDetector, WhoHasEndedIsMissedByThoseWhoWait)
 {
-  LostRanks waits(5.0, true);
-  LostRanks works(5.0, true);
-  std::vector<RankSigns> signs = Three(1);
-  signs[1].Ended = true;
+  LostRankDetector waits(5.0, true);
+  LostRankDetector works(5.0, true);
+  std::vector<RankState> states = Three(1);
+  states[1].Ended = true;
   std::string missed;
   for (std::uint32_t beat = 2; beat < 100; ++beat)
   {
-    signs[2].Beats = beat;
-    missed += waits.Tick(0.1, 0, signs, true);
-    ASSERT_EQ("", works.Tick(0.1, 0, signs, false));
+    states[2].Beats = beat;
+    missed += waits.Tick(0.1, 0, states, true);
+    ASSERT_EQ("", works.Tick(0.1, 0, states, false));
   }
   EXPECT_NE("", missed);
 }
 
-TEST(RankSigns, OneSignIsEnough)
+TEST(LostRankDetector, OneSignIsEnough)
 {
-  LostRanks lost(5.0, true);
+  LostRankDetector lost(5.0, true);
   for (std::uint32_t tick = 1; tick < 1000; ++tick)
   {
-    std::vector<RankSigns> signs = Three(tick);
-    signs[1].Beats = tick / 40;
-    ASSERT_EQ("", lost.Tick(0.1, 0, signs));
+    std::vector<RankState> states = Three(tick);
+    states[1].Beats = tick / 40;
+    ASSERT_EQ("", lost.Tick(0.1, 0, states));
   }
 }
 
-TEST(RankSigns, ARankDoesNotMissItselfNorThoseThatHaveNotBegun)
+TEST(LostRankDetector, ARankDoesNotMissItselfNorThoseThatHaveNotBegun)
 {
-  LostRanks lost(5.0, false);
+  LostRankDetector lost(5.0, false);
   for (std::uint32_t tick = 1; tick < 1000; ++tick)
   {
-    std::vector<RankSigns> signs = Three(tick);
-    signs[0].Beats = 7;
-    signs[2] = RankSigns{};
-    ASSERT_EQ("", lost.Tick(0.1, 0, signs));
+    std::vector<RankState> states = Three(tick);
+    states[0].Beats = 7;
+    states[2] = RankState{};
+    ASSERT_EQ("", lost.Tick(0.1, 0, states));
   }
 }
 
 /// All ranks were stopped together, for an hour, in one tick.
-TEST(RankSigns, AJobThatIsStoppedAndGoesOnLosesNobody)
+TEST(LostRankDetector, AJobThatIsStoppedAndGoesOnLosesNobody)
 {
-  LostRanks lost(5.0, true);
+  LostRankDetector lost(5.0, true);
   lost.Tick(0.1, 0, Three(1));
   EXPECT_EQ("", lost.Tick(3600.0, 0, Three(1)));
   EXPECT_EQ("", lost.Tick(0.1, 0, Three(2)));
 }
 
-TEST(RankSigns, WhoDoesNotGetOnIsLost)
+TEST(LostRankDetector, WhoDoesNotGetOnIsLost)
 {
-  LostRanks lost(5.0, true);
-  std::vector<RankSigns> signs = Three(1);
-  signs[1].StuckMilliseconds = 4999;
-  EXPECT_EQ("", lost.Tick(0.1, 0, signs));
-  signs[1].StuckMilliseconds = 5000;
+  LostRankDetector lost(5.0, true);
+  std::vector<RankState> states = Three(1);
+  states[1].StallMilliseconds = 4999;
+  EXPECT_EQ("", lost.Tick(0.1, 0, states));
+  states[1].StallMilliseconds = 5000;
   EXPECT_EQ("Rank 1 (process 101) runs, but has not got on for 5 s; the last thing known is that "
             "it was casting rays.",
-    lost.Tick(0.1, 0, signs));
+    lost.Tick(0.1, 0, states));
 }
 
-TEST(RankSigns, WhenAllWaitForEachOtherTheJobIsLost)
+TEST(LostRankDetector, WhenAllWaitForEachOtherTheJobIsLost)
 {
   const auto ticksOf = [](bool all, bool again)
   {
-    LostRanks lost(5.0, all);
+    LostRankDetector lost(5.0, all);
     for (std::uint32_t tick = 1; tick < 200; ++tick)
     {
-      std::vector<RankSigns> signs = Three(tick);
-      signs[1].Waits = 3;
-      signs[2].Waits = again ? 5 + 2 * (tick / 10) : 5;
-      if (!lost.Tick(0.1, 0, signs).empty())
+      std::vector<RankState> states = Three(tick);
+      states[1].Waits = 3;
+      states[2].Waits = again ? 5 + 2 * (tick / 10) : 5;
+      if (!lost.Tick(0.1, 0, states).empty())
       {
         return static_cast<int>(tick);
       }
@@ -132,9 +132,9 @@ TEST(RankSigns, WhenAllWaitForEachOtherTheJobIsLost)
   EXPECT_EQ(200, ticksOf(false, false)); // others of another machine may send
 }
 
-TEST(RankSigns, TimeWithoutProgressCountsFullyWhereAProcessorIsUsed)
+TEST(LostRankDetector, TimeWithoutProgressCountsFullyWhereAProcessorIsUsed)
 {
-  StuckClock clock;
+  StallTimer clock;
   clock.Tick(0.1, 0.1, true, 5);
   double stuck = 0;
   for (int i = 0; i < 100; ++i)
@@ -150,10 +150,10 @@ TEST(RankSigns, TimeWithoutProgressCountsFullyWhereAProcessorIsUsed)
   EXPECT_EQ(0.0, clock.Tick(0.1, 0.1, true, 6));
   EXPECT_NEAR(0.1, clock.Tick(0.1, 0.1, true, 6), 1e-9);
   EXPECT_EQ(0.0, clock.Tick(0.1, 0.1, false, 6));
-  EXPECT_NEAR(LostRanks::LongestTick, clock.Tick(3600.0, 3600.0, true, 6), 1e-9);
+  EXPECT_NEAR(LostRankDetector::LongestTick, clock.Tick(3600.0, 3600.0, true, 6), 1e-9);
 }
 
-TEST(RankSigns, OnlyOneThreadHasPhases)
+TEST(LostRankDetector, OnlyOneThreadHasPhases)
 {
   const PhaseScope phase(Phase::Casting);
   std::thread(
@@ -182,48 +182,48 @@ bool SoonTrue(const Wanted& wanted)
   return wanted();
 }
 
-TEST(RankPulse, RanksSeeEachOtherUntilTheyEnd)
+TEST(Heartbeat, RanksSeeEachOtherUntilTheyEnd)
 {
-  const std::string name = RankPulse::MakeMemory(3);
-  const RankPulse first(name, 3, 0, 40, 1e9, {});
+  const std::string name = Heartbeat::MakeMemory(3);
+  const Heartbeat first(name, 3, 0, 40, 1e9, {});
   auto second =
-    std::make_unique<RankPulse>(name, 3, 2, 42, 1e9, std::function<void(const std::string&)>{});
-  RankPulse::ForgetName(name);
-  EXPECT_THROW(RankPulse(name, 3, 1, 41, 1e9, {}), Error);
-  EXPECT_EQ(40, first.Signs()[0].Rank);
-  EXPECT_EQ(-1, first.Signs()[1].Rank);
-  EXPECT_EQ(42, first.Signs()[2].Rank);
-  EXPECT_EQ(static_cast<int>(getpid()), second->Signs()[0].Process);
-  const std::uint32_t before = first.Signs()[2].Beats;
-  EXPECT_TRUE(SoonTrue([&] { return first.Signs()[2].Beats > before + 3; }));
+    std::make_unique<Heartbeat>(name, 3, 2, 42, 1e9, std::function<void(const std::string&)>{});
+  Heartbeat::ForgetName(name);
+  EXPECT_THROW(Heartbeat(name, 3, 1, 41, 1e9, {}), Error);
+  EXPECT_EQ(40, first.States()[0].Rank);
+  EXPECT_EQ(-1, first.States()[1].Rank);
+  EXPECT_EQ(42, first.States()[2].Rank);
+  EXPECT_EQ(static_cast<int>(getpid()), second->States()[0].Process);
+  const std::uint32_t before = first.States()[2].Beats;
+  EXPECT_TRUE(SoonTrue([&] { return first.States()[2].Beats > before + 3; }));
   {
     const PhaseScope phase(Phase::Fetching);
-    EXPECT_TRUE(SoonTrue([&] { return first.Signs()[2].Doing == Phase::Fetching; }));
+    EXPECT_TRUE(SoonTrue([&] { return first.States()[2].Doing == Phase::Fetching; }));
     const WaitScope wait;
-    EXPECT_TRUE(SoonTrue([&] { return first.Signs()[2].Waits % 2 == 1; }));
+    EXPECT_TRUE(SoonTrue([&] { return first.States()[2].Waits % 2 == 1; }));
   }
-  EXPECT_TRUE(SoonTrue([&] { return first.Signs()[2].Doing == Phase::Outside; }));
-  EXPECT_FALSE(first.Signs()[2].Ended);
+  EXPECT_TRUE(SoonTrue([&] { return first.States()[2].Doing == Phase::Outside; }));
+  EXPECT_FALSE(first.States()[2].Ended);
   second.reset();
-  EXPECT_TRUE(first.Signs()[2].Ended);
-  const std::uint32_t last = first.Signs()[2].Beats;
-  const std::uint32_t mine = first.Signs()[0].Beats;
-  EXPECT_TRUE(SoonTrue([&] { return first.Signs()[0].Beats > mine + 3; }));
-  EXPECT_EQ(last, first.Signs()[2].Beats);
+  EXPECT_TRUE(first.States()[2].Ended);
+  const std::uint32_t last = first.States()[2].Beats;
+  const std::uint32_t mine = first.States()[0].Beats;
+  EXPECT_TRUE(SoonTrue([&] { return first.States()[0].Beats > mine + 3; }));
+  EXPECT_EQ(last, first.States()[2].Beats);
 }
 
-TEST(RankPulse, ARankThatDoesNotGetOnIsToldOnce)
+TEST(Heartbeat, ARankThatDoesNotGetOnIsToldOnce)
 {
-  const std::string name = RankPulse::MakeMemory(1);
+  const std::string name = Heartbeat::MakeMemory(1);
   std::mutex mutex;
   std::vector<std::string> told;
-  const RankPulse pulse(name, 1, 0, 3, 1.0,
+  const Heartbeat beat(name, 1, 0, 3, 1.0,
     [&](const std::string& sentence)
     {
       const std::lock_guard<std::mutex> lock(mutex);
       told.push_back(sentence);
     });
-  RankPulse::ForgetName(name);
+  Heartbeat::ForgetName(name);
   const PhaseScope phase(Phase::Casting);
   ThreadPool pool(1);
   pool.ParallelFor(20,
@@ -254,9 +254,9 @@ TEST(RankPulse, ARankThatDoesNotGetOnIsToldOnce)
   EXPECT_NE(std::string::npos, told.front().find("while it was casting rays.")) << told.front();
 }
 
-TEST(RankPulse, WhatCannotBeOpenedIsAnError)
+TEST(Heartbeat, WhatCannotBeOpenedIsAnError)
 {
-  EXPECT_THROW(RankPulse("/banyan-no-such-memory", 2, 0, 0, 1.0, {}), Error);
+  EXPECT_THROW(Heartbeat("/banyan-no-such-memory", 2, 0, 0, 1.0, {}), Error);
 }
 
 } // namespace

@@ -1,28 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Parallel_SlicFrame_h
-#define banyan_Parallel_SlicFrame_h
+#ifndef banyan_Parallel_TileOwnerCompositor_h
+#define banyan_Parallel_TileOwnerCompositor_h
 
 #include "Parallel/Compositing.h"
-#include "Parallel/SlicParts.h"
+#include "Parallel/TileOwnerMessages.h"
 
 #include <memory>
 
 namespace banyan
 {
 
-/// SLIC for one frame of one rank, chunk by chunk, as these have been drawn. Collective: all ranks
+/// The compositor for one frame of one rank, chunk by chunk, as these have been drawn. It descends
+/// from SLIC: tiles have owners, which blend what others send. Collective: all ranks
 /// make one, `Add` each chunk once, and `Finish`.
-class SlicFrame
+class TileOwnerCompositor
 {
 public:
-  /// Everything referred to must stay. The arguments are those of CompositeSlic.
-  SlicFrame(Communicator& communicator, const std::vector<int>& frontToBack,
+  /// Everything referred to must stay. The arguments are those of CompositeByTileOwners.
+  TileOwnerCompositor(Communicator& communicator, const std::vector<int>& frontToBack,
     const PixelRect& viewport, const CompositeOptions& options, CompositeStatistics& statistics);
-  SlicFrame(const SlicFrame&) = delete;
-  SlicFrame& operator=(const SlicFrame&) = delete;
-  ~SlicFrame();
+  TileOwnerCompositor(const TileOwnerCompositor&) = delete;
+  TileOwnerCompositor& operator=(const TileOwnerCompositor&) = delete;
+  ~TileOwnerCompositor();
 
-  const CompositePlan& Schedule() const { return this->Plan; }
+  const CompositePlan& GetPlan() const { return this->Plan; }
 
   /// From now on messages may come.
   void Begin();
@@ -36,7 +37,7 @@ public:
   /// Takes what has come, and passes on what is complete, without waiting.
   void Poll();
 
-  /// Waits for the rest. @return as CompositeSlic
+  /// Waits for the rest. @return as CompositeByTileOwners
   FloatImage Finish();
 
 private:
@@ -45,7 +46,7 @@ private:
   struct Message
   {
     int From;
-    SlicMessage Sort;
+    TileMessage Sort;
     int Chunk;
     std::unique_ptr<std::uint8_t[]> Data; ///< not cleared: most of it is never touched
     std::size_t Bytes;                    ///< 0 when the sender has failed
@@ -87,14 +88,14 @@ private:
   }
 
   template <typename Action>
-  void ForEachPart(int from, int to, SlicMessage sort, int chunk, const Action& action)
+  void ForEachPart(int from, int to, TileMessage sort, int chunk, const Action& action)
   {
-    ForEachSlicPart(this->Plan, from, to, sort, chunk, this->Region, action);
+    ForEachRegion(this->Plan, from, to, sort, chunk, this->Region, action);
   }
-  bool Expect(int from, SlicMessage sort, int chunk);
+  bool Expect(int from, TileMessage sort, int chunk);
   void ExpectAsOwner();
   template <typename Write>
-  void Send(int to, SlicMessage sort, int chunk, bool failed, const Write& write);
+  void Send(int to, TileMessage sort, int chunk, bool failed, const Write& write);
   void SendDirect(int chunk, const FloatImage* mine);
   void SendShared(int chunk, const FloatImage* mine);
   void KeepOwn(int chunk, const FloatImage& mine);
@@ -127,7 +128,7 @@ private:
 };
 
 /// Composite, with arguments that have been checked, footprints among them.
-FloatImage CompositeSlic(Communicator& communicator, const FloatImage& mine,
+FloatImage CompositeByTileOwners(Communicator& communicator, const FloatImage& mine,
   const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
   CompositeStatistics& statistics);
 

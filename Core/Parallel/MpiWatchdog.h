@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Parallel_MpiWaiting_h
-#define banyan_Parallel_MpiWaiting_h
+#ifndef banyan_Parallel_MpiWatchdog_h
+#define banyan_Parallel_MpiWatchdog_h
 
 #include "Base/Timer.h"
-#include "Parallel/MpiCommunicator.h"
-#include "Parallel/RankPulse.h"
+#include "Parallel/Heartbeat.h"
+#include "Parallel/MpiTimeout.h"
 
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1
@@ -16,21 +16,18 @@
 namespace banyan
 {
 
-/// Throws Error with MPI's words unless `code` is success.
-void CheckMpi(int code, const char* action);
-
-/// Waits for other ranks, and ends the job when one of them is lost, instead of waiting for ever.
-class MpiWaiting
+/// Waits for other ranks, and ends the job when one of them is lost, instead of waiting for ever. A
+/// communicator has one attached, or waits in calls of MPI. README.md has its protocol.
+class MpiWatchdog
 {
 public:
-  /// Collective. The first rank's limit counts for all.
-  MpiWaiting(MPI_Comm handle, const MpiPatience& patience);
-  ~MpiWaiting();
-  MpiWaiting(const MpiWaiting&) = delete;
-  MpiWaiting& operator=(const MpiWaiting&) = delete;
-
-  /// Whether waits are to go through `Until` at all.
-  bool IsOn() const { return this->Limit > 0.0; }
+  /// Collective.
+  /// @param timeout that of the first rank counts for all
+  /// @return null on all ranks where ranks are waited for as long as it takes, or there is one only
+  static std::unique_ptr<MpiWatchdog> Attach(MPI_Comm handle, const MpiTimeout& timeout);
+  ~MpiWatchdog();
+  MpiWatchdog(const MpiWatchdog&) = delete;
+  MpiWatchdog& operator=(const MpiWatchdog&) = delete;
 
   /// Calls `test` until it returns true: without pause at first, then with pauses that leave the
   /// processor to others. Ends the job when a rank of this machine is lost.
@@ -59,6 +56,7 @@ public:
 private:
   static constexpr int SpinTries = 64;
 
+  MpiWatchdog(MPI_Comm handle, const MpiTimeout& timeout);
   void Pause(double waited);
   void LookAround(double waited);
   bool OthersWork() const;
@@ -67,10 +65,9 @@ private:
   MPI_Comm Handle;
   MPI_Comm Leaving = MPI_COMM_NULL; ///< where those who failed meet, away from others' messages
   int Self = 0;
-  double Limit = 0; ///< seconds; 0: for ever
-  MpiPatience Patience;
-  std::unique_ptr<RankPulse> Pulse; ///< null where ranks cannot see each other
-  std::unique_ptr<LostRanks> Lost;
+  MpiTimeout Timeout;
+  std::unique_ptr<Heartbeat> Beat; ///< null where ranks cannot see each other
+  std::unique_ptr<LostRankDetector> Lost;
   Timer SinceLook;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/MachineRanks.h"
+#include "Parallel/NodeCommunicator.h"
 
 #include "Base/AvailableMemory.h"
 #include "Base/Error.h"
@@ -174,7 +174,7 @@ std::string OpenFile(const FileOfLeader& place, FileDescriptor& file)
 
 } // namespace
 
-std::string MachineRanks::ThisMachine()
+std::string NodeCommunicator::ThisMachine()
 {
   const char* const allowed = std::getenv("BANYAN_SHARED_MEMORY");
   if (allowed && std::strcmp(allowed, "0") == 0)
@@ -193,7 +193,7 @@ std::string MachineRanks::ThisMachine()
          std::to_string(geteuid());
 }
 
-MachineRanks::MachineRanks(Communicator& communicator, const std::string& machine)
+NodeCommunicator::NodeCommunicator(Communicator& communicator, const std::string& machine)
   : Self(communicator.Rank())
 {
   const std::vector<std::string> machines = AllGatherStrings(communicator, machine);
@@ -217,7 +217,7 @@ MachineRanks::MachineRanks(Communicator& communicator, const std::string& machin
   this->Sharing = this->AllLeaders.size() < machines.size();
 }
 
-void MachineRanks::BeAlone()
+void NodeCommunicator::BeAlone()
 {
   this->Sharing = false;
   this->AllLeaders.clear();
@@ -228,7 +228,7 @@ void MachineRanks::BeAlone()
   }
 }
 
-std::shared_ptr<char> MachineRanks::Allocate(Communicator& communicator, std::size_t bytes)
+std::shared_ptr<char> NodeCommunicator::Allocate(Communicator& communicator, std::size_t bytes)
 {
   bytes = std::max<std::size_t>(bytes, 1);
   if (this->Sharing)
@@ -249,7 +249,8 @@ std::shared_ptr<char> MachineRanks::Allocate(Communicator& communicator, std::si
 }
 
 /// Null on all ranks when it fails on one.
-std::shared_ptr<char> MachineRanks::TogetherOrNull(Communicator& communicator, std::size_t bytes)
+std::shared_ptr<char> NodeCommunicator::TogetherOrNull(
+  Communicator& communicator, std::size_t bytes)
 {
   FileDescriptor file;
   FileOfLeader place;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/RankSigns.h"
+#include "Parallel/RankState.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,37 +7,38 @@
 namespace banyan
 {
 
-double StuckClock::Tick(double seconds, double processorSeconds, bool working, std::uint64_t noted)
+double StallTimer::Tick(double seconds, double processorSeconds, bool working, std::uint64_t noted)
 {
-  constexpr double busy = 0.3;    // of a processor
-  constexpr double patience = 10; // times the limit, for a rank that waits for something else
+  constexpr double busy = 0.3;     // of a processor
+  constexpr double allowance = 10; // times the limit, for a rank that waits for something else
   if (!working || noted != this->Last)
   {
     this->Last = noted;
-    this->Stuck = 0;
+    this->Stalled = 0;
     return 0;
   }
-  const double counted = std::min(seconds, LostRanks::LongestTick);
-  this->Stuck += processorSeconds >= busy * seconds ? counted : counted / patience;
-  return this->Stuck;
+  const double counted = std::min(seconds, LostRankDetector::LongestTick);
+  this->Stalled += processorSeconds >= busy * seconds ? counted : counted / allowance;
+  return this->Stalled;
 }
 
-std::string LostRanks::Sentence(const RankSigns& rank, double seconds, const std::string& why) const
+std::string LostRankDetector::Sentence(
+  const RankState& rank, double seconds, const std::string& why) const
 {
   return "Rank " + std::to_string(rank.Rank) + " (process " + std::to_string(rank.Process) + ") " +
          why + " for " + std::to_string(std::lround(seconds)) +
          " s; the last thing known is that it was " + NameOf(rank.Doing) + ".";
 }
 
-std::string LostRanks::Tick(
-  double seconds, std::size_t self, const std::vector<RankSigns>& signs, bool waiting)
+std::string LostRankDetector::Tick(
+  double seconds, std::size_t self, const std::vector<RankState>& states, bool waiting)
 {
   const double counted = std::min(seconds, LongestTick);
-  this->Before.resize(signs.size());
+  this->Before.resize(states.size());
   bool allWait = this->All;
-  for (std::size_t i = 0; i < signs.size(); ++i)
+  for (std::size_t i = 0; i < states.size(); ++i)
   {
-    const RankSigns& rank = signs[i];
+    const RankState& rank = states[i];
     Seen& before = this->Before[i];
     allWait = allWait && rank.Waits % 2 == 1 && rank.Waits == before.Waits;
     before.Waits = rank.Waits;
@@ -51,9 +52,9 @@ std::string LostRanks::Tick(
     {
       return this->Sentence(rank, before.Silent, "has given no sign of life");
     }
-    if (rank.StuckMilliseconds >= 1e3 * this->Limit)
+    if (rank.StallMilliseconds >= 1e3 * this->Limit)
     {
-      return this->Sentence(rank, 1e-3 * rank.StuckMilliseconds, "runs, but has not got on");
+      return this->Sentence(rank, 1e-3 * rank.StallMilliseconds, "runs, but has not got on");
     }
   }
   this->AllWait = allWait ? this->AllWait + counted : 0.0;

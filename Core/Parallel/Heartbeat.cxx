@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/RankPulse.h"
+#include "Parallel/Heartbeat.h"
 
 #include "Base/Error.h"
 #include "Base/Timer.h"
@@ -35,7 +35,7 @@ struct alignas(64) Slot
   std::atomic<std::int32_t> Process;
   std::atomic<std::uint32_t> Beats;
   std::atomic<std::uint32_t> Waits;
-  std::atomic<std::uint32_t> StuckMilliseconds;
+  std::atomic<std::uint32_t> StallMilliseconds;
   std::atomic<Phase> Doing;
   std::atomic<std::int32_t> Ended;
 };
@@ -57,7 +57,7 @@ double ProcessorSeconds()
 
 } // namespace
 
-struct RankPulse::Internals
+struct Heartbeat::Internals
 {
   Slot* Slots = nullptr;
   std::size_t Ranks = 0;
@@ -69,27 +69,27 @@ struct RankPulse::Internals
   bool Stop = false;
   std::thread Thread;
 
-  RankSigns SignsOf(std::size_t place) const
+  RankState StateOf(std::size_t place) const
   {
     const Slot& slot = this->Slots[place];
-    return { slot.Rank - 1, slot.Process, slot.Beats, slot.Waits, slot.StuckMilliseconds,
+    return { slot.Rank - 1, slot.Process, slot.Beats, slot.Waits, slot.StallMilliseconds,
       slot.Doing, slot.Ended != 0 };
   }
 
-  std::vector<RankSigns> Signs() const
+  std::vector<RankState> States() const
   {
-    std::vector<RankSigns> signs;
+    std::vector<RankState> states;
     for (std::size_t place = 0; place < this->Ranks; ++place)
     {
-      signs.push_back(this->SignsOf(place));
+      states.push_back(this->StateOf(place));
     }
-    return signs;
+    return states;
   }
 
   void Beat()
   {
-    StuckClock clock;
-    LostRanks others(this->Limit, false);
+    StallTimer clock;
+    LostRankDetector others(this->Limit, false);
     const Timer timer;
     double last = timer.Seconds();
     double lastUsed = ProcessorSeconds();
@@ -99,7 +99,7 @@ struct RankPulse::Internals
       const double now = timer.Seconds();
       const double used = ProcessorSeconds();
       const double stuck = this->Show(clock, now - last, used - lastUsed);
-      std::string sentence = others.Tick(now - last, this->Place, this->Signs(), false);
+      std::string sentence = others.Tick(now - last, this->Place, this->States(), false);
       if (stuck >= this->Limit)
       {
         sentence = "Rank " + std::to_string(this->Slots[this->Place].Rank - 1) +
@@ -117,7 +117,7 @@ struct RankPulse::Internals
   }
 
   /// @return seconds that this rank has not got on
-  double Show(StuckClock& clock, double seconds, double processorSeconds)
+  double Show(StallTimer& clock, double seconds, double processorSeconds)
   {
     Slot& own = this->Slots[this->Place];
     const std::uint32_t waits = Progress::Waits();
@@ -126,13 +126,13 @@ struct RankPulse::Internals
       seconds, processorSeconds, doing != Phase::Outside && waits % 2 == 0, Progress::Noted());
     own.Waits = waits;
     own.Doing = doing;
-    own.StuckMilliseconds = static_cast<std::uint32_t>(std::lround(1e3 * stuck));
+    own.StallMilliseconds = static_cast<std::uint32_t>(std::lround(1e3 * stuck));
     ++own.Beats;
     return stuck;
   }
 };
 
-std::string RankPulse::MakeMemory(int ranks)
+std::string Heartbeat::MakeMemory(int ranks)
 {
   static std::atomic<int> number{ 0 };
   const std::string name = "/banyan-" + std::to_string(getpid()) + "-" + std::to_string(++number);
@@ -154,12 +154,12 @@ std::string RankPulse::MakeMemory(int ranks)
   return name;
 }
 
-void RankPulse::ForgetName(const std::string& name)
+void Heartbeat::ForgetName(const std::string& name)
 {
   shm_unlink(name.c_str());
 }
 
-RankPulse::RankPulse(const std::string& name, int ranks, int place, int rank, double limitSeconds,
+Heartbeat::Heartbeat(const std::string& name, int ranks, int place, int rank, double limitSeconds,
   std::function<void(const std::string&)> lost)
   : Self(std::make_unique<Internals>())
 {
@@ -201,7 +201,7 @@ RankPulse::RankPulse(const std::string& name, int ranks, int place, int rank, do
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
-RankPulse::~RankPulse()
+Heartbeat::~Heartbeat()
 {
   {
     const std::lock_guard<std::mutex> lock(this->Self->Mutex);
@@ -213,14 +213,14 @@ RankPulse::~RankPulse()
   munmap(this->Self->Slots, sizeof(Slot) * this->Self->Ranks);
 }
 
-std::size_t RankPulse::Place() const
+std::size_t Heartbeat::Place() const
 {
   return this->Self->Place;
 }
 
-std::vector<RankSigns> RankPulse::Signs() const
+std::vector<RankState> Heartbeat::States() const
 {
-  return this->Self->Signs();
+  return this->Self->States();
 }
 
 } // namespace banyan
