@@ -16,10 +16,10 @@ NAMES = {"off": "Off", "slice-step": "Slice step", "measured-cost": "Measured co
 COLORS = {"off": "tab:red", "slice-step": "tab:orange", "measured-cost": "tab:blue"}
 BALANCED_WITHIN = 5  # frames after a jump of the camera
 JUMP_EVERY = 10      # frames, on the path of jumps
-RESTING_FROM = 20    # frame from which a view at rest should have been searched
+RESTING_FROM = 20    # frame from which planes of a view at rest should rest
 # Goals: the imbalance within BALANCED_WITHIN frames of a jump, and at rest.
 AFTER_JUMPS = 1.15
-AT_REST = 1.10
+AT_REST = 1.20
 
 
 def table(folder, name):
