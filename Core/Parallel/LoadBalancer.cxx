@@ -190,6 +190,7 @@ void LoadBalancer::FrameTook(const std::vector<RankWork>& ranks, const BrickCost
   }
   const CostSums sums(work);
   std::vector<double> zoneCosts;
+  zoneCosts.reserve(ranks.size());
   for (const Box& zone : ZonesOf(this->Zones))
   {
     zoneCosts.push_back(sums.In(zone));
@@ -199,6 +200,7 @@ void LoadBalancer::FrameTook(const std::vector<RankWork>& ranks, const BrickCost
     this->Trials.Forget();
   }
   std::vector<double> done;
+  done.reserve(ranks.size());
   for (const RankWork& rank : ranks)
   {
     done.push_back(rank.Work);

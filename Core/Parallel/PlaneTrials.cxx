@@ -72,7 +72,7 @@ ZoneTree PlaneTrials::Next(const ZoneTree& now, const std::vector<double>& speed
     return balanced(now);
   }
   const ZoneTree& best = this->Best->Tree;
-  const ZoneTree target = balanced(best);
+  ZoneTree target = balanced(best);
   if (this->Failures == 0 || target == best)
   {
     return target;
