@@ -8,7 +8,7 @@ namespace banyan
 {
 
 /// Cells per axis of a brick when the user leaves the choice to us: 16, and 32 from 2^24 samples
-/// on. The measurements behind it stand in Documentation/format.md.
+/// on. Documentation/measurements/codec-size.md has the measurements.
 int ChooseBrickCells(const glm::ivec3& samples);
 
 /// The index of a series before its first step, with the absolute error bounds worked out. Throws
