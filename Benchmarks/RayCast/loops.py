@@ -3,7 +3,7 @@
 of their loops, from `perf record`.
 loops.py callgrind FILE.out : prints how often the instructions of MarchPackets were executed, those that were as often
 as each other together, and how many of their reads missed the first cache and the last, from `valgrind --tool=callgrind --dump-instr=yes --cache-sim=yes`.
-How to make both files stands in Documentation/speed.md."""
+Documentation/measurements/raycasting.md has the commands that make both files."""
 
 import collections
 import re

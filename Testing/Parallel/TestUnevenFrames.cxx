@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Many frames on the ranks of this job whose costs are uneven in ways that nobody can foresee: what
-// becomes of balance, of what moves, and of memory. See Documentation/balancing.md, "Stability".
+// becomes of balance, of what moves, and of memory. See "Stability" in
+// Documentation/measurements/balancing.md.
 #include "MpiProgram.h"
 
 #include "Base/Timer.h"
