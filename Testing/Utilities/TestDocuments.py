@@ -22,17 +22,28 @@ def read(path):
 
 
 def documents():
-    return [path for pattern in ("*.md", "Documentation/**/*.md", "*/README.md")
-            for path in glob.glob(os.path.join(ROOT, pattern), recursive=True)]
+    patterns = ("*.md", "Documentation/**/*.md", "*/README.md", "Core/**/README.md", "Testing/**/README.md")
+    return sorted({path for pattern in patterns
+                   for path in glob.glob(os.path.join(ROOT, pattern), recursive=True)})
+
+
+def anchors(path):
+    """The headings of a document as links name them."""
+    prose = re.sub(r"```.*?```", "", read(path), flags=re.S)
+    titles = re.findall(r"^#+ +(.+?) *$", prose, re.M)
+    return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
 
 
 def check_links():
-    """Links to files lead somewhere, and papers.md names files and functions that exist."""
+    """Links lead to a file and a heading, and papers.md names files and functions that exist."""
     problems = []
     for path in documents():
-        for target in re.findall(r"\]\(([^)#:]+)\)", read(path)):
-            if not os.path.exists(os.path.join(os.path.dirname(path), target)):
+        for target, heading in re.findall(r"\]\(([^)#:\s]*)(?:#([^)\s]+))?\)", read(path)):
+            file = os.path.join(os.path.dirname(path), target) if target else path
+            if not os.path.exists(file):
                 problems.append(f"{path}: the link {target} leads nowhere")
+            elif heading and heading not in anchors(file):
+                problems.append(f"{path}: {target or 'the document'} has no heading {heading}")
     names = 0
     for line in read(os.path.join(ROOT, "Documentation", "papers.md")).splitlines():
         source = None
