@@ -56,13 +56,13 @@ build_simulation()
   [[ -e "$paraview/vtkicet/src/include/IceT.h" ]] ||
     fail "IceT's headers are missing: install paraview-dev."
   simulation="$BuildFolder/bin/banyan-simulate-compositing"
-  for source in "$here"/Compositing/{,Peers/}*.{cxx,h} "$RepositoryRoot"/Core/Parallel/*.{cxx,h}; do
+  for source in "$here"/Compositing/{,Peers/}*.{cxx,h} "$RepositoryRoot"/Core/Parallel/*/*.{cxx,h}; do
     if [[ ! -e "$simulation" || "$source" -nt "$simulation" ]]; then
       smpicxx -std=c++17 -O2 -DNDEBUG -fPIC -I"$RepositoryRoot/Core" \
         -I"$paraview/vtkicet/src/include" -I"$paraview" \
         -I"$here/Compositing" "$here"/Compositing/{SimulateCompositing,FrameFile}.cxx \
         "$here"/Compositing/Peers/*.cxx \
-        "$RepositoryRoot"/Core/Parallel/Mpi{Communicator,Watchdog}.cxx \
+        "$RepositoryRoot"/Core/Parallel/{Communicate/MpiCommunicator,Watchdog/MpiWatchdog}.cxx \
         -L"$core" -Wl,-rpath,"$core" -lBanyanCore -lvtkIceTCore-pv5.11 -o "$simulation" ||
         fail "the simulation could not be built."
       return

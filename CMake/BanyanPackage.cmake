@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 
 set(exported BanyanCore)
 if(BANYAN_WITH_PARAVIEW)
-  list(APPEND exported BanyanReaders BanyanFilters BanyanRendering)
+  list(APPEND exported BanyanReaders BanyanInputs BanyanFilters BanyanRendering)
 endif()
 export(TARGETS ${exported} NAMESPACE Banyan:: FILE "${CMAKE_BINARY_DIR}/BanyanTargets.cmake")
 configure_file("${CMAKE_CURRENT_LIST_DIR}/BanyanConfig.cmake.in"

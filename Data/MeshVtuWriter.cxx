@@ -4,7 +4,7 @@
 #include "OctreeMesh.h"
 
 #include "Base/Error.h"
-#include "Series/AtomicFile.h"
+#include "Series/Format/AtomicFile.h"
 
 #include <nlohmann/json.hpp>
 

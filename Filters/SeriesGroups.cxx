@@ -4,7 +4,7 @@
 
 #include "vtkMultiProcessStream.h"
 
-#include "Series/GroupMessage.h"
+#include "Series/Encode/GroupMessage.h"
 
 #include <algorithm>
 

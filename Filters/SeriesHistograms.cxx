@@ -9,7 +9,7 @@
 #include "vtkImageData.h"
 #include "vtkMultiProcessStream.h"
 
-#include "Series/FillValues.h"
+#include "Series/Quantize/FillValues.h"
 
 namespace banyan
 {

@@ -4,7 +4,7 @@
 
 #include "StepReport.h"
 
-#include "Series/SeriesEncoder.h"
+#include "Series/Encode/SeriesEncoder.h"
 
 #include <map>
 #include <string>

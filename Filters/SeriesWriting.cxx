@@ -11,8 +11,8 @@
 #include "vtkNew.h"
 
 #include "Base/ThreadPool.h"
-#include "Series/EncodePlan.h"
-#include "Series/SeriesPath.h"
+#include "Series/Encode/EncodePlan.h"
+#include "Series/Format/SeriesPath.h"
 
 #include <algorithm>
 #include <sstream>

@@ -9,11 +9,11 @@
 #include "StepGathering.h"
 #include "StepReport.h"
 
-#include "Series/BackgroundEncoder.h"
-#include "Series/GroupDeal.h"
-#include "Series/SegmentFolder.h"
-#include "Series/SeriesAssembly.h"
-#include "Series/SeriesLock.h"
+#include "Series/Encode/BackgroundEncoder.h"
+#include "Series/Encode/GroupDeal.h"
+#include "Series/Encode/SegmentFolder.h"
+#include "Series/Encode/SeriesAssembly.h"
+#include "Series/Encode/SeriesLock.h"
 
 #include <functional>
 #include <memory>

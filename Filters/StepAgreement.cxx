@@ -5,7 +5,7 @@
 
 #include "vtkMultiProcessStream.h"
 
-#include "Series/SeriesEncoder.h"
+#include "Series/Encode/SeriesEncoder.h"
 
 #include <algorithm>
 #include <sstream>

@@ -2,9 +2,9 @@
 #ifndef banyan_Filters_StepReport_h
 #define banyan_Filters_StepReport_h
 
-#include "Parallel/GatherPlan.h"
-#include "Series/Grid.h"
-#include "Series/SeriesIndex.h"
+#include "Parallel/Composite/GatherPlan.h"
+#include "Series/Format/SeriesIndex.h"
+#include "Series/Grid/Grid.h"
 
 #include <set>
 #include <string>

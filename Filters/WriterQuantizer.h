@@ -2,7 +2,7 @@
 #ifndef banyan_Filters_WriterQuantizer_h
 #define banyan_Filters_WriterQuantizer_h
 
-#include "Series/QuantizerOptions.h"
+#include "Series/Format/QuantizerOptions.h"
 
 #include <string>
 #include <vector>

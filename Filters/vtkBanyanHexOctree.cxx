@@ -13,7 +13,7 @@
 #include "SetNumber.h"
 
 #include "Base/ThreadPool.h"
-#include "HexOctree/ElementOctree.h"
+#include "Mesh/Octree/ElementOctree.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"

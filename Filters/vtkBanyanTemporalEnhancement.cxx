@@ -6,7 +6,7 @@
 #include "SetNumber.h"
 #include "vtkBanyanDeferred.h"
 
-#include "Series/SeriesFile.h"
+#include "Series/Decode/SeriesFile.h"
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"

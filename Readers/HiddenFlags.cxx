@@ -8,7 +8,7 @@
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
 
-#include "Series/SeriesFile.h"
+#include "Series/Decode/SeriesFile.h"
 
 #include <glm/common.hpp>
 

@@ -12,10 +12,10 @@
 #include "vtkUnstructuredGrid.h"
 
 #include "Cache/BrickCache.h"
-#include "MeshSeries/MeanOfLeaves.h"
-#include "MeshSeries/MeshFile.h"
-#include "MeshSeries/MeshLevel.h"
-#include "Series/SeriesFile.h"
+#include "Mesh/Series/MeanOfLeaves.h"
+#include "Mesh/Series/MeshFile.h"
+#include "Mesh/Series/MeshLevel.h"
+#include "Series/Decode/SeriesFile.h"
 
 #include <algorithm>
 #include <cstring>

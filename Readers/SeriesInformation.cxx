@@ -12,8 +12,8 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTypeTraits.h"
 
-#include "Series/LevelGrid.h"
-#include "Series/PieceRange.h"
+#include "Series/Decode/PieceRange.h"
+#include "Series/Grid/LevelGrid.h"
 
 #include <algorithm>
 #include <vector>

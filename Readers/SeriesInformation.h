@@ -3,7 +3,7 @@
 #define banyan_Readers_SeriesInformation_h
 
 #include "Base/Box.h"
-#include "Series/SeriesFile.h"
+#include "Series/Decode/SeriesFile.h"
 
 class vtkDataArray;
 class vtkInformation;

@@ -14,7 +14,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkTimeStamp.h"
 
-#include "Series/SeriesFile.h"
+#include "Series/Decode/SeriesFile.h"
 
 #include <memory>
 #include <string>

@@ -3,10 +3,10 @@
 
 #include "LargeArrays.h"
 
-#include "MeshSeries/MeanOfChildren.h"
-#include "MeshSeries/MeanOfLeaves.h"
-#include "MeshSeries/TreeCells.h"
-#include "Series/SeriesFile.h"
+#include "Mesh/Series/MeanOfChildren.h"
+#include "Mesh/Series/MeanOfLeaves.h"
+#include "Mesh/Series/TreeCells.h"
+#include "Series/Decode/SeriesFile.h"
 
 #include "vtkBitArray.h"
 #include "vtkDataArray.h"

@@ -2,7 +2,7 @@
 #include "VerifiedBricks.h"
 
 #include "Base/ThreadPool.h"
-#include "Series/PieceRange.h"
+#include "Series/Decode/PieceRange.h"
 
 #include <algorithm>
 

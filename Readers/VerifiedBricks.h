@@ -2,7 +2,7 @@
 #ifndef banyan_Readers_VerifiedBricks_h
 #define banyan_Readers_VerifiedBricks_h
 
-#include "Series/SeriesFile.h"
+#include "Series/Decode/SeriesFile.h"
 
 #include <map>
 #include <tuple>

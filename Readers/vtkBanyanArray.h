@@ -38,7 +38,7 @@
 #include "vtkObjectFactory.h"
 
 #include "Base/LargePages.h"
-#include "Series/PieceRange.h"
+#include "Series/Decode/PieceRange.h"
 
 #include <algorithm>
 #include <atomic>

@@ -16,7 +16,7 @@
 #include "vtkBanyanDeferred.h"
 #include "vtkObjectFactory.h"
 
-#include "Series/PieceRange.h"
+#include "Series/Decode/PieceRange.h"
 
 #include <vector>
 

@@ -9,8 +9,8 @@
 #include "vtkUnsignedCharArray.h"
 
 #include "Cache/BrickCache.h"
-#include "Series/LevelGrid.h"
-#include "Series/SeriesFile.h"
+#include "Series/Decode/SeriesFile.h"
+#include "Series/Grid/LevelGrid.h"
 
 #include <algorithm>
 #include <mutex>

@@ -21,9 +21,9 @@
 
 #include "Base/Timer.h"
 #include "Cache/BrickCache.h"
-#include "Series/IndexText.h"
-#include "Series/LevelGrid.h"
-#include "Series/SeriesFile.h"
+#include "Series/Decode/SeriesFile.h"
+#include "Series/Format/IndexText.h"
+#include "Series/Grid/LevelGrid.h"
 
 #include <algorithm>
 #include <new>

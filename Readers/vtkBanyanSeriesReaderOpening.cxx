@@ -5,7 +5,7 @@
 #include "vtkErrorCode.h"
 #include "vtkMultiProcessController.h"
 
-#include "Series/SeriesFile.h"
+#include "Series/Decode/SeriesFile.h"
 
 #include <exception>
 

@@ -4,8 +4,8 @@
 #include "OthersOnScreen.h"
 #include "PixelsBehind.h"
 
-#include "Parallel/Communicator.h"
-#include "Render/CoveredParts.h"
+#include "Parallel/Communicate/Communicator.h"
+#include "Render/Raycast/CoveredParts.h"
 
 #include <algorithm>
 

@@ -4,8 +4,8 @@
 
 #include "FramebufferExchange.h"
 
-#include "Parallel/ReduceNearest.h"
-#include "Render/FloatImage.h"
+#include "Parallel/Composite/ReduceNearest.h"
+#include "Render/Scene/FloatImage.h"
 
 #include <vector>
 

@@ -6,9 +6,9 @@
 #include "ToleranceControl.h"
 
 #include "Cache/BrickCache.h"
-#include "Pieces/PieceField.h"
-#include "Render/SeriesBrickSource.h"
-#include "Render/StepAhead.h"
+#include "Parallel/Fields/PieceField.h"
+#include "Render/Bricks/SeriesBrickSource.h"
+#include "Render/Bricks/StepAhead.h"
 #include "vtkBanyanDeferred.h"
 
 #include "vtkDataArray.h"

@@ -4,13 +4,13 @@
 
 #include "FieldPiece.h"
 
-#include "Parallel/FrameBalancer.h"
-#include "Parallel/MeshBytes.h"
-#include "Render/BrickSource.h"
-#include "Render/TemporalEnhancement.h"
-#include "Render/ViewAhead.h"
-#include "Series/SeriesFile.h"
-#include "Series/ValueRange.h"
+#include "Parallel/Balance/FrameBalancer.h"
+#include "Parallel/Fields/MeshBytes.h"
+#include "Render/Bricks/BrickSource.h"
+#include "Render/Bricks/TemporalEnhancement.h"
+#include "Render/Bricks/ViewAhead.h"
+#include "Series/Decode/SeriesFile.h"
+#include "Series/Quantize/ValueRange.h"
 
 #include <glm/mat4x4.hpp>
 

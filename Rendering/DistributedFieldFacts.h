@@ -4,7 +4,7 @@
 
 #include "DistributedField.h"
 
-#include "Series/Grid.h"
+#include "Series/Grid/Grid.h"
 
 #include <cstdint>
 

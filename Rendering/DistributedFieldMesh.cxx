@@ -5,9 +5,9 @@
 #include "GridOfLeaves.h"
 #include "MeshField.h"
 
-#include "Parallel/MeshZones.h"
-#include "Pieces/PieceField.h"
-#include "Render/StepAhead.h"
+#include "Parallel/Fields/MeshZones.h"
+#include "Parallel/Fields/PieceField.h"
+#include "Render/Bricks/StepAhead.h"
 
 #include "vtkDataArray.h"
 #include "vtkSmartPointer.h"

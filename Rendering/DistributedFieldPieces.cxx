@@ -7,8 +7,8 @@
 
 #include "Base/ThreadPool.h"
 #include "Cache/BrickCache.h"
-#include "Pieces/PieceField.h"
-#include "Render/StepAhead.h"
+#include "Parallel/Fields/PieceField.h"
+#include "Render/Bricks/StepAhead.h"
 
 namespace banyan
 {

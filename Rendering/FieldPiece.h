@@ -2,10 +2,10 @@
 #ifndef banyan_Rendering_FieldPiece_h
 #define banyan_Rendering_FieldPiece_h
 
-#include "HexSampling/MeshOptions.h"
+#include "Mesh/Sampling/MeshOptions.h"
 
-#include "HexOctree/CellNodes.h"
-#include "Render/TemporalEnhancement.h"
+#include "Mesh/Octree/CellNodes.h"
+#include "Render/Bricks/TemporalEnhancement.h"
 
 #include <string>
 

@@ -2,8 +2,8 @@
 #ifndef banyan_Rendering_FramebufferExchange_h
 #define banyan_Rendering_FramebufferExchange_h
 
-#include "Parallel/ReduceNearest.h"
-#include "Render/RayCamera.h"
+#include "Parallel/Composite/ReduceNearest.h"
+#include "Render/Scene/RayCamera.h"
 
 #include <cstdint>
 #include <map>

@@ -5,7 +5,7 @@
 #include "GridOfHyperTrees.h"
 
 #include "Base/Error.h"
-#include "Parallel/Communicator.h"
+#include "Parallel/Communicate/Communicator.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"

@@ -2,8 +2,8 @@
 #include "HiddenInImage.h"
 
 #include "ArrayLength.h"
-#include "Parallel/Communicator.h"
-#include "Render/HiddenCells.h"
+#include "Parallel/Communicate/Communicator.h"
+#include "Render/Bricks/HiddenCells.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"

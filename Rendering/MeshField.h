@@ -4,8 +4,8 @@
 
 #include "HexMeshOfGrid.h"
 
-#include "Parallel/SharedMesh.h"
-#include "Series/Hash.h"
+#include "Base/Hash.h"
+#include "Parallel/Fields/SharedMesh.h"
 
 #include <memory>
 #include <string>

@@ -6,9 +6,9 @@
 #include "Cache/BrickCache.h"
 #include "EnhancedArray.h"
 #include "LeafParts.h"
-#include "Parallel/Communicator.h"
-#include "Render/EnhancedBrickSource.h"
-#include "Render/SeriesBrickSource.h"
+#include "Parallel/Communicate/Communicator.h"
+#include "Render/Bricks/EnhancedBrickSource.h"
+#include "Render/Bricks/SeriesBrickSource.h"
 #include "vtkBanyanDeferred.h"
 
 #include "vtkDataArray.h"

@@ -2,7 +2,7 @@
 #ifndef banyan_Rendering_MotionEnhancement_h
 #define banyan_Rendering_MotionEnhancement_h
 
-#include "Render/TemporalEnhancement.h"
+#include "Render/Bricks/TemporalEnhancement.h"
 
 #include "vtkSmartPointer.h"
 

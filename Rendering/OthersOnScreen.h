@@ -2,7 +2,7 @@
 #ifndef banyan_Rendering_OthersOnScreen_h
 #define banyan_Rendering_OthersOnScreen_h
 
-#include "Render/RayCamera.h"
+#include "Render/Scene/RayCamera.h"
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PixelsBehind.h"
 
-#include "Parallel/Compositing.h"
+#include "Parallel/Composite/Compositing.h"
 
 #include <algorithm>
 #include <cmath>

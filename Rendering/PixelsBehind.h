@@ -2,7 +2,7 @@
 #ifndef banyan_Rendering_PixelsBehind_h
 #define banyan_Rendering_PixelsBehind_h
 
-#include "Parallel/ReduceNearest.h"
+#include "Parallel/Composite/ReduceNearest.h"
 
 #include <vector>
 

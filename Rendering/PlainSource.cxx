@@ -4,7 +4,7 @@
 #include "HiddenInImage.h"
 
 #include "Base/ThreadPool.h"
-#include "Render/ArrayBrickSource.h"
+#include "Render/Bricks/ArrayBrickSource.h"
 #include "vtkBanyanDeferred.h"
 
 #include "vtkDataArray.h"

@@ -2,8 +2,8 @@
 #ifndef banyan_Rendering_PlainSource_h
 #define banyan_Rendering_PlainSource_h
 
-#include "Render/ArraySamples.h"
-#include "Render/BrickSource.h"
+#include "Render/Bricks/ArraySamples.h"
+#include "Render/Bricks/BrickSource.h"
 
 #include <memory>
 

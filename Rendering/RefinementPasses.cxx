@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RefinementPasses.h"
 
-#include "Series/Hash.h"
+#include "Base/Hash.h"
 
 #include <algorithm>
 

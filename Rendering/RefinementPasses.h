@@ -2,8 +2,8 @@
 #ifndef banyan_Rendering_RefinementPasses_h
 #define banyan_Rendering_RefinementPasses_h
 
-#include "Parallel/Communicator.h"
-#include "Render/RayCaster.h"
+#include "Parallel/Communicate/Communicator.h"
+#include "Render/Raycast/RayCaster.h"
 
 #include <cstdint>
 

@@ -2,7 +2,7 @@
 #ifndef banyan_Rendering_RendererCamera_h
 #define banyan_Rendering_RendererCamera_h
 
-#include "Render/RayCamera.h"
+#include "Render/Scene/RayCamera.h"
 
 #include <glm/mat4x4.hpp>
 

@@ -2,8 +2,8 @@
 #ifndef banyan_Rendering_SceneOptions_h
 #define banyan_Rendering_SceneOptions_h
 
-#include "Render/RayCaster.h"
-#include "Series/ValueRange.h"
+#include "Render/Raycast/RayCaster.h"
+#include "Series/Quantize/ValueRange.h"
 
 class vtkVolumeMapper;
 class vtkVolumeProperty;

@@ -4,9 +4,9 @@
 #include "DistributedField.h"
 
 #include "Base/ThreadPool.h"
-#include "Parallel/LevelZones.h"
-#include "Render/ElementsPerPixel.h"
-#include "Render/ScreenLevels.h"
+#include "Parallel/Balance/LevelZones.h"
+#include "Render/Sampling/ElementsPerPixel.h"
+#include "Render/Sampling/ScreenLevels.h"
 
 #include <algorithm>
 #include <cmath>

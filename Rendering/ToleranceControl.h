@@ -4,8 +4,8 @@
 
 #include "RefinementPasses.h"
 
-#include "Parallel/DistributedPlan.h"
-#include "Render/CoarserSteps.h"
+#include "Parallel/Fields/DistributedPlan.h"
+#include "Render/Sampling/CoarserSteps.h"
 
 #include <array>
 #include <string>

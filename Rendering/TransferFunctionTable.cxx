@@ -2,7 +2,7 @@
 #include "TransferFunctionTable.h"
 
 #include "Base/Error.h"
-#include "Render/TabulateFunction.h"
+#include "Render/Scene/TabulateFunction.h"
 
 #include "vtkColorTransferFunction.h"
 #include "vtkDiscretizableColorTransferFunction.h"

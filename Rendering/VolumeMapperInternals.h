@@ -12,7 +12,7 @@
 
 #include "Base/Timer.h"
 #include "Cache/BrickCache.h"
-#include "Parallel/DistributedFrame.h"
+#include "Parallel/Fields/DistributedFrame.h"
 
 #include <array>
 #include <cstdint>

@@ -2,9 +2,9 @@
 #ifndef banyan_Rendering_VolumesInDepth_h
 #define banyan_Rendering_VolumesInDepth_h
 
-#include "Parallel/Communicator.h"
-#include "Render/DepthOrder.h"
-#include "Render/RayCaster.h"
+#include "Parallel/Communicate/Communicator.h"
+#include "Render/Raycast/DepthOrder.h"
+#include "Render/Raycast/RayCaster.h"
 
 #include <string>
 #include <vector>

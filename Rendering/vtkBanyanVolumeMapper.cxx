@@ -13,8 +13,8 @@
 #include "Base/Progress.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
-#include "Parallel/DistributedFrame.h"
-#include "Parallel/MpiCommunicator.h"
+#include "Parallel/Communicate/MpiCommunicator.h"
+#include "Parallel/Fields/DistributedFrame.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCamera.h"

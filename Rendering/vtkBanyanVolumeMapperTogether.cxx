@@ -9,7 +9,7 @@
 #include "Base/Progress.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
-#include "Parallel/MpiCommunicator.h"
+#include "Parallel/Communicate/MpiCommunicator.h"
 
 #include "vtkCollection.h"
 #include "vtkCommand.h"

@@ -5,8 +5,8 @@
 #include "BalanceOptions.h"
 #include "BenchScene.h"
 
-#include "Parallel/FrameCost.h"
-#include "Parallel/LoadBalancer.h"
+#include "Parallel/Balance/FrameCost.h"
+#include "Parallel/Balance/LoadBalancer.h"
 
 #include <cstdio>
 #include <functional>

@@ -5,7 +5,7 @@
 #include "CameraPath.h"
 
 #include "Base/ThreadPool.h"
-#include "Parallel/ScreenCuts.h"
+#include "Parallel/Balance/ScreenCuts.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
 #include "Cache/BrickCache.h"
-#include "Render/SeriesBrickSource.h"
-#include "Series/SeriesEncoder.h"
+#include "Render/Bricks/SeriesBrickSource.h"
+#include "Series/Encode/SeriesEncoder.h"
 
 #include <cstdio>
 #include <filesystem>

@@ -8,9 +8,9 @@
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
-#include "Parallel/DistributedFrame.h"
-#include "Parallel/MpiCommunicator.h"
-#include "Pieces/PieceField.h"
+#include "Parallel/Communicate/MpiCommunicator.h"
+#include "Parallel/Fields/DistributedFrame.h"
+#include "Parallel/Fields/PieceField.h"
 
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1

@@ -4,7 +4,7 @@
 
 #include "BalanceOptions.h"
 
-#include "Parallel/LoadBalancer.h"
+#include "Parallel/Balance/LoadBalancer.h"
 
 namespace banyan::bench
 {

@@ -2,7 +2,7 @@
 #include "SliceStep.h"
 
 #include "Base/Error.h"
-#include "Parallel/ZoneDivision.h"
+#include "Parallel/Balance/ZoneDivision.h"
 
 #include <algorithm>
 

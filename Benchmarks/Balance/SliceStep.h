@@ -2,7 +2,7 @@
 #ifndef banyan_Benchmarks_SliceStep_h
 #define banyan_Benchmarks_SliceStep_h
 
-#include "Parallel/ZoneTree.h"
+#include "Parallel/Balance/ZoneTree.h"
 
 #include <vector>
 

@@ -4,9 +4,9 @@
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Cache/BrickCache.h"
-#include "Series/LatticeCache.h"
-#include "Series/SeriesEncoder.h"
-#include "Series/SeriesFile.h"
+#include "Series/Decode/LatticeCache.h"
+#include "Series/Decode/SeriesFile.h"
+#include "Series/Encode/SeriesEncoder.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -2,8 +2,8 @@
 #ifndef banyan_Benchmarks_RawSeries_h
 #define banyan_Benchmarks_RawSeries_h
 
-#include "Series/Grid.h"
-#include "Series/SeriesIndex.h"
+#include "Series/Format/SeriesIndex.h"
+#include "Series/Grid/Grid.h"
 
 #include <string>
 #include <vector>

@@ -8,7 +8,7 @@
 // will do. Frames come from banyan-record-frames.
 #include "FrameFile.h"
 
-#include "Parallel/CompositePlanCache.h"
+#include "Parallel/Composite/CompositePlanCache.h"
 
 #include <algorithm>
 #include <chrono>

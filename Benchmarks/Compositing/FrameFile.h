@@ -2,8 +2,8 @@
 #ifndef banyan_Benchmarks_FrameFile_h
 #define banyan_Benchmarks_FrameFile_h
 
-#include "Parallel/Footprints.h"
-#include "Render/FloatImage.h"
+#include "Parallel/Composite/Footprints.h"
+#include "Render/Scene/FloatImage.h"
 
 #include <fstream>
 #include <string>

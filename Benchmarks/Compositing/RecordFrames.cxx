@@ -15,8 +15,8 @@
 
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
-#include "Parallel/Compositing.h"
-#include "Parallel/Zones.h"
+#include "Parallel/Balance/Zones.h"
+#include "Parallel/Composite/Compositing.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>

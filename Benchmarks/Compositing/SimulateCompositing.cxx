@@ -10,9 +10,9 @@
 #include "Peers/PeerFrame.h"
 
 #include "Base/Error.h"
-#include "Parallel/Compositing.h"
-#include "Parallel/FragmentMessage.h"
-#include "Parallel/MpiCommunicator.h"
+#include "Parallel/Communicate/MpiCommunicator.h"
+#include "Parallel/Composite/Compositing.h"
+#include "Parallel/Composite/FragmentMessage.h"
 
 #include <mpi.h>
 

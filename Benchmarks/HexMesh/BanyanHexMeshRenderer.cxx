@@ -3,10 +3,10 @@
 
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
-#include "HexOctree/HexBrickSource.h"
-#include "Render/ElementsPerPixel.h"
-#include "Render/PixelsBetween.h"
-#include "Render/SamplingPlan.h"
+#include "Mesh/Octree/HexBrickSource.h"
+#include "Render/Raycast/PixelsBetween.h"
+#include "Render/Sampling/ElementsPerPixel.h"
+#include "Render/Sampling/SamplingPlan.h"
 
 #include <cmath>
 

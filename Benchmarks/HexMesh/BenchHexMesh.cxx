@@ -9,8 +9,8 @@
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
-#include "HexOctree/HexBrickSource.h"
-#include "Render/ImageError.h"
+#include "Mesh/Octree/HexBrickSource.h"
+#include "Render/Sampling/ImageError.h"
 
 #include <algorithm>
 #include <cmath>

@@ -12,7 +12,7 @@
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
-#include "HexOctree/NodalField.h"
+#include "Mesh/Octree/NodalField.h"
 
 #include <algorithm>
 #include <cmath>

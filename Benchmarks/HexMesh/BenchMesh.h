@@ -2,7 +2,7 @@
 #ifndef banyan_Benchmarks_BenchMesh_h
 #define banyan_Benchmarks_BenchMesh_h
 
-#include "HexOctree/HexMesh.h"
+#include "Mesh/Octree/HexMesh.h"
 
 #include <cstdint>
 #include <string>

@@ -3,7 +3,7 @@
 
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
-#include "HexOctree/ElementOctree.h"
+#include "Mesh/Octree/ElementOctree.h"
 
 #include <vtkCellArray.h>
 #include <vtkCompositeDataIterator.h>

@@ -2,8 +2,8 @@
 #include "RayCastRenderer.h"
 
 #include "Base/ThreadPool.h"
-#include "Render/PixelsBetween.h"
-#include "Render/SamplingPlan.h"
+#include "Render/Raycast/PixelsBetween.h"
+#include "Render/Sampling/SamplingPlan.h"
 
 namespace banyan::bench
 {

@@ -9,10 +9,10 @@
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
 #include "Cache/BrickCache.h"
-#include "Render/PixelsBetween.h"
-#include "Render/SamplingPlan.h"
-#include "Render/SeriesBrickSource.h"
-#include "Series/SeriesEncoder.h"
+#include "Render/Bricks/SeriesBrickSource.h"
+#include "Render/Raycast/PixelsBetween.h"
+#include "Render/Sampling/SamplingPlan.h"
+#include "Series/Encode/SeriesEncoder.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>

@@ -3,8 +3,8 @@
 #define banyan_Benchmarks_BenchScene_h
 
 #include "Base/ScalarType.h"
-#include "Render/ArrayBrickSource.h"
-#include "Render/RayCaster.h"
+#include "Render/Bricks/ArrayBrickSource.h"
+#include "Render/Raycast/RayCaster.h"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>

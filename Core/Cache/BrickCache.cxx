@@ -3,7 +3,7 @@
 
 #include "Base/CacheBudget.h"
 #include "Base/Error.h"
-#include "Series/LatticeCache.h"
+#include "Series/Decode/LatticeCache.h"
 
 #include <algorithm>
 #include <condition_variable>

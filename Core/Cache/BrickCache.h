@@ -2,7 +2,7 @@
 #ifndef banyan_Cache_BrickCache_h
 #define banyan_Cache_BrickCache_h
 
-#include "Series/SeriesFile.h"
+#include "Series/Decode/SeriesFile.h"
 
 #include <cstdint>
 #include <memory>

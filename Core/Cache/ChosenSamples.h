@@ -2,7 +2,7 @@
 #ifndef banyan_Cache_ChosenSamples_h
 #define banyan_Cache_ChosenSamples_h
 
-#include "Series/SeriesFile.h"
+#include "Series/Decode/SeriesFile.h"
 
 #include <cstdint>
 #include <vector>

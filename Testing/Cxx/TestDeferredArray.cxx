@@ -18,7 +18,7 @@
 #include "vtkVariant.h"
 
 #include "Cache/BrickCache.h"
-#include "Series/SeriesFile.h"
+#include "Series/Decode/SeriesFile.h"
 
 #include <gtest/gtest.h>
 

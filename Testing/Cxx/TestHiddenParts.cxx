@@ -15,8 +15,8 @@
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
 
-#include "Series/IndexText.h"
-#include "Series/SeriesFile.h"
+#include "Series/Decode/SeriesFile.h"
+#include "Series/Format/IndexText.h"
 
 #include <gtest/gtest.h>
 

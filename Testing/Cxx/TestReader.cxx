@@ -14,8 +14,8 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include "Cache/BrickCache.h"
-#include "Series/PieceRange.h"
-#include "Series/SeriesFile.h"
+#include "Series/Decode/PieceRange.h"
+#include "Series/Decode/SeriesFile.h"
 
 #include <gtest/gtest.h>
 

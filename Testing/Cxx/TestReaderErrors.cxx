@@ -12,7 +12,7 @@
 #include "vtkInformation.h"
 #include "vtkPointData.h"
 
-#include "Series/SeriesFile.h"
+#include "Series/Decode/SeriesFile.h"
 
 #include <gtest/gtest.h>
 

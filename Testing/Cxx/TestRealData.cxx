@@ -9,7 +9,7 @@
 #include "vtkPointData.h"
 #include "vtkXMLImageDataReader.h"
 
-#include "Series/SeriesFile.h"
+#include "Series/Decode/SeriesFile.h"
 
 #include <gtest/gtest.h>
 

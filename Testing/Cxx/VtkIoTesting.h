@@ -7,7 +7,7 @@
 #include "vtkSmartPointer.h"
 
 #include "Base/ScalarType.h"
-#include "Series/Grid.h"
+#include "Series/Grid/Grid.h"
 
 #include <functional>
 #include <string>

@@ -2,7 +2,7 @@
 #include "Base/Error.h"
 #include "Base/ScalarType.h"
 #include "Fuzz.h"
-#include "Series/Exceptions.h"
+#include "Series/Format/Exceptions.h"
 
 #include <cstdlib>
 

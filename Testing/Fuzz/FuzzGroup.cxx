@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Base/Error.h"
+#include "Base/Hash.h"
 #include "Cache/BrickCache.h"
 #include "GroupFiles.h"
-#include "Series/Hash.h"
-#include "Series/IndexText.h"
-#include "Series/SegmentFormat.h"
-#include "Series/SeriesFile.h"
+#include "Series/Decode/SeriesFile.h"
+#include "Series/Format/IndexText.h"
+#include "Series/Format/SegmentFormat.h"
 
 #include <filesystem>
 #include <fstream>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Base/Error.h"
-#include "Series/Hash.h"
-#include "Series/IndexText.h"
+#include "Base/Hash.h"
+#include "Series/Format/IndexText.h"
 
 /// The input is the JSON of an index; every second one is taken as the whole file.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)

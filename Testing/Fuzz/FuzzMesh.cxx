@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Base/Error.h"
-#include "MeshSeries/StoredMesh.h"
-#include "Series/Hash.h"
-#include "Series/Varint.h"
+#include "Base/Hash.h"
+#include "Base/Varint.h"
+#include "Mesh/Series/StoredMesh.h"
 
 /// The input are the sections of the file of a mesh, each behind its size (a varint), none of them
 /// compressed. What is accepted must come back when written again.

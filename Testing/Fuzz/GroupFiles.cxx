@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "GroupFiles.h"
 
+#include "Base/Hash.h"
 #include "Base/ThreadPool.h"
 #include "Fuzz.h"
-#include "Series/AtomicFile.h"
-#include "Series/GroupFormat.h"
-#include "Series/GroupWriter.h"
-#include "Series/Hash.h"
-#include "Series/SegmentFormat.h"
-#include "Series/SeriesEncoder.h"
-#include "Series/Zstd.h"
+#include "Series/Encode/GroupWriter.h"
+#include "Series/Encode/SeriesEncoder.h"
+#include "Series/Format/AtomicFile.h"
+#include "Series/Format/GroupFormat.h"
+#include "Series/Format/SegmentFormat.h"
+#include "Series/Format/Zstd.h"
 
 #include <cmath>
 #include <fstream>

@@ -2,7 +2,7 @@
 #ifndef banyan_Testing_GroupFiles_h
 #define banyan_Testing_GroupFiles_h
 
-#include "Series/SeriesIndex.h"
+#include "Series/Format/SeriesIndex.h"
 
 #include <string>
 #include <vector>

@@ -3,12 +3,12 @@
 #include "GroupFiles.h"
 
 #include "Base/ThreadPool.h"
-#include "MeshSeries/StoredMesh.h"
-#include "Series/Exceptions.h"
-#include "Series/GroupFormat.h"
-#include "Series/IndexText.h"
-#include "Series/Varint.h"
-#include "Series/Zstd.h"
+#include "Base/Varint.h"
+#include "Mesh/Series/StoredMesh.h"
+#include "Series/Format/Exceptions.h"
+#include "Series/Format/GroupFormat.h"
+#include "Series/Format/IndexText.h"
+#include "Series/Format/Zstd.h"
 
 #include <filesystem>
 #include <fstream>

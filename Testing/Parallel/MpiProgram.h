@@ -2,7 +2,7 @@
 #ifndef banyan_Testing_Parallel_MpiProgram_h
 #define banyan_Testing_Parallel_MpiProgram_h
 
-#include "Parallel/MpiCommunicator.h"
+#include "Parallel/Communicate/MpiCommunicator.h"
 
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1

@@ -3,8 +3,8 @@
 // that of one rank.
 #include "MpiProgram.h"
 
-#include "Parallel/DistributedFrame.h"
-#include "Parallel/FrameBalancer.h"
+#include "Parallel/Balance/FrameBalancer.h"
+#include "Parallel/Fields/DistributedFrame.h"
 #include "Render/Scenes.h"
 
 #include <algorithm>

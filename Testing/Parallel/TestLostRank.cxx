@@ -5,8 +5,8 @@
 #include "Base/Progress.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
-#include "Parallel/Compositing.h"
-#include "Parallel/MpiCommunicator.h"
+#include "Parallel/Communicate/MpiCommunicator.h"
+#include "Parallel/Composite/Compositing.h"
 
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1

@@ -5,9 +5,9 @@
 #include "CompositingCases.h"
 
 #include "Base/Error.h"
-#include "Parallel/MpiCommunicator.h"
-#include "Parallel/NodeCommunicator.h"
-#include "Parallel/SharedMesh.h"
+#include "Parallel/Communicate/MpiCommunicator.h"
+#include "Parallel/Communicate/NodeCommunicator.h"
+#include "Parallel/Fields/SharedMesh.h"
 
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1

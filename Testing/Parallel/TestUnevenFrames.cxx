@@ -5,10 +5,10 @@
 #include "MpiProgram.h"
 
 #include "Base/Timer.h"
-#include "Parallel/DistributedFrame.h"
-#include "Parallel/Rebalance.h"
-#include "Pieces/PieceField.h"
-#include "Pieces/Pieces.h"
+#include "Parallel/Balance/Rebalance.h"
+#include "Parallel/Fields/DistributedFrame.h"
+#include "Parallel/Fields/PieceField.h"
+#include "Parallel/Fields/Pieces.h"
 
 #include <malloc.h>
 #include <time.h>

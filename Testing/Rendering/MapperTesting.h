@@ -3,7 +3,7 @@
 #define banyan_Testing_MapperTesting_h
 
 #include "Base/ThreadPool.h"
-#include "Series/SeriesEncoder.h"
+#include "Series/Encode/SeriesEncoder.h"
 
 #include "vtkCamera.h"
 #include "vtkCollection.h"

@@ -6,7 +6,7 @@
 
 #include "vtkBanyanVolumeMapper.h"
 
-#include "Render/RayCamera.h"
+#include "Render/Scene/RayCamera.h"
 
 #include "vtkActor.h"
 #include "vtkCommand.h"

@@ -3,7 +3,7 @@
 // sentences for what cannot be drawn.
 #include "MapperTesting.h"
 
-#include "HexOctree/ElementOctree.h"
+#include "Mesh/Octree/ElementOctree.h"
 
 #include "vtkBanyanFrameStatistics.h"
 #include "vtkBanyanVolumeMapper.h"

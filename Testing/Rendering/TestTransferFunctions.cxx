@@ -4,7 +4,7 @@
 #include "MapperTesting.h"
 
 #include "Base/Error.h"
-#include "Render/TabulateFunction.h"
+#include "Render/Scene/TabulateFunction.h"
 #include "TransferFunctionTable.h"
 
 #include "vtkDiscretizableColorTransferFunction.h"

@@ -2,7 +2,7 @@
 """pvpython stream_source.py [--array NAME]... FILES...: sends image data through a pipe.
 
 Reads the files, one series in order of time, with ParaView, and writes each step to the standard
-output in the form that Tools/StreamSource.h describes: a line of JSON, then the values of its
+output in the form that Programs/StreamSource.h describes: a line of JSON, then the values of its
 arrays. Without --array all point arrays of numbers are sent.
 """
 

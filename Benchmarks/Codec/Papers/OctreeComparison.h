@@ -3,7 +3,7 @@
 #define banyan_Benchmarks_OctreeComparison_h
 
 #include "Papers/PaperOctree.h"
-#include "Series/SeriesFile.h"
+#include "Series/Decode/SeriesFile.h"
 
 #include <cstdint>
 #include <vector>

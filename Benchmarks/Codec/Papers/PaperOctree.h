@@ -2,8 +2,8 @@
 #ifndef banyan_Benchmarks_PaperOctree_h
 #define banyan_Benchmarks_PaperOctree_h
 
-#include "Series/BrickTree.h"
-#include "Series/Bytes.h"
+#include "Base/Bytes.h"
+#include "Series/Decode/BrickTree.h"
 
 #include <glm/vec3.hpp>
 

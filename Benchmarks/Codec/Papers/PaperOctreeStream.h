@@ -3,8 +3,8 @@
 #define banyan_Benchmarks_PaperOctreeStream_h
 
 #include "Base/Box.h"
+#include "Base/Bytes.h"
 #include "Base/Error.h"
-#include "Series/Bytes.h"
 
 #include <string>
 #include <vector>

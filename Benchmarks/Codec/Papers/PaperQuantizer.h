@@ -3,7 +3,7 @@
 #define banyan_Benchmarks_PaperQuantizer_h
 
 #include "Base/ScalarType.h"
-#include "Series/SeriesIndex.h"
+#include "Series/Format/SeriesIndex.h"
 
 #include <glm/vec3.hpp>
 

@@ -2,8 +2,8 @@
 #include "PeerFrame.h"
 
 #include "Base/Error.h"
-#include "Parallel/Compositing.h"
-#include "Parallel/FragmentMessage.h"
+#include "Parallel/Composite/Compositing.h"
+#include "Parallel/Composite/FragmentMessage.h"
 
 #include <algorithm>
 #include <cstring>

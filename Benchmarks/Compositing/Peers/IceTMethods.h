@@ -2,7 +2,7 @@
 #ifndef banyan_Benchmarks_IceTMethods_h
 #define banyan_Benchmarks_IceTMethods_h
 
-#include "Parallel/Compositing.h"
+#include "Parallel/Composite/Compositing.h"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OwnedSpans.h"
 
-#include "Parallel/FragmentMessage.h"
+#include "Parallel/Composite/FragmentMessage.h"
 
 #include <algorithm>
 #include <memory>

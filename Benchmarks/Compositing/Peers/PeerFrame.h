@@ -2,11 +2,11 @@
 #ifndef banyan_Benchmarks_PeerFrame_h
 #define banyan_Benchmarks_PeerFrame_h
 
-#include "Parallel/Communicator.h"
-#include "Parallel/CompositeStatistics.h"
-#include "Parallel/Footprints.h"
-#include "Parallel/FragmentFormat.h"
-#include "Render/FloatImage.h"
+#include "Parallel/Communicate/Communicator.h"
+#include "Parallel/Composite/CompositeStatistics.h"
+#include "Parallel/Composite/Footprints.h"
+#include "Parallel/Composite/FragmentFormat.h"
+#include "Render/Scene/FloatImage.h"
 
 #include <vector>
 

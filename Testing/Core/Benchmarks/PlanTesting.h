@@ -5,8 +5,8 @@
 #include "BenchScene.h"
 
 #include "Base/ThreadPool.h"
-#include "Render/PixelsBetween.h"
-#include "Render/SamplingPlan.h"
+#include "Render/Raycast/PixelsBetween.h"
+#include "Render/Sampling/SamplingPlan.h"
 
 #include <memory>
 

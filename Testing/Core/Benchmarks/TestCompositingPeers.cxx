@@ -3,7 +3,7 @@
 #include "CompositingCases.h"
 #include "Peers/PeerFrame.h"
 
-#include "Parallel/FragmentMessage.h"
+#include "Parallel/Composite/FragmentMessage.h"
 
 #include <gtest/gtest.h>
 

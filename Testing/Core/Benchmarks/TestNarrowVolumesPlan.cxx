@@ -5,7 +5,7 @@
 #include "PlanTesting.h"
 #include "StandardScenes.h"
 
-#include "Render/PilotSpacing.h"
+#include "Render/Sampling/PilotSpacing.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Papers/OctreeComparison.h"
-#include "Tools/ToolsTesting.h"
+#include "Programs/ProgramsTesting.h"
 
 namespace banyan
 {

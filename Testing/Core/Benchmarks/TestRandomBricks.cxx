@@ -2,7 +2,7 @@
 // What random bricks are measured with.
 #include "Measure.h"
 
-#include "Series/LatticeCache.h"
+#include "Series/Decode/LatticeCache.h"
 #include "Series/SeriesTesting.h"
 
 #include <gtest/gtest.h>

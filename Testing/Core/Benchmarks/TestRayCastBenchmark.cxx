@@ -5,7 +5,7 @@
 #include "StandardScenes.h"
 
 #include "Base/ThreadPool.h"
-#include "Render/ImageError.h"
+#include "Render/Sampling/ImageError.h"
 #include "Render/Scenes.h"
 
 #include <gtest/gtest.h>

@@ -7,7 +7,7 @@
 
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
-#include "Render/SamplingPlan.h"
+#include "Render/Sampling/SamplingPlan.h"
 #include "Render/Scenes.h"
 
 #include <gtest/gtest.h>

@@ -5,9 +5,9 @@
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Cache/BrickCache.h"
-#include "Render/EnhancedBrickSource.h"
-#include "Render/SeriesBrickSource.h"
-#include "Render/StepAhead.h"
+#include "Render/Bricks/EnhancedBrickSource.h"
+#include "Render/Bricks/SeriesBrickSource.h"
+#include "Render/Bricks/StepAhead.h"
 
 #include <numeric>
 

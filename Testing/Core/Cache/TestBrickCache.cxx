@@ -4,7 +4,7 @@
 #include "Base/AvailableMemory.h"
 #include "Base/CacheBudget.h"
 #include "Base/Error.h"
-#include "Series/LatticeCache.h"
+#include "Series/Decode/LatticeCache.h"
 
 #include <atomic>
 #include <fstream>

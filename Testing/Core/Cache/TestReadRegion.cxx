@@ -2,8 +2,8 @@
 #include "Series/SeriesTesting.h"
 
 #include "Base/Error.h"
-#include "Series/LatticeCache.h"
-#include "Series/PayloadPages.h"
+#include "Series/Decode/LatticeCache.h"
+#include "Series/Decode/PayloadPages.h"
 
 #include <algorithm>
 #include <cstring>

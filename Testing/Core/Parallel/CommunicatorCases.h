@@ -2,7 +2,7 @@
 #ifndef banyan_Testing_CommunicatorCases_h
 #define banyan_Testing_CommunicatorCases_h
 
-#include "Parallel/Communicator.h"
+#include "Parallel/Communicate/Communicator.h"
 
 #include <string>
 #include <vector>

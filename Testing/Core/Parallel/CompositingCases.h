@@ -2,8 +2,8 @@
 #ifndef banyan_Testing_CompositingCases_h
 #define banyan_Testing_CompositingCases_h
 
-#include "Parallel/Compositing.h"
-#include "Parallel/ReduceNearest.h"
+#include "Parallel/Composite/Compositing.h"
+#include "Parallel/Composite/ReduceNearest.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,10 +2,10 @@
 #ifndef banyan_Testing_Core_Parallel_MeshMadeAlone_h
 #define banyan_Testing_Core_Parallel_MeshMadeAlone_h
 
-#include "HexSampling/CellMeans.h"
-#include "HexSampling/OneNumberPerPlace.h"
+#include "Mesh/Sampling/CellMeans.h"
+#include "Mesh/Sampling/OneNumberPerPlace.h"
+#include "Parallel/Fields/SharedMesh.h"
 #include "Parallel/MeshPieces.h"
-#include "Parallel/SharedMesh.h"
 
 #include "Base/ThreadPool.h"
 

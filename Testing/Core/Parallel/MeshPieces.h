@@ -2,8 +2,8 @@
 #ifndef banyan_Testing_Core_Parallel_MeshPieces_h
 #define banyan_Testing_Core_Parallel_MeshPieces_h
 
-#include "HexOctree/TinyMeshes.h"
-#include "Parallel/Communicator.h"
+#include "Mesh/Octree/TinyMeshes.h"
+#include "Parallel/Communicate/Communicator.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -2,9 +2,9 @@
 #include "ScalarPacking.h"
 
 #include "Base/Error.h"
-#include "Parallel/FragmentFormat.h"
-#include "Parallel/FragmentMessage.h"
-#include "Parallel/PixelPacking.h"
+#include "Parallel/Composite/FragmentFormat.h"
+#include "Parallel/Composite/FragmentMessage.h"
+#include "Parallel/Composite/PixelPacking.h"
 
 #include <gtest/gtest.h>
 

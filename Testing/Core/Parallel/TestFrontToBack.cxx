@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/Zones.h"
+#include "Parallel/Balance/Zones.h"
 
 #include "Base/Error.h"
 

@@ -2,7 +2,7 @@
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
-#include "Parallel/Heartbeat.h"
+#include "Parallel/Watchdog/Heartbeat.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #ifndef banyan_Testing_Core_Render_RandomMaps_h
 #define banyan_Testing_Core_Render_RandomMaps_h
 
-#include "Render/TabulateFunction.h"
+#include "Render/Scene/TabulateFunction.h"
 
 #include <glm/common.hpp>
 

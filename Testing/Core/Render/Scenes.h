@@ -3,9 +3,9 @@
 #define banyan_Testing_Core_Render_Scenes_h
 
 #include "Base/ThreadPool.h"
-#include "Render/ArrayBrickSource.h"
-#include "Render/ImageError.h"
-#include "Render/ProjectionTable.h"
+#include "Render/Bricks/ArrayBrickSource.h"
+#include "Render/Sampling/ImageError.h"
+#include "Render/Scene/ProjectionTable.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 

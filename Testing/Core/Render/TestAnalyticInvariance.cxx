@@ -3,8 +3,8 @@
 // of one and the same function lie on, bricks, types, and levels of detail.
 #include "Render/Analytic.h"
 
-#include "Render/SeriesBrickSource.h"
-#include "Series/SeriesEncoder.h"
+#include "Render/Bricks/SeriesBrickSource.h"
+#include "Series/Encode/SeriesEncoder.h"
 
 #include <cstdlib>
 #include <filesystem>

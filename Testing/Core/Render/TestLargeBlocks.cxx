@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Blocks of 64^3 cells of volumes of 2^25 cells and more.
-#include "Render/BrickGroups.h"
+#include "Render/Bricks/BrickGroups.h"
 
 #include "Render/Scenes.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Render/BrickMarcher.h"
+#include "Render/Raycast/BrickMarcher.h"
 #include "Render/Scenes.h"
 #include "Targets.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which bricks a maximum or minimum leaves out: none that could change a pixel, and all of one
 // value that another one has already.
-#include "Render/Interpolators.h"
+#include "Render/Bricks/Interpolators.h"
 #include "Render/Scenes.h"
 
 #include <gtest/gtest.h>

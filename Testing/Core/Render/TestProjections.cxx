@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Base/Error.h"
-#include "Render/BrickProjector.h"
+#include "Render/Raycast/BrickProjector.h"
 #include "Render/Scenes.h"
 #include "Targets.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Estimates of errors in pictures of real data: by sampling, and by encoding.
-#include "Render/PixelsBetween.h"
-#include "Render/SamplingPlan.h"
+#include "Render/Raycast/PixelsBetween.h"
+#include "Render/Sampling/SamplingPlan.h"
 #include "Render/Scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which levels a plan may use, from pilots whose errors are known because they are made up.
-#include "Render/SamplingPlan.h"
+#include "Render/Sampling/SamplingPlan.h"
 
 #include "Render/Scenes.h"
 

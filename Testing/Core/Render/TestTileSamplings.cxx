@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
-#include "Render/ImageError.h"
-#include "Render/RayLattice.h"
+#include "Render/Sampling/ImageError.h"
+#include "Render/Scene/RayLattice.h"
 #include "Render/Scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Render/RayTile.h"
+#include "Render/Raycast/RayTile.h"
 #include "Render/Scenes.h"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #ifndef banyan_Testing_CodedBits_h
 #define banyan_Testing_CodedBits_h
 
-#include "Series/Bytes.h"
+#include "Base/Bytes.h"
 
 #include <cstddef>
 #include <cstdint>

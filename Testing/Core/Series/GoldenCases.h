@@ -2,8 +2,8 @@
 #ifndef banyan_Testing_GoldenCases_h
 #define banyan_Testing_GoldenCases_h
 
-#include "Series/Bytes.h"
-#include "Series/SeriesEncoder.h"
+#include "Base/Bytes.h"
+#include "Series/Encode/SeriesEncoder.h"
 
 #include <cstdint>
 #include <string>

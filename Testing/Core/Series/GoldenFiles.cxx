@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Series/GoldenFiles.h"
 
-#include "Series/AtomicFile.h"
-#include "Series/Hash.h"
+#include "Base/Hash.h"
+#include "Series/Format/AtomicFile.h"
 #include "Series/SeriesTesting.h"
 
 #include <cstdio>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Series/GoldenCases.h"
 
-#include "Series/FillValues.h"
+#include "Series/Quantize/FillValues.h"
 #include "Series/SeriesTesting.h"
 
 namespace banyan::testing

@@ -2,7 +2,7 @@
 #ifndef banyan_Testing_QuantizersTesting_h
 #define banyan_Testing_QuantizersTesting_h
 
-#include "Series/FillValues.h"
+#include "Series/Quantize/FillValues.h"
 #include "Series/SeriesTesting.h"
 
 namespace banyan::testing

@@ -2,7 +2,7 @@
 #ifndef banyan_Testing_ScalarStepTable_h
 #define banyan_Testing_ScalarStepTable_h
 
-#include "Series/GroupFormat.h"
+#include "Series/Format/GroupFormat.h"
 
 namespace banyan::testing
 {

@@ -4,9 +4,9 @@
 
 #include "Base/ThreadPool.h"
 #include "Cache/BrickCache.h"
-#include "Series/SeriesEncoder.h"
-#include "Series/SeriesFile.h"
-#include "Series/ValueArithmetic.h"
+#include "Series/Decode/SeriesFile.h"
+#include "Series/Encode/SeriesEncoder.h"
+#include "Series/Quantize/ValueArithmetic.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 // How many steps a look at one brick takes: what an encoding tells is what a reader decodes.
 #include "Series/SeriesTesting.h"
 
-#include "Series/GroupFormat.h"
-#include "Series/LatticeCache.h"
+#include "Series/Decode/LatticeCache.h"
+#include "Series/Format/GroupFormat.h"
 
 #include <set>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Series/SeriesTesting.h"
 
-#include "Series/FieldLattice.h"
+#include "Series/Format/FieldLattice.h"
 
 #include <functional>
 #include <limits>

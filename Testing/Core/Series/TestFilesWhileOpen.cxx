@@ -3,9 +3,9 @@
 #include "Series/ContainerTesting.h"
 #include "Series/SeriesTesting.h"
 
-#include "Series/LatticeCache.h"
-#include "Series/PayloadPages.h"
-#include "Series/SegmentFile.h"
+#include "Series/Decode/LatticeCache.h"
+#include "Series/Decode/PayloadPages.h"
+#include "Series/Format/SegmentFile.h"
 
 #include <atomic>
 #include <fstream>

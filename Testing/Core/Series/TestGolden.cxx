@@ -9,7 +9,7 @@
 
 #include "Series/GoldenFiles.h"
 
-#include "Series/AtomicFile.h"
+#include "Series/Format/AtomicFile.h"
 #include "Series/SeriesTesting.h"
 
 #include <algorithm>

@@ -3,10 +3,10 @@
 /// Documentation/format.md and shares no code with the readers (but for zstd, and the number of
 /// blocks and bricks).
 
-#include "Series/AtomicFile.h"
+#include "Series/Format/AtomicFile.h"
+#include "Series/Format/Zstd.h"
 #include "Series/ScalarStepTable.h"
 #include "Series/SeriesTesting.h"
-#include "Series/Zstd.h"
 
 #include <map>
 #include <set>

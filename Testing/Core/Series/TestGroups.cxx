@@ -3,11 +3,11 @@
 #include "Series/SeriesTesting.h"
 
 #include "Base/Error.h"
-#include "Series/BackgroundEncoder.h"
-#include "Series/EncodePlan.h"
-#include "Series/GroupEncoder.h"
-#include "Series/GroupMessage.h"
-#include "Series/SeriesAssembly.h"
+#include "Series/Encode/BackgroundEncoder.h"
+#include "Series/Encode/EncodePlan.h"
+#include "Series/Encode/GroupEncoder.h"
+#include "Series/Encode/GroupMessage.h"
+#include "Series/Encode/SeriesAssembly.h"
 
 #include <fstream>
 #include <iterator>

@@ -2,9 +2,9 @@
 // Points that have no value: their bits, their flags, and what the tree says of all others.
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
-#include "Series/IndexText.h"
-#include "Series/SeriesEncoder.h"
-#include "Series/SeriesFile.h"
+#include "Series/Decode/SeriesFile.h"
+#include "Series/Encode/SeriesEncoder.h"
+#include "Series/Format/IndexText.h"
 #include "Series/SeriesTesting.h"
 
 #include <gtest/gtest.h>

@@ -3,12 +3,12 @@
 #include "Series/SeriesTesting.h"
 
 #include "Base/Error.h"
+#include "Base/Hash.h"
 #include "Codec/BlockModes.h"
-#include "Series/GroupFormat.h"
-#include "Series/Hash.h"
-#include "Series/IndexText.h"
-#include "Series/SegmentFormat.h"
-#include "Series/Zstd.h"
+#include "Series/Format/GroupFormat.h"
+#include "Series/Format/IndexText.h"
+#include "Series/Format/SegmentFormat.h"
+#include "Series/Format/Zstd.h"
 
 #include <fstream>
 #include <functional>

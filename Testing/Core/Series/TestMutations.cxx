@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Series/SeriesTesting.h"
 
+#include "Base/Bytes.h"
 #include "Base/Error.h"
-#include "Series/Bytes.h"
-#include "Series/GroupFormat.h"
-#include "Series/Hash.h"
-#include "Series/IndexText.h"
-#include "Series/SegmentFormat.h"
+#include "Base/Hash.h"
+#include "Series/Format/GroupFormat.h"
+#include "Series/Format/IndexText.h"
+#include "Series/Format/SegmentFormat.h"
 
 #include <fstream>
 #include <functional>

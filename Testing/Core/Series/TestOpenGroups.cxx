@@ -3,9 +3,9 @@
 #include "Series/SeriesTesting.h"
 
 #include "Base/Error.h"
-#include "Series/GroupFormat.h"
-#include "Series/GroupReader.h"
-#include "Series/LatticeCache.h"
+#include "Series/Decode/GroupReader.h"
+#include "Series/Decode/LatticeCache.h"
+#include "Series/Format/GroupFormat.h"
 
 #include <fstream>
 

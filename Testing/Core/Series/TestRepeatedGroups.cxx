@@ -2,9 +2,9 @@
 /// Groups of equal content, which are stored once over the whole series.
 #include "Series/ContainerTesting.h"
 
-#include "Series/AtomicFile.h"
-#include "Series/GroupReader.h"
-#include "Series/IndexText.h"
+#include "Series/Decode/GroupReader.h"
+#include "Series/Format/AtomicFile.h"
+#include "Series/Format/IndexText.h"
 
 #include <fstream>
 #include <functional>

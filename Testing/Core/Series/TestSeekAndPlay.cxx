@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Series/SeriesTesting.h"
 
-#include "Series/LatticeCache.h"
+#include "Series/Decode/LatticeCache.h"
 
 #include <algorithm>
 #include <fstream>

@@ -2,7 +2,7 @@
 #include "Series/SeriesTesting.h"
 
 #include "Base/Error.h"
-#include "Series/BrickTree.h"
+#include "Series/Decode/BrickTree.h"
 
 #include <fstream>
 #include <iterator>

@@ -3,7 +3,7 @@
 #include "Series/ContainerTesting.h"
 #include "Series/SeriesTesting.h"
 
-#include "Series/SeriesPath.h"
+#include "Series/Format/SeriesPath.h"
 
 #include <fstream>
 

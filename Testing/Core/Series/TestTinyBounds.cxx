@@ -3,8 +3,8 @@
 #include "Series/ContainerTesting.h"
 #include "Series/SeriesTesting.h"
 
-#include "Series/AtomicFile.h"
-#include "Series/IndexText.h"
+#include "Series/Format/AtomicFile.h"
+#include "Series/Format/IndexText.h"
 
 #include <limits>
 #include <numeric>

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Mesh/Octree/HexBrickSummary.h"
+
+#include "Base/ThreadPool.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+namespace banyan
+{
+namespace
+{
+
+/// What eight corners span, without those that are not finite.
+ValueRange RangeOfElement(const double (&corners)[8], bool& special)
+{
+  ValueRange range;
+  for (const double value : corners)
+  {
+    if (std::isfinite(value))
+    {
+      range.Include(value);
+    }
+    special = special || !std::isfinite(value);
+  }
+  return range;
+}
+
+std::size_t Index(std::int64_t i)
+{
+  return static_cast<std::size_t>(i);
+}
+
+/// Ranges, then masks over the range of all. The elements are read once: what they span is kept in
+/// between.
+template <class Value>
+HexBrickSummary Summarize(const HexBricks& bricks, const NodalField& values, ThreadPool& pool)
+{
+  struct Span
+  {
+    Value Low;
+    Value High; ///< below Low where nothing is finite
+  };
+  const std::vector<HexBrick>& list = bricks.List();
+  const auto count = static_cast<std::int64_t>(list.size());
+  std::vector<ValueRange> ranges(list.size());
+  std::vector<ValueMask> masks(list.size());
+  std::vector<std::uint8_t> specials(list.size());
+  // Not set to zero, which would be one thread's work.
+  const std::unique_ptr<Span[]> spans(new Span[Index(bricks.Tree().LeafCount())]);
+  pool.ParallelFor(count,
+    [&](std::int64_t number)
+    {
+      ValueRange total;
+      bool special = false;
+      const HexBrick& brick = list[Index(number)];
+      values.ForCorners(brick.FirstLeaf, brick.EndLeaf,
+        [&](std::int64_t leaf, const double(&corners)[8])
+        {
+          const ValueRange range = RangeOfElement(corners, special);
+          spans[Index(leaf)] = { static_cast<Value>(range.Low), static_cast<Value>(range.High) };
+          total.Include(range);
+        });
+      ranges[Index(number)] = total;
+      specials[Index(number)] = special ? 1 : 0;
+    });
+  ValueRange all;
+  for (const ValueRange& range : ranges)
+  {
+    all.Include(range);
+  }
+  HexBrickSummary summary;
+  summary.Over = all.Empty() ? MaskRange{} : MaskRange{ all.Low, all.High };
+  const auto maskOf = [&over = summary.Over](const ValueRange& range)
+  {
+    return range.Empty() ? ValueMask{ 0 }
+                         : MaskOfBins(over.BinOf(range.Low), over.BinOf(range.High));
+  };
+  pool.ParallelFor(count,
+    [&](std::int64_t number)
+    {
+      const HexBrick& brick = list[Index(number)];
+      const ValueRange& total = ranges[Index(number)];
+      ValueMask& mask = masks[Index(number)];
+      mask = maskOf(total);
+      if (!total.Empty() && summary.Over.BinOf(total.High) - summary.Over.BinOf(total.Low) > 1)
+      {
+        mask = 0;
+        for (std::int64_t leaf = brick.FirstLeaf; leaf < brick.EndLeaf; ++leaf)
+        {
+          const Span& span = spans[Index(leaf)];
+          mask |= maskOf({ span.Low, span.High });
+        }
+      }
+    });
+  summary.Ranges = std::move(ranges);
+  summary.Masks = std::move(masks);
+  summary.Special = std::move(specials);
+  return summary;
+}
+
+} // namespace
+
+HexBrickSummary HexBrickSummary::Of(
+  const HexBricks& bricks, const NodalField& values, ThreadPool& pool)
+{
+  return values.Type() == ScalarType::Float32 ? Summarize<float>(bricks, values, pool)
+                                              : Summarize<double>(bricks, values, pool);
+}
+
+// The largest types come first, so that all are aligned.
+std::size_t HexBrickSummary::PackedBytes(std::size_t bricks)
+{
+  return sizeof(MaskRange) + bricks * (sizeof(ValueRange) + sizeof(ValueMask) + 1);
+}
+
+void HexBrickSummary::WriteTo(char* to) const
+{
+  const auto put = [&to](const void* from, std::size_t bytes)
+  {
+    if (bytes > 0)
+    {
+      std::memcpy(to, from, bytes);
+    }
+    to += bytes;
+  };
+  put(&this->Over, sizeof(this->Over));
+  put(this->Ranges.data(), this->Ranges.Bytes());
+  put(this->Masks.data(), this->Masks.Bytes());
+  put(this->Special.data(), this->Special.Bytes());
+}
+
+HexBrickSummary HexBrickSummary::Read(std::size_t bricks, const std::shared_ptr<const char>& memory)
+{
+  const char* from = memory.get();
+  HexBrickSummary summary;
+  std::memcpy(&summary.Over, from, sizeof(summary.Over));
+  from += sizeof(summary.Over);
+  summary.Ranges = { reinterpret_cast<const ValueRange*>(from), bricks, memory };
+  from += summary.Ranges.Bytes();
+  summary.Masks = { reinterpret_cast<const ValueMask*>(from), bricks, memory };
+  from += summary.Masks.Bytes();
+  summary.Special = { reinterpret_cast<const std::uint8_t*>(from), bricks, memory };
+  return summary;
+}
+
+} // namespace banyan

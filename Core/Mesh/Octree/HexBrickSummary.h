@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Mesh_Octree_HexBrickSummary_h
+#define banyan_Mesh_Octree_HexBrickSummary_h
+
+#include "Base/HeldArray.h"
+#include "Mesh/Octree/HexBricks.h"
+#include "Mesh/Octree/NodalField.h"
+#include "Series/Grid/ValueMask.h"
+#include "Series/Quantize/ValueRange.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+namespace banyan
+{
+
+class ThreadPool;
+
+/// What values each brick of a mesh has: found by looking at all elements once.
+struct HexBrickSummary
+{
+  HeldArray<ValueRange> Ranges;
+  HeldArray<ValueMask> Masks;
+  HeldArray<std::uint8_t> Special; ///< whether a corner of an element is not finite
+  MaskRange Over;                  ///< what masks are over: the finite values of all bricks
+
+  std::size_t Bytes() const
+  {
+    return this->Ranges.Bytes() + this->Masks.Bytes() + this->Special.Bytes();
+  }
+
+  static HexBrickSummary Of(const HexBricks& bricks, const NodalField& values, ThreadPool& pool);
+
+  /// As one run of bytes, which other processes of the machine can have as theirs.
+  static std::size_t PackedBytes(std::size_t bricks);
+  void WriteTo(char* to) const;
+  /// What lies there; nothing is copied.
+  static HexBrickSummary Read(std::size_t bricks, const std::shared_ptr<const char>& memory);
+};
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Parallel/Communicate/NodeBroadcast.h"
+
+#include "Base/Error.h"
+
+#include <string>
+#include <vector>
+
+namespace banyan
+{
+namespace
+{
+
+constexpr int TagOfBytes = 0;
+
+} // namespace
+
+void OnRanks(Communicator& communicator, bool mine, const std::function<void()>& work)
+{
+  std::string failure;
+  if (mine)
+  {
+    try
+    {
+      work();
+    }
+    catch (const std::exception& error)
+    {
+      failure = error.what();
+    }
+  }
+  if (!AgreeOnError(communicator, failure).empty())
+  {
+    throw Error(failure);
+  }
+}
+
+void OnLeaders(
+  Communicator& communicator, const NodeCommunicator& machines, const std::function<void()>& work)
+{
+  OnRanks(communicator, machines.Leads(), work);
+}
+
+MachineBytes NodeBroadcast(Communicator& communicator, NodeCommunicator& machines,
+  std::size_t bytes, const std::function<void(char*)>& write)
+{
+  // Those who lead now: each rank does when memory cannot be had together.
+  std::vector<int> leaders;
+  for (int rank = 0; rank < communicator.Size(); ++rank)
+  {
+    leaders.push_back(machines.LeaderOf(rank));
+  }
+  const int self = communicator.Rank();
+  const int leader = leaders[static_cast<std::size_t>(self)];
+  MachineBytes made;
+  made.Count = static_cast<std::size_t>(
+    AllMax(communicator, leader == self ? static_cast<double>(bytes) : 0.0));
+  made.Memory = machines.Allocate(communicator, made.Count);
+  made.Together = machines.RanksHere() > 1;
+  if (leader == self)
+  {
+    write(made.Memory.get());
+  }
+  if (!machines.Shares())
+  {
+    for (int rank = 0; rank < communicator.Size(); ++rank)
+    {
+      if (leader == self && rank != self && leaders[static_cast<std::size_t>(rank)] == self)
+      {
+        communicator.Send(rank, TagOfBytes, made.Memory.get(), made.Count);
+      }
+    }
+    if (leader != self)
+    {
+      communicator.Receive(leader, TagOfBytes, made.Memory.get(), made.Count);
+    }
+    communicator.WaitAll();
+  }
+  communicator.Barrier();
+  return made;
+}
+
+} // namespace banyan

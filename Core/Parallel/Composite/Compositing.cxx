@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Parallel/Composite/Compositing.h"
+
+#include "Base/Error.h"
+#include "Parallel/Composite/TileOwnerCompositor.h"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+
+namespace banyan
+{
+namespace
+{
+
+bool Inside(const PixelRect& inner, const PixelRect& outer)
+{
+  return inner.Empty() || Intersection(inner, outer) == inner;
+}
+
+bool Drawn(const glm::vec4& pixel)
+{
+  return pixel != glm::vec4(0.0f);
+}
+
+bool IsPermutation(const std::vector<int>& order, int ranks)
+{
+  std::vector<bool> seen(static_cast<std::size_t>(ranks), false);
+  for (const int rank : order)
+  {
+    if (rank < 0 || rank >= ranks || seen[rank])
+    {
+      return false;
+    }
+    seen[rank] = true;
+  }
+  return order.size() == seen.size();
+}
+
+/// Whether a rank has drawn where its footprint says that it cannot.
+bool DrawsOutside(const FloatImage& image, const Footprint& footprint)
+{
+  for (int y = image.Rect.Lo.y; y < image.Rect.Hi.y && !image.Rect.Empty(); ++y)
+  {
+    const Footprint::Interval row = footprint.Row(y);
+    const glm::vec4* pixels = &image.At(image.Rect.Lo.x, y);
+    const int width = image.Rect.Size().x;
+    const int left = std::clamp(row.Lo - image.Rect.Lo.x, 0, width);
+    const int right = std::clamp(row.Hi - image.Rect.Lo.x, left, width);
+    if (std::any_of(pixels, pixels + left, Drawn) ||
+        std::any_of(pixels + right, pixels + width, Drawn))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// What every rank tells all others before pixels travel.
+struct Announcement
+{
+  PixelRect Active; ///< of this rank's image
+  std::uint64_t Arguments = 0;
+};
+
+/// Of all that must be the same on all ranks (FNV-1a).
+std::uint64_t Fingerprint(
+  const std::vector<int>& order, const PixelRect& viewport, const CompositeOptions& options)
+{
+  std::uint64_t hash = 14695981039346656037u;
+  const auto add = [&hash](long long value)
+  { hash = (hash ^ static_cast<std::uint64_t>(value)) * 1099511628211u; };
+  for (const int rank : order)
+  {
+    add(rank);
+  }
+  for (const PixelRect& rect : { viewport, options.Behind })
+  {
+    for (const int value : { rect.Lo.x, rect.Lo.y, rect.Hi.x, rect.Hi.y })
+    {
+      add(value);
+    }
+  }
+  add(static_cast<int>(options.Combine));
+  add(static_cast<int>(options.Transport));
+  add(Packs(options) ? 1 : 0);
+  for (const Footprint& footprint : options.Footprints)
+  {
+    for (const Footprint::Interval& row : footprint.Rows)
+    {
+      add(row.Lo);
+      add(row.Hi);
+    }
+  }
+  return hash;
+}
+
+/// Collective; throws the same Error on all ranks when one of them was called wrongly, because a
+/// rank that gave up alone would leave the others waiting.
+std::vector<Footprint> Announce(Communicator& communicator, const FloatImage& mine,
+  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options)
+{
+  std::string problem =
+    ProblemOf(communicator.Rank(), communicator.Size(), mine, frontToBack, viewport, options);
+  problem = AgreeOnError(communicator, problem);
+  if (!problem.empty())
+  {
+    throw Error(problem);
+  }
+  Announcement own;
+  own.Arguments = Fingerprint(frontToBack, viewport, options);
+  own.Active = options.Footprints.empty() ? ActiveRect(mine, viewport) : PixelRect{};
+  std::vector<Announcement> all(static_cast<std::size_t>(communicator.Size()));
+  communicator.AllGather(&own, sizeof(own), all.data());
+  std::vector<Footprint> footprints = options.Footprints;
+  for (std::size_t rank = 0; rank < all.size(); ++rank)
+  {
+    if (all[rank].Arguments != all[0].Arguments)
+    {
+      throw Error(
+        "Rank " + std::to_string(rank) +
+        " and rank 0 disagree about the viewport, the visibility order or how pixels travel, "
+        "so no picture could be put together.");
+    }
+    if (options.Footprints.empty())
+    {
+      footprints.push_back(FootprintOf(all[rank].Active, viewport));
+    }
+  }
+  return footprints;
+}
+
+} // namespace
+
+PixelRect ActiveRect(const FloatImage& image, const PixelRect& rect)
+{
+  const PixelRect searched = Intersection(image.Rect, rect);
+  PixelRect active{ glm::ivec2(std::numeric_limits<int>::max()),
+    glm::ivec2(std::numeric_limits<int>::min()) };
+  for (int y = searched.Lo.y; y < searched.Hi.y; ++y)
+  {
+    const glm::vec4* begin = &image.At(searched.Lo.x, y);
+    const glm::vec4* end = begin + searched.Size().x;
+    const glm::vec4* first = std::find_if(begin, end, Drawn);
+    if (first == end)
+    {
+      continue;
+    }
+    const auto last =
+      std::find_if(std::make_reverse_iterator(end), std::make_reverse_iterator(first), Drawn);
+    active.Lo.x = std::min(active.Lo.x, searched.Lo.x + static_cast<int>(first - begin));
+    active.Hi.x = std::max(active.Hi.x, searched.Lo.x + static_cast<int>(last.base() - begin));
+    active.Lo.y = std::min(active.Lo.y, y);
+    active.Hi.y = y + 1;
+  }
+  return active.Empty() ? PixelRect{} : active;
+}
+
+FragmentFormat FormatFor(const CompositeOptions& options, int meeting, int shares)
+{
+  if (options.Combine != Combination::Over || options.Transport == PixelTransport::Floats)
+  {
+    return {};
+  }
+  return FormatOfFragments(meeting, shares, options.Brightest);
+}
+
+FragmentFormat FormatOfFinal(const CompositeOptions& options)
+{
+  FragmentFormat format;
+  const bool floats =
+    options.Combine != Combination::Over || options.Transport == PixelTransport::Floats;
+  format.Kind = floats ? FragmentFormat::Floats : FragmentFormat::Bytes;
+  return format;
+}
+
+bool Packs(const CompositeOptions& options)
+{
+  return options.Packing == PixelPacking::Always ||
+         (options.Packing == PixelPacking::ByCosts && PackingPays(options.Costs));
+}
+
+std::string ProblemOf(int rank, int ranks, const FloatImage& mine,
+  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options)
+{
+  if (!IsPermutation(frontToBack, ranks))
+  {
+    return "The visibility order is not one of all ranks, so no picture could be put together.";
+  }
+  if (!Inside(mine.Rect, viewport) ||
+      static_cast<long long>(mine.Pixels.size()) != mine.Rect.Count())
+  {
+    return "An image does not fit into the viewport, so no picture could be put together.";
+  }
+  if (options.Footprints.empty())
+  {
+    return {};
+  }
+  if (options.Footprints.size() != static_cast<std::size_t>(ranks))
+  {
+    return "There is not one footprint for each rank, so no picture could be put together.";
+  }
+  for (const Footprint& footprint : options.Footprints)
+  {
+    if (!Inside(footprint.Rect, viewport) ||
+        footprint.Rows.size() != static_cast<std::size_t>(footprint.Rect.Size().y))
+    {
+      return "A footprint does not fit into the viewport, so no picture could be put together.";
+    }
+  }
+  if (DrawsOutside(mine, options.Footprints[static_cast<std::size_t>(rank)]))
+  {
+    return "Pixels were drawn outside of the footprint of their zone, where nobody expects them.";
+  }
+  return {};
+}
+
+FloatImage Composite(Communicator& communicator, const FloatImage& mine,
+  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
+  CompositeStatistics& statistics)
+{
+  if (options.Agreed && !options.Footprints.empty())
+  {
+    return CompositeByTileOwners(communicator, mine, frontToBack, viewport, options, statistics);
+  }
+  CompositeOptions complete = options;
+  complete.Footprints = Announce(communicator, mine, frontToBack, viewport, options);
+  return CompositeByTileOwners(communicator, mine, frontToBack, viewport, complete, statistics);
+}
+
+} // namespace banyan

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Parallel_Fields_DistributedFrame_h
+#define banyan_Parallel_Fields_DistributedFrame_h
+
+#include "Parallel/Communicate/Communicator.h"
+#include "Parallel/Composite/Compositing.h"
+#include "Render/Raycast/RayCaster.h"
+
+#include <string>
+#include <vector>
+
+namespace banyan
+{
+
+/// What one frame took: summed over ranks, except the seconds, which are the slowest rank's.
+struct FrameStatistics
+{
+  double TotalSeconds = 0;
+  double RenderSeconds = 0;    ///< until the last ray; with what was composited meanwhile
+  double CompositeSeconds = 0; ///< after the last ray; with waiting, where compositing began before
+  double PilotSeconds = 0;     ///< before that, of a plan: finding distances and levels
+  double StrideSeconds = 0;    ///< and pixels that need no rays
+  int Pilots = 0;              ///< small pictures that these took
+  double Imbalance = 1;        ///< slowest rank's render seconds over the mean, >= 1
+  std::int64_t SamplesTaken = 0;
+  std::int64_t BricksDrawn = 0;
+  std::int64_t BricksUniform = 0;
+  std::int64_t BricksSkipped = 0;
+  std::uint64_t BytesComposited = 0;    ///< sent between ranks to make one picture of N
+  std::uint64_t MessagesComposited = 0; ///< in so many messages
+};
+
+/// What a rank brings to a picture of all ranks.
+struct RankShare
+{
+  BrickSource* Source;       ///< this rank's bricks; may be null when its zone is empty
+  std::vector<Box> Zones;    ///< cells of each rank, disjoint, the same list on all ranks
+  std::uint64_t BudgetBytes; ///< working memory for loaded bricks on this rank
+  ThreadPool& Pool;
+  std::string Failure = {}; ///< if not empty, this rank cannot draw: all ranks throw it
+};
+
+/// Draws one picture on all ranks: each casts rays through the cells of its own zone, and the
+/// pictures are composited, from the first parts on that are final. Collective.
+///
+/// @param scene the same on all ranks (depths included)
+/// @param compositing how the pictures are put together; the same on all ranks. What follows from
+/// the scene and the zones (combination, footprints, brightest colours) is set here.
+/// @return the scene's viewport on rank 0, premultiplied; empty elsewhere. The picture does not
+/// depend on the number of ranks: within 1e-5 in float when no ray ends early, within
+/// 1 - OpacityLimit otherwise; with PixelTransport::WithinOne, 1 of 255 more.
+/// When a rank fails, all ranks throw the same Error.
+FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene,
+  const RankShare& share, FrameStatistics& statistics, const CompositeOptions& compositing = {});
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Parallel_Fields_DistributedPilot_h
+#define banyan_Parallel_Fields_DistributedPilot_h
+
+#include "Parallel/Fields/DistributedFrame.h"
+
+namespace banyan
+{
+
+/// Draws a pilot of a frame on all ranks, for all ranks. The picture is that of DrawDistributed,
+/// but pilots are small and many: what compositing costs of a large picture, agreements above all,
+/// would be most of their time. So each rank tells all others in one message whether it has failed,
+/// what it took, and its pixels, and all of them blend the same picture. The message is as large as
+/// the largest footprint of a zone: what ranks receive together grows like the sum of the
+/// footprints, with the cube root of the number of ranks.
+///
+/// Collective; the parameters are those of DrawDistributed.
+/// @param scene composited samples only
+/// @param share its Failure has been agreed on: it is empty
+/// @param statistics SamplesTaken and BytesComposited of all ranks are added; the rest stays
+/// @return the scene's viewport, on every rank
+/// When a rank fails, all ranks throw the same Error.
+FloatImage DrawDistributedPilot(Communicator& communicator, const RayScene& scene,
+  const RankShare& share, FrameStatistics& statistics);
+
+} // namespace banyan
+
+#endif

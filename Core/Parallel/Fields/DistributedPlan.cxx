@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Parallel/Fields/DistributedPlan.h"
+
+#include "Parallel/Fields/DistributedPilot.h"
+
+#include <algorithm>
+
+namespace banyan
+{
+namespace
+{
+
+/// The largest of what the ranks say, or the error of the first one that fails, on all of them.
+template <class Function>
+int LargestOfAll(Communicator& communicator, Function&& mine)
+{
+  int value = 0;
+  std::string failure;
+  try
+  {
+    value = mine();
+  }
+  catch (const std::exception& error)
+  {
+    failure = error.what();
+  }
+  const std::string agreed = AgreeOnError(communicator, failure);
+  if (!agreed.empty())
+  {
+    throw Error(agreed);
+  }
+  return static_cast<int>(AllMax(communicator, value));
+}
+
+/// The finest level that all ranks can draw pilots from without loading everything again for each
+/// of them: half the budget is for bricks that are kept.
+int FinestPilotLevel(
+  Communicator& communicator, const RayScene& scene, const RankShare& share, int coarsest)
+{
+  if (coarsest == 0)
+  {
+    return 0;
+  }
+  const Box& zone = share.Zones.at(static_cast<std::size_t>(communicator.Rank()));
+  return LargestOfAll(communicator,
+    [&]
+    {
+      return share.Source && !zone.Empty() ? FinestLevelWithin(scene, *share.Source, zone, coarsest,
+                                               KeptBricks::PartOf(share.BudgetBytes), share.Pool)
+                                           : 0;
+    });
+}
+
+} // namespace
+
+int CommonLevel(Communicator& communicator, BrickSource* source, const Box& domain, int most)
+{
+  // The least of all is the largest of the negatives.
+  return -LargestOfAll(communicator,
+    [&]
+    {
+      int level = most;
+      while (source != nullptr && level > 0 && source->AtLevel(level, domain) == nullptr)
+      {
+        --level;
+      }
+      return -level;
+    });
+}
+
+SamplingPlan PlanDistributed(Communicator& communicator, const RayScene& scene,
+  const RankShare& share, SamplingWish wish, FrameStatistics& statistics)
+{
+  const std::string agreed = AgreeOnError(communicator, share.Failure);
+  if (!agreed.empty())
+  {
+    throw Error(agreed);
+  }
+  wish.CoarsestLevel =
+    CommonLevel(communicator, share.Source, scene.DomainCells, wish.CoarsestLevel);
+  wish.FinestPilotLevel = FinestPilotLevel(communicator, scene, share, wish.CoarsestLevel);
+  if (wish.StaysInMemory)
+  {
+    wish.FinestLevel = std::max(wish.FinestLevel, wish.FinestPilotLevel);
+  }
+  return PlanSamplings(scene, wish,
+    [&](const RayScene& pilot)
+    { return DrawDistributedPilot(communicator, pilot, share, statistics); });
+}
+
+} // namespace banyan

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What all ranks know of each other's bricks.
+#include "Base/Error.h"
+#include "Parallel/Fields/PieceExchange.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace banyan
+{
+namespace
+{
+
+/// A brick in a message. Plain memory: it is sent as it is.
+struct Entry
+{
+  double Low;
+  double High;
+  std::uint64_t Mask;
+  std::uint64_t Uniform;
+};
+
+/// What a rank says of its array.
+struct ArrayFacts
+{
+  double Low;
+  double High;
+  std::int32_t Type;
+  std::int32_t ViewType;
+};
+
+/// The bricks of a rank, ascending.
+std::vector<std::int64_t> BricksOf(const PieceGrid& grid, int rank)
+{
+  std::vector<std::int64_t> bricks;
+  for (std::int64_t brick = 0; brick < grid.Count(); ++brick)
+  {
+    if (grid.HolderOf(brick) == rank)
+    {
+      bricks.push_back(brick);
+    }
+  }
+  return bricks;
+}
+
+std::string SummarizeOwn(const PieceGrid& grid, int rank, const PieceSamples& mine,
+  const MaskRange& masks, ThreadPool& pool)
+{
+  if (!mine.HasData())
+  {
+    return {};
+  }
+  const SampleArray& array = mine.Array().Array();
+  std::vector<Box> boxes;
+  for (const std::int64_t brick : BricksOf(grid, rank))
+  {
+    const Box samples = grid.BrickSamples(brick, false);
+    boxes.push_back({ samples.Lo - array.Samples.Lo, samples.Hi - array.Samples.Lo });
+  }
+  // The rounding of magnitudes is not known.
+  const bool exact = array.Component != SampleArray::Magnitude;
+  std::string bytes(boxes.size() * sizeof(Entry), '\0');
+  char* out = bytes.data();
+  for (const BoxSummary& summary : mine.Array().Summarize(boxes, masks, pool))
+  {
+    const Entry entry{ summary.Range.Low, summary.Range.High, summary.Mask,
+      summary.Uniform && exact ? std::uint64_t{ 1 } : 0 };
+    std::memcpy(out, &entry, sizeof(entry));
+    out += sizeof(entry);
+  }
+  return bytes;
+}
+
+} // namespace
+
+PieceSummaries GatherSummaries(
+  Communicator& communicator, const PieceGrid& grid, const PieceSamples& mine, ThreadPool& pool)
+{
+  const int self = communicator.Rank();
+  std::string failure;
+  ValueRange range;
+  try
+  {
+    range = mine.HasData() ? FiniteRange(mine.Array().Array(), pool) : ValueRange{};
+  }
+  catch (const std::exception& error)
+  {
+    failure = error.what();
+  }
+  const ScalarType type = mine.HasData() ? mine.Array().Array().Type : ScalarType::Float32;
+  const ArrayFacts facts{ range.Low, range.High, static_cast<std::int32_t>(type),
+    static_cast<std::int32_t>(mine.Type()) };
+  std::vector<ArrayFacts> all(static_cast<std::size_t>(communicator.Size()));
+  communicator.AllGather(&facts, sizeof(facts), all.data());
+  PieceSummaries known;
+  ValueRange whole;
+  for (const ArrayFacts& of : all)
+  {
+    whole.Include(ValueRange{ of.Low, of.High });
+    known.Types.push_back(static_cast<ScalarType>(of.Type));
+    known.ViewTypes.push_back(static_cast<ScalarType>(of.ViewType));
+  }
+  known.Masks = whole.Empty() ? MaskRange{} : MaskRange{ whole.Low, whole.High };
+
+  std::string own;
+  try
+  {
+    own = failure.empty() ? SummarizeOwn(grid, self, mine, known.Masks, pool) : own;
+  }
+  catch (const std::exception& error)
+  {
+    failure = error.what();
+  }
+  const std::string agreed = AgreeOnError(communicator, failure);
+  if (!agreed.empty())
+  {
+    throw Error(agreed);
+  }
+  const std::vector<std::string> messages = AllGatherStrings(communicator, own);
+  std::vector<const char*> next;
+  for (const std::string& message : messages)
+  {
+    next.push_back(message.data());
+  }
+  known.Bricks.resize(static_cast<std::size_t>(grid.Count()));
+  for (std::int64_t brick = 0; brick < grid.Count(); ++brick)
+  {
+    const int holder = grid.HolderOf(brick);
+    if (holder >= 0)
+    {
+      Entry entry;
+      std::memcpy(&entry, next[static_cast<std::size_t>(holder)], sizeof(entry));
+      next[static_cast<std::size_t>(holder)] += sizeof(entry);
+      known.Bricks[static_cast<std::size_t>(brick)] = { { entry.Low, entry.High }, entry.Mask,
+        entry.Uniform != 0 };
+    }
+  }
+  return known;
+}
+
+} // namespace banyan

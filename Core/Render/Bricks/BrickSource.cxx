@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Render/Bricks/BrickSource.h"
+
+#include "Render/Bricks/SampledBox.h"
+
+#include <optional>
+#include <vector>
+
+namespace banyan
+{
+namespace
+{
+
+bool IsUniform(const BrickView& view)
+{
+  return view.Stride[0] == 0 && view.Stride[1] == 0 && view.Stride[2] == 0;
+}
+
+/// Bricks of one value may come in another type, which holds the value all the same. Where the
+/// others have several, float64 holds them all.
+ScalarType TypeOf(const std::vector<SampledBox>& parts)
+{
+  std::optional<ScalarType> type;
+  for (const SampledBox& part : parts)
+  {
+    if (!IsUniform(part.View))
+    {
+      type = type.value_or(part.View.Type) == part.View.Type ? part.View.Type : ScalarType::Float64;
+    }
+  }
+  return type.value_or(parts.front().View.Type);
+}
+
+} // namespace
+
+std::optional<UniformValue> BrickSource::UniformValueOf(std::int64_t) const
+{
+  return std::nullopt;
+}
+
+BrickSource* BrickSource::AtLevel(int level, const Box& domain)
+{
+  if (level == 0)
+  {
+    return this;
+  }
+  const std::lock_guard<std::mutex> lock(this->LevelsMutex);
+  const auto found = this->Levels.find(level);
+  if (found != this->Levels.end())
+  {
+    return found->second.get();
+  }
+  std::unique_ptr<BrickSource> source = this->MakeLevel(level, domain);
+  if (source)
+  {
+    source->LevelNumber = level;
+    source->KeptOfSource = this->KeptOfSource;
+    if (this->HiddenHere && !source->HiddenHere)
+    {
+      source->Hide(std::make_shared<const HiddenCells>(this->HiddenHere->Coarser(level)));
+    }
+  }
+  return (this->Levels[level] = std::move(source)).get();
+}
+
+std::unique_ptr<BrickSource> BrickSource::MakeLevel(int, const Box&)
+{
+  return nullptr;
+}
+
+BrickView BrickSource::LoadAround(std::int64_t brick, Box& samples)
+{
+  const glm::ivec3 counts = this->Bricks();
+  const glm::ivec3 position(static_cast<int>(brick % counts.x),
+    static_cast<int>(brick / counts.x % counts.y), static_cast<int>(brick / counts.x / counts.y));
+  const std::int64_t last = std::int64_t{ counts.x } * counts.y * counts.z - 1;
+  const Box own = this->CellsOf(brick);
+  samples =
+    Intersection({ own.Lo - 1, own.Hi + 2 }, { this->CellsOf(0).Lo, this->CellsOf(last).Hi + 1 });
+
+  std::vector<SampledBox> neighbours;
+  for (int i = 0; i < 27; ++i)
+  {
+    const glm::ivec3 p = position + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1;
+    if (Box{ glm::ivec3(0), counts }.Contains(p))
+    {
+      const std::int64_t number = NumberOf(p, counts);
+      const Box cells = this->CellsOf(number);
+      neighbours.push_back({ this->Load(number), { cells.Lo, cells.Hi + 1 } });
+    }
+  }
+  return Assemble(neighbours, samples, TypeOf(neighbours));
+}
+
+BrickView BrickSource::LoadTogether(const Box& bricks, bool around, Box& samples)
+{
+  const glm::ivec3 counts = this->Bricks();
+  const glm::ivec3 size = bricks.Size();
+  std::vector<SampledBox> parts;
+  samples = {};
+  for (int i = 0; i < static_cast<int>(bricks.Count()); ++i)
+  {
+    const glm::ivec3 p =
+      bricks.Lo + glm::ivec3(i % size.x, i / size.x % size.y, i / size.x / size.y);
+    const std::int64_t number = NumberOf(p, counts);
+    const Box cells = this->CellsOf(number);
+    SampledBox part{ {}, { cells.Lo, cells.Hi + 1 } };
+    part.View = around ? this->LoadAround(number, part.Samples) : this->Load(number);
+    samples = Union(samples, part.Samples);
+    parts.push_back(std::move(part));
+  }
+  return parts.size() == 1 ? parts.front().View : Assemble(parts, samples, TypeOf(parts));
+}
+
+Box CellsAtLevel(const Box& cells, int level)
+{
+  const int edge = 1 << level;
+  return { (cells.Lo + edge - 1) / edge, (cells.Hi + edge - 1) / edge };
+}
+
+} // namespace banyan

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Render_Bricks_BrickSource_h
+#define banyan_Render_Bricks_BrickSource_h
+
+#include "Base/Box.h"
+#include "Render/Bricks/BrickView.h"
+#include "Render/Bricks/HiddenCells.h"
+#include "Render/Bricks/KeptBricks.h"
+#include "Render/Scene/Viewpoint.h"
+#include "Series/Format/SeriesIndex.h"
+#include "Series/Grid/ValueMask.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace banyan
+{
+
+/// One finite value, and the type that samples have.
+struct UniformValue
+{
+  double Value = 0.0;
+  ScalarType Type = ScalarType::Float64;
+};
+
+/// What the ray caster draws: a box of cells cut into bricks. Positions are samples of the whole
+/// grid (index space, starting at 0); cell c lies between samples c and c + 1.
+///
+/// Bricks of one source may have cells of different sizes, as those of octree meshes do: brick b
+/// counts in cells of its own, which are 2^BrickLevel(b) cells of the source long. They are drawn
+/// in one picture, exactly.
+class BrickSource
+{
+public:
+  virtual ~BrickSource() = default;
+
+  /// Bricks are numbered x fastest over `Bricks()`; brick b owns the cells `CellsOf(b)`, its own.
+  virtual glm::ivec3 Bricks() const = 0;
+  /// @param counts Bricks()
+  static std::int64_t NumberOf(const glm::ivec3& position, const glm::ivec3& counts)
+  {
+    return position.x + counts.x * (position.y + std::int64_t{ counts.y } * position.z);
+  }
+  virtual Box CellsOf(std::int64_t brick) const = 0;
+
+  /// How many times a brick's cells are twice as long as the source's: 0 unless a source has cells
+  /// of several sizes.
+  virtual int BrickLevel(std::int64_t) const { return 0; }
+  /// The largest that there is, at most MostBrickLevels.
+  virtual int CoarsestBrickLevel() const { return 0; }
+  static constexpr int MostBrickLevels = 16;
+
+  /// The place of each brick in visibility order; empty when bricks are cut by whole planes, and
+  /// VisibilityKey orders them.
+  /// @param view in index space
+  virtual std::vector<std::int64_t> RanksFrontToBack(const Viewpoint&) const { return {}; }
+
+  /// Of the finite values anywhere in the brick; empty when there is none.
+  virtual ValueRange RangeOf(std::int64_t brick) const = 0;
+  virtual ValueMask MaskOf(std::int64_t brick) const = 0;
+  virtual MaskRange MasksAreOver() const = 0;
+  /// Of a brick (a macro voxel) whose samples are all known to have one finite value; asked without
+  /// loading it. Empty when they have not, or when it is not known.
+  virtual std::optional<UniformValue> UniformValueOf(std::int64_t brick) const;
+
+  /// Of values that are whole multiples of a step, each rounded to float32, but for exceptions: the
+  /// step. 0 where none is known.
+  virtual double StepOfValues() const { return 0.0; }
+
+  /// Memory that one loaded brick takes (0 when the values are in memory anyway).
+  virtual std::size_t LoadBytes(std::int64_t brick) const = 0;
+
+  /// Called from many threads. Throws Error when the brick cannot be read.
+  virtual BrickView Load(std::int64_t brick) = 0;
+
+  /// The same with one more layer of samples on each side, where the source has them. Unless a
+  /// source knows better, it is put together from the bricks around.
+  /// @param samples set to those that the view has; the view starts at samples.Lo
+  virtual BrickView LoadAround(std::int64_t brick, Box& samples);
+
+  /// Bricks side by side as one view. Unless a source knows better, it is put together from them.
+  /// @param bricks positions among Bricks()
+  /// @param around with one more layer of samples, as LoadAround
+  /// @param samples set to those that the view has; the view starts at samples.Lo
+  virtual BrickView LoadTogether(const Box& bricks, bool around, Box& samples);
+
+  /// 0 is the finest. Index space is that of the level: positions are 2^Level fine ones apart.
+  int Level() const { return this->LevelNumber; }
+
+  /// The level whose cells positions, and boxes of cells, are counted in: its own, unless levels of
+  /// a source share one index space, as those of octree meshes do. Then zones are the same at all
+  /// levels.
+  virtual int CellLevel() const { return this->LevelNumber; }
+
+  /// The same field at a coarser level, in bricks of as many cells: every 2^level-th sample; where
+  /// the last cell is not whole, one more sample repeats the last fine one (see BrickLayout). It
+  /// stays with this source.
+  /// @param level >= 0; 0 is this source, which must be of the finest level
+  /// @param domain all fine cells of the whole grid
+  /// @return null where there is none: pieces of a plain grid have no coarser levels
+  /// May be called from any thread.
+  BrickSource* AtLevel(int level, const Box& domain);
+
+  /// Says which cells are not drawn, at this level and, as far as they are not told by themselves,
+  /// at coarser ones that are asked for from now on. Before anything is drawn.
+  /// @param hidden of the whole grid, at this source's level; null for none
+  void Hide(std::shared_ptr<const HiddenCells> hidden) { this->HiddenHere = std::move(hidden); }
+  /// Null where nothing is hidden.
+  const std::shared_ptr<const HiddenCells>& Hidden() const { return this->HiddenHere; }
+  /// Whether no cell of a brick is drawn.
+  bool AllHidden(std::int64_t brick) const
+  {
+    return this->HiddenHere && this->HiddenHere->All(this->CellsOf(brick));
+  }
+  /// Whether a brick is of one value all over, without hidden cells: it is not loaded where nothing
+  /// is shaded.
+  bool IsMacroVoxel(std::int64_t brick) const
+  {
+    return this->UniformValueOf(brick) &&
+           !(this->HiddenHere && this->HiddenHere->Any(this->CellsOf(brick)));
+  }
+
+  /// What the ray caster keeps of this source and its levels from picture to picture. Values must
+  /// not change while the source lives.
+  KeptBricks& Kept() const { return *this->KeptOfSource; }
+  /// The number under which a brick of this level is kept.
+  std::int64_t KeptNumber(std::int64_t brick) const
+  {
+    return brick + (static_cast<std::int64_t>(this->LevelNumber) << 48);
+  }
+
+protected:
+  /// A source of a coarser level; may refer to this one. Null where there is none.
+  virtual std::unique_ptr<BrickSource> MakeLevel(int level, const Box& domain);
+
+private:
+  std::shared_ptr<const HiddenCells> HiddenHere;
+  std::shared_ptr<KeptBricks> KeptOfSource = std::make_shared<KeptBricks>();
+  int LevelNumber = 0;
+  std::map<int, std::unique_ptr<BrickSource>> Levels; ///< that were asked for
+  std::mutex LevelsMutex;
+};
+
+/// Cells of a level that begin in cells of the finest one: of disjoint boxes they are disjoint.
+Box CellsAtLevel(const Box& cells, int level);
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Render/Bricks/KeptBricks.h"
+
+#include <atomic>
+#include <mutex>
+
+namespace banyan
+{
+namespace
+{
+
+/// Those of the process that keep bricks.
+std::atomic<int> Holders{ 0 };
+
+std::uint64_t BytesOf(const PackedBrick& packed)
+{
+  return packed.Bytes();
+}
+
+} // namespace
+
+KeptBricks::~KeptBricks()
+{
+  this->SetHeld(0);
+}
+
+/// The caller has the lock, or is alone.
+void KeptBricks::SetHeld(std::uint64_t bytes)
+{
+  Holders += (bytes > 0 ? 1 : 0) - (this->HeldBytes > 0 ? 1 : 0);
+  this->HeldBytes = bytes;
+}
+
+std::uint64_t KeptBricks::ShareOf(std::uint64_t budgetBytes) const
+{
+  const std::shared_lock<std::shared_mutex> lock(this->Mutex);
+  const int others = Holders - (this->HeldBytes > 0 ? 1 : 0);
+  return budgetBytes / static_cast<std::uint64_t>(others + 1);
+}
+
+void KeptBricks::BeginPicture(std::uint64_t limitBytes, bool ages)
+{
+  const std::lock_guard<std::shared_mutex> lock(this->Mutex);
+  this->LimitBytes = limitBytes;
+  this->Picture += ages ? 1 : 0;
+  if (!ages && this->HeldBytes <= limitBytes)
+  {
+    return; // none has become old, and all have room
+  }
+  for (auto item = this->Items.begin(); item != this->Items.end();)
+  {
+    const bool old = item->second.UsedIn < this->Picture - 2;
+    if (old || this->HeldBytes > limitBytes)
+    {
+      this->SetHeld(this->HeldBytes - BytesOf(*item->second.Packed));
+      item = this->Items.erase(item);
+    }
+    else
+    {
+      ++item;
+    }
+  }
+}
+
+/// The caller has the lock. Notes that the brick is used.
+const KeptBricks::Item* KeptBricks::FindHere(const Wanted& wanted) const
+{
+  const auto item = this->Items.find(wanted.Brick);
+  if (item == this->Items.end())
+  {
+    return nullptr;
+  }
+  const PackedBrick& packed = *item->second.Packed;
+  if (packed.Cells() != wanted.Cells || packed.HasGradients() != wanted.Gradients ||
+      (packed.Relative() && packed.Low() != wanted.Low))
+  {
+    return nullptr;
+  }
+  item->second.UsedIn.store(this->Picture, std::memory_order_relaxed);
+  return &item->second;
+}
+
+void KeptBricks::Find(
+  const Wanted* wanted, std::size_t count, std::uint64_t visible, Found* found) const
+{
+  const std::shared_lock<std::shared_mutex> lock(this->Mutex);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const Item* const item = wanted[i].Brick < 0 ? nullptr : this->FindHere(wanted[i]);
+    if (item)
+    {
+      found[i].Packed = item->Packed;
+      if (item->VisibleUnder == visible)
+      {
+        found[i].Visibility = item->Visibility;
+      }
+    }
+  }
+}
+
+void KeptBricks::Keep(std::int64_t brick, const Pointer& packed)
+{
+  const std::uint64_t bytes = BytesOf(*packed);
+  const std::lock_guard<std::shared_mutex> lock(this->Mutex);
+  const auto item = this->Items.find(brick);
+  if (item != this->Items.end())
+  {
+    this->SetHeld(this->HeldBytes - BytesOf(*item->second.Packed));
+    this->Items.erase(item);
+  }
+  if (this->HeldBytes + bytes <= this->LimitBytes)
+  {
+    this->SetHeld(this->HeldBytes + bytes);
+    this->Items.try_emplace(brick, packed, this->Picture);
+  }
+}
+
+void KeptBricks::KeepVisibility(
+  std::int64_t brick, std::uint64_t visible, const BrickVisibility& visibility)
+{
+  const std::lock_guard<std::shared_mutex> lock(this->Mutex);
+  const auto item = this->Items.find(brick);
+  if (item != this->Items.end())
+  {
+    item->second.Visibility = visibility;
+    item->second.VisibleUnder = visible;
+  }
+}
+
+GroupList KeptBricks::FindGroups(int level, std::uint64_t visible) const
+{
+  const std::shared_lock<std::shared_mutex> lock(this->Mutex);
+  const auto item = this->Groups.find(level);
+  return item != this->Groups.end() && item->second.first == visible ? item->second.second
+                                                                     : nullptr;
+}
+
+void KeptBricks::KeepGroups(int level, std::uint64_t visible, GroupList groups)
+{
+  const std::lock_guard<std::shared_mutex> lock(this->Mutex);
+  this->Groups[level] = { visible, std::move(groups) };
+}
+
+std::uint64_t KeptBricks::Bytes() const
+{
+  const std::shared_lock<std::shared_mutex> lock(this->Mutex);
+  return this->HeldBytes;
+}
+
+} // namespace banyan

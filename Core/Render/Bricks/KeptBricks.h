@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Render_Bricks_KeptBricks_h
+#define banyan_Render_Bricks_KeptBricks_h
+
+#include "Render/Bricks/BrickGroups.h"
+#include "Render/Bricks/PackedBrick.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <shared_mutex>
+#include <unordered_map>
+#include <utility>
+
+namespace banyan
+{
+
+/// Packed bricks that a source keeps from one picture to the next. What is there stays, as long as
+/// pictures use it: pictures go through bricks in ever other orders, and dropping the least
+/// recently used of more than there is room for would keep none in time.
+///
+/// Methods may be called from any thread.
+class KeptBricks
+{
+public:
+  using Pointer = std::shared_ptr<const PackedBrick>;
+
+  KeptBricks() = default;
+  ~KeptBricks();
+  KeptBricks(const KeptBricks&) = delete;
+  KeptBricks& operator=(const KeptBricks&) = delete;
+
+  /// Of what drawing may take, what is kept from picture to picture. The rest is for bricks that
+  /// are packed for one picture.
+  static std::uint64_t PartOf(std::uint64_t budgetBytes) { return budgetBytes / 4 * 3; }
+  /// Of what all sources of the process may take, this one's part: those that keep bricks have
+  /// equal ones.
+  std::uint64_t ShareOf(std::uint64_t budgetBytes) const;
+
+  /// Lets go of bricks that the last two pictures did not use, and of all beyond the limit.
+  /// @param ages false for a picture that only helps to make the next one, and does not count
+  void BeginPicture(std::uint64_t limitBytes, bool ages = true);
+
+  struct Wanted
+  {
+    std::int64_t Brick = -1; ///< none if below 0
+    Box Cells;
+    double Low = 0.0; ///< what values are packed relative to, if they are relative
+    bool Gradients = false;
+  };
+
+  struct Found
+  {
+    Pointer Packed; ///< null if not kept
+    /// What can be seen of it, as KeepVisibility was told; empty if it was not.
+    std::optional<BrickVisibility> Visibility;
+  };
+
+  /// Looks for several bricks in one go; those that are there are used from now on.
+  /// @param visible VisibleValues::Number
+  /// @param found as many; those that are not there are not set
+  void Find(const Wanted* wanted, std::size_t count, std::uint64_t visible, Found* found) const;
+
+  /// Keeps a brick if there is room, in place of what was kept under its number.
+  void Keep(std::int64_t brick, const Pointer& packed);
+
+  /// What can be seen of a kept brick under a number of VisibleValues. Without effect when the
+  /// brick is not kept.
+  void KeepVisibility(std::int64_t brick, std::uint64_t visible, const BrickVisibility& visibility);
+
+  /// What is known of the groups of bricks of a level under a number of VisibleValues, as
+  /// KeepGroups was told; null if it was not. Kept for one number per level.
+  GroupList FindGroups(int level, std::uint64_t visible) const;
+  void KeepGroups(int level, std::uint64_t visible, GroupList groups);
+
+  std::uint64_t Bytes() const;
+
+private:
+  struct Item
+  {
+    Item(Pointer packed, std::int64_t picture)
+      : Packed(std::move(packed))
+      , UsedIn(picture)
+    {
+    }
+
+    Pointer Packed;
+    mutable std::atomic<std::int64_t> UsedIn; ///< number of a picture
+    std::optional<BrickVisibility> Visibility;
+    std::uint64_t VisibleUnder = 0; ///< VisibleValues::Number
+  };
+
+  void SetHeld(std::uint64_t bytes);
+  const Item* FindHere(const Wanted& wanted) const;
+
+  std::uint64_t LimitBytes = 0;
+  std::uint64_t HeldBytes = 0;
+  std::int64_t Picture = 0;
+  std::unordered_map<std::int64_t, Item> Items;
+  std::unordered_map<int, std::pair<std::uint64_t, GroupList>> Groups; ///< by level
+  mutable std::shared_mutex Mutex; ///< shared by those who only look
+};
+
+} // namespace banyan
+
+#endif

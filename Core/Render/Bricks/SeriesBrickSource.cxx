@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Render/Bricks/SeriesBrickSource.h"
+
+#include "Render/Bricks/ArraySamples.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace banyan
+{
+namespace
+{
+
+/// A view of samples stored densely, x fastest.
+BrickView DenseView(const void* values, ScalarType type, const glm::ivec3& samples)
+{
+  BrickView view;
+  view.Values = values;
+  view.Type = type;
+  view.Stride[0] = 1;
+  view.Stride[1] = samples.x;
+  view.Stride[2] = std::ptrdiff_t{ samples.x } * samples.y;
+  return view;
+}
+
+/// One value that stands for every sample: all strides are zero.
+BrickView UniformView(double value)
+{
+  const auto held = std::make_shared<const double>(value);
+  BrickView view;
+  view.Values = held.get();
+  view.Type = ScalarType::Float64;
+  view.Stride[0] = view.Stride[1] = view.Stride[2] = 0;
+  view.Owner = held;
+  return view;
+}
+
+void AddSquares(const BrickView& view, const glm::ivec3& samples, std::vector<float>& sums)
+{
+  Dispatch(view.Type,
+    [&](auto tag)
+    {
+      using T = typename decltype(tag)::Type;
+      const T* values = static_cast<const T*>(view.Values);
+      std::size_t out = 0;
+      for (int z = 0; z < samples.z; ++z)
+      {
+        for (int y = 0; y < samples.y; ++y)
+        {
+          const T* row = values + z * view.Stride[2] + y * view.Stride[1];
+          for (int x = 0; x < samples.x; ++x, ++out)
+          {
+            const double value = static_cast<double>(row[x * view.Stride[0]]);
+            sums[out] += static_cast<float>(value * value);
+          }
+        }
+      }
+    });
+}
+
+} // namespace
+
+ValueRange MagnitudeBounds(const std::vector<ValueRange>& components)
+{
+  double low = 0.0;
+  double high = 0.0;
+  for (const ValueRange& range : components)
+  {
+    if (range.Empty())
+    {
+      return {};
+    }
+    const double largest = std::max(std::abs(range.Low), std::abs(range.High));
+    const bool straddles = range.Low <= 0.0 && range.High >= 0.0;
+    const double smallest = straddles ? 0.0 : std::min(std::abs(range.Low), std::abs(range.High));
+    low += smallest * smallest;
+    high += largest * largest;
+  }
+  return { std::sqrt(low), std::sqrt(high) };
+}
+
+SeriesBrickSource::SeriesBrickSource(
+  std::shared_ptr<const SeriesFile> series, const FieldKey& field, int component, BrickCache& cache)
+  : Series(std::move(series))
+  , Field(field)
+  , Component(component)
+  , Cache(cache)
+  , Layout(this->Series->Layout(field.Level))
+{
+  const ArrayIndex& array = this->Series->Index().Arrays.at(static_cast<std::size_t>(field.Array));
+  const int count = static_cast<int>(array.Components.size());
+  this->Type = array.Type;
+  this->Magnitude = component < 0 && count > 1;
+  if (component >= count)
+  {
+    throw Error("Array '" + array.Name + "' has no component " + std::to_string(component),
+      { this->Series->Path(), {}, static_cast<std::uint64_t>(component),
+        static_cast<std::uint64_t>(count - 1) });
+  }
+  std::vector<ValueRange> ranges;
+  for (int c = 0; c < count; ++c)
+  {
+    if (this->Magnitude || c == std::max(component, 0))
+    {
+      this->Components.push_back(c);
+      this->Nodes.push_back(this->Series->Nodes(this->KeyOf(this->Components.size() - 1)));
+      ranges.push_back(array.Components[static_cast<std::size_t>(c)].Range);
+    }
+  }
+  this->Flags = { field.Step, this->Series->Index().FindFlags(ArrayFlags::OfPoints), 0,
+    field.Level };
+  if (this->Flags.Array >= 0)
+  {
+    this->NodesOfFlags = this->Series->Nodes(this->Flags);
+  }
+  if (this->Magnitude)
+  {
+    const ValueRange range = MagnitudeBounds(ranges);
+    this->Masks = range.Empty() ? MaskRange{} : MaskRange{ range.Low, range.High };
+  }
+  else
+  {
+    this->Masks = this->Series->MaskRangeOf(field.Array, this->Components.front());
+    this->Step =
+      this->Type == ScalarType::Float32 ? this->Series->StepOfValues(this->KeyOf(0)) : 0.0;
+  }
+}
+
+std::unique_ptr<BrickSource> SeriesBrickSource::MakeLevel(int level, const Box&)
+{
+  FieldKey field = this->Field;
+  field.Level += level;
+  if (field.Level >= this->Series->Index().Levels)
+  {
+    return nullptr;
+  }
+  auto source =
+    std::make_unique<SeriesBrickSource>(this->Series, field, this->Component, this->Cache);
+  source->LoadedBricks = this->LoadedBricks;
+  return source;
+}
+
+FieldKey SeriesBrickSource::KeyOf(std::size_t component) const
+{
+  FieldKey key = this->Field;
+  key.Component = this->Components[component];
+  return key;
+}
+
+ValueRange SeriesBrickSource::MagnitudeRange(std::int64_t brick) const
+{
+  std::vector<ValueRange> ranges;
+  for (const NodeList& nodes : this->Nodes)
+  {
+    ranges.push_back((*nodes)[static_cast<std::size_t>(brick)].Range);
+  }
+  return MagnitudeBounds(ranges);
+}
+
+ValueRange SeriesBrickSource::RangeOf(std::int64_t brick) const
+{
+  return this->Magnitude ? this->MagnitudeRange(brick)
+                         : (*this->Nodes.front())[static_cast<std::size_t>(brick)].Range;
+}
+
+ValueMask SeriesBrickSource::MaskOf(std::int64_t brick) const
+{
+  if (!this->Magnitude)
+  {
+    return (*this->Nodes.front())[static_cast<std::size_t>(brick)].Mask;
+  }
+  const ValueRange range = this->MagnitudeRange(brick);
+  return range.Empty() ? 0
+                       : MaskOfBins(this->Masks.BinOf(range.Low), this->Masks.BinOf(range.High));
+}
+
+std::optional<UniformValue> SeriesBrickSource::UniformValueOf(std::int64_t brick) const
+{
+  const BrickNode& node = (*this->Nodes.front())[static_cast<std::size_t>(brick)];
+  if (this->Magnitude || !node.Uniform || this->HidesPointsOf(brick))
+  {
+    return std::nullopt;
+  }
+  return UniformValue{ node.Range.Low, ScalarType::Float64 };
+}
+
+std::size_t SeriesBrickSource::LoadBytes(std::int64_t brick) const
+{
+  const auto samples = static_cast<std::size_t>(this->Layout.SamplesOf(brick).Count());
+  std::size_t bytes = this->Magnitude ? samples * sizeof(float) : 0;
+  for (const NodeList& nodes : this->Nodes)
+  {
+    bytes += (*nodes)[static_cast<std::size_t>(brick)].Uniform ? 0 : samples * SizeOf(this->Type);
+  }
+  return bytes;
+}
+
+BrickView SeriesBrickSource::LoadComponent(std::int64_t brick, std::size_t component) const
+{
+  const BrickNode& node = (*this->Nodes[component])[static_cast<std::size_t>(brick)];
+  if (node.Uniform)
+  {
+    return UniformView(node.Range.Low);
+  }
+  const auto values = this->Cache.Get(*this->Series, this->KeyOf(component), brick);
+  BrickView view = DenseView(values->Bytes.data(), values->Type, values->Samples.Size());
+  view.Owner = values;
+  return view;
+}
+
+BrickView SeriesBrickSource::LoadMagnitude(std::int64_t brick) const
+{
+  const glm::ivec3 samples = this->Layout.SamplesOf(brick).Size();
+  const auto sums = std::make_shared<std::vector<float>>(
+    static_cast<std::size_t>(this->Layout.SamplesOf(brick).Count()), 0.0f);
+  for (std::size_t c = 0; c < this->Components.size(); ++c)
+  {
+    AddSquares(this->LoadComponent(brick, c), samples, *sums);
+  }
+  std::transform(
+    sums->begin(), sums->end(), sums->begin(), [](float sum) { return std::sqrt(sum); });
+  BrickView view = DenseView(sums->data(), ScalarType::Float32, samples);
+  view.Owner = sums;
+  return view;
+}
+
+bool SeriesBrickSource::HidesPointsOf(std::int64_t brick) const
+{
+  if (!this->NodesOfFlags)
+  {
+    return false;
+  }
+  const BrickNode& flags = (*this->NodesOfFlags)[static_cast<std::size_t>(brick)];
+  return !flags.Uniform || flags.Range.Low != 0.0;
+}
+
+/// A copy: what is hidden changes from step to step, and the cache has values for all of them.
+BrickView SeriesBrickSource::WithoutHidden(std::int64_t brick, const BrickView& view) const
+{
+  const auto flags = this->Cache.Get(*this->Series, this->Flags, brick);
+  SampleArray array;
+  array.Values = view.Values;
+  array.Type = view.Type;
+  std::copy(std::begin(view.Stride), std::end(view.Stride), array.Stride);
+  array.Samples = { glm::ivec3(0), flags->Samples.Size() };
+  array.Flags = reinterpret_cast<const std::uint8_t*>(flags->Bytes.data());
+  return ArraySamples(array).View(array.Samples);
+}
+
+BrickView SeriesBrickSource::Load(std::int64_t brick)
+{
+  this->Note(brick);
+  const BrickView view =
+    this->Magnitude ? this->LoadMagnitude(brick) : this->LoadComponent(brick, 0);
+  return this->HidesPointsOf(brick) ? this->WithoutHidden(brick, view) : view;
+}
+
+void SeriesBrickSource::Note(std::int64_t brick) const
+{
+  const std::lock_guard<std::mutex> lock(this->LoadedBricks->Mutex);
+  LoadRecord::Level& level = this->LoadedBricks->Levels[this->Field.Level];
+  level.Has.resize(this->Nodes.front()->size());
+  const auto number = static_cast<std::size_t>(brick);
+  if (!level.Has[number])
+  {
+    level.Has[number] = true;
+    level.Bricks.push_back(brick);
+  }
+}
+
+std::vector<FieldBricks> SeriesBrickSource::Fields(const std::vector<std::int64_t>& bricks) const
+{
+  std::vector<FieldBricks> fields;
+  for (std::size_t c = 0; c < this->Components.size() && !bricks.empty(); ++c)
+  {
+    fields.push_back({ this->KeyOf(c), bricks });
+  }
+  return fields;
+}
+
+std::vector<FieldBricks> SeriesBrickSource::Loaded() const
+{
+  const std::lock_guard<std::mutex> lock(this->LoadedBricks->Mutex);
+  std::vector<FieldBricks> loaded;
+  for (const auto& [number, level] : this->LoadedBricks->Levels)
+  {
+    for (std::size_t c = 0; c < this->Components.size(); ++c)
+    {
+      FieldKey field = this->KeyOf(c);
+      field.Level = number;
+      loaded.push_back({ field, level.Bricks });
+    }
+  }
+  return loaded;
+}
+
+} // namespace banyan

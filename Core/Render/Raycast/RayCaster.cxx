@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Render/Raycast/RayCaster.h"
+
+#include "Base/Error.h"
+#include "Render/Raycast/LevelCaster.h"
+#include "Render/Raycast/PictureWatcher.h"
+
+#include <set>
+
+namespace banyan
+{
+namespace
+{
+
+/// The levels that tiles are sampled at.
+std::set<int> LevelsOf(const RayScene& scene)
+{
+  if (!scene.Samplings)
+  {
+    return { 0 };
+  }
+  if (scene.Samplings->Tiles() != TileSamplings::TilesOf(scene.Camera.ImageSize()))
+  {
+    throw Error("The samplings are those of a picture of another size");
+  }
+  return scene.Samplings->UsedLevels();
+}
+
+BrickSource& SourceAt(BrickSource& source, int level, const RayScene& scene)
+{
+  BrickSource* const found = source.AtLevel(level, scene.DomainCells);
+  if (!found)
+  {
+    throw Error("There is no level " + std::to_string(level) + " of what is to be drawn");
+  }
+  return *found;
+}
+
+/// @param watcher null for none
+FloatImage Cast(const RayScene& scene, BrickSource& source, const Box& cells,
+  std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics, PictureWatcher* watcher)
+{
+  const Box inside = Intersection(cells, scene.DomainCells);
+  FloatImage picture;
+  std::vector<std::unique_ptr<LevelCaster>> casters;
+  for (const int level : LevelsOf(scene))
+  {
+    BrickSource& at = SourceAt(source, level, scene);
+    casters.push_back(std::make_unique<LevelCaster>(
+      scene, at, CellsAtLevel(inside, at.CellLevel()), budgetBytes, pool, statistics));
+    picture.Rect = Union(picture.Rect, casters.back()->Rect());
+  }
+  source.Kept().BeginPicture(KeptBricks::PartOf(budgetBytes), /*ages=*/!scene.Pilot);
+  // Casters set all pixels, tile by tile.
+  picture.Pixels.resize(static_cast<std::size_t>(picture.Rect.Count()));
+  if (watcher)
+  {
+    watcher->Begins(picture);
+  }
+  for (const auto& caster : casters)
+  {
+    caster->Draw(picture, watcher);
+  }
+  return picture;
+}
+
+} // namespace
+
+int FinestLevelWithin(const RayScene& scene, BrickSource& source, const Box& cells, int coarsest,
+  std::uint64_t bytes, ThreadPool& pool)
+{
+  RayScene planned = scene;
+  RayStatistics statistics;
+  int level = 0;
+  for (; level < coarsest; ++level)
+  {
+    planned.Samplings = std::make_shared<const TileSamplings>(
+      scene.Camera.ImageSize(), std::vector{ RaySampling{ level, scene.SampleDistance } });
+    BrickSource& at = SourceAt(source, level, scene);
+    const LevelCaster caster(planned, at,
+      CellsAtLevel(Intersection(cells, scene.DomainCells), at.CellLevel()), bytes, pool,
+      statistics);
+    if (caster.BytesToDraw() <= bytes)
+    {
+      break;
+    }
+  }
+  return level;
+}
+
+FloatImage CastRays(const RayScene& scene, BrickSource& source, const Box& cells,
+  std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics)
+{
+  return Cast(scene, source, cells, budgetBytes, pool, statistics, nullptr);
+}
+
+FloatImage CastRaysWatched(const RayScene& scene, BrickSource& source, const Box& cells,
+  std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics, PictureWatcher& watcher)
+{
+  return Cast(scene, source, cells, budgetBytes, pool, statistics, &watcher);
+}
+
+} // namespace banyan

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Render/Raycast/RayTile.h"
+
+#include <algorithm>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "Render/Raycast/RayTile.cxx"
+#include <hwy/foreach_target.h>
+
+#include "Render/Raycast/RayFiller-inl.h"
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace banyan::HWY_NAMESPACE
+{
+
+/// @return false when the sample distance is too small for the distance of a ray's samples
+bool FillRaysHere(
+  const RayLattice& lattice, const double* ends, const double* active, RayTile& tile)
+{
+  RayFiller filler(lattice, tile);
+  constexpr int lanes = static_cast<int>(hn::MaxLanes(DD()));
+  constexpr int size = RayTile::PacketSize;
+  alignas(64) double x[size];
+  alignas(64) double y[size];
+  const glm::ivec2 packets = tile.PacketsUnder(tile.Rect).Hi;
+  for (int number = 0; number < packets.x * packets.y; ++number)
+  {
+    const int packet = number / packets.x * RayTile::PacketsPerRow + number % packets.x;
+    for (int i = 0; i < size; ++i)
+    {
+      const glm::ivec2 at = tile.PixelAt(packet * size + i);
+      x[i] = at.x;
+      y[i] = at.y;
+    }
+    for (int i = 0; i < size; i += lanes)
+    {
+      const int slot = packet * size + i;
+      if (!filler.Fill(slot, x + i, y + i, ends + slot, active + slot))
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+} // namespace banyan::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace banyan
+{
+
+HWY_EXPORT(FillRaysHere);
+
+void RayTile::Open(const RayLattice& lattice, const PixelRect& rect, const FloatImage& picture,
+  float limit, int stride, bool begun, const PixelRect& drawn)
+{
+  this->Rect = rect;
+  this->Stride = stride;
+  this->Corner = rect.Lo / stride * stride;
+  this->TransmittanceLimit = limit;
+  this->SamplesTaken = 0;
+  this->PacketsFit = true;
+  alignas(64) double ends[Slots];
+  alignas(64) double active[Slots];
+  const bool geometry = lattice.HasGeometry();
+  const auto forRows = [packets = this->PacketsUnder(rect).Hi](auto&& function)
+  {
+    for (int number = 0; number < packets.x * packets.y; ++number)
+    {
+      const int packet = number / packets.x * PacketsPerRow + number % packets.x;
+      for (int row = 0; row < PacketEdge; ++row)
+      {
+        function(packet * PacketSize + row * PacketEdge);
+      }
+    }
+  };
+  forRows(
+    [&](int slot)
+    {
+      const glm::ivec2 at = this->PixelAt(slot);
+      const bool inside = at.y >= rect.Lo.y && at.y < rect.Hi.y;
+      const bool drawnRow = at.y >= drawn.Lo.y && at.y < drawn.Hi.y;
+      const glm::vec4* const row =
+        inside && begun ? &picture.At(rect.Lo.x, at.y) - rect.Lo.x : nullptr;
+      for (int i = 0; i < PacketEdge; ++i)
+      {
+        const int x = at.x + i * stride;
+        const bool here = inside && x >= rect.Lo.x && x < rect.Hi.x;
+        const glm::vec4 pixel = row && here ? row[x] : glm::vec4(0, 0, 0, here ? 1 : 0);
+        const bool wanted =
+          here && drawnRow && x >= drawn.Lo.x && x < drawn.Hi.x && pixel.a > limit;
+        active[slot + i] = wanted ? 1.0 : 0.0;
+        ends[slot + i] = geometry && wanted ? lattice.GeometryAt(x, at.y)
+                                            : std::numeric_limits<double>::infinity();
+        this->SetPixel(slot + i, pixel);
+      }
+    });
+  if (!HWY_DYNAMIC_DISPATCH(FillRaysHere)(lattice, ends, active, *this))
+  {
+    RayLattice::ThrowTooFar();
+  }
+  this->ActiveRays = 0;
+  forRows(
+    [this](int first)
+    {
+      for (int slot = first; slot < first + PacketEdge; ++slot)
+      {
+        const bool empty = (this->Count[slot] == 0) & (this->Head.Fraction[slot] == 0.0f) &
+                           (this->Tail.Fraction[slot] == 0.0f);
+        this->ActiveRays += empty ? 0 : 1;
+      }
+    });
+}
+
+} // namespace banyan
+#endif

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Render/Sampling/CoarserSteps.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace banyan
+{
+namespace
+{
+
+/// A step back takes twice the samples, or four times the rays, and where bricks have to be loaded
+/// more than that: this was measured where it was tried before.
+constexpr double TimesOfStepBack = 3.0;
+/// What a step took once is believed less with each frame, since the camera moves on: half of it
+/// after 23. Until then pictures do not swing back to a step that has been too slow.
+constexpr double Forgetting = 0.97;
+
+} // namespace
+
+RaySampling CoarserSteps::SamplingOf(int step, double distance, int coarsestLevel)
+{
+  const int level = std::min(step, coarsestLevel);
+  const int stride = std::min(step - level, StrideSteps);
+  return { level, std::ldexp(distance, level), 1 << stride };
+}
+
+void StepControl::FrameTook(double seconds, double promised, int coarsestLevel)
+{
+  const int last = std::min(CoarserSteps::Last(coarsestLevel), MostSteps - 1);
+  this->Current = std::min(this->Current, last);
+  if (!(promised > 0.0))
+  {
+    this->Current = 0;
+    return;
+  }
+  for (double& taken : this->Taken)
+  {
+    taken *= Forgetting;
+  }
+  this->Taken[static_cast<std::size_t>(this->Current)] = seconds;
+  if (seconds > promised)
+  {
+    this->Current = std::min(this->Current + 1, last);
+  }
+  else if (this->Current > 0 && TimesOfStepBack * seconds < promised &&
+           this->Taken[static_cast<std::size_t>(this->Current) - 1] <= promised)
+  {
+    --this->Current;
+  }
+}
+
+} // namespace banyan

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Render_Sampling_CoarserSteps_h
+#define banyan_Render_Sampling_CoarserSteps_h
+
+#include "Render/Scene/RaySampling.h"
+
+#include <array>
+
+namespace banyan
+{
+
+/// The samplings of pictures that keep no tolerance, as no pilots tell their error: projections,
+/// and volumes whose samples are taken as they are (labels). Step 0 is the picture as it should be.
+/// Each step takes the next coarser level, with as much more between samples as its cells are
+/// larger; when there is none any more, each step has rays in half as many rows and columns of
+/// pixels, down to every eighth.
+class CoarserSteps
+{
+public:
+  /// @param coarsestLevel that can be drawn, at least 0
+  static int Last(int coarsestLevel) { return coarsestLevel + StrideSteps; }
+
+  /// @param step at least 0; those beyond the last are the last
+  /// @param distance world length between samples at step 0, above 0
+  static RaySampling SamplingOf(int step, double distance, int coarsestLevel);
+
+private:
+  static constexpr int StrideSteps = 3;
+  static_assert(1 << StrideSteps == RaySampling::LargestStride, "the last step has the largest");
+};
+
+/// Chooses the step whose frames keep a promised time: the next one after a frame that took longer,
+/// and the one before once that is expected to keep it too.
+class StepControl
+{
+public:
+  /// That frames should have now.
+  int Step() const { return this->Current; }
+
+  /// @param seconds that the last frame took
+  /// @param promised seconds; 0 for any
+  /// @param coarsestLevel as for CoarserSteps
+  void FrameTook(double seconds, double promised, int coarsestLevel);
+
+private:
+  static constexpr int MostSteps = 16;
+
+  int Current = 0;
+  std::array<double, MostSteps> Taken{}; ///< seconds, per step; less and less as time goes by
+};
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,387 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Render/Sampling/SamplingPlan.h"
+
+#include "Base/Error.h"
+#include "Base/Timer.h"
+#include "Render/Sampling/PilotSequence.h"
+#include "Render/Sampling/SamplingChoices.h"
+#include "Render/Sampling/StridePilot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace banyan
+{
+namespace
+{
+
+/// Of the tolerance, what rays that end early may leave away.
+constexpr double ShareOfEnds = 0.125;
+/// In pilots it is much less. A ray that ends in one zone goes on in the next one, and what is left
+/// away then decides otherwise: plans would depend on the number of ranks.
+constexpr double ShareOfPilotEnds = ShareOfEnds / 64.0;
+/// Distances between samples go down to 2^-MostHalvings times the usual one.
+constexpr int MostHalvings = 3;
+/// They go up to 2^MostDoublings times it. Longer ones save nothing: frames then take what rays and
+/// bricks do, and pilots of such distances cost as much as what they save.
+constexpr int MostDoublings = 3;
+/// Without pictures of samples this close, times the usual distance, no tile is content.
+constexpr double FewestSamples = 4.0;
+/// The picture that judges strides is of a sampling whose errors leave so much of what is allowed,
+/// in so many of the tiles: others keep their rays.
+constexpr double ShareOfStridePilot = 0.75;
+constexpr double TilesOfStridePilot = 0.9;
+
+/// What single pixels of a shaded picture may be off, in 1/255, where a ray meets a place without a
+/// gradient and the normal turns over from one sample to the next. They are so few that no pilot
+/// meets one. Measured of the standard scene S1: 0.10, 0.32, 1.08, 1.43 and 4.07 with a distance of
+/// a quarter of a cell, half, one, two and four cells.
+double ErrorOfNormals(double distanceInCells)
+{
+  return 1.1 * (distanceInCells < 1.0 ? std::pow(distanceInCells, 1.7) : distanceInCells);
+}
+
+/// The opacity at which rays end that may leave away a share of a tolerance.
+float OpacityLimitFor(double tolerance, double share)
+{
+  return static_cast<float>(1.0 - std::min(tolerance, 32.0) * share / 255.0);
+}
+
+class Planner
+{
+public:
+  Planner(const RayScene& scene, const SamplingWish& wish, const DrawPilot& draw)
+    : Scene(scene)
+    , DrawScene(draw)
+    , Wish(wish)
+    , Pictures(scene, draw)
+    , Allowed(wish.Tolerance * (1.0 - ShareOfEnds))
+    , Choices(wish.Distance)
+  {
+  }
+
+  SamplingPlan Plan()
+  {
+    const Timer timer;
+    this->TryDistances(MostDoublings);
+    if (!this->Pictures.SawSomething())
+    {
+      // Coarse levels and few samples may miss all that there is to see.
+      this->Wish.CoarsestLevel = this->Wish.FinestPilotLevel;
+      this->TryDistances(1);
+    }
+    SamplingPlan plan;
+    plan.OpacityLimit = OpacityLimitFor(this->Wish.Tolerance, ShareOfEnds);
+    if (this->Pictures.SawSomething())
+    {
+      this->TryLevels();
+      const Timer strides;
+      plan.Pilots = this->TryStrides() ? 1 : 0;
+      plan.StrideSeconds = strides.Seconds();
+      this->Choose(plan);
+    }
+    plan.Pilots += this->Pictures.Count();
+    plan.PilotSeconds = timer.Seconds() - plan.StrideSeconds;
+    return plan;
+  }
+
+private:
+  /// At the coarsest level, which costs least: the errors of distances are much the same at all.
+  /// @param doublings of the usual distance to begin with, at least 1
+  void TryDistances(int doublings)
+  {
+    const bool levels = this->Wish.CoarsestLevel > 0;
+    PilotSequence pictures(this->Pictures);
+    const Trial trial{ this->Wish.CoarsestLevel, std::ldexp(this->Wish.Distance, doublings),
+      levels ? this->Wish.Distance : std::ldexp(this->Wish.Distance, -MostHalvings),
+      (levels ? 0.5 : 1.0) * this->Allowed };
+    this->Choices.Distances = this->DistancesOf(trial, pictures);
+    this->ClosestDistance = this->Choices.Distances.back().Value;
+  }
+
+  struct Trial
+  {
+    int Level;
+    double From;
+    double To;
+    double Allowed;
+  };
+
+  /// Ever smaller distances, until all tiles are content.
+  std::vector<Choice> DistancesOf(const Trial& trial, PilotSequence& pictures)
+  {
+    std::vector<Choice> choices;
+    bool content = false;
+    for (double distance = trial.From; distance >= trial.To && !content; distance *= 0.5)
+    {
+      pictures.Add(this->Pictures.Draw({ trial.Level, distance }));
+      choices.push_back({ distance, {} });
+      // Pictures with few samples may look alike because all of them miss what is thin.
+      content = distance <= FewestSamples * this->Wish.Distance &&
+                this->LeastErrorAt(distance) <= trial.Allowed &&
+                pictures.LastIsWithin(trial.Allowed);
+    }
+    const std::vector<TileErrors> errors = pictures.AllErrors();
+    for (std::size_t i = 0; i < choices.size(); ++i)
+    {
+      choices[i].Errors = errors[i];
+      const double least = this->LeastErrorAt(choices[i].Value);
+      for (double& error : choices[i].Errors.Tiles)
+      {
+        error = std::max(error, least);
+      }
+    }
+    return choices;
+  }
+
+  /// What no picture of that distance is taken to be better than.
+  double LeastErrorAt(double distance) const
+  {
+    return this->Scene.Shading.On ? ErrorOfNormals(distance / this->Wish.Distance) : 0.0;
+  }
+
+  /// Ever finer levels at the smallest distance that was needed, until all tiles are content.
+  void TryLevels()
+  {
+    int level = this->Wish.CoarsestLevel;
+    PilotSequence pictures(this->Pictures);
+    const double distance = this->ClosestDistance;
+    pictures.Add(this->Pictures.Draw({ level, distance }));
+    std::vector<Choice> choices{ { static_cast<double>(level), {} } };
+    while (level > this->Wish.FinestPilotLevel && !pictures.LastIsWithin(0.5 * this->Allowed))
+    {
+      --level;
+      pictures.Add(this->Pictures.Draw({ level, distance }));
+      choices.push_back({ static_cast<double>(level), {} });
+    }
+    if (choices.size() == 1)
+    {
+      choices.front().Errors.Tiles.assign(this->Pictures.TileCount(), 0.0);
+      this->Choices.Levels = std::move(choices);
+      return;
+    }
+    if (level == 0)
+    {
+      pictures.LastIsExact();
+    }
+    const std::vector<TileErrors> errors = pictures.AllErrors();
+    for (std::size_t i = 0; i < choices.size(); ++i)
+    {
+      choices[i].Errors = errors[i];
+    }
+    this->Choices.Levels = std::move(choices);
+    const std::size_t needed = this->FinestThatIsNeeded();
+    const bool last = needed + 1 == this->Choices.Levels.size();
+    // No tile is drawn from a finer level than the one where distances are judged, unless what
+    // distances leave of the tolerance asks for it.
+    const std::vector<Choice> all = this->Choices.Levels;
+    this->Choices.Levels.resize(needed + 1);
+    this->TryDistancesAgain(static_cast<int>(this->Choices.Levels.back().Value));
+    if (this->Choices.Distances.back().Errors.Largest() > 0.5 * this->Allowed)
+    {
+      this->Choices.Levels = all;
+    }
+    if (last && !pictures.LastIsWithin(0.5 * this->Allowed))
+    {
+      this->ExtrapolateLevels();
+    }
+  }
+
+  /// Adds the levels that no pilots were drawn from: cells of half the edge have at most half the
+  /// error (a quarter, where the field is smooth), and the finest has none.
+  void ExtrapolateLevels()
+  {
+    for (int level = static_cast<int>(this->Choices.Levels.back().Value) - 1;
+         level >= this->Wish.FinestLevel; --level)
+    {
+      Choice finer{ static_cast<double>(level), this->Choices.Levels.back().Errors };
+      for (double& error : finer.Errors.Tiles)
+      {
+        error = level > 0 ? 0.5 * error : 0.0;
+      }
+      this->Choices.Levels.push_back(std::move(finer));
+    }
+  }
+
+  /// The first of the levels that is good enough for all tiles, or the last.
+  std::size_t FinestThatIsNeeded() const
+  {
+    std::size_t finest = 0;
+    while (finest + 1 < this->Choices.Levels.size() &&
+           this->Choices.Levels[finest].Errors.Largest() > 0.5 * this->Allowed)
+    {
+      ++finest;
+    }
+    return finest;
+  }
+
+  /// Finer levels show what coarser ones leave out: distances are judged at the level that is
+  /// needed, from the longest that may be good enough for some tile.
+  void TryDistancesAgain(int level)
+  {
+    double longest = this->ClosestDistance;
+    for (const Choice& choice : this->Choices.Distances)
+    {
+      if (choice.Errors.Smallest() <= this->Allowed)
+      {
+        longest = std::max(longest, choice.Value);
+      }
+    }
+    PilotSequence pictures(this->Pictures);
+    const Trial trial{ level,
+      std::min(longest, std::ldexp(SamplingChoices::MostCellsPerStep * this->Wish.Distance, level)),
+      std::ldexp(this->Wish.Distance, -MostHalvings), 0.5 * this->Allowed };
+    this->Choices.Distances = this->DistancesOf(trial, pictures);
+  }
+
+  /// One small picture, drawn at little cost, tells which pixels need rays.
+  /// @return whether it was drawn
+  bool TryStrides()
+  {
+    Choice every{ 1.0, {} };
+    every.Errors.Tiles.assign(this->Pictures.TileCount(), 0.0);
+    this->Choices.Strides = { std::move(every) };
+    if (this->Wish.LargestPixelStride == 1 ||
+        !StridePilot::MaySay(this->Scene, this->Pictures.PixelsApart()) ||
+        !StridePilot::MayPay(this->Pictures, this->Allowed))
+    {
+      return false;
+    }
+    SamplingChoices::Chosen sampling =
+      this->Choices.CheapestForMost(TilesOfStridePilot, ShareOfStridePilot * this->Allowed);
+    while (this->Choices.Levels[sampling.Level].Value < this->Wish.FinestPilotLevel)
+    {
+      --sampling.Level;
+    }
+    StridePilot pilot(this->Scene, this->DrawScene, this->Allowed);
+    RaySampling drawn = this->Choices.SamplingOf(sampling);
+    drawn.Distance = std::max(drawn.Distance, this->Wish.Distance);
+    pilot.Draw(drawn);
+    for (int stride = 2; stride <= this->Wish.LargestPixelStride; stride *= 2)
+    {
+      this->Choices.Strides.push_back({ static_cast<double>(stride), pilot.ErrorsAt(stride) });
+    }
+    this->Choices.StridesAreThoseOf(sampling);
+    return true;
+  }
+
+  /// Two levels are left for each tile, as for the picture.
+  int FinestLevelOf(std::size_t tile) const
+  {
+    const std::vector<int>& levels = this->Wish.FinestLevelOfTile;
+    return levels.empty() ? 0 : std::min(levels[tile], std::max(0, this->Wish.CoarsestLevel - 1));
+  }
+
+  /// Whether a tile might have been drawn from a finer level but for the wish.
+  bool LevelIsHeld(std::size_t tile) const
+  {
+    return std::max(this->Wish.FinestLevel, this->FinestLevelOf(tile)) > 0;
+  }
+
+  /// Per level, SamplingChoices::CheapestFirst without finer ones: Levels begin with the coarsest.
+  std::vector<std::vector<SamplingChoices::Chosen>> OrdersFromLevels() const
+  {
+    std::vector<std::vector<SamplingChoices::Chosen>> orders{ this->Choices.CheapestFirst() };
+    for (int level = 1; level <= this->Wish.CoarsestLevel; ++level)
+    {
+      orders.emplace_back();
+      std::copy_if(orders[0].begin(), orders[0].end(), std::back_inserter(orders.back()),
+        [&](const SamplingChoices::Chosen& chosen)
+        { return this->Choices.Levels[chosen.Level].Value >= level; });
+    }
+    return orders;
+  }
+
+  void Choose(SamplingPlan& plan) const
+  {
+    const auto tiles =
+      std::make_shared<TileSamplings>(this->Pictures.ImageSize(), this->Choices.Samplings());
+    const auto orders = this->OrdersFromLevels();
+    double largest = 0.0;
+    for (std::size_t tile = 0; tile < this->Pictures.TileCount(); ++tile)
+    {
+      const SamplingChoices::Chosen chosen = this->Choices.CheapestFor(
+        tile, this->Allowed, orders[static_cast<std::size_t>(this->FinestLevelOf(tile))]);
+      const glm::ivec2 position(static_cast<int>(tile % static_cast<std::size_t>(tiles->Tiles().x)),
+        static_cast<int>(tile / static_cast<std::size_t>(tiles->Tiles().x)));
+      tiles->SetNumber(position, this->Choices.NumberOf(chosen));
+      largest = std::max(largest, chosen.Error);
+      plan.Extrapolated =
+        plan.Extrapolated || this->Choices.Levels[chosen.Level].Value < this->Wish.FinestPilotLevel;
+      if (chosen.Error > this->Allowed && plan.Limit != SamplingLimit::Distance)
+      {
+        plan.Limit = this->LevelIsHeld(tile) ? SamplingLimit::Level : SamplingLimit::Distance;
+      }
+    }
+    plan.Samplings = tiles;
+    plan.EstimatedError = largest + this->Wish.Tolerance * ShareOfEnds;
+  }
+
+  const RayScene& Scene;
+  const DrawPilot& DrawScene;
+  SamplingWish Wish;
+  PilotPictures Pictures;
+  double Allowed;
+  SamplingChoices Choices;
+  double ClosestDistance = 1.0; ///< the smallest that was tried at the coarsest level
+};
+
+void Check(const SamplingWish& wish)
+{
+  if (!(wish.Tolerance > 0.0) || !std::isfinite(wish.Tolerance))
+  {
+    throw Error("The tolerance for errors of the picture must be above 0");
+  }
+  if (!(wish.Distance > 0.0) || !std::isfinite(wish.Distance))
+  {
+    throw Error("The sample distance must be above 0");
+  }
+  if (wish.CoarsestLevel < 0 || wish.FinestPilotLevel < 0 || wish.FinestLevel < 0 ||
+      std::any_of(wish.FinestLevelOfTile.begin(), wish.FinestLevelOfTile.end(),
+        [](int level) { return level < 0; }))
+  {
+    throw Error("There is no level below 0, the finest");
+  }
+  const int stride = wish.LargestPixelStride;
+  if (stride < 1 || stride > RaySampling::LargestStride || (stride & (stride - 1)) != 0)
+  {
+    throw Error(
+      "Every pixel, or every 2nd, 4th or 8th may have a ray: the largest stride is no other");
+  }
+}
+
+} // namespace
+
+SamplingPlan PlanSamplings(const RayScene& scene, SamplingWish wish, const DrawPilot& draw)
+{
+  Check(wish);
+  const glm::ivec2 tiles = TileSamplings::TilesOf(scene.Camera.ImageSize());
+  if (!wish.FinestLevelOfTile.empty() &&
+      wish.FinestLevelOfTile.size() != static_cast<std::size_t>(tiles.x) * tiles.y)
+  {
+    throw Error("Each tile of the picture has its finest level, or none has");
+  }
+  const glm::ivec3 cells = scene.DomainCells.Size();
+  const int longest = std::max({ cells.x, cells.y, cells.z });
+  while (wish.CoarsestLevel > 0 &&
+         (longest + (1 << wish.CoarsestLevel) - 1) >> wish.CoarsestLevel < wish.LeastCells)
+  {
+    --wish.CoarsestLevel;
+  }
+  if (!wish.FinestLevelOfTile.empty())
+  {
+    wish.FinestLevel = std::max(wish.FinestLevel,
+      *std::min_element(wish.FinestLevelOfTile.begin(), wish.FinestLevelOfTile.end()));
+  }
+  // Of one level alone nothing could be told.
+  const int secondCoarsest = std::max(0, wish.CoarsestLevel - 1);
+  wish.FinestLevel = std::min(wish.FinestLevel, secondCoarsest);
+  wish.FinestPilotLevel =
+    std::max(wish.FinestLevel, std::min(wish.FinestPilotLevel, secondCoarsest));
+  RayScene pilots = scene;
+  pilots.OpacityLimit = OpacityLimitFor(wish.Tolerance, ShareOfPilotEnds);
+  return Planner(pilots, wish, draw).Plan();
+}
+
+} // namespace banyan

@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Series/Decode/GroupField.h"
+#include "Base/Error.h"
+#include "Codec/BlockDecoder.h"
+#include "Codec/BlockEncoder.h"
+#include "Codec/BlockModes.h"
+#include "Codec/BlockScratch.h"
+#include "Codec/DecodeStages.h"
+#include "Codec/GroupOrder.h"
+#include "Codec/SymbolWriter.h"
+#include "Series/Decode/OpenSeries.h"
+
+#include <algorithm>
+
+namespace banyan
+{
+namespace
+{
+
+bool Inside(const glm::ivec3& position, const glm::ivec3& size)
+{
+  return position.x < size.x && position.y < size.y && position.z < size.z;
+}
+
+glm::ivec3 NeighbourOf(const glm::ivec3& block, int bits)
+{
+  return block + glm::ivec3{ bits & 1, bits >> 1 & 1, bits >> 2 & 1 };
+}
+
+/// Whether a block is predicted from other steps.
+bool Refers(const group::BlockEntry& entry)
+{
+  return entry.Same || (!entry.Uniform && block::ModeOf(entry.Mode).From != block::Reference::None);
+}
+
+} // namespace
+
+GroupField::GroupField(GroupReader& segment, std::uint64_t series, std::uint32_t component,
+  const glm::ivec3& samples, int brickCells, int levels,
+  std::function<std::shared_ptr<GroupField>()> before)
+  : File(segment)
+  , Series(series)
+  , Component(component)
+  , BrickCells(brickCells)
+  , Before(std::move(before))
+  , StepTables(static_cast<std::size_t>(segment.Steps()))
+  , Loaded(StepTables.size())
+{
+  const Bytes head = segment.Section(segment.HeadSection(component));
+  this->FieldHead = group::UnpackHead(head.data(), head.size());
+  if (this->FieldHead.Open && segment.FirstStep() == 0)
+  {
+    throw Error("The first segment of a series refers to one before it");
+  }
+  this->Shape = group::ShapeOf(samples, this->FieldHead.Axes, brickCells, levels);
+  for (int set = 0; set < 2; ++set)
+  {
+    this->Tables[set] = DecodeTablesOf(this->FieldHead.Frequencies[set]);
+    this->Memory += this->Tables[set].Bytes();
+  }
+}
+
+const group::StepTable& GroupField::Step(int step)
+{
+  if (const group::StepTable* table =
+        this->Loaded[static_cast<std::size_t>(step)].load(std::memory_order_acquire))
+  {
+    return *table;
+  }
+  const stages::In stage(stages::Tables);
+  // Under the lock: threads that start on a new step together then load its table once.
+  std::lock_guard<std::mutex> lock(this->Mutex);
+  return this->Load(step);
+}
+
+const group::StepTable& GroupField::Load(int step)
+{
+  std::unique_ptr<group::StepTable>& table = this->StepTables[static_cast<std::size_t>(step)];
+  if (!table)
+  {
+    const int reference = ReferencesOfStep(step, this->File.Steps(), this->FieldHead.Open).B;
+    const group::TableReference from{ reference, reference < 0 ? nullptr : &this->Load(reference) };
+    const Bytes bytes = this->File.Section(this->File.StepSection(step, this->Component));
+    table = std::make_unique<group::StepTable>(group::UnpackStep(
+      bytes.data(), bytes.size(), this->Shape, step, from, this->File.PayloadEnd()));
+    this->CheckNumbers(*table);
+    this->Memory += table->MemoryBytes();
+    this->BytesRead += bytes.size();
+    this->Loaded[static_cast<std::size_t>(step)].store(table.get(), std::memory_order_release);
+  }
+  return *table;
+}
+
+/// Everything that is decoded lies between the head's extremes; so must what is stored as it is.
+void GroupField::CheckNumbers(const group::StepTable& table) const
+{
+  const auto outside = [this](std::int32_t number)
+  { return number < this->FieldHead.Least || number > this->FieldHead.Greatest; };
+  bool any = std::any_of(table.Top.begin(), table.Top.end(), outside);
+  for (const auto& plane : table.Planes)
+  {
+    for (const group::BlockEntry& block : plane)
+    {
+      any = any || (block.Uniform && outside(block.Value));
+    }
+  }
+  if (any)
+  {
+    throw Error("A number in the table of a step lies outside of its lattice");
+  }
+}
+
+std::size_t GroupField::IndexOf(int plane, const glm::ivec3& block) const
+{
+  const glm::ivec3 blocks = this->BlocksOf(plane);
+  return (static_cast<std::size_t>(block.z) * static_cast<std::size_t>(blocks.y) +
+           static_cast<std::size_t>(block.y)) *
+           static_cast<std::size_t>(blocks.x) +
+         static_cast<std::size_t>(block.x);
+}
+
+bool GroupField::NeedsReferences(int step, int plane, const glm::ivec3& block)
+{
+  const auto& entries = this->Step(step).Planes[static_cast<std::size_t>(plane)];
+  const glm::ivec3 blocks = this->BlocksOf(plane);
+  for (int bits = 0; bits < 8; ++bits)
+  {
+    const glm::ivec3 at = NeighbourOf(block, bits);
+    if (Inside(at, blocks))
+    {
+      const group::BlockEntry& entry = entries[this->IndexOf(plane, at)];
+      if (Refers(entry))
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+StepReferences GroupField::ReferencesOf(int step) const
+{
+  const StepReferences references =
+    ReferencesOfStep(step, this->File.Steps(), this->FieldHead.Open);
+  if (!references.Any())
+  {
+    throw Error("A block of the key frame of a segment refers to another step");
+  }
+  return references;
+}
+
+/// Calls the body with the same component in the segment before.
+template <class Body>
+auto GroupField::InSegmentBefore(Body&& body)
+{
+  const std::shared_ptr<GroupField> before = this->Before();
+  if (!group::SameLattice(before->FieldHead, this->FieldHead))
+  {
+    throw Error("A segment refers to the one before it, which has another lattice");
+  }
+  this->BeforeFits = true;
+  return InFile(before->File.Path(), 0,
+    [&]
+    {
+      const auto result = body(*before);
+      this->BytesRead += before->TakeBytesRead();
+      return result;
+    });
+}
+
+/// The box of a step that another one refers to.
+LatticeCache::Box GroupField::ReferenceBox(int step, int plane, const glm::ivec3& block)
+{
+  if (step != StepBefore)
+  {
+    return this->Box(step, plane, block);
+  }
+  const stages::In stage(stages::Lookup);
+  if (this->BeforeFits)
+  {
+    if (LatticeCache::Box found = LatticeCache::Process().Find(this->KeyOf(step, plane, block)))
+    {
+      return found;
+    }
+  }
+  return this->InSegmentBefore(
+    [&](GroupField& before) { return before.Box(before.File.Steps() - 1, plane, block); });
+}
+
+/// The samples of the next plane that a box is predicted from.
+template <class Number>
+const Number* GroupField::Coarse(int step, int plane, const glm::ivec3& block)
+{
+  const int n = this->BrickCells / 4 + 1;
+  const glm::ivec3 samples = this->Shape.Planes[static_cast<std::size_t>(plane) + 1];
+  const glm::ivec3 first = block * (this->BrickCells / 4);
+  const bool top = plane + 2 == static_cast<int>(this->Shape.Planes.size());
+  const glm::ivec3 coarseBlock = first / this->BrickCells;
+  const glm::ivec3 origin = top ? glm::ivec3(0) : coarseBlock * this->BrickCells;
+  const glm::ivec3 size = top ? samples : glm::ivec3(this->BrickCells + 1);
+  const stages::In stage(stages::Coarse);
+  thread_local std::vector<Number> numbers;
+  numbers.resize(static_cast<std::size_t>(n * n * n));
+  int columns[32 / 4 + 1]; // of the largest blocks
+  for (int x = 0; x < n; ++x)
+  {
+    columns[x] = std::min(first.x + x, samples.x - 1) - origin.x;
+  }
+  const auto gather = [&](const auto* from)
+  {
+    Number* to = numbers.data();
+    for (int z = 0; z < n; ++z)
+    {
+      const int sz = std::min(first.z + z, samples.z - 1) - origin.z;
+      for (int y = 0; y < n; ++y)
+      {
+        const int sy = std::min(first.y + y, samples.y - 1) - origin.y;
+        const auto* row = from + (sz * size.y + sy) * size.x;
+        for (int x = 0; x < n; ++x)
+        {
+          *to++ = static_cast<Number>(row[columns[x]]);
+        }
+      }
+    }
+  };
+  if (top)
+  {
+    gather(this->Step(step).Top.data());
+  }
+  else
+  {
+    // The box may decode others on the way, which use the same memory: it comes first.
+    gather(this->Box(step, plane + 1, coarseBlock)->Numbers<Number>());
+  }
+  return numbers.data();
+}
+
+LatticeCache::Box GroupField::Decode(int step, int plane, const glm::ivec3& block)
+{
+  return block::Narrow(this->FieldHead.Least, this->FieldHead.Greatest)
+           ? this->DecodeAs<std::int16_t>(step, plane, block)
+           : this->DecodeAs<std::int32_t>(step, plane, block);
+}
+
+template <class Number>
+LatticeCache::Box GroupField::DecodeAs(int step, int plane, const glm::ivec3& block)
+{
+  const auto& entries = this->Step(step).Planes[static_cast<std::size_t>(plane)];
+  const glm::ivec3 blocks = this->BlocksOf(plane);
+  const glm::ivec3 samples = this->Shape.Planes[static_cast<std::size_t>(plane)];
+  PlaneCode shared;
+  shared.Tables = &this->Tables[plane > 0 ? 1 : 0];
+  shared.CoarseBin = BinOfOctave(this->FieldHead.Bin, 2 * plane + 1);
+  shared.FineBin = BinOfOctave(this->FieldHead.Bin, 2 * plane);
+  shared.Least = this->FieldHead.Least;
+  shared.Greatest = this->FieldHead.Greatest;
+  BoxCodeOf<Number> code;
+  bool refers = false;
+  bool same = true;
+  PayloadPages& payloads = this->File.Payloads();
+  const PayloadPages::Hold hold = payloads.InMemory();
+  for (int bits = 0; bits < 8; ++bits)
+  {
+    const glm::ivec3 at = NeighbourOf(block, bits);
+    BlockCode& to = code.Blocks[bits];
+    to.Exists = Inside(at, blocks);
+    if (!to.Exists)
+    {
+      same = false; // what lies beyond the field's end is predicted anew at each step
+      continue;
+    }
+    const group::BlockEntry& entry = entries[this->IndexOf(plane, at)];
+    to.Uniform = entry.Uniform;
+    to.Same = entry.Same;
+    to.Value = entry.Value;
+    to.Mode = entry.Mode;
+    to.Limit = samples - 1 - at * this->BrickCells;
+    refers = refers || Refers(entry);
+    same = same && entry.Same;
+    if (entry.Payload.Bytes > 0 && bits != 7)
+    {
+      to.Data = payloads.At(hold, entry.Payload.Offset, entry.Payload.Bytes);
+      to.Bytes = entry.Payload.Bytes;
+    }
+  }
+  this->BytesRead += code.Blocks[0].Bytes;
+  if (same)
+  {
+    return this->ReferenceBox(this->ReferencesOf(step).A, plane, block);
+  }
+  LatticeCache::Box neighbours[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    // Only what would have to be decoded again is worth a look.
+    const BlockCode& neighbour = code.Blocks[1 << axis];
+    if (neighbour.Exists && !neighbour.Uniform && !neighbour.Same)
+    {
+      neighbours[axis] =
+        LatticeCache::Process().Find(this->KeyOf(step, plane, NeighbourOf(block, 1 << axis)));
+      code.Neighbours[axis] = neighbours[axis] ? neighbours[axis]->Numbers<Number>() : nullptr;
+    }
+  }
+  LatticeCache::Box a, b;
+  if (refers)
+  {
+    const StepReferences references = this->ReferencesOf(step);
+    a = this->ReferenceBox(references.A, plane, block);
+    b = references.B == references.A ? a : this->ReferenceBox(references.B, plane, block);
+    code.A = a->Numbers<Number>();
+    code.B = b->Numbers<Number>();
+  }
+  code.Coarse = this->Coarse<Number>(step, plane, block);
+  code.Prefetcher = &Ahead();
+  const std::size_t n = static_cast<std::size_t>(this->BrickCells) + 1;
+  const auto box = std::make_shared<LatticeBox>(n * n * n, sizeof(Number) == sizeof(std::int16_t));
+  DecodeBox(this->BrickCells, shared, code, box->Numbers<Number>());
+  return box;
+}
+
+LatticeCache::Key GroupField::KeyOf(int step, int plane, const glm::ivec3& block) const
+{
+  return { this->Series, this->IndexOf(plane, block),
+    static_cast<std::uint32_t>(this->File.FirstStep() + step),
+    static_cast<std::uint16_t>(this->Component), static_cast<std::uint16_t>(plane) };
+}
+
+LatticeCache::Box GroupField::Box(int step, int plane, const glm::ivec3& block, bool passing)
+{
+  const stages::In stage(stages::Lookup);
+  LatticeCache& cache = LatticeCache::Process();
+  const LatticeCache::Key key = this->KeyOf(step, plane, block);
+  if (LatticeCache::Box found = cache.Find(key))
+  {
+    return found;
+  }
+  const LatticeCache::Box box = this->Decode(step, plane, block);
+  // Half of all steps are no references. Of these, boxes are needed until the blocks around are
+  // decoded.
+  const bool brief = passing && plane == 0 && ReferenceDistance(step, this->File.Steps()) == 1;
+  cache.Add(key, box, brief);
+  return box;
+}
+
+void GroupField::Verify(int step, int plane, const glm::ivec3& block)
+{
+  Visited visited;
+  this->Verify(step, plane, block, visited);
+}
+
+void GroupField::Verify(int step, int plane, const glm::ivec3& block, Visited& visited)
+{
+  if (!visited.insert({ this->File.FirstStep() + step, plane, this->IndexOf(plane, block) }).second)
+  {
+    return;
+  }
+  const auto& entries = this->Step(step).Planes[static_cast<std::size_t>(plane)];
+  const glm::ivec3 blocks = this->BlocksOf(plane);
+  PayloadPages& payloads = this->File.Payloads();
+  const PayloadPages::Hold hold = payloads.InMemory();
+  for (int bits = 0; bits < 8; ++bits)
+  {
+    const glm::ivec3 at = NeighbourOf(block, bits);
+    if (!Inside(at, blocks))
+    {
+      continue;
+    }
+    const group::BlockEntry& entry = entries[this->IndexOf(plane, at)];
+    for (const group::Place& place : { entry.Payload, entry.Exceptions })
+    {
+      if (place.Bytes > 0)
+      {
+        (void)payloads.At(hold, place.Offset, place.Bytes);
+      }
+    }
+  }
+  if (plane + 2 < static_cast<int>(this->Shape.Planes.size()))
+  {
+    this->Verify(step, plane + 1, block / 4, visited);
+  }
+  if (this->NeedsReferences(step, plane, block))
+  {
+    const StepReferences references = this->ReferencesOf(step);
+    this->Verify(references.B, plane, block, visited);
+    if (references.A != StepBefore)
+    {
+      this->Verify(references.A, plane, block, visited);
+      return;
+    }
+    this->InSegmentBefore(
+      [&](GroupField& before)
+      {
+        before.Verify(before.File.Steps() - 1, plane, block, visited);
+        return true;
+      });
+  }
+}
+
+} // namespace banyan

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Series_Decode_GroupField_h
+#define banyan_Series_Decode_GroupField_h
+
+#include "Codec/DecodeTables.h"
+#include "Codec/GroupOrder.h"
+#include "Codec/LinePrefetcher.h"
+#include "Series/Decode/GroupReader.h"
+#include "Series/Decode/LatticeCache.h"
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <tuple>
+#include <vector>
+
+namespace banyan
+{
+
+/// One component in one segment, opened.
+class GroupField
+{
+public:
+  /// @param before gives the same component in the segment before; called without any lock, when a
+  /// box is predicted from there. Must not be kept: each would keep the one before it.
+  GroupField(GroupReader& segment, std::uint64_t series, std::uint32_t component,
+    const glm::ivec3& samples, int brickCells, int levels,
+    std::function<std::shared_ptr<GroupField>()> before);
+
+  const group::FieldHead& Head() const { return this->FieldHead; }
+  GroupReader& Segment() const { return this->File; }
+  int Edge() const { return this->BrickCells; }
+  /// Samples and blocks of each plane, axes in the codec's order.
+  const std::vector<glm::ivec3>& Planes() const { return this->Shape.Planes; }
+  glm::ivec3 BlocksOf(int plane) const
+  {
+    return this->Shape.Blocks[static_cast<std::size_t>(plane)];
+  }
+
+  /// The table of a step of the segment (0 is its first).
+  const group::StepTable& Step(int step);
+
+  /// Decodes the box of a block: (edge + 1)^3 lattice numbers.
+  /// @param passing whether all of a region is read, which hardly comes back to boxes that are no
+  /// references
+  LatticeCache::Box Box(int step, int plane, const glm::ivec3& block, bool passing = false);
+
+  /// Notes what decoding the box will read, boxes of other steps that usually are in memory only:
+  /// while the next box is decoded the caches of the processor are asked for it. Decodes nothing.
+  void Prefetch(int step, int plane, const glm::ivec3& block);
+
+  /// Checks the pages of everything that decoding the box reads.
+  void Verify(int step, int plane, const glm::ivec3& block);
+
+  std::uint64_t MemoryBytes() const { return this->Memory; }
+  std::uint64_t TakeBytesRead() { return this->BytesRead.exchange(0); }
+
+private:
+  using Visited = std::set<std::tuple<int, int, std::size_t>>; ///< steps of the series
+
+  /// The same under the lock. Loads the table's references as well.
+  const group::StepTable& Load(int step);
+  std::size_t IndexOf(int plane, const glm::ivec3& block) const;
+  LatticeCache::Key KeyOf(int step, int plane, const glm::ivec3& block) const;
+  void Verify(int step, int plane, const glm::ivec3& block, Visited& visited);
+  bool NeedsReferences(int step, int plane, const glm::ivec3& block);
+  StepReferences ReferencesOf(int step) const;
+  template <class Body>
+  auto InSegmentBefore(Body&& body);
+  LatticeCache::Box ReferenceBox(int step, int plane, const glm::ivec3& block);
+  template <class Number>
+  const Number* Coarse(int step, int plane, const glm::ivec3& block);
+  void CheckNumbers(const group::StepTable& table) const;
+  LatticeCache::Box Decode(int step, int plane, const glm::ivec3& block);
+  template <class Number>
+  LatticeCache::Box DecodeAs(int step, int plane, const glm::ivec3& block);
+  /// What the calling thread asks for.
+  static LinePrefetcher& Ahead();
+
+  GroupReader& File;
+  std::uint64_t Series;
+  std::uint32_t Component;
+  int BrickCells;
+  std::function<std::shared_ptr<GroupField>()> Before;
+  std::atomic<bool> BeforeFits{ false }; ///< it was seen to have the same lattice
+  group::FieldHead FieldHead;
+  group::TableShape Shape;
+  DecodeTables Tables[2];
+  std::mutex Mutex;
+  std::vector<std::unique_ptr<group::StepTable>> StepTables;
+  std::vector<std::atomic<const group::StepTable*>> Loaded; ///< the same, without the lock
+  std::atomic<std::uint64_t> Memory{ 0 };
+  std::atomic<std::uint64_t> BytesRead{ 0 };
+};
+
+} // namespace banyan
+
+#endif

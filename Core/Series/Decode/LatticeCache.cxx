@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Series/Decode/LatticeCache.h"
+
+#include "Base/CacheBudget.h"
+#include "Base/Hash.h"
+
+#include <algorithm>
+
+namespace banyan
+{
+namespace
+{
+
+std::uint64_t BytesOf(const LatticeCache::Box& box)
+{
+  return box->Bytes() + 180; // with what is kept beside it
+}
+
+} // namespace
+
+LatticeCache::LatticeCache()
+  : Budget(CacheBudgetBytes() / 4)
+{
+  LatticeMemory::KeepAtMost(this->Budget);
+}
+
+LatticeCache& LatticeCache::Process()
+{
+  // Never destroyed: series that are closed while the process ends still come here.
+  static LatticeCache* cache = new LatticeCache;
+  return *cache;
+}
+
+/// The lowest bits are the block's: blocks that follow each other have buckets that do.
+std::size_t LatticeCache::HashOf(const Key& key)
+{
+  std::uint64_t hash = key.Series * 0x9e3779b97f4a7c15ull + key.Block / BlocksTogether;
+  hash = (hash ^ (hash >> 29)) * 0xbf58476d1ce4e5b9ull;
+  hash += (std::uint64_t{ key.Step } << 32) | (std::uint64_t{ key.Component } << 16) | key.Plane;
+  hash = (hash ^ (hash >> 32)) * 0x94d049bb133111ebull;
+  hash ^= hash >> 31;
+  return static_cast<std::size_t>(hash * BlocksTogether + key.Block % BlocksTogether);
+}
+
+std::int32_t& LatticeCache::BucketOf(Shard& shard, std::size_t hash)
+{
+  const std::size_t bucket =
+    hash / (BlocksTogether * ShardCount) * BlocksTogether + hash % BlocksTogether;
+  return shard.Buckets[bucket & (shard.Buckets.size() - 1)];
+}
+
+/// -1: it is not there.
+std::int32_t LatticeCache::EntryOf(Shard& shard, std::size_t hash, const Key& key)
+{
+  std::int32_t entry = shard.Buckets.empty() ? -1 : BucketOf(shard, hash);
+  while (entry >= 0 && !(shard.Entries[static_cast<std::size_t>(entry)].Name == key))
+  {
+    entry = shard.Entries[static_cast<std::size_t>(entry)].Next;
+  }
+  return entry;
+}
+
+/// @param body called as body(Kept&), while nobody changes it, if the box is there
+template <class Body>
+void LatticeCache::Look(const Key& key, const Body& body)
+{
+  const std::size_t hash = HashOf(key);
+  Shard& shard = this->Shards[ShardOf(hash)];
+  std::lock_guard<std::mutex> lock(shard.Mutex);
+  const std::int32_t found = EntryOf(shard, hash, key);
+  if (found >= 0)
+  {
+    body(shard.Entries[static_cast<std::size_t>(found)]);
+  }
+}
+
+LatticeCache::Box LatticeCache::Find(const Key& key)
+{
+  Box box;
+  this->Look(key,
+    [&](Kept& kept)
+    {
+      kept.Used = true;
+      box = kept.Numbers;
+    });
+  return box;
+}
+
+const void* LatticeCache::AddressOf(const Key& key)
+{
+  const void* memory = nullptr;
+  this->Look(key,
+    [&](Kept& kept)
+    {
+      __builtin_prefetch(kept.Numbers.get()); // how many hold it
+      memory = kept.Memory;
+    });
+  return memory;
+}
+
+void LatticeCache::Add(const Key& key, const Box& box, bool brief)
+{
+  const std::size_t hash = HashOf(key);
+  Shard& shard = this->Shards[ShardOf(hash)];
+  std::lock_guard<std::mutex> lock(shard.Mutex);
+  if (EntryOf(shard, hash, key) >= 0)
+  {
+    return; // another thread was faster
+  }
+  if (shard.Free.empty())
+  {
+    Grow(shard);
+  }
+  const std::int32_t entry = shard.Free.back();
+  shard.Free.pop_back();
+  std::int32_t& bucket = BucketOf(shard, hash);
+  shard.Entries[static_cast<std::size_t>(entry)] = { key, box, box->Memory(), bucket, false,
+    brief };
+  bucket = entry;
+  shard.Bytes += BytesOf(box);
+  if (brief)
+  {
+    LinkBrief(shard, entry);
+  }
+  this->Shrink(shard);
+}
+
+void LatticeCache::LinkBrief(Shard& shard, std::int32_t entry)
+{
+  Kept& kept = shard.Entries[static_cast<std::size_t>(entry)];
+  kept.Older = shard.NewestBrief;
+  std::int32_t& before =
+    kept.Older < 0 ? shard.OldestBrief : shard.Entries[static_cast<std::size_t>(kept.Older)].Newer;
+  before = entry;
+  shard.NewestBrief = entry;
+  shard.BriefBytes += BytesOf(kept.Numbers);
+}
+
+void LatticeCache::UnlinkBrief(Shard& shard, std::int32_t entry)
+{
+  const Kept& kept = shard.Entries[static_cast<std::size_t>(entry)];
+  std::int32_t& before =
+    kept.Older < 0 ? shard.OldestBrief : shard.Entries[static_cast<std::size_t>(kept.Older)].Newer;
+  std::int32_t& after =
+    kept.Newer < 0 ? shard.NewestBrief : shard.Entries[static_cast<std::size_t>(kept.Newer)].Older;
+  before = kept.Newer;
+  after = kept.Older;
+  shard.BriefBytes -= BytesOf(kept.Numbers);
+}
+
+/// Makes room for twice as many boxes.
+void LatticeCache::Grow(Shard& shard)
+{
+  const std::size_t before = shard.Entries.size();
+  const std::size_t after = std::max<std::size_t>(64, 2 * before);
+  shard.Entries.resize(after);
+  shard.Buckets.assign(after, -1);
+  for (std::size_t i = 0; i < after; ++i)
+  {
+    Kept& kept = shard.Entries[i];
+    if (kept.Numbers)
+    {
+      std::int32_t& bucket = BucketOf(shard, HashOf(kept.Name));
+      kept.Next = bucket;
+      bucket = static_cast<std::int32_t>(i);
+    }
+    else
+    {
+      shard.Free.push_back(static_cast<std::int32_t>(i));
+    }
+  }
+}
+
+void LatticeCache::Remove(Shard& shard, std::int32_t entry)
+{
+  Kept& kept = shard.Entries[static_cast<std::size_t>(entry)];
+  std::int32_t* link = &BucketOf(shard, HashOf(kept.Name));
+  while (*link != entry)
+  {
+    link = &shard.Entries[static_cast<std::size_t>(*link)].Next;
+  }
+  *link = kept.Next;
+  if (kept.Brief)
+  {
+    UnlinkBrief(shard, entry);
+  }
+  shard.Bytes -= BytesOf(kept.Numbers);
+  kept = {};
+  shard.Free.push_back(entry);
+}
+
+void LatticeCache::Shrink(Shard& shard)
+{
+  const std::uint64_t budget = this->Budget / ShardCount;
+  while (shard.Bytes > budget)
+  {
+    // The newest one is needed by the next block, however large it is.
+    if (shard.BriefBytes > budget / BriefPart && shard.OldestBrief != shard.NewestBrief)
+    {
+      Remove(shard, shard.OldestBrief);
+      continue;
+    }
+    shard.Hand = shard.Hand + 1 < shard.Entries.size() ? shard.Hand + 1 : 0;
+    Kept& kept = shard.Entries[shard.Hand];
+    if (kept.Numbers && !kept.Used)
+    {
+      Remove(shard, static_cast<std::int32_t>(shard.Hand));
+    }
+    kept.Used = false;
+  }
+}
+
+/// @param which called as bool(const Key&), while nobody changes the boxes
+template <class Which>
+void LatticeCache::RemoveThose(const Which& which)
+{
+  for (Shard& shard : this->Shards)
+  {
+    std::lock_guard<std::mutex> lock(shard.Mutex);
+    for (std::size_t i = 0; i < shard.Entries.size(); ++i)
+    {
+      if (shard.Entries[i].Numbers && which(shard.Entries[i].Name))
+      {
+        Remove(shard, static_cast<std::int32_t>(i));
+      }
+    }
+  }
+}
+
+void LatticeCache::Forget(std::uint64_t series)
+{
+  this->RemoveThose([series](const Key& key) { return key.Series == series; });
+}
+
+void LatticeCache::ForgetAll()
+{
+  for (Shard& shard : this->Shards)
+  {
+    std::lock_guard<std::mutex> lock(shard.Mutex);
+    shard.Entries.clear();
+    shard.Free.clear();
+    shard.Buckets.clear();
+    shard.Hand = 0;
+    shard.NewestBrief = shard.OldestBrief = -1;
+    shard.Bytes = shard.BriefBytes = 0;
+  }
+}
+
+void LatticeCache::ForgetFinest()
+{
+  this->RemoveThose([](const Key& key) { return key.Plane == 0; });
+}
+
+void LatticeCache::SetBudgetBytes(std::uint64_t bytes)
+{
+  // A slab goes when all of its boxes have gone: with less room, none stay.
+  const bool less = bytes < this->Budget;
+  this->Budget = less ? 0 : bytes;
+  for (Shard& shard : this->Shards)
+  {
+    std::lock_guard<std::mutex> lock(shard.Mutex);
+    this->Shrink(shard);
+  }
+  LatticeMemory::KeepAtMost(bytes);
+  this->Budget = bytes;
+}
+
+std::uint64_t LatticeCache::Bytes() const
+{
+  std::uint64_t bytes = 0;
+  for (const Shard& shard : this->Shards)
+  {
+    std::lock_guard<std::mutex> lock(shard.Mutex);
+    bytes += shard.Bytes;
+  }
+  return bytes;
+}
+
+} // namespace banyan

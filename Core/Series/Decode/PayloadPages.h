@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Series_Decode_PayloadPages_h
+#define banyan_Series_Decode_PayloadPages_h
+
+#include "Series/Format/SegmentFile.h"
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace banyan
+{
+
+/// The payloads of a segment in memory of this process. Pages are read when they are
+/// needed first, and their checksums are those of what was read: what happens to the file later
+/// does not matter. May be used from any thread.
+///
+/// All segments together keep so many bytes (BudgetBytes()). Beyond, all pages of the segment that
+/// was used least recently go, and are read and checked again.
+class PayloadPages
+{
+public:
+  /// Keeps pages where they are.
+  class Memory;
+  using Hold = std::shared_ptr<Memory>;
+
+  /// @param file lives longer
+  /// @param end of the payloads in the file
+  /// @param hashes of the pages; as many as there are
+  PayloadPages(const SegmentFile& file, std::uint64_t end, std::vector<std::uint32_t> hashes);
+  ~PayloadPages();
+  PayloadPages(const PayloadPages&) = delete;
+  PayloadPages& operator=(const PayloadPages&) = delete;
+
+  /// The memory of now.
+  Hold InMemory();
+
+  /// First of some bytes, valid as long as `hold`. Throws Error when they are damaged or cannot be
+  /// read.
+  /// @param offset and @param bytes lie between the header and the end of the payloads
+  const std::uint8_t* At(const Hold& hold, std::uint64_t offset, std::uint64_t bytes);
+
+  /// Bytes of all segments of the process.
+  static std::uint64_t BytesInMemory();
+  /// An eighth of what LatticeCache keeps.
+  static std::uint64_t BudgetBytes();
+  /// Lets go of what was used least recently until so many bytes are left.
+  static void Shrink(std::uint64_t most);
+
+private:
+  void ReadIn(Memory& memory, std::uint64_t page, std::uint64_t end);
+
+  const SegmentFile& File;
+  std::uint64_t End;
+  std::uint64_t PageBytes;
+  std::vector<std::uint32_t> Hashes;
+  std::mutex Mutex;
+  Hold Now; ///< may be null
+  std::atomic<std::uint64_t> Used{ 0 };
+};
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Series_Decode_PieceRange_h
+#define banyan_Series_Decode_PieceRange_h
+
+#include "Series/Decode/SeriesFile.h"
+
+#include <vector>
+
+namespace banyan
+{
+
+/// Ranges of the finite values in a part of a field, told from the tree alone: nothing is decoded.
+struct PieceRange
+{
+  std::vector<ValueRange> Components; ///< one per component
+  /// Of the length (L2 norm) of the vectors; contains the true range, and is exact for the whole of
+  /// level 0. Otherwise it may be wider, because the tree knows components only; but it never goes
+  /// beyond the range of the whole step, so that pieces together have that range exactly. Equal to
+  /// Components[0] for scalars.
+  ValueRange Magnitude;
+  /// Whether Components are the exact extremes of the part: true when every brick that touches it
+  /// lies in it completely. Otherwise they contain the true range.
+  bool Exact = true;
+  bool HasNonFinite = false; ///< some brick that touches the part holds NaN or infinities
+};
+
+/// @param array of the series, at `step` and `level`
+/// @param samples of the level, as in BrickLayout; empty gives empty ranges
+/// Throws Error when the tree cannot be read.
+PieceRange RangeOfPiece(
+  const SeriesFile& series, int step, int array, int level, const Box& samples);
+
+/// The same over all steps, from the index: exact for level 0, and contains the true ranges of
+/// coarser levels. Of components whose range was chosen (percentiles, given) or that have fill
+/// values it is that range instead, for colours.
+PieceRange RangeOfSeries(const SeriesFile& series, int array);
+
+/// Numbers of the bricks that together cover `samples`, in ascending order.
+std::vector<std::int64_t> BricksTouching(const BrickLayout& layout, const Box& samples);
+
+} // namespace banyan
+
+#endif

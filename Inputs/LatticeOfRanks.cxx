@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LatticeOfRanks.h"
+
+#include "RankTalk.h"
+
+#include "Mesh/Octree/ElementOctree.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
+
+namespace banyan
+{
+
+CommonLattice LatticeOfRanks(const RankTalk& talk, const ElementOctree* tree)
+{
+  const auto several = [&](const std::function<double(int)>& numbers, int count)
+  {
+    vtkMultiProcessStream mine;
+    for (int i = 0; tree && i < count; ++i)
+    {
+      mine << numbers(i);
+    }
+    std::vector<std::vector<double>> all;
+    for (vtkMultiProcessStream& theirs : talk.Exchange(mine))
+    {
+      all.emplace_back();
+      for (int i = 0; !theirs.Empty() && i < count; ++i)
+      {
+        theirs >> all.back().emplace_back();
+      }
+    }
+    return all;
+  };
+  CommonLattice common;
+  common.Edge = glm::dvec3(std::numeric_limits<double>::max());
+  common.Origin = common.Edge;
+  const auto places =
+    several([&](int i) { return i < 3 ? tree->Origin()[i] : tree->Edge()[i - 3]; }, 6);
+  for (const std::vector<double>& theirs : places)
+  {
+    for (int axis = 0; axis < 3 && !theirs.empty(); ++axis)
+    {
+      common.Origin[axis] = std::min(common.Origin[axis], theirs[static_cast<std::size_t>(axis)]);
+      common.Edge[axis] = std::min(common.Edge[axis], theirs[static_cast<std::size_t>(axis) + 3]);
+    }
+  }
+  talk.Together(
+    [&]
+    {
+      const glm::dvec3 times = tree ? tree->Edge() / common.Edge : glm::dvec3(1.0);
+      common.Shift = static_cast<int>(std::lround(std::log2(times.x)));
+      const glm::dvec3 off = glm::abs(times / std::exp2(common.Shift) - 1.0);
+      if (std::max({ off.x, off.y, off.z }) > 1.0 / 16)
+      {
+        throw Error("Its smallest cells are no multiple of another rank's by a power of two");
+      }
+    });
+  for (const std::vector<double>& theirs :
+    several([&](int) { return static_cast<double>(tree->CoarsestLevel() + common.Shift); }, 1))
+  {
+    common.CoarsestLevel =
+      std::max(common.CoarsestLevel, theirs.empty() ? 0 : static_cast<int>(theirs.front()));
+  }
+  return common;
+}
+
+} // namespace banyan

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Inputs_MeshSteps_h
+#define banyan_Inputs_MeshSteps_h
+
+#include "BanyanInputsModule.h"
+
+#include "MeshArrays.h"
+#include "RankTalk.h"
+
+#include "Mesh/Series/StoredMesh.h"
+#include "Series/Encode/SeriesEncoder.h"
+
+#include "vtkSmartPointer.h"
+
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+class vtkDataArraySelection;
+class vtkDataObject;
+class vtkImageData;
+class vtkMultiProcessController;
+class vtkUnstructuredGrid;
+
+namespace banyan
+{
+
+class AtlasValues;
+class ElementOctree;
+class SegmentFolder;
+
+/// The steps of a mesh as images, so that they can be written like those of an image: see
+/// AtlasValues. Cell arrays are images of their own. Rank 0 has the whole mesh and makes the
+/// images; others have empty ones.
+///
+/// Hyper trees and AMR are meshes of their leaves, with their data made nodal (see MakeNodal).
+///
+/// The octree is found once, at the first step; the mesh of later steps must be the same, apart
+/// from displacements that it carries and that are named.
+class BANYANINPUTS_EXPORT MeshSteps
+{
+public:
+  MeshSteps(const RankTalk& talk, vtkMultiProcessController* controller,
+    const EncodeOptions& options, vtkDataArraySelection* points, vtkDataArraySelection* cells,
+    std::string displacements)
+    : Talk(talk)
+    , Controller(controller)
+    , Options(options)
+    , Arrays(points, cells)
+    , Displacements(std::move(displacements))
+  {
+  }
+
+  /// Whether steps are those of a mesh. Known after the first Take().
+  bool Active() const { return this->Found; }
+
+  /// Collective. Replaces this rank's data by its image when any rank has a mesh.
+  /// @param problem of this rank so far, or nothing; data do not count then
+  /// @return what is wrong on this rank, or nothing
+  std::string Take(vtkSmartPointer<vtkDataObject>& data, const std::string& problem);
+
+  /// Sentences about what is not written of the last step, or nothing: of arrays on rank 0 alone.
+  std::string Warning() const { return this->LeftOut + this->HiddenParts; }
+
+  /// See StepReport::NotChosen.
+  const std::vector<std::string>& NotChosen() const { return this->OthersThere; }
+
+  /// Collective; throws AgreedError. Rank 0 writes the file of the mesh, and all ranks learn what
+  /// encoding must know of it.
+  /// @param folder on rank 0
+  std::shared_ptr<const MeshPlan> Write(SegmentFolder* folder) const;
+
+private:
+  std::string FirstMistake(const std::string& mine) const;
+  void LookAt(const std::vector<vtkUnstructuredGrid*>& grids);
+  /// Collective: the one mesh of all ranks, on rank 0.
+  void Gather(vtkSmartPointer<vtkUnstructuredGrid>& piece, bool others);
+  void Remember(vtkUnstructuredGrid* grid);
+  vtkSmartPointer<vtkImageData> ImageOf(vtkUnstructuredGrid* grid);
+
+  const RankTalk& Talk;
+  vtkMultiProcessController* Controller;
+  const EncodeOptions& Options;
+  MeshArrays Arrays;
+  std::string Displacements; ///< see AtRest()
+  bool Found = false;
+  bool Leaves = false;                  ///< of hyper trees or AMR
+  std::vector<std::string> OthersThere; ///< arrays of this rank's part of the last step
+  std::string HiddenParts;              ///< a sentence, if any are hidden
+  // On rank 0:
+  vtkSmartPointer<vtkUnstructuredGrid> First; ///< the grid of the first step
+  std::shared_ptr<const StoredMesh> Mesh;
+  std::map<std::string, std::string> CellArrays; ///< as MeshPlan has them
+  /// Of all arrays so far, by name: those as cell arrays; empty: of points. Of the first step on.
+  std::map<std::string, std::string> Kinds;
+  std::string LeftOut;
+  std::shared_ptr<const ElementOctree>
+    Tree; ///< of hyper trees and AMR only: their data are made nodal
+};
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Parallel/CommunicatorCases.h"
+
+#include "Base/Error.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+
+namespace banyan::testing
+{
+namespace
+{
+
+class SimulatedRanks : public ::testing::TestWithParam<int>
+{
+};
+
+TEST_P(SimulatedRanks, KeepTheContract)
+{
+  const int size = GetParam();
+  std::atomic<int> ranks{ 0 };
+  RunOnSimulatedRanks(size,
+    [&](Communicator& communicator)
+    {
+      EXPECT_EQ(communicator.Size(), size);
+      ranks += 1 << communicator.Rank();
+      EXPECT_EQ(CheckCommunicator(communicator), "");
+    });
+  EXPECT_EQ(ranks, (1 << size) - 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Ranks, SimulatedRanks, ::testing::Range(1, 18));
+
+TEST(SelfCommunicator, KeepsTheContract)
+{
+  const auto communicator = MakeSelfCommunicator();
+  EXPECT_EQ(communicator->Size(), 1);
+  EXPECT_EQ(communicator->Rank(), 0);
+  EXPECT_EQ(CheckCommunicator(*communicator), "");
+  EXPECT_EQ(AgreeOnError(*communicator, "The disk is full."), "The disk is full.");
+}
+
+TEST(SimulatedRanks, ThrowTheFirstExceptionAndReleaseTheOthers)
+{
+  const auto body = [](Communicator& communicator)
+  {
+    if (communicator.Rank() == 2)
+    {
+      throw std::runtime_error("rank 2 gave up");
+    }
+    communicator.Barrier();
+  };
+  try
+  {
+    RunOnSimulatedRanks(5, body);
+    FAIL();
+  }
+  catch (const std::runtime_error& error)
+  {
+    EXPECT_STREQ(error.what(), "rank 2 gave up");
+  }
+}
+
+// The mistakes below would hang under MPI; here they end with a sentence.
+TEST(SimulatedRanks, NoticeThatNobodyWillEverSend)
+{
+  const auto bothReceive = [](Communicator& communicator)
+  {
+    int value = 0;
+    communicator.Receive(1 - communicator.Rank(), 5, &value, sizeof(value));
+    communicator.WaitAll();
+  };
+  EXPECT_THROW(RunOnSimulatedRanks(2, bothReceive), Error);
+
+  const auto oneLeaves = [](Communicator& communicator)
+  {
+    if (communicator.Rank() != 0)
+    {
+      communicator.Barrier();
+    }
+  };
+  EXPECT_THROW(RunOnSimulatedRanks(3, oneLeaves), Error);
+}
+
+TEST(SimulatedRanks, RefuseMessagesOfAnotherSize)
+{
+  const auto body = [](Communicator& communicator)
+  {
+    std::int64_t value = 0;
+    if (communicator.Rank() == 0)
+    {
+      communicator.Send(1, 5, &value, 4);
+    }
+    else
+    {
+      communicator.Receive(0, 5, &value, 8);
+    }
+    communicator.WaitAll();
+  };
+  EXPECT_THROW(RunOnSimulatedRanks(2, body), Error);
+}
+
+TEST(SimulatedRanks, RefuseRanksAndTagsThatDoNotExist)
+{
+  const auto communicator = MakeSelfCommunicator();
+  char byte = 0;
+  EXPECT_THROW(communicator->Send(1, 0, &byte, 1), Error);
+  EXPECT_THROW(communicator->Receive(-1, 0, &byte, 1), Error);
+  EXPECT_THROW(communicator->Send(0, -1, &byte, 1), Error);
+  EXPECT_THROW(RunOnSimulatedRanks(0, [](Communicator&) {}), Error);
+}
+
+} // namespace
+} // namespace banyan::testing

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Parallel/Balance/Zones.h"
+#include "Parallel/Fields/DistributedFrame.h"
+#include "Render/Bricks/ArrayBrickSource.h"
+#include "Render/Bricks/SeriesBrickSource.h"
+#include "Render/Sampling/ImageError.h"
+#include "Render/Scenes.h"
+#include "Series/SeriesTesting.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <mutex>
+
+namespace
+{
+
+using namespace banyan;
+
+constexpr std::uint64_t Budget = 1u << 20;
+const glm::ivec3 Samples{ 41, 33, 37 };
+
+/// One step of the standard field, encoded without loss.
+class EncodedField
+{
+public:
+  EncodedField()
+    : Values(scenes::Sampled<float>(scenes::Standard, Samples))
+  {
+    ThreadPool pool(2);
+    EncodeOptions options;
+    options.ErrorBound = 0.0;
+    options.BrickCells = 16;
+    SeriesEncoder encoder(this->Folder / "field.banyan", banyan::testing::GridOf(41, 33, 37),
+      { { "field", ScalarType::Float32, { "" }, { banyan::testing::RangeOf(this->Values) } } },
+      options, pool);
+    encoder.AddStep(0.0, { { this->Values.data() } });
+    encoder.Finish();
+    this->Series = SeriesFile::Open(this->Folder / "field.banyan");
+  }
+
+  std::vector<float> Values;
+  std::shared_ptr<const SeriesFile> Series;
+
+private:
+  banyan::testing::TemporaryFolder Folder;
+};
+
+struct Outcome
+{
+  FloatImage Picture;
+  FrameStatistics Statistics;
+};
+
+/// Draws the series on a number of simulated ranks; rank 0's picture and statistics.
+Outcome DrawSeries(const EncodedField& field, const RayScene& scene, int ranks,
+  const CompositeOptions& compositing = {})
+{
+  Outcome outcome;
+  RunOnSimulatedRanks(ranks,
+    [&](Communicator& communicator)
+    {
+      const BrickLayout layout = field.Series->Layout(0);
+      std::vector<Box> zones;
+      for (const Box& bricks : StaticZones(layout.Bricks(), communicator.Size()))
+      {
+        zones.push_back(CellsOfBricks(bricks, layout.BrickCells(), scene.DomainCells.Hi));
+      }
+      BrickCache cache(Budget);
+      SeriesBrickSource source(field.Series, {}, 0, cache);
+      ThreadPool pool(1);
+      FrameStatistics statistics;
+      const FloatImage picture = DrawDistributed(
+        communicator, scene, { &source, zones, Budget, pool }, statistics, compositing);
+      if (communicator.Rank() == 0)
+      {
+        outcome = { picture, statistics };
+      }
+      else
+      {
+        EXPECT_TRUE(picture.Pixels.empty());
+      }
+    });
+  return outcome;
+}
+
+RayScene SceneOf(double distance, bool parallel)
+{
+  RayScene scene = scenes::Scene(Samples, { 61, 47 }, glm::dmat4(1.0), distance, parallel);
+  scene.Transfer = scenes::Tabulate(scenes::Sparse);
+  return scene;
+}
+
+class EveryRankCount : public ::testing::TestWithParam<int>
+{
+};
+
+TEST_P(EveryRankCount, DrawsThePictureOfOneRank)
+{
+  const EncodedField field;
+  for (const bool parallel : { false, true })
+  {
+    // The camera outside and inside of the volume.
+    for (const double distance : { 1.4, 0.1 })
+    {
+      const RayScene scene = SceneOf(distance, parallel);
+      const Outcome alone = DrawSeries(field, scene, 1);
+      ASSERT_GT(alone.Picture.At(30, 23).a, 0.05f);
+      const Outcome together = DrawSeries(field, scene, GetParam());
+      EXPECT_LT(MaxDifference(alone.Picture, together.Picture), 1e-5);
+      EXPECT_EQ(alone.Statistics.SamplesTaken, together.Statistics.SamplesTaken);
+      EXPECT_EQ(alone.Statistics.BricksDrawn, together.Statistics.BricksDrawn);
+    }
+  }
+}
+
+/// Real pictures of zones, whose footprints are hulls, in few bits.
+TEST_P(EveryRankCount, DrawsThePictureOfOneRankInFewBits)
+{
+  const EncodedField field;
+  for (const double distance : { 1.4, 0.1 })
+  {
+    const RayScene scene = SceneOf(distance, false);
+    const Outcome alone = DrawSeries(field, scene, 1);
+    CompositeOptions options;
+    options.Transport = PixelTransport::WithinOne;
+    const Outcome together = DrawSeries(field, scene, GetParam(), options);
+    // Rounded numbers of 8 bits differ by at most 1 where these differ by less than that.
+    EXPECT_LT(MaxDifference(alone.Picture, together.Picture), 1.5 / 255.0);
+    // With the eye in the root's zone, two ranks may have nothing to send.
+    EXPECT_TRUE(together.Statistics.MessagesComposited > 0 || distance < 1.0);
+  }
+}
+
+TEST_P(EveryRankCount, RaysThatEndEarlyChangeLessThanAHalfOf255)
+{
+  const EncodedField field;
+  RayScene scene = SceneOf(1.4, false);
+  scene.OpacityLimit = 0.999f;
+  scene.Transfer.UnitDistance = 0.05; // nearly opaque
+  const Outcome alone = DrawSeries(field, scene, 1);
+  const Outcome together = DrawSeries(field, scene, GetParam());
+  EXPECT_LT(MaxDifference(alone.Picture, together.Picture), 0.5 / 255.0);
+}
+
+TEST_P(EveryRankCount, DrawsExtremesToTheBitAndAveragesAndLabelsAndCutsAsOneRank)
+{
+  const EncodedField field;
+  RayScene scene = SceneOf(1.4, false);
+  const auto expectSame = [&](double tolerance, bool sameWork)
+  {
+    const Outcome alone = DrawSeries(field, scene, 1);
+    const auto drawn = std::count_if(alone.Picture.Pixels.begin(), alone.Picture.Pixels.end(),
+      [](const glm::vec4& pixel) { return pixel.a > 0.05f; });
+    ASSERT_GT(drawn, 100);
+    const Outcome together = DrawSeries(field, scene, GetParam());
+    EXPECT_LE(MaxDifference(alone.Picture, together.Picture), tolerance);
+    if (sameWork)
+    {
+      EXPECT_EQ(alone.Statistics.SamplesTaken, together.Statistics.SamplesTaken);
+      EXPECT_EQ(alone.Statistics.BricksDrawn, together.Statistics.BricksDrawn);
+    }
+  };
+  for (glm::vec4& entry : scene.Transfer.Entries)
+  {
+    entry.a = 0.1f + 0.5f * entry.a;
+  }
+  const glm::dvec3 normal(0.6, -0.2, 0.8);
+  scene.ClipPlanes = { { normal, -glm::dot(normal, glm::dvec3(Samples) * 0.5) } };
+  expectSame(1e-5, true);
+  scene.Interpolation = SampleInterpolation::Nearest;
+  expectSame(1e-5, true);
+  scene.Interpolation = SampleInterpolation::Linear;
+  scene.Blend.Mode = BlendMode::Average;
+  expectSame(1e-5, true);
+  scene.Blend.Mode = BlendMode::Maximum;
+  expectSame(0.0, false);
+  scene.Blend.Mode = BlendMode::Minimum;
+  expectSame(0.0, false);
+}
+
+// 125 bricks: the last count leaves ranks without any.
+INSTANTIATE_TEST_SUITE_P(Ranks, EveryRankCount, ::testing::Values(2, 3, 4, 5, 7, 16, 131));
+
+TEST(DistributedFrame, EncodedAndPlainFieldGiveTheSamePicture)
+{
+  const EncodedField field;
+  const RayScene scene = SceneOf(1.4, false);
+  const FloatImage plain =
+    scenes::Draw(scene, scenes::ArrayOf(field.Values, Samples), { 16, 1, Budget }).Image;
+  const Outcome encoded = DrawSeries(field, scene, 3);
+  for (int y = plain.Rect.Lo.y; y < plain.Rect.Hi.y; ++y)
+  {
+    for (int x = plain.Rect.Lo.x; x < plain.Rect.Hi.x; ++x)
+    {
+      for (int c = 0; c < 4; ++c)
+      {
+        ASSERT_NEAR(plain.At(x, y)[c], encoded.Picture.At(x, y)[c], 1e-5);
+      }
+    }
+  }
+}
+
+TEST(DistributedFrame, AFailureOnOneRankIsThrownOnAll)
+{
+  const EncodedField field;
+  const RayScene scene = SceneOf(1.4, false);
+  std::mutex mutex;
+  std::vector<std::string> sentences;
+  RunOnSimulatedRanks(4,
+    [&](Communicator& communicator)
+    {
+      BrickCache cache(Budget);
+      SeriesBrickSource source(field.Series, {}, 0, cache);
+      ThreadPool pool(1);
+      FrameStatistics statistics;
+      const std::vector<Box> zones(4, Box{});
+      try
+      {
+        DrawDistributed(communicator, scene,
+          { &source, zones, Budget, pool,
+            communicator.Rank() == 2 ? "The disk of this rank is gone." : "" },
+          statistics);
+      }
+      catch (const Error& error)
+      {
+        std::lock_guard<std::mutex> lock(mutex);
+        sentences.emplace_back(error.what());
+      }
+    });
+  ASSERT_EQ(sentences.size(), 4u);
+  for (const std::string& sentence : sentences)
+  {
+    EXPECT_NE(sentence.find("The disk of this rank is gone."), std::string::npos);
+    EXPECT_NE(sentence.find("2"), std::string::npos) << sentence;
+  }
+}
+
+TEST(DistributedFrame, OnlyBricksThatCanBeSeenAreDecoded)
+{
+  const EncodedField field;
+  RayScene scene = SceneOf(1.4, false);
+  for (std::size_t i = 0; i < scene.Transfer.Entries.size(); ++i)
+  {
+    scene.Transfer.Entries[i].a = i + 400 < scene.Transfer.Entries.size() ? 0.0f : 0.3f;
+  }
+  const std::uint64_t before = field.Series->BricksDecoded();
+  const Outcome outcome = DrawSeries(field, scene, 3);
+  EXPECT_GT(outcome.Statistics.BricksDrawn, 0);
+  EXPECT_GT(outcome.Statistics.BricksSkipped, outcome.Statistics.BricksDrawn);
+  EXPECT_EQ(field.Series->BricksDecoded() - before,
+    static_cast<std::uint64_t>(outcome.Statistics.BricksDrawn));
+}
+
+TEST(DistributedFrame, NothingVisibleGivesATransparentPicture)
+{
+  const EncodedField field;
+  RayScene scene = SceneOf(1.4, false);
+  for (glm::vec4& entry : scene.Transfer.Entries)
+  {
+    entry.a = 0.0f;
+  }
+  const Outcome outcome = DrawSeries(field, scene, 2);
+  ASSERT_EQ(outcome.Picture.Pixels.size(), 61u * 47u);
+  for (const glm::vec4& pixel : outcome.Picture.Pixels)
+  {
+    EXPECT_EQ(pixel, glm::vec4(0.0f));
+  }
+  EXPECT_EQ(outcome.Statistics.BricksDrawn, 0);
+}
+
+} // namespace

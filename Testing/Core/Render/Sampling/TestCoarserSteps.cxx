@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Render/Sampling/CoarserSteps.h"
+
+#include <gtest/gtest.h>
+
+namespace
+{
+
+using namespace banyan;
+
+TEST(CoarserSteps, LevelsComeFirst)
+{
+  EXPECT_EQ(CoarserSteps::SamplingOf(0, 0.5, 3), (RaySampling{ 0, 0.5, 1 }));
+  EXPECT_EQ(CoarserSteps::SamplingOf(1, 0.5, 3), (RaySampling{ 1, 1.0, 1 }));
+  EXPECT_EQ(CoarserSteps::SamplingOf(3, 0.5, 3), (RaySampling{ 3, 4.0, 1 }));
+  EXPECT_EQ(CoarserSteps::SamplingOf(4, 0.5, 3), (RaySampling{ 3, 4.0, 2 }));
+  EXPECT_EQ(CoarserSteps::SamplingOf(6, 0.5, 3), (RaySampling{ 3, 4.0, 8 }));
+  EXPECT_EQ(CoarserSteps::SamplingOf(99, 0.5, 3), (RaySampling{ 3, 4.0, 8 }));
+  EXPECT_EQ(CoarserSteps::SamplingOf(2, 0.5, 0), (RaySampling{ 0, 0.5, 4 }));
+  EXPECT_EQ(CoarserSteps::Last(3), 6);
+}
+
+/// Frames of a scene that takes so long at step 0, and per step so many times less.
+struct Frames
+{
+  double Seconds;
+  double Times;
+  double Promised = 0.2;
+  StepControl Control{};
+
+  double Draw()
+  {
+    const double taken = this->Seconds / std::pow(this->Times, this->Control.Step());
+    this->Control.FrameTook(taken, this->Promised, 3);
+    return taken;
+  }
+};
+
+TEST(StepControl, HeavyScenesKeepThePromise)
+{
+  for (const double seconds : { 0.25, 0.5, 1.0, 3.0, 12.0 })
+  {
+    Frames frames{ seconds, 2.0 };
+    int late = 0;
+    for (int i = 0; i < 100; ++i)
+    {
+      late += frames.Draw() > 0.2 ? 1 : 0;
+    }
+    EXPECT_LE(late, 7) << seconds;
+    EXPECT_GT(frames.Draw(), 0.2 / 3.0 / 2.0) << "no coarser than it has to be";
+  }
+}
+
+/// Two steps between which lies more than is allowed for: pictures do not swing between them.
+TEST(StepControl, WhatWasTooSlowIsNotTriedSoonAgain)
+{
+  Frames frames{ 2.0, 50.0 };
+  int late = 0;
+  for (int i = 0; i < 200; ++i)
+  {
+    late += frames.Draw() > 0.2 ? 1 : 0;
+  }
+  EXPECT_GE(late, 2) << "in the end it is, for the camera has moved on";
+  EXPECT_LE(late, 4);
+}
+
+TEST(StepControl, GoesBackWhenScenesBecomeLight)
+{
+  Frames frames{ 3.0, 2.0 };
+  for (int i = 0; i < 10; ++i)
+  {
+    frames.Draw();
+  }
+  EXPECT_GT(frames.Control.Step(), 2);
+  frames.Seconds = 0.05;
+  for (int i = 0; i < 150; ++i)
+  {
+    frames.Draw();
+  }
+  EXPECT_EQ(frames.Control.Step(), 0);
+}
+
+TEST(StepControl, NothingIsPromised)
+{
+  Frames frames{ 3.0, 2.0 };
+  frames.Draw();
+  EXPECT_EQ(frames.Control.Step(), 1);
+  frames.Promised = 0.0;
+  frames.Draw();
+  EXPECT_EQ(frames.Control.Step(), 0);
+}
+
+/// A volume without coarser levels has fewer steps than the one before it.
+TEST(StepControl, StaysWithinTheSteps)
+{
+  StepControl control;
+  for (int i = 0; i < 20; ++i)
+  {
+    control.FrameTook(1.0, 0.2, 3);
+  }
+  EXPECT_EQ(control.Step(), CoarserSteps::Last(3));
+  control.FrameTook(1.0, 0.2, 0);
+  EXPECT_EQ(control.Step(), CoarserSteps::Last(0));
+}
+
+} // namespace
