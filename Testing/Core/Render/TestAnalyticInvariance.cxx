@@ -180,10 +180,10 @@ protected:
 
 TEST_F(AnalyticLevels, LevelsOfWhatTheyHoldExactlyAreThePicture)
 {
-  const int n = 65;
+  const int n = 129;
   const FloatImage plain = DrawOn(glm::ivec3(n), Trilinear, 0.5);
   EXPECT_GT(Strongest(plain), 0.3);
-  for (const int brickCells : { 8, 16 })
+  for (const int brickCells : { 16, 32 })
   {
     const std::shared_ptr<SeriesFile> series = this->Encoded(Trilinear, n, brickCells);
     for (const int level : { 0, 1, 2 })
