@@ -30,14 +30,14 @@ TEST(OctreeComparison, IsThatOfTheDecodedCodes)
         std::min(255.0, std::floor((value - range.Low) / (range.High - range.Low) * 256))));
     }
     bytes += EncodePaperOctree(
-      codes.data(), previous.empty() ? nullptr : previous.data(), { 40, 24, 17 }, 8)
+      codes.data(), previous.empty() ? nullptr : previous.data(), { 80, 48, 34 }, 8)
                .Stream.size();
     previous = codes;
   }
   EXPECT_EQ(all.UniformBits, 8 * bytes);
   EXPECT_LT(all.UniformCodes, all.UniformBits);
   EXPECT_GT(all.AdaptiveBits, 0u);
-  EXPECT_EQ(all.Voxels, 40 * 24 * 17 * StepCount);
+  EXPECT_EQ(all.Voxels, 80 * 48 * 34 * StepCount);
   // One step by itself is encoded after the one before.
   const OctreeComparison one = CompareWithOctree(*file, 0, 0, 2, 3);
   ASSERT_EQ(one.Steps.size(), 1u);
