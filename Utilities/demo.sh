@@ -108,7 +108,7 @@ timed()
 install_and_build()
 {
   [[ "${BANYAN_SKIP_INSTALL:-0}" == 1 ]] || "$here/install-dependencies.sh"
-  [[ "${BANYAN_SKIP_BUILD:-0}" == 1 ]] || "$here/build.sh"
+  [[ "${BANYAN_SKIP_BUILD:-0}" == 1 ]] || "$here/build.sh" --product
   export BANYAN_PLUGIN="$BuildFolder/lib/Banyan/Banyan.so"
   [[ -f "$BANYAN_PLUGIN" ]] || fail "the build left no plugin at $BANYAN_PLUGIN."
 }
