@@ -2,7 +2,7 @@
 #ifndef banyan_Rendering_FrameScene_h
 #define banyan_Rendering_FrameScene_h
 
-#include "Render/Raycast/RayCaster.h"
+#include "Render/Levels/RayCaster.h"
 
 #include <string>
 

@@ -3,7 +3,7 @@
 #define banyan_Rendering_RefinementPasses_h
 
 #include "Parallel/Communicate/Communicator.h"
-#include "Render/Raycast/RayCaster.h"
+#include "Render/Levels/RayCaster.h"
 
 #include <cstdint>
 

@@ -2,7 +2,7 @@
 #ifndef banyan_Rendering_SceneOptions_h
 #define banyan_Rendering_SceneOptions_h
 
-#include "Render/Raycast/RayCaster.h"
+#include "Render/Levels/RayCaster.h"
 #include "Series/Quantize/ValueRange.h"
 
 class vtkVolumeMapper;

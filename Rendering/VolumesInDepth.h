@@ -4,7 +4,7 @@
 
 #include "Parallel/Communicate/Communicator.h"
 #include "Render/Raycast/DepthOrder.h"
-#include "Render/Raycast/RayCaster.h"
+#include "Render/Levels/RayCaster.h"
 
 #include <string>
 #include <vector>

@@ -4,7 +4,7 @@
 
 #include "Base/ScalarType.h"
 #include "Render/Bricks/ArrayBrickSource.h"
-#include "Render/Raycast/RayCaster.h"
+#include "Render/Levels/RayCaster.h"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>

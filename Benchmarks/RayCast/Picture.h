@@ -2,7 +2,7 @@
 #ifndef banyan_Benchmarks_Picture_h
 #define banyan_Benchmarks_Picture_h
 
-#include "Render/Raycast/RayCaster.h"
+#include "Render/Levels/RayCaster.h"
 
 #include <cstdint>
 #include <string>

@@ -3,7 +3,7 @@
 #define banyan_Parallel_Balance_LevelZones_h
 
 #include "Base/Box.h"
-#include "Render/Raycast/RayCaster.h"
+#include "Render/Levels/RayCaster.h"
 
 #include <vector>
 

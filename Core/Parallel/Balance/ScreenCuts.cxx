@@ -2,7 +2,7 @@
 #include "Parallel/Balance/ScreenCuts.h"
 
 #include "Parallel/Balance/ZoneDivision.h"
-#include "Render/Raycast/RayCaster.h"
+#include "Render/Levels/RayCaster.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>

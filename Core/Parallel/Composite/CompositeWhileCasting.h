@@ -3,7 +3,7 @@
 #define banyan_Parallel_Composite_CompositeWhileCasting_h
 
 #include "Parallel/Composite/TileOwnerCompositor.h"
-#include "Render/Raycast/PictureWatcher.h"
+#include "Render/Levels/PictureWatcher.h"
 
 #include <atomic>
 #include <exception>

@@ -2,7 +2,7 @@
 #include "Render/Raycast/PixelsBetween.h"
 
 #include "Base/ThreadPool.h"
-#include "Render/Raycast/RayCaster.h"
+#include "Render/Levels/RayCaster.h"
 #include "Render/Raycast/TileGrid.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Render/Sampling/PilotSpacing.h"
 
-#include "Render/Raycast/RayCaster.h"
+#include "Render/Levels/RayCaster.h"
 
 #include <algorithm>
 #include <cmath>

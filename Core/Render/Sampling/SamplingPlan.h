@@ -2,7 +2,7 @@
 #ifndef banyan_Render_Sampling_SamplingPlan_h
 #define banyan_Render_Sampling_SamplingPlan_h
 
-#include "Render/Raycast/RayCaster.h"
+#include "Render/Levels/RayCaster.h"
 
 #include <functional>
 #include <memory>

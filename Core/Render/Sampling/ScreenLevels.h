@@ -2,7 +2,7 @@
 #ifndef banyan_Render_Sampling_ScreenLevels_h
 #define banyan_Render_Sampling_ScreenLevels_h
 
-#include "Render/Raycast/RayCaster.h"
+#include "Render/Levels/RayCaster.h"
 
 namespace banyan
 {

@@ -2,7 +2,7 @@
 #include "Parallel/Balance/Zones.h"
 #include "Parallel/Composite/CompositePlan.h"
 #include "Parallel/Composite/Footprints.h"
-#include "Render/Raycast/RayCaster.h"
+#include "Render/Levels/RayCaster.h"
 #include "Render/Scenes.h"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 #include "Parallel/Fields/DistributedFrame.h"
 #include "Parallel/Fields/PieceField.h"
 #include "Parallel/Fields/Pieces.h"
-#include "Render/Raycast/RayCaster.h"
+#include "Render/Levels/RayCaster.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Render/Raycast/RayCaster.h"
+#include "Render/Levels/RayCaster.h"
 
 #include "Base/Error.h"
-#include "Render/Raycast/LevelCaster.h"
-#include "Render/Raycast/PictureWatcher.h"
+#include "Render/Levels/LevelCaster.h"
+#include "Render/Levels/PictureWatcher.h"
 
 #include <set>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Render/Raycast/LevelCaster.h"
+#include "Render/Levels/BrickLoader.h"
 
 #include "Base/Error.h"
 
@@ -9,9 +9,28 @@
 
 namespace banyan
 {
-
-void LevelCaster::Load(const PlannedBrick& brick, LoadedBrick& loaded) const
+namespace
 {
+
+float GradientScaleOf(const MaskRange& range)
+{
+  const double width = range.High - range.Low;
+  const int exponent = width > 0.0 && std::isfinite(width) ? std::ilogb(width) : 0;
+  return static_cast<float>(std::exp2(-std::clamp(exponent, -100, 100)));
+}
+
+} // namespace
+
+BrickLoader::BrickLoader(const LevelScene& level)
+  : Level(level)
+  , Source(level.Source)
+  , GradientScale(GradientScaleOf(level.Source.MasksAreOver()))
+{
+}
+
+void BrickLoader::Load(LoadedBrick& loaded) const
+{
+  const PlannedBrick& brick = *loaded.Planned;
   if (brick.Entry)
   {
     return;
@@ -26,10 +45,10 @@ void LevelCaster::Load(const PlannedBrick& brick, LoadedBrick& loaded) const
       return;
     }
     loaded.Packed = this->Pack(brick);
-    this->Source.Kept().Keep(this->KeptNumberOf(brick), loaded.Packed);
+    this->Source.Kept().Keep(brick.KeptNumber(this->Source), loaded.Packed);
   }
   loaded.Footprint = brick.Footprint;
-  if (this->AnySampling->Projection)
+  if (this->Level.Projection())
   {
     return;
   }
@@ -37,21 +56,22 @@ void LevelCaster::Load(const PlannedBrick& brick, LoadedBrick& loaded) const
   Box& seen = loaded.Seen.Cells;
   const int size = 1 << brick.Level;
   seen = Intersection({ seen.Lo * size, seen.Hi * size }, brick.Drawn);
-  loaded.Footprint = seen == brick.Drawn ? brick.Footprint : this->FootprintOf(seen);
+  loaded.Footprint = seen == brick.Drawn ? brick.Footprint : this->Level.FootprintOf(seen);
 }
 
-/// What can be seen of a brick, which is noted if the brick is kept.
-BrickVisibility LevelCaster::LookAt(const PlannedBrick& brick, const PackedBrick& packed) const
+/// Finds out how much of a brick can be seen, and notes it if the brick is kept.
+BrickVisibility BrickLoader::LookAt(const PlannedBrick& brick, const PackedBrick& packed) const
 {
-  const BrickVisibility seen(packed, this->RangeOf(brick), this->Visible);
-  this->Source.Kept().KeepVisibility(this->KeptNumberOf(brick), this->Visible.Number(), seen);
+  const VisibleValues& visible = *this->Level.Visible;
+  const BrickVisibility seen(packed, brick.RangeIn(this->Source), visible);
+  this->Source.Kept().KeepVisibility(brick.KeptNumber(this->Source), visible.Number(), seen);
   return seen;
 }
 
-KeptBricks::Pointer LevelCaster::Pack(const PlannedBrick& brick) const
+KeptBricks::Pointer BrickLoader::Pack(const PlannedBrick& brick) const
 {
-  const double low = this->AnySampling->Table.Low();
-  const bool shaded = this->Shading != nullptr;
+  const double low = this->Level.Low();
+  const bool shaded = this->Level.IsShaded();
   Box samples;
   BrickView view;
   if (!brick.Together.Empty())
@@ -70,7 +90,7 @@ KeptBricks::Pointer LevelCaster::Pack(const PlannedBrick& brick) const
   HiddenInBrick hidden(this->Source.Hidden().get(), brick.Cells);
   const double step = hidden.Any() ? 0.0 : this->StepToPack(view.Type);
   const std::shared_ptr<PackedBrick> packed =
-    shaded ? std::make_shared<PackedBrick>(view, samples, brick.Cells, low, this->GradientScale())
+    shaded ? std::make_shared<PackedBrick>(view, samples, brick.Cells, low, this->GradientScale)
            : std::make_shared<PackedBrick>(view, samples.Lo, brick.Cells, low, step);
   if (hidden.Any())
   {
@@ -79,19 +99,12 @@ KeptBricks::Pointer LevelCaster::Pack(const PlannedBrick& brick) const
   return packed;
 }
 
-/// Whether the level is much larger than the processor's caches: samples wait for memory then, and
-/// rays meet many bricks.
-bool LevelCaster::IsLarge() const
+/// The step of values for which 16-bit numbers are to be packed; 0 for none. Frames of volumes that
+/// the processor's caches hold nearly as a whole take longer with numbers, those of larger ones
+/// less time.
+double BrickLoader::StepToPack(ScalarType type) const
 {
-  constexpr std::int64_t many = std::int64_t{ 1 } << 25; // cells
-  return this->Scene.DomainCells.Count() >> 3 * this->Source.Level() >= many;
-}
-
-/// Of values for which numbers are to be packed; 0 for none. Frames of volumes that the processor's
-/// caches hold nearly as a whole take longer with numbers, those of larger ones less time.
-double LevelCaster::StepToPack(ScalarType type) const
-{
-  if (!this->IsLarge())
+  if (!this->Level.IsLarge())
   {
     return 0.0;
   }
@@ -100,18 +113,9 @@ double LevelCaster::StepToPack(ScalarType type) const
   return small ? 1.0 : this->Source.StepOfValues();
 }
 
-/// Brings gradients near 1, so that their squares neither overflow nor vanish.
-float LevelCaster::GradientScale() const
+BrickView BrickLoader::LoadLarge(const PlannedBrick& brick) const
 {
-  const MaskRange range = this->Source.MasksAreOver();
-  const double width = range.High - range.Low;
-  const int exponent = width > 0.0 && std::isfinite(width) ? std::ilogb(width) : 0;
-  return static_cast<float>(std::exp2(-std::clamp(exponent, -100, 100)));
-}
-
-BrickView LevelCaster::LoadLarge(const PlannedBrick& brick) const
-{
-  if (this->Shading)
+  if (this->Level.IsShaded())
   {
     throw Error("Bricks of so many cells per axis cannot be shaded; cut the data into smaller ones",
       { {}, {}, static_cast<std::uint64_t>(brick.Cells.Size().x),

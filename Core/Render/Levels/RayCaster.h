@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Render_Raycast_RayCaster_h
-#define banyan_Render_Raycast_RayCaster_h
+#ifndef banyan_Render_Levels_RayCaster_h
+#define banyan_Render_Levels_RayCaster_h
 
 #include "Render/Bricks/BrickSource.h"
 #include "Render/Scene/FloatImage.h"

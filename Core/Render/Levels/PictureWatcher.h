@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Render_Raycast_PictureWatcher_h
-#define banyan_Render_Raycast_PictureWatcher_h
+#ifndef banyan_Render_Levels_PictureWatcher_h
+#define banyan_Render_Levels_PictureWatcher_h
 
-#include "Render/Raycast/RayCaster.h"
+#include "Render/Levels/RayCaster.h"
 
 #include <cstddef>
 
