@@ -3,8 +3,8 @@
 #define banyan_Rendering_VolumesInDepth_h
 
 #include "Parallel/Communicate/Communicator.h"
-#include "Render/Raycast/DepthOrder.h"
 #include "Render/Levels/RayCaster.h"
+#include "Render/Raycast/DepthOrder.h"
 
 #include <string>
 #include <vector>

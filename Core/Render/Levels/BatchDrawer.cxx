@@ -2,8 +2,8 @@
 #include "Render/Levels/BatchDrawer.h"
 
 #include "Base/ThreadPool.h"
-#include "Render/Raycast/BrickProjector.h"
 #include "Render/Levels/PictureWatcher.h"
+#include "Render/Raycast/BrickProjector.h"
 
 #include <atomic>
 #include <functional>

@@ -4,8 +4,8 @@
 
 #include "Render/Bricks/BrickAhead.h"
 #include "Render/Levels/BrickBatch.h"
-#include "Render/Raycast/BrickWork.h"
 #include "Render/Levels/LevelTiles.h"
+#include "Render/Raycast/BrickWork.h"
 #include "Render/Raycast/RayTile.h"
 
 #include <cstdint>

@@ -3,8 +3,8 @@
 #define banyan_Render_Levels_LevelScene_h
 
 #include "Render/Bricks/BrickSource.h"
-#include "Render/Scene/ProjectionTable.h"
 #include "Render/Levels/RayCaster.h"
+#include "Render/Scene/ProjectionTable.h"
 #include "Render/Scene/RayLattice.h"
 #include "Render/Scene/ShadingTable.h"
 

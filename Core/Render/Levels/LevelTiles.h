@@ -2,10 +2,10 @@
 #ifndef banyan_Render_Levels_LevelTiles_h
 #define banyan_Render_Levels_LevelTiles_h
 
-#include "Render/Scene/FloatImage.h"
 #include "Render/Levels/LevelScene.h"
 #include "Render/Levels/PlannedBrick.h"
 #include "Render/Raycast/TileGrid.h"
+#include "Render/Scene/FloatImage.h"
 
 #include <cstddef>
 #include <vector>

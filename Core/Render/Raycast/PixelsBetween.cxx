@@ -2,8 +2,8 @@
 #include "Render/Raycast/PixelsBetween.h"
 
 #include "Base/ThreadPool.h"
-#include "Render/Levels/RayCaster.h"
 #include "Render/Raycast/TileGrid.h"
+#include "Render/Scene/RayScene.h"
 
 #include <algorithm>
 

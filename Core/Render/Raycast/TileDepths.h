@@ -2,7 +2,7 @@
 #ifndef banyan_Render_Raycast_TileDepths_h
 #define banyan_Render_Raycast_TileDepths_h
 
-#include "Render/Levels/RayCaster.h"
+#include "Render/Scene/RayScene.h"
 
 #include <vector>
 
