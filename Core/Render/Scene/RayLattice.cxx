@@ -67,6 +67,24 @@ void CheckViewport(const RayScene& scene)
 
 } // namespace
 
+void RaySamples::CountInSmallerCells(int levels)
+{
+  if (levels == 0)
+  {
+    return;
+  }
+  const std::int64_t factor = std::int64_t{ 1 } << levels;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Base[axis] *= factor;
+    this->Step[axis] *= factor;
+    this->Start[axis] *= static_cast<double>(factor);
+    this->InverseStep[axis] /= static_cast<double>(factor);
+    this->Head.Position[axis] *= factor;
+    this->Tail.Position[axis] *= factor;
+  }
+}
+
 glm::dmat4 IndexToWorldAt(const RayScene& scene, int level)
 {
   return glm::scale(scene.IndexToWorld, glm::dvec3(std::ldexp(1.0, level)));
