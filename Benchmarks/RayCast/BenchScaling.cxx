@@ -159,7 +159,7 @@ Frames DrawFrames(const Options& options, const Timer& sinceStart, BrickSource& 
     const auto draw = [&](const RayScene& wanted)
     { return CastRays(wanted, source, wanted.DomainCells, budget, pool, frames.Statistics); };
     const int finestPilot = FinestLevelWithin(
-      scene, source, scene.DomainCells, CoarsestLevel, KeptBricks::PartOf(budget), pool);
+      scene, source, scene.DomainCells, CoarsestLevel, PackedBrickCache::PartOf(budget), pool);
     const RayScene sampled = Sampled(scene, options.Tolerance, finestPilot, draw);
     FloatImage picture = draw(sampled);
     FillBetweenRays(sampled, picture, pool);

@@ -45,9 +45,10 @@ int FinestPilotLevel(
   return LargestOfAll(communicator,
     [&]
     {
-      return share.Source && !zone.Empty() ? FinestLevelWithin(scene, *share.Source, zone, coarsest,
-                                               KeptBricks::PartOf(share.BudgetBytes), share.Pool)
-                                           : 0;
+      return share.Source && !zone.Empty()
+               ? FinestLevelWithin(scene, *share.Source, zone, coarsest,
+                   PackedBrickCache::PartOf(share.BudgetBytes), share.Pool)
+               : 0;
     });
 }
 

@@ -12,9 +12,9 @@ namespace banyan
 
 class BrickCache;
 
-/// Samples of bricks that other ranks hold, received from them: under packed bricks (KeptBricks),
-/// which are made of them, the second level of what a rank keeps from frame to frame. The least
-/// recently used go first; what the frame uses stays.
+/// Samples of bricks that other ranks hold, received from them: under packed bricks
+/// (PackedBrickCache), which are made of them, the second level of what a rank keeps from frame to
+/// frame. The least recently used go first; what the frame uses stays.
 ///
 /// Find() may be called from many threads at once, while nobody calls anything else.
 class FetchedBricks

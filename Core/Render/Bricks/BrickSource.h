@@ -5,7 +5,7 @@
 #include "Base/Box.h"
 #include "Render/Bricks/BrickView.h"
 #include "Render/Bricks/HiddenCells.h"
-#include "Render/Bricks/KeptBricks.h"
+#include "Render/Bricks/PackedBrickCache.h"
 #include "Render/Scene/Viewpoint.h"
 #include "Series/Format/SeriesIndex.h"
 #include "Series/Grid/ValueMask.h"
@@ -128,7 +128,7 @@ public:
 
   /// What the ray caster keeps of this source and its levels from picture to picture. Values must
   /// not change while the source lives.
-  KeptBricks& Kept() const { return *this->KeptOfSource; }
+  PackedBrickCache& Kept() const { return *this->KeptOfSource; }
   /// The number under which a brick of this level is kept.
   std::int64_t KeptNumber(std::int64_t brick) const
   {
@@ -141,7 +141,7 @@ protected:
 
 private:
   std::shared_ptr<const HiddenCells> HiddenHere;
-  std::shared_ptr<KeptBricks> KeptOfSource = std::make_shared<KeptBricks>();
+  std::shared_ptr<PackedBrickCache> KeptOfSource = std::make_shared<PackedBrickCache>();
   int LevelNumber = 0;
   std::map<int, std::unique_ptr<BrickSource>> Levels; ///< that were asked for
   std::mutex LevelsMutex;

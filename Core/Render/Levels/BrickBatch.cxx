@@ -64,7 +64,7 @@ void BatchQueue::FindKept(ThreadPool& pool)
     {
       const std::size_t first = static_cast<std::size_t>(part) * FoundTogether;
       const std::size_t some = std::min(FoundTogether, count - first);
-      KeptBricks::Wanted wanted[FoundTogether];
+      PackedBrickCache::Wanted wanted[FoundTogether];
       for (std::size_t i = 0; i < some; ++i)
       {
         const PlannedBrick& brick = this->Bricks[first + i];
@@ -94,7 +94,7 @@ std::int64_t BatchQueue::Take(const LevelTiles& tiles, BrickBatch& batch)
   for (; this->Taken < this->Bricks.size(); ++this->Taken)
   {
     const PlannedBrick& brick = this->Bricks[this->Taken];
-    KeptBricks::Found& kept = this->Kept[this->Taken];
+    PackedBrickCache::Found& kept = this->Kept[this->Taken];
     const bool isThere = kept.Packed || brick.Entry;
     const std::uint64_t brickBytes =
       isThere ? 0 : brick.BytesToDraw(source, this->Level.IsShaded());

@@ -2,7 +2,7 @@
 #ifndef banyan_Render_Levels_BrickBatch_h
 #define banyan_Render_Levels_BrickBatch_h
 
-#include "Render/Bricks/KeptBricks.h"
+#include "Render/Bricks/PackedBrickCache.h"
 #include "Render/Levels/LevelTiles.h"
 #include "Render/Levels/PlannedBrick.h"
 
@@ -20,7 +20,7 @@ class ThreadPool;
 struct LoadedBrick
 {
   const PlannedBrick* Planned = nullptr;
-  KeptBricks::Pointer Packed;           ///< null unless packed
+  PackedBrickCache::Pointer Packed;     ///< null unless packed
   std::optional<BrickVisibility> Known; ///< Seen, if it was kept with the brick
   BrickVisibility Seen;                 ///< what can be seen of Packed; unset for projections
   PixelRect Footprint;                  ///< of Seen; unset unless packed
@@ -88,8 +88,8 @@ private:
   const LevelScene& Level;
   const std::vector<PlannedBrick>& Bricks;
   std::uint64_t BudgetBytes;
-  std::vector<KeptBricks::Found> Kept; ///< of Bricks
-  std::size_t Taken = 0;               ///< bricks that were in a batch or were left out
+  std::vector<PackedBrickCache::Found> Kept; ///< of Bricks
+  std::size_t Taken = 0;                     ///< bricks that were in a batch or were left out
 };
 
 } // namespace banyan

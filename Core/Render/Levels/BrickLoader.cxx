@@ -68,7 +68,7 @@ BrickVisibility BrickLoader::LookAt(const PlannedBrick& brick, const PackedBrick
   return seen;
 }
 
-KeptBricks::Pointer BrickLoader::Pack(const PlannedBrick& brick) const
+PackedBrickCache::Pointer BrickLoader::Pack(const PlannedBrick& brick) const
 {
   const double low = this->Level.Low();
   const bool shaded = this->Level.IsShaded();

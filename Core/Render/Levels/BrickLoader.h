@@ -22,7 +22,7 @@ public:
 
 private:
   BrickVisibility LookAt(const PlannedBrick& brick, const PackedBrick& packed) const;
-  KeptBricks::Pointer Pack(const PlannedBrick& brick) const;
+  PackedBrickCache::Pointer Pack(const PlannedBrick& brick) const;
   BrickView LoadLarge(const PlannedBrick& brick) const;
   double StepToPack(ScalarType type) const;
 

@@ -65,7 +65,7 @@ GroupList MembersOf(const LevelScene& level, const BrickGroups& groups)
 {
   // The function's opacities do not say what a projection shows.
   const bool known = !level.Projection();
-  KeptBricks& kept = level.Source.Kept();
+  PackedBrickCache& kept = level.Source.Kept();
   const int number = level.Source.Level();
   GroupList list = known ? kept.FindGroups(number, level.Visible->Number()) : nullptr;
   // Zones that grow or shrink may have had other groups.

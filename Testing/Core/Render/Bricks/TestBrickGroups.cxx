@@ -256,7 +256,7 @@ TEST(BrickGroups, MacroCellsBelongToTheBrickThatTheirMiddleIsIn)
 
 TEST(BrickGroups, WhatIsKnownOfThemIsKeptForOneFunction)
 {
-  KeptBricks kept;
+  PackedBrickCache kept;
   const auto list = std::make_shared<const std::vector<GroupMembers>>(3);
   EXPECT_EQ(kept.FindGroups(0, 7), nullptr);
   kept.KeepGroups(0, 7, list);

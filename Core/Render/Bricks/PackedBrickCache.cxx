@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Render/Bricks/KeptBricks.h"
+#include "Render/Bricks/PackedBrickCache.h"
 
 #include <atomic>
 #include <mutex>
@@ -19,26 +19,26 @@ std::uint64_t BytesOf(const PackedBrick& packed)
 
 } // namespace
 
-KeptBricks::~KeptBricks()
+PackedBrickCache::~PackedBrickCache()
 {
   this->SetHeld(0);
 }
 
 /// The caller has the lock, or is alone.
-void KeptBricks::SetHeld(std::uint64_t bytes)
+void PackedBrickCache::SetHeld(std::uint64_t bytes)
 {
   Holders += (bytes > 0 ? 1 : 0) - (this->HeldBytes > 0 ? 1 : 0);
   this->HeldBytes = bytes;
 }
 
-std::uint64_t KeptBricks::ShareOf(std::uint64_t budgetBytes) const
+std::uint64_t PackedBrickCache::ShareOf(std::uint64_t budgetBytes) const
 {
   const std::shared_lock<std::shared_mutex> lock(this->Mutex);
   const int others = Holders - (this->HeldBytes > 0 ? 1 : 0);
   return budgetBytes / static_cast<std::uint64_t>(others + 1);
 }
 
-void KeptBricks::BeginPicture(std::uint64_t limitBytes, bool ages)
+void PackedBrickCache::BeginPicture(std::uint64_t limitBytes, bool ages)
 {
   const std::lock_guard<std::shared_mutex> lock(this->Mutex);
   this->LimitBytes = limitBytes;
@@ -63,7 +63,7 @@ void KeptBricks::BeginPicture(std::uint64_t limitBytes, bool ages)
 }
 
 /// The caller has the lock. Notes that the brick is used.
-const KeptBricks::Item* KeptBricks::FindHere(const Wanted& wanted) const
+const PackedBrickCache::Item* PackedBrickCache::FindHere(const Wanted& wanted) const
 {
   const auto item = this->Items.find(wanted.Brick);
   if (item == this->Items.end())
@@ -80,7 +80,7 @@ const KeptBricks::Item* KeptBricks::FindHere(const Wanted& wanted) const
   return &item->second;
 }
 
-void KeptBricks::Find(
+void PackedBrickCache::Find(
   const Wanted* wanted, std::size_t count, std::uint64_t visible, Found* found) const
 {
   const std::shared_lock<std::shared_mutex> lock(this->Mutex);
@@ -98,7 +98,7 @@ void KeptBricks::Find(
   }
 }
 
-void KeptBricks::Keep(std::int64_t brick, const Pointer& packed)
+void PackedBrickCache::Keep(std::int64_t brick, const Pointer& packed)
 {
   const std::uint64_t bytes = BytesOf(*packed);
   const std::lock_guard<std::shared_mutex> lock(this->Mutex);
@@ -115,7 +115,7 @@ void KeptBricks::Keep(std::int64_t brick, const Pointer& packed)
   }
 }
 
-void KeptBricks::KeepVisibility(
+void PackedBrickCache::KeepVisibility(
   std::int64_t brick, std::uint64_t visible, const BrickVisibility& visibility)
 {
   const std::lock_guard<std::shared_mutex> lock(this->Mutex);
@@ -127,7 +127,7 @@ void KeptBricks::KeepVisibility(
   }
 }
 
-GroupList KeptBricks::FindGroups(int level, std::uint64_t visible) const
+GroupList PackedBrickCache::FindGroups(int level, std::uint64_t visible) const
 {
   const std::shared_lock<std::shared_mutex> lock(this->Mutex);
   const auto item = this->Groups.find(level);
@@ -135,13 +135,13 @@ GroupList KeptBricks::FindGroups(int level, std::uint64_t visible) const
                                                                      : nullptr;
 }
 
-void KeptBricks::KeepGroups(int level, std::uint64_t visible, GroupList groups)
+void PackedBrickCache::KeepGroups(int level, std::uint64_t visible, GroupList groups)
 {
   const std::lock_guard<std::shared_mutex> lock(this->Mutex);
   this->Groups[level] = { visible, std::move(groups) };
 }
 
-std::uint64_t KeptBricks::Bytes() const
+std::uint64_t PackedBrickCache::Bytes() const
 {
   const std::shared_lock<std::shared_mutex> lock(this->Mutex);
   return this->HeldBytes;

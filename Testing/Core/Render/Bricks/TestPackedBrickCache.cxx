@@ -22,28 +22,28 @@ public:
   std::atomic<int> Loads{ 0 };
 };
 
-KeptBricks::Pointer Pack(const std::vector<double>& values, double low)
+PackedBrickCache::Pointer Pack(const std::vector<double>& values, double low)
 {
   BrickView view{ values.data(), ScalarType::Float64, { 1, 3, 9 }, {} };
   return std::make_shared<const PackedBrick>(
     view, glm::ivec3(0), Box{ glm::ivec3(0), glm::ivec3(2) }, low);
 }
 
-KeptBricks::Pointer Find(
-  const KeptBricks& kept, std::int64_t brick, const Box& cells, double low = 0.0)
+PackedBrickCache::Pointer Find(
+  const PackedBrickCache& kept, std::int64_t brick, const Box& cells, double low = 0.0)
 {
-  const KeptBricks::Wanted wanted{ brick, cells, low, false };
-  KeptBricks::Found found;
+  const PackedBrickCache::Wanted wanted{ brick, cells, low, false };
+  PackedBrickCache::Found found;
   kept.Find(&wanted, 1, 0, &found);
   return found.Packed;
 }
 
-TEST(KeptBricks, StayWithinTheLimitAndAsLongAsTheyAreUsed)
+TEST(PackedBrickCache, StayWithinTheLimitAndAsLongAsTheyAreUsed)
 {
   const std::vector<double> values(27, 1.0);
   const Box cells{ glm::ivec3(0), glm::ivec3(2) };
   const std::uint64_t bytes = PackedBrick::BytesFor(cells, false);
-  KeptBricks kept;
+  PackedBrickCache kept;
   kept.BeginPicture(2 * bytes);
   for (int brick = 0; brick < 3; ++brick)
   {
@@ -64,11 +64,11 @@ TEST(KeptBricks, StayWithinTheLimitAndAsLongAsTheyAreUsed)
   EXPECT_EQ(kept.Bytes(), 0u);
 }
 
-TEST(KeptBricks, OtherCellsOrAnotherLowEndAreOtherBricks)
+TEST(PackedBrickCache, OtherCellsOrAnotherLowEndAreOtherBricks)
 {
   const std::vector<double> values(27, 1.0);
   const Box cells{ glm::ivec3(0), glm::ivec3(2) };
-  KeptBricks kept;
+  PackedBrickCache kept;
   kept.BeginPicture(1 << 20);
   kept.Keep(7, Pack(values, 0.5));
   EXPECT_NE(Find(kept, 7, cells, 0.5), nullptr);
@@ -80,21 +80,21 @@ TEST(KeptBricks, OtherCellsOrAnotherLowEndAreOtherBricks)
   EXPECT_NE(Find(kept, 7, cells, 0.25), nullptr);
 }
 
-TEST(KeptBricks, SeveralAreFoundInOneGoWithWhatCanBeSeenOfThem)
+TEST(PackedBrickCache, SeveralAreFoundInOneGoWithWhatCanBeSeenOfThem)
 {
   const std::vector<double> values(27, 1.0);
   const Box cells{ glm::ivec3(0), glm::ivec3(2) };
-  KeptBricks kept;
+  PackedBrickCache kept;
   kept.BeginPicture(1 << 20);
-  const KeptBricks::Pointer packed = Pack(values, 0.0);
+  const PackedBrickCache::Pointer packed = Pack(values, 0.0);
   kept.Keep(3, packed);
   kept.Keep(4, Pack(values, 0.0));
   BrickVisibility seen;
   seen.MacroEdge = 2;
   kept.KeepVisibility(3, 11, seen);
-  const KeptBricks::Wanted wanted[] = { { 4, cells, 0.0, false }, { -1, cells, 0.0, false },
+  const PackedBrickCache::Wanted wanted[] = { { 4, cells, 0.0, false }, { -1, cells, 0.0, false },
     { 3, cells, 0.0, false }, { 5, cells, 0.0, false }, { 3, cells, 0.0, true } };
-  KeptBricks::Found found[5];
+  PackedBrickCache::Found found[5];
   kept.Find(wanted, 5, 11, found);
   EXPECT_NE(found[0].Packed, nullptr);
   EXPECT_FALSE(found[0].Visibility);
@@ -105,13 +105,13 @@ TEST(KeptBricks, SeveralAreFoundInOneGoWithWhatCanBeSeenOfThem)
   EXPECT_EQ(found[3].Packed, nullptr);
   EXPECT_EQ(found[4].Packed, nullptr);
 
-  KeptBricks::Found under;
+  PackedBrickCache::Found under;
   kept.Find(&wanted[2], 1, 12, &under); // another function
   EXPECT_EQ(under.Packed, packed);
   EXPECT_FALSE(under.Visibility);
 }
 
-TEST(KeptBricks, BricksThatGoLeaveTheirMemoryToTheNext)
+TEST(PackedBrickCache, BricksThatGoLeaveTheirMemoryToTheNext)
 {
   LargeMemory::LetGo();
   const std::vector<float> values(std::size_t{ 33 } * 33 * 33, 1.0f);
@@ -132,17 +132,17 @@ TEST(KeptBricks, BricksThatGoLeaveTheirMemoryToTheNext)
   LargeMemory::LetGo();
 }
 
-TEST(KeptBricks, SourcesThatKeepBricksShareTheBudget)
+TEST(PackedBrickCache, SourcesThatKeepBricksShareTheBudget)
 {
   constexpr std::uint64_t budget = 600;
-  const KeptBricks::Pointer packed = Pack(std::vector<double>(27, 1.0), 0.0);
-  KeptBricks first;
+  const PackedBrickCache::Pointer packed = Pack(std::vector<double>(27, 1.0), 0.0);
+  PackedBrickCache first;
   first.BeginPicture(1 << 20);
   EXPECT_EQ(first.ShareOf(budget), 600u);
   first.Keep(7, packed);
   EXPECT_EQ(first.ShareOf(budget), 600u);
   {
-    KeptBricks second;
+    PackedBrickCache second;
     EXPECT_EQ(second.ShareOf(budget), 300u) << "before it has any itself";
     second.BeginPicture(1 << 20);
     EXPECT_EQ(first.ShareOf(budget), 600u) << "one that keeps none needs none";
@@ -159,7 +159,7 @@ TEST(KeptBricks, SourcesThatKeepBricksShareTheBudget)
   EXPECT_EQ(first.ShareOf(budget), 600u) << "it is gone";
 }
 
-TEST(KeptBricks, PicturesAreTheSameAndLoadOnce)
+TEST(PackedBrickCache, PicturesAreTheSameAndLoadOnce)
 {
   const glm::ivec3 n(33);
   const std::vector<double> values = scenes::Sampled<double>(scenes::Standard, n);
@@ -181,13 +181,13 @@ TEST(KeptBricks, PicturesAreTheSameAndLoadOnce)
       EXPECT_EQ(MaxDifference(first, scenes::Draw(scene, scenes::ArrayOf(values, n)).Image), 0.0);
       EXPECT_EQ(source.Loads, budget > 300000 ? 0 : source.Loads.load());
       EXPECT_LT(source.Loads, 64);
-      EXPECT_LE(source.Kept().Bytes(), KeptBricks::PartOf(budget));
+      EXPECT_LE(source.Kept().Bytes(), PackedBrickCache::PartOf(budget));
       EXPECT_EQ(statistics.BricksDrawn, 128);
     }
   }
 }
 
-TEST(KeptBricks, WhatCanBeSeenChangesWithTheTransferFunction)
+TEST(PackedBrickCache, WhatCanBeSeenChangesWithTheTransferFunction)
 {
   const glm::ivec3 n(33);
   const std::vector<float> values = scenes::Sampled(scenes::Standard, n);

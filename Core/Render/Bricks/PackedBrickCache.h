@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Render_Bricks_KeptBricks_h
-#define banyan_Render_Bricks_KeptBricks_h
+#ifndef banyan_Render_Bricks_PackedBrickCache_h
+#define banyan_Render_Bricks_PackedBrickCache_h
 
 #include "Render/Bricks/BrickGroups.h"
 #include "Render/Bricks/PackedBrick.h"
@@ -22,15 +22,15 @@ namespace banyan
 /// recently used of more than there is room for would keep none in time.
 ///
 /// Methods may be called from any thread.
-class KeptBricks
+class PackedBrickCache
 {
 public:
   using Pointer = std::shared_ptr<const PackedBrick>;
 
-  KeptBricks() = default;
-  ~KeptBricks();
-  KeptBricks(const KeptBricks&) = delete;
-  KeptBricks& operator=(const KeptBricks&) = delete;
+  PackedBrickCache() = default;
+  ~PackedBrickCache();
+  PackedBrickCache(const PackedBrickCache&) = delete;
+  PackedBrickCache& operator=(const PackedBrickCache&) = delete;
 
   /// Of what drawing may take, what is kept from picture to picture. The rest is for bricks that
   /// are packed for one picture.
