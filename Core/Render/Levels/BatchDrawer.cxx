@@ -145,15 +145,15 @@ void BatchDrawer::DrawBricks(const BrickBatch& batch, std::size_t number, const 
   {
     const LoadedBrick& brick = batch.Bricks[static_cast<std::size_t>(over[i])];
     const PixelRect pixels = Intersection(brick.Pixels(), rect);
-    rays.Ahead = BrickAhead();
+    rays.Ahead = BrickPrefetcher();
     if (prefetch && i + 1 < over.Count())
     {
       const LoadedBrick& next = batch.Bricks[static_cast<std::size_t>(over[i + 1])];
       // Rays are in cells of the source, which those of the brick may be smaller than.
       if (next.Packed && next.Planned->Level == 0)
       {
-        rays.Ahead =
-          BrickAhead(*next.Packed, next.Seen.Cells, corners, rays.PacketsUnder(pixels).Count());
+        rays.Ahead = BrickPrefetcher(
+          *next.Packed, next.Seen.Cells, corners, rays.PacketsUnder(pixels).Count());
       }
     }
     rays.BrickShift = rays.CellShift - brick.Planned->Level;

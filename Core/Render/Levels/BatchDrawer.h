@@ -2,7 +2,7 @@
 #ifndef banyan_Render_Levels_BatchDrawer_h
 #define banyan_Render_Levels_BatchDrawer_h
 
-#include "Render/Bricks/BrickAhead.h"
+#include "Render/Bricks/BrickPrefetcher.h"
 #include "Render/Levels/BrickBatch.h"
 #include "Render/Levels/LevelTiles.h"
 #include "Render/Raycast/BrickWork.h"

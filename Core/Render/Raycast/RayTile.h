@@ -2,7 +2,7 @@
 #ifndef banyan_Render_Raycast_RayTile_h
 #define banyan_Render_Raycast_RayTile_h
 
-#include "Render/Bricks/BrickAhead.h"
+#include "Render/Bricks/BrickPrefetcher.h"
 #include "Render/Scene/FloatImage.h"
 #include "Render/Scene/RayLattice.h"
 #include "Render/Scene/RayPacket.h"
@@ -117,7 +117,7 @@ struct RayTile
   std::int64_t ActiveRays = 0;   ///< rays with samples that have not ended
   std::int64_t SamplesTaken = 0; ///< since Open
   bool PacketsFit = true;        ///< no ray steps further than LongestStep, in the finest cells
-  BrickAhead Ahead;              ///< the brick that is drawn next, if it is to be asked for
+  BrickPrefetcher Ahead;         ///< the brick that is drawn next, if it is to be asked for
 
   /// The brick that is being drawn has cells 2^BrickShift times as short as the index space that
   /// rays are made in, and the box of it that is drawn counts in cells 2^CellShift times as short.

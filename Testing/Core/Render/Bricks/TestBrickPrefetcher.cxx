@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Render/Bricks/BrickAhead.h"
+#include "Render/Bricks/BrickPrefetcher.h"
 
 #include "Render/Bricks/PackedBrick.h"
 #include "Render/Scenes.h"
@@ -29,7 +29,7 @@ PackedBrick BrickAt(const glm::ivec3& low, int kind)
 }
 
 /// Samples of a brick that were asked for, and how often.
-std::vector<int> Asked(BrickAhead ahead)
+std::vector<int> Asked(BrickPrefetcher ahead)
 {
   std::vector<int> times(33 * 33 * 33, 0);
   for (Box some = ahead.NextSlice(); !some.Empty(); some = ahead.NextSlice())
@@ -70,7 +70,7 @@ void Mark(const Ray& ray, const glm::ivec3& low, std::vector<int>& met)
   }
 }
 
-TEST(BrickAhead, AsksForWhatRaysOfATileMeetAndForLittleElse)
+TEST(BrickPrefetcher, AsksForWhatRaysOfATileMeetAndForLittleElse)
 {
   const glm::ivec3 low(64, 32, 32);
   // Along z, along x, along y, and from inside of the brick.
@@ -86,7 +86,7 @@ TEST(BrickAhead, AsksForWhatRaysOfATileMeetAndForLittleElse)
       const RayCamera camera(
         glm::perspective(0.6, 1.0, 0.5, 1000.0) * view, { 256, 256 }, glm::dvec3(0.0));
       const PixelRect tile{ { 124, 122 }, { 136, 134 } };
-      const BrickAhead ahead(brick, brick.Cells(), CornersOf(camera, tile), 64);
+      const BrickPrefetcher ahead(brick, brick.Cells(), CornersOf(camera, tile), 64);
       const std::vector<int> times = Asked(ahead);
       std::vector<int> met(times.size(), 0);
       for (int y = tile.Lo.y; y < tile.Hi.y; ++y)
@@ -117,12 +117,12 @@ TEST(BrickAhead, AsksForWhatRaysOfATileMeetAndForLittleElse)
   }
 }
 
-TEST(BrickAhead, KeepsToThePartThatIsDrawn)
+TEST(BrickPrefetcher, KeepsToThePartThatIsDrawn)
 {
   const PackedBrick brick = BrickAt(glm::ivec3(0), 0);
   Ray ray{ { 10.0, 10.0, -50.0 }, { 0.0, 0.0, 1.0 }, 0.0, 1e9 };
   const CornerRays corners{ ray, ray, ray, ray };
-  BrickAhead ahead(brick, { { 4, 5, 6 }, { 12, 13, 14 } }, corners, 3);
+  BrickPrefetcher ahead(brick, { { 4, 5, 6 }, { 12, 13, 14 } }, corners, 3);
   Box all;
   for (Box some = ahead.NextSlice(); !some.Empty(); some = ahead.NextSlice())
   {
@@ -131,16 +131,16 @@ TEST(BrickAhead, KeepsToThePartThatIsDrawn)
   EXPECT_EQ(all, (Box{ { 10, 10, 6 }, { 12, 12, 15 } }));
   // Beside the rays, and behind the eye: anything, but of the brick.
   ray.Origin = { 1e5, 10.0, 90.0 };
-  BrickAhead beside(brick, brick.Cells(), { ray, ray, ray, ray }, 3);
+  BrickPrefetcher beside(brick, brick.Cells(), { ray, ray, ray, ray }, 3);
   for (Box some = beside.NextSlice(); !some.Empty(); some = beside.NextSlice())
   {
     EXPECT_TRUE((Box{ glm::ivec3(0), glm::ivec3(33) }.Contains(some)));
   }
-  EXPECT_TRUE(BrickAhead(brick, {}, corners, 3).NextSlice().Empty());
-  EXPECT_TRUE(BrickAhead().NextSlice().Empty());
+  EXPECT_TRUE(BrickPrefetcher(brick, {}, corners, 3).NextSlice().Empty());
+  EXPECT_TRUE(BrickPrefetcher().NextSlice().Empty());
 }
 
-TEST(BrickAhead, IsDoneAfterAsManyCallsAsWereForetold)
+TEST(BrickPrefetcher, IsDoneAfterAsManyCallsAsWereForetold)
 {
   const PackedBrick brick = BrickAt(glm::ivec3(0), 2);
   for (const glm::dvec3& direction :
@@ -149,7 +149,7 @@ TEST(BrickAhead, IsDoneAfterAsManyCallsAsWereForetold)
     for (const std::int64_t calls : { 0, 1, 2, 7, 64 })
     {
       const Ray ray{ glm::dvec3(10.0) - 60.0 * direction, direction, 0.0, 1e9 };
-      BrickAhead ahead(brick, brick.Cells(), { ray, ray, ray, ray }, calls);
+      BrickPrefetcher ahead(brick, brick.Cells(), { ray, ray, ray, ray }, calls);
       for (std::int64_t i = 0; i < std::max<std::int64_t>(calls, 1); ++i)
       {
         ahead.Ask();

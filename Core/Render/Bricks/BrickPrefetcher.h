@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Render_Bricks_BrickAhead_h
-#define banyan_Render_Bricks_BrickAhead_h
+#ifndef banyan_Render_Bricks_BrickPrefetcher_h
+#define banyan_Render_Bricks_BrickPrefetcher_h
 
 #include "Base/Box.h"
 #include "Render/Scene/RayCamera.h"
@@ -23,15 +23,15 @@ using CornerRays = std::array<Ray, 4>;
 ///
 /// The brick is gone through slice by slice along the axis that the rays go along most. What is
 /// asked for is a guess: no picture depends on it.
-class BrickAhead
+class BrickPrefetcher
 {
 public:
-  BrickAhead() = default; ///< asks for nothing
+  BrickPrefetcher() = default; ///< asks for nothing
   /// @param brick must stay
   /// @param cells of it that are drawn
   /// @param corners in cells of the brick
   /// @param calls of Ask in which all of it is to be asked for, about
-  BrickAhead(
+  BrickPrefetcher(
     const PackedBrick& brick, const Box& cells, const CornerRays& corners, std::int64_t calls);
 
   /// Asks for the next slices, if there are some left.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Render/Bricks/BrickAhead.h"
+#include "Render/Bricks/BrickPrefetcher.h"
 
 #include "Render/Bricks/PackedBrick.h"
 
@@ -33,7 +33,7 @@ int MainAxis(const glm::dvec3& direction)
 
 } // namespace
 
-BrickAhead::BrickAhead(
+BrickPrefetcher::BrickPrefetcher(
   const PackedBrick& brick, const Box& cells, const CornerRays& corners, std::int64_t calls)
 {
   const Box some = Intersection(cells, brick.Cells());
@@ -61,7 +61,7 @@ BrickAhead::BrickAhead(
 
 /// Finds where the rays are in all slices, from the first and the last one.
 /// @param corner of the brick
-void BrickAhead::PlaceRays(const CornerRays& corners, const glm::ivec3& corner)
+void BrickPrefetcher::PlaceRays(const CornerRays& corners, const glm::ivec3& corner)
 {
   const int planes[2] = { this->Low[this->Axis] + corner[this->Axis],
     this->High[this->Axis] + corner[this->Axis] };
@@ -87,7 +87,7 @@ void BrickAhead::PlaceRays(const CornerRays& corners, const glm::ivec3& corner)
   this->MostStep = glm::vec3((most[1] - most[0]) / slices);
 }
 
-Box BrickAhead::NextSlice()
+Box BrickPrefetcher::NextSlice()
 {
   if (this->Slice >= this->SliceEnd)
   {
@@ -107,7 +107,7 @@ Box BrickAhead::NextSlice()
   return samples;
 }
 
-void BrickAhead::AskFor(const Box& samples) const
+void BrickPrefetcher::AskFor(const Box& samples) const
 {
   for (int z = samples.Lo.z; z < samples.Hi.z; ++z)
   {
