@@ -8,7 +8,7 @@
 #include "Cache/BrickCache.h"
 #include "Parallel/Fields/PieceField.h"
 #include "Render/Bricks/SeriesBrickSource.h"
-#include "Render/Bricks/StepAhead.h"
+#include "Render/Bricks/TimeStepPrefetcher.h"
 #include "vtkBanyanDeferred.h"
 
 #include "vtkDataArray.h"

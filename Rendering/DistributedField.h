@@ -25,7 +25,7 @@ namespace banyan
 class MeshField;
 class PieceField;
 class SeriesBrickSource;
-class StepAhead;
+class TimeStepPrefetcher;
 
 /// One field of scalars that lies distributed over the ranks, agreed upon by all of them: one grid,
 /// and one zone of cells per rank. Pieces of an encoded series that nobody has touched or moved are
@@ -137,7 +137,7 @@ private:
   Box Domain;
   glm::dmat4 IndexToPhysicalMatrix{ 1.0 };
   std::vector<Box> ZoneCells;
-  std::unique_ptr<StepAhead> Ahead; ///< null until something is read ahead
+  std::unique_ptr<TimeStepPrefetcher> Ahead; ///< null until something is read ahead
   ViewAhead View;
   int Step = 0; ///< of the series
   LoadBalancing Balancing = LoadBalancing::Off;

@@ -8,7 +8,7 @@
 #include "Cache/BrickCache.h"
 #include "Parallel/Fields/PieceField.h"
 #include "Render/Bricks/SeriesBrickSource.h"
-#include "Render/Bricks/StepAhead.h"
+#include "Render/Bricks/TimeStepPrefetcher.h"
 
 #include <utility>
 
@@ -88,7 +88,7 @@ void DistributedField::ReadAhead(const RayScene& scene, int rank)
     BrickCache& cache = BrickCache::Process();
     if (!this->Ahead)
     {
-      this->Ahead = std::make_unique<StepAhead>(cache, ThreadPool::Process().Width());
+      this->Ahead = std::make_unique<TimeStepPrefetcher>(cache, ThreadPool::Process().Width());
       this->Ahead->Drawing(*this->Series, this->Step);
     }
     this->Ahead->Drawn(this->Series, *this->Bricks);

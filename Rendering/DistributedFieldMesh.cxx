@@ -7,7 +7,7 @@
 
 #include "Parallel/Fields/MeshZones.h"
 #include "Parallel/Fields/PieceField.h"
-#include "Render/Bricks/StepAhead.h"
+#include "Render/Bricks/TimeStepPrefetcher.h"
 
 #include "vtkDataArray.h"
 #include "vtkSmartPointer.h"

@@ -8,7 +8,7 @@
 #include "Base/ThreadPool.h"
 #include "Cache/BrickCache.h"
 #include "Parallel/Fields/PieceField.h"
-#include "Render/Bricks/StepAhead.h"
+#include "Render/Bricks/TimeStepPrefetcher.h"
 
 namespace banyan
 {

@@ -7,7 +7,7 @@
 #include "Cache/BrickCache.h"
 #include "Render/Bricks/EnhancedBrickSource.h"
 #include "Render/Bricks/SeriesBrickSource.h"
-#include "Render/Bricks/StepAhead.h"
+#include "Render/Bricks/TimeStepPrefetcher.h"
 
 #include <numeric>
 
@@ -158,7 +158,7 @@ TEST_F(Ahead, FetchedBricksTakeTheRoomOfDecodedOnes)
 TEST_F(Ahead, TheStepThatComesNextInTheDirectionOfPlayIsRead)
 {
   BrickCache cache(Plenty);
-  StepAhead ahead(cache, 2);
+  TimeStepPrefetcher ahead(cache, 2);
   const auto play = [&](int step)
   {
     const SeriesBrickSource source(this->File, { step, 0, 0, 0 }, 0, cache);
@@ -186,7 +186,7 @@ TEST_F(Ahead, TheStepThatComesNextInTheDirectionOfPlayIsRead)
 TEST_F(Ahead, AnEnhancedStepNeedsOneThatIsAfterTheNext)
 {
   BrickCache cache(Plenty);
-  StepAhead ahead(cache, 2);
+  TimeStepPrefetcher ahead(cache, 2);
   const auto play = [&](int step)
   {
     const auto at = [&](int other) -> std::unique_ptr<BrickSource>

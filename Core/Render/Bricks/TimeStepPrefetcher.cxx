@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Render/Bricks/StepAhead.h"
+#include "Render/Bricks/TimeStepPrefetcher.h"
 
 #include "Render/Bricks/EnhancedBrickSource.h"
 #include "Render/Bricks/SeriesBrickSource.h"
@@ -34,13 +34,14 @@ void AddLoaded(const BrickSource* source, std::vector<FieldBricks>& loaded)
 
 } // namespace
 
-void StepAhead::Drawing(const SeriesFile& series, int step)
+void TimeStepPrefetcher::Drawing(const SeriesFile& series, int step)
 {
   this->Decoder.Stop();
   this->NextStep = this->Direction.Asked(series, step);
 }
 
-void StepAhead::Drawn(const std::shared_ptr<const SeriesFile>& series, const BrickSource& source)
+void TimeStepPrefetcher::Drawn(
+  const std::shared_ptr<const SeriesFile>& series, const BrickSource& source)
 {
   if (this->NextStep < 0)
   {

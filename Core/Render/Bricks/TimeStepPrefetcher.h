@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Render_Bricks_StepAhead_h
-#define banyan_Render_Bricks_StepAhead_h
+#ifndef banyan_Render_Bricks_TimeStepPrefetcher_h
+#define banyan_Render_Bricks_TimeStepPrefetcher_h
 
 #include "Cache/AheadDecoder.h"
 #include "Cache/BrickCache.h"
@@ -16,12 +16,12 @@ class BrickSource;
 /// cache has for decoded bricks, so that those of this one can stay. Stops while rays are cast.
 ///
 /// @par Limits: bricks that were not drawn of this step are not expected to be drawn of the next.
-class StepAhead
+class TimeStepPrefetcher
 {
 public:
   /// @param cache must stay
   /// @param threads that decode
-  StepAhead(BrickCache& cache, int threads)
+  TimeStepPrefetcher(BrickCache& cache, int threads)
     : Cache(cache)
     , Decoder(cache, threads)
   {
