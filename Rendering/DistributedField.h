@@ -8,7 +8,7 @@
 #include "Parallel/Fields/MeshBytes.h"
 #include "Render/Bricks/BrickSource.h"
 #include "Render/Bricks/TemporalEnhancement.h"
-#include "Render/Bricks/ViewAhead.h"
+#include "Render/Bricks/ViewPrefetcher.h"
 #include "Series/Decode/SeriesFile.h"
 #include "Series/Quantize/ValueRange.h"
 
@@ -138,7 +138,7 @@ private:
   glm::dmat4 IndexToPhysicalMatrix{ 1.0 };
   std::vector<Box> ZoneCells;
   std::unique_ptr<TimeStepPrefetcher> Ahead; ///< null until something is read ahead
-  ViewAhead View;
+  ViewPrefetcher View;
   int Step = 0; ///< of the series
   LoadBalancing Balancing = LoadBalancing::Off;
   FrameBalancer Balancer; ///< of encoded series and meshes

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Render_Bricks_ViewAhead_h
-#define banyan_Render_Bricks_ViewAhead_h
+#ifndef banyan_Render_Bricks_ViewPrefetcher_h
+#define banyan_Render_Bricks_ViewPrefetcher_h
 
 #include "Cache/AheadDecoder.h"
 #include "Render/Bricks/BrickSource.h"
@@ -23,7 +23,7 @@ class SeriesBrickSource;
 ///
 /// @par Limits: bricks that were hidden behind others, and levels that this picture did not have,
 /// are not expected.
-class ViewAhead
+class ViewPrefetcher
 {
 public:
   /// After a picture of at least two.

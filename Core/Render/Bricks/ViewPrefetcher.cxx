@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Render/Bricks/ViewAhead.h"
+#include "Render/Bricks/ViewPrefetcher.h"
 
 #include "Base/Error.h"
 #include "Render/Bricks/SeriesBrickSource.h"
@@ -123,7 +123,7 @@ std::vector<std::int64_t> BricksComingOntoScreen(
   return std::move(search.Found);
 }
 
-std::vector<FieldBricks> ViewAhead::Expected(
+std::vector<FieldBricks> ViewPrefetcher::Expected(
   const RayScene& scene, SeriesBrickSource& source, const Box& cells)
 {
   const glm::dmat4 now = ClipToIndex(scene);

@@ -3,7 +3,7 @@
 #include "Render/Scenes.h"
 
 #include "Render/Bricks/ArrayBrickSource.h"
-#include "Render/Bricks/ViewAhead.h"
+#include "Render/Bricks/ViewPrefetcher.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ RayScene SceneAt(Move move, double time)
   return scene;
 }
 
-class ViewAheadOf : public ::testing::TestWithParam<Move>
+class ViewPrefetcherOf : public ::testing::TestWithParam<Move>
 {
 protected:
   ThreadPool Pool{ 1 };
@@ -70,9 +70,9 @@ protected:
 };
 
 INSTANTIATE_TEST_SUITE_P(
-  Moves, ViewAheadOf, ::testing::Values(Move::Round, Move::Past, Move::Away, Move::Aside));
+  Moves, ViewPrefetcherOf, ::testing::Values(Move::Round, Move::Past, Move::Away, Move::Aside));
 
-TEST_P(ViewAheadOf, AnEvenMoveIsExpectedToGoOn)
+TEST_P(ViewPrefetcherOf, AnEvenMoveIsExpectedToGoOn)
 {
   const RayScene scene = SceneAt(this->GetParam(), 1.0);
   const std::optional<RayScene> next =
@@ -90,7 +90,7 @@ TEST_P(ViewAheadOf, AnEvenMoveIsExpectedToGoOn)
   }
 }
 
-TEST_P(ViewAheadOf, WhatComesOntoTheScreenIsFound)
+TEST_P(ViewPrefetcherOf, WhatComesOntoTheScreenIsFound)
 {
   const RayScene scene = SceneAt(this->GetParam(), 1.0);
   const RayScene next = SceneAt(this->GetParam(), 2.0);
@@ -122,7 +122,7 @@ TEST_P(ViewAheadOf, WhatComesOntoTheScreenIsFound)
   EXPECT_LT(unique.size(), 256u) << "far from all";
 }
 
-TEST(ViewAhead, NothingComesWhereEverythingIsSeen)
+TEST(ViewPrefetcher, NothingComesWhereEverythingIsSeen)
 {
   ThreadPool pool(1);
   const std::vector<float> values = scenes::Sampled<float>(scenes::Standard, Samples);
@@ -133,7 +133,7 @@ TEST(ViewAhead, NothingComesWhereEverythingIsSeen)
   EXPECT_TRUE(BricksComingOntoScreen(scene, next, source, scene.DomainCells).empty());
 }
 
-TEST(ViewAhead, WhatIsInvisibleIsNotExpected)
+TEST(ViewPrefetcher, WhatIsInvisibleIsNotExpected)
 {
   ThreadPool pool(1);
   const std::vector<float> values(
