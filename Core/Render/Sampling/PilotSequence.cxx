@@ -13,7 +13,7 @@ constexpr double ShareOfLargest = 1.0;
 
 } // namespace
 
-void PilotSequence::Add(PilotPicture picture)
+void PilotSequence::Add(ProbeImage picture)
 {
   if (this->Drawn.empty())
   {
@@ -27,13 +27,13 @@ void PilotSequence::Add(PilotPicture picture)
   if (this->Drawn.size() == 1)
   {
     // Of the first one nothing else is known.
-    this->Errors.front() = this->Pictures.ErrorsOf(difference, 2.0 * PilotPictures::Safety(), 2.0);
+    this->Errors.front() = this->Pictures.ErrorsOf(difference, 2.0 * ProbeImages::Safety(), 2.0);
   }
   const bool known = this->Drawn.size() > 1 && largest > 0.0;
   const double ratio = known ? std::clamp(this->LargestBefore / largest, 1.7, 4.0) : 2.0;
   const double part = 1.0 / (ratio - 1.0);
   this->Errors.push_back(
-    this->Pictures.ErrorsOf(difference, PilotPictures::Safety() * part, ShareOfLargest * part));
+    this->Pictures.ErrorsOf(difference, ProbeImages::Safety() * part, ShareOfLargest * part));
   this->Errors.back().Lower(this->Errors[this->Errors.size() - 2]);
   this->LargestBefore = largest;
   this->Drawn.push_back(std::move(picture));
@@ -56,7 +56,7 @@ std::vector<TileErrors> PilotSequence::AllErrors() const
   const std::size_t last = errors.size() - 1;
   const auto lower = [&](std::size_t i, std::size_t later, const PilotErrors& difference)
   {
-    TileErrors bound = this->Pictures.ErrorsOf(difference, PilotPictures::Safety(), ShareOfLargest);
+    TileErrors bound = this->Pictures.ErrorsOf(difference, ProbeImages::Safety(), ShareOfLargest);
     bound.Add(errors[later]);
     errors[i].Lower(bound);
   };

@@ -2,7 +2,7 @@
 #ifndef banyan_Render_Sampling_PilotSequence_h
 #define banyan_Render_Sampling_PilotSequence_h
 
-#include "Render/Sampling/PilotPictures.h"
+#include "Render/Sampling/ProbeImages.h"
 
 #include <vector>
 
@@ -22,12 +22,12 @@ class PilotSequence
 {
 public:
   /// @param pictures must stay
-  explicit PilotSequence(const PilotPictures& pictures)
+  explicit PilotSequence(const ProbeImages& pictures)
     : Pictures(pictures)
   {
   }
 
-  void Add(PilotPicture picture);
+  void Add(ProbeImage picture);
 
   /// Says that the last picture, of at least two, has no error by definition.
   void LastIsExact();
@@ -38,8 +38,8 @@ public:
   bool LastIsWithin(double allowed) const;
 
 private:
-  const PilotPictures& Pictures;
-  std::vector<PilotPicture> Drawn;
+  const ProbeImages& Pictures;
+  std::vector<ProbeImage> Drawn;
   std::vector<PilotErrors> Steps; ///< from each picture to the next
   double LargestBefore = 0.0;     ///< difference of the last two
   std::vector<TileErrors> Errors;

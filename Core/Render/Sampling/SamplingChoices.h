@@ -2,7 +2,7 @@
 #ifndef banyan_Render_Sampling_SamplingChoices_h
 #define banyan_Render_Sampling_SamplingChoices_h
 
-#include "Render/Sampling/PilotPictures.h"
+#include "Render/Sampling/ProbeImages.h"
 
 #include <cstddef>
 #include <optional>

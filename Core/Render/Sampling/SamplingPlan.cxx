@@ -321,7 +321,7 @@ private:
   const RayScene& Scene;
   const DrawPilot& DrawScene;
   SamplingWish Wish;
-  PilotPictures Pictures;
+  ProbeImages Pictures;
   double Allowed;
   SamplingChoices Choices;
   double ClosestDistance = 1.0; ///< the smallest that was tried at the coarsest level

@@ -26,7 +26,7 @@ constexpr double ShareOfLargest = 1.0 / 16.0;
 
 /// How far each pixel is from what lies between those that are `every` apart, along both axes.
 /// @param part of the image that the picture is
-PilotErrors ErrorsBetween(const PilotPicture& picture, const PixelRect& part, int every)
+PilotErrors ErrorsBetween(const ProbeImage& picture, const PixelRect& part, int every)
 {
   const glm::ivec2 size = part.Size();
   // Around the volume is nothing; at the edge of the picture its last pixels go on.
@@ -79,7 +79,7 @@ bool StridePilot::MaySay(const RayScene& scene, int pixelsApart)
   return pixelsApart >= Spacing && scene.Blend.Mode == BlendMode::Composite;
 }
 
-bool StridePilot::MayPay(const PilotPictures& samples, double allowed)
+bool StridePilot::MayPay(const ProbeImages& samples, double allowed)
 {
   const double apart = samples.PixelsApart();
   const double near = ErrorsBetween(samples.Last(), samples.Part(), 2).Largest();
@@ -93,7 +93,7 @@ bool StridePilot::MayPay(const PilotPictures& samples, double allowed)
 
 void StridePilot::Draw(const RaySampling& sampling)
 {
-  const PilotPicture picture = this->Pictures.Draw(sampling);
+  const ProbeImage picture = this->Pictures.Draw(sampling);
   this->Near =
     this->Pictures.ErrorsOf(ErrorsBetween(picture, this->Pictures.Part(), 2), 1.0, ShareOfLargest);
   this->Far =

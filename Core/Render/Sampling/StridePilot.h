@@ -2,7 +2,7 @@
 #ifndef banyan_Render_Sampling_StridePilot_h
 #define banyan_Render_Sampling_StridePilot_h
 
-#include "Render/Sampling/PilotPictures.h"
+#include "Render/Sampling/ProbeImages.h"
 
 #include <optional>
 #include <vector>
@@ -34,7 +34,7 @@ public:
   /// lies between theirs, and how fast it falls as they come closer.
   /// @param samples of which some were drawn
   /// @param allowed in 1/255
-  static bool MayPay(const PilotPictures& samples, double allowed);
+  static bool MayPay(const ProbeImages& samples, double allowed);
 
   /// Draws it. Once.
   void Draw(const RaySampling& sampling);
@@ -49,7 +49,7 @@ private:
   bool HasGeometry(const PixelRect& pixels) const;
 
   const RayScene& Scene;
-  PilotPictures Pictures;
+  ProbeImages Pictures;
   TileErrors Near;         ///< measured: of a stride of two pilots
   TileErrors Far;          ///< of four
   std::vector<bool> Whole; ///< per tile, whether pixels of it may be left out

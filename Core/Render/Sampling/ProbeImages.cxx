@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Render/Sampling/PilotPictures.h"
+#include "Render/Sampling/ProbeImages.h"
 
 #include "Render/Sampling/PilotSpacing.h"
 
@@ -112,7 +112,7 @@ void TileErrors::Raise(const TileErrors& other)
   }
 }
 
-PilotPictures::PilotPictures(
+ProbeImages::ProbeImages(
   const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw)
   : Scene(scene)
   , DrawScene(std::move(draw))
@@ -120,7 +120,7 @@ PilotPictures::PilotPictures(
   this->SetSpacing(PilotSpacing(scene));
 }
 
-PilotPictures::PilotPictures(const RayScene& scene,
+ProbeImages::ProbeImages(const RayScene& scene,
   std::function<FloatImage(const RayScene& pilot)> draw, int spacing, double around)
   : Scene(scene)
   , DrawScene(std::move(draw))
@@ -130,7 +130,7 @@ PilotPictures::PilotPictures(const RayScene& scene,
   this->SetSpacing(spacing);
 }
 
-void PilotPictures::SetSpacing(int pixels)
+void ProbeImages::SetSpacing(int pixels)
 {
   this->Spacing = pixels;
   this->Size = (this->ImageSize() + pixels - 1) / pixels;
@@ -141,7 +141,7 @@ void PilotPictures::SetSpacing(int pixels)
     { glm::ivec2(0), this->Size });
 }
 
-PilotPicture PilotPictures::Draw(const RaySampling& sampling)
+ProbeImage ProbeImages::Draw(const RaySampling& sampling)
 {
   for (const auto& [known, picture] : this->Known)
   {
@@ -151,7 +151,7 @@ PilotPicture PilotPictures::Draw(const RaySampling& sampling)
     }
   }
   const bool first = this->Drawn == 0 && !this->FixedSpacing;
-  PilotPicture picture = this->DrawAsItIs(sampling);
+  ProbeImage picture = this->DrawAsItIs(sampling);
   // Little of a volume may be seen of which much is on the screen.
   for (bool enough = !first; !enough;)
   {
@@ -169,7 +169,7 @@ PilotPicture PilotPictures::Draw(const RaySampling& sampling)
   return picture;
 }
 
-PilotPicture PilotPictures::DrawAsItIs(const RaySampling& sampling)
+ProbeImage ProbeImages::DrawAsItIs(const RaySampling& sampling)
 {
   RayScene pilot = this->Scene;
   pilot.Camera = this->Scene.Camera.WithSize(this->Size);
@@ -179,7 +179,7 @@ PilotPicture PilotPictures::DrawAsItIs(const RaySampling& sampling)
   pilot.Pilot = true;
   const FloatImage image = this->DrawScene(pilot);
 
-  PilotPicture picture;
+  ProbeImage picture;
   picture.Pixels.assign(static_cast<std::size_t>(this->View.Count()), glm::vec4(0.0f));
   for (int y = image.Rect.Lo.y; y < image.Rect.Hi.y; ++y)
   {
@@ -196,7 +196,7 @@ PilotPicture PilotPictures::DrawAsItIs(const RaySampling& sampling)
 }
 
 /// The pixel of the large picture that holds the centre of one of the small one.
-glm::ivec2 PilotPictures::ToImage(int x, int y) const
+glm::ivec2 ProbeImages::ToImage(int x, int y) const
 {
   const glm::dvec2 centre =
     (glm::dvec2(x, y) + 0.5) / glm::dvec2(this->Size) * glm::dvec2(this->ImageSize());
@@ -204,7 +204,7 @@ glm::ivec2 PilotPictures::ToImage(int x, int y) const
 }
 
 /// Geometry where the pilots look; none where the large picture has no depths.
-std::vector<float> PilotPictures::DepthOf(const RayScene& pilot) const
+std::vector<float> ProbeImages::DepthOf(const RayScene& pilot) const
 {
   std::vector<float> depths;
   if (this->Scene.Depth.empty())
@@ -228,7 +228,7 @@ std::vector<float> PilotPictures::DepthOf(const RayScene& pilot) const
   return depths;
 }
 
-PilotErrors PilotPictures::Difference(const PilotPicture& a, const PilotPicture& b) const
+PilotErrors ProbeImages::Difference(const ProbeImage& a, const ProbeImage& b) const
 {
   const std::size_t count = a.Pixels.size();
   PilotErrors errors;
@@ -240,13 +240,13 @@ PilotErrors PilotPictures::Difference(const PilotPicture& a, const PilotPicture&
   return errors;
 }
 
-std::size_t PilotPictures::TileCount() const
+std::size_t ProbeImages::TileCount() const
 {
   const glm::ivec2 tiles = TileSamplings::TilesOf(this->ImageSize());
   return static_cast<std::size_t>(tiles.x) * tiles.y;
 }
 
-TileErrors PilotPictures::ErrorsOf(const PilotErrors& errors, double factor, double share) const
+TileErrors ProbeImages::ErrorsOf(const PilotErrors& errors, double factor, double share) const
 {
   const glm::ivec2 tiles = TileSamplings::TilesOf(this->ImageSize());
   const std::vector<PilotsAround> rows = this->AroundAll(tiles.y, 1);
@@ -282,7 +282,7 @@ TileErrors PilotPictures::ErrorsOf(const PilotErrors& errors, double factor, dou
 }
 
 /// Of all tiles along an axis.
-std::vector<PilotsAround> PilotPictures::AroundAll(int tiles, int axis) const
+std::vector<PilotsAround> ProbeImages::AroundAll(int tiles, int axis) const
 {
   std::vector<PilotsAround> around;
   for (int tile = 0; tile < tiles; ++tile)
@@ -293,7 +293,7 @@ std::vector<PilotsAround> PilotPictures::AroundAll(int tiles, int axis) const
 }
 
 /// Along one axis, the pilots within TilesAround of a tile: their positions in View.
-PilotsAround PilotPictures::Around(int tile, int axis) const
+PilotsAround ProbeImages::Around(int tile, int axis) const
 {
   const double around = this->TilesAround * TileSamplings::Edge;
   const double perPixel = static_cast<double>(this->Size[axis]) / this->ImageSize()[axis];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What pilots say of tiles, beside a slow way to find it; and how often they are drawn.
-#include "Render/Sampling/PilotPictures.h"
+#include "Render/Sampling/ProbeImages.h"
 
 #include "Render/Scenes.h"
 
@@ -23,7 +23,7 @@ FloatImage Painted(const RayScene& pilot)
 
 /// The largest error of the pilots within some tiles of a tile.
 double LargestAround(
-  const PilotPictures& pictures, const PilotErrors& errors, const glm::ivec2& tile, double around)
+  const ProbeImages& pictures, const PilotErrors& errors, const glm::ivec2& tile, double around)
 {
   const glm::dvec2 image(pictures.ImageSize());
   const glm::dvec2 size(
@@ -49,7 +49,7 @@ double LargestAround(
   return largest;
 }
 
-TEST(PilotPictures, ErrorsOfTilesAreTheLargestAroundThem)
+TEST(ProbeImages, ErrorsOfTilesAreTheLargestAroundThem)
 {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> error(0.0f, 1.0f);
@@ -63,7 +63,7 @@ TEST(PilotPictures, ErrorsOfTilesAreTheLargestAroundThem)
          Shape{ { 100, 40 }, 16, 0.0 }, Shape{ { 31, 700 }, 1, 0.5 }, Shape{ { 1, 1 }, 16, 2.5 } })
   {
     const RayScene scene = scenes::Scene(glm::ivec3(9), shape.Picture);
-    const PilotPictures pictures(scene, Painted, shape.Spacing, shape.Around);
+    const ProbeImages pictures(scene, Painted, shape.Spacing, shape.Around);
     PilotErrors errors;
     for (long long i = 0; i < pictures.Part().Count(); ++i)
     {
@@ -83,11 +83,11 @@ TEST(PilotPictures, ErrorsOfTilesAreTheLargestAroundThem)
   }
 }
 
-TEST(PilotPictures, NoneIsDrawnTwice)
+TEST(ProbeImages, NoneIsDrawnTwice)
 {
   const RayScene scene = scenes::Scene(glm::ivec3(9), glm::ivec2(512));
   int drawn = 0;
-  PilotPictures pictures(scene,
+  ProbeImages pictures(scene,
     [&](const RayScene& pilot)
     {
       ++drawn;
@@ -95,7 +95,7 @@ TEST(PilotPictures, NoneIsDrawnTwice)
       image.Pixels.front().r = static_cast<float>(pilot.Samplings->Samplings().front().Distance);
       return image;
     });
-  const PilotPicture first = pictures.Draw({ 0, 0.25 });
+  const ProbeImage first = pictures.Draw({ 0, 0.25 });
   EXPECT_EQ(pictures.Draw({ 0, 0.5 }).Pixels.front().r, 0.5f);
   EXPECT_EQ(pictures.Draw({ 1, 0.25 }).Pixels.front().r, 0.25f);
   EXPECT_EQ(pictures.Draw({ 0, 0.25 }).Pixels, first.Pixels);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Render_Sampling_PilotPictures_h
-#define banyan_Render_Sampling_PilotPictures_h
+#ifndef banyan_Render_Sampling_ProbeImages_h
+#define banyan_Render_Sampling_ProbeImages_h
 
 #include "Render/Scene/FloatImage.h"
 #include "Render/Scene/RayScene.h"
@@ -15,7 +15,7 @@ namespace banyan
 {
 
 /// A small picture of a scene.
-struct PilotPicture
+struct ProbeImage
 {
   std::vector<glm::vec4> Pixels; ///< `[y][x]` of the part that is wanted; empty before it is drawn
 };
@@ -57,24 +57,24 @@ struct TileErrors
 };
 
 /// Small pictures of a scene, and what they say of the tiles of the large one.
-class PilotPictures
+class ProbeImages
 {
 public:
   /// @param scene refers to it, which must stay
-  PilotPictures(const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw);
+  ProbeImages(const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw);
   /// @param spacing of the pilots in pixels, whatever they see
   /// @param around ErrorsOf looks so many tiles around a tile
-  PilotPictures(const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw,
+  ProbeImages(const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw,
     int spacing, double around);
 
   /// The first picture may be drawn several times, until enough of its pixels see something; no
   /// other one is drawn twice.
-  PilotPicture Draw(const RaySampling& sampling);
+  ProbeImage Draw(const RaySampling& sampling);
   int Count() const { return this->Drawn; }
   /// Whether a pixel of any picture had an opacity.
   bool SawSomething() const { return this->Saw; }
 
-  PilotErrors Difference(const PilotPicture& a, const PilotPicture& b) const;
+  PilotErrors Difference(const ProbeImage& a, const ProbeImage& b) const;
 
   /// Of a tile: the largest error of the pixels within two and a half tiles (or as constructed),
   /// times `factor`, and at least that of all pixels times `share`.
@@ -85,7 +85,7 @@ public:
   /// Where the pixels of pictures lie among those of a small picture of all.
   const PixelRect& Part() const { return this->View; }
   /// The picture that was drawn last; there must be one.
-  const PilotPicture& Last() const { return this->Known.back().second; }
+  const ProbeImage& Last() const { return this->Known.back().second; }
 
   glm::ivec2 ImageSize() const { return this->Scene.Camera.ImageSize(); }
   std::size_t TileCount() const;
@@ -96,7 +96,7 @@ private:
   PilotsAround Around(int tile, int axis) const;
   std::vector<PilotsAround> AroundAll(int tiles, int axis) const;
   void SetSpacing(int pixels);
-  PilotPicture DrawAsItIs(const RaySampling& sampling);
+  ProbeImage DrawAsItIs(const RaySampling& sampling);
   std::vector<float> DepthOf(const RayScene& pilot) const;
   glm::ivec2 ToImage(int x, int y) const;
 
@@ -108,7 +108,7 @@ private:
   glm::ivec2 Size;
   PixelRect View; ///< the part that is wanted
   int Drawn = 0;
-  std::vector<std::pair<RaySampling, PilotPicture>> Known;
+  std::vector<std::pair<RaySampling, ProbeImage>> Known;
   bool Saw = false;
 };
 
