@@ -126,9 +126,9 @@ double SamplingChoices::CostOf(const Chosen& chosen) const
 double SamplingChoices::ErrorOf(const Chosen& chosen, std::size_t tile) const
 {
   double level = this->Levels[chosen.Level].Errors.Of(tile);
-  if (chosen.Stride > 0 && this->StridePilot)
+  if (chosen.Stride > 0 && this->SubsamplingProbe)
   {
-    level = std::max(level, this->Levels[this->StridePilot->Level].Errors.Of(tile));
+    level = std::max(level, this->Levels[this->SubsamplingProbe->Level].Errors.Of(tile));
   }
   return level + this->Distances[chosen.Distance].Errors.Of(tile) +
          this->Strides[chosen.Stride].Errors.Of(tile);

@@ -58,7 +58,7 @@ public:
   /// Says that strides were judged by a picture of this sampling. Finer levels show more, so tiles
   /// whose pixels are left out have the errors of its level at least. Closer samples show less: too
   /// few of them look like edges.
-  void StridesAreThoseOf(const Chosen& pilot) { this->StridePilot = pilot; }
+  void StridesAreThoseOf(const Chosen& pilot) { this->SubsamplingProbe = pilot; }
 
   /// All of them; NumberOf is a position in this list.
   std::vector<RaySampling> Samplings() const;
@@ -71,7 +71,7 @@ private:
   double ErrorOf(const Chosen& chosen, std::size_t tile) const;
 
   double UsualDistance;
-  std::optional<Chosen> StridePilot;
+  std::optional<Chosen> SubsamplingProbe;
 };
 
 } // namespace banyan

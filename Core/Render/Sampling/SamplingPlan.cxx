@@ -5,7 +5,7 @@
 #include "Base/Timer.h"
 #include "Render/Sampling/PilotSequence.h"
 #include "Render/Sampling/SamplingChoices.h"
-#include "Render/Sampling/StridePilot.h"
+#include "Render/Sampling/SubsamplingProbe.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,8 +30,8 @@ constexpr int MostDoublings = 3;
 constexpr double FewestSamples = 4.0;
 /// The picture that judges strides is of a sampling whose errors leave so much of what is allowed,
 /// in so many of the tiles: others keep their rays.
-constexpr double ShareOfStridePilot = 0.75;
-constexpr double TilesOfStridePilot = 0.9;
+constexpr double ShareOfSubsamplingProbe = 0.75;
+constexpr double TilesOfSubsamplingProbe = 0.9;
 
 /// What single pixels of a shaded picture may be off, in 1/255, where a ray meets a place without a
 /// gradient and the normal turns over from one sample to the next. They are so few that no pilot
@@ -243,18 +243,18 @@ private:
     every.Errors.Tiles.assign(this->Pictures.TileCount(), 0.0);
     this->Choices.Strides = { std::move(every) };
     if (this->Wish.LargestPixelStride == 1 ||
-        !StridePilot::MaySay(this->Scene, this->Pictures.PixelsApart()) ||
-        !StridePilot::MayPay(this->Pictures, this->Allowed))
+        !SubsamplingProbe::MaySay(this->Scene, this->Pictures.PixelsApart()) ||
+        !SubsamplingProbe::MayPay(this->Pictures, this->Allowed))
     {
       return false;
     }
-    SamplingChoices::Chosen sampling =
-      this->Choices.CheapestForMost(TilesOfStridePilot, ShareOfStridePilot * this->Allowed);
+    SamplingChoices::Chosen sampling = this->Choices.CheapestForMost(
+      TilesOfSubsamplingProbe, ShareOfSubsamplingProbe * this->Allowed);
     while (this->Choices.Levels[sampling.Level].Value < this->Wish.FinestPilotLevel)
     {
       --sampling.Level;
     }
-    StridePilot pilot(this->Scene, this->DrawScene, this->Allowed);
+    SubsamplingProbe pilot(this->Scene, this->DrawScene, this->Allowed);
     RaySampling drawn = this->Choices.SamplingOf(sampling);
     drawn.Distance = std::max(drawn.Distance, this->Wish.Distance);
     pilot.Draw(drawn);

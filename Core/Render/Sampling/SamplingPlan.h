@@ -81,7 +81,7 @@ using DrawPilot = std::function<FloatImage(const RayScene& pilot)>;
 /// these levels that is good enough for all tiles, each until all tiles are content
 /// (PilotSequence). Which level and which distance a tile gets is chosen from the sums of both
 /// errors: finer levels than needed are never loaded. How many pixels need rays of their own one
-/// more small picture tells (StridePilot), and that error counts with the others.
+/// more small picture tells (SubsamplingProbe), and that error counts with the others.
 ///
 /// The error is estimated, then, and not bounded: `ctest -R SamplingPlan` shows that it is above
 /// the true one on the standard scenes. Where the opacity function jumps, or reaches 1, single

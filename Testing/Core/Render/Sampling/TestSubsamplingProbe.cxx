@@ -63,7 +63,7 @@ int PixelsApart(const Pattern& pattern, double tolerance)
   return apart;
 }
 
-TEST(StridePilot, IsDrawnWhereSomeTileMayDoWithoutPixels)
+TEST(SubsamplingProbe, IsDrawnWhereSomeTileMayDoWithoutPixels)
 {
   for (const double tolerance : { 1.0, 8.0 })
   {
@@ -77,7 +77,7 @@ TEST(StridePilot, IsDrawnWhereSomeTileMayDoWithoutPixels)
   EXPECT_EQ(PixelsApart(Striped, 255.0), 8);
 }
 
-TEST(StridePilot, IsNotDrawnWhereNoneMay)
+TEST(SubsamplingProbe, IsNotDrawnWhereNoneMay)
 {
   for (const double tolerance : { 0.25, 1.0, 2.0 })
   {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Render/Sampling/StridePilot.h"
+#include "Render/Sampling/SubsamplingProbe.h"
 
 #include "Render/Sampling/PilotSpacing.h"
 
@@ -67,19 +67,19 @@ PilotErrors ErrorsBetween(const ProbeImage& picture, const PixelRect& part, int 
 
 } // namespace
 
-StridePilot::StridePilot(
+SubsamplingProbe::SubsamplingProbe(
   const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw, double allowed)
   : Scene(scene)
   , Pictures(scene, std::move(draw), allowed < MuchAllowed ? Spacing : 2 * Spacing, TilesAround)
 {
 }
 
-bool StridePilot::MaySay(const RayScene& scene, int pixelsApart)
+bool SubsamplingProbe::MaySay(const RayScene& scene, int pixelsApart)
 {
   return pixelsApart >= Spacing && scene.Blend.Mode == BlendMode::Composite;
 }
 
-bool StridePilot::MayPay(const ProbeImages& samples, double allowed)
+bool SubsamplingProbe::MayPay(const ProbeImages& samples, double allowed)
 {
   const double apart = samples.PixelsApart();
   const double near = ErrorsBetween(samples.Last(), samples.Part(), 2).Largest();
@@ -91,7 +91,7 @@ bool StridePilot::MayPay(const ProbeImages& samples, double allowed)
   return least <= allowed;
 }
 
-void StridePilot::Draw(const RaySampling& sampling)
+void SubsamplingProbe::Draw(const RaySampling& sampling)
 {
   const ProbeImage picture = this->Pictures.Draw(sampling);
   this->Near =
@@ -101,7 +101,7 @@ void StridePilot::Draw(const RaySampling& sampling)
   this->Whole = this->MakeWholeTiles();
 }
 
-TileErrors StridePilot::ErrorsAt(int stride) const
+TileErrors SubsamplingProbe::ErrorsAt(int stride) const
 {
   TileErrors errors = this->Near;
   for (std::size_t tile = 0; tile < errors.Tiles.size(); ++tile)
@@ -124,7 +124,7 @@ TileErrors StridePilot::ErrorsAt(int stride) const
 
 /// FillBetweenRays needs a tile's first pixels, and the first behind it, along both axes: they must
 /// be inside the viewport, or outside of the volume. At the edge of a picture nothing lies behind.
-std::vector<bool> StridePilot::MakeWholeTiles() const
+std::vector<bool> SubsamplingProbe::MakeWholeTiles() const
 {
   const PixelRect& view = this->Scene.Viewport;
   const PixelRect volume = VolumeOnScreen(this->Scene);
@@ -149,7 +149,7 @@ std::vector<bool> StridePilot::MakeWholeTiles() const
   return whole;
 }
 
-bool StridePilot::HasGeometry(const PixelRect& pixels) const
+bool SubsamplingProbe::HasGeometry(const PixelRect& pixels) const
 {
   const PixelRect& view = this->Scene.Viewport;
   const PixelRect part = Intersection(pixels, view);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Render_Sampling_StridePilot_h
-#define banyan_Render_Sampling_StridePilot_h
+#ifndef banyan_Render_Sampling_SubsamplingProbe_h
+#define banyan_Render_Sampling_SubsamplingProbe_h
 
 #include "Render/Sampling/ProbeImages.h"
 
@@ -16,12 +16,12 @@ namespace banyan
 /// (FillBetweenRays), so that a stride of 8 is measured, and how errors grow from 8 to 16 tells
 /// those of 4 and 2: as the square of the stride where the picture is smooth, and not at all at
 /// edges. Where much is allowed, its pixels are every eighth one, and strides of 16 and 32 tell.
-class StridePilot
+class SubsamplingProbe
 {
 public:
   /// @param scene refers to it, which must stay
   /// @param allowed errors of the picture, in 1/255
-  StridePilot(
+  SubsamplingProbe(
     const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw, double allowed);
 
   /// Whether a scene is one of which pixels may be left out: its volume is not narrow.
