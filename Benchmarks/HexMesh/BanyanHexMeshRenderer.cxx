@@ -4,7 +4,7 @@
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
 #include "Mesh/Octree/HexBrickSource.h"
-#include "Render/Raycast/PixelsBetween.h"
+#include "Render/Raycast/InterpolateSkippedPixels.h"
 #include "Render/Sampling/ElementsPerPixel.h"
 #include "Render/Sampling/SamplingPlan.h"
 
@@ -60,7 +60,7 @@ public:
       scene.OpacityLimit = plan.OpacityLimit;
     }
     FloatImage picture = this->Cast(scene);
-    FillBetweenRays(scene, picture, this->Pool);
+    InterpolateSkippedPixels(scene, picture, this->Pool);
     HexMeshFrame frame;
     frame.Seconds = timer.Seconds();
     frame.Shown = Rounded(picture, this->Scene.Look.Picture);

@@ -2,7 +2,7 @@
 #include "RayCastRenderer.h"
 
 #include "Base/ThreadPool.h"
-#include "Render/Raycast/PixelsBetween.h"
+#include "Render/Raycast/InterpolateSkippedPixels.h"
 #include "Render/Sampling/SamplingPlan.h"
 
 namespace banyan::bench
@@ -66,7 +66,7 @@ public:
     RayStatistics statistics;
     const RayScene drawn = this->SceneWith(this->Settings.at(number), statistics, frame);
     FloatImage image = this->Cast(drawn, statistics);
-    FillBetweenRays(drawn, image, this->Pool);
+    InterpolateSkippedPixels(drawn, image, this->Pool);
     clock.StopInto(frame);
     frame.Shown = Rounded(image, this->Scene->Picture);
     frame.Unrounded = std::move(image);

@@ -10,7 +10,7 @@
 #include "Base/Timer.h"
 #include "Cache/BrickCache.h"
 #include "Render/Bricks/SeriesBrickSource.h"
-#include "Render/Raycast/PixelsBetween.h"
+#include "Render/Raycast/InterpolateSkippedPixels.h"
 #include "Render/Sampling/SamplingPlan.h"
 #include "Series/Encode/SeriesEncoder.h"
 
@@ -162,7 +162,7 @@ Frames DrawFrames(const Options& options, const Timer& sinceStart, BrickSource& 
       scene, source, scene.DomainCells, CoarsestLevel, PackedBrickCache::PartOf(budget), pool);
     const RayScene sampled = Sampled(scene, options.Tolerance, finestPilot, draw);
     FloatImage picture = draw(sampled);
-    FillBetweenRays(sampled, picture, pool);
+    InterpolateSkippedPixels(sampled, picture, pool);
     if (i == 0)
       frames.FirstMilliseconds = 1e3 * sinceStart.Seconds();
     else

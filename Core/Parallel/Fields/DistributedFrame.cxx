@@ -7,7 +7,7 @@
 #include "Parallel/Balance/LevelZones.h"
 #include "Parallel/Balance/Rebalance.h"
 #include "Parallel/Composite/CompositeWhileCasting.h"
-#include "Render/Raycast/PixelsBetween.h"
+#include "Render/Raycast/InterpolateSkippedPixels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -208,7 +208,7 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene,
   const PhaseScope phase(Phase::Compositing);
   const Timer finish;
   FinishPicture(scene, picture);
-  FillBetweenRays(scene, picture, share.Pool);
+  InterpolateSkippedPixels(scene, picture, share.Pool);
   own.CompositeSeconds += finish.Seconds();
 
   const auto number = [](auto value) { return static_cast<double>(value); };

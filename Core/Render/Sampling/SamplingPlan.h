@@ -28,8 +28,8 @@ struct SamplingWish
   /// Levels with fewer cells along the longest axis are not used: two of them may look alike
   /// because both have lost what there is to see.
   int LeastCells = 64;
-  /// The largest RaySampling::PixelStride: whoever draws a plan has to call FillBetweenRays unless
-  /// it is 1.
+  /// The largest RaySampling::PixelStride: whoever draws a plan has to call
+  /// InterpolateSkippedPixels unless it is 1.
   int LargestPixelStride = RaySampling::LargestStride;
   /// The finest level that may be drawn from, whatever the tolerance: see FinestLevelFor. One below
   /// the coarsest that is used, if need be: of one level alone no error could be told.

@@ -122,8 +122,9 @@ TileErrors SubsamplingProbe::ErrorsAt(int stride) const
   return errors;
 }
 
-/// FillBetweenRays needs a tile's first pixels, and the first behind it, along both axes: they must
-/// be inside the viewport, or outside of the volume. At the edge of a picture nothing lies behind.
+/// InterpolateSkippedPixels needs a tile's first pixels, and the first behind it, along both axes:
+/// they must be inside the viewport, or outside of the volume. At the edge of a picture nothing
+/// lies behind.
 std::vector<bool> SubsamplingProbe::MakeWholeTiles() const
 {
   const PixelRect& view = this->Scene.Viewport;

@@ -13,9 +13,9 @@ namespace banyan
 /// What pixels without rays would be off, for each RaySampling::PixelStride: found from one small
 /// picture, whose pixels are every fourth one of the large one. Those of its pixels that every
 /// second or every fourth of it does not hold are compared with what lies between these
-/// (FillBetweenRays), so that a stride of 8 is measured, and how errors grow from 8 to 16 tells
-/// those of 4 and 2: as the square of the stride where the picture is smooth, and not at all at
-/// edges. Where much is allowed, its pixels are every eighth one, and strides of 16 and 32 tell.
+/// (InterpolateSkippedPixels), so that a stride of 8 is measured, and how errors grow from 8 to 16
+/// tells those of 4 and 2: as the square of the stride where the picture is smooth, and not at all
+/// at edges. Where much is allowed, its pixels are every eighth one, and strides of 16 and 32 tell.
 class SubsamplingProbe
 {
 public:

@@ -20,8 +20,8 @@ struct RaySampling
 {
   int Level = 0;         ///< of the bricks: cells are 2^Level fine ones long; 0 is the finest
   double Distance = 1.0; ///< world length between samples; > 0
-  /// Only pixels whose coordinates are multiples of it have rays, FillBetweenRays makes the others:
-  /// 1, 2, 4 or 8. They are counted from the lower left corner of the whole picture.
+  /// Only pixels whose coordinates are multiples of it have rays, InterpolateSkippedPixels makes
+  /// the others: 1, 2, 4 or 8. They are counted from the lower left corner of the whole picture.
   int PixelStride = 1;
 
   static constexpr int LargestStride = 8;

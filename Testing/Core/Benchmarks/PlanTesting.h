@@ -5,7 +5,7 @@
 #include "BenchScene.h"
 
 #include "Base/ThreadPool.h"
-#include "Render/Raycast/PixelsBetween.h"
+#include "Render/Raycast/InterpolateSkippedPixels.h"
 #include "Render/Sampling/SamplingPlan.h"
 
 #include <memory>
@@ -39,7 +39,7 @@ public:
     scene.Samplings = plan.Samplings;
     scene.OpacityLimit = plan.OpacityLimit;
     FloatImage picture = this->Cast(scene);
-    FillBetweenRays(scene, picture, this->Pool);
+    InterpolateSkippedPixels(scene, picture, this->Pool);
     return picture;
   }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Estimates of errors in pictures of real data: by sampling, and by encoding.
-#include "Render/Raycast/PixelsBetween.h"
+#include "Render/Raycast/InterpolateSkippedPixels.h"
 #include "Render/Sampling/SamplingPlan.h"
 #include "Render/Scenes.h"
 
@@ -196,7 +196,7 @@ TEST_P(RealVolumes, KeepTheToleranceOrSayWhatLimitsIt)
       planned.Samplings = plan.Samplings;
       planned.OpacityLimit = plan.OpacityLimit;
       FloatImage picture = draw(planned);
-      FillBetweenRays(planned, picture, pool);
+      InterpolateSkippedPixels(planned, picture, pool);
       const std::vector<double> errors = ErrorsOf(picture, truth);
       const auto beyond = std::count_if(
         errors.begin(), errors.end(), [&](double error) { return error > plan.EstimatedError; });

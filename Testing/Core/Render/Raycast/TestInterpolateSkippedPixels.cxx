@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pictures of which only some pixels have rays, and what fills the others.
 #include "Base/ThreadPool.h"
-#include "Render/Raycast/PixelsBetween.h"
+#include "Render/Raycast/InterpolateSkippedPixels.h"
 #include "Render/Scenes.h"
 
 #include <gtest/gtest.h>
@@ -11,10 +11,10 @@ namespace
 
 using namespace banyan;
 
-class PixelsBetween : public testing::Test
+class SkippedPixels : public testing::Test
 {
 protected:
-  PixelsBetween()
+  SkippedPixels()
   {
     // All strides beside all others, and tiles cut by the edges of the picture.
     const std::vector<RaySampling> samplings{ { 0, 0.8, 1 }, { 1, 2.0, 2 }, { 0, 1.5, 4 },
@@ -99,7 +99,7 @@ protected:
   RayScene Strided = this->Scene;
 };
 
-TEST_F(PixelsBetween, RaysAreThoseOfWholePictures)
+TEST_F(SkippedPixels, RaysAreThoseOfWholePictures)
 {
   const FloatImage all = this->Draw(this->Scene);
   ASSERT_GT(all.Rect.Count(), 10000);
@@ -122,7 +122,7 @@ TEST_F(PixelsBetween, RaysAreThoseOfWholePictures)
   }
 }
 
-TEST_F(PixelsBetween, GeometryEndsTheirRaysToo)
+TEST_F(SkippedPixels, GeometryEndsTheirRaysToo)
 {
   for (RayScene* scene : { &this->Scene, &this->Strided })
   {
@@ -146,12 +146,12 @@ TEST_F(PixelsBetween, GeometryEndsTheirRaysToo)
   }
 }
 
-TEST_F(PixelsBetween, AreFilledByDefinition)
+TEST_F(SkippedPixels, AreFilledByDefinition)
 {
   const FloatImage rays = this->Draw(this->Strided);
   FloatImage filled = rays;
   ThreadPool one(1);
-  FillBetweenRays(this->Strided, filled, one);
+  InterpolateSkippedPixels(this->Strided, filled, one);
   int seen = 0;
   for (int y = rays.Rect.Lo.y; y < rays.Rect.Hi.y; ++y)
   {
@@ -168,19 +168,19 @@ TEST_F(PixelsBetween, AreFilledByDefinition)
   EXPECT_GT(seen, 3000);
   FloatImage again = rays;
   ThreadPool three(3);
-  FillBetweenRays(this->Strided, again, three);
+  InterpolateSkippedPixels(this->Strided, again, three);
   EXPECT_EQ(again.Pixels, filled.Pixels);
 }
 
-TEST_F(PixelsBetween, WholePicturesAreLeftAlone)
+TEST_F(SkippedPixels, WholePicturesAreLeftAlone)
 {
   const FloatImage all = this->Draw(this->Scene);
   FloatImage filled = all;
   ThreadPool pool(2);
-  FillBetweenRays(this->Scene, filled, pool);
+  InterpolateSkippedPixels(this->Scene, filled, pool);
   EXPECT_EQ(filled.Pixels, all.Pixels);
   FloatImage empty;
-  FillBetweenRays(this->Strided, empty, pool);
+  InterpolateSkippedPixels(this->Strided, empty, pool);
   EXPECT_TRUE(empty.Pixels.empty());
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Render_Raycast_PixelsBetween_h
-#define banyan_Render_Raycast_PixelsBetween_h
+#ifndef banyan_Render_Raycast_InterpolateSkippedPixels_h
+#define banyan_Render_Raycast_InterpolateSkippedPixels_h
 
 #include "Render/Scene/FloatImage.h"
 
@@ -18,7 +18,7 @@ struct RayScene;
 /// What it does to a pixel does not depend on threads or on how the picture was divided.
 ///
 /// @param picture a part of the scene's; all outside of it counts as empty
-void FillBetweenRays(const RayScene& scene, FloatImage& picture, ThreadPool& pool);
+void InterpolateSkippedPixels(const RayScene& scene, FloatImage& picture, ThreadPool& pool);
 
 } // namespace banyan
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Render/Raycast/PixelsBetween.h"
+#include "Render/Raycast/InterpolateSkippedPixels.h"
 
 #include "Base/ThreadPool.h"
 #include "Render/Raycast/TileGrid.h"
@@ -79,7 +79,7 @@ private:
 
 } // namespace
 
-void FillBetweenRays(const RayScene& scene, FloatImage& picture, ThreadPool& pool)
+void InterpolateSkippedPixels(const RayScene& scene, FloatImage& picture, ThreadPool& pool)
 {
   if (!scene.Samplings || picture.Rect.Empty() || picture.Pixels.empty())
   {
