@@ -184,7 +184,7 @@ void ToleranceControl::PlanSteps(Communicator& communicator, DistributedField& f
   {
     scene.Samplings = std::make_shared<const TileSamplings>(scene.Camera.ImageSize(),
       std::vector<RaySampling>{
-        CoarserSteps::SamplingOf(step, scene.SampleDistance, this->CoarsestStepLevel) });
+        InteractiveLevels::SamplingOf(step, scene.SampleDistance, this->CoarsestStepLevel) });
   }
 }
 

@@ -5,7 +5,7 @@
 #include "RefinementPasses.h"
 
 #include "Parallel/Fields/DistributedPlan.h"
-#include "Render/Sampling/CoarserSteps.h"
+#include "Render/Sampling/InteractiveLevels.h"
 
 #include <array>
 #include <string>
@@ -36,7 +36,7 @@ public:
     double ScreenErrorPixels = 0.0;
     bool FixedDistance =
       false; ///< whether the scene's distance between samples is that of all levels
-    bool KeepsTolerance = true; ///< otherwise the picture is one of CoarserSteps
+    bool KeepsTolerance = true; ///< otherwise the picture is one of InteractiveLevels
     int Eye = 0;                ///< 1 for the second picture of a frame, where both eyes get one
   };
 
@@ -61,7 +61,7 @@ public:
   bool RefineNext();
 
 private:
-  /// For pictures that keep no tolerance (CoarserSteps): while somebody moves
+  /// For pictures that keep no tolerance (InteractiveLevels): while somebody moves
   /// the camera they keep the promised time; still ones have all samples, after passes that take
   /// one step each.
   void PlanSteps(Communicator& communicator, DistributedField& field, RayScene& scene,

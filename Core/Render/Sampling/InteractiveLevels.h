@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Render_Sampling_CoarserSteps_h
-#define banyan_Render_Sampling_CoarserSteps_h
+#ifndef banyan_Render_Sampling_InteractiveLevels_h
+#define banyan_Render_Sampling_InteractiveLevels_h
 
 #include "Render/Scene/RaySampling.h"
 
@@ -14,7 +14,7 @@ namespace banyan
 /// Each step takes the next coarser level, with as much more between samples as its cells are
 /// larger; when there is none any more, each step has rays in half as many rows and columns of
 /// pixels, down to every eighth.
-class CoarserSteps
+class InteractiveLevels
 {
 public:
   /// @param coarsestLevel that can be drawn, at least 0
@@ -39,7 +39,7 @@ public:
 
   /// @param seconds that the last frame took
   /// @param promised seconds; 0 for any
-  /// @param coarsestLevel as for CoarserSteps
+  /// @param coarsestLevel as for InteractiveLevels
   void FrameTook(double seconds, double promised, int coarsestLevel);
 
 private:

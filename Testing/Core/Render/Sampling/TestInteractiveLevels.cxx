@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Render/Sampling/CoarserSteps.h"
+#include "Render/Sampling/InteractiveLevels.h"
 
 #include <gtest/gtest.h>
 
@@ -8,16 +8,16 @@ namespace
 
 using namespace banyan;
 
-TEST(CoarserSteps, LevelsComeFirst)
+TEST(InteractiveLevels, LevelsComeFirst)
 {
-  EXPECT_EQ(CoarserSteps::SamplingOf(0, 0.5, 3), (RaySampling{ 0, 0.5, 1 }));
-  EXPECT_EQ(CoarserSteps::SamplingOf(1, 0.5, 3), (RaySampling{ 1, 1.0, 1 }));
-  EXPECT_EQ(CoarserSteps::SamplingOf(3, 0.5, 3), (RaySampling{ 3, 4.0, 1 }));
-  EXPECT_EQ(CoarserSteps::SamplingOf(4, 0.5, 3), (RaySampling{ 3, 4.0, 2 }));
-  EXPECT_EQ(CoarserSteps::SamplingOf(6, 0.5, 3), (RaySampling{ 3, 4.0, 8 }));
-  EXPECT_EQ(CoarserSteps::SamplingOf(99, 0.5, 3), (RaySampling{ 3, 4.0, 8 }));
-  EXPECT_EQ(CoarserSteps::SamplingOf(2, 0.5, 0), (RaySampling{ 0, 0.5, 4 }));
-  EXPECT_EQ(CoarserSteps::Last(3), 6);
+  EXPECT_EQ(InteractiveLevels::SamplingOf(0, 0.5, 3), (RaySampling{ 0, 0.5, 1 }));
+  EXPECT_EQ(InteractiveLevels::SamplingOf(1, 0.5, 3), (RaySampling{ 1, 1.0, 1 }));
+  EXPECT_EQ(InteractiveLevels::SamplingOf(3, 0.5, 3), (RaySampling{ 3, 4.0, 1 }));
+  EXPECT_EQ(InteractiveLevels::SamplingOf(4, 0.5, 3), (RaySampling{ 3, 4.0, 2 }));
+  EXPECT_EQ(InteractiveLevels::SamplingOf(6, 0.5, 3), (RaySampling{ 3, 4.0, 8 }));
+  EXPECT_EQ(InteractiveLevels::SamplingOf(99, 0.5, 3), (RaySampling{ 3, 4.0, 8 }));
+  EXPECT_EQ(InteractiveLevels::SamplingOf(2, 0.5, 0), (RaySampling{ 0, 0.5, 4 }));
+  EXPECT_EQ(InteractiveLevels::Last(3), 6);
 }
 
 /// Frames of a scene that takes so long at step 0, and per step so many times less.
@@ -98,9 +98,9 @@ TEST(StepControl, StaysWithinTheSteps)
   {
     control.FrameTook(1.0, 0.2, 3);
   }
-  EXPECT_EQ(control.Step(), CoarserSteps::Last(3));
+  EXPECT_EQ(control.Step(), InteractiveLevels::Last(3));
   control.FrameTook(1.0, 0.2, 0);
-  EXPECT_EQ(control.Step(), CoarserSteps::Last(0));
+  EXPECT_EQ(control.Step(), InteractiveLevels::Last(0));
 }
 
 } // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Render/Sampling/CoarserSteps.h"
+#include "Render/Sampling/InteractiveLevels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ constexpr double Forgetting = 0.97;
 
 } // namespace
 
-RaySampling CoarserSteps::SamplingOf(int step, double distance, int coarsestLevel)
+RaySampling InteractiveLevels::SamplingOf(int step, double distance, int coarsestLevel)
 {
   const int level = std::min(step, coarsestLevel);
   const int stride = std::min(step - level, StrideSteps);
@@ -27,7 +27,7 @@ RaySampling CoarserSteps::SamplingOf(int step, double distance, int coarsestLeve
 
 void StepControl::FrameTook(double seconds, double promised, int coarsestLevel)
 {
-  const int last = std::min(CoarserSteps::Last(coarsestLevel), MostSteps - 1);
+  const int last = std::min(InteractiveLevels::Last(coarsestLevel), MostSteps - 1);
   this->Current = std::min(this->Current, last);
   if (!(promised > 0.0))
   {
