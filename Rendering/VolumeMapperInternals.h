@@ -50,9 +50,8 @@ struct vtkBanyanVolumeMapper::Internals
   unsigned long FrameEnds = 0;      ///< observes that
   unsigned char ToldNotInDepth = 0; ///< bits of banyan::NotInDepth
 
-  void Publish(const banyan::FrameStatistics& frame, std::uint64_t bytesRead,
-    const banyan::BrickCache::Statistics& cacheBefore, std::uint64_t aheadBefore, double seconds,
-    vtkBanyanFrameStatistics* out) const;
+  void Publish(
+    const Frame& drawn, std::uint64_t geometryBytes, vtkBanyanFrameStatistics* out) const;
 };
 
 /// A volume in the picture that is under way.

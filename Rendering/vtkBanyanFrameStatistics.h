@@ -5,7 +5,79 @@
 #include "BanyanRenderingModule.h" // for export macro
 #include "vtkObject.h"
 
-#include <string> // for ImageErrorLimit
+#include <string> // for members
+
+// clang-format off
+/// The table of the statistics, in the order of the display's properties. A row has the type, the
+/// name, the value before the first frame (a text is empty), and the sentence that ParaView shows.
+/// CMake/BanyanTables.cmake makes ParaView's XML of it. Counts and bytes are sums over all ranks.
+#define BANYAN_FRAME_STATISTICS(Number, Text)                                                      \
+  Number(double, TotalSeconds, 0.0,                                                                \
+    "Seconds that the last frame took, from reading back geometry to the finished picture; the "   \
+    "slowest rank.")                                                                               \
+  Number(double, RenderSeconds, 0.0,                                                               \
+    "Seconds of casting rays (and loading bricks); the slowest rank.")                             \
+  Number(double, CompositeSeconds, 0.0,                                                            \
+    "Seconds of compositing the pictures of all ranks.")                                           \
+  Number(double, PilotSeconds, 0.0,                                                                \
+    "Seconds, before casting rays, of finding the sample distances and levels that keep the "      \
+    "tolerance.")                                                                                  \
+  Number(double, StrideSeconds, 0.0,                                                               \
+    "Seconds, before casting rays, of finding the pixels that need none.")                         \
+  Number(vtkIdType, Pilots, 0,                                                                     \
+    "Small pictures that were drawn to find both.")                                                \
+  Number(double, Imbalance, 1.0,                                                                   \
+    "Render seconds of the slowest rank over the mean of all ranks; 1 is perfect.")                \
+  Number(vtkIdType, SamplesTaken, 0,                                                               \
+    "Samples interpolated, over all ranks.")                                                       \
+  Number(vtkIdType, BricksDrawn, 0,                                                                \
+    "Bricks whose values were needed, over all ranks.")                                            \
+  Number(vtkIdType, BricksUniform, 0,                                                              \
+    "Bricks of one value, which were drawn without being loaded or sampled, over all ranks.")      \
+  Number(vtkIdType, BricksSkipped, 0,                                                              \
+    "Bricks that could not be seen, over all ranks.")                                              \
+  Number(vtkIdType, BytesComposited, 0,                                                            \
+    "Bytes sent between ranks to composite the picture.")                                          \
+  Number(vtkIdType, MessagesComposited, 0,                                                         \
+    "Messages in which they were sent.")                                                           \
+  Number(vtkIdType, BytesRead, 0,                                                                  \
+    "Bytes read from series files for the last frame, over all ranks.")                            \
+  Number(vtkIdType, CacheBytes, 0,                                                                 \
+    "Bytes of decoded bricks held in memory, over all ranks.")                                     \
+  Number(vtkIdType, PixelsReadBehind, 0,                                                           \
+    "Pixels that the first rank has read back of what other props had drawn.")                     \
+  Number(vtkIdType, MeshBytes, 0,                                                                  \
+    "Bytes that all ranks hold of a mesh that is drawn: octree, cells, values and coarser "        \
+    "meshes. What ranks of a machine have together counts once.")                                  \
+  Number(vtkIdType, MeshBytesShared, 0,                                                            \
+    "Of these, bytes that ranks of a machine have together.")                                      \
+  Number(vtkIdType, BytesMoved, 0,                                                                 \
+    "Bytes of bricks that went from one rank's zone to another's for the last frame.")             \
+  Number(vtkIdType, CacheHits, 0,                                                                  \
+    "Bricks that the caches of all ranks had for the last frame.")                                 \
+  Number(vtkIdType, CacheMisses, 0,                                                                \
+    "Bricks that had to be decoded for the last frame, over all ranks.")                           \
+  Number(vtkIdType, CacheHitsAhead, 0,                                                             \
+    "Of the hits, bricks that were decoded in the background before they were asked for, over "    \
+    "all ranks.")                                                                                  \
+  Number(double, EstimatedImageError, 0.0,                                                         \
+    "The largest error that is expected of a pixel of the last frame by sampling, in 1/255, "      \
+    "without the error of encoded values (Encoding Error Of Values); 0 where the sample "          \
+    "distance was fixed. Image Error Limit says why it is above the tolerance.")                   \
+  Text(ImageErrorLimit,                                                                            \
+    "The reason why the estimated error is above the tolerance that was set, or may be too "       \
+    "low, in a sentence; empty if there is none.")                                                 \
+  Number(double, EncodingErrorOfValues, 0.0,                                                       \
+    "The largest error that encoding has made of the drawn values, over all steps, in the "        \
+    "units of the data: the estimated image error leaves it out. 0 for plain data; NaN for "       \
+    "meshes, of which it is not known.")                                                           \
+  Number(double, MeshDeviation, 0.0,                                                               \
+    "How far the field that is drawn may be from that of a mesh of general hexahedra, as a "       \
+    "part of the spread of the values around; 0 for octrees and image data, which are drawn as "   \
+    "they are.")                                                                                   \
+  Number(vtkIdType, Frames, 0,                                                                     \
+    "Frames drawn since the representation was made.")
+// clang-format on
 
 /**
  * @class vtkBanyanFrameStatistics
@@ -22,163 +94,29 @@ public:
   vtkTypeMacro(vtkBanyanFrameStatistics, vtkObject);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
-  /// Wall-clock seconds of the slowest rank: the whole frame, casting rays, compositing.
-  vtkSetMacro(TotalSeconds, double);
-  vtkGetMacro(TotalSeconds, double);
-  vtkSetMacro(RenderSeconds, double);
-  vtkGetMacro(RenderSeconds, double);
-  vtkSetMacro(CompositeSeconds, double);
-  vtkGetMacro(CompositeSeconds, double);
-  ///@}
-
-  ///@{
-  /// What it took, before casting rays, to find out how to sample within the tolerance: for
-  /// distances and levels, for pixels that need no rays, and how many small pictures were drawn for
-  /// both. 0 where nothing has to be found out.
-  vtkSetMacro(PilotSeconds, double);
-  vtkGetMacro(PilotSeconds, double);
-  vtkSetMacro(StrideSeconds, double);
-  vtkGetMacro(StrideSeconds, double);
-  vtkSetMacro(Pilots, vtkIdType);
-  vtkGetMacro(Pilots, vtkIdType);
-  ///@}
-
-  ///@{
-  /// Render seconds of the slowest rank over the mean of all ranks; 1 is perfect.
-  vtkSetMacro(Imbalance, double);
-  vtkGetMacro(Imbalance, double);
-  ///@}
-
-  ///@{
-  /// Samples of the field that were interpolated.
-  vtkSetMacro(SamplesTaken, vtkIdType);
-  vtkGetMacro(SamplesTaken, vtkIdType);
-  ///@}
-
-  ///@{
-  /// Bricks whose values were needed, bricks of one value, which are drawn without being loaded or
-  /// sampled, and bricks left out (invisible under the transfer function, or off screen).
-  vtkSetMacro(BricksDrawn, vtkIdType);
-  vtkGetMacro(BricksDrawn, vtkIdType);
-  vtkSetMacro(BricksUniform, vtkIdType);
-  vtkGetMacro(BricksUniform, vtkIdType);
-  vtkSetMacro(BricksSkipped, vtkIdType);
-  vtkGetMacro(BricksSkipped, vtkIdType);
-  ///@}
-
-  ///@{
-  /// Bytes sent between ranks to make one picture of all, read from series files for this frame,
-  /// and held by the brick caches now.
-  vtkSetMacro(BytesComposited, vtkIdType);
-  vtkGetMacro(BytesComposited, vtkIdType);
-  /// In so many messages.
-  vtkSetMacro(MessagesComposited, vtkIdType);
-  vtkGetMacro(MessagesComposited, vtkIdType);
-  vtkSetMacro(BytesRead, vtkIdType);
-  vtkGetMacro(BytesRead, vtkIdType);
-  vtkSetMacro(CacheBytes, vtkIdType);
-  vtkGetMacro(CacheBytes, vtkIdType);
-  ///@}
-
-  ///@{
-  /// Pixels that each rank has read back of what other props had drawn.
-  vtkSetMacro(PixelsReadBehind, vtkIdType);
-  vtkGetMacro(PixelsReadBehind, vtkIdType);
-  ///@}
-
-  ///@{
-  /// Bytes that all ranks hold of a mesh of hexahedra that is drawn: its octree, its cells where
-  /// they were gathered from several ranks, what it is sampled at, coarser meshes, and values. What
-  /// ranks of a machine have together counts once for each machine: that is MeshBytesShared of it.
-  /// What the pipeline holds does not count.
-  vtkSetMacro(MeshBytes, vtkIdType);
-  vtkGetMacro(MeshBytes, vtkIdType);
-  vtkSetMacro(MeshBytesShared, vtkIdType);
-  vtkGetMacro(MeshBytesShared, vtkIdType);
-  ///@}
-
-  ///@{
-  /// Bytes of bricks that went from one rank's zone to another's for this frame, and bricks that
-  /// the caches had and had not.
-  vtkSetMacro(BytesMoved, vtkIdType);
-  vtkGetMacro(BytesMoved, vtkIdType);
-  vtkSetMacro(CacheHits, vtkIdType);
-  vtkGetMacro(CacheHits, vtkIdType);
-  vtkSetMacro(CacheMisses, vtkIdType);
-  vtkGetMacro(CacheMisses, vtkIdType);
-  /// Of the hits, those that were decoded in the background before anybody asked for them.
-  vtkSetMacro(CacheHitsAhead, vtkIdType);
-  vtkGetMacro(CacheHitsAhead, vtkIdType);
-  ///@}
-
-  ///@{
-  /// The largest error that is expected of a pixel, in 1/255 of a channel, by sampling: against the
-  /// integral over the values that are drawn, without the error of their encoding. 0 where the
-  /// sample distance was fixed. Estimated.
-  vtkSetMacro(EstimatedImageError, double);
-  vtkGetMacro(EstimatedImageError, double);
-  /// Sentences: what keeps EstimatedImageError above the tolerance that was set, or what it may
-  /// have missed. Empty if nothing.
-  vtkSetStdStringFromCharMacro(ImageErrorLimit);
-  vtkGetCharFromStdStringMacro(ImageErrorLimit);
-  /// The largest error of the drawn values that encoding them has made, over all steps, as it was
-  /// measured then; in the units of the data. Its effect on the picture is not estimated:
-  /// Documentation/accuracy.md says what it does usually. 0 for plain data. NaN for meshes, of
-  /// which it is not known here.
-  vtkSetMacro(EncodingErrorOfValues, double);
-  vtkGetMacro(EncodingErrorOfValues, double);
-  ///@}
-
-  ///@{
-  /// How far the field that is drawn may be from that of a mesh of general hexahedra, at the points
-  /// that were looked at: a part of the spread of the values around (banyan::CubeDeviation). 0 for
-  /// meshes that are octrees, and for image data: they are drawn as they are.
-  vtkSetMacro(MeshDeviation, double);
-  vtkGetMacro(MeshDeviation, double);
-  ///@}
-
-  ///@{
-  /// Frames drawn since the object was made.
-  vtkSetMacro(Frames, vtkIdType);
-  vtkGetMacro(Frames, vtkIdType);
-  ///@}
+#define BANYAN_NUMBER(Type, Name, Initial, Sentence)                                               \
+  vtkSetMacro(Name, Type);                                                                         \
+  vtkGetMacro(Name, Type);
+#define BANYAN_TEXT(Name, Sentence)                                                                \
+  vtkSetStdStringFromCharMacro(Name);                                                              \
+  vtkGetCharFromStdStringMacro(Name);
+  BANYAN_FRAME_STATISTICS(BANYAN_NUMBER, BANYAN_TEXT)
+#undef BANYAN_NUMBER
+#undef BANYAN_TEXT
 
 protected:
   vtkBanyanFrameStatistics() = default;
   ~vtkBanyanFrameStatistics() override = default;
 
-  double TotalSeconds = 0.0;
-  double RenderSeconds = 0.0;
-  double CompositeSeconds = 0.0;
-  double PilotSeconds = 0.0;
-  double StrideSeconds = 0.0;
-  vtkIdType Pilots = 0;
-  double Imbalance = 1.0;
-  vtkIdType SamplesTaken = 0;
-  vtkIdType BricksDrawn = 0;
-  vtkIdType BricksUniform = 0;
-  vtkIdType BricksSkipped = 0;
-  vtkIdType BytesComposited = 0;
-  vtkIdType MessagesComposited = 0;
-  vtkIdType BytesRead = 0;
-  vtkIdType CacheBytes = 0;
-  vtkIdType PixelsReadBehind = 0;
-  vtkIdType MeshBytes = 0;
-  vtkIdType MeshBytesShared = 0;
-  vtkIdType BytesMoved = 0;
-  vtkIdType CacheHits = 0;
-  vtkIdType CacheMisses = 0;
-  vtkIdType CacheHitsAhead = 0;
-  double EstimatedImageError = 0.0;
-  std::string ImageErrorLimit;
-  double EncodingErrorOfValues = 0.0;
-  double MeshDeviation = 0.0;
-  vtkIdType Frames = 0;
-
 private:
   vtkBanyanFrameStatistics(const vtkBanyanFrameStatistics&) = delete;
   void operator=(const vtkBanyanFrameStatistics&) = delete;
+
+#define BANYAN_NUMBER(Type, Name, Initial, Sentence) Type Name = Initial;
+#define BANYAN_TEXT(Name, Sentence) std::string Name;
+  BANYAN_FRAME_STATISTICS(BANYAN_NUMBER, BANYAN_TEXT)
+#undef BANYAN_NUMBER
+#undef BANYAN_TEXT
 };
 
 #endif

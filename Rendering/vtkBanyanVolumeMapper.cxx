@@ -37,6 +37,44 @@ namespace
 /// A part of a volume's size that nobody can see.
 constexpr double LeastRange = 1e-12;
 
+/// What a rank tells the others of a frame. Plain numbers: all are sent in one message.
+struct Report
+{
+  std::uint64_t BytesComposited; ///< of what other props have drawn
+  std::uint64_t BytesRead;
+  std::uint64_t CacheBytes;
+  std::uint64_t MeshBytes;
+  std::uint64_t MeshBytesShared;
+  std::uint64_t CacheHits;
+  std::uint64_t CacheMisses;
+  std::uint64_t CacheHitsAhead;
+};
+
+/// Collective.
+Report SumOf(banyan::Communicator& communicator, const Report& mine)
+{
+  std::vector<Report> all(static_cast<std::size_t>(communicator.Size()));
+  communicator.AllGather(&mine, sizeof(mine), all.data());
+  Report sum{};
+  for (const Report& report : all)
+  {
+    sum.BytesComposited += report.BytesComposited;
+    sum.BytesRead += report.BytesRead;
+    sum.CacheBytes += report.CacheBytes;
+    sum.MeshBytes += report.MeshBytes;
+    sum.MeshBytesShared += report.MeshBytesShared;
+    sum.CacheHits += report.CacheHits;
+    sum.CacheMisses += report.CacheMisses;
+    sum.CacheHitsAhead += report.CacheHitsAhead;
+  }
+  return sum;
+}
+
+vtkIdType Id(std::uint64_t number)
+{
+  return static_cast<vtkIdType>(number);
+}
+
 } // namespace
 
 vtkStandardNewMacro(vtkBanyanVolumeMapper);
@@ -160,43 +198,46 @@ double* vtkBanyanVolumeMapper::GetBounds()
   return this->Bounds;
 }
 
-/// Collective.
-void vtkBanyanVolumeMapper::Internals::Publish(const banyan::FrameStatistics& frame,
-  std::uint64_t bytesRead, const banyan::BrickCache::Statistics& cacheBefore,
-  std::uint64_t aheadBefore, double seconds, vtkBanyanFrameStatistics* out) const
+/// Collective: one message.
+void vtkBanyanVolumeMapper::Internals::Publish(
+  const Frame& drawn, std::uint64_t geometryBytes, vtkBanyanFrameStatistics* out) const
 {
-  const auto sum = [this](std::uint64_t value) {
-    return static_cast<vtkIdType>(banyan::AllSum(*this->Communicator, static_cast<double>(value)));
-  };
-  out->SetBytesRead(sum(bytesRead));
-  const banyan::BrickCache::Statistics cache = banyan::BrickCache::Process().GetStatistics();
-  out->SetCacheBytes(sum(cache.Bytes + this->Field.FetchedBytes()));
+  const banyan::BrickCache& process = banyan::BrickCache::Process();
+  const banyan::BrickCache::Statistics cache = process.GetStatistics();
   const banyan::MeshBytes mesh = this->Field.BytesOfMesh();
-  const std::uint64_t together = mesh.Leads ? mesh.Together : 0;
-  out->SetMeshBytes(sum(mesh.Own + together));
-  out->SetMeshBytesShared(sum(together));
-  out->SetCacheHits(
-    sum(cache.Hits - cacheBefore.Hits) + static_cast<vtkIdType>(this->Field.FetchHits()));
-  out->SetCacheMisses(
-    sum(cache.Misses - cacheBefore.Misses) + static_cast<vtkIdType>(this->Field.FetchMisses()));
-  const banyan::BrickCache::AheadStatistics ahead =
-    banyan::BrickCache::Process().GetAheadStatistics();
-  out->SetCacheHitsAhead(sum(ahead.Hits - aheadBefore));
-  out->SetBytesMoved(static_cast<vtkIdType>(this->Field.BytesMoved()));
-  out->SetTotalSeconds(seconds);
+  Report mine;
+  mine.BytesComposited = geometryBytes;
+  mine.BytesRead = this->Field.BytesRead() - drawn.BytesBefore;
+  mine.CacheBytes = cache.Bytes + this->Field.FetchedBytes();
+  mine.MeshBytesShared = mesh.Leads ? mesh.Together : 0;
+  mine.MeshBytes = mesh.Own + mine.MeshBytesShared;
+  mine.CacheHits = cache.Hits - drawn.CacheBefore.Hits;
+  mine.CacheMisses = cache.Misses - drawn.CacheBefore.Misses;
+  mine.CacheHitsAhead = process.GetAheadStatistics().Hits - drawn.AheadBefore;
+  const Report all = SumOf(*this->Communicator, mine);
+  out->SetBytesRead(Id(all.BytesRead));
+  out->SetCacheBytes(Id(all.CacheBytes));
+  out->SetMeshBytes(Id(all.MeshBytes));
+  out->SetMeshBytesShared(Id(all.MeshBytesShared));
+  out->SetCacheHits(Id(all.CacheHits + this->Field.FetchHits()));
+  out->SetCacheMisses(Id(all.CacheMisses + this->Field.FetchMisses()));
+  out->SetCacheHitsAhead(Id(all.CacheHitsAhead));
+  out->SetBytesMoved(Id(this->Field.BytesMoved()));
+  const banyan::FrameStatistics& frame = drawn.Statistics;
   out->SetRenderSeconds(frame.RenderSeconds);
   out->SetCompositeSeconds(frame.CompositeSeconds);
   out->SetPilotSeconds(frame.PilotSeconds);
   out->SetStrideSeconds(frame.StrideSeconds);
   out->SetPilots(frame.Pilots);
   out->SetImbalance(frame.Imbalance);
-  out->SetSamplesTaken(static_cast<vtkIdType>(frame.SamplesTaken));
-  out->SetBricksDrawn(static_cast<vtkIdType>(frame.BricksDrawn));
-  out->SetBricksUniform(static_cast<vtkIdType>(frame.BricksUniform));
-  out->SetBricksSkipped(static_cast<vtkIdType>(frame.BricksSkipped));
-  out->SetBytesComposited(static_cast<vtkIdType>(frame.BytesComposited));
-  out->SetMessagesComposited(static_cast<vtkIdType>(frame.MessagesComposited));
+  out->SetSamplesTaken(frame.SamplesTaken);
+  out->SetBricksDrawn(frame.BricksDrawn);
+  out->SetBricksUniform(frame.BricksUniform);
+  out->SetBricksSkipped(frame.BricksSkipped);
+  out->SetBytesComposited(Id(frame.BytesComposited + all.BytesComposited));
+  out->SetMessagesComposited(Id(frame.MessagesComposited));
   out->SetFrames(out->GetFrames() + 1);
+  out->SetTotalSeconds(drawn.Began.Seconds());
 }
 
 void vtkBanyanVolumeMapper::ReportOnce(const std::string& problem)
@@ -321,11 +362,7 @@ void vtkBanyanVolumeMapper::FinishFrame(
   Internals& self = *this->Self;
   self.WriteSeconds = writeSeconds;
   self.LastProblem.clear();
-  banyan::FrameStatistics frame = drawn.Statistics;
-  frame.BytesComposited += static_cast<std::uint64_t>(
-    banyan::AllSum(*self.Communicator, static_cast<double>(geometry.BytesSent)));
-  self.Publish(frame, self.Field.BytesRead() - drawn.BytesBefore, drawn.CacheBefore,
-    drawn.AheadBefore, drawn.Began.Seconds(), this->Statistics);
+  self.Publish(drawn, geometry.BytesSent, this->Statistics);
 }
 
 bool vtkBanyanVolumeMapper::RefineNext()

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Makes ParaView's XML of tables that are macros of C++: a row is Kind(word, word, ..., "sentence").
+# A table that changes is read again by the next build.
+
+# Calls `handle(Kind "word;word;..." sentence)` for each row of the macro in the header.
+function(banyan_read_table header macro handle)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${header}")
+  file(READ "${header}" text)
+  if(NOT text MATCHES "#define ${macro}\\([A-Za-z, ]+\\)((\\\\\n|[^\n\\]|\\\\[^\n])*)\n")
+    message(FATAL_ERROR "${header} has no table ${macro}.")
+  endif()
+  string(REGEX REPLACE "[ \\\n]*\\\\\n[ ]*" " " rows "${CMAKE_MATCH_1}")
+  set(literal "\"[^\"]*\"")
+  while(rows MATCHES "^ *([A-Z][A-Za-z]*)\\(([^\"()]*), *(${literal}( ${literal})*)\\)")
+    string(LENGTH "${CMAKE_MATCH_0}" length)
+    set(kind "${CMAKE_MATCH_1}")
+    set(words "${CMAKE_MATCH_2}")
+    set(sentence "${CMAKE_MATCH_3}")
+    string(REGEX REPLACE ", *" ";" words "${words}")
+    string(REGEX REPLACE "\" \"|^\"|\"$" "" sentence "${sentence}")
+    foreach(pair IN ITEMS "&=amp" "<=lt" ">=gt")
+      string(REGEX REPLACE "=.*" "" sign "${pair}")
+      string(REGEX REPLACE ".*=" "" entity "${pair}")
+      string(REPLACE "${sign}" "&${entity}\;" sentence "${sentence}")
+    endforeach()
+    cmake_language(CALL ${handle} "${kind}" "${words}" "${sentence}")
+    string(SUBSTRING "${rows}" ${length} -1 rows)
+  endwhile()
+  if(NOT rows MATCHES "^ *$")
+    string(SUBSTRING "${rows}" 0 120 start)
+    message(FATAL_ERROR "${header}: a row of ${macro} is not Kind(word, ..., \"sentence without "
+      "quotation marks\"). It begins: ${start}")
+  endif()
+endfunction()
+
+# Collects the XML of one statistic.
+function(banyan_add_statistic kind words sentence)
+  if(kind STREQUAL "Text")
+    list(PREPEND words "text")
+  endif()
+  list(GET words 0 type)
+  list(GET words 1 name)
+  set(xml_of_double Double)
+  set(xml_of_vtkIdType IdType)
+  set(xml_of_text String)
+  if(NOT DEFINED xml_of_${type})
+    message(FATAL_ERROR "The statistic ${name} has the type ${type}: ParaView's XML is made of "
+      "double, vtkIdType and Text.")
+  endif()
+  set(xml "${xml_of_${type}}")
+  set_property(GLOBAL APPEND_STRING PROPERTY BANYAN_STATISTICS
+"      <${xml}VectorProperty name=\"${name}\" command=\"Get${name}\" information_only=\"1\">
+        <Simple${xml}InformationHelper />
+        <Documentation>${sentence}</Documentation>
+      </${xml}VectorProperty>\n")
+  set_property(GLOBAL APPEND_STRING PROPERTY BANYAN_EXPOSED_STATISTICS
+"          <Property name=\"${name}\" />\n")
+  set_property(GLOBAL APPEND_STRING PROPERTY BANYAN_STATISTICS_ON_NO_PANEL
+"          <Property name=\"${name}\" panel_visibility=\"never\" />\n")
+endfunction()
+
+# Writes `folder`/`name`.xml for each `name`.xml.in, with the rows of the tables in place.
+function(banyan_configure_xml folder)
+  banyan_read_table("${Banyan_SOURCE_DIR}/Rendering/vtkBanyanFrameStatistics.h"
+    BANYAN_FRAME_STATISTICS banyan_add_statistic)
+  foreach(part IN ITEMS STATISTICS EXPOSED_STATISTICS STATISTICS_ON_NO_PANEL)
+    get_property(BANYAN_${part} GLOBAL PROPERTY BANYAN_${part})
+  endforeach()
+  foreach(name IN LISTS ARGN)
+    configure_file("${Banyan_SOURCE_DIR}/Representations/${name}.xml.in" "${folder}/${name}.xml"
+      @ONLY)
+  endforeach()
+endfunction()
