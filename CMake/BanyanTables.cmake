@@ -21,7 +21,7 @@ function(banyan_read_table header macro handle)
     foreach(pair IN ITEMS "&=amp" "<=lt" ">=gt")
       string(REGEX REPLACE "=.*" "" sign "${pair}")
       string(REGEX REPLACE ".*=" "" entity "${pair}")
-      string(REPLACE "${sign}" "&${entity}\;" sentence "${sentence}")
+      string(REPLACE "${sign}" "&${entity};" sentence "${sentence}")
     endforeach()
     cmake_language(CALL ${handle} "${kind}" "${words}" "${sentence}")
     string(SUBSTRING "${rows}" ${length} -1 rows)
@@ -33,8 +33,22 @@ function(banyan_read_table header macro handle)
   endif()
 endfunction()
 
+# Stops unless a row has as many words before its sentence as rows of its kind have.
+function(banyan_check_words kind words)
+  cmake_parse_arguments(PARSE_ARGV 2 count "" "Number;Text;Real;Whole;Switch;Choice" "")
+  list(LENGTH words length)
+  if(NOT DEFINED count_${kind})
+    message(FATAL_ERROR "A row begins with ${kind}(${words}): this table has no such kind.")
+  endif()
+  if(NOT length EQUAL "${count_${kind}}")
+    message(FATAL_ERROR "The row ${kind}(${words}) has ${length} words before its sentence, not "
+      "${count_${kind}}: see the comment above the table.")
+  endif()
+endfunction()
+
 # Collects the XML of one statistic.
 function(banyan_add_statistic kind words sentence)
+  banyan_check_words(${kind} "${words}" Number 3 Text 1)
   if(kind STREQUAL "Text")
     list(PREPEND words "text")
   endif()
@@ -59,11 +73,59 @@ function(banyan_add_statistic kind words sentence)
 "          <Property name=\"${name}\" panel_visibility=\"never\" />\n")
 endfunction()
 
+# Collects the XML of one setting.
+function(banyan_add_setting kind words sentence)
+  banyan_check_words(${kind} "${words}" Real 7 Whole 6 Switch 3 Choice 4)
+  if(kind STREQUAL "Choice")
+    return()
+  endif()
+  list(GET words 0 name)
+  list(GET words -1 panel)
+  if(kind STREQUAL "Switch")
+    list(GET words 1 default)
+    string(REPLACE "true" "1" default "${default}")
+    string(REPLACE "false" "0" default "${default}")
+    set(type Int)
+    set(domain "<BooleanDomain name=\"bool\" />")
+  else()
+    list(GET words 2 default)
+    list(GET words 3 least)
+    list(GET words -2 most)
+    set(type Int)
+    if(kind STREQUAL "Real")
+      set(type Double)
+    endif()
+    set(domain "<${type}RangeDomain name=\"range\" min=\"${least}\" max=\"${most}\" />")
+  endif()
+  set(label "")
+  if(words MATCHES ";1/255;")
+    # Names in Python are labels without all that is no ASCII letter or digit: no-break spaces keep
+    # a label on two lines, and the unit is written in superscripts, so that names stay.
+    string(REGEX REPLACE "([a-z])([A-Z])" "\\1 \\2" label "${name}")
+    string(REPLACE "Image Error" "Image&#160;Error" label "${label}")
+    set(label " label=\"${label}&#160;(&#185;&#8260;&#8322;&#8325;&#8325;)\"")
+  endif()
+  set(visibility "")
+  if(panel STREQUAL "advanced")
+    set(visibility " panel_visibility=\"advanced\"")
+  elseif(NOT panel STREQUAL "default")
+    message(FATAL_ERROR "The setting ${name} is \"${panel}\" on the panel: say default or advanced.")
+  endif()
+  set_property(GLOBAL APPEND_STRING PROPERTY BANYAN_SETTINGS
+"      <${type}VectorProperty name=\"${name}\"${label} command=\"Set${name}\"
+                            default_values=\"${default}\" number_of_elements=\"1\"${visibility}>
+        ${domain}
+        <Documentation>${sentence}</Documentation>
+      </${type}VectorProperty>\n")
+endfunction()
+
 # Writes `folder`/`name`.xml for each `name`.xml.in, with the rows of the tables in place.
 function(banyan_configure_xml folder)
   banyan_read_table("${Banyan_SOURCE_DIR}/Rendering/vtkBanyanFrameStatistics.h"
     BANYAN_FRAME_STATISTICS banyan_add_statistic)
-  foreach(part IN ITEMS STATISTICS EXPOSED_STATISTICS STATISTICS_ON_NO_PANEL)
+  banyan_read_table("${Banyan_SOURCE_DIR}/Rendering/vtkBanyanVolumeMapper.h"
+    BANYAN_VOLUME_SETTINGS banyan_add_setting)
+  foreach(part IN ITEMS SETTINGS STATISTICS EXPOSED_STATISTICS STATISTICS_ON_NO_PANEL)
     get_property(BANYAN_${part} GLOBAL PROPERTY BANYAN_${part})
   endforeach()
   foreach(name IN LISTS ARGN)

@@ -78,15 +78,13 @@ vtkIdType Id(std::uint64_t number)
 } // namespace
 
 vtkStandardNewMacro(vtkBanyanVolumeMapper);
-banyanSetNumberMacro(vtkBanyanVolumeMapper, ImageErrorTolerance, 0.05, 255.0);
-banyanSetNumberMacro(vtkBanyanVolumeMapper, InteractiveImageErrorTolerance, 0.05, 255.0);
-banyanSetNumberMacro(vtkBanyanVolumeMapper, InteractiveFrameSeconds, 0.0, 3600.0);
-banyanSetNumberMacro(vtkBanyanVolumeMapper, SampleDistanceVoxels, 0.0, 100.0);
-banyanSetNumberMacro(vtkBanyanVolumeMapper, ScreenErrorPixels, 0.0, 1024.0);
-banyanSetNumberMacro(vtkBanyanVolumeMapper, MeshTolerance, 0.0, 0.0625);
-banyanSetNumberMacro(vtkBanyanVolumeMapper, MeshSamplingTolerance, 0.0, 1.0);
-banyanSetNumberMacro(vtkBanyanVolumeMapper, MaxElementsPerPixel, 0.0, 1e6);
-banyanSetNumberMacro(vtkBanyanVolumeMapper, TemporalEnhancement, 0.0, 1.0);
+
+#define BANYAN_REAL(Name, Unit, Default, Least, Most, SliderMost, Panel, Sentence)                 \
+  banyanSetNumberMacro(vtkBanyanVolumeMapper, Name, Least, Most);
+#define BANYAN_NONE(...)
+BANYAN_VOLUME_SETTINGS(BANYAN_REAL, BANYAN_NONE, BANYAN_NONE, BANYAN_NONE)
+#undef BANYAN_REAL
+#undef BANYAN_NONE
 
 vtkBanyanVolumeMapper::vtkBanyanVolumeMapper()
   : Statistics(vtkSmartPointer<vtkBanyanFrameStatistics>::New())
@@ -379,21 +377,10 @@ void vtkBanyanVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 void vtkBanyanVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "ImageErrorTolerance: " << this->ImageErrorTolerance << "\n"
-     << indent << "InteractiveImageErrorTolerance: " << this->InteractiveImageErrorTolerance << "\n"
-     << indent << "InteractiveFrameSeconds: " << this->InteractiveFrameSeconds << "\n"
-     << indent << "RefineInPasses: " << this->RefineInPasses << "\n"
-     << indent << "SampleDistanceVoxels: " << this->SampleDistanceVoxels << "\n"
-     << indent << "MeshTolerance: " << this->MeshTolerance << "\n"
-     << indent << "MeshSamplingTolerance: " << this->MeshSamplingTolerance << "\n"
-     << indent << "MeshSamplingBoxes: " << this->MeshSamplingBoxes << "\n"
-     << indent << "MaxElementsPerPixel: " << this->MaxElementsPerPixel << "\n"
-     << indent << "ScreenErrorPixels: " << this->ScreenErrorPixels << "\n"
-     << indent << "TemporalEnhancement: " << this->TemporalEnhancement << "\n"
-     << indent << "CompositeInFewBits: " << this->CompositeInFewBits << "\n"
-     << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"
-     << indent << "LoadBalancing: " << this->LoadBalancing << "\n"
-     << indent << "ReadAhead: " << this->ReadAhead << "\n"
+#define BANYAN_PRINT(Name, ...) os << indent << #Name ": " << this->Name << "\n";
+  BANYAN_VOLUME_SETTINGS(BANYAN_PRINT, BANYAN_PRINT, BANYAN_PRINT, BANYAN_PRINT)
+#undef BANYAN_PRINT
+  os << indent << "RefineInPasses: " << this->RefineInPasses << "\n"
      << indent << "Controller: " << this->Controller.GetPointer() << "\n"
      << indent << "Statistics: " << this->Statistics.GetPointer() << "\n";
 }

@@ -24,6 +24,69 @@ class vtkDataArray;
 class vtkDataObject;
 class vtkMultiProcessController;
 
+// clang-format off
+/// The table of the settings that ParaView offers. A row has the name, the unit, the default, the
+/// least and the most that is allowed, where ParaView's slider ends, whether the panel has it as
+/// "default" or "advanced", and the sentence that ParaView shows. CMake/BanyanTables.cmake makes
+/// ParaView's XML of it; a Choice has its XML by hand.
+#define BANYAN_VOLUME_SETTINGS(Real, Whole, Switch, Choice)                                        \
+  Real(ImageErrorTolerance, 1/255, 1, 0.05, 255, 32, default,                                      \
+    "Largest error of a pixel that is wanted in still pictures, in 1/255. It decides how "         \
+    "closely the volume is sampled, and from which level of an encoded series: smaller is more "   \
+    "accurate and slower. Samples get no closer than 1/8 of a voxel: EstimatedImageError has "     \
+    "the error that is expected, and ImageErrorLimit says what keeps it above the tolerance. "     \
+    "Errors of encoded values are apart (EncodingErrorOfValues). With ParaView's setting "         \
+    "Enable Streaming (Settings, General) still pictures come at once with the tolerance of "      \
+    "interaction, and are refined in steps.")                                                      \
+  Real(InteractiveImageErrorTolerance, 1/255, 8, 0.05, 255, 255, advanced,                         \
+    "The same while the camera is moved.")                                                         \
+  Real(InteractiveFrameSeconds, seconds, 0.2, 0, 3600, 10, advanced,                               \
+    "Seconds that a frame may take while the camera is moved: the tolerance is raised, up to "     \
+    "16-fold, while frames take longer, and projections and pictures with a fixed distance "       \
+    "between samples are drawn from coarser levels. 0 for as long as it takes.")                   \
+  Real(SampleDistanceVoxels, edges, 0, 0, 100, 4, advanced,                                        \
+    "A fixed distance between samples along a ray, in edges of the smallest cell, in place of "    \
+    "the tolerance; 0 lets the tolerance decide.")                                                 \
+  Real(ScreenErrorPixels, pixels, 0, 0, 1024, 64, advanced,                                        \
+    "How many pixels long cells may be, in place of the tolerance: all is drawn from the "         \
+    "coarsest levels whose cells are no longer on the screen, one sample per cell. 0 lets the "    \
+    "tolerance decide.")                                                                           \
+  Real(TemporalEnhancement, strength, 0, 0, 1, 1, default,                                         \
+    "Brings out what moves from step to step, at all scales: waves stay visible although they "    \
+    "become weaker by decades. 0 draws the values as they are, 1 their relative change from "      \
+    "step to step only. Colours mean enhanced values then: switch it off to read amplitudes.")     \
+  Real(MaxElementsPerPixel, elements, 0, 0, 1000000, 1000000, advanced,                            \
+    "The most elements of a mesh of hexahedra that may show in a pixel, side by side where the "   \
+    "mesh is nearest to the eye under each part of the picture: smaller elements are not "         \
+    "drawn, but those of a coarser level, whatever the tolerance asks for. 0 allows any "          \
+    "number: the tolerance alone decides.")                                                        \
+  Real(MeshTolerance, edges, 0.0009765625, 0, 0.0625, 0.0625, advanced,                            \
+    "How far the points of hexahedra may lie beside the lattice of their octree, in edges of "     \
+    "the smallest cell: they are drawn as if they were there. More than the default is for "       \
+    "meshes whose points were moved by displacements.")                                            \
+  Real(MeshSamplingTolerance, spread, 0.25, 0, 1, 1, advanced,                                     \
+    "How closely hexahedra that are no octree of boxes (curved, warped, with topography) are "     \
+    "sampled: the largest difference from their own field between samples, as a part of the "      \
+    "spread of the values around, whatever they are. 0 refuses such meshes, and says which "       \
+    "cell does not fit. MeshDeviation says what was reached.")                                     \
+  Whole(MeshSamplingBoxes, boxes, 1048576, 1024, 67108864, advanced,                               \
+    "How many boxes such meshes may take: where more would be needed, they stay coarser, with "    \
+    "a warning.")                                                                                  \
+  Switch(CompositeInFewBits, false, advanced,                                                      \
+    "Pixels travel between ranks packed, in as few bits as keep them within 1/255, instead of "    \
+    "as floats. Over a background, which ParaView blends later in 8 bits, a few pixels may "       \
+    "differ by 2/255.")                                                                            \
+  Whole(NumberOfThreads, threads, 0, 0, 1024, advanced,                                            \
+    "Threads per process that cast rays and decode; 0 shares the cores of a machine among its "    \
+    "ranks.")                                                                                      \
+  Switch(ReadAhead, true, advanced,                                                                \
+    "Whether what the next frame of an encoded series needs is decoded in the background while "   \
+    "a frame is composited and shown: the next time step, if it plays, otherwise what comes "      \
+    "onto the screen, if the camera moves.")                                                       \
+  Choice(LoadBalancing, 2, 0, 2,                                                                   \
+    "The sentence and the entries stand in Representations/BanyanRepresentations.xml.in.")
+// clang-format on
+
 /**
  * @class vtkBanyanVolumeMapper
  * @brief draws image data, encoded or plain, meshes of hexahedra that are the leaves of an octree,
@@ -73,27 +136,48 @@ public:
 
   ///@{
   /**
-   * Largest error of a pixel that is wanted, in 1/255 of a channel: of still frames (default 1),
-   * and while interacting, that is, while the window asks for more than one frame per second
-   * (default 8). It decides how closely each part of the picture is sampled, and from which level
-   * of an encoded series or a mesh of hexahedra. The error is estimated (see banyan::PlanSamplings)
-   * and goes to the statistics. Allowed [0.05, 255]. Without effect on projections and nearest
-   * interpolation.
+   * The settings of the table above. A Real refuses NaN, infinities and negative numbers with an
+   * error message, and keeps others within its limits, as a Whole and a Choice do.
+   *
+   * - Tolerances: errors are estimated (banyan::PlanSamplings) and go to the statistics. Frames are
+   *   interactive while the window asks for more than one per second. Without effect on projections
+   *   and nearest interpolation, as is ScreenErrorPixels.
+   * - SampleDistanceVoxels: opacities are corrected for it. With 0, projections and nearest
+   *   interpolation take 1.
+   * - ScreenErrorPixels: decided for each tile of 32 x 32 pixels (banyan::SamplingsByScreen), with
+   *   samples as far apart as SampleDistanceVoxels says, if it does. No error is estimated.
+   * - MaxElementsPerPixel: decided for each tile (banyan::FinestLevelsOfTiles). Without effect on
+   *   other data, and with SampleDistanceVoxels.
+   * - MeshSamplingTolerance: see banyan::CubeDeviation. A box of MeshSamplingBoxes takes about 200
+   *   bytes.
+   * - TemporalEnhancement: see banyan::TemporalEnhancement. Its scale is the largest magnitude that
+   *   the opacity function knows. For plain data the steps around must be there as point arrays
+   *   (banyan::MotionEnhancement); the representation sees to that.
+   * - CompositeInFewBits: without effect on projections, and while several volumes are on the
+   *   screen.
+   * - ReadAhead: takes half of what the cache has for decoded bricks, if the series plays, and a
+   *   quarter, if the camera moves.
+   * - LoadBalancing: 0 not at all, 2 to where measured costs balance, and 1, which was another way,
+   *   the same. The same on all ranks. The picture does not change.
    */
-  virtual void SetImageErrorTolerance(double number);
-  vtkGetMacro(ImageErrorTolerance, double);
-  virtual void SetInteractiveImageErrorTolerance(double number);
-  vtkGetMacro(InteractiveImageErrorTolerance, double);
-  ///@}
-
-  ///@{
-  /**
-   * Seconds that a frame may take while interacting: the tolerance is raised, up to 16-fold, while
-   * frames take longer, and projections and labels, which have no tolerance, are drawn from coarser
-   * levels. Default 0.2; 0 for as long as it takes.
-   */
-  virtual void SetInteractiveFrameSeconds(double number);
-  vtkGetMacro(InteractiveFrameSeconds, double);
+#define BANYAN_REAL(Name, Unit, Default, Least, Most, SliderMost, Panel, Sentence)                 \
+  virtual void Set##Name(double number);                                                           \
+  vtkGetMacro(Name, double);
+#define BANYAN_WHOLE(Name, Unit, Default, Least, Most, Panel, Sentence)                            \
+  vtkSetClampMacro(Name, int, Least, Most);                                                        \
+  vtkGetMacro(Name, int);
+#define BANYAN_SWITCH(Name, Default, Panel, Sentence)                                              \
+  vtkSetMacro(Name, bool);                                                                         \
+  vtkGetMacro(Name, bool);                                                                         \
+  vtkBooleanMacro(Name, bool);
+#define BANYAN_CHOICE(Name, Default, Least, Most, Sentence)                                        \
+  vtkSetClampMacro(Name, int, Least, Most);                                                        \
+  vtkGetMacro(Name, int);
+  BANYAN_VOLUME_SETTINGS(BANYAN_REAL, BANYAN_WHOLE, BANYAN_SWITCH, BANYAN_CHOICE)
+#undef BANYAN_REAL
+#undef BANYAN_WHOLE
+#undef BANYAN_SWITCH
+#undef BANYAN_CHOICE
   ///@}
 
   ///@{
@@ -113,130 +197,6 @@ public:
    * last frame kept the tolerance.
    */
   bool RefineNext();
-
-  ///@{
-  /**
-   * A fixed distance between samples along a ray, in edges of the smallest cell, in place of the
-   * tolerance. Opacities are corrected for it. While interacting, frames that take longer than
-   * InteractiveFrameSeconds are drawn from coarser levels, whose distances are longer by as much.
-   * Default 0: the tolerance decides (projections and nearest interpolation take 1). Allowed
-   * [0, 100].
-   */
-  virtual void SetSampleDistanceVoxels(double number);
-  vtkGetMacro(SampleDistanceVoxels, double);
-  ///@}
-
-  ///@{
-  /**
-   * How many pixels long cells may be, in place of the tolerance: each tile of 32 x 32 pixels is
-   * drawn from the coarsest level whose cells are no longer where the volume is nearest to the eye
-   * (banyan::SamplingsByScreen), one sample per cell, or as far apart as SampleDistanceVoxels says.
-   * The size of cells decides, whatever their values are: no error is estimated. Default 0: the
-   * tolerance decides. Allowed [0, 1024]. Without effect on projections and nearest interpolation.
-   */
-  virtual void SetScreenErrorPixels(double number);
-  vtkGetMacro(ScreenErrorPixels, double);
-  ///@}
-
-  ///@{
-  /**
-   * How far the points of hexahedra may lie beside the lattice of their octree, in edges of the
-   * smallest cell: they are drawn as if they were there. Default 1/1024; allowed [0, 1/16]. More
-   * than the default is for meshes whose points were moved by the displacements that they carry.
-   */
-  virtual void SetMeshTolerance(double number);
-  vtkGetMacro(MeshTolerance, double);
-  ///@}
-
-  ///@{
-  /**
-   * How closely hexahedra that are no octree of boxes (curved, warped, with topography) are
-   * sampled: the largest difference from their own field that is allowed between samples, as a part
-   * of the spread of the values around, whatever they are (banyan::CubeDeviation). Default 1/4;
-   * allowed [0, 1]; 0: such meshes are refused with a sentence that says which cell does not fit.
-   * The statistic MeshDeviation says what was reached.
-   */
-  virtual void SetMeshSamplingTolerance(double number);
-  vtkGetMacro(MeshSamplingTolerance, double);
-  ///@}
-
-  ///@{
-  /**
-   * How many boxes they may take; where more would be needed, they stay coarser, with a warning.
-   * Default 2^20; each takes about 200 bytes.
-   */
-  vtkSetClampMacro(MeshSamplingBoxes, int, 1024, 1 << 26);
-  vtkGetMacro(MeshSamplingBoxes, int);
-  ///@}
-
-  ///@{
-  /**
-   * The most elements of a mesh of hexahedra that may show in a pixel: where more would show under
-   * all of a tile of the picture (banyan::FinestLevelsOfTiles), it is drawn from a coarser level,
-   * whatever ImageErrorTolerance asks for; the estimated error says what that costs. Default 0: any
-   * number, so that the tolerance alone decides. Without effect on other data, and with
-   * SampleDistanceVoxels.
-   */
-  virtual void SetMaxElementsPerPixel(double number);
-  vtkGetMacro(MaxElementsPerPixel, double);
-  ///@}
-
-  ///@{
-  /**
-   * Brings out what moves from one step of an encoded series to the next, while it is drawn: the
-   * strength of banyan::TemporalEnhancement, in [0, 1]. Its scale is the largest magnitude that the
-   * opacity function knows. Of plain data the steps around must be there as point arrays
-   * (banyan::MotionEnhancement); the representation sees to that. Default 0: values are drawn as
-   * they are. vtkBanyanTemporalEnhancement does the same to data.
-   */
-  virtual void SetTemporalEnhancement(double number);
-  vtkGetMacro(TemporalEnhancement, double);
-  ///@}
-
-  ///@{
-  /**
-   * Whether pixels travel between ranks in as few bits as keep each of them within 1/255 of one
-   * rank's, and packed: far fewer bytes than floats. Where a background is blended behind
-   * the picture later, in 8 bits, as ParaView does, a few pixels may then differ by 2/255. Default
-   * off: floats, which are within 1/255 there too. Without effect on projections, and
-   * while several volumes are on the screen.
-   */
-  vtkSetMacro(CompositeInFewBits, bool);
-  vtkGetMacro(CompositeInFewBits, bool);
-  vtkBooleanMacro(CompositeInFewBits, bool);
-  ///@}
-
-  ///@{
-  /**
-   * Threads that cast rays and decode in this process; 0 (default) takes the cores divided by the
-   * ranks on this machine.
-   */
-  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
-  vtkGetMacro(NumberOfThreads, int);
-  ///@}
-
-  ///@{
-  /**
-   * How the zones of the ranks follow what frames cost: 0 not at all, 2 (default) to where
-   * measured costs balance, and 1, which was another way, the same. Bricks of plain image data go
-   * from rank to rank for it; meshes are on all ranks. The same on all ranks. The picture does not
-   * change.
-   */
-  vtkSetClampMacro(LoadBalancing, int, 0, 2);
-  vtkGetMacro(LoadBalancing, int);
-  ///@}
-
-  ///@{
-  /**
-   * Whether what the next frame of an encoded series needs is decoded in the background while a
-   * frame is composited and shown. If it plays: the bricks of the next time step that were drawn of
-   * this one, within half of what the cache has for decoded bricks. If the camera moves: bricks
-   * that come onto the screen when it goes on as it went, within a quarter. Default on.
-   */
-  vtkSetMacro(ReadAhead, bool);
-  vtkGetMacro(ReadAhead, bool);
-  vtkBooleanMacro(ReadAhead, bool);
-  ///@}
 
   /**
    * Ranks that draw together; null (default) for this process alone. Collective over the
@@ -306,21 +266,17 @@ private:
   void ReportOnce(const std::string& problem);
   void WarnOnce(const std::string& note, std::string& last);
 
-  double ImageErrorTolerance = 1.0;
-  double InteractiveImageErrorTolerance = 8.0;
-  double InteractiveFrameSeconds = 0.2;
+#define BANYAN_REAL(Name, Unit, Default, Least, Most, SliderMost, Panel, Sentence)                 \
+  double Name = Default;
+#define BANYAN_WHOLE(Name, Unit, Default, Least, Most, Panel, Sentence) int Name = Default;
+#define BANYAN_SWITCH(Name, Default, Panel, Sentence) bool Name = Default;
+#define BANYAN_CHOICE(Name, Default, Least, Most, Sentence) int Name = Default;
+  BANYAN_VOLUME_SETTINGS(BANYAN_REAL, BANYAN_WHOLE, BANYAN_SWITCH, BANYAN_CHOICE)
+#undef BANYAN_REAL
+#undef BANYAN_WHOLE
+#undef BANYAN_SWITCH
+#undef BANYAN_CHOICE
   bool RefineInPasses = false;
-  double SampleDistanceVoxels = 0.0;
-  double ScreenErrorPixels = 0.0;
-  double MeshTolerance = 1.0 / 1024;
-  double MeshSamplingTolerance = 0.25;
-  int MeshSamplingBoxes = 1 << 20;
-  double MaxElementsPerPixel = 0.0;
-  double TemporalEnhancement = 0.0;
-  bool CompositeInFewBits = false;
-  int NumberOfThreads = 0;
-  int LoadBalancing = 2;
-  bool ReadAhead = true;
   vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkSmartPointer<vtkBanyanFrameStatistics> Statistics;
 

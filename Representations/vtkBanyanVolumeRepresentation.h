@@ -3,6 +3,7 @@
 #define vtkBanyanVolumeRepresentation_h
 
 #include "BanyanRepresentationsModule.h" // for export macro
+#include "vtkBanyanVolumeMapper.h"       // for the table of settings
 #include "vtkNew.h"                      // for members
 #include "vtkSmartPointer.h"             // for members
 #include "vtkVolumeRepresentation.h"
@@ -11,7 +12,6 @@
 
 class vtkBanyanFrameStatistics;
 class vtkBanyanVolume;
-class vtkBanyanVolumeMapper;
 class vtkDataArray;
 class vtkDataObject;
 
@@ -48,12 +48,16 @@ public:
   void SetScalarOpacity(vtkPiecewiseFunction* opacity);
   ///@}
 
-  /** Distance between samples, in edges of the smallest cell. Default 1. */
-  void SetImageErrorTolerance(double tolerance);
-  void SetInteractiveImageErrorTolerance(double tolerance);
-  void SetInteractiveFrameSeconds(double seconds);
-  void SetSampleDistanceVoxels(double voxels);
-  void SetScreenErrorPixels(double pixels);
+  ///@{
+  /** The settings of vtkBanyanVolumeMapper's table are handed on to it. */
+#define BANYAN_REAL(Name, ...) void Set##Name(double value);
+#define BANYAN_WHOLE(Name, ...) void Set##Name(int value);
+#define BANYAN_SWITCH(Name, ...) void Set##Name(bool value);
+  BANYAN_VOLUME_SETTINGS(BANYAN_REAL, BANYAN_WHOLE, BANYAN_SWITCH, BANYAN_WHOLE)
+#undef BANYAN_REAL
+#undef BANYAN_WHOLE
+#undef BANYAN_SWITCH
+  ///@}
 
   ///@{
   /** Gradient shading with the light at the viewer, and its coefficients: as vtkVolumeProperty. */
@@ -96,29 +100,6 @@ public:
   void SetCroppingScale(double scale[3]);
   ///@}
 
-  /** How far points of hexahedra may lie beside the lattice of their octree, in finest edges. */
-  void SetMeshTolerance(double tolerance);
-  /** How closely hexahedra that are no octree are sampled: as vtkBanyanVolumeMapper's. */
-  void SetMeshSamplingTolerance(double tolerance);
-  void SetMeshSamplingBoxes(int boxes);
-
-  /** As vtkBanyanVolumeMapper's: the most elements of a mesh that may show in a pixel; 0 for any.
-   */
-  void SetMaxElementsPerPixel(double most);
-
-  /** As vtkBanyanVolumeMapper's; steps around the one that is drawn are asked of the pipeline. */
-  void SetTemporalEnhancement(double strength);
-
-  /** Whether pixels of ranks travel packed; see vtkBanyanVolumeMapper::SetCompositeInFewBits. */
-  void SetCompositeInFewBits(bool few);
-
-  /** Threads per process; 0 (default) shares the cores of a machine among its ranks. */
-  void SetNumberOfThreads(int threads);
-
-  /** 0 off, 2 measured cost; see vtkBanyanVolumeMapper. */
-  void SetLoadBalancing(int mode);
-  void SetReadAhead(bool on);
-
   /** Where the statistics of each frame go. */
   void SetStatistics(vtkBanyanFrameStatistics* statistics);
 
@@ -140,6 +121,7 @@ private:
   vtkBanyanVolumeRepresentation(const vtkBanyanVolumeRepresentation&) = delete;
   void operator=(const vtkBanyanVolumeRepresentation&) = delete;
 
+  void NoteStepsNeeded();
   void TakeSteps();
   void AddSteps(vtkDataArray* array);
   void PrepareRender(vtkDataObject* piece);
@@ -161,6 +143,7 @@ private:
   bool ColorGiven = false;
   bool OpacityGiven = false;
   bool RefusalReported = false;
+  bool StepsNeeded = false; ///< around the one drawn
 };
 
 #endif

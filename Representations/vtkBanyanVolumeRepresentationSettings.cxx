@@ -21,29 +21,30 @@ bool vtkBanyanVolumeRepresentation::IsNumber(const char* property, double value,
   return problem.empty();
 }
 
-void vtkBanyanVolumeRepresentation::SetImageErrorTolerance(double tolerance)
-{
-  this->Mapper->SetImageErrorTolerance(tolerance);
-}
+#define BANYAN_FORWARD(Type, Name)                                                                 \
+  void vtkBanyanVolumeRepresentation::Set##Name(Type value)                                        \
+  {                                                                                                \
+    this->Mapper->Set##Name(value);                                                                \
+    this->NoteStepsNeeded();                                                                       \
+  }
+#define BANYAN_REAL(Name, ...) BANYAN_FORWARD(double, Name)
+#define BANYAN_WHOLE(Name, ...) BANYAN_FORWARD(int, Name)
+#define BANYAN_SWITCH(Name, ...) BANYAN_FORWARD(bool, Name)
+BANYAN_VOLUME_SETTINGS(BANYAN_REAL, BANYAN_WHOLE, BANYAN_SWITCH, BANYAN_WHOLE)
+#undef BANYAN_REAL
+#undef BANYAN_WHOLE
+#undef BANYAN_SWITCH
+#undef BANYAN_FORWARD
 
-void vtkBanyanVolumeRepresentation::SetInteractiveImageErrorTolerance(double tolerance)
+/// Motion is brought out with steps around the one that is drawn: the pipeline must run for them.
+void vtkBanyanVolumeRepresentation::NoteStepsNeeded()
 {
-  this->Mapper->SetInteractiveImageErrorTolerance(tolerance);
-}
-
-void vtkBanyanVolumeRepresentation::SetInteractiveFrameSeconds(double seconds)
-{
-  this->Mapper->SetInteractiveFrameSeconds(seconds);
-}
-
-void vtkBanyanVolumeRepresentation::SetSampleDistanceVoxels(double voxels)
-{
-  this->Mapper->SetSampleDistanceVoxels(voxels);
-}
-
-void vtkBanyanVolumeRepresentation::SetScreenErrorPixels(double pixels)
-{
-  this->Mapper->SetScreenErrorPixels(pixels);
+  const bool needed = this->Mapper->GetTemporalEnhancement() > 0.0;
+  if (needed != this->StepsNeeded)
+  {
+    this->StepsNeeded = needed;
+    this->MarkModified();
+  }
 }
 
 void vtkBanyanVolumeRepresentation::SetShade(bool shade)
@@ -140,56 +141,6 @@ void vtkBanyanVolumeRepresentation::SetCroppingScale(double x, double y, double 
 void vtkBanyanVolumeRepresentation::SetCroppingScale(double scale[3])
 {
   this->SetCroppingScale(scale[0], scale[1], scale[2]);
-}
-
-void vtkBanyanVolumeRepresentation::SetMeshTolerance(double tolerance)
-{
-  this->Mapper->SetMeshTolerance(tolerance);
-}
-
-void vtkBanyanVolumeRepresentation::SetMeshSamplingTolerance(double tolerance)
-{
-  this->Mapper->SetMeshSamplingTolerance(tolerance);
-}
-
-void vtkBanyanVolumeRepresentation::SetMeshSamplingBoxes(int boxes)
-{
-  this->Mapper->SetMeshSamplingBoxes(boxes);
-}
-
-void vtkBanyanVolumeRepresentation::SetMaxElementsPerPixel(double most)
-{
-  this->Mapper->SetMaxElementsPerPixel(most);
-}
-
-void vtkBanyanVolumeRepresentation::SetTemporalEnhancement(double strength)
-{
-  const bool needed = this->Mapper->GetTemporalEnhancement() > 0.0;
-  this->Mapper->SetTemporalEnhancement(strength);
-  if (needed != (this->Mapper->GetTemporalEnhancement() > 0.0))
-  {
-    this->MarkModified(); // other steps are needed, or no longer
-  }
-}
-
-void vtkBanyanVolumeRepresentation::SetCompositeInFewBits(bool few)
-{
-  this->Mapper->SetCompositeInFewBits(few);
-}
-
-void vtkBanyanVolumeRepresentation::SetNumberOfThreads(int threads)
-{
-  this->Mapper->SetNumberOfThreads(threads);
-}
-
-void vtkBanyanVolumeRepresentation::SetReadAhead(bool on)
-{
-  this->Mapper->SetReadAhead(on);
-}
-
-void vtkBanyanVolumeRepresentation::SetLoadBalancing(int mode)
-{
-  this->Mapper->SetLoadBalancing(mode);
 }
 
 void vtkBanyanVolumeRepresentation::SetStatistics(vtkBanyanFrameStatistics* statistics)
