@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """TestDocuments.py links | example | blocks: what the documents promise must be there, run and show."""
 
+import fractions
 import glob
+import itertools
 import os
 import re
 import subprocess
@@ -11,6 +13,7 @@ import tempfile
 import numpy
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+HOWTO = os.path.join("Documentation", "howto", "draw-in-parallel.md")
 sys.path.insert(0, os.path.join(ROOT, "Testing", "PvBatch"))
 
 import pictures  # noqa: E402  the folder comes first
@@ -34,8 +37,41 @@ def anchors(path):
     return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
 
 
+def rows_of(header):
+    """Name and words of each row of a table that is a macro: Kind(word, word, ..., "sentence")."""
+    text = read(os.path.join(ROOT, "Rendering", header))
+    table = re.search(r"#define BANYAN_\w+\((?:\w+, )*\w+\) *\\\n((?:.*\\\n)+.*)", text)
+    for kind, text in re.findall(r"\b([A-Z][a-z]+)\(([^\"()]*),[ \\\n]*\"", table.group(1)):
+        words = re.split(r", *", text)
+        yield words[1 if kind == "Number" else 0], kind, words
+
+
+def number(text):
+    return {"off": 0, "on": 1, "false": 0, "true": 1}.get(text) if text.isalpha() else fractions.Fraction(text)
+
+
+def check_tables():
+    """Statistics and settings have a row in the how-to, settings with the default that they have."""
+    rows = re.findall(r"^\| (`.*?`) \| (?:(.*?) \| )?.* \|$", read(os.path.join(ROOT, HOWTO)), re.M)
+    told = {name: value for names, values in rows
+            for name, value in itertools.zip_longest(names.replace("`", "").split(", "), values.split(", "))}
+    problems = []
+    default_at = {"Real": 2, "Whole": 2, "Switch": 1}
+    for header, least in (("vtkBanyanFrameStatistics.h", 20), ("vtkBanyanVolumeMapper.h", 10)):
+        found = list(rows_of(header))
+        if len(found) < least:
+            problems.append(f"{header} has hardly any rows; has the table's form changed?")
+        for name, kind, words in found:
+            if name not in told:
+                problems.append(f"{HOWTO} has no row for {name}, which {header} has")
+            elif kind in default_at and number(told[name]) != number(words[default_at[kind]]):
+                default = words[default_at[kind]]
+                problems.append(f"{HOWTO}: the default of {name} is {told[name]}, in {header} {default}")
+    return problems
+
+
 def check_links():
-    """Links lead to a file and a heading, and papers.md names files and functions that exist."""
+    """Links lead to a file and a heading; papers.md and the how-to's tables name what exists."""
     problems = []
     for path in documents():
         for target, heading in re.findall(r"\]\(([^)#:\s]*)(?:#([^)\s]+))?\)", read(path)):
@@ -58,6 +94,7 @@ def check_links():
             names += 1
     if names < 20:
         problems.append("papers.md names hardly anything; has its form changed?")
+    problems += check_tables()
     sys.exit("\n".join(problems) or 0)
 
 
