@@ -13,68 +13,67 @@
 /// CMake/BanyanTables.cmake makes ParaView's XML of it. Counts and bytes are sums over all ranks.
 #define BANYAN_FRAME_STATISTICS(Number, Text)                                                      \
   Number(double, TotalSeconds, 0.0,                                                                \
-    "Seconds that the last frame took, from reading back geometry to the finished picture; the "   \
-    "slowest rank.")                                                                               \
+    "Seconds of the last frame, from reading back geometry to the finished picture. Slowest "      \
+    "rank.")                                                                                       \
   Number(double, RenderSeconds, 0.0,                                                               \
-    "Seconds of casting rays (and loading bricks); the slowest rank.")                             \
+    "Seconds of casting rays, loading bricks included. Slowest rank.")                             \
   Number(double, CompositeSeconds, 0.0,                                                            \
     "Seconds of compositing the pictures of all ranks.")                                           \
   Number(double, PilotSeconds, 0.0,                                                                \
-    "Seconds, before casting rays, of finding the sample distances and levels that keep the "      \
+    "Seconds before casting rays: finding the sample distances and levels that keep the "          \
     "tolerance.")                                                                                  \
   Number(double, StrideSeconds, 0.0,                                                               \
-    "Seconds, before casting rays, of finding the pixels that need none.")                         \
+    "Seconds before casting rays: finding the pixels that need no rays.")                          \
   Number(vtkIdType, Pilots, 0,                                                                     \
-    "Small pictures that were drawn to find both.")                                                \
+    "Number of small pictures drawn for Pilot Seconds and Stride Seconds.")                        \
   Number(double, Imbalance, 1.0,                                                                   \
-    "Render seconds of the slowest rank over the mean of all ranks; 1 is perfect.")                \
+    "Render seconds of the slowest rank, divided by the mean over all ranks. 1 is perfect.")       \
   Number(vtkIdType, SamplesTaken, 0,                                                               \
-    "Samples interpolated, over all ranks.")                                                       \
+    "Interpolated samples, sum over all ranks.")                                                   \
   Number(vtkIdType, BricksDrawn, 0,                                                                \
-    "Bricks whose values were needed, over all ranks.")                                            \
+    "Bricks whose values were needed, sum over all ranks.")                                        \
   Number(vtkIdType, BricksUniform, 0,                                                              \
-    "Bricks of one value, which were drawn without being loaded or sampled, over all ranks.")      \
+    "Bricks of one value, drawn without loading or sampling, sum over all ranks.")                 \
   Number(vtkIdType, BricksSkipped, 0,                                                              \
-    "Bricks that could not be seen, over all ranks.")                                              \
+    "Invisible bricks, sum over all ranks.")                                                       \
   Number(vtkIdType, BytesComposited, 0,                                                            \
     "Bytes sent between ranks to composite the picture.")                                          \
   Number(vtkIdType, MessagesComposited, 0,                                                         \
-    "Messages in which they were sent.")                                                           \
+    "Messages sent between ranks to composite the picture.")                                       \
   Number(vtkIdType, BytesRead, 0,                                                                  \
-    "Bytes read from series files for the last frame, over all ranks.")                            \
+    "Bytes read from series files for the last frame, sum over all ranks.")                        \
   Number(vtkIdType, CacheBytes, 0,                                                                 \
-    "Bytes of decoded bricks held in memory, over all ranks.")                                     \
+    "Bytes of decoded bricks in memory, sum over all ranks.")                                      \
   Number(vtkIdType, PixelsReadBehind, 0,                                                           \
     "Pixels that the first rank has read back of what other props had drawn.")                     \
   Number(vtkIdType, MeshBytes, 0,                                                                  \
-    "Bytes that all ranks hold of a mesh that is drawn: octree, cells, values and coarser "        \
-    "meshes. What ranks of a machine have together counts once.")                                  \
+    "Bytes of a drawn mesh in memory: octree, cells, values and coarser meshes. Sum over "         \
+    "all ranks; memory that ranks of a machine share counts once.")                                \
   Number(vtkIdType, MeshBytesShared, 0,                                                            \
-    "Of these, bytes that ranks of a machine have together.")                                      \
+    "The part of Mesh Bytes in memory that ranks of a machine share.")                             \
   Number(vtkIdType, BytesMoved, 0,                                                                 \
-    "Bytes of bricks that went from one rank's zone to another's for the last frame.")             \
+    "Bytes of bricks that changed from the zone of one rank to that of another before the "        \
+    "last frame.")                                                                                 \
   Number(vtkIdType, CacheHits, 0,                                                                  \
-    "Bricks that the caches of all ranks had for the last frame.")                                 \
+    "Bricks that the caches held for the last frame, sum over all ranks.")                         \
   Number(vtkIdType, CacheMisses, 0,                                                                \
-    "Bricks that had to be decoded for the last frame, over all ranks.")                           \
+    "Bricks that had to be decoded, or fetched from another rank, for the last frame. Sum "        \
+    "over all ranks.")                                                                             \
   Number(vtkIdType, CacheHitsAhead, 0,                                                             \
-    "Of the hits, bricks that were decoded in the background before they were asked for, over "    \
-    "all ranks.")                                                                                  \
+    "Cache hits that were decoded in the background before they were needed, sum over all "        \
+    "ranks.")                                                                                      \
   Number(double, EstimatedImageError, 0.0,                                                         \
-    "The largest error that is expected of a pixel of the last frame by sampling, in 1/255, "      \
-    "without the error of encoded values (Encoding Error Of Values); 0 where the sample "          \
-    "distance was fixed. Image Error Limit says why it is above the tolerance.")                   \
+    "Estimated largest error of a pixel by sampling, in 1/255. Errors of encoding are not "        \
+    "part of it (Encoding Error Of Values). 0 with a fixed sample distance.")                      \
   Text(ImageErrorLimit,                                                                            \
-    "The reason why the estimated error is above the tolerance that was set, or may be too "       \
-    "low, in a sentence; empty if there is none.")                                                 \
+    "The reason why the estimated error exceeds the tolerance, or may be too low, as a "           \
+    "sentence. Empty if there is none.")                                                           \
   Number(double, EncodingErrorOfValues, 0.0,                                                       \
-    "The largest error that encoding has made of the drawn values, over all steps, in the "        \
-    "units of the data: the estimated image error leaves it out. 0 for plain data; NaN for "       \
-    "meshes, of which it is not known.")                                                           \
+    "Largest error of the drawn values by encoding, over all steps, in the units of the "          \
+    "data. 0 for plain data; NaN for meshes, where it is not known.")                              \
   Number(double, MeshDeviation, 0.0,                                                               \
-    "How far the field that is drawn may be from that of a mesh of general hexahedra, as a "       \
-    "part of the spread of the values around; 0 for octrees and image data, which are drawn as "   \
-    "they are.")                                                                                   \
+    "General hexahedra: largest difference between the drawn field and that of the mesh, as "      \
+    "a share of the spread of the values nearby. 0 for octrees and image data.")                   \
   Number(vtkIdType, Frames, 0,                                                                     \
     "Frames drawn since the representation was made.")
 // clang-format on

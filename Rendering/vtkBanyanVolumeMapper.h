@@ -39,52 +39,52 @@ class vtkMultiProcessController;
     "Enable Streaming (Settings, General) still pictures come at once with the tolerance of "      \
     "interaction, and are refined in steps.")                                                      \
   Real(InteractiveImageErrorTolerance, 1/255, 8, 0.05, 255, 255, advanced,                         \
-    "The same while the camera is moved.")                                                         \
+    "Largest error of a pixel while the camera moves, in 1/255. Default: 8.")                      \
   Real(InteractiveFrameSeconds, seconds, 0.2, 0, 3600, 10, advanced,                               \
-    "Seconds that a frame may take while the camera is moved: the tolerance is raised, up to "     \
-    "16-fold, while frames take longer, and projections and pictures with a fixed distance "       \
-    "between samples are drawn from coarser levels. 0 for as long as it takes.")                   \
+    "Seconds per frame while the camera moves. Default: 0.2; 0 sets no limit. Slower frames "      \
+    "raise the tolerance, up to 16-fold. Projections, nearest points and fixed sample "            \
+    "distances take coarser levels instead.")                                                      \
   Real(SampleDistanceVoxels, edges, 0, 0, 100, 4, advanced,                                        \
-    "A fixed distance between samples along a ray, in edges of the smallest cell, in place of "    \
-    "the tolerance; 0 lets the tolerance decide.")                                                 \
+    "Fixed distance between samples along a ray, in edges of the smallest cell. Default: 0, "      \
+    "the tolerance decides.")                                                                      \
   Real(ScreenErrorPixels, pixels, 0, 0, 1024, 64, advanced,                                        \
-    "How many pixels long cells may be, in place of the tolerance: all is drawn from the "         \
-    "coarsest levels whose cells are no longer on the screen, one sample per cell. 0 lets the "    \
-    "tolerance decide.")                                                                           \
+    "Longest edge of a cell on the screen, in pixels. Everything is drawn from the coarsest "      \
+    "levels that keep it, with one sample per cell. Default: 0, the tolerance decides.")           \
   Real(TemporalEnhancement, strength, 0, 0, 1, 1, default,                                         \
-    "Brings out what moves from step to step, at all scales: waves stay visible although they "    \
-    "become weaker by decades. 0 draws the values as they are, 1 their relative change from "      \
-    "step to step only. Colours mean enhanced values then: switch it off to read amplitudes.")     \
+    "Brings out motion between steps, however weak: waves stay visible while they lose "           \
+    "amplitude by decades. 0 (default) draws plain values, 1 the relative change only; 0.5 "       \
+    "to 0.7 suit waves. Colours then mean enhanced values: switch it off to read "                 \
+    "amplitudes.")                                                                                 \
   Real(MaxElementsPerPixel, elements, 0, 0, 1000000, 1000000, advanced,                            \
-    "The most elements of a mesh of hexahedra that may show in a pixel, side by side where the "   \
-    "mesh is nearest to the eye under each part of the picture: smaller elements are not "         \
-    "drawn, but those of a coarser level, whatever the tolerance asks for. 0 allows any "          \
-    "number: the tolerance alone decides.")                                                        \
+    "Meshes of hexahedra: most elements side by side in a pixel. Where there are more, a "         \
+    "coarser level is drawn, whatever the tolerance. Default: 0, the tolerance decides.")          \
   Real(MeshTolerance, edges, 0.0009765625, 0, 0.0625, 0.0625, advanced,                            \
-    "How far the points of hexahedra may lie beside the lattice of their octree, in edges of "     \
-    "the smallest cell: they are drawn as if they were there. More than the default is for "       \
+    "Largest distance of the points of hexahedra from the lattice of their octree, in edges "      \
+    "of the smallest cell. Default: 1/1024. They are drawn on the lattice. Raise it for "          \
     "meshes whose points were moved by displacements.")                                            \
   Real(MeshSamplingTolerance, spread, 0.25, 0, 1, 1, advanced,                                     \
-    "How closely hexahedra that are no octree of boxes (curved, warped, with topography) are "     \
-    "sampled: the largest difference from their own field between samples, as a part of the "      \
-    "spread of the values around, whatever they are. 0 refuses such meshes, and says which "       \
-    "cell does not fit. MeshDeviation says what was reached.")                                     \
+    "Hexahedra that are no octree of boxes (curved, warped, topography) are sampled. This "        \
+    "is the largest difference to their own field between samples, as a share of the spread "      \
+    "of the values nearby. Default: 0.25. 0 refuses such meshes and names the cell. Mesh "         \
+    "Deviation is the difference that was reached.")                                               \
   Whole(MeshSamplingBoxes, boxes, 1048576, 1024, 67108864, advanced,                               \
-    "How many boxes such meshes may take: where more would be needed, they stay coarser, with "    \
-    "a warning.")                                                                                  \
+    "Most boxes for sampling such meshes. Default: 1048576. Where more are needed, the "           \
+    "sampling stays coarser, with a warning.")                                                     \
   Switch(CompositeInFewBits, false, advanced,                                                      \
-    "Pixels travel between ranks packed, in as few bits as keep them within 1/255, instead of "    \
-    "as floats. Over a background, which ParaView blends later in 8 bits, a few pixels may "       \
-    "differ by 2/255.")                                                                            \
+    "Sends pixels between ranks in as few bits as keep them within 1/255, about a ninth of "       \
+    "the bytes of floats. Default: off. ParaView blends the background later in 8 bits, so "       \
+    "a few pixels may differ by 2/255.")                                                           \
   Whole(NumberOfThreads, threads, 0, 0, 1024, advanced,                                            \
-    "Threads per process that cast rays and decode; 0 shares the cores of a machine among its "    \
-    "ranks.")                                                                                      \
+    "Threads per process for casting rays and decoding. Default: 0, the cores of a machine "       \
+    "are divided by its ranks.")                                                                   \
   Switch(ReadAhead, true, advanced,                                                                \
-    "Whether what the next frame of an encoded series needs is decoded in the background while "   \
-    "a frame is composited and shown: the next time step, if it plays, otherwise what comes "      \
-    "onto the screen, if the camera moves.")                                                       \
+    "Encoded image data: decodes bricks of the next frame in the background, while a frame "       \
+    "is composited and shown. While the series plays these are bricks of the next step, "          \
+    "while the camera moves bricks that come onto the screen. Default: on.")                       \
   Choice(LoadBalancing, 2, 0, 2,                                                                   \
-    "The sentence and the entries stand in Representations/BanyanRepresentations.xml.in.")
+    "Measured cost (default): the zones of the ranks follow the cost of the last frames. "         \
+    "Off: equal zones. 'Slice step' remains for older scripts and balances as 'Measured "          \
+    "cost'.")
 // clang-format on
 
 /**
