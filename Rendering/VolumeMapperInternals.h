@@ -4,6 +4,7 @@
 
 #include "Backdrop.h"
 #include "DistributedField.h"
+#include "FrameFigures.h"
 #include "FrameScene.h"
 #include "MotionEnhancement.h"
 #include "ToleranceControl.h"
@@ -11,18 +12,15 @@
 #include "vtkBanyanVolumeMapper.h"
 
 #include "Base/Timer.h"
-#include "Cache/BrickCache.h"
 #include "Parallel/Fields/DistributedFrame.h"
 
 #include <array>
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
-class vtkBanyanFrameStatistics;
 class vtkDataObject;
 class vtkVolume;
 
@@ -49,9 +47,6 @@ struct vtkBanyanVolumeMapper::Internals
     DrawnByOthers;                  ///< of the renderer's present frame; only to compare with
   unsigned long FrameEnds = 0;      ///< observes that
   unsigned char ToldNotInDepth = 0; ///< bits of banyan::NotInDepth
-
-  void Publish(
-    const Frame& drawn, std::uint64_t geometryBytes, vtkBanyanFrameStatistics* out) const;
 };
 
 /// A volume in the picture that is under way.
@@ -63,9 +58,7 @@ struct vtkBanyanVolumeMapper::Frame
   std::optional<banyan::FrameScene> Wanted; ///< none where it cannot be drawn
   banyan::ToleranceControl::Wish Wish;
   banyan::FrameStatistics Statistics;
-  std::uint64_t BytesBefore = 0;
-  std::uint64_t AheadBefore = 0;
-  banyan::BrickCache::Statistics CacheBefore;
+  banyan::FrameFigures Figures;
 };
 
 #endif

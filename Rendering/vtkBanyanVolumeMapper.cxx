@@ -37,44 +37,6 @@ namespace
 /// A part of a volume's size that nobody can see.
 constexpr double LeastRange = 1e-12;
 
-/// What a rank tells the others of a frame. Plain numbers: all are sent in one message.
-struct Report
-{
-  std::uint64_t BytesComposited; ///< of what other props have drawn
-  std::uint64_t BytesRead;
-  std::uint64_t CacheBytes;
-  std::uint64_t MeshBytes;
-  std::uint64_t MeshBytesShared;
-  std::uint64_t CacheHits;
-  std::uint64_t CacheMisses;
-  std::uint64_t CacheHitsAhead;
-};
-
-/// Collective.
-Report SumOf(banyan::Communicator& communicator, const Report& mine)
-{
-  std::vector<Report> all(static_cast<std::size_t>(communicator.Size()));
-  communicator.AllGather(&mine, sizeof(mine), all.data());
-  Report sum{};
-  for (const Report& report : all)
-  {
-    sum.BytesComposited += report.BytesComposited;
-    sum.BytesRead += report.BytesRead;
-    sum.CacheBytes += report.CacheBytes;
-    sum.MeshBytes += report.MeshBytes;
-    sum.MeshBytesShared += report.MeshBytesShared;
-    sum.CacheHits += report.CacheHits;
-    sum.CacheMisses += report.CacheMisses;
-    sum.CacheHitsAhead += report.CacheHitsAhead;
-  }
-  return sum;
-}
-
-vtkIdType Id(std::uint64_t number)
-{
-  return static_cast<vtkIdType>(number);
-}
-
 } // namespace
 
 vtkStandardNewMacro(vtkBanyanVolumeMapper);
@@ -196,48 +158,6 @@ double* vtkBanyanVolumeMapper::GetBounds()
   return this->Bounds;
 }
 
-/// Collective: one message.
-void vtkBanyanVolumeMapper::Internals::Publish(
-  const Frame& drawn, std::uint64_t geometryBytes, vtkBanyanFrameStatistics* out) const
-{
-  const banyan::BrickCache& process = banyan::BrickCache::Process();
-  const banyan::BrickCache::Statistics cache = process.GetStatistics();
-  const banyan::MeshBytes mesh = this->Field.BytesOfMesh();
-  Report mine;
-  mine.BytesComposited = geometryBytes;
-  mine.BytesRead = this->Field.BytesRead() - drawn.BytesBefore;
-  mine.CacheBytes = cache.Bytes + this->Field.FetchedBytes();
-  mine.MeshBytesShared = mesh.Leads ? mesh.Together : 0;
-  mine.MeshBytes = mesh.Own + mine.MeshBytesShared;
-  mine.CacheHits = cache.Hits - drawn.CacheBefore.Hits;
-  mine.CacheMisses = cache.Misses - drawn.CacheBefore.Misses;
-  mine.CacheHitsAhead = process.GetAheadStatistics().Hits - drawn.AheadBefore;
-  const Report all = SumOf(*this->Communicator, mine);
-  out->SetBytesRead(Id(all.BytesRead));
-  out->SetCacheBytes(Id(all.CacheBytes));
-  out->SetMeshBytes(Id(all.MeshBytes));
-  out->SetMeshBytesShared(Id(all.MeshBytesShared));
-  out->SetCacheHits(Id(all.CacheHits + this->Field.FetchHits()));
-  out->SetCacheMisses(Id(all.CacheMisses + this->Field.FetchMisses()));
-  out->SetCacheHitsAhead(Id(all.CacheHitsAhead));
-  out->SetBytesMoved(Id(this->Field.BytesMoved()));
-  const banyan::FrameStatistics& frame = drawn.Statistics;
-  out->SetRenderSeconds(frame.RenderSeconds);
-  out->SetCompositeSeconds(frame.CompositeSeconds);
-  out->SetPilotSeconds(frame.PilotSeconds);
-  out->SetStrideSeconds(frame.StrideSeconds);
-  out->SetPilots(frame.Pilots);
-  out->SetImbalance(frame.Imbalance);
-  out->SetSamplesTaken(frame.SamplesTaken);
-  out->SetBricksDrawn(frame.BricksDrawn);
-  out->SetBricksUniform(frame.BricksUniform);
-  out->SetBricksSkipped(frame.BricksSkipped);
-  out->SetBytesComposited(Id(frame.BytesComposited + all.BytesComposited));
-  out->SetMessagesComposited(Id(frame.MessagesComposited));
-  out->SetFrames(out->GetFrames() + 1);
-  out->SetTotalSeconds(drawn.Began.Seconds());
-}
-
 void vtkBanyanVolumeMapper::ReportOnce(const std::string& problem)
 {
   if (problem != this->Self->LastProblem)
@@ -300,9 +220,7 @@ banyan::FloatImage vtkBanyanVolumeMapper::CastFrame(
   scene.Depth = backdrop.Depths(scene.Viewport);
   this->Statistics->SetPixelsReadBehind(static_cast<vtkIdType>(backdrop.PixelsRead()));
 
-  drawn.BytesBefore = self.Field.BytesRead();
-  drawn.CacheBefore = banyan::BrickCache::Process().GetStatistics();
-  drawn.AheadBefore = banyan::BrickCache::Process().GetAheadStatistics().Hits;
+  drawn.Figures = banyan::FrameFigures(self.Field);
   banyan::FrameStatistics& frame = drawn.Statistics;
   // More than one frame per second: somebody moves the camera. All ranks are told the same rate.
   // Volumes that are drawn one after the other share the time of a frame.
@@ -360,7 +278,9 @@ void vtkBanyanVolumeMapper::FinishFrame(
   Internals& self = *this->Self;
   self.WriteSeconds = writeSeconds;
   self.LastProblem.clear();
-  self.Publish(drawn, geometry.BytesSent, this->Statistics);
+  this->Statistics->SetTotalSeconds(drawn.Began.Seconds());
+  drawn.Figures.Publish(
+    *self.Communicator, self.Field, drawn.Statistics, geometry.BytesSent, this->Statistics);
 }
 
 bool vtkBanyanVolumeMapper::RefineNext()

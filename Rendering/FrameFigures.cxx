@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FrameFigures.h"
+
+#include "DistributedField.h"
+#include "vtkBanyanFrameStatistics.h"
+
+#include "Parallel/Fields/DistributedFrame.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <vector>
+
+namespace banyan
+{
+namespace
+{
+
+/// What a rank tells the others of a frame: all are sent in one message.
+enum Figure
+{
+  GeometryBytes, ///< sent of what other props have drawn
+  BytesRead,
+  CacheBytes,
+  BytesOfMesh,
+  BytesOfMeshShared,
+  CacheHits,
+  CacheMisses,
+  CacheHitsAhead,
+  FigureCount
+};
+using Report = std::array<std::uint64_t, FigureCount>;
+
+/// Collective.
+Report SumOf(Communicator& communicator, const Report& mine)
+{
+  std::vector<Report> all(static_cast<std::size_t>(communicator.Size()));
+  communicator.AllGather(mine.data(), sizeof(mine), all.data());
+  Report sum{};
+  for (const Report& report : all)
+  {
+    std::transform(sum.begin(), sum.end(), report.begin(), sum.begin(), std::plus<>());
+  }
+  return sum;
+}
+
+vtkIdType Id(std::uint64_t number)
+{
+  return static_cast<vtkIdType>(number);
+}
+
+} // namespace
+
+FrameFigures::FrameFigures(const DistributedField& field)
+  : BytesBefore(field.BytesRead())
+  , AheadBefore(BrickCache::Process().GetAheadStatistics().Hits)
+  , CacheBefore(BrickCache::Process().GetStatistics())
+{
+}
+
+void FrameFigures::Publish(Communicator& communicator, const DistributedField& field,
+  const FrameStatistics& frame, std::uint64_t geometryBytes, vtkBanyanFrameStatistics* out) const
+{
+  const BrickCache& process = BrickCache::Process();
+  const BrickCache::Statistics cache = process.GetStatistics();
+  const MeshBytes mesh = field.BytesOfMesh();
+  Report mine{};
+  mine[GeometryBytes] = geometryBytes;
+  mine[BytesRead] = field.BytesRead() - this->BytesBefore;
+  mine[CacheBytes] = cache.Bytes + field.FetchedBytes();
+  mine[BytesOfMeshShared] = mesh.Leads ? mesh.Together : 0;
+  mine[BytesOfMesh] = mesh.Own + mine[BytesOfMeshShared];
+  mine[CacheHits] = cache.Hits - this->CacheBefore.Hits;
+  mine[CacheMisses] = cache.Misses - this->CacheBefore.Misses;
+  mine[CacheHitsAhead] = process.GetAheadStatistics().Hits - this->AheadBefore;
+  const Report all = SumOf(communicator, mine);
+  out->SetBytesRead(Id(all[BytesRead]));
+  out->SetCacheBytes(Id(all[CacheBytes]));
+  out->SetMeshBytes(Id(all[BytesOfMesh]));
+  out->SetMeshBytesShared(Id(all[BytesOfMeshShared]));
+  out->SetCacheHits(Id(all[CacheHits] + field.FetchHits()));
+  out->SetCacheMisses(Id(all[CacheMisses] + field.FetchMisses()));
+  out->SetCacheHitsAhead(Id(all[CacheHitsAhead]));
+  out->SetBytesMoved(Id(field.BytesMoved()));
+  out->SetRenderSeconds(frame.RenderSeconds);
+  out->SetCompositeSeconds(frame.CompositeSeconds);
+  out->SetPilotSeconds(frame.PilotSeconds);
+  out->SetStrideSeconds(frame.StrideSeconds);
+  out->SetPilots(frame.Pilots);
+  out->SetImbalance(frame.Imbalance);
+  out->SetSamplesTaken(frame.SamplesTaken);
+  out->SetBricksDrawn(frame.BricksDrawn);
+  out->SetBricksUniform(frame.BricksUniform);
+  out->SetBricksSkipped(frame.BricksSkipped);
+  out->SetBytesComposited(Id(frame.BytesComposited + all[GeometryBytes]));
+  out->SetMessagesComposited(Id(frame.MessagesComposited));
+  out->SetFrames(out->GetFrames() + 1);
+}
+
+} // namespace banyan

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Rendering_FrameFigures_h
+#define banyan_Rendering_FrameFigures_h
+
+#include "Cache/BrickCache.h"
+
+#include <cstdint>
+
+class vtkBanyanFrameStatistics;
+
+namespace banyan
+{
+
+class Communicator;
+class DistributedField;
+struct FrameStatistics;
+
+/// What a frame took, counted from where it is made to where it is published.
+class FrameFigures
+{
+public:
+  FrameFigures() = default;
+  explicit FrameFigures(const DistributedField& field);
+
+  /// Collective: one message.
+  /// @param frame of all ranks
+  /// @param geometryBytes that this rank has sent of what other props have drawn
+  /// @param out gets sums over all ranks, and seconds of the slowest
+  void Publish(Communicator& communicator, const DistributedField& field,
+    const FrameStatistics& frame, std::uint64_t geometryBytes, vtkBanyanFrameStatistics* out) const;
+
+private:
+  std::uint64_t BytesBefore = 0;
+  std::uint64_t AheadBefore = 0;
+  BrickCache::Statistics CacheBefore;
+};
+
+} // namespace banyan
+
+#endif
