@@ -4,6 +4,7 @@
 #include "DistributedField.h"
 #include "vtkBanyanFrameStatistics.h"
 
+#include "Base/ThreadPool.h"
 #include "Parallel/Fields/DistributedFrame.h"
 
 #include <algorithm>
@@ -27,6 +28,7 @@ enum Figure
   CacheHits,
   CacheMisses,
   CacheHitsAhead,
+  Threads,
   FigureCount
 };
 using Report = std::array<std::uint64_t, FigureCount>;
@@ -73,6 +75,7 @@ void FrameFigures::Publish(Communicator& communicator, const DistributedField& f
   mine[CacheHits] = cache.Hits - this->CacheBefore.Hits;
   mine[CacheMisses] = cache.Misses - this->CacheBefore.Misses;
   mine[CacheHitsAhead] = process.GetAheadStatistics().Hits - this->AheadBefore;
+  mine[Threads] = static_cast<std::uint64_t>(ThreadPool::Process().Width());
   const Report all = SumOf(communicator, mine);
   out->SetBytesRead(Id(all[BytesRead]));
   out->SetCacheBytes(Id(all[CacheBytes]));
@@ -81,6 +84,7 @@ void FrameFigures::Publish(Communicator& communicator, const DistributedField& f
   out->SetCacheHits(Id(all[CacheHits] + field.FetchHits()));
   out->SetCacheMisses(Id(all[CacheMisses] + field.FetchMisses()));
   out->SetCacheHitsAhead(Id(all[CacheHitsAhead]));
+  out->SetThreads(Id(all[Threads]));
   out->SetBytesMoved(Id(field.BytesMoved()));
   out->SetRenderSeconds(frame.RenderSeconds);
   out->SetCompositeSeconds(frame.CompositeSeconds);

@@ -28,6 +28,8 @@
     "Number of small pictures drawn for Pilot Seconds and Stride Seconds.")                        \
   Number(double, Imbalance, 1.0,                                                                   \
     "Render seconds of the slowest rank, divided by the mean over all ranks. 1 is perfect.")       \
+  Number(vtkIdType, Threads, 0,                                                                    \
+    "Threads that cast rays and decoded, over all ranks.")                                         \
   Number(vtkIdType, SamplesTaken, 0,                                                               \
     "Interpolated samples, sum over all ranks.")                                                   \
   Number(vtkIdType, BricksDrawn, 0,                                                                \
