@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Checks the style of the sources: clang-format, codespell, the sentences of documents (check-prose.sh),
-# a licence line in each file, and clang-tidy on what has changed since a revision. Needs a build folder for clang-tidy alone.
+# a licence line in each file, and clang-tidy on what has changed since a revision. Needs a build
+# folder for clang-tidy alone.
 #   check-style.sh [REVISION]        the revision before the last one when none is given
 #   check-style.sh --fix             formats the C++ sources, and checks nothing
 # SPDX-License-Identifier: BSD-3-Clause
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 if [[ "${1:-}" == --help ]]; then
-  sed -n '2,5s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
+  sed -n '2,6s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
   exit 0
 fi
 cd "$RepositoryRoot"
