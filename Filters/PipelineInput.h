@@ -10,8 +10,8 @@ class vtkDataObject;
 namespace banyan
 {
 
-/// The end of a pipeline, from which steps are pulled. What goes wrong upstream becomes an Error
-/// with the upstream message, also where VTK's own readers report success.
+/// The end of a pipeline, from which steps are pulled. A failure upstream becomes an Error with the
+/// upstream message, also where VTK's own readers report success.
 ///
 /// One rank's view; nothing here is collective.
 class PipelineInput
@@ -35,7 +35,7 @@ public:
   /// SourceInspector::ExtentInFile), which may parse them once more
   vtkDataObject* Pull(int piece, int pieces, const double* time, bool withFiles) const;
 
-  /// What the last Pull() gave.
+  /// Returns what the last Pull() gave.
   vtkDataObject* Data() const;
 
 private:

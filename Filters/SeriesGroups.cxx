@@ -134,7 +134,8 @@ void SeriesWriting::AddToIndex(const std::string& message, int number)
   }
 }
 
-/// Collective. What is not in the index file goes, and after an error that file as well.
+/// Collective. Deletes the files that the index file does not name, and after an error that file as
+/// well.
 void SeriesWriting::GiveUp(bool interrupted)
 {
   if (this->Opened) // everywhere
@@ -147,7 +148,7 @@ void SeriesWriting::GiveUp(bool interrupted)
     }
     catch (const AgreedError&)
     {
-      // What encoding says after it was interrupted is of no interest.
+      // Errors of encoding after it was interrupted are of no interest.
     }
   }
   std::vector<std::string> keep;

@@ -29,7 +29,7 @@ class vtkMultiProcessController;
 namespace banyan
 {
 
-/// What is to be written, and how.
+/// Says what is to be written, and how.
 struct WritingOrder
 {
   std::string FileName;

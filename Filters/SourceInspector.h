@@ -24,9 +24,9 @@ public:
   /// it complains about is said while the writer listens.
   virtual void Forget(vtkAlgorithm* source) const = 0;
 
-  /// What the file that the source has just read says of itself (WHOLE_EXTENT, ORIGIN, SPACING and
-  /// active scalars, as far as known). Some sources present all files of a series as they found the
-  /// first one.
+  /// Returns what the file that the source has just read says of itself (WHOLE_EXTENT, ORIGIN,
+  /// SPACING and active scalars, as far as known). Some sources present all files of a series as
+  /// they found the first one.
   /// @return nullptr when nothing is known
   virtual vtkSmartPointer<vtkInformation> InformationOfFile(vtkAlgorithm* source) const = 0;
 

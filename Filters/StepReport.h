@@ -27,7 +27,7 @@ struct WrittenArray
   ArrayFlags Flags = ArrayFlags::None; ///< not among those that are agreed on: see Hides
 };
 
-/// What one rank says about its piece of a step.
+/// Holds what one rank says about its piece of a step.
 struct StepReport
 {
   std::string Problem; ///< a sentence when this rank cannot go on
@@ -50,7 +50,7 @@ struct StepReport
 /// @param withRanges whether to go through all values for their ranges
 StepReport ReportOf(vtkDataObject* data, vtkDataArraySelection& selection, bool withRanges);
 
-/// What all ranks agree on about a step: every rank that has the same reports has the same
+/// Holds what all ranks agree on about a step. Every rank that has the same reports has the same
 /// agreement.
 struct StepAgreement
 {
@@ -73,12 +73,12 @@ StepAgreement Agree(const std::vector<StepReport>& reports);
 /// The array of a series that says which points or cells are hidden.
 WrittenArray HiddenFlags(ArrayFlags flags);
 
-/// What changed between two grids, as half a sentence ("the spacing was ... and is ..."), or
+/// Says what changed between two grids, as half a sentence ("the spacing was ... and is ..."), or
 /// nothing.
 std::string ChangeBetween(const Grid& before, const Grid& now);
 
-/// What changed between two steps, as half a sentence ("the array p was float32 and is float64"),
-/// or nothing.
+/// Says what changed between two steps, as half a sentence ("the array p was float32 and is
+/// float64"), or nothing.
 std::string ChangeBetween(const StepAgreement& before, const StepAgreement& now);
 
 } // namespace banyan

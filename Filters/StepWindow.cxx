@@ -76,7 +76,7 @@ void StepWindow::Request(
   }
   if (this->Find(*this->Wanted[1]))
   {
-    // What the input has now does not matter: it need not execute.
+    // The input's present step does not matter: it need not execute.
     input->Remove(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP());
   }
   else

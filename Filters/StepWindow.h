@@ -42,7 +42,7 @@ public:
   /// missing. Throws std::runtime_error when a step cannot be read.
   void Take(vtkAlgorithm* owner);
 
-  /// What was taken. Null for neighbours that there are none of, or that were not wanted.
+  /// Returns the step that was taken; null for a neighbour that does not exist or was not wanted.
   vtkDataObject* Previous() const { return this->Of(0); }
   vtkDataObject* Now() const { return this->Of(1); }
   vtkDataObject* Next() const { return this->Of(2); }

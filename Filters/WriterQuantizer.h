@@ -10,7 +10,7 @@
 namespace banyan
 {
 
-/// What the writer's properties say about quantizing, as numbers and flat lists.
+/// Holds what the writer's properties say about quantizing, as numbers and flat lists.
 struct WriterQuantizer
 {
   int Transform = 0; ///< as TransformChoice

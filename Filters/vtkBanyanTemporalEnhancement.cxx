@@ -35,7 +35,7 @@ namespace
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-/// What lies at the same place of another step; null where there is nothing.
+/// Returns what lies at the same place of another step; null where there is nothing.
 vtkDataObject* Counterpart(vtkDataObject* step, vtkCompositeDataIterator* place)
 {
   vtkCompositeDataSet* const blocks = vtkCompositeDataSet::SafeDownCast(step);
@@ -221,7 +221,7 @@ vtkDataArray* vtkBanyanTemporalEnhancement::PlainOf(vtkDataArray* array, const P
   return plain;
 }
 
-/// What the user left open, the series knows.
+/// The series knows what the user left open.
 banyan::TemporalEnhancement vtkBanyanTemporalEnhancement::HowFor(vtkDataArray* array) const
 {
   banyan::TemporalEnhancement how{ this->Strength, this->Scale, this->NoiseFloor,

@@ -22,7 +22,7 @@ namespace banyan
 namespace
 {
 
-/// Of points or cells (vtkDataObject::POINT or CELL), by name.
+/// An array of points or cells (vtkDataObject::POINT or CELL), by name.
 using Place = std::pair<int, std::string>;
 /// Type and components of an array.
 using Shape = std::pair<int, int>;

@@ -12,7 +12,7 @@ class vtkDataArray;
 namespace banyan
 {
 
-/// What of an array is enhanced.
+/// Says what is enhanced of an array.
 enum class EnhancedPart
 {
   Vectors = -2, ///< all components: vectors keep their direction and get the enhanced length

@@ -271,7 +271,7 @@ private:
     double coarsest[3];
     this->Blocks->GetSpacing(0, coarsest);
     const double* const origin = this->Blocks->GetOrigin();
-    // Of level 0: the same bits for the same place on all levels.
+    // Places are computed in cells of level 0, so one place has the same bits on all levels.
     const auto at = [&](int axis, int plane)
     { return origin[axis] + plane / scale * coarsest[axis]; };
     for (int z = box.Lo[2]; z <= box.Hi[2]; ++z)

@@ -115,7 +115,7 @@ std::shared_ptr<std::vector<Id>> IdsOf(vtkUnstructuredGrid* grid, const Id* ids,
   return chosen;
 }
 
-/// What keeps a mesh's arrays alive.
+/// Keeps a mesh's arrays alive.
 struct Owners
 {
   vtkSmartPointer<vtkUnstructuredGrid> Grid;

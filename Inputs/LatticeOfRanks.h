@@ -12,7 +12,7 @@ namespace banyan
 class ElementOctree;
 class RankTalk;
 
-/// What all ranks' pieces of a mesh have in common.
+/// Holds what the pieces of a mesh on all ranks have in common.
 struct CommonLattice
 {
   glm::dvec3 Origin{ 0.0 };

@@ -84,7 +84,7 @@ bool AreSame(vtkDataSet* one, vtkDataSet* other)
            grid->GetCells()->GetConnectivityArray(), otherGrid->GetCells()->GetConnectivityArray());
 }
 
-/// Of the cells that two cursors point to, and of all below.
+/// Compares the cells that two cursors point to, and all below them.
 bool AreSame(vtkHyperTreeGridNonOrientedCursor* one, vtkHyperTreeGridNonOrientedCursor* other)
 {
   if (one->IsMasked() != other->IsMasked() || one->IsLeaf() != other->IsLeaf() ||

@@ -18,8 +18,8 @@ namespace banyan
 /// touching the original.
 BANYANINPUTS_EXPORT vtkSmartPointer<vtkDataObject> CopyOfLeaves(vtkDataObject* leaves);
 
-/// What lies on the cells of hyper trees, or on those or the points of each block of AMR, in the
-/// order of the blocks; nothing for other data, and for points of hyper trees.
+/// Returns the attributes of the cells of hyper trees, or of the cells or points of each block of
+/// AMR, in the order of the blocks. Other data, and points of hyper trees, have none.
 /// @param where vtkDataObject::POINT or CELL
 BANYANINPUTS_EXPORT std::vector<vtkDataSetAttributes*> PartsOfLeaves(
   vtkDataObject* leaves, int where);

@@ -52,7 +52,8 @@ std::string Names(vtkDataSetAttributes* attributes)
   return text;
 }
 
-/// Of cells and of what arrays are called; false where something is no unstructured grid.
+/// Makes a key of the cells and of the names of arrays; false where something is no unstructured
+/// grid.
 bool KeyOf(const Blocks& blocks, Hash128& key)
 {
   key = {};
@@ -164,7 +165,7 @@ void KeepArrays(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
   }
 }
 
-/// What the next steps need: no values.
+/// Copies what the next steps need, without values.
 vtkSmartPointer<vtkUnstructuredGrid> CellsAndNames(vtkUnstructuredGrid* grid)
 {
   const auto kept = vtkSmartPointer<vtkUnstructuredGrid>::New();

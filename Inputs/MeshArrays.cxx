@@ -117,7 +117,7 @@ std::set<std::string> LeftOut(vtkUnstructuredGrid* grid, int where)
   return names;
 }
 
-/// Puts arrays that only some pieces have among the others. Of points these are ids.
+/// Puts arrays that only some pieces have among the others. Such arrays of points are ids.
 void AddPartial(vtkUnstructuredGrid* grid, int where, const WantedArrays& wanted, Found& found)
 {
   for (const std::string& name : LeftOut(grid, where))

@@ -24,7 +24,7 @@ BANYANINPUTS_EXPORT bool CollectGrids(
 /// Which point arrays are wanted, by name.
 using WantedArrays = std::function<bool(const std::string&)>;
 
-/// What becomes of wanted point arrays that only some pieces have, or that are others there.
+/// Says what becomes of wanted point arrays that only some pieces have, or that differ there.
 enum class UnevenArrays
 {
   Refused, ///< with an Error that tells the user of a writer what to choose

@@ -46,7 +46,7 @@ bool SameValues(vtkDataArray* a, vtkDataArray* b)
            static_cast<std::size_t>(a->GetNumberOfValues()) * a->GetDataTypeSize()) == 0;
 }
 
-/// What changed between the meshes of two steps, or nothing.
+/// Says what changed between the meshes of two steps, or nothing.
 std::string ChangeOf(
   vtkUnstructuredGrid* before, vtkUnstructuredGrid* now, const std::string& displacements)
 {

@@ -93,7 +93,8 @@ private:
   vtkSmartPointer<vtkUnstructuredGrid> First; ///< the grid of the first step
   std::shared_ptr<const StoredMesh> Mesh;
   std::map<std::string, std::string> CellArrays; ///< as MeshPlan has them
-  /// Of all arrays so far, by name: those as cell arrays; empty: of points. Of the first step on.
+  /// Says for each array so far, by name, which cell array it is; empty for arrays of points. It is
+  /// kept from the first step on.
   std::map<std::string, std::string> Kinds;
   std::string LeftOut;
   std::shared_ptr<const ElementOctree>

@@ -17,7 +17,7 @@ class vtkMultiProcessController;
 namespace banyan
 {
 
-/// What all ranks throw together, with the same sentence, after the same messages: they may go on
+/// Is thrown by all ranks together, with the same sentence, after the same messages: they may go on
 /// to talk to each other. Any other exception is one rank's own.
 class BANYANINPUTS_EXPORT AgreedError : public Error
 {
@@ -47,7 +47,7 @@ public:
   /// @param tick called again and again meanwhile
   void Meet(const std::function<void()>& tick) const;
 
-  /// What every rank says, in the order of ranks.
+  /// Returns what every rank says, in the order of ranks.
   std::vector<vtkMultiProcessStream> Exchange(const vtkMultiProcessStream& mine) const;
 
   /// @param problem a sentence, or nothing if all is well. Throws AgreedError with that of the
@@ -57,7 +57,7 @@ public:
   /// Every rank does something, and all of them throw AgreedError when one of them fails.
   void Together(const std::function<void()>& action) const;
 
-  /// As Together; only one rank has something to do.
+  /// Does the same as Together; only one rank has something to do.
   void OnRank(int rank, const std::function<void()>& action) const;
 
   /// The texts that rank 0 gives.

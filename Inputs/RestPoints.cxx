@@ -32,7 +32,8 @@ bool SameBits(vtkDataArray* a, vtkDataArray* b)
              static_cast<std::size_t>(a->GetNumberOfValues()) * a->GetDataTypeSize()) == 0);
 }
 
-/// What rounding points and displacements to float32, once each, and their difference may do.
+/// Returns the largest error that comes from rounding points, displacements and their difference to
+/// float32, once each.
 double RoundingOf(vtkUnstructuredGrid* grid)
 {
   double bounds[6];
@@ -67,7 +68,7 @@ Farthest FarthestOf(vtkPoints* first, vtkPoints* now, vtkDataArray* displacement
     }
     vtkMath::Subtract(b, moved, b);
     const double distance = std::sqrt(vtkMath::Distance2BetweenPoints(a, b));
-    // Of points that are nowhere, too.
+    // This finds points that are nowhere, too.
     if (!(distance <= farthest.Distance))
     {
       farthest = { point,

@@ -31,8 +31,8 @@ public:
   /// @return voxels, with points in float64
   vtkSmartPointer<vtkUnstructuredGrid> Of(vtkUnstructuredGrid* grid, const MeshSampling& sampling);
 
-  /// What is to be said of the last one: cells that are left out, places that stayed coarse; or
-  /// nothing.
+  /// Returns what is to be said of the last grid: cells that are left out, places that stayed
+  /// coarse; or nothing.
   const std::string& Note() const { return this->NoteText; }
 
 private:

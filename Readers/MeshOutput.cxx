@@ -163,7 +163,7 @@ bool MeshOutput::NeedsImage(const ArrayIndex& array) const
   return !array.CellArray.empty() && this->Made[0] > 0;
 }
 
-/// Of a cell array, in the cells of a coarser grid.
+/// Fills a cell array in the cells of a coarser grid.
 void MeshOutput::FillCells(const vtkBanyanDeferred::Handle& handle, vtkDataArray* values) const
 {
   const StoredMesh& mesh = *this->Mesh;

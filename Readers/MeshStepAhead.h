@@ -13,12 +13,13 @@ namespace banyan
 class BrickCache;
 
 /// Reads and decodes the next step of a series of meshes that plays, while this one is drawn: on
-/// threads of low priority, within half of what the cache has for decoded bricks. What was not
-/// ready in time is decoded when the step is read.
+/// threads of low priority, within half of what the cache has for decoded bricks. Values that are
+/// not ready in time are decoded when the step is read.
 class MeshStepAhead
 {
 public:
-  /// Before a step is read. What is under way stops, but for the brick that each thread is at.
+  /// Is called before a step is read. Work under way stops, except for the brick that each thread
+  /// is at.
   void Reading(const SeriesFile& series, int step);
 
   /// After it was read.

@@ -31,7 +31,7 @@ public:
   void Forget();
 
   /// The trees of a piece, on the grid of all; a piece has the trees that begin in its run of
-  /// cells. What no cell covers is masked.
+  /// cells. Places that no cell covers are masked.
   void FillTrees(std::shared_ptr<const StoredMesh> mesh, int level, int piece, int pieces,
     vtkHyperTreeGrid* output);
 

@@ -2,7 +2,7 @@
 #ifndef vtkBanyanArrayRanges_txx
 #define vtkBanyanArrayRanges_txx
 
-// What vtkBanyanArray answers when it is asked for ranges.
+// The answers of vtkBanyanArray when it is asked for ranges.
 #include "vtkBanyanArray.h"
 
 #include "vtkUnsignedCharArray.h"
@@ -89,7 +89,7 @@ std::vector<banyan::ValueRange> vtkBanyanArray<T>::Answer(
 
 namespace vtkBanyanArrayDetail
 {
-/// As VTK writes ranges: nothing at all is from the largest double to the smallest.
+/// Writes a range as VTK does: an empty one is from the largest double to the smallest.
 inline void Write(const banyan::ValueRange& from, double* to)
 {
   to[0] = from.Empty() ? VTK_DOUBLE_MAX : from.Low;

@@ -14,9 +14,9 @@ namespace banyan
 class MergedBlocks;
 class StepWindow;
 
-/// What can be drawn as it is (data sets, hyper tree grids, overlapping AMR), or blocks as one
-/// grid; null if there is none. Hyper tree grids among blocks become grids of their leaves: throws
-/// Error where one has none (see GridOfHyperTrees).
+/// Returns data that can be drawn as they are (data sets, hyper tree grids, overlapping AMR), or
+/// blocks as one grid; null if there is none. Hyper tree grids among blocks become grids of their
+/// leaves: throws Error where one has none (see GridOfHyperTrees).
 /// @param merged what is kept from step to step
 vtkSmartPointer<vtkDataObject> BlocksAsOne(vtkDataObject* data, MergedBlocks& merged);
 

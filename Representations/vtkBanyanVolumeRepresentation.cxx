@@ -212,7 +212,8 @@ int vtkBanyanVolumeRepresentation::ProcessViewRequest(
   return 1;
 }
 
-/// Of what takes long before a picture: ParaView shows progress of representations, not of mappers.
+/// Shows the progress of what takes long before a picture: ParaView shows progress of
+/// representations, not of mappers.
 void vtkBanyanVolumeRepresentation::ShowProgress()
 {
   this->UpdateProgress(this->Mapper->GetProgress());

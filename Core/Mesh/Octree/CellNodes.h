@@ -9,7 +9,7 @@
 namespace banyan
 {
 
-/// What values of a mesh belong to.
+/// Says what the values of a mesh belong to.
 enum class ValuesOn
 {
   Points,
@@ -35,8 +35,8 @@ class CellNodes
 public:
   /// @param values one tuple per cell of the mesh (of ElementOctree::CellOfLeaf) for
   /// ValuesOn::Cells; one per point for CellCorners: the mean of what the cells around a place have
-  /// there, weighted in the same way. Of vectors, lengths are taken first. Throws Error when the
-  /// array has no such component, or no values.
+  /// there, weighted in the same way. Vectors are replaced by their lengths first. Throws Error
+  /// when the array has no such component, or no values.
   CellNodes(const ElementOctree& tree, const NodeArray& values, ValuesOn where, ThreadPool& pool);
 
   /// One component at each point of the mesh; lives as long as this. Float32, or Float64 where

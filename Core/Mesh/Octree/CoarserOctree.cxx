@@ -36,7 +36,7 @@ public:
     mesh.Owner = this->Arrays;
     this->Tree->MakeStarts();
     NodeFinder(*this->Tree, pool).Find();
-    // What hangs is known: nobody asks for coordinates any more.
+    // The hanging nodes are known: nobody asks for coordinates any more.
     mesh.Points = nullptr;
     this->Arrays->Points = {};
     return { this->Tree, std::move(this->NodeOfPoint) };
@@ -66,7 +66,7 @@ private:
     ElementOctree& tree = *this->Tree;
     const auto nodes = static_cast<std::size_t>(this->Finer.Mesh().PointCount);
     this->PointOfNode.assign(nodes, Unknown);
-    // Of points at one place all become the one that counts.
+    // All points at one place become the one that counts.
     this->Counting.clear();
     if (!this->Finer.Twins().empty())
     {

@@ -131,8 +131,8 @@ public:
   /// The first leaf with a key that is not below this one.
   std::int64_t LeafFrom(MortonKey key) const;
 
-  /// Those on larger cells first: the corners of a cell that hang themselves come before what hangs
-  /// on it.
+  /// Hanging nodes of larger cells come first: the corners of a cell that hang themselves stand
+  /// before the nodes that hang on it.
   const HeldArray<HangingNode>& Hanging() const { return this->HangingNodes; }
   /// Some meshes have points of their own for each cell, or for each part.
   const HeldArray<TwinNode>& Twins() const { return this->TwinNodes; }

@@ -14,8 +14,8 @@
 namespace banyan
 {
 
-/// What is wrong with the first of many items that are looked at by several threads: the same one
-/// for any number of threads.
+/// Keeps what is wrong with the first bad one of many items, which several threads look at. Any
+/// number of threads finds the same item.
 class FirstFailure
 {
 public:

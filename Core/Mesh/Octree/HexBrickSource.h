@@ -60,8 +60,8 @@ public:
   std::size_t LevelBytes() const { return this->BytesOfLevels; }
 
 protected:
-  /// Of coarser meshes (HexBricks::AtLevel). Made with the pool of the process: the one that this
-  /// source was made with may be gone.
+  /// Returns the bricks of a coarser mesh (HexBricks::AtLevel). The level uses the pool of the
+  /// process, because the pool of this source may be gone.
   std::unique_ptr<BrickSource> MakeLevel(int level, const Box& domain) override;
 
 private:

@@ -13,7 +13,7 @@ namespace banyan
 namespace
 {
 
-/// What eight corners span, without those that are not finite.
+/// Returns the range of the finite ones among eight corners.
 ValueRange RangeOfElement(const double (&corners)[8], bool& special)
 {
   ValueRange range;

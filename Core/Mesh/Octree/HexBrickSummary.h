@@ -17,7 +17,7 @@ namespace banyan
 
 class ThreadPool;
 
-/// What values each brick of a mesh has: found by looking at all elements once.
+/// Says which values each brick of a mesh has. It is found by one look at all elements.
 struct HexBrickSummary
 {
   HeldArray<ValueRange> Ranges;
@@ -32,10 +32,11 @@ struct HexBrickSummary
 
   static HexBrickSummary Of(const HexBricks& bricks, const NodalField& values, ThreadPool& pool);
 
-  /// As one run of bytes, which other processes of the machine can have as theirs.
+  /// The summary can be written as one run of bytes, which other processes of the machine can use
+  /// as theirs.
   static std::size_t PackedBytes(std::size_t bricks);
   void WriteTo(char* to) const;
-  /// What lies there; nothing is copied.
+  /// Returns the summary that lies in the memory; nothing is copied.
   static HexBrickSummary Read(std::size_t bricks, const std::shared_ptr<const char>& memory);
 };
 

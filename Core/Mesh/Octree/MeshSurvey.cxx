@@ -66,7 +66,7 @@ private:
 
   bool Place(std::uint64_t bits)
   {
-    // Of whole numbers, only the upper bits are set.
+    // Whole numbers have only their upper bits set.
     std::size_t slot = ((bits ^ bits >> 32) * 0x9e3779b97f4a7c15u >> 32) & (this->Slots.size() - 1);
     while (this->Slots[slot] != Empty && this->Slots[slot] != bits)
     {
@@ -95,7 +95,7 @@ private:
   double Last[2] = { std::nan(""), std::nan("") };
 };
 
-/// What one thread has found.
+/// Holds what one thread has found.
 struct Part
 {
   glm::dvec3 Shortest{ std::numeric_limits<double>::infinity() };

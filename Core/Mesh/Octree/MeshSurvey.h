@@ -13,7 +13,7 @@ namespace banyan
 
 class ThreadPool;
 
-/// What a first look at all cells of a mesh finds.
+/// Holds what a first look at all cells of a mesh finds.
 struct MeshSurvey
 {
   glm::dvec3 Shortest{ 0.0 };   ///< edge of a cell along each axis

@@ -51,7 +51,7 @@ public:
   NodalField(std::shared_ptr<const ElementOctree> tree, const NodeArray& values,
     const std::shared_ptr<const void>& owner);
 
-  /// What other constructors do with their copy.
+  /// Does in place what other constructors do with their copy.
   /// @param values one per point of the mesh, float32 or float64: those of points that hang, and of
   /// all but the first one at a place, are replaced
   static void MakeContinuous(const ElementOctree& tree, void* values, ScalarType type);
@@ -85,7 +85,7 @@ public:
   template <class Function>
   void ForCorners(std::int64_t first, std::int64_t end, const Function& function) const
   {
-    // As long as reading from memory takes, about.
+    // So many steps take about as long as a read from memory.
     constexpr std::int64_t ahead = 12;
     const auto each = [&](const auto& from)
     {

@@ -8,7 +8,7 @@
 namespace banyan
 {
 
-/// Of a run of points.
+/// Holds what is found about a run of points.
 struct NodeFinder::Found
 {
   std::vector<HangingNode> Hanging;

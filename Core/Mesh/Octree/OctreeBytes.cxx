@@ -19,7 +19,7 @@ std::size_t Aligned(std::size_t bytes)
 
 } // namespace
 
-/// What comes before the arrays. Plain memory.
+/// Stands before the arrays. It is plain memory.
 struct OctreeBytes::Header
 {
   glm::dvec3 Origin{ 0.0 };
@@ -118,7 +118,7 @@ std::shared_ptr<const ElementOctree> OctreeBytes::Read(
   else
   {
     tree->Cells = mesh;
-    // What hangs is known: nobody asks for coordinates any more.
+    // The hanging nodes are known: nobody asks for coordinates any more.
     tree->Cells.Points = nullptr;
     tree->Cells.PointOwner.reset();
   }

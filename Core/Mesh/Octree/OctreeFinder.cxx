@@ -246,7 +246,7 @@ std::shared_ptr<const ElementOctree> ElementOctree::Find(
   NodeFinder(*tree, pool).Find();
   if (tree->Cells.PointOwner)
   {
-    // What hangs is known: nobody asks for coordinates any more.
+    // The hanging nodes are known: nobody asks for coordinates any more.
     tree->Cells.Points = nullptr;
     tree->Cells.PointOwner.reset();
   }

@@ -28,7 +28,7 @@ private:
   std::uint16_t NumberOfOrder(const std::array<std::uint8_t, 8>& order, OrderMemory& memory);
   void SortLeaves();
   void CheckLeaves();
-  /// What is wrong with a leaf that the next one overlaps.
+  /// Returns a sentence that says what is wrong with a leaf that the next one overlaps.
   std::string OverlapAt(std::size_t leaf) const;
 
   ElementOctree& Tree;

@@ -13,7 +13,7 @@
 namespace banyan
 {
 
-/// What lies between pairs of planes around a hexahedron, one pair along each face: a trilinear
+/// The space between pairs of planes around a hexahedron, one pair along each face. A trilinear
 /// cell lies within the hull of its corners, however it is bent. So a point outside of a pair is in
 /// no place of the cell, and need not be looked for there. Takes 180 bytes.
 class CellHull

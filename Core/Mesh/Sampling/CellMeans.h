@@ -11,8 +11,8 @@ namespace banyan
 {
 
 /// Values at the points of a mesh of general hexahedra, made of those of its cells: at each point
-/// the mean of the cells that have it as a corner; 0 at points of no cell. Of vectors, lengths are
-/// taken first.
+/// the mean of the cells that have it as a corner; 0 at points of no cell. Vectors are replaced by
+/// their lengths first.
 class CellMeans
 {
 public:

@@ -252,7 +252,7 @@ void CellShapes::ChooseLattice(int refinement, ThreadPool& pool)
   {
     height *= static_cast<float>(parts);
   }
-  // What rounding adds is no cell of its own.
+  // A length that only rounding adds makes no cell of its own.
   this->Size = glm::ivec3(glm::ceil(coarse * parts - 1e-6));
 }
 

@@ -72,7 +72,7 @@ public:
 
 private:
   static std::size_t Index(std::int64_t i) { return static_cast<std::size_t>(i); }
-  /// Of the points of a cell as the mesh has them.
+  /// The order of a cell's points in the mesh.
   enum class Order : std::uint8_t
   {
     Hexahedron,

@@ -18,7 +18,7 @@ namespace
 
 using Cube = SampledCubes::Cube;
 
-/// What comes of a cube.
+/// Says what becomes of a cube.
 enum class Fate : std::uint8_t
 {
   Drop,
@@ -230,7 +230,7 @@ void Refiner::Report(std::size_t cubes)
 
 void Refiner::Judge()
 {
-  // Of the cubes at the border about half are in the mesh, of whose halves half stay.
+  // About half of the cubes at the border are in the mesh, and half of their halves stay.
   const auto expected =
     static_cast<std::int64_t>(this->Result.Cubes.size() + 2 * this->Active.size());
   this->Measuring = expected > this->Sampling.MostCubes;
@@ -239,7 +239,7 @@ void Refiner::Judge()
     { this->Judgements[i] = this->JudgeOne(this->Active[i], own); });
 }
 
-/// Of cubes that stay because there are too many.
+/// Measures the deviation of cubes that stay whole because there are too many.
 void Refiner::MeasureDenied()
 {
   this->ForCubes(
@@ -262,7 +262,7 @@ void Refiner::Settle()
     halved += judgement.What == Fate::Split || judgement.What == Fate::Improve ? 1 : 0;
   }
   const auto kept = static_cast<std::int64_t>(this->Result.Cubes.size());
-  // Of the eight halves of a cube at the border about half stay.
+  // About half of the eight halves of a cube at the border stay.
   const bool full = kept + 8 * halved > this->Sampling.MostCubes;
   if (full && !this->Measuring)
   {

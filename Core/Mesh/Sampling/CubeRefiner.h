@@ -68,9 +68,9 @@ struct SampledCubes
 
 /// Halves cubes from one around the whole mesh on: as long as they are larger than the thinnest
 /// cell that they touch, and then as long as their deviation is above the tolerance, or the border
-/// of the mesh goes through them. Those with their middle in the mesh stay. The same for any number
-/// of threads. Throws Interrupted when Watch says so, and Error when as many cubes as the thinnest
-/// cells ask for would be more than eight times MostCubes.
+/// of the mesh goes through them. Cubes with their middle in the mesh stay. The result is the same
+/// for any number of threads. Throws Interrupted when Watch says so, and Error when as many cubes
+/// as the thinnest cells ask for would be more than eight times MostCubes.
 SampledCubes RefineCubes(const CellShapes& shapes, const MeshSampling& sampling, ThreadPool& pool);
 
 } // namespace banyan

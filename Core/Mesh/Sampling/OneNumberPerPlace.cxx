@@ -36,7 +36,7 @@ private:
   const Real* Points;
 };
 
-/// Of points whose keys are equal each one gets the first one at its place.
+/// Gives each of the points whose keys are equal the number of the first point at its place.
 template <class Real>
 bool NumberRun(const Places<Real>& places, const std::uint32_t* begin, const std::uint32_t* end,
   std::vector<std::uint32_t>& numbers)

@@ -8,7 +8,8 @@ namespace banyan
 namespace
 {
 
-/// Of a cell: points on faces belong to both sides, whatever rounding says.
+/// Cells are larger by this part of their size, so that points on faces belong to both sides,
+/// whatever rounding says.
 constexpr double Margin = 1e-6;
 
 bool IsInUnitCube(const glm::dvec3& part)
@@ -17,7 +18,7 @@ bool IsInUnitCube(const glm::dvec3& part)
   return off.x <= 0.5 + Margin && off.y <= 0.5 + Margin && off.z <= 0.5 + Margin;
 }
 
-/// Of two cells that are as near, the one that counts: the same in any order of cells.
+/// Says which of two equally near cells counts. The answer does not depend on the order of cells.
 bool IsBefore(const TrilinearCell& a, const TrilinearCell& b)
 {
   const glm::dvec3 middles[2] = { a.At(glm::dvec3(0.5)), b.At(glm::dvec3(0.5)) };

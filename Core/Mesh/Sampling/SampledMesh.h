@@ -39,7 +39,7 @@ public:
   /// Lets the arrays of Boxes() go: sampling values does not need them.
   void DropBoxes();
 
-  /// What is true of the sampling, for statistics.
+  /// Facts about the sampling, for statistics.
   double Deviation() const { return this->LargestDeviation; }
   std::int64_t AboveTolerance() const { return this->BoxesAbove; }
   /// Boxes that are larger than they should be, for there would be more than MostCubes.

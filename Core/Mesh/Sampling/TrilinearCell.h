@@ -63,7 +63,8 @@ public:
   /// each axis.
   glm::dvec3 Bend() const
   {
-    // Of r s that is |(r - 1/2) (s - 1/2)| <= 1/4; of r s t three of these halved, and 1/8.
+    // For r s that is |(r - 1/2) (s - 1/2)| <= 1/4. For r s t it is three of these, halved, and
+    // 1/8.
     return 0.25 * (glm::abs(this->RS + 0.5 * this->RST) + glm::abs(this->ST + 0.5 * this->RST) +
                     glm::abs(this->RT + 0.5 * this->RST)) +
            0.125 * glm::abs(this->RST);

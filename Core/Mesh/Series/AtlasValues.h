@@ -13,7 +13,7 @@ namespace banyan
 
 class ThreadPool;
 
-/// What values of a series belong to.
+/// Says what the values of a series belong to.
 enum class MeshValues
 {
   OfPoints,

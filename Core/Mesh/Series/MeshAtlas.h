@@ -58,8 +58,8 @@ public:
   /// The same with a list of so many samples: those of boxes stay where they are.
   MeshAtlas WithList(std::int64_t listed) const;
 
-  /// As it was stored. Throws Error when boxes overlap, or lie outside of the image, or there are
-  /// too many samples.
+  /// Makes an atlas from its stored parts. Throws Error when boxes overlap, or lie outside of the
+  /// image, or there are too many samples.
   MeshAtlas(
     const glm::ivec3& samples, std::vector<AtlasBox> boxes, std::int64_t listed, int coarsestLevel);
 
@@ -71,7 +71,8 @@ public:
   const std::vector<AtlasBox>& Boxes() const { return this->List; }
   std::int64_t Listed() const { return this->ListSamples; }
 
-  /// Where a node of a level lies; NoSample when no box has it. Of several boxes the first one.
+  /// Returns where a node of a level lies; NoSample when no box has it. The first one of several
+  /// boxes counts.
   /// @param node in cells of the level
   std::uint32_t SampleOf(int level, const glm::ivec3& node) const;
 

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <limits>
 
-// What writing and reading the file of a mesh have in common.
+// Holds what writing and reading the file of a mesh have in common.
 namespace banyan::mesh_file
 {
 

@@ -82,7 +82,8 @@ void FrameBalancer::BeginFrame(RayScene& scene, const BrickSource& source)
   this->LookAgain(scene, source);
   const LoadBalancer::Options& options = this->Balancer->GetOptions();
   this->View = ViewCosts(scene, options.Positions, options.BlockEdge, this->Visible);
-  // Of zones to begin with, bricks travel, and GoBack knows the way: planes move, but do not turn.
+  // When zones are given to begin with, bricks travel, and GoBack knows the way: planes move, but
+  // do not turn.
   const ScreenCuts cuts(scene);
   this->Balancer->BeginFrame(this->View, options.Start.Nodes.empty() ? &cuts : nullptr);
   this->PlaceZones();

@@ -19,7 +19,8 @@ namespace banyan
 namespace
 {
 
-/// What takes as long as a sample that is interpolated; see Documentation/balancing.md.
+/// A pixel and a ray take as long as so many samples that are interpolated; see
+/// Documentation/balancing.md.
 constexpr double SamplesPerPixel = 4.0;
 constexpr double SamplesPerRay = 12.0;
 
@@ -115,7 +116,8 @@ public:
   }
 
 private:
-  /// Of a block of which a part may be behind the eye, or beside the viewport: point by point.
+  /// Estimates, point by point, the samples in a block that may be partly behind the eye or beside
+  /// the viewport.
   double SamplesNearTheEye(const Box& block) const
   {
     constexpr int points = 5;

@@ -21,9 +21,10 @@ class BrickSource;
 std::vector<float> VisibleParts(
   const RayScene& scene, const BrickSource& source, const glm::ivec3& cells, int blockEdge);
 
-/// What is seen of each block of cells: its visible volume, as large as the picture shows it, as
-/// far as it is inside the viewport. In proportion to the samples that it would take if nothing hid
-/// it. An estimate; the same on all ranks, which evaluate the same numbers in the same order.
+/// Estimates how much is seen of each block of cells: its visible volume inside the viewport, as
+/// large as the picture shows it. The cost is in proportion to the samples that the block would
+/// take if nothing hid it. All ranks get the same bits, because they evaluate the same numbers in
+/// the same order.
 /// @param visible VisibleParts; empty for 1 everywhere
 BrickCosts ViewCosts(const RayScene& scene, const glm::ivec3& cells, int blockEdge,
   const std::vector<float>& visible = {});
@@ -31,7 +32,7 @@ BrickCosts ViewCosts(const RayScene& scene, const glm::ivec3& cells, int blockEd
 /// Work of a brick in samples: those taken, and what its rays take without them.
 double WorkOf(const DrawnWork& took);
 
-/// What all ranks did for a frame.
+/// Holds what all ranks did for a frame.
 struct FrameCost
 {
   std::vector<RankWork> Ranks;

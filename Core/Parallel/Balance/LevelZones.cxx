@@ -29,7 +29,7 @@ std::vector<Box> ZonesAtLevel(const std::vector<Box>& zones, int level, const Bo
   return boxes;
 }
 
-/// Those of an order that have cells.
+/// Returns the zones of an order that have cells.
 std::vector<int> WithCells(const std::vector<int>& order, const std::vector<Box>& zones)
 {
   std::vector<int> some;

@@ -10,9 +10,9 @@
 namespace banyan
 {
 
-/// What is drawn of zones at coarser levels: the coarse cells that begin in a zone, some of which
-/// end in the next one. Zones that begin and end at multiples of 2^level, as those of encoded
-/// series do, stay as they are; zones of pieces may begin anywhere.
+/// Says which coarse cells are drawn of a zone: those that begin in it. Some of them end in the
+/// next zone. Zones that begin and end at multiples of 2^level, as those of encoded series do, stay
+/// as they are; zones of pieces may begin anywhere.
 
 /// Cells of the finest level under those of a level that begin in a zone, inside `domain`.
 Box ZoneAtLevel(const Box& zone, int level, const Box& domain);

@@ -106,7 +106,8 @@ void LoadBalancer::MovePlanes(const BrickCosts& view, const ScreenCuts* cuts)
   const CostSums sums(costs);
   const CostSums bytes(this->DrawnBytes(costs));
   ZoneTree next = this->NextTree(costs, bytes);
-  // What a new view takes is known after its first frame: axes need not be what was expected.
+  // The first frame of a new view shows what it takes, and other axes may be better than the
+  // expected ones.
   const bool isNewlyKnown = rests && !this->ViewWasResting;
   this->ViewWasResting = rests;
   if (cuts && (isNewlyKnown || (this->TurnCooldown == 0 && this->Trials.GetBetter())))
@@ -164,7 +165,8 @@ BrickCosts LoadBalancer::ExpectedCosts(const BrickCosts& view) const
   return costs;
 }
 
-/// What each block takes to move: nothing where nothing is drawn, for it is not even read.
+/// Returns the bytes that moving each block takes. A block where nothing is drawn takes none, for
+/// it is not even read.
 BrickCosts LoadBalancer::DrawnBytes(BrickCosts costs) const
 {
   for (std::size_t i = 0; i < costs.Values.size(); ++i)

@@ -81,7 +81,7 @@ public:
 
   /// That the last BeginFrame moved.
   double BytesMoved() const { return this->Moved; }
-  /// Of the frame that was begun last: largest over mean seconds.
+  /// Returns the largest over the mean seconds that are expected of the frame that was begun last.
   double ExpectedImbalance() const { return this->Expected; }
 
 private:

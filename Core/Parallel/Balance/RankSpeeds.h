@@ -7,7 +7,7 @@
 namespace banyan
 {
 
-/// What one rank took for a frame.
+/// Holds what one rank took for a frame.
 struct RankWork
 {
   double Seconds = 0; ///< in which it cast rays

@@ -24,9 +24,9 @@ double ImbalanceOf(const std::vector<double>& seconds);
 ZoneTree RebalanceMeasuredCost(const ZoneTree& tree, const BrickCosts& costs,
   const std::vector<double>& speeds, double leastGain = 0.0, int step = 1);
 
-/// As far on the way from one tree to another as `most` bytes go: all planes go the same part of
-/// their way, or, where that moves none, the first from the root on that may goes one step. Where
-/// the trees have other axes or are nested otherwise, it is all the way.
+/// Goes from one tree towards another as far as `most` bytes allow. All planes go the same part of
+/// their way. Where that moves none, the first plane from the root on that may move goes one step.
+/// Trees with other axes or another nesting are reached at once.
 /// @param bytes that moving each brick takes
 ZoneTree WithinBytes(
   const ZoneTree& from, const ZoneTree& to, const CostSums& bytes, double most, int step);
@@ -48,7 +48,7 @@ double ExpectedImbalance(
 /// @param step planes of the result stand at multiples of it
 ZoneTree PartOfTheWay(const ZoneTree& from, const ZoneTree& to, double part, int step);
 
-/// What changes ranks from one tree to another of the same grid.
+/// Returns the bytes that change ranks from one tree to another of the same grid.
 double MovedBetween(const ZoneTree& from, const ZoneTree& to, const CostSums& bytes);
 
 } // namespace banyan

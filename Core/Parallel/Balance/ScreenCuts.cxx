@@ -117,7 +117,7 @@ double ScreenCuts::Pixels(const Box& flat) const
     corner[v] = far ? hi[v] : lo[v];
     polygon.push_back(this->IndexToView * corner);
   }
-  // What is behind the eye is not seen; what is beside the viewport neither.
+  // Parts behind the eye or beside the viewport are not seen.
   double largest = 0.0;
   for (const glm::dvec4& corner : polygon)
   {

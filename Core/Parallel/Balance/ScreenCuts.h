@@ -38,8 +38,8 @@ private:
   double ViewportPixels = 0.0;
 };
 
-/// What a ray that a plane cuts takes once more, in samples: it is made twice, and goes on behind
-/// what would have ended it.
+/// A ray that a plane cuts takes so many samples more: it is made twice, and goes on behind what
+/// would have ended it.
 constexpr double WorkPerCutRay = 24.0;
 
 /// Rays that planes of a tree cut, of those that meet what costs something; a ray counts as often

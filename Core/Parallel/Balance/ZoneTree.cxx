@@ -16,7 +16,8 @@ namespace
 
 int LongestAxis(const glm::ivec3& size)
 {
-  // Of equally long axes the last: values of a zone then lie closer together in files and memory.
+  // The last one of equally long axes is taken: values of a zone then lie closer together in files
+  // and memory.
   int axis = 2;
   for (int other = 1; other >= 0; --other)
   {

@@ -12,8 +12,8 @@
 namespace banyan
 {
 
-/// What the parallel algorithms need of a message-passing library: ranks, bytes and nothing else.
-/// Implementations: MPI, one process alone, and simulated ranks (threads) for tests. Only one
+/// Offers what the parallel algorithms need of a message-passing library: ranks, bytes and nothing
+/// else. Implementations: MPI, one process alone, and simulated ranks (threads) for tests. Only one
 /// thread per rank may use it (the main thread: ParaView initialises MPI as single-threaded).
 class Communicator
 {

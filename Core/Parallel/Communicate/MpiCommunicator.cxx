@@ -234,7 +234,7 @@ public:
   }
 
 private:
-  /// Of a message of ReceiveWhole that is complete.
+  /// Returns the arrival of a complete message of ReceiveWhole.
   Arrival ArrivalOf(int index, const MPI_Status& status)
   {
     --this->Open;
@@ -243,7 +243,7 @@ private:
     return { static_cast<std::size_t>(index), static_cast<std::size_t>(count) };
   }
 
-  /// As MPI_Waitall. @return MPI's code
+  /// Waits as MPI_Waitall does. @return MPI's code
   int CompleteAll(std::vector<MPI_Request>& requests, std::vector<MPI_Status>& statuses)
   {
     const int count = static_cast<int>(requests.size());
@@ -262,7 +262,7 @@ private:
     return code;
   }
 
-  /// As MPI_Waitany, of the messages of ReceiveWhole.
+  /// Waits as MPI_Waitany does, for the messages of ReceiveWhole.
   int CompleteAny(int& index, MPI_Status& status)
   {
     const int count = static_cast<int>(this->Awaited.size());

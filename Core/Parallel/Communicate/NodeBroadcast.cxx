@@ -44,7 +44,7 @@ void OnLeaders(
 MachineBytes NodeBroadcast(Communicator& communicator, NodeCommunicator& machines,
   std::size_t bytes, const std::function<void(char*)>& write)
 {
-  // Those who lead now: each rank does when memory cannot be had together.
+  // Lists the ranks that lead now. Each rank does when memory cannot be shared.
   std::vector<int> leaders;
   for (int rank = 0; rank < communicator.Size(); ++rank)
   {

@@ -92,7 +92,7 @@ std::shared_ptr<char> Mapped(std::size_t bytes, int flags, int file)
     static_cast<char*>(begin), [bytes](char* memory) { munmap(memory, bytes); });
 }
 
-/// What the others need to open a file without a name, and to know that it is this one.
+/// Tells the others how to open a file without a name, and how to know that it is this one.
 struct FileOfLeader
 {
   std::int64_t Process = 0;

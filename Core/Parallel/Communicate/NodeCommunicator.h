@@ -45,7 +45,7 @@ public:
   const std::vector<int>& Leaders() const { return this->AllLeaders; }
 
   /// Memory that all ranks of a machine have together, all zero; collective. It lasts until the
-  /// last rank lets it go. What one rank writes others may read after a Barrier.
+  /// last rank lets it go. After a Barrier, others may read what one rank wrote.
   ///
   /// Where memory cannot be had together, each rank is on its own from then on (Shares() is false,
   /// each rank leads), and has the memory for itself.

@@ -348,7 +348,7 @@ CompositePlan PlanCompositing(const std::vector<Footprint>& footprints, const Pi
       }
     }
   };
-  // What the root has drawn counts before what it will blend over something.
+  // Pixels that the root has drawn count before pixels that it will blend over something.
   const Footprint covered = FootprintOf(behind, viewport);
   set(CoveredCells(covered, viewport, plan.CellCounts), CompositePlan::Kind::Behind);
   set(plan.Covered[0], ordered ? CompositePlan::Kind::Split : CompositePlan::Kind::Behind);

@@ -10,7 +10,7 @@
 namespace banyan
 {
 
-/// What is known of the machine; the same on all ranks.
+/// Describes the machine; the same on all ranks.
 struct CompositeCosts
 {
   double BytesPerSecond = 1.25e9;    ///< of one rank's link
@@ -90,9 +90,9 @@ struct CompositePlan
 
   /// Pixels of one kind in a tile that `rank` sends straight to the root.
   void DirectRegion(int rank, int tile, Kind kind, Region& region) const;
-  /// Those that it sends to the owner of the tile, or blends as the owner.
+  /// Gives the pixels that a rank sends to the owner of the tile, or blends as the owner.
   void SharedRegion(int rank, int tile, Kind kind, Region& region) const;
-  /// Those that the owner of the tile sends to the root after blending.
+  /// Gives the pixels that the owner of the tile sends to the root after blending.
   void ResultRegion(int tile, Kind kind, Region& region) const;
 
 private:

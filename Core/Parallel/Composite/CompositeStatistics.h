@@ -8,7 +8,7 @@
 namespace banyan
 {
 
-/// What one compositing took on this rank.
+/// Says what one compositing took on this rank.
 struct CompositeStatistics
 {
   std::uint64_t BytesSent = 0;

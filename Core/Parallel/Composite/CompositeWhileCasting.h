@@ -30,7 +30,7 @@ public:
   void TileIsFinal(std::size_t tile) override;
   void BetweenTiles() override;
 
-  /// What there is left to do when rays have been cast. Throws what compositing has thrown so far.
+  /// Does what is left to do when rays have been cast. Throws what compositing has thrown so far.
   /// @param mine what has been cast; null when that has failed
   /// @return as CompositeByTileOwners; of no use when a rank has failed
   FloatImage Finish(const FloatImage* mine);

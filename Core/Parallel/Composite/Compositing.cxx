@@ -56,14 +56,14 @@ bool DrawsOutside(const FloatImage& image, const Footprint& footprint)
   return false;
 }
 
-/// What every rank tells all others before pixels travel.
+/// Is told by every rank to all others before pixels travel.
 struct Announcement
 {
   PixelRect Active; ///< of this rank's image
   std::uint64_t Arguments = 0;
 };
 
-/// Of all that must be the same on all ranks (FNV-1a).
+/// Returns a hash (FNV-1a) of everything that must be the same on all ranks.
 std::uint64_t Fingerprint(
   const std::vector<int>& order, const PixelRect& viewport, const CompositeOptions& options)
 {

@@ -33,7 +33,7 @@ enum class PixelPacking
 
 struct CompositeOptions
 {
-  /// What is done with the pixels of two ranks; all but Over always travel as floats.
+  /// Says how the pixels of two ranks are combined; all but Over always travel as floats.
   Combination Combine = Combination::Over;
   PixelTransport Transport = PixelTransport::Floats;
   PixelPacking Packing = PixelPacking::ByCosts;

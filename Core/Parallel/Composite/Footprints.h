@@ -31,7 +31,7 @@ struct Footprint
     return a.Rect == b.Rect && a.Rows == b.Rows;
   }
   bool Empty() const { return this->Rect.Empty(); }
-  /// Of any row of the picture.
+  /// Returns the interval of any row of the picture.
   Interval Row(int y) const
   {
     return y >= this->Rect.Lo.y && y < this->Rect.Hi.y

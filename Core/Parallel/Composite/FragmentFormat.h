@@ -67,7 +67,7 @@ FragmentFormat FormatOfFragments(int meeting, int shares, float brightest);
 void QuantizePixels(
   const FragmentFormat& format, const glm::vec4* pixels, std::size_t count, std::uint16_t* numbers);
 
-/// What QuantizePixels has rounded to.
+/// Writes the pixels that QuantizePixels has rounded to.
 void RestorePixels(
   const FragmentFormat& format, const std::uint16_t* numbers, std::size_t count, glm::vec4* pixels);
 

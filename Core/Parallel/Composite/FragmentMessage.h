@@ -53,7 +53,7 @@ private:
   std::vector<std::uint8_t> Other; ///< packed in the other one of two ways
 };
 
-/// What a part of so many pixels takes at most, with room that packing writes over.
+/// Returns the bytes that a region takes at most, with the room that packing writes over.
 std::size_t FragmentBytesAtMost(const CompositePlan::Region& region);
 
 /// Reads what FragmentWriter has written. Throws Error when the message does not fit to a region.

@@ -26,7 +26,7 @@ struct GatherPlan
 /// depends on the arguments only, so all ranks come to the same one without a message.
 GatherPlan PlanGathering(const Box& whole, const std::vector<Box>& pieces);
 
-/// What is left of `box` without `hole`: up to six disjoint boxes.
+/// Returns the rest of `box` without `hole`: up to six disjoint boxes.
 std::vector<Box> Subtract(const Box& box, const Box& hole);
 
 } // namespace banyan

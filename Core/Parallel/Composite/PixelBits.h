@@ -31,7 +31,7 @@ struct ByteHalves
   std::uint64_t High = 0;
 };
 
-/// Of channel c of the group: numbers[4 * i + c].
+/// Reads one channel c of the group: numbers[4 * i + c].
 inline ByteHalves HalvesOf(const std::uint16_t* numbers)
 {
   ByteHalves halves;

@@ -147,7 +147,7 @@ void ReadCodes(const std::uint8_t*& from, const std::uint8_t* end, std::size_t b
   from += needed;
 }
 
-/// What differences of some channels say about those of others, in parts of 32.
+/// Holds how the differences of a channel follow from those of others, in parts of 32.
 struct Factors
 {
   static constexpr std::size_t Bytes = 5;

@@ -26,7 +26,8 @@ namespace banyan
 /// @return bytes written, at most PackedBytesAtMost
 std::size_t PackPixels(const std::uint16_t* numbers, std::size_t count, std::uint8_t* packed);
 
-/// What `packed` must have room for; the last 8 bytes may be written without being part of it.
+/// Returns the bytes that `packed` must have room for; the last 8 of them may be written without
+/// being part of it.
 std::size_t PackedBytesAtMost(std::size_t count);
 
 /// The inverse. Throws Error when `bytes` are not exactly what `count` pixels take.

@@ -219,7 +219,7 @@ void TileOwnerCompositor::SendShared(int chunk, const FloatImage* mine)
   }
 }
 
-/// Of a message that has arrived.
+/// Takes a message that has arrived.
 void TileOwnerCompositor::Take(const Communicator::Arrival& arrival)
 {
   Message& message = this->Expected[arrival.Posted];
@@ -309,7 +309,7 @@ void TileOwnerCompositor::BlendFrom(
     });
 }
 
-/// Of all chunks that are complete.
+/// Sends the results of all chunks that are complete.
 void TileOwnerCompositor::SendResults()
 {
   for (std::size_t chunk = 0; chunk < this->Parts.size(); ++chunk)

@@ -61,7 +61,7 @@ private:
     FloatImage Behind;
   };
 
-  /// What has become of a chunk.
+  /// Says what has become of a chunk.
   struct Part
   {
     bool Added = false;

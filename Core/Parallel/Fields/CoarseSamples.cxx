@@ -19,7 +19,7 @@ glm::ivec3 RoundedUp(const glm::ivec3& fine, int every)
   return (fine + every - 1) / every;
 }
 
-/// What views of all ranks can be converted to.
+/// Returns a type that the views of all ranks can be converted to.
 ScalarType CommonType(const std::vector<ScalarType>& types)
 {
   const bool one =

@@ -20,8 +20,8 @@ public:
   /// @param level at least 1
   CoarsePieces(const PieceGrid& finest, const glm::ivec3& cells, int level);
 
-  /// Of each rank, in samples of the level: those of the coarse cells that begin in its piece. A
-  /// layer of them on the far side may lie in other pieces.
+  /// Returns a box for each rank, in samples of the level: the samples of the coarse cells that
+  /// begin in its piece. A layer of them on the far side may lie in other pieces.
   const std::vector<Box>& All() const { return this->Needed; }
 
   /// Collective: this rank's samples of the level.

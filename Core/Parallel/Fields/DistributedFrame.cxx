@@ -74,7 +74,8 @@ void AgreeOrThrow(Communicator& communicator, const std::string& failure)
   }
 }
 
-/// What a rank tells the others of a frame. Plain numbers: all are sent in one message.
+/// Is told by a rank to the others after a frame. It has plain numbers: all are sent in one
+/// message.
 struct Report
 {
   double RenderSeconds;
@@ -124,7 +125,7 @@ void Publish(Communicator& communicator, const Report& mine, FrameStatistics& st
   statistics.MessagesComposited = static_cast<std::uint64_t>(sum(&Report::MessagesComposited));
 }
 
-/// What compositing needs to know of the scene.
+/// Completes the options with what compositing needs to know of the scene.
 CompositeOptions CompleteOptions(
   CompositeOptions options, const RayScene& scene, const std::vector<Box>& zones)
 {

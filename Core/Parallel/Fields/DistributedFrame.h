@@ -12,7 +12,7 @@
 namespace banyan
 {
 
-/// What one frame took: summed over ranks, except the seconds, which are the slowest rank's.
+/// Says what one frame took. Numbers are summed over ranks; the seconds are the slowest rank's.
 struct FrameStatistics
 {
   double TotalSeconds = 0;
@@ -30,7 +30,7 @@ struct FrameStatistics
   std::uint64_t MessagesComposited = 0; ///< in so many messages
 };
 
-/// What a rank brings to a picture of all ranks.
+/// Holds what a rank brings to a picture of all ranks.
 struct RankShare
 {
   BrickSource* Source;       ///< this rank's bricks; may be null when its zone is empty
@@ -44,8 +44,9 @@ struct RankShare
 /// pictures are composited, from the first parts on that are final. Collective.
 ///
 /// @param scene the same on all ranks (depths included)
-/// @param compositing how the pictures are put together; the same on all ranks. What follows from
-/// the scene and the zones (combination, footprints, brightest colours) is set here.
+/// @param compositing how the pictures are put together; the same on all ranks. This function sets
+/// the options that follow from the scene and the zones (combination, footprints, brightest
+/// colours).
 /// @return the scene's viewport on rank 0, premultiplied; empty elsewhere. The picture does not
 /// depend on the number of ranks: within 1e-5 in float when no ray ends early, within
 /// 1 - OpacityLimit otherwise; with PixelTransport::WithinOne, 1 of 255 more.

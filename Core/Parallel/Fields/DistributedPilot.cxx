@@ -11,7 +11,7 @@ namespace banyan
 namespace
 {
 
-/// What a rank tells the others in front of its pixels. Plain memory: it is sent as it is.
+/// Is sent by a rank to the others in front of its pixels. It is plain memory, sent as it is.
 struct PilotReport
 {
   double SamplesTaken = 0;

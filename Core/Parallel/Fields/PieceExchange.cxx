@@ -238,7 +238,7 @@ void BrickFetch::Exchange(const std::vector<std::int64_t>& wanted,
   const std::string agreed = AgreeOnError(this->Comm, this->Failure);
   if (!agreed.empty())
   {
-    // What a rank could not give has come as nothing: the next frame must not find it.
+    // Bricks that a rank could not give have come empty: the next frame must not find them.
     into.Clear();
     throw Error(agreed);
   }

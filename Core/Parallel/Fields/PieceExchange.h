@@ -15,7 +15,7 @@ namespace banyan
 
 class ThreadPool;
 
-/// What all ranks know of the bricks of a grid in pieces.
+/// Holds what all ranks know of the bricks of a grid in pieces.
 struct PieceSummaries
 {
   MaskRange Masks;                   ///< over the finite values of all pieces

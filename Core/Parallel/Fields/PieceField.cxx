@@ -170,7 +170,7 @@ bool PieceField::Fits(
     this->Numbers.Misses += static_cast<std::uint64_t>(count);
   }
   this->Numbers.BytesMoved = static_cast<std::uint64_t>(fetched);
-  // As the balancer has it.
+  // The balancer has the same limit.
   return sum[3] == 0.0 && fetched <= LoadBalancer::MostBytes(drawn);
 }
 

@@ -27,7 +27,7 @@ class ThreadPool;
 class PieceField
 {
 public:
-  /// Of all ranks for the frame that was begun last.
+  /// Sums over all ranks for the frame that was begun last.
   struct Statistics
   {
     std::uint64_t BytesMoved = 0; ///< samples received, layers for shading among them
@@ -40,8 +40,8 @@ public:
   /// @param sharesWith a cache whose room for decoded bricks fetched ones take; null for none
   explicit PieceField(BrickCache* sharesWith = nullptr);
 
-  /// Collective: new pieces, or new values. What was fetched is forgotten; where zones stand is
-  /// not, if the pieces lie as before.
+  /// Collective: new pieces, or new values. Fetched bricks are forgotten. Zones stay where they are
+  /// if the pieces lie as before.
   /// @param samples of each rank's piece, the same list on all ranks
   /// @param mine of this rank: samples.at(rank) of it; without effect on ranks without samples
   /// @param cells of the whole grid

@@ -13,7 +13,7 @@ namespace banyan
 namespace
 {
 
-/// What is left of boxes without another one.
+/// Returns the rest of boxes without another one.
 std::vector<Box> Without(const std::vector<Box>& boxes, const Box& taken)
 {
   std::vector<Box> rest;

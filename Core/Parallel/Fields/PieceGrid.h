@@ -62,8 +62,8 @@ public:
   /// Whether each of these samples is in some piece.
   bool IsKnown(const Box& samples) const;
 
-  /// What a rank needs of others to give its bricks with a layer around: disjoint boxes. Samples
-  /// that nobody has are in none of them.
+  /// Returns the samples of others that a rank needs to give its bricks with a layer around, in
+  /// disjoint boxes. Samples that nobody has are in none of them.
   std::vector<ShellPart> ShellOf(int rank) const;
 
 private:

@@ -21,7 +21,7 @@ RayScene AtLevel(RayScene scene, int every)
   return scene;
 }
 
-/// What this rank wants of a level.
+/// Lists what this rank wants of a level.
 struct Wanted
 {
   std::vector<std::int64_t> Missing;

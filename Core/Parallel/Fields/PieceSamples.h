@@ -12,7 +12,7 @@
 namespace banyan
 {
 
-/// Of views of values of a type of which some are missing: NaN.
+/// Returns the type of views whose values have the given type and may be missing (NaN).
 ScalarType TypeWithMissing(ScalarType type);
 
 /// One value that is missing, wherever it is asked for.
@@ -23,7 +23,7 @@ SampledBox MissingSamples(const Box& samples);
 class PieceSamples
 {
 public:
-  /// Of a rank without data.
+  /// Makes the samples of a rank without data.
   PieceSamples() = default;
   /// Throws Error when the array's description is not usable.
   explicit PieceSamples(const SampleArray& array)

@@ -20,7 +20,7 @@ struct Entry
   std::uint64_t Uniform;
 };
 
-/// What a rank says of its array.
+/// Holds what a rank says of its array.
 struct ArrayFacts
 {
   double Low;

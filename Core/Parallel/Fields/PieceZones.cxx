@@ -37,7 +37,7 @@ int LongestAxis(const glm::ivec3& size)
   return axis;
 }
 
-/// What members have in a part of the zone.
+/// Returns the shares of members in a part of the zone.
 std::vector<Member> Inside(const Box& part, std::vector<Member> members)
 {
   for (Member& member : members)

@@ -76,7 +76,7 @@ SharedMesh::SharedMesh(Communicator& communicator, const HexMesh& piece, ValuesO
     mesh.PointOwner.reset();
   }
   const bool renumbered = this->Sampled && this->Mesh.Connectivity != mesh.Connectivity;
-  // What one process draws alone is the pipeline's.
+  // A mesh that one process draws alone belongs to the pipeline.
   Add(
     communicator.Size() > 1 && !renumbered ? mesh.ConnectivityBytes() : 0, together, this->OfMesh);
   Add(renumbered ? this->Mesh.ConnectivityBytes() : 0, false, this->OfMesh);
@@ -136,7 +136,7 @@ std::shared_ptr<const ElementOctree> SharedMesh::Find(
   return tree;
 }
 
-/// Those of all ranks of the machine: the others wait.
+/// Uses the threads of all ranks of the machine: the others wait.
 ThreadPool& SharedMesh::Threads(const NodeCommunicator& machines)
 {
   ThreadPool& own = ThreadPool::Process();

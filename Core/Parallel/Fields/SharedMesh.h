@@ -27,7 +27,7 @@ class ThreadPool;
 class SharedMesh
 {
 public:
-  /// What is true of a mesh. The same on all ranks.
+  /// Facts about a mesh, the same on all ranks.
   struct Facts
   {
     std::int32_t IsSampled = 0; ///< at boxes: it is no octree
@@ -69,7 +69,7 @@ public:
   /// @param count how many levels: see HexBricks
   void BringLevels(Communicator& communicator, int count);
 
-  /// Of the mesh, and of the values of the last Field.
+  /// Returns the bytes of the mesh and of the values of the last Field.
   MeshBytes Bytes() const;
 
 private:

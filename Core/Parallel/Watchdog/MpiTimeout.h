@@ -13,7 +13,8 @@ struct MpiTimeout
 {
   static constexpr double DefaultSeconds = 20.0;
 
-  /// What the variable BANYAN_RANK_LIMIT_SECONDS says, or DefaultSeconds. Throws Error.
+  /// Returns the seconds that the variable BANYAN_RANK_LIMIT_SECONDS says, or DefaultSeconds.
+  /// Throws Error.
   static double FromEnvironment();
 
   /// When a rank gives no sign of life for so long, or does not get on, and others wait for it, the

@@ -11,7 +11,7 @@
 namespace banyan
 {
 
-/// What can be seen of a rank from outside.
+/// Holds what can be seen of a rank from outside.
 struct RankState
 {
   int Rank = -1;                       ///< -1: it has not begun to give signs

@@ -103,7 +103,7 @@ void DecodeBox(OpenGroup& open, int step, const PlaneRegion& region, const glm::
 /// second-level cache.
 constexpr int LongestRow = 8;
 
-/// What is wanted of a brick of a row.
+/// Says what is wanted of a brick of a row.
 struct RowBrick
 {
   PlaneRegion Region;

@@ -49,7 +49,7 @@ BrickTree FuseMacroVoxels(const std::vector<BrickNode>& nodes, const BrickLayout
 /// The greatest macro voxels by size.
 CountsBySize CountMacroVoxels(const BrickTree& tree);
 
-/// What a step has in common with the one before.
+/// Says what a step has in common with the one before.
 struct MergedTree
 {
   /// Per level and node: 1 when nothing below has changed, so that what was made of the subtree at

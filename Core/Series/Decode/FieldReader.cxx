@@ -110,7 +110,7 @@ Hash128 FieldReader::HashBefore(const FieldKey& last)
   }
   catch (const Error&)
   {
-    // Those who read it will be told what is wrong with it; others do not need it.
+    // Whoever reads it will be told what is wrong with it; others do not need it.
     return this->Segment(last.Step)->HeaderHash();
   }
 }
@@ -182,8 +182,8 @@ void FieldReader::ForgetOldGroups()
   {
     bytes += kept->second->MemoryBytes();
     ++count;
-    // Of each component the segment at hand and the one before it; others as the budget allows: the
-    // tables of a segment take more than a megabyte.
+    // Each component keeps the segment at hand and the one before it; others stay as the budget
+    // allows: the tables of a segment take more than a megabyte.
     const bool keep =
       count <= 2 * std::size_t{ this->Series.Components } ||
       (count <= KeptTables * std::size_t{ this->Series.Components } &&

@@ -32,11 +32,12 @@ public:
   /// See SeriesFile.
   std::shared_ptr<const std::vector<BrickNode>> Nodes(const FieldKey& field);
   void DecodeBrick(const FieldKey& field, std::int64_t brick, void* values);
-  /// As SeriesFile::DecodePart. @return false when the caller has to decode the whole brick instead
+  /// Decodes as SeriesFile::DecodePart does. @return false when the caller has to decode the whole
+  /// brick instead
   bool DecodePart(const FieldKey& field, std::int64_t brick, const Box& part,
     const glm::i64vec3& stride, void* first);
-  /// As SeriesFile::DecodeRow, of several bricks. @return false when the caller has to decode them
-  /// one by one
+  /// Decodes as SeriesFile::DecodeRow does, several bricks at once. @return false when the caller
+  /// has to decode them one by one
   bool DecodeRow(const FieldKey& field, std::int64_t brick, int count, const Box& part,
     const glm::i64vec3& stride, void* first);
   /// See SeriesFile.
@@ -54,7 +55,7 @@ private:
   /// Where a field is stored: as it is asked for or, where it rests, at the last step of the group
   /// from which on it does.
   FieldKey Stored(FieldKey field);
-  /// Of the header of the segment where the last step before a group is stored.
+  /// Returns the hash of the header of the segment where the last step before a group is stored.
   Hash128 HashBefore(const FieldKey& last);
   /// @param field as Stored says
   std::shared_ptr<OpenGroup> Open(const FieldKey& field);

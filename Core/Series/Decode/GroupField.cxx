@@ -334,8 +334,8 @@ LatticeCache::Box GroupField::Box(int step, int plane, const glm::ivec3& block, 
     return found;
   }
   const LatticeCache::Box box = this->Decode(step, plane, block);
-  // Half of all steps are no references. Of these, boxes are needed until the blocks around are
-  // decoded.
+  // Half of all steps are no references. Boxes of these steps are needed until the blocks around
+  // are decoded.
   const bool brief = passing && plane == 0 && ReferenceDistance(step, this->File.Steps()) == 1;
   cache.Add(key, box, brief);
   return box;

@@ -76,7 +76,7 @@ private:
   LatticeCache::Box Decode(int step, int plane, const glm::ivec3& block);
   template <class Number>
   LatticeCache::Box DecodeAs(int step, int plane, const glm::ivec3& block);
-  /// What the calling thread asks for.
+  /// Holds what the calling thread asks for.
   static LinePrefetcher& Ahead();
 
   GroupReader& File;

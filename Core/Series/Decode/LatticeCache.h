@@ -14,8 +14,8 @@ namespace banyan
 {
 
 /// Decoded boxes (lattice numbers) that other steps and finer blocks are predicted from, kept
-/// within a byte budget. What goes out is found as by the hand of a clock, which spares once what
-/// was used since it came by. One for the process. Thread-safe.
+/// within a byte budget. Boxes are evicted as by the hand of a clock, which spares each box once
+/// that was used since it came by. The process has one cache. It is thread-safe.
 class LatticeCache
 {
 public:

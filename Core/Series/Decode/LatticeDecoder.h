@@ -33,7 +33,7 @@ public:
   LatticeDecoder(
     const Transform& transform, double origin, double step, std::int64_t first, std::int64_t last);
 
-  /// What one number decodes to.
+  /// Returns the value that one number decodes to.
   T ValueOf(std::int64_t number) const;
 
   /// decoded[i] from the number base + offsets[i]. Any input

@@ -30,7 +30,7 @@ std::size_t Rounded(std::size_t bytes)
   return (std::max<std::size_t>(bytes, 1) + Line - 1) / Line * Line;
 }
 
-/// What a slab begins with.
+/// Stands at the beginning of a slab.
 struct Slab
 {
   static constexpr std::size_t Words = 64;

@@ -38,7 +38,7 @@ public:
   /// LatticeCache sets it to its budget.
   static void KeepAtMost(std::size_t bytes);
 
-  /// Of all slabs, for tests.
+  /// Returns the bytes of all slabs, for tests.
   static std::size_t BytesOfSlabs();
 };
 

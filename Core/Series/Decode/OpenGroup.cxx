@@ -26,7 +26,7 @@ const group::NodeEntry& EntryAt(
     .Levels[static_cast<std::size_t>(field.Level)][static_cast<std::size_t>(brick)];
 }
 
-/// Of the finite samples; empty where there is none.
+/// Returns the range of the finite samples; empty where there is none.
 ValueRange RangeOf(const OpenGroup& open, const group::NodeEntry& entry)
 {
   if (entry.Explicit)
@@ -48,7 +48,8 @@ ValueRange RangeOf(const OpenGroup& open, const group::NodeEntry& entry)
   return range;
 }
 
-/// Of a brick that is not uniform: by its content where bricks of other segments may be the same.
+/// Identifies a brick that is not uniform: by its content where bricks of other segments may be the
+/// same.
 PayloadIdentity IdentityOf(const OpenSeries& series, OpenGroup& open, const FieldKey& field,
   std::int64_t brick, const ValueRange& range)
 {

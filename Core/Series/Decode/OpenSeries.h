@@ -31,7 +31,7 @@ struct OpenSeries
   MaskRange MaskRangeOf(int array, int component) const;
 };
 
-/// What brick k of a row writes of a part.
+/// Returns the samples of a part that brick k of a row writes.
 inline Box RowPart(const BrickLayout& layout, std::int64_t first, int count, int k, const Box& part)
 {
   const Box samples = layout.SamplesOf(first + k);

@@ -13,10 +13,10 @@ namespace banyan
 struct PieceRange
 {
   std::vector<ValueRange> Components; ///< one per component
-  /// Of the length (L2 norm) of the vectors; contains the true range, and is exact for the whole of
-  /// level 0. Otherwise it may be wider, because the tree knows components only; but it never goes
-  /// beyond the range of the whole step, so that pieces together have that range exactly. Equal to
-  /// Components[0] for scalars.
+  /// The range of the length (L2 norm) of the vectors. It contains the true range, and is exact for
+  /// the whole of level 0. Elsewhere it may be wider, because the tree knows components only. It
+  /// never goes beyond the range of the whole step, so that pieces together have that range
+  /// exactly. Equal to Components[0] for scalars.
   ValueRange Magnitude;
   /// Whether Components are the exact extremes of the part: true when every brick that touches it
   /// lies in it completely. Otherwise they contain the true range.
@@ -31,8 +31,8 @@ PieceRange RangeOfPiece(
   const SeriesFile& series, int step, int array, int level, const Box& samples);
 
 /// The same over all steps, from the index: exact for level 0, and contains the true ranges of
-/// coarser levels. Of components whose range was chosen (percentiles, given) or that have fill
-/// values it is that range instead, for colours.
+/// coarser levels. Components whose range was chosen (percentiles, given) or that have fill values
+/// get that range instead, for colours.
 PieceRange RangeOfSeries(const SeriesFile& series, int array);
 
 /// Numbers of the bricks that together cover `samples`, in ascending order.

@@ -35,7 +35,7 @@ struct PayloadIdentity
   }
 };
 
-/// What the tree knows of a brick without its payload.
+/// Holds what the tree knows of a brick without its payload.
 struct BrickNode
 {
   ValueRange Range;          ///< extremes of the decoded finite samples; empty if there is none
@@ -103,9 +103,9 @@ public:
   void DecodeRow(const FieldKey& field, std::int64_t brick, int count, const Box& part,
     const glm::i64vec3& stride, void* first) const;
 
-  /// Of values that are whole multiples of a step, each rounded to the array's type: the step. Some
-  /// values may be others (exceptions, and all where the lattice does not go through 0). 0 where
-  /// none is known.
+  /// Returns the step of values that are whole multiples of it, each rounded to the array's type.
+  /// Some values may be no multiples (exceptions, and all where the lattice does not go through 0).
+  /// 0 where none is known.
   double StepOfValues(const FieldKey& field) const;
 
   /// Checks the checksums of the bricks' payloads without decoding them.

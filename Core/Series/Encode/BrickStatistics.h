@@ -9,7 +9,7 @@
 namespace banyan
 {
 
-/// What a node keeps of a brick's decoded samples.
+/// Holds what a node keeps of a brick's decoded samples.
 struct BrickSummary
 {
   ValueRange Range; ///< of the finite samples; outward for 64-bit integers

@@ -90,7 +90,7 @@ private:
     }
   }
 
-  /// As GroupField::DecodeAs goes about it.
+  /// Fills a box in the order of GroupField::DecodeAs.
   void FillBox(int step, int plane, const glm::ivec3& block, std::uint64_t* bits) const
   {
     const std::size_t p = static_cast<std::size_t>(plane);

@@ -6,8 +6,8 @@ namespace banyan
 {
 
 /// Ideas that an encoding can do without, which tells what each is worth (see
-/// Documentation/codec.md). What is written is as valid, and as close to the values, without them;
-/// only larger.
+/// Documentation/codec.md). Files without them are as valid, and as close to the values, but
+/// larger.
 struct EncodeIdeas
 {
   /// Symbols have tables by what is around them; else by the kind of unit and pass only.

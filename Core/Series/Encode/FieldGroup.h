@@ -12,7 +12,8 @@
 namespace banyan
 {
 
-/// What the key frame of a group, its last step, decodes to: the group after it may refer to it.
+/// Holds what the key frame of a group, its last step, decodes to: the group after it may refer to
+/// it.
 struct KeyFrame
 {
   group::FieldHead Head; ///< the lattice, without tables
@@ -50,7 +51,8 @@ struct FieldGroup
   EncodeProfile Profile = EncodeProfile::Balanced;
   EncodeIdeas Ideas;
   int CompressionLevel = 3;
-  /// Of the group before; null: do not refer to it. Used where its lattice is the same.
+  /// The key frame of the group before; null: do not refer to it. Used where its lattice is the
+  /// same.
   const KeyFrame* Before = nullptr;
   SparePlanes* Spare = nullptr; ///< if not null, planes are taken from there, and put there
 };
@@ -73,7 +75,7 @@ struct EncodedStep
   std::vector<std::vector<group::NodeEntry>> Levels;
 };
 
-/// What was measured over the voxels of all steps.
+/// Holds what was measured over the voxels of all steps.
 struct FieldErrors
 {
   ValueRange Range; ///< of the decoded finite values

@@ -49,7 +49,7 @@ void Measure(const EncodedField& field, ComponentIndex& component, EncodeStatist
   statistics.ChainMost = std::max<std::int64_t>(statistics.ChainMost, field.ChainMost);
 }
 
-/// Of one component.
+/// Returns the number of values of one component.
 std::int64_t ValuesOfStep(const SeriesIndex& plan, const ArrayIndex& array)
 {
   return !plan.Mesh                ? plan.Domain.Extent.Count()
@@ -75,7 +75,7 @@ std::size_t BytesOf(const SeriesIndex& plan, std::size_t array)
          plan.Arrays[array].Components.size();
 }
 
-/// What the steps before the groups decode to, one component after the other.
+/// Gives what the steps before the groups decode to, one component after the other.
 class StepBeforeGroup
 {
 public:

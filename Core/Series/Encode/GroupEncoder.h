@@ -15,7 +15,7 @@ namespace banyan
 
 class ThreadPool;
 
-/// What encoding a group adds to the index of its series.
+/// Holds what encoding a group adds to the index of its series.
 struct EncodedGroup
 {
   SegmentIndex Segment;
@@ -28,7 +28,7 @@ struct EncodedGroup
   std::uint64_t BytesIn = 0;
 };
 
-/// What the last step of a group decodes to, as the group after it needs it.
+/// Holds what the last step of a group decodes to, as the group after it needs it.
 struct LastStep
 {
   int Group = -1;               ///< -1: there is none

@@ -8,8 +8,8 @@
 namespace banyan
 {
 
-/// What EncodeGroup returned, as bytes that another process of the same program understands: one
-/// rank encodes, another one keeps the index. Every bit of every number survives.
+/// Packs what EncodeGroup returned into bytes that another process of the same program understands:
+/// one rank encodes, another one keeps the index. Every bit of every number survives.
 Bytes PackGroup(const EncodedGroup& group);
 
 /// Inverse of PackGroup. Throws Error when the bytes are no such message.

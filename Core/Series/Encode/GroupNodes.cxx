@@ -135,7 +135,7 @@ private:
     {
       return false; // it has that content
     }
-    // What moved up to the key frame will move on: nothing is the same as this.
+    // A payload that moved up to the key frame will move on: nothing is the same as this.
     return age > 0 || (last == 1 ? known : this->NodeOf(last - 1, brick).Age > 0);
   }
 

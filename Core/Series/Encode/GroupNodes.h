@@ -12,7 +12,7 @@
 namespace banyan
 {
 
-/// What a step decodes to.
+/// Holds what a step decodes to.
 struct DecodedStep
 {
   std::vector<PlaneNumbers> Planes;

@@ -61,7 +61,7 @@ typename InvisibleBlocks<T>::Choice InvisibleBlocks<T>::Choose(
   const ValueRange& interval, std::vector<double>& values, const LatticeDecoder<T>& decoder) const
 {
   Choice choice;
-  // What a block decodes to may be the bound away from what it became.
+  // A decoded block may be the bound away from what it became.
   const double low = this->Field.Map.Forward(interval.Low) + this->Field.Bound;
   const double high = this->Field.Map.Forward(interval.High) - this->Field.Bound;
   if (!(low <= high))

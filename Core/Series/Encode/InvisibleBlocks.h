@@ -36,7 +36,7 @@ public:
   /// @param position of the block, in blocks
   int IntervalOf(const T* values, const glm::ivec3& position) const;
 
-  /// What blocks of an interval become.
+  /// Returns the number that blocks of an interval become.
   std::int32_t NumberOf(int interval) const
   {
     return this->Choices[static_cast<std::size_t>(interval)].Number;

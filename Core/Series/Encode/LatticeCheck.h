@@ -71,7 +71,7 @@ private:
   const std::uint8_t* Hidden; ///< by tuple; may be null
   bool Plain;                 ///< rows may be taken as a whole
 
-  /// Of the block's samples along a row, among the values, and among tuples of them.
+  /// The offsets of the block's samples along a row, among the values, and among tuples of them.
   std::vector<std::int64_t> Columns, Tuples;
   std::vector<T> Tile;                               ///< originals of a block of the finest plane
   std::vector<T> Originals, Decoded;                 ///< of a row

@@ -57,7 +57,7 @@ bool LatticeCheck<T>::WholeBlockOf(const PlaneNumbers& decoded, const glm::ivec3
     {
       return false;
     }
-    // What numbers decode to grows with them.
+    // Decoded values grow with their numbers.
     errors.Range.Include({ static_cast<double>(this->Decoder.ValueOf(sums.Low)),
       static_cast<double>(this->Decoder.ValueOf(sums.High)) });
     const double greatest = *std::max_element(std::begin(sums.Greatest), std::end(sums.Greatest));

@@ -42,13 +42,14 @@ public:
   /// Memory for the lattice numbers of a step on all planes.
   std::vector<PlaneNumbers> NewPlanes() const;
 
-  /// The lattice numbers of a step on all planes. What the lattice cannot hold gets a number of its
-  /// neighbourhood; blocks that nobody can see (InvisibleBlocks) get one number.
+  /// The lattice numbers of a step on all planes. Values that the lattice cannot hold get a number
+  /// of their neighbourhood; blocks that nobody can see (InvisibleBlocks) get one number.
   /// @param planes as NewPlanes makes them; whatever they hold is replaced
   void Make(std::size_t step, std::vector<PlaneNumbers>& planes) const;
 
-  /// As Make, but where values may well wait, the finest plane is left out: its blocks follow by
-  /// MakeBlock, so that their values come from memory once for that and to be compared.
+  /// Does the same as Make, but leaves the finest plane out where its values may well wait: its
+  /// blocks follow by MakeBlock, so that their values come from memory once for that and to be
+  /// compared.
   /// @return whether they have to; if not, all is made
   bool MakeCoarser(std::size_t step, std::vector<PlaneNumbers>& planes) const;
   /// @param plane the finest one, whose numbers of a block are replaced

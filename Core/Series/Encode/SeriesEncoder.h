@@ -18,7 +18,7 @@ namespace banyan
 
 class ThreadPool;
 
-/// What encoding aims at. Every profile keeps the bound and is read by every reader.
+/// Says what encoding aims at. Every profile keeps the bound and is read by every reader.
 enum class EncodeProfile
 {
   Fast,     ///< in situ: few ways to predict are looked at
@@ -26,7 +26,7 @@ enum class EncodeProfile
   Compact   ///< archives: all of them, and those that look best are tried out
 };
 
-/// What encoding has to know of the mesh that images stand for.
+/// Holds what encoding has to know of the mesh that images stand for.
 struct MeshPlan
 {
   MeshIndex Index;
@@ -62,7 +62,7 @@ struct EncodeOptions
   bool NeedsHistogram(const std::string& array) const;
 };
 
-/// What the arrays of a series are; ranges are needed only for relative error bounds, histograms
+/// Describes an array of a series. Ranges are needed only for relative error bounds, histograms
 /// where a transform or a range is chosen from the values (EncodeOptions::NeedsHistogram).
 struct ArrayDescription
 {

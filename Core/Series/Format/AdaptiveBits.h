@@ -31,7 +31,7 @@ constexpr std::array<std::uint16_t, MostSeen + 1> MakeRates()
   return rates;
 }
 
-/// What share of the way to certainty a probability goes, in 1/65536, by how often it has learnt.
+/// A probability goes this share of the way to certainty, in 1/65536, by how often it has learnt.
 constexpr std::array<std::uint16_t, MostSeen + 1> Rates = MakeRates();
 
 /// How probable it is that a bit is set. Learns fast at first, later slowly.

@@ -32,7 +32,7 @@ public:
   /// Brings everything to the disk and renames. Throws Error.
   void Commit();
 
-  /// As Commit, under another name (in the same folder) than the one given at first.
+  /// Does the same as Commit, under another name (in the same folder) than the one given at first.
   void CommitAs(const std::string& path);
 
 private:

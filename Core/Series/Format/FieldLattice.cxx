@@ -52,8 +52,8 @@ void ChooseLattice(ScalarType type, const Transform& transform, double bound,
   }
   else
   {
-    // What output rounding leaves of the bound; the relative margin covers the rounding of this
-    // very arithmetic. Each value is verified all the same.
+    // This is what output rounding leaves of the bound; the relative margin covers the rounding of
+    // this very arithmetic. Each value is verified all the same.
     const double usable = bound * (1.0 - 0x1p-20) - transform.OutputRounding(type, range);
     head.Step = 2.0 * usable / FineBin;
     head.Exact = !(usable > 0) || !std::isnormal(head.Step);

@@ -27,7 +27,7 @@ struct Section
   std::uint64_t Hash = 0; ///< XXH3-64 of the stored bytes
 };
 
-/// What all steps of a component share in a segment.
+/// Holds what all steps of a component share in a segment.
 struct FieldHead
 {
   /// Real axis (0 to 2) of each axis of the codec; predictions run along the last one last.
@@ -40,7 +40,7 @@ struct FieldHead
   double Step = 1;
   std::int32_t Bin = 31;
   std::int32_t Least = 0, Greatest = 0;
-  /// Of the finest plane, and of all coarser ones.
+  /// The tables of the finest plane, and of all coarser ones.
   std::vector<tans::Frequencies> Frequencies[2];
 };
 
@@ -71,7 +71,7 @@ struct BlockEntry
   Place Exceptions;
 };
 
-/// What is known of a brick without decoding it.
+/// Holds what is known of a brick without decoding it.
 struct NodeEntry
 {
   bool HasNonFinite = false;
@@ -103,7 +103,7 @@ struct StepTable
 /// one is not cut into blocks.
 std::vector<glm::ivec3> PlanesOf(glm::ivec3 samples);
 
-/// What the tables of a component look like, the same in all steps.
+/// Describes the tables of a component, the same in all steps.
 struct TableShape
 {
   std::vector<glm::ivec3> Planes; ///< samples; see PlanesOf

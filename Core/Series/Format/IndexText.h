@@ -26,8 +26,8 @@ std::string IndexToText(const SeriesIndex& index);
 /// cannot be.
 SeriesIndex IndexFromText(const std::string& text, const std::string& path);
 
-/// What a reader must know to read the series, by the names of Documentation/format.md, in its
-/// order.
+/// Lists the features that a reader must know to read the series, by the names of
+/// Documentation/format.md, in its order.
 std::vector<std::string> FeaturesOf(const SeriesIndex& index);
 
 /// Checks what encoder and reader both need to hold: sizes, limits, names, finite numbers, order.

@@ -9,7 +9,7 @@ namespace banyan
 {
 
 /// Adds the members of a component that say how its range was chosen, which values are fill values,
-/// and which opacity function it was encoded for, as Documentation/format.md has them. Those that
+/// and which opacity function it was encoded for, as Documentation/format.md has them. Members that
 /// say nothing are left out.
 void QuantizerToJson(const ComponentIndex& component, Json& json);
 

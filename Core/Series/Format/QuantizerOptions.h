@@ -14,8 +14,8 @@ namespace banyan
 
 struct ComponentIndex;
 
-/// Where the transform of a component comes from. What each is good for:
-/// Documentation/howto/choose-a-quantizer.md.
+/// Where the transform of a component comes from. Documentation/howto/choose-a-quantizer.md says
+/// what each is good for.
 enum class TransformChoice
 {
   Uniform, ///< none: the bound holds in the units of the data
@@ -32,7 +32,7 @@ struct QuantizerOptions
   std::vector<TransformKnot> Knots; ///< of Table
   AdaptiveRule Adaptive;            ///< of Adaptive
   AsinhRule Scaling;                ///< of Asinh with scale 0
-  /// What a relative bound is relative to, and what Adaptive is made over.
+  /// A relative bound is relative to this range, and Adaptive is made over it.
   RangeRule Range;
   /// Finite values that mean "no value": bit-exact, and never part of a range.
   std::vector<double> FillValues;

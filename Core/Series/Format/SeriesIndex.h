@@ -29,8 +29,8 @@ struct ComponentIndex
 {
   std::string Name; ///< may be empty
   ValueRange Range; ///< of the decoded finite values over the whole series
-  /// What the encoder was told beforehand that the values lie in, or the range that was chosen by
-  /// a rule, which values may leave; empty when there was neither.
+  /// The range that the encoder was told beforehand, or the one that a rule chose, which values may
+  /// leave. Empty when there was neither.
   ValueRange PromisedRange;
   /// |f(decoded) - f(original)| <= this, f = ValueTransform, for every finite voxel, verified: but
   /// clamped voxels are measured against what they were clamped to, and invisible ones (see
@@ -47,10 +47,11 @@ struct ComponentIndex
   std::vector<double> StepRmse;
   std::int64_t FiniteCount = 0;    ///< voxels (of all steps) that are finite
   std::int64_t NonFiniteCount = 0; ///< NaN and infinities, kept bit-exact
-  /// Of the values before they were put on the lattice; the identity unless the encoder was told.
+  /// The transform of the values before they were put on the lattice; the identity unless the
+  /// encoder was told another one.
   Transform ValueTransform;
 
-  // What else the encoder was told; see QuantizerOptions.
+  // Other options that the encoder was told; see QuantizerOptions.
   RangeRule::Source RangeFrom = RangeRule::Source::Data;
   bool ClampOutside = false; ///< values were clamped to PromisedRange before they were encoded
   std::vector<double> FillValues;
@@ -62,8 +63,8 @@ struct ComponentIndex
 
   /// Equation 2 of the study over its squared range (see QuantizationError.h); 0 without Opacity.
   double OpacityWeightedError() const;
-  /// What shares of errors refer to: PromisedRange if it was chosen or fill values were left out of
-  /// it, else Range.
+  /// Returns the range that errors are given as shares of: PromisedRange if it was chosen or fill
+  /// values were left out of it, else Range.
   const ValueRange& ReferenceRange() const;
 };
 
@@ -84,7 +85,7 @@ constexpr std::uint8_t HiddenCellBits = 32 | 8;
 struct ArrayIndex
 {
   std::string Name; ///< no two arrays of a series have the same
-  /// Of a mesh: the name of the cell array that this is. Empty: it is a point array.
+  /// The name of this cell array of a mesh. Empty: it is a point array.
   std::string CellArray;
   ArrayFlags Flags = ArrayFlags::None;
   ScalarType Type = ScalarType::Float32;
@@ -116,7 +117,7 @@ struct SegmentIndex
   std::uint64_t HashHigh = 0;
 };
 
-/// What encoding a series came to, over all steps, arrays, components and levels.
+/// Says what encoding a series came to, over all steps, arrays, components and levels.
 struct EncodeStatistics
 {
   std::int64_t Bricks = 0;

@@ -186,7 +186,7 @@ private:
       const Extremes before = ChildrenOf(*this->Reference.Table, this->Shape, level, index);
       if (children.Known && before.Known)
       {
-        // What a coarser brick misses of its children's extremes changes little.
+        // The part of its children's extremes that a coarser brick misses changes little.
         expected.Low = Wrap(std::int64_t{ children.Low } + reference->Low - before.Low);
         expected.High = Wrap(std::int64_t{ children.High } + reference->High - before.High);
       }

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-/// What the entries of a step's table are predicted from.
+/// The neighbours from which the entries of a step's table are predicted.
 namespace banyan::group
 {
 
@@ -60,7 +60,7 @@ inline bool HasNumbers(const NodeEntry& node)
   return !node.Explicit && !node.NothingFinite;
 }
 
-/// Of the bricks of the level below that a brick holds.
+/// Returns the extremes of the bricks of the level below that a brick holds.
 inline Extremes ChildrenOf(
   const StepTable& table, const TableShape& shape, std::size_t level, std::size_t index)
 {

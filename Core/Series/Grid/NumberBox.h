@@ -21,7 +21,7 @@ struct NumberBox
   int Rows = 1, Slices = 1;
 };
 
-/// What the table of bricks says of samples.
+/// Holds what the table of bricks says of samples.
 struct NumberExtremes
 {
   std::int32_t Low = INT32_MAX, High = INT32_MIN;

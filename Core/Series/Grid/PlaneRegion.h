@@ -30,7 +30,7 @@ struct PlaneRegion
   PlaneRegion(int level, const Box& box, const std::array<std::uint8_t, 3>& axes,
     const glm::ivec3& samples, int edge);
 
-  /// What a block and the layer behind it hold of a level.
+  /// Makes the region of a level that a block and the layer behind it hold.
   /// @param block its position, in the codec's order as all else
   PlaneRegion(int level, const glm::ivec3& block, const glm::ivec3& samples, int edge);
 
@@ -59,7 +59,8 @@ struct BlockExtremes
 BlockExtremes ExtremesOfBlock(
   const PlaneNumbers& numbers, int plane, std::int64_t block, int levels);
 
-/// What ExtremesOfRegion gives for a brick's region, from those of the plane's blocks.
+/// Returns what ExtremesOfRegion gives for a brick's region, made of the extremes of the plane's
+/// blocks.
 NumberExtremes ExtremesOfBlocks(
   const std::vector<BlockExtremes>& blocks, const PlaneNumbers& plane, const PlaneRegion& region);
 

@@ -15,8 +15,8 @@ namespace banyan
 ///
 ///     s = (1 - Equalization) + Equalization * min(d, cap), scaled so that its mean is 1,
 ///
-/// with the cap at which the greatest slope cannot be more than SlopeRatio times the least. As y
-/// spans as much as x does, the error at x is that of the uniform quantizer with as many levels,
+/// with the cap at which the greatest slope cannot be more than SlopeRatio times the least. Because
+/// y spans as much as x does, the error at x is that of the uniform quantizer with as many levels,
 /// divided by s. So no value has an error of more than 1 / (1 - Equalization) times the uniform one
 /// (4 times, by default); where values are dense it is smaller, down to 1 / SlopeRatio of the
 /// largest.

@@ -14,7 +14,7 @@ namespace banyan::HWY_NAMESPACE
 {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// As many lanes as the processor has, but not more than sums have.
+/// A vector has as many lanes as the processor has, but not more than sums have.
 using Reals = hn::CappedTag<double, RowErrors::Lanes>;
 using Real = hn::Vec<Reals>;
 

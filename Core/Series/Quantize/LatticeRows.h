@@ -37,8 +37,8 @@ struct LatticeRows
 template <class T, class Number>
 bool NumbersOnLattice(const LatticeRows<T, Number>& rows, const LatticeScale& scale);
 
-/// What values and what their numbers decode to differ by. Sums are taken over every eighth value
-/// of rows, so that they are the same bits on every processor.
+/// Says by how much values and what their numbers decode to differ. Sums are taken over every
+/// eighth value of rows, so that they are the same bits on every processor.
 struct RowErrors
 {
   static constexpr int Lanes = 8;

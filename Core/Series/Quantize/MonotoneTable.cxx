@@ -115,7 +115,7 @@ std::size_t PiecewiseLinear::SegmentOf(double argument) const
   std::size_t high = this->FirstOf[bucket + 1];
   if (high - low <= 1)
   {
-    // What evenly spaced knots come to: no branch that a processor could guess wrong.
+    // Evenly spaced knots end here: there is no branch that a processor could guess wrong.
     return low + (this->Segments[high].Argument <= argument ? high - low : 0);
   }
   while (low < high)

@@ -11,9 +11,9 @@
 namespace banyan
 {
 
-/// What coding did to the finite values of a component, in the domain of the data and in the
-/// transformed one. Values that are not finite are left out (they are kept exactly); a finite one
-/// that decodes to NaN counts as infinitely far away.
+/// Measures what coding did to the finite values of a component, in the domain of the data and in
+/// the transformed one. Values that are not finite are left out (they are kept exactly); a finite
+/// one that decodes to NaN counts as infinitely far away.
 ///
 /// @par Source: "A study of time-varying octree and difference encoding", section 3.1, equations 1
 /// and 2. The integrals over the density of the data are means over the data themselves:

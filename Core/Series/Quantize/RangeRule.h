@@ -24,10 +24,10 @@ struct RangeRule
   double LowShare = 0.0001;  ///< for Percentiles: this share of the values may lie below, 0 to 1
   double HighShare = 0.9999; ///< for Percentiles: this share of the values lies at or below
   ValueRange Given;          ///< for Given
-  /// What lies outside of the range: false (default): kept within the bound like all other values
-  /// (the map goes on beyond the range; what the lattice cannot hold is kept exactly). true: values
-  /// are replaced by the range's nearer end *before* they are encoded, and the bound holds against
-  /// that end; infinities and NaN stay.
+  /// Says what becomes of values outside of the range. false (default): they are kept within the
+  /// bound like all other values (the map goes on beyond the range; what the lattice cannot hold is
+  /// kept exactly). true: they are replaced by the range's nearer end *before* they are encoded,
+  /// and the bound holds against that end; infinities and NaN stay.
   bool ClampOutside = false;
 
   /// Throws Error for shares that are not 0 <= low < high <= 1, or a given range that is empty or

@@ -52,9 +52,9 @@ public:
 
   TransformKind Kind() const { return this->Map; }
   bool IsIdentity() const { return this->Map == TransformKind::Uniform; }
-  /// Of the kind Asinh; 1 otherwise.
+  /// Returns the scale of the kind Asinh; 1 for other kinds.
   double Scale() const { return this->ScaleOfAsinh; }
-  /// Of the kind Table; empty otherwise.
+  /// Returns the knots of the kind Table; empty for other kinds.
   const std::vector<TransformKnot>& Knots() const;
 
   /// Same kind and the same numbers, hence the same bits for every argument.
