@@ -126,8 +126,8 @@ void StepWindow::Take(vtkAlgorithm* owner)
                                   : nullptr;
     if (!data)
     {
-      throw std::runtime_error("the step at time " + std::to_string(*time) +
-                               " cannot be read, which motion is compared with.");
+      throw std::runtime_error("motion is compared with the step at time " + std::to_string(*time) +
+                               ", which cannot be read.");
     }
     this->Keep(*time, data);
   }

@@ -17,7 +17,7 @@ std::vector<Knot> Pairs(const std::vector<double>& numbers, const char* property
 {
   if (numbers.size() % 2 != 0)
   {
-    throw Error(std::string("The property ") + property + " needs pairs of numbers.");
+    throw Error(CalledInMessages(property) + " needs pairs of numbers.");
   }
   std::vector<Knot> knots;
   for (std::size_t i = 0; i < numbers.size(); i += 2)

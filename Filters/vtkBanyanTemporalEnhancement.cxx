@@ -131,8 +131,7 @@ void vtkBanyanTemporalEnhancement::EnhanceAll(vtkDataObject* output)
   if (values && !found)
   {
     throw std::runtime_error(
-      "there is no point array of the name that was chosen, and no cell array "
-      "either if one of cells was. Choose another one.");
+      "there is no array of the chosen name at these points or cells. Choose another 'Array'.");
   }
 }
 

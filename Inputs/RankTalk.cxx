@@ -104,8 +104,8 @@ void RankTalk::Together(const std::function<void()>& action) const
   }
   catch (const std::bad_alloc&)
   {
-    problem = "There is not enough memory for a group of steps of the series (a smaller key-frame "
-              "interval needs less).";
+    problem = "There is not enough memory for a group of steps of the series. Lower 'Keyframe "
+              "Interval' (KeyframeInterval).";
   }
   catch (const std::exception& error)
   {

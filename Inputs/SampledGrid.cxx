@@ -154,9 +154,10 @@ vtkSmartPointer<vtkUnstructuredGrid> SampledGrid::Of(
   }
   if (this->Sampled->KeptCoarse() > 0)
   {
-    this->NoteText += "Of " + std::to_string(this->Boxes->GetNumberOfCells()) + " boxes " +
-                      std::to_string(this->Sampled->KeptCoarse()) +
-                      " are coarser than they should be: allow more (Mesh Sampling Boxes). ";
+    this->NoteText += std::to_string(this->Sampled->KeptCoarse()) + " of " +
+                      std::to_string(this->Boxes->GetNumberOfCells()) +
+                      " boxes are coarser than they should be: allow more boxes, 'Mesh Sampling "
+                      "Boxes' (MeshSamplingBoxes). ";
   }
   const auto output = vtkSmartPointer<vtkUnstructuredGrid>::New();
   output->CopyStructure(this->Boxes);

@@ -94,7 +94,8 @@ void vtkBanyanSeriesReader::SetCacheBudget(int mebibytes)
   if (mebibytes < -1)
   {
     vtkErrorMacro(
-      << "CacheBudget must be a number of MiB, or -1 for the one of the process, and is "
+      << "'Cache Budget' (CacheBudget) must be a number of MiB, or -1 for that of the process, "
+         "and is "
       << mebibytes << ". It stays " << this->CacheBudget << ".");
     return;
   }
@@ -297,7 +298,7 @@ std::string vtkBanyanSeriesReader::TryToFill(vtkInformation* outInfo, unsigned l
   {
     code = vtkErrorCode::UnknownError;
     return "There is no memory for the piece of " + this->Place() +
-           ": read a coarser Level, fewer arrays, or use more ranks.";
+           ": raise 'Level', read fewer arrays, or use more ranks.";
   }
   catch (const std::exception& error)
   {

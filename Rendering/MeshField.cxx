@@ -132,7 +132,8 @@ void MeshField::Describe(Communicator& communicator, const OtherCells& others)
   {
     note += "The mesh is no octree and is drawn from " + std::to_string(facts.Boxes) + " boxes; " +
             std::to_string(facts.KeptCoarse) +
-            " places are coarser than they should be: allow more boxes (MeshSamplingBoxes). ";
+            " places are coarser than they should be: allow more boxes, 'Mesh Sampling Boxes' "
+            "(MeshSamplingBoxes). ";
   }
   if (!this->Mesh->WhyNotShared().empty())
   {

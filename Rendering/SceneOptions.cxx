@@ -53,7 +53,7 @@ std::vector<ClipPlane> MakeClipPlanes(vtkVolumeMapper* mapper, const glm::dmat4&
   {
     if (mapper->GetCroppingRegionFlags() != VTK_CROP_SUBVOLUME)
     {
-      throw Error("Of a cropped volume only the inside of the cropping box can be drawn: call "
+      throw Error("Only the inside of the box that crops a volume can be drawn: call "
                   "SetCroppingRegionFlagsToSubVolume");
     }
     const double* box = mapper->GetCroppingRegionPlanes();

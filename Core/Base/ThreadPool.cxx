@@ -197,9 +197,10 @@ ThreadPool::ThreadPool(int width)
   {
     const std::size_t started = this->Self->Threads.size() + 1;
     this->Self->Join();
-    throw Error("Of " + std::to_string(width) + " threads " + std::to_string(started) +
-                " could be started (" + error.what() +
-                "). Take fewer: NumberOfThreads, --threads or BANYAN_THREADS.");
+    throw Error("Only " + std::to_string(started) + " of " + std::to_string(width) +
+                " threads could be started (" + error.what() +
+                "). Set fewer: 'Number Of Threads' (NumberOfThreads) of the display, the option "
+                "--threads or the variable BANYAN_THREADS.");
   }
 }
 

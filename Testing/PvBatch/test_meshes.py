@@ -29,7 +29,7 @@ REFUSED = {
     "disk_out_ref/disk_out_ref.vtu": ("is not an axis-aligned box", "Temp"),
     "specfem_mount_st_helens/specfem_mount_st_helens.vtu":
         ("is not an axis-aligned box", "elevation"),
-    "mastodon_seismic_z/mastodon_seismic_z_005.vtu": ("beside the lattice", "vel_"),
+    "mastodon_seismic_z/mastodon_seismic_z_005.vtu": ("beside the corners of the other cells", "vel_"),
     "malformed_basic/u01_oob.vtu": ("refers to point 999, and the mesh has 8 points", "s"),
 }
 NOTHING = ("malformed_basic/u06_nocells.vtu", "malformed_basic/u07_empty.vtu")

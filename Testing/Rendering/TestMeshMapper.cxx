@@ -295,7 +295,7 @@ void Refuses()
   double point[3];
   warped->GetPoint(5, point);
   warped->GetPoints()->SetPoint(5, point[0] + 0.01, point[1], point[2]);
-  ExpectSays(warped, "beside the lattice");
+  ExpectSays(warped, "beside the corners of the other cells");
 
   vtkNew<vtkUnstructuredGrid> tetra;
   tetra->ShallowCopy(Mesh(0));

@@ -151,9 +151,10 @@ private:
     return CellText(cell) + " is no box of an octree: its point " +
            std::to_string(static_cast<std::int64_t>(this->Ids[8 * cell + corner])) + " lies " +
            std::to_string(std::abs(off)) + " of the finest edge (" +
-           std::to_string(this->Tree.Edge()[axis]) + ") beside the lattice of the others along " +
-           "xyz"[axis] + ", and " + std::to_string(this->Allowed[axis]) +
-           " is allowed (MeshTolerance)";
+           std::to_string(this->Tree.Edge()[axis]) +
+           ") beside the corners of the other cells along " + "xyz"[axis] + ", and " +
+           std::to_string(this->Allowed[axis]) +
+           " is allowed: raise 'Mesh Tolerance' (MeshTolerance) if that is rounding";
   }
 
   std::string Fit(std::int64_t cell, const glm::ivec3 (&corners)[8], const glm::ivec3& low,

@@ -323,7 +323,7 @@ MeshSurvey SurveyMesh(const HexMesh& mesh, ThreadPool& pool)
             if (part.Planes[axis].Size() > MostPlanes)
             {
               failure.Report(begin,
-                std::string("The faces of the cells lie on more than 4 million planes along ") +
+                std::string("The faces of the cells have more than 4 million coordinates along ") +
                   "xyz"[axis] + ": this is no octree");
             }
           }

@@ -58,9 +58,9 @@ void OctreeFinder::AlignOrigin(const MeshSurvey& survey)
   {
     if (!(last[axis] + longest < limit))
     {
-      throw Error(std::string("The mesh spans more of its finest edges along ") + "xyz"[axis] +
-                  " (" + std::to_string(tree.FinestEdge[axis]) + ") than an octree can count: " +
-                  std::to_string(last[axis]) + ", and 2097152 are allowed");
+      throw Error("The mesh is " + std::to_string(last[axis]) + " of its finest edges (" +
+                  std::to_string(tree.FinestEdge[axis]) + ") long along " + "xyz"[axis] +
+                  ", and an octree has at most 2097152");
     }
   }
   tree.CellNumbers = std::vector<std::uint32_t>{ static_cast<std::uint32_t>(survey.LongestCell) };
@@ -238,7 +238,7 @@ std::shared_ptr<const ElementOctree> ElementOctree::Find(
 {
   if (!(tolerance >= 0.0 && tolerance <= LargestTolerance))
   {
-    throw Error("The tolerance for points beside the lattice lies between 0 and 1/16");
+    throw Error("'Mesh Tolerance' (MeshTolerance) must be from 0 to 1/16 of the finest edge");
   }
   const std::shared_ptr<ElementOctree> tree(new ElementOctree());
   tree->Cells = mesh;

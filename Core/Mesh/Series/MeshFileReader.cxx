@@ -123,7 +123,7 @@ private:
       this->Mesh->Origin[a] = reader.Number<double>();
       this->Mesh->Edge[a] = reader.Number<double>();
       Require(std::isfinite(this->Mesh->Origin[a]) && std::isfinite(this->Mesh->Edge[a]),
-        "The lattice of the mesh is not finite");
+        "The origin or the finest edge of the mesh is not finite");
       this->ImageSamples[a] = this->Small(reader, 1 << 30);
     }
     this->CoarsestLevel = this->Small(reader, MortonBits);
@@ -331,7 +331,7 @@ private:
         for (int a = 0; a < 3; ++a)
         {
           const auto plane = planes[a].find(position[a]);
-          Require(plane != planes[a].end(), "A point of the mesh lies on no plane of its lattice");
+          Require(plane != planes[a].end(), "A point of the mesh has no coordinate in its table");
           this->Put(mesh.PointOfNode[node], a,
             FromOrdered<Real>(Plus(plane->second, exact ? 0 : offsets.Signed())));
         }

@@ -198,19 +198,21 @@ std::string ProblemOf(int rank, int ranks, const FloatImage& mine,
   }
   if (options.Footprints.size() != static_cast<std::size_t>(ranks))
   {
-    return "There is not one footprint for each rank, so no picture could be put together.";
+    return "There is not one outline for each rank, so no picture could be put together.";
   }
   for (const Footprint& footprint : options.Footprints)
   {
     if (!Inside(footprint.Rect, viewport) ||
         footprint.Rows.size() != static_cast<std::size_t>(footprint.Rect.Size().y))
     {
-      return "A footprint does not fit into the viewport, so no picture could be put together.";
+      return "The outline of a rank does not fit into the viewport, so no picture could be put "
+             "together.";
     }
   }
   if (DrawsOutside(mine, options.Footprints[static_cast<std::size_t>(rank)]))
   {
-    return "Pixels were drawn outside of the footprint of their zone, where nobody expects them.";
+    return "Pixels were drawn outside of the outline of their rank, so no picture could be put "
+           "together.";
   }
   return {};
 }

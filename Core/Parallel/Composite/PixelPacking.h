@@ -10,9 +10,9 @@ namespace banyan
 
 /// Lossless packing of pixels of four whole numbers of 16 bits.
 ///
-/// Per channel the difference to the pixel before, modulo 2^16. What the difference of alpha lets
-/// expect of green, and alpha and green of red and blue, is subtracted: (a * alpha + g * green) /
-/// 32, rounded down, with five factors a and g that are fitted to these pixels (least squares);
+/// Per channel the difference to the pixel before, modulo 2^16. A prediction is subtracted: green
+/// follows from the difference of alpha, red and blue from alpha and green, (a * alpha + g * green)
+/// / 32, rounded down, with five factors a and g that are fitted to these pixels (least squares);
 /// they stand at the beginning, a byte with sign each: green's a, red's a and g, blue's a and g.
 ///
 /// Then eight pixels after the other: numbers are made positive by zig-zag (0, -1, 1, -2, ...

@@ -106,7 +106,7 @@ void GroupField::CheckNumbers(const group::StepTable& table) const
   }
   if (any)
   {
-    throw Error("A number in the table of a step lies outside of its lattice");
+    throw Error("A number in the table of a step is out of range");
   }
 }
 
@@ -156,7 +156,7 @@ auto GroupField::InSegmentBefore(Body&& body)
   const std::shared_ptr<GroupField> before = this->Before();
   if (!group::SameLattice(before->FieldHead, this->FieldHead))
   {
-    throw Error("A segment refers to the one before it, which has another lattice");
+    throw Error("A segment refers to the one before it, which is quantized differently");
   }
   this->BeforeFits = true;
   return InFile(before->File.Path(), 0,

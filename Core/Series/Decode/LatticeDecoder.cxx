@@ -20,7 +20,8 @@ LatticeDecoder<T>::LatticeDecoder(
 {
   if (!std::isfinite(origin) || !std::isfinite(step) || !(step > 0))
   {
-    throw Error("The lattice of a transformed component has no finite origin or no positive step");
+    throw Error(
+      "The quantizer of a transformed component has no finite origin or no positive step");
   }
   // Unsigned, because the difference of two 64-bit numbers may overflow.
   const std::uint64_t span = static_cast<std::uint64_t>(last) - static_cast<std::uint64_t>(first);

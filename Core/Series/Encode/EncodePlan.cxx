@@ -33,7 +33,8 @@ double AbsoluteBound(
                                          options.ErrorBound * transform.Forward(range.Low);
   if (!std::isfinite(bound))
   {
-    throw Error("The error bound times the range of the series is not a finite number");
+    throw Error("The error bound times the range of the series is not a finite number: choose a "
+                "smaller bound");
   }
   if (bound < 2 * std::numeric_limits<double>::min() && !range.Empty())
   {

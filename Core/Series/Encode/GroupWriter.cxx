@@ -122,8 +122,8 @@ group::Section GroupWriter::AddSection(const Bytes& raw, bool compressed)
   section.Hash = ShortHashOf(packed.data(), packed.size());
   if (raw.size() > 0xffffffffu || packed.size() > 0xffffffffu)
   {
-    throw Error("A table of the segment is larger than 4 GiB: use fewer steps per segment or "
-                "larger bricks");
+    throw Error("A table of the segment is larger than 4 GiB: lower 'Keyframe Interval' "
+                "(KeyframeInterval), or take bricks of 32 cells");
   }
   this->Output.Append(packed.data(), packed.size());
   return section;

@@ -146,7 +146,8 @@ SeriesLock::SeriesLock(const std::string& seriesPath)
     }
   }
   throw Error(
-    "The lock of the series cannot be taken: others take it and give it back all the time",
+    "The series cannot be written: other programs write it again and again. Wait until they have "
+    "ended, or choose another name",
     { this->Path });
 }
 
@@ -156,9 +157,10 @@ void SeriesLock::CheckPath() const
   struct stat status = {};
   if (stat(this->Path.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
   {
-    throw Error(S_ISDIR(status.st_mode) ? "The series cannot be written: a folder has its name"
+    throw Error(S_ISDIR(status.st_mode) ? "The series cannot be written: a folder has its name. "
+                                          "Choose another name"
                                         : "The series cannot be written: what has its name is no "
-                                          "ordinary file",
+                                          "ordinary file. Choose another name",
       { this->Path });
   }
 }

@@ -69,7 +69,7 @@ void RangeRule::Check() const
       (!(this->LowShare >= 0.0) || !(this->LowShare < this->HighShare) ||
         !(this->HighShare <= 1.0)))
   {
-    throw Error("The percentiles of a range must be shares from 0 to 1, the low one first");
+    throw Error("The percentiles of a range must lie within 0 and 100 %, the low one first");
   }
   if (this->From == Source::Given &&
       (this->Given.Empty() || !std::isfinite(this->Given.Low) || !std::isfinite(this->Given.High)))

@@ -20,6 +20,10 @@ TEST(PropertyNumber, NamesPropertyAndValue)
   EXPECT_EQ(ProblemOfNumber("Width", -1.5, true), "");
   EXPECT_EQ(ProblemOfNumber("Width", -1.5),
     "Width must be a finite number that is not negative, and is -1.5");
+  EXPECT_EQ(ProblemOfNumber("ErrorBound", -1.0),
+    "'Error Bound' (ErrorBound) must be a finite number that is not negative, and is -1");
+  EXPECT_EQ(ProblemOfNumber("A Part of it", std::nan(""), true),
+    "A Part of it must be a finite number, and is nan");
   EXPECT_EQ(
     ProblemOfNumber("Place", std::nan(""), true), "Place must be a finite number, and is nan");
   for (const bool negative : { false, true })

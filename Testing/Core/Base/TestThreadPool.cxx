@@ -57,7 +57,7 @@ TEST(ThreadPool, ThreadsThatCannotBeStartedAreToldOf)
     }
     std::_Exit(0);
   };
-  EXPECT_EXIT(tooMany(), testing::ExitedWithCode(3), "Of 900 threads [0-9]+ could be started");
+  EXPECT_EXIT(tooMany(), testing::ExitedWithCode(3), "Only [0-9]+ of 900 threads could be started");
 }
 #endif
 

@@ -258,7 +258,7 @@ TEST_F(HostileGroups, AnotherLatticeBeforeIsRefused)
         head.Greatest += axes ? 0 : 1;
         sections[1] = PackHead(head);
       });
-    EXPECT_TRUE(Says(this->Complaint(5, 1), "has another lattice"));
+    EXPECT_TRUE(Says(this->Complaint(5, 1), "is quantized differently"));
     EXPECT_EQ(this->Complaint(7, 1), "");
   }
 }
