@@ -19,8 +19,7 @@ namespace banyan
 /// only points and values as long as the cells of all blocks, and which arrays they have, stay the
 /// same.
 ///
-/// What comes out is what vtkAppendFilter makes of the blocks, which takes all cells anew at each
-/// step.
+/// The result is that of vtkAppendFilter, which takes all cells anew at each step.
 class BANYANINPUTS_EXPORT MergedBlocks
 {
 public:

@@ -33,7 +33,7 @@ std::string Text(const glm::ivec3& v)
   return std::to_string(v.x) + " x " + std::to_string(v.y) + " x " + std::to_string(v.z);
 }
 
-/// As VTK writes extents: both ends included.
+/// Writes an extent as VTK does: both ends included.
 std::string Text(const Box& extent)
 {
   std::string text;

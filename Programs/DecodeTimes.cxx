@@ -137,7 +137,7 @@ void TimeBricks(const SeriesFile& file, const FieldKey& field,
   }
 }
 
-/// Of a step, its payloads.
+/// Reads the payloads of a step.
 /// @return the bricks that have any, in order
 std::vector<std::int64_t> BringIntoMemory(const SeriesFile& file, const FieldKey& field)
 {

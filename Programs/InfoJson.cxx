@@ -66,7 +66,7 @@ Json SizeToJson(const SeriesReport& report)
   return json;
 }
 
-/// What a look at one brick takes; null where the series does not say it.
+/// Returns what a look at one brick takes; null where the series does not say it.
 Json ChainsToJson(const EncodeStatistics& statistics)
 {
   if (statistics.ChainBricks == 0)

@@ -10,7 +10,7 @@
 namespace banyan
 {
 
-/// What banyan-info is asked to do. `InfoHelp()` explains each one.
+/// Holds what banyan-info is asked to do. `InfoHelp()` explains each one.
 struct InfoOptions
 {
   std::string File;

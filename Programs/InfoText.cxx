@@ -75,7 +75,7 @@ std::string Heading(const SeriesReport& report)
   return text;
 }
 
-/// What is stored once for several groups of steps.
+/// Says what is stored once for several groups of steps.
 std::string Repeated(const EncodeStatistics& statistics)
 {
   if (statistics.RepeatedSegments == 0)

@@ -29,7 +29,7 @@ struct BrickCounts
   void Add(const BrickCounts& other);
 };
 
-/// What the node tables say of one component at one step.
+/// Holds what the node tables say of one component at one step.
 struct StepReport
 {
   int Step = 0;
@@ -49,18 +49,18 @@ struct ComponentReport
   ScalarType Type = ScalarType::Float32;
   std::vector<StepReport> Steps; ///< those that were asked for
 
-  /// Of one step; nothing where the series does not say it.
+  /// Returns the RMSE of one step; nothing where the series does not say it.
   std::optional<double> RmseOf(const StepReport& step) const;
   double Rmse() const; ///< over all finite values of the series; 0 when there are none
-  /// Of the asked steps, the one whose values have the narrowest range that is not 0 wide; null
-  /// when there is none. Errors are largest in relation to it.
+  /// Returns the asked step whose values have the narrowest range that is not 0 wide; null when
+  /// there is none. Errors are largest in relation to it.
   const StepReport* NarrowestStep() const;
   BrickCounts Sum(int level) const;
   CountsBySize MacroVoxels() const; ///< over the asked steps
   CountsBySize Unchanged() const;
 };
 
-/// What can be said of a series without decoding it.
+/// Holds what can be said of a series without decoding it.
 struct SeriesReport
 {
   std::string File;
@@ -83,7 +83,7 @@ struct SeriesReport
   std::int64_t VoxelsBelow(std::size_t level) const;
 };
 
-/// What to report on.
+/// Says what to report on.
 struct ReportChoice
 {
   int Step = -1;     ///< -1: all

@@ -31,7 +31,7 @@ struct SourceArray
   }
 };
 
-/// What a source says of its mesh, before the values: where it is found among the arrays.
+/// Holds what a source says of its mesh, before the values: where it is found among the arrays.
 struct SourceMesh
 {
   std::int64_t Cells = 0;
@@ -39,7 +39,7 @@ struct SourceMesh
   int Corners = -1;     ///< eight points (int64) of each cell, in the order that its type has
 };
 
-/// What a source says of a step, before its values.
+/// Holds what a source says of a step, before its values.
 struct SourceStep
 {
   std::optional<double> Time; ///< nothing: the source knows of no time

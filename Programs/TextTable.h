@@ -16,7 +16,7 @@ class TextTable
 public:
   explicit TextTable(std::vector<std::string> headings);
 
-  /// As many cells as there are headings.
+  /// Adds a row of as many cells as there are headings.
   void AddRow(std::vector<std::string> cells);
   /// Each line indented by two blanks and ended by a newline.
   std::string Text() const;

@@ -73,7 +73,7 @@ private:
   double ClassesPerHalf = 0.0;
 };
 
-/// What values are judged by.
+/// Says what values are judged by.
 struct Judgement
 {
   double Bound = 0.0; ///< |f(decoded) - f(original)| <= this

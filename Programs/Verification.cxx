@@ -22,7 +22,7 @@ namespace banyan
 namespace
 {
 
-/// As many digits as bring back the same bits, and the bits of what is not a number.
+/// Writes as many digits as bring back the same bits, and the bits of what is not a number.
 template <class T>
 std::string Exactly(T value)
 {
@@ -56,7 +56,7 @@ OpacityFunction Ramp(const ValueRange& range)
   return OpacityFunction({ { range.Low, 0.0 }, { range.High, 1.0 } });
 }
 
-/// Of the originals, as far as the index knows it.
+/// Returns the range of the originals, as far as the index knows it.
 ValueRange RangeOf(const ComponentIndex& component)
 {
   return component.PromisedRange.Empty() ? component.Range : component.PromisedRange;
@@ -239,7 +239,7 @@ private:
     std::vector<std::uint8_t> clamped;
     if (index.ClampOutside)
     {
-      // What the series promises is nearness to the clamped values.
+      // The series promises nearness to the clamped values.
       clamped.resize(this->Decoded.size());
       component.Clamped += ClampComponent(array.Type, first, stride, count, index.PromisedRange,
         index.FillValues, hidden, clamped.data());

@@ -14,7 +14,7 @@
 namespace banyan
 {
 
-/// What banyan-verify is asked to do. `VerifyHelp()` explains each one.
+/// Holds what banyan-verify is asked to do. `VerifyHelp()` explains each one.
 struct VerifyOptions
 {
   std::string File;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the reader tells of its work.
+// The reader tells of its work here.
 #include "SeriesReaderInternals.h"
 
 #include "Cache/BrickCache.h"

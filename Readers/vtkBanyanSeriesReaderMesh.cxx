@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the reader does differently for series of meshes.
+// The reader treats series of meshes differently here.
 #include "SeriesInformation.h"
 #include "SeriesReaderInternals.h"
 

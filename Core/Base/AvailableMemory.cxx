@@ -30,7 +30,7 @@ std::optional<std::size_t> SumOfLines(
   return found ? std::optional<std::size_t>(*found + other) : std::nullopt;
 }
 
-/// What a limit of a control group leaves; nothing where there is none.
+/// Returns the bytes that a limit of a control group leaves; nothing where there is no limit.
 std::optional<std::size_t> Left(const std::string& group, const std::string& what)
 {
   std::size_t most = 0;

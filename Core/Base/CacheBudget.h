@@ -7,8 +7,8 @@
 namespace banyan
 {
 
-/// What the caches of a process may take together unless something else is asked for: its part of
-/// an eighth of the machine's memory, but at least 512 MiB and at most 16 GiB.
+/// Returns the bytes that the caches of a process may take together unless something else is asked
+/// for: its part of an eighth of the machine's memory, but at least 512 MiB and at most 16 GiB.
 /// @param machineBytes MachineMemory; 0 where it is not known
 /// @param ranks that share the machine; less than 1 counts as 1
 std::uint64_t UsualCacheBudget(std::uint64_t machineBytes, int ranks);
@@ -18,9 +18,9 @@ std::uint64_t UsualCacheBudget(std::uint64_t machineBytes, int ranks);
 /// says.
 int RanksStartedHere();
 
-/// What the caches of a process may take together unless they are told otherwise: the environment
-/// variable BANYAN_CACHE_MB, a whole number of MiB (0 keeps nothing), else UsualCacheBudget. Throws
-/// Error, with a sentence that says what is wrong, when the variable holds anything else.
+/// Returns the bytes that the caches of a process may take together: the environment variable
+/// BANYAN_CACHE_MB, a whole number of MiB (0 keeps nothing), else UsualCacheBudget. Throws Error,
+/// with a sentence that says what is wrong, when the variable holds anything else.
 std::uint64_t CacheBudgetAskedFor();
 
 /// The same, with the default in place of the error. For caches, which are made where nobody

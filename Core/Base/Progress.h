@@ -8,7 +8,7 @@
 namespace banyan
 {
 
-/// What the thread that draws is doing, for those who look at a process from outside.
+/// Says what the thread that draws is doing, for those who look at a process from outside.
 enum class Phase : std::uint32_t
 {
   Outside, ///< nothing of ours: anything may take any time
@@ -20,7 +20,7 @@ enum class Phase : std::uint32_t
   Balancing
 };
 
-/// As in "while it was ..."; "outside of drawing" for Outside.
+/// Returns words that fit into "while it was ..."; "outside of drawing" for Outside.
 const char* NameOf(Phase phase);
 
 /// Signs of a process that it gets on. One per process; all functions may be called by any thread.

@@ -24,7 +24,7 @@ public:
   void* Take(std::size_t bytes)
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
-    // What was given last is asked for next, as a rule.
+    // Memory that was given last is asked for next, as a rule.
     for (std::size_t i = this->OldestFirst.size(); i-- > 0;)
     {
       if (this->OldestFirst[i].Bytes == bytes)
@@ -35,7 +35,7 @@ public:
     return nullptr;
   }
 
-  /// Those that lie longest make room. @return false if it is not kept
+  /// Keeps the memory; pieces that lie longest make room. @return false if it is not kept
   bool Give(void* memory, std::size_t bytes) noexcept
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);

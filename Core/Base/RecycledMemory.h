@@ -23,7 +23,7 @@ public:
   /// @param bytes as they were taken
   static void Give(void* memory, std::size_t bytes) noexcept;
 
-  /// What is kept at present; and all of it back to the system.
+  /// Returns the bytes that are kept at present. LetGo gives all of them back to the system.
   static std::size_t KeptBytes();
   static void LetGo() noexcept;
 };

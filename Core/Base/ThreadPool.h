@@ -30,7 +30,7 @@ public:
   /// items that have not started by then are skipped.
   void ParallelFor(std::int64_t count, const std::function<void(std::int64_t)>& body);
 
-  /// As above; the second argument of the body is the worker's number in [0, Width()), so that
+  /// Does the same; the second argument of the body is the worker's number in [0, Width()), so that
   /// a body can use scratch memory of its own.
   void ParallelFor(std::int64_t count, const std::function<void(std::int64_t, int worker)>& body);
 

@@ -23,7 +23,8 @@ constexpr int Niceness = 10;
 void LowerPriority()
 {
 #ifdef __linux__
-  // Of this thread alone. Where it is not allowed, nothing but time is lost.
+  // The priority is that of this thread alone. Where lowering it is not allowed, nothing but time
+  // is lost.
   (void)setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), Niceness);
 #endif
 }

@@ -16,7 +16,7 @@ namespace banyan
 namespace
 {
 
-/// What a decoded brick is known by. Its place belongs to it, because `BrickValues` says it.
+/// Identifies a decoded brick. Its place belongs to it, because `BrickValues` says it.
 struct Key
 {
   PayloadIdentity Identity;

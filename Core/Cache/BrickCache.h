@@ -76,7 +76,7 @@ public:
   std::uint64_t Budget() const;
   /// The renderer's share of the budget of the process's cache.
   std::uint64_t DrawingBudget() const { return this->Budget() / 8 * 3; }
-  /// What decoded bricks may take: the budget, or their share of the process's.
+  /// Returns the bytes that decoded bricks may take: the budget, or their share of the process's.
   std::uint64_t DecodedBudget() const;
   /// Others take so much more (or less) of that: bricks that ranks fetch from each other. Evicts at
   /// once.

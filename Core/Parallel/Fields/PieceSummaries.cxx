@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What all ranks know of each other's bricks.
+// Collects what all ranks know of each other's bricks.
 #include "Base/Error.h"
 #include "Parallel/Fields/PieceExchange.h"
 

@@ -121,9 +121,9 @@ struct TableReference
   const StepTable* Table = nullptr; ///< null: there is none
 };
 
+/// Keeps the contents of nodes in the first step and in steps without reference only, and none of
+/// uniform bricks.
 /// @param step of the segment, whose first is 0
-/// Of nodes' contents only those are kept that are in the first step or in one without reference,
-/// and not of uniform bricks.
 Bytes PackStep(
   const StepTable& table, const TableShape& shape, int step, const TableReference& reference);
 
