@@ -166,8 +166,8 @@ std::string HowPointsMoved(
   }
   else
   {
-    text << ". If a point array holds these displacements, name it as DisplacementArray, or read "
-            "the mesh without applying them";
+    text << ". If a point array holds these displacements, name it as 'Displacement Array' "
+            "(DisplacementArray), or read the mesh without applying them";
   }
   return text.str();
 }

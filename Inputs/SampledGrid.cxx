@@ -137,8 +137,7 @@ vtkSmartPointer<vtkUnstructuredGrid> SampledGrid::Of(
   this->NoteText.clear();
   if (others.Count > 0)
   {
-    this->NoteText =
-      "Of the mesh only hexahedra and voxels are sampled, without " + others.Text() + ". ";
+    this->NoteText = "Only hexahedra and voxels are sampled, without " + others.Text() + ". ";
   }
   if (mesh.CellCount == 0)
   {

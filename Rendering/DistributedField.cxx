@@ -190,7 +190,7 @@ void DistributedField::TakePlain(Communicator& communicator, const FieldPiece& p
   if (deferred && this->Enhancement.Strength > 0.0 && this->ProblemText.empty())
   {
     this->ProblemText =
-      "Of an encoded series only whole steps can be enhanced while they are drawn: put "
+      "Only whole steps of an encoded series can be enhanced while they are drawn: put "
       "the filter 'Banyan Temporal Enhancement' behind the reader.";
   }
   std::vector<Box> pieces;

@@ -120,7 +120,7 @@ void MeshField::Describe(Communicator& communicator, const OtherCells& others)
   std::string note;
   if (others.Count > 0)
   {
-    note = "Of the mesh only hexahedra and voxels are drawn, without " + others.Text() + ". ";
+    note = "Only hexahedra and voxels are drawn, without " + others.Text() + ". ";
   }
   if (facts.TangledCells > 0)
   {

@@ -290,7 +290,7 @@ TEST(TemporalEnhancement, RefusesDataThatCannotBeCompared)
   Messages messages(filter);
   filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "other");
   EnhancedAt(filter, 1.0);
-  EXPECT_NE(messages.Errors.find("no point array of the name"), std::string::npos);
+  EXPECT_NE(messages.Errors.find("no array of the chosen name"), std::string::npos);
   EXPECT_EQ(filter->GetErrorCode(), vtkErrorCode::UserError);
 
   filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "motion");

@@ -104,7 +104,7 @@ def check_refusals(quake, folder):
     refused(["holds no displacements: it has 1 comp"], DisplacementArray="alone")
     without = simple.PassArrays(Input=moved, PointDataArrays=["velocity"])
     moved = without
-    refused(["name it as DisplacementArray"])
+    refused(["name it as 'Displacement Array' (DisplacementArray)"])
 
 
 def check_real(folder):

@@ -72,7 +72,7 @@ void LoadBalancer::BeginFrame(const BrickCosts& view, const ScreenCuts* cuts)
   if (view.Positions != this->Settings.Positions || view.Edge != this->Settings.BlockEdge ||
       view.Values.size() != this->Density.size())
   {
-    throw Error("What is seen belongs to another grid than the zones.");
+    throw Error("The visible parts belong to another grid than the zones.");
   }
   if (this->MeanDensity >= 0.0)
   {
@@ -183,7 +183,7 @@ void LoadBalancer::FrameTook(const std::vector<RankWork>& ranks, const BrickCost
   if (ranks.size() != static_cast<std::size_t>(this->Settings.Ranks) ||
       work.Values.size() != this->Density.size())
   {
-    throw Error("What a frame took belongs to other zones.");
+    throw Error("The measured frame belongs to other zones.");
   }
   if (std::none_of(
         ranks.begin(), ranks.end(), [](const RankWork& rank) { return rank.Seconds > 0.0; }))
