@@ -33,8 +33,8 @@ std::string Plain(std::string text)
   return text;
 }
 
-/// Tells the texts of vtkErrorMacro: they say where it was called, or a class and an address. All
-/// that scripts write to Python's standard error comes to the window as well, piece by piece.
+/// Recognizes the texts of vtkErrorMacro: they say where it was called, or a class and an address.
+/// All that scripts write to Python's standard error comes to the window as well, piece by piece.
 bool IsOfVtk(const std::string& text)
 {
   const std::size_t address = text.find(" (");

@@ -74,7 +74,7 @@ void AgreeOrThrow(Communicator& communicator, const std::string& failure)
   }
 }
 
-/// Is told by a rank to the others after a frame. It has plain numbers: all are sent in one
+/// Is told by a rank to the others about a frame. It has plain numbers: all are sent in one
 /// message.
 struct Report
 {

@@ -136,7 +136,7 @@ std::shared_ptr<const ElementOctree> SharedMesh::Find(
   return tree;
 }
 
-/// Uses the threads of all ranks of the machine: the others wait.
+/// Returns the threads of all ranks of the machine: the others wait.
 ThreadPool& SharedMesh::Threads(const NodeCommunicator& machines)
 {
   ThreadPool& own = ThreadPool::Process();
