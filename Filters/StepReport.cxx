@@ -101,6 +101,24 @@ void CheckPlacement(const Grid& grid, StepReport& report)
   }
 }
 
+/// Says in `report` which chosen arrays are not there.
+void CheckSelection(
+  vtkDataArraySelection& selection, const std::vector<std::string>& available, StepReport& report)
+{
+  for (int i = 0; i < selection.GetNumberOfArrays(); ++i)
+  {
+    const std::string name = selection.GetArrayName(i);
+    // ParaView offers the ghost flags like any array and selects them by default. Hidden points
+    // are written whether they are chosen or not.
+    if (selection.GetArraySetting(i) && name != vtkDataSetAttributes::GhostArrayName() &&
+        std::find(available.begin(), available.end(), name) == available.end())
+    {
+      report.Problem = "There is no point array " + name +
+                       (available.empty() ? "." : "; there are: " + Joined(available) + ".");
+    }
+  }
+}
+
 /// The arrays to write of a piece that is not empty; says in `report` what is not written.
 std::vector<vtkDataArray*> Choose(
   vtkImageData* image, vtkDataArraySelection& selection, StepReport& report)
@@ -138,18 +156,7 @@ std::vector<vtkDataArray*> Choose(
       unfit.push_back(name + " (" + array->GetDataTypeAsString() + ")");
     }
   }
-  for (int i = 0; i < selection.GetNumberOfArrays(); ++i)
-  {
-    const std::string name = selection.GetArrayName(i);
-    // ParaView offers the ghost flags like any array and selects them by default. Hidden points
-    // are written whether they are chosen or not.
-    if (selection.GetArraySetting(i) && name != vtkDataSetAttributes::GhostArrayName() &&
-        std::find(available.begin(), available.end(), name) == available.end())
-    {
-      report.Problem = "There is no point array " + name +
-                       (available.empty() ? "." : "; there are: " + Joined(available) + ".");
-    }
-  }
+  CheckSelection(selection, available, report);
   const std::vector<std::string> cells = CellArrayNames(image);
   if (chosen.empty() && report.Problem.empty())
   {

@@ -135,6 +135,27 @@ void vtkBanyanTemporalEnhancement::EnhanceAll(vtkDataObject* output)
   }
 }
 
+/// Throws where an array has another number of values in another step.
+/// @param kind "point" or "cell"
+/// @param which the other step
+static void CompareShapes(
+  vtkDataArray* array, vtkDataArray* there, const std::string& kind, const std::string& which)
+{
+  if (there->GetNumberOfTuples() == array->GetNumberOfTuples() &&
+      there->GetNumberOfComponents() == array->GetNumberOfComponents())
+  {
+    return;
+  }
+  const auto shape = [&](vtkDataArray* of)
+  {
+    return std::to_string(of->GetNumberOfTuples()) + " " + kind + "s with " +
+           std::to_string(of->GetNumberOfComponents()) + " components";
+  };
+  throw std::runtime_error("\"" + std::string(array->GetName()) + "\" has " + shape(there) +
+                           " in " + which + ", and " + shape(array) +
+                           " now. Only meshes that stay the same can be compared.");
+}
+
 /// False where there is no such array.
 bool vtkBanyanTemporalEnhancement::Enhance(
   vtkDataObject* data, vtkCompositeDataIterator* place, PlainArrays& plain)
@@ -173,18 +194,7 @@ bool vtkBanyanTemporalEnhancement::Enhance(
                                " has other hyper trees. Only those that stay the same can be "
                                "compared.");
     }
-    if (there->GetNumberOfTuples() != array->GetNumberOfTuples() ||
-        there->GetNumberOfComponents() != array->GetNumberOfComponents())
-    {
-      const auto shape = [&](vtkDataArray* of)
-      {
-        return std::to_string(of->GetNumberOfTuples()) + " " + kind + "s with " +
-               std::to_string(of->GetNumberOfComponents()) + " components";
-      };
-      throw std::runtime_error("\"" + std::string(array->GetName()) + "\" has " + shape(there) +
-                               " in " + which + ", and " + shape(array) +
-                               " now. Only meshes that stay the same can be compared.");
-    }
+    CompareShapes(array, there, kind, which);
     if (!banyan::HaveSameCells(data, other))
     {
       throw std::runtime_error(which + " has other cells. Only meshes that stay the same can be "

@@ -86,6 +86,80 @@ std::shared_ptr<const std::vector<std::uint8_t>> Unpacked(
   return mask;
 }
 
+/// A plan as texts, to be sent.
+std::vector<std::string> TextsOf(const MeshPlan& plan)
+{
+  const MeshIndex& index = plan.Index;
+  Bytes numbers, needed, ofCells;
+  for (const std::uint64_t number :
+    { index.Bytes, index.HashLow, index.HashHigh, static_cast<std::uint64_t>(index.Points),
+      static_cast<std::uint64_t>(index.Cells), std::uint64_t{ plan.Needed->size() } })
+  {
+    PutVarint(numbers, number);
+  }
+  AppendCompressed(plan.Needed->data(), plan.Needed->size(), 1, needed);
+  AppendCompressed(plan.NeededOfCells->data(), plan.NeededOfCells->size(), 1, ofCells);
+  std::vector<std::string> texts = { index.File };
+  for (const Bytes& bytes : { numbers, needed, ofCells })
+  {
+    texts.emplace_back(bytes.begin(), bytes.end());
+  }
+  for (const auto& array : plan.CellArrays)
+  {
+    texts.insert(texts.end(), { array.first, array.second });
+  }
+  return texts;
+}
+
+/// The inverse of TextsOf.
+std::shared_ptr<const MeshPlan> PlanFrom(const std::vector<std::string>& texts)
+{
+  auto plan = std::make_shared<MeshPlan>();
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(texts[1].data());
+  ByteReader reader(bytes, texts[1].size());
+  plan->Index.File = texts[0];
+  plan->Index.Bytes = reader.Varint();
+  plan->Index.HashLow = reader.Varint();
+  plan->Index.HashHigh = reader.Varint();
+  plan->Index.Points = static_cast<std::int64_t>(reader.Varint());
+  plan->Index.Cells = static_cast<std::int64_t>(reader.Varint());
+  const std::uint64_t samples = reader.Varint();
+  plan->Needed = Unpacked(texts[2], samples);
+  plan->NeededOfCells = Unpacked(texts[3], samples);
+  for (std::size_t i = 4; i + 1 < texts.size(); i += 2)
+  {
+    plan->CellArrays[texts[i]] = texts[i + 1];
+  }
+  return plan;
+}
+
+/// What the ranks have of a step.
+struct PartsOfRanks
+{
+  bool Failed = false;        ///< some have a problem
+  bool Mesh = false;          ///< some have a mesh
+  bool CellsOfOthers = false; ///< ranks but the first one have cells
+};
+
+/// Collective.
+/// @param failed, mesh, cells what this rank has
+PartsOfRanks PartsOf(const RankTalk& talk, bool failed, bool mesh, bool cells)
+{
+  vtkMultiProcessStream stream;
+  stream << static_cast<int>(failed) << static_cast<int>(mesh) << static_cast<int>(cells);
+  PartsOfRanks parts;
+  int rank = 0;
+  for (vtkMultiProcessStream& theirs : talk.Exchange(stream))
+  {
+    int theirProblem = 0, theirMesh = 0, theirCells = 0;
+    theirs >> theirProblem >> theirMesh >> theirCells;
+    parts.Failed = parts.Failed || theirProblem != 0;
+    parts.Mesh = parts.Mesh || theirMesh != 0;
+    parts.CellsOfOthers = parts.CellsOfOthers || (rank++ > 0 && theirCells != 0);
+  }
+  return parts;
+}
+
 } // namespace
 
 std::string MeshSteps::Take(vtkSmartPointer<vtkDataObject>& data, const std::string& problem)
@@ -99,22 +173,8 @@ std::string MeshSteps::Take(vtkSmartPointer<vtkDataObject>& data, const std::str
   }
   std::vector<vtkUnstructuredGrid*> grids;
   const bool mine = problem.empty() && CollectGrids(data, grids);
-  vtkMultiProcessStream stream;
-  stream << static_cast<int>(!problem.empty()) << static_cast<int>(mine)
-         << static_cast<int>(!grids.empty());
-  bool failed = false;
-  bool mesh = false;
-  bool others = false; // ranks but the first one have cells
-  int rank = 0;
-  for (vtkMultiProcessStream& theirs : this->Talk.Exchange(stream))
-  {
-    int theirProblem = 0, theirMesh = 0, theirCells = 0;
-    theirs >> theirProblem >> theirMesh >> theirCells;
-    failed = failed || theirProblem != 0;
-    mesh = mesh || theirMesh != 0;
-    others = others || (rank++ > 0 && theirCells != 0);
-  }
-  if (failed || !mesh)
+  const PartsOfRanks parts = PartsOf(this->Talk, !problem.empty(), mine, !grids.empty());
+  if (parts.Failed || !parts.Mesh)
   {
     return problem;
   }
@@ -129,13 +189,7 @@ std::string MeshSteps::Take(vtkSmartPointer<vtkDataObject>& data, const std::str
                   data->GetClassName() + " with other cells");
     }
     this->LookAt(grids);
-    std::vector<vtkSmartPointer<vtkUnstructuredGrid>> rest;
-    for (vtkUnstructuredGrid*& grid : grids)
-    {
-      rest.push_back(AtRest(grid, this->Leaves ? "" : this->Displacements));
-      grid = rest.back();
-    }
-    piece = MergePieces(grids, this->Arrays.WantedPoints(this->Leaves));
+    piece = this->Merged(grids);
   }
   catch (const std::exception& error)
   {
@@ -150,7 +204,7 @@ std::string MeshSteps::Take(vtkSmartPointer<vtkDataObject>& data, const std::str
   }
   try
   {
-    this->Gather(piece, others);
+    this->Gather(piece, parts.CellsOfOthers);
     if (this->Talk.Rank() == 0)
     {
       this->Remember(piece);
@@ -167,6 +221,18 @@ std::string MeshSteps::Take(vtkSmartPointer<vtkDataObject>& data, const std::str
   }
   data = image;
   return mistake;
+}
+
+/// This rank's part as one mesh, its points at rest.
+vtkSmartPointer<vtkUnstructuredGrid> MeshSteps::Merged(std::vector<vtkUnstructuredGrid*> grids)
+{
+  std::vector<vtkSmartPointer<vtkUnstructuredGrid>> rest;
+  for (vtkUnstructuredGrid*& grid : grids)
+  {
+    rest.push_back(AtRest(grid, this->Leaves ? "" : this->Displacements));
+    grid = rest.back();
+  }
+  return MergePieces(grids, this->Arrays.WantedPoints(this->Leaves));
 }
 
 /// Notes what is not written of this rank's part.
@@ -330,54 +396,15 @@ std::shared_ptr<const MeshPlan> MeshSteps::Write(SegmentFolder* folder) const
   {
     return plan;
   }
-  Bytes numbers, needed, ofCells;
-  std::vector<std::string> told;
-  if (plan)
-  {
-    const MeshIndex& index = plan->Index;
-    for (const std::uint64_t number :
-      { index.Bytes, index.HashLow, index.HashHigh, static_cast<std::uint64_t>(index.Points),
-        static_cast<std::uint64_t>(index.Cells), std::uint64_t{ plan->Needed->size() } })
-    {
-      PutVarint(numbers, number);
-    }
-    AppendCompressed(plan->Needed->data(), plan->Needed->size(), 1, needed);
-    AppendCompressed(plan->NeededOfCells->data(), plan->NeededOfCells->size(), 1, ofCells);
-    told = { index.File };
-    for (const Bytes& bytes : { numbers, needed, ofCells })
-    {
-      told.emplace_back(bytes.begin(), bytes.end());
-    }
-    for (const auto& array : plan->CellArrays)
-    {
-      told.insert(told.end(), { array.first, array.second });
-    }
-  }
-  told = this->Talk.FromRankZero(told);
+  const std::vector<std::string> texts =
+    this->Talk.FromRankZero(plan ? TextsOf(*plan) : std::vector<std::string>());
   this->Talk.Together(
     [&]
     {
-      if (plan)
+      if (!plan)
       {
-        return;
+        plan = PlanFrom(texts);
       }
-      auto theirs = std::make_shared<MeshPlan>();
-      const auto* bytes = reinterpret_cast<const std::uint8_t*>(told[1].data());
-      ByteReader reader(bytes, told[1].size());
-      theirs->Index.File = told[0];
-      theirs->Index.Bytes = reader.Varint();
-      theirs->Index.HashLow = reader.Varint();
-      theirs->Index.HashHigh = reader.Varint();
-      theirs->Index.Points = static_cast<std::int64_t>(reader.Varint());
-      theirs->Index.Cells = static_cast<std::int64_t>(reader.Varint());
-      const std::uint64_t samples = reader.Varint();
-      theirs->Needed = Unpacked(told[2], samples);
-      theirs->NeededOfCells = Unpacked(told[3], samples);
-      for (std::size_t i = 4; i + 1 < told.size(); i += 2)
-      {
-        theirs->CellArrays[told[i]] = told[i + 1];
-      }
-      plan = std::move(theirs);
     });
   return plan;
 }

@@ -75,6 +75,7 @@ public:
 private:
   std::string FirstMistake(const std::string& mine) const;
   void LookAt(const std::vector<vtkUnstructuredGrid*>& grids);
+  vtkSmartPointer<vtkUnstructuredGrid> Merged(std::vector<vtkUnstructuredGrid*> grids);
   /// Collective: the one mesh of all ranks, on rank 0.
   void Gather(vtkSmartPointer<vtkUnstructuredGrid>& piece, bool others);
   void Remember(vtkUnstructuredGrid* grid);

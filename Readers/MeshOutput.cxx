@@ -73,6 +73,23 @@ int MeshOutput::Levels()
   return this->Mesh->Atlas->CoarsestLevel() + 1;
 }
 
+/// Cells [first, end) with points by their place in a piece.
+/// @param corners of all cells, eight each
+static vtkSmartPointer<vtkCellArray> CellsOf(const std::vector<std::int64_t>& corners,
+  const std::vector<std::int64_t>& place, std::int64_t first, std::int64_t end)
+{
+  vtkNew<vtkIdTypeArray> ids;
+  ids->SetNumberOfValues(8 * (end - first));
+  for (std::int64_t i = 8 * first; i < 8 * end; ++i)
+  {
+    ids->SetValue(
+      i - 8 * first, place[static_cast<std::size_t>(corners[static_cast<std::size_t>(i)])]);
+  }
+  const auto cells = vtkSmartPointer<vtkCellArray>::New();
+  cells->SetData(8, ids);
+  return cells;
+}
+
 void MeshOutput::MakeGrid(int level, int piece, int pieces)
 {
   const StoredMesh& mesh = *this->Mesh;
@@ -121,25 +138,16 @@ void MeshOutput::MakeGrid(int level, int piece, int pieces)
   points->SetDataType(mesh.PointType == ScalarType::Float64 ? VTK_DOUBLE : VTK_FLOAT);
   points->SetNumberOfPoints(static_cast<vtkIdType>(chosen.size()));
   CopyTuples(mesh.Points.data(), chosen, 3 * SizeOf(mesh.PointType), points->GetVoidPointer(0));
-  vtkNew<vtkIdTypeArray> ids;
-  ids->SetNumberOfValues(8 * (end - first));
   vtkNew<vtkUnsignedCharArray> types;
   types->SetNumberOfValues(end - first);
-  for (std::int64_t i = 8 * first; i < 8 * end; ++i)
-  {
-    ids->SetValue(
-      i - 8 * first, place[static_cast<std::size_t>(corners[static_cast<std::size_t>(i)])]);
-  }
   for (std::int64_t cell = first; cell < end; ++cell)
   {
     types->SetValue(
       cell - first, level > 0 ? Voxel : mesh.CellTypes[static_cast<std::size_t>(cell)]);
   }
-  vtkNew<vtkCellArray> cells;
-  cells->SetData(8, ids);
   this->Grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   this->Grid->SetPoints(points);
-  this->Grid->SetCells(types, cells);
+  this->Grid->SetCells(types, CellsOf(corners, place, first, end));
 }
 
 void MeshOutput::FillGrid(int level, int piece, int pieces, vtkUnstructuredGrid* output)

@@ -189,6 +189,13 @@ bool GoesPast(
   return bytes >= cache.Budget() / 16 || (bytes >= some && series.StepOfValues(field) > 0);
 }
 
+/// How many bricks a thread reads at once: a row of them where that leaves enough for all threads.
+int BricksTogether(std::int64_t bricks, int inRow)
+{
+  const std::int64_t enough = std::min(32, 4 * ThreadPool::Process().Width());
+  return bricks / inRow >= enough ? inRow : 1;
+}
+
 template <class T>
 void Read(
   BrickCache& cache, const SeriesFile& series, const FieldKey& field, const Target<T>& target)
@@ -231,9 +238,7 @@ void Read(
       decoding.Add(brick, part);
     }
   };
-  // A row of bricks at once where that leaves enough of them for all threads.
-  const std::int64_t enough = std::min(32, 4 * ThreadPool::Process().Width());
-  const int together = count / size.x >= enough ? size.x : 1;
+  const int together = BricksTogether(count, size.x);
   ThreadPool::Process().ParallelFor(count / together,
     [&](std::int64_t fromLast)
     {

@@ -43,71 +43,17 @@ GroupField::GroupField(GroupReader& segment, std::uint64_t series, std::uint32_t
   , Component(component)
   , BrickCells(brickCells)
   , Before(std::move(before))
-  , StepTables(static_cast<std::size_t>(segment.Steps()))
-  , Loaded(StepTables.size())
+  , Directory(segment, component, samples, brickCells, levels)
 {
-  const Bytes head = segment.Section(segment.HeadSection(component));
-  this->FieldHead = group::UnpackHead(head.data(), head.size());
-  if (this->FieldHead.Open && segment.FirstStep() == 0)
-  {
-    throw Error("The first segment of a series refers to one before it");
-  }
-  this->Shape = group::ShapeOf(samples, this->FieldHead.Axes, brickCells, levels);
   for (int set = 0; set < 2; ++set)
   {
-    this->Tables[set] = DecodeTablesOf(this->FieldHead.Frequencies[set]);
-    this->Memory += this->Tables[set].Bytes();
+    this->Tables[set] = DecodeTablesOf(this->Head().Frequencies[set]);
   }
 }
 
-const group::StepTable& GroupField::Step(int step)
+std::uint64_t GroupField::MemoryBytes() const
 {
-  if (const group::StepTable* table =
-        this->Loaded[static_cast<std::size_t>(step)].load(std::memory_order_acquire))
-  {
-    return *table;
-  }
-  const stages::In stage(stages::Tables);
-  // Under the lock: threads that start on a new step together then load its table once.
-  std::lock_guard<std::mutex> lock(this->Mutex);
-  return this->Load(step);
-}
-
-const group::StepTable& GroupField::Load(int step)
-{
-  std::unique_ptr<group::StepTable>& table = this->StepTables[static_cast<std::size_t>(step)];
-  if (!table)
-  {
-    const int reference = ReferencesOfStep(step, this->File.Steps(), this->FieldHead.Open).B;
-    const group::TableReference from{ reference, reference < 0 ? nullptr : &this->Load(reference) };
-    const Bytes bytes = this->File.Section(this->File.StepSection(step, this->Component));
-    table = std::make_unique<group::StepTable>(group::UnpackStep(
-      bytes.data(), bytes.size(), this->Shape, step, from, this->File.PayloadEnd()));
-    this->CheckNumbers(*table);
-    this->Memory += table->MemoryBytes();
-    this->BytesRead += bytes.size();
-    this->Loaded[static_cast<std::size_t>(step)].store(table.get(), std::memory_order_release);
-  }
-  return *table;
-}
-
-/// Everything that is decoded lies between the head's extremes; so must what is stored as it is.
-void GroupField::CheckNumbers(const group::StepTable& table) const
-{
-  const auto outside = [this](std::int32_t number)
-  { return number < this->FieldHead.Least || number > this->FieldHead.Greatest; };
-  bool any = std::any_of(table.Top.begin(), table.Top.end(), outside);
-  for (const auto& plane : table.Planes)
-  {
-    for (const group::BlockEntry& block : plane)
-    {
-      any = any || (block.Uniform && outside(block.Value));
-    }
-  }
-  if (any)
-  {
-    throw Error("A number in the table of a step is out of range");
-  }
+  return this->Directory.MemoryBytes() + this->Tables[0].Bytes() + this->Tables[1].Bytes();
 }
 
 std::size_t GroupField::IndexOf(int plane, const glm::ivec3& block) const
@@ -140,8 +86,7 @@ bool GroupField::NeedsReferences(int step, int plane, const glm::ivec3& block)
 
 StepReferences GroupField::ReferencesOf(int step) const
 {
-  const StepReferences references =
-    ReferencesOfStep(step, this->File.Steps(), this->FieldHead.Open);
+  const StepReferences references = ReferencesOfStep(step, this->File.Steps(), this->Head().Open);
   if (!references.Any())
   {
     throw Error("A block of the key frame of a segment refers to another step");
@@ -154,7 +99,7 @@ template <class Body>
 auto GroupField::InSegmentBefore(Body&& body)
 {
   const std::shared_ptr<GroupField> before = this->Before();
-  if (!group::SameLattice(before->FieldHead, this->FieldHead))
+  if (!group::SameLattice(before->Head(), this->Head()))
   {
     throw Error("A segment refers to the one before it, which is quantized differently");
   }
@@ -192,9 +137,9 @@ template <class Number>
 const Number* GroupField::Coarse(int step, int plane, const glm::ivec3& block)
 {
   const int n = this->BrickCells / 4 + 1;
-  const glm::ivec3 samples = this->Shape.Planes[static_cast<std::size_t>(plane) + 1];
+  const glm::ivec3 samples = this->Planes()[static_cast<std::size_t>(plane) + 1];
   const glm::ivec3 first = block * (this->BrickCells / 4);
-  const bool top = plane + 2 == static_cast<int>(this->Shape.Planes.size());
+  const bool top = plane + 2 == static_cast<int>(this->Planes().size());
   const glm::ivec3 coarseBlock = first / this->BrickCells;
   const glm::ivec3 origin = top ? glm::ivec3(0) : coarseBlock * this->BrickCells;
   const glm::ivec3 size = top ? samples : glm::ivec3(this->BrickCells + 1);
@@ -237,36 +182,28 @@ const Number* GroupField::Coarse(int step, int plane, const glm::ivec3& block)
 
 LatticeCache::Box GroupField::Decode(int step, int plane, const glm::ivec3& block)
 {
-  return block::Narrow(this->FieldHead.Least, this->FieldHead.Greatest)
+  return block::Narrow(this->Head().Least, this->Head().Greatest)
            ? this->DecodeAs<std::int16_t>(step, plane, block)
            : this->DecodeAs<std::int32_t>(step, plane, block);
 }
 
-template <class Number>
-LatticeCache::Box GroupField::DecodeAs(int step, int plane, const glm::ivec3& block)
+/// The code of a block and of the seven behind it, whose first layers its box has.
+/// @param blocks those eight
+GroupField::Kind GroupField::CodeOfBlocks(
+  int step, int plane, const glm::ivec3& block, const PayloadPages::Hold& hold, BlockCode* blocks)
 {
   const auto& entries = this->Step(step).Planes[static_cast<std::size_t>(plane)];
-  const glm::ivec3 blocks = this->BlocksOf(plane);
-  const glm::ivec3 samples = this->Shape.Planes[static_cast<std::size_t>(plane)];
-  PlaneCode shared;
-  shared.Tables = &this->Tables[plane > 0 ? 1 : 0];
-  shared.CoarseBin = BinOfOctave(this->FieldHead.Bin, 2 * plane + 1);
-  shared.FineBin = BinOfOctave(this->FieldHead.Bin, 2 * plane);
-  shared.Least = this->FieldHead.Least;
-  shared.Greatest = this->FieldHead.Greatest;
-  BoxCodeOf<Number> code;
-  bool refers = false;
-  bool same = true;
-  PayloadPages& payloads = this->File.Payloads();
-  const PayloadPages::Hold hold = payloads.InMemory();
+  const glm::ivec3 count = this->BlocksOf(plane);
+  const glm::ivec3 samples = this->Planes()[static_cast<std::size_t>(plane)];
+  Kind kind;
   for (int bits = 0; bits < 8; ++bits)
   {
     const glm::ivec3 at = NeighbourOf(block, bits);
-    BlockCode& to = code.Blocks[bits];
-    to.Exists = Inside(at, blocks);
+    BlockCode& to = blocks[bits];
+    to.Exists = Inside(at, count);
     if (!to.Exists)
     {
-      same = false; // what lies beyond the field's end is predicted anew at each step
+      kind.Same = false; // what lies beyond the field's end is predicted anew at each step
       continue;
     }
     const group::BlockEntry& entry = entries[this->IndexOf(plane, at)];
@@ -275,14 +212,29 @@ LatticeCache::Box GroupField::DecodeAs(int step, int plane, const glm::ivec3& bl
     to.Value = entry.Value;
     to.Mode = entry.Mode;
     to.Limit = samples - 1 - at * this->BrickCells;
-    refers = refers || Refers(entry);
-    same = same && entry.Same;
+    kind.Refers = kind.Refers || Refers(entry);
+    kind.Same = kind.Same && entry.Same;
     if (entry.Payload.Bytes > 0 && bits != 7)
     {
-      to.Data = payloads.At(hold, entry.Payload.Offset, entry.Payload.Bytes);
+      to.Data = this->File.Payloads().At(hold, entry.Payload.Offset, entry.Payload.Bytes);
       to.Bytes = entry.Payload.Bytes;
     }
   }
+  return kind;
+}
+
+template <class Number>
+LatticeCache::Box GroupField::DecodeAs(int step, int plane, const glm::ivec3& block)
+{
+  PlaneCode shared;
+  shared.Tables = &this->Tables[plane > 0 ? 1 : 0];
+  shared.CoarseBin = BinOfOctave(this->Head().Bin, 2 * plane + 1);
+  shared.FineBin = BinOfOctave(this->Head().Bin, 2 * plane);
+  shared.Least = this->Head().Least;
+  shared.Greatest = this->Head().Greatest;
+  BoxCodeOf<Number> code;
+  const PayloadPages::Hold hold = this->File.Payloads().InMemory();
+  const auto [refers, same] = this->CodeOfBlocks(step, plane, block, hold, code.Blocks);
   this->BytesRead += code.Blocks[0].Bytes;
   if (same)
   {
@@ -373,7 +325,7 @@ void GroupField::Verify(int step, int plane, const glm::ivec3& block, Visited& v
       }
     }
   }
-  if (plane + 2 < static_cast<int>(this->Shape.Planes.size()))
+  if (plane + 2 < static_cast<int>(this->Planes().size()))
   {
     this->Verify(step, plane + 1, block / 4, visited);
   }

@@ -2,16 +2,17 @@
 #ifndef banyan_Series_Decode_GroupField_h
 #define banyan_Series_Decode_GroupField_h
 
+#include "Codec/BlockDecoder.h"
 #include "Codec/DecodeTables.h"
 #include "Codec/GroupOrder.h"
 #include "Codec/LinePrefetcher.h"
+#include "Series/Decode/BlockDirectory.h"
 #include "Series/Decode/GroupReader.h"
 #include "Series/Decode/LatticeCache.h"
 
 #include <atomic>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <tuple>
 #include <vector>
@@ -29,18 +30,18 @@ public:
     const glm::ivec3& samples, int brickCells, int levels,
     std::function<std::shared_ptr<GroupField>()> before);
 
-  const group::FieldHead& Head() const { return this->FieldHead; }
+  const group::FieldHead& Head() const { return this->Directory.Head(); }
   GroupReader& Segment() const { return this->File; }
   int Edge() const { return this->BrickCells; }
   /// Samples and blocks of each plane, axes in the codec's order.
-  const std::vector<glm::ivec3>& Planes() const { return this->Shape.Planes; }
+  const std::vector<glm::ivec3>& Planes() const { return this->Directory.Shape().Planes; }
   glm::ivec3 BlocksOf(int plane) const
   {
-    return this->Shape.Blocks[static_cast<std::size_t>(plane)];
+    return this->Directory.Shape().Blocks[static_cast<std::size_t>(plane)];
   }
 
   /// The table of a step of the segment (0 is its first).
-  const group::StepTable& Step(int step);
+  const group::StepTable& Step(int step) { return this->Directory.Step(step); }
 
   /// Decodes the box of a block: (edge + 1)^3 lattice numbers.
   /// @param passing whether all of a region is read, which hardly comes back to boxes that are no
@@ -54,14 +55,16 @@ public:
   /// Checks the pages of everything that decoding the box reads.
   void Verify(int step, int plane, const glm::ivec3& block);
 
-  std::uint64_t MemoryBytes() const { return this->Memory; }
-  std::uint64_t TakeBytesRead() { return this->BytesRead.exchange(0); }
+  std::uint64_t MemoryBytes() const;
+  /// Bytes that were read since the last call.
+  std::uint64_t TakeBytesRead()
+  {
+    return this->BytesRead.exchange(0) + this->Directory.TakeBytesRead();
+  }
 
 private:
   using Visited = std::set<std::tuple<int, int, std::size_t>>; ///< steps of the series
 
-  /// The same under the lock. Loads the table's references as well.
-  const group::StepTable& Load(int step);
   std::size_t IndexOf(int plane, const glm::ivec3& block) const;
   LatticeCache::Key KeyOf(int step, int plane, const glm::ivec3& block) const;
   void Verify(int step, int plane, const glm::ivec3& block, Visited& visited);
@@ -72,8 +75,15 @@ private:
   LatticeCache::Box ReferenceBox(int step, int plane, const glm::ivec3& block);
   template <class Number>
   const Number* Coarse(int step, int plane, const glm::ivec3& block);
-  void CheckNumbers(const group::StepTable& table) const;
   LatticeCache::Box Decode(int step, int plane, const glm::ivec3& block);
+  /// What the blocks of a box have in common.
+  struct Kind
+  {
+    bool Refers = false; ///< some are predicted from other steps
+    bool Same = true;    ///< all are as in the step before
+  };
+  Kind CodeOfBlocks(int step, int plane, const glm::ivec3& block, const PayloadPages::Hold& hold,
+    BlockCode* blocks);
   template <class Number>
   LatticeCache::Box DecodeAs(int step, int plane, const glm::ivec3& block);
   /// Holds what the calling thread asks for.
@@ -85,13 +95,8 @@ private:
   int BrickCells;
   std::function<std::shared_ptr<GroupField>()> Before;
   std::atomic<bool> BeforeFits{ false }; ///< it was seen to have the same lattice
-  group::FieldHead FieldHead;
-  group::TableShape Shape;
+  BlockDirectory Directory;
   DecodeTables Tables[2];
-  std::mutex Mutex;
-  std::vector<std::unique_ptr<group::StepTable>> StepTables;
-  std::vector<std::atomic<const group::StepTable*>> Loaded; ///< the same, without the lock
-  std::atomic<std::uint64_t> Memory{ 0 };
   std::atomic<std::uint64_t> BytesRead{ 0 };
 };
 

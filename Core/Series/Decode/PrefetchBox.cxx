@@ -19,7 +19,7 @@ void GroupField::Prefetch(int step, int plane, const glm::ivec3& block)
   const stages::In stage(stages::Prefetch);
   const auto& entries = this->Step(step).Planes[static_cast<std::size_t>(plane)];
   const group::BlockEntry& entry = entries[this->IndexOf(plane, block)];
-  const std::size_t number = block::Narrow(this->FieldHead.Least, this->FieldHead.Greatest) ? 2 : 4;
+  const std::size_t number = block::Narrow(this->Head().Least, this->Head().Greatest) ? 2 : 4;
   const std::size_t row = static_cast<std::size_t>(this->BrickCells + 1) * number;
   const std::size_t layer = static_cast<std::size_t>(this->BrickCells + 1) * row;
   const std::size_t whole = static_cast<std::size_t>(this->BrickCells + 1) * layer;
@@ -53,8 +53,7 @@ void GroupField::Prefetch(int step, int plane, const glm::ivec3& block)
   }
   const bool refers =
     entry.Same || (!entry.Uniform && block::ModeOf(entry.Mode).From != block::Reference::None);
-  const StepReferences references =
-    ReferencesOfStep(step, this->File.Steps(), this->FieldHead.Open);
+  const StepReferences references = ReferencesOfStep(step, this->File.Steps(), this->Head().Open);
   if (refers && references.Any())
   {
     fetch(references.A);

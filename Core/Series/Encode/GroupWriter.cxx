@@ -159,6 +159,33 @@ SegmentIndex GroupWriter::Finish(const std::vector<group::FieldHead>& heads,
   {
     sections.push_back(this->AddSection(group::PackHead(head), true));
   }
+  this->AddSteps(heads, shapes, steps, sections);
+  header.Steps = static_cast<std::uint32_t>(steps);
+  const std::uint64_t content = ShortHashOf(
+    this->Payloads.data() + segment::HeaderBytes, this->Payloads.size() - segment::HeaderBytes);
+  header.PayloadHash =
+    static_cast<std::uint32_t>(content >> 32); // pages have the low half of theirs
+  this->AddDirectory(sections, header);
+  header.FileBytes = this->Output.Size();
+  std::uint8_t bytes[segment::HeaderBytes];
+  segment::StoreHeader(header, bytes);
+  this->Output.Overwrite(0, bytes, sizeof(bytes));
+  const Hash128 hash = HashOf(bytes, sizeof(bytes));
+  SegmentIndex index;
+  index.File = this->Folder.FinalNameOf(hash);
+  this->Output.CommitAs(this->Folder.Path() + "/" + index.File);
+  index.FirstStep = firstStep;
+  index.Steps = steps;
+  index.Bytes = header.FileBytes;
+  index.HashLow = hash.Low;
+  index.HashHigh = hash.High;
+  return index;
+}
+
+/// Appends the tables of all steps.
+void GroupWriter::AddSteps(const std::vector<group::FieldHead>& heads,
+  const std::vector<group::TableShape>& shapes, int steps, std::vector<group::Section>& sections)
+{
   for (std::size_t i = 0; i < this->Tables.size(); ++i)
   {
     const std::size_t component = i % heads.size();
@@ -178,6 +205,11 @@ SegmentIndex GroupWriter::Finish(const std::vector<group::FieldHead>& heads,
     sections.push_back(this->AddSection(
       group::PackStep(this->Tables[i], shapes[component], step, reference), false));
   }
+}
+
+/// Appends the directory, and says in the header where it is.
+void GroupWriter::AddDirectory(const std::vector<group::Section>& sections, segment::Header& header)
+{
   Bytes directory(sections.size() * group::EntryBytes);
   for (std::size_t i = 0; i < sections.size(); ++i)
   {
@@ -187,29 +219,10 @@ SegmentIndex GroupWriter::Finish(const std::vector<group::FieldHead>& heads,
     StoreNumber(to + 12, sections[i].RawBytes);
     StoreNumber(to + 16, sections[i].Hash);
   }
-  header.Steps = static_cast<std::uint32_t>(steps);
-  const std::uint64_t content = ShortHashOf(
-    this->Payloads.data() + segment::HeaderBytes, this->Payloads.size() - segment::HeaderBytes);
-  header.PayloadHash =
-    static_cast<std::uint32_t>(content >> 32); // pages have the low half of theirs
   header.Sections = static_cast<std::uint32_t>(sections.size());
   header.DirectoryOffset = this->Output.Size();
   header.DirectoryHash = ShortHashOf(directory.data(), directory.size());
   this->Output.Append(directory.data(), directory.size());
-  header.FileBytes = this->Output.Size();
-  std::uint8_t bytes[segment::HeaderBytes];
-  segment::StoreHeader(header, bytes);
-  this->Output.Overwrite(0, bytes, sizeof(bytes));
-  const Hash128 hash = HashOf(bytes, sizeof(bytes));
-  SegmentIndex index;
-  index.File = this->Folder.FinalNameOf(hash);
-  this->Output.CommitAs(this->Folder.Path() + "/" + index.File);
-  index.FirstStep = firstStep;
-  index.Steps = steps;
-  index.Bytes = header.FileBytes;
-  index.HashLow = hash.Low;
-  index.HashHigh = hash.High;
-  return index;
 }
 
 } // namespace banyan

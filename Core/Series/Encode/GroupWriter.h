@@ -6,6 +6,7 @@
 #include "Series/Encode/FieldGroup.h"
 #include "Series/Encode/SegmentFolder.h"
 #include "Series/Format/AtomicFile.h"
+#include "Series/Format/SegmentFormat.h"
 #include "Series/Format/SeriesIndex.h"
 
 #include <unordered_map>
@@ -38,6 +39,9 @@ private:
   };
   group::Place Store(const Bytes& payload, EncodeStatistics& statistics);
   group::Section AddSection(const Bytes& raw, bool compressed);
+  void AddSteps(const std::vector<group::FieldHead>& heads,
+    const std::vector<group::TableShape>& shapes, int steps, std::vector<group::Section>& sections);
+  void AddDirectory(const std::vector<group::Section>& sections, segment::Header& header);
   Bytes PageHashes() const;
 
   SegmentFolder& Folder;

@@ -102,6 +102,7 @@ LatticeCheck<T>::LatticeCheck(const FieldGroup& field, const group::FieldHead& h
   , Values(values)
   , Hidden(hidden)
   , Plain(!head.Exact && field.Bound > 0 && fills.Empty() && !field.Opacity && hidden == nullptr)
+  , Whole(head, decoder, field.Bound, stride, values)
 {
 }
 
@@ -296,6 +297,49 @@ void LatticeCheck<T>::EachSample(const Row& row, int plane, const glm::ivec3& lo
   }
 }
 
+/// Makes room for rows of a block, and gathers its values if it is one of the finest plane.
+template <class T>
+void LatticeCheck<T>::LoadBlock(int plane, int edge, const glm::ivec3& low, const glm::ivec3& n)
+{
+  const std::size_t room = static_cast<std::size_t>(RoundUp(edge));
+  this->Columns.resize(room);
+  this->Originals.resize(room);
+  this->Decoded.resize(room);
+  this->OriginalImages.resize(room);
+  this->DecodedImages.resize(room);
+  this->Tuples.resize(room);
+  for (int x = 0; x < n.x; ++x)
+  {
+    const std::size_t i = static_cast<std::size_t>(x);
+    this->Columns[i] = std::min((low.x + x) << (2 * plane), this->Last.x) * this->Stride.x;
+    this->Tuples[i] = this->Columns[i] / this->Field.Components;
+  }
+  if (plane == 0)
+  {
+    this->Tile.resize(static_cast<std::size_t>(edge) * edge * edge);
+    GatherTile(
+      this->Values + low.x * this->Stride.x + low.y * this->Stride.y + low.z * this->Stride.z,
+      this->Stride, n, glm::i64vec3{ 1, edge, edge * edge }, this->Tile.data());
+  }
+}
+
+/// Adds the squares of a row's decoded values to those of their tuples.
+template <class T>
+void LatticeCheck<T>::AddSquares(const Row& row, std::vector<double>& squares) const
+{
+  const std::int64_t tuple = row.At / this->Field.Components;
+  for (int x = 0; x < row.Count; ++x)
+  {
+    // A vector with a fill value, or a hidden one, has no length.
+    const std::size_t i = static_cast<std::size_t>(x);
+    const double value =
+      this->Fills.Holds(this->Originals[i]) || !this->Needs(row, i) || this->IsHidden(row, i)
+        ? std::numeric_limits<double>::quiet_NaN()
+        : static_cast<double>(this->Decoded[i]);
+    squares[static_cast<std::size_t>(tuple + this->Tuples[i])] += value * value;
+  }
+}
+
 template <class T>
 void LatticeCheck<T>::Block(const PlaneNumbers& decoded, int plane, std::int64_t block,
   ExceptionList<T>& list, FieldErrors& errors, std::vector<double>* squares)
@@ -307,31 +351,12 @@ void LatticeCheck<T>::Block(const PlaneNumbers& decoded, int plane, std::int64_t
   const glm::ivec3 low = position * edge;
   const glm::ivec3 high = glm::min(low + edge, decoded.Samples);
   if (plane == 0 && this->Plain && !this->Field.Needed && this->Field.Map.IsIdentity() &&
-      squares == nullptr && this->WholeBlock(decoded, low, high - low, errors))
+      squares == nullptr && this->Whole.Verify(decoded, low, high - low, errors))
   {
     return;
   }
+  this->LoadBlock(plane, edge, low, high - low);
   const int shift = 2 * plane;
-  const std::size_t room = static_cast<std::size_t>(RoundUp(edge));
-  this->Columns.resize(room);
-  this->Originals.resize(room);
-  this->Decoded.resize(room);
-  this->OriginalImages.resize(room);
-  this->DecodedImages.resize(room);
-  this->Tuples.resize(room);
-  for (int x = low.x; x < high.x; ++x)
-  {
-    const std::size_t i = static_cast<std::size_t>(x - low.x);
-    this->Columns[i] = std::min(x << shift, this->Last.x) * this->Stride.x;
-    this->Tuples[i] = this->Columns[i] / this->Field.Components;
-  }
-  if (plane == 0)
-  {
-    this->Tile.resize(static_cast<std::size_t>(edge) * edge * edge);
-    GatherTile(
-      this->Values + low.x * this->Stride.x + low.y * this->Stride.y + low.z * this->Stride.z,
-      this->Stride, high - low, glm::i64vec3{ 1, edge, edge * edge }, this->Tile.data());
-  }
   Row row;
   row.Count = high.x - low.x;
   for (int z = low.z; z < high.z; ++z)
@@ -348,16 +373,9 @@ void LatticeCheck<T>::Block(const PlaneNumbers& decoded, int plane, std::int64_t
       {
         this->EachSample(row, plane, low, edge, list, errors);
       }
-      const std::int64_t tuple = row.At / this->Field.Components;
-      for (int x = 0; squares != nullptr && x < row.Count; ++x)
+      if (squares != nullptr)
       {
-        // A vector with a fill value, or a hidden one, has no length.
-        const std::size_t i = static_cast<std::size_t>(x);
-        const double value =
-          this->Fills.Holds(this->Originals[i]) || !this->Needs(row, i) || this->IsHidden(row, i)
-            ? std::numeric_limits<double>::quiet_NaN()
-            : static_cast<double>(this->Decoded[i]);
-        (*squares)[static_cast<std::size_t>(tuple + this->Tuples[i])] += value * value;
+        this->AddSquares(row, *squares);
       }
     }
   }

@@ -6,6 +6,7 @@
 #include "Series/Decode/LatticeDecoder.h"
 #include "Series/Encode/FieldGroup.h"
 #include "Series/Encode/InvisibleBlocks.h"
+#include "Series/Encode/WholeBlockVerifier.h"
 #include "Series/Format/Exceptions.h"
 #include "Series/Quantize/FillValues.h"
 
@@ -43,17 +44,12 @@ private:
     const T* Values = nullptr; ///< its originals one after the other; null: take them by Columns
   };
 
-  /// Whether all of a block of the finest plane is within the bound, all its values being ordinary
-  /// ones that are not transformed; adds to `errors` if so.
-  bool WholeBlock(const PlaneNumbers& decoded, const glm::ivec3& low, const glm::ivec3& n,
-    FieldErrors& errors) const;
-  template <class Number>
-  bool WholeBlockOf(const PlaneNumbers& decoded, const glm::ivec3& low, const glm::ivec3& n,
-    FieldErrors& errors) const;
+  void LoadBlock(int plane, int edge, const glm::ivec3& low, const glm::ivec3& n);
   void LoadRow(const PlaneNumbers& decoded, const Row& row);
   bool AllWithin(int count, FieldErrors& errors);
   bool Needs(const Row& row, std::size_t x) const;
   bool IsHidden(const Row& row, std::size_t x) const;
+  void AddSquares(const Row& row, std::vector<double>& squares) const;
   void EachSample(const Row& row, int plane, const glm::ivec3& low, int edge,
     ExceptionList<T>& list, FieldErrors& errors);
   bool Within(T original, T decoded, double& error, double& transformed) const;
@@ -70,6 +66,7 @@ private:
   const T* Values;
   const std::uint8_t* Hidden; ///< by tuple; may be null
   bool Plain;                 ///< rows may be taken as a whole
+  WholeBlockVerifier<T> Whole;
 
   /// The offsets of the block's samples along a row, among the values, and among tuples of them.
   std::vector<std::int64_t> Columns, Tuples;

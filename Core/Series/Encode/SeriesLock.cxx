@@ -165,8 +165,8 @@ void SeriesLock::CheckPath() const
   }
 }
 
-/// @return false when the file is that of somebody who has just ended
-bool SeriesLock::TryTake()
+/// @return the descriptor of the file of the lock, or -1 when somebody has just removed its folder
+int SeriesLock::OpenFile() const
 {
   struct stat folder = {};
   const int descriptor =
@@ -176,7 +176,7 @@ bool SeriesLock::TryTake()
     const int code = errno;
     if (code == ENOENT && stat(this->Folder.c_str(), &folder) != 0)
     {
-      return false;
+      return -1;
     }
     if (this->Made)
     {
@@ -195,6 +195,12 @@ bool SeriesLock::TryTake()
   {
     (void)fchmod(descriptor, folder.st_mode & 0666);
   }
+  return descriptor;
+}
+
+/// Locks the file, where the file system has locks. Closes it before it throws.
+void SeriesLock::LockFile(int descriptor)
+{
   struct flock whole = {};
   whole.l_type = F_WRLCK;
   whole.l_whence = SEEK_SET;
@@ -217,6 +223,17 @@ bool SeriesLock::TryTake()
   {
     this->Locked = true;
   }
+}
+
+/// @return false when the file is that of somebody who has just ended
+bool SeriesLock::TryTake()
+{
+  const int descriptor = this->OpenFile();
+  if (descriptor < 0)
+  {
+    return false;
+  }
+  this->LockFile(descriptor);
   struct stat mine = {}, named = {};
   if (fstat(descriptor, &mine) != 0 || lstat(this->File.c_str(), &named) != 0 ||
       mine.st_dev != named.st_dev || mine.st_ino != named.st_ino)

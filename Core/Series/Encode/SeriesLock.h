@@ -31,6 +31,8 @@ public:
   SeriesLock& operator=(const SeriesLock&) = delete;
 
 private:
+  int OpenFile() const;
+  void LockFile(int descriptor);
   bool TryTake();
   void CheckPath() const;
   void ClearLeftovers() const;

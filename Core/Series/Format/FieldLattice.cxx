@@ -34,6 +34,16 @@ ValueRange Widened(const Transform& transform, const ValueRange& range, double b
   return good && wide.Low <= range.Low && wide.High >= range.High ? wide : range;
 }
 
+/// A lattice of the number 0 alone.
+void SetOneNumber(double origin, group::FieldHead& head)
+{
+  head.Origin = origin;
+  head.Step = 1;
+  head.Bin = 1;
+  head.Least = 0;
+  head.Greatest = 0;
+}
+
 } // namespace
 
 void ChooseLattice(ScalarType type, const Transform& transform, double bound,
@@ -62,11 +72,7 @@ void ChooseLattice(ScalarType type, const Transform& transform, double bound,
   {
     // One value: it is the lattice.
     head.Exact = false;
-    head.Origin = low;
-    head.Step = 1;
-    head.Bin = 1;
-    head.Least = 0;
-    head.Greatest = 0;
+    SetOneNumber(low, head);
     return;
   }
   const double limit = GreatestLatticeNumber / 2;
@@ -74,11 +80,7 @@ void ChooseLattice(ScalarType type, const Transform& transform, double bound,
   head.Exact = head.Exact || (high - low) / head.Step > limit;
   if (head.Exact)
   {
-    head.Origin = 0;
-    head.Step = 1;
-    head.Bin = 1;
-    head.Least = 0;
-    head.Greatest = 0;
+    SetOneNumber(0, head);
     return;
   }
   head.Origin = greatest / head.Step < limit ? 0.0 : std::round(low / head.Step) * head.Step;
