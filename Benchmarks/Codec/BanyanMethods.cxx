@@ -4,7 +4,7 @@
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Cache/BrickCache.h"
-#include "Series/Decode/LatticeCache.h"
+#include "Series/Decode/QuantizedBlockCache.h"
 #include "Series/Decode/SeriesFile.h"
 #include "Series/Encode/SeriesEncoder.h"
 
@@ -65,9 +65,9 @@ public:
     switch (what)
     {
       case Decoded::Nothing:
-        return LatticeCache::Process().ForgetAll();
+        return QuantizedBlockCache::Process().ForgetAll();
       case Decoded::CoarserPlanes:
-        return LatticeCache::Process().ForgetFinest();
+        return QuantizedBlockCache::Process().ForgetFinest();
       case Decoded::All:
         return;
     }

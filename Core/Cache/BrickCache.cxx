@@ -3,7 +3,7 @@
 
 #include "Base/CacheBudget.h"
 #include "Base/Error.h"
-#include "Series/Decode/LatticeCache.h"
+#include "Series/Decode/QuantizedBlockCache.h"
 
 #include <algorithm>
 #include <condition_variable>
@@ -333,7 +333,7 @@ void BrickCache::SetBudget(std::uint64_t bytes)
 {
   if (this == &BrickCache::Process())
   {
-    LatticeCache::Process().SetBudgetBytes(bytes / 4);
+    QuantizedBlockCache::Process().SetBudgetBytes(bytes / 4);
   }
   std::lock_guard<std::mutex> lock(this->Self->Mutex);
   this->Self->Budget = bytes;

@@ -71,7 +71,8 @@ public:
 
   /// Evicts at once when the new budget is smaller. 0 keeps nothing. The budget of the process's
   /// cache is for drawing as well: three eighths of it are decoded bricks, three what the renderer
-  /// has loaded and packed, a quarter is LatticeCache's, which keeps what decoding needs again.
+  /// has loaded and packed, a quarter is QuantizedBlockCache's, which keeps what decoding needs
+  /// again.
   void SetBudget(std::uint64_t bytes);
   std::uint64_t Budget() const;
   /// The renderer's share of the budget of the process's cache.

@@ -183,8 +183,8 @@ Box PartOf(
 bool GoesPast(
   const BrickCache& cache, const SeriesFile& series, const FieldKey& field, std::uint64_t bytes)
 {
-  // Lattice numbers are kept where they are decoded (LatticeCache), and values are soon made of
-  // them again, while bricks of the cache need memory, which the system clears, and are copied.
+  // Lattice numbers are kept where they are decoded (QuantizedBlockCache), and values are soon made
+  // of them again, while bricks of the cache need memory, which the system clears, and are copied.
   constexpr std::uint64_t some = std::uint64_t{ 1 } << 20;
   return bytes >= cache.Budget() / 16 || (bytes >= some && series.StepOfValues(field) > 0);
 }

@@ -86,7 +86,7 @@ void DecodeBox(OpenGroup& open, int step, const PlaneRegion& region, const glm::
     __builtin_prefetch(values + y * strides.y, 1);
     __builtin_prefetch(values + strides.z + y * strides.y, 1);
   }
-  const LatticeCache::Box box = group.Box(step, region.Plane, region.FirstBlock);
+  const QuantizedBlockCache::Box box = group.Box(step, region.Plane, region.FirstBlock);
   BoxPlace place(group, region, skip);
   box->Visit(
     [&](const auto* all)
@@ -119,7 +119,7 @@ void DecodeBoxes(OpenGroup& open, int step, const RowBrick* bricks, int count,
   const glm::i64vec3& strides, T* values)
 {
   thread_local std::vector<Number> ordered[LongestRow];
-  LatticeCache::Box boxes[LongestRow];
+  QuantizedBlockCache::Box boxes[LongestRow];
   LatticePart<Number> parts[LongestRow];
   // The last one first: a block then finds the layers that it shares with others decoded.
   for (int k = count - 1; k >= 0; --k)

@@ -34,7 +34,7 @@ FieldReader::FieldReader(const OpenSeries& series)
 
 FieldReader::~FieldReader()
 {
-  LatticeCache::Process().Forget(this->Series.Id);
+  QuantizedBlockCache::Process().Forget(this->Series.Id);
 }
 
 std::shared_ptr<GroupReader> FieldReader::Segment(int step)
@@ -187,7 +187,7 @@ void FieldReader::ForgetOldGroups()
     const bool keep =
       count <= 2 * std::size_t{ this->Series.Components } ||
       (count <= KeptTables * std::size_t{ this->Series.Components } &&
-        bytes <= std::min(KeptTableBytes, LatticeCache::Process().BudgetBytes() / 2));
+        bytes <= std::min(KeptTableBytes, QuantizedBlockCache::Process().BudgetBytes() / 2));
     kept = keep ? std::next(kept) : this->Opened.erase(kept);
   }
 }

@@ -114,7 +114,7 @@ auto GroupField::InSegmentBefore(Body&& body)
 }
 
 /// The box of a step that another one refers to.
-LatticeCache::Box GroupField::ReferenceBox(int step, int plane, const glm::ivec3& block)
+QuantizedBlockCache::Box GroupField::ReferenceBox(int step, int plane, const glm::ivec3& block)
 {
   if (step != StepBefore)
   {
@@ -123,7 +123,8 @@ LatticeCache::Box GroupField::ReferenceBox(int step, int plane, const glm::ivec3
   const stages::In stage(stages::Lookup);
   if (this->BeforeFits)
   {
-    if (LatticeCache::Box found = LatticeCache::Process().Find(this->KeyOf(step, plane, block)))
+    if (QuantizedBlockCache::Box found =
+          QuantizedBlockCache::Process().Find(this->KeyOf(step, plane, block)))
     {
       return found;
     }
@@ -180,7 +181,7 @@ const Number* GroupField::Coarse(int step, int plane, const glm::ivec3& block)
   return numbers.data();
 }
 
-LatticeCache::Box GroupField::Decode(int step, int plane, const glm::ivec3& block)
+QuantizedBlockCache::Box GroupField::Decode(int step, int plane, const glm::ivec3& block)
 {
   return block::Narrow(this->Head().Least, this->Head().Greatest)
            ? this->DecodeAs<std::int16_t>(step, plane, block)
@@ -224,7 +225,7 @@ GroupField::Kind GroupField::CodeOfBlocks(
 }
 
 template <class Number>
-LatticeCache::Box GroupField::DecodeAs(int step, int plane, const glm::ivec3& block)
+QuantizedBlockCache::Box GroupField::DecodeAs(int step, int plane, const glm::ivec3& block)
 {
   PlaneCode shared;
   shared.Tables = &this->Tables[plane > 0 ? 1 : 0];
@@ -240,19 +241,19 @@ LatticeCache::Box GroupField::DecodeAs(int step, int plane, const glm::ivec3& bl
   {
     return this->ReferenceBox(this->ReferencesOf(step).A, plane, block);
   }
-  LatticeCache::Box neighbours[3];
+  QuantizedBlockCache::Box neighbours[3];
   for (int axis = 0; axis < 3; ++axis)
   {
     // Only what would have to be decoded again is worth a look.
     const BlockCode& neighbour = code.Blocks[1 << axis];
     if (neighbour.Exists && !neighbour.Uniform && !neighbour.Same)
     {
-      neighbours[axis] =
-        LatticeCache::Process().Find(this->KeyOf(step, plane, NeighbourOf(block, 1 << axis)));
+      neighbours[axis] = QuantizedBlockCache::Process().Find(
+        this->KeyOf(step, plane, NeighbourOf(block, 1 << axis)));
       code.Neighbours[axis] = neighbours[axis] ? neighbours[axis]->Numbers<Number>() : nullptr;
     }
   }
-  LatticeCache::Box a, b;
+  QuantizedBlockCache::Box a, b;
   if (refers)
   {
     const StepReferences references = this->ReferencesOf(step);
@@ -264,32 +265,35 @@ LatticeCache::Box GroupField::DecodeAs(int step, int plane, const glm::ivec3& bl
   code.Coarse = this->Coarse<Number>(step, plane, block);
   code.Prefetcher = &Ahead();
   const std::size_t n = static_cast<std::size_t>(this->BrickCells) + 1;
-  const auto box = std::make_shared<LatticeBox>(n * n * n, sizeof(Number) == sizeof(std::int16_t));
+  const auto box =
+    std::make_shared<QuantizedBlock>(n * n * n, sizeof(Number) == sizeof(std::int16_t));
   DecodeBox(this->BrickCells, shared, code, box->Numbers<Number>());
   return box;
 }
 
-LatticeCache::Key GroupField::KeyOf(int step, int plane, const glm::ivec3& block) const
+QuantizedBlockCache::Key GroupField::KeyOf(int step, int plane, const glm::ivec3& block) const
 {
   return { this->Series, this->IndexOf(plane, block),
     static_cast<std::uint32_t>(this->File.FirstStep() + step),
     static_cast<std::uint16_t>(this->Component), static_cast<std::uint16_t>(plane) };
 }
 
-LatticeCache::Box GroupField::Box(int step, int plane, const glm::ivec3& block, bool passing)
+QuantizedBlockCache::Box GroupField::Box(
+  int step, int plane, const glm::ivec3& block, bool streaming)
 {
   const stages::In stage(stages::Lookup);
-  LatticeCache& cache = LatticeCache::Process();
-  const LatticeCache::Key key = this->KeyOf(step, plane, block);
-  if (LatticeCache::Box found = cache.Find(key))
+  QuantizedBlockCache& cache = QuantizedBlockCache::Process();
+  const QuantizedBlockCache::Key key = this->KeyOf(step, plane, block);
+  if (QuantizedBlockCache::Box found = cache.Find(key))
   {
     return found;
   }
-  const LatticeCache::Box box = this->Decode(step, plane, block);
-  // Half of all steps are no references. Boxes of these steps are needed until the blocks around
-  // are decoded.
-  const bool brief = passing && plane == 0 && ReferenceDistance(step, this->File.Steps()) == 1;
-  cache.Add(key, box, brief);
+  const QuantizedBlockCache::Box box = this->Decode(step, plane, block);
+  // Half of all steps are no references. Of these, boxes are needed until the blocks around are
+  // decoded.
+  const bool lowPriority =
+    streaming && plane == 0 && ReferenceDistance(step, this->File.Steps()) == 1;
+  cache.Add(key, box, lowPriority);
   return box;
 }
 

@@ -8,7 +8,7 @@
 #include "Codec/LinePrefetcher.h"
 #include "Series/Decode/BlockDirectory.h"
 #include "Series/Decode/GroupReader.h"
-#include "Series/Decode/LatticeCache.h"
+#include "Series/Decode/QuantizedBlockCache.h"
 
 #include <atomic>
 #include <functional>
@@ -44,9 +44,10 @@ public:
   const group::StepTable& Step(int step) { return this->Directory.Step(step); }
 
   /// Decodes the box of a block: (edge + 1)^3 lattice numbers.
-  /// @param passing whether all of a region is read, which hardly comes back to boxes that are no
+  /// @param streaming whether all of a region is read, which hardly comes back to boxes that are no
   /// references
-  LatticeCache::Box Box(int step, int plane, const glm::ivec3& block, bool passing = false);
+  QuantizedBlockCache::Box Box(
+    int step, int plane, const glm::ivec3& block, bool streaming = false);
 
   /// Notes what decoding the box will read, boxes of other steps that usually are in memory only:
   /// while the next box is decoded the caches of the processor are asked for it. Decodes nothing.
@@ -66,16 +67,16 @@ private:
   using Visited = std::set<std::tuple<int, int, std::size_t>>; ///< steps of the series
 
   std::size_t IndexOf(int plane, const glm::ivec3& block) const;
-  LatticeCache::Key KeyOf(int step, int plane, const glm::ivec3& block) const;
+  QuantizedBlockCache::Key KeyOf(int step, int plane, const glm::ivec3& block) const;
   void Verify(int step, int plane, const glm::ivec3& block, Visited& visited);
   bool NeedsReferences(int step, int plane, const glm::ivec3& block);
   StepReferences ReferencesOf(int step) const;
   template <class Body>
   auto InSegmentBefore(Body&& body);
-  LatticeCache::Box ReferenceBox(int step, int plane, const glm::ivec3& block);
+  QuantizedBlockCache::Box ReferenceBox(int step, int plane, const glm::ivec3& block);
   template <class Number>
   const Number* Coarse(int step, int plane, const glm::ivec3& block);
-  LatticeCache::Box Decode(int step, int plane, const glm::ivec3& block);
+  QuantizedBlockCache::Box Decode(int step, int plane, const glm::ivec3& block);
   /// What the blocks of a box have in common.
   struct Kind
   {
@@ -85,8 +86,8 @@ private:
   Kind CodeOfBlocks(int step, int plane, const glm::ivec3& block, const PayloadPages::Hold& hold,
     BlockCode* blocks);
   template <class Number>
-  LatticeCache::Box DecodeAs(int step, int plane, const glm::ivec3& block);
-  /// Holds what the calling thread asks for.
+  QuantizedBlockCache::Box DecodeAs(int step, int plane, const glm::ivec3& block);
+  /// What the calling thread asks for.
   static LinePrefetcher& Ahead();
 
   GroupReader& File;

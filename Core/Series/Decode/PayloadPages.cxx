@@ -3,8 +3,8 @@
 
 #include "Base/Error.h"
 #include "Base/Hash.h"
-#include "Series/Decode/LatticeCache.h"
-#include "Series/Decode/LatticeMemory.h"
+#include "Series/Decode/BlockAllocator.h"
+#include "Series/Decode/QuantizedBlockCache.h"
 #include "Series/Format/GroupFormat.h"
 #include "Series/Format/SegmentFormat.h"
 
@@ -29,7 +29,7 @@ struct Registry
 
 Registry& Process()
 {
-  static Registry* const registry = new Registry; // never destroyed, as LatticeCache
+  static Registry* const registry = new Registry; // never destroyed, as QuantizedBlockCache
   return *registry;
 }
 
@@ -58,7 +58,7 @@ public:
     {
       if (piece != nullptr)
       {
-        LatticeMemory::Give(piece, static_cast<std::size_t>(this->EachBytes));
+        BlockAllocator::Free(piece, static_cast<std::size_t>(this->EachBytes));
       }
     }
     Total -= this->Taken;
@@ -88,8 +88,8 @@ public:
       this->Pieces[static_cast<std::size_t>(offset / this->EachBytes)];
     if (piece == nullptr)
     {
-      piece =
-        static_cast<std::uint8_t*>(LatticeMemory::Take(static_cast<std::size_t>(this->EachBytes)));
+      piece = static_cast<std::uint8_t*>(
+        BlockAllocator::Allocate(static_cast<std::size_t>(this->EachBytes)));
       this->Count(this->EachBytes);
     }
   }
@@ -150,7 +150,7 @@ std::uint64_t PayloadPages::BytesInMemory()
 
 std::uint64_t PayloadPages::BudgetBytes()
 {
-  return LatticeCache::Process().BudgetBytes() / 8;
+  return QuantizedBlockCache::Process().BudgetBytes() / 8;
 }
 
 PayloadPages::Hold PayloadPages::InMemory()

@@ -44,7 +44,7 @@ public:
 
   /// Bytes of all segments of the process.
   static std::uint64_t BytesInMemory();
-  /// An eighth of what LatticeCache keeps.
+  /// An eighth of what QuantizedBlockCache keeps.
   static std::uint64_t BudgetBytes();
   /// Lets go of what was used least recently until so many bytes are left.
   static void Shrink(std::uint64_t most);

@@ -4,7 +4,7 @@
 #include "Base/AvailableMemory.h"
 #include "Base/CacheBudget.h"
 #include "Base/Error.h"
-#include "Series/Decode/LatticeCache.h"
+#include "Series/Decode/QuantizedBlockCache.h"
 
 #include <atomic>
 #include <fstream>
@@ -258,7 +258,7 @@ int BudgetWith(const char* megabytes)
 {
   setenv("BANYAN_CACHE_MB", megabytes, 1);
   const std::uint64_t all = BrickCache::Process().Budget();
-  return LatticeCache::Process().BudgetBytes() == all / 4 ? static_cast<int>(all >> 20) : 99;
+  return QuantizedBlockCache::Process().BudgetBytes() == all / 4 ? static_cast<int>(all >> 20) : 99;
 }
 
 TEST(ProcessBrickCacheDeathTest, TakesItsBudgetFromTheEnvironment)
@@ -294,8 +294,8 @@ TEST(ProcessBrickCacheDeathTest, WithoutACacheBricksAreTheSame)
   {
     setenv("BANYAN_CACHE_MB", "0", 1);
     const std::vector<float> without = FirstBrick(folder / "s.banyan");
-    const bool nothing = LatticeCache::Process().Bytes() == 0;
-    LatticeCache::Process().SetBudgetBytes(1 << 20);
+    const bool nothing = QuantizedBlockCache::Process().Bytes() == 0;
+    QuantizedBlockCache::Process().SetBudgetBytes(1 << 20);
     return nothing && without == FirstBrick(folder / "s.banyan") ? 5 : 6;
   };
   EXPECT_EXIT(_exit(compare()), ::testing::ExitedWithCode(5), "");

@@ -2,8 +2,8 @@
 #include "Series/SeriesTesting.h"
 
 #include "Base/Error.h"
-#include "Series/Decode/LatticeCache.h"
 #include "Series/Decode/PayloadPages.h"
+#include "Series/Decode/QuantizedBlockCache.h"
 
 #include <algorithm>
 #include <cstring>
@@ -256,8 +256,8 @@ TEST(ReadRegion, PlayingALongSeriesDoesNotCollectItsFilesInMemory)
   const auto file = SeriesFile::Open(folder / "s.banyan");
   const std::uint64_t one = index.Segments[0].Bytes;
   ASSERT_GT(one, 100000u);
-  const std::uint64_t before = LatticeCache::Process().BudgetBytes();
-  LatticeCache::Process().SetBudgetBytes(32 * one);
+  const std::uint64_t before = QuantizedBlockCache::Process().BudgetBytes();
+  QuantizedBlockCache::Process().SetBudgetBytes(32 * one);
   const std::uint64_t most = PayloadPages::BudgetBytes();
   ASSERT_LT(most, 5 * one);
   for (int s = 0; s < 20; ++s)
@@ -268,7 +268,7 @@ TEST(ReadRegion, PlayingALongSeriesDoesNotCollectItsFilesInMemory)
     EXPECT_EQ(MappedMemoryOf(folder.Path()), 0u);
   }
   (void)ReadAll<std::uint8_t>(*file, { 0, 0, 0, 0 }); // let go, and still there
-  LatticeCache::Process().SetBudgetBytes(before);
+  QuantizedBlockCache::Process().SetBudgetBytes(before);
 }
 
 TEST(ReadRegion, RejectsWhatLiesOutside)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Series/SeriesTesting.h"
 
-#include "Series/Decode/LatticeCache.h"
+#include "Series/Decode/QuantizedBlockCache.h"
 
 #include <atomic>
 #include <thread>
@@ -43,7 +43,7 @@ TEST(ConcurrentReading, SixteenThreadsReadWhatOneReads)
       }
     }
   }
-  LatticeCache& cache = LatticeCache::Process();
+  QuantizedBlockCache& cache = QuantizedBlockCache::Process();
   const std::uint64_t budget = cache.BudgetBytes();
   cache.SetBudgetBytes(200000); // boxes come and go
   const auto file = SeriesFile::Open(path);

@@ -3,8 +3,8 @@
 #include "Series/ContainerTesting.h"
 #include "Series/SeriesTesting.h"
 
-#include "Series/Decode/LatticeCache.h"
 #include "Series/Decode/PayloadPages.h"
+#include "Series/Decode/QuantizedBlockCache.h"
 #include "Series/Format/SegmentFile.h"
 
 #include <atomic>
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 /// Nothing of the files is in memory.
 void ForgetAll()
 {
-  LatticeCache::Process().ForgetAll();
+  QuantizedBlockCache::Process().ForgetAll();
   PayloadPages::Shrink(0);
 }
 
@@ -198,17 +198,17 @@ TYPED_TEST(FilesWhileOpen, FilesThatAreReplacedOrGoneAreReadOn)
 
 TYPED_TEST(FilesWhileOpen, TakeNoMoreMemoryThanTheyMay)
 {
-  const std::uint64_t before = LatticeCache::Process().BudgetBytes();
-  LatticeCache::Process().SetBudgetBytes(1 << 20);
+  const std::uint64_t before = QuantizedBlockCache::Process().BudgetBytes();
+  QuantizedBlockCache::Process().SetBudgetBytes(1 << 20);
   ForgetAll();
   (void)ReadSteps<TypeParam>(*this->File, 0);
   EXPECT_GT(PayloadPages::BytesInMemory(), 0u);
   EXPECT_LE(PayloadPages::BytesInMemory(), PayloadPages::BudgetBytes());
-  LatticeCache::Process().SetBudgetBytes(0);
+  QuantizedBlockCache::Process().SetBudgetBytes(0);
   ForgetAll();
   (void)ReadSteps<TypeParam>(*this->File, 0);
   EXPECT_EQ(PayloadPages::BytesInMemory(), 0u);
-  LatticeCache::Process().SetBudgetBytes(before);
+  QuantizedBlockCache::Process().SetBudgetBytes(before);
 }
 
 TYPED_TEST(FilesWhileOpen, MayBeForgottenWhileThreadsRead)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Series/SeriesTesting.h"
 
-#include "Series/Decode/LatticeCache.h"
+#include "Series/Decode/QuantizedBlockCache.h"
 
 #include <algorithm>
 #include <fstream>
@@ -96,11 +96,11 @@ class LatticeBudget
 {
 public:
   explicit LatticeBudget(std::uint64_t bytes)
-    : Before(LatticeCache::Process().BudgetBytes())
+    : Before(QuantizedBlockCache::Process().BudgetBytes())
   {
-    LatticeCache::Process().SetBudgetBytes(bytes);
+    QuantizedBlockCache::Process().SetBudgetBytes(bytes);
   }
-  ~LatticeBudget() { LatticeCache::Process().SetBudgetBytes(this->Before); }
+  ~LatticeBudget() { QuantizedBlockCache::Process().SetBudgetBytes(this->Before); }
   LatticeBudget(const LatticeBudget&) = delete;
   LatticeBudget& operator=(const LatticeBudget&) = delete;
 
@@ -292,7 +292,7 @@ TEST_P(SeekAndPlay, OfAnyLengthStayInBound)
     ASSERT_EQ(file->Index().Steps(), static_cast<int>(count));
     for (std::size_t s = count; s-- > 0;) // backwards: nothing that was played is there
     {
-      LatticeCache::Process().Forget(file->Id());
+      QuantizedBlockCache::Process().Forget(file->Id());
       ASSERT_TRUE(WithinBound(some[s], ReadAll<float>(*file, { static_cast<int>(s), 0, 0, 0 }),
         index.Arrays[0].Components[0].ErrorBoundAbsolute))
         << "step " << s << " of " << count;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Series_Decode_LatticeBox_h
-#define banyan_Series_Decode_LatticeBox_h
+#ifndef banyan_Series_Decode_QuantizedBlock_h
+#define banyan_Series_Decode_QuantizedBlock_h
 
-#include "Series/Decode/LatticeMemory.h"
+#include "Series/Decode/BlockAllocator.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -12,24 +12,24 @@ namespace banyan
 
 /// Lattice numbers of a decoded box, in 16 bits each where block::Narrow says so of the lattice:
 /// what decoding waits for is memory.
-class LatticeBox
+class QuantizedBlock
 {
 public:
   /// The numbers are not set.
-  LatticeBox(std::size_t count, bool narrow)
+  QuantizedBlock(std::size_t count, bool narrow)
     : Size(count * (narrow ? sizeof(std::int16_t) : sizeof(std::int32_t)))
     , Short(narrow)
-    , Place(LatticeMemory::Take(this->Size))
+    , Place(BlockAllocator::Allocate(this->Size))
   {
   }
-  ~LatticeBox() { LatticeMemory::Give(this->Place, this->Size); }
-  LatticeBox(const LatticeBox&) = delete;
-  LatticeBox& operator=(const LatticeBox&) = delete;
+  ~QuantizedBlock() { BlockAllocator::Free(this->Place, this->Size); }
+  QuantizedBlock(const QuantizedBlock&) = delete;
+  QuantizedBlock& operator=(const QuantizedBlock&) = delete;
 
   template <class Number>
   const Number* Numbers() const
   {
-    return const_cast<LatticeBox*>(this)->Numbers<Number>();
+    return const_cast<QuantizedBlock*>(this)->Numbers<Number>();
   }
   /// @param Number std::int16_t or std::int32_t, as the box has them; else there are none
   template <class Number>

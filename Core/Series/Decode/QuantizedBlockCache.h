@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Series_Decode_LatticeCache_h
-#define banyan_Series_Decode_LatticeCache_h
+#ifndef banyan_Series_Decode_QuantizedBlockCache_h
+#define banyan_Series_Decode_QuantizedBlockCache_h
 
-#include "Series/Decode/LatticeBox.h"
+#include "Series/Decode/QuantizedBlock.h"
 
 #include <atomic>
 #include <cstdint>
@@ -14,12 +14,12 @@ namespace banyan
 {
 
 /// Decoded boxes (lattice numbers) that other steps and finer blocks are predicted from, kept
-/// within a byte budget. Boxes are evicted as by the hand of a clock, which spares each box once
-/// that was used since it came by. The process has one cache. It is thread-safe.
-class LatticeCache
+/// within a byte budget. What goes out is found as by the hand of a clock, which spares once what
+/// was used since it came by. One for the process. Thread-safe.
+class QuantizedBlockCache
 {
 public:
-  using Box = std::shared_ptr<const LatticeBox>;
+  using Box = std::shared_ptr<const QuantizedBlock>;
 
   /// Names a box of an open series.
   struct Key
@@ -36,13 +36,13 @@ public:
     }
   };
 
-  static LatticeCache& Process();
+  static QuantizedBlockCache& Process();
 
   /// Null when it is not there.
   Box Find(const Key& key);
-  /// @param brief whether no other step is predicted from it: where there is no room such boxes go
-  /// first, the oldest ones before others, until they take about a sixteenth of the budget
-  void Add(const Key& key, const Box& box, bool brief = false);
+  /// @param lowPriority whether no other step is predicted from it: where there is no room such
+  /// boxes go first, the oldest ones before others, until they take about a sixteenth of the budget
+  void Add(const Key& key, const Box& box, bool lowPriority = false);
   /// Where the numbers of a box lie, or null: to ask the processor's caches for them. They may be
   /// gone at any time. Takes part of the time of Find, which counts who holds a box and waits for
   /// its memory.
@@ -61,7 +61,7 @@ public:
   std::uint64_t Bytes() const;
 
 private:
-  LatticeCache();
+  QuantizedBlockCache();
 
   struct Kept
   {
@@ -70,8 +70,8 @@ private:
     const void* Memory = nullptr; ///< where they lie
     std::int32_t Next = -1;       ///< entry of the same bucket
     bool Used = false;            ///< since the hand of the clock came by
-    bool Brief = false;
-    std::int32_t Newer = -1; ///< entry of the next brief box
+    bool LowPriority = false;
+    std::int32_t Newer = -1; ///< entry of the next box of low priority
     std::int32_t Older = -1; ///< of the one before
   };
   /// Shards have locks of their own, so that threads seldom wait for each other. Entries stay where
@@ -92,8 +92,8 @@ private:
   static constexpr std::size_t ShardCount = 16;
 
   static constexpr std::size_t BlocksTogether = 8;
-  /// One part of so many is for brief boxes in any case: of 128 MiB a layer of blocks of 384^3
-  /// samples.
+  /// One part of so many is for boxes of low priority in any case: of 128 MiB a layer of blocks of
+  /// 384^3 samples.
   static constexpr std::uint64_t BriefPart = 16;
 
   static std::size_t HashOf(const Key& key);

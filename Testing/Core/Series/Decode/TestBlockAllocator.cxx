@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Series/Decode/LatticeCache.h"
-#include "Series/Decode/LatticeMemory.h"
+#include "Series/Decode/BlockAllocator.h"
+#include "Series/Decode/QuantizedBlockCache.h"
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@ namespace banyan
 namespace
 {
 
-constexpr std::size_t Sizes[] = { 1, 64, 1458, 9826, 71874, LatticeMemory::MostBytes,
-  LatticeMemory::MostBytes + 1 };
+constexpr std::size_t Sizes[] = { 1, 64, 1458, 9826, 71874, BlockAllocator::MostBytes,
+  BlockAllocator::MostBytes + 1 };
 
 struct Piece
 {
@@ -36,7 +36,7 @@ void TakeAndGive(unsigned seed, int times)
     const Piece piece = pieces[i];
     ASSERT_TRUE(std::all_of(
       piece.At, piece.At + piece.Bytes, [&](unsigned char byte) { return byte == piece.Mark; }));
-    LatticeMemory::Give(piece.At, piece.Bytes);
+    BlockAllocator::Free(piece.At, piece.Bytes);
     pieces[i] = pieces.back();
     pieces.pop_back();
   };
@@ -48,7 +48,7 @@ void TakeAndGive(unsigned seed, int times)
       continue;
     }
     const std::size_t bytes = Sizes[random() % std::size(Sizes)];
-    auto* const at = static_cast<unsigned char*>(LatticeMemory::Take(bytes));
+    auto* const at = static_cast<unsigned char*>(BlockAllocator::Allocate(bytes));
     ASSERT_EQ(reinterpret_cast<std::uintptr_t>(at) % 64, 0u);
     pieces.push_back({ at, bytes, static_cast<unsigned char>(random()) });
     std::memset(at, pieces.back().Mark, bytes);
@@ -65,12 +65,12 @@ class MoreSlabs
 public:
   explicit MoreSlabs(std::size_t count)
   {
-    LatticeMemory::KeepAtMost(0); // empty ones go
-    this->Before = LatticeMemory::BytesOfSlabs();
-    LatticeMemory::KeepAtMost(this->Before + count * LatticeMemory::SlabBytes);
+    BlockAllocator::KeepAtMost(0); // empty ones go
+    this->Before = BlockAllocator::BytesOfSlabs();
+    BlockAllocator::KeepAtMost(this->Before + count * BlockAllocator::SlabBytes);
   }
-  ~MoreSlabs() { LatticeMemory::KeepAtMost(LatticeCache::Process().BudgetBytes()); }
-  std::size_t Bytes() const { return LatticeMemory::BytesOfSlabs() - this->Before; }
+  ~MoreSlabs() { BlockAllocator::KeepAtMost(QuantizedBlockCache::Process().BudgetBytes()); }
+  std::size_t Bytes() const { return BlockAllocator::BytesOfSlabs() - this->Before; }
 
 private:
   std::size_t Before = 0;
@@ -89,19 +89,19 @@ void TakeAndGiveInThreads()
   }
 }
 
-TEST(LatticeMemory, PiecesDoNotMeetAndSlabsAreGivenBack)
+TEST(BlockAllocator, PiecesDoNotMeetAndSlabsAreGivenBack)
 {
   for (const std::size_t count : { 0, 7, 1000 })
   {
     const MoreSlabs slabs(count);
     TakeAndGiveInThreads();
-    EXPECT_LE(slabs.Bytes(), std::max(count, LatticeMemory::FewSlabs) * LatticeMemory::SlabBytes);
-    LatticeMemory::KeepAtMost(0);
+    EXPECT_LE(slabs.Bytes(), std::max(count, BlockAllocator::FewSlabs) * BlockAllocator::SlabBytes);
+    BlockAllocator::KeepAtMost(0);
     EXPECT_EQ(slabs.Bytes(), 0u);
   }
 }
 
-TEST(LatticeMemory, ASlabIsFilledBeforeTheNextOneIsTaken)
+TEST(BlockAllocator, ASlabIsFilledBeforeTheNextOneIsTaken)
 {
 #ifdef BANYAN_HAS_ADDRESS_SANITIZER
   GTEST_SKIP() << "each piece has memory of its own";
@@ -111,60 +111,60 @@ TEST(LatticeMemory, ASlabIsFilledBeforeTheNextOneIsTaken)
   std::vector<void*> pieces;
   for (int round = 0; round < 3; ++round)
   {
-    while (pieces.size() < 2 * (LatticeMemory::SlabBytes / bytes - 1))
+    while (pieces.size() < 2 * (BlockAllocator::SlabBytes / bytes - 1))
     {
-      pieces.push_back(LatticeMemory::Take(bytes));
+      pieces.push_back(BlockAllocator::Allocate(bytes));
     }
-    EXPECT_EQ(slabs.Bytes(), 2 * LatticeMemory::SlabBytes);
+    EXPECT_EQ(slabs.Bytes(), 2 * BlockAllocator::SlabBytes);
     std::shuffle(pieces.begin(), pieces.end(), std::mt19937(7));
     while (pieces.size() > 100)
     {
-      LatticeMemory::Give(pieces.back(), bytes);
+      BlockAllocator::Free(pieces.back(), bytes);
       pieces.pop_back();
     }
   }
   for (void* piece : pieces)
   {
-    LatticeMemory::Give(piece, bytes);
+    BlockAllocator::Free(piece, bytes);
   }
 }
 
-TEST(LatticeMemory, SlabsAreNotMoreThanTheLimitAndAreKept)
+TEST(BlockAllocator, SlabsAreNotMoreThanTheLimitAndAreKept)
 {
 #ifdef BANYAN_HAS_ADDRESS_SANITIZER
   GTEST_SKIP() << "each piece has memory of its own";
 #endif
   const MoreSlabs slabs(5);
-  constexpr std::size_t limit = 5 * LatticeMemory::SlabBytes;
-  constexpr std::size_t bytes = LatticeMemory::MostBytes;
+  constexpr std::size_t limit = 5 * BlockAllocator::SlabBytes;
+  constexpr std::size_t bytes = BlockAllocator::MostBytes;
   std::vector<void*> pieces;
   for (int i = 0; i < 50; ++i)
   {
-    pieces.push_back(LatticeMemory::Take(bytes));
+    pieces.push_back(BlockAllocator::Allocate(bytes));
   }
   EXPECT_EQ(slabs.Bytes(), limit);
   for (void* piece : pieces)
   {
-    LatticeMemory::Give(piece, bytes);
+    BlockAllocator::Free(piece, bytes);
   }
   EXPECT_EQ(slabs.Bytes(), limit);
   // They do for boxes of any size.
-  void* const other = LatticeMemory::Take(100);
+  void* const other = BlockAllocator::Allocate(100);
   EXPECT_EQ(slabs.Bytes(), limit);
-  LatticeMemory::Give(other, 100);
+  BlockAllocator::Free(other, 100);
 }
 
-TEST(LatticeMemory, ALowerLimitHoldsWhenSlabsAreEmpty)
+TEST(BlockAllocator, ALowerLimitHoldsWhenSlabsAreEmpty)
 {
 #ifdef BANYAN_HAS_ADDRESS_SANITIZER
   GTEST_SKIP() << "each piece has memory of its own";
 #endif
   const MoreSlabs slabs(3);
-  void* const piece = LatticeMemory::Take(100);
-  EXPECT_EQ(slabs.Bytes(), LatticeMemory::SlabBytes);
-  LatticeMemory::KeepAtMost(0);
-  EXPECT_EQ(slabs.Bytes(), LatticeMemory::SlabBytes);
-  LatticeMemory::Give(piece, 100);
+  void* const piece = BlockAllocator::Allocate(100);
+  EXPECT_EQ(slabs.Bytes(), BlockAllocator::SlabBytes);
+  BlockAllocator::KeepAtMost(0);
+  EXPECT_EQ(slabs.Bytes(), BlockAllocator::SlabBytes);
+  BlockAllocator::Free(piece, 100);
   EXPECT_EQ(slabs.Bytes(), 0u);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Series/Decode/LatticeMemory.h"
+#include "Series/Decode/BlockAllocator.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -22,7 +22,7 @@ constexpr std::size_t Line = 64;
 #ifdef BANYAN_HAS_ADDRESS_SANITIZER
 constexpr std::size_t MostInSlabs = 0;
 #else
-constexpr std::size_t MostInSlabs = LatticeMemory::MostBytes;
+constexpr std::size_t MostInSlabs = BlockAllocator::MostBytes;
 #endif
 
 std::size_t Rounded(std::size_t bytes)
@@ -43,7 +43,7 @@ struct Slab
 
   explicit Slab(std::size_t size)
     : Size(size)
-    , Places(std::min((LatticeMemory::SlabBytes - First()) / size, 64 * Words))
+    , Places(std::min((BlockAllocator::SlabBytes - First()) / size, 64 * Words))
   {
     for (std::size_t place = 0; place < this->Places; ++place)
     {
@@ -55,7 +55,7 @@ struct Slab
   static Slab* Of(void* memory)
   {
     return reinterpret_cast<Slab*>(
-      reinterpret_cast<std::uintptr_t>(memory) & ~(LatticeMemory::SlabBytes - 1));
+      reinterpret_cast<std::uintptr_t>(memory) & ~(BlockAllocator::SlabBytes - 1));
   }
 
   /// There must be room.
@@ -124,8 +124,8 @@ struct AllSlabs
 
   bool MayHaveMore() const
   {
-    return !this->Empty.empty() || this->All.size() < LatticeMemory::FewSlabs ||
-           (this->All.size() + 1) * LatticeMemory::SlabBytes <= this->MostBytes;
+    return !this->Empty.empty() || this->All.size() < BlockAllocator::FewSlabs ||
+           (this->All.size() + 1) * BlockAllocator::SlabBytes <= this->MostBytes;
   }
 
   /// MayHaveMore must be true.
@@ -138,9 +138,9 @@ struct AllSlabs
     if (this->Empty.empty())
     {
       void* const memory =
-        ::operator new (LatticeMemory::SlabBytes, std::align_val_t{ LatticeMemory::SlabBytes });
+        ::operator new (BlockAllocator::SlabBytes, std::align_val_t{ BlockAllocator::SlabBytes });
 #ifdef MADV_HUGEPAGE
-      (void)madvise(memory, LatticeMemory::SlabBytes, MADV_HUGEPAGE); // small pages do as well
+      (void)madvise(memory, BlockAllocator::SlabBytes, MADV_HUGEPAGE); // small pages do as well
 #endif
       this->Empty.push_back(memory);
       this->All.insert(memory);
@@ -152,10 +152,10 @@ struct AllSlabs
   /// Gives empty slabs back where there are too many.
   void Shrink() noexcept
   {
-    while (!this->Empty.empty() && this->All.size() * LatticeMemory::SlabBytes > this->MostBytes)
+    while (!this->Empty.empty() && this->All.size() * BlockAllocator::SlabBytes > this->MostBytes)
     {
       this->All.erase(this->Empty.back());
-      ::operator delete (this->Empty.back(), std::align_val_t{ LatticeMemory::SlabBytes });
+      ::operator delete (this->Empty.back(), std::align_val_t{ BlockAllocator::SlabBytes });
       this->Empty.pop_back();
     }
   }
@@ -170,7 +170,7 @@ AllSlabs& Slabs()
 
 } // namespace
 
-void* LatticeMemory::Take(std::size_t bytes)
+void* BlockAllocator::Allocate(std::size_t bytes)
 {
   const std::size_t size = Rounded(bytes);
   if (size <= MostInSlabs)
@@ -196,7 +196,7 @@ void* LatticeMemory::Take(std::size_t bytes)
   return ::operator new (size, std::align_val_t{ Line });
 }
 
-void LatticeMemory::Give(void* memory, std::size_t bytes) noexcept
+void BlockAllocator::Free(void* memory, std::size_t bytes) noexcept
 {
   const std::size_t size = Rounded(bytes);
   if (size <= MostInSlabs)
@@ -224,7 +224,7 @@ void LatticeMemory::Give(void* memory, std::size_t bytes) noexcept
   ::operator delete (memory, std::align_val_t{ Line });
 }
 
-void LatticeMemory::KeepAtMost(std::size_t bytes)
+void BlockAllocator::KeepAtMost(std::size_t bytes)
 {
   AllSlabs& all = Slabs();
   std::lock_guard<std::mutex> lock(all.Mutex);
@@ -232,7 +232,7 @@ void LatticeMemory::KeepAtMost(std::size_t bytes)
   all.Shrink();
 }
 
-std::size_t LatticeMemory::BytesOfSlabs()
+std::size_t BlockAllocator::BytesOfSlabs()
 {
   AllSlabs& all = Slabs();
   std::lock_guard<std::mutex> lock(all.Mutex);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Series_Decode_LatticeMemory_h
-#define banyan_Series_Decode_LatticeMemory_h
+#ifndef banyan_Series_Decode_BlockAllocator_h
+#define banyan_Series_Decode_BlockAllocator_h
 
 #include <cstddef>
 
@@ -20,7 +20,7 @@ namespace banyan
 /// of 16 takes three small pages, and each has to be looked up. All slabs together take no more
 /// than a limit, or 8 MiB; boxes beyond that have memory of their own. Slabs without boxes are kept
 /// for the next ones: the system would clear their pages anew. Thread-safe.
-class LatticeMemory
+class BlockAllocator
 {
 public:
   static constexpr std::size_t SlabBytes = std::size_t{ 2 } << 20;
@@ -30,12 +30,12 @@ public:
   static constexpr std::size_t MostBytes = SlabBytes / 8;
 
   /// Memory that is aligned as lines of the cache are, and not set. Throws std::bad_alloc.
-  static void* Take(std::size_t bytes);
-  /// @param memory from Take, for as many bytes
-  static void Give(void* memory, std::size_t bytes) noexcept;
+  static void* Allocate(std::size_t bytes);
+  /// @param memory from Allocate, for as many bytes
+  static void Free(void* memory, std::size_t bytes) noexcept;
 
   /// Limits the bytes of all slabs; those above it go when they are empty. Default: 128 MiB.
-  /// LatticeCache sets it to its budget.
+  /// QuantizedBlockCache sets it to its budget.
   static void KeepAtMost(std::size_t bytes);
 
   /// Returns the bytes of all slabs, for tests.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Series/Decode/LatticeCache.h"
+#include "Series/Decode/QuantizedBlockCache.h"
 
 #include <gtest/gtest.h>
 
@@ -18,37 +18,37 @@ class OwnBudget
 {
 public:
   explicit OwnBudget(std::uint64_t bytes)
-    : Before(LatticeCache::Process().BudgetBytes())
+    : Before(QuantizedBlockCache::Process().BudgetBytes())
   {
-    LatticeCache::Process().SetBudgetBytes(bytes);
+    QuantizedBlockCache::Process().SetBudgetBytes(bytes);
   }
   ~OwnBudget()
   {
-    LatticeCache::Process().Forget(SeriesOfTest);
-    LatticeCache::Process().Forget(SeriesOfTest + 1);
-    LatticeCache::Process().SetBudgetBytes(this->Before);
+    QuantizedBlockCache::Process().Forget(SeriesOfTest);
+    QuantizedBlockCache::Process().Forget(SeriesOfTest + 1);
+    QuantizedBlockCache::Process().SetBudgetBytes(this->Before);
   }
 
 private:
   std::uint64_t Before;
 };
 
-LatticeCache::Key KeyOf(std::uint64_t block, std::uint64_t series = SeriesOfTest)
+QuantizedBlockCache::Key KeyOf(std::uint64_t block, std::uint64_t series = SeriesOfTest)
 {
   return { series, block, static_cast<std::uint32_t>(block % 7), 0, 1 };
 }
 
-LatticeCache::Box BoxOf(std::int16_t number)
+QuantizedBlockCache::Box BoxOf(std::int16_t number)
 {
-  auto box = std::make_shared<LatticeBox>(100, true);
+  auto box = std::make_shared<QuantizedBlock>(100, true);
   box->Numbers<std::int16_t>()[0] = number;
   return box;
 }
 
-TEST(LatticeCache, BoxesAreFoundUntilTheyAreForgotten)
+TEST(QuantizedBlockCache, BoxesAreFoundUntilTheyAreForgotten)
 {
   const OwnBudget budget(std::uint64_t{ 64 } << 20);
-  LatticeCache& cache = LatticeCache::Process();
+  QuantizedBlockCache& cache = QuantizedBlockCache::Process();
   const std::uint64_t before = cache.Bytes();
   constexpr int count = 5000;
   for (int i = 0; i < count; ++i)
@@ -59,7 +59,7 @@ TEST(LatticeCache, BoxesAreFoundUntilTheyAreForgotten)
   cache.Add(KeyOf(17), BoxOf(0)); // the first one stays
   for (int i = 0; i < count; ++i)
   {
-    const LatticeCache::Box box = cache.Find(KeyOf(static_cast<std::uint64_t>(i)));
+    const QuantizedBlockCache::Box box = cache.Find(KeyOf(static_cast<std::uint64_t>(i)));
     ASSERT_NE(box, nullptr) << i;
     ASSERT_EQ(box->Numbers<std::int16_t>()[0], i);
     ASSERT_EQ(cache.AddressOf(KeyOf(static_cast<std::uint64_t>(i))), box->Memory());
@@ -74,13 +74,13 @@ TEST(LatticeCache, BoxesAreFoundUntilTheyAreForgotten)
   EXPECT_EQ(cache.Bytes(), before);
 }
 
-TEST(LatticeCache, ForgetsTheFinestPlanesOrAll)
+TEST(QuantizedBlockCache, ForgetsTheFinestPlanesOrAll)
 {
   const OwnBudget budget(std::uint64_t{ 64 } << 20);
-  LatticeCache& cache = LatticeCache::Process();
+  QuantizedBlockCache& cache = QuantizedBlockCache::Process();
   const auto keyOf = [](int i)
   {
-    return LatticeCache::Key{ SeriesOfTest, static_cast<std::uint64_t>(i), 0, 0,
+    return QuantizedBlockCache::Key{ SeriesOfTest, static_cast<std::uint64_t>(i), 0, 0,
       static_cast<std::uint16_t>(i % 3) };
   };
   cache.ForgetAll(); // what other tests left
@@ -110,17 +110,17 @@ TEST(LatticeCache, ForgetsTheFinestPlanesOrAll)
   EXPECT_EQ(cache.Find(keyOf(count - 1))->Numbers<std::int16_t>()[0], count - 1);
 }
 
-TEST(LatticeCache, StaysWithinItsBudgetAndKeepsWhatIsUsed)
+TEST(QuantizedBlockCache, StaysWithinItsBudgetAndKeepsWhatIsUsed)
 {
   const OwnBudget budget(400 * 1000);
-  LatticeCache& cache = LatticeCache::Process();
+  QuantizedBlockCache& cache = QuantizedBlockCache::Process();
   std::unordered_map<std::uint64_t, std::int16_t> added;
   std::mt19937 random(5);
   int kept = 0;
   for (int i = 0; i < 20000; ++i)
   {
     const std::uint64_t block = 100 + random() % 5000;
-    const LatticeCache::Box found = cache.Find(KeyOf(block));
+    const QuantizedBlockCache::Box found = cache.Find(KeyOf(block));
     if (found)
     {
       ASSERT_EQ(found->Numbers<std::int16_t>()[0], added[block]);
@@ -143,10 +143,10 @@ TEST(LatticeCache, StaysWithinItsBudgetAndKeepsWhatIsUsed)
 }
 
 /// Boxes of one size in a cache with room for about 1600 of them.
-TEST(LatticeCache, BriefBoxesLeaveTheRoomToOthers)
+TEST(QuantizedBlockCache, BriefBoxesLeaveTheRoomToOthers)
 {
   const OwnBudget budget(640 * 1000);
-  LatticeCache& cache = LatticeCache::Process();
+  QuantizedBlockCache& cache = QuantizedBlockCache::Process();
   constexpr std::uint64_t others = 1000, briefs = 20000, first = 100000;
   for (std::uint64_t i = 0; i < others; ++i)
   {
@@ -155,7 +155,7 @@ TEST(LatticeCache, BriefBoxesLeaveTheRoomToOthers)
   for (std::uint64_t i = 0; i < briefs; ++i)
   {
     cache.Add(KeyOf(first + i), BoxOf(static_cast<std::int16_t>(i)), true);
-    const LatticeCache::Box newest = cache.Find(KeyOf(first + i));
+    const QuantizedBlockCache::Box newest = cache.Find(KeyOf(first + i));
     ASSERT_NE(newest, nullptr);
     ASSERT_EQ(newest->Numbers<std::int16_t>()[0], static_cast<std::int16_t>(i));
     ASSERT_LE(cache.Bytes(), 640u * 1000);

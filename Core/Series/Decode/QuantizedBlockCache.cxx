@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Series/Decode/LatticeCache.h"
+#include "Series/Decode/QuantizedBlockCache.h"
 
 #include "Base/CacheBudget.h"
 #include "Base/Hash.h"
@@ -11,28 +11,28 @@ namespace banyan
 namespace
 {
 
-std::uint64_t BytesOf(const LatticeCache::Box& box)
+std::uint64_t BytesOf(const QuantizedBlockCache::Box& box)
 {
   return box->Bytes() + 180; // with what is kept beside it
 }
 
 } // namespace
 
-LatticeCache::LatticeCache()
+QuantizedBlockCache::QuantizedBlockCache()
   : Budget(CacheBudgetBytes() / 4)
 {
-  LatticeMemory::KeepAtMost(this->Budget);
+  BlockAllocator::KeepAtMost(this->Budget);
 }
 
-LatticeCache& LatticeCache::Process()
+QuantizedBlockCache& QuantizedBlockCache::Process()
 {
   // Never destroyed: series that are closed while the process ends still come here.
-  static LatticeCache* cache = new LatticeCache;
+  static QuantizedBlockCache* cache = new QuantizedBlockCache;
   return *cache;
 }
 
 /// The lowest bits are the block's: blocks that follow each other have buckets that do.
-std::size_t LatticeCache::HashOf(const Key& key)
+std::size_t QuantizedBlockCache::HashOf(const Key& key)
 {
   std::uint64_t hash = key.Series * 0x9e3779b97f4a7c15ull + key.Block / BlocksTogether;
   hash = (hash ^ (hash >> 29)) * 0xbf58476d1ce4e5b9ull;
@@ -42,7 +42,7 @@ std::size_t LatticeCache::HashOf(const Key& key)
   return static_cast<std::size_t>(hash * BlocksTogether + key.Block % BlocksTogether);
 }
 
-std::int32_t& LatticeCache::BucketOf(Shard& shard, std::size_t hash)
+std::int32_t& QuantizedBlockCache::BucketOf(Shard& shard, std::size_t hash)
 {
   const std::size_t bucket =
     hash / (BlocksTogether * ShardCount) * BlocksTogether + hash % BlocksTogether;
@@ -50,7 +50,7 @@ std::int32_t& LatticeCache::BucketOf(Shard& shard, std::size_t hash)
 }
 
 /// -1: it is not there.
-std::int32_t LatticeCache::EntryOf(Shard& shard, std::size_t hash, const Key& key)
+std::int32_t QuantizedBlockCache::EntryOf(Shard& shard, std::size_t hash, const Key& key)
 {
   std::int32_t entry = shard.Buckets.empty() ? -1 : BucketOf(shard, hash);
   while (entry >= 0 && !(shard.Entries[static_cast<std::size_t>(entry)].Name == key))
@@ -62,7 +62,7 @@ std::int32_t LatticeCache::EntryOf(Shard& shard, std::size_t hash, const Key& ke
 
 /// @param body called as body(Kept&), while nobody changes it, if the box is there
 template <class Body>
-void LatticeCache::Look(const Key& key, const Body& body)
+void QuantizedBlockCache::Look(const Key& key, const Body& body)
 {
   const std::size_t hash = HashOf(key);
   Shard& shard = this->Shards[ShardOf(hash)];
@@ -74,7 +74,7 @@ void LatticeCache::Look(const Key& key, const Body& body)
   }
 }
 
-LatticeCache::Box LatticeCache::Find(const Key& key)
+QuantizedBlockCache::Box QuantizedBlockCache::Find(const Key& key)
 {
   Box box;
   this->Look(key,
@@ -86,7 +86,7 @@ LatticeCache::Box LatticeCache::Find(const Key& key)
   return box;
 }
 
-const void* LatticeCache::AddressOf(const Key& key)
+const void* QuantizedBlockCache::AddressOf(const Key& key)
 {
   const void* memory = nullptr;
   this->Look(key,
@@ -98,7 +98,7 @@ const void* LatticeCache::AddressOf(const Key& key)
   return memory;
 }
 
-void LatticeCache::Add(const Key& key, const Box& box, bool brief)
+void QuantizedBlockCache::Add(const Key& key, const Box& box, bool lowPriority)
 {
   const std::size_t hash = HashOf(key);
   Shard& shard = this->Shards[ShardOf(hash)];
@@ -115,17 +115,17 @@ void LatticeCache::Add(const Key& key, const Box& box, bool brief)
   shard.Free.pop_back();
   std::int32_t& bucket = BucketOf(shard, hash);
   shard.Entries[static_cast<std::size_t>(entry)] = { key, box, box->Memory(), bucket, false,
-    brief };
+    lowPriority };
   bucket = entry;
   shard.Bytes += BytesOf(box);
-  if (brief)
+  if (lowPriority)
   {
     LinkBrief(shard, entry);
   }
   this->Shrink(shard);
 }
 
-void LatticeCache::LinkBrief(Shard& shard, std::int32_t entry)
+void QuantizedBlockCache::LinkBrief(Shard& shard, std::int32_t entry)
 {
   Kept& kept = shard.Entries[static_cast<std::size_t>(entry)];
   kept.Older = shard.NewestBrief;
@@ -136,7 +136,7 @@ void LatticeCache::LinkBrief(Shard& shard, std::int32_t entry)
   shard.BriefBytes += BytesOf(kept.Numbers);
 }
 
-void LatticeCache::UnlinkBrief(Shard& shard, std::int32_t entry)
+void QuantizedBlockCache::UnlinkBrief(Shard& shard, std::int32_t entry)
 {
   const Kept& kept = shard.Entries[static_cast<std::size_t>(entry)];
   std::int32_t& before =
@@ -149,7 +149,7 @@ void LatticeCache::UnlinkBrief(Shard& shard, std::int32_t entry)
 }
 
 /// Makes room for twice as many boxes.
-void LatticeCache::Grow(Shard& shard)
+void QuantizedBlockCache::Grow(Shard& shard)
 {
   const std::size_t before = shard.Entries.size();
   const std::size_t after = std::max<std::size_t>(64, 2 * before);
@@ -171,7 +171,7 @@ void LatticeCache::Grow(Shard& shard)
   }
 }
 
-void LatticeCache::Remove(Shard& shard, std::int32_t entry)
+void QuantizedBlockCache::Remove(Shard& shard, std::int32_t entry)
 {
   Kept& kept = shard.Entries[static_cast<std::size_t>(entry)];
   std::int32_t* link = &BucketOf(shard, HashOf(kept.Name));
@@ -180,7 +180,7 @@ void LatticeCache::Remove(Shard& shard, std::int32_t entry)
     link = &shard.Entries[static_cast<std::size_t>(*link)].Next;
   }
   *link = kept.Next;
-  if (kept.Brief)
+  if (kept.LowPriority)
   {
     UnlinkBrief(shard, entry);
   }
@@ -189,7 +189,7 @@ void LatticeCache::Remove(Shard& shard, std::int32_t entry)
   shard.Free.push_back(entry);
 }
 
-void LatticeCache::Shrink(Shard& shard)
+void QuantizedBlockCache::Shrink(Shard& shard)
 {
   const std::uint64_t budget = this->Budget / ShardCount;
   while (shard.Bytes > budget)
@@ -212,7 +212,7 @@ void LatticeCache::Shrink(Shard& shard)
 
 /// @param which called as bool(const Key&), while nobody changes the boxes
 template <class Which>
-void LatticeCache::RemoveThose(const Which& which)
+void QuantizedBlockCache::RemoveThose(const Which& which)
 {
   for (Shard& shard : this->Shards)
   {
@@ -227,12 +227,12 @@ void LatticeCache::RemoveThose(const Which& which)
   }
 }
 
-void LatticeCache::Forget(std::uint64_t series)
+void QuantizedBlockCache::Forget(std::uint64_t series)
 {
   this->RemoveThose([series](const Key& key) { return key.Series == series; });
 }
 
-void LatticeCache::ForgetAll()
+void QuantizedBlockCache::ForgetAll()
 {
   for (Shard& shard : this->Shards)
   {
@@ -246,12 +246,12 @@ void LatticeCache::ForgetAll()
   }
 }
 
-void LatticeCache::ForgetFinest()
+void QuantizedBlockCache::ForgetFinest()
 {
   this->RemoveThose([](const Key& key) { return key.Plane == 0; });
 }
 
-void LatticeCache::SetBudgetBytes(std::uint64_t bytes)
+void QuantizedBlockCache::SetBudgetBytes(std::uint64_t bytes)
 {
   // A slab goes when all of its boxes have gone: with less room, none stay.
   const bool less = bytes < this->Budget;
@@ -261,11 +261,11 @@ void LatticeCache::SetBudgetBytes(std::uint64_t bytes)
     std::lock_guard<std::mutex> lock(shard.Mutex);
     this->Shrink(shard);
   }
-  LatticeMemory::KeepAtMost(bytes);
+  BlockAllocator::KeepAtMost(bytes);
   this->Budget = bytes;
 }
 
-std::uint64_t LatticeCache::Bytes() const
+std::uint64_t QuantizedBlockCache::Bytes() const
 {
   std::uint64_t bytes = 0;
   for (const Shard& shard : this->Shards)
