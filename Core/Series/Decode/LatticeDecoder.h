@@ -2,7 +2,7 @@
 #ifndef banyan_Series_Decode_LatticeDecoder_h
 #define banyan_Series_Decode_LatticeDecoder_h
 
-#include "Series/Quantize/LatticeValues.h"
+#include "Series/Quantize/DequantizeRows.h"
 #include "Series/Quantize/Transform.h"
 
 #include <cstddef>
@@ -53,7 +53,7 @@ public:
     {
       if (to.x == 1 && this->Map.IsIdentity())
       {
-        return ValuesOnLattice(numbers, pitch, size, this->Origin, this->Step, decoded, to);
+        return DequantizeRows(numbers, pitch, size, this->Origin, this->Step, decoded, to);
       }
     }
     const std::uint64_t entries = this->Table.size();
@@ -84,7 +84,7 @@ public:
     {
       if (to.x == 1 && this->Map.IsIdentity())
       {
-        return ValuesOfParts(parts, count, y, z, this->Origin, this->Step, decoded, to);
+        return DequantizeParts(parts, count, y, z, this->Origin, this->Step, decoded, to);
       }
     }
     for (int i = 0; i < count; ++i)

@@ -8,8 +8,8 @@
 #include "Codec/SymbolWriter.h"
 #include "Codec/TokenHistogram.h"
 #include "Series/Encode/ChainLengths.h"
+#include "Series/Encode/FieldQuantizer.h"
 #include "Series/Encode/GroupNodes.h"
-#include "Series/Encode/LatticeTarget.h"
 #include "Series/Encode/ProfileModes.h"
 #include "Series/Format/Exceptions.h"
 #include "Series/Format/FieldLattice.h"
@@ -53,7 +53,7 @@ private:
 
   const FieldGroup& Field;
   ThreadPool& Pool;
-  std::unique_ptr<LatticeTarget<T>> Target;
+  std::unique_ptr<FieldQuantizer<T>> Target;
   std::vector<glm::ivec3> Planes;   ///< samples
   std::vector<PlaneNumbers> Wanted; ///< of the step under way
   std::vector<DecodedStep> Decoded; ///< all steps, as all else is kept until the group is written
@@ -69,7 +69,7 @@ void Encoder<T>::Prepare()
   group::FieldHead& head = this->Out.Head;
   ChooseLattice(this->Field.Type, this->Field.Map, this->Field.Bound, this->Field.Expected,
     this->Field.Beyond, head);
-  this->Target = std::make_unique<LatticeTarget<T>>(this->Field, head, this->Pool);
+  this->Target = std::make_unique<FieldQuantizer<T>>(this->Field, head, this->Pool);
   head.Axes = this->Target->Axes();
   head.Open = this->Field.Before != nullptr && !head.Exact && this->Field.Steps.size() > 1 &&
               group::SameLattice(this->Field.Before->Head, head);

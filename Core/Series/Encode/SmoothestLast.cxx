@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Base/ForEachScalarType.h"
-#include "Series/Encode/LatticeTarget.h"
+#include "Series/Encode/FieldQuantizer.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include "Base/ForEachScalarType.h"
 #include "Series/Quantize/GatherTile.h"
-#include "Series/Quantize/LatticeRows.h"
+#include "Series/Quantize/QuantizeRows.h"
 #include "Series/Quantize/TransposedRows.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace
 /// @param tile receives them, where they have to be transposed for that
 /// @return rows with numbers alone
 template <class T, class Number>
-LatticeRows<T, const Number> NumbersInOrder(const PlaneNumbers& decoded, const MemoryOrder& order,
+QuantizedRows<T, const Number> NumbersInOrder(const PlaneNumbers& decoded, const MemoryOrder& order,
   const glm::ivec3& low, const glm::ivec3& n, std::vector<Number>& tile)
 {
   const int edge = decoded.Edge;
@@ -27,7 +27,7 @@ LatticeRows<T, const Number> NumbersInOrder(const PlaneNumbers& decoded, const M
   const Number* const numbers = decoded.Data<Number>();
   const glm::i64vec3 gaps{ 1, decoded.Padded.x,
     std::int64_t{ decoded.Padded.x } * decoded.Padded.y };
-  LatticeRows<T, const Number> rows;
+  QuantizedRows<T, const Number> rows;
   rows.Count = n[u];
   rows.Rows = n[v];
   rows.Slices = n[w];
@@ -65,7 +65,7 @@ bool WholeBlockVerifier<T>::VerifyAs(const PlaneNumbers& decoded, const glm::ive
     const MemoryOrder order(this->Stride);
     const auto [u, v, w] = order.Axes;
     thread_local std::vector<Number> tile;
-    LatticeRows<T, const Number> rows = NumbersInOrder<T>(decoded, order, low, n, tile);
+    QuantizedRows<T, const Number> rows = NumbersInOrder<T>(decoded, order, low, n, tile);
     rows.Values =
       this->Values + low.x * this->Stride.x + low.y * this->Stride.y + low.z * this->Stride.z;
     rows.Gap = this->Stride[u];

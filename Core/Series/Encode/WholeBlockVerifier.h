@@ -10,7 +10,7 @@ namespace banyan
 {
 
 /// Compares whole blocks of the finest plane with the original values at once, where these are
-/// ordinary numbers that are not transformed: the fast path of LatticeCheck.
+/// ordinary numbers that are not transformed: the fast path of BoundVerifier.
 template <class T>
 class WholeBlockVerifier
 {

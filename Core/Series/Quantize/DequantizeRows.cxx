@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Series/Quantize/LatticeValues.h"
+#include "Series/Quantize/DequantizeRows.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "Series/Quantize/LatticeValues.cxx"
+#define HWY_TARGET_INCLUDE "Series/Quantize/DequantizeRows.cxx"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -280,50 +280,50 @@ HWY_EXPORT(TransposeShorts);
 HWY_EXPORT(TransposeLongs);
 
 template <>
-void ValuesOnLattice(const std::int16_t* numbers, const glm::i64vec3& pitch, const glm::ivec3& size,
+void DequantizeRows(const std::int16_t* numbers, const glm::i64vec3& pitch, const glm::ivec3& size,
   double origin, double step, float* values, const glm::i64vec3& to)
 {
   HWY_DYNAMIC_DISPATCH(ShortFloats)(numbers, pitch, size, origin, step, values, to);
 }
 template <>
-void ValuesOnLattice(const std::int16_t* numbers, const glm::i64vec3& pitch, const glm::ivec3& size,
+void DequantizeRows(const std::int16_t* numbers, const glm::i64vec3& pitch, const glm::ivec3& size,
   double origin, double step, double* values, const glm::i64vec3& to)
 {
   HWY_DYNAMIC_DISPATCH(ShortDoubles)(numbers, pitch, size, origin, step, values, to);
 }
 template <>
-void ValuesOnLattice(const std::int32_t* numbers, const glm::i64vec3& pitch, const glm::ivec3& size,
+void DequantizeRows(const std::int32_t* numbers, const glm::i64vec3& pitch, const glm::ivec3& size,
   double origin, double step, float* values, const glm::i64vec3& to)
 {
   HWY_DYNAMIC_DISPATCH(LongFloats)(numbers, pitch, size, origin, step, values, to);
 }
 template <>
-void ValuesOnLattice(const std::int32_t* numbers, const glm::i64vec3& pitch, const glm::ivec3& size,
+void DequantizeRows(const std::int32_t* numbers, const glm::i64vec3& pitch, const glm::ivec3& size,
   double origin, double step, double* values, const glm::i64vec3& to)
 {
   HWY_DYNAMIC_DISPATCH(LongDoubles)(numbers, pitch, size, origin, step, values, to);
 }
 
 template <>
-void ValuesOfParts(const LatticePart<std::int16_t>* parts, int count, int y, int z, double origin,
+void DequantizeParts(const LatticePart<std::int16_t>* parts, int count, int y, int z, double origin,
   double step, float* values, const glm::i64vec3& to)
 {
   HWY_DYNAMIC_DISPATCH(ShortFloatParts)(parts, count, y, z, origin, step, values, to);
 }
 template <>
-void ValuesOfParts(const LatticePart<std::int16_t>* parts, int count, int y, int z, double origin,
+void DequantizeParts(const LatticePart<std::int16_t>* parts, int count, int y, int z, double origin,
   double step, double* values, const glm::i64vec3& to)
 {
   HWY_DYNAMIC_DISPATCH(ShortDoubleParts)(parts, count, y, z, origin, step, values, to);
 }
 template <>
-void ValuesOfParts(const LatticePart<std::int32_t>* parts, int count, int y, int z, double origin,
+void DequantizeParts(const LatticePart<std::int32_t>* parts, int count, int y, int z, double origin,
   double step, float* values, const glm::i64vec3& to)
 {
   HWY_DYNAMIC_DISPATCH(LongFloatParts)(parts, count, y, z, origin, step, values, to);
 }
 template <>
-void ValuesOfParts(const LatticePart<std::int32_t>* parts, int count, int y, int z, double origin,
+void DequantizeParts(const LatticePart<std::int32_t>* parts, int count, int y, int z, double origin,
   double step, double* values, const glm::i64vec3& to)
 {
   HWY_DYNAMIC_DISPATCH(LongDoubleParts)(parts, count, y, z, origin, step, values, to);

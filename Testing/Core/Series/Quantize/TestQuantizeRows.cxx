@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Series/Quantize/LatticeRows.h"
+#include "Series/Quantize/QuantizeRows.h"
 #include "Targets.h"
 
 #include <gtest/gtest.h>
@@ -19,9 +19,9 @@ const LatticeScale Scale{ 0.125, 0.03, -10, 130, -300, 4000 };
 
 /// One row of values without gaps.
 template <class T, class Number>
-LatticeRows<T, Number> RowOf(const std::vector<T>& values, Number* numbers)
+QuantizedRows<T, Number> RowOf(const std::vector<T>& values, Number* numbers)
 {
-  LatticeRows<T, Number> rows;
+  QuantizedRows<T, Number> rows;
   rows.Values = values.data();
   rows.Numbers = numbers;
   rows.Count = static_cast<int>(values.size());
@@ -57,7 +57,7 @@ void ExpectNumbersOfEveryCount()
   {
     const std::vector<T> values = SomeValues<T>(count);
     std::vector<Number> numbers(count + 1, Number{ 77 });
-    ASSERT_TRUE(NumbersOnLattice(RowOf(values, numbers.data()), Scale));
+    ASSERT_TRUE(QuantizeRows(RowOf(values, numbers.data()), Scale));
     for (std::size_t i = 0; i < count; ++i)
     {
       ASSERT_EQ(numbers[i], SlowNumber<Number>(values[i])) << i << " of " << count;
@@ -69,14 +69,14 @@ void ExpectNumbersOfEveryCount()
       {
         std::vector<T> spoilt = values;
         spoilt[i] = static_cast<T>(bad);
-        ASSERT_FALSE(NumbersOnLattice(RowOf(spoilt, numbers.data()), Scale))
+        ASSERT_FALSE(QuantizeRows(RowOf(spoilt, numbers.data()), Scale))
           << bad << " at " << i << " of " << count;
       }
     }
   }
 }
 
-TEST(LatticeRows, NumbersAreTheNearestOnesAndWhatIsNotHeldIsTold)
+TEST(QuantizedRows, NumbersAreTheNearestOnesAndWhatIsNotHeldIsTold)
 {
   for (const std::int64_t target : targets::OfThisMachine())
   {
@@ -145,7 +145,7 @@ void ExpectErrorsOfEveryCount()
   }
 }
 
-TEST(LatticeRows, ErrorsAreThoseOfEachValueAndWhatIsBeyondTheBoundIsTold)
+TEST(QuantizedRows, ErrorsAreThoseOfEachValueAndWhatIsBeyondTheBoundIsTold)
 {
   for (const std::int64_t target : targets::OfThisMachine())
   {
@@ -166,7 +166,7 @@ void ExpectBoxesOfAnyStrides(int gap)
   const int row = count * gap + 4, slice = row * height + 7;
   const std::vector<T> values = SomeValues<T>(static_cast<std::size_t>(slice * slices));
   std::vector<std::int32_t> numbers(1000, 77);
-  LatticeRows<T, std::int32_t> rows;
+  QuantizedRows<T, std::int32_t> rows;
   rows.Values = values.data();
   rows.Gap = gap;
   rows.ValueRow = row;
@@ -177,7 +177,7 @@ void ExpectBoxesOfAnyStrides(int gap)
   rows.Count = count;
   rows.Rows = height;
   rows.Slices = slices;
-  ASSERT_TRUE(NumbersOnLattice(rows, Scale));
+  ASSERT_TRUE(QuantizeRows(rows, Scale));
   double greatest = 0;
   for (int i = 0; i < 1000; ++i)
   {
@@ -191,7 +191,7 @@ void ExpectBoxesOfAnyStrides(int gap)
     greatest =
       inside ? std::max(greatest, std::abs(value - static_cast<double>(decoded))) : greatest;
   }
-  LatticeRows<T, const std::int32_t> all;
+  QuantizedRows<T, const std::int32_t> all;
   all.Values = rows.Values;
   all.Gap = rows.Gap;
   all.ValueRow = rows.ValueRow;
@@ -208,7 +208,7 @@ void ExpectBoxesOfAnyStrides(int gap)
   EXPECT_FALSE(ErrorsOnLattice(all, Scale, std::nextafter(greatest, 0.0), errors));
 }
 
-TEST(LatticeRows, BoxesOfAnyStridesAreTakenSampleBySample)
+TEST(QuantizedRows, BoxesOfAnyStridesAreTakenSampleBySample)
 {
   for (const int gap : { 1, 3 })
   {

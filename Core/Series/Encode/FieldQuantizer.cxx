@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Series/Encode/LatticeTarget.h"
+#include "Series/Encode/FieldQuantizer.h"
 
 #include "Base/ForEachScalarType.h"
 #include "Base/ThreadPool.h"
 #include "Codec/BlockScratch.h"
-#include "Series/Encode/LatticeCheck.h"
+#include "Series/Encode/BoundVerifier.h"
 #include "Series/Format/FieldLattice.h"
 #include "Series/Quantize/GatherTile.h"
 #include "Series/Quantize/PlaneFilling.h"
@@ -43,7 +43,7 @@ constexpr bool IsReal = std::is_floating_point_v<T>;
 } // namespace
 
 template <class T>
-LatticeTarget<T>::LatticeTarget(
+FieldQuantizer<T>::FieldQuantizer(
   const FieldGroup& field, const group::FieldHead& head, ThreadPool& pool)
   : Field(field)
   , Head(head)
@@ -79,13 +79,13 @@ LatticeTarget<T>::LatticeTarget(
 }
 
 template <class T>
-bool LatticeTarget<T>::Plain() const
+bool FieldQuantizer<T>::Plain() const
 {
   return IsReal<T> && this->Field.Map.IsIdentity() && this->Fills.Empty();
 }
 
 template <class T>
-LatticeScale LatticeTarget<T>::Scale() const
+LatticeScale FieldQuantizer<T>::Scale() const
 {
   return { this->Head.Origin, this->Head.Step, this->Nearest, this->Furthest, this->Head.Least,
     this->Head.Greatest };
@@ -95,7 +95,7 @@ LatticeScale LatticeTarget<T>::Scale() const
 /// @param hidden of these; may be null
 template <class T>
 template <class Number>
-void LatticeTarget<T>::FillRow(
+void FieldQuantizer<T>::FillRow(
   const T* values, const std::uint8_t* hidden, int count, Number* numbers) const
 {
   double y[Tile];
@@ -133,7 +133,7 @@ void LatticeTarget<T>::FillRow(
 /// @return false: some value is not held
 template <class T>
 template <class Number>
-bool LatticeTarget<T>::FillTileFast(const T* values, const glm::ivec3& low, const glm::ivec3& next,
+bool FieldQuantizer<T>::FillTileFast(const T* values, const glm::ivec3& low, const glm::ivec3& next,
   const glm::ivec3& n, PlaneNumbers& plane) const
 {
   if constexpr (IsReal<T>)
@@ -145,7 +145,7 @@ bool LatticeTarget<T>::FillTileFast(const T* values, const glm::ivec3& low, cons
     Number tile[Tile * Tile * Tile];
     Number* const numbers = plane.Data<Number>();
     const glm::i64vec3 gaps{ 1, plane.Padded.x, std::int64_t{ plane.Padded.x } * plane.Padded.y };
-    LatticeRows<T, Number> rows;
+    QuantizedRows<T, Number> rows;
     rows.Values = values + this->OffsetOf(low);
     rows.Gap = this->Stride[u];
     rows.ValueRow = this->Stride[v];
@@ -157,7 +157,7 @@ bool LatticeTarget<T>::FillTileFast(const T* values, const glm::ivec3& low, cons
     rows.Rows = n[v];
     rows.Slices = n[w];
     rows.Next = this->OffsetOf(next) - this->OffsetOf(low);
-    const bool all = NumbersOnLattice(rows, scale);
+    const bool all = QuantizeRows(rows, scale);
     // Rows of the tile along axis u become rows along x, for each place along the third one.
     const int third = 3 - u;
     for (int i = 0; !inPlace && i < n[third]; ++i)
@@ -177,7 +177,7 @@ bool LatticeTarget<T>::FillTileFast(const T* values, const glm::ivec3& low, cons
 
 template <class T>
 template <class Number>
-void LatticeTarget<T>::FillTile(
+void FieldQuantizer<T>::FillTile(
   std::size_t step, const glm::ivec3& low, const glm::ivec3& next, PlaneNumbers& plane) const
 {
   const T* const values = this->ValuesAt(step);
@@ -211,7 +211,7 @@ void LatticeTarget<T>::FillTile(
 /// Gives invisible blocks the number of their interval.
 template <class T>
 template <class Number>
-void LatticeTarget<T>::HideBlocks(const T* values, PlaneNumbers& plane) const
+void FieldQuantizer<T>::HideBlocks(const T* values, PlaneNumbers& plane) const
 {
   this->Pool.ParallelFor(plane.BlockCount(),
     [&](std::int64_t i)
@@ -236,7 +236,7 @@ void LatticeTarget<T>::HideBlocks(const T* values, PlaneNumbers& plane) const
 }
 
 template <class T>
-std::vector<PlaneNumbers> LatticeTarget<T>::NewPlanes() const
+std::vector<PlaneNumbers> FieldQuantizer<T>::NewPlanes() const
 {
   std::vector<PlaneNumbers> planes;
   for (const glm::ivec3& samples : this->PlaneSamples)
@@ -248,7 +248,7 @@ std::vector<PlaneNumbers> LatticeTarget<T>::NewPlanes() const
 }
 
 template <class T>
-void LatticeTarget<T>::Make(std::size_t step, std::vector<PlaneNumbers>& planes) const
+void FieldQuantizer<T>::Make(std::size_t step, std::vector<PlaneNumbers>& planes) const
 {
   const glm::ivec3 tiles = (this->PlaneSamples[0] + Tile - 1) / Tile;
   planes[0].With(
@@ -277,7 +277,7 @@ void LatticeTarget<T>::Make(std::size_t step, std::vector<PlaneNumbers>& planes)
 /// @return false: some value is not held
 template <class T>
 template <class Number>
-bool LatticeTarget<T>::FillCoarser(const T* values, PlaneNumbers& coarse) const
+bool FieldQuantizer<T>::FillCoarser(const T* values, PlaneNumbers& coarse) const
 {
   constexpr int most = 64;
   const LatticeScale scale = this->Scale();
@@ -288,7 +288,7 @@ bool LatticeTarget<T>::FillCoarser(const T* values, PlaneNumbers& coarse) const
     {
       const int z = static_cast<int>(slice);
       T some[most];
-      LatticeRows<T, Number> rows;
+      QuantizedRows<T, Number> rows;
       rows.Values = some;
       rows.Rows = rows.Slices = 1;
       for (int y = 0; y < coarse.Samples.y; ++y)
@@ -303,7 +303,7 @@ bool LatticeTarget<T>::FillCoarser(const T* values, PlaneNumbers& coarse) const
           {
             some[i] = row[std::min(4 * (x + i), last.x) * this->Stride.x];
           }
-          if (!NumbersOnLattice(rows, scale))
+          if (!QuantizeRows(rows, scale))
           {
             held = false;
           }
@@ -315,7 +315,7 @@ bool LatticeTarget<T>::FillCoarser(const T* values, PlaneNumbers& coarse) const
 }
 
 template <class T>
-bool LatticeTarget<T>::MakeCoarser(std::size_t step, std::vector<PlaneNumbers>& planes) const
+bool FieldQuantizer<T>::MakeCoarser(std::size_t step, std::vector<PlaneNumbers>& planes) const
 {
   bool apart =
     this->Plain() && this->Field.HiddenAt(step) == nullptr && !this->Hidden && planes.size() > 1;
@@ -340,7 +340,7 @@ bool LatticeTarget<T>::MakeCoarser(std::size_t step, std::vector<PlaneNumbers>& 
 }
 
 template <class T>
-void LatticeTarget<T>::MakeBlock(std::size_t step, std::int64_t block, PlaneNumbers& plane) const
+void FieldQuantizer<T>::MakeBlock(std::size_t step, std::int64_t block, PlaneNumbers& plane) const
 {
   const glm::ivec3 position = PositionIn(plane.Blocks, block);
   const glm::ivec3 low = position * plane.Edge;
@@ -366,16 +366,16 @@ void LatticeTarget<T>::MakeBlock(std::size_t step, std::int64_t block, PlaneNumb
 }
 
 template <class T>
-void LatticeTarget<T>::Verify(std::size_t step, const PlaneNumbers& decoded, int plane,
+void FieldQuantizer<T>::Verify(std::size_t step, const PlaneNumbers& decoded, int plane,
   std::int64_t block, ExceptionList<T>& list, FieldErrors& errors,
   std::vector<double>* squares) const
 {
-  LatticeCheck<T> check(this->Field, this->Head, this->Decoder, this->Fills, this->Hidden.get(),
+  BoundVerifier<T> check(this->Field, this->Head, this->Decoder, this->Fills, this->Hidden.get(),
     this->Stride, this->PlaneSamples[0] - 1, this->ValuesAt(step), this->Field.HiddenAt(step));
   check.Block(decoded, plane, block, list, errors, squares);
 }
 
-#define BANYAN_INSTANTIATE(T) template class LatticeTarget<T>
+#define BANYAN_INSTANTIATE(T) template class FieldQuantizer<T>
 BANYAN_FOR_EACH_SCALAR_TYPE(BANYAN_INSTANTIATE);
 #undef BANYAN_INSTANTIATE
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Series/Encode/LatticeTarget.h"
+#include "Series/Encode/FieldQuantizer.h"
 
 #include "Base/ThreadPool.h"
 #include "Codec/BlockScratch.h"
@@ -53,7 +53,7 @@ struct OneStep
   /// @param blockwise whether blocks are to be made one by one
   void ExpectTheSame(bool blockwise)
   {
-    const LatticeTarget<float> target(this->Field, this->Head, this->Pool);
+    const FieldQuantizer<float> target(this->Field, this->Head, this->Pool);
     std::vector<PlaneNumbers> expected = target.NewPlanes(), found = target.NewPlanes();
     target.Make(0, expected);
     EXPECT_EQ(target.MakeCoarser(0, found), blockwise);
@@ -69,7 +69,7 @@ struct OneStep
   }
 };
 
-TEST(LatticeTarget, BlocksHaveTheNumbersOfTheWhole)
+TEST(FieldQuantizer, BlocksHaveTheNumbersOfTheWhole)
 {
   for (const glm::ivec3 samples : { glm::ivec3{ 33, 17, 40 }, glm::ivec3{ 16, 48, 19 },
          glm::ivec3{ 300, 5, 1 }, glm::ivec3{ 7, 11, 70 } })
@@ -90,7 +90,7 @@ TEST(LatticeTarget, BlocksHaveTheNumbersOfTheWhole)
   }
 }
 
-TEST(LatticeTarget, ValuesThatAreNotHeldAreFilledInAlike)
+TEST(FieldQuantizer, ValuesThatAreNotHeldAreFilledInAlike)
 {
   constexpr float none = std::numeric_limits<float>::quiet_NaN();
   OneStep between({ 40, 21, 18 }, 1, 0.01);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Series/Encode/LatticeCheck.h"
+#include "Series/Encode/BoundVerifier.h"
 
 #include "Base/ForEachScalarType.h"
 #include "Series/Quantize/GatherTile.h"
@@ -89,7 +89,7 @@ ValueRange RangeOfRow(const T* values, int count)
 } // namespace
 
 template <class T>
-LatticeCheck<T>::LatticeCheck(const FieldGroup& field, const group::FieldHead& head,
+BoundVerifier<T>::BoundVerifier(const FieldGroup& field, const group::FieldHead& head,
   const LatticeDecoder<T>& decoder, const FillSet<T>& fills, const InvisibleBlocks<T>* invisible,
   const glm::i64vec3& stride, const glm::ivec3& last, const T* values, const std::uint8_t* hidden)
   : Field(field)
@@ -108,7 +108,7 @@ LatticeCheck<T>::LatticeCheck(const FieldGroup& field, const group::FieldHead& h
 
 /// Decodes a row and collects its originals; behind its end both repeat one pair of equal values.
 template <class T>
-void LatticeCheck<T>::LoadRow(const PlaneNumbers& decoded, const Row& row)
+void BoundVerifier<T>::LoadRow(const PlaneNumbers& decoded, const Row& row)
 {
   const std::size_t count = static_cast<std::size_t>(row.Count);
   decoded.With([&](const auto* numbers)
@@ -133,7 +133,7 @@ void LatticeCheck<T>::LoadRow(const PlaneNumbers& decoded, const Row& row)
 /// Whether a whole row is within the bound, all its values being ordinary ones; adds to `errors` if
 /// so.
 template <class T>
-bool LatticeCheck<T>::AllWithin(int count, FieldErrors& errors)
+bool BoundVerifier<T>::AllWithin(int count, FieldErrors& errors)
 {
   const int whole = RoundUp(count);
   const bool mapped = !this->Field.Map.IsIdentity();
@@ -167,7 +167,7 @@ bool LatticeCheck<T>::AllWithin(int count, FieldErrors& errors)
 }
 
 template <class T>
-bool LatticeCheck<T>::Within(T original, T decoded, double& error, double& transformed) const
+bool BoundVerifier<T>::Within(T original, T decoded, double& error, double& transformed) const
 {
   if (this->Head.Exact || this->Field.Bound == 0)
   {
@@ -187,7 +187,7 @@ bool LatticeCheck<T>::Within(T original, T decoded, double& error, double& trans
 
 /// @param sample of the finest plane
 template <class T>
-bool LatticeCheck<T>::BothInvisible(const glm::ivec3& sample, T original, T decoded)
+bool BoundVerifier<T>::BothInvisible(const glm::ivec3& sample, T original, T decoded)
 {
   if (!this->Invisible)
   {
@@ -207,7 +207,7 @@ bool LatticeCheck<T>::BothInvisible(const glm::ivec3& sample, T original, T deco
 
 /// Whether a sample may decode to that; adds to `errors` if so.
 template <class T>
-bool LatticeCheck<T>::MayStay(const glm::ivec3& sample, T original, T decoded, FieldErrors& errors)
+bool BoundVerifier<T>::MayStay(const glm::ivec3& sample, T original, T decoded, FieldErrors& errors)
 {
   if (!std::isfinite(static_cast<double>(original)))
   {
@@ -244,7 +244,7 @@ bool LatticeCheck<T>::MayStay(const glm::ivec3& sample, T original, T decoded, F
 
 /// Whether a sample of a row has to be within the bound.
 template <class T>
-bool LatticeCheck<T>::Needs(const Row& row, std::size_t x) const
+bool BoundVerifier<T>::Needs(const Row& row, std::size_t x) const
 {
   return !this->Field.Needed ||
          this->Field.Needed[row.At / this->Field.Components + this->Tuples[x]] != 0;
@@ -252,7 +252,7 @@ bool LatticeCheck<T>::Needs(const Row& row, std::size_t x) const
 
 /// Whether a sample of a row is hidden.
 template <class T>
-bool LatticeCheck<T>::IsHidden(const Row& row, std::size_t x) const
+bool BoundVerifier<T>::IsHidden(const Row& row, std::size_t x) const
 {
   return this->Hidden != nullptr &&
          this->Hidden[row.At / this->Field.Components + this->Tuples[x]] != 0;
@@ -260,7 +260,7 @@ bool LatticeCheck<T>::IsHidden(const Row& row, std::size_t x) const
 
 /// Sample by sample; `Decoded` becomes what decoding gives with the exceptions.
 template <class T>
-void LatticeCheck<T>::EachSample(const Row& row, int plane, const glm::ivec3& low, int edge,
+void BoundVerifier<T>::EachSample(const Row& row, int plane, const glm::ivec3& low, int edge,
   ExceptionList<T>& list, FieldErrors& errors)
 {
   const glm::ivec3 place = row.Sample - low;
@@ -299,7 +299,7 @@ void LatticeCheck<T>::EachSample(const Row& row, int plane, const glm::ivec3& lo
 
 /// Makes room for rows of a block, and gathers its values if it is one of the finest plane.
 template <class T>
-void LatticeCheck<T>::LoadBlock(int plane, int edge, const glm::ivec3& low, const glm::ivec3& n)
+void BoundVerifier<T>::LoadBlock(int plane, int edge, const glm::ivec3& low, const glm::ivec3& n)
 {
   const std::size_t room = static_cast<std::size_t>(RoundUp(edge));
   this->Columns.resize(room);
@@ -325,7 +325,7 @@ void LatticeCheck<T>::LoadBlock(int plane, int edge, const glm::ivec3& low, cons
 
 /// Adds the squares of a row's decoded values to those of their tuples.
 template <class T>
-void LatticeCheck<T>::AddSquares(const Row& row, std::vector<double>& squares) const
+void BoundVerifier<T>::AddSquares(const Row& row, std::vector<double>& squares) const
 {
   const std::int64_t tuple = row.At / this->Field.Components;
   for (int x = 0; x < row.Count; ++x)
@@ -341,7 +341,7 @@ void LatticeCheck<T>::AddSquares(const Row& row, std::vector<double>& squares) c
 }
 
 template <class T>
-void LatticeCheck<T>::Block(const PlaneNumbers& decoded, int plane, std::int64_t block,
+void BoundVerifier<T>::Block(const PlaneNumbers& decoded, int plane, std::int64_t block,
   ExceptionList<T>& list, FieldErrors& errors, std::vector<double>* squares)
 {
   const int edge = decoded.Edge;
@@ -381,7 +381,7 @@ void LatticeCheck<T>::Block(const PlaneNumbers& decoded, int plane, std::int64_t
   }
 }
 
-#define BANYAN_INSTANTIATE(T) template class LatticeCheck<T>
+#define BANYAN_INSTANTIATE(T) template class BoundVerifier<T>
 BANYAN_FOR_EACH_SCALAR_TYPE(BANYAN_INSTANTIATE);
 #undef BANYAN_INSTANTIATE
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Series_Encode_LatticeTarget_h
-#define banyan_Series_Encode_LatticeTarget_h
+#ifndef banyan_Series_Encode_FieldQuantizer_h
+#define banyan_Series_Encode_FieldQuantizer_h
 
 #include "Codec/BlockEncoder.h"
 #include "Series/Decode/LatticeDecoder.h"
@@ -8,7 +8,7 @@
 #include "Series/Encode/InvisibleBlocks.h"
 #include "Series/Format/Exceptions.h"
 #include "Series/Quantize/FillValues.h"
-#include "Series/Quantize/LatticeRows.h"
+#include "Series/Quantize/QuantizeRows.h"
 
 #include <array>
 #include <memory>
@@ -29,11 +29,11 @@ std::array<std::uint8_t, 3> SmoothestLast(const FieldGroup& field, const void* s
 
 /// The way of values to lattice numbers and the comparison on the way back.
 template <class T>
-class LatticeTarget
+class FieldQuantizer
 {
 public:
   /// Axes are those of the key frame, the last step.
-  LatticeTarget(const FieldGroup& field, const group::FieldHead& head, ThreadPool& pool);
+  FieldQuantizer(const FieldGroup& field, const group::FieldHead& head, ThreadPool& pool);
 
   const std::array<std::uint8_t, 3>& Axes() const { return this->AxisOrder; }
   /// Samples of each plane, axes in that order.

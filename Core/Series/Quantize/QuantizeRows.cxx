@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Series/Quantize/LatticeRows.h"
+#include "Series/Quantize/QuantizeRows.h"
 
 #include <algorithm>
 #include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "Series/Quantize/LatticeRows.cxx"
+#define HWY_TARGET_INCLUDE "Series/Quantize/QuantizeRows.cxx"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -95,7 +95,7 @@ HWY_INLINE void ForEachGroup(const T* values, Number* numbers, std::size_t count
 
 /// Calls body(values, numbers) for each row.
 template <class T, class Number, class Body>
-HWY_INLINE void ForEachRow(const LatticeRows<T, Number>& rows, const Body& body)
+HWY_INLINE void ForEachRow(const QuantizedRows<T, Number>& rows, const Body& body)
 {
   T copy[64];
   for (int slice = 0; slice < rows.Slices; ++slice)
@@ -119,7 +119,7 @@ HWY_INLINE void ForEachRow(const LatticeRows<T, Number>& rows, const Body& body)
 }
 
 template <class T, class Number>
-bool Numbers(const LatticeRows<T, Number>& rows, const LatticeScale& scale)
+bool Numbers(const QuantizedRows<T, Number>& rows, const LatticeScale& scale)
 {
   const Reals real;
   const Real origin = hn::Set(real, scale.Origin);
@@ -189,7 +189,7 @@ struct Extremes
 };
 
 template <class T, class Number>
-bool Errors(const LatticeRows<T, const Number>& rows, const LatticeScale& scale, double bound,
+bool Errors(const QuantizedRows<T, const Number>& rows, const LatticeScale& scale, double bound,
   RowErrors& errors)
 {
   const Reals real;
@@ -245,11 +245,11 @@ bool Errors(const LatticeRows<T, const Number>& rows, const LatticeScale& scale,
 }
 
 #define BANYAN_ROWS(name, T, Number)                                                               \
-  bool Numbers##name(const LatticeRows<T, Number>& rows, const LatticeScale& scale)                \
+  bool Numbers##name(const QuantizedRows<T, Number>& rows, const LatticeScale& scale)              \
   {                                                                                                \
     return Numbers(rows, scale);                                                                   \
   }                                                                                                \
-  bool Errors##name(const LatticeRows<T, const Number>& rows, const LatticeScale& scale,           \
+  bool Errors##name(const QuantizedRows<T, const Number>& rows, const LatticeScale& scale,         \
     double bound, RowErrors& errors)                                                               \
   {                                                                                                \
     return Errors<T, Number>(rows, scale, bound, errors);                                          \
@@ -271,12 +271,12 @@ namespace banyan
   HWY_EXPORT(Numbers##name);                                                                       \
   HWY_EXPORT(Errors##name);                                                                        \
   template <>                                                                                      \
-  bool NumbersOnLattice(const LatticeRows<T, Number>& rows, const LatticeScale& scale)             \
+  bool QuantizeRows(const QuantizedRows<T, Number>& rows, const LatticeScale& scale)               \
   {                                                                                                \
     return HWY_DYNAMIC_DISPATCH(Numbers##name)(rows, scale);                                       \
   }                                                                                                \
   template <>                                                                                      \
-  bool ErrorsOnLattice(const LatticeRows<T, const Number>& rows, const LatticeScale& scale,        \
+  bool ErrorsOnLattice(const QuantizedRows<T, const Number>& rows, const LatticeScale& scale,      \
     double bound, RowErrors& errors)                                                               \
   {                                                                                                \
     return HWY_DYNAMIC_DISPATCH(Errors##name)(rows, scale, bound, errors);                         \

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Series_Quantize_LatticeRows_h
-#define banyan_Series_Quantize_LatticeRows_h
+#ifndef banyan_Series_Quantize_QuantizeRows_h
+#define banyan_Series_Quantize_QuantizeRows_h
 
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +19,7 @@ struct LatticeScale
 /// Where the values of a box and their numbers lie: rows of values one after the other, or with
 /// gaps between them, in slices. All distances in elements.
 template <class T, class Number>
-struct LatticeRows
+struct QuantizedRows
 {
   const T* Values = nullptr;
   std::int64_t Gap = 1, ValueRow = 0, ValueSlice = 0;
@@ -35,7 +35,7 @@ struct LatticeRows
 /// @param T float or double, and @param Number std::int16_t or std::int32_t
 /// @return whether all are held (NaN is not); if not, numbers are anything
 template <class T, class Number>
-bool NumbersOnLattice(const LatticeRows<T, Number>& rows, const LatticeScale& scale);
+bool QuantizeRows(const QuantizedRows<T, Number>& rows, const LatticeScale& scale);
 
 /// Says by how much values and what their numbers decode to differ. Sums are taken over every
 /// eighth value of rows, so that they are the same bits on every processor.
@@ -50,7 +50,7 @@ struct RowErrors
 /// The differences of a box from what its numbers decode to: (T) (origin + number * step).
 /// @return whether all are at most `bound`; if not (a NaN, for one), errors are anything
 template <class T, class Number>
-bool ErrorsOnLattice(const LatticeRows<T, const Number>& rows, const LatticeScale& scale,
+bool ErrorsOnLattice(const QuantizedRows<T, const Number>& rows, const LatticeScale& scale,
   double bound, RowErrors& errors);
 
 } // namespace banyan

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Series_Encode_LatticeCheck_h
-#define banyan_Series_Encode_LatticeCheck_h
+#ifndef banyan_Series_Encode_BoundVerifier_h
+#define banyan_Series_Encode_BoundVerifier_h
 
 #include "Codec/BlockEncoder.h"
 #include "Series/Decode/LatticeDecoder.h"
@@ -18,19 +18,19 @@ namespace banyan
 
 /// Compares a block of a decoded plane with the original values: one use per block.
 template <class T>
-class LatticeCheck
+class BoundVerifier
 {
 public:
   /// @param values of the step, as FieldGroup has them
   /// @param stride of values along the codec's axes, and @param last sample of the finest plane
   /// @param invisible null: every value counts
   /// @param hidden of the step, as FieldGroup has them; may be null
-  LatticeCheck(const FieldGroup& field, const group::FieldHead& head,
+  BoundVerifier(const FieldGroup& field, const group::FieldHead& head,
     const LatticeDecoder<T>& decoder, const FillSet<T>& fills, const InvisibleBlocks<T>* invisible,
     const glm::i64vec3& stride, const glm::ivec3& last, const T* values,
     const std::uint8_t* hidden);
 
-  /// See LatticeTarget::Verify.
+  /// See FieldQuantizer::Verify.
   void Block(const PlaneNumbers& decoded, int plane, std::int64_t block, ExceptionList<T>& list,
     FieldErrors& errors, std::vector<double>* squares);
 

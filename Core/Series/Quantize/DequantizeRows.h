@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Series_Quantize_LatticeValues_h
-#define banyan_Series_Quantize_LatticeValues_h
+#ifndef banyan_Series_Quantize_DequantizeRows_h
+#define banyan_Series_Quantize_DequantizeRows_h
 
 #include <glm/vec3.hpp>
 
@@ -17,7 +17,7 @@ namespace banyan
 /// @param T float or double
 /// @param Number std::int16_t or std::int32_t
 template <class Number, class T>
-void ValuesOnLattice(const Number* numbers, const glm::i64vec3& pitch, const glm::ivec3& size,
+void DequantizeRows(const Number* numbers, const glm::i64vec3& pitch, const glm::ivec3& size,
   double origin, double step, T* values, const glm::i64vec3& to);
 
 /// A box of numbers whose rows lie side by side.
@@ -32,7 +32,7 @@ struct LatticePart
 /// The same of boxes that lie side by side along x, row by row of all of them.
 /// @param y,z how many rows along these axes; each box has as many
 template <class Number, class T>
-void ValuesOfParts(const LatticePart<Number>* parts, int count, int y, int z, double origin,
+void DequantizeParts(const LatticePart<Number>* parts, int count, int y, int z, double origin,
   double step, T* values, const glm::i64vec3& to);
 
 /// Numbers of a box in the order of other axes: x fastest, without gaps.
