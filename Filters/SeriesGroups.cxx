@@ -90,17 +90,17 @@ void SeriesGroups::OpenEncoder(SeriesIndex plan)
         { this->Folder->Path() });
     }
   }
-  this->Deal = GroupDeal(plan, this->Options, this->Steps.Count(), this->Talk.Ranks());
+  this->Schedule = GroupSchedule(plan, this->Options, this->Steps.Count(), this->Talk.Ranks());
   this->Encoder = std::make_unique<BackgroundEncoder>(
     std::move(plan), this->Options, *this->Folder, ThreadPool::DefaultWidth());
 }
 
 void SeriesGroups::Add(int step, const StepAgreement& now)
 {
-  const int group = this->Deal.GroupOf(step);
-  const int place = this->Deal.PlaceOf(step);
-  const int owner = this->Deal.OwnerOf(group);
-  const int next = this->Deal.NeedsBefore(step);
+  const int group = this->Schedule.GroupOf(step);
+  const int place = this->Schedule.PlaceOf(step);
+  const int owner = this->Schedule.OwnerOf(group);
+  const int next = this->Schedule.NeedsBefore(step);
   const bool receives = this->Talk.Rank() == owner;
   const bool receivesForNext = this->Talk.Rank() == next;
   if ((place == 0 && receives) || receivesForNext)
@@ -121,7 +121,7 @@ void SeriesGroups::Add(int step, const StepAgreement& now)
     this->Gathering.Gather(
       this->Steps.Mine(), now, this->Written, next, receivesForNext ? this->ValuesBefore : none);
   }
-  if (this->Deal.EndsGroup(step))
+  if (this->Schedule.EndsGroup(step))
   {
     this->Talk.OnRank(owner, [this, group] { this->Encode(group); });
   }

@@ -10,7 +10,7 @@
 #include "WritingOrder.h"
 
 #include "Series/Encode/BackgroundEncoder.h"
-#include "Series/Encode/GroupDeal.h"
+#include "Series/Encode/GroupSchedule.h"
 #include "Series/Encode/SegmentFolder.h"
 #include "Series/Encode/SeriesAssembly.h"
 
@@ -84,7 +84,7 @@ private:
   std::unique_ptr<SegmentFolder> Folder;    ///< of this rank's segments
   std::vector<StepValues> Values;           ///< of this rank's group, by step
   StepValues ValuesBefore;                  ///< of the step before them, where another rank has it
-  GroupDeal Deal;                           ///< which rank encodes and receives what
+  GroupSchedule Schedule;                   ///< which rank encodes and receives what
   std::unique_ptr<BackgroundEncoder> Encoder; ///< of Values, into Folder
   bool Opened = false;                        ///< all ranks have all that
   std::string IndexProblem;                   ///< of rank 0, to be agreed on

@@ -156,13 +156,14 @@ constexpr Variant Variants[] = {
   { "banyan-32", [](EncodeOptions& options) { options.BrickCells = 32; } },
   // What each idea is worth.
   { "banyan-without-roughness",
-    [](EncodeOptions& options) { options.Ideas.TablesByRoughness = false; } },
-  { "banyan-without-sharing", [](EncodeOptions& options) { options.Ideas.SharedTables = false; } },
+    [](EncodeOptions& options) { options.Ablation.TablesByRoughness = false; } },
+  { "banyan-without-sharing",
+    [](EncodeOptions& options) { options.Ablation.SharedTables = false; } },
   { "banyan-without-axes",
-    [](EncodeOptions& options) { options.Ideas.SmoothestAxisLast = false; } },
+    [](EncodeOptions& options) { options.Ablation.SmoothestAxisLast = false; } },
   { "banyan-without-group-before",
-    [](EncodeOptions& options) { options.Ideas.GroupBefore = false; } },
-  { "banyan-without-modes", [](EncodeOptions& options) { options.Ideas.AllModes = false; } },
+    [](EncodeOptions& options) { options.Ablation.GroupBefore = false; } },
+  { "banyan-without-modes", [](EncodeOptions& options) { options.Ablation.AllModes = false; } },
 };
 
 } // namespace

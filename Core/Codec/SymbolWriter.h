@@ -21,7 +21,7 @@ struct ContextCounts
   /// @param tokens residual::TokenOf(context, symbol)
   void Add(const std::vector<std::uint16_t>& tokens);
   void Add(const ContextCounts& other);
-  /// Makes one context of all those of a band: see EncodeIdeas.
+  /// Makes one context of all those of a band: see AblationSwitches.
   void ForgetClasses();
 };
 

@@ -49,7 +49,7 @@ struct FieldGroup
     return this->Hidden.empty() ? nullptr : this->Hidden[step];
   }
   EncodeProfile Profile = EncodeProfile::Balanced;
-  EncodeIdeas Ideas;
+  AblationSwitches Ablation;
   int CompressionLevel = 3;
   /// The key frame of the group before; null: do not refer to it. Used where its lattice is the
   /// same.

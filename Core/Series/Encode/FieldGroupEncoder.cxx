@@ -174,7 +174,7 @@ void Encoder<T>::EncodePlanes(
     plane.FineBin = BinOfOctave(this->Out.Head.Bin, static_cast<int>(2 * p));
     plane.Least = this->Out.Head.Least;
     plane.Greatest = this->Out.Head.Greatest;
-    ApplyProfile(this->Field.Profile, this->Field.Ideas, plane);
+    ApplyProfile(this->Field.Profile, this->Field.Ablation, plane);
     EncodePlane(
       plane, decoded[p], tokens[p], this->Pool, [&](std::int64_t block) { done(p, block); },
       p == 0 && blockwise ? std::function<void(std::int64_t)>(make) : nullptr);
@@ -250,11 +250,11 @@ void Encoder<T>::WriteSymbols()
   for (int set = 0; set < 2; ++set)
   {
     ContextCounts counts = this->Counters[set].Counts();
-    if (!this->Field.Ideas.TablesByRoughness)
+    if (!this->Field.Ablation.TablesByRoughness)
     {
       counts.ForgetClasses();
     }
-    const SymbolTables tables(counts, this->Field.Ideas.SharedTables);
+    const SymbolTables tables(counts, this->Field.Ablation.SharedTables);
     this->Out.Head.Frequencies[set] = tables.Frequencies();
     for (std::size_t t = 0; t < this->Tokens.size(); ++t)
     {

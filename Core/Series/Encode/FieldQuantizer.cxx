@@ -48,8 +48,8 @@ FieldQuantizer<T>::FieldQuantizer(
   : Field(field)
   , Head(head)
   , Pool(pool)
-  , AxisOrder(field.Ideas.SmoothestAxisLast ? SmoothestLast<T>(field, field.Steps.back())
-                                            : std::array<std::uint8_t, 3>{ 0, 1, 2 })
+  , AxisOrder(field.Ablation.SmoothestAxisLast ? SmoothestLast<T>(field, field.Steps.back())
+                                               : std::array<std::uint8_t, 3>{ 0, 1, 2 })
   , Decoder(field.Map, head.Origin, head.Step, head.Least, head.Greatest)
   , Fills(field.FillValues)
 {

@@ -5,7 +5,7 @@
 #include "Base/Hash.h"
 #include "Base/ThreadPool.h"
 #include "Series/Encode/FieldGroupEncoder.h"
-#include "Series/Encode/FieldOfPlan.h"
+#include "Series/Encode/FieldToEncode.h"
 #include "Series/Encode/GroupWriter.h"
 #include "Series/Format/FieldLattice.h"
 
@@ -125,7 +125,7 @@ public:
       return &this->Frame;
     }
     this->MustBeKnown(false);
-    const FieldOfPlan made =
+    const FieldToEncode made =
       MakeField(this->Plan, this->Options, array, component, { this->Values }, this->Pool);
     this->Frame = EncodeKeyFrame(made.Field, this->Pool);
     return &this->Frame;
@@ -139,7 +139,7 @@ private:
   {
     const std::vector<ComponentIndex>& components = this->Plan.Arrays[array].Components;
     if (this->First || steps.size() < 2 || this->Options.ClosedGroups ||
-        !this->Options.Ideas.RestingArrays ||
+        !this->Options.Ablation.RestingArrays ||
         !std::all_of(components.begin(), components.end(), IsPromised))
     {
       return false;
@@ -249,12 +249,12 @@ private:
         throw Error("Encoding was interrupted");
       }
     };
-    FieldOfPlan made =
+    FieldToEncode made =
       rests ? MakeField(this->Plan, this->Options, a, c, { this->Steps.Values.back() }, this->Pool)
             : MakeField(this->Plan, this->Options, a, c, this->Steps.Values, this->Pool);
     made.Field.Spare = &this->Spare;
     if (this->Count() > 1 && !rests && !this->Options.ClosedGroups &&
-        this->Options.Ideas.GroupBefore)
+        this->Options.Ablation.GroupBefore)
     {
       tell(0);
       made.Field.Before = this->Before.Of(a, c, this->Fields.size());

@@ -10,7 +10,7 @@ using block::Interpolation;
 using block::Mode;
 using block::Reference;
 
-std::vector<Mode> CandidatesOf(EncodeProfile profile, const EncodeIdeas& ideas)
+std::vector<Mode> CandidatesOf(EncodeProfile profile, const AblationSwitches& ideas)
 {
   const Mode intra{ Reference::None, Interpolation::Cubic };
   const Mode mean{ Reference::Mean, Interpolation::Cubic };
@@ -37,7 +37,7 @@ std::vector<Mode> CandidatesOf(EncodeProfile profile, const EncodeIdeas& ideas)
 
 } // namespace
 
-void ApplyProfile(EncodeProfile profile, const EncodeIdeas& ideas, PlaneToEncode& plane)
+void ApplyProfile(EncodeProfile profile, const AblationSwitches& ideas, PlaneToEncode& plane)
 {
   plane.CandidateModes = CandidatesOf(profile, ideas);
   plane.Trials = profile == EncodeProfile::Compact ? 4 : 1;

@@ -9,7 +9,7 @@ namespace banyan
 {
 
 /// Sets which modes are candidates for the blocks of a plane, and how many are tried out.
-void ApplyProfile(EncodeProfile profile, const EncodeIdeas& ideas, PlaneToEncode& plane);
+void ApplyProfile(EncodeProfile profile, const AblationSwitches& ideas, PlaneToEncode& plane);
 
 } // namespace banyan
 

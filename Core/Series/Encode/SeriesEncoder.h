@@ -2,7 +2,7 @@
 #ifndef banyan_Series_Encode_SeriesEncoder_h
 #define banyan_Series_Encode_SeriesEncoder_h
 
-#include "Series/Encode/EncodeIdeas.h"
+#include "Series/Encode/AblationSwitches.h"
 #include "Series/Format/QuantizerOptions.h"
 #include "Series/Format/SeriesIndex.h"
 #include "Series/Quantize/Histogram.h"
@@ -52,7 +52,7 @@ struct EncodeOptions
   int BrickCells = 0;       ///< 16 or 32; 0 chooses by the size of the grid
   int CompressionLevel = 3; ///< of zstd (exceptions), in [1, 19]
   EncodeProfile Profile = EncodeProfile::Balanced;
-  EncodeIdeas Ideas;          ///< for measurements: all of them, otherwise
+  AblationSwitches Ablation;  ///< for measurements: all of them, otherwise
   QuantizerOptions Quantizer; ///< of all arrays
   std::map<std::string, QuantizerOptions> QuantizerOfArray; ///< instead, of arrays by name
   std::shared_ptr<const MeshPlan> Mesh;                     ///< null: the series is of images

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Series_Encode_EncodeIdeas_h
-#define banyan_Series_Encode_EncodeIdeas_h
+#ifndef banyan_Series_Encode_AblationSwitches_h
+#define banyan_Series_Encode_AblationSwitches_h
 
 namespace banyan
 {
 
 /// Ideas that an encoding can do without, which tells what each is worth (see
-/// Documentation/codec.md). Files without them are as valid, and as close to the values, but
-/// larger.
-struct EncodeIdeas
+/// Documentation/codec.md). What is written is as valid, and as close to the values, without them;
+/// only larger.
+struct AblationSwitches
 {
   /// Symbols have tables by what is around them; else by the kind of unit and pass only.
   bool TablesByRoughness = true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Series_Encode_FieldOfPlan_h
-#define banyan_Series_Encode_FieldOfPlan_h
+#ifndef banyan_Series_Encode_FieldToEncode_h
+#define banyan_Series_Encode_FieldToEncode_h
 
 #include "Series/Encode/FieldGroup.h"
 #include "Series/Encode/SeriesEncoder.h"
@@ -21,7 +21,7 @@ struct ClampedSteps
 };
 
 /// A component over some steps, with the values that are encoded.
-struct FieldOfPlan
+struct FieldToEncode
 {
   FieldGroup Field;
   ClampedSteps Clamped;
@@ -40,7 +40,7 @@ inline bool GoesBeyond(const ComponentIndex& component)
 }
 
 /// @param steps values by step and array
-FieldOfPlan MakeField(const SeriesIndex& plan, const EncodeOptions& options, std::size_t array,
+FieldToEncode MakeField(const SeriesIndex& plan, const EncodeOptions& options, std::size_t array,
   std::size_t component, const std::vector<std::vector<ArrayValues>>& steps, ThreadPool& pool);
 
 } // namespace banyan

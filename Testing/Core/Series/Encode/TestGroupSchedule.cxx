@@ -4,7 +4,7 @@
 
 #include "Base/Error.h"
 #include "Series/Encode/EncodePlan.h"
-#include "Series/Encode/GroupDeal.h"
+#include "Series/Encode/GroupSchedule.h"
 
 namespace banyan::testing
 {
@@ -36,7 +36,7 @@ SeriesIndex Plan(const EncodeOptions& options)
 /// By rank: the steps of its groups, and those before them.
 std::vector<int> StepsReceived(const EncodeOptions& options, int steps, int ranks)
 {
-  const GroupDeal deal(Plan(options), options, steps, ranks);
+  const GroupSchedule deal(Plan(options), options, steps, ranks);
   std::vector<int> received(static_cast<std::size_t>(ranks), 0);
   for (int step = 0; step < steps; ++step)
   {
@@ -51,7 +51,7 @@ std::vector<int> StepsReceived(const EncodeOptions& options, int steps, int rank
 
 using Counts = std::vector<int>;
 
-TEST(GroupDeal, RanksReceiveOneStepMoreForEachGroupThatRefersBefore)
+TEST(GroupSchedule, RanksReceiveOneStepMoreForEachGroupThatRefersBefore)
 {
   // Groups of steps 0-3, 4-7, 8-11, 12-15, 16-17.
   EXPECT_EQ(StepsReceived(Options(false), 18, 1), Counts({ 18 }));
@@ -62,7 +62,7 @@ TEST(GroupDeal, RanksReceiveOneStepMoreForEachGroupThatRefersBefore)
   EXPECT_EQ(StepsReceived(Options(false), 17, 2), Counts({ 9 + 1, 8 + 2 }));
 }
 
-TEST(GroupDeal, RanksReceiveTheirOwnStepsAloneWhereGroupsAreClosed)
+TEST(GroupSchedule, RanksReceiveTheirOwnStepsAloneWhereGroupsAreClosed)
 {
   EXPECT_EQ(StepsReceived(Options(true), 18, 1), Counts({ 18 }));
   EXPECT_EQ(StepsReceived(Options(true), 18, 2), Counts({ 10, 8 }));
@@ -70,7 +70,7 @@ TEST(GroupDeal, RanksReceiveTheirOwnStepsAloneWhereGroupsAreClosed)
   EXPECT_EQ(StepsReceived(Options(true), 18, 6), Counts({ 4, 4, 4, 4, 2, 0 }));
 }
 
-TEST(GroupDeal, RanksReceiveTheirOwnStepsAloneWhereNoLatticeIsFixed)
+TEST(GroupSchedule, RanksReceiveTheirOwnStepsAloneWhereNoLatticeIsFixed)
 {
   EncodeOptions options = Options(false);
   options.Mode = ErrorBoundMode::Absolute;
@@ -82,7 +82,7 @@ TEST(GroupDeal, RanksReceiveTheirOwnStepsAloneWhereNoLatticeIsFixed)
 }
 
 /// The reference: a group that is encoded without the step before it asks for that, or does not.
-TEST(GroupDeal, AgreesWithTheEncoder)
+TEST(GroupSchedule, AgreesWithTheEncoder)
 {
   for (const bool closed : { false, true })
   {
@@ -91,7 +91,7 @@ TEST(GroupDeal, AgreesWithTheEncoder)
       const EncodeOptions options = Options(closed);
       const SeriesIndex plan = Plan(options);
       const auto values = Sample<float>(Domain, count, Wavy<float>);
-      const GroupDeal deal(plan, options, count, count);
+      const GroupSchedule deal(plan, options, count, count);
       const TemporaryFolder folder;
       SegmentFolder segments(folder / "s.banyan");
       ThreadPool pool(1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Series_Encode_GroupDeal_h
-#define banyan_Series_Encode_GroupDeal_h
+#ifndef banyan_Series_Encode_GroupSchedule_h
+#define banyan_Series_Encode_GroupSchedule_h
 
 #include "Series/Encode/GroupEncoder.h"
 
@@ -10,14 +10,14 @@ namespace banyan
 /// How the groups of a series are dealt out to ranks, and who needs the values of which steps: each
 /// rank those of its groups, and the last step of the group before where groups refer to that. Who
 /// encodes both of them remembers it.
-class GroupDeal
+class GroupSchedule
 {
 public:
-  GroupDeal() = default;
+  GroupSchedule() = default;
 
   /// @param plan of the series
   /// @param steps of the whole series
-  GroupDeal(const SeriesIndex& plan, const EncodeOptions& options, int steps, int ranks)
+  GroupSchedule(const SeriesIndex& plan, const EncodeOptions& options, int steps, int ranks)
     : Interval(plan.KeyframeInterval)
     , Steps(steps)
     , Ranks(ranks)

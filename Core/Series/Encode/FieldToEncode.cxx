@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Series/Encode/FieldOfPlan.h"
+#include "Series/Encode/FieldToEncode.h"
 
 #include "Base/ThreadPool.h"
 #include "Series/Quantize/ComponentRange.h"
@@ -75,13 +75,13 @@ std::vector<const std::uint8_t*> HiddenOf(
 
 } // namespace
 
-FieldOfPlan MakeField(const SeriesIndex& plan, const EncodeOptions& options, std::size_t array,
+FieldToEncode MakeField(const SeriesIndex& plan, const EncodeOptions& options, std::size_t array,
   std::size_t component, const std::vector<std::vector<ArrayValues>>& steps, ThreadPool& pool)
 {
   const ArrayIndex& of = plan.Arrays[array];
   const ComponentIndex& index = of.Components[component];
   const std::int64_t tuples = plan.Domain.Extent.Count();
-  FieldOfPlan made;
+  FieldToEncode made;
   FieldGroup& field = made.Field;
   field.Type = of.Type;
   for (const std::vector<ArrayValues>& step : steps)
@@ -97,7 +97,7 @@ FieldOfPlan MakeField(const SeriesIndex& plan, const EncodeOptions& options, std
   field.Map = index.ValueTransform;
   field.Bound = index.ErrorBoundAbsolute;
   field.Profile = options.Profile;
-  field.Ideas = options.Ideas;
+  field.Ablation = options.Ablation;
   field.CompressionLevel = options.CompressionLevel;
   field.FillValues = index.FillValues;
   field.Beyond = GoesBeyond(index);
