@@ -32,7 +32,7 @@ void MeshStepAhead::Read(
     }
     if (!this->Decoder)
     {
-      this->Decoder = std::make_unique<AheadDecoder>(cache, ThreadPool::Process().Width());
+      this->Decoder = std::make_unique<BackgroundDecoder>(cache, ThreadPool::Process().Width());
     }
     this->Decoder->Start(series, std::move(bricks), cache.DecodedBudget() / 2);
   }

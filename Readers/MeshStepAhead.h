@@ -2,7 +2,7 @@
 #ifndef banyan_Readers_MeshStepAhead_h
 #define banyan_Readers_MeshStepAhead_h
 
-#include "Cache/AheadDecoder.h"
+#include "Cache/BackgroundDecoder.h"
 #include "Cache/PlayDirection.h"
 
 #include <memory>
@@ -32,7 +32,7 @@ public:
   void Finish();
 
 private:
-  std::unique_ptr<AheadDecoder> Decoder; ///< null until a series plays
+  std::unique_ptr<BackgroundDecoder> Decoder; ///< null until a series plays
   PlayDirection Direction;
   int NextStep = -1;
 };

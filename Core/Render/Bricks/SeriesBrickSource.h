@@ -2,7 +2,7 @@
 #ifndef banyan_Render_Bricks_SeriesBrickSource_h
 #define banyan_Render_Bricks_SeriesBrickSource_h
 
-#include "Cache/AheadDecoder.h"
+#include "Cache/BackgroundDecoder.h"
 #include "Cache/BrickCache.h"
 #include "Render/Bricks/BrickSource.h"
 #include "Series/Decode/SeriesFile.h"

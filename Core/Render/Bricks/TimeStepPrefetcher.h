@@ -2,7 +2,7 @@
 #ifndef banyan_Render_Bricks_TimeStepPrefetcher_h
 #define banyan_Render_Bricks_TimeStepPrefetcher_h
 
-#include "Cache/AheadDecoder.h"
+#include "Cache/BackgroundDecoder.h"
 #include "Cache/BrickCache.h"
 #include "Cache/PlayDirection.h"
 
@@ -35,11 +35,11 @@ public:
 
   /// The step that is expected to be drawn next; -1 for none.
   int Next() const { return this->NextStep; }
-  AheadDecoder& Work() { return this->Decoder; }
+  BackgroundDecoder& Work() { return this->Decoder; }
 
 private:
   BrickCache& Cache;
-  AheadDecoder Decoder;
+  BackgroundDecoder Decoder;
   PlayDirection Direction;
   int NextStep = -1;
 };

@@ -2,7 +2,7 @@
 #ifndef banyan_Render_Bricks_ViewPrefetcher_h
 #define banyan_Render_Bricks_ViewPrefetcher_h
 
-#include "Cache/AheadDecoder.h"
+#include "Cache/BackgroundDecoder.h"
 #include "Render/Bricks/BrickSource.h"
 #include "Render/Scene/RayScene.h"
 

@@ -60,7 +60,7 @@ TEST_F(Ahead, BricksAreDecodedOnceAndCountedWhenTheyAreAskedFor)
   for (const int threads : { 1, 3 })
   {
     BrickCache cache(Plenty);
-    AheadDecoder decoder(cache, threads);
+    BackgroundDecoder decoder(cache, threads);
     cache.Get(*this->File, { 1, 0, 0, 0 }, 3);
     decoder.Start(this->File, { { { 1, 0, 0, 0 }, this->All() } }, Plenty);
     decoder.Finish();
@@ -86,7 +86,7 @@ TEST_F(Ahead, BricksAreDecodedOnceAndCountedWhenTheyAreAskedFor)
 TEST_F(Ahead, KeepsToItsBytesAndToThoseOfTheCache)
 {
   BrickCache cache(Plenty);
-  AheadDecoder decoder(cache, 2);
+  BackgroundDecoder decoder(cache, 2);
   decoder.Start(this->File, { { { 1, 0, 0, 0 }, this->All() } }, 4 * BrickBytes);
   decoder.Finish();
   EXPECT_GE(cache.GetAheadStatistics().Decoded, 4u);
@@ -96,7 +96,7 @@ TEST_F(Ahead, KeepsToItsBytesAndToThoseOfTheCache)
   EXPECT_LE(cache.GetAheadStatistics().Decoded, 5u);
 
   BrickCache little(3 * BrickBytes);
-  AheadDecoder other(little, 2);
+  BackgroundDecoder other(little, 2);
   other.Start(this->File, { { { 1, 0, 0, 0 }, this->All() } }, Plenty);
   other.Finish();
   EXPECT_LE(little.GetStatistics().PeakBytes, 3 * BrickBytes);
@@ -105,7 +105,7 @@ TEST_F(Ahead, KeepsToItsBytesAndToThoseOfTheCache)
 TEST_F(Ahead, StopsAndBeginsAgainAtAnyTime)
 {
   BrickCache cache(Plenty);
-  AheadDecoder decoder(cache, 2);
+  BackgroundDecoder decoder(cache, 2);
   decoder.Stop();
   for (int i = 0; i < 200; ++i)
   {
@@ -127,7 +127,7 @@ TEST_F(Ahead, StopsAndBeginsAgainAtAnyTime)
 TEST_F(Ahead, WhatCannotBeReadIsLeftToWhoeverAsks)
 {
   BrickCache cache(Plenty);
-  AheadDecoder decoder(cache, 2);
+  BackgroundDecoder decoder(cache, 2);
   decoder.Start(this->File,
     { { { Steps, 0, 0, 0 }, { 0 } }, { { 0, 7, 0, 0 }, { 0 } },
       { { 0, 0, 0, 0 }, { -1, 1, 1000 } } },

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Cache/AheadDecoder.h"
+#include "Cache/BackgroundDecoder.h"
 
 #include "Cache/BrickCache.h"
 
@@ -31,7 +31,7 @@ void LowerPriority()
 
 } // namespace
 
-struct AheadDecoder::Internals
+struct BackgroundDecoder::Internals
 {
   BrickCache& Cache;
   int Width;
@@ -116,12 +116,12 @@ struct AheadDecoder::Internals
   }
 };
 
-AheadDecoder::AheadDecoder(BrickCache& cache, int threads)
+BackgroundDecoder::BackgroundDecoder(BrickCache& cache, int threads)
   : Self(std::make_unique<Internals>(cache, threads))
 {
 }
 
-AheadDecoder::~AheadDecoder()
+BackgroundDecoder::~BackgroundDecoder()
 {
   {
     const std::lock_guard<std::mutex> lock(this->Self->Mutex);
@@ -135,8 +135,8 @@ AheadDecoder::~AheadDecoder()
   }
 }
 
-void AheadDecoder::Start(std::shared_ptr<const SeriesFile> series, std::vector<FieldBricks> wanted,
-  std::uint64_t mostBytes)
+void BackgroundDecoder::Start(std::shared_ptr<const SeriesFile> series,
+  std::vector<FieldBricks> wanted, std::uint64_t mostBytes)
 {
   Internals& self = *this->Self;
   {
@@ -156,14 +156,14 @@ void AheadDecoder::Start(std::shared_ptr<const SeriesFile> series, std::vector<F
   self.Changed.notify_all();
 }
 
-void AheadDecoder::Stop()
+void BackgroundDecoder::Stop()
 {
   const std::lock_guard<std::mutex> lock(this->Self->Mutex);
   this->Self->Drop();
   this->Self->Series.reset();
 }
 
-void AheadDecoder::Finish()
+void BackgroundDecoder::Finish()
 {
   std::unique_lock<std::mutex> lock(this->Self->Mutex);
   this->Self->Changed.wait(

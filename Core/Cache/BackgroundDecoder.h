@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Cache_AheadDecoder_h
-#define banyan_Cache_AheadDecoder_h
+#ifndef banyan_Cache_BackgroundDecoder_h
+#define banyan_Cache_BackgroundDecoder_h
 
 #include "Series/Decode/SeriesFile.h"
 
@@ -25,16 +25,16 @@ struct FieldBricks
 /// cannot be read is left to whoever asks for it, who is then told why.
 ///
 /// Use it from one thread.
-class AheadDecoder
+class BackgroundDecoder
 {
 public:
   /// @param cache must stay
   /// @param threads at least 1; they are started when first needed
-  AheadDecoder(BrickCache& cache, int threads);
+  BackgroundDecoder(BrickCache& cache, int threads);
   /// Stops.
-  ~AheadDecoder();
-  AheadDecoder(const AheadDecoder&) = delete;
-  AheadDecoder& operator=(const AheadDecoder&) = delete;
+  ~BackgroundDecoder();
+  BackgroundDecoder(const BackgroundDecoder&) = delete;
+  BackgroundDecoder& operator=(const BackgroundDecoder&) = delete;
 
   /// Begins, in place of what it was doing.
   /// @param wanted in the order in which they will be needed; bricks of one value are passed over
