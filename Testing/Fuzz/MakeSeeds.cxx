@@ -140,7 +140,7 @@ int main(int argc, char** argv)
         banyan::group::UnpackHead(series.Parts.Sections[0].data(), series.Parts.Sections[0].size());
       head.Exact = false;
       head.Open = false;
-      head.Rests = true;
+      head.Static = true;
       series.Parts.Sections[0] = banyan::group::PackHead(head);
       Write((folder / "Group" / (name + "-resting")).string(),
         banyan::fuzz::ToInput(kind, series.Parts));

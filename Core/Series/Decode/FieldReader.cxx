@@ -65,9 +65,9 @@ FieldKey FieldReader::Stored(FieldKey field)
     const std::uint64_t key =
       static_cast<std::uint64_t>(segment->FirstStep()) * this->Series.Components + component;
     {
-      std::lock_guard<std::mutex> lock(this->RestMutex);
-      const auto found = this->Resting.find(key);
-      if (found != this->Resting.end())
+      std::lock_guard<std::mutex> lock(this->StaticMutex);
+      const auto found = this->StaticFields.find(key);
+      if (found != this->StaticFields.end())
       {
         field.Step = found->second < 0 ? field.Step : found->second;
         break;
@@ -76,7 +76,7 @@ FieldKey FieldReader::Stored(FieldKey field)
     known = !InFile(segment->Path(), 0,
       [&]
       {
-        const bool rests = group::Rests(segment->Section(segment->HeadSection(component)));
+        const bool rests = group::IsStatic(segment->Section(segment->HeadSection(component)));
         if (rests && segment->FirstStep() == 0)
         {
           throw Error("The first segment of a series says that a field is as in the one before it");
@@ -85,8 +85,8 @@ FieldKey FieldReader::Stored(FieldKey field)
       });
     if (known)
     {
-      std::lock_guard<std::mutex> lock(this->RestMutex);
-      this->Resting.emplace(key, -1);
+      std::lock_guard<std::mutex> lock(this->StaticMutex);
+      this->StaticFields.emplace(key, -1);
     }
     else
     {
@@ -94,10 +94,10 @@ FieldKey FieldReader::Stored(FieldKey field)
       field.Step = segment->FirstStep() - 1;
     }
   }
-  std::lock_guard<std::mutex> lock(this->RestMutex);
+  std::lock_guard<std::mutex> lock(this->StaticMutex);
   for (const std::uint64_t key : passed)
   {
-    this->Resting.emplace(key, field.Step);
+    this->StaticFields.emplace(key, field.Step);
   }
   return field;
 }

@@ -67,8 +67,8 @@ private:
   std::mutex SegmentMutex;
   std::vector<std::shared_ptr<GroupReader>> Segments;
   std::unordered_map<std::string, std::shared_ptr<const SegmentFile>> Files; ///< by name
-  std::mutex RestMutex;
-  std::unordered_map<std::uint64_t, int> Resting; ///< by segment and component; see Stored
+  std::mutex StaticMutex;
+  std::unordered_map<std::uint64_t, int> StaticFields; ///< by segment and component; see Stored
   std::mutex OpenMutex;
   std::list<Kept> Opened; ///< most recently used first
   std::atomic<std::uint64_t> Read{ 0 };

@@ -15,8 +15,7 @@ struct AblationSwitches
   bool SharedTables = true;      ///< contexts that are alike have one table
   bool SmoothestAxisLast = true; ///< else x, y, z
   bool GroupBefore = true;       ///< a group refers to the key frame of the one before
-  bool RestingArrays =
-    true;               ///< an array that stays the same over a whole group is not stored again
+  bool StaticArrays = true; ///< an array that stays the same over a whole group is not stored again
   bool AllModes = true; ///< else cubic interpolation, with the mean of both references or without
 };
 

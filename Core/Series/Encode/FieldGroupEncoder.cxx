@@ -354,9 +354,9 @@ KeyFrame EncodeKeyFrame(const FieldGroup& field, ThreadPool& pool)
   return result;
 }
 
-void LetRest(EncodedField& field, std::int64_t steps)
+void MarkStatic(EncodedField& field, std::int64_t steps)
 {
-  field.Head.Rests = true;
+  field.Head.Static = true;
   field.Head.Open = false;
   field.Head.Exact = false;
   for (std::vector<tans::Frequencies>& set : field.Head.Frequencies)

@@ -21,7 +21,7 @@ EncodedField EncodeFieldGroup(const FieldGroup& field, ThreadPool& pool,
 
 /// A field of one step becomes one that rests over as many: nothing of it needs to be stored, and
 /// what was measured counts as often.
-void LetRest(EncodedField& field, std::int64_t steps);
+void MarkStatic(EncodedField& field, std::int64_t steps);
 
 /// The key frame of a group, as EncodeFieldGroup encodes it, from its values alone.
 /// @param field of which the last step counts

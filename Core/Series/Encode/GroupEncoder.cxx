@@ -103,7 +103,7 @@ public:
 
   /// Whether an array is the same, to the bit, in all steps as in the step before, and so is what
   /// is hidden.
-  bool Rests(std::size_t array, const std::vector<std::vector<ArrayValues>>& steps) const
+  bool IsStatic(std::size_t array, const std::vector<std::vector<ArrayValues>>& steps) const
   {
     const int flags = this->Plan.FindFlags(ArrayFlags::OfPoints);
     return this->ValuesRest(array, steps) &&
@@ -139,7 +139,7 @@ private:
   {
     const std::vector<ComponentIndex>& components = this->Plan.Arrays[array].Components;
     if (this->First || steps.size() < 2 || this->Options.ClosedGroups ||
-        !this->Options.Ablation.RestingArrays ||
+        !this->Options.Ablation.StaticArrays ||
         !std::all_of(components.begin(), components.end(), IsPromised))
     {
       return false;
@@ -212,7 +212,7 @@ private:
   void EncodeArray(std::size_t a)
   {
     const ArrayIndex& array = this->Plan.Arrays[a];
-    const bool rests = this->Before.Rests(a, this->Steps.Values);
+    const bool rests = this->Before.IsStatic(a, this->Steps.Values);
     std::vector<std::vector<double>> squares; // of the lengths of vectors, by step
     if (array.Components.size() > 1)
     {
@@ -270,7 +270,7 @@ private:
     const auto count = static_cast<std::int64_t>(this->Count());
     if (rests)
     {
-      LetRest(field, count);
+      MarkStatic(field, count);
     }
     ComponentIndex& measured = this->Group.Measured[a][c];
     Measure(field, measured, this->Group.Statistics);
@@ -296,9 +296,9 @@ private:
     {
       for (EncodedField& field : this->Fields)
       {
-        if (field.Head.Rests)
+        if (field.Head.Static)
         {
-          writer.AddRestingStep(field.Steps[0], statistics);
+          writer.AddStaticStep(field.Steps[0], statistics);
           continue;
         }
         writer.AddStep(field.Steps[t], statistics);

@@ -85,7 +85,7 @@ void GroupWriter::AddStep(const EncodedStep& step, EncodeStatistics& statistics)
   this->Tables.push_back(std::move(table));
 }
 
-void GroupWriter::AddRestingStep(const EncodedStep& like, EncodeStatistics& statistics)
+void GroupWriter::AddStaticStep(const EncodedStep& like, EncodeStatistics& statistics)
 {
   for (const auto& plane : like.Planes)
   {
@@ -190,7 +190,7 @@ void GroupWriter::AddSteps(const std::vector<group::FieldHead>& heads,
   {
     const std::size_t component = i % heads.size();
     const int step = static_cast<int>(i / heads.size());
-    if (heads[component].Rests)
+    if (heads[component].Static)
     {
       sections.push_back(this->AddSection({}, false));
       continue;

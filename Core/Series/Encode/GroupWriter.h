@@ -26,7 +26,7 @@ public:
   void AddStep(const EncodedStep& step, EncodeStatistics& statistics);
   /// A step of which nothing is stored, as its field rests.
   /// @param like what it would be; for the statistics
-  void AddRestingStep(const EncodedStep& like, EncodeStatistics& statistics);
+  void AddStaticStep(const EncodedStep& like, EncodeStatistics& statistics);
 
   /// @param heads and @param shapes of the components, in order
   SegmentIndex Finish(const std::vector<group::FieldHead>& heads,

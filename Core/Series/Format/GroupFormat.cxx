@@ -15,7 +15,7 @@ namespace
 
 constexpr std::uint8_t HeadExact = 1;
 constexpr std::uint8_t HeadOpen = 2;
-constexpr std::uint8_t HeadRests = 4;
+constexpr std::uint8_t HeadStatic = 4;
 
 void Append(Bytes& out, const Bytes& more)
 {
@@ -43,7 +43,7 @@ Bytes PackHead(const FieldHead& head)
   Bytes out;
   out.insert(out.end(), head.Axes.begin(), head.Axes.end());
   out.push_back(static_cast<std::uint8_t>(
-    (head.Exact ? HeadExact : 0) | (head.Open ? HeadOpen : 0) | (head.Rests ? HeadRests : 0)));
+    (head.Exact ? HeadExact : 0) | (head.Open ? HeadOpen : 0) | (head.Static ? HeadStatic : 0)));
   AppendNumber(out, head.Origin);
   AppendNumber(out, head.Step);
   AppendNumber(out, head.Bin);
@@ -58,9 +58,9 @@ Bytes PackHead(const FieldHead& head)
   return out;
 }
 
-bool Rests(const Bytes& head)
+bool IsStatic(const Bytes& head)
 {
-  return head.size() > 3 && head[3] == HeadRests; // behind the axes
+  return head.size() > 3 && head[3] == HeadStatic; // behind the axes
 }
 
 FieldHead UnpackHead(const std::uint8_t* data, std::size_t bytes)
@@ -76,13 +76,13 @@ FieldHead UnpackHead(const std::uint8_t* data, std::size_t bytes)
   const std::uint8_t flags = in.Byte();
   head.Exact = flags == HeadExact;
   head.Open = flags == HeadOpen;
-  head.Rests = flags == HeadRests;
+  head.Static = flags == HeadStatic;
   head.Origin = in.Number<double>();
   head.Step = in.Number<double>();
   head.Bin = in.Number<std::int32_t>();
   head.Least = in.Number<std::int32_t>();
   head.Greatest = in.Number<std::int32_t>();
-  if (seen != 7 || (flags > HeadOpen && flags != HeadRests) || !std::isfinite(head.Origin) ||
+  if (seen != 7 || (flags > HeadOpen && flags != HeadStatic) || !std::isfinite(head.Origin) ||
       !std::isfinite(head.Step) || !(head.Step > 0) || head.Bin < 1 || head.Bin % 2 == 0 ||
       head.Least > head.Greatest)
   {

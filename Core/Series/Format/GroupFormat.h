@@ -35,7 +35,7 @@ struct FieldHead
   bool Exact = false; ///< no lattice: every sample is an exception
   bool Open = false;  ///< refers to the last step of the segment before, on the same lattice
   /// All steps are what the last step of the segment before is, and nothing of them is stored here.
-  bool Rests = false;
+  bool Static = false;
   double Origin = 0;
   double Step = 1;
   std::int32_t Bin = 31;
@@ -49,7 +49,7 @@ bool SameLattice(const FieldHead& a, const FieldHead& b);
 
 Bytes PackHead(const FieldHead& head);
 /// Whether a packed head says so; nothing else of it is looked at.
-bool Rests(const Bytes& head);
+bool IsStatic(const Bytes& head);
 /// Throws Error when a field is out of range.
 FieldHead UnpackHead(const std::uint8_t* data, std::size_t bytes);
 

@@ -212,7 +212,7 @@ TEST_F(HostileGroups, NothingComesBeforeTheFirstSegment)
     {
       group::FieldHead head = HeadOf(sections);
       head.Open = false;
-      head.Rests = true;
+      head.Static = true;
       sections[1] = PackHead(head);
     });
   EXPECT_TRUE(Says(this->Complaint(0, 0), "first segment of a series says that a field is as"));
@@ -227,7 +227,7 @@ TEST_F(HostileGroups, ASegmentThatRestsIsTheLastStepBefore)
     {
       group::FieldHead head = HeadOf(sections);
       head.Open = false;
-      head.Rests = true;
+      head.Static = true;
       sections[1] = PackHead(head);
       for (std::size_t step = 2; step < sections.size(); ++step)
       {

@@ -121,7 +121,7 @@ TEST(RestingArrays, CostNextToNothingBesideMovingOnes)
     const std::uint64_t alone = BytesOf(pair.Encode(folder / "alone.banyan", options, false));
     const std::string path = folder / "both.banyan";
     const SeriesIndex index = pair.Encode(path, options);
-    options.Ablation.RestingArrays = false;
+    options.Ablation.StaticArrays = false;
     const std::uint64_t stored = BytesOf(pair.Encode(folder / "stored.banyan", options)) - alone;
     const std::uint64_t cost = BytesOf(index) - alone;
     ASSERT_EQ(index.Segments.size(), 5u);
@@ -156,7 +156,7 @@ TEST(RestingArrays, AreMeasuredLikeOthers)
   const Pair pair([](int) { return 2; });
   EncodeOptions options;
   const SeriesIndex rests = pair.Encode(folder / "rests.banyan", options);
-  options.Ablation.RestingArrays = false;
+  options.Ablation.StaticArrays = false;
   const SeriesIndex moves = pair.Encode(folder / "moves.banyan", options);
   for (std::size_t c = 0; c < 3; ++c)
   {
