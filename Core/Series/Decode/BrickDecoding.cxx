@@ -312,7 +312,7 @@ bool DecodeWhole(const OpenSeries& series, OpenGroup& open, const FieldKey& fiel
   return decoded;
 }
 
-bool DecodeSome(const OpenSeries& series, OpenGroup& open, const FieldKey& field,
+bool DecodePart(const OpenSeries& series, OpenGroup& open, const FieldKey& field,
   std::int64_t brick, const Box& part, const glm::i64vec3& stride, void* first)
 {
   GroupField& group = *open.Field;

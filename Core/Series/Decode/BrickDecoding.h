@@ -15,7 +15,7 @@ bool DecodeWhole(const OpenSeries& series, OpenGroup& open, const FieldKey& fiel
 /// Decodes a part of a brick as SeriesFile::DecodePart does, where that is simple: no exceptions,
 /// all samples in one box of the codec.
 /// @return false when it is not; nothing was written then
-bool DecodeSome(const OpenSeries& series, OpenGroup& open, const FieldKey& field,
+bool DecodePart(const OpenSeries& series, OpenGroup& open, const FieldKey& field,
   std::int64_t brick, const Box& part, const glm::i64vec3& stride, void* first);
 
 /// Bricks that follow each other along x.

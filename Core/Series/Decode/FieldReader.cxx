@@ -73,7 +73,7 @@ FieldKey FieldReader::Stored(FieldKey field)
         break;
       }
     }
-    known = !InFile(segment->Path(), 0,
+    known = !WithErrorPlace(segment->Path(), 0,
       [&]
       {
         const bool rests = group::IsStatic(segment->Section(segment->HeadSection(component)));
@@ -148,7 +148,7 @@ std::shared_ptr<OpenGroup> FieldReader::MakeGroup(
     const std::shared_ptr<OpenGroup> opened = this->Open(this->Stored(key));
     return std::shared_ptr<GroupField>(opened, opened->Field.get());
   };
-  InFile(segment->Path(), 0,
+  WithErrorPlace(segment->Path(), 0,
     [&]
     {
       open->Field = std::make_unique<GroupField>(*segment, this->Series.Id, component,
@@ -170,7 +170,7 @@ std::shared_ptr<OpenGroup> FieldReader::MakeGroup(
     });
   const std::string meaning =
     TransformToJson(map).dump() + std::string(head.Axes.begin(), head.Axes.end());
-  open->Meaning = ShortHashOf(meaning.data(), meaning.size());
+  open->DecodingHash = ShortHashOf(meaning.data(), meaning.size());
   return open;
 }
 
@@ -203,7 +203,7 @@ std::shared_ptr<const std::vector<BrickNode>> FieldReader::Nodes(const FieldKey&
   auto& nodes = open->Nodes[{ rests ? -1 - field.Step : field.Step, field.Level }];
   if (!nodes)
   {
-    InFile(open->Field->Segment().Path(), 0,
+    WithErrorPlace(open->Field->Segment().Path(), 0,
       [&]
       {
         std::vector<BrickNode> made = NodesOf(this->Series, *open, field);
@@ -223,7 +223,7 @@ void FieldReader::DecodeBrick(const FieldKey& asked, std::int64_t brick, void* v
 {
   const FieldKey field = this->Stored(asked);
   const std::shared_ptr<OpenGroup> open = this->Open(field);
-  InFile(open->Field->Segment().Path(), 0,
+  WithErrorPlace(open->Field->Segment().Path(), 0,
     [&] { this->Decoded += DecodeWhole(this->Series, *open, field, brick, values) ? 1 : 0; });
   this->Read += open->Field->TakeBytesRead();
 }
@@ -233,8 +233,8 @@ bool FieldReader::DecodePart(const FieldKey& asked, std::int64_t brick, const Bo
 {
   const FieldKey field = this->Stored(asked);
   const std::shared_ptr<OpenGroup> open = this->Open(field);
-  const bool done = InFile(open->Field->Segment().Path(), 0,
-    [&] { return DecodeSome(this->Series, *open, field, brick, part, stride, first); });
+  const bool done = WithErrorPlace(open->Field->Segment().Path(), 0,
+    [&] { return banyan::DecodePart(this->Series, *open, field, brick, part, stride, first); });
   this->Decoded += done ? 1 : 0;
   this->Read += open->Field->TakeBytesRead();
   return done;
@@ -245,7 +245,7 @@ bool FieldReader::DecodeRow(const FieldKey& asked, std::int64_t brick, int count
 {
   const FieldKey field = this->Stored(asked);
   const std::shared_ptr<OpenGroup> open = this->Open(field);
-  const bool done = InFile(open->Field->Segment().Path(), 0,
+  const bool done = WithErrorPlace(open->Field->Segment().Path(), 0,
     [&] {
       return DecodeSomeRow(this->Series, *open, field, { brick, count }, part, stride, first);
     });
@@ -269,7 +269,7 @@ void FieldReader::VerifyBricks(const FieldKey& asked, const std::vector<std::int
   const std::shared_ptr<OpenGroup> open = this->Open(field);
   GroupField& group = *open->Field;
   const int step = field.Step - group.Segment().FirstStep();
-  InFile(group.Segment().Path(), 0,
+  WithErrorPlace(group.Segment().Path(), 0,
     [&]
     {
       for (const std::int64_t brick : bricks)

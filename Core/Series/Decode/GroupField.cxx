@@ -104,7 +104,7 @@ auto GroupField::InSegmentBefore(Body&& body)
     throw Error("A segment refers to the one before it, which is quantized differently");
   }
   this->BeforeFits = true;
-  return InFile(before->File.Path(), 0,
+  return WithErrorPlace(before->File.Path(), 0,
     [&]
     {
       const auto result = body(*before);

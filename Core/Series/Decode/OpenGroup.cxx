@@ -68,7 +68,7 @@ PayloadIdentity IdentityOf(const OpenSeries& series, OpenGroup& open, const Fiel
   {
     const glm::ivec3 size =
       series.Layouts[static_cast<std::size_t>(field.Level)].SamplesOf(brick).Size();
-    const std::uint64_t content[] = { std::uint64_t(open.Type), open.Meaning, shared,
+    const std::uint64_t content[] = { std::uint64_t(open.Type), open.DecodingHash, shared,
       BitCast<std::uint64_t>(range.Low), BitCast<std::uint64_t>(range.High), std::uint64_t(size.x),
       std::uint64_t(size.y), std::uint64_t(size.z) };
     hash = HashOf(content, sizeof(content));

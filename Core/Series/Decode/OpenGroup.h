@@ -23,8 +23,9 @@ struct OpenGroup
   std::unique_ptr<GroupField> Field;
   ScalarType Type = ScalarType::Float32;
   std::shared_ptr<const void> Decoder; ///< LatticeDecoder of the type
-  std::uint64_t Meaning = 0; ///< hash of what turns lattice numbers into values, and orders them
-  Hash128 Before;            ///< hash of the header of the segment that this one refers to; 0: none
+  std::uint64_t DecodingHash =
+    0;            ///< hash of what turns lattice numbers into values, and orders them
+  Hash128 Before; ///< hash of the header of the segment that this one refers to; 0: none
   std::mutex NodeMutex;
   /// By step and level; -1 less the step where a later one rests on it.
   std::map<std::pair<int, int>, std::shared_ptr<const std::vector<BrickNode>>> Nodes;

@@ -43,7 +43,7 @@ inline Box RowPart(const BrickLayout& layout, std::int64_t first, int count, int
 
 /// Runs `body`; an Error without a place gets the file and offset at hand.
 template <class Body>
-decltype(auto) InFile(const std::string& path, std::uint64_t offset, Body&& body)
+decltype(auto) WithErrorPlace(const std::string& path, std::uint64_t offset, Body&& body)
 {
   try
   {
