@@ -20,7 +20,7 @@ fi
 data='(/Golden/|/Seeds/|\.(png|svg)$)'
 mapfile -t sources < <(git ls-files '*.cxx' '*.h' '*.txx')
 mapfile -t texts < <(git ls-files | grep -vE "$data")
-mapfile -t licensed < <(git ls-files '*.cxx' '*.h' '*.txx' '*.py' '*.sh' '*.xml' '*.cmake' '*CMakeLists.txt')
+mapfile -t licensed < <(git ls-files '*.cxx' '*.h' '*.txx' '*.py' '*.sh' '*.xml' '*.xml.in' '*.cmake' '*CMakeLists.txt')
 
 if [[ "${1:-}" == --fix ]]; then
   clang-format -i "${sources[@]}"
