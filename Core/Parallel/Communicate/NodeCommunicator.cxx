@@ -3,6 +3,7 @@
 
 #include "Base/AvailableMemory.h"
 #include "Base/Error.h"
+#include "Parallel/Communicate/Collective.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -67,15 +68,6 @@ std::string Shortage(std::size_t bytes, int times)
            : "There is no memory for " + (times > 1 ? std::to_string(times) + " times " : "") +
                Megabytes(bytes) + " of a mesh: machine or container have " + Megabytes(available) +
                " left";
-}
-
-void ThrowTogether(Communicator& communicator, const std::string& failure)
-{
-  const std::string agreed = AgreeOnError(communicator, failure);
-  if (!agreed.empty())
-  {
-    throw Error(agreed);
-  }
 }
 
 /// Null on failure.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Fields/DistributedPlan.h"
 
+#include "Parallel/Communicate/Collective.h"
 #include "Parallel/Fields/DistributedPilot.h"
 
 #include <algorithm>
@@ -15,20 +16,7 @@ template <class Function>
 int LargestOfAll(Communicator& communicator, Function&& mine)
 {
   int value = 0;
-  std::string failure;
-  try
-  {
-    value = mine();
-  }
-  catch (const std::exception& error)
-  {
-    failure = error.what();
-  }
-  const std::string agreed = AgreeOnError(communicator, failure);
-  if (!agreed.empty())
-  {
-    throw Error(agreed);
-  }
+  Collective(communicator, [&] { value = mine(); });
   return static_cast<int>(AllMax(communicator, value));
 }
 

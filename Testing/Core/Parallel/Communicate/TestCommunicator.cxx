@@ -2,6 +2,7 @@
 #include "Parallel/CommunicatorCases.h"
 
 #include "Base/Error.h"
+#include "Parallel/Communicate/Collective.h"
 
 #include <gtest/gtest.h>
 
@@ -40,6 +41,31 @@ TEST(SelfCommunicator, KeepsTheContract)
   EXPECT_EQ(communicator->Rank(), 0);
   EXPECT_EQ(CheckCommunicator(*communicator), "");
   EXPECT_EQ(AgreeOnError(*communicator, "The disk is full."), "The disk is full.");
+}
+
+TEST(Collective, ThrowsTheSameOnAllRanksWhereNested)
+{
+  RunOnSimulatedRanks(3,
+    [](Communicator& communicator)
+    {
+      const auto fail = [&]
+      {
+        if (communicator.Rank() == 1)
+        {
+          throw Error("The disk is full.");
+        }
+      };
+      try
+      {
+        Collective(communicator, [&] { Collective(communicator, fail); });
+        ADD_FAILURE() << "rank " << communicator.Rank() << " threw nothing";
+      }
+      catch (const CollectiveError& error)
+      {
+        EXPECT_STREQ(error.what(), "Rank 1: The disk is full.");
+      }
+      EXPECT_NO_THROW(Collective(communicator, [] {}));
+    });
 }
 
 TEST(SimulatedRanks, ThrowTheFirstExceptionAndReleaseTheOthers)
