@@ -6,6 +6,7 @@
 #include "Base/Timer.h"
 #include "Parallel/Balance/LevelZones.h"
 #include "Parallel/Balance/Rebalance.h"
+#include "Parallel/Communicate/Collective.h"
 #include "Parallel/Composite/CompositeWhileCasting.h"
 #include "Render/Raycast/InterpolateSkippedPixels.h"
 
@@ -62,16 +63,6 @@ FloatImage CastOwnZone(OwnPart& own, PictureWatcher* watcher)
     own.AfterCasting();
   }
   return mine;
-}
-
-/// Collective.
-void AgreeOrThrow(Communicator& communicator, const std::string& failure)
-{
-  const std::string agreed = AgreeOnError(communicator, failure);
-  if (!agreed.empty())
-  {
-    throw Error(agreed);
-  }
 }
 
 /// Is told by a rank to the others about a frame. It has plain numbers: all are sent in one
@@ -155,7 +146,7 @@ FloatImage CastThenComposite(Communicator& communicator, OwnPart& own,
     own.Failure =
       ProblemOf(communicator.Rank(), communicator.Size(), mine, order, scene.Viewport, options);
   }
-  AgreeOrThrow(communicator, own.Failure);
+  ThrowTogether(communicator, own.Failure);
   const Timer timer;
   options.Agreed = true;
   FloatImage picture = Composite(communicator, mine, order, scene.Viewport, options, own.Sent);
@@ -178,7 +169,7 @@ FloatImage CastAndComposite(Communicator& communicator, OwnPart& own, const std:
   const std::string problem = problemOf({});
   if (!problem.empty())
   {
-    AgreeOrThrow(communicator, problem);
+    ThrowTogether(communicator, problem);
   }
   CompositeWhileCasting compositor(communicator, order, scene.Viewport, options, own.Sent);
   const FloatImage mine = CastOwnZone(own, &compositor);
@@ -189,7 +180,7 @@ FloatImage CastAndComposite(Communicator& communicator, OwnPart& own, const std:
     own.Failure = problemOf(mine);
   }
   FloatImage picture = compositor.Finish(own.Failure.empty() ? &mine : nullptr);
-  AgreeOrThrow(communicator, own.Failure);
+  ThrowTogether(communicator, own.Failure);
   own.CompositeSeconds = timer.Seconds();
   return picture;
 }
