@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DistributedFieldFacts.h"
 
-#include "MeshField.h"
-#include "MotionEnhancement.h"
-#include "ToleranceControl.h"
+#include "GridOfLeaves.h"
+#include "HiddenInImage.h"
+#include "PieceOfMesh.h"
+#include "PlainSource.h"
 
 #include "Cache/BrickCache.h"
-#include "Parallel/Fields/PieceField.h"
-#include "Render/Bricks/SeriesBrickSource.h"
-#include "Render/Bricks/TimeStepPrefetcher.h"
+#include "Parallel/Fields/PiecesField.h"
+#include "Parallel/Fields/SeriesField.h"
+#include "Parallel/Fields/WholeField.h"
 #include "vtkBanyanDeferred.h"
 
 #include "vtkDataArray.h"
@@ -17,25 +18,16 @@
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <utility>
 
 namespace banyan
 {
-namespace
-{
 
-/// Samples per axis of a level as the reader gives them to VTK: those that are also fine ones.
-glm::ivec3 ExposedSamples(const SeriesFile& series, int level)
+DistributedField::DistributedField()
+  : Field(std::make_unique<WholeField>())
 {
-  const glm::ivec3 fine = series.Index().Domain.Samples();
-  return glm::ivec3(
-    ((fine.x - 1) >> level) + 1, ((fine.y - 1) >> level) + 1, ((fine.z - 1) >> level) + 1);
 }
 
-} // namespace
-
-DistributedField::DistributedField() = default;
 DistributedField::~DistributedField() = default;
 
 void DistributedField::Reset()
@@ -43,9 +35,36 @@ void DistributedField::Reset()
   this->Fresh = true;
 }
 
-std::uint64_t DistributedField::BytesRead() const
+void DistributedField::SetLoadBalancing(LoadBalancing mode)
 {
-  return this->Series ? this->Series->BytesRead() : 0;
+  if (mode != this->Balancing)
+  {
+    this->Balancing = mode;
+    this->Reset();
+  }
+}
+
+std::uint64_t DistributedField::DrawingBudget()
+{
+  // Less than the cache has: what one batch holds is then never evicted by that batch itself.
+  constexpr std::uint64_t least = std::uint64_t{ 16 } << 20;
+  const std::uint64_t all = BrickCache::Process().DrawingBudget();
+  return std::max(this->Source() ? this->Source()->Kept().ShareOf(all) : all, least);
+}
+
+/// The field, which is another one if it was of another kind.
+template <class Kind>
+Kind& DistributedField::Become()
+{
+  auto* field = dynamic_cast<Kind*>(this->Field.get());
+  if (!field)
+  {
+    this->Field = std::make_unique<WholeField>(); // not two of them at once
+    auto made = std::make_unique<Kind>();
+    field = made.get();
+    this->Field = std::move(made);
+  }
+  return *field;
 }
 
 bool DistributedField::ChangedHere(const FieldPiece& piece)
@@ -84,39 +103,60 @@ void DistributedField::Update(Communicator& communicator, const FieldPiece& piec
     // then.
     if (!AgreeOnError(communicator, this->ProblemText).empty())
     {
-      this->Bricks.reset();
-      this->Domain = Box{};
+      this->Field->Clear();
+      this->Place = FieldPlace{};
     }
     this->AgreeOnRange(communicator);
   }
 }
 
-void DistributedField::SetGrid(const Facts& facts, const Box& samples)
+/// Collective. @return false when no rank has a mesh
+bool DistributedField::TakeMesh(Communicator& communicator, FieldPiece piece)
 {
-  const Grid grid = facts.Geometry();
-  this->Domain = { glm::ivec3(0), samples.Size() - 1 };
-  glm::dmat4 matrix(1.0);
-  this->ShortestEdge = std::numeric_limits<double>::infinity();
-  for (int axis = 0; axis < 3; ++axis)
+  const double mine = piece.Leaves ? 2.0 : piece.Grid ? 1.0 : 0.0;
+  const double most = AllMax(communicator, mine);
+  if (most == 0.0)
   {
-    matrix[axis] = glm::dvec4(grid.Direction[axis] * grid.Spacing[axis], 0.0);
-    this->ShortestEdge = std::min(this->ShortestEdge, std::abs(grid.Spacing[axis]));
+    return false;
   }
-  const glm::dvec3 first = grid.Origin + grid.Direction * (grid.Spacing * glm::dvec3(samples.Lo));
-  matrix[3] = glm::dvec4(first, 1.0);
-  this->IndexToPhysicalMatrix = matrix;
-
-  glm::dvec3 low(std::numeric_limits<double>::infinity());
-  glm::dvec3 high = -low;
-  for (int corner = 0; corner < 8; ++corner)
+  auto& field = this->Become<MeshField>();
+  field.Clear();
+  this->Place = FieldPlace{};
+  if (this->ProblemText.empty() && piece.Image)
   {
-    const glm::dvec4 index((corner & 1) ? this->Domain.Hi.x : 0,
-      (corner & 2) ? this->Domain.Hi.y : 0, (corner & 4) ? this->Domain.Hi.z : 0, 1.0);
-    const glm::dvec3 point(matrix * index);
-    low = glm::min(low, point);
-    high = glm::max(high, point);
+    this->ProblemText = "One rank has image data and another one hexahedra.";
   }
-  this->PhysicalBounds = { { low.x, high.x, low.y, high.y, low.z, high.z } };
+  // Nobody waits for a rank that has nothing to give.
+  if (!AgreeOnError(communicator, this->ProblemText).empty())
+  {
+    return true;
+  }
+  try
+  {
+    vtkSmartPointer<vtkUnstructuredGrid> leaves;
+    if (most == 2.0)
+    {
+      TakeLeaves(communicator, piece, leaves);
+    }
+    MeshField::Piece cells;
+    vtkSmartPointer<vtkDataArray> kept;
+    std::string failure;
+    try
+    {
+      cells = PieceOfMesh(piece, kept);
+    }
+    catch (const std::exception& error)
+    {
+      failure = error.what();
+    }
+    field.Take(communicator, cells, piece.Mesh, this->Balancing, failure);
+    this->Place = field.Place();
+  }
+  catch (const std::exception& error)
+  {
+    this->ProblemText = error.what();
+  }
+  return true;
 }
 
 void DistributedField::Agree(Communicator& communicator, const FieldPiece& piece)
@@ -133,16 +173,12 @@ void DistributedField::Agree(Communicator& communicator, const FieldPiece& piece
   std::vector<Facts> all(static_cast<std::size_t>(communicator.Size()));
   communicator.AllGather(&mine, sizeof(mine), all.data());
 
-  this->Bricks.reset();
-  this->Domain = Box{};
-  this->PhysicalBounds = { { 1, -1, 1, -1, 1, -1 } };
-  this->ZoneCells.assign(all.size(), Box{});
+  this->Place = FieldPlace{};
   const auto first =
     std::find_if(all.begin(), all.end(), [](const Facts& facts) { return facts.HasData != 0; });
   if (first == all.end())
   {
-    this->Series.reset();
-    this->Pieces.reset();
+    this->Become<WholeField>().Clear();
     return;
   }
   if (mine.HasData && this->ProblemText.empty())
@@ -153,24 +189,12 @@ void DistributedField::Agree(Communicator& communicator, const FieldPiece& piece
   for (const Facts& facts : all)
   {
     samples = facts.HasData ? Union(samples, facts.Samples()) : samples;
-  }
-  this->SetGrid(*first, samples);
-
-  const bool deferred = std::all_of(all.begin(), all.end(),
-    [](const Facts& facts) { return facts.HasData == 0 || facts.Deferred != 0; });
-  for (const Facts& facts : all)
-  {
     this->LargestEncodingError = std::max(this->LargestEncodingError, facts.EncodingError);
   }
-  // Which series it is must be agreed as well; strings do not fit into the facts.
-  const vtkBanyanDeferred::Handle* handle =
-    deferred && mine.HasData ? vtkBanyanDeferred::From(piece.Array) : nullptr;
-  const std::shared_ptr<const SeriesFile> held = handle ? handle->Series : nullptr;
-  if (deferred && this->TakeSeries(communicator, held, all, samples))
-  {
-    this->Pieces.reset();
-  }
-  else
+  this->Place = PlaceOfSamples(first->Geometry(), samples);
+  const bool deferred = std::all_of(all.begin(), all.end(),
+    [](const Facts& facts) { return facts.HasData == 0 || facts.Deferred != 0; });
+  if (!deferred || !this->TakeSeries(communicator, piece, all, samples))
   {
     this->TakePlain(communicator, piece, all, samples, deferred);
   }
@@ -181,12 +205,37 @@ void DistributedField::Agree(Communicator& communicator, const FieldPiece& piece
   }
 }
 
+/// Collective. @return false when the pieces are not all of one step of a series
+bool DistributedField::TakeSeries(Communicator& communicator, const FieldPiece& piece,
+  const std::vector<Facts>& all, const Box& samples)
+{
+  std::vector<SeriesField::Piece> pieces;
+  for (const Facts& facts : all)
+  {
+    pieces.push_back({ facts.HasData != 0, facts.Step, facts.Array, facts.Component, facts.Level });
+  }
+  const vtkBanyanDeferred::Handle* handle =
+    all[static_cast<std::size_t>(communicator.Rank())].HasData
+      ? vtkBanyanDeferred::From(piece.Array)
+      : nullptr;
+  // Another kind of field keeps what it knows until this one fits.
+  auto* const drawn = dynamic_cast<SeriesField*>(this->Field.get());
+  auto made = drawn ? nullptr : std::make_unique<SeriesField>();
+  const bool fits = (drawn ? drawn : made.get())
+                      ->Take(communicator, handle ? handle->Series : nullptr, pieces,
+                        { samples, this->Balancing, this->Enhancement }, this->ProblemText);
+  if (fits && made)
+  {
+    this->Field = std::move(made);
+  }
+  return fits;
+}
+
 /// Values in memory, of all pieces.
 /// @param deferred whether they could be those of a series
 void DistributedField::TakePlain(Communicator& communicator, const FieldPiece& piece,
   const std::vector<Facts>& all, const Box& samples, bool deferred)
 {
-  this->Series.reset();
   if (deferred && this->Enhancement.Strength > 0.0 && this->ProblemText.empty())
   {
     this->ProblemText =
@@ -199,93 +248,78 @@ void DistributedField::TakePlain(Communicator& communicator, const FieldPiece& p
     const Box own = facts.Samples();
     pieces.push_back(facts.HasData ? Box{ own.Lo - samples.Lo, own.Hi - samples.Lo } : Box{});
   }
-  this->TakePieces(communicator, piece, pieces, samples.Lo);
+  this->TakeSamples(communicator, piece, pieces, samples.Lo);
 }
 
-/// Collective. Draws from the file if all pieces come from the same field of the same series and
-/// together are all of it.
-bool DistributedField::TakeSeries(Communicator& communicator,
-  const std::shared_ptr<const SeriesFile>& held, const std::vector<Facts>& all, const Box& samples)
+void DistributedField::TakeSamples(Communicator& communicator, const FieldPiece& piece,
+  const std::vector<Box>& pieces, const glm::ivec3& first)
 {
-  const std::vector<std::string> paths =
-    AllGatherStrings(communicator, held ? held->Path() : std::string());
-  const std::vector<std::string> fingerprints =
-    AllGatherStrings(communicator, held ? ToHex(held->Fingerprint()) : std::string());
-  const Facts* first = nullptr;
-  std::string path, fingerprint;
-  for (std::size_t rank = 0; rank < all.size(); ++rank)
+  const bool alone = communicator.Size() == 1;
+  DrawnField& field = alone ? static_cast<DrawnField&>(this->Become<WholeField>())
+                            : static_cast<DrawnField&>(this->Become<PiecesField>());
+  SampleArray mine;
+  if (piece.Array && piece.Image && this->ProblemText.empty())
   {
-    const Facts& facts = all[rank];
-    if (!facts.HasData)
+    try
     {
-      continue;
+      mine = PlainSamples(piece.Image, piece.Array, piece.Component, first);
     }
-    if (!first)
+    catch (const std::exception& error)
     {
-      first = &facts;
-      path = paths[rank];
-      fingerprint = fingerprints[rank];
-    }
-    if (paths[rank] != path || fingerprints[rank] != fingerprint || facts.Step != first->Step ||
-        facts.Array != first->Array || facts.Component != first->Component ||
-        facts.Level != first->Level)
-    {
-      return false;
+      this->ProblemText = error.what();
     }
   }
-  std::string failure;
-  bool whole = false;
+  // Nobody waits for a rank that has nothing to give.
+  if (!AgreeOnError(communicator, this->ProblemText).empty())
+  {
+    field.Clear();
+    return;
+  }
   try
   {
-    if (held)
+    if (alone)
     {
-      this->Series = held;
+      field.Clear();
+      this->Become<WholeField>().Take(
+        MakePlainSource(piece.Image, piece.Array, piece.Component, first), this->Place.Cells);
     }
-    else if (!this->Series || this->Series->Path() != path ||
-             ToHex(this->Series->Fingerprint()) != fingerprint)
+    else
     {
-      this->Series = SeriesFile::Open(path);
-      if (ToHex(this->Series->Fingerprint()) != fingerprint)
-      {
-        throw Error(
-          "The series was replaced, or is not the same on all ranks: open it again", { path });
-      }
-    }
-    whole = ExposedSamples(*this->Series, first->Level) == samples.Size();
-    if (whole && this->ProblemText.empty())
-    {
-      this->MakeSeriesZones(*first, communicator);
+      this->Become<PiecesField>().Take(
+        communicator, pieces, mine, this->Place.Cells.Hi, PlainBrickCells, this->Balancing);
     }
   }
   catch (const std::exception& error)
   {
-    failure = error.what();
-    whole = true;
+    this->ProblemText = error.what();
   }
-  if (!failure.empty() && this->ProblemText.empty())
-  {
-    this->ProblemText = failure;
-  }
-  return AllMax(communicator, whole ? 0.0 : 1.0) == 0.0;
 }
 
-void DistributedField::MakeSeriesZones(const Facts& field, Communicator& communicator)
+/// Collective, where some cell of some rank is hidden.
+void DistributedField::HideCells(
+  Communicator& communicator, const FieldPiece& piece, const glm::ivec3& first)
 {
-  FieldKey key;
-  key.Step = this->Step = field.Step;
-  key.Array = field.Array;
-  key.Level = field.Level;
-  const BrickLayout layout = this->Series->Layout(field.Level);
-  FrameBalancer::Field balanced;
-  balanced.Cells = this->Domain.Hi;
-  balanced.BrickCells = layout.BrickCells();
-  balanced.CoarsestLevel = ToleranceControl::CoarsestLevel;
-  balanced.BytesPerCell = static_cast<double>(
-    SizeOf(this->Series->Index().Arrays.at(static_cast<std::size_t>(field.Array)).Type));
-  this->Balancer.Start(this->Balancing, balanced, communicator.Size());
-  this->ZoneCells = this->Balancer.Zones();
-  // Ranks without a zone need it too: to know what can be seen of the others'.
-  this->Bricks = MakeSeriesSource(this->Series, key, field.Component, this->Enhancement);
+  try
+  {
+    const std::shared_ptr<const HiddenCells> hidden = GatherHiddenCells(
+      communicator, piece.Array ? piece.Image : nullptr, first, this->Place.Cells.Hi);
+    if (BrickSource* const source = this->Source())
+    {
+      source->Hide(hidden);
+    }
+  }
+  catch (const std::exception& error)
+  {
+    this->ProblemText = error.what();
+  }
+}
+
+/// Agrees on the range of the values of all sources.
+void DistributedField::AgreeOnRange(Communicator& communicator)
+{
+  const ValueRange range = this->Field->RangeHere();
+  this->ValuesRange.Low = -AllMax(communicator, -range.Low);
+  this->ValuesRange.High = AllMax(communicator, range.High);
 }
 
 } // namespace banyan

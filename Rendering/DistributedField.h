@@ -5,14 +5,7 @@
 #include "FieldPiece.h"
 
 #include "Parallel/Balance/FrameBalancer.h"
-#include "Parallel/Fields/MeshBytes.h"
-#include "Render/Bricks/BrickSource.h"
-#include "Render/Bricks/TemporalEnhancement.h"
-#include "Render/Bricks/ViewPrefetcher.h"
-#include "Series/Decode/SeriesFile.h"
-#include "Series/Quantize/ValueRange.h"
-
-#include <glm/mat4x4.hpp>
+#include "Parallel/Fields/DrawnField.h"
 
 #include <array>
 #include <memory>
@@ -22,17 +15,12 @@
 namespace banyan
 {
 
-class MeshField;
-class PieceField;
-class SeriesBrickSource;
-class TimeStepPrefetcher;
-
-/// One field of scalars that lies distributed over the ranks, agreed upon by all of them: one grid,
-/// and one zone of cells per rank. Pieces of an encoded series that nobody has touched or moved are
-/// drawn from the file, brick by brick, in zones of their own; anything else from the values in
-/// memory, by the rank that has them or by one that fetched them from there (see PieceField).
-/// Hexahedral meshes, and what is made one (see GridOfLeaves), are put together on all ranks, and
-/// each draws a zone (see MeshField).
+/// Which field all ranks draw, from what each of them has: finds the kind that fits, and whether
+/// anything has changed. Pieces of an encoded series that nobody has touched or moved are a
+/// SeriesField; anything else on a grid is a WholeField on one rank, and a PiecesField on several;
+/// hexahedral meshes, and what is made one (see GridOfLeaves), are a MeshField. The field is kept
+/// from step to step while its kind stays. See DrawnField for the calls in a frame, which without
+/// a field do nothing.
 class DistributedField
 {
 public:
@@ -42,26 +30,20 @@ public:
   /// How zones follow what frames cost. For the next Update; the same on all ranks.
   void SetLoadBalancing(LoadBalancing mode);
 
-  /// Collective, before a frame: moves the zones, brings what they take, and lets the scene tell
-  /// what drawing takes. Throws Error, the same on all ranks, when one fails.
-  void BeginFrame(Communicator& communicator, RayScene& scene);
-  /// Collective, after it, for frames that may be drawn from coarser levels, up to `coarsest`:
-  /// plain data in pieces and meshes have them then too. Throws Error, the same on all ranks, when
-  /// one fails.
-  void BringLevels(Communicator& communicator, const RayScene& scene, int coarsest);
-  /// When this rank has cast the rays of the frame: begins to decode what the next frame of an
-  /// encoded series needs: the time step that comes next, if it plays, otherwise what comes onto
-  /// the screen, if the camera moves. Does not throw.
-  void ReadAhead(const RayScene& scene, int rank);
-  /// Collective, after it.
-  void EndFrame(Communicator& communicator);
-  /// From rank to rank for the frame that was begun last, over all ranks.
-  double BytesMoved() const;
-  /// Bricks of other ranks that were still here for it, and that were not, over all ranks; and
-  /// bytes of such bricks on this rank.
-  std::uint64_t FetchHits() const;
-  std::uint64_t FetchMisses() const;
-  std::uint64_t FetchedBytes() const;
+  void BeginFrame(Communicator& communicator, RayScene& scene)
+  {
+    this->Drawn().BeginFrame(communicator, scene);
+  }
+  void BringLevels(Communicator& communicator, const RayScene& scene, int coarsest)
+  {
+    this->Drawn().BringLevels(communicator, scene, coarsest);
+  }
+  void ReadAhead(const RayScene& scene, int rank) { this->Drawn().ReadAhead(scene, rank); }
+  void EndFrame(Communicator& communicator) { this->Drawn().EndFrame(communicator); }
+  double BytesMoved() const { return this->Drawn().Moved().Bytes; }
+  std::uint64_t FetchHits() const { return this->Drawn().Moved().Hits; }
+  std::uint64_t FetchMisses() const { return this->Drawn().Moved().Misses; }
+  std::uint64_t FetchedBytes() const { return this->Drawn().Moved().BytesFetched; }
 
   /// Collective. Cheap when nothing has changed on any rank.
   void Update(Communicator& communicator, const FieldPiece& piece);
@@ -76,81 +58,73 @@ public:
   const std::string& Problem() const { return this->ProblemText; }
 
   /// True when no rank has anything to draw. The same on all ranks, as is all that follows.
-  bool Empty() const { return this->Domain.Empty(); }
-  const glm::dmat4& IndexToPhysical() const { return this->IndexToPhysicalMatrix; }
-  const Box& DomainCells() const { return this->Domain; }
-  const std::vector<Box>& Zones() const;
+  bool Empty() const { return this->Place.Cells.Empty(); }
+  const glm::dmat4& IndexToPhysical() const { return this->Place.IndexToPhysical; }
+  const Box& DomainCells() const { return this->Place.Cells; }
+  const std::vector<Box>& Zones() const { return this->Drawn().Zones(); }
   /// (xmin, xmax, ymin, ymax, zmin, zmax) in physical space.
-  const std::array<double, 6>& Bounds() const { return this->PhysicalBounds; }
+  const std::array<double, 6>& Bounds() const { return this->Place.Bounds; }
   /// Length of the shortest edge of a cell in physical space.
-  double CellSize() const { return this->ShortestEdge; }
+  double CellSize() const { return this->Place.CellSize; }
   /// Of the values of all ranks; of all steps, where they come from an encoded series.
   const ValueRange& Range() const { return this->ValuesRange; }
   /// The largest error of values, of all steps, that encoding has made as far as it is known: of
   /// the drawn component, or of the length. 0 for plain data and meshes. The same on all ranks.
   double EncodingError() const { return this->LargestEncodingError; }
   /// Whether bricks come from an encoded series.
-  bool Encoded() const { return this->Series != nullptr; }
+  bool Encoded() const { return this->Drawn().IsEncoded(); }
 
   /// What a user should know of a mesh; empty if nothing. The same on all ranks.
-  std::string MeshNote() const;
+  std::string MeshNote() const { return this->Drawn().Note(); }
   /// How far the drawn field may be from that of a mesh: see CubeDeviation. 0 where it is exact.
-  double MeshDeviation() const;
+  double MeshDeviation() const { return this->Drawn().Deviation(); }
 
   /// What this rank holds of a mesh: its octree, the cells that were gathered for it, and values.
-  MeshBytes BytesOfMesh() const;
+  MeshBytes BytesOfMesh() const { return this->Drawn().Bytes(); }
 
   /// Whether it is a mesh of hexahedra. Its levels are counted in cells of the finest one.
-  bool IsMesh() const { return this->Mesh != nullptr; }
+  bool IsMesh() const { return this->Drawn().IsMesh(); }
 
   /// This rank's bricks; null when it has none.
-  BrickSource* Source();
+  BrickSource* Source() { return this->Drawn().Source(); }
   /// What loaded and packed bricks of this rank may take: its part of what the process has for
   /// drawing, which all volumes that are drawn share.
   std::uint64_t DrawingBudget();
   /// Bytes read so far from the series by this process; 0 for plain data.
-  std::uint64_t BytesRead() const;
+  std::uint64_t BytesRead() const { return this->Drawn().BytesRead(); }
 
 private:
   struct Facts;
+
+  DrawnField& Drawn() { return *this->Field; }
+  const DrawnField& Drawn() const { return *this->Field; }
+  template <class Kind>
+  Kind& Become();
 
   bool ChangedHere(const FieldPiece& piece);
   void Agree(Communicator& communicator, const FieldPiece& piece);
   void AgreeOnRange(Communicator& communicator);
   bool TakeMesh(Communicator& communicator, FieldPiece piece);
-  void SetMesh();
-  void PlaceMeshZones();
   Facts FactsOf(const FieldPiece& piece) const;
   std::string CheckAgainst(const Facts& mine, const Facts& first, int firstRank) const;
-  void SetGrid(const Facts& facts, const Box& samples);
-  bool TakeSeries(Communicator& communicator, const std::shared_ptr<const SeriesFile>& held,
+  bool TakeSeries(Communicator& communicator, const FieldPiece& piece,
     const std::vector<Facts>& all, const Box& samples);
-  void MakeSeriesZones(const Facts& field, Communicator& communicator);
   void TakePlain(Communicator& communicator, const FieldPiece& piece, const std::vector<Facts>& all,
     const Box& samples, bool deferred);
-  void HideCells(Communicator& communicator, const FieldPiece& piece, const glm::ivec3& first);
-  void TakePieces(Communicator& communicator, const FieldPiece& piece,
+  void TakeSamples(Communicator& communicator, const FieldPiece& piece,
     const std::vector<Box>& pieces, const glm::ivec3& first);
+  void HideCells(Communicator& communicator, const FieldPiece& piece, const glm::ivec3& first);
 
-  std::string ProblemText;
-  std::string PieceProblem;
-  Box Domain;
-  glm::dmat4 IndexToPhysicalMatrix{ 1.0 };
-  std::vector<Box> ZoneCells;
-  std::unique_ptr<TimeStepPrefetcher> Ahead; ///< null until something is read ahead
-  ViewPrefetcher View;
-  int Step = 0; ///< of the series
+  std::unique_ptr<DrawnField> Field; ///< never null
   LoadBalancing Balancing = LoadBalancing::Off;
-  FrameBalancer Balancer; ///< of encoded series and meshes
-  std::array<double, 6> PhysicalBounds{ { 1, -1, 1, -1, 1, -1 } };
-  double ShortestEdge = 1.0;
+  std::string ProblemText;
+  FieldPlace Place;
   ValueRange ValuesRange;
   double LargestEncodingError = 0.0;
-  std::unique_ptr<MeshField> Mesh;    ///< null unless it is one of hexahedra
-  std::unique_ptr<PieceField> Pieces; ///< null unless it is plain data on several ranks
-  std::unique_ptr<BrickSource> Bricks;
-  std::shared_ptr<const SeriesFile> Series;
+
+  /// This rank's piece of the last Update, to compare with.
   std::array<std::uint64_t, 10> Stamp{ {} };
+  std::string PieceProblem;
   MeshOptions StampedOptions;
   TemporalEnhancement Enhancement{ 0.0, 1.0, 0.0 };
   bool Fresh = true;

@@ -4,6 +4,8 @@
 
 #include "HiddenInImage.h"
 
+#include "Series/Decode/SeriesFile.h"
+
 #include "vtkBanyanDeferred.h"
 
 #include "vtkDataArray.h"

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MotionEnhancement.h"
 
-#include "DistributedField.h"
+#include "FieldPiece.h"
 
-#include "Cache/BrickCache.h"
 #include "EnhancedArray.h"
 #include "LeafParts.h"
 #include "Parallel/Communicate/Communicator.h"
-#include "Render/Bricks/EnhancedBrickSource.h"
-#include "Render/Bricks/SeriesBrickSource.h"
 #include "vtkBanyanDeferred.h"
 
 #include "vtkDataArray.h"
@@ -250,28 +247,6 @@ void MotionEnhancement::ApplyToLeaves(FieldPiece& piece)
   piece.Leaves = this->Leaves;
   piece.Array = this->Enhanced;
   piece.Component = 0;
-}
-
-std::unique_ptr<BrickSource> MakeSeriesSource(const std::shared_ptr<const SeriesFile>& series,
-  const FieldKey& field, int component, const TemporalEnhancement& how)
-{
-  const auto at = [&](int step) -> std::unique_ptr<BrickSource>
-  {
-    FieldKey key = field;
-    key.Step = step;
-    return step < 0 || step >= series->Index().Steps()
-             ? nullptr
-             : std::make_unique<SeriesBrickSource>(series, key, component, BrickCache::Process());
-  };
-  if (how.Strength == 0.0)
-  {
-    return at(field.Step);
-  }
-  TemporalEnhancement complete = how;
-  const ArrayIndex& array = series->Index().Arrays.at(static_cast<std::size_t>(field.Array));
-  complete.NoiseFloor = EnhancementFor(array, how.Strength, component).NoiseFloor;
-  return std::make_unique<EnhancedBrickSource>(
-    complete, at(field.Step - 1), at(field.Step), at(field.Step + 1));
 }
 
 } // namespace banyan

@@ -18,10 +18,7 @@ class vtkVolumeProperty;
 namespace banyan
 {
 
-class BrickSource;
 class Communicator;
-class SeriesFile;
-struct FieldKey;
 struct FieldPiece;
 
 /// Temporal enhancement of what a mapper draws: bricks of encoded series are enhanced as they are
@@ -64,12 +61,6 @@ private:
   vtkSmartPointer<vtkDataObject> Leaves; ///< with Enhanced in them; null for other data
   Stamps Stamp{ {} };                    ///< of what it was made of
 };
-
-/// Bricks of a step of an encoded series, enhanced with the steps around it unless Strength is 0.
-/// The noise floor is the series' error bound.
-/// @param component or -1 for the length
-std::unique_ptr<BrickSource> MakeSeriesSource(const std::shared_ptr<const SeriesFile>& series,
-  const FieldKey& field, int component, const TemporalEnhancement& how);
 
 } // namespace banyan
 

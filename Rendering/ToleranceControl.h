@@ -5,6 +5,7 @@
 #include "RefinementPasses.h"
 
 #include "Parallel/Fields/DistributedPlan.h"
+#include "Parallel/Fields/DrawnField.h"
 #include "Render/Sampling/InteractiveLevels.h"
 
 #include <array>
@@ -20,7 +21,7 @@ class DistributedField;
 class ToleranceControl
 {
 public:
-  static constexpr int CoarsestLevel = 3;     ///< that pictures are sampled at
+  static constexpr int CoarsestLevel = DrawnField::CoarsestLevel; ///< that pictures are sampled at
   static constexpr int CoarsestMeshLevel = 5; ///< of meshes, which have elements of several sizes
 
   struct Wish

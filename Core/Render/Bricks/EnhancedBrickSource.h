@@ -11,6 +11,9 @@
 namespace banyan
 {
 
+class SeriesFile;
+struct FieldKey;
+
 /// A step of a series with its motion brought out (see TemporalEnhancement), brick by brick as they
 /// are drawn: what cannot be seen is neither read nor computed, and coarser levels are those of the
 /// enhanced field. Values are computed in double precision and rounded to float32 (float64 where
@@ -62,6 +65,12 @@ private:
   BrickSource* Next;
   MaskRange Over;
 };
+
+/// Bricks of a step of an encoded series, enhanced with the steps around it unless Strength is 0.
+/// The noise floor is the series' error bound.
+/// @param component in [0, components), or -1 for the length
+std::unique_ptr<BrickSource> MakeSeriesSource(const std::shared_ptr<const SeriesFile>& series,
+  const FieldKey& field, int component, const TemporalEnhancement& how);
 
 } // namespace banyan
 

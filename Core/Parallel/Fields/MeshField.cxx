@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "MeshField.h"
+#include "Parallel/Fields/MeshField.h"
 
-#include "vtkDataArray.h"
-#include "vtkSetGet.h"
-#include "vtkSmartPointer.h"
-#include "vtkUnstructuredGrid.h"
+#include "Parallel/Fields/MeshZones.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace banyan
 {
@@ -33,26 +31,6 @@ void StopTogether(Communicator& communicator, const std::string& failure)
   }
 }
 
-NodeArray NodesOf(vtkDataArray* values, int component)
-{
-  NodeArray nodes;
-  nodes.Component = component;
-  if (!values)
-  {
-    return nodes;
-  }
-  nodes.Values = values->GetVoidPointer(0);
-  nodes.Components = values->GetNumberOfComponents();
-  switch (values->GetDataType())
-  {
-    vtkTemplateMacro(nodes.Type = ScalarTypeOf<VTK_TT>());
-    default:
-      throw Error(std::string("The array to draw has the type ") + values->GetDataTypeAsString() +
-                  ", which cannot be drawn.");
-  }
-  return nodes;
-}
-
 /// Collective: what the ranks that have cells say values belong to.
 ValuesOn Agreed(Communicator& communicator, ValuesOn where, bool cells)
 {
@@ -68,59 +46,86 @@ ValuesOn Agreed(Communicator& communicator, ValuesOn where, bool cells)
 
 } // namespace
 
-void MeshField::Update(Communicator& communicator, vtkUnstructuredGrid* grid, vtkDataArray* values,
-  ValuesOn where, int component, const MeshOptions& options)
+void MeshField::Take(Communicator& communicator, Piece piece, const MeshOptions& options,
+  LoadBalancing balancing, std::string failure)
 {
-  HexMesh piece;
-  NodeArray nodes;
-  OtherCells others;
-  vtkSmartPointer<vtkDataArray> kept;
-  std::string failure;
-  try
-  {
-    piece = HexMeshOf(grid, &others);
-    if (piece.CellCount > 0)
-    {
-      kept = where == ValuesOn::Cells ? ValuesOfCells(grid, values).GetPointer() : values;
-      nodes = NodesOf(kept, component);
-    }
-  }
-  catch (const std::exception& error)
-  {
-    failure = error.what();
-  }
+  this->Bricks.reset();
   StopTogether(communicator, failure);
-  if (AllMax(communicator, static_cast<double>(piece.CellCount)) == 0.0)
+  if (AllMax(communicator, static_cast<double>(piece.Mesh.CellCount)) == 0.0)
   {
-    StopTogether(communicator,
-      others.Count == 0 ? failure
-                        : "The mesh has no hexahedra or voxels, but " + others.Text() + ".");
+    StopTogether(
+      communicator, piece.OtherCells.empty()
+                      ? failure
+                      : "The mesh has no hexahedra or voxels, but " + piece.OtherCells + ".");
   }
-  if (piece.CellCount == 0)
+  if (piece.Mesh.CellCount == 0)
   {
-    piece.PointCount = 0;
+    piece.Mesh.PointCount = 0;
   }
-  where = Agreed(communicator, where, piece.CellCount > 0);
-  this->Source.reset();
-  const bool sameMesh = this->SameMesh(communicator, piece);
+  const ValuesOn where = Agreed(communicator, piece.Where, piece.Mesh.CellCount > 0);
+  const bool sameMesh = this->SameMesh(communicator, piece.Mesh);
   if (!sameMesh || !(options == this->Options))
   {
     this->Mesh.reset();
     this->Options = options;
-    this->Mesh = std::make_unique<SharedMesh>(communicator, piece, where, MeshBrickCells, options);
-    this->Describe(communicator, others);
+    this->Mesh =
+      std::make_unique<SharedMesh>(communicator, piece.Mesh, where, MeshBrickCells, options);
+    this->Describe(communicator, piece.OtherCells);
   }
-  this->Source = this->Mesh->Field(
-    communicator, nodes, where == ValuesOn::Cells ? piece.CellCount : piece.PointCount, where);
+  this->Bricks = this->Mesh->Field(communicator, piece.Values,
+    where == ValuesOn::Cells ? piece.Mesh.CellCount : piece.Mesh.PointCount, where);
+  const Box domain = this->Mesh->Tree().Domain();
+  this->Balancer.Start(
+    balancing, MeshZones(*this->Bricks, domain, communicator.Size()), communicator.Size());
+  this->ZoneCells = ZonesInside(this->Balancer.Zones(), domain);
 }
 
-void MeshField::Describe(Communicator& communicator, const OtherCells& others)
+FieldPlace MeshField::Place() const
+{
+  const ElementOctree& tree = this->Mesh->Tree();
+  FieldPlace place;
+  place.Cells = tree.Domain();
+  place.IndexToPhysical = tree.LatticeToWorld();
+  place.CellSize = std::min({ tree.Edge().x, tree.Edge().y, tree.Edge().z });
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    place.Bounds[2 * axis] = tree.Origin()[axis] + place.Cells.Lo[axis] * tree.Edge()[axis];
+    place.Bounds[2 * axis + 1] = tree.Origin()[axis] + place.Cells.Hi[axis] * tree.Edge()[axis];
+  }
+  return place;
+}
+
+void MeshField::BeginFrame(Communicator&, RayScene& scene)
+{
+  if (this->Bricks)
+  {
+    this->Balancer.BeginFrame(scene, *this->Bricks);
+    this->ZoneCells = ZonesInside(this->Balancer.Zones(), this->Mesh->Tree().Domain());
+  }
+}
+
+void MeshField::BringLevels(Communicator& communicator, const RayScene&, int coarsest)
+{
+  if (this->Mesh)
+  {
+    this->Mesh->BringLevels(communicator, coarsest);
+  }
+}
+
+MeshBytes MeshField::Bytes() const
+{
+  MeshBytes bytes = this->Mesh ? this->Mesh->Bytes() : MeshBytes{};
+  bytes.Own += this->Bricks ? this->Bricks->LevelBytes() : 0;
+  return bytes;
+}
+
+void MeshField::Describe(Communicator& communicator, const std::string& otherCells)
 {
   const SharedMesh::Facts& facts = this->Mesh->About();
   std::string note;
-  if (others.Count > 0)
+  if (!otherCells.empty())
   {
-    note = "Only hexahedra and voxels are drawn, without " + others.Text() + ". ";
+    note = "Only hexahedra and voxels are drawn, without " + otherCells + ". ";
   }
   if (facts.TangledCells > 0)
   {

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Parallel_Fields_DrawnField_h
+#define banyan_Parallel_Fields_DrawnField_h
+
+#include "Parallel/Communicate/Communicator.h"
+#include "Parallel/Fields/MeshBytes.h"
+#include "Render/Bricks/BrickSource.h"
+#include "Render/Scene/RayScene.h"
+#include "Series/Grid/Grid.h"
+#include "Series/Quantize/ValueRange.h"
+
+#include <glm/mat4x4.hpp>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace banyan
+{
+
+/// Where a field lies.
+struct FieldPlace
+{
+  Box Cells; ///< empty: nowhere
+  glm::dmat4 IndexToPhysical{ 1.0 };
+  /// (xmin, xmax, ymin, ymax, zmin, zmax) in physical space.
+  std::array<double, 6> Bounds{ { 1, -1, 1, -1, 1, -1 } };
+  double CellSize = 1.0; ///< length of the shortest edge of a cell in physical space
+};
+
+/// Where the cells between some samples of a grid lie; the first of them gets index 0.
+/// @param samples extent indices, half-open
+FieldPlace PlaceOfSamples(const Grid& grid, const Box& samples);
+
+/// One field of scalars as all ranks draw it together: bricks, and one zone of cells per rank. Its
+/// kinds differ in where values are: in an encoded series that every rank can read (SeriesField),
+/// on one rank (WholeField), in pieces on the ranks (PiecesField), or on a mesh that every rank has
+/// (MeshField). Each kind has a collective Take of its own, which brings it the values of a step.
+///
+/// @par Order of calls in a frame, the same on all ranks:
+///   1. BeginFrame    collective
+///   2. BringLevels   collective; only where the frame may be drawn from coarser levels
+///   3. ReadAhead     of one rank, when it has cast its rays
+///   4. EndFrame      collective
+class DrawnField
+{
+public:
+  /// The coarsest level of a grid that pictures are drawn from.
+  static constexpr int CoarsestLevel = 3;
+
+  /// Bricks of other ranks, for the frame that was begun last.
+  struct Movement
+  {
+    double Bytes = 0.0;             ///< from rank to rank, over all ranks
+    std::uint64_t Hits = 0;         ///< bricks that were still here, over all ranks
+    std::uint64_t Misses = 0;       ///< bricks that were not, over all ranks
+    std::uint64_t BytesFetched = 0; ///< held by this rank
+  };
+
+  virtual ~DrawnField() = default;
+
+  /// Collective: moves the zones, brings what they take, and lets the scene tell what drawing
+  /// takes. Throws Error, the same on all ranks, when one fails.
+  virtual void BeginFrame(Communicator&, RayScene&) {}
+  /// Collective, for frames that may be drawn from levels up to `coarsest`: makes those that are
+  /// not there yet. Throws Error, the same on all ranks, when one fails.
+  virtual void BringLevels(Communicator&, const RayScene&, int /*coarsest*/) {}
+  /// Begins to decode what the next frame is expected to need. Does not throw.
+  virtual void ReadAhead(const RayScene&, int /*rank*/) {}
+  /// Collective.
+  virtual void EndFrame(Communicator&) {}
+
+  /// Drops the bricks. What another step of the same data can use stays.
+  virtual void Clear() = 0;
+
+  /// All bricks, as this rank has them; owned by the field. Null when there is nothing to draw.
+  virtual BrickSource* Source() = 0;
+  /// One per rank.
+  virtual const std::vector<Box>& Zones() const = 0;
+  /// Of the values that this rank knows.
+  virtual ValueRange RangeHere();
+
+  virtual Movement Moved() const { return {}; }
+  /// Whether bricks come from an encoded series.
+  virtual bool IsEncoded() const { return false; }
+  /// Whether it is a mesh of hexahedra. Its levels are counted in cells of the finest one.
+  virtual bool IsMesh() const { return false; }
+  /// Bytes read so far from a series by this process.
+  virtual std::uint64_t BytesRead() const { return 0; }
+  /// What a user should know of a mesh; empty if nothing. The same on all ranks.
+  virtual std::string Note() const { return {}; }
+  /// How far the drawn field may be from that of a mesh: see CubeDeviation. 0 where it is exact.
+  virtual double Deviation() const { return 0.0; }
+  /// What this rank holds of a mesh: its octree, the cells that were gathered for it, and values.
+  virtual MeshBytes Bytes() const { return {}; }
+};
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Parallel/Fields/SeriesField.h"
+
+#include "Base/ThreadPool.h"
+#include "Cache/BrickCache.h"
+#include "Render/Bricks/EnhancedBrickSource.h"
+#include "Render/Bricks/SeriesBrickSource.h"
+#include "Render/Bricks/TimeStepPrefetcher.h"
+
+#include <utility>
+
+namespace banyan
+{
+namespace
+{
+
+/// Samples per axis of a level as the reader gives them: those that are also fine ones.
+glm::ivec3 ExposedSamples(const SeriesFile& series, int level)
+{
+  const glm::ivec3 fine = series.Index().Domain.Samples();
+  return glm::ivec3(
+    ((fine.x - 1) >> level) + 1, ((fine.y - 1) >> level) + 1, ((fine.z - 1) >> level) + 1);
+}
+
+/// The rank whose piece is what those of all others are too; -1 if they are not alike.
+int FirstOfAlike(const std::vector<SeriesField::Piece>& pieces,
+  const std::vector<std::string>& paths, const std::vector<std::string>& fingerprints)
+{
+  int first = -1;
+  for (std::size_t rank = 0; rank < pieces.size(); ++rank)
+  {
+    const SeriesField::Piece& piece = pieces[rank];
+    if (!piece.HasData)
+    {
+      continue;
+    }
+    first = first < 0 ? static_cast<int>(rank) : first;
+    const auto other = static_cast<std::size_t>(first);
+    if (paths[rank] != paths[other] || fingerprints[rank] != fingerprints[other] ||
+        piece.Step != pieces[other].Step || piece.Array != pieces[other].Array ||
+        piece.Component != pieces[other].Component || piece.Level != pieces[other].Level)
+    {
+      return -1;
+    }
+  }
+  return first;
+}
+
+} // namespace
+
+SeriesField::SeriesField() = default;
+SeriesField::~SeriesField() = default;
+
+void SeriesField::Open(const std::string& path, const std::string& fingerprint)
+{
+  if (this->Series && this->Series->Path() == path &&
+      ToHex(this->Series->Fingerprint()) == fingerprint)
+  {
+    return;
+  }
+  this->Series = SeriesFile::Open(path);
+  if (ToHex(this->Series->Fingerprint()) != fingerprint)
+  {
+    throw Error(
+      "The series was replaced, or is not the same on all ranks: open it again", { path });
+  }
+}
+
+bool SeriesField::Take(Communicator& communicator, const std::shared_ptr<const SeriesFile>& held,
+  const std::vector<Piece>& pieces, const Wish& wish, std::string& problem)
+{
+  this->Bricks.reset();
+  // Strings do not fit into the pieces.
+  const std::vector<std::string> paths =
+    AllGatherStrings(communicator, held ? held->Path() : std::string());
+  const std::vector<std::string> fingerprints =
+    AllGatherStrings(communicator, held ? ToHex(held->Fingerprint()) : std::string());
+  const int rank = FirstOfAlike(pieces, paths, fingerprints);
+  if (rank < 0)
+  {
+    return false;
+  }
+  const auto first = static_cast<std::size_t>(rank);
+  bool whole = false;
+  try
+  {
+    if (held)
+    {
+      this->Series = held;
+    }
+    else
+    {
+      this->Open(paths[first], fingerprints[first]);
+    }
+    whole = ExposedSamples(*this->Series, pieces[first].Level) == wish.Samples.Size();
+    if (whole && problem.empty())
+    {
+      this->MakeZones(pieces[first], wish, communicator.Size());
+    }
+  }
+  catch (const std::exception& error)
+  {
+    problem = problem.empty() ? error.what() : problem;
+    whole = true;
+  }
+  return AllMax(communicator, whole ? 0.0 : 1.0) == 0.0;
+}
+
+void SeriesField::MakeZones(const Piece& field, const Wish& wish, int ranks)
+{
+  FieldKey key;
+  key.Step = this->Step = field.Step;
+  key.Array = field.Array;
+  key.Level = field.Level;
+  const BrickLayout layout = this->Series->Layout(field.Level);
+  FrameBalancer::Field balanced;
+  balanced.Cells = wish.Samples.Size() - 1;
+  balanced.BrickCells = layout.BrickCells();
+  balanced.CoarsestLevel = CoarsestLevel;
+  balanced.BytesPerCell = static_cast<double>(
+    SizeOf(this->Series->Index().Arrays.at(static_cast<std::size_t>(field.Array)).Type));
+  this->Balancer.Start(wish.Balancing, balanced, ranks);
+  this->ZoneCells = this->Balancer.Zones();
+  // Ranks without a zone need it too: to know what can be seen of the others'.
+  this->Bricks = MakeSeriesSource(this->Series, key, field.Component, wish.Enhancement);
+}
+
+void SeriesField::BeginFrame(Communicator&, RayScene& scene)
+{
+  if (!this->Bricks)
+  {
+    return;
+  }
+  if (this->Ahead)
+  {
+    this->Ahead->Drawing(*this->Series, this->Step);
+  }
+  this->Balancer.BeginFrame(scene, *this->Bricks);
+  this->ZoneCells = this->Balancer.Zones();
+}
+
+void SeriesField::ReadAhead(const RayScene& scene, int rank)
+{
+  if (!this->Bricks)
+  {
+    return;
+  }
+  try
+  {
+    BrickCache& cache = BrickCache::Process();
+    if (!this->Ahead)
+    {
+      this->Ahead = std::make_unique<TimeStepPrefetcher>(cache, ThreadPool::Process().Width());
+      this->Ahead->Drawing(*this->Series, this->Step);
+    }
+    this->Ahead->Drawn(this->Series, *this->Bricks);
+    auto* const source = dynamic_cast<SeriesBrickSource*>(this->Bricks.get());
+    std::vector<FieldBricks> coming;
+    if (source)
+    {
+      coming = this->View.Expected(scene, *source, this->ZoneCells[static_cast<std::size_t>(rank)]);
+    }
+    if (this->Ahead->Next() < 0 && !coming.empty())
+    {
+      this->Ahead->Work().Start(this->Series, std::move(coming), cache.DecodedBudget() / 4);
+    }
+  }
+  catch (const std::exception&)
+  {
+    this->Ahead.reset(); // no threads, no memory: bricks are decoded when they are asked for
+  }
+}
+
+ValueRange SeriesField::RangeHere()
+{
+  ValueRange range;
+  if (this->Bricks)
+  {
+    const MaskRange all = this->Bricks->MasksAreOver();
+    range = { all.Low, all.High };
+  }
+  return range;
+}
+
+std::uint64_t SeriesField::BytesRead() const
+{
+  return this->Series ? this->Series->BytesRead() : 0;
+}
+
+} // namespace banyan
