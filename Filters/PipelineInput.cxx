@@ -126,7 +126,7 @@ std::vector<double> PipelineInput::Times(bool wanted) const
   auto* pipeline = Pipeline::SafeDownCast(this->Producer->GetExecutive());
   if (!pipeline || !pipeline->UpdateInformation() || !errors.First().empty())
   {
-    throw Error("The input does not say what it holds" + Said(errors));
+    throw Error("The input gives no information about its data" + Said(errors));
   }
   vtkInformation* info = this->Producer->GetOutputInformation(this->Port);
   if (!wanted || !info->Has(Pipeline::TIME_STEPS()))

@@ -132,7 +132,7 @@ vtkSmartPointer<vtkUnstructuredGrid> GridOf(vtkDataObject* data)
   if (!banyan::CollectGrids(data, grids) && data &&
       data->GetNumberOfElements(vtkDataObject::CELL) > 0)
   {
-    throw banyan::Error("The data hold cells that are those of no unstructured grid");
+    throw banyan::Error("The data hold cells that an unstructured grid cannot hold");
   }
   return Merged(grids);
 }

@@ -95,7 +95,7 @@ int vtkBanyanTemporalEnhancement::RequestData(
   catch (const std::exception& error)
   {
     this->SetErrorCode(vtkErrorCode::UserError);
-    vtkErrorMacro(<< "Nothing can be enhanced: " << error.what());
+    vtkErrorMacro(<< "The array cannot be enhanced: " << error.what());
     output->Initialize();
     return 0;
   }

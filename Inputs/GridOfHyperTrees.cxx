@@ -114,7 +114,7 @@ private:
     if (this->Ghosts && number >= this->Ghosts->GetNumberOfTuples())
     {
       throw Error("The hyper tree grid has " + std::to_string(this->Ghosts->GetNumberOfTuples()) +
-                  " ghost flags, and a cell " + std::to_string(number) + ".");
+                  " ghost flags, but a cell " + std::to_string(number) + ": write the file again.");
     }
     if (this->Ghosts && (this->Ghosts->GetValue(number) & GhostBits) != 0)
     {
@@ -202,8 +202,8 @@ vtkSmartPointer<vtkUnstructuredGrid> GridOfHyperTrees(
       if (leaves.Last >= all->GetNumberOfTuples())
       {
         throw Error("The cell array " + name + " of the hyper tree grid has " +
-                    std::to_string(all->GetNumberOfTuples()) + " values, and there is a cell " +
-                    std::to_string(leaves.Last) + ".");
+                    std::to_string(all->GetNumberOfTuples()) + " values, but a cell " +
+                    std::to_string(leaves.Last) + ": write the file again.");
       }
       grid->GetCellData()->AddArray(Chosen(all, leaves.Numbers));
     }

@@ -35,11 +35,11 @@ void CheckWhole(vtkUnstructuredGrid* grid)
   const vtkIdType cells = grid->GetNumberOfCells();
   if (grid->GetNumberOfPoints() == 0)
   {
-    throw Error("The mesh has " + std::to_string(cells) + " cells, and no points");
+    throw Error("The mesh has " + std::to_string(cells) + " cells, but no points");
   }
   if (grid->GetCellTypesArray()->GetNumberOfTuples() != cells)
   {
-    throw Error("The mesh has " + std::to_string(cells) + " cells, and the types of " +
+    throw Error("The mesh has " + std::to_string(cells) + " cells, but the types of " +
                 std::to_string(grid->GetCellTypesArray()->GetNumberOfTuples()));
   }
   CheckLength(GhostFlags(grid->GetCellData()), vtkDataObject::CELL, cells);
@@ -98,7 +98,7 @@ void CheckPoints(vtkUnstructuredGrid* grid, vtkIdList* kept)
   }
   if (!eight)
   {
-    throw Error("A hexahedron or voxel of the grid has not 8 points.");
+    throw Error("A hexahedron or voxel of the grid does not have 8 points.");
   }
 }
 
@@ -204,7 +204,7 @@ HexMesh HexMeshOf(vtkUnstructuredGrid* grid, OtherCells* others)
   const int type = owners->Points->GetDataType();
   if (type != VTK_FLOAT && type != VTK_DOUBLE)
   {
-    throw Error("The points of the grid are neither float nor double.");
+    throw Error("The points of the grid must be float or double.");
   }
   mesh.Points = owners->Points->GetVoidPointer(0);
   mesh.PointType = type == VTK_FLOAT ? ScalarType::Float32 : ScalarType::Float64;

@@ -57,7 +57,8 @@ CommonLattice LatticeOfRanks(const RankTalk& talk, const ElementOctree* tree)
       const glm::dvec3 off = glm::abs(times / std::exp2(common.Shift) - 1.0);
       if (std::max({ off.x, off.y, off.z }) > 1.0 / 16)
       {
-        throw Error("Its smallest cells are no multiple of another rank's by a power of two");
+        throw Error(
+          "The widths of its smallest cells and of another rank's must differ by a power of two");
       }
     });
   for (const std::vector<double>& theirs :

@@ -201,7 +201,7 @@ private:
     {
       throw Error("At step " + std::to_string(number) + " the " +
                   (corners ? "corners of cells" : "coordinates of points") +
-                  " of the source are others than those of the series.");
+                  " of the source differ from the series.");
     }
   }
 

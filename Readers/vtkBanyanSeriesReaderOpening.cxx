@@ -58,8 +58,8 @@ bool vtkBanyanSeriesReader::OpenOnAllRanks()
   this->Self->Series.reset();
   this->Fail(vtkErrorCode::CannotOpenFileError,
     this->Place() +
-      " cannot be opened: the ranks see different series of this name. Each machine needs the same "
-      "files, or a file system in common.");
+      " cannot be opened: the ranks see different series of this name. Copy it to all "
+      "machines, or to a file system that they share.");
   return false;
 }
 

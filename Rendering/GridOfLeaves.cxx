@@ -92,7 +92,7 @@ void TakeLeaves(
       if (!piece.Array && grid->GetNumberOfCells() > 0)
       {
         throw Error("Not all blocks have the array '" + piece.ArrayName +
-                    "' with the same type and components.");
+                    "' with the same type and components: choose another one in 'Coloring'.");
       }
     });
 }

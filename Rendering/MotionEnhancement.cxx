@@ -139,7 +139,7 @@ void MotionEnhancement::Agree(
     this->Compared[i] = has && !lacks;
     if (has && lacks)
     {
-      this->NoteText += std::string("Motion is not brought out against the step ") + texts[i] +
+      this->NoteText += std::string("'Temporal Enhancement' leaves out the step ") + texts[i] +
                         ": some ranks have other cells, trees or blocks there, or cannot read it. ";
     }
   }

@@ -233,7 +233,7 @@ FieldPiece PieceOfInput(vtkBanyanVolumeMapper* mapper, vtkVolumeProperty* proper
   piece.Problem = WrongPlace(drawn, data);
   if (piece.Leaves && piece.ArrayName.empty())
   {
-    piece.Problem = "The array to draw has no name, by which blocks and trees know theirs.";
+    piece.Problem = "The array to draw has no name: blocks and trees need one. Give it a name.";
   }
   piece.Component = ComponentOf(drawn.Array, property);
   return piece;

@@ -30,7 +30,7 @@ ScalarType TypeOf(vtkDataArray* array)
     vtkTemplateMacro(return ScalarTypeOf<VTK_TT>());
     default:
       throw Error("Array '" + NameOf(array) + "' has the type " + array->GetDataTypeAsString() +
-                  ", which cannot be drawn.");
+                  ", which cannot be drawn: convert it to float.");
   }
 }
 

@@ -105,7 +105,7 @@ void vtkBanyanVolumeRepresentation::TakeSteps()
   }
   catch (const std::exception& error)
   {
-    vtkErrorMacro(<< "Motion is not brought out: " << error.what());
+    vtkErrorMacro(<< "'Temporal Enhancement' has no effect: " << error.what());
   }
 }
 
@@ -117,7 +117,7 @@ void vtkBanyanVolumeRepresentation::AddSteps(vtkDataArray* array)
                            : banyan::AddNeighboursToLeaves(array, *this->Steps, this->Piece);
   if (others > 0)
   {
-    vtkWarningMacro(<< "Motion is not brought out against steps that have other cells, hyper trees "
+    vtkWarningMacro(<< "'Temporal Enhancement' leaves out steps that have other cells, hyper trees "
                        "or AMR blocks than this one.");
   }
 }

@@ -193,7 +193,7 @@ TEST(BadMeshFiltersInVtk, CellsThatAreNone)
   vtkNew<vtkCellArray> cells;
   cells->DeepCopy(noTypes->GetCells());
   noTypes->SetCells(types, cells);
-  ExpectEverywhere(noTypes, "has 27 cells, and the types of 1");
+  ExpectEverywhere(noTypes, "has 27 cells, but the types of 1");
   const auto others = Mesh();
   const vtkIdType ids[] = { 0, 1, 4, 16 };
   others->InsertNextCell(VTK_TETRA, 4, ids);

@@ -243,7 +243,8 @@ void CellShapes::ChooseLattice(int refinement, ThreadPool& pool)
   const int room = MostLevels - static_cast<int>(std::ceil(std::log2(most + 1.0)));
   if (room < 0)
   {
-    throw Error("The mesh is more than a million of its median cells long along an axis");
+    throw Error(
+      "The mesh is more than a million median cells long along an axis: use 'Resample To Image'");
   }
   const int wanted = refinement + static_cast<int>(std::ceil(-std::log2(thinnest)));
   const double parts = std::ldexp(1.0, std::min(room, wanted));

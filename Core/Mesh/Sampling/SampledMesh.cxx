@@ -61,7 +61,7 @@ void SampledMesh::MakeBoxes(const CellShapes& shapes, const SampledCubes& cubes,
   const std::size_t corners = 8 * cubes.Cubes.size();
   if (corners > std::numeric_limits<std::int32_t>::max())
   {
-    throw Error("The mesh was cut into too many boxes");
+    throw Error("The mesh needs too many boxes: lower 'Mesh Sampling Boxes'");
   }
   std::vector<std::uint64_t> keys(corners);
   std::vector<std::uint32_t> slots(corners);

@@ -56,7 +56,7 @@ std::shared_ptr<const StoredMesh> ReadMesh(const SeriesFile& series)
 {
   if (!series.Index().Mesh)
   {
-    throw Error("The series is not one of a mesh", { series.Path() });
+    throw Error("The series holds image data, not a mesh", { series.Path() });
   }
   const MeshIndex& index = *series.Index().Mesh;
   const std::string path = series.Folder() + "/" + index.File;

@@ -200,7 +200,7 @@ std::vector<int> FrontToBack(const Viewpoint& view, const std::vector<Box>& boxe
     throw Error(
       "The data of " + std::to_string(drawn.size() - order.size()) +
       " ranks overlap or hide each other in a circle, so there is no order in which they could be "
-      "drawn; redistribute the data into boxes.");
+      "drawn: divide the data into boxes, for example with 'Redistribute Data Set'.");
   }
   order.insert(order.end(), empty.begin(), empty.end());
   return order;

@@ -39,7 +39,8 @@ ValuesOn Agreed(Communicator& communicator, ValuesOn where, bool cells)
   const double low = -AllMax(communicator, cells ? -mine : -3.0);
   if (low < high)
   {
-    throw Error("The array to draw lies on points on one rank, and on cells on another one.");
+    throw Error(
+      "The array to draw is a point array on one rank and a cell array on another: rename one of them.");
   }
   return static_cast<ValuesOn>(static_cast<int>(std::max(high, 0.0)));
 }

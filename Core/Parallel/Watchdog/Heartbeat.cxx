@@ -196,7 +196,8 @@ Heartbeat::Heartbeat(const std::string& name, int ranks, int place, int rank, do
   {
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
     munmap(memory, sizeof(Slot) * self.Ranks);
-    throw Error(std::string("No thread for signs of life could be started: ") + error.what());
+    throw Error(
+      std::string("The thread that watches for lost ranks could not be started: ") + error.what());
   }
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }

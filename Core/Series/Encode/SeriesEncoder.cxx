@@ -173,8 +173,8 @@ SeriesIndex SeriesEncoder::Finish()
   Internals& self = *this->Self;
   if (self.Failed || self.Finished)
   {
-    throw Error("The series cannot be finished (again): it was given up after an error or is "
-                "finished already",
+    throw Error("The series cannot be finished: it is finished already, or was given up after "
+                "an error",
       { self.Path });
   }
   self.Failed = true;

@@ -71,8 +71,9 @@ void ApplyQuantizer(const QuantizerOptions& options, const ValueHistogram* value
   options.Check();
   if (values == nullptr && options.NeedsHistogram(relative))
   {
-    throw Error("This transform or range is chosen from the values of the whole series, which were "
-                "not counted beforehand");
+    throw Error(
+      "This transform or range needs a histogram of the whole series: read all steps once "
+      "before, or state a scale or range");
   }
   const bool given = options.Range.From == RangeRule::Source::Given;
   component.PromisedRange =

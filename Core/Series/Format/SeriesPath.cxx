@@ -26,7 +26,7 @@ std::string FollowLinks(const std::string& path)
     const std::string next(target, static_cast<std::size_t>(length));
     at = next[0] == '/' ? next : FolderOf(at) + "/" + next;
   }
-  throw Error("The links of the series lead in a circle", { path });
+  throw Error("The symbolic links of the series lead in a circle", { path });
 }
 
 } // namespace banyan

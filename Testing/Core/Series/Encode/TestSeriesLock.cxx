@@ -302,7 +302,7 @@ TEST(SeriesLock, RefusesAtOnceWhatCannotBeWritten)
   fs::create_directory(folder / "folder.banyan");
   ExpectError([&] { encode("folder.banyan"); }, "a folder has its name");
   ASSERT_EQ(mkfifo((folder / "pipe.banyan").c_str(), 0600), 0);
-  ExpectError([&] { encode("pipe.banyan"); }, "no ordinary file");
+  ExpectError([&] { encode("pipe.banyan"); }, "something other than a file");
   std::ofstream(folder / "file.banyan.d") << "a file";
   ExpectError([&] { encode("file.banyan"); }, "file.banyan.d");
   ExpectError([&] { encode("missing/s.banyan"); }, "No such file or directory");
