@@ -58,7 +58,8 @@ CommonLattice LatticeOfRanks(const RankTalk& talk, const ElementOctree* tree)
       if (std::max({ off.x, off.y, off.z }) > 1.0 / 16)
       {
         throw Error(
-          "The widths of its smallest cells and of another rank's must differ by a power of two");
+          "The widths of its smallest cells and of another rank's must differ by a factor of "
+          "2, 4, 8 and so on");
       }
     });
   for (const std::vector<double>& theirs :

@@ -40,7 +40,8 @@ ValuesOn Agreed(Communicator& communicator, ValuesOn where, bool cells)
   if (low < high)
   {
     throw Error(
-      "The array to draw is a point array on one rank and a cell array on another: rename one of them.");
+      "The array to draw is a point array on one rank and a cell array on another: rename one "
+      "of them.");
   }
   return static_cast<ValuesOn>(static_cast<int>(std::max(high, 0.0)));
 }
