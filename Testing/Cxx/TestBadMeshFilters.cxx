@@ -186,7 +186,7 @@ TEST(BadMeshFiltersInVtk, CellsThatAreNone)
   Expect(noCells, { "", "", "The mesh has no cells" });
   const auto noPoints = Mesh();
   noPoints->SetPoints(vtkNew<vtkPoints>());
-  ExpectEverywhere(noPoints, "has 27 cells, and no points");
+  ExpectEverywhere(noPoints, "has 27 cells, but no points");
   const auto noTypes = Mesh();
   vtkNew<vtkUnsignedCharArray> types;
   types->InsertNextValue(VTK_HEXAHEDRON);
@@ -297,7 +297,7 @@ TEST(BadMeshFiltersInVtk, BlocksThatAreNone)
   collection->SetPartition(1, 1, Mesh());
   Expect(collection, {});
   blocks->SetBlock(0, Image());
-  Expect(blocks, { "those of no unstructured grid", "those of no unstructured grid",
+  Expect(blocks, { "an unstructured grid cannot hold", "an unstructured grid cannot hold",
                    "the input is vtkMultiBlockDataSet" });
   const auto amr = vtkSmartPointer<vtkOverlappingAMR>::New();
   Expect(amr, { "", "", "The mesh has no cells" });
