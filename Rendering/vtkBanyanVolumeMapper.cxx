@@ -41,7 +41,7 @@ constexpr double LeastRange = 1e-12;
 
 vtkStandardNewMacro(vtkBanyanVolumeMapper);
 
-#define BANYAN_REAL(Name, Unit, Default, Least, Most, SliderMost, Panel, Sentence)                 \
+#define BANYAN_REAL(Name, Unit, Default, Least, Most, ...)                                         \
   banyanSetNumberMacro(vtkBanyanVolumeMapper, Name, Least, Most);
 #define BANYAN_NONE(...)
 BANYAN_VOLUME_SETTINGS(BANYAN_REAL, BANYAN_NONE, BANYAN_NONE, BANYAN_NONE)

@@ -26,11 +26,12 @@ class vtkMultiProcessController;
 
 // clang-format off
 /// The table of the settings that ParaView offers. A row has the name, the unit, the default, the
-/// least and the most that is allowed, where ParaView's slider ends, whether the panel has it as
-/// "default" or "advanced", and the sentence that ParaView shows. CMake/BanyanTables.cmake makes
-/// ParaView's XML of it; a Choice has its XML by hand.
+/// least and the most that is allowed, where ParaView's slider ends, whether panels have it as
+/// "default" or "advanced", and which panels: all, those of images, of cells (meshes, hyper trees
+/// and AMR) or of meshes. The last word is the sentence that ParaView shows.
+/// CMake/BanyanTables.cmake makes ParaView's XML of it; a Choice has its own XML by hand.
 #define BANYAN_VOLUME_SETTINGS(Real, Whole, Switch, Choice)                                        \
-  Real(ImageErrorTolerance, 1/255, 1, 0.05, 255, 32, default,                                      \
+  Real(ImageErrorTolerance, 1/255, 1, 0.05, 255, 32, default, all,                                 \
     "Largest error of a pixel that is wanted in still pictures, in 1/255. It decides how "         \
     "closely the volume is sampled, and from which level of an encoded series: smaller is more "   \
     "accurate and slower. Samples get no closer than 1/8 of a voxel: EstimatedImageError has "     \
@@ -38,50 +39,50 @@ class vtkMultiProcessController;
     "Errors of encoded values are apart (EncodingErrorOfValues). With ParaView's setting "         \
     "Enable Streaming (Settings, General) still pictures come at once with the tolerance of "      \
     "interaction, and are refined in steps.")                                                      \
-  Real(InteractiveImageErrorTolerance, 1/255, 8, 0.05, 255, 255, advanced,                         \
+  Real(InteractiveImageErrorTolerance, 1/255, 8, 0.05, 255, 255, advanced, all,                    \
     "Largest error of a pixel while the camera moves, in 1/255. Default: 8.")                      \
-  Real(InteractiveFrameSeconds, seconds, 0.2, 0, 3600, 10, advanced,                               \
+  Real(InteractiveFrameSeconds, seconds, 0.2, 0, 3600, 10, advanced, all,                          \
     "Seconds per frame while the camera moves. Default: 0.2; 0 sets no limit. Slower frames "      \
     "raise the tolerance, up to 16-fold. Projections, nearest points and fixed sample "            \
     "distances take coarser levels instead.")                                                      \
-  Real(SampleDistanceVoxels, edges, 0, 0, 100, 4, advanced,                                        \
-    "Fixed distance between samples along a ray, in edges of the smallest cell. Default: 0, "      \
-    "the tolerance decides.")                                                                      \
-  Real(ScreenErrorPixels, pixels, 0, 0, 1024, 64, advanced,                                        \
-    "Longest edge of a cell on the screen, in pixels. Everything is drawn from the coarsest "      \
-    "levels that keep it, with one sample per cell. Default: 0, the tolerance decides.")           \
-  Real(TemporalEnhancement, strength, 0, 0, 1, 1, default,                                         \
+  Real(TemporalEnhancement, strength, 0, 0, 1, 1, default, all,                                    \
     "Brings out motion between steps, however weak: waves stay visible while they lose "           \
     "amplitude by decades. 0 (default) draws plain values, 1 the relative change only; 0.5 "       \
     "to 0.7 suit waves. Colours then mean enhanced values: switch it off to read "                 \
     "amplitudes.")                                                                                 \
-  Real(MaxElementsPerPixel, elements, 0, 0, 1000000, 1000000, advanced,                            \
+  Real(SampleDistanceVoxels, edges, 0, 0, 100, 4, advanced, all,                                   \
+    "Fixed distance between samples along a ray, in edges of the smallest cell. Default: 0, "      \
+    "the tolerance decides.")                                                                      \
+  Real(ScreenErrorPixels, pixels, 0, 0, 1024, 64, advanced, all,                                   \
+    "Longest edge of a cell on the screen, in pixels. Everything is drawn from the coarsest "      \
+    "levels that keep it, with one sample per cell. Default: 0, the tolerance decides.")           \
+  Real(MaxElementsPerPixel, elements, 0, 0, 1000000, 1000000, advanced, cells,                     \
     "Meshes of hexahedra: most elements side by side in a pixel. Where there are more, a "         \
     "coarser level is drawn, whatever the tolerance. Default: 0, the tolerance decides.")          \
-  Real(MeshTolerance, edges, 0.0009765625, 0, 0.0625, 0.0625, advanced,                            \
+  Real(MeshTolerance, edges, 0.0009765625, 0, 0.0625, 0.0625, advanced, cells,                     \
     "Largest distance of the points of hexahedra from the lattice of their octree, in edges "      \
     "of the smallest cell. Default: 1/1024. They are drawn on the lattice. Raise it for "          \
     "meshes whose points were moved by displacements.")                                            \
-  Real(MeshSamplingTolerance, spread, 0.25, 0, 1, 1, advanced,                                     \
+  Real(MeshSamplingTolerance, spread, 0.25, 0, 1, 1, advanced, meshes,                             \
     "Hexahedra that are no octree of boxes (curved, warped, topography) are sampled. This "        \
     "is the largest difference to their own field between samples, as a share of the spread "      \
     "of the values nearby. Default: 0.25. 0 refuses such meshes and names the cell. Mesh "         \
     "Deviation is the difference that was reached.")                                               \
-  Whole(MeshSamplingBoxes, boxes, 1048576, 1024, 67108864, advanced,                               \
+  Whole(MeshSamplingBoxes, boxes, 1048576, 1024, 67108864, advanced, meshes,                       \
     "Most boxes for sampling such meshes. Default: 1048576. Where more are needed, the "           \
     "sampling stays coarser, with a warning.")                                                     \
-  Switch(CompositeInFewBits, false, advanced,                                                      \
+  Switch(CompositeInFewBits, false, advanced, all,                                                 \
     "Sends pixels between ranks in as few bits as keep them within 1/255, about a ninth of "       \
     "the bytes of floats. Default: off. ParaView blends the background later in 8 bits, so "       \
     "a few pixels may differ by 2/255.")                                                           \
-  Whole(NumberOfThreads, threads, 0, 0, 1024, advanced,                                            \
+  Whole(NumberOfThreads, threads, 0, 0, 1024, advanced, all,                                       \
     "Threads per process for casting rays and decoding. Default: 0, the cores of a machine "       \
     "are divided by its ranks.")                                                                   \
-  Switch(ReadAhead, true, advanced,                                                                \
+  Switch(ReadAhead, true, advanced, images,                                                        \
     "Encoded image data: decodes bricks of the next frame in the background, while a frame "       \
     "is composited and shown. While the series plays these are bricks of the next step, "          \
     "while the camera moves bricks that come onto the screen. Default: on.")                       \
-  Choice(LoadBalancing, 2, 0, 2,                                                                   \
+  Choice(LoadBalancing, 2, 0, 2, advanced, all,                                                    \
     "Measured cost (default): the zones of the ranks follow the cost of the last frames. "         \
     "Off: equal zones. 'Slice step' remains for older scripts and balances as 'Measured "          \
     "cost'.")
@@ -160,17 +161,17 @@ public:
    * - LoadBalancing: 0 not at all, 2 to where measured costs balance, and 1, which was another way,
    *   the same. The same on all ranks. The picture does not change.
    */
-#define BANYAN_REAL(Name, Unit, Default, Least, Most, SliderMost, Panel, Sentence)                 \
+#define BANYAN_REAL(Name, Unit, Default, Least, Most, ...)                                         \
   virtual void Set##Name(double number);                                                           \
   vtkGetMacro(Name, double);
-#define BANYAN_WHOLE(Name, Unit, Default, Least, Most, Panel, Sentence)                            \
+#define BANYAN_WHOLE(Name, Unit, Default, Least, Most, ...)                                        \
   vtkSetClampMacro(Name, int, Least, Most);                                                        \
   vtkGetMacro(Name, int);
-#define BANYAN_SWITCH(Name, Default, Panel, Sentence)                                              \
+#define BANYAN_SWITCH(Name, Default, ...)                                                          \
   vtkSetMacro(Name, bool);                                                                         \
   vtkGetMacro(Name, bool);                                                                         \
   vtkBooleanMacro(Name, bool);
-#define BANYAN_CHOICE(Name, Default, Least, Most, Sentence)                                        \
+#define BANYAN_CHOICE(Name, Default, Least, Most, ...)                                             \
   vtkSetClampMacro(Name, int, Least, Most);                                                        \
   vtkGetMacro(Name, int);
   BANYAN_VOLUME_SETTINGS(BANYAN_REAL, BANYAN_WHOLE, BANYAN_SWITCH, BANYAN_CHOICE)
@@ -266,11 +267,10 @@ private:
   void ReportOnce(const std::string& problem);
   void WarnOnce(const std::string& note, std::string& last);
 
-#define BANYAN_REAL(Name, Unit, Default, Least, Most, SliderMost, Panel, Sentence)                 \
-  double Name = Default;
-#define BANYAN_WHOLE(Name, Unit, Default, Least, Most, Panel, Sentence) int Name = Default;
-#define BANYAN_SWITCH(Name, Default, Panel, Sentence) bool Name = Default;
-#define BANYAN_CHOICE(Name, Default, Least, Most, Sentence) int Name = Default;
+#define BANYAN_REAL(Name, Unit, Default, ...) double Name = Default;
+#define BANYAN_WHOLE(Name, Unit, Default, ...) int Name = Default;
+#define BANYAN_SWITCH(Name, Default, ...) bool Name = Default;
+#define BANYAN_CHOICE(Name, Default, ...) int Name = Default;
   BANYAN_VOLUME_SETTINGS(BANYAN_REAL, BANYAN_WHOLE, BANYAN_SWITCH, BANYAN_CHOICE)
 #undef BANYAN_REAL
 #undef BANYAN_WHOLE
