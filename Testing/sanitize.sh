@@ -18,7 +18,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../Utilities/common.sh"
 }
 
 # Tests of threads: which threads encode what, and who reads while others do.
-Threads='ConcurrentReading.*:OpenGroups.*:RestingArrays.*:Series.*:QuantizedBlockCache.*:*Chains*'
+Threads='ConcurrentReading.*:OpenGroups.*:StaticArrays.*:Series.*:QuantizedBlockCache.*:*Chains*'
 
 build()
 {

@@ -155,8 +155,8 @@ constexpr Variant Variants[] = {
   { "banyan-every-step", [](EncodeOptions& options) { options.KeyframeInterval = 1; } },
   { "banyan-32", [](EncodeOptions& options) { options.BrickCells = 32; } },
   // What each idea is worth.
-  { "banyan-without-roughness",
-    [](EncodeOptions& options) { options.Ablation.TablesByRoughness = false; } },
+  { "banyan-without-activity",
+    [](EncodeOptions& options) { options.Ablation.TablesByActivity = false; } },
   { "banyan-without-sharing",
     [](EncodeOptions& options) { options.Ablation.SharedTables = false; } },
   { "banyan-without-axes",

@@ -60,7 +60,7 @@ std::string CodecHelp()
          "                  \"range_percentile\": 100}\n"
          "  --append        adds to FILE.csv instead of writing it anew\n"
          "  --bits LIST     bits of accuracy (default 6,8,10,12)\n"
-         "  --methods LIST  only these (default all but banyan-without-IDEA: roughness, sharing, axes,\n"
+         "  --methods LIST  only these (default all but banyan-without-IDEA: activity, sharing, axes,\n"
          "                  group-before, modes or trials)\n"
          "  --repeat N      timed passes of each kind, of which the median counts (default 3)\n"
          "  --bricks N      random bricks per pass (default 2000; 0 leaves them out)\n"

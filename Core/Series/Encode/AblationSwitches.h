@@ -11,7 +11,7 @@ namespace banyan
 struct AblationSwitches
 {
   /// Symbols have tables by what is around them; else by the kind of unit and pass only.
-  bool TablesByRoughness = true;
+  bool TablesByActivity = true;
   bool SharedTables = true;      ///< contexts that are alike have one table
   bool SmoothestAxisLast = true; ///< else x, y, z
   bool GroupBefore = true;       ///< a group refers to the key frame of the one before

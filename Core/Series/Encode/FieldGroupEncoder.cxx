@@ -250,7 +250,7 @@ void Encoder<T>::WriteSymbols()
   for (int set = 0; set < 2; ++set)
   {
     ContextCounts counts = this->Counters[set].Counts();
-    if (!this->Field.Ablation.TablesByRoughness)
+    if (!this->Field.Ablation.TablesByActivity)
     {
       counts.ForgetClasses();
     }

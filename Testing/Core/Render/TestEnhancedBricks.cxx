@@ -129,7 +129,7 @@ TEST_F(EnhancedBricks, AreEnhancedAtCoarserLevels)
   this->ExpectLevel(*coarse, 1);
 }
 
-TEST_F(EnhancedBricks, RestingOnesAreNotLoaded)
+TEST_F(EnhancedBricks, StaticOnesAreNotLoaded)
 {
   const auto source = this->Source();
   int uniform = 0;

@@ -57,7 +57,7 @@ enum class Kind
   Clamped,
   Hidden,   ///< by an opacity function
   Repeated, ///< the steps of the first group come again and again
-  Resting   ///< the vectors rest from the last step of the first group on
+  Static    ///< the vectors rest from the last step of the first group on
 };
 
 /// Vectors of floats with some NaN, and scalars of a short type, in two arrays.
@@ -69,7 +69,7 @@ protected:
     for (int step = 0; step < StepCount; ++step)
     {
       const int repeated = GetParam() == Kind::Repeated ? step % Interval : step;
-      const int s = GetParam() == Kind::Resting ? std::min(step, Interval - 1) : repeated;
+      const int s = GetParam() == Kind::Static ? std::min(step, Interval - 1) : repeated;
       this->Vectors.push_back(Sample<float>(GridOf(34 * 3, 19, 17), 1,
         [s](int x, int y, int z, int) {
           return x == 5 && y == 3 ? std::nan("") : Wavy<float>(x / 3, y, z + 7 * (x % 3), s);
@@ -161,11 +161,11 @@ protected:
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Groups,
   ::testing::Values(
-    Kind::Relative, Kind::Absolute, Kind::Clamped, Kind::Hidden, Kind::Repeated, Kind::Resting),
+    Kind::Relative, Kind::Absolute, Kind::Clamped, Kind::Hidden, Kind::Repeated, Kind::Static),
   [](const auto& info)
   {
     const std::vector<std::string> names(
-      { "Relative", "Absolute", "Clamped", "Hidden", "Repeated", "Resting" });
+      { "Relative", "Absolute", "Clamped", "Hidden", "Repeated", "Static" });
     return names[static_cast<std::size_t>(info.param)];
   });
 

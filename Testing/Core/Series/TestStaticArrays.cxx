@@ -109,7 +109,7 @@ std::uint64_t BytesOf(const SeriesIndex& index)
   return index.Statistics.PayloadBytes + index.Statistics.TableBytes;
 }
 
-TEST(RestingArrays, CostNextToNothingBesideMovingOnes)
+TEST(StaticArrays, CostNextToNothingBesideMovingOnes)
 {
   const TemporaryFolder folder;
   const Pair pair([](int) { return 1; });
@@ -150,7 +150,7 @@ TEST(RestingArrays, CostNextToNothingBesideMovingOnes)
 }
 
 /// What is measured of an array does not depend on how it is stored.
-TEST(RestingArrays, AreMeasuredLikeOthers)
+TEST(StaticArrays, AreMeasuredLikeOthers)
 {
   const TemporaryFolder folder;
   const Pair pair([](int) { return 2; });
@@ -182,7 +182,7 @@ TEST(RestingArrays, AreMeasuredLikeOthers)
 }
 
 /// It rests, moves within a group, rests as something else, and moves again.
-TEST(RestingArrays, MayMoveAgain)
+TEST(StaticArrays, MayMoveAgain)
 {
   const TemporaryFolder folder;
   const Pair pair([](int s) { return s < 19 ? 3 : s < 35 ? 4 : s; });
@@ -192,7 +192,7 @@ TEST(RestingArrays, MayMoveAgain)
 }
 
 /// A group that moves from the start refers to the last step before that is stored.
-TEST(RestingArrays, AreReferredToFromLaterGroups)
+TEST(StaticArrays, AreReferredToFromLaterGroups)
 {
   const TemporaryFolder folder;
   Pair pair([](int) { return 5; });

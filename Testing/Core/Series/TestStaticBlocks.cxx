@@ -38,11 +38,11 @@ Steps<float> MovingSteps(int axis, double higher)
     });
 }
 
-class RestingBlocks : public ::testing::TestWithParam<int>
+class StaticBlocks : public ::testing::TestWithParam<int>
 {
 };
 
-TEST_P(RestingBlocks, AtTheEndDecodeToWhatTheEncoderMeasured)
+TEST_P(StaticBlocks, AtTheEndDecodeToWhatTheEncoderMeasured)
 {
   for (const double higher : { 6.0, 8.0, 9.0, 10.0, 12.0 })
   {
@@ -80,7 +80,7 @@ TEST_P(RestingBlocks, AtTheEndDecodeToWhatTheEncoderMeasured)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(AllAxes, RestingBlocks, ::testing::Values(0, 1, 2));
+INSTANTIATE_TEST_SUITE_P(AllAxes, StaticBlocks, ::testing::Values(0, 1, 2));
 
 } // namespace
 } // namespace banyan::testing
