@@ -11,8 +11,8 @@ void SeriesChanges::Compare(const StepAgreement& now, const std::string& named) 
   const std::string change = ChangeBetween(this->First, now);
   if (!change.empty())
   {
-    throw AgreedError("The data change at " + named + ": " + change +
-                      ". All steps of a series need the same grid and the same arrays.");
+    throw CollectiveError("The data change at " + named + ": " + change +
+                          ". All steps of a series need the same grid and the same arrays.");
   }
 }
 

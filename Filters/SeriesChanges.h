@@ -2,8 +2,9 @@
 #ifndef banyan_Filters_SeriesChanges_h
 #define banyan_Filters_SeriesChanges_h
 
-#include "RankTalk.h"
 #include "StepReport.h"
+
+#include "Parallel/Communicate/Collective.h"
 
 #include <functional>
 #include <set>
@@ -18,10 +19,10 @@ class SeriesChanges
 {
 public:
   /// A step hides points or cells, and the files so far say that none does.
-  class LateHiding : public AgreedError
+  class LateHiding : public CollectiveError
   {
   public:
-    using AgreedError::AgreedError;
+    using CollectiveError::CollectiveError;
   };
 
   /// @param warn called with sentences for the user
@@ -30,15 +31,16 @@ public:
   {
   }
 
-  /// Takes step 0 as the first one. Of later steps, throws AgreedError when their grid or arrays
-  /// differ; otherwise notes what they hide. Warns of arrays that are not written, once each.
+  /// Takes step 0 as the first one. Of later steps, throws CollectiveError when their grid or
+  /// arrays differ; otherwise notes what they hide. Warns of arrays that are not written, once
+  /// each.
   /// @param named the step, for messages
   void Add(int step, const StepAgreement& now, const std::string& named);
 
   /// Adds the ranges of a step's values to those of the series. The step must have been added.
   void IncludeRanges(const StepAgreement& now);
 
-  /// Throws AgreedError when grid or arrays of a step differ from those of the first one.
+  /// Throws CollectiveError when grid or arrays of a step differ from those of the first one.
   void Compare(const StepAgreement& now, const std::string& named) const;
 
   /// Throws LateHiding when a step hides points or cells and no step before did.

@@ -1,24 +1,67 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SeriesGroups.h"
 
-#include "vtkMultiProcessStream.h"
-
+#include "Base/Interruption.h"
 #include "Base/ThreadPool.h"
+#include "Parallel/Communicate/Collective.h"
+#include "Parallel/Communicate/Communicator.h"
 #include "Series/Encode/EncodePlan.h"
 #include "Series/Encode/GroupMessage.h"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace banyan
 {
+namespace
+{
 
-SeriesGroups::SeriesGroups(const WritingOrder& order, const RankTalk& talk, const StepPuller& steps,
+constexpr int GroupTag = 2; // beside those of Meet and of StepGathering
+
+/// What a rank tells all others. Plain memory: it is sent as it is.
+struct News
+{
+  std::int32_t Aborted = 0; ///< whether it was told to stop
+  std::int32_t Group = -1;  ///< number of the group that it has encoded, if any
+  std::uint64_t Bytes = 0;  ///< of that group's message
+};
+
+/// Collective: the messages of the groups that ranks have encoded, by rank, on rank 0.
+std::vector<Bytes> GroupsOfRanks(
+  Communicator& ranks, const std::vector<News>& news, const Bytes& mine)
+{
+  std::vector<Bytes> groups(news.size());
+  if (ranks.Rank() > 0)
+  {
+    if (!mine.empty())
+    {
+      ranks.Send(0, GroupTag, mine.data(), mine.size());
+    }
+    ranks.WaitAll();
+    return groups;
+  }
+  groups.front() = mine;
+  for (std::size_t rank = 1; rank < news.size(); ++rank)
+  {
+    groups[rank].resize(news[rank].Bytes);
+    if (!groups[rank].empty())
+    {
+      ranks.Receive(static_cast<int>(rank), GroupTag, groups[rank].data(), groups[rank].size());
+    }
+  }
+  ranks.WaitAll();
+  return groups;
+}
+
+} // namespace
+
+SeriesGroups::SeriesGroups(const WritingOrder& order, Communicator& ranks, const StepPuller& steps,
   std::function<void()> tick)
   : Order(order)
-  , Talk(talk)
+  , Ranks(ranks)
   , Steps(steps)
   , Tick(std::move(tick))
-  , Gathering(talk, order.Controller)
+  , Gathering(ranks)
   , Options(order.Options)
 {
 }
@@ -50,14 +93,14 @@ void SeriesGroups::Open(const StepAgreement& series, const SeriesHistograms& his
   const std::vector<ArrayDescription> descriptions = this->DescribeArrays(series, histograms);
   if (this->Steps.Meshes().Active())
   {
-    this->Talk.OnRank(
-      0, [&] { this->Folder = std::make_unique<SegmentFolder>(this->Order.FileName); });
+    CollectiveOn(0, this->Ranks,
+      [&] { this->Folder = std::make_unique<SegmentFolder>(this->Order.FileName); });
     this->Options.Mesh = this->Steps.Meshes().Write(this->Folder.get());
   }
   const auto plan = [&] { return PlanSeries(series.Whole, descriptions, this->Options); };
-  this->Talk.OnRank(0, [&] { this->OpenIndex(series, plan()); });
-  ThreadPool::SetRanksOnThisNode(this->Talk.RanksOnThisNode());
-  this->Talk.Together([&] { this->OpenEncoder(plan()); });
+  CollectiveOn(0, this->Ranks, [&] { this->OpenIndex(series, plan()); });
+  ThreadPool::SetRanksOnThisNode(this->Ranks.RanksOnThisNode());
+  Collective(this->Ranks, [&] { this->OpenEncoder(plan()); });
   this->Opened = true;
 }
 
@@ -90,7 +133,7 @@ void SeriesGroups::OpenEncoder(SeriesIndex plan)
         { this->Folder->Path() });
     }
   }
-  this->Schedule = GroupSchedule(plan, this->Options, this->Steps.Count(), this->Talk.Ranks());
+  this->Schedule = GroupSchedule(plan, this->Options, this->Steps.Count(), this->Ranks.Size());
   this->Encoder = std::make_unique<BackgroundEncoder>(
     std::move(plan), this->Options, *this->Folder, ThreadPool::DefaultWidth());
 }
@@ -101,8 +144,8 @@ void SeriesGroups::Add(int step, const StepAgreement& now)
   const int place = this->Schedule.PlaceOf(step);
   const int owner = this->Schedule.OwnerOf(group);
   const int next = this->Schedule.NeedsBefore(step);
-  const bool receives = this->Talk.Rank() == owner;
-  const bool receivesForNext = this->Talk.Rank() == next;
+  const bool receives = this->Ranks.Rank() == owner;
+  const bool receivesForNext = this->Ranks.Rank() == next;
   if ((place == 0 && receives) || receivesForNext)
   {
     // Its values are those of the group before until that is encoded.
@@ -123,7 +166,8 @@ void SeriesGroups::Add(int step, const StepAgreement& now)
   }
   if (this->Schedule.EndsGroup(step))
   {
-    this->Talk.OnRank(owner, [this, group] { this->Encode(group); });
+    CollectiveOn(
+      owner, this->Ranks, [this, group] { this->Encode(group); }, NoMemoryForGroup);
   }
 }
 
@@ -154,7 +198,7 @@ void SeriesGroups::Finish()
 {
   this->Encoder->Wait(this->Tick);
   this->Exchange("at the end");
-  this->Talk.OnRank(0,
+  CollectiveOn(0, this->Ranks,
     [this]
     {
       if (!this->IndexProblem.empty())
@@ -167,78 +211,55 @@ void SeriesGroups::Finish()
 }
 
 /// @param number of the group that was encoded meanwhile, if one was
-/// @param message that group
-/// @return what went wrong on this rank, or nothing
-std::string SeriesGroups::TakeEncoded(int& number, std::string& message)
+/// @param group that group, as a message
+/// Throws what encoding it threw.
+void SeriesGroups::TakeEncoded(int& number, Bytes& group)
 {
-  try
+  if (const auto encoded = this->Encoder->Take())
   {
-    if (auto encoded = this->Encoder->Take())
-    {
-      const Bytes bytes = PackGroup(encoded->second);
-      number = encoded->first;
-      message.assign(bytes.begin(), bytes.end());
-      this->Encoding = 0;
-    }
+    group = PackGroup(encoded->second);
+    number = encoded->first;
+    this->Encoding = 0;
   }
-  catch (const std::exception& error)
-  {
-    return error.what();
-  }
-  return this->IndexProblem;
 }
 
 /// Brings the groups that were encoded meanwhile to rank 0, and the problems to all.
 void SeriesGroups::Exchange(const std::string& at)
 {
-  this->Talk.Meet(this->Tick);
-  int number = -1;
-  std::string message;
-  std::string problem = this->TakeEncoded(number, message);
-  vtkMultiProcessStream mine;
-  mine << static_cast<int>(this->Order.Aborted()) << problem << number << message;
+  Meet(this->Ranks, this->Tick);
+  News mine;
+  Bytes group;
+  std::string problem;
+  Attempt(
+    problem, [&] { this->TakeEncoded(mine.Group, group); }, NoMemoryForGroup);
+  problem = problem.empty() ? this->IndexProblem : problem;
+  mine.Aborted = this->Order.Aborted() ? 1 : 0;
+  mine.Bytes = group.size();
+  std::vector<News> news(static_cast<std::size_t>(this->Ranks.Size()));
+  this->Ranks.AllGather(&mine, sizeof(mine), news.data());
+  const std::vector<Bytes> groups = GroupsOfRanks(this->Ranks, news, group);
   bool aborted = false;
-  std::string first;
-  int rank = 0;
-  for (vtkMultiProcessStream& theirs : this->Talk.Exchange(mine))
+  for (std::size_t rank = 0; rank < news.size(); ++rank)
   {
-    int theirAborted = 0;
-    theirs >> theirAborted >> problem >> number >> message;
-    aborted = aborted || theirAborted != 0;
-    if (first.empty() && !problem.empty())
+    aborted = aborted || news[rank].Aborted != 0;
+    if (news[rank].Group >= 0)
     {
-      first = (this->Talk.Ranks() > 1 ? "Rank " + std::to_string(rank) + ": " : "") + problem;
+      this->AddToIndex(groups[rank], news[rank].Group);
     }
-    if (number >= 0)
-    {
-      this->AddToIndex(message, number);
-    }
-    ++rank;
   }
   if (aborted)
   {
     throw Interruption("Writing was interrupted " + at + ".");
   }
-  if (!first.empty())
-  {
-    throw AgreedError(first);
-  }
+  ThrowTogether(this->Ranks, problem);
 }
 
-void SeriesGroups::AddToIndex(const std::string& message, int number)
+void SeriesGroups::AddToIndex(const Bytes& group, int number)
 {
   this->Encoded += this->StepsOf(number);
-  if (!this->Assembly)
+  if (this->Assembly)
   {
-    return;
-  }
-  try
-  {
-    this->Assembly->Add(number, UnpackGroup(Bytes(message.begin(), message.end())));
-  }
-  catch (const std::exception& error)
-  {
-    this->IndexProblem = error.what();
+    Attempt(this->IndexProblem, [&] { this->Assembly->Add(number, UnpackGroup(group)); });
   }
 }
 
@@ -252,9 +273,13 @@ int SeriesGroups::GiveUp(bool interrupted)
     {
       this->Exchange("");
     }
-    catch (const AgreedError&)
+    catch (const CollectiveError&)
     {
       // Errors of encoding after it was interrupted are of no interest.
+    }
+    catch (const Interruption&)
+    {
+      // Nor is that somebody wishes what happens already.
     }
   }
   std::vector<std::string> keep;
@@ -266,22 +291,22 @@ int SeriesGroups::GiveUp(bool interrupted)
     }
     keep = this->Assembly->SegmentsInFile();
   }
-  keep = this->Talk.FromRankZero(keep);
+  keep = BroadcastStrings(this->Ranks, std::move(keep));
   int steps = 0;
   for (int group = 0; group < static_cast<int>(keep.size()); ++group)
   {
     steps += this->StepsOf(group);
   }
-  if (this->Folder && this->Talk.Rank() > 0)
+  if (this->Folder && this->Ranks.Rank() > 0)
   {
     this->Folder->RemoveOwn(keep);
   }
-  this->Talk.Meet([] {});
+  Meet(this->Ranks, [] {});
   if (this->Assembly)
   {
     keep = this->Assembly->FilesInFile();
   }
-  if (this->Folder && this->Talk.Rank() == 0)
+  if (this->Folder && this->Ranks.Rank() == 0)
   {
     this->Folder->RemoveOwn(keep); // and the folder, once the others have removed theirs
   }

@@ -2,13 +2,13 @@
 #ifndef banyan_Filters_SeriesGroups_h
 #define banyan_Filters_SeriesGroups_h
 
-#include "RankTalk.h"
 #include "SeriesHistograms.h"
 #include "StepGathering.h"
 #include "StepPuller.h"
 #include "StepReport.h"
 #include "WritingOrder.h"
 
+#include "Base/Bytes.h"
 #include "Series/Encode/BackgroundEncoder.h"
 #include "Series/Encode/GroupSchedule.h"
 #include "Series/Encode/SegmentFolder.h"
@@ -30,13 +30,13 @@ namespace banyan
 /// whose group is still being encoded when it should receive the next one makes the others wait.
 ///
 /// One object writes one series once. All public methods but Share() and Interrupt() are
-/// collective. They throw AgreedError; Interruption when a rank was told to stop.
+/// collective. They throw CollectiveError; Interruption when a rank was told to stop.
 class SeriesGroups
 {
 public:
-  /// @param order, talk, steps must outlive this object
+  /// @param order, ranks, steps must outlive this object
   /// @param tick called again and again while ranks wait
-  SeriesGroups(const WritingOrder& order, const RankTalk& talk, const StepPuller& steps,
+  SeriesGroups(const WritingOrder& order, Communicator& ranks, const StepPuller& steps,
     std::function<void()> tick);
 
   /// Makes the folder, the file of the mesh, and the index. Needs the first step pulled.
@@ -68,12 +68,12 @@ private:
   void OpenEncoder(SeriesIndex plan);
   void Encode(int group);
   void Exchange(const std::string& at);
-  std::string TakeEncoded(int& number, std::string& message);
-  void AddToIndex(const std::string& message, int number);
+  void TakeEncoded(int& number, Bytes& group);
+  void AddToIndex(const Bytes& group, int number);
   int StepsOf(int group) const;
 
   const WritingOrder& Order;
-  const RankTalk& Talk;
+  Communicator& Ranks;
   const StepPuller& Steps;
   std::function<void()> Tick;
   StepGathering Gathering;

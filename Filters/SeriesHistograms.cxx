@@ -2,13 +2,13 @@
 #include "SeriesHistograms.h"
 
 #include "PieceValues.h"
-#include "RankTalk.h"
+#include "RankMessages.h"
 #include "StepGathering.h"
 
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
-#include "vtkMultiProcessStream.h"
 
+#include "Parallel/Communicate/Collective.h"
 #include "Series/Quantize/FillValues.h"
 
 namespace banyan
@@ -86,31 +86,49 @@ void SeriesHistograms::Count(vtkImageData* image, const StepAgreement& step, int
   }
 }
 
-void SeriesHistograms::Merge(const RankTalk& talk, const std::vector<WrittenArray>& arrays)
+void SeriesHistograms::Merge(Communicator& ranks, const std::vector<WrittenArray>& arrays)
 {
-  for (const WrittenArray& array : arrays)
+  vtkMultiProcessStream mine;
+  const auto forCounted = [&](const auto& action)
   {
-    if (!this->Options.NeedsHistogram(array.Name))
+    for (const WrittenArray& array : arrays)
     {
-      continue;
-    }
-    std::vector<ValueHistogram>& counts = this->Counts[array.Name];
-    counts.resize(array.Components.size());
-    vtkMultiProcessStream mine;
-    for (const ValueHistogram& histogram : counts)
-    {
-      Save(histogram, mine);
-    }
-    std::vector<ValueHistogram> all(array.Components.size());
-    for (vtkMultiProcessStream& theirs : talk.Exchange(mine))
-    {
-      for (ValueHistogram& histogram : all)
+      if (this->Options.NeedsHistogram(array.Name))
       {
-        histogram.Merge(Load(theirs));
+        action(this->Counts[array.Name], array.Components.size());
       }
     }
-    counts = std::move(all);
-  }
+  };
+  Collective(ranks,
+    [&]
+    {
+      forCounted(
+        [&](std::vector<ValueHistogram>& counts, std::size_t components)
+        {
+          counts.resize(components);
+          for (const ValueHistogram& histogram : counts)
+          {
+            Save(histogram, mine);
+          }
+          counts.assign(components, ValueHistogram());
+        });
+    });
+  std::vector<vtkMultiProcessStream> all = AllGatherStreams(ranks, mine);
+  Collective(ranks,
+    [&]
+    {
+      for (vtkMultiProcessStream& theirs : all)
+      {
+        forCounted(
+          [&theirs](std::vector<ValueHistogram>& counts, std::size_t)
+          {
+            for (ValueHistogram& histogram : counts)
+            {
+              histogram.Merge(Load(theirs));
+            }
+          });
+      }
+    });
 }
 
 std::vector<ValueHistogram> SeriesHistograms::Of(const std::string& array) const

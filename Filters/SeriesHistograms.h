@@ -15,7 +15,7 @@ class vtkImageData;
 namespace banyan
 {
 
-class RankTalk;
+class Communicator;
 
 /// Counts the values of a series in the first pass, of the arrays that need it, each sample by the
 /// one rank that gives it to the encoder: the same counts on any number of ranks.
@@ -31,8 +31,8 @@ public:
   /// @param image its piece; hidden points do not count
   void Count(vtkImageData* image, const StepAgreement& step, int rank);
 
-  /// Gives all ranks the counts of all. Collective. Throws AgreedError.
-  void Merge(const RankTalk& talk, const std::vector<WrittenArray>& arrays);
+  /// Gives all ranks the counts of all. Collective. Throws CollectiveError.
+  void Merge(Communicator& ranks, const std::vector<WrittenArray>& arrays);
 
   /// After Merge: one per component, or none.
   std::vector<ValueHistogram> Of(const std::string& array) const;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SeriesWriting.h"
 
+#include "CommunicatorOf.h"
+
+#include "Base/Interruption.h"
+#include "Parallel/Communicate/Collective.h"
 #include "Series/Format/SeriesPath.h"
 
 #include <algorithm>
@@ -23,19 +27,19 @@ bool NeedsAllValuesFirst(const EncodeOptions& options)
 
 SeriesWriting::SeriesWriting(WritingOrder order)
   : Order(std::move(order))
-  , Talk(this->Order.Controller)
-  , Steps(this->Order, this->Talk, [this] { this->Tick(); })
+  , Ranks(CommunicatorOf(this->Order.Controller))
+  , Steps(this->Order, *this->Ranks, [this] { this->Tick(); })
   , Changes(
       [this](const std::string& warning)
       {
-        if (this->Talk.Rank() == 0)
+        if (this->Ranks->Rank() == 0)
         {
           this->Order.Warn(warning);
         }
       })
   , Histograms(this->Order.Options)
   , Groups(std::make_unique<SeriesGroups>(
-      this->Order, this->Talk, this->Steps, [this] { this->Tick(); }))
+      this->Order, *this->Ranks, this->Steps, [this] { this->Tick(); }))
 {
 }
 
@@ -52,7 +56,7 @@ void SeriesWriting::Run()
     this->Kept = this->Groups->GiveUp(true);
     throw;
   }
-  catch (const AgreedError&)
+  catch (const CollectiveError&)
   {
     this->Kept = this->Groups->GiveUp(false);
     throw;
@@ -111,10 +115,10 @@ void SeriesWriting::LookAtAllSteps()
       const StepAgreement now = this->Steps.Pull(step, StepPuller::Purpose::Ranges);
       this->Changes.Add(step, now, this->Steps.Named(step));
       this->Changes.IncludeRanges(now);
-      this->Talk.Together(
-        [&] { this->Histograms.Count(this->Steps.Mine(), now, this->Talk.Rank()); });
+      Collective(*this->Ranks,
+        [&] { this->Histograms.Count(this->Steps.Mine(), now, this->Ranks->Rank()); });
     });
-  this->Histograms.Merge(this->Talk, this->Changes.Series().Arrays);
+  this->Histograms.Merge(*this->Ranks, this->Changes.Series().Arrays);
 }
 
 void SeriesWriting::EncodeStep(int step, const StepAgreement& now)
@@ -130,20 +134,20 @@ void SeriesWriting::EncodeStep(int step, const StepAgreement& now)
 void SeriesWriting::TakeLock()
 {
   std::string path;
-  this->Talk.OnRank(0,
+  CollectiveOn(0, *this->Ranks,
     [&]
     {
       path = FollowLinks(this->Order.FileName);
       this->Lock = std::make_unique<SeriesLock>(path);
     });
-  this->Order.FileName = this->Talk.FromRankZero({ path })[0];
+  this->Order.FileName = BroadcastStrings(*this->Ranks, { path })[0];
 }
 
 void SeriesWriting::StartAnew()
 {
   this->Groups->GiveUp(false);
-  this->Groups =
-    std::make_unique<SeriesGroups>(this->Order, this->Talk, this->Steps, [this] { this->Tick(); });
+  this->Groups = std::make_unique<SeriesGroups>(
+    this->Order, *this->Ranks, this->Steps, [this] { this->Tick(); });
 }
 
 template <class Action>

@@ -2,13 +2,13 @@
 #ifndef banyan_Filters_SeriesWriting_h
 #define banyan_Filters_SeriesWriting_h
 
-#include "RankTalk.h"
 #include "SeriesChanges.h"
 #include "SeriesGroups.h"
 #include "SeriesHistograms.h"
 #include "StepPuller.h"
 #include "WritingOrder.h"
 
+#include "Parallel/Communicate/Communicator.h"
 #include "Series/Encode/SeriesLock.h"
 
 #include <memory>
@@ -20,7 +20,7 @@ namespace banyan
 /// of ranks.
 ///
 /// Everything is decided by all ranks together: a problem of one makes all of them throw the same
-/// Error, at the same point, that another save of the series is under way included. With a relative
+/// error, at the same point, that another save of the series is under way included. With a relative
 /// error bound the steps are pulled twice: first for the ranges of the whole series; the same where
 /// a transform or a range is chosen from the values. Changes of grid, type or arrays between steps
 /// are refused in the first pass. Where a save in one pass meets the first hidden points or cells
@@ -32,9 +32,10 @@ public:
   SeriesWriting(const SeriesWriting&) = delete;
   SeriesWriting& operator=(const SeriesWriting&) = delete;
 
-  /// Collective. Throws Error on all ranks; then nothing new is on the disk, and a series that was
-  /// there under the same name still is. Only when it was interrupted (see WritingOrder::Aborted)
-  /// and no series of the name was there, the groups that were finished stay as a series.
+  /// Collective. Throws CollectiveError or Interruption; then nothing new is on the disk, and a
+  /// series that was there under the same name still is. Only when it was interrupted (see
+  /// WritingOrder::Aborted) and no series of the name was there, the groups that were finished stay
+  /// as a series.
   void Run();
 
   /// After an interruption: how many steps the series on the disk holds.
@@ -62,7 +63,7 @@ private:
   void Report();
 
   WritingOrder Order;
-  RankTalk Talk;
+  std::unique_ptr<Communicator> Ranks;
   StepPuller Steps;
   SeriesChanges Changes;
   SeriesHistograms Histograms;

@@ -5,6 +5,7 @@
 
 #include "vtkMultiProcessStream.h"
 
+#include "Parallel/Communicate/Communicator.h"
 #include "Series/Encode/SeriesEncoder.h"
 
 #include <algorithm>
@@ -206,9 +207,14 @@ StepAgreement Agree(const std::vector<StepReport>& reports)
 {
   StepAgreement agreement;
   std::vector<Box> pieces;
-  for (std::size_t rank = 0; rank < reports.size(); ++rank)
+  std::vector<std::string> problems;
+  for (const StepReport& report : reports)
   {
-    const StepReport& report = reports[rank];
+    problems.push_back(report.Problem);
+  }
+  agreement.Problem = AgreedError(problems);
+  for (const StepReport& report : reports)
+  {
     pieces.push_back(report.Piece.Extent);
     agreement.Aborted = agreement.Aborted || report.Aborted;
     agreement.HidesPoints = agreement.HidesPoints || report.HidesPoints;
@@ -217,11 +223,6 @@ StepAgreement Agree(const std::vector<StepReport>& reports)
     if (agreement.Warning.empty())
     {
       agreement.Warning = report.Warning;
-    }
-    if (!report.Problem.empty() && agreement.Problem.empty())
-    {
-      agreement.Problem =
-        (reports.size() > 1 ? "Rank " + std::to_string(rank) + ": " : "") + report.Problem;
     }
     if (report.Problem.empty() && !report.Piece.Extent.Empty())
     {

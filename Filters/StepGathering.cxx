@@ -5,8 +5,10 @@
 
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
-#include "vtkMultiProcessController.h"
 #include "vtkPointData.h"
+
+#include "Parallel/Communicate/Collective.h"
+#include "Parallel/Communicate/Communicator.h"
 
 #include <algorithm>
 
@@ -17,7 +19,7 @@ namespace
 
 /// Large enough for a network to be at full speed, small beside a step.
 constexpr std::size_t MessageBytes = std::size_t{ 16 } << 20;
-constexpr int MessageTag = 0x42414e; // "BAN"
+constexpr int MessageTag = 1; // beside the one of Meet
 
 /// Cuts a box into parts of at most `samples` each (at least one), the slowest axis first.
 void Cut(const Box& box, std::int64_t samples, std::vector<Box>& parts)
@@ -75,18 +77,23 @@ vtkDataArray* ArrayOf(vtkImageData* image, const std::string& name)
 void StepGathering::Gather(vtkImageData* mine, const StepAgreement& step,
   const std::vector<WrittenArray>& arrays, int owner, StepValues& whole)
 {
-  const bool receives = this->Talk.Rank() == owner;
-  this->Talk.Together(
-    [&]
+  const bool receives = this->Ranks.Rank() == owner;
+  const auto makeRoom = [&]
+  {
+    std::size_t bytes = MessageBytes;
+    whole.resize(receives ? arrays.size() : 0);
+    for (std::size_t i = 0; i < arrays.size(); ++i)
     {
-      this->Message.resize(MessageBytes);
-      whole.resize(receives ? arrays.size() : 0);
-      for (std::size_t i = 0; i < whole.size(); ++i)
+      bytes = std::max(bytes, TupleBytes(arrays[i]));
+      if (receives)
       {
         whole[i].resize(
           static_cast<std::size_t>(step.Whole.Extent.Count()) * TupleBytes(arrays[i]));
       }
-    });
+    }
+    this->Message.resize(bytes);
+  };
+  Collective(this->Ranks, makeRoom, NoMemoryForGroup);
   this->Problem.clear();
   for (std::size_t i = 0; i < arrays.size(); ++i)
   {
@@ -112,27 +119,29 @@ void StepGathering::Gather(vtkImageData* mine, const StepAgreement& step,
       this->Copy(mine, arrays[i], step.Whole.Extent, whole[i].data());
     }
   }
-  this->Talk.AgreeOn(this->Problem);
+  ThrowTogether(this->Ranks, this->Problem);
 }
 
 /// A failure must not keep the messages from being sent that others wait for.
 void StepGathering::Copy(
   vtkImageData* mine, const WrittenArray& array, const Box& part, unsigned char* to)
 {
-  try
-  {
-    if (array.Flags == ArrayFlags::None)
+  std::string failure;
+  Attempt(failure,
+    [&]
     {
-      CopyPart(mine, ArrayOf(mine, array.Name), part, to);
-    }
-    else
-    {
-      CopyFlags(mine, array.Flags, part, to);
-    }
-  }
-  catch (const std::exception& error)
+      if (array.Flags == ArrayFlags::None)
+      {
+        CopyPart(mine, ArrayOf(mine, array.Name), part, to);
+      }
+      else
+      {
+        CopyFlags(mine, array.Flags, part, to);
+      }
+    });
+  if (!failure.empty())
   {
-    this->Problem = "The values of the array " + array.Name + " cannot be copied: " + error.what();
+    this->Problem = "The values of the array " + array.Name + " cannot be copied: " + failure;
   }
 }
 
@@ -143,25 +152,21 @@ void StepGathering::Transfer(vtkImageData* mine, const StepAgreement& step,
   const GatherPlan& plan = array.Flags == ArrayFlags::OfCells ? step.CellPlan : step.Plan;
   for (const GatherPlan::Part& message : Messages(plan, tupleBytes))
   {
-    const auto bytes = message.Samples.Count() * static_cast<vtkIdType>(tupleBytes);
-    const bool sends = this->Talk.Rank() == message.Rank;
-    if (sends || whole)
-    {
-      // Larger than MessageBytes only where one tuple is.
-      this->Message.resize(std::max<std::size_t>(this->Message.size(), bytes));
-    }
+    const std::size_t bytes = static_cast<std::size_t>(message.Samples.Count()) * tupleBytes;
+    const bool sends = this->Ranks.Rank() == message.Rank;
     if (sends)
     {
       this->Copy(mine, array, message.Samples, this->Message.data());
     }
     if (sends && !whole)
     {
-      this->Controller->Send(this->Message.data(), bytes, owner, MessageTag);
+      this->Ranks.Send(owner, MessageTag, this->Message.data(), bytes);
     }
     if (!sends && whole)
     {
-      this->Controller->Receive(this->Message.data(), bytes, message.Rank, MessageTag);
+      this->Ranks.Receive(message.Rank, MessageTag, this->Message.data(), bytes);
     }
+    this->Ranks.WaitAll();
     if (whole)
     {
       PlacePart(

@@ -2,17 +2,22 @@
 #ifndef banyan_Filters_StepGathering_h
 #define banyan_Filters_StepGathering_h
 
-#include "RankTalk.h"
 #include "StepReport.h"
 
 #include <vector>
 
 class vtkDataArray;
 class vtkImageData;
-class vtkMultiProcessController;
 
 namespace banyan
 {
+
+class Communicator;
+
+/// What users read where the values of a group do not fit into memory.
+inline constexpr const char* NoMemoryForGroup =
+  "There is not enough memory for a group of steps of the series. Lower 'Keyframe Interval' "
+  "(KeyframeInterval).";
 
 /// The values of one step, by array: `[z][y][x][components]` of the whole extent.
 using StepValues = std::vector<std::vector<unsigned char>>;
@@ -24,13 +29,12 @@ vtkDataArray* ArrayOf(vtkImageData* image, const std::string& name);
 class StepGathering
 {
 public:
-  StepGathering(const RankTalk& talk, vtkMultiProcessController* controller)
-    : Talk(talk)
-    , Controller(controller)
+  explicit StepGathering(Communicator& ranks)
+    : Ranks(ranks)
   {
   }
 
-  /// Collective; throws AgreedError. A rank that holds everything itself needs no message.
+  /// Collective; throws CollectiveError. A rank that holds everything itself needs no message.
   /// @param mine this rank's piece
   /// @param arrays which ones, in the order of `whole`
   /// @param owner the rank that receives
@@ -43,8 +47,7 @@ private:
     std::vector<unsigned char>* whole);
   void Copy(vtkImageData* mine, const WrittenArray& array, const Box& part, unsigned char* to);
 
-  const RankTalk& Talk;
-  vtkMultiProcessController* Controller;
+  Communicator& Ranks;
   std::vector<unsigned char> Message;
   std::string Problem; ///< of this rank's values, to be agreed on
 };

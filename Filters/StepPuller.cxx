@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "StepPuller.h"
 
+#include "RankMessages.h"
 #include "StepGathering.h"
 
 #include "vtkDataArray.h"
@@ -8,83 +9,44 @@
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkMultiProcessController.h"
-#include "vtkMultiProcessStream.h"
 #include "vtkNew.h"
+
+#include "Base/Interruption.h"
+#include "Parallel/Communicate/Collective.h"
+#include "Parallel/Communicate/Communicator.h"
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 #include <sstream>
 
 namespace banyan
 {
-namespace
-{
 
-/// @param problem set to a sentence when the action throws
-void Attempt(std::string& problem, const std::function<void()>& action)
-{
-  try
-  {
-    action();
-  }
-  catch (const std::bad_alloc&)
-  {
-    problem = "There is not enough memory for a piece of the input.";
-  }
-  catch (const std::exception& error)
-  {
-    problem = error.what();
-  }
-}
-
-} // namespace
-
-StepPuller::StepPuller(const WritingOrder& order, const RankTalk& talk, std::function<void()> tick)
+StepPuller::StepPuller(const WritingOrder& order, Communicator& ranks, std::function<void()> tick)
   : Order(order)
-  , Talk(talk)
+  , Ranks(ranks)
   , Tick(std::move(tick))
   , Input(order.Producer, order.Port)
-  , Mesh(talk, order.Controller, order.Options, order.Selection, order.CellSelection,
-      order.Displacements)
+  , Mesh(ranks, order.Options, order.Selection, order.CellSelection, order.Displacements)
 {
 }
 
 void StepPuller::FindTimes()
 {
-  std::string problem;
-  try
-  {
-    if (this->Order.FileName.empty())
+  Collective(this->Ranks,
+    [this]
     {
-      throw Error("No file name is set for the series.");
-    }
-    this->Times = this->Input.Times(this->Order.AllSteps);
-  }
-  catch (const std::exception& error)
-  {
-    problem = error.what();
-  }
-  this->Talk.AgreeOn(problem);
-  if (this->Talk.Ranks() > 1)
-  {
-    // Every rank asks for the steps of rank 0, so that all go through the same number of them.
-    vtkMultiProcessStream stream;
-    stream << static_cast<int>(this->Times.size());
-    for (const double time : this->Times)
-    {
-      stream << time;
-    }
-    this->Order.Controller->Broadcast(stream, 0);
-    int steps = 0;
-    stream >> steps;
-    this->Times.resize(static_cast<std::size_t>(steps));
-    for (double& time : this->Times)
-    {
-      stream >> time;
-    }
-  }
+      if (this->Order.FileName.empty())
+      {
+        throw Error("No file name is set for the series.");
+      }
+      this->Times = this->Input.Times(this->Order.AllSteps);
+    });
+  // Every rank asks for the steps of rank 0, so that all go through the same number of them.
+  std::uint64_t steps = this->Times.size();
+  this->Ranks.Broadcast(0, &steps, sizeof(steps));
+  this->Times.resize(steps);
+  this->Ranks.Broadcast(0, this->Times.data(), steps * sizeof(double));
 }
 
 int StepPuller::Count() const
@@ -94,7 +56,7 @@ int StepPuller::Count() const
 
 vtkSmartPointer<vtkDataObject> StepPuller::PullMine(int step, bool withFiles) const
 {
-  vtkSmartPointer<vtkDataObject> data = this->Input.Pull(this->Talk.Rank(), this->Talk.Ranks(),
+  vtkSmartPointer<vtkDataObject> data = this->Input.Pull(this->Ranks.Rank(), this->Ranks.Size(),
     this->Times.empty() ? nullptr : &this->Times[step], withFiles);
   this->CheckTime(step, data);
   return data;
@@ -155,7 +117,7 @@ std::vector<StepReport> StepPuller::ReportsOfAll(const StepReport& mine) const
   vtkMultiProcessStream stream;
   mine.Save(stream);
   std::vector<StepReport> reports;
-  for (vtkMultiProcessStream& theirs : this->Talk.Exchange(stream))
+  for (vtkMultiProcessStream& theirs : AllGatherStreams(this->Ranks, stream))
   {
     reports.emplace_back();
     reports.back().Load(theirs);
@@ -165,16 +127,18 @@ std::vector<StepReport> StepPuller::ReportsOfAll(const StepReport& mine) const
 
 StepAgreement StepPuller::Pull(int step, Purpose purpose)
 {
+  constexpr const char* noMemory = "There is not enough memory for a piece of the input.";
   StepReport mine;
-  Attempt(
-    mine.Problem, [&] { this->Data = this->PullMine(step, purpose != Purpose::ValuesAgain); });
-  this->Talk.Meet(this->Tick);
-  mine.Problem = this->Mesh.Take(this->Data, mine.Problem);
-  if (mine.Problem.empty())
-  {
-    Attempt(mine.Problem, [&] { mine = this->ReportOfMine(purpose == Purpose::Ranges); });
-  }
-  this->Talk.Meet(this->Tick);
+  const auto pull = [&] { this->Data = this->PullMine(step, purpose != Purpose::ValuesAgain); };
+  Attempt(mine.Problem, pull, noMemory);
+  Meet(this->Ranks, this->Tick);
+  // Collective: a rank with a problem must not leave it out.
+  std::string ofMesh;
+  Attempt(ofMesh, [&] { this->Mesh.Take(this->Data, mine.Problem); });
+  mine.Problem = mine.Problem.empty() ? ofMesh : mine.Problem;
+  const auto report = [&] { mine = this->ReportOfMine(purpose == Purpose::Ranges); };
+  Attempt(mine.Problem, report, noMemory);
+  Meet(this->Ranks, this->Tick);
   mine.Aborted = this->Order.Aborted();
   StepAgreement now = Agree(this->ReportsOfAll(mine));
   if (now.Aborted)
@@ -183,7 +147,7 @@ StepAgreement StepPuller::Pull(int step, Purpose purpose)
   }
   if (!now.Problem.empty())
   {
-    throw AgreedError("At " + this->Named(step) + ": " + now.Problem);
+    throw CollectiveError("At " + this->Named(step) + ": " + now.Problem);
   }
   return now;
 }

@@ -4,7 +4,6 @@
 
 #include "MeshSteps.h"
 #include "PipelineInput.h"
-#include "RankTalk.h"
 #include "StepReport.h"
 #include "WritingOrder.h"
 
@@ -20,6 +19,8 @@ class vtkImageData;
 namespace banyan
 {
 
+class Communicator;
+
 /// Pulls steps out of a pipeline, each rank its own piece, and lets all ranks agree on each step.
 /// Meshes become images (see MeshSteps).
 class StepPuller
@@ -32,17 +33,17 @@ public:
     ValuesAgain, ///< the step is encoded, and was pulled for its ranges before
   };
 
-  /// @param order, talk must outlive this object
+  /// @param order, ranks must outlive this object
   /// @param tick called again and again while ranks wait for each other
-  StepPuller(const WritingOrder& order, const RankTalk& talk, std::function<void()> tick);
+  StepPuller(const WritingOrder& order, Communicator& ranks, std::function<void()> tick);
 
-  /// Collective. Asks for the times of the input; those of rank 0 count. Throws AgreedError.
+  /// Collective. Asks for the times of the input; those of rank 0 count. Throws CollectiveError.
   void FindTimes();
 
   /// Steps of the series, at least 1.
   int Count() const;
 
-  /// Collective. Throws Interruption when a rank was told to stop, else AgreedError when a rank
+  /// Collective. Throws Interruption when a rank was told to stop, else CollectiveError when a rank
   /// has no such step.
   StepAgreement Pull(int step, Purpose purpose);
 
@@ -64,7 +65,7 @@ private:
   std::vector<StepReport> ReportsOfAll(const StepReport& mine) const;
 
   const WritingOrder& Order;
-  const RankTalk& Talk;
+  Communicator& Ranks;
   std::function<void()> Tick;
   PipelineInput Input;
   MeshSteps Mesh;

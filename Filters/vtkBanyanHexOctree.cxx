@@ -2,31 +2,31 @@
 #include "vtkBanyanHexOctree.h"
 
 #include "ArraysOfRanks.h"
-#include "GridOfAmr.h"
-#include "GridOfHyperTrees.h"
+#include "CommunicatorOf.h"
 #include "HexMeshOfGrid.h"
 #include "LatticeOfRanks.h"
+#include "LeafSteps.h"
 #include "MeshArrays.h"
 #include "MeshPieces.h"
-#include "RankTalk.h"
+#include "RankMessages.h"
 #include "SampledGrid.h"
 #include "SetNumber.h"
 
+#include "Base/Interruption.h"
 #include "Base/ThreadPool.h"
 #include "Mesh/Octree/ElementOctree.h"
+#include "Parallel/Communicate/Collective.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkErrorCode.h"
 #include "vtkFieldData.h"
-#include "vtkHyperTreeGrid.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkOverlappingAMR.h"
 #include "vtkPointData.h"
 #include "vtkSignedCharArray.h"
 #include "vtkUnsignedCharArray.h"
@@ -111,18 +111,9 @@ vtkSmartPointer<vtkUnstructuredGrid> Merged(const std::vector<vtkUnstructuredGri
     pieces, [](const std::string&) { return true; }, banyan::UnevenArrays::LeftOut);
 }
 
-/// Collective for AMR.
+/// This rank's part of a mesh as one grid.
 vtkSmartPointer<vtkUnstructuredGrid> GridOf(vtkDataObject* data)
 {
-  if (vtkHyperTreeGrid* const trees = vtkHyperTreeGrid::SafeDownCast(data))
-  {
-    return banyan::GridOfHyperTrees(trees);
-  }
-  if (vtkOverlappingAMR* const blocks = vtkOverlappingAMR::SafeDownCast(data))
-  {
-    const banyan::RankTalk talk(vtkMultiProcessController::GetGlobalController());
-    return banyan::GridOfAmrOnRanks(blocks, talk);
-  }
   if (vtkUnstructuredGrid* const grid = vtkUnstructuredGrid::SafeDownCast(data))
   {
     return grid; // with its ghost cells
@@ -137,22 +128,26 @@ vtkSmartPointer<vtkUnstructuredGrid> GridOf(vtkDataObject* data)
   return Merged(grids);
 }
 
-/// Collective: what this rank has; all ranks fail when one does.
-vtkSmartPointer<vtkUnstructuredGrid> PieceOf(const banyan::RankTalk& talk, vtkDataObject* data)
+/// Collective: the grids of all ranks as one, on the first one; the others keep theirs.
+vtkSmartPointer<vtkUnstructuredGrid> OnFirst(
+  banyan::Communicator& ranks, vtkSmartPointer<vtkUnstructuredGrid> grid)
 {
-  if (vtkOverlappingAMR::SafeDownCast(data))
+  if (ranks.Size() == 1)
   {
-    return GridOf(data);
+    return grid;
   }
-  vtkSmartPointer<vtkUnstructuredGrid> grid;
-  talk.Together([&] { grid = GridOf(data); });
+  const std::vector<vtkSmartPointer<vtkDataObject>> all = banyan::GatherData(ranks, grid);
+  banyan::CollectiveOn(0, ranks,
+    [&]
+    {
+      std::vector<vtkUnstructuredGrid*> pieces;
+      for (const auto& piece : all)
+      {
+        banyan::CollectGrids(piece, pieces);
+      }
+      grid = Merged(pieces);
+    });
   return grid;
-}
-
-/// Whether the cells are boxes already, whatever the data.
-bool IsOfBoxes(vtkDataObject* data)
-{
-  return vtkHyperTreeGrid::SafeDownCast(data) || vtkOverlappingAMR::SafeDownCast(data);
 }
 
 } // namespace
@@ -178,21 +173,24 @@ int vtkBanyanHexOctree::RequestData(
   this->SetAbortExecute(
     0); // what stopped an update, or came behind its end, was not meant for this
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputs);
-  vtkDataObject* const data = vtkDataObject::GetData(inputs[0]);
+  vtkSmartPointer<vtkDataObject> data = vtkDataObject::GetData(inputs[0]);
   vtkSmartPointer<vtkUnstructuredGrid> grid;
+  bool leaves = false; // whether cells are boxes already
   try
   {
-    const banyan::RankTalk talk(vtkMultiProcessController::GetGlobalController());
-    if (!this->SampleGeneralMeshes || IsOfBoxes(data))
+    const std::unique_ptr<banyan::Communicator> ranks =
+      banyan::CommunicatorOf(vtkMultiProcessController::GetGlobalController());
+    banyan::LeavesAsGrid(*ranks, {}, data, leaves);
+    banyan::Collective(*ranks, [&] { grid = GridOf(data); });
+    if (!this->SampleGeneralMeshes || leaves)
     {
-      grid = PieceOf(talk, data);
-      grid = banyan::WithArraysOfAllRanks(talk, grid);
-      this->Describe(talk, grid, output);
+      grid = banyan::WithArraysOfAllRanks(*ranks, grid);
+      this->Describe(*ranks, grid, output);
       return 1;
     }
-    const vtkSmartPointer<vtkUnstructuredGrid> all = this->Gathered(data);
-    const banyan::RankTalk alone(nullptr);
-    talk.OnRank(0, [&] { this->Describe(alone, all, output); });
+    grid = OnFirst(*ranks, grid);
+    const std::unique_ptr<banyan::Communicator> alone = banyan::MakeSelfCommunicator();
+    banyan::CollectiveOn(0, *ranks, [&] { this->Describe(*alone, grid, output); });
     return 1;
   }
   catch (const std::exception& error)
@@ -201,7 +199,7 @@ int vtkBanyanHexOctree::RequestData(
     std::string reason = error.what();
     reason.erase(reason.find_last_not_of('.') + 1);
     vtkErrorMacro(<< "The mesh is no octree of hexahedra. " << reason
-                  << (this->SampleGeneralMeshes || IsOfBoxes(data) || !banyan::CanBeSampled(grid)
+                  << (this->SampleGeneralMeshes || leaves || !banyan::CanBeSampled(grid)
                          ? ""
                          : ". Switch on 'Sample General Meshes' for the boxes that \"Banyan "
                            "Volume\" draws of such meshes"));
@@ -210,39 +208,13 @@ int vtkBanyanHexOctree::RequestData(
   }
 }
 
-/// Collective: the meshes of all ranks as one, on the first one.
-vtkSmartPointer<vtkUnstructuredGrid> vtkBanyanHexOctree::Gathered(vtkDataObject* data) const
-{
-  vtkMultiProcessController* const controller = vtkMultiProcessController::GetGlobalController();
-  const banyan::RankTalk talk(controller);
-  vtkSmartPointer<vtkUnstructuredGrid> mine;
-  talk.Together([&] { mine = GridOf(data); });
-  if (talk.Ranks() == 1)
-  {
-    return mine;
-  }
-  std::vector<vtkSmartPointer<vtkDataObject>> all;
-  controller->Gather(mine, all, 0);
-  talk.OnRank(0,
-    [&]
-    {
-      std::vector<vtkUnstructuredGrid*> pieces;
-      for (const auto& piece : all)
-      {
-        banyan::CollectGrids(piece, pieces);
-      }
-      mine = Merged(pieces);
-    });
-  return mine;
-}
-
 /// Collective: the input with what is found in it, or the boxes that it is sampled at.
 void vtkBanyanHexOctree::Describe(
-  const banyan::RankTalk& talk, vtkUnstructuredGrid* input, vtkUnstructuredGrid* output)
+  banyan::Communicator& ranks, vtkUnstructuredGrid* input, vtkUnstructuredGrid* output)
 {
   std::shared_ptr<const banyan::ElementOctree> tree;
-  talk.Together([&] { tree = this->Survey(input, output); });
-  const banyan::CommonLattice common = banyan::LatticeOfRanks(talk, tree.get());
+  banyan::Collective(ranks, [&] { tree = this->Survey(input, output); });
+  const banyan::CommonLattice common = banyan::LatticeOfRanks(ranks, tree.get());
   if (tree)
   {
     AddLevels(*tree, common.Shift, output);
@@ -296,7 +268,7 @@ std::shared_ptr<const banyan::ElementOctree> vtkBanyanHexOctree::Survey(
                                           return this->GetAbortExecute() == 0;
                                         } });
     }
-    catch (const banyan::Interrupted&)
+    catch (const banyan::Interruption&)
     {
       output->Initialize(); // as other filters that are told to stop
       return nullptr;

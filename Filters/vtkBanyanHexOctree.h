@@ -33,15 +33,14 @@
 #define vtkBanyanHexOctree_h
 
 #include "BanyanFiltersModule.h" // For export macro
-#include "vtkSmartPointer.h"     // For Gathered
 #include "vtkUnstructuredGridAlgorithm.h"
 
 #include <memory> // For Sampled
 
 namespace banyan
 {
+class Communicator;
 class ElementOctree;
-class RankTalk;
 class SampledGrid;
 }
 
@@ -90,9 +89,8 @@ protected:
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 private:
-  vtkSmartPointer<vtkUnstructuredGrid> Gathered(vtkDataObject* data) const;
   void Describe(
-    const banyan::RankTalk& talk, vtkUnstructuredGrid* input, vtkUnstructuredGrid* output);
+    banyan::Communicator& ranks, vtkUnstructuredGrid* input, vtkUnstructuredGrid* output);
   std::shared_ptr<const banyan::ElementOctree> Survey(
     vtkUnstructuredGrid* input, vtkUnstructuredGrid* output);
 

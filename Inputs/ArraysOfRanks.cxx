@@ -2,7 +2,7 @@
 #include "ArraysOfRanks.h"
 
 #include "MeshArrays.h"
-#include "RankTalk.h"
+#include "RankMessages.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkDataObject.h"
@@ -48,7 +48,7 @@ std::map<Place, Shape> ArraysOf(vtkUnstructuredGrid* grid)
 }
 
 /// Collective: what some ranks have, and others with cells have not, or not so.
-std::set<Place> ArraysOfSome(const RankTalk& talk, const std::map<Place, Shape>& mine, bool counts)
+std::set<Place> ArraysOfSome(Communicator& ranks, const std::map<Place, Shape>& mine, bool counts)
 {
   vtkMultiProcessStream stream;
   stream << (counts ? 1 : 0) << static_cast<int>(counts ? mine.size() : 0);
@@ -60,13 +60,13 @@ std::set<Place> ArraysOfSome(const RankTalk& talk, const std::map<Place, Shape>&
              << array.second.second;
     }
   }
-  int ranks = 0;
+  int counting = 0;
   std::map<Place, std::map<Shape, int>> found; // and how many ranks have it so
-  for (vtkMultiProcessStream& theirs : talk.Exchange(stream))
+  for (vtkMultiProcessStream& theirs : AllGatherStreams(ranks, stream))
   {
     int theyCount = 0, arrays = 0;
     theirs >> theyCount >> arrays;
-    ranks += theyCount;
+    counting += theyCount;
     for (int i = 0; i < arrays; ++i)
     {
       Place place;
@@ -78,7 +78,7 @@ std::set<Place> ArraysOfSome(const RankTalk& talk, const std::map<Place, Shape>&
   std::set<Place> uneven;
   for (const auto& array : found)
   {
-    if (array.second.begin()->second < ranks)
+    if (array.second.begin()->second < counting)
     {
       uneven.insert(array.first);
     }
@@ -89,11 +89,11 @@ std::set<Place> ArraysOfSome(const RankTalk& talk, const std::map<Place, Shape>&
 } // namespace
 
 vtkSmartPointer<vtkUnstructuredGrid> WithArraysOfAllRanks(
-  const RankTalk& talk, vtkUnstructuredGrid* grid)
+  Communicator& ranks, vtkUnstructuredGrid* grid)
 {
   const bool counts = grid && grid->GetNumberOfCells() > 0;
   const std::set<Place> uneven =
-    ArraysOfSome(talk, grid ? ArraysOf(grid) : std::map<Place, Shape>{}, counts);
+    ArraysOfSome(ranks, grid ? ArraysOf(grid) : std::map<Place, Shape>{}, counts);
   if (uneven.empty() || !grid)
   {
     return grid;

@@ -11,7 +11,7 @@ class vtkUnstructuredGrid;
 namespace banyan
 {
 
-class RankTalk;
+class Communicator;
 
 /// Collective: the grid with those arrays only that the grids of all ranks have, with the same type
 /// and components; others are named in its field data (see LeftOutName). The same arrays on any
@@ -19,7 +19,7 @@ class RankTalk;
 /// @param grid is left as it is; null counts as empty
 /// @return a copy by reference where an array is left out, otherwise `grid`
 BANYANINPUTS_EXPORT vtkSmartPointer<vtkUnstructuredGrid> WithArraysOfAllRanks(
-  const RankTalk& talk, vtkUnstructuredGrid* grid);
+  Communicator& ranks, vtkUnstructuredGrid* grid);
 
 } // namespace banyan
 

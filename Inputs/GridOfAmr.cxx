@@ -2,16 +2,16 @@
 #include "GridOfAmr.h"
 
 #include "ArrayLength.h"
-#include "RankTalk.h"
 #include "VoxelCells.h"
 
 #include "Base/Error.h"
+#include "Parallel/Communicate/Collective.h"
+#include "Parallel/Communicate/Communicator.h"
 
 #include "vtkAMRBox.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkMultiProcessStream.h"
 #include "vtkOverlappingAMR.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace banyan
 {
@@ -346,35 +347,24 @@ vtkSmartPointer<vtkUnstructuredGrid> GridOfAmr(
 }
 
 vtkSmartPointer<vtkUnstructuredGrid> GridOfAmrOnRanks(
-  vtkOverlappingAMR* blocks, const RankTalk& talk)
+  Communicator& ranks, vtkOverlappingAMR* blocks)
 {
-  vtkMultiProcessStream mine;
-  talk.Together(
+  std::string mine;
+  Collective(ranks,
     [&]
     {
       const std::vector<AmrBox> own = BoxesOf(blocks);
-      mine << static_cast<int>(own.size());
-      for (const AmrBox& box : own)
-      {
-        mine << box.Level << box.Lo[0] << box.Lo[1] << box.Lo[2] << box.Hi[0] << box.Hi[1]
-             << box.Hi[2];
-      }
+      mine.assign(reinterpret_cast<const char*>(own.data()), own.size() * sizeof(AmrBox));
     });
   std::vector<AmrBox> all;
-  for (vtkMultiProcessStream& theirs : talk.Exchange(mine))
+  for (const std::string& theirs : AllGatherStrings(ranks, mine))
   {
-    int count = 0;
-    theirs >> count;
-    for (int i = 0; i < count; ++i)
-    {
-      AmrBox box;
-      theirs >> box.Level >> box.Lo[0] >> box.Lo[1] >> box.Lo[2] >> box.Hi[0] >> box.Hi[1] >>
-        box.Hi[2];
-      all.push_back(box);
-    }
+    const std::size_t before = all.size();
+    all.resize(before + theirs.size() / sizeof(AmrBox));
+    std::memcpy(all.data() + before, theirs.data(), theirs.size());
   }
   vtkSmartPointer<vtkUnstructuredGrid> grid;
-  talk.Together([&] { grid = GridOfAmr(blocks, all); });
+  Collective(ranks, [&] { grid = GridOfAmr(blocks, all); });
   return grid;
 }
 

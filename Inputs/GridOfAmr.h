@@ -41,11 +41,11 @@ BANYANINPUTS_EXPORT std::vector<AmrBox> BoxesOf(vtkOverlappingAMR* blocks);
 BANYANINPUTS_EXPORT vtkSmartPointer<vtkUnstructuredGrid> GridOfAmr(
   vtkOverlappingAMR* blocks, const std::vector<AmrBox>& all, const std::string& array = {});
 
-class RankTalk;
+class Communicator;
 
-/// Collective: GridOfAmr with the blocks of all ranks. Throws Error, the same on all ranks.
+/// Collective: GridOfAmr with the blocks of all ranks. Throws CollectiveError.
 vtkSmartPointer<vtkUnstructuredGrid> GridOfAmrOnRanks(
-  vtkOverlappingAMR* blocks, const RankTalk& talk);
+  Communicator& ranks, vtkOverlappingAMR* blocks);
 
 } // namespace banyan
 

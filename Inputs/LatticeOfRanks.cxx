@@ -1,55 +1,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LatticeOfRanks.h"
 
-#include "RankTalk.h"
-
 #include "Mesh/Octree/ElementOctree.h"
+#include "Parallel/Communicate/Collective.h"
+#include "Parallel/Communicate/Communicator.h"
 
 #include <glm/common.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <vector>
 
 namespace banyan
 {
-
-CommonLattice LatticeOfRanks(const RankTalk& talk, const ElementOctree* tree)
+namespace
 {
-  const auto several = [&](const std::function<double(int)>& numbers, int count)
+
+/// Plain memory: ranks send it as it is.
+struct Lattice
+{
+  glm::dvec3 Origin{ std::numeric_limits<double>::max() };
+  glm::dvec3 Edge{ std::numeric_limits<double>::max() };
+};
+
+} // namespace
+
+CommonLattice LatticeOfRanks(Communicator& ranks, const ElementOctree* tree)
+{
+  // Ranks without a tree have the largest numbers there are.
+  Lattice mine;
+  if (tree)
   {
-    vtkMultiProcessStream mine;
-    for (int i = 0; tree && i < count; ++i)
-    {
-      mine << numbers(i);
-    }
-    std::vector<std::vector<double>> all;
-    for (vtkMultiProcessStream& theirs : talk.Exchange(mine))
-    {
-      all.emplace_back();
-      for (int i = 0; !theirs.Empty() && i < count; ++i)
-      {
-        theirs >> all.back().emplace_back();
-      }
-    }
-    return all;
-  };
-  CommonLattice common;
-  common.Edge = glm::dvec3(std::numeric_limits<double>::max());
-  common.Origin = common.Edge;
-  const auto places =
-    several([&](int i) { return i < 3 ? tree->Origin()[i] : tree->Edge()[i - 3]; }, 6);
-  for (const std::vector<double>& theirs : places)
-  {
-    for (int axis = 0; axis < 3 && !theirs.empty(); ++axis)
-    {
-      common.Origin[axis] = std::min(common.Origin[axis], theirs[static_cast<std::size_t>(axis)]);
-      common.Edge[axis] = std::min(common.Edge[axis], theirs[static_cast<std::size_t>(axis) + 3]);
-    }
+    mine = { tree->Origin(), tree->Edge() };
   }
-  talk.Together(
+  std::vector<Lattice> all(static_cast<std::size_t>(ranks.Size()));
+  ranks.AllGather(&mine, sizeof(mine), all.data());
+  CommonLattice common;
+  common.Origin = common.Edge = glm::dvec3(std::numeric_limits<double>::max());
+  for (const Lattice& theirs : all)
+  {
+    common.Origin = glm::min(common.Origin, theirs.Origin);
+    common.Edge = glm::min(common.Edge, theirs.Edge);
+  }
+  Collective(ranks,
     [&]
     {
       const glm::dvec3 times = tree ? tree->Edge() / common.Edge : glm::dvec3(1.0);
@@ -62,12 +56,8 @@ CommonLattice LatticeOfRanks(const RankTalk& talk, const ElementOctree* tree)
           "2, 4, 8 and so on");
       }
     });
-  for (const std::vector<double>& theirs :
-    several([&](int) { return static_cast<double>(tree->CoarsestLevel() + common.Shift); }, 1))
-  {
-    common.CoarsestLevel =
-      std::max(common.CoarsestLevel, theirs.empty() ? 0 : static_cast<int>(theirs.front()));
-  }
+  common.CoarsestLevel =
+    static_cast<int>(AllMax(ranks, tree ? tree->CoarsestLevel() + common.Shift : 0));
   return common;
 }
 

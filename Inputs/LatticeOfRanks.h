@@ -9,8 +9,8 @@
 namespace banyan
 {
 
+class Communicator;
 class ElementOctree;
-class RankTalk;
 
 /// Holds what the pieces of a mesh on all ranks have in common.
 struct CommonLattice
@@ -21,10 +21,10 @@ struct CommonLattice
   int Shift = 0; ///< what levels of this rank's tree have to be raised by
 };
 
-/// Collective: levels are those of the whole mesh. All ranks throw Error when the smallest cells of
-/// one are no multiple of another's by a power of two.
+/// Collective: levels are those of the whole mesh. Throws CollectiveError when the smallest cells
+/// of one are no multiple of another's by a power of two.
 /// @param tree of this rank; may be null
-BANYANINPUTS_EXPORT CommonLattice LatticeOfRanks(const RankTalk& talk, const ElementOctree* tree);
+BANYANINPUTS_EXPORT CommonLattice LatticeOfRanks(Communicator& ranks, const ElementOctree* tree);
 
 } // namespace banyan
 

@@ -4,15 +4,15 @@
 #include "GridOfAmr.h"
 #include "GridOfHyperTrees.h"
 #include "PieceValues.h"
-#include "RankTalk.h"
 
 #include "Base/ThreadPool.h"
 #include "Mesh/Octree/CellNodes.h"
+#include "Parallel/Communicate/Collective.h"
+#include "Parallel/Communicate/Communicator.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkHyperTreeGrid.h"
-#include "vtkMultiProcessStream.h"
 #include "vtkNew.h"
 #include "vtkOverlappingAMR.h"
 #include "vtkPointData.h"
@@ -47,54 +47,36 @@ void FillComponent(const ElementOctree& tree, vtkDataArray* from, ValuesOn where
 
 } // namespace
 
-std::string LeavesAsGrid(const RankTalk& talk, const std::string& problem,
+void LeavesAsGrid(Communicator& ranks, const std::string& problem,
   vtkSmartPointer<vtkDataObject>& data, bool& found)
 {
   vtkOverlappingAMR* const blocks =
     problem.empty() ? vtkOverlappingAMR::SafeDownCast(data) : nullptr;
   vtkHyperTreeGrid* const trees = problem.empty() ? vtkHyperTreeGrid::SafeDownCast(data) : nullptr;
-  vtkMultiProcessStream mine;
-  mine << (blocks ? 1 : 0) << (trees ? 1 : 0) << (problem.empty() ? 0 : 1);
-  bool amr = false;
-  bool failed = false;
-  found = false;
-  for (vtkMultiProcessStream& theirs : talk.Exchange(mine))
-  {
-    int theirBlocks = 0, theirTrees = 0, theirProblem = 0;
-    theirs >> theirBlocks >> theirTrees >> theirProblem;
-    amr = amr || theirBlocks != 0;
-    found = found || theirBlocks != 0 || theirTrees != 0;
-    failed = failed || theirProblem != 0;
-  }
+  const bool failed = AllMax(ranks, problem.empty() ? 0.0 : 1.0) > 0.0;
+  const double kind = AllMax(ranks, blocks ? 2.0 : trees ? 1.0 : 0.0);
+  found = kind > 0.0;
   if (!found || failed)
   {
-    return {};
+    return;
   }
-  try
+  vtkSmartPointer<vtkUnstructuredGrid> grid;
+  if (kind == 2.0)
   {
-    vtkSmartPointer<vtkUnstructuredGrid> grid;
-    if (amr)
+    grid = GridOfAmrOnRanks(ranks, blocks);
+  }
+  Collective(ranks,
+    [&]
     {
-      grid = GridOfAmrOnRanks(blocks, talk);
-    }
-    talk.Together(
-      [&]
+      if (trees)
       {
-        if (trees)
-        {
-          grid = GridOfHyperTrees(trees);
-        }
-      });
-    if (blocks || trees)
-    {
-      data = grid.GetPointer();
-    }
-  }
-  catch (const AgreedError& error)
+        grid = GridOfHyperTrees(trees);
+      }
+    });
+  if (blocks || trees)
   {
-    return error.what();
+    data = grid.GetPointer();
   }
-  return {};
 }
 
 void MakeNodal(const ElementOctree& tree, vtkUnstructuredGrid* grid,

@@ -15,15 +15,14 @@ class vtkUnstructuredGrid;
 namespace banyan
 {
 
+class Communicator;
 class ElementOctree;
-class RankTalk;
 
 /// Collective: hyper trees and AMR as grids of their leaves; `data` then is that grid. Other data
-/// stay as they are.
+/// stay as they are, and all data do where a rank has a problem. Throws CollectiveError.
 /// @param problem of this rank so far, or nothing; its data do not count then
 /// @param found whether any rank has such data
-/// @return what is wrong, the same on all ranks, or nothing
-BANYANINPUTS_EXPORT std::string LeavesAsGrid(const RankTalk& talk, const std::string& problem,
+BANYANINPUTS_EXPORT void LeavesAsGrid(Communicator& ranks, const std::string& problem,
   vtkSmartPointer<vtkDataObject>& data, bool& found);
 
 /// Replaces the arrays of a grid of leaves by the point arrays that "Banyan Volume" draws of them

@@ -6,13 +6,12 @@
 #include "LeafSteps.h"
 #include "MeshPieces.h"
 #include "PieceValues.h"
+#include "RankMessages.h"
 #include "RestPoints.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
-#include "vtkMultiProcessController.h"
-#include "vtkMultiProcessStream.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -24,6 +23,8 @@
 #include "Base/Varint.h"
 #include "Mesh/Series/AtlasValues.h"
 #include "Mesh/Series/MeshFile.h"
+#include "Parallel/Communicate/Collective.h"
+#include "Parallel/Communicate/Communicator.h"
 #include "Series/Format/Zstd.h"
 
 #include <cstring>
@@ -133,94 +134,77 @@ std::shared_ptr<const MeshPlan> PlanFrom(const std::vector<std::string>& texts)
   return plan;
 }
 
-/// What the ranks have of a step.
-struct PartsOfRanks
+/// What ranks have of a step. Plain memory: it is sent as it is.
+struct Parts
 {
-  bool Failed = false;        ///< some have a problem
-  bool Mesh = false;          ///< some have a mesh
-  bool CellsOfOthers = false; ///< ranks but the first one have cells
+  std::uint8_t Failed = 0;        ///< some have a problem
+  std::uint8_t Mesh = 0;          ///< some have a mesh
+  std::uint8_t CellsOfOthers = 0; ///< ranks but the first one have cells
 };
 
 /// Collective.
-/// @param failed, mesh, cells what this rank has
-PartsOfRanks PartsOf(const RankTalk& talk, bool failed, bool mesh, bool cells)
+Parts PartsOfRanks(Communicator& ranks, const Parts& mine)
 {
-  vtkMultiProcessStream stream;
-  stream << static_cast<int>(failed) << static_cast<int>(mesh) << static_cast<int>(cells);
-  PartsOfRanks parts;
-  int rank = 0;
-  for (vtkMultiProcessStream& theirs : talk.Exchange(stream))
+  std::vector<Parts> all(static_cast<std::size_t>(ranks.Size()));
+  ranks.AllGather(&mine, sizeof(mine), all.data());
+  Parts some;
+  for (const Parts& theirs : all)
   {
-    int theirProblem = 0, theirMesh = 0, theirCells = 0;
-    theirs >> theirProblem >> theirMesh >> theirCells;
-    parts.Failed = parts.Failed || theirProblem != 0;
-    parts.Mesh = parts.Mesh || theirMesh != 0;
-    parts.CellsOfOthers = parts.CellsOfOthers || (rank++ > 0 && theirCells != 0);
+    some.Failed |= theirs.Failed;
+    some.Mesh |= theirs.Mesh;
+    some.CellsOfOthers |= theirs.CellsOfOthers;
   }
-  return parts;
+  return some;
 }
+
+constexpr const char* NoMemoryForMesh = "There is not enough memory for the mesh and its values.";
 
 } // namespace
 
-std::string MeshSteps::Take(vtkSmartPointer<vtkDataObject>& data, const std::string& problem)
+void MeshSteps::Take(vtkSmartPointer<vtkDataObject>& data, const std::string& problem)
 {
-  const std::string noLeaves = LeavesAsGrid(this->Talk, problem, data, this->Leaves);
-  if (!noLeaves.empty())
-  {
-    this->Found = true;
-    data = vtkSmartPointer<vtkImageData>::New();
-    return noLeaves;
-  }
+  LeavesAsGrid(this->Ranks, problem, data, this->Leaves);
   std::vector<vtkUnstructuredGrid*> grids;
-  const bool mine = problem.empty() && CollectGrids(data, grids);
-  const PartsOfRanks parts = PartsOf(this->Talk, !problem.empty(), mine, !grids.empty());
+  Parts mine;
+  Collective(this->Ranks,
+    [&]
+    {
+      mine.Failed = problem.empty() ? 0 : 1;
+      mine.Mesh = problem.empty() && CollectGrids(data, grids) ? 1 : 0;
+      mine.CellsOfOthers = this->Ranks.Rank() > 0 && !grids.empty() ? 1 : 0;
+    });
+  const Parts parts = PartsOfRanks(this->Ranks, mine);
   if (parts.Failed || !parts.Mesh)
   {
-    return problem;
+    return;
   }
   this->Found = true;
-  std::string mistake;
-  vtkSmartPointer<vtkUnstructuredGrid> piece = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  try
+  vtkSmartPointer<vtkUnstructuredGrid> piece;
+  const auto merge = [&]
   {
-    if (!mine && data && data->GetNumberOfElements(vtkDataObject::CELL) > 0)
+    if (!mine.Mesh && data && data->GetNumberOfElements(vtkDataObject::CELL) > 0)
     {
       throw Error(std::string("Other ranks have a mesh of hexahedra, and this one has ") +
                   data->GetClassName() + " with other cells");
     }
     this->LookAt(grids);
     piece = this->Merged(grids);
-  }
-  catch (const std::exception& error)
+  };
+  Collective(this->Ranks, merge, NoMemoryForMesh);
+  std::vector<vtkSmartPointer<vtkDataObject>> all;
+  if (parts.CellsOfOthers)
   {
-    mistake = error.what();
+    all = GatherData(this->Ranks, piece);
   }
   vtkSmartPointer<vtkImageData> image = vtkSmartPointer<vtkImageData>::New();
-  mistake = this->FirstMistake(mistake);
-  if (!mistake.empty())
+  const auto makeImage = [&]
   {
-    data = image;
-    return mistake;
-  }
-  try
-  {
-    this->Gather(piece, parts.CellsOfOthers);
-    if (this->Talk.Rank() == 0)
-    {
-      this->Remember(piece);
-      image = this->ImageOf(piece);
-    }
-  }
-  catch (const std::bad_alloc&)
-  {
-    mistake = "There is not enough memory for the mesh and its values.";
-  }
-  catch (const std::exception& error)
-  {
-    mistake = error.what();
-  }
+    piece = this->MergedOfRanks(piece, all);
+    this->Remember(piece);
+    image = this->ImageOf(piece);
+  };
+  CollectiveOn(0, this->Ranks, makeImage, NoMemoryForMesh);
   data = image;
-  return mistake;
 }
 
 /// This rank's part as one mesh, its points at rest.
@@ -251,36 +235,10 @@ void MeshSteps::LookAt(const std::vector<vtkUnstructuredGrid*>& grids)
     hidden ? "Hidden cells of the mesh are not written, and hidden points like all others. " : "";
 }
 
-/// Collective: what all ranks then give as the reason, so that nobody goes on with a part of the
-/// mesh.
-std::string MeshSteps::FirstMistake(const std::string& mine) const
+/// The one mesh of all ranks, from their pieces; without any of others, from this rank's own.
+vtkSmartPointer<vtkUnstructuredGrid> MeshSteps::MergedOfRanks(
+  vtkUnstructuredGrid* mine, const std::vector<vtkSmartPointer<vtkDataObject>>& all) const
 {
-  vtkMultiProcessStream stream;
-  stream << mine;
-  for (vtkMultiProcessStream& theirs : this->Talk.Exchange(stream))
-  {
-    std::string mistake;
-    theirs >> mistake;
-    if (!mistake.empty())
-    {
-      return mistake;
-    }
-  }
-  return {};
-}
-
-/// Brings the pieces of all ranks to rank 0, if others have any.
-void MeshSteps::Gather(vtkSmartPointer<vtkUnstructuredGrid>& piece, bool others)
-{
-  std::vector<vtkSmartPointer<vtkDataObject>> all;
-  if (others)
-  {
-    this->Controller->Gather(piece, all, 0);
-  }
-  if (this->Talk.Rank() > 0)
-  {
-    return;
-  }
   std::vector<vtkUnstructuredGrid*> pieces;
   for (const auto& one : all)
   {
@@ -292,9 +250,9 @@ void MeshSteps::Gather(vtkSmartPointer<vtkUnstructuredGrid>& piece, bool others)
   }
   if (pieces.empty())
   {
-    pieces.push_back(piece);
+    pieces.push_back(mine);
   }
-  piece = MergePieces(pieces, this->Arrays.WantedPoints(this->Leaves));
+  return MergePieces(pieces, this->Arrays.WantedPoints(this->Leaves));
 }
 
 void MeshSteps::Remember(vtkUnstructuredGrid* grid)
@@ -385,27 +343,18 @@ vtkSmartPointer<vtkImageData> MeshSteps::ImageOf(vtkUnstructuredGrid* grid)
 std::shared_ptr<const MeshPlan> MeshSteps::Write(SegmentFolder* folder) const
 {
   std::shared_ptr<const MeshPlan> plan;
-  this->Talk.OnRank(0,
-    [&]
-    {
-      const std::shared_ptr<MeshPlan> made = WriteMesh(*this->Mesh, *folder);
-      made->CellArrays = this->CellArrays;
-      plan = made;
-    });
-  if (this->Talk.Ranks() == 1)
+  std::vector<std::string> texts;
+  const auto write = [&]
   {
-    return plan;
-  }
-  const std::vector<std::string> texts =
-    this->Talk.FromRankZero(plan ? TextsOf(*plan) : std::vector<std::string>());
-  this->Talk.Together(
-    [&]
-    {
-      if (!plan)
-      {
-        plan = PlanFrom(texts);
-      }
-    });
+    const std::shared_ptr<MeshPlan> made = WriteMesh(*this->Mesh, *folder);
+    made->CellArrays = this->CellArrays;
+    plan = made;
+    texts = this->Ranks.Size() > 1 ? TextsOf(*plan) : texts;
+  };
+  CollectiveOn(0, this->Ranks, write, NoMemoryForMesh);
+  texts = BroadcastStrings(this->Ranks, std::move(texts));
+  const auto read = [&] { plan = plan ? plan : PlanFrom(texts); };
+  Collective(this->Ranks, read, NoMemoryForMesh);
   return plan;
 }
 

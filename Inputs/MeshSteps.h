@@ -5,7 +5,6 @@
 #include "BanyanInputsModule.h"
 
 #include "MeshArrays.h"
-#include "RankTalk.h"
 
 #include "Mesh/Series/StoredMesh.h"
 #include "Series/Encode/SeriesEncoder.h"
@@ -21,13 +20,13 @@
 class vtkDataArraySelection;
 class vtkDataObject;
 class vtkImageData;
-class vtkMultiProcessController;
 class vtkUnstructuredGrid;
 
 namespace banyan
 {
 
 class AtlasValues;
+class Communicator;
 class ElementOctree;
 class SegmentFolder;
 
@@ -42,11 +41,9 @@ class SegmentFolder;
 class BANYANINPUTS_EXPORT MeshSteps
 {
 public:
-  MeshSteps(const RankTalk& talk, vtkMultiProcessController* controller,
-    const EncodeOptions& options, vtkDataArraySelection* points, vtkDataArraySelection* cells,
-    std::string displacements)
-    : Talk(talk)
-    , Controller(controller)
+  MeshSteps(Communicator& ranks, const EncodeOptions& options, vtkDataArraySelection* points,
+    vtkDataArraySelection* cells, std::string displacements)
+    : Ranks(ranks)
     , Options(options)
     , Arrays(points, cells)
     , Displacements(std::move(displacements))
@@ -56,10 +53,10 @@ public:
   /// Whether steps are those of a mesh. Known after the first Take().
   bool Active() const { return this->Found; }
 
-  /// Collective. Replaces this rank's data by its image when any rank has a mesh.
-  /// @param problem of this rank so far, or nothing; data do not count then
-  /// @return what is wrong on this rank, or nothing
-  std::string Take(vtkSmartPointer<vtkDataObject>& data, const std::string& problem);
+  /// Collective. Replaces this rank's data by its image when any rank has a mesh. Data stay as they
+  /// are where a rank has a problem. Throws CollectiveError.
+  /// @param problem of this rank so far, or nothing
+  void Take(vtkSmartPointer<vtkDataObject>& data, const std::string& problem);
 
   /// Sentences about what is not written of the last step, or nothing: of arrays on rank 0 alone.
   std::string Warning() const { return this->LeftOut + this->HiddenParts; }
@@ -67,22 +64,20 @@ public:
   /// See StepReport::NotChosen.
   const std::vector<std::string>& NotChosen() const { return this->OthersThere; }
 
-  /// Collective; throws AgreedError. Rank 0 writes the file of the mesh, and all ranks learn what
-  /// encoding must know of it.
+  /// Collective; throws CollectiveError. Rank 0 writes the file of the mesh, and all ranks learn
+  /// what encoding must know of it.
   /// @param folder on rank 0
   std::shared_ptr<const MeshPlan> Write(SegmentFolder* folder) const;
 
 private:
-  std::string FirstMistake(const std::string& mine) const;
   void LookAt(const std::vector<vtkUnstructuredGrid*>& grids);
   vtkSmartPointer<vtkUnstructuredGrid> Merged(std::vector<vtkUnstructuredGrid*> grids);
-  /// Collective: the one mesh of all ranks, on rank 0.
-  void Gather(vtkSmartPointer<vtkUnstructuredGrid>& piece, bool others);
+  vtkSmartPointer<vtkUnstructuredGrid> MergedOfRanks(
+    vtkUnstructuredGrid* mine, const std::vector<vtkSmartPointer<vtkDataObject>>& all) const;
   void Remember(vtkUnstructuredGrid* grid);
   vtkSmartPointer<vtkImageData> ImageOf(vtkUnstructuredGrid* grid);
 
-  const RankTalk& Talk;
-  vtkMultiProcessController* Controller;
+  Communicator& Ranks;
   const EncodeOptions& Options;
   MeshArrays Arrays;
   std::string Displacements; ///< see AtRest()

@@ -27,7 +27,7 @@ class BANYANINPUTS_EXPORT SampledGrid
 {
 public:
   /// The boxes are found once for a mesh and these options; later grids of the same content touch
-  /// values only. Throws Error: see SampledMesh::Of, as for Interrupted.
+  /// values only. Throws Error: see SampledMesh::Of, as for Interruption.
   /// @return voxels, with points in float64
   vtkSmartPointer<vtkUnstructuredGrid> Of(vtkUnstructuredGrid* grid, const MeshSampling& sampling);
 

@@ -13,7 +13,6 @@
 #include "Base/Progress.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
-#include "Parallel/Communicate/MpiCommunicator.h"
 #include "Parallel/Fields/DistributedFrame.h"
 
 #include "vtkAlgorithm.h"

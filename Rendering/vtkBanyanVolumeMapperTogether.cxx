@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Work of a mapper together with other ranks, and with the other volumes of a picture.
 
+#include "CommunicatorOf.h"
 #include "RendererCamera.h"
 #include "VolumeMapperInternals.h"
 #include "VolumesInDepth.h"
@@ -9,12 +10,9 @@
 #include "Base/Progress.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
-#include "Parallel/Communicate/MpiCommunicator.h"
 
 #include "vtkCollection.h"
 #include "vtkCommand.h"
-#include "vtkMPI.h"
-#include "vtkMPICommunicator.h"
 #include "vtkMultiProcessController.h"
 #include "vtkPropCollection.h"
 #include "vtkRenderer.h"
@@ -30,27 +28,20 @@ void vtkBanyanVolumeMapper::SetController(vtkMultiProcessController* controller)
   }
   this->Controller = controller;
   this->Self->Field.Reset();
-  vtkMPICommunicator* mpi =
-    controller ? vtkMPICommunicator::SafeDownCast(controller->GetCommunicator()) : nullptr;
-  if (mpi && controller->GetNumberOfProcesses() > 1)
+  banyan::MpiTimeout timeout{ banyan::MpiTimeout::DefaultSeconds, {} };
+  try
   {
-    const MPI_Comm* handle = mpi->GetMPIComm()->GetHandle();
-    banyan::MpiTimeout timeout{ banyan::MpiTimeout::DefaultSeconds, {} };
-    try
-    {
-      timeout.Seconds = banyan::MpiTimeout::FromEnvironment();
-    }
-    catch (const std::exception& error)
-    {
-      vtkErrorMacro(<< error.what());
-    }
-    timeout.Tell = [this](const std::string& sentence) { vtkErrorMacro(<< sentence); };
-    this->Self->Communicator = banyan::MakeMpiCommunicator(handle, std::size_t{ 1 } << 30, timeout);
-    banyan::ThreadPool::SetRanksOnThisNode(banyan::RanksOnThisNode(handle));
+    timeout.Seconds = banyan::MpiTimeout::FromEnvironment();
   }
-  else
+  catch (const std::exception& error)
   {
-    this->Self->Communicator = banyan::MakeSelfCommunicator();
+    vtkErrorMacro(<< error.what());
+  }
+  timeout.Tell = [this](const std::string& sentence) { vtkErrorMacro(<< sentence); };
+  this->Self->Communicator = banyan::CommunicatorOf(controller, timeout);
+  if (this->Self->Communicator->Size() > 1)
+  {
+    banyan::ThreadPool::SetRanksOnThisNode(this->Self->Communicator->RanksOnThisNode());
   }
   this->Modified();
 }

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DefaultFunctions.h"
 
+#include "CommunicatorOf.h"
+
+#include "Parallel/Communicate/Collective.h"
+#include "Parallel/Communicate/Communicator.h"
+#include "Series/Quantize/ValueRange.h"
+
 #include "vtkColorTransferFunction.h"
-#include "vtkCommunicator.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
@@ -46,39 +51,61 @@ void IncludeBlocks(const char* name, vtkCompositeDataSet* blocks, double (&local
   }
 }
 
-} // namespace
-
-void UseDefaultFunctions(vtkDataArray* array, vtkDataObject* data, bool colors, bool opacities,
-  vtkVolumeProperty* property)
+/// Collective: the range of the values of all ranks; [0, 1] where there are none.
+ValueRange RangeOf(Communicator& ranks, vtkDataArray* array, vtkDataObject* data)
 {
   double local[2] = { VTK_DOUBLE_MIN, VTK_DOUBLE_MIN }; // -minimum, maximum
-  vtkCompositeDataSet* const blocks = vtkCompositeDataSet::SafeDownCast(data);
-  Include(array, local);
-  if (blocks && array && array->GetName())
+  Collective(ranks,
+    [&]
+    {
+      vtkCompositeDataSet* const blocks = vtkCompositeDataSet::SafeDownCast(data);
+      Include(array, local);
+      if (blocks && array && array->GetName())
+      {
+        IncludeBlocks(array->GetName(), blocks, local);
+      }
+    });
+  const ValueRange range{ -AllMax(ranks, local[0]), AllMax(ranks, local[1]) };
+  return range.Low <= range.High ? range : ValueRange{ 0.0, 1.0 };
+}
+
+} // namespace
+
+DefaultFunctions::DefaultFunctions() = default;
+DefaultFunctions::~DefaultFunctions() = default;
+
+void DefaultFunctions::Apply(vtkDataArray* array, vtkDataObject* data, bool colors, bool opacities,
+  vtkVolumeProperty* property)
+{
+  ValueRange range;
+  try
   {
-    IncludeBlocks(array->GetName(), blocks, local);
+    if (!this->Ranks)
+    {
+      this->Ranks = CommunicatorOf(vtkMultiProcessController::GetGlobalController());
+    }
+    range = RangeOf(*this->Ranks, array, data);
   }
-  double all[2] = { local[0], local[1] };
-  if (vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController())
+  catch (const std::exception& error)
   {
-    controller->AllReduce(local, all, 2, vtkCommunicator::MAX_OP);
+    vtkErrorWithObjectMacro(
+      property, << "No colors and opacities could be chosen. " << error.what());
+    return;
   }
-  const double low = -all[0] <= all[1] ? -all[0] : 0.0;
-  const double high = -all[0] <= all[1] ? all[1] : 1.0;
   if (colors)
   {
     vtkNew<vtkColorTransferFunction> function;
     function->SetVectorModeToMagnitude();
     function->SetColorSpaceToDiverging();
-    function->AddRGBPoint(low, 0.23, 0.30, 0.75);
-    function->AddRGBPoint(high, 0.71, 0.016, 0.15);
+    function->AddRGBPoint(range.Low, 0.23, 0.30, 0.75);
+    function->AddRGBPoint(range.High, 0.71, 0.016, 0.15);
     property->SetColor(function);
   }
   if (opacities)
   {
     vtkNew<vtkPiecewiseFunction> function;
-    function->AddPoint(low, 0.0);
-    function->AddPoint(high, 1.0);
+    function->AddPoint(range.Low, 0.0);
+    function->AddPoint(range.High, 1.0);
     property->SetScalarOpacity(function);
   }
 }

@@ -56,6 +56,7 @@ vtkBanyanVolumeRepresentation::vtkBanyanVolumeRepresentation()
   : Prop(vtkSmartPointer<vtkBanyanVolume>::New())
   , Piece(vtkSmartPointer<vtkImageData>::New().GetPointer())
   , Blocks(std::make_unique<banyan::MergedBlocks>())
+  , Defaults(std::make_unique<banyan::DefaultFunctions>())
   , Steps(std::make_unique<banyan::StepWindow>())
 {
   // The superclass has made a prop of ParaView's own: ours takes its place.
@@ -254,7 +255,7 @@ void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
     this->NearestPoint ? VTK_NEAREST_INTERPOLATION : this->InterpolationType);
   if (!this->ColorGiven || !this->OpacityGiven)
   {
-    banyan::UseDefaultFunctions(this->Mapper->GetArrayToDraw(piece), piece, !this->ColorGiven,
+    this->Defaults->Apply(this->Mapper->GetArrayToDraw(piece), piece, !this->ColorGiven,
       !this->OpacityGiven, this->Property);
   }
   this->Mapper->SetBlendMode(this->BlendMode != 0 ? this->BlendMode : this->Projection);

@@ -17,6 +17,7 @@ class vtkDataObject;
 
 namespace banyan
 {
+class DefaultFunctions;
 class MergedBlocks;
 class StepWindow;
 }
@@ -133,7 +134,8 @@ private:
   vtkSmartPointer<vtkBanyanVolume> Prop;
   vtkSmartPointer<vtkDataObject> Piece;
   std::unique_ptr<banyan::MergedBlocks> Blocks; ///< of blocks that are drawn as one mesh
-  std::unique_ptr<banyan::StepWindow> Steps;    ///< around the one drawn, if motion is brought out
+  std::unique_ptr<banyan::DefaultFunctions> Defaults;
+  std::unique_ptr<banyan::StepWindow> Steps; ///< around the one drawn, if motion is brought out
   int InterpolationType = 1;
   bool NearestPoint = false;
   int BlendMode = 0;

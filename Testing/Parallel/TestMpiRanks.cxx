@@ -139,8 +139,7 @@ std::string Errors(Communicator& communicator)
 
 std::string RanksOfThisNode(Communicator& communicator)
 {
-  const MPI_Comm world = MPI_COMM_WORLD;
-  const int ranks = RanksOnThisNode(&world);
+  const int ranks = communicator.RanksOnThisNode();
   return ranks == communicator.Size() ? "" : "not all ranks were found on this node";
 }
 

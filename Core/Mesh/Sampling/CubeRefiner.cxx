@@ -224,7 +224,7 @@ void Refiner::Report(std::size_t cubes)
   const double part = this->Looked / (2.0 * static_cast<double>(this->Sampling.MostCubes));
   if (this->Sampling.Watch && !this->Sampling.Watch(0.9 * std::min(1.0, part))) // then come points
   {
-    throw Interrupted("Sampling the mesh at boxes was stopped");
+    throw Interruption("Sampling the mesh at boxes was stopped");
   }
 }
 

@@ -2,7 +2,7 @@
 #ifndef banyan_Mesh_Sampling_CubeRefiner_h
 #define banyan_Mesh_Sampling_CubeRefiner_h
 
-#include "Base/Error.h"
+#include "Base/Interruption.h"
 #include "Mesh/Octree/Morton.h"
 #include "Mesh/Sampling/PlaceInCell.h"
 
@@ -15,13 +15,6 @@ namespace banyan
 
 class ThreadPool;
 
-/// Work was stopped as somebody wished.
-class Interrupted : public Error
-{
-public:
-  using Error::Error;
-};
-
 /// How closely a mesh of general hexahedra is sampled.
 struct MeshSampling
 {
@@ -33,8 +26,8 @@ struct MeshSampling
 
   /// Called now and then, by the thread that asked for the cubes, with the part of the work that is
   /// done: from 0 to 1, never less than before, and an estimate, as nobody knows how many cubes a
-  /// mesh will take. When it returns false the work ends with Interrupted. May be empty; what it is
-  /// does not count when samplings are compared.
+  /// mesh will take. When it returns false the work ends with Interruption. May be empty; what it
+  /// is does not count when samplings are compared.
   std::function<bool(double)> Watch = {};
 
   /// Cubes are never smaller than this part of the thinnest cell that they touch, as a power of
@@ -69,7 +62,7 @@ struct SampledCubes
 /// Halves cubes from one around the whole mesh on: as long as they are larger than the thinnest
 /// cell that they touch, and then as long as their deviation is above the tolerance, or the border
 /// of the mesh goes through them. Cubes with their middle in the mesh stay. The result is the same
-/// for any number of threads. Throws Interrupted when Watch says so, and Error when as many cubes
+/// for any number of threads. Throws Interruption when Watch says so, and Error when as many cubes
 /// as the thinnest cells ask for would be more than eight times MostCubes.
 SampledCubes RefineCubes(const CellShapes& shapes, const MeshSampling& sampling, ThreadPool& pool);
 

@@ -29,7 +29,7 @@ class ThreadPool;
 class SampledMesh
 {
 public:
-  /// Throws Error: see CellShapes and RefineCubes (and Interrupted, which is one); and when no box
+  /// Throws Error: see CellShapes and RefineCubes (and Interruption, which is one); and when no box
   /// is left.
   static std::shared_ptr<SampledMesh> Of(
     const HexMesh& mesh, const MeshSampling& sampling, ThreadPool& pool);

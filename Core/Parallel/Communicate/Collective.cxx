@@ -3,8 +3,30 @@
 
 #include "Parallel/Communicate/Communicator.h"
 
+#include <new>
+
 namespace banyan
 {
+
+void Attempt(std::string& failure, const std::function<void()>& action, const std::string& noMemory)
+{
+  if (!failure.empty())
+  {
+    return;
+  }
+  try
+  {
+    action();
+  }
+  catch (const std::bad_alloc&)
+  {
+    failure = noMemory;
+  }
+  catch (const std::exception& error)
+  {
+    failure = error.what();
+  }
+}
 
 void ThrowTogether(Communicator& communicator, const std::string& failure)
 {
@@ -15,18 +37,25 @@ void ThrowTogether(Communicator& communicator, const std::string& failure)
   }
 }
 
-void Collective(Communicator& communicator, const std::function<void()>& action)
+void Collective(
+  Communicator& communicator, const std::function<void()>& action, const std::string& noMemory)
 {
   std::string failure;
-  try
-  {
-    action();
-  }
-  catch (const std::exception& error)
-  {
-    failure = error.what();
-  }
+  Attempt(failure, action, noMemory);
   ThrowTogether(communicator, failure);
+}
+
+void CollectiveOn(int rank, Communicator& communicator, const std::function<void()>& action,
+  const std::string& noMemory)
+{
+  const auto ofOne = [&]
+  {
+    if (rank == communicator.Rank())
+    {
+      action();
+    }
+  };
+  Collective(communicator, ofOne, noMemory);
 }
 
 } // namespace banyan

@@ -2,9 +2,42 @@
 #include "Parallel/Communicate/Communicator.h"
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 
 namespace banyan
 {
+namespace
+{
+
+constexpr int MeetingTag = 0;
+
+/// Waits for a message of every rank in the list, asleep most of the time.
+void AwaitBytes(
+  Communicator& communicator, const std::vector<int>& ranks, const std::function<void()>& tick)
+{
+  using std::chrono::microseconds;
+  std::vector<char> bytes(ranks.size());
+  for (std::size_t i = 0; i < ranks.size(); ++i)
+  {
+    communicator.ReceiveWhole(ranks[i], MeetingTag, &bytes[i], 1);
+  }
+  microseconds pause{ 20 };
+  Communicator::Arrival arrival;
+  for (std::size_t open = ranks.size(); open > 0;)
+  {
+    if (communicator.TakeAnyWhole(arrival))
+    {
+      --open;
+      continue;
+    }
+    tick();
+    std::this_thread::sleep_for(pause);
+    pause = std::min(2 * pause, microseconds{ 5000 });
+  }
+}
+
+} // namespace
 
 void Communicator::LeaveTogether(const std::string&) {}
 
@@ -32,6 +65,46 @@ std::vector<std::string> AllGatherStrings(Communicator& communicator, const std:
   return all;
 }
 
+std::vector<std::string> BroadcastStrings(
+  Communicator& communicator, std::vector<std::string> ofRankZero)
+{
+  std::uint64_t count = ofRankZero.size();
+  communicator.Broadcast(0, &count, sizeof(count));
+  ofRankZero.resize(count);
+  for (std::string& text : ofRankZero)
+  {
+    std::uint64_t length = text.size();
+    communicator.Broadcast(0, &length, sizeof(length));
+    text.resize(length);
+    communicator.Broadcast(0, &text[0], length);
+  }
+  return ofRankZero;
+}
+
+void Meet(Communicator& communicator, const std::function<void()>& tick)
+{
+  std::vector<int> others;
+  for (int rank = 1; rank < communicator.Size(); ++rank)
+  {
+    others.push_back(rank);
+  }
+  const char byte = 0;
+  if (communicator.Rank() == 0)
+  {
+    AwaitBytes(communicator, others, tick);
+    for (const int rank : others)
+    {
+      communicator.SendWhole(rank, MeetingTag, &byte, 1);
+    }
+  }
+  else
+  {
+    communicator.SendWhole(0, MeetingTag, &byte, 1);
+    AwaitBytes(communicator, { 0 }, tick);
+  }
+  communicator.WaitAll();
+}
+
 std::vector<double> AllGatherValues(Communicator& communicator, double mine)
 {
   std::vector<double> all(static_cast<std::size_t>(communicator.Size()));
@@ -57,7 +130,11 @@ double AllMax(Communicator& communicator, double mine)
 
 std::string AgreeOnError(Communicator& communicator, const std::string& mine)
 {
-  const std::vector<std::string> all = AllGatherStrings(communicator, mine);
+  return AgreedError(AllGatherStrings(communicator, mine));
+}
+
+std::string AgreedError(const std::vector<std::string>& all)
+{
   if (all.front().rfind("Rank ", 0) == 0 &&
       std::count(all.begin(), all.end(), all.front()) == static_cast<std::ptrdiff_t>(all.size()))
   {

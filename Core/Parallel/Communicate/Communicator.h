@@ -51,6 +51,9 @@ public:
   /// `all` receives Size() * bytes.
   virtual void AllGather(const void* mine, std::size_t bytes, void* all) = 0;
 
+  /// Collective: ranks on this machine, this one included. Simulated ranks are on one machine.
+  virtual int RanksOnThisNode() { return this->Size(); }
+
   /// Collective among ranks that give up what they were at, each by an error. Where that can be
   /// found out (MPI), the job ends when the others have not failed and would wait for ever.
   /// @param why this rank's error
@@ -66,6 +69,16 @@ void RunOnSimulatedRanks(int size, const std::function<void(Communicator&)>& bod
 /// Gathers one string per rank, on every rank.
 std::vector<std::string> AllGatherStrings(Communicator& communicator, const std::string& mine);
 
+/// The strings that rank 0 gives, on every rank; those of the others do not count.
+std::vector<std::string> BroadcastStrings(
+  Communicator& communicator, std::vector<std::string> ofRankZero);
+
+/// Collective. Returns when all ranks have called it. MPI's own calls keep a core busy while they
+/// wait; this one sleeps, so that threads which work in the background get it. No message of
+/// `ReceiveWhole` may be open.
+/// @param tick called again and again meanwhile
+void Meet(Communicator& communicator, const std::function<void()>& tick);
+
 /// Sum or maximum over all ranks, on every rank (summed in rank order: the same bits everywhere).
 double AllSum(Communicator& communicator, double mine);
 double AllMax(Communicator& communicator, double mine);
@@ -74,9 +87,12 @@ std::vector<double> AllGatherValues(Communicator& communicator, double mine);
 /// Collective: all ranks learn whether one of them failed.
 /// @param mine this rank's error sentence; empty if all is well
 /// @return empty if no rank failed; else the sentence of the lowest failing rank, which names it
-/// (once:
-///         what all ranks have agreed on before stays as it is)
+/// once: what all ranks have agreed on before stays as it is
 std::string AgreeOnError(Communicator& communicator, const std::string& mine);
+
+/// The same for those who have gathered the sentences with other things.
+/// @param all the sentences of the ranks, in their order
+std::string AgreedError(const std::vector<std::string>& all);
 
 } // namespace banyan
 

@@ -225,6 +225,17 @@ public:
     }
   }
 
+  int RanksOnThisNode() override
+  {
+    MPI_Comm node = MPI_COMM_NULL;
+    CheckMpi(MPI_Comm_split_type(this->Handle, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node),
+      "find the ranks of this node");
+    int ranks = 1;
+    MPI_Comm_size(node, &ranks);
+    MPI_Comm_free(&node);
+    return ranks;
+  }
+
   void LeaveTogether(const std::string& why) override
   {
     if (this->Watchdog)
@@ -354,17 +365,6 @@ std::unique_ptr<Communicator> MakeMpiCommunicator(
     throw Error("One MPI message must hold between 1 byte and 1 GiB.", place);
   }
   return std::make_unique<MpiCommunicator>(HandleAt(mpiComm), largestMessageBytes, timeout);
-}
-
-int RanksOnThisNode(const void* mpiComm)
-{
-  MPI_Comm node = MPI_COMM_NULL;
-  CheckMpi(MPI_Comm_split_type(HandleAt(mpiComm), MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node),
-    "find the ranks of this node");
-  int ranks = 1;
-  MPI_Comm_size(node, &ranks);
-  MPI_Comm_free(&node);
-  return ranks;
 }
 
 } // namespace banyan

@@ -19,9 +19,6 @@ namespace banyan
 std::unique_ptr<Communicator> MakeMpiCommunicator(const void* mpiComm,
   std::size_t largestMessageBytes = std::size_t{ 1 } << 30, const MpiTimeout& timeout = {});
 
-/// Ranks of the communicator that run on this machine (collective).
-int RanksOnThisNode(const void* mpiComm);
-
 } // namespace banyan
 
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Communicate/NodeBroadcast.h"
 
-#include "Base/Error.h"
+#include "Parallel/Communicate/Collective.h"
 
 #include <string>
 #include <vector>
@@ -15,30 +15,17 @@ constexpr int TagOfBytes = 0;
 
 } // namespace
 
-void OnRanks(Communicator& communicator, bool mine, const std::function<void()>& work)
-{
-  std::string failure;
-  if (mine)
-  {
-    try
-    {
-      work();
-    }
-    catch (const std::exception& error)
-    {
-      failure = error.what();
-    }
-  }
-  if (!AgreeOnError(communicator, failure).empty())
-  {
-    throw Error(failure);
-  }
-}
-
 void OnLeaders(
   Communicator& communicator, const NodeCommunicator& machines, const std::function<void()>& work)
 {
-  OnRanks(communicator, machines.Leads(), work);
+  Collective(communicator,
+    [&]
+    {
+      if (machines.Leads())
+      {
+        work();
+      }
+    });
 }
 
 MachineBytes NodeBroadcast(Communicator& communicator, NodeCommunicator& machines,

@@ -11,13 +11,7 @@
 namespace banyan
 {
 
-/// Collective: work of some ranks, for which the others wait.
-/// Throws Error on all ranks when it fails on one: with its sentence there, and without one on
-/// ranks where nothing failed.
-/// @param mine whether this rank works
-void OnRanks(Communicator& communicator, bool mine, const std::function<void()>& work);
-
-/// The same for those who lead a machine.
+/// Collective: work of those who lead a machine, for which the others wait. Throws CollectiveError.
 void OnLeaders(
   Communicator& communicator, const NodeCommunicator& machines, const std::function<void()>& work);
 
@@ -34,7 +28,7 @@ struct MachineBytes
 /// is sent to those who are no leaders.
 /// @param bytes that leaders write, the same on all of them; without effect on other ranks
 /// @param write throws nothing: the others wait already
-/// Throws Error on all ranks when there is not enough memory.
+/// Throws CollectiveError when there is not enough memory.
 MachineBytes NodeBroadcast(Communicator& communicator, NodeCommunicator& machines,
   std::size_t bytes, const std::function<void(char*)>& write);
 

@@ -50,7 +50,7 @@ public:
   /// Where memory cannot be had together, each rank is on its own from then on (Shares() is false,
   /// each rank leads), and has the memory for itself.
   /// @param bytes the same on all ranks
-  /// Throws Error on all ranks when there is not enough memory.
+  /// Throws CollectiveError when there is not enough memory.
   std::shared_ptr<char> Allocate(Communicator& communicator, std::size_t bytes);
 
   /// Why ranks of a machine have no memory together although they could; empty if all is well. The

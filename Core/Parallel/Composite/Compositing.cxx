@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Composite/Compositing.h"
 
-#include "Base/Error.h"
+#include "Parallel/Communicate/Collective.h"
 #include "Parallel/Composite/TileOwnerCompositor.h"
 
 #include <algorithm>
@@ -95,18 +95,13 @@ std::uint64_t Fingerprint(
   return hash;
 }
 
-/// Collective; throws the same Error on all ranks when one of them was called wrongly, because a
+/// Collective; throws CollectiveError when one of them was called wrongly, because a
 /// rank that gave up alone would leave the others waiting.
 std::vector<Footprint> Announce(Communicator& communicator, const FloatImage& mine,
   const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options)
 {
-  std::string problem =
-    ProblemOf(communicator.Rank(), communicator.Size(), mine, frontToBack, viewport, options);
-  problem = AgreeOnError(communicator, problem);
-  if (!problem.empty())
-  {
-    throw Error(problem);
-  }
+  ThrowTogether(communicator,
+    ProblemOf(communicator.Rank(), communicator.Size(), mine, frontToBack, viewport, options));
   Announcement own;
   own.Arguments = Fingerprint(frontToBack, viewport, options);
   own.Active = options.Footprints.empty() ? ActiveRect(mine, viewport) : PixelRect{};
@@ -117,7 +112,7 @@ std::vector<Footprint> Announce(Communicator& communicator, const FloatImage& mi
   {
     if (all[rank].Arguments != all[0].Arguments)
     {
-      throw Error(
+      throw CollectiveError(
         "Rank " + std::to_string(rank) +
         " and rank 0 disagree about the viewport, the visibility order or how pixels travel, "
         "so no picture could be put together.");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Fields/CoarseSamples.h"
 
-#include "Base/Error.h"
+#include "Parallel/Communicate/Collective.h"
 #include "Parallel/Composite/GatherPlan.h"
 
 #include <algorithm>
@@ -139,14 +139,7 @@ PieceSamples CoarsePieces::Gather(Communicator& communicator, const PieceSamples
       const std::size_t bytes = static_cast<std::size_t>(part.Samples.Count()) * SizeOf(type);
       if (part.Rank == self)
       {
-        try
-        {
-          this->Copy(mine, part.Samples, type, values);
-        }
-        catch (const std::exception& error)
-        {
-          failure = error.what();
-        }
+        Attempt(failure, [&] { this->Copy(mine, part.Samples, type, values); });
       }
       if (rank == self)
       {
@@ -164,11 +157,7 @@ PieceSamples CoarsePieces::Gather(Communicator& communicator, const PieceSamples
     }
   }
   communicator.WaitAll();
-  const std::string agreed = AgreeOnError(communicator, failure);
-  if (!agreed.empty())
-  {
-    throw Error(agreed);
-  }
+  ThrowTogether(communicator, failure);
   const Box& samples = this->Needed[static_cast<std::size_t>(self)];
   if (samples.Empty())
   {

@@ -26,7 +26,7 @@ public:
 
   /// Collective: this rank's samples of the level.
   /// @param viewTypes PieceSamples::Type of each rank
-  /// Throws Error, the same on all ranks, when one cannot.
+  /// Throws CollectiveError when one cannot.
   PieceSamples Gather(Communicator& communicator, const PieceSamples& mine,
     const std::vector<ScalarType>& viewTypes) const;
 

@@ -42,21 +42,18 @@ FloatImage CastOwnZone(OwnPart& own, PictureWatcher* watcher)
 {
   const Timer timer;
   FloatImage mine;
-  try
-  {
-    if (own.Failure.empty() && own.Source && !own.Zone.Empty())
+  Attempt(own.Failure,
+    [&]
     {
-      const PhaseScope phase(Phase::Casting);
-      mine = watcher
-               ? CastRaysWatched(
-                   own.Scene, *own.Source, own.Zone, own.BudgetBytes, own.Pool, own.Rays, *watcher)
-               : CastRays(own.Scene, *own.Source, own.Zone, own.BudgetBytes, own.Pool, own.Rays);
-    }
-  }
-  catch (const std::exception& error)
-  {
-    own.Failure = error.what();
-  }
+      if (own.Source && !own.Zone.Empty())
+      {
+        const PhaseScope phase(Phase::Casting);
+        mine = watcher
+                 ? CastRaysWatched(own.Scene, *own.Source, own.Zone, own.BudgetBytes, own.Pool,
+                     own.Rays, *watcher)
+                 : CastRays(own.Scene, *own.Source, own.Zone, own.BudgetBytes, own.Pool, own.Rays);
+      }
+    });
   own.RenderSeconds = timer.Seconds();
   if (own.AfterCasting)
   {

@@ -2,6 +2,7 @@
 #include "Parallel/Fields/DistributedPilot.h"
 
 #include "Parallel/Balance/LevelZones.h"
+#include "Parallel/Communicate/Collective.h"
 
 #include <algorithm>
 #include <cstring>
@@ -33,17 +34,16 @@ FloatImage CastOwn(const RayScene& scene, const RankShare& share, std::size_t se
   RayStatistics& statistics, std::string& failure)
 {
   const Box& zone = share.Zones.at(self);
-  try
-  {
-    return share.Source && !zone.Empty()
-             ? CastRays(scene, *share.Source, zone, share.BudgetBytes, share.Pool, statistics)
-             : FloatImage{};
-  }
-  catch (const std::exception& error)
-  {
-    failure = error.what();
-    return {};
-  }
+  FloatImage mine;
+  Attempt(failure,
+    [&]
+    {
+      if (share.Source && !zone.Empty())
+      {
+        mine = CastRays(scene, *share.Source, zone, share.BudgetBytes, share.Pool, statistics);
+      }
+    });
+  return mine;
 }
 
 /// The pixels of a footprint, row by row; 0 where nothing was drawn.
@@ -129,7 +129,7 @@ FloatImage DrawDistributedPilot(Communicator& communicator, const RayScene& scen
   }
   if (failed)
   {
-    throw Error(AgreeOnError(communicator, failure));
+    ThrowTogether(communicator, failure);
   }
   return picture;
 }

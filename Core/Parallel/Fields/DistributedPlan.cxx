@@ -60,11 +60,7 @@ int CommonLevel(Communicator& communicator, BrickSource* source, const Box& doma
 SamplingPlan PlanDistributed(Communicator& communicator, const RayScene& scene,
   const RankShare& share, SamplingWish wish, FrameStatistics& statistics)
 {
-  const std::string agreed = AgreeOnError(communicator, share.Failure);
-  if (!agreed.empty())
-  {
-    throw Error(agreed);
-  }
+  ThrowTogether(communicator, share.Failure);
   wish.CoarsestLevel =
     CommonLevel(communicator, share.Source, scene.DomainCells, wish.CoarsestLevel);
   wish.FinestPilotLevel = FinestPilotLevel(communicator, scene, share, wish.CoarsestLevel);

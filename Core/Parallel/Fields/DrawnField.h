@@ -61,10 +61,10 @@ public:
   virtual ~DrawnField() = default;
 
   /// Collective: moves the zones, brings what they take, and lets the scene tell what drawing
-  /// takes. Throws Error, the same on all ranks, when one fails.
+  /// takes. Throws CollectiveError when one fails.
   virtual void BeginFrame(Communicator&, RayScene&) {}
   /// Collective, for frames that may be drawn from levels up to `coarsest`: makes those that are
-  /// not there yet. Throws Error, the same on all ranks, when one fails.
+  /// not there yet. Throws CollectiveError when one fails.
   virtual void BringLevels(Communicator&, const RayScene&, int /*coarsest*/) {}
   /// Begins to decode what the next frame is expected to need. Does not throw.
   virtual void ReadAhead(const RayScene&, int /*rank*/) {}

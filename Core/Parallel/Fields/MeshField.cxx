@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Fields/MeshField.h"
 
+#include "Parallel/Communicate/Collective.h"
 #include "Parallel/Fields/MeshZones.h"
 
 #include <algorithm>
@@ -22,15 +23,6 @@ Hash128 HashOfMesh(const HexMesh& mesh)
   return HashOf(mesh.Connectivity, ids, first.Low ^ first.High);
 }
 
-/// Throws Error on all ranks when one has failed: those that have not say nothing.
-void StopTogether(Communicator& communicator, const std::string& failure)
-{
-  if (!AgreeOnError(communicator, failure).empty())
-  {
-    throw Error(failure);
-  }
-}
-
 /// Collective: what the ranks that have cells say values belong to.
 ValuesOn Agreed(Communicator& communicator, ValuesOn where, bool cells)
 {
@@ -39,7 +31,7 @@ ValuesOn Agreed(Communicator& communicator, ValuesOn where, bool cells)
   const double low = -AllMax(communicator, cells ? -mine : -3.0);
   if (low < high)
   {
-    throw Error(
+    throw CollectiveError(
       "The array to draw is a point array on one rank and a cell array on another: rename one "
       "of them.");
   }
@@ -52,10 +44,10 @@ void MeshField::Take(Communicator& communicator, Piece piece, const MeshOptions&
   LoadBalancing balancing, std::string failure)
 {
   this->Bricks.reset();
-  StopTogether(communicator, failure);
+  ThrowTogether(communicator, failure);
   if (AllMax(communicator, static_cast<double>(piece.Mesh.CellCount)) == 0.0)
   {
-    StopTogether(
+    ThrowTogether(
       communicator, piece.OtherCells.empty()
                       ? failure
                       : "The mesh has no hexahedra or voxels, but " + piece.OtherCells + ".");

@@ -32,7 +32,7 @@ public:
   /// Collective: takes the pieces of all ranks.
   /// @param options the same on all ranks, as is the balancing
   /// @param failure why this rank has no piece to give; empty if it has
-  /// Throws Error when the mesh cannot be drawn or read; on all ranks, if one cannot.
+  /// Throws CollectiveError when one rank cannot draw or read the mesh.
   void Take(Communicator& communicator, Piece piece, const MeshOptions& options,
     LoadBalancing balancing, std::string failure);
 

@@ -2,6 +2,7 @@
 #include "Parallel/Fields/MeshGathering.h"
 
 #include "Mesh/Octree/TakenComponent.h"
+#include "Parallel/Communicate/Collective.h"
 
 #include <cstdint>
 #include <limits>
@@ -149,12 +150,7 @@ HexMesh GatherMesh(Communicator& communicator, NodeCommunicator& machines, const
   {
     return piece;
   }
-  const std::string problem =
-    AgreeOnError(communicator, piece.CellCount > 0 ? StrayPoint(piece) : std::string());
-  if (!problem.empty())
-  {
-    throw Error(problem);
-  }
+  ThrowTogether(communicator, piece.CellCount > 0 ? StrayPoint(piece) : std::string());
   const std::vector<double> counts =
     AllGatherValues(communicator, static_cast<double>(piece.PointCount));
   std::int64_t before = 0;

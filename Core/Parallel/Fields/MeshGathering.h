@@ -21,7 +21,7 @@ namespace banyan
 ///
 /// A mesh that one process draws alone is handed back as it is.
 /// @param piece of this rank; may have no cells
-/// Throws Error, on all ranks, when a cell of a piece refers to a point that the piece has not, and
+/// Throws CollectiveError when a cell of a piece refers to a point that the piece has not, and
 /// when there is not enough memory.
 HexMesh GatherMesh(Communicator& communicator, NodeCommunicator& machines, const HexMesh& piece);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Fields/PieceExchange.h"
 
-#include "Base/Error.h"
+#include "Parallel/Communicate/Collective.h"
 
 #include <algorithm>
 
@@ -48,24 +48,16 @@ std::uint64_t ExchangeShells(Communicator& communicator, const PieceGrid& grid,
         bytes += size;
         continue;
       }
-      try
-      {
-        CopySamples({ mine.View(part.Samples), part.Samples }, part.Samples, type, values);
-      }
-      catch (const std::exception& error)
-      {
-        failure = error.what();
-      }
+      Attempt(failure,
+        [&] {
+          CopySamples({ mine.View(part.Samples), part.Samples }, part.Samples, type, values);
+        });
       communicator.Send(rank, ShellTag, values, size);
       sent.push_back(view);
     }
   }
   communicator.WaitAll();
-  const std::string agreed = AgreeOnError(communicator, failure);
-  if (!agreed.empty())
-  {
-    throw Error(agreed);
-  }
+  ThrowTogether(communicator, failure);
   mine.SetShell(std::move(received));
   return bytes;
 }
@@ -152,14 +144,10 @@ void BrickFetch::Pack(
   for (std::size_t i = first; i < last; ++i)
   {
     const Box samples = this->Grid.BrickSamples(bricks[i], this->Around);
-    try
-    {
-      CopySamples({ this->Mine.View(samples), samples }, samples, this->TypeOf(bricks[i]), out);
-    }
-    catch (const std::exception& error)
-    {
-      this->Failure = error.what();
-    }
+    Attempt(this->Failure,
+      [&] {
+        CopySamples({ this->Mine.View(samples), samples }, samples, this->TypeOf(bricks[i]), out);
+      });
     out += this->BytesOf(bricks[i]);
   }
 }
@@ -167,22 +155,19 @@ void BrickFetch::Pack(
 void BrickFetch::Unpack(const std::vector<std::int64_t>& bricks, std::size_t first,
   std::size_t last, const char* in, FetchedBricks& into)
 {
-  try
+  for (std::size_t i = first; i < last; ++i)
   {
-    for (std::size_t i = first; i < last; ++i)
-    {
-      const Box samples = this->Grid.BrickSamples(bricks[i], this->Around);
-      const std::uint64_t bytes = this->BytesOf(bricks[i]);
-      void* values = nullptr;
-      const BrickView view = AllocateView(samples, this->TypeOf(bricks[i]), values);
-      std::copy_n(in, bytes, static_cast<char*>(values));
-      into.Keep(bricks[i], { view, samples }, bytes);
-      in += bytes;
-    }
-  }
-  catch (const std::exception& error)
-  {
-    this->Failure = error.what();
+    const Box samples = this->Grid.BrickSamples(bricks[i], this->Around);
+    const std::uint64_t bytes = this->BytesOf(bricks[i]);
+    Attempt(this->Failure,
+      [&]
+      {
+        void* values = nullptr;
+        const BrickView view = AllocateView(samples, this->TypeOf(bricks[i]), values);
+        std::copy_n(in, bytes, static_cast<char*>(values));
+        into.Keep(bricks[i], { view, samples }, bytes);
+      });
+    in += bytes;
   }
 }
 
@@ -240,7 +225,7 @@ void BrickFetch::Exchange(const std::vector<std::int64_t>& wanted,
   {
     // Bricks that a rank could not give have come empty: the next frame must not find them.
     into.Clear();
-    throw Error(agreed);
+    throw CollectiveError(agreed);
   }
 }
 

@@ -26,14 +26,14 @@ struct PieceSummaries
 
 /// Collective: each rank looks at its own bricks once, and tells the others.
 /// @param mine of this rank
-/// Throws Error, the same on all ranks, when one cannot.
+/// Throws CollectiveError when one cannot.
 PieceSummaries GatherSummaries(
   Communicator& communicator, const PieceGrid& grid, const PieceSamples& mine, ThreadPool& pool);
 
 /// Collective: gives every rank the layer of samples around what it holds. No messages are needed
 /// to ask for it: every rank knows what the others lack.
 /// @return bytes that this rank received
-/// Throws Error, the same on all ranks, when one cannot.
+/// Throws CollectiveError when one cannot.
 std::uint64_t ExchangeShells(Communicator& communicator, const PieceGrid& grid,
   const std::vector<ScalarType>& viewTypes, PieceSamples& mine);
 
@@ -55,7 +55,7 @@ public:
   /// @param wanted of this rank, ascending, held by others
   /// @param counts `[asking rank][holding rank]`: how many bricks of each other all ranks want
   /// @param into receives them
-  /// Throws Error, the same on all ranks, when one could not give what was asked for, or keep what
+  /// Throws CollectiveError when one could not give what was asked for, or keep what
   /// it got; then nothing is kept, not even what was there before.
   void Exchange(const std::vector<std::int64_t>& wanted, const std::vector<std::int32_t>& counts,
     FetchedBricks& into);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Fields/PieceField.h"
 
-#include "Base/Error.h"
 #include "Base/Timer.h"
+#include "Parallel/Communicate/Collective.h"
 #include "Parallel/Fields/PieceZones.h"
 #include "Render/Bricks/VisibleBricks.h"
 
@@ -57,22 +57,13 @@ void PieceField::Take(Communicator& communicator, const std::vector<Box>& sample
   this->Fetched.Clear();
   this->MostBrickCells = brickCells;
   this->AllCells = cells;
-  std::string failure;
-  try
-  {
-    this->Pieces = PieceGrid(samples, brickCells);
-    const bool some = !this->Pieces.SamplesOf(communicator.Rank()).Empty();
-    this->Mine = some ? PieceSamples(mine) : PieceSamples();
-  }
-  catch (const std::exception& error)
-  {
-    failure = error.what();
-  }
-  const std::string agreed = AgreeOnError(communicator, failure);
-  if (!agreed.empty())
-  {
-    throw Error(agreed);
-  }
+  Collective(communicator,
+    [&]
+    {
+      this->Pieces = PieceGrid(samples, brickCells);
+      const bool some = !this->Pieces.SamplesOf(communicator.Rank()).Empty();
+      this->Mine = some ? PieceSamples(mine) : PieceSamples();
+    });
   this->Known = GatherSummaries(communicator, this->Pieces, this->Mine, pool);
 
   FrameBalancer::Field field;
@@ -95,14 +86,7 @@ PieceField::Wish PieceField::WishOf(
 {
   Wish wish;
   wish.Counts.assign(static_cast<std::size_t>(this->Pieces.Ranks()), 0);
-  try
-  {
-    this->AddWishes(scene, fetch, rank, budgetBytes, wish);
-  }
-  catch (const std::exception& error)
-  {
-    wish.Failure = error.what();
-  }
+  Attempt(wish.Failure, [&] { this->AddWishes(scene, fetch, rank, budgetBytes, wish); });
   return wish;
 }
 
@@ -134,7 +118,7 @@ void PieceField::AddWishes(
 }
 
 /// Collective, one AllGather. @return whether all that ranks wish for may be fetched
-/// Throws Error, the same on all ranks, when one could not say what it wishes for.
+/// Throws CollectiveError when one could not say what it wishes for.
 bool PieceField::Fits(
   Communicator& communicator, const Wish& mine, std::vector<std::int32_t>& counts)
 {
@@ -161,7 +145,7 @@ bool PieceField::Fits(
   const double drawn = sum[1];
   if (sum[4] > 0.0)
   {
-    throw Error(AgreeOnError(communicator, mine.Failure));
+    ThrowTogether(communicator, mine.Failure);
   }
   this->Numbers.Hits = static_cast<std::uint64_t>(sum[2]);
   this->Numbers.Misses = 0;

@@ -47,7 +47,7 @@ public:
   /// @param cells of the whole grid
   /// @param brickCells as for PieceGrid
   /// @param mode how zones move
-  /// Throws Error, the same on all ranks, when one cannot; there is no Source() then.
+  /// Throws CollectiveError when one cannot; there is no Source() then.
   void Take(Communicator& communicator, const std::vector<Box>& samples, const SampleArray& mine,
     const glm::ivec3& cells, int brickCells, LoadBalancing mode, ThreadPool& pool);
 
@@ -61,12 +61,12 @@ public:
   /// Collective: moves the planes, and fetches what this rank's zone takes.
   /// @param scene all of it but its samplings
   /// @param budgetBytes for fetched bricks on this rank
-  /// Throws Error, the same on all ranks, when one fails.
+  /// Throws CollectiveError when one fails.
   void BeginFrame(Communicator& communicator, RayScene& scene, std::uint64_t budgetBytes);
   /// Collective, after BeginFrame, for frames that may be drawn from coarser levels: makes them
   /// when they are not there yet, and fetches what this rank's zone takes of them.
   /// @param coarsest the same on all ranks, and from frame to frame
-  /// Throws Error, the same on all ranks, when one fails.
+  /// Throws CollectiveError when one fails.
   void BringLevels(Communicator& communicator, const RayScene& scene, int coarsest,
     std::uint64_t budgetBytes, ThreadPool& pool);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Fields/PieceLevels.h"
 
-#include "Base/Error.h"
+#include "Parallel/Communicate/Collective.h"
 #include "Parallel/Fields/CoarseSamples.h"
 #include "Render/Bricks/VisibleBricks.h"
 
@@ -54,7 +54,7 @@ void AddMissing(const RayScene& scene, const PieceSource& source, const PieceGri
 
 /// Collective, one message for all levels. @return how many bricks each rank wants of each other:
 /// per level `[asking rank][holding rank]`
-/// Throws Error, the same on all ranks, when one has failed.
+/// Throws CollectiveError when one has failed.
 std::vector<std::vector<std::int32_t>> GatherCounts(
   Communicator& communicator, const std::vector<Wanted>& wanted, const std::string& failure)
 {
@@ -81,7 +81,7 @@ std::vector<std::vector<std::int32_t>> GatherCounts(
   }
   if (failed)
   {
-    throw Error(AgreeOnError(communicator, failure));
+    ThrowTogether(communicator, failure);
   }
   return counts;
 }
@@ -138,17 +138,15 @@ std::uint64_t PieceLevels::Bring(Communicator& communicator, const RayScene& sce
     fetches.emplace_back(communicator, level.Grid, level.Known.ViewTypes, level.Samples, around);
     level.Fetched.BeginFrame();
     wanted[i].Counts.assign(zones.size(), 0);
-    try
-    {
-      const int number = static_cast<int>(i) + 1;
-      AddMissing(AtLevel(scene, 1 << number), *this->SourceOf(number, self), level.Grid, fetches[i],
-        CoarsePieces::CellsBeginningIn(zones.at(static_cast<std::size_t>(self)), number), around,
-        level.Fetched, wanted[i]);
-    }
-    catch (const std::exception& error)
-    {
-      failure = error.what();
-    }
+    const int number = static_cast<int>(i) + 1;
+    Attempt(failure,
+      [&]
+      {
+        AddMissing(AtLevel(scene, 1 << number), *this->SourceOf(number, self), level.Grid,
+          fetches[i],
+          CoarsePieces::CellsBeginningIn(zones.at(static_cast<std::size_t>(self)), number), around,
+          level.Fetched, wanted[i]);
+      });
   }
 
   const std::vector<std::vector<std::int32_t>> counts = GatherCounts(communicator, wanted, failure);

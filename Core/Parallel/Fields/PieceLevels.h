@@ -34,7 +34,7 @@ public:
   /// @param cells of the whole grid
   /// @param brickCells as for PieceGrid
   /// @param hidden cells of the whole grid; null for none
-  /// Throws Error, the same on all ranks, when one cannot; there are no levels then.
+  /// Throws CollectiveError when one cannot; there are no levels then.
   void Make(Communicator& communicator, const PieceGrid& finest, const PieceSamples& mine,
     const std::vector<ScalarType>& viewTypes, const glm::ivec3& cells, int brickCells, int coarsest,
     ThreadPool& pool, const std::shared_ptr<const HiddenCells>& hidden = nullptr);
@@ -50,7 +50,7 @@ public:
   /// @param zones cells of the finest level of each rank, the same list on all ranks
   /// @param budgetBytes for fetched bricks of all levels on this rank
   /// @return bytes that this rank received
-  /// Throws Error, the same on all ranks, when one fails.
+  /// Throws CollectiveError when one fails.
   std::uint64_t Bring(Communicator& communicator, const RayScene& scene,
     const std::vector<Box>& zones, std::uint64_t budgetBytes);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Collects what all ranks know of each other's bricks.
-#include "Base/Error.h"
+#include "Parallel/Communicate/Collective.h"
 #include "Parallel/Fields/PieceExchange.h"
 
 #include <algorithm>
@@ -79,14 +79,8 @@ PieceSummaries GatherSummaries(
   const int self = communicator.Rank();
   std::string failure;
   ValueRange range;
-  try
-  {
-    range = mine.HasData() ? FiniteRange(mine.Array().Array(), pool) : ValueRange{};
-  }
-  catch (const std::exception& error)
-  {
-    failure = error.what();
-  }
+  Attempt(failure,
+    [&] { range = mine.HasData() ? FiniteRange(mine.Array().Array(), pool) : ValueRange{}; });
   const ScalarType type = mine.HasData() ? mine.Array().Array().Type : ScalarType::Float32;
   const ArrayFacts facts{ range.Low, range.High, static_cast<std::int32_t>(type),
     static_cast<std::int32_t>(mine.Type()) };
@@ -103,19 +97,8 @@ PieceSummaries GatherSummaries(
   known.Masks = whole.Empty() ? MaskRange{} : MaskRange{ whole.Low, whole.High };
 
   std::string own;
-  try
-  {
-    own = failure.empty() ? SummarizeOwn(grid, self, mine, known.Masks, pool) : own;
-  }
-  catch (const std::exception& error)
-  {
-    failure = error.what();
-  }
-  const std::string agreed = AgreeOnError(communicator, failure);
-  if (!agreed.empty())
-  {
-    throw Error(agreed);
-  }
+  Attempt(failure, [&] { own = SummarizeOwn(grid, self, mine, known.Masks, pool); });
+  ThrowTogether(communicator, failure);
   const std::vector<std::string> messages = AllGatherStrings(communicator, own);
   std::vector<const char*> next;
   for (const std::string& message : messages)

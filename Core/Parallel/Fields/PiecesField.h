@@ -16,7 +16,7 @@ class PiecesField final : public DrawnField
 {
 public:
   /// Collective: see PieceField::Take. Zones stand where they stood, if pieces lie as before.
-  /// Throws Error, the same on all ranks, when one cannot; the field is empty then.
+  /// Throws CollectiveError when one cannot; the field is empty then.
   void Take(Communicator& communicator, const std::vector<Box>& samples, const SampleArray& mine,
     const glm::ivec3& cells, int brickCells, LoadBalancing mode);
 

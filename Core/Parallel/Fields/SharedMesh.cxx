@@ -6,6 +6,7 @@
 #include "Mesh/Octree/OctreeBytes.h"
 #include "Mesh/Sampling/CellMeans.h"
 #include "Mesh/Sampling/OneNumberPerPlace.h"
+#include "Parallel/Communicate/Collective.h"
 
 #include <algorithm>
 #include <cstring>
@@ -87,7 +88,7 @@ SharedMesh::SharedMesh(Communicator& communicator, const HexMesh& piece, ValuesO
     OnLeaders(communicator, machines, [&] { packed.emplace(tree, sampled); });
     const MachineBytes bytes = NodeBroadcast(
       communicator, machines, packed ? packed->Count() : 0, [&](char* to) { packed->WriteTo(to); });
-    OnRanks(communicator, true, [&] { tree = OctreeBytes::Read(mesh, bytes.Memory); });
+    Collective(communicator, [&] { tree = OctreeBytes::Read(mesh, bytes.Memory); });
     Add(bytes.Count, bytes.Together, this->OfMesh);
   }
   else
@@ -99,7 +100,7 @@ SharedMesh::SharedMesh(Communicator& communicator, const HexMesh& piece, ValuesO
   {
     Add(this->Sampled->Bytes(), false, this->OfMesh);
   }
-  OnRanks(communicator, true, [&] { this->Cut = std::make_shared<HexBricks>(tree, brickCells); });
+  Collective(communicator, [&] { this->Cut = std::make_shared<HexBricks>(tree, brickCells); });
 }
 
 SharedMesh::~SharedMesh() = default;
@@ -258,7 +259,7 @@ void SharedMesh::BringLevel(Communicator& communicator, NodeCommunicator& machin
         tree->WriteTo(to);
         std::memcpy(to + tree->Count(), made->NodeOfPoint.data(), made->NodeOfPoint.Bytes());
       });
-  OnRanks(communicator, true,
+  Collective(communicator,
     [&]
     {
       const std::shared_ptr<const ElementOctree> read = OctreeBytes::Read({}, bytes.Memory);

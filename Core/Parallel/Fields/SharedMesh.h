@@ -44,7 +44,7 @@ public:
   /// @param brickCells largest number of cells of a brick per axis: a power of two
   /// @param options the same on all ranks; leaders call MeshSampling::Watch
   /// @param machine of this rank
-  /// Throws Error on all ranks when the mesh cannot be drawn: see OnLeaders.
+  /// Throws CollectiveError when the mesh cannot be drawn.
   SharedMesh(Communicator& communicator, const HexMesh& piece, ValuesOn where, int brickCells,
     const MeshOptions& options, const std::string& machine = NodeCommunicator::ThisMachine());
   ~SharedMesh();
@@ -59,7 +59,7 @@ public:
   /// @param piece values at the points or cells of this rank's piece; one component of them counts,
   /// the same one on all ranks
   /// @param count of points, or cells, of the piece
-  /// Throws Error on all ranks when one fails.
+  /// Throws CollectiveError when one fails.
   std::unique_ptr<HexBrickSource> Field(
     Communicator& communicator, const NodeArray& piece, std::int64_t count, ValuesOn where);
 

@@ -196,6 +196,12 @@ inline std::string CheckHelpers(Communicator& communicator)
       return "gathered strings are not those that the ranks gave";
     }
   }
+  const std::vector<std::string> texts{ "first", "", std::string("\0z", 2) };
+  if (BroadcastStrings(communicator, self == 0 ? texts : std::vector<std::string>(7)) != texts)
+  {
+    return "strings are not those of rank 0";
+  }
+  Meet(communicator, [] {});
   // Summed in another order this would give other bits.
   double sum = 0.0;
   for (int rank = 0; rank < size; ++rank)

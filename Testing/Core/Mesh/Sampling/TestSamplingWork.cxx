@@ -104,7 +104,7 @@ TEST(SamplingWork, IsStoppedAtOnce)
     int calls = 0;
     MeshSampling sampling;
     sampling.Watch = [&](double) { return ++calls < last; };
-    EXPECT_THROW(warped::Sample(mesh, sampling, 2), Interrupted);
+    EXPECT_THROW(warped::Sample(mesh, sampling, 2), Interruption);
     EXPECT_EQ(calls, last);
   }
 }

@@ -7,7 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 
 namespace banyan::testing
 {
@@ -65,6 +67,57 @@ TEST(Collective, ThrowsTheSameOnAllRanksWhereNested)
         EXPECT_STREQ(error.what(), "Rank 1: The disk is full.");
       }
       EXPECT_NO_THROW(Collective(communicator, [] {}));
+    });
+}
+
+TEST(Collective, HasASentenceForMissingMemory)
+{
+  RunOnSimulatedRanks(2,
+    [](Communicator& communicator)
+    {
+      const auto allocate = [] { throw std::bad_alloc(); };
+      try
+      {
+        CollectiveOn(1, communicator, allocate, "Use more ranks.");
+        ADD_FAILURE() << "rank " << communicator.Rank() << " threw nothing";
+      }
+      catch (const CollectiveError& error)
+      {
+        EXPECT_STREQ(error.what(), "Rank 1: Use more ranks.");
+      }
+      EXPECT_THROW(Collective(communicator, allocate), CollectiveError);
+    });
+}
+
+TEST(Collective, KeepsTheFirstFailure)
+{
+  std::string failure;
+  Attempt(failure, [] { throw Error("first"); });
+  Attempt(failure, [] { throw Error("second"); });
+  Attempt(failure, [] {});
+  EXPECT_EQ(failure, "first");
+}
+
+TEST(Meet, WaitsForAllRanksAndTicksMeanwhile)
+{
+  std::atomic<int> here{ 0 };
+  RunOnSimulatedRanks(3,
+    [&](Communicator& communicator)
+    {
+      int ticks = 0;
+      for (int time = 1; time < 3; ++time)
+      {
+        const bool late = communicator.Rank() == time;
+        if (late)
+        {
+          std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        }
+        ++here;
+        Meet(communicator, [&ticks] { ++ticks; });
+        EXPECT_GE(here, 3 * time) << communicator.Rank();
+        EXPECT_TRUE(late || ticks > 0);
+      }
+      EXPECT_EQ(AllSum(communicator, 1.0), 3.0);
     });
 }
 
