@@ -2,10 +2,15 @@
 #include "MeshOutput.h"
 
 #include "LargeArrays.h"
+#include "SeriesInformation.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkHyperTreeGrid.h"
 #include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkUnsignedCharArray.h"
@@ -20,6 +25,7 @@
 #include <algorithm>
 #include <cstring>
 #include <numeric>
+#include <utility>
 
 namespace banyan
 {
@@ -50,6 +56,59 @@ void MeshOutput::Open(std::shared_ptr<const SeriesFile> series)
   this->Grid = nullptr;
   this->Trees.Forget();
   this->Made[0] = -1;
+}
+
+void MeshOutput::Fill(const StepRequest& request, bool readAhead, vtkDataObject* output)
+{
+  const SeriesIndex& index = request.Series->Index();
+  vtkHyperTreeGrid* const trees = vtkHyperTreeGrid::SafeDownCast(output);
+  if (trees)
+  {
+    this->FillTrees(request.Level, request.Piece, request.Pieces, trees);
+  }
+  else
+  {
+    this->FillGrid(
+      request.Level, request.Piece, request.Pieces, vtkUnstructuredGrid::SafeDownCast(output));
+  }
+  output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), index.Times[request.Step]);
+  vtkBanyanDeferred::Handle handle;
+  handle.Series = request.Series;
+  handle.Step = request.Step;
+  handle.Samples = { glm::ivec3{ 0 }, index.Domain.Samples() };
+  this->Ahead.Reading(*request.Series, request.Step);
+  std::vector<FieldBricks> bricks;
+  const int arrays = static_cast<int>(index.Arrays.size());
+  for (handle.Array = 0; handle.Array < arrays; ++handle.Array)
+  {
+    request.Progress(static_cast<double>(handle.Array) / arrays);
+    const ArrayIndex& array = index.Arrays[handle.Array];
+    if (!request.Wants(array))
+    {
+      continue;
+    }
+    const int components = static_cast<int>(array.Components.size());
+    for (int component = 0; readAhead && component < components; ++component)
+    {
+      bricks.push_back({ { handle.Step, handle.Array, component, handle.Level },
+        this->BricksOf(array, trees != nullptr) });
+    }
+    const vtkSmartPointer<vtkDataArray> added =
+      trees ? this->CellValues(handle) : this->Values(handle);
+    vtkDataSetAttributes* const values = output->GetAttributes(
+      trees || !array.CellArray.empty() ? vtkDataObject::CELL : vtkDataObject::POINT);
+    values->AddArray(added);
+    DescribeRange(*request.Series, handle.Array, *added);
+    if (array.Name == index.ActiveScalars)
+    {
+      values->SetActiveScalars(added->GetName());
+    }
+  }
+  if (readAhead)
+  {
+    this->Ahead.Read(request.Series, std::move(bricks));
+  }
+  request.Progress(1.0);
 }
 
 void MeshOutput::FillTrees(int level, int piece, int pieces, vtkHyperTreeGrid* output)

@@ -2,6 +2,8 @@
 #ifndef banyan_Readers_MeshOutput_h
 #define banyan_Readers_MeshOutput_h
 
+#include "MeshStepAhead.h"
+#include "StepRequest.h"
 #include "TreeOutput.h"
 #include "vtkBanyanDeferred.h"
 
@@ -12,15 +14,14 @@
 #include <memory>
 #include <vector>
 
+class vtkDataArray;
+class vtkDataObject;
 class vtkHyperTreeGrid;
 class vtkUnstructuredGrid;
-class vtkDataArray;
 
 namespace banyan
 {
 
-class SeriesFile;
-struct ArrayIndex;
 struct StoredMesh;
 
 /// The mesh of a series as unstructured grids, with the values of a step. The grid is made once for
@@ -34,6 +35,12 @@ public:
   /// Levels of the octree; the mesh itself is level 0. Reads the file of the mesh; throws Error.
   int Levels();
 
+  /// Grid or trees of a piece, and the arrays that are wanted. Throws Error.
+  /// @param readAhead whether the next step of a series that plays is decoded meanwhile
+  /// @param output vtkUnstructuredGrid, or vtkHyperTreeGrid
+  void Fill(const StepRequest& request, bool readAhead, vtkDataObject* output);
+
+private:
   /// Points and cells of a piece: a run of the cells, with the points that they use in the order of
   /// the mesh. One piece has all points. Throws Error.
   void FillGrid(int level, int piece, int pieces, vtkUnstructuredGrid* output);
@@ -53,8 +60,6 @@ public:
   {
     return this->Trees.Values(handle);
   }
-
-private:
   void Load();
   void MakeGrid(int level, int piece, int pieces);
   bool NeedsImage(const ArrayIndex& array) const;
@@ -64,6 +69,7 @@ private:
   std::shared_ptr<const StoredMesh> Mesh;
   vtkSmartPointer<vtkUnstructuredGrid> Grid;
   TreeOutput Trees;
+  MeshStepAhead Ahead;
   int Made[3] = { -1, 0, 0 };        ///< level, piece and pieces of Grid
   ChosenSamples PointSamples;        ///< of its points
   ChosenSamples CellSamples;         ///< of its cells, at level 0

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkBanyanSeriesReader.h"
 
-#include "HiddenFlags.h"
+#include "DeferredConsumers.h"
+#include "ImageOutput.h"
+#include "MeshOutput.h"
 #include "SeriesInformation.h"
-#include "SeriesReaderInternals.h"
+#include "SeriesOfRanks.h"
 #include "vtkBanyanDeferred.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataArraySelection.h"
+#include "vtkDataObjectTypes.h"
 #include "vtkErrorCode.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -18,18 +21,45 @@
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTimeStamp.h"
 
 #include "Base/Timer.h"
 #include "Cache/BrickCache.h"
+#include "Parallel/Communicate/Collective.h"
 #include "Series/Decode/SeriesFile.h"
 #include "Series/Format/IndexText.h"
-#include "Series/Grid/LevelGrid.h"
 
 #include <algorithm>
-#include <new>
-#include <sstream>
+#include <string>
+#include <vector>
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+struct vtkBanyanSeriesReader::Internals
+{
+  banyan::SeriesOfRanks File;
+  banyan::ImageOutput Image;
+  banyan::MeshOutput Mesh;
+  double LoadSeconds = 0;                      ///< of the last update
+  vtkNew<vtkDataArraySelection> Selection;     ///< of point arrays
+  vtkNew<vtkDataArraySelection> CellSelection; ///< of cell arrays of meshes
+  std::string ErrorMessage;
+  bool GaveDeferred = false; ///< whether the output has arrays that decode on first touch
+  vtkTimeStamp PlainWanted;  ///< when somebody came who needs plain ones instead
+  vtkTimeStamp Executed;
+  /// Arrays that plain ones have replaced: ParaView's 2D histogram keeps pointers to arrays that it
+  /// saw before the update.
+  std::vector<vtkSmartPointer<vtkDataArray>> Replaced;
+
+  /// Whether an array of the series is to be read.
+  bool Wants(const banyan::ArrayIndex& array) const
+  {
+    return array.Flags != banyan::ArrayFlags::None ? false
+           : array.CellArray.empty()
+             ? this->Selection->ArrayIsEnabled(array.Name.c_str()) != 0
+             : this->CellSelection->ArrayIsEnabled(array.CellArray.c_str()) != 0;
+  }
+};
 
 vtkStandardNewMacro(vtkBanyanSeriesReader);
 
@@ -37,7 +67,6 @@ vtkBanyanSeriesReader::vtkBanyanSeriesReader()
   : Self(new Internals)
 {
   this->SetNumberOfInputPorts(0);
-  this->Self->Controller = vtkMultiProcessController::GetGlobalController();
 }
 
 vtkBanyanSeriesReader::~vtkBanyanSeriesReader()
@@ -54,8 +83,7 @@ void vtkBanyanSeriesReader::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "DeferDecoding: " << this->DeferDecoding << "\n"
      << indent << "ReadAhead: " << this->ReadAhead << "\n"
      << indent << "CacheBudget: " << this->CacheBudget << "\n"
-     << indent << "Steps: " << (this->Self->Series ? this->Self->Series->Index().Steps() : 0)
-     << "\n";
+     << indent << "Steps: " << (this->Series() ? this->Series()->Index().Steps() : 0) << "\n";
   os << indent << "PointArraySelection:\n";
   this->Self->Selection->PrintSelf(os, indent.GetNextIndent());
   os << indent << "CellArraySelection:\n";
@@ -86,7 +114,7 @@ int vtkBanyanSeriesReader::GetNumberOfLevels()
       return 1; // the update says what is wrong
     }
   }
-  return this->Self->Series ? this->Self->Series->Index().Levels : 0;
+  return this->Series() ? this->Series()->Index().Levels : 0;
 }
 
 void vtkBanyanSeriesReader::SetCacheBudget(int mebibytes)
@@ -142,23 +170,38 @@ void vtkBanyanSeriesReader::SetPointArrayStatus(const char* name, int status)
 
 void vtkBanyanSeriesReader::Refresh()
 {
-  this->Self->Reopen = true;
+  this->Self->File.OpenAgain();
   this->Modified();
 }
 
 void vtkBanyanSeriesReader::SetController(vtkMultiProcessController* controller)
 {
-  this->Self->Controller = controller;
+  this->Self->File.SetController(controller);
 }
 
 vtkMultiProcessController* vtkBanyanSeriesReader::GetController()
 {
-  return this->Self->Controller;
+  return this->Self->File.Controller();
 }
 
 const char* vtkBanyanSeriesReader::GetErrorMessage()
 {
   return this->Self->ErrorMessage.c_str();
+}
+
+vtkIdType vtkBanyanSeriesReader::GetBricksReadAhead()
+{
+  return static_cast<vtkIdType>(banyan::BrickCache::Process().GetAheadStatistics().Hits);
+}
+
+double vtkBanyanSeriesReader::GetLoadSeconds()
+{
+  return this->Self->LoadSeconds;
+}
+
+vtkIdType vtkBanyanSeriesReader::GetBricksDecoded()
+{
+  return this->Series() ? static_cast<vtkIdType>(this->Series()->BricksDecoded()) : 0;
 }
 
 vtkMTimeType vtkBanyanSeriesReader::GetMTime()
@@ -170,23 +213,30 @@ vtkMTimeType vtkBanyanSeriesReader::GetMTime()
 //--------------------------------------------------------------------------------------------------
 // Opening
 
-std::string vtkBanyanSeriesReader::Place() const
+const banyan::SeriesFile* vtkBanyanSeriesReader::Series() const
 {
-  std::ostringstream text;
-  text << (this->FileName ? this->FileName : "(no file name)");
-  const vtkMultiProcessController* controller = this->Self->Controller;
-  if (controller && this->Self->Controller->GetNumberOfProcesses() > 1)
-  {
-    text << " (rank " << this->Self->Controller->GetLocalProcessId() << ")";
-  }
-  return text.str();
+  return this->Self->File.Series().get();
+}
+
+bool vtkBanyanSeriesReader::IsMesh() const
+{
+  return this->Series() && this->Series()->Index().Mesh;
+}
+
+int vtkBanyanSeriesReader::UsedLevel() const
+{
+  return std::min(this->Level, this->Series()->Index().Levels - 1);
 }
 
 void vtkBanyanSeriesReader::Fail(unsigned long code, const std::string& sentence)
 {
   this->SetErrorCode(code);
   this->Self->ErrorMessage = sentence;
-  vtkErrorMacro(<< sentence);
+  // All ranks have the same sentence; one of them says it.
+  if (this->Self->File.Ranks().Rank() == 0)
+  {
+    vtkErrorMacro(<< sentence);
+  }
 }
 
 void vtkBanyanSeriesReader::Clear()
@@ -195,34 +245,67 @@ void vtkBanyanSeriesReader::Clear()
   this->Self->ErrorMessage.clear();
 }
 
-bool vtkBanyanSeriesReader::AllRanksAreWell(unsigned long code, const std::string& problem)
+bool vtkBanyanSeriesReader::OpenOnAllRanks()
 {
-  vtkMultiProcessController* controller = this->Self->Controller;
-  const int failing = problem.empty() ? 0 : 1;
-  int failingRanks = failing;
-  if (controller && controller->GetNumberOfProcesses() > 1)
+  const std::shared_ptr<const banyan::SeriesFile> before = this->Self->File.Series();
+  const bool named = this->FileName && *this->FileName;
+  try
   {
-    controller->AllReduce(&failing, &failingRanks, 1, vtkCommunicator::SUM_OP);
+    this->Self->File.Open(this->FileName);
   }
-  if (failing)
+  catch (const std::exception& error)
   {
-    this->Fail(code, problem);
+    this->Fail(
+      named ? vtkErrorCode::CannotOpenFileError : vtkErrorCode::NoFileNameError, error.what());
+    return false;
   }
-  else if (failingRanks > 0)
+  if (this->Self->File.Series() != before)
   {
-    this->Fail(vtkErrorCode::UserError,
-      this->Place() + " could be read here, but not on " + std::to_string(failingRanks) +
-        " other rank(s), so no rank reads it: see their messages.");
+    this->Self->Mesh.Open(this->Self->File.Series());
   }
-  return failingRanks == 0;
+  return true;
 }
 
 //--------------------------------------------------------------------------------------------------
 // Information
 
-int vtkBanyanSeriesReader::UsedLevel() const
+int vtkBanyanSeriesReader::FillOutputPortInformation(int, vtkInformation* info)
 {
-  return std::min(this->Level, this->Self->Series->Index().Levels - 1);
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject");
+  return 1;
+}
+
+vtkTypeBool vtkBanyanSeriesReader::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (request->Has(Pipeline::REQUEST_DATA_OBJECT()))
+  {
+    return this->MakeOutput(outputs);
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+/// An output of the type that the series is of; an image where it cannot be opened.
+int vtkBanyanSeriesReader::MakeOutput(vtkInformationVector* outputs)
+{
+  bool open = true;
+  if (!this->Self->File.IsOpen(this->FileName))
+  {
+    this->Clear();
+    open = this->OpenOnAllRanks();
+  }
+  vtkInformation* const info = outputs->GetInformationObject(0);
+  const int type = !this->IsMesh()             ? VTK_IMAGE_DATA
+                   : this->MeshAsHyperTreeGrid ? VTK_HYPER_TREE_GRID
+                                               : VTK_UNSTRUCTURED_GRID;
+  vtkDataObject* const now = info->Get(vtkDataObject::DATA_OBJECT());
+  if (!now || now->GetDataObjectType() != type)
+  {
+    vtkSmartPointer<vtkDataObject> output;
+    output.TakeReference(vtkDataObjectTypes::NewDataObject(type));
+    info->Set(vtkDataObject::DATA_OBJECT(), output);
+  }
+  return open ? 1 : 0;
 }
 
 int vtkBanyanSeriesReader::RequestInformation(
@@ -233,7 +316,7 @@ int vtkBanyanSeriesReader::RequestInformation(
   {
     return 0;
   }
-  for (const banyan::ArrayIndex& array : this->Self->Series->Index().Arrays)
+  for (const banyan::ArrayIndex& array : this->Series()->Index().Arrays)
   {
     if (array.Flags == banyan::ArrayFlags::None) // these come with whatever is chosen
     {
@@ -243,17 +326,48 @@ int vtkBanyanSeriesReader::RequestInformation(
     }
   }
   banyan::DescribeSeries(
-    this->Self->Series->Index(), this->UsedLevel(), *outputs->GetInformationObject(0));
+    this->Series()->Index(), this->UsedLevel(), *outputs->GetInformationObject(0));
   return 1;
 }
 
 //--------------------------------------------------------------------------------------------------
 // Data
 
+int vtkBanyanSeriesReader::ComputePipelineMTime(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector*, int, vtkMTimeType* mtime)
+{
+  // Nobody tells the reader that somebody was connected, so it looks before each update.
+  if (this->Self->GaveDeferred && !banyan::ConsumersReadDeferred(*this))
+  {
+    this->Self->GaveDeferred = false;
+    this->Self->PlainWanted.Modified();
+    auto* const image = vtkImageData::SafeDownCast(this->GetOutputDataObject(0));
+    for (int i = 0; image && i < image->GetPointData()->GetNumberOfArrays(); ++i)
+    {
+      this->Self->Replaced.emplace_back(image->GetPointData()->GetArray(i));
+      vtkBanyanDeferred::Supersede(this->Self->Replaced.back());
+    }
+  }
+  *mtime = std::max(this->GetMTime(), this->Self->PlainWanted.GetMTime());
+  return 1;
+}
+
+/// To be called by all ranks, with or without a piece: they execute again together, or not.
+void vtkBanyanSeriesReader::DecideOnDeferring()
+{
+  if (this->Self->PlainWanted < this->Self->Executed)
+  {
+    this->Self->Replaced.clear();
+  }
+  this->Self->Executed.Modified();
+  this->Self->GaveDeferred =
+    this->DeferDecoding && !this->IsMesh() && banyan::ConsumersReadDeferred(*this);
+}
+
 int vtkBanyanSeriesReader::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  if (!this->Self->Series)
+  if (!this->Series())
   {
     // All ranks know that it could not be opened; but not all of them come here, because nobody
     // told the pipeline that there are pieces. So there is nothing to agree on.
@@ -268,76 +382,50 @@ int vtkBanyanSeriesReader::RequestData(
   // No filter is at work now: the time to let go what was decoded for others.
   this->DecideOnDeferring();
   vtkBanyanDeferred::ReleaseDownTo(banyan::BrickCache::Process().Budget());
-  unsigned long code = vtkErrorCode::NoError;
-  const std::string problem = this->TryToFill(outInfo, code);
+  std::string failure;
+  banyan::Attempt(
+    failure, [&] { this->FillOutput(outInfo, output); },
+    "there is not enough memory for the piece. Raise 'Level', read fewer arrays, or use more "
+    "ranks.");
   this->Self->LoadSeconds = timer.Seconds();
-  if (!this->AllRanksAreWell(code, problem))
+  if (!failure.empty())
   {
-    output->Initialize();
-    return 0;
+    failure.insert(0, std::string("The data of ") + this->FileName + " cannot be read: ");
   }
-  return 1;
-}
-
-std::string vtkBanyanSeriesReader::TryToFill(vtkInformation* outInfo, unsigned long& code)
-{
   try
   {
-    code = vtkErrorCode::FileFormatError;
-    if (this->IsMesh())
-    {
-      this->FillMesh(outInfo);
-    }
-    else
-    {
-      this->FillOutput(outInfo);
-    }
-    return {};
-  }
-  catch (const std::bad_alloc&)
-  {
-    code = vtkErrorCode::UnknownError;
-    return "There is no memory for the piece of " + this->Place() +
-           ": raise 'Level', read fewer arrays, or use more ranks.";
+    banyan::ThrowTogether(this->Self->File.Ranks(), failure);
+    return 1;
   }
   catch (const std::exception& error)
   {
-    return "The data of " + this->Place() + " cannot be read: " + error.what();
+    this->Fail(vtkErrorCode::FileFormatError, error.what());
+    output->Initialize();
+    return 0;
   }
 }
 
-void vtkBanyanSeriesReader::FillOutput(vtkInformation* outInfo)
+/// @param info where the pipeline says what it wants
+void vtkBanyanSeriesReader::FillOutput(vtkInformation* info, vtkDataObject* output)
 {
-  const banyan::SeriesFile& series = *this->Self->Series;
-  const banyan::SeriesIndex& index = series.Index();
-  vtkBanyanDeferred::Handle handle;
-  handle.Series = this->Self->Series;
-  handle.Step = banyan::StepAt(index, *outInfo);
-  handle.Level = this->UsedLevel();
-
-  const banyan::Grid grid = banyan::GridOfLevel(index.Domain, handle.Level);
-  const banyan::Box wanted =
-    Intersection(banyan::FromExtent(outInfo->Get(Pipeline::UPDATE_EXTENT())), grid.Extent);
-  if (!wanted.Empty())
+  banyan::StepRequest request;
+  request.Series = this->Self->File.Series();
+  request.Step = banyan::StepAt(this->Series()->Index(), *info);
+  request.Wants = [this](const banyan::ArrayIndex& array) { return this->Self->Wants(array); };
+  request.Progress = [this](double part) { this->UpdateProgress(part); };
+  if (this->IsMesh())
   {
-    handle.Samples = { wanted.Lo - grid.Extent.Lo, wanted.Hi - grid.Extent.Lo };
+    const bool pieces = info->Has(Pipeline::UPDATE_NUMBER_OF_PIECES());
+    request.Level = this->Level;
+    request.Piece = pieces ? info->Get(Pipeline::UPDATE_PIECE_NUMBER()) : 0;
+    request.Pieces = pieces ? std::max(info->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()), 1) : 1;
+    this->Self->Mesh.Fill(request, this->ReadAhead, output);
+    return;
   }
-  int extent[6] = { 0, -1, 0, -1, 0, -1 };
-  if (!wanted.Empty())
-  {
-    banyan::ToExtent(wanted, extent);
-  }
-  vtkImageData* output = vtkImageData::GetData(outInfo);
-  output->SetExtent(extent);
-  output->SetOrigin(&grid.Origin[0]);
-  output->SetSpacing(&grid.Spacing[0]);
-  output->SetDirectionMatrix(outInfo->Get(vtkDataObject::DIRECTION()));
-  output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), index.Times[handle.Step]);
-
-  if (!wanted.Empty())
-  {
-    banyan::AddHiddenFlags(output, handle);
-  }
-  this->AddImageArrays(handle, output->GetPointData());
-  this->UpdateProgress(1.0);
+  request.Level = this->UsedLevel();
+  const banyan::ArrayForm form = this->Self->GaveDeferred ? banyan::ArrayForm::Deferred
+                                 : this->DeferDecoding    ? banyan::ArrayForm::Decoded
+                                                          : banyan::ArrayForm::Plain;
+  this->Self->Image.Fill(request, banyan::FromExtent(info->Get(Pipeline::UPDATE_EXTENT())),
+    info->Get(vtkDataObject::DIRECTION()), form, vtkImageData::SafeDownCast(output));
 }

@@ -27,23 +27,27 @@
  * hidden points are bit-exact.
  *
  * @par Errors:
- * vtkErrorMacro and GetErrorCode(); the update fails. The sentence names the file, the array and
- * the rank. All ranks of the controller fail together, so that no filter waits for a rank that has
- * no input: RequestData() and the first RequestInformation() after SetFileName() or Refresh() are
- * collective. Set the controller to nullptr where only some ranks use a reader.
+ * vtkErrorMacro on the first rank, and GetErrorCode() and GetErrorMessage() on all; the update
+ * fails. The sentence names the file, the array and the rank. All ranks of the controller fail
+ * together, so that no filter waits for a rank that has no input: RequestData() and the first
+ * RequestInformation() after SetFileName() or Refresh() are collective. Set the controller to
+ * nullptr where only some ranks use a reader.
  */
 #ifndef vtkBanyanSeriesReader_h
 #define vtkBanyanSeriesReader_h
 
 #include "BanyanReadersModule.h" // For export macro
-#include "vtkBanyanDeferred.h"   // For vtkBanyanDeferred::Handle
 #include "vtkImageAlgorithm.h"
 
 #include <memory> // For Internals
 
 class vtkDataArraySelection;
 class vtkMultiProcessController;
-class vtkPointData;
+
+namespace banyan
+{
+class SeriesFile;
+}
 
 class BANYANREADERS_EXPORT vtkBanyanSeriesReader : public vtkImageAlgorithm
 {
@@ -200,20 +204,14 @@ private:
   void operator=(const vtkBanyanSeriesReader&) = delete;
 
   bool OpenOnAllRanks();
-  bool AllRanksHaveTheSame() const;
-  std::string TryToOpen();
-  std::string TryToFill(vtkInformation* outInfo, unsigned long& code);
+  const banyan::SeriesFile* Series() const;
   int UsedLevel() const;
   bool IsMesh() const;
   int MakeOutput(vtkInformationVector* outputs);
-  void FillOutput(vtkInformation* outInfo);
   void DecideOnDeferring();
-  void AddImageArrays(vtkBanyanDeferred::Handle handle, vtkPointData* output);
-  void FillMesh(vtkInformation* outInfo);
-  bool AllRanksAreWell(unsigned long code, const std::string& problem);
+  void FillOutput(vtkInformation* info, vtkDataObject* output);
   void Fail(unsigned long code, const std::string& sentence);
   void Clear();
-  std::string Place() const;
 
   char* FileName = nullptr;
   int Level = 0;

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Readers_StepRequest_h
+#define banyan_Readers_StepRequest_h
+
+#include <functional>
+#include <memory>
+
+namespace banyan
+{
+
+class SeriesFile;
+struct ArrayIndex;
+
+/// A step of a series, as somebody asks for it.
+struct StepRequest
+{
+  std::shared_ptr<const SeriesFile> Series;
+  int Step = 0;
+  int Level = 0;
+  int Piece = 0;  ///< of meshes
+  int Pieces = 1; ///< of meshes
+  std::function<bool(const ArrayIndex&)> Wants;
+  std::function<void(double)> Progress; ///< is told values in [0, 1]
+};
+
+} // namespace banyan
+
+#endif
