@@ -5,7 +5,7 @@
 #include "vtkBanyanFrameStatistics.h"
 
 #include "Base/ThreadPool.h"
-#include "Parallel/Fields/DistributedFrame.h"
+#include "Parallel/Frame/DistributedFrame.h"
 
 #include <algorithm>
 #include <array>

@@ -4,8 +4,8 @@
 
 #include "RefinementPasses.h"
 
-#include "Parallel/Fields/DistributedPlan.h"
 #include "Parallel/Fields/DrawnField.h"
+#include "Parallel/Frame/DistributedPlan.h"
 #include "Render/Sampling/InteractiveLevels.h"
 
 #include <array>

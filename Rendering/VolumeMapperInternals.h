@@ -12,7 +12,7 @@
 #include "vtkBanyanVolumeMapper.h"
 
 #include "Base/Timer.h"
-#include "Parallel/Fields/DistributedFrame.h"
+#include "Parallel/Frame/DistributedFrame.h"
 
 #include <array>
 #include <memory>

@@ -13,7 +13,7 @@
 #include "Base/Progress.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
-#include "Parallel/Fields/DistributedFrame.h"
+#include "Parallel/Frame/DistributedFrame.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCamera.h"

@@ -9,8 +9,8 @@
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
 #include "Parallel/Communicate/MpiCommunicator.h"
-#include "Parallel/Fields/DistributedFrame.h"
 #include "Parallel/Fields/PieceField.h"
+#include "Parallel/Frame/DistributedFrame.h"
 
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1

@@ -4,7 +4,7 @@
 #include "MpiProgram.h"
 
 #include "Parallel/Balance/FrameBalancer.h"
-#include "Parallel/Fields/DistributedFrame.h"
+#include "Parallel/Frame/DistributedFrame.h"
 #include "Render/Scenes.h"
 
 #include <algorithm>

@@ -6,9 +6,9 @@
 
 #include "Base/Timer.h"
 #include "Parallel/Balance/Rebalance.h"
-#include "Parallel/Fields/DistributedFrame.h"
 #include "Parallel/Fields/PieceField.h"
 #include "Parallel/Fields/Pieces.h"
+#include "Parallel/Frame/DistributedFrame.h"
 
 #include <malloc.h>
 #include <time.h>

@@ -6,7 +6,7 @@
 #include "Mesh/Octree/HexBrickSource.h"
 #include "Parallel/Balance/Zones.h"
 #include "Parallel/Communicate/Communicator.h"
-#include "Parallel/Fields/DistributedFrame.h"
+#include "Parallel/Frame/DistributedFrame.h"
 
 namespace meshes
 {

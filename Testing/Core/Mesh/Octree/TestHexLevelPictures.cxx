@@ -3,8 +3,8 @@
 #include "Mesh/Octree/LevelMeshes.h"
 #include "Mesh/Octree/PicturesOfRanks.h"
 
-#include "Parallel/Fields/DistributedFrame.h"
-#include "Parallel/Fields/DistributedPlan.h"
+#include "Parallel/Frame/DistributedFrame.h"
+#include "Parallel/Frame/DistributedPlan.h"
 #include "Render/Analytic.h"
 #include "Render/Sampling/ElementsPerPixel.h"
 

@@ -3,8 +3,8 @@
 #include "Mesh/Octree/TinyMeshes.h"
 
 #include "Mesh/Octree/HexBrickSource.h"
-#include "Parallel/Fields/DistributedFrame.h"
 #include "Parallel/Fields/MeshZones.h"
+#include "Parallel/Frame/DistributedFrame.h"
 #include "Render/Analytic.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whatever moves zones, the picture is that of one rank.
 #include "Parallel/Balance/FrameBalancer.h"
-#include "Parallel/Fields/DistributedFrame.h"
+#include "Parallel/Frame/DistributedFrame.h"
 #include "Render/Bricks/SeriesBrickSource.h"
 #include "Render/Sampling/ImageError.h"
 #include "Render/Scenes.h"

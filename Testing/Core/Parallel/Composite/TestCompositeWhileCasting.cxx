@@ -2,7 +2,7 @@
 #include "Base/Error.h"
 #include "Parallel/Balance/Zones.h"
 #include "Parallel/Composite/CompositeWhileCasting.h"
-#include "Parallel/Fields/DistributedFrame.h"
+#include "Parallel/Frame/DistributedFrame.h"
 #include "Render/Bricks/ArrayBrickSource.h"
 #include "Render/Scenes.h"
 

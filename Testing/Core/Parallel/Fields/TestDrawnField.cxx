@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Kinds of fields behind one interface: where they lie, what they draw, and what all ranks hear
 // when one fails.
-#include "Parallel/Fields/DistributedFrame.h"
 #include "Parallel/Fields/MeshField.h"
 #include "Parallel/Fields/Pieces.h"
 #include "Parallel/Fields/PiecesField.h"
 #include "Parallel/Fields/WholeField.h"
+#include "Parallel/Frame/DistributedFrame.h"
 
 #include <gtest/gtest.h>
 

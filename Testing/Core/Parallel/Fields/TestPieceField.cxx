@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Wherever plain data lies and whoever draws it, the picture is that of one rank.
-#include "Parallel/Fields/DistributedFrame.h"
 #include "Parallel/Fields/PieceField.h"
 #include "Parallel/Fields/Pieces.h"
+#include "Parallel/Frame/DistributedFrame.h"
 #include "Render/Levels/RayCaster.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Balance/Zones.h"
-#include "Parallel/Fields/DistributedFrame.h"
+#include "Parallel/Frame/DistributedFrame.h"
 #include "Render/Bricks/ArrayBrickSource.h"
 #include "Render/Bricks/SeriesBrickSource.h"
 #include "Render/Sampling/ImageError.h"

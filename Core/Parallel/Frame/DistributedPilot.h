@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Parallel_Fields_DistributedPilot_h
-#define banyan_Parallel_Fields_DistributedPilot_h
+#ifndef banyan_Parallel_Frame_DistributedPilot_h
+#define banyan_Parallel_Frame_DistributedPilot_h
 
-#include "Parallel/Fields/DistributedFrame.h"
+#include "Parallel/Frame/DistributedFrame.h"
 
 namespace banyan
 {

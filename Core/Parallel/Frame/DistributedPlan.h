@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Parallel_Fields_DistributedPlan_h
-#define banyan_Parallel_Fields_DistributedPlan_h
+#ifndef banyan_Parallel_Frame_DistributedPlan_h
+#define banyan_Parallel_Frame_DistributedPlan_h
 
-#include "Parallel/Fields/DistributedFrame.h"
+#include "Parallel/Frame/DistributedFrame.h"
 #include "Render/Sampling/SamplingPlan.h"
 
 namespace banyan

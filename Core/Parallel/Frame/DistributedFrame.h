@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Parallel_Fields_DistributedFrame_h
-#define banyan_Parallel_Fields_DistributedFrame_h
+#ifndef banyan_Parallel_Frame_DistributedFrame_h
+#define banyan_Parallel_Frame_DistributedFrame_h
 
 #include "Parallel/Communicate/Communicator.h"
 #include "Parallel/Composite/Compositing.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/Fields/DistributedPilot.h"
+#include "Parallel/Frame/DistributedPilot.h"
 
 #include "Parallel/Balance/LevelZones.h"
 #include "Parallel/Communicate/Collective.h"

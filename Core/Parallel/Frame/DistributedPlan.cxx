@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/Fields/DistributedPlan.h"
+#include "Parallel/Frame/DistributedPlan.h"
 
 #include "Parallel/Communicate/Collective.h"
-#include "Parallel/Fields/DistributedPilot.h"
+#include "Parallel/Frame/DistributedPilot.h"
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Plans and their pilots on ranks, held to those of one rank.
 #include "Parallel/Balance/Zones.h"
-#include "Parallel/Fields/DistributedFrame.h"
-#include "Parallel/Fields/DistributedPilot.h"
-#include "Parallel/Fields/DistributedPlan.h"
+#include "Parallel/Frame/DistributedFrame.h"
+#include "Parallel/Frame/DistributedPilot.h"
+#include "Parallel/Frame/DistributedPlan.h"
 #include "Render/Bricks/ArrayBrickSource.h"
 #include "Render/Sampling/ImageError.h"
 #include "Render/Scenes.h"

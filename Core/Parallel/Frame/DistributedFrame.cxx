@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/Fields/DistributedFrame.h"
+#include "Parallel/Frame/DistributedFrame.h"
 
 #include "Base/Progress.h"
 #include "Base/ThreadPool.h"
