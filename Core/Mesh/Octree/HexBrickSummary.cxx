@@ -33,23 +33,50 @@ std::size_t Index(std::int64_t i)
   return static_cast<std::size_t>(i);
 }
 
+/// Values of an element.
+template <class Value>
+struct Span
+{
+  Value Low;
+  Value High; ///< below Low where nothing is finite
+};
+
+ValueMask MaskOf(const MaskRange& over, const ValueRange& range)
+{
+  return range.Empty() ? ValueMask{ 0 } : MaskOfBins(over.BinOf(range.Low), over.BinOf(range.High));
+}
+
+/// @param total the range of all elements of the brick
+/// @param spans of the elements of all bricks
+template <class Value>
+ValueMask MaskOfBrick(
+  const MaskRange& over, const HexBrick& brick, const ValueRange& total, const Span<Value>* spans)
+{
+  if (total.Empty() || over.BinOf(total.High) - over.BinOf(total.Low) <= 1)
+  {
+    return MaskOf(over, total);
+  }
+  ValueMask mask = 0;
+  for (std::int64_t leaf = brick.FirstLeaf; leaf < brick.EndLeaf; ++leaf)
+  {
+    const Span<Value>& span = spans[Index(leaf)];
+    mask |= MaskOf(over, { span.Low, span.High });
+  }
+  return mask;
+}
+
 /// Ranges, then masks over the range of all. The elements are read once: what they span is kept in
 /// between.
 template <class Value>
 HexBrickSummary Summarize(const HexBricks& bricks, const NodalField& values, ThreadPool& pool)
 {
-  struct Span
-  {
-    Value Low;
-    Value High; ///< below Low where nothing is finite
-  };
   const std::vector<HexBrick>& list = bricks.List();
   const auto count = static_cast<std::int64_t>(list.size());
   std::vector<ValueRange> ranges(list.size());
   std::vector<ValueMask> masks(list.size());
   std::vector<std::uint8_t> specials(list.size());
   // Not set to zero, which would be one thread's work.
-  const std::unique_ptr<Span[]> spans(new Span[Index(bricks.Tree().LeafCount())]);
+  const std::unique_ptr<Span<Value>[]> spans(new Span<Value>[Index(bricks.Tree().LeafCount())]);
   pool.ParallelFor(count,
     [&](std::int64_t number)
     {
@@ -73,27 +100,11 @@ HexBrickSummary Summarize(const HexBricks& bricks, const NodalField& values, Thr
   }
   HexBrickSummary summary;
   summary.Over = all.Empty() ? MaskRange{} : MaskRange{ all.Low, all.High };
-  const auto maskOf = [&over = summary.Over](const ValueRange& range)
-  {
-    return range.Empty() ? ValueMask{ 0 }
-                         : MaskOfBins(over.BinOf(range.Low), over.BinOf(range.High));
-  };
   pool.ParallelFor(count,
     [&](std::int64_t number)
     {
-      const HexBrick& brick = list[Index(number)];
-      const ValueRange& total = ranges[Index(number)];
-      ValueMask& mask = masks[Index(number)];
-      mask = maskOf(total);
-      if (!total.Empty() && summary.Over.BinOf(total.High) - summary.Over.BinOf(total.Low) > 1)
-      {
-        mask = 0;
-        for (std::int64_t leaf = brick.FirstLeaf; leaf < brick.EndLeaf; ++leaf)
-        {
-          const Span& span = spans[Index(leaf)];
-          mask |= maskOf({ span.Low, span.High });
-        }
-      }
+      masks[Index(number)] =
+        MaskOfBrick(summary.Over, list[Index(number)], ranges[Index(number)], spans.get());
     });
   summary.Ranges = std::move(ranges);
   summary.Masks = std::move(masks);

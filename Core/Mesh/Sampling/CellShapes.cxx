@@ -184,8 +184,8 @@ void CellShapes::FindOrders(ThreadPool& pool)
     });
 }
 
-/// The lattice, and the heights of cells in its coarse edges.
-void CellShapes::ChooseLattice(int refinement, ThreadPool& pool)
+/// The origin, and coarse edges. @return how many of these the mesh takes up
+glm::dvec3 CellShapes::ChooseCoarseEdges()
 {
   glm::dvec3 high = this->Highs.front();
   this->LatticeOrigin = this->Lows.front();
@@ -205,6 +205,13 @@ void CellShapes::ChooseLattice(int refinement, ThreadPool& pool)
     const double length = high[axis] - this->LatticeOrigin[axis];
     this->FinestEdge[axis] = length / std::max(1.0, std::round(length / Median(extents)));
   }
+  return (high - this->LatticeOrigin) / this->FinestEdge;
+}
+
+/// The heights of cells in coarse edges, and cells that are tangled.
+/// @return the least height, but at most 1
+double CellShapes::FindHeights(ThreadPool& pool)
+{
   FirstFailure failure;
   std::mutex mutex;
   double thinnest = 1.0;
@@ -238,7 +245,14 @@ void CellShapes::ChooseLattice(int refinement, ThreadPool& pool)
       }
       this->TangledCells += tangled;
     });
-  const glm::dvec3 coarse = (high - this->LatticeOrigin) / this->FinestEdge;
+  return thinnest;
+}
+
+/// The lattice, and the heights of cells in its edges.
+void CellShapes::ChooseLattice(int refinement, ThreadPool& pool)
+{
+  const glm::dvec3 coarse = this->ChooseCoarseEdges();
+  const double thinnest = this->FindHeights(pool);
   const double most = std::max({ coarse.x, coarse.y, coarse.z });
   const int room = MostLevels - static_cast<int>(std::ceil(std::log2(most + 1.0)));
   if (room < 0)

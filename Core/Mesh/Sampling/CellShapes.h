@@ -93,6 +93,8 @@ private:
   void FindOrders(ThreadPool& pool);
   void GivenNodes(std::int64_t cell, std::array<std::int64_t, 8>& nodes) const;
   std::array<int, 8> OrderOf(std::int64_t cell, std::array<std::int64_t, 8>& given) const;
+  glm::dvec3 ChooseCoarseEdges();
+  double FindHeights(ThreadPool& pool);
   void ChooseLattice(int refinement, ThreadPool& pool);
   void ToLattice(ThreadPool& pool);
   std::array<glm::dvec3, 8> CornersOf(std::int64_t cell) const;

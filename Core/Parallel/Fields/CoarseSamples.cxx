@@ -5,7 +5,7 @@
 #include "Parallel/Composite/GatherPlan.h"
 
 #include <algorithm>
-#include <limits>
+#include <utility>
 
 namespace banyan
 {
@@ -37,6 +37,22 @@ SampleArray ArrayOf(const BrickView& view, const Box& samples)
   array.Samples = samples;
   array.Owner = view.Owner;
   return array;
+}
+
+/// All samples of a box from parts of it.
+/// @param missing whether the parts leave some out
+PieceSamples Join(std::vector<SampledBox> parts, const Box& samples, ScalarType type, bool missing)
+{
+  if (samples.Empty())
+  {
+    return {};
+  }
+  if (missing)
+  {
+    parts.insert(parts.begin(), MissingSamples(samples));
+  }
+  return PieceSamples(
+    ArrayOf(Assemble(parts, samples, missing ? TypeWithMissing(type) : type), samples));
 }
 
 } // namespace
@@ -141,16 +157,14 @@ PieceSamples CoarsePieces::Gather(Communicator& communicator, const PieceSamples
       {
         Attempt(failure, [&] { this->Copy(mine, part.Samples, type, values); });
       }
-      if (rank == self)
-      {
-        parts.push_back({ view, part.Samples });
-      }
       if (rank != self)
       {
         communicator.Send(rank, CoarseTag, values, bytes);
         sent.push_back(view);
+        continue;
       }
-      else if (part.Rank != self)
+      parts.push_back({ view, part.Samples });
+      if (part.Rank != self)
       {
         communicator.Receive(part.Rank, CoarseTag, values, bytes);
       }
@@ -158,17 +172,7 @@ PieceSamples CoarsePieces::Gather(Communicator& communicator, const PieceSamples
   }
   communicator.WaitAll();
   ThrowTogether(communicator, failure);
-  const Box& samples = this->Needed[static_cast<std::size_t>(self)];
-  if (samples.Empty())
-  {
-    return {};
-  }
-  if (missing)
-  {
-    parts.insert(parts.begin(), MissingSamples(samples));
-  }
-  return PieceSamples(
-    ArrayOf(Assemble(parts, samples, missing ? TypeWithMissing(type) : type), samples));
+  return Join(std::move(parts), this->Needed[static_cast<std::size_t>(self)], type, missing);
 }
 
 } // namespace banyan

@@ -71,6 +71,31 @@ std::string SummarizeOwn(const PieceGrid& grid, int rank, const PieceSamples& mi
   return bytes;
 }
 
+/// @param messages from SummarizeOwn of each rank
+std::vector<BoxSummary> SummariesOfAll(
+  const PieceGrid& grid, const std::vector<std::string>& messages)
+{
+  std::vector<const char*> next;
+  for (const std::string& message : messages)
+  {
+    next.push_back(message.data());
+  }
+  std::vector<BoxSummary> bricks(static_cast<std::size_t>(grid.Count()));
+  for (std::int64_t brick = 0; brick < grid.Count(); ++brick)
+  {
+    const int holder = grid.HolderOf(brick);
+    if (holder >= 0)
+    {
+      Entry entry;
+      std::memcpy(&entry, next[static_cast<std::size_t>(holder)], sizeof(entry));
+      next[static_cast<std::size_t>(holder)] += sizeof(entry);
+      bricks[static_cast<std::size_t>(brick)] = { { entry.Low, entry.High }, entry.Mask,
+        entry.Uniform != 0 };
+    }
+  }
+  return bricks;
+}
+
 } // namespace
 
 PieceSummaries GatherSummaries(
@@ -99,25 +124,7 @@ PieceSummaries GatherSummaries(
   std::string own;
   Attempt(failure, [&] { own = SummarizeOwn(grid, self, mine, known.Masks, pool); });
   ThrowTogether(communicator, failure);
-  const std::vector<std::string> messages = AllGatherStrings(communicator, own);
-  std::vector<const char*> next;
-  for (const std::string& message : messages)
-  {
-    next.push_back(message.data());
-  }
-  known.Bricks.resize(static_cast<std::size_t>(grid.Count()));
-  for (std::int64_t brick = 0; brick < grid.Count(); ++brick)
-  {
-    const int holder = grid.HolderOf(brick);
-    if (holder >= 0)
-    {
-      Entry entry;
-      std::memcpy(&entry, next[static_cast<std::size_t>(holder)], sizeof(entry));
-      next[static_cast<std::size_t>(holder)] += sizeof(entry);
-      known.Bricks[static_cast<std::size_t>(brick)] = { { entry.Low, entry.High }, entry.Mask,
-        entry.Uniform != 0 };
-    }
-  }
+  known.Bricks = SummariesOfAll(grid, AllGatherStrings(communicator, own));
   return known;
 }
 
