@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FrameFigures.h"
 
-#include "DistributedField.h"
 #include "vtkBanyanFrameStatistics.h"
 
 #include "Base/ThreadPool.h"
+#include "Parallel/Fields/DrawnField.h"
 #include "Parallel/Frame/DistributedFrame.h"
 
 #include <algorithm>
@@ -53,23 +53,24 @@ vtkIdType Id(std::uint64_t number)
 
 } // namespace
 
-FrameFigures::FrameFigures(const DistributedField& field)
+FrameFigures::FrameFigures(const DrawnField& field)
   : BytesBefore(field.BytesRead())
   , AheadBefore(BrickCache::Process().GetAheadStatistics().Hits)
   , CacheBefore(BrickCache::Process().GetStatistics())
 {
 }
 
-void FrameFigures::Publish(Communicator& communicator, const DistributedField& field,
+void FrameFigures::Publish(Communicator& communicator, const DrawnField& field,
   const FrameStatistics& frame, std::uint64_t geometryBytes, vtkBanyanFrameStatistics* out) const
 {
   const BrickCache& process = BrickCache::Process();
   const BrickCache::Statistics cache = process.GetStatistics();
-  const MeshBytes mesh = field.BytesOfMesh();
+  const MeshBytes mesh = field.Bytes();
+  const DrawnField::Movement moved = field.Moved();
   Report mine{};
   mine[GeometryBytes] = geometryBytes;
   mine[BytesRead] = field.BytesRead() - this->BytesBefore;
-  mine[CacheBytes] = cache.Bytes + field.FetchedBytes();
+  mine[CacheBytes] = cache.Bytes + moved.BytesFetched;
   mine[BytesOfMeshShared] = mesh.Leads ? mesh.Together : 0;
   mine[BytesOfMesh] = mesh.Own + mine[BytesOfMeshShared];
   mine[CacheHits] = cache.Hits - this->CacheBefore.Hits;
@@ -81,11 +82,11 @@ void FrameFigures::Publish(Communicator& communicator, const DistributedField& f
   out->SetCacheBytes(Id(all[CacheBytes]));
   out->SetMeshBytes(Id(all[BytesOfMesh]));
   out->SetMeshBytesShared(Id(all[BytesOfMeshShared]));
-  out->SetCacheHits(Id(all[CacheHits] + field.FetchHits()));
-  out->SetCacheMisses(Id(all[CacheMisses] + field.FetchMisses()));
+  out->SetCacheHits(Id(all[CacheHits] + moved.Hits));
+  out->SetCacheMisses(Id(all[CacheMisses] + moved.Misses));
   out->SetCacheHitsAhead(Id(all[CacheHitsAhead]));
   out->SetThreads(Id(all[Threads]));
-  out->SetBytesMoved(Id(field.BytesMoved()));
+  out->SetBytesMoved(Id(moved.Bytes));
   out->SetRenderSeconds(frame.RenderSeconds);
   out->SetCompositeSeconds(frame.CompositeSeconds);
   out->SetPilotSeconds(frame.PilotSeconds);

@@ -12,7 +12,7 @@ namespace banyan
 {
 
 class Communicator;
-class DistributedField;
+class DrawnField;
 struct FrameStatistics;
 
 /// What a frame took, counted from where it is made to where it is published.
@@ -20,14 +20,14 @@ class FrameFigures
 {
 public:
   FrameFigures() = default;
-  explicit FrameFigures(const DistributedField& field);
+  explicit FrameFigures(const DrawnField& field);
 
   /// Collective: one message.
   /// @param frame of all ranks
   /// @param geometryBytes that this rank has sent of what other props have drawn
   /// @param out gets sums over all ranks, and seconds of the slowest
-  void Publish(Communicator& communicator, const DistributedField& field,
-    const FrameStatistics& frame, std::uint64_t geometryBytes, vtkBanyanFrameStatistics* out) const;
+  void Publish(Communicator& communicator, const DrawnField& field, const FrameStatistics& frame,
+    std::uint64_t geometryBytes, vtkBanyanFrameStatistics* out) const;
 
 private:
   std::uint64_t BytesBefore = 0;

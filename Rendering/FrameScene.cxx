@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FrameScene.h"
 
-#include "DistributedField.h"
 #include "RendererCamera.h"
 #include "SceneOptions.h"
 #include "TransferFunctionTable.h"
@@ -12,6 +11,7 @@
 #include "vtkVolumeProperty.h"
 
 #include "Base/PropertyNumber.h"
+#include "Parallel/Fields/DistributedField.h"
 
 #include <limits>
 
@@ -38,39 +38,30 @@ void WorldBounds(
 
 } // namespace
 
-FrameScene MakeFrameScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMapper* mapper,
+RayScene MakeFrameScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMapper* mapper,
   const DistributedField& field, double sampleDistanceVoxels, KeptTransferFunction& function)
 {
+  vtkVolumeProperty* const property = volume->GetProperty();
   const glm::dmat4 toWorld = ToGlm(volume->GetMatrix());
+  RequireNumber("ScalarOpacityUnitDistance", property->GetScalarOpacityUnitDistance(0));
+  for (int i = 0; i < 16; ++i)
+  {
+    RequireNumber(
+      "A number of the volume's position, scale and orientation", toWorld[i / 4][i % 4], true);
+  }
+  const FieldPlace& place = field.Place();
   glm::dvec3 low;
   glm::dvec3 high;
-  WorldBounds(field.Bounds(), toWorld, low, high);
+  WorldBounds(place.Bounds, toWorld, low, high);
   const RayCamera camera = CameraOf(renderer, 0.5 * (low + high));
-  vtkVolumeProperty* property = volume->GetProperty();
-  FrameScene frame{ { camera.InSpace(toWorld), camera.Footprint(low, high), field.IndexToPhysical(),
-                      field.DomainCells(), {}, sampleDistanceVoxels * field.CellSize() },
-    {} };
-  RayScene& scene = frame.Scene;
+  RayScene scene{ camera.InSpace(toWorld), camera.Footprint(low, high), place.IndexToPhysical,
+    place.Cells, {}, sampleDistanceVoxels * place.CellSize };
   scene.Shading = MakeShading(property);
   scene.Interpolation = MakeInterpolation(property);
-  try
-  {
-    RequireNumber("ScalarOpacityUnitDistance", property->GetScalarOpacityUnitDistance(0));
-    for (int i = 0; i < 16; ++i)
-    {
-      RequireNumber(
-        "A number of the volume's position, scale and orientation", toWorld[i / 4][i % 4], true);
-    }
-    scene.Transfer = function.Of(property);
-    scene.ClipPlanes = MakeClipPlanes(mapper, toWorld);
-    scene.Blend = MakeBlend(mapper, field.Range());
-  }
-  catch (const Error& error)
-  {
-    // For the other ranks too, which would wait for this one.
-    frame.Problem = error.what();
-  }
-  return frame;
+  scene.Transfer = function.Of(property);
+  scene.ClipPlanes = MakeClipPlanes(mapper, toWorld);
+  scene.Blend = MakeBlend(mapper, field.Range());
+  return scene;
 }
 
 } // namespace banyan

@@ -17,7 +17,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <exception>
 #include <utility>
 #include <vector>
@@ -26,18 +25,6 @@ namespace banyan
 {
 namespace
 {
-
-std::uint64_t Bits(double value)
-{
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, &value, sizeof(bits));
-  return bits;
-}
-
-std::uint64_t Address(const void* pointer)
-{
-  return reinterpret_cast<std::uintptr_t>(pointer);
-}
 
 int PlaceOf(const FieldPiece& piece)
 {
@@ -105,12 +92,17 @@ vtkSmartPointer<vtkDataArray> Enhance(const Neighbours& arrays, const FieldPiece
                   : nullptr;
 }
 
-std::array<std::uint64_t, 9> StampOf(const Neighbours& arrays, const FieldPiece& piece)
+InputStamp StampOf(const Neighbours& arrays, const FieldPiece& piece)
 {
-  return { { Address(arrays[0]), arrays[0]->GetMTime(), Address(arrays[1]),
-    arrays[1] ? arrays[1]->GetMTime() : 0, Address(arrays[2]),
-    arrays[2] ? arrays[2]->GetMTime() : 0, static_cast<std::uint64_t>(piece.Component + 1),
-    Bits(piece.Enhancement.Strength), Bits(piece.Enhancement.Scale) } };
+  InputStamp stamp;
+  for (vtkDataArray* const array : arrays)
+  {
+    stamp.AddObject(array);
+  }
+  stamp.Add(piece.Component);
+  stamp.Add(piece.Enhancement.Strength);
+  stamp.Add(piece.Enhancement.Scale);
+  return stamp;
 }
 
 constexpr const char* NotDecoded = "The values to be enhanced cannot be decoded.";
@@ -199,7 +191,7 @@ void MotionEnhancement::ApplyToArray(vtkDataObject* data, FieldPiece& piece)
 {
   const Neighbours arrays =
     NeighboursOf(data->GetAttributes(PlaceOf(piece)), piece.Array, this->Compared);
-  const Stamps stamp = StampOf(arrays, piece);
+  const InputStamp stamp = StampOf(arrays, piece);
   if (!this->Enhanced || stamp != this->Stamp)
   {
     this->Enhanced = Enhance(arrays, piece);
@@ -217,10 +209,10 @@ void MotionEnhancement::ApplyToArray(vtkDataObject* data, FieldPiece& piece)
 void MotionEnhancement::ApplyToLeaves(FieldPiece& piece)
 {
   // The array of the first block stands for all of them, and the data for what else is new.
-  Stamps stamp = StampOf({ { piece.Array, nullptr, nullptr } }, piece);
-  stamp[2] = Address(piece.Leaves);
-  stamp[3] = piece.Leaves->GetMTime();
-  stamp[4] = (this->Compared[0] ? 1u : 0u) + (this->Compared[1] ? 2u : 0u);
+  InputStamp stamp = StampOf({ { piece.Array, nullptr, nullptr } }, piece);
+  stamp.AddObject(piece.Leaves);
+  stamp.Add(this->Compared[0]);
+  stamp.Add(this->Compared[1]);
   if (!this->Leaves || stamp != this->Stamp)
   {
     this->Leaves = CopyOfLeaves(piece.Leaves);

@@ -2,12 +2,12 @@
 #ifndef banyan_Rendering_MotionEnhancement_h
 #define banyan_Rendering_MotionEnhancement_h
 
+#include "Parallel/Fields/InputStamp.h"
 #include "Render/Bricks/TemporalEnhancement.h"
 
 #include "vtkSmartPointer.h"
 
 #include <array>
-#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -48,7 +48,6 @@ public:
   const std::string& Note() const { return this->NoteText; }
 
 private:
-  using Stamps = std::array<std::uint64_t, 9>;
   void Agree(Communicator& communicator, vtkDataObject* data, const FieldPiece& piece, bool plain);
   void ApplyHere(
     double strength, vtkVolumeProperty* property, vtkDataObject* data, FieldPiece& piece);
@@ -59,7 +58,7 @@ private:
   std::string NoteText;
   vtkSmartPointer<vtkDataArray> Enhanced;
   vtkSmartPointer<vtkDataObject> Leaves; ///< with Enhanced in them; null for other data
-  Stamps Stamp{ {} };                    ///< of what it was made of
+  InputStamp Stamp;                      ///< of what it was made of
 };
 
 } // namespace banyan

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VolumesInDepth.h"
 
-#include "DistributedField.h"
 #include "RendererCamera.h"
 #include "vtkBanyanVolumeMapper.h"
 
@@ -104,12 +103,11 @@ std::vector<vtkVolume*> VolumesDrawnWith(vtkRenderer* renderer, vtkVolume* self)
   return found ? volumes : std::vector<vtkVolume*>{ self };
 }
 
-PlacedBody BodyOf(
-  vtkVolume* volume, vtkVolumeMapper* mapper, const DistributedField& field, const RayScene& scene)
+PlacedBody BodyOf(vtkVolume* volume, vtkVolumeMapper* mapper, const std::array<double, 6>& bounds,
+  const RayScene& scene)
 {
   const glm::dmat4 toWorld = ToGlm(volume->GetMatrix());
   const Box& cells = scene.DomainCells;
-  const std::array<double, 6>& bounds = field.Bounds();
   glm::dvec3 low(bounds[0], bounds[2], bounds[4]);
   glm::dvec3 high(bounds[1], bounds[3], bounds[5]);
   if (mapper->GetCropping())

@@ -6,6 +6,7 @@
 #include "Render/Levels/RayCaster.h"
 #include "Render/Raycast/DepthOrder.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -16,17 +17,15 @@ class vtkVolumeMapper;
 namespace banyan
 {
 
-class DistributedField;
-
 /// Visible volumes of a renderer that vtkBanyanVolumeMapper draws on the same ranks as `self`, in
 /// the order in which they were added: the same list on all ranks. `self` alone where it stands in
 /// an assembly.
 std::vector<vtkVolume*> VolumesDrawnWith(vtkRenderer* renderer, vtkVolume* self);
 
 /// Where a volume may show something, in world space: in its grid, its bounds and its cropping box.
-/// @param field not Empty
-PlacedBody BodyOf(
-  vtkVolume* volume, vtkVolumeMapper* mapper, const DistributedField& field, const RayScene& scene);
+/// @param bounds of the field, in physical space; not empty
+PlacedBody BodyOf(vtkVolume* volume, vtkVolumeMapper* mapper, const std::array<double, 6>& bounds,
+  const RayScene& scene);
 
 /// A volume of ours as it stands in the picture.
 struct VolumeOnScreen

@@ -1,42 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkBanyanVolumeMapper.h"
 
-#include "FrameScene.h"
+#include "CommunicatorOf.h"
 #include "IgnoredOptions.h"
+#include "InputOfPiece.h"
+#include "MapperState.h"
 #include "PieceOfInput.h"
-#include "RendererCamera.h"
-#include "SceneOptions.h"
 #include "SetNumber.h"
-#include "VolumeMapperInternals.h"
+#include "VolumesPicture.h"
 #include "vtkBanyanFrameStatistics.h"
 
-#include "Base/Progress.h"
 #include "Base/ThreadPool.h"
-#include "Base/Timer.h"
-#include "Parallel/Frame/DistributedFrame.h"
 
 #include "vtkAlgorithm.h"
-#include "vtkCamera.h"
+#include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkInformation.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
-#include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
-#include <limits>
-
-namespace
-{
-
-/// A part of a volume's size that nobody can see.
-constexpr double LeastRange = 1e-12;
-
-} // namespace
+#include <utility>
 
 vtkStandardNewMacro(vtkBanyanVolumeMapper);
 
@@ -49,9 +37,9 @@ BANYAN_VOLUME_SETTINGS(BANYAN_REAL, BANYAN_NONE, BANYAN_NONE, BANYAN_NONE)
 
 vtkBanyanVolumeMapper::vtkBanyanVolumeMapper()
   : Statistics(vtkSmartPointer<vtkBanyanFrameStatistics>::New())
-  , Self(std::make_unique<Internals>())
+  , State(std::make_unique<banyan::MapperState>())
 {
-  this->Self->Communicator = banyan::MakeSelfCommunicator();
+  this->State->Communicator = banyan::MakeSelfCommunicator();
 }
 
 vtkBanyanVolumeMapper::~vtkBanyanVolumeMapper() = default;
@@ -66,6 +54,32 @@ int vtkBanyanVolumeMapper::FillInputPortInformation(int, vtkInformation* info)
   // A rank without data takes part in drawing all the same.
   info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   return 1;
+}
+
+void vtkBanyanVolumeMapper::SetController(vtkMultiProcessController* controller)
+{
+  if (this->Controller == controller)
+  {
+    return;
+  }
+  this->Controller = controller;
+  this->State->Field.Reset();
+  banyan::MpiTimeout timeout{ banyan::MpiTimeout::DefaultSeconds, {} };
+  try
+  {
+    timeout.Seconds = banyan::MpiTimeout::FromEnvironment();
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< error.what());
+  }
+  timeout.Tell = [this](const std::string& sentence) { vtkErrorMacro(<< sentence); };
+  this->State->Communicator = banyan::CommunicatorOf(controller, timeout);
+  if (this->State->Communicator->Size() > 1)
+  {
+    banyan::ThreadPool::SetRanksOnThisNode(this->State->Communicator->RanksOnThisNode());
+  }
+  this->Modified();
 }
 
 vtkMultiProcessController* vtkBanyanVolumeMapper::GetController()
@@ -86,7 +100,7 @@ vtkBanyanFrameStatistics* vtkBanyanVolumeMapper::GetStatistics()
 
 void vtkBanyanVolumeMapper::SetRankOrderBehind(const std::vector<int>& frontToBack)
 {
-  this->Self->RankOrderBehind = frontToBack;
+  this->State->RankOrderBehind = frontToBack;
 }
 
 vtkDataArray* vtkBanyanVolumeMapper::GetArrayToDraw(vtkDataObject* data)
@@ -100,7 +114,7 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
   {
     this->GetInputAlgorithm()->Update();
   }
-  Internals& self = *this->Self;
+  banyan::MapperState& self = *this->State;
   self.Field.SetLoadBalancing(
     this->LoadBalancing == 0 ? banyan::LoadBalancing::Off : banyan::LoadBalancing::MeasuredCost);
   banyan::FieldPiece piece;
@@ -116,28 +130,25 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
   }
   self.Motion.Apply(*self.Communicator, this->TemporalEnhancement, volume->GetProperty(),
     this->GetDataObjectInput(), piece);
-  self.Field.Update(*self.Communicator, piece);
-  self.Bounds = self.Field.Bounds();
+  const int components = piece.Array ? piece.Array->GetNumberOfComponents() : 1;
+  banyan::InputOfPiece input(std::move(piece));
+  self.Field.Update(*self.Communicator, input);
+  self.Bounds = self.Field.Place().Bounds;
   self.BoundsOf = this->GetDataObjectInput();
   self.BoundsTime = self.BoundsOf ? self.BoundsOf->GetMTime() : 0;
   self.BoundsKnown = true;
-  this->WarnOnce(self.Motion.Note() + self.Field.MeshNote(), self.LastNote);
-  const int components = piece.Array ? piece.Array->GetNumberOfComponents() : 1;
+  this->WarnOnce(self.Motion.Note() + self.Field.Drawn().Note(), self.LastNote);
   this->WarnOnce(banyan::IgnoredOptions(this, volume->GetProperty(), components), self.LastIgnored);
-  if (self.Field.Empty())
+  if (self.Field.Empty() && !self.Field.Problem().empty())
   {
     // Nothing with bounds is there to be rendered, so this may be the only place to say why.
-    const std::string problem = banyan::AgreeOnError(*self.Communicator, self.Field.Problem());
-    if (!problem.empty())
-    {
-      this->ReportOnce(problem);
-    }
+    this->ReportOnce(self.Field.Problem());
   }
 }
 
 double* vtkBanyanVolumeMapper::GetBounds()
 {
-  const Internals& self = *this->Self;
+  const banyan::MapperState& self = *this->State;
   const bool alone = self.Communicator->Size() == 1;
   if (alone && this->GetNumberOfInputConnections(0) > 0)
   {
@@ -157,11 +168,25 @@ double* vtkBanyanVolumeMapper::GetBounds()
   return this->Bounds;
 }
 
+bool vtkBanyanVolumeMapper::Attempt(const std::function<bool()>& work)
+{
+  try
+  {
+    return work();
+  }
+  catch (const std::exception& error)
+  {
+    this->ReportOnce(error.what());
+    this->State->Communicator->LeaveTogether(error.what());
+  }
+  return false;
+}
+
 void vtkBanyanVolumeMapper::ReportOnce(const std::string& problem)
 {
-  if (problem != this->Self->LastProblem)
+  if (problem != this->State->LastProblem)
   {
-    this->Self->LastProblem = problem;
+    this->State->LastProblem = problem;
     vtkErrorMacro(<< "The volume was not drawn. " << problem);
   }
 }
@@ -171,125 +196,45 @@ void vtkBanyanVolumeMapper::WarnOnce(const std::string& note, std::string& last)
   if (note != last)
   {
     last = note;
-    if (!note.empty() && this->Self->Communicator->Rank() == 0)
+    if (!note.empty() && this->State->Communicator->Rank() == 0)
     {
       vtkWarningMacro(<< note);
     }
   }
 }
 
-/// Collective. @return whether the volume is on the screen
-bool vtkBanyanVolumeMapper::PrepareFrame(vtkRenderer* renderer, Frame& frame)
+void vtkBanyanVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 {
-  const banyan::PhaseScope beginning(banyan::Phase::Beginning);
-  Internals& self = *this->Self;
-  const std::string problem = banyan::AgreeOnError(*self.Communicator, self.Field.Problem());
-  if (!problem.empty())
+  if (renderer->GetSelector() || this->State->DrawnByOthers.erase(volume) > 0)
   {
-    throw banyan::Error(problem);
+    return;
   }
-  // VTK's clipping range has no length where the eye is on a face and looks away.
-  const double far = renderer->GetActiveCamera()->GetClippingRange()[1];
-  if (self.Field.Empty() || far < LeastRange * frame.Volume->GetLength())
+  banyan::VolumesPicture picture(renderer, this, volume);
+  if (picture.HasSeveral() && this->State->FrameEnds == 0)
   {
-    return false;
+    this->State->FrameEnds =
+      renderer->AddObserver(vtkCommand::EndEvent, this, &vtkBanyanVolumeMapper::EndFrame);
   }
-
-  const bool fixed = this->SampleDistanceVoxels > 0.0;
-  frame.Wanted.emplace(banyan::MakeFrameScene(renderer, frame.Volume, this, self.Field,
-    fixed ? this->SampleDistanceVoxels : 1.0, self.Function));
-  const std::string unclear = banyan::AgreeOnError(*self.Communicator, frame.Wanted->Problem);
-  if (!unclear.empty())
-  {
-    throw banyan::Error(unclear);
-  }
-  return !frame.Wanted->Scene.Viewport.Empty();
+  picture.Draw();
 }
 
-/// @return the volume's picture, on rank 0
-banyan::FloatImage vtkBanyanVolumeMapper::CastFrame(
-  vtkRenderer* renderer, const banyan::Backdrop& backdrop, int volumes, Frame& drawn)
+/// Volumes that were not called, as they are off the screen, are to be drawn in the next frame.
+void vtkBanyanVolumeMapper::EndFrame(vtkObject* caller, unsigned long, void*)
 {
-  Internals& self = *this->Self;
-  banyan::FrameScene& wanted = *drawn.Wanted;
-  banyan::RayScene& scene = wanted.Scene;
-  const bool fixed = this->SampleDistanceVoxels > 0.0;
-  banyan::CompositeOptions compositing;
-  compositing.Behind = backdrop.Behind();
-  scene.Depth = backdrop.Depths(scene.Viewport);
-  this->Statistics->SetPixelsReadBehind(static_cast<vtkIdType>(backdrop.PixelsRead()));
-
-  drawn.Figures = banyan::FrameFigures(self.Field);
-  banyan::FrameStatistics& frame = drawn.Statistics;
-  // More than one frame per second: somebody moves the camera. All ranks are told the same rate.
-  // Volumes that are drawn one after the other share the time of a frame.
-  drawn.Wish = { this->ImageErrorTolerance, this->InteractiveImageErrorTolerance,
-    this->InteractiveFrameSeconds / volumes,
-    renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0, this->RefineInPasses,
-    this->MaxElementsPerPixel, this->ScreenErrorPixels, fixed,
-    banyan::CanKeepTolerance(this, drawn.Volume->GetProperty()) &&
-      (!fixed || this->ScreenErrorPixels > 0.0) };
-  drawn.Wish.Eye = banyan::EyeOf(renderer);
-  const banyan::Timer drawing;
-  {
-    const banyan::PhaseScope fetching(banyan::Phase::Fetching);
-    self.Field.BeginFrame(*self.Communicator, scene);
-  }
-  const std::uint64_t budget = self.Field.DrawingBudget();
-  const banyan::PhaseScope sampling(banyan::Phase::Sampling);
-  this->Statistics->SetEstimatedImageError(self.Tolerance.Plan(
-    *self.Communicator, self.Field, scene, drawn.Wish, budget, wanted.Problem, frame));
-  this->Statistics->SetImageErrorLimit(self.Tolerance.Limit().c_str());
-  this->Statistics->SetEncodingErrorOfValues(
-    self.Field.IsMesh() ? std::numeric_limits<double>::quiet_NaN() : self.Field.EncodingError());
-  this->Statistics->SetMeshDeviation(self.Field.MeshDeviation());
-  const banyan::FrameStatistics pilots = frame;
-  // Errors of few bits add up where volumes are blended over each other.
-  compositing.Transport = this->CompositeInFewBits && volumes == 1
-                            ? banyan::PixelTransport::WithinOne
-                            : banyan::PixelTransport::Floats;
-  compositing.Plans = &self.Plans;
-  // The other eye's picture is no step of a camera that moves.
-  if (this->ReadAhead && drawn.Wish.Eye == 0)
-  {
-    compositing.AfterCasting = [&self, &scene]
-    { self.Field.ReadAhead(scene, self.Communicator->Rank()); };
-  }
-  banyan::FloatImage picture = banyan::DrawDistributed(*self.Communicator, scene,
-    { self.Field.Source(), self.Field.Zones(), budget, banyan::ThreadPool::Process(),
-      wanted.Problem },
-    frame, compositing);
-
-  frame.SamplesTaken += pilots.SamplesTaken;
-  frame.BytesComposited += pilots.BytesComposited;
-  frame.MessagesComposited += pilots.MessagesComposited;
-  const banyan::PhaseScope balancing(banyan::Phase::Balancing);
-  self.Field.EndFrame(*self.Communicator);
-  // Putting the picture on the screen takes about what it took the last time.
-  self.Tolerance.FrameTook(
-    drawn.Wish, banyan::AllMax(*self.Communicator, drawing.Seconds() + self.WriteSeconds));
-  return picture;
-}
-
-void vtkBanyanVolumeMapper::FinishFrame(
-  const Frame& drawn, const banyan::CompositeStatistics& geometry, double writeSeconds)
-{
-  Internals& self = *this->Self;
-  self.WriteSeconds = writeSeconds;
-  self.LastProblem.clear();
-  this->Statistics->SetTotalSeconds(drawn.Began.Seconds());
-  drawn.Figures.Publish(
-    *self.Communicator, self.Field, drawn.Statistics, geometry.BytesSent, this->Statistics);
+  auto* const renderer = vtkRenderer::SafeDownCast(caller);
+  renderer->RemoveObserver(this->State->FrameEnds);
+  this->State->FrameEnds = 0;
+  banyan::VolumesPicture::ForgetDrawn(renderer);
 }
 
 bool vtkBanyanVolumeMapper::RefineNext()
 {
-  return this->RefineInPasses && this->Self->Tolerance.RefineNext();
+  return this->RefineInPasses && this->State->Tolerance.RefineNext();
 }
 
 void vtkBanyanVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 {
-  this->Self->Backdrop.ReleaseGraphicsResources(window);
+  this->State->Backdrop.ReleaseGraphicsResources(window);
   this->Superclass::ReleaseGraphicsResources(window);
 }
 

@@ -12,11 +12,8 @@
 
 namespace banyan
 {
-class Backdrop;
-class DepthOrder;
-struct CompositeStatistics;
-struct FloatImage;
-struct VolumeOnScreen;
+class VolumesPicture;
+struct MapperState;
 }
 
 class vtkBanyanFrameStatistics;
@@ -251,17 +248,8 @@ private:
   vtkBanyanVolumeMapper(const vtkBanyanVolumeMapper&) = delete;
   void operator=(const vtkBanyanVolumeMapper&) = delete;
 
-  struct Frame;
+  friend class banyan::VolumesPicture; // draws volumes of several mappers
 
-  bool PrepareFrame(vtkRenderer* renderer, Frame& frame);
-  banyan::FloatImage CastFrame(
-    vtkRenderer* renderer, const banyan::Backdrop& backdrop, int volumes, Frame& drawn);
-  void FinishFrame(
-    const Frame& drawn, const banyan::CompositeStatistics& geometry, double writeSeconds);
-  void DrawTogether(vtkRenderer* renderer, std::vector<Frame>& frames);
-  void DrawPrepared(vtkRenderer* renderer, std::vector<Frame>& frames);
-  void TellNotInDepth(vtkRenderer* renderer, const std::vector<Frame>& frames,
-    const std::vector<banyan::VolumeOnScreen>& volumes, const banyan::DepthOrder& order);
   bool Attempt(const std::function<bool()>& work);
   void EndFrame(vtkObject* caller, unsigned long event, void* data);
   void ReportOnce(const std::string& problem);
@@ -280,8 +268,7 @@ private:
   vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkSmartPointer<vtkBanyanFrameStatistics> Statistics;
 
-  struct Internals;
-  std::unique_ptr<Internals> Self;
+  std::unique_ptr<banyan::MapperState> State;
 };
 
 #endif

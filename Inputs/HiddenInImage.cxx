@@ -2,7 +2,6 @@
 #include "HiddenInImage.h"
 
 #include "ArrayLength.h"
-#include "Parallel/Communicate/Communicator.h"
 #include "Render/Bricks/HiddenCells.h"
 
 #include "vtkCellData.h"
@@ -10,8 +9,6 @@
 #include "vtkImageData.h"
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
-
-#include <string>
 
 namespace banyan
 {
@@ -41,6 +38,13 @@ const std::uint8_t* FlagsWith(
   return (all & bits) != 0 ? first : nullptr;
 }
 
+/// Null unless some are hidden.
+const std::uint8_t* FlagsOfHiddenCells(vtkImageData* image)
+{
+  return FlagsWith(
+    HidingBits, image->GetCellGhostArray(), vtkDataObject::CELL, image->GetNumberOfCells());
+}
+
 } // namespace
 
 const std::uint8_t* FlagsOfHiddenPoints(vtkImageData* image)
@@ -49,43 +53,20 @@ const std::uint8_t* FlagsOfHiddenPoints(vtkImageData* image)
     vtkDataObject::POINT, image->GetNumberOfPoints());
 }
 
-const std::uint8_t* FlagsOfHiddenCells(vtkImageData* image)
+bool HasHiddenCells(vtkImageData* image)
 {
-  return FlagsWith(
-    HidingBits, image->GetCellGhostArray(), vtkDataObject::CELL, image->GetNumberOfCells());
+  return FlagsOfHiddenCells(image) != nullptr;
 }
 
-std::shared_ptr<const HiddenCells> GatherHiddenCells(
-  Communicator& communicator, vtkImageData* image, const glm::ivec3& first, const glm::ivec3& cells)
+void HideCellsOf(vtkImageData* image, const glm::ivec3& first, HiddenCells& hidden)
 {
-  const auto hidden = std::make_shared<HiddenCells>(cells);
-  std::string failure;
-  std::string mine;
-  try
+  if (const std::uint8_t* const flags = FlagsOfHiddenCells(image))
   {
-    if (const std::uint8_t* const flags = image ? FlagsOfHiddenCells(image) : nullptr)
-    {
-      const int* const extent = image->GetExtent();
-      const Box own{ glm::ivec3(extent[0], extent[2], extent[4]) - first,
-        glm::ivec3(extent[1], extent[3], extent[5]) - first };
-      hidden->Hide(own, flags, HidingBits);
-      mine = hidden->ToBytes();
-    }
+    const int* const extent = image->GetExtent();
+    const Box own{ glm::ivec3(extent[0], extent[2], extent[4]) - first,
+      glm::ivec3(extent[1], extent[3], extent[5]) - first };
+    hidden.Hide(own, flags, HidingBits);
   }
-  catch (const std::exception& error)
-  {
-    failure = error.what();
-  }
-  const std::string agreed = AgreeOnError(communicator, failure);
-  if (!agreed.empty())
-  {
-    throw Error(agreed);
-  }
-  for (const std::string& bytes : AllGatherStrings(communicator, mine))
-  {
-    hidden->Add(bytes);
-  }
-  return hidden;
 }
 
 } // namespace banyan

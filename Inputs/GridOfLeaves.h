@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Rendering_GridOfLeaves_h
-#define banyan_Rendering_GridOfLeaves_h
+#ifndef banyan_Inputs_GridOfLeaves_h
+#define banyan_Inputs_GridOfLeaves_h
 
 #include "FieldPiece.h"
 
@@ -14,9 +14,9 @@ class Communicator;
 /// Collective: the leaves of a piece's hyper trees, or the visible cells of its AMR blocks, as
 /// voxels (see GridOfHyperTrees and GridOfAmr). Of AMR all ranks tell which blocks they have: a
 /// cell is hidden by finer ones wherever these are.
-/// @param piece Grid and Array are set to what is made, which `grid` keeps alive; another one than
-/// that of Leaves stays as it is Throws Error, the same on all ranks, when one of them has no
-/// octree.
+/// @param piece Grid and Array are set to what is made, which `grid` keeps alive; a piece without
+/// Leaves stays as it is
+/// Throws CollectiveError when a rank has something else.
 void TakeLeaves(
   Communicator& communicator, FieldPiece& piece, vtkSmartPointer<vtkUnstructuredGrid>& grid);
 

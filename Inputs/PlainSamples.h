@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Rendering_PlainSource_h
-#define banyan_Rendering_PlainSource_h
+#ifndef banyan_Inputs_PlainSamples_h
+#define banyan_Inputs_PlainSamples_h
 
 #include "Render/Bricks/ArraySamples.h"
-#include "Render/Bricks/BrickSource.h"
-
-#include <memory>
 
 class vtkDataArray;
 class vtkImageData;
@@ -13,19 +10,12 @@ class vtkImageData;
 namespace banyan
 {
 
-/// Most cells per axis of the bricks that plain data is cut into.
-constexpr int PlainBrickCells = 16;
-
 /// The samples of a piece of image data, where they are in memory. Hidden points count as missing.
 /// @param values point data of `image`
 /// @param component in [0, components), or -1 for the Euclidean norm
 /// @param first extent index of the first sample of the whole grid that the piece belongs to
 /// Throws Error when the values cannot be decoded or drawn.
 SampleArray PlainSamples(
-  vtkImageData* image, vtkDataArray* values, int component, const glm::ivec3& first);
-
-/// The bricks of a piece: see PlainSamples.
-std::unique_ptr<BrickSource> MakePlainSource(
   vtkImageData* image, vtkDataArray* values, int component, const glm::ivec3& first);
 
 } // namespace banyan

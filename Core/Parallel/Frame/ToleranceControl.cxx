@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ToleranceControl.h"
-
-#include "DistributedField.h"
+#include "Parallel/Frame/ToleranceControl.h"
 
 #include "Base/ThreadPool.h"
 #include "Parallel/Balance/LevelZones.h"
@@ -86,32 +84,28 @@ std::string LimitOf(const SamplingPlan& plan, double wanted, double planned,
 } // namespace
 
 double ToleranceControl::Plan(Communicator& communicator, DistributedField& field, RayScene& scene,
-  const Wish& wish, std::uint64_t budgetBytes, const std::string& failure, FrameStatistics& frame)
+  const Wish& wish, std::uint64_t budgetBytes, FrameStatistics& frame)
 {
   this->LimitText.clear();
   this->BySteps = !wish.KeepsTolerance;
   if (this->BySteps)
   {
-    this->PlanSteps(communicator, field, scene, wish, failure);
+    this->PlanSteps(communicator, field, scene, wish);
     return 0.0;
   }
-  const int coarsest = field.IsMesh() ? CoarsestMeshLevel : CoarsestLevel;
-  scene.LevelsShareCells = field.IsMesh();
+  DrawnField& drawn = field.Drawn();
+  const int coarsest = drawn.IsMesh() ? CoarsestMeshLevel : CoarsestLevel;
+  scene.LevelsShareCells = drawn.IsMesh();
   const bool byScreen = wish.ScreenErrorPixels > 0.0;
   // Plain data has coarser levels only when they are made; still pictures of it do without.
-  const bool levels = (field.Encoded() || field.IsMesh() || wish.Interacting || byScreen) &&
-                      LevelsHaveOneOrder(scene, field.Zones(), coarsest);
+  const bool levels = (drawn.IsEncoded() || drawn.IsMesh() || wish.Interacting || byScreen) &&
+                      LevelsHaveOneOrder(scene, drawn.Zones(), coarsest);
   if (levels)
   {
-    field.BringLevels(communicator, scene, coarsest);
+    drawn.BringLevels(communicator, scene, coarsest);
   }
   if (byScreen)
   {
-    const std::string agreed = AgreeOnError(communicator, failure);
-    if (!agreed.empty())
-    {
-      throw Error(agreed);
-    }
     PlanByScreen(communicator, field, scene, wish, levels ? coarsest : 0);
     return 0.0;
   }
@@ -121,18 +115,17 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
   }
   const double tolerance = wish.Interacting
                              ? wish.Interactive * this->Slack
-                             : this->Passes.at(wish.Eye).ToleranceOf(communicator, scene,
-                                 field.Version(), { wish.Passes, wish.Still, wish.Interactive });
+                             : this->StillTolerance(communicator, field, scene, wish.Eye,
+                                 { wish.Passes, wish.Still, wish.Interactive });
   SamplingWish sampling{ tolerance, scene.SampleDistance, levels ? coarsest : 0 };
-  if (field.IsMesh() && wish.MaxElementsPerPixel > 0.0)
+  if (drawn.IsMesh() && wish.MaxElementsPerPixel > 0.0)
   {
     sampling.FinestLevelOfTile =
       FinestLevelsOfTiles(scene, wish.MaxElementsPerPixel, sampling.CoarsestLevel);
   }
   sampling.StaysInMemory = wish.Interacting && wish.Seconds > 0.0;
   const SamplingPlan plan = PlanDistributed(communicator, scene,
-    { field.Source(), field.Zones(), budgetBytes, ThreadPool::Process(), failure }, sampling,
-    frame);
+    { drawn.Source(), drawn.Zones(), budgetBytes, ThreadPool::Process() }, sampling, frame);
   scene.Samplings = plan.Samplings;
   scene.OpacityLimit = plan.OpacityLimit;
   frame.PilotSeconds = plan.PilotSeconds;
@@ -144,8 +137,21 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
   return std::min(plan.EstimatedError, 255.0);
 }
 
-void ToleranceControl::PlanSteps(Communicator& communicator, DistributedField& field,
-  RayScene& scene, const Wish& wish, const std::string& failure)
+/// Collective: the tolerance of the next picture of one eye, the same on all ranks.
+double ToleranceControl::StillTolerance(Communicator& communicator, const DistributedField& field,
+  const RayScene& scene, int eye, const RefinementPasses::Wish& wish)
+{
+  RefinementPasses& passes = this->Passes.at(static_cast<std::size_t>(eye));
+  if (!wish.Passes)
+  {
+    return passes.ToleranceOf(false, wish);
+  }
+  const bool changed = passes.SceneChanged(scene, field.Version());
+  return passes.ToleranceOf(AllMax(communicator, changed ? 1.0 : 0.0) > 0.0, wish);
+}
+
+void ToleranceControl::PlanSteps(
+  Communicator& communicator, DistributedField& field, RayScene& scene, const Wish& wish)
 {
   if (wish.Interacting)
   {
@@ -156,7 +162,7 @@ void ToleranceControl::PlanSteps(Communicator& communicator, DistributedField& f
   const double tolerance =
     wish.Interacting
       ? 0.0
-      : this->Passes.at(wish.Eye).ToleranceOf(communicator, scene, field.Version(),
+      : this->StillTolerance(communicator, field, scene, wish.Eye,
           { wish.Passes, 1.0,
             std::ldexp(1.0, 2 * std::min(this->Steps.Step(), this->CoarsestStepLevel)) });
   const int step = wish.Interacting ? this->Steps.Step() : std::ilogb(tolerance) / 2;
@@ -164,22 +170,18 @@ void ToleranceControl::PlanSteps(Communicator& communicator, DistributedField& f
   {
     return;
   }
-  const int coarsest = field.IsMesh() ? CoarsestMeshLevel : CoarsestLevel;
-  scene.LevelsShareCells = field.IsMesh();
+  DrawnField& drawn = field.Drawn();
+  const int coarsest = drawn.IsMesh() ? CoarsestMeshLevel : CoarsestLevel;
+  scene.LevelsShareCells = drawn.IsMesh();
   // Projections combine in any order.
   const bool levels =
-    scene.Blend.Mode != BlendMode::Composite || LevelsHaveOneOrder(scene, field.Zones(), coarsest);
+    scene.Blend.Mode != BlendMode::Composite || LevelsHaveOneOrder(scene, drawn.Zones(), coarsest);
   if (levels)
   {
-    field.BringLevels(communicator, scene, coarsest);
-  }
-  const std::string agreed = AgreeOnError(communicator, failure);
-  if (!agreed.empty())
-  {
-    throw Error(agreed);
+    drawn.BringLevels(communicator, scene, coarsest);
   }
   this->CoarsestStepLevel =
-    CommonLevel(communicator, field.Source(), scene.DomainCells, levels ? coarsest : 0);
+    CommonLevel(communicator, drawn.Source(), scene.DomainCells, levels ? coarsest : 0);
   if (step > 0)
   {
     scene.Samplings = std::make_shared<const TileSamplings>(scene.Camera.ImageSize(),
@@ -191,7 +193,7 @@ void ToleranceControl::PlanSteps(Communicator& communicator, DistributedField& f
 void ToleranceControl::PlanByScreen(Communicator& communicator, DistributedField& field,
   RayScene& scene, const Wish& wish, int coarsest)
 {
-  const int common = CommonLevel(communicator, field.Source(), scene.DomainCells, coarsest);
+  const int common = CommonLevel(communicator, field.Drawn().Source(), scene.DomainCells, coarsest);
   scene.Samplings = std::make_shared<const TileSamplings>(SamplingsByScreen(
     scene, wish.ScreenErrorPixels, scene.SampleDistance, common, !wish.FixedDistance));
 }

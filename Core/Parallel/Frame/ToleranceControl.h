@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Rendering_ToleranceControl_h
-#define banyan_Rendering_ToleranceControl_h
+#ifndef banyan_Parallel_Frame_ToleranceControl_h
+#define banyan_Parallel_Frame_ToleranceControl_h
 
-#include "RefinementPasses.h"
-
-#include "Parallel/Fields/DrawnField.h"
+#include "Parallel/Fields/DistributedField.h"
 #include "Parallel/Frame/DistributedPlan.h"
 #include "Render/Sampling/InteractiveLevels.h"
+#include "Render/Sampling/RefinementPasses.h"
 
 #include <array>
 #include <string>
 
 namespace banyan
 {
-
-class DistributedField;
 
 /// Decides how frames are sampled: within the tolerance that is wanted, and while somebody moves
 /// the camera, as far beyond it as the promised frame time demands.
@@ -42,13 +39,11 @@ public:
   };
 
   /// Collective: gives the scene its samplings and its opacity limit.
-  /// @param failure of this rank, which all ranks then throw
   /// @param frame the pilots' samples and bytes are added
   /// @return the estimated error in 1/255; 0 where nothing tells it: where the size of cells
   /// decides, or the promised time
   double Plan(Communicator& communicator, DistributedField& field, RayScene& scene,
-    const Wish& wish, std::uint64_t budgetBytes, const std::string& failure,
-    FrameStatistics& frame);
+    const Wish& wish, std::uint64_t budgetBytes, FrameStatistics& frame);
 
   /// Remarks on the estimated error of the frame that was planned last, in sentences for the
   /// user: why it is above the tolerance that was wanted, or what it may have
@@ -62,11 +57,13 @@ public:
   bool RefineNext();
 
 private:
+  double StillTolerance(Communicator& communicator, const DistributedField& field,
+    const RayScene& scene, int eye, const RefinementPasses::Wish& wish);
   /// For pictures that keep no tolerance (InteractiveLevels): while somebody moves
   /// the camera they keep the promised time; still ones have all samples, after passes that take
   /// one step each.
-  void PlanSteps(Communicator& communicator, DistributedField& field, RayScene& scene,
-    const Wish& wish, const std::string& failure);
+  void PlanSteps(
+    Communicator& communicator, DistributedField& field, RayScene& scene, const Wish& wish);
   static void PlanByScreen(Communicator& communicator, DistributedField& field, RayScene& scene,
     const Wish& wish, int coarsest);
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Rendering_RefinementPasses_h
-#define banyan_Rendering_RefinementPasses_h
+#ifndef banyan_Render_Sampling_RefinementPasses_h
+#define banyan_Render_Sampling_RefinementPasses_h
 
-#include "Parallel/Communicate/Communicator.h"
-#include "Render/Levels/RayCaster.h"
+#include "Render/Scene/RayScene.h"
 
 #include <cstdint>
 
@@ -25,11 +24,15 @@ public:
     double Interactive = 8.0; ///< 1/255
   };
 
-  /// Collective: the tolerance of the next still picture, the same on all ranks.
+  /// Returns whether the next still picture shows something else than the last one of which this
+  /// was asked. Where several ranks draw one picture, it does when one of them says so.
   /// @param scene all that decides the picture, its samplings apart
   /// @param values a number that changes with the values that are drawn
-  double ToleranceOf(
-    Communicator& communicator, const RayScene& scene, std::uint64_t values, const Wish& wish);
+  bool SceneChanged(const RayScene& scene, std::uint64_t values);
+
+  /// Returns the tolerance of the next still picture.
+  /// @param changed see SceneChanged; counts only for passes
+  double ToleranceOf(bool changed, const Wish& wish);
 
   /// Tells that a picture was drawn while somebody moved the camera.
   void Interacted() { this->AfterInteraction = true; }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "RefinementPasses.h"
+#include "Render/Sampling/RefinementPasses.h"
 
 #include "Base/Hash.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace banyan
 {
@@ -67,8 +68,15 @@ constexpr double Step = 0.25;
 
 } // namespace
 
-double RefinementPasses::ToleranceOf(
-  Communicator& communicator, const RayScene& scene, std::uint64_t values, const Wish& wish)
+bool RefinementPasses::SceneChanged(const RayScene& scene, std::uint64_t values)
+{
+  const std::uint64_t hash = NumberOf(scene, values);
+  const bool changed = hash != this->Drawn;
+  this->Drawn = hash;
+  return changed;
+}
+
+double RefinementPasses::ToleranceOf(bool changed, const Wish& wish)
 {
   this->Fresh = true;
   if (!wish.Passes)
@@ -78,9 +86,6 @@ double RefinementPasses::ToleranceOf(
     this->AfterInteraction = false;
     return wish.Still;
   }
-  const std::uint64_t hash = NumberOf(scene, values);
-  const bool changed = AllMax(communicator, hash != this->Drawn ? 1.0 : 0.0) > 0.0;
-  this->Drawn = hash;
   if (changed)
   {
     this->Reached = this->AfterInteraction ? wish.Interactive : wish.Still;

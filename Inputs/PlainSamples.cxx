@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "PlainSource.h"
+#include "PlainSamples.h"
 
 #include "HiddenInImage.h"
 
-#include "Base/ThreadPool.h"
-#include "Render/Bricks/ArrayBrickSource.h"
+#include "Base/Error.h"
 #include "vtkBanyanDeferred.h"
 
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkSmartPointer.h"
 
+#include <string>
 #include <utility>
 
 namespace banyan
@@ -67,16 +67,6 @@ SampleArray PlainSamples(
   array.Flags = FlagsOfHiddenPoints(image);
   array.Owner = HoldAlive(plain, image);
   return array;
-}
-
-std::unique_ptr<BrickSource> MakePlainSource(
-  vtkImageData* image, vtkDataArray* values, int component, const glm::ivec3& first)
-{
-  const SampleArray array = PlainSamples(image, values, component, first);
-  ThreadPool& pool = ThreadPool::Process();
-  const ValueRange range = FiniteRange(array, pool);
-  const MaskRange masks = range.Empty() ? MaskRange{} : MaskRange{ range.Low, range.High };
-  return std::make_unique<ArrayBrickSource>(array, PlainBrickCells, masks, pool);
 }
 
 } // namespace banyan

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Rendering_PieceOfMesh_h
-#define banyan_Rendering_PieceOfMesh_h
+#ifndef banyan_Inputs_PieceOfMesh_h
+#define banyan_Inputs_PieceOfMesh_h
 
 #include "FieldPiece.h"
 

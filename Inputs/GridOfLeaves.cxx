@@ -5,6 +5,7 @@
 #include "GridOfHyperTrees.h"
 
 #include "Base/Error.h"
+#include "Parallel/Communicate/Collective.h"
 #include "Parallel/Communicate/Communicator.h"
 
 #include "vtkCellData.h"
@@ -38,25 +39,6 @@ std::vector<AmrBox> BoxesOfAll(Communicator& communicator, const std::vector<Amr
   return all;
 }
 
-/// Collective: on all ranks, when one fails, those that have not say nothing.
-template <class Function>
-void Together(Communicator& communicator, const Function& function)
-{
-  std::string failure;
-  try
-  {
-    function();
-  }
-  catch (const std::exception& error)
-  {
-    failure = error.what();
-  }
-  if (!AgreeOnError(communicator, failure).empty())
-  {
-    throw Error(failure);
-  }
-}
-
 } // namespace
 
 void TakeLeaves(
@@ -65,7 +47,7 @@ void TakeLeaves(
   vtkOverlappingAMR* const blocks = vtkOverlappingAMR::SafeDownCast(piece.Leaves);
   vtkHyperTreeGrid* const trees = vtkHyperTreeGrid::SafeDownCast(piece.Leaves);
   std::vector<AmrBox> boxes;
-  Together(communicator,
+  Collective(communicator,
     [&]
     {
       if (piece.Leaves && !blocks && !trees)
@@ -76,7 +58,7 @@ void TakeLeaves(
       boxes = BoxesOf(blocks);
     });
   boxes = BoxesOfAll(communicator, boxes);
-  Together(communicator,
+  Collective(communicator,
     [&]
     {
       if (!piece.Leaves)

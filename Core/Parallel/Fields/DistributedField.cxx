@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Parallel/Fields/DistributedField.h"
+
+#include "Base/ThreadPool.h"
+#include "Cache/BrickCache.h"
+#include "Parallel/Communicate/Collective.h"
+#include "Parallel/Fields/PiecesField.h"
+#include "Parallel/Fields/SeriesField.h"
+#include "Parallel/Fields/WholeField.h"
+#include "Render/Bricks/ArrayBrickSource.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace banyan
+{
+namespace
+{
+
+/// Most cells per axis of the bricks that plain data is cut into.
+constexpr int PlainBrickCells = 16;
+
+std::unique_ptr<BrickSource> BricksOf(const SampleArray& samples)
+{
+  ThreadPool& pool = ThreadPool::Process();
+  const ValueRange range = FiniteRange(samples, pool);
+  const MaskRange masks = range.Empty() ? MaskRange{} : MaskRange{ range.Low, range.High };
+  return std::make_unique<ArrayBrickSource>(samples, PlainBrickCells, masks, pool);
+}
+
+const PieceFacts& FactsHere(const std::vector<PieceFacts>& all, const Communicator& communicator)
+{
+  return all[static_cast<std::size_t>(communicator.Rank())];
+}
+
+} // namespace
+
+DistributedField::DistributedField()
+  : Field(std::make_unique<WholeField>())
+{
+}
+
+DistributedField::~DistributedField() = default;
+
+void DistributedField::Reset()
+{
+  this->Stamp = InputStamp();
+}
+
+void DistributedField::SetLoadBalancing(LoadBalancing mode)
+{
+  if (mode != this->Balancing)
+  {
+    this->Balancing = mode;
+    this->Reset();
+  }
+}
+
+std::uint64_t DistributedField::DrawingBudget()
+{
+  // Less than the cache has: what one batch holds is then never evicted by that batch itself.
+  constexpr std::uint64_t least = std::uint64_t{ 16 } << 20;
+  const std::uint64_t all = BrickCache::Process().DrawingBudget();
+  BrickSource* const source = this->Field->Source();
+  return std::max(source ? source->Kept().ShareOf(all) : all, least);
+}
+
+/// The field, which is another one if it was of another kind.
+template <class Kind>
+Kind& DistributedField::Become()
+{
+  auto* field = dynamic_cast<Kind*>(this->Field.get());
+  if (!field)
+  {
+    this->Field = std::make_unique<WholeField>(); // not two of them at once
+    auto made = std::make_unique<Kind>();
+    field = made.get();
+    this->Field = std::move(made);
+  }
+  return *field;
+}
+
+void DistributedField::Update(Communicator& communicator, FieldInput& input)
+{
+  if (!this->Stamp.Become(communicator, input.Stamp()))
+  {
+    return;
+  }
+  ++this->Updates;
+  this->LargestEncodingError = 0.0;
+  this->ProblemText.clear();
+  try
+  {
+    Collective(communicator, [&] { this->Take(communicator, input); });
+  }
+  catch (const CollectiveError& error)
+  {
+    this->ProblemText = error.what();
+    this->Field->Clear();
+    this->Where = FieldPlace{};
+  }
+  const ValueRange range = this->Field->RangeHere();
+  this->ValuesRange.Low = -AllMax(communicator, -range.Low);
+  this->ValuesRange.High = AllMax(communicator, range.High);
+}
+
+void DistributedField::Take(Communicator& communicator, FieldInput& input)
+{
+  PieceFacts mine;
+  Collective(communicator, [&] { mine = input.Facts(); });
+  std::vector<PieceFacts> all(static_cast<std::size_t>(communicator.Size()));
+  communicator.AllGather(&mine, sizeof(mine), all.data());
+  this->Where = FieldPlace{};
+  if (std::any_of(all.begin(), all.end(), [](const PieceFacts& facts) { return facts.IsMesh(); }))
+  {
+    this->TakeMesh(communicator, input, all);
+  }
+  else if (std::any_of(
+             all.begin(), all.end(), [](const PieceFacts& facts) { return facts.IsImage(); }))
+  {
+    this->TakeImages(communicator, input, all);
+  }
+  else
+  {
+    this->Become<WholeField>().Clear();
+  }
+}
+
+/// Collective, where some rank has a mesh.
+void DistributedField::TakeMesh(
+  Communicator& communicator, FieldInput& input, const std::vector<PieceFacts>& all)
+{
+  auto& field = this->Become<MeshField>();
+  field.Clear();
+  ThrowTogether(communicator, FactsHere(all, communicator).IsImage()
+                                ? "One rank has image data and another one hexahedra."
+                                : "");
+  const bool leaves = std::any_of(all.begin(), all.end(),
+    [](const PieceFacts& facts) { return facts.Has == PieceFacts::Kind::Leaves; });
+  MeshField::Piece cells;
+  Collective(communicator, [&] { cells = input.Mesh(communicator, leaves); });
+  field.Take(communicator, std::move(cells), input.Meshing(), this->Balancing, {});
+  this->Where = field.Place();
+}
+
+/// Collective, where some rank has an image, and none a mesh.
+void DistributedField::TakeImages(
+  Communicator& communicator, FieldInput& input, const std::vector<PieceFacts>& all)
+{
+  const auto first =
+    std::find_if(all.begin(), all.end(), [](const PieceFacts& facts) { return facts.IsImage(); });
+  const PieceFacts& mine = FactsHere(all, communicator);
+  ThrowTogether(communicator,
+    mine.IsImage() ? mine.DifferenceFrom(*first, static_cast<int>(first - all.begin())) : "");
+  Box samples;
+  bool deferred = true;
+  bool hidden = false;
+  for (const PieceFacts& facts : all)
+  {
+    if (facts.IsImage())
+    {
+      samples = Union(samples, facts.Samples());
+      deferred = deferred && facts.Deferred != 0;
+      hidden = hidden || facts.HiddenCells != 0;
+      this->LargestEncodingError = std::max(this->LargestEncodingError, facts.EncodingError);
+    }
+  }
+  this->Where = PlaceOfSamples(first->Geometry(), samples);
+  if (!deferred || !this->TakeSeries(communicator, input, all, samples))
+  {
+    if (deferred && input.Enhancement().Strength > 0.0)
+    {
+      throw Error("Only whole steps of an encoded series can be enhanced while they are drawn: put "
+                  "the filter 'Banyan Temporal Enhancement' behind the reader.");
+    }
+    this->TakeSamples(communicator, input, all, samples);
+  }
+  if (hidden)
+  {
+    this->HideCells(communicator, input, mine.HiddenCells != 0, samples.Lo);
+  }
+}
+
+/// Collective. @return false when the pieces are not all of one step of a series
+bool DistributedField::TakeSeries(Communicator& communicator, const FieldInput& input,
+  const std::vector<PieceFacts>& all, const Box& samples)
+{
+  std::vector<SeriesField::Piece> pieces;
+  for (const PieceFacts& facts : all)
+  {
+    pieces.push_back({ facts.IsImage(), facts.Step, facts.Array, facts.Component, facts.Level });
+  }
+  // Another kind of field keeps what it knows until this one fits.
+  auto* const drawn = dynamic_cast<SeriesField*>(this->Field.get());
+  auto made = drawn ? nullptr : std::make_unique<SeriesField>();
+  std::string failure;
+  const bool fits =
+    (drawn ? drawn : made.get())
+      ->Take(communicator, FactsHere(all, communicator).IsImage() ? input.Series() : nullptr,
+        pieces, { samples, this->Balancing, input.Enhancement() }, failure);
+  if (fits && made)
+  {
+    this->Field = std::move(made);
+  }
+  ThrowTogether(communicator, failure);
+  return fits;
+}
+
+/// Collective: values in memory, of all pieces.
+void DistributedField::TakeSamples(Communicator& communicator, const FieldInput& input,
+  const std::vector<PieceFacts>& all, const Box& samples)
+{
+  const bool alone = communicator.Size() == 1;
+  if (alone)
+  {
+    this->Become<WholeField>().Clear();
+  }
+  else
+  {
+    this->Become<PiecesField>();
+  }
+  SampleArray mine;
+  Collective(communicator,
+    [&]
+    {
+      if (FactsHere(all, communicator).IsImage())
+      {
+        mine = input.Samples(samples.Lo);
+      }
+    });
+  if (alone)
+  {
+    this->Become<WholeField>().Take(BricksOf(mine), this->Where.Cells);
+    return;
+  }
+  std::vector<Box> pieces;
+  for (const PieceFacts& facts : all)
+  {
+    const Box own = facts.Samples();
+    pieces.push_back(facts.IsImage() ? Box{ own.Lo - samples.Lo, own.Hi - samples.Lo } : Box{});
+  }
+  this->Become<PiecesField>().Take(
+    communicator, pieces, mine, this->Where.Cells.Hi, PlainBrickCells, this->Balancing);
+}
+
+/// Collective, where some cell of some rank is hidden: in the pieces of all ranks. Where pieces
+/// overlap, a cell is hidden that is hidden in one of them.
+/// @param here whether some are of this rank's piece
+void DistributedField::HideCells(
+  Communicator& communicator, const FieldInput& input, bool here, const glm::ivec3& first)
+{
+  const auto hidden = std::make_shared<HiddenCells>(this->Where.Cells.Hi);
+  std::string mine;
+  Collective(communicator,
+    [&]
+    {
+      if (here)
+      {
+        input.HideCells(first, *hidden);
+        mine = hidden->ToBytes();
+      }
+    });
+  for (const std::string& bytes : AllGatherStrings(communicator, mine))
+  {
+    hidden->Add(bytes);
+  }
+  if (BrickSource* const source = this->Field->Source())
+  {
+    source->Hide(hidden);
+  }
+}
+
+} // namespace banyan

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Inputs_InputOfPiece_h
+#define banyan_Inputs_InputOfPiece_h
+
+#include "BanyanInputsModule.h" // for export macro
+#include "FieldPiece.h"
+
+#include "Parallel/Fields/FieldInput.h"
+
+#include "vtkSmartPointer.h"
+
+namespace banyan
+{
+
+/// A piece of VTK's data as the input of a field.
+class BANYANINPUTS_EXPORT InputOfPiece final : public FieldInput
+{
+public:
+  /// @param piece its objects must stay as long as the input is used
+  explicit InputOfPiece(FieldPiece piece);
+  ~InputOfPiece() override;
+
+  InputStamp Stamp() const override;
+  PieceFacts Facts() const override;
+  std::shared_ptr<const SeriesFile> Series() const override;
+  TemporalEnhancement Enhancement() const override { return this->Piece.Enhancement; }
+  SampleArray Samples(const glm::ivec3& first) const override;
+  void HideCells(const glm::ivec3& first, HiddenCells& hidden) const override;
+  MeshOptions Meshing() const override { return this->Piece.Mesh; }
+  MeshField::Piece Mesh(Communicator& communicator, bool leaves) override;
+
+private:
+  FieldPiece Piece;
+  vtkSmartPointer<vtkUnstructuredGrid> Voxels; ///< of leaves
+  vtkSmartPointer<vtkDataArray> Values;        ///< of the mesh
+};
+
+} // namespace banyan
+
+#endif

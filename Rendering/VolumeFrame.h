@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Rendering_VolumeFrame_h
+#define banyan_Rendering_VolumeFrame_h
+
+#include "FrameFigures.h"
+#include "MapperState.h"
+
+#include "Base/Timer.h"
+
+#include <optional>
+
+class vtkBanyanVolumeMapper;
+class vtkRenderer;
+
+namespace banyan
+{
+
+/// One volume in the frame that is under way. All functions but the getters are collective, and
+/// throw Error when a rank fails.
+class VolumeFrame
+{
+public:
+  /// @param mapper has the settings, and gets the statistics
+  /// @param state of the mapper; its field is that of the volume
+  VolumeFrame(vtkBanyanVolumeMapper* mapper, MapperState& state, vtkVolume* volume)
+    : Owner(mapper)
+    , State(&state)
+    , Prop(volume)
+  {
+  }
+
+  vtkBanyanVolumeMapper* Mapper() const { return this->Owner; }
+  vtkVolume* Volume() const { return this->Prop; }
+  /// Of a volume that is prepared.
+  const RayScene& Scene() const { return *this->Wanted; }
+
+  /// @return whether the volume is on the screen
+  bool Prepare(vtkRenderer* renderer);
+
+  /// Draws the volume, which is on the screen.
+  /// @param volumes in the picture
+  /// @return the volume's picture, on rank 0
+  FloatImage Cast(vtkRenderer* renderer, const Backdrop& backdrop, int volumes);
+
+  /// Publishes the statistics, when the picture is on the screen.
+  /// @param geometry what it took to combine the pixels of other props
+  /// @param writeSeconds for this volume's part of the picture
+  void Finish(const CompositeStatistics& geometry, double writeSeconds);
+
+private:
+  ToleranceControl::Wish WishFor(vtkRenderer* renderer, int volumes) const;
+  void PlanSampling(std::uint64_t budgetBytes);
+  CompositeOptions Compositing(const Backdrop& backdrop, int volumes);
+
+  vtkBanyanVolumeMapper* Owner;
+  MapperState* State;
+  vtkVolume* Prop;
+  Timer Began;
+  std::optional<RayScene> Wanted; ///< none until it is prepared
+  ToleranceControl::Wish Wish;
+  FrameStatistics Statistics;
+  FrameFigures Figures;
+};
+
+} // namespace banyan
+
+#endif

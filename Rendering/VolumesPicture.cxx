@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "VolumesPicture.h"
+
+#include "RendererCamera.h"
+#include "VolumesInDepth.h"
+#include "vtkBanyanVolumeMapper.h"
+
+#include "Base/Progress.h"
+#include "Base/Timer.h"
+
+#include "vtkCollection.h"
+#include "vtkPropCollection.h"
+#include "vtkRenderer.h"
+#include "vtkSetGet.h"
+#include "vtkVolume.h"
+
+#include <algorithm>
+
+namespace banyan
+{
+
+VolumesPicture::VolumesPicture(
+  vtkRenderer* renderer, vtkBanyanVolumeMapper* mapper, vtkVolume* volume)
+  : Renderer(renderer)
+  , Called(mapper)
+{
+  for (vtkVolume* const shown : VolumesDrawnWith(renderer, volume))
+  {
+    auto* const its =
+      shown == volume ? mapper : vtkBanyanVolumeMapper::SafeDownCast(shown->GetMapper());
+    this->Frames.emplace_back(its, *its->State, shown);
+    if (shown != volume)
+    {
+      its->State->DrawnByOthers.insert(shown);
+    }
+  }
+}
+
+void VolumesPicture::ForgetDrawn(vtkRenderer* renderer)
+{
+  vtkPropCollection* const props = renderer->GetViewProps();
+  vtkCollectionSimpleIterator at;
+  props->InitTraversal(at);
+  while (vtkProp* const prop = props->GetNextProp(at))
+  {
+    auto* const volume = vtkVolume::SafeDownCast(prop);
+    auto* const mapper =
+      volume ? vtkBanyanVolumeMapper::SafeDownCast(volume->GetMapper()) : nullptr;
+    if (mapper)
+    {
+      mapper->State->DrawnByOthers.erase(volume);
+    }
+  }
+}
+
+void VolumesPicture::Draw()
+{
+  const auto shows = [this](VolumeFrame& frame)
+  {
+    return frame.Mapper()->Attempt(
+      [&]
+      {
+        frame.Mapper()->UpdateField(frame.Volume());
+        return frame.Prepare(this->Renderer);
+      });
+  };
+  this->Frames.erase(std::remove_if(this->Frames.begin(), this->Frames.end(),
+                       [&](VolumeFrame& frame) { return !shows(frame); }),
+    this->Frames.end());
+  if (!this->Frames.empty())
+  {
+    // The first one that shows something is the same on all ranks.
+    vtkBanyanVolumeMapper* const first = this->Frames.front().Mapper();
+    first->State->RankOrderBehind = this->Called->State->RankOrderBehind;
+    first->Attempt(
+      [&]
+      {
+        this->DrawPrepared(first);
+        return true;
+      });
+  }
+}
+
+void VolumesPicture::DrawPrepared(vtkBanyanVolumeMapper* first)
+{
+  const PhaseScope beginning(Phase::Beginning);
+  MapperState& state = *first->State;
+  std::vector<vtkVolume*> props;
+  std::vector<VolumeOnScreen> volumes;
+  std::vector<PlacedBody> bodies;
+  PixelRect rect;
+  for (const VolumeFrame& frame : this->Frames)
+  {
+    vtkBanyanVolumeMapper* const mapper = frame.Mapper();
+    props.push_back(frame.Volume());
+    bodies.push_back(
+      BodyOf(frame.Volume(), mapper, mapper->State->Field.Place().Bounds, frame.Scene()));
+    volumes.push_back({ bodies.back(), frame.Scene().Viewport });
+    rect = Union(rect, frame.Scene().Viewport);
+  }
+  const DepthOrder order(bodies, CameraOf(this->Renderer, glm::dvec3(0.0)));
+  this->TellNotInDepth(first, volumes, order);
+  CompositeStatistics geometry;
+  state.Backdrop.Read(
+    *state.Communicator, this->Renderer, props, rect, state.RankOrderBehind, geometry);
+  std::vector<FloatImage> pictures(this->Frames.size());
+  const std::vector<VolumeFrame*> drawn = this->Cast(state.Backdrop, pictures);
+  if (drawn.empty())
+  {
+    return;
+  }
+  const Timer writing;
+  if (this->HasSeveral() && state.Communicator->Rank() == 0)
+  {
+    pictures.front() = BlendInDepth(pictures, order, rect);
+  }
+  state.Backdrop.Write(*state.Communicator, this->Renderer, pictures.front());
+  const double seconds = writing.Seconds() / static_cast<double>(drawn.size());
+  for (VolumeFrame* const frame : drawn)
+  {
+    frame->Finish(geometry, seconds);
+  }
+}
+
+/// @param pictures of the frames, on rank 0
+/// @return frames that could be drawn
+std::vector<VolumeFrame*> VolumesPicture::Cast(
+  const Backdrop& backdrop, std::vector<FloatImage>& pictures)
+{
+  std::vector<VolumeFrame*> drawn;
+  for (std::size_t i = 0; i < this->Frames.size(); ++i)
+  {
+    VolumeFrame& frame = this->Frames[i];
+    const auto cast = [&]
+    {
+      // One mapper may draw several volumes, each with a component of its own.
+      const auto same = [&](const VolumeFrame& other) { return other.Mapper() == frame.Mapper(); };
+      if (std::count_if(this->Frames.begin(), this->Frames.end(), same) > 1)
+      {
+        frame.Mapper()->UpdateField(frame.Volume());
+      }
+      pictures[i] = frame.Cast(this->Renderer, backdrop, static_cast<int>(this->Frames.size()));
+      return true;
+    };
+    if (frame.Mapper()->Attempt(cast))
+    {
+      drawn.push_back(&frame);
+    }
+  }
+  return drawn;
+}
+
+/// Says what is not drawn in the order of depth, once. Collective.
+void VolumesPicture::TellNotInDepth(vtkBanyanVolumeMapper* first,
+  const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order) const
+{
+  Communicator& communicator = *first->State->Communicator;
+  const std::vector<unsigned char> bits =
+    FindNotInDepth(communicator, this->Renderer, volumes, order);
+  unsigned char fresh = 0;
+  for (std::size_t i = 0; i < this->Frames.size(); ++i)
+  {
+    unsigned char& told = this->Frames[i].Mapper()->State->ToldNotInDepth;
+    fresh = static_cast<unsigned char>(fresh | (bits[i] & ~told));
+    told = static_cast<unsigned char>(told | bits[i]);
+  }
+  const std::string note = banyan::TellNotInDepth(fresh);
+  if (!note.empty() && communicator.Rank() == 0)
+  {
+    vtkWarningWithObjectMacro(first, << note);
+  }
+}
+
+} // namespace banyan

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Rendering_VolumesPicture_h
+#define banyan_Rendering_VolumesPicture_h
+
+#include "VolumeFrame.h"
+
+#include <vector>
+
+class vtkBanyanVolumeMapper;
+class vtkRenderer;
+class vtkVolume;
+
+namespace banyan
+{
+
+class DepthOrder;
+struct VolumeOnScreen;
+
+/// The picture of all volumes of a renderer that draw on the same ranks. Pictures of volumes are
+/// blended by depth, and the background is behind all of them: the first volume that VTK renders
+/// draws all, and the others are told that they are drawn.
+class VolumesPicture
+{
+public:
+  /// @param mapper of the volume that is rendered
+  VolumesPicture(vtkRenderer* renderer, vtkBanyanVolumeMapper* mapper, vtkVolume* volume);
+
+  bool HasSeveral() const { return this->Frames.size() > 1; }
+
+  /// Collective, with the same calls on all ranks: volumes come in the order of the renderer's
+  /// list. Throws nothing: a mapper reports what it cannot draw.
+  void Draw();
+
+  /// Forgets which volumes of a renderer are drawn. Of a frame that has ended those remain that VTK
+  /// did not render, as they are off the screen.
+  static void ForgetDrawn(vtkRenderer* renderer);
+
+private:
+  void DrawPrepared(vtkBanyanVolumeMapper* first);
+  std::vector<VolumeFrame*> Cast(const Backdrop& backdrop, std::vector<FloatImage>& pictures);
+  void TellNotInDepth(vtkBanyanVolumeMapper* first, const std::vector<VolumeOnScreen>& volumes,
+    const DepthOrder& order) const;
+
+  vtkRenderer* Renderer;
+  vtkBanyanVolumeMapper* Called;
+  std::vector<VolumeFrame> Frames;
+};
+
+} // namespace banyan
+
+#endif

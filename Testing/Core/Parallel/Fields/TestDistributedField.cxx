@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which kind of field ranks draw, from what each of them has, and what all of them hear when one
+// cannot.
+#include "Parallel/Fields/DistributedField.h"
+#include "Parallel/Fields/PiecesField.h"
+#include "Parallel/Fields/WholeField.h"
+
+#include "Parallel/Fields/Pieces.h"
+#include "Parallel/MeshMadeAlone.h"
+
+#include <gtest/gtest.h>
+
+namespace
+{
+
+using namespace banyan;
+
+const glm::ivec3 Samples{ 19, 18, 21 };
+const glm::ivec3 First{ 5, 6, 7 }; ///< of the grid, in extents of pieces
+
+/// What a rank has; tests change it, and Changes with it.
+struct Input final : FieldInput
+{
+  std::uint64_t Changes = 0;
+  PieceFacts Piece;
+  std::string Problem;
+  std::string Unreadable; ///< fails when values are asked for
+  SampleArray Values;     ///< positions begin at 0
+  MeshField::Piece Cells;
+  TemporalEnhancement Motion{ 0.0, 1.0, 0.0 };
+  Box Hidden;
+
+  void Have(const SampleArray& values)
+  {
+    this->Values = values;
+    this->Piece.Has = values.Samples.Empty() ? PieceFacts::Kind::Nothing : PieceFacts::Kind::Image;
+    this->Piece.Components = values.Components;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Piece.Lo[axis] = values.Samples.Lo[axis] + First[axis];
+      this->Piece.Hi[axis] = values.Samples.Hi[axis] + First[axis];
+    }
+    ++this->Changes;
+  }
+
+  InputStamp Stamp() const override
+  {
+    InputStamp stamp;
+    stamp.Add(this->Changes);
+    return stamp;
+  }
+  PieceFacts Facts() const override
+  {
+    if (!this->Problem.empty())
+    {
+      throw Error(this->Problem);
+    }
+    return this->Piece;
+  }
+  std::shared_ptr<const SeriesFile> Series() const override { return nullptr; }
+  TemporalEnhancement Enhancement() const override { return this->Motion; }
+  SampleArray Samples(const glm::ivec3& first) const override
+  {
+    EXPECT_TRUE(this->Piece.IsImage());
+    EXPECT_EQ(first, First);
+    if (!this->Unreadable.empty())
+    {
+      throw Error(this->Unreadable);
+    }
+    return this->Values;
+  }
+  void HideCells(const glm::ivec3& first, HiddenCells& hidden) const override
+  {
+    EXPECT_EQ(this->Piece.HiddenCells, 1);
+    const std::vector<std::uint8_t> flags(static_cast<std::size_t>(this->Hidden.Count()), 1);
+    hidden.Hide({ this->Hidden.Lo - first, this->Hidden.Hi - first }, flags.data(), 1);
+  }
+  MeshOptions Meshing() const override { return made_alone::Options(); }
+  MeshField::Piece Mesh(Communicator&, bool) override { return this->Cells; }
+};
+
+/// A grid that is dealt to ranks, as an image on each.
+struct Dealt
+{
+  std::vector<double> Whole = scenes::Sampled<double>(scenes::Standard, ::Samples);
+  pieces::Piece<double> Mine;
+  Input In;
+
+  explicit Dealt(const Communicator& communicator, pieces::Deal deal = pieces::Deal::Slabs)
+    : Mine(this->Whole, ::Samples,
+        pieces::Dealt(
+          deal, ::Samples, communicator.Size())[static_cast<std::size_t>(communicator.Rank())])
+  {
+    this->In.Have(this->Mine.Array);
+  }
+};
+
+TEST(DistributedField, OneRankDrawsTheWhole)
+{
+  const auto alone = MakeSelfCommunicator();
+  Dealt data(*alone);
+  DistributedField field;
+  EXPECT_TRUE(field.Empty());
+  field.Update(*alone, data.In);
+  EXPECT_EQ(field.Problem(), "");
+  EXPECT_NE(dynamic_cast<WholeField*>(&field.Drawn()), nullptr);
+  EXPECT_EQ(field.Place().Cells.Hi, ::Samples - 1);
+  EXPECT_EQ(field.Place().Bounds[0], First.x);
+  ThreadPool pool(1);
+  const ValueRange range = FiniteRange(data.In.Values, pool);
+  EXPECT_EQ(field.Range().Low, range.Low);
+  EXPECT_EQ(field.Range().High, range.High);
+  ASSERT_NE(field.Drawn().Source(), nullptr);
+}
+
+TEST(DistributedField, RanksAgreeOnPiecesAndOnWhatIsNew)
+{
+  RunOnSimulatedRanks(4,
+    [](Communicator& communicator)
+    {
+      Dealt data(communicator, pieces::Deal::SomeIdle);
+      DistributedField field;
+      field.Update(communicator, data.In);
+      EXPECT_EQ(field.Problem(), "");
+      const DrawnField* const drawn = &field.Drawn();
+      EXPECT_NE(dynamic_cast<const PiecesField*>(drawn), nullptr);
+      EXPECT_EQ(field.Place().Cells.Hi, ::Samples - 1);
+      EXPECT_EQ(drawn->Zones().size(), 4u);
+      const std::uint64_t version = field.Version();
+      field.Update(communicator, data.In);
+      EXPECT_EQ(field.Version(), version);
+      data.In.Changes += communicator.Rank() == 3 ? 1 : 0;
+      field.Update(communicator, data.In);
+      EXPECT_NE(field.Version(), version);
+      EXPECT_EQ(&field.Drawn(), drawn) << "the next step is in the same field";
+      data.In.Piece = {};
+      ++data.In.Changes;
+      field.Update(communicator, data.In);
+      EXPECT_TRUE(field.Empty());
+      EXPECT_EQ(field.Problem(), "");
+      EXPECT_EQ(field.Drawn().Source(), nullptr);
+    });
+}
+
+/// Ranks whose input is changed by one of them, and what all hear then. Afterwards all is well.
+void ExpectProblem(const std::string& problem, const std::function<void(Input&, int rank)>& spoil)
+{
+  RunOnSimulatedRanks(3,
+    [&](Communicator& communicator)
+    {
+      Dealt data(communicator);
+      DistributedField field;
+      field.Update(communicator, data.In);
+      const std::uint64_t version = field.Version();
+      spoil(data.In, communicator.Rank());
+      ++data.In.Changes;
+      field.Update(communicator, data.In);
+      EXPECT_EQ(field.Problem().substr(0, problem.size()), problem);
+      EXPECT_TRUE(field.Empty());
+      EXPECT_EQ(field.Drawn().Source(), nullptr);
+      EXPECT_NE(field.Version(), version);
+      field.Update(communicator, data.In);
+      EXPECT_FALSE(field.Problem().empty()) << "is said as long as it stays";
+      Dealt again(communicator);
+      again.In.Changes = 9;
+      field.Update(communicator, again.In);
+      EXPECT_EQ(field.Problem(), "");
+      EXPECT_FALSE(field.Empty());
+    });
+}
+
+TEST(DistributedField, AllRanksHearWhatOneCannot)
+{
+  ExpectProblem("Rank 1: It has no array.",
+    [](Input& input, int rank) { input.Problem = rank == 1 ? "It has no array." : ""; });
+  ExpectProblem("Rank 2: It cannot be read.",
+    [](Input& input, int rank) { input.Unreadable = rank == 2 ? "It cannot be read." : ""; });
+  ExpectProblem("Rank 2: The pieces of the data do not belong to one grid: the spacing differs "
+                "from that on rank 0.",
+    [](Input& input, int rank) { input.Piece.Spacing[1] = rank == 2 ? 2.0 : 1.0; });
+  ExpectProblem(
+    "Rank 1: The pieces of the data do not belong to one grid: the number of components",
+    [](Input& input, int rank) { input.Piece.Components = rank == 0 ? 3 : 1; });
+  ExpectProblem("Rank 0: One rank has image data and another one hexahedra.",
+    [](Input& input, int rank)
+    { input.Piece.Has = rank == 1 ? PieceFacts::Kind::Mesh : input.Piece.Has; });
+}
+
+TEST(DistributedField, WhatOneRankHidesIsHiddenOnAll)
+{
+  RunOnSimulatedRanks(3,
+    [](Communicator& communicator)
+    {
+      Dealt data(communicator);
+      if (communicator.Rank() == 2)
+      {
+        data.In.Piece.HiddenCells = 1;
+        data.In.Hidden = { First + glm::ivec3(3, 4, 15), First + glm::ivec3(5, 7, 16) };
+      }
+      DistributedField field;
+      field.Update(communicator, data.In);
+      EXPECT_EQ(field.Problem(), "");
+      BrickSource* const source = field.Drawn().Source();
+      ASSERT_NE(source, nullptr);
+      ASSERT_NE(source->Hidden(), nullptr);
+      EXPECT_EQ(source->Hidden()->CountIn(field.Place().Cells), 6);
+      EXPECT_TRUE(source->Hidden()->All({ { 3, 4, 15 }, { 5, 7, 16 } }));
+    });
+}
+
+TEST(DistributedField, HexahedraOfAllRanksAreAMesh)
+{
+  const mesh_pieces::Whole whole =
+    meshes::Make(meshes::Wild({ 2, 1, 1 }, 3, 5), glm::dvec3(0.0), glm::dvec3(1.0), 3);
+  RunOnSimulatedRanks(2,
+    [&](Communicator& communicator)
+    {
+      const mesh_pieces::Piece piece = mesh_pieces::PieceOf(whole, communicator);
+      Input input;
+      input.Piece.Has = PieceFacts::Kind::Mesh;
+      input.Cells.Mesh = piece.Mesh.Mesh();
+      input.Cells.Values = made_alone::ArrayOf(piece, ValuesOn::Points, 1);
+      DistributedField field;
+      field.Update(communicator, input);
+      EXPECT_EQ(field.Problem(), "");
+      EXPECT_TRUE(field.Drawn().IsMesh());
+      EXPECT_FALSE(field.Empty());
+      // An image takes its place.
+      Dealt data(communicator);
+      data.In.Changes = 7;
+      field.Update(communicator, data.In);
+      EXPECT_FALSE(field.Drawn().IsMesh());
+      EXPECT_EQ(field.Place().Cells.Hi, ::Samples - 1);
+    });
+}
+
+} // namespace
