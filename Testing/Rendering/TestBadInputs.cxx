@@ -97,7 +97,7 @@ void Blocks()
   const vtkIdType ids[8] = { 0, 1, 2, 3, 4, 5, 6, 7 };
   noPoints->InsertNextCell(VTK_HEXAHEDRON, 8, ids);
   noPoints->GetCellData()->SetScalars(Numbers(1, "field"));
-  ExpectSays(noPoints, "has 1 cells, and no points");
+  ExpectSays(noPoints, "has 1 cells, but no points");
 }
 
 } // namespace
