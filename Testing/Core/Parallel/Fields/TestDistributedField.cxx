@@ -1,99 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which kind of field ranks draw, from what each of them has, and what all of them hear when one
 // cannot.
+#include "Parallel/Fields/ArrayInput.h"
 #include "Parallel/Fields/DistributedField.h"
 #include "Parallel/Fields/PiecesField.h"
 #include "Parallel/Fields/WholeField.h"
-
-#include "Parallel/Fields/Pieces.h"
-#include "Parallel/MeshMadeAlone.h"
 
 #include <gtest/gtest.h>
 
 namespace
 {
 
-using namespace banyan;
-
-const glm::ivec3 Samples{ 19, 18, 21 };
-const glm::ivec3 First{ 5, 6, 7 }; ///< of the grid, in extents of pieces
-
-/// What a rank has; tests change it, and Changes with it.
-struct Input final : FieldInput
-{
-  std::uint64_t Changes = 0;
-  PieceFacts Piece;
-  std::string Problem;
-  std::string Unreadable; ///< fails when values are asked for
-  SampleArray Values;     ///< positions begin at 0
-  MeshField::Piece Cells;
-  TemporalEnhancement Motion{ 0.0, 1.0, 0.0 };
-  Box Hidden;
-
-  void Have(const SampleArray& values)
-  {
-    this->Values = values;
-    this->Piece.Has = values.Samples.Empty() ? PieceFacts::Kind::Nothing : PieceFacts::Kind::Image;
-    this->Piece.Components = values.Components;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      this->Piece.Lo[axis] = values.Samples.Lo[axis] + First[axis];
-      this->Piece.Hi[axis] = values.Samples.Hi[axis] + First[axis];
-    }
-    ++this->Changes;
-  }
-
-  InputStamp Stamp() const override
-  {
-    InputStamp stamp;
-    stamp.Add(this->Changes);
-    return stamp;
-  }
-  PieceFacts Facts() const override
-  {
-    if (!this->Problem.empty())
-    {
-      throw Error(this->Problem);
-    }
-    return this->Piece;
-  }
-  std::shared_ptr<const SeriesFile> Series() const override { return nullptr; }
-  TemporalEnhancement Enhancement() const override { return this->Motion; }
-  SampleArray Samples(const glm::ivec3& first) const override
-  {
-    EXPECT_TRUE(this->Piece.IsImage());
-    EXPECT_EQ(first, First);
-    if (!this->Unreadable.empty())
-    {
-      throw Error(this->Unreadable);
-    }
-    return this->Values;
-  }
-  void HideCells(const glm::ivec3& first, HiddenCells& hidden) const override
-  {
-    EXPECT_EQ(this->Piece.HiddenCells, 1);
-    const std::vector<std::uint8_t> flags(static_cast<std::size_t>(this->Hidden.Count()), 1);
-    hidden.Hide({ this->Hidden.Lo - first, this->Hidden.Hi - first }, flags.data(), 1);
-  }
-  MeshOptions Meshing() const override { return made_alone::Options(); }
-  MeshField::Piece Mesh(Communicator&, bool) override { return this->Cells; }
-};
-
-/// A grid that is dealt to ranks, as an image on each.
-struct Dealt
-{
-  std::vector<double> Whole = scenes::Sampled<double>(scenes::Standard, ::Samples);
-  pieces::Piece<double> Mine;
-  Input In;
-
-  explicit Dealt(const Communicator& communicator, pieces::Deal deal = pieces::Deal::Slabs)
-    : Mine(this->Whole, ::Samples,
-        pieces::Dealt(
-          deal, ::Samples, communicator.Size())[static_cast<std::size_t>(communicator.Rank())])
-  {
-    this->In.Have(this->Mine.Array);
-  }
-};
+using namespace array_input;
 
 TEST(DistributedField, OneRankDrawsTheWhole)
 {
@@ -104,7 +22,7 @@ TEST(DistributedField, OneRankDrawsTheWhole)
   field.Update(*alone, data.In);
   EXPECT_EQ(field.Problem(), "");
   EXPECT_NE(dynamic_cast<WholeField*>(&field.Drawn()), nullptr);
-  EXPECT_EQ(field.Place().Cells.Hi, ::Samples - 1);
+  EXPECT_EQ(field.Place().Cells.Hi, GridSamples - 1);
   EXPECT_EQ(field.Place().Bounds[0], First.x);
   ThreadPool pool(1);
   const ValueRange range = FiniteRange(data.In.Values, pool);
@@ -124,7 +42,7 @@ TEST(DistributedField, RanksAgreeOnPiecesAndOnWhatIsNew)
       EXPECT_EQ(field.Problem(), "");
       const DrawnField* const drawn = &field.Drawn();
       EXPECT_NE(dynamic_cast<const PiecesField*>(drawn), nullptr);
-      EXPECT_EQ(field.Place().Cells.Hi, ::Samples - 1);
+      EXPECT_EQ(field.Place().Cells.Hi, GridSamples - 1);
       EXPECT_EQ(drawn->Zones().size(), 4u);
       const std::uint64_t version = field.Version();
       field.Update(communicator, data.In);
@@ -230,7 +148,7 @@ TEST(DistributedField, HexahedraOfAllRanksAreAMesh)
       data.In.Changes = 7;
       field.Update(communicator, data.In);
       EXPECT_FALSE(field.Drawn().IsMesh());
-      EXPECT_EQ(field.Place().Cells.Hi, ::Samples - 1);
+      EXPECT_EQ(field.Place().Cells.Hi, GridSamples - 1);
     });
 }
 
