@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MotionEnhancement.h"
 
-#include "FieldPiece.h"
+#include "Fields/FieldPiece.h"
 
 #include "EnhancedArray.h"
 #include "LeafParts.h"

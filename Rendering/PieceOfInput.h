@@ -2,7 +2,7 @@
 #ifndef banyan_Rendering_PieceOfInput_h
 #define banyan_Rendering_PieceOfInput_h
 
-#include "FieldPiece.h"
+#include "Fields/FieldPiece.h"
 
 class vtkBanyanVolumeMapper;
 class vtkVolumeMapper;

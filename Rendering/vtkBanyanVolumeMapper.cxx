@@ -2,8 +2,8 @@
 #include "vtkBanyanVolumeMapper.h"
 
 #include "CommunicatorOf.h"
+#include "Fields/InputOfPiece.h"
 #include "IgnoredOptions.h"
-#include "InputOfPiece.h"
 #include "MapperState.h"
 #include "PieceOfInput.h"
 #include "SetNumber.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Inputs_FieldPiece_h
-#define banyan_Inputs_FieldPiece_h
+#ifndef banyan_Inputs_Fields_FieldPiece_h
+#define banyan_Inputs_Fields_FieldPiece_h
 
 #include "BanyanInputsModule.h" // for export macro
 #include "Mesh/Octree/CellNodes.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Inputs_PieceOfMesh_h
-#define banyan_Inputs_PieceOfMesh_h
+#ifndef banyan_Inputs_Fields_PieceOfMesh_h
+#define banyan_Inputs_Fields_PieceOfMesh_h
 
-#include "FieldPiece.h"
+#include "Fields/FieldPiece.h"
 
 #include "Parallel/Fields/MeshField.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Inputs_GridOfLeaves_h
-#define banyan_Inputs_GridOfLeaves_h
+#ifndef banyan_Inputs_Fields_GridOfLeaves_h
+#define banyan_Inputs_Fields_GridOfLeaves_h
 
-#include "FieldPiece.h"
+#include "Fields/FieldPiece.h"
 
 #include "vtkSmartPointer.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Inputs_PlainSamples_h
-#define banyan_Inputs_PlainSamples_h
+#ifndef banyan_Inputs_Fields_PlainSamples_h
+#define banyan_Inputs_Fields_PlainSamples_h
 
 #include "Render/Bricks/ArraySamples.h"
 

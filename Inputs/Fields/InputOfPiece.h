@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Inputs_InputOfPiece_h
-#define banyan_Inputs_InputOfPiece_h
+#ifndef banyan_Inputs_Fields_InputOfPiece_h
+#define banyan_Inputs_Fields_InputOfPiece_h
 
 #include "BanyanInputsModule.h" // for export macro
-#include "FieldPiece.h"
+#include "Fields/FieldPiece.h"
 
 #include "Parallel/Fields/FieldInput.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "PieceOfMesh.h"
+#include "Fields/PieceOfMesh.h"
 
 #include "HexMeshOfGrid.h"
 

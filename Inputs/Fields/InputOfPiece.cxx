@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "InputOfPiece.h"
+#include "Fields/InputOfPiece.h"
 
-#include "GridOfLeaves.h"
-#include "HiddenInImage.h"
-#include "PieceOfMesh.h"
-#include "PlainSamples.h"
+#include "Fields/GridOfLeaves.h"
+#include "Fields/HiddenInImage.h"
+#include "Fields/PieceOfMesh.h"
+#include "Fields/PlainSamples.h"
 
 #include "Base/Error.h"
 #include "Series/Decode/SeriesFile.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "FieldPiece.h"
+#include "Fields/FieldPiece.h"
 
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "PlainSamples.h"
+#include "Fields/PlainSamples.h"
 
-#include "HiddenInImage.h"
+#include "Fields/HiddenInImage.h"
 
 #include "Base/Error.h"
 #include "vtkBanyanDeferred.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "GridOfLeaves.h"
+#include "Fields/GridOfLeaves.h"
 
 #include "GridOfAmr.h"
 #include "GridOfHyperTrees.h"

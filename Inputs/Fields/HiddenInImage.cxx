@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "HiddenInImage.h"
+#include "Fields/HiddenInImage.h"
 
 #include "ArrayLength.h"
 #include "Render/Bricks/HiddenCells.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Inputs_HiddenInImage_h
-#define banyan_Inputs_HiddenInImage_h
+#ifndef banyan_Inputs_Fields_HiddenInImage_h
+#define banyan_Inputs_Fields_HiddenInImage_h
 
 #include "Base/Box.h"
 
