@@ -137,7 +137,6 @@ class Sessions:
         name = "damaged"
         source = os.path.join(self.data, "swirl.banyan")
         target = os.path.join(self.folder, name + ".banyan")
-        shutil.rmtree(target + ".d", ignore_errors=True)
         shutil.copytree(source + ".d", target + ".d")
         shutil.copy(source, target)
         # Bricks come first, those of the first step before the others (Documentation/format.md).
@@ -179,7 +178,7 @@ def main():
     parser.add_argument("--data", required=True, help="folder with swirl.banyan")
     arguments = parser.parse_args()
     session.begin(arguments)
-    os.makedirs(arguments.out, exist_ok=True)
+    session.empty_folder(arguments.out)
     picture_scenes.Settings.data = arguments.data
     sessions = Sessions(arguments)
     sessions.run()

@@ -65,7 +65,7 @@ def main():
     parser.add_argument("--out", required=True)
     arguments = parser.parse_args()
     session.begin(arguments)
-    os.makedirs(arguments.out, exist_ok=True)
+    session.empty_folder(arguments.out)
     encode(arguments.out, "swirl", (41, 33, 29), (1.0, 1.0, 1.0), 3)
     encode(arguments.out, "small", (9, 9, 9), (4.0, 3.0, 2.0), 1)
 

@@ -2,6 +2,7 @@
 """What every test script needs first: the server if there is one, and the plugin."""
 import argparse
 import os
+import shutil
 import sys
 
 from paraview import simple
@@ -23,6 +24,12 @@ def real_data(file):
         print("no real data")
         sys.exit(77)
     return data
+
+
+def empty_folder(path):
+    """Makes the folder of a test anew: files of earlier runs, or of other formats, are no part of it."""
+    shutil.rmtree(path, ignore_errors=True)
+    os.makedirs(path)
 
 
 def begin(arguments):

@@ -4,7 +4,6 @@
     test_bad_mesh_filters.py --plugin Banyan.so --out FOLDER
 """
 import os
-import shutil
 
 from paraview import simple
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
@@ -58,8 +57,7 @@ def main():
     parser = session.parser(__doc__)
     parser.add_argument("--out", required=True)
     arguments = parser.parse_args()
-    shutil.rmtree(arguments.out, ignore_errors=True)
-    os.makedirs(arguments.out)
+    session.empty_folder(arguments.out)
     session.begin(arguments)
     for name, (broken, bent, said) in {**bad_meshes.CASES, **EMPTY}.items():
         source = bad_meshes.source(broken, bent)

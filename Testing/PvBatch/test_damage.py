@@ -11,7 +11,6 @@ import glob
 import math
 import os
 import random
-import shutil
 import subprocess
 import sys
 import traceback
@@ -366,8 +365,7 @@ def main():
     parser.add_argument("--alone", action="store_true", help="one process, which may start others")
     arguments = parser.parse_args()
     simple.LoadPlugin(arguments.plugin, ns=globals())
-    shutil.rmtree(arguments.out, ignore_errors=True)
-    os.makedirs(arguments.out)
+    session.empty_folder(arguments.out)
     vtkOutputWindow.SetInstance(WINDOW)
 
     def path(name):

@@ -132,7 +132,6 @@ def half_copied(folder):
     """A series without its folder, under another name, and through links."""
     data, work = os.path.join(folder, "data"), os.path.join(folder, "work")
     for place in (data, work):
-        shutil.rmtree(place, ignore_errors=True)
         os.makedirs(place)
     path = os.path.join(data, "whole.banyan")
     simple.SaveData(path, proxy=simple.Wavelet(WholeExtent=[0, 4] * 3))
@@ -212,7 +211,7 @@ def main():
     parser.add_argument("--fail", action="store_true", help="save what cannot be saved, and stop")
     arguments = parser.parse_args()
     session.begin(arguments)
-    os.makedirs(arguments.out, exist_ok=True)
+    session.empty_folder(arguments.out)
     if arguments.fail:
         # Not caught: the process has to end with a status other than 0.
         cell_data_only = simple.PointDatatoCellData(Input=simple.Wavelet())

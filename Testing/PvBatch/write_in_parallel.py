@@ -4,7 +4,6 @@
     write_in_parallel.py --plugin Banyan.so --out FOLDER
 """
 import os
-import shutil
 
 from paraview import simple
 
@@ -46,8 +45,7 @@ def main():
     parser.add_argument("--out", required=True)
     arguments = parser.parse_args()
     session.begin(arguments)
-    shutil.rmtree(arguments.out, ignore_errors=True)
-    os.makedirs(arguments.out)
+    session.empty_folder(arguments.out)
     for pieces in (False, True):
         source = moving_field.source(SAMPLES, STEPS, pieces)
         kind = "pieces" if pieces else "whole"
