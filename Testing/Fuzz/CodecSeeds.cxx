@@ -24,7 +24,7 @@ std::vector<std::vector<std::uint8_t>> BlockSeeds()
 {
   std::vector<std::vector<std::uint8_t>> seeds;
   std::mt19937 random(1);
-  for (unsigned edge : { 0u, 1u, 2u, 7u }) // 8, 16, 32 and 64
+  for (const unsigned edge : { 0u, 3u }) // 16 and 32
   {
     for (const unsigned tables : { 1u, 25u }) // the second with a lattice of 16 bits
     {
@@ -34,7 +34,7 @@ std::vector<std::vector<std::uint8_t>> BlockSeeds()
       Put(input, std::int32_t{ -4000 });
       Put(input, std::int32_t{ 3999 });
       Put(input, static_cast<std::uint32_t>(random()));
-      const std::uint16_t bytes = edge == 7 ? 60 : 40;
+      const std::uint16_t bytes = edge == 3 ? 60 : 40;
       for (unsigned block = 0; block < 8; ++block)
       {
         Put(input, static_cast<std::uint8_t>(block == 6 ? 2 : block == 7 ? 4 : block << 3));

@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 {
   banyan::fuzz::Input in(data, size);
   const auto type = static_cast<banyan::ScalarType>(in.Take<std::uint8_t>() % 10);
-  const std::uint32_t edge = 8u << in.Take<std::uint8_t>() % 3;
+  const std::uint32_t edge = 16u << in.Take<std::uint8_t>() % 2;
   const std::uint32_t samples = edge * edge * edge;
   const banyan::Bytes payload = in.Rest();
   banyan::Dispatch(type,

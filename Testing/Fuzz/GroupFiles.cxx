@@ -22,7 +22,7 @@ namespace
 
 constexpr int Interval = 3;
 constexpr int StepCount = 5;
-constexpr int X = 13, Y = 9, Z = 10;
+constexpr int X = 19, Y = 9, Z = 10; // two bricks
 
 /// Waves, noise, a flat part, a part that rests, and values that are kept beside the lattice.
 double ValueAt(int x, int y, int z, int step)
@@ -33,7 +33,7 @@ double ValueAt(int x, int y, int z, int step)
   {
     return 1e6;
   }
-  return x >= 8 ? (y < 5 ? 0.5 : std::sin(0.2 * z)) : wave;
+  return x >= 12 ? (y < 5 ? 0.5 : std::sin(0.2 * z)) : wave;
 }
 
 template <class T>

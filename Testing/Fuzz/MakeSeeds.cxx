@@ -150,16 +150,17 @@ int main(int argc, char** argv)
       Write((folder / "Index" / name).string(), BodyOf(banyan::IndexToText(series.Index)));
     }
   }
-  for (int share = 1; share <= 512; share *= 8)
+  constexpr std::uint32_t samples = 16 * 16 * 16;
+  for (std::uint32_t share = 1; share <= samples; share *= 16)
   {
     banyan::ExceptionList<float> list;
-    for (std::uint32_t i = 0; i < 512; i += 512 / static_cast<unsigned>(share))
+    for (std::uint32_t i = 0; i < samples; i += samples / share)
     {
       list.Positions.push_back(i);
       list.Values.push_back(static_cast<float>(i * i));
     }
     Bytes input{ static_cast<std::uint8_t>(banyan::ScalarType::Float32), 0 };
-    const Bytes payload = banyan::PackExceptions(list, 512, 3);
+    const Bytes payload = banyan::PackExceptions(list, samples, 3);
     input.insert(input.end(), payload.begin(), payload.end());
     Write((folder / "Exceptions" / std::to_string(share)).string(), input);
   }
