@@ -20,7 +20,7 @@ namespace
 const std::string Word = "BanyanSeries ";
 const std::string DevelopmentWord = "banyan-series "; ///< before there was a version 1
 constexpr int Version = 1;
-constexpr const char* KnownFeatures[] = { "mesh", "cell arrays", "hidden" };
+constexpr const char* Features[] = { "mesh", "cell arrays", "hidden" };
 
 /// Splits off the first line, having checked that it fits the rest.
 std::string CheckedBody(const std::string& text)
@@ -70,8 +70,7 @@ void CheckFeatures(const Json& json)
   for (const Json& feature : json_members::ListMember(json, "features"))
   {
     const std::string name = feature.is_string() ? feature.get<std::string>() : feature.dump();
-    if (std::find(std::begin(KnownFeatures), std::end(KnownFeatures), name) ==
-        std::end(KnownFeatures))
+    if (std::find(std::begin(Features), std::end(Features), name) == std::end(Features))
     {
       throw Error("This series needs a newer Banyan, which knows '" + name + "'");
     }
@@ -79,6 +78,11 @@ void CheckFeatures(const Json& json)
 }
 
 } // namespace
+
+std::vector<std::string> KnownFeatures()
+{
+  return { std::begin(Features), std::end(Features) };
+}
 
 std::vector<std::string> FeaturesOf(const SeriesIndex& index)
 {
@@ -91,11 +95,11 @@ std::vector<std::string> FeaturesOf(const SeriesIndex& index)
   }
   const bool has[] = { index.Mesh.has_value(), cellArrays, hidden };
   std::vector<std::string> features;
-  for (std::size_t i = 0; i < std::size(KnownFeatures); ++i)
+  for (std::size_t i = 0; i < std::size(Features); ++i)
   {
     if (has[i])
     {
-      features.push_back(KnownFeatures[i]);
+      features.push_back(Features[i]);
     }
   }
   return features;

@@ -26,6 +26,9 @@ std::string IndexToText(const SeriesIndex& index);
 /// cannot be.
 SeriesIndex IndexFromText(const std::string& text, const std::string& path);
 
+/// Lists all features of the format, in the order of Documentation/format.md.
+std::vector<std::string> KnownFeatures();
+
 /// Lists the features that a reader must know to read the series, by the names of
 /// Documentation/format.md, in its order.
 std::vector<std::string> FeaturesOf(const SeriesIndex& index);

@@ -140,9 +140,9 @@ std::vector<GoldenCase> GoldenCases()
   {
     cases.push_back(flat);
   }
-  for (const GoldenCase& group : GoldenGroupCases())
+  for (const auto& more : { GoldenGroupCases(), GoldenFeatureCases() })
   {
-    cases.push_back(group);
+    cases.insert(cases.end(), more.begin(), more.end());
   }
   return cases;
 }

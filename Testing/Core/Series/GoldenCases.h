@@ -19,7 +19,8 @@ enum class GoldenPattern
   Bumps,    ///< smooth: a sum of three parabolas that repeat, and move with the steps
   Noise,    ///< independent, even over 2^Bits numbers
   Picks,    ///< independent, one of three numbers far apart: prediction from neighbours does harm
-  Fates     ///< every 8 samples along x are best predicted in a way of their own
+  Fates,    ///< every 8 samples along x are best predicted in a way of their own
+  Hidden    ///< flags: a wall that moves along x with the steps, and single ones
 };
 
 /// One array of a golden series. A sample is number = Low + Factor * pattern, all in integers; of a
@@ -40,9 +41,11 @@ struct GoldenArray
   int NonFiniteOneIn = 0; ///< of real types: one sample in so many is NaN or infinite; 0: none
   int SpecialOneIn = 0;   ///< one sample in so many has the value Special; 0: none
   double Special = 0;
-  std::int64_t Rise = 0; ///< added per step to the number
-  unsigned Seed = 1;     ///< arrays with equal numbers and seeds share their payloads
-  bool Promised = true;  ///< whether the encoder is told the range beforehand
+  std::int64_t Rise = 0;               ///< added per step to the number
+  unsigned Seed = 1;                   ///< arrays with equal numbers and seeds share their payloads
+  bool Promised = true;                ///< whether the encoder is told the range beforehand
+  ArrayFlags Flags = ArrayFlags::None; ///< of pattern Hidden
+  std::string CellArray; ///< on a mesh: its name among the arrays of cells, if it is one
 };
 
 /// One golden series: everything that the encoder is given.
@@ -53,6 +56,7 @@ struct GoldenCase
   EncodeOptions Options;
   int Steps = 1;
   std::vector<GoldenArray> Arrays;
+  bool OnMesh = false; ///< values are those of the points or cells of GoldenMesh
 };
 
 /// The list; it does not depend on the version of the format.
@@ -61,7 +65,11 @@ std::vector<GoldenCase> GoldenCases();
 /// More of them: groups of steps, all ways of prediction, quantizers.
 std::vector<GoldenCase> GoldenGroupCases();
 
-/// Values of one array at a step, `[z][y][x][component]`, as bytes.
+/// One for each feature of the format.
+std::vector<GoldenCase> GoldenFeatureCases();
+
+/// Values of one array at a step, `[z][y][x][component]`, as bytes; on a mesh `[point][component]`
+/// or `[cell][component]`.
 Bytes GoldenValues(const GoldenCase& series, const GoldenArray& array, int step);
 
 /// As the encoder wants it; the range of a promised array is that of its values.

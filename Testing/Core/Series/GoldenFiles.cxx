@@ -2,7 +2,12 @@
 #include "Series/GoldenFiles.h"
 
 #include "Base/Hash.h"
+#include "Mesh/Series/AtlasValues.h"
+#include "Mesh/Series/MeshFile.h"
+#include "Series/Encode/SegmentFolder.h"
 #include "Series/Format/AtomicFile.h"
+#include "Series/Format/IndexText.h"
+#include "Series/GoldenMesh.h"
 #include "Series/SeriesTesting.h"
 
 #include <cstdio>
@@ -124,7 +129,11 @@ std::string ArrayText(const ArrayIndex& array)
   {
     text += " " + TextOf(magnitude);
   }
-  return text;
+  if (array.Flags != ArrayFlags::None)
+  {
+    text += array.Flags == ArrayFlags::OfPoints ? ", flags of points" : ", flags of cells";
+  }
+  return text + (array.CellArray.empty() ? "" : ", of cells '" + array.CellArray + "'");
 }
 
 /// What the quantizer of a component was told, as far as it was told anything.
@@ -232,12 +241,39 @@ void ReadArray(const SeriesFile& file, int a, const std::string& series, GoldenP
   }
 }
 
+std::string MeshText(const StoredMesh& mesh)
+{
+  Bytes numbers;
+  for (const std::int64_t id : mesh.Connectivity)
+  {
+    Append(id, numbers);
+  }
+  for (const auto* samples : { &mesh.SampleOfPoint, &mesh.SampleOfCell })
+  {
+    for (const std::uint32_t sample : *samples)
+    {
+      Append(sample, numbers);
+    }
+  }
+  return std::to_string(mesh.PointCount()) + " points " + Hex(mesh.Points) + ", " +
+         std::to_string(mesh.CellCount()) + " cells " + Hex(mesh.CellTypes) +
+         ", corners and samples " + Hex(numbers);
+}
+
 void ReadSeries(const std::string& path, const std::string& name, GoldenParts& parts)
 {
   const auto file = SeriesFile::Open(path);
   parts[name + " grid"] = GridText(file->Index());
   parts[name + " steps"] = StepsText(file->Index());
   parts[name + " encoding"] = EncodingText(file->Index());
+  for (const std::string& feature : FeaturesOf(file->Index()))
+  {
+    parts[name + " feature " + feature] = "named";
+  }
+  if (file->Index().Mesh)
+  {
+    parts[name + " mesh"] = MeshText(*ReadMesh(*file));
+  }
   for (int a = 0; a < static_cast<int>(file->Index().Arrays.size()); ++a)
   {
     ReadArray(*file, a, name, parts);
@@ -331,16 +367,56 @@ std::vector<std::string> Differences(const GoldenParts& expected, const GoldenPa
   return sentences;
 }
 
+namespace
+{
+
+/// Values at points or cells as the image that is encoded.
+Bytes ImageOf(const GoldenCase& series, const GoldenArray& array, const Bytes& values,
+  const std::shared_ptr<const StoredMesh>& mesh, ThreadPool& pool)
+{
+  const auto components = static_cast<int>(array.Components.size());
+  Bytes image(
+    static_cast<std::size_t>(series.Domain.Extent.Count() * components) * SizeOf(array.Type));
+  AtlasValues(mesh, array.CellArray.empty() ? MeshValues::OfPoints : MeshValues::OfCells)
+    .ToImage(array.Type, values.data(), components, {}, image.data(), pool);
+  return image;
+}
+
+/// Writes the mesh of a series.
+std::shared_ptr<MeshPlan> PlanOf(
+  const GoldenCase& series, const StoredMesh& mesh, const std::string& path)
+{
+  SegmentFolder folder(path);
+  std::shared_ptr<MeshPlan> plan = WriteMesh(mesh, folder);
+  for (const GoldenArray& array : series.Arrays)
+  {
+    if (!array.CellArray.empty())
+    {
+      plan->CellArrays[array.Name] = array.CellArray;
+    }
+  }
+  return plan;
+}
+
+} // namespace
+
 SeriesIndex WriteGoldenSeries(const std::string& folder, const GoldenCase& series)
 {
   const std::string path = folder + "/" + series.Name + ".banyan";
   ThreadPool pool(2);
+  EncodeOptions options = series.Options;
+  std::shared_ptr<const StoredMesh> mesh;
+  if (series.OnMesh)
+  {
+    mesh = GoldenMesh().Mesh;
+    options.Mesh = PlanOf(series, *mesh, path);
+  }
   std::vector<ArrayDescription> descriptions;
   for (const GoldenArray& array : series.Arrays)
   {
     descriptions.push_back(GoldenDescription(series, array));
   }
-  SeriesEncoder encoder(path, series.Domain, descriptions, series.Options, pool);
+  SeriesEncoder encoder(path, series.Domain, descriptions, options, pool);
   encoder.SetActiveScalars(series.Arrays.back().Name);
   for (int step = 0; step < series.Steps; ++step)
   {
@@ -348,7 +424,8 @@ SeriesIndex WriteGoldenSeries(const std::string& folder, const GoldenCase& serie
     std::vector<ArrayValues> borrowed;
     for (const GoldenArray& array : series.Arrays)
     {
-      values.push_back(GoldenValues(series, array, step));
+      const Bytes own = GoldenValues(series, array, step);
+      values.push_back(mesh == nullptr ? own : ImageOf(series, array, own, mesh, pool));
       borrowed.push_back({ values.back().data() });
     }
     encoder.AddStep(GoldenTime(step), borrowed);

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Series/GoldenCases.h"
+#include "Series/GoldenMesh.h"
 
 #include "Series/Quantize/FillValues.h"
 #include "Series/SeriesTesting.h"
+
+#include <glm/vector_relational.hpp>
 
 namespace banyan::testing
 {
@@ -95,6 +98,12 @@ std::int64_t PatternAt(const GoldenArray& array, const Place& p)
       return static_cast<std::int64_t>(random % 3 * (random % 3));
     case Pattern::Fates:
       return FateAt(array, p);
+    case Pattern::Hidden:
+      return p.X < 2 + p.Step || random % 9 == 0
+               ? (array.Flags == ArrayFlags::OfPoints ? HiddenPointBits
+                   : random % 2 == 0                  ? 32
+                                                      : 8)
+               : 0;
   }
   return 0;
 }
@@ -143,22 +152,40 @@ T ValueAt(const GoldenArray& array, Place p)
   }
 }
 
-template <class T>
-std::vector<T> ValuesOf(const GoldenCase& series, const GoldenArray& array, int step)
+/// Where an array has values, in their order.
+std::vector<glm::ivec3> PlacesOf(const GoldenCase& series, const GoldenArray& array)
 {
+  if (series.OnMesh)
+  {
+    const GoldenMesh mesh;
+    return array.CellArray.empty() ? mesh.Points : mesh.Cells;
+  }
   const glm::ivec3 n = series.Domain.Samples();
-  std::vector<T> values;
+  std::vector<glm::ivec3> places;
   for (int z = 0; z < n.z; ++z)
   {
     for (int y = 0; y < n.y; ++y)
     {
       for (int x = 0; x < n.x; ++x)
       {
-        for (int c = 0; c < static_cast<int>(array.Components.size()); ++c)
-        {
-          values.push_back(ValueAt<T>(array, { x, y, z, step, c }));
-        }
+        places.push_back({ x, y, z });
       }
+    }
+  }
+  return places;
+}
+
+template <class T>
+std::vector<T> ValuesOf(const GoldenCase& series, const GoldenArray& array, int step)
+{
+  const glm::ivec3 last = series.Domain.Samples() - 1;
+  std::vector<T> values;
+  for (const glm::ivec3& p : PlacesOf(series, array))
+  {
+    const bool noCell = array.Flags == ArrayFlags::OfCells && glm::any(glm::equal(p, last));
+    for (int c = 0; c < static_cast<int>(array.Components.size()); ++c)
+    {
+      values.push_back(noCell ? T{} : ValueAt<T>(array, { p.x, p.y, p.z, step, c }));
     }
   }
   return values;
@@ -204,6 +231,10 @@ void CountHistograms(
 
 ArrayDescription GoldenDescription(const GoldenCase& series, const GoldenArray& array)
 {
+  if (array.Flags != ArrayFlags::None)
+  {
+    return DescriptionOfFlags(array.Flags);
+  }
   ArrayDescription description;
   description.Name = array.Name;
   description.Type = array.Type;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// What the golden files cover, told by a walk over their bytes that follows
-/// Documentation/format.md and shares no code with the readers (but for zstd, and the number of
-/// blocks and bricks).
+/// Documentation/format.md and shares no code with the readers (but for zstd, and the numbers of
+/// modes, blocks and bricks).
 
+#include "Codec/BlockModes.h"
 #include "Series/Format/AtomicFile.h"
+#include "Series/Format/IndexText.h"
 #include "Series/Format/Zstd.h"
 #include "Series/ScalarStepTable.h"
 #include "Series/SeriesTesting.h"
@@ -127,7 +129,7 @@ void WalkBlock(const BlockEntry& block, const Segment& segment, const Places& pl
     found[std::string("residuals") + exceptions] += 1;
     const int reference = block.Mode / 3;
     found["refers before"] +=
-      places.B != 0 && places.A == 0 && reference > 0 && reference < 4 ? 1 : 0;
+      places.B != 0 && places.A == 0 && reference != 0 && reference != 4 ? 1 : 0;
   }
   if (block.Payload.Bytes > 0)
   {
@@ -304,7 +306,7 @@ TEST(GoldenCoverage, EveryCodingOccurs)
     "brick nothing finite", "brick uniform", "brick with values", "brick at rest",
     "brick with content", "shared", "context with another one's table", "group of 1", "group of 2",
     "group of 3", "group of 4", "group of 8" };
-  for (int mode = 0; mode < 15; ++mode)
+  for (int mode = 0; mode < block::ModeCount; ++mode)
   {
     if (mode != 2) // neither a reference nor interpolation: no encoder takes it
     {
@@ -321,7 +323,7 @@ TEST(GoldenCoverage, EveryKindOfSeriesOccurs)
 {
   std::set<ScalarType> types;
   std::set<int> brickCells, intervals;
-  std::set<std::string> kinds;
+  std::set<std::string> kinds, features;
   std::uintmax_t bytes = 0;
   for (const auto& entry : fs::recursive_directory_iterator(Folder))
   {
@@ -337,8 +339,13 @@ TEST(GoldenCoverage, EveryKindOfSeriesOccurs)
     kinds.insert(index.ErrorBound == 0                    ? "exact"
                  : index.Mode == ErrorBoundMode::Absolute ? "absolute"
                                                           : "relative");
+    for (const std::string& feature : FeaturesOf(index))
+    {
+      features.insert(feature);
+    }
     for (const ArrayIndex& array : index.Arrays)
     {
+      kinds.insert("flags " + std::to_string(static_cast<int>(array.Flags)));
       types.insert(array.Type);
       kinds.insert(array.Components.size() > 1 ? "vector" : "scalar");
       for (const ComponentIndex& component : array.Components)
@@ -355,10 +362,14 @@ TEST(GoldenCoverage, EveryKindOfSeriesOccurs)
   EXPECT_EQ(types.size(), 10u);
   EXPECT_EQ(brickCells, (std::set<int>{ 16, 32 }));
   EXPECT_EQ(intervals, (std::set<int>{ 1, 2, 3, 4, 8 }));
-  EXPECT_EQ(kinds, (std::set<std::string>{ "exact", "absolute", "relative", "vector", "scalar",
-                     "transform 0", "transform 1", "transform 2", "range 0", "range 1", "range 2",
-                     "fill values", "clamped", "invisible", "none" }));
-  EXPECT_LT(bytes, 200u * 1024) << "golden files stay small";
+  EXPECT_EQ(
+    kinds, (std::set<std::string>{ "exact", "absolute", "relative", "vector", "scalar",
+             "transform 0", "transform 1", "transform 2", "range 0", "range 1", "range 2",
+             "fill values", "clamped", "invisible", "none", "flags 0", "flags 1", "flags 2" }));
+  const std::vector<std::string> known = KnownFeatures();
+  EXPECT_EQ(features, std::set<std::string>(known.begin(), known.end()))
+    << "each feature of the format has a golden series";
+  EXPECT_LT(bytes, 256u * 1024) << "golden files stay small";
 }
 
 } // namespace
