@@ -19,8 +19,8 @@ void SetTuples(vtkDataArray* array, vtkIdType tuples)
     return;
   }
   array->SetVoidArray(
-    LargePages::Take(bytes), values, 0, vtkAbstractArray::VTK_DATA_ARRAY_USER_DEFINED);
-  array->SetArrayFreeFunction(LargePages::Give);
+    LargePages::Allocate(bytes), values, 0, vtkAbstractArray::VTK_DATA_ARRAY_USER_DEFINED);
+  array->SetArrayFreeFunction(LargePages::Free);
 }
 
 } // namespace banyan

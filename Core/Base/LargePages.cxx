@@ -6,7 +6,7 @@
 namespace banyan
 {
 
-void* LargePages::Take(std::size_t bytes)
+void* LargePages::Allocate(std::size_t bytes)
 {
   void* const memory = ::operator new (bytes, std::align_val_t{ PageBytes });
 #ifdef MADV_HUGEPAGE
@@ -16,7 +16,7 @@ void* LargePages::Take(std::size_t bytes)
   return memory;
 }
 
-void LargePages::Give(void* memory) noexcept
+void LargePages::Free(void* memory) noexcept
 {
   ::operator delete (memory, std::align_val_t{ PageBytes });
 }

@@ -19,8 +19,8 @@ public:
   static constexpr std::size_t PageBytes = std::size_t{ 1 } << 21;
 
   /// @param bytes at least a large page's. Throws std::bad_alloc.
-  static void* Take(std::size_t bytes);
-  static void Give(void* memory) noexcept;
+  static void* Allocate(std::size_t bytes);
+  static void Free(void* memory) noexcept;
 };
 
 /// An allocator of LargePages; smaller pieces than such a page are memory as any other.
@@ -39,12 +39,12 @@ struct InLargePages
   {
     const std::size_t bytes = count * sizeof(T);
     return static_cast<T*>(
-      bytes < LargePages::PageBytes ? ::operator new(bytes) : LargePages::Take(bytes));
+      bytes < LargePages::PageBytes ? ::operator new(bytes) : LargePages::Allocate(bytes));
   }
   void deallocate(T* memory, std::size_t count) noexcept
   {
     count * sizeof(T) < LargePages::PageBytes ? ::operator delete(memory)
-                                              : LargePages::Give(memory);
+                                              : LargePages::Free(memory);
   }
 
   template <class U>
@@ -59,15 +59,15 @@ struct InLargePages
   }
 };
 
-/// Gives back what NewInLargePages took.
+/// Frees what NewInLargePages allocated.
 template <class T>
-struct GiveArray
+struct FreeArray
 {
   std::size_t Count = 0;
   void operator()(T* memory) const noexcept { InLargePages<T>().deallocate(memory, this->Count); }
 };
 template <class T>
-using ArrayInLargePages = std::unique_ptr<T[], GiveArray<T>>;
+using ArrayInLargePages = std::unique_ptr<T[], FreeArray<T>>;
 
 /// An array of numbers, which hold anything at first. Throws std::bad_alloc.
 template <class T>

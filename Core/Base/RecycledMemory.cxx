@@ -36,7 +36,7 @@ public:
   }
 
   /// Keeps the memory; pieces that lie longest make room. @return false if it is not kept
-  bool Give(void* memory, std::size_t bytes) noexcept
+  bool Keep(void* memory, std::size_t bytes) noexcept
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
     if (bytes > LargeMemory::MostKeptBytes)
@@ -110,7 +110,7 @@ std::size_t RoundedUp(std::size_t bytes)
 
 } // namespace
 
-void* LargeMemory::Take(std::size_t bytes)
+void* LargeMemory::Allocate(std::size_t bytes)
 {
   if (bytes < Smallest)
   {
@@ -125,9 +125,9 @@ void* LargeMemory::Take(std::size_t bytes)
   return memory ? memory : ::operator new(held);
 }
 
-void LargeMemory::Give(void* memory, std::size_t bytes) noexcept
+void LargeMemory::Free(void* memory, std::size_t bytes) noexcept
 {
-  if (bytes < Smallest || !TheShelf().Give(memory, RoundedUp(bytes)))
+  if (bytes < Smallest || !TheShelf().Keep(memory, RoundedUp(bytes)))
   {
     ::operator delete(memory);
   }
@@ -138,7 +138,7 @@ std::size_t LargeMemory::KeptBytes()
   return TheShelf().Bytes();
 }
 
-void LargeMemory::LetGo() noexcept
+void LargeMemory::Trim() noexcept
 {
   TheShelf().Clear();
 }

@@ -19,13 +19,13 @@ public:
   static constexpr std::size_t MostKeptBytes = std::size_t{ 128 } << 20;
 
   /// Throws std::bad_alloc.
-  static void* Take(std::size_t bytes);
-  /// @param bytes as they were taken
-  static void Give(void* memory, std::size_t bytes) noexcept;
+  static void* Allocate(std::size_t bytes);
+  /// @param bytes as they were allocated
+  static void Free(void* memory, std::size_t bytes) noexcept;
 
-  /// Returns the bytes that are kept at present. LetGo gives all of them back to the system.
+  /// Returns the bytes that are kept at present. Trim gives all of them back to the system.
   static std::size_t KeptBytes();
-  static void LetGo() noexcept;
+  static void Trim() noexcept;
 };
 
 /// An allocator of LargeMemory.
@@ -51,12 +51,12 @@ struct RecycledMemory
   T* allocate(std::size_t count)
   {
     const std::size_t bytes = count * sizeof(T);
-    return static_cast<T*>(bytes < Smallest ? ::operator new(bytes) : LargeMemory::Take(bytes));
+    return static_cast<T*>(bytes < Smallest ? ::operator new(bytes) : LargeMemory::Allocate(bytes));
   }
   void deallocate(T* memory, std::size_t count) noexcept
   {
     const std::size_t bytes = count * sizeof(T);
-    bytes < Smallest ? ::operator delete(memory) : LargeMemory::Give(memory, bytes);
+    bytes < Smallest ? ::operator delete(memory) : LargeMemory::Free(memory, bytes);
   }
 
   /// Elements that `resize` adds are not set: whoever wants zeros says so.

@@ -113,7 +113,7 @@ TEST(PackedBrickCache, SeveralAreFoundInOneGoWithWhatCanBeSeenOfThem)
 
 TEST(PackedBrickCache, BricksThatGoLeaveTheirMemoryToTheNext)
 {
-  LargeMemory::LetGo();
+  LargeMemory::Trim();
   const std::vector<float> values(std::size_t{ 33 } * 33 * 33, 1.0f);
   const BrickView view{ values.data(), ScalarType::Float32, { 1, 33, 33 * 33 }, {} };
   const Box cells{ glm::ivec3(0), glm::ivec3(32) };
@@ -129,7 +129,7 @@ TEST(PackedBrickCache, BricksThatGoLeaveTheirMemoryToTheNext)
   EXPECT_EQ(packed->Values(), first);
   EXPECT_EQ(LargeMemory::KeptBytes(), beside);
   packed.reset();
-  LargeMemory::LetGo();
+  LargeMemory::Trim();
 }
 
 TEST(PackedBrickCache, SourcesThatKeepBricksShareTheBudget)
