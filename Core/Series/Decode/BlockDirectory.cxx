@@ -2,6 +2,7 @@
 #include "Series/Decode/BlockDirectory.h"
 
 #include "Base/Error.h"
+#include "Codec/BlockModes.h"
 #include "Codec/DecodeStages.h"
 #include "Codec/GroupOrder.h"
 
@@ -50,6 +51,24 @@ const group::StepTable& BlockDirectory::Load(int step)
     this->Loaded[static_cast<std::size_t>(step)].store(table.get(), std::memory_order_release);
   }
   return *table;
+}
+
+bool BlockDirectory::Refers(const group::BlockEntry& entry)
+{
+  return entry.Same || (!entry.Uniform && block::ModeOf(entry.Mode).From != block::Reference::None);
+}
+
+bool BlockDirectory::BoxRefers(int step, int plane, const glm::ivec3& block)
+{
+  for (int number = 0; number < 8; ++number)
+  {
+    const glm::ivec3 at = BlockBehind(block, number);
+    if (this->Has(plane, at) && Refers(this->Entry(step, plane, at)))
+    {
+      return true;
+    }
+  }
+  return false;
 }
 
 /// Everything that is decoded lies between the head's extremes; so must what is stored as it is.

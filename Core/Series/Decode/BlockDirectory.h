@@ -34,6 +34,35 @@ public:
     return table ? *table : this->LoadLocked(step);
   }
 
+  /// The number of a block in its plane.
+  std::size_t IndexOf(int plane, const glm::ivec3& block) const
+  {
+    const glm::ivec3& blocks = this->FieldShape.Blocks[static_cast<std::size_t>(plane)];
+    return (static_cast<std::size_t>(block.z) * static_cast<std::size_t>(blocks.y) +
+             static_cast<std::size_t>(block.y)) *
+             static_cast<std::size_t>(blocks.x) +
+           static_cast<std::size_t>(block.x);
+  }
+  const group::BlockEntry& Entry(int step, int plane, const glm::ivec3& block)
+  {
+    return this->Step(step).Planes[static_cast<std::size_t>(plane)][this->IndexOf(plane, block)];
+  }
+  /// The block itself (0), or one of the seven behind it whose first layers its box has.
+  /// @param number a bit for each axis along which it is behind
+  static glm::ivec3 BlockBehind(const glm::ivec3& block, int number)
+  {
+    return block + glm::ivec3{ number & 1, number >> 1 & 1, number >> 2 & 1 };
+  }
+  bool Has(int plane, const glm::ivec3& block) const
+  {
+    const glm::ivec3& blocks = this->FieldShape.Blocks[static_cast<std::size_t>(plane)];
+    return block.x < blocks.x && block.y < blocks.y && block.z < blocks.z;
+  }
+  /// Whether a block is predicted from other steps.
+  static bool Refers(const group::BlockEntry& entry);
+  /// Whether any block of a box is.
+  bool BoxRefers(int step, int plane, const glm::ivec3& block);
+
   std::uint64_t MemoryBytes() const { return this->Memory; }
   /// Bytes that were read since the last call.
   std::uint64_t TakeBytesRead() { return this->BytesRead.exchange(0); }

@@ -14,26 +14,6 @@
 
 namespace banyan
 {
-namespace
-{
-
-bool Inside(const glm::ivec3& position, const glm::ivec3& size)
-{
-  return position.x < size.x && position.y < size.y && position.z < size.z;
-}
-
-glm::ivec3 NeighbourOf(const glm::ivec3& block, int bits)
-{
-  return block + glm::ivec3{ bits & 1, bits >> 1 & 1, bits >> 2 & 1 };
-}
-
-/// Whether a block is predicted from other steps.
-bool Refers(const group::BlockEntry& entry)
-{
-  return entry.Same || (!entry.Uniform && block::ModeOf(entry.Mode).From != block::Reference::None);
-}
-
-} // namespace
 
 GroupField::GroupField(GroupReader& segment, std::uint64_t series, std::uint32_t component,
   const glm::ivec3& samples, int brickCells, int levels,
@@ -54,34 +34,6 @@ GroupField::GroupField(GroupReader& segment, std::uint64_t series, std::uint32_t
 std::uint64_t GroupField::MemoryBytes() const
 {
   return this->Directory.MemoryBytes() + this->Tables[0].Bytes() + this->Tables[1].Bytes();
-}
-
-std::size_t GroupField::IndexOf(int plane, const glm::ivec3& block) const
-{
-  const glm::ivec3 blocks = this->BlocksOf(plane);
-  return (static_cast<std::size_t>(block.z) * static_cast<std::size_t>(blocks.y) +
-           static_cast<std::size_t>(block.y)) *
-           static_cast<std::size_t>(blocks.x) +
-         static_cast<std::size_t>(block.x);
-}
-
-bool GroupField::NeedsReferences(int step, int plane, const glm::ivec3& block)
-{
-  const auto& entries = this->Step(step).Planes[static_cast<std::size_t>(plane)];
-  const glm::ivec3 blocks = this->BlocksOf(plane);
-  for (int bits = 0; bits < 8; ++bits)
-  {
-    const glm::ivec3 at = NeighbourOf(block, bits);
-    if (Inside(at, blocks))
-    {
-      const group::BlockEntry& entry = entries[this->IndexOf(plane, at)];
-      if (Refers(entry))
-      {
-        return true;
-      }
-    }
-  }
-  return false;
 }
 
 StepReferences GroupField::ReferencesOf(int step) const
@@ -194,26 +146,25 @@ GroupField::Kind GroupField::CodeOfBlocks(
   int step, int plane, const glm::ivec3& block, const PayloadPages::Hold& hold, BlockCode* blocks)
 {
   const auto& entries = this->Step(step).Planes[static_cast<std::size_t>(plane)];
-  const glm::ivec3 count = this->BlocksOf(plane);
   const glm::ivec3 samples = this->Planes()[static_cast<std::size_t>(plane)];
   Kind kind;
   for (int bits = 0; bits < 8; ++bits)
   {
-    const glm::ivec3 at = NeighbourOf(block, bits);
+    const glm::ivec3 at = BlockDirectory::BlockBehind(block, bits);
     BlockCode& to = blocks[bits];
-    to.Exists = Inside(at, count);
+    to.Exists = this->Directory.Has(plane, at);
     if (!to.Exists)
     {
       kind.Same = false; // what lies beyond the field's end is predicted anew at each step
       continue;
     }
-    const group::BlockEntry& entry = entries[this->IndexOf(plane, at)];
+    const group::BlockEntry& entry = entries[this->Directory.IndexOf(plane, at)];
     to.Uniform = entry.Uniform;
     to.Same = entry.Same;
     to.Value = entry.Value;
     to.Mode = entry.Mode;
     to.Limit = samples - 1 - at * this->BrickCells;
-    kind.Refers = kind.Refers || Refers(entry);
+    kind.Refers = kind.Refers || BlockDirectory::Refers(entry);
     kind.Same = kind.Same && entry.Same;
     if (entry.Payload.Bytes > 0 && bits != 7)
     {
@@ -249,7 +200,7 @@ QuantizedBlockCache::Box GroupField::DecodeAs(int step, int plane, const glm::iv
     if (neighbour.Exists && !neighbour.Uniform && !neighbour.Same)
     {
       neighbours[axis] = QuantizedBlockCache::Process().Find(
-        this->KeyOf(step, plane, NeighbourOf(block, 1 << axis)));
+        this->KeyOf(step, plane, BlockDirectory::BlockBehind(block, 1 << axis)));
       code.Neighbours[axis] = neighbours[axis] ? neighbours[axis]->Numbers<Number>() : nullptr;
     }
   }
@@ -273,7 +224,7 @@ QuantizedBlockCache::Box GroupField::DecodeAs(int step, int plane, const glm::iv
 
 QuantizedBlockCache::Key GroupField::KeyOf(int step, int plane, const glm::ivec3& block) const
 {
-  return { this->Series, this->IndexOf(plane, block),
+  return { this->Series, this->Directory.IndexOf(plane, block),
     static_cast<std::uint32_t>(this->File.FirstStep() + step),
     static_cast<std::uint16_t>(this->Component), static_cast<std::uint16_t>(plane) };
 }
@@ -282,9 +233,8 @@ QuantizedBlockCache::Box GroupField::Box(
   int step, int plane, const glm::ivec3& block, bool streaming)
 {
   const stages::In stage(stages::Lookup);
-  QuantizedBlockCache& cache = QuantizedBlockCache::Process();
   const QuantizedBlockCache::Key key = this->KeyOf(step, plane, block);
-  if (QuantizedBlockCache::Box found = cache.Find(key))
+  if (QuantizedBlockCache::Box found = QuantizedBlockCache::Process().Find(key))
   {
     return found;
   }
@@ -293,7 +243,7 @@ QuantizedBlockCache::Box GroupField::Box(
   // decoded.
   const bool lowPriority =
     streaming && plane == 0 && ReferenceDistance(step, this->File.Steps()) == 1;
-  cache.Add(key, box, lowPriority);
+  QuantizedBlockCache::Process().Add(key, box, lowPriority);
   return box;
 }
 
@@ -305,22 +255,22 @@ void GroupField::Verify(int step, int plane, const glm::ivec3& block)
 
 void GroupField::Verify(int step, int plane, const glm::ivec3& block, Visited& visited)
 {
-  if (!visited.insert({ this->File.FirstStep() + step, plane, this->IndexOf(plane, block) }).second)
+  if (!visited
+         .insert({ this->File.FirstStep() + step, plane, this->Directory.IndexOf(plane, block) })
+         .second)
   {
     return;
   }
-  const auto& entries = this->Step(step).Planes[static_cast<std::size_t>(plane)];
-  const glm::ivec3 blocks = this->BlocksOf(plane);
   PayloadPages& payloads = this->File.Payloads();
   const PayloadPages::Hold hold = payloads.InMemory();
   for (int bits = 0; bits < 8; ++bits)
   {
-    const glm::ivec3 at = NeighbourOf(block, bits);
-    if (!Inside(at, blocks))
+    const glm::ivec3 at = BlockDirectory::BlockBehind(block, bits);
+    if (!this->Directory.Has(plane, at))
     {
       continue;
     }
-    const group::BlockEntry& entry = entries[this->IndexOf(plane, at)];
+    const group::BlockEntry& entry = this->Directory.Entry(step, plane, at);
     for (const group::Place& place : { entry.Payload, entry.Exceptions })
     {
       if (place.Bytes > 0)
@@ -333,7 +283,7 @@ void GroupField::Verify(int step, int plane, const glm::ivec3& block, Visited& v
   {
     this->Verify(step, plane + 1, block / 4, visited);
   }
-  if (this->NeedsReferences(step, plane, block))
+  if (this->Directory.BoxRefers(step, plane, block))
   {
     const StepReferences references = this->ReferencesOf(step);
     this->Verify(references.B, plane, block, visited);

@@ -66,10 +66,8 @@ public:
 private:
   using Visited = std::set<std::tuple<int, int, std::size_t>>; ///< steps of the series
 
-  std::size_t IndexOf(int plane, const glm::ivec3& block) const;
   QuantizedBlockCache::Key KeyOf(int step, int plane, const glm::ivec3& block) const;
   void Verify(int step, int plane, const glm::ivec3& block, Visited& visited);
-  bool NeedsReferences(int step, int plane, const glm::ivec3& block);
   StepReferences ReferencesOf(int step) const;
   template <class Body>
   auto InSegmentBefore(Body&& body);

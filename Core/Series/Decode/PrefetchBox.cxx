@@ -17,8 +17,7 @@ LinePrefetcher& GroupField::Ahead()
 void GroupField::Prefetch(int step, int plane, const glm::ivec3& block)
 {
   const stages::In stage(stages::Prefetch);
-  const auto& entries = this->Step(step).Planes[static_cast<std::size_t>(plane)];
-  const group::BlockEntry& entry = entries[this->IndexOf(plane, block)];
+  const group::BlockEntry& entry = this->Directory.Entry(step, plane, block);
   const std::size_t number = block::Narrow(this->Head().Least, this->Head().Greatest) ? 2 : 4;
   const std::size_t row = static_cast<std::size_t>(this->BrickCells + 1) * number;
   const std::size_t layer = static_cast<std::size_t>(this->BrickCells + 1) * row;
@@ -43,7 +42,7 @@ void GroupField::Prefetch(int step, int plane, const glm::ivec3& block)
   if (block.z + 1 < this->BlocksOf(plane).z)
   {
     const glm::ivec3 behind = block + glm::ivec3{ 0, 0, 1 };
-    const group::BlockEntry& other = entries[this->IndexOf(plane, behind)];
+    const group::BlockEntry& other = this->Directory.Entry(step, plane, behind);
     const void* const numbers =
       other.Uniform || other.Same
         ? nullptr
@@ -53,8 +52,7 @@ void GroupField::Prefetch(int step, int plane, const glm::ivec3& block)
       ahead.Add(numbers, layer);
     }
   }
-  const bool refers =
-    entry.Same || (!entry.Uniform && block::ModeOf(entry.Mode).From != block::Reference::None);
+  const bool refers = BlockDirectory::Refers(entry);
   const StepReferences references = ReferencesOfStep(step, this->File.Steps(), this->Head().Open);
   if (refers && references.Any())
   {
