@@ -2,7 +2,7 @@
 #include "DecodeTimes.h"
 
 #include "Base/Timer.h"
-#include "Series/Decode/QuantizedBlockCache.h"
+#include "Series/Decode/CacheContext.h"
 #include "Series/Decode/SeriesFile.h"
 
 #include <algorithm>
@@ -149,7 +149,7 @@ std::vector<std::int64_t> BringIntoMemory(const SeriesFile& file, const FieldKey
 void MeasureWarm(const std::string& path, int array, std::mt19937_64& random, DecodeTimes& times)
 {
   const auto file = SeriesFile::Open(path);
-  QuantizedBlockCache& decoded = QuantizedBlockCache::Process();
+  QuantizedBlockCache& decoded = file->Caches()->Blocks();
   std::vector<double> warm, finest;
   for (int i = 0; i < std::min(StepsMeasured, file->Index().Steps()); ++i)
   {
@@ -193,7 +193,7 @@ void MeasureInOrder(const std::string& path, int array, std::mt19937_64& random,
         static_cast<double>(SizeOf(file->Index().Arrays[static_cast<std::size_t>(array)].Type));
     }
   }
-  QuantizedBlockCache::Process().ForgetAll();
+  file->Caches()->Blocks().ForgetAll();
   const Timer inOrder;
   for (std::size_t i = 0; i < bricks.size(); ++i)
   {

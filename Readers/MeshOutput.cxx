@@ -279,7 +279,7 @@ vtkSmartPointer<vtkDataArray> MeshOutput::Values(const vtkBanyanDeferred::Handle
   const int components = values->GetNumberOfComponents();
   for (int component = 0; component < components; ++component)
   {
-    samples.Read(BrickCache::Process(), *handle.Series,
+    samples.Read(BrickCache::Of(*handle.Series), *handle.Series,
       { handle.Step, handle.Array, component, handle.Level }, values->GetVoidPointer(0), components,
       component);
   }

@@ -25,16 +25,17 @@ void MeshStepAhead::Read(
   }
   try
   {
-    BrickCache& cache = BrickCache::Process();
+    BrickCache& cache = BrickCache::Of(*series);
     for (FieldBricks& wanted : bricks)
     {
       wanted.Field.Step = this->NextStep;
     }
-    if (!this->Decoder)
+    if (!this->Decoder || this->DecodesInto != &cache)
     {
       this->Decoder = std::make_unique<BackgroundDecoder>(cache, ThreadPool::Process().Width());
+      this->DecodesInto = &cache;
     }
-    this->Decoder->Start(series, std::move(bricks), cache.DecodedBudget() / 2);
+    this->Decoder->Start(series, std::move(bricks), cache.Budget() / 2);
   }
   catch (const std::exception&)
   {

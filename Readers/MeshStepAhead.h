@@ -33,6 +33,7 @@ public:
 
 private:
   std::unique_ptr<BackgroundDecoder> Decoder; ///< null until a series plays
+  const BrickCache* DecodesInto = nullptr;
   PlayDirection Direction;
   int NextStep = -1;
 };

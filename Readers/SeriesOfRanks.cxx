@@ -5,6 +5,7 @@
 
 #include "Base/Hash.h"
 #include "Parallel/Communicate/Collective.h"
+#include "Series/Decode/CacheContext.h"
 #include "Series/Decode/SeriesFile.h"
 
 #include "vtkMultiProcessController.h"
@@ -17,7 +18,7 @@ namespace
 {
 
 /// @param name null or empty where none is set
-std::shared_ptr<const SeriesFile> OpenFile(const char* name)
+std::shared_ptr<const SeriesFile> OpenFile(const char* name, std::int64_t cacheBytes)
 {
   if (!name || !*name)
   {
@@ -25,7 +26,7 @@ std::shared_ptr<const SeriesFile> OpenFile(const char* name)
   }
   try
   {
-    return SeriesFile::Open(name);
+    return SeriesFile::Open(name, CacheContext::WithBudget(cacheBytes));
   }
   catch (const std::exception& error)
   {
@@ -60,15 +61,16 @@ Communicator& SeriesOfRanks::Ranks()
   return *this->Talk;
 }
 
-bool SeriesOfRanks::IsOpen(const char* name) const
+bool SeriesOfRanks::IsOpen(const char* name, std::int64_t cacheBytes) const
 {
-  return this->File && !this->Again && this->OpenName == (name ? name : "");
+  return this->File && !this->Again && this->OpenName == (name ? name : "") &&
+         this->File->Caches()->OwnBudgetBytes() == cacheBytes;
 }
 
-void SeriesOfRanks::Open(const char* name)
+void SeriesOfRanks::Open(const char* name, std::int64_t cacheBytes)
 {
   // Every rank comes to the same decision here: after a failure no rank has a series.
-  if (this->IsOpen(name))
+  if (this->IsOpen(name, cacheBytes))
   {
     return;
   }
@@ -79,7 +81,7 @@ void SeriesOfRanks::Open(const char* name)
   {
     this->File.reset();
     std::shared_ptr<const SeriesFile> opened;
-    Collective(this->Ranks(), [&] { opened = OpenFile(name); });
+    Collective(this->Ranks(), [&] { opened = OpenFile(name, cacheBytes); });
     this->File = std::move(opened);
     this->OpenName = name;
     if (this->AllHaveTheSame())

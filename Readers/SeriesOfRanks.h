@@ -6,6 +6,7 @@
 
 #include "vtkSmartPointer.h"
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -32,11 +33,13 @@ public:
 
   /// Collective, unless IsOpen. After an error no rank has a series.
   /// @param name of the index file; null or empty where none is set
+  /// @param cacheBytes for CacheContext::WithBudget; the same on all ranks
   /// Throws CollectiveError.
-  void Open(const char* name);
+  void Open(const char* name, std::int64_t cacheBytes);
 
-  /// Whether that file has been opened, and not to be opened again. The same on all ranks.
-  bool IsOpen(const char* name) const;
+  /// Whether that file has been opened with these caches, and not to be opened again. The same on
+  /// all ranks.
+  bool IsOpen(const char* name, std::int64_t cacheBytes) const;
 
   /// Makes the next Open() open the file again.
   void OpenAgain() { this->Again = true; }

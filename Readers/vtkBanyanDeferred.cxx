@@ -9,10 +9,12 @@
 #include "vtkUnsignedCharArray.h"
 
 #include "Cache/BrickCache.h"
+#include "Series/Decode/CacheContext.h"
 #include "Series/Decode/SeriesFile.h"
 #include "Series/Grid/LevelGrid.h"
 
 #include <algorithm>
+#include <map>
 #include <mutex>
 #include <new>
 #include <set>
@@ -180,7 +182,7 @@ void vtkBanyanDeferred::ReadInto(const Handle& handle, void* values)
   }
   for (int component = 0; component < components; ++component)
   {
-    banyan::ReadRegion(banyan::BrickCache::Process(), *handle.Series,
+    banyan::ReadRegion(banyan::BrickCache::Of(*handle.Series), *handle.Series,
       { handle.Step, handle.Array, component, handle.Level }, handle.Samples, values, components,
       component);
   }
@@ -238,18 +240,29 @@ std::uint64_t vtkBanyanDeferred::HeldBytes()
   return bytes;
 }
 
-void vtkBanyanDeferred::ReleaseDownTo(std::uint64_t budgetBytes)
+banyan::CacheContext* vtkBanyanDeferred::Caches() const
 {
-  std::uint64_t held = HeldBytes();
+  const auto& series = this->Source.Series;
+  return (series ? series->Caches() : banyan::CacheContext::Process()).get();
+}
+
+void vtkBanyanDeferred::ReleaseBeyondBudgets()
+{
   Ledger& ledger = Ledger::Get();
   const std::lock_guard<std::mutex> lock(ledger.Mutex);
   auto& arrays = ledger.Arrays;
-  for (auto array = arrays.begin(); held > budgetBytes && array != arrays.end();)
+  std::map<const banyan::CacheContext*, std::uint64_t> held;
+  for (const vtkBanyanDeferred* array : arrays)
+  {
+    held[array->Caches()] += array->DecodedBytes();
+  }
+  for (auto array = arrays.begin(); array != arrays.end();)
   {
     const std::uint64_t bytes = (*array)->DecodedBytes();
-    if ((*array)->Release())
+    const banyan::CacheContext* const caches = (*array)->Caches();
+    if (held[caches] > caches->BudgetBytes() && (*array)->Release())
     {
-      held -= bytes;
+      held[caches] -= bytes;
       array = arrays.erase(array);
     }
     else

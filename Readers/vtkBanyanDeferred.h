@@ -31,6 +31,7 @@ class vtkUnsignedCharArray;
 
 namespace banyan
 {
+class CacheContext;
 class SeriesFile;
 struct ArrayIndex;
 }
@@ -127,7 +128,8 @@ public:
   static vtkSmartPointer<vtkDataArray> NewEmpty(const Handle& handle);
 
   /**
-   * Decodes the values of a handle, through the brick cache of the process and on its thread pool.
+   * Decodes the values of a handle, through the caches of its series and on the threads of the
+   * process.
    * @param values receives Samples.Count() tuples of the array's own type, components fastest,
    * then x.
    * Throws banyan::Error.
@@ -135,11 +137,12 @@ public:
   static void ReadInto(const Handle& handle, void* values);
 
   /**
-   * Lets decoded values go, oldest first, until all deferred arrays of this process together hold
-   * at most `budgetBytes`. Values to which somebody has a pointer stay, and so do values that were
-   * changed. To be called when no filter is at work, as at the start of a reader's execution.
+   * Lets decoded values go, oldest first, until all deferred arrays of the series of one
+   * CacheContext together hold no more than its budget. Values to which somebody has a pointer
+   * stay, and so do values that were changed. To be called when no filter is at work, as at the
+   * start of a reader's execution.
    */
-  static void ReleaseDownTo(std::uint64_t budgetBytes);
+  static void ReleaseBeyondBudgets();
 
   /**
    * Bytes of decoded values that all deferred arrays of this process hold now.
@@ -173,6 +176,10 @@ protected:
   static void Label(vtkDataArray& array, const banyan::ArrayIndex& index);
 
   Handle Source;
+
+private:
+  /// The caches of its series.
+  banyan::CacheContext* Caches() const;
 };
 
 #endif

@@ -122,19 +122,15 @@ void vtkBanyanSeriesReader::SetCacheBudget(int mebibytes)
   if (mebibytes < -1)
   {
     vtkErrorMacro(
-      << "'Cache Budget' (CacheBudget) must be a number of MiB, or -1 for that of the process, "
+      << "'Cache Budget' (CacheBudget) must be a number of MiB, or -1 to share that of the process, "
          "and is "
       << mebibytes << ". It stays " << this->CacheBudget << ".");
     return;
   }
-  if (mebibytes >= 0)
-  {
-    banyan::BrickCache::Process().SetBudget(static_cast<std::uint64_t>(mebibytes) << 20);
-  }
   if (this->CacheBudget != mebibytes)
   {
-    // No Modified(): the output does not depend on it.
     this->CacheBudget = mebibytes;
+    this->Modified(); // the series is opened again, with these caches
   }
 }
 
@@ -191,7 +187,15 @@ const char* vtkBanyanSeriesReader::GetErrorMessage()
 
 vtkIdType vtkBanyanSeriesReader::GetBricksReadAhead()
 {
-  return static_cast<vtkIdType>(banyan::BrickCache::Process().GetAheadStatistics().Hits);
+  const banyan::SeriesFile* const series = this->Series();
+  return series ? static_cast<vtkIdType>(banyan::BrickCache::Of(*series).GetAheadStatistics().Hits)
+                : 0;
+}
+
+/// For CacheContext::WithBudget.
+std::int64_t vtkBanyanSeriesReader::CacheBytes() const
+{
+  return this->CacheBudget < 0 ? -1 : std::int64_t{ this->CacheBudget } << 20;
 }
 
 double vtkBanyanSeriesReader::GetLoadSeconds()
@@ -251,7 +255,7 @@ bool vtkBanyanSeriesReader::OpenOnAllRanks()
   const bool named = this->FileName && *this->FileName;
   try
   {
-    this->Self->File.Open(this->FileName);
+    this->Self->File.Open(this->FileName, this->CacheBytes());
   }
   catch (const std::exception& error)
   {
@@ -289,7 +293,7 @@ vtkTypeBool vtkBanyanSeriesReader::ProcessRequest(
 int vtkBanyanSeriesReader::MakeOutput(vtkInformationVector* outputs)
 {
   bool open = true;
-  if (!this->Self->File.IsOpen(this->FileName))
+  if (!this->Self->File.IsOpen(this->FileName, this->CacheBytes()))
   {
     this->Clear();
     open = this->OpenOnAllRanks();
@@ -381,7 +385,7 @@ int vtkBanyanSeriesReader::RequestData(
   output->Initialize();
   // No filter is at work now: the time to let go what was decoded for others.
   this->DecideOnDeferring();
-  vtkBanyanDeferred::ReleaseDownTo(banyan::BrickCache::Process().Budget());
+  vtkBanyanDeferred::ReleaseBeyondBudgets();
   std::string failure;
   banyan::Attempt(
     failure, [&] { this->FillOutput(outInfo, output); },

@@ -39,7 +39,8 @@
 #include "BanyanReadersModule.h" // For export macro
 #include "vtkImageAlgorithm.h"
 
-#include <memory> // For Internals
+#include <cstdint> // For std::int64_t
+#include <memory>  // For Internals
 
 class vtkDataArraySelection;
 class vtkMultiProcessController;
@@ -121,9 +122,10 @@ public:
 
   ///@{
   /**
-   * Budget in MiB of the cache of decoded bricks, which all readers and renderers of the process
-   * share. Negative (the default) leaves it as it is: BANYAN_CACHE_MB from the environment,
-   * or an eighth of the machine's memory shared by its ranks, but 512 MiB at least.
+   * MiB for caches that this series has for itself, those of its displays included; 0 keeps
+   * nothing. The default, -1: it shares those of the process, whose budget is BANYAN_CACHE_MB from
+   * the environment, or an eighth of the machine's memory divided by its ranks, but 512 MiB at
+   * least. Another number opens the series again; arrays that were read before stay valid.
    */
   void SetCacheBudget(int mebibytes);
   vtkGetMacro(CacheBudget, int);
@@ -212,6 +214,7 @@ private:
   void FillOutput(vtkInformation* info, vtkDataObject* output);
   void Fail(unsigned long code, const std::string& sentence);
   void Clear();
+  std::int64_t CacheBytes() const;
 
   char* FileName = nullptr;
   int Level = 0;

@@ -53,18 +53,19 @@ vtkIdType Id(std::uint64_t number)
 
 } // namespace
 
-FrameFigures::FrameFigures(const DrawnField& field)
-  : BytesBefore(field.BytesRead())
-  , AheadBefore(BrickCache::Process().GetAheadStatistics().Hits)
-  , CacheBefore(BrickCache::Process().GetStatistics())
+FrameFigures::FrameFigures(DrawnField& field)
+  : Caches(field.Caches())
+  , BytesBefore(field.BytesRead())
+  , AheadBefore(BrickCache::Of(*this->Caches).GetAheadStatistics().Hits)
+  , CacheBefore(BrickCache::Of(*this->Caches).GetStatistics())
 {
 }
 
 void FrameFigures::Publish(Communicator& communicator, const DrawnField& field,
   const FrameStatistics& frame, std::uint64_t geometryBytes, vtkBanyanFrameStatistics* out) const
 {
-  const BrickCache& process = BrickCache::Process();
-  const BrickCache::Statistics cache = process.GetStatistics();
+  const BrickCache& bricks = BrickCache::Of(*this->Caches);
+  const BrickCache::Statistics cache = bricks.GetStatistics();
   const MeshBytes mesh = field.Bytes();
   const DrawnField::Movement moved = field.Moved();
   Report mine{};
@@ -75,7 +76,7 @@ void FrameFigures::Publish(Communicator& communicator, const DrawnField& field,
   mine[BytesOfMesh] = mesh.Own + mine[BytesOfMeshShared];
   mine[CacheHits] = cache.Hits - this->CacheBefore.Hits;
   mine[CacheMisses] = cache.Misses - this->CacheBefore.Misses;
-  mine[CacheHitsAhead] = process.GetAheadStatistics().Hits - this->AheadBefore;
+  mine[CacheHitsAhead] = bricks.GetAheadStatistics().Hits - this->AheadBefore;
   mine[Threads] = static_cast<std::uint64_t>(ThreadPool::Process().Width());
   const Report all = SumOf(communicator, mine);
   out->SetBytesRead(Id(all[BytesRead]));

@@ -5,6 +5,7 @@
 #include "Cache/BrickCache.h"
 
 #include <cstdint>
+#include <memory>
 
 class vtkBanyanFrameStatistics;
 
@@ -20,7 +21,7 @@ class FrameFigures
 {
 public:
   FrameFigures() = default;
-  explicit FrameFigures(const DrawnField& field);
+  explicit FrameFigures(DrawnField& field);
 
   /// Collective: one message.
   /// @param frame of all ranks
@@ -30,6 +31,7 @@ public:
     std::uint64_t geometryBytes, vtkBanyanFrameStatistics* out) const;
 
 private:
+  std::shared_ptr<CacheContext> Caches;
   std::uint64_t BytesBefore = 0;
   std::uint64_t AheadBefore = 0;
   BrickCache::Statistics CacheBefore;

@@ -4,7 +4,7 @@
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Cache/BrickCache.h"
-#include "Series/Decode/QuantizedBlockCache.h"
+#include "Series/Decode/CacheContext.h"
 #include "Series/Decode/SeriesFile.h"
 #include "Series/Encode/SeriesEncoder.h"
 
@@ -65,9 +65,9 @@ public:
     switch (what)
     {
       case Decoded::Nothing:
-        return QuantizedBlockCache::Process().ForgetAll();
+        return this->File->Caches()->Blocks().ForgetAll();
       case Decoded::CoarserPlanes:
-        return QuantizedBlockCache::Process().ForgetFinest();
+        return this->File->Caches()->Blocks().ForgetFinest();
       case Decoded::All:
         return;
     }

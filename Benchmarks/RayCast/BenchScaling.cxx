@@ -12,6 +12,7 @@
 #include "Render/Bricks/SeriesBrickSource.h"
 #include "Render/Raycast/InterpolateSkippedPixels.h"
 #include "Render/Sampling/SamplingPlan.h"
+#include "Series/Decode/CacheContext.h"
 #include "Series/Encode/SeriesEncoder.h"
 
 #include <fcntl.h>
@@ -172,7 +173,7 @@ Frames DrawFrames(const Options& options, const Timer& sinceStart, BrickSource& 
   return frames;
 }
 
-void Report(const Options& options, const Frames& frames)
+void Report(const Options& options, const CacheContext& caches, const Frames& frames)
 {
   const double fileBytes = options.Series.empty() ? 0.0 : bench::BytesOf(options.Series);
   const RayStatistics& statistics = frames.Statistics;
@@ -185,29 +186,30 @@ void Report(const Options& options, const Frames& frames)
     options.Series.empty() ? "memory" : "series", options.Threads, tolerance,
     frames.FirstMilliseconds, frames.Milliseconds[frames.Milliseconds.size() / 2],
     static_cast<long long>(statistics.SamplesTaken), static_cast<long long>(statistics.BricksDrawn),
-    static_cast<long long>(statistics.BricksSkipped),
-    static_cast<int>(BrickCache::Process().Budget() >> 20), PeakMiB(), fileBytes / MiB);
+    static_cast<long long>(statistics.BricksSkipped), static_cast<int>(caches.BudgetBytes() >> 20),
+    PeakMiB(), fileBytes / MiB);
 }
 
 void Draw(const Options& options)
 {
   ThreadPool::SetProcessWidth(options.Threads);
   ThreadPool& pool = ThreadPool::Process();
-  BrickCache& cache = BrickCache::Process();
-  if (options.BudgetMiB > 0)
-    cache.SetBudget(static_cast<std::uint64_t>(options.BudgetMiB) << 20);
+  const auto caches = CacheContext::WithBudget(
+    options.BudgetMiB > 0 ? std::int64_t{ options.BudgetMiB } << 20 : std::int64_t{ -1 });
+  const std::uint64_t budget = caches->DrawingBudgetBytes();
   if (options.Series.empty())
   {
     const auto volume = bench::StandardVolume(options.Size, pool);
     const Timer sinceStart;
     ArrayBrickSource source(volume->Array(), bench::BrickCells, { 0.0, 1.0 }, pool);
-    Report(options, DrawFrames(options, sinceStart, source, cache.DrawingBudget(), pool));
+    Report(options, *caches, DrawFrames(options, sinceStart, source, budget, pool));
     return;
   }
   bench::DropFromCache(options.Series);
   const Timer sinceStart;
-  SeriesBrickSource source(SeriesFile::Open(options.Series), {}, 0, cache);
-  Report(options, DrawFrames(options, sinceStart, source, cache.DrawingBudget(), pool));
+  SeriesBrickSource source(
+    SeriesFile::Open(options.Series, caches), {}, 0, BrickCache::Of(*caches));
+  Report(options, *caches, DrawFrames(options, sinceStart, source, budget, pool));
 }
 
 Options Parse(const std::vector<std::string>& arguments)

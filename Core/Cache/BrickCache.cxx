@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Cache/BrickCache.h"
 
-#include "Base/CacheBudget.h"
 #include "Base/Error.h"
-#include "Series/Decode/QuantizedBlockCache.h"
+#include "Series/Decode/CacheContext.h"
 
 #include <algorithm>
 #include <condition_variable>
@@ -101,7 +100,6 @@ struct BrickCache::Internals
   };
 
   std::uint64_t Budget = 0;
-  bool Shares = false; ///< whether only three eighths of the budget are for decoded bricks
   Statistics Numbers;
   AheadStatistics Ahead;
   Order Bricks;
@@ -110,10 +108,9 @@ struct BrickCache::Internals
   mutable std::mutex Mutex;
   std::condition_variable Decoded;
 
-  std::uint64_t Reserved = 0; ///< of the decoded bricks' part, by others
+  std::uint64_t Reserved = 0; ///< of the budget, by others
 
-  std::uint64_t Part() const { return this->Shares ? this->Budget / 8 * 3 : this->Budget; }
-  std::uint64_t Limit() const { return this->Part() - std::min(this->Part(), this->Reserved); }
+  std::uint64_t Limit() const { return this->Budget - std::min(this->Budget, this->Reserved); }
 
   void EvictDownTo(std::uint64_t bytes)
   {
@@ -272,12 +269,6 @@ BrickCache::BrickCache(std::uint64_t budgetBytes)
   this->Self->Budget = budgetBytes;
 }
 
-BrickCache::BrickCache()
-  : BrickCache(CacheBudgetBytes())
-{
-  this->Self->Shares = true;
-}
-
 BrickCache::~BrickCache() = default;
 
 std::shared_ptr<const BrickValues> BrickCache::GetIfHeld(
@@ -329,27 +320,9 @@ BrickCache::AheadStatistics BrickCache::GetAheadStatistics() const
   return this->Self->Ahead;
 }
 
-void BrickCache::SetBudget(std::uint64_t bytes)
-{
-  if (this == &BrickCache::Process())
-  {
-    QuantizedBlockCache::Process().SetBudgetBytes(bytes / 4);
-  }
-  std::lock_guard<std::mutex> lock(this->Self->Mutex);
-  this->Self->Budget = bytes;
-  this->Self->EvictDownTo(this->Self->Limit());
-}
-
 std::uint64_t BrickCache::Budget() const
 {
-  std::lock_guard<std::mutex> lock(this->Self->Mutex);
   return this->Self->Budget;
-}
-
-std::uint64_t BrickCache::DecodedBudget() const
-{
-  std::lock_guard<std::mutex> lock(this->Self->Mutex);
-  return this->Self->Part();
 }
 
 void BrickCache::Reserve(std::int64_t change)
@@ -373,10 +346,14 @@ BrickCache::Statistics BrickCache::GetStatistics() const
   return this->Self->Numbers;
 }
 
-BrickCache& BrickCache::Process()
+BrickCache& BrickCache::Of(CacheContext& context)
 {
-  static BrickCache cache;
-  return cache;
+  return context.Bricks<BrickCache>();
+}
+
+BrickCache& BrickCache::Of(const SeriesFile& series)
+{
+  return Of(*series.Caches());
 }
 
 } // namespace banyan

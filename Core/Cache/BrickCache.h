@@ -11,6 +11,8 @@
 namespace banyan
 {
 
+class CacheContext;
+
 /// Decoded samples of one brick, in the array's own type, `[z][y][x]`, x fastest.
 struct BrickValues
 {
@@ -45,6 +47,7 @@ public:
     std::uint64_t Evictions = 0;
   };
 
+  /// @param budgetBytes 0 keeps nothing
   explicit BrickCache(std::uint64_t budgetBytes);
   ~BrickCache();
   BrickCache(const BrickCache&) = delete;
@@ -69,36 +72,24 @@ public:
   };
   AheadStatistics GetAheadStatistics() const;
 
-  /// Evicts at once when the new budget is smaller. 0 keeps nothing. The budget of the process's
-  /// cache is for drawing as well: three eighths of it are decoded bricks, three what the renderer
-  /// has loaded and packed, a quarter is QuantizedBlockCache's, which keeps what decoding needs
-  /// again.
-  void SetBudget(std::uint64_t bytes);
   std::uint64_t Budget() const;
-  /// The renderer's share of the budget of the process's cache.
-  std::uint64_t DrawingBudget() const { return this->Budget() / 8 * 3; }
-  /// Returns the bytes that decoded bricks may take: the budget, or their share of the process's.
-  std::uint64_t DecodedBudget() const;
   /// Others take so much more (or less) of that: bricks that ranks fetch from each other. Evicts at
   /// once.
   void Reserve(std::int64_t change);
   void Clear();
   Statistics GetStatistics() const;
 
-  /// The cache of this process; its budget is that of CacheBudget.h: `BANYAN_CACHE_MB` from the
-  /// environment, or UsualCacheBudget.
-  static BrickCache& Process();
+  /// The cache of a context, and of that which a series was opened with.
+  static BrickCache& Of(CacheContext& context);
+  static BrickCache& Of(const SeriesFile& series);
 
 private:
-  /// That of the process.
-  BrickCache();
-
   struct Internals;
   std::unique_ptr<Internals> Self;
 };
 
 /// Copies the part `samples` of a field into a caller's array, decoding (in parallel) only the
-/// bricks that it touches. They come from the cache and go there. But a part of a sixteenth or more
+/// bricks that it touches. They come from the cache and go there. But a part of a sixth or more
 /// of the cache's budget goes past it, because it would push out everything else and be gone itself
 /// before it comes again; and so does a part of 1 MiB or more whose values are multiples of a step
 /// (SeriesFile::StepOfValues), because the numbers are kept and values are soon made of them.

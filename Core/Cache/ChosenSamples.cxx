@@ -83,8 +83,7 @@ void ChosenSamples::Read(BrickCache& cache, const SeriesFile& series, const Fiel
     {
       using T = typename decltype(tag)::Type;
       T* const to = static_cast<T*>(values) + component;
-      const bool past =
-        static_cast<std::uint64_t>(this->Count()) * sizeof(T) >= cache.Budget() / 16;
+      const bool past = static_cast<std::uint64_t>(this->Count()) * sizeof(T) >= cache.Budget() / 6;
       const auto read = [&](std::size_t holder)
       {
         const std::int64_t brick = this->Holders[holder];

@@ -186,7 +186,7 @@ bool GoesPast(
   // Lattice numbers are kept where they are decoded (QuantizedBlockCache), and values are soon made
   // of them again, while bricks of the cache need memory, which the system clears, and are copied.
   constexpr std::uint64_t some = std::uint64_t{ 1 } << 20;
-  return bytes >= cache.Budget() / 16 || (bytes >= some && series.StepOfValues(field) > 0);
+  return bytes >= cache.Budget() / 6 || (bytes >= some && series.StepOfValues(field) > 0);
 }
 
 /// How many bricks a thread reads at once: a row of them where that leaves enough for all threads.

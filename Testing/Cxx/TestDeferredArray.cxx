@@ -18,6 +18,7 @@
 #include "vtkVariant.h"
 
 #include "Cache/BrickCache.h"
+#include "Series/Decode/CacheContext.h"
 #include "Series/Decode/SeriesFile.h"
 
 #include <gtest/gtest.h>
@@ -90,7 +91,8 @@ TEST_F(DeferredArray, DecodesOnceWhenTouched)
 {
   EXPECT_EQ(this->Array->GetComponent(5, 0), this->Plain->GetComponent(5, 0));
   const std::uint64_t decoded = this->Decoded();
-  EXPECT_GT(decoded + banyan::BrickCache::Process().GetStatistics().Hits, 0u);
+  EXPECT_GT(
+    decoded + banyan::BrickCache::Of(*banyan::CacheContext::Process()).GetStatistics().Hits, 0u);
   EXPECT_FALSE(vtkBanyanDeferred::IsUntouched(this->Array));
   for (vtkIdType i = 0; i < this->Array->GetNumberOfTuples(); ++i)
   {
@@ -275,19 +277,33 @@ TEST_F(DeferredArray, LetsValuesGoAndDecodesAgain)
   const double value = this->Array->GetComponent(100, 0);
   EXPECT_EQ(vtkBanyanDeferred::HeldBytes(), 37u * 20 * 18 * 4);
   EXPECT_GT(this->Array->GetActualMemorySize(), 50u);
-  vtkBanyanDeferred::ReleaseDownTo(1 << 20);
+  vtkBanyanDeferred::ReleaseBeyondBudgets();
   EXPECT_FALSE(vtkBanyanDeferred::IsUntouched(this->Array)) << "there was room";
-  vtkBanyanDeferred::ReleaseDownTo(0);
+  // A reader that keeps nothing lets go of its own arrays only.
+  const auto other = Reader(this->Folder / "a.banyan");
+  other->SetCacheBudget(0);
+  vtkNew<vtkBanyanDecode> readsDeferred;
+  readsDeferred->SetInputConnection(other->GetOutputPort());
+  other->UpdateTimeStep(1.0);
+  vtkDataArray* const array = other->GetOutput()->GetPointData()->GetScalars();
+  EXPECT_EQ(array->GetComponent(100, 0), value);
+  vtkBanyanDeferred::ReleaseBeyondBudgets();
+  EXPECT_TRUE(vtkBanyanDeferred::IsUntouched(array));
+  EXPECT_FALSE(vtkBanyanDeferred::IsUntouched(this->Array));
+  EXPECT_EQ(array->GetComponent(100, 0), value);
+  array->Squeeze();
+  EXPECT_TRUE(vtkBanyanDeferred::IsUntouched(array));
+  this->Array->Squeeze();
   EXPECT_TRUE(vtkBanyanDeferred::IsUntouched(this->Array));
   EXPECT_EQ(vtkBanyanDeferred::HeldBytes(), 0u);
   EXPECT_EQ(this->Array->GetComponent(100, 0), value);
   this->Array->Squeeze();
   EXPECT_TRUE(vtkBanyanDeferred::IsUntouched(this->Array));
   // Whoever has a pointer may use it as long as the array lives.
-  const float* pointer = static_cast<float*>(this->Array->GetVoidPointer(0));
-  vtkBanyanDeferred::ReleaseDownTo(0);
+  const float* pointer = static_cast<float*>(array->GetVoidPointer(0));
+  vtkBanyanDeferred::ReleaseBeyondBudgets();
   EXPECT_EQ(pointer[100], value);
-  EXPECT_FALSE(vtkBanyanDeferred::IsUntouched(this->Array));
+  EXPECT_FALSE(vtkBanyanDeferred::IsUntouched(array));
 }
 
 TEST_F(DeferredArray, HandleSaysWhereTheValuesAre)

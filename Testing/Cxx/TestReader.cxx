@@ -14,6 +14,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include "Cache/BrickCache.h"
+#include "Series/Decode/CacheContext.h"
 #include "Series/Decode/PieceRange.h"
 #include "Series/Decode/SeriesFile.h"
 
@@ -84,6 +85,50 @@ TEST(Reader, SnapsToTheStepAtOrBefore)
   EXPECT_EQ(info->Get(Pipeline::TIME_RANGE())[1], 2.0);
 }
 
+/// The last budget counts, also between updates, and arrays that were read before stay as they are.
+TEST(Reader, ASeriesMayHaveCachesOfItsOwn)
+{
+  Series series(OddGrid({ 70, 70, 70 }));
+  const auto whole = ImageAt(series.Read, 0.5);
+  const auto reader = Reader(series.Path());
+  vtkNew<vtkBanyanDecode> readsDeferred; // connected, so that nothing is decoded yet
+  readsDeferred->SetInputConnection(reader->GetOutputPort());
+  const auto process = banyan::CacheContext::Process();
+  std::vector<vtkSmartPointer<vtkImageData>> images;
+  for (const int mebibytes : { -1, 0, 1, 500, -1 })
+  {
+    reader->SetCacheBudget(mebibytes);
+    reader->UpdateTimeStep(0.5);
+    const vtkBanyanDeferred::Handle handle = *HandleOf(reader);
+    const auto& caches = handle.Series->Caches();
+    EXPECT_EQ(caches == process, mebibytes < 0);
+    EXPECT_EQ(caches->OwnBudgetBytes(), mebibytes < 0 ? -1 : std::int64_t{ mebibytes } << 20);
+    const std::uint64_t before = process->Blocks().Bytes();
+    EXPECT_EQ(handle.Series->BricksDecoded(), 0u) << "opened again";
+    const auto copy = vtkSmartPointer<vtkImageData>::New();
+    copy->ShallowCopy(reader->GetOutputDataObject(0));
+    images.push_back(copy);
+    if (mebibytes != 1) // that one is read when its reader has others
+    {
+      ExpectPart(whole, copy);
+      EXPECT_GT(handle.Series->BricksDecoded(), 0u);
+      EXPECT_EQ(caches->Blocks().Bytes() > 0, mebibytes != 0);
+    }
+    EXPECT_EQ(process->Blocks().Bytes() != before, mebibytes < 0);
+    const vtkMTimeType executed = HandleOf(reader) ? reader->GetMTime() : 0;
+    reader->SetCacheBudget(mebibytes);
+    EXPECT_EQ(reader->GetMTime(), executed) << "nothing to do";
+  }
+  for (const auto& image : images)
+  {
+    ExpectPart(whole, image);
+  }
+  Messages messages(reader);
+  reader->SetCacheBudget(-2);
+  EXPECT_NE(messages.Errors.find("'Cache Budget' (CacheBudget) must be"), std::string::npos);
+  EXPECT_EQ(reader->GetCacheBudget(), -1);
+}
+
 TEST(Reader, SubExtentsDecodeOnlyTheBricksTheyTouch)
 {
   Series series(OddGrid({ 70, 70, 70 }));
@@ -94,7 +139,7 @@ TEST(Reader, SubExtentsDecodeOnlyTheBricksTheyTouch)
     { 0, 20, 110, 140, 40, 72 }, { 62, 62, 100, 169, 3, 72 }, { -7, 62, 100, 169, 3, 72 } };
   for (const auto& extent : extents)
   {
-    banyan::BrickCache::Process().Clear();
+    banyan::BrickCache::Of(*banyan::CacheContext::Process()).Clear();
     const auto fresh = Reader(series.Path());
     fresh->UpdateInformation();
     vtkNew<vtkBanyanDecode> readsDeferred; // connected, so that nothing is decoded yet

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Checks what people do in a session beyond one picture, on any number of ranks: nothing may hang.
 
-Two views, two volumes, interactive rendering, playing a series, switching representations, a Surface
-LIC beside, removing the data, an array that is not there, a series that is damaged. Each step must
+Two views, two volumes, interactive rendering, playing a series, switching representations, caches of
+its own for a series, a Surface LIC beside, removing the data, an array that is not there, a series that is damaged. Each step must
 leave the following ones right: the same scene is drawn again at the end and must be the same picture.
 """
 import glob
@@ -110,6 +110,21 @@ class Sessions:
         self.expect(pictures.difference(first, shown).max() <= 1, "a shown volume is drawn again")
         session.clear()
 
+    def budgets(self):
+        """A series gets caches of its own, others, and none again, while it is shown."""
+        drawn, first = self.scene()
+        display = drawn.volumes[0]
+        reader = display.Input
+        for mebibytes in (0, 1, 64, -1):
+            reader.CacheBudget = mebibytes
+            again = self.take(drawn.view, f"budget {mebibytes}")
+            self.expect(pictures.difference(first, again).max() <= 1,
+                        f"the picture is the same with a budget of {mebibytes}")
+            display.UpdatePropertyInformation()
+            held = display.GetPropertyValue("CacheBytes")
+            self.expect((held > 0) == (mebibytes != 0), f"{held} bytes are kept of {mebibytes} MiB")
+        session.clear()
+
     def surface_lic(self):
         """It draws in ways of its own, which must not change how the volume is drawn beside it."""
         view = session.new_view(picture_scenes.SIZE, **picture_scenes.CAMERA)
@@ -163,7 +178,7 @@ class Sessions:
         _, first = self.scene()
         session.clear()
         for step in (self.two_views, self.two_volumes, self.interaction, self.playing,
-                     self.representations, self.surface_lic, self.missing_array, self.damaged):
+                     self.representations, self.budgets, self.surface_lic, self.missing_array, self.damaged):
             print(f"--- {step.__name__}", flush=True)
             step()
         _, last = self.scene()

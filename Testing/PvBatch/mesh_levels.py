@@ -173,10 +173,7 @@ def check_read_ahead(path, array):
     for ahead in (0, 1):
         reader = simple.OpenDataFile(path)
         reader.ReadAhead = ahead
-        for mebibytes in (0, 512):  # what others have decoded goes
-            reader.CacheBudget = mebibytes
-            reader.UpdateVTKObjects()
-        before = reader.GetPropertyValue("BricksReadAhead")
+        reader.CacheBudget = 512  # nothing is there that others have decoded
         for time in reader.TimestepValues:
             reader.UpdatePipeline(time)
             grid = servermanager.Fetch(reader)
@@ -184,7 +181,7 @@ def check_read_ahead(path, array):
             played.setdefault(time, []).append(None if values is None else vtk_to_numpy(values).copy())
             sleep(0.1)  # a display shows it
         reader.UpdatePropertyInformation()
-        hits = reader.GetPropertyValue("BricksReadAhead") - before
+        hits = reader.GetPropertyValue("BricksReadAhead")
         seconds = reader.GetPropertyValue("LoadSeconds")
         print(f"{hits} bricks of {path} were decoded ahead, the last step took {1e3 * seconds:.1f} ms", flush=True)
         session.require(seconds > 0.0, "no word of what loading took")

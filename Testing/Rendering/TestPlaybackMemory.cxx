@@ -4,7 +4,6 @@
 
 #include "MapperTesting.h"
 
-#include "Cache/BrickCache.h"
 #include "vtkBanyanFrameStatistics.h"
 #include "vtkBanyanSeriesReader.h"
 #include "vtkBanyanVolumeMapper.h"
@@ -78,6 +77,7 @@ void Play(const std::string& path, bool touch)
 {
   vtkNew<vtkBanyanSeriesReader> reader;
   reader->SetFileName(path.c_str());
+  reader->SetCacheBudget(Budget >> 20);
   vtkNew<vtkBanyanVolumeMapper> mapper;
   mapper->SetInputConnection(reader->GetOutputPort());
   Stage stage(mapper);
@@ -97,8 +97,8 @@ void Play(const std::string& path, bool touch)
       sum += reader->GetOutput()->GetPointData()->GetScalars()->GetTuple1(1000);
     }
     stage.Draw();
-    Check(
-      banyan::BrickCache::Process().GetStatistics().Bytes <= Budget, "the cache keeps its budget");
+    Check(static_cast<std::uint64_t>(mapper->GetStatistics()->GetCacheBytes()) <= Budget,
+      "the cache keeps its budget");
   }
   const std::uint64_t peak = watch.Finish();
   const std::uint64_t allowed = before + Budget + (touch ? StepBytes : 0) + Slack;
@@ -118,7 +118,6 @@ int main()
   const TemporaryFolder folder;
   const std::string path = folder / "series.banyan";
   WriteSeries(path, Balls, Samples, Steps, 1.0 / 512.0);
-  banyan::BrickCache::Process().SetBudget(Budget);
   Play(path, false);
   Play(path, true);
   return Failures();

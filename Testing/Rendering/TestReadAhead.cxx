@@ -5,6 +5,7 @@
 
 #include "Base/Timer.h"
 #include "Cache/BrickCache.h"
+#include "Series/Decode/CacheContext.h"
 #include "vtkBanyanFrameStatistics.h"
 #include "vtkBanyanSeriesReader.h"
 #include "vtkBanyanVolumeMapper.h"
@@ -36,7 +37,7 @@ struct Outcome
 
 Outcome Play(const std::string& path, bool ahead, bool backwards)
 {
-  banyan::BrickCache::Process().Clear();
+  banyan::BrickCache::Of(*banyan::CacheContext::Process()).Clear();
   Outcome outcome;
   vtkNew<vtkBanyanSeriesReader> reader;
   reader->SetFileName(path.c_str());
@@ -66,7 +67,7 @@ Outcome Play(const std::string& path, bool ahead, bool backwards)
 /// A camera that is close to the volume turns past it, from one side to the other.
 Outcome Turn(const std::string& path, bool ahead)
 {
-  banyan::BrickCache::Process().Clear();
+  banyan::BrickCache::Of(*banyan::CacheContext::Process()).Clear();
   Outcome outcome;
   vtkNew<vtkBanyanSeriesReader> reader;
   reader->SetFileName(path.c_str());

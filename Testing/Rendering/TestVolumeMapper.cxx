@@ -63,6 +63,36 @@ void EncodedDrawsLikePlain(const std::string& path)
   }
 }
 
+/// The budget is changed while the series is shown. Without one, bricks are decoded for each
+/// picture.
+void TheBudgetChangesNoPicture(const std::string& path)
+{
+  vtkNew<vtkBanyanSeriesReader> reader;
+  reader->SetFileName(path.c_str());
+  vtkNew<vtkBanyanVolumeMapper> mapper;
+  mapper->SetSampleDistanceVoxels(1.0);
+  mapper->SetInputConnection(reader->GetOutputPort());
+  Stage stage(mapper);
+  stage.LookAt(Bounds);
+  reader->UpdateTimeStep(0);
+  const Picture expected = stage.Draw();
+  const vtkIdType shared = mapper->GetStatistics()->GetCacheBytes();
+  for (const int mebibytes : { 0, 1, 64, -1 })
+  {
+    reader->SetCacheBudget(mebibytes);
+    reader->UpdateTimeStep(0);
+    const Picture first = stage.Draw();
+    Check(first == expected, "the picture is the same with any budget");
+    const vtkIdType misses = mapper->GetStatistics()->GetCacheMisses();
+    const vtkIdType bytes = mapper->GetStatistics()->GetCacheBytes();
+    Check((misses > 0) == (mebibytes >= 0), "caches of its own are empty at first");
+    Check(mebibytes < 0 ? bytes == shared : bytes <= (vtkIdType{ mebibytes } << 20) / 8 * 3,
+      "decoded bricks are those of the series");
+    Check((bytes > 0) == (mebibytes != 0), "no budget, no bricks");
+    Check(stage.Draw() == expected, "and the next one is");
+  }
+}
+
 /// Level 1 is every second sample: the same picture as of those samples by themselves.
 void ACoarserLevelDrawsItsSamples(const std::string& path)
 {
@@ -350,6 +380,7 @@ int main()
 {
   const TemporaryFolder folder;
   EncodedDrawsLikePlain(folder / "series.banyan");
+  TheBudgetChangesNoPicture(folder / "series.banyan");
   ACoarserLevelDrawsItsSamples(folder / "series.banyan");
   AMovedImageIsDrawnWhereItLies(folder / "series.banyan");
   MatricesMoveTheVolume();

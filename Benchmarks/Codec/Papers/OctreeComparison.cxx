@@ -45,7 +45,7 @@ OctreeComparison CompareWithOctree(
   {
     const bool after = !previous.Uniform.empty();
     ReadRegion(
-      BrickCache::Process(), file, { step, array, component, 0 }, whole, values.data(), 1, 0);
+      BrickCache::Of(file), file, { step, array, component, 0 }, whole, values.data(), 1, 0);
     StepCodes codes{ QuantizeUniform(quantizer, index.Type, values.data(), whole.Count()),
       QuantizeAdaptive(quantizer, index.Type, values.data(), samples, OctreeComparison::Subdomain,
         after ? &previous.Adaptive : nullptr) };

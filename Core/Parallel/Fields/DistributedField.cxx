@@ -2,12 +2,12 @@
 #include "Parallel/Fields/DistributedField.h"
 
 #include "Base/ThreadPool.h"
-#include "Cache/BrickCache.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Fields/PiecesField.h"
 #include "Parallel/Fields/SeriesField.h"
 #include "Parallel/Fields/WholeField.h"
 #include "Render/Bricks/ArrayBrickSource.h"
+#include "Series/Decode/CacheContext.h"
 
 #include <algorithm>
 #include <utility>
@@ -60,9 +60,9 @@ std::uint64_t DistributedField::DrawingBudget()
 {
   // Less than the cache has: what one batch holds is then never evicted by that batch itself.
   constexpr std::uint64_t least = std::uint64_t{ 16 } << 20;
-  const std::uint64_t all = BrickCache::Process().DrawingBudget();
   BrickSource* const source = this->Field->Source();
-  return std::max(source ? source->Kept().ShareOf(all) : all, least);
+  return std::max(
+    source ? source->Kept().ShareBytes() : CacheContext::Process()->DrawingBudgetBytes(), least);
 }
 
 /// The field, which is another one if it was of another kind.

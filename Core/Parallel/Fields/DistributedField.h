@@ -53,8 +53,8 @@ public:
   DrawnField& Drawn() { return *this->Field; }
   const DrawnField& Drawn() const { return *this->Field; }
 
-  /// What loaded and packed bricks of this rank may take: its part of what the process has for
-  /// drawing, which all volumes that are drawn share.
+  /// Bytes that loaded and packed bricks of this rank may take: its part of the budget for drawing
+  /// of its caches, which all volumes that are drawn with them share.
   std::uint64_t DrawingBudget();
 
 private:

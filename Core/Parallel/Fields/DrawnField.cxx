@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Fields/DrawnField.h"
 
+#include "Series/Decode/CacheContext.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -35,6 +37,12 @@ FieldPlace PlaceOfSamples(const Grid& grid, const Box& samples)
   }
   place.Bounds = { { low.x, high.x, low.y, high.y, low.z, high.z } };
   return place;
+}
+
+const std::shared_ptr<CacheContext>& DrawnField::Caches()
+{
+  BrickSource* const source = this->Source();
+  return source ? source->Kept().Caches() : CacheContext::Process();
 }
 
 ValueRange DrawnField::RangeHere()

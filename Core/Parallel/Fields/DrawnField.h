@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,8 @@ public:
 
   /// All bricks, as this rank has them; owned by the field. Null when there is nothing to draw.
   virtual BrickSource* Source() = 0;
+  /// The caches of the series; those of the process where there is none.
+  const std::shared_ptr<CacheContext>& Caches();
   /// One per rank.
   virtual const std::vector<Box>& Zones() const = 0;
   /// Of the values that this rank knows.

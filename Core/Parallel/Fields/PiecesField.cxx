@@ -3,6 +3,7 @@
 
 #include "Base/ThreadPool.h"
 #include "Cache/BrickCache.h"
+#include "Series/Decode/CacheContext.h"
 
 namespace banyan
 {
@@ -12,7 +13,7 @@ void PiecesField::Take(Communicator& communicator, const std::vector<Box>& sampl
 {
   if (!this->Pieces)
   {
-    this->Pieces = std::make_unique<PieceField>(&BrickCache::Process());
+    this->Pieces = std::make_unique<PieceField>(&BrickCache::Of(*CacheContext::Process()));
   }
   try
   {
@@ -29,7 +30,7 @@ void PiecesField::BeginFrame(Communicator& communicator, RayScene& scene)
 {
   if (this->Pieces)
   {
-    this->Pieces->BeginFrame(communicator, scene, BrickCache::Process().DecodedBudget());
+    this->Pieces->BeginFrame(communicator, scene, CacheContext::Process()->DecodedBudgetBytes());
   }
 }
 
@@ -38,7 +39,7 @@ void PiecesField::BringLevels(Communicator& communicator, const RayScene& scene,
   if (this->Pieces)
   {
     this->Pieces->BringLevels(communicator, scene, coarsest,
-      BrickCache::Process().DecodedBudget() / 8, ThreadPool::Process());
+      CacheContext::Process()->DecodedBudgetBytes() / 8, ThreadPool::Process());
   }
 }
 

@@ -6,6 +6,7 @@
 #include "Render/Bricks/EnhancedBrickSource.h"
 #include "Render/Bricks/SeriesBrickSource.h"
 #include "Render/Bricks/TimeStepPrefetcher.h"
+#include "Series/Decode/CacheContext.h"
 
 #include <utility>
 
@@ -51,14 +52,16 @@ int FirstOfAlike(const std::vector<SeriesField::Piece>& pieces,
 SeriesField::SeriesField() = default;
 SeriesField::~SeriesField() = default;
 
-void SeriesField::Open(const std::string& path, const std::string& fingerprint)
+void SeriesField::Open(
+  const std::string& path, const std::string& fingerprint, std::int64_t cacheBytes)
 {
   if (this->Series && this->Series->Path() == path &&
-      ToHex(this->Series->Fingerprint()) == fingerprint)
+      ToHex(this->Series->Fingerprint()) == fingerprint &&
+      this->Series->Caches()->OwnBudgetBytes() == cacheBytes)
   {
     return;
   }
-  this->Series = SeriesFile::Open(path);
+  this->Series = SeriesFile::Open(path, CacheContext::WithBudget(cacheBytes));
   if (ToHex(this->Series->Fingerprint()) != fingerprint)
   {
     throw Error(
@@ -81,6 +84,8 @@ bool SeriesField::Take(Communicator& communicator, const std::shared_ptr<const S
     return false;
   }
   const auto first = static_cast<std::size_t>(rank);
+  const double cacheBytes =
+    AllMax(communicator, held ? static_cast<double>(held->Caches()->OwnBudgetBytes()) : -1.0);
   bool whole = false;
   try
   {
@@ -90,7 +95,7 @@ bool SeriesField::Take(Communicator& communicator, const std::shared_ptr<const S
     }
     else
     {
-      this->Open(paths[first], fingerprints[first]);
+      this->Open(paths[first], fingerprints[first], static_cast<std::int64_t>(cacheBytes));
     }
     whole = ExposedSamples(*this->Series, pieces[first].Level) == wish.Samples.Size();
     if (whole && problem.empty())
@@ -147,8 +152,8 @@ void SeriesField::ReadAhead(const RayScene& scene, int rank)
   }
   try
   {
-    BrickCache& cache = BrickCache::Process();
-    if (!this->Ahead)
+    BrickCache& cache = BrickCache::Of(*this->Series);
+    if (!this->Ahead || &this->Ahead->DecodesInto() != &cache)
     {
       this->Ahead = std::make_unique<TimeStepPrefetcher>(cache, ThreadPool::Process().Width());
       this->Ahead->Drawing(*this->Series, this->Step);
@@ -162,7 +167,7 @@ void SeriesField::ReadAhead(const RayScene& scene, int rank)
     }
     if (this->Ahead->Next() < 0 && !coming.empty())
     {
-      this->Ahead->Work().Start(this->Series, std::move(coming), cache.DecodedBudget() / 4);
+      this->Ahead->Work().Start(this->Series, std::move(coming), cache.Budget() / 4);
     }
   }
   catch (const std::exception&)

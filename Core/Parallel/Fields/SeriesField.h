@@ -66,7 +66,8 @@ public:
   std::uint64_t BytesRead() const override;
 
 private:
-  void Open(const std::string& path, const std::string& fingerprint);
+  /// @param cacheBytes for CacheContext::WithBudget
+  void Open(const std::string& path, const std::string& fingerprint, std::int64_t cacheBytes);
   void MakeZones(const Piece& field, const Wish& wish, int ranks);
 
   std::shared_ptr<const SeriesFile> Series;

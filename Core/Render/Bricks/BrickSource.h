@@ -129,6 +129,12 @@ public:
   /// What the ray caster keeps of this source and its levels from picture to picture. Values must
   /// not change while the source lives.
   PackedBrickCache& Kept() const { return *this->KeptOfSource; }
+  /// Whose budget for drawing that shares: the process's, unless something else is said here,
+  /// before anything is drawn.
+  void ShareBudgetOf(const std::shared_ptr<CacheContext>& caches)
+  {
+    this->KeptOfSource = std::make_shared<PackedBrickCache>(caches);
+  }
   /// The number under which a brick of this level is kept.
   std::int64_t KeptNumber(std::int64_t brick) const
   {

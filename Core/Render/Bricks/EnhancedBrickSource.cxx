@@ -141,17 +141,26 @@ std::unique_ptr<BrickSource> MakeSeriesSource(const std::shared_ptr<const Series
     key.Step = step;
     return step < 0 || step >= series->Index().Steps()
              ? nullptr
-             : std::make_unique<SeriesBrickSource>(series, key, component, BrickCache::Process());
+             : std::make_unique<SeriesBrickSource>(series, key, component, BrickCache::Of(*series));
   };
+  std::unique_ptr<BrickSource> source;
   if (how.Strength == 0.0)
   {
-    return at(field.Step);
+    source = at(field.Step);
   }
-  TemporalEnhancement complete = how;
-  const ArrayIndex& array = series->Index().Arrays.at(static_cast<std::size_t>(field.Array));
-  complete.NoiseFloor = EnhancementFor(array, how.Strength, component).NoiseFloor;
-  return std::make_unique<EnhancedBrickSource>(
-    complete, at(field.Step - 1), at(field.Step), at(field.Step + 1));
+  else
+  {
+    TemporalEnhancement complete = how;
+    const ArrayIndex& array = series->Index().Arrays.at(static_cast<std::size_t>(field.Array));
+    complete.NoiseFloor = EnhancementFor(array, how.Strength, component).NoiseFloor;
+    source = std::make_unique<EnhancedBrickSource>(
+      complete, at(field.Step - 1), at(field.Step), at(field.Step + 1));
+  }
+  if (source)
+  {
+    source->ShareBudgetOf(series->Caches());
+  }
+  return source;
 }
 
 } // namespace banyan

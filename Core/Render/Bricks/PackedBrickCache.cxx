@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Render/Bricks/PackedBrickCache.h"
 
-#include <atomic>
+#include "Series/Decode/CacheContext.h"
+
 #include <mutex>
 
 namespace banyan
@@ -9,15 +10,22 @@ namespace banyan
 namespace
 {
 
-/// Those of the process that keep bricks.
-std::atomic<int> Holders{ 0 };
-
 std::uint64_t BytesOf(const PackedBrick& packed)
 {
   return packed.Bytes();
 }
 
 } // namespace
+
+PackedBrickCache::PackedBrickCache()
+  : PackedBrickCache(CacheContext::Process())
+{
+}
+
+PackedBrickCache::PackedBrickCache(std::shared_ptr<CacheContext> caches)
+  : Context(std::move(caches))
+{
+}
 
 PackedBrickCache::~PackedBrickCache()
 {
@@ -27,15 +35,15 @@ PackedBrickCache::~PackedBrickCache()
 /// The caller has the lock, or is alone.
 void PackedBrickCache::SetHeld(std::uint64_t bytes)
 {
-  Holders += (bytes > 0 ? 1 : 0) - (this->HeldBytes > 0 ? 1 : 0);
+  this->Context->DrawingSources() += (bytes > 0 ? 1 : 0) - (this->HeldBytes > 0 ? 1 : 0);
   this->HeldBytes = bytes;
 }
 
-std::uint64_t PackedBrickCache::ShareOf(std::uint64_t budgetBytes) const
+std::uint64_t PackedBrickCache::ShareBytes() const
 {
   const std::shared_lock<std::shared_mutex> lock(this->Mutex);
-  const int others = Holders - (this->HeldBytes > 0 ? 1 : 0);
-  return budgetBytes / static_cast<std::uint64_t>(others + 1);
+  const int others = this->Context->DrawingSources() - (this->HeldBytes > 0 ? 1 : 0);
+  return this->Context->DrawingBudgetBytes() / static_cast<std::uint64_t>(others + 1);
 }
 
 void PackedBrickCache::BeginPicture(std::uint64_t limitBytes, bool ages)

@@ -17,6 +17,8 @@
 namespace banyan
 {
 
+class CacheContext;
+
 /// Packed bricks that a source keeps from one picture to the next. What is there stays, as long as
 /// pictures use it: pictures go through bricks in ever other orders, and dropping the least
 /// recently used of more than there is room for would keep none in time.
@@ -27,7 +29,9 @@ class PackedBrickCache
 public:
   using Pointer = std::shared_ptr<const PackedBrick>;
 
-  PackedBrickCache() = default;
+  /// Shares the budget for drawing of the process, or of other caches.
+  PackedBrickCache();
+  explicit PackedBrickCache(std::shared_ptr<CacheContext> caches);
   ~PackedBrickCache();
   PackedBrickCache(const PackedBrickCache&) = delete;
   PackedBrickCache& operator=(const PackedBrickCache&) = delete;
@@ -35,9 +39,10 @@ public:
   /// Of what drawing may take, what is kept from picture to picture. The rest is for bricks that
   /// are packed for one picture.
   static std::uint64_t PartOf(std::uint64_t budgetBytes) { return budgetBytes / 4 * 3; }
-  /// Of what all sources of the process may take, this one's part: those that keep bricks have
+  /// The part of the context's budget for drawing that is this one's: all that keep bricks have
   /// equal ones.
-  std::uint64_t ShareOf(std::uint64_t budgetBytes) const;
+  std::uint64_t ShareBytes() const;
+  const std::shared_ptr<CacheContext>& Caches() const { return this->Context; }
 
   /// Lets go of bricks that the last two pictures did not use, and of all beyond the limit.
   /// @param ages false for a picture that only helps to make the next one, and does not count
@@ -95,6 +100,7 @@ private:
   void SetHeld(std::uint64_t bytes);
   const Item* FindHere(const Wanted& wanted) const;
 
+  std::shared_ptr<CacheContext> Context;
   std::uint64_t LimitBytes = 0;
   std::uint64_t HeldBytes = 0;
   std::int64_t Picture = 0;

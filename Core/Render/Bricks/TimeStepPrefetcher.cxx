@@ -58,7 +58,7 @@ void TimeStepPrefetcher::Drawn(
                  [steps](const FieldBricks& field)
                  { return field.Field.Step < 0 || field.Field.Step >= steps; }),
     wanted.end());
-  this->Decoder.Start(series, std::move(wanted), this->Cache.DecodedBudget() / 2);
+  this->Decoder.Start(series, std::move(wanted), this->Cache.Budget() / 2);
 }
 
 } // namespace banyan

@@ -35,6 +35,7 @@ public:
 
   /// The step that is expected to be drawn next; -1 for none.
   int Next() const { return this->NextStep; }
+  const BrickCache& DecodesInto() const { return this->Cache; }
   BackgroundDecoder& Work() { return this->Decoder; }
 
 private:

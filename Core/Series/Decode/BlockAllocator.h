@@ -35,7 +35,7 @@ public:
   static void Free(void* memory, std::size_t bytes) noexcept;
 
   /// Limits the bytes of all slabs; those above it go when they are empty. Default: 128 MiB.
-  /// QuantizedBlockCache sets it to its budget.
+  /// QuantizedBlockCache sets it to the budgets of all of its kind.
   static void KeepAtMost(std::size_t bytes);
 
   /// Returns the bytes of all slabs, for tests.

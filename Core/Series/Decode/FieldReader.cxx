@@ -34,7 +34,7 @@ FieldReader::FieldReader(const OpenSeries& series)
 
 FieldReader::~FieldReader()
 {
-  QuantizedBlockCache::Process().Forget(this->Series.Id);
+  this->Series.Caches->Blocks().Forget(this->Series.Id);
 }
 
 std::shared_ptr<GroupReader> FieldReader::Segment(int step)
@@ -50,7 +50,8 @@ std::shared_ptr<GroupReader> FieldReader::Segment(int step)
     {
       file = std::make_shared<const SegmentFile>(this->Series.Folder, index);
     }
-    segment = std::make_shared<GroupReader>(file, index, this->Series.Components);
+    segment =
+      std::make_shared<GroupReader>(file, index, this->Series.Components, *this->Series.Caches);
   }
   return segment;
 }
@@ -187,7 +188,7 @@ void FieldReader::ForgetOldGroups()
     const bool keep =
       count <= 2 * std::size_t{ this->Series.Components } ||
       (count <= KeptTables * std::size_t{ this->Series.Components } &&
-        bytes <= std::min(KeptTableBytes, QuantizedBlockCache::Process().BudgetBytes() / 2));
+        bytes <= std::min(KeptTableBytes, this->Series.Caches->Blocks().BudgetBytes() / 2));
     kept = keep ? std::next(kept) : this->Opened.erase(kept);
   }
 }

@@ -19,6 +19,7 @@ GroupField::GroupField(GroupReader& segment, std::uint64_t series, std::uint32_t
   const glm::ivec3& samples, int brickCells, int levels,
   std::function<std::shared_ptr<GroupField>()> before)
   : File(segment)
+  , Cache(segment.Caches().Blocks())
   , Series(series)
   , Component(component)
   , BrickCells(brickCells)
@@ -75,8 +76,7 @@ QuantizedBlockCache::Box GroupField::ReferenceBox(int step, int plane, const glm
   const stages::In stage(stages::Lookup);
   if (this->BeforeFits)
   {
-    if (QuantizedBlockCache::Box found =
-          QuantizedBlockCache::Process().Find(this->KeyOf(step, plane, block)))
+    if (QuantizedBlockCache::Box found = this->Cache.Find(this->KeyOf(step, plane, block)))
     {
       return found;
     }
@@ -199,8 +199,8 @@ QuantizedBlockCache::Box GroupField::DecodeAs(int step, int plane, const glm::iv
     const BlockCode& neighbour = code.Blocks[1 << axis];
     if (neighbour.Exists && !neighbour.Uniform && !neighbour.Same)
     {
-      neighbours[axis] = QuantizedBlockCache::Process().Find(
-        this->KeyOf(step, plane, BlockDirectory::BlockBehind(block, 1 << axis)));
+      neighbours[axis] =
+        this->Cache.Find(this->KeyOf(step, plane, BlockDirectory::BlockBehind(block, 1 << axis)));
       code.Neighbours[axis] = neighbours[axis] ? neighbours[axis]->Numbers<Number>() : nullptr;
     }
   }
@@ -234,7 +234,7 @@ QuantizedBlockCache::Box GroupField::Box(
 {
   const stages::In stage(stages::Lookup);
   const QuantizedBlockCache::Key key = this->KeyOf(step, plane, block);
-  if (QuantizedBlockCache::Box found = QuantizedBlockCache::Process().Find(key))
+  if (QuantizedBlockCache::Box found = this->Cache.Find(key))
   {
     return found;
   }
@@ -243,7 +243,7 @@ QuantizedBlockCache::Box GroupField::Box(
   // decoded.
   const bool lowPriority =
     streaming && plane == 0 && ReferenceDistance(step, this->File.Steps()) == 1;
-  QuantizedBlockCache::Process().Add(key, box, lowPriority);
+  this->Cache.Add(key, box, lowPriority);
   return box;
 }
 

@@ -89,6 +89,7 @@ private:
   static LinePrefetcher& Ahead();
 
   GroupReader& File;
+  QuantizedBlockCache& Cache;
   std::uint64_t Series;
   std::uint32_t Component;
   int BrickCells;

@@ -10,17 +10,18 @@
 namespace banyan
 {
 
-GroupReader::GroupReader(
-  const std::string& folder, const SegmentIndex& index, std::uint32_t components)
-  : GroupReader(std::make_shared<const SegmentFile>(folder, index), index, components)
+GroupReader::GroupReader(const std::string& folder, const SegmentIndex& index,
+  std::uint32_t components, CacheContext& caches)
+  : GroupReader(std::make_shared<const SegmentFile>(folder, index), index, components, caches)
 {
 }
 
-GroupReader::GroupReader(
-  std::shared_ptr<const SegmentFile> file, const SegmentIndex& index, std::uint32_t components)
+GroupReader::GroupReader(std::shared_ptr<const SegmentFile> file, const SegmentIndex& index,
+  std::uint32_t components, CacheContext& caches)
   : File(std::move(file))
   , Index(index)
   , Components(components)
+  , Context(caches)
   , Expected{ index.HashLow, index.HashHigh }
 {
 }
@@ -108,7 +109,8 @@ PayloadPages& GroupReader::Payloads()
       }
       std::vector<std::uint32_t> numbers(static_cast<std::size_t>(pages));
       std::memcpy(numbers.data(), hashes.data(), hashes.size());
-      this->Pages = std::make_unique<PayloadPages>(*this->File, end, std::move(numbers));
+      this->Pages = std::make_unique<PayloadPages>(
+        this->Context.Payloads(), *this->File, end, std::move(numbers));
     });
   return *this->Pages;
 }

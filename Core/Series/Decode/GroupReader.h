@@ -3,7 +3,7 @@
 #define banyan_Series_Decode_GroupReader_h
 
 #include "Base/Hash.h"
-#include "Series/Decode/PayloadPages.h"
+#include "Series/Decode/CacheContext.h"
 #include "Series/Format/GroupFormat.h"
 #include "Series/Format/SegmentFormat.h"
 
@@ -20,10 +20,12 @@ class GroupReader
 {
 public:
   /// @param components of all arrays of the series
-  GroupReader(const std::string& folder, const SegmentIndex& index, std::uint32_t components);
+  /// @param caches live longer
+  GroupReader(const std::string& folder, const SegmentIndex& index, std::uint32_t components,
+    CacheContext& caches = *CacheContext::Process());
   /// @param file of several readers, where the index names it for several groups
-  GroupReader(
-    std::shared_ptr<const SegmentFile> file, const SegmentIndex& index, std::uint32_t components);
+  GroupReader(std::shared_ptr<const SegmentFile> file, const SegmentIndex& index,
+    std::uint32_t components, CacheContext& caches = *CacheContext::Process());
 
   const std::string& Path() const { return this->File->Path(); }
   int FirstStep() const { return this->Index.FirstStep; }
@@ -42,6 +44,8 @@ public:
   /// of their checksums is damaged.
   PayloadPages& Payloads();
 
+  CacheContext& Caches() const { return this->Context; }
+
   const Hash128& HeaderHash() const { return this->Expected; }
 
 private:
@@ -50,6 +54,7 @@ private:
   std::shared_ptr<const SegmentFile> File;
   SegmentIndex Index;
   std::uint32_t Components;
+  CacheContext& Context;
   Hash128 Expected;
   std::mutex Mutex;
   bool Checked = false;

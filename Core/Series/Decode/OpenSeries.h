@@ -3,9 +3,11 @@
 #define banyan_Series_Decode_OpenSeries_h
 
 #include "Base/Error.h"
+#include "Series/Decode/CacheContext.h"
 #include "Series/Decode/SeriesFile.h"
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,7 @@ struct OpenSeries
   std::string Folder; ///< of the segments
   SeriesIndex Index;
   std::uint64_t Id = 0;
+  std::shared_ptr<CacheContext> Caches;
   std::vector<BrickLayout> Layouts;           ///< by level
   std::vector<std::uint32_t> FirstComponents; ///< number of components before each array
   std::uint32_t Components = 0;               ///< of all arrays

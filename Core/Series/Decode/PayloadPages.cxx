@@ -4,7 +4,6 @@
 #include "Base/Error.h"
 #include "Base/Hash.h"
 #include "Series/Decode/BlockAllocator.h"
-#include "Series/Decode/QuantizedBlockCache.h"
 #include "Series/Format/GroupFormat.h"
 #include "Series/Format/SegmentFormat.h"
 
@@ -16,22 +15,6 @@ namespace banyan
 {
 namespace
 {
-
-std::atomic<std::uint64_t> Total{ 0 }; ///< bytes of pages in memory
-std::atomic<std::uint64_t> Clock{ 0 };
-
-/// All of the process.
-struct Registry
-{
-  std::mutex Mutex;
-  std::vector<PayloadPages*> All;
-};
-
-Registry& Process()
-{
-  static Registry* const registry = new Registry; // never destroyed, as QuantizedBlockCache
-  return *registry;
-}
 
 /// A page that is missing brings so many bytes of the file to the system's memory: blocks are
 /// decoded backwards, which the system does not foresee.
@@ -45,8 +28,10 @@ constexpr std::size_t LockCount = 16;
 class PayloadPages::Memory
 {
 public:
-  Memory(std::uint64_t end, std::uint64_t pages, std::uint64_t pageBytes)
-    : EachBytes(std::max(PieceBytes, pageBytes))
+  Memory(std::atomic<std::uint64_t>& total, std::uint64_t end, std::uint64_t pages,
+    std::uint64_t pageBytes)
+    : Total(total)
+    , EachBytes(std::max(PieceBytes, pageBytes))
     , Pieces(static_cast<std::size_t>((end + EachBytes - 1) / EachBytes))
     , Good(static_cast<std::size_t>(pages))
     , Expected(static_cast<std::size_t>(end / WindowBytes + 1))
@@ -61,7 +46,7 @@ public:
         BlockAllocator::Free(piece, static_cast<std::size_t>(this->EachBytes));
       }
     }
-    Total -= this->Taken;
+    this->Total -= this->Taken;
   }
   Memory(const Memory&) = delete;
   Memory& operator=(const Memory&) = delete;
@@ -79,7 +64,7 @@ public:
   void Count(std::uint64_t bytes)
   {
     this->Taken += bytes;
-    Total += bytes;
+    this->Total += bytes;
   }
   /// Makes room for what lies in the piece at an offset. Under the lock of the piece.
   void MakeRoom(std::uint64_t offset)
@@ -113,7 +98,8 @@ public:
     return all.data();
   }
 
-  const std::uint64_t EachBytes; ///< of a piece
+  std::atomic<std::uint64_t>& Total; ///< of all segments
+  const std::uint64_t EachBytes;     ///< of a piece
   std::vector<std::atomic<std::uint8_t*>> Pieces;
   std::vector<std::atomic<bool>> Good;     ///< by page: it was read and checked
   std::vector<std::atomic<bool>> Expected; ///< by window: the system was told
@@ -123,43 +109,33 @@ public:
   std::atomic<std::uint64_t> Taken{ 0 };
 };
 
-PayloadPages::PayloadPages(
-  const SegmentFile& file, std::uint64_t end, std::vector<std::uint32_t> hashes)
-  : File(file)
+PayloadPages::PayloadPages(PayloadMemory& together, const SegmentFile& file, std::uint64_t end,
+  std::vector<std::uint32_t> hashes)
+  : Together(together)
+  , File(file)
   , End(end)
   , PageBytes(PageBytesOf(end))
   , Hashes(std::move(hashes))
 {
-  Registry& registry = Process();
-  std::lock_guard<std::mutex> lock(registry.Mutex);
-  registry.All.push_back(this);
+  std::lock_guard<std::mutex> lock(together.Mutex);
+  together.All.push_back(this);
 }
 
 PayloadPages::~PayloadPages()
 {
-  Registry& registry = Process();
-  std::lock_guard<std::mutex> lock(registry.Mutex);
-  registry.All.erase(
-    std::remove(registry.All.begin(), registry.All.end(), this), registry.All.end());
-}
-
-std::uint64_t PayloadPages::BytesInMemory()
-{
-  return Total;
-}
-
-std::uint64_t PayloadPages::BudgetBytes()
-{
-  return QuantizedBlockCache::Process().BudgetBytes() / 8;
+  std::lock_guard<std::mutex> lock(this->Together.Mutex);
+  auto& all = this->Together.All;
+  all.erase(std::remove(all.begin(), all.end(), this), all.end());
 }
 
 PayloadPages::Hold PayloadPages::InMemory()
 {
-  this->Used.store(Clock.load(std::memory_order_relaxed), std::memory_order_relaxed);
+  this->Used.store(this->Together.Clock.load(std::memory_order_relaxed), std::memory_order_relaxed);
   std::lock_guard<std::mutex> lock(this->Mutex);
   if (!this->Now)
   {
-    this->Now = std::make_shared<Memory>(this->End, this->Hashes.size(), this->PageBytes);
+    this->Now = std::make_shared<Memory>(
+      this->Together.Total, this->End, this->Hashes.size(), this->PageBytes);
   }
   return this->Now;
 }
@@ -206,7 +182,7 @@ void PayloadPages::ReadIn(Memory& memory, std::uint64_t page, std::uint64_t end)
   memory.MakeRoom(first);
   const std::uint64_t bytes = std::min(end * this->PageBytes, this->End) - first;
   this->File.Read(first, memory.At(first), static_cast<std::size_t>(bytes));
-  Clock.fetch_add(1, std::memory_order_relaxed);
+  this->Together.Clock.fetch_add(1, std::memory_order_relaxed);
   for (; page < end; ++page)
   {
     const std::uint64_t from =
@@ -220,26 +196,25 @@ void PayloadPages::ReadIn(Memory& memory, std::uint64_t page, std::uint64_t end)
     }
     memory.Good[static_cast<std::size_t>(page)].store(true, std::memory_order_release);
   }
-  if (Total > BudgetBytes())
+  if (this->Together.Total > this->Together.Budget)
   {
-    Shrink(BudgetBytes());
+    this->Together.Shrink(this->Together.Budget);
   }
 }
 
-void PayloadPages::Shrink(std::uint64_t most)
+void PayloadMemory::Shrink(std::uint64_t most)
 {
-  Registry& registry = Process();
-  std::lock_guard<std::mutex> lock(registry.Mutex);
+  std::lock_guard<std::mutex> lock(this->Mutex);
   std::vector<std::pair<std::uint64_t, PayloadPages*>> all; // others go on using them meanwhile
-  for (PayloadPages* pages : registry.All)
+  for (PayloadPages* pages : this->All)
   {
     all.emplace_back(pages->Used, pages);
   }
   std::sort(all.begin(), all.end());
-  for (auto next = all.begin(); next != all.end() && Total > most; ++next)
+  for (auto next = all.begin(); next != all.end() && this->Total > most; ++next)
   {
     // Who decodes from it holds it until that is done.
-    Hold let;
+    PayloadPages::Hold let;
     std::lock_guard<std::mutex> own(next->second->Mutex);
     std::swap(let, next->second->Now);
   }

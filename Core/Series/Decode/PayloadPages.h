@@ -13,12 +13,37 @@
 namespace banyan
 {
 
+class PayloadPages;
+
+/// The payloads of several segments, which together keep no more than a budget. Beyond, all pages
+/// of the segment that was used least recently go, and are read and checked again. Thread-safe.
+class PayloadMemory
+{
+public:
+  explicit PayloadMemory(std::uint64_t budgetBytes)
+    : Budget(budgetBytes)
+  {
+  }
+
+  std::uint64_t BudgetBytes() const { return this->Budget; }
+  /// Bytes of pages in memory.
+  std::uint64_t Bytes() const { return this->Total; }
+  /// Lets go of what was used least recently until so many bytes are left.
+  void Shrink(std::uint64_t most);
+
+private:
+  friend class PayloadPages;
+
+  const std::uint64_t Budget;
+  std::atomic<std::uint64_t> Total{ 0 };
+  std::atomic<std::uint64_t> Clock{ 0 };
+  std::mutex Mutex;
+  std::vector<PayloadPages*> All;
+};
+
 /// The payloads of a segment in memory of this process. Pages are read when they are
 /// needed first, and their checksums are those of what was read: what happens to the file later
 /// does not matter. May be used from any thread.
-///
-/// All segments together keep so many bytes (BudgetBytes()). Beyond, all pages of the segment that
-/// was used least recently go, and are read and checked again.
 class PayloadPages
 {
 public:
@@ -26,10 +51,12 @@ public:
   class Memory;
   using Hold = std::shared_ptr<Memory>;
 
+  /// @param together lives longer
   /// @param file lives longer
   /// @param end of the payloads in the file
   /// @param hashes of the pages; as many as there are
-  PayloadPages(const SegmentFile& file, std::uint64_t end, std::vector<std::uint32_t> hashes);
+  PayloadPages(PayloadMemory& together, const SegmentFile& file, std::uint64_t end,
+    std::vector<std::uint32_t> hashes);
   ~PayloadPages();
   PayloadPages(const PayloadPages&) = delete;
   PayloadPages& operator=(const PayloadPages&) = delete;
@@ -42,16 +69,12 @@ public:
   /// @param offset and @param bytes lie between the header and the end of the payloads
   const std::uint8_t* At(const Hold& hold, std::uint64_t offset, std::uint64_t bytes);
 
-  /// Bytes of all segments of the process.
-  static std::uint64_t BytesInMemory();
-  /// An eighth of what QuantizedBlockCache keeps.
-  static std::uint64_t BudgetBytes();
-  /// Lets go of what was used least recently until so many bytes are left.
-  static void Shrink(std::uint64_t most);
-
 private:
+  friend class PayloadMemory;
+
   void ReadIn(Memory& memory, std::uint64_t page, std::uint64_t end);
 
+  PayloadMemory& Together;
   const SegmentFile& File;
   std::uint64_t End;
   std::uint64_t PageBytes;

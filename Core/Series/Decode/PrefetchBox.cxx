@@ -26,8 +26,7 @@ void GroupField::Prefetch(int step, int plane, const glm::ivec3& block)
   ahead.Clear();
   const auto fetch = [&](int from)
   {
-    const void* const numbers =
-      QuantizedBlockCache::Process().AddressOf(this->KeyOf(from, plane, block));
+    const void* const numbers = this->Cache.AddressOf(this->KeyOf(from, plane, block));
     if (numbers != nullptr)
     {
       ahead.Add(numbers, whole);
@@ -43,10 +42,9 @@ void GroupField::Prefetch(int step, int plane, const glm::ivec3& block)
   {
     const glm::ivec3 behind = block + glm::ivec3{ 0, 0, 1 };
     const group::BlockEntry& other = this->Directory.Entry(step, plane, behind);
-    const void* const numbers =
-      other.Uniform || other.Same
-        ? nullptr
-        : QuantizedBlockCache::Process().AddressOf(this->KeyOf(step, plane, behind));
+    const void* const numbers = other.Uniform || other.Same
+                                  ? nullptr
+                                  : this->Cache.AddressOf(this->KeyOf(step, plane, behind));
     if (numbers != nullptr)
     {
       ahead.Add(numbers, layer);

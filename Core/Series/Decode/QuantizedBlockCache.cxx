@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Series/Decode/QuantizedBlockCache.h"
 
-#include "Base/CacheBudget.h"
 #include "Base/Hash.h"
 
 #include <algorithm>
@@ -16,19 +15,29 @@ std::uint64_t BytesOf(const QuantizedBlockCache::Box& box)
   return box->Bytes() + 180; // with what is kept beside it
 }
 
-} // namespace
-
-QuantizedBlockCache::QuantizedBlockCache()
-  : Budget(CacheBudgetBytes() / 4)
+/// All caches of the process share the slabs.
+/// @param bytes more than before
+void ChangeSlabs(std::int64_t bytes)
 {
-  BlockAllocator::KeepAtMost(this->Budget);
+  static std::mutex mutex;
+  static std::uint64_t all = 0;
+  std::lock_guard<std::mutex> lock(mutex);
+  all += static_cast<std::uint64_t>(bytes);
+  BlockAllocator::KeepAtMost(all);
 }
 
-QuantizedBlockCache& QuantizedBlockCache::Process()
+} // namespace
+
+QuantizedBlockCache::QuantizedBlockCache(std::uint64_t budgetBytes)
+  : Budget(budgetBytes)
 {
-  // Never destroyed: series that are closed while the process ends still come here.
-  static QuantizedBlockCache* cache = new QuantizedBlockCache;
-  return *cache;
+  ChangeSlabs(static_cast<std::int64_t>(budgetBytes));
+}
+
+QuantizedBlockCache::~QuantizedBlockCache()
+{
+  this->ForgetAll();
+  ChangeSlabs(-static_cast<std::int64_t>(this->Budget));
 }
 
 /// The lowest bits are the block's: blocks that follow each other have buckets that do.
@@ -249,20 +258,6 @@ void QuantizedBlockCache::ForgetAll()
 void QuantizedBlockCache::ForgetFinest()
 {
   this->RemoveThose([](const Key& key) { return key.Plane == 0; });
-}
-
-void QuantizedBlockCache::SetBudgetBytes(std::uint64_t bytes)
-{
-  // A slab goes when all of its boxes have gone: with less room, none stay.
-  const bool less = bytes < this->Budget;
-  this->Budget = less ? 0 : bytes;
-  for (Shard& shard : this->Shards)
-  {
-    std::lock_guard<std::mutex> lock(shard.Mutex);
-    this->Shrink(shard);
-  }
-  BlockAllocator::KeepAtMost(bytes);
-  this->Budget = bytes;
 }
 
 std::uint64_t QuantizedBlockCache::Bytes() const

@@ -4,7 +4,6 @@
 
 #include "Series/Decode/QuantizedBlock.h"
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -15,7 +14,7 @@ namespace banyan
 
 /// Decoded boxes (lattice numbers) that other steps and finer blocks are predicted from, kept
 /// within a byte budget. What goes out is found as by the hand of a clock, which spares once what
-/// was used since it came by. One for the process. Thread-safe.
+/// was used since it came by. Thread-safe.
 class QuantizedBlockCache
 {
 public:
@@ -36,7 +35,10 @@ public:
     }
   };
 
-  static QuantizedBlockCache& Process();
+  explicit QuantizedBlockCache(std::uint64_t budgetBytes);
+  ~QuantizedBlockCache();
+  QuantizedBlockCache(const QuantizedBlockCache&) = delete;
+  QuantizedBlockCache& operator=(const QuantizedBlockCache&) = delete;
 
   /// Null when it is not there.
   Box Find(const Key& key);
@@ -54,15 +56,10 @@ public:
   void ForgetAll();
   void ForgetFinest();
 
-  /// Takes effect at once; with a smaller one all boxes go. Default: a quarter of CacheBudgetBytes;
-  /// a new budget of the process's BrickCache sets it to a quarter of that.
-  void SetBudgetBytes(std::uint64_t bytes);
   std::uint64_t BudgetBytes() const { return this->Budget; }
   std::uint64_t Bytes() const;
 
 private:
-  QuantizedBlockCache();
-
   struct Kept
   {
     Key Name;
@@ -111,7 +108,7 @@ private:
   void Shrink(Shard& shard);
 
   Shard Shards[ShardCount];
-  std::atomic<std::uint64_t> Budget;
+  const std::uint64_t Budget;
 };
 
 } // namespace banyan

@@ -76,7 +76,8 @@ SeriesFile::SeriesFile()
 
 SeriesFile::~SeriesFile() = default;
 
-std::shared_ptr<SeriesFile> SeriesFile::Open(const std::string& path)
+std::shared_ptr<SeriesFile> SeriesFile::Open(
+  const std::string& path, std::shared_ptr<CacheContext> caches)
 {
   (void)CacheBudgetAskedFor(); // who reads a series hears of a budget that is none
   RefuseFolder(path);
@@ -86,6 +87,7 @@ std::shared_ptr<SeriesFile> SeriesFile::Open(const std::string& path)
     try
     {
       std::shared_ptr<SeriesFile> file(new SeriesFile);
+      file->Self->Series.Caches = caches ? caches : CacheContext::Process();
       file->Self->Read(path, text);
       return file;
     }
@@ -153,6 +155,11 @@ const std::string& SeriesFile::Folder() const
 const SeriesIndex& SeriesFile::Index() const
 {
   return this->Self->Series.Index;
+}
+
+const std::shared_ptr<CacheContext>& SeriesFile::Caches() const
+{
+  return this->Self->Series.Caches;
 }
 
 std::uint64_t SeriesFile::Id() const

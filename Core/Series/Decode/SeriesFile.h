@@ -14,6 +14,8 @@
 namespace banyan
 {
 
+class CacheContext;
+
 /// Names one field of scalars: a component of an array at a step and level.
 struct FieldKey
 {
@@ -60,13 +62,17 @@ class SeriesFile
 public:
   /// @param path of the index file; where it is a symbolic link, segments may lie beside what it
   /// leads to
-  static std::shared_ptr<SeriesFile> Open(const std::string& path);
+  /// @param caches that it uses; null: those of the process
+  static std::shared_ptr<SeriesFile> Open(
+    const std::string& path, std::shared_ptr<CacheContext> caches = nullptr);
   ~SeriesFile();
 
   const std::string& Path() const;
   /// Where the segments are: see FindSeriesFolder.
   const std::string& Folder() const;
   const SeriesIndex& Index() const;
+  /// The caches that it was opened with.
+  const std::shared_ptr<CacheContext>& Caches() const;
   /// A number that no other open series of this process has.
   std::uint64_t Id() const;
   /// A hash of the index, which names all segments by their content: a series that replaces another

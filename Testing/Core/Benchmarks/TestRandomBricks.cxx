@@ -2,7 +2,7 @@
 // What random bricks are measured with.
 #include "Measure.h"
 
-#include "Series/Decode/QuantizedBlockCache.h"
+#include "Series/Decode/CacheContext.h"
 #include "Series/SeriesTesting.h"
 
 #include <gtest/gtest.h>
@@ -102,7 +102,7 @@ TEST(RandomBricks, OursForgetWhatWasDecoded)
   AppendBanyanMethods(methods);
   const auto encoded = methods[0]->Encode(series, { 8, ErrorBoundFor(series, 8), folder.Path() });
   ASSERT_TRUE(encoded->KeepsDecoded());
-  const QuantizedBlockCache& cache = QuantizedBlockCache::Process();
+  const QuantizedBlockCache& cache = CacheContext::Process()->Blocks();
   std::vector<float> brick(16 * 16 * 16);
   encoded->DecodeBrick(0, { glm::ivec3(0), glm::ivec3(16) }, brick.data());
   const std::uint64_t all = cache.Bytes();

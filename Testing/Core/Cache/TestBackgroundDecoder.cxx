@@ -147,7 +147,7 @@ TEST_F(Ahead, FetchedBricksTakeTheRoomOfDecodedOnes)
   EXPECT_GT(cache.GetStatistics().Bytes, 8 * BrickBytes);
   cache.Reserve(6 * static_cast<std::int64_t>(BrickBytes));
   EXPECT_LE(cache.GetStatistics().Bytes, 4 * BrickBytes);
-  EXPECT_EQ(cache.DecodedBudget(), 10 * BrickBytes);
+  EXPECT_EQ(cache.Budget(), 10 * BrickBytes);
   cache.Reserve(6 * static_cast<std::int64_t>(BrickBytes));
   EXPECT_EQ(cache.GetStatistics().Bytes, 0u);
   cache.Reserve(-12 * static_cast<std::int64_t>(BrickBytes));

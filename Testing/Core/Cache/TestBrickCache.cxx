@@ -4,7 +4,7 @@
 #include "Base/AvailableMemory.h"
 #include "Base/CacheBudget.h"
 #include "Base/Error.h"
-#include "Series/Decode/QuantizedBlockCache.h"
+#include "Series/Decode/CacheContext.h"
 
 #include <atomic>
 #include <fstream>
@@ -87,14 +87,14 @@ TEST_F(BrickCacheTest, MacroVoxelsTakeNoRoomAndNoDecoding)
 
 TEST_F(BrickCacheTest, StaysWithinItsBudgetAndEvictsTheLeastRecentlyUsed)
 {
-  BrickCache cache(Plenty);
-  (void)cache.Get(*this->File, {}, 1);
-  const std::uint64_t one = cache.GetStatistics().Bytes;
+  BrickCache large(Plenty);
+  (void)large.Get(*this->File, {}, 1);
+  const std::uint64_t one = large.GetStatistics().Bytes;
   EXPECT_GE(one, 17u * 17 * 17 * 4);
-  cache.Clear();
-  EXPECT_EQ(cache.GetStatistics().Bytes, 0u);
+  large.Clear();
+  EXPECT_EQ(large.GetStatistics().Bytes, 0u);
 
-  cache.SetBudget(3 * one);
+  BrickCache cache(3 * one);
   EXPECT_EQ(cache.Budget(), 3 * one);
   for (const std::int64_t brick : { 0, 1, 2 })
   {
@@ -113,10 +113,10 @@ TEST_F(BrickCacheTest, StaysWithinItsBudgetAndEvictsTheLeastRecentlyUsed)
   EXPECT_EQ(cache.GetStatistics().Misses, before.Misses + 1);
   EXPECT_LE(cache.GetStatistics().PeakBytes, 3 * one);
 
-  cache.SetBudget(one);
+  cache.Reserve(static_cast<std::int64_t>(2 * one));
   EXPECT_EQ(cache.GetStatistics().Bytes, one);
   const auto held = cache.Get(*this->File, {}, 1); // the one that stayed
-  cache.SetBudget(0);
+  cache.Reserve(static_cast<std::int64_t>(one));
   EXPECT_EQ(cache.GetStatistics().Bytes, 0u);
   EXPECT_TRUE(this->IsRight(*held, 0, 1)) << "what somebody holds outlives eviction";
   EXPECT_TRUE(this->IsRight(*cache.Get(*this->File, {}, 2), 0, 2));
@@ -242,26 +242,23 @@ TEST_F(BrickCacheTest, QuestionsBeyondTheSeriesAreErrors)
   EXPECT_THROW((void)cache.Get(*this->File, { 4, 0, 0, 0 }, 0), Error);
 }
 
-TEST(ProcessBrickCache, IsOne)
-{
-  EXPECT_EQ(&BrickCache::Process(), &BrickCache::Process());
-  EXPECT_GT(BrickCache::Process().Budget(), 0u);
-}
-
 int UsualMegabytes()
 {
   return static_cast<int>(UsualCacheBudget(MachineMemory(), RanksStartedHere()) >> 20);
 }
 
-/// Of the whole, when that of lattices is a quarter of it.
+/// MiB of the whole budget; 99 when its parts are not as they should be.
 int BudgetWith(const char* megabytes)
 {
   setenv("BANYAN_CACHE_MB", megabytes, 1);
-  const std::uint64_t all = BrickCache::Process().Budget();
-  return QuantizedBlockCache::Process().BudgetBytes() == all / 4 ? static_cast<int>(all >> 20) : 99;
+  CacheContext& caches = *CacheContext::Process();
+  const std::uint64_t all = caches.BudgetBytes();
+  return caches.Blocks().BudgetBytes() == all / 4 && BrickCache::Of(caches).Budget() == all / 8 * 3
+           ? static_cast<int>(all >> 20)
+           : 99;
 }
 
-TEST(ProcessBrickCacheDeathTest, TakesItsBudgetFromTheEnvironment)
+TEST(ProcessCacheDeathTest, TakesItsBudgetFromTheEnvironment)
 {
   // Each expectation runs in a new process, where the cache is not made yet.
   ::testing::FLAGS_gtest_death_test_style = "threadsafe";
@@ -274,17 +271,18 @@ TEST(ProcessBrickCacheDeathTest, TakesItsBudgetFromTheEnvironment)
   }
 }
 
-/// Of all of it, with BANYAN_CACHE_MB as it is.
-std::vector<float> FirstBrick(const std::string& path)
+/// Values of step 1, from a series that was just opened.
+std::vector<float> FirstBrick(
+  const std::string& path, const std::shared_ptr<CacheContext>& caches = nullptr)
 {
-  const auto file = SeriesFile::Open(path);
+  const auto file = SeriesFile::Open(path, caches);
   const BrickLayout layout = file->Layout(0);
   std::vector<float> values(static_cast<std::size_t>(layout.SamplesOf(0).Count()));
   file->DecodeBrick({ 1, 0, 0, 0 }, 0, values.data());
   return values;
 }
 
-TEST(ProcessBrickCacheDeathTest, WithoutACacheBricksAreTheSame)
+TEST(ProcessCacheDeathTest, WithoutACacheBricksAreTheSame)
 {
   ::testing::FLAGS_gtest_death_test_style = "threadsafe";
   const TemporaryFolder folder;
@@ -294,9 +292,10 @@ TEST(ProcessBrickCacheDeathTest, WithoutACacheBricksAreTheSame)
   {
     setenv("BANYAN_CACHE_MB", "0", 1);
     const std::vector<float> without = FirstBrick(folder / "s.banyan");
-    const bool nothing = QuantizedBlockCache::Process().Bytes() == 0;
-    QuantizedBlockCache::Process().SetBudgetBytes(1 << 20);
-    return nothing && without == FirstBrick(folder / "s.banyan") ? 5 : 6;
+    const bool nothing = CacheContext::Process()->Blocks().Bytes() == 0;
+    return nothing && without == FirstBrick(folder / "s.banyan", CacheContext::WithBudget(4 << 20))
+             ? 5
+             : 6;
   };
   EXPECT_EXIT(_exit(compare()), ::testing::ExitedWithCode(5), "");
 }

@@ -2,8 +2,7 @@
 #include "Series/SeriesTesting.h"
 
 #include "Base/Error.h"
-#include "Series/Decode/PayloadPages.h"
-#include "Series/Decode/QuantizedBlockCache.h"
+#include "Series/Decode/CacheContext.h"
 
 #include <algorithm>
 #include <cstring>
@@ -83,11 +82,11 @@ TEST(ReadRegion, LargePartsGoPastTheCache)
   const Box whole{ glm::ivec3(0), file->Layout(0).Samples() };
   const std::uint64_t bytes = static_cast<std::uint64_t>(whole.Count()) * sizeof(float);
   std::vector<float> values(static_cast<std::size_t>(whole.Count()));
-  BrickCache large(16 * bytes + 16);
+  BrickCache large(6 * bytes + 6);
   ReadRegion(large, *file, {}, whole, values.data(), 1, 0);
   EXPECT_EQ(large.GetStatistics().Misses, 8u);
   std::vector<float> past(values.size());
-  BrickCache small(16 * bytes);
+  BrickCache small(6 * bytes);
   ReadRegion(small, *file, {}, whole, past.data(), 1, 0);
   EXPECT_EQ(past, values);
   EXPECT_EQ(small.GetStatistics().Misses, 0u);
@@ -253,22 +252,20 @@ TEST(ReadRegion, PlayingALongSeriesDoesNotCollectItsFilesInMemory)
   options.KeyframeInterval = 1;
   const SeriesIndex index = Encode(folder / "s.banyan", grid,
     Sample<std::uint8_t>(grid, 20, [&](int, int, int, int) { return random() % 256; }), options);
-  const auto file = SeriesFile::Open(folder / "s.banyan");
   const std::uint64_t one = index.Segments[0].Bytes;
   ASSERT_GT(one, 100000u);
-  const std::uint64_t before = QuantizedBlockCache::Process().BudgetBytes();
-  QuantizedBlockCache::Process().SetBudgetBytes(32 * one);
-  const std::uint64_t most = PayloadPages::BudgetBytes();
+  const auto caches = std::make_shared<CacheContext>(128 * one);
+  const auto file = SeriesFile::Open(folder / "s.banyan", caches);
+  const std::uint64_t most = caches->Payloads().BudgetBytes();
   ASSERT_LT(most, 5 * one);
   for (int s = 0; s < 20; ++s)
   {
     (void)ReadAll<std::uint8_t>(*file, { s, 0, 0, 0 });
-    EXPECT_LE(PayloadPages::BytesInMemory(), most) << "step " << s;
-    EXPECT_GT(PayloadPages::BytesInMemory(), 0u);
+    EXPECT_LE(caches->Payloads().Bytes(), most) << "step " << s;
+    EXPECT_GT(caches->Payloads().Bytes(), 0u);
     EXPECT_EQ(MappedMemoryOf(folder.Path()), 0u);
   }
   (void)ReadAll<std::uint8_t>(*file, { 0, 0, 0, 0 }); // let go, and still there
-  QuantizedBlockCache::Process().SetBudgetBytes(before);
 }
 
 TEST(ReadRegion, RejectsWhatLiesOutside)

@@ -2,7 +2,7 @@
 // How many steps a look at one brick takes: what an encoding tells is what a reader decodes.
 #include "Series/SeriesTesting.h"
 
-#include "Series/Decode/QuantizedBlockCache.h"
+#include "Series/Decode/CacheContext.h"
 #include "Series/Format/GroupFormat.h"
 
 #include <set>
@@ -43,7 +43,7 @@ std::size_t StepsDecoded(const SeriesFile& file)
     {
       for (std::uint64_t block = 0; block < most; ++block)
       {
-        if (QuantizedBlockCache::Process().Find(
+        if (file.Caches()->Blocks().Find(
               { file.Id(), block, static_cast<std::uint32_t>(step), 0, plane }))
         {
           steps.insert(step);
@@ -86,7 +86,7 @@ TEST_P(Chains, AreAsLongAsToldStartingWithNothingInMemory)
   {
     for (std::int64_t b = 0; b < layout.BrickCount(); ++b)
     {
-      QuantizedBlockCache::Process().Forget(file->Id());
+      file->Caches()->Blocks().Forget(file->Id());
       std::vector<float> values(static_cast<std::size_t>(layout.SamplesOf(b).Count()));
       file->DecodeBrick({ s, 0, 0, 0 }, b, values.data());
       // A brick of one value is not decoded, and is a look at its own step.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Series/SeriesTesting.h"
 
-#include "Series/Decode/QuantizedBlockCache.h"
+#include "Series/Decode/CacheContext.h"
 
 #include <atomic>
 #include <thread>
@@ -43,10 +43,8 @@ TEST(ConcurrentReading, SixteenThreadsReadWhatOneReads)
       }
     }
   }
-  QuantizedBlockCache& cache = QuantizedBlockCache::Process();
-  const std::uint64_t budget = cache.BudgetBytes();
-  cache.SetBudgetBytes(200000); // boxes come and go
-  const auto file = SeriesFile::Open(path);
+  const auto caches = std::make_shared<CacheContext>(800000); // boxes come and go
+  const auto file = SeriesFile::Open(path, caches);
   std::atomic<int> wrong{ 0 };
   std::vector<std::thread> threads;
   for (unsigned t = 0; t < 16; ++t)
@@ -75,7 +73,6 @@ TEST(ConcurrentReading, SixteenThreadsReadWhatOneReads)
   {
     thread.join();
   }
-  cache.SetBudgetBytes(budget);
   EXPECT_EQ(wrong, 0);
 }
 

@@ -3,8 +3,7 @@
 #include "Series/ContainerTesting.h"
 #include "Series/SeriesTesting.h"
 
-#include "Series/Decode/PayloadPages.h"
-#include "Series/Decode/QuantizedBlockCache.h"
+#include "Series/Decode/CacheContext.h"
 #include "Series/Format/SegmentFile.h"
 
 #include <atomic>
@@ -26,8 +25,8 @@ namespace fs = std::filesystem;
 /// Nothing of the files is in memory.
 void ForgetAll()
 {
-  QuantizedBlockCache::Process().ForgetAll();
-  PayloadPages::Shrink(0);
+  CacheContext::Process()->Blocks().ForgetAll();
+  CacheContext::Process()->Payloads().Shrink(0);
 }
 
 void Flip(const std::string& path, std::uint64_t place, int bit)
@@ -198,17 +197,16 @@ TYPED_TEST(FilesWhileOpen, FilesThatAreReplacedOrGoneAreReadOn)
 
 TYPED_TEST(FilesWhileOpen, TakeNoMoreMemoryThanTheyMay)
 {
-  const std::uint64_t before = QuantizedBlockCache::Process().BudgetBytes();
-  QuantizedBlockCache::Process().SetBudgetBytes(1 << 20);
-  ForgetAll();
-  (void)ReadSteps<TypeParam>(*this->File, 0);
-  EXPECT_GT(PayloadPages::BytesInMemory(), 0u);
-  EXPECT_LE(PayloadPages::BytesInMemory(), PayloadPages::BudgetBytes());
-  QuantizedBlockCache::Process().SetBudgetBytes(0);
-  ForgetAll();
-  (void)ReadSteps<TypeParam>(*this->File, 0);
-  EXPECT_EQ(PayloadPages::BytesInMemory(), 0u);
-  QuantizedBlockCache::Process().SetBudgetBytes(before);
+  const auto some = std::make_shared<CacheContext>(4 << 20);
+  (void)ReadSteps<TypeParam>(*SeriesFile::Open(this->Path, some), 0);
+  const auto file = SeriesFile::Open(this->Path, some);
+  (void)ReadSteps<TypeParam>(*file, 0);
+  EXPECT_GT(some->Payloads().Bytes(), 0u);
+  EXPECT_LE(some->Payloads().Bytes(), some->Payloads().BudgetBytes());
+  const auto none = std::make_shared<CacheContext>(0);
+  const auto other = SeriesFile::Open(this->Path, none);
+  (void)ReadSteps<TypeParam>(*other, 0);
+  EXPECT_EQ(none->Payloads().Bytes(), 0u);
 }
 
 TYPED_TEST(FilesWhileOpen, MayBeForgottenWhileThreadsRead)

@@ -3,8 +3,8 @@
 #include "Series/SeriesTesting.h"
 
 #include "Base/Error.h"
+#include "Series/Decode/CacheContext.h"
 #include "Series/Decode/GroupReader.h"
-#include "Series/Decode/QuantizedBlockCache.h"
 #include "Series/Format/GroupFormat.h"
 
 #include <fstream>
@@ -119,7 +119,7 @@ TEST(OpenGroups, ClosedGroupsAreReadByThemselves)
     {
       expected.push_back(ReadAll<float>(*whole, { s, 0, 0, 0 }));
     }
-    QuantizedBlockCache::Process().Forget(whole->Id());
+    whole->Caches()->Blocks().Forget(whole->Id());
     // The groups around the second one cannot be read.
     for (const int other : { 0, 2 })
     {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Series/SeriesTesting.h"
 
-#include "Series/Decode/QuantizedBlockCache.h"
+#include "Series/Decode/CacheContext.h"
 
 #include <algorithm>
 #include <fstream>
@@ -91,23 +91,6 @@ bool SameValues(const std::vector<float>& a, const std::vector<float>& b)
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
 }
 
-/// The cache of lattice numbers is one for the process: as it was, at the end.
-class LatticeBudget
-{
-public:
-  explicit LatticeBudget(std::uint64_t bytes)
-    : Before(QuantizedBlockCache::Process().BudgetBytes())
-  {
-    QuantizedBlockCache::Process().SetBudgetBytes(bytes);
-  }
-  ~LatticeBudget() { QuantizedBlockCache::Process().SetBudgetBytes(this->Before); }
-  LatticeBudget(const LatticeBudget&) = delete;
-  LatticeBudget& operator=(const LatticeBudget&) = delete;
-
-private:
-  std::uint64_t Before;
-};
-
 class SeekAndPlay : public ::testing::TestWithParam<int>
 {
 };
@@ -124,8 +107,8 @@ TEST_P(SeekAndPlay, GiveTheSameBits)
   const SeriesIndex index = EncodeMoving(path, grid, steps, options, 2);
   std::vector<std::vector<float>> played;
   {
-    const LatticeBudget ample(std::uint64_t{ 1 } << 28);
-    const auto file = SeriesFile::Open(path);
+    const auto file =
+      SeriesFile::Open(path, std::make_shared<CacheContext>(std::uint64_t{ 1 } << 30));
     for (const Place& place : AllPlaces(*file))
     {
       played.push_back(Decode(*file, place));
@@ -136,10 +119,9 @@ TEST_P(SeekAndPlay, GiveTheSameBits)
         ReadAll<float>(*file, { s, 0, 0, 0 }), index.Arrays[0].Components[0].ErrorBoundAbsolute));
     }
   }
-  for (const std::uint64_t budget : { std::uint64_t{ 0 }, std::uint64_t{ 100000 } })
+  for (const std::uint64_t budget : { std::uint64_t{ 0 }, std::uint64_t{ 400000 } })
   {
-    const LatticeBudget tiny(budget);
-    const auto file = SeriesFile::Open(path);
+    const auto file = SeriesFile::Open(path, std::make_shared<CacheContext>(budget));
     const std::vector<Place> places = AllPlaces(*file);
     std::vector<std::size_t> order(places.size());
     for (std::size_t i = 0; i < order.size(); ++i)
@@ -292,7 +274,7 @@ TEST_P(SeekAndPlay, OfAnyLengthStayInBound)
     ASSERT_EQ(file->Index().Steps(), static_cast<int>(count));
     for (std::size_t s = count; s-- > 0;) // backwards: nothing that was played is there
     {
-      QuantizedBlockCache::Process().Forget(file->Id());
+      file->Caches()->Blocks().Forget(file->Id());
       ASSERT_TRUE(WithinBound(some[s], ReadAll<float>(*file, { static_cast<int>(s), 0, 0, 0 }),
         index.Arrays[0].Components[0].ErrorBoundAbsolute))
         << "step " << s << " of " << count;

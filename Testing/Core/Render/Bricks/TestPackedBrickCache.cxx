@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Render/Scenes.h"
 
+#include "Series/Decode/CacheContext.h"
+
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -134,29 +136,32 @@ TEST(PackedBrickCache, BricksThatGoLeaveTheirMemoryToTheNext)
 
 TEST(PackedBrickCache, SourcesThatKeepBricksShareTheBudget)
 {
-  constexpr std::uint64_t budget = 600;
+  const auto caches = std::make_shared<CacheContext>(1600); // 600 are for drawing
+  PackedBrickCache others;                                  // of other caches
   const PackedBrickCache::Pointer packed = Pack(std::vector<double>(27, 1.0), 0.0);
-  PackedBrickCache first;
+  PackedBrickCache first(caches);
+  others.BeginPicture(1 << 20);
+  others.Keep(7, packed);
   first.BeginPicture(1 << 20);
-  EXPECT_EQ(first.ShareOf(budget), 600u);
+  EXPECT_EQ(first.ShareBytes(), 600u);
   first.Keep(7, packed);
-  EXPECT_EQ(first.ShareOf(budget), 600u);
+  EXPECT_EQ(first.ShareBytes(), 600u);
   {
-    PackedBrickCache second;
-    EXPECT_EQ(second.ShareOf(budget), 300u) << "before it has any itself";
+    PackedBrickCache second(caches);
+    EXPECT_EQ(second.ShareBytes(), 300u) << "before it has any itself";
     second.BeginPicture(1 << 20);
-    EXPECT_EQ(first.ShareOf(budget), 600u) << "one that keeps none needs none";
+    EXPECT_EQ(first.ShareBytes(), 600u) << "one that keeps none needs none";
     second.Keep(7, packed);
     second.Keep(8, packed);
-    EXPECT_EQ(first.ShareOf(budget), 300u);
-    EXPECT_EQ(second.ShareOf(budget), 300u);
+    EXPECT_EQ(first.ShareBytes(), 300u);
+    EXPECT_EQ(second.ShareBytes(), 300u);
     second.BeginPicture(0);
-    EXPECT_EQ(first.ShareOf(budget), 600u) << "it lets go of all";
+    EXPECT_EQ(first.ShareBytes(), 600u) << "it lets go of all";
     second.BeginPicture(1 << 20);
     second.Keep(7, packed);
-    EXPECT_EQ(first.ShareOf(budget), 300u);
+    EXPECT_EQ(first.ShareBytes(), 300u);
   }
-  EXPECT_EQ(first.ShareOf(budget), 600u) << "it is gone";
+  EXPECT_EQ(first.ShareBytes(), 600u) << "it is gone";
 }
 
 TEST(PackedBrickCache, PicturesAreTheSameAndLoadOnce)

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Series/Decode/BlockAllocator.h"
-#include "Series/Decode/QuantizedBlockCache.h"
 
 #include <gtest/gtest.h>
 
@@ -69,7 +68,7 @@ public:
     this->Before = BlockAllocator::BytesOfSlabs();
     BlockAllocator::KeepAtMost(this->Before + count * BlockAllocator::SlabBytes);
   }
-  ~MoreSlabs() { BlockAllocator::KeepAtMost(QuantizedBlockCache::Process().BudgetBytes()); }
+  ~MoreSlabs() { BlockAllocator::KeepAtMost(128 << 20); }
   std::size_t Bytes() const { return BlockAllocator::BytesOfSlabs() - this->Before; }
 
 private:

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Series/Decode/BlockAllocator.h"
 #include "Series/Decode/QuantizedBlockCache.h"
 
 #include <gtest/gtest.h>
@@ -11,27 +12,7 @@ namespace banyan
 namespace
 {
 
-constexpr std::uint64_t SeriesOfTest = 0xfffffff0u; ///< no series that is open
-
-/// The process's cache with a budget of its own, empty afterwards.
-class OwnBudget
-{
-public:
-  explicit OwnBudget(std::uint64_t bytes)
-    : Before(QuantizedBlockCache::Process().BudgetBytes())
-  {
-    QuantizedBlockCache::Process().SetBudgetBytes(bytes);
-  }
-  ~OwnBudget()
-  {
-    QuantizedBlockCache::Process().Forget(SeriesOfTest);
-    QuantizedBlockCache::Process().Forget(SeriesOfTest + 1);
-    QuantizedBlockCache::Process().SetBudgetBytes(this->Before);
-  }
-
-private:
-  std::uint64_t Before;
-};
+constexpr std::uint64_t SeriesOfTest = 17;
 
 QuantizedBlockCache::Key KeyOf(std::uint64_t block, std::uint64_t series = SeriesOfTest)
 {
@@ -47,9 +28,7 @@ QuantizedBlockCache::Box BoxOf(std::int16_t number)
 
 TEST(QuantizedBlockCache, BoxesAreFoundUntilTheyAreForgotten)
 {
-  const OwnBudget budget(std::uint64_t{ 64 } << 20);
-  QuantizedBlockCache& cache = QuantizedBlockCache::Process();
-  const std::uint64_t before = cache.Bytes();
+  QuantizedBlockCache cache(std::uint64_t{ 64 } << 20);
   constexpr int count = 5000;
   for (int i = 0; i < count; ++i)
   {
@@ -66,24 +45,22 @@ TEST(QuantizedBlockCache, BoxesAreFoundUntilTheyAreForgotten)
   }
   EXPECT_EQ(cache.AddressOf(KeyOf(count)), nullptr);
   EXPECT_EQ(cache.Find(KeyOf(count)), nullptr);
-  EXPECT_GE(cache.Bytes(), before + 2 * count * 200);
+  EXPECT_GE(cache.Bytes(), static_cast<std::uint64_t>(2 * count * 200));
   cache.Forget(SeriesOfTest);
   EXPECT_EQ(cache.Find(KeyOf(3)), nullptr);
   EXPECT_NE(cache.Find(KeyOf(3, SeriesOfTest + 1)), nullptr);
   cache.Forget(SeriesOfTest + 1);
-  EXPECT_EQ(cache.Bytes(), before);
+  EXPECT_EQ(cache.Bytes(), 0u);
 }
 
 TEST(QuantizedBlockCache, ForgetsTheFinestPlanesOrAll)
 {
-  const OwnBudget budget(std::uint64_t{ 64 } << 20);
-  QuantizedBlockCache& cache = QuantizedBlockCache::Process();
+  QuantizedBlockCache cache(std::uint64_t{ 64 } << 20);
   const auto keyOf = [](int i)
   {
     return QuantizedBlockCache::Key{ SeriesOfTest, static_cast<std::uint64_t>(i), 0, 0,
       static_cast<std::uint16_t>(i % 3) };
   };
-  cache.ForgetAll(); // what other tests left
   constexpr int count = 3000;
   const auto fill = [&]
   {
@@ -112,8 +89,7 @@ TEST(QuantizedBlockCache, ForgetsTheFinestPlanesOrAll)
 
 TEST(QuantizedBlockCache, StaysWithinItsBudgetAndKeepsWhatIsUsed)
 {
-  const OwnBudget budget(400 * 1000);
-  QuantizedBlockCache& cache = QuantizedBlockCache::Process();
+  QuantizedBlockCache cache(400 * 1000);
   std::unordered_map<std::uint64_t, std::int16_t> added;
   std::mt19937 random(5);
   int kept = 0;
@@ -137,16 +113,43 @@ TEST(QuantizedBlockCache, StaysWithinItsBudgetAndKeepsWhatIsUsed)
     cache.Add(KeyOf(favourite), BoxOf(0));
   }
   EXPECT_GT(kept, 18000);
-  cache.SetBudgetBytes(0);
+}
+
+TEST(QuantizedBlockCache, WithoutABudgetNothingStays)
+{
+  QuantizedBlockCache cache(0);
+  cache.Add(KeyOf(1), BoxOf(1));
   EXPECT_EQ(cache.Bytes(), 0u);
   EXPECT_EQ(cache.Find(KeyOf(1)), nullptr);
+}
+
+/// Boxes in slabs are limited by what all caches may keep.
+TEST(QuantizedBlockCache, CachesThatGoGiveTheirSlabsBack)
+{
+  BlockAllocator::KeepAtMost(0); // empty ones of other tests go
+  const std::size_t before = BlockAllocator::BytesOfSlabs();
+  {
+    QuantizedBlockCache one(std::uint64_t{ 32 } << 20);
+    QuantizedBlockCache other(std::uint64_t{ 32 } << 20);
+    for (QuantizedBlockCache* const cache : { &one, &other })
+    {
+      for (std::uint64_t i = 0; i < 2800; ++i)
+      {
+        cache->Add(KeyOf(i), std::make_shared<QuantizedBlock>(std::size_t{ 17 * 17 * 17 }, true));
+      }
+      EXPECT_GT(cache->Bytes(), std::uint64_t{ 20 } << 20);
+    }
+#ifndef BANYAN_HAS_ADDRESS_SANITIZER
+    EXPECT_GT(BlockAllocator::BytesOfSlabs(), before + (std::size_t{ 40 } << 20));
+#endif
+  }
+  EXPECT_LE(BlockAllocator::BytesOfSlabs(), before);
 }
 
 /// Boxes of one size in a cache with room for about 1600 of them.
 TEST(QuantizedBlockCache, BriefBoxesLeaveTheRoomToOthers)
 {
-  const OwnBudget budget(640 * 1000);
-  QuantizedBlockCache& cache = QuantizedBlockCache::Process();
+  QuantizedBlockCache cache(640 * 1000);
   constexpr std::uint64_t others = 1000, briefs = 20000, first = 100000;
   for (std::uint64_t i = 0; i < others; ++i)
   {
