@@ -34,10 +34,11 @@ public:
   /// Forgets the stamp: the next Update takes the input of all ranks again.
   void Reset();
 
-  // All that follows is the same on all ranks, except for the bricks.
-
   /// Another number whenever what is drawn may have changed.
   std::uint64_t Version() const { return this->Updates; }
+
+  // From Problem to EncodingError everything is the same on all ranks.
+
   /// Why nothing can be drawn, in a sentence that names the rank; empty if all is well.
   const std::string& Problem() const { return this->ProblemText; }
   /// True when no rank has anything to draw.
