@@ -90,9 +90,9 @@ void FrameFigures::Publish(Communicator& communicator, const DrawnField& field,
   out->SetBytesMoved(Id(moved.Bytes));
   out->SetRenderSeconds(frame.RenderSeconds);
   out->SetCompositeSeconds(frame.CompositeSeconds);
-  out->SetPilotSeconds(frame.PilotSeconds);
+  out->SetProbeSeconds(frame.ProbeSeconds);
   out->SetStrideSeconds(frame.StrideSeconds);
-  out->SetPilots(frame.Pilots);
+  out->SetProbes(frame.Probes);
   out->SetImbalance(frame.Imbalance);
   out->SetSamplesTaken(frame.SamplesTaken);
   out->SetBricksDrawn(frame.BricksDrawn);

@@ -122,13 +122,13 @@ FloatImage VolumeFrame::Cast(vtkRenderer* renderer, const Backdrop& backdrop, in
   const std::uint64_t budget = field.DrawingBudget();
   const PhaseScope sampling(Phase::Sampling);
   this->PlanSampling(budget);
-  const FrameStatistics pilots = this->Statistics;
+  const FrameStatistics probes = this->Statistics;
   FloatImage picture = DrawDistributed(communicator, scene,
     { drawn.Source(), drawn.Zones(), budget, ThreadPool::Process() }, this->Statistics,
     this->Compositing(backdrop, volumes));
-  this->Statistics.SamplesTaken += pilots.SamplesTaken;
-  this->Statistics.BytesComposited += pilots.BytesComposited;
-  this->Statistics.MessagesComposited += pilots.MessagesComposited;
+  this->Statistics.SamplesTaken += probes.SamplesTaken;
+  this->Statistics.BytesComposited += probes.BytesComposited;
+  this->Statistics.MessagesComposited += probes.MessagesComposited;
   const PhaseScope balancing(Phase::Balancing);
   drawn.EndFrame(communicator);
   // Putting the picture on the screen takes about what it took the last time.

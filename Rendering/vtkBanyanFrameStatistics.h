@@ -19,13 +19,13 @@
     "Seconds of casting rays, loading bricks included. Slowest rank.")                             \
   Number(double, CompositeSeconds, 0.0,                                                            \
     "Seconds of compositing the pictures of all ranks.")                                           \
-  Number(double, PilotSeconds, 0.0,                                                                \
+  Number(double, ProbeSeconds, 0.0,                                                                \
     "Seconds before casting rays: finding the sample distances and levels that keep the "          \
     "tolerance.")                                                                                  \
   Number(double, StrideSeconds, 0.0,                                                               \
     "Seconds before casting rays: finding the pixels that need no rays.")                          \
-  Number(vtkIdType, Pilots, 0,                                                                     \
-    "Number of small pictures drawn for Pilot Seconds and Stride Seconds.")                        \
+  Number(vtkIdType, Probes, 0,                                                                     \
+    "Number of small pictures drawn for Probe Seconds and Stride Seconds.")                        \
   Number(double, Imbalance, 1.0,                                                                   \
     "Render seconds of the slowest rank, divided by the mean over all ranks. 1 is perfect.")       \
   Number(vtkIdType, Threads, 0,                                                                    \

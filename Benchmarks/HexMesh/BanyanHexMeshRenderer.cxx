@@ -55,7 +55,7 @@ public:
       wish.FinestLevelOfTile =
         FinestLevelsOfTiles(scene, this->Accuracy.MaxElementsPerPixel, wish.CoarsestLevel);
       const SamplingPlan plan =
-        PlanSamplings(scene, wish, [this](const RayScene& pilot) { return this->Cast(pilot); });
+        PlanSamplings(scene, wish, [this](const RayScene& probe) { return this->Cast(probe); });
       scene.Samplings = plan.Samplings;
       scene.OpacityLimit = plan.OpacityLimit;
     }

@@ -98,11 +98,11 @@ private:
     {
       const SamplingPlan plan = PlanSamplings(scene,
         { *setting.Tolerance, scene.SampleDistance, this->Plain ? 0 : CoarsestLevel },
-        [&](const RayScene& pilot) { return this->Cast(pilot, statistics); });
+        [&](const RayScene& probe) { return this->Cast(probe, statistics); });
       scene.Samplings = plan.Samplings;
       scene.OpacityLimit = plan.OpacityLimit;
       frame.EstimatedError = plan.EstimatedError;
-      frame.PilotSeconds = plan.PilotSeconds;
+      frame.ProbeSeconds = plan.ProbeSeconds;
       frame.StrideSeconds = plan.StrideSeconds;
     }
     return scene;

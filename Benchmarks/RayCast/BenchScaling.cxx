@@ -126,12 +126,12 @@ double PeakMiB()
 }
 
 /// The scene as it is to be sampled.
-RayScene Sampled(RayScene scene, double tolerance, int finestPilotLevel, const DrawPilot& draw)
+RayScene Sampled(RayScene scene, double tolerance, int finestProbeLevel, const DrawProbe& draw)
 {
   if (tolerance > 0.0)
   {
     const SamplingPlan plan = PlanSamplings(
-      scene, { tolerance, scene.SampleDistance, CoarsestLevel, finestPilotLevel }, draw);
+      scene, { tolerance, scene.SampleDistance, CoarsestLevel, finestProbeLevel }, draw);
     scene.Samplings = plan.Samplings;
     scene.OpacityLimit = plan.OpacityLimit;
   }
@@ -159,9 +159,9 @@ Frames DrawFrames(const Options& options, const Timer& sinceStart, BrickSource& 
     frames.Statistics = {};
     const auto draw = [&](const RayScene& wanted)
     { return CastRays(wanted, source, wanted.DomainCells, budget, pool, frames.Statistics); };
-    const int finestPilot = FinestLevelWithin(
+    const int finestProbe = FinestLevelWithin(
       scene, source, scene.DomainCells, CoarsestLevel, PackedBrickCache::PartOf(budget), pool);
-    const RayScene sampled = Sampled(scene, options.Tolerance, finestPilot, draw);
+    const RayScene sampled = Sampled(scene, options.Tolerance, finestProbe, draw);
     FloatImage picture = draw(sampled);
     InterpolateSkippedPixels(sampled, picture, pool);
     if (i == 0)

@@ -17,7 +17,7 @@ struct Candidate
   RayCastMeasurement Result;
   std::vector<double> Milliseconds;
   std::vector<double> ProcessorMilliseconds;
-  std::vector<double> PilotMilliseconds;
+  std::vector<double> ProbeMilliseconds;
   std::vector<double> StrideMilliseconds;
 };
 
@@ -84,9 +84,9 @@ void Add(Candidate& candidate, const Frame& frame)
 {
   candidate.Milliseconds.push_back(1e3 * frame.Seconds);
   candidate.ProcessorMilliseconds.push_back(1e3 * frame.ProcessorSeconds);
-  if (frame.PilotSeconds && frame.StrideSeconds)
+  if (frame.ProbeSeconds && frame.StrideSeconds)
   {
-    candidate.PilotMilliseconds.push_back(1e3 * *frame.PilotSeconds);
+    candidate.ProbeMilliseconds.push_back(1e3 * *frame.ProbeSeconds);
     candidate.StrideMilliseconds.push_back(1e3 * *frame.StrideSeconds);
   }
 }
@@ -167,9 +167,9 @@ std::vector<RayCastMeasurement> MeasureScene(const BenchScene& scene, const Floa
   {
     candidate.Result.FrameMilliseconds = MedianOf(candidate.Milliseconds);
     candidate.Result.ProcessorMilliseconds = MedianOf(candidate.ProcessorMilliseconds);
-    if (!candidate.PilotMilliseconds.empty())
+    if (!candidate.ProbeMilliseconds.empty())
     {
-      candidate.Result.PilotMilliseconds = MedianOf(candidate.PilotMilliseconds);
+      candidate.Result.ProbeMilliseconds = MedianOf(candidate.ProbeMilliseconds);
       candidate.Result.StrideMilliseconds = MedianOf(candidate.StrideMilliseconds);
     }
     results.push_back(candidate.Result);
@@ -181,7 +181,7 @@ std::string RayCastCsvHeader()
 {
   return "scene,renderer,threads,tolerance,ms_per_frame,samples,msamples_s,psnr_db,max_error,"
          "sample_distance,first_frame_ms,processor_ms,max_error_unrounded,estimated_error,tree_ms,"
-         "pilot_ms,stride_ms";
+         "probe_ms,stride_ms";
 }
 
 std::string RayCastCsvLine(const RayCastMeasurement& m)
@@ -199,7 +199,7 @@ std::string RayCastCsvLine(const RayCastMeasurement& m)
          Number(m.Accuracy.SampleDistance) + "," + Number(m.FirstFrameMilliseconds) + "," +
          Number(m.ProcessorMilliseconds) + "," + Number(m.LargestErrorUnrounded) + "," +
          Number(m.EstimatedError) + "," + Number(m.TreeMilliseconds) + "," +
-         Number(m.PilotMilliseconds) + "," + Number(m.StrideMilliseconds);
+         Number(m.ProbeMilliseconds) + "," + Number(m.StrideMilliseconds);
 }
 
 std::string RayCastMessage(const RayCastMeasurement& m)

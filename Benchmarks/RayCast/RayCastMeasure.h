@@ -22,7 +22,7 @@ struct RayCastMeasurement
   double FirstFrameMilliseconds = 0;
   std::optional<double> TreeMilliseconds;  ///< of the first frame, where it was made
   double ProcessorMilliseconds = 0;        ///< median, of all threads together
-  std::optional<double> PilotMilliseconds; ///< medians, where the renderer tells
+  std::optional<double> ProbeMilliseconds; ///< medians, where the renderer tells
   std::optional<double> StrideMilliseconds;
   std::optional<std::int64_t> Samples;
   PictureError Error;                          ///< of the picture in 8 bits

@@ -34,7 +34,7 @@ struct Frame
   std::optional<double> TreeSeconds;
   double ProcessorSeconds = 0; ///< of all threads together
   /// Of a tolerance, in Seconds: what finding distances and levels, and pixels without rays, took.
-  std::optional<double> PilotSeconds;
+  std::optional<double> ProbeSeconds;
   std::optional<double> StrideSeconds;
   Picture Shown;
   std::optional<FloatImage> Unrounded; ///< where the renderer has it

@@ -120,8 +120,8 @@ def plans(rows):
     yield "| scene | renderer | threads | tolerance | frame ms | distances and levels | pixels without rays |"
     yield "|---|---|---|---|---|---|---|"
     for row in rows:
-        if row.get("pilot_ms") is not None:
-            parts = (100.0 * row[column] / row["ms_per_frame"] for column in ("pilot_ms", "stride_ms"))
+        if row.get("probe_ms") is not None:
+            parts = (100.0 * row[column] / row["ms_per_frame"] for column in ("probe_ms", "stride_ms"))
             yield (f"| {row['scene']} | {row['renderer']} | {row['threads']:g} | {row['tolerance']:g} | "
                    f"{row['ms_per_frame']:.1f} | " + " | ".join(f"{part:.0f} %" for part in parts) + " |")
 

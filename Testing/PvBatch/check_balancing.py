@@ -45,7 +45,7 @@ def draw(data, mode, folder):
     """Pictures and figures of all frames in one mode."""
     view = session.new_view(SIZE, **camera(0))
     display = DATA[data](view)
-    # In place of the tolerance, which pilots may meet with other samples on other ranks.
+    # In place of the tolerance, which probes may meet with other samples on other ranks.
     display.SampleDistanceVoxels = 0.5
     display.LoadBalancing = mode
     taken = []

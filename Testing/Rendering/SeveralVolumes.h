@@ -57,7 +57,7 @@ struct Shown
     this->Volume->GetProperty()->SetScalarOpacity(opacities);
     this->Volume->GetProperty()->SetInterpolationTypeToLinear();
     this->Mapper->SetInputDataObject(this->Image);
-    this->Mapper->SetSampleDistanceVoxels(1.0); // takes no pilots
+    this->Mapper->SetSampleDistanceVoxels(1.0); // takes no probes
     this->Mapper->AddObserver(vtkCommand::WarningEvent, this->Messages);
     this->Mapper->AddObserver(vtkCommand::ErrorEvent, this->Messages);
     this->Mapper->AddObserver(vtkCommand::WarningEvent, this, &Shown::Count);

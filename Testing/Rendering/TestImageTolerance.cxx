@@ -34,9 +34,9 @@ bool Says(vtkBanyanVolumeMapper* mapper, const std::string& words)
 void CheckTimes(vtkBanyanVolumeMapper* mapper, bool planned)
 {
   vtkBanyanFrameStatistics* const frame = mapper->GetStatistics();
-  const double planning = frame->GetPilotSeconds() + frame->GetStrideSeconds();
-  Check(planned == (frame->GetPilotSeconds() > 0.0), "what pilots take is told");
-  Check(planned == (frame->GetPilots() > 1), "how many there were is told");
+  const double planning = frame->GetProbeSeconds() + frame->GetStrideSeconds();
+  Check(planned == (frame->GetProbeSeconds() > 0.0), "what probes take is told");
+  Check(planned == (frame->GetProbes() > 1), "how many there were is told");
   Check(planning <= frame->GetTotalSeconds(), "planning is part of the frame");
 }
 

@@ -18,9 +18,9 @@ struct FrameStatistics
   double TotalSeconds = 0;
   double RenderSeconds = 0;    ///< until the last ray; with what was composited meanwhile
   double CompositeSeconds = 0; ///< after the last ray; with waiting, where compositing began before
-  double PilotSeconds = 0;     ///< before that, of a plan: finding distances and levels
+  double ProbeSeconds = 0;     ///< before that, of a plan: finding distances and levels
   double StrideSeconds = 0;    ///< and pixels that need no rays
-  int Pilots = 0;              ///< small pictures that these took
+  int Probes = 0;              ///< small pictures that these took
   double Imbalance = 1;        ///< slowest rank's render seconds over the mean, >= 1
   std::int64_t SamplesTaken = 0;
   std::int64_t BricksDrawn = 0;

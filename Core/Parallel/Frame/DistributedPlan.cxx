@@ -2,7 +2,7 @@
 #include "Parallel/Frame/DistributedPlan.h"
 
 #include "Parallel/Communicate/Collective.h"
-#include "Parallel/Frame/DistributedPilot.h"
+#include "Parallel/Frame/DistributedProbe.h"
 
 #include <algorithm>
 
@@ -20,9 +20,9 @@ int LargestOfAll(Communicator& communicator, Function&& mine)
   return static_cast<int>(AllMax(communicator, value));
 }
 
-/// The finest level that all ranks can draw pilots from without loading everything again for each
+/// The finest level that all ranks can draw probes from without loading everything again for each
 /// of them: half the budget is for bricks that are kept.
-int FinestPilotLevel(
+int FinestProbeLevel(
   Communicator& communicator, const RayScene& scene, const RankShare& share, int coarsest)
 {
   if (coarsest == 0)
@@ -63,14 +63,14 @@ SamplingPlan PlanDistributed(Communicator& communicator, const RayScene& scene,
   ThrowTogether(communicator, share.Failure);
   wish.CoarsestLevel =
     CommonLevel(communicator, share.Source, scene.DomainCells, wish.CoarsestLevel);
-  wish.FinestPilotLevel = FinestPilotLevel(communicator, scene, share, wish.CoarsestLevel);
+  wish.FinestProbeLevel = FinestProbeLevel(communicator, scene, share, wish.CoarsestLevel);
   if (wish.StaysInMemory)
   {
-    wish.FinestLevel = std::max(wish.FinestLevel, wish.FinestPilotLevel);
+    wish.FinestLevel = std::max(wish.FinestLevel, wish.FinestProbeLevel);
   }
   return PlanSamplings(scene, wish,
-    [&](const RayScene& pilot)
-    { return DrawDistributedPilot(communicator, pilot, share, statistics); });
+    [&](const RayScene& probe)
+    { return DrawDistributedProbe(communicator, probe, share, statistics); });
 }
 
 } // namespace banyan

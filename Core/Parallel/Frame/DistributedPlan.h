@@ -13,13 +13,13 @@ namespace banyan
 /// @param source null on ranks without bricks
 int CommonLevel(Communicator& communicator, BrickSource* source, const Box& domain, int most);
 
-/// Plans how a picture is to be sampled on all ranks: PlanSamplings with pilots that all ranks draw
+/// Plans how a picture is to be sampled on all ranks: PlanSamplings with probes that all ranks draw
 /// together. Collective; all ranks get the same plan. The parameters are those of DrawDistributed,
 /// whose picture of `scene` with the plan's samplings and opacity limit then is within the
 /// tolerance as estimated.
 ///
 /// @param wish its coarsest level is lowered to what the bricks of all ranks have
-/// @param statistics samples and bytes of the pilots are added; the rest stays
+/// @param statistics samples and bytes of the probes are added; the rest stays
 /// When a rank fails, all ranks throw the same Error.
 SamplingPlan PlanDistributed(Communicator& communicator, const RayScene& scene,
   const RankShare& share, SamplingWish wish, FrameStatistics& statistics);

@@ -128,12 +128,12 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
     { drawn.Source(), drawn.Zones(), budgetBytes, ThreadPool::Process() }, sampling, frame);
   scene.Samplings = plan.Samplings;
   scene.OpacityLimit = plan.OpacityLimit;
-  frame.PilotSeconds = plan.PilotSeconds;
+  frame.ProbeSeconds = plan.ProbeSeconds;
   frame.StrideSeconds = plan.StrideSeconds;
-  frame.Pilots = plan.Pilots;
+  frame.Probes = plan.Probes;
   this->LimitText = LimitOf(plan, wish.Interacting ? wish.Interactive : wish.Still, tolerance, wish,
     HasOpaqueValues(scene.Transfer, field.Range()));
-  // No pixel can be off by more; several times what pilots are off can be.
+  // No pixel can be off by more; several times what probes are off can be.
   return std::min(plan.EstimatedError, 255.0);
 }
 

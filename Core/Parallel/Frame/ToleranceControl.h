@@ -39,7 +39,7 @@ public:
   };
 
   /// Collective: gives the scene its samplings and its opacity limit.
-  /// @param frame the pilots' samples and bytes are added
+  /// @param frame the probes' samples and bytes are added
   /// @return the estimated error in 1/255; 0 where nothing tells it: where the size of cells
   /// decides, or the promised time
   double Plan(Communicator& communicator, DistributedField& field, RayScene& scene,

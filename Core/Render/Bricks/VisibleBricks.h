@@ -30,7 +30,7 @@ private:
 };
 
 /// Bricks of the finest level with cells in `cells` that CastRays may load for pictures of the
-/// scene, for those of fewer pixels too (WithSize), and their pilots: an upper bound.
+/// scene, for those of fewer pixels too (WithSize), and their probes: an upper bound.
 std::vector<std::int64_t> BricksToLoad(
   const RayScene& scene, const BrickSource& source, const Box& cells);
 

@@ -46,7 +46,7 @@ BatchDrawer::BatchDrawer(
 std::int64_t BatchDrawer::Draw(const BrickBatch& batch)
 {
   // Rays of probes are far apart, and most of what lies between them is not needed.
-  const bool prefetch = !this->Level.Scene.Pilot && PackedBytes(batch) > CacheBytes;
+  const bool prefetch = !this->Level.Scene.Probe && PackedBytes(batch) > CacheBytes;
   BrickWork* const work = this->Level.Scene.Work;
   for (BatchMeter& meter : this->Meters)
   {

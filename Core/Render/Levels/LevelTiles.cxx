@@ -35,7 +35,7 @@ LevelTiles::LevelTiles(const LevelScene& level, const std::vector<PlannedBrick>&
   : Level(level)
   , Pixels(picture)
   , Watcher(watcher)
-  , Grid(GridFor(picture.Rect, level.Scene.Pilot, workers))
+  , Grid(GridFor(picture.Rect, level.Scene.Probe, workers))
   , Tiles(Grid.Count())
 {
   const TileSamplings* const samplings = level.Scene.Samplings.get();

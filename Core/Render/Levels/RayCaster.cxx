@@ -50,7 +50,7 @@ FloatImage Cast(const RayScene& scene, BrickSource& source, const Box& cells,
       scene, at, CellsAtLevel(inside, at.CellLevel()), budgetBytes, pool, statistics));
     picture.Rect = Union(picture.Rect, casters.back()->Rect());
   }
-  source.Kept().BeginPicture(PackedBrickCache::PartOf(budgetBytes), /*ages=*/!scene.Pilot);
+  source.Kept().BeginPicture(PackedBrickCache::PartOf(budgetBytes), /*ages=*/!scene.Probe);
   // Casters set all pixels, tile by tile.
   picture.Pixels.resize(static_cast<std::size_t>(picture.Rect.Count()));
   if (watcher)

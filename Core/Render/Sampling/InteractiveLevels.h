@@ -9,7 +9,7 @@
 namespace banyan
 {
 
-/// The samplings of pictures that keep no tolerance, as no pilots tell their error: projections,
+/// The samplings of pictures that keep no tolerance, as no probes tell their error: projections,
 /// and volumes whose samples are taken as they are (labels). Step 0 is the picture as it should be.
 /// Each step takes the next coarser level, with as much more between samples as its cells are
 /// larger; when there is none any more, each step has rays in half as many rows and columns of

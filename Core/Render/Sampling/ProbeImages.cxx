@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Render/Sampling/ProbeImages.h"
 
-#include "Render/Sampling/PilotSpacing.h"
+#include "Render/Sampling/ProbeSpacing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,10 +13,10 @@ namespace
 {
 
 /// The largest power of 2 that is no longer than any window that is not empty.
-int CommonPart(const std::vector<PilotsAround>& windows)
+int CommonPart(const std::vector<ProbesAround>& windows)
 {
   int shortest = std::numeric_limits<int>::max();
-  for (const PilotsAround& window : windows)
+  for (const ProbesAround& window : windows)
   {
     shortest = window.Begin < window.End ? std::min(shortest, window.End - window.Begin) : shortest;
   }
@@ -54,7 +54,7 @@ void MakeMaxima(float* numbers, int rows, int rowLength, int part)
 /// Calls function(begin) for parts of one length that cover a window.
 /// @param part no longer than the window
 template <class Function>
-void ForParts(const PilotsAround& window, int part, Function&& function)
+void ForParts(const ProbesAround& window, int part, Function&& function)
 {
   for (int i = window.Begin; i < window.End; i += part)
   {
@@ -64,7 +64,7 @@ void ForParts(const PilotsAround& window, int part, Function&& function)
 
 } // namespace
 
-double PilotErrors::Largest() const
+double ProbeErrors::Largest() const
 {
   // Several maxima side by side, which compilers make vectors of.
   constexpr std::size_t width = 16;
@@ -113,15 +113,15 @@ void TileErrors::Raise(const TileErrors& other)
 }
 
 ProbeImages::ProbeImages(
-  const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw)
+  const RayScene& scene, std::function<FloatImage(const RayScene& probe)> draw)
   : Scene(scene)
   , DrawScene(std::move(draw))
 {
-  this->SetSpacing(PilotSpacing(scene));
+  this->SetSpacing(ProbeSpacing(scene));
 }
 
 ProbeImages::ProbeImages(const RayScene& scene,
-  std::function<FloatImage(const RayScene& pilot)> draw, int spacing, double around)
+  std::function<FloatImage(const RayScene& probe)> draw, int spacing, double around)
   : Scene(scene)
   , DrawScene(std::move(draw))
   , TilesAround(around)
@@ -157,7 +157,7 @@ ProbeImage ProbeImages::Draw(const RaySampling& sampling)
   {
     const auto seen = std::count_if(picture.Pixels.begin(), picture.Pixels.end(),
       [](const glm::vec4& pixel) { return pixel.a > 0.0f; });
-    const int spacing = PilotSpacingAfter(this->Spacing, static_cast<int>(seen));
+    const int spacing = ProbeSpacingAfter(this->Spacing, static_cast<int>(seen));
     enough = spacing == this->Spacing;
     if (!enough)
     {
@@ -171,13 +171,13 @@ ProbeImage ProbeImages::Draw(const RaySampling& sampling)
 
 ProbeImage ProbeImages::DrawAsItIs(const RaySampling& sampling)
 {
-  RayScene pilot = this->Scene;
-  pilot.Camera = this->Scene.Camera.WithSize(this->Size);
-  pilot.Viewport = this->View;
-  pilot.Depth = this->DepthOf(pilot);
-  pilot.Samplings = std::make_shared<const TileSamplings>(this->Size, std::vector{ sampling });
-  pilot.Pilot = true;
-  const FloatImage image = this->DrawScene(pilot);
+  RayScene probe = this->Scene;
+  probe.Camera = this->Scene.Camera.WithSize(this->Size);
+  probe.Viewport = this->View;
+  probe.Depth = this->DepthOf(probe);
+  probe.Samplings = std::make_shared<const TileSamplings>(this->Size, std::vector{ sampling });
+  probe.Probe = true;
+  const FloatImage image = this->DrawScene(probe);
 
   ProbeImage picture;
   picture.Pixels.assign(static_cast<std::size_t>(this->View.Count()), glm::vec4(0.0f));
@@ -203,8 +203,8 @@ glm::ivec2 ProbeImages::ToImage(int x, int y) const
   return glm::ivec2(centre);
 }
 
-/// Geometry where the pilots look; none where the large picture has no depths.
-std::vector<float> ProbeImages::DepthOf(const RayScene& pilot) const
+/// Geometry where the probes look; none where the large picture has no depths.
+std::vector<float> ProbeImages::DepthOf(const RayScene& probe) const
 {
   std::vector<float> depths;
   if (this->Scene.Depth.empty())
@@ -212,9 +212,9 @@ std::vector<float> ProbeImages::DepthOf(const RayScene& pilot) const
     return depths;
   }
   const PixelRect& view = this->Scene.Viewport;
-  for (int y = pilot.Viewport.Lo.y; y < pilot.Viewport.Hi.y; ++y)
+  for (int y = probe.Viewport.Lo.y; y < probe.Viewport.Hi.y; ++y)
   {
-    for (int x = pilot.Viewport.Lo.x; x < pilot.Viewport.Hi.x; ++x)
+    for (int x = probe.Viewport.Lo.x; x < probe.Viewport.Hi.x; ++x)
     {
       const glm::ivec2 at = this->ToImage(x, y);
       const bool inside =
@@ -228,14 +228,14 @@ std::vector<float> ProbeImages::DepthOf(const RayScene& pilot) const
   return depths;
 }
 
-PilotErrors ProbeImages::Difference(const ProbeImage& a, const ProbeImage& b) const
+ProbeErrors ProbeImages::Difference(const ProbeImage& a, const ProbeImage& b) const
 {
   const std::size_t count = a.Pixels.size();
-  PilotErrors errors;
+  ProbeErrors errors;
   errors.Pixels.resize(count);
   for (std::size_t i = 0; i < count; ++i)
   {
-    errors.Pixels[i] = PilotErrors::Between(a.Pixels[i], b.Pixels[i]);
+    errors.Pixels[i] = ProbeErrors::Between(a.Pixels[i], b.Pixels[i]);
   }
   return errors;
 }
@@ -246,11 +246,11 @@ std::size_t ProbeImages::TileCount() const
   return static_cast<std::size_t>(tiles.x) * tiles.y;
 }
 
-TileErrors ProbeImages::ErrorsOf(const PilotErrors& errors, double factor, double share) const
+TileErrors ProbeImages::ErrorsOf(const ProbeErrors& errors, double factor, double share) const
 {
   const glm::ivec2 tiles = TileSamplings::TilesOf(this->ImageSize());
-  const std::vector<PilotsAround> rows = this->AroundAll(tiles.y, 1);
-  const std::vector<PilotsAround> columns = this->AroundAll(tiles.x, 0);
+  const std::vector<ProbesAround> rows = this->AroundAll(tiles.y, 1);
+  const std::vector<ProbesAround> columns = this->AroundAll(tiles.x, 0);
   const int width = this->View.Size().x;
   const int height = this->View.Size().y;
   const double atLeast = share * errors.Largest();
@@ -263,7 +263,7 @@ TileErrors ProbeImages::ErrorsOf(const PilotErrors& errors, double factor, doubl
   std::vector<float> fromColumn(static_cast<std::size_t>(width));
   TileErrors result;
   result.Tiles.reserve(rows.size() * columns.size());
-  for (const PilotsAround& near : rows)
+  for (const ProbesAround& near : rows)
   {
     std::fill(fromColumn.begin(), fromColumn.end(), 0.0f);
     ForParts(near, tall,
@@ -271,7 +271,7 @@ TileErrors ProbeImages::ErrorsOf(const PilotErrors& errors, double factor, doubl
         Raise(fromColumn.data(), fromRow.data() + static_cast<std::ptrdiff_t>(y) * width, width);
       });
     MakeMaxima(fromColumn.data(), width, 1, wide);
-    for (const PilotsAround& beside : columns)
+    for (const ProbesAround& beside : columns)
     {
       float largest = 0.0f;
       ForParts(beside, wide, [&](int x) { largest = std::max(largest, fromColumn[x]); });
@@ -282,9 +282,9 @@ TileErrors ProbeImages::ErrorsOf(const PilotErrors& errors, double factor, doubl
 }
 
 /// Of all tiles along an axis.
-std::vector<PilotsAround> ProbeImages::AroundAll(int tiles, int axis) const
+std::vector<ProbesAround> ProbeImages::AroundAll(int tiles, int axis) const
 {
-  std::vector<PilotsAround> around;
+  std::vector<ProbesAround> around;
   for (int tile = 0; tile < tiles; ++tile)
   {
     around.push_back(this->Around(tile, axis));
@@ -292,8 +292,8 @@ std::vector<PilotsAround> ProbeImages::AroundAll(int tiles, int axis) const
   return around;
 }
 
-/// Along one axis, the pilots within TilesAround of a tile: their positions in View.
-PilotsAround ProbeImages::Around(int tile, int axis) const
+/// Along one axis, the probes within TilesAround of a tile: their positions in View.
+ProbesAround ProbeImages::Around(int tile, int axis) const
 {
   const double around = this->TilesAround * TileSamplings::Edge;
   const double perPixel = static_cast<double>(this->Size[axis]) / this->ImageSize()[axis];

@@ -20,8 +20,8 @@ struct ProbeImage
   std::vector<glm::vec4> Pixels; ///< `[y][x]` of the part that is wanted; empty before it is drawn
 };
 
-/// How far each pixel of a pilot is off, in 1/255: the largest of red, green, blue and opacity.
-struct PilotErrors
+/// How far each pixel of a probe is off, in 1/255: the largest of red, green, blue and opacity.
+struct ProbeErrors
 {
   std::vector<float> Pixels;
 
@@ -34,8 +34,8 @@ struct PilotErrors
   double Largest() const;
 };
 
-/// Pilots along one axis that a tile is judged by.
-struct PilotsAround
+/// Probes along one axis that a tile is judged by.
+struct ProbesAround
 {
   int Begin;
   int End;
@@ -61,10 +61,10 @@ class ProbeImages
 {
 public:
   /// @param scene refers to it, which must stay
-  ProbeImages(const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw);
-  /// @param spacing of the pilots in pixels, whatever they see
+  ProbeImages(const RayScene& scene, std::function<FloatImage(const RayScene& probe)> draw);
+  /// @param spacing of the probes in pixels, whatever they see
   /// @param around ErrorsOf looks so many tiles around a tile
-  ProbeImages(const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw,
+  ProbeImages(const RayScene& scene, std::function<FloatImage(const RayScene& probe)> draw,
     int spacing, double around);
 
   /// The first picture may be drawn several times, until enough of its pixels see something; no
@@ -74,13 +74,13 @@ public:
   /// Whether a pixel of any picture had an opacity.
   bool SawSomething() const { return this->Saw; }
 
-  PilotErrors Difference(const ProbeImage& a, const ProbeImage& b) const;
+  ProbeErrors Difference(const ProbeImage& a, const ProbeImage& b) const;
 
   /// Of a tile: the largest error of the pixels within two and a half tiles (or as constructed),
   /// times `factor`, and at least that of all pixels times `share`.
-  TileErrors ErrorsOf(const PilotErrors& errors, double factor, double share) const;
+  TileErrors ErrorsOf(const ProbeErrors& errors, double factor, double share) const;
 
-  /// Pixels of the large picture from one pilot to the next.
+  /// Pixels of the large picture from one probe to the next.
   int PixelsApart() const { return this->Spacing; }
   /// Where the pixels of pictures lie among those of a small picture of all.
   const PixelRect& Part() const { return this->View; }
@@ -89,19 +89,19 @@ public:
 
   glm::ivec2 ImageSize() const { return this->Scene.Camera.ImageSize(); }
   std::size_t TileCount() const;
-  /// The worst pixel of a tile may be so many times worse than the worst of its pilots.
+  /// The worst pixel of a tile may be so many times worse than the worst of its probes.
   static constexpr double Safety() { return 4.0; }
 
 private:
-  PilotsAround Around(int tile, int axis) const;
-  std::vector<PilotsAround> AroundAll(int tiles, int axis) const;
+  ProbesAround Around(int tile, int axis) const;
+  std::vector<ProbesAround> AroundAll(int tiles, int axis) const;
   void SetSpacing(int pixels);
   ProbeImage DrawAsItIs(const RaySampling& sampling);
-  std::vector<float> DepthOf(const RayScene& pilot) const;
+  std::vector<float> DepthOf(const RayScene& probe) const;
   glm::ivec2 ToImage(int x, int y) const;
 
   const RayScene& Scene;
-  std::function<FloatImage(const RayScene& pilot)> DrawScene;
+  std::function<FloatImage(const RayScene& probe)> DrawScene;
   int Spacing = 1; ///< pixels of the large picture from one of a small one to the next
   double TilesAround = 2.5;
   bool FixedSpacing = false;

@@ -58,7 +58,7 @@ public:
   /// Says that strides were judged by a picture of this sampling. Finer levels show more, so tiles
   /// whose pixels are left out have the errors of its level at least. Closer samples show less: too
   /// few of them look like edges.
-  void StridesAreThoseOf(const Chosen& pilot) { this->SubsamplingProbe = pilot; }
+  void StridesAreThoseOf(const Chosen& probe) { this->SubsamplingProbe = probe; }
 
   /// All of them; NumberOf is a position in this list.
   std::vector<RaySampling> Samplings() const;

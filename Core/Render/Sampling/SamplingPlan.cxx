@@ -3,7 +3,7 @@
 
 #include "Base/Error.h"
 #include "Base/Timer.h"
-#include "Render/Sampling/PilotSequence.h"
+#include "Render/Sampling/ProbeSequence.h"
 #include "Render/Sampling/SamplingChoices.h"
 #include "Render/Sampling/SubsamplingProbe.h"
 
@@ -18,13 +18,13 @@ namespace
 
 /// Of the tolerance, what rays that end early may leave away.
 constexpr double ShareOfEnds = 0.125;
-/// In pilots it is much less. A ray that ends in one zone goes on in the next one, and what is left
+/// In probes it is much less. A ray that ends in one zone goes on in the next one, and what is left
 /// away then decides otherwise: plans would depend on the number of ranks.
-constexpr double ShareOfPilotEnds = ShareOfEnds / 64.0;
+constexpr double ShareOfProbeEnds = ShareOfEnds / 64.0;
 /// Distances between samples go down to 2^-MostHalvings times the usual one.
 constexpr int MostHalvings = 3;
 /// They go up to 2^MostDoublings times it. Longer ones save nothing: frames then take what rays and
-/// bricks do, and pilots of such distances cost as much as what they save.
+/// bricks do, and probes of such distances cost as much as what they save.
 constexpr int MostDoublings = 3;
 /// Without pictures of samples this close, times the usual distance, no tile is content.
 constexpr double FewestSamples = 4.0;
@@ -34,7 +34,7 @@ constexpr double ShareOfSubsamplingProbe = 0.75;
 constexpr double TilesOfSubsamplingProbe = 0.9;
 
 /// What single pixels of a shaded picture may be off, in 1/255, where a ray meets a place without a
-/// gradient and the normal turns over from one sample to the next. They are so few that no pilot
+/// gradient and the normal turns over from one sample to the next. They are so few that no probe
 /// meets one. Measured of the standard scene S1: 0.10, 0.32, 1.08, 1.43 and 4.07 with a distance of
 /// a quarter of a cell, half, one, two and four cells.
 double ErrorOfNormals(double distanceInCells)
@@ -51,7 +51,7 @@ float OpacityLimitFor(double tolerance, double share)
 class Planner
 {
 public:
-  Planner(const RayScene& scene, const SamplingWish& wish, const DrawPilot& draw)
+  Planner(const RayScene& scene, const SamplingWish& wish, const DrawProbe& draw)
     : Scene(scene)
     , DrawScene(draw)
     , Wish(wish)
@@ -68,7 +68,7 @@ public:
     if (!this->Pictures.SawSomething())
     {
       // Coarse levels and few samples may miss all that there is to see.
-      this->Wish.CoarsestLevel = this->Wish.FinestPilotLevel;
+      this->Wish.CoarsestLevel = this->Wish.FinestProbeLevel;
       this->TryDistances(1);
     }
     SamplingPlan plan;
@@ -77,12 +77,12 @@ public:
     {
       this->TryLevels();
       const Timer strides;
-      plan.Pilots = this->TryStrides() ? 1 : 0;
+      plan.Probes = this->TryStrides() ? 1 : 0;
       plan.StrideSeconds = strides.Seconds();
       this->Choose(plan);
     }
-    plan.Pilots += this->Pictures.Count();
-    plan.PilotSeconds = timer.Seconds() - plan.StrideSeconds;
+    plan.Probes += this->Pictures.Count();
+    plan.ProbeSeconds = timer.Seconds() - plan.StrideSeconds;
     return plan;
   }
 
@@ -92,7 +92,7 @@ private:
   void TryDistances(int doublings)
   {
     const bool levels = this->Wish.CoarsestLevel > 0;
-    PilotSequence pictures(this->Pictures);
+    ProbeSequence pictures(this->Pictures);
     const Trial trial{ this->Wish.CoarsestLevel, std::ldexp(this->Wish.Distance, doublings),
       levels ? this->Wish.Distance : std::ldexp(this->Wish.Distance, -MostHalvings),
       (levels ? 0.5 : 1.0) * this->Allowed };
@@ -109,7 +109,7 @@ private:
   };
 
   /// Ever smaller distances, until all tiles are content.
-  std::vector<Choice> DistancesOf(const Trial& trial, PilotSequence& pictures)
+  std::vector<Choice> DistancesOf(const Trial& trial, ProbeSequence& pictures)
   {
     std::vector<Choice> choices;
     bool content = false;
@@ -145,11 +145,11 @@ private:
   void TryLevels()
   {
     int level = this->Wish.CoarsestLevel;
-    PilotSequence pictures(this->Pictures);
+    ProbeSequence pictures(this->Pictures);
     const double distance = this->ClosestDistance;
     pictures.Add(this->Pictures.Draw({ level, distance }));
     std::vector<Choice> choices{ { static_cast<double>(level), {} } };
-    while (level > this->Wish.FinestPilotLevel && !pictures.LastIsWithin(0.5 * this->Allowed))
+    while (level > this->Wish.FinestProbeLevel && !pictures.LastIsWithin(0.5 * this->Allowed))
     {
       --level;
       pictures.Add(this->Pictures.Draw({ level, distance }));
@@ -188,7 +188,7 @@ private:
     }
   }
 
-  /// Adds the levels that no pilots were drawn from: cells of half the edge have at most half the
+  /// Adds the levels that no probes were drawn from: cells of half the edge have at most half the
   /// error (a quarter, where the field is smooth), and the finest has none.
   void ExtrapolateLevels()
   {
@@ -228,7 +228,7 @@ private:
         longest = std::max(longest, choice.Value);
       }
     }
-    PilotSequence pictures(this->Pictures);
+    ProbeSequence pictures(this->Pictures);
     const Trial trial{ level,
       std::min(longest, std::ldexp(SamplingChoices::MostCellsPerStep * this->Wish.Distance, level)),
       std::ldexp(this->Wish.Distance, -MostHalvings), 0.5 * this->Allowed };
@@ -250,17 +250,17 @@ private:
     }
     SamplingChoices::Chosen sampling = this->Choices.CheapestForMost(
       TilesOfSubsamplingProbe, ShareOfSubsamplingProbe * this->Allowed);
-    while (this->Choices.Levels[sampling.Level].Value < this->Wish.FinestPilotLevel)
+    while (this->Choices.Levels[sampling.Level].Value < this->Wish.FinestProbeLevel)
     {
       --sampling.Level;
     }
-    SubsamplingProbe pilot(this->Scene, this->DrawScene, this->Allowed);
+    SubsamplingProbe probe(this->Scene, this->DrawScene, this->Allowed);
     RaySampling drawn = this->Choices.SamplingOf(sampling);
     drawn.Distance = std::max(drawn.Distance, this->Wish.Distance);
-    pilot.Draw(drawn);
+    probe.Draw(drawn);
     for (int stride = 2; stride <= this->Wish.LargestPixelStride; stride *= 2)
     {
-      this->Choices.Strides.push_back({ static_cast<double>(stride), pilot.ErrorsAt(stride) });
+      this->Choices.Strides.push_back({ static_cast<double>(stride), probe.ErrorsAt(stride) });
     }
     this->Choices.StridesAreThoseOf(sampling);
     return true;
@@ -308,7 +308,7 @@ private:
       tiles->SetNumber(position, this->Choices.NumberOf(chosen));
       largest = std::max(largest, chosen.Error);
       plan.Extrapolated =
-        plan.Extrapolated || this->Choices.Levels[chosen.Level].Value < this->Wish.FinestPilotLevel;
+        plan.Extrapolated || this->Choices.Levels[chosen.Level].Value < this->Wish.FinestProbeLevel;
       if (chosen.Error > this->Allowed && plan.Limit != SamplingLimit::Distance)
       {
         plan.Limit = this->LevelIsHeld(tile) ? SamplingLimit::Level : SamplingLimit::Distance;
@@ -319,7 +319,7 @@ private:
   }
 
   const RayScene& Scene;
-  const DrawPilot& DrawScene;
+  const DrawProbe& DrawScene;
   SamplingWish Wish;
   ProbeImages Pictures;
   double Allowed;
@@ -337,7 +337,7 @@ void Check(const SamplingWish& wish)
   {
     throw Error("The sample distance must be above 0");
   }
-  if (wish.CoarsestLevel < 0 || wish.FinestPilotLevel < 0 || wish.FinestLevel < 0 ||
+  if (wish.CoarsestLevel < 0 || wish.FinestProbeLevel < 0 || wish.FinestLevel < 0 ||
       std::any_of(wish.FinestLevelOfTile.begin(), wish.FinestLevelOfTile.end(),
         [](int level) { return level < 0; }))
   {
@@ -353,7 +353,7 @@ void Check(const SamplingWish& wish)
 
 } // namespace
 
-SamplingPlan PlanSamplings(const RayScene& scene, SamplingWish wish, const DrawPilot& draw)
+SamplingPlan PlanSamplings(const RayScene& scene, SamplingWish wish, const DrawProbe& draw)
 {
   Check(wish);
   const glm::ivec2 tiles = TileSamplings::TilesOf(scene.Camera.ImageSize());
@@ -377,11 +377,11 @@ SamplingPlan PlanSamplings(const RayScene& scene, SamplingWish wish, const DrawP
   // Of one level alone nothing could be told.
   const int secondCoarsest = std::max(0, wish.CoarsestLevel - 1);
   wish.FinestLevel = std::min(wish.FinestLevel, secondCoarsest);
-  wish.FinestPilotLevel =
-    std::max(wish.FinestLevel, std::min(wish.FinestPilotLevel, secondCoarsest));
-  RayScene pilots = scene;
-  pilots.OpacityLimit = OpacityLimitFor(wish.Tolerance, ShareOfPilotEnds);
-  return Planner(pilots, wish, draw).Plan();
+  wish.FinestProbeLevel =
+    std::max(wish.FinestLevel, std::min(wish.FinestProbeLevel, secondCoarsest));
+  RayScene probes = scene;
+  probes.OpacityLimit = OpacityLimitFor(wish.Tolerance, ShareOfProbeEnds);
+  return Planner(probes, wish, draw).Plan();
 }
 
 } // namespace banyan

@@ -22,9 +22,9 @@ struct SamplingWish
   double Distance = 1.0;
   /// The coarsest level that may be drawn from; 0 allows the finest only.
   int CoarsestLevel = 0;
-  /// The finest level that pilots are drawn from, at most CoarsestLevel: what finer ones would
+  /// The finest level that probes are drawn from, at most CoarsestLevel: what finer ones would
   /// show is extrapolated. For volumes of which more is visible than memory may hold.
-  int FinestPilotLevel = 0;
+  int FinestProbeLevel = 0;
   /// Levels with fewer cells along the longest axis are not used: two of them may look alike
   /// because both have lost what there is to see.
   int LeastCells = 64;
@@ -37,7 +37,7 @@ struct SamplingWish
   /// Per tile of the picture, row by row, the same, where it is coarser than FinestLevel: see
   /// FinestLevelsOfTiles. Empty: nowhere.
   std::vector<int> FinestLevelOfTile = {};
-  /// Whether FinestPilotLevel is also the finest level that is drawn from, whatever the tolerance:
+  /// Whether FinestProbeLevel is also the finest level that is drawn from, whatever the tolerance:
   /// of finer ones more is visible than memory may hold, so that each frame would load it anew.
   bool StaysInMemory = false;
 };
@@ -60,39 +60,39 @@ struct SamplingPlan
   double EstimatedError = 0.0;
   SamplingLimit Limit =
     SamplingLimit::None; ///< not None where EstimatedError is above the tolerance
-  /// Whether the error of finer levels was extrapolated: FinestPilotLevel allowed no pilots of
+  /// Whether the error of finer levels was extrapolated: FinestProbeLevel allowed no probes of
   /// them.
   bool Extrapolated = false;
   /// To be used with it: what rays that end early leave away is part of the error.
   float OpacityLimit = 0.999f;
-  int Pilots = 0;             ///< small pictures that were drawn to find out
-  double PilotSeconds = 0.0;  ///< what finding distances and levels took, by the clock
+  int Probes = 0;             ///< small pictures that were drawn to find out
+  double ProbeSeconds = 0.0;  ///< what finding distances and levels took, by the clock
   double StrideSeconds = 0.0; ///< what finding the pixels without rays took
 };
 
 /// Draws a small picture of the scene's viewport: all pixels of it, on all ranks alike.
-using DrawPilot = std::function<FloatImage(const RayScene& pilot)>;
+using DrawProbe = std::function<FloatImage(const RayScene& probe)>;
 
 /// Finds for each tile the cheapest sampling that keeps its error within the tolerance.
 ///
-/// How: *pilots*, small pictures whose pixels are PilotSpacing apart, are drawn with ever smaller
+/// How: *probes*, small pictures whose pixels are ProbeSpacing apart, are drawn with ever smaller
 /// distances between samples at the coarsest level, which costs least, then with ever finer levels
 /// at the distance that was needed, and then with distances from the longest on at the coarsest of
 /// these levels that is good enough for all tiles, each until all tiles are content
-/// (PilotSequence). Which level and which distance a tile gets is chosen from the sums of both
+/// (ProbeSequence). Which level and which distance a tile gets is chosen from the sums of both
 /// errors: finer levels than needed are never loaded. How many pixels need rays of their own one
 /// more small picture tells (SubsamplingProbe), and that error counts with the others.
 ///
 /// The error is estimated, then, and not bounded: `ctest -R SamplingPlan` shows that it is above
 /// the true one on the standard scenes. Where the opacity function jumps, or reaches 1, single
-/// pixels may be off by more: no pilot met them.
+/// pixels may be off by more: no probe met them.
 ///
 /// Why not from bounds on the values: they take no account of how errors cancel along a ray, and
 /// are 30 to 100 times too large for smooth scenes (Documentation/rendering.md).
 ///
 /// @param scene all of it, its Samplings apart; the picture's size decides the tiles
 /// Throws Error when the wish or the scene is not usable.
-SamplingPlan PlanSamplings(const RayScene& scene, SamplingWish wish, const DrawPilot& draw);
+SamplingPlan PlanSamplings(const RayScene& scene, SamplingWish wish, const DrawProbe& draw);
 
 } // namespace banyan
 

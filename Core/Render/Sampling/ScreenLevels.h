@@ -10,7 +10,7 @@ namespace banyan
 /// Samplings by what cells measure on the screen, and by nothing else: each tile is drawn from the
 /// coarsest level whose cells are at most so many pixels long where the volume is nearest to the
 /// eye under that tile, with one sample per edge of such a cell. What the values are has no part in
-/// it, so no pilots are drawn, and no error is told.
+/// it, so no probes are drawn, and no error is told.
 ///
 /// A cell's length is that of its longest edge, a pixel's that of its shorter side, at the depth
 /// that TileDepths has for the tile: an eye inside sees the finest level. All ranks get the same

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Render/Sampling/SubsamplingProbe.h"
 
-#include "Render/Sampling/PilotSpacing.h"
+#include "Render/Sampling/ProbeSpacing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,9 +13,9 @@ namespace
 {
 
 constexpr int Spacing = 4;
-/// Where so much is allowed, a quarter of the pilots will do.
+/// Where so much is allowed, a quarter of the probes will do.
 constexpr double MuchAllowed = 12.0;
-/// Pilots this close leave less to chance than those of samples do.
+/// Probes this close leave less to chance than those of samples do.
 constexpr double Safety = 3.0;
 constexpr double TilesAround = 1.5;
 /// At most so many times smaller are errors taken to be at half the stride. Smooth pictures have 4,
@@ -26,7 +26,7 @@ constexpr double ShareOfLargest = 1.0 / 16.0;
 
 /// How far each pixel is from what lies between those that are `every` apart, along both axes.
 /// @param part of the image that the picture is
-PilotErrors ErrorsBetween(const ProbeImage& picture, const PixelRect& part, int every)
+ProbeErrors ErrorsBetween(const ProbeImage& picture, const PixelRect& part, int every)
 {
   const glm::ivec2 size = part.Size();
   // Around the volume is nothing; at the edge of the picture its last pixels go on.
@@ -36,7 +36,7 @@ PilotErrors ErrorsBetween(const ProbeImage& picture, const PixelRect& part, int 
   { return picture.Pixels.data() + static_cast<std::ptrdiff_t>(inside(y, 1)) * size.x; };
   const int first = part.Lo.x / every;
   std::vector<glm::vec4> columns(static_cast<std::size_t>((part.Hi.x - 1) / every - first + 2));
-  PilotErrors errors;
+  ProbeErrors errors;
   errors.Pixels.resize(picture.Pixels.size());
   for (int y = part.Lo.y; y < part.Hi.y; ++y)
   {
@@ -58,7 +58,7 @@ PilotErrors ErrorsBetween(const ProbeImage& picture, const PixelRect& part, int 
       for (int x = std::max(left, part.Lo.x); x < std::min(left + every, part.Hi.x); ++x)
       {
         const glm::vec4 between = columns[i] + slope * static_cast<float>(x - left);
-        error[x - part.Lo.x] = PilotErrors::Between(row[x], between);
+        error[x - part.Lo.x] = ProbeErrors::Between(row[x], between);
       }
     }
   }
@@ -68,7 +68,7 @@ PilotErrors ErrorsBetween(const ProbeImage& picture, const PixelRect& part, int 
 } // namespace
 
 SubsamplingProbe::SubsamplingProbe(
-  const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw, double allowed)
+  const RayScene& scene, std::function<FloatImage(const RayScene& probe)> draw, double allowed)
   : Scene(scene)
   , Pictures(scene, std::move(draw), allowed < MuchAllowed ? Spacing : 2 * Spacing, TilesAround)
 {

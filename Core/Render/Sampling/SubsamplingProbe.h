@@ -22,10 +22,10 @@ public:
   /// @param scene refers to it, which must stay
   /// @param allowed errors of the picture, in 1/255
   SubsamplingProbe(
-    const RayScene& scene, std::function<FloatImage(const RayScene& pilot)> draw, double allowed);
+    const RayScene& scene, std::function<FloatImage(const RayScene& probe)> draw, double allowed);
 
   /// Whether a scene is one of which pixels may be left out: its volume is not narrow.
-  /// @param pixelsApart pilots of it that tell enough
+  /// @param pixelsApart probes of it that tell enough
   static bool MaySay(const RayScene& scene, int pixelsApart);
 
   /// Whether it may be worth its time, which is that of an eighth of the picture and more: whether
@@ -50,7 +50,7 @@ private:
 
   const RayScene& Scene;
   ProbeImages Pictures;
-  TileErrors Near;         ///< measured: of a stride of two pilots
+  TileErrors Near;         ///< measured: of a stride of two probes
   TileErrors Far;          ///< of four
   std::vector<bool> Whole; ///< per tile, whether pixels of it may be left out
 };

@@ -13,7 +13,7 @@ namespace banyan
 {
 
 /// What pictures need of transfer functions, made once: a picture takes a StepTable for each of its
-/// sample distances, and its pilots take more, while the function stays the same from one to the
+/// sample distances, and its probes take more, while the function stays the same from one to the
 /// next.
 ///
 /// Functions are compared entry by entry, so what comes back is always what would be made anew.

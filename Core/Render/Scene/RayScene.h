@@ -57,7 +57,7 @@ struct RayScene
   /// the same at all levels then.
   bool LevelsShareCells = false;
   /// Whether the picture only helps to make another one: packed bricks are kept for that one.
-  bool Pilot = false;
+  bool Probe = false;
   /// Where the ray caster adds what bricks took to draw; null for nowhere. No part of the picture.
   BrickWork* Work = nullptr;
 };

@@ -30,7 +30,7 @@ public:
   {
     return PlanSamplings(this->Scene,
       { tolerance, this->Scene.SampleDistance, coarsestLevel, 0, LeastCells },
-      [this](const RayScene& pilot) { return this->Cast(pilot); });
+      [this](const RayScene& probe) { return this->Cast(probe); });
   }
 
   FloatImage Draw(const SamplingPlan& plan)

@@ -5,7 +5,7 @@
 #include "PlanTesting.h"
 #include "StandardScenes.h"
 
-#include "Render/Sampling/PilotSpacing.h"
+#include "Render/Sampling/ProbeSpacing.h"
 
 #include <gtest/gtest.h>
 
@@ -118,11 +118,11 @@ TEST_P(NarrowVolumesPlan, TheErrorStaysBelowTheEstimate)
 INSTANTIATE_TEST_SUITE_P(SamplingPlan, NarrowVolumesPlan,
   testing::Values(glm::ivec3(16, 16, 512), glm::ivec3(5, 5, 41), glm::ivec3(9, 100, 100)));
 
-TEST(PilotSpacing, GoesByWhatTheVolumeTakesUp)
+TEST(ProbeSpacing, GoesByWhatTheVolumeTakesUp)
 {
   const auto spacing = [](const glm::ivec3& samples, int picture, const View& view)
   {
-    return PilotSpacing(
+    return ProbeSpacing(
       ToRayScene(Scene(Sampled(Waves, samples), StandardFunction::S1, picture, view), 1.0, 1.0f));
   };
   EXPECT_EQ(spacing(glm::ivec3(33), 1024, Views[0]), 16);
@@ -132,21 +132,21 @@ TEST(PilotSpacing, GoesByWhatTheVolumeTakesUp)
   EXPECT_LT(column, 16);
 }
 
-TEST(PilotSpacing, GoesByWhatPilotsSee)
+TEST(ProbeSpacing, GoesByWhatProbesSee)
 {
-  EXPECT_EQ(PilotSpacingAfter(16, EnoughPilots), 16);
-  EXPECT_EQ(PilotSpacingAfter(1, 0), 1);
-  EXPECT_EQ(PilotSpacingAfter(16, 0), 1);
-  EXPECT_EQ(PilotSpacingAfter(16, EnoughPilots / 16), 4);
-  EXPECT_LT(PilotSpacingAfter(2, EnoughPilots / 4 - 1), 2);
+  EXPECT_EQ(ProbeSpacingAfter(16, EnoughProbes), 16);
+  EXPECT_EQ(ProbeSpacingAfter(1, 0), 1);
+  EXPECT_EQ(ProbeSpacingAfter(16, 0), 1);
+  EXPECT_EQ(ProbeSpacingAfter(16, EnoughProbes / 16), 4);
+  EXPECT_LT(ProbeSpacingAfter(2, EnoughProbes / 4 - 1), 2);
 }
 
-TEST(PilotSpacing, AnEyeInsideSeesTheVolumeEverywhere)
+TEST(ProbeSpacing, AnEyeInsideSeesTheVolumeEverywhere)
 {
   BenchScene scene = Scene(Sampled(Waves, glm::ivec3(33)), StandardFunction::S1, 512, Views[0]);
   scene.Eye = scene.Center + glm::dvec3(1.0, 0.5, 0.2);
   const RayScene drawn = ToRayScene(scene, 1.0, 1.0f);
-  EXPECT_EQ(PilotSpacing(drawn), 8);
+  EXPECT_EQ(ProbeSpacing(drawn), 8);
   EXPECT_EQ(VolumeOnScreen(drawn), drawn.Viewport);
 }
 

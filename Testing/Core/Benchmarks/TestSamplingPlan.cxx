@@ -82,28 +82,28 @@ TEST(SamplingPlan, SmoothScenesTakeFewerSamplesThanOnePerVoxel)
   EXPECT_LT(drawer.Statistics.SamplesTaken, onePerVoxel / 2);
 }
 
-TEST(SamplingPlan, LevelsWithoutPilotsAreExtrapolated)
+TEST(SamplingPlan, LevelsWithoutProbesAreExtrapolated)
 {
   ThreadPool pool(2);
   const BenchScene scene =
     StandardScene(StandardVolume(Samples, pool), StandardFunction::S2, false, Pixels);
   const FloatImage converged = ConvergedImage(scene, 1.0 / 16.0, pool);
   int extrapolated = 0;
-  for (const int finestPilot : { 1, 2 })
+  for (const int finestProbe : { 1, 2 })
   {
     for (const double tolerance : { 2.0, 16.0 })
     {
       Drawer drawer(scene);
       int finest = 3;
       const SamplingPlan plan = PlanSamplings(drawer.Scene,
-        { tolerance, drawer.Scene.SampleDistance, 3, finestPilot, LeastCells },
-        [&](const RayScene& pilot)
+        { tolerance, drawer.Scene.SampleDistance, 3, finestProbe, LeastCells },
+        [&](const RayScene& probe)
         {
-          finest = std::min(finest, pilot.Samplings->Samplings().front().Level);
-          return drawer.Cast(pilot);
+          finest = std::min(finest, probe.Samplings->Samplings().front().Level);
+          return drawer.Cast(probe);
         });
-      EXPECT_GE(finest, finestPilot);
-      EXPECT_EQ(plan.Extrapolated, *plan.Samplings->UsedLevels().begin() < finestPilot);
+      EXPECT_GE(finest, finestProbe);
+      EXPECT_EQ(plan.Extrapolated, *plan.Samplings->UsedLevels().begin() < finestProbe);
       EXPECT_LE(ErrorOf(drawer.Draw(plan), converged).Largest, plan.EstimatedError);
       extrapolated += plan.Extrapolated;
     }
@@ -117,10 +117,10 @@ TEST(SamplingPlan, LevelsOfFewCellsAreNotTrusted)
   Drawer drawer(StandardScene(StandardVolume(129, pool), StandardFunction::S1, false, Pixels));
   int coarsest = 0;
   PlanSamplings(drawer.Scene, { 8.0, drawer.Scene.SampleDistance, 3 },
-    [&](const RayScene& pilot)
+    [&](const RayScene& probe)
     {
-      coarsest = std::max(coarsest, pilot.Samplings->Samplings().front().Level);
-      return drawer.Cast(pilot);
+      coarsest = std::max(coarsest, probe.Samplings->Samplings().front().Level);
+      return drawer.Cast(probe);
     });
   EXPECT_EQ(coarsest, 1);
 }
@@ -153,7 +153,7 @@ TEST(SamplingPlan, WhatCannotBeSeenIsNotPlanned)
   const SamplingPlan plan = Drawer(scene).Plan(1.0, 2);
   EXPECT_FALSE(plan.Samplings);
   EXPECT_EQ(plan.EstimatedError, 0.0);
-  EXPECT_GT(plan.Pilots, 0);
+  EXPECT_GT(plan.Probes, 0);
 }
 
 TEST(SamplingPlan, PicturesOfAnySize)

@@ -98,7 +98,7 @@ TEST_F(StridePlan, SmoothPicturesNeedFewRays)
   {
     const SamplingPlan plan =
       PlanSamplings(drawer.Scene, { 64.0, drawer.Scene.SampleDistance, 2, 0, LeastCells, stride },
-        [&](const RayScene& pilot) { return drawer.Cast(pilot); });
+        [&](const RayScene& probe) { return drawer.Cast(probe); });
     EXPECT_EQ(TilesWith(plan, 2) > 0, stride > 1);
     EXPECT_EQ(TilesWith(plan, stride + 1), 0);
     drawer.Statistics = {};
@@ -118,7 +118,7 @@ TEST_F(StridePlan, TilesWithGeometryKeepTheirRays)
 {
   Drawer drawer(this->SceneWith(StandardFunction::S1));
   drawer.Scene.Depth.assign(std::size_t{ Pixels } * Pixels, 1.0f);
-  // A line one pixel wide, that pilots do not see.
+  // A line one pixel wide, that probes do not see.
   for (int x = 0; x < Pixels; ++x)
   {
     drawer.Scene.Depth[std::size_t{ 200 } * Pixels + x] = 0.5f;

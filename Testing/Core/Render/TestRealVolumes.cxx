@@ -187,10 +187,10 @@ TEST_P(RealVolumes, KeepTheToleranceOrSayWhatLimitsIt)
     {
       double closest = scene.SampleDistance;
       const SamplingPlan plan = PlanSamplings(scene, { tolerance, scene.SampleDistance },
-        [&](const RayScene& pilot)
+        [&](const RayScene& probe)
         {
-          closest = std::min(closest, pilot.Samplings->Samplings().front().Distance);
-          return draw(pilot);
+          closest = std::min(closest, probe.Samplings->Samplings().front().Distance);
+          return draw(probe);
         });
       RayScene planned = scene;
       planned.Samplings = plan.Samplings;
@@ -216,7 +216,7 @@ TEST_P(RealVolumes, KeepTheToleranceOrSayWhatLimitsIt)
 }
 
 /// Noise within the bound stands for the error of encoding. Its effect on a picture is not told
-/// by drawing pilots with all values moved by the bound: that is several times too much in smooth
+/// by drawing probes with all values moved by the bound: that is several times too much in smooth
 /// scenes, and much too little where the function jumps.
 TEST_P(RealVolumes, ErrorsOfValuesAreNotToldByMovingThemAll)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which levels a plan may use, from pilots whose errors are known because they are made up.
+// Which levels a plan may use, from probes whose errors are known because they are made up.
 #include "Render/Sampling/SamplingPlan.h"
 
 #include "Render/Scenes.h"
@@ -28,14 +28,14 @@ SamplingPlan PlanOf(
   SamplingWish wish{ tolerance, 1.0, 2, 0, /*LeastCells=*/1, /*LargestPixelStride=*/1 };
   wish.FinestLevel = finestLevel;
   return PlanSamplings(scene, wish,
-    [&](const RayScene& pilot)
+    [&](const RayScene& probe)
     {
-      const RaySampling& sampling = pilot.Samplings->Samplings().front();
+      const RaySampling& sampling = probe.Samplings->Samplings().front();
       const int power = static_cast<int>(std::lround(std::log2(sampling.Distance)));
       const double off =
         offsets.Level[sampling.Level] + (power % 2 != 0 ? offsets.EverySecondStep : 0.0);
       FloatImage image;
-      image.Rect = pilot.Viewport;
+      image.Rect = probe.Viewport;
       image.Pixels.assign(static_cast<std::size_t>(image.Rect.Count()),
         glm::vec4(static_cast<float>(0.5 + off / 255.0), 0.5f, 0.5f, 1.0f));
       return image;
@@ -117,7 +117,7 @@ TEST(SamplingPlanLevels, WhatKeepsAPlanFromItsToleranceIsSaid)
   EXPECT_GT(held.EstimatedError, 8.0);
 }
 
-// Where a ray meets a place without a gradient, no pilot says how far single pixels are off.
+// Where a ray meets a place without a gradient, no probe says how far single pixels are off.
 /// Of normals that turn over, in 1/255.
 double ErrorOfNormals(double distance)
 {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Plans and their pilots on ranks, held to those of one rank.
+// Plans and their probes on ranks, held to those of one rank.
 #include "Parallel/Balance/Zones.h"
 #include "Parallel/Frame/DistributedFrame.h"
-#include "Parallel/Frame/DistributedPilot.h"
 #include "Parallel/Frame/DistributedPlan.h"
+#include "Parallel/Frame/DistributedProbe.h"
 #include "Render/Bricks/ArrayBrickSource.h"
 #include "Render/Sampling/ImageError.h"
 #include "Render/Scenes.h"
@@ -68,7 +68,7 @@ protected:
   SamplingWish Wish;
 };
 
-TEST_F(DistributedPlans, PilotsAreThePicturesOfOneRankOnEveryRank)
+TEST_F(DistributedPlans, ProbesAreThePicturesOfOneRankOnEveryRank)
 {
   for (const double distance : { 1.4, 0.1 })
   {
@@ -86,7 +86,7 @@ TEST_F(DistributedPlans, PilotsAreThePicturesOfOneRankOnEveryRank)
           ThreadPool pool(1);
           ArrayBrickSource source = this->MakeSource(pool);
           FrameStatistics took;
-          const FloatImage picture = DrawDistributedPilot(
+          const FloatImage picture = DrawDistributedProbe(
             communicator, scene, { &source, ZonesOf(ranks), Budget, pool }, took);
           const std::lock_guard<std::mutex> lock(mutex);
           EXPECT_EQ(took.BytesComposited > 0, ranks > 1);
@@ -128,7 +128,7 @@ TEST_F(DistributedPlans, ArePlansOfOneRank)
           alone = plan;
           return;
         }
-        EXPECT_EQ(plan.Pilots, alone.Pilots);
+        EXPECT_EQ(plan.Probes, alone.Probes);
         EXPECT_NEAR(plan.EstimatedError, alone.EstimatedError, 1e-2 * alone.EstimatedError);
         EXPECT_EQ(plan.Samplings->Samplings().size(), alone.Samplings->Samplings().size());
       });

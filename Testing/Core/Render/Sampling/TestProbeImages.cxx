@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What pilots say of tiles, beside a slow way to find it; and how often they are drawn.
+// What probes say of tiles, beside a slow way to find it; and how often they are drawn.
 #include "Render/Sampling/ProbeImages.h"
 
 #include "Render/Scenes.h"
@@ -13,28 +13,28 @@ using namespace banyan;
 namespace
 {
 
-FloatImage Painted(const RayScene& pilot)
+FloatImage Painted(const RayScene& probe)
 {
   FloatImage image;
-  image.Rect = pilot.Viewport;
+  image.Rect = probe.Viewport;
   image.Pixels.assign(static_cast<std::size_t>(image.Rect.Count()), glm::vec4(1.0f));
   return image;
 }
 
-/// The largest error of the pilots within some tiles of a tile.
+/// The largest error of the probes within some tiles of a tile.
 double LargestAround(
-  const ProbeImages& pictures, const PilotErrors& errors, const glm::ivec2& tile, double around)
+  const ProbeImages& pictures, const ProbeErrors& errors, const glm::ivec2& tile, double around)
 {
   const glm::dvec2 image(pictures.ImageSize());
   const glm::dvec2 size(
     (pictures.ImageSize() + pictures.PixelsApart() - 1) / pictures.PixelsApart());
   const PixelRect& part = pictures.Part();
-  const auto isNear = [&](int pilot, int axis)
+  const auto isNear = [&](int probe, int axis)
   {
     const double edge = TileSamplings::Edge;
     const double low = (tile[axis] - around) * edge * size[axis] / image[axis];
     const double high = (tile[axis] + 1 + around) * edge * size[axis] / image[axis];
-    return pilot >= std::floor(low) && pilot < std::ceil(high);
+    return probe >= std::floor(low) && probe < std::ceil(high);
   };
   double largest = 0.0;
   for (int y = part.Lo.y; y < part.Hi.y; ++y)
@@ -64,7 +64,7 @@ TEST(ProbeImages, ErrorsOfTilesAreTheLargestAroundThem)
   {
     const RayScene scene = scenes::Scene(glm::ivec3(9), shape.Picture);
     const ProbeImages pictures(scene, Painted, shape.Spacing, shape.Around);
-    PilotErrors errors;
+    ProbeErrors errors;
     for (long long i = 0; i < pictures.Part().Count(); ++i)
     {
       errors.Pixels.push_back(error(random));
@@ -88,11 +88,11 @@ TEST(ProbeImages, NoneIsDrawnTwice)
   const RayScene scene = scenes::Scene(glm::ivec3(9), glm::ivec2(512));
   int drawn = 0;
   ProbeImages pictures(scene,
-    [&](const RayScene& pilot)
+    [&](const RayScene& probe)
     {
       ++drawn;
-      FloatImage image = Painted(pilot);
-      image.Pixels.front().r = static_cast<float>(pilot.Samplings->Samplings().front().Distance);
+      FloatImage image = Painted(probe);
+      image.Pixels.front().r = static_cast<float>(probe.Samplings->Samplings().front().Distance);
       return image;
     });
   const ProbeImage first = pictures.Draw({ 0, 0.25 });

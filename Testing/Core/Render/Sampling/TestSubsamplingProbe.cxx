@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When the picture that tells which pixels need rays is worth drawing, from made-up pilots.
+// When the picture that tells which pixels need rays is worth drawing, from made-up probes.
 #include "Render/Sampling/SamplingPlan.h"
 
 #include "Render/Scenes.h"
@@ -36,13 +36,13 @@ int PixelsApart(const Pattern& pattern, double tolerance)
   const SamplingWish wish{ tolerance, 1.0, 2, 0, /*LeastCells=*/1, /*LargestPixelStride=*/8 };
   int apart = 0;
   const SamplingPlan plan = PlanSamplings(scene, wish,
-    [&](const RayScene& pilot)
+    [&](const RayScene& probe)
     {
-      const int edge = pilot.Camera.ImageSize().x;
+      const int edge = probe.Camera.ImageSize().x;
       EXPECT_EQ(apart, 0) << "it is the last one";
       apart = edge > Edge / 16 ? Edge / edge : 0;
       FloatImage image;
-      image.Rect = pilot.Viewport;
+      image.Rect = probe.Viewport;
       for (int y = image.Rect.Lo.y; y < image.Rect.Hi.y; ++y)
       {
         for (int x = image.Rect.Lo.x; x < image.Rect.Hi.x; ++x)

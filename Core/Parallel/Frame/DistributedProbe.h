@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Parallel_Frame_DistributedPilot_h
-#define banyan_Parallel_Frame_DistributedPilot_h
+#ifndef banyan_Parallel_Frame_DistributedProbe_h
+#define banyan_Parallel_Frame_DistributedProbe_h
 
 #include "Parallel/Frame/DistributedFrame.h"
 
 namespace banyan
 {
 
-/// Draws a pilot of a frame on all ranks, for all ranks. The picture is that of DrawDistributed,
-/// but pilots are small and many: what compositing costs of a large picture, agreements above all,
+/// Draws a probe of a frame on all ranks, for all ranks. The picture is that of DrawDistributed,
+/// but probes are small and many: what compositing costs of a large picture, agreements above all,
 /// would be most of their time. So each rank tells all others in one message whether it has failed,
 /// what it took, and its pixels, and all of them blend the same picture. The message is as large as
 /// the largest footprint of a zone: what ranks receive together grows like the sum of the
@@ -20,7 +20,7 @@ namespace banyan
 /// @param statistics SamplesTaken and BytesComposited of all ranks are added; the rest stays
 /// @return the scene's viewport, on every rank
 /// When a rank fails, all ranks throw the same Error.
-FloatImage DrawDistributedPilot(Communicator& communicator, const RayScene& scene,
+FloatImage DrawDistributedProbe(Communicator& communicator, const RayScene& scene,
   const RankShare& share, FrameStatistics& statistics);
 
 } // namespace banyan

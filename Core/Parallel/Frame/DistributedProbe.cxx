@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/Frame/DistributedPilot.h"
+#include "Parallel/Frame/DistributedProbe.h"
 
 #include "Parallel/Balance/LevelZones.h"
 #include "Parallel/Communicate/Collective.h"
@@ -13,7 +13,7 @@ namespace
 {
 
 /// Is sent by a rank to the others in front of its pixels. It is plain memory, sent as it is.
-struct PilotReport
+struct ProbeReport
 {
   double SamplesTaken = 0;
   std::uint64_t Failed = 0;
@@ -77,7 +77,7 @@ void BlendUnder(const glm::vec4* pixels, const Footprint& footprint, FloatImage&
 
 } // namespace
 
-FloatImage DrawDistributedPilot(Communicator& communicator, const RayScene& scene,
+FloatImage DrawDistributedProbe(Communicator& communicator, const RayScene& scene,
   const RankShare& share, FrameStatistics& statistics)
 {
   const auto self = static_cast<std::size_t>(communicator.Rank());
@@ -96,9 +96,9 @@ FloatImage DrawDistributedPilot(Communicator& communicator, const RayScene& scen
     most = std::max(most, PixelsOf(footprint));
   }
 
-  const std::size_t bytes = sizeof(PilotReport) + most * sizeof(glm::vec4);
+  const std::size_t bytes = sizeof(ProbeReport) + most * sizeof(glm::vec4);
   std::vector<char> message(bytes, 0);
-  const PilotReport report{ static_cast<double>(rays.SamplesTaken), failure.empty() ? 0u : 1u };
+  const ProbeReport report{ static_cast<double>(rays.SamplesTaken), failure.empty() ? 0u : 1u };
   std::memcpy(message.data(), &report, sizeof(report));
   std::vector<glm::vec4> pixels(most, glm::vec4(0.0f));
   Pack(mine, footprints[self], pixels.data());
@@ -116,7 +116,7 @@ FloatImage DrawDistributedPilot(Communicator& communicator, const RayScene& scen
   for (const int rank : order)
   {
     const char* const theirs = all.data() + bytes * static_cast<std::size_t>(rank);
-    PilotReport said;
+    ProbeReport said;
     std::memcpy(&said, theirs, sizeof(said));
     failed = failed || said.Failed != 0;
     statistics.SamplesTaken += static_cast<std::int64_t>(said.SamplesTaken);

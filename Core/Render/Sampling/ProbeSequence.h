@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Render_Sampling_PilotSequence_h
-#define banyan_Render_Sampling_PilotSequence_h
+#ifndef banyan_Render_Sampling_ProbeSequence_h
+#define banyan_Render_Sampling_ProbeSequence_h
 
 #include "Render/Sampling/ProbeImages.h"
 
@@ -15,14 +15,14 @@ namespace banyan
 /// later picture, and that one's error, bound the error too, and so does what is expected of an
 /// earlier one.
 ///
-/// Errors of tiles are those of the pilots in and around them, times a factor of safety, because
+/// Errors of tiles are those of the probes in and around them, times a factor of safety, because
 /// the worst of a thousand pixels is worse than that of a few; and at least the largest error
-/// anywhere, because pilots may miss what is thin.
-class PilotSequence
+/// anywhere, because probes may miss what is thin.
+class ProbeSequence
 {
 public:
   /// @param pictures must stay
-  explicit PilotSequence(const ProbeImages& pictures)
+  explicit ProbeSequence(const ProbeImages& pictures)
     : Pictures(pictures)
   {
   }
@@ -40,7 +40,7 @@ public:
 private:
   const ProbeImages& Pictures;
   std::vector<ProbeImage> Drawn;
-  std::vector<PilotErrors> Steps; ///< from each picture to the next
+  std::vector<ProbeErrors> Steps; ///< from each picture to the next
   double LargestBefore = 0.0;     ///< difference of the last two
   std::vector<TileErrors> Errors;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Render/Sampling/PilotSpacing.h"
+#include "Render/Sampling/ProbeSpacing.h"
 
 #include "Render/Levels/RayCaster.h"
 
@@ -15,8 +15,8 @@ namespace
 /// Small pictures must not cost much more than themselves.
 constexpr int ClosestOfWideVolumes = 8;
 constexpr int Widest = 16;
-/// Pilots side by side across a narrow volume, where rays get ever shorter towards its edges.
-constexpr double PilotsAcross = 5.0;
+/// Probes side by side across a narrow volume, where rays get ever shorter towards its edges.
+constexpr double ProbesAcross = 5.0;
 /// Rays per axis that find out how many pixels meet the volume.
 constexpr int Probes = 64;
 
@@ -58,7 +58,7 @@ PixelRect VolumeOnScreen(const RayScene& scene)
   return rect.Empty() ? scene.Viewport : rect;
 }
 
-int PilotSpacing(const RayScene& scene)
+int ProbeSpacing(const RayScene& scene)
 {
   const glm::ivec2 image = scene.Camera.ImageSize();
   const double edge = std::sqrt(static_cast<double>(image.x) * image.y);
@@ -79,18 +79,18 @@ int PilotSpacing(const RayScene& scene)
   const double pixels = met * step * step;
   const double width = pixels / std::max(1.0, glm::length(glm::dvec2(size)));
   const int wanted =
-    static_cast<int>(std::min(std::sqrt(pixels / EnoughPilots), width / PilotsAcross));
+    static_cast<int>(std::min(std::sqrt(pixels / EnoughProbes), width / ProbesAcross));
   return std::clamp(wanted, 1, most);
 }
 
-int PilotSpacingAfter(int spacing, int seen)
+int ProbeSpacingAfter(int spacing, int seen)
 {
   // A few less than enough are no reason to begin again.
-  if (spacing == 1 || seen >= EnoughPilots / 4)
+  if (spacing == 1 || seen >= EnoughProbes / 4)
   {
     return spacing;
   }
-  const double nearer = spacing * std::sqrt(static_cast<double>(seen) / EnoughPilots);
+  const double nearer = spacing * std::sqrt(static_cast<double>(seen) / EnoughProbes);
   return std::max(1, static_cast<int>(nearer));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Render/Sampling/PilotSequence.h"
+#include "Render/Sampling/ProbeSequence.h"
 
 #include <algorithm>
 
@@ -8,12 +8,12 @@ namespace banyan
 namespace
 {
 
-/// Of the largest error anywhere, what a tile without pilots of its own is taken to have.
+/// Of the largest error anywhere, what a tile without probes of its own is taken to have.
 constexpr double ShareOfLargest = 1.0;
 
 } // namespace
 
-void PilotSequence::Add(ProbeImage picture)
+void ProbeSequence::Add(ProbeImage picture)
 {
   if (this->Drawn.empty())
   {
@@ -22,7 +22,7 @@ void PilotSequence::Add(ProbeImage picture)
     return;
   }
   this->Steps.push_back(this->Pictures.Difference(picture, this->Drawn.back()));
-  const PilotErrors& difference = this->Steps.back();
+  const ProbeErrors& difference = this->Steps.back();
   const double largest = difference.Largest();
   if (this->Drawn.size() == 1)
   {
@@ -39,22 +39,22 @@ void PilotSequence::Add(ProbeImage picture)
   this->Drawn.push_back(std::move(picture));
 }
 
-void PilotSequence::LastIsExact()
+void ProbeSequence::LastIsExact()
 {
   TileErrors& last = this->Errors.back();
   std::fill(last.Tiles.begin(), last.Tiles.end(), 0.0);
 }
 
-bool PilotSequence::LastIsWithin(double allowed) const
+bool ProbeSequence::LastIsWithin(double allowed) const
 {
   return this->Drawn.size() > 1 && this->Errors.back().Largest() <= allowed;
 }
 
-std::vector<TileErrors> PilotSequence::AllErrors() const
+std::vector<TileErrors> ProbeSequence::AllErrors() const
 {
   std::vector<TileErrors> errors = this->Errors;
   const std::size_t last = errors.size() - 1;
-  const auto lower = [&](std::size_t i, std::size_t later, const PilotErrors& difference)
+  const auto lower = [&](std::size_t i, std::size_t later, const ProbeErrors& difference)
   {
     TileErrors bound = this->Pictures.ErrorsOf(difference, ProbeImages::Safety(), ShareOfLargest);
     bound.Add(errors[later]);
