@@ -35,7 +35,7 @@ public:
   void ParallelFor(std::int64_t count, const std::function<void(std::int64_t, int worker)>& body);
 
   /// The pool shared by everything in this process; its width is `DefaultWidth()` until
-  /// `SetProcessWidth` is called.
+  /// `SetProcessWidth` is called. One for all series and volumes: the cores are the process's.
   static ThreadPool& Process();
 
   /// Replaces the shared pool by one of another width. Must not be called while it works.

@@ -21,7 +21,8 @@ namespace banyan
 class FunctionTables
 {
 public:
-  /// Those that all pictures of this process share.
+  /// The tables that all pictures of this process share. Equal functions have equal ones, whatever
+  /// is drawn with them, and few are kept.
   static FunctionTables& Process();
 
   /// StepTable(function, sampleDistance). Throws Error as it does.
