@@ -130,6 +130,8 @@ HWY_INLINE RowPlace PlaceOf(const Unit<Number, P::D>& unit, int slice, int row)
   return place;
 }
 
+static_assert(block::Interpolations == 3, "PredictAt lacks an interpolation");
+
 /// Predicts some lanes of a row; those that the pass does not have hold anything.
 /// @param At lane, counted from the first one, where they begin
 /// @param from the sample there

@@ -95,6 +95,9 @@ HWY_INLINE glm::ivec3 InOrderOf(const glm::ivec3& axes, const glm::ivec3& v, int
   return { v[axes.x], D > 1 ? v[axes.y] : edge, D > 2 ? v[axes.z] : edge };
 }
 
+// Highway includes this as a system header: no compiler warns of a switch that lacks one.
+static_assert(block::References == 5, "Subtracted and WithReference lack a reference");
+
 /// A reference as it is subtracted from samples, of a kind that the compiler knows. Arithmetic
 /// wraps.
 template <class Number, block::Reference From>

@@ -18,6 +18,15 @@ constexpr std::size_t BlocksPerByte = 16384;
 
 constexpr int SizeClasses = 14;
 
+/// A reader of version 1 refuses a table with any other mode, and says that it is damaged.
+constexpr int ModesOfVersion1 = 15;
+static_assert(block::ModeCount == ModesOfVersion1,
+  "Files with a further mode need a feature, by which older readers refuse them: see 'Adding a "
+  "block mode' in Core/Codec/README.md");
+
+constexpr int ModeBits = 4;
+static_assert(block::ModeCount <= 1 << ModeBits, "the number of a mode is a tree of so many bits");
+
 std::uint8_t FlagsOf(const NodeEntry& node)
 {
   return static_cast<std::uint8_t>((node.HasNonFinite ? 1 : 0) | (node.NothingFinite ? 2 : 0) |
@@ -141,7 +150,7 @@ private:
     else
     {
       block.Mode = static_cast<std::uint8_t>(
-        bits::Tree(this->Code, this->Modes[payload ? 1 : 0].data(), 4, block.Mode));
+        bits::Tree(this->Code, this->Modes[payload ? 1 : 0].data(), ModeBits, block.Mode));
     }
     if (block.Mode >= block::ModeCount)
     {
@@ -304,7 +313,8 @@ private:
   bits::Model Follows, IsSame, HasPayload[3][4], IsPlain[4], HasExceptions[4];
   bits::Model HasContent[2][2];
   bits::Reals RealExtremes;
-  std::array<bits::Model, 16> Modes[2], NodeFlags[4];
+  std::array<bits::Model, 1 << ModeBits> Modes[2];
+  std::array<bits::Model, 16> NodeFlags[4];
 };
 
 std::size_t CountOf(const glm::ivec3& size)

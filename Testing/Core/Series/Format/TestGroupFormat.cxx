@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Base/Error.h"
+#include "Codec/BlockModes.h"
 #include "Series/Format/GroupFormat.h"
 #include "Series/ScalarStepTable.h"
 
@@ -143,7 +144,7 @@ StepTable SomeTable(int step, const group::TableReference& reference = {})
       block.Uniform = kind == 0;
       block.Same = kind == 1 && reference.Table != nullptr;
       block.Value = block.Uniform ? static_cast<std::int32_t>(random()) : 0;
-      block.Mode = block.Uniform ? 0 : block.Same ? 1 : random() % 15;
+      block.Mode = block.Uniform ? 0 : block.Same ? 1 : random() % block::ModeCount;
       if (kind > 1)
       {
         block.Payload = place();
@@ -306,7 +307,7 @@ TEST(GroupFormat, DamageGivesAnErrorOrATableThatFits)
       {
         for (const BlockEntry& block : plane)
         {
-          EXPECT_LT(block.Mode, 15);
+          EXPECT_LT(block.Mode, block::ModeCount);
           EXPECT_FALSE(block.Uniform && block.Same);
           for (const group::Place& place : { block.Payload, block.Exceptions })
           {
