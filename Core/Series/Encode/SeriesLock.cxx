@@ -159,8 +159,8 @@ void SeriesLock::CheckPath() const
   {
     throw Error(S_ISDIR(status.st_mode) ? "The series cannot be written: a folder has its name. "
                                           "Choose another name"
-                                        : "The series cannot be written: what has its name is no "
-                                          "ordinary file. Choose another name",
+                                        : "The series cannot be written: something other than a "
+                                          "file has its name. Choose another name",
       { this->Path });
   }
 }

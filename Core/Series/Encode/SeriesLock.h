@@ -23,7 +23,7 @@ public:
   /// left in it, apart from what the index of the series names.
   /// @param seriesPath of the index file, which is no link (see FollowLinks)
   /// Throws Error that says who holds the lock, that the folder or the index cannot be written, or
-  /// that what has the name of the series is no ordinary file.
+  /// that something other than a file has the name of the series.
   explicit SeriesLock(const std::string& seriesPath);
   /// The folder goes as well if it was made here and is empty.
   ~SeriesLock();
