@@ -346,25 +346,30 @@ vtkSmartPointer<vtkUnstructuredGrid> GridOfAmr(
   return collector.Grid(array);
 }
 
-vtkSmartPointer<vtkUnstructuredGrid> GridOfAmrOnRanks(
-  Communicator& ranks, vtkOverlappingAMR* blocks)
+std::vector<AmrBox> BoxesOfAll(Communicator& ranks, const std::vector<AmrBox>& mine)
 {
-  std::string mine;
-  Collective(ranks,
-    [&]
-    {
-      const std::vector<AmrBox> own = BoxesOf(blocks);
-      mine.assign(reinterpret_cast<const char*>(own.data()), own.size() * sizeof(AmrBox));
-    });
   std::vector<AmrBox> all;
-  for (const std::string& theirs : AllGatherStrings(ranks, mine))
+  const std::string bytes(reinterpret_cast<const char*>(mine.data()), mine.size() * sizeof(AmrBox));
+  for (const std::string& theirs : AllGatherStrings(ranks, bytes))
   {
     const std::size_t before = all.size();
     all.resize(before + theirs.size() / sizeof(AmrBox));
-    std::memcpy(all.data() + before, theirs.data(), theirs.size());
+    if (!theirs.empty())
+    {
+      std::memcpy(all.data() + before, theirs.data(), theirs.size());
+    }
   }
+  return all;
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> GridOfAmrOnRanks(
+  Communicator& ranks, vtkOverlappingAMR* blocks)
+{
+  std::vector<AmrBox> boxes;
+  Collective(ranks, [&] { boxes = BoxesOf(blocks); });
+  boxes = BoxesOfAll(ranks, boxes);
   vtkSmartPointer<vtkUnstructuredGrid> grid;
-  Collective(ranks, [&] { grid = GridOfAmr(blocks, all); });
+  Collective(ranks, [&] { grid = GridOfAmr(blocks, boxes); });
   return grid;
 }
 

@@ -43,6 +43,9 @@ BANYANINPUTS_EXPORT vtkSmartPointer<vtkUnstructuredGrid> GridOfAmr(
 
 class Communicator;
 
+/// Collective. The boxes of all ranks, in the order of ranks.
+std::vector<AmrBox> BoxesOfAll(Communicator& ranks, const std::vector<AmrBox>& mine);
+
 /// Collective: GridOfAmr with the blocks of all ranks. Throws CollectiveError.
 vtkSmartPointer<vtkUnstructuredGrid> GridOfAmrOnRanks(
   Communicator& ranks, vtkOverlappingAMR* blocks);

@@ -15,31 +15,8 @@
 #include "vtkPointData.h"
 #include "vtkUnstructuredGrid.h"
 
-#include <cstring>
-
 namespace banyan
 {
-namespace
-{
-
-/// Collective.
-std::vector<AmrBox> BoxesOfAll(Communicator& communicator, const std::vector<AmrBox>& mine)
-{
-  std::vector<AmrBox> all;
-  const std::string bytes(reinterpret_cast<const char*>(mine.data()), mine.size() * sizeof(AmrBox));
-  for (const std::string& theirs : AllGatherStrings(communicator, bytes))
-  {
-    const std::size_t before = all.size();
-    all.resize(before + theirs.size() / sizeof(AmrBox));
-    if (!theirs.empty())
-    {
-      std::memcpy(all.data() + before, theirs.data(), theirs.size());
-    }
-  }
-  return all;
-}
-
-} // namespace
 
 void TakeLeaves(
   Communicator& communicator, FieldPiece& piece, vtkSmartPointer<vtkUnstructuredGrid>& grid)
