@@ -21,6 +21,8 @@
 namespace
 {
 
+constexpr int BrickCells = 32; // as the mapper has them
+
 using namespace banyan;
 
 struct Options
@@ -154,7 +156,7 @@ void Run(const Options& options)
   const double findSeconds = find.Seconds();
   const double findCpu = static_cast<double>(std::clock() - findFrom) / CLOCKS_PER_SEC;
   const Timer cut;
-  const auto bricks = std::make_shared<const HexBricks>(tree, 16);
+  const auto bricks = std::make_shared<const HexBricks>(tree, BrickCells);
   const double cutSeconds = cut.Seconds();
   NodeArray array;
   array.Values = values.data();
