@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Checks the style of the sources: clang-format, codespell, the sentences of documents (check-prose.sh),
-# a licence line in each file, and clang-tidy on what has changed since a revision. Needs a build
-# folder for clang-tidy alone.
+# the layout of the sources (check-layout.py), a licence line in each file, and clang-tidy on what has
+# changed since a revision. Needs a build folder for clang-tidy alone.
 #   check-style.sh [REVISION]        the revision before the last one when none is given
 #   check-style.sh --fix             formats the C++ sources, and checks nothing
 # SPDX-License-Identifier: BSD-3-Clause
@@ -66,6 +66,7 @@ changed_sources_are_tidy()
 check "clang-format" clang-format --dry-run -Werror "${sources[@]}"
 check "codespell" codespell --quiet-level 3 "${texts[@]}"
 check "the sentences of documents" Utilities/check-prose.sh
+check "the layout of the sources" Utilities/check-layout.py
 check "a licence line in every file" every_file_names_its_licence
 check "clang-tidy" changed_sources_are_tidy "${1:-}"
 if [[ ${#failures[@]} -gt 0 ]]; then
