@@ -101,7 +101,7 @@ TreeCells TreeCellsOf(const StoredMesh& mesh, int level)
   {
     glm::ivec3 first;
     const glm::ivec3 count = roots(at, first);
-    const bool ends = first << at == low && (first + count) << at == high;
+    const bool ends = (first << at) == low && ((first + count) << at) == high;
     const bool enough = std::int64_t{ count.x } * count.y * count.z >= TreeCells::FewestTrees;
     if (at == coarsest || (ends && enough))
     {

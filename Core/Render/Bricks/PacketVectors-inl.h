@@ -77,7 +77,7 @@ HWY_INLINE VF LoadBlocks(const char* base, const std::int32_t* bytes)
 /// @param row bytes
 HWY_INLINE VF LoadFaces(const char* base, const std::int32_t* bytes, std::ptrdiff_t row)
 {
-#if HWY_ARCH_X86
+#if HWY_ARCH_X86 && HWY_TARGET != HWY_EMU128
   const auto at = [&](int i) HWY_ATTR
   {
     const auto* const from = reinterpret_cast<const double*>(base + bytes[i]);
@@ -100,7 +100,7 @@ HWY_INLINE VF LoadFaces(const char* base, const std::int32_t* bytes, std::ptrdif
   return VF{ _mm512_insertf32x4(v, at(12), 3) };
 #elif HWY_TARGET == HWY_AVX2
   return VF{ _mm256_insertf128_ps(_mm256_castps128_ps256(at(0)), at(4), 1) };
-#elif HWY_ARCH_X86
+#elif HWY_ARCH_X86 && HWY_TARGET != HWY_EMU128
   return VF{ at(0) };
 #else
   return at(0);
