@@ -157,7 +157,6 @@ TEST(HexPictures, AnyFieldIsTheReferenceOfItsElements)
 {
   // The lattice sampled from the mesh: what is drawn must be that, elements of all sizes alike.
   ThreadPool pool(1);
-  const glm::ivec3 n(65, 33, 33);
   for (const auto& cubes : { Graded(), Rough() })
   {
     const Case made(cubes, scenes::Standard);

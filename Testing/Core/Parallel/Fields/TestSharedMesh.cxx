@@ -66,7 +66,7 @@ TEST(SharedMesh, OneRankOfAMachineFindsWhatEachFindsAlone)
             {
               continue;
             }
-            const int component = ranks % 2 == 0 ? NodeArray::Magnitude : 1;
+            const int component = communicator.Size() % 2 == 0 ? NodeArray::Magnitude : 1;
             const auto field = shared.Field(
               communicator, ArrayOf(piece, where, component), CountOf(piece, where), where);
             const Alone alone(communicator, piece, where, component);
@@ -164,7 +164,8 @@ TEST(SharedMesh, CoarserMeshesAreMadeOncePerMachine)
           shared.BringLevels(communicator, 3);
           const MeshBytes after = shared.Bytes();
           // The last rank may be alone on its machine.
-          const int here = std::min(onEach, ranks - communicator.Rank() / onEach * onEach);
+          const int here =
+            std::min(onEach, communicator.Size() - communicator.Rank() / onEach * onEach);
           EXPECT_EQ(shared.Bricks().LevelCount(), onEach > 1 ? 3 : 0);
           EXPECT_EQ(after.Together > before.Together, here > 1);
           EXPECT_EQ(after.Own > before.Own, onEach > 1);
