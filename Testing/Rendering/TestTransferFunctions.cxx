@@ -11,6 +11,7 @@
 #include "vtkVariant.h"
 
 #include <algorithm>
+#include <functional>
 #include <random>
 
 namespace
@@ -86,6 +87,12 @@ private:
   double Unit() { return std::uniform_real_distribution<double>(0.0, 1.0)(this->Random); }
   int Below(int n) { return static_cast<int>(this->Random() % static_cast<unsigned>(n)); }
   double Midpoint() { return this->Below(2) == 0 ? 0.5 : 0.1 + 0.8 * this->Unit(); }
+  glm::dvec3 Colour()
+  {
+    const double blue = this->Unit();
+    const double green = this->Unit();
+    return { this->Unit(), green, blue };
+  }
   double Sharpness()
   {
     const double some[] = { 0.0, 0.0, 1.0, this->Unit() };
@@ -102,16 +109,23 @@ private:
 
   void AddPoints(vtkPiecewiseFunction* function, bool opacity)
   {
+    // Calls of Random stand apart: compilers differ in the order of arguments.
+    const auto add = [&](double x, const std::function<double()>& value)
+    {
+      const double sharpness = this->Sharpness();
+      const double midpoint = this->Midpoint();
+      function->AddPoint(x, value(), midpoint, sharpness);
+    };
     function->AllowDuplicateScalarsOn();
     const int count = 2 + this->Below(6);
     for (int i = 0; i < count; ++i)
     {
       const double x = this->Node(i, count);
       const double y = opacity && this->Below(3) == 0 ? 0.0 : this->Unit();
-      function->AddPoint(x, y, this->Midpoint(), this->Sharpness());
+      add(x, [y] { return y; });
       if (this->Below(4) == 0)
       {
-        function->AddPoint(x, this->Unit(), this->Midpoint(), this->Sharpness()); // a step
+        add(x, [this] { return this->Unit(); }); // a step
       }
     }
   }
@@ -147,8 +161,10 @@ private:
     for (int i = 0; i < count; ++i)
     {
       const double x = this->Node(i, count);
-      this->Colours->AddRGBPoint(x, this->Unit(), this->Unit(), this->Unit(), this->Midpoint(),
-        this->Below(4) == 0 ? 1.0 : 0.0);
+      const double sharpness = this->Below(4) == 0 ? 1.0 : 0.0;
+      const double midpoint = this->Midpoint();
+      const glm::dvec3 colour = this->Colour();
+      this->Colours->AddRGBPoint(x, colour.r, colour.g, colour.b, midpoint, sharpness);
     }
     if (logarithmic)
     {
@@ -174,8 +190,8 @@ private:
     for (int i = 0; i < count; ++i, label += 1 + this->Below(gap))
     {
       this->Colours->SetAnnotation(vtkStdString(std::to_string(label)), "some part");
-      this->Colours->SetIndexedColor(
-        static_cast<unsigned>(i), this->Unit(), this->Unit(), this->Unit());
+      const glm::dvec3 colour = this->Colour();
+      this->Colours->SetIndexedColor(static_cast<unsigned>(i), colour.r, colour.g, colour.b);
       this->Nodes.push_back(label);
     }
     this->Colours->SetNumberOfIndexedColors(static_cast<unsigned>(count));

@@ -113,7 +113,9 @@ public:
   {
     std::vector<double> at;
     const int nodes = 2 + this->Below(12);
-    const double low = (this->Unit() - 0.5) * std::pow(10.0, this->Below(9) - 2);
+    // Calls of Random stand apart: compilers differ in the order within an expression.
+    const double off = this->Unit() - 0.5;
+    const double low = off * std::pow(10.0, this->Below(9) - 2);
     const double width = std::pow(10.0, this->Below(8) - 3);
     const double decades = 1 + this->Below(12);
     const int kind = this->Below(6);
@@ -133,7 +135,10 @@ public:
       case 2:
         return this->Beyond(this->Nodes(at, this->Below(2) == 0, false));
       case 3:
-        return this->Labels(1 + this->Below(60), 1 + this->Below(1000));
+      {
+        const int gap = 1 + this->Below(1000);
+        return this->Labels(1 + this->Below(60), gap);
+      }
       case 4:
         return this->Nodes(at, false, true);
       default:
