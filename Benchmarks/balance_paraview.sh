@@ -34,6 +34,7 @@ plugin="$BuildFolder/lib/Banyan/Banyan.so"
 mkdir -p "$output" || fail "the folder for the results cannot be made."
 
 stage 2 2 "Drawing in ParaView"
+prepare_mpi
 if [[ $parts == 1 ]]; then
   table="$output/balance-paraview-parts.csv"
   meter="$(find "$BuildFolder" -name banyan-frame-parts.so -print -quit)"
