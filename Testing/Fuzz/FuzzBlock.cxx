@@ -107,8 +107,14 @@ void PlaceInField(int edge, BlockCode (&blocks)[8])
   const glm::ivec3 last = blocks[0].Limit;
   for (int i = 0; i < 8; ++i)
   {
-    blocks[i].Limit = last - edge * glm::ivec3(i & 1, i >> 1 & 1, i >> 2);
-    blocks[i].Exists = glm::all(glm::greaterThanEqual(blocks[i].Limit, glm::ivec3(0)));
+    const glm::ivec3 limit = last - edge * glm::ivec3(i & 1, i >> 1 & 1, i >> 2);
+    if (!glm::all(glm::greaterThanEqual(limit, glm::ivec3(0))))
+    {
+      blocks[i] = BlockCode();
+      continue;
+    }
+    blocks[i].Limit = limit;
+    blocks[i].Exists = true;
   }
 }
 
@@ -154,7 +160,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (std::size_t i = 0; i < 8; ++i)
   {
     // Copies of the exact size, so that reading behind them is noticed.
-    payloads[i] = in.Bytes(sizes[i]);
+    payloads[i] = in.Bytes(blocks[i].Exists ? sizes[i] : 0);
     blocks[i].Data = payloads[i].data();
     blocks[i].Bytes = payloads[i].size();
   }

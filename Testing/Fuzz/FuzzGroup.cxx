@@ -56,7 +56,8 @@ void Write(const std::string& path, const char* data, std::size_t bytes)
 /// Everything that a reader can be asked for; an Error here does not keep the rest from being read.
 void ReadEverything(const SeriesFile& file)
 {
-  std::vector<std::uint64_t> values(9 * 9 * 9);
+  const auto edge = static_cast<std::size_t>(file.Index().BrickCells) + 1;
+  std::vector<std::uint64_t> values(edge * edge * edge);
   for (int step = file.Index().Steps(); step-- > 0;)
   {
     for (int level = 0; level < file.Index().Levels; ++level)
