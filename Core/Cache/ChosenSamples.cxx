@@ -76,6 +76,10 @@ ChosenSamples::ChosenSamples(const BrickLayout& layout, const std::vector<std::u
 void ChosenSamples::Read(BrickCache& cache, const SeriesFile& series, const FieldKey& field,
   void* values, int stride, int component) const
 {
+  if (this->Count() == 0)
+  {
+    return; // `values` may be null
+  }
   const BrickLayout layout = series.Layout(field.Level);
   const auto nodes = series.Nodes(field);
   Dispatch(series.Index().Arrays[static_cast<std::size_t>(field.Array)].Type,
