@@ -48,7 +48,8 @@ endfunction()
 
 # Collects the XML of one statistic.
 function(banyan_add_statistic kind words sentence)
-  banyan_check_words(${kind} "${words}" Number 3 Text 1)
+  banyan_check_words(${kind} "${words}" Number 4 Text 2)
+  list(POP_BACK words where)
   if(kind STREQUAL "Text")
     list(PREPEND words "text")
   endif()
@@ -69,8 +70,15 @@ function(banyan_add_statistic kind words sentence)
       </${xml}VectorProperty>\n")
   set_property(GLOBAL APPEND_STRING PROPERTY BANYAN_EXPOSED_STATISTICS
 "          <Property name=\"${name}\" />\n")
-  set_property(GLOBAL APPEND_STRING PROPERTY BANYAN_STATISTICS_ON_NO_PANEL
+  if(where STREQUAL "panel")
+    set_property(GLOBAL APPEND_STRING PROPERTY BANYAN_STATISTICS_ON_PANEL
+"            <Property name=\"${name}\" panel_visibility=\"default\" />\n")
+  elseif(where STREQUAL "script")
+    set_property(GLOBAL APPEND_STRING PROPERTY BANYAN_STATISTICS_ON_NO_PANEL
 "          <Property name=\"${name}\" panel_visibility=\"never\" />\n")
+  else()
+    message(FATAL_ERROR "The statistic ${name} is for \"${where}\": say panel or script.")
+  endif()
 endfunction()
 
 # Collects the XML of one setting, and its lines on the panels.
@@ -138,7 +146,7 @@ function(banyan_configure_xml folder)
   banyan_read_table("${Banyan_SOURCE_DIR}/Rendering/vtkBanyanVolumeMapper.h"
     BANYAN_VOLUME_SETTINGS banyan_add_setting)
   foreach(part IN ITEMS SETTINGS SETTINGS_OF_IMAGES SETTINGS_OF_MESHES SETTINGS_OF_LEAVES
-      STATISTICS EXPOSED_STATISTICS STATISTICS_ON_NO_PANEL)
+      STATISTICS EXPOSED_STATISTICS STATISTICS_ON_PANEL STATISTICS_ON_NO_PANEL)
     get_property(BANYAN_${part} GLOBAL PROPERTY BANYAN_${part})
   endforeach()
   foreach(name IN LISTS ARGN)

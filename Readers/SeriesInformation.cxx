@@ -16,6 +16,9 @@
 #include "Series/Grid/LevelGrid.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <vector>
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -130,6 +133,88 @@ void DescribeRange(const SeriesFile& series, int array, vtkDataArray& values)
     const double ends[2] = { range.Magnitude.Low, range.Magnitude.High };
     information->Set(vtkDataArray::L2_NORM_FINITE_RANGE(), ends, 2);
   }
+}
+
+namespace
+{
+
+/// Bytes in a unit that leaves one to three digits before the point.
+void WriteBytes(std::ostream& text, double bytes)
+{
+  const char* unit = "bytes";
+  for (const char* larger : { "kB", "MB", "GB", "TB" })
+  {
+    if (bytes < 1000)
+    {
+      break;
+    }
+    bytes /= 1000;
+    unit = larger;
+  }
+  text << bytes << " " << unit;
+}
+
+void WriteErrors(std::ostream& text, const ArrayIndex& array)
+{
+  double bound = 0;
+  double error = 0;
+  double share = 0;
+  for (const ComponentIndex& component : array.Components)
+  {
+    const ValueRange& range = component.ReferenceRange();
+    bound = std::max(bound, component.ErrorBoundAbsolute);
+    error = std::max(error, component.MeasuredMaxError);
+    if (range.Width() > 0)
+    {
+      share = std::max(share, component.MeasuredMaxError / range.Width());
+    }
+  }
+  text << "\n" << (array.CellArray.empty() ? array.Name : array.CellArray) << ": ";
+  if (error == 0)
+  {
+    text << "bit-exact";
+    return;
+  }
+  const bool isPlain = std::all_of(array.Components.begin(), array.Components.end(),
+    [](const ComponentIndex& component) { return component.ValueTransform == Transform(); });
+  text << "error at most " << error << " (1/" << std::floor(1 / share) << " of the range)\n  bound "
+       << bound << (isPlain ? "" : " of transformed values");
+}
+
+} // namespace
+
+std::string SummaryOf(const SeriesIndex& index)
+{
+  std::ostringstream text;
+  text << std::setprecision(4) << index.Steps()
+       << (index.Steps() == 1 ? " step of " : " steps of ");
+  if (index.Mesh)
+  {
+    text << index.Mesh->Points << " points and " << index.Mesh->Cells << " cells";
+  }
+  else
+  {
+    const glm::ivec3 samples = index.Domain.Samples();
+    text << samples.x << " x " << samples.y << " x " << samples.z << " points";
+  }
+  double encoded = index.Mesh ? static_cast<double>(index.Mesh->Bytes) : 0.0;
+  for (const SegmentIndex& segment : index.Segments)
+  {
+    encoded += static_cast<double>(segment.Bytes);
+  }
+  const auto raw = static_cast<double>(index.PayloadBytesIn);
+  text << "\n";
+  WriteBytes(text, encoded);
+  text << ", 1/" << raw / encoded << " of the values' ";
+  WriteBytes(text, raw);
+  for (const ArrayIndex& array : index.Arrays)
+  {
+    if (array.Flags == ArrayFlags::None)
+    {
+      WriteErrors(text, array);
+    }
+  }
+  return text.str();
 }
 
 } // namespace banyan

@@ -5,6 +5,8 @@
 #include "Base/Box.h"
 #include "Series/Decode/SeriesFile.h"
 
+#include <string>
+
 class vtkDataArray;
 class vtkInformation;
 
@@ -22,6 +24,9 @@ void DescribeSeries(const SeriesIndex& index, int level, vtkInformation& informa
 /// The step that shows at the time asked for: the last one not after it; the first one before that,
 /// and when no time is asked for.
 int StepAt(const SeriesIndex& index, vtkInformation& information);
+
+/// Tells a person what a series holds: size, ratio, and the error bound of each array, a line each.
+std::string SummaryOf(const SeriesIndex& index);
 
 /// Gives a plain array the range of the whole series as its finite range, which ParaView takes
 /// colours from: so they do not depend on the step that is shown first, and do not drift while a

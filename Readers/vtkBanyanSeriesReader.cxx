@@ -44,6 +44,7 @@ struct vtkBanyanSeriesReader::Internals
   vtkNew<vtkDataArraySelection> Selection;     ///< of point arrays
   vtkNew<vtkDataArraySelection> CellSelection; ///< of cell arrays of meshes
   std::string ErrorMessage;
+  std::string Contents;      ///< what GetContents() has returned
   bool GaveDeferred = false; ///< whether the output has arrays that decode on first touch
   vtkTimeStamp PlainWanted;  ///< when somebody came who needs plain ones instead
   vtkTimeStamp Executed;
@@ -178,6 +179,13 @@ void vtkBanyanSeriesReader::SetController(vtkMultiProcessController* controller)
 vtkMultiProcessController* vtkBanyanSeriesReader::GetController()
 {
   return this->Self->File.Controller();
+}
+
+const char* vtkBanyanSeriesReader::GetContents()
+{
+  const banyan::SeriesFile* const series = this->Series();
+  this->Self->Contents = series ? banyan::SummaryOf(series->Index()) : "";
+  return this->Self->Contents.c_str();
 }
 
 const char* vtkBanyanSeriesReader::GetErrorMessage()

@@ -178,6 +178,13 @@ public:
   double GetLoadSeconds();
 
   /**
+   * What the open series holds, in lines for a person: steps and points, bytes and how many times
+   * fewer they are than the values, and for each array its largest error and its error bound, in
+   * the units of the data. Empty before the first update of information.
+   */
+  const char* GetContents();
+
+  /**
    * What went wrong in the last update, as a sentence; empty if nothing did.
    */
   const char* GetErrorMessage();

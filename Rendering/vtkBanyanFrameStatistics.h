@@ -9,74 +9,75 @@
 
 // clang-format off
 /// The table of the statistics, in the order of the display's properties. A row has the type, the
-/// name, the value before the first frame (a text is empty), and the sentence that ParaView shows.
+/// name, the value before the first frame (a text is empty), who sees it (the panel's group "Last
+/// Frame" and scripts, or scripts alone), and the sentence that ParaView shows.
 /// CMake/BanyanTables.cmake makes ParaView's XML of it. Counts and bytes are sums over all ranks.
 #define BANYAN_FRAME_STATISTICS(Number, Text)                                                      \
-  Number(double, TotalSeconds, 0.0,                                                                \
+  Number(double, TotalSeconds, 0.0, panel,                                                         \
     "Seconds of the last frame, from reading back geometry to the finished picture. Slowest "      \
     "rank.")                                                                                       \
-  Number(double, RenderSeconds, 0.0,                                                               \
+  Number(double, RenderSeconds, 0.0, script,                                                       \
     "Seconds of casting rays, loading bricks included. Slowest rank.")                             \
-  Number(double, CompositeSeconds, 0.0,                                                            \
+  Number(double, CompositeSeconds, 0.0, script,                                                    \
     "Seconds of compositing the pictures of all ranks.")                                           \
-  Number(double, ProbeSeconds, 0.0,                                                                \
+  Number(double, ProbeSeconds, 0.0, script,                                                        \
     "Seconds before casting rays: finding the sample distances and levels that keep the "          \
     "tolerance.")                                                                                  \
-  Number(double, StrideSeconds, 0.0,                                                               \
+  Number(double, StrideSeconds, 0.0, script,                                                       \
     "Seconds before casting rays: finding the pixels that need no rays.")                          \
-  Number(vtkIdType, Probes, 0,                                                                     \
+  Number(vtkIdType, Probes, 0, script,                                                             \
     "Number of small pictures drawn for Probe Seconds and Stride Seconds.")                        \
-  Number(double, Imbalance, 1.0,                                                                   \
+  Number(double, Imbalance, 1.0, panel,                                                            \
     "Render seconds of the slowest rank, divided by the mean over all ranks. 1 is perfect.")       \
-  Number(vtkIdType, Threads, 0,                                                                    \
+  Number(vtkIdType, Threads, 0, script,                                                            \
     "Threads that cast rays and decoded, over all ranks.")                                         \
-  Number(vtkIdType, SamplesTaken, 0,                                                               \
+  Number(vtkIdType, SamplesTaken, 0, script,                                                       \
     "Interpolated samples, sum over all ranks.")                                                   \
-  Number(vtkIdType, BricksDrawn, 0,                                                                \
+  Number(vtkIdType, BricksDrawn, 0, panel,                                                         \
     "Bricks whose values were needed, sum over all ranks.")                                        \
-  Number(vtkIdType, BricksUniform, 0,                                                              \
+  Number(vtkIdType, BricksUniform, 0, script,                                                      \
     "Bricks of one value, drawn without loading or sampling, sum over all ranks.")                 \
-  Number(vtkIdType, BricksSkipped, 0,                                                              \
+  Number(vtkIdType, BricksSkipped, 0, script,                                                      \
     "Invisible bricks, sum over all ranks.")                                                       \
-  Number(vtkIdType, BytesComposited, 0,                                                            \
+  Number(vtkIdType, BytesComposited, 0, script,                                                    \
     "Bytes sent between ranks to composite the picture.")                                          \
-  Number(vtkIdType, MessagesComposited, 0,                                                         \
+  Number(vtkIdType, MessagesComposited, 0, script,                                                 \
     "Messages sent between ranks to composite the picture.")                                       \
-  Number(vtkIdType, BytesRead, 0,                                                                  \
+  Number(vtkIdType, BytesRead, 0, panel,                                                           \
     "Bytes read from series files for the last frame, sum over all ranks.")                        \
-  Number(vtkIdType, CacheBytes, 0,                                                                 \
+  Number(vtkIdType, CacheBytes, 0, panel,                                                          \
     "Bytes of decoded bricks in memory, sum over all ranks.")                                      \
-  Number(vtkIdType, PixelsReadBehind, 0,                                                           \
+  Number(vtkIdType, PixelsReadBehind, 0, script,                                                   \
     "Pixels that the first rank has read back of what other props had drawn.")                     \
-  Number(vtkIdType, MeshBytes, 0,                                                                  \
+  Number(vtkIdType, MeshBytes, 0, script,                                                          \
     "Bytes of a drawn mesh in memory: octree, cells, values and coarser meshes. Sum over "         \
     "all ranks; memory that ranks of a machine share counts once.")                                \
-  Number(vtkIdType, MeshBytesShared, 0,                                                            \
+  Number(vtkIdType, MeshBytesShared, 0, script,                                                    \
     "The part of Mesh Bytes in memory that ranks of a machine share.")                             \
-  Number(vtkIdType, BytesMoved, 0,                                                                 \
+  Number(vtkIdType, BytesMoved, 0, script,                                                         \
     "Bytes of bricks that changed from the zone of one rank to that of another before the "        \
     "last frame.")                                                                                 \
-  Number(vtkIdType, CacheHits, 0,                                                                  \
+  Number(vtkIdType, CacheHits, 0, script,                                                          \
     "Bricks that the caches held for the last frame, sum over all ranks.")                         \
-  Number(vtkIdType, CacheMisses, 0,                                                                \
+  Number(vtkIdType, CacheMisses, 0, script,                                                        \
     "Bricks that had to be decoded, or fetched from another rank, for the last frame. Sum "        \
     "over all ranks.")                                                                             \
-  Number(vtkIdType, CacheHitsAhead, 0,                                                             \
+  Number(vtkIdType, CacheHitsAhead, 0, script,                                                     \
     "Cache hits that were decoded in the background before they were needed, sum over all "        \
     "ranks.")                                                                                      \
-  Number(double, EstimatedImageError, 0.0,                                                         \
+  Number(double, EstimatedImageError, 0.0, panel,                                                  \
     "Estimated largest error of a pixel by sampling, in 1/255. Errors of encoding are not "        \
     "part of it (Encoding Error Of Values). 0 with a fixed sample distance.")                      \
-  Text(ImageErrorLimit,                                                                            \
+  Text(ImageErrorLimit, panel,                                                                     \
     "The reason why the estimated error exceeds the tolerance, or may be too low, as a "           \
     "sentence. Empty if there is none.")                                                           \
-  Number(double, EncodingErrorOfValues, 0.0,                                                       \
+  Number(double, EncodingErrorOfValues, 0.0, panel,                                                \
     "Largest error of the drawn values by encoding, over all steps, in the units of the "          \
     "data. 0 for plain data; NaN for meshes, where it is not known.")                              \
-  Number(double, MeshDeviation, 0.0,                                                               \
+  Number(double, MeshDeviation, 0.0, script,                                                       \
     "General hexahedra: largest difference between the drawn field and that of the mesh, as "      \
     "a share of the spread of the values nearby. 0 for octrees and image data.")                   \
-  Number(vtkIdType, Frames, 0,                                                                     \
+  Number(vtkIdType, Frames, 0, script,                                                             \
     "Frames drawn since the representation was made.")
 // clang-format on
 
@@ -95,10 +96,10 @@ public:
   vtkTypeMacro(vtkBanyanFrameStatistics, vtkObject);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-#define BANYAN_NUMBER(Type, Name, Initial, Sentence)                                               \
+#define BANYAN_NUMBER(Type, Name, Initial, Where, Sentence)                                        \
   vtkSetMacro(Name, Type);                                                                         \
   vtkGetMacro(Name, Type);
-#define BANYAN_TEXT(Name, Sentence)                                                                \
+#define BANYAN_TEXT(Name, Where, Sentence)                                                         \
   vtkSetStdStringFromCharMacro(Name);                                                              \
   vtkGetCharFromStdStringMacro(Name);
   BANYAN_FRAME_STATISTICS(BANYAN_NUMBER, BANYAN_TEXT)
@@ -113,8 +114,8 @@ private:
   vtkBanyanFrameStatistics(const vtkBanyanFrameStatistics&) = delete;
   void operator=(const vtkBanyanFrameStatistics&) = delete;
 
-#define BANYAN_NUMBER(Type, Name, Initial, Sentence) Type Name = Initial;
-#define BANYAN_TEXT(Name, Sentence) std::string Name;
+#define BANYAN_NUMBER(Type, Name, Initial, Where, Sentence) Type Name = Initial;
+#define BANYAN_TEXT(Name, Where, Sentence) std::string Name;
   BANYAN_FRAME_STATISTICS(BANYAN_NUMBER, BANYAN_TEXT)
 #undef BANYAN_NUMBER
 #undef BANYAN_TEXT

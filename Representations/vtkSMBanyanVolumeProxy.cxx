@@ -74,6 +74,14 @@ std::set<vtkSMProxy*> ViewsOf(vtkSMProxy* display)
 
 } // namespace
 
+vtkSMBanyanVolumeProxy::~vtkSMBanyanVolumeProxy()
+{
+  if (this->View)
+  {
+    this->View->RemoveObserver(this->ViewObserver);
+  }
+}
+
 void vtkSMBanyanVolumeProxy::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
@@ -115,6 +123,16 @@ bool vtkSMBanyanVolumeProxy::IsShown()
 void vtkSMBanyanVolumeProxy::ViewUpdated(vtkSMProxy* view)
 {
   this->Superclass::ViewUpdated(view);
+  if (this->View != view)
+  {
+    if (this->View)
+    {
+      this->View->RemoveObserver(this->ViewObserver);
+    }
+    this->View = view;
+    this->ViewObserver =
+      view->AddObserver(vtkCommand::EndEvent, this, &vtkSMBanyanVolumeProxy::FrameDrawn);
+  }
   // Where each rank runs the script, each has this proxy.
   vtkMultiProcessController* const ranks = vtkMultiProcessController::GetGlobalController();
   if (!this->IsShown() || (ranks && ranks->GetLocalProcessId() != 0))
@@ -181,5 +199,16 @@ void vtkSMBanyanVolumeProxy::ColorsChanged()
   {
     // Where something else has colours of the map, the bar stays.
     bars->HideScalarBarIfNotNeeded(this->MapOfBar, view);
+  }
+}
+
+void vtkSMBanyanVolumeProxy::FrameDrawn(vtkObject*, unsigned long, void* interactive)
+{
+  vtkSMProxy* const statistics = this->GetSubProxy("Statistics");
+  const bool isMoving = interactive && *static_cast<int*>(interactive) != 0;
+  // Scripts ask for them themselves.
+  if (statistics && !isMoving && IsInWindow() && this->IsShown())
+  {
+    statistics->UpdatePropertyInformation();
   }
 }

@@ -12,6 +12,9 @@
  * ParaView does this itself, in vtkSMPVRepresentationProxy::SetRepresentationType, but only for
  * types that it knows by name.
  *
+ * In ParaView's window, whose panel shows statistics of the last frame, they are fetched after each
+ * frame but those that are drawn while the camera moves.
+ *
  * It also says, once each, which properties of the display are set and have no effect on this type:
  * here, because proxies are where the user is, whatever processes draw.
  */
@@ -38,7 +41,7 @@ public:
 
 protected:
   vtkSMBanyanVolumeProxy() = default;
-  ~vtkSMBanyanVolumeProxy() override = default;
+  ~vtkSMBanyanVolumeProxy() override;
 
   void CreateVTKObjects() override;
 
@@ -52,8 +55,11 @@ private:
   /// Hides the scalar bar that was shown for the chosen array, once nothing has its colours: the
   /// window does so only where the colours are changed by hand, not by a script that runs in it.
   void ColorsChanged();
+  void FrameDrawn(vtkObject* view, unsigned long event, void* interactive);
 
-  std::set<std::string> Said;          ///< properties without effect
+  std::set<std::string> Said;      ///< properties without effect
+  vtkWeakPointer<vtkSMProxy> View; ///< whose frames are observed
+  unsigned long ViewObserver = 0;
   vtkWeakPointer<vtkSMProxy> MapOfBar; ///< whose scalar bar was shown when the array was chosen
 };
 

@@ -20,6 +20,9 @@
 
 #include <gtest/gtest.h>
 
+#include <iomanip>
+#include <sstream>
+
 namespace
 {
 
@@ -268,6 +271,25 @@ TEST(Reader, LevelsAreEveryOtherSample)
       }
     }
   }
+}
+
+TEST(Reader, ContentsSayStepsBytesAndBounds)
+{
+  Series series(SimpleGrid({ 5, 6, 7 }));
+  EXPECT_STREQ(series.Read->GetContents(), "");
+  series.Read->UpdateInformation();
+  const std::string contents = series.Read->GetContents();
+  EXPECT_EQ(contents.rfind("3 steps of 5 x 6 x 7 points\n", 0), 0u) << contents;
+  EXPECT_NE(contents.find(" of the values' "), std::string::npos) << contents;
+
+  const auto file = banyan::SeriesFile::Open(series.Path());
+  const int wave = file->Index().FindArray("wave");
+  ASSERT_GE(wave, 0);
+  std::ostringstream bound;
+  bound << std::setprecision(4) << "  bound "
+        << file->Index().Arrays[static_cast<std::size_t>(wave)].Components[0].ErrorBoundAbsolute;
+  EXPECT_NE(contents.find("\nwave: error at most "), std::string::npos) << contents;
+  EXPECT_NE(contents.find(bound.str()), std::string::npos) << contents;
 }
 
 TEST(Reader, ReadsOnlyTheChosenArrays)
