@@ -20,5 +20,13 @@ configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/BanyanInstalledConfig.c
 install(FILES "${CMAKE_BINARY_DIR}/installed/BanyanConfig.cmake"
   "${CMAKE_BINARY_DIR}/BanyanConfigVersion.cmake"
   DESTINATION "${package}")
+install(FILES "${CMAKE_CURRENT_LIST_DIR}/BanyanPythonModules.cmake" DESTINATION "${package}")
 install(DIRECTORY "${CMAKE_SOURCE_DIR}/Core/" DESTINATION "${BANYAN_INSTALL_HEADERS}/Core"
   FILES_MATCHING PATTERN "*.h")
+
+# Installs a program, which finds Core's library beside it.
+function(banyan_install_program name)
+  file(RELATIVE_PATH libraries "/${CMAKE_INSTALL_BINDIR}" "/${BANYAN_INSTALL_LIBRARIES}")
+  set_target_properties(${name} PROPERTIES INSTALL_RPATH "$ORIGIN/${libraries}")
+  install(TARGETS ${name} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+endfunction()
