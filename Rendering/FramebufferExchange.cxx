@@ -11,7 +11,11 @@
 #include "vtkShaderProgram.h"
 #include "vtkSmartPointer.h"
 #include "vtkTextureObject.h"
-#include "vtk_glew.h"
+#if __has_include("vtk_glad.h")
+#include "vtk_glad.h"
+#else
+#include "vtk_glew.h" // until VTK 9.3
+#endif
 
 #include <algorithm>
 #include <cstring>

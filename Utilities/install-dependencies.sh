@@ -3,6 +3,8 @@
 #   install-dependencies.sh          installs those that are missing (as root, or through sudo)
 #   install-dependencies.sh --list   prints their names
 #   install-dependencies.sh --with-checks  also what Utilities/check-style.sh needs
+#   install-dependencies.sh --with-packaging  also what Utilities/package.sh needs
+#   install-dependencies.sh --list-development  prints what programs that use Banyan are built with
 #   install-dependencies.sh --with-peers   also the codecs and the network simulator of Benchmarks
 # Does nothing, and needs neither root nor network, when all are there.
 # SPDX-License-Identifier: BSD-3-Clause
@@ -12,29 +14,72 @@ Packages=(
   # Compiler and build tools
   g++ cmake ninja-build ccache pkg-config
   # Libraries of Core, the generator, the tests and the benchmarks
-  libzstd-dev libxxhash-dev nlohmann-json3-dev libglm-dev libhwy-dev libfftw3-dev
+  libzstd-dev libxxhash-dev nlohmann-json3-dev libhwy-dev libfftw3-dev
   libnetcdf-dev libgtest-dev libbenchmark-dev
-  # ParaView, and what its CMake package looks for but does not depend on
-  paraview paraview-dev python3-paraview libopenmpi-dev
-  qtbase5-dev qttools5-dev libqt5svg5-dev libqt5opengl5-dev libqt5x11extras5-dev
-  qtxmlpatterns5-dev-tools libxml2-dev libhdf5-openmpi-dev libutfcpp-dev libogg-dev libtheora-dev
-  libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libswresample-dev libgl2ps-dev
-  libpng-dev libgdal-dev libglew-dev libdouble-conversion-dev libfreetype-dev
   # To run: ranks, a display, pictures and animations
-  openmpi-bin xvfb xauth ffmpeg imagemagick openbox
+  python3-paraview openmpi-bin xvfb xauth ffmpeg imagemagick openbox
   python3-numpy python3-matplotlib
 )
+
+# What find_package(Banyan) needs: ParaView, and what its CMake package looks for but does not depend on.
+DevelopmentPackages=(
+  libglm-dev paraview-dev libopenmpi-dev
+  libxml2-dev libhdf5-openmpi-dev libutfcpp-dev libogg-dev libtheora-dev
+  libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libswresample-dev libgl2ps-dev
+  libpng-dev libgdal-dev libglew-dev libdouble-conversion-dev libfreetype-dev
+)
+
+# Qt of Debian 12's ParaView, and of newer ones.
+Qt5Packages=(
+  qtbase5-dev qttools5-dev libqt5svg5-dev libqt5opengl5-dev libqt5x11extras5-dev qtxmlpatterns5-dev-tools
+)
+Qt6Packages=(qt6-base-dev qt6-tools-dev qt6-svg-dev qt6-5compat-dev xsltproc python3-dev)
 
 PeerPackages=(libsimgrid-dev libzfp-dev libblosc-dev libopenvdb-dev libnanovdb-dev libimath-dev libtbb-dev)
 
 CheckPackages=(clang-format clang-tidy codespell)
 
+PackagingPackages=(dpkg-dev debhelper help2man lintian)
+
+as_root=()
+apt_get()
+{
+  if [[ "$(id -u)" != 0 ]]; then
+    command -v sudo >/dev/null ||
+      fail "packages are missing and only root can install them; run this script as root."
+    as_root=(sudo)
+  fi
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 "$@" >&2
+}
+
+# Names of the packages that ParaView needs: of the one that is installed, or else the one that would be.
+needs_of_paraview()
+{
+  dpkg-query -W -f '${Depends}' paraview 2>/dev/null || apt-cache depends paraview 2>/dev/null || true
+}
+
+needs="$(needs_of_paraview)"
+if [[ -z "$needs" ]] && command -v apt-get >/dev/null; then
+  apt_get update || true
+  needs="$(needs_of_paraview)"
+fi
+if [[ "$needs" == *libqt5* ]]; then
+  DevelopmentPackages+=("${Qt5Packages[@]}")
+else
+  DevelopmentPackages+=("${Qt6Packages[@]}")
+fi
+# Since ParaView 6, Debian builds it with VTK's own packages.
+[[ "$needs" != *libvtk9* ]] || DevelopmentPackages+=(libvtk9-dev)
+Packages+=(paraview "${DevelopmentPackages[@]}")
+
 case "${1:-}" in
   "") ;;
   --with-checks) Packages+=("${CheckPackages[@]}") ;;
   --with-peers) Packages+=("${PeerPackages[@]}") ;;
+  --with-packaging) Packages+=("${PackagingPackages[@]}") ;;
+  --list-development) printf '%s\n' "${DevelopmentPackages[@]}"; exit 0 ;;
   --list) printf '%s\n' "${Packages[@]}"; exit 0 ;;
-  *) sed -n '2,7s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+  *) sed -n '2,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
 esac
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
@@ -54,16 +99,7 @@ if [[ ${#missing[@]} == 0 ]]; then
   exit 0
 fi
 
-as_root=()
-if [[ "$(id -u)" != 0 ]]; then
-  command -v sudo >/dev/null ||
-    fail "${#missing[@]} packages are missing and only root can install them; run" \
-      "'apt-get install ${missing[*]}' as root."
-  as_root=(sudo)
-fi
 say "Installing ${#missing[@]} packages: ${missing[*]}"
-apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300)
-"${apt[@]}" update >&2 ||
-  say "The package lists could not be refreshed; trying with those that are there."
-"${apt[@]}" install -y --no-install-recommends "${missing[@]}" >&2 ||
+apt_get update || say "The package lists could not be refreshed; trying with those that are there."
+apt_get install -y --no-install-recommends "${missing[@]}" ||
   fail "apt-get could not install the packages; its own messages above say why."

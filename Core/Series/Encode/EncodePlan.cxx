@@ -4,6 +4,7 @@
 #include "Base/Error.h"
 #include "Series/Format/IndexText.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
