@@ -3,8 +3,6 @@
 #   install-dependencies.sh          installs those that are missing (as root, or through sudo)
 #   install-dependencies.sh --list   prints their names
 #   install-dependencies.sh --with-checks  also what Utilities/check-style.sh needs
-#   install-dependencies.sh --with-packaging  also what Utilities/package.sh needs
-#   install-dependencies.sh --list-development  prints what programs that use Banyan are built with
 #   install-dependencies.sh --with-peers   also the codecs and the network simulator of Benchmarks
 # Does nothing, and needs neither root nor network, when all are there.
 # SPDX-License-Identifier: BSD-3-Clause
@@ -38,8 +36,6 @@ Qt6Packages=(qt6-base-dev qt6-tools-dev qt6-svg-dev qt6-5compat-dev xsltproc pyt
 PeerPackages=(libsimgrid-dev libzfp-dev libblosc-dev libopenvdb-dev libnanovdb-dev libimath-dev libtbb-dev)
 
 CheckPackages=(clang-format clang-tidy codespell)
-
-PackagingPackages=(dpkg-dev debhelper help2man lintian)
 
 as_root=()
 apt_get()
@@ -76,10 +72,8 @@ case "${1:-}" in
   "") ;;
   --with-checks) Packages+=("${CheckPackages[@]}") ;;
   --with-peers) Packages+=("${PeerPackages[@]}") ;;
-  --with-packaging) Packages+=("${PackagingPackages[@]}") ;;
-  --list-development) printf '%s\n' "${DevelopmentPackages[@]}"; exit 0 ;;
   --list) printf '%s\n' "${Packages[@]}"; exit 0 ;;
-  *) sed -n '2,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+  *) sed -n '2,7s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
 esac
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
