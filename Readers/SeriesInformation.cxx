@@ -159,11 +159,13 @@ void WriteErrors(std::ostream& text, const ArrayIndex& array)
   double bound = 0;
   double error = 0;
   double share = 0;
+  std::int64_t changed = 0;
   for (const ComponentIndex& component : array.Components)
   {
     const ValueRange& range = component.ReferenceRange();
     bound = std::max(bound, component.ErrorBoundAbsolute);
     error = std::max(error, component.MeasuredMaxError);
+    changed += component.ClampedCount + component.InvisibleCount;
     if (range.Width() > 0)
     {
       share = std::max(share, component.MeasuredMaxError / range.Width());
@@ -173,12 +175,24 @@ void WriteErrors(std::ostream& text, const ArrayIndex& array)
   if (error == 0)
   {
     text << "bit-exact";
-    return;
   }
-  const bool isPlain = std::all_of(array.Components.begin(), array.Components.end(),
-    [](const ComponentIndex& component) { return component.ValueTransform == Transform(); });
-  text << "error at most " << error << " (1/" << std::floor(1 / share) << " of the range)\n  bound "
-       << bound << (isPlain ? "" : " of transformed values");
+  else
+  {
+    const bool isPlain = std::all_of(array.Components.begin(), array.Components.end(),
+      [](const ComponentIndex& component) { return component.ValueTransform == Transform(); });
+    text << "error at most " << error;
+    if (share > 0 && share < 1)
+    {
+      text << " (1/" << std::floor(1 / share) << " of the range)";
+    }
+    text << "\n  bound " << bound << (isPlain ? "" : " of transformed values");
+  }
+  // The bound does not hold for these.
+  if (changed > 0)
+  {
+    text << "\n  but for " << changed
+         << " values outside the range or hidden by an opacity function";
+  }
 }
 
 } // namespace

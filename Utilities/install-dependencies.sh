@@ -55,7 +55,7 @@ needs_of_paraview()
 }
 
 needs="$(needs_of_paraview)"
-if [[ -z "$needs" ]] && command -v apt-get >/dev/null; then
+if [[ -z "$needs" && "${1:-}" != --list ]] && command -v apt-get >/dev/null; then
   apt_get update || true
   needs="$(needs_of_paraview)"
 fi

@@ -16,7 +16,7 @@ namespace banyan
 /// A block as the file holds it.
 struct BlockCode
 {
-  bool Exists = false;  ///< not beyond the field's end; if it is, all others are as here
+  bool Exists = false;  ///< not beyond the field's end; there, the rest has its defaults
   bool Uniform = false; ///< all its samples are `Value`
   bool Same = false;    ///< all its samples are those of reference A
   std::int32_t Value = 0;

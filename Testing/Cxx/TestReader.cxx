@@ -5,6 +5,7 @@
 #include "vtkBanyanDecode.h"
 #include "vtkBanyanDeferred.h"
 #include "vtkBanyanSeriesReader.h"
+#include "vtkBanyanSeriesWriter.h"
 
 #include "vtkDataArray.h"
 #include "vtkExtractVOI.h"
@@ -290,6 +291,32 @@ TEST(Reader, ContentsSayStepsBytesAndBounds)
         << file->Index().Arrays[static_cast<std::size_t>(wave)].Components[0].ErrorBoundAbsolute;
   EXPECT_NE(contents.find("\nwave: error at most "), std::string::npos) << contents;
   EXPECT_NE(contents.find(bound.str()), std::string::npos) << contents;
+}
+
+/// Where values were lost, the text says so, whatever the error of the others.
+TEST(Reader, ContentsSayHowManyValuesAreLost)
+{
+  TemporaryFolder folder;
+  const std::string path = folder / "clamped.banyan";
+  WriteSeries(WaveSource(SimpleGrid({ 5, 6, 7 }), { 0.0 }), path,
+    [](vtkBanyanSeriesWriter* writer)
+    {
+      writer->SetErrorBound(0.0);
+      writer->SetRangeMode(vtkBanyanSeriesWriter::GIVEN);
+      writer->SetRange(-0.5, 0.5);
+      writer->SetClampOutside(true);
+    });
+  const auto reader = Reader(path);
+  reader->UpdateInformation();
+  const auto file = banyan::SeriesFile::Open(path);
+  const int wave = file->Index().FindArray("wave");
+  ASSERT_GE(wave, 0);
+  const std::int64_t lost =
+    file->Index().Arrays[static_cast<std::size_t>(wave)].Components[0].ClampedCount;
+  ASSERT_GT(lost, 0);
+  const std::string contents = reader->GetContents();
+  EXPECT_NE(contents.find("but for " + std::to_string(lost) + " values"), std::string::npos)
+    << contents;
 }
 
 TEST(Reader, ReadsOnlyTheChosenArrays)
