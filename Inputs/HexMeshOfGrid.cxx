@@ -2,6 +2,7 @@
 #include "HexMeshOfGrid.h"
 
 #include "ArrayLength.h"
+#include "CellArrays.h"
 #include "GhostCells.h"
 #include "VoxelCells.h"
 
@@ -12,6 +13,7 @@
 #include "vtkIdList.h"
 #include "vtkPoints.h"
 #include "vtkSmartPointer.h"
+#include "vtkTypeInt64Array.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
@@ -37,10 +39,11 @@ void CheckWhole(vtkUnstructuredGrid* grid)
   {
     throw Error("The mesh has " + std::to_string(cells) + " cells, but no points");
   }
-  if (grid->GetCellTypesArray()->GetNumberOfTuples() != cells)
+  const vtkIdType types = CellTypesOf(grid)->GetNumberOfTuples();
+  if (types != cells)
   {
     throw Error("The mesh has " + std::to_string(cells) + " cells, but the types of " +
-                std::to_string(grid->GetCellTypesArray()->GetNumberOfTuples()));
+                std::to_string(types));
   }
   CheckLength(GhostFlags(grid->GetCellData()), vtkDataObject::CELL, cells);
 }
@@ -120,6 +123,7 @@ struct Owners
 {
   vtkSmartPointer<vtkUnstructuredGrid> Grid;
   vtkSmartPointer<vtkDataArray> Points;
+  vtkSmartPointer<vtkDataArray> Connectivity;
   std::shared_ptr<const void> Ids;
 };
 
@@ -209,14 +213,21 @@ HexMesh HexMeshOf(vtkUnstructuredGrid* grid, OtherCells* others)
   mesh.Points = owners->Points->GetVoidPointer(0);
   mesh.PointType = type == VTK_FLOAT ? ScalarType::Float32 : ScalarType::Float64;
   mesh.PointCount = grid->GetNumberOfPoints();
-  vtkCellArray* const cells = grid->GetCells();
-  if (cells->IsStorage64Bit())
+  owners->Connectivity = grid->GetCells()->GetConnectivityArray();
+  if (!owners->Connectivity->HasStandardMemoryLayout())
   {
-    TakeIds(grid, cells->GetConnectivityArray64()->GetPointer(0), kept, mesh, *owners);
+    const auto plain = vtkSmartPointer<vtkTypeInt64Array>::New();
+    plain->DeepCopy(owners->Connectivity);
+    owners->Connectivity = plain;
+  }
+  const void* const ids = owners->Connectivity->GetVoidPointer(0);
+  if (owners->Connectivity->GetDataTypeSize() == 8)
+  {
+    TakeIds(grid, static_cast<const vtkTypeInt64*>(ids), kept, mesh, *owners);
   }
   else
   {
-    TakeIds(grid, cells->GetConnectivityArray32()->GetPointer(0), kept, mesh, *owners);
+    TakeIds(grid, static_cast<const vtkTypeInt32*>(ids), kept, mesh, *owners);
   }
   mesh.Owner = owners;
   return mesh;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MergedBlocks.h"
 
+#include "CellArrays.h"
+
 #include "vtkAppendFilter.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -69,7 +71,7 @@ bool KeyOf(const Blocks& blocks, Hash128& key)
                               std::to_string(grid->GetNumberOfCells()) + '\n' +
                               Names(grid->GetPointData()) + "cells\n" + Names(grid->GetCellData());
     key = Continue(key, facts.data(), facts.size());
-    key = Continue(key, grid->GetCellTypesArray());
+    key = Continue(key, CellTypesOf(grid));
     key = Continue(key, grid->GetCells()->GetOffsetsArray());
     key = Continue(key, grid->GetCells()->GetConnectivityArray());
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshSteps.h"
 
+#include "CellArrays.h"
 #include "GhostCells.h"
 #include "HexMeshOfGrid.h"
 #include "LeafSteps.h"
@@ -66,7 +67,7 @@ std::string ChangeOf(
   }
   if (!SameValues(
         before->GetCells()->GetConnectivityArray(), now->GetCells()->GetConnectivityArray()) ||
-      !SameValues(before->GetCellTypesArray(), now->GetCellTypesArray()))
+      !SameValues(CellTypesOf(before), CellTypesOf(now)))
   {
     return "cells have other points or types";
   }
@@ -288,7 +289,7 @@ void MeshSteps::Remember(vtkUnstructuredGrid* grid)
                 ". A mesh of general hexahedra can be written as the boxes that it is sampled at: "
                 "see 'Sample General Meshes' of the filter 'Banyan Hex Octree'");
   }
-  this->Mesh = StoreMesh(*tree, grid->GetCellTypesArray()->GetPointer(0));
+  this->Mesh = StoreMesh(*tree, PlainCellTypesOf(grid)->GetPointer(0));
   this->First = vtkSmartPointer<vtkUnstructuredGrid>::New();
   this->First->CopyStructure(grid);
   if (this->Leaves)

@@ -47,6 +47,23 @@ void CopyTuples(
   }
 }
 
+struct MadeArray
+{
+  int Number; ///< in the series
+  vtkSmartPointer<vtkDataArray> Values;
+  vtkDataSetAttributes* Among;
+};
+
+void DescribeRanges(const SeriesFile& series, const std::vector<MadeArray>& made)
+{
+  for (const MadeArray& array : made)
+  {
+    auto* const ghosts = vtkUnsignedCharArray::SafeDownCast(
+      array.Among->GetArray(vtkDataSetAttributes::GhostArrayName()));
+    DescribeRange(series, array.Number, ghosts, *array.Values);
+  }
+}
+
 } // namespace
 
 void MeshOutput::Open(std::shared_ptr<const SeriesFile> series)
@@ -78,6 +95,7 @@ void MeshOutput::Fill(const StepRequest& request, bool readAhead, vtkDataObject*
   handle.Samples = { glm::ivec3{ 0 }, index.Domain.Samples() };
   this->Ahead.Reading(*request.Series, request.Step);
   std::vector<FieldBricks> bricks;
+  std::vector<MadeArray> made;
   const int arrays = static_cast<int>(index.Arrays.size());
   for (handle.Array = 0; handle.Array < arrays; ++handle.Array)
   {
@@ -98,12 +116,13 @@ void MeshOutput::Fill(const StepRequest& request, bool readAhead, vtkDataObject*
     vtkDataSetAttributes* const values = output->GetAttributes(
       trees || !array.CellArray.empty() ? vtkDataObject::CELL : vtkDataObject::POINT);
     values->AddArray(added);
-    DescribeRange(*request.Series, handle.Array, *added);
+    made.push_back({ handle.Array, added, values });
     if (array.Name == index.ActiveScalars)
     {
       values->SetActiveScalars(added->GetName());
     }
   }
+  DescribeRanges(*request.Series, made); // now that ghosts are there, an array themselves
   if (readAhead)
   {
     this->Ahead.Read(request.Series, std::move(bricks));
@@ -144,7 +163,7 @@ static vtkSmartPointer<vtkCellArray> CellsOf(const std::vector<std::int64_t>& co
     ids->SetValue(
       i - 8 * first, place[static_cast<std::size_t>(corners[static_cast<std::size_t>(i)])]);
   }
-  const auto cells = vtkSmartPointer<vtkCellArray>::New();
+  auto cells = vtkSmartPointer<vtkCellArray>::New();
   cells->SetData(8, ids);
   return cells;
 }
@@ -263,7 +282,7 @@ vtkSmartPointer<vtkDataArray> MeshOutput::Values(const vtkBanyanDeferred::Handle
 {
   const ArrayIndex& array =
     handle.Series->Index().Arrays.at(static_cast<std::size_t>(handle.Array));
-  const vtkSmartPointer<vtkDataArray> values = vtkBanyanDeferred::NewEmpty(handle);
+  vtkSmartPointer<vtkDataArray> values = vtkBanyanDeferred::NewEmpty(handle);
   const bool ofCells = !array.CellArray.empty();
   if (ofCells)
   {

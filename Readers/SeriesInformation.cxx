@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SeriesInformation.h"
 
+#include "SeriesRangeArray.h"
+
 #include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
-#include "vtkInformationDoubleVectorKey.h"
-#include "vtkInformationInformationVectorKey.h"
-#include "vtkInformationVector.h"
-#include "vtkNew.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTypeTraits.h"
 
@@ -19,6 +17,7 @@
 #include <cmath>
 #include <iomanip>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -110,28 +109,17 @@ int StepAt(const SeriesIndex& index, vtkInformation& information)
   return std::max(0, static_cast<int>(after - times.begin()) - 1);
 }
 
-void DescribeRange(const SeriesFile& series, int array, vtkDataArray& values)
+void DescribeRange(
+  const SeriesFile& series, int array, vtkUnsignedCharArray* ghosts, vtkDataArray& values)
 {
-  const PieceRange range = RangeOfSeries(series, array);
-  const auto count = static_cast<int>(range.Components.size());
-  vtkNew<vtkInformationVector> components;
-  components->SetNumberOfInformationObjects(count);
-  for (int c = 0; c < count; ++c)
+  PieceRange range = RangeOfSeries(series, array);
+  const bool isTold = std::none_of(range.Components.begin(), range.Components.end(),
+    [](const ValueRange& of) { return of.Empty(); });
+  auto* const told = dynamic_cast<HasSeriesRange*>(&values);
+  // Where nothing but fill values and NaN are, VTK knows what to say of that.
+  if (told && isTold)
   {
-    const ValueRange& of = range.Components[static_cast<std::size_t>(c)];
-    if (of.Empty())
-    {
-      return; // nothing but fill values and NaN, somewhere: VTK knows what to say of that
-    }
-    const double ends[2] = { of.Low, of.High };
-    components->GetInformationObject(c)->Set(vtkDataArray::COMPONENT_RANGE(), ends, 2);
-  }
-  vtkInformation* const information = values.GetInformation();
-  information->Set(vtkAbstractArray::PER_FINITE_COMPONENT(), components);
-  if (count > 1 && !range.Magnitude.Empty())
-  {
-    const double ends[2] = { range.Magnitude.Low, range.Magnitude.High };
-    information->Set(vtkDataArray::L2_NORM_FINITE_RANGE(), ends, 2);
+    told->SetSeriesRange(std::move(range), ghosts);
   }
 }
 

@@ -9,6 +9,7 @@
 
 class vtkDataArray;
 class vtkInformation;
+class vtkUnsignedCharArray;
 
 namespace banyan
 {
@@ -28,10 +29,10 @@ int StepAt(const SeriesIndex& index, vtkInformation& information);
 /// Tells a person what a series holds: size, ratio, and the error bound of each array, a line each.
 std::string SummaryOf(const SeriesIndex& index);
 
-/// Gives a plain array the range of the whole series as its finite range, which ParaView takes
-/// colours from: so they do not depend on the step that is shown first, and do not drift while a
-/// series plays. Until the array is modified.
-void DescribeRange(const SeriesFile& series, int array, vtkDataArray& values);
+/// Tells an array (SeriesRangeArray) the range of the whole series.
+/// @param ghosts the ghost array of the same output; may be null
+void DescribeRange(
+  const SeriesFile& series, int array, vtkUnsignedCharArray* ghosts, vtkDataArray& values);
 
 } // namespace banyan
 

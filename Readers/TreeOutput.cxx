@@ -2,6 +2,7 @@
 #include "TreeOutput.h"
 
 #include "LargeArrays.h"
+#include "SeriesRangeArray.h"
 
 #include "Mesh/Series/MeanOfChildren.h"
 #include "Mesh/Series/MeanOfLeaves.h"
@@ -11,6 +12,7 @@
 #include "vtkBitArray.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
 #include "vtkHyperTree.h"
 #include "vtkHyperTreeGrid.h"
 #include "vtkHyperTreeGridNonOrientedCursor.h"
@@ -244,8 +246,15 @@ vtkSmartPointer<vtkDataArray> TreeOutput::Values(const vtkBanyanDeferred::Handle
     handle.Series->Index().Arrays.at(static_cast<std::size_t>(handle.Array));
   const vtkSmartPointer<vtkDataArray> image = vtkBanyanDeferred::NewPlain(handle);
   const bool small = SizeOf(array.Type) <= 2 || array.Type == ScalarType::Float32;
-  const auto means = vtkSmartPointer<vtkDataArray>::Take(
-    vtkDataArray::CreateDataArray(small ? VTK_FLOAT : VTK_DOUBLE));
+  vtkSmartPointer<vtkDataArray> means;
+  if (small)
+  {
+    means = vtkSmartPointer<SeriesRangeArray<vtkFloatArray>>::New();
+  }
+  else
+  {
+    means = vtkSmartPointer<SeriesRangeArray<vtkDoubleArray>>::New();
+  }
   const int components = image->GetNumberOfComponents();
   const bool ofCells = !array.CellArray.empty();
   means->SetName(image->GetName());

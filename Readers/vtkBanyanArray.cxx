@@ -75,11 +75,10 @@ vtkSmartPointer<vtkDataArray> vtkBanyanDeferred::NewEmpty(const Handle& handle)
 {
   const banyan::ArrayIndex& index = handle.Series->Index().Arrays.at(handle.Array);
   return banyan::Dispatch(index.Type,
-    [&](auto tag)
+    [&](auto tag) -> vtkSmartPointer<vtkDataArray>
     {
       using T = typename decltype(tag)::Type;
-      auto array = vtkSmartPointer<vtkDataArray>::Take(
-        vtkDataArray::CreateDataArray(vtkTypeTraits<T>::VTK_TYPE_ID));
+      const auto array = vtkSmartPointer<banyan::SeriesRangeArray<PlainArray<T>>>::New();
       Label(*array, index);
       return array;
     });

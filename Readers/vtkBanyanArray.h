@@ -11,10 +11,10 @@
  * - GetRange(): of this piece at this step. Contains the true range; exact when the piece consists
  *   of whole bricks, and always once the values have been decoded. Over the pieces of all ranks
  *   together it is exact. Infinities do not count before the values have been decoded.
- * - GetFiniteRange(range, component): of the whole *series*. ParaView 5.11 asks it in
- *   vtkPVArrayInformation only, to choose colour ranges, which therefore do not drift over time.
- *   (In VTK 9.2, vtkVolumeTexture and vtkPVExtractHistogram2D ask it too; they need a range that
- *   contains the values and get one.)
+ * - GetFiniteRange(range, component): of the whole *series*. ParaView asks it in
+ *   vtkPVArrayInformation only (since 5.13 through the vtkFieldData), to choose colour ranges.
+ *   They do not drift over time therefore. (In VTK 9.2, vtkVolumeTexture and
+ *   vtkPVExtractHistogram2D ask it too; they need a range that contains the values and get one.)
  * - With a ghost array: decodes, and gives what a plain array gives. With the ghost array that the
  *   reader made: as without one, as the tree does not count hidden points.
  * - Without it, GetRange() of a series with hidden points decodes, as their values count then.
@@ -165,6 +165,8 @@ private:
   std::vector<banyan::ValueRange> Told(Infinities infinities);
   std::vector<banyan::ValueRange> Answer(
     const unsigned char* ghosts, unsigned char skip, Infinities infinities);
+  /// What GetFiniteRange() tells: of the series, or of the values with ghosts of others.
+  std::vector<banyan::ValueRange> FiniteAnswer(const unsigned char* ghosts, unsigned char skip);
 
   banyan::PieceRange OfPiece;
   banyan::PieceRange OfSeries;

@@ -129,28 +129,29 @@ void vtkBanyanArray<T>::ComputeRange(
 }
 
 template <class T>
-void vtkBanyanArray<T>::ComputeFiniteRange(double range[2], int component)
+std::vector<banyan::ValueRange> vtkBanyanArray<T>::FiniteAnswer(
+  const unsigned char* ghosts, unsigned char skip)
 {
-  if (!this->IsPristine())
+  if (!this->IsPristine() || (ghosts && !this->AreOwn(ghosts, skip)))
   {
-    this->ComputeFiniteRange(range, component, nullptr, 0);
-    return;
+    return this->Answer(ghosts, skip, Infinities::Skip);
   }
   std::vector<banyan::ValueRange> ranges = this->OfSeries.Components;
   ranges.push_back(this->OfSeries.Magnitude);
-  vtkBanyanArrayDetail::WriteOne(ranges, component, range);
+  return ranges;
+}
+
+template <class T>
+void vtkBanyanArray<T>::ComputeFiniteRange(double range[2], int component)
+{
+  this->ComputeFiniteRange(range, component, nullptr, 0);
 }
 
 template <class T>
 void vtkBanyanArray<T>::ComputeFiniteRange(
   double range[2], int component, const unsigned char* ghosts, unsigned char skip)
 {
-  if (ghosts && this->IsPristine() && this->AreOwn(ghosts, skip))
-  {
-    this->ComputeFiniteRange(range, component);
-    return;
-  }
-  vtkBanyanArrayDetail::WriteOne(this->Answer(ghosts, skip, Infinities::Skip), component, range);
+  vtkBanyanArrayDetail::WriteOne(this->FiniteAnswer(ghosts, skip), component, range);
 }
 
 template <class T>
@@ -191,7 +192,7 @@ template <class T>
 bool vtkBanyanArray<T>::ComputeFiniteScalarRange(
   double* ranges, const unsigned char* ghosts, unsigned char skip)
 {
-  vtkBanyanArrayDetail::WriteAll(this->Answer(ghosts, skip, Infinities::Skip), ranges);
+  vtkBanyanArrayDetail::WriteAll(this->FiniteAnswer(ghosts, skip), ranges);
   return this->Size > 0;
 }
 
@@ -205,7 +206,7 @@ template <class T>
 bool vtkBanyanArray<T>::ComputeFiniteVectorRange(
   double range[2], const unsigned char* ghosts, unsigned char skip)
 {
-  vtkBanyanArrayDetail::WriteOne(this->Answer(ghosts, skip, Infinities::Skip), -1, range);
+  vtkBanyanArrayDetail::WriteOne(this->FiniteAnswer(ghosts, skip), -1, range);
   return this->Size > 0;
 }
 

@@ -103,7 +103,7 @@ void FieldQuantizer<T>::FillRow(
   {
     y[x] = static_cast<double>(values[x]);
   }
-  if (!this->Field.Map.IsIdentity())
+  if (count > 0 && !this->Field.Map.IsIdentity()) // g++ 16 warns without the first
   {
     this->Field.Map.Forward(y, static_cast<std::size_t>(count), y);
   }
