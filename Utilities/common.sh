@@ -45,7 +45,7 @@ jobs_for_memory()
   echo $((jobs > 1 ? jobs : 1))
 }
 
-# What Open MPI wants to be told in containers, for root, and on few cores.
+# What Open MPI wants to be told in containers and for root.
 prepare_mpi()
 {
   if [[ "$(id -u)" == 0 ]]; then
@@ -53,7 +53,6 @@ prepare_mpi()
   fi
   # Containers mostly forbid ranks to read each other's memory; without this every start warns.
   export OMPI_MCA_btl_vader_single_copy_mechanism=none
-  export OMPI_MCA_rmaps_base_oversubscribe=1
 }
 
 # Prints the path of a program that needs Core alone, such as banyan-info. Builds it when it is

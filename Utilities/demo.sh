@@ -153,7 +153,7 @@ draw()
 {
   local script=demo_draw.py
   [[ "$earthquake" == 0 ]] || script=demo_earthquake.py
-  "$here/with-display.sh" mpiexec -n "$ranks" pvbatch "$here/demo/$script" \
+  "$here/with-display.sh" mpiexec --oversubscribe -n "$ranks" pvbatch "$here/demo/$script" \
     "$work/series.banyan" "$work/measure.json" "$work" "$work/draw.json" ||
     fail "the frames could not be drawn."
 }

@@ -277,8 +277,8 @@ TEST(BadMeshFiltersInVtk, ImagesThatAreNowhere)
   spaced->SetSpacing(std::nan(""), 1.0, 1.0);
   Check("series", SaidByWriter(spaced), "The origin or the spacing of the image is not finite");
   const auto huge = Image();
-  huge->SetExtent(0, 2000000000, 0, 2000000000, 0, 0);
-  Check("series", SaidByWriter(huge), "has 64 values for 4000000004000000001 points");
+  huge->SetExtent(0, 2000000, 0, 2000000, 0, 0); // VTK 9.6 takes memory for each plane
+  Check("series", SaidByWriter(huge), "has 64 values for 4000004000001 points");
 }
 
 TEST(BadMeshFiltersInVtk, BlocksThatAreNone)

@@ -76,7 +76,9 @@ TEST_F(DeferredArray, AnswersQuestionsWithoutDecoding)
   this->Array->GetRange(range, 0);
   this->Array->GetRange(range, -1);
   this->Array->GetFiniteRange(range, 0);
+#if VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 4, 0) // since then it looks at each value
   this->Image->GetScalarRange(range);
+#endif
   this->Image->GetPointData()->GetRange("wave", range, 0);
   this->Image->GetPointData()->GetFiniteRange("wave", range, 0);
   this->Image->GetActualMemorySize();

@@ -6,13 +6,15 @@
 #include "vtkBanyanSeriesReader.h"
 #include "vtkBanyanSeriesWriter.h"
 
-#include "vtkCell.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataArraySelection.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkIdList.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStructuredData.h"
 #include "vtkUnsignedCharArray.h"
 
 #include "Series/Decode/SeriesFile.h"
@@ -73,6 +75,17 @@ void HidePoints(const Case& one, double time, vtkImageData* image)
   }
 }
 
+/// Corners of a cell of an image. (Since VTK 9.3 a cell that is hidden has none.)
+vtkSmartPointer<vtkIdList> CornersOf(vtkImageData* image, vtkIdType cell)
+{
+  auto corners = vtkSmartPointer<vtkIdList>::New();
+  int dimensions[3];
+  image->GetDimensions(dimensions);
+  vtkStructuredData::GetCellPoints(
+    cell, corners, vtkStructuredData::GetDataDescription(dimensions), dimensions);
+  return corners;
+}
+
 void HideCells(const Case& one, double time, vtkImageData* image)
 {
   std::mt19937 random = one.Random(time + 100);
@@ -82,9 +95,10 @@ void HideCells(const Case& one, double time, vtkImageData* image)
   for (vtkIdType cell = 0; cell < image->GetNumberOfCells(); ++cell)
   {
     bool corner = false;
-    for (vtkIdType c = 0; c < image->GetCell(cell)->GetNumberOfPoints() && points; ++c)
+    const auto corners = CornersOf(image, cell);
+    for (vtkIdType c = 0; c < corners->GetNumberOfIds() && points; ++c)
     {
-      corner = corner || (points->GetValue(image->GetCell(cell)->GetPointId(c)) & 2) != 0;
+      corner = corner || (points->GetValue(corners->GetId(c)) & 2) != 0;
     }
     const int bit =
       random() % 2 == 0 ? vtkDataSetAttributes::HIDDENCELL : vtkDataSetAttributes::REFINEDCELL;
@@ -171,10 +185,10 @@ bool CellsFollow(vtkImageData* image)
   for (vtkIdType cell = 0; cell < image->GetNumberOfCells(); ++cell)
   {
     bool corner = false;
-    for (vtkIdType c = 0; c < image->GetCell(cell)->GetNumberOfPoints(); ++c)
+    const auto corners = CornersOf(image, cell);
+    for (vtkIdType c = 0; c < corners->GetNumberOfIds(); ++c)
     {
-      corner =
-        corner || FlagAt(image->GetPointGhostArray(), image->GetCell(cell)->GetPointId(c), 2);
+      corner = corner || FlagAt(image->GetPointGhostArray(), corners->GetId(c), 2);
     }
     follow = follow && (corner || FlagAt(image->GetCellGhostArray(), cell, 32 | 8) == 0);
   }
@@ -281,10 +295,10 @@ TEST(HiddenParts, OfCoarserLevels)
   for (vtkIdType cell = 0; cell < coarse->GetNumberOfCells(); ++cell)
   {
     bool corner = false;
+    const auto corners = CornersOf(coarse, cell);
     for (vtkIdType c = 0; c < 8; ++c)
     {
-      corner =
-        corner || coarse->GetPointGhostArray()->GetValue(coarse->GetCell(cell)->GetPointId(c)) != 0;
+      corner = corner || coarse->GetPointGhostArray()->GetValue(corners->GetId(c)) != 0;
     }
     ASSERT_TRUE(!corner || coarse->GetCellGhostArray()->GetValue(cell) == 32) << cell;
   }

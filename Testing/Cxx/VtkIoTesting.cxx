@@ -114,13 +114,12 @@ int TestSource::RequestData(vtkInformation*, vtkInformationVector**, vtkInformat
   image->SetExtent(info->Get(Pipeline::UPDATE_EXTENT()));
   image->SetOrigin(&this->Grid.Origin[0]);
   image->SetSpacing(&this->Grid.Spacing[0]);
-  for (int row = 0; row < 3; ++row)
+  double direction[9];
+  for (int i = 0; i < 9; ++i)
   {
-    for (int column = 0; column < 3; ++column)
-    {
-      image->GetDirectionMatrix()->SetElement(row, column, this->Grid.Direction[column][row]);
-    }
+    direction[i] = this->Grid.Direction[i % 3][i / 3];
   }
+  image->SetDirectionMatrix(direction);
   this->Fill(image, time);
   return 1;
 }

@@ -67,7 +67,7 @@ class Stage:
         self.take("component as scalar")
         self.color_by("RTData")
         self.take("back again")
-        self.display.Position = [8, 4, 0]
+        session.move_to(self.display, [8, 4, 0])
         self.take("moved")
         self.display.Scale = [0.5, 1.0, 1.0]
         self.take("scaled")

@@ -53,10 +53,10 @@ class Sessions:
         view = session.new_view(picture_scenes.SIZE, CameraPosition=[0, 0, 150],
                                 CameraFocalPoint=[0, 0, 0], CameraViewUp=[0, 1, 0])
         left = picture_scenes.encoded(view)
-        left.Position = [-25, 0, 0]
+        session.move_to(left, [-25, 0, 0])
         alone = self.take(view, "left volume")
         right = picture_scenes.wavelet(view)
-        right.Position = [25, 0, 0]
+        session.move_to(right, [25, 0, 0])
         both = self.take(view, "two volumes")
         middle = picture_scenes.SIZE[0] // 2
         self.expect(pictures.difference(alone, both)[:, :middle].max() <= 1,

@@ -213,7 +213,7 @@ def run_worker(options, first, log, ranks):
     command = ["pvbatch", os.path.abspath(__file__), "--plugin", options.plugin,
                "--out", options.out, "--worker", str(first)]
     if ranks > 1:
-        command = ["mpiexec", "-n", str(ranks), *command]
+        command = ["mpiexec", "--oversubscribe", "-n", str(ranks), *command]
     if options.only:
         command += ["--only", *options.only]
     begun, done, ended = first, False, {}

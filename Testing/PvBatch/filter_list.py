@@ -2,6 +2,8 @@
 """The filters that test_filters.py compares: name -> function from a source to the filter."""
 from paraview import simple
 
+import session
+
 # The grid of test_filters.py: 41 x 34 x 29 samples, unit spacing, from (0, 0, 0).
 CENTRE = [20.0, 16.0, 14.0]
 TOP = [40.0, 33.0, 28.0]
@@ -214,7 +216,7 @@ FILTERS = {
     "temporal interpolator": lambda s: isolated("TemporalInterpolator", s),
     "outline": lambda s: isolated("Outline", s),
     "image to points": lambda s: isolated("ImageDatatoPointSet", s),
-    "ghost cells": lambda s: simple.GhostCellsGenerator(Input=s, BuildIfRequired=0),
+    "ghost cells": lambda s: session.ghost_cells(Input=s, BuildIfRequired=0),
     "redistribute": lambda s: simple.RedistributeDataSet(Input=s, NumberOfPartitions=3),
     "decode": lambda s: isolated("BanyanDecode", s),
 }

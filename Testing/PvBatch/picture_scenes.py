@@ -231,7 +231,7 @@ def placed():
     display = wavelet(view)
     display.Scale = [4, 4, 4]
     display.Orientation = [0, 30, 0]
-    display.Position = [5, 0, 0]
+    session.move_to(display, [5, 0, 0])
     return Drawn(view, [display], volume_pixels=20000)
 
 

@@ -81,7 +81,7 @@ class Placed:
         self.at = middle
         self.display.Scale = list(self.scale)
         self.display.Orientation = self.turn
-        self.display.Position = list(middle - self.linear @ self.middle)
+        session.move_to(self.display, middle - self.linear @ self.middle)
 
     def reach(self, direction):
         """Half of its extent along a direction."""

@@ -61,6 +61,18 @@ def new_view(size, **properties):
     return view
 
 
+def move_to(display, offset):
+    """Moves what is shown. Until ParaView 5.12 the property is called Position."""
+    name = "Translation" if display.SMProxy.GetProperty("Translation") else "Position"
+    setattr(display, name, list(offset))
+
+
+def ghost_cells(**properties):
+    """The filter Ghost Cells, which is called Ghost Cells Generator until ParaView 5.12."""
+    make = getattr(simple, "GhostCells", None) or simple.GhostCellsGenerator
+    return make(**properties)
+
+
 KEPT = {}
 
 

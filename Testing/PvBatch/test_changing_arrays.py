@@ -183,7 +183,10 @@ def present_only(folder):
         producer.UpdatePipeline(time)
         _, _, times = write_series(os.path.join(folder, f"present_{time}.banyan"), producer, WriteTimeSteps=0)
         session.require(times == [time], f"{times} instead of {time}")
-    expect_no_series("times twice", producer, folder, "do not increase")
+    # Since ParaView 6 the producer lists each time once, and still delivers the last data only.
+    twice = len(producer.TimestepValues) == 4
+    expect_no_series("times twice", producer, folder,
+                     "do not increase" if twice else "and delivers data of time 2")
     other = simple.PVTrivialProducer()
     for time in (0.0, 1.0, 2.0):
         other.GetClientSideObject().SetOutput(image, time)

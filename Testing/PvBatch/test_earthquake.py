@@ -10,6 +10,7 @@ import subprocess
 import numpy
 from paraview import servermanager
 from paraview.simple import Delete, ExodusIIReader, MergeBlocks, OpenDataFile
+from vtkmodules.numpy_interface import dataset_adapter
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 STEPS = 3
@@ -39,7 +40,7 @@ def read(name, source):
                   for key in ("velocity", "ground_displacement")}
         steps.append({
             "points": vtk_to_numpy(grid.GetPoints().GetData()).copy(),
-            "types": set(vtk_to_numpy(grid.GetCellTypesArray())),
+            "types": set(dataset_adapter.WrapDataObject(grid).CellTypes),
             "corners": vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 8).copy(),
             **arrays})
     Delete(merged)

@@ -17,9 +17,8 @@ import sys
 import numpy
 from paraview import simple
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
-from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkTable
 from vtkmodules.vtkFiltersStatistics import vtkContingencyStatistics
-from vtkmodules.vtkInfovisCore import vtkDataObjectToTable
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
@@ -173,10 +172,10 @@ def handed_by_script(path):
     compare_data.as_numpy(image.GetPointData().GetArray("p"))
     wrong = ["numpy brings: " + told.GetOutput()] if told.GetOutput() else []
     statistics = vtkContingencyStatistics()
-    table = vtkDataObjectToTable()
-    table.SetInputData(image)
-    table.SetFieldType(vtkDataObjectToTable.POINT_DATA)
-    statistics.SetInputConnection(table.GetOutputPort())
+    table = vtkTable()
+    for name in ("n", "w"):
+        table.AddColumn(image.GetPointData().GetArray(name))
+    statistics.SetInputData(table)
     statistics.AddColumnPair("n", "w")
     statistics.Update()
     vtkOutputWindow.SetInstance(before)

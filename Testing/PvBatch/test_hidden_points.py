@@ -40,10 +40,10 @@ output.PointData.append(f.ravel(), "f")
 output.PointData.append(numpy.where(hidden, -30000 + x, 1000 * wave).astype("i2").ravel(), "i")
 v = numpy.stack([numpy.where(hidden, garbage(c), c + wave).ravel() for c in range(3)], axis=1)
 output.PointData.append(v, "v")
-output.PointData.append((numpy.where(hidden, 2, 0) + (x == e[0])).astype("u1").ravel(), "vtkGhostType")
+output.PointData.append((numpy.where(hidden, 2, 0) + SHARED * (x == e[0])).astype("u1").ravel(), "vtkGhostType")
 z, y, x = places(1)
 cells = ((x > 15) & (y < 9) & (z > 5)) & (time != LATE)
-output.CellData.append((numpy.where(cells, 32, 0) + (y == e[2])).astype("u1").ravel(), "vtkGhostType")
+output.CellData.append((numpy.where(cells, 32, 0) + SHARED * (y == e[2])).astype("u1").ravel(), "vtkGhostType")
 image.GetPointData().SetActiveScalars("f")
 """
 INFORMATION = """
@@ -93,8 +93,8 @@ open("%s.%d" % (OUT, rank), "w").write("; ".join(mistakes))
 """
 
 
-def moving(late=-1):
-    script = DATA.replace("LATE", str(late))
+def moving(late=-1, shared=1):
+    script = DATA.replace("LATE", str(late)).replace("SHARED", str(shared))
     return simple.ProgrammableSource(
         OutputDataSetType="vtkImageData", Script=script, ScriptRequestInformation=INFORMATION)
 
@@ -197,7 +197,8 @@ def main():
     late = moving(late=0)
     compare(late, write(out, "late", late, times, ErrorBound=0), times, os.path.join(out, "late"))
     resampled(out)
-    filters_agree(source, readers["exact"], 1.0)
+    # Since VTK 9.3 filters leave out cells of neighbours, too.
+    filters_agree(moving(shared=0), readers["exact"], 1.0)
     for array in ("f", "i", "v"):
         for time in (0.0, 2.0):
             for name, one in (("source", source), ("series", readers["exact"])):

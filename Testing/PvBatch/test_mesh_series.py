@@ -13,6 +13,7 @@ import subprocess
 
 import numpy
 from paraview import servermanager, simple
+from vtkmodules.numpy_interface import dataset_adapter
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
@@ -120,10 +121,10 @@ def shuffled(shared, numbered):
 
 def expect_same_mesh(one, other, where):
     """Same points, cells and types, in the same order."""
-    for name, get in (("points", lambda g: g.GetPoints().GetData()),
-                      ("corners", lambda g: g.GetCells().GetConnectivityArray()),
-                      ("types", lambda g: g.GetCellTypesArray())):
-        a, b = vtk_to_numpy(get(one)), vtk_to_numpy(get(other))
+    for name, get in (("points", lambda g: vtk_to_numpy(g.GetPoints().GetData())),
+                      ("corners", lambda g: vtk_to_numpy(g.GetCells().GetConnectivityArray())),
+                      ("types", lambda g: dataset_adapter.WrapDataObject(g).CellTypes)):
+        a, b = get(one), get(other)
         session.require(a.shape == b.shape and (a == b).all(), f"{where}: other {name}")
 
 

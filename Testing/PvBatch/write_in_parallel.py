@@ -61,7 +61,7 @@ def main():
     write(arguments.out, "files", stored, KeyframeInterval=2)
     write(arguments.out, "flags", image_with_flags(arguments.out))
     # Pieces that overlap, with flags.
-    ghosts = simple.GhostCellsGenerator(Input=simple.Wavelet(WholeExtent=[0, 14, 0, 12, 0, 11]))
+    ghosts = session.ghost_cells(Input=simple.Wavelet(WholeExtent=[0, 14, 0, 12, 0, 11]))
     write(arguments.out, "ghost_cells", ghosts)
     write(arguments.out, "present_step", simple.Wavelet(WholeExtent=[-3, 9, 0, 7, 2, 8]))
 

@@ -10,6 +10,7 @@ import math
 import sys
 
 import numpy
+from vtkmodules.numpy_interface import dataset_adapter
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import demo_common as demo
@@ -108,10 +109,10 @@ def same_grid(a, b):
     """Whether two data sets have the same extent, or the same points and corners of cells."""
     if a.IsA("vtkImageData"):
         return a.GetExtent() == b.GetExtent()
-    parts = (lambda grid: grid.GetPoints().GetData(),
-             lambda grid: grid.GetCells().GetConnectivityArray(),
-             lambda grid: grid.GetCellTypesArray())
-    return all(same_bits(vtk_to_numpy(part(a)), vtk_to_numpy(part(b))) for part in parts)
+    parts = (lambda grid: vtk_to_numpy(grid.GetPoints().GetData()),
+             lambda grid: vtk_to_numpy(grid.GetCells().GetConnectivityArray()),
+             lambda grid: dataset_adapter.WrapDataObject(grid).CellTypes)
+    return all(same_bits(part(a), part(b)) for part in parts)
 
 
 def compare(source, decoded, times, names):
