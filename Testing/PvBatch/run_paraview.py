@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs a Python script in ParaView: builtin, on the ranks of pvbatch, or as client of a pvserver.
+"""Runs a Python script in ParaView: builtin, on the ranks of pvbatch, as client of a pvserver, or in the window.
 
-    run_paraview.py [--mode builtin|batch|server] [--ranks N] [--seconds S] [--server-option O ...]
+    run_paraview.py [--mode builtin|batch|server|window] [--ranks N] [--seconds S] [--server-option O ...]
                     -- SCRIPT [ARGUMENTS]
 
 Nothing may hang: every process it starts is ended when the time is over. The script of a client
@@ -15,15 +15,15 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 
-# What Open MPI wants to be told for root, in containers and beyond the number of cores.
+# What Open MPI wants to be told for root and in containers.
 MPI_ENVIRONMENT = {
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
     "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
-    "OMPI_MCA_rmaps_base_oversubscribe": "1",
     "OMPI_MCA_mpi_yield_when_idle": "1",
 }
 TIMED_OUT = 124
@@ -71,7 +71,7 @@ def free_port():
 
 
 def mpi(ranks):
-    return [os.environ.get("MPIEXEC", "mpirun"), "-np", str(ranks)]
+    return [os.environ.get("MPIEXEC", "mpirun"), "--oversubscribe", "-np", str(ranks)]
 
 
 class Server:
@@ -121,9 +121,41 @@ def run_client(command, ranks, options, deadline):
             end(server.process)
 
 
+# Runs in the window, in place of pvpython: with arguments, output to where ctest reads, and an end.
+IN_WINDOW = """
+import os, runpy, sys, traceback
+sys.argv = {command!r}
+sys.path.insert(0, os.path.dirname(sys.argv[0]))
+sys.stdout, sys.stderr = sys.__stdout__, sys.__stderr__
+status = 0
+try:
+    runpy.run_path(sys.argv[0], run_name="__main__")
+except SystemExit as end:
+    status = end.code if isinstance(end.code, int) else end.code is not None
+    print("" if isinstance(end.code, int) else end.code or "")
+except BaseException:
+    traceback.print_exc()
+    status = 1
+sys.stdout.flush()
+sys.stderr.flush()
+os._exit(status)
+"""
+
+
+def run_in_window(command, deadline):
+    with tempfile.TemporaryDirectory() as home:
+        script = os.path.join(home, "in_window.py")
+        with open(script, "w", encoding="utf-8") as file:
+            file.write(IN_WINDOW.format(command=command))
+        # Without the settings of the user; the dialog that welcomes new ones is modal.
+        environment = dict(os.environ, HOME=home, XDG_CONFIG_HOME=home, XDG_RUNTIME_DIR=home)
+        paraview = ["paraview", "--disable-registry", "--script=" + script]
+        return wait(start(paraview, env=environment), deadline)
+
+
 def main():
     parser = argparse.ArgumentParser(usage=__doc__)
-    parser.add_argument("--mode", choices=("builtin", "batch", "server"), default="builtin")
+    parser.add_argument("--mode", choices=("builtin", "batch", "server", "window"), default="builtin")
     parser.add_argument("--ranks", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=120)
     parser.add_argument("--server-option", action="append", default=[], help="as --server-option=-tdx=2")
@@ -135,6 +167,8 @@ def main():
     python = ["pvpython", "--force-offscreen-rendering"]
     if arguments.mode == "server":
         return run_client(python + arguments.command, arguments.ranks, arguments.server_option, deadline)
+    if arguments.mode == "window":
+        return run_in_window(arguments.command, deadline)
     if arguments.mode == "batch":
         return wait(start(mpi(arguments.ranks) + ["pvbatch"] + arguments.command), deadline)
     return wait(start(python + arguments.command), deadline)
