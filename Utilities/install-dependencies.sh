@@ -2,7 +2,9 @@
 # Installs the Debian packages that Banyan is built, tested and demonstrated with.
 #   install-dependencies.sh          installs those that are missing (as root, or through sudo)
 #   install-dependencies.sh --list   prints their names
+#   install-dependencies.sh --list-development   only those that programs in C++ need
 #   install-dependencies.sh --with-checks  also what Utilities/check-style.sh needs
+#   install-dependencies.sh --with-packaging  also what Utilities/package.sh needs
 #   install-dependencies.sh --with-peers   also the codecs and the network simulator of Benchmarks
 # Does nothing, and needs neither root nor network, when all are there.
 # SPDX-License-Identifier: BSD-3-Clause
@@ -35,6 +37,8 @@ Qt6Packages=(qt6-base-dev qt6-tools-dev qt6-svg-dev qt6-5compat-dev xsltproc pyt
 
 PeerPackages=(libsimgrid-dev libzfp-dev libblosc-dev libopenvdb-dev libnanovdb-dev libimath-dev libtbb-dev)
 
+PackagingPackages=(debhelper git help2man lintian)
+
 CheckPackages=(clang-format clang-tidy codespell)
 
 as_root=()
@@ -55,7 +59,7 @@ needs_of_paraview()
 }
 
 needs="$(needs_of_paraview)"
-if [[ -z "$needs" && "${1:-}" != --list ]] && command -v apt-get >/dev/null; then
+if [[ -z "$needs" && "${1:-}" != --list* ]] && command -v apt-get >/dev/null; then
   apt_get update || true
   needs="$(needs_of_paraview)"
 fi
@@ -72,8 +76,10 @@ case "${1:-}" in
   "") ;;
   --with-checks) Packages+=("${CheckPackages[@]}") ;;
   --with-peers) Packages+=("${PeerPackages[@]}") ;;
+  --with-packaging) Packages+=("${PackagingPackages[@]}") ;;
+  --list-development) printf '%s\n' "${DevelopmentPackages[@]}"; exit 0 ;;
   --list) printf '%s\n' "${Packages[@]}"; exit 0 ;;
-  *) sed -n '2,7s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+  *) sed -n '2,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
 esac
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
