@@ -52,7 +52,9 @@ scenes="${scenes:-bonsai,isabel_velmag,turbulence,S2}"
 build_simulation()
 {
   command -v smpicxx > /dev/null || fail "smpicxx is missing: install libsimgrid-dev."
-  local paraview=/usr/include/paraview-5.11 core="$BuildFolder/lib/Banyan" source
+  local paraview core="$BuildFolder/lib/Banyan" source
+  paraview="$(compgen -G "/usr/include/paraview-*" | tail -n 1)"
+  icet="vtkIceTCore-pv${paraview##*-}"
   [[ -e "$paraview/vtkicet/src/include/IceT.h" ]] ||
     fail "IceT's headers are missing: install paraview-dev."
   simulation="$BuildFolder/bin/banyan-simulate-compositing"
@@ -63,7 +65,7 @@ build_simulation()
         -I"$here/Compositing" "$here"/Compositing/{SimulateCompositing,FrameFile}.cxx \
         "$here"/Compositing/Peers/*.cxx \
         "$RepositoryRoot"/Core/Parallel/{Communicate/MpiCommunicator,Watchdog/MpiWatchdog}.cxx \
-        -L"$core" -Wl,-rpath,"$core" -lBanyanCore -lvtkIceTCore-pv5.11 -o "$simulation" ||
+        -L"$core" -Wl,-rpath,"$core" -lBanyanCore -l"$icet" -o "$simulation" ||
         fail "the simulation could not be built."
       return
     fi
@@ -132,7 +134,7 @@ simulate()
   fi
   private="$(mktemp -d "$work/run.XXXXXX")"
   TMPDIR="$private" timeout 1800 smpirun -np "$count" -platform "$work/platform-$network.xml" \
-    -hostfile "$work/hosts" --cfg=smpi/privatize-libs:libvtkIceTCore-pv5.11.so.1 \
+    -hostfile "$work/hosts" --cfg=smpi/privatize-libs:"lib$icet.so.1" \
     --cfg=smpi/bw-factor:0:0.95 --cfg=smpi/lat-factor:0:1.0 --cfg=network/crosstraffic:0 \
     --cfg=smpi/os:0:1e-6:0 --cfg=smpi/ois:0:1e-6:0 --cfg=smpi/or:0:1e-6:0 \
     --cfg=smpi/coll-selector:mpich --cfg=smpi/simulate-computation:no \
