@@ -19,7 +19,7 @@ using namespace banyan;
 bool Fuses(std::int64_t target)
 {
 #if HWY_ARCH_X86
-  return target <= HWY_AVX2; // later ones have lower numbers
+  return target <= HWY_AVX2 && (target & HWY_TARGETS) != 0; // later ones have lower numbers
 #else
   return target != HWY_SCALAR && target != HWY_EMU128;
 #endif
