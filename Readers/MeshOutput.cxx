@@ -51,15 +51,16 @@ struct MadeArray
 {
   int Number; ///< in the series
   vtkSmartPointer<vtkDataArray> Values;
-  vtkDataSetAttributes* Among;
+  vtkDataSetAttributes* Attributes; ///< of the output
 };
 
+/// To be called when all arrays are in the output: its ghost array may be one of them.
 void DescribeRanges(const SeriesFile& series, const std::vector<MadeArray>& made)
 {
   for (const MadeArray& array : made)
   {
     auto* const ghosts = vtkUnsignedCharArray::SafeDownCast(
-      array.Among->GetArray(vtkDataSetAttributes::GhostArrayName()));
+      array.Attributes->GetArray(vtkDataSetAttributes::GhostArrayName()));
     DescribeRange(series, array.Number, ghosts, *array.Values);
   }
 }
@@ -122,7 +123,7 @@ void MeshOutput::Fill(const StepRequest& request, bool readAhead, vtkDataObject*
       values->SetActiveScalars(added->GetName());
     }
   }
-  DescribeRanges(*request.Series, made); // now that ghosts are there, an array themselves
+  DescribeRanges(*request.Series, made);
   if (readAhead)
   {
     this->Ahead.Read(request.Series, std::move(bricks));

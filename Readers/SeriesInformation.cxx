@@ -113,13 +113,11 @@ void DescribeRange(
   const SeriesFile& series, int array, vtkUnsignedCharArray* ghosts, vtkDataArray& values)
 {
   PieceRange range = RangeOfSeries(series, array);
-  const bool isTold = std::none_of(range.Components.begin(), range.Components.end(),
-    [](const ValueRange& of) { return of.Empty(); });
-  auto* const told = dynamic_cast<HasSeriesRange*>(&values);
-  // Where nothing but fill values and NaN are, VTK knows what to say of that.
-  if (told && isTold)
+  // VTK knows what to say of nothing but fill values and NaN.
+  if (std::none_of(range.Components.begin(), range.Components.end(),
+        [](const ValueRange& of) { return of.Empty(); }))
   {
-    told->SetSeriesRange(std::move(range), ghosts);
+    dynamic_cast<HasSeriesRange&>(values).SetSeriesRange(std::move(range), ghosts);
   }
 }
 

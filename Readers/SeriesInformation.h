@@ -29,8 +29,9 @@ int StepAt(const SeriesIndex& index, vtkInformation& information);
 /// Tells a person what a series holds: size, ratio, and the error bound of each array, a line each.
 std::string SummaryOf(const SeriesIndex& index);
 
-/// Tells an array (SeriesRangeArray) the range of the whole series.
+/// Tells an array the range of the whole series.
 /// @param ghosts the ghost array of the same output; may be null
+/// @param values a SeriesRangeArray; others throw std::bad_cast
 void DescribeRange(
   const SeriesFile& series, int array, vtkUnsignedCharArray* ghosts, vtkDataArray& values);
 

@@ -131,8 +131,10 @@ status = 0
 try:
     runpy.run_path(sys.argv[0], run_name="__main__")
 except SystemExit as end:
-    status = end.code if isinstance(end.code, int) else end.code is not None
-    print("" if isinstance(end.code, int) else end.code or "")
+    status = end.code or 0
+    if isinstance(status, str):
+        print(status)
+        status = 1
 except BaseException:
     traceback.print_exc()
     status = 1
