@@ -2,7 +2,7 @@
 # Finds ParaView (unless this is ParaView's own build), checks that it fits, and builds the plugin.
 # The first version of ParaView that fits, and the last one that all tests have passed with.
 set(BANYAN_PARAVIEW_FIRST 5.11)
-set(BANYAN_PARAVIEW_TESTED 5.11)
+set(BANYAN_PARAVIEW_TESTED 6.1)
 
 if(NOT BANYAN_INSIDE_PARAVIEW)
   include(BanyanPythonModules)

@@ -90,9 +90,9 @@ def rows(data):
     return table[numpy.lexsort(table.T)]
 
 
-def compare_unordered(a, b):
+def compare_unordered(a, b, tolerance=0.0):
     """As compare, for points that come in no particular order."""
-    wrong = differing_values(rows(a), rows(b), 0.0)
+    wrong = differing_values(rows(a), rows(b), tolerance)
     return [f"rows of points: {wrong}"] if wrong else []
 
 

@@ -62,7 +62,7 @@ def new_view(size, **properties):
 
 
 def move_to(display, offset):
-    """Moves what is shown. Until ParaView 5.12 the property is called Position."""
+    """Moves what is shown: until ParaView 5.12 the property is called Position."""
     name = "Translation" if display.SMProxy.GetProperty("Translation") else "Position"
     setattr(display, name, list(offset))
 

@@ -35,6 +35,8 @@ BETWEEN_STEPS = 1.25
 TEMPORAL = ("temporal interpolator",)
 # ParaView's parallel stream tracer gives the lines in another order each time.
 UNORDERED = ("stream tracer",)
+# Relative to the largest value. Since VTK 9.4 each thread has a sum of its own.
+TOLERANCES = {"integrate variables": 1e-5}
 # Values inline: libexpat's security update breaks VTK 9.2's reading of appended ones.
 WRITERS = {
     "pvti": ({"DataMode": "Binary"}, simple.XMLPartitionedImageDataReader),
@@ -105,6 +107,12 @@ def updated(proxy, time=TIME):
     return piece_of(proxy)
 
 
+def ends_paraview(name):
+    """Contingency Statistics crashes in ParaView 6.1 on several ranks, with plain arrays, too."""
+    return (name == "contingency statistics" and simple.GetParaViewVersion().major >= 6
+            and controller().GetNumberOfProcesses() > 1)
+
+
 def compare_filter(name, make, path):
     """What is different, and how much there was to compare."""
     deferred, plain = readers(path)
@@ -112,7 +120,7 @@ def compare_filter(name, make, path):
     time = BETWEEN_STEPS if name in TEMPORAL else TIME
     expected = updated(theirs, time)
     compare = compare_data.compare_unordered if name in UNORDERED else compare_data.compare
-    wrong = compare(updated(ours, time), expected)
+    wrong = compare(updated(ours, time), expected, TOLERANCES.get(name, 0.0))
     return wrong, compare_data.size(expected)
 
 
@@ -201,7 +209,7 @@ def main():
 
     total = 0
     for name, make in filter_list.FILTERS.items():
-        if arguments.only in (None, name):
+        if arguments.only in (None, name) and not ends_paraview(name):
             wrong, something = compare_filter(name, make, path)
             note(name, wrong)
             total += something > 0

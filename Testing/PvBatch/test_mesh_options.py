@@ -11,6 +11,7 @@ from paraview import simple
 
 import pictures
 import session
+from random_trees import random_trees
 
 SIZE = (200, 160)
 BALANCING = ("Off", "Measured cost")
@@ -20,8 +21,7 @@ FRAMES = 3
 
 
 def trees():
-    return simple.HyperTreeGridRandom(Dimensions=[5, 4, 4], MaxDepth=3, SplitFraction=0.6, Seed=3,
-                                      OutputBounds=[0, 4, 0, 3, 0, 3])
+    return random_trees((4, 3, 3))
 
 
 def mesh():

@@ -14,6 +14,7 @@ from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 
 import pictures
 import session
+from random_trees import random_trees
 
 HTG = "htg_derived_hydrogen/hydrogen.htg"
 AMR = "amr_hierarchicalbox/HierarchicalBoxDataset.v1.1.vthb"
@@ -102,8 +103,7 @@ def draw_all(data, out):
         draw(drawn[-1], source, array)
         session.clear()
     # Each rank has some of the trees, and of cells that have no points in common.
-    trees = simple.HyperTreeGridRandom(Dimensions=[4, 3, 3], MaxDepth=3, SplitFraction=0.6, Seed=3,
-                                       OutputBounds=[0, 3, 0, 2, 0, 2])
+    trees = random_trees((3, 2, 2))
     cells = simple.ProgrammableSource(Script=CELLS, ScriptRequestInformation=INFORMATION,
                                       OutputDataSetType="vtkUnstructuredGrid")
     for name, source, array in (("pieces", trees, "Depth"), ("cells", cells, "value")):

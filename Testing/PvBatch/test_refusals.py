@@ -203,6 +203,8 @@ def scripts(folder):
             mention = {"i": "ValueError: no such file: alpha", "w": "SyntaxError: ",
                        "n": "NameError: name 'nothere'"}[line[0]]
             expect_no_series("script", raises, folder, "The input cannot be read: " + mention, **mode)
+            # The error holds the writer. ParaView 6 hangs where the next error lets go of it while ranks update.
+            sys.last_exc = sys.last_value = sys.last_traceback = None
 
 
 def main():

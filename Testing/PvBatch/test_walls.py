@@ -31,7 +31,7 @@ def main():
     spheres = picture_scenes.spheres(view)
     first = picture_scenes.wavelet(view)
     second = picture_scenes.encoded(view)
-    second.Position = [60, 0, 0]
+    session.move_to(second, [60, 0, 0])
     # Displays look into different directions, and one of them may not see a volume.
     for angle in range(0, 360, 60):
         view.CameraPosition = [110 * numpy.cos(numpy.radians(angle)), 30, 110 * numpy.sin(numpy.radians(angle))]
