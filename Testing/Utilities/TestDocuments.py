@@ -164,8 +164,9 @@ def run_example():
 
 
 BEFORE_BLOCKS = """
+import os
 from paraview.simple import *
-LoadPlugin("build/lib/Banyan/Banyan.so", ns=globals())
+LoadPlugin(os.path.abspath("build/lib/Banyan/Banyan.so"), ns=globals())
 source = OpenDataFile("flow/flow.vti.series")
 SaveData("name.banyan", proxy=source, WriteTimeSteps=1)
 series = OpenDataFile("name.banyan")
