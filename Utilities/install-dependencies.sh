@@ -67,6 +67,7 @@ if [[ "$needs" == *libqt5* ]]; then
   DevelopmentPackages+=("${Qt5Packages[@]}")
 else
   DevelopmentPackages+=("${Qt6Packages[@]}")
+  Packages+=(qt6-svg-plugins) # icons of the window
 fi
 # Since ParaView 6, Debian builds it with VTK's own packages.
 [[ "$needs" != *libvtk9* ]] || DevelopmentPackages+=(libvtk9-dev)

@@ -30,21 +30,17 @@ clean_up()
 }
 trap clean_up EXIT
 
-# A fresh configuration, without the modal welcome dialog.
-mkdir -p "$work/config/ParaView"
-version="$(pvserver --version 2>&1 | grep -oE "[0-9]+\.[0-9]+\.[0-9]+" | head -1 || true)"
-printf '[General]\nGeneralSettings.ShowWelcomeDialog=0\n[GeneralSettings]\nShowWelcomeDialog=0\n' \
-  > "$work/config/ParaView/ParaView${version:-5.11.0}.ini"
-export HOME="$work" XDG_CONFIG_HOME="$work/config" XDG_RUNTIME_DIR="$work" QT_X11_NO_MITSHM=1
+# Without the settings of the user, and without the modal dialog that welcomes new ones.
+export HOME="$work" XDG_CONFIG_HOME="$work" XDG_RUNTIME_DIR="$work" QT_X11_NO_MITSHM=1
 export PV_PLUGIN_PATH="$plugin" BANYAN_READY="$work/ready"
 BANYAN_SERIES="$(realpath "$1")"
-export BANYAN_SERIES
+export BANYAN_SERIES PYTHONPATH="$RepositoryRoot/Utilities/demo"
 
 openbox > /dev/null 2>&1 &
 pids+=($!)
 
 say "starting ParaView"
-timeout 120 paraview --geometry=1300x790+0+0 \
+timeout 120 paraview --disable-registry --geometry=1300x790+0+0 \
   --script="$RepositoryRoot/Utilities/screenshot/window_script.py" > "$work/log" 2>&1 &
 pids+=($!)
 for _ in $(seq 200); do

@@ -26,7 +26,7 @@ def dress(reader, display, view, look):
     high = 0.6 * look["histogram"]["range"][1]
     simple.ColorBy(display, ("POINTS", name, "Magnitude"))
     colours = simple.GetColorTransferFunction(name)
-    colours.ApplyPreset(demo_look.COLOUR_MAP, True)
+    demo_look.apply_colour_map(colours)
     colours.RescaleTransferFunction(0.0, high)
     opacity = simple.GetOpacityTransferFunction(name)
     opacity.Points = [number for share, value in

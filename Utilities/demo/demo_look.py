@@ -3,13 +3,18 @@
 
 import math
 
-from paraview import simple
+from paraview import servermanager, simple
 
-COLOUR_MAP = "Inferno (matplotlib)"
 BACKGROUND_LOW = (0.020, 0.025, 0.045)
 BACKGROUND_HIGH = (0.105, 0.125, 0.180)
 TURN_DEGREES = 50.0  # of the camera over the whole animation
 OPACITY_POINTS = 24
+
+
+def apply_colour_map(colours):
+    """Inferno, which is called Inferno (matplotlib) until ParaView 6.0."""
+    presets = servermanager.vtkSMTransferFunctionPresets.GetInstance()
+    colours.ApplyPreset("Inferno" if presets.HasPreset("Inferno") else "Inferno (matplotlib)", True)
 
 
 def make_view(image_size):
@@ -51,7 +56,7 @@ def dress(reader, display, view, look):
     low, high = histogram["range"]
     simple.ColorBy(display, ("POINTS", name))
     colours = simple.GetColorTransferFunction(name)
-    colours.ApplyPreset(COLOUR_MAP, True)
+    apply_colour_map(colours)
     colours.RescaleTransferFunction(low, high if high > low else low + 1.0)
     opacity = simple.GetOpacityTransferFunction(name)
     opacity.Points = [number for value, share in opacities(histogram)

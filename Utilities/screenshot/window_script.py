@@ -11,6 +11,8 @@ from paraview.simple import (ColorBy, GetActiveView, GetAnimationScene, GetColor
                              GetOpacityTransferFunction, OpenDataFile, Render, SetActiveSource,
                              Show)
 
+from demo_look import apply_colour_map
+
 
 def show(path):
     reader = OpenDataFile(path)
@@ -22,7 +24,7 @@ def show(path):
     ColorBy(display, ('POINTS', name))
     display.SetScalarBarVisibility(view, True)
     colors = GetColorTransferFunction(name)
-    colors.ApplyPreset('Inferno (matplotlib)', True)
+    apply_colour_map(colors)
     low, high = colors.RGBPoints[0], colors.RGBPoints[-4]
     opacity = GetOpacityTransferFunction(name)
     opacity.Points = []
