@@ -29,6 +29,7 @@ rm -rf "$source" "$folder"/*.deb
 mkdir -p "$source"
 git ls-files -z --cached --others --exclude-standard | tar --create --null --files-from=- | tar --extract --directory="$source"
 cp -a Utilities/package "$source/debian"
+sed '1,/^$/d; s/^$/./; s/^/ /' LICENSE >>"$source/debian/copyright"
 version="$(sed -n 's/^project(Banyan VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)"
 paraview="$(dpkg-query -W -f '${source:Upstream-Version}' paraview | cut -d . -f 1,2)"
 maintainer="$(sed -n 's/^Maintainer: //p' Utilities/package/control)"

@@ -21,10 +21,12 @@ if server:
 listed = plugins()
 if listed.get("Banyan") is not False:
     raise AssertionError(f"Banyan has to be listed and not loaded: {listed}")
-simple.LoadDistributedPlugin("Banyan", ns=globals())
+simple.LoadDistributedPlugin("Banyan", remote=False, ns=globals())
+if server:
+    simple.LoadDistributedPlugin("Banyan", remote=True, ns=globals())
 if not plugins()["Banyan"]:
     raise AssertionError("Banyan has to be loaded now")
-view = simple.CreateView("RenderView")
+view = simple.GetActiveViewOrCreate("RenderView")
 view.ViewSize = [300, 300]
 display = simple.Show(simple.Wavelet(), view)
 display.SetRepresentationType("Banyan Volume")

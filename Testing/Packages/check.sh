@@ -59,7 +59,8 @@ grep -q LoadDistributedPlugin example.py || fail "the README's example loads no 
 "$RepositoryRoot/Utilities/with-display.sh" mpiexec --oversubscribe -n 2 pvbatch example.py ||
   fail "the README's example failed."
 compgen -G "frame.*.png" >/dev/null || fail "the README's example made no picture."
-banyan-verify flow.banyan --against flow/flow.vti.series || fail "the series is not within its bound."
+pvpython "$RepositoryRoot/Utilities/verify/stream_source.py" flow/flow.vti.series |
+  banyan-verify --stream flow.banyan || fail "the series is not within its bound."
 
 stage 5 5 "The C++ program of the how-to"
 cmake -S "$RepositoryRoot/Documentation/howto/draw-a-series" -B program >"$work/log" 2>&1 ||
