@@ -7,10 +7,10 @@
 #   --output DIR     where releases.csv goes (default benchmark-output)
 #   --repeat N       rounds, of which the median counts (default 5)
 #
-# Builds in build-benchmark-debian-RELEASE. A round runs every release once, one after the other: encoding and
+# Builds in build-debian-RELEASE, for this machine's release in build. A round runs every release once, one after the other: encoding and
 # decoding of turbulence (96^3, 16 steps, 8 bits) and of S1 and S2 (256^3, 1024^2 pixels), all on one thread.
-# Ends with a table of medians, and of how much longer each release takes than the first. Needs root
-# (Utilities/on-debian.sh).
+# Ends with a table of medians, and of how much longer each release takes than the first. The release of this machine
+# is used as it is; others need root (Utilities/on-debian.sh).
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 # SPDX-License-Identifier: BSD-3-Clause
 
@@ -19,25 +19,19 @@ output="benchmark-output"
 repeat=5
 read_options "" "releases output repeat" "$@"
 IFS=, read -r -a releases <<<"$releases"
+unset BANYAN_BUILD_DIR # each release has its own
 # Seen by all releases, which share the project's folder alone.
 work="$RepositoryRoot/build-benchmark-debian"
 mkdir -p "$work" "$output"
 
-on()
-{
-  BANYAN_BUILD_DIR="$RepositoryRoot/build-benchmark-debian-$1" \
-    "$RepositoryRoot/Utilities/on-debian.sh" "$1" bash -ec "$2"
-}
-
 stage 1 2 "Building on ${#releases[@]} releases"
 for release in "${releases[@]}"; do
-  on "$release" 'Utilities/install-dependencies.sh
-    cmake --preset release -B $BANYAN_BUILD_DIR -DBANYAN_WITH_PARAVIEW=OFF -DBANYAN_BUILD_TESTING=OFF \
-      -DBANYAN_BUILD_BENCHMARKS=ON
-    cmake --build $BANYAN_BUILD_DIR --parallel --target banyan-generate banyan-bench-codec BanyanBenchRayCaster' \
+  on_debian "$release" 'Utilities/install-dependencies.sh
+    cmake --preset release -B $BuildFolder -DBANYAN_BUILD_BENCHMARKS=ON
+    cmake --build $BuildFolder --parallel --target banyan-generate banyan-bench-codec BanyanBenchRayCaster' \
     >"$work/$release.log" 2>&1 || fail "Debian $release cannot build it; $work/$release.log says why."
 done
-on "${releases[0]}" "\$BANYAN_BUILD_DIR/bin/banyan-generate --series turbulence --size 96 --steps 16 \
+on_debian "${releases[0]}" "\$BuildFolder/bin/banyan-generate --series turbulence --size 96 --steps 16 \
   --raw $work/turbulence.raw" 2>/dev/null || fail "the series could not be generated."
 echo '{"name": "turbulence", "file": "turbulence.raw", "samples": [96, 96, 96], "steps": 16}' >"$work/turbulence.json"
 
@@ -48,10 +42,10 @@ for ((round = 1; round <= repeat; ++round)); do
   for release in "${releases[@]}"; do
     say "      round $round of $repeat: Debian $release"
     rm -f "$work/codec.csv"
-    on "$release" "export BANYAN_THREADS=1
-      \$BANYAN_BUILD_DIR/bin/banyan-bench-codec --output $work/codec.csv --work $work/encoded --bits 8 \
+    on_debian "$release" "export BANYAN_THREADS=1
+      \$BuildFolder/bin/banyan-bench-codec --output $work/codec.csv --work $work/encoded --bits 8 \
         --methods banyan --repeat 1 --bricks 200 $work/turbulence.json >$work/log
-      \$BANYAN_BUILD_DIR/bin/BanyanBenchRayCaster 256 1024 1 1 >$work/rays.csv" ||
+      \$BuildFolder/bin/BanyanBenchRayCaster 256 1024 1 1 >$work/rays.csv" ||
       fail "the programs failed on Debian $release."
     "$python" "$here/releases.py" "$table" "$release" "$work"
   done

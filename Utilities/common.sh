@@ -94,3 +94,14 @@ python_with()
   done
   fail "Python 3 with $* is needed; Utilities/install-dependencies.sh installs it."
 }
+
+# Runs lines of bash in the project's folder on a release of Debian: on this machine if it has that release, or
+# else in a folder of its own (on-debian.sh). BuildFolder is the build there.
+on_debian()
+{
+  local release="$1" lines="$2" here
+  here="$(. /etc/os-release && [[ "$ID" == debian ]] && echo "${VERSION_ID:-testing}")"
+  local enter=("$RepositoryRoot/Utilities/on-debian.sh" "$release")
+  [[ "$release" != "$here" ]] || enter=(env -C "$RepositoryRoot")
+  "${enter[@]}" bash -ec ". Utilities/common.sh; prepare_mpi; $lines"
+}
