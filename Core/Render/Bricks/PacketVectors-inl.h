@@ -20,7 +20,8 @@ namespace banyan::HWY_NAMESPACE
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4
+// Sets beyond AVX3 have lower numbers, and are worked with as AVX3.
+#if HWY_TARGET <= HWY_AVX3 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4
 using D = hn::ScalableTag<float>; ///< 16, 8 or 4 lanes
 #else
 using D = hn::CappedTag<float, 4>;
@@ -58,7 +59,7 @@ struct Blocks
 HWY_INLINE VF LoadBlocks(const char* base, const std::int32_t* bytes)
 {
   const auto at = [&](int i) HWY_ATTR { return reinterpret_cast<const float*>(base + bytes[i]); };
-#if HWY_TARGET == HWY_AVX3
+#if HWY_TARGET <= HWY_AVX3
   // Blocks are put in place as they are loaded, which takes no shuffle.
   __m512 v = _mm512_castps128_ps512(_mm_loadu_ps(at(0)));
   v = _mm512_insertf32x4(v, _mm_loadu_ps(at(4)), 1);
@@ -93,7 +94,7 @@ HWY_INLINE VF LoadFaces(const char* base, const std::int32_t* bytes, std::ptrdif
     return hn::Combine(D(), hn::LoadU(two, next), hn::LoadU(two, from));
   };
 #endif
-#if HWY_TARGET == HWY_AVX3
+#if HWY_TARGET <= HWY_AVX3
   __m512 v = _mm512_castps128_ps512(at(0));
   v = _mm512_insertf32x4(v, at(4), 1);
   v = _mm512_insertf32x4(v, at(8), 2);
@@ -120,7 +121,7 @@ HWY_INLINE VF LoadNumberFaces(const char* base, const std::int32_t* bytes, std::
     std::memcpy(&numbers, from, sizeof(numbers));
     return numbers;
   };
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2
+#if HWY_TARGET <= HWY_AVX3 || HWY_TARGET == HWY_AVX2
   const auto faces = [&](int i) HWY_ATTR
   {
     const char* const first = base + bytes[i];
@@ -131,7 +132,7 @@ HWY_INLINE VF LoadNumberFaces(const char* base, const std::int32_t* bytes, std::
     return _mm_insert_epi32(v, two(second + row), 3);
   };
 #endif
-#if HWY_TARGET == HWY_AVX3
+#if HWY_TARGET <= HWY_AVX3
   const __m256i all = _mm256_inserti128_si256(_mm256_castsi128_si256(faces(0)), faces(8), 1);
   return VF{ _mm512_cvtepi32_ps(_mm512_cvtepi16_epi32(all)) };
 #elif HWY_TARGET == HWY_AVX2
@@ -152,7 +153,7 @@ HWY_INLINE Blocks LoadBlocks(const void* base, const Offsets& offsets)
     LoadBlocks(from, offsets.Bytes + 2), LoadBlocks(from, offsets.Bytes + 3) } };
 }
 
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2
+#if HWY_TARGET <= HWY_AVX3 || HWY_TARGET == HWY_AVX2
 #undef BANYAN_HAS_PAIRS
 #define BANYAN_HAS_PAIRS 1
 /// Two blocks that lie side by side, of every lane 4 b + k: in two vectors, the first of which has
@@ -166,7 +167,7 @@ template <int half>
 HWY_INLINE VF LoadHalfOfPairs(const char* base, const std::int32_t* bytes)
 {
   const auto at = [&](int i) HWY_ATTR { return reinterpret_cast<const float*>(base + bytes[i]); };
-#if HWY_TARGET == HWY_AVX3
+#if HWY_TARGET <= HWY_AVX3
   const __m512d v = _mm512_castpd256_pd512(_mm256_castps_pd(_mm256_loadu_ps(at(8 * half))));
   return VF{ _mm512_castpd_ps(
     _mm512_insertf64x4(v, _mm256_castps_pd(_mm256_loadu_ps(at(8 * half + 4))), 1)) };
@@ -185,7 +186,7 @@ HWY_INLINE Pairs LoadPairs(const char* base, const std::int32_t* bytes)
 template <int k>
 HWY_INLINE Pairs ForPairs(VF v)
 {
-#if HWY_TARGET == HWY_AVX3
+#if HWY_TARGET <= HWY_AVX3
   const __m512 inBlocks = _mm512_permute_ps(v.raw, k * 0x55);
   return { { VF{ _mm512_shuffle_f32x4(inBlocks, inBlocks, _MM_SHUFFLE(1, 1, 0, 0)) },
     VF{ _mm512_shuffle_f32x4(inBlocks, inBlocks, _MM_SHUFFLE(3, 3, 2, 2)) } } };
@@ -202,7 +203,7 @@ HWY_INLINE VF BlocksOf(const Pairs& pairs)
 {
   const auto low = pairs.Of[0].raw;
   const auto high = pairs.Of[1].raw;
-#if HWY_TARGET == HWY_AVX3
+#if HWY_TARGET <= HWY_AVX3
   return VF{ _mm512_shuffle_f32x4(low, high, _MM_SHUFFLE(2 + which, which, 2 + which, which)) };
 #else
   return VF{ _mm256_permute2f128_ps(low, high, 0x20 + 0x11 * which) };
@@ -248,7 +249,7 @@ HWY_INLINE VI Truncated(VF v)
   return VI{ _mm_cvttps_epi32(v.raw) };
 #elif HWY_TARGET == HWY_AVX2
   return VI{ _mm256_cvttps_epi32(v.raw) };
-#elif HWY_TARGET == HWY_AVX3
+#elif HWY_TARGET <= HWY_AVX3
   return VI{ _mm512_cvttps_epi32(v.raw) };
 #else
   return hn::ConvertTo(DI(), v);
