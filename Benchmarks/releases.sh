@@ -7,8 +7,9 @@
 #   --output DIR     where releases.csv goes (default benchmark-output)
 #   --repeat N       rounds, of which the median counts (default 5)
 #
-# Builds in build-debian-RELEASE, for this machine's release in build. A round runs every release once, one after the other: encoding and
-# decoding of turbulence (96^3, 16 steps, 8 bits) and of S1 and S2 (256^3, 1024^2 pixels), all on one thread.
+# Builds in build-debian-RELEASE, for this machine's release in build. A round runs every release once, one after the
+# other: encoding and decoding turbulence (96^3, 16 steps, 8 bits), and drawing S1 and S2 (256^3, 1024^2 pixels), all
+# on one thread.
 # Ends with a table of medians, and of how much longer each release takes than the first. The release of this machine
 # is used as it is; others need root (Utilities/on-debian.sh).
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"

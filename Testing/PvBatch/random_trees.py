@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A hyper tree grid that is refined at random, and the same on any number of ranks.
 
-ParaView's own HyperTreeGridRandom makes other trees in each piece since VTK 9.4.
+ParaView's own HyperTreeGridRandom makes other trees in each piece since ParaView 5.13.
 """
 from paraview import simple
 
