@@ -10,9 +10,10 @@
 #
 # The first command makes the release with debootstrap, from the mirror that this machine's apt uses. It is
 # kept in ~/.cache/banyan (BANYAN_DEBIAN names another folder) with the packages that commands install.
-# The project is the same folder there as here; it is built in build-debian-RELEASE (BANYAN_BUILD_DIR names
-# another). Needs root, and the package debootstrap. On another machine, make such a folder with
-# `debootstrap --variant=minbase SUITE FOLDER`, bind /dev, /sys, /proc and the project, and chroot.
+# The project is the same folder there as here, and so is that of real data (BANYAN_DATA_DIR, or ../shared/data),
+# which can only be read. The build is in build-debian-RELEASE (BANYAN_BUILD_DIR names another). Needs root, and
+# the package debootstrap. On another machine, make such a folder with `debootstrap --variant=minbase SUITE
+# FOLDER`, bind /dev, /sys, /proc and the project, and chroot.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 # SPDX-License-Identifier: BSD-3-Clause
 
@@ -79,18 +80,21 @@ elif [[ ! -d "$root" ]]; then
   mv "$root.new" "$root"
 fi
 [[ $# -gt 0 ]] || fail "a command to run on Debian $release is missing."
+data="$(realpath -m "${BANYAN_DATA_DIR:-$RepositoryRoot/../shared/data}")"
 mkdir -p "$root$RepositoryRoot"
+[[ ! -d "$data" ]] || mkdir -p "$root$data"
 cp -L /etc/resolv.conf /etc/hosts "$root/etc/"
 
 # Runs in a mount and a process namespace of its own: what is bound and started here ends with it.
 enter()
 {
-  local root="$1" repository="$2"
-  shift 2
+  local root="$1" repository="$2" data="$3"
+  shift 3
   mount --rbind /dev "$root/dev"
   mount --rbind /sys "$root/sys"
   mount -t proc proc "$root/proc"
   mount --bind "$repository" "$root$repository"
+  [[ ! -d "$data" ]] || mount --bind --options ro "$data" "$root$data"
   exec chroot "$root" env -i "HOME=/root" "PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin" \
     LANG=C.UTF-8 "TERM=${TERM:-dumb}" "${passed[@]}" \
     bash -c 'cd "$0" && exec "$@"' "$repository" "$@"
@@ -99,4 +103,4 @@ enter()
 export BANYAN_BUILD_DIR="${BANYAN_BUILD_DIR:-$RepositoryRoot/build-debian-$release}"
 mapfile -t passed < <(env | grep '^BANYAN_' | grep -v '^BANYAN_DEBIAN=')
 unshare --mount --pid --fork --kill-child \
-  bash -ec "$(declare -f enter); $(declare -p passed); enter \"\$@\"" enter "$root" "$RepositoryRoot" "$@"
+  bash -ec "$(declare -f enter); $(declare -p passed); enter \"\$@\"" enter "$root" "$RepositoryRoot" "$data" "$@"
