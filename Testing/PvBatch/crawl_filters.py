@@ -218,8 +218,9 @@ def run_worker(options, first, log, ranks):
         command += ["--only", *options.only]
     begun, done, ended = first, False, {}
     current = None
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                          errors="replace", start_new_session=True) as process:
+    # VTK's messages would come in the middle of our lines.
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True, errors="replace",
+                          start_new_session=True) as process:
         lines = queue.Queue()
         threading.Thread(target=lambda: [lines.put(line) for line in process.stdout] +
                          [lines.put(None)], daemon=True).start()

@@ -318,6 +318,26 @@ def check_pictures(source, reader, array, out):
         session.require(worst <= allowed, f"the picture of the series is {worst} away, not {allowed}")
 
 
+def check_colours(reader, array):
+    """Colours of the first step reach as far as the whole series. On several ranks pieces have ghost cells."""
+    highest = []
+    for time in reader.TimestepValues:
+        reader.UpdatePipeline(time)
+        highest.append(reader.PointData[array].GetRange(-1)[1])
+    session.require(highest[0] < 0.5 * max(highest), f"{highest} would show nothing")
+    view = session.new_view((160, 120), ViewTime=reader.TimestepValues[0])
+    for kind in ("Surface", session.REPRESENTATION):
+        display = simple.Show(reader, view)
+        display.SetRepresentationType(kind)
+        simple.ColorBy(display, ("POINTS", array, "Magnitude"))
+        simple.Render(view)
+        display.RescaleTransferFunctionToDataRange(False, True)
+        reached = simple.GetColorTransferFunction(array).RGBPoints[-4]
+        session.require(abs(reached - max(highest)) <= 1e-6 * max(highest),
+                        f"{kind}: colours reach {reached}, the series {max(highest)}")
+    simple.Delete(view)
+
+
 def check_refusals(folder, quake):
     def refused(source, sentence, **options):
         path = os.path.join(folder, "refused.banyan")
@@ -376,6 +396,7 @@ def main():
     path = write(quake, options.out, "earthquake", arrays + ["ids"])
     reader = compare(quake, path, arrays, TIMES, QUAKE_CELLS)
     mesh_levels.check_series(reader, path, "velocity")
+    check_colours(reader, "velocity")
     check_pictures(simple.MergeBlocks(Input=quake), reader, "velocity", options.out)
     names, cell_names = ["u", "special", "count"], ["mass", "stress", "u"]
     for name, shared, numbered in (("numbered", True, True), ("pieces", False, True)):

@@ -71,7 +71,9 @@ def draw_can(data, out):
 def show_blocks(source):
     """A view that does not depend on the step."""
     view, display = show(source, "displ_")
-    simple.GetColorTransferFunction("displ_").RGBPoints = [0.0, 0.2, 0.3, 0.9, 0.1, 0.9, 0.2, 0.1]
+    colors = simple.GetColorTransferFunction("displ_")
+    colors.RGBPoints = [0.0, 0.2, 0.3, 0.9, 0.1, 0.9, 0.2, 0.1]
+    colors.ColorSpace = "Diverging"  # ParaView 6.1 begins with another
     simple.GetOpacityTransferFunction("displ_").Points = [0.0, 0.0, 0.5, 0.0, 0.2, 1.0, 0.5, 0.0]
     display.ScalarOpacityUnitDistance = 0.3
     view.CameraPosition, view.CameraFocalPoint = [3, 5, 6], [0, 0, 0]
