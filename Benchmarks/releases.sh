@@ -45,9 +45,9 @@ for ((round = 1; round <= repeat; ++round)); do
     rm -f "$work/codec.csv"
     on_debian "$release" "export BANYAN_THREADS=1
       \$BuildFolder/bin/banyan-bench-codec --output $work/codec.csv --work $work/encoded --bits 8 \
-        --methods banyan --repeat 1 --bricks 200 $work/turbulence.json >$work/log
-      \$BuildFolder/bin/BanyanBenchRayCaster 256 1024 1 1 >$work/rays.csv" ||
-      fail "the programs failed on Debian $release."
+        --methods banyan --repeat 1 --bricks 200 $work/turbulence.json
+      \$BuildFolder/bin/BanyanBenchRayCaster 256 1024 1 1 >$work/rays.csv" >"$work/log" 2>&1 ||
+      fail "the programs failed on Debian $release; $work/log says why."
     "$python" "$here/releases.py" "$table" "$release" "$work"
   done
 done
