@@ -7,8 +7,7 @@
 #include "TransferFunctionTable.h"
 
 #include "Parallel/Fields/DistributedField.h"
-#include "Parallel/Frame/DistributedFrame.h"
-#include "Parallel/Frame/ToleranceControl.h"
+#include "Parallel/Frame/FieldFrames.h"
 
 #include "vtkType.h"
 
@@ -29,7 +28,7 @@ struct MapperState
 {
   std::unique_ptr<banyan::Communicator> Communicator;
   DistributedField Field;
-  CompositePlanCache Plans; ///< of compositing
+  FieldFrames Frames;
   MotionEnhancement Motion;
   banyan::Backdrop Backdrop;
   KeptTransferFunction Function;
@@ -41,7 +40,6 @@ struct MapperState
   bool BoundsKnown = false;
   vtkDataObject* BoundsOf = nullptr; ///< only to compare with
   vtkMTimeType BoundsTime = 0;
-  ToleranceControl Tolerance;
   double WriteSeconds = 0.0; ///< of the last frame, to put its picture on the screen
   std::set<const vtkVolume*>
     DrawnByOthers;                  ///< of the renderer's present frame; only to compare with

@@ -8,7 +8,6 @@
 #include "vtkBanyanVolumeMapper.h"
 
 #include "Base/Progress.h"
-#include "Base/ThreadPool.h"
 #include "Parallel/Communicate/Collective.h"
 
 #include "vtkCamera.h"
@@ -73,68 +72,34 @@ ToleranceControl::Wish VolumeFrame::WishFor(vtkRenderer* renderer, int volumes) 
   return wish;
 }
 
-void VolumeFrame::PlanSampling(std::uint64_t budgetBytes)
+std::shared_ptr<const FloatImage> VolumeFrame::Cast(
+  vtkRenderer* renderer, const Backdrop& backdrop, int volumes)
 {
-  vtkBanyanFrameStatistics* const out = this->Owner->GetStatistics();
   DistributedField& field = this->State->Field;
-  ToleranceControl& tolerance = this->State->Tolerance;
-  out->SetEstimatedImageError(tolerance.Plan(
-    *this->State->Communicator, field, *this->Wanted, this->Wish, budgetBytes, this->Statistics));
-  out->SetImageErrorLimit(tolerance.Limit().c_str());
+  RayScene& scene = *this->Wanted;
+  scene.Depth = backdrop.Depths(scene.Viewport);
+  this->Figures = FrameFigures(field.Drawn());
+  FieldFrames::Wish wish;
+  wish.Sampling = this->WishFor(renderer, volumes);
+  wish.Behind = backdrop.Behind();
+  // Errors of few bits add up where volumes are blended over each other.
+  wish.Transport = this->Owner->GetCompositeInFewBits() && volumes == 1 ? PixelTransport::WithinOne
+                                                                        : PixelTransport::Floats;
+  wish.ReadAhead = this->Owner->GetReadAhead();
+  wish.Reuse = wish.Sampling.PlansOfGroups = this->Owner->GetReuseFrames();
+  wish.ShowSeconds = this->State->WriteSeconds; // about what it took the last time
+  const FieldFrames::Frame frame =
+    this->State->Frames.Draw(*this->State->Communicator, field, scene, wish);
+  this->Statistics = frame.Picture.Statistics;
+  vtkBanyanFrameStatistics* const out = this->Owner->GetStatistics();
+  out->SetPixelsReadBehind(static_cast<vtkIdType>(backdrop.PixelsRead()));
+  out->SetReusedFraction(frame.ReusedFraction());
+  out->SetEstimatedImageError(frame.Picture.EstimatedError);
+  out->SetImageErrorLimit(frame.Picture.Limit.c_str());
   out->SetEncodingErrorOfValues(
     field.Drawn().IsMesh() ? std::numeric_limits<double>::quiet_NaN() : field.EncodingError());
   out->SetMeshDeviation(field.Drawn().Deviation());
-}
-
-CompositeOptions VolumeFrame::Compositing(const Backdrop& backdrop, int volumes)
-{
-  CompositeOptions compositing;
-  compositing.Behind = backdrop.Behind();
-  // Errors of few bits add up where volumes are blended over each other.
-  compositing.Transport = this->Owner->GetCompositeInFewBits() && volumes == 1
-                            ? PixelTransport::WithinOne
-                            : PixelTransport::Floats;
-  compositing.Plans = &this->State->Plans;
-  // The other eye's picture is no step of a camera that moves.
-  if (this->Owner->GetReadAhead() && this->Wish.Eye == 0)
-  {
-    compositing.AfterCasting = [this]
-    { this->State->Field.Drawn().ReadAhead(*this->Wanted, this->State->Communicator->Rank()); };
-  }
-  return compositing;
-}
-
-FloatImage VolumeFrame::Cast(vtkRenderer* renderer, const Backdrop& backdrop, int volumes)
-{
-  Communicator& communicator = *this->State->Communicator;
-  DistributedField& field = this->State->Field;
-  DrawnField& drawn = field.Drawn();
-  RayScene& scene = *this->Wanted;
-  scene.Depth = backdrop.Depths(scene.Viewport);
-  this->Owner->GetStatistics()->SetPixelsReadBehind(static_cast<vtkIdType>(backdrop.PixelsRead()));
-  this->Figures = FrameFigures(drawn);
-  this->Wish = this->WishFor(renderer, volumes);
-  const Timer drawing;
-  {
-    const PhaseScope fetching(Phase::Fetching);
-    drawn.BeginFrame(communicator, scene);
-  }
-  const std::uint64_t budget = field.DrawingBudget();
-  const PhaseScope sampling(Phase::Sampling);
-  this->PlanSampling(budget);
-  const FrameStatistics probes = this->Statistics;
-  FloatImage picture = DrawDistributed(communicator, scene,
-    { drawn.Source(), drawn.Zones(), budget, ThreadPool::Process() }, this->Statistics,
-    this->Compositing(backdrop, volumes));
-  this->Statistics.SamplesTaken += probes.SamplesTaken;
-  this->Statistics.BytesComposited += probes.BytesComposited;
-  this->Statistics.MessagesComposited += probes.MessagesComposited;
-  const PhaseScope balancing(Phase::Balancing);
-  drawn.EndFrame(communicator);
-  // Putting the picture on the screen takes about what it took the last time.
-  this->State->Tolerance.FrameTook(
-    this->Wish, AllMax(communicator, drawing.Seconds() + this->State->WriteSeconds));
-  return picture;
+  return frame.Picture.Pixels;
 }
 
 void VolumeFrame::Finish(const CompositeStatistics& geometry, double writeSeconds)

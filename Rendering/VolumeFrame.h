@@ -7,6 +7,7 @@
 
 #include "Base/Timer.h"
 
+#include <memory>
 #include <optional>
 
 class vtkBanyanVolumeMapper;
@@ -39,8 +40,9 @@ public:
 
   /// Draws the volume, which is on the screen.
   /// @param volumes in the picture
-  /// @return the volume's picture, on rank 0
-  FloatImage Cast(vtkRenderer* renderer, const Backdrop& backdrop, int volumes);
+  /// @return the volume's picture on rank 0; null elsewhere
+  std::shared_ptr<const FloatImage> Cast(
+    vtkRenderer* renderer, const Backdrop& backdrop, int volumes);
 
   /// Publishes the statistics, when the picture is on the screen.
   /// @param geometry what it took to combine the pixels of other props
@@ -49,15 +51,12 @@ public:
 
 private:
   ToleranceControl::Wish WishFor(vtkRenderer* renderer, int volumes) const;
-  void PlanSampling(std::uint64_t budgetBytes);
-  CompositeOptions Compositing(const Backdrop& backdrop, int volumes);
 
   vtkBanyanVolumeMapper* Owner;
   MapperState* State;
   vtkVolume* Prop;
   Timer Began;
   std::optional<RayScene> Wanted; ///< none until it is prepared
-  ToleranceControl::Wish Wish;
   FrameStatistics Statistics;
   FrameFigures Figures;
 };

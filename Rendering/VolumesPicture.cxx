@@ -103,7 +103,7 @@ void VolumesPicture::DrawPrepared(vtkBanyanVolumeMapper* first)
   CompositeStatistics geometry;
   state.Backdrop.Read(
     *state.Communicator, this->Renderer, props, rect, state.RankOrderBehind, geometry);
-  std::vector<FloatImage> pictures(this->Frames.size());
+  Pictures pictures(this->Frames.size());
   const std::vector<VolumeFrame*> drawn = this->Cast(state.Backdrop, pictures);
   if (drawn.empty())
   {
@@ -112,9 +112,11 @@ void VolumesPicture::DrawPrepared(vtkBanyanVolumeMapper* first)
   const Timer writing;
   if (this->HasSeveral() && state.Communicator->Rank() == 0)
   {
-    pictures.front() = BlendInDepth(pictures, order, rect);
+    pictures.front() = std::make_shared<const FloatImage>(BlendInDepth(pictures, order, rect));
   }
-  state.Backdrop.Write(*state.Communicator, this->Renderer, pictures.front());
+  static const FloatImage none;
+  state.Backdrop.Write(
+    *state.Communicator, this->Renderer, pictures.front() ? *pictures.front() : none);
   const double seconds = writing.Seconds() / static_cast<double>(drawn.size());
   for (VolumeFrame* const frame : drawn)
   {
@@ -124,8 +126,7 @@ void VolumesPicture::DrawPrepared(vtkBanyanVolumeMapper* first)
 
 /// @param pictures of the frames, on rank 0
 /// @return frames that could be drawn
-std::vector<VolumeFrame*> VolumesPicture::Cast(
-  const Backdrop& backdrop, std::vector<FloatImage>& pictures)
+std::vector<VolumeFrame*> VolumesPicture::Cast(const Backdrop& backdrop, Pictures& pictures)
 {
   std::vector<VolumeFrame*> drawn;
   for (std::size_t i = 0; i < this->Frames.size(); ++i)

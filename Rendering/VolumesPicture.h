@@ -4,6 +4,7 @@
 
 #include "VolumeFrame.h"
 
+#include <memory>
 #include <vector>
 
 class vtkBanyanVolumeMapper;
@@ -36,8 +37,10 @@ public:
   static void ForgetDrawn(vtkRenderer* renderer);
 
 private:
+  using Pictures = std::vector<std::shared_ptr<const FloatImage>>; ///< null where there is none
+
   void DrawPrepared(vtkBanyanVolumeMapper* first);
-  std::vector<VolumeFrame*> Cast(const Backdrop& backdrop, std::vector<FloatImage>& pictures);
+  std::vector<VolumeFrame*> Cast(const Backdrop& backdrop, Pictures& pictures);
   void TellNotInDepth(vtkBanyanVolumeMapper* first, const std::vector<VolumeOnScreen>& volumes,
     const DepthOrder& order) const;
 

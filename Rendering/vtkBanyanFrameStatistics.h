@@ -29,6 +29,9 @@
     "Number of small pictures drawn for Probe Seconds and Stride Seconds.")                        \
   Number(double, Imbalance, 1.0, panel,                                                            \
     "Render seconds of the slowest rank, divided by the mean over all ranks. 1 is perfect.")       \
+  Number(double, ReusedFraction, 0.0, script,                                                      \
+    "The part of the picture that came from earlier frames: 1 for a scene that was drawn "         \
+    "before.")                                                                                     \
   Number(vtkIdType, Threads, 0, script,                                                            \
     "Threads that cast rays and decoded, over all ranks.")                                         \
   Number(vtkIdType, SamplesTaken, 0, script,                                                       \

@@ -64,6 +64,7 @@ void vtkBanyanVolumeMapper::SetController(vtkMultiProcessController* controller)
   }
   this->Controller = controller;
   this->State->Field.Reset();
+  this->State->Frames.Forget();
   banyan::MpiTimeout timeout{ banyan::MpiTimeout::DefaultSeconds, {} };
   try
   {
@@ -229,7 +230,7 @@ void vtkBanyanVolumeMapper::EndFrame(vtkObject* caller, unsigned long, void*)
 
 bool vtkBanyanVolumeMapper::RefineNext()
 {
-  return this->RefineInPasses && this->State->Tolerance.RefineNext();
+  return this->RefineInPasses && this->State->Frames.RefineNext();
 }
 
 void vtkBanyanVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)

@@ -75,10 +75,14 @@ class vtkMultiProcessController;
   Whole(NumberOfThreads, threads, 0, 0, 1024, advanced, all,                                       \
     "Threads per process for casting rays and decoding. Default: 0, the cores of a machine "       \
     "are divided by its ranks.")                                                                   \
+  Switch(ReuseFrames, true, advanced, all,                                                         \
+    "Takes from earlier frames what is the same: a scene that was drawn, in this view and step, "  \
+    "is not drawn again, and steps of a series that plays share how finely they are sampled. "     \
+    "Default: on; off draws each frame from nothing, to measure.")                                                                        \
   Switch(ReadAhead, true, advanced, images,                                                        \
-    "Encoded image data: decodes bricks of the next frame in the background, while a frame "       \
-    "is composited and shown. While the series plays these are bricks of the next step, "          \
-    "while the camera moves bricks that come onto the screen. Default: on.")                       \
+    "Encoded image data: decodes bricks of the next frames in the background, on cores that "      \
+    "nobody else wants. While the series plays these are bricks of the next two steps, while "     \
+    "the camera moves bricks that come onto the screen. Default: on.")                       \
   Choice(LoadBalancing, 2, 0, 2, advanced, all,                                                    \
     "Measured cost (default): the zones of the ranks follow the cost of the last frames. "         \
     "Off: equal zones. 'Slice step' remains for older scripts and balances as 'Measured "          \

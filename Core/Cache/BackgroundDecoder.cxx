@@ -5,27 +5,25 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 #include <thread>
+#include <utility>
 
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
+#include <pthread.h>
+#include <sched.h>
 
 namespace banyan
 {
 namespace
 {
 
-/// Threads that draw get about ten times as much of a core as those that work ahead.
-constexpr int Niceness = 10;
-
+/// Others who want the core get it. Where the system cannot do that, nothing but time is lost.
 void LowerPriority()
 {
-#ifdef __linux__
-  // The priority is that of this thread alone. Where lowering it is not allowed, nothing but time
-  // is lost.
-  (void)setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), Niceness);
+#ifdef SCHED_IDLE
+  const sched_param none{};
+  (void)pthread_setschedparam(pthread_self(), SCHED_IDLE, &none);
 #endif
 }
 
@@ -40,6 +38,8 @@ struct BackgroundDecoder::Internals
   std::mutex Mutex;
   std::condition_variable Changed;
   std::shared_ptr<const SeriesFile> Series;
+  FindWanted Find; ///< gives Wanted; empty when it is known
+  std::uint64_t Starts = 0;
   std::vector<FieldBricks> Wanted;
   std::size_t Field = 0; ///< the next brick to decode
   std::size_t Brick = 0;
@@ -53,7 +53,7 @@ struct BackgroundDecoder::Internals
   {
   }
 
-  bool HasWork() const { return this->Field < this->Wanted.size(); }
+  bool HasWork() const { return this->Find || this->Field < this->Wanted.size(); }
 
   void Work()
   {
@@ -66,23 +66,52 @@ struct BackgroundDecoder::Internals
       {
         return;
       }
-      const FieldBricks& wanted = this->Wanted[this->Field];
-      const std::shared_ptr<const SeriesFile> series = this->Series;
-      const FieldKey field = wanted.Field;
-      const bool some = this->Brick < wanted.Bricks.size();
-      const std::int64_t brick = some ? wanted.Bricks[this->Brick] : -1;
-      this->Field += some ? 0 : 1;
-      this->Brick = some ? this->Brick + 1 : 0;
-      if (some)
-      {
-        ++this->Busy;
-        lock.unlock();
-        const std::uint64_t bytes = this->Decode(*series, field, brick);
-        lock.lock();
-        --this->Busy;
-        this->Took(bytes);
-      }
+      (this->Find ? LookForWork : DecodeNext)(*this, lock);
       this->Changed.notify_all();
+    }
+  }
+
+  /// Under the lock, which is given up meanwhile.
+  static void LookForWork(Internals& self, std::unique_lock<std::mutex>& lock)
+  {
+    const FindWanted find = std::exchange(self.Find, nullptr);
+    const std::uint64_t start = self.Starts;
+    ++self.Busy;
+    lock.unlock();
+    std::vector<FieldBricks> wanted;
+    try
+    {
+      wanted = find();
+    }
+    catch (const std::exception&)
+    {
+      wanted.clear(); // whoever asks is told
+    }
+    lock.lock();
+    --self.Busy;
+    if (start == self.Starts)
+    {
+      self.Wanted = std::move(wanted);
+    }
+  }
+
+  static void DecodeNext(Internals& self, std::unique_lock<std::mutex>& lock)
+  {
+    const FieldBricks& wanted = self.Wanted[self.Field];
+    const std::shared_ptr<const SeriesFile> series = self.Series;
+    const FieldKey field = wanted.Field;
+    const bool some = self.Brick < wanted.Bricks.size();
+    const std::int64_t brick = some ? wanted.Bricks[self.Brick] : -1;
+    self.Field += some ? 0 : 1;
+    self.Brick = some ? self.Brick + 1 : 0;
+    if (some)
+    {
+      ++self.Busy;
+      lock.unlock();
+      const std::uint64_t bytes = self.Decode(*series, field, brick);
+      lock.lock();
+      --self.Busy;
+      self.Took(bytes);
     }
   }
 
@@ -111,6 +140,8 @@ struct BackgroundDecoder::Internals
 
   void Drop()
   {
+    ++this->Starts;
+    this->Find = nullptr;
     this->Wanted.clear();
     this->Field = this->Brick = 0;
   }
@@ -138,6 +169,13 @@ BackgroundDecoder::~BackgroundDecoder()
 void BackgroundDecoder::Start(std::shared_ptr<const SeriesFile> series,
   std::vector<FieldBricks> wanted, std::uint64_t mostBytes)
 {
+  this->Start(
+    std::move(series), [wanted = std::move(wanted)] { return wanted; }, mostBytes);
+}
+
+void BackgroundDecoder::Start(
+  std::shared_ptr<const SeriesFile> series, FindWanted findWanted, std::uint64_t mostBytes)
+{
   Internals& self = *this->Self;
   {
     const std::lock_guard<std::mutex> lock(self.Mutex);
@@ -145,7 +183,7 @@ void BackgroundDecoder::Start(std::shared_ptr<const SeriesFile> series,
     if (mostBytes > 0)
     {
       self.Series = std::move(series);
-      self.Wanted = std::move(wanted);
+      self.Find = std::move(findWanted);
       self.BytesLeft = mostBytes;
     }
   }

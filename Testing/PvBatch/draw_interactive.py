@@ -47,6 +47,7 @@ def draw(name, show, interactive_tolerance, folder):
     display.ImageErrorTolerance = TOLERANCE
     display.InteractiveImageErrorTolerance = interactive_tolerance
     display.InteractiveFrameSeconds = 0.0
+    display.ReuseFrames = 0  # the first of these pictures would be the still one
 
     def error():
         display.UpdatePropertyInformation()

@@ -56,6 +56,7 @@ public:
   {
     mapper->SetInteractiveImageErrorTolerance(0.5);
     mapper->SetNumberOfThreads(1);
+    mapper->SetReuseFrames(false); // the same scene is to take its time again and again
     mapper->SetBlendMode(kind.BlendMode);
     mapper->SetSampleDistanceVoxels(kind.SampleDistanceVoxels);
     this->Shown.Volume->GetProperty()->SetInterpolationType(kind.Interpolation);

@@ -100,6 +100,7 @@ void FramesThatTakeTooLongGetALargerTolerance()
   mapper->SetInputData(PlainImage(Balls, Samples));
   mapper->SetInteractiveImageErrorTolerance(2.0);
   mapper->SetInteractiveFrameSeconds(1e-6);
+  mapper->SetReuseFrames(false); // the camera does not move
   Stage stage(mapper);
   stage.LookAt(Bounds);
   stage.Draw();

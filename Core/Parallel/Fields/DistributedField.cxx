@@ -65,6 +65,27 @@ std::uint64_t DistributedField::DrawingBudget()
     source ? source->Kept().ShareBytes() : CacheContext::Process()->DrawingBudgetBytes(), least);
 }
 
+const std::vector<Hash128>& DistributedField::VisibleContent(const RayScene& scene)
+{
+  KnownContent& known = this->Known;
+  if (known.Version != this->Updates || !(known.Transfer == scene.Transfer) ||
+      known.Blend != scene.Blend.Mode || known.Shaded != scene.Shading.On)
+  {
+    known.Version = 0;
+    known.Levels = this->Field->VisibleContent(scene);
+    if (known.Levels.empty())
+    {
+      // The number of bytes tells it from a hash of contents.
+      known.Levels = { HashOf(&this->Updates, sizeof(this->Updates)) };
+    }
+    known.Transfer = scene.Transfer;
+    known.Blend = scene.Blend.Mode;
+    known.Shaded = scene.Shading.On;
+    known.Version = this->Updates;
+  }
+  return known.Levels;
+}
+
 /// The field, which is another one if it was of another kind.
 template <class Kind>
 Kind& DistributedField::Become()

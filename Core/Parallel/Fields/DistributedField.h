@@ -37,6 +37,11 @@ public:
   /// Another number whenever what is drawn may have changed.
   std::uint64_t Version() const { return this->Updates; }
 
+  /// Per level, a hash of what a scene may show of the field: see banyan::VisibleContent. One alone
+  /// counts for all levels where it is not known what bricks hold: it stays until the next change.
+  /// The same on all ranks. May throw Error, on one rank alone.
+  const std::vector<Hash128>& VisibleContent(const RayScene& scene);
+
   // From Problem to EncodingError everything is the same on all ranks.
 
   /// Why nothing can be drawn, in a sentence that names the rank; empty if all is well.
@@ -81,6 +86,16 @@ private:
   FieldPlace Where;
   ValueRange ValuesRange;
   double LargestEncodingError = 0.0;
+
+  struct KnownContent
+  {
+    std::uint64_t Version = 0; ///< 0: none
+    TransferFunction Transfer;
+    BlendMode Blend = BlendMode::Composite;
+    bool Shaded = false;
+    std::vector<Hash128> Levels;
+  };
+  KnownContent Known; ///< of the last scene
 };
 
 } // namespace banyan

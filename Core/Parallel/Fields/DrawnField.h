@@ -2,6 +2,7 @@
 #ifndef banyan_Parallel_Fields_DrawnField_h
 #define banyan_Parallel_Fields_DrawnField_h
 
+#include "Base/Hash.h"
 #include "Parallel/Communicate/Communicator.h"
 #include "Parallel/Fields/MeshBytes.h"
 #include "Render/Bricks/BrickSource.h"
@@ -79,10 +80,24 @@ public:
   virtual BrickSource* Source() = 0;
   /// The caches of the series; those of the process where there is none.
   const std::shared_ptr<CacheContext>& Caches();
+  /// Which step of a series of how many it is.
+  struct Place
+  {
+    int Step = 0;
+    int Steps = 1;
+  };
+  virtual Place InSeries() const { return {}; }
+  /// All bricks of another step of the series, as this rank has them. Null where there are none.
+  /// May throw Error, on one rank alone.
+  virtual std::unique_ptr<BrickSource> SourceOfStep(int) { return nullptr; }
   /// One per rank.
   virtual const std::vector<Box>& Zones() const = 0;
   /// Of the values that this rank knows.
   virtual ValueRange RangeHere();
+
+  /// The same as banyan::VisibleContent of all bricks, on all ranks. May throw Error, on one rank
+  /// alone.
+  virtual std::vector<Hash128> VisibleContent(const RayScene&) { return {}; }
 
   virtual Movement Moved() const { return {}; }
   /// Whether bricks come from an encoded series.

@@ -6,6 +6,7 @@
 #include "Render/Bricks/EnhancedBrickSource.h"
 #include "Render/Bricks/SeriesBrickSource.h"
 #include "Render/Bricks/TimeStepPrefetcher.h"
+#include "Render/Bricks/VisibleContent.h"
 #include "Series/Decode/CacheContext.h"
 
 #include <utility>
@@ -72,7 +73,10 @@ void SeriesField::Open(
 bool SeriesField::Take(Communicator& communicator, const std::shared_ptr<const SeriesFile>& held,
   const std::vector<Piece>& pieces, const Wish& wish, std::string& problem)
 {
-  this->Bricks.reset();
+  if (this->Bricks)
+  {
+    this->BricksBefore = std::move(this->Bricks);
+  }
   // Strings do not fit into the pieces.
   const std::vector<std::string> paths =
     AllGatherStrings(communicator, held ? held->Path() : std::string());
@@ -113,10 +117,12 @@ bool SeriesField::Take(Communicator& communicator, const std::shared_ptr<const S
 
 void SeriesField::MakeZones(const Piece& field, const Wish& wish, int ranks)
 {
-  FieldKey key;
-  key.Step = this->Step = field.Step;
-  key.Array = field.Array;
-  key.Level = field.Level;
+  this->Drawn = { field.Step, field.Array, field.Component, field.Level };
+  this->Enhancement = wish.Enhancement;
+  if (this->Ahead)
+  {
+    this->Ahead->Drawing(*this->Series, this->Drawn.Step);
+  }
   const BrickLayout layout = this->Series->Layout(field.Level);
   FrameBalancer::Field balanced;
   balanced.Cells = wish.Samples.Size() - 1;
@@ -127,7 +133,12 @@ void SeriesField::MakeZones(const Piece& field, const Wish& wish, int ranks)
   this->Balancer.Start(wish.Balancing, balanced, ranks);
   this->ZoneCells = this->Balancer.Zones();
   // Ranks without a zone need it too: to know what can be seen of the others'.
-  this->Bricks = MakeSeriesSource(this->Series, key, field.Component, wish.Enhancement);
+  this->Bricks = this->SourceOfStep(field.Step);
+  if (this->BricksBefore && this->BricksBefore->Kept().Caches() == this->Series->Caches())
+  {
+    this->Bricks->TakeKept(*this->BricksBefore, { glm::ivec3(0), balanced.Cells });
+  }
+  this->BricksBefore.reset();
 }
 
 void SeriesField::BeginFrame(Communicator&, RayScene& scene)
@@ -135,10 +146,6 @@ void SeriesField::BeginFrame(Communicator&, RayScene& scene)
   if (!this->Bricks)
   {
     return;
-  }
-  if (this->Ahead)
-  {
-    this->Ahead->Drawing(*this->Series, this->Step);
   }
   this->Balancer.BeginFrame(scene, *this->Bricks);
   this->ZoneCells = this->Balancer.Zones();
@@ -156,14 +163,15 @@ void SeriesField::ReadAhead(const RayScene& scene, int rank)
     if (!this->Ahead || &this->Ahead->DecodesInto() != &cache)
     {
       this->Ahead = std::make_unique<TimeStepPrefetcher>(cache, ThreadPool::Process().Width());
-      this->Ahead->Drawing(*this->Series, this->Step);
+      this->Ahead->Drawing(*this->Series, this->Drawn.Step);
     }
-    this->Ahead->Drawn(this->Series, *this->Bricks);
+    const Box& zone = this->ZoneCells[static_cast<std::size_t>(rank)];
+    this->Ahead->Drawn(this->Series, scene, Intersection(zone, scene.DomainCells), *this->Bricks);
     auto* const source = dynamic_cast<SeriesBrickSource*>(this->Bricks.get());
     std::vector<FieldBricks> coming;
     if (source)
     {
-      coming = this->View.Expected(scene, *source, this->ZoneCells[static_cast<std::size_t>(rank)]);
+      coming = this->View.Expected(scene, *source, zone);
     }
     if (this->Ahead->Next() < 0 && !coming.empty())
     {
@@ -174,6 +182,28 @@ void SeriesField::ReadAhead(const RayScene& scene, int rank)
   {
     this->Ahead.reset(); // no threads, no memory: bricks are decoded when they are asked for
   }
+}
+
+DrawnField::Place SeriesField::InSeries() const
+{
+  return this->Bricks ? Place{ this->Drawn.Step, this->Series->Index().Steps() } : Place();
+}
+
+std::unique_ptr<BrickSource> SeriesField::SourceOfStep(int step)
+{
+  if (this->Bricks && this->Bricks->Hidden())
+  {
+    return nullptr; // what is hidden is known of this step alone
+  }
+  FieldKey key = this->Drawn;
+  key.Step = step;
+  return MakeSeriesSource(this->Series, key, this->Drawn.Component, this->Enhancement);
+}
+
+std::vector<Hash128> SeriesField::VisibleContent(const RayScene& scene)
+{
+  return this->Bricks ? banyan::VisibleContent(scene, *this->Bricks, CoarsestLevel)
+                      : std::vector<Hash128>();
 }
 
 ValueRange SeriesField::RangeHere()

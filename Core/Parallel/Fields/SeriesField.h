@@ -56,9 +56,16 @@ public:
   /// camera moves.
   void ReadAhead(const RayScene& scene, int rank) override;
   void EndFrame(Communicator& communicator) override { this->Balancer.EndFrame(communicator); }
-  void Clear() override { this->Bricks.reset(); }
+  void Clear() override
+  {
+    this->Bricks.reset();
+    this->BricksBefore.reset();
+  }
   BrickSource* Source() override { return this->Bricks.get(); }
   const std::vector<Box>& Zones() const override { return this->ZoneCells; }
+  Place InSeries() const override;
+  std::unique_ptr<BrickSource> SourceOfStep(int step) override;
+  std::vector<Hash128> VisibleContent(const RayScene& scene) override;
   /// Of all steps.
   ValueRange RangeHere() override;
   Movement Moved() const override { return { this->Balancer.BytesMoved(), 0, 0, 0 }; }
@@ -71,8 +78,10 @@ private:
   void MakeZones(const Piece& field, const Wish& wish, int ranks);
 
   std::shared_ptr<const SeriesFile> Series;
-  int Step = 0;
+  FieldKey Drawn; ///< its component is the one to draw: MakeSeriesSource
+  TemporalEnhancement Enhancement{ 0.0, 1.0, 0.0 };
   std::unique_ptr<BrickSource> Bricks;
+  std::unique_ptr<BrickSource> BricksBefore; ///< of the last step, while the next one is taken
   FrameBalancer Balancer;
   std::vector<Box> ZoneCells;
   std::unique_ptr<TimeStepPrefetcher> Ahead; ///< null until something is read ahead

@@ -73,6 +73,8 @@ struct Report
   double BricksDrawn;
   double BricksUniform;
   double BricksSkipped;
+  double PixelsShown;
+  double PixelsReused;
   double BytesComposited;
   double MessagesComposited;
 };
@@ -85,6 +87,7 @@ void Publish(Communicator& communicator, const Report& mine, FrameStatistics& st
   const auto values = [&all](double Report::*of)
   {
     std::vector<double> list;
+    list.reserve(all.size());
     for (const Report& report : all)
     {
       list.push_back(report.*of);
@@ -109,6 +112,8 @@ void Publish(Communicator& communicator, const Report& mine, FrameStatistics& st
   statistics.BricksDrawn = sum(&Report::BricksDrawn);
   statistics.BricksUniform = sum(&Report::BricksUniform);
   statistics.BricksSkipped = sum(&Report::BricksSkipped);
+  statistics.PixelsShown = sum(&Report::PixelsShown);
+  statistics.PixelsReused = sum(&Report::PixelsReused);
   statistics.BytesComposited = static_cast<std::uint64_t>(sum(&Report::BytesComposited));
   statistics.MessagesComposited = static_cast<std::uint64_t>(sum(&Report::MessagesComposited));
 }
@@ -205,7 +210,8 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene,
   Publish(communicator,
     { own.RenderSeconds, own.CompositeSeconds, total.Seconds(), number(rays.SamplesTaken),
       number(rays.BricksDrawn), number(rays.BricksUniform), number(rays.BricksSkipped),
-      number(own.Sent.BytesSent), number(own.Sent.MessagesSent) },
+      number(rays.PixelsShown), number(rays.PixelsReused), number(own.Sent.BytesSent),
+      number(own.Sent.MessagesSent) },
     statistics);
   return picture;
 }

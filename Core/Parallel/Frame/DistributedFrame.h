@@ -26,6 +26,8 @@ struct FrameStatistics
   std::int64_t BricksDrawn = 0;
   std::int64_t BricksUniform = 0;
   std::int64_t BricksSkipped = 0;
+  std::int64_t PixelsShown = 0;         ///< RayStatistics
+  std::int64_t PixelsReused = 0;        ///< RayStatistics
   std::uint64_t BytesComposited = 0;    ///< sent between ranks to make one picture of N
   std::uint64_t MessagesComposited = 0; ///< in so many messages
 };

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Frame/ToleranceControl.h"
 
+#include "Base/Digest.h"
 #include "Base/ThreadPool.h"
 #include "Parallel/Balance/LevelZones.h"
+#include "Parallel/Communicate/Collective.h"
 #include "Render/Sampling/ElementsPerPixel.h"
 #include "Render/Sampling/ScreenLevels.h"
 
@@ -17,6 +19,16 @@ namespace
 {
 
 constexpr double MostSlack = 16.0;
+
+/// What stands for steps (InteractiveLevels) in RefinementPasses.
+double ToleranceOfStep(int step)
+{
+  return std::ldexp(1.0, 2 * step);
+}
+int StepOfTolerance(double tolerance)
+{
+  return std::ilogb(tolerance) / 2;
+}
 
 /// Whether a value that occurs is opaque however short its part of a ray.
 bool HasOpaqueValues(const TransferFunction& function, const ValueRange& values)
@@ -83,14 +95,53 @@ std::string LimitOf(const SamplingPlan& plan, double wanted, double planned,
 
 } // namespace
 
+/// Of a picture by steps, a pass divides its tolerance by four: so each takes one step.
+RefinementPasses::Wish ToleranceControl::PassesOf(const Wish& wish) const
+{
+  return wish.KeepsTolerance
+           ? RefinementPasses::Wish{ wish.Passes, wish.Still, wish.Interactive }
+           : RefinementPasses::Wish{ wish.Passes, ToleranceOfStep(0),
+               ToleranceOfStep(std::min(this->Steps.Step(), this->CoarsestStepLevel)) };
+}
+
+ToleranceControl::Aim ToleranceControl::Begin(const Hash128& scene, const Wish& wish)
+{
+  this->BySteps = !wish.KeepsTolerance;
+  const bool byScreen = wish.KeepsTolerance && wish.ScreenErrorPixels > 0.0;
+  RefinementPasses& passes = this->Passes.at(static_cast<std::size_t>(wish.Eye));
+  if (wish.Interacting)
+  {
+    passes.Interacted();
+    return {
+      this->BySteps ? static_cast<double>(this->Steps.Step()) : wish.Interactive * this->Slack, true
+    };
+  }
+  if (byScreen)
+  {
+    return {};
+  }
+  const double tolerance = passes.ToleranceOf(scene, this->PassesOf(wish));
+  return { this->BySteps ? static_cast<double>(StepOfTolerance(tolerance)) : tolerance, false };
+}
+
+void ToleranceControl::Showed(const Wish& wish, double coarseness)
+{
+  if (!wish.Interacting)
+  {
+    this->Passes.at(static_cast<std::size_t>(wish.Eye))
+      .Showed(this->BySteps ? ToleranceOfStep(static_cast<int>(coarseness)) : coarseness,
+        this->PassesOf(wish));
+  }
+}
+
 double ToleranceControl::Plan(Communicator& communicator, DistributedField& field, RayScene& scene,
-  const Wish& wish, std::uint64_t budgetBytes, FrameStatistics& frame)
+  const Hash128& view, const Wish& wish, const Aim& aim, std::uint64_t budgetBytes,
+  FrameStatistics& frame)
 {
   this->LimitText.clear();
-  this->BySteps = !wish.KeepsTolerance;
   if (this->BySteps)
   {
-    this->PlanSteps(communicator, field, scene, wish);
+    this->PlanSteps(communicator, field, scene, aim);
     return 0.0;
   }
   DrawnField& drawn = field.Drawn();
@@ -109,14 +160,7 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
     PlanByScreen(communicator, field, scene, wish, levels ? coarsest : 0);
     return 0.0;
   }
-  if (wish.Interacting)
-  {
-    this->Passes.at(wish.Eye).Interacted();
-  }
-  const double tolerance = wish.Interacting
-                             ? wish.Interactive * this->Slack
-                             : this->StillTolerance(communicator, field, scene, wish.Eye,
-                                 { wish.Passes, wish.Still, wish.Interactive });
+  const double tolerance = aim.Coarseness;
   SamplingWish sampling{ tolerance, scene.SampleDistance, levels ? coarsest : 0 };
   if (drawn.IsMesh() && wish.MaxElementsPerPixel > 0.0)
   {
@@ -124,8 +168,8 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
       FinestLevelsOfTiles(scene, wish.MaxElementsPerPixel, sampling.CoarsestLevel);
   }
   sampling.StaysInMemory = wish.Interacting && wish.Seconds > 0.0;
-  const SamplingPlan plan = PlanDistributed(communicator, scene,
-    { drawn.Source(), drawn.Zones(), budgetBytes, ThreadPool::Process() }, sampling, frame);
+  const SamplingPlan plan =
+    this->PlanWithin(communicator, field, scene, view, sampling, wish, budgetBytes, frame);
   scene.Samplings = plan.Samplings;
   scene.OpacityLimit = plan.OpacityLimit;
   frame.ProbeSeconds = plan.ProbeSeconds;
@@ -137,36 +181,56 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
   return std::min(plan.EstimatedError, 255.0);
 }
 
-/// Collective: the tolerance of the next picture of one eye, the same on all ranks.
-double ToleranceControl::StillTolerance(Communicator& communicator, const DistributedField& field,
-  const RayScene& scene, int eye, const RefinementPasses::Wish& wish)
+/// Collective: the plan of the step that is drawn, or of its group while the series plays.
+SamplingPlan ToleranceControl::PlanWithin(Communicator& communicator, DistributedField& field,
+  const RayScene& scene, const Hash128& view, const SamplingWish& sampling, const Wish& wish,
+  std::uint64_t budgetBytes, FrameStatistics& frame)
 {
-  RefinementPasses& passes = this->Passes.at(static_cast<std::size_t>(eye));
-  if (!wish.Passes)
+  DrawnField& drawn = field.Drawn();
+  const auto planOf = [&](BrickSource* source, std::uint64_t bytes)
   {
-    return passes.ToleranceOf(false, wish);
+    return PlanDistributed(communicator, scene,
+      { source, drawn.Zones(), bytes, ThreadPool::Process() }, sampling, frame);
+  };
+  const DrawnField::Place place = drawn.InSeries();
+  if (!wish.PlansOfGroups || wish.Interacting || place.Steps == 1 || drawn.Source()->Hidden())
+  {
+    return planOf(drawn.Source(), budgetBytes);
   }
-  const bool changed = passes.SceneChanged(scene, field.Version());
-  return passes.ToleranceOf(AllMax(communicator, changed ? 1.0 : 0.0) > 0.0, wish);
+  const auto planStep = [&](int step) -> GroupPlans::End
+  {
+    if (step == place.Step)
+    {
+      return { planOf(drawn.Source(), budgetBytes), SignsOf(scene, *drawn.Source()) };
+    }
+    // Half of the room for bricks of that step, and half for those that are kept of this one.
+    drawn.Source()->Kept().BeginPicture(PackedBrickCache::PartOf(budgetBytes / 2), false);
+    std::unique_ptr<BrickSource> source;
+    VisibleSigns signs;
+    Collective(communicator,
+      [&]
+      {
+        source = drawn.SourceOfStep(step);
+        signs = SignsOf(scene, *source);
+      });
+    return { planOf(source.get(), budgetBytes / 2), signs };
+  };
+  Digest all;
+  all.Add(view);
+  all.Add(sampling.Tolerance);
+  all.Add(sampling.CoarsestLevel);
+  return this->Plans.at(static_cast<std::size_t>(wish.Eye))
+    .Of(all.Get(), scene.Camera.ImageSize(), place.Step, place.Steps,
+      SignsOf(scene, *drawn.Source()), planStep);
 }
 
 void ToleranceControl::PlanSteps(
-  Communicator& communicator, DistributedField& field, RayScene& scene, const Wish& wish)
+  Communicator& communicator, DistributedField& field, RayScene& scene, const Aim& aim)
 {
-  if (wish.Interacting)
-  {
-    this->Passes.at(wish.Eye).Interacted();
-  }
-  // A pass divides its tolerance by four: so each takes one step. Still pictures leave out no rays:
-  // where a coarse level is far off, pixels between rays may be better by chance.
-  const double tolerance =
-    wish.Interacting
-      ? 0.0
-      : this->StillTolerance(communicator, field, scene, wish.Eye,
-          { wish.Passes, 1.0,
-            std::ldexp(1.0, 2 * std::min(this->Steps.Step(), this->CoarsestStepLevel)) });
-  const int step = wish.Interacting ? this->Steps.Step() : std::ilogb(tolerance) / 2;
-  if (!wish.Interacting && step == 0)
+  // Still pictures leave out no rays: where a coarse level is far off, pixels between rays may be
+  // better by chance.
+  const auto step = static_cast<int>(aim.Coarseness);
+  if (step == 0 && !aim.Interacting)
   {
     return;
   }

@@ -4,6 +4,7 @@
 
 #include "Parallel/Fields/DistributedField.h"
 #include "Parallel/Frame/DistributedPlan.h"
+#include "Parallel/Frame/GroupPlans.h"
 #include "Render/Sampling/InteractiveLevels.h"
 #include "Render/Sampling/RefinementPasses.h"
 
@@ -36,14 +37,35 @@ public:
       false; ///< whether the scene's distance between samples is that of all levels
     bool KeepsTolerance = true; ///< otherwise the picture is one of InteractiveLevels
     int Eye = 0;                ///< 1 for the second picture of a frame, where both eyes get one
+    /// Whether steps of a series that plays share plans. See GroupPlans.
+    bool PlansOfGroups = true;
   };
 
+  /// How coarse a picture may be. Smaller is finer.
+  struct Aim
+  {
+    double Coarseness = 0.0;  ///< the tolerance in 1/255, or a number of steps (InteractiveLevels)
+    bool Interacting = false; ///< whether levels and time may count more than that
+  };
+
+  /// Begins a frame.
+  /// @param scene a hash of all that decides the picture, its samplings apart; the same on all
+  /// ranks
+  Aim Begin(const Hash128& scene, const Wish& wish);
+  /// Tells that a picture was shown that was drawn before, in place of one that Plan has to do
+  /// with.
+  /// @param coarseness of that one
+  void Showed(const Wish& wish, double coarseness);
+
   /// Collective: gives the scene its samplings and its opacity limit.
+  /// @param view a hash of all that decides the picture, its samplings and the values apart
+  /// @param aim as Begin has said
   /// @param frame the probes' samples and bytes are added
   /// @return the estimated error in 1/255; 0 where nothing tells it: where the size of cells
   /// decides, or the promised time
   double Plan(Communicator& communicator, DistributedField& field, RayScene& scene,
-    const Wish& wish, std::uint64_t budgetBytes, FrameStatistics& frame);
+    const Hash128& view, const Wish& wish, const Aim& aim, std::uint64_t budgetBytes,
+    FrameStatistics& frame);
 
   /// Remarks on the estimated error of the frame that was planned last, in sentences for the
   /// user: why it is above the tolerance that was wanted, or what it may have
@@ -57,18 +79,21 @@ public:
   bool RefineNext();
 
 private:
-  double StillTolerance(Communicator& communicator, const DistributedField& field,
-    const RayScene& scene, int eye, const RefinementPasses::Wish& wish);
+  RefinementPasses::Wish PassesOf(const Wish& wish) const;
   /// For pictures that keep no tolerance (InteractiveLevels): while somebody moves
   /// the camera they keep the promised time; still ones have all samples, after passes that take
   /// one step each.
   void PlanSteps(
-    Communicator& communicator, DistributedField& field, RayScene& scene, const Wish& wish);
+    Communicator& communicator, DistributedField& field, RayScene& scene, const Aim& aim);
+  SamplingPlan PlanWithin(Communicator& communicator, DistributedField& field,
+    const RayScene& scene, const Hash128& view, const SamplingWish& sampling, const Wish& wish,
+    std::uint64_t budgetBytes, FrameStatistics& frame);
   static void PlanByScreen(Communicator& communicator, DistributedField& field, RayScene& scene,
     const Wish& wish, int coarsest);
 
   std::string LimitText;
   std::array<RefinementPasses, 2> Passes; ///< of each eye
+  std::array<GroupPlans, 2> Plans;        ///< of still pictures of each eye
   double Slack = 1.0;                     ///< times the interactive tolerance
   StepControl Steps;
   bool BySteps = false;      ///< the last frame

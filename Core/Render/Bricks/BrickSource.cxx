@@ -31,6 +31,58 @@ ScalarType TypeOf(const std::vector<SampledBox>& parts)
   return type.value_or(parts.front().View.Type);
 }
 
+/// Which bricks of one level differ from those of another source.
+class ChangedBricks
+{
+public:
+  ChangedBricks(const BrickSource& before, const BrickSource& now)
+    : Now(now)
+    , Counts(now.Bricks())
+  {
+    const std::int64_t all = std::int64_t{ this->Counts.x } * this->Counts.y * this->Counts.z;
+    this->SameGrid = before.Bricks() == this->Counts && before.CellsOf(0) == now.CellsOf(0) &&
+                     before.CellsOf(all - 1) == now.CellsOf(all - 1);
+    for (std::int64_t brick = 0; this->SameGrid && brick < all; ++brick)
+    {
+      const std::optional<Hash128> content = now.ContentOf(brick);
+      this->Changed.push_back(!content || content != before.ContentOf(brick));
+    }
+  }
+
+  /// Whether what was packed has other values now.
+  bool Touch(const PackedBrick& packed) const
+  {
+    if (!this->SameGrid)
+    {
+      return true;
+    }
+    const glm::ivec3 edge = this->Now.CellsOf(0).Size();
+    const int layer = packed.HasGradients() ? 1 : 0;
+    const Box cells = packed.Cells();
+    const Box near = Intersection({ cells.Lo / edge - layer, (cells.Hi - 1) / edge + 1 + layer },
+      { glm::ivec3(0), this->Counts });
+    bool any = false;
+    for (int z = near.Lo.z; z < near.Hi.z; ++z)
+    {
+      for (int y = near.Lo.y; y < near.Hi.y; ++y)
+      {
+        for (int x = near.Lo.x; x < near.Hi.x; ++x)
+        {
+          any = any || this->Changed[static_cast<std::size_t>(
+                         BrickSource::NumberOf({ x, y, z }, this->Counts))];
+        }
+      }
+    }
+    return any;
+  }
+
+private:
+  const BrickSource& Now;
+  glm::ivec3 Counts;
+  bool SameGrid = false;
+  std::vector<bool> Changed;
+};
+
 } // namespace
 
 std::optional<UniformValue> BrickSource::UniformValueOf(std::int64_t) const
@@ -61,6 +113,38 @@ BrickSource* BrickSource::AtLevel(int level, const Box& domain)
     }
   }
   return (this->Levels[level] = std::move(source)).get();
+}
+
+void BrickSource::Hide(std::shared_ptr<const HiddenCells> hidden)
+{
+  this->HiddenHere = std::move(hidden);
+  if (this->HiddenHere)
+  {
+    this->KeptOfSource->Clear(); // packed without
+  }
+}
+
+void BrickSource::TakeKept(BrickSource& other, const Box& domain)
+{
+  this->KeptOfSource = other.KeptOfSource;
+  std::map<int, std::unique_ptr<const ChangedBricks>> levels;
+  this->KeptOfSource->LetGoOf(
+    [&](std::int64_t kept, const PackedBrick& packed)
+    {
+      const int level = static_cast<int>(kept >> LevelShift);
+      std::unique_ptr<const ChangedBricks>& changed = levels[level];
+      if (!changed)
+      {
+        const BrickSource* const before = other.AtLevel(level, domain);
+        const BrickSource* const now = this->AtLevel(level, domain);
+        if (!before || !now)
+        {
+          return true;
+        }
+        changed = std::make_unique<const ChangedBricks>(*before, *now);
+      }
+      return changed->Touch(packed);
+    });
 }
 
 std::unique_ptr<BrickSource> BrickSource::MakeLevel(int, const Box&)

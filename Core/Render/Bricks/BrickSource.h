@@ -3,6 +3,7 @@
 #define banyan_Render_Bricks_BrickSource_h
 
 #include "Base/Box.h"
+#include "Base/Hash.h"
 #include "Render/Bricks/BrickView.h"
 #include "Render/Bricks/HiddenCells.h"
 #include "Render/Bricks/PackedBrickCache.h"
@@ -69,6 +70,10 @@ public:
   /// loading it. Empty when they have not, or when it is not known.
   virtual std::optional<UniformValue> UniformValueOf(std::int64_t brick) const;
 
+  /// A hash of all samples of a brick, as Load gives them: bricks of one place with equal ones are
+  /// the same, in any source of the same grid. Nothing where it is not known without loading.
+  virtual std::optional<Hash128> ContentOf(std::int64_t) const { return std::nullopt; }
+
   /// Of values that are whole multiples of a step, each rounded to float32, but for exceptions: the
   /// step. 0 where none is known.
   virtual double StepOfValues() const { return 0.0; }
@@ -110,7 +115,7 @@ public:
   /// Says which cells are not drawn, at this level and, as far as they are not told by themselves,
   /// at coarser ones that are asked for from now on. Before anything is drawn.
   /// @param hidden of the whole grid, at this source's level; null for none
-  void Hide(std::shared_ptr<const HiddenCells> hidden) { this->HiddenHere = std::move(hidden); }
+  void Hide(std::shared_ptr<const HiddenCells> hidden);
   /// Null where nothing is hidden.
   const std::shared_ptr<const HiddenCells>& Hidden() const { return this->HiddenHere; }
   /// Whether no cell of a brick is drawn.
@@ -135,10 +140,15 @@ public:
   {
     this->KeptOfSource = std::make_shared<PackedBrickCache>(caches);
   }
+  /// Takes over what is kept of a source of the same grid, of another step, say: of bricks that
+  /// this one has the same samples of. Before anything is hidden or drawn.
+  /// @param other of the finest level, as this one; nothing is kept of it any more
+  /// @param domain see AtLevel
+  void TakeKept(BrickSource& other, const Box& domain);
   /// The number under which a brick of this level is kept.
   std::int64_t KeptNumber(std::int64_t brick) const
   {
-    return brick + (static_cast<std::int64_t>(this->LevelNumber) << 48);
+    return brick + (static_cast<std::int64_t>(this->LevelNumber) << LevelShift);
   }
 
 protected:
@@ -146,6 +156,8 @@ protected:
   virtual std::unique_ptr<BrickSource> MakeLevel(int level, const Box& domain);
 
 private:
+  static constexpr int LevelShift = 48;
+
   std::shared_ptr<const HiddenCells> HiddenHere;
   std::shared_ptr<PackedBrickCache> KeptOfSource = std::make_shared<PackedBrickCache>();
   int LevelNumber = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Render/Bricks/EnhancedBrickSource.h"
 
+#include "Base/Digest.h"
 #include "Cache/BrickCache.h"
 #include "Render/Bricks/SeriesBrickSource.h"
 
@@ -87,6 +88,23 @@ std::optional<UniformValue> EnhancedBrickSource::UniformValueOf(std::int64_t bri
     this->Previous ? &previous->Value : nullptr, this->Next ? &next->Value : nullptr);
   // As Load() rounds it.
   return UniformValue{ static_cast<double>(static_cast<float>(value)), ScalarType::Float32 };
+}
+
+std::optional<Hash128> EnhancedBrickSource::ContentOf(std::int64_t brick) const
+{
+  Digest content;
+  content.Add(this->How);
+  for (const BrickSource* const step : this->Steps())
+  {
+    const std::optional<Hash128> its = step ? step->ContentOf(brick) : Hash128();
+    if (!its)
+    {
+      return std::nullopt;
+    }
+    content.Add(step != nullptr);
+    content.Add(*its);
+  }
+  return content.Get();
 }
 
 std::size_t EnhancedBrickSource::LoadBytes(std::int64_t brick) const

@@ -40,6 +40,8 @@ public:
   MaskRange MasksAreOver() const override { return this->Over; }
   /// Where the bricks of all steps are of one value.
   std::optional<UniformValue> UniformValueOf(std::int64_t brick) const override;
+  /// Of the contents of all steps.
+  std::optional<Hash128> ContentOf(std::int64_t brick) const override;
   std::size_t LoadBytes(std::int64_t brick) const override;
   BrickView Load(std::int64_t brick) override;
 

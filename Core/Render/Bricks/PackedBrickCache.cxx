@@ -70,6 +70,30 @@ void PackedBrickCache::BeginPicture(std::uint64_t limitBytes, bool ages)
   }
 }
 
+void PackedBrickCache::LetGoOf(const std::function<bool(std::int64_t, const PackedBrick&)>& stale)
+{
+  const std::lock_guard<std::shared_mutex> lock(this->Mutex);
+  this->Groups.clear();
+  for (auto item = this->Items.begin(); item != this->Items.end();)
+  {
+    const PackedBrick& packed = *item->second.Packed;
+    if (stale(item->first, packed))
+    {
+      this->SetHeld(this->HeldBytes - BytesOf(packed));
+      item = this->Items.erase(item);
+    }
+    else
+    {
+      ++item;
+    }
+  }
+}
+
+void PackedBrickCache::Clear()
+{
+  this->LetGoOf([](std::int64_t, const PackedBrick&) { return true; });
+}
+
 /// The caller has the lock. Notes that the brick is used.
 const PackedBrickCache::Item* PackedBrickCache::FindHere(const Wanted& wanted) const
 {

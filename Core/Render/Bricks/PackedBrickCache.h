@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <shared_mutex>
@@ -47,6 +48,12 @@ public:
   /// Lets go of bricks that the last two pictures did not use, and of all beyond the limit.
   /// @param ages false for a picture that only helps to make the next one, and does not count
   void BeginPicture(std::uint64_t limitBytes, bool ages = true);
+
+  /// Lets go of what the values of a source that has others do not fit any more: of bricks of which
+  /// `stale(number, packed)` is true, and of all that is known of groups.
+  void LetGoOf(const std::function<bool(std::int64_t, const PackedBrick&)>& stale);
+  /// Lets go of everything.
+  void Clear();
 
   struct Wanted
   {

@@ -141,6 +141,14 @@ std::unique_ptr<BrickSource> SeriesBrickSource::MakeLevel(int level, const Box&)
   return source;
 }
 
+std::unique_ptr<SeriesBrickSource> SeriesBrickSource::AtStep(int step, int level) const
+{
+  FieldKey field = this->Field;
+  field.Step = step;
+  field.Level += level;
+  return std::make_unique<SeriesBrickSource>(this->Series, field, this->Component, this->Cache);
+}
+
 FieldKey SeriesBrickSource::KeyOf(std::size_t component) const
 {
   FieldKey key = this->Field;
@@ -183,6 +191,27 @@ std::optional<UniformValue> SeriesBrickSource::UniformValueOf(std::int64_t brick
     return std::nullopt;
   }
   return UniformValue{ node.Range.Low, ScalarType::Float64 };
+}
+
+std::optional<Hash128> SeriesBrickSource::ContentOf(std::int64_t brick) const
+{
+  const auto number = static_cast<std::size_t>(brick);
+  Hash128 content{ static_cast<std::uint64_t>(this->Type), this->Magnitude ? 1u : 0u };
+  const auto add = [&content](const BrickNode& node)
+  {
+    const std::uint64_t parts[] = { content.Low, content.High, node.Identity.Low,
+      node.Identity.High, node.Uniform ? 1u : 0u };
+    content = HashOf(parts, sizeof(parts));
+  };
+  for (const NodeList& nodes : this->Nodes)
+  {
+    add((*nodes)[number]);
+  }
+  if (this->HidesPointsOf(brick))
+  {
+    add((*this->NodesOfFlags)[number]);
+  }
+  return content;
 }
 
 std::size_t SeriesBrickSource::LoadBytes(std::int64_t brick) const

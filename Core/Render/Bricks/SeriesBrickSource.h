@@ -33,9 +33,17 @@ public:
   /// Not known of magnitudes.
   std::optional<UniformValue> UniformValueOf(std::int64_t brick) const override;
   MaskRange MasksAreOver() const override { return this->Masks; }
+  /// Of the identities of what is decoded for it.
+  std::optional<Hash128> ContentOf(std::int64_t brick) const override;
   double StepOfValues() const override { return this->Step; }
   std::size_t LoadBytes(std::int64_t brick) const override;
   BrickView Load(std::int64_t brick) override;
+
+  /// The same field at another step.
+  /// @param level coarser than this one by so many
+  std::unique_ptr<SeriesBrickSource> AtStep(int step, int level) const;
+  /// FieldKey::Level
+  int FieldLevel() const { return this->Field.Level; }
 
   /// What was loaded of this source and its levels so far, in the order in which it was.
   std::vector<FieldBricks> Loaded() const;

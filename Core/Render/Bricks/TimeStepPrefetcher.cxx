@@ -3,6 +3,9 @@
 
 #include "Render/Bricks/EnhancedBrickSource.h"
 #include "Render/Bricks/SeriesBrickSource.h"
+#include "Render/Bricks/ViewPrefetcher.h"
+#include "Render/Bricks/VisibleBricks.h"
+#include "Render/Scene/BoxOnScreen.h"
 
 #include <algorithm>
 #include <utility>
@@ -32,33 +35,95 @@ void AddLoaded(const BrickSource* source, std::vector<FieldBricks>& loaded)
   }
 }
 
+/// Bricks of the level of another step that come into sight there: that can be seen, on the screen,
+/// and cannot at the step that was drawn.
+void AddComing(const RayScene& scene, const Box& cells, const SeriesBrickSource& drawn,
+  const SeriesBrickSource& coming, std::vector<std::int64_t>& bricks)
+{
+  const VisibleBricks before(scene, drawn);
+  const VisibleBricks after(scene, coming);
+  const BoxOnScreen screen(scene, 0.0);
+  const glm::ivec3 counts = coming.Bricks();
+  for (std::int64_t brick = 0; brick < std::int64_t{ counts.x } * counts.y * counts.z; ++brick)
+  {
+    const Box part = Intersection(coming.CellsOf(brick), cells);
+    if (!part.Empty() && after.Contains(brick) && !before.Contains(brick) && screen.MayShow(part))
+    {
+      bricks.push_back(brick);
+    }
+  }
+}
+
+/// The fields of a step that are drawn if those of another one were.
+std::vector<FieldBricks> AtStep(const std::vector<FieldBricks>& drawn, int offset, int steps)
+{
+  std::vector<FieldBricks> wanted;
+  for (const FieldBricks& field : drawn)
+  {
+    const int step = field.Field.Step + offset;
+    if (step >= 0 && step < steps)
+    {
+      wanted.push_back(field);
+      wanted.back().Field.Step = step;
+    }
+  }
+  return wanted;
+}
+
 } // namespace
 
 void TimeStepPrefetcher::Drawing(const SeriesFile& series, int step)
 {
-  this->Decoder.Stop();
+  const int expected = this->NextStep;
+  this->Step = step;
   this->NextStep = this->Direction.Asked(series, step);
+  if (step != expected)
+  {
+    this->Decoder.Stop();
+  }
 }
 
-void TimeStepPrefetcher::Drawn(
-  const std::shared_ptr<const SeriesFile>& series, const BrickSource& source)
+void TimeStepPrefetcher::Drawn(const std::shared_ptr<const SeriesFile>& series,
+  const RayScene& scene, const Box& cells, const BrickSource& source)
 {
   if (this->NextStep < 0)
   {
     return;
   }
-  std::vector<FieldBricks> wanted;
-  AddLoaded(&source, wanted);
-  const int steps = series->Index().Steps();
-  for (FieldBricks& field : wanted)
+  std::vector<int> next;
+  for (int step = this->NextStep; static_cast<int>(next.size()) < StepsAhead && step >= 0;
+       step = this->Direction.After(step))
   {
-    field.Field.Step += this->Direction.Stride();
+    next.push_back(step);
   }
-  wanted.erase(std::remove_if(wanted.begin(), wanted.end(),
-                 [steps](const FieldBricks& field)
-                 { return field.Field.Step < 0 || field.Field.Step >= steps; }),
-    wanted.end());
-  this->Decoder.Start(series, std::move(wanted), this->Cache.Budget() / 2);
+  std::vector<FieldBricks> drawn;
+  AddLoaded(&source, drawn);
+  const auto* const plain = dynamic_cast<const SeriesBrickSource*>(&source);
+  const std::shared_ptr<const SeriesBrickSource> now =
+    plain ? plain->AtStep(this->Step, 0) : nullptr;
+  RayScene seen = scene;
+  seen.Depth.clear();
+  this->Decoder.Start(
+    series,
+    [=, step = this->Step]
+    {
+      std::vector<FieldBricks> wanted;
+      for (const int then : next)
+      {
+        for (FieldBricks& field : AtStep(drawn, then - step, series->Index().Steps()))
+        {
+          if (now)
+          {
+            const int level = field.Field.Level - now->FieldLevel();
+            AddComing(InCellsOf(seen, level), CellsAtLevel(cells, level), *now->AtStep(step, level),
+              *now->AtStep(then, level), field.Bricks);
+          }
+          wanted.push_back(std::move(field));
+        }
+      }
+      return wanted;
+    },
+    this->Cache.Budget() / 2);
 }
 
 } // namespace banyan

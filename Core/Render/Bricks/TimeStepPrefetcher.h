@@ -2,6 +2,7 @@
 #ifndef banyan_Render_Bricks_TimeStepPrefetcher_h
 #define banyan_Render_Bricks_TimeStepPrefetcher_h
 
+#include "Base/Box.h"
 #include "Cache/BackgroundDecoder.h"
 #include "Cache/BrickCache.h"
 #include "Cache/PlayDirection.h"
@@ -10,15 +11,17 @@ namespace banyan
 {
 
 class BrickSource;
+struct RayScene;
 
-/// Decodes the next time step of an encoded series in the direction of play, while the picture of
-/// one is composited and shown: the bricks that were drawn of this one, within half of what the
-/// cache has for decoded bricks, so that those of this one can stay. Stops while rays are cast.
-///
-/// @par Limits: bricks that were not drawn of this step are not expected to be drawn of the next.
+/// Decodes the next time steps of an encoded series in the direction of play, within half of what
+/// the cache has for decoded bricks, so that those of this one can stay: of the step that comes
+/// next, and the one after, the bricks that were drawn of this one and those that come into sight.
+/// After the last step the series begins again.
 class TimeStepPrefetcher
 {
 public:
+  static constexpr int StepsAhead = 2;
+
   /// @param cache must stay
   /// @param threads that decode
   TimeStepPrefetcher(BrickCache& cache, int threads)
@@ -27,11 +30,14 @@ public:
   {
   }
 
-  /// Before a picture.
+  /// Tells which step is drawn. What was begun for it goes on.
   void Drawing(const SeriesFile& series, int step);
-  /// After its rays were cast.
-  /// @param source that it was drawn from: a SeriesBrickSource, or an EnhancedBrickSource of such
-  void Drawn(const std::shared_ptr<const SeriesFile>& series, const BrickSource& source);
+  /// After the rays of a picture were cast.
+  /// @param cells that this rank draws, of the finest level
+  /// @param source that it was drawn from: a SeriesBrickSource, or an EnhancedBrickSource of such;
+  /// what comes into sight of the latter is not expected
+  void Drawn(const std::shared_ptr<const SeriesFile>& series, const RayScene& scene,
+    const Box& cells, const BrickSource& source);
 
   /// The step that is expected to be drawn next; -1 for none.
   int Next() const { return this->NextStep; }
@@ -42,6 +48,7 @@ private:
   BrickCache& Cache;
   BackgroundDecoder Decoder;
   PlayDirection Direction;
+  int Step = -1;
   int NextStep = -1;
 };
 

@@ -26,12 +26,6 @@ glm::dmat4 ClipToIndex(const RayScene& scene)
   return glm::inverse(scene.IndexToWorld) * scene.Camera.ClipToWorldMatrix();
 }
 
-RayScene InCellsOf(RayScene scene, int level)
-{
-  scene.IndexToWorld = glm::scale(scene.IndexToWorld, glm::dvec3(1 << level));
-  return scene;
-}
-
 /// Goes through boxes of bricks, halving those that the edge of a screen cuts.
 class Search
 {
@@ -95,6 +89,12 @@ private:
 };
 
 } // namespace
+
+RayScene InCellsOf(RayScene scene, int level)
+{
+  scene.IndexToWorld = glm::scale(scene.IndexToWorld, glm::dvec3(1 << level));
+  return scene;
+}
 
 std::optional<RayScene> SceneAfter(const RayScene& scene, const glm::dmat4& before)
 {

@@ -38,6 +38,9 @@ private:
   glm::ivec2 PictureSize{ 0 };      ///< of it
 };
 
+/// A scene in the cells of a coarser level.
+RayScene InCellsOf(RayScene scene, int level);
+
 /// The scene as its camera is expected to see it next, all of the picture; nothing where that is no
 /// camera.
 /// @param before from clip space to the index space of the scene, of the picture before

@@ -29,6 +29,23 @@ bool VisibleBricks::Contains(std::int64_t brick) const
                                  this->Visible.Any(range.Low, range.High)));
 }
 
+VisibleSigns SignsOf(const RayScene& scene, const BrickSource& source)
+{
+  const VisibleBricks visible(scene, source);
+  const ValueMask bins = scene.Transfer.VisibleBins(source.MasksAreOver());
+  const glm::ivec3 counts = source.Bricks();
+  VisibleSigns signs;
+  for (std::int64_t brick = 0; brick < std::int64_t{ counts.x } * counts.y * counts.z; ++brick)
+  {
+    if (visible.Contains(brick))
+    {
+      ++signs.Bricks;
+      signs.Bins |= source.MaskOf(brick) & bins;
+    }
+  }
+  return signs;
+}
+
 std::vector<std::int64_t> BricksToLoad(
   const RayScene& scene, const BrickSource& source, const Box& cells)
 {

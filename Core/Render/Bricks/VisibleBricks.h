@@ -29,6 +29,14 @@ private:
   bool Composited;
 };
 
+/// What can be seen of all bricks of a level together.
+struct VisibleSigns
+{
+  std::int64_t Bricks = 0; ///< of which something can be seen
+  ValueMask Bins = 0;      ///< that are there, and can be seen
+};
+VisibleSigns SignsOf(const RayScene& scene, const BrickSource& source);
+
 /// Bricks of the finest level with cells in `cells` that CastRays may load for pictures of the
 /// scene, for those of fewer pixels too (WithSize), and their probes: an upper bound.
 std::vector<std::int64_t> BricksToLoad(

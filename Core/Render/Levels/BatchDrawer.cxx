@@ -97,7 +97,7 @@ std::int64_t BatchDrawer::DrawTile(const BrickBatch& batch, std::size_t number, 
   }
   FloatImage& picture = this->Tiles.Picture();
   rays.Open(tile.Sampling->Lattice, rect, picture, this->Level.TransmittanceLimit(),
-    tile.PixelStride, tile.Begun, drawn);
+    tile.PixelStride, tile.Begun, drawn, tile.Cast);
   rays.CellShift = this->Level.Source.CoarsestBrickLevel();
   this->DrawBricks(batch, number, drawn, rays, meter, prefetch && tile.PixelStride <= DensePixels);
   if (!tile.Begun && tile.PixelStride > 1)

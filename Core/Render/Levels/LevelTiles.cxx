@@ -28,6 +28,13 @@ TileGrid GridFor(const PixelRect& rect, bool probe, std::size_t workers)
   return grid;
 }
 
+glm::vec4 PixelOf(const FloatImage& picture, int x, int y)
+{
+  const PixelRect& rect = picture.Rect;
+  const bool inside = x >= rect.Lo.x && y >= rect.Lo.y && x < rect.Hi.x && y < rect.Hi.y;
+  return inside ? picture.At(x, y) : glm::vec4(0.0f);
+}
+
 } // namespace
 
 LevelTiles::LevelTiles(const LevelScene& level, const std::vector<PlannedBrick>& bricks,
@@ -46,7 +53,9 @@ LevelTiles::LevelTiles(const LevelScene& level, const std::vector<PlannedBrick>&
       static_cast<std::size_t>(samplings ? samplings->NumberAt(this->Grid.PositionOf(i)) : 0);
     tile.Sampling = level.Samplings.at(number).get();
     tile.PixelStride = samplings ? samplings->Samplings()[number].PixelStride : 1;
-    tile.Done = tile.Sampling == nullptr;
+    tile.Cast =
+      level.Scene.Reused ? level.Scene.Reused->At(this->Grid.PositionOf(i)) : ReusedRays::All;
+    tile.Done = tile.Sampling == nullptr || tile.Cast == 0;
   }
   for (std::size_t i = 0; i < bricks.size(); ++i)
   {
@@ -98,22 +107,32 @@ void LevelTiles::Finish(std::size_t number, std::size_t taken)
     return;
   }
   const PixelRect rect = this->RectOf(number);
-  if (tile.Begun)
+  if (!tile.Begun)
   {
-    const int stride = tile.PixelStride;
-    const glm::ivec2 first = (rect.Lo + (stride - 1)) / stride * stride;
-    for (int y = first.y; y < rect.Hi.y; y += stride)
+    this->Clear(rect);
+  }
+  const ReusedRays* const reused =
+    tile.Cast != ReusedRays::All ? this->Level.Scene.Reused.get() : nullptr;
+  const int stride = tile.PixelStride;
+  const glm::ivec2 first = (rect.Lo + (stride - 1)) / stride * stride;
+  for (int y = first.y; y < rect.Hi.y && (tile.Begun || reused); y += stride)
+  {
+    glm::vec4* const row = &this->Pixels.At(rect.Lo.x, y) - rect.Lo.x;
+    for (int x = first.x; x < rect.Hi.x; x += stride)
     {
-      glm::vec4* const row = &this->Pixels.At(rect.Lo.x, y) - rect.Lo.x;
-      for (int x = first.x; x < rect.Hi.x; x += stride)
+      const bool cast = !reused || (tile.Cast & ReusedRays::BitOf(x, y)) != 0;
+      if (!cast)
+      {
+        row[x] = PixelOf(*reused->Picture, x, y);
+      }
+      else if (tile.Begun)
       {
         row[x].a = 1.0f - row[x].a;
       }
+      const int shown = row[x].a > 0.0f ? 1 : 0;
+      tile.PixelsShown += shown;
+      tile.PixelsReused += cast ? 0 : shown;
     }
-  }
-  else
-  {
-    this->Clear(rect);
   }
   tile.Final = true;
   if (this->Watcher)

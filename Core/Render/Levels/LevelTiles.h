@@ -6,6 +6,7 @@
 #include "Render/Levels/PlannedBrick.h"
 #include "Render/Raycast/TileGrid.h"
 #include "Render/Scene/FloatImage.h"
+#include "Render/Scene/ReusedRays.h"
 
 #include <cstddef>
 #include <vector>
@@ -21,10 +22,13 @@ struct LevelTile
 {
   const LevelSampling* Sampling = nullptr; ///< null for tiles of other levels, which are Done
   int PixelStride = 1;                     ///< RaySampling::PixelStride
+  std::uint64_t Cast = ReusedRays::All;    ///< blocks whose rays are cast: ReusedRays
   bool Begun = false;                      ///< its pixels are set
   bool Done = false;                       ///< no ray of it needs another brick
   bool Final = false;                      ///< its pixels have opacities
   std::size_t End = 0;                     ///< one behind the last brick of the plan over it
+  int PixelsShown = 0;                     ///< RayStatistics; set when it is Final
+  int PixelsReused = 0;
 };
 
 /// The tiles of a picture while one level is drawn. The fourth component of a pixel is the

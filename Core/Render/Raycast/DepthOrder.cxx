@@ -149,8 +149,8 @@ double DistanceOf(const PlacedBody& body, const RayCamera& camera)
 
 /// Blends what pictures show at one pixel.
 /// @param shown the pictures that show something there; is emptied
-glm::vec4 BlendPixel(const std::vector<FloatImage>& pictures, const DepthOrder& order, int x, int y,
-  std::vector<int>& shown)
+glm::vec4 BlendPixel(const std::vector<std::shared_ptr<const FloatImage>>& pictures,
+  const DepthOrder& order, int x, int y, std::vector<int>& shown)
 {
   glm::vec4 sum(0.0f);
   while (!shown.empty())
@@ -162,7 +162,7 @@ glm::vec4 BlendPixel(const std::vector<FloatImage>& pictures, const DepthOrder& 
     };
     auto nearest = std::find_if(shown.begin(), shown.end(), isNearest);
     nearest = nearest == shown.end() ? shown.begin() : nearest;
-    sum += (1.0f - sum.a) * pictures[static_cast<std::size_t>(*nearest)].At(x, y);
+    sum += (1.0f - sum.a) * pictures[static_cast<std::size_t>(*nearest)]->At(x, y);
     shown.erase(nearest);
   }
   return sum;
@@ -224,8 +224,8 @@ DepthOrder::DepthOrder(const std::vector<PlacedBody>& bodies, const RayCamera& c
   }
 }
 
-FloatImage BlendInDepth(
-  const std::vector<FloatImage>& pictures, const DepthOrder& order, const PixelRect& rect)
+FloatImage BlendInDepth(const std::vector<std::shared_ptr<const FloatImage>>& pictures,
+  const DepthOrder& order, const PixelRect& rect)
 {
   FloatImage blended;
   blended.Rect = rect;
@@ -239,9 +239,9 @@ FloatImage BlendInDepth(
       {
         for (std::size_t i = 0; i < pictures.size(); ++i)
         {
-          const PixelRect& own = pictures[i].Rect;
+          const PixelRect own = pictures[i] ? pictures[i]->Rect : PixelRect();
           if (x >= own.Lo.x && x < own.Hi.x && y >= own.Lo.y && y < own.Hi.y &&
-              pictures[i].At(x, y).a > 0.0f)
+              pictures[i]->At(x, y).a > 0.0f)
           {
             shown.push_back(static_cast<int>(i));
           }

@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include <array>
+#include <memory>
 #include <vector>
 
 namespace banyan
@@ -71,10 +72,10 @@ private:
 
 /// Blends pictures of bodies over each other, at each pixel in the order of those that show there:
 /// so that bodies of which each hides a part of the next one, in a circle, are right as well.
-/// @param pictures premultiplied; one per body, empty ones are left out
+/// @param pictures premultiplied; one per body, null and empty ones are left out
 /// @param rect of the result; holds all pictures
-FloatImage BlendInDepth(
-  const std::vector<FloatImage>& pictures, const DepthOrder& order, const PixelRect& rect);
+FloatImage BlendInDepth(const std::vector<std::shared_ptr<const FloatImage>>& pictures,
+  const DepthOrder& order, const PixelRect& rect);
 
 } // namespace banyan
 

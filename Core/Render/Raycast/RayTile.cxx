@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Render/Raycast/RayTile.h"
 
+#include "Render/Scene/ReusedRays.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -58,7 +60,7 @@ namespace banyan
 HWY_EXPORT(FillRaysHere);
 
 void RayTile::Open(const RayLattice& lattice, const PixelRect& rect, const FloatImage& picture,
-  float limit, int stride, bool begun, const PixelRect& drawn)
+  float limit, int stride, bool begun, const PixelRect& drawn, std::uint64_t cast)
 {
   this->Rect = rect;
   this->Stride = stride;
@@ -68,7 +70,6 @@ void RayTile::Open(const RayLattice& lattice, const PixelRect& rect, const Float
   this->PacketsFit = true;
   alignas(64) double ends[Slots];
   alignas(64) double active[Slots];
-  const bool geometry = lattice.HasGeometry();
   const auto forRows = [packets = this->PacketsUnder(rect).Hi](auto&& function)
   {
     for (int number = 0; number < packets.x * packets.y; ++number)
@@ -92,12 +93,13 @@ void RayTile::Open(const RayLattice& lattice, const PixelRect& rect, const Float
       {
         const int x = at.x + i * stride;
         const bool here = inside && x >= rect.Lo.x && x < rect.Hi.x;
-        const glm::vec4 pixel = row && here ? row[x] : glm::vec4(0, 0, 0, here ? 1 : 0);
+        const float start = here && (cast & ReusedRays::BitOf(x, at.y)) != 0 ? 1.0f : 0.0f;
+        const glm::vec4 pixel = row && here ? row[x] : glm::vec4(0, 0, 0, start);
         const bool wanted =
           here && drawnRow && x >= drawn.Lo.x && x < drawn.Hi.x && pixel.a > limit;
         active[slot + i] = wanted ? 1.0 : 0.0;
-        ends[slot + i] = geometry && wanted ? lattice.GeometryAt(x, at.y)
-                                            : std::numeric_limits<double>::infinity();
+        ends[slot + i] = wanted && lattice.HasGeometry() ? lattice.GeometryAt(x, at.y)
+                                                         : std::numeric_limits<double>::infinity();
         this->SetPixel(slot + i, pixel);
       }
     });

@@ -75,9 +75,11 @@ struct RayTile
   /// @param stride RaySampling::PixelStride
   /// @param begun false when rays have met nothing so far, whatever the picture says
   /// @param drawn rays of other pixels are left empty, and the pixels as they are
+  /// @param cast blocks whose rays are cast (ReusedRays), if none has begun: others have ended
   /// Throws Error as RayLattice::SamplesOf does.
   void Open(const RayLattice& lattice, const PixelRect& rect, const FloatImage& picture,
-    float limit, int stride, bool begun, const PixelRect& drawn);
+    float limit, int stride, bool begun, const PixelRect& drawn,
+    std::uint64_t cast = ~std::uint64_t{ 0 });
   void Open(
     const RayLattice& lattice, const PixelRect& rect, const FloatImage& picture, float limit)
   {

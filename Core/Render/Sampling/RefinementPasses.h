@@ -2,9 +2,7 @@
 #ifndef banyan_Render_Sampling_RefinementPasses_h
 #define banyan_Render_Sampling_RefinementPasses_h
 
-#include "Render/Scene/RayScene.h"
-
-#include <cstdint>
+#include "Base/Hash.h"
 
 namespace banyan
 {
@@ -24,15 +22,12 @@ public:
     double Interactive = 8.0; ///< 1/255
   };
 
-  /// Returns whether the next still picture shows something else than the last one of which this
-  /// was asked. Where several ranks draw one picture, it does when one of them says so.
-  /// @param scene all that decides the picture, its samplings apart
-  /// @param values a number that changes with the values that are drawn
-  bool SceneChanged(const RayScene& scene, std::uint64_t values);
-
   /// Returns the tolerance of the next still picture.
-  /// @param changed see SceneChanged; counts only for passes
-  double ToleranceOf(bool changed, const Wish& wish);
+  /// @param scene of it: a hash of all that decides it, its samplings apart
+  double ToleranceOf(const Hash128& scene, const Wish& wish);
+
+  /// Tells that a picture was shown in its place that was drawn before, with a smaller tolerance.
+  void Showed(double tolerance, const Wish& wish);
 
   /// Tells that a picture was drawn while somebody moved the camera.
   void Interacted() { this->AfterInteraction = true; }
@@ -42,7 +37,7 @@ public:
   bool Next();
 
 private:
-  std::uint64_t Drawn = 0; ///< the last scene
+  Hash128 Drawn; ///< the last scene
   double Reached = 0.0;
   bool AfterInteraction = false;
   bool IsLast = true;

@@ -380,6 +380,7 @@ SamplingPlan PlanSamplings(const RayScene& scene, SamplingWish wish, const DrawP
   wish.FinestProbeLevel =
     std::max(wish.FinestLevel, std::min(wish.FinestProbeLevel, secondCoarsest));
   RayScene probes = scene;
+  probes.Reused = nullptr;
   probes.OpacityLimit = OpacityLimitFor(wish.Tolerance, ShareOfProbeEnds);
   return Planner(probes, wish, draw).Plan();
 }

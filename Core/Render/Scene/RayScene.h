@@ -18,6 +18,7 @@ namespace banyan
 {
 
 struct BrickWork;
+struct ReusedRays;
 
 /// Light from the viewer, along each ray. With c = |normal . ray|, the colour of a sample becomes
 /// colour * (Ambient + Diffuse * c) + Specular * c^SpecularPower, before it is weighted with its
@@ -58,6 +59,8 @@ struct RayScene
   bool LevelsShareCells = false;
   /// Whether the picture only helps to make another one: packed bricks are kept for that one.
   bool Probe = false;
+  /// Rays that are not cast, as an earlier picture has them; null for none. No part of the picture.
+  std::shared_ptr<const ReusedRays> Reused{};
   /// Where the ray caster adds what bricks took to draw; null for nowhere. No part of the picture.
   BrickWork* Work = nullptr;
 };

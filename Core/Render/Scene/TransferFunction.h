@@ -42,6 +42,13 @@ struct TransferFunction
   double UnitDistance = 1.0;       ///< world length over which an entry's opacity applies; > 0
   std::vector<FunctionEdge> Edges; ///< none, or one fewer than entries; rising
 
+  bool operator==(const TransferFunction& other) const
+  {
+    return this->Low == other.Low && this->High == other.High &&
+           this->UnitDistance == other.UnitDistance && this->Entries == other.Entries &&
+           this->Edges == other.Edges;
+  }
+
   /// Values of the series range's bins that may be visible (opacity > 0 somewhere in the bin).
   /// Conservative, as VisibleValues.
   ValueMask VisibleBins(const MaskRange& range) const;
@@ -72,16 +79,15 @@ public:
   /// The same for functions that show the same values; hardly ever the same for others.
   std::uint64_t Number() const { return this->Hash; }
 
-private:
   struct Span
   {
     std::size_t First;
     std::size_t Last; ///< inclusive
   };
-
-  /// The entries that values in [low, high] may take.
+  /// The entries that values in [low, high] may take. Conservative: a neighbour counts too.
   Span EntriesOf(double low, double high) const;
 
+private:
   std::vector<int> VisibleBefore; ///< entries with opacity > 0 before entry i
   std::vector<double> Edges;      ///< of the function, if it has any
   double Low = 0.0;

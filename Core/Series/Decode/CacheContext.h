@@ -15,9 +15,9 @@ namespace banyan
 {
 
 /// The caches of the series that were opened with it, and the budget that they share: a quarter is
-/// for quantized blocks, three eighths are for decoded bricks, and three for bricks that are packed
-/// for drawing. Payloads take an eighth of the first quarter's size beside. May be used from any
-/// thread.
+/// for quantized blocks, three eighths are for decoded bricks, five sixteenths for bricks that are
+/// packed for drawing, and one for pictures. Payloads take an eighth of the first quarter's size
+/// beside. May be used from any thread.
 class CacheContext
 {
 public:
@@ -37,7 +37,8 @@ public:
   /// Returns the argument with which WithBudget gives this context, or one like it.
   std::int64_t OwnBudgetBytes() const;
   std::uint64_t DecodedBudgetBytes() const { return this->Budget / 8 * 3; }
-  std::uint64_t DrawingBudgetBytes() const { return this->Budget / 8 * 3; }
+  std::uint64_t DrawingBudgetBytes() const { return this->Budget / 16 * 5; }
+  std::uint64_t PictureBudgetBytes() const { return this->Budget / 16; }
 
   QuantizedBlockCache& Blocks() { return this->QuantizedBlocks; }
   PayloadMemory& Payloads() { return this->PayloadsInMemory; }
@@ -52,6 +53,8 @@ public:
   }
   /// How many sources keep packed bricks, and so share DrawingBudgetBytes.
   std::atomic<int>& DrawingSources() { return this->Drawing; }
+  /// How many keep pictures, and so share PictureBudgetBytes.
+  std::atomic<int>& PictureKeepers() { return this->Pictures; }
 
 private:
   const std::uint64_t Budget;
@@ -60,6 +63,7 @@ private:
   std::once_flag DecodedBricksOnce;
   std::any DecodedBricks;
   std::atomic<int> Drawing{ 0 };
+  std::atomic<int> Pictures{ 0 };
 };
 
 } // namespace banyan

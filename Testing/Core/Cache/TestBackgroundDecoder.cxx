@@ -8,6 +8,7 @@
 #include "Render/Bricks/EnhancedBrickSource.h"
 #include "Render/Bricks/SeriesBrickSource.h"
 #include "Render/Bricks/TimeStepPrefetcher.h"
+#include "Render/Scenes.h"
 
 #include <numeric>
 
@@ -50,6 +51,13 @@ protected:
     }
   }
 
+  /// All bricks are on the screen, and visible.
+  RayScene Scene() const
+  {
+    return scenes::Scene(this->Domain.Samples(), { 64, 64 }, glm::dmat4(1.0), 2.0);
+  }
+
+  const Box Cells{ glm::ivec3(0), { 64, 32, 32 } };
   const TemporaryFolder Folder;
   const Grid Domain = GridOf(65, 33, 33);
   std::shared_ptr<SeriesFile> File;
@@ -164,23 +172,69 @@ TEST_F(Ahead, TheStepThatComesNextInTheDirectionOfPlayIsRead)
     const SeriesBrickSource source(this->File, { step, 0, 0, 0 }, 0, cache);
     ahead.Drawing(*this->File, step);
     this->Draw(source, 2, 9);
-    ahead.Drawn(this->File, source);
+    ahead.Drawn(this->File, this->Scene(), this->Cells, source);
     ahead.Work().Finish();
     return ahead.Next();
   };
   EXPECT_EQ(play(0), -1) << "it does not play yet";
   EXPECT_EQ(play(1), 2);
-  EXPECT_EQ(cache.GetAheadStatistics().Decoded, 7u);
+  EXPECT_EQ(cache.GetAheadStatistics().Decoded, 14u) << "of two steps";
   EXPECT_EQ(cache.GetAheadStatistics().Hits, 0u);
   EXPECT_EQ(play(2), 3);
   EXPECT_EQ(cache.GetAheadStatistics().Hits, 7u) << "nothing of it was decoded when it was drawn";
   EXPECT_EQ(play(2), 3) << "the camera moves";
-  EXPECT_EQ(play(1), 0);
-  EXPECT_EQ(play(5), -1);
-  EXPECT_EQ(play(3), 1);
+  EXPECT_EQ(play(1), 0) << "backwards";
+  EXPECT_EQ(play(0), 5) << "and round";
+  EXPECT_EQ(play(5), 4) << "as before";
+  EXPECT_EQ(play(3), 1) << "every other step";
   const auto other = SeriesFile::Open(this->Folder / "s.banyan");
   ahead.Drawing(*other, 4);
   EXPECT_EQ(ahead.Next(), -1);
+}
+
+TEST_F(Ahead, ALoopGoesOnAfterItsLastStep)
+{
+  PlayDirection direction;
+  EXPECT_EQ(direction.After(3), -1);
+  direction.Asked(*this->File, 4);
+  EXPECT_EQ(direction.Asked(*this->File, 5), 0);
+  EXPECT_EQ(direction.Asked(*this->File, 0), 1) << "that was no turn";
+  EXPECT_EQ(direction.Asked(*this->File, 4), 0) << "this was a leap";
+  EXPECT_EQ(direction.Asked(*this->File, 3), 2);
+}
+
+TEST_F(Ahead, BricksThatComeIntoSightAreExpected)
+{
+  const auto values = Sample<float>(this->Domain, 3,
+    [](int x, int, int, int s)
+    {
+      return s == 2 || x < 20 ? 1.0f + 0.01f * static_cast<float>(x)
+                              : 0.001f * static_cast<float>(x);
+    });
+  EncodeOptions options;
+  options.BrickCells = 16;
+  Encode(this->Folder / "comes.banyan", this->Domain, values, options);
+  const auto file = SeriesFile::Open(this->Folder / "comes.banyan");
+  BrickCache cache(Plenty);
+  TimeStepPrefetcher ahead(cache, 2);
+  RayScene scene = this->Scene();
+  scene.Transfer.Low = 0.5;
+  scene.Transfer.Entries.front().a = 0.0f;
+  for (const int step : { 0, 1 })
+  {
+    SeriesBrickSource source(file, { step, 0, 0, 0 }, 0, cache);
+    ahead.Drawing(*file, step);
+    source.Load(0);
+    ahead.Drawn(file, scene, this->Cells, source);
+    ahead.Work().Finish();
+  }
+  const SeriesBrickSource next(file, { 2, 0, 0, 0 }, 0, cache);
+  const std::uint64_t hits = cache.GetAheadStatistics().Hits;
+  for (const std::int64_t brick : { 0, 3, 15 })
+  {
+    const_cast<SeriesBrickSource&>(next).Load(brick);
+  }
+  EXPECT_EQ(cache.GetAheadStatistics().Hits, hits + 3);
 }
 
 TEST_F(Ahead, AnEnhancedStepNeedsOneThatIsAfterTheNext)
@@ -201,19 +255,19 @@ TEST_F(Ahead, AnEnhancedStepNeedsOneThatIsAfterTheNext)
     {
       source.Load(brick);
     }
-    ahead.Drawn(this->File, source);
+    ahead.Drawn(this->File, this->Scene(), this->Cells, source);
     ahead.Work().Finish();
   };
   play(1); // steps 0 to 2
   EXPECT_EQ(cache.GetAheadStatistics().Decoded, 0u);
-  play(2); // 3 too, then 4
-  EXPECT_EQ(cache.GetAheadStatistics().Decoded, 7u);
+  play(2); // 3 too, then 4 and 5
+  EXPECT_EQ(cache.GetAheadStatistics().Decoded, 14u);
   play(3);
   EXPECT_EQ(cache.GetAheadStatistics().Hits, 7u);
-  EXPECT_EQ(cache.GetAheadStatistics().Decoded, 14u);
+  EXPECT_EQ(cache.GetAheadStatistics().Decoded, 14u) << "there is no step after the last";
   play(4);
   EXPECT_EQ(cache.GetAheadStatistics().Hits, 14u);
-  EXPECT_EQ(cache.GetAheadStatistics().Decoded, 14u) << "there is no step after the last";
+  EXPECT_EQ(cache.GetAheadStatistics().Decoded, 14u);
   EXPECT_EQ(cache.GetStatistics().Misses, 6 * 7u);
 }
 

@@ -219,7 +219,7 @@ TEST(CacheContext, IsMadeForABudgetOrThatOfTheProcess)
   EXPECT_EQ(own->OwnBudgetBytes(), 800);
   EXPECT_EQ(own->BudgetBytes(), 800u);
   EXPECT_EQ(own->DecodedBudgetBytes(), 300u);
-  EXPECT_EQ(own->DrawingBudgetBytes(), 300u);
+  EXPECT_EQ(own->DrawingBudgetBytes(), 250u);
   EXPECT_EQ(own->Blocks().BudgetBytes(), 200u);
   EXPECT_EQ(BrickCache::Of(*own).Budget(), 300u);
   EXPECT_EQ(&BrickCache::Of(*own), &BrickCache::Of(*own));

@@ -19,6 +19,11 @@ public:
   {
     return std::uniform_real_distribution<double>(low, high)(this->Engine);
   }
+  /// From `low` to `high`, both included.
+  int Whole(int low, int high)
+  {
+    return std::uniform_int_distribution<int>(low, high)(this->Engine);
+  }
   glm::dvec3 Point(double size) { return { In(-size, size), In(-size, size), In(-size, size) }; }
   glm::dvec3 Direction()
   {

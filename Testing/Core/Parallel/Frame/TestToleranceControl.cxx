@@ -2,6 +2,7 @@
 // How frames of all ranks are sampled: by tolerance, by the size of cells, or by time.
 #include "Parallel/Fields/ArrayInput.h"
 #include "Parallel/Frame/ToleranceControl.h"
+#include "Render/Scene/SceneDigest.h"
 
 #include <gtest/gtest.h>
 
@@ -35,7 +36,9 @@ struct Frames
     scene.Transfer = scenes::Tabulate(scenes::Sparse);
     FrameStatistics frame;
     this->Field.Drawn().BeginFrame(this->Ranks, scene);
-    error = this->Control.Plan(this->Ranks, this->Field, scene, this->Wish, Budget, frame);
+    const ToleranceControl::Aim aim = this->Control.Begin(DigestOf(scene), this->Wish);
+    error = this->Control.Plan(
+      this->Ranks, this->Field, scene, DigestOf(scene), this->Wish, aim, Budget, frame);
     this->Field.Drawn().EndFrame(this->Ranks);
     return scene;
   }

@@ -136,32 +136,32 @@ TEST(PackedBrickCache, BricksThatGoLeaveTheirMemoryToTheNext)
 
 TEST(PackedBrickCache, SourcesThatKeepBricksShareTheBudget)
 {
-  const auto caches = std::make_shared<CacheContext>(1600); // 600 are for drawing
+  const auto caches = std::make_shared<CacheContext>(1600); // 500 are for drawing
   PackedBrickCache others;                                  // of other caches
   const PackedBrickCache::Pointer packed = Pack(std::vector<double>(27, 1.0), 0.0);
   PackedBrickCache first(caches);
   others.BeginPicture(1 << 20);
   others.Keep(7, packed);
   first.BeginPicture(1 << 20);
-  EXPECT_EQ(first.ShareBytes(), 600u);
+  EXPECT_EQ(first.ShareBytes(), 500u);
   first.Keep(7, packed);
-  EXPECT_EQ(first.ShareBytes(), 600u);
+  EXPECT_EQ(first.ShareBytes(), 500u);
   {
     PackedBrickCache second(caches);
-    EXPECT_EQ(second.ShareBytes(), 300u) << "before it has any itself";
+    EXPECT_EQ(second.ShareBytes(), 250u) << "before it has any itself";
     second.BeginPicture(1 << 20);
-    EXPECT_EQ(first.ShareBytes(), 600u) << "one that keeps none needs none";
+    EXPECT_EQ(first.ShareBytes(), 500u) << "one that keeps none needs none";
     second.Keep(7, packed);
     second.Keep(8, packed);
-    EXPECT_EQ(first.ShareBytes(), 300u);
-    EXPECT_EQ(second.ShareBytes(), 300u);
+    EXPECT_EQ(first.ShareBytes(), 250u);
+    EXPECT_EQ(second.ShareBytes(), 250u);
     second.BeginPicture(0);
-    EXPECT_EQ(first.ShareBytes(), 600u) << "it lets go of all";
+    EXPECT_EQ(first.ShareBytes(), 500u) << "it lets go of all";
     second.BeginPicture(1 << 20);
     second.Keep(7, packed);
-    EXPECT_EQ(first.ShareBytes(), 300u);
+    EXPECT_EQ(first.ShareBytes(), 250u);
   }
-  EXPECT_EQ(first.ShareBytes(), 600u) << "it is gone";
+  EXPECT_EQ(first.ShareBytes(), 500u) << "it is gone";
 }
 
 TEST(PackedBrickCache, PicturesAreTheSameAndLoadOnce)

@@ -223,7 +223,7 @@ TEST(DepthOrder, BoxesThatHideEachOtherInACircleAreBlendedPixelByPixel)
     glm::vec4(0, 0, 0.7f, 0.7f) };
   std::vector<PlacedBox> beams;
   std::vector<PlacedBody> bodies;
-  std::vector<FloatImage> pictures;
+  std::vector<std::shared_ptr<const FloatImage>> pictures;
   for (int i = 0; i < 3; ++i)
   {
     const glm::dmat4 turned = glm::rotate(glm::dmat4(1.0), 2.0943951 * i, glm::dvec3(0, 0, 1)) *
@@ -231,7 +231,8 @@ TEST(DepthOrder, BoxesThatHideEachOtherInACircleAreBlendedPixelByPixel)
                               glm::rotate(glm::dmat4(1.0), 0.3, glm::dvec3(0, 1, 0));
     beams.push_back(PlaceBox({ -3, -0.4, -0.1 }, { 3, 0.4, 0.1 }, turned));
     bodies.push_back({ beams.back() });
-    pictures.push_back(Filled(beams.back(), camera, colors[static_cast<std::size_t>(i)]));
+    pictures.push_back(std::make_shared<const FloatImage>(
+      Filled(beams.back(), camera, colors[static_cast<std::size_t>(i)])));
   }
   const DepthOrder order(bodies, camera);
   EXPECT_FALSE(order.SomeUnknown());

@@ -2,8 +2,6 @@
 // Tolerances of still pictures: at once, or in passes after an interaction.
 #include "Render/Sampling/RefinementPasses.h"
 
-#include "Render/Scenes.h"
-
 #include <gtest/gtest.h>
 
 namespace
@@ -13,12 +11,16 @@ using namespace banyan;
 
 constexpr RefinementPasses::Wish InPasses{ true, 1.0, 8.0 };
 
+constexpr Hash128 Scene{ 1, 2 };
+constexpr Hash128 Other{ 1, 3 };
+constexpr Hash128 Third{ 2, 3 };
+
 TEST(RefinementPasses, PicturesOfScriptsKeepTheToleranceAtOnce)
 {
   RefinementPasses passes;
-  EXPECT_EQ(passes.ToleranceOf(false, { false, 1.0, 8.0 }), 1.0);
+  EXPECT_EQ(passes.ToleranceOf(Scene, { false, 1.0, 8.0 }), 1.0);
   EXPECT_FALSE(passes.Next());
-  EXPECT_EQ(passes.ToleranceOf(true, InPasses), 1.0) << "nobody moved the camera";
+  EXPECT_EQ(passes.ToleranceOf(Other, InPasses), 1.0) << "nobody moved the camera";
   EXPECT_FALSE(passes.Next());
 }
 
@@ -26,41 +28,40 @@ TEST(RefinementPasses, EachTakesAQuarterOfTheToleranceBefore)
 {
   RefinementPasses passes;
   passes.Interacted();
-  EXPECT_EQ(passes.ToleranceOf(true, InPasses), 8.0);
-  EXPECT_EQ(passes.ToleranceOf(false, InPasses), 8.0) << "no pass was asked for";
+  EXPECT_EQ(passes.ToleranceOf(Scene, InPasses), 8.0);
+  EXPECT_EQ(passes.ToleranceOf(Scene, InPasses), 8.0) << "no pass was asked for";
   EXPECT_TRUE(passes.Next());
   EXPECT_FALSE(passes.Next()) << "was not drawn since";
-  EXPECT_EQ(passes.ToleranceOf(false, InPasses), 8.0);
+  EXPECT_EQ(passes.ToleranceOf(Scene, InPasses), 8.0);
   EXPECT_TRUE(passes.Next());
-  EXPECT_EQ(passes.ToleranceOf(false, InPasses), 2.0);
+  EXPECT_EQ(passes.ToleranceOf(Scene, InPasses), 2.0);
   EXPECT_TRUE(passes.Next());
-  EXPECT_EQ(passes.ToleranceOf(false, InPasses), 1.0) << "never below the one that is wanted";
+  EXPECT_EQ(passes.ToleranceOf(Scene, InPasses), 1.0) << "never below the one that is wanted";
   EXPECT_FALSE(passes.Next());
 }
 
 TEST(RefinementPasses, AScenesPictureNeverBecomesWorse)
 {
   RefinementPasses passes;
-  passes.ToleranceOf(true, InPasses);
+  passes.ToleranceOf(Scene, InPasses);
   passes.Interacted();
-  EXPECT_EQ(passes.ToleranceOf(false, InPasses), 1.0) << "the camera is where it was";
+  EXPECT_EQ(passes.ToleranceOf(Scene, InPasses), 1.0) << "the camera is where it was";
 }
 
-TEST(RefinementPasses, SeesWhatDecidesAPicture)
+TEST(RefinementPasses, OneThatWasDrawnBeforeCounts)
 {
-  const RayScene scene = scenes::Scene({ 9, 8, 7 }, { 20, 10 });
   RefinementPasses passes;
-  EXPECT_TRUE(passes.SceneChanged(scene, 1));
-  EXPECT_FALSE(passes.SceneChanged(scene, 1));
-  EXPECT_TRUE(passes.SceneChanged(scene, 2));
-  RayScene other = scene;
-  other.Transfer.Entries.front().a += 0.25f;
-  EXPECT_TRUE(passes.SceneChanged(other, 2));
-  EXPECT_FALSE(passes.SceneChanged(other, 2));
-  other.Depth.assign(200, 0.5f);
-  EXPECT_TRUE(passes.SceneChanged(other, 2));
-  EXPECT_TRUE(passes.SceneChanged(scene, 2));
-  EXPECT_TRUE(passes.SceneChanged(scenes::Scene({ 9, 8, 7 }, { 20, 10 }, glm::dmat4(1.0), 1.5), 2));
+  passes.Interacted();
+  EXPECT_EQ(passes.ToleranceOf(Scene, InPasses), 8.0);
+  passes.Showed(4.0, InPasses);
+  EXPECT_TRUE(passes.Next());
+  EXPECT_EQ(passes.ToleranceOf(Scene, InPasses), 1.0) << "a quarter of 4";
+  passes.Interacted();
+  EXPECT_EQ(passes.ToleranceOf(Other, InPasses), 8.0);
+  passes.Showed(0.5, InPasses);
+  EXPECT_FALSE(passes.Next()) << "the tolerance is kept";
+  passes.Interacted();
+  EXPECT_EQ(passes.ToleranceOf(Third, InPasses), 8.0);
 }
 
 } // namespace

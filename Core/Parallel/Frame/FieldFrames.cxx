@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Parallel/Frame/FieldFrames.h"
+
+#include "Base/Digest.h"
+#include "Base/Progress.h"
+#include "Base/ThreadPool.h"
+#include "Base/Timer.h"
+#include "Parallel/Communicate/Collective.h"
+#include "Render/Scene/SceneDigest.h"
+
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace banyan
+{
+
+/// A hash of all that decides a picture, but the values and how finely they are sampled.
+Hash128 FieldFrames::SceneOf(const RayScene& scene, const Wish& wish)
+{
+  Digest digest;
+  digest.Add(DigestOf(scene));
+  digest.Add(wish.Sampling.Still);
+  digest.Add(wish.Sampling.MaxElementsPerPixel);
+  digest.Add(wish.Sampling.ScreenErrorPixels);
+  digest.Add(wish.Sampling.FixedDistance);
+  digest.Add(wish.Sampling.KeepsTolerance);
+  digest.Add(wish.Transport);
+  if (wish.Transport == PixelTransport::WithinOne)
+  {
+    digest.Add(wish.Behind);
+  }
+  return digest.Get();
+}
+
+/// Collective: takes a picture that was drawn before.
+/// @return whether there is one
+bool FieldFrames::TakeKept(Communicator& communicator, const Hash128& whole,
+  const DrawnPicture* kept, const Wish& wish, Frame& frame)
+{
+  struct Answer
+  {
+    Hash128 Scene;
+    double Coarseness;
+    double EstimatedError;
+    FrameStatistics Statistics;
+    bool Found;
+  };
+  Answer mine{ whole, 0.0, 0.0, {}, kept != nullptr };
+  if (kept)
+  {
+    frame.Picture = *kept;
+    mine.Coarseness = this->Pictures.CoarsenessFound();
+    mine.EstimatedError = kept->EstimatedError;
+    mine.Statistics = kept->Statistics;
+  }
+  std::vector<Answer> all(static_cast<std::size_t>(communicator.Size()));
+  communicator.AllGather(&mine, sizeof(mine), all.data());
+  // Whoever sees another scene has to draw, and nobody can do that alone.
+  frame.Kept = all.front().Found;
+  for (const Answer& answer : all)
+  {
+    frame.Kept = frame.Kept && answer.Scene == all.front().Scene;
+  }
+  if (!frame.Kept)
+  {
+    frame.Picture = {};
+    return false;
+  }
+  frame.Picture.EstimatedError = all.front().EstimatedError;
+  frame.Picture.Statistics = all.front().Statistics;
+  frame.Picture.Limit = BroadcastStrings(communicator, { frame.Picture.Limit }).front();
+  this->Tolerance.Showed(wish.Sampling, all.front().Coarseness);
+  return true;
+}
+
+FieldFrames::Frame FieldFrames::Draw(
+  Communicator& communicator, DistributedField& field, RayScene& scene, const Wish& wish)
+{
+  Frame frame;
+  const Hash128 digest = SceneOf(scene, wish);
+  std::vector<Hash128> content;
+  Collective(communicator, [&] { content = field.VisibleContent(scene); });
+  Digest whole;
+  whole.Add(digest);
+  whole.Add(content);
+  const ToleranceControl::Aim aim = this->Tolerance.Begin(whole.Get(), wish.Sampling);
+  const KeptPictures::Quality quality{ aim.Coarseness, aim.Interacting };
+  this->Pictures.KeepIn(wish.Reuse ? field.Drawn().Caches() : nullptr);
+  const DrawnPicture* const kept = this->Pictures.Find(digest, content, quality);
+  if (!this->TakeKept(communicator, whole.Get(), kept, wish, frame))
+  {
+    this->DrawAnew(communicator, field, scene, digest, wish, aim, frame);
+    if (wish.Reuse && frame.Picture.Pixels)
+    {
+      std::set<int> levels = scene.Samplings ? scene.Samplings->UsedLevels() : std::set<int>();
+      levels.insert(0); // the error is that against the finest one
+      this->Pictures.Keep(digest, content, levels, quality, frame.Picture);
+    }
+  }
+  return frame;
+}
+
+/// Whether rays are kept from picture to picture: of one rank, where the budget has room for one.
+bool FieldFrames::KeepsRays(
+  Communicator& communicator, DrawnField& drawn, const RayScene& scene, const Wish& wish)
+{
+  const std::uint64_t bytes =
+    static_cast<std::uint64_t>(scene.Viewport.Count()) * sizeof(glm::vec4);
+  return wish.Reuse && communicator.Size() == 1 && drawn.Source() &&
+         scene.Blend.Mode == BlendMode::Composite && drawn.Caches()->PictureBudgetBytes() >= bytes;
+}
+
+/// Collective.
+void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, RayScene& scene,
+  const Hash128& view, const Wish& wish, const ToleranceControl::Aim& aim, Frame& frame)
+{
+  const Timer drawing;
+  DrawnField& drawn = field.Drawn();
+  {
+    const PhaseScope fetching(Phase::Fetching);
+    drawn.BeginFrame(communicator, scene);
+  }
+  const std::uint64_t budget = field.DrawingBudget();
+  const PhaseScope sampling(Phase::Sampling);
+  FrameStatistics& numbers = frame.Picture.Statistics;
+  frame.Picture.EstimatedError =
+    this->Tolerance.Plan(communicator, field, scene, view, wish.Sampling, aim, budget, numbers);
+  frame.Picture.Limit = this->Tolerance.Limit();
+  const bool keeps = this->KeepsRays(communicator, drawn, scene, wish);
+  if (keeps)
+  {
+    this->Rays.Begin(scene, *drawn.Source(), drawn.Zones().front());
+  }
+  else
+  {
+    this->Rays.Forget();
+  }
+  const FrameStatistics probes = numbers;
+  CompositeOptions compositing;
+  compositing.Behind = wish.Behind;
+  compositing.Transport = wish.Transport;
+  compositing.Plans = &this->Plans;
+  // The other eye's picture is no step of a camera that moves.
+  if (wish.ReadAhead && wish.Sampling.Eye == 0)
+  {
+    compositing.AfterCasting = [&] { drawn.ReadAhead(scene, communicator.Rank()); };
+  }
+  FloatImage picture = DrawDistributed(communicator, scene,
+    { drawn.Source(), drawn.Zones(), budget, ThreadPool::Process() }, numbers, compositing);
+  if (communicator.Rank() == 0)
+  {
+    frame.Picture.Pixels = std::make_shared<const FloatImage>(std::move(picture));
+  }
+  if (keeps)
+  {
+    this->Rays.Keep(frame.Picture.Pixels);
+  }
+  numbers.SamplesTaken += probes.SamplesTaken;
+  numbers.BytesComposited += probes.BytesComposited;
+  numbers.MessagesComposited += probes.MessagesComposited;
+  const PhaseScope balancing(Phase::Balancing);
+  drawn.EndFrame(communicator);
+  this->Tolerance.FrameTook(
+    wish.Sampling, AllMax(communicator, drawing.Seconds() + wish.ShowSeconds));
+}
+
+void FieldFrames::Forget()
+{
+  this->Pictures.Clear();
+  this->Rays.Forget();
+}
+
+} // namespace banyan

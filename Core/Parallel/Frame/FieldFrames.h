@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Parallel_Frame_FieldFrames_h
+#define banyan_Parallel_Frame_FieldFrames_h
+
+#include "Parallel/Frame/KeptPictures.h"
+#include "Parallel/Frame/ToleranceControl.h"
+#include "Render/Levels/KeptRays.h"
+
+#include <memory>
+
+namespace banyan
+{
+
+/// Frames of one field of all ranks, one after the other, and what a frame can take from those
+/// before it: how finely it is sampled, plans of compositing, and whole pictures of scenes that
+/// come again.
+class FieldFrames
+{
+public:
+  struct Wish
+  {
+    ToleranceControl::Wish Sampling;
+    PixelTransport Transport = PixelTransport::Floats;
+    PixelRect Behind;         ///< CompositeOptions
+    bool ReadAhead = true;    ///< whether bricks of the next frame are decoded in the background
+    bool Reuse = true;        ///< whether the frame may take anything from those before
+    double ShowSeconds = 0.0; ///< that putting the picture on the screen is expected to take
+  };
+
+  struct Frame
+  {
+    DrawnPicture Picture; ///< its pixels are the scene's viewport on rank 0; null elsewhere
+    bool Kept = false;    ///< it was drawn for an earlier frame: the same on all ranks
+
+    /// The part of the pixels that show something whose rays were cast for an earlier frame.
+    double ReusedFraction() const
+    {
+      const FrameStatistics& took = this->Picture.Statistics;
+      return this->Kept ? 1.0
+             : took.PixelsShown > 0
+               ? static_cast<double>(took.PixelsReused) / static_cast<double>(took.PixelsShown)
+               : 0.0;
+    }
+  };
+
+  /// Collective; all arguments are the same on all ranks, but for what the field holds.
+  /// @param scene gets the samplings that it was drawn with
+  /// When a rank fails, all ranks throw the same Error.
+  Frame Draw(
+    Communicator& communicator, DistributedField& field, RayScene& scene, const Wish& wish);
+
+  /// The same as ToleranceControl::RefineNext.
+  bool RefineNext() { return this->Tolerance.RefineNext(); }
+
+  /// Forgets all frames: when the ranks are others, say.
+  void Forget();
+
+private:
+  static Hash128 SceneOf(const RayScene& scene, const Wish& wish);
+  bool TakeKept(Communicator& communicator, const Hash128& whole, const DrawnPicture* kept,
+    const Wish& wish, Frame& frame);
+  static bool KeepsRays(
+    Communicator& communicator, DrawnField& drawn, const RayScene& scene, const Wish& wish);
+  void DrawAnew(Communicator& communicator, DistributedField& field, RayScene& scene,
+    const Hash128& view, const Wish& wish, const ToleranceControl::Aim& aim, Frame& frame);
+
+  ToleranceControl Tolerance;
+  CompositePlanCache Plans;
+  KeptRays Rays;
+  KeptPictures Pictures; ///< on rank 0
+};
+
+} // namespace banyan
+
+#endif

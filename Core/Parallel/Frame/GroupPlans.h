@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Parallel_Frame_GroupPlans_h
+#define banyan_Parallel_Frame_GroupPlans_h
+
+#include "Base/Hash.h"
+#include "Render/Bricks/VisibleBricks.h"
+#include "Render/Sampling/SamplingPlan.h"
+
+#include <functional>
+#include <map>
+
+namespace banyan
+{
+
+/// Plans of a series that plays in one view: one for a group of steps instead of one for each.
+///
+///     step       0                       8                      16
+///     plans      P0 ─────────────────── P8 ─────────────────── P16
+///     frames     |  1  2  3  4  5  6  7  |  9 10 11 12 13 14 15  |
+///                   as fine as P0 and P8    as fine as P8 and P16
+///
+/// The first picture of a view has a plan of its own: nobody knows yet whether the series plays.
+/// Each step after that takes, per tile, the finest of the plans of the first step of its group and
+/// of the next one: whatever was drawn before, the same plan. A step that shows values which
+/// neither end of its group does, or much more or less than both, is planned by itself.
+class GroupPlans
+{
+public:
+  static constexpr int StepsTogether = 8;
+
+  /// A plan, and what was seen at its step.
+  struct End
+  {
+    SamplingPlan Plan;
+    VisibleSigns Signs;
+  };
+  /// Plans a step. Called alike on all ranks.
+  using MakePlan = std::function<End(int step)>;
+
+  /// The plan of a frame; its times and probes are those that this frame took.
+  /// @param view a hash of all that decides the plan but the step
+  /// @param now what is seen at the step
+  /// @param steps of the series
+  SamplingPlan Of(const Hash128& view, const glm::ivec2& imageSize, int step, int steps,
+    const VisibleSigns& now, const MakePlan& make);
+
+  void Forget();
+
+private:
+  const End& EndAt(int step, const MakePlan& make, SamplingPlan& took);
+
+  Hash128 View;
+  int First = -1;           ///< step that was drawn first in the view; -1: none
+  bool Plays = false;       ///< another one was drawn since
+  std::map<int, End> Known; ///< by step
+};
+
+} // namespace banyan
+
+#endif

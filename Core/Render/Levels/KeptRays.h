@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Render_Levels_KeptRays_h
+#define banyan_Render_Levels_KeptRays_h
+
+#include "Base/Hash.h"
+#include "Render/Bricks/BrickSource.h"
+#include "Render/Scene/FloatImage.h"
+#include "Render/Scene/RayScene.h"
+#include "Render/Scene/ReusedRays.h"
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+namespace banyan
+{
+
+/// The rays of the last picture of a view, and what bricks they may have met: blocks of 4 x 4
+/// pixels under no brick that has changed since are not cast again. The next picture has the bits
+/// that it would have if all rays were cast.
+///
+///     bricks   what can be seen of each, as a hash ── compared with that of the last picture
+///     blocks   under the footprint of a brick that differs ── a bit of the tile's mask
+///     tiles    another level, distance, stride or opacity limit ── all bits
+///
+/// It begins with the second picture of a view: of those that are seen once, while a camera moves,
+/// nothing is kept, and nothing is looked at.
+///
+/// Only of composited samples. A change of the transfer function is one of all bricks that have
+/// values whose entries have changed.
+class KeptRays
+{
+public:
+  /// Looks what can be kept for the next picture.
+  /// @param scene with its samplings; gets RayScene::Reused
+  /// @param source of the finest level
+  /// @param cells that are drawn
+  void Begin(RayScene& scene, BrickSource& source, const Box& cells);
+
+  /// Keeps the picture of that scene. Not to be called when it could not be drawn.
+  void Keep(const std::shared_ptr<const FloatImage>& picture);
+
+  void Forget();
+
+private:
+  /// Per brick of a level: 0 where nothing can be seen, else a hash of all that decides what is.
+  using Seen = std::vector<std::uint64_t>;
+
+  bool MarkLevels(const RayScene& scene, BrickSource& source, const std::map<int, Seen>& next,
+    ReusedRays& reused) const;
+  void MarkTiles(const RayScene& scene, ReusedRays& reused) const;
+
+  Hash128 View; ///< of the picture that was begun last
+  Box Cells;
+  float OpacityLimit = 0.0f;
+  std::shared_ptr<const TileSamplings> Samplings;
+  std::map<int, Seen> Levels;                ///< that it was drawn from
+  std::shared_ptr<const FloatImage> Picture; ///< of that view; null: no rays are kept
+};
+
+} // namespace banyan
+
+#endif
