@@ -33,6 +33,7 @@ def show(file, array, size):
     bounds = source.GetDataInformation().GetBounds()
     display.ScalarOpacityUnitDistance = max(bounds[1] - bounds[0], bounds[3] - bounds[2]) / 50
     display.SampleDistanceVoxels = 1.0
+    display.ReuseFrames = 0  # steps are drawn several times
     view.ResetCamera()
     simple.GetActiveCamera().Azimuth(30)
     simple.GetActiveCamera().Elevation(30)

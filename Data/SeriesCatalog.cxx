@@ -3,6 +3,7 @@
 
 #include "ConvectionSeries.h"
 #include "EarthquakeSeries.h"
+#include "FewChangesSeries.h"
 #include "HotBlobsSeries.h"
 #include "JetSeries.h"
 #include "StandardSeries.h"
@@ -25,6 +26,7 @@ const std::vector<SeriesKind>& SeriesCatalog()
     WaveSeries(),
     ClippedWaveSeries(),
     StandardSeries(),
+    FewChangesSeries(),
     EarthquakeSeries(),
   };
   return kinds;

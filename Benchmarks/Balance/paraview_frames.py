@@ -87,6 +87,7 @@ def show(arguments, view):
     display.NumberOfThreads = 1
     display.Shade = int(arguments.shaded)
     display.SampleDistanceVoxels = 1.0
+    display.ReuseFrames = 0  # the same scene is to take its time again and again
     return display
 
 

@@ -85,6 +85,7 @@ def main():
     display = simple.Show(blocks, view)
     simple.ColorBy(display, ("POINTS", arguments.array))
     display.SetRepresentationType("Banyan Volume")
+    display.ReuseFrames = 0
     simple.ResetCamera(view)
     simple.Render(view)
     first, worked = time.perf_counter() - start, processor_seconds() - worked
