@@ -112,6 +112,8 @@ public:
 
   void Run()
   {
+    // The first pass of a process finds memory and threads cold: it does not count.
+    this->Pass(Warming, this->Options.Reuse.front());
     for (int pass = 0; pass < this->Options.Passes; ++pass)
     {
       for (const bool reuse : this->Options.Reuse)
@@ -122,6 +124,8 @@ public:
   }
 
 private:
+  static constexpr int Warming = -1; ///< number of a pass
+
   int StepOf(int frame, int steps) const
   {
     const PlayMode mode = this->Options.Mode;
@@ -185,7 +189,7 @@ private:
       const double changed = changes.Since(field.Drawn().Source(), scene);
       const double difference = this->Difference(frame, reuse, number);
       const double error = this->TrueError(frame, field, number);
-      if (this->Ranks.Rank() == 0 && !(twice && number < steps))
+      if (this->Ranks.Rank() == 0 && pass != Warming && !(twice && number < steps))
       {
         const FrameStatistics& took = frame.Picture.Statistics;
         const bool drawn = !frame.Kept;
