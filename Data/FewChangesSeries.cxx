@@ -26,10 +26,10 @@ void PutBall(const glm::dvec3& centre, int size, ThreadPool& pool, float* values
   const double last = size - 1.0;
   const auto first = static_cast<int>(std::floor((centre.z - Radius) * last));
   const auto count = static_cast<int>(std::ceil(2.0 * Radius * last)) + 2;
-  pool.ParallelFor(count,
+  pool.ParallelFor(std::min(count, size - first),
     [&](std::int64_t i)
     {
-      const int z = std::clamp(first + static_cast<int>(i), 0, size - 1);
+      const int z = first + static_cast<int>(i);
       for (int y = 0; y < size; ++y)
       {
         float* const row = values + (std::int64_t{ z } * size + y) * size;

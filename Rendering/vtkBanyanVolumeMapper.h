@@ -78,11 +78,11 @@ class vtkMultiProcessController;
   Switch(ReuseFrames, true, advanced, all,                                                         \
     "Takes from earlier frames what is the same: a scene that was drawn, in this view and step, "  \
     "is not drawn again, and steps of a series that plays share how finely they are sampled. "     \
-    "Default: on; off draws each frame from nothing, to measure.")                                                                        \
+    "Default: on; off casts all rays and plans each frame, to measure.")                           \
   Switch(ReadAhead, true, advanced, images,                                                        \
     "Encoded image data: decodes bricks of the next frames in the background, on cores that "      \
     "nobody else wants. While the series plays these are bricks of the next two steps, while "     \
-    "the camera moves bricks that come onto the screen. Default: on.")                       \
+    "the camera moves bricks that come onto the screen. Default: on.")                             \
   Choice(LoadBalancing, 2, 0, 2, advanced, all,                                                    \
     "Measured cost (default): the zones of the ranks follow the cost of the last frames. "         \
     "Off: equal zones. 'Slice step' remains for older scripts and balances as 'Measured "          \

@@ -85,6 +85,7 @@ public:
   {
     int Step = 0;
     int Steps = 1;
+    Hash128 Field; ///< of all that names the field but the step: series, array, enhancement
   };
   virtual Place InSeries() const { return {}; }
   /// All bricks of another step of the series, as this rank has them. Null where there are none.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Fields/SeriesField.h"
 
+#include "Base/Digest.h"
 #include "Base/ThreadPool.h"
 #include "Cache/BrickCache.h"
 #include "Render/Bricks/EnhancedBrickSource.h"
@@ -186,7 +187,17 @@ void SeriesField::ReadAhead(const RayScene& scene, int rank)
 
 DrawnField::Place SeriesField::InSeries() const
 {
-  return this->Bricks ? Place{ this->Drawn.Step, this->Series->Index().Steps() } : Place();
+  if (!this->Bricks)
+  {
+    return {};
+  }
+  Digest field;
+  field.Add(this->Series->Fingerprint());
+  field.Add(this->Drawn.Array);
+  field.Add(this->Drawn.Component);
+  field.Add(this->Drawn.Level);
+  field.Add(this->Enhancement);
+  return { this->Drawn.Step, this->Series->Index().Steps(), field.Get() };
 }
 
 std::unique_ptr<BrickSource> SeriesField::SourceOfStep(int step)

@@ -14,6 +14,17 @@
 
 namespace banyan
 {
+namespace
+{
+
+/// Hashes of all that decides a picture, without the values and with them.
+struct Names
+{
+  Hash128 View;
+  Hash128 Whole;
+};
+
+} // namespace
 
 /// A hash of all that decides a picture, but the values and how finely they are sampled.
 Hash128 FieldFrames::SceneOf(const RayScene& scene, const Wish& wish)
@@ -84,13 +95,17 @@ FieldFrames::Frame FieldFrames::Draw(
   Digest whole;
   whole.Add(digest);
   whole.Add(content);
-  const ToleranceControl::Aim aim = this->Tolerance.Begin(whole.Get(), wish.Sampling);
+  // What follows has messages: all ranks go by the names that the first one has for the scene.
+  const Names mine{ digest, whole.Get() };
+  Names agreed = mine;
+  communicator.Broadcast(0, &agreed, sizeof(agreed));
+  const ToleranceControl::Aim aim = this->Tolerance.Begin(agreed.Whole, wish.Sampling);
   const KeptPictures::Quality quality{ aim.Coarseness, aim.Interacting };
   this->Pictures.KeepIn(wish.Reuse ? field.Drawn().Caches() : nullptr);
   const DrawnPicture* const kept = this->Pictures.Find(digest, content, quality);
-  if (!this->TakeKept(communicator, whole.Get(), kept, wish, frame))
+  if (!this->TakeKept(communicator, mine.Whole, kept, wish, frame))
   {
-    this->DrawAnew(communicator, field, scene, digest, wish, aim, frame);
+    this->DrawAnew(communicator, field, scene, agreed.View, wish, aim, frame);
     if (wish.Reuse && frame.Picture.Pixels)
     {
       std::set<int> levels = scene.Samplings ? scene.Samplings->UsedLevels() : std::set<int>();
@@ -169,6 +184,7 @@ void FieldFrames::Forget()
 {
   this->Pictures.Clear();
   this->Rays.Forget();
+  this->Tolerance.ForgetPlans();
 }
 
 } // namespace banyan

@@ -12,8 +12,8 @@ namespace banyan
 {
 
 /// Frames of one field of all ranks, one after the other, and what a frame can take from those
-/// before it: how finely it is sampled, plans of compositing, and whole pictures of scenes that
-/// come again.
+/// before it: how finely it is sampled, plans of compositing, rays that meet what they met, and
+/// whole pictures of scenes that come again.
 class FieldFrames
 {
 public:

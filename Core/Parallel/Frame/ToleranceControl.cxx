@@ -217,6 +217,7 @@ SamplingPlan ToleranceControl::PlanWithin(Communicator& communicator, Distribute
   };
   Digest all;
   all.Add(view);
+  all.Add(place.Field);
   all.Add(sampling.Tolerance);
   all.Add(sampling.CoarsestLevel);
   return this->Plans.at(static_cast<std::size_t>(wish.Eye))
@@ -267,6 +268,14 @@ bool ToleranceControl::RefineNext()
   const bool first = this->Passes[0].Next();
   const bool second = this->Passes[1].Next();
   return first || second;
+}
+
+void ToleranceControl::ForgetPlans()
+{
+  for (GroupPlans& plans : this->Plans)
+  {
+    plans.Forget();
+  }
 }
 
 void ToleranceControl::FrameTook(const Wish& wish, double seconds)

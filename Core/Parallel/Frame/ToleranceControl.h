@@ -78,6 +78,9 @@ public:
   /// The same as RefinementPasses::Next, for the pictures of both eyes.
   bool RefineNext();
 
+  /// Forgets plans of earlier frames: when the ranks are others, say.
+  void ForgetPlans();
+
 private:
   RefinementPasses::Wish PassesOf(const Wish& wish) const;
   /// For pictures that keep no tolerance (InteractiveLevels): while somebody moves

@@ -27,13 +27,19 @@ std::array<std::uint64_t, 64> EntriesOfBins(const RayScene& scene, const MaskRan
   const std::vector<glm::vec4>& entries = scene.Transfer.Entries;
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::array<std::uint64_t, 64> bins{};
+  const double width = (range.High - range.Low) / 64.0;
+  const bool divided = width > 0.0 && width < infinity;
   for (int bin = 0; bin < 64; ++bin)
   {
-    const double width = (range.High - range.Low) / 64.0;
     // What lies outside counts for the first or the last bin. A value at an edge may be in both.
-    const double low = bin == 0 ? -infinity : range.Low + (bin - 0.01) * width;
-    const double high = bin == 63 ? infinity : range.Low + (bin + 1.01) * width;
-    const VisibleValues::Span span = values->EntriesOf(low, high);
+    const std::size_t last = entries.size() - 1;
+    VisibleValues::Span span{ 0, last };
+    if (divided)
+    {
+      const VisibleValues::Span own =
+        values->EntriesOf(range.Low + (bin - 0.01) * width, range.Low + (bin + 1.01) * width);
+      span = { bin == 0 ? 0 : own.First, bin == 63 ? last : own.Last };
+    }
     bins[static_cast<std::size_t>(bin)] =
       ShortHashOf(entries.data() + span.First, (span.Last - span.First + 1) * sizeof(glm::vec4));
   }

@@ -5,7 +5,6 @@
 #include "Parallel/Fields/SeriesInput.h"
 #include "Parallel/Frame/FieldFrames.h"
 #include "Render/Dice.h"
-#include "Render/Sampling/ImageError.h"
 #include "Render/Scenes.h"
 #include "Series/Decode/CacheContext.h"
 #include "Series/SeriesTesting.h"
@@ -13,7 +12,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 
 namespace
 {
@@ -426,6 +424,21 @@ TEST(FieldFrames, PlansOfGroupsKeepTheTolerance)
         EXPECT_EQ(planned, 3) << "the first step, and the ends of two groups";
       });
   }
+}
+
+TEST(FieldFrames, PlansAreThoseOfOneField)
+{
+  const auto alone = MakeSelfCommunicator();
+  Player player(*alone);
+  Situation now;
+  now.PlansOfGroups = true;
+  for (now.Step = 0; now.Step < 3; ++now.Step)
+  {
+    player.Draw(now);
+  }
+  EXPECT_EQ(player.Draw(now).Picture.Statistics.Probes, 0);
+  now.Motion = 0.5;
+  EXPECT_GT(player.Draw(now).Picture.Statistics.Probes, 0) << "other values in the same view";
 }
 
 TEST(FieldFrames, OtherValuesInMemoryAreDrawn)
