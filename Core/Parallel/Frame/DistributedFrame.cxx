@@ -9,6 +9,7 @@
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Composite/CompositeWhileCasting.h"
 #include "Render/Raycast/InterpolateSkippedPixels.h"
+#include "Render/Raycast/PutBackReused.h"
 
 #include <algorithm>
 #include <cmath>
@@ -73,8 +74,7 @@ struct Report
   double BricksDrawn;
   double BricksUniform;
   double BricksSkipped;
-  double PixelsShown;
-  double PixelsReused;
+  double ReusedFraction;
   double BytesComposited;
   double MessagesComposited;
 };
@@ -112,8 +112,7 @@ void Publish(Communicator& communicator, const Report& mine, FrameStatistics& st
   statistics.BricksDrawn = sum(&Report::BricksDrawn);
   statistics.BricksUniform = sum(&Report::BricksUniform);
   statistics.BricksSkipped = sum(&Report::BricksSkipped);
-  statistics.PixelsShown = sum(&Report::PixelsShown);
-  statistics.PixelsReused = sum(&Report::PixelsReused);
+  statistics.ReusedFraction = all.front().ReusedFraction;
   statistics.BytesComposited = static_cast<std::uint64_t>(sum(&Report::BytesComposited));
   statistics.MessagesComposited = static_cast<std::uint64_t>(sum(&Report::MessagesComposited));
 }
@@ -202,6 +201,7 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene,
   const PhaseScope phase(Phase::Compositing);
   const Timer finish;
   FinishPicture(scene, picture);
+  const double reused = PutBackReused(scene, picture, share.Pool);
   InterpolateSkippedPixels(scene, picture, share.Pool);
   own.CompositeSeconds += finish.Seconds();
 
@@ -209,9 +209,8 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene,
   const RayStatistics& rays = own.Rays;
   Publish(communicator,
     { own.RenderSeconds, own.CompositeSeconds, total.Seconds(), number(rays.SamplesTaken),
-      number(rays.BricksDrawn), number(rays.BricksUniform), number(rays.BricksSkipped),
-      number(rays.PixelsShown), number(rays.PixelsReused), number(own.Sent.BytesSent),
-      number(own.Sent.MessagesSent) },
+      number(rays.BricksDrawn), number(rays.BricksUniform), number(rays.BricksSkipped), reused,
+      number(own.Sent.BytesSent), number(own.Sent.MessagesSent) },
     statistics);
   return picture;
 }

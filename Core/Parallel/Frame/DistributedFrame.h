@@ -26,8 +26,7 @@ struct FrameStatistics
   std::int64_t BricksDrawn = 0;
   std::int64_t BricksUniform = 0;
   std::int64_t BricksSkipped = 0;
-  std::int64_t PixelsShown = 0;         ///< RayStatistics
-  std::int64_t PixelsReused = 0;        ///< RayStatistics
+  double ReusedFraction = 0.0;          ///< PutBackReused
   std::uint64_t BytesComposited = 0;    ///< sent between ranks to make one picture of N
   std::uint64_t MessagesComposited = 0; ///< in so many messages
 };
@@ -43,7 +42,8 @@ struct RankShare
 };
 
 /// Draws one picture on all ranks: each casts rays through the cells of its own zone, and the
-/// pictures are composited, from the first parts on that are final. Collective.
+/// pictures are composited, from the first parts on that are final. Rays that are reused are neither
+/// cast nor sent. Collective.
 ///
 /// @param scene the same on all ranks (depths included)
 /// @param compositing how the pictures are put together; the same on all ranks. This function sets

@@ -8,23 +8,13 @@
 #include "Parallel/Communicate/Collective.h"
 #include "Render/Scene/SceneDigest.h"
 
+#include <algorithm>
 #include <set>
 #include <utility>
 #include <vector>
 
 namespace banyan
 {
-namespace
-{
-
-/// Hashes of all that decides a picture, without the values and with them.
-struct Names
-{
-  Hash128 View;
-  Hash128 Whole;
-};
-
-} // namespace
 
 /// A hash of all that decides a picture, but the values and how finely they are sampled.
 Hash128 FieldFrames::SceneOf(const RayScene& scene, const Wish& wish)
@@ -105,7 +95,7 @@ FieldFrames::Frame FieldFrames::Draw(
   const DrawnPicture* const kept = this->Pictures.Find(digest, content, quality);
   if (!this->TakeKept(communicator, mine.Whole, kept, wish, frame))
   {
-    this->DrawAnew(communicator, field, scene, agreed.View, wish, aim, frame);
+    this->DrawAnew(communicator, field, scene, agreed, wish, aim, frame);
     if (wish.Reuse && frame.Picture.Pixels)
     {
       std::set<int> levels = scene.Samplings ? scene.Samplings->UsedLevels() : std::set<int>();
@@ -116,19 +106,48 @@ FieldFrames::Frame FieldFrames::Draw(
   return frame;
 }
 
-/// Whether rays are kept from picture to picture: of one rank, where the budget has room for one.
-bool FieldFrames::KeepsRays(
-  Communicator& communicator, DrawnField& drawn, const RayScene& scene, const Wish& wish)
+/// Collective: looks which rays need not be cast.
+/// @param name of the picture
+/// @return whether rays of this picture are to be kept: where the budget has room for one
+bool FieldFrames::BeginRays(Communicator& communicator, DrawnField& drawn, RayScene& scene,
+  const Hash128& name, const Wish& wish)
 {
-  const std::uint64_t bytes =
-    static_cast<std::uint64_t>(scene.Viewport.Count()) * sizeof(glm::vec4);
-  return wish.Reuse && communicator.Size() == 1 && drawn.Source() &&
-         scene.Blend.Mode == BlendMode::Composite && drawn.Caches()->PictureBudgetBytes() >= bytes;
+  scene.Reused.reset();
+  if (!wish.Reuse || scene.Blend.Mode != BlendMode::Composite)
+  {
+    this->Rays.Forget();
+    return false;
+  }
+  bool keeps = false;
+  Hash128 kept;
+  Collective(communicator,
+    [&]
+    {
+      const std::uint64_t bytes =
+        static_cast<std::uint64_t>(scene.Viewport.Count()) * sizeof(glm::vec4);
+      keeps = drawn.Source() && drawn.Caches()->PictureBudgetBytes() >= bytes;
+      if (keeps)
+      {
+        kept = this->Rays.Begin(scene, *drawn.Source(), name);
+      }
+      else
+      {
+        this->Rays.Forget();
+      }
+    });
+  // A ray that one rank does not cast has to be one that no rank casts.
+  std::vector<Hash128> all(static_cast<std::size_t>(communicator.Size()));
+  communicator.AllGather(&kept, sizeof(kept), all.data());
+  if (std::any_of(all.begin(), all.end(), [&](const Hash128& other) { return other != all[0]; }))
+  {
+    scene.Reused.reset();
+  }
+  return keeps;
 }
 
 /// Collective.
 void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, RayScene& scene,
-  const Hash128& view, const Wish& wish, const ToleranceControl::Aim& aim, Frame& frame)
+  const Names& names, const Wish& wish, const ToleranceControl::Aim& aim, Frame& frame)
 {
   const Timer drawing;
   DrawnField& drawn = field.Drawn();
@@ -140,17 +159,10 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   const PhaseScope sampling(Phase::Sampling);
   FrameStatistics& numbers = frame.Picture.Statistics;
   frame.Picture.EstimatedError =
-    this->Tolerance.Plan(communicator, field, scene, view, wish.Sampling, aim, budget, numbers);
+    this->Tolerance.Plan(
+      communicator, field, scene, names.View, wish.Sampling, aim, budget, numbers);
   frame.Picture.Limit = this->Tolerance.Limit();
-  const bool keeps = this->KeepsRays(communicator, drawn, scene, wish);
-  if (keeps)
-  {
-    this->Rays.Begin(scene, *drawn.Source(), drawn.Zones().front());
-  }
-  else
-  {
-    this->Rays.Forget();
-  }
+  const bool keeps = this->BeginRays(communicator, drawn, scene, names.Whole, wish);
   const FrameStatistics probes = numbers;
   CompositeOptions compositing;
   compositing.Behind = wish.Behind;
@@ -175,7 +187,10 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   numbers.BytesComposited += probes.BytesComposited;
   numbers.MessagesComposited += probes.MessagesComposited;
   const PhaseScope balancing(Phase::Balancing);
-  drawn.EndFrame(communicator);
+  if (!scene.Reused)
+  {
+    drawn.EndFrame(communicator); // what a part of a picture takes says little of the next one
+  }
   this->Tolerance.FrameTook(
     wish.Sampling, AllMax(communicator, drawing.Seconds() + wish.ShowSeconds));
 }

@@ -35,11 +35,7 @@ public:
     /// The part of the pixels that show something whose rays were cast for an earlier frame.
     double ReusedFraction() const
     {
-      const FrameStatistics& took = this->Picture.Statistics;
-      return this->Kept ? 1.0
-             : took.PixelsShown > 0
-               ? static_cast<double>(took.PixelsReused) / static_cast<double>(took.PixelsShown)
-               : 0.0;
+      return this->Kept ? 1.0 : this->Picture.Statistics.ReusedFraction;
     }
   };
 
@@ -56,13 +52,20 @@ public:
   void Forget();
 
 private:
+  /// Hashes of all that decides a picture, without the values and with them.
+  struct Names
+  {
+    Hash128 View;
+    Hash128 Whole;
+  };
+
   static Hash128 SceneOf(const RayScene& scene, const Wish& wish);
   bool TakeKept(Communicator& communicator, const Hash128& whole, const DrawnPicture* kept,
     const Wish& wish, Frame& frame);
-  static bool KeepsRays(
-    Communicator& communicator, DrawnField& drawn, const RayScene& scene, const Wish& wish);
+  bool BeginRays(Communicator& communicator, DrawnField& drawn, RayScene& scene,
+    const Hash128& name, const Wish& wish);
   void DrawAnew(Communicator& communicator, DistributedField& field, RayScene& scene,
-    const Hash128& view, const Wish& wish, const ToleranceControl::Aim& aim, Frame& frame);
+    const Names& names, const Wish& wish, const ToleranceControl::Aim& aim, Frame& frame);
 
   ToleranceControl Tolerance;
   CompositePlanCache Plans;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Render/Levels/KeptRays.h"
 
+#include "Base/Digest.h"
 #include "Render/Bricks/VisibleBricks.h"
 #include "Render/Scene/FunctionTables.h"
 #include "Render/Scene/RayLattice.h"
@@ -88,8 +89,7 @@ void Mark(const PixelRect& pixels, int level, const TileSamplings* samplings, Re
     {
       const glm::ivec2 tile(x / ReusedRays::BlocksPerRow, y / ReusedRays::BlocksPerRow);
       if (!samplings ||
-          samplings->Samplings()[static_cast<std::size_t>(samplings->NumberAt(tile))].Level ==
-            level)
+          samplings->At(tile).Level == level)
       {
         reused.At(tile) |= ReusedRays::BitOf(x * edge, y * edge);
       }
@@ -198,23 +198,20 @@ void KeptRays::MarkTiles(const RayScene& scene, ReusedRays& reused) const
   {
     for (int x = 0; x < reused.Tiles.x; ++x)
     {
-      const auto of = [x, y](const TileSamplings& plan) {
-        return plan.Samplings()[static_cast<std::size_t>(plan.NumberAt({ x, y }))];
-      };
-      const bool same = of(*scene.Samplings) == of(*this->Samplings);
+      const bool same = scene.Samplings->At({ x, y }) == this->Samplings->At({ x, y });
       reused.At({ x, y }) |= same ? 0 : ReusedRays::All;
     }
   }
 }
 
-void KeptRays::Begin(RayScene& scene, BrickSource& source, const Box& cells)
+Hash128 KeptRays::Begin(RayScene& scene, BrickSource& source, const Hash128& name)
 {
   const Hash128 view = DigestWithoutEntries(scene);
   if (view != this->View)
   {
     this->Forget();
     this->View = view;
-    return;
+    return {};
   }
   std::map<int, Seen> next;
   for (const int level : scene.Samplings ? scene.Samplings->UsedLevels() : std::set<int>{ 0 })
@@ -223,32 +220,37 @@ void KeptRays::Begin(RayScene& scene, BrickSource& source, const Box& cells)
     next[level] = at ? Look(scene, *at) : Seen();
   }
   const auto reused = std::make_shared<ReusedRays>(scene.Camera.ImageSize());
-  if (this->Picture && cells == this->Cells && !source.Hidden() &&
-      scene.OpacityLimit == this->OpacityLimit &&
+  Digest all;
+  if (this->Complete && !source.Hidden() && scene.OpacityLimit == this->OpacityLimit &&
       (scene.Samplings != nullptr) == (this->Samplings != nullptr) &&
       this->MarkLevels(scene, source, next, *reused))
   {
     this->MarkTiles(scene, *reused);
     reused->Picture = this->Picture;
     scene.Reused = reused;
+    all.Add(this->Name);
+    all.Add(reused->Cast);
   }
   // Whatever fails before Keep leaves nothing that is half right.
   this->Forget();
   this->View = view;
-  this->Cells = cells;
+  this->Name = name;
   this->OpacityLimit = scene.OpacityLimit;
   this->Samplings = scene.Samplings;
   this->Levels = std::move(next);
+  return scene.Reused ? all.Get() : Hash128();
 }
 
 void KeptRays::Keep(const std::shared_ptr<const FloatImage>& picture)
 {
-  this->Picture = this->Levels.empty() ? nullptr : picture;
+  this->Complete = !this->Levels.empty();
+  this->Picture = this->Complete ? picture : nullptr;
 }
 
 void KeptRays::Forget()
 {
   this->View = Hash128();
+  this->Complete = false;
   this->Picture.reset();
   this->Samplings.reset();
   this->Levels.clear();

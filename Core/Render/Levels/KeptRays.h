@@ -27,6 +27,9 @@ namespace banyan
 /// It begins with the second picture of a view: of those that are seen once, while a camera moves,
 /// nothing is kept, and nothing is looked at.
 ///
+/// Several ranks look at all bricks, so that all know the same of all blocks. Rank 0 keeps the
+/// picture of all of them; zones may move meanwhile.
+///
 /// Only of composited samples. A change of the transfer function is one of all bricks that have
 /// values whose entries have changed.
 class KeptRays
@@ -34,11 +37,14 @@ class KeptRays
 public:
   /// Looks what can be kept for the next picture.
   /// @param scene with its samplings; gets RayScene::Reused
-  /// @param source of the finest level
-  /// @param cells that are drawn
-  void Begin(RayScene& scene, BrickSource& source, const Box& cells);
+  /// @param source of the finest level; all bricks
+  /// @param name a hash of all that decides the next picture, its samplings apart; the same on all
+  /// ranks
+  /// @return a hash of all that is kept, for ranks to compare; zeros if that is nothing
+  Hash128 Begin(RayScene& scene, BrickSource& source, const Hash128& name);
 
-  /// Keeps the picture of that scene. Not to be called when it could not be drawn.
+  /// Keeps the picture of that scene. Not to be called when a rank could not draw it.
+  /// @param picture null but on rank 0
   void Keep(const std::shared_ptr<const FloatImage>& picture);
 
   void Forget();
@@ -52,11 +58,12 @@ private:
   void MarkTiles(const RayScene& scene, ReusedRays& reused) const;
 
   Hash128 View; ///< of the picture that was begun last
-  Box Cells;
+  Hash128 Name;
   float OpacityLimit = 0.0f;
   std::shared_ptr<const TileSamplings> Samplings;
-  std::map<int, Seen> Levels;                ///< that it was drawn from
-  std::shared_ptr<const FloatImage> Picture; ///< of that view; null: no rays are kept
+  std::map<int, Seen> Levels; ///< that it was drawn from
+  bool Complete = false;      ///< whether it has been drawn
+  std::shared_ptr<const FloatImage> Picture;
 };
 
 } // namespace banyan

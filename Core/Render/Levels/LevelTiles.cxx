@@ -28,13 +28,6 @@ TileGrid GridFor(const PixelRect& rect, bool probe, std::size_t workers)
   return grid;
 }
 
-glm::vec4 PixelOf(const FloatImage& picture, int x, int y)
-{
-  const PixelRect& rect = picture.Rect;
-  const bool inside = x >= rect.Lo.x && y >= rect.Lo.y && x < rect.Hi.x && y < rect.Hi.y;
-  return inside ? picture.At(x, y) : glm::vec4(0.0f);
-}
-
 } // namespace
 
 LevelTiles::LevelTiles(const LevelScene& level, const std::vector<PlannedBrick>& bricks,
@@ -111,27 +104,15 @@ void LevelTiles::Finish(std::size_t number, std::size_t taken)
   {
     this->Clear(rect);
   }
-  const ReusedRays* const reused =
-    tile.Cast != ReusedRays::All ? this->Level.Scene.Reused.get() : nullptr;
   const int stride = tile.PixelStride;
   const glm::ivec2 first = (rect.Lo + (stride - 1)) / stride * stride;
-  for (int y = first.y; y < rect.Hi.y && (tile.Begun || reused); y += stride)
+  for (int y = first.y; y < rect.Hi.y && tile.Begun; y += stride)
   {
     glm::vec4* const row = &this->Pixels.At(rect.Lo.x, y) - rect.Lo.x;
     for (int x = first.x; x < rect.Hi.x; x += stride)
     {
-      const bool cast = !reused || (tile.Cast & ReusedRays::BitOf(x, y)) != 0;
-      if (!cast)
-      {
-        row[x] = PixelOf(*reused->Picture, x, y);
-      }
-      else if (tile.Begun)
-      {
-        row[x].a = 1.0f - row[x].a;
-      }
-      const int shown = row[x].a > 0.0f ? 1 : 0;
-      tile.PixelsShown += shown;
-      tile.PixelsReused += cast ? 0 : shown;
+      // Those that are not cast stay as RayTile::Open has made them: nothing.
+      row[x].a = (tile.Cast & ReusedRays::BitOf(x, y)) != 0 ? 1.0f - row[x].a : 0.0f;
     }
   }
   tile.Final = true;

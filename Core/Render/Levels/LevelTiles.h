@@ -27,8 +27,6 @@ struct LevelTile
   bool Done = false;                       ///< no ray of it needs another brick
   bool Final = false;                      ///< its pixels have opacities
   std::size_t End = 0;                     ///< one behind the last brick of the plan over it
-  int PixelsShown = 0;                     ///< RayStatistics; set when it is Final
-  int PixelsReused = 0;
 };
 
 /// The tiles of a picture while one level is drawn. The fourth component of a pixel is the

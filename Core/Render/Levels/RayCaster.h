@@ -22,8 +22,6 @@ struct RayStatistics
   std::int64_t BricksDrawn = 0;   ///< bricks whose values were loaded, or kept from before
   std::int64_t BricksUniform = 0; ///< of one value: drawn without loading them or taking samples
   std::int64_t BricksSkipped = 0; ///< not loaded: cannot be seen, off screen, or hidden
-  std::int64_t PixelsShown = 0;   ///< pixels with rays that show something
-  std::int64_t PixelsReused = 0;  ///< of these, those of RayScene::Reused
 };
 
 /// Draws all bricks of `source` whose cells lie in `cells`.

@@ -104,8 +104,7 @@ void InterpolateSkippedPixels(const RayScene& scene, FloatImage& picture, Thread
       [&](std::int64_t number)
       {
         const auto tile = static_cast<std::size_t>(number);
-        const int sampling = scene.Samplings->NumberAt(grid.PositionOf(tile));
-        if (samplings[static_cast<std::size_t>(sampling)].PixelStride == stride)
+        if (scene.Samplings->At(grid.PositionOf(tile)).PixelStride == stride)
         {
           TileFiller(picture, grid.RectOf(tile), stride).Fill();
         }

@@ -26,10 +26,7 @@ std::shared_ptr<const TileSamplings> FinestSamplings(
   {
     for (int x = 0; x < tiles.x; ++x)
     {
-      const auto of = [&](const TileSamplings& plan) {
-        return plan.Samplings()[static_cast<std::size_t>(plan.NumberAt({ x, y }))];
-      };
-      const RaySampling finer = Finer(of(a), of(b));
+      const RaySampling finer = Finer(a.At({ x, y }), b.At({ x, y }));
       const auto known = std::find(list.begin(), list.end(), finer);
       numbers.push_back(static_cast<int>(known - list.begin()));
       if (known == list.end())

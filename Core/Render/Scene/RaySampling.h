@@ -89,6 +89,10 @@ public:
 
   /// @param tile inside Tiles()
   int NumberAt(const glm::ivec2& tile) const { return this->Numbers[this->IndexOf(tile)]; }
+  const RaySampling& At(const glm::ivec2& tile) const
+  {
+    return this->List[static_cast<std::size_t>(this->NumberAt(tile))];
+  }
   void SetNumber(const glm::ivec2& tile, int number)
   {
     this->Numbers[this->IndexOf(tile)] = static_cast<std::uint16_t>(number);

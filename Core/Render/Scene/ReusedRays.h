@@ -15,7 +15,8 @@ namespace banyan
 
 /// Rays of an earlier picture that are taken as they are. A tile of TileSamplings consists of 8 x 8
 /// blocks of as many pixels as a packet has rays; a bit of its mask says that rays of a block have
-/// to be cast.
+/// to be cast. Others are nothing in what a rank casts, and so travel nowhere; PutBackReused gives
+/// them to the picture of all ranks.
 struct ReusedRays
 {
   static constexpr int BlockEdge = RayPacket::Edge;
@@ -44,7 +45,7 @@ struct ReusedRays
     return std::uint64_t{ 1 } << (row * BlocksPerRow + column);
   }
 
-  std::shared_ptr<const FloatImage> Picture; ///< opacities in the fourth component
+  std::shared_ptr<const FloatImage> Picture; ///< of all ranks; null but on rank 0
   glm::ivec2 Tiles;
   std::vector<std::uint64_t> Cast; ///< masks, row by row
 };
