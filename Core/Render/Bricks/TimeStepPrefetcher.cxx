@@ -37,8 +37,9 @@ void AddLoaded(const BrickSource* source, std::vector<FieldBricks>& loaded)
 
 /// Bricks of the level of another step that come into sight there: that can be seen, on the screen,
 /// and cannot at the step that was drawn.
+/// @param changed whether those that can be seen in both, and differ, are added too
 void AddComing(const RayScene& scene, const Box& cells, const SeriesBrickSource& drawn,
-  const SeriesBrickSource& coming, std::vector<std::int64_t>& bricks)
+  const SeriesBrickSource& coming, bool changed, std::vector<std::int64_t>& bricks)
 {
   const VisibleBricks before(scene, drawn);
   const VisibleBricks after(scene, coming);
@@ -47,7 +48,8 @@ void AddComing(const RayScene& scene, const Box& cells, const SeriesBrickSource&
   for (std::int64_t brick = 0; brick < std::int64_t{ counts.x } * counts.y * counts.z; ++brick)
   {
     const Box part = Intersection(coming.CellsOf(brick), cells);
-    if (!part.Empty() && after.Contains(brick) && !before.Contains(brick) && screen.MayShow(part))
+    if (!part.Empty() && after.Contains(brick) && screen.MayShow(part) &&
+      (!before.Contains(brick) || (changed && drawn.ContentOf(brick) != coming.ContentOf(brick))))
     {
       bricks.push_back(brick);
     }
@@ -103,6 +105,9 @@ void TimeStepPrefetcher::Drawn(const std::shared_ptr<const SeriesFile>& series,
     plain ? plain->AtStep(this->Step, 0) : nullptr;
   RayScene seen = scene;
   seen.Depth.clear();
+  seen.Reused.reset();
+  // Of a picture whose rays were reused, hardly a brick was loaded: the next one needs others.
+  const bool changed = scene.Reused != nullptr;
   this->Decoder.Start(
     series,
     [=, step = this->Step]
@@ -116,7 +121,7 @@ void TimeStepPrefetcher::Drawn(const std::shared_ptr<const SeriesFile>& series,
           {
             const int level = field.Field.Level - now->FieldLevel();
             AddComing(InCellsOf(seen, level), CellsAtLevel(cells, level), *now->AtStep(step, level),
-              *now->AtStep(then, level), field.Bricks);
+              *now->AtStep(then, level), changed, field.Bricks);
           }
           wanted.push_back(std::move(field));
         }

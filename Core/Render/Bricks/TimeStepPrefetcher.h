@@ -15,7 +15,8 @@ struct RayScene;
 
 /// Decodes the next time steps of an encoded series in the direction of play, within half of what
 /// the cache has for decoded bricks, so that those of this one can stay: of the step that comes
-/// next, and the one after, the bricks that were drawn of this one and those that come into sight.
+/// next, and the one after, the bricks that were drawn of this one and those that come into sight;
+/// where rays were reused, all that change in sight.
 /// After the last step the series begins again.
 class TimeStepPrefetcher
 {
