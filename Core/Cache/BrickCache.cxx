@@ -2,6 +2,7 @@
 #include "Cache/BrickCache.h"
 
 #include "Base/Error.h"
+#include "Base/Timer.h"
 #include "Series/Decode/CacheContext.h"
 
 #include <algorithm>
@@ -94,6 +95,7 @@ struct BrickCache::Internals
   /// A brick that some thread is decoding.
   struct Pending
   {
+    Timer Began;
     bool Done = false;
     bool Ahead = false; ///< nobody asked for it: somebody who does need not wait for it
     Pointer Result;     ///< null after Done: decoding failed
@@ -178,7 +180,9 @@ struct BrickCache::Internals
         return nullptr;
       }
       const std::shared_ptr<Pending> pending = this->Decoding[key];
+      const Timer timer;
       this->Decoded.wait(lock, [&pending] { return pending->Done; });
+      this->Numbers.WaitSeconds += timer.Seconds();
       if (pending->Result)
       {
         ++this->Numbers.Hits; // even if the budget did not let it stay
@@ -207,7 +211,7 @@ struct BrickCache::Internals
     {
       return nullptr;
     }
-    const std::shared_ptr<Pending> claim = this->Decoding[key];
+    std::shared_ptr<Pending> claim = this->Decoding[key];
     claim->Ahead = true;
     return claim;
   }
@@ -216,6 +220,7 @@ struct BrickCache::Internals
   void PublishAhead(const Key& key, const std::shared_ptr<Pending>& claim, const Pointer& brick)
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->Numbers.DecodeSeconds += claim->Began.Seconds();
     const auto decoding = this->Decoding.find(key);
     if (decoding == this->Decoding.end() || decoding->second != claim)
     {
@@ -234,6 +239,9 @@ struct BrickCache::Internals
     {
       std::lock_guard<std::mutex> lock(this->Mutex);
       const auto decoding = this->Decoding.find(key);
+      const double took = decoding->second->Began.Seconds();
+      this->Numbers.DecodeSeconds += took;
+      this->Numbers.WaitSeconds += took;
       decoding->second->Done = true;
       decoding->second->Result = brick;
       this->Decoding.erase(decoding);

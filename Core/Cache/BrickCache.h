@@ -45,6 +45,8 @@ public:
     std::uint64_t Hits = 0;
     std::uint64_t Misses = 0; ///< equals the number of bricks decoded through the cache
     std::uint64_t Evictions = 0;
+    double DecodeSeconds = 0.0; ///< of all threads that decoded; reading is a part of it
+    double WaitSeconds = 0.0;   ///< of all threads that asked and found nothing: decoding, waiting
   };
 
   /// @param budgetBytes 0 keeps nothing

@@ -72,6 +72,23 @@ TEST_F(BrickCacheTest, DecodesOnceAndServesUnchangedBricksOfLaterSteps)
   EXPECT_EQ(cache.Get(*this->File, { 0, 0, 0, 0 }, 1), cache.Get(*this->File, { 3, 0, 0, 0 }, 1));
 }
 
+TEST_F(BrickCacheTest, CountsSecondsOfDecodingAndOfThoseWhoWaitForIt)
+{
+  BrickCache cache(Plenty);
+  (void)cache.GetAhead(*this->File, {}, 0);
+  const auto ahead = cache.GetStatistics();
+  EXPECT_GT(ahead.DecodeSeconds, 0.0);
+  EXPECT_EQ(ahead.WaitSeconds, 0.0);
+  (void)cache.Get(*this->File, {}, 0);
+  const auto held = cache.GetStatistics();
+  EXPECT_EQ(held.DecodeSeconds, ahead.DecodeSeconds);
+  EXPECT_EQ(held.WaitSeconds, 0.0);
+  (void)cache.Get(*this->File, {}, 1);
+  const auto waited = cache.GetStatistics();
+  EXPECT_GT(waited.WaitSeconds, 0.0);
+  EXPECT_NEAR(waited.DecodeSeconds - held.DecodeSeconds, waited.WaitSeconds, 1e-9);
+}
+
 TEST_F(BrickCacheTest, MacroVoxelsTakeNoRoomAndNoDecoding)
 {
   BrickCache cache(Plenty);
