@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Frames of a series that plays: their times, and what they take from those before. A line of CSV
 // for each frame. See README.md.
+#include "PaperExperiment.h"
 #include "PlaybackOptions.h"
 #include "PlaybackScene.h"
 #include "RawSeries.h"
@@ -37,7 +38,7 @@ using namespace banyan::bench;
 
 const char* const Columns =
   "series,mode,function,size,tolerance,shaded,ranks,reuse,pass,frame,step,"
-  "ms,samples,plan_ms,render_ms,composite_ms,bytes_read,bricks_decoded,"
+  "ms,samples,plan_ms,render_ms,composite_ms,decode_ms,wait_ms,bytes_read,bricks_decoded,"
   "decoded_ahead,bytes_composited,changed_fraction,reused_fraction,"
   "estimated_error,true_error,max_difference\n";
 
@@ -88,6 +89,32 @@ private:
   std::vector<Hash128> Before;
 };
 
+/// What one rank has read and decoded so far.
+struct Decoding
+{
+  double Seconds = 0.0; ///< of all threads
+  double Waited = 0.0;  ///< seconds of threads that draw
+  double Bytes = 0.0;
+  double Bricks = 0.0;
+  double Ahead = 0.0; ///< bricks that were asked for and had been decoded ahead
+
+  static Decoding Of(const BrickCache& cache, const DrawnField& drawn)
+  {
+    const BrickCache::Statistics numbers = cache.GetStatistics();
+    return { numbers.DecodeSeconds, numbers.WaitSeconds, static_cast<double>(drawn.BytesRead()),
+      static_cast<double>(numbers.Misses), static_cast<double>(cache.GetAheadStatistics().Hits) };
+  }
+
+  /// Collective: what all ranks have done since then.
+  Decoding Since(const Decoding& before, Communicator& ranks) const
+  {
+    const auto all = [&ranks, this, &before](double Decoding::*number)
+    { return AllSum(ranks, this->*number - before.*number); };
+    return { all(&Decoding::Seconds), all(&Decoding::Waited), all(&Decoding::Bytes),
+      all(&Decoding::Bricks), all(&Decoding::Ahead) };
+  }
+};
+
 double LargestDifference(const FloatImage& a, const FloatImage& b)
 {
   float largest = 0.0f;
@@ -125,6 +152,20 @@ public:
 
 private:
   static constexpr int Warming = -1; ///< number of a pass
+
+  /// What was measured of a frame.
+  struct Row
+  {
+    int Pass;
+    int Frame;
+    int Step;
+    bool Reuse;
+    double Milliseconds;
+    Decoding Decoded = {};
+    double Changed = 0.0;    ///< part of the visible bricks
+    double Difference = 0.0; ///< in 1/255
+    double TrueError = 0.0;  ///< in 1/255
+  };
 
   int StepOf(int frame, int steps) const
   {
@@ -167,9 +208,7 @@ private:
     {
       input.Step = this->StepOf(number, steps);
       const BrickCache& cache = BrickCache::Of(*input.Series());
-      const BrickCache::Statistics before = cache.GetStatistics();
-      const std::uint64_t ahead = cache.GetAheadStatistics().Hits;
-      const std::uint64_t bytes = field.Drawn().BytesRead();
+      const Decoding before = Decoding::Of(cache, field.Drawn());
       this->Ranks.Barrier();
       const Timer timer;
       field.Update(this->Ranks, input);
@@ -179,35 +218,35 @@ private:
       }
       RayScene scene = MakePlaybackScene(this->Options, field.Place(), field.Range(), number);
       const FieldFrames::Frame frame = frames.Draw(this->Ranks, field, scene, this->WishOf(reuse));
-      const double ms = 1e3 * AllMax(this->Ranks, timer.Seconds());
-      const BrickCache::Statistics after = cache.GetStatistics();
-      const double decoded = AllSum(this->Ranks, static_cast<double>(after.Misses - before.Misses));
-      const double hits =
-        AllSum(this->Ranks, static_cast<double>(cache.GetAheadStatistics().Hits - ahead));
-      const double read =
-        AllSum(this->Ranks, static_cast<double>(field.Drawn().BytesRead() - bytes));
-      const double changed = changes.Since(field.Drawn().Source(), scene);
-      const double difference = this->Difference(frame, reuse, number);
-      const double error = this->TrueError(frame, field, number);
+      Row row{ pass, number, input.Step, reuse, 1e3 * AllMax(this->Ranks, timer.Seconds()) };
+      row.Decoded = Decoding::Of(cache, field.Drawn()).Since(before, this->Ranks);
+      row.Changed = changes.Since(field.Drawn().Source(), scene);
+      row.Difference = this->Difference(frame, reuse, number);
+      row.TrueError = this->TrueError(frame, field, number);
       if (this->Ranks.Rank() == 0 && pass != Warming && !(twice && number < steps))
       {
-        const FrameStatistics& took = frame.Picture.Statistics;
-        const bool drawn = !frame.Kept;
-        std::fprintf(this->Table,
-          "%s,%s,%s,%d,%g,%d,%d,%s,%d,%d,%d,%.3f,%lld,%.3f,%.3f,%.3f,%.0f,%.0f,%.0f,%llu,%.4f,"
-          "%.4f,%.3f,%.3f,%.4f\n",
-          this->Options.Name.c_str(), this->ModeName(), this->Options.Function.c_str(),
-          this->Options.Picture, this->Options.Tolerance, this->Options.Shaded ? 1 : 0,
-          this->Ranks.Size(), reuse ? "on" : "off", pass, number, input.Step, ms,
-          drawn ? static_cast<long long>(took.SamplesTaken) : 0,
-          drawn ? 1e3 * (took.ProbeSeconds + took.StrideSeconds) : 0.0,
-          drawn ? 1e3 * took.RenderSeconds : 0.0, drawn ? 1e3 * took.CompositeSeconds : 0.0, read,
-          decoded, hits, static_cast<unsigned long long>(drawn ? took.BytesComposited : 0), changed,
-          frame.ReusedFraction(), frame.Picture.EstimatedError, error, difference);
+        this->Write(row, frame);
       }
       std::this_thread::sleep_for(
         std::chrono::duration<double, std::milli>(this->Options.ShownMilliseconds));
     }
+  }
+
+  void Write(const Row& row, const FieldFrames::Frame& frame)
+  {
+    const FrameStatistics took = frame.Kept ? FrameStatistics() : frame.Picture.Statistics;
+    const double threads = static_cast<double>(ThreadPool::Process().Width()) * this->Ranks.Size();
+    std::fprintf(this->Table,
+      "%s,%s,%s,%d,%g,%d,%d,%s,%d,%d,%d,%.3f,%lld,%.3f,%.3f,%.3f,%.3f,%.3f,%.0f,%.0f,%.0f,%llu,"
+      "%.4f,%.4f,%.3f,%.3f,%.4f\n",
+      this->Options.Name.c_str(), this->ModeName(), this->Options.Function.c_str(),
+      this->Options.Picture, this->Options.Tolerance, this->Options.Shaded ? 1 : 0,
+      this->Ranks.Size(), row.Reuse ? "on" : "off", row.Pass, row.Frame, row.Step, row.Milliseconds,
+      static_cast<long long>(took.SamplesTaken), 1e3 * (took.ProbeSeconds + took.StrideSeconds),
+      1e3 * took.RenderSeconds, 1e3 * took.CompositeSeconds, 1e3 * row.Decoded.Seconds,
+      1e3 * row.Decoded.Waited / threads, row.Decoded.Bytes, row.Decoded.Bricks, row.Decoded.Ahead,
+      static_cast<unsigned long long>(took.BytesComposited), row.Changed, frame.ReusedFraction(),
+      frame.Picture.EstimatedError, row.TrueError, row.Difference);
   }
 
   /// In 1/255; 0 unless it is wanted.
@@ -318,6 +357,10 @@ int main(int argc, char** argv)
     else if (!options.Encode.empty())
     {
       Encode(options);
+    }
+    else if (!options.Paper.empty())
+    {
+      RunPaperExperiment(options);
     }
     else if (options.Count)
     {

@@ -11,6 +11,9 @@ namespace banyan::bench
 const char* const PlaybackHelp =
   "banyan-bench-playback --encode SERIES.json --series FILE.banyan [--bound PART]\n"
   "  Encodes a raw series; the bound is a part of the range (default 1/512).\n"
+  "banyan-bench-playback --paper SERIES.json --series FILE.banyan [--brick N] [OPTIONS]\n"
+  "  Prints what the study's way saves on a raw series with 8-bit codes, and on what was\n"
+  "  encoded of it; bricks of N cells (default 16), --name, --picture and --frames as below.\n"
   "banyan-bench-playback --series FILE.banyan --output TABLE.csv [OPTIONS]\n"
   "  Plays a series, and appends a line for each frame. On several ranks with mpiexec.\n"
   "  --name NAME       of the series in the table\n"
@@ -78,6 +81,10 @@ PlaybackOptions ParsePlaybackOptions(const std::vector<std::string>& arguments)
       options.Help = true;
     else if (option == "--encode")
       options.Encode = text();
+    else if (option == "--paper")
+      options.Paper = text();
+    else if (option == "--brick")
+      options.BrickCells = count(1, 1024);
     else if (option == "--series")
       options.Series = text();
     else if (option == "--name")

@@ -21,6 +21,7 @@ enum class PlayMode
 struct PlaybackOptions
 {
   std::string Encode; ///< description of a raw series that is to be encoded; empty to play
+  std::string Paper;  ///< description of the raw series of the study's experiment; empty without
   std::string Series;
   std::string Name; ///< in the table
   std::string Output;
@@ -29,6 +30,7 @@ struct PlaybackOptions
   PlayMode Mode = PlayMode::Play;
   int Picture = 512;
   int Frames = 50;
+  int BrickCells = 16;    ///< of the study's experiment
   double Tolerance = 8.0; ///< in 1/255; 0: a sample per voxel
   bool Shaded = false;
   bool Count = false; ///< what of each picture is as before, in place of times
