@@ -52,13 +52,13 @@ find_data()
   [[ -z "$data" || -d "$data" ]] || fail "there is no folder '$data'."
 }
 
-# Takes what installing the packages is to be told.
+# Takes what installing the packages is to be told. The plugin is built where `with_paraview` is ON.
 install_and_build()
 {
   [[ "${BANYAN_SKIP_INSTALL:-0}" == 1 ]] ||
     "$RepositoryRoot/Utilities/install-dependencies.sh" "$@"
   [[ "${BANYAN_SKIP_BUILD:-0}" == 1 ]] ||
-    "$RepositoryRoot/Utilities/build.sh" -DBANYAN_WITH_PARAVIEW=OFF -DBANYAN_BUILD_TESTING=OFF \
+    "$RepositoryRoot/Utilities/build.sh" -DBANYAN_WITH_PARAVIEW="${with_paraview:-OFF}" -DBANYAN_BUILD_TESTING=OFF \
       -DBANYAN_BUILD_BENCHMARKS=ON
 }
 

@@ -5,30 +5,33 @@
 #
 #   --quick        64^3 samples, 16 steps, 256^2 pixels, one rank: two minutes instead of an hour
 #   --output DIR   where playback.csv (a line for each frame), playback-frames.png (time of each frame),
-#                  playback-series.png (times and what is reused, by series) go (default benchmark-output)
+#                  playback-series.png (times by series), playback-paraview.png (in ParaView), and
+#                  playback-paper.csv and .png (the study's experiment) go (default benchmark-output)
 #   --data DIR     folder of real data (default ../shared/data beside the project, if it exists): the
 #                  hurricane Isabel, viscous fingers and the aneurysm are played too
 #   --work DIR     keeps the series, which a later run uses again (default: playback-series in the build
 #                  folder)
-#   --passes N     of which medians are taken, each with empty caches (default 3)
+#   --passes N     of which medians are taken, each with empty caches (default 2); one in ParaView
 #   --series LIST  only these, separated by commas: jet, convection, turbulence, wave, few-changes,
-#                  isabel_velmag, viscous_fingers_run01, aneurysm_flow_demo_A
+#                  earthquake (a mesh, in ParaView alone), isabel_velmag, viscous_fingers_run01,
+#                  aneurysm_flow_demo_A
 #
-# Columns are explained in README.md. Installs what is missing, and builds in build-benchmark
-# (BANYAN_BUILD_DIR names another folder). BANYAN_SKIP_INSTALL=1 leaves the packages of the system alone,
-# BANYAN_SKIP_BUILD=1 the build.
+# Columns are explained in README.md. Needs pvbatch, and a display or Xvfb. Installs what is missing, and
+# builds in build-benchmark (BANYAN_BUILD_DIR names another folder). BANYAN_SKIP_INSTALL=1 leaves the
+# packages of the system alone, BANYAN_SKIP_BUILD=1 the build.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 # SPDX-License-Identifier: BSD-3-Clause
 
 output="benchmark-output"
 work=""
 quick=0
-passes=3
+passes=2
 series=""
 read_options "quick" "output data work passes series" "$@"
 find_data
 size=$((quick ? 64 : 128))
 steps=$((quick ? 16 : 50))
+mesh=earthquake-$((quick ? 5000 : 50000)) # and its cells
 pictures=(512 1024)
 ranks=(1 2)
 tolerances=(0 8 64)
@@ -55,6 +58,7 @@ encode()
   names+=("$name")
 }
 
+# The study's experiment needs the raw series: what it counts is kept beside the encoded one.
 generate()
 {
   local kind="$1" name="$1-$size"
@@ -67,7 +71,45 @@ generate()
       "$kind" "$name.raw" "$size" "$size" "$size" "$steps" > "$work/$name.json"
   fi
   encode "$name" "$work/$name.json"
+  if [[ ! -e "$work/$name-paper.csv" && -e "$work/$name.raw" ]]; then
+    "$program" --paper "$work/$name.json" --series "$work/$name.banyan" --name "$name" --picture 128 \
+      > "$work/$name-paper.csv" || fail "the study's experiment on '$name' failed."
+  fi
   rm -f "$work/$name.raw"
+}
+
+in_paraview()
+{
+  "$RepositoryRoot/Utilities/with-display.sh" mpiexec --oversubscribe -n 1 pvbatch \
+    "$here/Playback/paraview_playback.py" --plugin "$plugin" --info "$BuildFolder/bin/banyan-info" \
+    "$@" < /dev/null > "$work/paraview.log" 2>&1 ||
+    fail "ParaView failed: $(grep -m 1 'Error' "$work/paraview.log" || tail -1 "$work/paraview.log")"
+}
+
+# A mesh, which ParaView encodes and plays.
+shake()
+{
+  local name="$mesh"
+  if [[ ! -e "$work/$name.banyan" ]]; then
+    say "      $name"
+    "$BuildFolder/bin/banyan-generate" --series earthquake --cells "${mesh#*-}" --steps "$steps" \
+      --output "$work/$name" 2> "$work/$name.log" ||
+      fail "the earthquake could not be generated: $(tail -1 "$work/$name.log")"
+    in_paraview --encode "$work/$name/earthquake.exo" --array velocity --series "$work/$name.banyan"
+    rm -r "${work:?}/$name"
+  fi
+}
+
+# Plays a series in ParaView, with Banyan Volume and with its own Volume.
+play_in_paraview()
+{
+  local name="$1" picture="$2" tolerance
+  local common=(--series "$work/$name.banyan" --name "$name" --table "$output/playback.csv" \
+    --picture "$picture" --frames "$steps")
+  for tolerance in 1 8; do
+    in_paraview "${common[@]}" --tolerance "$tolerance"
+  done
+  in_paraview "${common[@]}" --representation volume
 }
 
 # Plays a series with some options on so many ranks.
@@ -82,15 +124,18 @@ play()
     fail "playing '$name' failed."
 }
 
-stage 1 4 "Installing what is missing and building"
-install_and_build
+stage 1 5 "Installing what is missing and building"
+with_paraview=ON install_and_build
 program="$BuildFolder/bin/banyan-bench-playback"
-[[ -x "$program" ]] || fail "there is no $program; it has to be built first, with MPI."
+plugin="$BuildFolder/lib/Banyan/Banyan.so"
+for file in "$program" "$plugin"; do
+  [[ -e "$file" ]] || fail "there is no $file; it has to be built first, with MPI and ParaView."
+done
 prepare_mpi
 work="${work:-$BuildFolder/playback-series}"
 mkdir -p "$work" "$output" || fail "the folders for the results cannot be made."
 
-stage 2 4 "Making series that are not in $work"
+stage 2 5 "Making series that are not in $work"
 names=()
 for kind in jet convection turbulence wave few-changes; do
   ! wanted "$kind" || generate "$kind"
@@ -105,8 +150,9 @@ if [[ -n "$data" && $quick == 0 ]]; then
     fi
   done
 fi
+! wanted earthquake || shake
 
-stage 3 4 "Measuring"
+stage 3 5 "Measuring"
 rm -f "$output/playback.csv"
 for name in "${names[@]}"; do
   say "      $name"
@@ -126,6 +172,20 @@ for name in "${names[@]}"; do
     BANYAN_SLOW_MB_S=$slow_mb_s play "$name" 1 "${few[@]}" --name "$name ($slow_mb_s MB/s)"
 done
 
-stage 4 4 "Reporting"
+stage 4 5 "Measuring in ParaView"
+for name in "${names[@]}" $(! wanted earthquake || echo "$mesh"); do
+  say "      $name"
+  for picture in "${pictures[@]}"; do
+    play_in_paraview "$name" "$picture"
+  done
+done
+
+stage 5 5 "Reporting"
+rm -f "$output/playback-paper.csv"
+for name in "${names[@]}"; do
+  if [[ -e "$work/$name-paper.csv" ]]; then
+    sed "$([[ ! -e "$output/playback-paper.csv" ]] || echo 1d)" "$work/$name-paper.csv" >> "$output/playback-paper.csv"
+  fi
+done
 "$python" "$here/Playback/report.py" "$output" || fail "the report could not be written."
-say "Done: $output/playback.csv, $output/playback-frames.png and -series.png"
+say "Done: $output/playback.csv, $output/playback-*.png and $output/playback-paper.csv"
