@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Base/RecycledMemory.h"
 
+#include <sys/mman.h>
+
+#include <cstdlib>
 #include <mutex>
 #include <new>
 #include <vector>
@@ -81,7 +84,7 @@ private:
   {
     while (this->Held > most)
     {
-      ::operator delete(this->Remove(0));
+      std::free(this->Remove(0));
     }
   }
 
@@ -95,6 +98,25 @@ Shelf& TheShelf()
 {
   static Shelf* const shelf = new Shelf;
   return *shelf;
+}
+
+/// From the system, which clears large pages in a tenth of the time that as many small ones take.
+/// Throws std::bad_alloc.
+void* NewMemory(std::size_t bytes)
+{
+  constexpr std::size_t largePage = std::size_t{ 2 } << 20;
+  void* const memory = std::aligned_alloc(bytes < largePage ? std::size_t{ 64 } : largePage, bytes);
+  if (!memory)
+  {
+    throw std::bad_alloc();
+  }
+#ifdef MADV_HUGEPAGE
+  if (bytes >= largePage)
+  {
+    ::madvise(memory, bytes, MADV_HUGEPAGE); // where the system has none, nothing is lost
+  }
+#endif
+  return memory;
 }
 
 /// Sixteen sizes for each power of two: pictures of nearly one size take each other's memory.
@@ -114,7 +136,7 @@ void* LargeMemory::Allocate(std::size_t bytes)
 {
   if (bytes < Smallest)
   {
-    return ::operator new(bytes);
+    return NewMemory((bytes + 63) / 64 * 64);
   }
   const std::size_t held = RoundedUp(bytes);
   if (held < bytes)
@@ -122,14 +144,14 @@ void* LargeMemory::Allocate(std::size_t bytes)
     throw std::bad_alloc();
   }
   void* const memory = TheShelf().Take(held);
-  return memory ? memory : ::operator new(held);
+  return memory ? memory : NewMemory(held);
 }
 
 void LargeMemory::Free(void* memory, std::size_t bytes) noexcept
 {
   if (bytes < Smallest || !TheShelf().Keep(memory, RoundedUp(bytes)))
   {
-    ::operator delete(memory);
+    std::free(memory);
   }
 }
 
