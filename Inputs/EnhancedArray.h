@@ -2,7 +2,7 @@
 #ifndef banyan_Inputs_EnhancedArray_h
 #define banyan_Inputs_EnhancedArray_h
 
-#include "Render/Bricks/TemporalEnhancement.h"
+#include "Render/Steps/TemporalEnhancement.h"
 
 #include "BanyanInputsModule.h" // For export macro
 #include "vtkSmartPointer.h"

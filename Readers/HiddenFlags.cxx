@@ -17,11 +17,25 @@ namespace banyan
 namespace
 {
 
-vtkSmartPointer<vtkUnsignedCharArray> Read(const vtkBanyanDeferred::Handle& handle)
+/// Between two steps, the flags of both.
+vtkSmartPointer<vtkUnsignedCharArray> Read(vtkBanyanDeferred::Handle handle)
 {
-  const vtkSmartPointer<vtkDataArray> array = vtkBanyanDeferred::NewPlain(handle);
-  array->SetName(vtkDataSetAttributes::GhostArrayName());
-  return vtkUnsignedCharArray::SafeDownCast(array);
+  const bool between = handle.Fraction > 0.0;
+  handle.Fraction = 0.0;
+  vtkSmartPointer<vtkUnsignedCharArray> flags =
+    vtkUnsignedCharArray::SafeDownCast(vtkBanyanDeferred::NewPlain(handle));
+  flags->SetName(vtkDataSetAttributes::GhostArrayName());
+  if (between)
+  {
+    ++handle.Step;
+    const vtkSmartPointer<vtkUnsignedCharArray> later =
+      vtkUnsignedCharArray::SafeDownCast(vtkBanyanDeferred::NewPlain(handle));
+    for (vtkIdType i = 0; i < flags->GetNumberOfValues(); ++i)
+    {
+      flags->SetValue(i, flags->GetValue(i) | later->GetValue(i));
+    }
+  }
+  return flags;
 }
 
 /// Calls `body(cell, whether a corner is hidden)` for each cell of a piece.

@@ -9,7 +9,9 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkPointData.h"
+#include "vtkUnsignedCharArray.h"
 
+#include "Series/Decode/BetweenSteps.h"
 #include "Series/Decode/SeriesFile.h"
 #include "Series/Grid/LevelGrid.h"
 
@@ -23,6 +25,7 @@ void ImageOutput::Fill(const StepRequest& request, const Box& wanted, const doub
   vtkBanyanDeferred::Handle handle;
   handle.Series = request.Series;
   handle.Step = request.Step;
+  handle.Fraction = request.Fraction;
   handle.Level = request.Level;
   const Grid grid = GridOfLevel(index.Domain, request.Level);
   const Box piece = Intersection(wanted, grid.Extent);
@@ -36,7 +39,7 @@ void ImageOutput::Fill(const StepRequest& request, const Box& wanted, const doub
   output->SetOrigin(&grid.Origin[0]);
   output->SetSpacing(&grid.Spacing[0]);
   output->SetDirectionMatrix(direction);
-  output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), index.Times[request.Step]);
+  output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), request.Time);
   if (!piece.Empty())
   {
     AddHiddenFlags(output, handle);
@@ -61,11 +64,26 @@ void ImageOutput::AddArrays(const StepRequest& request, vtkBanyanDeferred::Handl
     {
       continue;
     }
+    const bool held = request.Fraction > 0.0 && !AreInterpolated(array.Type);
+    handle.Fraction = held ? 0.0 : request.Fraction;
+    if (held && handle.Flags)
+    {
+      // Points that the next step hides are hidden, too, and the file does not say so of this one.
+      const vtkSmartPointer<vtkDataArray> plain = vtkBanyanDeferred::NewPlain(handle);
+      DescribeRange(*request.Series, handle.Array, handle.Flags, *plain);
+      output->AddArray(plain);
+      continue;
+    }
     const int components = static_cast<int>(array.Components.size());
     for (int component = 0; form == ArrayForm::Deferred && component < components; ++component)
     {
-      this->Verified.Verify(
-        *request.Series, { handle.Step, handle.Array, component, handle.Level }, handle.Samples);
+      FieldKey field{ handle.Step, handle.Array, component, handle.Level };
+      this->Verified.Verify(*request.Series, field, handle.Samples);
+      if (handle.Fraction > 0.0)
+      {
+        ++field.Step;
+        this->VerifiedNext.Verify(*request.Series, field, handle.Samples);
+      }
     }
     output->AddArray(newArray(handle));
   }

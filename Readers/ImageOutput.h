@@ -38,6 +38,7 @@ private:
     vtkPointData* output);
 
   VerifiedBricks Verified;
+  VerifiedBricks VerifiedNext; ///< of the later step, where values between two are read
 };
 
 } // namespace banyan

@@ -20,6 +20,7 @@
 #include "Mesh/Series/MeanOfLeaves.h"
 #include "Mesh/Series/MeshFile.h"
 #include "Mesh/Series/MeshLevel.h"
+#include "Series/Decode/BetweenSteps.h"
 #include "Series/Decode/SeriesFile.h"
 
 #include <algorithm>
@@ -89,7 +90,7 @@ void MeshOutput::Fill(const StepRequest& request, bool readAhead, vtkDataObject*
     this->FillGrid(
       request.Level, request.Piece, request.Pieces, vtkUnstructuredGrid::SafeDownCast(output));
   }
-  output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), index.Times[request.Step]);
+  output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), request.Time);
   vtkBanyanDeferred::Handle handle;
   handle.Series = request.Series;
   handle.Step = request.Step;
@@ -106,6 +107,7 @@ void MeshOutput::Fill(const StepRequest& request, bool readAhead, vtkDataObject*
     {
       continue;
     }
+    handle.Fraction = AreInterpolated(array.Type) ? request.Fraction : 0.0;
     const int components = static_cast<int>(array.Components.size());
     for (int component = 0; readAhead && component < components; ++component)
     {
@@ -299,9 +301,10 @@ vtkSmartPointer<vtkDataArray> MeshOutput::Values(const vtkBanyanDeferred::Handle
   const int components = values->GetNumberOfComponents();
   for (int component = 0; component < components; ++component)
   {
-    samples.Read(BrickCache::Of(*handle.Series), *handle.Series,
-      { handle.Step, handle.Array, component, handle.Level }, values->GetVoidPointer(0), components,
-      component);
+    ReadBetween(*handle.Series, { handle.Step, handle.Array, component, handle.Level },
+      handle.Fraction, samples.Count(), values->GetVoidPointer(0), components, component,
+      [&](const FieldKey& field, void* to, int stride, int at)
+      { samples.Read(BrickCache::Of(*handle.Series), *handle.Series, field, to, stride, at); });
   }
   return values;
 }

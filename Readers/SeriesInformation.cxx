@@ -2,6 +2,7 @@
 #include "SeriesInformation.h"
 
 #include "SeriesRangeArray.h"
+#include "StepRequest.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
@@ -10,6 +11,8 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTypeTraits.h"
 
+#include "Parallel/Communicate/Communicator.h"
+#include "Series/Decode/BetweenSteps.h"
 #include "Series/Decode/PieceRange.h"
 #include "Series/Grid/LevelGrid.h"
 
@@ -31,6 +34,12 @@ int VtkTypeOf(ScalarType type)
 {
   return Dispatch(
     type, [](auto tag) -> int { return vtkTypeTraits<typename decltype(tag)::Type>::VTK_TYPE_ID; });
+}
+
+/// As the user knows it.
+const std::string& NameOf(const ArrayIndex& array)
+{
+  return array.CellArray.empty() ? array.Name : array.CellArray;
 }
 
 } // namespace
@@ -97,16 +106,42 @@ void DescribeSeries(const SeriesIndex& index, int level, vtkInformation& informa
   }
 }
 
-int StepAt(const SeriesIndex& index, vtkInformation& information)
+void TakeTime(
+  const SeriesIndex& index, vtkInformation& information, bool interpolate, StepRequest& request)
 {
-  const std::vector<double>& times = index.Times;
-  if (!information.Has(Pipeline::UPDATE_TIME_STEP()))
+  const double asked = information.Has(Pipeline::UPDATE_TIME_STEP())
+                         ? information.Get(Pipeline::UPDATE_TIME_STEP())
+                         : index.Times.front();
+  const StepAndFraction place = PlaceOfTime(index.Times, asked);
+  request.Step = place.Step;
+  request.Fraction = interpolate ? place.Fraction : 0.0;
+  request.Time = request.Fraction > 0.0 ? asked : index.Times[static_cast<std::size_t>(place.Step)];
+}
+
+void HeldArrays::Warn(vtkObject& reader, const StepRequest& request, const Communicator& ranks)
+{
+  std::string names;
+  for (const ArrayIndex& array : request.Series->Index().Arrays)
   {
-    return 0;
+    if (request.Wants(array) && !AreInterpolated(array.Type))
+    {
+      names += (names.empty() ? "" : ", ") + NameOf(array);
+    }
   }
-  const double time = information.Get(Pipeline::UPDATE_TIME_STEP());
-  const auto after = std::upper_bound(times.begin(), times.end(), time);
-  return std::max(0, static_cast<int>(after - times.begin()) - 1);
+  if (names.empty() || request.Fraction == 0.0)
+  {
+    return;
+  }
+  const std::string sentence =
+    "'Interpolate In Time' leaves arrays of integers at the step before, because they may be "
+    "labels: " +
+    names + " of " + request.Series->Path() +
+    ". Encode them as floating-point numbers to interpolate them.";
+  if (sentence != this->Told && ranks.Rank() == 0)
+  {
+    vtkWarningWithObjectMacro(&reader, << sentence);
+  }
+  this->Told = sentence;
 }
 
 void DescribeRange(
@@ -157,7 +192,7 @@ void WriteErrors(std::ostream& text, const ArrayIndex& array)
       share = std::max(share, component.MeasuredMaxError / range.Width());
     }
   }
-  text << "\n" << (array.CellArray.empty() ? array.Name : array.CellArray) << ": ";
+  text << "\n" << NameOf(array) << ": ";
   if (error == 0)
   {
     text << "bit-exact";

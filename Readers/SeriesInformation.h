@@ -9,10 +9,14 @@
 
 class vtkDataArray;
 class vtkInformation;
+class vtkObject;
 class vtkUnsignedCharArray;
 
 namespace banyan
 {
+
+class Communicator;
+struct StepRequest;
 
 /// Half-open boxes to VTK's extents, which include their last index, and back.
 void ToExtent(const Box& box, int extent[6]);
@@ -22,9 +26,22 @@ Box FromExtent(const int extent[6]);
 /// scalars.
 void DescribeSeries(const SeriesIndex& index, int level, vtkInformation& information);
 
-/// The step that shows at the time asked for: the last one not after it; the first one before that,
-/// and when no time is asked for.
-int StepAt(const SeriesIndex& index, vtkInformation& information);
+/// Sets step, fraction and time to those that show at the time asked for: the last step not after
+/// it; the first one before that, and when no time is asked for.
+/// @param interpolate whether a time between two steps shows values between them
+void TakeTime(
+  const SeriesIndex& index, vtkInformation& information, bool interpolate, StepRequest& request);
+
+/// Arrays that stay at a step while others are interpolated.
+class HeldArrays
+{
+public:
+  /// Warns of those that a request wants between two steps: one rank, once for the same arrays.
+  void Warn(vtkObject& reader, const StepRequest& request, const Communicator& ranks);
+
+private:
+  std::string Told; ///< the last sentence
+};
 
 /// Tells a person what a series holds: size, ratio, and the error bound of each array, a line each.
 std::string SummaryOf(const SeriesIndex& index);

@@ -11,11 +11,13 @@ namespace banyan
 class SeriesFile;
 struct ArrayIndex;
 
-/// A step of a series, as somebody asks for it.
+/// A step of a series, or a time between two, as somebody asks for it.
 struct StepRequest
 {
   std::shared_ptr<const SeriesFile> Series;
   int Step = 0;
+  double Fraction = 0.0; ///< see StepAndFraction
+  double Time = 0.0;     ///< of the output
   int Level = 0;
   int Piece = 0;  ///< of meshes
   int Pieces = 1; ///< of meshes

@@ -10,7 +10,8 @@
  * @par Ranges:
  * - GetRange(): of this piece at this step. Contains the true range; exact when the piece consists
  *   of whole bricks, and always once the values have been decoded. Over the pieces of all ranks
- *   together it is exact. Infinities do not count before the values have been decoded.
+ *   together it is exact. Infinities do not count before the values have been decoded. Between two
+ *   steps it contains the true range until then.
  * - GetFiniteRange(range, component): of the whole *series*. ParaView asks it in
  *   vtkPVArrayInformation only (since 5.13 through the vtkFieldData), to choose colour ranges.
  *   They do not drift over time therefore. (In VTK 9.2, vtkVolumeTexture and

@@ -27,6 +27,11 @@ void vtkBanyanArray<T>::SetSource(const Handle& source)
   const banyan::SeriesFile& series = *source.Series;
   this->OfPiece =
     banyan::RangeOfPiece(series, source.Step, source.Array, source.Level, source.Samples);
+  if (source.Fraction > 0.0)
+  {
+    this->OfPiece = banyan::RangeBetween(this->OfPiece,
+      banyan::RangeOfPiece(series, source.Step + 1, source.Array, source.Level, source.Samples));
+  }
   this->OfSeries = banyan::RangeOfSeries(series, source.Array);
 
   const banyan::ArrayIndex& index = series.Index().Arrays[source.Array];

@@ -9,6 +9,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include "Cache/BrickCache.h"
+#include "Series/Decode/BetweenSteps.h"
 #include "Series/Decode/CacheContext.h"
 #include "Series/Decode/SeriesFile.h"
 #include "Series/Grid/LevelGrid.h"
@@ -182,9 +183,13 @@ void vtkBanyanDeferred::ReadInto(const Handle& handle, void* values)
   }
   for (int component = 0; component < components; ++component)
   {
-    banyan::ReadRegion(banyan::BrickCache::Of(*handle.Series), *handle.Series,
-      { handle.Step, handle.Array, component, handle.Level }, handle.Samples, values, components,
-      component);
+    banyan::ReadBetween(*handle.Series, { handle.Step, handle.Array, component, handle.Level },
+      handle.Fraction, handle.Samples.Count(), values, components, component,
+      [&](const banyan::FieldKey& field, void* to, int stride, int at)
+      {
+        banyan::ReadRegion(banyan::BrickCache::Of(*handle.Series), *handle.Series, field,
+          handle.Samples, to, stride, at);
+      });
   }
 }
 

@@ -44,6 +44,8 @@ public:
   {
     std::shared_ptr<const banyan::SeriesFile> Series;
     int Step = 0;
+    /// Towards the next step: see banyan::StepAndFraction. 0 for values that are not interpolated.
+    double Fraction = 0.0;
     int Array = 0; ///< index in the series' list of arrays
     int Level = 0; ///< 0 is the finest
     /// The samples of that level, starting at 0 in each axis (see banyan::BrickLayout), that the

@@ -44,7 +44,8 @@ struct vtkBanyanSeriesReader::Internals
   vtkNew<vtkDataArraySelection> Selection;     ///< of point arrays
   vtkNew<vtkDataArraySelection> CellSelection; ///< of cell arrays of meshes
   std::string ErrorMessage;
-  std::string Contents;      ///< what GetContents() has returned
+  std::string Contents; ///< what GetContents() has returned
+  banyan::HeldArrays Held;
   bool GaveDeferred = false; ///< whether the output has arrays that decode on first touch
   vtkTimeStamp PlainWanted;  ///< when somebody came who needs plain ones instead
   vtkTimeStamp Executed;
@@ -83,6 +84,7 @@ void vtkBanyanSeriesReader::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "MeshAsHyperTreeGrid: " << this->MeshAsHyperTreeGrid << "\n"
      << indent << "DeferDecoding: " << this->DeferDecoding << "\n"
      << indent << "ReadAhead: " << this->ReadAhead << "\n"
+     << indent << "InterpolateInTime: " << this->InterpolateInTime << "\n"
      << indent << "CacheBudget: " << this->CacheBudget << "\n"
      << indent << "Steps: " << (this->Series() ? this->Series()->Index().Steps() : 0) << "\n";
   os << indent << "PointArraySelection:\n";
@@ -422,8 +424,9 @@ void vtkBanyanSeriesReader::FillOutput(vtkInformation* info, vtkDataObject* outp
 {
   banyan::StepRequest request;
   request.Series = this->Self->File.Series();
-  request.Step = banyan::StepAt(this->Series()->Index(), *info);
+  banyan::TakeTime(this->Series()->Index(), *info, this->InterpolateInTime, request);
   request.Wants = [this](const banyan::ArrayIndex& array) { return this->Self->Wants(array); };
+  this->Self->Held.Warn(*this, request, this->Self->File.Ranks());
   request.Progress = [this](double part) { this->UpdateProgress(part); };
   if (this->IsMesh())
   {

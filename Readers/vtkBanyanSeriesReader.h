@@ -17,7 +17,8 @@
  * run of cells with the points that they use. MeshAsHyperTreeGrid gives a vtkHyperTreeGrid instead.
  * All values of a step are decoded on each rank.
  *
- * A time between two steps gives the earlier one, a time before the first step gives the first.
+ * A time between two steps gives the earlier one, or values between both: see InterpolateInTime. A
+ * time before the first step gives the first.
  *
  * Each integer and floating-point array comes back in its own width and signedness: int64 as long,
  * int8 as signed char.
@@ -106,6 +107,20 @@ public:
   vtkSetMacro(DeferDecoding, bool);
   vtkGetMacro(DeferDecoding, bool);
   vtkBooleanMacro(DeferDecoding, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Whether a time between two steps gives values between theirs: linear in time, in the array's
+   * own type (see banyan::BetweenSteps). Off by default: it gives the earlier step. Arrays of
+   * integers may be labels: they give the earlier step, and a warning says so once. What one of
+   * both steps hides is hidden. At the time of a step the values are that step's, bit by bit. All
+   * values of both steps are needed, so they are bounded by the error bound against interpolated
+   * originals; how far these are from the truth, banyan-info --between estimates.
+   */
+  vtkSetMacro(InterpolateInTime, bool);
+  vtkGetMacro(InterpolateInTime, bool);
+  vtkBooleanMacro(InterpolateInTime, bool);
   ///@}
 
   ///@{
@@ -228,6 +243,7 @@ private:
   bool DeferDecoding = true;
   bool MeshAsHyperTreeGrid = false;
   bool ReadAhead = true;
+  bool InterpolateInTime = false;
   int CacheBudget = -1;
 
   struct Internals;

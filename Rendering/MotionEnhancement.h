@@ -3,7 +3,7 @@
 #define banyan_Rendering_MotionEnhancement_h
 
 #include "Parallel/Fields/InputStamp.h"
-#include "Render/Bricks/TemporalEnhancement.h"
+#include "Render/Steps/TemporalEnhancement.h"
 
 #include "vtkSmartPointer.h"
 

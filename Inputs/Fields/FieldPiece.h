@@ -5,7 +5,7 @@
 #include "BanyanInputsModule.h" // for export macro
 #include "Mesh/Octree/CellNodes.h"
 #include "Mesh/Sampling/MeshOptions.h"
-#include "Render/Bricks/TemporalEnhancement.h"
+#include "Render/Steps/TemporalEnhancement.h"
 
 #include <string>
 

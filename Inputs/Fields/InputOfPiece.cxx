@@ -65,6 +65,7 @@ PieceFacts FactsOfImage(vtkImageData* image, vtkDataArray* array, int component)
   {
     facts.Deferred = 1;
     facts.Step = handle->Step;
+    facts.Fraction = handle->Fraction;
     facts.Array = handle->Array;
     facts.Level = handle->Level;
   }

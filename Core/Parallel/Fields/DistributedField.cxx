@@ -176,6 +176,7 @@ void DistributedField::TakeImages(
   Box samples;
   bool deferred = true;
   bool hidden = false;
+  bool between = false;
   for (const PieceFacts& facts : all)
   {
     if (facts.IsImage())
@@ -183,8 +184,15 @@ void DistributedField::TakeImages(
       samples = Union(samples, facts.Samples());
       deferred = deferred && facts.Deferred != 0;
       hidden = hidden || facts.HiddenCells != 0;
+      between = between || facts.Fraction > 0.0;
       this->LargestEncodingError = std::max(this->LargestEncodingError, facts.EncodingError);
     }
+  }
+  if (between && input.Enhancement().Strength > 0.0)
+  {
+    throw Error("Temporal enhancement compares time steps, and these values lie between two: ask "
+                "the reader for the time of a step, or switch off 'Interpolate In Time' or the "
+                "enhancement.");
   }
   this->Where = PlaceOfSamples(first->Geometry(), samples);
   if (!deferred || !this->TakeSeries(communicator, input, all, samples))
@@ -209,7 +217,8 @@ bool DistributedField::TakeSeries(Communicator& communicator, const FieldInput& 
   std::vector<SeriesField::Piece> pieces;
   for (const PieceFacts& facts : all)
   {
-    pieces.push_back({ facts.IsImage(), facts.Step, facts.Array, facts.Component, facts.Level });
+    pieces.push_back(
+      { facts.IsImage(), facts.Step, facts.Array, facts.Component, facts.Level, facts.Fraction });
   }
   // Another kind of field keeps what it knows until this one fits.
   auto* const drawn = dynamic_cast<SeriesField*>(this->Field.get());

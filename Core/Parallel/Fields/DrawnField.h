@@ -80,10 +80,10 @@ public:
   virtual BrickSource* Source() = 0;
   /// The caches of the series; those of the process where there is none.
   const std::shared_ptr<CacheContext>& Caches();
-  /// Which step of a series of how many it is.
+  /// Which step of a series of how many it is; between two steps it is no whole number.
   struct Place
   {
-    int Step = 0;
+    double Step = 0.0;
     int Steps = 1;
     Hash128 Field; ///< of all that names the field but the step: series, array, enhancement
   };

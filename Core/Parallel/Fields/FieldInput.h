@@ -8,7 +8,7 @@
 #include "Parallel/Fields/PieceFacts.h"
 #include "Render/Bricks/ArraySamples.h"
 #include "Render/Bricks/HiddenCells.h"
-#include "Render/Bricks/TemporalEnhancement.h"
+#include "Render/Steps/TemporalEnhancement.h"
 
 #include <memory>
 

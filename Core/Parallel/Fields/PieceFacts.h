@@ -32,6 +32,7 @@ struct PieceFacts
   double Direction[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 }; ///< row by row
   /// The largest error that encoding has made, as far as it is known.
   double EncodingError = 0.0;
+  double Fraction = 0.0; ///< of a series drawn from the file: see StepAndFraction
   std::int32_t Step = 0;
   std::int32_t Array = 0;
   std::int32_t Component = 0; ///< -1: Euclidean norm

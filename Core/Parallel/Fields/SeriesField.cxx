@@ -4,10 +4,10 @@
 #include "Base/Digest.h"
 #include "Base/ThreadPool.h"
 #include "Cache/BrickCache.h"
-#include "Render/Bricks/EnhancedBrickSource.h"
 #include "Render/Bricks/SeriesBrickSource.h"
-#include "Render/Bricks/TimeStepPrefetcher.h"
 #include "Render/Bricks/VisibleContent.h"
+#include "Render/Steps/StepSource.h"
+#include "Render/Steps/TimeStepPrefetcher.h"
 #include "Series/Decode/CacheContext.h"
 
 #include <utility>
@@ -41,7 +41,8 @@ int FirstOfAlike(const std::vector<SeriesField::Piece>& pieces,
     const auto other = static_cast<std::size_t>(first);
     if (paths[rank] != paths[other] || fingerprints[rank] != fingerprints[other] ||
         piece.Step != pieces[other].Step || piece.Array != pieces[other].Array ||
-        piece.Component != pieces[other].Component || piece.Level != pieces[other].Level)
+        piece.Component != pieces[other].Component || piece.Level != pieces[other].Level ||
+        piece.Fraction != pieces[other].Fraction)
     {
       return -1;
     }
@@ -119,6 +120,7 @@ bool SeriesField::Take(Communicator& communicator, const std::shared_ptr<const S
 void SeriesField::MakeZones(const Piece& field, const Wish& wish, int ranks)
 {
   this->Drawn = { field.Step, field.Array, field.Component, field.Level };
+  this->Fraction = field.Fraction;
   this->Enhancement = wish.Enhancement;
   if (this->Ahead)
   {
@@ -134,7 +136,10 @@ void SeriesField::MakeZones(const Piece& field, const Wish& wish, int ranks)
   this->Balancer.Start(wish.Balancing, balanced, ranks);
   this->ZoneCells = this->Balancer.Zones();
   // Ranks without a zone need it too: to know what can be seen of the others'.
-  this->Bricks = this->SourceOfStep(field.Step);
+  this->Bricks =
+    this->Fraction > 0.0
+      ? MakeSourceBetween(this->Series, this->Drawn, this->Drawn.Component, this->Fraction)
+      : MakeSeriesSource(this->Series, this->Drawn, this->Drawn.Component, this->Enhancement);
   if (this->BricksBefore && this->BricksBefore->Kept().Caches() == this->Series->Caches())
   {
     this->Bricks->TakeKept(*this->BricksBefore, { glm::ivec3(0), balanced.Cells });
@@ -197,7 +202,7 @@ DrawnField::Place SeriesField::InSeries() const
   field.Add(this->Drawn.Component);
   field.Add(this->Drawn.Level);
   field.Add(this->Enhancement);
-  return { this->Drawn.Step, this->Series->Index().Steps(), field.Get() };
+  return { this->Drawn.Step + this->Fraction, this->Series->Index().Steps(), field.Get() };
 }
 
 std::unique_ptr<BrickSource> SeriesField::SourceOfStep(int step)

@@ -4,8 +4,8 @@
 
 #include "Parallel/Balance/FrameBalancer.h"
 #include "Parallel/Fields/DrawnField.h"
-#include "Render/Bricks/TemporalEnhancement.h"
 #include "Render/Bricks/ViewPrefetcher.h"
+#include "Render/Steps/TemporalEnhancement.h"
 #include "Series/Decode/SeriesFile.h"
 
 #include <memory>
@@ -17,8 +17,8 @@ namespace banyan
 
 class TimeStepPrefetcher;
 
-/// A step of an encoded series, which every rank reads brick by brick, in zones that need not be
-/// the pieces that a reader has given it.
+/// A step of an encoded series, or values between two, which every rank reads brick by brick, in
+/// zones that need not be the pieces that a reader has given it.
 class SeriesField final : public DrawnField
 {
 public:
@@ -30,6 +30,7 @@ public:
     int Array = 0;
     int Component = 0; ///< -1: Euclidean norm
     int Level = 0;
+    double Fraction = 0.0; ///< see StepAndFraction
   };
 
   struct Wish
@@ -78,7 +79,8 @@ private:
   void MakeZones(const Piece& field, const Wish& wish, int ranks);
 
   std::shared_ptr<const SeriesFile> Series;
-  FieldKey Drawn; ///< its component is the one to draw: MakeSeriesSource
+  FieldKey Drawn;        ///< its component is the one to draw: MakeSeriesSource
+  double Fraction = 0.0; ///< towards the next step
   TemporalEnhancement Enhancement{ 0.0, 1.0, 0.0 };
   std::unique_ptr<BrickSource> Bricks;
   std::unique_ptr<BrickSource> BricksBefore; ///< of the last step, while the next one is taken

@@ -31,13 +31,13 @@ bool IsBetween(const VisibleSigns& now, const VisibleSigns& a, const VisibleSign
 
 void GroupPlans::Forget()
 {
-  this->First = -1;
+  this->First = -1.0;
   this->Plays = false;
   this->Known.clear();
 }
 
 /// @param took is added what making it took
-const GroupPlans::End& GroupPlans::EndAt(int step, const MakePlan& make, SamplingPlan& took)
+const GroupPlans::End& GroupPlans::EndAt(double step, const MakePlan& make, SamplingPlan& took)
 {
   const auto known = this->Known.find(step);
   if (known != this->Known.end())
@@ -51,23 +51,23 @@ const GroupPlans::End& GroupPlans::EndAt(int step, const MakePlan& make, Samplin
   return end;
 }
 
-SamplingPlan GroupPlans::Of(const Hash128& view, const glm::ivec2& imageSize, int step, int steps,
-  const VisibleSigns& now, const MakePlan& make)
+SamplingPlan GroupPlans::Of(const Hash128& view, const glm::ivec2& imageSize, double step,
+  int steps, const VisibleSigns& now, const MakePlan& make)
 {
   if (view != this->View)
   {
     this->Forget();
     this->View = view;
   }
-  this->Plays = this->Plays || (this->First >= 0 && step != this->First);
-  this->First = this->First < 0 ? step : this->First;
+  this->Plays = this->Plays || (this->First >= 0.0 && step != this->First);
+  this->First = this->First < 0.0 ? step : this->First;
   if (this->Known.size() > MostKnown)
   {
     this->Known.clear();
   }
   SamplingPlan took;
   SamplingPlan plan;
-  const int first = step / StepsTogether * StepsTogether;
+  const int first = static_cast<int>(step) / StepsTogether * StepsTogether;
   const int next = std::min(first + StepsTogether, steps - 1);
   if (!this->Plays || step == next)
   {

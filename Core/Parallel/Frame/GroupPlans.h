@@ -22,7 +22,8 @@ namespace banyan
 /// The first picture of a view has a plan of its own: nobody knows yet whether the series plays.
 /// Each step after that takes, per tile, the finest of the plans of the first step of its group and
 /// of the next one: whatever was drawn before, the same plan. A step that shows values which
-/// neither end of its group does, or much more or less than both, is planned by itself.
+/// neither end of its group does, or much more or less than both, is planned by itself. Between two
+/// steps it is the same: a place among steps need not be a whole number.
 class GroupPlans
 {
 public:
@@ -35,24 +36,24 @@ public:
     VisibleSigns Signs;
   };
   /// Plans a step. Called alike on all ranks.
-  using MakePlan = std::function<End(int step)>;
+  using MakePlan = std::function<End(double step)>;
 
   /// The plan of a frame; its times and probes are those that this frame took.
   /// @param view a hash of all that decides the plan but the step
   /// @param now what is seen at the step
   /// @param steps of the series
-  SamplingPlan Of(const Hash128& view, const glm::ivec2& imageSize, int step, int steps,
+  SamplingPlan Of(const Hash128& view, const glm::ivec2& imageSize, double step, int steps,
     const VisibleSigns& now, const MakePlan& make);
 
   void Forget();
 
 private:
-  const End& EndAt(int step, const MakePlan& make, SamplingPlan& took);
+  const End& EndAt(double step, const MakePlan& make, SamplingPlan& took);
 
   Hash128 View;
-  int First = -1;           ///< step that was drawn first in the view; -1: none
-  bool Plays = false;       ///< another one was drawn since
-  std::map<int, End> Known; ///< by step
+  double First = -1.0;         ///< step that was drawn first in the view; -1: none
+  bool Plays = false;          ///< another one was drawn since
+  std::map<double, End> Known; ///< by step
 };
 
 } // namespace banyan

@@ -197,7 +197,7 @@ SamplingPlan ToleranceControl::PlanWithin(Communicator& communicator, Distribute
   {
     return planOf(drawn.Source(), budgetBytes);
   }
-  const auto planStep = [&](int step) -> GroupPlans::End
+  const auto planStep = [&](double step) -> GroupPlans::End
   {
     if (step == place.Step)
     {
@@ -210,7 +210,7 @@ SamplingPlan ToleranceControl::PlanWithin(Communicator& communicator, Distribute
     Collective(communicator,
       [&]
       {
-        source = drawn.SourceOfStep(step);
+        source = drawn.SourceOfStep(static_cast<int>(step)); // ends of groups are whole
         signs = SignsOf(scene, *source);
       });
     return { planOf(source.get(), budgetBytes / 2), signs };

@@ -28,6 +28,13 @@ ValueRange LengthOf(const std::vector<ValueRange>& components)
   return { std::sqrt(low), std::sqrt(high) };
 }
 
+ValueRange Hull(const ValueRange& a, const ValueRange& b)
+{
+  ValueRange hull = a;
+  hull.Include(b);
+  return hull;
+}
+
 ValueRange Common(const ValueRange& a, const ValueRange& b)
 {
   const ValueRange common{ std::max(a.Low, b.Low), std::min(a.High, b.High) };
@@ -96,6 +103,23 @@ PieceRange RangeOfPiece(
     series.Index().Arrays[array].Magnitudes[static_cast<std::size_t>(step)];
   const bool whole = level == 0 && samples.Contains(Box{ glm::ivec3(0), layout.Samples() });
   result.Magnitude = whole ? ofStep : Common(result.Magnitude, ofStep);
+  return result;
+}
+
+PieceRange RangeBetween(const PieceRange& earlier, const PieceRange& later)
+{
+  PieceRange result;
+  result.Exact = false;
+  result.HasNonFinite = earlier.HasNonFinite || later.HasNonFinite;
+  for (std::size_t c = 0; c < earlier.Components.size(); ++c)
+  {
+    const ValueRange& a = earlier.Components[c];
+    const ValueRange& b = later.Components[c];
+    result.Components.push_back(a.Empty() || b.Empty() ? ValueRange{} : Hull(a, b));
+  }
+  // Vectors that turn are shorter between than at either step.
+  result.Magnitude =
+    result.Components.size() == 1 ? result.Components[0] : LengthOf(result.Components);
   return result;
 }
 

@@ -35,6 +35,10 @@ PieceRange RangeOfPiece(
 /// get that range instead, for colours.
 PieceRange RangeOfSeries(const SeriesFile& series, int array);
 
+/// Ranges of values between two steps, from those of the same part at both: they contain the true
+/// ranges. Empty where one is: nothing is between a number and none.
+PieceRange RangeBetween(const PieceRange& earlier, const PieceRange& later);
+
 /// Numbers of the bricks that together cover `samples`, in ascending order.
 std::vector<std::int64_t> BricksTouching(const BrickLayout& layout, const Box& samples);
 

@@ -5,10 +5,10 @@
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Cache/BrickCache.h"
-#include "Render/Bricks/EnhancedBrickSource.h"
 #include "Render/Bricks/SeriesBrickSource.h"
-#include "Render/Bricks/TimeStepPrefetcher.h"
 #include "Render/Scenes.h"
+#include "Render/Steps/EnhancedBrickSource.h"
+#include "Render/Steps/TimeStepPrefetcher.h"
 
 #include <numeric>
 

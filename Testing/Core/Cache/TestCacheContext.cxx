@@ -5,7 +5,7 @@
 #include "Cache/BackgroundDecoder.h"
 #include "Parallel/Communicate/Communicator.h"
 #include "Parallel/Fields/SeriesField.h"
-#include "Render/Bricks/EnhancedBrickSource.h"
+#include "Render/Steps/StepSource.h"
 #include "Series/Decode/CacheContext.h"
 
 namespace banyan::testing

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Steps whose motion is brought out while they are drawn: brick by brick what whole arrays give.
-#include "Render/Bricks/EnhancedBrickSource.h"
 #include "Render/Levels/RayCaster.h"
 #include "Render/Scenes.h"
+#include "Render/Steps/EnhancedBrickSource.h"
 
 #include <gtest/gtest.h>
 

@@ -50,18 +50,19 @@ TEST(FinestPlan, IsAsFineAsBothInEachTile)
 struct Series
 {
   GroupPlans Plans;
-  std::vector<int> Made;
+  std::vector<double> Made;
 
-  static VisibleSigns SignsAt(int step)
+  static VisibleSigns SignsAt(double step)
   {
     // Step 3 shows other values, and step 13 many more bricks.
-    return { step == 13 ? 400 : 100 + step, step == 3 ? ValueMask{ 8 } : ValueMask{ 3 } };
+    return { step == 13 ? 400 : 100 + static_cast<std::int64_t>(step),
+      step == 3 ? ValueMask{ 8 } : ValueMask{ 3 } };
   }
 
-  SamplingPlan At(int step, const Hash128& view = View)
+  SamplingPlan At(double step, const Hash128& view = View)
   {
     return this->Plans.Of(view, ImageSize, step, Steps, SignsAt(step),
-      [&](int planned) -> GroupPlans::End
+      [&](double planned) -> GroupPlans::End
       {
         this->Made.push_back(planned);
         const double distance = planned + 1.0;
@@ -69,7 +70,7 @@ struct Series
       });
   }
 
-  double DistanceAt(int step) { return ::At(this->At(step), 0).Distance; }
+  double DistanceAt(double step) { return ::At(this->At(step), 0).Distance; }
 };
 
 TEST(GroupPlans, TheFirstPictureOfAViewHasAPlanOfItsOwn)
@@ -77,7 +78,7 @@ TEST(GroupPlans, TheFirstPictureOfAViewHasAPlanOfItsOwn)
   Series series;
   EXPECT_EQ(series.DistanceAt(5), 6.0);
   EXPECT_EQ(series.DistanceAt(5), 6.0) << "nobody plays it yet";
-  EXPECT_EQ(series.Made, std::vector<int>{ 5 });
+  EXPECT_EQ(series.Made, std::vector<double>{ 5 });
   EXPECT_EQ(::At(series.At(6, { 3, 4 }), 0).Distance, 7.0) << "another view";
   EXPECT_EQ(series.DistanceAt(6), 7.0) << "and the first one again";
 }
@@ -90,14 +91,14 @@ TEST(GroupPlans, StepsTakeThoseOfTheEndsOfTheirGroup)
   EXPECT_EQ(::At(second, 0).Distance, 1.0);
   EXPECT_DOUBLE_EQ(second.EstimatedError, 0.8);
   EXPECT_EQ(second.Probes, 7) << "of the next group's first step";
-  EXPECT_EQ(series.Made, (std::vector<int>{ 0, 8 }));
+  EXPECT_EQ(series.Made, (std::vector<double>{ 0, 8 }));
   EXPECT_EQ(series.At(2).Probes, 0);
   EXPECT_EQ(series.DistanceAt(7), 1.0);
   EXPECT_EQ(series.DistanceAt(8), 9.0);
   EXPECT_EQ(series.DistanceAt(9), 9.0);
   EXPECT_EQ(series.DistanceAt(17), 17.0);
   EXPECT_EQ(series.DistanceAt(20), 21.0);
-  EXPECT_EQ(series.Made, (std::vector<int>{ 0, 8, 16, 20 }));
+  EXPECT_EQ(series.Made, (std::vector<double>{ 0, 8, 16, 20 }));
 }
 
 TEST(GroupPlans, DoNotDependOnTheWay)
@@ -124,6 +125,18 @@ TEST(GroupPlans, AStepThatIsNotLikeTheEndsIsPlannedByItself)
   EXPECT_EQ(series.DistanceAt(3), 4.0) << "values that neither end has";
   EXPECT_EQ(series.DistanceAt(13), 14.0) << "many more bricks";
   EXPECT_EQ(series.DistanceAt(12), 9.0);
+}
+
+/// A picture between two steps belongs to their group, and never stands for one of them.
+TEST(GroupPlans, TimesBetweenStepsTakeThoseOfTheGroup)
+{
+  Series series;
+  EXPECT_EQ(series.DistanceAt(7.5), 8.5) << "the first picture of the view";
+  EXPECT_EQ(series.DistanceAt(7.25), 1.0);
+  EXPECT_EQ(series.DistanceAt(8.0), 9.0);
+  EXPECT_EQ(series.DistanceAt(8.5), 9.0);
+  EXPECT_EQ(series.DistanceAt(19.5), 17.0);
+  EXPECT_EQ(series.Made, (std::vector<double>{ 7.5, 0, 8, 16, 20 }));
 }
 
 } // namespace

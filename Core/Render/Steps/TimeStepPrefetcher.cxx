@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Render/Bricks/TimeStepPrefetcher.h"
+#include "Render/Steps/TimeStepPrefetcher.h"
 
-#include "Render/Bricks/EnhancedBrickSource.h"
 #include "Render/Bricks/SeriesBrickSource.h"
 #include "Render/Bricks/ViewPrefetcher.h"
 #include "Render/Bricks/VisibleBricks.h"
 #include "Render/Scene/BoxOnScreen.h"
+#include "Render/Steps/EnhancedBrickSource.h"
+#include "Render/Steps/InterpolatedBrickSource.h"
 
 #include <algorithm>
 #include <utility>
@@ -29,6 +30,13 @@ void AddLoaded(const BrickSource* source, std::vector<FieldBricks>& loaded)
   else if (const auto* const enhanced = dynamic_cast<const EnhancedBrickSource*>(source))
   {
     for (const BrickSource* const step : enhanced->Steps())
+    {
+      AddLoaded(step, loaded);
+    }
+  }
+  else if (const auto* const between = dynamic_cast<const InterpolatedBrickSource*>(source))
+  {
+    for (const BrickSource* const step : between->Sources())
     {
       AddLoaded(step, loaded);
     }

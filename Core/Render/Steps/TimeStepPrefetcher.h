@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Render_Bricks_TimeStepPrefetcher_h
-#define banyan_Render_Bricks_TimeStepPrefetcher_h
+#ifndef banyan_Render_Steps_TimeStepPrefetcher_h
+#define banyan_Render_Steps_TimeStepPrefetcher_h
 
 #include "Base/Box.h"
 #include "Cache/BackgroundDecoder.h"
@@ -35,8 +35,8 @@ public:
   void Drawing(const SeriesFile& series, int step);
   /// After the rays of a picture were cast.
   /// @param cells that this rank draws, of the finest level
-  /// @param source that it was drawn from: a SeriesBrickSource, or an EnhancedBrickSource of such;
-  /// what comes into sight of the latter is not expected
+  /// @param source that it was drawn from: a SeriesBrickSource, or an EnhancedBrickSource or
+  /// InterpolatedBrickSource of such; what comes into sight of the latter two is not expected
   void Drawn(const std::shared_ptr<const SeriesFile>& series, const RayScene& scene,
     const Box& cells, const BrickSource& source);
 

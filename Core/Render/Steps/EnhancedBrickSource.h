@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Render_Bricks_EnhancedBrickSource_h
-#define banyan_Render_Bricks_EnhancedBrickSource_h
+#ifndef banyan_Render_Steps_EnhancedBrickSource_h
+#define banyan_Render_Steps_EnhancedBrickSource_h
 
 #include "Render/Bricks/BrickSource.h"
-#include "Render/Bricks/TemporalEnhancement.h"
+#include "Render/Steps/TemporalEnhancement.h"
 
 #include <array>
 #include <memory>
 
 namespace banyan
 {
-
-class SeriesFile;
-struct FieldKey;
 
 /// A step of a series with its motion brought out (see TemporalEnhancement), brick by brick as they
 /// are drawn: what cannot be seen is neither read nor computed, and coarser levels are those of the
@@ -67,12 +64,6 @@ private:
   BrickSource* Next;
   MaskRange Over;
 };
-
-/// Bricks of a step of an encoded series, enhanced with the steps around it unless Strength is 0.
-/// The noise floor is the series' error bound.
-/// @param component in [0, components), or -1 for the length
-std::unique_ptr<BrickSource> MakeSeriesSource(const std::shared_ptr<const SeriesFile>& series,
-  const FieldKey& field, int component, const TemporalEnhancement& how);
 
 } // namespace banyan
 

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Render/Bricks/EnhancedBrickSource.h"
+#include "Render/Steps/EnhancedBrickSource.h"
 
 #include "Base/Digest.h"
-#include "Cache/BrickCache.h"
-#include "Render/Bricks/SeriesBrickSource.h"
-
 #include "Render/Bricks/SampledBox.h"
 
 #include <vector>
@@ -148,37 +145,6 @@ BrickView EnhancedBrickSource::Load(std::int64_t brick)
     { 1, samples.Size().x, std::ptrdiff_t{ samples.Size().x } * samples.Size().y }, {} };
   CopySamples({ all, samples }, samples, view.Type, enhanced);
   return view;
-}
-
-std::unique_ptr<BrickSource> MakeSeriesSource(const std::shared_ptr<const SeriesFile>& series,
-  const FieldKey& field, int component, const TemporalEnhancement& how)
-{
-  const auto at = [&](int step) -> std::unique_ptr<BrickSource>
-  {
-    FieldKey key = field;
-    key.Step = step;
-    return step < 0 || step >= series->Index().Steps()
-             ? nullptr
-             : std::make_unique<SeriesBrickSource>(series, key, component, BrickCache::Of(*series));
-  };
-  std::unique_ptr<BrickSource> source;
-  if (how.Strength == 0.0)
-  {
-    source = at(field.Step);
-  }
-  else
-  {
-    TemporalEnhancement complete = how;
-    const ArrayIndex& array = series->Index().Arrays.at(static_cast<std::size_t>(field.Array));
-    complete.NoiseFloor = EnhancementFor(array, how.Strength, component).NoiseFloor;
-    source = std::make_unique<EnhancedBrickSource>(
-      complete, at(field.Step - 1), at(field.Step), at(field.Step + 1));
-  }
-  if (source)
-  {
-    source->ShareBudgetOf(series->Caches());
-  }
-  return source;
 }
 
 } // namespace banyan

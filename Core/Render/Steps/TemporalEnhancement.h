@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Render_Bricks_TemporalEnhancement_h
-#define banyan_Render_Bricks_TemporalEnhancement_h
+#ifndef banyan_Render_Steps_TemporalEnhancement_h
+#define banyan_Render_Steps_TemporalEnhancement_h
 
 #include "Series/Quantize/ValueRange.h"
 
