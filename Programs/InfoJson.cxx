@@ -115,6 +115,17 @@ Json ErrorToJson(const ComponentReport& component)
   return json;
 }
 
+/// Null where nothing is known.
+Json BetweenToJson(const InterpolationError& error)
+{
+  if (error.Steps == 0)
+  {
+    return nullptr;
+  }
+  return { { "max", error.Largest }, { "rms", error.Rms }, { "maxLeftOut", error.LargestLeftOut },
+    { "stepsLeftOut", error.Steps }, { "everyNthSample", error.EveryNth } };
+}
+
 /// How a component was quantized; null where it is as by default.
 Json QuantizerToJson(const ComponentIndex& index)
 {
@@ -153,6 +164,10 @@ Json ComponentToJson(const SeriesReport& report, std::size_t number)
   json["finite"] = component.Index.FiniteCount;
   json["nonFinite"] = component.Index.NonFiniteCount;
   json["error"] = ErrorToJson(component);
+  if (component.Between)
+  {
+    json["estimatedBetweenSteps"] = BetweenToJson(*component.Between);
+  }
   json["levels"] = Json::array();
   for (int level = 0; level < report.Index.Levels; ++level)
   {

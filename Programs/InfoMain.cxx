@@ -18,8 +18,19 @@ namespace
 void Inform(const banyan::InfoOptions& options)
 {
   // Closed again at once: measuring times wants the file for itself.
-  const banyan::SeriesReport report =
-    banyan::ReportSeries(*banyan::SeriesFile::Open(options.File), options.Choice);
+  banyan::SeriesReport report;
+  {
+    const auto file = banyan::SeriesFile::Open(options.File);
+    report = banyan::ReportSeries(*file, options.Choice);
+    for (banyan::ComponentReport& component : report.Components)
+    {
+      if (options.Between)
+      {
+        component.Between =
+          banyan::EstimateInterpolation(*file, component.Array, component.Component);
+      }
+    }
+  }
   std::optional<banyan::DecodeTimes> times;
   if (options.Time)
   {

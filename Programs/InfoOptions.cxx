@@ -26,6 +26,8 @@ InfoOptions ParseInfoOptions(const std::vector<std::string>& arguments)
       options.Json = true;
     else if (option == "--time")
       options.Time = true;
+    else if (option == "--between")
+      options.Between = true;
     else if (option.rfind("--", 0) == 0)
       throw Error("There is no option \"" + option + "\"; --help lists them.");
     else if (options.File.empty())
@@ -50,6 +52,8 @@ std::string InfoHelp()
          "  --json        as JSON instead of text\n"
          "  --csv FILE    also writes a table with one line per array, component and step\n"
          "  --time        also measures how long decoding takes, for some seconds\n"
+         "  --between     also estimates how far values that are interpolated between steps are\n"
+         "                from the truth: steps are left out and compared, for some seconds\n"
          "  --help        this text\n";
 }
 

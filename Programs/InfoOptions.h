@@ -18,6 +18,7 @@ struct InfoOptions
   std::string Csv; ///< file for the table by steps; empty: none
   bool Json = false;
   bool Time = false;
+  bool Between = false;
   bool Help = false;
 };
 

@@ -201,6 +201,35 @@ std::string Errors(const SeriesReport& report)
                    : Digits(report.Index.ErrorBound) + ", absolute\n");
 }
 
+/// Nothing unless it was asked for.
+std::string Between(const SeriesReport& report)
+{
+  TextTable table({ "Interpolated between steps, estimated", "max |error|", "of range", "RMS",
+    "step left out, max", "steps left out", "every n-th sample" });
+  bool asked = false;
+  for (const ComponentReport& component : report.Components)
+  {
+    const InterpolationError* const error = component.Between ? &*component.Between : nullptr;
+    asked = asked || error;
+    if (error && error->Steps > 0)
+    {
+      const double width = component.Index.ReferenceRange().Width();
+      table.AddRow({ component.Name, Digits(error->Largest),
+        width > 0.0 ? Percent(error->Largest / width) : "-", Digits(error->Rms),
+        Digits(error->LargestLeftOut), std::to_string(error->Steps),
+        std::to_string(error->EveryNth) });
+    }
+    else
+    {
+      table.AddRow({ component.Name, "-", "-", "-", "-", "0", "-" });
+    }
+  }
+  return asked ? "\n" + table.Text() +
+                   "  if values are smooth over three steps; errors of encoding are among them.\n"
+                   "  Nothing is known of integers, meshes and less than three steps\n"
+               : "";
+}
+
 std::string Bricks(const SeriesReport& report)
 {
   TextTable table({ "Bricks by level", "bricks", "macro voxels", "unchanged", "stored", "shared",
@@ -293,7 +322,8 @@ std::string Times(const DecodeTimes& times)
 
 std::string InfoToText(const SeriesReport& series, const DecodeTimes* times)
 {
-  std::string text = Heading(series) + Size(series) + Errors(series) + Bricks(series);
+  std::string text =
+    Heading(series) + Size(series) + Errors(series) + Between(series) + Bricks(series);
   for (const ComponentReport& component : series.Components)
   {
     text += BySize(series, component);

@@ -2,6 +2,7 @@
 #ifndef banyan_Programs_SeriesReport_h
 #define banyan_Programs_SeriesReport_h
 
+#include "InterpolationError.h"
 #include "Series/Decode/BrickTree.h"
 #include "Series/Decode/SeriesFile.h"
 
@@ -47,7 +48,8 @@ struct ComponentReport
   std::string Name;     ///< of the array, with the component's if there are several
   ComponentIndex Index; ///< as the file says
   ScalarType Type = ScalarType::Float32;
-  std::vector<StepReport> Steps; ///< those that were asked for
+  std::vector<StepReport> Steps;             ///< those that were asked for
+  std::optional<InterpolationError> Between; ///< if it was asked for
 
   /// Returns the RMSE of one step; nothing where the series does not say it.
   std::optional<double> RmseOf(const StepReport& step) const;

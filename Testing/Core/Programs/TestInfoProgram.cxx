@@ -24,11 +24,11 @@ TEST(InfoProgram, PrintsTextJsonAndTheTable)
   Encode(path, CornersGrid(), Sample<float>(CornersGrid(), 4, CornersAt), CornersOptions());
   const std::string info = std::string(BANYAN_INFO) + " " + path;
 
-  const ProgramResult text = RunProgram(info + " --time");
+  const ProgramResult text = RunProgram(info + " --time --between");
   EXPECT_EQ(text.Status, 0);
-  for (const char* phrase :
-    { "80 x 48 x 34 samples, 4 steps", "1/512 of the range", "bits per value",
-      "steps to decode for a brick", "unchanged subtrees", "a random brick, cold" })
+  for (const char* phrase : { "80 x 48 x 34 samples, 4 steps", "1/512 of the range",
+         "bits per value", "steps to decode for a brick", "unchanged subtrees",
+         "a random brick, cold", "between steps, estimated" })
   {
     EXPECT_NE(text.Output.find(phrase), std::string::npos) << phrase << "\n" << text.Output;
   }
