@@ -5,6 +5,7 @@
 #include "Base/Box.h"
 #include "Render/Scene/RayScene.h"
 
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,9 @@ namespace banyan::bench
 class PaperCounts
 {
 public:
+  /// In 1/255.
+  static constexpr std::array<double, 2> Tolerances{ { 1.0, 8.0 } };
+
   /// Parts from 0 to 1.
   struct Shares
   {
@@ -27,6 +31,8 @@ public:
     double EveryBrick = 0.0;  ///< of all samples, those in bricks as before
     double ShownBricks = 0.0; ///< of the samples that are shown, those in bricks as before
     double Blocks = 0.0;      ///< the same, of blocks of rays that meet no brick that has changed
+    /// The same, of blocks whose rays cannot have changed by more than each of Tolerances.
+    std::array<double, 2> Within{};
   };
 
   /// @param scene gives the camera; its function does not matter
@@ -38,7 +44,10 @@ public:
   /// samples of its cells are.
   void Take(std::vector<float> values);
 
-  /// Counts for the step that was taken last; nothing is as before in the first one.
+  /// Counts for the step that was taken last; nothing is as before in the first one. How far a ray
+  /// may change is bounded by the samples in each brick, times the largest difference of two
+  /// entries of its values that are as far apart as any of its samples are from before.
+  /// @param function an entry's opacity is that of a sample
   Shares Of(const TransferFunction& function) const;
 
 private:
@@ -46,6 +55,7 @@ private:
   {
     float Low = 0.0f;
     float High = 0.0f;
+    float Apart = 0.0f; ///< largest difference of a sample to the one before
     bool Same = false;
   };
 

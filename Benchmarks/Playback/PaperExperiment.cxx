@@ -62,9 +62,9 @@ void PrintStep(const PlaybackOptions& options, const FieldPlace& place, const Va
     with.Function = function;
     const PaperCounts::Shares shares =
       kind.Counts.Of(MakePlaybackScene(with, place, range, step).Transfer);
-    std::printf("%s,%s,%s,%d,%d,%d,%.4f,%.4f,%.4f,%.4f,%.4f\n", options.Name.c_str(), kind.Name,
+    std::printf("%s,%s,%s,%d,%d,%d,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f\n", options.Name.c_str(), kind.Name,
       function.c_str(), options.Picture, options.BrickCells, step, shares.Bricks, shares.Shown,
-      shares.EveryBrick, shares.ShownBricks, shares.Blocks);
+      shares.EveryBrick, shares.ShownBricks, shares.Blocks, shares.Within[0], shares.Within[1]);
   }
 }
 
@@ -92,7 +92,7 @@ void RunPaperExperiment(const PlaybackOptions& options)
   Kind codesOfHigh{ "codes of the top", { "top" }, fresh };
   Kind encoded{ "encoded", functions, fresh };
   std::printf("series,values,function,size,brick,step,bricks_same,samples_shown,every_brick,"
-              "shown_bricks,blocks\n");
+              "shown_bricks,blocks,within_1,within_8\n");
   const std::size_t count = raw.VoxelsPerStep();
   for (int step = 0; step < std::min(raw.Steps(), options.Frames); ++step)
   {

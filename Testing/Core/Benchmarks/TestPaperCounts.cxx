@@ -105,6 +105,29 @@ TEST_F(PaperCountsTest, WhatCannotBeSeenCountsForTheStudyAndSpoilsNoRay)
   EXPECT_EQ(shares.Blocks, 1.0);
 }
 
+TEST_F(PaperCountsTest, SmallChangesAreWithinATolerance)
+{
+  TransferFunction ramp = FunctionThatShows(0.0);
+  for (std::size_t i = 0; i < ramp.Entries.size(); ++i)
+  {
+    ramp.Entries[i] = glm::vec4(1.0f, 1.0f, 1.0f, 0.1f * i / ramp.Entries.size());
+  }
+  const auto after = [&](float value)
+  {
+    std::vector<float> field = Field(0.5f);
+    this->Counts.Take(field);
+    At(field, 1, 1, 1) = value;
+    this->Counts.Take(field);
+    return this->Counts.Of(ramp).Within;
+  };
+  using Within = std::array<double, 2>;
+  EXPECT_EQ(after(0.5f), (Within{ { 1.0, 1.0 } }));
+  // So many samples lie in the brick on each ray.
+  const float tolerance = 3.0f / 255.0f / 0.1f / BrickCells;
+  EXPECT_EQ(after(0.5f + tolerance), (Within{ { 0.75, 1.0 } }));
+  EXPECT_EQ(after(0.5f + 4.0f * tolerance), (Within{ { 0.75, 0.75 } }));
+}
+
 TEST_F(PaperCountsTest, WhatWasVisibleSpoilsRaysWhenItGoes)
 {
   std::vector<float> first = Field(0.25f);
