@@ -40,7 +40,20 @@ const char* const Columns =
   "series,mode,function,size,tolerance,shaded,ranks,reuse,pass,frame,step,"
   "ms,samples,plan_ms,render_ms,composite_ms,decode_ms,wait_ms,bytes_read,bricks_decoded,"
   "decoded_ahead,bytes_composited,changed_fraction,reused_fraction,"
-  "estimated_error,true_error,max_difference\n";
+  "estimated_error,true_error,max_difference,resident_mb\n";
+
+/// Memory of this process that is resident now, in MiB: mapped files do not count.
+double ResidentMiB()
+{
+  std::ifstream status("/proc/self/status");
+  std::string word;
+  double kibibytes = 0.0;
+  while (status >> word && word != "RssAnon:")
+  {
+  }
+  status >> kibibytes;
+  return kibibytes / 1024.0;
+}
 
 void Encode(const PlaybackOptions& options)
 {
@@ -202,7 +215,7 @@ private:
     const int steps = std::min(input.Series()->Index().Steps(), this->Options.Frames);
     const bool twice = this->Options.Mode == PlayMode::Loop;
     const int count = twice                                  ? 2 * steps
-                      : this->Options.Mode == PlayMode::Play ? steps
+                      : this->Options.Mode == PlayMode::Play ? steps * this->Options.Rounds
                                                              : this->Options.Frames;
     for (int number = 0; number < count; ++number)
     {
@@ -238,7 +251,7 @@ private:
     const double threads = static_cast<double>(ThreadPool::Process().Width()) * this->Ranks.Size();
     std::fprintf(this->Table,
       "%s,%s,%s,%d,%g,%d,%d,%s,%d,%d,%d,%.3f,%lld,%.3f,%.3f,%.3f,%.3f,%.3f,%.0f,%.0f,%.0f,%llu,"
-      "%.4f,%.4f,%.3f,%.3f,%.4f\n",
+      "%.4f,%.4f,%.3f,%.3f,%.4f,%.1f\n",
       this->Options.Name.c_str(), this->ModeName(), this->Options.Function.c_str(),
       this->Options.Picture, this->Options.Tolerance, this->Options.Shaded ? 1 : 0,
       this->Ranks.Size(), row.Reuse ? "on" : "off", row.Pass, row.Frame, row.Step, row.Milliseconds,
@@ -246,7 +259,7 @@ private:
       1e3 * took.RenderSeconds, 1e3 * took.CompositeSeconds, 1e3 * row.Decoded.Seconds,
       1e3 * row.Decoded.Waited / threads, row.Decoded.Bytes, row.Decoded.Bricks, row.Decoded.Ahead,
       static_cast<unsigned long long>(took.BytesComposited), row.Changed, frame.ReusedFraction(),
-      frame.Picture.EstimatedError, row.TrueError, row.Difference);
+      frame.Picture.EstimatedError, row.TrueError, row.Difference, ResidentMiB());
   }
 
   /// In 1/255; 0 unless it is wanted.

@@ -24,6 +24,7 @@ const char* const PlaybackHelp =
   "  --picture N       pixels per side (default 512)\n"
   "  --tolerance T     in 1/255 (default 8); 0 takes a sample per voxel\n"
   "  --frames N        at most (default 50)\n"
+  "  --rounds N        how often a series plays in a pass (default 1)\n"
   "  --passes N        each begins with empty caches (default 3)\n"
   "  --reuse LIST      off, on (default both)\n"
   "  --shaded          with light\n"
@@ -103,6 +104,8 @@ PlaybackOptions ParsePlaybackOptions(const std::vector<std::string>& arguments)
       options.Picture = count(16, 8192);
     else if (option == "--frames")
       options.Frames = count(1, 100000);
+    else if (option == "--rounds")
+      options.Rounds = count(1, 100000);
     else if (option == "--passes")
       options.Passes = count(1, 100);
     else if (option == "--budget")

@@ -30,6 +30,7 @@ struct PlaybackOptions
   PlayMode Mode = PlayMode::Play;
   int Picture = 512;
   int Frames = 50;
+  int Rounds = 1;
   int BrickCells = 16;    ///< of the study's experiment
   double Tolerance = 8.0; ///< in 1/255; 0: a sample per voxel
   bool Shaded = false;
