@@ -62,12 +62,14 @@ FrameFigures::FrameFigures(DrawnField& field)
 }
 
 void FrameFigures::Publish(Communicator& communicator, const DrawnField& field,
-  const FrameStatistics& frame, std::uint64_t geometryBytes, vtkBanyanFrameStatistics* out) const
+  const FrameStatistics& frame, bool kept, std::uint64_t geometryBytes,
+  vtkBanyanFrameStatistics* out) const
 {
   const BrickCache& bricks = BrickCache::Of(*this->Caches);
   const BrickCache::Statistics cache = bricks.GetStatistics();
   const MeshBytes mesh = field.Bytes();
-  const DrawnField::Movement moved = field.Moved();
+  const DrawnField::Movement last = field.Moved();
+  const DrawnField::Movement moved = kept ? DrawnField::Movement{ 0.0, 0, 0, last.BytesFetched } : last;
   Report mine{};
   mine[GeometryBytes] = geometryBytes;
   mine[BytesRead] = field.BytesRead() - this->BytesBefore;

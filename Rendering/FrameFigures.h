@@ -25,10 +25,11 @@ public:
 
   /// Collective: one message.
   /// @param frame of all ranks
+  /// @param kept whether it was drawn for an earlier picture: no brick has moved for this one
   /// @param geometryBytes that this rank has sent of what other props have drawn
   /// @param out gets sums over all ranks, and seconds of the slowest
   void Publish(Communicator& communicator, const DrawnField& field, const FrameStatistics& frame,
-    std::uint64_t geometryBytes, vtkBanyanFrameStatistics* out) const;
+    bool kept, std::uint64_t geometryBytes, vtkBanyanFrameStatistics* out) const;
 
 private:
   std::shared_ptr<CacheContext> Caches;

@@ -91,9 +91,11 @@ std::shared_ptr<const FloatImage> VolumeFrame::Cast(
   const FieldFrames::Frame frame =
     this->State->Frames.Draw(*this->State->Communicator, field, scene, wish);
   this->Statistics = frame.Picture.Statistics;
+  this->Kept = frame.Kept;
   vtkBanyanFrameStatistics* const out = this->Owner->GetStatistics();
   out->SetPixelsReadBehind(static_cast<vtkIdType>(backdrop.PixelsRead()));
   out->SetReusedFraction(frame.ReusedFraction());
+  out->SetPictureBytes(static_cast<vtkIdType>(this->State->Frames.PictureBytes()));
   out->SetEstimatedImageError(frame.Picture.EstimatedError);
   out->SetImageErrorLimit(frame.Picture.Limit.c_str());
   out->SetEncodingErrorOfValues(
@@ -109,7 +111,7 @@ void VolumeFrame::Finish(const CompositeStatistics& geometry, double writeSecond
   vtkBanyanFrameStatistics* const out = this->Owner->GetStatistics();
   out->SetTotalSeconds(this->Began.Seconds());
   this->Figures.Publish(*this->State->Communicator, this->State->Field.Drawn(), this->Statistics,
-    geometry.BytesSent, out);
+    this->Kept, geometry.BytesSent, out);
 }
 
 } // namespace banyan

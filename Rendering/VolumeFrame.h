@@ -59,6 +59,7 @@ private:
   std::optional<RayScene> Wanted; ///< none until it is prepared
   FrameStatistics Statistics;
   FrameFigures Figures;
+  bool Kept = false; ///< FieldFrames::Frame
 };
 
 } // namespace banyan

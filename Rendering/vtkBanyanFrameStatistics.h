@@ -50,6 +50,8 @@
     "Bytes read from series files for the last frame, sum over all ranks.")                        \
   Number(vtkIdType, CacheBytes, 0, panel,                                                          \
     "Bytes of decoded bricks in memory, sum over all ranks.")                                      \
+  Number(vtkIdType, PictureBytes, 0, script,                                                       \
+    "Bytes of pictures that the first rank keeps for scenes that come again.")                     \
   Number(vtkIdType, PixelsReadBehind, 0, script,                                                   \
     "Pixels that the first rank has read back of what other props had drawn.")                     \
   Number(vtkIdType, MeshBytes, 0, script,                                                          \

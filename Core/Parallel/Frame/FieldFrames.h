@@ -48,6 +48,9 @@ public:
   /// The same as ToleranceControl::RefineNext.
   bool RefineNext() { return this->Tolerance.RefineNext(); }
 
+  /// Of the pictures that this rank keeps: none but the first one has any.
+  std::uint64_t PictureBytes() const { return this->Pictures.Bytes(); }
+
   /// Forgets all frames: when the ranks are others, say.
   void Forget();
 

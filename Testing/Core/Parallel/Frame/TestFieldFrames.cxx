@@ -157,12 +157,16 @@ TEST(FieldFrames, ALoopIsDrawnOnce)
 {
   const auto alone = MakeSelfCommunicator();
   Player player(*alone);
+  std::uint64_t bytes = 0;
   for (int frame = 0; frame < 3 * Steps; ++frame)
   {
     Situation now;
     now.Step = frame % Steps;
-    EXPECT_EQ(player.Draw(now).Kept, frame >= Steps) << frame;
+    const FieldFrames::Frame drawn = player.Draw(now);
+    EXPECT_EQ(drawn.Kept, frame >= Steps) << frame;
+    bytes += drawn.Kept ? 0 : drawn.Picture.Pixels->Pixels.size() * sizeof(glm::vec4);
   }
+  EXPECT_EQ(player.Frames.PictureBytes(), bytes);
 }
 
 TEST(FieldFrames, AStepWithoutAVisibleChangeIsNotDrawn)
