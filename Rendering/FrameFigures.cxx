@@ -69,7 +69,8 @@ void FrameFigures::Publish(Communicator& communicator, const DrawnField& field,
   const BrickCache::Statistics cache = bricks.GetStatistics();
   const MeshBytes mesh = field.Bytes();
   const DrawnField::Movement last = field.Moved();
-  const DrawnField::Movement moved = kept ? DrawnField::Movement{ 0.0, 0, 0, last.BytesFetched } : last;
+  const DrawnField::Movement moved =
+    kept ? DrawnField::Movement{ 0.0, 0, 0, last.BytesFetched } : last;
   Report mine{};
   mine[GeometryBytes] = geometryBytes;
   mine[BytesRead] = field.BytesRead() - this->BytesBefore;

@@ -149,7 +149,7 @@ PaperCounts::Shares PaperCounts::Of(const TransferFunction& function) const
 {
   const VisibleValues visible(function);
   std::vector<char> shown(this->Now.size());
-  std::vector<char> spoils(this->Now.size()); // the rays that meet it
+  std::vector<char> spoils(this->Now.size());        // the rays that meet it
   std::vector<double> change(this->Now.size(), 0.0); // of a sample
   std::int64_t same = 0;
   for (std::size_t i = 0; i < this->Now.size(); ++i)

@@ -62,9 +62,10 @@ void PrintStep(const PlaybackOptions& options, const FieldPlace& place, const Va
     with.Function = function;
     const PaperCounts::Shares shares =
       kind.Counts.Of(MakePlaybackScene(with, place, range, step).Transfer);
-    std::printf("%s,%s,%s,%d,%d,%d,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f\n", options.Name.c_str(), kind.Name,
-      function.c_str(), options.Picture, options.BrickCells, step, shares.Bricks, shares.Shown,
-      shares.EveryBrick, shares.ShownBricks, shares.Blocks, shares.Within[0], shares.Within[1]);
+    std::printf("%s,%s,%s,%d,%d,%d,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f\n", options.Name.c_str(),
+      kind.Name, function.c_str(), options.Picture, options.BrickCells, step, shares.Bricks,
+      shares.Shown, shares.EveryBrick, shares.ShownBricks, shares.Blocks, shares.Within[0],
+      shares.Within[1]);
   }
 }
 

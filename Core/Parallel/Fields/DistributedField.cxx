@@ -20,7 +20,7 @@ namespace
 /// Most cells per axis of the bricks that plain data is cut into.
 constexpr int PlainBrickCells = 16;
 
-std::unique_ptr<BrickSource> BricksOf(const SampleArray& samples)
+std::unique_ptr<ArrayBrickSource> BricksOf(const SampleArray& samples)
 {
   ThreadPool& pool = ThreadPool::Process();
   const ValueRange range = FiniteRange(samples, pool);
@@ -65,14 +65,18 @@ std::uint64_t DistributedField::DrawingBudget()
     source ? source->Kept().ShareBytes() : CacheContext::Process()->DrawingBudgetBytes(), least);
 }
 
-const std::vector<Hash128>& DistributedField::VisibleContent(const RayScene& scene)
+const std::vector<Hash128>& DistributedField::VisibleContent(const RayScene& scene, bool looks)
 {
   KnownContent& known = this->Known;
   if (known.Version != this->Updates || !(known.Transfer == scene.Transfer) ||
-      known.Blend != scene.Blend.Mode || known.Shaded != scene.Shading.On)
+      known.Blend != scene.Blend.Mode || known.Shaded != scene.Shading.On || known.Looked != looks)
   {
     known.Version = 0;
-    known.Levels = this->Field->VisibleContent(scene);
+    known.Levels.clear();
+    if (looks || this->Field->IsEncoded())
+    {
+      known.Levels = this->Field->VisibleContent(scene);
+    }
     if (known.Levels.empty())
     {
       // The number of bytes tells it from a hash of contents.
@@ -81,6 +85,7 @@ const std::vector<Hash128>& DistributedField::VisibleContent(const RayScene& sce
     known.Transfer = scene.Transfer;
     known.Blend = scene.Blend.Mode;
     known.Shaded = scene.Shading.On;
+    known.Looked = looks;
     known.Version = this->Updates;
   }
   return known.Levels;
@@ -243,7 +248,7 @@ void DistributedField::TakeSamples(Communicator& communicator, const FieldInput&
   const bool alone = communicator.Size() == 1;
   if (alone)
   {
-    this->Become<WholeField>().Clear();
+    this->Become<WholeField>().LetGoOfValues();
   }
   else
   {

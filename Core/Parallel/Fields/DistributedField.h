@@ -40,7 +40,8 @@ public:
   /// Per level, a hash of what a scene may show of the field: see banyan::VisibleContent. One alone
   /// counts for all levels where it is not known what bricks hold: it stays until the next change.
   /// The same on all ranks. May throw Error, on one rank alone.
-  const std::vector<Hash128>& VisibleContent(const RayScene& scene);
+  /// @param looks whether values in memory are looked at to know what they are, which takes time
+  const std::vector<Hash128>& VisibleContent(const RayScene& scene, bool looks);
 
   // From Problem to EncodingError everything is the same on all ranks.
 
@@ -93,6 +94,7 @@ private:
     TransferFunction Transfer;
     BlendMode Blend = BlendMode::Composite;
     bool Shaded = false;
+    bool Looked = false;
     std::vector<Hash128> Levels;
   };
   KnownContent Known; ///< of the last scene

@@ -75,13 +75,32 @@ bool FieldFrames::TakeKept(Communicator& communicator, const Hash128& whole,
   return true;
 }
 
+/// @return whether the field has another version than in the last frame
+bool FieldFrames::BeginLooking(std::uint64_t version)
+{
+  // Two in a row, because rays are compared with those of the picture before.
+  constexpr int patience = 8;
+  constexpr int every = 16;
+  Looking& looking = this->Values;
+  if (version == looking.Version)
+  {
+    return false;
+  }
+  looking.Version = version;
+  looking.Looks = looking.Useless < patience || looking.Useless % every < 2;
+  ++looking.Useless;
+  return true;
+}
+
 FieldFrames::Frame FieldFrames::Draw(
   Communicator& communicator, DistributedField& field, RayScene& scene, const Wish& wish)
 {
   Frame frame;
   const Hash128 digest = SceneOf(scene, wish);
   std::vector<Hash128> content;
-  Collective(communicator, [&] { content = field.VisibleContent(scene); });
+  const bool other = this->BeginLooking(field.Version());
+  const bool looks = wish.Reuse && this->Values.Looks;
+  Collective(communicator, [&] { content = field.VisibleContent(scene, looks); });
   Digest whole;
   whole.Add(digest);
   whole.Add(content);
@@ -102,6 +121,10 @@ FieldFrames::Frame FieldFrames::Draw(
       levels.insert(0); // the error is that against the finest one
       this->Pictures.Keep(digest, content, levels, quality, frame.Picture);
     }
+  }
+  if (other && (frame.Kept || scene.Reused))
+  {
+    this->Values.Useless = 0;
   }
   return frame;
 }
@@ -158,9 +181,8 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   const std::uint64_t budget = field.DrawingBudget();
   const PhaseScope sampling(Phase::Sampling);
   FrameStatistics& numbers = frame.Picture.Statistics;
-  frame.Picture.EstimatedError =
-    this->Tolerance.Plan(
-      communicator, field, scene, names.View, wish.Sampling, aim, budget, numbers);
+  frame.Picture.EstimatedError = this->Tolerance.Plan(
+    communicator, field, scene, names.View, wish.Sampling, aim, budget, numbers);
   frame.Picture.Limit = this->Tolerance.Limit();
   const bool keeps = this->BeginRays(communicator, drawn, scene, names.Whole, wish);
   const FrameStatistics probes = numbers;

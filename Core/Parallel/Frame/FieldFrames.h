@@ -70,6 +70,16 @@ private:
   void DrawAnew(Communicator& communicator, DistributedField& field, RayScene& scene,
     const Names& names, const Wish& wish, const ToleranceControl::Aim& aim, Frame& frame);
 
+  /// Values in memory that are others each time are hardly looked at.
+  struct Looking
+  {
+    std::uint64_t Version = 0; ///< of the field, in the last frame
+    int Useless = 0;           ///< versions in a row that nothing could be taken for
+    bool Looks = true;         ///< at this version
+  };
+  bool BeginLooking(std::uint64_t version);
+
+  Looking Values;
   ToleranceControl Tolerance;
   CompositePlanCache Plans;
   KeptRays Rays;

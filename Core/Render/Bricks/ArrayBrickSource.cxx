@@ -3,6 +3,7 @@
 
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
+#include "Render/Bricks/SampledBox.h"
 
 #include <algorithm>
 
@@ -21,7 +22,7 @@ glm::ivec3 PositionOf(std::int64_t brick, const glm::ivec3& counts)
 
 ArrayBrickSource::ArrayBrickSource(
   const SampleArray& array, int brickCells, const MaskRange& masks, ThreadPool& pool)
-  : Values(array)
+  : Values(std::make_shared<ArraySamples>(array))
   , BrickCells(brickCells)
   , Over(masks)
 {
@@ -42,7 +43,7 @@ ArrayBrickSource::ArrayBrickSource(
   {
     boxes.push_back(this->SamplesOf(static_cast<std::int64_t>(brick)));
   }
-  const std::vector<BoxSummary> summaries = this->Values.Summarize(boxes, this->Over, pool);
+  const std::vector<BoxSummary> summaries = this->Values->Summarize(boxes, this->Over, pool);
   for (std::size_t brick = 0; brick < summaries.size(); ++brick)
   {
     this->Ranges[brick] = summaries[brick].Range;
@@ -102,8 +103,8 @@ Box ArrayBrickSource::CellsOf(std::int64_t brick) const
 Box ArrayBrickSource::SamplesOf(std::int64_t brick) const
 {
   const Box cells = this->CellsOf(brick);
-  return { cells.Lo - this->Values.Array().Samples.Lo,
-    cells.Hi + 1 - this->Values.Array().Samples.Lo };
+  return { cells.Lo - this->Values->Array().Samples.Lo,
+    cells.Hi + 1 - this->Values->Array().Samples.Lo };
 }
 
 /// Signs of zeros and the rounding of magnitudes do not matter: zeros find one entry of a table,
@@ -112,21 +113,41 @@ std::optional<UniformValue> ArrayBrickSource::UniformValueOf(std::int64_t brick)
 {
   const ValueRange& range = this->Ranges[brick];
   const bool known = this->Uniform[brick] != 0 && range.Low == range.High;
-  if (!known || this->Values.Array().Component == SampleArray::Magnitude)
+  if (!known || this->Values->Array().Component == SampleArray::Magnitude)
   {
     return std::nullopt;
   }
-  return UniformValue{ range.Low, this->Values.Array().Type };
+  return UniformValue{ range.Low, this->Values->Array().Type };
+}
+
+std::optional<Hash128> ArrayBrickSource::ContentOf(std::int64_t brick) const
+{
+  return this->Contents.empty() ? std::nullopt : this->Contents[static_cast<std::size_t>(brick)];
+}
+
+void ArrayBrickSource::LookAt(const std::vector<std::int64_t>& bricks)
+{
+  this->Contents.resize(this->Ranges.size());
+  ThreadPool::Process().ParallelFor(static_cast<std::int64_t>(bricks.size()),
+    [&](std::int64_t i)
+    {
+      const std::int64_t brick = bricks[static_cast<std::size_t>(i)];
+      std::optional<Hash128>& content = this->Contents[static_cast<std::size_t>(brick)];
+      if (!content)
+      {
+        content = HashOfSamples(this->Load(brick), this->SamplesOf(brick).Size());
+      }
+    });
 }
 
 std::size_t ArrayBrickSource::LoadBytes(std::int64_t brick) const
 {
-  return this->Values.ViewBytes(this->SamplesOf(brick), this->Every);
+  return this->Values->ViewBytes(this->SamplesOf(brick), this->Every);
 }
 
 BrickView ArrayBrickSource::Load(std::int64_t brick)
 {
-  return this->Values.View(this->SamplesOf(brick), this->Every);
+  return this->Values->View(this->SamplesOf(brick), this->Every);
 }
 
 BrickView ArrayBrickSource::LoadAround(std::int64_t brick, Box& samples)
@@ -148,9 +169,9 @@ BrickView ArrayBrickSource::LoadTogether(const Box& bricks, bool around, Box& sa
 BrickView ArrayBrickSource::ViewOf(const Box& wanted, Box& samples) const
 {
   const Box part = Intersection(wanted, { glm::ivec3(0), this->Held });
-  const glm::ivec3& first = this->Values.Array().Samples.Lo;
+  const glm::ivec3& first = this->Values->Array().Samples.Lo;
   samples = { part.Lo + first, part.Hi + first };
-  return this->Values.View(part, this->Every);
+  return this->Values->View(part, this->Every);
 }
 
 } // namespace banyan

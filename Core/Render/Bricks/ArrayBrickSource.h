@@ -5,6 +5,8 @@
 #include "Render/Bricks/ArraySamples.h"
 #include "Render/Bricks/BrickSource.h"
 
+#include <memory>
+#include <optional>
 #include <vector>
 
 namespace banyan
@@ -29,11 +31,19 @@ public:
   ValueMask MaskOf(std::int64_t brick) const override { return this->Masks[brick]; }
   MaskRange MasksAreOver() const override { return this->Over; }
   std::optional<UniformValue> UniformValueOf(std::int64_t brick) const override;
+  /// Known of bricks that were looked at.
+  std::optional<Hash128> ContentOf(std::int64_t brick) const override;
+  /// Reads their samples, in parallel.
+  void LookAt(const std::vector<std::int64_t>& bricks) override;
   std::size_t LoadBytes(std::int64_t brick) const override;
   BrickView Load(std::int64_t brick) override;
   /// Takes the samples from the array, also those beyond its bricks' own.
   BrickView LoadAround(std::int64_t brick, Box& samples) override;
   BrickView LoadTogether(const Box& bricks, bool around, Box& samples) override;
+
+  /// Lets go of the array, for a source that takes its place: nothing can be loaded any more, at no
+  /// level. What is known of bricks stays.
+  void LetGoOfValues() { this->Values->LetGo(); }
 
 protected:
   /// Exists when the array is the whole grid.
@@ -48,9 +58,9 @@ private:
   Box SamplesOf(std::int64_t brick) const;
   BrickView ViewOf(const Box& wanted, Box& samples) const;
 
-  ArraySamples Values;  ///< of the finest level
-  int Every = 1;        ///< samples of the array from one of the level to the next
-  glm::ivec3 Held{ 0 }; ///< samples of the level per axis
+  std::shared_ptr<ArraySamples> Values; ///< of the finest level; all levels have them together
+  int Every = 1;                        ///< samples of the array from one of the level to the next
+  glm::ivec3 Held{ 0 };                 ///< samples of the level per axis
   int BrickCells;
   MaskRange Over;
   Box Cells;
@@ -58,7 +68,8 @@ private:
   glm::ivec3 BrickCounts{ 1 };
   std::vector<ValueRange> Ranges;
   std::vector<ValueMask> Masks;
-  std::vector<std::uint8_t> Uniform; ///< whether all samples have the value Range.Low
+  std::vector<std::uint8_t> Uniform;            ///< whether all samples have the value Range.Low
+  std::vector<std::optional<Hash128>> Contents; ///< of bricks that were looked at; may be empty
 };
 
 } // namespace banyan

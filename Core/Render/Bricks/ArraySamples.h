@@ -61,6 +61,14 @@ public:
 
   const SampleArray& Array() const { return this->Source; }
 
+  /// Lets go of the values: no view may be made any more.
+  void LetGo()
+  {
+    this->Source.Values = nullptr;
+    this->Source.Flags = nullptr;
+    this->Source.Owner.reset();
+  }
+
   /// Whether no view points at the array's own values.
   bool AlwaysCopied() const
   {

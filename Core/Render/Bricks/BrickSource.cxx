@@ -31,21 +31,33 @@ ScalarType TypeOf(const std::vector<SampledBox>& parts)
   return type.value_or(parts.front().View.Type);
 }
 
-/// Which bricks of one level differ from those of another source.
+/// Which bricks of one level differ from those of another source. Gradients are packed in parts of
+/// the range of values: all differ where that does.
 class ChangedBricks
 {
 public:
-  ChangedBricks(const BrickSource& before, const BrickSource& now)
+  ChangedBricks(const BrickSource& before, BrickSource& now)
     : Now(now)
     , Counts(now.Bricks())
   {
     const std::int64_t all = std::int64_t{ this->Counts.x } * this->Counts.y * this->Counts.z;
     this->SameGrid = before.Bricks() == this->Counts && before.CellsOf(0) == now.CellsOf(0) &&
-                     before.CellsOf(all - 1) == now.CellsOf(all - 1);
+                     before.CellsOf(all - 1) == now.CellsOf(all - 1) &&
+                     before.MasksAreOver() == now.MasksAreOver();
+    std::vector<std::int64_t> known;
     for (std::int64_t brick = 0; this->SameGrid && brick < all; ++brick)
     {
-      const std::optional<Hash128> content = now.ContentOf(brick);
-      this->Changed.push_back(!content || content != before.ContentOf(brick));
+      if (before.ContentOf(brick))
+      {
+        known.push_back(brick);
+      }
+    }
+    now.LookAt(known);
+    this->Changed.assign(static_cast<std::size_t>(all), true);
+    for (const std::int64_t brick : known)
+    {
+      this->Changed[static_cast<std::size_t>(brick)] =
+        now.ContentOf(brick) != before.ContentOf(brick);
     }
   }
 
@@ -126,6 +138,10 @@ void BrickSource::Hide(std::shared_ptr<const HiddenCells> hidden)
 
 void BrickSource::TakeKept(BrickSource& other, const Box& domain)
 {
+  if (other.HiddenHere)
+  {
+    return; // packed without its cells
+  }
   this->KeptOfSource = other.KeptOfSource;
   std::map<int, std::unique_ptr<const ChangedBricks>> levels;
   this->KeptOfSource->LetGoOf(
@@ -136,7 +152,7 @@ void BrickSource::TakeKept(BrickSource& other, const Box& domain)
       if (!changed)
       {
         const BrickSource* const before = other.AtLevel(level, domain);
-        const BrickSource* const now = this->AtLevel(level, domain);
+        BrickSource* const now = this->AtLevel(level, domain);
         if (!before || !now)
         {
           return true;

@@ -74,6 +74,10 @@ public:
   /// the same, in any source of the same grid. Nothing where it is not known without loading.
   virtual std::optional<Hash128> ContentOf(std::int64_t) const { return std::nullopt; }
 
+  /// Finds out what bricks hold, where that takes a look at their samples: ContentOf knows it from
+  /// then on. Without effect where it is known anyway, and where nobody can. One thread at a time.
+  virtual void LookAt(const std::vector<std::int64_t>& /*bricks*/) {}
+
   /// Of values that are whole multiples of a step, each rounded to float32, but for exceptions: the
   /// step. 0 where none is known.
   virtual double StepOfValues() const { return 0.0; }
@@ -141,8 +145,10 @@ public:
     this->KeptOfSource = std::make_shared<PackedBrickCache>(caches);
   }
   /// Takes over what is kept of a source of the same grid, of another step, say: of bricks that
-  /// this one has the same samples of. Before anything is hidden or drawn.
-  /// @param other of the finest level, as this one; nothing is kept of it any more
+  /// this one has the same samples of. Before anything is hidden or drawn. Looks at bricks that the
+  /// other one was asked about.
+  /// @param other of the finest level, as this one; nothing is kept of it any more. Its values may
+  /// be gone
   /// @param domain see AtLevel
   void TakeKept(BrickSource& other, const Box& domain);
   /// The number under which a brick of this level is kept.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Render/Bricks/SampledBox.h"
 
+#include <algorithm>
+#include <memory>
+
 namespace banyan
 {
 namespace
@@ -52,6 +55,39 @@ void CopySamples(const SampledBox& from, const Box& target, ScalarType type, voi
       using To = typename decltype(toTag)::Type;
       Dispatch(from.View.Type, [&](auto fromTag)
         { CopyPart<typename decltype(fromTag)::Type>(from, target, static_cast<To*>(out)); });
+    });
+}
+
+Hash128 HashOfSamples(const BrickView& view, const glm::ivec3& size)
+{
+  return Dispatch(view.Type,
+    [&](auto tag)
+    {
+      using T = typename decltype(tag)::Type;
+      const auto count = static_cast<std::size_t>(size.x) * size.y * size.z;
+      const std::unique_ptr<T[]> values(new T[count]); // not initialised: that takes time
+      T* out = values.get();
+      for (int z = 0; z < size.z; ++z)
+      {
+        for (int y = 0; y < size.y; ++y, out += size.x)
+        {
+          const T* const row =
+            static_cast<const T*>(view.Values) + y * view.Stride[1] + z * view.Stride[2];
+          // Rows are too short for the processor to guess where the next ones lie.
+          __builtin_prefetch(row + view.Stride[2]);
+          __builtin_prefetch(row + view.Stride[2] + size.x - 1);
+          if (view.Stride[0] == 1)
+          {
+            std::copy_n(row, size.x, out);
+            continue;
+          }
+          for (int x = 0; x < size.x; ++x)
+          {
+            out[x] = row[x * view.Stride[0]];
+          }
+        }
+      }
+      return HashOf(values.get(), count * sizeof(T), static_cast<std::uint64_t>(view.Type));
     });
 }
 

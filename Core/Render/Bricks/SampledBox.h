@@ -3,6 +3,7 @@
 #define banyan_Render_Bricks_SampledBox_h
 
 #include "Base/Box.h"
+#include "Base/Hash.h"
 #include "Render/Bricks/BrickView.h"
 
 #include <vector>
@@ -27,6 +28,11 @@ void CopySamples(const SampledBox& from, const Box& target, ScalarType type, voi
 /// Samples of a new view, x fastest, in memory that the view owns.
 /// @param values set to that memory, not initialised to anything but 0
 BrickView AllocateView(const Box& samples, ScalarType type, void*& values);
+
+/// A hash of the values and the type of a view's samples: where they lie in memory does not matter.
+/// Zeros of both signs differ, as NaNs of other bits do.
+/// @param size of the view, in samples per axis
+Hash128 HashOfSamples(const BrickView& view, const glm::ivec3& size);
 
 /// Puts a box together from others; where several have a sample, the last one's is taken. Samples
 /// that none has are 0.

@@ -13,8 +13,21 @@ namespace banyan
 namespace
 {
 
-/// Per brick, whether its samples can decide a pixel.
-std::vector<bool> BricksThatCount(const RayScene& scene, const BrickSource& source)
+std::vector<std::int64_t> NumbersOf(const std::vector<bool>& bricks)
+{
+  std::vector<std::int64_t> numbers;
+  for (std::size_t brick = 0; brick < bricks.size(); ++brick)
+  {
+    if (bricks[brick])
+    {
+      numbers.push_back(static_cast<std::int64_t>(brick));
+    }
+  }
+  return numbers;
+}
+
+/// The bricks whose samples can decide a pixel.
+std::vector<std::int64_t> BricksThatCount(const RayScene& scene, const BrickSource& source)
 {
   const VisibleBricks visible(scene, source);
   const glm::ivec3 counts = source.Bricks();
@@ -26,7 +39,7 @@ std::vector<bool> BricksThatCount(const RayScene& scene, const BrickSource& sour
   }
   if (!scene.Shading.On)
   {
-    return seen;
+    return NumbersOf(seen);
   }
   // Gradients take one more layer of samples, of the bricks around.
   std::vector<bool> around(all);
@@ -48,31 +61,28 @@ std::vector<bool> BricksThatCount(const RayScene& scene, const BrickSource& sour
       }
     }
   }
-  return around;
+  return NumbersOf(around);
 }
 
 /// Nothing where a brick's content is not known.
-std::optional<Hash128> ContentOfLevel(const RayScene& scene, const BrickSource& source)
+std::optional<Hash128> ContentOfLevel(const RayScene& scene, BrickSource& source)
 {
   struct Entry
   {
     std::int64_t Brick;
     Hash128 Content;
   };
-  const std::vector<bool> counts = BricksThatCount(scene, source);
+  const std::vector<std::int64_t> bricks = BricksThatCount(scene, source);
+  source.LookAt(bricks);
   std::vector<Entry> entries;
-  for (std::size_t brick = 0; brick < counts.size(); ++brick)
+  for (const std::int64_t brick : bricks)
   {
-    if (counts[brick])
+    const std::optional<Hash128> content = source.ContentOf(brick);
+    if (!content)
     {
-      const auto number = static_cast<std::int64_t>(brick);
-      const std::optional<Hash128> content = source.ContentOf(number);
-      if (!content)
-      {
-        return std::nullopt;
-      }
-      entries.push_back({ number, *content });
+      return std::nullopt;
     }
+    entries.push_back({ brick, *content });
   }
   Digest digest;
   const MaskRange range = source.MasksAreOver();
@@ -96,7 +106,7 @@ std::vector<Hash128> VisibleContent(const RayScene& scene, BrickSource& source, 
   std::vector<Hash128> levels;
   for (int level = 0; level <= coarsest; ++level)
   {
-    const BrickSource* const at = source.AtLevel(level, scene.DomainCells);
+    BrickSource* const at = source.AtLevel(level, scene.DomainCells);
     if (!at)
     {
       break;

@@ -28,6 +28,7 @@ std::array<std::uint64_t, 64> EntriesOfBins(const RayScene& scene, const MaskRan
   const std::vector<glm::vec4>& entries = scene.Transfer.Entries;
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::array<std::uint64_t, 64> bins{};
+  const std::uint64_t seed = ShortHashOf(&range, sizeof(range));
   const double width = (range.High - range.Low) / 64.0;
   const bool divided = width > 0.0 && width < infinity;
   for (int bin = 0; bin < 64; ++bin)
@@ -41,8 +42,10 @@ std::array<std::uint64_t, 64> EntriesOfBins(const RayScene& scene, const MaskRan
         values->EntriesOf(range.Low + (bin - 0.01) * width, range.Low + (bin + 1.01) * width);
       span = { bin == 0 ? 0 : own.First, bin == 63 ? last : own.Last };
     }
+    // Another range is another meaning of masks, and another scale of gradients.
     bins[static_cast<std::size_t>(bin)] =
-      ShortHashOf(entries.data() + span.First, (span.Last - span.First + 1) * sizeof(glm::vec4));
+      HashOf(entries.data() + span.First, (span.Last - span.First + 1) * sizeof(glm::vec4), seed)
+        .Low;
   }
   return bins;
 }
@@ -88,8 +91,7 @@ void Mark(const PixelRect& pixels, int level, const TileSamplings* samplings, Re
     for (int x = first.x; x <= last.x; ++x)
     {
       const glm::ivec2 tile(x / ReusedRays::BlocksPerRow, y / ReusedRays::BlocksPerRow);
-      if (!samplings ||
-          samplings->At(tile).Level == level)
+      if (!samplings || samplings->At(tile).Level == level)
       {
         reused.At(tile) |= ReusedRays::BitOf(x * edge, y * edge);
       }
@@ -116,9 +118,13 @@ std::vector<std::uint64_t> Look(const RayScene& scene, const BrickSource& source
       continue;
     }
     const std::optional<Hash128> content = source.ContentOf(brick);
-    if (!content)
+    if (!content && shows)
     {
       return {};
+    }
+    if (!content)
+    {
+      continue; // nobody looked at it: it gives samples to none that can be seen
     }
     std::uint64_t hash = content->Low ^ content->High * 3;
     for (ValueMask rest = shows ? source.MaskOf(brick) : 0; rest != 0; rest &= rest - 1)
@@ -217,11 +223,12 @@ Hash128 KeptRays::Begin(RayScene& scene, BrickSource& source, const Hash128& nam
   for (const int level : scene.Samplings ? scene.Samplings->UsedLevels() : std::set<int>{ 0 })
   {
     BrickSource* const at = source.AtLevel(level, scene.DomainCells);
-    next[level] = at ? Look(scene, *at) : Seen();
+    // Cells may be hidden in bricks that hold what they held.
+    next[level] = at && !source.Hidden() ? Look(scene, *at) : Seen();
   }
   const auto reused = std::make_shared<ReusedRays>(scene.Camera.ImageSize());
   Digest all;
-  if (this->Complete && !source.Hidden() && scene.OpacityLimit == this->OpacityLimit &&
+  if (this->Complete && scene.OpacityLimit == this->OpacityLimit &&
       (scene.Samplings != nullptr) == (this->Samplings != nullptr) &&
       this->MarkLevels(scene, source, next, *reused))
   {

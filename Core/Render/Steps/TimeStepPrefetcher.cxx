@@ -57,7 +57,7 @@ void AddComing(const RayScene& scene, const Box& cells, const SeriesBrickSource&
   {
     const Box part = Intersection(coming.CellsOf(brick), cells);
     if (!part.Empty() && after.Contains(brick) && screen.MayShow(part) &&
-      (!before.Contains(brick) || (changed && drawn.ContentOf(brick) != coming.ContentOf(brick))))
+        (!before.Contains(brick) || (changed && drawn.ContentOf(brick) != coming.ContentOf(brick))))
     {
       bricks.push_back(brick);
     }

@@ -20,6 +20,11 @@ struct MaskRange
   double Low = 0.0;
   double High = 1.0;
 
+  bool operator==(const MaskRange& other) const
+  {
+    return this->Low == other.Low && this->High == other.High;
+  }
+
   int BinOf(double value) const
   {
     if (!(this->High > this->Low) || !(value > this->Low))

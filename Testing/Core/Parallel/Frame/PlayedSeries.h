@@ -92,6 +92,8 @@ inline const EncodedSteps& Encoded()
 struct Situation
 {
   int Step = 0;
+  int Again = 0;            ///< values in memory are the same ones with another stamp
+  glm::ivec3 Changed{ -1 }; ///< a sample in memory that has another value
   double Eye = 0.0;
   int Function = 0;
   bool Cut = false;
@@ -132,26 +134,32 @@ inline RayScene SceneOf(const Situation& now)
   return scene;
 }
 
+inline void Become(SeriesInput& input, const Situation& now)
+{
+  input.Step = now.Step;
+  input.Motion.Strength = now.Motion;
+}
+
 /// A field of a rank, and its frames.
-struct Player
+template <class Input>
+struct PlayerOf
 {
   Communicator& Ranks;
-  SeriesInput Input;
+  Input In;
   DistributedField Field;
   FieldFrames Frames;
 
-  explicit Player(Communicator& communicator, std::int64_t budget = -1)
+  PlayerOf(Communicator& communicator, Input input)
     : Ranks(communicator)
-    , Input(SeriesFile::Open(Encoded().Path(), CacheContext::WithBudget(budget)))
+    , In(std::move(input))
   {
     this->Field.SetLoadBalancing(LoadBalancing::MeasuredCost);
   }
 
   FieldFrames::Frame Draw(const Situation& now, bool reuse = true)
   {
-    this->Input.Step = now.Step;
-    this->Input.Motion.Strength = now.Motion;
-    this->Field.Update(this->Ranks, this->Input);
+    Become(this->In, now);
+    this->Field.Update(this->Ranks, this->In);
     EXPECT_EQ(this->Field.Problem(), "");
     RayScene scene = SceneOf(now);
     FieldFrames::Wish wish;
@@ -165,6 +173,15 @@ struct Player
     wish.Sampling.PlansOfGroups = now.PlansOfGroups;
     wish.Reuse = reuse;
     return this->Frames.Draw(this->Ranks, this->Field, scene, wish);
+  }
+};
+
+struct Player : PlayerOf<SeriesInput>
+{
+  explicit Player(Communicator& communicator, std::int64_t budget = -1)
+    : PlayerOf<SeriesInput>(communicator,
+        SeriesInput(SeriesFile::Open(Encoded().Path(), CacheContext::WithBudget(budget))))
+  {
   }
 };
 

@@ -2,7 +2,7 @@
 // Frames that take from those before what is the same: whatever is done in between, pictures are
 // those of frames that are drawn from nothing.
 #include "Parallel/Fields/ArrayInput.h"
-#include "Parallel/Frame/PlayedSeries.h"
+#include "Parallel/Frame/PlainSteps.h"
 #include "Render/Dice.h"
 
 namespace
@@ -14,7 +14,7 @@ using namespace banyan::played;
 /// Changes one thing, as somebody in front of a window does.
 void ChangeSomething(Situation& now, Dice& dice, const std::vector<Situation>& before)
 {
-  switch (dice.Whole(0, 14))
+  switch (dice.Whole(0, 15))
   {
     case 0:
     case 1:
@@ -54,6 +54,9 @@ void ChangeSomething(Situation& now, Dice& dice, const std::vector<Situation>& b
     case 13:
       now.Passes = !now.Passes;
       break;
+    case 14:
+      ++now.Again;
+      break;
     default:
       now = before[static_cast<std::size_t>(dice.Whole(0, static_cast<int>(before.size()) - 1))];
       break;
@@ -66,12 +69,13 @@ struct Outcome
   double Reused = 0.0; ///< of the others, pictures' worth of rays that were not cast
 };
 
-/// @param budget of the caches in which frames are kept
+/// @param budget of the caches in which frames of a series are kept
+template <class Plays = Player>
 Outcome PlayAtRandom(
   Communicator& communicator, int operations, unsigned seed, std::int64_t budget, double allowed)
 {
-  Player with(communicator, budget);
-  Player without(communicator, budget);
+  Plays with(communicator, budget);
+  Plays without(communicator, budget);
   Dice dice(seed);
   Situation now;
   std::vector<Situation> before{ now };
@@ -117,6 +121,14 @@ TEST(FieldFrames, AtRandomTheyAreThoseOfNothingKept)
   EXPECT_EQ(nothing.Reused, 0.0);
 }
 
+TEST(FieldFrames, AtRandomPlainOnesAreThoseOfNothingKept)
+{
+  const auto alone = MakeSelfCommunicator();
+  const Outcome outcome = PlayAtRandom<PlainPlayer>(*alone, 300, 5, -1, 0.0);
+  EXPECT_GT(outcome.Kept, 30);
+  EXPECT_GT(outcome.Reused, 0.5);
+}
+
 TEST(FieldFrames, AtRandomRanksAgree)
 {
   for (const int ranks : { 2, 3 })
@@ -125,7 +137,9 @@ TEST(FieldFrames, AtRandomRanksAgree)
       [](Communicator& communicator)
       {
         // Rays that end early end elsewhere in other zones.
-        EXPECT_GT(PlayAtRandom(communicator, 60, 4, 64 << 20, 4.0 / 8.0 / 255.0 + 1e-5).Kept, 3);
+        constexpr double allowed = 4.0 / 8.0 / 255.0 + 1e-5;
+        EXPECT_GT(PlayAtRandom(communicator, 60, 4, 64 << 20, allowed).Kept, 3);
+        EXPECT_GT(PlayAtRandom<PlainPlayer>(communicator, 60, 6, -1, allowed).Kept, 3);
       });
   }
 }

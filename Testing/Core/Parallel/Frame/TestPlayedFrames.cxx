@@ -25,7 +25,8 @@ struct Taken
 
 /// Plays all steps with reuse and without.
 /// @param allowed largest difference of a pixel
-void PlayBoth(Communicator& communicator, Situation now, double allowed, Taken& with, Taken& without)
+void PlayBoth(
+  Communicator& communicator, Situation now, double allowed, Taken& with, Taken& without)
 {
   Player reuses(communicator);
   Player draws(communicator);

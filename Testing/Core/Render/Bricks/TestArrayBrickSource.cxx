@@ -256,4 +256,113 @@ TEST(ArrayBrickSource, MasksOfFlatVolumesCountSamples)
   EXPECT_EQ(source.RangeOf(0).High, 1.0);
 }
 
+/// Contents of all bricks at a level, looked at. @param array is copied to other memory
+std::vector<Hash128> ContentsOf(const SampleArray& array, int level)
+{
+  ThreadPool pool(2);
+  ArrayBrickSource source(array, 4, { 0, 1 }, pool);
+  BrickSource& at = *source.AtLevel(level, { array.Samples.Lo, array.Samples.Hi - 1 });
+  std::vector<std::int64_t> all;
+  for (std::int64_t brick = 0; brick < CountOf(at); ++brick)
+  {
+    EXPECT_FALSE(at.ContentOf(brick));
+    all.push_back(brick);
+  }
+  at.LookAt(all);
+  std::vector<Hash128> contents;
+  for (const std::int64_t brick : all)
+  {
+    contents.push_back(at.ContentOf(brick).value());
+  }
+  return contents;
+}
+
+TEST(ArrayBrickSource, ContentIsThatOfTheSamplesThatABrickHas)
+{
+  const glm::ivec3 n(19, 13, 9);
+  std::vector<float> values = scenes::Sampled(scenes::Standard, n);
+  const std::vector<float> same = values;
+  for (int level = 0; level < 3; ++level)
+  {
+    const int every = 1 << level;
+    const std::vector<Hash128> before = ContentsOf(scenes::ArrayOf(values, n), level);
+    EXPECT_EQ(ContentsOf(scenes::ArrayOf(same, n), level), before);
+    for (const glm::ivec3& at : { glm::ivec3(8, 4, 4), glm::ivec3(9, 5, 3), n - 1 })
+    {
+      float& value = values[static_cast<std::size_t>(at.x + n.x * (at.y + n.y * at.z))];
+      const float old = value;
+      value += 0.25f;
+      const std::vector<Hash128> now = ContentsOf(scenes::ArrayOf(values, n), level);
+      value = old;
+      ThreadPool pool(1);
+      ArrayBrickSource source(scenes::ArrayOf(values, n), 4, { 0, 1 }, pool);
+      BrickSource& bricks = *source.AtLevel(level, { glm::ivec3(0), n - 1 });
+      for (std::size_t brick = 0; brick < now.size(); ++brick)
+      {
+        const Box cells = bricks.CellsOf(static_cast<std::int64_t>(brick));
+        bool has = true;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          // The last sample is repeated where the last cell is not whole.
+          const int position =
+            at[axis] == n[axis] - 1 ? (at[axis] + every - 1) / every * every : at[axis];
+          has = has && position % every == 0 && position / every >= cells.Lo[axis] &&
+                position / every <= cells.Hi[axis];
+        }
+        EXPECT_EQ(now[brick] != before[brick], has) << level << " " << brick;
+      }
+    }
+  }
+}
+
+TEST(ArrayBrickSource, ContentTellsComponentsTypesAndWhatIsHidden)
+{
+  const glm::ivec3 n(6, 5, 5);
+  std::vector<std::int16_t> values(static_cast<std::size_t>(n.x * n.y * n.z * 2), 3);
+  std::vector<std::uint8_t> flags(static_cast<std::size_t>(n.x * n.y * n.z), 0);
+  SampleArray array;
+  array.Values = values.data();
+  array.Type = ScalarType::Int16;
+  array.Components = 2;
+  array.Stride[0] = 2;
+  array.Stride[1] = 2 * n.x;
+  array.Stride[2] = 2 * n.x * n.y;
+  array.Samples = { glm::ivec3(0), n };
+  const std::vector<Hash128> first = ContentsOf(array, 0);
+  array.Type = ScalarType::UInt16;
+  EXPECT_NE(ContentsOf(array, 0), first);
+  array.Type = ScalarType::Int16;
+  array.Component = SampleArray::Magnitude;
+  const std::vector<Hash128> length = ContentsOf(array, 0);
+  values[1] = 4; // of the other component
+  EXPECT_NE(ContentsOf(array, 0), length);
+  array.Component = 0;
+  EXPECT_EQ(ContentsOf(array, 0), first);
+  array.Flags = flags.data();
+  const std::vector<Hash128> shown = ContentsOf(array, 0);
+  flags[0] = 2;
+  EXPECT_NE(ContentsOf(array, 0), shown);
+}
+
+TEST(ArrayBrickSource, WhatIsKnownStaysWhenValuesGo)
+{
+  ThreadPool pool(1);
+  const glm::ivec3 n(9);
+  std::vector<float> values = scenes::Sampled(scenes::Standard, n);
+  SampleArray array = scenes::ArrayOf(values, n);
+  const auto owner = std::make_shared<int>(0);
+  array.Owner = owner;
+  ArrayBrickSource source(array, 4, { 0, 1 }, pool);
+  array.Owner.reset();
+  BrickSource& coarse = *source.AtLevel(1, { glm::ivec3(0), n - 1 });
+  source.LookAt({ 0 });
+  coarse.LookAt({ 0 });
+  const std::optional<Hash128> fine = source.ContentOf(0);
+  EXPECT_EQ(owner.use_count(), 2);
+  source.LetGoOfValues();
+  EXPECT_EQ(owner.use_count(), 1);
+  EXPECT_TRUE(fine && source.ContentOf(0) == fine && coarse.ContentOf(0));
+  EXPECT_FALSE(source.ContentOf(1));
+}
+
 } // namespace
