@@ -2,6 +2,7 @@
 #ifndef banyan_Parallel_Fields_PieceExchange_h
 #define banyan_Parallel_Fields_PieceExchange_h
 
+#include "Base/Hash.h"
 #include "Parallel/Communicate/Communicator.h"
 #include "Parallel/Fields/FetchedBricks.h"
 #include "Parallel/Fields/PieceGrid.h"
@@ -20,15 +21,17 @@ struct PieceSummaries
 {
   MaskRange Masks;                   ///< over the finite values of all pieces
   std::vector<BoxSummary> Bricks;    ///< of nobody's bricks: nothing
+  std::vector<Hash128> Contents;     ///< of samples and place of each brick; empty: not looked at
   std::vector<ScalarType> Types;     ///< of the array of each rank
   std::vector<ScalarType> ViewTypes; ///< PieceSamples::Type of each rank
 };
 
 /// Collective: each rank looks at its own bricks once, and tells the others.
 /// @param mine of this rank
+/// @param looks whether to tell what bricks hold, too; the same on all ranks
 /// Throws CollectiveError when one cannot.
-PieceSummaries GatherSummaries(
-  Communicator& communicator, const PieceGrid& grid, const PieceSamples& mine, ThreadPool& pool);
+PieceSummaries GatherSummaries(Communicator& communicator, const PieceGrid& grid,
+  const PieceSamples& mine, ThreadPool& pool, bool looks = false);
 
 /// Collective: gives every rank the layer of samples around what it holds. No messages are needed
 /// to ask for it: every rank knows what the others lack.

@@ -50,7 +50,7 @@ PieceField::PieceField(BrickCache* sharesWith)
 
 void PieceField::Take(Communicator& communicator, const std::vector<Box>& samples,
   const SampleArray& mine, const glm::ivec3& cells, int brickCells, LoadBalancing mode,
-  ThreadPool& pool)
+  ThreadPool& pool, bool looks)
 {
   this->Bricks.reset();
   this->Levels.Clear();
@@ -64,20 +64,22 @@ void PieceField::Take(Communicator& communicator, const std::vector<Box>& sample
       const bool some = !this->Pieces.SamplesOf(communicator.Rank()).Empty();
       this->Mine = some ? PieceSamples(mine) : PieceSamples();
     });
-  this->Known = GatherSummaries(communicator, this->Pieces, this->Mine, pool);
+  PieceSummaries known = GatherSummaries(communicator, this->Pieces, this->Mine, pool, looks);
+  this->Looked = looks;
+  this->ViewTypes = known.ViewTypes;
 
   FrameBalancer::Field field;
   field.Cells = cells;
   field.BrickCells = brickCells;
   field.BytesPerCell = 0.0;
-  for (const ScalarType type : this->Known.ViewTypes)
+  for (const ScalarType type : this->ViewTypes)
   {
     field.BytesPerCell = std::max(field.BytesPerCell, BytesPerCell(type));
   }
   field.Start = ZonesOfPieces(this->Pieces, cells);
   this->Balancer.Start(mode, field, communicator.Size());
-  this->Bricks = std::make_unique<PieceSource>(this->Pieces, communicator.Rank(), this->Mine,
-    this->Fetched, std::move(this->Known.Bricks), this->Known.Types, this->Known.Masks);
+  this->Bricks = std::make_unique<PieceSource>(
+    this->Pieces, communicator.Rank(), this->Mine, this->Fetched, std::move(known));
   this->Bricks->SetLevels(&this->Levels);
 }
 
@@ -167,9 +169,9 @@ void PieceField::BeginFrame(Communicator& communicator, RayScene& scene, std::ui
   std::uint64_t shell = 0;
   if (around && !this->Mine.HasShell())
   {
-    shell = ExchangeShells(communicator, this->Pieces, this->Known.ViewTypes, this->Mine);
+    shell = ExchangeShells(communicator, this->Pieces, this->ViewTypes, this->Mine);
   }
-  BrickFetch fetch(communicator, this->Pieces, this->Known.ViewTypes, this->Mine, around);
+  BrickFetch fetch(communicator, this->Pieces, this->ViewTypes, this->Mine, around);
   std::vector<std::int32_t> counts;
   Wish wish = this->WishOf(scene, fetch, communicator.Rank(), budgetBytes);
   while (!this->Fits(communicator, wish, counts) && this->Balancer.Moves() &&
@@ -198,8 +200,8 @@ void PieceField::BringLevels(Communicator& communicator, const RayScene& scene, 
 {
   if (this->Levels.Coarsest() == 0 && coarsest > 0)
   {
-    this->Levels.Make(communicator, this->Pieces, this->Mine, this->Known.ViewTypes, this->AllCells,
-      this->MostBrickCells, coarsest, pool, this->Bricks->Hidden());
+    this->Levels.Make(communicator, this->Pieces, this->Mine, this->ViewTypes, this->AllCells,
+      this->MostBrickCells, coarsest, pool, this->Bricks->Hidden(), this->Looked);
   }
   const double received =
     static_cast<double>(this->Levels.Bring(communicator, scene, this->Zones(), budgetBytes));

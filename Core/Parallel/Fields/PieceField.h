@@ -47,9 +47,11 @@ public:
   /// @param cells of the whole grid
   /// @param brickCells as for PieceGrid
   /// @param mode how zones move
+  /// @param looks whether BrickSource::ContentOf is known then; the same on all ranks
   /// Throws CollectiveError when one cannot; there is no Source() then.
   void Take(Communicator& communicator, const std::vector<Box>& samples, const SampleArray& mine,
-    const glm::ivec3& cells, int brickCells, LoadBalancing mode, ThreadPool& pool);
+    const glm::ivec3& cells, int brickCells, LoadBalancing mode, ThreadPool& pool,
+    bool looks = false);
 
   /// Null before Take.
   PieceSource* Source() { return this->Bricks.get(); }
@@ -87,7 +89,8 @@ private:
 
   PieceGrid Pieces;
   PieceSamples Mine;
-  PieceSummaries Known;
+  std::vector<ScalarType> ViewTypes; ///< PieceSamples::Type of each rank
+  bool Looked = false;               ///< whether it is known what bricks hold
   FetchedBricks Fetched;
   FrameBalancer Balancer;
   PieceLevels Levels;

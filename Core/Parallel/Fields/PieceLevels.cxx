@@ -90,7 +90,8 @@ std::vector<std::vector<std::int32_t>> GatherCounts(
 
 void PieceLevels::Make(Communicator& communicator, const PieceGrid& finest,
   const PieceSamples& mine, const std::vector<ScalarType>& viewTypes, const glm::ivec3& cells,
-  int brickCells, int coarsest, ThreadPool& pool, const std::shared_ptr<const HiddenCells>& hidden)
+  int brickCells, int coarsest, ThreadPool& pool, const std::shared_ptr<const HiddenCells>& hidden,
+  bool looks)
 {
   this->Clear();
   std::vector<std::unique_ptr<Level>> made;
@@ -100,7 +101,7 @@ void PieceLevels::Make(Communicator& communicator, const PieceGrid& finest,
     const CoarsePieces pieces(finest, cells, number);
     level->Samples = pieces.Gather(communicator, mine, viewTypes);
     level->Grid = PieceGrid(pieces.All(), brickCells);
-    level->Known = GatherSummaries(communicator, level->Grid, level->Samples, pool);
+    level->Known = GatherSummaries(communicator, level->Grid, level->Samples, pool, looks);
     if (hidden)
     {
       level->Hidden = std::make_shared<const HiddenCells>(hidden->Coarser(number));
@@ -113,8 +114,8 @@ void PieceLevels::Make(Communicator& communicator, const PieceGrid& finest,
 std::unique_ptr<PieceSource> PieceLevels::SourceOf(int number, int rank) const
 {
   const Level& level = *this->Levels.at(static_cast<std::size_t>(number) - 1);
-  auto source = std::make_unique<PieceSource>(level.Grid, rank, level.Samples, level.Fetched,
-    level.Known.Bricks, level.Known.Types, level.Known.Masks);
+  auto source =
+    std::make_unique<PieceSource>(level.Grid, rank, level.Samples, level.Fetched, level.Known);
   source->Hide(level.Hidden);
   return source;
 }

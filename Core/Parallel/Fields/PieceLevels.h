@@ -34,10 +34,12 @@ public:
   /// @param cells of the whole grid
   /// @param brickCells as for PieceGrid
   /// @param hidden cells of the whole grid; null for none
+  /// @param looks GatherSummaries
   /// Throws CollectiveError when one cannot; there are no levels then.
   void Make(Communicator& communicator, const PieceGrid& finest, const PieceSamples& mine,
     const std::vector<ScalarType>& viewTypes, const glm::ivec3& cells, int brickCells, int coarsest,
-    ThreadPool& pool, const std::shared_ptr<const HiddenCells>& hidden = nullptr);
+    ThreadPool& pool, const std::shared_ptr<const HiddenCells>& hidden = nullptr,
+    bool looks = false);
   void Clear() { this->Levels.clear(); }
 
   /// 0 while there is none but the finest.

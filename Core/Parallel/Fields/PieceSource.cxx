@@ -10,17 +10,14 @@ namespace banyan
 {
 
 PieceSource::PieceSource(const PieceGrid& grid, int rank, const PieceSamples& samples,
-  const FetchedBricks& fetched, std::vector<BoxSummary> summaries, std::vector<ScalarType> types,
-  const MaskRange& masks)
+  const FetchedBricks& fetched, PieceSummaries known)
   : Grid(grid)
   , Rank(rank)
   , Samples(samples)
   , Fetched(fetched)
-  , Summaries(std::move(summaries))
-  , Types(std::move(types))
-  , Masks(masks)
+  , Known(std::move(known))
 {
-  if (static_cast<std::int64_t>(this->Summaries.size()) != grid.Count())
+  if (static_cast<std::int64_t>(this->Known.Bricks.size()) != grid.Count())
   {
     throw Error("There is not one summary for each brick of the pieces.");
   }
@@ -34,7 +31,16 @@ std::optional<UniformValue> PieceSource::UniformValueOf(std::int64_t brick) cons
     return std::nullopt;
   }
   const int holder = this->Grid.HolderOf(brick);
-  return UniformValue{ summary.Range.Low, this->Types[static_cast<std::size_t>(holder)] };
+  return UniformValue{ summary.Range.Low, this->Known.Types[static_cast<std::size_t>(holder)] };
+}
+
+std::optional<Hash128> PieceSource::ContentOf(std::int64_t brick) const
+{
+  if (this->Known.Contents.empty())
+  {
+    return std::nullopt;
+  }
+  return this->Known.Contents[static_cast<std::size_t>(brick)];
 }
 
 std::size_t PieceSource::LoadBytes(std::int64_t brick) const

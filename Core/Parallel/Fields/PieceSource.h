@@ -3,6 +3,7 @@
 #define banyan_Parallel_Fields_PieceSource_h
 
 #include "Parallel/Fields/FetchedBricks.h"
+#include "Parallel/Fields/PieceExchange.h"
 #include "Parallel/Fields/PieceGrid.h"
 #include "Parallel/Fields/PieceSamples.h"
 #include "Render/Bricks/BrickSource.h"
@@ -25,17 +26,17 @@ class PieceSource : public BrickSource
 {
 public:
   /// Everything referred to must stay.
-  /// @param summaries of all bricks of the grid; nobody's bricks have none
-  /// @param masks range of the 64 bins of the masks
+  /// @param known of all bricks of the grid
   PieceSource(const PieceGrid& grid, int rank, const PieceSamples& samples,
-    const FetchedBricks& fetched, std::vector<BoxSummary> summaries, std::vector<ScalarType> types,
-    const MaskRange& masks);
+    const FetchedBricks& fetched, PieceSummaries known);
 
   glm::ivec3 Bricks() const override { return this->Grid.Bricks(); }
   Box CellsOf(std::int64_t brick) const override { return this->Grid.CellsOf(brick); }
   ValueRange RangeOf(std::int64_t brick) const override { return this->At(brick).Range; }
   ValueMask MaskOf(std::int64_t brick) const override { return this->At(brick).Mask; }
-  MaskRange MasksAreOver() const override { return this->Masks; }
+  MaskRange MasksAreOver() const override { return this->Known.Masks; }
+  /// Of all bricks, on all ranks alike, if they were looked at when they were gathered.
+  std::optional<Hash128> ContentOf(std::int64_t brick) const override;
   std::optional<UniformValue> UniformValueOf(std::int64_t brick) const override;
   std::size_t LoadBytes(std::int64_t brick) const override;
   /// Throws Error when the brick is another rank's and was not fetched.
@@ -53,7 +54,7 @@ protected:
 private:
   const BoxSummary& At(std::int64_t brick) const
   {
-    return this->Summaries[static_cast<std::size_t>(brick)];
+    return this->Known.Bricks[static_cast<std::size_t>(brick)];
   }
   BrickView ViewOf(std::int64_t brick, const Box& samples) const;
 
@@ -61,9 +62,7 @@ private:
   int Rank;
   const PieceSamples& Samples;
   const FetchedBricks& Fetched;
-  std::vector<BoxSummary> Summaries;
-  std::vector<ScalarType> Types; ///< of the array of each rank
-  MaskRange Masks;
+  PieceSummaries Known;
   const PieceLevels* Coarser = nullptr;
 };
 

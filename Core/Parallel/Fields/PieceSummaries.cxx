@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Collects what all ranks know of each other's bricks.
+#include "Base/Digest.h"
+#include "Base/ThreadPool.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Fields/PieceExchange.h"
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 
 namespace banyan
 {
@@ -18,6 +21,7 @@ struct Entry
   double High;
   std::uint64_t Mask;
   std::uint64_t Uniform;
+  Hash128 Content;
 };
 
 /// Holds what a rank says of its array.
@@ -28,6 +32,25 @@ struct ArrayFacts
   std::int32_t Type;
   std::int32_t ViewType;
 };
+
+/// Hashes of samples and places of boxes of an array; as many zeros if nobody wants to know.
+std::vector<Hash128> ContentsOf(
+  const ArraySamples& array, const std::vector<Box>& boxes, ThreadPool& pool, bool looks)
+{
+  std::vector<Hash128> contents(boxes.size());
+  const auto look = [&](std::int64_t i)
+  {
+    const Box& box = boxes[static_cast<std::size_t>(i)];
+    const glm::ivec3& first = array.Array().Samples.Lo;
+    Digest digest;
+    digest.Add(HashOfSamples(array.View(box), box.Size()));
+    digest.Add(Box{ box.Lo + first, box.Hi + first });
+    contents[static_cast<std::size_t>(i)] = digest.Get();
+  };
+  pool.ParallelFor(
+    looks ? static_cast<std::int64_t>(boxes.size()) : 0, std::function<void(std::int64_t)>(look));
+  return contents;
+}
 
 /// The bricks of a rank, ascending.
 std::vector<std::int64_t> BricksOf(const PieceGrid& grid, int rank)
@@ -44,7 +67,7 @@ std::vector<std::int64_t> BricksOf(const PieceGrid& grid, int rank)
 }
 
 std::string SummarizeOwn(const PieceGrid& grid, int rank, const PieceSamples& mine,
-  const MaskRange& masks, ThreadPool& pool)
+  const MaskRange& masks, ThreadPool& pool, bool looks)
 {
   if (!mine.HasData())
   {
@@ -61,10 +84,12 @@ std::string SummarizeOwn(const PieceGrid& grid, int rank, const PieceSamples& mi
   const bool exact = array.Component != SampleArray::Magnitude;
   std::string bytes(boxes.size() * sizeof(Entry), '\0');
   char* out = bytes.data();
+  const std::vector<Hash128> contents = ContentsOf(mine.Array(), boxes, pool, looks);
+  auto content = contents.begin();
   for (const BoxSummary& summary : mine.Array().Summarize(boxes, masks, pool))
   {
     const Entry entry{ summary.Range.Low, summary.Range.High, summary.Mask,
-      summary.Uniform && exact ? std::uint64_t{ 1 } : 0 };
+      summary.Uniform && exact ? std::uint64_t{ 1 } : 0, *content++ };
     std::memcpy(out, &entry, sizeof(entry));
     out += sizeof(entry);
   }
@@ -72,15 +97,15 @@ std::string SummarizeOwn(const PieceGrid& grid, int rank, const PieceSamples& mi
 }
 
 /// @param messages from SummarizeOwn of each rank
-std::vector<BoxSummary> SummariesOfAll(
-  const PieceGrid& grid, const std::vector<std::string>& messages)
+void ReadAll(const PieceGrid& grid, const std::vector<std::string>& messages, PieceSummaries& known)
 {
   std::vector<const char*> next;
   for (const std::string& message : messages)
   {
     next.push_back(message.data());
   }
-  std::vector<BoxSummary> bricks(static_cast<std::size_t>(grid.Count()));
+  known.Bricks.resize(static_cast<std::size_t>(grid.Count()));
+  known.Contents.resize(static_cast<std::size_t>(grid.Count()));
   for (std::int64_t brick = 0; brick < grid.Count(); ++brick)
   {
     const int holder = grid.HolderOf(brick);
@@ -89,17 +114,17 @@ std::vector<BoxSummary> SummariesOfAll(
       Entry entry;
       std::memcpy(&entry, next[static_cast<std::size_t>(holder)], sizeof(entry));
       next[static_cast<std::size_t>(holder)] += sizeof(entry);
-      bricks[static_cast<std::size_t>(brick)] = { { entry.Low, entry.High }, entry.Mask,
+      known.Bricks[static_cast<std::size_t>(brick)] = { { entry.Low, entry.High }, entry.Mask,
         entry.Uniform != 0 };
+      known.Contents[static_cast<std::size_t>(brick)] = entry.Content;
     }
   }
-  return bricks;
 }
 
 } // namespace
 
-PieceSummaries GatherSummaries(
-  Communicator& communicator, const PieceGrid& grid, const PieceSamples& mine, ThreadPool& pool)
+PieceSummaries GatherSummaries(Communicator& communicator, const PieceGrid& grid,
+  const PieceSamples& mine, ThreadPool& pool, bool looks)
 {
   const int self = communicator.Rank();
   std::string failure;
@@ -122,9 +147,13 @@ PieceSummaries GatherSummaries(
   known.Masks = whole.Empty() ? MaskRange{} : MaskRange{ whole.Low, whole.High };
 
   std::string own;
-  Attempt(failure, [&] { own = SummarizeOwn(grid, self, mine, known.Masks, pool); });
+  Attempt(failure, [&] { own = SummarizeOwn(grid, self, mine, known.Masks, pool, looks); });
   ThrowTogether(communicator, failure);
-  known.Bricks = SummariesOfAll(grid, AllGatherStrings(communicator, own));
+  ReadAll(grid, AllGatherStrings(communicator, own), known);
+  if (!looks)
+  {
+    known.Contents.clear();
+  }
   return known;
 }
 

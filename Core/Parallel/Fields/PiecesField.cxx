@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Fields/PiecesField.h"
 
+#include "Base/Digest.h"
 #include "Base/ThreadPool.h"
 #include "Cache/BrickCache.h"
+#include "Render/Bricks/VisibleContent.h"
 #include "Series/Decode/CacheContext.h"
 
 namespace banyan
@@ -17,7 +19,9 @@ void PiecesField::Take(Communicator& communicator, const std::vector<Box>& sampl
   }
   try
   {
-    this->Pieces->Take(communicator, samples, mine, cells, brickCells, mode, ThreadPool::Process());
+    this->Pieces->Take(
+      communicator, samples, mine, cells, brickCells, mode, ThreadPool::Process(), this->Wanted);
+    this->Wanted = false;
   }
   catch (...)
   {
@@ -49,6 +53,33 @@ void PiecesField::EndFrame(Communicator& communicator)
   {
     this->Pieces->EndFrame(communicator);
   }
+}
+
+std::vector<Hash128> PiecesField::VisibleContent(const RayScene& scene)
+{
+  this->Wanted = true;
+  if (!this->Pieces)
+  {
+    return {};
+  }
+  // Levels are made later in a frame. Their samples are some of the finest ones.
+  PieceSource& source = *this->Pieces->Source();
+  std::vector<Hash128> levels = banyan::VisibleContent(scene, source, 0);
+  Digest all;
+  for (std::int64_t brick = 0; !levels.empty() && brick < this->Pieces->Grid().Count(); ++brick)
+  {
+    const std::optional<Hash128> content = source.ContentOf(brick);
+    if (!content)
+    {
+      return {};
+    }
+    all.Add(*content);
+  }
+  if (!levels.empty())
+  {
+    levels.push_back(all.Get());
+  }
+  return levels;
 }
 
 const std::vector<Box>& PiecesField::Zones() const

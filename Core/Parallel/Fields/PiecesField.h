@@ -26,10 +26,13 @@ public:
   void Clear() override { this->Pieces.reset(); }
   BrickSource* Source() override { return this->Pieces ? this->Pieces->Source() : nullptr; }
   const std::vector<Box>& Zones() const override;
+  /// Of values that were looked at when they were taken: where the frames before wanted to know.
+  std::vector<Hash128> VisibleContent(const RayScene& scene) override;
   Movement Moved() const override;
 
 private:
   std::unique_ptr<PieceField> Pieces; ///< null when empty
+  bool Wanted = true;                 ///< whether frames want to know what the next values are
 };
 
 } // namespace banyan

@@ -21,10 +21,9 @@ FieldFrames::Frame DrawBoth(PlainPlayer& with, PlainPlayer& without, const Situa
   return frame;
 }
 
-TEST(PlainFrames, EqualValuesAreNotDrawnAgain)
+void ExpectEqualValuesAreKept(Communicator& communicator)
 {
-  const auto alone = MakeSelfCommunicator();
-  PlainPlayer player(*alone);
+  PlainPlayer player(communicator);
   Situation now;
   EXPECT_FALSE(player.Draw(now).Kept);
   ++now.Again;
@@ -40,11 +39,18 @@ TEST(PlainFrames, EqualValuesAreNotDrawnAgain)
   EXPECT_TRUE(player.Draw(now).Kept) << "nobody sees that one";
 }
 
-TEST(PlainFrames, RaysThatMeetWhatTheyMetAreNotCast)
+TEST(PlainFrames, EqualValuesAreNotDrawnAgain)
 {
-  const auto alone = MakeSelfCommunicator();
-  PlainPlayer with(*alone);
-  PlainPlayer without(*alone);
+  for (const int ranks : { 1, 2, 3 })
+  {
+    RunOnSimulatedRanks(ranks, ExpectEqualValuesAreKept);
+  }
+}
+
+void ExpectFewRays(Communicator& communicator)
+{
+  PlainPlayer with(communicator);
+  PlainPlayer without(communicator);
   Situation now;
   now.FixedDistance = 1.0;
   double reused = 0.0;
@@ -58,6 +64,14 @@ TEST(PlainFrames, RaysThatMeetWhatTheyMetAreNotCast)
     reused += frame.ReusedFraction();
   }
   EXPECT_GT(reused, 0.3);
+}
+
+TEST(PlainFrames, RaysThatMeetWhatTheyMetAreNotCast)
+{
+  for (const int ranks : { 1, 2, 3 })
+  {
+    RunOnSimulatedRanks(ranks, ExpectFewRays);
+  }
 }
 
 TEST(PlainFrames, PackedBricksThatHoldTheSameStay)
