@@ -30,6 +30,9 @@ void PlayBoth(
 {
   Player reuses(communicator);
   Player draws(communicator);
+  // What both take is compared: zones must not follow the clock.
+  reuses.Field.SetLoadBalancing(LoadBalancing::Off);
+  draws.Field.SetLoadBalancing(LoadBalancing::Off);
   for (now.Step = 0; now.Step < Steps; ++now.Step)
   {
     const FieldFrames::Frame frame = reuses.Draw(now);
