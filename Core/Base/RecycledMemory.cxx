@@ -100,7 +100,7 @@ Shelf& TheShelf()
   return *shelf;
 }
 
-/// From the system, which clears large pages in a tenth of the time that as many small ones take.
+/// From the system, which clears a large page faster than as many small ones.
 /// Throws std::bad_alloc.
 void* NewMemory(std::size_t bytes)
 {
