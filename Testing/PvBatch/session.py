@@ -26,6 +26,20 @@ def real_data(file):
     return data
 
 
+def time_information(times):
+    """A programmable source's script that announces time steps, the first and the last ones its range."""
+    return f"""
+executive = self.GetExecutive()
+info = executive.GetOutputInformation(0)
+info.Remove(executive.TIME_STEPS())
+for time in {times}:
+    info.Append(executive.TIME_STEPS(), time)
+info.Remove(executive.TIME_RANGE())
+info.Append(executive.TIME_RANGE(), {times[0]})
+info.Append(executive.TIME_RANGE(), {times[-1]})
+"""
+
+
 def empty_folder(path):
     """Makes the folder of a test anew: files of earlier runs, or of other formats, are no part of it."""
     shutil.rmtree(path, ignore_errors=True)

@@ -17,16 +17,7 @@ import session
 
 SIZE = (300, 240)
 TIMES = (0.0, 1.0, 3.0)
-INFORMATION = f"""
-executive = self.GetExecutive()
-info = executive.GetOutputInformation(0)
-info.Remove(executive.TIME_STEPS())
-for time in {TIMES}:
-    info.Append(executive.TIME_STEPS(), time)
-info.Remove(executive.TIME_RANGE())
-info.Append(executive.TIME_RANGE(), {TIMES[0]})
-info.Append(executive.TIME_RANGE(), {TIMES[-1]})
-"""
+INFORMATION = session.time_information(TIMES)
 IMAGE_INFORMATION = INFORMATION + """
 info.Set(executive.WHOLE_EXTENT(), 0, 40, 0, 32, 0, 20)
 info.Set(vtk.vtkDataObject.ORIGIN(), -20.0, -16.0, -10.0)

@@ -15,15 +15,7 @@ import session
 
 SIZE = (300, 240)
 TIMES = [float(step) for step in range(16)]
-INFORMATION = f"""
-executive = self.GetExecutive()
-info = executive.GetOutputInformation(0)
-info.Remove(executive.TIME_STEPS())
-for time in {TIMES}:
-    info.Append(executive.TIME_STEPS(), time)
-info.Remove(executive.TIME_RANGE())
-info.Append(executive.TIME_RANGE(), {TIMES[0]})
-info.Append(executive.TIME_RANGE(), {TIMES[-1]})
+INFORMATION = session.time_information(TIMES) + """
 info.Set(executive.WHOLE_EXTENT(), 0, 40, 0, 32, 0, 20)
 info.Set(vtk.vtkDataObject.ORIGIN(), -20.0, -16.0, -10.0)
 info.Set(vtk.vtkDataObject.SPACING(), 1.0, 1.0, 1.0)
