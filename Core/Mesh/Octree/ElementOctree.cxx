@@ -67,6 +67,13 @@ std::int64_t ElementOctree::LeafFrom(MortonKey key) const
   return std::lower_bound(begin, end, key) - this->Keys.begin();
 }
 
+Hash128 ElementOctree::HashOfLeaves(std::int64_t first, std::int64_t end) const
+{
+  const std::size_t count = Index(end - first);
+  const Hash128 levels = HashOf(this->Levels.data() + first, count);
+  return HashOf(this->Keys.data() + first, count * sizeof(MortonKey), levels.Low);
+}
+
 std::int64_t ElementOctree::LeafAt(const glm::ivec3& cell) const
 {
   if (!this->DomainCells.Contains(cell))

@@ -3,6 +3,7 @@
 #define banyan_Mesh_Octree_ElementOctree_h
 
 #include "Base/Box.h"
+#include "Base/Hash.h"
 #include "Base/HeldArray.h"
 #include "Mesh/Octree/HexMesh.h"
 #include "Mesh/Octree/MeshSurvey.h"
@@ -84,6 +85,8 @@ public:
   glm::ivec3 CornerOfLeaf(std::int64_t leaf) const { return PositionOfKey(this->KeyOfLeaf(leaf)); }
   std::int64_t CellOfLeaf(std::int64_t leaf) const { return this->CellNumbers[Index(leaf)]; }
   int CoarsestLevel() const { return this->CoarsestLeaf; }
+  /// Of where leaves are that follow one another.
+  Hash128 HashOfLeaves(std::int64_t first, std::int64_t end) const;
 
   /// Points at the corners of a leaf: bit 0 of the corner's number is along x, bit 1 y, bit 2 z.
   void NodesOfLeaf(std::int64_t leaf, std::int64_t (&nodes)[8]) const

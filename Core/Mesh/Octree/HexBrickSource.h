@@ -47,6 +47,11 @@ public:
   }
   ValueMask MaskOf(std::int64_t brick) const override { return this->Summary.Masks[Index(brick)]; }
   MaskRange MasksAreOver() const override { return this->Summary.Over; }
+  /// Of the elements of the brick, too.
+  std::optional<Hash128> ContentOf(std::int64_t brick) const override
+  {
+    return this->Summary.Contents[Index(brick)];
+  }
   std::optional<UniformValue> UniformValueOf(std::int64_t brick) const override;
   std::size_t LoadBytes(std::int64_t brick) const override;
   BrickView Load(std::int64_t brick) override;

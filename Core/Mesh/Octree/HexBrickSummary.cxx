@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <vector>
 
 namespace banyan
@@ -32,6 +33,48 @@ std::size_t Index(std::int64_t i)
 {
   return static_cast<std::size_t>(i);
 }
+
+/// A hash of the values at the corners of elements, one after the other.
+/// @tparam Value that has the bits of the field's values
+template <class Value>
+class CornersHash
+{
+public:
+  explicit CornersHash(const Hash128& elements)
+    : Hash(elements)
+  {
+  }
+
+  void Add(const double (&corners)[8])
+  {
+    std::transform(std::begin(corners), std::end(corners), this->Next,
+      [](double value) { return static_cast<Value>(value); });
+    this->Next += 8;
+    if (this->Next == std::end(this->Pending))
+    {
+      this->Fold();
+    }
+  }
+
+  Hash128 Get()
+  {
+    this->Fold();
+    return this->Hash;
+  }
+
+private:
+  void Fold()
+  {
+    const auto bytes = static_cast<std::size_t>(this->Next - this->Pending) * sizeof(Value);
+    const Hash128 next = HashOf(this->Pending, bytes, this->Hash.Low);
+    this->Hash = { next.Low, next.High ^ this->Hash.High * 3 };
+    this->Next = this->Pending;
+  }
+
+  Hash128 Hash;
+  Value Pending[8 * 64];
+  Value* Next = this->Pending;
+};
 
 /// Values of an element.
 template <class Value>
@@ -72,6 +115,7 @@ HexBrickSummary Summarize(const HexBricks& bricks, const NodalField& values, Thr
 {
   const std::vector<HexBrick>& list = bricks.List();
   const auto count = static_cast<std::int64_t>(list.size());
+  std::vector<Hash128> contents(list.size());
   std::vector<ValueRange> ranges(list.size());
   std::vector<ValueMask> masks(list.size());
   std::vector<std::uint8_t> specials(list.size());
@@ -83,13 +127,16 @@ HexBrickSummary Summarize(const HexBricks& bricks, const NodalField& values, Thr
       ValueRange total;
       bool special = false;
       const HexBrick& brick = list[Index(number)];
+      CornersHash<Value> content(brick.Leaves);
       values.ForCorners(brick.FirstLeaf, brick.EndLeaf,
         [&](std::int64_t leaf, const double(&corners)[8])
         {
           const ValueRange range = RangeOfElement(corners, special);
           spans[Index(leaf)] = { static_cast<Value>(range.Low), static_cast<Value>(range.High) };
           total.Include(range);
+          content.Add(corners);
         });
+      contents[Index(number)] = content.Get();
       ranges[Index(number)] = total;
       specials[Index(number)] = special ? 1 : 0;
     });
@@ -106,6 +153,7 @@ HexBrickSummary Summarize(const HexBricks& bricks, const NodalField& values, Thr
       masks[Index(number)] =
         MaskOfBrick(summary.Over, list[Index(number)], ranges[Index(number)], spans.get());
     });
+  summary.Contents = std::move(contents);
   summary.Ranges = std::move(ranges);
   summary.Masks = std::move(masks);
   summary.Special = std::move(specials);
@@ -124,7 +172,8 @@ HexBrickSummary HexBrickSummary::Of(
 // The largest types come first, so that all are aligned.
 std::size_t HexBrickSummary::PackedBytes(std::size_t bricks)
 {
-  return sizeof(MaskRange) + bricks * (sizeof(ValueRange) + sizeof(ValueMask) + 1);
+  return sizeof(MaskRange) +
+         bricks * (sizeof(Hash128) + sizeof(ValueRange) + sizeof(ValueMask) + 1);
 }
 
 void HexBrickSummary::WriteTo(char* to) const
@@ -138,6 +187,7 @@ void HexBrickSummary::WriteTo(char* to) const
     to += bytes;
   };
   put(&this->Over, sizeof(this->Over));
+  put(this->Contents.data(), this->Contents.Bytes());
   put(this->Ranges.data(), this->Ranges.Bytes());
   put(this->Masks.data(), this->Masks.Bytes());
   put(this->Special.data(), this->Special.Bytes());
@@ -149,6 +199,8 @@ HexBrickSummary HexBrickSummary::Read(std::size_t bricks, const std::shared_ptr<
   HexBrickSummary summary;
   std::memcpy(&summary.Over, from, sizeof(summary.Over));
   from += sizeof(summary.Over);
+  summary.Contents = { reinterpret_cast<const Hash128*>(from), bricks, memory };
+  from += summary.Contents.Bytes();
   summary.Ranges = { reinterpret_cast<const ValueRange*>(from), bricks, memory };
   from += summary.Ranges.Bytes();
   summary.Masks = { reinterpret_cast<const ValueMask*>(from), bricks, memory };

@@ -2,6 +2,7 @@
 #ifndef banyan_Mesh_Octree_HexBrickSummary_h
 #define banyan_Mesh_Octree_HexBrickSummary_h
 
+#include "Base/Hash.h"
 #include "Base/HeldArray.h"
 #include "Mesh/Octree/HexBricks.h"
 #include "Mesh/Octree/NodalField.h"
@@ -20,6 +21,7 @@ class ThreadPool;
 /// Says which values each brick of a mesh has. It is found by one look at all elements.
 struct HexBrickSummary
 {
+  HeldArray<Hash128> Contents; ///< of elements and their values: BrickSource::ContentOf
   HeldArray<ValueRange> Ranges;
   HeldArray<ValueMask> Masks;
   HeldArray<std::uint8_t> Special; ///< whether a corner of an element is not finite
@@ -27,7 +29,8 @@ struct HexBrickSummary
 
   std::size_t Bytes() const
   {
-    return this->Ranges.Bytes() + this->Masks.Bytes() + this->Special.Bytes();
+    return this->Contents.Bytes() + this->Ranges.Bytes() + this->Masks.Bytes() +
+           this->Special.Bytes();
   }
 
   static HexBrickSummary Of(const HexBricks& bricks, const NodalField& values, ThreadPool& pool);

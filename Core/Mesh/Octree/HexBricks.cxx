@@ -24,9 +24,10 @@ HexBricks::HexBricks(std::shared_ptr<const ElementOctree> tree, int edge)
     ++this->RootLevel;
   }
   this->Cut({ 0, this->RootLevel, 0, this->Octree->LeafCount() });
-  for (const HexBrick& brick : this->Bricks)
+  for (HexBrick& brick : this->Bricks)
   {
     this->Coarsest = std::max(this->Coarsest, brick.Level);
+    brick.Leaves = this->Octree->HashOfLeaves(brick.FirstLeaf, brick.EndLeaf);
   }
 }
 
@@ -115,7 +116,10 @@ void HexBricks::Cut(const Cube& cube)
 /// @return false when the cube has to be cut
 bool HexBricks::TakeWhole(const Cube& cube)
 {
-  HexBrick brick{ cube.Level, {}, cube.FirstLeaf, cube.EndLeaf };
+  HexBrick brick;
+  brick.Level = cube.Level;
+  brick.FirstLeaf = cube.FirstLeaf;
+  brick.EndLeaf = cube.EndLeaf;
   const int lowest = cube.Level - this->EdgeLevel;
   CubeExtent extent;
   std::int64_t filled = 0;

@@ -19,6 +19,7 @@ struct HexBrick
   Box Cells;     ///< in cells of its own level: 2^Level of the finest ones
   std::int64_t FirstLeaf = 0;
   std::int64_t EndLeaf = 0; ///< the leaves between are its own
+  Hash128 Leaves;           ///< ElementOctree::HashOfLeaves
 
   /// In finest cells.
   Box FinestCells() const

@@ -73,7 +73,7 @@ const std::vector<Hash128>& DistributedField::VisibleContent(const RayScene& sce
   {
     known.Version = 0;
     known.Levels.clear();
-    if (looks || this->Field->IsEncoded())
+    if (looks || this->Field->IsEncoded() || this->Field->IsMesh())
     {
       known.Levels = this->Field->VisibleContent(scene);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Fields/MeshField.h"
 
+#include "Base/Digest.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Fields/MeshZones.h"
 
@@ -104,6 +105,20 @@ void MeshField::BringLevels(Communicator& communicator, const RayScene&, int coa
   {
     this->Mesh->BringLevels(communicator, coarsest);
   }
+}
+
+std::vector<Hash128> MeshField::VisibleContent(const RayScene&)
+{
+  if (!this->Bricks)
+  {
+    return {};
+  }
+  Digest all;
+  for (std::int64_t brick = 0; brick < this->Bricks->Bricks().x; ++brick)
+  {
+    all.Add(*this->Bricks->ContentOf(brick));
+  }
+  return { all.Get() };
 }
 
 MeshBytes MeshField::Bytes() const

@@ -46,6 +46,8 @@ public:
   void Clear() override { this->Bricks.reset(); }
   BrickSource* Source() override { return this->Bricks.get(); }
   const std::vector<Box>& Zones() const override { return this->ZoneCells; }
+  /// One hash of all values, which counts for all levels: elements of coarser ones span bricks.
+  std::vector<Hash128> VisibleContent(const RayScene& scene) override;
   bool IsMesh() const override { return true; }
   /// Cells that were left out, say.
   std::string Note() const override { return this->NoteText; }

@@ -31,8 +31,7 @@ ScalarType TypeOf(const std::vector<SampledBox>& parts)
   return type.value_or(parts.front().View.Type);
 }
 
-/// Which bricks of one level differ from those of another source. Gradients are packed in parts of
-/// the range of values: all differ where that does.
+/// Which bricks of one level differ from those of another source.
 class ChangedBricks
 {
 public:
@@ -42,8 +41,8 @@ public:
   {
     const std::int64_t all = std::int64_t{ this->Counts.x } * this->Counts.y * this->Counts.z;
     this->SameGrid = before.Bricks() == this->Counts && before.CellsOf(0) == now.CellsOf(0) &&
-                     before.CellsOf(all - 1) == now.CellsOf(all - 1) &&
-                     before.MasksAreOver() == now.MasksAreOver();
+                     before.CellsOf(all - 1) == now.CellsOf(all - 1);
+    this->SameRange = before.MasksAreOver() == now.MasksAreOver();
     std::vector<std::int64_t> known;
     for (std::int64_t brick = 0; this->SameGrid && brick < all; ++brick)
     {
@@ -64,7 +63,8 @@ public:
   /// Whether what was packed has other values now.
   bool Touch(const PackedBrick& packed) const
   {
-    if (!this->SameGrid)
+    // Gradients are packed in parts of the range of values.
+    if (!this->SameGrid || (packed.HasGradients() && !this->SameRange))
     {
       return true;
     }
@@ -92,6 +92,7 @@ private:
   const BrickSource& Now;
   glm::ivec3 Counts;
   bool SameGrid = false;
+  bool SameRange = false;
   std::vector<bool> Changed;
 };
 

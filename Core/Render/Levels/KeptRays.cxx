@@ -8,7 +8,6 @@
 #include "Render/Scene/SceneDigest.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <set>
 #include <utility>
@@ -21,63 +20,35 @@ namespace
 /// Where more of the visible bricks have changed, nearly every packet is under one.
 constexpr double MostChanged = 0.9;
 
-/// Per bin of values, a hash of the entries that they may take.
-std::array<std::uint64_t, 64> EntriesOfBins(const RayScene& scene, const MaskRange& range)
+/// The bins of values whose entries differ.
+ValueMask ChangedBins(
+  const TransferFunction& before, const TransferFunction& now, const MaskRange& range)
 {
-  const auto values = FunctionTables::Process().VisibleOf(scene.Transfer);
-  const std::vector<glm::vec4>& entries = scene.Transfer.Entries;
+  if (before.Entries == now.Entries)
+  {
+    return 0;
+  }
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  std::array<std::uint64_t, 64> bins{};
-  const std::uint64_t seed = ShortHashOf(&range, sizeof(range));
   const double width = (range.High - range.Low) / 64.0;
-  const bool divided = width > 0.0 && width < infinity;
+  if (!(width > 0.0 && width < infinity))
+  {
+    return ~ValueMask{ 0 };
+  }
+  const auto values = FunctionTables::Process().VisibleOf(now);
+  const auto last = static_cast<std::ptrdiff_t>(now.Entries.size()) - 1;
+  ValueMask bins = 0;
   for (int bin = 0; bin < 64; ++bin)
   {
     // What lies outside counts for the first or the last bin. A value at an edge may be in both.
-    const std::size_t last = entries.size() - 1;
-    VisibleValues::Span span{ 0, last };
-    if (divided)
-    {
-      const VisibleValues::Span own =
-        values->EntriesOf(range.Low + (bin - 0.01) * width, range.Low + (bin + 1.01) * width);
-      span = { bin == 0 ? 0 : own.First, bin == 63 ? last : own.Last };
-    }
-    // Another range is another meaning of masks, and another scale of gradients.
-    bins[static_cast<std::size_t>(bin)] =
-      HashOf(entries.data() + span.First, (span.Last - span.First + 1) * sizeof(glm::vec4), seed)
-        .Low;
+    const VisibleValues::Span own =
+      values->EntriesOf(range.Low + (bin - 0.01) * width, range.Low + (bin + 1.01) * width);
+    const auto first = bin == 0 ? 0 : static_cast<std::ptrdiff_t>(own.First);
+    const auto end = (bin == 63 ? last : static_cast<std::ptrdiff_t>(own.Last)) + 1;
+    const bool same = std::equal(
+      before.Entries.begin() + first, before.Entries.begin() + end, now.Entries.begin() + first);
+    bins |= same ? 0 : ValueMask{ 1 } << bin;
   }
   return bins;
-}
-
-glm::ivec3 PlaceOf(std::int64_t brick, const glm::ivec3& counts)
-{
-  return { static_cast<int>(brick % counts.x), static_cast<int>(brick / counts.x % counts.y),
-    static_cast<int>(brick / counts.x / counts.y) };
-}
-
-/// Calls function(number) for a brick, and with light for those around: they take a layer of its
-/// samples.
-template <class Function>
-void ForTouched(std::int64_t brick, const glm::ivec3& counts, bool shaded, Function&& function)
-{
-  if (!shaded)
-  {
-    function(brick);
-    return;
-  }
-  const glm::ivec3 at = PlaceOf(brick, counts);
-  const Box near = Intersection(Box{ at - 1, at + 2 }, Box{ glm::ivec3(0), counts });
-  for (int z = near.Lo.z; z < near.Hi.z; ++z)
-  {
-    for (int y = near.Lo.y; y < near.Hi.y; ++y)
-    {
-      for (int x = near.Lo.x; x < near.Hi.x; ++x)
-      {
-        function(BrickSource::NumberOf({ x, y, z }, counts));
-      }
-    }
-  }
 }
 
 /// Sets the bits of the blocks under some pixels, in tiles of a level.
@@ -99,13 +70,12 @@ void Mark(const PixelRect& pixels, int level, const TileSamplings* samplings, Re
   }
 }
 
-/// Per brick of a level: 0 where nothing can be seen, else a hash of all that decides what is.
-/// Empty where it is not known what bricks hold. With light, a brick counts that cannot be seen but
-/// gives samples to one that can.
+/// Per brick of a level: 0 where nothing can be seen, else a hash of all samples. Empty where it is
+/// not known what bricks hold. With light, a brick counts that cannot be seen but gives samples to
+/// one that can.
 std::vector<std::uint64_t> Look(const RayScene& scene, const BrickSource& source)
 {
   const VisibleBricks visible(scene, source);
-  const std::array<std::uint64_t, 64> bins = EntriesOfBins(scene, source.MasksAreOver());
   const glm::ivec3 counts = source.Bricks();
   std::vector<std::uint64_t> seen(static_cast<std::size_t>(counts.x) * counts.y * counts.z, 0);
   const bool shaded = scene.Shading.On;
@@ -122,43 +92,44 @@ std::vector<std::uint64_t> Look(const RayScene& scene, const BrickSource& source
     {
       return {};
     }
-    if (!content)
-    {
-      continue; // nobody looked at it: it gives samples to none that can be seen
-    }
-    std::uint64_t hash = content->Low ^ content->High * 3;
-    for (ValueMask rest = shows ? source.MaskOf(brick) : 0; rest != 0; rest &= rest - 1)
-    {
-      hash = hash * 0x9e3779b97f4a7c15u + bins[static_cast<std::size_t>(__builtin_ctzll(rest))];
-    }
-    seen[i] = std::max<std::uint64_t>(hash, 1);
+    // Where nobody looked, a brick gives samples to none that can be seen.
+    seen[i] = content ? std::max<std::uint64_t>(content->Low ^ content->High * 3, 1) : 0;
   }
   return seen;
 }
 
-/// Marks what lies under bricks of a level that differ.
-void MarkChanged(const RayScene& scene, const BrickSource& source,
-  const std::vector<std::uint64_t>& before, const std::vector<std::uint64_t>& now, int level,
-  ReusedRays& reused)
+/// Which bricks of a level have other samples than before, or are seen with other entries.
+std::vector<bool> ChangedBricks(const BrickSource& source, ValueMask bins,
+  const std::vector<std::uint64_t>& before, const std::vector<std::uint64_t>& now)
 {
-  const glm::ivec3 counts = source.Bricks();
-  const RayCamera camera = scene.Camera.InSpace(IndexToWorldAt(scene, source.CellLevel()));
-  std::vector<bool> touched(now.size());
-  for (std::size_t brick = 0; brick < now.size(); ++brick)
+  std::vector<bool> changed(now.size());
+  for (std::size_t i = 0; i < now.size(); ++i)
   {
-    if (now[brick] != before[brick])
-    {
-      ForTouched(static_cast<std::int64_t>(brick), counts, scene.Shading.On,
-        [&](std::int64_t near) { touched[static_cast<std::size_t>(near)] = true; });
-    }
+    changed[i] = now[i] != before[i] ||
+                 (now[i] != 0 && (source.MaskOf(static_cast<std::int64_t>(i)) & bins) != 0);
   }
-  for (std::size_t brick = 0; brick < touched.size(); ++brick)
+  return changed;
+}
+
+/// Marks what lies under some bricks of a level, and with light under what takes samples of theirs.
+void MarkUnder(const RayScene& scene, const BrickSource& source, const std::vector<bool>& bricks,
+  int level, ReusedRays& reused)
+{
+  // A gradient is interpolated between samples, and these take the next ones.
+  const int around = scene.Shading.On ? 2 << source.CoarsestBrickLevel() : 0;
+  const RayCamera camera = scene.Camera.InSpace(IndexToWorldAt(scene, source.CellLevel()));
+  for (std::size_t i = 0; i < bricks.size(); ++i)
   {
-    const Box cells = source.CellsOf(static_cast<std::int64_t>(brick));
-    const PixelRect pixels =
-      touched[brick]
-        ? Intersection(camera.Footprint(glm::dvec3(cells.Lo), glm::dvec3(cells.Hi)), scene.Viewport)
-        : PixelRect();
+    if (!bricks[i])
+    {
+      continue;
+    }
+    const auto brick = static_cast<std::int64_t>(i);
+    const int size = 1 << source.BrickLevel(brick);
+    const Box cells = source.CellsOf(brick);
+    const PixelRect pixels = Intersection(
+      camera.Footprint(glm::dvec3(cells.Lo * size - around), glm::dvec3(cells.Hi * size + around)),
+      scene.Viewport);
     if (!pixels.Empty())
     {
       Mark(pixels, level, scene.Samplings.get(), reused);
@@ -180,19 +151,16 @@ bool KeptRays::MarkLevels(const RayScene& scene, BrickSource& source,
     {
       return false;
     }
-    std::size_t shown = 0;
-    std::size_t changed = 0;
-    for (std::size_t brick = 0; brick < seen.size(); ++brick)
-    {
-      shown += seen[brick] != 0 ? 1 : 0;
-      changed += seen[brick] != before->second[brick] ? 1 : 0;
-    }
-    if (static_cast<double>(changed) > MostChanged * static_cast<double>(shown))
+    const BrickSource& at = *source.AtLevel(level, scene.DomainCells);
+    const std::vector<bool> changed = ChangedBricks(
+      at, ChangedBins(this->Transfer, scene.Transfer, at.MasksAreOver()), before->second, seen);
+    const auto shown = std::count_if(seen.begin(), seen.end(), [](auto hash) { return hash != 0; });
+    const auto others = std::count(changed.begin(), changed.end(), true);
+    if (static_cast<double>(others) > MostChanged * static_cast<double>(shown))
     {
       return false;
     }
-    MarkChanged(
-      scene, *source.AtLevel(level, scene.DomainCells), before->second, seen, level, reused);
+    MarkUnder(scene, at, changed, level, reused);
   }
   return true;
 }
@@ -243,6 +211,7 @@ Hash128 KeptRays::Begin(RayScene& scene, BrickSource& source, const Hash128& nam
   this->View = view;
   this->Name = name;
   this->OpacityLimit = scene.OpacityLimit;
+  this->Transfer = scene.Transfer;
   this->Samplings = scene.Samplings;
   this->Levels = std::move(next);
   return scene.Reused ? all.Get() : Hash128();

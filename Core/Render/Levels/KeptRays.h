@@ -20,8 +20,8 @@ namespace banyan
 /// pixels under no brick that has changed since are not cast again. The next picture has the bits
 /// that it would have if all rays were cast.
 ///
-///     bricks   what can be seen of each, as a hash ── compared with that of the last picture
-///     blocks   under the footprint of a brick that differs ── a bit of the tile's mask
+///     bricks   samples of each that can be seen, as a hash ── compared with those of the last
+///     picture blocks   under the footprint of a brick that differs ── a bit of the tile's mask
 ///     tiles    another level, distance, stride or opacity limit ── all bits
 ///
 /// It begins with the second picture of a view: of those that are seen once, while a camera moves,
@@ -50,7 +50,7 @@ public:
   void Forget();
 
 private:
-  /// Per brick of a level: 0 where nothing can be seen, else a hash of all that decides what is.
+  /// Per brick of a level: 0 where nothing can be seen, else a hash of all samples.
   using Seen = std::vector<std::uint64_t>;
 
   bool MarkLevels(const RayScene& scene, BrickSource& source, const std::map<int, Seen>& next,
@@ -60,6 +60,7 @@ private:
   Hash128 View; ///< of the picture that was begun last
   Hash128 Name;
   float OpacityLimit = 0.0f;
+  TransferFunction Transfer;
   std::shared_ptr<const TileSamplings> Samplings;
   std::map<int, Seen> Levels; ///< that it was drawn from
   bool Complete = false;      ///< whether it has been drawn

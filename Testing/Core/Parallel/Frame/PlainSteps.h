@@ -51,7 +51,7 @@ public:
   SampleArray Samples(const glm::ivec3&) const override
   {
     std::vector<float> whole = ValuesOf(this->Step);
-    whole.front() = this->Step == OtherRange ? 1.5f : 1.0f;
+    whole.front() = this->Step == OtherRange ? 2.5f : 1.0f;
     if (this->Changed.x >= 0)
     {
       const glm::ivec3& at = this->Changed;
@@ -105,6 +105,11 @@ private:
   mutable std::vector<float> Memory;
 };
 
+inline void Join(PlainInput& input, const Communicator& communicator)
+{
+  input.Ranks = &communicator;
+}
+
 inline void Become(PlainInput& input, const Situation& now)
 {
   input.Step = now.Step;
@@ -118,7 +123,6 @@ struct PlainPlayer : PlayerOf<PlainInput>
   explicit PlainPlayer(Communicator& communicator, std::int64_t = -1)
     : PlayerOf<PlainInput>(communicator, PlainInput())
   {
-    this->In.Ranks = &communicator;
   }
 };
 

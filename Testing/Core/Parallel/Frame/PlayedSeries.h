@@ -21,17 +21,19 @@ constexpr int Steps = 12;
 inline const glm::ivec3 Samples{ 57, 49, 53 };
 
 /// A field that rests above, and has a ball below, among the highest values, that goes round.
-inline std::vector<float> FewChanges(int step)
+/// @param p from 0 to 1 along each axis
+inline double FewChangesAt(const glm::dvec3& p, int step)
 {
   const double turn = 6.2831853 * step / Steps;
   const glm::dvec3 ball(0.5 + 0.3 * std::cos(turn), 0.5 + 0.3 * std::sin(turn), 0.15);
+  const double inside = std::max(0.0, 1.0 - glm::length(p - ball) / 0.13);
+  return p.z < 0.5 ? 0.9 + 0.1 * inside : 0.8 * scenes::Standard(p);
+}
+
+inline std::vector<float> FewChanges(int step)
+{
   return scenes::Sampled<float>(
-    [&](const glm::dvec3& p)
-    {
-      const double inside = std::max(0.0, 1.0 - glm::length(p - ball) / 0.13);
-      return p.z < 0.5 ? 0.9 + 0.1 * inside : 0.8 * scenes::Standard(p);
-    },
-    Samples);
+    [&](const glm::dvec3& p) { return FewChangesAt(p, step); }, Samples);
 }
 
 /// Nothing of the ball.
@@ -101,18 +103,20 @@ struct Situation
   bool Projected = false;
   bool Geometry = false;
   int Width = 96;
+  int Height = 80;
   double Motion = 0.0;
   double FixedDistance = 0.0;
   double Tolerance = 4.0;
   bool Interacting = false;
   bool Passes = false;
   bool PlansOfGroups = false; ///< they depend on what was drawn before
+  bool Alone = false;         ///< each rank by itself
 };
 
 inline RayScene SceneOf(const Situation& now)
 {
-  RayScene scene =
-    scenes::Scene(Samples, { now.Width, 80 }, glm::dmat4(1.0), 1.6 + 0.3 * std::sin(now.Eye));
+  RayScene scene = scenes::Scene(
+    Samples, { now.Width, now.Height }, glm::dmat4(1.0), 1.6 + 0.3 * std::sin(now.Eye));
   scene.Shading.On = now.Shaded;
   scene.Transfer = FunctionOf(now.Function);
   if (now.Cut)
@@ -134,6 +138,8 @@ inline RayScene SceneOf(const Situation& now)
   return scene;
 }
 
+inline void Join(SeriesInput&, const Communicator&) {}
+
 inline void Become(SeriesInput& input, const Situation& now)
 {
   input.Step = now.Step;
@@ -144,24 +150,39 @@ inline void Become(SeriesInput& input, const Situation& now)
 template <class Input>
 struct PlayerOf
 {
-  Communicator& Ranks;
+  Communicator* Ranks;
   Input In;
   DistributedField Field;
   FieldFrames Frames;
 
   PlayerOf(Communicator& communicator, Input input)
-    : Ranks(communicator)
+    : Ranks(&communicator)
     , In(std::move(input))
   {
+    Join(this->In, communicator);
     this->Field.SetLoadBalancing(LoadBalancing::MeasuredCost);
+  }
+
+  /// Goes on among other ranks, as the mapper does.
+  void GoTo(Communicator& communicator)
+  {
+    this->Ranks = &communicator;
+    Join(this->In, communicator);
+    this->Field.Reset();
+    this->Frames.Forget();
   }
 
   FieldFrames::Frame Draw(const Situation& now, bool reuse = true)
   {
     Become(this->In, now);
-    this->Field.Update(this->Ranks, this->In);
+    this->Field.Update(*this->Ranks, this->In);
     EXPECT_EQ(this->Field.Problem(), "");
     RayScene scene = SceneOf(now);
+    if (this->Field.Drawn().IsMesh())
+    {
+      scene.IndexToWorld = this->Field.Place().IndexToPhysical;
+      scene.DomainCells = this->Field.Place().Cells;
+    }
     FieldFrames::Wish wish;
     wish.Sampling.Still = now.Tolerance;
     wish.Sampling.Interactive = 4.0 * now.Tolerance;
@@ -172,7 +193,7 @@ struct PlayerOf
     wish.Sampling.KeepsTolerance = !now.Projected && !wish.Sampling.FixedDistance;
     wish.Sampling.PlansOfGroups = now.PlansOfGroups;
     wish.Reuse = reuse;
-    return this->Frames.Draw(this->Ranks, this->Field, scene, wish);
+    return this->Frames.Draw(*this->Ranks, this->Field, scene, wish);
   }
 };
 
@@ -196,6 +217,21 @@ inline double WorstDifference(const FloatImage& a, const FloatImage& b)
     worst = std::max({ worst, difference.r, difference.g, difference.b, difference.a });
   }
   return worst;
+}
+
+/// Draws with reuse and without: the same picture. @return the frame with
+template <class Player>
+FieldFrames::Frame DrawBoth(Player& with, Player& without, const Situation& now)
+{
+  FieldFrames::Frame frame = with.Draw(now);
+  const FieldFrames::Frame whole = without.Draw(now, false);
+  if (with.Ranks->Rank() == 0)
+  {
+    // Rays that end early end elsewhere in other zones.
+    const double allowed = with.Ranks->Size() == 1 ? 0.0 : now.Tolerance / 8.0 / 255.0 + 1e-5;
+    EXPECT_LE(WorstDifference(*frame.Picture.Pixels, *whole.Picture.Pixels), allowed) << now.Step;
+  }
+  return frame;
 }
 
 } // namespace banyan::played

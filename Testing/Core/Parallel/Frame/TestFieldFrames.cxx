@@ -2,6 +2,7 @@
 // Frames that take from those before what is the same: whatever is done in between, pictures are
 // those of frames that are drawn from nothing.
 #include "Parallel/Fields/ArrayInput.h"
+#include "Parallel/Frame/MeshSteps.h"
 #include "Parallel/Frame/PlainSteps.h"
 #include "Render/Dice.h"
 
@@ -14,7 +15,7 @@ using namespace banyan::played;
 /// Changes one thing, as somebody in front of a window does.
 void ChangeSomething(Situation& now, Dice& dice, const std::vector<Situation>& before)
 {
-  switch (dice.Whole(0, 15))
+  switch (dice.Whole(0, 16))
   {
     case 0:
     case 1:
@@ -57,6 +58,9 @@ void ChangeSomething(Situation& now, Dice& dice, const std::vector<Situation>& b
     case 14:
       ++now.Again;
       break;
+    case 15:
+      now.Alone = !now.Alone;
+      break;
     default:
       now = before[static_cast<std::size_t>(dice.Whole(0, static_cast<int>(before.size()) - 1))];
       break;
@@ -74,6 +78,7 @@ template <class Plays = Player>
 Outcome PlayAtRandom(
   Communicator& communicator, int operations, unsigned seed, std::int64_t budget, double allowed)
 {
+  const auto alone = MakeSelfCommunicator();
   Plays with(communicator, budget);
   Plays without(communicator, budget);
   Dice dice(seed);
@@ -84,6 +89,16 @@ Outcome PlayAtRandom(
   {
     ChangeSomething(now, dice, before);
     before.push_back(now);
+    if (dice.Whole(0, 9) == 0)
+    {
+      continue; // nobody sees it: the volume is hidden
+    }
+    Communicator& ranks = now.Alone ? *alone : communicator;
+    if (&ranks != with.Ranks && communicator.Size() > 1)
+    {
+      with.GoTo(ranks);
+      without.GoTo(ranks);
+    }
     if (dice.Whole(0, 3) == 0)
     {
       with.Frames.RefineNext();
@@ -99,8 +114,8 @@ Outcome PlayAtRandom(
     EXPECT_TRUE(frame.Picture.EstimatedError <= now.Tolerance * (finer ? 4.0 : 1.0) ||
                 !frame.Picture.Limit.empty())
       << i << ": " << frame.Picture.EstimatedError;
-    EXPECT_EQ(frame.Picture.Pixels != nullptr, communicator.Rank() == 0);
-    if (communicator.Rank() == 0 && !finer)
+    EXPECT_EQ(frame.Picture.Pixels != nullptr, with.Ranks->Rank() == 0);
+    if (with.Ranks->Rank() == 0 && !finer)
     {
       EXPECT_LE(WorstDifference(*frame.Picture.Pixels, *expected.Picture.Pixels), allowed)
         << "operation " << i << " of seed " << seed << (frame.Kept ? ", kept" : "");
@@ -129,6 +144,14 @@ TEST(FieldFrames, AtRandomPlainOnesAreThoseOfNothingKept)
   EXPECT_GT(outcome.Reused, 0.5);
 }
 
+TEST(FieldFrames, AtRandomMeshesAreThoseOfNothingKept)
+{
+  const auto alone = MakeSelfCommunicator();
+  const Outcome outcome = PlayAtRandom<MeshPlayer>(*alone, 150, 7, -1, 0.0);
+  EXPECT_GT(outcome.Kept, 15);
+  EXPECT_GT(outcome.Reused, 0.2);
+}
+
 TEST(FieldFrames, AtRandomRanksAgree)
 {
   for (const int ranks : { 2, 3 })
@@ -140,6 +163,7 @@ TEST(FieldFrames, AtRandomRanksAgree)
         constexpr double allowed = 4.0 / 8.0 / 255.0 + 1e-5;
         EXPECT_GT(PlayAtRandom(communicator, 60, 4, 64 << 20, allowed).Kept, 3);
         EXPECT_GT(PlayAtRandom<PlainPlayer>(communicator, 60, 6, -1, allowed).Kept, 3);
+        EXPECT_GT(PlayAtRandom<MeshPlayer>(communicator, 60, 8, -1, allowed).Kept, 3);
       });
   }
 }
