@@ -4,6 +4,7 @@
 #include "Base/Digest.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace banyan
 {
@@ -77,6 +78,19 @@ const DrawnPicture* KeptPictures::Find(
   return &this->Items.front().Picture;
 }
 
+/// Of a full store: the least recently used one of other scenes, else the middle one.
+std::list<KeptPictures::Item>::iterator KeptPictures::NextToGo(const Hash128& scene)
+{
+  for (auto item = this->Items.end(); item != this->Items.begin();)
+  {
+    if ((--item)->Scene != scene)
+    {
+      return item;
+    }
+  }
+  return std::next(this->Items.begin(), static_cast<std::ptrdiff_t>(this->Items.size() / 2));
+}
+
 void KeptPictures::Keep(const Hash128& scene, const std::vector<Hash128>& content,
   const std::set<int>& levels, const Quality& quality, const DrawnPicture& picture)
 {
@@ -98,8 +112,9 @@ void KeptPictures::Keep(const Hash128& scene, const std::vector<Hash128>& conten
   }
   while (this->HeldBytes + bytes > budget)
   {
-    this->HeldBytes -= this->Items.back().Bytes;
-    this->Items.pop_back();
+    const auto goes = this->NextToGo(scene);
+    this->HeldBytes -= goes->Bytes;
+    this->Items.erase(goes);
   }
   this->Items.push_front({ scene, at, levels, quality, picture, bytes });
   this->HeldBytes += bytes;

@@ -27,8 +27,12 @@ struct DrawnPicture
 };
 
 /// Pictures of one field that were drawn, by all that decides them: a scene that comes again is not
-/// drawn again. The least recently used ones go when the budget is full. Of pictures that somebody
-/// saw while the camera moved, the last one is kept alone: they hardly come again.
+/// drawn again. Of pictures that somebody saw while the camera moved, the last one is kept alone:
+/// they hardly come again.
+///
+/// When the budget is full, the least recently used pictures of other scenes go first. Then half of
+/// the pictures are the newest ones, and half stay: of a loop that is longer than the budget, some
+/// steps are there each time. (If the oldest one went, it would always be the one that comes next.)
 class KeptPictures
 {
 public:
@@ -76,6 +80,7 @@ private:
     std::uint64_t Bytes;
   };
 
+  std::list<Item>::iterator NextToGo(const Hash128& scene);
   template <class Predicate>
   void LetGoIf(Predicate&& predicate);
 

@@ -58,6 +58,40 @@ TEST(KeptPictures, TheLeastRecentlyUsedOneGoes)
   }
 }
 
+/// Of one scene after the other, like the steps of a loop. @return how many were there
+int Play(KeptPictures& kept, const Hash128& scene, std::uint64_t first, std::uint64_t end)
+{
+  int found = 0;
+  for (std::uint64_t step = first; step < end; ++step)
+  {
+    const std::vector<Hash128> content = Content(step, step);
+    if (kept.Find(scene, content, {}))
+    {
+      ++found;
+    }
+    else
+    {
+      kept.Keep(scene, content, { 0 }, {}, Picture());
+    }
+  }
+  return found;
+}
+
+TEST(KeptPictures, OfALoopThatIsTooLongAPartStays)
+{
+  KeptPictures kept;
+  kept.KeepIn(CachesFor(8));
+  EXPECT_EQ(Play(kept, Name(0), 0, 20), 0);
+  for (int round = 0; round < 5; ++round)
+  {
+    EXPECT_GE(Play(kept, Name(0), 0, 20), 3) << round;
+    EXPECT_EQ(Play(kept, Name(0), 17, 20), 3) << "the newest ones";
+  }
+  EXPECT_EQ(kept.Bytes(), 8 * Bytes);
+  Play(kept, Name(1), 0, 8);
+  EXPECT_EQ(Play(kept, Name(1), 0, 8), 8) << "those of the other scene go first";
+}
+
 TEST(KeptPictures, AFinerOneServesAndTakesThePlace)
 {
   KeptPictures kept;
