@@ -20,8 +20,8 @@ namespace banyan
 /// pixels under no brick that has changed since are not cast again. The next picture has the bits
 /// that it would have if all rays were cast.
 ///
-///     bricks   samples of each that can be seen, as a hash ── compared with those of the last
-///     picture blocks   under the footprint of a brick that differs ── a bit of the tile's mask
+///     bricks   a hash of the samples of each that can be seen ── compared with that of before
+///     blocks   under the footprint of a brick that differs ── a bit of the tile's mask
 ///     tiles    another level, distance, stride or opacity limit ── all bits
 ///
 /// It begins with the second picture of a view: of those that are seen once, while a camera moves,
@@ -31,7 +31,7 @@ namespace banyan
 /// picture of all of them; zones may move meanwhile.
 ///
 /// Only of composited samples. A change of the transfer function is one of all bricks that have
-/// values whose entries have changed.
+/// values whose entries have changed. With light, rays near a brick that differs are cast, too.
 class KeptRays
 {
 public:
