@@ -38,8 +38,9 @@ struct OwnPart
 };
 
 /// Casts this rank's rays; a failure becomes a sentence for the others.
-/// @param watcher null for none
-FloatImage CastOwnZone(OwnPart& own, PictureWatcher* watcher)
+/// @param cast CastRays, say: it is given all but the watcher
+template <class Function>
+FloatImage CastOwnZone(OwnPart& own, const Function& cast)
 {
   const Timer timer;
   FloatImage mine;
@@ -49,10 +50,7 @@ FloatImage CastOwnZone(OwnPart& own, PictureWatcher* watcher)
       if (own.Source && !own.Zone.Empty())
       {
         const PhaseScope phase(Phase::Casting);
-        mine = watcher
-                 ? CastRaysWatched(own.Scene, *own.Source, own.Zone, own.BudgetBytes, own.Pool,
-                     own.Rays, *watcher)
-                 : CastRays(own.Scene, *own.Source, own.Zone, own.BudgetBytes, own.Pool, own.Rays);
+        mine = cast(own.Scene, *own.Source, own.Zone, own.BudgetBytes, own.Pool, own.Rays);
       }
     });
   own.RenderSeconds = timer.Seconds();
@@ -132,12 +130,25 @@ CompositeOptions CompleteOptions(
   return options;
 }
 
+/// A rank alone has nothing to composite.
+FloatImage CastAlone(Communicator& communicator, OwnPart& own)
+{
+  FloatImage picture = CastOwnZone(own, CastViewport);
+  ThrowTogether(communicator, own.Failure);
+  if (picture.Rect.Empty())
+  {
+    picture.Rect = own.Scene.Viewport;
+    picture.Pixels.assign(static_cast<std::size_t>(picture.Rect.Count()), glm::vec4(0.0f));
+  }
+  return picture;
+}
+
 /// @param compositing without what follows from the scene and the zones
 FloatImage CastThenComposite(Communicator& communicator, OwnPart& own,
   const std::vector<Box>& zones, const CompositeOptions& compositing)
 {
   const RayScene& scene = own.Scene;
-  const FloatImage mine = CastOwnZone(own, nullptr);
+  const FloatImage mine = CastOwnZone(own, CastRays);
   const PhaseScope phase(Phase::Compositing);
   // The order and the footprints depend on what all ranks have alike: no rank fails here alone.
   const std::vector<int> order = OrderAsDrawn(scene, zones);
@@ -173,7 +184,8 @@ FloatImage CastAndComposite(Communicator& communicator, OwnPart& own, const std:
     ThrowTogether(communicator, problem);
   }
   CompositeWhileCasting compositor(communicator, order, scene.Viewport, options, own.Sent);
-  const FloatImage mine = CastOwnZone(own, &compositor);
+  const FloatImage mine = CastOwnZone(
+    own, [&](auto&&... arguments) { return CastRaysWatched(arguments..., compositor); });
   const PhaseScope phase(Phase::Compositing);
   const Timer timer;
   if (own.Failure.empty())
@@ -195,9 +207,10 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene,
   const std::vector<Box>& zones = share.Zones;
   OwnPart own{ scene, share.Source, zones.at(static_cast<std::size_t>(communicator.Rank())),
     share.BudgetBytes, share.Pool, share.Failure, compositing.AfterCasting, {}, {} };
-  const bool atOnce = compositing.WhileCasting && communicator.Size() > 1;
-  FloatImage picture =
-    (atOnce ? CastAndComposite : CastThenComposite)(communicator, own, zones, compositing);
+  FloatImage picture = communicator.Size() == 1 ? CastAlone(communicator, own)
+                       : compositing.WhileCasting
+                         ? CastAndComposite(communicator, own, zones, compositing)
+                         : CastThenComposite(communicator, own, zones, compositing);
   const PhaseScope phase(Phase::Compositing);
   const Timer finish;
   FinishPicture(scene, picture);

@@ -36,12 +36,15 @@ BrickSource& SourceAt(BrickSource& source, int level, const RayScene& scene)
   return *found;
 }
 
+/// @param least of the picture
 /// @param watcher null for none
 FloatImage Cast(const RayScene& scene, BrickSource& source, const Box& cells,
-  std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics, PictureWatcher* watcher)
+  std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics, const PixelRect& least,
+  PictureWatcher* watcher)
 {
   const Box inside = Intersection(cells, scene.DomainCells);
   FloatImage picture;
+  picture.Rect = least;
   std::vector<std::unique_ptr<LevelCaster>> casters;
   for (const int level : LevelsOf(scene))
   {
@@ -91,13 +94,19 @@ int FinestLevelWithin(const RayScene& scene, BrickSource& source, const Box& cel
 FloatImage CastRays(const RayScene& scene, BrickSource& source, const Box& cells,
   std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics)
 {
-  return Cast(scene, source, cells, budgetBytes, pool, statistics, nullptr);
+  return Cast(scene, source, cells, budgetBytes, pool, statistics, PixelRect(), nullptr);
+}
+
+FloatImage CastViewport(const RayScene& scene, BrickSource& source, const Box& cells,
+  std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics)
+{
+  return Cast(scene, source, cells, budgetBytes, pool, statistics, scene.Viewport, nullptr);
 }
 
 FloatImage CastRaysWatched(const RayScene& scene, BrickSource& source, const Box& cells,
   std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics, PictureWatcher& watcher)
 {
-  return Cast(scene, source, cells, budgetBytes, pool, statistics, &watcher);
+  return Cast(scene, source, cells, budgetBytes, pool, statistics, PixelRect(), &watcher);
 }
 
 } // namespace banyan

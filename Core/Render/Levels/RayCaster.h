@@ -45,6 +45,9 @@ struct RayStatistics
 /// Throws Error when the scene is not usable or a brick cannot be read.
 FloatImage CastRays(const RayScene& scene, BrickSource& source, const Box& cells,
   std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics);
+/// The same, as the whole viewport: 0 where no brick is.
+FloatImage CastViewport(const RayScene& scene, BrickSource& source, const Box& cells,
+  std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics);
 
 /// The finest level of which all that can be seen, as loaded and as packed for drawing, takes at
 /// most `bytes`; `coarsest` if there is none. Nothing is loaded to find out.
