@@ -29,34 +29,17 @@ inline const mesh_pieces::Whole& MeshOf(bool farther)
 }
 
 /// The steps of FewChanges at the points of a mesh, which lies in pieces on the ranks.
-class MeshInput final : public FieldInput
+class MeshInput final : public StepsInMemory
 {
 public:
   static constexpr int Farther = Steps; ///< step 0 on another mesh
 
-  int Step = 0;
-  int Again = 0;            ///< another stamp, and the same values
-  glm::ivec3 Changed{ -1 }; ///< a point of the lattice that has another value
-
-  InputStamp Stamp() const override
-  {
-    InputStamp stamp;
-    stamp.Add(this->Step);
-    stamp.Add(this->Again);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      stamp.Add(this->Changed[axis]);
-    }
-    return stamp;
-  }
   PieceFacts Facts() const override
   {
     PieceFacts facts;
     facts.Has = PieceFacts::Kind::Mesh;
     return facts;
   }
-  std::shared_ptr<const SeriesFile> Series() const override { return nullptr; }
-  TemporalEnhancement Enhancement() const override { return { 0.0, 1.0, 0.0 }; }
   SampleArray Samples(const glm::ivec3&) const override { return {}; }
   void HideCells(const glm::ivec3&, HiddenCells&) const override {}
   MeshOptions Meshing() const override { return made_alone::Options(); }
@@ -91,13 +74,6 @@ private:
 inline void Join(MeshInput& input, const Communicator& communicator)
 {
   input.Deal(communicator);
-}
-
-inline void Become(MeshInput& input, const Situation& now)
-{
-  input.Step = now.Step;
-  input.Again = now.Again;
-  input.Changed = now.Changed;
 }
 
 struct MeshPlayer : PlayerOf<MeshInput>

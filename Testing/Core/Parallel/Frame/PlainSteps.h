@@ -10,28 +10,14 @@ namespace banyan::played
 
 /// The steps of FewChanges as arrays: a slab of each on every rank. All steps are written to the
 /// same memory, as some simulations do.
-class PlainInput final : public FieldInput
+class PlainInput final : public StepsInMemory
 {
 public:
   static constexpr int OtherRange = 5; ///< a step with a larger value
   static constexpr int SomeHidden = 7; ///< this step and the next one have hidden cells
 
-  int Step = 0;
-  int Again = 0;            ///< another stamp, and the same values
-  glm::ivec3 Changed{ -1 }; ///< a sample that has another value
   const Communicator* Ranks = nullptr;
 
-  InputStamp Stamp() const override
-  {
-    InputStamp stamp;
-    stamp.Add(this->Step);
-    stamp.Add(this->Again);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      stamp.Add(this->Changed[axis]);
-    }
-    return stamp;
-  }
   PieceFacts Facts() const override
   {
     PieceFacts facts;
@@ -46,8 +32,6 @@ public:
     }
     return facts;
   }
-  std::shared_ptr<const SeriesFile> Series() const override { return nullptr; }
-  TemporalEnhancement Enhancement() const override { return { 0.0, 1.0, 0.0 }; }
   SampleArray Samples(const glm::ivec3&) const override
   {
     std::vector<float> whole = ValuesOf(this->Step);
@@ -108,13 +92,6 @@ private:
 inline void Join(PlainInput& input, const Communicator& communicator)
 {
   input.Ranks = &communicator;
-}
-
-inline void Become(PlainInput& input, const Situation& now)
-{
-  input.Step = now.Step;
-  input.Again = now.Again;
-  input.Changed = now.Changed;
 }
 
 /// A field of a rank in memory, and its frames.

@@ -146,6 +146,35 @@ inline void Become(SeriesInput& input, const Situation& now)
   input.Motion.Strength = now.Motion;
 }
 
+/// Steps that are made in memory.
+struct StepsInMemory : FieldInput
+{
+  int Step = 0;
+  int Again = 0;            ///< another stamp, and the same values
+  glm::ivec3 Changed{ -1 }; ///< a sample, or point of a lattice, that has another value
+
+  InputStamp Stamp() const override
+  {
+    InputStamp stamp;
+    stamp.Add(this->Step);
+    stamp.Add(this->Again);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      stamp.Add(this->Changed[axis]);
+    }
+    return stamp;
+  }
+  std::shared_ptr<const SeriesFile> Series() const override { return nullptr; }
+  TemporalEnhancement Enhancement() const override { return { 0.0, 1.0, 0.0 }; }
+};
+
+inline void Become(StepsInMemory& input, const Situation& now)
+{
+  input.Step = now.Step;
+  input.Again = now.Again;
+  input.Changed = now.Changed;
+}
+
 /// A field of a rank, and its frames.
 template <class Input>
 struct PlayerOf
@@ -232,6 +261,36 @@ FieldFrames::Frame DrawBoth(Player& with, Player& without, const Situation& now)
     EXPECT_LE(WorstDifference(*frame.Picture.Pixels, *whole.Picture.Pixels), allowed) << now.Step;
   }
   return frame;
+}
+
+/// With light, changes values beside faces of bricks, one after the other: rays near a brick that
+/// has changed meet gradients that have.
+/// @param beside such faces, along each axis
+template <class Player, std::size_t Count>
+void ExpectRaysBesideBricksAreCast(const int (&beside)[Count])
+{
+  const auto alone = MakeSelfCommunicator();
+  Player with(*alone);
+  Player without(*alone);
+  Situation now;
+  now.FixedDistance = 1.0;
+  now.Shaded = true;
+  now.Function = 1;
+  now.Width = 480; // some pixels a cell
+  now.Height = 400;
+  double reused = 0.0;
+  for (const int x : beside)
+  {
+    for (const int y : beside)
+    {
+      for (const int z : beside)
+      {
+        now.Changed = { x, y, z };
+        reused += DrawBoth(with, without, now).ReusedFraction();
+      }
+    }
+  }
+  EXPECT_GT(reused, 5.0);
 }
 
 } // namespace banyan::played

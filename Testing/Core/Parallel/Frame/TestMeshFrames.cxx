@@ -65,23 +65,7 @@ TEST(MeshFrames, RaysThatMeetWhatTheyMetAreNotCast)
 
 TEST(MeshFrames, WithLightRaysBesideBricksThatChangeAreCast)
 {
-  const auto alone = MakeSelfCommunicator();
-  MeshPlayer with(*alone);
-  MeshPlayer without(*alone);
-  Situation now;
-  now.FixedDistance = 1.0;
-  now.Shaded = true;
-  now.Function = 1;
-  now.Width = 480; // some pixels a cell
-  now.Height = 400;
-  double reused = 0.0;
-  for (int i = 0; i < 27; ++i)
-  {
-    constexpr int besideFaces[3]{ 36, 60, 68 }; // of bricks, in the nearest elements
-    now.Changed = { besideFaces[i % 3], besideFaces[i / 3 % 3], besideFaces[i / 9] };
-    reused += DrawBoth(with, without, now).ReusedFraction();
-  }
-  EXPECT_GT(reused, 5.0);
+  ExpectRaysBesideBricksAreCast<MeshPlayer>({ 36, 60, 68 });
 }
 
 } // namespace

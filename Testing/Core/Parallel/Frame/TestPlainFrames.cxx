@@ -119,23 +119,7 @@ TEST(PlainFrames, WithLightALayerAroundCounts)
 
 TEST(PlainFrames, WithLightRaysBesideBricksThatChangeAreCast)
 {
-  const auto alone = MakeSelfCommunicator();
-  PlainPlayer with(*alone);
-  PlainPlayer without(*alone);
-  Situation now;
-  now.FixedDistance = 1.0;
-  now.Shaded = true;
-  now.Function = 1;
-  now.Width = 480; // some pixels a cell
-  now.Height = 400;
-  double reused = 0.0;
-  for (int i = 0; i < 64; ++i)
-  {
-    constexpr int besideFaces[4]{ 17, 31, 33, 47 }; // of bricks
-    now.Changed = { besideFaces[i % 4], besideFaces[i / 4 % 4], besideFaces[i / 16] };
-    reused += DrawBoth(with, without, now).ReusedFraction();
-  }
-  EXPECT_GT(reused, 5.0);
+  ExpectRaysBesideBricksAreCast<PlainPlayer>({ 17, 31, 33, 47 });
 }
 
 TEST(PlainFrames, HiddenCellsThatChangeAreNoticed)
