@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Frame/GroupPlans.h"
 
-#include "Render/Sampling/FinestPlan.h"
+#include "Render/Sampling/ChosenPlan.h"
 
 #include <algorithm>
 
@@ -34,6 +34,7 @@ void GroupPlans::Forget()
   this->First = -1.0;
   this->Plays = false;
   this->Known.clear();
+  this->Shared.clear();
 }
 
 /// @param took is added what making it took
@@ -51,8 +52,16 @@ const GroupPlans::End& GroupPlans::EndAt(double step, const MakePlan& make, Samp
   return end;
 }
 
-SamplingPlan GroupPlans::Of(const Hash128& view, const glm::ivec2& imageSize, double step,
-  int steps, const VisibleSigns& now, const MakePlan& make)
+const SamplingPlan& GroupPlans::Between(int first, const End& a, const End& b)
+{
+  const auto known = this->Shared.find(first);
+  return known != this->Shared.end()
+           ? known->second
+           : this->Shared.emplace(first, SharedPlan(a.Plan, b.Plan)).first->second;
+}
+
+SamplingPlan GroupPlans::Of(
+  const Hash128& view, double step, int steps, const VisibleSigns& now, const MakePlan& make)
 {
   if (view != this->View)
   {
@@ -64,6 +73,7 @@ SamplingPlan GroupPlans::Of(const Hash128& view, const glm::ivec2& imageSize, do
   if (this->Known.size() > MostKnown)
   {
     this->Known.clear();
+    this->Shared.clear();
   }
   SamplingPlan took;
   SamplingPlan plan;
@@ -77,7 +87,7 @@ SamplingPlan GroupPlans::Of(const Hash128& view, const glm::ivec2& imageSize, do
   {
     const End& a = this->EndAt(first, make, took);
     const End& b = this->EndAt(next, make, took);
-    plan = IsBetween(now, a.Signs, b.Signs) ? FinestPlan(imageSize, a.Plan, b.Plan)
+    plan = IsBetween(now, a.Signs, b.Signs) ? this->Between(first, a, b)
                                             : this->EndAt(step, make, took).Plan;
   }
   plan.Probes = took.Probes;

@@ -221,8 +221,7 @@ SamplingPlan ToleranceControl::PlanWithin(Communicator& communicator, Distribute
   all.Add(sampling.Tolerance);
   all.Add(sampling.CoarsestLevel);
   return this->Plans.at(static_cast<std::size_t>(wish.Eye))
-    .Of(all.Get(), scene.Camera.ImageSize(), place.Step, place.Steps,
-      SignsOf(scene, *drawn.Source()), planStep);
+    .Of(all.Get(), place.Step, place.Steps, SignsOf(scene, *drawn.Source()), planStep);
 }
 
 void ToleranceControl::PlanSteps(

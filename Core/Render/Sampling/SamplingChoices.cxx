@@ -42,26 +42,6 @@ std::vector<SamplingChoices::Chosen> SamplingChoices::CheapestFirst() const
   return order;
 }
 
-SamplingChoices::Chosen SamplingChoices::CheapestFor(
-  std::size_t tile, double allowed, const std::vector<Chosen>& order) const
-{
-  Chosen closest;
-  closest.Error = std::numeric_limits<double>::infinity();
-  for (Chosen chosen : order)
-  {
-    chosen.Error = this->ErrorOf(chosen, tile);
-    if (chosen.Error <= allowed)
-    {
-      return chosen;
-    }
-    if (chosen.Error < closest.Error)
-    {
-      closest = chosen;
-    }
-  }
-  return closest;
-}
-
 SamplingChoices::Chosen SamplingChoices::CheapestForMost(double share, double allowed) const
 {
   const std::size_t tiles = this->Levels.front().Errors.Tiles.size();
@@ -106,6 +86,27 @@ RaySampling SamplingChoices::SamplingOf(const Chosen& chosen) const
 {
   return { static_cast<int>(this->Levels[chosen.Level].Value),
     this->Distances[chosen.Distance].Value, static_cast<int>(this->Strides[chosen.Stride].Value) };
+}
+
+std::optional<SamplingChoices::Chosen> SamplingChoices::NoFinerThan(
+  const RaySampling& sampling) const
+{
+  const auto lastFrom = [](const std::vector<Choice>& list, double value)
+  {
+    return static_cast<std::size_t>(std::find_if(list.begin(), list.end(),
+                                      [&](const Choice& choice) { return choice.Value < value; }) -
+                                    list.begin());
+  };
+  const std::size_t level = lastFrom(this->Levels, sampling.Level);
+  const std::size_t distance = lastFrom(this->Distances, sampling.Distance);
+  const auto stride = std::find_if(this->Strides.begin(), this->Strides.end(),
+    [&](const Choice& choice) { return choice.Value == sampling.PixelStride; });
+  if (level == 0 || distance == 0 || stride == this->Strides.end())
+  {
+    return std::nullopt;
+  }
+  return Chosen{ level - 1, distance - 1,
+    static_cast<std::size_t>(stride - this->Strides.begin()) };
 }
 
 bool SamplingChoices::CanStep(std::size_t level, std::size_t distance) const

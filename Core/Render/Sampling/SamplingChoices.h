@@ -47,10 +47,6 @@ public:
   /// All that packets can draw, in the order of what they cost.
   std::vector<Chosen> CheapestFirst() const;
 
-  /// The cheapest sampling of a tile whose error is allowed, or the one with the smallest error.
-  /// @param order CheapestFirst()
-  Chosen CheapestFor(std::size_t tile, double allowed, const std::vector<Chosen>& order) const;
-
   /// The cheapest sampling of all rays whose error is allowed in so many tiles of all, or the most
   /// exact.
   Chosen CheapestForMost(double share, double allowed) const;
@@ -64,11 +60,15 @@ public:
   std::vector<RaySampling> Samplings() const;
   int NumberOf(const Chosen& chosen) const;
   RaySampling SamplingOf(const Chosen& chosen) const;
+  /// The finest level and the smallest distance that are no finer than the sampling's, with its
+  /// stride: the sampling's error is at most theirs. Nothing where one of them is not there.
+  std::optional<Chosen> NoFinerThan(const RaySampling& sampling) const;
+  /// What is expected of a tile, in 1/255.
+  double ErrorOf(const Chosen& chosen, std::size_t tile) const;
 
 private:
   bool CanStep(std::size_t level, std::size_t distance) const;
   double CostOf(const Chosen& chosen) const;
-  double ErrorOf(const Chosen& chosen, std::size_t tile) const;
 
   double UsualDistance;
   std::optional<Chosen> SubsamplingProbe;

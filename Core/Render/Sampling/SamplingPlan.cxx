@@ -3,23 +3,21 @@
 
 #include "Base/Error.h"
 #include "Base/Timer.h"
+#include "Render/Sampling/ChosenPlan.h"
 #include "Render/Sampling/ProbeSequence.h"
-#include "Render/Sampling/SamplingChoices.h"
 #include "Render/Sampling/SubsamplingProbe.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace banyan
 {
 namespace
 {
 
-/// Of the tolerance, what rays that end early may leave away.
-constexpr double ShareOfEnds = 0.125;
-/// In probes it is much less. A ray that ends in one zone goes on in the next one, and what is left
-/// away then decides otherwise: plans would depend on the number of ranks.
+/// What rays of probes that end early may leave away, as a share of the tolerance. It is little: a
+/// ray that ends in one zone goes on in the next one, and what is left away then decides otherwise.
+/// Plans would depend on the number of ranks.
 constexpr double ShareOfProbeEnds = ShareOfEnds / 64.0;
 /// Distances between samples go down to 2^-MostHalvings times the usual one.
 constexpr int MostHalvings = 3;
@@ -56,7 +54,7 @@ public:
     , DrawScene(draw)
     , Wish(wish)
     , Pictures(scene, draw)
-    , Allowed(wish.Tolerance * (1.0 - ShareOfEnds))
+    , Allowed(AllowedError(wish))
     , Choices(wish.Distance)
   {
   }
@@ -72,17 +70,21 @@ public:
       this->TryDistances(1);
     }
     SamplingPlan plan;
-    plan.OpacityLimit = OpacityLimitFor(this->Wish.Tolerance, ShareOfEnds);
+    int strideProbes = 0;
+    double strideSeconds = 0.0;
     if (this->Pictures.SawSomething())
     {
       this->TryLevels();
       const Timer strides;
-      plan.Probes = this->TryStrides() ? 1 : 0;
-      plan.StrideSeconds = strides.Seconds();
-      this->Choose(plan);
+      strideProbes = this->TryStrides() ? 1 : 0;
+      strideSeconds = strides.Seconds();
+      plan = ChoosePlan({ std::make_shared<const PlanBasis>(
+        PlanBasis{ this->Choices, this->Wish, this->Pictures.ImageSize() }) });
     }
-    plan.Probes += this->Pictures.Count();
-    plan.ProbeSeconds = timer.Seconds() - plan.StrideSeconds;
+    plan.OpacityLimit = OpacityLimitFor(this->Wish.Tolerance, ShareOfEnds);
+    plan.Probes = strideProbes + this->Pictures.Count();
+    plan.StrideSeconds = strideSeconds;
+    plan.ProbeSeconds = timer.Seconds() - strideSeconds;
     return plan;
   }
 
@@ -264,58 +266,6 @@ private:
     }
     this->Choices.StridesAreThoseOf(sampling);
     return true;
-  }
-
-  /// Two levels are left for each tile, as for the picture.
-  int FinestLevelOf(std::size_t tile) const
-  {
-    const std::vector<int>& levels = this->Wish.FinestLevelOfTile;
-    return levels.empty() ? 0 : std::min(levels[tile], std::max(0, this->Wish.CoarsestLevel - 1));
-  }
-
-  /// Whether a tile might have been drawn from a finer level but for the wish.
-  bool LevelIsHeld(std::size_t tile) const
-  {
-    return std::max(this->Wish.FinestLevel, this->FinestLevelOf(tile)) > 0;
-  }
-
-  /// Per level, SamplingChoices::CheapestFirst without finer ones: Levels begin with the coarsest.
-  std::vector<std::vector<SamplingChoices::Chosen>> OrdersFromLevels() const
-  {
-    std::vector<std::vector<SamplingChoices::Chosen>> orders{ this->Choices.CheapestFirst() };
-    for (int level = 1; level <= this->Wish.CoarsestLevel; ++level)
-    {
-      orders.emplace_back();
-      std::copy_if(orders[0].begin(), orders[0].end(), std::back_inserter(orders.back()),
-        [&](const SamplingChoices::Chosen& chosen)
-        { return this->Choices.Levels[chosen.Level].Value >= level; });
-    }
-    return orders;
-  }
-
-  void Choose(SamplingPlan& plan) const
-  {
-    const auto tiles =
-      std::make_shared<TileSamplings>(this->Pictures.ImageSize(), this->Choices.Samplings());
-    const auto orders = this->OrdersFromLevels();
-    double largest = 0.0;
-    for (std::size_t tile = 0; tile < this->Pictures.TileCount(); ++tile)
-    {
-      const SamplingChoices::Chosen chosen = this->Choices.CheapestFor(
-        tile, this->Allowed, orders[static_cast<std::size_t>(this->FinestLevelOf(tile))]);
-      const glm::ivec2 position(static_cast<int>(tile % static_cast<std::size_t>(tiles->Tiles().x)),
-        static_cast<int>(tile / static_cast<std::size_t>(tiles->Tiles().x)));
-      tiles->SetNumber(position, this->Choices.NumberOf(chosen));
-      largest = std::max(largest, chosen.Error);
-      plan.Extrapolated =
-        plan.Extrapolated || this->Choices.Levels[chosen.Level].Value < this->Wish.FinestProbeLevel;
-      if (chosen.Error > this->Allowed && plan.Limit != SamplingLimit::Distance)
-      {
-        plan.Limit = this->LevelIsHeld(tile) ? SamplingLimit::Level : SamplingLimit::Distance;
-      }
-    }
-    plan.Samplings = tiles;
-    plan.EstimatedError = largest + this->Wish.Tolerance * ShareOfEnds;
   }
 
   const RayScene& Scene;

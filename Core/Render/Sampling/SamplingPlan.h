@@ -11,6 +11,8 @@
 namespace banyan
 {
 
+struct PlanBasis;
+
 /// What a picture may cost and how wrong it may be.
 struct SamplingWish
 {
@@ -65,6 +67,8 @@ struct SamplingPlan
   bool Extrapolated = false;
   /// To be used with it: what rays that end early leave away is part of the error.
   float OpacityLimit = 0.999f;
+  /// What it was chosen from; null when nothing was seen, and for a SharedPlan.
+  std::shared_ptr<const PlanBasis> Basis;
   int Probes = 0;             ///< small pictures that were drawn to find out
   double ProbeSeconds = 0.0;  ///< what finding distances and levels took, by the clock
   double StrideSeconds = 0.0; ///< what finding the pixels without rays took

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which steps of a series that plays are planned, and which take the plans of others.
 #include "Parallel/Frame/GroupPlans.h"
-#include "Render/Sampling/FinestPlan.h"
+#include "Render/Sampling/ChosenPlan.h"
 
 #include <gtest/gtest.h>
 
@@ -12,38 +12,27 @@ using namespace banyan;
 
 constexpr int Steps = 21;
 constexpr Hash128 View{ 1, 2 };
-const glm::ivec2 ImageSize{ 64, 32 }; // two tiles
+constexpr double Tolerance = 8.0;
 
-SamplingPlan PlanOf(const RaySampling& left, const RaySampling& right, double error)
+/// A plan with that distance: longer ones are not allowed.
+SamplingPlan PlanOf(double distance, double error)
 {
-  SamplingPlan plan;
-  auto tiles = std::make_shared<TileSamplings>(ImageSize, std::vector<RaySampling>{ left, right });
-  tiles->SetNumber({ 1, 0 }, 1);
-  plan.Samplings = tiles;
-  plan.EstimatedError = error;
+  auto basis = std::make_shared<PlanBasis>(
+    PlanBasis{ SamplingChoices(2.0), { Tolerance, 2.0 }, glm::ivec2(32) });
+  basis->Choices.Levels = { { 0.0, { { error } } } };
+  for (double longer = Steps; longer >= 1.0; longer -= 0.5)
+  {
+    basis->Choices.Distances.push_back({ longer, { { longer > distance ? Tolerance : 0.0 } } });
+  }
+  basis->Choices.Strides = { { 1.0, { { 0.0 } } } };
+  SamplingPlan plan = ChoosePlan({ basis });
   plan.Probes = 7;
   return plan;
 }
 
-RaySampling At(const SamplingPlan& plan, int tile)
+double DistanceOf(const SamplingPlan& plan)
 {
-  return plan.Samplings
-    ->Samplings()[static_cast<std::size_t>(plan.Samplings->NumberAt({ tile, 0 }))];
-}
-
-TEST(FinestPlan, IsAsFineAsBothInEachTile)
-{
-  const SamplingPlan a = PlanOf({ 1, 2.0, 4 }, { 0, 0.5, 1 }, 3.0);
-  const SamplingPlan b = PlanOf({ 2, 1.0, 2 }, { 1, 4.0, 8 }, 5.0);
-  const SamplingPlan finest = FinestPlan(ImageSize, a, b);
-  EXPECT_TRUE((At(finest, 0) == RaySampling{ 1, 1.0, 2 }));
-  EXPECT_TRUE((At(finest, 1) == RaySampling{ 0, 0.5, 1 }));
-  EXPECT_EQ(finest.EstimatedError, 5.0);
-  EXPECT_EQ(finest.Probes, 0);
-  const SamplingPlan blank;
-  EXPECT_EQ(FinestPlan(ImageSize, blank, b).Samplings, b.Samplings);
-  EXPECT_EQ(FinestPlan(ImageSize, a, blank).Samplings, a.Samplings);
-  EXPECT_EQ(FinestPlan(ImageSize, blank, blank).Samplings, nullptr);
+  return plan.Samplings->At({ 0, 0 }).Distance;
 }
 
 /// Plans whose distance is the step's number plus one.
@@ -61,16 +50,15 @@ struct Series
 
   SamplingPlan At(double step, const Hash128& view = View)
   {
-    return this->Plans.Of(view, ImageSize, step, Steps, SignsAt(step),
+    return this->Plans.Of(view, step, Steps, SignsAt(step),
       [&](double planned) -> GroupPlans::End
       {
         this->Made.push_back(planned);
-        const double distance = planned + 1.0;
-        return { PlanOf({ 0, distance, 1 }, { 0, distance, 1 }, 0.1 * planned), SignsAt(planned) };
+        return { PlanOf(planned + 1.0, 0.1 * planned), SignsAt(planned) };
       });
   }
 
-  double DistanceAt(double step) { return ::At(this->At(step), 0).Distance; }
+  double DistanceAt(double step) { return DistanceOf(this->At(step)); }
 };
 
 TEST(GroupPlans, TheFirstPictureOfAViewHasAPlanOfItsOwn)
@@ -79,7 +67,7 @@ TEST(GroupPlans, TheFirstPictureOfAViewHasAPlanOfItsOwn)
   EXPECT_EQ(series.DistanceAt(5), 6.0);
   EXPECT_EQ(series.DistanceAt(5), 6.0) << "nobody plays it yet";
   EXPECT_EQ(series.Made, std::vector<double>{ 5 });
-  EXPECT_EQ(::At(series.At(6, { 3, 4 }), 0).Distance, 7.0) << "another view";
+  EXPECT_EQ(DistanceOf(series.At(6, { 3, 4 })), 7.0) << "another view";
   EXPECT_EQ(series.DistanceAt(6), 7.0) << "and the first one again";
 }
 
@@ -88,8 +76,8 @@ TEST(GroupPlans, StepsTakeThoseOfTheEndsOfTheirGroup)
   Series series;
   series.At(0);
   const SamplingPlan second = series.At(1);
-  EXPECT_EQ(::At(second, 0).Distance, 1.0);
-  EXPECT_DOUBLE_EQ(second.EstimatedError, 0.8);
+  EXPECT_EQ(DistanceOf(second), 1.0);
+  EXPECT_DOUBLE_EQ(second.EstimatedError, 0.8 + Tolerance * ShareOfEnds);
   EXPECT_EQ(second.Probes, 7) << "of the next group's first step";
   EXPECT_EQ(series.Made, (std::vector<double>{ 0, 8 }));
   EXPECT_EQ(series.At(2).Probes, 0);
