@@ -81,7 +81,7 @@ class vtkMultiProcessController;
     "Default: on; off casts all rays and plans each frame, to measure.")                           \
   Switch(ReadAhead, true, advanced, images,                                                        \
     "Encoded image data: decodes bricks of the next frames in the background, on cores that "      \
-    "nobody else wants. While the series plays these are bricks of the next two steps, while "     \
+    "nobody else wants. While the series plays these are bricks of the next four steps, while "   \
     "the camera moves bricks that come onto the screen. Default: on.")                             \
   Choice(LoadBalancing, 2, 0, 2, advanced, all,                                                    \
     "Measured cost (default): the zones of the ranks follow the cost of the last frames. "         \

@@ -14,14 +14,15 @@ class BrickSource;
 struct RayScene;
 
 /// Decodes the next time steps of an encoded series in the direction of play, within half of what
-/// the cache has for decoded bricks, so that those of this one can stay: of the step that comes
-/// next, and the one after, the bricks that were drawn of this one and those that come into sight;
-/// where rays were reused, all that change in sight.
-/// After the last step the series begins again.
+/// the cache has for decoded bricks, so that those of this one can stay: of StepsAhead steps, the
+/// bricks that were drawn of this one and those that come into sight; where rays were reused, all
+/// that change in sight. After the last step the series begins again.
 class TimeStepPrefetcher
 {
 public:
-  static constexpr int StepsAhead = 2;
+  /// Steps at which blocks begin anew (every eighth, where groups have as many) take several times
+  /// as long to read and decode as those between: that time is spread over so many frames.
+  static constexpr int StepsAhead = 4;
 
   /// @param cache must stay
   /// @param threads that decode

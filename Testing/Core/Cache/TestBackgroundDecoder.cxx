@@ -178,7 +178,7 @@ TEST_F(Ahead, TheStepThatComesNextInTheDirectionOfPlayIsRead)
   };
   EXPECT_EQ(play(0), -1) << "it does not play yet";
   EXPECT_EQ(play(1), 2);
-  EXPECT_EQ(cache.GetAheadStatistics().Decoded, 14u) << "of two steps";
+  EXPECT_EQ(cache.GetAheadStatistics().Decoded, 7u * TimeStepPrefetcher::StepsAhead);
   EXPECT_EQ(cache.GetAheadStatistics().Hits, 0u);
   EXPECT_EQ(play(2), 3);
   EXPECT_EQ(cache.GetAheadStatistics().Hits, 7u) << "nothing of it was decoded when it was drawn";
