@@ -91,6 +91,12 @@ void FrameFigures::Publish(Communicator& communicator, const DrawnField& field,
   out->SetCacheHitsAhead(Id(all[CacheHitsAhead]));
   out->SetThreads(Id(all[Threads]));
   out->SetBytesMoved(Id(moved.Bytes));
+  PublishFrame(frame, all[GeometryBytes], out);
+}
+
+void FrameFigures::PublishFrame(
+  const FrameStatistics& frame, std::uint64_t geometryBytes, vtkBanyanFrameStatistics* out)
+{
   out->SetRenderSeconds(frame.RenderSeconds);
   out->SetCompositeSeconds(frame.CompositeSeconds);
   out->SetProbeSeconds(frame.ProbeSeconds);
@@ -101,7 +107,7 @@ void FrameFigures::Publish(Communicator& communicator, const DrawnField& field,
   out->SetBricksDrawn(frame.BricksDrawn);
   out->SetBricksUniform(frame.BricksUniform);
   out->SetBricksSkipped(frame.BricksSkipped);
-  out->SetBytesComposited(Id(frame.BytesComposited + all[GeometryBytes]));
+  out->SetBytesComposited(Id(frame.BytesComposited + geometryBytes));
   out->SetMessagesComposited(Id(frame.MessagesComposited));
   out->SetFrames(out->GetFrames() + 1);
 }

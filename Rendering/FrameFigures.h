@@ -31,6 +31,11 @@ public:
   void Publish(Communicator& communicator, const DrawnField& field, const FrameStatistics& frame,
     bool kept, std::uint64_t geometryBytes, vtkBanyanFrameStatistics* out) const;
 
+  /// The part of it that has nothing to do with the field.
+  /// @param geometryBytes that all ranks have sent
+  static void PublishFrame(
+    const FrameStatistics& frame, std::uint64_t geometryBytes, vtkBanyanFrameStatistics* out);
+
 private:
   std::shared_ptr<CacheContext> Caches;
   std::uint64_t BytesBefore = 0;

@@ -4,10 +4,11 @@
 
 #include "Backdrop.h"
 #include "MotionEnhancement.h"
+#include "RenderWhenDrawn.h"
 #include "TransferFunctionTable.h"
 
 #include "Parallel/Fields/DistributedField.h"
-#include "Parallel/Frame/FieldFrames.h"
+#include "Parallel/Frame/LateFrames.h"
 
 #include "vtkType.h"
 
@@ -29,6 +30,8 @@ struct MapperState
   std::unique_ptr<banyan::Communicator> Communicator;
   DistributedField Field;
   FieldFrames Frames;
+  LateFrames Late{ Frames };
+  RenderWhenDrawn Again;
   MotionEnhancement Motion;
   banyan::Backdrop Backdrop;
   KeptTransferFunction Function;

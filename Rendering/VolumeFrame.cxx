@@ -72,6 +72,32 @@ ToleranceControl::Wish VolumeFrame::WishFor(vtkRenderer* renderer, int volumes) 
   return wish;
 }
 
+/// Draws the frame, or has it drawn while somebody goes on in front of the window.
+/// @param volumes in the picture
+FieldFrames::Frame VolumeFrame::Draw(
+  vtkRenderWindow* window, const FieldFrames::Wish& wish, int volumes)
+{
+  MapperState& state = *this->State;
+  Communicator& communicator = *state.Communicator;
+  // A window that does not swap its buffers is one that somebody wants to save.
+  const bool late = this->Owner->GetDecoupled() && communicator.Size() == 1 && volumes == 1 &&
+                    window->GetStereoRender() == 0 && window->GetSwapBuffers() != 0 &&
+                    RenderWhenDrawn::CanWatch(window);
+  this->Owner->GetStatistics()->SetPictureIsExact(wish.Sampling.Interacting ? 0 : 1);
+  if (!late)
+  {
+    state.Late.Settle(state.Field, *this->Wanted, wish);
+    return state.Frames.Draw(communicator, state.Field, *this->Wanted, wish);
+  }
+  LateFrames::Shown shown = state.Late.Draw(communicator, state.Field, *this->Wanted, wish);
+  this->Owner->GetStatistics()->SetPictureIsExact(shown.Exact ? 1 : 0);
+  if (!shown.Exact && !wish.Sampling.Interacting)
+  {
+    state.Again.Watch(window, [&state] { return state.Late.HasNews(); });
+  }
+  return std::move(shown.Frame);
+}
+
 std::shared_ptr<const FloatImage> VolumeFrame::Cast(
   vtkRenderer* renderer, const Backdrop& backdrop, int volumes)
 {
@@ -88,8 +114,7 @@ std::shared_ptr<const FloatImage> VolumeFrame::Cast(
   wish.ReadAhead = this->Owner->GetReadAhead();
   wish.Reuse = wish.Sampling.PlansOfGroups = this->Owner->GetReuseFrames();
   wish.ShowSeconds = this->State->WriteSeconds; // about what it took the last time
-  const FieldFrames::Frame frame =
-    this->State->Frames.Draw(*this->State->Communicator, field, scene, wish);
+  const FieldFrames::Frame frame = this->Draw(renderer->GetRenderWindow(), wish, volumes);
   this->Statistics = frame.Picture.Statistics;
   this->Kept = frame.Kept;
   vtkBanyanFrameStatistics* const out = this->Owner->GetStatistics();
@@ -110,6 +135,12 @@ void VolumeFrame::Finish(const CompositeStatistics& geometry, double writeSecond
   this->State->LastProblem.clear();
   vtkBanyanFrameStatistics* const out = this->Owner->GetStatistics();
   out->SetTotalSeconds(this->Began.Seconds());
+  if (this->State->Late.IsDrawing())
+  {
+    // What the thread does counts with the exact picture.
+    FrameFigures::PublishFrame(this->Statistics, geometry.BytesSent, out);
+    return;
+  }
   this->Figures.Publish(*this->State->Communicator, this->State->Field.Drawn(), this->Statistics,
     this->Kept, geometry.BytesSent, out);
 }

@@ -11,6 +11,7 @@
 #include <optional>
 
 class vtkBanyanVolumeMapper;
+class vtkRenderWindow;
 class vtkRenderer;
 
 namespace banyan
@@ -51,6 +52,7 @@ public:
 
 private:
   ToleranceControl::Wish WishFor(vtkRenderer* renderer, int volumes) const;
+  FieldFrames::Frame Draw(vtkRenderWindow* window, const FieldFrames::Wish& wish, int volumes);
 
   vtkBanyanVolumeMapper* Owner;
   MapperState* State;

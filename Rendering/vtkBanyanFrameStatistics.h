@@ -73,6 +73,9 @@
   Number(double, EstimatedImageError, 0.0, panel,                                                  \
     "Estimated largest error of a pixel by sampling, in 1/255. Errors of encoding are not "        \
     "part of it (Encoding Error Of Values). 0 with a fixed sample distance.")                      \
+  Number(vtkIdType, PictureIsExact, 1, script,                                                     \
+    "1 for a picture that keeps the tolerance of still ones; 0 for one that was drawn while the "  \
+    "camera moved, or that stands for one that is still being drawn (Decoupled).")                 \
   Text(ImageErrorLimit, panel,                                                                     \
     "The reason why the estimated error exceeds the tolerance, or may be too low, as a "           \
     "sentence. Empty if there is none.")                                                           \

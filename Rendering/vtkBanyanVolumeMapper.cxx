@@ -63,6 +63,7 @@ void vtkBanyanVolumeMapper::SetController(vtkMultiProcessController* controller)
     return;
   }
   this->Controller = controller;
+  this->State->Late.Stop();
   this->State->Field.Reset();
   this->State->Frames.Forget();
   banyan::MpiTimeout timeout{ banyan::MpiTimeout::DefaultSeconds, {} };
@@ -121,7 +122,11 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
   banyan::FieldPiece piece;
   try
   {
-    banyan::ThreadPool::SetProcessWidth(this->NumberOfThreads);
+    if (!banyan::ThreadPool::HasProcessWidth(this->NumberOfThreads))
+    {
+      banyan::LateFrames::StopAll();
+      banyan::ThreadPool::SetProcessWidth(this->NumberOfThreads);
+    }
     piece = banyan::PieceOfInput(this, volume->GetProperty());
   }
   catch (const std::exception& error)
@@ -133,6 +138,10 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
     this->GetDataObjectInput(), piece);
   const int components = piece.Array ? piece.Array->GetNumberOfComponents() : 1;
   banyan::InputOfPiece input(std::move(piece));
+  if (!self.Field.IsOf(input))
+  {
+    self.Late.Stop();
+  }
   self.Field.Update(*self.Communicator, input);
   self.Bounds = self.Field.Place().Bounds;
   self.BoundsOf = this->GetDataObjectInput();

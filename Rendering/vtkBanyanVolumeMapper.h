@@ -79,6 +79,10 @@ class vtkMultiProcessController;
     "Takes from earlier frames what is the same: a scene that was drawn, in this view and step, "  \
     "is not drawn again, and steps of a series that plays share how finely they are sampled. "     \
     "Default: on; off casts all rays and plans each frame, to measure.")                           \
+  Switch(Decoupled, false, advanced, all,                                                          \
+    "The window does not wait for pictures that take long: a coarse one is shown at once, and "    \
+    "the exact one when it is there (PictureIsExact). Default: off. In the window of one process " \
+    "that shows one such volume, without stereo; screenshots, animations and scripts wait.")       \
   Switch(ReadAhead, true, advanced, images,                                                        \
     "Encoded image data: decodes bricks of the next frames in the background, on cores that "      \
     "nobody else wants. While the series plays these are bricks of the next four steps, while "   \
@@ -157,6 +161,8 @@ public:
    *   (banyan::MotionEnhancement); the representation sees to that.
    * - CompositeInFewBits: without effect on projections, and while several volumes are on the
    *   screen.
+   * - Decoupled: where the interactor of the window is Qt's (banyan::RenderWhenDrawn), and the
+   *   window swaps its buffers. A timer of the interactor renders again. See banyan::LateFrames.
    * - ReadAhead: takes half of what the cache has for decoded bricks, if the series plays, and a
    *   quarter, if the camera moves.
    * - LoadBalancing: 0 not at all, 2 to where measured costs balance, and 1, which was another way,

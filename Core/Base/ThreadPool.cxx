@@ -268,6 +268,12 @@ void ThreadPool::SetProcessWidth(int width)
   }
 }
 
+bool ThreadPool::HasProcessWidth(int width)
+{
+  std::lock_guard<std::mutex> lock(ProcessPoolMutex);
+  return ProcessPool && ProcessPool->Width() == (width > 0 ? width : DefaultWidth());
+}
+
 int ThreadPool::DefaultWidth()
 {
   if (const char* text = std::getenv("BANYAN_THREADS"))

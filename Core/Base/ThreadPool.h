@@ -42,6 +42,9 @@ public:
   /// @param width at least 1, or 0 for `DefaultWidth()`.
   static void SetProcessWidth(int width);
 
+  /// Whether `SetProcessWidth` with that width would leave the pool as it is.
+  static bool HasProcessWidth(int width);
+
   /// `BANYAN_THREADS` from the environment if set; otherwise the cores this process may run on
   /// divided by the ranks on this node (as told by `SetRanksOnThisNode`), at least 1.
   static int DefaultWidth();

@@ -130,6 +130,11 @@ void DistributedField::Update(Communicator& communicator, FieldInput& input)
   this->ValuesRange.High = AllMax(communicator, range.High);
 }
 
+bool DistributedField::IsOf(const FieldInput& input) const
+{
+  return this->Stamp == input.Stamp();
+}
+
 void DistributedField::Take(Communicator& communicator, FieldInput& input)
 {
   PieceFacts mine;

@@ -31,6 +31,9 @@ public:
   /// on all.
   void Update(Communicator& communicator, FieldInput& input);
 
+  /// Whether the last Update took what has the same stamp, on this rank.
+  bool IsOf(const FieldInput& input) const;
+
   /// Forgets the stamp: the next Update takes the input of all ranks again.
   void Reset();
 

@@ -16,7 +16,6 @@
 namespace banyan
 {
 
-/// A hash of all that decides a picture, but the values and how finely they are sampled.
 Hash128 FieldFrames::SceneOf(const RayScene& scene, const Wish& wish)
 {
   Digest digest;
@@ -36,9 +35,10 @@ Hash128 FieldFrames::SceneOf(const RayScene& scene, const Wish& wish)
 
 /// Collective: takes a picture that was drawn before.
 /// @return whether there is one
-bool FieldFrames::TakeKept(Communicator& communicator, const Hash128& whole,
-  const DrawnPicture* kept, const Wish& wish, Frame& frame)
+bool FieldFrames::TakeKept(
+  Communicator& communicator, const Sight& sight, const Wish& wish, Frame& frame)
 {
+  const DrawnPicture* const kept = this->Pictures.Find(sight.Scene, sight.Content, sight.Quality);
   struct Answer
   {
     Hash128 Scene;
@@ -47,7 +47,7 @@ bool FieldFrames::TakeKept(Communicator& communicator, const Hash128& whole,
     FrameStatistics Statistics;
     bool Found;
   };
-  Answer mine{ whole, 0.0, 0.0, {}, kept != nullptr };
+  Answer mine{ sight.Mine, 0.0, 0.0, {}, kept != nullptr };
   if (kept)
   {
     frame.Picture = *kept;
@@ -92,37 +92,53 @@ bool FieldFrames::BeginLooking(std::uint64_t version)
   return true;
 }
 
+/// Collective.
+FieldFrames::Sight FieldFrames::Look(
+  Communicator& communicator, DistributedField& field, const RayScene& scene, const Wish& wish)
+{
+  Sight sight;
+  sight.Scene = SceneOf(scene, wish);
+  sight.Other = this->BeginLooking(field.Version());
+  const bool looks = wish.Reuse && this->Values.Looks;
+  Collective(communicator, [&] { sight.Content = field.VisibleContent(scene, looks); });
+  Digest whole;
+  whole.Add(sight.Scene);
+  whole.Add(sight.Content);
+  sight.Mine = whole.Get();
+  // What follows has messages: all ranks go by the names that the first one has for the scene.
+  sight.Agreed = { sight.Scene, sight.Mine };
+  communicator.Broadcast(0, &sight.Agreed, sizeof(sight.Agreed));
+  sight.Aim = this->Tolerance.Begin(sight.Agreed.Whole, wish.Sampling);
+  sight.Quality = { sight.Aim.Coarseness, sight.Aim.Interacting };
+  this->Pictures.KeepIn(wish.Reuse ? field.Drawn().Caches() : nullptr);
+  return sight;
+}
+
+std::optional<FieldFrames::Frame> FieldFrames::Kept(
+  Communicator& communicator, DistributedField& field, const RayScene& scene, const Wish& wish)
+{
+  Frame frame;
+  const Sight sight = this->Look(communicator, field, scene, wish);
+  return this->TakeKept(communicator, sight, wish, frame) ? std::optional<Frame>(std::move(frame))
+                                                          : std::nullopt;
+}
+
 FieldFrames::Frame FieldFrames::Draw(
   Communicator& communicator, DistributedField& field, RayScene& scene, const Wish& wish)
 {
   Frame frame;
-  const Hash128 digest = SceneOf(scene, wish);
-  std::vector<Hash128> content;
-  const bool other = this->BeginLooking(field.Version());
-  const bool looks = wish.Reuse && this->Values.Looks;
-  Collective(communicator, [&] { content = field.VisibleContent(scene, looks); });
-  Digest whole;
-  whole.Add(digest);
-  whole.Add(content);
-  // What follows has messages: all ranks go by the names that the first one has for the scene.
-  const Names mine{ digest, whole.Get() };
-  Names agreed = mine;
-  communicator.Broadcast(0, &agreed, sizeof(agreed));
-  const ToleranceControl::Aim aim = this->Tolerance.Begin(agreed.Whole, wish.Sampling);
-  const KeptPictures::Quality quality{ aim.Coarseness, aim.Interacting };
-  this->Pictures.KeepIn(wish.Reuse ? field.Drawn().Caches() : nullptr);
-  const DrawnPicture* const kept = this->Pictures.Find(digest, content, quality);
-  if (!this->TakeKept(communicator, mine.Whole, kept, wish, frame))
+  const Sight sight = this->Look(communicator, field, scene, wish);
+  if (!this->TakeKept(communicator, sight, wish, frame))
   {
-    this->DrawAnew(communicator, field, scene, agreed, wish, aim, frame);
+    this->DrawAnew(communicator, field, scene, sight.Agreed, wish, sight.Aim, frame);
     if (wish.Reuse && frame.Picture.Pixels)
     {
       std::set<int> levels = scene.Samplings ? scene.Samplings->UsedLevels() : std::set<int>();
       levels.insert(0); // the error is that against the finest one
-      this->Pictures.Keep(digest, content, levels, quality, frame.Picture);
+      this->Pictures.Keep(sight.Scene, sight.Content, levels, sight.Quality, frame.Picture);
     }
   }
-  if (other && (frame.Kept || scene.Reused))
+  if (sight.Other && (frame.Kept || scene.Reused))
   {
     this->Values.Useless = 0;
   }

@@ -7,6 +7,8 @@
 #include "Render/Levels/KeptRays.h"
 
 #include <memory>
+#include <optional>
+#include <vector>
 
 namespace banyan
 {
@@ -45,6 +47,14 @@ public:
   Frame Draw(
     Communicator& communicator, DistributedField& field, RayScene& scene, const Wish& wish);
 
+  /// Collective: a picture of the scene that was drawn before, and is as exact as wanted; nothing
+  /// is drawn. Nothing where there is none.
+  std::optional<Frame> Kept(
+    Communicator& communicator, DistributedField& field, const RayScene& scene, const Wish& wish);
+
+  /// A hash of all that decides a picture, but the values and how finely they are sampled.
+  static Hash128 SceneOf(const RayScene& scene, const Wish& wish);
+
   /// The same as ToleranceControl::RefineNext.
   bool RefineNext() { return this->Tolerance.RefineNext(); }
 
@@ -62,9 +72,21 @@ private:
     Hash128 Whole;
   };
 
-  static Hash128 SceneOf(const RayScene& scene, const Wish& wish);
-  bool TakeKept(Communicator& communicator, const Hash128& whole, const DrawnPicture* kept,
-    const Wish& wish, Frame& frame);
+  /// What a frame is to show, as this rank knows it, and as all go by.
+  struct Sight
+  {
+    Hash128 Scene;                ///< FieldFrames::SceneOf
+    std::vector<Hash128> Content; ///< DistributedField::VisibleContent
+    Hash128 Mine;                 ///< of both
+    Names Agreed;
+    ToleranceControl::Aim Aim;
+    KeptPictures::Quality Quality;
+    bool Other = false; ///< whether the field has another version than in the last frame
+  };
+
+  Sight Look(
+    Communicator& communicator, DistributedField& field, const RayScene& scene, const Wish& wish);
+  bool TakeKept(Communicator& communicator, const Sight& sight, const Wish& wish, Frame& frame);
   bool BeginRays(Communicator& communicator, DrawnField& drawn, RayScene& scene,
     const Hash128& name, const Wish& wish);
   void DrawAnew(Communicator& communicator, DistributedField& field, RayScene& scene,

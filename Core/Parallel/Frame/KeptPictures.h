@@ -7,6 +7,7 @@
 #include "Render/Scene/FloatImage.h"
 #include "Series/Decode/CacheContext.h"
 
+#include <atomic>
 #include <cstdint>
 #include <list>
 #include <memory>
@@ -67,6 +68,7 @@ public:
     const Quality& quality, const DrawnPicture& picture);
 
   void Clear() { this->KeepIn(nullptr); }
+  /// May be called while another thread draws.
   std::uint64_t Bytes() const { return this->HeldBytes; }
 
 private:
@@ -86,7 +88,7 @@ private:
 
   std::shared_ptr<CacheContext> Caches; ///< null while nothing is kept
   std::list<Item> Items;                ///< the last used first
-  std::uint64_t HeldBytes = 0;
+  std::atomic<std::uint64_t> HeldBytes{ 0 };
 };
 
 } // namespace banyan

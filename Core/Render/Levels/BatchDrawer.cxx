@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Render/Levels/BatchDrawer.h"
 
+#include "Base/StopFlag.h"
 #include "Base/ThreadPool.h"
 #include "Render/Levels/PictureWatcher.h"
 #include "Render/Raycast/BrickProjector.h"
@@ -157,6 +158,10 @@ void BatchDrawer::DrawBricks(const BrickBatch& batch, std::size_t number, const 
       }
     }
     rays.BrickShift = rays.CellShift - brick.Planned->Level;
+    if (this->Level.Scene.Stop)
+    {
+      this->Level.Scene.Stop->Check();
+    }
     this->DrawBrick(brick, sampling, rays);
     if (meter.IsOn())
     {

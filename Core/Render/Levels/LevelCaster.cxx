@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Render/Levels/LevelCaster.h"
 
+#include "Base/StopFlag.h"
 #include "Base/ThreadPool.h"
 #include "Render/Levels/BatchDrawer.h"
 #include "Render/Levels/BrickBatch.h"
@@ -38,7 +39,14 @@ void LevelCaster::Draw(FloatImage& picture, PictureWatcher* watcher)
       continue;
     }
     this->Pool.ParallelFor(static_cast<std::int64_t>(batch.Bricks.size()),
-      [&](std::int64_t i) { loader.Load(batch.Bricks[static_cast<std::size_t>(i)]); });
+      [&](std::int64_t i)
+      {
+        if (this->Level.Scene.Stop)
+        {
+          this->Level.Scene.Stop->Check();
+        }
+        loader.Load(batch.Bricks[static_cast<std::size_t>(i)]);
+      });
     for (const LoadedBrick& brick : batch.Bricks)
     {
       (brick.Planned->Entry ? this->Statistics.BricksUniform : this->Statistics.BricksDrawn) +=

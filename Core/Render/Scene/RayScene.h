@@ -18,6 +18,7 @@ namespace banyan
 {
 
 struct BrickWork;
+class StopFlag;
 struct ReusedRays;
 
 /// Light from the viewer, along each ray. With c = |normal . ray|, the colour of a sample becomes
@@ -61,6 +62,8 @@ struct RayScene
   bool Probe = false;
   /// Rays that are not cast, as an earlier picture has them; null for none. No part of the picture.
   std::shared_ptr<const ReusedRays> Reused{};
+  /// When it asks, casting ends by an Interruption; null for never. No part of the picture.
+  const StopFlag* Stop = nullptr;
   /// Where the ray caster adds what bricks took to draw; null for nowhere. No part of the picture.
   BrickWork* Work = nullptr;
 };

@@ -201,6 +201,21 @@ struct PlayerOf
     this->Frames.Forget();
   }
 
+  static FieldFrames::Wish WishOf(const Situation& now, bool reuse)
+  {
+    FieldFrames::Wish wish;
+    wish.Sampling.Still = now.Tolerance;
+    wish.Sampling.Interactive = 4.0 * now.Tolerance;
+    wish.Sampling.Seconds = 0.0;
+    wish.Sampling.Interacting = now.Interacting;
+    wish.Sampling.Passes = now.Passes;
+    wish.Sampling.FixedDistance = now.FixedDistance > 0.0;
+    wish.Sampling.KeepsTolerance = !now.Projected && !wish.Sampling.FixedDistance;
+    wish.Sampling.PlansOfGroups = now.PlansOfGroups;
+    wish.Reuse = reuse;
+    return wish;
+  }
+
   FieldFrames::Frame Draw(const Situation& now, bool reuse = true)
   {
     Become(this->In, now);
@@ -212,17 +227,7 @@ struct PlayerOf
       scene.IndexToWorld = this->Field.Place().IndexToPhysical;
       scene.DomainCells = this->Field.Place().Cells;
     }
-    FieldFrames::Wish wish;
-    wish.Sampling.Still = now.Tolerance;
-    wish.Sampling.Interactive = 4.0 * now.Tolerance;
-    wish.Sampling.Seconds = 0.0;
-    wish.Sampling.Interacting = now.Interacting;
-    wish.Sampling.Passes = now.Passes;
-    wish.Sampling.FixedDistance = now.FixedDistance > 0.0;
-    wish.Sampling.KeepsTolerance = !now.Projected && !wish.Sampling.FixedDistance;
-    wish.Sampling.PlansOfGroups = now.PlansOfGroups;
-    wish.Reuse = reuse;
-    return this->Frames.Draw(*this->Ranks, this->Field, scene, wish);
+    return this->Frames.Draw(*this->Ranks, this->Field, scene, WishOf(now, reuse));
   }
 };
 

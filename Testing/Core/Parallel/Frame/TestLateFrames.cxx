@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pictures that nobody waits for: coarse ones at once, and the exact ones, which have the bits of
+// those that are waited for.
+#include "Parallel/Frame/LateFrames.h"
+#include "Parallel/Frame/PlayedSeries.h"
+#include "Render/Dice.h"
+
+namespace
+{
+
+using namespace banyan;
+using namespace banyan::played;
+
+/// Draws frames late, and others that are waited for.
+struct LatePlayer
+{
+  std::unique_ptr<Communicator> Alone = MakeSelfCommunicator();
+  Player With{ *Alone };
+  Player Without{ *Alone };
+  LateFrames Late;
+
+  explicit LatePlayer(double patience = 0.0)
+    : Late(With.Frames, patience)
+  {
+  }
+
+  LateFrames::Shown Draw(const Situation& now)
+  {
+    Become(this->With.In, now);
+    if (this->With.Field.Version() == 0 || now.Step != this->Step)
+    {
+      this->Late.Stop();
+      this->Step = now.Step;
+    }
+    this->With.Field.Update(*this->Alone, this->With.In);
+    return this->Late.Draw(
+      *this->Alone, this->With.Field, SceneOf(now), this->With.WishOf(now, true));
+  }
+
+  /// The exact picture, once the thread has drawn it.
+  LateFrames::Shown DrawAtLast(const Situation& now)
+  {
+    this->Draw(now);
+    this->Late.Finish();
+    return this->Draw(now);
+  }
+
+  void ExpectExact(const LateFrames::Shown& shown, const Situation& now)
+  {
+    ASSERT_TRUE(shown.Exact);
+    const FieldFrames::Frame whole = this->Without.Draw(now, false);
+    EXPECT_EQ(WorstDifference(*shown.Frame.Picture.Pixels, *whole.Picture.Pixels), 0.0);
+    EXPECT_EQ(shown.Frame.Picture.EstimatedError, whole.Picture.EstimatedError);
+  }
+
+  int Step = 0;
+};
+
+TEST(LateFrames, ACoarsePictureIsThereAtOnceAndTheExactOneLater)
+{
+  LatePlayer player;
+  Situation now;
+  const LateFrames::Shown first = player.Draw(now);
+  EXPECT_FALSE(first.Exact);
+  ASSERT_TRUE(first.Frame.Picture.Pixels);
+  player.Late.Finish();
+  EXPECT_TRUE(player.Late.HasNews());
+  const LateFrames::Shown second = player.Draw(now);
+  EXPECT_FALSE(player.Late.HasNews());
+  player.ExpectExact(second, now);
+  EXPECT_EQ(player.Draw(now).Frame.Picture.Pixels, second.Frame.Picture.Pixels) << "it stays";
+}
+
+TEST(LateFrames, WhatTakesLittleIsWaitedFor)
+{
+  LatePlayer player(60.0);
+  Situation now;
+  EXPECT_FALSE(player.Draw(now).Exact) << "nobody knows yet how long it takes";
+  player.DrawAtLast(now);
+  now.Function = 1;
+  player.ExpectExact(player.Draw(now), now);
+}
+
+TEST(LateFrames, NothingIsBegunWhileTheCameraMoves)
+{
+  LatePlayer player;
+  Situation now;
+  now.Interacting = true;
+  EXPECT_FALSE(player.Draw(now).Exact);
+  player.Late.Finish();
+  EXPECT_FALSE(player.Late.HasNews());
+  now.Interacting = false;
+  EXPECT_FALSE(player.Draw(now).Exact);
+  player.Late.Finish();
+  EXPECT_TRUE(player.Late.HasNews());
+}
+
+TEST(LateFrames, WhatIsToBeWaitedForTakesWhatTheThreadDraws)
+{
+  LatePlayer player;
+  Situation now;
+  player.Draw(now);
+  const FieldFrames::Wish wish = Player::WishOf(now, true);
+  player.Late.Settle(player.With.Field, SceneOf(now), wish);
+  EXPECT_TRUE(player.With.Draw(now).Kept);
+  Situation other = now;
+  other.Function = 1;
+  player.Draw(other);
+  player.Late.Settle(player.With.Field, SceneOf(now), wish);
+  EXPECT_FALSE(player.Late.HasNews()) << "it was stopped";
+  EXPECT_FALSE(player.With.Draw(other).Kept);
+  player.Draw(now);
+  LateFrames::StopAll();
+  EXPECT_FALSE(player.Late.HasNews());
+}
+
+TEST(LateFrames, WhateverIsDoneTheExactPictureIsTheOneThatIsWaitedFor)
+{
+  LatePlayer player;
+  Dice dice(5);
+  Situation now;
+  int exact = 0;
+  for (int i = 0; i < 200; ++i)
+  {
+    const int which = dice.Whole(0, 5);
+    now.Eye = which == 0 ? 0.1 * dice.Whole(0, 20) : now.Eye;
+    now.Function = which == 1 ? dice.Whole(0, 3) : now.Function;
+    now.Step = which == 2 ? dice.Whole(0, Steps - 1) : now.Step;
+    now.Shaded = which == 3 ? !now.Shaded : now.Shaded;
+    now.Interacting = which == 4 ? !now.Interacting : now.Interacting;
+    now.Width = which == 5 ? 96 + 32 * dice.Whole(0, 4) : now.Width;
+    if (dice.Whole(0, 2) == 0)
+    {
+      player.Draw(now); // nobody waits for what comes of it
+      continue;
+    }
+    Situation still = now;
+    still.Interacting = false;
+    player.ExpectExact(player.DrawAtLast(still), still);
+    ++exact;
+  }
+  EXPECT_GT(exact, 100);
+}
+
+} // namespace
