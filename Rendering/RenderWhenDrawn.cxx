@@ -5,7 +5,6 @@
 #include "vtkRenderWindow.h"
 #include "vtkRenderWindowInteractor.h"
 
-#include <string>
 #include <utility>
 
 namespace banyan

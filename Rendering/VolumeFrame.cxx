@@ -91,7 +91,11 @@ FieldFrames::Frame VolumeFrame::Draw(
   }
   LateFrames::Shown shown = state.Late.Draw(communicator, state.Field, *this->Wanted, wish);
   this->Owner->GetStatistics()->SetPictureIsExact(shown.Exact ? 1 : 0);
-  if (!shown.Exact && !wish.Sampling.Interacting)
+  if (shown.Exact || wish.Sampling.Interacting)
+  {
+    state.Again.Stop(); // nothing is still to come
+  }
+  else
   {
     state.Again.Watch(window, [&state] { return state.Late.HasNews(); });
   }
