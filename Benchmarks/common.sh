@@ -75,3 +75,38 @@ collect()
     fail "the images of '$name' could not be read."
   real+=("$work/$name.json")
 }
+
+# The standard field as the encoded series $work/standard-N.banyan, unless it is there.
+encode_standard()
+{
+  local n="$1"
+  [[ ! -e "$work/standard-$n.banyan" ]] || return 0
+  say "      $n^3"
+  "$BuildFolder/bin/banyan-generate" --series standard --size "$n" --raw "$work/standard-$n.raw" ||
+    fail "the field of $n^3 samples could not be generated."
+  "$BuildFolder/bin/banyan-bench-scaling" --encode "$work/standard-$n.raw" --size "$n" \
+    --series "$work/standard-$n.banyan" --threads "$(nproc)" || fail "encoding $n^3 samples failed."
+  rm "$work/standard-$n.raw"
+}
+
+# Runs Playback/paraview_playback.py in pvbatch. $plugin is Banyan.so.
+in_paraview()
+{
+  "$RepositoryRoot/Utilities/with-display.sh" mpiexec --oversubscribe -n 1 pvbatch \
+    "$here/Playback/paraview_playback.py" --plugin "$plugin" --info "$BuildFolder/bin/banyan-info" \
+    "$@" < /dev/null > "$work/paraview.log" 2>&1 ||
+    fail "ParaView failed: $(grep -m 1 'Error' "$work/paraview.log" || tail -1 "$work/paraview.log")"
+}
+
+# A mesh named earthquake-CELLS with so many steps as $work/earthquake-CELLS.banyan, unless it is there.
+shake()
+{
+  local name="$1" steps="$2"
+  [[ ! -e "$work/$name.banyan" ]] || return 0
+  say "      $name"
+  "$BuildFolder/bin/banyan-generate" --series earthquake --cells "${name#*-}" --steps "$steps" \
+    --output "$work/$name" 2> "$work/$name.log" ||
+    fail "the earthquake could not be generated: $(tail -1 "$work/$name.log")"
+  in_paraview --encode "$work/$name/earthquake.exo" --array velocity --series "$work/$name.banyan"
+  rm -r "${work:?}/$name"
+}

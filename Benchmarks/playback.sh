@@ -78,28 +78,6 @@ generate()
   rm -f "$work/$name.raw"
 }
 
-in_paraview()
-{
-  "$RepositoryRoot/Utilities/with-display.sh" mpiexec --oversubscribe -n 1 pvbatch \
-    "$here/Playback/paraview_playback.py" --plugin "$plugin" --info "$BuildFolder/bin/banyan-info" \
-    "$@" < /dev/null > "$work/paraview.log" 2>&1 ||
-    fail "ParaView failed: $(grep -m 1 'Error' "$work/paraview.log" || tail -1 "$work/paraview.log")"
-}
-
-# A mesh, which ParaView encodes and plays.
-shake()
-{
-  local name="$mesh"
-  if [[ ! -e "$work/$name.banyan" ]]; then
-    say "      $name"
-    "$BuildFolder/bin/banyan-generate" --series earthquake --cells "${mesh#*-}" --steps "$steps" \
-      --output "$work/$name" 2> "$work/$name.log" ||
-      fail "the earthquake could not be generated: $(tail -1 "$work/$name.log")"
-    in_paraview --encode "$work/$name/earthquake.exo" --array velocity --series "$work/$name.banyan"
-    rm -r "${work:?}/$name"
-  fi
-}
-
 # Plays a series in ParaView, with Banyan Volume and with its own Volume.
 play_in_paraview()
 {
@@ -157,7 +135,7 @@ if [[ -n "$data" && $quick == 0 ]]; then
     fi
   done
 fi
-! wanted earthquake || shake
+! wanted earthquake || shake "$mesh" "$steps"
 
 stage 3 5 "Measuring"
 rm -f "$output/playback.csv"

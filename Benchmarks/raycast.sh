@@ -101,19 +101,6 @@ measure_renderers()
   done
 }
 
-# The standard field as an encoded series, unless it is there.
-encode_standard()
-{
-  local n="$1"
-  [[ ! -e "$work/standard-$n.banyan" ]] || return 0
-  say "      $n^3"
-  "$BuildFolder/bin/banyan-generate" --series standard --size "$n" --raw "$work/standard-$n.raw" ||
-    fail "the field of $n^3 samples could not be generated."
-  "$BuildFolder/bin/banyan-bench-scaling" --encode "$work/standard-$n.raw" --size "$n" \
-    --series "$work/standard-$n.banyan" --threads "$(nproc)" || fail "encoding $n^3 samples failed."
-  rm "$work/standard-$n.raw"
-}
-
 # A process for each line, so that the first frame and the memory are its own. One sample per voxel,
 # and as the picture needs for errors of 16, 4 and 1/255. BANYAN_CACHE_MB sets the budget.
 measure_scaling()

@@ -69,6 +69,24 @@ def colours_and_opacities(scene):
     return colours, opacities
 
 
+def take_functions(display, array, scene):
+    colours = simple.GetColorTransferFunction(array)
+    opacities = simple.GetOpacityTransferFunction(array)
+    colours.ColorSpace = "RGB"
+    colours.RGBPoints, opacities.Points = colours_and_opacities(scene)
+    display.LookupTable = colours
+    display.ScalarOpacityFunction = opacities
+
+
+def look(view, edge):
+    """The camera on a cube from the origin."""
+    middle = 0.5 * edge
+    view.CameraFocalPoint = [middle] * 3
+    view.CameraPosition = [middle + 1.9 * edge * x for x in (0.48, 0.36, 0.80)]
+    view.CameraViewUp = [0, 1, 0]
+    view.CameraViewAngle = 45
+
+
 def show(arguments, view):
     source = simple.ProgrammableSource(
         OutputDataSetType="vtkImageData", Script=FIELD.replace("{size}", str(SIZE)),
@@ -77,12 +95,7 @@ def show(arguments, view):
     display = simple.Show(source, view, "UniformGridRepresentation")
     simple.ColorBy(display, ("POINTS", "field"))
     display.SetRepresentationType("Banyan Volume")
-    colours = simple.GetColorTransferFunction("field")
-    opacities = simple.GetOpacityTransferFunction("field")
-    colours.ColorSpace = "RGB"
-    colours.RGBPoints, opacities.Points = colours_and_opacities(arguments.scene)
-    display.LookupTable = colours
-    display.ScalarOpacityFunction = opacities
+    take_functions(display, "field", arguments.scene)
     display.ScalarOpacityUnitDistance = 1.0
     display.NumberOfThreads = 1
     display.Shade = int(arguments.shaded)
@@ -111,11 +124,7 @@ def main():
     if arguments.no_fxaa:
         view.UseFXAA = 0
     display = show(arguments, view)
-    middle = 0.5 * (SIZE - 1)
-    view.CameraFocalPoint = [middle] * 3
-    view.CameraPosition = [middle + 1.9 * (SIZE - 1) * x for x in (0.48, 0.36, 0.80)]
-    view.CameraViewUp = [0, 1, 0]
-    view.CameraViewAngle = 45
+    look(view, SIZE - 1)
     taken = []
     for _ in range(arguments.frames):
         began = time.monotonic()
