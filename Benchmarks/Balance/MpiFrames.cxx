@@ -164,11 +164,11 @@ void FetchAll(Communicator& communicator, const BenchScene& scene)
   }
   for (int round = 0; round < 5; ++round)
   {
-    BrickFetch fetch(communicator, grid, types, mine, false);
+    BrickFetch fetch(grid, types, mine, false);
     FetchedBricks into;
     communicator.Barrier();
     const Timer timer;
-    fetch.Exchange(wanted, counts, into);
+    fetch.Exchange(communicator, wanted, counts, into);
     const double seconds = AllMax(communicator, timer.Seconds());
     const double bytes = AllSum(communicator, static_cast<double>(into.Bytes()));
     const double bricks = AllSum(communicator, static_cast<double>(into.Count()));

@@ -40,6 +40,31 @@ void AwaitBytes(
   }
 }
 
+/// Meet, in a part of Communicator::Together.
+void MeetTogether(Communicator& communicator, const std::function<void()>& tick)
+{
+  std::vector<int> others;
+  for (int rank = 1; rank < communicator.Size(); ++rank)
+  {
+    others.push_back(rank);
+  }
+  const char byte = 0;
+  if (communicator.Rank() == 0)
+  {
+    AwaitBytes(communicator, others, tick);
+    for (const int rank : others)
+    {
+      communicator.SendWhole(rank, MeetingTag, &byte, 1);
+    }
+  }
+  else
+  {
+    communicator.SendWhole(0, MeetingTag, &byte, 1);
+    AwaitBytes(communicator, { 0 }, tick);
+  }
+  communicator.WaitAll();
+}
+
 } // namespace
 
 void Communicator::LeaveTogether(const std::string&) {}
@@ -86,26 +111,7 @@ std::vector<std::string> BroadcastStrings(
 
 void Meet(Communicator& communicator, const std::function<void()>& tick)
 {
-  std::vector<int> others;
-  for (int rank = 1; rank < communicator.Size(); ++rank)
-  {
-    others.push_back(rank);
-  }
-  const char byte = 0;
-  if (communicator.Rank() == 0)
-  {
-    AwaitBytes(communicator, others, tick);
-    for (const int rank : others)
-    {
-      communicator.SendWhole(rank, MeetingTag, &byte, 1);
-    }
-  }
-  else
-  {
-    communicator.SendWhole(0, MeetingTag, &byte, 1);
-    AwaitBytes(communicator, { 0 }, tick);
-  }
-  communicator.WaitAll();
+  communicator.Together([&](Communicator& ranks) { MeetTogether(ranks, tick); });
 }
 
 std::vector<double> AllGatherValues(Communicator& communicator, double mine)

@@ -14,7 +14,8 @@ namespace banyan
 
 /// Offers what the parallel algorithms need of a message-passing library: ranks, bytes and nothing
 /// else. Implementations: MPI, one process alone, and simulated ranks (threads) for tests. Only one
-/// thread per rank may use it (the main thread: ParaView initialises MPI as single-threaded).
+/// thread per rank may use it (the main thread: ParaView initialises MPI as single-threaded). Other
+/// threads have that of a CollectiveTask, which lets the main thread send.
 class Communicator
 {
 public:
@@ -50,6 +51,14 @@ public:
   virtual void Broadcast(int root, void* data, std::size_t bytes) = 0;
   /// `all` receives Size() * bytes.
   virtual void AllGather(const void* mine, std::size_t bytes, void* all) = 0;
+
+  /// Collective: runs a part with messages between single ranks as a whole, in a thread that may
+  /// send them. Whoever draws sends such messages in a part, and completes them there.
+  /// @param part is given the communicator to use in it
+  /// Throws what the part throws.
+  virtual void Together(const std::function<void(Communicator& ranks)>& part) { part(*this); }
+  /// Whether messages between single ranks may be sent outside of such a part, too.
+  virtual bool SendsAtOnce() const { return true; }
 
   /// Collective: ranks on this machine, this one included. Simulated ranks are on one machine.
   virtual int RanksOnThisNode() { return this->Size(); }

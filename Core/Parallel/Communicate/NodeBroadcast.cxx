@@ -13,6 +13,26 @@ namespace
 
 constexpr int TagOfBytes = 0;
 
+/// Sends what leaders have made to the other ranks of their machines.
+void SendToOthers(
+  Communicator& communicator, const std::vector<int>& leaders, const MachineBytes& made)
+{
+  const int self = communicator.Rank();
+  const int leader = leaders[static_cast<std::size_t>(self)];
+  for (int rank = 0; rank < communicator.Size(); ++rank)
+  {
+    if (leader == self && rank != self && leaders[static_cast<std::size_t>(rank)] == self)
+    {
+      communicator.Send(rank, TagOfBytes, made.Memory.get(), made.Count);
+    }
+  }
+  if (leader != self)
+  {
+    communicator.Receive(leader, TagOfBytes, made.Memory.get(), made.Count);
+  }
+  communicator.WaitAll();
+}
+
 } // namespace
 
 void OnLeaders(
@@ -50,18 +70,7 @@ MachineBytes NodeBroadcast(Communicator& communicator, NodeCommunicator& machine
   }
   if (!machines.Shares())
   {
-    for (int rank = 0; rank < communicator.Size(); ++rank)
-    {
-      if (leader == self && rank != self && leaders[static_cast<std::size_t>(rank)] == self)
-      {
-        communicator.Send(rank, TagOfBytes, made.Memory.get(), made.Count);
-      }
-    }
-    if (leader != self)
-    {
-      communicator.Receive(leader, TagOfBytes, made.Memory.get(), made.Count);
-    }
-    communicator.WaitAll();
+    communicator.Together([&](Communicator& ranks) { SendToOthers(ranks, leaders, made); });
   }
   communicator.Barrier();
   return made;

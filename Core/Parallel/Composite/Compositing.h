@@ -51,7 +51,7 @@ struct CompositeOptions
   bool Agreed = false;
 
   /// Whether DrawDistributed begins to composite while rays are still cast, on more than one
-  /// rank. The picture is the same to the last bit.
+  /// rank that sends at once (Communicator::SendsAtOnce). The picture is the same to the last bit.
   bool WhileCasting = true;
 
   /// Called by DrawDistributed when this rank has cast its rays: begins what can go on in the

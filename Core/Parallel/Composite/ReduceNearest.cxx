@@ -33,13 +33,10 @@ void CheckSizes(Communicator& communicator, std::uint64_t mine)
   }
 }
 
-} // namespace
-
-// Every rank decides one part of the picture: each pixel crosses the network twice and no rank
-// carries more than another, whatever the number of ranks.
-void ReduceNearest(Communicator& communicator, std::vector<OpaquePixel>& pixels)
+/// Every rank decides one part of the picture: each pixel crosses the network twice and no rank
+/// carries more than another, whatever the number of ranks.
+void NearestTogether(Communicator& communicator, std::vector<OpaquePixel>& pixels)
 {
-  CheckSizes(communicator, pixels.size());
   const std::size_t ranks = static_cast<std::size_t>(communicator.Size());
   const std::size_t self = static_cast<std::size_t>(communicator.Rank());
   const auto begin = [&](std::size_t rank) { return pixels.size() * rank / ranks; };
@@ -81,6 +78,14 @@ void ReduceNearest(Communicator& communicator, std::vector<OpaquePixel>& pixels)
   forEachOther(
     [&](std::size_t, int peer) { communicator.Send(peer, TagNearest, nearest, bytes(self)); });
   communicator.WaitAll();
+}
+
+} // namespace
+
+void ReduceNearest(Communicator& communicator, std::vector<OpaquePixel>& pixels)
+{
+  CheckSizes(communicator, pixels.size());
+  communicator.Together([&](Communicator& ranks) { NearestTogether(ranks, pixels); });
 }
 
 PixelRect ReduceNearestGeometry(Communicator& communicator, const PixelRect& rect,

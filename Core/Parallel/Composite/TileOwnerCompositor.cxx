@@ -387,13 +387,19 @@ FloatImage CompositeByTileOwners(Communicator& communicator, const FloatImage& m
   const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
   CompositeStatistics& statistics)
 {
-  TileOwnerCompositor frame(communicator, frontToBack, viewport, options, statistics);
-  frame.Begin();
-  for (int chunk = 0; chunk < frame.GetPlan().Chunks; ++chunk)
-  {
-    frame.Add(chunk, &mine);
-  }
-  return frame.Finish();
+  FloatImage picture;
+  communicator.Together(
+    [&](Communicator& ranks)
+    {
+      TileOwnerCompositor frame(ranks, frontToBack, viewport, options, statistics);
+      frame.Begin();
+      for (int chunk = 0; chunk < frame.GetPlan().Chunks; ++chunk)
+      {
+        frame.Add(chunk, &mine);
+      }
+      picture = frame.Finish();
+    });
+  return picture;
 }
 
 } // namespace banyan

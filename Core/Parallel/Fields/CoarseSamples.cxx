@@ -129,6 +129,15 @@ void CoarsePieces::Copy(
 PieceSamples CoarsePieces::Gather(Communicator& communicator, const PieceSamples& mine,
   const std::vector<ScalarType>& viewTypes) const
 {
+  PieceSamples gathered;
+  communicator.Together(
+    [&](Communicator& ranks) { gathered = this->GatherTogether(ranks, mine, viewTypes); });
+  return gathered;
+}
+
+PieceSamples CoarsePieces::GatherTogether(Communicator& communicator, const PieceSamples& mine,
+  const std::vector<ScalarType>& viewTypes) const
+{
   const int self = communicator.Rank();
   const ScalarType type = CommonType(viewTypes);
   std::vector<SampledBox> parts;

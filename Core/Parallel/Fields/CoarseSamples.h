@@ -34,6 +34,8 @@ public:
   static Box CellsBeginningIn(const Box& cells, int level);
 
 private:
+  PieceSamples GatherTogether(Communicator& communicator, const PieceSamples& mine,
+    const std::vector<ScalarType>& viewTypes) const;
   /// Copies samples of the level that are in this rank's array, x fastest.
   void Copy(const PieceSamples& mine, const Box& samples, ScalarType type, void* out) const;
 

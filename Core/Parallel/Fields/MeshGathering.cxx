@@ -73,7 +73,8 @@ Gathered GatherArray(
   fill(reinterpret_cast<T*>(memory + begins[static_cast<std::size_t>(communicator.Rank())]));
   if (machines.Shares())
   {
-    SendToMachines(communicator, machines, memory, begins);
+    communicator.Together(
+      [&](Communicator& together) { SendToMachines(together, machines, memory, begins); });
     return all;
   }
   for (std::size_t rank = 0; rank < ranks; ++rank)

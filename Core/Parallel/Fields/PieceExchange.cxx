@@ -19,9 +19,8 @@ std::size_t Index(int rank)
   return static_cast<std::size_t>(rank);
 }
 
-} // namespace
-
-std::uint64_t ExchangeShells(Communicator& communicator, const PieceGrid& grid,
+/// ExchangeShells, in a part of Communicator::Together.
+std::uint64_t ShellsTogether(Communicator& communicator, const PieceGrid& grid,
   const std::vector<ScalarType>& viewTypes, PieceSamples& mine)
 {
   const int self = communicator.Rank();
@@ -62,10 +61,20 @@ std::uint64_t ExchangeShells(Communicator& communicator, const PieceGrid& grid,
   return bytes;
 }
 
-BrickFetch::BrickFetch(Communicator& communicator, const PieceGrid& grid,
-  const std::vector<ScalarType>& viewTypes, const PieceSamples& mine, bool around)
-  : Comm(communicator)
-  , Grid(grid)
+} // namespace
+
+std::uint64_t ExchangeShells(Communicator& communicator, const PieceGrid& grid,
+  const std::vector<ScalarType>& viewTypes, PieceSamples& mine)
+{
+  std::uint64_t bytes = 0;
+  communicator.Together(
+    [&](Communicator& ranks) { bytes = ShellsTogether(ranks, grid, viewTypes, mine); });
+  return bytes;
+}
+
+BrickFetch::BrickFetch(const PieceGrid& grid, const std::vector<ScalarType>& viewTypes,
+  const PieceSamples& mine, bool around)
+  : Grid(grid)
   , ViewTypes(viewTypes)
   , Mine(mine)
   , Around(around)
@@ -115,26 +124,26 @@ std::size_t BrickFetch::EndOfMessage(
 
 /// Tells each holder what is wanted of it. @return what others want of this rank
 BrickFetch::Lists BrickFetch::TellHolders(
-  const Lists& from, const std::vector<std::int32_t>& counts)
+  Communicator& communicator, const Lists& from, const std::vector<std::int32_t>& counts)
 {
   const std::size_t ranks = from.size();
-  const std::size_t self = Index(this->Comm.Rank());
+  const std::size_t self = Index(communicator.Rank());
   Lists asked(ranks);
   for (std::size_t rank = 0; rank < ranks; ++rank)
   {
     asked[rank].resize(static_cast<std::size_t>(counts[rank * ranks + self]));
     if (!asked[rank].empty())
     {
-      this->Comm.Receive(static_cast<int>(rank), ListTag, asked[rank].data(),
+      communicator.Receive(static_cast<int>(rank), ListTag, asked[rank].data(),
         asked[rank].size() * sizeof(std::int64_t));
     }
     if (!from[rank].empty())
     {
-      this->Comm.Send(static_cast<int>(rank), ListTag, from[rank].data(),
+      communicator.Send(static_cast<int>(rank), ListTag, from[rank].data(),
         from[rank].size() * sizeof(std::int64_t));
     }
   }
-  this->Comm.WaitAll();
+  communicator.WaitAll();
   return asked;
 }
 
@@ -171,16 +180,24 @@ void BrickFetch::Unpack(const std::vector<std::int64_t>& bricks, std::size_t fir
   }
 }
 
-void BrickFetch::Exchange(const std::vector<std::int64_t>& wanted,
+void BrickFetch::Exchange(Communicator& communicator, const std::vector<std::int64_t>& wanted,
   const std::vector<std::int32_t>& counts, FetchedBricks& into)
 {
-  const std::size_t ranks = Index(this->Comm.Size());
+  communicator.Together(
+    [&](Communicator& ranks) { this->ExchangeTogether(ranks, wanted, counts, into); });
+}
+
+void BrickFetch::ExchangeTogether(Communicator& communicator,
+  const std::vector<std::int64_t>& wanted, const std::vector<std::int32_t>& counts,
+  FetchedBricks& into)
+{
+  const std::size_t ranks = Index(communicator.Size());
   Lists from(ranks);
   for (const std::int64_t brick : wanted)
   {
     from[Index(this->Grid.HolderOf(brick))].push_back(brick);
   }
-  const Lists to = this->TellHolders(from, counts);
+  const Lists to = this->TellHolders(communicator, from, counts);
   std::vector<std::size_t> sent(ranks, 0);
   std::vector<std::size_t> received(ranks, 0);
   // Rounds need no agreement: the n-th message between two ranks is in the n-th round of both, and
@@ -197,7 +214,7 @@ void BrickFetch::Exchange(const std::vector<std::int64_t>& wanted,
       in[rank].resize(this->BytesOf(from[rank], received[rank], until[rank]));
       if (!in[rank].empty())
       {
-        this->Comm.Receive(static_cast<int>(rank), BricksTag, in[rank].data(), in[rank].size());
+        communicator.Receive(static_cast<int>(rank), BricksTag, in[rank].data(), in[rank].size());
       }
     }
     for (std::size_t rank = 0; rank < ranks; ++rank)
@@ -207,12 +224,12 @@ void BrickFetch::Exchange(const std::vector<std::int64_t>& wanted,
       if (!out[rank].empty())
       {
         this->Pack(to[rank], sent[rank], last, out[rank].data());
-        this->Comm.Send(static_cast<int>(rank), BricksTag, out[rank].data(), out[rank].size());
+        communicator.Send(static_cast<int>(rank), BricksTag, out[rank].data(), out[rank].size());
       }
       sent[rank] = last;
       more = more || last < to[rank].size();
     }
-    this->Comm.WaitAll();
+    communicator.WaitAll();
     for (std::size_t rank = 0; rank < ranks; ++rank)
     {
       this->Unpack(from[rank], received[rank], until[rank], in[rank].data(), into);
@@ -220,7 +237,7 @@ void BrickFetch::Exchange(const std::vector<std::int64_t>& wanted,
       more = more || received[rank] < from[rank].size();
     }
   }
-  const std::string agreed = AgreeOnError(this->Comm, this->Failure);
+  const std::string agreed = AgreeOnError(communicator, this->Failure);
   if (!agreed.empty())
   {
     // Bricks that a rank could not give have come empty: the next frame must not find them.

@@ -41,7 +41,7 @@ std::uint64_t ExchangeShells(Communicator& communicator, const PieceGrid& grid,
   const std::vector<ScalarType>& viewTypes, PieceSamples& mine);
 
 /// Collective: bricks go from those who hold them to those who want them, in messages of about
-/// `MessageBytes`, a round of one from and to each rank after the other. Main thread only.
+/// `MessageBytes`, a round of one from and to each rank after the other.
 class BrickFetch
 {
 public:
@@ -49,25 +49,29 @@ public:
 
   /// Everything referred to must stay.
   /// @param around whether bricks come with a layer around them
-  BrickFetch(Communicator& communicator, const PieceGrid& grid,
-    const std::vector<ScalarType>& viewTypes, const PieceSamples& mine, bool around);
+  BrickFetch(const PieceGrid& grid, const std::vector<ScalarType>& viewTypes,
+    const PieceSamples& mine, bool around);
 
   /// Bytes that a brick takes on its way.
   std::uint64_t BytesOf(std::int64_t brick) const;
 
+  /// Collective.
   /// @param wanted of this rank, ascending, held by others
   /// @param counts `[asking rank][holding rank]`: how many bricks of each other all ranks want
   /// @param into receives them
   /// Throws CollectiveError when one could not give what was asked for, or keep what
   /// it got; then nothing is kept, not even what was there before.
-  void Exchange(const std::vector<std::int64_t>& wanted, const std::vector<std::int32_t>& counts,
-    FetchedBricks& into);
+  void Exchange(Communicator& communicator, const std::vector<std::int64_t>& wanted,
+    const std::vector<std::int32_t>& counts, FetchedBricks& into);
 
 private:
   using Lists = std::vector<std::vector<std::int64_t>>; ///< bricks by rank
 
   ScalarType TypeOf(std::int64_t brick) const;
-  Lists TellHolders(const Lists& from, const std::vector<std::int32_t>& counts);
+  void ExchangeTogether(Communicator& communicator, const std::vector<std::int64_t>& wanted,
+    const std::vector<std::int32_t>& counts, FetchedBricks& into);
+  Lists TellHolders(
+    Communicator& communicator, const Lists& from, const std::vector<std::int32_t>& counts);
   std::size_t EndOfMessage(const std::vector<std::int64_t>& bricks, std::size_t first) const;
   std::uint64_t BytesOf(
     const std::vector<std::int64_t>& bricks, std::size_t first, std::size_t last) const;
@@ -76,7 +80,6 @@ private:
   void Unpack(const std::vector<std::int64_t>& bricks, std::size_t first, std::size_t last,
     const char* in, FetchedBricks& into);
 
-  Communicator& Comm;
   const PieceGrid& Grid;
   const std::vector<ScalarType>& ViewTypes;
   const PieceSamples& Mine;

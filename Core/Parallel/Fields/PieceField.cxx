@@ -171,7 +171,7 @@ void PieceField::BeginFrame(Communicator& communicator, RayScene& scene, std::ui
   {
     shell = ExchangeShells(communicator, this->Pieces, this->ViewTypes, this->Mine);
   }
-  BrickFetch fetch(communicator, this->Pieces, this->ViewTypes, this->Mine, around);
+  BrickFetch fetch(this->Pieces, this->ViewTypes, this->Mine, around);
   std::vector<std::int32_t> counts;
   Wish wish = this->WishOf(scene, fetch, communicator.Rank(), budgetBytes);
   while (!this->Fits(communicator, wish, counts) && this->Balancer.Moves() &&
@@ -189,7 +189,7 @@ void PieceField::BeginFrame(Communicator& communicator, RayScene& scene, std::ui
   if (this->Numbers.Misses > 0)
   {
     const Timer timer;
-    fetch.Exchange(wish.Missing, counts, this->Fetched);
+    fetch.Exchange(communicator, wish.Missing, counts, this->Fetched);
     this->Numbers.FetchSeconds = timer.Seconds();
   }
   this->Numbers.BytesMoved += shell;

@@ -136,7 +136,7 @@ std::uint64_t PieceLevels::Bring(Communicator& communicator, const RayScene& sce
     {
       bytes += ExchangeShells(communicator, level.Grid, level.Known.ViewTypes, level.Samples);
     }
-    fetches.emplace_back(communicator, level.Grid, level.Known.ViewTypes, level.Samples, around);
+    fetches.emplace_back(level.Grid, level.Known.ViewTypes, level.Samples, around);
     level.Fetched.BeginFrame();
     wanted[i].Counts.assign(zones.size(), 0);
     const int number = static_cast<int>(i) + 1;
@@ -159,7 +159,7 @@ std::uint64_t PieceLevels::Bring(Communicator& communicator, const RayScene& sce
     }
     FetchedBricks& fetched = this->Levels[i]->Fetched;
     fetched.MakeRoom(wanted[i].Bytes, budgetBytes / this->Levels.size());
-    fetches[i].Exchange(wanted[i].Missing, counts[i], fetched);
+    fetches[i].Exchange(communicator, wanted[i].Missing, counts[i], fetched);
     bytes += wanted[i].Bytes;
   }
   return bytes;

@@ -208,7 +208,7 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene,
   OwnPart own{ scene, share.Source, zones.at(static_cast<std::size_t>(communicator.Rank())),
     share.BudgetBytes, share.Pool, share.Failure, compositing.AfterCasting, {}, {} };
   FloatImage picture = communicator.Size() == 1 ? CastAlone(communicator, own)
-                       : compositing.WhileCasting
+                       : compositing.WhileCasting && communicator.SendsAtOnce()
                          ? CastAndComposite(communicator, own, zones, compositing)
                          : CastThenComposite(communicator, own, zones, compositing);
   const PhaseScope phase(Phase::Compositing);

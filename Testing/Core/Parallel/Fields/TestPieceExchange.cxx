@@ -66,7 +66,7 @@ Outcome ExchangeTwice(int loses)
         std::string said;
         try
         {
-          BrickFetch(communicator, grid, types, mine, false).Exchange(wanted, counts, fetched);
+          BrickFetch(grid, types, mine, false).Exchange(communicator, wanted, counts, fetched);
         }
         catch (const Error& error)
         {
