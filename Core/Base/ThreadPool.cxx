@@ -15,6 +15,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace banyan
@@ -93,7 +94,8 @@ struct Loop
     this->AllDone.wait(lock, [this] { return this->Done == this->Count; });
     if (this->Failure)
     {
-      std::rethrow_exception(this->Failure);
+      // Whoever still holds the loop must not be the one that destroys it.
+      std::rethrow_exception(std::exchange(this->Failure, nullptr));
     }
   }
 
