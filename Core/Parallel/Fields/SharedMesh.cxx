@@ -234,7 +234,7 @@ void SharedMesh::BringLevels(Communicator& communicator, int count)
       this->BringLevel(communicator, machines);
     }
   }
-  catch (const Error&)
+  catch (const CollectiveError&) // and no Interruption
   {
     this->LevelsAlone = true;
   }
@@ -259,16 +259,18 @@ void SharedMesh::BringLevel(Communicator& communicator, NodeCommunicator& machin
         tree->WriteTo(to);
         std::memcpy(to + tree->Count(), made->NodeOfPoint.data(), made->NodeOfPoint.Bytes());
       });
-  Collective(communicator,
-    [&]
-    {
-      const std::shared_ptr<const ElementOctree> read = OctreeBytes::Read({}, bytes.Memory);
-      const auto points = static_cast<std::size_t>(read->Mesh().PointCount);
-      const char* const end = bytes.Memory.get() + bytes.Count;
-      this->Cut->AddLevel(read,
-        { reinterpret_cast<const std::uint32_t*>(end) - points, points, bytes.Memory },
-        bytes.Together ? 0 : bytes.Count);
-    });
+  const auto add = [&]
+  {
+    const std::shared_ptr<const ElementOctree> read = OctreeBytes::Read({}, bytes.Memory);
+    const auto points = static_cast<std::size_t>(read->Mesh().PointCount);
+    const char* const end = bytes.Memory.get() + bytes.Count;
+    this->Cut->AddLevel(read,
+      { reinterpret_cast<const std::uint32_t*>(end) - points, points, bytes.Memory },
+      bytes.Together ? 0 : bytes.Count);
+  };
+  // A frame that is broken off must not leave the level on some ranks alone: they would not know of
+  // the failure of the others.
+  communicator.Together([&](Communicator& ranks) { Collective(ranks, add); });
   this->OfMesh.Together += bytes.Together ? bytes.Count : 0;
 }
 

@@ -216,7 +216,8 @@ struct PlayerOf
     return wish;
   }
 
-  FieldFrames::Frame Draw(const Situation& now, bool reuse = true)
+  /// Collective: the field becomes what is to be drawn. @return the scene
+  RayScene Take(const Situation& now)
   {
     Become(this->In, now);
     this->Field.Update(*this->Ranks, this->In);
@@ -227,6 +228,12 @@ struct PlayerOf
       scene.IndexToWorld = this->Field.Place().IndexToPhysical;
       scene.DomainCells = this->Field.Place().Cells;
     }
+    return scene;
+  }
+
+  FieldFrames::Frame Draw(const Situation& now, bool reuse = true)
+  {
+    RayScene scene = this->Take(now);
     return this->Frames.Draw(*this->Ranks, this->Field, scene, WishOf(now, reuse));
   }
 };
