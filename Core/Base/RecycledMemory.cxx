@@ -105,8 +105,9 @@ Shelf& TheShelf()
 void* NewMemory(std::size_t bytes)
 {
   constexpr std::size_t largePage = std::size_t{ 2 } << 20;
-  void* const memory = std::aligned_alloc(bytes < largePage ? std::size_t{ 64 } : largePage, bytes);
-  if (!memory)
+  void* memory = nullptr;
+  // std::aligned_alloc wants a size that is a multiple of the alignment.
+  if (::posix_memalign(&memory, bytes < largePage ? std::size_t{ 64 } : largePage, bytes) != 0)
   {
     throw std::bad_alloc();
   }
