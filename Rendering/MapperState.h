@@ -19,6 +19,7 @@
 #include <vector>
 
 class vtkDataObject;
+class vtkRenderer;
 class vtkVolume;
 
 namespace banyan
@@ -32,6 +33,7 @@ struct MapperState
   FieldFrames Frames;
   LateFrames Late{ Frames };
   RenderWhenDrawn Again;
+  const vtkRenderer* LastRenderer = nullptr; ///< only to compare with
   MotionEnhancement Motion;
   banyan::Backdrop Backdrop;
   KeptTransferFunction Function;

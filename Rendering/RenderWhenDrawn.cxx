@@ -46,7 +46,12 @@ void RenderWhenDrawn::Stop()
 
 void RenderWhenDrawn::Look(int timer)
 {
-  if (this->Interactor && timer == this->Timer && this->IsDrawn())
+  if (!this->Interactor || timer != this->Timer)
+  {
+    return;
+  }
+  vtkRenderWindow* const window = this->Interactor->GetRenderWindow();
+  if (window && window->CheckInRenderStatus() == 0 && !this->IsBusy() && this->IsDrawn())
   {
     vtkRenderWindowInteractor* const interactor = this->Interactor;
     this->Stop();

@@ -5,6 +5,7 @@
 #include "vtkWeakPointer.h"
 
 #include <functional>
+#include <utility>
 
 class vtkRenderWindow;
 class vtkRenderWindowInteractor;
@@ -17,7 +18,7 @@ class RenderWhenDrawn
 {
 public:
   /// Milliseconds from look to look.
-  static constexpr unsigned long Pause = 20;
+  static constexpr unsigned long Pause = 10;
 
   RenderWhenDrawn() = default;
   ~RenderWhenDrawn() { this->Stop(); }
@@ -29,15 +30,20 @@ public:
   static bool CanWatch(vtkRenderWindow* window);
 
   /// Begins to look, in place of what was looked at.
-  /// @param isDrawn whether the picture is there
+  /// @param isDrawn whether the picture is there; not asked while the window renders, or is busy
   void Watch(vtkRenderWindow* window, std::function<bool()> isDrawn);
   void Stop();
+
+  /// Timers also run inside of longer work that shows its progress, where nothing may be rendered.
+  /// @param isBusy whether that is so now; by default never
+  void SetIsBusy(std::function<bool()> isBusy) { this->IsBusy = std::move(isBusy); }
 
 private:
   void Look(int timer);
 
   vtkWeakPointer<vtkRenderWindowInteractor> Interactor; ///< null while nothing is looked at
   std::function<bool()> IsDrawn;
+  std::function<bool()> IsBusy = [] { return false; };
   int Timer = 0;
   unsigned long Observer = 0;
 };

@@ -16,6 +16,7 @@
 #include "vtkVolume.h"
 
 #include <limits>
+#include <utility>
 
 namespace banyan
 {
@@ -62,7 +63,6 @@ ToleranceControl::Wish VolumeFrame::WishFor(vtkRenderer* renderer, int volumes) 
   wish.Seconds = mapper->GetInteractiveFrameSeconds() / volumes;
   // More than one frame per second: somebody moves the camera. All ranks are told the same rate.
   wish.Interacting = renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0;
-  wish.Passes = mapper->GetRefineInPasses();
   wish.MaxElementsPerPixel = mapper->GetMaxElementsPerPixel();
   wish.ScreenErrorPixels = mapper->GetScreenErrorPixels();
   wish.FixedDistance = mapper->GetSampleDistanceVoxels() > 0.0;
@@ -72,53 +72,66 @@ ToleranceControl::Wish VolumeFrame::WishFor(vtkRenderer* renderer, int volumes) 
   return wish;
 }
 
-/// Draws the frame, or has it drawn while somebody goes on in front of the window.
-/// @param volumes in the picture
+/// Whether the picture may be drawn while somebody goes on in front of the window.
+bool VolumeFrame::MayBeLate(vtkRenderer* renderer) const
+{
+  // A window that does not swap its buffers is one that somebody wants to save. A volume in two
+  // renderers would begin the one picture and the other in turns.
+  vtkRenderWindow* const window = renderer->GetRenderWindow();
+  const vtkRenderer* const last = std::exchange(this->State->LastRenderer, renderer);
+  return (!last || last == renderer) && this->Owner->GetDecoupled() &&
+         this->State->Communicator->Size() == 1 && window->GetStereoRender() == 0 &&
+         window->GetSwapBuffers() != 0 && RenderWhenDrawn::CanWatch(window);
+}
+
 FieldFrames::Frame VolumeFrame::Draw(
-  vtkRenderWindow* window, const FieldFrames::Wish& wish, int volumes)
+  vtkRenderer* renderer, const FieldFrames::Wish& wish, const Together& others)
 {
   MapperState& state = *this->State;
   Communicator& communicator = *state.Communicator;
-  // A window that does not swap its buffers is one that somebody wants to save.
-  const bool late = this->Owner->GetDecoupled() && communicator.Size() == 1 && volumes == 1 &&
-                    window->GetStereoRender() == 0 && window->GetSwapBuffers() != 0 &&
-                    RenderWhenDrawn::CanWatch(window);
-  this->Owner->GetStatistics()->SetPictureIsExact(wish.Sampling.Interacting ? 0 : 1);
-  if (!late)
+  vtkBanyanFrameStatistics* const out = this->Owner->GetStatistics();
+  if (!this->MayBeLate(renderer) || others.OfMapper > 1)
   {
+    out->SetPictureIsExact(wish.Sampling.Interacting ? 0 : 1);
     state.Late.Settle(state.Field, *this->Wanted, wish);
+    if (!this->Owner->GetDecoupled())
+    {
+      state.Late.Stop();
+      state.Again.Stop();
+    }
     return state.Frames.Draw(communicator, state.Field, *this->Wanted, wish);
   }
-  LateFrames::Shown shown = state.Late.Draw(communicator, state.Field, *this->Wanted, wish);
-  this->Owner->GetStatistics()->SetPictureIsExact(shown.Exact ? 1 : 0);
-  if (shown.Exact || wish.Sampling.Interacting)
+  LateFrames::Shown shown = state.Late.Draw(
+    communicator, state.Field, *this->Wanted, wish, LateFrames::CoarseSeconds / others.Volumes);
+  out->SetPictureIsExact(shown.Exact ? 1 : 0);
+  if (shown.Exact)
   {
     state.Again.Stop(); // nothing is still to come
   }
   else
   {
-    state.Again.Watch(window, [&state] { return state.Late.HasNews(); });
+    state.Again.Watch(renderer->GetRenderWindow(), [&state] { return state.Late.GoOn(); });
   }
   return std::move(shown.Frame);
 }
 
 std::shared_ptr<const FloatImage> VolumeFrame::Cast(
-  vtkRenderer* renderer, const Backdrop& backdrop, int volumes)
+  vtkRenderer* renderer, const Backdrop& backdrop, const Together& others)
 {
   DistributedField& field = this->State->Field;
   RayScene& scene = *this->Wanted;
   scene.Depth = backdrop.Depths(scene.Viewport);
   this->Figures = FrameFigures(field.Drawn());
   FieldFrames::Wish wish;
-  wish.Sampling = this->WishFor(renderer, volumes);
+  wish.Sampling = this->WishFor(renderer, others.Volumes);
   wish.Behind = backdrop.Behind();
   // Errors of few bits add up where volumes are blended over each other.
-  wish.Transport = this->Owner->GetCompositeInFewBits() && volumes == 1 ? PixelTransport::WithinOne
-                                                                        : PixelTransport::Floats;
+  const bool few = this->Owner->GetCompositeInFewBits() && others.Volumes == 1;
+  wish.Transport = few ? PixelTransport::WithinOne : PixelTransport::Floats;
   wish.ReadAhead = this->Owner->GetReadAhead();
   wish.Reuse = wish.Sampling.PlansOfGroups = this->Owner->GetReuseFrames();
   wish.ShowSeconds = this->State->WriteSeconds; // about what it took the last time
-  const FieldFrames::Frame frame = this->Draw(renderer->GetRenderWindow(), wish, volumes);
+  const FieldFrames::Frame frame = this->Draw(renderer, wish, others);
   this->Statistics = frame.Picture.Statistics;
   this->Kept = frame.Kept;
   vtkBanyanFrameStatistics* const out = this->Owner->GetStatistics();

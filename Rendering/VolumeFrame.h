@@ -11,7 +11,6 @@
 #include <optional>
 
 class vtkBanyanVolumeMapper;
-class vtkRenderWindow;
 class vtkRenderer;
 
 namespace banyan
@@ -39,11 +38,17 @@ public:
   /// @return whether the volume is on the screen
   bool Prepare(vtkRenderer* renderer);
 
+  /// Volumes of the picture, this one included.
+  struct Together
+  {
+    int Volumes = 1;
+    int OfMapper = 1; ///< that this one's mapper draws
+  };
+
   /// Draws the volume, which is on the screen.
-  /// @param volumes in the picture
   /// @return the volume's picture on rank 0; null elsewhere
   std::shared_ptr<const FloatImage> Cast(
-    vtkRenderer* renderer, const Backdrop& backdrop, int volumes);
+    vtkRenderer* renderer, const Backdrop& backdrop, const Together& others);
 
   /// Publishes the statistics, when the picture is on the screen.
   /// @param geometry what it took to combine the pixels of other props
@@ -52,7 +57,9 @@ public:
 
 private:
   ToleranceControl::Wish WishFor(vtkRenderer* renderer, int volumes) const;
-  FieldFrames::Frame Draw(vtkRenderWindow* window, const FieldFrames::Wish& wish, int volumes);
+  bool MayBeLate(vtkRenderer* renderer) const;
+  FieldFrames::Frame Draw(
+    vtkRenderer* renderer, const FieldFrames::Wish& wish, const Together& others);
 
   vtkBanyanVolumeMapper* Owner;
   MapperState* State;

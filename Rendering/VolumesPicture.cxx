@@ -136,11 +136,13 @@ std::vector<VolumeFrame*> VolumesPicture::Cast(const Backdrop& backdrop, Picture
     {
       // One mapper may draw several volumes, each with a component of its own.
       const auto same = [&](const VolumeFrame& other) { return other.Mapper() == frame.Mapper(); };
-      if (std::count_if(this->Frames.begin(), this->Frames.end(), same) > 1)
+      const VolumeFrame::Together together{ static_cast<int>(this->Frames.size()),
+        static_cast<int>(std::count_if(this->Frames.begin(), this->Frames.end(), same)) };
+      if (together.OfMapper > 1)
       {
         frame.Mapper()->UpdateField(frame.Volume());
       }
-      pictures[i] = frame.Cast(this->Renderer, backdrop, static_cast<int>(this->Frames.size()));
+      pictures[i] = frame.Cast(this->Renderer, backdrop, together);
       return true;
     };
     if (frame.Mapper()->Attempt(cast))

@@ -105,6 +105,19 @@ void vtkBanyanVolumeMapper::SetRankOrderBehind(const std::vector<int>& frontToBa
   this->State->RankOrderBehind = frontToBack;
 }
 
+void vtkBanyanVolumeMapper::SetIsBusy(const std::function<bool()>& isBusy)
+{
+  this->State->Again.SetIsBusy(isBusy);
+}
+
+void vtkBanyanVolumeMapper::RenderSoon(vtkRenderWindow* window)
+{
+  if (this->Decoupled && banyan::RenderWhenDrawn::CanWatch(window))
+  {
+    this->State->Again.Watch(window, [] { return true; });
+  }
+}
+
 vtkDataArray* vtkBanyanVolumeMapper::GetArrayToDraw(vtkDataObject* data)
 {
   return banyan::ArrayToDraw(this, data).Array;
@@ -124,7 +137,7 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
   {
     if (!banyan::ThreadPool::HasProcessWidth(this->NumberOfThreads))
     {
-      banyan::LateFrames::StopAll();
+      banyan::LateFrames::PauseAll();
       banyan::ThreadPool::SetProcessWidth(this->NumberOfThreads);
     }
     piece = banyan::PieceOfInput(this, volume->GetProperty());
@@ -237,11 +250,6 @@ void vtkBanyanVolumeMapper::EndFrame(vtkObject* caller, unsigned long, void*)
   banyan::VolumesPicture::ForgetDrawn(renderer);
 }
 
-bool vtkBanyanVolumeMapper::RefineNext()
-{
-  return this->RefineInPasses && this->State->Frames.RefineNext();
-}
-
 void vtkBanyanVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 {
   this->State->Backdrop.ReleaseGraphicsResources(window);
@@ -254,7 +262,6 @@ void vtkBanyanVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 #define BANYAN_PRINT(Name, ...) os << indent << #Name ": " << this->Name << "\n";
   BANYAN_VOLUME_SETTINGS(BANYAN_PRINT, BANYAN_PRINT, BANYAN_PRINT, BANYAN_PRINT)
 #undef BANYAN_PRINT
-  os << indent << "RefineInPasses: " << this->RefineInPasses << "\n"
-     << indent << "Controller: " << this->Controller.GetPointer() << "\n"
+  os << indent << "Controller: " << this->Controller.GetPointer() << "\n"
      << indent << "Statistics: " << this->Statistics.GetPointer() << "\n";
 }

@@ -20,6 +20,7 @@ class vtkBanyanFrameStatistics;
 class vtkDataArray;
 class vtkDataObject;
 class vtkMultiProcessController;
+class vtkRenderWindow;
 
 // clang-format off
 /// The table of the settings that ParaView offers. A row has the name, the unit, the default, the
@@ -79,10 +80,10 @@ class vtkMultiProcessController;
     "Takes from earlier frames what is the same: a scene that was drawn, in this view and step, "  \
     "is not drawn again, and steps of a series that plays share how finely they are sampled. "     \
     "Default: on; off casts all rays and plans each frame, to measure.")                           \
-  Switch(Decoupled, false, advanced, all,                                                          \
+  Switch(Decoupled, true, advanced, all,                                                          \
     "The window does not wait for pictures that take long: a coarse one is shown at once, and "    \
-    "the exact one when it is there (PictureIsExact). Default: off. In the window of one process " \
-    "that shows one such volume, without stereo; screenshots, animations and scripts wait.")       \
+    "the exact one when it is there (PictureIsExact). Default: on, in the window of one process "  \
+    "and without stereo; screenshots, animations, scripts and steps of a play wait.")              \
   Switch(ReadAhead, true, advanced, images,                                                        \
     "Encoded image data: decodes bricks of the next frames in the background, on cores that "      \
     "nobody else wants. While the series plays these are bricks of the next four steps, while "   \
@@ -188,23 +189,17 @@ public:
 #undef BANYAN_CHOICE
   ///@}
 
-  ///@{
   /**
-   * Whether still frames that follow an interaction are drawn in passes: the first with the
-   * tolerance of interaction, each next one that RefineNext() asked for with a quarter of the one
-   * before, until ImageErrorTolerance is kept. Never worse than the frame before it. Off by
-   * default.
+   * Tells when a window may not be rendered again for a late picture (Decoupled), as timers also
+   * run inside of longer work that shows its progress. By default never.
    */
-  vtkSetMacro(RefineInPasses, bool);
-  vtkGetMacro(RefineInPasses, bool);
-  vtkBooleanMacro(RefineInPasses, bool);
-  ///@}
+  void SetIsBusy(const std::function<bool()>& isBusy);
 
   /**
-   * Makes the next frame the next pass. To be called on all ranks. False when there is none: the
-   * last frame kept the tolerance.
+   * With Decoupled, and where somebody turns the loop of the window: renders it when the loop turns
+   * next. For what changes while somebody drags it.
    */
-  bool RefineNext();
+  void RenderSoon(vtkRenderWindow* window);
 
   /**
    * Ranks that draw together; null (default) for this process alone. Collective over the
@@ -274,7 +269,6 @@ private:
 #undef BANYAN_WHOLE
 #undef BANYAN_SWITCH
 #undef BANYAN_CHOICE
-  bool RefineInPasses = false;
   vtkSmartPointer<vtkMultiProcessController> Controller;
   vtkSmartPointer<vtkBanyanFrameStatistics> Statistics;
 

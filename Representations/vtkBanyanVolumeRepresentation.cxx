@@ -21,6 +21,7 @@
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVRenderView.h"
+#include "vtkPVSession.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkProcessModule.h"
 #include "vtkRenderWindow.h"
@@ -48,6 +49,14 @@ void TellStereo(vtkPVRenderView* view)
   }
 }
 
+/// While progress is pending, ParaView's windows turn their event loop, but must not render.
+bool HasPendingProgress()
+{
+  auto* const session =
+    vtkPVSession::SafeDownCast(vtkProcessModule::GetProcessModule()->GetSession());
+  return session && session->GetPendingProgress();
+}
+
 } // namespace
 
 vtkStandardNewMacro(vtkBanyanVolumeRepresentation);
@@ -66,10 +75,15 @@ vtkBanyanVolumeRepresentation::vtkBanyanVolumeRepresentation()
   this->Prop->SetBanyanMapper(this->Mapper);
   this->Mapper->AddObserver(
     vtkCommand::ProgressEvent, this, &vtkBanyanVolumeRepresentation::ShowProgress);
+  this->Mapper->SetIsBusy(HasPendingProgress);
   vtkMath::UninitializeBounds(this->DataBounds);
 }
 
-vtkBanyanVolumeRepresentation::~vtkBanyanVolumeRepresentation() = default;
+vtkBanyanVolumeRepresentation::~vtkBanyanVolumeRepresentation()
+{
+  this->Follow(nullptr, this->Colors);
+  this->Follow(nullptr, this->Opacity);
+}
 
 int vtkBanyanVolumeRepresentation::FillInputPortInformation(int, vtkInformation* info)
 {
@@ -190,17 +204,6 @@ int vtkBanyanVolumeRepresentation::ProcessViewRequest(
     // Ranks whose bounds are off screen must draw all the same, or the others wait for ever. Never
     // together with NEED_ORDERED_COMPOSITING: the view then forgets this one.
     outInfo->Set(vtkPVRenderView::RENDER_EMPTY_IMAGES(), 1);
-    this->Mapper->SetRefineInPasses(vtkPVView::GetEnableStreaming());
-    vtkPVRenderView::SetStreamable(inInfo, this, this->Mapper->GetRefineInPasses());
-  }
-  else if (request == vtkPVRenderView::REQUEST_STREAMING_UPDATE())
-  {
-    // No data has to come: that a piece was set makes the view render again.
-    if (this->Mapper->RefineNext())
-    {
-      vtkNew<vtkImageData> nothing;
-      vtkPVRenderView::SetNextStreamedPiece(inInfo, this, nothing);
-    }
   }
   else if (request == vtkPVView::REQUEST_UPDATE_LOD())
   {
@@ -278,15 +281,45 @@ void vtkBanyanVolumeRepresentation::PlaceCroppingBox()
   this->Mapper->SetCroppingRegionPlanes(planes);
 }
 
+void vtkBanyanVolumeRepresentation::Follow(vtkObject* function, FollowedFunction& followed)
+{
+  if (followed.Function == function)
+  {
+    return;
+  }
+  if (followed.Function)
+  {
+    followed.Function->RemoveObserver(followed.Observer);
+  }
+  followed.Function = function;
+  if (function)
+  {
+    followed.Observer = function->AddObserver(
+      vtkCommand::ModifiedEvent, this, &vtkBanyanVolumeRepresentation::FunctionChanged);
+  }
+}
+
+/// ParaView itself renders when a drag has ended.
+void vtkBanyanVolumeRepresentation::FunctionChanged()
+{
+  auto* const view = vtkPVRenderView::SafeDownCast(this->GetView());
+  if (view && this->GetVisibility())
+  {
+    this->Mapper->RenderSoon(view->GetRenderWindow());
+  }
+}
+
 void vtkBanyanVolumeRepresentation::SetColor(vtkColorTransferFunction* colors)
 {
   this->ColorGiven = colors != nullptr;
+  this->Follow(colors, this->Colors);
   this->Superclass::SetColor(colors);
 }
 
 void vtkBanyanVolumeRepresentation::SetScalarOpacity(vtkPiecewiseFunction* opacity)
 {
   this->OpacityGiven = opacity != nullptr;
+  this->Follow(opacity, this->Opacity);
   this->Superclass::SetScalarOpacity(opacity);
 }
 

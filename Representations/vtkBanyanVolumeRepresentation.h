@@ -7,6 +7,7 @@
 #include "vtkNew.h"                      // for members
 #include "vtkSmartPointer.h"             // for members
 #include "vtkVolumeRepresentation.h"
+#include "vtkWeakPointer.h" // for members
 
 #include <memory> // for members
 
@@ -129,6 +130,14 @@ private:
   void ShowProgress();
   void PlaceCroppingBox();
   void SelectArray();
+  /// A function whose points somebody drags: changes are shown at once.
+  struct FollowedFunction
+  {
+    vtkWeakPointer<vtkObject> Function;
+    unsigned long Observer = 0;
+  };
+  void Follow(vtkObject* function, FollowedFunction& followed);
+  void FunctionChanged();
 
   vtkNew<vtkBanyanVolumeMapper> Mapper;
   vtkSmartPointer<vtkBanyanVolume> Prop;
@@ -142,6 +151,8 @@ private:
   int Projection = 0;
   double CroppingOrigin[3] = { 0.0, 0.0, 0.0 };
   double CroppingScale[3] = { 1.0, 1.0, 1.0 };
+  FollowedFunction Colors;
+  FollowedFunction Opacity;
   bool ColorGiven = false;
   bool OpacityGiven = false;
   bool RefusalReported = false;

@@ -140,7 +140,9 @@ except BaseException:
     status = 1
 sys.stdout.flush()
 sys.stderr.flush()
-os._exit(status)
+# A script that goes on while the window turns its loop ends by itself: session.drive.
+if status or not getattr(sys.modules.get("session"), "driven", False):
+    os._exit(status)
 """
 
 

@@ -4,6 +4,7 @@ import argparse
 import os
 import shutil
 import sys
+import traceback
 
 from paraview import simple
 
@@ -114,3 +115,38 @@ def require(condition, sentence):
     """`assert` with a sentence, that no optimisation switches off."""
     if not condition:
         raise AssertionError(sentence)
+
+
+driven = False  # whether a script of the window goes on when it has returned
+
+
+def drive(view, steps):
+    """Goes on in the window, whose loop turns between the steps, and ends the process with them.
+
+    steps: a generator; each `yield` gives the loop 10 ms.
+    """
+    global driven
+    driven = True
+    interactor = view.GetInteractor()
+    inside = []  # dialogs and progress turn loops of their own, where timers run, too
+
+    def step(*_):
+        if inside:
+            return
+        inside.append(True)
+        status = 0
+        try:
+            next(steps)
+            inside.pop()
+            return
+        except StopIteration:
+            pass
+        except BaseException:
+            traceback.print_exc()
+            status = 1
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
+
+    interactor.AddObserver("TimerEvent", step)
+    interactor.CreateRepeatingTimer(10)

@@ -194,33 +194,6 @@ void WhatLiesInside()
   Check(std::abs(columns[0] - columns[1]) > 2.0, "and the eyes see it in two places");
 }
 
-/// Passes end for both eyes, and for one that is left.
-void RefinementEnds()
-{
-  vtkNew<vtkBanyanVolumeMapper> mapper;
-  Stage stage(mapper);
-  mapper->SetInputDataObject(PlainImage(Balls, { 24, 22, 20 }));
-  stage.LookAt(mapper->GetBounds());
-  mapper->RefineInPassesOn();
-  stage.Window->StereoRenderOn();
-  for (const int type :
-    { VTK_STEREO_RED_BLUE, VTK_STEREO_LEFT, VTK_STEREO_RED_BLUE, VTK_STEREO_RIGHT })
-  {
-    stage.Window->SetDesiredUpdateRate(5.0);
-    stage.Draw();
-    stage.Window->SetDesiredUpdateRate(0.002);
-    stage.Draw();
-    stage.Window->SetStereoType(type);
-    int passes = 0;
-    for (stage.Draw(); passes < 20 && mapper->RefineNext(); ++passes)
-    {
-      stage.Draw();
-    }
-    Check(passes < 6, "passes end: " + std::to_string(passes));
-    Check(!mapper->RefineNext(), "and there are no more");
-  }
-}
-
 } // namespace
 
 int main()
@@ -228,6 +201,5 @@ int main()
   EachKindOfStereo();
   EachKindOfCamera();
   WhatLiesInside();
-  RefinementEnds();
   return Failures();
 }

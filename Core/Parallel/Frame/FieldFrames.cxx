@@ -35,23 +35,20 @@ Hash128 FieldFrames::SceneOf(const RayScene& scene, const Wish& wish)
 
 /// Collective: takes a picture that was drawn before.
 /// @return whether there is one
-bool FieldFrames::TakeKept(
-  Communicator& communicator, const Sight& sight, const Wish& wish, Frame& frame)
+bool FieldFrames::TakeKept(Communicator& communicator, const Sight& sight, Frame& frame)
 {
   const DrawnPicture* const kept = this->Pictures.Find(sight.Scene, sight.Content, sight.Quality);
   struct Answer
   {
     Hash128 Scene;
-    double Coarseness;
     double EstimatedError;
     FrameStatistics Statistics;
     bool Found;
   };
-  Answer mine{ sight.Mine, 0.0, 0.0, {}, kept != nullptr };
+  Answer mine{ sight.Mine, 0.0, {}, kept != nullptr };
   if (kept)
   {
     frame.Picture = *kept;
-    mine.Coarseness = this->Pictures.CoarsenessFound();
     mine.EstimatedError = kept->EstimatedError;
     mine.Statistics = kept->Statistics;
   }
@@ -71,12 +68,10 @@ bool FieldFrames::TakeKept(
   frame.Picture.EstimatedError = all.front().EstimatedError;
   frame.Picture.Statistics = all.front().Statistics;
   frame.Picture.Limit = BroadcastStrings(communicator, { frame.Picture.Limit }).front();
-  this->Tolerance.Showed(wish.Sampling, all.front().Coarseness);
   return true;
 }
 
-/// @return whether the field has another version than in the last frame
-bool FieldFrames::BeginLooking(std::uint64_t version)
+void FieldFrames::BeginLooking(std::uint64_t version)
 {
   // Two in a row, because rays are compared with those of the picture before.
   constexpr int patience = 8;
@@ -84,12 +79,22 @@ bool FieldFrames::BeginLooking(std::uint64_t version)
   Looking& looking = this->Values;
   if (version == looking.Version)
   {
-    return false;
+    return;
   }
   looking.Version = version;
   looking.Looks = looking.Useless < patience || looking.Useless % every < 2;
+  looking.Judged = false;
   ++looking.Useless;
-  return true;
+}
+
+/// @param taken whether the frame took anything; the first one of a version counts
+void FieldFrames::EndLooking(bool taken)
+{
+  Looking& looking = this->Values;
+  if (!std::exchange(looking.Judged, true) && taken)
+  {
+    looking.Useless = 0;
+  }
 }
 
 /// Collective.
@@ -98,7 +103,7 @@ FieldFrames::Sight FieldFrames::Look(
 {
   Sight sight;
   sight.Scene = SceneOf(scene, wish);
-  sight.Other = this->BeginLooking(field.Version());
+  this->BeginLooking(field.Version());
   const bool looks = wish.Reuse && this->Values.Looks;
   Collective(communicator, [&] { sight.Content = field.VisibleContent(scene, looks); });
   Digest whole;
@@ -108,7 +113,7 @@ FieldFrames::Sight FieldFrames::Look(
   // What follows has messages: all ranks go by the names that the first one has for the scene.
   sight.Agreed = { sight.Scene, sight.Mine };
   communicator.Broadcast(0, &sight.Agreed, sizeof(sight.Agreed));
-  sight.Aim = this->Tolerance.Begin(sight.Agreed.Whole, wish.Sampling);
+  sight.Aim = this->Tolerance.Begin(wish.Sampling);
   sight.Quality = { sight.Aim.Coarseness, sight.Aim.Interacting };
   this->Pictures.KeepIn(wish.Reuse ? field.Drawn().Caches() : nullptr);
   return sight;
@@ -119,16 +124,27 @@ std::optional<FieldFrames::Frame> FieldFrames::Kept(
 {
   Frame frame;
   const Sight sight = this->Look(communicator, field, scene, wish);
-  return this->TakeKept(communicator, sight, wish, frame) ? std::optional<Frame>(std::move(frame))
-                                                          : std::nullopt;
+  if (!this->TakeKept(communicator, sight, frame))
+  {
+    return std::nullopt;
+  }
+  this->EndLooking(true);
+  return frame;
 }
 
 FieldFrames::Frame FieldFrames::Draw(
   Communicator& communicator, DistributedField& field, RayScene& scene, const Wish& wish)
 {
   Frame frame;
+  if (wish.Passing)
+  {
+    const Hash128 name = SceneOf(scene, wish);
+    this->DrawAnew(communicator, field, scene, { name, name }, wish,
+      this->Tolerance.Begin(wish.Sampling), frame);
+    return frame;
+  }
   const Sight sight = this->Look(communicator, field, scene, wish);
-  if (!this->TakeKept(communicator, sight, wish, frame))
+  if (!this->TakeKept(communicator, sight, frame))
   {
     this->DrawAnew(communicator, field, scene, sight.Agreed, wish, sight.Aim, frame);
     if (wish.Reuse && frame.Picture.Pixels)
@@ -138,10 +154,7 @@ FieldFrames::Frame FieldFrames::Draw(
       this->Pictures.Keep(sight.Scene, sight.Content, levels, sight.Quality, frame.Picture);
     }
   }
-  if (sight.Other && (frame.Kept || scene.Reused))
-  {
-    this->Values.Useless = 0;
-  }
+  this->EndLooking(frame.Kept || scene.Reused);
   return frame;
 }
 
@@ -152,6 +165,10 @@ bool FieldFrames::BeginRays(Communicator& communicator, DrawnField& drawn, RaySc
   const Hash128& name, const Wish& wish)
 {
   scene.Reused.reset();
+  if (wish.Passing)
+  {
+    return false;
+  }
   if (!wish.Reuse || scene.Blend.Mode != BlendMode::Composite)
   {
     this->Rays.Forget();

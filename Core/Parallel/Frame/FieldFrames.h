@@ -23,9 +23,10 @@ public:
   {
     ToleranceControl::Wish Sampling;
     PixelTransport Transport = PixelTransport::Floats;
-    PixelRect Behind;         ///< CompositeOptions
-    bool ReadAhead = true;    ///< whether bricks of the next frame are decoded in the background
-    bool Reuse = true;        ///< whether the frame may take anything from those before
+    PixelRect Behind;      ///< CompositeOptions
+    bool ReadAhead = true; ///< whether bricks of the next frame are decoded in the background
+    bool Reuse = true;     ///< whether the frame may take anything from those before
+    bool Passing = false;  ///< whether the picture will not be wanted again: nothing of it is kept
     double ShowSeconds = 0.0; ///< that putting the picture on the screen is expected to take
   };
 
@@ -55,9 +56,6 @@ public:
   /// A hash of all that decides a picture, but the values and how finely they are sampled.
   static Hash128 SceneOf(const RayScene& scene, const Wish& wish);
 
-  /// The same as ToleranceControl::RefineNext.
-  bool RefineNext() { return this->Tolerance.RefineNext(); }
-
   /// Of the pictures that this rank keeps: none but the first one has any.
   std::uint64_t PictureBytes() const { return this->Pictures.Bytes(); }
 
@@ -81,12 +79,11 @@ private:
     Names Agreed;
     ToleranceControl::Aim Aim;
     KeptPictures::Quality Quality;
-    bool Other = false; ///< whether the field has another version than in the last frame
   };
 
   Sight Look(
     Communicator& communicator, DistributedField& field, const RayScene& scene, const Wish& wish);
-  bool TakeKept(Communicator& communicator, const Sight& sight, const Wish& wish, Frame& frame);
+  bool TakeKept(Communicator& communicator, const Sight& sight, Frame& frame);
   bool BeginRays(Communicator& communicator, DrawnField& drawn, RayScene& scene,
     const Hash128& name, const Wish& wish);
   void DrawAnew(Communicator& communicator, DistributedField& field, RayScene& scene,
@@ -98,8 +95,10 @@ private:
     std::uint64_t Version = 0; ///< of the field, in the last frame
     int Useless = 0;           ///< versions in a row that nothing could be taken for
     bool Looks = true;         ///< at this version
+    bool Judged = false;       ///< whether it is known what could be taken at this version
   };
-  bool BeginLooking(std::uint64_t version);
+  void BeginLooking(std::uint64_t version);
+  void EndLooking(bool taken);
 
   Looking Values;
   ToleranceControl Tolerance;

@@ -59,8 +59,6 @@ public:
   /// drawn from
   const DrawnPicture* Find(
     const Hash128& scene, const std::vector<Hash128>& content, const Quality& wanted);
-  /// Of the picture that was found last.
-  double CoarsenessFound() const { return this->Items.front().How.Coarseness; }
 
   /// Keeps a picture, in place of coarser ones of the scene, if the budget has room for it.
   /// @param levels that it was drawn from

@@ -2,9 +2,9 @@
 #include "Parallel/Frame/LateFrames.h"
 
 #include "Base/Digest.h"
-#include "Base/Timer.h"
 #include "Render/Scene/SceneDigest.h"
 
+#include <mutex>
 #include <set>
 #include <utility>
 
@@ -15,12 +15,14 @@ namespace
 
 /// What a coarse picture is drawn with: no probe is drawn for it, and time decides how coarse it
 /// is.
-FieldFrames::Wish CoarseOf(FieldFrames::Wish wish)
+FieldFrames::Wish CoarseOf(FieldFrames::Wish wish, double seconds)
 {
   wish.Sampling.Interacting = true;
   wish.Sampling.KeepsTolerance = false;
-  wish.Sampling.Seconds = LateFrames::CoarseSeconds;
+  wish.Sampling.BeginsCoarse = true;
+  wish.Sampling.Seconds = seconds;
   wish.ReadAhead = false;
+  wish.Passing = true;
   return wish;
 }
 
@@ -33,9 +35,23 @@ std::set<LateFrames*>& All()
 
 } // namespace
 
-LateFrames::LateFrames(FieldFrames& frames, double patience)
+/// What the thread draws.
+struct LateFrames::Coming
+{
+  std::mutex Mutex; ///< of what is between
+  std::optional<FieldFrames::Frame> Between;
+  Drawn Exact; ///< when the thread has ended
+
+  bool HasBetween()
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    return this->Between.has_value();
+  }
+};
+
+LateFrames::LateFrames(FieldFrames& frames, const Times& times)
   : Frames(frames)
-  , WaitsFor(patience)
+  , Waits(times)
 {
   All().insert(this);
 }
@@ -45,11 +61,20 @@ LateFrames::~LateFrames()
   All().erase(this);
 }
 
-void LateFrames::StopAll()
+void LateFrames::Stop()
+{
+  this->Exact.Stop();
+  this->Begin = nullptr;
+}
+
+void LateFrames::PauseAll()
 {
   for (LateFrames* const frames : All())
   {
-    frames->Stop();
+    if (frames->IsDrawing())
+    {
+      frames->Exact.Stop();
+    }
   }
 }
 
@@ -69,16 +94,33 @@ void LateFrames::Settle(
   {
     this->Finish();
   }
-  else
+  else if (this->IsDrawing())
   {
-    this->Stop();
+    this->Exact.Stop();
   }
+}
+
+/// @return whether the series plays
+bool LateFrames::Plays(const DistributedField& field, const FieldFrames::Wish& wish)
+{
+  return field.Version() != this->Version && this->Version != 0 && !wish.Sampling.Interacting &&
+         this->SinceVersion.Seconds() < this->Waits.Playing;
 }
 
 /// Takes what the thread has drawn.
 void LateFrames::Take()
 {
-  const std::shared_ptr<Drawn> drawn = std::exchange(this->Coming, nullptr);
+  if (this->Next && this->Next->HasBetween())
+  {
+    const std::lock_guard<std::mutex> lock(this->Next->Mutex);
+    this->Last = { std::move(*std::exchange(this->Next->Between, std::nullopt)), false };
+  }
+  if (!this->Exact.HasEnded())
+  {
+    return;
+  }
+  const std::shared_ptr<Coming> next = std::exchange(this->Next, nullptr);
+  this->Begin = nullptr;
   try
   {
     this->Exact.Wait();
@@ -88,32 +130,49 @@ void LateFrames::Take()
     this->Name = Hash128{};
     throw;
   }
-  this->Last = { std::move(drawn->Frame), true };
-  this->ExactSeconds = drawn->Seconds;
+  this->Last = { std::move(next->Exact.Frame), true };
+  this->ExactSeconds = next->Exact.Seconds;
+}
+
+/// Starts the thread.
+void LateFrames::Start(
+  const Drawing& draw, const RayScene& scene, const FieldFrames::Wish& exact, double coarseSeconds)
+{
+  const bool between = this->ExactSeconds && *this->ExactSeconds > this->Waits.Long;
+  this->Next = std::make_shared<Coming>();
+  this->Exact.Start(
+    [draw, scene, exact, coarseSeconds, between, next = this->Next](const StopFlag& stop)
+    {
+      RayScene stoppable = scene;
+      stoppable.Stop = &stop;
+      if (between)
+      {
+        FieldFrames::Wish better = CoarseOf(exact, coarseSeconds);
+        better.Sampling.Between = true;
+        Drawn drawn = draw(stoppable, better);
+        const std::lock_guard<std::mutex> lock(next->Mutex);
+        next->Between = std::move(drawn.Frame);
+      }
+      next->Exact = draw(stoppable, exact);
+    });
 }
 
 LateFrames::Shown LateFrames::Draw(Communicator& communicator, DistributedField& field,
-  const RayScene& scene, const FieldFrames::Wish& wish)
+  const RayScene& scene, const FieldFrames::Wish& wish, double coarseSeconds)
 {
   const Hash128 name = NameOf(field, scene, wish);
   if (name != this->Name)
   {
-    this->Exact.Stop();
+    this->Stop();
+    PauseAll();
     this->Last = Shown{};
     this->Name = name;
   }
-  if (this->Exact.HasEnded())
-  {
-    this->Take();
-  }
-  if (this->Last.Exact || this->Exact.IsStarted())
-  {
-    return this->Last;
-  }
-  FieldFrames::Wish still = wish;
-  still.Sampling.Interacting = false;
-  const auto draw = [this, &communicator, &field](
-                      const RayScene& picture, const FieldFrames::Wish& as)
+  this->Take();
+  FieldFrames::Wish exact = wish;
+  exact.Sampling.Interacting = false;
+  const Drawing draw = [this, &communicator, &field](
+                         const RayScene& picture, const FieldFrames::Wish& as)
   {
     const Timer timer;
     RayScene own = picture;
@@ -121,29 +180,59 @@ LateFrames::Shown LateFrames::Draw(Communicator& communicator, DistributedField&
     drawn.Seconds = timer.Seconds();
     return drawn;
   };
-  if (this->ExactSeconds && *this->ExactSeconds <= this->WaitsFor)
+  if (!this->Last.Frame.Picture.Pixels)
   {
-    Drawn drawn = draw(scene, still);
-    this->ExactSeconds = drawn.Seconds;
-    return this->Last = { std::move(drawn.Frame), true };
+    const bool little = this->ExactSeconds && *this->ExactSeconds <= this->Waits.Patience;
+    std::optional<FieldFrames::Frame> kept;
+    if (little || this->Plays(field, wish))
+    {
+      Drawn drawn = draw(scene, exact);
+      this->ExactSeconds = drawn.Seconds;
+      kept = std::move(drawn.Frame);
+    }
+    else
+    {
+      kept = this->Frames.Kept(communicator, field, scene, exact);
+    }
+    this->Last.Exact = kept.has_value();
+    this->Last.Frame = kept ? std::move(*kept) : draw(scene, CoarseOf(exact, coarseSeconds)).Frame;
   }
-  if (std::optional<FieldFrames::Frame> kept = this->Frames.Kept(communicator, field, scene, still))
+  if (!this->Last.Exact && !this->Exact.IsStarted())
   {
-    return this->Last = { std::move(*kept), true };
+    this->Begin = [=] { this->Start(draw, scene, exact, coarseSeconds); };
+    if (!wish.Sampling.Interacting)
+    {
+      this->Begin();
+    }
   }
-  this->Last = { draw(scene, CoarseOf(wish)).Frame, false };
-  if (!wish.Sampling.Interacting)
+  if (field.Version() != this->Version)
   {
-    this->Coming = std::make_shared<Drawn>();
-    this->Exact.Start(
-      [draw, still, scene, coming = this->Coming](const StopFlag& stop)
-      {
-        RayScene stoppable = scene;
-        stoppable.Stop = &stop;
-        *coming = draw(stoppable, still);
-      });
+    this->Version = field.Version();
+    this->SinceVersion = Timer();
   }
+  this->SinceDrawn = Timer();
   return this->Last;
+}
+
+bool LateFrames::GoOn()
+{
+  if (this->Exact.HasEnded() || (this->Next && this->Next->HasBetween()))
+  {
+    return true;
+  }
+  if (this->Begin && !this->Exact.IsStarted() && this->SinceDrawn.Seconds() > this->Waits.Pause)
+  {
+    try
+    {
+      this->Begin();
+    }
+    catch (const Error&)
+    {
+      this->Begin = nullptr;
+      return true; // Draw will fail the same way, and say so
+    }
+  }
+  return false;
 }
 
 } // namespace banyan

@@ -20,16 +20,6 @@ namespace
 
 constexpr double MostSlack = 16.0;
 
-/// What stands for steps (InteractiveLevels) in RefinementPasses.
-double ToleranceOfStep(int step)
-{
-  return std::ldexp(1.0, 2 * step);
-}
-int StepOfTolerance(double tolerance)
-{
-  return std::ilogb(tolerance) / 2;
-}
-
 /// Whether a value that occurs is opaque however short its part of a ray.
 bool HasOpaqueValues(const TransferFunction& function, const ValueRange& values)
 {
@@ -73,10 +63,8 @@ std::string LimitOf(const SamplingPlan& plan, double wanted, double planned,
   }
   else if (planned > wanted)
   {
-    text = wish.Interacting
-             ? "Interactive Frame Seconds were exceeded: the tolerance is larger than "
-               "the one that was set. "
-             : "The picture is still being refined. ";
+    text = "Interactive Frame Seconds were exceeded: the tolerance is larger than the one that was "
+           "set. ";
   }
   if (plan.Extrapolated)
   {
@@ -95,43 +83,19 @@ std::string LimitOf(const SamplingPlan& plan, double wanted, double planned,
 
 } // namespace
 
-/// Of a picture by steps, a pass divides its tolerance by four: so each takes one step.
-RefinementPasses::Wish ToleranceControl::PassesOf(const Wish& wish) const
-{
-  return wish.KeepsTolerance
-           ? RefinementPasses::Wish{ wish.Passes, wish.Still, wish.Interactive }
-           : RefinementPasses::Wish{ wish.Passes, ToleranceOfStep(0),
-               ToleranceOfStep(std::min(this->Steps.Step(), this->CoarsestStepLevel)) };
-}
-
-ToleranceControl::Aim ToleranceControl::Begin(const Hash128& scene, const Wish& wish)
+ToleranceControl::Aim ToleranceControl::Begin(const Wish& wish)
 {
   this->BySteps = !wish.KeepsTolerance;
-  const bool byScreen = wish.KeepsTolerance && wish.ScreenErrorPixels > 0.0;
-  RefinementPasses& passes = this->Passes.at(static_cast<std::size_t>(wish.Eye));
-  if (wish.Interacting)
-  {
-    passes.Interacted();
-    return {
-      this->BySteps ? static_cast<double>(this->Steps.Step()) : wish.Interactive * this->Slack, true
-    };
-  }
-  if (byScreen)
-  {
-    return {};
-  }
-  const double tolerance = passes.ToleranceOf(scene, this->PassesOf(wish));
-  return { this->BySteps ? static_cast<double>(StepOfTolerance(tolerance)) : tolerance, false };
-}
-
-void ToleranceControl::Showed(const Wish& wish, double coarseness)
-{
   if (!wish.Interacting)
   {
-    this->Passes.at(static_cast<std::size_t>(wish.Eye))
-      .Showed(this->BySteps ? ToleranceOfStep(static_cast<int>(coarseness)) : coarseness,
-        this->PassesOf(wish));
+    return { this->BySteps || wish.ScreenErrorPixels > 0.0 ? 0.0 : wish.Still, false };
   }
+  if (this->BySteps)
+  {
+    const int step = this->Steps.Step(wish.BeginsCoarse);
+    return { static_cast<double>(wish.Between ? step / 2 : step), true };
+  }
+  return { wish.Interactive * this->Slack, true };
 }
 
 double ToleranceControl::Plan(Communicator& communicator, DistributedField& field, RayScene& scene,
@@ -227,13 +191,11 @@ SamplingPlan ToleranceControl::PlanWithin(Communicator& communicator, Distribute
 void ToleranceControl::PlanSteps(
   Communicator& communicator, DistributedField& field, RayScene& scene, const Aim& aim)
 {
-  // Still pictures leave out no rays: where a coarse level is far off, pixels between rays may be
-  // better by chance.
-  const auto step = static_cast<int>(aim.Coarseness);
-  if (step == 0 && !aim.Interacting)
+  if (!aim.Interacting)
   {
     return;
   }
+  const auto step = static_cast<int>(aim.Coarseness);
   DrawnField& drawn = field.Drawn();
   const int coarsest = drawn.IsMesh() ? CoarsestMeshLevel : CoarsestLevel;
   scene.LevelsShareCells = drawn.IsMesh();
@@ -262,13 +224,6 @@ void ToleranceControl::PlanByScreen(Communicator& communicator, DistributedField
     scene, wish.ScreenErrorPixels, scene.SampleDistance, common, !wish.FixedDistance));
 }
 
-bool ToleranceControl::RefineNext()
-{
-  const bool first = this->Passes[0].Next();
-  const bool second = this->Passes[1].Next();
-  return first || second;
-}
-
 void ToleranceControl::ForgetPlans()
 {
   for (GroupPlans& plans : this->Plans)
@@ -279,7 +234,7 @@ void ToleranceControl::ForgetPlans()
 
 void ToleranceControl::FrameTook(const Wish& wish, double seconds)
 {
-  if (!wish.Interacting)
+  if (!wish.Interacting || wish.Between)
   {
     return;
   }

@@ -6,7 +6,6 @@
 #include "Parallel/Frame/DistributedPlan.h"
 #include "Parallel/Frame/GroupPlans.h"
 #include "Render/Sampling/InteractiveLevels.h"
-#include "Render/Sampling/RefinementPasses.h"
 
 #include <array>
 #include <string>
@@ -28,7 +27,9 @@ public:
     double Interactive = 8.0; ///< 1/255
     double Seconds = 0.2;     ///< that a frame may take while interacting; 0 for any
     bool Interacting = false;
-    bool Passes = false;              ///< whether still pictures become better in passes
+    bool BeginsCoarse = false; ///< whether the first picture by steps has all of them
+    /// Whether a picture by steps has half of those that keep the time, which it exceeds.
+    bool Between = false;
     double MaxElementsPerPixel = 0.0; ///< of meshes: see FinestLevelsOfTiles
     /// Above 0, what cells may measure on the screen, in place of the tolerance: see
     /// SamplingsByScreen.
@@ -49,13 +50,7 @@ public:
   };
 
   /// Begins a frame.
-  /// @param scene a hash of all that decides the picture, its samplings apart; the same on all
-  /// ranks
-  Aim Begin(const Hash128& scene, const Wish& wish);
-  /// Tells that a picture was shown that was drawn before, in place of one that Plan has to do
-  /// with.
-  /// @param coarseness of that one
-  void Showed(const Wish& wish, double coarseness);
+  Aim Begin(const Wish& wish);
 
   /// Collective: gives the scene its samplings and its opacity limit.
   /// @param view a hash of all that decides the picture, its samplings and the values apart
@@ -75,17 +70,12 @@ public:
   /// Tells what the frame took that was planned last: the same number on all ranks.
   void FrameTook(const Wish& wish, double seconds);
 
-  /// The same as RefinementPasses::Next, for the pictures of both eyes.
-  bool RefineNext();
-
   /// Forgets plans of earlier frames: when the ranks are others, say.
   void ForgetPlans();
 
 private:
-  RefinementPasses::Wish PassesOf(const Wish& wish) const;
-  /// For pictures that keep no tolerance (InteractiveLevels): while somebody moves
-  /// the camera they keep the promised time; still ones have all samples, after passes that take
-  /// one step each.
+  /// For pictures that keep no tolerance (InteractiveLevels): while somebody moves the camera they
+  /// keep the promised time; still ones have all samples.
   void PlanSteps(
     Communicator& communicator, DistributedField& field, RayScene& scene, const Aim& aim);
   SamplingPlan PlanWithin(Communicator& communicator, DistributedField& field,
@@ -95,9 +85,8 @@ private:
     const Wish& wish, int coarsest);
 
   std::string LimitText;
-  std::array<RefinementPasses, 2> Passes; ///< of each eye
-  std::array<GroupPlans, 2> Plans;        ///< of still pictures of each eye
-  double Slack = 1.0;                     ///< times the interactive tolerance
+  std::array<GroupPlans, 2> Plans; ///< of still pictures of each eye
+  double Slack = 1.0;              ///< times the interactive tolerance
   StepControl Steps;
   bool BySteps = false;      ///< the last frame
   int CoarsestStepLevel = 0; ///< that a frame by steps could have

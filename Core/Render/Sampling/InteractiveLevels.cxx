@@ -29,6 +29,7 @@ void StepControl::FrameTook(double seconds, double promised, int coarsestLevel)
 {
   const int last = std::min(InteractiveLevels::Last(coarsestLevel), MostSteps - 1);
   this->Current = std::min(this->Current, last);
+  this->HasFrames = true;
   if (!(promised > 0.0))
   {
     this->Current = 0;
@@ -39,12 +40,15 @@ void StepControl::FrameTook(double seconds, double promised, int coarsestLevel)
     taken *= Forgetting;
   }
   this->Taken[static_cast<std::size_t>(this->Current)] = seconds;
-  if (seconds > promised)
+  // A step has half the samples of the one before, or fewer.
+  for (double less = seconds; less > promised && this->Current < last; less *= 0.5)
   {
-    this->Current = std::min(this->Current + 1, last);
+    ++this->Current;
   }
-  else if (this->Current > 0 && TimesOfStepBack * seconds < promised &&
-           this->Taken[static_cast<std::size_t>(this->Current) - 1] <= promised)
+  for (double more = TimesOfStepBack * seconds;
+       more<promised&& this->Current> 0 &&
+       this->Taken[static_cast<std::size_t>(this->Current) - 1] <= promised;
+       more *= TimesOfStepBack)
   {
     --this->Current;
   }

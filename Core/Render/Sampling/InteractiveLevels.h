@@ -29,13 +29,18 @@ private:
   static_assert(1 << StrideSteps == RaySampling::LargestStride, "the last step has the largest");
 };
 
-/// Chooses the step whose frames keep a promised time: the next one after a frame that took longer,
-/// and the one before once that is expected to keep it too.
+/// Chooses the step whose frames keep a promised time: a later one after a frame that took longer,
+/// and one before once that is expected to keep it too.
 class StepControl
 {
 public:
   /// That frames should have now.
-  int Step() const { return this->Current; }
+  /// @param beginsCoarse whether the first frame has the last step
+  int Step(bool beginsCoarse = false)
+  {
+    this->Current = beginsCoarse && !this->HasFrames ? MostSteps - 1 : this->Current;
+    return this->Current;
+  }
 
   /// @param seconds that the last frame took
   /// @param promised seconds; 0 for any
@@ -46,6 +51,7 @@ private:
   static constexpr int MostSteps = 16;
 
   int Current = 0;
+  bool HasFrames = false;
   std::array<double, MostSteps> Taken{}; ///< seconds, per step; less and less as time goes by
 };
 

@@ -108,7 +108,6 @@ struct Situation
   double FixedDistance = 0.0;
   double Tolerance = 4.0;
   bool Interacting = false;
-  bool Passes = false;
   bool PlansOfGroups = false; ///< they depend on what was drawn before
   bool Alone = false;         ///< each rank by itself
 };
@@ -208,7 +207,6 @@ struct PlayerOf
     wish.Sampling.Interactive = 4.0 * now.Tolerance;
     wish.Sampling.Seconds = 0.0;
     wish.Sampling.Interacting = now.Interacting;
-    wish.Sampling.Passes = now.Passes;
     wish.Sampling.FixedDistance = now.FixedDistance > 0.0;
     wish.Sampling.KeepsTolerance = !now.Projected && !wish.Sampling.FixedDistance;
     wish.Sampling.PlansOfGroups = now.PlansOfGroups;

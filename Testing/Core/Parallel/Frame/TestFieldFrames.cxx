@@ -53,12 +53,9 @@ void ChangeSomething(Situation& now, Dice& dice, const std::vector<Situation>& b
       now.Interacting = !now.Interacting;
       break;
     case 13:
-      now.Passes = !now.Passes;
-      break;
-    case 14:
       ++now.Again;
       break;
-    case 15:
+    case 14:
       now.Alone = !now.Alone;
       break;
     default:
@@ -99,23 +96,15 @@ Outcome PlayAtRandom(
       with.GoTo(ranks);
       without.GoTo(ranks);
     }
-    if (dice.Whole(0, 3) == 0)
-    {
-      with.Frames.RefineNext();
-    }
     const FieldFrames::Frame frame = with.Draw(now);
     outcome.Kept += frame.Kept ? 1 : 0;
     outcome.Reused += frame.Kept ? 0.0 : frame.ReusedFraction();
-    // Passes and interaction are shown finer than they would be drawn, if they were.
-    Situation still = now;
-    still.Passes = false;
-    const bool finer = now.Passes || now.Interacting;
-    const FieldFrames::Frame expected = without.Draw(finer ? still : now, false);
-    EXPECT_TRUE(frame.Picture.EstimatedError <= now.Tolerance * (finer ? 4.0 : 1.0) ||
+    const FieldFrames::Frame expected = without.Draw(now, false);
+    EXPECT_TRUE(frame.Picture.EstimatedError <= now.Tolerance * (now.Interacting ? 4.0 : 1.0) ||
                 !frame.Picture.Limit.empty())
       << i << ": " << frame.Picture.EstimatedError;
     EXPECT_EQ(frame.Picture.Pixels != nullptr, with.Ranks->Rank() == 0);
-    if (with.Ranks->Rank() == 0 && !finer)
+    if (with.Ranks->Rank() == 0 && !now.Interacting)
     {
       EXPECT_LE(WorstDifference(*frame.Picture.Pixels, *expected.Picture.Pixels), allowed)
         << "operation " << i << " of seed " << seed << (frame.Kept ? ", kept" : "");

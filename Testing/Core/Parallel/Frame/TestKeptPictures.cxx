@@ -99,7 +99,6 @@ TEST(KeptPictures, AFinerOneServesAndTakesThePlace)
   kept.Keep(Name(0), Same, { 0 }, { 8.0, false }, Picture(8.0));
   EXPECT_EQ(kept.Find(Name(0), Same, { 1.0, false }), nullptr);
   ASSERT_NE(kept.Find(Name(0), Same, { 64.0, false }), nullptr);
-  EXPECT_EQ(kept.CoarsenessFound(), 8.0);
   kept.Keep(Name(0), Same, { 0 }, { 1.0, false }, Picture(1.0));
   EXPECT_EQ(kept.Bytes(), Bytes);
   ASSERT_NE(kept.Find(Name(0), Same, { 8.0, false }), nullptr);

@@ -5,6 +5,8 @@
 #include "Parallel/Frame/PlayedSeries.h"
 #include "Render/Dice.h"
 
+#include <thread>
+
 namespace
 {
 
@@ -19,8 +21,11 @@ struct LatePlayer
   Player Without{ *Alone };
   LateFrames Late;
 
-  explicit LatePlayer(double patience = 0.0)
-    : Late(With.Frames, patience)
+  /// Whatever an exact picture takes, a coarse one is drawn before it.
+  static constexpr LateFrames::Times Never{ 0.0, 0.0, 60.0, 0.0 };
+
+  explicit LatePlayer(const LateFrames::Times& times = Never)
+    : Late(With.Frames, times)
   {
   }
 
@@ -64,16 +69,16 @@ TEST(LateFrames, ACoarsePictureIsThereAtOnceAndTheExactOneLater)
   EXPECT_FALSE(first.Exact);
   ASSERT_TRUE(first.Frame.Picture.Pixels);
   player.Late.Finish();
-  EXPECT_TRUE(player.Late.HasNews());
+  EXPECT_TRUE(player.Late.GoOn());
   const LateFrames::Shown second = player.Draw(now);
-  EXPECT_FALSE(player.Late.HasNews());
+  EXPECT_FALSE(player.Late.GoOn());
   player.ExpectExact(second, now);
   EXPECT_EQ(player.Draw(now).Frame.Picture.Pixels, second.Frame.Picture.Pixels) << "it stays";
 }
 
 TEST(LateFrames, WhatTakesLittleIsWaitedFor)
 {
-  LatePlayer player(60.0);
+  LatePlayer player({ 60.0, 0.0, 60.0, 0.0 });
   Situation now;
   EXPECT_FALSE(player.Draw(now).Exact) << "nobody knows yet how long it takes";
   player.DrawAtLast(now);
@@ -81,18 +86,98 @@ TEST(LateFrames, WhatTakesLittleIsWaitedFor)
   player.ExpectExact(player.Draw(now), now);
 }
 
-TEST(LateFrames, NothingIsBegunWhileTheCameraMoves)
+TEST(LateFrames, WhileTheCameraMovesTheExactPictureBeginsAfterAPause)
+{
+  LateFrames::Times times = LatePlayer::Never;
+  times.Pause = 3600.0;
+  LatePlayer player(times);
+  Situation now;
+  now.Interacting = true;
+  EXPECT_FALSE(player.Draw(now).Exact);
+  EXPECT_FALSE(player.Late.GoOn());
+  EXPECT_FALSE(player.Late.IsDrawing());
+  now.Interacting = false;
+  const auto coarse = player.Draw(now).Frame.Picture.Pixels;
+  player.Late.Finish();
+  EXPECT_TRUE(player.Late.GoOn()) << "without a pause when it stops";
+  player.ExpectExact(player.Draw(now), now);
+
+  LatePlayer paused;
+  now.Interacting = true;
+  EXPECT_FALSE(paused.Draw(now).Exact);
+  EXPECT_FALSE(paused.Late.GoOn());
+  paused.Late.Finish();
+  EXPECT_TRUE(paused.Late.GoOn());
+  now.Interacting = false;
+  paused.ExpectExact(paused.Draw(now), now);
+}
+
+TEST(LateFrames, ACoarsePictureIsDrawnOnce)
 {
   LatePlayer player;
   Situation now;
   now.Interacting = true;
-  EXPECT_FALSE(player.Draw(now).Exact);
-  player.Late.Finish();
-  EXPECT_FALSE(player.Late.HasNews());
+  const auto moving = player.Draw(now).Frame.Picture.Pixels;
+  player.Late.Stop();
   now.Interacting = false;
+  EXPECT_EQ(player.Draw(now).Frame.Picture.Pixels, moving);
+}
+
+TEST(LateFrames, PicturesThatTakeLongHaveOneBetween)
+{
+  LateFrames::Times times = LatePlayer::Never;
+  times.Long = 0.0;
+  LatePlayer player(times);
+  Situation now;
+  player.DrawAtLast(now);
+  now.Function = 1;
+  now.Width = 160;
+  const auto coarse = player.Draw(now).Frame.Picture.Pixels;
+  LateFrames::Shown shown;
+  int pictures = 0;
+  while (!shown.Exact)
+  {
+    while (!player.Late.GoOn())
+    {
+      std::this_thread::yield();
+    }
+    const auto last = shown.Frame.Picture.Pixels;
+    shown = player.Draw(now);
+    pictures += shown.Frame.Picture.Pixels != last ? 1 : 0;
+  }
+  EXPECT_GE(pictures, 1);
+  player.ExpectExact(shown, now);
+}
+
+TEST(LateFrames, StepsOfAPlayAreWaitedFor)
+{
+  LateFrames::Times times = LatePlayer::Never;
+  times.Playing = 3600.0;
+  LatePlayer player(times);
+  Situation now;
   EXPECT_FALSE(player.Draw(now).Exact);
-  player.Late.Finish();
-  EXPECT_TRUE(player.Late.HasNews());
+  for (now.Step = 1; now.Step < 4; ++now.Step)
+  {
+    player.ExpectExact(player.Draw(now), now);
+  }
+  now.Interacting = true;
+  now.Eye = 0.7;
+  EXPECT_FALSE(player.Draw(now).Exact) << "but not while the camera moves";
+}
+
+TEST(LateFrames, OtherVolumesGoOnWhenThisOneIsThere)
+{
+  LatePlayer first;
+  LatePlayer second;
+  Situation now;
+  first.Draw(now);
+  second.Draw(now);
+  EXPECT_FALSE(first.Late.IsDrawing());
+  first.Late.GoOn();
+  first.Late.Finish();
+  first.ExpectExact(first.Draw(now), now);
+  second.Late.Finish();
+  second.ExpectExact(second.Draw(now), now);
 }
 
 TEST(LateFrames, WhatIsToBeWaitedForTakesWhatTheThreadDraws)
@@ -107,11 +192,11 @@ TEST(LateFrames, WhatIsToBeWaitedForTakesWhatTheThreadDraws)
   other.Function = 1;
   player.Draw(other);
   player.Late.Settle(player.With.Field, SceneOf(now), wish);
-  EXPECT_FALSE(player.Late.HasNews()) << "it was stopped";
+  EXPECT_FALSE(player.Late.IsDrawing()) << "it was stopped";
   EXPECT_FALSE(player.With.Draw(other).Kept);
   player.Draw(now);
-  LateFrames::StopAll();
-  EXPECT_FALSE(player.Late.HasNews());
+  player.Late.Stop();
+  EXPECT_FALSE(player.Late.GoOn());
 }
 
 TEST(LateFrames, WhateverIsDoneTheExactPictureIsTheOneThatIsWaitedFor)

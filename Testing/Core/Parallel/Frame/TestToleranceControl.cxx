@@ -36,7 +36,7 @@ struct Frames
     scene.Transfer = scenes::Tabulate(scenes::Sparse);
     FrameStatistics frame;
     this->Field.Drawn().BeginFrame(this->Ranks, scene);
-    const ToleranceControl::Aim aim = this->Control.Begin(DigestOf(scene), this->Wish);
+    const ToleranceControl::Aim aim = this->Control.Begin(this->Wish);
     error = this->Control.Plan(
       this->Ranks, this->Field, scene, DigestOf(scene), this->Wish, aim, Budget, frame);
     this->Field.Drawn().EndFrame(this->Ranks);
@@ -59,26 +59,6 @@ TEST(ToleranceControl, StillPicturesKeepTheTolerance)
         EXPECT_TRUE(error <= tolerance || !frames.Control.Limit().empty()) << error;
         EXPECT_EQ(AllMax(communicator, error), error) << "the same on all ranks";
       }
-      EXPECT_FALSE(frames.Control.RefineNext()) << "nobody wants passes";
-    });
-}
-
-TEST(ToleranceControl, PassesAreToldFromThePictureThatWasWanted)
-{
-  RunOnSimulatedRanks(2,
-    [](Communicator& communicator)
-    {
-      Frames frames(communicator);
-      frames.Wish.Passes = true;
-      frames.Wish.Still = 2.0;
-      double error = 0.0;
-      frames.Wish.Interacting = true;
-      frames.Plan(error);
-      frames.Wish.Interacting = false;
-      frames.Plan(error);
-      EXPECT_TRUE(frames.Control.RefineNext());
-      frames.Plan(error);
-      EXPECT_FALSE(frames.Control.RefineNext()) << "a quarter of 8 is 2";
     });
 }
 

@@ -84,10 +84,23 @@ TEST(StepControl, NothingIsPromised)
 {
   Frames frames{ 3.0, 2.0 };
   frames.Draw();
-  EXPECT_EQ(frames.Control.Step(), 1);
+  EXPECT_EQ(frames.Control.Step(), 4) << "a sixteenth of 3 is within 0.2";
   frames.Promised = 0.0;
   frames.Draw();
   EXPECT_EQ(frames.Control.Step(), 0);
+}
+
+/// Nobody waits for a first frame that is as fine as can be.
+TEST(StepControl, MayBeginWithTheLastStep)
+{
+  for (const double seconds : { 0.1, 1.0, 12.0 })
+  {
+    Frames frames{ seconds, 3.0 };
+    EXPECT_GE(frames.Control.Step(true), InteractiveLevels::Last(3));
+    frames.Control.FrameTook(seconds / std::pow(3.0, InteractiveLevels::Last(3)), 0.2, 3);
+    EXPECT_LE(seconds / std::pow(3.0, frames.Control.Step(true)), 0.2);
+    EXPECT_GT(frames.Draw(), 0.2 / 3.0 / 3.0 / 3.0) << "the second one is nearly as fine as may be";
+  }
 }
 
 /// A volume without coarser levels has fewer steps than the one before it.
