@@ -20,9 +20,14 @@ constexpr double Forgetting = 0.97;
 
 RaySampling InteractiveLevels::SamplingOf(int step, double distance, int coarsestLevel)
 {
-  const int level = std::min(step, coarsestLevel);
-  const int stride = std::min(step - level, StrideSteps);
-  return { level, std::ldexp(distance, level), 1 << stride };
+  int level = 0;
+  int halvings = 0;
+  for (int i = 0; i < std::min(step, Last(coarsestLevel)); ++i)
+  {
+    const bool levelBefore = halvings == StrideSteps - 1 && level == 0 && coarsestLevel > 0;
+    ++(levelBefore || halvings == StrideSteps ? level : halvings);
+  }
+  return { level, std::ldexp(distance, level), 1 << halvings };
 }
 
 void StepControl::FrameTook(double seconds, double promised, int coarsestLevel)

@@ -8,15 +8,18 @@ namespace
 
 using namespace banyan;
 
-TEST(InteractiveLevels, LevelsComeFirst)
+TEST(InteractiveLevels, GapsBetweenRaysComeBeforeLevels)
 {
-  EXPECT_EQ(InteractiveLevels::SamplingOf(0, 0.5, 3), (RaySampling{ 0, 0.5, 1 }));
-  EXPECT_EQ(InteractiveLevels::SamplingOf(1, 0.5, 3), (RaySampling{ 1, 1.0, 1 }));
-  EXPECT_EQ(InteractiveLevels::SamplingOf(3, 0.5, 3), (RaySampling{ 3, 4.0, 1 }));
-  EXPECT_EQ(InteractiveLevels::SamplingOf(4, 0.5, 3), (RaySampling{ 3, 4.0, 2 }));
-  EXPECT_EQ(InteractiveLevels::SamplingOf(6, 0.5, 3), (RaySampling{ 3, 4.0, 8 }));
-  EXPECT_EQ(InteractiveLevels::SamplingOf(99, 0.5, 3), (RaySampling{ 3, 4.0, 8 }));
+  const std::vector<RaySampling> steps{ { 0, 0.5, 1 }, { 0, 0.5, 2 }, { 0, 0.5, 4 }, { 1, 1.0, 4 },
+    { 1, 1.0, 8 }, { 2, 2.0, 8 }, { 3, 4.0, 8 } };
+  for (std::size_t step = 0; step < steps.size(); ++step)
+  {
+    EXPECT_EQ(InteractiveLevels::SamplingOf(static_cast<int>(step), 0.5, 3), steps[step]) << step;
+  }
+  EXPECT_EQ(InteractiveLevels::SamplingOf(99, 0.5, 3), steps.back());
+  EXPECT_EQ(InteractiveLevels::SamplingOf(99, 0.5, 1), (RaySampling{ 1, 1.0, 8 }));
   EXPECT_EQ(InteractiveLevels::SamplingOf(2, 0.5, 0), (RaySampling{ 0, 0.5, 4 }));
+  EXPECT_EQ(InteractiveLevels::SamplingOf(3, 0.5, 0), (RaySampling{ 0, 0.5, 8 }));
   EXPECT_EQ(InteractiveLevels::Last(3), 6);
 }
 
