@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Base/BackgroundTask.h"
 
+#include "Base/ThreadPool.h"
+
 #include <atomic>
 #include <string>
 #include <utility>
@@ -21,6 +23,7 @@ void BackgroundTask::Start(Task task)
   const auto now = std::make_shared<Shared>();
   const auto run = [now, work = std::move(task)]
   {
+    ThreadPool::LowerPriority();
     try
     {
       work(now->Flag);

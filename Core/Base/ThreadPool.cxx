@@ -5,6 +5,11 @@
 #include "Base/ProcessCores.h"
 #include "Base/Progress.h"
 
+#ifdef __linux__
+#include <sys/resource.h>
+#include <unistd.h>
+#endif
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -27,6 +32,8 @@ thread_local bool InsideLoop = false;
 std::atomic<int> RanksOnThisNode{ 1 };
 std::mutex ProcessPoolMutex;
 std::unique_ptr<ThreadPool> ProcessPool;
+std::unique_ptr<ThreadPool> LowPool; ///< of threads with low priority
+thread_local bool IsLow = false;
 
 /// Loops follow each other closely while a picture is drawn, and to put a thread to sleep and wake
 /// it again takes as long as a short loop: threads look around for so long before they sleep.
@@ -179,7 +186,7 @@ struct ThreadPool::Internals
   }
 };
 
-ThreadPool::ThreadPool(int width)
+ThreadPool::ThreadPool(int width, Priority priority)
   : Self(std::make_unique<Internals>())
 {
   if (width < 1)
@@ -192,7 +199,15 @@ ThreadPool::ThreadPool(int width)
     this->Self->Threads.reserve(static_cast<std::size_t>(width - 1));
     for (int worker = 1; worker < width; ++worker)
     {
-      this->Self->Threads.emplace_back([this, worker] { this->Self->Run(worker); });
+      this->Self->Threads.emplace_back(
+        [this, worker, priority]
+        {
+          if (priority == Priority::Low)
+          {
+            LowerPriority();
+          }
+          this->Self->Run(worker);
+        });
     }
   }
   catch (const std::exception& error)
@@ -257,7 +272,21 @@ ThreadPool& ThreadPool::Process()
   {
     ProcessPool = std::make_unique<ThreadPool>(DefaultWidth());
   }
-  return *ProcessPool;
+  if (IsLow && !LowPool)
+  {
+    LowPool = std::make_unique<ThreadPool>(ProcessPool->Width(), Priority::Low);
+  }
+  return IsLow ? *LowPool : *ProcessPool;
+}
+
+void ThreadPool::LowerPriority()
+{
+  IsLow = true;
+#ifdef __linux__
+  constexpr int nice = 10;
+  // Of this thread alone, and no harm where it is refused.
+  (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), nice);
+#endif
 }
 
 void ThreadPool::SetProcessWidth(int width)
@@ -267,6 +296,7 @@ void ThreadPool::SetProcessWidth(int width)
   if (!ProcessPool || ProcessPool->Width() != wanted)
   {
     ProcessPool = std::make_unique<ThreadPool>(wanted);
+    LowPool.reset();
   }
 }
 

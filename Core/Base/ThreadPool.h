@@ -17,8 +17,16 @@ namespace banyan
 class ThreadPool
 {
 public:
+  /// Who gets a core that several threads want.
+  enum class Priority
+  {
+    Usual,
+    Low ///< a tenth of what usual threads get (nice 10); all of a core that nobody else wants
+  };
+
   /// @param width number of threads that work on a loop, the caller included; at least 1.
-  explicit ThreadPool(int width);
+  /// @param priority of the threads but the caller
+  explicit ThreadPool(int width, Priority priority = Priority::Usual);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
@@ -36,9 +44,13 @@ public:
 
   /// The pool shared by everything in this process; its width is `DefaultWidth()` until
   /// `SetProcessWidth` is called. One for all series and volumes: the cores are the process's.
+  /// Threads of low priority share another one, of the same width.
   static ThreadPool& Process();
 
-  /// Replaces the shared pool by one of another width. Must not be called while it works.
+  /// Gives the calling thread low priority for the rest of its life.
+  static void LowerPriority();
+
+  /// Replaces the shared pools by some of another width. Must not be called while they work.
   /// @param width at least 1, or 0 for `DefaultWidth()`.
   static void SetProcessWidth(int width);
 

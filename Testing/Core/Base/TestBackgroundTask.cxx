@@ -2,7 +2,18 @@
 // A task in a thread of its own: it ends by itself, or when it is asked to.
 #include "Base/BackgroundTask.h"
 
+#include "Base/ThreadPool.h"
+
 #include <gtest/gtest.h>
+
+#ifdef __linux__
+#include <sys/resource.h>
+#include <unistd.h>
+#endif
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
 
 namespace
 {
@@ -36,6 +47,33 @@ TEST(BackgroundTask, EndsByItself)
   EXPECT_EQ(done, 1);
   task.Wait();
 }
+
+#ifdef __linux__
+/// The window's thread gets the cores when it wants them.
+TEST(BackgroundTask, HasLowPriorityAndSoHaveItsLoops)
+{
+  const auto niceness = [] { return getpriority(PRIO_PROCESS, static_cast<id_t>(gettid())); };
+  const int usual = niceness();
+  std::atomic<int> least{ 100 };
+  BackgroundTask task;
+  task.Start(
+    [&](const StopFlag&)
+    {
+      ThreadPool::Process().ParallelFor(1000,
+        [&](std::int64_t)
+        {
+          const int mine = niceness();
+          for (int seen = least; mine < seen && !least.compare_exchange_weak(seen, mine);)
+          {
+          }
+          std::this_thread::yield();
+        });
+    });
+  task.Wait();
+  EXPECT_EQ(least, std::min(usual + 10, 19));
+  ThreadPool::Process().ParallelFor(1000, [&](std::int64_t) { EXPECT_EQ(niceness(), usual); });
+}
+#endif
 
 TEST(BackgroundTask, IsStoppedWhenAsked)
 {
