@@ -65,6 +65,7 @@ void LateFrames::Stop()
 {
   this->Exact.Stop();
   this->Begin = nullptr;
+  this->Next = nullptr;
 }
 
 void LateFrames::PauseAll()
@@ -130,8 +131,17 @@ void LateFrames::Take()
     this->Name = Hash128{};
     throw;
   }
-  this->Last = { std::move(next->Exact.Frame), true };
-  this->ExactSeconds = next->Exact.Seconds;
+  this->Last = { next->Exact.Frame, true };
+  this->Learn(next->Exact);
+}
+
+/// A picture of which something was there says little of one with another camera.
+void LateFrames::Learn(const Drawn& drawn)
+{
+  if (drawn.Frame.ReusedFraction() == 0.0)
+  {
+    this->ExactSeconds = drawn.Seconds;
+  }
 }
 
 /// Starts the thread.
@@ -187,7 +197,7 @@ LateFrames::Shown LateFrames::Draw(Communicator& communicator, DistributedField&
     if (little || this->Plays(field, wish))
     {
       Drawn drawn = draw(scene, exact);
-      this->ExactSeconds = drawn.Seconds;
+      this->Learn(drawn);
       kept = std::move(drawn.Frame);
     }
     else

@@ -26,16 +26,17 @@ namespace banyan
 class LateFrames
 {
 public:
+  /// Seconds that a coarse picture should take.
+  static constexpr double CoarseSeconds = 0.025;
+
   /// Seconds.
   struct Times
   {
-    double Patience = 0.04; ///< that an exact picture may take without a coarse one before it
-    double Pause = 0.1;     ///< without a picture, while the camera moves, before the thread begins
-    double Long = 2.0;      ///< exact pictures that take more have one between
-    double Playing = 1.0;   ///< steps that follow each other in less time are those of a play
+    double Patience = CoarseSeconds; ///< that an exact picture may take without a coarse one
+    double Pause = 0.1;   ///< without a picture, while the camera moves, before the thread begins
+    double Long = 2.0;    ///< exact pictures that take more have one between
+    double Playing = 1.0; ///< steps that follow each other in less time are those of a play
   };
-  /// That a coarse picture should take.
-  static constexpr double CoarseSeconds = 0.025;
 
   struct Shown
   {
@@ -92,6 +93,7 @@ private:
     const DistributedField& field, const RayScene& scene, const FieldFrames::Wish& wish);
   bool Plays(const DistributedField& field, const FieldFrames::Wish& wish);
   void Take();
+  void Learn(const Drawn& drawn);
   void Start(const Drawing& draw, const RayScene& scene, const FieldFrames::Wish& exact,
     double coarseSeconds);
 

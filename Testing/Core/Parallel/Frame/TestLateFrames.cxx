@@ -149,6 +149,38 @@ TEST(LateFrames, PicturesThatTakeLongHaveOneBetween)
   player.ExpectExact(shown, now);
 }
 
+TEST(LateFrames, APictureBetweenIsNotShownForAnotherScene)
+{
+  LateFrames::Times times = LatePlayer::Never;
+  times.Long = 0.0;
+  LatePlayer player(times);
+  Situation now;
+  player.DrawAtLast(now);
+  now.Function = 1;
+  player.Draw(now);
+  player.Late.Finish();
+  EXPECT_TRUE(player.Late.GoOn()) << "one between has come, and the exact one";
+  now.Width = 160;
+  const LateFrames::Shown shown = player.Draw(now);
+  EXPECT_FALSE(shown.Exact);
+  EXPECT_TRUE(shown.Frame.Picture.Pixels->Rect == SceneOf(now).Viewport);
+}
+
+TEST(LateFrames, PicturesThatWereThereDoNotTellHowLongOthersTake)
+{
+  LateFrames::Times times{ 1e-3, 0.0, 60.0, 3600.0 };
+  LatePlayer player(times);
+  Situation now;
+  player.DrawAtLast(now);
+  for (const int step : { 1, 0, 1, 0 })
+  {
+    now.Step = step; // a loop, whose steps are kept
+    EXPECT_TRUE(player.Draw(now).Exact);
+  }
+  now.Function = 1;
+  EXPECT_FALSE(player.Draw(now).Exact);
+}
+
 TEST(LateFrames, StepsOfAPlayAreWaitedFor)
 {
   LateFrames::Times times = LatePlayer::Never;
