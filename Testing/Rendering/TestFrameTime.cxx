@@ -123,9 +123,8 @@ void HeavyScenesKeepThePromise(Turning& scene, const std::string& name)
   Check(kept, name + ": a heavy scene keeps the promised time after a few frames");
 }
 
-/// Of pictures without a tolerance: what interaction leaves out comes back when nothing moves, at
-/// once or in passes that are each better than the one before.
-void StillPicturesAreExact(Turning& scene, vtkBanyanVolumeMapper* mapper, const std::string& name)
+/// Of pictures without a tolerance: what interaction leaves out comes back when nothing moves.
+void StillPicturesAreExact(Turning& scene, const std::string& name)
 {
   vtkIdType samples = 0;
   scene.Seconds(0.0, samples);
@@ -141,7 +140,7 @@ void Try(vtkBanyanVolumeMapper* mapper, const Kind& kind)
   HeavyScenesKeepThePromise(scene, kind.Name);
   if (!kind.HasTolerance())
   {
-    StillPicturesAreExact(scene, mapper, kind.Name);
+    StillPicturesAreExact(scene, kind.Name);
   }
 }
 
