@@ -34,15 +34,15 @@ class vtkRenderWindow;
     "closely the volume is sampled, and from which level of an encoded series: smaller is more "   \
     "accurate and slower. Samples get no closer than 1/8 of a voxel: EstimatedImageError has "     \
     "the error that is expected, and ImageErrorLimit says what keeps it above the tolerance. "     \
-    "Errors of encoded values are apart (EncodingErrorOfValues). With ParaView's setting "         \
-    "Enable Streaming (Settings, General) still pictures come at once with the tolerance of "      \
-    "interaction, and are refined in steps.")                                                      \
+    "Errors of encoded values are apart (EncodingErrorOfValues).")                                 \
   Real(InteractiveImageErrorTolerance, 1/255, 8, 0.05, 255, 255, advanced, all,                    \
-    "Largest error of a pixel while the camera moves, in 1/255. Default: 8.")                      \
+    "Largest error of a pixel while the camera moves, in 1/255, where the window waits for "       \
+    "pictures (see Decoupled). Default: 8.")                                                       \
   Real(InteractiveFrameSeconds, seconds, 0.2, 0, 3600, 10, advanced, all,                          \
-    "Seconds per frame while the camera moves. Default: 0.2; 0 sets no limit. Slower frames "      \
-    "raise the tolerance, up to 16-fold. Projections, nearest points and fixed sample "            \
-    "distances take coarser levels instead.")                                                      \
+    "Seconds per frame while the camera moves, where the window waits for pictures (see "          \
+    "Decoupled). Default: 0.2; 0 sets no limit. Slower frames raise the tolerance, up to "         \
+    "16-fold. Projections, nearest points and fixed sample distances leave out rays and levels "   \
+    "instead.")                                                                                    \
   Real(TemporalEnhancement, strength, 0, 0, 1, 1, default, all,                                    \
     "Brings out motion between steps, however weak: waves stay visible while they lose "           \
     "amplitude by decades. 0 (default) draws plain values, 1 the relative change only; 0.5 "       \
