@@ -12,8 +12,8 @@
 namespace banyan
 {
 
-/// One task at a time in a thread of its own, which has low priority (ThreadPool::Priority): nobody
-/// waits for it. All functions are called by one thread, which is another one.
+/// One task at a time in a thread of its own, which has low priority (ThreadPool): nobody waits for
+/// it. All functions are called by one thread, which is another one.
 class BackgroundTask
 {
 public:

@@ -186,7 +186,7 @@ struct ThreadPool::Internals
   }
 };
 
-ThreadPool::ThreadPool(int width, Priority priority)
+ThreadPool::ThreadPool(int width)
   : Self(std::make_unique<Internals>())
 {
   if (width < 1)
@@ -199,15 +199,7 @@ ThreadPool::ThreadPool(int width, Priority priority)
     this->Self->Threads.reserve(static_cast<std::size_t>(width - 1));
     for (int worker = 1; worker < width; ++worker)
     {
-      this->Self->Threads.emplace_back(
-        [this, worker, priority]
-        {
-          if (priority == Priority::Low)
-          {
-            LowerPriority();
-          }
-          this->Self->Run(worker);
-        });
+      this->Self->Threads.emplace_back([this, worker] { this->Self->Run(worker); });
     }
   }
   catch (const std::exception& error)
@@ -268,24 +260,23 @@ void ThreadPool::ParallelFor(std::int64_t count, const std::function<void(std::i
 ThreadPool& ThreadPool::Process()
 {
   std::lock_guard<std::mutex> lock(ProcessPoolMutex);
-  if (!ProcessPool)
+  std::unique_ptr<ThreadPool>& pool = IsLow ? LowPool : ProcessPool;
+  if (!pool)
   {
-    ProcessPool = std::make_unique<ThreadPool>(DefaultWidth());
+    pool = std::make_unique<ThreadPool>(ProcessPool ? ProcessPool->Width() : DefaultWidth());
   }
-  if (IsLow && !LowPool)
-  {
-    LowPool = std::make_unique<ThreadPool>(ProcessPool->Width(), Priority::Low);
-  }
-  return IsLow ? *LowPool : *ProcessPool;
+  return *pool;
 }
 
 void ThreadPool::LowerPriority()
 {
   IsLow = true;
 #ifdef __linux__
-  constexpr int nice = 10;
-  // Of this thread alone, and no harm where it is refused.
-  (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), nice);
+  constexpr int lower = 10;
+  constexpr int lowest = 19;
+  // Of this thread alone, and of those that it starts; no harm where it is refused.
+  const auto self = static_cast<id_t>(gettid());
+  (void)setpriority(PRIO_PROCESS, self, std::min(getpriority(PRIO_PROCESS, self) + lower, lowest));
 #endif
 }
 

@@ -17,16 +17,9 @@ namespace banyan
 class ThreadPool
 {
 public:
-  /// Who gets a core that several threads want.
-  enum class Priority
-  {
-    Usual,
-    Low ///< a tenth of what usual threads get (nice 10); all of a core that nobody else wants
-  };
-
   /// @param width number of threads that work on a loop, the caller included; at least 1.
-  /// @param priority of the threads but the caller
-  explicit ThreadPool(int width, Priority priority = Priority::Usual);
+  /// Its threads have the priority of the thread that makes it.
+  explicit ThreadPool(int width);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
@@ -47,7 +40,8 @@ public:
   /// Threads of low priority share another one, of the same width.
   static ThreadPool& Process();
 
-  /// Gives the calling thread low priority for the rest of its life.
+  /// Gives the calling thread low priority for the rest of its life: where others want its core, a
+  /// tenth of what they get (nice 10).
   static void LowerPriority();
 
   /// Replaces the shared pools by some of another width. Must not be called while they work.
