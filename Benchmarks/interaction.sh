@@ -4,7 +4,7 @@
 #   interaction.sh [--quick] [--output DIR] [--data DIR] [--work DIR] [--scenes LIST] [--modes LIST] [--help]
 #
 #   --quick        128^3 samples, a view of 512^2, paths orbit and opacity, modes builtin, builtin-off, and line on
-#                  the first scene: three minutes instead of an hour and a half
+#                  the first scene: three minutes
 #   --output DIR   where interaction.csv (a line for each path of the mouse), interaction-quality.csv (for each
 #                  picture after a single move), interaction.png (a chart of it) and interaction.mp4 (a film of
 #                  the window without a server) go (default benchmark-output)

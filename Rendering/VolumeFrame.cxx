@@ -73,13 +73,13 @@ ToleranceControl::Wish VolumeFrame::WishFor(vtkRenderer* renderer, int volumes) 
 }
 
 /// Whether the picture may be drawn while somebody goes on in front of the window.
-bool VolumeFrame::MayBeLate(vtkRenderer* renderer) const
+bool VolumeFrame::MayBeLate(vtkRenderer* renderer, const Together& others) const
 {
   // A window that does not swap its buffers is one that somebody wants to save. A volume in two
-  // renderers would begin the one picture and the other in turns.
+  // renderers would begin the one picture and the other in turns, and so would two of one mapper.
   vtkRenderWindow* const window = renderer->GetRenderWindow();
-  const vtkRenderer* const last = std::exchange(this->State->LastRenderer, renderer);
-  return (!last || last == renderer) && this->Owner->GetDecoupled() &&
+  const vtkRenderer* const last = this->State->LastRenderer;
+  return (!last || last == renderer) && others.OfMapper == 1 && this->Owner->GetDecoupled() &&
          this->State->Communicator->Size() == 1 && window->GetStereoRender() == 0 &&
          window->GetSwapBuffers() != 0 && RenderWhenDrawn::CanWatch(window);
 }
@@ -90,7 +90,9 @@ FieldFrames::Frame VolumeFrame::Draw(
   MapperState& state = *this->State;
   Communicator& communicator = *state.Communicator;
   vtkBanyanFrameStatistics* const out = this->Owner->GetStatistics();
-  if (!this->MayBeLate(renderer) || others.OfMapper > 1)
+  const bool late = this->MayBeLate(renderer, others);
+  state.LastRenderer = renderer;
+  if (!late)
   {
     out->SetPictureIsExact(wish.Sampling.Interacting ? 0 : 1);
     state.Late.Settle(state.Field, *this->Wanted, wish);

@@ -57,7 +57,7 @@ public:
 
 private:
   ToleranceControl::Wish WishFor(vtkRenderer* renderer, int volumes) const;
-  bool MayBeLate(vtkRenderer* renderer) const;
+  bool MayBeLate(vtkRenderer* renderer, const Together& others) const;
   FieldFrames::Frame Draw(
     vtkRenderer* renderer, const FieldFrames::Wish& wish, const Together& others);
 

@@ -40,6 +40,8 @@ vtkBanyanVolumeMapper::vtkBanyanVolumeMapper()
   , State(std::make_unique<banyan::MapperState>())
 {
   this->State->Communicator = banyan::MakeSelfCommunicator();
+  // Programs may read a window that swaps its buffers, and would save a coarse picture.
+  this->Decoupled = false;
 }
 
 vtkBanyanVolumeMapper::~vtkBanyanVolumeMapper() = default;

@@ -162,8 +162,10 @@ public:
    *   (banyan::MotionEnhancement); the representation sees to that.
    * - CompositeInFewBits: without effect on projections, and while several volumes are on the
    *   screen.
-   * - Decoupled: where the interactor of the window is Qt's (banyan::RenderWhenDrawn), and the
-   *   window swaps its buffers. A timer of the interactor renders again. See banyan::LateFrames.
+   * - Decoupled: off by default in VTK, unlike in ParaView. It counts where the interactor of the
+   *   window is Qt's (banyan::RenderWhenDrawn), and the window swaps its buffers: whoever reads such
+   *   a window looks at PictureIsExact first. A timer of the interactor renders again. See
+   *   banyan::LateFrames.
    * - ReadAhead: takes half of what the cache has for decoded bricks, if the series plays, and a
    *   quarter, if the camera moves.
    * - LoadBalancing: 0 not at all, 2 to where measured costs balance, and 1, which was another way,

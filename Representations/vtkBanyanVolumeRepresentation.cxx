@@ -76,6 +76,7 @@ vtkBanyanVolumeRepresentation::vtkBanyanVolumeRepresentation()
   this->Mapper->AddObserver(
     vtkCommand::ProgressEvent, this, &vtkBanyanVolumeRepresentation::ShowProgress);
   this->Mapper->SetIsBusy(HasPendingProgress);
+  this->Mapper->DecoupledOn();
   vtkMath::UninitializeBounds(this->DataBounds);
 }
 

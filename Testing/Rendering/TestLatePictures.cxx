@@ -70,6 +70,7 @@ struct Window
     this->Mapper->SetImageErrorTolerance(0.03); // takes longer than one waits for
     this->Mapper->SetNumberOfThreads(1);
     this->Shown.Volume->GetProperty()->ShadeOn();
+    Check(!this->Mapper->GetDecoupled(), "programs wait for pictures by default");
     this->Mapper->DecoupledOn();
     this->Interactor->SetRenderWindow(this->Shown.Window);
     this->Interactor->Enable();
@@ -196,6 +197,7 @@ void TwoVolumesBecomeExact(Window& window)
   vtkNew<vtkBanyanVolumeMapper> mapper;
   mapper->SetInputConnection(source->GetOutputPort());
   mapper->SetImageErrorTolerance(0.03);
+  mapper->DecoupledOn();
   mapper->SetNumberOfThreads(1);
   vtkNew<vtkVolume> volume;
   volume->SetMapper(mapper);

@@ -50,12 +50,12 @@ void StepControl::FrameTook(double seconds, double promised, int coarsestLevel)
   {
     ++this->Current;
   }
-  for (double more = TimesOfStepBack * seconds;
-       more<promised&& this->Current> 0 &&
-       this->Taken[static_cast<std::size_t>(this->Current) - 1] <= promised;
-       more *= TimesOfStepBack)
+  const auto before = [this] { return this->Taken[static_cast<std::size_t>(this->Current) - 1]; };
+  double more = TimesOfStepBack * seconds;
+  while (this->Current > 0 && more < promised && before() <= promised)
   {
     --this->Current;
+    more *= TimesOfStepBack;
   }
 }
 
