@@ -163,8 +163,8 @@ public:
    * - CompositeInFewBits: without effect on projections, and while several volumes are on the
    *   screen.
    * - Decoupled: off by default in VTK, unlike in ParaView. It counts where the interactor of the
-   *   window is Qt's (banyan::RenderWhenDrawn), and the window swaps its buffers: whoever reads such
-   *   a window looks at PictureIsExact first. A timer of the interactor renders again. See
+   *   window is Qt's (banyan::RenderWhenDrawn), and the window swaps its buffers. Look at
+   *   PictureIsExact before you read such a window. A timer of the interactor renders again. See
    *   banyan::LateFrames.
    * - ReadAhead: takes half of what the cache has for decoded bricks, if the series plays, and a
    *   quarter, if the camera moves.
