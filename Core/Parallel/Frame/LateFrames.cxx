@@ -13,19 +13,6 @@ namespace banyan
 namespace
 {
 
-/// What a coarse picture is drawn with: no probe is drawn for it, and time decides how coarse it
-/// is.
-FieldFrames::Wish CoarseOf(FieldFrames::Wish wish, double seconds)
-{
-  wish.Sampling.Interacting = true;
-  wish.Sampling.KeepsTolerance = false;
-  wish.Sampling.BeginsCoarse = true;
-  wish.Sampling.Seconds = seconds;
-  wish.ReadAhead = false;
-  wish.Passing = true;
-  return wish;
-}
-
 /// All objects of the process.
 std::set<LateFrames*>& All()
 {
@@ -48,6 +35,17 @@ struct LateFrames::Coming
     return this->Between.has_value();
   }
 };
+
+FieldFrames::Wish LateFrames::CoarseOf(FieldFrames::Wish wish, double seconds)
+{
+  wish.Sampling.Interacting = true;
+  wish.Sampling.KeepsTolerance = false;
+  wish.Sampling.BeginsCoarse = true;
+  wish.Sampling.Seconds = seconds;
+  wish.ReadAhead = false;
+  wish.Passing = true;
+  return wish;
+}
 
 LateFrames::LateFrames(FieldFrames& frames, const Times& times)
   : Frames(frames)

@@ -43,6 +43,18 @@ public:
     FieldFrames::Frame Frame;
     bool Exact = false; ///< otherwise the exact picture is still to come
   };
+  struct Drawn
+  {
+    FieldFrames::Frame Frame;
+    double Seconds = 0.0;
+  };
+
+  /// What a coarse picture is drawn with: no probe is drawn for it, and time decides how coarse it
+  /// is.
+  static FieldFrames::Wish CoarseOf(FieldFrames::Wish wish, double seconds);
+  /// A hash of all that decides an exact picture, as far as this process knows it.
+  static Hash128 NameOf(
+    const DistributedField& field, const RayScene& scene, const FieldFrames::Wish& wish);
 
   /// @param frames that pictures are drawn and kept by; not to be used by others meanwhile
   explicit LateFrames(FieldFrames& frames)
@@ -82,15 +94,8 @@ public:
 
 private:
   struct Coming;
-  struct Drawn
-  {
-    FieldFrames::Frame Frame;
-    double Seconds = 0.0;
-  };
   using Drawing = std::function<Drawn(const RayScene& scene, const FieldFrames::Wish& wish)>;
 
-  static Hash128 NameOf(
-    const DistributedField& field, const RayScene& scene, const FieldFrames::Wish& wish);
   bool Plays(const DistributedField& field, const FieldFrames::Wish& wish);
   void Take();
   void Learn(const Drawn& drawn);

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Parallel/Frame/LateFramesOfRanks.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+namespace banyan
+{
+namespace
+{
+
+/// All objects of this main thread: where ranks are threads, each has its own.
+std::set<LateFramesOfRanks*>& All()
+{
+  static thread_local std::set<LateFramesOfRanks*> all;
+  return all;
+}
+
+} // namespace
+
+LateFramesOfRanks::LateFramesOfRanks(FieldFrames& frames)
+  : Frames(frames)
+{
+  All().insert(this);
+}
+
+LateFramesOfRanks::~LateFramesOfRanks()
+{
+  All().erase(this);
+}
+
+void LateFramesOfRanks::Stop()
+{
+  if (this->IsDrawing())
+  {
+    this->Name = Hash128{}; // whoever wants it has to begin anew
+  }
+  this->Task.reset();
+}
+
+void LateFramesOfRanks::StopAll()
+{
+  for (LateFramesOfRanks* const frames : All())
+  {
+    frames->Stop();
+  }
+}
+
+bool LateFramesOfRanks::AnyDraws()
+{
+  return std::any_of(All().begin(), All().end(),
+    [](const LateFramesOfRanks* frames) { return frames->IsDrawing(); });
+}
+
+bool LateFramesOfRanks::Draw(Communicator& communicator, DistributedField& field,
+  const RayScene& scene, const RayScene& coarse, const FieldFrames::Wish& wish)
+{
+  const Hash128 name = LateFrames::NameOf(field, scene, wish);
+  if (AllMax(communicator, name == this->Name ? 0.0 : 1.0) == 0.0)
+  {
+    return false;
+  }
+  StopAll();
+  this->Name = Hash128{};
+  FieldFrames::Wish exact = wish;
+  exact.Sampling.Interacting = false;
+  this->DrawBest(communicator, field, scene, coarse, exact);
+  if (!this->Best.Exact)
+  {
+    this->Start(communicator, field, scene, exact);
+  }
+  this->Name = name;
+  return true;
+}
+
+void LateFramesOfRanks::DrawCoarse(Communicator& communicator, DistributedField& field,
+  const RayScene& coarse, const FieldFrames::Wish& wish)
+{
+  StopAll();
+  this->Name = Hash128{};
+  RayScene own = coarse;
+  this->Best = { this->Frames.Draw(
+                   communicator, field, own, LateFrames::CoarseOf(wish, LateFrames::CoarseSeconds)),
+    false };
+}
+
+/// A picture of which something was there says little of one with another camera.
+void LateFramesOfRanks::Learn(const LateFrames::Drawn& drawn)
+{
+  if (drawn.Frame.ReusedFraction() == 0.0)
+  {
+    this->ExactSeconds = drawn.Seconds;
+  }
+}
+
+/// Collective: draws what can be had at once.
+void LateFramesOfRanks::DrawBest(Communicator& communicator, DistributedField& field,
+  const RayScene& scene, const RayScene& coarse, const FieldFrames::Wish& exact)
+{
+  const LateFrames::Times times;
+  RayScene own = scene;
+  if (this->ExactSeconds && *this->ExactSeconds <= times.Patience)
+  {
+    const Timer timer;
+    this->Best = { this->Frames.Draw(communicator, field, own, exact), true };
+    this->Learn({ this->Best.Frame, AllMax(communicator, timer.Seconds()) });
+    return;
+  }
+  std::optional<FieldFrames::Frame> kept = this->Frames.Kept(communicator, field, scene, exact);
+  if (kept)
+  {
+    this->Best = { std::move(*kept), true };
+    return;
+  }
+  this->DrawCoarse(communicator, field, coarse, exact);
+}
+
+/// Starts the threads.
+void LateFramesOfRanks::Start(Communicator& communicator, DistributedField& field,
+  const RayScene& scene, const FieldFrames::Wish& exact)
+{
+  this->Task.emplace(communicator);
+  this->Task->Start(
+    [this, &field, scene, exact](Communicator& ranks, const StopFlag& stop)
+    {
+      const Timer timer;
+      RayScene own = scene;
+      own.Stop = &stop;
+      this->Next.Frame = this->Frames.Draw(ranks, field, own, exact);
+      this->Next.Seconds = AllMax(ranks, timer.Seconds());
+    });
+}
+
+bool LateFramesOfRanks::GoOn(const std::function<bool()>& leave)
+{
+  if (!this->IsDrawing())
+  {
+    return false;
+  }
+  try
+  {
+    if (!this->Task->Serve(leave))
+    {
+      return false;
+    }
+  }
+  catch (...)
+  {
+    this->Name = Hash128{};
+    throw;
+  }
+  this->Best = { this->Next.Frame, true };
+  this->Learn(this->Next);
+  return true;
+}
+
+} // namespace banyan

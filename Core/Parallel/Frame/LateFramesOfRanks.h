@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Parallel_Frame_LateFramesOfRanks_h
+#define banyan_Parallel_Frame_LateFramesOfRanks_h
+
+#include "Parallel/Communicate/CollectiveTask.h"
+#include "Parallel/Frame/LateFrames.h"
+
+#include <functional>
+#include <optional>
+
+namespace banyan
+{
+
+/// LateFrames of any number of ranks: a coarse picture of a scene is there at once, and threads of
+/// all ranks draw the exact one while their main threads serve them, or do other things.
+///
+///     main threads   Draw(A)   GoOn ... leaves      GoOn ... true     Draw(B)
+///     Last()         coarse A                       exact A           coarse B
+///     threads        exact A ──────────────────────────────           exact B ─────
+///
+/// All functions but the getters are called by the main threads of all ranks, in the same order.
+class LateFramesOfRanks
+{
+public:
+  /// @param frames that pictures are drawn and kept by; not to be used by others meanwhile
+  explicit LateFramesOfRanks(FieldFrames& frames);
+  ~LateFramesOfRanks();
+  LateFramesOfRanks(const LateFramesOfRanks&) = delete;
+  LateFramesOfRanks& operator=(const LateFramesOfRanks&) = delete;
+
+  /// Collective: draws what can be had of the scene at once, unless that was done; begins the exact
+  /// picture. Another scene, of any object of this main thread, is stopped.
+  /// @param communicator and the field have to stay, and the field as it is, until Stop
+  /// @param coarse the same scene in the picture that a coarse one has: of another size, perhaps
+  /// @return whether Last has changed
+  /// Throws CollectiveError on all ranks when one of them fails.
+  bool Draw(Communicator& communicator, DistributedField& field, const RayScene& scene,
+    const RayScene& coarse, const FieldFrames::Wish& wish);
+
+  /// Collective: draws a coarse picture, and begins no exact one: something of the scene is still
+  /// to come. Another scene, of any object of this main thread, is stopped. Throws CollectiveError
+  /// on all ranks when one of them fails.
+  void DrawCoarse(Communicator& communicator, DistributedField& field, const RayScene& coarse,
+    const FieldFrames::Wish& wish);
+
+  /// Collective: serves the threads.
+  /// @param leave as of CollectiveTask::Serve
+  /// @return whether the exact picture has come, and is the Last one
+  /// Throws CollectiveError on all ranks when a thread has failed: Draw begins anew.
+  bool GoOn(const std::function<bool()>& leave);
+
+  /// The best picture of the last scene. Its pixels are on rank 0.
+  const LateFrames::Shown& Last() const { return this->Best; }
+
+  /// Whether threads draw from the field: the same on all ranks.
+  bool IsDrawing() const { return this->Task && this->Task->IsStarted(); }
+
+  /// Stops what the threads are at, so that the field may change.
+  void Stop();
+  /// The same of all objects of this main thread, so that ThreadPool::Process may change.
+  static void StopAll();
+  /// Whether threads of any such object draw.
+  static bool AnyDraws();
+
+private:
+  void Learn(const LateFrames::Drawn& drawn);
+  void DrawBest(Communicator& communicator, DistributedField& field, const RayScene& scene,
+    const RayScene& coarse, const FieldFrames::Wish& exact);
+  void Start(Communicator& communicator, DistributedField& field, const RayScene& scene,
+    const FieldFrames::Wish& exact);
+
+  FieldFrames& Frames;
+  std::optional<CollectiveTask> Task;
+  Hash128 Name;                       ///< of the last scene
+  LateFrames::Shown Best;             ///< of it
+  LateFrames::Drawn Next;             ///< by the threads, when they have ended
+  std::optional<double> ExactSeconds; ///< of the last exact picture; the same on all ranks
+};
+
+} // namespace banyan
+
+#endif

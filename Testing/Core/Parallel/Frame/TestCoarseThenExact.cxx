@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pictures for a client that does not wait: a coarse one first, then the exact one, on any number
+// of ranks, whatever comes between.
+#include "Parallel/Frame/LateFramesOfRanks.h"
+
+#include "Parallel/Communicate/Collective.h"
+#include "Parallel/Frame/PlainSteps.h"
+
+namespace
+{
+
+using namespace banyan;
+using namespace banyan::played;
+
+/// A volume that is drawn for a client.
+class Volume
+{
+public:
+  explicit Volume(Communicator& communicator)
+    : Ranks(communicator)
+    , Player(communicator)
+    , Direct(communicator)
+    , Served(Player.Frames)
+  {
+    this->Player.Field.SetLoadBalancing(LoadBalancing::Off);
+    this->Direct.Field.SetLoadBalancing(LoadBalancing::Off);
+  }
+
+  bool Draw(const Situation& now)
+  {
+    const RayScene scene = this->Player.Take(now);
+    Situation coarse = now;
+    coarse.Width /= 2;
+    coarse.Height /= 2;
+    return this->Served.Draw(
+      this->Ranks, this->Player.Field, scene, SceneOf(coarse), PlainPlayer::WishOf(now, true));
+  }
+  bool GoOn(int times)
+  {
+    return this->Served.GoOn([times]() mutable { return --times < 0; });
+  }
+  void Finish()
+  {
+    EXPECT_TRUE(this->Served.GoOn([] { return false; }));
+  }
+
+  void ExpectCoarse(const Situation& now)
+  {
+    EXPECT_FALSE(this->Served.Last().Exact);
+    EXPECT_TRUE(this->Served.IsDrawing());
+    if (this->Ranks.Rank() == 0)
+    {
+      EXPECT_LE(this->Served.Last().Frame.Picture.Pixels->Rect.Hi.x, now.Width / 2);
+    }
+  }
+  /// The last picture is that which fresh FieldFrames draw directly.
+  void ExpectExact(const Situation& now)
+  {
+    EXPECT_TRUE(this->Served.Last().Exact);
+    RayScene scene = this->Direct.Take(now);
+    FieldFrames fresh;
+    const FieldFrames::Frame direct =
+      fresh.Draw(this->Ranks, this->Direct.Field, scene, PlainPlayer::WishOf(now, true));
+    if (this->Ranks.Rank() == 0)
+    {
+      EXPECT_EQ(
+        WorstDifference(*this->Served.Last().Frame.Picture.Pixels, *direct.Picture.Pixels), 0.0);
+    }
+  }
+
+  Communicator& Ranks;
+  PlainPlayer Player;
+  PlainPlayer Direct;
+  LateFramesOfRanks Served;
+};
+
+/// On 1 to 4 ranks.
+void OnRanks(const std::function<void(Volume&)>& body)
+{
+  for (int ranks = 1; ranks <= 4; ++ranks)
+  {
+    RunOnSimulatedRanks(ranks,
+      [&](Communicator& communicator)
+      {
+        Volume volume(communicator);
+        body(volume);
+      });
+  }
+}
+
+TEST(CoarseThenExact, TheExactPictureIsThatOfAFrame)
+{
+  OnRanks(
+    [](Volume& volume)
+    {
+      Situation now;
+      EXPECT_TRUE(volume.Draw(now));
+      volume.ExpectCoarse(now);
+      EXPECT_FALSE(volume.GoOn(0)) << "the client has sent more";
+      EXPECT_FALSE(volume.Draw(now)) << "the same scene goes on";
+      EXPECT_TRUE(volume.Served.IsDrawing());
+      volume.Finish();
+      volume.ExpectExact(now);
+      EXPECT_FALSE(volume.Served.IsDrawing());
+      EXPECT_FALSE(volume.Draw(now)) << "nothing better is to be had";
+      EXPECT_FALSE(volume.GoOn(0));
+    });
+}
+
+TEST(CoarseThenExact, AnotherSceneStopsWhatIsUnderWay)
+{
+  OnRanks(
+    [](Volume& volume)
+    {
+      Situation now;
+      for (int move = 0; move < 5; ++move)
+      {
+        now.Eye += 0.2;
+        // What is drawn quickly needs no coarse picture; here that is what an earlier one took.
+        volume.Draw(now);
+        volume.GoOn(move);
+      }
+      if (volume.Served.IsDrawing())
+      {
+        volume.Finish();
+      }
+      volume.ExpectExact(now);
+    });
+}
+
+TEST(CoarseThenExact, AnotherStepIsAnotherPicture)
+{
+  OnRanks(
+    [](Volume& volume)
+    {
+      Situation now;
+      volume.Draw(now);
+      volume.Served.Stop(); // as the field changes
+      now.Step = 3;
+      EXPECT_TRUE(volume.Draw(now));
+      if (volume.Served.IsDrawing())
+      {
+        volume.Finish();
+      }
+      volume.ExpectExact(now);
+    });
+}
+
+TEST(CoarseThenExact, WhoeverWasStoppedBeginsAnew)
+{
+  OnRanks(
+    [](Volume& volume)
+    {
+      Situation now;
+      volume.Draw(now);
+      EXPECT_TRUE(volume.Served.IsDrawing());
+      volume.Served.Stop();
+      EXPECT_FALSE(volume.Served.IsDrawing());
+      EXPECT_FALSE(volume.GoOn(0));
+      EXPECT_TRUE(volume.Draw(now));
+      volume.Finish();
+      volume.ExpectExact(now);
+    });
+}
+
+TEST(CoarseThenExact, AFailureIsThatOfAllRanksAndTheNextPictureComes)
+{
+  RunOnSimulatedRanks(3,
+    [](Communicator& communicator)
+    {
+      Volume volume(communicator);
+      Situation now;
+      RayScene scene = volume.Player.Take(now);
+      RayScene wrong = scene;
+      StopFlag stop;
+      stop.Ask();
+      wrong.Stop = communicator.Rank() == 1 ? &stop : nullptr; // casting throws
+      EXPECT_THROW(volume.Served.Draw(communicator, volume.Player.Field, scene, wrong,
+                     PlainPlayer::WishOf(now, true)),
+        CollectiveError);
+      EXPECT_TRUE(volume.Draw(now));
+      volume.Finish();
+      volume.ExpectExact(now);
+    });
+}
+
+} // namespace
