@@ -6,7 +6,7 @@ find_program(BANYAN_PYTHON3 NAMES python3)
 # banyan_add_pvbatch_test(<name>
 #   SCRIPT <script.py> [ARGUMENTS <argument>...]
 #   [OPTIONS <option of ParaView>]
-#   [MODE builtin|batch|server|window]   builtin by default; see Testing/PvBatch/run_paraview.py
+#   [MODE builtin|batch|server|window|served]   builtin by default; see Testing/PvBatch/run_paraview.py
 #   [RANKS <n>] [SECONDS <n>]     1 rank, 120 seconds
 #   [SETUP <fixture>...] [REQUIRES <fixture>...])
 # The script's name is relative to the current folder. BANYAN_DATA_DIR is in its environment, and a

@@ -6,8 +6,10 @@
 
 #include "Parallel/Communicate/Communicator.h"
 #include "Render/Raycast/CoveredParts.h"
+#include "Render/Scene/DepthPicture.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace banyan
 {
@@ -30,9 +32,8 @@ PixelRect UnionOfAll(Communicator& communicator, const PixelRect& mine)
 }
 
 /// Copies a part of one rectangle of pixels to the same place in another one.
-template <class Pixel>
-void CopyPart(const PixelRect& part, const PixelRect& fromRect, const std::vector<Pixel>& from,
-  const PixelRect& toRect, std::vector<Pixel>& to)
+void CopyPart(const PixelRect& part, const PixelRect& fromRect,
+  const std::vector<OpaquePixel>& from, const PixelRect& toRect, std::vector<OpaquePixel>& to)
 {
   const auto at = [&part](const PixelRect& rect, int y)
   { return std::ptrdiff_t{ y - rect.Lo.y } * rect.Size().x + (part.Lo.x - rect.Lo.x); };
@@ -62,19 +63,8 @@ void Backdrop::Read(Communicator& communicator, vtkRenderer* renderer,
 
 std::vector<float> Backdrop::Depths(const PixelRect& part) const
 {
-  const std::vector<float> inner = DepthsOf(this->InnerPixels);
-  if (inner.empty() || this->Inner == part)
-  {
-    return inner;
-  }
-  const PixelRect common = Intersection(this->Inner, part);
-  if (common.Empty())
-  {
-    return {};
-  }
-  std::vector<float> depths(static_cast<std::size_t>(part.Count()), 1.0f);
-  CopyPart(common, this->Inner, inner, part, depths);
-  return depths;
+  std::vector<float> inner = DepthsOf(this->InnerPixels);
+  return inner.empty() ? inner : DepthPicture{ {}, this->Inner, std::move(inner) }.In(part);
 }
 
 void Backdrop::Write(

@@ -5,7 +5,6 @@
 #include "SceneOptions.h"
 #include "TransferFunctionTable.h"
 
-#include "vtkRenderer.h"
 #include "vtkVolume.h"
 #include "vtkVolumeMapper.h"
 #include "vtkVolumeProperty.h"
@@ -38,7 +37,7 @@ void WorldBounds(
 
 } // namespace
 
-RayScene MakeFrameScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMapper* mapper,
+RayScene MakeFrameScene(const ScreenView& view, vtkVolume* volume, vtkVolumeMapper* mapper,
   const DistributedField& field, double sampleDistanceVoxels, KeptTransferFunction& function)
 {
   vtkVolumeProperty* const property = volume->GetProperty();
@@ -53,7 +52,7 @@ RayScene MakeFrameScene(vtkRenderer* renderer, vtkVolume* volume, vtkVolumeMappe
   glm::dvec3 low;
   glm::dvec3 high;
   WorldBounds(place.Bounds, toWorld, low, high);
-  const RayCamera camera = CameraOf(renderer, 0.5 * (low + high));
+  const RayCamera camera(view.WorldToClip, view.Size, 0.5 * (low + high));
   RayScene scene{ camera.InSpace(toWorld), camera.Footprint(low, high), place.IndexToPhysical,
     place.Cells, {}, sampleDistanceVoxels * place.CellSize };
   scene.Shading = MakeShading(property);

@@ -8,7 +8,7 @@
 #include "TransferFunctionTable.h"
 
 #include "Parallel/Fields/DistributedField.h"
-#include "Parallel/Frame/LateFrames.h"
+#include "Parallel/Frame/LateFramesOfRanks.h"
 
 #include "vtkType.h"
 
@@ -32,6 +32,7 @@ struct MapperState
   DistributedField Field;
   FieldFrames Frames;
   LateFrames Late{ Frames };
+  LateFramesOfRanks Served{ Frames };
   RenderWhenDrawn Again;
   const vtkRenderer* LastRenderer = nullptr; ///< only to compare with
   MotionEnhancement Motion;

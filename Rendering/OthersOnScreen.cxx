@@ -64,8 +64,8 @@ bool StaysInBounds(vtkProp* prop, int& pixels)
   {
     return true;
   }
-  constexpr std::array<const char*, 4> actors{ "vtkActor", "vtkOpenGLActor", "vtkLODActor",
-    "vtkPVLODActor" };
+  constexpr std::array<const char*, 5> actors{ "vtkActor", "vtkOpenGLActor", "vtkLODActor",
+    "vtkPVLODActor", "vtkPVCenterAxesActor" };
   // Not those of splats and glyphs, which draw more than the points that they are given.
   constexpr std::array<const char*, 5> mappers{ "vtkPolyDataMapper", "vtkOpenGLPolyDataMapper",
     "vtkCompositePolyDataMapper2", "vtkDataSetMapper", "vtkOpenGLPolyDataMapper2" };

@@ -24,11 +24,11 @@ glm::dmat4 ToGlm(vtkMatrix4x4* matrix)
   return result;
 }
 
-RayCamera CameraOf(vtkRenderer* renderer, const glm::dvec3& anchor)
+ScreenView ViewOf(vtkRenderer* renderer)
 {
-  glm::ivec2 size(0);
+  ScreenView view;
   glm::ivec2 origin(0);
-  renderer->GetTiledSizeAndOrigin(&size.x, &size.y, &origin.x, &origin.y);
+  renderer->GetTiledSizeAndOrigin(&view.Size.x, &view.Size.y, &origin.x, &origin.y);
   // Surfaces are drawn with these. GetCompositeProjectionTransformMatrix leaves out the eyes.
   auto* const camera = static_cast<vtkOpenGLCamera*>(renderer->GetActiveCamera());
   vtkMatrix4x4* worldToView = nullptr;
@@ -36,7 +36,15 @@ RayCamera CameraOf(vtkRenderer* renderer, const glm::dvec3& anchor)
   vtkMatrix4x4* viewToClip = nullptr;
   vtkMatrix4x4* worldToClip = nullptr;
   camera->GetKeyMatrices(renderer, worldToView, normals, viewToClip, worldToClip);
-  return RayCamera(glm::transpose(ToGlm(worldToClip)), size, anchor);
+  view.WorldToClip = glm::transpose(ToGlm(worldToClip));
+  view.Far = camera->GetClippingRange()[1];
+  return view;
+}
+
+RayCamera CameraOf(vtkRenderer* renderer, const glm::dvec3& anchor)
+{
+  const ScreenView view = ViewOf(renderer);
+  return RayCamera(view.WorldToClip, view.Size, anchor);
 }
 
 int EyeOf(vtkRenderer* renderer)

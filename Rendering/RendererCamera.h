@@ -5,6 +5,7 @@
 #include "Render/Scene/RayCamera.h"
 
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 
 class vtkMatrix4x4;
 class vtkRenderer;
@@ -14,8 +15,19 @@ namespace banyan
 
 glm::dmat4 ToGlm(vtkMatrix4x4* matrix);
 
-/// The camera of a renderer, for all of its picture where that is drawn in tiles: the one that
+/// All that a picture takes from the renderer that shows it.
+struct ScreenView
+{
+  glm::dmat4 WorldToClip{ 1.0 };
+  glm::ivec2 Size{ 0 }; ///< of the whole picture, in pixels
+  double Far = 0.0;     ///< distance of the far clipping plane
+};
+
+/// The view of a renderer, for all of its picture where that is drawn in tiles: the one that
 /// surfaces are drawn with, of the eye that is drawn now, where there are two.
+ScreenView ViewOf(vtkRenderer* renderer);
+
+/// Its camera.
 /// @param anchor in world space: see RayCamera
 RayCamera CameraOf(vtkRenderer* renderer, const glm::dvec3& anchor);
 

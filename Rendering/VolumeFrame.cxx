@@ -2,7 +2,6 @@
 #include "VolumeFrame.h"
 
 #include "FrameScene.h"
-#include "RendererCamera.h"
 #include "SceneOptions.h"
 #include "vtkBanyanFrameStatistics.h"
 #include "vtkBanyanVolumeMapper.h"
@@ -10,7 +9,6 @@
 #include "Base/Progress.h"
 #include "Parallel/Communicate/Collective.h"
 
-#include "vtkCamera.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
@@ -28,7 +26,7 @@ constexpr double LeastRange = 1e-12;
 
 } // namespace
 
-bool VolumeFrame::Prepare(vtkRenderer* renderer)
+bool VolumeFrame::Prepare(const ScreenView& view)
 {
   const PhaseScope beginning(Phase::Beginning);
   this->Began = Timer();
@@ -38,8 +36,7 @@ bool VolumeFrame::Prepare(vtkRenderer* renderer)
     throw Error(field.Problem());
   }
   // VTK's clipping range has no length where the eye is on a face and looks away.
-  const double far = renderer->GetActiveCamera()->GetClippingRange()[1];
-  if (field.Empty() || far < LeastRange * this->Prop->GetLength())
+  if (field.Empty() || view.Far < LeastRange * this->Prop->GetLength())
   {
     return false;
   }
@@ -47,28 +44,34 @@ bool VolumeFrame::Prepare(vtkRenderer* renderer)
   Collective(*this->State->Communicator,
     [&]
     {
-      this->Wanted.emplace(MakeFrameScene(renderer, this->Prop, this->Owner, field,
+      this->Wanted.emplace(MakeFrameScene(view, this->Prop, this->Owner, field,
         distance > 0.0 ? distance : 1.0, this->State->Function));
     });
   return !this->Wanted->Viewport.Empty();
 }
 
-ToleranceControl::Wish VolumeFrame::WishFor(vtkRenderer* renderer, int volumes) const
+FieldFrames::Wish VolumeFrame::WishFor(bool interacting, int eye, int volumes) const
 {
   vtkBanyanVolumeMapper* const mapper = this->Owner;
-  ToleranceControl::Wish wish;
-  wish.Still = mapper->GetImageErrorTolerance();
-  wish.Interactive = mapper->GetInteractiveImageErrorTolerance();
+  FieldFrames::Wish wish;
+  ToleranceControl::Wish& sampling = wish.Sampling;
+  sampling.Still = mapper->GetImageErrorTolerance();
+  sampling.Interactive = mapper->GetInteractiveImageErrorTolerance();
   // Volumes that are drawn one after the other share the time of a frame.
-  wish.Seconds = mapper->GetInteractiveFrameSeconds() / volumes;
-  // More than one frame per second: somebody moves the camera. All ranks are told the same rate.
-  wish.Interacting = renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0;
-  wish.MaxElementsPerPixel = mapper->GetMaxElementsPerPixel();
-  wish.ScreenErrorPixels = mapper->GetScreenErrorPixels();
-  wish.FixedDistance = mapper->GetSampleDistanceVoxels() > 0.0;
-  wish.KeepsTolerance = CanKeepTolerance(mapper, this->Prop->GetProperty()) &&
-                        (!wish.FixedDistance || wish.ScreenErrorPixels > 0.0);
-  wish.Eye = EyeOf(renderer);
+  sampling.Seconds = mapper->GetInteractiveFrameSeconds() / volumes;
+  sampling.Interacting = interacting;
+  sampling.MaxElementsPerPixel = mapper->GetMaxElementsPerPixel();
+  sampling.ScreenErrorPixels = mapper->GetScreenErrorPixels();
+  sampling.FixedDistance = mapper->GetSampleDistanceVoxels() > 0.0;
+  sampling.KeepsTolerance = CanKeepTolerance(mapper, this->Prop->GetProperty()) &&
+                            (!sampling.FixedDistance || sampling.ScreenErrorPixels > 0.0);
+  sampling.Eye = eye;
+  // Errors of few bits add up where volumes are blended over each other.
+  const bool few = mapper->GetCompositeInFewBits() && volumes == 1;
+  wish.Transport = few ? PixelTransport::WithinOne : PixelTransport::Floats;
+  wish.ReadAhead = mapper->GetReadAhead();
+  wish.Reuse = sampling.PlansOfGroups = mapper->GetReuseFrames();
+  wish.ShowSeconds = this->State->WriteSeconds; // about what it took the last time
   return wish;
 }
 
@@ -96,6 +99,7 @@ FieldFrames::Frame VolumeFrame::Draw(
   {
     out->SetPictureIsExact(wish.Sampling.Interacting ? 0 : 1);
     state.Late.Settle(state.Field, *this->Wanted, wish);
+    state.Served.Stop();
     if (!this->Owner->GetDecoupled())
     {
       state.Late.Stop();
@@ -120,24 +124,30 @@ FieldFrames::Frame VolumeFrame::Draw(
 std::shared_ptr<const FloatImage> VolumeFrame::Cast(
   vtkRenderer* renderer, const Backdrop& backdrop, const Together& others)
 {
-  DistributedField& field = this->State->Field;
   RayScene& scene = *this->Wanted;
   scene.Depth = backdrop.Depths(scene.Viewport);
-  this->Figures = FrameFigures(field.Drawn());
-  FieldFrames::Wish wish;
-  wish.Sampling = this->WishFor(renderer, others.Volumes);
+  this->BeginFigures();
+  // More than one frame per second: somebody moves the camera. All ranks are told the same rate.
+  const bool interacting = renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0;
+  FieldFrames::Wish wish = this->WishFor(interacting, EyeOf(renderer), others.Volumes);
   wish.Behind = backdrop.Behind();
-  // Errors of few bits add up where volumes are blended over each other.
-  const bool few = this->Owner->GetCompositeInFewBits() && others.Volumes == 1;
-  wish.Transport = few ? PixelTransport::WithinOne : PixelTransport::Floats;
-  wish.ReadAhead = this->Owner->GetReadAhead();
-  wish.Reuse = wish.Sampling.PlansOfGroups = this->Owner->GetReuseFrames();
-  wish.ShowSeconds = this->State->WriteSeconds; // about what it took the last time
   const FieldFrames::Frame frame = this->Draw(renderer, wish, others);
+  this->Tell(frame);
+  this->Owner->GetStatistics()->SetPixelsReadBehind(static_cast<vtkIdType>(backdrop.PixelsRead()));
+  return frame.Picture.Pixels;
+}
+
+void VolumeFrame::BeginFigures()
+{
+  this->Figures = FrameFigures(this->State->Field.Drawn());
+}
+
+void VolumeFrame::Tell(const FieldFrames::Frame& frame)
+{
+  DistributedField& field = this->State->Field;
   this->Statistics = frame.Picture.Statistics;
   this->Kept = frame.Kept;
   vtkBanyanFrameStatistics* const out = this->Owner->GetStatistics();
-  out->SetPixelsReadBehind(static_cast<vtkIdType>(backdrop.PixelsRead()));
   out->SetReusedFraction(frame.ReusedFraction());
   out->SetPictureBytes(static_cast<vtkIdType>(this->State->Frames.PictureBytes()));
   out->SetEstimatedImageError(frame.Picture.EstimatedError);
@@ -145,7 +155,6 @@ std::shared_ptr<const FloatImage> VolumeFrame::Cast(
   out->SetEncodingErrorOfValues(
     field.Drawn().IsMesh() ? std::numeric_limits<double>::quiet_NaN() : field.EncodingError());
   out->SetMeshDeviation(field.Drawn().Deviation());
-  return frame.Picture.Pixels;
 }
 
 void VolumeFrame::Finish(const CompositeStatistics& geometry, double writeSeconds)
@@ -154,7 +163,7 @@ void VolumeFrame::Finish(const CompositeStatistics& geometry, double writeSecond
   this->State->LastProblem.clear();
   vtkBanyanFrameStatistics* const out = this->Owner->GetStatistics();
   out->SetTotalSeconds(this->Began.Seconds());
-  if (this->State->Late.IsDrawing())
+  if (this->State->Late.IsDrawing() || this->State->Served.IsDrawing())
   {
     // What the thread does counts with the exact picture.
     FrameFigures::PublishFrame(this->Statistics, geometry.BytesSent, out);

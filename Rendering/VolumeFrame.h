@@ -4,6 +4,7 @@
 
 #include "FrameFigures.h"
 #include "MapperState.h"
+#include "RendererCamera.h"
 
 #include "Base/Timer.h"
 
@@ -36,7 +37,7 @@ public:
   const RayScene& Scene() const { return *this->Wanted; }
 
   /// @return whether the volume is on the screen
-  bool Prepare(vtkRenderer* renderer);
+  bool Prepare(const ScreenView& view);
 
   /// Volumes of the picture, this one included.
   struct Together
@@ -44,6 +45,16 @@ public:
     int Volumes = 1;
     int OfMapper = 1; ///< that this one's mapper draws
   };
+
+  /// How the volume is to be drawn, but for what lies behind it.
+  /// @param interacting whether somebody moves the camera
+  /// @param eye see EyeOf
+  FieldFrames::Wish WishFor(bool interacting, int eye, int volumes) const;
+
+  /// Begins to count what a picture takes.
+  void BeginFigures();
+  /// Publishes what is known of a picture when it is drawn.
+  void Tell(const FieldFrames::Frame& frame);
 
   /// Draws the volume, which is on the screen.
   /// @return the volume's picture on rank 0; null elsewhere
@@ -56,7 +67,6 @@ public:
   void Finish(const CompositeStatistics& geometry, double writeSeconds);
 
 private:
-  ToleranceControl::Wish WishFor(vtkRenderer* renderer, int volumes) const;
   bool MayBeLate(vtkRenderer* renderer, const Together& others) const;
   FieldFrames::Frame Draw(
     vtkRenderer* renderer, const FieldFrames::Wish& wish, const Together& others);

@@ -61,7 +61,7 @@ void VolumesPicture::Draw()
       [&]
       {
         frame.Mapper()->UpdateField(frame.Volume());
-        return frame.Prepare(this->Renderer);
+        return frame.Prepare(ViewOf(this->Renderer));
       });
   };
   this->Frames.erase(std::remove_if(this->Frames.begin(), this->Frames.end(),

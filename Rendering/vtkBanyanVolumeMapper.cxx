@@ -66,6 +66,7 @@ void vtkBanyanVolumeMapper::SetController(vtkMultiProcessController* controller)
   }
   this->Controller = controller;
   this->State->Late.Stop();
+  this->State->Served.Stop();
   this->State->Field.Reset();
   this->State->Frames.Forget();
   banyan::MpiTimeout timeout{ banyan::MpiTimeout::DefaultSeconds, {} };
@@ -134,10 +135,17 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
   banyan::MapperState& self = *this->State;
   self.Field.SetLoadBalancing(
     this->LoadBalancing == 0 ? banyan::LoadBalancing::Off : banyan::LoadBalancing::MeasuredCost);
+  const bool hasWidth = banyan::ThreadPool::HasProcessWidth(this->NumberOfThreads);
+  // What all ranks draw they also stop together.
+  if (banyan::LateFramesOfRanks::AnyDraws() &&
+      banyan::AllMax(*self.Communicator, hasWidth ? 0.0 : 1.0) > 0.0)
+  {
+    banyan::LateFramesOfRanks::StopAll();
+  }
   banyan::FieldPiece piece;
   try
   {
-    if (!banyan::ThreadPool::HasProcessWidth(this->NumberOfThreads))
+    if (!hasWidth)
     {
       banyan::LateFrames::PauseAll();
       banyan::ThreadPool::SetProcessWidth(this->NumberOfThreads);
@@ -153,9 +161,14 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
     this->GetDataObjectInput(), piece);
   const int components = piece.Array ? piece.Array->GetNumberOfComponents() : 1;
   banyan::InputOfPiece input(std::move(piece));
-  if (!self.Field.IsOf(input))
+  const bool isOther = !self.Field.IsOf(input);
+  if (isOther)
   {
     self.Late.Stop();
+  }
+  if (self.Served.IsDrawing() && banyan::AllMax(*self.Communicator, isOther ? 1.0 : 0.0) > 0.0)
+  {
+    self.Served.Stop();
   }
   self.Field.Update(*self.Communicator, input);
   self.Bounds = self.Field.Place().Bounds;

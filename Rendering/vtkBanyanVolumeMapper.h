@@ -12,6 +12,7 @@
 
 namespace banyan
 {
+class PictureServer;
 class VolumesPicture;
 struct MapperState;
 }
@@ -82,8 +83,8 @@ class vtkRenderWindow;
     "Default: on; off casts all rays and plans each frame, to measure.")                           \
   Switch(Decoupled, true, advanced, all,                                                          \
     "The window does not wait for pictures that take long: a coarse one is shown at once, and "    \
-    "the exact one when it is there (PictureIsExact). Default: on, in the window of one process "  \
-    "and without stereo; screenshots, animations, scripts and steps of a play wait.")              \
+    "the exact one when it is there (PictureIsExact). Default: on, in ParaView's window and "       \
+    "without stereo; screenshots, animations, scripts and steps of a play wait.")              \
   Switch(ReadAhead, true, advanced, images,                                                        \
     "Encoded image data: decodes bricks of the next frames in the background, on cores that "      \
     "nobody else wants. While the series plays these are bricks of the next four steps, while "   \
@@ -255,6 +256,7 @@ private:
   vtkBanyanVolumeMapper(const vtkBanyanVolumeMapper&) = delete;
   void operator=(const vtkBanyanVolumeMapper&) = delete;
 
+  friend class banyan::PictureServer;  // draws for a client
   friend class banyan::VolumesPicture; // draws volumes of several mappers
 
   bool Attempt(const std::function<bool()>& work);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkBanyanVolume.h"
 
+#include "CoarseMark.h"
+#include "PicturesAtHand.h"
+#include "vtkBanyanFrameStatistics.h"
 #include "vtkBanyanVolumeMapper.h"
 
 #include "vtkBoundingBox.h"
@@ -8,6 +11,7 @@
 #include "vtkFXAAOptions.h"
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
+#include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkOpenGLFXAAFilter.h"
@@ -31,6 +35,11 @@ void vtkBanyanVolume::SetBanyanMapper(vtkBanyanVolumeMapper* mapper)
 void vtkBanyanVolume::SetView(vtkPVRenderView* view)
 {
   this->View = view;
+}
+
+void vtkBanyanVolume::SetPictures(const std::shared_ptr<banyan::PicturesAtHand>& pictures)
+{
+  this->Pictures = pictures;
 }
 
 bool vtkBanyanVolume::CanDrawInView()
@@ -100,6 +109,12 @@ int vtkBanyanVolume::RenderOverlay(vtkViewport* viewport)
   {
     return 0;
   }
+  if (this->Pictures)
+  {
+    this->Pictures->Show(renderer, this);
+    this->MarkUnless(this->Pictures->LastShown().Exact, renderer);
+    return 1;
+  }
   std::vector<int> order;
   if (this->View)
   {
@@ -114,11 +129,30 @@ int vtkBanyanVolume::RenderOverlay(vtkViewport* viewport)
   }
   this->BanyanMapper->SetRankOrderBehind(order);
   this->BanyanMapper->Render(renderer, this);
+  this->MarkUnless(this->BanyanMapper->GetStatistics()->GetPictureIsExact() != 0, renderer);
   return 1;
+}
+
+void vtkBanyanVolume::MarkUnless(bool exact, vtkRenderer* renderer)
+{
+  vtkMultiProcessController* const ranks = vtkMultiProcessController::GetGlobalController();
+  if (exact || !this->MarksCoarse || (ranks && ranks->GetLocalProcessId() != 0))
+  {
+    return;
+  }
+  if (!this->Mark)
+  {
+    this->Mark = std::make_unique<banyan::CoarseMark>();
+  }
+  this->Mark->Write(renderer);
 }
 
 double* vtkBanyanVolume::GetBounds()
 {
+  if (this->Pictures)
+  {
+    return nullptr; // data are elsewhere; bounds that are none would have the prop left out
+  }
   vtkMath::UninitializeBounds(this->Bounds);
   const double* box = this->BanyanMapper ? this->BanyanMapper->GetBounds() : nullptr;
   if (!box || !vtkMath::AreBoundsInitialized(box))
@@ -147,6 +181,14 @@ void vtkBanyanVolume::ReleaseGraphicsResources(vtkWindow* window)
   if (this->EdgeFilter)
   {
     this->EdgeFilter->ReleaseGraphicsResources();
+  }
+  if (this->Pictures)
+  {
+    this->Pictures->ReleaseGraphicsResources(window);
+  }
+  if (this->Mark)
+  {
+    this->Mark->ReleaseGraphicsResources(window);
   }
   this->Superclass::ReleaseGraphicsResources(window);
 }

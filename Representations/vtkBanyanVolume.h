@@ -7,9 +7,18 @@
 #include "vtkSmartPointer.h" // for member
 #include "vtkWeakPointer.h"  // for members
 
+#include <memory> // for member
+
+namespace banyan
+{
+class CoarseMark;
+class PicturesAtHand;
+}
+
 class vtkBanyanVolumeMapper;
 class vtkOpenGLFXAAFilter;
 class vtkPVRenderView;
+class vtkRenderer;
 
 /**
  * @class vtkBanyanVolume
@@ -32,6 +41,13 @@ public:
 
   /** The view that draws this prop; decides how pixels of other ranks combine. Not owned. */
   void SetView(vtkPVRenderView* view);
+
+  /** Pictures that this prop shows in place of drawing; null (default) to draw. */
+  void SetPictures(const std::shared_ptr<banyan::PicturesAtHand>& pictures);
+  bool HasPictures() const { return this->Pictures != nullptr; }
+
+  /** Whether a mark in the corner of the view says that the picture is not exact yet. */
+  void SetMarksCoarse(bool marks) { this->MarksCoarse = marks; }
 
   /** False on tile displays and in CAVEs, where each rank has a picture of its own. */
   bool CanDrawInView();
@@ -56,11 +72,15 @@ private:
   vtkBanyanVolume(const vtkBanyanVolume&) = delete;
   void operator=(const vtkBanyanVolume&) = delete;
 
+  void MarkUnless(bool exact, vtkRenderer* renderer);
   void SmoothEdges(vtkObject* caller, unsigned long event, void* data);
 
   vtkWeakPointer<vtkBanyanVolumeMapper> BanyanMapper;
   vtkWeakPointer<vtkPVRenderView> View;
   vtkSmartPointer<vtkOpenGLFXAAFilter> EdgeFilter;
+  std::shared_ptr<banyan::PicturesAtHand> Pictures;
+  std::unique_ptr<banyan::CoarseMark> Mark; ///< null until there was one
+  bool MarksCoarse = false;
   unsigned long SmoothAtEnd = 0;
 };
 

@@ -3,8 +3,13 @@
 
 #include "BlocksAsOne.h"
 #include "DefaultFunctions.h"
+#include "FunctionWatch.h"
+#include "HeldPiece.h"
 #include "LeafParts.h"
+#include "LineToClient.h"
 #include "MergedBlocks.h"
+#include "PictureServer.h"
+#include "PicturesAtHand.h"
 #include "StepWindow.h"
 #include "vtkBanyanFrameStatistics.h"
 #include "vtkBanyanVolume.h"
@@ -20,6 +25,7 @@
 #include "vtkMath.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
+#include "vtkPVDataDeliveryManager.h"
 #include "vtkPVRenderView.h"
 #include "vtkPVSession.h"
 #include "vtkPiecewiseFunction.h"
@@ -27,6 +33,8 @@
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkVolumeProperty.h"
+
+#include <algorithm>
 
 namespace
 {
@@ -67,6 +75,8 @@ vtkBanyanVolumeRepresentation::vtkBanyanVolumeRepresentation()
   , Blocks(std::make_unique<banyan::MergedBlocks>())
   , Defaults(std::make_unique<banyan::DefaultFunctions>())
   , Steps(std::make_unique<banyan::StepWindow>())
+  , Colors(std::make_unique<banyan::FunctionWatch>([this] { this->FunctionChanged(); }))
+  , Opacity(std::make_unique<banyan::FunctionWatch>([this] { this->FunctionChanged(); }))
 {
   // The superclass has made a prop of ParaView's own: ours takes its place.
   this->Actor = this->Prop;
@@ -80,11 +90,7 @@ vtkBanyanVolumeRepresentation::vtkBanyanVolumeRepresentation()
   vtkMath::UninitializeBounds(this->DataBounds);
 }
 
-vtkBanyanVolumeRepresentation::~vtkBanyanVolumeRepresentation()
-{
-  this->Follow(nullptr, this->Colors);
-  this->Follow(nullptr, this->Opacity);
-}
+vtkBanyanVolumeRepresentation::~vtkBanyanVolumeRepresentation() = default;
 
 int vtkBanyanVolumeRepresentation::FillInputPortInformation(int, vtkInformation* info)
 {
@@ -148,7 +154,6 @@ int vtkBanyanVolumeRepresentation::RequestData(
     this->TakeSteps();
   }
   vtkMath::UninitializeBounds(this->DataBounds);
-  this->DataSize = 0;
   this->Piece = vtkSmartPointer<vtkImageData>::New().GetPointer();
   // While steps around it are read, what the input has is another one.
   vtkDataObject* now = enhanced ? this->Steps->Now() : nullptr;
@@ -174,10 +179,6 @@ int vtkBanyanVolumeRepresentation::RequestData(
       this->AddSteps(this->Mapper->GetArrayToDraw(this->Piece));
     }
     banyan::BoundsOf(this->Piece, this->DataBounds);
-    if (vtkMath::AreBoundsInitialized(this->DataBounds))
-    {
-      this->DataSize = this->Piece->GetActualMemorySize();
-    }
   }
   return this->Superclass::RequestData(request, inputVector, outputVector);
 }
@@ -193,28 +194,65 @@ int vtkBanyanVolumeRepresentation::ProcessViewRequest(
   {
     auto* const view = vtkPVRenderView::SafeDownCast(this->GetView());
     this->Prop->SetView(view);
-    // Walls get copies of all data.
-    const bool shown = this->Prop->CanDrawInView();
-    vtkNew<vtkImageData> nothing;
-    vtkPVRenderView::SetPiece(
-      inInfo, this, shown ? this->Piece.GetPointer() : nothing, shown ? this->DataSize : 0);
+    // Data stay where they are, and ParaView does not count them when it decides who renders.
+    vtkPVRenderView::SetPiece(inInfo, this, banyan::HeldPiece::Of(this->Piece));
     // Placed as it is drawn: a client without data takes its clipping planes from here.
     vtkPVRenderView::SetGeometryBounds(inInfo, this, this->DataBounds, this->Actor->GetMatrix());
-    vtkPVRenderView::SetDeliverToClientAndRenderingProcesses(inInfo, this, false, false);
-    vtkPVRenderView::SetRequiresDistributedRendering(inInfo, this, true);
+    if (!this->Served)
+    {
+      vtkPVRenderView::SetRequiresDistributedRendering(inInfo, this, true);
+    }
     // Ranks whose bounds are off screen must draw all the same, or the others wait for ever. Never
     // together with NEED_ORDERED_COMPOSITING: the view then forgets this one.
     outInfo->Set(vtkPVRenderView::RENDER_EMPTY_IMAGES(), 1);
   }
-  else if (request == vtkPVView::REQUEST_UPDATE_LOD())
+  else if (request == vtkPVView::REQUEST_UPDATE_LOD() && !this->Served)
   {
     vtkPVRenderView::SetRequiresDistributedRenderingLOD(inInfo, this, true);
   }
-  else if (request == vtkPVView::REQUEST_RENDER())
+  else if (request == vtkPVView::REQUEST_RENDER() && !this->Prop->HasPictures())
   {
-    this->PrepareRender(vtkPVView::GetDeliveredPiece(inInfo, this));
+    this->PrepareRender(banyan::HeldPiece::In(vtkPVView::GetPiece(inInfo, this)));
   }
   return 1;
+}
+
+void vtkBanyanVolumeRepresentation::SetServed(bool served)
+{
+  const bool isClient = vtkProcessModule::GetProcessType() == vtkProcessModule::PROCESS_CLIENT;
+  if (served && isClient && !this->Pictures)
+  {
+    this->Pictures = std::make_shared<banyan::PicturesAtHand>();
+  }
+  this->Served = served;
+  this->Prop->SetPictures(served && isClient ? this->Pictures : nullptr);
+}
+
+void vtkBanyanVolumeRepresentation::TakeTicket(
+  double* numbers, unsigned int words, unsigned int* depths)
+{
+  auto* const view = vtkPVRenderView::SafeDownCast(this->GetView());
+  if (!view || !this->Served)
+  {
+    return; // ParaView has taken the display away meanwhile
+  }
+  if (!this->Server)
+  {
+    this->Server = std::make_unique<banyan::PictureServer>(this->Mapper, this->Prop);
+  }
+  const banyan::PictureTicket ticket = banyan::PictureTicket::Of(numbers, words, depths);
+  if (ticket.IsNew())
+  {
+    this->PrepareRender(
+      banyan::HeldPiece::In(view->GetDeliveryManager()->GetPiece(this, /*low_res=*/false)));
+  }
+  this->Server->Take(ticket, banyan::LineToClient());
+}
+
+vtkMTimeType vtkBanyanVolumeRepresentation::GetPictureMTime()
+{
+  return std::max({ this->GetMTime(), this->Actor->GetMTime(), this->Property->GetMTime(),
+    this->Mapper->GetMTime() });
 }
 
 /// Shows the progress of what takes long before a picture: ParaView shows progress of
@@ -282,24 +320,6 @@ void vtkBanyanVolumeRepresentation::PlaceCroppingBox()
   this->Mapper->SetCroppingRegionPlanes(planes);
 }
 
-void vtkBanyanVolumeRepresentation::Follow(vtkObject* function, FollowedFunction& followed)
-{
-  if (followed.Function == function)
-  {
-    return;
-  }
-  if (followed.Function)
-  {
-    followed.Function->RemoveObserver(followed.Observer);
-  }
-  followed.Function = function;
-  if (function)
-  {
-    followed.Observer = function->AddObserver(
-      vtkCommand::ModifiedEvent, this, &vtkBanyanVolumeRepresentation::FunctionChanged);
-  }
-}
-
 /// ParaView itself renders when a drag has ended.
 void vtkBanyanVolumeRepresentation::FunctionChanged()
 {
@@ -313,14 +333,14 @@ void vtkBanyanVolumeRepresentation::FunctionChanged()
 void vtkBanyanVolumeRepresentation::SetColor(vtkColorTransferFunction* colors)
 {
   this->ColorGiven = colors != nullptr;
-  this->Follow(colors, this->Colors);
+  this->Colors->Watch(colors);
   this->Superclass::SetColor(colors);
 }
 
 void vtkBanyanVolumeRepresentation::SetScalarOpacity(vtkPiecewiseFunction* opacity)
 {
   this->OpacityGiven = opacity != nullptr;
-  this->Follow(opacity, this->Opacity);
+  this->Opacity->Watch(opacity);
   this->Superclass::SetScalarOpacity(opacity);
 }
 

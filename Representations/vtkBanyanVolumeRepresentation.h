@@ -7,7 +7,6 @@
 #include "vtkNew.h"                      // for members
 #include "vtkSmartPointer.h"             // for members
 #include "vtkVolumeRepresentation.h"
-#include "vtkWeakPointer.h" // for members
 
 #include <memory> // for members
 
@@ -19,7 +18,10 @@ class vtkDataObject;
 namespace banyan
 {
 class DefaultFunctions;
+class FunctionWatch;
 class MergedBlocks;
+class PictureServer;
+class PicturesAtHand;
 class StepWindow;
 }
 
@@ -43,6 +45,24 @@ public:
 
   int ProcessViewRequest(
     vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo) override;
+
+  ///@{
+  /**
+   * Whether a server draws for the window of its client, which shows pictures as they come
+   * (banyan::ServedWindow): told to the client and all ranks of the server before an update of the
+   * view, of which this is the only data.
+   */
+  void SetServed(bool served);
+  /**
+   * Collective over the ranks of a server: what the client wants, as numbers and depths of
+   * banyan::PictureTicket.
+   */
+  void TakeTicket(double* numbers, unsigned int words, unsigned int* depths);
+  /** Of all settings and functions. */
+  vtkMTimeType GetPictureMTime();
+  /** Of a client that is served, else null. */
+  std::shared_ptr<banyan::PicturesAtHand> GetPictures() const { return this->Pictures; }
+  ///@}
 
   ///@{
   /** Colour map and opacity function; null takes a default over the range of the data. */
@@ -69,6 +89,9 @@ public:
   void SetSpecular(double coefficient);
   void SetSpecularPower(double power);
   ///@}
+
+  /** Whether a mark in the corner of the view says that the picture is not exact yet. */
+  void SetMarkCoarsePictures(bool marks);
 
   ///@{
   /**
@@ -130,13 +153,6 @@ private:
   void ShowProgress();
   void PlaceCroppingBox();
   void SelectArray();
-  /// A function whose points somebody drags: changes are shown at once.
-  struct FollowedFunction
-  {
-    vtkWeakPointer<vtkObject> Function;
-    unsigned long Observer = 0;
-  };
-  void Follow(vtkObject* function, FollowedFunction& followed);
   void FunctionChanged();
 
   vtkNew<vtkBanyanVolumeMapper> Mapper;
@@ -151,12 +167,15 @@ private:
   int Projection = 0;
   double CroppingOrigin[3] = { 0.0, 0.0, 0.0 };
   double CroppingScale[3] = { 1.0, 1.0, 1.0 };
-  FollowedFunction Colors;
-  FollowedFunction Opacity;
+  std::unique_ptr<banyan::FunctionWatch> Colors; ///< changes are shown at once
+  std::unique_ptr<banyan::FunctionWatch> Opacity;
   bool ColorGiven = false;
   bool OpacityGiven = false;
   bool RefusalReported = false;
   bool StepsNeeded = false; ///< around the one drawn
+  bool Served = false;
+  std::shared_ptr<banyan::PicturesAtHand> Pictures; ///< on a client
+  std::unique_ptr<banyan::PictureServer> Server;    ///< on a server, once it was asked
 };
 
 #endif

@@ -4,6 +4,7 @@
 
 #include "StepWindow.h"
 #include "vtkBanyanFrameStatistics.h"
+#include "vtkBanyanVolume.h"
 #include "vtkBanyanVolumeMapper.h"
 
 #include "vtkVolumeProperty.h"
@@ -87,6 +88,11 @@ void vtkBanyanVolumeRepresentation::SetSpecularPower(double power)
 void vtkBanyanVolumeRepresentation::SetInterpolationType(int type)
 {
   this->InterpolationType = type;
+}
+
+void vtkBanyanVolumeRepresentation::SetMarkCoarsePictures(bool marks)
+{
+  this->Prop->SetMarksCoarse(marks);
 }
 
 void vtkBanyanVolumeRepresentation::SetNearestPoint(bool nearest)

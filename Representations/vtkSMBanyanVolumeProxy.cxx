@@ -2,17 +2,23 @@
 #include "vtkSMBanyanVolumeProxy.h"
 
 #include "OptionsWithoutEffect.h"
+#include "PictureTicket.h"
+#include "ServedWindow.h"
+#include "vtkBanyanVolumeRepresentation.h"
 
+#include "vtkClientServerStream.h"
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPVSession.h"
 #include "vtkSMArrayListDomain.h"
 #include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxyManager.h"
+#include "vtkSMRenderViewProxy.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMTransferFunctionManager.h"
 #include "vtkSMViewProxy.h"
@@ -74,6 +80,8 @@ std::set<vtkSMProxy*> ViewsOf(vtkSMProxy* display)
 
 } // namespace
 
+vtkSMBanyanVolumeProxy::vtkSMBanyanVolumeProxy() = default;
+
 vtkSMBanyanVolumeProxy::~vtkSMBanyanVolumeProxy()
 {
   if (this->View)
@@ -130,6 +138,9 @@ void vtkSMBanyanVolumeProxy::ViewUpdated(vtkSMProxy* view)
       this->View->RemoveObserver(this->ViewObserver);
     }
     this->View = view;
+    auto* const window = vtkSMRenderViewProxy::SafeDownCast(view);
+    this->Window =
+      banyan::HasServer(window) ? std::make_unique<banyan::ServedWindow>(this, window) : nullptr;
     this->ViewObserver =
       view->AddObserver(vtkCommand::EndEvent, this, &vtkSMBanyanVolumeProxy::FrameDrawn);
   }
@@ -204,11 +215,58 @@ void vtkSMBanyanVolumeProxy::ColorsChanged()
 
 void vtkSMBanyanVolumeProxy::FrameDrawn(vtkObject*, unsigned long, void* interactive)
 {
-  vtkSMProxy* const statistics = this->GetSubProxy("Statistics");
   const bool isMoving = interactive && *static_cast<int*>(interactive) != 0;
   // Scripts ask for them themselves.
-  if (statistics && !isMoving && IsInWindow() && this->IsShown())
+  const bool isServed = this->Window && this->Window->IsServed();
+  if (!isMoving && !isServed && IsInWindow() && this->IsShown())
+  {
+    this->FetchStatistics();
+  }
+}
+
+void vtkSMBanyanVolumeProxy::FetchStatistics()
+{
+  if (vtkSMProxy* const statistics = this->GetSubProxy("Statistics"))
   {
     statistics->UpdatePropertyInformation();
   }
+}
+
+bool vtkSMBanyanVolumeProxy::IsDecoupled()
+{
+  return this->IsShown() && vtkSMPropertyHelper(this, "Decoupled").GetAsInt() != 0;
+}
+
+void vtkSMBanyanVolumeProxy::SetServed(bool served, vtkSMProxy* view)
+{
+  vtkClientServerStream stream;
+  stream << vtkClientServerStream::Invoke << VTKOBJECT(this) << "SetServed" << (served ? 1 : 0)
+         << vtkClientServerStream::End;
+  this->ExecuteStream(stream);
+  view->MarkDirty(this);
+}
+
+void vtkSMBanyanVolumeProxy::SendTicket(const banyan::PictureTicket& ticket)
+{
+  const auto numbers = ticket.ToNumbers();
+  const std::vector<unsigned int> words = ticket.DepthWords();
+  vtkClientServerStream stream;
+  stream << vtkClientServerStream::Invoke << VTKOBJECT(this) << "TakeTicket"
+         << vtkClientServerStream::InsertArray(numbers.data(), static_cast<int>(numbers.size()))
+         << static_cast<unsigned int>(words.size())
+         << vtkClientServerStream::InsertArray(words.data(), static_cast<int>(words.size()))
+         << vtkClientServerStream::End;
+  this->ExecuteStream(stream, /*ignore_errors=*/false, vtkPVSession::RENDER_SERVER);
+}
+
+vtkMTimeType vtkSMBanyanVolumeProxy::GetPictureMTime()
+{
+  auto* const display = vtkBanyanVolumeRepresentation::SafeDownCast(this->GetClientSideObject());
+  return display ? display->GetPictureMTime() : 0;
+}
+
+std::shared_ptr<banyan::PicturesAtHand> vtkSMBanyanVolumeProxy::GetPictures()
+{
+  auto* const display = vtkBanyanVolumeRepresentation::SafeDownCast(this->GetClientSideObject());
+  return display ? display->GetPictures() : nullptr;
 }

@@ -25,8 +25,16 @@
 #include "vtkSMRepresentationProxy.h"
 #include "vtkWeakPointer.h" // for members
 
+#include <memory> // for members
 #include <set>    // for members
 #include <string> // for members
+
+namespace banyan
+{
+class PicturesAtHand;
+class ServedWindow;
+struct PictureTicket;
+}
 
 class vtkSMPVRepresentationProxy;
 
@@ -39,8 +47,23 @@ public:
 
   void ViewUpdated(vtkSMProxy* view) override;
 
+  ///@{
+  /** Whether the display is shown as "Banyan Volume", and its window need not wait. */
+  bool IsDecoupled();
+  /** Tells all processes whether the next pictures of the view come as messages. */
+  void SetServed(bool served, vtkSMProxy* view);
+  /** Sends a ticket to all ranks of the server; nobody waits for it. */
+  void SendTicket(const banyan::PictureTicket& ticket);
+  /** What SetServed has made on the client. */
+  std::shared_ptr<banyan::PicturesAtHand> GetPictures();
+  /** Changes with all of the display that a picture shows, but for the camera. */
+  vtkMTimeType GetPictureMTime();
+  /** Brings the statistics of the last frame to the client. */
+  void FetchStatistics();
+  ///@}
+
 protected:
-  vtkSMBanyanVolumeProxy() = default;
+  vtkSMBanyanVolumeProxy();
   ~vtkSMBanyanVolumeProxy() override;
 
   void CreateVTKObjects() override;
@@ -57,8 +80,9 @@ private:
   void ColorsChanged();
   void FrameDrawn(vtkObject* view, unsigned long event, void* interactive);
 
-  std::set<std::string> Said;      ///< properties without effect
-  vtkWeakPointer<vtkSMProxy> View; ///< whose frames are observed
+  std::unique_ptr<banyan::ServedWindow> Window; ///< of the view; null where it cannot be served
+  std::set<std::string> Said;                   ///< properties without effect
+  vtkWeakPointer<vtkSMProxy> View;              ///< whose frames are observed
   unsigned long ViewObserver = 0;
   vtkWeakPointer<vtkSMProxy> MapOfBar; ///< whose scalar bar was shown when the array was chosen
 };

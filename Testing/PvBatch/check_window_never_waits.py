@@ -28,6 +28,7 @@ class Window:
         self.display = picture_scenes.volume(wavelet, self.view, "RTData")
         self.display.ImageErrorTolerance = 0.1  # takes longer than one waits for
         self.display.Shade = 1
+        self.display.MarkCoarsePictures = 1
         self.interactor = self.view.GetInteractor()
         self.window = self.view.GetRenderWindow()
         self.renders = 0
@@ -132,6 +133,7 @@ class Window:
     def save(self):
         """Whoever saves a picture gets the exact one, and the window goes on."""
         yield from self.drag(2)
+        session.require(pictures.is_marked(self.grab("coarse")), "a coarse picture has a mark")
         path = os.path.join(self.folder, "saved.png")
         simple.SaveScreenshot(path, self.view, ImageResolution=list(self.window.GetSize()))
         saved = pictures.load(path)

@@ -38,6 +38,11 @@ def difference(a, b):
     return numpy.abs(a - b).max(axis=2)
 
 
+def is_marked(picture):
+    """Whether the upper right corner has the mark of a coarse picture."""
+    return (numpy.abs(picture[-12, -12] - (255, 150, 0)) < 3).all()
+
+
 def require_near(path, reference, allowed=1):
     """The picture of a file is that of another one, up to so many of 255."""
     error = difference(load(reference), load(path))

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs a Python script in ParaView: builtin, on the ranks of pvbatch, as client of a pvserver, or in the window.
+"""Runs a Python script in ParaView: builtin, on the ranks of pvbatch, as client of a pvserver, in the window, or in the
+window as client of a pvserver (served).
 
-    run_paraview.py [--mode builtin|batch|server|window] [--ranks N] [--seconds S] [--server-option O ...]
+    run_paraview.py [--mode builtin|batch|server|window|served] [--ranks N] [--seconds S] [--server-option O ...]
                     -- SCRIPT [ARGUMENTS]
 
 Nothing may hang: every process it starts is ended when the time is over. The script of a client
@@ -146,20 +147,20 @@ if status or not getattr(sys.modules.get("session"), "driven", False):
 """
 
 
-def run_in_window(command, deadline):
+def run_in_window(command, run):
+    """Hands the command of a window that runs a script to `run`."""
     with tempfile.TemporaryDirectory() as home:
         script = os.path.join(home, "in_window.py")
         with open(script, "w", encoding="utf-8") as file:
             file.write(IN_WINDOW.format(command=command))
         # Without the settings of the user; the dialog that welcomes new ones is modal.
-        environment = dict(os.environ, HOME=home, XDG_CONFIG_HOME=home, XDG_RUNTIME_DIR=home)
-        paraview = ["paraview", "--disable-registry", "--script=" + script]
-        return wait(start(paraview, env=environment), deadline)
+        os.environ.update(HOME=home, XDG_CONFIG_HOME=home, XDG_RUNTIME_DIR=home)
+        return run(["paraview", "--disable-registry", "--script=" + script])
 
 
 def main():
     parser = argparse.ArgumentParser(usage=__doc__)
-    parser.add_argument("--mode", choices=("builtin", "batch", "server", "window"), default="builtin")
+    parser.add_argument("--mode", choices=("builtin", "batch", "server", "window", "served"), default="builtin")
     parser.add_argument("--ranks", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=120)
     parser.add_argument("--server-option", action="append", default=[], help="as --server-option=-tdx=2")
@@ -172,7 +173,10 @@ def main():
     if arguments.mode == "server":
         return run_client(python + arguments.command, arguments.ranks, arguments.server_option, deadline)
     if arguments.mode == "window":
-        return run_in_window(arguments.command, deadline)
+        return run_in_window(arguments.command, lambda window: wait(start(window), deadline))
+    if arguments.mode == "served":
+        return run_in_window(arguments.command, lambda window: run_client(
+            window, arguments.ranks, arguments.server_option, deadline))
     if arguments.mode == "batch":
         return wait(start(mpi(arguments.ranks) + ["pvbatch"] + arguments.command), deadline)
     return wait(start(python + arguments.command), deadline)

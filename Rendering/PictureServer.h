@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Rendering_PictureServer_h
+#define banyan_Rendering_PictureServer_h
+
+#include "PictureTicket.h"
+
+#include "Parallel/Composite/ParcelAssembly.h"
+
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+
+class vtkBanyanVolumeMapper;
+class vtkVolume;
+
+namespace banyan
+{
+
+class VolumeFrame;
+struct RayScene;
+struct MapperState;
+
+/// Draws pictures of a volume for a client that shows them, on all ranks of its server. Nothing
+/// waits: between two tickets the ranks do what else they are told, while threads draw.
+class PictureServer
+{
+public:
+  /// The line to the client; used on rank 0 alone.
+  struct Line
+  {
+    std::function<void(const Bytes& message)> Send; ///< at most PictureParcel::MostBytes
+    std::function<bool()> HasMore;                  ///< whether the client has sent more
+  };
+
+  /// @param mapper and volume have to stay
+  PictureServer(vtkBanyanVolumeMapper* mapper, vtkVolume* volume);
+  ~PictureServer();
+  PictureServer(const PictureServer&) = delete;
+  PictureServer& operator=(const PictureServer&) = delete;
+
+  /// Collective: draws what can be had at once, sends what may be sent, and works on the exact
+  /// picture until it is there, or the client has sent more. The mapper has its input. What
+  /// fails is sent as a sentence, and thrown nowhere.
+  void Take(const PictureTicket& ticket, const Line& line);
+
+private:
+  /// Something for the client, of which a part was sent.
+  struct Parcel
+  {
+    PictureParcel Head;
+    Bytes Content;
+    std::size_t Sent = 0;
+  };
+
+  void Draw();
+  void AddDepths(RayScene& scene, RayScene& coarse) const;
+  void Rename();
+  void Publish();
+  void Put(PictureParcel::Kinds kind, Bytes content);
+  void Answer(const Line& line, int& credit);
+
+  vtkBanyanVolumeMapper* Mapper;
+  vtkVolume* Volume;
+  std::unique_ptr<VolumeFrame> Drawn; ///< of the last scene
+  PictureTicket Asked;                ///< with the last scene
+  int Number = 0;                     ///< of the last ticket
+  bool HasAnswered = false;           ///< the last ticket
+  int Burst = 0;                      ///< of messages
+  int ExactScene = 0;                 ///< that the client has, or will have, an exact picture of
+  std::deque<Parcel> Waiting;         ///< on rank 0
+};
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Rendering_PicturesAtHand_h
+#define banyan_Rendering_PicturesAtHand_h
+
+#include "FramebufferExchange.h"
+#include "RendererCamera.h"
+
+#include "Render/Scene/BytePicture.h"
+#include "Render/Scene/DepthPicture.h"
+
+#include <optional>
+
+class vtkRenderer;
+class vtkVolume;
+class vtkWindow;
+
+namespace banyan
+{
+
+/// Pictures of a volume that others have drawn, and the window that shows the best of them at once:
+/// the exact one of its view; else that of another view, if the eye is the same; else a coarse one
+/// of the view; else the newest one, as if it were painted on a plane through the point that the
+/// camera looks at.
+class PicturesAtHand
+{
+public:
+  struct Picture
+  {
+    int Scene = 0;   ///< larger is newer
+    int Content = 0; ///< differs where values or functions may do
+    bool Exact = false;
+    ScreenView View; ///< that it is the picture of
+    BytePicture Bytes;
+  };
+
+  /// Takes the place of an older one of its kind.
+  void Put(Picture picture);
+  /// The last exact picture is that of another view, too: clipping planes may have moved, say.
+  void PutSame(int scene, int content, const ScreenView& view);
+
+  /// What is shown now.
+  struct Shown
+  {
+    int Scene = 0;       ///< 0 for nothing
+    bool Exact = false;  ///< of the exact picture of the view
+    bool OfView = false; ///< the view's own picture, exact or coarse
+  };
+  /// @param renderer whose window gets the picture over what is drawn
+  /// @param own prop of the volume
+  void Show(vtkRenderer* renderer, vtkVolume* own);
+  const Shown& LastShown() const { return this->Last; }
+  /// Where other props were when the volume was shown last: rays of its view end there.
+  DepthPicture OthersInView() const { return this->Others.Trimmed(); }
+  /// Whether there may be some.
+  bool HasOthersInView() const { return !this->Others.Rect.Empty(); }
+
+  void ReleaseGraphicsResources(vtkWindow* window);
+
+private:
+  void ReadOthers(vtkRenderer* renderer, vtkVolume* own, const PixelRect& all);
+  static bool IsSharpIn(const ScreenView& view, const Picture& picture);
+  const Picture* Best(const ScreenView& view) const;
+  void Write(vtkRenderer* renderer, const BytePicture& bytes);
+
+  std::optional<Picture> Exact;
+  std::optional<Picture> Coarse;
+  Shown Last;
+  FramebufferExchange Framebuffer;
+  DepthPicture Others;             ///< in the last view
+  std::vector<OpaquePixel> Pixels; ///< kept for its memory
+};
+
+/// Whether two views are of one picture, whatever its size.
+bool IsSameView(const ScreenView& a, const ScreenView& b);
+
+} // namespace banyan
+
+#endif

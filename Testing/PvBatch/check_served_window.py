@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Checks in the window of a client that the camera moves without the server, and that pictures become exact by
+themselves: those that a screenshot, which waits, has."""
+import ctypes
+import os
+import time
+
+from paraview import simple
+from vtkmodules.vtkIOImage import vtkPNGWriter
+from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
+
+import picture_scenes
+import pictures
+import session
+
+PATIENCE = 60.0  # seconds for what comes by itself
+# Qt of this process, which has no name in Python: QCoreApplication::processEvents of all events.
+turn_event_loop = getattr(ctypes.CDLL(None), "_ZN16QCoreApplication13processEventsE6QFlagsIN10QEventLoop17ProcessEventsFlagEE")
+
+
+class ServedWindow:
+    def __init__(self, folder):
+        self.folder = folder
+        self.view = simple.GetActiveViewOrCreate("RenderView")  # others than the window's own are not drawn
+        self.view.UseFXAA = 0
+        wavelet = simple.Wavelet(WholeExtent=[-60, 60, -60, 60, -60, 60])
+        self.display = picture_scenes.volume(wavelet, self.view, "RTData")
+        self.display.Shade = 1
+        self.display.MarkCoarsePictures = 1
+        self.interactor = self.view.GetInteractor()
+        self.window = self.view.GetRenderWindow()
+        self.asked = 0  # pictures that ParaView asks all processes for when the mouse has moved
+        self.moves = False
+        self.drawn = 0  # that the window has drawn
+        self.view.SMProxy.AddObserver("StartEvent", self.count_asked)
+        self.window.AddObserver("EndEvent", self.count_drawn)
+        self.place = [200, 200]
+        self.worst = 1  # of 255
+        self.others = 0  # pixels that may differ more
+
+    def count_asked(self, *_):
+        self.asked += self.moves
+
+    def count_drawn(self, *_):
+        self.drawn += 1
+
+    def wait(self, seconds):
+        """Turns the window's event loop."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            turn_event_loop(0)
+            time.sleep(0.005)
+
+    def mouse(self, event):
+        self.interactor.SetEventInformation(*self.place, 0, 0, chr(0), 0, None)
+        self.interactor.InvokeEvent(event)
+
+    def move(self, times):
+        for _ in range(times):
+            self.place = [self.place[0] + 5, self.place[1] + 2]
+            self.moves = True
+            self.mouse("MouseMoveEvent")
+            self.moves = False
+            self.wait(0.04)
+
+    def is_exact(self):
+        self.display.UpdatePropertyInformation()
+        return self.display.GetPropertyValue("PictureIsExact") == 1
+
+    def require_exact(self, what):
+        end = time.monotonic() + PATIENCE
+        while not self.is_exact():
+            session.require(time.monotonic() < end, f"{what} becomes exact by itself")
+            self.wait(0.1)
+        # The window shows it: nothing is drawn any more.
+        self.wait(0.2)
+        drawn = self.drawn
+        self.wait(0.5)
+        session.require(self.drawn == drawn, f"{what} stays as it is")
+
+    def shown(self, name):
+        """What the window shows, without drawing again."""
+        path = os.path.join(self.folder, name + ".png")
+        image = vtkWindowToImageFilter()
+        image.SetInput(self.window)
+        image.ShouldRerenderOff()
+        image.ReadFrontBufferOff()
+        writer = vtkPNGWriter()
+        writer.SetInputConnection(image.GetOutputPort())
+        writer.SetFileName(path)
+        writer.Write()
+        return pictures.load(path)
+
+    def saved(self, name):
+        path = os.path.join(self.folder, name + ".png")
+        simple.SaveScreenshot(path, self.view)
+        return pictures.load(path)
+
+    def drag(self, what, meanwhile=lambda: None):
+        self.mouse("LeftButtonPressEvent")
+        self.move(2)  # the first one after something else may be ParaView's
+        asked, drawn = self.asked, self.drawn
+        self.move(10)
+        session.require(self.asked == asked, f"{what}: no move waits for the server")
+        session.require(self.drawn >= drawn + 10, f"{what}: each move is drawn ({self.drawn - drawn} of 10)")
+        meanwhile()
+        self.move(3)
+        moving = self.shown(what + " moving")
+        self.mouse("LeftButtonReleaseEvent")
+        self.require_exact(what)
+        still = self.shown(what)
+        session.require(pictures.is_marked(moving) and not pictures.is_marked(still), f"{what}: coarse pictures have a mark")
+        self.require_same(what, still)
+        session.require(still.std() > 5, f"{what}: the window shows a volume")
+        return moving, still
+
+    def require_same(self, what, shown):
+        differences = pictures.difference(shown, self.saved(what + " saved"))
+        session.require((differences > self.worst).sum() <= self.others,
+                        f"{what}: the window shows what a screenshot has ({differences.max()})")
+
+    def require_waits(self, what):
+        simple.Render(self.view)
+        asked = self.asked
+        self.mouse("LeftButtonPressEvent")
+        self.move(3)
+        self.mouse("LeftButtonReleaseEvent")
+        session.require(self.asked == asked + 3, f"{what}: the window waits for the server ({self.asked - asked} of 3)")
+        self.require_exact(what)
+        self.require_same(what, self.shown(what))
+
+    def run(self):
+        simple.ResetCamera(self.view)
+        simple.Render(self.view)
+        moving, still = self.drag("turned")
+        session.require(pictures.psnr(moving, still) > 15, "a picture of a moving camera resembles the still one")
+        session.require((moving != still).any(), "a picture of a moving camera is not the still one")
+
+        kept = {}
+
+        def save():
+            kept["moving"] = self.saved("saved while moving")
+            kept["camera"] = list(self.view.GetActiveCamera().GetPosition())
+
+        self.drag("saved", save)
+        camera = self.view.GetActiveCamera()
+        camera.SetPosition(*kept["camera"])
+        camera.OrthogonalizeViewUp()
+        simple.Render(self.view)
+
+        opacity = self.display.ScalarOpacityFunction
+        points = list(opacity.Points)
+
+        def change():
+            opacity.Points = points[:4] + [value * (0.3 if i % 4 == 1 else 1.0) for i, value in enumerate(points[4:])]
+
+        _, changed = self.drag("other opacities", change)
+        session.require(pictures.difference(changed, still).max() > 20, "other opacities are shown")
+
+        # Rays end in other data, wherever those are. The volume is rounded before it is blended over them, and where
+        # they meet, ParaView may decide otherwise on several ranks.
+        self.worst, self.others = 2, 4
+        sphere = simple.Sphere(Radius=25.0, Center=[40.0, 10.0, 20.0], ThetaResolution=40, PhiResolution=40)
+        simple.Show(sphere, self.view).DiffuseColor = [0.0, 1.0, 0.0]
+        plane = simple.Plane(Origin=[-70, -70, 5], Point1=[70, -70, 5], Point2=[-70, 70, 5])
+        simple.Show(plane, self.view).DiffuseColor = [1.0, 1.0, 1.0]
+        simple.Render(self.view)
+        _, others = self.drag("with other data")
+        session.require(pictures.difference(others, changed).max() > 50, "other data are shown")
+        self.view.LODThreshold = 0.0
+        self.drag("with coarse other data")
+        if simple.servermanager.ActiveConnection.GetNumberOfDataPartitions() == 1:
+            # ParaView draws some ticks at other pixels on several ranks.
+            self.view.AxesGrid.Visibility = 1
+            self.drag("with a grid of axes")
+            self.view.AxesGrid.Visibility = 0
+
+        threshold = self.view.RemoteRenderThreshold
+        self.view.RemoteRenderThreshold = 1e-3
+        self.require_waits("with more data than a client gets")
+        session.require(pictures.difference(self.shown("remote"), changed).max() > 50, "the server shows other data")
+        self.view.RemoteRenderThreshold = threshold
+
+        wavelet = simple.Wavelet(WholeExtent=[-10, 10, -10, 10, -10, 10])
+        picture_scenes.volume(wavelet, self.view, "RTData")
+        self.require_waits("with a second volume")
+        simple.Hide(wavelet, self.view)
+
+        link = simple.CreateView("RenderView")
+        simple.SetActiveView(self.view)
+        simple.AddCameraLink(self.view, link, "follows")
+        self.require_waits("with a camera that another view follows")
+        simple.RemoveCameraLink("follows")
+        simple.Delete(link)
+        simple.Hide(sphere, self.view)
+        simple.Hide(plane, self.view)
+        simple.Render(self.view)
+        self.worst, self.others = 1, 0
+        self.drag("alone again")
+
+
+def main():
+    parser = session.parser(__doc__)
+    parser.add_argument("--out", required=True)
+    arguments = parser.parse_args()
+    os.makedirs(arguments.out, exist_ok=True)
+    session.begin(arguments)
+    ServedWindow(arguments.out).run()
+    print("ok: the window does not wait")
+
+
+if __name__ == "__main__":
+    main()
