@@ -7,6 +7,7 @@
 #include "vtkColorTransferFunction.h"
 #include "vtkDiscretizableColorTransferFunction.h"
 #include "vtkPiecewiseFunction.h"
+#include "vtkSmartPointer.h"
 #include "vtkVariant.h"
 #include "vtkVolumeProperty.h"
 
@@ -146,6 +147,55 @@ double WithLogarithm(double value, double lowest)
   return value < lowest && lowest > 0.0 ? 0.5 * lowest : value;
 }
 
+/// The values of a piecewise function, as VTK gives them. VTK goes through all nodes from the first
+/// one for each value: here a function of two nodes is asked, and the right two are found at once.
+class PiecewiseValues
+{
+public:
+  explicit PiecewiseValues(vtkPiecewiseFunction* function)
+    : Function(function)
+    , Pairs(static_cast<std::size_t>(function->GetSize()))
+    , Lowest(function->GetUseLogScale() ? function->GetRange()[0] : -VTK_DOUBLE_MAX)
+  {
+    double node[4];
+    for (int i = 0; i < function->GetSize(); ++i)
+    {
+      function->GetNodeValue(i, node);
+      this->Nodes.push_back(node[0]);
+    }
+  }
+
+  double operator()(double value)
+  {
+    const double known = WithLogarithm(value, this->Lowest);
+    const auto above = std::lower_bound(this->Nodes.begin(), this->Nodes.end(), known);
+    if (above == this->Nodes.begin() || above == this->Nodes.end())
+    {
+      return this->Function->GetValue(known);
+    }
+    const auto at = static_cast<int>(above - this->Nodes.begin());
+    vtkSmartPointer<vtkPiecewiseFunction>& pair = this->Pairs[static_cast<std::size_t>(at)];
+    if (!pair)
+    {
+      pair = vtkSmartPointer<vtkPiecewiseFunction>::New();
+      pair->SetUseLogScale(this->Function->GetUseLogScale());
+      for (const int i : { at - 1, at })
+      {
+        double node[4];
+        this->Function->GetNodeValue(i, node);
+        pair->AddPoint(node[0], node[1], node[2], node[3]);
+      }
+    }
+    return pair->GetValue(known);
+  }
+
+private:
+  vtkPiecewiseFunction* Function;
+  std::vector<double> Nodes;
+  std::vector<vtkSmartPointer<vtkPiecewiseFunction>> Pairs; ///< that end at each node
+  double Lowest;
+};
+
 /// The colours of a property, as VTK gives them.
 class ColoursOfProperty
 {
@@ -226,13 +276,12 @@ TransferFunction MakeTransferFunction(vtkVolumeProperty* property)
   std::vector<double> corners;
   const ColoursOfProperty colours(property, corners);
   AddCorners(opacity, corners);
-  const double lowest = opacity->GetUseLogScale() ? opacity->GetRange()[0] : -VTK_DOUBLE_MAX;
+  PiecewiseValues opacities(opacity);
   const auto function = [&](double value)
   {
     double rgb[3];
     colours.Get(value, rgb);
-    const double alpha = opacity->GetValue(WithLogarithm(value, lowest));
-    return glm::dvec4(rgb[0], rgb[1], rgb[2], std::clamp(alpha, 0.0, 1.0));
+    return glm::dvec4(rgb[0], rgb[1], rgb[2], std::clamp(opacities(value), 0.0, 1.0));
   };
   TransferFunction table = TabulateFunction(function, std::move(corners), colours.EqualParts());
   table.UnitDistance = property->GetScalarOpacityUnitDistance(0);
