@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LineToClient.h"
 
+#include "Base/Timer.h"
+
 #include "vtkClientSocket.h"
 #include "vtkMultiProcessController.h"
+#include "vtkNetworkAccessManager.h"
 #include "vtkPVSession.h"
 #include "vtkProcessModule.h"
 #include "vtkSocketCommunicator.h"
@@ -52,6 +55,17 @@ PictureServer::Line LineToClient()
   };
   line.HasMore = [client] { return HasMore(client); };
   return line;
+}
+
+void ReadMessages(double seconds)
+{
+  vtkNetworkAccessManager* const network =
+    vtkProcessModule::GetProcessModule()->GetNetworkAccessManager();
+  const Timer timer;
+  while (timer.Seconds() < seconds && network->GetNetworkEventsAvailable())
+  {
+    network->ProcessEvents(1);
+  }
 }
 
 } // namespace banyan

@@ -11,6 +11,9 @@ namespace banyan
 /// client by the number PictureParcel::Tag. Without a client they are dropped.
 PictureServer::Line LineToClient();
 
+/// The client's end: calls what has come from the server, for about so many seconds at most.
+void ReadMessages(double seconds);
+
 } // namespace banyan
 
 #endif

@@ -93,6 +93,12 @@ bool IsServable(vtkSMBanyanVolumeProxy* volume, vtkSMRenderViewProxy* view)
          IsOnlyVolume(volume->GetTrueParentProxy(), view);
 }
 
+bool IsIdle(vtkSMProxy* proxy)
+{
+  vtkSMSessionClient* const session = SessionOf(proxy);
+  return session && session->GetIsAlive() && !session->GetPendingProgress();
+}
+
 bool IsRemote(vtkSMRenderViewProxy* view)
 {
   vtkPVRenderView* const drawn = OfClient(view);

@@ -26,6 +26,9 @@ bool HasServer(vtkSMRenderViewProxy* view);
 /// the window is one whose event loop turns, and somebody looks at it.
 bool IsServable(vtkSMBanyanVolumeProxy* volume, vtkSMRenderViewProxy* view);
 
+/// Whether a client may send a message, and draw a window, without coming between ParaView's own.
+bool IsIdle(vtkSMProxy* proxy);
+
 /// Whether the server renders what the view shows now, or while the camera moves: there are too
 /// many other data for a client.
 bool IsRemote(vtkSMRenderViewProxy* view);

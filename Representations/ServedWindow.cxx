@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ServedWindow.h"
 
+#include "LineToClient.h"
 #include "vtkBanyanVolumeRepresentation.h"
 #include "vtkSMBanyanVolumeProxy.h"
 
@@ -9,10 +10,8 @@
 
 #include "vtkCommand.h"
 #include "vtkMultiProcessController.h"
-#include "vtkNetworkAccessManager.h"
 #include "vtkPVRenderView.h"
 #include "vtkPVSession.h"
-#include "vtkProcessModule.h"
 #include "vtkRenderWindowInteractor.h"
 #include "vtkRenderer.h"
 #include "vtkSMRenderViewProxy.h"
@@ -50,13 +49,6 @@ int NextNumber()
   return ++last;
 }
 
-/// Whether a message may be sent, and a window drawn, without coming between ParaView's own.
-bool IsIdle(vtkSMProxy* proxy)
-{
-  vtkSMSessionClient* const session = SessionOf(proxy);
-  return session && session->GetIsAlive() && !session->GetPendingProgress();
-}
-
 } // namespace
 
 ServedWindow::ServedWindow(vtkSMBanyanVolumeProxy* proxy, vtkSMRenderViewProxy* view)
@@ -65,6 +57,7 @@ ServedWindow::ServedWindow(vtkSMBanyanVolumeProxy* proxy, vtkSMRenderViewProxy* 
   , Server(SessionOf(view)->GetController(vtkPVSession::RENDER_SERVER_ROOT))
   , Display(NextNumber())
   , Steps(OfClient(view)->GetViewTime())
+  , Functions([this] { this->FunctionsHaveChanged(); })
 {
   Windows().insert(this);
   this->Observe();
@@ -171,8 +164,10 @@ void ServedWindow::AfterRender(vtkObject*, unsigned long, void* interactive)
 {
   const bool moves = interactive && *static_cast<int*>(interactive) != 0;
   this->HasLod = moves;
+  this->HasOtherFunctions = false;
   if (this->IsServed())
   {
+    this->Functions.Watch(this->Proxy->GetTrueParentProxy());
     this->Want(moves, /*mayHaveChanged=*/true);
     this->StartTimer();
   }
@@ -351,18 +346,6 @@ void ServedWindow::Fail(const std::string& sentence)
   }
 }
 
-/// Reads what has come from the server.
-void ServedWindow::Pump()
-{
-  vtkNetworkAccessManager* const network =
-    vtkProcessModule::GetProcessModule()->GetNetworkAccessManager();
-  const banyan::Timer timer;
-  while (timer.Seconds() < PumpSeconds && network->GetNetworkEventsAvailable())
-  {
-    network->ProcessEvents(1);
-  }
-}
-
 void ServedWindow::DrawAlone(bool exact)
 {
   vtkPVRenderView* const view = OfClient(this->View);
@@ -393,7 +376,7 @@ void ServedWindow::Look(vtkObject*, unsigned long, void* timer)
   }
   const vtkSmartPointer<vtkSMBanyanVolumeProxy> stays(this->Proxy);
   this->Busy = true;
-  this->Pump();
+  ReadMessages(PumpSeconds);
   this->Busy = false;
   if (!this->Served || !this->View || !IsIdle(this->Proxy))
   {
@@ -414,11 +397,32 @@ void ServedWindow::Look(vtkObject*, unsigned long, void* timer)
   this->GoOn();
 }
 
+/// Somebody drags a point of a function, or ParaView has changed it, and will render.
+void ServedWindow::FunctionsHaveChanged()
+{
+  this->HasOtherFunctions = this->IsServed();
+  if (this->HasOtherFunctions)
+  {
+    this->StartTimer();
+  }
+}
+
+void ServedWindow::ShowFunctions()
+{
+  this->HasOtherFunctions = false;
+  this->Proxy->SendFunctions();
+  this->Want(/*moves=*/true, /*mayHaveChanged=*/true);
+}
+
 void ServedWindow::GoOn()
 {
   if (this->Number - this->Seen >= MostUnseen)
   {
     return;
+  }
+  if (this->HasOtherFunctions && !this->View->GetNeedsUpdate())
+  {
+    this->ShowFunctions();
   }
   if (this->IsNew || (this->IsMissing() && this->SinceTicket.Seconds() > GoOnSeconds))
   {

@@ -2,6 +2,7 @@
 #ifndef banyan_Representations_ServedWindow_h
 #define banyan_Representations_ServedWindow_h
 
+#include "LiveFunctions.h"
 #include "PictureTicket.h"
 #include "PicturesAtHand.h"
 #include "ServableView.h"
@@ -63,6 +64,8 @@ private:
   void BeginMoves() { this->Moving = true; }
   void EndMoves() { this->Moving = false; }
   void TryAgain() { this->Failure.clear(); }
+  void FunctionsHaveChanged();
+  void ShowFunctions();
   void Look(vtkObject* caller, unsigned long event, void* timer);
 
   void Want(bool moves, bool mayHaveChanged);
@@ -70,7 +73,6 @@ private:
   void AddDepths(PictureTicket& ticket);
   int CoarseEvery() const;
   void GoOn();
-  void Pump();
   void Take(const void* message, std::size_t bytes);
   void Take(ParcelAssembly::Whole whole);
   void Fail(const std::string& sentence);
@@ -103,6 +105,8 @@ private:
   };
 
   StepWatch Steps;
+  LiveFunctions Functions;
+  bool HasOtherFunctions = false; ///< that the server has not
 
   ScreenView Wanted;
   bool WantsMoves = false;

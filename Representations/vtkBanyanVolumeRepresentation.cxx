@@ -192,8 +192,7 @@ int vtkBanyanVolumeRepresentation::ProcessViewRequest(
   }
   if (request == vtkPVView::REQUEST_UPDATE())
   {
-    auto* const view = vtkPVRenderView::SafeDownCast(this->GetView());
-    this->Prop->SetView(view);
+    this->Prop->SetView(vtkPVRenderView::SafeDownCast(this->GetView()));
     // Data stay where they are, and ParaView does not count them when it decides who renders.
     vtkPVRenderView::SetPiece(inInfo, this, banyan::HeldPiece::Of(this->Piece));
     // Placed as it is drawn: a client without data takes its clipping planes from here.
@@ -320,11 +319,12 @@ void vtkBanyanVolumeRepresentation::PlaceCroppingBox()
   this->Mapper->SetCroppingRegionPlanes(planes);
 }
 
-/// ParaView itself renders when a drag has ended.
+/// ParaView itself renders when a drag has ended. Functions of a server are others: LiveFunctions.
 void vtkBanyanVolumeRepresentation::FunctionChanged()
 {
   auto* const view = vtkPVRenderView::SafeDownCast(this->GetView());
-  if (view && this->GetVisibility())
+  if (view && this->GetVisibility() && !this->Prop->HasPictures() &&
+      !view->GetUseDistributedRenderingForRender())
   {
     this->Mapper->RenderSoon(view->GetRenderWindow());
   }

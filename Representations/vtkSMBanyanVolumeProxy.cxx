@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSMBanyanVolumeProxy.h"
 
+#include "LiveFunctions.h"
 #include "OptionsWithoutEffect.h"
 #include "PictureTicket.h"
 #include "ServedWindow.h"
@@ -256,6 +257,13 @@ void vtkSMBanyanVolumeProxy::SendTicket(const banyan::PictureTicket& ticket)
          << static_cast<unsigned int>(words.size())
          << vtkClientServerStream::InsertArray(words.data(), static_cast<int>(words.size()))
          << vtkClientServerStream::End;
+  this->ExecuteStream(stream, /*ignore_errors=*/false, vtkPVSession::RENDER_SERVER);
+}
+
+void vtkSMBanyanVolumeProxy::SendFunctions()
+{
+  vtkClientServerStream stream;
+  banyan::LiveFunctions::AppendPoints(this->GetTrueParentProxy(), stream);
   this->ExecuteStream(stream, /*ignore_errors=*/false, vtkPVSession::RENDER_SERVER);
 }
 

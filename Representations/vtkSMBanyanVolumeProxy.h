@@ -54,6 +54,8 @@ public:
   void SetServed(bool served, vtkSMProxy* view);
   /** Sends a ticket to all ranks of the server; nobody waits for it. */
   void SendTicket(const banyan::PictureTicket& ticket);
+  /** Gives the functions of the server the points that those of the client have now. */
+  void SendFunctions();
   /** What SetServed has made on the client. */
   std::shared_ptr<banyan::PicturesAtHand> GetPictures();
   /** Changes with all of the display that a picture shows, but for the camera. */

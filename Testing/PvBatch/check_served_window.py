@@ -30,6 +30,7 @@ class ServedWindow:
         self.interactor = self.view.GetInteractor()
         self.window = self.view.GetRenderWindow()
         self.asked = 0  # pictures that ParaView asks all processes for when the mouse has moved
+        self.asked_at_all = 0
         self.moves = False
         self.drawn = 0  # that the window has drawn
         self.view.SMProxy.AddObserver("StartEvent", self.count_asked)
@@ -40,6 +41,7 @@ class ServedWindow:
 
     def count_asked(self, *_):
         self.asked += self.moves
+        self.asked_at_all += 1
 
     def count_drawn(self, *_):
         self.drawn += 1
@@ -114,6 +116,31 @@ class ServedWindow:
         session.require(still.std() > 5, f"{what}: the window shows a volume")
         return moving, still
 
+    def drag_function(self):
+        """As the editor of the window does: the server is told when the drag ends."""
+        opacity = self.display.ScalarOpacityFunction
+        function = opacity.SMProxy.GetClientSideObject()
+        low, high = function.GetRange()
+        simple.Render(self.view)  # nobody drags before the window has been drawn after a screenshot
+        self.require_exact("a function before its drag")
+        before, asked = self.shown("before the function"), self.asked_at_all
+        for part in (0.4, 0.3, 0.2):
+            function.RemoveAllPoints()
+            function.AddPoint(low, 0.0)
+            function.AddPoint(low + part * (high - low), 0.8)
+            function.AddPoint(high, 1.0)
+            self.wait(0.15)
+        self.wait(0.5)
+        session.require(self.asked_at_all == asked, "a function that is dragged does not wait for the server")
+        dragged = self.shown("while the function is dragged")
+        session.require(pictures.difference(before, dragged).max() > 20, "the window follows a function")
+        opacity.Points = [low, 0.0, 0.5, 0.0, low + 0.2 * (high - low), 0.8, 0.5, 0.0, high, 1.0, 0.5, 0.0]
+        simple.Render(self.view)
+        self.require_exact("another function")
+        self.require_same("another function", self.shown("another function"))
+        worst = pictures.difference(dragged, self.shown("another function")).max()
+        session.require(worst <= 2, f"a function has the same picture before its drag ends ({worst})")
+
     def require_same(self, what, shown):
         differences = pictures.difference(shown, self.saved(what + " saved"))
         session.require((differences > self.worst).sum() <= self.others,
@@ -156,6 +183,8 @@ class ServedWindow:
 
         _, changed = self.drag("other opacities", change)
         session.require(pictures.difference(changed, still).max() > 20, "other opacities are shown")
+
+        self.drag_function()
 
         # Rays end in other data, wherever those are. The volume is rounded before it is blended over them, and where
         # they meet, ParaView may decide otherwise on several ranks.
