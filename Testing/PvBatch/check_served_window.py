@@ -3,6 +3,7 @@
 themselves: those that a screenshot, which waits, has."""
 import ctypes
 import os
+import signal
 import time
 
 from paraview import simple
@@ -16,6 +17,15 @@ import session
 PATIENCE = 60.0  # seconds for what comes by itself
 # Qt of this process, which has no name in Python: QCoreApplication::processEvents of all events.
 turn_event_loop = getattr(ctypes.CDLL(None), "_ZN16QCoreApplication13processEventsE6QFlagsIN10QEventLoop17ProcessEventsFlagEE")
+
+
+def is_server(process, port):
+    try:
+        with open(f"/proc/{process}/cmdline", encoding="utf-8") as file:
+            command = file.read().split("\0")
+    except OSError:
+        return False  # it has ended
+    return os.path.basename(command[0]) == "pvserver" and f"--server-port={port}" in command
 
 
 class ServedWindow:
@@ -111,7 +121,6 @@ class ServedWindow:
         self.mouse("LeftButtonReleaseEvent")
         self.require_exact(what)
         still = self.shown(what)
-        session.require(pictures.is_marked(moving) and not pictures.is_marked(still), f"{what}: coarse pictures have a mark")
         self.require_same(what, still)
         session.require(still.std() > 5, f"{what}: the window shows a volume")
         return moving, still
@@ -130,7 +139,7 @@ class ServedWindow:
             function.AddPoint(low + part * (high - low), 0.8)
             function.AddPoint(high, 1.0)
             self.wait(0.15)
-        self.wait(0.5)
+        self.require_exact("a function that is dragged")
         session.require(self.asked_at_all == asked, "a function that is dragged does not wait for the server")
         dragged = self.shown("while the function is dragged")
         session.require(pictures.difference(before, dragged).max() > 20, "the window follows a function")
@@ -140,6 +149,25 @@ class ServedWindow:
         self.require_same("another function", self.shown("another function"))
         worst = pictures.difference(dragged, self.shown("another function")).max()
         session.require(worst <= 2, f"a function has the same picture before its drag ends ({worst})")
+
+    def busy_server(self):
+        """Each move is drawn while the server answers nothing at all."""
+        port = os.environ["BANYAN_TEST_SERVER"].rpartition(":")[2]
+        servers = [int(process) for process in os.listdir("/proc") if process.isdigit() and is_server(process, port)]
+        session.require(servers, "there is a server")
+
+        def signal_all(what):
+            for process in servers:
+                os.kill(process, what)
+
+        def busy():
+            signal_all(signal.SIGSTOP)
+            drawn = self.drawn
+            self.move(10)
+            session.require(self.drawn >= drawn + 10, "each move is drawn while the server is busy")
+            signal_all(signal.SIGCONT)
+
+        self.drag("with a busy server", busy)
 
     def require_same(self, what, shown):
         differences = pictures.difference(shown, self.saved(what + " saved"))
@@ -160,6 +188,7 @@ class ServedWindow:
         simple.ResetCamera(self.view)
         simple.Render(self.view)
         moving, still = self.drag("turned")
+        session.require(pictures.is_marked(moving) and not pictures.is_marked(still), "coarse pictures have a mark")
         session.require(pictures.psnr(moving, still) > 15, "a picture of a moving camera resembles the still one")
         session.require((moving != still).any(), "a picture of a moving camera is not the still one")
 
@@ -185,10 +214,12 @@ class ServedWindow:
         session.require(pictures.difference(changed, still).max() > 20, "other opacities are shown")
 
         self.drag_function()
+        simple.Render(self.view)
+        self.busy_server()
 
         # Rays end in other data, wherever those are. The volume is rounded before it is blended over them, and where
         # they meet, ParaView may decide otherwise on several ranks.
-        self.worst, self.others = 2, 4
+        self.worst, self.others = 2, 30
         sphere = simple.Sphere(Radius=25.0, Center=[40.0, 10.0, 20.0], ThetaResolution=40, PhiResolution=40)
         simple.Show(sphere, self.view).DiffuseColor = [0.0, 1.0, 0.0]
         plane = simple.Plane(Origin=[-70, -70, 5], Point1=[70, -70, 5], Point2=[-70, 70, 5])
@@ -198,11 +229,11 @@ class ServedWindow:
         session.require(pictures.difference(others, changed).max() > 50, "other data are shown")
         self.view.LODThreshold = 0.0
         self.drag("with coarse other data")
-        if simple.servermanager.ActiveConnection.GetNumberOfDataPartitions() == 1:
-            # ParaView draws some ticks at other pixels on several ranks.
-            self.view.AxesGrid.Visibility = 1
-            self.drag("with a grid of axes")
-            self.view.AxesGrid.Visibility = 0
+        self.view.AxesGrid.Visibility = 1
+        self.others = 2000  # ParaView's ticks and numbers, which are drawn at other pixels of a server
+        self.drag("with a grid of axes")
+        self.view.AxesGrid.Visibility = 0
+        self.others = 30
 
         threshold = self.view.RemoteRenderThreshold
         self.view.RemoteRenderThreshold = 1e-3
