@@ -71,6 +71,11 @@ void PictureServer::Take(const PictureTicket& ticket, const Line& line)
     {
       this->Publish();
     }
+    else if (const std::optional<FieldFrames::Frame> between = state.Served.TakeBetween())
+    {
+      this->Put(PictureParcel::Coarse,
+        PackPicture(RoundToBytes(*between->Picture.Pixels, this->Asked.View.Size)));
+    }
   }
   catch (const std::exception& error)
   {

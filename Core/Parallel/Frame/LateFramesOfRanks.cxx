@@ -19,8 +19,9 @@ std::set<LateFramesOfRanks*>& All()
 
 } // namespace
 
-LateFramesOfRanks::LateFramesOfRanks(FieldFrames& frames)
+LateFramesOfRanks::LateFramesOfRanks(FieldFrames& frames, const LateFrames::Times& times)
   : Frames(frames)
+  , Waits(times)
 {
   All().insert(this);
 }
@@ -37,6 +38,7 @@ void LateFramesOfRanks::Stop()
     this->Name = Hash128{}; // whoever wants it has to begin anew
   }
   this->Task.reset();
+  this->Between.reset();
 }
 
 void LateFramesOfRanks::StopAll()
@@ -98,9 +100,8 @@ void LateFramesOfRanks::Learn(const LateFrames::Drawn& drawn)
 void LateFramesOfRanks::DrawBest(Communicator& communicator, DistributedField& field,
   const RayScene& scene, const RayScene& coarse, const FieldFrames::Wish& exact)
 {
-  const LateFrames::Times times;
   RayScene own = scene;
-  if (this->ExactSeconds && *this->ExactSeconds <= times.Patience)
+  if (this->ExactSeconds && *this->ExactSeconds <= this->Waits.Patience)
   {
     const Timer timer;
     this->Best = { this->Frames.Draw(communicator, field, own, exact), true };
@@ -120,16 +121,34 @@ void LateFramesOfRanks::DrawBest(Communicator& communicator, DistributedField& f
 void LateFramesOfRanks::Start(Communicator& communicator, DistributedField& field,
   const RayScene& scene, const FieldFrames::Wish& exact)
 {
+  const bool between = this->ExactSeconds && *this->ExactSeconds > this->Waits.Long;
   this->Task.emplace(communicator);
   this->Task->Start(
-    [this, &field, scene, exact](Communicator& ranks, const StopFlag& stop)
+    [this, &field, scene, exact, between](Communicator& ranks, const StopFlag& stop)
     {
-      const Timer timer;
       RayScene own = scene;
+      own.Stop = &stop;
+      if (between)
+      {
+        FieldFrames::Wish better = LateFrames::CoarseOf(exact, LateFrames::CoarseSeconds);
+        better.Sampling.Between = true;
+        FieldFrames::Frame frame = this->Frames.Draw(ranks, field, own, better);
+        const std::lock_guard<std::mutex> lock(this->Mutex);
+        this->Between = std::move(frame);
+      }
+      const Timer timer;
+      own = scene;
       own.Stop = &stop;
       this->Next.Frame = this->Frames.Draw(ranks, field, own, exact);
       this->Next.Seconds = AllMax(ranks, timer.Seconds());
     });
+}
+
+std::optional<FieldFrames::Frame> LateFramesOfRanks::TakeBetween()
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  std::optional<FieldFrames::Frame> taken = std::exchange(this->Between, std::nullopt);
+  return taken && taken->Picture.Pixels ? taken : std::nullopt;
 }
 
 bool LateFramesOfRanks::GoOn(const std::function<bool()>& leave)
@@ -150,6 +169,7 @@ bool LateFramesOfRanks::GoOn(const std::function<bool()>& leave)
     this->Name = Hash128{};
     throw;
   }
+  this->Between.reset();
   this->Best = { this->Next.Frame, true };
   this->Learn(this->Next);
   return true;

@@ -6,6 +6,7 @@
 #include "Parallel/Frame/LateFrames.h"
 
 #include <functional>
+#include <mutex>
 #include <optional>
 
 namespace banyan
@@ -23,7 +24,8 @@ class LateFramesOfRanks
 {
 public:
   /// @param frames that pictures are drawn and kept by; not to be used by others meanwhile
-  explicit LateFramesOfRanks(FieldFrames& frames);
+  /// @param times the same on all ranks; Pause and Playing do not count
+  explicit LateFramesOfRanks(FieldFrames& frames, const LateFrames::Times& times = {});
   ~LateFramesOfRanks();
   LateFramesOfRanks(const LateFramesOfRanks&) = delete;
   LateFramesOfRanks& operator=(const LateFramesOfRanks&) = delete;
@@ -49,6 +51,9 @@ public:
   /// Throws CollectiveError on all ranks when a thread has failed: Draw begins anew.
   bool GoOn(const std::function<bool()>& leave);
 
+  /// A picture between the coarse and the exact one, where that takes long: each once, on rank 0.
+  std::optional<FieldFrames::Frame> TakeBetween();
+
   /// The best picture of the last scene. Its pixels are on rank 0.
   const LateFrames::Shown& Last() const { return this->Best; }
 
@@ -70,11 +75,14 @@ private:
     const FieldFrames::Wish& exact);
 
   FieldFrames& Frames;
-  std::optional<CollectiveTask> Task;
+  LateFrames::Times Waits;
   Hash128 Name;                       ///< of the last scene
   LateFrames::Shown Best;             ///< of it
   LateFrames::Drawn Next;             ///< by the threads, when they have ended
   std::optional<double> ExactSeconds; ///< of the last exact picture; the same on all ranks
+  std::mutex Mutex;                   ///< of what is between
+  std::optional<FieldFrames::Frame> Between;
+  std::optional<CollectiveTask> Task; ///< last: its thread ends before what it writes is gone
 };
 
 } // namespace banyan

@@ -16,11 +16,11 @@ using namespace banyan::played;
 class Volume
 {
 public:
-  explicit Volume(Communicator& communicator)
+  explicit Volume(Communicator& communicator, const LateFrames::Times& times = {})
     : Ranks(communicator)
     , Player(communicator)
     , Direct(communicator)
-    , Served(Player.Frames)
+    , Served(Player.Frames, times)
   {
     this->Player.Field.SetLoadBalancing(LoadBalancing::Off);
     this->Direct.Field.SetLoadBalancing(LoadBalancing::Off);
@@ -75,14 +75,14 @@ public:
 };
 
 /// On 1 to 4 ranks.
-void OnRanks(const std::function<void(Volume&)>& body)
+void OnRanks(const std::function<void(Volume&)>& body, const LateFrames::Times& times = {})
 {
   for (int ranks = 1; ranks <= 4; ++ranks)
   {
     RunOnSimulatedRanks(ranks,
       [&](Communicator& communicator)
       {
-        Volume volume(communicator);
+        Volume volume(communicator, times);
         body(volume);
       });
   }
@@ -161,6 +161,42 @@ TEST(CoarseThenExact, WhoeverWasStoppedBeginsAnew)
       volume.Finish();
       volume.ExpectExact(now);
     });
+}
+
+TEST(CoarseThenExact, PicturesThatTakeLongHaveOneBetween)
+{
+  LateFrames::Times times;
+  times.Patience = 0.0;
+  times.Long = 0.0; // all that were drawn before take long
+  OnRanks(
+    [](Volume& volume)
+    {
+      Situation now;
+      volume.Draw(now);
+      volume.Finish();
+      EXPECT_FALSE(volume.Served.TakeBetween()) << "nothing is known of the first picture";
+      now.Eye += 0.2;
+      volume.Draw(now);
+      std::optional<FieldFrames::Frame> between;
+      const auto comes = [&]
+      {
+        between = between ? std::move(between) : volume.Served.TakeBetween();
+        return between.has_value();
+      };
+      if (volume.Served.GoOn(comes))
+      {
+        return; // both came at once
+      }
+      if (volume.Ranks.Rank() == 0)
+      {
+        ASSERT_TRUE(between);
+        EXPECT_EQ(between->Picture.Pixels->Rect.Hi.x > now.Width / 2, true) << "of the whole size";
+      }
+      volume.Finish();
+      volume.ExpectExact(now);
+      EXPECT_FALSE(volume.Served.TakeBetween()) << "the exact picture is better";
+    },
+    times);
 }
 
 TEST(CoarseThenExact, AFailureIsThatOfAllRanksAndTheNextPictureComes)
