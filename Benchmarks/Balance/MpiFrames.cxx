@@ -70,21 +70,6 @@ void DrawPath(Communicator& communicator, const BenchScene& scene, const Balance
   }
 }
 
-/// A box of an array, where it is.
-SampleArray PartOf(const SampleArray& whole, const Box& samples)
-{
-  SampleArray part = whole;
-  std::ptrdiff_t offset = 0;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    offset += samples.Lo[axis] * whole.Stride[axis];
-  }
-  part.Values = static_cast<const char*>(whole.Values) +
-                offset * static_cast<std::ptrdiff_t>(SizeOf(whole.Type));
-  part.Samples = samples;
-  return part;
-}
-
 void DrawPieces(Communicator& communicator, const BenchScene& scene, const BalanceOptions& options,
   BalanceMode mode, const TakeFrame& take)
 {

@@ -30,6 +30,20 @@ SampleArray Volume::Array() const
   return array;
 }
 
+SampleArray PartOf(const SampleArray& whole, const Box& samples)
+{
+  SampleArray part = whole;
+  std::ptrdiff_t offset = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    offset += samples.Lo[axis] * whole.Stride[axis];
+  }
+  part.Values = static_cast<const char*>(whole.Values) +
+                offset * static_cast<std::ptrdiff_t>(SizeOf(whole.Type));
+  part.Samples = samples;
+  return part;
+}
+
 glm::dvec4 BenchScene::At(double value) const
 {
   const auto last = static_cast<double>(this->Nodes.size() - 1);

@@ -61,6 +61,10 @@ struct Volume
   SampleArray Array() const;
 };
 
+/// A part of an array, where it is: values are not copied.
+/// @param samples of the array
+SampleArray PartOf(const SampleArray& whole, const Box& samples);
+
 /// All that decides a picture, in words that every renderer understands.
 struct BenchScene
 {
