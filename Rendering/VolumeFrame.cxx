@@ -97,6 +97,7 @@ FieldFrames::Frame VolumeFrame::Draw(
   state.LastRenderer = renderer;
   if (!late)
   {
+    state.ShowsCoarse = false;
     out->SetPictureIsExact(wish.Sampling.Interacting ? 0 : 1);
     state.Late.Settle(state.Field, *this->Wanted, wish);
     state.Served.Stop();
@@ -109,6 +110,7 @@ FieldFrames::Frame VolumeFrame::Draw(
   }
   LateFrames::Shown shown = state.Late.Draw(
     communicator, state.Field, *this->Wanted, wish, LateFrames::CoarseSeconds / others.Volumes);
+  state.ShowsCoarse = !shown.Exact;
   out->SetPictureIsExact(shown.Exact ? 1 : 0);
   if (shown.Exact)
   {

@@ -126,6 +126,11 @@ vtkDataArray* vtkBanyanVolumeMapper::GetArrayToDraw(vtkDataObject* data)
   return banyan::ArrayToDraw(this, data).Array;
 }
 
+bool vtkBanyanVolumeMapper::ShowsCoarsePicture() const
+{
+  return this->State->ShowsCoarse;
+}
+
 void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
 {
   if (this->GetNumberOfInputConnections(0) > 0)

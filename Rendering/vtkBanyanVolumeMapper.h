@@ -217,6 +217,9 @@ public:
   virtual void SetStatistics(vtkBanyanFrameStatistics* statistics);
   vtkBanyanFrameStatistics* GetStatistics();
 
+  /** Whether the last picture is a coarse one, after which the exact one comes by itself. */
+  bool ShowsCoarsePicture() const;
+
   /**
    * How the pixels of all ranks that lie behind the volume combine: by depth (empty, the default),
    * or, when the surrounding compositor blends ranks in an order, that order, front first.

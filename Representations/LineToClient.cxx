@@ -57,7 +57,7 @@ PictureServer::Line LineToClient()
   return line;
 }
 
-void ReadMessages(double seconds)
+bool ReadMessages(double seconds)
 {
   vtkNetworkAccessManager* const network =
     vtkProcessModule::GetProcessModule()->GetNetworkAccessManager();
@@ -66,6 +66,7 @@ void ReadMessages(double seconds)
   {
     network->ProcessEvents(1);
   }
+  return !network->GetNetworkEventsAvailable();
 }
 
 } // namespace banyan

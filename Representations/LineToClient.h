@@ -12,7 +12,8 @@ namespace banyan
 PictureServer::Line LineToClient();
 
 /// The client's end: calls what has come from the server, for about so many seconds at most.
-void ReadMessages(double seconds);
+/// @return whether that was all
+bool ReadMessages(double seconds);
 
 } // namespace banyan
 

@@ -227,7 +227,9 @@ void ServedWindow::SendTicket()
   ticket.Scene = this->Scene;
   ticket.Moves = this->WantsMoves;
   ticket.CoarseEvery = this->CoarseEvery();
-  ticket.Credit = this->Rate.Credit(std::min(this->SinceTicket.Seconds(), CreditSeconds));
+  // What was sent before has come: the line is free.
+  const double seconds = std::max(this->SinceTicket.Seconds(), GoOnSeconds);
+  ticket.Credit = this->Rate.Credit(std::min(seconds, CreditSeconds));
   ticket.Shown = this->ToldScene;
   ticket.View = this->Wanted;
   this->AddDepths(ticket);
@@ -290,7 +292,8 @@ void ServedWindow::Take(const void* message, std::size_t bytes)
     return;
   }
   this->Seen = std::max(this->Seen, head->Ticket);
-  this->Rate.Came(head->Burst, bytes, this->Clock.Seconds());
+  const bool isCut = head->Begin + (bytes - sizeof(PictureParcel)) < head->Bytes;
+  this->Rate.Came({ head->Burst, bytes, this->HadNone, this->Clock.Seconds(), isCut });
   try
   {
     if (std::optional<ParcelAssembly::Whole> whole = this->Parts.Take(message, bytes))
@@ -376,7 +379,7 @@ void ServedWindow::Look(vtkObject*, unsigned long, void* timer)
   }
   const vtkSmartPointer<vtkSMBanyanVolumeProxy> stays(this->Proxy);
   this->Busy = true;
-  ReadMessages(PumpSeconds);
+  this->HadNone = ReadMessages(PumpSeconds) ? this->Clock.Seconds() : this->HadNone;
   this->Busy = false;
   if (!this->Served || !this->View || !IsIdle(this->Proxy))
   {
@@ -424,7 +427,10 @@ void ServedWindow::GoOn()
   {
     this->ShowFunctions();
   }
-  if (this->IsNew || (this->IsMissing() && this->SinceTicket.Seconds() > GoOnSeconds))
+  // The rest of a picture is asked for when the first part has come.
+  const bool waits = this->SinceTicket.Seconds() < GoOnSeconds &&
+                     !(this->Parts.HasBegun() && this->Seen == this->Number);
+  if (this->IsNew || (this->IsMissing() && !waits))
   {
     this->SendTicket();
   }

@@ -125,6 +125,7 @@ private:
   ParcelAssembly Parts;
   LineRate Rate;
   banyan::Timer Clock;
+  double HadNone = 0.0; ///< when no message was waiting, by that
   std::shared_ptr<PicturesAtHand> Pictures;
   bool HasBetter = false; ///< a picture that is not shown yet
   banyan::Timer SinceTicket;

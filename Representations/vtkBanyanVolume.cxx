@@ -20,6 +20,7 @@
 #include "vtkOrderedCompositingHelper.h"
 #include "vtkPVRenderView.h"
 #include "vtkPVRenderViewDataDeliveryManager.h"
+#include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 
 vtkStandardNewMacro(vtkBanyanVolume);
@@ -66,6 +67,11 @@ void vtkBanyanVolume::SmoothEdges(vtkObject* caller, unsigned long, void*)
   auto* renderer = vtkOpenGLRenderer::SafeDownCast(caller);
   renderer->RemoveObserver(this->SmoothAtEnd);
   renderer->SetUseFXAA(true);
+  if (this->BanyanMapper && this->BanyanMapper->ShowsCoarsePicture() &&
+      renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0)
+  {
+    return; // it takes as long as the picture, and nobody sees it while the camera moves
+  }
   if (!this->EdgeFilter)
   {
     this->EdgeFilter = vtkSmartPointer<vtkOpenGLFXAAFilter>::New();

@@ -4,7 +4,8 @@
     start_window.py [--pixels N] [--seconds S] [--server local|line] [--ranks N] -- ARGUMENTS
 
 The view has N x N pixels (default 1024). With --server the window is the client of a pvserver on this machine
-(default 2 ranks); `line` puts relay.py between them. Every process it starts is ended when the time is over (default
+(default 2 ranks); `line` puts relay.py between them, and gives the server a low priority: it stands for another
+machine, which would leave all cores to the window. Every process it starts is ended when the time is over (default
 600 s). ARGUMENTS are those of drive_window.py. Needs a display.
 """
 import argparse
@@ -73,7 +74,7 @@ def run_on_line(server, command, pixels, deadline):
 
 
 def run_with_server(arguments, deadline):
-    server = run_paraview.Server(arguments.ranks, [])
+    server = run_paraview.Server(arguments.ranks, [], ["nice", "-n", "19"] if arguments.server == "line" else [])
     try:
         server.told.wait(max(0.0, deadline - time.monotonic()))
         if not server.listens:

@@ -6,26 +6,34 @@
 namespace banyan
 {
 
-void LineRate::Came(int burst, std::size_t bytes, double seconds)
+void LineRate::Came(const Message& message)
 {
   constexpr std::size_t few = 20000; // say little about a line
   constexpr double shortest = 0.001; // what lay here in a buffer comes in no time
   constexpr double mostOfLine = 1e9;
-  if (burst != this->Burst)
+  if (message.Burst != this->First.Burst)
   {
-    this->Burst = burst;
-    this->First = seconds;
+    this->First = message;
     this->SinceFirst = 0;
     this->Before = this->Rate;
     return;
   }
-  this->SinceFirst += bytes;
-  if (this->SinceFirst >= few)
+  this->SinceFirst += message.Bytes;
+  if (this->SinceFirst < few)
   {
-    const double now =
-      static_cast<double>(this->SinceFirst) / std::max(shortest, seconds - this->First);
-    this->Rate = std::min({ 0.5 * (this->Before + now), 2.0 * this->Before, mostOfLine });
+    return;
   }
+  const auto bytes = static_cast<double>(this->SinceFirst);
+  const double longest = message.Latest - this->First.Earliest; // that they may have taken
+  const double slowest = bytes / std::max(shortest, longest);
+  double quickest = mostOfLine;
+  if (message.Earliest > this->First.Latest)
+  {
+    const double least = message.Earliest - this->First.Latest;
+    quickest = bytes / std::max(shortest, 0.5 * (least + longest));
+  }
+  const double wanted = message.IsCut ? 2.0 * this->Before : this->Before;
+  this->Rate = std::min(std::max(std::min(wanted, quickest), slowest), mostOfLine);
 }
 
 int LineRate::Credit(double seconds) const

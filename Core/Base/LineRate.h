@@ -8,17 +8,26 @@ namespace banyan
 {
 
 /// How many bytes a second a line takes, measured where messages arrive. They are sent in bursts:
-/// each by itself as fast as the line takes them.
+/// each by itself as fast as the line takes them. Whoever measures looks at the line now and then,
+/// so that he knows between which seconds a message has come, and no more.
 class LineRate
 {
 public:
-  /// A message has come.
-  /// @param burst number of its burst
-  /// @param seconds by any clock
-  void Came(int burst, std::size_t bytes, double seconds);
+  struct Message
+  {
+    int Burst; ///< its number
+    std::size_t Bytes;
+    double Earliest;    ///< second before which it was not there, by any clock
+    double Latest;      ///< second at which it was
+    bool IsCut = false; ///< whether more would have been sent, if there had been credit
+  };
 
-  /// Bytes a second. Before anything was measured, those of a slow line; it at most doubles from
-  /// burst to burst.
+  /// A message has come.
+  void Came(const Message& message);
+
+  /// Bytes a second. Before anything was measured, those of a slow line. It is never less than what
+  /// has certainly come, and doubles with bursts that had too little credit, while nothing says
+  /// that the line is slower.
   double BytesPerSecond() const { return this->Rate; }
 
   /// What may be sent in an interval, so that a quarter of the line is left to others.
@@ -28,10 +37,9 @@ public:
 
 private:
   double Rate = 1e6;
-  int Burst = 0;
-  double First = 0.0;         ///< second of the burst's first message
+  double Before = 1e6; ///< the burst
+  Message First{ 0, 0, 0.0, 0.0 };
   std::size_t SinceFirst = 0; ///< bytes of the messages after it
-  double Before = 1e6;        ///< the burst
 };
 
 } // namespace banyan

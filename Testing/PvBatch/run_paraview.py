@@ -76,12 +76,12 @@ def mpi(ranks):
 
 
 class Server:
-    """A pvserver on several ranks whose output is passed on."""
+    """A pvserver on several ranks whose output is passed on. What starts it can come `before`."""
 
-    def __init__(self, ranks, options):
+    def __init__(self, ranks, options, before=()):
         self.port = free_port()
         self.process = start(
-            mpi(ranks) + ["pvserver", "--hostname=localhost", f"--server-port={self.port}"] + options,
+            list(before) + mpi(ranks) + ["pvserver", "--hostname=localhost", f"--server-port={self.port}"] + options,
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.told = threading.Event()  # whether it listens, or why not
         self.listens = False

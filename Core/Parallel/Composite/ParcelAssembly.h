@@ -55,6 +55,9 @@ public:
   /// Throws Error when it does not fit those before it: what was begun is forgotten then.
   std::optional<Whole> Take(const void* message, std::size_t bytes);
 
+  /// Whether parts of something have come, and not yet the last.
+  bool HasBegun() const { return !this->Begun.empty(); }
+
 private:
   Bytes Begun;
 };
