@@ -34,7 +34,7 @@ struct MapperState
   LateFrames Late{ Frames };
   LateFramesOfRanks Served{ Frames };
   RenderWhenDrawn Again;
-  bool ShowsCoarse = false; ///< the last picture: the exact one comes by itself
+  bool ShowsCoarse = false;                  ///< the last picture: the exact one comes by itself
   const vtkRenderer* LastRenderer = nullptr; ///< only to compare with
   MotionEnhancement Motion;
   banyan::Backdrop Backdrop;
