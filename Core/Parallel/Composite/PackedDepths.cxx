@@ -31,7 +31,7 @@ bool IsSound(const Head& head)
          rect.Lo.y <= rect.Hi.y && rect.Hi.x <= head.Size.x && rect.Hi.y <= head.Size.y;
 }
 
-/// What a number would be in the plane of its left, lower, and lower left neighbour. Arithmetic
+/// A number's value in the plane of its left, lower, and lower left neighbour. Arithmetic
 /// wraps around, the same way in both directions.
 std::uint32_t Predicted(
   const std::uint32_t* numbers, std::size_t x, std::size_t y, std::size_t columns)

@@ -13,7 +13,7 @@ namespace banyan
 /// The head of a message from the server: of a part of something for a client.
 struct PictureParcel
 {
-  /// Of those that ParaView sends between processes, this number is ours.
+  /// The number of our messages among those that ParaView sends between processes.
   static constexpr int Tag = 745019;
   static constexpr std::uint32_t ThisVersion = 1;
   static constexpr std::size_t MostBytes = 12000; ///< of a message: more blocks a slow line
