@@ -32,8 +32,10 @@ TIMED_OUT = 124
 
 def start(command, **options):
     print("+ " + " ".join(command), flush=True)
-    # A session of its own, so that it can be ended together with all that it started.
-    return subprocess.Popen(command, start_new_session=True, **options)
+    # A process group of its own, so that it can be ended together with all that it started. No
+    # session of its own: Linux shares processors between sessions, whatever the priorities in them
+    # are, and ParaView's window starts its server in its own session, too.
+    return subprocess.Popen(command, preexec_fn=os.setpgrp, **options)
 
 
 def end(process, grace=10):
