@@ -2,9 +2,11 @@
 #include "PictureServer.h"
 
 #include "VolumeFrame.h"
+#include "VolumesInDepth.h"
 #include "vtkBanyanFrameStatistics.h"
 #include "vtkBanyanVolumeMapper.h"
 
+#include "Base/ThreadPool.h"
 #include "Parallel/Composite/PackedDepths.h"
 #include "Parallel/Composite/PackedPicture.h"
 
@@ -28,19 +30,29 @@ ScreenView Smaller(const ScreenView& view, int every)
   return smaller;
 }
 
+/// All of this main thread: where ranks are threads, each has its own. In the same order on all.
+std::vector<PictureServer*>& All()
+{
+  static thread_local std::vector<PictureServer*> all;
+  return all;
+}
+
 } // namespace
 
 PictureServer::PictureServer(vtkBanyanVolumeMapper* mapper, vtkVolume* volume)
   : Mapper(mapper)
   , Volume(volume)
 {
+  All().push_back(this);
 }
 
-PictureServer::~PictureServer() = default;
+PictureServer::~PictureServer()
+{
+  All().erase(std::find(All().begin(), All().end(), this));
+}
 
 void PictureServer::Take(const PictureTicket& ticket, const Line& line)
 {
-  MapperState& state = *this->Mapper->State;
   this->Number = ticket.Number;
   this->HasAnswered = false;
   int credit = ticket.Credit;
@@ -53,37 +65,65 @@ void PictureServer::Take(const PictureTicket& ticket, const Line& line)
   {
     this->Mapper->GetStatistics()->SetPictureIsExact(1);
   }
+  this->Attempt(
+    [&]
+    {
+      const bool isMissing =
+        this->ExactScene != this->Asked.Scene && this->Asked.Others != PictureTicket::OfCoarse;
+      if (isNews || (isMissing && !this->Mapper->State->Served.IsComing()))
+      {
+        this->Draw();
+      }
+    });
+  this->Answer(line, credit);
+  // Whoever has nothing more to say may have left: somebody else may want something.
+  constexpr std::chrono::milliseconds most{ 250 };
+  const auto end = std::chrono::steady_clock::now() + most;
+  const auto leaves = [&] { return line.HasMore() || std::chrono::steady_clock::now() > end; };
+  // What threads of another volume draw comes first.
+  const auto draws = [](const PictureServer* server)
+  { return server->Mapper->State->Served.IsDrawing(); };
+  const auto other = std::find_if(All().begin(), All().end(), draws);
+  if (other != All().end() && *other != this)
+  {
+    (*other)->GoOn(leaves, line, credit);
+  }
+  this->GoOn(leaves, line, credit);
+}
+
+/// Collective. What fails is sent as a sentence.
+void PictureServer::Attempt(const std::function<void()>& action)
+{
   try
   {
-    const bool isMissing =
-      this->ExactScene != this->Asked.Scene && this->Asked.Others != PictureTicket::OfCoarse;
-    // Another view's exact picture comes first, if it has begun: or each would stop the other.
-    if (isNews || (isMissing && !LateFramesOfRanks::AnyDraws()))
-    {
-      this->Draw();
-    }
-    this->Answer(line, credit);
-    // Whoever has nothing more to say may have left: somebody else may want something.
-    constexpr std::chrono::milliseconds most{ 100 };
-    const auto end = std::chrono::steady_clock::now() + most;
-    const auto leaves = [&] { return line.HasMore() || std::chrono::steady_clock::now() > end; };
-    if (state.Served.GoOn(leaves))
-    {
-      this->Publish();
-    }
-    else if (const std::optional<FieldFrames::Frame> between = state.Served.TakeBetween())
-    {
-      this->Put(PictureParcel::Coarse,
-        PackPicture(RoundToBytes(*between->Picture.Pixels, this->Asked.View.Size)));
-    }
+    action();
   }
   catch (const std::exception& error)
   {
     const std::string sentence = error.what();
     this->ExactScene = this->Asked.Scene; // no more of this one
     this->Put(PictureParcel::Failure, Bytes(sentence.begin(), sentence.end()));
-    state.Communicator->LeaveTogether(sentence);
+    this->Mapper->State->Communicator->LeaveTogether(sentence);
   }
+}
+
+/// Collective: serves the threads that draw the exact picture, and sends it.
+/// @param credit as of Answer
+void PictureServer::GoOn(const std::function<bool()>& leaves, const Line& line, int& credit)
+{
+  LateFramesOfRanks& served = this->Mapper->State->Served;
+  this->Attempt(
+    [&]
+    {
+      if (served.GoOn(leaves))
+      {
+        this->Publish();
+      }
+      else if (const std::optional<FieldFrames::Frame> between = served.TakeBetween())
+      {
+        this->PutPicture(false, RoundToBytes(*between->Picture.Pixels, this->Asked.View.Size));
+      }
+    });
   this->Answer(line, credit);
 }
 
@@ -100,13 +140,15 @@ void PictureServer::Draw()
   {
     state.Served.Stop();
     this->Drawn = nullptr;
-    this->Put(PictureParcel::Exact, PackPicture({ this->Asked.View.Size, {}, {} }));
+    this->Body.clear();
+    this->PutPicture(true, { this->Asked.View.Size, {}, {} });
     this->ExactScene = this->Asked.Scene;
     return;
   }
   frame->BeginFigures();
-  const FieldFrames::Wish wish = frame->WishFor(this->Asked.Moves, /*eye=*/0, /*volumes=*/1);
+  const FieldFrames::Wish wish = frame->WishFor(this->Asked.Moves, /*eye=*/0, this->Asked.Volumes);
   RayScene scene = frame->Scene();
+  this->Body = BodyOf(this->Volume, this->Mapper, state.Field.Place().Bounds, scene);
   RayScene small = coarse.Scene();
   this->AddDepths(scene, small);
   if (this->Asked.Others == PictureTicket::OfCoarse)
@@ -175,9 +217,14 @@ void PictureServer::Publish()
   {
     const glm::ivec2 size =
       shown.Exact ? this->Asked.View.Size : Smaller(this->Asked.View, this->Asked.CoarseEvery).Size;
-    this->Put(shown.Exact ? PictureParcel::Exact : PictureParcel::Coarse,
-      PackPicture(RoundToBytes(*shown.Frame.Picture.Pixels, size)));
+    this->PutPicture(shown.Exact, RoundToBytes(*shown.Frame.Picture.Pixels, size));
   }
+}
+
+void PictureServer::PutPicture(bool exact, BytePicture picture)
+{
+  this->Put(exact ? PictureParcel::Exact : PictureParcel::Coarse,
+    PackPicture({ std::move(picture), this->Body }, ThreadPool::Process()));
 }
 
 /// Has something sent when it may be. What is better, or of a newer scene, takes the place of what

@@ -5,6 +5,8 @@
 #include "PictureTicket.h"
 
 #include "Parallel/Composite/ParcelAssembly.h"
+#include "Render/Raycast/DepthOrder.h"
+#include "Render/Scene/BytePicture.h"
 
 #include <cstddef>
 #include <deque>
@@ -41,8 +43,9 @@ public:
   PictureServer& operator=(const PictureServer&) = delete;
 
   /// Collective: draws what can be had at once, sends what may be sent, and works on the exact
-  /// picture until it is there, or the client has sent more. The mapper has its input. What
-  /// fails is sent as a sentence, and thrown nowhere.
+  /// picture until it is there, or the client has sent more; on that of another volume first, where
+  /// threads draw it. The mapper has its input. What fails is sent as a sentence, and thrown
+  /// nowhere.
   void Take(const PictureTicket& ticket, const Line& line);
 
 private:
@@ -54,10 +57,13 @@ private:
     std::size_t Sent = 0;
   };
 
+  void Attempt(const std::function<void()>& action);
   void Draw();
+  void GoOn(const std::function<bool()>& leaves, const Line& line, int& credit);
   void AddDepths(RayScene& scene, RayScene& coarse) const;
   void Rename();
   void Publish();
+  void PutPicture(bool exact, BytePicture picture);
   void Put(PictureParcel::Kinds kind, Bytes content);
   void Answer(const Line& line, int& credit);
 
@@ -65,6 +71,7 @@ private:
   vtkVolume* Volume;
   std::unique_ptr<VolumeFrame> Drawn; ///< of the last scene
   PictureTicket Asked;                ///< with the last scene
+  PlacedBody Body;                    ///< of the volume in it
   int Number = 0;                     ///< of the last ticket
   bool HasAnswered = false;           ///< the last ticket
   int Burst = 0;                      ///< of messages

@@ -15,8 +15,8 @@ namespace banyan
 /// What a client sends to all ranks of its server: "draw this for me", or "go on with it".
 struct PictureTicket
 {
-  static constexpr int Version = 1;  ///< also in Representations/BanyanRepresentations.xml.in
-  static constexpr int Numbers = 28; ///< that it is sent as, besides the depths
+  static constexpr int Version = 2;  ///< also in Representations/BanyanRepresentations.xml.in
+  static constexpr int Numbers = 29; ///< that it is sent as, besides the depths
 
   int Number = 0;      ///< from 1, one more each time
   int Display = 0;     ///< of the client's proxy, for which pictures are meant
@@ -25,6 +25,7 @@ struct PictureTicket
   int CoarseEvery = 1; ///< a coarse picture has a pixel for so many rows and columns
   int Credit = 0;      ///< bytes that may be sent in answer
   int Shown = 0;       ///< scene whose exact picture is on the screen; 0 for none
+  int Volumes = 1;     ///< whose pictures the client blends
   ScreenView View;
 
   /// Where other data in the view end rays: depths for the pixels of the coarse picture come with a

@@ -145,7 +145,7 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
   if (banyan::LateFramesOfRanks::AnyDraws() &&
       banyan::AllMax(*self.Communicator, hasWidth ? 0.0 : 1.0) > 0.0)
   {
-    banyan::LateFramesOfRanks::StopAll();
+    banyan::LateFramesOfRanks::PauseAll();
   }
   banyan::FieldPiece piece;
   try
@@ -171,7 +171,7 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
   {
     self.Late.Stop();
   }
-  if (self.Served.IsDrawing() && banyan::AllMax(*self.Communicator, isOther ? 1.0 : 0.0) > 0.0)
+  if (self.Served.IsComing() && banyan::AllMax(*self.Communicator, isOther ? 1.0 : 0.0) > 0.0)
   {
     self.Served.Stop();
   }

@@ -3,7 +3,6 @@
 
 #include "PictureTicket.h"
 #include "RenderWhenDrawn.h"
-#include "vtkSMBanyanVolumeProxy.h"
 
 #include "vtkPVRenderView.h"
 #include "vtkPVSession.h"
@@ -28,24 +27,25 @@ bool IsOn(vtkSMProxy* proxy, const char* property)
   return found && vtkSMPropertyHelper(found).GetAsInt() != 0;
 }
 
-/// Whether no other volume is in the view that has to be blended with this one.
-bool IsOnlyVolume(vtkSMProxy* display, vtkSMRenderViewProxy* view)
+} // namespace
+
+std::set<vtkSMProxy*> VolumesIn(vtkSMRenderViewProxy* view)
 {
+  std::set<vtkSMProxy*> volumes;
   const vtkSMPropertyHelper all(view, "Representations");
   for (unsigned int i = 0; i < all.GetNumberOfElements(); ++i)
   {
-    vtkSMProxy* const other = all.GetAsProxy(i);
-    vtkSMProperty* const kind = other ? other->GetProperty("Representation") : nullptr;
-    if (kind && other != display && IsOn(other, "Visibility") &&
+    vtkSMProxy* const display = all.GetAsProxy(i);
+    vtkSMProperty* const kind = display ? display->GetProperty("Representation") : nullptr;
+    if (kind && IsOn(display, "Visibility") &&
         std::string(vtkSMPropertyHelper(kind).GetAsString()) == "Banyan Volume")
     {
-      return false;
+      volumes.insert(display);
     }
   }
-  return IsOn(display, "Visibility");
+  return volumes;
 }
 
-/// Whether the server knows this plugin's tickets: its own definitions of proxies say so.
 bool KnowsTickets(vtkSMProxy* volume)
 {
   vtkPVXMLElement* const hints = volume->GetHints();
@@ -55,8 +55,6 @@ bool KnowsTickets(vtkSMProxy* volume)
   return tickets && tickets->GetScalarAttribute("version", &version) &&
          version == PictureTicket::Version;
 }
-
-} // namespace
 
 vtkPVRenderView* OfClient(vtkSMRenderViewProxy* view)
 {
@@ -80,17 +78,16 @@ bool HasServer(vtkSMRenderViewProxy* view)
   return server && server == session->GetController(vtkPVSession::DATA_SERVER_ROOT);
 }
 
-bool IsServable(vtkSMBanyanVolumeProxy* volume, vtkSMRenderViewProxy* view)
+bool IsServable(vtkSMRenderViewProxy* view)
 {
   vtkPVRenderView* const drawn = OfClient(view);
   vtkRenderWindow* const window = view->GetRenderWindow();
   // A window that does not swap its buffers is one that somebody wants to save. A threshold of 0
   // says that the server is to render whatever there is.
-  return volume->IsDecoupled() && HasServer(view) && window && window->GetSwapBuffers() != 0 &&
+  return HasServer(view) && window && window->GetSwapBuffers() != 0 &&
          window->GetStereoRender() == 0 && RenderWhenDrawn::CanWatch(window) &&
          !drawn->InTileDisplayMode() && !drawn->InCaveDisplayMode() &&
-         drawn->GetRemoteRenderingThreshold() > 0.0 && KnowsTickets(volume) &&
-         IsOnlyVolume(volume->GetTrueParentProxy(), view);
+         drawn->GetRemoteRenderingThreshold() > 0.0;
 }
 
 bool IsIdle(vtkSMProxy* proxy)

@@ -4,8 +4,9 @@
 
 #include "Base/Timer.h"
 
+#include <set>
+
 class vtkPVRenderView;
-class vtkSMBanyanVolumeProxy;
 class vtkSMProxy;
 class vtkSMRenderViewProxy;
 class vtkSMSessionClient;
@@ -22,9 +23,16 @@ vtkSMSessionClient* SessionOf(vtkSMProxy* proxy);
 bool HasServer(vtkSMRenderViewProxy* view);
 
 /// Whether ParaView's next picture of a view may be drawn by the client alone, and the server's
-/// picture of a volume be put over it: the volume is the view's only one, the server is able to,
-/// the window is one whose event loop turns, and somebody looks at it.
-bool IsServable(vtkSMBanyanVolumeProxy* volume, vtkSMRenderViewProxy* view);
+/// pictures of volumes be put over it: the window is one whose event loop turns, and somebody looks
+/// at it.
+bool IsServable(vtkSMRenderViewProxy* view);
+
+/// Visible representations of a view that Banyan draws as volumes.
+std::set<vtkSMProxy*> VolumesIn(vtkSMRenderViewProxy* view);
+
+/// Whether the server of a volume knows this plugin's tickets: its own definitions of proxies say
+/// so.
+bool KnowsTickets(vtkSMProxy* volume);
 
 /// Whether a client may send a message, and draw a window, without coming between ParaView's own.
 bool IsIdle(vtkSMProxy* proxy);

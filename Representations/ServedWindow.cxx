@@ -2,76 +2,55 @@
 #include "ServedWindow.h"
 
 #include "LineToClient.h"
-#include "vtkBanyanVolumeRepresentation.h"
-#include "vtkSMBanyanVolumeProxy.h"
-
-#include "Parallel/Composite/PackedDepths.h"
-#include "Parallel/Composite/PackedPicture.h"
+#include "ServedVolume.h"
 
 #include "vtkCommand.h"
-#include "vtkMultiProcessController.h"
 #include "vtkPVRenderView.h"
-#include "vtkPVSession.h"
 #include "vtkRenderWindowInteractor.h"
 #include "vtkRenderer.h"
 #include "vtkSMRenderViewProxy.h"
-#include "vtkSMSessionClient.h"
-#include "vtkSetGet.h"
 
+#include <algorithm>
+#include <iterator>
+#include <map>
 #include <set>
-#include <utility>
 
 namespace banyan
 {
 namespace
 {
 
-constexpr double PumpSeconds = 0.006; ///< that messages are read for at a time
-constexpr double GoOnSeconds = 0.04;  ///< from ticket to ticket, while a picture is missing
-constexpr double CreditSeconds = 0.1; ///< that a ticket gives credit for, at most
-constexpr double CoarseSeconds = 0.1; ///< that a coarse picture may be on the line, a byte a pixel
-constexpr double StillSeconds = 0.1;  ///< without a move, until depths of all pixels are sent
-constexpr double DrawSeconds = 0.05;  ///< from one better picture to the next, at least
-constexpr int MostUnseen = 3;         ///< tickets that the server has not answered
+constexpr double PumpSeconds = 0.006;   ///< that messages are read for at a time
+constexpr double DrawSeconds = 0.05;    ///< from one better picture to the next, at least
 constexpr unsigned long LookEvery = 10; ///< milliseconds
 constexpr float BeforeParaView = 1.0f;  ///< priority of an observer
 
-/// Those that there are: a picture may come for one that is gone.
-std::set<void*>& Windows()
-{
-  static std::set<void*> windows;
-  return windows;
-}
-
-int NextNumber()
-{
-  static int last = 0;
-  return ++last;
-}
-
 } // namespace
 
-ServedWindow::ServedWindow(vtkSMBanyanVolumeProxy* proxy, vtkSMRenderViewProxy* view)
-  : Proxy(proxy)
-  , View(view)
-  , Server(SessionOf(view)->GetController(vtkPVSession::RENDER_SERVER_ROOT))
-  , Display(NextNumber())
-  , Steps(OfClient(view)->GetViewTime())
-  , Functions([this] { this->FunctionsHaveChanged(); })
+std::shared_ptr<ServedWindow> ServedWindow::Of(vtkSMRenderViewProxy* view)
 {
-  Windows().insert(this);
+  static std::map<vtkSMRenderViewProxy*, std::weak_ptr<ServedWindow>> windows;
+  std::weak_ptr<ServedWindow>& place = windows[view];
+  std::shared_ptr<ServedWindow> window = place.lock();
+  if (!window || window->View != view) // a view that is gone may have been at this address
+  {
+    window = std::make_shared<ServedWindow>(view);
+    place = window;
+  }
+  return window;
+}
+
+ServedWindow::ServedWindow(vtkSMRenderViewProxy* view)
+  : View(view)
+  , Steps(OfClient(view)->GetViewTime())
+{
   this->Observe();
   this->OfView = { view->AddObserver(vtkCommand::StartEvent, this, &ServedWindow::BeforeRender),
     view->AddObserver(vtkCommand::EndEvent, this, &ServedWindow::AfterRender) };
-  this->OfDisplay = proxy->GetTrueParentProxy()->AddObserver(
-    vtkCommand::PropertyModifiedEvent, this, &ServedWindow::TryAgain);
-  this->Messages =
-    this->Server->AddRMICallback(&ServedWindow::TakeMessage, this, PictureParcel::Tag);
 }
 
 ServedWindow::~ServedWindow()
 {
-  Windows().erase(this);
   this->Ignore();
   if (this->View)
   {
@@ -80,14 +59,12 @@ ServedWindow::~ServedWindow()
       this->View->RemoveObserver(observer);
     }
   }
-  if (vtkSMProxy* const display = this->Proxy->GetTrueParentProxy())
-  {
-    display->RemoveObserver(this->OfDisplay);
-  }
-  if (this->Server)
-  {
-    this->Server->RemoveRMICallback(this->Messages);
-  }
+}
+
+void ServedWindow::Remove(ServedVolume* volume)
+{
+  this->Volumes.erase(
+    std::remove(this->Volumes.begin(), this->Volumes.end(), volume), this->Volumes.end());
 }
 
 /// Observes the interactor that the window has now.
@@ -142,18 +119,36 @@ void ServedWindow::StopTimer()
   this->Timer = -1;
 }
 
+/// Volumes that are seen; none while somebody's is not yet known here.
+std::vector<ServedVolume*> ServedWindow::InView() const
+{
+  const std::set<vtkSMProxy*> seen = VolumesIn(this->View);
+  std::vector<ServedVolume*> volumes;
+  std::copy_if(this->Volumes.begin(), this->Volumes.end(), std::back_inserter(volumes),
+    [&](const ServedVolume* volume) { return seen.count(volume->OfUser()) > 0; });
+  return volumes.size() == seen.size() ? volumes : std::vector<ServedVolume*>();
+}
+
+bool ServedWindow::HasFailed() const
+{
+  return std::any_of(this->Volumes.begin(), this->Volumes.end(),
+    [](const ServedVolume* volume) { return volume->HasFailed(); });
+}
+
 void ServedWindow::BeforeRender()
 {
   this->Observe();
   const bool plays = this->Steps.Plays(OfClient(this->View)->GetViewTime());
-  const bool serves = !plays && this->Failure.empty() && IsServable(this->Proxy, this->View);
-  if (serves != this->Served)
+  const std::vector<ServedVolume*> seen = this->InView();
+  const auto servable = [](const ServedVolume* volume) { return volume->IsServable(); };
+  this->Served = !plays && !seen.empty() && banyan::IsServable(this->View) &&
+                 std::all_of(seen.begin(), seen.end(), servable);
+  for (ServedVolume* const volume : this->Volumes)
   {
-    this->Served = serves;
-    this->Proxy->SetServed(serves, this->View);
-    this->Pictures = this->Proxy->GetPictures();
+    const bool isSeen = std::find(seen.begin(), seen.end(), volume) != seen.end();
+    volume->Serve(this->Served && isSeen, std::max(1, static_cast<int>(seen.size())));
   }
-  if (!serves)
+  if (!this->Served)
   {
     this->StopTimer();
   }
@@ -164,11 +159,13 @@ void ServedWindow::AfterRender(vtkObject*, unsigned long, void* interactive)
 {
   const bool moves = interactive && *static_cast<int*>(interactive) != 0;
   this->HasLod = moves;
-  this->HasOtherFunctions = false;
   if (this->IsServed())
   {
-    this->Functions.Watch(this->Proxy->GetTrueParentProxy());
-    this->Want(moves, /*mayHaveChanged=*/true);
+    const ScreenView view = ViewOf(this->View->GetRenderer());
+    for (ServedVolume* const volume : this->InView())
+    {
+      volume->WantAnew(view, moves);
+    }
     this->StartTimer();
   }
 }
@@ -176,8 +173,8 @@ void ServedWindow::AfterRender(vtkObject*, unsigned long, void* interactive)
 /// In place of a picture of ParaView's while the camera moves, which would wait for the server.
 bool ServedWindow::Move(vtkObject*, unsigned long, void*)
 {
-  if (!this->IsServed() || !this->Moving || this->Busy || this->View->GetNeedsUpdate() ||
-      !IsIdle(this->Proxy) || IsLinked(this->View))
+  if (!this->IsServed() || this->HasFailed() || !this->Moving || this->Busy ||
+      this->View->GetNeedsUpdate() || !IsIdle(this->View) || IsLinked(this->View))
   {
     return false;
   }
@@ -188,172 +185,23 @@ bool ServedWindow::Move(vtkObject*, unsigned long, void*)
   }
   view->ResetCameraClippingRange();
   this->DrawAlone(/*exact=*/false);
-  this->Want(/*moves=*/true, /*mayHaveChanged=*/false);
+  const ScreenView wanted = ViewOf(this->View->GetRenderer());
+  for (ServedVolume* const volume : this->InView())
+  {
+    volume->Want(wanted, /*moves=*/true, /*mayHaveChanged=*/false);
+  }
   this->StartTimer();
   return true;
-}
-
-void ServedWindow::Want(bool moves, bool mayHaveChanged)
-{
-  const ScreenView view = ViewOf(this->View->GetRenderer());
-  if (mayHaveChanged || !IsSameView(view, this->Wanted))
-  {
-    this->Wanted = view;
-    this->WantsMoves = moves;
-    this->IsNew = true;
-    // Whether other data are where they were nobody knows.
-    const vtkMTimeType stamp = this->Proxy->GetPictureMTime();
-    const bool mayBeOther = mayHaveChanged && this->Pictures->HasOthersInView();
-    this->Content += mayBeOther || stamp != this->Stamp ? 1 : 0;
-    this->Stamp = stamp;
-  }
-  if (this->IsNew && this->Number - this->Seen < MostUnseen)
-  {
-    this->SendTicket();
-  }
-}
-
-void ServedWindow::SendTicket()
-{
-  PictureTicket ticket;
-  ticket.Number = ++this->Number;
-  if (std::exchange(this->IsNew, false))
-  {
-    this->Scene = this->Number;
-    this->Views.push_back({ this->Scene, this->Content, this->Wanted });
-    this->SinceScene = banyan::Timer();
-  }
-  ticket.Display = this->Display;
-  ticket.Scene = this->Scene;
-  ticket.Moves = this->WantsMoves;
-  ticket.CoarseEvery = this->CoarseEvery();
-  // What was sent before has come: the line is free.
-  const double seconds = std::max(this->SinceTicket.Seconds(), GoOnSeconds);
-  ticket.Credit = this->Rate.Credit(std::min(seconds, CreditSeconds));
-  ticket.Shown = this->ToldScene;
-  ticket.View = this->Wanted;
-  this->AddDepths(ticket);
-  this->Proxy->SendTicket(ticket);
-  this->SinceTicket = banyan::Timer();
-}
-
-/// Adds what the window has of other data: it was drawn with the view of the ticket.
-void ServedWindow::AddDepths(PictureTicket& ticket)
-{
-  const bool isStill = !this->WantsMoves || this->SinceScene.Seconds() > StillSeconds;
-  if (ticket.IsNew())
-  {
-    this->Sent = PictureTicket::Nothing;
-  }
-  else if (this->Sent != PictureTicket::OfCoarse || !isStill)
-  {
-    return;
-  }
-  const DepthPicture others = this->Pictures->OthersInView();
-  if (!others.Rect.Empty())
-  {
-    this->Sent = isStill ? PictureTicket::OfAll : PictureTicket::OfCoarse;
-    ticket.Depths = PackDepths(isStill ? others : others.Coarser(ticket.CoarseEvery));
-  }
-  ticket.Others = this->Sent;
-}
-
-/// How coarse a picture has to be so that it comes soon.
-int ServedWindow::CoarseEvery() const
-{
-  const double most = this->Rate.Credit(CoarseSeconds);
-  const double pixels = static_cast<double>(this->Wanted.Size.x) * this->Wanted.Size.y;
-  int every = 2;
-  while (every < 8 && pixels / (every * every) > most)
-  {
-    every *= 2;
-  }
-  return every;
-}
-
-void ServedWindow::TakeMessage(void* window, void* message, int bytes, int)
-{
-  if (Windows().count(window) > 0)
-  {
-    static_cast<ServedWindow*>(window)->Take(message, static_cast<std::size_t>(bytes));
-  }
-}
-
-void ServedWindow::Take(const void* message, std::size_t bytes)
-{
-  const std::optional<PictureParcel> head = ParcelAssembly::HeadOf(message, bytes);
-  if (!head)
-  {
-    this->Fail("The server has another version of Banyan");
-    return;
-  }
-  if (head->Display != this->Display)
-  {
-    return;
-  }
-  this->Seen = std::max(this->Seen, head->Ticket);
-  const bool isCut = head->Begin + (bytes - sizeof(PictureParcel)) < head->Bytes;
-  this->Rate.Came({ head->Burst, bytes, this->HadNone, this->Clock.Seconds(), isCut });
-  try
-  {
-    if (std::optional<ParcelAssembly::Whole> whole = this->Parts.Take(message, bytes))
-    {
-      this->Take(std::move(*whole));
-    }
-  }
-  catch (const std::exception& error)
-  {
-    this->Fail(error.what());
-  }
-}
-
-void ServedWindow::Take(ParcelAssembly::Whole whole)
-{
-  const PictureParcel& head = whole.Head;
-  while (!this->Views.empty() && this->Views.front().Scene < head.Scene)
-  {
-    this->Views.pop_front();
-  }
-  const bool isKnown = !this->Views.empty() && this->Views.front().Scene == head.Scene;
-  if (head.Kind == PictureParcel::Failure)
-  {
-    this->Fail(std::string(whole.Content.begin(), whole.Content.end()));
-  }
-  else if (head.Kind == PictureParcel::Same && isKnown)
-  {
-    const Asked& asked = this->Views.front();
-    this->Pictures->PutSame(asked.Scene, asked.Content, asked.View);
-    this->ExactScene = head.Scene;
-    this->HasBetter = !this->Pictures->LastShown().Exact;
-  }
-  else if ((head.Kind == PictureParcel::Coarse || head.Kind == PictureParcel::Exact) && isKnown)
-  {
-    const bool exact = head.Kind == PictureParcel::Exact;
-    const Asked& asked = this->Views.front();
-    this->Pictures->Put(
-      { head.Scene, asked.Content, exact, asked.View, UnpackPicture(whole.Content) });
-    this->ExactScene = exact ? head.Scene : this->ExactScene;
-    this->HasBetter = true;
-  }
-}
-
-/// Says it once, and has the window wait as it did.
-void ServedWindow::Fail(const std::string& sentence)
-{
-  if (this->Failure.empty() && !sentence.empty())
-  {
-    this->Failure = sentence + (sentence.back() == '.' ? "" : ".");
-    vtkErrorWithObjectMacro(
-      this->Proxy, << "The volume was not drawn while the window went on. " << this->Failure
-                   << " Until a property of the display changes, the window waits for the server.");
-  }
 }
 
 void ServedWindow::DrawAlone(bool exact)
 {
   vtkPVRenderView* const view = OfClient(this->View);
   this->Busy = true;
-  this->HasBetter = false;
+  for (ServedVolume* const volume : this->Volumes)
+  {
+    volume->IsShown();
+  }
   if (exact)
   {
     view->StillRender();
@@ -373,75 +221,65 @@ void ServedWindow::DrawAlone(bool exact)
 /// Now and then: takes pictures that have come, shows them, and has the server go on.
 void ServedWindow::Look(vtkObject*, unsigned long, void* timer)
 {
-  if (*static_cast<int*>(timer) != this->Timer || this->Busy || !IsIdle(this->Proxy))
+  if (*static_cast<int*>(timer) != this->Timer || this->Busy || !this->View || !IsIdle(this->View))
   {
     return;
   }
-  const vtkSmartPointer<vtkSMBanyanVolumeProxy> stays(this->Proxy);
-  this->Busy = true;
-  this->HadNone = ReadMessages(PumpSeconds) ? this->Clock.Seconds() : this->HadNone;
-  this->Busy = false;
-  if (!this->Served || !this->View || !IsIdle(this->Proxy))
+  const std::shared_ptr<ServedWindow> stays = this->shared_from_this();
+  this->ReadPictures();
+  if (!this->Served || !this->View || !IsIdle(this->View))
   {
     return;
   }
-  if (!this->Failure.empty())
+  if (this->HasFailed())
   {
     this->StopTimer();
     this->Interactor->InvokeEvent(vtkCommand::RenderEvent);
     return;
   }
-  const bool exact = !this->IsMissing() && !this->Moving && !this->IsNew;
+  this->ShowPictures();
+}
+
+void ServedWindow::ReadPictures()
+{
+  this->Busy = true;
+  const bool all = ReadMessages(PumpSeconds);
+  this->Busy = false;
+  for (ServedVolume* const volume : this->Volumes)
+  {
+    if (all)
+    {
+      volume->HasReadAll();
+    }
+  }
+}
+
+void ServedWindow::ShowPictures()
+{
+  const std::vector<ServedVolume*> volumes = this->InView();
+  for (ServedVolume* const volume : volumes)
+  {
+    if (volume->HasNews())
+    {
+      volume->GoOn(); // the server works on it while the window draws
+    }
+  }
+  const auto hasBetter = [](const ServedVolume* volume) { return volume->HasBetter(); };
+  const auto isExact = [](const ServedVolume* volume) { return volume->HasExact(); };
+  const bool exact = !this->Moving && std::all_of(volumes.begin(), volumes.end(), isExact);
   const bool waits = !exact && this->SinceDrawn.Seconds() < DrawSeconds;
-  if (this->HasBetter && !waits && !this->View->GetNeedsUpdate())
+  const bool better = std::any_of(volumes.begin(), volumes.end(), hasBetter);
+  if (better && !waits && !this->View->GetNeedsUpdate())
   {
     this->DrawAlone(exact);
   }
-  this->GoOn();
-}
-
-/// Somebody drags a point of a function, or ParaView has changed it, and will render.
-void ServedWindow::FunctionsHaveChanged()
-{
-  this->HasOtherFunctions = this->IsServed();
-  if (this->HasOtherFunctions)
+  bool goesOn = false;
+  for (ServedVolume* const volume : volumes)
   {
-    this->StartTimer();
+    goesOn = volume->GoOn() || goesOn;
   }
-}
-
-void ServedWindow::ShowFunctions()
-{
-  this->HasOtherFunctions = false;
-  this->Proxy->SendFunctions();
-  this->Want(/*moves=*/true, /*mayHaveChanged=*/true);
-}
-
-void ServedWindow::GoOn()
-{
-  if (this->Number - this->Seen >= MostUnseen)
+  if (!goesOn)
   {
-    return;
-  }
-  if (this->HasOtherFunctions && !this->View->GetNeedsUpdate())
-  {
-    this->ShowFunctions();
-  }
-  // The rest of a picture is asked for when the first part has come.
-  const bool waits = this->SinceTicket.Seconds() < GoOnSeconds &&
-                     !(this->Parts.HasBegun() && this->Seen == this->Number);
-  if (this->IsNew || (this->IsMissing() && !waits))
-  {
-    this->SendTicket();
-  }
-  else if (!this->IsMissing() && !this->HasBetter)
-  {
-    if (this->ToldScene != this->Scene)
-    {
-      this->ToldScene = this->Scene;
-      this->SendTicket();
-      this->Proxy->FetchStatistics();
-    }
     this->StopTimer();
   }
 }

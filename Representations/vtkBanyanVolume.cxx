@@ -20,6 +20,7 @@
 #include "vtkOrderedCompositingHelper.h"
 #include "vtkPVRenderView.h"
 #include "vtkPVRenderViewDataDeliveryManager.h"
+#include "vtkPropCollection.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 
@@ -117,8 +118,7 @@ int vtkBanyanVolume::RenderOverlay(vtkViewport* viewport)
   }
   if (this->Pictures)
   {
-    this->Pictures->Show(renderer, this);
-    this->MarkUnless(this->Pictures->LastShown().Exact, renderer);
+    this->ShowPictures(renderer);
     return 1;
   }
   std::vector<int> order;
@@ -137,6 +137,39 @@ int vtkBanyanVolume::RenderOverlay(vtkViewport* viewport)
   this->BanyanMapper->Render(renderer, this);
   this->MarkUnless(this->BanyanMapper->GetStatistics()->GetPictureIsExact() != 0, renderer);
   return 1;
+}
+
+/// Of all volumes of the view, together: the first one that VTK renders shows them.
+void vtkBanyanVolume::ShowPictures(vtkRenderer* renderer)
+{
+  std::vector<banyan::PicturesAtHand*> pictures;
+  std::vector<vtkVolume*> props;
+  vtkPropCollection* const all = renderer->GetViewProps();
+  vtkCollectionSimpleIterator at;
+  all->InitTraversal(at);
+  while (vtkProp* const prop = all->GetNextProp(at))
+  {
+    auto* const volume = vtkBanyanVolume::SafeDownCast(prop);
+    if (volume && volume->Pictures && volume->GetVisibility())
+    {
+      pictures.push_back(volume->Pictures.get());
+      props.push_back(volume);
+    }
+  }
+  if (props.empty() || props.front() != this)
+  {
+    return;
+  }
+  const std::string note = banyan::PicturesAtHand::Show(renderer, pictures, props);
+  if (!note.empty())
+  {
+    vtkWarningMacro(<< note);
+  }
+  for (vtkVolume* const prop : props)
+  {
+    auto* const volume = static_cast<vtkBanyanVolume*>(prop);
+    volume->MarkUnless(volume->Pictures->LastShown().Exact, renderer);
+  }
 }
 
 void vtkBanyanVolume::MarkUnless(bool exact, vtkRenderer* renderer)

@@ -72,6 +72,7 @@ private:
   vtkBanyanVolume(const vtkBanyanVolume&) = delete;
   void operator=(const vtkBanyanVolume&) = delete;
 
+  void ShowPictures(vtkRenderer* renderer);
   void MarkUnless(bool exact, vtkRenderer* renderer);
   void SmoothEdges(vtkObject* caller, unsigned long event, void* data);
 

@@ -4,7 +4,8 @@
 #include "LiveFunctions.h"
 #include "OptionsWithoutEffect.h"
 #include "PictureTicket.h"
-#include "ServedWindow.h"
+#include "ServableView.h"
+#include "ServedVolume.h"
 #include "vtkBanyanVolumeRepresentation.h"
 
 #include "vtkClientServerStream.h"
@@ -140,8 +141,8 @@ void vtkSMBanyanVolumeProxy::ViewUpdated(vtkSMProxy* view)
     }
     this->View = view;
     auto* const window = vtkSMRenderViewProxy::SafeDownCast(view);
-    this->Window =
-      banyan::HasServer(window) ? std::make_unique<banyan::ServedWindow>(this, window) : nullptr;
+    this->Late =
+      banyan::HasServer(window) ? std::make_unique<banyan::ServedVolume>(this, window) : nullptr;
     this->ViewObserver =
       view->AddObserver(vtkCommand::EndEvent, this, &vtkSMBanyanVolumeProxy::FrameDrawn);
   }
@@ -218,7 +219,7 @@ void vtkSMBanyanVolumeProxy::FrameDrawn(vtkObject*, unsigned long, void* interac
 {
   const bool isMoving = interactive && *static_cast<int*>(interactive) != 0;
   // Scripts ask for them themselves.
-  const bool isServed = this->Window && this->Window->IsServed();
+  const bool isServed = this->Late && this->Late->IsServed();
   if (!isMoving && !isServed && IsInWindow() && this->IsShown())
   {
     this->FetchStatistics();

@@ -23,6 +23,8 @@ class Changes(ServedWindow):
         self.points = list(self.display.ScalarOpacityFunction.Points)
         self.sphere = simple.Sphere(Radius=25.0, Center=[40.0, 10.0, 20.0], ThetaResolution=40, PhiResolution=40)
         self.shown_sphere = simple.Show(self.sphere, self.view)
+        self.neighbour = picture_scenes.volume(
+            simple.Wavelet(WholeExtent=[62, 80, -50, 20, -60, 60], Center=[71.0, -15.0, 0.0]), self.view, "RTData")
         self.second = simple.CreateView("RenderView")
         self.second.UseFXAA = 0
         simple.AssignViewToLayout(view=self.second, layout=simple.GetLayout(self.view), hint=0)
@@ -65,6 +67,11 @@ class Changes(ServedWindow):
         self.display.Visibility = 1
         simple.Render(self.view)
 
+    def neighbour_moves(self):
+        self.neighbour.Visibility = self.dice.choice((0, 1, 1))
+        self.neighbour.Position = [self.dice.choice((0.0, -150.0)), 0.0, 0.0]
+        simple.Render(self.view)
+
     def other_display(self):
         simple.Delete(self.beside)
         self.wait(self.dice.choice((0.0, 0.1)))
@@ -86,7 +93,7 @@ class Changes(ServedWindow):
         self.saved("meanwhile")
 
     def run(self, changes):
-        what = (self.turn, self.opacity, self.shading, self.sphere_moves, self.other_values, self.hidden,
+        what = (self.turn, self.opacity, self.shading, self.sphere_moves, self.other_values, self.hidden, self.neighbour_moves,
                 self.other_display, self.second_moves, self.decoupled, self.save)
         for number in range(changes):
             change = self.dice.choice(what)

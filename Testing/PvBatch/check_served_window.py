@@ -241,9 +241,18 @@ class ServedWindow:
         session.require(pictures.difference(self.shown("remote"), changed).max() > 50, "the server shows other data")
         self.view.RemoteRenderThreshold = threshold
 
-        wavelet = simple.Wavelet(WholeExtent=[-10, 10, -10, 10, -10, 10])
-        picture_scenes.volume(wavelet, self.view, "RTData")
-        self.require_waits("with a second volume")
+        wavelet = simple.Wavelet(WholeExtent=[-90, -70, -40, 40, -40, 40], Center=[-80.0, 0.0, 0.0])
+        second = picture_scenes.volume(wavelet, self.view, "RTData")
+        simple.Render(self.view)
+        self.require_exact("a second volume")  # the window renders once more by itself
+        _, two = self.drag("with a second volume")
+        session.require(pictures.difference(others, two).max() > 20, "a second volume is shown")
+        self.view.GetActiveCamera().Azimuth(180.0)
+        simple.Render(self.view)
+        self.drag("with a second volume from behind")
+        second.Decoupled = 0
+        self.require_waits("with a second volume that is waited for")
+        second.Decoupled = 1
         simple.Hide(wavelet, self.view)
 
         link = simple.CreateView("RenderView")

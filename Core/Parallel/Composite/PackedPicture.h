@@ -3,16 +3,27 @@
 #define banyan_Parallel_Composite_PackedPicture_h
 
 #include "Base/Bytes.h"
+#include "Render/Raycast/DepthOrder.h"
 #include "Render/Scene/BytePicture.h"
 
 namespace banyan
 {
 
-/// Lossless bytes of a picture, for a slow line: PackPixels, and zstd.
-Bytes PackPicture(const BytePicture& picture);
+class ThreadPool;
+
+/// A picture of a volume, and where the volume is: pictures of several are blended in that order.
+struct PlacedPicture
+{
+  BytePicture Picture;
+  PlacedBody Body; ///< in world space; at most 8 boxes, and none where nothing is shown
+};
+
+/// Lossless bytes of a picture, for a slow line: PackPixels, and zstd, of bands of rows. Gives the
+/// same bytes with any number of threads.
+Bytes PackPicture(const PlacedPicture& placed, ThreadPool& threads);
 
 /// The inverse. Throws Error when the bytes are not those of a picture.
-BytePicture UnpackPicture(const Bytes& packed);
+PlacedPicture UnpackPicture(const Bytes& packed, ThreadPool& threads);
 
 } // namespace banyan
 

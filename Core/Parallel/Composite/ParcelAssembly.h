@@ -15,7 +15,7 @@ struct PictureParcel
 {
   /// The number of our messages among those that ParaView sends between processes.
   static constexpr int Tag = 745019;
-  static constexpr std::uint32_t ThisVersion = 1;
+  static constexpr std::uint32_t ThisVersion = 2;
   static constexpr std::size_t MostBytes = 12000; ///< of a message: more blocks a slow line
 
   enum Kinds : std::int32_t

@@ -33,19 +33,24 @@ LateFramesOfRanks::~LateFramesOfRanks()
 
 void LateFramesOfRanks::Stop()
 {
-  if (this->IsDrawing())
+  if (this->IsComing())
   {
     this->Name = Hash128{}; // whoever wants it has to begin anew
   }
+  this->Begin = nullptr;
   this->Task.reset();
   this->Between.reset();
 }
 
-void LateFramesOfRanks::StopAll()
+void LateFramesOfRanks::PauseAll()
 {
   for (LateFramesOfRanks* const frames : All())
   {
-    frames->Stop();
+    if (frames->IsDrawing())
+    {
+      frames->Task.reset();
+      frames->Between.reset();
+    }
   }
 }
 
@@ -63,14 +68,16 @@ bool LateFramesOfRanks::Draw(Communicator& communicator, DistributedField& field
   {
     return false;
   }
-  StopAll();
-  this->Name = Hash128{};
+  PauseAll();
+  this->Stop();
   FieldFrames::Wish exact = wish;
   exact.Sampling.Interacting = false;
   this->DrawBest(communicator, field, scene, coarse, exact);
   if (!this->Best.Exact)
   {
-    this->Start(communicator, field, scene, exact);
+    this->Begin = [this, &communicator, &field, scene, exact]
+    { this->Start(communicator, field, scene, exact); };
+    this->Begin();
   }
   this->Name = name;
   return true;
@@ -79,8 +86,8 @@ bool LateFramesOfRanks::Draw(Communicator& communicator, DistributedField& field
 void LateFramesOfRanks::DrawCoarse(Communicator& communicator, DistributedField& field,
   const RayScene& coarse, const FieldFrames::Wish& wish)
 {
-  StopAll();
-  this->Name = Hash128{};
+  PauseAll();
+  this->Stop();
   RayScene own = coarse;
   this->Best = { this->Frames.Draw(
                    communicator, field, own, LateFrames::CoarseOf(wish, LateFrames::CoarseSeconds)),
@@ -153,9 +160,17 @@ std::optional<FieldFrames::Frame> LateFramesOfRanks::TakeBetween()
 
 bool LateFramesOfRanks::GoOn(const std::function<bool()>& leave)
 {
-  if (!this->IsDrawing())
+  if (!this->IsComing())
   {
     return false;
+  }
+  if (!this->IsDrawing())
+  {
+    if (AnyDraws())
+    {
+      return false;
+    }
+    this->Begin();
   }
   try
   {
@@ -166,9 +181,10 @@ bool LateFramesOfRanks::GoOn(const std::function<bool()>& leave)
   }
   catch (...)
   {
-    this->Name = Hash128{};
+    this->Stop();
     throw;
   }
+  this->Begin = nullptr;
   this->Between.reset();
   this->Best = { this->Next.Frame, true };
   this->Learn(this->Next);

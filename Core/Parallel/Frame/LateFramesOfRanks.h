@@ -45,7 +45,7 @@ public:
   void DrawCoarse(Communicator& communicator, DistributedField& field, const RayScene& coarse,
     const FieldFrames::Wish& wish);
 
-  /// Collective: serves the threads.
+  /// Collective: serves the threads; begins what was paused, when no other object draws.
   /// @param leave as of CollectiveTask::Serve
   /// @return whether the exact picture has come, and is the Last one
   /// Throws CollectiveError on all ranks when a thread has failed: Draw begins anew.
@@ -57,13 +57,16 @@ public:
   /// The best picture of the last scene. Its pixels are on rank 0.
   const LateFrames::Shown& Last() const { return this->Best; }
 
-  /// Whether threads draw from the field: the same on all ranks.
+  /// Whether threads draw from the field: the same on all ranks, as all that follows.
   bool IsDrawing() const { return this->Task && this->Task->IsStarted(); }
+  /// Whether they do, or will by GoOn.
+  bool IsComing() const { return this->Begin != nullptr; }
 
   /// Stops what the threads are at, so that the field may change.
   void Stop();
-  /// The same of all objects of this main thread, so that ThreadPool::Process may change.
-  static void StopAll();
+  /// Stops the threads of all objects of this main thread, so that ThreadPool::Process may change.
+  /// They go on by GoOn.
+  static void PauseAll();
   /// Whether threads of any such object draw.
   static bool AnyDraws();
 
@@ -78,6 +81,7 @@ private:
   LateFrames::Times Waits;
   Hash128 Name;                       ///< of the last scene
   LateFrames::Shown Best;             ///< of it
+  std::function<void()> Begin;        ///< starts the threads; null when nothing is to come
   LateFrames::Drawn Next;             ///< by the threads, when they have ended
   std::optional<double> ExactSeconds; ///< of the last exact picture; the same on all ranks
   std::mutex Mutex;                   ///< of what is between

@@ -80,16 +80,31 @@ PixelRect NewRect(const BytePicture& old, const glm::dmat3& toOld, const glm::iv
 BytePicture RoundToBytes(const FloatImage& picture, const glm::ivec2& size)
 {
   BytePicture bytes{ size, picture.Rect, {} };
-  bytes.Pixels.reserve(4 * picture.Pixels.size());
+  bytes.Pixels.resize(4 * picture.Pixels.size());
+  std::uint8_t* to = bytes.Pixels.data();
   for (const glm::vec4& pixel : picture.Pixels)
   {
     for (int c = 0; c < 4; ++c)
     {
-      bytes.Pixels.push_back(static_cast<std::uint8_t>(
-        (static_cast<int>(510.0f * std::clamp(pixel[c], 0.0f, 1.0f)) + 1) / 2));
+      *to++ = static_cast<std::uint8_t>(
+        (static_cast<int>(510.0f * std::clamp(pixel[c], 0.0f, 1.0f)) + 1) / 2);
     }
   }
   return bytes;
+}
+
+FloatImage ToFloats(const BytePicture& picture)
+{
+  FloatImage floats;
+  floats.Rect = picture.Rect;
+  floats.Pixels.resize(picture.Pixels.size() / 4);
+  const std::uint8_t* from = picture.Pixels.data();
+  for (glm::vec4& pixel : floats.Pixels)
+  {
+    pixel = glm::vec4(from[0], from[1], from[2], from[3]) * (1.0f / 255.0f);
+    from += 4;
+  }
+  return floats;
 }
 
 BytePicture SeenAnew(

@@ -26,6 +26,9 @@ struct BytePicture
 /// @param size of the whole picture
 BytePicture RoundToBytes(const FloatImage& picture, const glm::ivec2& size);
 
+/// The inverse, as far as there is one.
+FloatImage ToFloats(const BytePicture& picture);
+
 /// The picture of one plane, seen by another camera: each pixel of the new picture takes what the
 /// four pixels around its point of the old one have, in proportion (bilinear). Nothing is shown
 /// outside of the old rectangle.

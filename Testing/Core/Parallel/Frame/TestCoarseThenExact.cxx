@@ -199,6 +199,29 @@ TEST(CoarseThenExact, PicturesThatTakeLongHaveOneBetween)
     times);
 }
 
+TEST(CoarseThenExact, WhatWasPausedForAnotherViewGoesOn)
+{
+  RunOnSimulatedRanks(2,
+    [](Communicator& communicator)
+    {
+      Volume one(communicator);
+      Volume other(communicator);
+      Situation now;
+      one.Draw(now);
+      other.Draw(now);
+      EXPECT_FALSE(one.Served.IsDrawing());
+      EXPECT_TRUE(one.Served.IsComing());
+      EXPECT_FALSE(one.GoOn(0)) << "the other one comes first";
+      EXPECT_TRUE(other.Served.IsDrawing());
+      EXPECT_FALSE(one.Draw(now)) << "the same scene";
+      other.Finish();
+      one.Finish();
+      EXPECT_FALSE(one.Served.IsComing());
+      one.ExpectExact(now);
+      other.ExpectExact(now);
+    });
+}
+
 TEST(CoarseThenExact, AFailureIsThatOfAllRanksAndTheNextPictureComes)
 {
   RunOnSimulatedRanks(3,
