@@ -135,7 +135,7 @@ void ServedVolume::SendTicket()
   if (std::exchange(this->IsNew, false))
   {
     this->Scene = this->Number;
-    this->Views.push_back({ this->Scene, this->Content, this->Wanted });
+    this->Views.push_back({ this->Scene, this->Content, this->Wanted, {}, false });
     this->SinceScene = banyan::Timer();
   }
   ticket.Display = this->Display;
@@ -251,7 +251,12 @@ void ServedVolume::Take(ParcelAssembly::Whole whole)
   else if ((head.Kind == PictureParcel::Coarse || head.Kind == PictureParcel::Exact) && isKnown)
   {
     const bool exact = head.Kind == PictureParcel::Exact;
-    const Asked& asked = this->Views.front();
+    Asked& asked = this->Views.front();
+    if (!std::exchange(asked.HasPicture, true))
+    {
+      const double lag = asked.Since.Seconds();
+      this->LagSeconds += (this->LagSeconds > 0.0 ? 0.3 : 1.0) * (lag - this->LagSeconds);
+    }
     PlacedPicture placed = UnpackPicture(whole.Content, ThreadPool::Process());
     this->Pictures->Put({ head.Scene, asked.Content, exact, asked.View, std::move(placed.Picture),
       std::move(placed.Body) });
@@ -309,7 +314,9 @@ bool ServedVolume::GoOn()
     this->SendTicket();
     return true;
   }
-  if (isMissing || this->Better || this->HasOtherFunctions)
+  // A picture that is exact for another view than that of the window is none.
+  const bool isShown = this->Pictures->LastShown().Exact;
+  if (isMissing || !isShown || this->Better || this->HasOtherFunctions)
   {
     return true;
   }

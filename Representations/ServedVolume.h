@@ -61,6 +61,10 @@ public:
   bool HasExact() const { return this->ExactScene == this->Scene && !this->IsNew; }
   /// Whether a picture is here that is not shown yet.
   bool HasBetter() const { return this->Better; }
+  /// Whether other data may be in the view.
+  bool HasOthersInView() const { return this->Pictures && this->Pictures->HasOthersInView(); }
+  /// Seconds from a ticket to its first picture, as measured; 0 at first.
+  double Lag() const { return this->LagSeconds; }
   /// The window is drawn.
   void IsShown() { this->Better = false; }
   /// No message waits.
@@ -88,6 +92,8 @@ private:
     int Scene;
     int Content;
     ScreenView View;
+    banyan::Timer Since;
+    bool HasPicture = false;
   };
 
   vtkSMBanyanVolumeProxy* Proxy;
@@ -119,6 +125,7 @@ private:
   ParcelAssembly Parts;
   LineRate Rate;
   banyan::Timer Clock;
+  double LagSeconds = 0.0;
   double HadNone = 0.0; ///< when no message was waiting, by that
   std::shared_ptr<PicturesAtHand> Pictures;
   bool Better = false;

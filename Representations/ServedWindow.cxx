@@ -4,11 +4,14 @@
 #include "LineToClient.h"
 #include "ServedVolume.h"
 
+#include "vtkCamera.h"
 #include "vtkCommand.h"
 #include "vtkPVRenderView.h"
 #include "vtkRenderWindowInteractor.h"
 #include "vtkRenderer.h"
 #include "vtkSMRenderViewProxy.h"
+
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <iterator>
@@ -22,6 +25,7 @@ namespace
 
 constexpr double PumpSeconds = 0.006;   ///< that messages are read for at a time
 constexpr double DrawSeconds = 0.05;    ///< from one better picture to the next, at least
+constexpr double RestSeconds = 0.1;     ///< without a move, until the camera counts as at rest
 constexpr unsigned long LookEvery = 10; ///< milliseconds
 constexpr float BeforeParaView = 1.0f;  ///< priority of an observer
 
@@ -159,6 +163,8 @@ void ServedWindow::AfterRender(vtkObject*, unsigned long, void* interactive)
 {
   const bool moves = interactive && *static_cast<int*>(interactive) != 0;
   this->HasLod = moves;
+  this->IsDrawn = !moves;
+  this->Ahead = false;
   if (this->IsServed())
   {
     const ScreenView view = ViewOf(this->View->GetRenderer());
@@ -185,13 +191,47 @@ bool ServedWindow::Move(vtkObject*, unsigned long, void*)
   }
   view->ResetCameraClippingRange();
   this->DrawAlone(/*exact=*/false);
-  const ScreenView wanted = ViewOf(this->View->GetRenderer());
-  for (ServedVolume* const volume : this->InView())
-  {
-    volume->Want(wanted, /*moves=*/true, /*mayHaveChanged=*/false);
-  }
+  this->SinceMove = banyan::Timer();
+  this->Want(this->Soon(ViewOf(this->View->GetRenderer())), /*moves=*/true);
   this->StartTimer();
   return true;
+}
+
+void ServedWindow::BeginMoves()
+{
+  this->Moving = true;
+  this->Path.Begin();
+}
+
+void ServedWindow::Want(const ScreenView& view, bool moves)
+{
+  for (ServedVolume* const volume : this->InView())
+  {
+    volume->Want(view, moves, /*mayHaveChanged=*/false);
+  }
+}
+
+/// What will be seen when a picture of it is here, if the camera goes on as it does.
+ScreenView ServedWindow::Soon(const ScreenView& now)
+{
+  const glm::dmat4 toEye =
+    ToGlm(this->View->GetRenderer()->GetActiveCamera()->GetViewTransformMatrix());
+  this->Path.Add(toEye, this->Clock.Seconds());
+  double seconds = 0.0;
+  bool hasOthers = false; // whose depths are those of now
+  for (const ServedVolume* const volume : this->InView())
+  {
+    seconds = std::max(seconds, volume->Lag());
+    hasOthers = hasOthers || volume->HasOthersInView();
+  }
+  const glm::dmat4 then = this->Path.After(seconds);
+  this->Ahead = !hasOthers && then != toEye;
+  ScreenView soon = now;
+  if (this->Ahead)
+  {
+    soon.WorldToClip = now.WorldToClip * glm::inverse(toEye) * then;
+  }
+  return soon;
 }
 
 void ServedWindow::DrawAlone(bool exact)
@@ -215,6 +255,7 @@ void ServedWindow::DrawAlone(bool exact)
     view->SetUseFXAA(smooths);
   }
   this->Busy = false;
+  this->IsDrawn = exact;
   this->SinceDrawn = banyan::Timer();
 }
 
@@ -256,6 +297,11 @@ void ServedWindow::ReadPictures()
 
 void ServedWindow::ShowPictures()
 {
+  if (this->Ahead && this->SinceMove.Seconds() > RestSeconds)
+  {
+    this->Ahead = false;
+    this->Want(ViewOf(this->View->GetRenderer()), /*moves=*/true);
+  }
   const std::vector<ServedVolume*> volumes = this->InView();
   for (ServedVolume* const volume : volumes)
   {
@@ -269,7 +315,8 @@ void ServedWindow::ShowPictures()
   const bool exact = !this->Moving && std::all_of(volumes.begin(), volumes.end(), isExact);
   const bool waits = !exact && this->SinceDrawn.Seconds() < DrawSeconds;
   const bool better = std::any_of(volumes.begin(), volumes.end(), hasBetter);
-  if (better && !waits && !this->View->GetNeedsUpdate())
+  const bool isDrawn = this->IsDrawn || !exact;
+  if ((better || !isDrawn) && !waits && !this->View->GetNeedsUpdate())
   {
     this->DrawAlone(exact);
   }

@@ -2,9 +2,11 @@
 #ifndef banyan_Representations_ServedWindow_h
 #define banyan_Representations_ServedWindow_h
 
+#include "RendererCamera.h"
 #include "ServableView.h"
 
 #include "Base/Timer.h"
+#include "Render/Scene/CameraPath.h"
 
 #include "vtkWeakPointer.h"
 
@@ -29,7 +31,8 @@ class ServedVolume;
 ///     tickets    view 1    view 2    view 3   go on   go on ...
 ///     pictures         coarse 1  coarse 2 ...                  coarse 3    exact 3
 ///
-/// Depths of other data in the view, which the client has and draws, go with the tickets.
+/// Depths of other data in the view, which the client has and draws, go with the tickets. Where
+/// there are none, views of a moving camera are those that it will have when their pictures come.
 /// Where this does not do (stereo, walls, screenshots, steps of a play, scripts, failures, more
 /// data than a client gets, a volume that is not Decoupled), the server draws as ParaView asks for
 /// it.
@@ -60,13 +63,15 @@ private:
   void BeforeRender();
   void AfterRender(vtkObject* caller, unsigned long event, void* interactive);
   bool Move(vtkObject* caller, unsigned long event, void* data);
-  void BeginMoves() { this->Moving = true; }
+  void BeginMoves();
   void EndMoves() { this->Moving = false; }
   void Look(vtkObject* caller, unsigned long event, void* timer);
   void ReadPictures();
   void ShowPictures();
 
   std::vector<ServedVolume*> InView() const;
+  void Want(const ScreenView& view, bool moves);
+  ScreenView Soon(const ScreenView& now);
   bool HasFailed() const;
   void DrawAlone(bool exact);
   void StopTimer();
@@ -82,6 +87,11 @@ private:
   bool Busy = false;   ///< in a function that draws or pumps
   StepWatch Steps;
   bool HasLod = false; ///< other data were delivered for moves
+  bool IsDrawn = true; ///< as it is to stay, if all pictures are exact
+  CameraPath Path;     ///< while the mouse moves it
+  bool Ahead = false;  ///< the server draws what will be seen, if the camera goes on as it does
+  banyan::Timer Clock;
+  banyan::Timer SinceMove;
   banyan::Timer SinceDrawn;
 };
 
