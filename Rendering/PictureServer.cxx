@@ -91,6 +91,12 @@ void PictureServer::Take(const PictureTicket& ticket, const Line& line)
   this->GoOn(leaves, line, credit);
 }
 
+void PictureServer::Stop()
+{
+  this->Mapper->State->Served.Stop();
+  this->Waiting.clear();
+}
+
 /// Collective. What fails is sent as a sentence.
 void PictureServer::Attempt(const std::function<void()>& action)
 {
@@ -102,6 +108,7 @@ void PictureServer::Attempt(const std::function<void()>& action)
   {
     const std::string sentence = error.what();
     this->ExactScene = this->Asked.Scene; // no more of this one
+    this->Mapper->State->Served.Stop();
     this->Put(PictureParcel::Failure, Bytes(sentence.begin(), sentence.end()));
     this->Mapper->State->Communicator->LeaveTogether(sentence);
   }
@@ -140,6 +147,7 @@ void PictureServer::Draw()
   {
     state.Served.Stop();
     this->Drawn = nullptr;
+    this->DrawnScene = this->Asked.Scene;
     this->Body.clear();
     this->PutPicture(true, { this->Asked.View.Size, {}, {} });
     this->ExactScene = this->Asked.Scene;
@@ -155,11 +163,13 @@ void PictureServer::Draw()
   {
     state.Served.DrawCoarse(*state.Communicator, state.Field, small, wish);
     this->Drawn = std::move(frame);
+    this->DrawnScene = this->Asked.Scene;
     this->Publish();
   }
   else if (state.Served.Draw(*state.Communicator, state.Field, scene, small, wish))
   {
     this->Drawn = std::move(frame);
+    this->DrawnScene = this->Asked.Scene;
     this->Publish();
   }
   else
@@ -193,9 +203,13 @@ void PictureServer::Rename()
   bool comes = false;
   for (Parcel& parcel : this->Waiting)
   {
-    parcel.Head.Scene = this->Asked.Scene;
-    comes = comes || parcel.Head.Kind == PictureParcel::Exact;
+    if (parcel.Head.Scene == this->DrawnScene)
+    {
+      parcel.Head.Scene = this->Asked.Scene;
+      comes = comes || parcel.Head.Kind == PictureParcel::Exact;
+    }
   }
+  this->DrawnScene = this->Asked.Scene;
   if (isExact && !comes)
   {
     this->Put(PictureParcel::Same, {});

@@ -48,6 +48,9 @@ public:
   /// nowhere.
   void Take(const PictureTicket& ticket, const Line& line);
 
+  /// The client wants nothing any more.
+  void Stop();
+
 private:
   /// Something for the client, of which a part was sent.
   struct Parcel
@@ -75,6 +78,7 @@ private:
   int Number = 0;                     ///< of the last ticket
   bool HasAnswered = false;           ///< the last ticket
   int Burst = 0;                      ///< of messages
+  int DrawnScene = 0;                 ///< the last one that was drawn
   int ExactScene = 0;                 ///< that the client has, or will have, an exact picture of
   std::deque<Parcel> Waiting;         ///< on rank 0
 };

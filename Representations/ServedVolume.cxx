@@ -26,11 +26,12 @@ namespace banyan
 namespace
 {
 
-constexpr double GoOnSeconds = 0.1;   ///< from ticket to ticket, while a picture is missing
-constexpr double CreditSeconds = 0.1; ///< that a ticket gives credit for, at most
-constexpr double CoarseSeconds = 0.1; ///< that a coarse picture may be on the line, a byte a pixel
-constexpr double StillSeconds = 0.1;  ///< without a move, until depths of all pixels are sent
-constexpr int MostUnseen = 2;         ///< tickets that the server has not answered
+constexpr double GoOnSeconds = 0.1;    ///< from ticket to ticket, while a picture is missing
+constexpr double CreditSeconds = 0.1;  ///< that a ticket gives credit for, at most
+constexpr double CoarseSeconds = 0.1;  ///< that a coarse picture may be on the line, a byte a pixel
+constexpr double StillSeconds = 0.1;   ///< without a move, until depths of all pixels are sent
+constexpr double MostLagSeconds = 0.5; ///< for which a move is said to go on
+constexpr int MostUnseen = 2;          ///< tickets that the server has not answered
 
 /// Those that there are: a picture may come for one that is gone.
 std::set<void*>& All()
@@ -97,6 +98,7 @@ void ServedVolume::Serve(bool serves, int volumes)
   if (serves != this->Served)
   {
     this->Served = serves;
+    this->Seen = this->Number; // what is not answered yet may never be
     this->Proxy->SetServed(serves, this->Window->GetView());
     this->Pictures = this->Proxy->GetPictures();
   }
@@ -135,7 +137,7 @@ void ServedVolume::SendTicket()
   if (std::exchange(this->IsNew, false))
   {
     this->Scene = this->Number;
-    this->Views.push_back({ this->Scene, this->Content, this->Wanted, {}, false });
+    this->Views.push_back({ this->Scene, this->Content, this->Wanted, {}, this->WantsMoves });
     this->SinceScene = banyan::Timer();
   }
   ticket.Display = this->Display;
@@ -252,9 +254,9 @@ void ServedVolume::Take(ParcelAssembly::Whole whole)
   {
     const bool exact = head.Kind == PictureParcel::Exact;
     Asked& asked = this->Views.front();
-    if (!std::exchange(asked.HasPicture, true))
+    if (std::exchange(asked.IsMeasured, false))
     {
-      const double lag = asked.Since.Seconds();
+      const double lag = std::min(asked.Since.Seconds(), MostLagSeconds);
       this->LagSeconds += (this->LagSeconds > 0.0 ? 0.3 : 1.0) * (lag - this->LagSeconds);
     }
     PlacedPicture placed = UnpackPicture(whole.Content, ThreadPool::Process());
@@ -314,13 +316,12 @@ bool ServedVolume::GoOn()
     this->SendTicket();
     return true;
   }
-  // A picture that is exact for another view than that of the window is none.
-  const bool isShown = this->Pictures->LastShown().Exact;
-  if (isMissing || !isShown || this->Better || this->HasOtherFunctions)
+  if (isMissing || this->Better || this->HasOtherFunctions)
   {
     return true;
   }
-  if (this->ToldScene != this->Scene)
+  // A picture that is exact for another view than that of the window is not told of.
+  if (this->ToldScene != this->Scene && this->Pictures->LastShown().Exact)
   {
     this->ToldScene = this->Scene;
     this->SendTicket();

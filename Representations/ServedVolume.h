@@ -63,12 +63,12 @@ public:
   bool HasBetter() const { return this->Better; }
   /// Whether other data may be in the view.
   bool HasOthersInView() const { return this->Pictures && this->Pictures->HasOthersInView(); }
-  /// Seconds from a ticket to its first picture, as measured; 0 at first.
+  /// Seconds from a ticket of a moving camera to its first picture, as measured; 0 at first.
   double Lag() const { return this->LagSeconds; }
-  /// The window is drawn.
-  void IsShown() { this->Better = false; }
+  /// The window draws.
+  void WillBeShown() { this->Better = false; }
   /// No message waits.
-  void HasReadAll() { this->HadNone = this->Clock.Seconds(); }
+  void NoteAllRead() { this->HadNone = this->Clock.Seconds(); }
   /// Whether the server is not asked any more.
   bool HasFailed() const { return !this->Failure.empty(); }
 
@@ -93,7 +93,7 @@ private:
     int Content;
     ScreenView View;
     banyan::Timer Since;
-    bool HasPicture = false;
+    bool IsMeasured; ///< how long its first picture takes: that of a moving camera
   };
 
   vtkSMBanyanVolumeProxy* Proxy;

@@ -34,6 +34,10 @@ constexpr float BeforeParaView = 1.0f;  ///< priority of an observer
 std::shared_ptr<ServedWindow> ServedWindow::Of(vtkSMRenderViewProxy* view)
 {
   static std::map<vtkSMRenderViewProxy*, std::weak_ptr<ServedWindow>> windows;
+  for (auto at = windows.begin(); at != windows.end();)
+  {
+    at = at->second.expired() ? windows.erase(at) : std::next(at);
+  }
   std::weak_ptr<ServedWindow>& place = windows[view];
   std::shared_ptr<ServedWindow> window = place.lock();
   if (!window || window->View != view) // a view that is gone may have been at this address
@@ -123,7 +127,7 @@ void ServedWindow::StopTimer()
   this->Timer = -1;
 }
 
-/// Volumes that are seen; none while somebody's is not yet known here.
+/// Volumes that ParaView is to draw; none while somebody's is not yet known here.
 std::vector<ServedVolume*> ServedWindow::InView() const
 {
   const std::set<vtkSMProxy*> seen = VolumesIn(this->View);
@@ -133,10 +137,19 @@ std::vector<ServedVolume*> ServedWindow::InView() const
   return volumes.size() == seen.size() ? volumes : std::vector<ServedVolume*>();
 }
 
+/// Volumes that the last picture of ParaView's has shown, if their pictures come as messages.
+std::vector<ServedVolume*> ServedWindow::InUse() const
+{
+  std::vector<ServedVolume*> volumes;
+  std::copy_if(this->Volumes.begin(), this->Volumes.end(), std::back_inserter(volumes),
+    [](const ServedVolume* volume) { return volume->IsServed(); });
+  return volumes;
+}
+
 bool ServedWindow::HasFailed() const
 {
   return std::any_of(this->Volumes.begin(), this->Volumes.end(),
-    [](const ServedVolume* volume) { return volume->HasFailed(); });
+    [](const ServedVolume* volume) { return volume->IsServed() && volume->HasFailed(); });
 }
 
 void ServedWindow::BeforeRender()
@@ -168,7 +181,7 @@ void ServedWindow::AfterRender(vtkObject*, unsigned long, void* interactive)
   if (this->IsServed())
   {
     const ScreenView view = ViewOf(this->View->GetRenderer());
-    for (ServedVolume* const volume : this->InView())
+    for (ServedVolume* const volume : this->InUse())
     {
       volume->WantAnew(view, moves);
     }
@@ -205,7 +218,7 @@ void ServedWindow::BeginMoves()
 
 void ServedWindow::Want(const ScreenView& view, bool moves)
 {
-  for (ServedVolume* const volume : this->InView())
+  for (ServedVolume* const volume : this->InUse())
   {
     volume->Want(view, moves, /*mayHaveChanged=*/false);
   }
@@ -218,20 +231,29 @@ ScreenView ServedWindow::Soon(const ScreenView& now)
     ToGlm(this->View->GetRenderer()->GetActiveCamera()->GetViewTransformMatrix());
   this->Path.Add(toEye, this->Clock.Seconds());
   double seconds = 0.0;
-  bool hasOthers = false; // whose depths are those of now
-  for (const ServedVolume* const volume : this->InView())
+  for (const ServedVolume* const volume : this->InUse())
   {
     seconds = std::max(seconds, volume->Lag());
-    hasOthers = hasOthers || volume->HasOthersInView();
   }
   const glm::dmat4 then = this->Path.After(seconds);
-  this->Ahead = !hasOthers && then != toEye;
+  this->Ahead = !this->HasOthersInView() && then != toEye;
   ScreenView soon = now;
   if (this->Ahead)
   {
-    soon.WorldToClip = now.WorldToClip * glm::inverse(toEye) * then;
+    // What is before the near plane now may be behind it then: that plane goes half-way to the eye.
+    glm::dmat4 nearer(1.0);
+    nearer[2][2] = 0.5;
+    nearer[3][2] = 0.5;
+    soon.WorldToClip = nearer * now.WorldToClip * glm::inverse(toEye) * then;
   }
   return soon;
+}
+
+/// Whether some may be: their depths are those of the view as it is.
+bool ServedWindow::HasOthersInView() const
+{
+  return std::any_of(this->Volumes.begin(), this->Volumes.end(),
+    [](const ServedVolume* volume) { return volume->IsServed() && volume->HasOthersInView(); });
 }
 
 void ServedWindow::DrawAlone(bool exact)
@@ -240,7 +262,7 @@ void ServedWindow::DrawAlone(bool exact)
   this->Busy = true;
   for (ServedVolume* const volume : this->Volumes)
   {
-    volume->IsShown();
+    volume->WillBeShown();
   }
   if (exact)
   {
@@ -262,13 +284,21 @@ void ServedWindow::DrawAlone(bool exact)
 /// Now and then: takes pictures that have come, shows them, and has the server go on.
 void ServedWindow::Look(vtkObject*, unsigned long, void* timer)
 {
-  if (*static_cast<int*>(timer) != this->Timer || this->Busy || !this->View || !IsIdle(this->View))
+  if (*static_cast<int*>(timer) != this->Timer || this->Busy)
   {
     return;
   }
   const std::shared_ptr<ServedWindow> stays = this->shared_from_this();
-  this->ReadPictures();
-  if (!this->Served || !this->View || !IsIdle(this->View))
+  if (this->IsServed() && IsIdle(this->View))
+  {
+    this->ReadPictures();
+  }
+  if (!this->IsServed())
+  {
+    this->StopTimer(); // a picture of ParaView's starts it again
+    return;
+  }
+  if (!IsIdle(this->View))
   {
     return;
   }
@@ -290,19 +320,19 @@ void ServedWindow::ReadPictures()
   {
     if (all)
     {
-      volume->HasReadAll();
+      volume->NoteAllRead();
     }
   }
 }
 
 void ServedWindow::ShowPictures()
 {
-  if (this->Ahead && this->SinceMove.Seconds() > RestSeconds)
+  if (this->Ahead && (this->SinceMove.Seconds() > RestSeconds || this->HasOthersInView()))
   {
     this->Ahead = false;
     this->Want(ViewOf(this->View->GetRenderer()), /*moves=*/true);
   }
-  const std::vector<ServedVolume*> volumes = this->InView();
+  const std::vector<ServedVolume*> volumes = this->InUse();
   for (ServedVolume* const volume : volumes)
   {
     if (volume->HasNews())
@@ -320,7 +350,7 @@ void ServedWindow::ShowPictures()
   {
     this->DrawAlone(exact);
   }
-  bool goesOn = false;
+  bool goesOn = this->Ahead;
   for (ServedVolume* const volume : volumes)
   {
     goesOn = volume->GoOn() || goesOn;

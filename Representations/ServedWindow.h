@@ -70,9 +70,11 @@ private:
   void ShowPictures();
 
   std::vector<ServedVolume*> InView() const;
+  std::vector<ServedVolume*> InUse() const;
   void Want(const ScreenView& view, bool moves);
   ScreenView Soon(const ScreenView& now);
   bool HasFailed() const;
+  bool HasOthersInView() const;
   void DrawAlone(bool exact);
   void StopTimer();
 

@@ -160,10 +160,18 @@ void vtkBanyanVolume::ShowPictures(vtkRenderer* renderer)
   {
     return;
   }
-  const std::string note = banyan::PicturesAtHand::Show(renderer, pictures, props);
-  if (!note.empty())
+  try
   {
-    vtkWarningMacro(<< note);
+    const std::string note = banyan::PicturesAtHand::Show(renderer, pictures, props);
+    if (!note.empty())
+    {
+      vtkWarningMacro(<< note);
+    }
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< "The volume is not shown. " << error.what());
+    return;
   }
   for (vtkVolume* const prop : props)
   {

@@ -223,6 +223,10 @@ void vtkBanyanVolumeRepresentation::SetServed(bool served)
   {
     this->Pictures = std::make_shared<banyan::PicturesAtHand>();
   }
+  if (!served && this->Server)
+  {
+    this->Server->Stop();
+  }
   this->Served = served;
   this->Prop->SetPictures(served && isClient ? this->Pictures : nullptr);
 }

@@ -141,7 +141,7 @@ void vtkSMBanyanVolumeProxy::ViewUpdated(vtkSMProxy* view)
     }
     this->View = view;
     auto* const window = vtkSMRenderViewProxy::SafeDownCast(view);
-    this->Late =
+    this->Served =
       banyan::HasServer(window) ? std::make_unique<banyan::ServedVolume>(this, window) : nullptr;
     this->ViewObserver =
       view->AddObserver(vtkCommand::EndEvent, this, &vtkSMBanyanVolumeProxy::FrameDrawn);
@@ -219,7 +219,7 @@ void vtkSMBanyanVolumeProxy::FrameDrawn(vtkObject*, unsigned long, void* interac
 {
   const bool isMoving = interactive && *static_cast<int*>(interactive) != 0;
   // Scripts ask for them themselves.
-  const bool isServed = this->Late && this->Late->IsServed();
+  const bool isServed = this->Served && this->Served->IsServed();
   if (!isMoving && !isServed && IsInWindow() && this->IsShown())
   {
     this->FetchStatistics();

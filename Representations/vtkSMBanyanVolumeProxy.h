@@ -82,9 +82,9 @@ private:
   void ColorsChanged();
   void FrameDrawn(vtkObject* view, unsigned long event, void* interactive);
 
-  std::unique_ptr<banyan::ServedVolume> Late; ///< in the view; null where it cannot be served
-  std::set<std::string> Said;                 ///< properties without effect
-  vtkWeakPointer<vtkSMProxy> View;            ///< whose frames are observed
+  std::unique_ptr<banyan::ServedVolume> Served; ///< in the view; null where it cannot be served
+  std::set<std::string> Said;                   ///< properties without effect
+  vtkWeakPointer<vtkSMProxy> View;              ///< whose frames are observed
   unsigned long ViewObserver = 0;
   vtkWeakPointer<vtkSMProxy> MapOfBar; ///< whose scalar bar was shown when the array was chosen
 };

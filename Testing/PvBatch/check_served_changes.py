@@ -18,7 +18,9 @@ class Changes(ServedWindow):
     def __init__(self, folder, seed):
         super().__init__(folder)
         self.dice = random.Random(seed)
-        self.worst, self.others = 2, 30  # the sphere's edges are others where several ranks have parts of it
+        # The sphere has other edges where several ranks have parts of it. Edges are smoothed, by thresholds: ParaView
+        # switches FXAA on again when there is another view.
+        self.worst, self.others = 2, 60
         self.source = self.display.Input
         self.points = list(self.display.ScalarOpacityFunction.Points)
         self.sphere = simple.Sphere(Radius=25.0, Center=[40.0, 10.0, 20.0], ThetaResolution=40, PhiResolution=40)
@@ -72,6 +74,11 @@ class Changes(ServedWindow):
         self.neighbour.Position = [self.dice.choice((0.0, -150.0)), 0.0, 0.0]
         simple.Render(self.view)
 
+    def neighbour_is(self):
+        self.neighbour.SetRepresentationType(self.dice.choice(("Outline", "Banyan Volume")))
+        self.wait(self.dice.choice((0.0, 0.15)))  # timers may come before ParaView's picture
+        simple.Render(self.view)
+
     def other_display(self):
         simple.Delete(self.beside)
         self.wait(self.dice.choice((0.0, 0.1)))
@@ -93,8 +100,9 @@ class Changes(ServedWindow):
         self.saved("meanwhile")
 
     def run(self, changes):
-        what = (self.turn, self.opacity, self.shading, self.sphere_moves, self.other_values, self.hidden, self.neighbour_moves,
-                self.other_display, self.second_moves, self.decoupled, self.save)
+        what = (self.turn, self.opacity, self.shading, self.sphere_moves, self.other_values, self.hidden,
+                self.neighbour_moves, self.neighbour_is, self.other_display, self.second_moves, self.decoupled,
+                self.save)
         for number in range(changes):
             change = self.dice.choice(what)
             print(f"{number}: {change.__name__}", flush=True)

@@ -70,6 +70,7 @@ bool LateFramesOfRanks::Draw(Communicator& communicator, DistributedField& field
   }
   PauseAll();
   this->Stop();
+  this->Name = Hash128{};
   FieldFrames::Wish exact = wish;
   exact.Sampling.Interacting = false;
   this->DrawBest(communicator, field, scene, coarse, exact);
@@ -88,6 +89,7 @@ void LateFramesOfRanks::DrawCoarse(Communicator& communicator, DistributedField&
 {
   PauseAll();
   this->Stop();
+  this->Name = Hash128{};
   RayScene own = coarse;
   this->Best = { this->Frames.Draw(
                    communicator, field, own, LateFrames::CoarseOf(wish, LateFrames::CoarseSeconds)),

@@ -35,6 +35,12 @@ public:
     return this->Served.Draw(
       this->Ranks, this->Player.Field, scene, SceneOf(coarse), PlainPlayer::WishOf(now, true));
   }
+  void DrawCoarse(const Situation& now)
+  {
+    this->Player.Take(now);
+    this->Served.DrawCoarse(
+      this->Ranks, this->Player.Field, SceneOf(now), PlainPlayer::WishOf(now, true));
+  }
   bool GoOn(int times)
   {
     return this->Served.GoOn([times]() mutable { return --times < 0; });
@@ -120,6 +126,27 @@ TEST(CoarseThenExact, AnotherSceneStopsWhatIsUnderWay)
         volume.Draw(now);
         volume.GoOn(move);
       }
+      if (volume.Served.IsDrawing())
+      {
+        volume.Finish();
+      }
+      volume.ExpectExact(now);
+    });
+}
+
+TEST(CoarseThenExact, AfterACoarsePictureOfAnotherSceneTheLastOneIsDrawnAnew)
+{
+  OnRanks(
+    [](Volume& volume)
+    {
+      Situation now;
+      volume.Draw(now);
+      volume.Finish();
+      Situation other;
+      other.Eye += 0.2;
+      volume.DrawCoarse(other);
+      EXPECT_FALSE(volume.Served.IsComing());
+      EXPECT_TRUE(volume.Draw(now));
       if (volume.Served.IsDrawing())
       {
         volume.Finish();
