@@ -77,6 +77,8 @@ vtkBanyanVolumeRepresentation::vtkBanyanVolumeRepresentation()
   , Steps(std::make_unique<banyan::StepWindow>())
   , Colors(std::make_unique<banyan::FunctionWatch>([this] { this->FunctionChanged(); }))
   , Opacity(std::make_unique<banyan::FunctionWatch>([this] { this->FunctionChanged(); }))
+  , Pictures(std::make_shared<banyan::PicturesAtHand>())
+  , Server(std::make_unique<banyan::PictureServer>(this->Mapper, this->Prop))
 {
   // The superclass has made a prop of ParaView's own: ours takes its place.
   this->Actor = this->Prop;
@@ -219,11 +221,7 @@ int vtkBanyanVolumeRepresentation::ProcessViewRequest(
 void vtkBanyanVolumeRepresentation::SetServed(bool served)
 {
   const bool isClient = vtkProcessModule::GetProcessType() == vtkProcessModule::PROCESS_CLIENT;
-  if (served && isClient && !this->Pictures)
-  {
-    this->Pictures = std::make_shared<banyan::PicturesAtHand>();
-  }
-  if (!served && this->Server)
+  if (!served)
   {
     this->Server->Stop();
   }
@@ -238,10 +236,6 @@ void vtkBanyanVolumeRepresentation::TakeTicket(
   if (!view || !this->Served)
   {
     return; // ParaView has taken the display away meanwhile
-  }
-  if (!this->Server)
-  {
-    this->Server = std::make_unique<banyan::PictureServer>(this->Mapper, this->Prop);
   }
   const banyan::PictureTicket ticket = banyan::PictureTicket::Of(numbers, words, depths);
   if (ticket.IsNew())

@@ -175,7 +175,7 @@ private:
   bool StepsNeeded = false; ///< around the one drawn
   bool Served = false;
   std::shared_ptr<banyan::PicturesAtHand> Pictures; ///< on a client
-  std::unique_ptr<banyan::PictureServer> Server;    ///< on a server, once it was asked
+  std::unique_ptr<banyan::PictureServer> Server;    ///< of a client, where this is its server
 };
 
 #endif
