@@ -186,8 +186,7 @@ std::string PicturesAtHand::TellOnce(
   unsigned char fresh = 0;
   for (std::size_t i = 0; i < volumes.size(); ++i)
   {
-    fresh = static_cast<unsigned char>(fresh | (bits[i] & ~volumes[i]->Told));
-    volumes[i]->Told = static_cast<unsigned char>(volumes[i]->Told | bits[i]);
+    fresh |= NotToldYet(bits[i], volumes[i]->Told);
   }
   return TellNotInDepth(fresh);
 }

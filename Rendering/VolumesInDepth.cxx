@@ -146,6 +146,13 @@ std::vector<unsigned char> FindNotInDepth(Communicator& communicator, vtkRendere
   return UnitedOverRanks(communicator, bits);
 }
 
+unsigned char NotToldYet(unsigned char bits, unsigned char& told)
+{
+  const auto fresh = static_cast<unsigned char>(bits & ~told);
+  told = static_cast<unsigned char>(told | bits);
+  return fresh;
+}
+
 std::string TellNotInDepth(unsigned char bits)
 {
   std::string text;

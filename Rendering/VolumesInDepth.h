@@ -47,6 +47,9 @@ enum NotInDepth : unsigned char
 std::vector<unsigned char> FindNotInDepth(Communicator& communicator, vtkRenderer* renderer,
   const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order);
 
+/// Bits that were not told before; they are from then on.
+unsigned char NotToldYet(unsigned char bits, unsigned char& told);
+
 /// Sentences for users: what is not exact, and what to do.
 std::string TellNotInDepth(unsigned char bits);
 

@@ -163,9 +163,7 @@ void VolumesPicture::TellNotInDepth(vtkBanyanVolumeMapper* first,
   unsigned char fresh = 0;
   for (std::size_t i = 0; i < this->Frames.size(); ++i)
   {
-    unsigned char& told = this->Frames[i].Mapper()->State->ToldNotInDepth;
-    fresh = static_cast<unsigned char>(fresh | (bits[i] & ~told));
-    told = static_cast<unsigned char>(told | bits[i]);
+    fresh |= NotToldYet(bits[i], this->Frames[i].Mapper()->State->ToldNotInDepth);
   }
   const std::string note = banyan::TellNotInDepth(fresh);
   if (!note.empty() && communicator.Rank() == 0)

@@ -26,12 +26,11 @@ namespace banyan
 namespace
 {
 
-constexpr double GoOnSeconds = 0.1;    ///< from ticket to ticket, while a picture is missing
-constexpr double CreditSeconds = 0.1;  ///< that a ticket gives credit for, at most
-constexpr double CoarseSeconds = 0.1;  ///< that a coarse picture may be on the line, a byte a pixel
-constexpr double StillSeconds = 0.1;   ///< without a move, until depths of all pixels are sent
-constexpr double MostLagSeconds = 0.5; ///< for which a move is said to go on
-constexpr int MostUnseen = 2;          ///< tickets that the server has not answered
+constexpr double GoOnSeconds = 0.1;   ///< from ticket to ticket, while a picture is missing
+constexpr double CreditSeconds = 0.1; ///< that a ticket gives credit for, at most
+constexpr double CoarseSeconds = 0.1; ///< that a coarse picture may be on the line, a byte a pixel
+constexpr double StillSeconds = 0.1;  ///< without a move, until depths of all pixels are sent
+constexpr int MostUnseen = 2;         ///< tickets that the server has not answered
 
 /// Those that there are: a picture may come for one that is gone.
 std::set<void*>& All()
@@ -256,7 +255,7 @@ void ServedVolume::Take(ParcelAssembly::Whole whole)
     Asked& asked = this->Views.front();
     if (std::exchange(asked.IsMeasured, false))
     {
-      const double lag = std::min(asked.Since.Seconds(), MostLagSeconds);
+      const double lag = asked.Since.Seconds();
       this->LagSeconds += (this->LagSeconds > 0.0 ? 0.3 : 1.0) * (lag - this->LagSeconds);
     }
     PlacedPicture placed = UnpackPicture(whole.Content, ThreadPool::Process());

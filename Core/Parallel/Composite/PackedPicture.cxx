@@ -98,7 +98,11 @@ Bytes PackPicture(const PlacedPicture& placed, ThreadPool& threads)
       contents[i] =
         PackBand(picture.Pixels.data() + 4 * firsts[i], firsts[i + 1] - firsts[i], bands[i]);
     });
-  Head head{ picture.Size, picture.Rect, std::min(MostBoxes, placed.Body.size()), {} };
+  if (placed.Body.size() > MostBoxes)
+  {
+    throw Error("A volume that lies in so many boxes cannot be sent to a client.");
+  }
+  Head head{ picture.Size, picture.Rect, placed.Body.size(), {} };
   std::copy_n(placed.Body.begin(), head.Boxes, head.Body.begin());
   Bytes all(sizeof(head) + count * sizeof(Band));
   std::memcpy(all.data(), &head, sizeof(head));

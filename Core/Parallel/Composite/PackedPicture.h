@@ -19,7 +19,7 @@ struct PlacedPicture
 };
 
 /// Lossless bytes of a picture, for a slow line: PackPixels, and zstd, of bands of rows. Gives the
-/// same bytes with any number of threads.
+/// same bytes with any number of threads. Throws Error when there are too many boxes.
 Bytes PackPicture(const PlacedPicture& placed, ThreadPool& threads);
 
 /// The inverse. Throws Error when the bytes are not those of a picture.

@@ -56,6 +56,15 @@ TEST(PackedPicture, ComesBackAsItWas)
   }
 }
 
+TEST(PackedPicture, NoBoxIsLeftOut)
+{
+  Dice dice(7);
+  ThreadPool threads(1);
+  PlacedPicture placed = Random(dice);
+  placed.Body.resize(9);
+  EXPECT_THROW(PackPicture(placed, threads), Error);
+}
+
 TEST(PackedPicture, DamageIsAnErrorOrAnotherPicture)
 {
   Dice dice(6);
