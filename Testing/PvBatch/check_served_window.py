@@ -227,6 +227,7 @@ class ServedWindow:
         simple.Render(self.view)
         _, others = self.drag("with other data")
         session.require(pictures.difference(others, changed).max() > 50, "other data are shown")
+        whole = self.view.LODThreshold
         self.view.LODThreshold = 0.0
         self.drag("with coarse other data")
         self.view.AxesGrid.Visibility = 1
@@ -241,6 +242,7 @@ class ServedWindow:
         session.require(pictures.difference(self.shown("remote"), changed).max() > 50, "the server shows other data")
         self.view.RemoteRenderThreshold = threshold
 
+        self.view.LODThreshold = whole  # or ParaView delivers coarse data after each still picture of its own
         wavelet = simple.Wavelet(WholeExtent=[-90, -70, -40, 40, -40, 40], Center=[-80.0, 0.0, 0.0])
         second = picture_scenes.volume(wavelet, self.view, "RTData")
         simple.Render(self.view)
