@@ -170,7 +170,10 @@ void PictureServer::Draw()
   {
     this->Drawn = std::move(frame);
     this->DrawnScene = this->Asked.Scene;
-    this->Publish();
+    if (state.Served.HasAny())
+    {
+      this->Publish();
+    }
   }
   else
   {

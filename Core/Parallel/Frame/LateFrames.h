@@ -36,6 +36,9 @@ public:
     double Pause = 0.1;   ///< without a picture, while the camera moves, before the thread begins
     double Long = 2.0;    ///< exact pictures that take more have one between
     double Playing = 1.0; ///< steps that follow each other in less time are those of a play
+    /// That the exact picture of a scene at rest may take without a coarse one, where a client
+    /// shows older ones meanwhile.
+    double AtRest = 0.2;
   };
 
   struct Shown

@@ -73,7 +73,9 @@ bool LateFramesOfRanks::Draw(Communicator& communicator, DistributedField& field
   this->Name = Hash128{};
   FieldFrames::Wish exact = wish;
   exact.Sampling.Interacting = false;
-  this->DrawBest(communicator, field, scene, coarse, exact);
+  const bool waits =
+    !wish.Sampling.Interacting && this->ExactSeconds && *this->ExactSeconds <= this->Waits.AtRest;
+  this->DrawBest(communicator, field, scene, waits ? nullptr : &coarse, exact);
   if (!this->Best.Exact)
   {
     this->Begin = [this, &communicator, &field, scene, exact]
@@ -91,6 +93,7 @@ void LateFramesOfRanks::DrawCoarse(Communicator& communicator, DistributedField&
   this->Stop();
   this->Name = Hash128{};
   RayScene own = coarse;
+  this->Any = true;
   this->Best = { this->Frames.Draw(
                    communicator, field, own, LateFrames::CoarseOf(wish, LateFrames::CoarseSeconds)),
     false };
@@ -106,9 +109,11 @@ void LateFramesOfRanks::Learn(const LateFrames::Drawn& drawn)
 }
 
 /// Collective: draws what can be had at once.
+/// @param coarse null when it is not worth its time
 void LateFramesOfRanks::DrawBest(Communicator& communicator, DistributedField& field,
-  const RayScene& scene, const RayScene& coarse, const FieldFrames::Wish& exact)
+  const RayScene& scene, const RayScene* coarse, const FieldFrames::Wish& exact)
 {
+  this->Any = true;
   RayScene own = scene;
   if (this->ExactSeconds && *this->ExactSeconds <= this->Waits.Patience)
   {
@@ -121,9 +126,16 @@ void LateFramesOfRanks::DrawBest(Communicator& communicator, DistributedField& f
   if (kept)
   {
     this->Best = { std::move(*kept), true };
-    return;
   }
-  this->DrawCoarse(communicator, field, coarse, exact);
+  else if (coarse)
+  {
+    this->DrawCoarse(communicator, field, *coarse, exact);
+  }
+  else
+  {
+    this->Best = {};
+    this->Any = false;
+  }
 }
 
 /// Starts the threads.
@@ -188,6 +200,7 @@ bool LateFramesOfRanks::GoOn(const std::function<bool()>& leave)
   }
   this->Begin = nullptr;
   this->Between.reset();
+  this->Any = true;
   this->Best = { this->Next.Frame, true };
   this->Learn(this->Next);
   return true;

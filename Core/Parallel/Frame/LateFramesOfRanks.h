@@ -31,7 +31,9 @@ public:
   LateFramesOfRanks& operator=(const LateFramesOfRanks&) = delete;
 
   /// Collective: draws what can be had of the scene at once, unless that was done; begins the exact
-  /// picture. Another scene, of any object of this main thread, is stopped.
+  /// picture. Another scene, of any object of this main thread, is stopped. Of a scene at rest
+  /// whose exact picture takes Times::AtRest at most, nothing else is drawn: an older picture seen
+  /// anew may be better than a coarse one.
   /// @param communicator and the field have to stay, and the field as it is, until Stop
   /// @param coarse the same scene in the picture that a coarse one has: of another size, perhaps
   /// @return whether Last has changed
@@ -54,7 +56,9 @@ public:
   /// A picture between the coarse and the exact one, where that takes long: each once, on rank 0.
   std::optional<FieldFrames::Frame> TakeBetween();
 
-  /// The best picture of the last scene. Its pixels are on rank 0.
+  /// Whether anything of the last scene is there: the same on all ranks.
+  bool HasAny() const { return this->Any; }
+  /// The best picture of it, if so. Its pixels are on rank 0.
   const LateFrames::Shown& Last() const { return this->Best; }
 
   /// Whether threads draw from the field: the same on all ranks, as all that follows.
@@ -73,7 +77,7 @@ public:
 private:
   void Learn(const LateFrames::Drawn& drawn);
   void DrawBest(Communicator& communicator, DistributedField& field, const RayScene& scene,
-    const RayScene& coarse, const FieldFrames::Wish& exact);
+    const RayScene* coarse, const FieldFrames::Wish& exact);
   void Start(Communicator& communicator, DistributedField& field, const RayScene& scene,
     const FieldFrames::Wish& exact);
 
@@ -81,6 +85,7 @@ private:
   LateFrames::Times Waits;
   Hash128 Name;                       ///< of the last scene
   LateFrames::Shown Best;             ///< of it
+  bool Any = false;                   ///< whether there is one
   std::function<void()> Begin;        ///< starts the threads; null when nothing is to come
   LateFrames::Drawn Next;             ///< by the threads, when they have ended
   std::optional<double> ExactSeconds; ///< of the last exact picture; the same on all ranks

@@ -226,6 +226,33 @@ TEST(CoarseThenExact, PicturesThatTakeLongHaveOneBetween)
     times);
 }
 
+TEST(CoarseThenExact, AtRestQuickPicturesHaveNoCoarseOne)
+{
+  LateFrames::Times times;
+  times.Patience = 0.0; // none is quick enough to be waited for
+  times.AtRest = 1e6;   // all are quick enough to come alone
+  OnRanks(
+    [](Volume& volume)
+    {
+      Situation now;
+      volume.Draw(now);
+      volume.ExpectCoarse(now); // nobody knows yet what an exact one takes
+      volume.Finish();
+      now.Eye = 0.3;
+      EXPECT_TRUE(volume.Draw(now));
+      EXPECT_FALSE(volume.Served.HasAny());
+      EXPECT_TRUE(volume.Served.IsDrawing());
+      volume.Finish();
+      volume.ExpectExact(now);
+      EXPECT_TRUE(volume.Served.HasAny());
+      now.Eye = 0.6;
+      now.Interacting = true;
+      volume.Draw(now);
+      volume.ExpectCoarse(now);
+    },
+    times);
+}
+
 TEST(CoarseThenExact, WhatWasPausedForAnotherViewGoesOn)
 {
   RunOnSimulatedRanks(2,
