@@ -42,10 +42,10 @@ void CountOthers(CompositePlan& plan)
   for (int y = 0; y < plan.CellCounts.y; ++y)
   {
     std::fill(change.begin(), change.end(), 0);
-    for (int rank = 1; rank < plan.Ranks; ++rank)
+    for (int rank = 0; rank < plan.Ranks; ++rank)
     {
       const Footprint::Interval row = plan.Covered[rank][y];
-      if (row.Lo < row.Hi)
+      if (rank != plan.Root && row.Lo < row.Hi)
       {
         ++change[row.Lo];
         --change[row.Hi];
@@ -124,7 +124,7 @@ std::vector<std::vector<Share>> SharesOf(CompositePlan& plan)
         {
           plan.TilesOfRank[rank].push_back(tile);
         }
-        if (rank != 0 && shared[tileX] > 0)
+        if (rank != plan.Root && shared[tileX] > 0)
         {
           shares[tile].push_back({ rank, shared[tileX] });
         }
@@ -218,7 +218,7 @@ void ChooseChunks(CompositePlan& plan)
   for (std::size_t index = 0; index < plan.Tiles.size(); ++index)
   {
     CompositePlan::Tile& tile = plan.Tiles[index];
-    const std::size_t owner = static_cast<std::size_t>(tile.Owner + 1);
+    const int owner = tile.Owner + 1;
     tile.Chunk =
       static_cast<int>(static_cast<long long>(before[owner]++) * plan.Chunks / owned[owner]);
     plan.TilesOfChunk[tile.Chunk].push_back(static_cast<int>(index));
@@ -296,7 +296,7 @@ void CompositePlan::Collect(int tile, const Wanted& wanted, int rank, Region& re
 void CompositePlan::DirectRegion(int rank, int tile, Kind kind, Region& region) const
 {
   region.clear();
-  if (rank != 0)
+  if (rank != this->Root)
   {
     this->Collect(
       tile, [=](const Cell& cell) { return cell.Others == 1 && cell.How == kind; }, rank, region);
@@ -306,7 +306,7 @@ void CompositePlan::DirectRegion(int rank, int tile, Kind kind, Region& region) 
 void CompositePlan::SharedRegion(int rank, int tile, Kind kind, Region& region) const
 {
   region.clear();
-  if (rank != 0)
+  if (rank != this->Root)
   {
     this->Collect(
       tile, [=](const Cell& cell) { return cell.Others > 1 && cell.How == kind; }, rank, region);
@@ -321,9 +321,10 @@ void CompositePlan::ResultRegion(int tile, Kind kind, Region& region) const
 }
 
 CompositePlan PlanCompositing(const std::vector<Footprint>& footprints, const PixelRect& viewport,
-  const PixelRect& behind, bool ordered)
+  const PixelRect& behind, bool ordered, int root)
 {
   CompositePlan plan;
+  plan.Root = root;
   plan.Ranks = static_cast<int>(footprints.size());
   plan.Viewport = viewport;
   plan.TilePixels = TilePixelsFor(viewport);
@@ -351,7 +352,8 @@ CompositePlan PlanCompositing(const std::vector<Footprint>& footprints, const Pi
   // Pixels that the root has drawn count before pixels that it will blend over something.
   const Footprint covered = FootprintOf(behind, viewport);
   set(CoveredCells(covered, viewport, plan.CellCounts), CompositePlan::Kind::Behind);
-  set(plan.Covered[0], ordered ? CompositePlan::Kind::Split : CompositePlan::Kind::Behind);
+  set(plan.Covered[static_cast<std::size_t>(root)],
+    ordered ? CompositePlan::Kind::Split : CompositePlan::Kind::Behind);
   ChooseOwners(plan, SharesOf(plan));
   DescribeTiles(plan);
   ChooseChunks(plan);

@@ -28,8 +28,8 @@ bool PackingPays(const CompositeCosts& costs);
 /// The picture is cut into square tiles of cells of 8 x 8 pixels. Where at most one rank other than
 /// the root may draw in a cell, that rank sends its pixels straight to the root. All other cells of
 /// a tile have one owner, a rank that may draw there; those that may draw there too send it their
-/// pixels, it blends them and sends the result to the root. The root (rank 0) sends nothing: what
-/// lies before and behind its own pixels comes to it apart.
+/// pixels, it blends them and sends the result to the root. The root sends nothing: what lies
+/// before and behind its own pixels comes to it apart.
 /// @par Source: "A parallel visualization pipeline for terascale earthquake simulations", section
 /// 4.2 (SLIC), with tiles in the place of spans.
 struct CompositePlan
@@ -69,6 +69,7 @@ struct CompositePlan
   using Region = std::vector<Run>;
 
   int Ranks = 0;
+  int Root = 0; ///< the rank that gets the picture
   PixelRect Viewport;
   int TilePixels = 0;
   int Chunks = 1; ///< parts that are sent one after the other
@@ -104,7 +105,7 @@ private:
 /// @param behind pixels that the root will blend over something
 /// @param ordered whether pixels before and behind those of the root must be kept apart
 CompositePlan PlanCompositing(const std::vector<Footprint>& footprints, const PixelRect& viewport,
-  const PixelRect& behind, bool ordered);
+  const PixelRect& behind, bool ordered, int root = 0);
 
 } // namespace banyan
 

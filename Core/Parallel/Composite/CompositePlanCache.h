@@ -18,15 +18,15 @@ class CompositePlanCache
 public:
   /// The arguments are those of PlanCompositing.
   std::shared_ptr<const CompositePlan> Of(const std::vector<Footprint>& footprints,
-    const PixelRect& viewport, const PixelRect& behind, bool ordered);
+    const PixelRect& viewport, const PixelRect& behind, bool ordered, int root = 0);
 
   /// The same of a plan that is kept nowhere, where `plans` is null.
   static std::shared_ptr<const CompositePlan> From(CompositePlanCache* plans,
     const std::vector<Footprint>& footprints, const PixelRect& viewport, const PixelRect& behind,
-    bool ordered)
+    bool ordered, int root)
   {
     CompositePlanCache once;
-    return (plans ? *plans : once).Of(footprints, viewport, behind, ordered);
+    return (plans ? *plans : once).Of(footprints, viewport, behind, ordered, root);
   }
 
   /// How often a plan was derived, and how often the last one was used again.
@@ -39,6 +39,7 @@ private:
   PixelRect Viewport;
   PixelRect Behind;
   bool Ordered = false;
+  int Root = 0;
   std::int64_t MissCount = 0;
   std::int64_t HitCount = 0;
 };

@@ -81,6 +81,7 @@ std::uint64_t Fingerprint(
       add(value);
     }
   }
+  add(options.Root);
   add(static_cast<int>(options.Combine));
   add(static_cast<int>(options.Transport));
   add(Packs(options) ? 1 : 0);

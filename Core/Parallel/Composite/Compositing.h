@@ -42,6 +42,8 @@ struct CompositeOptions
   std::vector<Footprint> Footprints;
   /// Pixels under which the root has something that it will blend them over.
   PixelRect Behind;
+  /// The rank that gets the picture.
+  int Root = 0;
   /// Largest colour over opacity of a pixel: above 1 where there are highlights.
   float Brightest = 1.0f;
   /// Where the plan is kept from frame to frame; null for nowhere.
@@ -65,7 +67,7 @@ struct CompositeOptions
 /// @param mine this rank's pixels, anywhere inside `viewport`; may be empty
 /// @param frontToBack ranks in visibility order
 /// @param statistics is added to
-/// @return on rank 0 the whole viewport (0 where nothing was drawn); elsewhere empty.
+/// @return on the root the whole viewport (0 where nothing was drawn); elsewhere empty.
 /// When one rank is called wrongly, all ranks throw the same Error.
 FloatImage Composite(Communicator& communicator, const FloatImage& mine,
   const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,

@@ -4,6 +4,8 @@
 #include "Parallel/Composite/FragmentMessage.h"
 
 #include <algorithm>
+#include <new>
+#include <utility>
 
 namespace banyan
 {
@@ -27,7 +29,7 @@ TileOwnerCompositor::TileOwnerCompositor(Communicator& communicator,
   , Ordered(options.Combine == Combination::Over)
   , Pack(Packs(options))
   , SharedPlan(CompositePlanCache::From(
-      options.Plans, options.Footprints, viewport, options.Behind, this->Ordered))
+      options.Plans, options.Footprints, viewport, options.Behind, this->Ordered, options.Root))
   , Plan(*this->SharedPlan)
   , Position(frontToBack.size())
   , Parts(static_cast<std::size_t>(this->Plan.Chunks))
@@ -48,21 +50,24 @@ TileOwnerCompositor::~TileOwnerCompositor()
     {
       (void)message.Data.release();
     }
-    (void)new std::vector<std::vector<std::uint8_t>>(std::move(this->Outgoing));
+    (void)new (std::nothrow) std::vector<std::vector<std::uint8_t>>(std::move(this->Outgoing));
   }
 }
 
 void TileOwnerCompositor::Begin()
 {
-  if (this->Ranks.Rank() == 0)
+  if (this->IsRoot())
   {
     this->Picture = Transparent(this->Plan.Viewport);
     for (int chunk = 0; chunk < this->Plan.Chunks; ++chunk)
     {
-      for (int rank = 1; rank < this->Ranks.Size(); ++rank)
+      for (int rank = 0; rank < this->Ranks.Size(); ++rank)
       {
-        this->Expect(rank, TileMessage::Direct, chunk);
-        this->Expect(rank, TileMessage::Result, chunk);
+        if (rank != this->Plan.Root)
+        {
+          this->Expect(rank, TileMessage::Direct, chunk);
+          this->Expect(rank, TileMessage::Result, chunk);
+        }
       }
     }
   }
@@ -77,7 +82,7 @@ void TileOwnerCompositor::Add(int chunk, const FloatImage* mine)
   Part& part = this->Parts[chunk];
   part.Added = true;
   part.Failed = part.Failed || !mine;
-  if (this->Ranks.Rank() != 0)
+  if (!this->IsRoot())
   {
     this->SendShared(chunk, mine);
     this->SendDirect(chunk, mine);
@@ -156,9 +161,12 @@ void TileOwnerCompositor::ExpectAsOwner()
     }
     int& missing = this->Parts[chunk].Missing;
     missing = 0;
-    for (int rank = 1; rank < this->Ranks.Size(); ++rank)
+    for (int rank = 0; rank < this->Ranks.Size(); ++rank)
     {
-      missing += rank != self && this->Expect(rank, TileMessage::Shared, chunk) ? 1 : 0;
+      missing +=
+        rank != self && rank != this->Plan.Root && this->Expect(rank, TileMessage::Shared, chunk)
+          ? 1
+          : 0;
     }
   }
 }
@@ -192,7 +200,7 @@ void TileOwnerCompositor::Send(int to, TileMessage sort, int chunk, bool failed,
 
 void TileOwnerCompositor::SendDirect(int chunk, const FloatImage* mine)
 {
-  this->Send(0, TileMessage::Direct, chunk, !mine,
+  this->Send(this->Plan.Root, TileMessage::Direct, chunk, !mine,
     [&](FragmentWriter& writer, int, Kind kind, const CompositePlan::Region& region)
     { writer.Append(region, *mine, this->DirectFormat(kind), this->Pack); });
 }
@@ -228,7 +236,7 @@ void TileOwnerCompositor::Take(const Communicator::Arrival& arrival)
   --this->Open;
   this->Statistics.BytesReceived += arrival.Bytes;
   Part& part = this->Parts[message.Chunk];
-  if (this->Ranks.Rank() != 0)
+  if (!this->IsRoot())
   {
     --part.Missing;
     part.Failed = part.Failed || arrival.Bytes == 0;
@@ -250,7 +258,7 @@ void TileOwnerCompositor::BlendAtRoot(Message& message)
   };
   if (message.Bytes > 0)
   {
-    this->ForEachPart(message.From, 0, message.Sort, message.Chunk,
+    this->ForEachPart(message.From, this->Plan.Root, message.Sort, message.Chunk,
       [&](int, Kind kind, const CompositePlan::Region& region)
       {
         if (message.Sort == TileMessage::Direct)
@@ -271,7 +279,7 @@ void TileOwnerCompositor::BlendAtRoot(Message& message)
 /// The pixels of the root need not go anywhere.
 void TileOwnerCompositor::CopyOwn(int chunk, const FloatImage& mine)
 {
-  for (const int tile : this->Plan.TilesOfRank[0])
+  for (const int tile : this->Plan.TilesOfRank[this->Plan.Root])
   {
     const bool wanted = this->Plan.Tiles[tile].Chunk == chunk;
     const PixelRect rect =
@@ -371,7 +379,7 @@ void TileOwnerCompositor::SendResult(int chunk)
 {
   const bool failed = this->Parts[chunk].Failed;
   const std::vector<Halves> tiles = failed ? std::vector<Halves>{} : this->BlendTiles(chunk);
-  this->Send(0, TileMessage::Result, chunk, failed,
+  this->Send(this->Plan.Root, TileMessage::Result, chunk, failed,
     [&](FragmentWriter& writer, int tile, Kind kind, const CompositePlan::Region& region)
     {
       const Halves& halves = tiles[this->IndexOfTile[tile]];

@@ -72,7 +72,8 @@ private:
   };
 
   bool Owns(int rank, int tile) const { return this->Plan.Tiles[tile].Owner == rank; }
-  bool BeforeRoot(int rank) const { return this->Position[rank] < this->Position[0]; }
+  bool BeforeRoot(int rank) const { return this->Position[rank] < this->Position[this->Plan.Root]; }
+  bool IsRoot() const { return this->Ranks.Rank() == this->Plan.Root; }
   FragmentFormat DirectFormat(Kind kind) const
   {
     return kind == Kind::Final ? FormatOfFinal(this->Options) : FormatFor(this->Options, 1, 1);

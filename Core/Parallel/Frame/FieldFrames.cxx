@@ -16,6 +16,22 @@
 namespace banyan
 {
 
+namespace
+{
+
+/// The ranks that get pixels.
+std::vector<int> RootsOf(const FieldFrames::Wish& wish)
+{
+  std::vector<int> roots;
+  for (const PicturePlace& place : wish.Places)
+  {
+    roots.push_back(place.Root);
+  }
+  return roots.empty() ? std::vector<int>{ 0 } : roots;
+}
+
+} // namespace
+
 Hash128 FieldFrames::SceneOf(const RayScene& scene, const Wish& wish)
 {
   Digest digest;
@@ -35,7 +51,8 @@ Hash128 FieldFrames::SceneOf(const RayScene& scene, const Wish& wish)
 
 /// Collective: takes a picture that was drawn before.
 /// @return whether there is one
-bool FieldFrames::TakeKept(Communicator& communicator, const Sight& sight, Frame& frame)
+bool FieldFrames::TakeKept(
+  Communicator& communicator, const Sight& sight, const Wish& wish, Frame& frame)
 {
   const DrawnPicture* const kept = this->Pictures.Find(sight.Scene, sight.Content, sight.Quality);
   struct Answer
@@ -55,19 +72,20 @@ bool FieldFrames::TakeKept(Communicator& communicator, const Sight& sight, Frame
   std::vector<Answer> all(static_cast<std::size_t>(communicator.Size()));
   communicator.AllGather(&mine, sizeof(mine), all.data());
   // Whoever sees another scene has to draw, and nobody can do that alone.
-  frame.Kept = all.front().Found;
-  for (const Answer& answer : all)
-  {
-    frame.Kept = frame.Kept && answer.Scene == all.front().Scene;
-  }
+  const std::vector<int> roots = RootsOf(wish);
+  const auto at = [&](int rank) -> const Answer& { return all[static_cast<std::size_t>(rank)]; };
+  frame.Kept = std::all_of(roots.begin(), roots.end(), [&](int root) { return at(root).Found; }) &&
+               std::all_of(all.begin(), all.end(),
+                 [&](const Answer& answer) { return answer.Scene == all[0].Scene; });
   if (!frame.Kept)
   {
     frame.Picture = {};
     return false;
   }
-  frame.Picture.EstimatedError = all.front().EstimatedError;
-  frame.Picture.Statistics = all.front().Statistics;
-  frame.Picture.Limit = BroadcastStrings(communicator, { frame.Picture.Limit }).front();
+  frame.Picture.EstimatedError = at(roots.front()).EstimatedError;
+  frame.Picture.Statistics = at(roots.front()).Statistics;
+  frame.Picture.Limit =
+    AllGatherStrings(communicator, frame.Picture.Limit)[static_cast<std::size_t>(roots.front())];
   return true;
 }
 
@@ -102,7 +120,11 @@ FieldFrames::Sight FieldFrames::Look(
   Communicator& communicator, DistributedField& field, const RayScene& scene, const Wish& wish)
 {
   Sight sight;
-  sight.Scene = SceneOf(scene, wish);
+  const Hash128 view = SceneOf(scene, wish);
+  Digest pixels;
+  pixels.Add(view);
+  pixels.Add(wish.Places);
+  sight.Scene = pixels.Get();
   this->BeginLooking(field.Version());
   const bool looks = wish.Reuse && this->Values.Looks;
   Collective(communicator, [&] { sight.Content = field.VisibleContent(scene, looks); });
@@ -111,7 +133,7 @@ FieldFrames::Sight FieldFrames::Look(
   whole.Add(sight.Content);
   sight.Mine = whole.Get();
   // What follows has messages: all ranks go by the names that the first one has for the scene.
-  sight.Agreed = { sight.Scene, sight.Mine };
+  sight.Agreed = { view, sight.Mine };
   communicator.Broadcast(0, &sight.Agreed, sizeof(sight.Agreed));
   sight.Aim = this->Tolerance.Begin(wish.Sampling);
   sight.Quality = { sight.Aim.Coarseness, sight.Aim.Interacting };
@@ -124,7 +146,7 @@ std::optional<FieldFrames::Frame> FieldFrames::Kept(
 {
   Frame frame;
   const Sight sight = this->Look(communicator, field, scene, wish);
-  if (!this->TakeKept(communicator, sight, frame))
+  if (!this->TakeKept(communicator, sight, wish, frame))
   {
     return std::nullopt;
   }
@@ -144,7 +166,7 @@ FieldFrames::Frame FieldFrames::Draw(
     return frame;
   }
   const Sight sight = this->Look(communicator, field, scene, wish);
-  if (!this->TakeKept(communicator, sight, frame))
+  if (!this->TakeKept(communicator, sight, wish, frame))
   {
     this->DrawAnew(communicator, field, scene, sight.Agreed, wish, sight.Aim, frame);
     if (wish.Reuse && frame.Picture.Pixels)
@@ -169,7 +191,7 @@ bool FieldFrames::BeginRays(Communicator& communicator, DrawnField& drawn, RaySc
   {
     return false;
   }
-  if (!wish.Reuse || scene.Blend.Mode != BlendMode::Composite)
+  if (!wish.Reuse || wish.Places.size() > 1 || scene.Blend.Mode != BlendMode::Composite)
   {
     this->Rays.Forget();
     return false;
@@ -229,8 +251,10 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
     compositing.AfterCasting = [&] { drawn.ReadAhead(scene, communicator.Rank()); };
   }
   FloatImage picture = DrawDistributed(communicator, scene,
-    { drawn.Source(), drawn.Zones(), budget, ThreadPool::Process() }, numbers, compositing);
-  if (communicator.Rank() == 0)
+    { drawn.Source(), drawn.Zones(), budget, ThreadPool::Process() }, numbers, compositing,
+    wish.Places);
+  const std::vector<int> roots = RootsOf(wish);
+  if (std::find(roots.begin(), roots.end(), communicator.Rank()) != roots.end())
   {
     frame.Picture.Pixels = std::make_shared<const FloatImage>(std::move(picture));
   }

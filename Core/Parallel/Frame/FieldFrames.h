@@ -23,7 +23,8 @@ public:
   {
     ToleranceControl::Wish Sampling;
     PixelTransport Transport = PixelTransport::Floats;
-    PixelRect Behind;      ///< CompositeOptions
+    PixelRect Behind;                 ///< CompositeOptions; places have their own
+    std::vector<PicturePlace> Places; ///< DrawDistributed
     bool ReadAhead = true; ///< whether bricks of the next frame are decoded in the background
     bool Reuse = true;     ///< whether the frame may take anything from those before
     bool Passing = false;  ///< whether the picture will not be wanted again: nothing of it is kept
@@ -32,7 +33,7 @@ public:
 
   struct Frame
   {
-    DrawnPicture Picture; ///< its pixels are the scene's viewport on rank 0; null elsewhere
+    DrawnPicture Picture; ///< its pixels are those of this rank's place; null where it has none
     bool Kept = false;    ///< it was drawn for an earlier frame: the same on all ranks
 
     /// The part of the pixels that show something whose rays were cast for an earlier frame.
@@ -53,10 +54,11 @@ public:
   std::optional<Frame> Kept(
     Communicator& communicator, DistributedField& field, const RayScene& scene, const Wish& wish);
 
-  /// A hash of all that decides a picture, but the values and how finely they are sampled.
+  /// A hash of all that decides a picture, but the values and how finely they are sampled, and
+  /// where its pixels end.
   static Hash128 SceneOf(const RayScene& scene, const Wish& wish);
 
-  /// Of the pictures that this rank keeps: none but the first one has any.
+  /// Of the pictures that this rank keeps: none but those with a place have any.
   std::uint64_t PictureBytes() const { return this->Pictures.Bytes(); }
 
   /// Forgets all frames: when the ranks are others, say.
@@ -73,7 +75,7 @@ private:
   /// What a frame is to show, as this rank knows it, and as all go by.
   struct Sight
   {
-    Hash128 Scene;                ///< FieldFrames::SceneOf
+    Hash128 Scene;                ///< FieldFrames::SceneOf, and where pixels end
     std::vector<Hash128> Content; ///< DistributedField::VisibleContent
     Hash128 Mine;                 ///< of both
     Names Agreed;
@@ -83,7 +85,7 @@ private:
 
   Sight Look(
     Communicator& communicator, DistributedField& field, const RayScene& scene, const Wish& wish);
-  bool TakeKept(Communicator& communicator, const Sight& sight, Frame& frame);
+  bool TakeKept(Communicator& communicator, const Sight& sight, const Wish& wish, Frame& frame);
   bool BeginRays(Communicator& communicator, DrawnField& drawn, RayScene& scene,
     const Hash128& name, const Wish& wish);
   void DrawAnew(Communicator& communicator, DistributedField& field, RayScene& scene,
@@ -104,7 +106,7 @@ private:
   ToleranceControl Tolerance;
   CompositePlanCache Plans;
   KeptRays Rays;
-  KeptPictures Pictures; ///< on rank 0
+  KeptPictures Pictures; ///< on ranks with places
 };
 
 } // namespace banyan

@@ -132,6 +132,102 @@ TEST_P(EveryRankCount, DrawsThePictureOfOneRankInFewBits)
   }
 }
 
+/// Draws the series for places on ranks, and puts these together.
+/// @param byPicture whether each rank draws a column of the picture, all cells
+Outcome DrawPlaces(const EncodedField& field, const RayScene& scene, int ranks, bool byPicture,
+  const std::vector<PicturePlace>& places)
+{
+  Outcome whole;
+  whole.Picture.Rect = scene.Viewport;
+  whole.Picture.Pixels.assign(static_cast<std::size_t>(scene.Viewport.Count()), glm::vec4(-1.0f));
+  std::mutex mutex;
+  RunOnSimulatedRanks(ranks,
+    [&](Communicator& communicator)
+    {
+      const BrickLayout layout = field.Series->Layout(0);
+      BrickCache cache(Budget);
+      SeriesBrickSource source(field.Series, {}, 0, cache);
+      ThreadPool pool(1);
+      RankShare share{ &source, {}, Budget, pool };
+      const glm::ivec2 size = scene.Camera.ImageSize();
+      for (int rank = 0; rank < ranks; ++rank)
+      {
+        const Box bricks = StaticZones(layout.Bricks(), ranks)[static_cast<std::size_t>(rank)];
+        share.Zones.push_back(CellsOfBricks(bricks, layout.BrickCells(), scene.DomainCells.Hi));
+        if (byPicture)
+        {
+          share.Regions.push_back(
+            { { size.x * rank / ranks, 0 }, { size.x * (rank + 1) / ranks, size.y } });
+        }
+      }
+      FrameStatistics statistics;
+      const FloatImage mine = DrawDistributed(communicator, scene, share, statistics, {}, places);
+      const std::lock_guard<std::mutex> lock(mutex);
+      whole.Statistics = statistics;
+      for (int y = mine.Rect.Lo.y; y < mine.Rect.Hi.y && !mine.Pixels.empty(); ++y)
+      {
+        for (int x = mine.Rect.Lo.x; x < mine.Rect.Hi.x; ++x)
+        {
+          EXPECT_EQ(whole.Picture.At(x, y).a, -1.0f) << "two ranks have this pixel";
+          whole.Picture.At(x, y) = mine.At(x, y);
+        }
+      }
+    });
+  return whole;
+}
+
+/// Two parts of the picture, which meet where no tile ends, on two of the ranks; the last one is
+/// empty.
+std::vector<PicturePlace> PlacesOn(const RayScene& scene, int ranks)
+{
+  const glm::ivec2 size = scene.Camera.ImageSize();
+  std::vector<PicturePlace> places{ { { { 0, 0 }, { 29, size.y } }, ranks - 1, {} } };
+  if (ranks > 1)
+  {
+    places.push_back({ { { 29, 0 }, size }, 0, {} });
+    places.push_back({ { size, size + 10 }, ranks / 2, {} });
+    places.resize(ranks > 2 ? 3 : 2);
+  }
+  else
+  {
+    places.front().Rect.Hi.x = size.x;
+  }
+  return places;
+}
+
+TEST_P(EveryRankCount, PixelsEndOnTheRankThatShowsThem)
+{
+  const EncodedField field;
+  for (const double distance : { 1.4, 0.1 })
+  {
+    RayScene scene = SceneOf(distance, false);
+    for (const int stride : { 1, 8 })
+    {
+      scene.Samplings = std::make_shared<TileSamplings>(
+        scene.Camera.ImageSize(), std::vector<RaySampling>{ { 0, scene.SampleDistance, stride } });
+      const Outcome alone = DrawSeries(field, scene, 1);
+      const std::vector<PicturePlace> places = PlacesOn(scene, GetParam());
+      const Outcome zones = DrawPlaces(field, scene, GetParam(), false, places);
+      EXPECT_LT(MaxDifference(alone.Picture, zones.Picture), 1e-5);
+      const Outcome regions = DrawPlaces(field, scene, GetParam(), true, places);
+      EXPECT_EQ(MaxDifference(alone.Picture, regions.Picture), 0.0);
+    }
+  }
+}
+
+TEST_P(EveryRankCount, RegionsTakeTheSamplesOfOneRankAndHaveItsBits)
+{
+  const EncodedField field;
+  RayScene scene = SceneOf(1.4, false);
+  scene.Transfer.UnitDistance = 0.05; // rays end early
+  scene.Depth.assign(static_cast<std::size_t>(scene.Viewport.Count()), 1.0f);
+  std::fill_n(scene.Depth.begin() + 61 * 20, 61 * 4, 0.5f);
+  const Outcome alone = DrawSeries(field, scene, 1);
+  const Outcome regions = DrawPlaces(field, scene, GetParam(), true, {});
+  EXPECT_EQ(MaxDifference(alone.Picture, regions.Picture), 0.0);
+  EXPECT_EQ(regions.Statistics.SamplesTaken, alone.Statistics.SamplesTaken);
+}
+
 TEST_P(EveryRankCount, RaysThatEndEarlyChangeLessThanAHalfOf255)
 {
   const EncodedField field;
