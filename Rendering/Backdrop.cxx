@@ -96,6 +96,13 @@ void Backdrop::Write(
   }
 }
 
+void Backdrop::WriteOver(vtkRenderer* renderer, const FloatImage& picture)
+{
+  this->Inner = {};
+  this->InnerPixels.clear();
+  this->WriteOverBackground(renderer, picture, /*alone=*/true);
+}
+
 void Backdrop::WriteOverBackground(vtkRenderer* renderer, const FloatImage& picture, bool alone)
 {
   // Blank pixels change nothing: most of some pictures need not be drawn.

@@ -41,6 +41,10 @@ public:
   /// @param picture of all of the rectangle; only rank 0 has one
   void Write(const Communicator& communicator, vtkRenderer* renderer, const FloatImage& picture);
 
+  /// Writes a picture over what is there, in 8 bit: of a rank that shows it alone.
+  /// @param picture a part of the renderer's
+  void WriteOver(vtkRenderer* renderer, const FloatImage& picture);
+
   void ReleaseGraphicsResources(vtkWindow* window);
 
 private:

@@ -32,6 +32,7 @@ struct MapperState
   DistributedField Field;
   FieldFrames Frames;
   LateFrames Late{ Frames };
+  std::vector<std::unique_ptr<FieldFrames>> WallFrames; ///< of each picture of a wall
   LateFramesOfRanks Served{ Frames };
   RenderWhenDrawn Again;
   bool ShowsCoarse = false;                  ///< the last picture: the exact one comes by itself

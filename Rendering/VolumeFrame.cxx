@@ -9,6 +9,8 @@
 #include "Base/Progress.h"
 #include "Parallel/Communicate/Collective.h"
 
+#include "Render/Scene/DepthPicture.h"
+
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
@@ -87,6 +89,19 @@ bool VolumeFrame::MayBeLate(vtkRenderer* renderer, const Together& others) const
          window->GetSwapBuffers() != 0 && RenderWhenDrawn::CanWatch(window);
 }
 
+/// Nothing of this picture comes later.
+void VolumeFrame::DrawsAtOnce(bool exact)
+{
+  this->State->ShowsCoarse = false;
+  this->Owner->GetStatistics()->SetPictureIsExact(exact ? 1 : 0);
+  this->State->Served.Stop();
+  if (!this->Owner->GetDecoupled())
+  {
+    this->State->Late.Stop();
+    this->State->Again.Stop();
+  }
+}
+
 FieldFrames::Frame VolumeFrame::Draw(
   vtkRenderer* renderer, const FieldFrames::Wish& wish, const Together& others)
 {
@@ -97,15 +112,8 @@ FieldFrames::Frame VolumeFrame::Draw(
   state.LastRenderer = renderer;
   if (!late)
   {
-    state.ShowsCoarse = false;
-    out->SetPictureIsExact(wish.Sampling.Interacting ? 0 : 1);
     state.Late.Settle(state.Field, *this->Wanted, wish);
-    state.Served.Stop();
-    if (!this->Owner->GetDecoupled())
-    {
-      state.Late.Stop();
-      state.Again.Stop();
-    }
+    this->DrawsAtOnce(!wish.Sampling.Interacting);
     return state.Frames.Draw(communicator, state.Field, *this->Wanted, wish);
   }
   LateFrames::Shown shown = state.Late.Draw(
@@ -121,6 +129,28 @@ FieldFrames::Frame VolumeFrame::Draw(
     state.Again.Watch(renderer->GetRenderWindow(), [&state] { return state.Late.GoOn(); });
   }
   return std::move(shown.Frame);
+}
+
+std::shared_ptr<const FloatImage> VolumeFrame::CastOnWall(vtkRenderer* renderer,
+  const std::vector<PicturePlace>& places, std::size_t number, const DepthPicture& depths,
+  int volumes)
+{
+  MapperState& state = *this->State;
+  this->Wanted->Depth = depths.In(this->Wanted->Viewport);
+  this->BeginFigures();
+  const bool interacting = renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0;
+  FieldFrames::Wish wish = this->WishFor(interacting, EyeOf(renderer), volumes);
+  wish.Places = places;
+  while (state.WallFrames.size() <= number)
+  {
+    state.WallFrames.push_back(std::make_unique<FieldFrames>());
+  }
+  state.Late.Stop();
+  this->DrawsAtOnce(!interacting);
+  const FieldFrames::Frame frame =
+    state.WallFrames[number]->Draw(*state.Communicator, state.Field, *this->Wanted, wish);
+  this->Tell(frame);
+  return frame.Picture.Pixels;
 }
 
 std::shared_ptr<const FloatImage> VolumeFrame::Cast(

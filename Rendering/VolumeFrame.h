@@ -17,6 +17,8 @@ class vtkRenderer;
 namespace banyan
 {
 
+struct DepthPicture;
+
 /// One volume in the frame that is under way. All functions but the getters are collective, and
 /// throw Error when a rank fails.
 class VolumeFrame
@@ -61,6 +63,15 @@ public:
   std::shared_ptr<const FloatImage> Cast(
     vtkRenderer* renderer, const Backdrop& backdrop, const Together& others);
 
+  /// Draws the volume for displays of ranks.
+  /// @param number of the picture, each of which has frames of its own
+  /// @param depths at which other data are
+  /// @param volumes in the picture
+  /// @return the part of the volume's picture in this rank's place; null where it has none
+  std::shared_ptr<const FloatImage> CastOnWall(vtkRenderer* renderer,
+    const std::vector<PicturePlace>& places, std::size_t number, const DepthPicture& depths,
+    int volumes);
+
   /// Publishes the statistics, when the picture is on the screen.
   /// @param geometry what it took to combine the pixels of other props
   /// @param writeSeconds for this volume's part of the picture
@@ -68,6 +79,7 @@ public:
 
 private:
   bool MayBeLate(vtkRenderer* renderer, const Together& others) const;
+  void DrawsAtOnce(bool exact);
   FieldFrames::Frame Draw(
     vtkRenderer* renderer, const FieldFrames::Wish& wish, const Together& others);
 

@@ -15,9 +15,49 @@
 #include "vtkVolume.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace banyan
 {
+
+std::vector<VolumeOnScreen> VolumesPicture::OnScreen(const std::vector<VolumeFrame>& frames)
+{
+  std::vector<VolumeOnScreen> volumes;
+  for (const VolumeFrame& frame : frames)
+  {
+    vtkBanyanVolumeMapper* const mapper = frame.Mapper();
+    volumes.push_back(
+      { BodyOf(frame.Volume(), mapper, mapper->State->Field.Place().Bounds, frame.Scene()),
+        frame.Scene().Viewport });
+  }
+  return volumes;
+}
+
+DepthOrder OrderInDepth(const std::vector<VolumeOnScreen>& volumes, const ScreenView& view)
+{
+  std::vector<PlacedBody> bodies;
+  std::transform(volumes.begin(), volumes.end(), std::back_inserter(bodies),
+    [](const VolumeOnScreen& volume) { return volume.Body; });
+  return DepthOrder(bodies, RayCamera(view.WorldToClip, view.Size, glm::dvec3(0.0)));
+}
+
+void VolumesPicture::WarnNotInDepth(vtkBanyanVolumeMapper* first, vtkRenderer* renderer,
+  const std::vector<VolumeFrame>& frames, const std::vector<VolumeOnScreen>& volumes,
+  const DepthOrder& order)
+{
+  Communicator& communicator = *first->State->Communicator;
+  const std::vector<unsigned char> bits = FindNotInDepth(communicator, renderer, volumes, order);
+  unsigned char fresh = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i)
+  {
+    fresh |= NotToldYet(bits[i], frames[i].Mapper()->State->ToldNotInDepth);
+  }
+  const std::string note = TellNotInDepth(fresh);
+  if (!note.empty() && communicator.Rank() == 0)
+  {
+    vtkWarningWithObjectMacro(first, << note);
+  }
+}
 
 VolumesPicture::VolumesPicture(
   vtkRenderer* renderer, vtkBanyanVolumeMapper* mapper, vtkVolume* volume)
@@ -86,20 +126,15 @@ void VolumesPicture::DrawPrepared(vtkBanyanVolumeMapper* first)
   const PhaseScope beginning(Phase::Beginning);
   MapperState& state = *first->State;
   std::vector<vtkVolume*> props;
-  std::vector<VolumeOnScreen> volumes;
-  std::vector<PlacedBody> bodies;
   PixelRect rect;
   for (const VolumeFrame& frame : this->Frames)
   {
-    vtkBanyanVolumeMapper* const mapper = frame.Mapper();
     props.push_back(frame.Volume());
-    bodies.push_back(
-      BodyOf(frame.Volume(), mapper, mapper->State->Field.Place().Bounds, frame.Scene()));
-    volumes.push_back({ bodies.back(), frame.Scene().Viewport });
     rect = Union(rect, frame.Scene().Viewport);
   }
-  const DepthOrder order(bodies, CameraOf(this->Renderer, glm::dvec3(0.0)));
-  this->TellNotInDepth(first, volumes, order);
+  const std::vector<VolumeOnScreen> volumes = OnScreen(this->Frames);
+  const DepthOrder order = OrderInDepth(volumes, ViewOf(this->Renderer));
+  WarnNotInDepth(first, this->Renderer, this->Frames, volumes, order);
   CompositeStatistics geometry;
   state.Backdrop.Read(
     *state.Communicator, this->Renderer, props, rect, state.RankOrderBehind, geometry);
@@ -151,25 +186,6 @@ std::vector<VolumeFrame*> VolumesPicture::Cast(const Backdrop& backdrop, Picture
     }
   }
   return drawn;
-}
-
-/// Says what is not drawn in the order of depth, once. Collective.
-void VolumesPicture::TellNotInDepth(vtkBanyanVolumeMapper* first,
-  const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order) const
-{
-  Communicator& communicator = *first->State->Communicator;
-  const std::vector<unsigned char> bits =
-    FindNotInDepth(communicator, this->Renderer, volumes, order);
-  unsigned char fresh = 0;
-  for (std::size_t i = 0; i < this->Frames.size(); ++i)
-  {
-    fresh |= NotToldYet(bits[i], this->Frames[i].Mapper()->State->ToldNotInDepth);
-  }
-  const std::string note = banyan::TellNotInDepth(fresh);
-  if (!note.empty() && communicator.Rank() == 0)
-  {
-    vtkWarningWithObjectMacro(first, << note);
-  }
 }
 
 } // namespace banyan

@@ -17,6 +17,9 @@ namespace banyan
 class DepthOrder;
 struct VolumeOnScreen;
 
+/// The order of depth of volumes for a camera.
+DepthOrder OrderInDepth(const std::vector<VolumeOnScreen>& volumes, const ScreenView& view);
+
 /// The picture of all volumes of a renderer that draw on the same ranks. Pictures of volumes are
 /// blended by depth, and the background is behind all of them: the first volume that VTK renders
 /// draws all, and the others are told that they are drawn.
@@ -36,13 +39,21 @@ public:
   /// did not render, as they are off the screen.
   static void ForgetDrawn(vtkRenderer* renderer);
 
+  /// Where volumes that are prepared stand in a picture.
+  static std::vector<VolumeOnScreen> OnScreen(const std::vector<VolumeFrame>& frames);
+
+  /// Says what is not drawn in the order of depth, once. Collective.
+  /// @param first of their mappers
+  /// @param volumes of the frames
+  static void WarnNotInDepth(vtkBanyanVolumeMapper* first, vtkRenderer* renderer,
+    const std::vector<VolumeFrame>& frames, const std::vector<VolumeOnScreen>& volumes,
+    const DepthOrder& order);
+
 private:
   using Pictures = std::vector<std::shared_ptr<const FloatImage>>; ///< null where there is none
 
   void DrawPrepared(vtkBanyanVolumeMapper* first);
   std::vector<VolumeFrame*> Cast(const Backdrop& backdrop, Pictures& pictures);
-  void TellNotInDepth(vtkBanyanVolumeMapper* first, const std::vector<VolumeOnScreen>& volumes,
-    const DepthOrder& order) const;
 
   vtkRenderer* Renderer;
   vtkBanyanVolumeMapper* Called;

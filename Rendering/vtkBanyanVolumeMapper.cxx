@@ -7,6 +7,7 @@
 #include "MapperState.h"
 #include "PieceOfInput.h"
 #include "SetNumber.h"
+#include "VolumesOnWall.h"
 #include "VolumesPicture.h"
 #include "vtkBanyanFrameStatistics.h"
 
@@ -69,6 +70,7 @@ void vtkBanyanVolumeMapper::SetController(vtkMultiProcessController* controller)
   this->State->Served.Stop();
   this->State->Field.Reset();
   this->State->Frames.Forget();
+  this->State->WallFrames.clear();
   banyan::MpiTimeout timeout{ banyan::MpiTimeout::DefaultSeconds, {} };
   try
   {
@@ -259,6 +261,12 @@ void vtkBanyanVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
       renderer->AddObserver(vtkCommand::EndEvent, this, &vtkBanyanVolumeMapper::EndFrame);
   }
   picture.Draw();
+}
+
+void vtkBanyanVolumeMapper::RenderOnWall(vtkRenderer* renderer, vtkVolume* volume,
+  const std::vector<banyan::WallPicture>& pictures, const banyan::DepthPicture& own)
+{
+  banyan::VolumesOnWall(renderer, this, volume).Draw(pictures, own);
 }
 
 /// Volumes that were not called, as they are off the screen, are to be drawn in the next frame.

@@ -13,8 +13,11 @@
 namespace banyan
 {
 class PictureServer;
+class VolumesOnWall;
 class VolumesPicture;
+struct DepthPicture;
 struct MapperState;
+struct WallPicture;
 }
 
 class vtkBanyanFrameStatistics;
@@ -247,6 +250,15 @@ public:
   using Superclass::GetBounds;
 
   void Render(vtkRenderer* renderer, vtkVolume* volume) override;
+
+  /**
+   * Collective: draws the volume, and other visible ones of this kind, for displays of ranks, over
+   * what these show.
+   * @param pictures the same on all ranks
+   * @param own at which depths other data are on this rank's display, in pixels of the picture
+   */
+  void RenderOnWall(vtkRenderer* renderer, vtkVolume* volume,
+    const std::vector<banyan::WallPicture>& pictures, const banyan::DepthPicture& own);
   void ReleaseGraphicsResources(vtkWindow* window) override;
 
 protected:
@@ -260,6 +272,7 @@ private:
   void operator=(const vtkBanyanVolumeMapper&) = delete;
 
   friend class banyan::PictureServer;  // draws for a client
+  friend class banyan::VolumesOnWall;  // draws volumes of several mappers
   friend class banyan::VolumesPicture; // draws volumes of several mappers
 
   bool Attempt(const std::function<bool()>& work);

@@ -2,7 +2,9 @@
 #include "vtkBanyanVolume.h"
 
 #include "CoarseMark.h"
+#include "FramebufferExchange.h"
 #include "PicturesAtHand.h"
+#include "WallOfRanks.h"
 #include "vtkBanyanFrameStatistics.h"
 #include "vtkBanyanVolumeMapper.h"
 
@@ -20,9 +22,33 @@
 #include "vtkOrderedCompositingHelper.h"
 #include "vtkPVRenderView.h"
 #include "vtkPVRenderViewDataDeliveryManager.h"
+#include "vtkProcessModule.h"
 #include "vtkPropCollection.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
+
+namespace
+{
+
+/// The visible ones.
+std::vector<vtkBanyanVolume*> VolumesOf(vtkRenderer* renderer)
+{
+  std::vector<vtkBanyanVolume*> volumes;
+  vtkPropCollection* const all = renderer->GetViewProps();
+  vtkCollectionSimpleIterator at;
+  all->InitTraversal(at);
+  while (vtkProp* const prop = all->GetNextProp(at))
+  {
+    auto* const volume = vtkBanyanVolume::SafeDownCast(prop);
+    if (volume && volume->GetVisibility() != 0)
+    {
+      volumes.push_back(volume);
+    }
+  }
+  return volumes;
+}
+
+} // namespace
 
 vtkStandardNewMacro(vtkBanyanVolume);
 
@@ -44,9 +70,76 @@ void vtkBanyanVolume::SetPictures(const std::shared_ptr<banyan::PicturesAtHand>&
   this->Pictures = pictures;
 }
 
-bool vtkBanyanVolume::CanDrawInView()
+bool vtkBanyanVolume::IsOnWall() const
 {
-  return !this->View || !(this->View->InTileDisplayMode() || this->View->InCaveDisplayMode());
+  return banyan::IsWall(this->View);
+}
+
+void vtkBanyanVolume::DrawWhenEnded(vtkRenderer* renderer)
+{
+  // ParaView puts the picture of other data into the window at 0.
+  constexpr float beforeParaView = 1.0f;
+  constexpr float afterParaView = -1.0f;
+  for (const unsigned long observer : this->OfWatched)
+  {
+    if (this->Watched)
+    {
+      this->Watched->RemoveObserver(observer);
+    }
+  }
+  this->Watched = renderer;
+  if (renderer)
+  {
+    this->OfWatched = { renderer->AddObserver(
+                          vtkCommand::EndEvent, this, &vtkBanyanVolume::ReadDepths, beforeParaView),
+      renderer->AddObserver(
+        vtkCommand::EndEvent, this, &vtkBanyanVolume::DrawOnWall, afterParaView) };
+  }
+}
+
+/// On ranks of a server: the same on all of them.
+bool vtkBanyanVolume::DrawsOnWall(vtkRenderer* renderer)
+{
+  return this->IsOnWall() && this->BanyanMapper && this->GetVisibility() != 0 &&
+         !renderer->GetSelector() &&
+         vtkProcessModule::GetProcessType() != vtkProcessModule::PROCESS_CLIENT;
+}
+
+/// The first volume does that for all.
+void vtkBanyanVolume::ReadDepths(vtkObject* caller, unsigned long, void*)
+{
+  auto* const renderer = vtkRenderer::SafeDownCast(caller);
+  this->Depths.reset();
+  if (this->DrawsOnWall(renderer) && VolumesOf(renderer).front() == this)
+  {
+    if (!this->Framebuffer)
+    {
+      this->Framebuffer = std::make_unique<banyan::FramebufferExchange>();
+    }
+    this->Depths =
+      std::make_unique<banyan::DepthPicture>(banyan::DepthsInCave(this->View, *this->Framebuffer));
+  }
+}
+
+/// Collective over the ranks of a server. The first volume that is called draws all.
+void vtkBanyanVolume::DrawOnWall(vtkObject* caller, unsigned long, void*)
+{
+  auto* const renderer = vtkRenderer::SafeDownCast(caller);
+  if (!this->DrawsOnWall(renderer) || !this->Depths)
+  {
+    return;
+  }
+  vtkMultiProcessController* const ranks = this->BanyanMapper->GetController();
+  const banyan::WallOfRanks wall = banyan::LookAtWall(this->View, ranks, *this->Depths);
+  if (wall.Note != this->WallNote)
+  {
+    this->WallNote = wall.Note;
+    if (!wall.Note.empty() && ranks->GetLocalProcessId() == 0)
+    {
+      vtkWarningMacro(<< wall.Note);
+    }
+  }
+  this->BanyanMapper->RenderOnWall(renderer, this, wall.Pictures, wall.Own);
 }
 
 int vtkBanyanVolume::RenderOpaqueGeometry(vtkViewport* viewport)
@@ -54,7 +147,7 @@ int vtkBanyanVolume::RenderOpaqueGeometry(vtkViewport* viewport)
   // VTK smooths edges (FXAA) before volumes are drawn, ParaView on several ranks after everything
   // is. For one picture on any number of ranks, a single rank does as many do.
   auto* renderer = vtkOpenGLRenderer::SafeDownCast(viewport);
-  if (renderer && renderer->GetUseFXAA() && !renderer->GetSelector() && this->CanDrawInView())
+  if (renderer && renderer->GetUseFXAA() && !renderer->GetSelector() && !this->IsOnWall())
   {
     renderer->SetUseFXAA(false);
     this->SmoothAtEnd =
@@ -112,7 +205,7 @@ vtkTypeBool vtkBanyanVolume::HasTranslucentPolygonalGeometry()
 int vtkBanyanVolume::RenderOverlay(vtkViewport* viewport)
 {
   vtkRenderer* renderer = vtkRenderer::SafeDownCast(viewport);
-  if (!renderer || !this->BanyanMapper || renderer->GetSelector() || !this->CanDrawInView())
+  if (!renderer || !this->BanyanMapper || renderer->GetSelector() || this->IsOnWall())
   {
     return 0;
   }
@@ -139,18 +232,14 @@ int vtkBanyanVolume::RenderOverlay(vtkViewport* viewport)
   return 1;
 }
 
-/// Of all volumes of the view, together: the first one that VTK renders shows them.
+/// Of all volumes of the view, together: the first one shows them.
 void vtkBanyanVolume::ShowPictures(vtkRenderer* renderer)
 {
   std::vector<banyan::PicturesAtHand*> pictures;
   std::vector<vtkVolume*> props;
-  vtkPropCollection* const all = renderer->GetViewProps();
-  vtkCollectionSimpleIterator at;
-  all->InitTraversal(at);
-  while (vtkProp* const prop = all->GetNextProp(at))
+  for (vtkBanyanVolume* const volume : VolumesOf(renderer))
   {
-    auto* const volume = vtkBanyanVolume::SafeDownCast(prop);
-    if (volume && volume->Pictures && volume->GetVisibility())
+    if (volume->Pictures)
     {
       pictures.push_back(volume->Pictures.get());
       props.push_back(volume);
@@ -232,6 +321,10 @@ void vtkBanyanVolume::ReleaseGraphicsResources(vtkWindow* window)
   if (this->Pictures)
   {
     this->Pictures->ReleaseGraphicsResources(window);
+  }
+  if (this->Framebuffer)
+  {
+    this->Framebuffer->ReleaseGraphicsResources(window);
   }
   if (this->Mark)
   {

@@ -7,12 +7,16 @@
 #include "vtkSmartPointer.h" // for member
 #include "vtkWeakPointer.h"  // for members
 
+#include <array>  // for member
 #include <memory> // for member
+#include <string> // for member
 
 namespace banyan
 {
 class CoarseMark;
+class FramebufferExchange;
 class PicturesAtHand;
+struct DepthPicture;
 }
 
 class vtkBanyanVolumeMapper;
@@ -49,8 +53,11 @@ public:
   /** Whether a mark in the corner of the view says that the picture is not exact yet. */
   void SetMarksCoarse(bool marks) { this->MarksCoarse = marks; }
 
-  /** False on tile displays and in CAVEs, where each rank has a picture of its own. */
-  bool CanDrawInView();
+  /**
+   * Draws on tile displays and in CAVEs when a renderer of the view has ended: there, ranks have
+   * pictures of their own, and their passes are not called alike. Null for none.
+   */
+  void DrawWhenEnded(vtkRenderer* renderer);
 
   int RenderOpaqueGeometry(vtkViewport* viewport) override;
   int RenderVolumetricGeometry(vtkViewport* viewport) override;
@@ -74,6 +81,10 @@ private:
 
   void ShowPictures(vtkRenderer* renderer);
   void MarkUnless(bool exact, vtkRenderer* renderer);
+  bool IsOnWall() const;
+  bool DrawsOnWall(vtkRenderer* renderer);
+  void ReadDepths(vtkObject* caller, unsigned long event, void* data);
+  void DrawOnWall(vtkObject* caller, unsigned long event, void* data);
   void SmoothEdges(vtkObject* caller, unsigned long event, void* data);
 
   vtkWeakPointer<vtkBanyanVolumeMapper> BanyanMapper;
@@ -83,6 +94,11 @@ private:
   std::unique_ptr<banyan::CoarseMark> Mark; ///< null until there was one
   bool MarksCoarse = false;
   unsigned long SmoothAtEnd = 0;
+  vtkWeakPointer<vtkRenderer> Watched;
+  std::array<unsigned long, 2> OfWatched{};
+  std::unique_ptr<banyan::FramebufferExchange> Framebuffer; ///< null until a display was read
+  std::unique_ptr<banyan::DepthPicture> Depths;             ///< of a CAVE's display
+  std::string WallNote;                                     ///< that was told
 };
 
 #endif

@@ -11,6 +11,7 @@
 #include "PictureServer.h"
 #include "PicturesAtHand.h"
 #include "StepWindow.h"
+#include "WallOfRanks.h"
 #include "vtkBanyanFrameStatistics.h"
 #include "vtkBanyanVolume.h"
 #include "vtkBanyanVolumeMapper.h"
@@ -213,7 +214,7 @@ int vtkBanyanVolumeRepresentation::ProcessViewRequest(
   }
   else if (request == vtkPVView::REQUEST_RENDER() && !this->Prop->HasPictures())
   {
-    this->PrepareRender(banyan::HeldPiece::In(vtkPVView::GetPiece(inInfo, this)));
+    this->PrepareRender(this->PieceIn(vtkPVRenderView::SafeDownCast(this->GetView())));
   }
   return 1;
 }
@@ -240,8 +241,7 @@ void vtkBanyanVolumeRepresentation::TakeTicket(
   const banyan::PictureTicket ticket = banyan::PictureTicket::Of(numbers, words, depths);
   if (ticket.IsNew())
   {
-    this->PrepareRender(
-      banyan::HeldPiece::In(view->GetDeliveryManager()->GetPiece(this, /*low_res=*/false)));
+    this->PrepareRender(this->PieceIn(view));
   }
   this->Server->Take(ticket, banyan::LineToClient());
 }
@@ -263,22 +263,24 @@ void vtkBanyanVolumeRepresentation::ShowProgress()
   }
 }
 
+/// The piece that this rank has given the view: wherever that moves or copies it, ours draws it.
+vtkSmartPointer<vtkDataObject> vtkBanyanVolumeRepresentation::PieceIn(vtkPVRenderView* view)
+{
+  return banyan::HeldPiece::In(view->GetDeliveryManager()->GetPiece(this, /*low_res=*/false));
+}
+
 /// Collective over the ranks that render.
 void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
 {
   auto* const view = vtkPVRenderView::SafeDownCast(this->GetView());
   this->Prop->SetView(view);
-  if (!this->Prop->CanDrawInView())
+  const bool isClient = vtkProcessModule::GetProcessType() == vtkProcessModule::PROCESS_CLIENT;
+  if (isClient && banyan::IsWall(view))
   {
-    // On servers, ranks are not called alike: nothing that waits for others may begin.
-    // Clients are told, too, and are where somebody reads it.
-    if (!this->RefusalReported &&
-        vtkProcessModule::GetProcessType() == vtkProcessModule::PROCESS_CLIENT)
+    if (!this->WallTold)
     {
-      this->RefusalReported = true;
-      vtkErrorMacro(
-        << "'Banyan Volume' cannot draw on tile displays and in CAVEs: the volume is left out of "
-           "the picture. Show it as 'Volume' there, or start the server without displays.");
+      this->WallTold = true;
+      vtkWarningMacro(<< "The server's displays show the volume; this window does not.");
     }
     return;
   }
@@ -365,6 +367,7 @@ bool vtkBanyanVolumeRepresentation::AddToView(vtkView* view)
   if (auto* renderView = vtkPVRenderView::SafeDownCast(view))
   {
     renderView->GetRenderer()->AddActor(this->Actor);
+    this->Prop->DrawWhenEnded(renderView->GetRenderer());
     return this->Superclass::AddToView(view);
   }
   return false;
@@ -375,6 +378,7 @@ bool vtkBanyanVolumeRepresentation::RemoveFromView(vtkView* view)
   if (auto* renderView = vtkPVRenderView::SafeDownCast(view))
   {
     renderView->GetRenderer()->RemoveActor(this->Actor);
+    this->Prop->DrawWhenEnded(nullptr);
     return this->Superclass::RemoveFromView(view);
   }
   return false;

@@ -14,6 +14,7 @@ class vtkBanyanFrameStatistics;
 class vtkBanyanVolume;
 class vtkDataArray;
 class vtkDataObject;
+class vtkPVRenderView;
 
 namespace banyan
 {
@@ -149,6 +150,7 @@ private:
   void NoteStepsNeeded();
   void TakeSteps();
   void AddSteps(vtkDataArray* array);
+  vtkSmartPointer<vtkDataObject> PieceIn(vtkPVRenderView* view);
   void PrepareRender(vtkDataObject* piece);
   void ShowProgress();
   void PlaceCroppingBox();
@@ -171,7 +173,7 @@ private:
   std::unique_ptr<banyan::FunctionWatch> Opacity;
   bool ColorGiven = false;
   bool OpacityGiven = false;
-  bool RefusalReported = false;
+  bool WallTold = false;
   bool StepsNeeded = false; ///< around the one drawn
   bool Served = false;
   std::shared_ptr<banyan::PicturesAtHand> Pictures; ///< on a client

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Rendering_PicturesAtHand_h
-#define banyan_Rendering_PicturesAtHand_h
+#ifndef banyan_Representations_PicturesAtHand_h
+#define banyan_Representations_PicturesAtHand_h
 
 #include "FramebufferExchange.h"
 #include "RendererCamera.h"

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "VolumesOnWall.h"
+
+#include "VolumesInDepth.h"
+#include "VolumesPicture.h"
+#include "vtkBanyanVolumeMapper.h"
+
+#include "Base/Progress.h"
+#include "Base/Timer.h"
+#include "Parallel/Composite/PackedDepths.h"
+
+#include "vtkRenderer.h"
+#include "vtkSetGet.h"
+#include "vtkVolume.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace banyan
+{
+namespace
+{
+
+/// Copies depths into those of a larger part of the picture.
+void Put(const DepthPicture& from, DepthPicture& to)
+{
+  const PixelRect part = Intersection(from.Rect, to.Rect);
+  for (int y = part.Lo.y; y < part.Hi.y && !part.Empty(); ++y)
+  {
+    const auto at = [&](const DepthPicture& picture)
+    {
+      return std::ptrdiff_t{ y - picture.Rect.Lo.y } * picture.Rect.Size().x +
+             (part.Lo.x - picture.Rect.Lo.x);
+    };
+    std::copy_n(from.Depths.begin() + at(from), part.Size().x, to.Depths.begin() + at(to));
+  }
+}
+
+/// Collective: where other data are in all places of a picture, on all ranks.
+/// @param own in this rank's place
+DepthPicture DepthsOfAll(
+  Communicator& communicator, const WallPicture& picture, const DepthPicture& own)
+{
+  std::vector<DepthPicture> all;
+  PixelRect around;
+  for (const PicturePlace& place : picture.Places)
+  {
+    Bytes packed;
+    if (place.Root == communicator.Rank() && !own.Rect.Empty())
+    {
+      packed = PackDepths({ picture.View.Size, own.Rect, own.Depths });
+    }
+    std::uint64_t bytes = packed.size();
+    communicator.Broadcast(place.Root, &bytes, sizeof(bytes));
+    packed.resize(bytes);
+    if (bytes > 0)
+    {
+      communicator.Broadcast(place.Root, packed.data(), packed.size());
+      all.push_back(UnpackDepths(packed));
+      around = Union(around, all.back().Rect);
+    }
+  }
+  DepthPicture united{ picture.View.Size, around, {} };
+  united.Depths.assign(static_cast<std::size_t>(around.Count()), 1.0f);
+  for (const DepthPicture& part : all)
+  {
+    Put(part, united);
+  }
+  return united;
+}
+
+/// The part of a picture in a place, in pixels of the place.
+FloatImage InPlace(FloatImage picture, const PixelRect& place)
+{
+  picture.Rect.Lo -= place.Lo;
+  picture.Rect.Hi -= place.Lo;
+  return picture;
+}
+
+} // namespace
+
+VolumesOnWall::VolumesOnWall(
+  vtkRenderer* renderer, vtkBanyanVolumeMapper* mapper, vtkVolume* volume)
+  : Renderer(renderer)
+  , Called(mapper)
+  , Volumes(VolumesDrawnWith(renderer, volume))
+{
+}
+
+void VolumesOnWall::Draw(const std::vector<WallPicture>& pictures, const DepthPicture& own)
+{
+  std::vector<vtkVolume*> shown;
+  for (vtkVolume* const volume : this->Volumes)
+  {
+    auto* const mapper = vtkBanyanVolumeMapper::SafeDownCast(volume->GetMapper());
+    const auto update = [&]
+    {
+      mapper->UpdateField(volume);
+      return true;
+    };
+    if (mapper->Attempt(update))
+    {
+      shown.push_back(volume);
+    }
+  }
+  this->Volumes = shown;
+  for (std::size_t number = 0; number < pictures.size(); ++number)
+  {
+    this->Called->Attempt(
+      [&]
+      {
+        this->DrawPicture(pictures[number], number, own, number == 0);
+        return true;
+      });
+  }
+}
+
+/// Collective.
+/// @param tells whether users are told what is not drawn in the order of depth
+void VolumesOnWall::DrawPicture(
+  const WallPicture& picture, std::size_t number, const DepthPicture& own, bool tells)
+{
+  const PhaseScope beginning(Phase::Beginning);
+  Communicator& communicator = *this->Called->State->Communicator;
+  std::vector<VolumeFrame> frames;
+  for (vtkVolume* const volume : this->Volumes)
+  {
+    auto* const mapper = vtkBanyanVolumeMapper::SafeDownCast(volume->GetMapper());
+    VolumeFrame frame(mapper, *mapper->State, volume);
+    if (mapper->Attempt([&] { return frame.Prepare(picture.View); }))
+    {
+      frames.push_back(std::move(frame));
+    }
+  }
+  if (frames.empty())
+  {
+    return;
+  }
+  const std::vector<VolumeOnScreen> volumes = VolumesPicture::OnScreen(frames);
+  const DepthOrder order = OrderInDepth(volumes, picture.View);
+  if (tells)
+  {
+    VolumesPicture::WarnNotInDepth(this->Called, this->Renderer, frames, volumes, order);
+  }
+  const auto place = std::find_if(picture.Places.begin(), picture.Places.end(),
+    [&](const PicturePlace& its) { return its.Root == communicator.Rank(); });
+  const bool shows = place != picture.Places.end();
+  const DepthPicture depths = DepthsOfAll(communicator, picture, shows ? own : DepthPicture{});
+  std::vector<std::shared_ptr<const FloatImage>> drawn(frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i)
+  {
+    frames[i].Mapper()->Attempt(
+      [&]
+      {
+        drawn[i] = frames[i].CastOnWall(
+          this->Renderer, picture.Places, number, depths, static_cast<int>(frames.size()));
+        return true;
+      });
+  }
+  const Timer writing;
+  if (shows)
+  {
+    const FloatImage blended = frames.size() == 1 && drawn.front()
+                                 ? *drawn.front()
+                                 : BlendInDepth(drawn, order, place->Rect);
+    this->Called->State->Backdrop.WriteOver(this->Renderer, InPlace(blended, place->Rect));
+  }
+  for (VolumeFrame& frame : frames)
+  {
+    frame.Finish({}, writing.Seconds() / static_cast<double>(frames.size()));
+  }
+}
+
+} // namespace banyan
