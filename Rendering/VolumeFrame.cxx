@@ -72,6 +72,7 @@ FieldFrames::Wish VolumeFrame::WishFor(bool interacting, int eye, int volumes) c
   const bool few = mapper->GetCompositeInFewBits() && volumes == 1;
   wish.Transport = few ? PixelTransport::WithinOne : PixelTransport::Floats;
   wish.ReadAhead = mapper->GetReadAhead();
+  wish.Divides = static_cast<FieldFrames::Division>(mapper->GetDivision());
   wish.Reuse = sampling.PlansOfGroups = mapper->GetReuseFrames();
   wish.ShowSeconds = this->State->WriteSeconds; // about what it took the last time
   return wish;

@@ -182,13 +182,25 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
   self.BoundsOf = this->GetDataObjectInput();
   self.BoundsTime = self.BoundsOf ? self.BoundsOf->GetMTime() : 0;
   self.BoundsKnown = true;
-  this->WarnOnce(self.Motion.Note() + self.Field.Drawn().Note(), self.LastNote);
+  this->WarnOnce(
+    self.Motion.Note() + self.Field.Drawn().Note() + this->DivisionNote(), self.LastNote);
   this->WarnOnce(banyan::IgnoredOptions(this, volume->GetProperty(), components), self.LastIgnored);
   if (self.Field.Empty() && !self.Field.Problem().empty())
   {
     // Nothing with bounds is there to be rendered, so this may be the only place to say why.
     this->ReportOnce(self.Field.Problem());
   }
+}
+
+/// Why the picture is not divided as wanted; empty if it is. The same on all ranks.
+std::string vtkBanyanVolumeMapper::DivisionNote() const
+{
+  const banyan::MapperState& self = *this->State;
+  const bool isElsewhere = this->Division == 2 && self.Communicator->Size() > 1 &&
+                           !self.Field.Empty() && !self.Field.Drawn().IsOnEachRank();
+  return isElsewhere ? "'Division' By picture has no effect: no rank has all values of plain data. "
+                       "Encode them, or choose By data."
+                     : "";
 }
 
 double* vtkBanyanVolumeMapper::GetBounds()

@@ -95,7 +95,12 @@ class vtkRenderWindow;
   Choice(LoadBalancing, 2, 0, 2, advanced, all,                                                    \
     "Measured cost (default): the zones of the ranks follow the cost of the last frames. "         \
     "Off: equal zones. 'Slice step' remains for older scripts and balances as 'Measured "          \
-    "cost'.")
+    "cost'.")                                                                                      \
+  Choice(Division, 0, 0, 2, advanced, all,                                                         \
+    "What ranks divide among them. By data: each draws a zone, and pictures are composited. By "   \
+    "picture: each draws all cells under a part of the pixels; where each rank can read all, as "  \
+    "it can of an encoded series and of meshes. Automatic (default): by picture on tile "          \
+    "displays, otherwise by data.")
 // clang-format on
 
 /**
@@ -172,6 +177,7 @@ public:
    *   banyan::LateFrames.
    * - ReadAhead: takes half of what the cache has for decoded bricks, if the series plays, and a
    *   quarter, if the camera moves.
+   * - Division: 0 automatic, 1 by data, 2 by picture
    * - LoadBalancing: 0 not at all, 2 to where measured costs balance, and 1, which was another way,
    *   the same. The same on all ranks. The picture does not change.
    */
@@ -275,6 +281,7 @@ private:
   friend class banyan::VolumesOnWall;  // draws volumes of several mappers
   friend class banyan::VolumesPicture; // draws volumes of several mappers
 
+  std::string DivisionNote() const;
   bool Attempt(const std::function<bool()>& work);
   void EndFrame(vtkObject* caller, unsigned long event, void* data);
   void ReportOnce(const std::string& problem);

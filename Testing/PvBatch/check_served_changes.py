@@ -69,7 +69,7 @@ class Changes(ServedWindow):
 
     def neighbour_moves(self):
         self.neighbour.Visibility = self.dice.choice((0, 1, 1))
-        self.neighbour.Position = [self.dice.choice((0.0, -150.0)), 0.0, 0.0]
+        session.move_to(self.neighbour, [self.dice.choice((0.0, -150.0)), 0.0, 0.0])
         simple.Render(self.view)
 
     def neighbour_is(self):

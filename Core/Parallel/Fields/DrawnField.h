@@ -103,6 +103,8 @@ public:
   virtual Movement Moved() const { return {}; }
   /// Whether bricks come from an encoded series.
   virtual bool IsEncoded() const { return false; }
+  /// Whether each rank can draw any cell: the same on all ranks.
+  virtual bool IsOnEachRank() const { return false; }
   /// Whether it is a mesh of hexahedra. Its levels are counted in cells of the finest one.
   virtual bool IsMesh() const { return false; }
   /// Bytes read so far from a series by this process.

@@ -49,6 +49,7 @@ public:
   /// One hash of all values, which counts for all levels: elements of coarser ones span bricks.
   std::vector<Hash128> VisibleContent(const RayScene& scene) override;
   bool IsMesh() const override { return true; }
+  bool IsOnEachRank() const override { return true; }
   /// Cells that were left out, say.
   std::string Note() const override { return this->NoteText; }
   double Deviation() const override { return this->Mesh ? this->Mesh->About().Deviation : 0.0; }

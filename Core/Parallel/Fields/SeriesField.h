@@ -71,6 +71,7 @@ public:
   ValueRange RangeHere() override;
   Movement Moved() const override { return { this->Balancer.BytesMoved(), 0, 0, 0 }; }
   bool IsEncoded() const override { return true; }
+  bool IsOnEachRank() const override { return true; }
   std::uint64_t BytesRead() const override;
 
 private:

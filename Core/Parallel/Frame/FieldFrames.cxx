@@ -223,6 +223,16 @@ bool FieldFrames::BeginRays(Communicator& communicator, DrawnField& drawn, RaySc
   return keeps;
 }
 
+/// Whether ranks divide the picture. No pixel is composited then and none travels that is shown
+/// where it is drawn; but bricks come to other ranks when the camera moves.
+bool FieldFrames::DividesPicture(
+  const Communicator& communicator, const DrawnField& drawn, const Wish& wish)
+{
+  return communicator.Size() > 1 && drawn.IsOnEachRank() &&
+         (wish.Divides == Division::ByPicture ||
+           (wish.Divides == Division::Automatic && wish.Places.size() > 1));
+}
+
 /// Collective.
 void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, RayScene& scene,
   const Names& names, const Wish& wish, const ToleranceControl::Aim& aim, Frame& frame)
@@ -239,6 +249,12 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   frame.Picture.EstimatedError = this->Tolerance.Plan(
     communicator, field, scene, names.View, wish.Sampling, aim, budget, numbers);
   frame.Picture.Limit = this->Tolerance.Limit();
+  RankShare share{ drawn.Source(), drawn.Zones(), budget, ThreadPool::Process() };
+  frame.ByPicture = DividesPicture(communicator, drawn, wish);
+  if (frame.ByPicture)
+  {
+    share.Regions = this->Regions.BeginFrame(scene, communicator.Size());
+  }
   const bool keeps = this->BeginRays(communicator, drawn, scene, names.Whole, wish);
   const FrameStatistics probes = numbers;
   CompositeOptions compositing;
@@ -250,9 +266,8 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   {
     compositing.AfterCasting = [&] { drawn.ReadAhead(scene, communicator.Rank()); };
   }
-  FloatImage picture = DrawDistributed(communicator, scene,
-    { drawn.Source(), drawn.Zones(), budget, ThreadPool::Process() }, numbers, compositing,
-    wish.Places);
+  FloatImage picture =
+    DrawDistributed(communicator, scene, share, numbers, compositing, wish.Places);
   const std::vector<int> roots = RootsOf(wish);
   if (std::find(roots.begin(), roots.end(), communicator.Rank()) != roots.end())
   {
@@ -266,9 +281,9 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   numbers.BytesComposited += probes.BytesComposited;
   numbers.MessagesComposited += probes.MessagesComposited;
   const PhaseScope balancing(Phase::Balancing);
-  if (!scene.Reused)
+  if (!scene.Reused) // what a part of a picture takes says little of the next one
   {
-    drawn.EndFrame(communicator); // what a part of a picture takes says little of the next one
+    frame.ByPicture ? this->Regions.EndFrame(communicator) : drawn.EndFrame(communicator);
   }
   this->Tolerance.FrameTook(
     wish.Sampling, AllMax(communicator, drawing.Seconds() + wish.ShowSeconds));

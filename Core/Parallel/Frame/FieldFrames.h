@@ -2,6 +2,7 @@
 #ifndef banyan_Parallel_Frame_FieldFrames_h
 #define banyan_Parallel_Frame_FieldFrames_h
 
+#include "Parallel/Balance/PictureRegions.h"
 #include "Parallel/Frame/KeptPictures.h"
 #include "Parallel/Frame/ToleranceControl.h"
 #include "Render/Levels/KeptRays.h"
@@ -19,12 +20,21 @@ namespace banyan
 class FieldFrames
 {
 public:
+  /// What ranks divide among them.
+  enum class Division
+  {
+    Automatic, ///< the picture where several ranks show parts of it, else the data
+    ByData,    ///< the cells: each draws a zone, and pictures are composited
+    ByPicture  ///< the pixels: each draws all cells under some; DrawnField::IsOnEachRank
+  };
+
   struct Wish
   {
     ToleranceControl::Wish Sampling;
     PixelTransport Transport = PixelTransport::Floats;
     PixelRect Behind;                 ///< CompositeOptions; places have their own
     std::vector<PicturePlace> Places; ///< DrawDistributed
+    Division Divides = Division::Automatic;
     bool ReadAhead = true; ///< whether bricks of the next frame are decoded in the background
     bool Reuse = true;     ///< whether the frame may take anything from those before
     bool Passing = false;  ///< whether the picture will not be wanted again: nothing of it is kept
@@ -33,8 +43,9 @@ public:
 
   struct Frame
   {
-    DrawnPicture Picture; ///< its pixels are those of this rank's place; null where it has none
-    bool Kept = false;    ///< it was drawn for an earlier frame: the same on all ranks
+    DrawnPicture Picture;   ///< its pixels are those of this rank's place; null where it has none
+    bool Kept = false;      ///< it was drawn for an earlier frame: the same on all ranks
+    bool ByPicture = false; ///< how it was divided, if it was not
 
     /// The part of the pixels that show something whose rays were cast for an earlier frame.
     double ReusedFraction() const
@@ -88,6 +99,8 @@ private:
   bool TakeKept(Communicator& communicator, const Sight& sight, const Wish& wish, Frame& frame);
   bool BeginRays(Communicator& communicator, DrawnField& drawn, RayScene& scene,
     const Hash128& name, const Wish& wish);
+  static bool DividesPicture(
+    const Communicator& communicator, const DrawnField& drawn, const Wish& wish);
   void DrawAnew(Communicator& communicator, DistributedField& field, RayScene& scene,
     const Names& names, const Wish& wish, const ToleranceControl::Aim& aim, Frame& frame);
 
@@ -106,6 +119,7 @@ private:
   ToleranceControl Tolerance;
   CompositePlanCache Plans;
   KeptRays Rays;
+  PictureRegions Regions;
   KeptPictures Pictures; ///< on ranks with places
 };
 
