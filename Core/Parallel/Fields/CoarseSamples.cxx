@@ -28,9 +28,10 @@ ScalarType CommonType(const std::vector<ScalarType>& types)
 }
 
 /// An array of its own, for a box of samples.
-SampleArray ArrayOf(const BrickView& view, const Box& samples)
+SampleArray ArrayOf(const BrickView& view, const Box& samples, bool colours)
 {
   SampleArray array;
+  array.Component = colours ? SampleArray::Colours : 0;
   array.Values = view.Values;
   array.Type = view.Type;
   std::copy_n(view.Stride, 3, array.Stride);
@@ -41,7 +42,8 @@ SampleArray ArrayOf(const BrickView& view, const Box& samples)
 
 /// All samples of a box from parts of it.
 /// @param missing whether the parts leave some out
-PieceSamples Join(std::vector<SampledBox> parts, const Box& samples, ScalarType type, bool missing)
+PieceSamples Join(
+  std::vector<SampledBox> parts, const Box& samples, ScalarType type, bool missing, bool colours)
 {
   if (samples.Empty())
   {
@@ -52,7 +54,7 @@ PieceSamples Join(std::vector<SampledBox> parts, const Box& samples, ScalarType 
     parts.insert(parts.begin(), MissingSamples(samples));
   }
   return PieceSamples(
-    ArrayOf(Assemble(parts, samples, missing ? TypeWithMissing(type) : type), samples));
+    ArrayOf(Assemble(parts, samples, missing ? TypeWithMissing(type) : type), samples, colours));
 }
 
 } // namespace
@@ -181,7 +183,8 @@ PieceSamples CoarsePieces::GatherTogether(Communicator& communicator, const Piec
   }
   communicator.WaitAll();
   ThrowTogether(communicator, failure);
-  return Join(std::move(parts), this->Needed[static_cast<std::size_t>(self)], type, missing);
+  return Join(std::move(parts), this->Needed[static_cast<std::size_t>(self)], type, missing,
+    mine.HasColours());
 }
 
 } // namespace banyan

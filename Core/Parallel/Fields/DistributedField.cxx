@@ -114,6 +114,7 @@ void DistributedField::Update(Communicator& communicator, FieldInput& input)
   }
   ++this->Updates;
   this->LargestEncodingError = 0.0;
+  this->Colours = false;
   this->ProblemText.clear();
   try
   {
@@ -204,6 +205,7 @@ void DistributedField::TakeImages(
                 "the reader for the time of a step, or switch off 'Interpolate In Time' or the "
                 "enhancement.");
   }
+  this->Colours = first->Component == SampleArray::Colours;
   this->Where = PlaceOfSamples(first->Geometry(), samples);
   if (!deferred || !this->TakeSeries(communicator, input, all, samples))
   {

@@ -55,8 +55,11 @@ public:
   const FieldPlace& Place() const { return this->Where; }
   /// Of the values of all ranks; of all steps, where they come from an encoded series.
   const ValueRange& Range() const { return this->ValuesRange; }
+  /// Whether samples are colours: see BrickSource::HasColours.
+  bool DrawsColours() const { return this->Colours; }
   /// The largest error of values, of all steps, that encoding has made as far as it is known: of
-  /// the drawn component, or of the length. 0 for plain data and meshes.
+  /// the drawn component, of the length, or of any component of colours. 0 for plain data and
+  /// meshes.
   double EncodingError() const { return this->LargestEncodingError; }
 
   /// The field, which until the next Update stays the same object.
@@ -89,6 +92,7 @@ private:
   std::string ProblemText;
   FieldPlace Where;
   ValueRange ValuesRange;
+  bool Colours = false;
   double LargestEncodingError = 0.0;
 
   struct KnownContent

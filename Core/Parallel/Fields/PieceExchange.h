@@ -24,6 +24,7 @@ struct PieceSummaries
   std::vector<Hash128> Contents;     ///< of samples and place of each brick; empty: not looked at
   std::vector<ScalarType> Types;     ///< of the array of each rank
   std::vector<ScalarType> ViewTypes; ///< PieceSamples::Type of each rank
+  bool Colours = false;              ///< whether the array of some rank has colours
 };
 
 /// Collective: each rank looks at its own bricks once, and tells the others.

@@ -35,7 +35,7 @@ struct PieceFacts
   double Fraction = 0.0; ///< of a series drawn from the file: see StepAndFraction
   std::int32_t Step = 0;
   std::int32_t Array = 0;
-  std::int32_t Component = 0; ///< -1: Euclidean norm
+  std::int32_t Component = 0; ///< or SampleArray::Magnitude, Colours
   std::int32_t Level = 0;
 
   bool IsImage() const { return this->Has == Kind::Image; }

@@ -37,6 +37,8 @@ public:
   /// That views have, unless samples are missing in them.
   ScalarType Type() const { return this->Own ? this->Own->ViewType() : ScalarType::Float32; }
 
+  bool HasColours() const { return this->Own && this->Own->HasColours(); }
+
   bool HasShell() const { return this->ShellIsKnown; }
   /// @param parts those of PieceGrid::ShellOf
   void SetShell(std::vector<SampledBox> parts);

@@ -35,6 +35,7 @@ public:
   ValueRange RangeOf(std::int64_t brick) const override { return this->At(brick).Range; }
   ValueMask MaskOf(std::int64_t brick) const override { return this->At(brick).Mask; }
   MaskRange MasksAreOver() const override { return this->Known.Masks; }
+  bool HasColours() const override { return this->Known.Colours; }
   /// Of all bricks, on all ranks alike, if they were looked at when they were gathered.
   std::optional<Hash128> ContentOf(std::int64_t brick) const override;
   std::optional<UniformValue> UniformValueOf(std::int64_t brick) const override;

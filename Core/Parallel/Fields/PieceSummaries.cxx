@@ -31,6 +31,7 @@ struct ArrayFacts
   double High;
   std::int32_t Type;
   std::int32_t ViewType;
+  std::int64_t Colours;
 };
 
 /// Hashes of samples and places of boxes of an array; as many zeros if nobody wants to know.
@@ -80,8 +81,8 @@ std::string SummarizeOwn(const PieceGrid& grid, int rank, const PieceSamples& mi
     const Box samples = grid.BrickSamples(brick, false);
     boxes.push_back({ samples.Lo - array.Samples.Lo, samples.Hi - array.Samples.Lo });
   }
-  // The rounding of magnitudes is not known.
-  const bool exact = array.Component != SampleArray::Magnitude;
+  // The rounding of magnitudes is not known, and colours differ where opacities are equal.
+  const bool exact = array.Component >= 0;
   std::string bytes(boxes.size() * sizeof(Entry), '\0');
   char* out = bytes.data();
   const std::vector<Hash128> contents = ContentsOf(mine.Array(), boxes, pool, looks);
@@ -133,7 +134,7 @@ PieceSummaries GatherSummaries(Communicator& communicator, const PieceGrid& grid
     [&] { range = mine.HasData() ? FiniteRange(mine.Array().Array(), pool) : ValueRange{}; });
   const ScalarType type = mine.HasData() ? mine.Array().Array().Type : ScalarType::Float32;
   const ArrayFacts facts{ range.Low, range.High, static_cast<std::int32_t>(type),
-    static_cast<std::int32_t>(mine.Type()) };
+    static_cast<std::int32_t>(mine.Type()), mine.HasColours() ? 1 : 0 };
   std::vector<ArrayFacts> all(static_cast<std::size_t>(communicator.Size()));
   communicator.AllGather(&facts, sizeof(facts), all.data());
   PieceSummaries known;
@@ -143,6 +144,7 @@ PieceSummaries GatherSummaries(Communicator& communicator, const PieceGrid& grid
     whole.Include(ValueRange{ of.Low, of.High });
     known.Types.push_back(static_cast<ScalarType>(of.Type));
     known.ViewTypes.push_back(static_cast<ScalarType>(of.ViewType));
+    known.Colours = known.Colours || of.Colours != 0;
   }
   known.Masks = whole.Empty() ? MaskRange{} : MaskRange{ whole.Low, whole.High };
 

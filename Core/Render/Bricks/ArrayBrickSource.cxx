@@ -108,12 +108,12 @@ Box ArrayBrickSource::SamplesOf(std::int64_t brick) const
 }
 
 /// Signs of zeros and the rounding of magnitudes do not matter: zeros find one entry of a table,
-/// and magnitudes are not known.
+/// and magnitudes are not known. Nor are colours, which differ where opacities are equal.
 std::optional<UniformValue> ArrayBrickSource::UniformValueOf(std::int64_t brick) const
 {
   const ValueRange& range = this->Ranges[brick];
   const bool known = this->Uniform[brick] != 0 && range.Low == range.High;
-  if (!known || this->Values->Array().Component == SampleArray::Magnitude)
+  if (!known || this->Values->Array().Component < 0)
   {
     return std::nullopt;
   }

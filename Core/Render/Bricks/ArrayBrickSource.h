@@ -29,6 +29,7 @@ public:
   Box CellsOf(std::int64_t brick) const override;
   ValueRange RangeOf(std::int64_t brick) const override { return this->Ranges[brick]; }
   ValueMask MaskOf(std::int64_t brick) const override { return this->Masks[brick]; }
+  bool HasColours() const override { return this->Values->HasColours(); }
   MaskRange MasksAreOver() const override { return this->Over; }
   std::optional<UniformValue> UniformValueOf(std::int64_t brick) const override;
   /// Known of bricks that were looked at.

@@ -4,6 +4,7 @@
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Render/Bricks/BrickSummary.h"
+#include "Render/Bricks/JoinedComponents.h"
 #include "Render/Bricks/SampledBox.h"
 
 #include <algorithm>
@@ -18,10 +19,15 @@ namespace
 void CheckArray(const SampleArray& array)
 {
   const bool componentExists = array.Component == SampleArray::Magnitude ||
+                               array.Component == SampleArray::Colours ||
                                (array.Component >= 0 && array.Component < array.Components);
   if (array.Components < 1 || !componentExists)
   {
     throw Error("The array has no component " + std::to_string(array.Component));
+  }
+  if (array.Component == SampleArray::Colours && array.Components > 1)
+  {
+    CheckColours(array.Components);
   }
   const glm::ivec3 lo = array.Samples.Lo;
   if (lo.x < 0 || lo.y < 0 || lo.z < 0)
@@ -34,9 +40,10 @@ void CheckArray(const SampleArray& array)
   }
 }
 
-ScalarType CopyType(ScalarType type)
+ScalarType CopyType(const SampleArray& array)
 {
-  return SizeOf(type) <= 2 || type == ScalarType::Float32 ? ScalarType::Float32
+  const bool small = SizeOf(array.Type) <= 2 || array.Type == ScalarType::Float32;
+  return small && array.Component != SampleArray::Colours ? ScalarType::Float32
                                                           : ScalarType::Float64;
 }
 
@@ -45,7 +52,7 @@ template <class T>
 void CopyBrick(
   const SampleArray& array, const Box& samples, int every, void* target, ScalarType type)
 {
-  const SampleReader<T> reader(array);
+  const SampleReader<T> reader(array, true);
   const glm::ivec3 last = array.Samples.Size() - 1;
   const auto fine = [&](int sample, int axis) { return std::min(sample * every, last[axis]); };
   const auto copy = [&](auto* out)
@@ -132,7 +139,7 @@ ArraySamples::ArraySamples(const SampleArray& array)
 
 ScalarType ArraySamples::ViewType() const
 {
-  return this->AlwaysCopied() ? CopyType(this->Source.Type) : this->Source.Type;
+  return this->AlwaysCopied() ? CopyType(this->Source) : this->Source.Type;
 }
 
 bool ArraySamples::IsCopied(const Box& samples, int every) const
@@ -145,7 +152,7 @@ bool ArraySamples::IsCopied(const Box& samples, int every) const
 std::size_t ArraySamples::ViewBytes(const Box& samples, int every) const
 {
   return this->IsCopied(samples, every)
-           ? static_cast<std::size_t>(samples.Count()) * SizeOf(CopyType(this->Source.Type))
+           ? static_cast<std::size_t>(samples.Count()) * SizeOf(CopyType(this->Source))
            : 0;
 }
 
@@ -210,7 +217,7 @@ BrickView ArraySamples::View(const Box& samples, int every) const
     return view;
   }
   void* values = nullptr;
-  view = AllocateView(samples, CopyType(this->Source.Type), values);
+  view = AllocateView(samples, CopyType(this->Source), values);
   Dispatch(this->Source.Type, [&](auto tag)
     { CopyBrick<typename decltype(tag)::Type>(this->Source, samples, every, values, view.Type); });
   return view;

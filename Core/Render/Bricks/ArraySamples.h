@@ -22,13 +22,16 @@ struct SampleArray
 {
   /// Takes the Euclidean length of all components instead of one of them.
   static constexpr int Magnitude = -1;
+  /// Takes three or four components as a colour: what the opacity function is asked for, and
+  /// ColourNumber in views. One component has such numbers already.
+  static constexpr int Colours = -2;
 
   const void* Values = nullptr; ///< component 0 of the sample at Samples.Lo
   ScalarType Type = ScalarType::Float32;
   std::ptrdiff_t Stride[3] = { 1, 0, 0 }; ///< in values, between neighbours along each axis
   int Components = 1;
   std::ptrdiff_t ComponentStride = 1; ///< in values
-  int Component = 0;                  ///< in [0, Components), or Magnitude
+  int Component = 0;                  ///< in [0, Components), Magnitude or Colours
   /// Positions held, in samples of the whole grid (index space from 0): a piece of the grid, say.
   Box Samples;
   /// One byte per sample, x fastest, or null. Samples with a bit of HiddenBits set count as NaN.
@@ -53,6 +56,7 @@ struct BoxSummary
 ///
 /// Values of a single component without hidden samples are used where they are. Otherwise a box is
 /// copied when it is viewed: as float32 for types that float32 holds exactly, else as float64.
+/// Colours are always copied, as float64.
 class ArraySamples
 {
 public:
@@ -70,10 +74,8 @@ public:
   }
 
   /// Whether no view points at the array's own values.
-  bool AlwaysCopied() const
-  {
-    return this->Source.Component == SampleArray::Magnitude || this->Source.Flags != nullptr;
-  }
+  bool AlwaysCopied() const { return this->Source.Component < 0 || this->Source.Flags != nullptr; }
+  bool HasColours() const { return this->Source.Component == SampleArray::Colours; }
   /// That views have.
   ScalarType ViewType() const;
 

@@ -139,9 +139,9 @@ void BrickSource::Hide(std::shared_ptr<const HiddenCells> hidden)
 
 void BrickSource::TakeKept(BrickSource& other, const Box& domain)
 {
-  if (other.HiddenHere)
+  if (other.HiddenHere || other.HasColours() != this->HasColours())
   {
-    return; // packed without its cells
+    return; // packed without its cells, or without colours
   }
   this->KeptOfSource = other.KeptOfSource;
   std::map<int, std::unique_ptr<const ChangedBricks>> levels;

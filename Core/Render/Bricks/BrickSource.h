@@ -78,6 +78,10 @@ public:
   /// then on. Without effect where it is known anyway, and where nobody can. One thread at a time.
   virtual void LookAt(const std::vector<std::int64_t>& /*bricks*/) {}
 
+  /// Whether samples are colours (ColourNumber). Ranges and masks are those of what the opacity
+  /// function is asked for.
+  virtual bool HasColours() const { return false; }
+
   /// Of values that are whole multiples of a step, each rounded to float32, but for exceptions: the
   /// step. 0 where none is known.
   virtual double StepOfValues() const { return 0.0; }

@@ -83,11 +83,11 @@ bool PackedBrick::CanPack(const Box& cells)
   return !cells.Empty() && std::max({ size.x, size.y, size.z }) <= LargestEdge;
 }
 
-std::size_t PackedBrick::BytesFor(const Box& cells, bool gradients)
+std::size_t PackedBrick::BytesFor(const Box& cells, bool gradients, bool colours)
 {
   const glm::i64vec3 samples = glm::i64vec3(cells.Size()) + std::int64_t{ 1 };
-  return static_cast<std::size_t>(samples.x * samples.y * samples.z) * (gradients ? 4 : 1) *
-           sizeof(float) +
+  return static_cast<std::size_t>(samples.x * samples.y * samples.z) *
+           ((gradients ? 4 : 1) * sizeof(float) + (colours ? sizeof(std::uint32_t) : 0)) +
          sizeof(PackedBrick);
 }
 
@@ -135,12 +135,14 @@ void PackedBrick::Lay(int perSample)
   }
 }
 
-PackedBrick::PackedBrick(
-  const BrickView& view, const glm::ivec3& corner, const Box& cells, double low, double step)
+PackedBrick::PackedBrick(const BrickView& view, const glm::ivec3& corner, const Box& cells,
+  double low, double step, bool colours)
   : Whole(cells)
 {
   this->Lay(1);
-  Dense dense = this->Convert(view, corner, { cells.Lo, cells.Hi + 1 }, low);
+  const Box samples{ cells.Lo, cells.Hi + 1 };
+  Dense dense = colours ? this->ConvertColours(view, corner, samples)
+                        : this->Convert(view, corner, samples, low);
   this->FindExtremes(dense);
   if (!this->TakeNumbers(dense.Values, step))
   {
@@ -170,7 +172,8 @@ bool PackedBrick::TakeNumbers(const Floats& values, double step)
 std::size_t PackedBrick::Bytes() const
 {
   return sizeof(PackedBrick) + this->Samples.size() * sizeof(float) +
-         this->Numbers.size() * sizeof(std::int16_t) + this->HiddenHere.Bytes();
+         this->Numbers.size() * sizeof(std::int16_t) +
+         this->Colours.size() * sizeof(std::uint32_t) + this->HiddenHere.Bytes();
 }
 
 void PackedBrick::Hide(HiddenInBrick hidden)
@@ -198,12 +201,13 @@ void PackedBrick::Hide(HiddenInBrick hidden)
 }
 
 PackedBrick::PackedBrick(
-  const BrickView& view, const Box& around, const Box& cells, double low, float scale)
+  const BrickView& view, const Box& around, const Box& cells, double low, float scale, bool colours)
   : Whole(cells)
 {
   this->Lay(4);
-  const Box wanted{ cells.Lo - 1, cells.Hi + 2 };
-  const Dense dense = this->Convert(view, around.Lo, Intersection(around, wanted), low);
+  const Box samples = Intersection(around, { cells.Lo - 1, cells.Hi + 2 });
+  const Dense dense = colours ? this->ConvertColours(view, around.Lo, samples)
+                              : this->Convert(view, around.Lo, samples, low);
   this->FindExtremes(dense);
   this->Samples.resize(static_cast<std::size_t>(this->Slice) * (cells.Size().z + 1));
   this->PlaceGradients(dense, scale);

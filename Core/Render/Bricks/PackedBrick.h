@@ -30,6 +30,8 @@ namespace banyan
 /// floats, the same ones whatever brick a sample is in. Where all values are whole multiples of a
 /// step that is known, as those of integers and of encoded series are, 16-bit numbers stand for
 /// them and give the same bits: half of the memory again.
+///
+/// Colours are values, those that the opacity function is asked for, and four bytes more a sample.
 class PackedBrick
 {
 public:
@@ -41,7 +43,7 @@ public:
 
   static bool CanPack(const Box& cells);
   /// At most.
-  static std::size_t BytesFor(const Box& cells, bool gradients);
+  static std::size_t BytesFor(const Box& cells, bool gradients, bool colours = false);
   std::size_t Bytes() const;
 
   /// @param view the brick
@@ -50,13 +52,15 @@ public:
   /// @param low what values of types that float cannot hold are relative to (see IsRelative)
   /// @param step numbers are taken if all values are whole multiples of it, each rounded to
   /// float32; 0: no numbers
+  /// @param colours whether the view has colours (ColourNumber)
   PackedBrick(const BrickView& view, const glm::ivec3& corner, const Box& cells, double low,
-    double step = 0.0);
+    double step = 0.0, bool colours = false);
 
   /// With gradients.
   /// @param around samples that the view has: where there is one, a layer more than the brick's
   /// @param scale of gradients: a power of two, the same for all bricks of a volume
-  PackedBrick(const BrickView& view, const Box& around, const Box& cells, double low, float scale);
+  PackedBrick(const BrickView& view, const Box& around, const Box& cells, double low, float scale,
+    bool colours = false);
 
   /// The packed values as a view of Cells(), whose corner is Corner(). Takes memory and time if
   /// HasNumbers.
@@ -66,6 +70,9 @@ public:
 
   /// Of the gradient along an axis, at the same samples. HasGradients.
   BrickView GradientView(int axis) const;
+
+  /// Red (0), green or blue of the same samples, 0 to 255. HasColours.
+  BrickView ColourView(int channel) const;
 
   /// Says which cells are not drawn. Not for a brick that HasNumbers.
   void Hide(HiddenInBrick hidden);
@@ -80,6 +87,9 @@ public:
   std::ptrdiff_t StrideZ() const { return this->Slice; }
 
   bool HasGradients() const { return this->PerSample == 4; }
+  bool HasColours() const { return !this->Colours.empty(); }
+  /// Four bytes a sample, red in the lowest, `[z][y][x]` without gaps.
+  const std::uint32_t* ColoursOfSamples() const { return this->Colours.data(); }
   bool Relative() const { return this->IsRelativeToLow; }
   double Low() const { return this->RelativeTo; } ///< 0 unless Relative
   /// Whether a value is not finite, or so large that interpolating might give such a value; or some
@@ -113,6 +123,7 @@ private:
   };
 
   Dense Convert(const BrickView& view, const glm::ivec3& corner, const Box& samples, double low);
+  Dense ConvertColours(const BrickView& view, const glm::ivec3& corner, const Box& samples);
   void Lay(int perSample);
   bool TakeNumbers(const Floats& values, double step);
   void PlaceGradients(const Dense& dense, float scale);
@@ -128,7 +139,8 @@ private:
   bool HasSpecial = false;
   double RelativeTo = 0.0;
   Floats Samples;
-  Many<std::int16_t> Numbers; ///< in place of Samples
+  Many<std::int16_t> Numbers;  ///< in place of Samples
+  Many<std::uint32_t> Colours; ///< empty for none
   HiddenInBrick HiddenHere;
   NumberScale ScaleOfNumbers;
   float Lowest[MacroCells];

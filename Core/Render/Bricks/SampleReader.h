@@ -3,23 +3,28 @@
 #define banyan_Render_Bricks_SampleReader_h
 
 #include "Render/Bricks/ArraySamples.h"
+#include "Render/Bricks/ColourNumbers.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace banyan
 {
 
-/// Reads the samples of a SampleArray whose values have the type T: one component or the length of
-/// all, NaN where hidden.
+/// Reads the samples of a SampleArray whose values have the type T: one component, the length of
+/// all, or colours; NaN where hidden.
 template <class T>
 class SampleReader
 {
 public:
-  explicit SampleReader(const SampleArray& array)
+  /// @param numbers whether colours are read as ColourNumber, and not as what the opacity function
+  /// is asked for
+  explicit SampleReader(const SampleArray& array, bool numbers = false)
     : Array(array)
     , Values(static_cast<const T*>(array.Values))
     , Size(array.Samples.Size())
+    , Numbers(numbers)
   {
   }
 
@@ -33,6 +38,10 @@ public:
     if (this->Array.Component == SampleArray::Magnitude)
     {
       this->ReadMagnitudes(row, begin, end, out);
+    }
+    else if (this->Array.Component == SampleArray::Colours)
+    {
+      this->ReadColours(row, begin, end, out);
     }
     else
     {
@@ -69,8 +78,7 @@ public:
   /// Whether rows lie in memory as Read would give them.
   bool IsPlain() const
   {
-    return this->Array.Component != SampleArray::Magnitude && this->Array.Stride[0] == 1 &&
-           !this->Array.Flags;
+    return this->Array.Component >= 0 && this->Array.Stride[0] == 1 && !this->Array.Flags;
   }
   /// A sample, if IsPlain.
   const T* At(int x, int y, int z) const
@@ -97,9 +105,28 @@ private:
     }
   }
 
+  /// @param out double where Numbers
+  template <class Out>
+  void ReadColours(const T* row, int begin, int end, Out* out) const
+  {
+    const int count = std::min(this->Array.Components, 4);
+    for (int x = begin; x < end; ++x)
+    {
+      double components[4];
+      for (int c = 0; c < count; ++c)
+      {
+        components[c] =
+          static_cast<double>(row[x * this->Array.Stride[0] + c * this->Array.ComponentStride]);
+      }
+      const double number = count == 1 ? components[0] : ColourNumber::Of(components, count);
+      out[x - begin] = static_cast<Out>(this->Numbers ? number : ColourNumber::ShownOf(number));
+    }
+  }
+
   const SampleArray& Array;
   const T* Values;
   glm::ivec3 Size;
+  bool Numbers;
 };
 
 } // namespace banyan

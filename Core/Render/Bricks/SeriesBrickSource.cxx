@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Render/Bricks/SeriesBrickSource.h"
 
-#include "Render/Bricks/ArraySamples.h"
+#include "Render/Bricks/JoinedComponents.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 
 namespace banyan
@@ -36,49 +35,7 @@ BrickView UniformView(double value)
   return view;
 }
 
-void AddSquares(const BrickView& view, const glm::ivec3& samples, std::vector<float>& sums)
-{
-  Dispatch(view.Type,
-    [&](auto tag)
-    {
-      using T = typename decltype(tag)::Type;
-      const T* values = static_cast<const T*>(view.Values);
-      std::size_t out = 0;
-      for (int z = 0; z < samples.z; ++z)
-      {
-        for (int y = 0; y < samples.y; ++y)
-        {
-          const T* row = values + z * view.Stride[2] + y * view.Stride[1];
-          for (int x = 0; x < samples.x; ++x, ++out)
-          {
-            const double value = static_cast<double>(row[x * view.Stride[0]]);
-            sums[out] += static_cast<float>(value * value);
-          }
-        }
-      }
-    });
-}
-
 } // namespace
-
-ValueRange MagnitudeBounds(const std::vector<ValueRange>& components)
-{
-  double low = 0.0;
-  double high = 0.0;
-  for (const ValueRange& range : components)
-  {
-    if (range.Empty())
-    {
-      return {};
-    }
-    const double largest = std::max(std::abs(range.Low), std::abs(range.High));
-    const bool straddles = range.Low <= 0.0 && range.High >= 0.0;
-    const double smallest = straddles ? 0.0 : std::min(std::abs(range.Low), std::abs(range.High));
-    low += smallest * smallest;
-    high += largest * largest;
-  }
-  return { std::sqrt(low), std::sqrt(high) };
-}
 
 SeriesBrickSource::SeriesBrickSource(
   std::shared_ptr<const SeriesFile> series, const FieldKey& field, int component, BrickCache& cache)
@@ -91,17 +48,21 @@ SeriesBrickSource::SeriesBrickSource(
   const ArrayIndex& array = this->Series->Index().Arrays.at(static_cast<std::size_t>(field.Array));
   const int count = static_cast<int>(array.Components.size());
   this->Type = array.Type;
-  this->Magnitude = component < 0 && count > 1;
+  this->IsJoined = component < 0 && count > 1;
   if (component >= count)
   {
     throw Error("Array '" + array.Name + "' has no component " + std::to_string(component),
       { this->Series->Path(), {}, static_cast<std::uint64_t>(component),
         static_cast<std::uint64_t>(count - 1) });
   }
+  if (component == SampleArray::Colours)
+  {
+    CheckColours(count);
+  }
   std::vector<ValueRange> ranges;
   for (int c = 0; c < count; ++c)
   {
-    if (this->Magnitude || c == std::max(component, 0))
+    if (this->IsJoined || c == std::max(component, 0))
     {
       this->Components.push_back(c);
       this->Nodes.push_back(this->Series->Nodes(this->KeyOf(this->Components.size() - 1)));
@@ -114,9 +75,9 @@ SeriesBrickSource::SeriesBrickSource(
   {
     this->NodesOfFlags = this->Series->Nodes(this->Flags);
   }
-  if (this->Magnitude)
+  if (this->IsJoined)
   {
-    const ValueRange range = MagnitudeBounds(ranges);
+    const ValueRange range = JoinedBounds(component, ranges);
     this->Masks = range.Empty() ? MaskRange{} : MaskRange{ range.Low, range.High };
   }
   else
@@ -156,29 +117,29 @@ FieldKey SeriesBrickSource::KeyOf(std::size_t component) const
   return key;
 }
 
-ValueRange SeriesBrickSource::MagnitudeRange(std::int64_t brick) const
+ValueRange SeriesBrickSource::JoinedRange(std::int64_t brick) const
 {
   std::vector<ValueRange> ranges;
   for (const NodeList& nodes : this->Nodes)
   {
     ranges.push_back((*nodes)[static_cast<std::size_t>(brick)].Range);
   }
-  return MagnitudeBounds(ranges);
+  return JoinedBounds(this->Component, ranges);
 }
 
 ValueRange SeriesBrickSource::RangeOf(std::int64_t brick) const
 {
-  return this->Magnitude ? this->MagnitudeRange(brick)
-                         : (*this->Nodes.front())[static_cast<std::size_t>(brick)].Range;
+  return this->IsJoined ? this->JoinedRange(brick)
+                        : (*this->Nodes.front())[static_cast<std::size_t>(brick)].Range;
 }
 
 ValueMask SeriesBrickSource::MaskOf(std::int64_t brick) const
 {
-  if (!this->Magnitude)
+  if (!this->IsJoined)
   {
     return (*this->Nodes.front())[static_cast<std::size_t>(brick)].Mask;
   }
-  const ValueRange range = this->MagnitudeRange(brick);
+  const ValueRange range = this->JoinedRange(brick);
   return range.Empty() ? 0
                        : MaskOfBins(this->Masks.BinOf(range.Low), this->Masks.BinOf(range.High));
 }
@@ -186,7 +147,7 @@ ValueMask SeriesBrickSource::MaskOf(std::int64_t brick) const
 std::optional<UniformValue> SeriesBrickSource::UniformValueOf(std::int64_t brick) const
 {
   const BrickNode& node = (*this->Nodes.front())[static_cast<std::size_t>(brick)];
-  if (this->Magnitude || !node.Uniform || this->HidesPointsOf(brick))
+  if (this->IsJoined || !node.Uniform || this->HidesPointsOf(brick))
   {
     return std::nullopt;
   }
@@ -196,7 +157,8 @@ std::optional<UniformValue> SeriesBrickSource::UniformValueOf(std::int64_t brick
 std::optional<Hash128> SeriesBrickSource::ContentOf(std::int64_t brick) const
 {
   const auto number = static_cast<std::size_t>(brick);
-  Hash128 content{ static_cast<std::uint64_t>(this->Type), this->Magnitude ? 1u : 0u };
+  const int how = this->IsJoined ? this->Component : 0;
+  Hash128 content{ static_cast<std::uint64_t>(this->Type), static_cast<std::uint64_t>(-how) };
   const auto add = [&content](const BrickNode& node)
   {
     const std::uint64_t parts[] = { content.Low, content.High, node.Identity.Low,
@@ -217,7 +179,7 @@ std::optional<Hash128> SeriesBrickSource::ContentOf(std::int64_t brick) const
 std::size_t SeriesBrickSource::LoadBytes(std::int64_t brick) const
 {
   const auto samples = static_cast<std::size_t>(this->Layout.SamplesOf(brick).Count());
-  std::size_t bytes = this->Magnitude ? samples * sizeof(float) : 0;
+  std::size_t bytes = this->IsJoined ? samples * SizeOf(JoinedType(this->Component)) : 0;
   for (const NodeList& nodes : this->Nodes)
   {
     bytes += (*nodes)[static_cast<std::size_t>(brick)].Uniform ? 0 : samples * SizeOf(this->Type);
@@ -238,20 +200,14 @@ BrickView SeriesBrickSource::LoadComponent(std::int64_t brick, std::size_t compo
   return view;
 }
 
-BrickView SeriesBrickSource::LoadMagnitude(std::int64_t brick) const
+BrickView SeriesBrickSource::LoadJoined(std::int64_t brick) const
 {
-  const glm::ivec3 samples = this->Layout.SamplesOf(brick).Size();
-  const auto sums = std::make_shared<std::vector<float>>(
-    static_cast<std::size_t>(this->Layout.SamplesOf(brick).Count()), 0.0f);
+  std::vector<BrickView> parts;
   for (std::size_t c = 0; c < this->Components.size(); ++c)
   {
-    AddSquares(this->LoadComponent(brick, c), samples, *sums);
+    parts.push_back(this->LoadComponent(brick, c));
   }
-  std::transform(
-    sums->begin(), sums->end(), sums->begin(), [](float sum) { return std::sqrt(sum); });
-  BrickView view = DenseView(sums->data(), ScalarType::Float32, samples);
-  view.Owner = sums;
-  return view;
+  return Joined(this->Component, parts, this->Layout.SamplesOf(brick).Size());
 }
 
 bool SeriesBrickSource::HidesPointsOf(std::int64_t brick) const
@@ -280,8 +236,7 @@ BrickView SeriesBrickSource::WithoutHidden(std::int64_t brick, const BrickView& 
 BrickView SeriesBrickSource::Load(std::int64_t brick)
 {
   this->Note(brick);
-  const BrickView view =
-    this->Magnitude ? this->LoadMagnitude(brick) : this->LoadComponent(brick, 0);
+  const BrickView view = this->IsJoined ? this->LoadJoined(brick) : this->LoadComponent(brick, 0);
   return this->HidesPointsOf(brick) ? this->WithoutHidden(brick, view) : view;
 }
 

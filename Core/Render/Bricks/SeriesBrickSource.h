@@ -4,6 +4,7 @@
 
 #include "Cache/BackgroundDecoder.h"
 #include "Cache/BrickCache.h"
+#include "Render/Bricks/ArraySamples.h"
 #include "Render/Bricks/BrickSource.h"
 #include "Series/Decode/SeriesFile.h"
 
@@ -22,7 +23,7 @@ class SeriesBrickSource : public BrickSource
 {
 public:
   /// @param field step, array and level; its component is ignored in favour of `component`
-  /// @param component to draw, or -1 for the Euclidean norm of all components
+  /// @param component to draw, or SampleArray::Magnitude or Colours of all components
   SeriesBrickSource(std::shared_ptr<const SeriesFile> series, const FieldKey& field, int component,
     BrickCache& cache);
 
@@ -30,11 +31,12 @@ public:
   Box CellsOf(std::int64_t brick) const override { return this->Layout.CellsOf(brick); }
   ValueRange RangeOf(std::int64_t brick) const override;
   ValueMask MaskOf(std::int64_t brick) const override;
-  /// Not known of magnitudes.
+  /// Not known of magnitudes and colours.
   std::optional<UniformValue> UniformValueOf(std::int64_t brick) const override;
   MaskRange MasksAreOver() const override { return this->Masks; }
   /// Of the identities of what is decoded for it.
   std::optional<Hash128> ContentOf(std::int64_t brick) const override;
+  bool HasColours() const override { return this->Component == SampleArray::Colours; }
   double StepOfValues() const override { return this->Step; }
   std::size_t LoadBytes(std::int64_t brick) const override;
   BrickView Load(std::int64_t brick) override;
@@ -71,10 +73,10 @@ private:
   void Note(std::int64_t brick) const;
   FieldKey KeyOf(std::size_t component) const;
   BrickView LoadComponent(std::int64_t brick, std::size_t component) const;
-  BrickView LoadMagnitude(std::int64_t brick) const;
+  BrickView LoadJoined(std::int64_t brick) const;
   bool HidesPointsOf(std::int64_t brick) const;
   BrickView WithoutHidden(std::int64_t brick, const BrickView& view) const;
-  ValueRange MagnitudeRange(std::int64_t brick) const;
+  ValueRange JoinedRange(std::int64_t brick) const;
 
   std::shared_ptr<const SeriesFile> Series;
   FieldKey Field;
@@ -83,19 +85,15 @@ private:
   BrickLayout Layout;
   MaskRange Masks;
   ScalarType Type;
-  bool Magnitude;
+  bool IsJoined; ///< whether all components are drawn together
   double Step = 0.0;
-  std::vector<int> Components; ///< the one drawn, or all of them for the magnitude
+  std::vector<int> Components; ///< the one drawn, or all of them
   std::vector<NodeList> Nodes; ///< one list per entry of Components
   FieldKey Flags;              ///< of points
   NodeList NodesOfFlags;       ///< null: no point is hidden
   std::shared_ptr<LoadRecord> LoadedBricks =
     std::make_shared<LoadRecord>(); ///< shared with the levels
 };
-
-/// Bounds of the Euclidean norm of vectors whose components lie in the given ranges; empty when one
-/// of them is.
-ValueRange MagnitudeBounds(const std::vector<ValueRange>& components);
 
 } // namespace banyan
 

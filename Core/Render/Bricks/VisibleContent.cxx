@@ -88,6 +88,7 @@ std::optional<Hash128> ContentOfLevel(const RayScene& scene, BrickSource& source
   const MaskRange range = source.MasksAreOver();
   digest.Add(source.Bricks());
   digest.Add(source.CellsOf(0));
+  digest.Add(source.HasColours());
   digest.Add(range.Low);
   digest.Add(range.High);
   digest.Add(entries);

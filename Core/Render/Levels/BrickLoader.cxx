@@ -88,10 +88,12 @@ PackedBrickCache::Pointer BrickLoader::Pack(const PlannedBrick& brick) const
     samples.Lo = this->Source.CellsOf(brick.Number).Lo;
   }
   HiddenInBrick hidden(this->Source.Hidden().get(), brick.Cells);
-  const double step = hidden.Any() ? 0.0 : this->StepToPack(view.Type);
+  const bool colours = this->Source.HasColours();
+  const double step = hidden.Any() || colours ? 0.0 : this->StepToPack(view.Type);
   const std::shared_ptr<PackedBrick> packed =
-    shaded ? std::make_shared<PackedBrick>(view, samples, brick.Cells, low, this->GradientScale)
-           : std::make_shared<PackedBrick>(view, samples.Lo, brick.Cells, low, step);
+    shaded
+      ? std::make_shared<PackedBrick>(view, samples, brick.Cells, low, this->GradientScale, colours)
+      : std::make_shared<PackedBrick>(view, samples.Lo, brick.Cells, low, step, colours);
   if (hidden.Any())
   {
     packed->Hide(std::move(hidden));
@@ -115,9 +117,10 @@ double BrickLoader::StepToPack(ScalarType type) const
 
 BrickView BrickLoader::LoadLarge(const PlannedBrick& brick) const
 {
-  if (this->Level.IsShaded())
+  if (this->Level.IsShaded() || this->Source.HasColours())
   {
-    throw Error("Bricks of so many cells per axis cannot be shaded; cut the data into smaller ones",
+    throw Error("Bricks of so many cells per axis cannot be shaded, and have no colours; cut the "
+                "data into smaller ones",
       { {}, {}, static_cast<std::uint64_t>(brick.Cells.Size().x),
         static_cast<std::uint64_t>(PackedBrick::LargestEdge) });
   }

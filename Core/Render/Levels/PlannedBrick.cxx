@@ -21,7 +21,8 @@ std::uint64_t PlannedBrick::LoadBytes(const BrickSource& source) const
 std::uint64_t PlannedBrick::BytesToDraw(const BrickSource& source, bool shaded) const
 {
   return this->Entry ? 0
-                     : this->LoadBytes(source) + PackedBrick::BytesFor(this->Cells, shaded) +
+                     : this->LoadBytes(source) +
+                         PackedBrick::BytesFor(this->Cells, shaded, source.HasColours()) +
                          (source.Hidden() ? HiddenInBrick::BytesFor(this->Cells) : 0);
 }
 

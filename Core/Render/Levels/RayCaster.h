@@ -62,11 +62,14 @@ int FinestLevelWithin(const RayScene& scene, BrickSource& source, const Box& cel
 /// Draws all that a scene may ask for but shading.
 /// @param value gives the sample at an index position (0-based) or NaN
 /// @param hidden says which cells are not drawn; empty for none
+/// @param colour gives the colour of the sample, 0 to 1, which that of `function` is multiplied by;
+/// empty for none
 /// @return the whole viewport
 FloatImage ReferenceImage(const RayScene& scene,
   const std::function<double(const glm::ivec3&)>& value,
   const std::function<glm::dvec4(double)>& function,
-  const std::function<bool(const glm::ivec3&)>& hidden = {});
+  const std::function<bool(const glm::ivec3&)>& hidden = {},
+  const std::function<glm::dvec3(const glm::ivec3&)>& colour = {});
 
 } // namespace banyan
 

@@ -19,11 +19,13 @@ class ReferenceRay
 public:
   ReferenceRay(const RayScene& scene, const std::function<double(const glm::ivec3&)>& value,
     const std::function<glm::dvec4(double)>& function,
-    const std::function<bool(const glm::ivec3&)>& hidden)
+    const std::function<bool(const glm::ivec3&)>& hidden,
+    const std::function<glm::dvec3(const glm::ivec3&)>& colour)
     : Scene(scene)
     , Value(value)
     , Function(function)
     , Hidden(hidden)
+    , Colour(colour)
     , WorldToIndex(glm::inverse(scene.IndexToWorld))
   {
   }
@@ -44,11 +46,13 @@ public:
       const double begin = std::max(k * step, enter);
       const double end = std::min((k + 1.0) * step, exit);
       const glm::dvec3 position = this->IndexAt(ray, 0.5 * (begin + end));
-      const double value = this->Interpolate(position);
+      const double value = this->Interpolate(position, this->Value);
       if (std::isfinite(value) && end > begin &&
           !(this->Hidden && this->Hidden(this->CellAt(position))))
       {
-        this->Add(value, end - begin, met);
+        const glm::dvec3 tint =
+          this->Colour ? this->Interpolate(position, this->Colour) : glm::dvec3(1.0);
+        this->Add(value, tint, end - begin, met);
       }
     }
     return this->PixelOf(met);
@@ -66,10 +70,10 @@ private:
     double Length = 0.0;
   };
 
-  void Add(double value, double length, Met& met) const
+  void Add(double value, const glm::dvec3& tint, double length, Met& met) const
   {
     const RayBlend& blend = this->Scene.Blend;
-    const glm::dvec4 entry = this->Function(value);
+    const glm::dvec4 entry = this->Function(value) * glm::dvec4(tint, 1.0);
     const double opacity =
       1.0 - std::pow(1.0 - entry.a, length / this->Scene.Transfer.UnitDistance);
     met.Color += met.Transmittance * opacity * glm::dvec3(entry);
@@ -158,11 +162,11 @@ private:
     return !cells.Empty() && enter < exit;
   }
 
-  double NearestTo(const glm::dvec3& position) const
+  glm::ivec3 NearestTo(const glm::dvec3& position) const
   {
     const Box& cells = this->Scene.DomainCells;
     const glm::ivec3 nearest(glm::floor(position + 0.5));
-    return this->Value(glm::clamp(nearest, cells.Lo, cells.Hi));
+    return glm::clamp(nearest, cells.Lo, cells.Hi);
   }
 
   glm::ivec3 CellAt(const glm::dvec3& position) const
@@ -171,15 +175,17 @@ private:
     return glm::clamp(glm::ivec3(glm::floor(position)), cells.Lo, cells.Hi - 1);
   }
 
-  double Interpolate(const glm::dvec3& position) const
+  /// @tparam T double or glm::dvec3
+  template <class T>
+  T Interpolate(const glm::dvec3& position, const std::function<T(const glm::ivec3&)>& sample) const
   {
     if (this->Scene.Interpolation == SampleInterpolation::Nearest)
     {
-      return this->NearestTo(position);
+      return sample(this->NearestTo(position));
     }
     const glm::ivec3 cell = this->CellAt(position);
     const glm::dvec3 part = glm::clamp(position - glm::dvec3(cell), 0.0, 1.0);
-    double sum = 0.0;
+    T sum(0.0);
     for (int corner = 0; corner < 8; ++corner)
     {
       const glm::ivec3 offset(corner & 1, corner >> 1 & 1, corner >> 2);
@@ -189,7 +195,7 @@ private:
         weight *= offset[axis] ? part[axis] : 1.0 - part[axis];
       }
       // A corner of weight 0 counts too: 0 times NaN or infinity is NaN.
-      sum += weight * this->Value(cell + offset);
+      sum += weight * sample(cell + offset);
     }
     return sum;
   }
@@ -198,6 +204,7 @@ private:
   const std::function<double(const glm::ivec3&)>& Value;
   const std::function<glm::dvec4(double)>& Function;
   const std::function<bool(const glm::ivec3&)>& Hidden;
+  const std::function<glm::dvec3(const glm::ivec3&)>& Colour;
   glm::dmat4 WorldToIndex;
 };
 
@@ -206,9 +213,10 @@ private:
 FloatImage ReferenceImage(const RayScene& scene,
   const std::function<double(const glm::ivec3&)>& value,
   const std::function<glm::dvec4(double)>& function,
-  const std::function<bool(const glm::ivec3&)>& hidden)
+  const std::function<bool(const glm::ivec3&)>& hidden,
+  const std::function<glm::dvec3(const glm::ivec3&)>& colour)
 {
-  const ReferenceRay ray(scene, value, function, hidden);
+  const ReferenceRay ray(scene, value, function, hidden, colour);
   FloatImage image;
   image.Rect = scene.Viewport;
   image.Pixels.reserve(static_cast<std::size_t>(scene.Viewport.Count()));

@@ -3,6 +3,8 @@
 
 #include "Render/Bricks/Interpolators.h"
 
+#include <optional>
+
 namespace banyan
 {
 namespace
@@ -19,8 +21,7 @@ public:
   {
   }
 
-  /// @param step premultiplied colour and transmittance
-  void Light(const std::int64_t (&position)[3], const float (&direction)[3], glm::vec4& step) const
+  void Apply(const std::int64_t (&position)[3], const float (&direction)[3], glm::vec4& step) const
   {
     const float gradient[3] = { this->Gradient[0].At(position), this->Gradient[1].At(position),
       this->Gradient[2].At(position) };
@@ -36,6 +37,48 @@ public:
 private:
   PlainInterpolator<float> Gradient[3];
   const ShadingTable& Shading;
+};
+
+/// Gives samples of a packed brick their colours.
+class ColourTint
+{
+public:
+  ColourTint(const PackedBrick& brick, bool nearest)
+    : Channel{ { brick.ColourView(0), 0.0, nearest }, { brick.ColourView(1), 0.0, nearest },
+      { brick.ColourView(2), 0.0, nearest } }
+  {
+  }
+
+  void Apply(const std::int64_t (&position)[3], glm::vec4& step) const
+  {
+    for (int channel = 0; channel < 3; ++channel)
+    {
+      step[channel] *= this->Channel[channel].At(position) * (1.0f / 255.0f);
+    }
+  }
+
+private:
+  PlainInterpolator<std::uint8_t> Channel[3];
+};
+
+/// What samples of a packed brick do to their colour beside the table.
+struct SampleColour
+{
+  std::optional<ColourTint> Tint;
+  std::optional<GradientShader> Shader;
+
+  /// @param step premultiplied colour and transmittance
+  void Apply(const std::int64_t (&position)[3], const float (&direction)[3], glm::vec4& step) const
+  {
+    if (this->Tint)
+    {
+      this->Tint->Apply(position, step);
+    }
+    if (this->Shader)
+    {
+      this->Shader->Apply(position, direction, step);
+    }
+  }
 };
 
 /// The table's entries of a brick's values.
@@ -81,12 +124,12 @@ class PlainMarcher
 {
 public:
   /// @param corner of the brick
-  /// @param shader may be null
+  /// @param colour null where the table alone gives it
   PlainMarcher(const Values& entries, const Box& cells, const glm::ivec3& corner,
-    const StepTable& table, const RayTile& tile, const GradientShader* shader = nullptr)
+    const StepTable& table, const RayTile& tile, const SampleColour* colour = nullptr)
     : Table(table)
     , Entries(entries)
-    , Shader(shader)
+    , Colour(colour)
     , Cells(cells, tile.CellShift - tile.BrickShift)
     , Limit(tile.TransmittanceLimit)
   {
@@ -146,11 +189,11 @@ private:
   void Blend(const std::int64_t (&position)[3], const float (&direction)[3], glm::vec4 step,
     glm::vec4& pixel) const
   {
-    if (this->Shader)
+    if (this->Colour)
     {
       const std::int64_t inBrick[3] = { position[0] - this->Corner[0],
         position[1] - this->Corner[1], position[2] - this->Corner[2] };
-      this->Shader->Light(inBrick, direction, step);
+      this->Colour->Apply(inBrick, direction, step);
     }
     pixel.r += pixel.a * step.r;
     pixel.g += pixel.a * step.g;
@@ -161,7 +204,7 @@ private:
   std::int64_t Corner[3]; ///< fixed-point position of the brick's first sample
   const StepTable& Table;
   Values Entries;
-  const GradientShader* Shader;
+  const SampleColour* Colour;
   FixedBox Cells;
   float Limit;
 };
@@ -207,13 +250,19 @@ void MarchUnpacked(const PackedBrick& brick, const BrickVisibility& seen, const 
 {
   const bool nearest = interpolation == SampleInterpolation::Nearest;
   const BrickView view = brick.View();
-  std::unique_ptr<const GradientShader> shader;
+  SampleColour colour;
+  if (brick.HasColours())
+  {
+    colour.Tint.emplace(brick, nearest);
+  }
   if (shading)
   {
-    shader = std::make_unique<const GradientShader>(brick, *shading, nearest);
+    colour.Shader.emplace(brick, *shading, nearest);
   }
+  const bool byTable = !colour.Tint && !colour.Shader;
   const BrickEntries<float> entries(view, table, brick.Relative(), nearest, &brick.Hidden());
-  const PlainMarcher marcher(entries, seen.Cells, brick.Corner(), table, tile, shader.get());
+  const PlainMarcher marcher(
+    entries, seen.Cells, brick.Corner(), table, tile, byTable ? nullptr : &colour);
   MarchRays(marcher, Intersection(pixels, tile.Rect), tile);
 }
 

@@ -32,7 +32,7 @@ void MarchBrick(const BrickPart& part, const StepTable& table, const PixelRect& 
   RayTile& tile, SampleInterpolation interpolation = SampleInterpolation::Linear);
 
 /// The same for a packed brick, all of `seen.Cells` (see RayTile::CellShift); the reference for
-/// MarchPacked.
+/// MarchPacked. Where the brick has colours, those of the table are multiplied by them.
 /// @param shading null for none; otherwise the brick HasGradients
 void MarchUnpacked(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
   const ShadingTable* shading, const PixelRect& pixels, RayTile& tile,

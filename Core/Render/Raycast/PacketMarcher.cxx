@@ -37,11 +37,12 @@ void MarchUniformHere(
 
 #else
 
-template <bool Special, bool Holes, bool Shaded, bool Nearest, bool Numbers = false>
+template <bool Special, bool Holes, bool Shaded, bool Nearest, bool Numbers = false,
+  bool Coloured = false>
 void MarchPackets(const PackedBrick& brick, const BrickVisibility& seen, const StepTable& table,
   const ShadingTable* shading, const PixelRect& pixels, RayTile& tile)
 {
-  using Values = PacketSamples<Special, Shaded, Nearest, Numbers>;
+  using Values = PacketSamples<Special, Shaded, Nearest, Numbers, Coloured>;
   PacketMarcher<Values, Holes> marcher(
     Values(brick, table, shading), seen.Cells, brick.Corner(), tile);
   marcher.SkipMacros(brick, seen);
@@ -69,6 +70,20 @@ void MarchPackedHere(const PackedBrick& brick, const BrickVisibility& seen, cons
   static constexpr March nearest[4] = { MarchPackets<true, false, false, true>,
     MarchPackets<true, true, false, true>, MarchPackets<true, false, true, true>,
     MarchPackets<true, true, true, true> };
+  if (brick.HasColours())
+  {
+    static constexpr March colours[8] = { MarchPackets<true, false, false, false, false, true>,
+      MarchPackets<true, true, false, false, false, true>,
+      MarchPackets<true, false, true, false, false, true>,
+      MarchPackets<true, true, true, false, false, true>,
+      MarchPackets<true, false, false, true, false, true>,
+      MarchPackets<true, true, false, true, false, true>,
+      MarchPackets<true, false, true, true, false, true>,
+      MarchPackets<true, true, true, true, false, true> };
+    const int way = (seen.Holes ? 1 : 0) + (shading ? 2 : 0) +
+                    (interpolation == SampleInterpolation::Nearest ? 4 : 0);
+    return colours[way](brick, seen, table, shading, pixels, tile);
+  }
   const bool hasEdges = table.Lookup().Edges != nullptr;
   if (brick.HasNumbers())
   {

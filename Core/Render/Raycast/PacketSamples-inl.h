@@ -10,6 +10,7 @@
 #include "Render/Bricks/Interpolators.h"
 #include "Render/Bricks/PackedBrick.h"
 #include "Render/Bricks/PacketVectors-inl.h"
+#include "Render/Raycast/ColourLanes-inl.h"
 #include "Render/Raycast/HiddenLanes-inl.h"
 #include "Render/Scene/ShadingTable.h"
 
@@ -60,7 +61,8 @@ HWY_INLINE Steps OverFraction(const Blocks& depths, VF fraction)
 /// @tparam Shaded whether the brick has gradients, and samples are shaded by them
 /// @tparam Nearest whether samples are those of the grid nearest by
 /// @tparam Numbers whether the brick has 16-bit numbers; it is not shaded
-template <bool Special, bool Shaded, bool Nearest, bool Numbers = false>
+/// @tparam Coloured whether the brick has colours, which the table's are multiplied by
+template <bool Special, bool Shaded, bool Nearest, bool Numbers = false, bool Coloured = false>
 class PacketSamples
 {
 public:
@@ -82,6 +84,7 @@ public:
     , SliceBytes(static_cast<std::int32_t>(brick.StrideZ() * UnitBytes))
     , Scale(brick.Scale())
     , Lookup(lookup)
+    , Colours(brick)
     , Hidden(brick.Hidden())
   {
   }
@@ -131,8 +134,9 @@ public:
   struct Found
   {
     Offsets Entries;
-    VF Colour;    ///< as Shade has it; set if Shaded
-    VF Highlight; ///< set if Shaded and there are highlights
+    VF Colour;              ///< as Shade has it; set if Shaded
+    VF Highlight;           ///< set if Shaded and there are highlights
+    ColourLanes::Tint Tint; ///< set if Coloured
   };
 
   /// Interpolates, and finds the entries of the table.
@@ -149,6 +153,10 @@ public:
     else
     {
       value = this->ValueOf(place);
+    }
+    if constexpr (Coloured)
+    {
+      this->TintOf(place, found);
     }
     found.Entries.Set(hn::ShiftLeft<4>(this->IndicesOf(value)));
   }
@@ -237,14 +245,18 @@ private:
 
   HWY_INLINE Steps Lit(const Steps& steps, const Found& found) const
   {
-    if constexpr (!Shaded)
+    Steps lit = steps;
+    if constexpr (Coloured)
     {
-      return steps;
+      lit.R = hn::Mul(lit.R, found.Tint.Of[0]);
+      lit.G = hn::Mul(lit.G, found.Tint.Of[1]);
+      lit.B = hn::Mul(lit.B, found.Tint.Of[2]);
     }
-    else
+    if constexpr (Shaded)
     {
-      Steps lit = { hn::Mul(steps.R, found.Colour), hn::Mul(steps.G, found.Colour),
-        hn::Mul(steps.B, found.Colour), steps.Transmittance };
+      lit.R = hn::Mul(lit.R, found.Colour);
+      lit.G = hn::Mul(lit.G, found.Colour);
+      lit.B = hn::Mul(lit.B, found.Colour);
       if (this->Shading->HasHighlights)
       {
         const VF opacity = hn::Sub(hn::Set(D(), 1.0f), steps.Transmittance);
@@ -253,7 +265,21 @@ private:
         lit.G = hn::Add(lit.G, white);
         lit.B = hn::Add(lit.B, white);
       }
-      return lit;
+    }
+    return lit;
+  }
+
+  HWY_INLINE void TintOf(const Place& place, Found& found) const
+  {
+    // A sample is a float, or four of them where it is shaded.
+    const VI sample = hn::ShiftRight < Shaded ? 4 : 2 > (hn::Load(DI(), place.Cell.Bytes));
+    if constexpr (Nearest)
+    {
+      found.Tint = this->Colours.At(sample);
+    }
+    else
+    {
+      found.Tint = this->Colours.In(sample, place.X, place.Y, place.Z);
     }
   }
 
@@ -394,6 +420,7 @@ private:
   const glm::vec4* Table = nullptr;
   const glm::vec4* Depths = nullptr;
   const ShadingTable* Shading = nullptr;
+  ColourLanes Colours;
   HiddenLanes Hidden;
 };
 

@@ -2,10 +2,9 @@
 #include "Render/Steps/InterpolatedBrickSource.h"
 
 #include "Base/Digest.h"
+#include "Render/Bricks/JoinedComponents.h"
 #include "Render/Bricks/SampledBox.h"
-#include "Render/Bricks/SeriesBrickSource.h"
 
-#include <cmath>
 #include <utility>
 
 namespace banyan
@@ -25,27 +24,13 @@ ValueRange Between(const ValueRange& a, const ValueRange& b)
   return a.Empty() || b.Empty() ? ValueRange{} : hull;
 }
 
-/// Adds the squares of values without gaps.
-void AddSquares(const BrickView& view, std::vector<float>& sums)
-{
-  const auto add = [&](const auto* values)
-  {
-    for (std::size_t i = 0; i < sums.size(); ++i)
-    {
-      const double value = static_cast<double>(values[i]);
-      sums[i] += static_cast<float>(value * value);
-    }
-  };
-  view.Type == ScalarType::Float64 ? add(static_cast<const double*>(view.Values))
-                                   : add(static_cast<const float*>(view.Values));
-}
-
 } // namespace
 
 InterpolatedBrickSource::InterpolatedBrickSource(
-  ScalarType type, std::vector<Part> parts, Ends lengths)
+  ScalarType type, std::vector<Part> parts, Ends joined, int how)
   : Type(type)
-  , Lengths(lengths.Earlier != nullptr)
+  , Joins(joined.Earlier != nullptr)
+  , JoinedHow(how)
 {
   for (Part& part : parts)
   {
@@ -54,8 +39,8 @@ InterpolatedBrickSource::InterpolatedBrickSource(
     this->Owned.push_back(std::move(part.Steps));
   }
   this->Drawn =
-    this->Lengths ? View{ lengths.Earlier.get(), lengths.Later.get() } : this->Parts.front();
-  this->Owned.push_back(std::move(lengths));
+    this->Joins ? View{ joined.Earlier.get(), joined.Later.get() } : this->Parts.front();
+  this->Owned.push_back(std::move(joined));
 }
 
 std::unique_ptr<BrickSource> InterpolatedBrickSource::MakeLevel(int level, const Box& domain)
@@ -76,7 +61,8 @@ std::unique_ptr<BrickSource> InterpolatedBrickSource::MakeLevel(int level, const
     source->Parts.push_back(at(part));
   }
   source->How = this->How;
-  source->Lengths = this->Lengths;
+  source->Joins = this->Joins;
+  source->JoinedHow = this->JoinedHow;
   return source;
 }
 
@@ -98,7 +84,7 @@ ValueRange InterpolatedBrickSource::RangeOf(std::int64_t brick) const
   {
     ranges.push_back(Between(part.Earlier->RangeOf(brick), part.Later->RangeOf(brick)));
   }
-  return this->Lengths ? MagnitudeBounds(ranges) : ranges.front();
+  return this->Joins ? JoinedBounds(this->JoinedHow, ranges) : ranges.front();
 }
 
 ValueMask InterpolatedBrickSource::MaskOf(std::int64_t brick) const
@@ -120,7 +106,7 @@ std::optional<UniformValue> InterpolatedBrickSource::UniformValueOf(std::int64_t
     return earlier;
   }
   const std::optional<UniformValue> later = this->Drawn.Later->UniformValueOf(brick);
-  if (this->Lengths || !earlier || !later)
+  if (this->Joins || !earlier || !later)
   {
     return std::nullopt;
   }
@@ -161,7 +147,7 @@ std::size_t InterpolatedBrickSource::LoadBytes(std::int64_t brick) const
     return this->Drawn.Earlier->LoadBytes(brick);
   }
   const auto samples = static_cast<std::size_t>(SamplesOf(this->CellsOf(brick)).Count());
-  std::size_t bytes = this->Lengths ? samples * sizeof(float) : 0;
+  std::size_t bytes = this->Joins ? samples * SizeOf(JoinedType(this->JoinedHow)) : 0;
   for (const View& part : this->Parts)
   {
     bytes += part.Earlier->LoadBytes(brick) + part.Later->LoadBytes(brick) +
@@ -194,29 +180,22 @@ BrickView InterpolatedBrickSource::Load(std::int64_t brick)
   {
     return this->Drawn.Earlier->Load(brick);
   }
-  if (!this->Lengths)
+  if (!this->Joins)
   {
     return this->LoadPart(brick, 0);
   }
-  const Box samples = SamplesOf(this->CellsOf(brick));
-  std::vector<float> sums(static_cast<std::size_t>(samples.Count()), 0.0f);
+  std::vector<BrickView> parts;
   for (std::size_t part = 0; part < this->Parts.size(); ++part)
   {
-    AddSquares(this->LoadPart(brick, part), sums);
+    parts.push_back(this->LoadPart(brick, part));
   }
-  void* values = nullptr;
-  BrickView view = AllocateView(samples, ScalarType::Float32, values);
-  for (std::size_t i = 0; i < sums.size(); ++i)
-  {
-    static_cast<float*>(values)[i] = std::sqrt(sums[i]);
-  }
-  return view;
+  return Joined(this->JoinedHow, parts, SamplesOf(this->CellsOf(brick)).Size());
 }
 
 std::vector<const BrickSource*> InterpolatedBrickSource::Sources() const
 {
   std::vector<const BrickSource*> sources{ this->Drawn.Earlier, this->Drawn.Later };
-  for (std::size_t part = 0; this->Lengths && part < this->Parts.size(); ++part)
+  for (std::size_t part = 0; this->Joins && part < this->Parts.size(); ++part)
   {
     sources.push_back(this->Parts[part].Earlier);
     sources.push_back(this->Parts[part].Later);

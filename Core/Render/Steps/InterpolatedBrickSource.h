@@ -12,8 +12,8 @@ namespace banyan
 {
 
 /// Values between two steps (see BetweenSteps), brick by brick as they are drawn. A brick that is
-/// the same at both steps is that brick: of that content, and no more is loaded. Of vectors the
-/// components are interpolated, and their length is drawn. Ranges and masks are bounds. Hidden
+/// the same at both steps is that brick: of that content, and no more is loaded. Of vectors and
+/// colours the components are interpolated, and then joined. Ranges and masks are bounds. Hidden
 /// points are those of either step.
 class InterpolatedBrickSource : public BrickSource
 {
@@ -32,9 +32,10 @@ public:
   };
 
   /// @param type of the array: float32 or float64
-  /// @param parts the drawn component; or all components, of vectors
-  /// @param lengths the drawn lengths of vectors; null otherwise
-  InterpolatedBrickSource(ScalarType type, std::vector<Part> parts, Ends lengths);
+  /// @param parts the drawn component; or all components, which are joined
+  /// @param joined the steps where all components are joined; null otherwise
+  /// @param how SampleArray::Magnitude or Colours, where all components are joined
+  InterpolatedBrickSource(ScalarType type, std::vector<Part> parts, Ends joined, int how);
 
   glm::ivec3 Bricks() const override { return this->Drawn.Earlier->Bricks(); }
   Box CellsOf(std::int64_t brick) const override { return this->Drawn.Earlier->CellsOf(brick); }
@@ -42,9 +43,10 @@ public:
   ValueRange RangeOf(std::int64_t brick) const override;
   ValueMask MaskOf(std::int64_t brick) const override;
   MaskRange MasksAreOver() const override { return this->Drawn.Earlier->MasksAreOver(); }
-  /// Not known of lengths.
+  /// Not known where components are joined.
   std::optional<UniformValue> UniformValueOf(std::int64_t brick) const override;
   std::optional<Hash128> ContentOf(std::int64_t brick) const override;
+  bool HasColours() const override { return this->Drawn.Earlier->HasColours(); }
   std::size_t LoadBytes(std::int64_t brick) const override;
   BrickView Load(std::int64_t brick) override;
 
@@ -68,9 +70,10 @@ private:
   ScalarType Type = ScalarType::Float32;
   std::vector<Ends> Owned;
   View Drawn;                    ///< what is drawn where both steps are the same
-  std::vector<View> Parts;       ///< Drawn alone, or components of vectors
+  std::vector<View> Parts;       ///< Drawn alone, or all components
   std::vector<BetweenSteps> How; ///< of Parts
-  bool Lengths = false;
+  bool Joins = false;
+  int JoinedHow = 0; ///< if Joins
 };
 
 } // namespace banyan

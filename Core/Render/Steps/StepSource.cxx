@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Render/Steps/StepSource.h"
 
+#include "Base/Error.h"
 #include "Cache/BrickCache.h"
 #include "Render/Bricks/SeriesBrickSource.h"
 #include "Render/Steps/EnhancedBrickSource.h"
@@ -32,6 +33,11 @@ std::unique_ptr<BrickSource> MakeSeriesSource(const std::shared_ptr<const Series
 {
   const auto at = [&](int step) { return PlainSource(series, field, component, step); };
   std::unique_ptr<BrickSource> source;
+  if (how.Strength != 0.0 && component == SampleArray::Colours)
+  {
+    throw Error("Temporal enhancement is of one value per point, and colours have several: switch "
+                "one of the two off");
+  }
   if (how.Strength == 0.0)
   {
     source = at(field.Step);
@@ -66,7 +72,7 @@ std::unique_ptr<BrickSource> MakeSourceBetween(const std::shared_ptr<const Serie
       { series->Path() });
   }
   const int components = static_cast<int>(array.Components.size());
-  const bool lengths = component < 0 && components > 1;
+  const bool joins = component < 0 && components > 1;
   const auto ends = [&](int of)
   {
     InterpolatedBrickSource::Ends steps;
@@ -75,15 +81,15 @@ std::unique_ptr<BrickSource> MakeSourceBetween(const std::shared_ptr<const Serie
     return steps;
   };
   std::vector<InterpolatedBrickSource::Part> parts;
-  const int first = lengths ? 0 : std::max(component, 0);
-  for (int c = first; c < (lengths ? components : first + 1); ++c)
+  const int first = joins ? 0 : std::max(component, 0);
+  for (int c = first; c < (joins ? components : first + 1); ++c)
   {
     InterpolatedBrickSource::Part& part = parts.emplace_back();
     part.Steps = ends(c);
     part.How = { fraction, array.Components.at(static_cast<std::size_t>(c)).FillValues };
   }
-  auto source = std::make_unique<InterpolatedBrickSource>(
-    array.Type, std::move(parts), lengths ? ends(component) : InterpolatedBrickSource::Ends{});
+  auto source = std::make_unique<InterpolatedBrickSource>(array.Type, std::move(parts),
+    joins ? ends(component) : InterpolatedBrickSource::Ends{}, component);
   source->ShareBudgetOf(series->Caches());
   return source;
 }

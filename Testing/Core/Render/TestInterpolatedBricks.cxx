@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Values between two steps, brick by brick as they are drawn: those of whole arrays.
+#include "Render/Bricks/ColourNumbers.h"
 #include "Render/Bricks/SampledBox.h"
 #include "Render/Levels/RayCaster.h"
 #include "Render/Scenes.h"
@@ -114,7 +115,7 @@ protected:
     parts.push_back({ { this->Plain(this->Steps[0]), this->Plain(this->Steps[1]) },
       { fraction, { static_cast<double>(Fill) } } });
     return std::make_unique<InterpolatedBrickSource>(
-      ScalarType::Float32, std::move(parts), InterpolatedBrickSource::Ends{});
+      ScalarType::Float32, std::move(parts), InterpolatedBrickSource::Ends{}, 0);
   }
 
   /// Checks every sample of every brick against the array, and all bounds.
@@ -233,7 +234,7 @@ TEST(InterpolatedMasks, HaveAllBinsBetweenBothSteps)
                       std::make_unique<KnownBricks>(scenes::ArrayOf(high, samples), pool) },
     { 0.5, {} } });
   InterpolatedBrickSource source(
-    ScalarType::Float32, std::move(parts), InterpolatedBrickSource::Ends{});
+    ScalarType::Float32, std::move(parts), InterpolatedBrickSource::Ends{}, 0);
   EXPECT_TRUE(source.MaskOf(0) >> source.MasksAreOver().BinOf(0.0) & 1);
   ASSERT_TRUE(source.UniformValueOf(0));
   EXPECT_NEAR(source.UniformValueOf(0)->Value, 0.0, 1e-12);
@@ -255,12 +256,42 @@ TEST(InterpolatedLengths, AreThoseOfInterpolatedVectors)
   parts.push_back({ { bricks(four), bricks(four) }, { 0.5, {} } });
   std::vector<float> marked = five; // another content than the lengths before
   marked[0] = 4.9f;
-  InterpolatedBrickSource source(
-    ScalarType::Float32, std::move(parts), { bricks(five), bricks(marked) });
+  InterpolatedBrickSource source(ScalarType::Float32, std::move(parts),
+    { bricks(five), bricks(marked) }, SampleArray::Magnitude);
   const BrickView view = source.Load(0);
   EXPECT_EQ(*static_cast<const float*>(view.Values), 4.0f);
   EXPECT_LE(source.RangeOf(0).Low, 4.0);
   EXPECT_GE(source.RangeOf(0).High, 4.0);
+}
+
+/// Byte by byte: a quarter of the way from one step to the other, rounded.
+TEST(InterpolatedColours, AreThoseOfInterpolatedComponents)
+{
+  ThreadPool pool(1);
+  const glm::ivec3 samples(5);
+  const float before[4] = { 0.0f, 200.0f, 7.0f, 40.0f };
+  const float after[4] = { 80.0f, 100.0f, 7.0f, 200.0f };
+  std::vector<std::vector<float>> held;
+  const auto bricks = [&](float value)
+  {
+    held.emplace_back(125, value);
+    return std::make_unique<KnownBricks>(scenes::ArrayOf(held.back(), samples), pool);
+  };
+  held.reserve(10);
+  std::vector<InterpolatedBrickSource::Part> parts;
+  for (int c = 0; c < 4; ++c)
+  {
+    parts.push_back({ { bricks(before[c]), bricks(after[c]) }, { 0.25, {} } });
+  }
+  InterpolatedBrickSource source(
+    ScalarType::Float32, std::move(parts), { bricks(1.0f), bricks(2.0f) }, SampleArray::Colours);
+  const BrickView view = source.Load(0);
+  ASSERT_EQ(view.Type, ScalarType::Float64);
+  const double number = *static_cast<const double*>(view.Values);
+  EXPECT_EQ(ColourNumber::BytesOf(number), 20u | 175u << 8 | 7u << 16 | 80u << 24);
+  EXPECT_EQ(source.RangeOf(0).Low, 40.0);
+  EXPECT_EQ(source.RangeOf(0).High, 200.0);
+  EXPECT_FALSE(source.UniformValueOf(0));
 }
 
 } // namespace

@@ -182,7 +182,7 @@ TEST(ArrayBrickSource, RefusesWhatCannotBeUsed)
     EXPECT_THROW(ArrayBrickSource(array, brickCells, { 0, 1 }, pool), Error);
   };
   refused([](SampleArray& a) { a.Component = 1; });
-  refused([](SampleArray& a) { a.Component = -2; });
+  refused([](SampleArray& a) { a.Component = -3; });
   refused([](SampleArray& a) { a.Values = nullptr; });
   refused([](SampleArray& a) { a.Samples.Lo.x = -1; });
   refused([](SampleArray&) {}, 0);
