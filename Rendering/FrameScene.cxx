@@ -56,8 +56,8 @@ RayScene MakeFrameScene(const ScreenView& view, vtkVolume* volume, vtkVolumeMapp
   RayScene scene{ camera.InSpace(toWorld), camera.Footprint(low, high), place.IndexToPhysical,
     place.Cells, {}, sampleDistanceVoxels * place.CellSize };
   scene.Shading = MakeShading(property);
-  scene.Interpolation = MakeInterpolation(property);
-  scene.Transfer = function.Of(property);
+  scene.Interpolation = MakeInterpolation(property, field.DrawsColours());
+  scene.Transfer = function.Of(property, field.DrawsColours());
   scene.ClipPlanes = MakeClipPlanes(mapper, toWorld);
   scene.Blend = MakeBlend(mapper, field.Range());
   return scene;

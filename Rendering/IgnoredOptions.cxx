@@ -34,7 +34,7 @@ bool HasGradientOpacity(vtkVolumeProperty* property)
 
 } // namespace
 
-std::string IgnoredOptions(vtkVolumeMapper* mapper, vtkVolumeProperty* property, int components)
+std::string IgnoredOptions(vtkVolumeMapper* mapper, vtkVolumeProperty* property, bool mapped)
 {
   std::string names;
   const auto name = [&names](bool isSet, const char* option)
@@ -47,10 +47,9 @@ std::string IgnoredOptions(vtkVolumeMapper* mapper, vtkVolumeProperty* property,
   name(HasGradientOpacity(property), "GradientOpacity (opacity follows the value alone)");
   name(property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D,
     "TransferFunctionMode 2D (the one-dimensional functions are drawn)");
-  name(property->GetIndependentComponents() == 0 && components > 1,
-    "IndependentComponents off (RGBA data are not drawn as colours: one component or the magnitude "
-    "is "
-    "coloured)");
+  name(property->GetIndependentComponents() == 0 && mapped,
+    "IndependentComponents off (three or four components of image data are drawn as colours, and "
+    "composited: here the function colours one component, or the magnitude)");
   name(property->GetComponentWeight(0) != 1.0, "ComponentWeight");
   name(property->GetNumberOfLabels() > 0, "functions of labels");
   name(property->GetScatteringAnisotropy() != 0.0f, "ScatteringAnisotropy");

@@ -12,8 +12,8 @@ namespace banyan
 
 /// A sentence that names the options of VTK which are set and have no effect on the picture; empty
 /// if there are none.
-/// @param components of the array that is drawn
-std::string IgnoredOptions(vtkVolumeMapper* mapper, vtkVolumeProperty* property, int components);
+/// @param mapped whether the array has several components, and the colour function colours them
+std::string IgnoredOptions(vtkVolumeMapper* mapper, vtkVolumeProperty* property, bool mapped);
 
 } // namespace banyan
 

@@ -3,9 +3,11 @@
 
 #include "Fields/FieldPiece.h"
 
+#include "Base/Error.h"
 #include "EnhancedArray.h"
 #include "LeafParts.h"
 #include "Parallel/Communicate/Communicator.h"
+#include "Render/Bricks/ArraySamples.h"
 #include "vtkBanyanDeferred.h"
 
 #include "vtkDataArray.h"
@@ -169,6 +171,11 @@ void MotionEnhancement::ApplyHere(
     this->Enhanced = nullptr;
     this->Leaves = nullptr;
     return;
+  }
+  if (piece.Component == SampleArray::Colours)
+  {
+    throw Error("Temporal enhancement is of one value per point, and colours have several: set "
+                "'Temporal Enhancement' to 0, or switch 'Map Scalars' (IndependentComponents) on");
   }
   const double* const range = property->GetScalarOpacity(0)->GetRange();
   const double scale = std::max(std::abs(range[0]), std::abs(range[1]));

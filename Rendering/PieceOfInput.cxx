@@ -3,6 +3,8 @@
 
 #include "vtkBanyanVolumeMapper.h"
 
+#include "Render/Bricks/ArraySamples.h"
+
 #include "vtkAbstractMapper.h"
 #include "vtkCellData.h"
 #include "vtkColorTransferFunction.h"
@@ -126,6 +128,13 @@ DrawnArray ArrayToDraw(vtkVolumeMapper* mapper, vtkDataObject* data)
   return set ? ArrayOf(mapper, set) : DrawnArray{};
 }
 
+bool CanBeColours(vtkVolumeMapper* mapper, vtkDataObject* data, vtkDataArray* array)
+{
+  const int components = array ? array->GetNumberOfComponents() : 1;
+  return (components == 3 || components == 4) && vtkImageData::SafeDownCast(data) &&
+         mapper->GetBlendMode() == vtkVolumeMapper::COMPOSITE_BLEND;
+}
+
 FieldPiece PieceOfInput(vtkBanyanVolumeMapper* mapper, vtkVolumeProperty* property)
 {
   vtkDataObject* const data = mapper->GetDataObjectInput();
@@ -149,7 +158,9 @@ FieldPiece PieceOfInput(vtkBanyanVolumeMapper* mapper, vtkVolumeProperty* proper
     return piece;
   }
   SetArray(piece, drawn);
-  piece.Component = ComponentOf(drawn.Array, property);
+  const bool colours =
+    property->GetIndependentComponents() == 0 && CanBeColours(mapper, data, drawn.Array);
+  piece.Component = colours ? SampleArray::Colours : ComponentOf(drawn.Array, property);
   return piece;
 }
 

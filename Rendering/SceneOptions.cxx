@@ -95,17 +95,17 @@ RayBlend MakeBlend(vtkVolumeMapper* mapper, const ValueRange& data)
   return blend;
 }
 
-SampleInterpolation MakeInterpolation(vtkVolumeProperty* property)
+SampleInterpolation MakeInterpolation(vtkVolumeProperty* property, bool colours)
 {
-  return property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION || ShowsCategories(property)
-           ? SampleInterpolation::Nearest
-           : SampleInterpolation::Linear;
+  const bool nearest = property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION;
+  return nearest || (!colours && ShowsCategories(property)) ? SampleInterpolation::Nearest
+                                                            : SampleInterpolation::Linear;
 }
 
-bool CanKeepTolerance(vtkVolumeMapper* mapper, vtkVolumeProperty* property)
+bool CanKeepTolerance(vtkVolumeMapper* mapper, vtkVolumeProperty* property, bool colours)
 {
   return mapper->GetBlendMode() == vtkVolumeMapper::COMPOSITE_BLEND &&
-         MakeInterpolation(property) == SampleInterpolation::Linear;
+         MakeInterpolation(property, colours) == SampleInterpolation::Linear;
 }
 
 } // namespace banyan

@@ -20,11 +20,13 @@ std::vector<ClipPlane> MakeClipPlanes(vtkVolumeMapper* mapper, const glm::dmat4&
 /// @param data the range of the values: what averages show from black to white
 RayBlend MakeBlend(vtkVolumeMapper* mapper, const ValueRange& data);
 
-SampleInterpolation MakeInterpolation(vtkVolumeProperty* property);
+/// @param colours whether samples have colours of their own, which are no categories
+SampleInterpolation MakeInterpolation(vtkVolumeProperty* property, bool colours);
 
 /// Whether the samples of a picture can be chosen by its error: composited ones of linear
 /// interpolation. Nearest values jump, and projections show single samples.
-bool CanKeepTolerance(vtkVolumeMapper* mapper, vtkVolumeProperty* property);
+/// @param colours see MakeInterpolation
+bool CanKeepTolerance(vtkVolumeMapper* mapper, vtkVolumeProperty* property, bool colours);
 
 } // namespace banyan
 

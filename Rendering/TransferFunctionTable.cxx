@@ -269,35 +269,44 @@ bool ShowsCategories(vtkVolumeProperty* property)
   return !GreysOf(property) && property->GetRGBTransferFunction(0)->GetIndexedLookup() != 0;
 }
 
-TransferFunction MakeTransferFunction(vtkVolumeProperty* property)
+TransferFunction MakeTransferFunction(vtkVolumeProperty* property, bool white)
 {
   vtkPiecewiseFunction* const opacity = property->GetScalarOpacity(0);
   CheckLogScale(opacity->GetUseLogScale(), opacity->GetRange(), "opacity function");
   std::vector<double> corners;
-  const ColoursOfProperty colours(property, corners);
+  std::optional<ColoursOfProperty> colours;
+  if (!white)
+  {
+    colours.emplace(property, corners);
+  }
   AddCorners(opacity, corners);
   PiecewiseValues opacities(opacity);
   const auto function = [&](double value)
   {
-    double rgb[3];
-    colours.Get(value, rgb);
+    double rgb[3] = { 1.0, 1.0, 1.0 };
+    if (colours)
+    {
+      colours->Get(value, rgb);
+    }
     return glm::dvec4(rgb[0], rgb[1], rgb[2], std::clamp(opacities(value), 0.0, 1.0));
   };
-  TransferFunction table = TabulateFunction(function, std::move(corners), colours.EqualParts());
+  TransferFunction table =
+    TabulateFunction(function, std::move(corners), colours ? colours->EqualParts() : 0);
   table.UnitDistance = property->GetScalarOpacityUnitDistance(0);
   return table;
 }
 
-const TransferFunction& KeptTransferFunction::Of(vtkVolumeProperty* property)
+const TransferFunction& KeptTransferFunction::Of(vtkVolumeProperty* property, bool white)
 {
   vtkObject* color = GreysOf(property);
   color = color ? color : property->GetRGBTransferFunction(0);
+  color = white ? nullptr : color;
   vtkPiecewiseFunction* const opacity = property->GetScalarOpacity(0);
-  const std::uint64_t times[] = { color->GetMTime(), opacity->GetMTime() };
+  const std::uint64_t times[] = { color ? color->GetMTime() : 0, opacity->GetMTime() };
   if (this->Function.Entries.empty() || this->Made[0] != color || this->Made[1] != opacity ||
       !std::equal(times, times + 2, this->Times))
   {
-    this->Function = MakeTransferFunction(property);
+    this->Function = MakeTransferFunction(property, white);
     this->Made[0] = color;
     this->Made[1] = opacity;
     std::copy(times, times + 2, this->Times);

@@ -19,7 +19,8 @@ namespace banyan
 /// have their colours, and all others those that the map has for them: of NaN, or beyond the range.
 /// A value that is not a number is transparent whatever the map says. Throws Error when a
 /// logarithmic opacity function begins at 0 or below, or a value has none.
-TransferFunction MakeTransferFunction(vtkVolumeProperty* property);
+/// @param white whether samples have colours of their own: then no map colours them
+TransferFunction MakeTransferFunction(vtkVolumeProperty* property, bool white = false);
 
 /// Whether values are labels with a colour each: a value between two labels then means nothing.
 bool ShowsCategories(vtkVolumeProperty* property);
@@ -29,7 +30,7 @@ bool ShowsCategories(vtkVolumeProperty* property);
 class KeptTransferFunction
 {
 public:
-  const TransferFunction& Of(vtkVolumeProperty* property);
+  const TransferFunction& Of(vtkVolumeProperty* property, bool white = false);
 
 private:
   TransferFunction Function;

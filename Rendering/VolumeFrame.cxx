@@ -65,8 +65,9 @@ FieldFrames::Wish VolumeFrame::WishFor(bool interacting, int eye, int volumes) c
   sampling.MaxElementsPerPixel = mapper->GetMaxElementsPerPixel();
   sampling.ScreenErrorPixels = mapper->GetScreenErrorPixels();
   sampling.FixedDistance = mapper->GetSampleDistanceVoxels() > 0.0;
-  sampling.KeepsTolerance = CanKeepTolerance(mapper, this->Prop->GetProperty()) &&
-                            (!sampling.FixedDistance || sampling.ScreenErrorPixels > 0.0);
+  sampling.KeepsTolerance =
+    CanKeepTolerance(mapper, this->Prop->GetProperty(), this->State->Field.DrawsColours()) &&
+    (!sampling.FixedDistance || sampling.ScreenErrorPixels > 0.0);
   sampling.Eye = eye;
   // Errors of few bits add up where volumes are blended over each other.
   const bool few = mapper->GetCompositeInFewBits() && volumes == 1;

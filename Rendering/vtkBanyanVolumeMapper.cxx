@@ -128,6 +128,11 @@ vtkDataArray* vtkBanyanVolumeMapper::GetArrayToDraw(vtkDataObject* data)
   return banyan::ArrayToDraw(this, data).Array;
 }
 
+bool vtkBanyanVolumeMapper::CanDrawColours(vtkDataObject* data)
+{
+  return banyan::CanBeColours(this, data, this->GetArrayToDraw(data));
+}
+
 bool vtkBanyanVolumeMapper::ShowsCoarsePicture() const
 {
   return this->State->ShowsCoarse;
@@ -166,7 +171,8 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
   }
   self.Motion.Apply(*self.Communicator, this->TemporalEnhancement, volume->GetProperty(),
     this->GetDataObjectInput(), piece);
-  const int components = piece.Array ? piece.Array->GetNumberOfComponents() : 1;
+  const bool mapped = piece.Array && piece.Array->GetNumberOfComponents() > 1 &&
+                      piece.Component != banyan::SampleArray::Colours;
   banyan::InputOfPiece input(std::move(piece));
   const bool isOther = !self.Field.IsOf(input);
   if (isOther)
@@ -184,7 +190,7 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
   self.BoundsKnown = true;
   this->WarnOnce(
     self.Motion.Note() + self.Field.Drawn().Note() + this->DivisionNote(), self.LastNote);
-  this->WarnOnce(banyan::IgnoredOptions(this, volume->GetProperty(), components), self.LastIgnored);
+  this->WarnOnce(banyan::IgnoredOptions(this, volume->GetProperty(), mapped), self.LastIgnored);
   if (self.Field.Empty() && !self.Field.Problem().empty())
   {
     // Nothing with bounds is there to be rendered, so this may be the only place to say why.

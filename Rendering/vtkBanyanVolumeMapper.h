@@ -129,6 +129,11 @@ class vtkRenderWindow;
  * the inside of a box; shading; linear interpolation or, as vtkVolumeProperty has it by default,
  * that of the nearest point. All as VTK's own volume mappers know them, and the same on all ranks.
  *
+ * Where the components of the property are not independent (IndependentComponentsOff), three or
+ * four components on points of image data are colours: red, green, blue and alpha, rounded to 0 to
+ * 255. No map colours them, and the opacity function is asked for alpha, or for the luminance (0.30
+ * red + 0.59 green + 0.11 blue, rounded) of three components. They are composited only.
+ *
  * @par Limits: point data, and cell data of what is not image data, made nodal (see
  * banyan::CellNodes); component 0 of the property, which draws one component of the data or
  * their magnitude, as the vector mode of its colour function says; lights other than the viewer's
@@ -247,6 +252,12 @@ public:
    * there is none.
    */
   vtkDataArray* GetArrayToDraw(vtkDataObject* data);
+
+  /**
+   * Whether that array is drawn as the colours that it has where the components of the property are
+   * not independent. False on ranks without data.
+   */
+  bool CanDrawColours(vtkDataObject* data);
 
   /**
    * Bounds of the whole field, over all ranks, once UpdateField() or Render() was called; those of

@@ -2,6 +2,7 @@
 #include "DefaultFunctions.h"
 
 #include "CommunicatorOf.h"
+#include "vtkBanyanVolumeMapper.h"
 
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Communicate/Communicator.h"
@@ -52,12 +53,18 @@ void IncludeBlocks(const char* name, vtkCompositeDataSet* blocks, double (&local
 }
 
 /// Collective: the range of the values of all ranks; [0, 1] where there are none.
-ValueRange RangeOf(Communicator& ranks, vtkDataArray* array, vtkDataObject* data)
+ValueRange RangeOf(Communicator& ranks, vtkDataArray* array, vtkDataObject* data, bool ofColours)
 {
   double local[2] = { VTK_DOUBLE_MIN, VTK_DOUBLE_MIN }; // -minimum, maximum
   Collective(ranks,
     [&]
     {
+      if (ofColours)
+      {
+        local[0] = 0.0;
+        local[1] = 255.0;
+        return;
+      }
       vtkCompositeDataSet* const blocks = vtkCompositeDataSet::SafeDownCast(data);
       Include(array, local);
       if (blocks && array && array->GetName())
@@ -74,9 +81,13 @@ ValueRange RangeOf(Communicator& ranks, vtkDataArray* array, vtkDataObject* data
 DefaultFunctions::DefaultFunctions() = default;
 DefaultFunctions::~DefaultFunctions() = default;
 
-void DefaultFunctions::Apply(vtkDataArray* array, vtkDataObject* data, bool colors, bool opacities,
-  vtkVolumeProperty* property)
+void DefaultFunctions::Apply(vtkBanyanVolumeMapper* mapper, vtkDataObject* data, bool colors,
+  bool opacities, vtkVolumeProperty* property)
 {
+  if (!colors && !opacities)
+  {
+    return;
+  }
   ValueRange range;
   try
   {
@@ -84,7 +95,8 @@ void DefaultFunctions::Apply(vtkDataArray* array, vtkDataObject* data, bool colo
     {
       this->Ranks = CommunicatorOf(vtkMultiProcessController::GetGlobalController());
     }
-    range = RangeOf(*this->Ranks, array, data);
+    const bool ofColours = property->GetIndependentComponents() == 0;
+    range = RangeOf(*this->Ranks, mapper->GetArrayToDraw(data), data, ofColours);
   }
   catch (const std::exception& error)
   {

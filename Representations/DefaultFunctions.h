@@ -4,7 +4,7 @@
 
 #include <memory>
 
-class vtkDataArray;
+class vtkBanyanVolumeMapper;
 class vtkDataObject;
 class vtkVolumeProperty;
 
@@ -13,20 +13,22 @@ namespace banyan
 
 class Communicator;
 
-/// Colours and opacities over the range of an array (of vectors: of their lengths), for when
-/// ParaView gives none: it does only with an array that was chosen by name.
+/// Colours and opacities over the range of an array (of vectors: of their lengths; of colours: 0 to
+/// 255), for when ParaView gives none: it does only with an array that was chosen by name.
 class DefaultFunctions
 {
 public:
   DefaultFunctions();
   ~DefaultFunctions();
 
-  /// Collective over the ranks of the process group. Where a rank cannot read its values, all ranks
-  /// tell it as an error of the property, which stays as it is.
-  /// @param array null on ranks without data
-  /// @param data that the array is of; where these are blocks, those of its name in all of them
-  /// count
-  void Apply(vtkDataArray* array, vtkDataObject* data, bool colors, bool opacities,
+  /// Collective over the ranks of the process group. Does nothing where neither is asked for. Where
+  /// a rank cannot read its values, all ranks tell it as an error of the property, which stays as
+  /// it is.
+  /// @param mapper says which array is drawn
+  /// @param data null on ranks without any; where these are blocks, the arrays of that name in all
+  /// of them count
+  /// @param property its components are independent unless colours are drawn
+  void Apply(vtkBanyanVolumeMapper* mapper, vtkDataObject* data, bool colors, bool opacities,
     vtkVolumeProperty* property);
 
 private:

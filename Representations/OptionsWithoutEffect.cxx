@@ -7,6 +7,10 @@
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkType.h"
+
+#include <algorithm>
+#include <sstream>
 
 namespace banyan
 {
@@ -51,29 +55,70 @@ std::string Sentence(vtkSMProperty* property, const std::string& advice)
          "' has no effect on 'Banyan Volume': " + advice + ".";
 }
 
-/// Whether the components of the array are meant as colours.
+vtkPVDataInformation* DataOf(vtkSMPVRepresentationProxy* display)
+{
+  vtkSMPropertyHelper input(display, "Input");
+  auto* const source = vtkSMSourceProxy::SafeDownCast(input.GetAsProxy());
+  return source ? source->GetDataInformation(input.GetOutputPort()) : nullptr;
+}
+
+/// What is to be said of numbers that are drawn as colours, if anything.
+std::string OfColours(vtkPVArrayInformation* array)
+{
+  double low = 0.0;
+  double high = 0.0;
+  for (int i = 0; i < array->GetNumberOfComponents(); ++i)
+  {
+    const double* const range = array->GetComponentFiniteRange(i);
+    low = std::min(low, range[0]);
+    high = std::max(high, range[1]);
+  }
+  const bool real = array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
+  if (low >= 0.0 && high <= 255.0 && !(real && high <= 1.0))
+  {
+    return {};
+  }
+  std::ostringstream sentence;
+  sentence << "Colours are drawn from 0 to 255, and the numbers of '" << array->GetName()
+           << "' lie from " << low << " to " << high
+           << ": scale them with the filter 'Calculator'.";
+  return sentence.str();
+}
+
+/// What is to be said where components are meant as colours, if anything.
 std::string OfComponents(vtkSMPVRepresentationProxy* display)
 {
   vtkSMProperty* const map = display->GetProperty("MapScalars");
   vtkPVArrayInformation* const array = display->GetArrayInformationForColorArray();
-  const int components = array ? array->GetNumberOfComponents() : 1;
-  if (!map || vtkSMPropertyHelper(map).GetAsInt() != 0 || components < 2)
+  if (!map || !array || vtkSMPropertyHelper(map).GetAsInt() != 0)
   {
     return {};
   }
-  const std::string colored = "the magnitude (or one component) of '" +
-                              std::string(array->GetName()) + "' is coloured by its map. ";
-  switch (components)
+  const std::string name = "'" + std::string(array->GetName()) + "'";
+  const int components = array->GetNumberOfComponents();
+  if (components == 1)
   {
-    case 2:
-      return Sentence(map, colored + "For components that are drawn as they are choose 'Volume'");
-    case 4:
-      return "RGBA data are not drawn as colours: " + colored +
-             "For the colours themselves choose 'Volume'.";
-    default:
-      return Sentence(map, colored + "For the colours themselves add their opacity as a fourth "
-                                     "component, and choose 'Volume'");
+    return Sentence(map, name + " has one component, and colours have three or four");
   }
+  const std::string mapped =
+    "the magnitude (or one component) of " + name + " is coloured by its map. ";
+  if (components != 3 && components != 4)
+  {
+    return Sentence(map, mapped + "Colours have three components, or four with their opacity");
+  }
+  vtkPVDataInformation* const data = DataOf(display);
+  if (data && !data->DataSetTypeIsA("vtkImageData"))
+  {
+    return Sentence(map, mapped + "Colours are drawn of image data: use 'Resample To Image'");
+  }
+  for (const char* const blending : { "Projection", "BlendMode" })
+  {
+    if (vtkSMPropertyHelper(display, blending, true).GetAsInt() != 0)
+    {
+      return Sentence(map, mapped + "Colours have no projection: set 'Projection' to 'Composite'");
+    }
+  }
+  return OfColours(array);
 }
 
 /// Whether motion is asked for of data that do not move.
@@ -84,9 +129,8 @@ bool HasNoMotion(vtkSMPVRepresentationProxy* display)
   {
     return false;
   }
-  vtkSMPropertyHelper input(display, "Input");
-  auto* const source = vtkSMSourceProxy::SafeDownCast(input.GetAsProxy());
-  return source && source->GetDataInformation(input.GetOutputPort())->GetNumberOfTimeSteps() < 2;
+  vtkPVDataInformation* const data = DataOf(display);
+  return data && data->GetNumberOfTimeSteps() < 2;
 }
 
 } // namespace

@@ -290,16 +290,13 @@ void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
   this->Mapper->SetAbortExecute(0);
   this->Mapper->SetController(vtkMultiProcessController::GetGlobalController());
   this->SelectArray();
-  // 'Map Scalars' off has no effect, which vtkSMBanyanVolumeProxy says.
-  this->Property->SetIndependentComponents(1);
   this->Property->SetInterpolationType(
     this->NearestPoint ? VTK_NEAREST_INTERPOLATION : this->InterpolationType);
-  if (!this->ColorGiven || !this->OpacityGiven)
-  {
-    this->Defaults->Apply(this->Mapper->GetArrayToDraw(piece), piece, !this->ColorGiven,
-      !this->OpacityGiven, this->Property);
-  }
   this->Mapper->SetBlendMode(this->BlendMode != 0 ? this->BlendMode : this->Projection);
+  const bool hasColours = !this->MapScalars && this->Mapper->CanDrawColours(piece);
+  this->Property->SetIndependentComponents(hasColours ? 0 : 1);
+  this->Defaults->Apply(
+    this->Mapper, piece, !this->ColorGiven, !this->OpacityGiven, this->Property);
   this->Mapper->UpdateField(this->Prop);
   this->PlaceCroppingBox();
 }
@@ -328,6 +325,12 @@ void vtkBanyanVolumeRepresentation::FunctionChanged()
   {
     this->Mapper->RenderSoon(view->GetRenderWindow());
   }
+}
+
+void vtkBanyanVolumeRepresentation::SetMapScalars(bool map)
+{
+  this->Superclass::SetMapScalars(map);
+  this->Property->Modified(); // of a client that is served, too
 }
 
 void vtkBanyanVolumeRepresentation::SetColor(vtkColorTransferFunction* colors)

@@ -71,6 +71,12 @@ public:
   void SetScalarOpacity(vtkPiecewiseFunction* opacity);
   ///@}
 
+  /**
+   * Whether the colour map colours what is drawn (default), or three and four components of image
+   * data are the colours: see vtkBanyanVolumeMapper.
+   */
+  void SetMapScalars(bool map);
+
   ///@{
   /** The settings of vtkBanyanVolumeMapper's table are handed on to it. */
 #define BANYAN_REAL(Name, ...) void Set##Name(double value);

@@ -34,8 +34,8 @@ struct FieldPiece
   vtkDataArray* Array = nullptr;       ///< of Image or Grid
   std::string ArrayName;               ///< of Leaves
   ValuesOn Where = ValuesOn::Points;   ///< points of Image; points or cells of Grid or Leaves
-  int Component = 0;                   ///< -1: Euclidean norm of all components
-  MeshOptions Mesh;                    ///< of Grid and Leaves; the same on all ranks
+  int Component = 0; ///< or SampleArray::Magnitude; of an image also SampleArray::Colours
+  MeshOptions Mesh;  ///< of Grid and Leaves; the same on all ranks
   /// Of pieces of an encoded series, as they are drawn; plain ones have it already. The same on all
   /// ranks. Off where Strength is 0.
   TemporalEnhancement Enhancement{ 0.0, 1.0, 0.0 };

@@ -25,7 +25,8 @@ namespace banyan
 namespace
 {
 
-/// The largest error that encoding has made of a component, or -1: of the length.
+/// The largest error that encoding has made of a component, of the length, or of any component of
+/// colours.
 double EncodingErrorOf(const vtkBanyanDeferred::Handle& handle, int component)
 {
   const std::vector<ComponentIndex>& components =
@@ -34,13 +35,15 @@ double EncodingErrorOf(const vtkBanyanDeferred::Handle& handle, int component)
   {
     return components.at(static_cast<std::size_t>(component)).MeasuredMaxError;
   }
-  // A length is off by no more than the vector.
   double squares = 0.0;
+  double largest = 0.0;
   for (const ComponentIndex& each : components)
   {
     squares += each.MeasuredMaxError * each.MeasuredMaxError;
+    largest = std::max(largest, each.MeasuredMaxError);
   }
-  return std::sqrt(squares);
+  // A length is off by no more than the vector.
+  return component == SampleArray::Colours ? largest : std::sqrt(squares);
 }
 
 PieceFacts FactsOfImage(vtkImageData* image, vtkDataArray* array, int component)

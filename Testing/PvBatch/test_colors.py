@@ -259,18 +259,24 @@ def options_without_effect():
 
 
 def colors_without_map():
-    rgb = calculated("Rgb", "iHat*coordsX+jHat*coordsY+kHat*coordsZ")
-    rgba = simple.PythonCalculator(Input=rgb, ArrayName="Rgba",
-                                   Expression="numpy.concatenate([Rgb, Rgb[:, :1]], axis=1)")
-    for source, name, words in (
-            (rgb, "Rgb", "add their opacity as a fourth component, and choose 'Volume'"),
-            (rgba, "Rgba", "RGBA data are not drawn as colours")):
+    """What is said where 'Map Scalars' is off and there are no colours, or none from 0 to 255."""
+    rgb = calculated("Rgb", "8*(iHat*(coordsX+16)+jHat*(coordsY+16)+kHat*(coordsZ+16))")
+    for source, array, changes, words in (
+            (rgb, "Rgb", {}, "the numbers of 'Rgb' lie from 0 to 264"),
+            (rgb, "Rgb", {"Projection": "Maximum Intensity"}, "Colours have no projection"),
+            (calculated("Dark", "iHat*0.5+jHat*0.25+kHat"), "Dark", {}, "lie from 0 to 1:"),
+            (calculated("Grey", "RTData"), "Grey", {}, "'Grey' has one component"),
+            (simple.AppendDatasets(Input=[rgb]), "Rgb", {}, "use 'Resample To Image'"),
+            (calculated("Bytes", "7*(iHat*(coordsX+16)+jHat*(coordsY+15)+kHat*(coordsZ+16))"), "Bytes", {},
+             None)):
         view = session.new_view(SIZE)
         display = simple.Show(source, view)
-        simple.ColorBy(display, ("POINTS", name))
+        simple.ColorBy(display, ("POINTS", array))
         display.SetRepresentationType(session.REPRESENTATION)
-        sentences = said(view, display, {"MapScalars": 0})
-        session.require(len(sentences) == 1 and words in sentences[0], f"{name}: {sentences}")
+        simple.Render(view)
+        sentences = said(view, display, {"MapScalars": 0, **changes})
+        session.require(len(sentences) == 1 and words in sentences[0] if words else not sentences,
+                        f"{array}: {sentences}")
     session.clear()
 
 
