@@ -36,6 +36,7 @@
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace
 {
@@ -56,6 +57,11 @@ void TellStereo(vtkPVRenderView* view)
     StereoOfCamera::Set(camera, view->GetRenderWindow()->GetStereoRender());
     camera->Modified();
   }
+}
+
+bool IsClient()
+{
+  return vtkProcessModule::GetProcessType() == vtkProcessModule::PROCESS_CLIENT;
 }
 
 /// While progress is pending, ParaView's windows turn their event loop, but must not render.
@@ -221,13 +227,12 @@ int vtkBanyanVolumeRepresentation::ProcessViewRequest(
 
 void vtkBanyanVolumeRepresentation::SetServed(bool served)
 {
-  const bool isClient = vtkProcessModule::GetProcessType() == vtkProcessModule::PROCESS_CLIENT;
   if (!served)
   {
     this->Server->Stop();
   }
   this->Served = served;
-  this->Prop->SetPictures(served && isClient ? this->Pictures : nullptr);
+  this->Prop->SetPictures(served && IsClient() ? this->Pictures : nullptr);
 }
 
 void vtkBanyanVolumeRepresentation::TakeTicket(
@@ -274,12 +279,10 @@ void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
 {
   auto* const view = vtkPVRenderView::SafeDownCast(this->GetView());
   this->Prop->SetView(view);
-  const bool isClient = vtkProcessModule::GetProcessType() == vtkProcessModule::PROCESS_CLIENT;
-  if (isClient && banyan::IsWall(view))
+  if (IsClient() && banyan::IsWall(view))
   {
-    if (!this->WallTold)
+    if (!std::exchange(this->WallTold, true))
     {
-      this->WallTold = true;
       vtkWarningMacro(<< "The server's displays show the volume; this window does not.");
     }
     return;
