@@ -140,7 +140,9 @@ class ServedWindow:
             function.AddPoint(high, 1.0)
             self.wait(0.15)
         self.require_exact("a function that is dragged")
-        session.require(self.asked_at_all == asked, "a function that is dragged does not wait for the server")
+        # From 5.12 on, ParaView's editor itself draws a still picture at each change of an opacity.
+        if simple.GetParaViewVersion() < (5, 12):
+            session.require(self.asked_at_all == asked, "a function that is dragged does not wait for the server")
         dragged = self.shown("while the function is dragged")
         session.require(pictures.difference(before, dragged).max() > 20, "the window follows a function")
         opacity.Points = [low, 0.0, 0.5, 0.0, low + 0.2 * (high - low), 0.8, 0.5, 0.0, high, 1.0, 0.5, 0.0]
