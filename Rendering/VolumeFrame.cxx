@@ -15,6 +15,7 @@
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -31,7 +32,7 @@ constexpr double LeastRange = 1e-12;
 bool VolumeFrame::Prepare(const ScreenView& view)
 {
   const PhaseScope beginning(Phase::Beginning);
-  this->Began = Timer();
+  this->Began = this->PicturesDrawn == 0 ? Timer() : this->Began;
   const DistributedField& field = this->State->Field;
   if (!field.Problem().empty())
   {
@@ -133,26 +134,48 @@ FieldFrames::Frame VolumeFrame::Draw(
   return std::move(shown.Frame);
 }
 
-std::shared_ptr<const FloatImage> VolumeFrame::CastOnWall(vtkRenderer* renderer,
-  const std::vector<PicturePlace>& places, std::size_t number, const DepthPicture& depths,
-  int volumes)
+std::shared_ptr<const FloatImage> VolumeFrame::CastOnWall(
+  vtkRenderer* renderer, const OnWall& wall, const DepthPicture& depths, int volumes)
 {
   MapperState& state = *this->State;
   this->Wanted->Depth = depths.In(this->Wanted->Viewport);
-  this->BeginFigures();
   const bool interacting = renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0;
   FieldFrames::Wish wish = this->WishFor(interacting, EyeOf(renderer), volumes);
-  wish.Places = places;
-  while (state.WallFrames.size() <= number)
+  wish.Sampling.Seconds /= static_cast<double>(wall.Pictures);
+  for (PicturePlace place : wall.Places)
+  {
+    place.Behind = Intersection(depths.Rect, place.Rect);
+    wish.Places.push_back(place);
+  }
+  while (state.WallFrames.size() <= wall.Number)
   {
     state.WallFrames.push_back(std::make_unique<FieldFrames>());
   }
   state.Late.Stop();
   this->DrawsAtOnce(!interacting);
-  const FieldFrames::Frame frame =
-    state.WallFrames[number]->Draw(*state.Communicator, state.Field, *this->Wanted, wish);
+  if (this->PicturesDrawn == 0)
+  {
+    this->BeginFigures();
+  }
+  FieldFrames::Frame frame =
+    state.WallFrames[wall.Number]->Draw(*state.Communicator, state.Field, *this->Wanted, wish);
+  if (this->PicturesDrawn++ > 0)
+  {
+    frame.Picture.Statistics.Add(this->Statistics);
+    frame.Picture.EstimatedError = std::max(frame.Picture.EstimatedError, this->WorstError);
+    frame.Kept = frame.Kept && this->Kept;
+  }
+  this->WorstError = frame.Picture.EstimatedError;
   this->Tell(frame);
   return frame.Picture.Pixels;
+}
+
+void VolumeFrame::ForgetPictures(std::size_t pictures)
+{
+  while (this->State->WallFrames.size() > pictures)
+  {
+    this->State->WallFrames.pop_back();
+  }
 }
 
 std::shared_ptr<const FloatImage> VolumeFrame::Cast(
@@ -183,7 +206,12 @@ void VolumeFrame::Tell(const FieldFrames::Frame& frame)
   this->Kept = frame.Kept;
   vtkBanyanFrameStatistics* const out = this->Owner->GetStatistics();
   out->SetReusedFraction(frame.ReusedFraction());
-  out->SetPictureBytes(static_cast<vtkIdType>(this->State->Frames.PictureBytes()));
+  std::uint64_t kept = this->State->Frames.PictureBytes();
+  for (const std::unique_ptr<FieldFrames>& ofWall : this->State->WallFrames)
+  {
+    kept += ofWall->PictureBytes();
+  }
+  out->SetPictureBytes(static_cast<vtkIdType>(kept));
   out->SetEstimatedImageError(frame.Picture.EstimatedError);
   out->SetImageErrorLimit(frame.Picture.Limit.c_str());
   out->SetEncodingErrorOfValues(

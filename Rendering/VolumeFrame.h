@@ -63,14 +63,24 @@ public:
   std::shared_ptr<const FloatImage> Cast(
     vtkRenderer* renderer, const Backdrop& backdrop, const Together& others);
 
-  /// Draws the volume for displays of ranks.
-  /// @param number of the picture, each of which has frames of its own
+  /// A picture on displays of ranks.
+  struct OnWall
+  {
+    const std::vector<PicturePlace>& Places;
+    std::size_t Number;   ///< of the picture: each has frames of its own
+    std::size_t Pictures; ///< that are drawn one after the other
+  };
+
+  /// Draws the volume for displays of ranks, picture by picture: their statistics add up.
   /// @param depths at which other data are
   /// @param volumes in the picture
   /// @return the part of the volume's picture in this rank's place; null where it has none
-  std::shared_ptr<const FloatImage> CastOnWall(vtkRenderer* renderer,
-    const std::vector<PicturePlace>& places, std::size_t number, const DepthPicture& depths,
-    int volumes);
+  std::shared_ptr<const FloatImage> CastOnWall(
+    vtkRenderer* renderer, const OnWall& wall, const DepthPicture& depths, int volumes);
+
+  /// Forgets frames of pictures that a wall does not show any more.
+  /// @param pictures that it shows
+  void ForgetPictures(std::size_t pictures);
 
   /// Publishes the statistics, when the picture is on the screen.
   /// @param geometry what it took to combine the pixels of other props
@@ -90,7 +100,9 @@ private:
   std::optional<RayScene> Wanted; ///< none until it is prepared
   FrameStatistics Statistics;
   FrameFigures Figures;
-  bool Kept = false; ///< FieldFrames::Frame
+  bool Kept = false;       ///< FieldFrames::Frame
+  int PicturesDrawn = 0;   ///< of a wall, in this frame
+  double WorstError = 0.0; ///< estimated, of these
 };
 
 } // namespace banyan

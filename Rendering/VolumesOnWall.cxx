@@ -14,6 +14,7 @@
 #include "vtkVolume.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 namespace banyan
@@ -83,53 +84,65 @@ VolumesOnWall::VolumesOnWall(
   vtkRenderer* renderer, vtkBanyanVolumeMapper* mapper, vtkVolume* volume)
   : Renderer(renderer)
   , Called(mapper)
-  , Volumes(VolumesDrawnWith(renderer, volume))
 {
+  for (vtkVolume* const shown : VolumesDrawnWith(renderer, volume))
+  {
+    auto* const its = vtkBanyanVolumeMapper::SafeDownCast(shown->GetMapper());
+    this->Frames.emplace_back(its, *its->State, shown);
+  }
 }
 
 void VolumesOnWall::Draw(const std::vector<WallPicture>& pictures, const DepthPicture& own)
 {
-  std::vector<vtkVolume*> shown;
-  for (vtkVolume* const volume : this->Volumes)
+  const auto isUpdated = [](VolumeFrame& frame)
   {
-    auto* const mapper = vtkBanyanVolumeMapper::SafeDownCast(volume->GetMapper());
-    const auto update = [&]
-    {
-      mapper->UpdateField(volume);
-      return true;
-    };
-    if (mapper->Attempt(update))
-    {
-      shown.push_back(volume);
-    }
-  }
-  this->Volumes = shown;
+    return frame.Mapper()->Attempt(
+      [&]
+      {
+        frame.Mapper()->UpdateField(frame.Volume());
+        return true;
+      });
+  };
+  this->Frames.erase(std::remove_if(this->Frames.begin(), this->Frames.end(),
+                       [&](VolumeFrame& frame) { return !isUpdated(frame); }),
+    this->Frames.end());
+  std::set<VolumeFrame*> drawn;
+  std::set<VolumeFrame*> failed;
+  const Timer all;
   for (std::size_t number = 0; number < pictures.size(); ++number)
   {
+    const VolumeFrame::OnWall wall{ pictures[number].Places, number, pictures.size() };
     this->Called->Attempt(
       [&]
       {
-        this->DrawPicture(pictures[number], number, own, number == 0);
+        this->DrawPicture(pictures[number], wall, own, drawn, failed);
         return true;
       });
+  }
+  for (VolumeFrame& frame : this->Frames)
+  {
+    frame.ForgetPictures(pictures.size());
+    if (drawn.count(&frame) > 0 && failed.count(&frame) == 0)
+    {
+      frame.Finish({}, 0.0);
+    }
   }
 }
 
 /// Collective.
-/// @param tells whether users are told what is not drawn in the order of depth
-void VolumesOnWall::DrawPicture(
-  const WallPicture& picture, std::size_t number, const DepthPicture& own, bool tells)
+/// @param drawn gets the frames that are in the picture
+/// @param failed gets those that could not be drawn
+void VolumesOnWall::DrawPicture(const WallPicture& picture, const VolumeFrame::OnWall& wall,
+  const DepthPicture& own, std::set<VolumeFrame*>& drawn, std::set<VolumeFrame*>& failed)
 {
   const PhaseScope beginning(Phase::Beginning);
   Communicator& communicator = *this->Called->State->Communicator;
-  std::vector<VolumeFrame> frames;
-  for (vtkVolume* const volume : this->Volumes)
+  std::vector<VolumeFrame*> frames;
+  for (VolumeFrame& frame : this->Frames)
   {
-    auto* const mapper = vtkBanyanVolumeMapper::SafeDownCast(volume->GetMapper());
-    VolumeFrame frame(mapper, *mapper->State, volume);
-    if (mapper->Attempt([&] { return frame.Prepare(picture.View); }))
+    if (frame.Mapper()->Attempt([&] { return frame.Prepare(picture.View); }))
     {
-      frames.push_back(std::move(frame));
+      frames.push_back(&frame);
     }
   }
   if (frames.empty())
@@ -138,7 +151,7 @@ void VolumesOnWall::DrawPicture(
   }
   const std::vector<VolumeOnScreen> volumes = VolumesPicture::OnScreen(frames);
   const DepthOrder order = OrderInDepth(volumes, picture.View);
-  if (tells)
+  if (wall.Number == 0)
   {
     VolumesPicture::WarnNotInDepth(this->Called, this->Renderer, frames, volumes, order);
   }
@@ -146,28 +159,23 @@ void VolumesOnWall::DrawPicture(
     [&](const PicturePlace& its) { return its.Root == communicator.Rank(); });
   const bool shows = place != picture.Places.end();
   const DepthPicture depths = DepthsOfAll(communicator, picture, shows ? own : DepthPicture{});
-  std::vector<std::shared_ptr<const FloatImage>> drawn(frames.size());
+  std::vector<std::shared_ptr<const FloatImage>> pictures(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i)
   {
-    frames[i].Mapper()->Attempt(
-      [&]
-      {
-        drawn[i] = frames[i].CastOnWall(
-          this->Renderer, picture.Places, number, depths, static_cast<int>(frames.size()));
-        return true;
-      });
+    const auto cast = [&]
+    {
+      pictures[i] =
+        frames[i]->CastOnWall(this->Renderer, wall, depths, static_cast<int>(frames.size()));
+      return true;
+    };
+    (frames[i]->Mapper()->Attempt(cast) ? drawn : failed).insert(frames[i]);
   }
-  const Timer writing;
   if (shows)
   {
-    const FloatImage blended = frames.size() == 1 && drawn.front()
-                                 ? *drawn.front()
-                                 : BlendInDepth(drawn, order, place->Rect);
+    const bool single = frames.size() == 1 && pictures.front();
+    const FloatImage blended =
+      single ? *pictures.front() : BlendInDepth(pictures, order, place->Rect);
     this->Called->State->Backdrop.WriteOver(this->Renderer, InPlace(blended, place->Rect));
-  }
-  for (VolumeFrame& frame : frames)
-  {
-    frame.Finish({}, writing.Seconds() / static_cast<double>(frames.size()));
   }
 }
 

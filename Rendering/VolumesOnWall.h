@@ -8,7 +8,7 @@
 #include "Parallel/Composite/PicturePlace.h"
 #include "Render/Scene/DepthPicture.h"
 
-#include <memory>
+#include <set>
 #include <vector>
 
 class vtkBanyanVolumeMapper;
@@ -45,12 +45,12 @@ public:
   void Draw(const std::vector<WallPicture>& pictures, const DepthPicture& own);
 
 private:
-  void DrawPicture(
-    const WallPicture& picture, std::size_t number, const DepthPicture& own, bool tells);
+  void DrawPicture(const WallPicture& picture, const VolumeFrame::OnWall& wall,
+    const DepthPicture& own, std::set<VolumeFrame*>& drawn, std::set<VolumeFrame*>& failed);
 
   vtkRenderer* Renderer;
   vtkBanyanVolumeMapper* Called;
-  std::vector<vtkVolume*> Volumes;
+  std::vector<VolumeFrame> Frames;
 };
 
 } // namespace banyan

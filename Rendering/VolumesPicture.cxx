@@ -20,15 +20,15 @@
 namespace banyan
 {
 
-std::vector<VolumeOnScreen> VolumesPicture::OnScreen(const std::vector<VolumeFrame>& frames)
+std::vector<VolumeOnScreen> VolumesPicture::OnScreen(const std::vector<VolumeFrame*>& frames)
 {
   std::vector<VolumeOnScreen> volumes;
-  for (const VolumeFrame& frame : frames)
+  for (const VolumeFrame* const frame : frames)
   {
-    vtkBanyanVolumeMapper* const mapper = frame.Mapper();
+    vtkBanyanVolumeMapper* const mapper = frame->Mapper();
     volumes.push_back(
-      { BodyOf(frame.Volume(), mapper, mapper->State->Field.Place().Bounds, frame.Scene()),
-        frame.Scene().Viewport });
+      { BodyOf(frame->Volume(), mapper, mapper->State->Field.Place().Bounds, frame->Scene()),
+        frame->Scene().Viewport });
   }
   return volumes;
 }
@@ -42,7 +42,7 @@ DepthOrder OrderInDepth(const std::vector<VolumeOnScreen>& volumes, const Screen
 }
 
 void VolumesPicture::WarnNotInDepth(vtkBanyanVolumeMapper* first, vtkRenderer* renderer,
-  const std::vector<VolumeFrame>& frames, const std::vector<VolumeOnScreen>& volumes,
+  const std::vector<VolumeFrame*>& frames, const std::vector<VolumeOnScreen>& volumes,
   const DepthOrder& order)
 {
   Communicator& communicator = *first->State->Communicator;
@@ -50,7 +50,7 @@ void VolumesPicture::WarnNotInDepth(vtkBanyanVolumeMapper* first, vtkRenderer* r
   unsigned char fresh = 0;
   for (std::size_t i = 0; i < frames.size(); ++i)
   {
-    fresh |= NotToldYet(bits[i], frames[i].Mapper()->State->ToldNotInDepth);
+    fresh |= NotToldYet(bits[i], frames[i]->Mapper()->State->ToldNotInDepth);
   }
   const std::string note = TellNotInDepth(fresh);
   if (!note.empty() && communicator.Rank() == 0)
@@ -127,14 +127,16 @@ void VolumesPicture::DrawPrepared(vtkBanyanVolumeMapper* first)
   MapperState& state = *first->State;
   std::vector<vtkVolume*> props;
   PixelRect rect;
-  for (const VolumeFrame& frame : this->Frames)
+  std::vector<VolumeFrame*> frames;
+  for (VolumeFrame& frame : this->Frames)
   {
+    frames.push_back(&frame);
     props.push_back(frame.Volume());
     rect = Union(rect, frame.Scene().Viewport);
   }
-  const std::vector<VolumeOnScreen> volumes = OnScreen(this->Frames);
+  const std::vector<VolumeOnScreen> volumes = OnScreen(frames);
   const DepthOrder order = OrderInDepth(volumes, ViewOf(this->Renderer));
-  WarnNotInDepth(first, this->Renderer, this->Frames, volumes, order);
+  WarnNotInDepth(first, this->Renderer, frames, volumes, order);
   CompositeStatistics geometry;
   state.Backdrop.Read(
     *state.Communicator, this->Renderer, props, rect, state.RankOrderBehind, geometry);

@@ -40,13 +40,13 @@ public:
   static void ForgetDrawn(vtkRenderer* renderer);
 
   /// Where volumes that are prepared stand in a picture.
-  static std::vector<VolumeOnScreen> OnScreen(const std::vector<VolumeFrame>& frames);
+  static std::vector<VolumeOnScreen> OnScreen(const std::vector<VolumeFrame*>& frames);
 
   /// Says what is not drawn in the order of depth, once. Collective.
   /// @param first of their mappers
   /// @param volumes of the frames
   static void WarnNotInDepth(vtkBanyanVolumeMapper* first, vtkRenderer* renderer,
-    const std::vector<VolumeFrame>& frames, const std::vector<VolumeOnScreen>& volumes,
+    const std::vector<VolumeFrame*>& frames, const std::vector<VolumeOnScreen>& volumes,
     const DepthOrder& order);
 
 private:

@@ -99,8 +99,8 @@ class vtkRenderWindow;
   Choice(Division, 0, 0, 2, advanced, all,                                                         \
     "What ranks divide among them. By data: each draws a zone, and pictures are composited. By "   \
     "picture: each draws all cells under a part of the pixels; where each rank can read all, as "  \
-    "it can of an encoded series and of meshes. Automatic (default): by picture on tile "          \
-    "displays, otherwise by data.")
+    "it can of an encoded series and of meshes. Automatic (default): by picture where several "    \
+    "tiles of a wall show parts of it, otherwise by data.")
 // clang-format on
 
 /**

@@ -27,6 +27,8 @@
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 
+#include <algorithm>
+
 namespace
 {
 
@@ -110,7 +112,10 @@ void vtkBanyanVolume::ReadDepths(vtkObject* caller, unsigned long, void*)
 {
   auto* const renderer = vtkRenderer::SafeDownCast(caller);
   this->Depths.reset();
-  if (this->DrawsOnWall(renderer) && VolumesOf(renderer).front() == this)
+  const std::vector<vtkBanyanVolume*> volumes = VolumesOf(renderer);
+  const auto first = std::find_if(volumes.begin(), volumes.end(),
+    [&](vtkBanyanVolume* volume) { return volume->DrawsOnWall(renderer); });
+  if (first != volumes.end() && *first == this)
   {
     if (!this->Framebuffer)
     {

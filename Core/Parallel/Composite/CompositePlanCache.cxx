@@ -8,22 +8,22 @@ std::shared_ptr<const CompositePlan> CompositePlanCache::Of(
   const std::vector<Footprint>& footprints, const PixelRect& viewport, const PixelRect& behind,
   bool ordered, int root)
 {
-  if (this->Last && this->Ordered == ordered && this->Root == root && this->Viewport == viewport &&
-      this->Behind == behind && this->Footprints == footprints)
+  Item& item = this->OfRoot[root];
+  if (item.Plan && item.Ordered == ordered && item.Viewport == viewport && item.Behind == behind &&
+      item.Footprints == footprints)
   {
     ++this->HitCount;
-    return this->Last;
+    return item.Plan;
   }
-  this->Last.reset(); // should deriving fail, nothing is kept
-  this->Last = std::make_shared<const CompositePlan>(
+  item.Plan.reset(); // should deriving fail, nothing is kept
+  item.Plan = std::make_shared<const CompositePlan>(
     PlanCompositing(footprints, viewport, behind, ordered, root));
-  this->Footprints = footprints;
-  this->Viewport = viewport;
-  this->Behind = behind;
-  this->Ordered = ordered;
-  this->Root = root;
+  item.Footprints = footprints;
+  item.Viewport = viewport;
+  item.Behind = behind;
+  item.Ordered = ordered;
   ++this->MissCount;
-  return this->Last;
+  return item.Plan;
 }
 
 } // namespace banyan

@@ -5,14 +5,15 @@
 #include "Parallel/Composite/CompositePlan.h"
 
 #include <cstdint>
+#include <map>
 #include <memory>
 
 namespace banyan
 {
 
-/// The plan of the last frame: it is that of the next one too, where neither the camera nor zones
-/// have moved. Each rank keeps its own; what it gives out is what PlanCompositing would derive, so
-/// ranks need not agree about it.
+/// The plans of the last frame, one per root: they are those of the next one too, where neither the
+/// camera nor zones have moved. Each rank keeps its own; what it gives out is what PlanCompositing
+/// would derive, so ranks need not agree about it.
 class CompositePlanCache
 {
 public:
@@ -34,12 +35,15 @@ public:
   std::int64_t Hits() const { return this->HitCount; }
 
 private:
-  std::shared_ptr<const CompositePlan> Last; ///< of the following
-  std::vector<Footprint> Footprints;
-  PixelRect Viewport;
-  PixelRect Behind;
-  bool Ordered = false;
-  int Root = 0;
+  struct Item
+  {
+    std::shared_ptr<const CompositePlan> Plan; ///< of the following
+    std::vector<Footprint> Footprints;
+    PixelRect Viewport;
+    PixelRect Behind;
+    bool Ordered = false;
+  };
+  std::map<int, Item> OfRoot; ///< places of a picture have different ones
   std::int64_t MissCount = 0;
   std::int64_t HitCount = 0;
 };

@@ -68,8 +68,9 @@ public:
   /// Collective, for frames that may be drawn from levels up to `coarsest`: makes those that are
   /// not there yet. Throws CollectiveError when one fails.
   virtual void BringLevels(Communicator&, const RayScene&, int /*coarsest*/) {}
-  /// Begins to decode what the next frame is expected to need. Does not throw.
-  virtual void ReadAhead(const RayScene&, int /*rank*/) {}
+  /// Begins to decode what the next frame is expected to need of the cells that this rank has drawn
+  /// under the scene's viewport. Does not throw.
+  virtual void ReadAhead(const RayScene&, const Box& /*cells*/) {}
   /// Collective.
   virtual void EndFrame(Communicator&) {}
 

@@ -157,7 +157,7 @@ void SeriesField::BeginFrame(Communicator&, RayScene& scene)
   this->ZoneCells = this->Balancer.Zones();
 }
 
-void SeriesField::ReadAhead(const RayScene& scene, int rank)
+void SeriesField::ReadAhead(const RayScene& scene, const Box& cells)
 {
   if (!this->Bricks)
   {
@@ -171,13 +171,12 @@ void SeriesField::ReadAhead(const RayScene& scene, int rank)
       this->Ahead = std::make_unique<TimeStepPrefetcher>(cache, ThreadPool::Process().Width());
       this->Ahead->Drawing(*this->Series, this->Drawn.Step);
     }
-    const Box& zone = this->ZoneCells[static_cast<std::size_t>(rank)];
-    this->Ahead->Drawn(this->Series, scene, Intersection(zone, scene.DomainCells), *this->Bricks);
+    this->Ahead->Drawn(this->Series, scene, Intersection(cells, scene.DomainCells), *this->Bricks);
     auto* const source = dynamic_cast<SeriesBrickSource*>(this->Bricks.get());
     std::vector<FieldBricks> coming;
     if (source)
     {
-      coming = this->View.Expected(scene, *source, zone);
+      coming = this->View.Expected(scene, *source, cells);
     }
     if (this->Ahead->Next() < 0 && !coming.empty())
     {

@@ -55,7 +55,7 @@ public:
   void BeginFrame(Communicator& communicator, RayScene& scene) override;
   /// The time step that comes next, if it plays; otherwise what comes onto the screen, if the
   /// camera moves.
-  void ReadAhead(const RayScene& scene, int rank) override;
+  void ReadAhead(const RayScene& scene, const Box& cells) override;
   void EndFrame(Communicator& communicator) override { this->Balancer.EndFrame(communicator); }
   void Clear() override
   {

@@ -296,6 +296,24 @@ FloatImage DrawPlace(Communicator& communicator, OwnPart& own, const PartOfPictu
 
 } // namespace
 
+void FrameStatistics::Add(const FrameStatistics& other)
+{
+  this->TotalSeconds += other.TotalSeconds;
+  this->RenderSeconds += other.RenderSeconds;
+  this->CompositeSeconds += other.CompositeSeconds;
+  this->ProbeSeconds += other.ProbeSeconds;
+  this->StrideSeconds += other.StrideSeconds;
+  this->Probes += other.Probes;
+  this->Imbalance = std::max(this->Imbalance, other.Imbalance);
+  this->SamplesTaken += other.SamplesTaken;
+  this->BricksDrawn += other.BricksDrawn;
+  this->BricksUniform += other.BricksUniform;
+  this->BricksSkipped += other.BricksSkipped;
+  this->ReusedFraction = std::min(this->ReusedFraction, other.ReusedFraction);
+  this->BytesComposited += other.BytesComposited;
+  this->MessagesComposited += other.MessagesComposited;
+}
+
 FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene,
   const RankShare& share, FrameStatistics& statistics, const CompositeOptions& compositing,
   const std::vector<PicturePlace>& places)
@@ -310,13 +328,18 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene,
                    : places;
   FloatImage result;
   double reused = 0.0;
+  std::vector<const PicturePlace*> shown;
   for (const PicturePlace& place : all)
   {
-    const PixelRect rect = WithMargin(scene, place.Rect);
-    if (rect.Empty())
+    if (!WithMargin(scene, place.Rect).Empty())
     {
-      continue;
+      shown.push_back(&place);
     }
+  }
+  for (const PicturePlace* const at : shown)
+  {
+    const PicturePlace& place = *at;
+    const PixelRect rect = WithMargin(scene, place.Rect);
     std::optional<RayScene> ofPlace;
     std::optional<RayScene> ofRegion;
     const RayScene& drawn = rect == scene.Viewport ? scene : ofPlace.emplace(PartOf(scene, rect));
@@ -324,7 +347,7 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene,
       byPicture ? ofRegion.emplace(PartOf(drawn, share.Regions.at(self))) : drawn;
     static const std::function<void()> nothing;
     const PartOfPicture part{ drawn, mine, share.Zones, share.Regions,
-      &place == &all.back() ? compositing.AfterCasting : nothing };
+      at == shown.back() ? compositing.AfterCasting : nothing };
     FloatImage picture = DrawPlace(communicator, own, part, place, compositing, reused);
     if (place.Root == communicator.Rank())
     {

@@ -30,6 +30,9 @@ struct FrameStatistics
   double ReusedFraction = 0.0;          ///< PutBackReused
   std::uint64_t BytesComposited = 0;    ///< sent between ranks to make one picture of N
   std::uint64_t MessagesComposited = 0; ///< in so many messages
+
+  /// Adds what another picture took that was drawn after this one: the worse of what is no sum.
+  void Add(const FrameStatistics& other);
 };
 
 /// Holds what a rank brings to a picture of all ranks.
@@ -56,10 +59,9 @@ struct RankShare
 /// the options that follow from the scene, the zones and the places (combination, footprints,
 /// brightest colours, root).
 /// @return the part of the scene's viewport in this rank's place, premultiplied; empty on ranks
-/// without one. The picture does not
-/// depend on the number of ranks: within 1e-5 in float when no ray ends early, within
-/// 1 - OpacityLimit otherwise; with PixelTransport::WithinOne, 1 of 255 more.
-/// When a rank fails, all ranks throw the same Error.
+/// without one. The picture does not depend on the number of ranks: within 1e-5 in float when no
+/// ray ends early, within 1 - OpacityLimit otherwise; with PixelTransport::WithinOne, 1 of 255
+/// more. When a rank fails, all ranks throw the same Error.
 FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene,
   const RankShare& share, FrameStatistics& statistics, const CompositeOptions& compositing = {},
   const std::vector<PicturePlace>& places = {});

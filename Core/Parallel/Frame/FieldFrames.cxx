@@ -30,6 +30,26 @@ std::vector<int> RootsOf(const FieldFrames::Wish& wish)
   return roots.empty() ? std::vector<int>{ 0 } : roots;
 }
 
+bool GetsPixels(const FieldFrames::Wish& wish, int rank)
+{
+  const std::vector<int> roots = RootsOf(wish);
+  return std::find(roots.begin(), roots.end(), rank) != roots.end();
+}
+
+/// Of what this rank has drawn.
+void ReadAhead(DrawnField& drawn, const RayScene& scene, const RankShare& share, int rank)
+{
+  if (share.Regions.empty())
+  {
+    drawn.ReadAhead(scene, share.Zones[static_cast<std::size_t>(rank)]);
+    return;
+  }
+  RayScene mine = scene;
+  mine.Depth.clear();
+  mine.Viewport = Intersection(scene.Viewport, share.Regions[static_cast<std::size_t>(rank)]);
+  drawn.ReadAhead(mine, scene.DomainCells);
+}
+
 } // namespace
 
 Hash128 FieldFrames::SceneOf(const RayScene& scene, const Wish& wish)
@@ -137,7 +157,8 @@ FieldFrames::Sight FieldFrames::Look(
   communicator.Broadcast(0, &sight.Agreed, sizeof(sight.Agreed));
   sight.Aim = this->Tolerance.Begin(wish.Sampling);
   sight.Quality = { sight.Aim.Coarseness, sight.Aim.Interacting };
-  this->Pictures.KeepIn(wish.Reuse ? field.Drawn().Caches() : nullptr);
+  const bool keeps = wish.Reuse && GetsPixels(wish, communicator.Rank());
+  this->Pictures.KeepIn(keeps ? field.Drawn().Caches() : nullptr);
   return sight;
 }
 
@@ -191,7 +212,8 @@ bool FieldFrames::BeginRays(Communicator& communicator, DrawnField& drawn, RaySc
   {
     return false;
   }
-  if (!wish.Reuse || wish.Places.size() > 1 || scene.Blend.Mode != BlendMode::Composite)
+  // Of a picture with places no rank has all pixels.
+  if (!wish.Reuse || !wish.Places.empty() || scene.Blend.Mode != BlendMode::Composite)
   {
     this->Rays.Forget();
     return false;
@@ -264,12 +286,11 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   // The other eye's picture is no step of a camera that moves.
   if (wish.ReadAhead && wish.Sampling.Eye == 0)
   {
-    compositing.AfterCasting = [&] { drawn.ReadAhead(scene, communicator.Rank()); };
+    compositing.AfterCasting = [&] { ReadAhead(drawn, scene, share, communicator.Rank()); };
   }
   FloatImage picture =
     DrawDistributed(communicator, scene, share, numbers, compositing, wish.Places);
-  const std::vector<int> roots = RootsOf(wish);
-  if (std::find(roots.begin(), roots.end(), communicator.Rank()) != roots.end())
+  if (GetsPixels(wish, communicator.Rank()))
   {
     frame.Picture.Pixels = std::make_shared<const FloatImage>(std::move(picture));
   }

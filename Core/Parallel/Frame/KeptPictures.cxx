@@ -105,7 +105,9 @@ void KeptPictures::Keep(const Hash128& scene, const std::vector<Hash128>& conten
     this->Caches ? this->Caches->PictureBudgetBytes() /
                      static_cast<std::uint64_t>(this->Caches->PictureKeepers().load())
                  : 0;
-  const std::uint64_t bytes = picture.Pixels->Pixels.size() * sizeof(glm::vec4);
+  constexpr std::uint64_t least = 4096; // pictures without pixels go, too, when others come
+  const std::uint64_t bytes =
+    std::max<std::uint64_t>(least, picture.Pixels->Pixels.size() * sizeof(glm::vec4));
   if (bytes > budget)
   {
     return;

@@ -26,7 +26,7 @@ FloatImage Draw(Communicator& communicator, DrawnField& field, ThreadPool& pool)
   FrameStatistics statistics;
   FloatImage picture = DrawDistributed(
     communicator, scene, { field.Source(), field.Zones(), Budget, pool }, statistics);
-  field.ReadAhead(scene, communicator.Rank());
+  field.ReadAhead(scene, field.Zones()[static_cast<std::size_t>(communicator.Rank())]);
   field.EndFrame(communicator);
   return picture;
 }

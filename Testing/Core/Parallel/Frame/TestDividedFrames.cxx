@@ -32,11 +32,11 @@ std::vector<Situation> Situations()
 constexpr double OfZones = 0.5 * 4.0 / 255.0 + 1e-5;
 
 /// Draws all situations on ranks, and on each of them alone.
-/// @param places none for one picture on the first rank
+/// @param placesOf a situation, by its number: none for one picture on the first rank
 /// @param judge gets each frame, and how often it was drawn before
 template <class Plays>
 void ExpectFramesOfOneRank(int ranks, FieldFrames::Division division, double allowed,
-  const std::vector<PicturePlace>& places,
+  const std::function<std::vector<PicturePlace>(int)>& placesOf,
   const std::function<void(const FieldFrames::Frame&, bool again)>& judge)
 {
   RunOnSimulatedRanks(ranks,
@@ -45,19 +45,20 @@ void ExpectFramesOfOneRank(int ranks, FieldFrames::Division division, double all
       const auto self = MakeSelfCommunicator();
       Plays divided(communicator);
       Plays alone(*self);
-      bool again = false;
+      int number = 0;
       for (const Situation& now : Situations())
       {
+        const std::vector<PicturePlace> places = placesOf(number);
         RayScene scene = divided.Take(now);
         FieldFrames::Wish wish = Plays::WishOf(now, true);
         wish.Divides = division;
         wish.Places = places;
         const FieldFrames::Frame frame =
           divided.Frames.Draw(communicator, divided.Field, scene, wish);
-        judge(frame, again);
-        again = !again;
+        judge(frame, number++ % 2 == 1);
         const FieldFrames::Frame expected = alone.Draw(now, false);
-        PixelRect mine = communicator.Rank() == 0 ? scene.Viewport : PixelRect{};
+        const bool isFirst = places.empty() && communicator.Rank() == 0;
+        PixelRect mine = isFirst ? scene.Viewport : PixelRect{};
         for (const PicturePlace& place : places)
         {
           mine = place.Root == communicator.Rank() ? place.Rect : mine;
@@ -76,6 +77,11 @@ void ExpectFramesOfOneRank(int ranks, FieldFrames::Division division, double all
     });
 }
 
+std::vector<PicturePlace> Nowhere(int)
+{
+  return {};
+}
+
 TEST(DividedFrames, DividedByPictureTheyHaveTheBitsOfOneRank)
 {
   const auto judge = [](const FieldFrames::Frame& frame, bool again)
@@ -85,14 +91,14 @@ TEST(DividedFrames, DividedByPictureTheyHaveTheBitsOfOneRank)
   };
   for (int ranks = 2; ranks <= 5; ++ranks)
   {
-    ExpectFramesOfOneRank<Player>(ranks, FieldFrames::Division::ByPicture, 0.0, {}, judge);
+    ExpectFramesOfOneRank<Player>(ranks, FieldFrames::Division::ByPicture, 0.0, Nowhere, judge);
   }
-  ExpectFramesOfOneRank<MeshPlayer>(3, FieldFrames::Division::ByPicture, 0.0, {}, judge);
+  ExpectFramesOfOneRank<MeshPlayer>(3, FieldFrames::Division::ByPicture, 0.0, Nowhere, judge);
 }
 
 TEST(DividedFrames, ValuesOfOtherRanksAreDividedByData)
 {
-  ExpectFramesOfOneRank<PlainPlayer>(3, FieldFrames::Division::ByPicture, OfZones, {},
+  ExpectFramesOfOneRank<PlainPlayer>(3, FieldFrames::Division::ByPicture, OfZones, Nowhere,
     [](const FieldFrames::Frame& frame, bool) { EXPECT_FALSE(frame.ByPicture); });
 }
 
@@ -103,7 +109,8 @@ TEST(DividedFrames, OfPlacesEachRankHasItsOwn)
   for (const bool byData : { false, true })
   {
     const auto division = byData ? FieldFrames::Division::ByData : FieldFrames::Division::Automatic;
-    ExpectFramesOfOneRank<Player>(3, division, byData ? OfZones : 0.0, places,
+    ExpectFramesOfOneRank<Player>(
+      3, division, byData ? OfZones : 0.0, [&](int) { return places; },
       [&](const FieldFrames::Frame& frame, bool again)
       {
         EXPECT_EQ(frame.Kept, again);
@@ -114,6 +121,21 @@ TEST(DividedFrames, OfPlacesEachRankHasItsOwn)
         }
       });
   }
+}
+
+TEST(DividedFrames, APlaceMayGoFromRankToRank)
+{
+  // Who shows the picture now has nothing of the one before.
+  ExpectFramesOfOneRank<Player>(
+    3, FieldFrames::Division::Automatic, OfZones,
+    [](int number) -> std::vector<PicturePlace> {
+      return { { { { 10, 0 }, { 90, 80 } }, number % 3, {} } };
+    },
+    [](const FieldFrames::Frame& frame, bool)
+    {
+      EXPECT_FALSE(frame.Kept);
+      EXPECT_FALSE(frame.ByPicture);
+    });
 }
 
 } // namespace
