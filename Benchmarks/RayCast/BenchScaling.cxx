@@ -160,7 +160,7 @@ Frames DrawFrames(const Options& options, const Timer& sinceStart, BrickSource& 
     const auto draw = [&](const RayScene& wanted)
     { return CastRays(wanted, source, wanted.DomainCells, budget, pool, frames.Statistics); };
     const int finestProbe = FinestLevelWithin(
-      scene, source, scene.DomainCells, CoarsestLevel, PackedBrickCache::PartOf(budget), pool);
+      scene, source, scene.DomainCells, CoarsestLevel, PackedBrickCache::PartOf(budget));
     const RayScene sampled = Sampled(scene, options.Tolerance, finestProbe, draw);
     FloatImage picture = draw(sampled);
     InterpolateSkippedPixels(sampled, picture, pool);

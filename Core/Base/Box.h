@@ -48,6 +48,22 @@ inline Box Intersection(const Box& a, const Box& b)
   return { glm::max(a.Lo, b.Lo), glm::min(a.Hi, b.Hi) };
 }
 
+/// Calls function(position) for all positions in a box, x fastest.
+template <class Function>
+void ForPositions(const Box& box, Function&& function)
+{
+  for (int z = box.Lo.z; z < box.Hi.z; ++z)
+  {
+    for (int y = box.Lo.y; y < box.Hi.y; ++y)
+    {
+      for (int x = box.Lo.x; x < box.Hi.x; ++x)
+      {
+        function(glm::ivec3(x, y, z));
+      }
+    }
+  }
+}
+
 /// Smallest box around both; an empty box counts as nothing.
 inline Box Union(const Box& a, const Box& b)
 {

@@ -54,22 +54,6 @@ inline Box ChildrenOf(const glm::ivec3& p, const glm::ivec3& below)
   return { 2 * p, glm::min(2 * p + 2, below) };
 }
 
-/// Calls body(position) for each position of a box, x fastest.
-template <class Body>
-void ForPositions(const Box& box, Body&& body)
-{
-  for (int z = box.Lo.z; z < box.Hi.z; ++z)
-  {
-    for (int y = box.Lo.y; y < box.Hi.y; ++y)
-    {
-      for (int x = box.Lo.x; x < box.Hi.x; ++x)
-      {
-        body(glm::ivec3(x, y, z));
-      }
-    }
-  }
-}
-
 /// Bits from the lowest of each byte on.
 class BitWriter
 {

@@ -37,6 +37,7 @@ public:
   Box CellsOf(std::int64_t brick) const override { return this->Brick(brick).Cells; }
   int BrickLevel(std::int64_t brick) const override { return this->Brick(brick).Level; }
   int CoarsestBrickLevel() const override { return this->Cut->CoarsestLevel(); }
+  bool IsGrid() const override { return false; }
   std::vector<std::int64_t> RanksFrontToBack(const Viewpoint& view) const override
   {
     return this->Cut->RanksFrontToBack(view);

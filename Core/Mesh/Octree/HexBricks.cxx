@@ -166,13 +166,8 @@ void HexBricks::Rank(const Viewpoint& view, MortonKey key, int level, std::size_
     return;
   }
   // The octant that the viewer looks from, and from there on as many steps away as bits differ.
-  const glm::dvec3 middle(PositionOfKey(key) + (1 << (level - 1)));
-  unsigned nearest = 0;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const bool high = view.Parallel ? view.Direction[axis] < 0.0 : view.Eye[axis] >= middle[axis];
-    nearest |= high ? 1u << axis : 0u;
-  }
+  const auto nearest =
+    static_cast<unsigned>(NearestOctant(view, glm::dvec3(PositionOfKey(key) + (1 << (level - 1)))));
   const MortonKey keys = CubeKeys(level - 1);
   std::size_t begins[9] = { first, 0, 0, 0, 0, 0, 0, 0, end };
   for (unsigned child = 1; child < 8; ++child)

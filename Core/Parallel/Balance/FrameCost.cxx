@@ -163,16 +163,7 @@ void AddWork(const BrickWork& from, const BrickCosts& view, BrickCosts& blocks, 
 template <class Function>
 void ForBlocks(const BrickCosts& blocks, const Box& box, Function&& function)
 {
-  for (int z = box.Lo.z; z < box.Hi.z; ++z)
-  {
-    for (int y = box.Lo.y; y < box.Hi.y; ++y)
-    {
-      for (int x = box.Lo.x; x < box.Hi.x; ++x)
-      {
-        function(blocks.NumberAt({ x, y, z }));
-      }
-    }
-  }
+  ForPositions(box, [&](const glm::ivec3& at) { function(blocks.NumberAt(at)); });
 }
 
 } // namespace
@@ -183,16 +174,18 @@ std::vector<float> VisibleParts(
   BrickCosts blocks(cells, blockEdge);
   const VisibleBricks visible(scene, source);
   const glm::ivec3 counts = source.Bricks();
-  for (std::int64_t brick = 0; brick < std::int64_t{ counts.x } * counts.y * counts.z; ++brick)
-  {
-    if (visible.Contains(brick))
+  visible.ForEach([](const Box&, bool& all) { return all = true; },
+    [&](const Box& bricks, const Box& own)
     {
-      const Box own = source.CellsOf(brick);
-      const int size = 1 << source.BrickLevel(brick);
+      const int size = 1 << source.BrickLevel(BrickSource::NumberOf(bricks.Lo, counts));
       const Box part{ own.Lo * size, own.Hi * size };
-      blocks.Add(part, static_cast<double>(part.Count()));
-    }
-  }
+      ForBlocks(blocks, blocks.BricksUnder(part),
+        [&](std::size_t block)
+        {
+          blocks.Values[block] +=
+            static_cast<double>(Intersection(blocks.PositionsOf(block), part).Count());
+        });
+    });
   std::vector<float> parts(blocks.Values.size());
   for (std::size_t i = 0; i < parts.size(); ++i)
   {

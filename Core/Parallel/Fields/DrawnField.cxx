@@ -39,6 +39,19 @@ FieldPlace PlaceOfSamples(const Grid& grid, const Box& samples)
   return place;
 }
 
+int DrawnField::CoarsestLevelOf(const glm::ivec3& cells)
+{
+  constexpr int least = 3;
+  constexpr int most = 128; // cells
+  const int longest = std::max({ cells.x, cells.y, cells.z });
+  int level = least;
+  while ((longest - 1) >> level >= most)
+  {
+    ++level;
+  }
+  return level;
+}
+
 const std::shared_ptr<CacheContext>& DrawnField::Caches()
 {
   BrickSource* const source = this->Source();

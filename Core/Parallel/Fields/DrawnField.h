@@ -48,8 +48,11 @@ FieldPlace PlaceOfSamples(const Grid& grid, const Box& samples);
 class DrawnField
 {
 public:
-  /// The coarsest level of a grid that pictures are drawn from.
-  static constexpr int CoarsestLevel = 3;
+  /// The coarsest level of a grid that pictures are drawn from: the first with at most 128 cells
+  /// along each axis, and at least 3. The next finer one takes 64 MiB of floats at most, and errors
+  /// are told from these two: whatever the size of the grid, there are levels that memory can hold.
+  /// @param cells of the finest level
+  static int CoarsestLevelOf(const glm::ivec3& cells);
 
   /// Bricks of other ranks, for the frame that was begun last.
   struct Movement

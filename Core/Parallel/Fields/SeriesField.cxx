@@ -10,6 +10,7 @@
 #include "Render/Steps/TimeStepPrefetcher.h"
 #include "Series/Decode/CacheContext.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace banyan
@@ -129,8 +130,9 @@ void SeriesField::MakeZones(const Piece& field, const Wish& wish, int ranks)
   const BrickLayout layout = this->Series->Layout(field.Level);
   FrameBalancer::Field balanced;
   balanced.Cells = wish.Samples.Size() - 1;
-  balanced.BrickCells = layout.BrickCells();
-  balanced.CoarsestLevel = CoarsestLevel;
+  balanced.CoarsestLevel = CoarsestLevelOf(balanced.Cells);
+  // The first planes, too, stand between cells of the coarsest level.
+  balanced.BrickCells = std::max(layout.BrickCells(), 1 << balanced.CoarsestLevel);
   balanced.BytesPerCell = static_cast<double>(
     SizeOf(this->Series->Index().Arrays.at(static_cast<std::size_t>(field.Array)).Type));
   this->Balancer.Start(wish.Balancing, balanced, ranks);
@@ -217,8 +219,9 @@ std::unique_ptr<BrickSource> SeriesField::SourceOfStep(int step)
 
 std::vector<Hash128> SeriesField::VisibleContent(const RayScene& scene)
 {
-  return this->Bricks ? banyan::VisibleContent(scene, *this->Bricks, CoarsestLevel)
-                      : std::vector<Hash128>();
+  return this->Bricks
+           ? banyan::VisibleContent(scene, *this->Bricks, CoarsestLevelOf(scene.DomainCells.Size()))
+           : std::vector<Hash128>();
 }
 
 ValueRange SeriesField::RangeHere()

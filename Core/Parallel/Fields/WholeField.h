@@ -49,7 +49,8 @@ public:
   std::vector<Hash128> VisibleContent(const RayScene& scene) override
   {
     this->Looked = true;
-    return this->Drawn ? banyan::VisibleContent(scene, *this->Drawn, CoarsestLevel)
+    return this->Drawn ? banyan::VisibleContent(
+                           scene, *this->Drawn, CoarsestLevelOf(scene.DomainCells.Size()))
                        : std::vector<Hash128>();
   }
   BrickSource* Source() override { return this->Drawn.get(); }

@@ -33,10 +33,9 @@ int FinestProbeLevel(
   return LargestOfAll(communicator,
     [&]
     {
-      return share.Source && !zone.Empty()
-               ? FinestLevelWithin(scene, *share.Source, zone, coarsest,
-                   PackedBrickCache::PartOf(share.BudgetBytes), share.Pool)
-               : 0;
+      return share.Source && !zone.Empty() ? FinestLevelWithin(scene, *share.Source, zone, coarsest,
+                                               PackedBrickCache::PartOf(share.BudgetBytes))
+                                           : 0;
     });
 }
 

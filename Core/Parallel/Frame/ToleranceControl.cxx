@@ -81,6 +81,13 @@ std::string LimitOf(const SamplingPlan& plan, double wanted, double planned,
   return text.substr(0, text.find_last_not_of(' ') + 1);
 }
 
+/// The coarsest level that a field is sampled at.
+int CoarsestLevelOf(const DrawnField& drawn, const RayScene& scene)
+{
+  return drawn.IsMesh() ? ToleranceControl::CoarsestMeshLevel
+                        : DrawnField::CoarsestLevelOf(scene.DomainCells.Size());
+}
+
 } // namespace
 
 ToleranceControl::Aim ToleranceControl::Begin(const Wish& wish)
@@ -109,7 +116,7 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
     return 0.0;
   }
   DrawnField& drawn = field.Drawn();
-  const int coarsest = drawn.IsMesh() ? CoarsestMeshLevel : CoarsestLevel;
+  const int coarsest = CoarsestLevelOf(drawn, scene);
   scene.LevelsShareCells = drawn.IsMesh();
   const bool byScreen = wish.ScreenErrorPixels > 0.0;
   // Plain data has coarser levels only when they are made; still pictures of it do without.
@@ -197,7 +204,7 @@ void ToleranceControl::PlanSteps(
   }
   const auto step = static_cast<int>(aim.Coarseness);
   DrawnField& drawn = field.Drawn();
-  const int coarsest = drawn.IsMesh() ? CoarsestMeshLevel : CoarsestLevel;
+  const int coarsest = CoarsestLevelOf(drawn, scene);
   scene.LevelsShareCells = drawn.IsMesh();
   // Projections combine in any order.
   const bool levels =

@@ -18,8 +18,8 @@ namespace banyan
 class ToleranceControl
 {
 public:
-  static constexpr int CoarsestLevel = DrawnField::CoarsestLevel; ///< that pictures are sampled at
-  static constexpr int CoarsestMeshLevel = 5; ///< of meshes, which have elements of several sizes
+  /// That pictures of meshes are sampled at, which have elements of several sizes.
+  static constexpr int CoarsestMeshLevel = 5;
 
   struct Wish
   {

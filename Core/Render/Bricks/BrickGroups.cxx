@@ -9,8 +9,7 @@ namespace banyan
 {
 
 BrickGroups::BrickGroups(const BrickSource& source, int cells)
-  : Source(source)
-  , Bricks(source.Bricks())
+  : Bricks(source.Bricks())
 {
   if (cells > 0 && this->Bricks.x > 0 && this->Bricks.y > 0 && this->Bricks.z > 0)
   {
@@ -36,18 +35,17 @@ std::int64_t BrickGroups::Count() const
   return Box{ glm::ivec3(0), this->Counts }.Count();
 }
 
+std::int64_t BrickGroups::NumberOf(const Box& bricks) const
+{
+  return BrickSource::NumberOf(bricks.Lo / this->Edge, this->Counts);
+}
+
 Box BrickGroups::BricksOf(std::int64_t group) const
 {
   const glm::ivec3 position(static_cast<int>(group % this->Counts.x),
     static_cast<int>(group / this->Counts.x % this->Counts.y),
     static_cast<int>(group / this->Counts.x / this->Counts.y));
   return { position * this->Edge, glm::min((position + 1) * this->Edge, this->Bricks) };
-}
-
-Box BrickGroups::CellsOf(const Box& bricks) const
-{
-  return { this->Source.CellsOf(this->BrickAt(bricks.Lo)).Lo,
-    this->Source.CellsOf(this->BrickAt(bricks.Hi - 1)).Hi };
 }
 
 } // namespace banyan

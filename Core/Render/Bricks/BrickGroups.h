@@ -4,6 +4,8 @@
 
 #include "Base/Box.h"
 
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -24,7 +26,6 @@ public:
   static constexpr int Cells = 32;
   static constexpr int CellsOfLarge = 64;
 
-  /// @param source must stay
   /// @param cells per axis that a group has at most; 0 where bricks are not cut by whole planes and
   /// may not be put together: each is a group of its own then
   BrickGroups(const BrickSource& source, int cells);
@@ -34,19 +35,18 @@ public:
   std::int64_t Count() const;
   /// Positions of a group's bricks in the grid of bricks.
   Box BricksOf(std::int64_t group) const;
+  /// The number of the group that some bricks are in.
+  std::int64_t NumberOf(const Box& bricks) const;
   /// The number of a brick.
   std::int64_t BrickAt(const glm::ivec3& position) const;
-  /// The cells of some bricks together.
-  Box CellsOf(const Box& bricks) const;
   /// A brick's place in its group, of 64 or fewer.
   int PlaceOf(const glm::ivec3& position) const
   {
-    const glm::ivec3 in = position % this->Edge;
+    const glm::ivec3 in = position & (this->Edge - 1);
     return in.x + this->Edge * (in.y + this->Edge * in.z);
   }
 
 private:
-  const BrickSource& Source;
   glm::ivec3 Bricks;
   int Edge = 1; ///< bricks per axis
   glm::ivec3 Counts{ 0 };
@@ -56,16 +56,8 @@ private:
 template <class Function>
 void ForMembers(const BrickGroups& groups, const Box& bricks, Function&& function)
 {
-  for (int z = bricks.Lo.z; z < bricks.Hi.z; ++z)
-  {
-    for (int y = bricks.Lo.y; y < bricks.Hi.y; ++y)
-    {
-      for (int x = bricks.Lo.x; x < bricks.Hi.x; ++x)
-      {
-        function(groups.BrickAt({ x, y, z }), groups.PlaceOf({ x, y, z }));
-      }
-    }
-  }
+  ForPositions(
+    bricks, [&](const glm::ivec3& at) { function(groups.BrickAt(at), groups.PlaceOf(at)); });
 }
 
 /// What is known of a group's bricks whatever the camera, a bit per place.
@@ -83,7 +75,67 @@ struct GroupMembers
   }
 };
 
-using GroupList = std::shared_ptr<const std::vector<GroupMembers>>;
+/// What is known of the groups of a level under one transfer function, wherever the camera is:
+/// found out group by group, when somebody asks. Methods may be called from any thread.
+class KnownGroups
+{
+public:
+  /// @param bytesAreOf whatever else BytesOf depends on, as a hash
+  KnownGroups(std::int64_t count, std::uint64_t bytesAreOf)
+    : Groups(static_cast<std::size_t>(count))
+    , BytesKey(bytesAreOf)
+  {
+  }
+
+  std::int64_t Count() const { return static_cast<std::int64_t>(this->Groups.size()); }
+  std::uint64_t BytesAreOf() const { return this->BytesKey; }
+
+  /// @param look called as GroupMembers() where it is not known; gives the same each time
+  template <class Look>
+  GroupMembers MembersOf(std::int64_t group, Look&& look)
+  {
+    Item& item = this->Groups[static_cast<std::size_t>(group)];
+    const std::uint64_t there = item.There.load(std::memory_order_acquire);
+    if (there != 0)
+    {
+      return { there, item.Visible, item.Uniform };
+    }
+    const GroupMembers members = look();
+    item.Visible = members.Visible;
+    item.Uniform = members.Uniform;
+    item.There.store(members.There, std::memory_order_release);
+    return members;
+  }
+
+  /// Bytes that all of a group takes.
+  /// @param count called as std::uint64_t() where it is not known; gives the same each time
+  template <class Count>
+  std::uint64_t BytesOf(std::int64_t group, Count&& count)
+  {
+    std::atomic<std::uint64_t>& more = this->Groups[static_cast<std::size_t>(group)].BytesAndOne;
+    const std::uint64_t known = more;
+    if (known != 0)
+    {
+      return known - 1;
+    }
+    const std::uint64_t bytes = count();
+    more = bytes + 1;
+    return bytes;
+  }
+
+private:
+  /// All 0 as long as nothing is known.
+  struct Item
+  {
+    std::atomic<std::uint64_t> There{ 0 };
+    std::atomic<std::uint64_t> Visible{ 0 };
+    std::atomic<std::uint64_t> Uniform{ 0 };
+    std::atomic<std::uint64_t> BytesAndOne{ 0 };
+  };
+
+  std::vector<Item> Groups;
+  std::uint64_t BytesKey;
+};
 
 } // namespace banyan
 

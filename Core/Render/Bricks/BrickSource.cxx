@@ -2,6 +2,7 @@
 #include "Render/Bricks/BrickSource.h"
 
 #include "Render/Bricks/SampledBox.h"
+#include "Render/Bricks/SummaryTree.h"
 
 #include <optional>
 #include <vector>
@@ -101,6 +102,17 @@ private:
 std::optional<UniformValue> BrickSource::UniformValueOf(std::int64_t) const
 {
   return std::nullopt;
+}
+
+const SummaryTree* BrickSource::Summaries() const
+{
+  if (!this->IsGrid())
+  {
+    return nullptr;
+  }
+  std::call_once(this->SummariesMade,
+    [this] { this->SummariesHere = std::make_shared<const SummaryTree>(*this); });
+  return this->SummariesHere.get();
 }
 
 BrickSource* BrickSource::AtLevel(int level, const Box& domain)

@@ -23,6 +23,8 @@
 namespace banyan
 {
 
+class SummaryTree;
+
 /// One finite value, and the type that samples have.
 struct UniformValue
 {
@@ -57,8 +59,14 @@ public:
   virtual int CoarsestBrickLevel() const { return 0; }
   static constexpr int MostBrickLevels = 16;
 
-  /// The place of each brick in visibility order; empty when bricks are cut by whole planes, and
-  /// VisibilityKey orders them.
+  /// Whether bricks are cut by whole planes, so that a brick's place along an axis says which cells
+  /// it has along it.
+  virtual bool IsGrid() const { return true; }
+  /// Ranges and masks of boxes of bricks, made when they are first asked for. Null unless IsGrid.
+  /// May be called from any thread.
+  const SummaryTree* Summaries() const;
+
+  /// The place of each brick in visibility order; empty where IsGrid.
   /// @param view in index space
   virtual std::vector<std::int64_t> RanksFrontToBack(const Viewpoint&) const { return {}; }
 
@@ -173,6 +181,8 @@ private:
   int LevelNumber = 0;
   std::map<int, std::unique_ptr<BrickSource>> Levels; ///< that were asked for
   std::mutex LevelsMutex;
+  mutable std::shared_ptr<const SummaryTree> SummariesHere;
+  mutable std::once_flag SummariesMade;
 };
 
 /// Cells of a level that begin in cells of the finest one: of disjoint boxes they are disjoint.

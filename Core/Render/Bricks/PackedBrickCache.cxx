@@ -159,18 +159,19 @@ void PackedBrickCache::KeepVisibility(
   }
 }
 
-GroupList PackedBrickCache::FindGroups(int level, std::uint64_t visible) const
-{
-  const std::shared_lock<std::shared_mutex> lock(this->Mutex);
-  const auto item = this->Groups.find(level);
-  return item != this->Groups.end() && item->second.first == visible ? item->second.second
-                                                                     : nullptr;
-}
-
-void PackedBrickCache::KeepGroups(int level, std::uint64_t visible, GroupList groups)
+std::shared_ptr<KnownGroups> PackedBrickCache::GroupsOf(
+  int level, std::uint64_t visible, std::int64_t count, std::uint64_t bytesAreOf)
 {
   const std::lock_guard<std::shared_mutex> lock(this->Mutex);
-  this->Groups[level] = { visible, std::move(groups) };
+  auto& [number, groups] = this->Groups[level];
+  // Zones that grow or shrink may have had other groups.
+  if (!groups || number != visible || groups->Count() != count ||
+      (bytesAreOf != 0 && groups->BytesAreOf() != bytesAreOf))
+  {
+    number = visible;
+    groups = std::make_shared<KnownGroups>(count, bytesAreOf);
+  }
+  return groups;
 }
 
 std::uint64_t PackedBrickCache::Bytes() const

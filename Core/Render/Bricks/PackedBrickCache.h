@@ -82,10 +82,12 @@ public:
   /// brick is not kept.
   void KeepVisibility(std::int64_t brick, std::uint64_t visible, const BrickVisibility& visibility);
 
-  /// What is known of the groups of bricks of a level under a number of VisibleValues, as
-  /// KeepGroups was told; null if it was not. Kept for one number per level.
-  GroupList FindGroups(int level, std::uint64_t visible) const;
-  void KeepGroups(int level, std::uint64_t visible, GroupList groups);
+  /// What is known of the groups of bricks of a level under a number of VisibleValues. Kept for one
+  /// number per level.
+  /// @param count of all groups
+  /// @param bytesAreOf see KnownGroups; 0 for whatever is there
+  std::shared_ptr<KnownGroups> GroupsOf(
+    int level, std::uint64_t visible, std::int64_t count, std::uint64_t bytesAreOf);
 
   std::uint64_t Bytes() const;
 
@@ -112,7 +114,8 @@ private:
   std::uint64_t HeldBytes = 0;
   std::int64_t Picture = 0;
   std::unordered_map<std::int64_t, Item> Items;
-  std::unordered_map<int, std::pair<std::uint64_t, GroupList>> Groups; ///< by level
+  /// By level, with the number of VisibleValues.
+  std::unordered_map<int, std::pair<std::uint64_t, std::shared_ptr<KnownGroups>>> Groups;
   mutable std::shared_mutex Mutex; ///< shared by those who only look
 };
 

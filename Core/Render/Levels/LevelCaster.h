@@ -27,9 +27,6 @@ public:
   /// Pixels that the visible bricks may touch, those of other levels' tiles included.
   const PixelRect& Rect() const { return this->Plan.Touched; }
 
-  /// Bytes that all bricks that can be seen take, as loaded and as packed for drawing.
-  std::uint64_t BytesToDraw() const { return this->Plan.BytesToDraw(this->Level); }
-
   /// Draws the tiles of the level, and makes them final: premultiplied colours and opacities.
   /// @param picture its pixels in tiles of the level are set, whatever they were; while they are
   /// drawn, they have the *transmittance* in the fourth component

@@ -20,10 +20,7 @@ struct PlannedBrick
   Box Cells;               ///< cells to pack, counted in cells of the brick
   Box Drawn;               ///< the part of them to draw, counted in cells of the source
   PixelRect Footprint;     ///< of Drawn; inside the viewport, never empty
-  /// Bricks are drawn in the order of these keys. The first one orders groups of bricks, the second
-  /// one the eighths of a group, the third one single bricks. Keys below what is one brick are 0.
-  double Keys[3] = {};
-  float HighestRank = 0; ///< that a sample of it may have; projections only
+  float HighestRank = 0;   ///< that a sample of it may have; projections only
   /// The entry of the opacity table that all samples have, where they have one and are not shaded.
   /// Such a brick is never loaded.
   std::optional<int> Entry;

@@ -69,21 +69,18 @@ FloatImage Cast(const RayScene& scene, BrickSource& source, const Box& cells,
 
 } // namespace
 
-int FinestLevelWithin(const RayScene& scene, BrickSource& source, const Box& cells, int coarsest,
-  std::uint64_t bytes, ThreadPool& pool)
+int FinestLevelWithin(
+  const RayScene& scene, BrickSource& source, const Box& cells, int coarsest, std::uint64_t bytes)
 {
   RayScene planned = scene;
-  RayStatistics statistics;
   int level = 0;
   for (; level < coarsest; ++level)
   {
     planned.Samplings = std::make_shared<const TileSamplings>(
       scene.Camera.ImageSize(), std::vector{ RaySampling{ level, scene.SampleDistance } });
     BrickSource& at = SourceAt(source, level, scene);
-    const LevelCaster caster(planned, at,
-      CellsAtLevel(Intersection(cells, scene.DomainCells), at.CellLevel()), bytes, pool,
-      statistics);
-    if (caster.BytesToDraw() <= bytes)
+    if (AllFits(LevelScene(planned, at),
+          CellsAtLevel(Intersection(cells, scene.DomainCells), at.CellLevel()), bytes))
     {
       break;
     }

@@ -52,8 +52,8 @@ FloatImage CastViewport(const RayScene& scene, BrickSource& source, const Box& c
 /// The finest level of which all that can be seen, as loaded and as packed for drawing, takes at
 /// most `bytes`; `coarsest` if there is none. Nothing is loaded to find out.
 /// @param coarsest a level that the source has
-int FinestLevelWithin(const RayScene& scene, BrickSource& source, const Box& cells, int coarsest,
-  std::uint64_t bytes, ThreadPool& pool);
+int FinestLevelWithin(
+  const RayScene& scene, BrickSource& source, const Box& cells, int coarsest, std::uint64_t bytes);
 
 /// The slow, obvious reference: double precision, one ray after the other, every sample through
 /// all eight corners, no skipping, no early end, no table (`function` gives colour and opacity per

@@ -171,12 +171,14 @@ PixelRect RayCamera::Footprint(const glm::dvec3& low, const glm::dvec3& high) co
 {
   glm::dvec4 corner[8];
   double inFrontOfNear[8]; // signed: >= 0 behind the near plane, where rays are
+  int behindNear = 0;
   int beforeFar = 0;
   for (int i = 0; i < 8; ++i)
   {
     const glm::dvec3 p(i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z);
     corner[i] = this->WorldToClip * glm::dvec4(p, 1.0);
     inFrontOfNear[i] = corner[i].z + corner[i].w;
+    behindNear += inFrontOfNear[i] >= 0.0 ? 1 : 0;
     beforeFar += corner[i].z - corner[i].w <= 1e-9 * std::abs(corner[i].w) ? 1 : 0;
   }
   if (beforeFar == 0)
@@ -193,7 +195,7 @@ PixelRect RayCamera::Footprint(const glm::dvec3& low, const glm::dvec3& high) co
     {
       projected = bounds.Include(corner[i], this->Size) && projected;
     }
-    for (int axis = 1; axis < 8; axis <<= 1)
+    for (int axis = 1; axis < 8 && behindNear < 8; axis <<= 1)
     {
       const int j = i | axis;
       if (j != i && (inFrontOfNear[i] < 0.0) != (inFrontOfNear[j] < 0.0))

@@ -42,7 +42,8 @@ public:
     // Not a number where there is no gradient.
     const float inside = squared >= 0.0f ? (squared < 1.0f ? squared : 1.0f) : 0.0f;
     const float cosine = std::sqrt(inside);
-    const int entry = static_cast<int>(cosine * (Entries - 1) + 0.5f);
+    const float nearest = cosine * (Entries - 1) + 0.5f;
+    const int entry = static_cast<int>(nearest);
     return { this->Ambient + this->Diffuse * cosine,
       this->Highlights[static_cast<std::size_t>(entry)] };
   }

@@ -91,12 +91,16 @@ void TransferFunction::Check() const
 
 ValueMask TransferFunction::VisibleBins(const MaskRange& range) const
 {
-  const VisibleValues visible(*this);
+  return VisibleValues(*this).Bins(range);
+}
+
+ValueMask VisibleValues::Bins(const MaskRange& range) const
+{
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const double width = range.High - range.Low;
   if (!(width > 0.0))
   {
-    return visible.Any(-infinity, infinity) ? MaskOfBins(0, 0) : ValueMask{ 0 };
+    return this->Any(-infinity, infinity) ? MaskOfBins(0, 0) : ValueMask{ 0 };
   }
   // A value at the very edge may be counted to either side, depending on rounding.
   const double slack = 1e-9 * width + 4e-16 * std::max(std::abs(range.Low), std::abs(range.High));
@@ -105,7 +109,7 @@ ValueMask TransferFunction::VisibleBins(const MaskRange& range) const
   {
     const double low = bin == 0 ? -infinity : range.Low + width * (bin / 64.0) - slack;
     const double high = bin == 63 ? infinity : range.Low + width * ((bin + 1) / 64.0) + slack;
-    mask |= visible.Any(low, high) ? MaskOfBins(bin, bin) : ValueMask{ 0 };
+    mask |= this->Any(low, high) ? MaskOfBins(bin, bin) : ValueMask{ 0 };
   }
   return mask;
 }

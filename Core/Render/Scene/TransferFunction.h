@@ -73,6 +73,9 @@ public:
   /// As TransferFunction::AnyVisible; an empty interval (low > high) shows nothing.
   bool Any(double low, double high) const;
 
+  /// As TransferFunction::VisibleBins.
+  ValueMask Bins(const MaskRange& range) const;
+
   /// Whether every value in [low, high] can be seen. Conservative too: false when in doubt.
   bool All(double low, double high) const;
 

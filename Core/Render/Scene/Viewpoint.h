@@ -19,6 +19,21 @@ struct Viewpoint
   glm::dvec3 Direction{ 0, 0, -1 }; ///< parallel: along every ray, away from the viewer; not 0
 };
 
+/// The octant around a place that a viewer is in, or looks from: bit k for the upper side of axis
+/// k. Octants that have n bits other than it come after those with fewer: `nearest ^ steps` goes
+/// through them front to back, with steps from 0 to 7.
+/// @param view, middle in the same space
+inline int NearestOctant(const Viewpoint& view, const glm::dvec3& middle)
+{
+  int nearest = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const bool high = view.Parallel ? view.Direction[axis] < 0.0 : view.Eye[axis] >= middle[axis];
+    nearest |= high ? 1 << axis : 0;
+  }
+  return nearest;
+}
+
 /// The viewpoint of a camera of world space, in index space.
 /// @param indexToWorld affine and invertible: sample index (i, j, k) -> world. Mirroring matrices
 ///        are allowed. Directions need not have unit length in index space.

@@ -27,6 +27,7 @@ public:
   Box CellsOf(std::int64_t brick) const override { return this->Now->CellsOf(brick); }
   int BrickLevel(std::int64_t brick) const override { return this->Now->BrickLevel(brick); }
   int CoarsestBrickLevel() const override { return this->Now->CoarsestBrickLevel(); }
+  bool IsGrid() const override { return this->Now->IsGrid(); }
   std::vector<std::int64_t> RanksFrontToBack(const Viewpoint& view) const override
   {
     return this->Now->RanksFrontToBack(view);

@@ -130,10 +130,7 @@ TEST(SamplingPlan, TheFinestLevelThatFitsInMemoryIsFoundWithoutLoading)
   ThreadPool pool(2);
   Drawer drawer(StandardScene(StandardVolume(65, pool), StandardFunction::S1, false, Pixels));
   const auto finest = [&](std::uint64_t bytes)
-  {
-    return FinestLevelWithin(
-      drawer.Scene, drawer.Source, drawer.Scene.DomainCells, 3, bytes, drawer.Pool);
-  };
+  { return FinestLevelWithin(drawer.Scene, drawer.Source, drawer.Scene.DomainCells, 3, bytes); };
   // 64^3 cells, of which everything can be seen, packed as pairs of floats.
   const std::uint64_t all = std::uint64_t{ 65 * 65 * 65 } * 8;
   EXPECT_EQ(finest(2 * all), 0);

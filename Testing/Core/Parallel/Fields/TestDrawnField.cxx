@@ -45,6 +45,16 @@ TEST(DrawnField, LiesWhereItsSamplesDo)
   EXPECT_EQ(glm::dvec3(place.IndexToPhysical * glm::dvec4(1, 1, 1, 1)), glm::dvec3(14, 23, 32));
 }
 
+TEST(DrawnField, AlwaysHasLevelsThatMemoryHolds)
+{
+  EXPECT_EQ(DrawnField::CoarsestLevelOf({ 0, 0, 0 }), 3);
+  EXPECT_EQ(DrawnField::CoarsestLevelOf({ 1023, 1023, 1023 }), 3);
+  EXPECT_EQ(DrawnField::CoarsestLevelOf({ 1024, 5, 5 }), 3);
+  EXPECT_EQ(DrawnField::CoarsestLevelOf({ 5, 1025, 5 }), 4);
+  EXPECT_EQ(DrawnField::CoarsestLevelOf({ 4095, 4095, 4095 }), 5);
+  EXPECT_EQ(DrawnField::CoarsestLevelOf({ 16384, 16384, 128 }), 7);
+}
+
 TEST(DrawnField, PiecesAreDrawnLikeTheWhole)
 {
   const std::vector<double> values = scenes::Sampled<double>(scenes::Standard, Samples);

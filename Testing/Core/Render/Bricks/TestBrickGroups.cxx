@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Render/Bricks/BrickGroups.h"
 
+#include "Render/Bricks/SummaryTree.h"
 #include "Render/Scenes.h"
 
 #include <gtest/gtest.h>
@@ -77,7 +78,7 @@ TEST(BrickGroups, HaveEachBrickOnce)
             EXPECT_TRUE(places.insert(place).second);
             together = Union(together, source.CellsOf(brick));
           });
-        EXPECT_EQ(groups.CellsOf(bricks), together);
+        EXPECT_EQ(source.Summaries()->CellsOf(bricks), together);
       }
       const glm::ivec3 counts = source.Bricks();
       EXPECT_EQ(seen.size(), static_cast<std::size_t>(counts.x * counts.y * counts.z));
@@ -105,7 +106,7 @@ TEST(BrickGroups, AreLoadedAsTheArrayIs)
       source.LoadTogether(groups.BricksOf(group), around, same);
       ASSERT_EQ(samples, same);
       ASSERT_EQ(view.Type, ScalarType::Float32);
-      const Box cells = groups.CellsOf(groups.BricksOf(group));
+      const Box cells = source.Summaries()->CellsOf(groups.BricksOf(group));
       const int layer = around ? 1 : 0;
       EXPECT_EQ(samples,
         Intersection(Box{ cells.Lo - layer, cells.Hi + 1 + layer }, Box{ glm::ivec3(0), n }));
@@ -257,14 +258,30 @@ TEST(BrickGroups, MacroCellsBelongToTheBrickThatTheirMiddleIsIn)
 TEST(BrickGroups, WhatIsKnownOfThemIsKeptForOneFunction)
 {
   PackedBrickCache kept;
-  const auto list = std::make_shared<const std::vector<GroupMembers>>(3);
-  EXPECT_EQ(kept.FindGroups(0, 7), nullptr);
-  kept.KeepGroups(0, 7, list);
-  EXPECT_EQ(kept.FindGroups(0, 7), list);
-  EXPECT_EQ(kept.FindGroups(1, 7), nullptr);
-  EXPECT_EQ(kept.FindGroups(0, 8), nullptr);
-  kept.KeepGroups(0, 8, list);
-  EXPECT_EQ(kept.FindGroups(0, 7), nullptr);
+  int looks = 0;
+  const auto look = [&]
+  {
+    ++looks;
+    return GroupMembers{ 7, 3, 1 };
+  };
+  const auto bytes = [&] { return std::uint64_t{ 0 } * static_cast<std::uint64_t>(++looks); };
+  const auto groups = kept.GroupsOf(0, 7, 3, 5);
+  for (int i = 0; i < 2; ++i)
+  {
+    const GroupMembers members = groups->MembersOf(2, look);
+    EXPECT_EQ(members.There, 7u);
+    EXPECT_EQ(members.Visible, 3u);
+    EXPECT_EQ(members.Uniform, 1u);
+    EXPECT_EQ(groups->BytesOf(2, bytes), 0u);
+  }
+  EXPECT_EQ(looks, 2);
+  EXPECT_EQ(kept.GroupsOf(0, 7, 3, 5), groups);
+  EXPECT_EQ(kept.GroupsOf(0, 7, 3, 0), groups);
+  EXPECT_NE(kept.GroupsOf(1, 7, 3, 5), groups);
+  EXPECT_NE(kept.GroupsOf(0, 7, 3, 6), groups);
+  const auto others = kept.GroupsOf(0, 8, 3, 0);
+  EXPECT_NE(others, groups);
+  EXPECT_NE(kept.GroupsOf(0, 8, 4, 0), others);
 }
 
 } // namespace
