@@ -6,7 +6,6 @@
 #include "vtkBanyanVolumeMapper.h"
 
 #include "Base/Progress.h"
-#include "Base/Timer.h"
 #include "Parallel/Composite/PackedDepths.h"
 
 #include "vtkRenderer.h"
@@ -108,7 +107,6 @@ void VolumesOnWall::Draw(const std::vector<WallPicture>& pictures, const DepthPi
     this->Frames.end());
   std::set<VolumeFrame*> drawn;
   std::set<VolumeFrame*> failed;
-  const Timer all;
   for (std::size_t number = 0; number < pictures.size(); ++number)
   {
     const VolumeFrame::OnWall wall{ pictures[number].Places, number, pictures.size() };
