@@ -177,9 +177,9 @@ def change(scene, count):
 
     changes = (turn, turn, turn, hide, look_away, make_translucent, select, step, move)
     for number in range(count):
-        todo = dice.choice(changes)
-        print(f"{number}: {todo.__name__}", flush=True)
-        todo()
+        chosen = dice.choice(changes)
+        print(f"{number}: {chosen.__name__}", flush=True)
+        chosen()
         if dice.random() < 0.5:
             view.SMProxy.InteractiveRender()
         simple.Render(view)
