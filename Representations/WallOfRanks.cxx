@@ -171,40 +171,51 @@ std::vector<WallPicture> PicturesOf(const std::vector<Display>& tiles)
   return pictures;
 }
 
+/// What is not as it should be on a tile display, in sentences.
+/// @param translucent whether ParaView blends pictures of ranks in order
+std::string NoteOn(const std::vector<Display>& tiles, bool translucent)
+{
+  std::string note;
+  const auto tell = [&note](const std::string& sentences)
+  { note += note.empty() ? sentences : " " + sentences; };
+  const auto other = std::find_if(tiles.begin(), tiles.end(),
+    [&](const Display& tile) { return tile.Window != tiles.front().Window; });
+  if (other != tiles.end())
+  {
+    tell("The windows of rank 0 and rank " + std::to_string(other - tiles.begin()) +
+         " have different sizes: ParaView's picture does not fit together on this tile display. "
+         "Set them by PV_SHARED_WINDOW_SIZE, or by the displays of the ranks.");
+  }
+  const int* const counts = vtkRemotingCoreConfiguration::GetInstance()->GetTileDimensions();
+  if (counts[0] * counts[1] > static_cast<int>(tiles.size()))
+  {
+    tell("The tile display has " + std::to_string(counts[0] * counts[1]) +
+         " tiles, and the server " + std::to_string(tiles.size()) +
+         " ranks: tiles without a rank stay blank. Start as many ranks as tiles.");
+  }
+  if (translucent)
+  {
+    tell("Something translucent is shown. ParaView then keeps no depths on tile displays: "
+         "surfaces before a Banyan Volume do not hide it. Make all surfaces opaque.");
+  }
+  return note;
+}
+
 WallOfRanks LookAtTiles(vtkPVRenderView* view, vtkMultiProcessController* ranks)
 {
   vtkRenderer* const renderer = view->GetRenderer();
   const int self = ranks->GetLocalProcessId();
   const int count = ranks->GetNumberOfProcesses();
   const std::vector<Display> all = AllOf(ranks, TileOf(renderer, self, count));
-  WallOfRanks wall;
-  for (int rank = 0; rank < count; ++rank)
-  {
-    if (all[static_cast<std::size_t>(rank)].Window != all.front().Window && wall.Note.empty())
-    {
-      wall.Note = "The windows of rank 0 and rank " + std::to_string(rank) +
-                  " have different sizes: ParaView's picture does not fit together on this tile "
-                  "display. Set them by PV_SHARED_WINDOW_SIZE, or by the displays of the ranks.";
-    }
-  }
-  const int* const tiles = vtkRemotingCoreConfiguration::GetInstance()->GetTileDimensions();
-  if (tiles[0] * tiles[1] > count)
-  {
-    wall.Note = "The tile display has " + std::to_string(tiles[0] * tiles[1]) +
-                " tiles, and the server " + std::to_string(count) +
-                " ranks: tiles without a rank stay blank. Start as many ranks as tiles.";
-  }
-  if (view->GetUseOrderedCompositing())
-  {
-    wall.Note = "Something translucent is shown. ParaView then keeps no depths on tile displays: "
-                "surfaces before a Banyan Volume do not hide it. Make all surfaces opaque.";
-  }
-  wall.Pictures = PicturesOf(all);
+  WallOfRanks wall{ PicturesOf(all), {}, NoteOn(all, view->GetUseOrderedCompositing()) };
   for (const WallPicture& picture : wall.Pictures)
   {
     for (const PicturePlace& place : picture.Places)
     {
-      wall.Own = place.Root == self ? DepthsOfTile(renderer, place.Rect) : std::move(wall.Own);
+      if (place.Root == self)
+      {
+        wall.Own = DepthsOfTile(renderer, place.Rect);
+      }
     }
   }
   return wall;
