@@ -177,7 +177,12 @@ void ServedWindow::AfterRender(vtkObject*, unsigned long, void* interactive)
   const bool moves = interactive && *static_cast<int*>(interactive) != 0;
   this->HasLod = moves;
   this->IsDrawn = !moves;
+  this->DrawnToEye = this->WorldToEye();
   this->Ahead = false;
+  if (this->EndsAtRest && !moves)
+  {
+    this->EndMoves();
+  }
   if (this->IsServed())
   {
     const ScreenView view = ViewOf(this->View->GetRenderer());
@@ -192,8 +197,13 @@ void ServedWindow::AfterRender(vtkObject*, unsigned long, void* interactive)
 /// In place of a picture of ParaView's while the camera moves, which would wait for the server.
 bool ServedWindow::Move(vtkObject*, unsigned long, void*)
 {
-  if (!this->IsServed() || this->HasFailed() || !this->Moving || this->Busy ||
-      this->View->GetNeedsUpdate() || !IsIdle(this->View) || IsLinked(this->View))
+  if (!this->IsServed() || this->HasFailed() || this->Busy || this->View->GetNeedsUpdate() ||
+      !IsIdle(this->View) || IsLinked(this->View))
+  {
+    return false;
+  }
+  const bool byWidget = !this->Moving && this->WorldToEye() != this->DrawnToEye;
+  if (!this->Moving && !byWidget)
   {
     return false;
   }
@@ -201,6 +211,11 @@ bool ServedWindow::Move(vtkObject*, unsigned long, void*)
   if (view->GetUseLODForInteractiveRender() && !this->HasLod)
   {
     return false; // ParaView delivers coarse data for this picture, which the next ones show
+  }
+  if (byWidget)
+  {
+    this->BeginMoves();
+    this->EndsAtRest = true;
   }
   view->ResetCameraClippingRange();
   this->DrawAlone(/*exact=*/false);
@@ -213,7 +228,13 @@ bool ServedWindow::Move(vtkObject*, unsigned long, void*)
 void ServedWindow::BeginMoves()
 {
   this->Moving = true;
+  this->EndsAtRest = false;
   this->Path.Begin();
+}
+
+glm::dmat4 ServedWindow::WorldToEye() const
+{
+  return ToGlm(this->View->GetRenderer()->GetActiveCamera()->GetViewTransformMatrix());
 }
 
 void ServedWindow::Want(const ScreenView& view, bool moves)
@@ -227,8 +248,7 @@ void ServedWindow::Want(const ScreenView& view, bool moves)
 /// What will be seen when a picture of it is here, if the camera goes on as it does.
 ScreenView ServedWindow::Soon(const ScreenView& now)
 {
-  const glm::dmat4 toEye =
-    ToGlm(this->View->GetRenderer()->GetActiveCamera()->GetViewTransformMatrix());
+  const glm::dmat4 toEye = this->WorldToEye();
   this->Path.Add(toEye, this->Clock.Seconds());
   double seconds = 0.0;
   for (const ServedVolume* const volume : this->InUse())
@@ -278,6 +298,7 @@ void ServedWindow::DrawAlone(bool exact)
   }
   this->Busy = false;
   this->IsDrawn = exact;
+  this->DrawnToEye = this->WorldToEye();
   this->SinceDrawn = banyan::Timer();
 }
 
@@ -306,6 +327,11 @@ void ServedWindow::Look(vtkObject*, unsigned long, void* timer)
   {
     this->StopTimer();
     this->Interactor->InvokeEvent(vtkCommand::RenderEvent);
+    return;
+  }
+  if (this->EndsAtRest && this->SinceMove.Seconds() > RestSeconds)
+  {
+    this->View->StillRender(); // as ParaView does when the mouse is released
     return;
   }
   this->ShowPictures();
@@ -350,7 +376,7 @@ void ServedWindow::ShowPictures()
   {
     this->DrawAlone(exact);
   }
-  bool goesOn = this->Ahead;
+  bool goesOn = this->Ahead || this->EndsAtRest;
   for (ServedVolume* const volume : volumes)
   {
     goesOn = volume->GoOn() || goesOn;

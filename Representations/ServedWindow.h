@@ -64,7 +64,8 @@ private:
   void AfterRender(vtkObject* caller, unsigned long event, void* interactive);
   bool Move(vtkObject* caller, unsigned long event, void* data);
   void BeginMoves();
-  void EndMoves() { this->Moving = false; }
+  void EndMoves() { this->Moving = this->EndsAtRest = false; }
+  glm::dmat4 WorldToEye() const;
   void Look(vtkObject* caller, unsigned long event, void* timer);
   void ReadPictures();
   void ShowPictures();
@@ -85,13 +86,15 @@ private:
   std::vector<unsigned long> OfInteractor;
   int Timer = -1; ///< of the interactor; -1 for none
   bool Served = false;
-  bool Moving = false; ///< the camera, by the mouse
-  bool Busy = false;   ///< in a function that draws or pumps
+  bool Moving = false;     ///< the camera, by the mouse
+  bool EndsAtRest = false; ///< Moving, by a widget, which does not say when that ends
+  bool Busy = false;       ///< in a function that draws or pumps
   StepWatch Steps;
-  bool HasLod = false; ///< other data were delivered for moves
-  bool IsDrawn = true; ///< as it is to stay, if all pictures are exact
-  CameraPath Path;     ///< while the mouse moves it
-  bool Ahead = false;  ///< the server draws what will be seen, if the camera goes on as it does
+  bool HasLod = false;          ///< other data were delivered for moves
+  bool IsDrawn = true;          ///< as it is to stay, if all pictures are exact
+  glm::dmat4 DrawnToEye{ 1.0 }; ///< WorldToEye of the last picture
+  CameraPath Path;              ///< while the mouse moves it
+  bool Ahead = false; ///< the server draws what will be seen, if the camera goes on as it does
   banyan::Timer Clock;
   banyan::Timer SinceMove;
   banyan::Timer SinceDrawn;

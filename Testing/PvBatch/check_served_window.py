@@ -15,6 +15,7 @@ import pictures
 import session
 
 PATIENCE = 60.0  # seconds for what comes by itself
+MIDDLE = [200, 200]  # of the window, about: ParaView has widgets in the corners, in 5.12 and 5.13 an unseen one
 # Qt of this process, which has no name in Python: QCoreApplication::processEvents of all events.
 turn_event_loop = getattr(ctypes.CDLL(None), "_ZN16QCoreApplication13processEventsE6QFlagsIN10QEventLoop17ProcessEventsFlagEE")
 
@@ -45,7 +46,7 @@ class ServedWindow:
         self.drawn = 0  # that the window has drawn
         self.view.SMProxy.AddObserver("StartEvent", self.count_asked)
         self.window.AddObserver("EndEvent", self.count_drawn)
-        self.place = [200, 200]
+        self.place = MIDDLE
         self.worst = 1  # of 255
         self.others = 0  # pixels that may differ more
 
@@ -67,11 +68,24 @@ class ServedWindow:
         self.interactor.SetEventInformation(*self.place, 0, 0, chr(0), 0, None)
         self.interactor.InvokeEvent(event)
 
+    def press(self):
+        self.place = MIDDLE
+        self.mouse("LeftButtonPressEvent")
+
     def move(self, times):
         for _ in range(times):
             self.place = [self.place[0] + 5, self.place[1] + 2]
             self.moves = True
             self.mouse("MouseMoveEvent")
+            self.moves = False
+            self.wait(0.04)
+
+    def turn(self, times):
+        """As a widget does that turns the camera: nobody says when that begins and ends."""
+        for _ in range(times):
+            self.moves = True
+            self.view.GetActiveCamera().Azimuth(3.0)
+            self.interactor.Render()
             self.moves = False
             self.wait(0.04)
 
@@ -109,7 +123,7 @@ class ServedWindow:
         return pictures.load(path)
 
     def drag(self, what, meanwhile=lambda: None):
-        self.mouse("LeftButtonPressEvent")
+        self.press()
         self.move(2)  # the first one after something else may be ParaView's
         asked, drawn = self.asked, self.drawn
         self.move(10)
@@ -124,6 +138,18 @@ class ServedWindow:
         self.require_same(what, still)
         session.require(still.std() > 5, f"{what}: the window shows a volume")
         return moving, still
+
+    def turn_by_widget(self):
+        simple.Render(self.view)
+        self.turn(2)
+        asked, drawn = self.asked, self.drawn
+        self.turn(10)
+        session.require(self.asked == asked, "a camera that a widget turns does not wait for the server")
+        session.require(self.drawn >= drawn + 10, f"each turn is drawn ({self.drawn - drawn} of 10)")
+        self.require_exact("turned by a widget")
+        camera = self.view.GetActiveCamera()
+        session.require(list(self.view.CameraPosition) == list(camera.GetPosition()), "ParaView knows the camera")
+        self.require_same("turned by a widget", self.shown("turned by a widget"))
 
     def drag_function(self):
         """As the editor of the window does: the server is told when the drag ends."""
@@ -179,7 +205,7 @@ class ServedWindow:
     def require_waits(self, what):
         simple.Render(self.view)
         asked = self.asked
-        self.mouse("LeftButtonPressEvent")
+        self.press()
         self.move(3)
         self.mouse("LeftButtonReleaseEvent")
         session.require(self.asked == asked + 3, f"{what}: the window waits for the server ({self.asked - asked} of 3)")
@@ -217,6 +243,7 @@ class ServedWindow:
 
         self.drag_function()
         simple.Render(self.view)
+        self.turn_by_widget()
         self.busy_server()
 
         # Rays end in other data, wherever those are. The volume is rounded before it is blended over them, and where
