@@ -105,7 +105,11 @@ void ServedVolume::Serve(bool serves, int volumes)
 
 void ServedVolume::WantAnew(const ScreenView& view, bool moves)
 {
-  this->HasOtherFunctions = false;
+  // ParaView's editor of opacities, from 5.12 on, has each change drawn and tells the server later.
+  if (std::exchange(this->HasOtherFunctions, false))
+  {
+    this->Proxy->SendFunctions();
+  }
   this->Functions.Watch(this->OfUser());
   this->Want(view, moves, /*mayHaveChanged=*/true);
 }
@@ -288,14 +292,6 @@ void ServedVolume::FunctionsHaveChanged()
   }
 }
 
-void ServedVolume::ShowFunctions()
-{
-  this->HasOtherFunctions = false;
-  this->Proxy->SendFunctions();
-  this->Want(
-    ViewOf(this->Window->GetView()->GetRenderer()), /*moves=*/true, /*mayHaveChanged=*/true);
-}
-
 bool ServedVolume::GoOn()
 {
   if (this->Number - this->Seen >= MostUnseen)
@@ -304,7 +300,7 @@ bool ServedVolume::GoOn()
   }
   if (this->HasOtherFunctions && !this->Window->GetView()->GetNeedsUpdate())
   {
-    this->ShowFunctions();
+    this->WantAnew(ViewOf(this->Window->GetView()->GetRenderer()), /*moves=*/true);
   }
   const bool isMissing = this->ExactScene != this->Scene;
   // The rest of a picture is asked for when the first part has come.

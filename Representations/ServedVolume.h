@@ -49,7 +49,7 @@ public:
 
   /// Tells the server what is wanted, now or soon.
   void Want(const ScreenView& view, bool moves, bool mayHaveChanged);
-  /// After a picture of ParaView's, for which anything may have changed.
+  /// After a picture of ParaView's, for which anything may have changed, functions included.
   void WantAnew(const ScreenView& view, bool moves);
   /// Has the server go on. To be called now and then.
   /// @return whether something is still to come, or to be shown
@@ -77,7 +77,6 @@ private:
 
   void TryAgain() { this->Failure.clear(); }
   void FunctionsHaveChanged();
-  void ShowFunctions();
   void SendTicket();
   void AddDepths(PictureTicket& ticket);
   int CoarseEvery() const;
