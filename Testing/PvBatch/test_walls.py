@@ -15,6 +15,7 @@ import xml.etree.ElementTree
 
 import numpy
 from paraview import simple
+from vtkmodules.vtkRenderingCore import vtkCamera
 
 import picture_scenes
 import pictures
@@ -39,23 +40,22 @@ class Scene:
 def poses(scene, wall):
     """Changes the scene again and again; gives a name each time."""
     view = scene.view
-    view.CameraPosition = wall.eye
+    wall.look(view, wall.eye, [0, 0, 0])
     yield "whole"
     view.CameraViewAngle = 12  # all displays show a part
     yield "near"
     view.CameraViewAngle = 30
-    view.CameraFocalPoint = [25, 14, 0]  # all is in one corner
+    wall.look(view, wall.eye, [25, 14, 0])  # all is in one corner
     yield "corner"
-    view.CameraFocalPoint = [0, 0, 0]
+    wall.look(view, wall.eye, [0, 0, 0])
     scene.second.Visibility = 1
     yield "two"
     scene.first.Visibility = 0
     view.ViewTime = 1.0
     yield "step"
-    view.CameraPosition = [0, 0, 200]
-    view.CameraFocalPoint = [0, 0, 400]  # nobody sees it
+    wall.look(view, [0, 0, 200], [0, 0, 400])  # nobody sees it
     yield "away"
-    view.CameraPosition, view.CameraFocalPoint = wall.eye, [0, 0, 0]
+    wall.look(view, wall.eye, [0, 0, 0])
     scene.first.Visibility = 1
     scene.spheres.Visibility = 0
     yield "volumes"
@@ -69,6 +69,7 @@ class Tiles:
     the gaps between them. Numbers have to be such that parts have whole pixels."""
 
     eye = [45, 40, 100]
+
     def __init__(self, counts, mullions):
         # Pixels that may differ by more than 1 where there are surfaces.
         self.off = 4000 if any(mullions) else 0
@@ -77,6 +78,9 @@ class Tiles:
         whole = [n * (d + m) - m for n, d, m in zip(counts, DISPLAY, mullions)]
         self.shown, self.step = ([length * size // all_of for length, size, all_of in zip(lengths, self.size, whole)]
                                  for lengths in (DISPLAY, [d + m for d, m in zip(DISPLAY, mullions)]))
+
+    def look(self, view, eye, focus):
+        view.CameraPosition, view.CameraFocalPoint = eye, focus
 
     def names(self):
         return [""]
@@ -97,12 +101,22 @@ class Tiles:
 
 class Cave:
     eye = [15, 13, 33]
-    off = 300  # copies of surfaces differ: at edges, and by two or three of 255 inside
+    off = 0
 
     def __init__(self, file):
-        machines = xml.etree.ElementTree.parse(file).getroot().iter("Machine")
+        root = xml.etree.ElementTree.parse(file).getroot()
+        machines = root.iter("Machine")
+        self.separation = float(next(root.iter("EyeSeparation")).get("Value"))
         self.corners = [[[float(number) for number in machine.get(corner).split()]
                          for corner in ("LowerLeft", "LowerRight", "UpperRight")] for machine in machines]
+
+    def look(self, view, eye, focus):
+        """Moves the world into the room: since VTK 9.3 a camera with a screen heeds no position and focal point."""
+        wanted = vtkCamera()
+        wanted.SetPosition(eye)
+        wanted.SetFocalPoint(focus)
+        view.CameraPosition, view.CameraFocalPoint = [0, 0, 0], [0, 0, -1]
+        view.GetActiveCamera().SetModelTransformMatrix(wanted.GetViewTransformMatrix())
 
     def names(self):
         return [str(number) for number in range(len(self.corners))]
@@ -114,6 +128,7 @@ class Cave:
         camera.SetScreenBottomLeft(low)
         camera.SetScreenBottomRight(right)
         camera.SetScreenTopRight(top)
+        camera.SetEyeSeparation(self.separation)  # a picture without stereo is that of the left eye
         camera.SetUseOffAxisProjection(True)
 
     def ranks(self):
@@ -123,19 +138,22 @@ class Cave:
         return whole[str(rank)]
 
 
-def draw_whole(scene, wall, out):
-    for pose in poses(scene, wall):
-        for name in wall.names():
+def draw_whole(wall, out):
+    for name in wall.names():
+        scene = Scene()  # since VTK 9.3 a camera keeps the orientation of its first screen
+        for pose in poses(scene, wall):
             wall.place(scene.view, name)
             simple.Render(scene.view)
             simple.SaveScreenshot(os.path.join(out, f"whole-{pose}{name}.png"), scene.view)
+        session.clear()
 
 
-def draw_displays(scene, wall, out, changes):
+def draw_displays(wall, out, changes):
+    scene = Scene()
     simple.AssignViewToLayout(scene.view)
     layout = simple.GetLayout(scene.view).SMProxy
     layout.ShowViewsOnTileDisplay()
-    change(scene, changes)
+    change(scene, wall, changes)
     for pose in poses(scene, wall):
         scene.view.SMProxy.InteractiveRender()
         simple.Render(scene.view)
@@ -147,20 +165,23 @@ def draw_displays(scene, wall, out, changes):
             compare(pictures.load(path), wall.part(whole, rank), allowed, f"{pose}, display {rank}")
 
 
-def change(scene, count):
+def change(scene, wall, count):
     """Random changes, each of which is drawn."""
     view, dice = scene.view, random.Random(count)
     displays = (scene.first, scene.second, scene.spheres)
+    eye, focus = list(wall.eye), [0, 0, 0]
 
     def turn():
-        view.CameraPosition = [dice.uniform(-120, 120) for _ in range(3)]
+        eye[:] = [dice.uniform(-120, 120) for _ in range(3)]
+        wall.look(view, eye, focus)
 
     def hide():
         display = dice.choice(displays)
         display.Visibility = 1 - display.Visibility
 
     def look_away():
-        view.CameraFocalPoint = [dice.choice((0, 0, 300)) for _ in range(3)]
+        focus[:] = [dice.choice((0, 0, 300)) for _ in range(3)]
+        wall.look(view, eye, focus)
 
     def make_translucent():
         scene.spheres.Opacity = dice.choice((0.5, 1.0))
@@ -190,7 +211,6 @@ def change(scene, count):
         simple.ClearSelection(source)
     scene.spheres.Opacity = 1.0
     view.ViewTime = 0.0
-    view.CameraFocalPoint = [0, 0, 0]
 
 
 def compare(shown, wanted, allowed, what):
@@ -218,11 +238,10 @@ def main():
     wall = Cave(arguments.cave) if arguments.cave else Tiles(*numbers)
     session.begin(arguments)
     simple._DisableFirstRenderCameraReset()
-    scene = Scene()
     if arguments.reference:
-        draw_whole(scene, wall, arguments.out)
+        draw_whole(wall, arguments.out)
     else:
-        draw_displays(scene, wall, arguments.out, arguments.changes)
+        draw_displays(wall, arguments.out, arguments.changes)
     print("ok: pictures on displays")
 
 
