@@ -336,6 +336,7 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene,
       shown.push_back(&place);
     }
   }
+  bool begun = false; // whether this rank has cast a part
   for (const PicturePlace* const at : shown)
   {
     const PicturePlace& place = *at;
@@ -343,9 +344,14 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene,
     std::optional<RayScene> ofPlace;
     std::optional<RayScene> ofRegion;
     const RayScene& drawn = rect == scene.Viewport ? scene : ofPlace.emplace(PartOf(scene, rect));
+    if (ofPlace)
+    {
+      ofPlace->GoesOn = begun;
+    }
     const RayScene& mine =
       byPicture ? ofRegion.emplace(PartOf(drawn, share.Regions.at(self))) : drawn;
     static const std::function<void()> nothing;
+    begun = begun || !mine.Viewport.Empty();
     const PartOfPicture part{ drawn, mine, share.Zones, share.Regions,
       at == shown.back() ? compositing.AfterCasting : nothing };
     FloatImage picture = DrawPlace(communicator, own, part, place, compositing, reused);

@@ -53,7 +53,8 @@ FloatImage Cast(const RayScene& scene, BrickSource& source, const Box& cells,
       scene, at, CellsAtLevel(inside, at.CellLevel()), budgetBytes, pool, statistics));
     picture.Rect = Union(picture.Rect, casters.back()->Rect());
   }
-  source.Kept().BeginPicture(PackedBrickCache::PartOf(budgetBytes), /*ages=*/!scene.Probe);
+  const bool ages = !scene.Probe && !scene.GoesOn;
+  source.Kept().BeginPicture(PackedBrickCache::PartOf(budgetBytes), ages);
   // Casters set all pixels, tile by tile.
   picture.Pixels.resize(static_cast<std::size_t>(picture.Rect.Count()));
   if (watcher)

@@ -60,6 +60,9 @@ struct RayScene
   bool LevelsShareCells = false;
   /// Whether the picture only helps to make another one: packed bricks are kept for that one.
   bool Probe = false;
+  /// Whether the picture goes on with the one before, as a further part of it: what is kept of
+  /// bricks becomes no older.
+  bool GoesOn = false;
   /// Rays that are not cast, as an earlier picture has them; null for none. No part of the picture.
   std::shared_ptr<const ReusedRays> Reused{};
   /// When it asks, casting ends by an Interruption; null for never. No part of the picture.

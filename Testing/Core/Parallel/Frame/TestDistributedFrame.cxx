@@ -215,6 +215,61 @@ TEST_P(EveryRankCount, PixelsEndOnTheRankThatShowsThem)
   }
 }
 
+class Counting : public ArrayBrickSource
+{
+public:
+  using ArrayBrickSource::ArrayBrickSource;
+  BrickView Load(std::int64_t brick) override
+  {
+    ++this->Loads;
+    return ArrayBrickSource::Load(brick);
+  }
+  int Loads = 0;
+};
+
+/// Places are parts of one picture: bricks that one of them needs stay while others are drawn.
+TEST(DistributedFrame, BricksArePackedOnceForAllPlaces)
+{
+  constexpr int ranks = 5;
+  const std::vector<float> values = scenes::Sampled<float>(scenes::Standard, Samples);
+  const RayScene scene = SceneOf(1.4, false);
+  const glm::ivec2 size = scene.Camera.ImageSize();
+  std::vector<PicturePlace> places;
+  for (int rank = 0; rank < ranks; ++rank)
+  {
+    places.push_back(
+      { { { size.x * rank / ranks, 0 }, { size.x * (rank + 1) / ranks, size.y } }, rank, {} });
+  }
+  std::mutex mutex;
+  int atFirst = 0;
+  int again = 0;
+  RunOnSimulatedRanks(ranks,
+    [&](Communicator& communicator)
+    {
+      ThreadPool pool(1);
+      Counting source(scenes::ArrayOf(values, Samples), 8, { 0, 1 }, pool);
+      RankShare share{ &source, {}, 1u << 30, pool };
+      // Rows, so that each rank draws for all places; the last one has none of its own.
+      for (int rank = 0; rank < ranks; ++rank)
+      {
+        share.Regions.push_back({ { 0, std::min(size.y, size.y * rank / (ranks - 1)) },
+          { size.x, std::min(size.y, size.y * (rank + 1) / (ranks - 1)) } });
+      }
+      FrameStatistics statistics;
+      DrawDistributed(communicator, scene, share, statistics, {}, places);
+      const int first = source.Loads;
+      for (int frame = 0; frame < 3; ++frame)
+      {
+        DrawDistributed(communicator, scene, share, statistics, {}, places);
+      }
+      const std::lock_guard<std::mutex> lock(mutex);
+      atFirst += first;
+      again += source.Loads - first;
+    });
+  EXPECT_GT(atFirst, 100);
+  EXPECT_EQ(again, 0);
+}
+
 TEST_P(EveryRankCount, RegionsTakeTheSamplesOfOneRankAndHaveItsBits)
 {
   const EncodedField field;
