@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -190,27 +191,42 @@ FloatImage CastAlone(OwnPart& own, const PartOfPicture& part)
   return picture;
 }
 
+/// Composites what this rank has cast of a part. All ranks know that they may.
 /// @param compositing without what follows from the picture
+FloatImage CompositePart(Communicator& communicator, OwnPart& own, const PartOfPicture& part,
+  const FloatImage& mine, const CompositeOptions& compositing)
+{
+  const PhaseScope phase(Phase::Compositing);
+  const Timer timer;
+  CompositeOptions options = CompleteOptions(compositing, part);
+  options.Agreed = true;
+  FloatImage picture =
+    Composite(communicator, mine, OrderOf(part), part.Scene.Viewport, options, own.Sent);
+  own.CompositeSeconds += timer.Seconds();
+  return picture;
+}
+
+/// Looks whether what was cast of a part can be composited.
+void Check(Communicator& communicator, OwnPart& own, const PartOfPicture& part,
+  const FloatImage& mine, const CompositeOptions& compositing)
+{
+  // The order and the footprints depend on what all ranks have alike: no rank fails here alone.
+  const std::vector<int> order = OrderOf(part);
+  const CompositeOptions options = CompleteOptions(compositing, part);
+  if (own.Failure.empty())
+  {
+    own.Failure = ProblemOf(
+      communicator.Rank(), communicator.Size(), mine, order, part.Scene.Viewport, options);
+  }
+}
+
 FloatImage CastThenComposite(Communicator& communicator, OwnPart& own, const PartOfPicture& part,
   const CompositeOptions& compositing)
 {
-  const RayScene& scene = part.Scene;
   const FloatImage mine = CastOwn(own, part, CastRays);
-  const PhaseScope phase(Phase::Compositing);
-  // The order and the footprints depend on what all ranks have alike: no rank fails here alone.
-  const std::vector<int> order = OrderOf(part);
-  CompositeOptions options = CompleteOptions(compositing, part);
-  if (own.Failure.empty())
-  {
-    own.Failure =
-      ProblemOf(communicator.Rank(), communicator.Size(), mine, order, scene.Viewport, options);
-  }
+  Check(communicator, own, part, mine, compositing);
   ThrowTogether(communicator, own.Failure);
-  const Timer timer;
-  options.Agreed = true;
-  FloatImage picture = Composite(communicator, mine, order, scene.Viewport, options, own.Sent);
-  own.CompositeSeconds += timer.Seconds();
-  return picture;
+  return CompositePart(communicator, own, part, mine, compositing);
 }
 
 /// The failure of a rank is agreed upon after the last part.
@@ -268,30 +284,97 @@ PixelRect WithMargin(const RayScene& scene, const PixelRect& rect)
   return Intersection(scene.Viewport, { rect.Lo - margin, rect.Hi + margin });
 }
 
-/// A picture of one place.
-/// @param reused on its root, as of PutBackReused
-/// @return on its root the part of the scene's viewport that is in the place
+/// What a place's own rank does with its picture.
+/// @param reused as of PutBackReused
+/// @return the part of the scene's viewport that is in the place
+FloatImage Finished(
+  OwnPart& own, const RayScene& scene, FloatImage picture, const PixelRect& rect, double& reused)
+{
+  const PhaseScope phase(Phase::Compositing);
+  const Timer timer;
+  FinishPicture(scene, picture);
+  reused = PutBackReused(scene, picture, own.Pool);
+  InterpolateSkippedPixels(scene, picture, own.Pool);
+  picture = Cut(std::move(picture), rect);
+  own.CompositeSeconds += timer.Seconds();
+  return picture;
+}
+
+/// A picture that ends in one place.
 FloatImage DrawPlace(Communicator& communicator, OwnPart& own, const PartOfPicture& part,
-  const PicturePlace& place, CompositeOptions options, double& reused)
+  const CompositeOptions& options)
+{
+  const bool whileCasting = options.WhileCasting && communicator.SendsAtOnce();
+  return communicator.Size() == 1 ? CastAlone(own, part)
+         : whileCasting           ? CastAndComposite(communicator, own, part, options)
+                                  : CastThenComposite(communicator, own, part, options);
+}
+
+/// The scenes of one place: of all ranks, and of this one's part.
+class PlaceScenes
+{
+public:
+  /// @param goesOn whether this rank has cast for another place of the picture
+  PlaceScenes(const RayScene& scene, const PicturePlace& place, const RankShare& share,
+    std::size_t self, bool goesOn = false)
+    : Share(share)
+  {
+    const PixelRect rect = WithMargin(scene, place.Rect);
+    this->Drawn = &scene;
+    if (!(rect == scene.Viewport))
+    {
+      this->OfPlace.emplace(PartOf(scene, rect)).GoesOn = goesOn;
+      this->Drawn = &*this->OfPlace;
+    }
+    this->Mine = share.Regions.empty()
+                   ? this->Drawn
+                   : &this->OfRegion.emplace(PartOf(*this->Drawn, share.Regions.at(self)));
+  }
+  PlaceScenes(const PlaceScenes&) = delete;
+  PlaceScenes& operator=(const PlaceScenes&) = delete;
+
+  PartOfPicture Part(const std::function<void()>& afterCasting) const
+  {
+    return { *this->Drawn, *this->Mine, this->Share.Zones, this->Share.Regions, afterCasting };
+  }
+
+private:
+  const RankShare& Share;
+  std::optional<RayScene> OfPlace;
+  std::optional<RayScene> OfRegion;
+  const RayScene* Drawn;
+  const RayScene* Mine;
+};
+
+CompositeOptions OptionsOf(CompositeOptions options, const PicturePlace& place)
 {
   options.Root = place.Root;
   options.Behind = place.Behind;
-  const bool whileCasting = options.WhileCasting && communicator.SendsAtOnce();
-  FloatImage picture = communicator.Size() == 1 ? CastAlone(own, part)
-                       : whileCasting           ? CastAndComposite(communicator, own, part, options)
-                                      : CastThenComposite(communicator, own, part, options);
-  if (place.Root != communicator.Rank())
+  return options;
+}
+
+/// Collective: casts for several places, one after the other, before any is composited. So nobody
+/// waits between places for who has more to cast there.
+/// @return an image for each place
+std::vector<FloatImage> CastPlaces(Communicator& communicator, OwnPart& own, const RayScene& scene,
+  const RankShare& share, const std::vector<PicturePlace>& shown,
+  const CompositeOptions& compositing)
+{
+  static const std::function<void()> nothing;
+  const auto self = static_cast<std::size_t>(communicator.Rank());
+  std::vector<FloatImage> cast;
+  bool begun = false;
+  for (const PicturePlace& place : shown)
   {
-    return {};
+    const PlaceScenes scenes(scene, place, share, self, begun);
+    const bool isLast = cast.size() + 1 == shown.size();
+    const PartOfPicture part = scenes.Part(isLast ? compositing.AfterCasting : nothing);
+    cast.push_back(CastOwn(own, part, CastRays));
+    Check(communicator, own, part, cast.back(), OptionsOf(compositing, place));
+    begun = begun || !part.Own.Viewport.Empty();
   }
-  const PhaseScope phase(Phase::Compositing);
-  const Timer timer;
-  FinishPicture(part.Scene, picture);
-  reused = PutBackReused(part.Scene, picture, own.Pool);
-  InterpolateSkippedPixels(part.Scene, picture, own.Pool);
-  picture = Cut(std::move(picture), place.Rect);
-  own.CompositeSeconds += timer.Seconds();
-  return picture;
+  ThrowTogether(communicator, own.Failure);
+  return cast;
 }
 
 } // namespace
@@ -328,36 +411,25 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene,
                    : places;
   FloatImage result;
   double reused = 0.0;
-  std::vector<const PicturePlace*> shown;
-  for (const PicturePlace& place : all)
+  std::vector<PicturePlace> shown;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(shown),
+    [&](const PicturePlace& place) { return !WithMargin(scene, place.Rect).Empty(); });
+  std::vector<FloatImage> cast;
+  if (shown.size() > 1)
   {
-    if (!WithMargin(scene, place.Rect).Empty())
-    {
-      shown.push_back(&place);
-    }
+    cast = CastPlaces(communicator, own, scene, share, shown, compositing);
   }
-  bool begun = false; // whether this rank has cast a part
-  for (const PicturePlace* const at : shown)
+  for (std::size_t i = 0; i < shown.size(); ++i)
   {
-    const PicturePlace& place = *at;
-    const PixelRect rect = WithMargin(scene, place.Rect);
-    std::optional<RayScene> ofPlace;
-    std::optional<RayScene> ofRegion;
-    const RayScene& drawn = rect == scene.Viewport ? scene : ofPlace.emplace(PartOf(scene, rect));
-    if (ofPlace)
+    const PlaceScenes scenes(scene, shown[i], share, self);
+    const PartOfPicture part = scenes.Part(compositing.AfterCasting);
+    const CompositeOptions options = OptionsOf(compositing, shown[i]);
+    FloatImage picture =
+      cast.empty() ? DrawPlace(communicator, own, part, options)
+                   : CompositePart(communicator, own, part, std::exchange(cast[i], {}), options);
+    if (shown[i].Root == communicator.Rank())
     {
-      ofPlace->GoesOn = begun;
-    }
-    const RayScene& mine =
-      byPicture ? ofRegion.emplace(PartOf(drawn, share.Regions.at(self))) : drawn;
-    static const std::function<void()> nothing;
-    begun = begun || !mine.Viewport.Empty();
-    const PartOfPicture part{ drawn, mine, share.Zones, share.Regions,
-      at == shown.back() ? compositing.AfterCasting : nothing };
-    FloatImage picture = DrawPlace(communicator, own, part, place, compositing, reused);
-    if (place.Root == communicator.Rank())
-    {
-      result = std::move(picture);
+      result = Finished(own, part.Scene, std::move(picture), shown[i].Rect, reused);
     }
   }
   ThrowTogether(communicator, own.Failure);
