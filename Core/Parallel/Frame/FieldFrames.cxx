@@ -275,7 +275,7 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   frame.ByPicture = DividesPicture(communicator, drawn, wish);
   if (frame.ByPicture)
   {
-    share.Regions = this->Regions.BeginFrame(scene, communicator.Size());
+    share.Regions = this->Regions.BeginFrame(scene, communicator.Size(), wish.Places);
   }
   const bool keeps = this->BeginRays(communicator, drawn, scene, names.Whole, wish);
   const FrameStatistics probes = numbers;
