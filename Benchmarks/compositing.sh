@@ -28,6 +28,7 @@
 # another folder). BANYAN_SKIP_INSTALL=1 leaves the packages of the system alone, BANYAN_SKIP_BUILD=1
 # the build.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+source "$here/Compositing/simulation.sh"
 # SPDX-License-Identifier: BSD-3-Clause
 
 output="benchmark-output"
@@ -47,45 +48,6 @@ cameras="${cameras:-perspective-full,perspective-zoom,parallel-full,parallel-zoo
 ranks="${ranks:-2,3,4,8,16,32,64,256,512}"
 networks="${networks:-10,100}"
 scenes="${scenes:-bonsai,isabel_velmag,turbulence,S2}"
-
-# The simulation, with the simulator's compiler, the MPI adapter and the unmodified IceT.
-build_simulation()
-{
-  command -v smpicxx > /dev/null || fail "smpicxx is missing: install libsimgrid-dev."
-  local paraview core="$BuildFolder/lib/Banyan" source
-  paraview="$(compgen -G "/usr/include/paraview-*" | tail -n 1)"
-  icet="vtkIceTCore-pv${paraview##*-}"
-  [[ -e "$paraview/vtkicet/src/include/IceT.h" ]] ||
-    fail "IceT's headers are missing: install paraview-dev."
-  simulation="$BuildFolder/bin/banyan-simulate-compositing"
-  for source in "$here"/Compositing/{,Peers/}*.{cxx,h} "$RepositoryRoot"/Core/Parallel/*/*.{cxx,h}; do
-    if [[ ! -e "$simulation" || "$source" -nt "$simulation" ]]; then
-      smpicxx -std=c++17 -O2 -DNDEBUG -fPIC -I"$RepositoryRoot/Core" \
-        -I"$paraview/vtkicet/src/include" -I"$paraview" \
-        -I"$here/Compositing" "$here"/Compositing/{SimulateCompositing,FrameFile}.cxx \
-        "$here"/Compositing/Peers/*.cxx \
-        "$RepositoryRoot"/Core/Parallel/{Communicate/MpiCommunicator,Watchdog/MpiWatchdog}.cxx \
-        -L"$core" -Wl,-rpath,"$core" -lBanyanCore -l"$icet" -o "$simulation" ||
-        fail "the simulation could not be built."
-      return
-    fi
-  done
-}
-
-# A fat tree of 2 levels, 16 switches of 32 nodes each.
-write_platform()
-{
-  local bandwidth="$1"
-  cat > "$work/platform-$bandwidth.xml" << EOF
-<?xml version='1.0'?>
-<!DOCTYPE platform SYSTEM "https://simgrid.org/simgrid.dtd">
-<platform version="4.1">
-  <cluster id="fat" prefix="n" suffix="" radical="0-511" speed="10Gf" bw="${bandwidth}Gbps"
-           lat="1us" topology="FAT_TREE" topo_parameters="2;16,32;1,16;1,1"
-           sharing_policy="SPLITDUPLEX"/>
-</platform>
-EOF
-}
 
 # A volume that can be drawn: S1, S2, or the JSON file of a series.
 prepare_scene()
@@ -121,7 +83,7 @@ prepare_scene()
 # the simulator would take hours for them.
 simulate()
 {
-  local frame="$1" network="$2" name scene camera count private methods
+  local frame="$1" network="$2" name scene camera count methods
   name="$(basename "$frame" .frame)"
   count="${name##*_}"
   camera="${name%_*}"
@@ -132,30 +94,21 @@ simulate()
     methods="banyan,banyan-raw,banyan-floats,binary-swap,icet-direct,icet-reduce,icet-tree,icet-bswap"
     methods+=",icet-bswap-folding,icet-radixk,icet-radixkr"
   fi
-  private="$(mktemp -d "$work/run.XXXXXX")"
-  TMPDIR="$private" timeout 1800 smpirun -np "$count" -platform "$work/platform-$network.xml" \
-    -hostfile "$work/hosts" --cfg=smpi/privatize-libs:"lib$icet.so.1" \
-    --cfg=smpi/bw-factor:0:0.95 --cfg=smpi/lat-factor:0:1.0 --cfg=network/crosstraffic:0 \
-    --cfg=smpi/os:0:1e-6:0 --cfg=smpi/ois:0:1e-6:0 --cfg=smpi/or:0:1e-6:0 \
-    --cfg=smpi/coll-selector:mpich --cfg=smpi/simulate-computation:no \
-    --log=root.thres:warning "$simulation" \
-    "$frame" "$scene" "$camera" "${network}Gb/s" "$((network * 125000000))" $methods \
-    >> "$output/compositing.csv" 2> "$work/simulation.log" ||
+  # shellcheck disable=SC2086 # none where all methods are wanted
+  on_simulated_ranks "$count" "$network" "$frame" "$scene" "$camera" "${network}Gb/s" \
+    "$((network * 125000000))" $methods >> "$output/compositing.csv" ||
     fail "the simulation of $name failed: $(tail -1 "$work/simulation.log")"
-  rm -rf "$private"
 }
 
 stage 1 4 "Installing what is missing and building"
 install_and_build --with-peers
-build_simulation
+build_simulation banyan-simulate-compositing "$here/Compositing/SimulateCompositing.cxx"
 work="${work:-$BuildFolder/compositing-frames}"
 mkdir -p "$work" "$output" || fail "the folders for the results cannot be made."
 work="$(realpath "$work")"
 output="$(realpath "$output")"
-printf 'n%d\n' {0..511} > "$work/hosts"
-for network in ${networks//,/ }; do
-  write_platform "$network"
-done
+# shellcheck disable=SC2086
+write_platforms ${networks//,/ }
 
 stage 2 4 "Recording frames and simulating them"
 echo "scene,camera,ranks,network,method,ms,bytes,messages,max_bytes_in" > "$output/compositing.csv"

@@ -165,7 +165,8 @@ private:
     Measured measured;
     if (!this->IceT || this->IceTFloats != floats)
     {
-      this->Picture = PictureOf(this->Mine, this->Frame.Head().Viewport, floats);
+      this->Picture = std::make_unique<IceTPicture>(this->Frame.Head().Viewport, floats);
+      this->Picture->Put(this->Mine, this->Mine.Rect);
       this->IceT = std::make_unique<IceTCompositor>(floats);
       this->IceTFloats = floats;
     }
@@ -173,8 +174,9 @@ private:
     measured.Seconds = this->Timed(
       [&]
       {
+        const FrameHead& head = this->Frame.Head();
         isHere = this->IceT->Composite(
-          strategy, this->Picture, this->Frame.Head().Order, measured.Statistics);
+          strategy, *this->Picture, head.Order, { { head.Viewport, 0, {} } }, measured.Statistics);
       });
     for (std::size_t i = 0; isHere && i < this->Reference.size(); ++i)
     {
@@ -193,7 +195,7 @@ private:
   std::unique_ptr<Communicator> Ranks;
   FloatImage Mine;
   std::vector<glm::vec4> Reference;
-  IceTPicture Picture;
+  std::unique_ptr<IceTPicture> Picture;
   std::unique_ptr<IceTCompositor> IceT;
   bool IceTFloats = false;
 };

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <deque>
 
@@ -298,32 +299,42 @@ std::vector<std::string> IceTStrategies()
   return names;
 }
 
-IceTPicture PictureOf(const FloatImage& image, const PixelRect& viewport, bool floats)
+IceTPicture::IceTPicture(const PixelRect& viewport, bool floats)
+  : Viewport(viewport)
+  , Floats(floats)
+  , Pixels(std::calloc(static_cast<std::size_t>(viewport.Count()), floats ? 16 : 4), std::free)
 {
-  IceTPicture picture{ viewport, ActiveRect(image, viewport), {}, {} };
-  picture.Floats.assign(4 * static_cast<std::size_t>(viewport.Count()), 0.0f);
-  for (int y = image.Rect.Lo.y; y < image.Rect.Hi.y && !image.Rect.Empty(); ++y)
+  if (!this->Pixels)
   {
-    const glm::ivec2 at = glm::ivec2(image.Rect.Lo.x, y) - viewport.Lo;
-    float* to = &picture.Floats[4 * (static_cast<std::size_t>(at.y) * viewport.Size().x + at.x)];
-    for (int x = image.Rect.Lo.x; x < image.Rect.Hi.x; ++x)
+    throw Error("There is no memory for a picture of IceT.");
+  }
+}
+
+void IceTPicture::Put(const FloatImage& image, const PixelRect& part)
+{
+  const PixelRect drawn = ActiveRect(image, Intersection(part, image.Rect));
+  this->Active = Union(this->Active, drawn);
+  for (int y = drawn.Lo.y; y < drawn.Hi.y; ++y)
+  {
+    const glm::ivec2 at = glm::ivec2(drawn.Lo.x, y) - this->Viewport.Lo;
+    std::size_t to = 4 * (static_cast<std::size_t>(at.y) * this->Viewport.Size().x + at.x);
+    for (int x = drawn.Lo.x; x < drawn.Hi.x; ++x)
     {
-      for (int c = 0; c < 4; ++c)
+      for (int c = 0; c < 4; ++c, ++to)
       {
-        *to++ = image.At(x, y)[c];
+        const float value = image.At(x, y)[c];
+        if (this->Floats)
+        {
+          static_cast<float*>(this->Pixels.get())[to] = value;
+        }
+        else
+        {
+          static_cast<std::uint8_t*>(this->Pixels.get())[to] =
+            static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
+        }
       }
     }
   }
-  if (!floats)
-  {
-    for (const float value : picture.Floats)
-    {
-      picture.Bytes.push_back(
-        static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f))));
-    }
-    picture.Floats.clear();
-  }
-  return picture;
 }
 
 IceTCompositor::IceTCompositor(bool floats)
@@ -348,7 +359,8 @@ IceTCompositor::~IceTCompositor()
 }
 
 bool IceTCompositor::Composite(const std::string& strategy, const IceTPicture& mine,
-  const std::vector<int>& frontToBack, CompositeStatistics& statistics)
+  const std::vector<int>& frontToBack, const std::vector<PicturePlace>& tiles,
+  CompositeStatistics& statistics)
 {
   const auto found = std::find_if(std::begin(Strategies), std::end(Strategies),
     [&](const Strategy& known) { return strategy == known.Name; });
@@ -357,9 +369,14 @@ bool IceTCompositor::Composite(const std::string& strategy, const IceTPicture& m
     throw Error("IceT has no strategy '" + strategy + "'.");
   }
   icetSetContext(this->Self->Context);
-  const glm::ivec2 size = mine.Viewport.Size();
   icetResetTiles();
-  icetAddTile(0, 0, size.x, size.y, 0);
+  bool root = false;
+  for (const PicturePlace& tile : tiles)
+  {
+    const glm::ivec2 at = tile.Rect.Lo - mine.Viewport.Lo;
+    icetAddTile(at.x, at.y, tile.Rect.Size().x, tile.Rect.Size().y, tile.Root);
+    root = root || tile.Root == Comm_rank(this->Self->Communicator);
+  }
   icetStrategy(found->Whole);
   icetSingleImageStrategy(found->Single);
   icetCompositeOrder(frontToBack.data());
@@ -367,10 +384,8 @@ bool IceTCompositor::Composite(const std::string& strategy, const IceTPicture& m
   const IceTInt valid[] = { mine.Active.Empty() ? 0 : low.x, mine.Active.Empty() ? 0 : low.y,
     mine.Active.Size().x, mine.Active.Size().y };
   const IceTFloat background[] = { 0.0f, 0.0f, 0.0f, 0.0f };
-  const void* const pixels =
-    this->Self->Floats ? static_cast<const void*>(mine.Floats.data()) : mine.Bytes.data();
-  const IceTImage image = icetCompositeImage(pixels, nullptr, valid, nullptr, nullptr, background);
-  const bool root = Comm_rank(this->Self->Communicator) == 0;
+  const IceTImage image =
+    icetCompositeImage(mine.Pixels.get(), nullptr, valid, nullptr, nullptr, background);
   if (root && this->Self->Floats)
   {
     this->Self->PictureFloats = icetImageGetColorcf(image);

@@ -3,7 +3,9 @@
 #define banyan_Benchmarks_IceTMethods_h
 
 #include "Parallel/Composite/Compositing.h"
+#include "Parallel/Composite/PicturePlace.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,14 +16,21 @@ namespace banyan::bench
 std::vector<std::string> IceTStrategies();
 
 /// A picture as IceT wants it: the whole viewport, `[y][x]`, RGBA, premultiplied.
-struct IceTPicture
+class IceTPicture
 {
-  PixelRect Viewport;
-  PixelRect Active;
-  std::vector<std::uint8_t> Bytes; ///< 4 per pixel; empty for floats
-  std::vector<float> Floats;       ///< 4 per pixel; empty for bytes
+public:
+  /// Nothing is drawn. Memory is taken where something is put.
+  /// @param floats whether pixels are floats; otherwise they have 8 bits per channel
+  IceTPicture(const PixelRect& viewport, bool floats);
+
+  /// Puts a part of an image into its place.
+  void Put(const FloatImage& image, const PixelRect& part);
+
+  const PixelRect Viewport;
+  const bool Floats;
+  PixelRect Active; ///< around what is drawn
+  std::shared_ptr<void> Pixels;
 };
-IceTPicture PictureOf(const FloatImage& image, const PixelRect& viewport, bool floats);
 
 /// IceT, unmodified, over MPI_COMM_WORLD: a communicator of our own counts what it sends.
 class IceTCompositor
@@ -34,10 +43,12 @@ public:
   IceTCompositor& operator=(const IceTCompositor&) = delete;
 
   /// @param mine floats or bytes, as the compositor
-  /// @return whether the picture is here: on rank 0
+  /// @param tiles where pixels end, of equal sizes
+  /// @return whether this rank has a tile
   bool Composite(const std::string& strategy, const IceTPicture& mine,
-    const std::vector<int>& frontToBack, CompositeStatistics& statistics);
-  /// A channel of the last picture, in [0, 255].
+    const std::vector<int>& frontToBack, const std::vector<PicturePlace>& tiles,
+    CompositeStatistics& statistics);
+  /// A channel of this rank's tile of the last picture, in [0, 255].
   double Channel(std::size_t index) const;
 
 private:
