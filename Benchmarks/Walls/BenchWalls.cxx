@@ -146,7 +146,7 @@ public:
 private:
   std::string EmptyFolder(const std::string& name) const
   {
-    const std::string folder = this->Given.Work + "/" + name;
+    std::string folder = this->Given.Work + "/" + name;
     fs::remove_all(folder);
     fs::create_directories(folder);
     return folder;

@@ -50,6 +50,7 @@ void FillSlice(Volume& volume, int z, const Waves& xy, const Waves& yz, const Wa
     return static_cast<float>(part * part * part * part);
   };
   std::vector<float> border;
+  border.reserve(static_cast<std::size_t>(samples.x));
   for (int x = 0; x < samples.x; ++x)
   {
     border.push_back(away(0, x));
