@@ -9,6 +9,7 @@
 #include "Render/Scene/DepthPicture.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace banyan
@@ -51,11 +52,12 @@ void Backdrop::Read(Communicator& communicator, vtkRenderer* renderer,
 {
   this->Rect = rect;
   this->BehindRect = {};
-  this->Inner = UnionOfAll(communicator, OthersOnScreen(renderer, own, rect));
+  const PixelRect others = OthersOnScreen(renderer, own, this->InRenderer(rect));
+  this->Inner = UnionOfAll(communicator, Moved(others, this->Corner));
   this->InnerPixels.clear();
   if (!this->Inner.Empty())
   {
-    this->Framebuffer.Read(renderer, this->Inner, this->InnerPixels);
+    this->Framebuffer.Read(renderer, this->InRenderer(this->Inner), this->InnerPixels);
     this->BehindRect =
       CombineBehind(communicator, rankOrder, this->Inner, this->InnerPixels, statistics);
   }
@@ -63,20 +65,23 @@ void Backdrop::Read(Communicator& communicator, vtkRenderer* renderer,
 
 std::vector<float> Backdrop::Depths(const PixelRect& part) const
 {
-  std::vector<float> inner = DepthsOf(this->InnerPixels);
-  return inner.empty() ? inner : DepthPicture{ {}, this->Inner, std::move(inner) }.In(part);
+  const PixelRect seen = Intersection(part, this->Inner);
+  std::vector<OpaquePixel> pixels(static_cast<std::size_t>(seen.Count()));
+  CopyPart(seen, this->Inner, this->InnerPixels, seen, pixels);
+  std::vector<float> depths = DepthsOf(pixels);
+  return depths.empty() ? depths : DepthPicture{ {}, seen, std::move(depths) }.In(part);
 }
 
-void Backdrop::Write(
-  const Communicator& communicator, vtkRenderer* renderer, const FloatImage& picture)
+void Backdrop::Write(const Communicator& communicator, vtkRenderer* renderer, const PixelRect& part,
+  const FloatImage& picture)
 {
+  const PixelRect inner = Intersection(this->Inner, part);
   if (communicator.Rank() > 0)
   {
-    if (!this->Inner.Empty())
+    if (!inner.Empty())
     {
-      this->Pixels.assign(static_cast<std::size_t>(this->Inner.Count()), Blank);
-      this->Framebuffer.Write(
-        renderer, this->Inner, this->Pixels, { this->Inner }, /*blend=*/false);
+      this->Pixels.assign(static_cast<std::size_t>(inner.Count()), Blank);
+      this->Put(renderer, inner, { inner }, /*blend=*/false);
     }
     return;
   }
@@ -88,11 +93,12 @@ void Backdrop::Write(
   {
     this->WriteOverBackground(renderer, picture, alone);
   }
-  if (!alone && !this->Inner.Empty())
+  if (!alone && !inner.Empty())
   {
-    BlendOver(picture, this->Inner, this->Inner, this->InnerPixels);
-    this->Framebuffer.Write(
-      renderer, this->Inner, this->InnerPixels, { this->Inner }, /*blend=*/false);
+    this->Pixels.resize(static_cast<std::size_t>(inner.Count()));
+    CopyPart(inner, this->Inner, this->InnerPixels, inner, this->Pixels);
+    BlendOver(picture, Intersection(inner, picture.Rect), inner, this->Pixels);
+    this->Put(renderer, inner, { inner }, /*blend=*/false);
   }
 }
 
@@ -127,7 +133,22 @@ void Backdrop::WriteOverBackground(vtkRenderer* renderer, const FloatImage& pict
   {
     BlendOver(picture, part, around, this->Pixels);
   }
-  this->Framebuffer.Write(renderer, around, this->Pixels, parts, /*blend=*/true);
+  this->Put(renderer, around, parts, /*blend=*/true);
+}
+
+/// Writes parts of a rectangle, which this->Pixels are of.
+void Backdrop::Put(
+  vtkRenderer* renderer, const PixelRect& rect, const std::vector<PixelRect>& parts, bool blend)
+{
+  std::vector<PixelRect> moved;
+  std::transform(parts.begin(), parts.end(), std::back_inserter(moved),
+    [this](const PixelRect& part) { return this->InRenderer(part); });
+  this->Framebuffer.Write(renderer, this->InRenderer(rect), this->Pixels, moved, blend);
+}
+
+PixelRect Backdrop::InRenderer(const PixelRect& rect) const
+{
+  return Moved(rect, -this->Corner);
 }
 
 void Backdrop::ReleaseGraphicsResources(vtkWindow* window)

@@ -18,12 +18,16 @@ namespace banyan
 
 /// The picture of other props where volumes are to be drawn: on all ranks, nearest first. Pixels
 /// are read and travel only in the rectangle where some rank has other props on the screen
-/// (OthersOnScreen): where none has any, it costs nothing.
+/// (OthersOnScreen): where none has any, it costs nothing. Elsewhere it takes 8 bytes a pixel.
 class Backdrop
 {
 public:
+  /// Where the renderer's first pixel is in pictures, which has rectangles count from another one.
+  void SetCorner(const glm::ivec2& corner) { this->Corner = corner; }
+
   /// Collective.
   /// @param own the volumes' props
+  /// @param rect that volumes are drawn in
   /// @param rankOrder see CombineBehind
   /// @param statistics is added to
   void Read(Communicator& communicator, vtkRenderer* renderer, const std::vector<vtkVolume*>& own,
@@ -31,26 +35,31 @@ public:
 
   /// The rectangle around what rank 0 blends volumes over; the same on all ranks.
   const PixelRect& Behind() const { return this->BehindRect; }
-  /// At which rays end in a part of the rectangle; empty where nothing is.
+  /// At which rays end in a part of the picture; empty where nothing is.
   std::vector<float> Depths(const PixelRect& part) const;
 
   /// How many pixels this rank has read.
   long long PixelsRead() const { return this->Inner.Count(); }
 
-  /// Writes the finished picture over it, and over a background that is there already.
-  /// @param picture of all of the rectangle; only rank 0 has one
-  void Write(const Communicator& communicator, vtkRenderer* renderer, const FloatImage& picture);
+  /// Writes a finished part of the picture over it, and over a background that is there already.
+  /// @param part of the rectangle: each pixel is in one part
+  /// @param picture of the part, or of less of it; only rank 0 has one
+  void Write(const Communicator& communicator, vtkRenderer* renderer, const PixelRect& part,
+    const FloatImage& picture);
 
   /// Writes a picture over what is there, in 8 bit: of a rank that shows it alone.
-  /// @param picture a part of the renderer's
   void WriteOver(vtkRenderer* renderer, const FloatImage& picture);
 
   void ReleaseGraphicsResources(vtkWindow* window);
 
 private:
   void WriteOverBackground(vtkRenderer* renderer, const FloatImage& picture, bool alone);
+  void Put(
+    vtkRenderer* renderer, const PixelRect& rect, const std::vector<PixelRect>& parts, bool blend);
+  PixelRect InRenderer(const PixelRect& rect) const;
 
   FramebufferExchange Framebuffer;
+  glm::ivec2 Corner{ 0 };
   PixelRect Rect;
   PixelRect Inner; ///< where some rank shows something else; the same on all ranks
   PixelRect BehindRect;

@@ -5,6 +5,7 @@
 #include "Backdrop.h"
 #include "MotionEnhancement.h"
 #include "RenderWhenDrawn.h"
+#include "RendererCamera.h"
 #include "TransferFunctionTable.h"
 
 #include "Parallel/Fields/DistributedField.h"
@@ -39,6 +40,7 @@ struct MapperState
   const vtkRenderer* LastRenderer = nullptr; ///< only to compare with
   MotionEnhancement Motion;
   banyan::Backdrop Backdrop;
+  ScreenView LastView; ///< PictureOf
   KeptTransferFunction Function;
   std::vector<int> RankOrderBehind;
   std::string LastNote;

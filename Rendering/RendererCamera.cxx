@@ -8,8 +8,33 @@
 
 #include <glm/matrix.hpp>
 
+#include <algorithm>
+#include <cmath>
+
 namespace banyan
 {
+namespace
+{
+
+/// Whether two views are one but for rounding.
+bool IsSame(const ScreenView& a, const ScreenView& b)
+{
+  constexpr double rounding = 1e-9;
+  double largest = 0.0;
+  double difference = std::abs(a.Far - b.Far) / std::max(a.Far, b.Far);
+  for (int i = 0; i < 16; ++i)
+  {
+    largest = std::max(largest, std::abs(a.WorldToClip[i / 4][i % 4]));
+  }
+  for (int i = 0; i < 16; ++i)
+  {
+    difference = std::max(
+      difference, std::abs(a.WorldToClip[i / 4][i % 4] - b.WorldToClip[i / 4][i % 4]) / largest);
+  }
+  return a.Size == b.Size && difference <= rounding;
+}
+
+} // namespace
 
 glm::dmat4 ToGlm(vtkMatrix4x4* matrix)
 {
@@ -39,6 +64,35 @@ ScreenView ViewOf(vtkRenderer* renderer)
   view.WorldToClip = glm::transpose(ToGlm(worldToClip));
   view.Far = camera->GetClippingRange()[1];
   return view;
+}
+
+PictureView PictureOf(vtkRenderer* renderer, const ScreenView& last)
+{
+  const ScreenView shown = ViewOf(renderer);
+  vtkRenderWindow* const window = renderer->GetRenderWindow();
+  const int* const scale = window->GetTileScale();
+  const double* const own = renderer->GetViewport();
+  const bool fills = own[0] == 0.0 && own[1] == 0.0 && own[2] == 1.0 && own[3] == 1.0;
+  if ((scale[0] == 1 && scale[1] == 1) || !fills)
+  {
+    return { shown, { glm::ivec2(0), shown.Size } };
+  }
+  const double* const tile = window->GetTileViewport();
+  ScreenView whole = shown;
+  whole.Size = shown.Size * glm::ivec2(scale[0], scale[1]);
+  const glm::ivec2 corner(glm::round(glm::dvec2(tile[0], tile[1]) * glm::dvec2(whole.Size)));
+  // The part's coordinates are x' = s x + t w of the picture's.
+  for (int column = 0; column < 4; ++column)
+  {
+    for (int axis = 0; axis < 2; ++axis)
+    {
+      const double first = static_cast<double>(corner[axis]) / whole.Size[axis];
+      const double moved = 2.0 * first + 1.0 / scale[axis] - 1.0;
+      whole.WorldToClip[column][axis] =
+        shown.WorldToClip[column][axis] / scale[axis] + moved * shown.WorldToClip[column][3];
+    }
+  }
+  return { IsSame(whole, last) ? last : whole, { corner, corner + shown.Size } };
 }
 
 RayCamera CameraOf(vtkRenderer* renderer, const glm::dvec3& anchor)

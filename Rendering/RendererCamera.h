@@ -27,6 +27,22 @@ struct ScreenView
 /// surfaces are drawn with, of the eye that is drawn now, where there are two.
 ScreenView ViewOf(vtkRenderer* renderer);
 
+/// A picture, and the part of it that a renderer shows. Windows draw screenshots that are larger
+/// than they are part by part.
+struct PictureView
+{
+  ScreenView View; ///< of the picture
+  PixelRect Shown;
+
+  bool ShowsAll() const { return this->Shown == PixelRect{ glm::ivec2(0), this->View.Size }; }
+};
+
+/// The picture that a renderer shows, or shows a part of: windows that say so move and scale the
+/// cameras of surfaces, and this undoes it.
+/// @param last the view of the picture before. Parts of one picture have one view: all of them get
+/// that of the first one, to the bit.
+PictureView PictureOf(vtkRenderer* renderer, const ScreenView& last);
+
 /// Its camera.
 /// @param anchor in world space: see RayCamera
 RayCamera CameraOf(vtkRenderer* renderer, const glm::dvec3& anchor);

@@ -27,6 +27,12 @@ namespace
 /// A part of a volume's size that nobody can see.
 constexpr double LeastRange = 1e-12;
 
+/// More than one frame per second: somebody moves the camera. All ranks are told the same rate.
+bool IsInteracting(vtkRenderer* renderer)
+{
+  return renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0;
+}
+
 } // namespace
 
 bool VolumeFrame::Prepare(const ScreenView& view)
@@ -139,7 +145,7 @@ std::shared_ptr<const FloatImage> VolumeFrame::CastOnWall(
 {
   MapperState& state = *this->State;
   this->Wanted->Depth = depths.In(this->Wanted->Viewport);
-  const bool interacting = renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0;
+  const bool interacting = IsInteracting(renderer);
   FieldFrames::Wish wish = this->WishFor(interacting, EyeOf(renderer), volumes);
   wish.Sampling.Seconds /= static_cast<double>(wall.Pictures);
   for (PicturePlace place : wall.Places)
@@ -159,6 +165,49 @@ std::shared_ptr<const FloatImage> VolumeFrame::CastOnWall(
   }
   FieldFrames::Frame frame =
     state.WallFrames[wall.Number]->Draw(*state.Communicator, state.Field, *this->Wanted, wish);
+  this->TellMore(frame);
+  return frame.Picture.Pixels;
+}
+
+bool VolumeFrame::HasSpectator(vtkRenderer* renderer, const Together& others) const
+{
+  return IsInteracting(renderer) || this->MayBeLate(renderer, others);
+}
+
+std::shared_ptr<const FloatImage> VolumeFrame::CastPart(
+  vtkRenderer* renderer, const Backdrop& backdrop, const Together& others, const PixelRect& part)
+{
+  MapperState& state = *this->State;
+  const bool interacting = IsInteracting(renderer);
+  if (this->PicturesDrawn == 0)
+  {
+    this->BeginFigures();
+    state.Late.Stop();
+    state.LastRenderer = renderer;
+    this->DrawsAtOnce(!interacting);
+  }
+  const PixelRect whole = this->Wanted->Viewport;
+  const PixelRect own = Intersection(whole, part);
+  if (own.Empty())
+  {
+    return nullptr;
+  }
+  // Pixels without rays are made from those around them.
+  RayScene scene = *this->Wanted;
+  scene.Viewport = Intersection(
+    whole, { own.Lo - RaySampling::LargestStride, own.Hi + RaySampling::LargestStride });
+  scene.Depth = backdrop.Depths(scene.Viewport);
+  FieldFrames::Wish wish = this->WishFor(interacting, EyeOf(renderer), others.Volumes);
+  wish.Whole = whole;
+  wish.Places = { { own, 0, Intersection(backdrop.Behind(), own) } };
+  const FieldFrames::Frame frame = state.Frames.Draw(*state.Communicator, state.Field, scene, wish);
+  this->TellMore(frame);
+  return frame.Picture.Pixels;
+}
+
+/// Adds what a picture took to what those before it took.
+void VolumeFrame::TellMore(FieldFrames::Frame frame)
+{
   if (this->PicturesDrawn++ > 0)
   {
     frame.Picture.Statistics.Add(this->Statistics);
@@ -167,7 +216,6 @@ std::shared_ptr<const FloatImage> VolumeFrame::CastOnWall(
   }
   this->WorstError = frame.Picture.EstimatedError;
   this->Tell(frame);
-  return frame.Picture.Pixels;
 }
 
 void VolumeFrame::ForgetPictures(std::size_t pictures)
@@ -184,9 +232,7 @@ std::shared_ptr<const FloatImage> VolumeFrame::Cast(
   RayScene& scene = *this->Wanted;
   scene.Depth = backdrop.Depths(scene.Viewport);
   this->BeginFigures();
-  // More than one frame per second: somebody moves the camera. All ranks are told the same rate.
-  const bool interacting = renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0;
-  FieldFrames::Wish wish = this->WishFor(interacting, EyeOf(renderer), others.Volumes);
+  FieldFrames::Wish wish = this->WishFor(IsInteracting(renderer), EyeOf(renderer), others.Volumes);
   wish.Behind = backdrop.Behind();
   const FieldFrames::Frame frame = this->Draw(renderer, wish, others);
   this->Tell(frame);

@@ -63,6 +63,16 @@ public:
   std::shared_ptr<const FloatImage> Cast(
     vtkRenderer* renderer, const Backdrop& backdrop, const Together& others);
 
+  /// Draws a part of the volume's picture: the statistics of parts add up.
+  /// @param part of the picture; the volume may be in none of it
+  /// @return the volume's picture there on rank 0; null elsewhere
+  std::shared_ptr<const FloatImage> CastPart(
+    vtkRenderer* renderer, const Backdrop& backdrop, const Together& others, const PixelRect& part);
+
+  /// Whether somebody goes on in front of the window while the picture is drawn, or moves the
+  /// camera. The same on all ranks.
+  bool HasSpectator(vtkRenderer* renderer, const Together& others) const;
+
   /// A picture on displays of ranks.
   struct OnWall
   {
@@ -89,6 +99,7 @@ public:
 
 private:
   bool MayBeLate(vtkRenderer* renderer, const Together& others) const;
+  void TellMore(FieldFrames::Frame frame);
   void DrawsAtOnce(bool exact);
   FieldFrames::Frame Draw(
     vtkRenderer* renderer, const FieldFrames::Wish& wish, const Together& others);
@@ -101,7 +112,7 @@ private:
   FrameStatistics Statistics;
   FrameFigures Figures;
   bool Kept = false;       ///< FieldFrames::Frame
-  int PicturesDrawn = 0;   ///< of a wall, in this frame
+  int PicturesDrawn = 0;   ///< of a wall, or parts of a picture, in this frame
   double WorstError = 0.0; ///< estimated, of these
 };
 

@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <utility>
 
 namespace banyan
 {
@@ -67,14 +66,6 @@ DepthPicture DepthsOfAll(
     Put(part, united);
   }
   return united;
-}
-
-/// The part of a picture in a place, in pixels of the place.
-FloatImage InPlace(FloatImage picture, const PixelRect& place)
-{
-  picture.Rect.Lo -= place.Lo;
-  picture.Rect.Hi -= place.Lo;
-  return picture;
 }
 
 } // namespace
@@ -173,7 +164,9 @@ void VolumesOnWall::DrawPicture(const WallPicture& picture, const VolumeFrame::O
     const bool single = frames.size() == 1 && pictures.front();
     const FloatImage blended =
       single ? *pictures.front() : BlendInDepth(pictures, order, place->Rect);
-    this->Called->State->Backdrop.WriteOver(this->Renderer, InPlace(blended, place->Rect));
+    Backdrop& backdrop = this->Called->State->Backdrop;
+    backdrop.SetCorner(place->Rect.Lo);
+    backdrop.WriteOver(this->Renderer, blended);
   }
 }
 

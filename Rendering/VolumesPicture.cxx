@@ -63,12 +63,14 @@ VolumesPicture::VolumesPicture(
   vtkRenderer* renderer, vtkBanyanVolumeMapper* mapper, vtkVolume* volume)
   : Renderer(renderer)
   , Called(mapper)
+  , View(PictureOf(renderer, mapper->State->LastView))
 {
   for (vtkVolume* const shown : VolumesDrawnWith(renderer, volume))
   {
     auto* const its =
       shown == volume ? mapper : vtkBanyanVolumeMapper::SafeDownCast(shown->GetMapper());
     this->Frames.emplace_back(its, *its->State, shown);
+    its->State->LastView = this->View.View;
     if (shown != volume)
     {
       its->State->DrawnByOthers.insert(shown);
@@ -101,7 +103,7 @@ void VolumesPicture::Draw()
       [&]
       {
         frame.Mapper()->UpdateField(frame.Volume());
-        return frame.Prepare(ViewOf(this->Renderer));
+        return frame.Prepare(this->View.View);
       });
   };
   this->Frames.erase(std::remove_if(this->Frames.begin(), this->Frames.end(),
@@ -134,60 +136,108 @@ void VolumesPicture::DrawPrepared(vtkBanyanVolumeMapper* first)
     props.push_back(frame.Volume());
     rect = Union(rect, frame.Scene().Viewport);
   }
-  const std::vector<VolumeOnScreen> volumes = OnScreen(frames);
-  const DepthOrder order = OrderInDepth(volumes, ViewOf(this->Renderer));
+  rect = Intersection(rect, this->View.Shown);
+  std::vector<VolumeOnScreen> volumes = OnScreen(frames);
+  for (VolumeOnScreen& volume : volumes)
+  {
+    volume.Viewport = Moved(Intersection(volume.Viewport, rect), -this->View.Shown.Lo);
+  }
+  const DepthOrder order = OrderInDepth(volumes, this->View.View);
   WarnNotInDepth(first, this->Renderer, frames, volumes, order);
+  Backdrop& backdrop = state.Backdrop;
   CompositeStatistics geometry;
-  state.Backdrop.Read(
-    *state.Communicator, this->Renderer, props, rect, state.RankOrderBehind, geometry);
-  Pictures pictures(this->Frames.size());
-  const std::vector<VolumeFrame*> drawn = this->Cast(state.Backdrop, pictures);
-  if (drawn.empty())
+  backdrop.SetCorner(this->View.Shown.Lo);
+  backdrop.Read(*state.Communicator, this->Renderer, props, rect, state.RankOrderBehind, geometry);
+  const std::vector<PixelRect> parts = this->PartsOf(rect);
+  const bool isWhole = parts.size() == 1 && this->View.ShowsAll();
+  std::set<VolumeFrame*> failed;
+  double seconds = 0.0;
+  for (const PixelRect& part : parts)
   {
-    return;
+    Pictures pictures = this->Cast(backdrop, isWhole ? nullptr : &part, failed);
+    if (failed.size() == frames.size())
+    {
+      return;
+    }
+    const Timer writing;
+    if (this->HasSeveral() && state.Communicator->Rank() == 0)
+    {
+      pictures.front() = std::make_shared<const FloatImage>(BlendInDepth(pictures, order, part));
+    }
+    static const FloatImage none;
+    backdrop.Write(
+      *state.Communicator, this->Renderer, part, pictures.front() ? *pictures.front() : none);
+    seconds += writing.Seconds();
   }
-  const Timer writing;
-  if (this->HasSeveral() && state.Communicator->Rank() == 0)
+  for (VolumeFrame* const frame : frames)
   {
-    pictures.front() = std::make_shared<const FloatImage>(BlendInDepth(pictures, order, rect));
-  }
-  static const FloatImage none;
-  state.Backdrop.Write(
-    *state.Communicator, this->Renderer, pictures.front() ? *pictures.front() : none);
-  const double seconds = writing.Seconds() / static_cast<double>(drawn.size());
-  for (VolumeFrame* const frame : drawn)
-  {
-    frame->Finish(geometry, seconds);
+    if (failed.count(frame) == 0)
+    {
+      frame->Finish(geometry, seconds / static_cast<double>(frames.size() - failed.size()));
+    }
   }
 }
 
-/// @param pictures of the frames, on rank 0
-/// @return frames that could be drawn
-std::vector<VolumeFrame*> VolumesPicture::Cast(const Backdrop& backdrop, Pictures& pictures)
+/// What is drawn at once of a rectangle. Somebody in front of a window gets a picture as a whole:
+/// that is kept, and parts are not.
+std::vector<PixelRect> VolumesPicture::PartsOf(const PixelRect& rect) const
 {
-  std::vector<VolumeFrame*> drawn;
+  constexpr long long largest = 1LL << 24;
+  constexpr long long atOnce = 1LL << 22;
+  const auto isWatched = [this](const VolumeFrame& frame)
+  { return frame.HasSpectator(this->Renderer, this->TogetherWith(frame)); };
+  if (rect.Count() <= largest || std::any_of(this->Frames.begin(), this->Frames.end(), isWatched))
+  {
+    return { rect };
+  }
+  // A tile of samplings is in one part.
+  constexpr int edge = TileSamplings::Edge;
+  const int rows = std::max<int>(1, static_cast<int>(atOnce / rect.Size().x / edge)) * edge;
+  std::vector<PixelRect> parts;
+  for (int y = rect.Lo.y; y < rect.Hi.y;)
+  {
+    const int end = std::min((y / edge) * edge + rows, rect.Hi.y);
+    parts.push_back({ { rect.Lo.x, y }, { rect.Hi.x, end } });
+    y = end;
+  }
+  return parts;
+}
+
+/// One mapper may draw several volumes, each with a component of its own.
+VolumeFrame::Together VolumesPicture::TogetherWith(const VolumeFrame& frame) const
+{
+  const auto same = [&](const VolumeFrame& other) { return other.Mapper() == frame.Mapper(); };
+  return { static_cast<int>(this->Frames.size()),
+    static_cast<int>(std::count_if(this->Frames.begin(), this->Frames.end(), same)) };
+}
+
+/// @param part of the picture; null for all of it
+/// @param failed gets the frames that could not be drawn
+/// @return pictures of the frames, on rank 0
+VolumesPicture::Pictures VolumesPicture::Cast(
+  const Backdrop& backdrop, const PixelRect* part, std::set<VolumeFrame*>& failed)
+{
+  Pictures pictures(this->Frames.size());
   for (std::size_t i = 0; i < this->Frames.size(); ++i)
   {
     VolumeFrame& frame = this->Frames[i];
     const auto cast = [&]
     {
-      // One mapper may draw several volumes, each with a component of its own.
-      const auto same = [&](const VolumeFrame& other) { return other.Mapper() == frame.Mapper(); };
-      const VolumeFrame::Together together{ static_cast<int>(this->Frames.size()),
-        static_cast<int>(std::count_if(this->Frames.begin(), this->Frames.end(), same)) };
+      const VolumeFrame::Together together = this->TogetherWith(frame);
       if (together.OfMapper > 1)
       {
         frame.Mapper()->UpdateField(frame.Volume());
       }
-      pictures[i] = frame.Cast(this->Renderer, backdrop, together);
+      pictures[i] = part ? frame.CastPart(this->Renderer, backdrop, together, *part)
+                         : frame.Cast(this->Renderer, backdrop, together);
       return true;
     };
-    if (frame.Mapper()->Attempt(cast))
+    if (failed.count(&frame) == 0 && !frame.Mapper()->Attempt(cast))
     {
-      drawn.push_back(&frame);
+      failed.insert(&frame);
     }
   }
-  return drawn;
+  return pictures;
 }
 
 } // namespace banyan

@@ -5,6 +5,7 @@
 #include "VolumeFrame.h"
 
 #include <memory>
+#include <set>
 #include <vector>
 
 class vtkBanyanVolumeMapper;
@@ -53,10 +54,13 @@ private:
   using Pictures = std::vector<std::shared_ptr<const FloatImage>>; ///< null where there is none
 
   void DrawPrepared(vtkBanyanVolumeMapper* first);
-  std::vector<VolumeFrame*> Cast(const Backdrop& backdrop, Pictures& pictures);
+  std::vector<PixelRect> PartsOf(const PixelRect& rect) const;
+  VolumeFrame::Together TogetherWith(const VolumeFrame& frame) const;
+  Pictures Cast(const Backdrop& backdrop, const PixelRect* part, std::set<VolumeFrame*>& failed);
 
   vtkRenderer* Renderer;
   vtkBanyanVolumeMapper* Called;
+  PictureView View;
   std::vector<VolumeFrame> Frames;
 };
 

@@ -6,6 +6,7 @@
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
 #include "Parallel/Communicate/Collective.h"
+#include "Render/Sampling/RaysBesideDepths.h"
 #include "Render/Scene/SceneDigest.h"
 
 #include <algorithm>
@@ -179,7 +180,7 @@ FieldFrames::Frame FieldFrames::Draw(
   Communicator& communicator, DistributedField& field, RayScene& scene, const Wish& wish)
 {
   Frame frame;
-  if (wish.Passing)
+  if (wish.Passing || !wish.Whole.Empty())
   {
     const Hash128 name = SceneOf(scene, wish);
     this->DrawAnew(communicator, field, scene, { name, name }, wish,
@@ -208,7 +209,7 @@ bool FieldFrames::BeginRays(Communicator& communicator, DrawnField& drawn, RaySc
   const Hash128& name, const Wish& wish)
 {
   scene.Reused.reset();
-  if (wish.Passing)
+  if (wish.Passing || !wish.Whole.Empty())
   {
     return false;
   }
@@ -255,6 +256,43 @@ bool FieldFrames::DividesPicture(
            (wish.Divides == Division::Automatic && wish.Places.size() > 1));
 }
 
+/// Collective: decides how finely the picture is sampled.
+void FieldFrames::Plan(Communicator& communicator, DistributedField& field, RayScene& scene,
+  const Hash128& view, const Wish& wish, const ToleranceControl::Aim& aim, DrawnPicture& picture)
+{
+  const PhaseScope sampling(Phase::Sampling);
+  picture.EstimatedError = this->Tolerance.Plan(communicator, field, scene, view, wish.Sampling,
+    aim, field.DrawingBudget(), picture.Statistics);
+  picture.Limit = this->Tolerance.Limit();
+}
+
+/// Collective: the same for a part of a picture. The plan is made with the first part.
+void FieldFrames::PlanPart(Communicator& communicator, DistributedField& field, RayScene& scene,
+  const Wish& wish, const ToleranceControl::Aim& aim, DrawnPicture& picture)
+{
+  RayScene whole = scene;
+  whole.Viewport = wish.Whole;
+  whole.Depth.clear();
+  Digest name;
+  name.Add(SceneOf(whole, wish));
+  name.Add(field.Version());
+  name.Add(aim.Coarseness);
+  name.Add(aim.Interacting);
+  PlanOfParts& plan = this->OfParts;
+  if (AllMax(communicator, name.Get() == plan.Name ? 0.0 : 1.0) > 0.0)
+  {
+    plan = {};
+    this->Plan(communicator, field, whole, name.Get(), wish, aim, picture);
+    plan = { name.Get(), whole.Samplings, whole.OpacityLimit, whole.LevelsShareCells,
+      picture.EstimatedError, picture.Limit };
+  }
+  scene.Samplings = WithRaysBesideDepths(plan.Samplings, scene);
+  scene.OpacityLimit = plan.OpacityLimit;
+  scene.LevelsShareCells = plan.LevelsShareCells;
+  picture.EstimatedError = plan.EstimatedError;
+  picture.Limit = plan.Limit;
+}
+
 /// Collective.
 void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, RayScene& scene,
   const Names& names, const Wish& wish, const ToleranceControl::Aim& aim, Frame& frame)
@@ -265,17 +303,17 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
     const PhaseScope fetching(Phase::Fetching);
     drawn.BeginFrame(communicator, scene);
   }
-  const std::uint64_t budget = field.DrawingBudget();
-  const PhaseScope sampling(Phase::Sampling);
+  const bool isPart = !wish.Whole.Empty();
   FrameStatistics& numbers = frame.Picture.Statistics;
-  frame.Picture.EstimatedError = this->Tolerance.Plan(
-    communicator, field, scene, names.View, wish.Sampling, aim, budget, numbers);
-  frame.Picture.Limit = this->Tolerance.Limit();
-  RankShare share{ drawn.Source(), drawn.Zones(), budget, ThreadPool::Process() };
+  isPart ? this->PlanPart(communicator, field, scene, wish, aim, frame.Picture)
+         : this->Plan(communicator, field, scene, names.View, wish, aim, frame.Picture);
+  RankShare share{ drawn.Source(), drawn.Zones(), field.DrawingBudget(), ThreadPool::Process() };
   frame.ByPicture = DividesPicture(communicator, drawn, wish);
+  PictureRegions ofPart;
+  PictureRegions& regions = isPart ? ofPart : this->Regions;
   if (frame.ByPicture)
   {
-    share.Regions = this->Regions.BeginFrame(scene, communicator.Size(), wish.Places);
+    share.Regions = regions.BeginFrame(scene, communicator.Size(), wish.Places);
   }
   const bool keeps = this->BeginRays(communicator, drawn, scene, names.Whole, wish);
   const FrameStatistics probes = numbers;
@@ -284,7 +322,7 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   compositing.Transport = wish.Transport;
   compositing.Plans = &this->Plans;
   // The other eye's picture is no step of a camera that moves.
-  if (wish.ReadAhead && wish.Sampling.Eye == 0)
+  if (wish.ReadAhead && wish.Sampling.Eye == 0 && !isPart)
   {
     compositing.AfterCasting = [&] { ReadAhead(drawn, scene, share, communicator.Rank()); };
   }
@@ -302,9 +340,9 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   numbers.BytesComposited += probes.BytesComposited;
   numbers.MessagesComposited += probes.MessagesComposited;
   const PhaseScope balancing(Phase::Balancing);
-  if (!scene.Reused) // what a part of a picture takes says little of the next one
+  if (!scene.Reused && !isPart) // what a part of a picture takes says little of the next one
   {
-    frame.ByPicture ? this->Regions.EndFrame(communicator) : drawn.EndFrame(communicator);
+    frame.ByPicture ? regions.EndFrame(communicator) : drawn.EndFrame(communicator);
   }
   this->Tolerance.FrameTook(
     wish.Sampling, AllMax(communicator, drawing.Seconds() + wish.ShowSeconds));
@@ -315,6 +353,7 @@ void FieldFrames::Forget()
   this->Pictures.Clear();
   this->Rays.Forget();
   this->Tolerance.ForgetPlans();
+  this->OfParts = {};
 }
 
 } // namespace banyan

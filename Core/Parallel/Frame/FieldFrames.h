@@ -38,6 +38,10 @@ public:
     bool ReadAhead = true; ///< whether bricks of the next frame are decoded in the background
     bool Reuse = true;     ///< whether the frame may take anything from those before
     bool Passing = false;  ///< whether the picture will not be wanted again: nothing of it is kept
+    /// Not empty where the scene's viewport is a part of a picture that is drawn part by part: this
+    /// is the picture's. One plan of samplings is made for all its parts, as if nothing opaque were
+    /// in the picture (see WithRaysBesideDepths), and nothing else is kept of them.
+    PixelRect Whole;
     double ShowSeconds = 0.0; ///< that putting the picture on the screen is expected to take
   };
 
@@ -101,6 +105,10 @@ private:
     const Hash128& name, const Wish& wish);
   static bool DividesPicture(
     const Communicator& communicator, const DrawnField& drawn, const Wish& wish);
+  void Plan(Communicator& communicator, DistributedField& field, RayScene& scene,
+    const Hash128& view, const Wish& wish, const ToleranceControl::Aim& aim, DrawnPicture& picture);
+  void PlanPart(Communicator& communicator, DistributedField& field, RayScene& scene,
+    const Wish& wish, const ToleranceControl::Aim& aim, DrawnPicture& picture);
   void DrawAnew(Communicator& communicator, DistributedField& field, RayScene& scene,
     const Names& names, const Wish& wish, const ToleranceControl::Aim& aim, Frame& frame);
 
@@ -115,7 +123,19 @@ private:
   void BeginLooking(std::uint64_t version);
   void EndLooking(bool taken);
 
+  /// How finely a picture is sampled that is drawn part by part.
+  struct PlanOfParts
+  {
+    Hash128 Name;
+    std::shared_ptr<const TileSamplings> Samplings;
+    float OpacityLimit = 0.0f;
+    bool LevelsShareCells = false;
+    double EstimatedError = 0.0;
+    std::string Limit;
+  };
+
   Looking Values;
+  PlanOfParts OfParts;
   ToleranceControl Tolerance;
   CompositePlanCache Plans;
   KeptRays Rays;

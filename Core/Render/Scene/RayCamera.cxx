@@ -88,6 +88,11 @@ PixelRect Union(const PixelRect& a, const PixelRect& b)
   return b.Empty() ? a : PixelRect{ glm::min(a.Lo, b.Lo), glm::max(a.Hi, b.Hi) };
 }
 
+PixelRect Moved(const PixelRect& rect, const glm::ivec2& by)
+{
+  return { rect.Lo + by, rect.Hi + by };
+}
+
 RayCamera::RayCamera(
   const glm::dmat4& worldToClip, const glm::ivec2& imageSize, const glm::dvec3& anchor)
   : WorldToClip(worldToClip)

@@ -32,6 +32,8 @@ PixelRect Intersection(const PixelRect& a, const PixelRect& b);
 
 /// Smallest rectangle around both; an empty one counts as nothing.
 PixelRect Union(const PixelRect& a, const PixelRect& b);
+/// The rectangle so many pixels to the right and up.
+PixelRect Moved(const PixelRect& rect, const glm::ivec2& by);
 
 /// A ray in the space that the camera was given in: p(t) = Origin + t * Direction, |Direction| = 1.
 /// t = 0 is the eye (perspective) or the plane through `Anchor` (parallel projection), so that
