@@ -18,6 +18,8 @@ namespace
 {
 
 constexpr OpaquePixel Blank{ 1.0f, { 0, 0, 0, 0 } };
+/// Pixels that are on their way from and to the screen: they take some 24 bytes each.
+constexpr long long AtOnce = 1LL << 21;
 
 /// The smallest rectangle around those of all ranks. Collective.
 PixelRect UnionOfAll(Communicator& communicator, const PixelRect& mine)
@@ -55,11 +57,13 @@ void Backdrop::Read(Communicator& communicator, vtkRenderer* renderer,
   const PixelRect others = OthersOnScreen(renderer, own, this->InRenderer(rect));
   this->Inner = UnionOfAll(communicator, Moved(others, this->Corner));
   this->InnerPixels.clear();
-  if (!this->Inner.Empty())
+  this->InnerPixels.reserve(static_cast<std::size_t>(this->Inner.Count()));
+  for (const PixelRect& rows : InRows(this->Inner, AtOnce, 1))
   {
-    this->Framebuffer.Read(renderer, this->InRenderer(this->Inner), this->InnerPixels);
-    this->BehindRect =
-      CombineBehind(communicator, rankOrder, this->Inner, this->InnerPixels, statistics);
+    this->Framebuffer.Read(renderer, this->InRenderer(rows), this->Pixels);
+    this->BehindRect = Union(
+      this->BehindRect, CombineBehind(communicator, rankOrder, rows, this->Pixels, statistics));
+    this->InnerPixels.insert(this->InnerPixels.end(), this->Pixels.begin(), this->Pixels.end());
   }
 }
 
@@ -75,30 +79,28 @@ std::vector<float> Backdrop::Depths(const PixelRect& part) const
 void Backdrop::Write(const Communicator& communicator, vtkRenderer* renderer, const PixelRect& part,
   const FloatImage& picture)
 {
-  const PixelRect inner = Intersection(this->Inner, part);
-  if (communicator.Rank() > 0)
+  const bool alone = communicator.Size() == 1;
+  for (const PixelRect& rows : InRows(part, AtOnce, 1))
   {
-    if (!inner.Empty())
+    // The picture goes over the background that is there, in 8 bit, where nothing else is, and of
+    // one rank everywhere: as the compositor blends it over a background that comes last.
+    if (communicator.Rank() == 0 && (alone || !(this->Inner == this->Rect)))
+    {
+      this->WriteOverBackground(renderer, rows, picture, alone);
+    }
+    // Of several ranks what was read has become what all of them show, and replaces what the first
+    // one does.
+    const PixelRect inner = Intersection(this->Inner, rows);
+    if (!alone && !inner.Empty())
     {
       this->Pixels.assign(static_cast<std::size_t>(inner.Count()), Blank);
+      if (communicator.Rank() == 0)
+      {
+        CopyPart(inner, this->Inner, this->InnerPixels, inner, this->Pixels);
+        BlendOver(picture, Intersection(inner, picture.Rect), inner, this->Pixels);
+      }
       this->Put(renderer, inner, { inner }, /*blend=*/false);
     }
-    return;
-  }
-  // The picture goes over the background that is there, in 8 bit, where nothing else is, and of one
-  // rank everywhere: as the compositor blends it over a background that comes last. Of several
-  // ranks what was read has become what all of them show, and replaces what the first one does.
-  const bool alone = communicator.Size() == 1;
-  if (alone || !(this->Inner == this->Rect))
-  {
-    this->WriteOverBackground(renderer, picture, alone);
-  }
-  if (!alone && !inner.Empty())
-  {
-    this->Pixels.resize(static_cast<std::size_t>(inner.Count()));
-    CopyPart(inner, this->Inner, this->InnerPixels, inner, this->Pixels);
-    BlendOver(picture, Intersection(inner, picture.Rect), inner, this->Pixels);
-    this->Put(renderer, inner, { inner }, /*blend=*/false);
   }
 }
 
@@ -106,13 +108,17 @@ void Backdrop::WriteOver(vtkRenderer* renderer, const FloatImage& picture)
 {
   this->Inner = {};
   this->InnerPixels.clear();
-  this->WriteOverBackground(renderer, picture, /*alone=*/true);
+  for (const PixelRect& rows : InRows(picture.Rect, AtOnce, 1))
+  {
+    this->WriteOverBackground(renderer, rows, picture, /*alone=*/true);
+  }
 }
 
-void Backdrop::WriteOverBackground(vtkRenderer* renderer, const FloatImage& picture, bool alone)
+void Backdrop::WriteOverBackground(
+  vtkRenderer* renderer, const PixelRect& rows, const FloatImage& picture, bool alone)
 {
   // Blank pixels change nothing: most of some pictures need not be drawn.
-  const std::vector<PixelRect> parts = CoveredParts(picture);
+  const std::vector<PixelRect> parts = CoveredParts(picture, Intersection(rows, picture.Rect));
   PixelRect around;
   for (const PixelRect& part : parts)
   {
@@ -125,9 +131,9 @@ void Backdrop::WriteOverBackground(vtkRenderer* renderer, const FloatImage& pict
   this->Pixels.assign(static_cast<std::size_t>(around.Count()), Blank);
   if (alone)
   {
-    ClearWithoutGeometry(this->InnerPixels);
-    CopyPart(
-      Intersection(this->Inner, around), this->Inner, this->InnerPixels, around, this->Pixels);
+    const PixelRect inner = Intersection(this->Inner, around);
+    CopyPart(inner, this->Inner, this->InnerPixels, around, this->Pixels);
+    ClearWithoutGeometry(this->Pixels);
   }
   for (const PixelRect& part : parts)
   {

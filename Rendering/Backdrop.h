@@ -53,7 +53,8 @@ public:
   void ReleaseGraphicsResources(vtkWindow* window);
 
 private:
-  void WriteOverBackground(vtkRenderer* renderer, const FloatImage& picture, bool alone);
+  void WriteOverBackground(
+    vtkRenderer* renderer, const PixelRect& rows, const FloatImage& picture, bool alone);
   void Put(
     vtkRenderer* renderer, const PixelRect& rect, const std::vector<PixelRect>& parts, bool blend);
   PixelRect InRenderer(const PixelRect& rect) const;

@@ -118,27 +118,18 @@ FramebufferExchange::~FramebufferExchange() = default;
 void FramebufferExchange::ReadBound(
   const glm::ivec2& corner, const glm::ivec2& size, std::vector<OpaquePixel>& pixels)
 {
-  // Some rows at a time: what is on its way is then small, however large the picture is.
-  constexpr int atOnce = 1 << 20;
-  const int rows = std::clamp(atOnce / std::max(size.x, 1), 1, std::max(size.y, 1));
-  const auto width = static_cast<std::size_t>(size.x);
-  pixels.resize(width * static_cast<std::size_t>(size.y));
+  const auto count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+  this->Depths.resize(count);
+  this->Colors.resize(4 * count);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  for (int y = 0; y < size.y; y += rows)
+  glReadPixels(corner.x, corner.y, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE, this->Colors.data());
+  glReadPixels(
+    corner.x, corner.y, size.x, size.y, GL_DEPTH_COMPONENT, GL_FLOAT, this->Depths.data());
+  pixels.resize(count);
+  for (std::size_t i = 0; i < count; ++i)
   {
-    const int height = std::min(rows, size.y - y);
-    const std::size_t count = width * static_cast<std::size_t>(height);
-    this->Depths.resize(count);
-    this->Colors.resize(4 * count);
-    const int low = corner.y + y;
-    glReadPixels(corner.x, low, size.x, height, GL_RGBA, GL_UNSIGNED_BYTE, this->Colors.data());
-    glReadPixels(corner.x, low, size.x, height, GL_DEPTH_COMPONENT, GL_FLOAT, this->Depths.data());
-    OpaquePixel* const first = pixels.data() + width * static_cast<std::size_t>(y);
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      first[i].Depth = this->Depths[i];
-      std::memcpy(first[i].Color, &this->Colors[4 * i], 4);
-    }
+    pixels[i].Depth = this->Depths[i];
+    std::memcpy(pixels[i].Color, &this->Colors[4 * i], 4);
   }
 }
 

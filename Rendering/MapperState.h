@@ -40,7 +40,7 @@ struct MapperState
   const vtkRenderer* LastRenderer = nullptr; ///< only to compare with
   MotionEnhancement Motion;
   banyan::Backdrop Backdrop;
-  ScreenView LastView; ///< PictureOf
+  glm::dmat4 LastView{ 0.0 }; ///< PictureOf
   KeptTransferFunction Function;
   std::vector<int> RankOrderBehind;
   std::string LastNote;

@@ -16,22 +16,18 @@ namespace banyan
 namespace
 {
 
-/// Whether two views are one but for rounding.
-bool IsSame(const ScreenView& a, const ScreenView& b)
+/// Whether two matrices are one but for rounding: windows have angles of views in float.
+bool IsSame(const glm::dmat4& a, const glm::dmat4& b)
 {
-  constexpr double rounding = 1e-9;
+  constexpr double rounding = 1e-6;
   double largest = 0.0;
-  double difference = std::abs(a.Far - b.Far) / std::max(a.Far, b.Far);
+  double difference = 0.0;
   for (int i = 0; i < 16; ++i)
   {
-    largest = std::max(largest, std::abs(a.WorldToClip[i / 4][i % 4]));
+    largest = std::max(largest, std::abs(a[i / 4][i % 4]));
+    difference = std::max(difference, std::abs(a[i / 4][i % 4] - b[i / 4][i % 4]));
   }
-  for (int i = 0; i < 16; ++i)
-  {
-    difference = std::max(
-      difference, std::abs(a.WorldToClip[i / 4][i % 4] - b.WorldToClip[i / 4][i % 4]) / largest);
-  }
-  return a.Size == b.Size && difference <= rounding;
+  return difference <= rounding * largest;
 }
 
 } // namespace
@@ -66,7 +62,7 @@ ScreenView ViewOf(vtkRenderer* renderer)
   return view;
 }
 
-PictureView PictureOf(vtkRenderer* renderer, const ScreenView& last)
+PictureView PictureOf(vtkRenderer* renderer, const glm::dmat4& last)
 {
   const ScreenView shown = ViewOf(renderer);
   vtkRenderWindow* const window = renderer->GetRenderWindow();
@@ -92,7 +88,11 @@ PictureView PictureOf(vtkRenderer* renderer, const ScreenView& last)
         shown.WorldToClip[column][axis] / scale[axis] + moved * shown.WorldToClip[column][3];
     }
   }
-  return { IsSame(whole, last) ? last : whole, { corner, corner + shown.Size } };
+  if (IsSame(whole.WorldToClip, last))
+  {
+    whole.WorldToClip = last;
+  }
+  return { whole, { corner, corner + shown.Size } };
 }
 
 RayCamera CameraOf(vtkRenderer* renderer, const glm::dvec3& anchor)

@@ -39,9 +39,9 @@ struct PictureView
 
 /// The picture that a renderer shows, or shows a part of: windows that say so move and scale the
 /// cameras of surfaces, and this undoes it.
-/// @param last the view of the picture before. Parts of one picture have one view: all of them get
-/// that of the first one, to the bit.
-PictureView PictureOf(vtkRenderer* renderer, const ScreenView& last);
+/// @param last WorldToClip of the picture before. A window shows a small picture first: all parts
+/// of the large one get its view, to the bit.
+PictureView PictureOf(vtkRenderer* renderer, const glm::dmat4& last);
 
 /// Its camera.
 /// @param anchor in world space: see RayCamera

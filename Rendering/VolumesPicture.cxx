@@ -70,7 +70,7 @@ VolumesPicture::VolumesPicture(
     auto* const its =
       shown == volume ? mapper : vtkBanyanVolumeMapper::SafeDownCast(shown->GetMapper());
     this->Frames.emplace_back(its, *its->State, shown);
-    its->State->LastView = this->View.View;
+    its->State->LastView = this->View.View.WorldToClip;
     if (shown != volume)
     {
       its->State->DrawnByOthers.insert(shown);
@@ -182,25 +182,15 @@ void VolumesPicture::DrawPrepared(vtkBanyanVolumeMapper* first)
 /// that is kept, and parts are not.
 std::vector<PixelRect> VolumesPicture::PartsOf(const PixelRect& rect) const
 {
-  constexpr long long largest = 1LL << 24;
-  constexpr long long atOnce = 1LL << 22;
+  constexpr long long largest = 1LL << 23;
+  constexpr long long atOnce = 1LL << 21;
   const auto isWatched = [this](const VolumeFrame& frame)
   { return frame.HasSpectator(this->Renderer, this->TogetherWith(frame)); };
   if (rect.Count() <= largest || std::any_of(this->Frames.begin(), this->Frames.end(), isWatched))
   {
     return { rect };
   }
-  // A tile of samplings is in one part.
-  constexpr int edge = TileSamplings::Edge;
-  const int rows = std::max<int>(1, static_cast<int>(atOnce / rect.Size().x / edge)) * edge;
-  std::vector<PixelRect> parts;
-  for (int y = rect.Lo.y; y < rect.Hi.y;)
-  {
-    const int end = std::min((y / edge) * edge + rows, rect.Hi.y);
-    parts.push_back({ { rect.Lo.x, y }, { rect.Hi.x, end } });
-    y = end;
-  }
-  return parts;
+  return InRows(rect, atOnce, TileSamplings::Edge); // a tile of samplings is in one part
 }
 
 /// One mapper may draw several volumes, each with a component of its own.

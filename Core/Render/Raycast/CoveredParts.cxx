@@ -47,10 +47,9 @@ void AddPartsOfBand(const FloatImage& picture, const PixelRect& band, std::vecto
 
 } // namespace
 
-std::vector<PixelRect> CoveredParts(const FloatImage& picture)
+std::vector<PixelRect> CoveredParts(const FloatImage& picture, const PixelRect& all)
 {
   std::vector<PixelRect> parts;
-  const PixelRect& all = picture.Rect;
   for (int y = all.Lo.y; y < all.Hi.y; y += Tile)
   {
     AddPartsOfBand(picture, { { all.Lo.x, y }, { all.Hi.x, std::min(y + Tile, all.Hi.y) } }, parts);

@@ -9,9 +9,10 @@
 namespace banyan
 {
 
-/// Few rectangles that hold all pixels of a picture that are not quite transparent, and little
-/// else: whole tiles, side by side ones as one. They do not overlap.
-std::vector<PixelRect> CoveredParts(const FloatImage& picture);
+/// Few rectangles that hold all pixels of a part of a picture that are not quite transparent, and
+/// little else: whole tiles, side by side ones as one. They do not overlap.
+/// @param all inside the picture
+std::vector<PixelRect> CoveredParts(const FloatImage& picture, const PixelRect& all);
 
 } // namespace banyan
 

@@ -93,6 +93,19 @@ PixelRect Moved(const PixelRect& rect, const glm::ivec2& by)
   return { rect.Lo + by, rect.Hi + by };
 }
 
+std::vector<PixelRect> InRows(const PixelRect& rect, long long most, int edge)
+{
+  const long long atOnce = std::max(1LL, most / std::max(rect.Size().x, 1) / edge) * edge;
+  std::vector<PixelRect> parts;
+  for (int y = rect.Lo.y; y < rect.Hi.y;)
+  {
+    const auto end = static_cast<int>(std::min<long long>(y / edge * edge + atOnce, rect.Hi.y));
+    parts.push_back({ { rect.Lo.x, y }, { rect.Hi.x, end } });
+    y = end;
+  }
+  return parts;
+}
+
 RayCamera::RayCamera(
   const glm::dmat4& worldToClip, const glm::ivec2& imageSize, const glm::dvec3& anchor)
   : WorldToClip(worldToClip)

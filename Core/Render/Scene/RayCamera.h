@@ -6,6 +6,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <vector>
+
 namespace banyan
 {
 
@@ -34,6 +36,11 @@ PixelRect Intersection(const PixelRect& a, const PixelRect& b);
 PixelRect Union(const PixelRect& a, const PixelRect& b);
 /// The rectangle so many pixels to the right and up.
 PixelRect Moved(const PixelRect& rect, const glm::ivec2& by);
+
+/// Cuts a rectangle into parts of whole rows, from the lowest one on.
+/// @param most pixels of a part, if that is enough for the least rows
+/// @param edge number of rows in pictures whose multiples parts end at
+std::vector<PixelRect> InRows(const PixelRect& rect, long long most, int edge);
 
 /// A ray in the space that the camera was given in: p(t) = Origin + t * Direction, |Direction| = 1.
 /// t = 0 is the eye (perspective) or the plane through `Anchor` (parallel projection), so that

@@ -43,7 +43,7 @@ TEST(CoveredParts, HoldCoveredPixelsOnceAndStayInThePicture)
       {
         pixel.a = random() % oneIn == 0 ? 1e-6f : 0.0f;
       }
-      const std::vector<PixelRect> parts = CoveredParts(picture);
+      const std::vector<PixelRect> parts = CoveredParts(picture, picture.Rect);
       for (const PixelRect& part : parts)
       {
         EXPECT_TRUE(Intersection(part, picture.Rect) == part && !part.Empty());
@@ -64,17 +64,17 @@ TEST(CoveredParts, HoldCoveredPixelsOnceAndStayInThePicture)
 TEST(CoveredParts, AreFewAndSmall)
 {
   FloatImage picture = Blank({ { 0, 0 }, { 512, 512 } });
-  EXPECT_TRUE(CoveredParts(picture).empty());
+  EXPECT_TRUE(CoveredParts(picture, picture.Rect).empty());
   picture.At(200, 100).a = 1.0f;
-  const std::vector<PixelRect> one = CoveredParts(picture);
+  const std::vector<PixelRect> one = CoveredParts(picture, picture.Rect);
   ASSERT_EQ(one.size(), 1u);
   EXPECT_LE(one.front().Count(), 32 * 32);
   for (glm::vec4& pixel : picture.Pixels)
   {
     pixel.a = 1.0f;
   }
-  EXPECT_EQ(CoveredParts(picture).size(), 16u);
-  EXPECT_TRUE(CoveredParts(FloatImage{}).empty());
+  EXPECT_EQ(CoveredParts(picture, picture.Rect).size(), 16u);
+  EXPECT_TRUE(CoveredParts(FloatImage{}, {}).empty());
 }
 
 } // namespace
