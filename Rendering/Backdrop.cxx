@@ -157,6 +157,12 @@ PixelRect Backdrop::InRenderer(const PixelRect& rect) const
   return Moved(rect, -this->Corner);
 }
 
+void Backdrop::Forget()
+{
+  this->Inner = {};
+  std::vector<OpaquePixel>().swap(this->InnerPixels);
+}
+
 void Backdrop::ReleaseGraphicsResources(vtkWindow* window)
 {
   this->Framebuffer.ReleaseGraphicsResources(window);

@@ -50,6 +50,9 @@ public:
   /// Writes a picture over what is there, in 8 bit: of a rank that shows it alone.
   void WriteOver(vtkRenderer* renderer, const FloatImage& picture);
 
+  /// Gives back the memory of what was read.
+  void Forget();
+
   void ReleaseGraphicsResources(vtkWindow* window);
 
 private:

@@ -4,7 +4,6 @@
 #include "vtkBanyanFrameStatistics.h"
 
 #include "Base/ThreadPool.h"
-#include "Parallel/Fields/DrawnField.h"
 #include "Parallel/Frame/DistributedFrame.h"
 
 #include <algorithm>
@@ -61,16 +60,25 @@ FrameFigures::FrameFigures(DrawnField& field)
 {
 }
 
+void FrameFigures::Add(const DrawnField& field, bool kept)
+{
+  const DrawnField::Movement last = field.Moved();
+  this->Moved.BytesFetched = last.BytesFetched;
+  if (!kept)
+  {
+    this->Moved.Bytes += last.Bytes;
+    this->Moved.Hits += last.Hits;
+    this->Moved.Misses += last.Misses;
+  }
+}
+
 void FrameFigures::Publish(Communicator& communicator, const DrawnField& field,
-  const FrameStatistics& frame, bool kept, std::uint64_t geometryBytes,
-  vtkBanyanFrameStatistics* out) const
+  const FrameStatistics& frame, std::uint64_t geometryBytes, vtkBanyanFrameStatistics* out) const
 {
   const BrickCache& bricks = BrickCache::Of(*this->Caches);
   const BrickCache::Statistics cache = bricks.GetStatistics();
   const MeshBytes mesh = field.Bytes();
-  const DrawnField::Movement last = field.Moved();
-  const DrawnField::Movement moved =
-    kept ? DrawnField::Movement{ 0.0, 0, 0, last.BytesFetched } : last;
+  const DrawnField::Movement& moved = this->Moved;
   Report mine{};
   mine[GeometryBytes] = geometryBytes;
   mine[BytesRead] = field.BytesRead() - this->BytesBefore;

@@ -40,7 +40,7 @@ struct MapperState
   const vtkRenderer* LastRenderer = nullptr; ///< only to compare with
   MotionEnhancement Motion;
   banyan::Backdrop Backdrop;
-  glm::dmat4 LastView{ 0.0 }; ///< PictureOf
+  std::array<glm::dmat4, 2> LastViews{ glm::dmat4(0.0), glm::dmat4(0.0) }; ///< PictureOf, by eye
   KeptTransferFunction Function;
   std::vector<int> RankOrderBehind;
   std::string LastNote;

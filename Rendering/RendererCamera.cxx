@@ -62,30 +62,39 @@ ScreenView ViewOf(vtkRenderer* renderer)
   return view;
 }
 
-PictureView PictureOf(vtkRenderer* renderer, const glm::dmat4& last)
+WindowTile TileOf(vtkRenderer* renderer)
 {
-  const ScreenView shown = ViewOf(renderer);
-  vtkRenderWindow* const window = renderer->GetRenderWindow();
-  const int* const scale = window->GetTileScale();
   const double* const own = renderer->GetViewport();
   const bool fills = own[0] == 0.0 && own[1] == 0.0 && own[2] == 1.0 && own[3] == 1.0;
-  if ((scale[0] == 1 && scale[1] == 1) || !fills)
+  if (IsInteracting(renderer) || !fills)
+  {
+    return {};
+  }
+  vtkRenderWindow* const window = renderer->GetRenderWindow();
+  const int* const scale = window->GetTileScale();
+  const double* const tile = window->GetTileViewport();
+  return { { scale[0], scale[1] }, { tile[0], tile[1] } };
+}
+
+PictureView PictureOf(vtkRenderer* renderer, const WindowTile& tile, const glm::dmat4& last)
+{
+  const ScreenView shown = ViewOf(renderer);
+  if (tile.Scale == glm::ivec2(1))
   {
     return { shown, { glm::ivec2(0), shown.Size } };
   }
-  const double* const tile = window->GetTileViewport();
   ScreenView whole = shown;
-  whole.Size = shown.Size * glm::ivec2(scale[0], scale[1]);
-  const glm::ivec2 corner(glm::round(glm::dvec2(tile[0], tile[1]) * glm::dvec2(whole.Size)));
+  whole.Size = shown.Size * tile.Scale;
+  const glm::ivec2 corner(glm::round(tile.Corner * glm::dvec2(whole.Size)));
   // The part's coordinates are x' = s x + t w of the picture's.
   for (int column = 0; column < 4; ++column)
   {
     for (int axis = 0; axis < 2; ++axis)
     {
       const double first = static_cast<double>(corner[axis]) / whole.Size[axis];
-      const double moved = 2.0 * first + 1.0 / scale[axis] - 1.0;
+      const double moved = 2.0 * first + 1.0 / tile.Scale[axis] - 1.0;
       whole.WorldToClip[column][axis] =
-        shown.WorldToClip[column][axis] / scale[axis] + moved * shown.WorldToClip[column][3];
+        shown.WorldToClip[column][axis] / tile.Scale[axis] + moved * shown.WorldToClip[column][3];
     }
   }
   if (IsSame(whole.WorldToClip, last))
@@ -93,6 +102,12 @@ PictureView PictureOf(vtkRenderer* renderer, const glm::dmat4& last)
     whole.WorldToClip = last;
   }
   return { whole, { corner, corner + shown.Size } };
+}
+
+bool IsInteracting(vtkRenderer* renderer)
+{
+  // More than one frame per second. All ranks are told the same rate.
+  return renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0;
 }
 
 RayCamera CameraOf(vtkRenderer* renderer, const glm::dvec3& anchor)

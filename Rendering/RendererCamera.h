@@ -37,11 +37,26 @@ struct PictureView
   bool ShowsAll() const { return this->Shown == PixelRect{ glm::ivec2(0), this->View.Size }; }
 };
 
-/// The picture that a renderer shows, or shows a part of: windows that say so move and scale the
-/// cameras of surfaces, and this undoes it.
+/// The part of a large picture that a window draws now. Plain numbers: the first rank's is told to
+/// the others, whose windows may not know.
+struct WindowTile
+{
+  glm::ivec2 Scale{ 1 };    ///< how many parts there are
+  glm::dvec2 Corner{ 0.0 }; ///< of the part, in the picture, from 0 to 1
+};
+
+/// While somebody moves the camera, and in a viewport that does not fill the window, there are no
+/// parts.
+WindowTile TileOf(vtkRenderer* renderer);
+
+/// The picture that a renderer shows, or shows a part of: windows that draw a part move and scale
+/// the cameras of surfaces, and this undoes it.
 /// @param last WorldToClip of the picture before. A window shows a small picture first: all parts
 /// of the large one get its view, to the bit.
-PictureView PictureOf(vtkRenderer* renderer, const glm::dmat4& last);
+PictureView PictureOf(vtkRenderer* renderer, const WindowTile& tile, const glm::dmat4& last);
+
+/// Whether somebody moves the camera. The same on all ranks.
+bool IsInteracting(vtkRenderer* renderer);
 
 /// Its camera.
 /// @param anchor in world space: see RayCamera

@@ -27,12 +27,6 @@ namespace
 /// A part of a volume's size that nobody can see.
 constexpr double LeastRange = 1e-12;
 
-/// More than one frame per second: somebody moves the camera. All ranks are told the same rate.
-bool IsInteracting(vtkRenderer* renderer)
-{
-  return renderer->GetRenderWindow()->GetDesiredUpdateRate() > 1.0;
-}
-
 } // namespace
 
 bool VolumeFrame::Prepare(const ScreenView& view)
@@ -182,10 +176,11 @@ std::shared_ptr<const FloatImage> VolumeFrame::CastPart(
   if (this->PicturesDrawn == 0)
   {
     this->BeginFigures();
-    state.Late.Stop();
+    LateFrames::PauseAll();
     state.LastRenderer = renderer;
     this->DrawsAtOnce(!interacting);
   }
+  this->Owner->GetStatistics()->SetPixelsReadBehind(static_cast<vtkIdType>(backdrop.PixelsRead()));
   const PixelRect whole = this->Wanted->Viewport;
   const PixelRect own = Intersection(whole, part);
   if (own.Empty())
@@ -215,6 +210,7 @@ void VolumeFrame::TellMore(FieldFrames::Frame frame)
     frame.Kept = frame.Kept && this->Kept;
   }
   this->WorstError = frame.Picture.EstimatedError;
+  this->Figures.Add(this->State->Field.Drawn(), frame.Kept);
   this->Tell(frame);
 }
 
@@ -267,7 +263,11 @@ void VolumeFrame::Tell(const FieldFrames::Frame& frame)
 
 void VolumeFrame::Finish(const CompositeStatistics& geometry, double writeSeconds)
 {
-  this->State->WriteSeconds = writeSeconds;
+  if (this->PicturesDrawn == 0) // parts say nothing of a picture that is shown at once
+  {
+    this->State->WriteSeconds = writeSeconds;
+    this->Figures.Add(this->State->Field.Drawn(), this->Kept);
+  }
   this->State->LastProblem.clear();
   vtkBanyanFrameStatistics* const out = this->Owner->GetStatistics();
   out->SetTotalSeconds(this->Began.Seconds());
@@ -278,7 +278,7 @@ void VolumeFrame::Finish(const CompositeStatistics& geometry, double writeSecond
     return;
   }
   this->Figures.Publish(*this->State->Communicator, this->State->Field.Drawn(), this->Statistics,
-    this->Kept, geometry.BytesSent, out);
+    geometry.BytesSent, out);
 }
 
 } // namespace banyan

@@ -63,14 +63,12 @@ VolumesPicture::VolumesPicture(
   vtkRenderer* renderer, vtkBanyanVolumeMapper* mapper, vtkVolume* volume)
   : Renderer(renderer)
   , Called(mapper)
-  , View(PictureOf(renderer, mapper->State->LastView))
 {
   for (vtkVolume* const shown : VolumesDrawnWith(renderer, volume))
   {
     auto* const its =
       shown == volume ? mapper : vtkBanyanVolumeMapper::SafeDownCast(shown->GetMapper());
     this->Frames.emplace_back(its, *its->State, shown);
-    its->State->LastView = this->View.View.WorldToClip;
     if (shown != volume)
     {
       its->State->DrawnByOthers.insert(shown);
@@ -97,6 +95,14 @@ void VolumesPicture::ForgetDrawn(vtkRenderer* renderer)
 
 void VolumesPicture::Draw()
 {
+  const auto eye = static_cast<std::size_t>(EyeOf(this->Renderer));
+  WindowTile tile = TileOf(this->Renderer);
+  this->Called->State->Communicator->Broadcast(0, &tile, sizeof(tile));
+  this->View = PictureOf(this->Renderer, tile, this->Called->State->LastViews.at(eye));
+  for (VolumeFrame& frame : this->Frames)
+  {
+    frame.Mapper()->State->LastViews.at(eye) = this->View.View.WorldToClip;
+  }
   const auto shows = [this](VolumeFrame& frame)
   {
     return frame.Mapper()->Attempt(
@@ -168,6 +174,10 @@ void VolumesPicture::DrawPrepared(vtkBanyanVolumeMapper* first)
     backdrop.Write(
       *state.Communicator, this->Renderer, part, pictures.front() ? *pictures.front() : none);
     seconds += writing.Seconds();
+  }
+  if (!isWhole)
+  {
+    backdrop.Forget();
   }
   for (VolumeFrame* const frame : frames)
   {

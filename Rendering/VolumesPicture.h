@@ -60,7 +60,7 @@ private:
 
   vtkRenderer* Renderer;
   vtkBanyanVolumeMapper* Called;
-  PictureView View;
+  PictureView View; ///< while it is drawn
   std::vector<VolumeFrame> Frames;
 };
 

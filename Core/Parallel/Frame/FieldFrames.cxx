@@ -6,7 +6,6 @@
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
 #include "Parallel/Communicate/Collective.h"
-#include "Render/Sampling/RaysBesideDepths.h"
 #include "Render/Scene/SceneDigest.h"
 
 #include <algorithm>
@@ -266,27 +265,40 @@ void FieldFrames::Plan(Communicator& communicator, DistributedField& field, RayS
   picture.Limit = this->Tolerance.Limit();
 }
 
-/// Collective: the same for a part of a picture. The plan is made with the first part.
-void FieldFrames::PlanPart(Communicator& communicator, DistributedField& field, RayScene& scene,
-  const Wish& wish, const ToleranceControl::Aim& aim, DrawnPicture& picture)
+/// Collective: the same for a part of a picture. Where nothing opaque is, the plan is that of the
+/// picture, made with the first such part.
+/// @param whole the scene of the picture, without depths
+void FieldFrames::PlanPart(Communicator& communicator, DistributedField& field, RayScene& whole,
+  RayScene& scene, const Wish& wish, const ToleranceControl::Aim& aim, DrawnPicture& picture)
 {
-  RayScene whole = scene;
-  whole.Viewport = wish.Whole;
-  whole.Depth.clear();
+  const bool isOpen = scene.Depth.empty();
+  RayScene& planned = isOpen ? whole : scene;
+  // All ranks go by the name that the first one has.
+  Hash128 view = SceneOf(planned, wish);
+  communicator.Broadcast(0, &view, sizeof(view));
+  if (!isOpen)
+  {
+    this->Plan(communicator, field, scene, view, wish, aim, picture);
+    return;
+  }
   Digest name;
-  name.Add(SceneOf(whole, wish));
+  name.Add(view);
   name.Add(field.Version());
   name.Add(aim.Coarseness);
   name.Add(aim.Interacting);
-  PlanOfParts& plan = this->OfParts;
+  PlanOfParts& plan = this->OfParts.at(static_cast<std::size_t>(wish.Sampling.Eye));
   if (AllMax(communicator, name.Get() == plan.Name ? 0.0 : 1.0) > 0.0)
   {
     plan = {};
-    this->Plan(communicator, field, whole, name.Get(), wish, aim, picture);
+    this->Plan(communicator, field, whole, view, wish, aim, picture);
     plan = { name.Get(), whole.Samplings, whole.OpacityLimit, whole.LevelsShareCells,
       picture.EstimatedError, picture.Limit };
   }
-  scene.Samplings = WithRaysBesideDepths(plan.Samplings, scene);
+  else if (plan.Samplings && *plan.Samplings->UsedLevels().rbegin() > 0)
+  {
+    field.Drawn().BringLevels(communicator, whole, *plan.Samplings->UsedLevels().rbegin());
+  }
+  scene.Samplings = plan.Samplings;
   scene.OpacityLimit = plan.OpacityLimit;
   scene.LevelsShareCells = plan.LevelsShareCells;
   picture.EstimatedError = plan.EstimatedError;
@@ -299,13 +311,21 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
 {
   const Timer drawing;
   DrawnField& drawn = field.Drawn();
+  const bool isPart = !wish.Whole.Empty();
+  std::optional<RayScene> whole;
+  if (isPart)
+  {
+    whole.emplace(scene).Viewport = wish.Whole;
+    whole->Depth.clear();
+  }
   {
     const PhaseScope fetching(Phase::Fetching);
-    drawn.BeginFrame(communicator, scene);
+    RayScene& looksAt = isPart ? *whole : scene;
+    drawn.BeginFrame(communicator, looksAt);
+    scene.Work = looksAt.Work;
   }
-  const bool isPart = !wish.Whole.Empty();
   FrameStatistics& numbers = frame.Picture.Statistics;
-  isPart ? this->PlanPart(communicator, field, scene, wish, aim, frame.Picture)
+  isPart ? this->PlanPart(communicator, field, *whole, scene, wish, aim, frame.Picture)
          : this->Plan(communicator, field, scene, names.View, wish, aim, frame.Picture);
   RankShare share{ drawn.Source(), drawn.Zones(), field.DrawingBudget(), ThreadPool::Process() };
   frame.ByPicture = DividesPicture(communicator, drawn, wish);

@@ -7,6 +7,7 @@
 #include "Parallel/Frame/ToleranceControl.h"
 #include "Render/Levels/KeptRays.h"
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -39,8 +40,8 @@ public:
     bool Reuse = true;     ///< whether the frame may take anything from those before
     bool Passing = false;  ///< whether the picture will not be wanted again: nothing of it is kept
     /// Not empty where the scene's viewport is a part of a picture that is drawn part by part: this
-    /// is the picture's. One plan of samplings is made for all its parts, as if nothing opaque were
-    /// in the picture (see WithRaysBesideDepths), and nothing else is kept of them.
+    /// is the picture's. One plan of samplings is made for all parts in which nothing opaque is,
+    /// and nothing else is kept of them. Zones and bricks are those of the picture.
     PixelRect Whole;
     double ShowSeconds = 0.0; ///< that putting the picture on the screen is expected to take
   };
@@ -107,8 +108,8 @@ private:
     const Communicator& communicator, const DrawnField& drawn, const Wish& wish);
   void Plan(Communicator& communicator, DistributedField& field, RayScene& scene,
     const Hash128& view, const Wish& wish, const ToleranceControl::Aim& aim, DrawnPicture& picture);
-  void PlanPart(Communicator& communicator, DistributedField& field, RayScene& scene,
-    const Wish& wish, const ToleranceControl::Aim& aim, DrawnPicture& picture);
+  void PlanPart(Communicator& communicator, DistributedField& field, RayScene& whole,
+    RayScene& scene, const Wish& wish, const ToleranceControl::Aim& aim, DrawnPicture& picture);
   void DrawAnew(Communicator& communicator, DistributedField& field, RayScene& scene,
     const Names& names, const Wish& wish, const ToleranceControl::Aim& aim, Frame& frame);
 
@@ -135,7 +136,7 @@ private:
   };
 
   Looking Values;
-  PlanOfParts OfParts;
+  std::array<PlanOfParts, 2> OfParts; ///< of each eye's picture
   ToleranceControl Tolerance;
   CompositePlanCache Plans;
   KeptRays Rays;

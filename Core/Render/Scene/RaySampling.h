@@ -57,18 +57,6 @@ public:
     }
   }
 
-  /// One more sampling, which no tile has at first. Throws Error when there are too many.
-  /// @return its number
-  int Add(const RaySampling& sampling)
-  {
-    if (this->List.size() >= MostSamplings)
-    {
-      throw Error("The tiles of a picture have 1 to 65536 samplings to choose from");
-    }
-    this->List.push_back(sampling);
-    return static_cast<int>(this->List.size()) - 1;
-  }
-
   /// How many tiles a picture has per axis.
   static glm::ivec2 TilesOf(const glm::ivec2& imageSize) { return (imageSize + Edge - 1) / Edge; }
 
