@@ -134,6 +134,8 @@ def chart_ranks(table, path):
                 axes.set_title(f"{volume}, {view}", fontsize=9)
                 if any(row["ranks"] == 1 for row in rows):
                     panel(axes, columns_of(rows, kept), kept)
+                else:
+                    axes.axis("off")
     handles, labels = grid[0][0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="lower center", ncol=6, fontsize=8)
     figure.tight_layout(rect=(0, 0.03 + 0.06 / len(views), 1, 1))
@@ -157,7 +159,7 @@ def chart_views(table, path):
         axes.tick_params(axis="y", labelsize=7)
         axes.set_title(f"{volume}, {rows[0]['megapixels']:g} megapixels on {most:g} ranks", fontsize=9)
         axes.set_xlabel("ms, slowest rank")
-        axes.legend(fontsize=8)
+        axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncol=3)
     figure.tight_layout()
     figure.savefig(path, dpi=80)
 
