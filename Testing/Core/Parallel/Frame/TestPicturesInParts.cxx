@@ -91,6 +91,10 @@ void ExpectPartsOfThePicture(int ranks, FieldFrames::Division division, double a
         now.Function = i % 2;
         now.Projected = i == 5;
         now.Step = i >= 6 ? 2 : 0;
+        // Frames that were measured move zones: bricks of parts come from other ranks.
+        Situation before = now;
+        before.Eye -= 0.2;
+        inParts.Draw(before, false);
         const Drawn drawn = DrawParts(inParts, now, division);
         // Projections have levels that follow from the camera alone.
         EXPECT_EQ(drawn.Plans, now.Projected ? 0 : 1) << i;
