@@ -18,7 +18,7 @@ import session
 PARTS = 4
 SMALL = (800, 700)
 LARGE = tuple(PARTS * size for size in SMALL)
-# MiB besides what ParaView has, where hardly anything but volumes is shown. All at once take 40 bytes a pixel: 342 MiB.
+# MiB besides what ParaView has, where nothing but volumes is shown. All at once take 40 bytes a pixel: 342 MiB.
 MOST = 280
 
 
@@ -34,8 +34,6 @@ def one_volume(view):
 
 
 def two_volumes(view):
-    # A small thing, so that ParaView puts the ranks' pictures together without the volumes, too.
-    picture_scenes.spheres(view, listed=(("small", (12, 8, 20), 1, (0.9, 0.2, 0.1)),))
     display = picture_scenes.wavelet(view)
     session.move_to(display, [-24.0, 0.0, 0.0])
     return [picture_scenes.encoded(view), display]
@@ -45,18 +43,18 @@ def screenshot(path, view):
     simple.SaveScreenshot(path, view, ImageResolution=list(LARGE), CompressionLevel="1")
 
 
-def compare(name, files, reference):
+def compare(name, files, allowed, reference):
     whole = pictures.load(files["whole"])
     bare = pictures.load(files["bare"])
     # An edge of a surface may be in the next pixel: of ParaView's own parts, and of other ranks.
     rim = pictures.rim(bare)
-    others = {"parts": files["parts"]}
+    others = [("parts", files["parts"], allowed)]
     if reference:
-        others["one rank"] = os.path.join(reference, f"{name}-whole.png")
-    for kind, path in others.items():
+        others.append(("one rank", os.path.join(reference, f"{name}-whole.png"), 1))
+    for kind, path, most in others:
         error = pictures.difference(whole, pictures.load(path))
         print(f"{name}: {int(error[~rim].max())} from {kind}, {int(error.max())} at edges of surfaces")
-        session.require(error[~rim].max() <= 1, f"{name}: the whole differs from {kind}")
+        session.require(error[~rim].max() <= most, f"{name}: the whole differs from {kind}")
     changed = pictures.difference(whole, bare) > 2
     session.require(changed.mean() > 0.1, f"{name}: {changed.mean():.2f} of the picture show the volume")
 
@@ -82,7 +80,8 @@ def check_scene(name, show, has_surfaces, arguments, is_first):
     view.StillRender()
     screenshot(files["parts"], view)
     if is_first:
-        compare(name, files, arguments.reference)
+        # Parts with surfaces are planned one by one: each may be off by the tolerance, 1.
+        compare(name, files, 2 if has_surfaces else 0, arguments.reference)
     session.clear()
 
 

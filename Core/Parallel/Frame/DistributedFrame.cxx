@@ -280,13 +280,8 @@ FloatImage Cut(FloatImage picture, const PixelRect& rect)
 /// What has to be drawn for a place: pixels without rays are made from those around them.
 PixelRect WithMargin(const RayScene& scene, const PixelRect& rect)
 {
-  int margin = 0;
-  const std::vector<bool> used = scene.Samplings ? scene.Samplings->Used() : std::vector<bool>();
-  for (std::size_t i = 0; i < used.size(); ++i)
-  {
-    const int stride = scene.Samplings->Samplings()[i].PixelStride;
-    margin = used[i] && stride > 1 ? std::max(margin, stride) : margin;
-  }
+  const int stride = scene.Samplings ? scene.Samplings->LargestStride() : 1;
+  const int margin = stride > 1 ? stride : 0;
   return Intersection(scene.Viewport, { rect.Lo - margin, rect.Hi + margin });
 }
 

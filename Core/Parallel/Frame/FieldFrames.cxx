@@ -36,6 +36,15 @@ bool GetsPixels(const FieldFrames::Wish& wish, int rank)
   return std::find(roots.begin(), roots.end(), rank) != roots.end();
 }
 
+/// The scene of all of a picture, as far as a part of it knows.
+RayScene PictureAround(const RayScene& part, const PixelRect& rect)
+{
+  RayScene picture = part;
+  picture.Viewport = rect;
+  picture.Depth.clear();
+  return picture;
+}
+
 /// Of what this rank has drawn.
 void ReadAhead(DrawnField& drawn, const RayScene& scene, const RankShare& share, int rank)
 {
@@ -315,8 +324,7 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   std::optional<RayScene> whole;
   if (isPart)
   {
-    whole.emplace(scene).Viewport = wish.Whole;
-    whole->Depth.clear();
+    whole = PictureAround(scene, wish.Whole);
   }
   {
     const PhaseScope fetching(Phase::Fetching);

@@ -87,6 +87,19 @@ public:
     return levels;
   }
 
+  /// The largest stride that a tile has.
+  int LargestStride() const
+  {
+    int largest = 1;
+    const std::vector<bool> used = this->Used();
+    for (std::size_t i = 0; i < used.size(); ++i)
+    {
+      largest =
+        used[i] && this->List[i].PixelStride > largest ? this->List[i].PixelStride : largest;
+    }
+    return largest;
+  }
+
   /// @param tile inside Tiles()
   int NumberAt(const glm::ivec2& tile) const { return this->Numbers[this->IndexOf(tile)]; }
   const RaySampling& At(const glm::ivec2& tile) const
