@@ -95,13 +95,9 @@ void VolumesPicture::ForgetDrawn(vtkRenderer* renderer)
 
 void VolumesPicture::Draw()
 {
-  const auto eye = static_cast<std::size_t>(EyeOf(this->Renderer));
-  WindowTile tile = TileOf(this->Renderer);
-  this->Called->State->Communicator->Broadcast(0, &tile, sizeof(tile));
-  this->View = PictureOf(this->Renderer, tile, this->Called->State->LastViews.at(eye));
-  for (VolumeFrame& frame : this->Frames)
+  if (!this->Called->Attempt([this] { return this->Look(); }))
   {
-    frame.Mapper()->State->LastViews.at(eye) = this->View.View.WorldToClip;
+    return;
   }
   const auto shows = [this](VolumeFrame& frame)
   {
@@ -127,6 +123,21 @@ void VolumesPicture::Draw()
         return true;
       });
   }
+}
+
+/// Collective: finds the picture, and the part of it that the window shows.
+bool VolumesPicture::Look()
+{
+  const PhaseScope beginning(Phase::Beginning);
+  const auto eye = static_cast<std::size_t>(EyeOf(this->Renderer));
+  WindowTile tile = TileOf(this->Renderer);
+  this->Called->State->Communicator->Broadcast(0, &tile, sizeof(tile));
+  this->View = PictureOf(this->Renderer, tile, this->Called->State->LastViews.at(eye));
+  for (VolumeFrame& frame : this->Frames)
+  {
+    frame.Mapper()->State->LastViews.at(eye) = this->View.View.WorldToClip;
+  }
+  return true;
 }
 
 void VolumesPicture::DrawPrepared(vtkBanyanVolumeMapper* first)

@@ -53,6 +53,7 @@ public:
 private:
   using Pictures = std::vector<std::shared_ptr<const FloatImage>>; ///< null where there is none
 
+  bool Look();
   void DrawPrepared(vtkBanyanVolumeMapper* first);
   std::vector<PixelRect> PartsOf(const PixelRect& rect) const;
   VolumeFrame::Together TogetherWith(const VolumeFrame& frame) const;
