@@ -14,8 +14,8 @@ namespace banyan
 
 /// Offers what the parallel algorithms need of a message-passing library: ranks, bytes and nothing
 /// else. Implementations: MPI, one process alone, and simulated ranks (threads) for tests. Only one
-/// thread per rank may use it (the main thread: ParaView initialises MPI as single-threaded). Other
-/// threads have that of a CollectiveTask, which lets the main thread send.
+/// thread per rank may use it (the main thread: ParaView initialises MPI as single-threaded);
+/// others have that of a CollectiveTask. On one process any thread may call what is collective.
 class Communicator
 {
 public:

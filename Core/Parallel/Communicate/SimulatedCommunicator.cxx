@@ -275,14 +275,21 @@ public:
 
   void AllGather(const void* mine, std::size_t bytes, void* all) override
   {
+    char* const places = static_cast<char*>(all);
     for (int rank = 0; rank < this->Size(); ++rank)
     {
-      this->Shared->Put(this->Self, rank, TagGather, mine, bytes);
+      if (rank != this->Self)
+      {
+        this->Shared->Put(this->Self, rank, TagGather, mine, bytes);
+      }
     }
+    std::copy_n(static_cast<const char*>(mine), bytes, places + this->Self * bytes);
     for (int rank = 0; rank < this->Size(); ++rank)
     {
-      this->Shared->Take(
-        rank, this->Self, TagGather, static_cast<char*>(all) + rank * bytes, bytes);
+      if (rank != this->Self)
+      {
+        this->Shared->Take(rank, this->Self, TagGather, places + rank * bytes, bytes);
+      }
     }
   }
 

@@ -8,7 +8,9 @@
 
 #include <atomic>
 #include <chrono>
+#include <future>
 #include <stdexcept>
+#include <string>
 #include <thread>
 
 namespace banyan::testing
@@ -43,6 +45,34 @@ TEST(SelfCommunicator, KeepsTheContract)
   EXPECT_EQ(communicator->Rank(), 0);
   EXPECT_EQ(CheckCommunicator(*communicator), "");
   EXPECT_EQ(AgreeOnError(*communicator, "The disk is full."), "The disk is full.");
+}
+
+TEST(SelfCommunicator, KeepsWhatThreadsGatherApart)
+{
+  const auto communicator = MakeSelfCommunicator();
+  std::atomic<int> begun{ 0 };
+  const auto gather = [&](std::size_t bytes, char value)
+  {
+    const std::string mine(bytes, value);
+    std::string all(bytes, ' ');
+    ++begun;
+    while (begun < 2)
+    {
+      std::this_thread::yield();
+    }
+    for (int i = 0; i < 200000; ++i)
+    {
+      communicator->AllGather(mine.data(), bytes, all.data());
+      if (all != mine)
+      {
+        return false;
+      }
+    }
+    return true;
+  };
+  auto other = std::async(std::launch::async, gather, 40, 'b');
+  EXPECT_TRUE(gather(8, 'a'));
+  EXPECT_TRUE(other.get());
 }
 
 TEST(Collective, ThrowsTheSameOnAllRanksWhereNested)
