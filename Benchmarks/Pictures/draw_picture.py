@@ -7,36 +7,41 @@
 import argparse
 import csv
 import os
-import resource
 import time
 
 from paraview import simple
-from vtkmodules.vtkCommonCore import vtkDoubleArray
-from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 SMALL = (400, 300)
 COLUMNS = ("size", "megapixels", "ranks", "shown", "way", "seconds", "processor_s", "first_mib", "others_mib",
            "bytes_a_pixel")
 
 
-def of_ranks(value):
-    """A number of each rank, on all of them."""
-    controller = vtkMultiProcessController.GetGlobalController()
-    mine, every = vtkDoubleArray(), vtkDoubleArray()
-    mine.InsertNextValue(value)
-    every.SetNumberOfValues(controller.GetNumberOfProcesses())
-    controller.AllGather(mine, every)
-    return [every.GetValue(i) for i in range(every.GetNumberOfValues())]
+def ranks():
+    """The processes of all ranks, on this machine: this one first. pvbatch runs the script on the first one alone."""
+    own, parent = os.getpid(), os.getppid()
+    found = []
+    for name in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{name}/stat", encoding="utf-8") as file:
+                fields = file.read().rsplit(")", 1)[1].split()
+        except OSError:
+            continue  # it has ended meanwhile
+        if int(fields[1]) == parent and int(name) != own:
+            found.append(int(name))
+    return [own] + sorted(found)
 
 
-def peak():
-    """MiB that this process has had at most."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+def peak(process):
+    """MiB that a process has had at most."""
+    with open(f"/proc/{process}/status", encoding="utf-8") as file:
+        return next(int(line.split()[1]) for line in file if line.startswith("VmHWM")) / 1024.0
 
 
-def processor():
-    usage = resource.getrusage(resource.RUSAGE_SELF)
-    return usage.ru_utime + usage.ru_stime
+def processor(process):
+    """Seconds."""
+    with open(f"/proc/{process}/stat", encoding="utf-8") as file:
+        fields = file.read().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def show(arguments, view):
@@ -77,17 +82,16 @@ def main():
     camera.Elevation(20)
     camera.Zoom(1.6)
     simple.Render(view)
-    before = of_ranks(peak())
+    processes = ranks()
+    before = [peak(process) for process in processes]
     view.ViewSize = size if arguments.way == "whole" else smallest_view(size)
-    ranks = len(before)
-    path = os.path.join(arguments.output, f"{arguments.size}-{arguments.shown}-{arguments.way}-{ranks}.png")
-    began, used = time.monotonic(), processor()
+    count = len(processes)
+    path = os.path.join(arguments.output, f"{arguments.size}-{arguments.shown}-{arguments.way}-{count}.png")
+    began, used = time.monotonic(), sum(map(processor, processes))
     simple.SaveScreenshot(path, view, ImageResolution=size, CompressionLevel="1")
     seconds = time.monotonic() - began
-    used = sum(of_ranks(processor() - used))
-    more = [after - was for after, was in zip(of_ranks(peak()), before)]
-    if vtkMultiProcessController.GetGlobalController().GetLocalProcessId() > 0:
-        return
+    used = sum(map(processor, processes)) - used
+    more = [peak(process) - was for process, was in zip(processes, before)]
     pixels = size[0] * size[1]
     table = os.path.join(arguments.output, "pictures.csv")
     new = not os.path.exists(table)
@@ -95,8 +99,8 @@ def main():
         rows = csv.writer(file)
         if new:
             rows.writerow(COLUMNS)
-        rows.writerow([arguments.size, f"{pixels / 1e6:.1f}", ranks, arguments.shown, arguments.way, f"{seconds:.1f}",
-                       f"{used:.1f}", f"{more[0]:.0f}", f"{max(more[1:]):.0f}" if ranks > 1 else "",
+        rows.writerow([arguments.size, f"{pixels / 1e6:.1f}", count, arguments.shown, arguments.way, f"{seconds:.1f}",
+                       f"{used:.1f}", f"{more[0]:.0f}", f"{max(more[1:]):.0f}" if count > 1 else "",
                        f"{more[0] * 2**20 / pixels:.1f}"])
 
 
