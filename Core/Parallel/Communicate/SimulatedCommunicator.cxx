@@ -111,7 +111,7 @@ public:
     const std::lock_guard<std::mutex> lock(this->Mutex);
     if (!this->First)
     {
-      this->First = exception;
+      this->First = std::move(exception);
     }
     if (!this->Released)
     {
