@@ -15,14 +15,14 @@ namespace banyan
 
 /// Begins to composite while rays are still cast: sends chunks of the plan as soon as their
 /// tiles are final, and blends what comes, all in the thread that casts, between its tiles. Other
-/// threads only count tiles. The picture is that of CompositeByTileOwners to the last bit.
+/// threads only count tiles. The picture is that of Composite to the last bit.
 ///
 /// Ranks do not know of each other's failures before they send: one that fails sends empty messages
 /// in the place of what is left. They have to agree on errors after `Finish`, on all ranks.
 class CompositeWhileCasting final : public PictureWatcher
 {
 public:
-  /// Everything referred to must stay. The arguments are those of CompositeByTileOwners.
+  /// Everything referred to must stay. The arguments are those of TileOwnerCompositor.
   CompositeWhileCasting(Communicator& communicator, const std::vector<int>& frontToBack,
     const PixelRect& viewport, const CompositeOptions& options, CompositeStatistics& statistics);
 
@@ -32,7 +32,7 @@ public:
 
   /// Does what is left to do when rays have been cast. Throws what compositing has thrown so far.
   /// @param mine what has been cast; null when that has failed
-  /// @return as CompositeByTileOwners; of no use when a rank has failed
+  /// @return as Composite; of no use when a rank has failed
   FloatImage Finish(const FloatImage* mine);
 
   /// Parts of the picture that this rank had dealt with before its last ray was cast.

@@ -5,8 +5,10 @@
 #include "Parallel/Composite/TileOwnerCompositor.h"
 
 #include <algorithm>
+#include <deque>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 namespace banyan
 {
@@ -55,6 +57,84 @@ bool DrawsOutside(const FloatImage& image, const Footprint& footprint)
   }
   return false;
 }
+
+/// Pictures whose messages are under way at the same time.
+class PicturesUnderWay
+{
+public:
+  /// Everything referred to must stay.
+  PicturesUnderWay(Communicator& communicator, const std::vector<PictureOfRanks>& pictures,
+    CompositeStatistics& statistics)
+    : Ranks(communicator)
+    , Pictures(pictures)
+  {
+    int chunks = 0;
+    for (const PictureOfRanks& picture : pictures)
+    {
+      TileOwnerCompositor& frame = this->Frames.emplace_back(
+        communicator, picture.FrontToBack, picture.Viewport, picture.Options, statistics, chunks);
+      chunks += frame.GetPlan().Chunks;
+    }
+    std::size_t posted = 0;
+    for (TileOwnerCompositor& frame : this->Frames)
+    {
+      frame.Begin(posted);
+      posted += frame.Posted();
+    }
+    this->Open = posted;
+  }
+
+  /// @return as CompositeTogether
+  std::vector<FloatImage> Finish()
+  {
+    // Everybody begins with another picture, so that not all send to the same root at once.
+    const std::size_t count = this->Pictures.size();
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      this->Add((i + static_cast<std::size_t>(this->Ranks.Rank())) % count);
+    }
+    while (this->Open > 0)
+    {
+      this->Take(this->Ranks.WaitAnyWhole());
+    }
+    std::vector<FloatImage> finished;
+    finished.reserve(count);
+    for (TileOwnerCompositor& frame : this->Frames)
+    {
+      finished.push_back(frame.Finish());
+    }
+    return finished;
+  }
+
+private:
+  void Add(std::size_t number)
+  {
+    TileOwnerCompositor& frame = this->Frames[number];
+    for (int chunk = 0; chunk < frame.GetPlan().Chunks; ++chunk)
+    {
+      frame.Add(chunk, &this->Pictures[number].Mine);
+    }
+    Communicator::Arrival arrival;
+    while (this->Ranks.TakeAnyWhole(arrival))
+    {
+      this->Take(arrival);
+    }
+  }
+
+  void Take(const Communicator::Arrival& arrival)
+  {
+    --this->Open;
+    for (TileOwnerCompositor& frame : this->Frames)
+    {
+      frame.Take(arrival);
+    }
+  }
+
+  Communicator& Ranks;
+  const std::vector<PictureOfRanks>& Pictures;
+  std::deque<TileOwnerCompositor> Frames;
+  std::size_t Open = 0; ///< messages
+};
 
 /// Is told by every rank to all others before pixels travel.
 struct Announcement
@@ -213,17 +293,25 @@ std::string ProblemOf(int rank, int ranks, const FloatImage& mine,
   return {};
 }
 
+std::vector<FloatImage> CompositeTogether(Communicator& communicator,
+  const std::vector<PictureOfRanks>& pictures, CompositeStatistics& statistics)
+{
+  std::vector<FloatImage> composited;
+  communicator.Together(
+    [&](Communicator& ranks) { composited = PicturesUnderWay(ranks, pictures, statistics).Finish(); });
+  return composited;
+}
+
 FloatImage Composite(Communicator& communicator, const FloatImage& mine,
   const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
   CompositeStatistics& statistics)
 {
-  if (options.Agreed && !options.Footprints.empty())
+  PictureOfRanks picture{ mine, frontToBack, viewport, options };
+  if (!options.Agreed || options.Footprints.empty())
   {
-    return CompositeByTileOwners(communicator, mine, frontToBack, viewport, options, statistics);
+    picture.Options.Footprints = Announce(communicator, mine, frontToBack, viewport, options);
   }
-  CompositeOptions complete = options;
-  complete.Footprints = Announce(communicator, mine, frontToBack, viewport, options);
-  return CompositeByTileOwners(communicator, mine, frontToBack, viewport, complete, statistics);
+  return std::move(CompositeTogether(communicator, { picture }, statistics).front());
 }
 
 } // namespace banyan

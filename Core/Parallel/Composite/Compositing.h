@@ -73,6 +73,21 @@ FloatImage Composite(Communicator& communicator, const FloatImage& mine,
   const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
   CompositeStatistics& statistics);
 
+/// One of several pictures that are composited at once. All but `Mine` are the same on all ranks.
+struct PictureOfRanks
+{
+  const FloatImage& Mine;       ///< this rank's pixels, anywhere inside the viewport; may be empty
+  std::vector<int> FrontToBack; ///< ranks in visibility order
+  PixelRect Viewport;
+  CompositeOptions Options; ///< with footprints; nothing is left to agree on
+};
+
+/// Makes several pictures at once, of which each may have another root. Collective. All ranks know
+/// already that ProblemOf finds nothing.
+/// @return each as of Composite
+std::vector<FloatImage> CompositeTogether(Communicator& communicator,
+  const std::vector<PictureOfRanks>& pictures, CompositeStatistics& statistics);
+
 /// Why Composite cannot work with these arguments on this rank; empty if it can.
 std::string ProblemOf(int rank, int ranks, const FloatImage& mine,
   const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options);

@@ -26,6 +26,7 @@ TileOwnerCompositor::TileOwnerCompositor(Communicator& communicator,
   , Order(frontToBack)
   , Options(options)
   , Statistics(statistics)
+  , ChunksBefore(chunksBefore)
   , Ordered(options.Combine == Combination::Over)
   , Pack(Packs(options))
   , SharedPlan(CompositePlanCache::From(
@@ -54,8 +55,9 @@ TileOwnerCompositor::~TileOwnerCompositor()
   }
 }
 
-void TileOwnerCompositor::Begin()
+void TileOwnerCompositor::Begin(std::size_t postedBefore)
 {
+  this->PostedBefore = postedBefore;
   if (this->IsRoot())
   {
     this->Picture = Transparent(this->Plan.Viewport);
@@ -90,6 +92,7 @@ void TileOwnerCompositor::Add(int chunk, const FloatImage* mine)
     {
       this->KeepOwn(chunk, *mine);
     }
+    this->SendResults();
     return;
   }
   if (mine)
@@ -112,16 +115,13 @@ void TileOwnerCompositor::Poll()
   {
     this->Take(arrival);
   }
-  this->SendResults();
 }
 
 FloatImage TileOwnerCompositor::Finish()
 {
-  this->SendResults();
   while (this->Open > 0)
   {
     this->Take(this->Ranks.WaitAnyWhole());
-    this->SendResults();
   }
   this->Ranks.WaitAll();
   this->Finished = true;
@@ -144,7 +144,7 @@ bool TileOwnerCompositor::Expect(int from, TileMessage sort, int chunk)
   }
   this->Expected.push_back(
     { from, sort, chunk, std::unique_ptr<std::uint8_t[]>(new std::uint8_t[capacity]), 0, false });
-  this->Ranks.ReceiveWhole(from, TagOf(sort, chunk), this->Expected.back().Data.get(), capacity);
+  this->Ranks.ReceiveWhole(from, this->TagOf(sort, chunk), this->Expected.back().Data.get(), capacity);
   ++this->Open;
   return true;
 }
@@ -194,7 +194,7 @@ void TileOwnerCompositor::Send(int to, TileMessage sort, int chunk, bool failed,
   }
   this->Outgoing.push_back(std::move(writer.Bytes));
   const std::vector<std::uint8_t>& kept = this->Outgoing.back();
-  this->Ranks.SendWhole(to, TagOf(sort, chunk), kept.data(), kept.size());
+  this->Ranks.SendWhole(to, this->TagOf(sort, chunk), kept.data(), kept.size());
   this->Statistics.Sent(kept.size());
 }
 
@@ -227,10 +227,14 @@ void TileOwnerCompositor::SendShared(int chunk, const FloatImage* mine)
   }
 }
 
-/// Takes a message that has arrived.
 void TileOwnerCompositor::Take(const Communicator::Arrival& arrival)
 {
-  Message& message = this->Expected[arrival.Posted];
+  const std::size_t number = arrival.Posted - this->PostedBefore; // of another picture: too large
+  if (number >= this->Expected.size())
+  {
+    return;
+  }
+  Message& message = this->Expected[number];
   message.Bytes = arrival.Bytes;
   message.Here = true;
   --this->Open;
@@ -245,6 +249,7 @@ void TileOwnerCompositor::Take(const Communicator::Arrival& arrival)
   {
     this->BlendAtRoot(message);
   }
+  this->SendResults();
 }
 
 void TileOwnerCompositor::BlendAtRoot(Message& message)
@@ -389,25 +394,6 @@ void TileOwnerCompositor::SendResult(int chunk)
         writer.Append(region, halves.Behind, this->ResultFormat(kind), this->Pack);
       }
     });
-}
-
-FloatImage CompositeByTileOwners(Communicator& communicator, const FloatImage& mine,
-  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
-  CompositeStatistics& statistics)
-{
-  FloatImage picture;
-  communicator.Together(
-    [&](Communicator& ranks)
-    {
-      TileOwnerCompositor frame(ranks, frontToBack, viewport, options, statistics);
-      frame.Begin();
-      for (int chunk = 0; chunk < frame.GetPlan().Chunks; ++chunk)
-      {
-        frame.Add(chunk, &mine);
-      }
-      picture = frame.Finish();
-    });
-  return picture;
 }
 
 } // namespace banyan

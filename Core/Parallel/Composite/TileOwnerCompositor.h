@@ -12,13 +12,16 @@ namespace banyan
 
 /// The compositor for one frame of one rank, chunk by chunk, as these have been drawn. It descends
 /// from SLIC: tiles have owners, which blend what others send. Collective: all ranks
-/// make one, `Add` each chunk once, and `Finish`.
+/// make one, `Add` each chunk once, and `Finish`. Several may be under way at once: CompositeTogether.
 class TileOwnerCompositor
 {
 public:
-  /// Everything referred to must stay. The arguments are those of CompositeByTileOwners.
+  /// Everything referred to must stay. The arguments are those of Composite, which have been
+  /// checked, footprints among them.
+  /// @param chunksBefore of pictures that are under way at the same time, on all ranks alike
   TileOwnerCompositor(Communicator& communicator, const std::vector<int>& frontToBack,
-    const PixelRect& viewport, const CompositeOptions& options, CompositeStatistics& statistics);
+    const PixelRect& viewport, const CompositeOptions& options, CompositeStatistics& statistics,
+    int chunksBefore = 0);
   TileOwnerCompositor(const TileOwnerCompositor&) = delete;
   TileOwnerCompositor& operator=(const TileOwnerCompositor&) = delete;
   ~TileOwnerCompositor();
@@ -26,7 +29,10 @@ public:
   const CompositePlan& GetPlan() const { return this->Plan; }
 
   /// From now on messages may come.
-  void Begin();
+  /// @param postedBefore calls of `ReceiveWhole` for other pictures that are under way
+  void Begin(std::size_t postedBefore = 0);
+  /// How many messages this rank gets, once it has begun.
+  std::size_t Posted() const { return this->Expected.size(); }
 
   /// Sends what others need of this rank's pixels in a chunk.
   /// @param mine its pixels; those of other chunks are not read, and these only now. Null when they
@@ -34,10 +40,12 @@ public:
   /// waits for them. Ranks have to agree on the error afterwards; the picture is no good
   void Add(int chunk, const FloatImage* mine);
 
-  /// Takes what has come, and passes on what is complete, without waiting.
+  /// Takes what has come, and passes on what is complete, without waiting. Nothing else is under way.
   void Poll();
+  /// Takes a message that has come, unless it is another picture's.
+  void Take(const Communicator::Arrival& arrival);
 
-  /// Waits for the rest. @return as CompositeByTileOwners
+  /// Waits for the rest. @return as Composite
   FloatImage Finish();
 
 private:
@@ -93,6 +101,10 @@ private:
   {
     ForEachRegion(this->Plan, from, to, sort, chunk, this->Region, action);
   }
+  int TagOf(TileMessage sort, int chunk) const
+  {
+    return banyan::TagOf(sort, this->ChunksBefore + chunk);
+  }
   bool Expect(int from, TileMessage sort, int chunk);
   void ExpectAsOwner();
   template <typename Write>
@@ -102,7 +114,6 @@ private:
   void KeepOwn(int chunk, const FloatImage& mine);
   void SendResults();
   void SendResult(int chunk);
-  void Take(const Communicator::Arrival& arrival);
   void BlendAtRoot(Message& message);
   void CopyOwn(int chunk, const FloatImage& mine);
   std::vector<Halves> BlendTiles(int chunk);
@@ -113,6 +124,7 @@ private:
   const std::vector<int>& Order;
   const CompositeOptions& Options;
   CompositeStatistics& Statistics;
+  const int ChunksBefore;
   const bool Ordered;
   const bool Pack;
   const std::shared_ptr<const CompositePlan> SharedPlan;
@@ -120,18 +132,14 @@ private:
   std::vector<int> Position; ///< of each rank in the visibility order
   FloatImage Picture;
   std::vector<Message> Expected;
-  std::size_t Open = 0;    ///< of these
+  std::size_t Open = 0;         ///< of these
+  std::size_t PostedBefore = 0; ///< and before these
   std::vector<Part> Parts; ///< per chunk
   std::vector<std::vector<std::uint8_t>> Outgoing;
   bool Finished = false; ///< no message is under way
   std::vector<std::size_t> IndexOfTile;
   CompositePlan::Region Region;
 };
-
-/// Composite, with arguments that have been checked, footprints among them.
-FloatImage CompositeByTileOwners(Communicator& communicator, const FloatImage& mine,
-  const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
-  CompositeStatistics& statistics);
 
 } // namespace banyan
 

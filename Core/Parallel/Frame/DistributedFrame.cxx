@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <iterator>
 #include <numeric>
 #include <optional>
@@ -191,45 +192,7 @@ FloatImage CastAlone(OwnPart& own, const PartOfPicture& part)
   return picture;
 }
 
-/// Composites what this rank has cast of a part. All ranks know that they may.
-/// @param compositing without what follows from the picture
-FloatImage CompositePart(Communicator& communicator, OwnPart& own, const PartOfPicture& part,
-  const FloatImage& mine, const CompositeOptions& compositing)
-{
-  const PhaseScope phase(Phase::Compositing);
-  const Timer timer;
-  CompositeOptions options = CompleteOptions(compositing, part);
-  options.Agreed = true;
-  FloatImage picture =
-    Composite(communicator, mine, OrderOf(part), part.Scene.Viewport, options, own.Sent);
-  own.CompositeSeconds += timer.Seconds();
-  return picture;
-}
-
-/// Looks whether what was cast of a part can be composited.
-void Check(Communicator& communicator, OwnPart& own, const PartOfPicture& part,
-  const FloatImage& mine, const CompositeOptions& compositing)
-{
-  // The order and the footprints depend on what all ranks have alike: no rank fails here alone.
-  const std::vector<int> order = OrderOf(part);
-  const CompositeOptions options = CompleteOptions(compositing, part);
-  if (own.Failure.empty())
-  {
-    own.Failure = ProblemOf(
-      communicator.Rank(), communicator.Size(), mine, order, part.Scene.Viewport, options);
-  }
-}
-
-FloatImage CastThenComposite(Communicator& communicator, OwnPart& own, const PartOfPicture& part,
-  const CompositeOptions& compositing)
-{
-  const FloatImage mine = CastOwn(own, part, CastRays);
-  Check(communicator, own, part, mine, compositing);
-  ThrowTogether(communicator, own.Failure);
-  return CompositePart(communicator, own, part, mine, compositing);
-}
-
-/// The failure of a rank is agreed upon after the last part.
+/// The failure of a rank is agreed upon after the last chunk.
 FloatImage CastAndComposite(Communicator& communicator, OwnPart& own, const PartOfPicture& part,
   const CompositeOptions& compositing)
 {
@@ -301,16 +264,6 @@ FloatImage Finished(
   return picture;
 }
 
-/// A picture that ends in one place.
-FloatImage DrawPlace(Communicator& communicator, OwnPart& own, const PartOfPicture& part,
-  const CompositeOptions& options)
-{
-  const bool whileCasting = options.WhileCasting && communicator.SendsAtOnce();
-  return communicator.Size() == 1 ? CastAlone(own, part)
-         : whileCasting           ? CastAndComposite(communicator, own, part, options)
-                                  : CastThenComposite(communicator, own, part, options);
-}
-
 /// The scenes of one place: of all ranks, and of this one's part.
 class PlaceScenes
 {
@@ -321,61 +274,108 @@ public:
     : Share(share)
   {
     const PixelRect rect = WithMargin(scene, place.Rect);
-    this->Drawn = &scene;
+    this->All = &scene;
     if (!(rect == scene.Viewport))
     {
       this->OfPlace.emplace(PartOf(scene, rect)).GoesOn = goesOn;
-      this->Drawn = &*this->OfPlace;
+      this->All = &*this->OfPlace;
     }
     this->Mine = share.Regions.empty()
-                   ? this->Drawn
-                   : &this->OfRegion.emplace(PartOf(*this->Drawn, share.Regions.at(self)));
+                   ? this->All
+                   : &this->OfRegion.emplace(PartOf(*this->All, share.Regions.at(self)));
   }
   PlaceScenes(const PlaceScenes&) = delete;
   PlaceScenes& operator=(const PlaceScenes&) = delete;
 
   PartOfPicture Part(const std::function<void()>& afterCasting) const
   {
-    return { *this->Drawn, *this->Mine, this->Share.Zones, this->Share.Regions, afterCasting };
+    return { *this->All, *this->Mine, this->Share.Zones, this->Share.Regions, afterCasting };
   }
+  const RayScene& Drawn() const { return *this->All; }
 
 private:
   const RankShare& Share;
   std::optional<RayScene> OfPlace;
   std::optional<RayScene> OfRegion;
-  const RayScene* Drawn;
+  const RayScene* All;
   const RayScene* Mine;
 };
 
-CompositeOptions OptionsOf(CompositeOptions options, const PicturePlace& place)
+/// What all ranks draw, and for which places.
+struct DrawnPlaces
 {
-  options.Root = place.Root;
-  options.Behind = place.Behind;
-  return options;
-}
+  const RayScene& Scene;
+  const RankShare& Share;
+  const std::vector<PicturePlace>& Places; ///< that show anything
+  const CompositeOptions& Compositing;     ///< without what follows from a place
+  std::size_t Self;
 
-/// Collective: casts for several places, one after the other, before any is composited. So nobody
-/// waits between places for who has more to cast there.
-/// @return an image for each place
-std::vector<FloatImage> CastPlaces(Communicator& communicator, OwnPart& own, const RayScene& scene,
-  const RankShare& share, const std::vector<PicturePlace>& shown,
-  const CompositeOptions& compositing)
+  PlaceScenes ScenesOf(const PicturePlace& place, bool goesOn = false) const
+  {
+    return { this->Scene, place, this->Share, this->Self, goesOn };
+  }
+  CompositeOptions OptionsOf(const PicturePlace& place) const
+  {
+    CompositeOptions options = this->Compositing;
+    options.Root = place.Root;
+    options.Behind = place.Behind;
+    return options;
+  }
+};
+
+/// Collective: casts for all places, one after the other, before any is composited. So nobody waits
+/// between places for who has more to cast there.
+/// @return a picture for each place; empty on ranks without it
+std::vector<FloatImage> CastThenComposite(
+  Communicator& communicator, OwnPart& own, const DrawnPlaces& drawn)
 {
   static const std::function<void()> nothing;
-  const auto self = static_cast<std::size_t>(communicator.Rank());
-  std::vector<FloatImage> cast;
+  std::deque<FloatImage> cast; // referred to
+  std::vector<PictureOfRanks> pictures;
   bool begun = false;
-  for (const PicturePlace& place : shown)
+  for (const PicturePlace& place : drawn.Places)
   {
-    const PlaceScenes scenes(scene, place, share, self, begun);
-    const bool isLast = cast.size() + 1 == shown.size();
-    const PartOfPicture part = scenes.Part(isLast ? compositing.AfterCasting : nothing);
-    cast.push_back(CastOwn(own, part, CastRays));
-    Check(communicator, own, part, cast.back(), OptionsOf(compositing, place));
+    const PlaceScenes scenes = drawn.ScenesOf(place, begun);
+    const bool isLast = cast.size() + 1 == drawn.Places.size();
+    const PartOfPicture part = scenes.Part(isLast ? drawn.Compositing.AfterCasting : nothing);
+    const FloatImage& mine = cast.emplace_back(CastOwn(own, part, CastRays));
+    pictures.push_back({ mine, OrderOf(part), part.Scene.Viewport,
+      CompleteOptions(drawn.OptionsOf(place), part) });
+    const PictureOfRanks& picture = pictures.back();
+    if (own.Failure.empty())
+    {
+      own.Failure = ProblemOf(communicator.Rank(), communicator.Size(), mine, picture.FrontToBack,
+        picture.Viewport, picture.Options);
+    }
     begun = begun || !part.Own.Viewport.Empty();
   }
   ThrowTogether(communicator, own.Failure);
-  return cast;
+  const PhaseScope phase(Phase::Compositing);
+  const Timer timer;
+  std::vector<FloatImage> composited = CompositeTogether(communicator, pictures, own.Sent);
+  own.CompositeSeconds += timer.Seconds();
+  return composited;
+}
+
+/// Collective.
+/// @return as CastThenComposite
+std::vector<FloatImage> DrawPlaces(
+  Communicator& communicator, OwnPart& own, const DrawnPlaces& drawn)
+{
+  const bool alone = communicator.Size() == 1;
+  const bool whileCasting = drawn.Compositing.WhileCasting && communicator.SendsAtOnce();
+  if (drawn.Places.size() != 1 || !(alone || whileCasting))
+  {
+    return CastThenComposite(communicator, own, drawn);
+  }
+  const PicturePlace& place = drawn.Places.front();
+  const PlaceScenes scenes = drawn.ScenesOf(place);
+  const PartOfPicture part = scenes.Part(drawn.Compositing.AfterCasting);
+  std::vector<FloatImage> pictures;
+  pictures.push_back(
+    alone ? CastAlone(own, part)
+          : CastAndComposite(communicator, own, part, drawn.OptionsOf(place)));
+  return pictures;
 }
 
 } // namespace
@@ -415,22 +415,14 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene,
   std::vector<PicturePlace> shown;
   std::copy_if(all.begin(), all.end(), std::back_inserter(shown),
     [&](const PicturePlace& place) { return !WithMargin(scene, place.Rect).Empty(); });
-  std::vector<FloatImage> cast;
-  if (shown.size() > 1)
-  {
-    cast = CastPlaces(communicator, own, scene, share, shown, compositing);
-  }
+  const DrawnPlaces drawn{ scene, share, shown, compositing, self };
+  std::vector<FloatImage> pictures = DrawPlaces(communicator, own, drawn);
   for (std::size_t i = 0; i < shown.size(); ++i)
   {
-    const PlaceScenes scenes(scene, shown[i], share, self);
-    const PartOfPicture part = scenes.Part(compositing.AfterCasting);
-    const CompositeOptions options = OptionsOf(compositing, shown[i]);
-    FloatImage picture =
-      cast.empty() ? DrawPlace(communicator, own, part, options)
-                   : CompositePart(communicator, own, part, std::exchange(cast[i], {}), options);
     if (shown[i].Root == communicator.Rank())
     {
-      result = Finished(own, part.Scene, std::move(picture), shown[i].Rect, reused);
+      const PlaceScenes scenes = drawn.ScenesOf(shown[i]);
+      result = Finished(own, scenes.Drawn(), std::move(pictures[i]), shown[i].Rect, reused);
     }
   }
   ThrowTogether(communicator, own.Failure);
