@@ -207,7 +207,7 @@ private:
   std::size_t PlanLevel(const RayScene& scene, BrickSource& source)
   {
     RayStatistics statistics;
-    const LevelCaster caster(scene, source, CellsAtLevel(scene.DomainCells, source.CellLevel()),
+    const LevelCaster caster(scene, source, CellsAtLevel(scene.DomainCells, source.CellEdges()),
       this->Settings.Budget, this->Pool, statistics);
     const glm::ivec3 counts = source.Bricks();
     return static_cast<std::size_t>(

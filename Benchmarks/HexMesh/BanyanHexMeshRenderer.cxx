@@ -41,7 +41,7 @@ public:
     RayScene scene = ToRayScene(this->Scene.Look, 1.0, OpacityLimit);
     scene.IndexToWorld = this->Source->Field().Tree().LatticeToWorld();
     scene.DomainCells = this->Source->Field().Tree().Domain();
-    scene.LevelsShareCells = true;
+    scene.Levels = LevelEdges::Finest();
     if (this->Accuracy.OneLevel)
     {
       const int level = FinestLevelFor(scene, this->Accuracy.MaxElementsPerPixel, CoarsestLevel);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How good is a coarse picture, and what does it take? One line of CSV for each level, distance
-// between samples and gap between rays, of the standard scenes. See README.md.
+// between samples and gap between rays, of the standard scenes, and of flat ones with four times
+// as many samples along two axes and a quarter along the third. See README.md.
 //
 //   banyan-bench-steps [SAMPLES [PIXELS]]
 #include "Picture.h"
@@ -55,6 +56,7 @@ public:
   Drawn Draw(const RaySampling& sampling)
   {
     RayScene scene = ToRayScene(this->Scene, 1.0, 1.0f - 1.0f / 255.0f);
+    scene.Levels = LevelEdges::Following(scene.DomainCells.Size());
     scene.Samplings = std::make_shared<const TileSamplings>(
       scene.Camera.ImageSize(), std::vector<RaySampling>{ sampling });
     Drawn drawn{ sampling, {} };
@@ -136,13 +138,16 @@ int main(int count, char** arguments)
     return EXIT_FAILURE;
   }
   ThreadPool all(ThreadPool::DefaultWidth());
-  const auto volume = StandardVolume(samples, all);
   std::printf("scene,level,distance_voxels,stride,step,cpu_ms,psnr_db,best\n");
-  for (const StandardFunction function : { StandardFunction::S1, StandardFunction::S2 })
+  for (const int thinner : { 1, 16 })
   {
-    for (const bool shaded : { false, true })
+    const auto volume = StandardVolume(samples * (thinner > 1 ? 4 : 1), all, thinner);
+    for (const StandardFunction function : { StandardFunction::S1, StandardFunction::S2 })
     {
-      Measure(StandardScene(volume, function, shaded, pixels), all);
+      for (const bool shaded : { false, true })
+      {
+        Measure(StandardScene(volume, function, shaded, pixels), all);
+      }
     }
   }
   return EXIT_SUCCESS;

@@ -10,15 +10,15 @@
 namespace banyan::bench
 {
 
-std::shared_ptr<const Volume> StandardVolume(int n, ThreadPool& pool)
+std::shared_ptr<const Volume> StandardVolume(int n, ThreadPool& pool, int thinner)
 {
   auto volume = std::make_shared<Volume>();
-  volume->Samples = glm::ivec3(n);
+  volume->Samples = { n, n, n / thinner };
   const std::size_t slice = static_cast<std::size_t>(n) * n;
-  volume->Floats.resize(slice * n);
+  volume->Floats.resize(slice * static_cast<std::size_t>(volume->Samples.z));
   const StandardFieldSlices field(n);
-  pool.ParallelFor(n,
-    [&](std::int64_t z) { field.Slice(static_cast<int>(z), volume->Floats.data() + slice * z); });
+  pool.ParallelFor(volume->Samples.z, [&](std::int64_t z)
+    { field.Slice(static_cast<int>(z) * thinner, volume->Floats.data() + slice * z); });
   return volume;
 }
 
@@ -29,12 +29,13 @@ BenchScene StandardScene(
   scene.Name = function == StandardFunction::S1 ? "S1-" : "S2-";
   scene.Name += std::to_string(volume->Samples.x) + (shaded ? "-shaded" : "");
   const double edge = volume->Size().x;
+  scene.Center = 0.5 * volume->Size();
+  scene.Name += volume->Samples.z < volume->Samples.x ? "-flat" : "";
   scene.Data = std::move(volume);
   scene.Picture = picture;
   scene.Shaded = shaded;
   scene.HasGoals = true;
   scene.UnitDistance = edge / 255.0; // a voxel of 256^3
-  scene.Center = glm::dvec3(0.5 * edge);
   scene.Eye = scene.Center + 1.9 * edge * glm::dvec3(0.48, 0.36, 0.80);
 
   constexpr int nodes = 256;

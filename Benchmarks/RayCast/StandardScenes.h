@@ -13,7 +13,8 @@ namespace banyan::bench
 {
 
 /// The field of the standard scenes (Data/StandardField.h), n^3 samples, unit spacing.
-std::shared_ptr<const Volume> StandardVolume(int n, ThreadPool& pool);
+/// @param thinner only so many slices are taken, evenly, and lie side by side: a flat volume
+std::shared_ptr<const Volume> StandardVolume(int n, ThreadPool& pool, int thinner = 1);
 
 /// The transfer functions of the standard scenes, 256 nodes over [0, 1].
 enum class StandardFunction

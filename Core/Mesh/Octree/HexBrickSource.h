@@ -59,7 +59,7 @@ public:
   BrickView LoadAround(std::int64_t brick, Box& samples) override;
 
   /// Positions are those of the finest elements at all levels: zones cut elements where they like.
-  int CellLevel() const override { return 0; }
+  glm::ivec3 CellEdges() const override { return glm::ivec3(1); }
 
   const NodalField& Field() const { return this->Values; }
   /// Bytes of the values of coarser meshes that pictures have asked for so far.

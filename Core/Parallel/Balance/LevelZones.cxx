@@ -15,16 +15,16 @@ namespace
 
 std::set<int> LevelsOf(const RayScene& scene)
 {
-  return scene.Samplings && !scene.LevelsShareCells ? scene.Samplings->UsedLevels()
-                                                    : std::set<int>{ 0 };
+  return scene.Samplings && !scene.Levels.AreFinest() ? scene.Samplings->UsedLevels()
+                                                      : std::set<int>{ 0 };
 }
 
-std::vector<Box> ZonesAtLevel(const std::vector<Box>& zones, int level, const Box& domain)
+std::vector<Box> ZonesAtLevel(const std::vector<Box>& zones, int level, const RayScene& scene)
 {
   std::vector<Box> boxes;
   for (const Box& zone : zones)
   {
-    boxes.push_back(ZoneAtLevel(zone, level, domain));
+    boxes.push_back(ZoneAtLevel(zone, scene.Levels.At(level), scene.DomainCells));
   }
   return boxes;
 }
@@ -40,11 +40,10 @@ std::vector<int> WithCells(const std::vector<int>& order, const std::vector<Box>
 
 } // namespace
 
-Box ZoneAtLevel(const Box& zone, int level, const Box& domain)
+Box ZoneAtLevel(const Box& zone, const glm::ivec3& edges, const Box& domain)
 {
-  const int edge = 1 << level;
-  const Box box = Intersection(
-    { (zone.Lo + edge - 1) / edge * edge, (zone.Hi + edge - 1) / edge * edge }, domain);
+  const Box cells = CellsAtLevel(zone, edges);
+  const Box box = Intersection({ cells.Lo * edges, cells.Hi * edges }, domain);
   return zone.Empty() || box.Empty() ? Box{} : box;
 }
 
@@ -53,7 +52,7 @@ std::vector<Box> ZonesAsDrawn(const RayScene& scene, const std::vector<Box>& zon
   std::vector<Box> drawn(zones.size());
   for (const int level : LevelsOf(scene))
   {
-    const std::vector<Box> boxes = ZonesAtLevel(zones, level, scene.DomainCells);
+    const std::vector<Box> boxes = ZonesAtLevel(zones, level, scene);
     for (std::size_t rank = 0; rank < boxes.size(); ++rank)
     {
       drawn[rank] = Union(drawn[rank], boxes[rank]);
@@ -67,17 +66,17 @@ std::vector<int> OrderAsDrawn(const RayScene& scene, const std::vector<Box>& zon
   const std::set<int> levels = LevelsOf(scene);
   const int level = levels.size() == 1 ? *levels.begin() : 0;
   return FrontToBack(InIndexSpace(scene.Camera, scene.IndexToWorld),
-    level == 0 ? zones : ZonesAtLevel(zones, level, scene.DomainCells));
+    level == 0 ? zones : ZonesAtLevel(zones, level, scene));
 }
 
 bool LevelsHaveOneOrder(const RayScene& scene, const std::vector<Box>& zones, int coarsest)
 {
   const Viewpoint view = InIndexSpace(scene.Camera, scene.IndexToWorld);
   const std::vector<int> order = FrontToBack(view, zones);
-  coarsest = scene.LevelsShareCells ? 0 : coarsest;
+  coarsest = scene.Levels.AreFinest() ? 0 : coarsest;
   for (int level = 1; level <= coarsest; ++level)
   {
-    const std::vector<Box> boxes = ZonesAtLevel(zones, level, scene.DomainCells);
+    const std::vector<Box> boxes = ZonesAtLevel(zones, level, scene);
     if (boxes != zones && WithCells(FrontToBack(view, boxes), boxes) != WithCells(order, boxes))
     {
       return false;

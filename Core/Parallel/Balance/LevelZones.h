@@ -11,11 +11,12 @@ namespace banyan
 {
 
 /// Says which coarse cells are drawn of a zone: those that begin in it. Some of them end in the
-/// next zone. Zones that begin and end at multiples of 2^level, as those of encoded series do, stay
-/// as they are; zones of pieces may begin anywhere.
+/// next zone. Zones that begin and end at multiples of its edges, as those of encoded series do,
+/// stay as they are; zones of pieces may begin anywhere.
 
 /// Cells of the finest level under those of a level that begin in a zone, inside `domain`.
-Box ZoneAtLevel(const Box& zone, int level, const Box& domain);
+/// @param edges of cells of the level
+Box ZoneAtLevel(const Box& zone, const glm::ivec3& edges, const Box& domain);
 
 /// Per zone, all cells that are drawn of it at the levels of a scene: where its pixels may be.
 std::vector<Box> ZonesAsDrawn(const RayScene& scene, const std::vector<Box>& zones);

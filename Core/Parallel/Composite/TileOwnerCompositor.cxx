@@ -21,7 +21,7 @@ FloatImage Transparent(const PixelRect& rect)
 
 TileOwnerCompositor::TileOwnerCompositor(Communicator& communicator,
   const std::vector<int>& frontToBack, const PixelRect& viewport, const CompositeOptions& options,
-  CompositeStatistics& statistics)
+  CompositeStatistics& statistics, int chunksBefore)
   : Ranks(communicator)
   , Order(frontToBack)
   , Options(options)

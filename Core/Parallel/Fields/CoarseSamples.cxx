@@ -3,6 +3,7 @@
 
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Composite/GatherPlan.h"
+#include "Render/Bricks/BrickSource.h"
 
 #include <algorithm>
 #include <utility>
@@ -13,11 +14,6 @@ namespace
 {
 
 constexpr int CoarseTag = 74;
-
-glm::ivec3 RoundedUp(const glm::ivec3& fine, int every)
-{
-  return (fine + every - 1) / every;
-}
 
 /// Returns a type that the views of all ranks can be converted to.
 ScalarType CommonType(const std::vector<ScalarType>& types)
@@ -59,13 +55,9 @@ PieceSamples Join(
 
 } // namespace
 
-Box CoarsePieces::CellsBeginningIn(const Box& cells, int level)
-{
-  return { RoundedUp(cells.Lo, 1 << level), RoundedUp(cells.Hi, 1 << level) };
-}
-
-CoarsePieces::CoarsePieces(const PieceGrid& finest, const glm::ivec3& cells, int level)
-  : Every(1 << level)
+CoarsePieces::CoarsePieces(
+  const PieceGrid& finest, const glm::ivec3& cells, const glm::ivec3& edges)
+  : Every(edges)
   , LastFine(cells)
 {
   for (int rank = 0; rank < finest.Ranks(); ++rank)
@@ -75,16 +67,16 @@ CoarsePieces::CoarsePieces(const PieceGrid& finest, const glm::ivec3& cells, int
     Box needed;
     if (!fine.Empty())
     {
-      held = { RoundedUp(fine.Lo, this->Every), (fine.Hi - 1) / this->Every + 1 };
+      needed = CellsAtLevel({ fine.Lo, fine.Hi - 1 }, edges);
+      held = { needed.Lo, (fine.Hi - 1) / edges + 1 };
       for (int axis = 0; axis < 3; ++axis)
       {
         // The last fine sample is repeated where the last cell is not whole.
         if (fine.Hi[axis] > cells[axis])
         {
-          held.Hi[axis] = (cells[axis] + this->Every - 1) / this->Every + 1;
+          held.Hi[axis] = (cells[axis] + edges[axis] - 1) / edges[axis] + 1;
         }
       }
-      needed = CellsBeginningIn({ fine.Lo, fine.Hi - 1 }, level);
       needed.Hi = needed.Empty() ? needed.Lo : needed.Hi + 1;
     }
     this->Held.push_back(held.Empty() ? Box{} : held);
@@ -97,7 +89,7 @@ void CoarsePieces::Copy(
 {
   const Box& own = mine.Array().Array().Samples;
   const auto fine = [this](int coarse, int axis)
-  { return std::min(coarse * this->Every, this->LastFine[axis]); };
+  { return std::min(coarse * this->Every[axis], this->LastFine[axis]); };
   std::size_t at = 0;
   for (int z = samples.Lo.z; z < samples.Hi.z; ++z)
   {

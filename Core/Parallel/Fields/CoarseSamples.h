@@ -17,8 +17,8 @@ class CoarsePieces
 {
 public:
   /// @param cells of the whole grid at the finest level
-  /// @param level at least 1
-  CoarsePieces(const PieceGrid& finest, const glm::ivec3& cells, int level);
+  /// @param edges of cells of the level, in cells of the finest one
+  CoarsePieces(const PieceGrid& finest, const glm::ivec3& cells, const glm::ivec3& edges);
 
   /// Returns a box for each rank, in samples of the level: the samples of the coarse cells that
   /// begin in its piece. A layer of them on the far side may lie in other pieces.
@@ -30,16 +30,13 @@ public:
   PieceSamples Gather(Communicator& communicator, const PieceSamples& mine,
     const std::vector<ScalarType>& viewTypes) const;
 
-  /// Cells of a level that begin in cells of the finest one.
-  static Box CellsBeginningIn(const Box& cells, int level);
-
 private:
   PieceSamples GatherTogether(Communicator& communicator, const PieceSamples& mine,
     const std::vector<ScalarType>& viewTypes) const;
   /// Copies samples of the level that are in this rank's array, x fastest.
   void Copy(const PieceSamples& mine, const Box& samples, ScalarType type, void* out) const;
 
-  int Every;
+  glm::ivec3 Every;    ///< fine sample along each axis
   glm::ivec3 LastFine; ///< sample
   std::vector<Box> Held;
   std::vector<Box> Needed;

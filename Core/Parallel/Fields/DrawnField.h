@@ -109,8 +109,16 @@ public:
   virtual bool IsEncoded() const { return false; }
   /// Whether each rank can draw any cell: the same on all ranks.
   virtual bool IsOnEachRank() const { return false; }
-  /// Whether it is a mesh of hexahedra. Its levels are counted in cells of the finest one.
+  /// Whether it is a mesh of hexahedra.
   virtual bool IsMesh() const { return false; }
+  /// How long cells of its levels are.
+  /// @param cells of the finest level
+  LevelEdges Levels(const glm::ivec3& cells) const
+  {
+    return this->IsMesh()      ? LevelEdges::Finest()
+           : this->IsEncoded() ? LevelEdges()
+                               : LevelEdges::Following(cells);
+  }
   /// Bytes read so far from a series by this process.
   virtual std::uint64_t BytesRead() const { return 0; }
   /// What a user should know of a mesh; empty if nothing. The same on all ranks.

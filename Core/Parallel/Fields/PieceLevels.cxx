@@ -4,8 +4,7 @@
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Fields/CoarseSamples.h"
 #include "Render/Bricks/VisibleBricks.h"
-
-#include <glm/gtc/matrix_transform.hpp>
+#include "Render/Scene/RayLattice.h"
 
 #include <algorithm>
 
@@ -15,9 +14,9 @@ namespace
 {
 
 /// The scene in the index space of a level.
-RayScene AtLevel(RayScene scene, int every)
+RayScene AtLevel(RayScene scene, const glm::ivec3& edges)
 {
-  scene.IndexToWorld = glm::scale(scene.IndexToWorld, glm::dvec3(every));
+  scene.IndexToWorld = IndexToWorldAt(scene, edges);
   return scene;
 }
 
@@ -95,16 +94,18 @@ void PieceLevels::Make(Communicator& communicator, const PieceGrid& finest,
 {
   this->Clear();
   std::vector<std::unique_ptr<Level>> made;
+  const LevelEdges edges = LevelEdges::Following(cells);
   for (int number = 1; number <= coarsest; ++number)
   {
     auto level = std::make_unique<Level>();
-    const CoarsePieces pieces(finest, cells, number);
+    level->Edges = edges.At(number);
+    const CoarsePieces pieces(finest, cells, level->Edges);
     level->Samples = pieces.Gather(communicator, mine, viewTypes);
     level->Grid = PieceGrid(pieces.All(), brickCells);
     level->Known = GatherSummaries(communicator, level->Grid, level->Samples, pool, looks);
     if (hidden)
     {
-      level->Hidden = std::make_shared<const HiddenCells>(hidden->Coarser(number));
+      level->Hidden = std::make_shared<const HiddenCells>(hidden->Coarser(level->Edges));
     }
     made.push_back(std::move(level));
   }
@@ -114,8 +115,8 @@ void PieceLevels::Make(Communicator& communicator, const PieceGrid& finest,
 std::unique_ptr<PieceSource> PieceLevels::SourceOf(int number, int rank) const
 {
   const Level& level = *this->Levels.at(static_cast<std::size_t>(number) - 1);
-  auto source =
-    std::make_unique<PieceSource>(level.Grid, rank, level.Samples, level.Fetched, level.Known);
+  auto source = std::make_unique<PieceSource>(
+    level.Grid, rank, level.Samples, level.Fetched, level.Known, level.Edges);
   source->Hide(level.Hidden);
   return source;
 }
@@ -143,9 +144,8 @@ std::uint64_t PieceLevels::Bring(Communicator& communicator, const RayScene& sce
     Attempt(failure,
       [&]
       {
-        AddMissing(AtLevel(scene, 1 << number), *this->SourceOf(number, self), level.Grid,
-          fetches[i],
-          CoarsePieces::CellsBeginningIn(zones.at(static_cast<std::size_t>(self)), number), around,
+        AddMissing(AtLevel(scene, level.Edges), *this->SourceOf(number, self), level.Grid,
+          fetches[i], CellsAtLevel(zones.at(static_cast<std::size_t>(self)), level.Edges), around,
           level.Fetched, wanted[i]);
       });
   }

@@ -18,13 +18,14 @@ namespace banyan
 struct RayScene;
 class ThreadPool;
 
-/// Coarser levels of a grid of plain data that lies in pieces on the ranks: every 2^level-th sample
-/// of the whole grid, wherever pieces begin; where the last cell is not whole, one more sample
-/// repeats the last fine one. So ranks together have the level that one rank makes of everything.
+/// Coarser levels of a grid of plain data that lies in pieces on the ranks: some samples of the
+/// whole grid (LevelEdges::Following), wherever pieces begin; where the last cell is not whole, one
+/// more sample repeats the last fine one. So ranks together have the level that one rank makes of
+/// everything.
 ///
 /// The coarse cells that begin in a rank's piece are its own. Samples of them that lie in others'
 /// pieces come from there: one layer, on the far side. All levels together take less than a fifth
-/// of the memory of the finest one.
+/// of the memory of the finest one, and of flat grids up to all of it.
 class PieceLevels
 {
 public:
@@ -59,6 +60,7 @@ public:
 private:
   struct Level
   {
+    glm::ivec3 Edges{ 1 }; ///< of its cells
     PieceGrid Grid;
     PieceSamples Samples;
     PieceSummaries Known;

@@ -10,12 +10,13 @@ namespace banyan
 {
 
 PieceSource::PieceSource(const PieceGrid& grid, int rank, const PieceSamples& samples,
-  const FetchedBricks& fetched, PieceSummaries known)
+  const FetchedBricks& fetched, PieceSummaries known, const glm::ivec3& edges)
   : Grid(grid)
   , Rank(rank)
   , Samples(samples)
   , Fetched(fetched)
   , Known(std::move(known))
+  , Edges(edges)
 {
   if (static_cast<std::int64_t>(this->Known.Bricks.size()) != grid.Count())
   {

@@ -27,8 +27,9 @@ class PieceSource : public BrickSource
 public:
   /// Everything referred to must stay.
   /// @param known of all bricks of the grid
+  /// @param edges of its cells, as CellEdges
   PieceSource(const PieceGrid& grid, int rank, const PieceSamples& samples,
-    const FetchedBricks& fetched, PieceSummaries known);
+    const FetchedBricks& fetched, PieceSummaries known, const glm::ivec3& edges = glm::ivec3(1));
 
   glm::ivec3 Bricks() const override { return this->Grid.Bricks(); }
   Box CellsOf(std::int64_t brick) const override { return this->Grid.CellsOf(brick); }
@@ -43,6 +44,9 @@ public:
   /// Throws Error when the brick is another rank's and was not fetched.
   BrickView Load(std::int64_t brick) override;
   BrickView LoadAround(std::int64_t brick, Box& samples) override;
+
+  /// LevelEdges::Following.
+  glm::ivec3 CellEdges() const override { return this->Edges; }
 
   bool IsOwn(std::int64_t brick) const { return this->Grid.HolderOf(brick) == this->Rank; }
 
@@ -64,6 +68,7 @@ private:
   const PieceSamples& Samples;
   const FetchedBricks& Fetched;
   PieceSummaries Known;
+  glm::ivec3 Edges;
   const PieceLevels* Coarser = nullptr;
 };
 

@@ -300,8 +300,8 @@ void FieldFrames::PlanPart(Communicator& communicator, DistributedField& field, 
   {
     plan = {};
     this->Plan(communicator, field, whole, view, wish, aim, picture);
-    plan = { name.Get(), whole.Samplings, whole.OpacityLimit, whole.LevelsShareCells,
-      picture.EstimatedError, picture.Limit };
+    plan = { name.Get(), whole.Samplings, whole.OpacityLimit, whole.Levels, picture.EstimatedError,
+      picture.Limit };
   }
   else if (plan.Samplings && *plan.Samplings->UsedLevels().rbegin() > 0)
   {
@@ -309,7 +309,7 @@ void FieldFrames::PlanPart(Communicator& communicator, DistributedField& field, 
   }
   scene.Samplings = plan.Samplings;
   scene.OpacityLimit = plan.OpacityLimit;
-  scene.LevelsShareCells = plan.LevelsShareCells;
+  scene.Levels = plan.Levels;
   picture.EstimatedError = plan.EstimatedError;
   picture.Limit = plan.Limit;
 }

@@ -130,7 +130,7 @@ private:
     Hash128 Name;
     std::shared_ptr<const TileSamplings> Samplings;
     float OpacityLimit = 0.0f;
-    bool LevelsShareCells = false;
+    LevelEdges Levels;
     double EstimatedError = 0.0;
     std::string Limit;
   };

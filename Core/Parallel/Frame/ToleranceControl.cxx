@@ -117,7 +117,7 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
   }
   DrawnField& drawn = field.Drawn();
   const int coarsest = CoarsestLevelOf(drawn, scene);
-  scene.LevelsShareCells = drawn.IsMesh();
+  scene.Levels = drawn.Levels(scene.DomainCells.Size());
   const bool byScreen = wish.ScreenErrorPixels > 0.0;
   // Plain data has coarser levels only when they are made; still pictures of it do without.
   const bool levels = (drawn.IsEncoded() || drawn.IsMesh() || wish.Interacting || byScreen) &&
@@ -205,7 +205,7 @@ void ToleranceControl::PlanSteps(
   const auto step = static_cast<int>(aim.Coarseness);
   DrawnField& drawn = field.Drawn();
   const int coarsest = CoarsestLevelOf(drawn, scene);
-  scene.LevelsShareCells = drawn.IsMesh();
+  scene.Levels = drawn.Levels(scene.DomainCells.Size());
   // Projections combine in any order.
   const bool levels =
     scene.Blend.Mode != BlendMode::Composite || LevelsHaveOneOrder(scene, drawn.Zones(), coarsest);

@@ -4,6 +4,7 @@
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Render/Bricks/SampledBox.h"
+#include "Render/Scene/LevelEdges.h"
 
 #include <algorithm>
 
@@ -52,9 +53,9 @@ ArrayBrickSource::ArrayBrickSource(
   }
 }
 
-ArrayBrickSource::ArrayBrickSource(const ArrayBrickSource& finest, int level)
+ArrayBrickSource::ArrayBrickSource(const ArrayBrickSource& finest, const glm::ivec3& edges)
   : Values(finest.Values)
-  , Every(1 << level)
+  , Every(edges)
   , BrickCells(finest.BrickCells)
   , Over(finest.Over)
 {
@@ -76,8 +77,12 @@ ArrayBrickSource::ArrayBrickSource(const ArrayBrickSource& finest, int level)
 std::unique_ptr<BrickSource> ArrayBrickSource::MakeLevel(int level, const Box& domain)
 {
   const bool whole = this->Cells == domain && domain.Lo == glm::ivec3(0) && !domain.Empty();
-  return whole && level < 30 ? std::unique_ptr<BrickSource>(new ArrayBrickSource(*this, level))
-                             : nullptr;
+  if (!whole || level >= 30)
+  {
+    return nullptr;
+  }
+  const glm::ivec3 edges = LevelEdges::Following(domain.Size()).At(level);
+  return std::unique_ptr<BrickSource>(new ArrayBrickSource(*this, edges));
 }
 
 void ArrayBrickSource::CutIntoBricks()

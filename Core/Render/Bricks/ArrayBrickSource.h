@@ -41,6 +41,8 @@ public:
   /// Takes the samples from the array, also those beyond its bricks' own.
   BrickView LoadAround(std::int64_t brick, Box& samples) override;
   BrickView LoadTogether(const Box& bricks, bool around, Box& samples) override;
+  /// LevelEdges::Following.
+  glm::ivec3 CellEdges() const override { return this->Every; }
 
   /// Lets go of the array, for a source that takes its place: nothing can be loaded any more, at no
   /// level. What is known of bricks stays.
@@ -52,7 +54,8 @@ protected:
 
 private:
   /// A coarser level. Ranges and masks are those of everything that lies in a brick.
-  ArrayBrickSource(const ArrayBrickSource& finest, int level);
+  /// @param edges of its cells
+  ArrayBrickSource(const ArrayBrickSource& finest, const glm::ivec3& edges);
 
   /// Cuts `Cells` into bricks.
   void CutIntoBricks();
@@ -60,7 +63,7 @@ private:
   BrickView ViewOf(const Box& wanted, Box& samples) const;
 
   std::shared_ptr<ArraySamples> Values; ///< of the finest level; all levels have them together
-  int Every = 1;                        ///< samples of the array from one of the level to the next
+  glm::ivec3 Every{ 1 };                ///< samples of the array from one of the level to the next
   glm::ivec3 Held{ 0 };                 ///< samples of the level per axis
   int BrickCells;
   MaskRange Over;

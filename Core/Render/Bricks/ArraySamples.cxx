@@ -47,14 +47,15 @@ ScalarType CopyType(const SampleArray& array)
                                                           : ScalarType::Float64;
 }
 
-/// @param samples of a level: every `every`-th of the array, and the last one
+/// @param samples of a level: along each axis every `every`-th of the array, and the last one
 template <class T>
-void CopyBrick(
-  const SampleArray& array, const Box& samples, int every, void* target, ScalarType type)
+void CopyBrick(const SampleArray& array, const Box& samples, const glm::ivec3& every, void* target,
+  ScalarType type)
 {
   const SampleReader<T> reader(array, true);
   const glm::ivec3 last = array.Samples.Size() - 1;
-  const auto fine = [&](int sample, int axis) { return std::min(sample * every, last[axis]); };
+  const auto fine = [&](int sample, int axis)
+  { return std::min(sample * every[axis], last[axis]); };
   const auto copy = [&](auto* out)
   {
     using Out = std::remove_pointer_t<decltype(out)>;
@@ -65,9 +66,9 @@ void CopyBrick(
     {
       for (int y = samples.Lo.y; y < samples.Hi.y; ++y)
       {
-        if (every == 1)
+        if (every.x == 1)
         {
-          reader.Read(begin, end, y, z, out);
+          reader.Read(begin, end, fine(y, 1), fine(z, 2), out);
           out += end - begin;
           continue;
         }
@@ -142,14 +143,14 @@ ScalarType ArraySamples::ViewType() const
   return this->AlwaysCopied() ? CopyType(this->Source) : this->Source.Type;
 }
 
-bool ArraySamples::IsCopied(const Box& samples, int every) const
+bool ArraySamples::IsCopied(const Box& samples, const glm::ivec3& every) const
 {
   const glm::ivec3 last = (samples.Hi - 1) * every;
   const glm::ivec3 size = this->Source.Samples.Size();
   return this->AlwaysCopied() || last.x >= size.x || last.y >= size.y || last.z >= size.z;
 }
 
-std::size_t ArraySamples::ViewBytes(const Box& samples, int every) const
+std::size_t ArraySamples::ViewBytes(const Box& samples, const glm::ivec3& every) const
 {
   return this->IsCopied(samples, every)
            ? static_cast<std::size_t>(samples.Count()) * SizeOf(CopyType(this->Source))
@@ -199,7 +200,7 @@ std::vector<BoxSummary> ArraySamples::Summarize(
   return summaries;
 }
 
-BrickView ArraySamples::View(const Box& samples, int every) const
+BrickView ArraySamples::View(const Box& samples, const glm::ivec3& every) const
 {
   BrickView view;
   if (!this->IsCopied(samples, every))
@@ -207,7 +208,7 @@ BrickView ArraySamples::View(const Box& samples, int every) const
     std::ptrdiff_t offset = this->Source.Component * this->Source.ComponentStride;
     for (int axis = 0; axis < 3; ++axis)
     {
-      view.Stride[axis] = every * this->Source.Stride[axis];
+      view.Stride[axis] = every[axis] * this->Source.Stride[axis];
       offset += samples.Lo[axis] * view.Stride[axis];
     }
     const auto bytes = offset * static_cast<std::ptrdiff_t>(SizeOf(this->Source.Type));

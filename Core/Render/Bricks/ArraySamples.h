@@ -79,12 +79,13 @@ public:
   /// That views have.
   ScalarType ViewType() const;
 
-  // Positions are counted in the array, from 0, in samples of a level: every `every`-th of the
-  // array. Where the last cell of a level is not whole, the sample after the last repeats that.
+  // Positions are counted in the array, from 0, in samples of a level: along each axis
+  // every `every`-th of the array. Where the last cell of a level is not whole, the sample after
+  // the last repeats that.
 
   /// Memory that a view takes beside the array.
-  std::size_t ViewBytes(const Box& samples, int every = 1) const;
-  BrickView View(const Box& samples, int every = 1) const;
+  std::size_t ViewBytes(const Box& samples, const glm::ivec3& every = glm::ivec3(1)) const;
+  BrickView View(const Box& samples, const glm::ivec3& every = glm::ivec3(1)) const;
 
   /// @param boxes of samples, not empty
   /// @param over range of the 64 bins of the masks
@@ -92,7 +93,7 @@ public:
     const std::vector<Box>& boxes, const MaskRange& over, ThreadPool& pool) const;
 
 private:
-  bool IsCopied(const Box& samples, int every) const;
+  bool IsCopied(const Box& samples, const glm::ivec3& every) const;
   bool HasSpecial(const Box& samples) const;
 
   SampleArray Source;

@@ -134,7 +134,8 @@ BrickSource* BrickSource::AtLevel(int level, const Box& domain)
     source->KeptOfSource = this->KeptOfSource;
     if (this->HiddenHere && !source->HiddenHere)
     {
-      source->Hide(std::make_shared<const HiddenCells>(this->HiddenHere->Coarser(level)));
+      source->Hide(
+        std::make_shared<const HiddenCells>(this->HiddenHere->Coarser(source->CellEdges())));
     }
   }
   return (this->Levels[level] = std::move(source)).get();
@@ -225,10 +226,9 @@ BrickView BrickSource::LoadTogether(const Box& bricks, bool around, Box& samples
   return parts.size() == 1 ? parts.front().View : Assemble(parts, samples, TypeOf(parts));
 }
 
-Box CellsAtLevel(const Box& cells, int level)
+Box CellsAtLevel(const Box& cells, const glm::ivec3& edges)
 {
-  const int edge = 1 << level;
-  return { (cells.Lo + edge - 1) / edge, (cells.Hi + edge - 1) / edge };
+  return { (cells.Lo + edges - 1) / edges, (cells.Hi + edges - 1) / edges };
 }
 
 } // namespace banyan

@@ -111,17 +111,17 @@ public:
   /// @param samples set to those that the view has; the view starts at samples.Lo
   virtual BrickView LoadTogether(const Box& bricks, bool around, Box& samples);
 
-  /// 0 is the finest. Index space is that of the level: positions are 2^Level fine ones apart.
+  /// 0 is the finest.
   int Level() const { return this->LevelNumber; }
 
-  /// The level whose cells positions, and boxes of cells, are counted in: its own, unless levels of
-  /// a source share one index space, as those of octree meshes do. Then zones are the same at all
-  /// levels.
-  virtual int CellLevel() const { return this->LevelNumber; }
+  /// How long a cell is along each axis, in cells of the finest level: one of LevelEdges.
+  /// Positions, and boxes of cells, are counted in such cells. 2^Level unless a source knows
+  /// better.
+  virtual glm::ivec3 CellEdges() const { return glm::ivec3(1 << this->LevelNumber); }
 
-  /// The same field at a coarser level, in bricks of as many cells: every 2^level-th sample; where
-  /// the last cell is not whole, one more sample repeats the last fine one (see BrickLayout). It
-  /// stays with this source.
+  /// The same field at a coarser level, in bricks of as many cells: a sample for each of its cells;
+  /// where the last cell is not whole, one more sample repeats the last fine one (see BrickLayout).
+  /// It stays with this source.
   /// @param level >= 0; 0 is this source, which must be of the finest level
   /// @param domain all fine cells of the whole grid
   /// @return null where there is none: pieces of a plain grid have no coarser levels
@@ -186,7 +186,8 @@ private:
 };
 
 /// Cells of a level that begin in cells of the finest one: of disjoint boxes they are disjoint.
-Box CellsAtLevel(const Box& cells, int level);
+/// @param edges of cells of the level
+Box CellsAtLevel(const Box& cells, const glm::ivec3& edges);
 
 } // namespace banyan
 

@@ -209,13 +209,12 @@ void HiddenCells::CopyBits(const Box& cells, int wordsPerRow, std::uint32_t* wor
     });
 }
 
-HiddenCells HiddenCells::Coarser(int level) const
+HiddenCells HiddenCells::Coarser(const glm::ivec3& edges) const
 {
-  const int edge = 1 << level;
-  HiddenCells coarse((this->Cells + (edge - 1)) / edge);
+  HiddenCells coarse((this->Cells + (edges - 1)) / edges);
   const Box whole{ glm::ivec3(0), this->Cells };
   const auto fine = [&](const Box& cells) {
-    return Intersection({ cells.Lo * edge, cells.Hi * edge }, whole);
+    return Intersection({ cells.Lo * edges, cells.Hi * edges }, whole);
   };
   coarse.ForBlocks({ glm::ivec3(0), coarse.Cells },
     [&](const glm::ivec3& block, const Box& cells)

@@ -43,8 +43,9 @@ public:
   /// @param words `[z][y][wordsPerRow]`, all 0; bit i of a row is that of its cell i
   void CopyBits(const Box& cells, int wordsPerRow, std::uint32_t* words) const;
 
-  /// Hidden cells of the grid whose cells are 2^level as long: those of which at least half is.
-  HiddenCells Coarser(int level) const;
+  /// Hidden cells of the grid whose cells are longer: those of which at least half is.
+  /// @param edges of its cells, in cells of this one
+  HiddenCells Coarser(const glm::ivec3& edges) const;
 
   /// For ranks to tell each other what is hidden in their pieces.
   std::string ToBytes() const;

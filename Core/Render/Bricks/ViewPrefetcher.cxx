@@ -142,7 +142,7 @@ std::vector<FieldBricks> ViewPrefetcher::Expected(
       dynamic_cast<const SeriesBrickSource*>(source.AtLevel(level, scene.DomainCells));
     if (next && at)
     {
-      const Box coarse = CellsAtLevel(Intersection(cells, scene.DomainCells), level);
+      const Box coarse = CellsAtLevel(Intersection(cells, scene.DomainCells), at->CellEdges());
       for (FieldBricks& field : at->Fields(
              BricksComingOntoScreen(InCellsOf(scene, level), InCellsOf(*next, level), *at, coarse)))
       {

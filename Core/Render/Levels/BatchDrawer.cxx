@@ -245,7 +245,7 @@ void BatchDrawer::RecordWork(const BrickBatch& batch, double began) const
     this->ShareWork(batch, i, shares);
   }
   AddBatch(
-    work, this->Meters, shares, this->Level.Source.CellLevel(), this->Level.Scene.DomainCells);
+    work, this->Meters, shares, this->Level.Source.CellEdges(), this->Level.Scene.DomainCells);
 }
 
 /// Divides the work of bricks that were drawn as one among them, by what can be seen of each: the

@@ -117,7 +117,7 @@ void MarkUnder(const RayScene& scene, const BrickSource& source, const std::vect
 {
   // A gradient is interpolated between samples, and these take the next ones.
   const int around = scene.Shading.On ? 2 << source.CoarsestBrickLevel() : 0;
-  const RayCamera camera = scene.Camera.InSpace(IndexToWorldAt(scene, source.CellLevel()));
+  const RayCamera camera = scene.Camera.InSpace(IndexToWorldAt(scene, source.CellEdges()));
   for (std::size_t i = 0; i < bricks.size(); ++i)
   {
     if (!bricks[i])

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Render/Levels/LevelScene.h"
 
+#include "Base/Error.h"
 #include "Render/Scene/FunctionTables.h"
 
 #include <glm/matrix.hpp>
@@ -23,7 +24,7 @@ std::unique_ptr<const ShadingTable> ShadingOf(const RayScene& scene, const glm::
 } // namespace
 
 LevelSampling::LevelSampling(const RayScene& scene, double distance, const BrickSource& source)
-  : Lattice(scene, { source.CellLevel() + source.CoarsestBrickLevel(), distance },
+  : Lattice(scene, distance, source.CellEdges() * (1 << source.CoarsestBrickLevel()),
       source.CoarsestBrickLevel())
   , Steps(FunctionTables::Process().StepsOf(scene.Transfer, distance))
   , Table(*Steps)
@@ -38,11 +39,16 @@ LevelScene::LevelScene(const RayScene& scene, BrickSource& source)
   : Scene(scene)
   , Source(source)
   , Visible(FunctionTables::Process().VisibleOf(scene.Transfer))
-  , IndexToWorld(IndexToWorldAt(scene, source.CellLevel()))
+  , IndexToWorld(IndexToWorldAt(scene, source.CellEdges()))
   , IndexCamera(scene.Camera.InSpace(IndexToWorld))
   , ClipPlanes(PlanesInIndexSpace(scene.ClipPlanes, IndexToWorld))
   , Shading(ShadingOf(scene, IndexToWorld))
 {
+  if (source.CellEdges() != scene.Levels.At(source.Level()))
+  {
+    throw Error(
+      "Cells of level " + std::to_string(source.Level()) + " are not as long as the scene says");
+  }
   std::vector<RaySampling> samplings{ { 0, scene.SampleDistance } };
   std::vector<bool> used{ true };
   if (scene.Samplings)

@@ -50,7 +50,7 @@ FloatImage Cast(const RayScene& scene, BrickSource& source, const Box& cells,
   {
     BrickSource& at = SourceAt(source, level, scene);
     casters.push_back(std::make_unique<LevelCaster>(
-      scene, at, CellsAtLevel(inside, at.CellLevel()), budgetBytes, pool, statistics));
+      scene, at, CellsAtLevel(inside, at.CellEdges()), budgetBytes, pool, statistics));
     picture.Rect = Union(picture.Rect, casters.back()->Rect());
   }
   const bool ages = !scene.Probe && !scene.GoesOn;
@@ -81,7 +81,7 @@ int FinestLevelWithin(
       scene.Camera.ImageSize(), std::vector{ RaySampling{ level, scene.SampleDistance } });
     BrickSource& at = SourceAt(source, level, scene);
     if (AllFits(LevelScene(planned, at),
-          CellsAtLevel(Intersection(cells, scene.DomainCells), at.CellLevel()), bytes))
+          CellsAtLevel(Intersection(cells, scene.DomainCells), at.CellEdges()), bytes))
     {
       break;
     }

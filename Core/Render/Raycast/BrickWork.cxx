@@ -64,13 +64,12 @@ void BatchMeter::Finish(std::int64_t rays)
 }
 
 void AddBatch(BrickWork& work, const std::vector<BatchMeter>& meters,
-  const std::vector<WorkShare>& shares, int level, const Box& domain)
+  const std::vector<WorkShare>& shares, const glm::ivec3& edges, const Box& domain)
 {
-  const int edge = 1 << level;
   for (const WorkShare& share : shares)
   {
     BrickWork::Part part;
-    part.Cells = Intersection({ share.Cells.Lo * edge, share.Cells.Hi * edge }, domain);
+    part.Cells = Intersection({ share.Cells.Lo * edges, share.Cells.Hi * edges }, domain);
     for (const BatchMeter& meter : meters)
     {
       Add(part.Took, meter.Of(share.Brick));

@@ -96,9 +96,10 @@ struct WorkShare
 };
 
 /// Adds what all workers measured of a batch.
+/// @param edges of cells of the level, in cells of the finest one
 /// @param domain all cells of the finest level
 void AddBatch(BrickWork& work, const std::vector<BatchMeter>& meters,
-  const std::vector<WorkShare>& shares, int level, const Box& domain);
+  const std::vector<WorkShare>& shares, const glm::ivec3& edges, const Box& domain);
 
 } // namespace banyan
 

@@ -15,11 +15,16 @@ namespace banyan
 TileSamplings SamplingsByScreen(
   const RayScene& scene, double pixels, double distance, int coarsest, bool distanceGrows)
 {
-  double edge = 0.0;
-  for (int axis = 0; axis < 3; ++axis)
+  const auto longestEdge = [&](int level)
   {
-    edge = std::max(edge, glm::length(glm::dvec3(scene.IndexToWorld[axis])));
-  }
+    const glm::dvec3 edges(scene.Levels.At(level));
+    double longest = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      longest = std::max(longest, edges[axis] * glm::length(glm::dvec3(scene.IndexToWorld[axis])));
+    }
+    return longest;
+  };
   std::vector<RaySampling> levels;
   for (int level = 0; level <= coarsest; ++level)
   {
@@ -35,7 +40,7 @@ TileSamplings SamplingsByScreen(
     for (int x = 0; x < tiles.x; ++x)
     {
       int level = 0;
-      while (level < coarsest && std::ldexp(edge, level + 1) <= pixels * side * depths.At({ x, y }))
+      while (level < coarsest && longestEdge(level + 1) <= pixels * side * depths.At({ x, y }))
       {
         ++level;
       }

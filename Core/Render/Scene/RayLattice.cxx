@@ -85,9 +85,9 @@ void RaySamples::CountInSmallerCells(int levels)
   }
 }
 
-glm::dmat4 IndexToWorldAt(const RayScene& scene, int level)
+glm::dmat4 IndexToWorldAt(const RayScene& scene, const glm::ivec3& edges)
 {
-  return glm::scale(scene.IndexToWorld, glm::dvec3(std::ldexp(1.0, level)));
+  return glm::scale(scene.IndexToWorld, glm::dvec3(edges));
 }
 
 double ScaleToOne(const glm::dmat3& matrix)
@@ -115,29 +115,29 @@ FixedBox::FixedBox(const Box& cells, int larger)
 }
 
 RayLattice::RayLattice(const RayScene& scene)
-  : RayLattice(scene, { 0, scene.SampleDistance })
+  : RayLattice(scene, scene.SampleDistance, glm::ivec3(1))
 {
 }
 
-RayLattice::RayLattice(const RayScene& scene, const RaySampling& sampling, int smaller)
+RayLattice::RayLattice(const RayScene& scene, double distance, const glm::ivec3& edges, int smaller)
   : Scene(scene)
-  , WorldToIndex(glm::inverse(IndexToWorldAt(scene, sampling.Level)))
+  , WorldToIndex(glm::inverse(IndexToWorldAt(scene, edges)))
   , WorldToIndexLinear(WorldToIndex)
-  , Distance(sampling.Distance)
-  , PerDistance(1.0 / sampling.Distance)
+  , Distance(distance)
+  , PerDistance(1.0 / distance)
   , SmallestPerCell(std::ldexp(1.0, smaller))
-  , Low(glm::dvec3(scene.DomainCells.Lo) * std::ldexp(1.0, -sampling.Level))
-  , High(glm::dvec3(scene.DomainCells.Hi) * std::ldexp(1.0, -sampling.Level))
+  , Low(glm::dvec3(scene.DomainCells.Lo) / glm::dvec3(edges))
+  , High(glm::dvec3(scene.DomainCells.Hi) / glm::dvec3(edges))
 {
   CheckDomain(scene.DomainCells);
-  CheckDistance(scene, sampling.Distance);
+  CheckDistance(scene, distance);
   CheckViewport(scene);
   const double volume = glm::determinant(glm::dmat3(scene.IndexToWorld));
   if (volume == 0.0 || !std::isfinite(volume) || !std::isfinite(1.0 / volume))
   {
     throw Error("The volume has no extent in space: a spacing is 0 or not finite");
   }
-  this->IndexPlanes = PlanesInIndexSpace(scene.ClipPlanes, IndexToWorldAt(scene, sampling.Level));
+  this->IndexPlanes = PlanesInIndexSpace(scene.ClipPlanes, IndexToWorldAt(scene, edges));
 }
 
 LatticeSetup RayLattice::Setup() const

@@ -136,8 +136,9 @@ inline void RaySamples::SamplesIn(const FixedBox& box, std::int32_t& begin, std:
   }
 }
 
-/// Of the index space of a level: cells are 2^level fine ones long.
-glm::dmat4 IndexToWorldAt(const RayScene& scene, int level);
+/// Of the index space of a level.
+/// @param edges of its cells, in fine ones
+glm::dmat4 IndexToWorldAt(const RayScene& scene, const glm::ivec3& edges);
 
 /// The power of two that brings the largest number of a matrix to 1 or below 2.
 double ScaleToOne(const glm::dmat3& matrix);
@@ -166,14 +167,15 @@ struct LatticeSetup
 
 /// Makes the samples of rays from what all ranks know: the camera, the domain, the clip planes, the
 /// depth and the sampling. The values and their distribution have no part in it. Index space is
-/// that of the sampling's level: the domain may end inside a cell there.
+/// that of a level: the domain may end inside a cell there.
 class RayLattice
 {
 public:
   /// Refers to `scene`, which must stay. Throws Error when the scene is not usable.
-  /// @param smaller how many times the smallest cells are half as long as those of the sampling's
-  /// level
-  RayLattice(const RayScene& scene, const RaySampling& sampling, int smaller = 0);
+  /// @param distance world length between samples
+  /// @param edges of the level's cells, in fine ones
+  /// @param smaller how many times the smallest cells are half as long as those of the level
+  RayLattice(const RayScene& scene, double distance, const glm::ivec3& edges, int smaller = 0);
   /// At the finest level, with the scene's sample distance.
   explicit RayLattice(const RayScene& scene);
 

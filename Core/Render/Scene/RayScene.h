@@ -4,6 +4,7 @@
 
 #include "Base/Box.h"
 #include "Render/Scene/ClipPlanes.h"
+#include "Render/Scene/LevelEdges.h"
 #include "Render/Scene/RayBlend.h"
 #include "Render/Scene/RayCamera.h"
 #include "Render/Scene/RaySampling.h"
@@ -55,9 +56,7 @@ struct RayScene
   RayBlend Blend{};
   /// In place of SampleDistance; of the whole picture. Null samples the finest level everywhere.
   std::shared_ptr<const TileSamplings> Samplings{};
-  /// Whether all levels are counted in cells of the finest one (BrickSource::CellLevel): zones are
-  /// the same at all levels then.
-  bool LevelsShareCells = false;
+  LevelEdges Levels{}; ///< of what is drawn: BrickSource::CellEdges
   /// Whether the picture only helps to make another one: packed bricks are kept for that one.
   bool Probe = false;
   /// Whether the picture goes on with the one before, as a further part of it: what is kept of

@@ -28,6 +28,7 @@ public:
   int BrickLevel(std::int64_t brick) const override { return this->Now->BrickLevel(brick); }
   int CoarsestBrickLevel() const override { return this->Now->CoarsestBrickLevel(); }
   bool IsGrid() const override { return this->Now->IsGrid(); }
+  glm::ivec3 CellEdges() const override { return this->Now->CellEdges(); }
   std::vector<std::int64_t> RanksFrontToBack(const Viewpoint& view) const override
   {
     return this->Now->RanksFrontToBack(view);

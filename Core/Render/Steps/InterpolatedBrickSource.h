@@ -47,6 +47,7 @@ public:
   std::optional<UniformValue> UniformValueOf(std::int64_t brick) const override;
   std::optional<Hash128> ContentOf(std::int64_t brick) const override;
   bool HasColours() const override { return this->Drawn.Earlier->HasColours(); }
+  glm::ivec3 CellEdges() const override { return this->Drawn.Earlier->CellEdges(); }
   std::size_t LoadBytes(std::int64_t brick) const override;
   BrickView Load(std::int64_t brick) override;
 

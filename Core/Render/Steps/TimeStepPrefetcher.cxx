@@ -128,8 +128,8 @@ void TimeStepPrefetcher::Drawn(const std::shared_ptr<const SeriesFile>& series,
           if (now)
           {
             const int level = field.Field.Level - now->FieldLevel();
-            AddComing(InCellsOf(seen, level), CellsAtLevel(cells, level), *now->AtStep(step, level),
-              *now->AtStep(then, level), changed, field.Bricks);
+            AddComing(InCellsOf(seen, level), CellsAtLevel(cells, glm::ivec3(1 << level)),
+              *now->AtStep(step, level), *now->AtStep(then, level), changed, field.Bricks);
           }
           wanted.push_back(std::move(field));
         }

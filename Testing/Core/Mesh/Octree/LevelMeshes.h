@@ -45,7 +45,7 @@ struct Made
     scene.IndexToWorld = this->Bricks->Tree().LatticeToWorld();
     scene.DomainCells = this->Bricks->Tree().Domain();
     scene.SampleDistance = step;
-    scene.LevelsShareCells = true;
+    scene.Levels = LevelEdges::Finest();
     return scene;
   }
 };

@@ -35,12 +35,12 @@ TEST(LevelZones, AreOfCellsThatBeginInTheZone)
 {
   const Box domain{ glm::ivec3(0), Samples - 1 };
   const Box zone{ { 3, 8, 0 }, { 50, 64, 32 } };
-  EXPECT_EQ(ZoneAtLevel(zone, 0, domain), zone);
-  EXPECT_EQ(ZoneAtLevel(zone, 2, domain), (Box{ { 4, 8, 0 }, { 52, 64, 32 } }));
-  EXPECT_EQ(ZoneAtLevel({ { 97, 0, 0 }, { 100, 64, 32 } }, 3, domain), Box{});
-  EXPECT_EQ(ZoneAtLevel({ { 90, 0, 0 }, { 100, 64, 32 } }, 3, domain),
+  EXPECT_EQ(ZoneAtLevel(zone, glm::ivec3(1), domain), zone);
+  EXPECT_EQ(ZoneAtLevel(zone, glm::ivec3(4), domain), (Box{ { 4, 8, 0 }, { 52, 64, 32 } }));
+  EXPECT_EQ(ZoneAtLevel({ { 97, 0, 0 }, { 100, 64, 32 } }, glm::ivec3(8), domain), Box{});
+  EXPECT_EQ(ZoneAtLevel({ { 90, 0, 0 }, { 100, 64, 32 } }, glm::ivec3(8), domain),
     (Box{ { 96, 0, 0 }, { 100, 64, 32 } }));
-  EXPECT_EQ(ZoneAtLevel(Box{}, 1, domain), Box{});
+  EXPECT_EQ(ZoneAtLevel(Box{}, glm::ivec3(2), domain), Box{});
 }
 
 TEST(LevelZones, CoverTheGridOnceAtEveryLevel)
@@ -53,7 +53,7 @@ TEST(LevelZones, CoverTheGridOnceAtEveryLevel)
       std::int64_t cells = 0;
       for (const Box& zone : Halves(plane))
       {
-        cells += ZoneAtLevel(zone, level, domain).Count();
+        cells += ZoneAtLevel(zone, glm::ivec3(1 << level), domain).Count();
       }
       EXPECT_EQ(cells, domain.Count()) << plane << ", level " << level;
     }

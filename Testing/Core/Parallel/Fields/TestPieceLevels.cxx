@@ -19,6 +19,7 @@ constexpr std::uint64_t Budget = 4u << 20;
 constexpr int BrickCells = 8;
 constexpr int CoarsestLevel = 3;
 const glm::ivec3 Samples{ 45, 37, 41 };
+const glm::ivec3 FlatSamples{ 93, 37, 11 }; // the axes rest 0, 1 and 3 levels
 const glm::ivec2 Size{ 61, 47 };
 
 struct Drawn
@@ -35,10 +36,11 @@ const std::vector<Drawn>& Frames()
   return frames;
 }
 
-RayScene SceneOf(const Drawn& drawn)
+RayScene SceneOf(const Drawn& drawn, const glm::ivec3& samples = Samples)
 {
   RayScene scene =
-    scenes::Scene(Samples, Size, glm::dmat4(1.0), drawn.Distance, /*parallel=*/false);
+    scenes::Scene(samples, Size, glm::dmat4(1.0), drawn.Distance, /*parallel=*/false);
+  scene.Levels = LevelEdges::Following(samples - 1);
   scene.Transfer = scenes::Tabulate(scenes::Sparse);
   scene.Shading.On = drawn.Shaded;
   scene.Shading.Specular = drawn.Shaded ? 0.3f : 0.0f;
@@ -48,18 +50,18 @@ RayScene SceneOf(const Drawn& drawn)
 }
 
 template <class T>
-std::vector<FloatImage> PicturesOfOne(
-  const std::vector<T>& values, const std::shared_ptr<const HiddenCells>& hidden = nullptr)
+std::vector<FloatImage> PicturesOfOne(const std::vector<T>& values,
+  const std::shared_ptr<const HiddenCells>& hidden = nullptr, const glm::ivec3& samples = Samples)
 {
   ThreadPool pool(1);
-  const SampleArray array = scenes::ArrayOf(values, Samples);
+  const SampleArray array = scenes::ArrayOf(values, samples);
   const ValueRange range = FiniteRange(array, pool);
   ArrayBrickSource source(array, 16, { range.Low, range.High }, pool);
   source.Hide(hidden);
   std::vector<FloatImage> pictures;
   for (const Drawn& drawn : Frames())
   {
-    const RayScene scene = SceneOf(drawn);
+    const RayScene scene = SceneOf(drawn, samples);
     FrameStatistics statistics;
     const auto alone = MakeSelfCommunicator();
     pictures.push_back(
@@ -70,21 +72,21 @@ std::vector<FloatImage> PicturesOfOne(
 
 template <class T>
 void ExpectPicturesOfOne(const std::vector<T>& values, Deal deal, LoadBalancing mode, int ranks,
-  const std::shared_ptr<const HiddenCells>& hidden = nullptr)
+  const std::shared_ptr<const HiddenCells>& hidden = nullptr, const glm::ivec3& samples = Samples)
 {
-  const std::vector<FloatImage> alone = PicturesOfOne(values, hidden);
-  const std::vector<Box> dealt = Dealt(deal, Samples, ranks);
+  const std::vector<FloatImage> alone = PicturesOfOne(values, hidden, samples);
+  const std::vector<Box> dealt = Dealt(deal, samples, ranks);
   RunOnSimulatedRanks(ranks,
     [&](Communicator& communicator)
     {
-      const Piece<T> mine(values, Samples, dealt[static_cast<std::size_t>(communicator.Rank())]);
+      const Piece<T> mine(values, samples, dealt[static_cast<std::size_t>(communicator.Rank())]);
       ThreadPool pool(1);
       PieceField field;
-      field.Take(communicator, dealt, mine.Array, Samples - 1, BrickCells, mode, pool);
+      field.Take(communicator, dealt, mine.Array, samples - 1, BrickCells, mode, pool);
       field.Source()->Hide(hidden);
       for (std::size_t frame = 0; frame < Frames().size(); ++frame)
       {
-        RayScene scene = SceneOf(Frames()[frame]);
+        RayScene scene = SceneOf(Frames()[frame], samples);
         field.BeginFrame(communicator, scene, Budget);
         field.BringLevels(communicator, scene, CoarsestLevel, Budget, pool);
         FrameStatistics statistics;
@@ -114,6 +116,17 @@ TEST_P(EveryRankCountOfLevels, DrawsThePicturesOfOneRank)
     ExpectPicturesOfOne(values, deal, LoadBalancing::Off, GetParam());
   }
   ExpectPicturesOfOne(values, Deal::Blocks, LoadBalancing::MeasuredCost, GetParam());
+}
+
+TEST_P(EveryRankCountOfLevels, DrawsThePicturesOfOneRankOfAFlatGrid)
+{
+  const std::vector<float> values = scenes::Sampled<float>(scenes::Standard, FlatSamples);
+  for (const Deal deal : { Deal::Slabs, Deal::Blocks, Deal::Ghosts, Deal::Pinwheel })
+  {
+    ExpectPicturesOfOne(values, deal, LoadBalancing::Off, GetParam(), nullptr, FlatSamples);
+  }
+  ExpectPicturesOfOne(
+    values, Deal::Blocks, LoadBalancing::MeasuredCost, GetParam(), nullptr, FlatSamples);
 }
 
 // 24 leave ranks with pieces in which no coarse cell begins, and with none.

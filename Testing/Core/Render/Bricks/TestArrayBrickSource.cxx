@@ -284,7 +284,6 @@ TEST(ArrayBrickSource, ContentIsThatOfTheSamplesThatABrickHas)
   const std::vector<float> same = values;
   for (int level = 0; level < 3; ++level)
   {
-    const int every = 1 << level;
     const std::vector<Hash128> before = ContentsOf(scenes::ArrayOf(values, n), level);
     EXPECT_EQ(ContentsOf(scenes::ArrayOf(same, n), level), before);
     for (const glm::ivec3& at : { glm::ivec3(8, 4, 4), glm::ivec3(9, 5, 3), n - 1 })
@@ -297,12 +296,15 @@ TEST(ArrayBrickSource, ContentIsThatOfTheSamplesThatABrickHas)
       ThreadPool pool(1);
       ArrayBrickSource source(scenes::ArrayOf(values, n), 4, { 0, 1 }, pool);
       BrickSource& bricks = *source.AtLevel(level, { glm::ivec3(0), n - 1 });
+      const glm::ivec3 edges = bricks.CellEdges();
+      EXPECT_EQ(edges, LevelEdges::Following(n - 1).At(level)); // the axes rest 0, 0 and 1 levels
       for (std::size_t brick = 0; brick < now.size(); ++brick)
       {
         const Box cells = bricks.CellsOf(static_cast<std::int64_t>(brick));
         bool has = true;
         for (int axis = 0; axis < 3; ++axis)
         {
+          const int every = edges[axis];
           // The last sample is repeated where the last cell is not whole.
           const int position =
             at[axis] == n[axis] - 1 ? (at[axis] + every - 1) / every * every : at[axis];
@@ -312,6 +314,48 @@ TEST(ArrayBrickSource, ContentIsThatOfTheSamplesThatABrickHas)
         EXPECT_EQ(now[brick] != before[brick], has) << level << " " << brick;
       }
     }
+  }
+}
+
+/// Coarse levels of a flat array are what one gets by hand: some of its samples, farther apart.
+TEST(ArrayBrickSource, LevelsOfFlatArraysKeepTheShortAxis)
+{
+  ThreadPool pool(2);
+  const glm::ivec3 n(65, 33, 9); // the axes rest 0, 1 and 3 levels
+  for (const int level : { 1, 2, 3, 4 })
+  {
+    RayScene scene = scenes::Scene(n, { 60, 50 }, glm::dmat4(1.0), 1.1, false);
+    scene.Transfer = scenes::Tabulate(scenes::Sparse);
+    scene.Shading.On = level == 2;
+    scene.Levels = LevelEdges::Following(n - 1);
+    const glm::ivec3 edges = scene.Levels.At(level);
+    EXPECT_EQ(edges, glm::ivec3(1 << level, 1 << (level - 1), level > 3 ? 2 : 1));
+    const std::vector<float> values = scenes::Sampled(scenes::Standard, n);
+    const glm::ivec3 fewer = (n - 1) / edges + 1;
+    const std::vector<float> some = scenes::Sampled(
+      [&](const glm::dvec3& at)
+      {
+        const glm::ivec3 p = glm::ivec3(glm::round(at * glm::dvec3(fewer - 1))) * edges;
+        return values[static_cast<std::size_t>(p.x + n.x * (p.y + n.y * p.z))];
+      },
+      fewer);
+    RayScene byHand = scene;
+    byHand.DomainCells = { glm::ivec3(0), fewer - 1 };
+    byHand.IndexToWorld = IndexToWorldAt(scene, edges);
+    byHand.Levels = {};
+    scene.Samplings = std::make_shared<const TileSamplings>(
+      scene.Camera.ImageSize(), std::vector{ RaySampling{ level, scene.SampleDistance } });
+    ArrayBrickSource all(scenes::ArrayOf(values, n), 4, { 0, 1 }, pool);
+    ArrayBrickSource taken(scenes::ArrayOf(some, fewer), 4, { 0, 1 }, pool);
+    RayStatistics statistics;
+    const FloatImage picture = CastRays(scene, all, scene.DomainCells, 1u << 24, pool, statistics);
+    const FloatImage expected =
+      CastRays(byHand, taken, byHand.DomainCells, 1u << 24, pool, statistics);
+    EXPECT_EQ(picture.Rect, expected.Rect);
+    EXPECT_EQ(picture.Pixels, expected.Pixels) << level;
+    EXPECT_GT(statistics.SamplesTaken, 1000) << level;
+    scene.Levels = {};
+    EXPECT_THROW(CastRays(scene, all, scene.DomainCells, 1u << 24, pool, statistics), Error);
   }
 }
 

@@ -345,13 +345,14 @@ TEST(HiddenCells, AreCountedAndToldCellByCell)
         const bool inside = Box{ glm::ivec3(0), cells }.Contains(box.Lo + p);
         ASSERT_EQ(bits.At(p), inside && isHidden(box.Lo + p)) << seed;
       });
-    const int level = Between(random, 1, 3);
-    const HiddenCells coarse = hidden->Coarser(level);
-    ForAll((cells + ((1 << level) - 1)) >> level,
+    const glm::ivec3 edges(
+      1 << Between(random, 0, 3), 1 << Between(random, 0, 3), 1 << Between(random, 1, 3));
+    const HiddenCells coarse = hidden->Coarser(edges);
+    ForAll((cells + (edges - 1)) / edges,
       [&](const glm::ivec3& p)
       {
-        const Box fine = Intersection(
-          Box{ p * (1 << level), (p + 1) * (1 << level) }, Box{ glm::ivec3(0), cells });
+        const Box fine =
+          Intersection(Box{ p * edges, (p + 1) * edges }, Box{ glm::ivec3(0), cells });
         ASSERT_EQ(coarse.Any({ p, p + 1 }), 2 * countIn(fine) >= fine.Count()) << seed;
       });
   }
