@@ -339,8 +339,8 @@ std::vector<FloatImage> CastThenComposite(
     const bool isLast = cast.size() + 1 == drawn.Places.size();
     const PartOfPicture part = scenes.Part(isLast ? drawn.Compositing.AfterCasting : nothing);
     const FloatImage& mine = cast.emplace_back(CastOwn(own, part, CastRays));
-    pictures.push_back({ mine, OrderOf(part), part.Scene.Viewport,
-      CompleteOptions(drawn.OptionsOf(place), part) });
+    pictures.push_back(
+      { mine, OrderOf(part), part.Scene.Viewport, CompleteOptions(drawn.OptionsOf(place), part) });
     const PictureOfRanks& picture = pictures.back();
     if (own.Failure.empty())
     {
@@ -372,9 +372,8 @@ std::vector<FloatImage> DrawPlaces(
   const PlaceScenes scenes = drawn.ScenesOf(place);
   const PartOfPicture part = scenes.Part(drawn.Compositing.AfterCasting);
   std::vector<FloatImage> pictures;
-  pictures.push_back(
-    alone ? CastAlone(own, part)
-          : CastAndComposite(communicator, own, part, drawn.OptionsOf(place)));
+  pictures.push_back(alone ? CastAlone(own, part)
+                           : CastAndComposite(communicator, own, part, drawn.OptionsOf(place)));
   return pictures;
 }
 

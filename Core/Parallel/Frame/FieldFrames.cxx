@@ -59,6 +59,26 @@ void ReadAhead(DrawnField& drawn, const RayScene& scene, const RankShare& share,
   drawn.ReadAhead(mine, scene.DomainCells);
 }
 
+struct TimesOfFrame
+{
+  double Drawing;
+  double Showing;
+};
+
+/// Collective: each of all ranks, in one message.
+TimesOfFrame LargestOf(Communicator& communicator, const TimesOfFrame& mine)
+{
+  std::vector<TimesOfFrame> all(static_cast<std::size_t>(communicator.Size()));
+  communicator.AllGather(&mine, sizeof(mine), all.data());
+  TimesOfFrame largest = mine;
+  for (const TimesOfFrame& times : all)
+  {
+    largest.Drawing = std::max(largest.Drawing, times.Drawing);
+    largest.Showing = std::max(largest.Showing, times.Showing);
+  }
+  return largest;
+}
+
 } // namespace
 
 Hash128 FieldFrames::SceneOf(const RayScene& scene, const Wish& wish)
@@ -372,8 +392,8 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   {
     frame.ByPicture ? regions.EndFrame(communicator) : drawn.EndFrame(communicator);
   }
-  this->Tolerance.FrameTook(
-    wish.Sampling, AllMax(communicator, drawing.Seconds() + wish.ShowSeconds));
+  const TimesOfFrame took = LargestOf(communicator, { drawing.Seconds(), wish.ShowSeconds });
+  this->Tolerance.FrameTook(wish.Sampling, took.Drawing, took.Showing);
 }
 
 void FieldFrames::Forget()

@@ -19,6 +19,8 @@ namespace
 {
 
 constexpr double MostSlack = 16.0;
+/// Of the promised time, however long it takes to show a picture.
+constexpr double LeastForDrawing = 0.1;
 
 /// Whether a value that occurs is opaque however short its part of a ray.
 bool HasOpaqueValues(const TransferFunction& function, const ValueRange& values)
@@ -239,7 +241,7 @@ void ToleranceControl::ForgetPlans()
   }
 }
 
-void ToleranceControl::FrameTook(const Wish& wish, double seconds)
+void ToleranceControl::FrameTook(const Wish& wish, double drawing, double showing)
 {
   if (!wish.Interacting || wish.Between)
   {
@@ -247,9 +249,12 @@ void ToleranceControl::FrameTook(const Wish& wish, double seconds)
   }
   if (this->BySteps)
   {
-    this->Steps.FrameTook(seconds, wish.Seconds, this->CoarsestStepLevel);
+    // A step changes what drawing takes, and nothing else.
+    const double left = std::max(wish.Seconds - showing, LeastForDrawing * wish.Seconds);
+    this->Steps.FrameTook(drawing, left, this->CoarsestStepLevel);
     return;
   }
+  const double seconds = drawing + showing;
   if (!(wish.Seconds > 0.0))
   {
     this->Slack = 1.0;

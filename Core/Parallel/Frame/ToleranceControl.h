@@ -67,8 +67,10 @@ public:
   /// missed. Empty if nothing. The same on all ranks.
   const std::string& Limit() const { return this->LimitText; }
 
-  /// Tells what the frame took that was planned last: the same number on all ranks.
-  void FrameTook(const Wish& wish, double seconds);
+  /// Tells what the frame took that was planned last: the same numbers on all ranks.
+  /// @param drawing seconds
+  /// @param showing seconds to put it on the screen: no sampling changes them
+  void FrameTook(const Wish& wish, double drawing, double showing);
 
   /// Forgets plans of earlier frames: when the ranks are others, say.
   void ForgetPlans();

@@ -74,13 +74,41 @@ TEST(ToleranceControl, WithoutToleranceFramesThatTakeTooLongGetCoarser)
       double error = -1.0;
       EXPECT_EQ(frames.Plan(error).Samplings, nullptr);
       EXPECT_EQ(error, 0.0);
-      frames.Control.FrameTook(frames.Wish, 10.0);
+      frames.Control.FrameTook(frames.Wish, 10.0, 0.0);
       const RayScene coarser = frames.Plan(error);
       ASSERT_NE(coarser.Samplings, nullptr);
       EXPECT_GT(coarser.Samplings->Samplings().front().Distance, coarser.SampleDistance);
       frames.Wish.Interacting = false;
       EXPECT_EQ(frames.Plan(error).Samplings, nullptr) << "still pictures have all samples";
     });
+}
+
+/// Showing a picture takes half of what is promised: drawing may have the other half.
+TEST(ToleranceControl, FramesBecomeFinerThoughShowingThemTakesLong)
+{
+  const auto alone = MakeSelfCommunicator();
+  Frames frames(*alone);
+  frames.Wish.KeepsTolerance = false;
+  frames.Wish.Interacting = true;
+  frames.Wish.Seconds = 0.025;
+  const auto coarseness = [&] { return frames.Control.Begin(frames.Wish).Coarseness; };
+  double error = 0.0;
+  frames.Plan(error);
+  frames.Control.FrameTook(frames.Wish, 1.0, 0.0125);
+  const double slow = coarseness();
+  EXPECT_GT(slow, 1.0);
+  for (int i = 0; i < 200; ++i)
+  {
+    frames.Plan(error);
+    frames.Control.FrameTook(frames.Wish, 0.004, 0.0125);
+  }
+  EXPECT_EQ(coarseness(), 0.0);
+  for (int i = 0; i < 20; ++i)
+  {
+    frames.Plan(error);
+    frames.Control.FrameTook(frames.Wish, 0.004, 0.1);
+  }
+  EXPECT_GE(coarseness(), slow) << "nothing else is left to do";
 }
 
 TEST(ToleranceControl, SizesOfCellsOnTheScreenDecideIfTheyShall)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Base/Error.h"
+#include "Render/Scene/RayLattice.h"
 #include "Render/Scenes.h"
 
 #include <gtest/gtest.h>
