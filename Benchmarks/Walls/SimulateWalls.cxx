@@ -5,7 +5,7 @@
 //   smpirun ... banyan-simulate-walls FOLDER VOLUME MEGAPIXELS TILES VIEW GIGABITS METHODS
 //
 // Built by walls.sh with the simulator's compiler. Each tile is compared with what one rank would
-// blend; a wrong one ends the run. A rank reads its pictures tile by tile: time stands still then.
+// blend; a wrong one ends the run.
 #include "FrameFile.h"
 #include "Peers/IceTMethods.h"
 #include "Wall.h"
@@ -19,6 +19,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <deque>
 #include <functional>
 #include <sstream>
 
@@ -119,7 +120,7 @@ private:
     return worst;
   }
 
-  /// All tiles in one order, as DrawDistributed has them.
+  /// All tiles at once, as DrawDistributed has them.
   Measured RunOwn(const std::string& method)
   {
     const std::string few = "-few-bits";
@@ -130,26 +131,26 @@ private:
     options.Costs.BytesPerSecond = this->BytesPerSecond;
     options.Transport =
       at == std::string::npos ? PixelTransport::Floats : PixelTransport::WithinOne;
-    Measured measured;
-    this->Ranks->Barrier();
-    const double begin = MPI_Wtime();
-    FloatImage mine;
+    std::deque<FloatImage> drawn; // referred to
+    std::vector<PictureOfRanks> pictures;
     for (const PicturePlace& tile : this->Screens.Tiles)
     {
       FrameReader frame = this->Frame(division, tile);
       const FrameHead& head = frame.Head();
       options.Footprints = head.Footprints;
       options.Root = tile.Root;
-      FloatImage picture = Composite(*this->Ranks, frame.ImageOf(this->Ranks->Rank()), head.Order,
-        head.Viewport, options, measured.Statistics);
-      if (tile.Root == this->Ranks->Rank())
-      {
-        mine = std::move(picture);
-      }
+      const FloatImage& own = drawn.emplace_back(frame.ImageOf(this->Ranks->Rank()));
+      pictures.push_back({ own, head.Order, head.Viewport, options });
     }
+    Measured measured;
+    this->Ranks->Barrier();
+    const double begin = MPI_Wtime();
+    const std::vector<FloatImage> tiles =
+      CompositeTogether(*this->Ranks, pictures, measured.Statistics);
     measured.Seconds = MPI_Wtime() - begin;
     if (this->MyTile())
     {
+      const FloatImage& mine = tiles.at(static_cast<std::size_t>(this->Ranks->Rank()));
       measured.WorstError =
         this->ErrorOf(division, [&](int x, int y, int c) { return Rounded(mine.At(x, y)[c]); });
     }
