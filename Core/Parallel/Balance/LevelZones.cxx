@@ -22,6 +22,7 @@ std::set<int> LevelsOf(const RayScene& scene)
 std::vector<Box> ZonesAtLevel(const std::vector<Box>& zones, int level, const RayScene& scene)
 {
   std::vector<Box> boxes;
+  boxes.reserve(zones.size());
   for (const Box& zone : zones)
   {
     boxes.push_back(ZoneAtLevel(zone, scene.Levels.At(level), scene.DomainCells));

@@ -297,8 +297,8 @@ std::vector<FloatImage> CompositeTogether(Communicator& communicator,
   const std::vector<PictureOfRanks>& pictures, CompositeStatistics& statistics)
 {
   std::vector<FloatImage> composited;
-  communicator.Together(
-    [&](Communicator& ranks) { composited = PicturesUnderWay(ranks, pictures, statistics).Finish(); });
+  communicator.Together([&](Communicator& ranks)
+    { composited = PicturesUnderWay(ranks, pictures, statistics).Finish(); });
   return composited;
 }
 

@@ -144,7 +144,8 @@ bool TileOwnerCompositor::Expect(int from, TileMessage sort, int chunk)
   }
   this->Expected.push_back(
     { from, sort, chunk, std::unique_ptr<std::uint8_t[]>(new std::uint8_t[capacity]), 0, false });
-  this->Ranks.ReceiveWhole(from, this->TagOf(sort, chunk), this->Expected.back().Data.get(), capacity);
+  this->Ranks.ReceiveWhole(
+    from, this->TagOf(sort, chunk), this->Expected.back().Data.get(), capacity);
   ++this->Open;
   return true;
 }

@@ -12,7 +12,8 @@ namespace banyan
 
 /// The compositor for one frame of one rank, chunk by chunk, as these have been drawn. It descends
 /// from SLIC: tiles have owners, which blend what others send. Collective: all ranks
-/// make one, `Add` each chunk once, and `Finish`. Several may be under way at once: CompositeTogether.
+/// make one, `Add` each chunk once, and `Finish`. Several may be under way at once:
+/// CompositeTogether.
 class TileOwnerCompositor
 {
 public:
@@ -40,7 +41,8 @@ public:
   /// waits for them. Ranks have to agree on the error afterwards; the picture is no good
   void Add(int chunk, const FloatImage* mine);
 
-  /// Takes what has come, and passes on what is complete, without waiting. Nothing else is under way.
+  /// Takes what has come, and passes on what is complete, without waiting. Nothing else is under
+  /// way.
   void Poll();
   /// Takes a message that has come, unless it is another picture's.
   void Take(const Communicator::Arrival& arrival);
@@ -134,7 +136,7 @@ private:
   std::vector<Message> Expected;
   std::size_t Open = 0;         ///< of these
   std::size_t PostedBefore = 0; ///< and before these
-  std::vector<Part> Parts; ///< per chunk
+  std::vector<Part> Parts;      ///< per chunk
   std::vector<std::vector<std::uint8_t>> Outgoing;
   bool Finished = false; ///< no message is under way
   std::vector<std::size_t> IndexOfTile;
