@@ -40,6 +40,20 @@ std::int64_t BrickGroups::NumberOf(const Box& bricks) const
   return BrickSource::NumberOf(bricks.Lo / this->Edge, this->Counts);
 }
 
+std::uint64_t BrickGroups::PlacesOf(const Box& bricks) const
+{
+  const std::uint64_t row = (std::uint64_t{ 1 } << bricks.Size().x) - 1;
+  std::uint64_t places = 0;
+  for (int z = bricks.Lo.z; z < bricks.Hi.z; ++z)
+  {
+    for (int y = bricks.Lo.y; y < bricks.Hi.y; ++y)
+    {
+      places |= row << this->PlaceOf({ bricks.Lo.x, y, z });
+    }
+  }
+  return places;
+}
+
 Box BrickGroups::BricksOf(std::int64_t group) const
 {
   const glm::ivec3 position(static_cast<int>(group % this->Counts.x),

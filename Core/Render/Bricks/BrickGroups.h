@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace banyan
@@ -39,6 +40,9 @@ public:
   std::int64_t NumberOf(const Box& bricks) const;
   /// The number of a brick.
   std::int64_t BrickAt(const glm::ivec3& position) const;
+  /// Places of bricks in their group, a bit each.
+  /// @param bricks of one group
+  std::uint64_t PlacesOf(const Box& bricks) const;
   /// A brick's place in its group, of 64 or fewer.
   int PlaceOf(const glm::ivec3& position) const
   {
@@ -112,15 +116,17 @@ public:
   template <class Count>
   std::uint64_t BytesOf(std::int64_t group, Count&& count)
   {
-    std::atomic<std::uint64_t>& more = this->Groups[static_cast<std::size_t>(group)].BytesAndOne;
-    const std::uint64_t known = more;
-    if (known != 0)
-    {
-      return known - 1;
-    }
-    const std::uint64_t bytes = count();
-    more = bytes + 1;
-    return bytes;
+    return KnownOrCounted(
+      this->Groups[static_cast<std::size_t>(group)].BytesAndOne, std::forward<Count>(count));
+  }
+
+  /// Bytes that all bricks of a group take as the source loads them, whatever is seen of them.
+  /// @param count as BytesOf's
+  template <class Count>
+  std::uint64_t LoadBytesOf(std::int64_t group, Count&& count)
+  {
+    return KnownOrCounted(
+      this->Groups[static_cast<std::size_t>(group)].LoadBytesAndOne, std::forward<Count>(count));
   }
 
 private:
@@ -131,7 +137,21 @@ private:
     std::atomic<std::uint64_t> Visible{ 0 };
     std::atomic<std::uint64_t> Uniform{ 0 };
     std::atomic<std::uint64_t> BytesAndOne{ 0 };
+    std::atomic<std::uint64_t> LoadBytesAndOne{ 0 };
   };
+
+  template <class Count>
+  static std::uint64_t KnownOrCounted(std::atomic<std::uint64_t>& more, Count&& count)
+  {
+    const std::uint64_t known = more;
+    if (known != 0)
+    {
+      return known - 1;
+    }
+    const std::uint64_t bytes = count();
+    more = bytes + 1;
+    return bytes;
+  }
 
   std::vector<Item> Groups;
   std::uint64_t BytesKey;

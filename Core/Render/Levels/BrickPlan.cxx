@@ -6,6 +6,8 @@
 #include "Render/Levels/BrickPlanner.h"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 namespace banyan
 {
@@ -14,6 +16,28 @@ namespace
 
 /// Groups that a thread plans in one go.
 constexpr std::size_t GroupsTogether = 64;
+
+/// One plan of parts one behind the other. Takes what the parts have.
+BrickPlan PutTogether(std::vector<BrickPlan>& parts)
+{
+  if (parts.size() == 1)
+  {
+    return std::move(parts.front());
+  }
+  BrickPlan plan;
+  std::size_t count = 0;
+  for (const BrickPlan& part : parts)
+  {
+    count += part.Bricks.size();
+  }
+  plan.Bricks.reserve(count);
+  for (const BrickPlan& part : parts)
+  {
+    plan.Bricks.insert(plan.Bricks.end(), part.Bricks.begin(), part.Bricks.end());
+    plan.Touched = Union(plan.Touched, part.Touched);
+  }
+  return plan;
+}
 
 } // namespace
 
@@ -28,30 +52,23 @@ BrickPlan PlanBricks(
       groups.push_back(bricks);
       return true;
     });
-  std::vector<BrickPlan> parts((groups.size() + GroupsTogether - 1) / GroupsTogether);
+  // A thread alone plans all of them in one go: then nothing has to be put together.
+  const std::size_t together =
+    pool.Width() > 1 ? GroupsTogether : std::max<std::size_t>(groups.size(), 1);
+  std::vector<BrickPlan> parts((groups.size() + together - 1) / together);
   pool.ParallelFor(static_cast<std::int64_t>(parts.size()),
     [&](std::int64_t number)
     {
-      const auto part = static_cast<std::size_t>(number);
-      const std::size_t end = std::min(groups.size(), (part + 1) * GroupsTogether);
-      for (std::size_t group = part * GroupsTogether; group < end; ++group)
-      {
-        planner.PlanGroup(groups[group], parts[part]);
-      }
+      BrickPlan& part = parts[static_cast<std::size_t>(number)];
+      const std::size_t begin = static_cast<std::size_t>(number) * together;
+      const Box* const first = groups.data() + begin;
+      const Box* const last = first + std::min(together, groups.size() - begin);
+      part.Bricks.reserve(std::accumulate(first, last, std::size_t{ 0 },
+        [&](std::size_t sum, const Box& group) { return sum + planner.AboutHowMany(group); }));
+      std::for_each(first, last, [&](const Box& group) { planner.PlanGroup(group, part); });
     });
-  BrickPlan plan;
+  BrickPlan plan = PutTogether(parts);
   plan.Skipped = planner.CountAll();
-  std::size_t count = 0;
-  for (const BrickPlan& part : parts)
-  {
-    count += part.Bricks.size();
-  }
-  plan.Bricks.reserve(count);
-  for (const BrickPlan& part : parts)
-  {
-    plan.Bricks.insert(plan.Bricks.end(), part.Bricks.begin(), part.Bricks.end());
-    plan.Touched = Union(plan.Touched, part.Touched);
-  }
   for (const PlannedBrick& brick : plan.Bricks)
   {
     plan.Skipped -= brick.Count();

@@ -4,6 +4,7 @@
 #include "Render/Bricks/Interpolators.h"
 
 #include <algorithm>
+#include <bitset>
 
 namespace banyan
 {
@@ -82,6 +83,16 @@ GroupMembers BrickPlanner::MembersOf(const Box& bricks) const
   return this->Known ? this->Known->MembersOf(this->GroupsOfBricks.NumberOf(bricks), look) : look();
 }
 
+std::size_t BrickPlanner::AboutHowMany(const Box& bricks) const
+{
+  if (!this->Known)
+  {
+    return 0;
+  }
+  const GroupMembers members = this->MembersOf(bricks);
+  return members.Visible == members.There ? 1 : std::bitset<64>(members.Visible).count();
+}
+
 GroupMembers BrickPlanner::LookAt(const Box& bricks) const
 {
   GroupMembers members;
@@ -148,18 +159,13 @@ void BrickPlanner::PlanSome(
   }
   if (edge == 1)
   {
-    this->PlanBrick(bricks, plan);
+    this->PlanBrick(bricks, members.Uniform != 0, plan);
   }
   else if (!this->PlanTogether(bricks, members, plan))
   {
     this->Summaries->ForOctants(this->View, bricks, edge / 2,
       [&](const Box& some)
-      {
-        std::uint64_t places = 0;
-        ForMembers(
-          groups, some, [&](std::int64_t, int place) { places |= std::uint64_t{ 1 } << place; });
-        this->PlanSome(some, members.Of(places), depth + 1, plan);
-      });
+      { this->PlanSome(some, members.Of(groups.PlacesOf(some)), depth + 1, plan); });
   }
 }
 
@@ -187,12 +193,12 @@ bool BrickPlanner::PlanTogether(
   }
   brick.Number = groups.BrickAt(bricks.Lo);
   brick.Together = bricks;
-  this->PlaceCells(brick, this->Summaries->CellsOf(bricks));
-  const bool all = PackedBrick::CanPack(brick.Cells) &&
-                   this->Summaries->BricksIn(brick.Drawn).Count() == bricks.Count();
-  // A budget that is all but used up by one of them wants small bricks.
-  if (!all ||
-      brick.BytesToDraw(this->Source, this->Level.IsShaded()) > this->BudgetBytes / BricksOfBudget)
+  const Box own = this->Summaries->CellsOf(bricks);
+  this->PlaceCells(brick, own);
+  const bool all =
+    PackedBrick::CanPack(brick.Cells) &&
+    (brick.Drawn == own || this->Summaries->BricksIn(brick.Drawn).Count() == bricks.Count());
+  if (!all || !this->IsSmallPartOfBudget(brick))
   {
     return false;
   }
@@ -208,8 +214,33 @@ bool BrickPlanner::PlanTogether(
   return true;
 }
 
+/// A budget that is all but used up by one brick wants smaller ones.
+/// @param brick made of several
+bool BrickPlanner::IsSmallPartOfBudget(const PlannedBrick& brick) const
+{
+  const std::uint64_t most = this->BudgetBytes / BricksOfBudget;
+  if (this->Known)
+  {
+    // Mostly there is room for all of the group: then nothing need be added up again.
+    const std::int64_t group = this->GroupsOfBricks.NumberOf(brick.Together);
+    const std::uint64_t loaded = this->Known->LoadBytesOf(group,
+      [&]
+      {
+        PlannedBrick whole;
+        whole.Together = this->GroupsOfBricks.BricksOf(group);
+        return whole.LoadBytes(this->Source);
+      });
+    if (loaded + brick.PackedBytes(this->Source, this->Level.IsShaded()) <= most)
+    {
+      return true;
+    }
+  }
+  return brick.BytesToDraw(this->Source, this->Level.IsShaded()) <= most;
+}
+
 /// @param bricks one, of which some value can be seen
-void BrickPlanner::PlanBrick(const Box& bricks, BrickPlan& plan) const
+/// @param uniform whether it is a macro voxel
+void BrickPlanner::PlanBrick(const Box& bricks, bool uniform, BrickPlan& plan) const
 {
   PlannedBrick brick;
   brick.Number = this->GroupsOfBricks.BrickAt(bricks.Lo);
@@ -219,12 +250,12 @@ void BrickPlanner::PlanBrick(const Box& bricks, BrickPlan& plan) const
   if (!brick.Drawn.Empty() && !IsCutAway(this->Level.ClipPlanes, brick.Drawn) &&
       this->PlaceOnScreen(brick))
   {
-    brick.Entry = this->EntryOf(brick.Number);
+    brick.Entry = uniform ? this->EntryOf(brick.Number) : std::nullopt;
     this->Add(brick, plan);
   }
 }
 
-void BrickPlanner::Add(PlannedBrick brick, BrickPlan& plan) const
+void BrickPlanner::Add(PlannedBrick& brick, BrickPlan& plan) const
 {
   const ProjectionTable* const projection = this->Level.Projection();
   brick.HighestRank = projection ? projection->HighestRank(brick.RangeIn(this->Source)) : 0.0f;

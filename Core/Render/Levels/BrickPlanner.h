@@ -5,6 +5,7 @@
 #include "Render/Bricks/SummaryTree.h"
 #include "Render/Levels/BrickPlan.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -34,6 +35,8 @@ public:
   template <class Function>
   void ForGroups(Function&& function) const;
 
+  /// About how many bricks PlanGroup adds; 0 where that would take time.
+  std::size_t AboutHowMany(const Box& bricks) const;
   void PlanGroup(const Box& bricks, BrickPlan& plan) const
   {
     this->PlanSome(bricks, this->MembersOf(bricks), 0, plan);
@@ -59,8 +62,9 @@ private:
   GroupMembers LookAt(const Box& bricks) const;
   void PlanSome(const Box& bricks, const GroupMembers& members, int depth, BrickPlan& plan) const;
   bool PlanTogether(const Box& bricks, const GroupMembers& members, BrickPlan& plan) const;
-  void PlanBrick(const Box& bricks, BrickPlan& plan) const;
-  void Add(PlannedBrick brick, BrickPlan& plan) const;
+  void PlanBrick(const Box& bricks, bool uniform, BrickPlan& plan) const;
+  bool IsSmallPartOfBudget(const PlannedBrick& brick) const;
+  void Add(PlannedBrick& brick, BrickPlan& plan) const;
   void PlaceCells(PlannedBrick& brick, const Box& own) const;
   bool PlaceOnScreen(PlannedBrick& brick) const;
   bool IsInsideScreen(const PixelRect& seen) const;

@@ -7,9 +7,22 @@
 #include "Render/Levels/BrickBatch.h"
 #include "Render/Levels/BrickLoader.h"
 #include "Render/Levels/LevelTiles.h"
+#include "Render/Levels/SharedPlans.h"
 
 namespace banyan
 {
+namespace
+{
+
+std::shared_ptr<const BrickPlan> PlanOf(
+  const LevelScene& level, const Box& cells, std::uint64_t budgetBytes, ThreadPool& pool)
+{
+  SharedPlans* const shared = level.Scene.Plans.get();
+  return shared ? shared->PlanOf(level, cells, budgetBytes, pool)
+                : std::make_shared<const BrickPlan>(PlanBricks(level, cells, budgetBytes, pool));
+}
+
+} // namespace
 
 LevelCaster::LevelCaster(const RayScene& scene, BrickSource& source, const Box& cells,
   std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics)
@@ -17,14 +30,14 @@ LevelCaster::LevelCaster(const RayScene& scene, BrickSource& source, const Box& 
   , BudgetBytes(budgetBytes)
   , Pool(pool)
   , Statistics(statistics)
-  , Plan(PlanBricks(this->Level, cells, budgetBytes, pool))
+  , Plan(PlanOf(this->Level, cells, budgetBytes, pool))
 {
-  this->Statistics.BricksSkipped += this->Plan.Skipped;
+  this->Statistics.BricksSkipped += this->Plan->Skipped;
 }
 
 void LevelCaster::Draw(FloatImage& picture, PictureWatcher* watcher)
 {
-  const std::vector<PlannedBrick>& bricks = this->Plan.Bricks;
+  const std::vector<PlannedBrick>& bricks = this->Plan->Bricks;
   LevelTiles tiles(
     this->Level, bricks, picture, watcher, static_cast<std::size_t>(this->Pool.Width()));
   BatchQueue queue(this->Level, bricks, this->BudgetBytes, this->Pool);

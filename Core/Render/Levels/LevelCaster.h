@@ -5,6 +5,7 @@
 #include "Render/Levels/BrickPlan.h"
 
 #include <cstdint>
+#include <memory>
 
 namespace banyan
 {
@@ -25,7 +26,7 @@ public:
     std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics);
 
   /// Pixels that the visible bricks may touch, those of other levels' tiles included.
-  const PixelRect& Rect() const { return this->Plan.Touched; }
+  const PixelRect& Rect() const { return this->Plan->Touched; }
 
   /// Draws the tiles of the level, and makes them final: premultiplied colours and opacities.
   /// @param picture its pixels in tiles of the level are set, whatever they were; while they are
@@ -38,7 +39,7 @@ private:
   std::uint64_t BudgetBytes;
   ThreadPool& Pool;
   RayStatistics& Statistics;
-  BrickPlan Plan;
+  std::shared_ptr<const BrickPlan> Plan;
 };
 
 } // namespace banyan

@@ -18,12 +18,15 @@ std::uint64_t PlannedBrick::LoadBytes(const BrickSource& source) const
   return bytes;
 }
 
+std::uint64_t PlannedBrick::PackedBytes(const BrickSource& source, bool shaded) const
+{
+  return PackedBrick::BytesFor(this->Cells, shaded, source.HasColours()) +
+         (source.Hidden() ? HiddenInBrick::BytesFor(this->Cells) : 0);
+}
+
 std::uint64_t PlannedBrick::BytesToDraw(const BrickSource& source, bool shaded) const
 {
-  return this->Entry ? 0
-                     : this->LoadBytes(source) +
-                         PackedBrick::BytesFor(this->Cells, shaded, source.HasColours()) +
-                         (source.Hidden() ? HiddenInBrick::BytesFor(this->Cells) : 0);
+  return this->Entry ? 0 : this->LoadBytes(source) + this->PackedBytes(source, shaded);
 }
 
 std::int64_t PlannedBrick::KeptNumber(const BrickSource& source) const

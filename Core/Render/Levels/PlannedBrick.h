@@ -39,6 +39,8 @@ struct PlannedBrick
   ValueRange RangeIn(const BrickSource& source) const;
   /// Bytes that it takes as the source loads it.
   std::uint64_t LoadBytes(const BrickSource& source) const;
+  /// Bytes that it takes as packed for drawing.
+  std::uint64_t PackedBytes(const BrickSource& source, bool shaded) const;
   /// Bytes that it takes as loaded and as packed for drawing; 0 if it is never loaded.
   std::uint64_t BytesToDraw(const BrickSource& source, bool shaded) const;
   /// The number under which its packed form is kept. Bricks that are packed together have numbers

@@ -3,6 +3,7 @@
 
 #include "Base/Error.h"
 #include "Base/Timer.h"
+#include "Render/Levels/SharedPlans.h"
 #include "Render/Sampling/ChosenPlan.h"
 #include "Render/Sampling/ProbeSequence.h"
 #include "Render/Sampling/SubsamplingProbe.h"
@@ -331,6 +332,7 @@ SamplingPlan PlanSamplings(const RayScene& scene, SamplingWish wish, const DrawP
     std::max(wish.FinestLevel, std::min(wish.FinestProbeLevel, secondCoarsest));
   RayScene probes = scene;
   probes.Reused = nullptr;
+  probes.Plans = std::make_shared<SharedPlans>();
   probes.OpacityLimit = OpacityLimitFor(wish.Tolerance, ShareOfProbeEnds);
   return Planner(probes, wish, draw).Plan();
 }

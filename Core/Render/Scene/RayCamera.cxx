@@ -34,6 +34,24 @@ bool AllFinite(const glm::dmat4& matrix)
   return true;
 }
 
+// Planning asks for millions of footprints: std::ceil and std::floor would be calls of a library.
+
+/// The least whole number that is not below a value, in an interval of whole numbers.
+int CeilIn(double value, double low, double high)
+{
+  const double inside = std::clamp(value, low, high);
+  const int whole = static_cast<int>(inside);
+  return whole + (inside > whole ? 1 : 0);
+}
+
+/// The largest whole number that is not above a value, in an interval of whole numbers.
+int FloorIn(double value, double low, double high)
+{
+  const double inside = std::clamp(value, low, high);
+  const int whole = static_cast<int>(inside);
+  return whole - (inside < whole ? 1 : 0);
+}
+
 /// Grows a rectangle of continuous pixel positions.
 struct PixelBounds
 {
@@ -62,10 +80,8 @@ struct PixelBounds
     for (int axis = 0; axis < 2; ++axis)
     {
       const double limit = size[axis];
-      rect.Lo[axis] =
-        static_cast<int>(std::clamp(std::ceil(this->Lo[axis] - 0.5 - slack), 0.0, limit));
-      rect.Hi[axis] =
-        static_cast<int>(std::clamp(std::floor(this->Hi[axis] - 0.5 + slack) + 1.0, 0.0, limit));
+      rect.Lo[axis] = CeilIn(this->Lo[axis] - 0.5 - slack, 0.0, limit);
+      rect.Hi[axis] = FloorIn(this->Hi[axis] - 0.5 + slack, -1.0, limit - 1.0) + 1;
     }
     return rect.Empty() ? PixelRect{} : rect;
   }
@@ -191,10 +207,17 @@ PixelRect RayCamera::Footprint(const glm::dvec3& low, const glm::dvec3& high) co
   double inFrontOfNear[8]; // signed: >= 0 behind the near plane, where rays are
   int behindNear = 0;
   int beforeFar = 0;
+  // Parts of the product of matrix and corner, which four and two corners have in common.
+  const glm::dmat4& m = this->WorldToClip;
+  glm::dvec4 across[4];
+  for (int i = 0; i < 4; ++i)
+  {
+    across[i] = m[0] * (i & 1 ? high.x : low.x) + m[1] * (i & 2 ? high.y : low.y);
+  }
+  const glm::dvec4 along[2] = { m[2] * low.z + m[3], m[2] * high.z + m[3] };
   for (int i = 0; i < 8; ++i)
   {
-    const glm::dvec3 p(i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z);
-    corner[i] = this->WorldToClip * glm::dvec4(p, 1.0);
+    corner[i] = across[i & 3] + along[i >> 2];
     inFrontOfNear[i] = corner[i].z + corner[i].w;
     behindNear += inFrontOfNear[i] >= 0.0 ? 1 : 0;
     beforeFar += corner[i].z - corner[i].w <= 1e-9 * std::abs(corner[i].w) ? 1 : 0;

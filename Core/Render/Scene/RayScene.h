@@ -19,6 +19,7 @@ namespace banyan
 {
 
 struct BrickWork;
+class SharedPlans;
 class StopFlag;
 struct ReusedRays;
 
@@ -64,6 +65,9 @@ struct RayScene
   bool GoesOn = false;
   /// Rays that are not cast, as an earlier picture has them; null for none. No part of the picture.
   std::shared_ptr<const ReusedRays> Reused{};
+  /// The plan of bricks for pictures that have the same one; null: each makes its own. No part of
+  /// the picture.
+  std::shared_ptr<SharedPlans> Plans{};
   /// When it asks, casting ends by an Interruption; null for never. No part of the picture.
   const StopFlag* Stop = nullptr;
   /// Where the ray caster adds what bricks took to draw; null for nowhere. No part of the picture.

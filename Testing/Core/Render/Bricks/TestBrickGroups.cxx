@@ -79,6 +79,15 @@ TEST(BrickGroups, HaveEachBrickOnce)
             together = Union(together, source.CellsOf(brick));
           });
         EXPECT_EQ(source.Summaries()->CellsOf(bricks), together);
+        ForPositions(bricks,
+          [&](const glm::ivec3& low)
+          {
+            std::uint64_t expected = 0;
+            const Box some{ low, bricks.Hi };
+            ForMembers(groups, some,
+              [&](std::int64_t, int place) { expected |= std::uint64_t{ 1 } << place; });
+            EXPECT_EQ(groups.PlacesOf(some), expected);
+          });
       }
       const glm::ivec3 counts = source.Bricks();
       EXPECT_EQ(seen.size(), static_cast<std::size_t>(counts.x * counts.y * counts.z));

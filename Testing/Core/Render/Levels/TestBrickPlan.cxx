@@ -4,7 +4,10 @@
 
 #include "Parallel/Balance/FrameCost.h"
 #include "Render/Bricks/VisibleBricks.h"
+#include "Render/Levels/LevelCaster.h"
+#include "Render/Levels/SharedPlans.h"
 #include "Render/MadeUpBricks.h"
+#include "Render/Sampling/SamplingPlan.h"
 #include "Render/Scene/BoxOnScreen.h"
 #include "Render/Scenes.h"
 
@@ -128,6 +131,10 @@ TEST(BrickPlan, HasTheBricksThatALoopOverAllFinds)
           extra += several && slowly.count(number) == 0 ? 1 : 0;
         });
       touched = Union(touched, brick.Footprint);
+      EXPECT_EQ(
+        brick.Footprint, Intersection(level.FootprintOf(brick.Drawn), level.Scene.Viewport));
+      const bool oneValue = some.Source->IsMacroVoxel(brick.Number) && !level.IsShaded();
+      EXPECT_EQ(brick.Entry.has_value(), oneValue && !level.Projection());
     }
     EXPECT_TRUE(std::includes(planned.begin(), planned.end(), slowly.begin(), slowly.end())) << i;
     EXPECT_EQ(planned.size(), slowly.size() + extra) << i;
@@ -140,6 +147,88 @@ TEST(BrickPlan, HasTheBricksThatALoopOverAllFinds)
   EXPECT_GT(together, 100u);
   EXPECT_GT(all, 10000u);
   EXPECT_LT(extras, all / 1000);
+}
+
+void ExpectSame(const BrickPlan& a, const BrickPlan& b)
+{
+  EXPECT_EQ(a.Touched, b.Touched);
+  EXPECT_EQ(a.Skipped, b.Skipped);
+  ASSERT_EQ(a.Bricks.size(), b.Bricks.size());
+  for (std::size_t i = 0; i < a.Bricks.size(); ++i)
+  {
+    const PlannedBrick& first = a.Bricks[i];
+    const PlannedBrick& second = b.Bricks[i];
+    ASSERT_EQ(first.Number, second.Number);
+    ASSERT_EQ(first.Together, second.Together);
+    ASSERT_EQ(first.Cells, second.Cells);
+    ASSERT_EQ(first.Drawn, second.Drawn);
+    ASSERT_EQ(first.Footprint, second.Footprint);
+    ASSERT_EQ(first.HighestRank, second.HighestRank);
+    ASSERT_EQ(first.Entry, second.Entry);
+  }
+}
+
+TEST(BrickPlan, IsSharedWhereItIsTheSame)
+{
+  Dice dice(6);
+  ThreadPool pool(1);
+  for (int i = 0; i < 40; ++i)
+  {
+    const Case some = Case::Random(dice);
+    SharedPlans shared;
+    std::set<std::shared_ptr<const BrickPlan>> plans;
+    double distance = 1.0;
+    const auto expectSame = [&](RayScene scene, const Box& cells, std::uint64_t budget)
+    {
+      scene.Samplings = std::make_shared<const TileSamplings>(
+        scene.Camera.ImageSize(), std::vector{ RaySampling{ 0, distance } });
+      const LevelScene level(scene, *some.Source);
+      const std::shared_ptr<const BrickPlan> plan = shared.PlanOf(level, cells, budget, pool);
+      ExpectSame(*plan, PlanBricks(level, cells, budget, pool));
+      plans.insert(plan);
+    };
+    RayScene scene = some.Scene;
+    const Box half{ some.Cells.Lo, glm::max(some.Cells.Hi / 2, some.Cells.Lo) };
+    for (; distance < 9.0; distance *= 2.0)
+    {
+      expectSame(scene, some.Cells, NoLimit);
+    }
+    EXPECT_EQ(plans.size(), 1u);
+    expectSame(scene, half, NoLimit);
+    expectSame(scene, some.Cells, 100000);
+    scene.Viewport = { { 1000, 700 }, { 1900, 2000 } };
+    expectSame(scene, some.Cells, NoLimit);
+    scene.Camera = scene.Camera.WithSize({ 3000, 2500 });
+    expectSame(scene, some.Cells, NoLimit);
+    scene.Camera = scene.Camera.InSpace(glm::translate(glm::dmat4(1.0), glm::dvec3(3, 2, 1)));
+    expectSame(scene, some.Cells, NoLimit);
+    scene.Transfer = scenes::Tabulate([](double v) { return glm::dvec4(1, 1, 1, 0.1 * v); });
+    expectSame(scene, some.Cells, NoLimit);
+    EXPECT_EQ(plans.size(), 7u);
+  }
+}
+
+TEST(BrickPlan, IsOneForAllProbesOfAFrame)
+{
+  Dice dice(7);
+  ThreadPool pool(1);
+  const Case some = Case::Random(dice);
+  std::set<std::shared_ptr<SharedPlans>> shared;
+  const auto draw = [&](const RayScene& probe)
+  {
+    shared.insert(probe.Plans);
+    RayStatistics statistics;
+    const LevelCaster caster(probe, *some.Source, some.Cells, NoLimit, pool, statistics);
+    const LevelScene level(probe, *some.Source);
+    const auto plan = probe.Plans->PlanOf(level, some.Cells, NoLimit, pool);
+    EXPECT_EQ(plan.use_count(), 3) << "here, in the caster, and where it is shared";
+    FloatImage nothing;
+    nothing.Rect = probe.Viewport;
+    nothing.Pixels.assign(static_cast<std::size_t>(probe.Viewport.Count()), glm::vec4(0.0f));
+    return nothing;
+  };
+  EXPECT_GT(PlanSamplings(some.Scene, { 1.0, 1.0 }, draw).Probes, 1);
+  EXPECT_EQ(shared.size(), 1u);
 }
 
 TEST(BrickPlan, FitsIntoTheBytesThatItTakes)
