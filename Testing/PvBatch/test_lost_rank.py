@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A rank of ParaView that is stopped or killed while frames are drawn: the job ends, and says why.
+"""A rank of ParaView that is stopped or killed while frames are drawn: the job ends, and says why. A client of a
+server ends with it.
 
     test_lost_rank.py stopped|killed ARGUMENTS...      (those of run_paraview.py)
 
@@ -42,7 +43,7 @@ def rank_one(process):
                 # The rank itself, not what it has started.
                 if b"OMPI_COMM_WORLD_RANK=1\0" in file.read():
                     with open(f"/proc/{name}/comm", encoding="utf-8") as named:
-                        if named.read().startswith("pvbatch"):
+                        if named.read().startswith(("pvbatch", "pvserver")):
                             return name
         except OSError:
             continue
