@@ -121,7 +121,7 @@ PlacedBody BodyOf(vtkVolume* volume, vtkVolumeMapper* mapper, const std::array<d
 }
 
 std::vector<unsigned char> FindNotInDepth(Communicator& communicator, vtkRenderer* renderer,
-  const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order)
+  const RayCamera& camera, const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order)
 {
   std::vector<unsigned char> bits(volumes.size(), 0);
   for (const std::array<int, 2>& pair : order.Unknown())
@@ -131,7 +131,6 @@ std::vector<unsigned char> FindNotInDepth(Communicator& communicator, vtkRendere
       bits[static_cast<std::size_t>(volume)] |= NotInDepth::SharedSpace;
     }
   }
-  const RayCamera camera = CameraOf(renderer, glm::dvec3(0.0));
   vtkPropCollection* const props = renderer->GetViewProps();
   vtkCollectionSimpleIterator at;
   props->InitTraversal(at);

@@ -142,7 +142,8 @@ void VolumesOnWall::DrawPicture(const WallPicture& picture, const VolumeFrame::O
   const DepthOrder order = OrderInDepth(volumes, picture.View);
   if (wall.Number == 0)
   {
-    VolumesPicture::WarnNotInDepth(this->Called, this->Renderer, frames, volumes, order);
+    const RayCamera camera(picture.View.WorldToClip, picture.View.Size, glm::dvec3(0.0));
+    VolumesPicture::WarnNotInDepth(this->Called, this->Renderer, camera, frames, volumes, order);
   }
   const auto place = std::find_if(picture.Places.begin(), picture.Places.end(),
     [&](const PicturePlace& its) { return its.Root == communicator.Rank(); });

@@ -42,11 +42,12 @@ DepthOrder OrderInDepth(const std::vector<VolumeOnScreen>& volumes, const Screen
 }
 
 void VolumesPicture::WarnNotInDepth(vtkBanyanVolumeMapper* first, vtkRenderer* renderer,
-  const std::vector<VolumeFrame*>& frames, const std::vector<VolumeOnScreen>& volumes,
-  const DepthOrder& order)
+  const RayCamera& camera, const std::vector<VolumeFrame*>& frames,
+  const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order)
 {
   Communicator& communicator = *first->State->Communicator;
-  const std::vector<unsigned char> bits = FindNotInDepth(communicator, renderer, volumes, order);
+  const std::vector<unsigned char> bits =
+    FindNotInDepth(communicator, renderer, camera, volumes, order);
   unsigned char fresh = 0;
   for (std::size_t i = 0; i < frames.size(); ++i)
   {
@@ -160,7 +161,8 @@ void VolumesPicture::DrawPrepared(vtkBanyanVolumeMapper* first)
     volume.Viewport = Moved(Intersection(volume.Viewport, rect), -this->View.Shown.Lo);
   }
   const DepthOrder order = OrderInDepth(volumes, this->View.View);
-  WarnNotInDepth(first, this->Renderer, frames, volumes, order);
+  WarnNotInDepth(
+    first, this->Renderer, CameraOf(this->Renderer, glm::dvec3(0.0)), frames, volumes, order);
   Backdrop& backdrop = state.Backdrop;
   CompositeStatistics geometry;
   backdrop.SetCorner(this->View.Shown.Lo);

@@ -45,10 +45,11 @@ public:
 
   /// Says what is not drawn in the order of depth, once. Collective.
   /// @param first of their mappers
+  /// @param camera of the picture that the volumes' viewports are in
   /// @param volumes of the frames
   static void WarnNotInDepth(vtkBanyanVolumeMapper* first, vtkRenderer* renderer,
-    const std::vector<VolumeFrame*>& frames, const std::vector<VolumeOnScreen>& volumes,
-    const DepthOrder& order);
+    const RayCamera& camera, const std::vector<VolumeFrame*>& frames,
+    const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order);
 
 private:
   using Pictures = std::vector<std::shared_ptr<const FloatImage>>; ///< null where there is none

@@ -172,10 +172,11 @@ std::string PicturesAtHand::Show(vtkRenderer* renderer, const std::vector<Pictur
   std::vector<PlacedBody> bodies;
   std::transform(volumes.begin(), volumes.end(), std::back_inserter(bodies),
     [](const VolumeOnScreen& volume) { return volume.Body; });
-  const DepthOrder order(bodies, CameraOf(renderer, glm::dvec3(0.0)));
+  const RayCamera camera = CameraOf(renderer, glm::dvec3(0.0));
+  const DepthOrder order(bodies, camera);
   first.Write(
     renderer, pictures.size() == 1 ? *pictures.front() : Blended(pictures, order, view.Size));
-  return TellOnce(shown, FindNotInDepth(*MakeSelfCommunicator(), renderer, volumes, order));
+  return TellOnce(shown, FindNotInDepth(*MakeSelfCommunicator(), renderer, camera, volumes, order));
 }
 
 /// @param bits of NotInDepth

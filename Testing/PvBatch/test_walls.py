@@ -220,6 +220,7 @@ def compare(shown, wanted, allowed, what):
     colours = len(numpy.unique(shown.reshape(-1, 3), axis=0))
     print(f"{what}: off by {off.max()} of 255, {int((off > 1).sum())} pixels by more than 1, {colours} colours")
     session.require((off > 1).sum() <= allowed, f"{what}: pixels are off by up to {off.max()} of 255")
+    return off.max()
 
 
 def main():
