@@ -20,52 +20,31 @@ namespace banyan
 namespace
 {
 
-/// Copies depths into those of a larger part of the picture.
-void Put(const DepthPicture& from, DepthPicture& to)
-{
-  const PixelRect part = Intersection(from.Rect, to.Rect);
-  for (int y = part.Lo.y; y < part.Hi.y && !part.Empty(); ++y)
-  {
-    const auto at = [&](const DepthPicture& picture)
-    {
-      return std::ptrdiff_t{ y - picture.Rect.Lo.y } * picture.Rect.Size().x +
-             (part.Lo.x - picture.Rect.Lo.x);
-    };
-    std::copy_n(from.Depths.begin() + at(from), part.Size().x, to.Depths.begin() + at(to));
-  }
-}
-
-/// Collective: where other data are in all places of a picture, on all ranks.
-/// @param own in this rank's place
+/// Collective: where other data are in a picture, on all ranks.
+/// @param own as far as this rank knows
 DepthPicture DepthsOfAll(
-  Communicator& communicator, const WallPicture& picture, const DepthPicture& own)
+  Communicator& communicator, const ScreenView& view, const DepthPicture& own)
 {
+  const auto self = static_cast<std::size_t>(communicator.Rank());
+  Bytes mine;
+  if (!own.Rect.Empty())
+  {
+    mine = PackDepths({ view.Size, own.Rect, own.Depths });
+  }
+  const std::uint64_t count = mine.size();
+  std::vector<std::uint64_t> counts(static_cast<std::size_t>(communicator.Size()));
+  communicator.AllGather(&count, sizeof(count), counts.data());
   std::vector<DepthPicture> all;
-  PixelRect around;
-  for (const PicturePlace& place : picture.Places)
+  for (std::size_t rank = 0; rank < counts.size(); ++rank)
   {
-    Bytes packed;
-    if (place.Root == communicator.Rank() && !own.Rect.Empty())
+    if (counts[rank] > 0)
     {
-      packed = PackDepths({ picture.View.Size, own.Rect, own.Depths });
-    }
-    std::uint64_t bytes = packed.size();
-    communicator.Broadcast(place.Root, &bytes, sizeof(bytes));
-    packed.resize(bytes);
-    if (bytes > 0)
-    {
-      communicator.Broadcast(place.Root, packed.data(), packed.size());
+      Bytes packed = rank == self ? mine : Bytes(counts[rank]);
+      communicator.Broadcast(static_cast<int>(rank), packed.data(), packed.size());
       all.push_back(UnpackDepths(packed));
-      around = Union(around, all.back().Rect);
     }
   }
-  DepthPicture united{ picture.View.Size, around, {} };
-  united.Depths.assign(static_cast<std::size_t>(around.Count()), 1.0f);
-  for (const DepthPicture& part : all)
-  {
-    Put(part, united);
-  }
-  return united;
+  return NearestOf(all);
 }
 
 } // namespace
@@ -82,7 +61,8 @@ VolumesOnWall::VolumesOnWall(
   }
 }
 
-void VolumesOnWall::Draw(const std::vector<WallPicture>& pictures, const DepthPicture& own)
+void VolumesOnWall::Draw(
+  const std::vector<WallPicture>& pictures, const std::vector<DepthPicture>& own)
 {
   const auto isUpdated = [](VolumeFrame& frame)
   {
@@ -104,7 +84,7 @@ void VolumesOnWall::Draw(const std::vector<WallPicture>& pictures, const DepthPi
     this->Called->Attempt(
       [&]
       {
-        this->DrawPicture(pictures[number], wall, own, drawn, failed);
+        this->DrawPicture(pictures[number], wall, own[number], drawn, failed);
         return true;
       });
   }
@@ -148,7 +128,7 @@ void VolumesOnWall::DrawPicture(const WallPicture& picture, const VolumeFrame::O
   const auto place = std::find_if(picture.Places.begin(), picture.Places.end(),
     [&](const PicturePlace& its) { return its.Root == communicator.Rank(); });
   const bool shows = place != picture.Places.end();
-  const DepthPicture depths = DepthsOfAll(communicator, picture, shows ? own : DepthPicture{});
+  const DepthPicture depths = DepthsOfAll(communicator, picture.View, own);
   std::vector<std::shared_ptr<const FloatImage>> pictures(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i)
   {

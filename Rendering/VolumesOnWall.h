@@ -29,7 +29,8 @@ struct WallPicture
 /// Volumes on the displays of ranks, over what these show. All ranks draw together, whatever they
 /// show themselves; pixels stay on the rank that shows them.
 ///
-///     all ranks     depths of other data in all places -> cast and composited, place by place
+///     all ranks     the nearest depths of other data in all places -> cast and composited, place
+///                   by place
 ///     each display  its place, all volumes blended, written over its own framebuffer
 class VolumesOnWall
 {
@@ -39,10 +40,10 @@ public:
 
   /// Collective, with the same calls on all ranks.
   /// @param pictures the same on all ranks
-  /// @param own at which depths other data are on this rank's display, in pixels of the whole
-  /// picture; its Size does not count
+  /// @param own for each picture, at which depths other data are in it, as far as this rank knows;
+  /// the nearest of all ranks counts, and Size does not
   /// Throws nothing: a mapper reports what it cannot draw.
-  void Draw(const std::vector<WallPicture>& pictures, const DepthPicture& own);
+  void Draw(const std::vector<WallPicture>& pictures, const std::vector<DepthPicture>& own);
 
 private:
   void DrawPicture(const WallPicture& picture, const VolumeFrame::OnWall& wall,

@@ -282,7 +282,7 @@ void vtkBanyanVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 }
 
 void vtkBanyanVolumeMapper::RenderOnWall(vtkRenderer* renderer, vtkVolume* volume,
-  const std::vector<banyan::WallPicture>& pictures, const banyan::DepthPicture& own)
+  const std::vector<banyan::WallPicture>& pictures, const std::vector<banyan::DepthPicture>& own)
 {
   banyan::VolumesOnWall(renderer, this, volume).Draw(pictures, own);
 }

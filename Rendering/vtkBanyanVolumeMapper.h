@@ -272,10 +272,10 @@ public:
    * Collective: draws the volume, and other visible ones of this kind, for displays of ranks, over
    * what these show.
    * @param pictures the same on all ranks
-   * @param own at which depths other data are on this rank's display, in pixels of the picture
+   * @param own for each picture, at which depths other data are in it, as far as this rank knows
    */
   void RenderOnWall(vtkRenderer* renderer, vtkVolume* volume,
-    const std::vector<banyan::WallPicture>& pictures, const banyan::DepthPicture& own);
+    const std::vector<banyan::WallPicture>& pictures, const std::vector<banyan::DepthPicture>& own);
   void ReleaseGraphicsResources(vtkWindow* window) override;
 
 protected:

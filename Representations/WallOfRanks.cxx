@@ -21,6 +21,7 @@
 #include "vtkVector.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace banyan
 {
@@ -59,46 +60,111 @@ vtkIceTCompositePass* CompositePassOf(vtkRenderer* renderer)
   return vtkIceTCompositePass::SafeDownCast(pass);
 }
 
-/// What this rank's tile shows of a picture as large as all tiles and what is between them.
-Display TileOf(vtkRenderer* renderer, int self, int ranks)
+/// Where tiles are in a picture of all that is shown on them, with what is between them.
+struct Tiles
+{
+  std::vector<PixelRect> Rects; ///< of each rank; empty where it shows nothing
+  glm::ivec2 Size{ 0 };
+};
+
+/// @param every so many columns and rows of a tile are one; gaps stay as they are
+Tiles TilesOf(vtkRenderer* renderer, int ranks, int every)
 {
   auto* const options = vtkRemotingCoreConfiguration::GetInstance();
-  vtkRenderWindow* const window = renderer->GetRenderWindow();
+  const int* const window = renderer->GetRenderWindow()->GetActualSize();
+  const int size[2] = { window[0] / every, window[1] / every };
   vtkNew<vtkTilesHelper> helper;
   helper->SetTileDimensions(options->GetTileDimensions());
   helper->SetTileMullions(options->GetTileMullions());
-  helper->SetTileWindowSize(window->GetActualSize());
+  helper->SetTileWindowSize(size);
   const vtkVector4d viewport(renderer->GetViewport());
-  Display mine;
-  mine.Window = { window->GetActualSize()[0], window->GetActualSize()[1] };
-  glm::ivec2 corner(0);
-  renderer->GetTiledSizeAndOrigin(&mine.Shown.x, &mine.Shown.y, &corner.x, &corner.y);
+  Tiles tiles;
   PixelRect around;
   for (int rank = 0; rank < ranks; ++rank)
   {
-    vtkVector2i size;
+    vtkVector2i part;
     vtkVector2i low;
-    if (helper->GetTiledSizeAndOrigin(rank, size, low, viewport))
+    PixelRect rect;
+    if (helper->GetTiledSizeAndOrigin(rank, part, low, viewport))
     {
-      const glm::ivec2 first(low[0], low[1]);
-      const PixelRect rect{ first, first + glm::ivec2(size[0], size[1]) };
-      around = Union(around, rect);
-      mine.Rect = rank == self ? rect : mine.Rect;
+      rect.Lo = { low[0], low[1] };
+      rect.Hi = rect.Lo + glm::ivec2(part[0], part[1]);
     }
+    tiles.Rects.push_back(rect);
+    around = Union(around, rect);
   }
-  mine.Rect.Lo -= around.Lo;
-  mine.Rect.Hi -= around.Lo;
-  mine.View.Size = around.Size();
+  for (PixelRect& rect : tiles.Rects)
+  {
+    rect = rect.Empty() ? PixelRect{} : Moved(rect, -around.Lo);
+  }
+  tiles.Size = around.Size();
+  return tiles;
+}
+
+/// As ParaView puts pictures of ranks together: smaller ones while somebody moves the camera.
+Tiles CompositedTiles(vtkRenderer* renderer, int ranks)
+{
+  vtkIceTCompositePass* const pass = CompositePassOf(renderer);
+  return TilesOf(renderer, ranks, pass ? std::max(1, pass->GetImageReductionFactor()) : 1);
+}
+
+/// As they are drawn: in all pixels where ParaView's picture has the same parts, else as in that.
+Tiles DrawnTiles(const Tiles& composited, const Tiles& full)
+{
+  const auto isSame = [&](const PixelRect& small, const PixelRect& large)
+  {
+    return small.Lo * full.Size == large.Lo * composited.Size &&
+           small.Hi * full.Size == large.Hi * composited.Size;
+  };
+  const bool all = std::equal(
+    composited.Rects.begin(), composited.Rects.end(), full.Rects.begin(), full.Rects.end(), isSame);
+  return all ? full : composited;
+}
+
+ScreenView ViewOfAll(vtkRenderer* renderer, const Tiles& tiles)
+{
   vtkCamera* const camera = renderer->GetActiveCamera();
-  const double aspect = static_cast<double>(around.Size().x) / std::max(1, around.Size().y);
-  mine.View.WorldToClip = ToGlm(camera->GetProjectionTransformMatrix(aspect, -1.0, 1.0)) *
-                          ToGlm(camera->GetViewTransformMatrix());
-  mine.View.Far = camera->GetClippingRange()[1];
+  const double aspect = static_cast<double>(tiles.Size.x) / std::max(1, tiles.Size.y);
+  ScreenView view;
+  view.Size = tiles.Size;
+  view.WorldToClip = ToGlm(camera->GetProjectionTransformMatrix(aspect, -1.0, 1.0)) *
+                     ToGlm(camera->GetViewTransformMatrix());
+  view.Far = camera->GetClippingRange()[1];
+  return view;
+}
+
+/// What this rank's tile shows of a picture as large as all tiles and what is between them.
+Display TileOf(vtkRenderer* renderer, const Tiles& tiles, int self)
+{
+  const int* const window = renderer->GetRenderWindow()->GetActualSize();
+  Display mine;
+  mine.View = ViewOfAll(renderer, tiles);
+  mine.Rect = tiles.Rects.at(static_cast<std::size_t>(self));
+  mine.Window = { window[0], window[1] };
+  glm::ivec2 corner(0);
+  renderer->GetTiledSizeAndOrigin(&mine.Shown.x, &mine.Shown.y, &corner.x, &corner.y);
   return mine;
 }
 
-/// What ParaView has left of depths when it put the tile together: of a reduced picture while
-/// somebody moves the camera.
+/// Depths in as many pixels as a rectangle has.
+/// @param size of what `depths` are of, `[y][x]`
+DepthPicture Enlarged(const float* depths, const glm::ivec2& size, const PixelRect& rect)
+{
+  const glm::ivec2 to = rect.Size();
+  DepthPicture picture{ {}, rect, {} };
+  picture.Depths.reserve(static_cast<std::size_t>(rect.Count()));
+  for (int y = 0; y < to.y; ++y)
+  {
+    const float* const row = depths + static_cast<std::ptrdiff_t>(y) * size.y / to.y * size.x;
+    for (int x = 0; x < to.x; ++x)
+    {
+      picture.Depths.push_back(row[static_cast<std::ptrdiff_t>(x) * size.x / to.x]);
+    }
+  }
+  return picture.Trimmed();
+}
+
+/// What ParaView has left of depths when it put the tile together.
 DepthPicture DepthsOfTile(vtkRenderer* renderer, const PixelRect& rect)
 {
   vtkIceTCompositePass* const pass = CompositePassOf(renderer);
@@ -108,24 +174,30 @@ DepthPicture DepthsOfTile(vtkRenderer* renderer, const PixelRect& rect)
   {
     pass->GetLastRenderedTile(image);
   }
-  if (!array || !image.IsValid() || rect.Empty())
+  return array && image.IsValid() && !rect.Empty()
+           ? Enlarged(array->GetPointer(0), { image.GetWidth(), image.GetHeight() }, rect)
+           : DepthPicture{};
+}
+
+/// The pixel of a picture that the first one of a part is.
+/// @param part of the same picture in the same scale: x' = s x + t w in coordinates of clip space
+glm::ivec2 CornerOf(const ScreenView& part, const ScreenView& whole)
+{
+  glm::dvec2 corner(0.0);
+  for (int axis = 0; axis < 2; ++axis)
   {
-    return {};
-  }
-  const glm::ivec2 from(image.GetWidth(), image.GetHeight());
-  const glm::ivec2 to = rect.Size();
-  const float* const depths = array->GetPointer(0);
-  DepthPicture picture{ {}, rect, {} };
-  picture.Depths.reserve(static_cast<std::size_t>(rect.Count()));
-  for (int y = 0; y < to.y; ++y)
-  {
-    const float* const row = depths + static_cast<std::ptrdiff_t>(y) * from.y / to.y * from.x;
-    for (int x = 0; x < to.x; ++x)
+    const double scale = static_cast<double>(whole.Size[axis]) / part.Size[axis];
+    double moved = 0.0;
+    double weight = 0.0;
+    for (int column = 0; column < 4; ++column)
     {
-      picture.Depths.push_back(row[static_cast<std::ptrdiff_t>(x) * from.x / to.x]);
+      const double w = whole.WorldToClip[column][3];
+      moved += (part.WorldToClip[column][axis] - scale * whole.WorldToClip[column][axis]) * w;
+      weight += w * w;
     }
+    corner[axis] = 0.5 * (whole.Size[axis] - (1.0 + moved / weight) * part.Size[axis]);
   }
-  return picture.Trimmed();
+  return glm::ivec2(glm::round(corner));
 }
 
 /// A part of a view as a picture of its own, in so many pixels.
@@ -172,8 +244,7 @@ std::vector<WallPicture> PicturesOf(const std::vector<Display>& tiles)
 }
 
 /// What is not as it should be on a tile display, in sentences.
-/// @param translucent whether ParaView blends pictures of ranks in order
-std::string NoteOn(const std::vector<Display>& tiles, bool translucent)
+std::string NoteOn(const std::vector<Display>& tiles)
 {
   std::string note;
   const auto tell = [&note](const std::string& sentences)
@@ -193,30 +264,53 @@ std::string NoteOn(const std::vector<Display>& tiles, bool translucent)
          " tiles, and the server " + std::to_string(tiles.size()) +
          " ranks: tiles without a rank stay blank. Start as many ranks as tiles.");
   }
-  if (translucent)
-  {
-    tell("Something translucent is shown. ParaView then keeps no depths on tile displays: "
-         "surfaces before a Banyan Volume do not hide it. Make all surfaces opaque.");
-  }
   return note;
 }
 
-WallOfRanks LookAtTiles(vtkPVRenderView* view, vtkMultiProcessController* ranks)
+/// At which depths this rank has drawn other data in a picture of tiles.
+/// @param drawn in the picture that is put together
+DepthPicture DepthsIn(
+  const WallPicture& picture, const Tiles& composited, const std::vector<DepthPicture>& drawn)
+{
+  std::vector<DepthPicture> parts;
+  for (const PicturePlace& place : picture.Places)
+  {
+    const PixelRect& tile = composited.Rects.at(static_cast<std::size_t>(place.Root));
+    const std::vector<float> depths = NearestOf(drawn).In(tile);
+    if (!depths.empty())
+    {
+      parts.push_back(Enlarged(depths.data(), tile.Size(), place.Rect));
+    }
+  }
+  return NearestOf(parts);
+}
+
+WallOfRanks LookAtTiles(
+  vtkPVRenderView* view, vtkMultiProcessController* ranks, const std::vector<DrawnPart>& drawn)
 {
   vtkRenderer* const renderer = view->GetRenderer();
   const int self = ranks->GetLocalProcessId();
   const int count = ranks->GetNumberOfProcesses();
-  const std::vector<Display> all = AllOf(ranks, TileOf(renderer, self, count));
-  WallOfRanks wall{ PicturesOf(all), {}, NoteOn(all, view->GetUseOrderedCompositing()) };
+  const Tiles composited = CompositedTiles(renderer, count);
+  const Tiles tiles = DrawnTiles(composited, TilesOf(renderer, count, 1));
+  const std::vector<Display> all = AllOf(ranks, TileOf(renderer, tiles, self));
+  WallOfRanks wall{ PicturesOf(all), {}, NoteOn(all) };
+  std::vector<DepthPicture> parts;
+  for (const DrawnPart& part : drawn)
+  {
+    parts.push_back(part.Depths);
+    parts.back().Rect =
+      Moved(part.Depths.Rect, CornerOf(part.View, ViewOfAll(renderer, composited)));
+  }
   for (const WallPicture& picture : wall.Pictures)
   {
-    for (const PicturePlace& place : picture.Places)
-    {
-      if (place.Root == self)
-      {
-        wall.Own = DepthsOfTile(renderer, place.Rect);
-      }
-    }
+    const auto own = std::find_if(picture.Places.begin(), picture.Places.end(),
+      [self](const PicturePlace& place) { return place.Root == self; });
+    // ParaView keeps no depths where it blends pictures of ranks in order.
+    const bool kept = !view->GetUseOrderedCompositing();
+    wall.Own.push_back(!kept                         ? DepthsIn(picture, composited, parts)
+                       : own != picture.Places.end() ? DepthsOfTile(renderer, own->Rect)
+                                                     : DepthPicture{});
   }
   return wall;
 }
@@ -229,7 +323,8 @@ bool HasDisplay(int rank)
   return displays && rank < displays->GetNumberOfDisplays();
 }
 
-WallOfRanks LookAtCave(vtkRenderer* renderer, vtkMultiProcessController* ranks)
+WallOfRanks LookAtCave(
+  vtkRenderer* renderer, vtkMultiProcessController* ranks, const DepthPicture& own)
 {
   Display mine;
   if (HasDisplay(ranks->GetLocalProcessId()))
@@ -245,6 +340,8 @@ WallOfRanks LookAtCave(vtkRenderer* renderer, vtkMultiProcessController* ranks)
     {
       wall.Pictures.push_back(
         { all[rank].View, { { all[rank].Rect, static_cast<int>(rank), {} } } });
+      const bool shows = static_cast<int>(rank) == ranks->GetLocalProcessId();
+      wall.Own.push_back(shows ? own : DepthPicture{});
     }
   }
   return wall;
@@ -272,16 +369,32 @@ DepthPicture DepthsInCave(vtkPVRenderView* view, FramebufferExchange& framebuffe
   return picture.Depths.empty() ? DepthPicture{} : picture.Trimmed();
 }
 
-WallOfRanks LookAtWall(
-  vtkPVRenderView* view, vtkMultiProcessController* ranks, const DepthPicture& inCave)
+bool NeedsDrawnParts(vtkPVRenderView* view)
 {
-  if (!view->InCaveDisplayMode())
+  return view->InTileDisplayMode() && view->GetUseOrderedCompositing();
+}
+
+DrawnPart DepthsOfCall(vtkRenderer* renderer, FramebufferExchange& framebuffer)
+{
+  const int* const window = renderer->GetRenderWindow()->GetActualSize();
+  DrawnPart part{ ViewOf(renderer), {} };
+  part.View.Size = { window[0], window[1] };
+  const PixelRect all{ glm::ivec2(0), part.View.Size };
+  std::vector<OpaquePixel> pixels;
+  framebuffer.Read(renderer, all, pixels);
+  std::vector<float> depths = DepthsOf(pixels);
+  if (!depths.empty())
   {
-    return LookAtTiles(view, ranks);
+    part.Depths = DepthPicture{ part.View.Size, all, std::move(depths) }.Trimmed();
   }
-  WallOfRanks wall = LookAtCave(view->GetRenderer(), ranks);
-  wall.Own = inCave;
-  return wall;
+  return part;
+}
+
+WallOfRanks LookAtWall(vtkPVRenderView* view, vtkMultiProcessController* ranks,
+  const DepthPicture& inCave, const std::vector<DrawnPart>& drawn)
+{
+  return view->InCaveDisplayMode() ? LookAtCave(view->GetRenderer(), ranks, inCave)
+                                   : LookAtTiles(view, ranks, drawn);
 }
 
 } // namespace banyan

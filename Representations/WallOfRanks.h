@@ -10,6 +10,7 @@
 
 class vtkMultiProcessController;
 class vtkPVRenderView;
+class vtkRenderer;
 
 namespace banyan
 {
@@ -23,7 +24,8 @@ bool IsWall(vtkPVRenderView* view);
 struct WallOfRanks
 {
   std::vector<WallPicture> Pictures; ///< the same on all ranks
-  DepthPicture Own; ///< at which other data are in this rank's place, in pixels of its picture
+  /// For each picture, at which depths other data are in it, as far as this rank knows.
+  std::vector<DepthPicture> Own;
   /// What a user has to know: displays differ, or some show nothing. The same on all ranks.
   std::string Note;
 };
@@ -32,10 +34,24 @@ struct WallOfRanks
 /// before ParaView writes its picture back. Nothing on a tile display, whose depths ParaView keeps.
 DepthPicture DepthsInCave(vtkPVRenderView* view, FramebufferExchange& framebuffer);
 
+/// What this rank has drawn in a call of ParaView's compositor: for one tile, or for all of them.
+struct DrawnPart
+{
+  ScreenView View; ///< of the call: Size is that of the window
+  DepthPicture Depths;
+};
+
+/// Whether ParaView keeps no depths: on a tile display while something translucent is shown.
+bool NeedsDrawnParts(vtkPVRenderView* view);
+
+/// To be called when a call of the compositor has drawn all else.
+DrawnPart DepthsOfCall(vtkRenderer* renderer, FramebufferExchange& framebuffer);
+
 /// Collective, when ParaView has put the picture of other data into the windows of all ranks.
 /// @param inCave DepthsInCave
-WallOfRanks LookAtWall(
-  vtkPVRenderView* view, vtkMultiProcessController* ranks, const DepthPicture& inCave);
+/// @param drawn in all calls of this picture, if it NeedsDrawnParts
+WallOfRanks LookAtWall(vtkPVRenderView* view, vtkMultiProcessController* ranks,
+  const DepthPicture& inCave, const std::vector<DrawnPart>& drawn);
 
 } // namespace banyan
 

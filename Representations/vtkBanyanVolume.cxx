@@ -28,6 +28,7 @@
 #include "vtkRenderer.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace
 {
@@ -107,20 +108,39 @@ bool vtkBanyanVolume::DrawsOnWall(vtkRenderer* renderer)
          vtkProcessModule::GetProcessType() != vtkProcessModule::PROCESS_CLIENT;
 }
 
-/// The first volume does that for all.
+/// The first volume does that.
+bool vtkBanyanVolume::DrawsForAll(vtkRenderer* renderer)
+{
+  const std::vector<vtkBanyanVolume*> volumes = VolumesOf(renderer);
+  const auto first = std::find_if(volumes.begin(), volumes.end(),
+    [&](vtkBanyanVolume* volume) { return volume->DrawsOnWall(renderer); });
+  if (first == volumes.end() || *first != this)
+  {
+    return false;
+  }
+  if (!this->Framebuffer)
+  {
+    this->Framebuffer = std::make_unique<banyan::FramebufferExchange>();
+  }
+  return true;
+}
+
+/// Ranks are called for tiles that they have something for: as often as that is, without the
+/// others.
+void vtkBanyanVolume::KeepDrawnPart(vtkRenderer* renderer)
+{
+  if (banyan::NeedsDrawnParts(this->View) && this->DrawsForAll(renderer))
+  {
+    this->Drawn.push_back(banyan::DepthsOfCall(renderer, *this->Framebuffer));
+  }
+}
+
 void vtkBanyanVolume::ReadDepths(vtkObject* caller, unsigned long, void*)
 {
   auto* const renderer = vtkRenderer::SafeDownCast(caller);
   this->Depths.reset();
-  const std::vector<vtkBanyanVolume*> volumes = VolumesOf(renderer);
-  const auto first = std::find_if(volumes.begin(), volumes.end(),
-    [&](vtkBanyanVolume* volume) { return volume->DrawsOnWall(renderer); });
-  if (first != volumes.end() && *first == this)
+  if (this->DrawsForAll(renderer))
   {
-    if (!this->Framebuffer)
-    {
-      this->Framebuffer = std::make_unique<banyan::FramebufferExchange>();
-    }
     this->Depths =
       std::make_unique<banyan::DepthPicture>(banyan::DepthsInCave(this->View, *this->Framebuffer));
   }
@@ -130,12 +150,14 @@ void vtkBanyanVolume::ReadDepths(vtkObject* caller, unsigned long, void*)
 void vtkBanyanVolume::DrawOnWall(vtkObject* caller, unsigned long, void*)
 {
   auto* const renderer = vtkRenderer::SafeDownCast(caller);
+  const std::vector<banyan::DrawnPart> drawn = std::move(this->Drawn);
+  this->Drawn.clear();
   if (!this->DrawsOnWall(renderer) || !this->Depths)
   {
     return;
   }
   vtkMultiProcessController* const ranks = this->BanyanMapper->GetController();
-  const banyan::WallOfRanks wall = banyan::LookAtWall(this->View, ranks, *this->Depths);
+  const banyan::WallOfRanks wall = banyan::LookAtWall(this->View, ranks, *this->Depths, drawn);
   if (wall.Note != this->WallNote)
   {
     this->WallNote = wall.Note;
@@ -210,8 +232,13 @@ vtkTypeBool vtkBanyanVolume::HasTranslucentPolygonalGeometry()
 int vtkBanyanVolume::RenderOverlay(vtkViewport* viewport)
 {
   vtkRenderer* renderer = vtkRenderer::SafeDownCast(viewport);
-  if (!renderer || !this->BanyanMapper || renderer->GetSelector() || this->IsOnWall())
+  if (!renderer || !this->BanyanMapper || renderer->GetSelector())
   {
+    return 0;
+  }
+  if (this->IsOnWall())
+  {
+    this->KeepDrawnPart(renderer);
     return 0;
   }
   if (this->Pictures)

@@ -10,6 +10,7 @@
 #include <array>  // for member
 #include <memory> // for member
 #include <string> // for member
+#include <vector> // for member
 
 namespace banyan
 {
@@ -17,6 +18,7 @@ class CoarseMark;
 class FramebufferExchange;
 class PicturesAtHand;
 struct DepthPicture;
+struct DrawnPart;
 }
 
 class vtkBanyanVolumeMapper;
@@ -83,6 +85,8 @@ private:
   void MarkUnless(bool exact, vtkRenderer* renderer);
   bool IsOnWall() const;
   bool DrawsOnWall(vtkRenderer* renderer);
+  bool DrawsForAll(vtkRenderer* renderer);
+  void KeepDrawnPart(vtkRenderer* renderer);
   void ReadDepths(vtkObject* caller, unsigned long event, void* data);
   void DrawOnWall(vtkObject* caller, unsigned long event, void* data);
   void SmoothEdges(vtkObject* caller, unsigned long event, void* data);
@@ -98,6 +102,7 @@ private:
   std::array<unsigned long, 2> OfWatched{};
   std::unique_ptr<banyan::FramebufferExchange> Framebuffer; ///< null until a display was read
   std::unique_ptr<banyan::DepthPicture> Depths;             ///< of a CAVE's display
+  std::vector<banyan::DrawnPart> Drawn;                     ///< for tiles, since the last picture
   std::string WallNote;                                     ///< that was told
 };
 

@@ -81,4 +81,28 @@ DepthPicture DepthPicture::Coarser(int every) const
   return coarser;
 }
 
+DepthPicture NearestOf(const std::vector<DepthPicture>& parts)
+{
+  DepthPicture nearest;
+  for (const DepthPicture& part : parts)
+  {
+    nearest.Rect = Union(nearest.Rect, part.Rect);
+  }
+  nearest.Size = parts.empty() ? glm::ivec2(0) : parts.front().Size;
+  nearest.Depths.assign(static_cast<std::size_t>(nearest.Rect.Count()), 1.0f);
+  const auto closer = [](float a, float b) { return std::min(a, b); };
+  for (const DepthPicture& part : parts)
+  {
+    for (int y = part.Rect.Lo.y; y < part.Rect.Hi.y && !part.Rect.Empty(); ++y)
+    {
+      const float* const row = RowOf(part, y);
+      const auto to = nearest.Depths.begin() +
+                      std::ptrdiff_t{ y - nearest.Rect.Lo.y } * nearest.Rect.Size().x +
+                      (part.Rect.Lo.x - nearest.Rect.Lo.x);
+      std::transform(row, row + part.Rect.Size().x, to, to, closer);
+    }
+  }
+  return nearest;
+}
+
 } // namespace banyan

@@ -27,6 +27,10 @@ struct DepthPicture
   DepthPicture Coarser(int every) const;
 };
 
+/// What is nearest in several parts of one picture, in the rectangle around them; the whole
+/// picture's size is that of the first one.
+DepthPicture NearestOf(const std::vector<DepthPicture>& parts);
+
 /// The size of a picture with a pixel for so many columns and rows, or for the part of them that is
 /// left at the end.
 glm::ivec2 CoarserSize(const glm::ivec2& size, int every);
