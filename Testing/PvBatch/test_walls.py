@@ -6,7 +6,7 @@
 
 With --reference one rank draws whole pictures into DIR, each as large as the wall. Otherwise it is the client of a
 server with displays; their pictures are saved to DIR, too, and are compared with the whole ones: they may differ by
-1 of 255. Each display has as many pixels as PV_SHARED_WINDOW_SIZE says.
+1 of 255, and surfaces more while the camera moves. Each display has as many pixels as PV_SHARED_WINDOW_SIZE says.
 Before that, N random changes are drawn: ranks that are called differently must not wait for each other.
 """
 import os
@@ -17,6 +17,7 @@ import numpy
 from paraview import simple
 from vtkmodules.vtkRenderingCore import vtkCamera
 
+import draw_interactive
 import picture_scenes
 import pictures
 import session
@@ -83,10 +84,13 @@ class Tiles:
     the gaps between them. Numbers have to be such that parts have whole pixels."""
 
     eye = [45, 40, 100]
+    reduces = True
 
     def __init__(self, counts, mullions):
         # Pixels that may differ by more than 1 where there are surfaces.
         self.off = 4000 if any(mullions) else 0
+        # A reduced picture shows another part of the wall there: ParaView reduces tiles, and leaves gaps as they are.
+        self.compares_moving = not any(mullions)
         self.counts = counts
         self.size = tuple(n * d for n, d in zip(counts, DISPLAY))
         whole = [n * (d + m) - m for n, d, m in zip(counts, DISPLAY, mullions)]
@@ -116,6 +120,7 @@ class Tiles:
 class Cave:
     eye = [15, 13, 33]
     off = 0
+    reduces, compares_moving = False, True
 
     def __init__(self, file):
         root = xml.etree.ElementTree.parse(file).getroot()
@@ -152,6 +157,20 @@ class Cave:
         return whole[str(rank)]
 
 
+def moves(scene, wall):
+    """Turns the camera as somebody does who holds the mouse; gives a name each time."""
+    for display in (scene.first, scene.second):
+        display.InteractiveFrameSeconds = 0.0  # what is drawn depends on no clock
+        display.ReuseFrames = 0  # the first picture would be the still one
+    scene.view.StereoRender = 0
+    scene.spheres.Visibility = 0
+    yield "moving-volumes"
+    scene.spheres.Visibility = 1
+    for number, eye in enumerate(([60, 25, 90], [20, 70, 80])):
+        wall.look(scene.view, [part * wall.eye[2] / 100 for part in eye], [0, 0, 0])
+        yield f"moving-{number}"
+
+
 def draw_whole(wall, out):
     for name in wall.names():
         scene = Scene()  # since VTK 9.3 a camera keeps the orientation of its first screen
@@ -159,6 +178,10 @@ def draw_whole(wall, out):
             wall.place(scene.view, name)
             simple.Render(scene.view)
             simple.SaveScreenshot(os.path.join(out, f"whole-{pose}{name}.png"), scene.view)
+        for pose in moves(scene, wall):
+            wall.place(scene.view, name)
+            scene.view.SMProxy.InteractiveRender()
+            draw_interactive.shown(scene.view, os.path.join(out, f"whole-{pose}{name}.png"))
         session.clear()
 
 
@@ -183,6 +206,13 @@ def draw_displays(wall, out, changes):
         allowed = 5 if pose in ("volumes", "stereo") and wall.off else wall.off
         for shown, wanted, name in displays(pose):
             compare(shown, wanted, allowed, name)
+    for pose in moves(scene, wall):
+        scene.view.SMProxy.InteractiveRender()
+        for shown, wanted, name in displays(pose) if wall.compares_moving else ():
+            if wall.reduces and pose != "moving-volumes":
+                compare_reduced(shown, wanted, name)
+            else:
+                compare(shown, wanted, 0, name)
 
 
 def change(scene, wall, count):
@@ -194,6 +224,9 @@ def change(scene, wall, count):
     def turn():
         eye[:] = [dice.uniform(-120, 120) for _ in range(3)]
         wall.look(view, eye, focus)
+
+    def zoom():
+        view.CameraViewAngle = dice.choice((5, 12, 30, 60))
 
     def hide():
         display = dice.choice(displays)
@@ -216,7 +249,10 @@ def change(scene, wall, count):
     def move():
         session.move_to(dice.choice(displays), [dice.uniform(-40, 40) for _ in range(3)])
 
-    changes = (turn, turn, turn, hide, look_away, make_translucent, select, step, move)
+    def reduce():
+        view.ImageReductionFactor = dice.choice((1, 2, 5))
+
+    changes = (turn, turn, turn, zoom, reduce, hide, look_away, make_translucent, select, step, move)
     for number in range(count):
         chosen = dice.choice(changes)
         print(f"{number}: {chosen.__name__}", flush=True)
@@ -231,6 +267,8 @@ def change(scene, wall, count):
         simple.ClearSelection(source)
     scene.spheres.Opacity = 1.0
     view.ViewTime = 0.0
+    view.CameraViewAngle = 30
+    view.ImageReductionFactor = 2
 
 
 def compare(shown, wanted, allowed, what):
@@ -241,6 +279,17 @@ def compare(shown, wanted, allowed, what):
     print(f"{what}: off by {off.max()} of 255, {int((off > 1).sum())} pixels by more than 1, {colours} colours")
     session.require((off > 1).sum() <= allowed, f"{what}: pixels are off by up to {off.max()} of 255")
     return off.max()
+
+
+def compare_reduced(shown, wanted, what):
+    """While the camera moves ParaView draws surfaces in a quarter of the pixels; volumes have all theirs."""
+    off = pictures.difference(shown, wanted)
+    rim = pictures.rim(wanted, 3)
+    inside = off[~rim]
+    print(f"{what}: {int((off > 8).sum())} pixels off by more than 8 of 255, {int((inside > 8).sum())} of them within "
+          f"surfaces, by {inside.max()}")
+    session.require((off > 8).sum() <= 0.02 * off.size, f"{what}: surfaces are not where they should be")
+    session.require((inside > 8).sum() <= 200 and inside.max() <= 80, f"{what}: surfaces have other colours")
 
 
 def main():
