@@ -12,7 +12,7 @@ std::shared_ptr<const BrickPlan> SharedPlans::PlanOf(
 {
   Digest digest;
   digest.Add(DigestOf(level.Scene));
-  digest.Add(&level.Source);
+  digest.Add(reinterpret_cast<std::uintptr_t>(&level.Source));
   digest.Add(cells);
   digest.Add(budgetBytes);
   const Hash128 name = digest.Get();
