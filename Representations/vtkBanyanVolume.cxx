@@ -4,6 +4,7 @@
 #include "CoarseMark.h"
 #include "FramebufferExchange.h"
 #include "PicturesAtHand.h"
+#include "WallBox.h"
 #include "WallOfRanks.h"
 #include "vtkBanyanFrameStatistics.h"
 #include "vtkBanyanVolumeMapper.h"
@@ -76,6 +77,15 @@ void vtkBanyanVolume::SetPictures(const std::shared_ptr<banyan::PicturesAtHand>&
 bool vtkBanyanVolume::IsOnWall() const
 {
   return banyan::IsWall(this->View);
+}
+
+void vtkBanyanVolume::ShowBox(vtkDataObject* corners)
+{
+  if (!this->Box)
+  {
+    this->Box = std::make_unique<banyan::WallBox>();
+  }
+  this->Box->Set(corners);
 }
 
 void vtkBanyanVolume::DrawWhenEnded(vtkRenderer* renderer)
@@ -174,6 +184,11 @@ int vtkBanyanVolume::RenderOpaqueGeometry(vtkViewport* viewport)
   // VTK smooths edges (FXAA) before volumes are drawn, ParaView on several ranks after everything
   // is. For one picture on any number of ranks, a single rank does as many do.
   auto* renderer = vtkOpenGLRenderer::SafeDownCast(viewport);
+  if (renderer && this->Box && this->IsOnWall() && !renderer->GetSelector())
+  {
+    this->Box->Render(renderer, this->GetMatrix());
+    return 1;
+  }
   if (renderer && renderer->GetUseFXAA() && !renderer->GetSelector() && !this->IsOnWall())
   {
     renderer->SetUseFXAA(false);
@@ -322,7 +337,9 @@ double* vtkBanyanVolume::GetBounds()
     return nullptr; // data are elsewhere; bounds that are none would have the prop left out
   }
   vtkMath::UninitializeBounds(this->Bounds);
-  const double* box = this->BanyanMapper ? this->BanyanMapper->GetBounds() : nullptr;
+  const double* const box = this->Box            ? this->Box->Bounds().data()
+                            : this->BanyanMapper ? this->BanyanMapper->GetBounds()
+                                                 : nullptr;
   if (!box || !vtkMath::AreBoundsInitialized(box))
   {
     return this->Bounds;
@@ -357,6 +374,10 @@ void vtkBanyanVolume::ReleaseGraphicsResources(vtkWindow* window)
   if (this->Framebuffer)
   {
     this->Framebuffer->ReleaseGraphicsResources(window);
+  }
+  if (this->Box)
+  {
+    this->Box->ReleaseGraphicsResources(window);
   }
   if (this->Mark)
   {

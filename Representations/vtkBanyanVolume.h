@@ -17,11 +17,13 @@ namespace banyan
 class CoarseMark;
 class FramebufferExchange;
 class PicturesAtHand;
+class WallBox;
 struct DepthPicture;
 struct DrawnPart;
 }
 
 class vtkBanyanVolumeMapper;
+class vtkDataObject;
 class vtkOpenGLFXAAFilter;
 class vtkPVRenderView;
 class vtkRenderer;
@@ -51,6 +53,15 @@ public:
   /** Pictures that this prop shows in place of drawing; null (default) to draw. */
   void SetPictures(const std::shared_ptr<banyan::PicturesAtHand>& pictures);
   bool HasPictures() const { return this->Pictures != nullptr; }
+
+  /** Whether the view is on a tile display, or in a CAVE. */
+  bool IsOnWall() const;
+
+  /**
+   * Shows the box of the volume in place of the volume: on a client whose server has displays.
+   * @param corners what ranks have sent of their pieces
+   */
+  void ShowBox(vtkDataObject* corners);
 
   /** Whether a mark in the corner of the view says that the picture is not exact yet. */
   void SetMarksCoarse(bool marks) { this->MarksCoarse = marks; }
@@ -83,7 +94,6 @@ private:
 
   void ShowPictures(vtkRenderer* renderer);
   void MarkUnless(bool exact, vtkRenderer* renderer);
-  bool IsOnWall() const;
   bool DrawsOnWall(vtkRenderer* renderer);
   bool DrawsForAll(vtkRenderer* renderer);
   void KeepDrawnPart(vtkRenderer* renderer);
@@ -95,6 +105,7 @@ private:
   vtkWeakPointer<vtkPVRenderView> View;
   vtkSmartPointer<vtkOpenGLFXAAFilter> EdgeFilter;
   std::shared_ptr<banyan::PicturesAtHand> Pictures;
+  std::unique_ptr<banyan::WallBox> Box;     ///< null where the volume is drawn
   std::unique_ptr<banyan::CoarseMark> Mark; ///< null until there was one
   bool MarksCoarse = false;
   unsigned long SmoothAtEnd = 0;

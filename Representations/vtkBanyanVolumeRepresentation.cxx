@@ -203,7 +203,8 @@ int vtkBanyanVolumeRepresentation::ProcessViewRequest(
   {
     this->Prop->SetView(vtkPVRenderView::SafeDownCast(this->GetView()));
     // Data stay where they are, and ParaView does not count them when it decides who renders.
-    vtkPVRenderView::SetPiece(inInfo, this, banyan::HeldPiece::Of(this->Piece));
+    const double* const box = this->Prop->IsOnWall() ? this->DataBounds : nullptr;
+    vtkPVRenderView::SetPiece(inInfo, this, banyan::HeldPiece::Of(this->Piece, box));
     // Placed as it is drawn: a client without data takes its clipping planes from here.
     vtkPVRenderView::SetGeometryBounds(inInfo, this, this->DataBounds, this->Actor->GetMatrix());
     if (!this->Served)
@@ -281,9 +282,10 @@ void vtkBanyanVolumeRepresentation::PrepareRender(vtkDataObject* piece)
   this->Prop->SetView(view);
   if (IsClient() && banyan::IsWall(view))
   {
+    this->Prop->ShowBox(view->GetDeliveryManager()->GetDeliveredPiece(this, /*low_res=*/false));
     if (!std::exchange(this->WallTold, true))
     {
-      vtkWarningMacro(<< "The server's displays show the volume; this window does not.");
+      vtkWarningMacro(<< "The server's displays show the volume; this window shows its box.");
     }
     return;
   }

@@ -9,6 +9,7 @@ server with displays; their pictures are saved to DIR, too, and are compared wit
 1 of 255, and surfaces more while the camera moves. Each display has as many pixels as PV_SHARED_WINDOW_SIZE says.
 Before that, N random changes are drawn: ranks that are called differently must not wait for each other.
 """
+import itertools
 import os
 import random
 import xml.etree.ElementTree
@@ -206,6 +207,8 @@ def draw_displays(wall, out, changes):
         allowed = 5 if pose in ("volumes", "stereo") and wall.off else wall.off
         for shown, wanted, name in displays(pose):
             compare(shown, wanted, allowed, name)
+        if pose == "whole":
+            find_box(scene, os.path.join(out, "client"), isinstance(wall, Tiles))
     for pose in moves(scene, wall):
         scene.view.SMProxy.InteractiveRender()
         for shown, wanted, name in displays(pose) if wall.compares_moving else ():
@@ -213,6 +216,31 @@ def draw_displays(wall, out, changes):
                 compare_reduced(shown, wanted, name)
             else:
                 compare(shown, wanted, 0, name)
+
+
+def find_box(scene, path, before):
+    """The client's own window shows the box of the volume: lines that reach as far as the corners do, if it is before
+    the viewer."""
+    view, without = scene.view, path + "-without.png"
+    scene.spheres.Visibility = 0
+    simple.SaveScreenshot(path + ".png", view)
+    scene.first.Visibility = 0
+    simple.SaveScreenshot(without, view)
+    scene.first.Visibility = scene.spheres.Visibility = 1
+    off = pictures.difference(pictures.load(path + ".png"), pictures.load(without)) > 8
+    renderer, corners = view.GetRenderer(), []
+    for place in itertools.product((-20, 20), (-16, 16), (-14, 14)):
+        renderer.SetWorldPoint(*place, 1)
+        renderer.WorldToDisplay()
+        corners.append(renderer.GetDisplayPoint()[:2])
+    size = off.shape[::-1]
+    low, high = numpy.clip([numpy.min(corners, axis=0), numpy.max(corners, axis=0)], 0, numpy.array(size) - 1)
+    session.require(0 < off.sum() < 0.1 * off.size, f"lines of a box have {off.sum()} pixels")
+    if not before:
+        return
+    rows, columns = numpy.nonzero(off)
+    found = numpy.array([[columns.min(), rows.min()], [columns.max(), rows.max()]])
+    session.require(numpy.abs(found - [low, high]).max() < 2.5, "the box is not where the volume is")
 
 
 def change(scene, wall, count):
