@@ -76,7 +76,8 @@ FieldFrames::Wish VolumeFrame::WishFor(bool interacting, int eye, int volumes) c
   wish.ReadAhead = mapper->GetReadAhead();
   wish.Divides = static_cast<FieldFrames::Division>(mapper->GetDivision());
   wish.Reuse = sampling.PlansOfGroups = mapper->GetReuseFrames();
-  wish.ShowSeconds = this->State->WriteSeconds; // about what it took the last time
+  // About what it took the last time, for all of them.
+  wish.ShowSeconds = this->State->WriteSeconds / volumes;
   return wish;
 }
 

@@ -34,17 +34,21 @@ DepthPicture DepthsOfAll(
   const std::uint64_t count = mine.size();
   std::vector<std::uint64_t> counts(static_cast<std::size_t>(communicator.Size()));
   communicator.AllGather(&count, sizeof(count), counts.data());
-  std::vector<DepthPicture> all;
+  DepthPicture nearest{ view.Size, {},
+    {} }; // a rank may have drawn all over the wall: one at a time
   for (std::size_t rank = 0; rank < counts.size(); ++rank)
   {
     if (counts[rank] > 0)
     {
       Bytes packed = rank == self ? mine : Bytes(counts[rank]);
       communicator.Broadcast(static_cast<int>(rank), packed.data(), packed.size());
-      all.push_back(UnpackDepths(packed));
+      std::vector<DepthPicture> both;
+      both.push_back(std::move(nearest));
+      both.push_back(UnpackDepths(packed));
+      nearest = NearestOf(both);
     }
   }
-  return NearestOf(all);
+  return nearest;
 }
 
 } // namespace

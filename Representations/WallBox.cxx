@@ -24,6 +24,10 @@ WallBox::~WallBox() = default;
 
 void WallBox::Set(vtkDataObject* corners)
 {
+  if (!corners)
+  {
+    return;
+  }
   vtkMath::UninitializeBounds(this->Around.data());
   auto* const points = vtkPolyData::SafeDownCast(corners);
   if (points && points->GetNumberOfPoints() > 0)

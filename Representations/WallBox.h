@@ -26,7 +26,8 @@ public:
   WallBox(const WallBox&) = delete;
   WallBox& operator=(const WallBox&) = delete;
 
-  /// @param corners what the ranks have sent of their pieces (HeldPiece); null for nothing
+  /// @param corners what the ranks have sent of their pieces (HeldPiece); null, where nothing new
+  /// has come, leaves the box as it is
   void Set(vtkDataObject* corners);
 
   /// In the coordinates of the data; without a volume, none.

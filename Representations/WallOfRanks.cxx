@@ -270,13 +270,13 @@ std::string NoteOn(const std::vector<Display>& tiles)
 /// At which depths this rank has drawn other data in a picture of tiles.
 /// @param drawn in the picture that is put together
 DepthPicture DepthsIn(
-  const WallPicture& picture, const Tiles& composited, const std::vector<DepthPicture>& drawn)
+  const WallPicture& picture, const Tiles& composited, const DepthPicture& drawn)
 {
   std::vector<DepthPicture> parts;
   for (const PicturePlace& place : picture.Places)
   {
     const PixelRect& tile = composited.Rects.at(static_cast<std::size_t>(place.Root));
-    const std::vector<float> depths = NearestOf(drawn).In(tile);
+    const std::vector<float> depths = drawn.In(tile);
     if (!depths.empty())
     {
       parts.push_back(Enlarged(depths.data(), tile.Size(), place.Rect));
@@ -302,13 +302,14 @@ WallOfRanks LookAtTiles(
     parts.back().Rect =
       Moved(part.Depths.Rect, CornerOf(part.View, ViewOfAll(renderer, composited)));
   }
+  const DepthPicture nearest = NearestOf(parts);
   for (const WallPicture& picture : wall.Pictures)
   {
     const auto own = std::find_if(picture.Places.begin(), picture.Places.end(),
       [self](const PicturePlace& place) { return place.Root == self; });
     // ParaView keeps no depths where it blends pictures of ranks in order.
     const bool kept = !view->GetUseOrderedCompositing();
-    wall.Own.push_back(!kept                         ? DepthsIn(picture, composited, parts)
+    wall.Own.push_back(!kept                         ? DepthsIn(picture, composited, nearest)
                        : own != picture.Places.end() ? DepthsOfTile(renderer, own->Rect)
                                                      : DepthPicture{});
   }

@@ -4,8 +4,8 @@
     test_views_on_wall.py --plugin PLUGIN --data FOLDER --out DIR --tiles X,Y [--reference]
 
 With --reference one rank draws both views into DIR, each as large as its part of the wall. Otherwise it is the client
-of a server with tiles, which may differ by 1 of 255, and in five pixels by 2. Each tile has as many pixels as PV_SHARED_WINDOW_SIZE says; the
-views meet within one, at a column that is no multiple of anything.
+of a server with tiles, which may differ by 1 of 255, and in five pixels by 2. Each tile has as many pixels as
+PV_SHARED_WINDOW_SIZE says; the views meet within one, at a column that is no multiple of anything.
 """
 import os
 

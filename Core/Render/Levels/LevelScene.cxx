@@ -71,7 +71,11 @@ LevelScene::LevelScene(const RayScene& scene, BrickSource& source)
 bool LevelScene::IsLarge() const
 {
   constexpr std::int64_t many = std::int64_t{ 1 } << 25; // cells
-  return this->Scene.DomainCells.Count() >> 3 * this->Source.Level() >= many;
+  const int level = this->Source.Level();
+  // Of a mesh, whose cells are counted in the finest ones, this is about how many there are.
+  const bool isMesh = this->Scene.Levels.AreFinest();
+  const glm::i64vec3 edges(isMesh ? LevelEdges().At(level) : this->Scene.Levels.At(level));
+  return this->Scene.DomainCells.Count() / (edges.x * edges.y * edges.z) >= many;
 }
 
 } // namespace banyan

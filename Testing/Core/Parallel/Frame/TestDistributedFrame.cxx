@@ -176,21 +176,24 @@ Outcome DrawPlaces(const EncodedField& field, const RayScene& scene, int ranks, 
   return whole;
 }
 
-/// Two parts of the picture, which meet where no tile ends, on two of the ranks; the last one is
-/// empty.
+/// Up to five parts of the picture, of unequal sizes, which meet where no tile ends: the last rank
+/// has the first one. One more is empty, if there is a rank for it.
 std::vector<PicturePlace> PlacesOn(const RayScene& scene, int ranks)
 {
   const glm::ivec2 size = scene.Camera.ImageSize();
-  std::vector<PicturePlace> places{ { { { 0, 0 }, { 29, size.y } }, ranks - 1, {} } };
-  if (ranks > 1)
+  const std::vector<int> ends{ 9, 29, 31, 42, size.x };
+  const int parts = std::min(ranks, static_cast<int>(ends.size()));
+  std::vector<PicturePlace> places;
+  int begin = 0;
+  for (int part = 0; part < parts; ++part)
   {
-    places.push_back({ { { 29, 0 }, size }, 0, {} });
-    places.push_back({ { size, size + 10 }, ranks / 2, {} });
-    places.resize(ranks > 2 ? 3 : 2);
+    const int end = part + 1 < parts ? ends[static_cast<std::size_t>(part)] : size.x;
+    places.push_back({ { { begin, 0 }, { end, size.y } }, part == 0 ? ranks - 1 : part - 1, {} });
+    begin = end;
   }
-  else
+  if (parts < ranks)
   {
-    places.front().Rect.Hi.x = size.x;
+    places.push_back({ { size, size + 10 }, parts - 1, {} });
   }
   return places;
 }
@@ -352,7 +355,8 @@ TEST(DistributedFrame, EncodedAndPlainFieldGiveTheSamePicture)
   }
 }
 
-TEST(DistributedFrame, AFailureOnOneRankIsThrownOnAll)
+/// @param places of the picture; none: all of it on rank 0
+void ExpectFailureOfAll(const std::vector<PicturePlace>& places)
 {
   const EncodedField field;
   const RayScene scene = SceneOf(1.4, false);
@@ -371,7 +375,7 @@ TEST(DistributedFrame, AFailureOnOneRankIsThrownOnAll)
         DrawDistributed(communicator, scene,
           { &source, zones, Budget, pool,
             communicator.Rank() == 2 ? "The disk of this rank is gone." : "" },
-          statistics);
+          statistics, {}, places);
       }
       catch (const Error& error)
       {
@@ -385,6 +389,12 @@ TEST(DistributedFrame, AFailureOnOneRankIsThrownOnAll)
     EXPECT_NE(sentence.find("The disk of this rank is gone."), std::string::npos);
     EXPECT_NE(sentence.find("2"), std::string::npos) << sentence;
   }
+}
+
+TEST(DistributedFrame, AFailureOnOneRankIsThrownOnAll)
+{
+  ExpectFailureOfAll({});
+  ExpectFailureOfAll(PlacesOn(SceneOf(1.4, false), 4));
 }
 
 TEST(DistributedFrame, OnlyBricksThatCanBeSeenAreDecoded)
