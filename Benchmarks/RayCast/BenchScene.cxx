@@ -86,6 +86,7 @@ RayScene ToRayScene(
     glm::scale(glm::dmat4(1.0), scene.Data->Spacing), { glm::ivec3(0), scene.Data->Samples - 1 },
     std::move(transfer), sampleDistance * scene.Data->VoxelLength(), opacityLimit, {} };
   drawn.Shading.On = scene.Shaded; // its coefficients are the scene's
+  drawn.Levels = LevelEdges::Following(drawn.DomainCells.Size());
   return drawn;
 }
 

@@ -95,7 +95,7 @@ struct BenchScene
   void LookFromAfar(double distance);
 };
 
-/// The scene in the ray caster's own words.
+/// The scene in the ray caster's own words, with levels of values in memory.
 /// @param sampleDistance in voxels
 /// @param opacityLimit see RayScene
 /// @param tableEntries of the transfer function's table

@@ -56,7 +56,6 @@ public:
   Drawn Draw(const RaySampling& sampling)
   {
     RayScene scene = ToRayScene(this->Scene, 1.0, 1.0f - 1.0f / 255.0f);
-    scene.Levels = LevelEdges::Following(scene.DomainCells.Size());
     scene.Samplings = std::make_shared<const TileSamplings>(
       scene.Camera.ImageSize(), std::vector<RaySampling>{ sampling });
     Drawn drawn{ sampling, {} };

@@ -114,11 +114,6 @@ private:
     {
       frame.Add(chunk, &this->Pictures[number].Mine);
     }
-    Communicator::Arrival arrival;
-    while (this->Ranks.TakeAnyWhole(arrival))
-    {
-      this->Take(arrival);
-    }
   }
 
   void Take(const Communicator::Arrival& arrival)

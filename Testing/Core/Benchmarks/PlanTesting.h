@@ -24,7 +24,6 @@ public:
     , Source(scene.Data->Array(), 16, MaskRange{ scene.Low, scene.High }, this->Pool)
     , Scene(ToRayScene(scene, 1.0, 1.0f))
   {
-    this->Scene.Levels = LevelEdges::Following(this->Scene.DomainCells.Size());
   }
 
   SamplingPlan Plan(double tolerance, int coarsestLevel)
