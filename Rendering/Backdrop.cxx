@@ -65,6 +65,10 @@ void Backdrop::Read(Communicator& communicator, vtkRenderer* renderer,
       this->BehindRect, CombineBehind(communicator, rankOrder, rows, this->Pixels, statistics));
     this->InnerPixels.insert(this->InnerPixels.end(), this->Pixels.begin(), this->Pixels.end());
   }
+  if (communicator.Size() == 1)
+  {
+    ClearWithoutGeometry(this->InnerPixels); // the background stays on the screen
+  }
 }
 
 std::vector<float> Backdrop::Depths(const PixelRect& part) const
@@ -133,7 +137,6 @@ void Backdrop::WriteOverBackground(
   {
     const PixelRect inner = Intersection(this->Inner, around);
     CopyPart(inner, this->Inner, this->InnerPixels, around, this->Pixels);
-    ClearWithoutGeometry(this->Pixels);
   }
   for (const PixelRect& part : parts)
   {

@@ -340,6 +340,7 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
 {
   const Timer drawing;
   DrawnField& drawn = field.Drawn();
+  scene.Passing = wish.Passing;
   const bool isPart = !wish.Whole.Empty();
   std::optional<RayScene> whole;
   if (isPart)

@@ -177,7 +177,8 @@ SamplingPlan ToleranceControl::PlanWithin(Communicator& communicator, Distribute
       return { planOf(drawn.Source(), budgetBytes), SignsOf(scene, *drawn.Source()) };
     }
     // Half of the room for bricks of that step, and half for those that are kept of this one.
-    drawn.Source()->Kept().BeginPicture(PackedBrickCache::PartOf(budgetBytes / 2), false);
+    drawn.Source()->Kept().BeginPicture(
+      PackedBrickCache::PartOf(budgetBytes / 2), PackedBrickCache::Picture::Part);
     std::unique_ptr<BrickSource> source;
     VisibleSigns signs;
     Collective(communicator,

@@ -3,6 +3,7 @@
 
 #include "Series/Decode/CacheContext.h"
 
+#include <algorithm>
 #include <mutex>
 
 namespace banyan
@@ -46,19 +47,26 @@ std::uint64_t PackedBrickCache::ShareBytes() const
   return this->Context->DrawingBudgetBytes() / static_cast<std::uint64_t>(others + 1);
 }
 
-void PackedBrickCache::BeginPicture(std::uint64_t limitBytes, bool ages)
+void PackedBrickCache::BeginPicture(std::uint64_t limitBytes, Picture kind)
 {
+  constexpr std::int64_t others = 2; // pictures that need not use what stays
   const std::lock_guard<std::shared_mutex> lock(this->Mutex);
   this->LimitBytes = limitBytes;
-  this->Picture += ages ? 1 : 0;
-  if (!ages && this->HeldBytes <= limitBytes)
+  this->Kind = kind;
+  std::uint64_t room = limitBytes;
+  if (kind == Picture::Passing)
   {
-    return; // none has become old, and all have room
+    room -= std::min(room, std::exchange(this->RefusedBytes, 0));
+  }
+  if (kind != Picture::Whole && this->HeldBytes <= room)
+  {
+    return;
   }
   for (auto item = this->Items.begin(); item != this->Items.end();)
   {
-    const bool old = item->second.UsedIn < this->Picture - 2;
-    if (old || this->HeldBytes > limitBytes)
+    const bool unused = item->second.UsedIn < this->Number - others;
+    const bool old = unused && item->second.UsedInWhole < this->WholeNumber - others;
+    if (old || this->HeldBytes > limitBytes || (unused && this->HeldBytes > room))
     {
       this->SetHeld(this->HeldBytes - BytesOf(*item->second.Packed));
       item = this->Items.erase(item);
@@ -68,6 +76,13 @@ void PackedBrickCache::BeginPicture(std::uint64_t limitBytes, bool ages)
       ++item;
     }
   }
+}
+
+void PackedBrickCache::EndPicture()
+{
+  const std::lock_guard<std::shared_mutex> lock(this->Mutex);
+  this->Number += this->Kind == Picture::Part ? 0 : 1;
+  this->WholeNumber += this->Kind == Picture::Whole ? 1 : 0;
 }
 
 void PackedBrickCache::LetGoOf(const std::function<bool(std::int64_t, const PackedBrick&)>& stale)
@@ -94,6 +109,16 @@ void PackedBrickCache::Clear()
   this->LetGoOf([](std::int64_t, const PackedBrick&) { return true; });
 }
 
+/// The caller has the lock.
+void PackedBrickCache::Use(const Item& item) const
+{
+  item.UsedIn.store(this->Number, std::memory_order_relaxed);
+  if (this->Kind != Picture::Passing)
+  {
+    item.UsedInWhole.store(this->WholeNumber, std::memory_order_relaxed);
+  }
+}
+
 /// The caller has the lock. Notes that the brick is used.
 const PackedBrickCache::Item* PackedBrickCache::FindHere(const Wanted& wanted) const
 {
@@ -108,7 +133,7 @@ const PackedBrickCache::Item* PackedBrickCache::FindHere(const Wanted& wanted) c
   {
     return nullptr;
   }
-  item->second.UsedIn.store(this->Picture, std::memory_order_relaxed);
+  this->Use(item->second);
   return &item->second;
 }
 
@@ -143,7 +168,11 @@ void PackedBrickCache::Keep(std::int64_t brick, const Pointer& packed)
   if (this->HeldBytes + bytes <= this->LimitBytes)
   {
     this->SetHeld(this->HeldBytes + bytes);
-    this->Items.try_emplace(brick, packed, this->Picture);
+    this->Use(this->Items.try_emplace(brick, packed).first->second);
+  }
+  else if (this->Kind == Picture::Passing)
+  {
+    this->RefusedBytes += bytes;
   }
 }
 

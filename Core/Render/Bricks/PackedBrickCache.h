@@ -24,6 +24,9 @@ class CacheContext;
 /// pictures use it: pictures go through bricks in ever other orders, and dropping the least
 /// recently used of more than there is room for would keep none in time.
 ///
+/// Coarse pictures while the camera moves let bricks of the finest levels stay, which the picture
+/// after them needs: they take room from those only where they find none.
+///
 /// Methods may be called from any thread.
 class PackedBrickCache
 {
@@ -45,9 +48,19 @@ public:
   std::uint64_t ShareBytes() const;
   const std::shared_ptr<CacheContext>& Caches() const { return this->Context; }
 
-  /// Lets go of bricks that the last two pictures did not use, and of all beyond the limit.
-  /// @param ages false for a picture that only helps to make the next one, and does not count
-  void BeginPicture(std::uint64_t limitBytes, bool ages = true);
+  enum class Picture
+  {
+    Whole,
+    Passing, ///< a coarse one, after which another will come
+    Part     ///< of the one before, or a help to make the next one
+  };
+
+  /// Lets go of all beyond the limit, and for a whole picture of bricks that neither the last two
+  /// pictures used nor the last two whole ones. Where the last passing picture found no room, the
+  /// next one gets it from bricks that the last two pictures did not use.
+  void BeginPicture(std::uint64_t limitBytes, Picture kind = Picture::Whole);
+  /// The picture that was begun has been drawn: one that was stopped makes bricks no older.
+  void EndPicture();
 
   /// Lets go of what the values of a source that has others do not fit any more: of bricks of which
   /// `stale(number, packed)` is true, and of all that is known of groups.
@@ -92,27 +105,34 @@ public:
   std::uint64_t Bytes() const;
 
 private:
+  /// The number of a picture before all others.
+  static constexpr std::int64_t Never = -1000;
+
   struct Item
   {
-    Item(Pointer packed, std::int64_t picture)
+    explicit Item(Pointer packed)
       : Packed(std::move(packed))
-      , UsedIn(picture)
     {
     }
 
     Pointer Packed;
-    mutable std::atomic<std::int64_t> UsedIn; ///< number of a picture
+    mutable std::atomic<std::int64_t> UsedIn{ Never }; ///< number of a picture
+    mutable std::atomic<std::int64_t> UsedInWhole{ Never };
     std::optional<BrickVisibility> Visibility;
     std::uint64_t VisibleUnder = 0; ///< VisibleValues::Number
   };
 
   void SetHeld(std::uint64_t bytes);
+  void Use(const Item& item) const;
   const Item* FindHere(const Wanted& wanted) const;
 
   std::shared_ptr<CacheContext> Context;
   std::uint64_t LimitBytes = 0;
   std::uint64_t HeldBytes = 0;
-  std::int64_t Picture = 0;
+  std::uint64_t RefusedBytes = 0; ///< that found no room in a passing picture
+  Picture Kind = Picture::Whole;
+  std::int64_t Number = 0;      ///< of the picture, among all but parts
+  std::int64_t WholeNumber = 0; ///< of the picture, among whole ones
   std::unordered_map<std::int64_t, Item> Items;
   /// By level, with the number of VisibleValues.
   std::unordered_map<int, std::pair<std::uint64_t, std::shared_ptr<KnownGroups>>> Groups;

@@ -36,6 +36,15 @@ BrickSource& SourceAt(BrickSource& source, int level, const RayScene& scene)
   return *found;
 }
 
+PackedBrickCache::Picture KindOf(const RayScene& scene)
+{
+  if (scene.Probe || scene.GoesOn)
+  {
+    return PackedBrickCache::Picture::Part;
+  }
+  return scene.Passing ? PackedBrickCache::Picture::Passing : PackedBrickCache::Picture::Whole;
+}
+
 /// @param least of the picture
 /// @param watcher null for none
 FloatImage Cast(const RayScene& scene, BrickSource& source, const Box& cells,
@@ -53,8 +62,7 @@ FloatImage Cast(const RayScene& scene, BrickSource& source, const Box& cells,
       scene, at, CellsAtLevel(inside, at.CellEdges()), budgetBytes, pool, statistics));
     picture.Rect = Union(picture.Rect, casters.back()->Rect());
   }
-  const bool ages = !scene.Probe && !scene.GoesOn;
-  source.Kept().BeginPicture(PackedBrickCache::PartOf(budgetBytes), ages);
+  source.Kept().BeginPicture(PackedBrickCache::PartOf(budgetBytes), KindOf(scene));
   // Casters set all pixels, tile by tile.
   picture.Pixels.resize(static_cast<std::size_t>(picture.Rect.Count()));
   if (watcher)
@@ -65,6 +73,7 @@ FloatImage Cast(const RayScene& scene, BrickSource& source, const Box& cells,
   {
     caster->Draw(picture, watcher);
   }
+  source.Kept().EndPicture();
   return picture;
 }
 

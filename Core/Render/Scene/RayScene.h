@@ -63,6 +63,9 @@ struct RayScene
   /// Whether the picture goes on with the one before, as a further part of it: what is kept of
   /// bricks becomes no older.
   bool GoesOn = false;
+  /// Whether the picture is a coarse one, after which another will come: what others kept of bricks
+  /// becomes no older.
+  bool Passing = false;
   /// Rays that are not cast, as an earlier picture has them; null for none. No part of the picture.
   std::shared_ptr<const ReusedRays> Reused{};
   /// The plan of bricks for pictures that have the same one; null: each makes its own. No part of

@@ -123,6 +123,23 @@ TEST(LateFrames, ACoarsePictureIsDrawnOnce)
   EXPECT_EQ(player.Draw(now).Frame.Picture.Pixels, moving);
 }
 
+TEST(LateFrames, CoarsePicturesLeaveTheBricksToTheExactOneAfterThem)
+{
+  LatePlayer player;
+  Situation now;
+  player.DrawAtLast(now);
+  const auto kept = [&] { return player.With.Field.Drawn().Source()->Kept().Bytes(); };
+  const std::uint64_t ofExact = kept();
+  ASSERT_GT(ofExact, 0u);
+  now.Interacting = true;
+  for (int move = 0; move < 6; ++move)
+  {
+    now.Eye += 0.01;
+    EXPECT_FALSE(player.Draw(now).Exact);
+    EXPECT_GE(kept(), ofExact);
+  }
+}
+
 TEST(LateFrames, PicturesThatTakeLongHaveOneBetween)
 {
   LateFrames::Times times = LatePlayer::Never;

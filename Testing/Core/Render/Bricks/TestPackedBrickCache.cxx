@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <vector>
 
 namespace
 {
@@ -55,15 +57,103 @@ TEST(PackedBrickCache, StayWithinTheLimitAndAsLongAsTheyAreUsed)
   EXPECT_EQ(kept.Bytes(), 2 * bytes);
   EXPECT_NE(Find(kept, 1, cells), nullptr);
   EXPECT_EQ(Find(kept, 2, cells), nullptr);
+  kept.EndPicture();
   for (int picture = 0; picture < 3; ++picture)
   {
     kept.BeginPicture(2 * bytes);
     EXPECT_NE(Find(kept, 0, cells), nullptr);
+    kept.EndPicture();
   }
   EXPECT_EQ(Find(kept, 1, cells), nullptr);
   EXPECT_EQ(kept.Bytes(), bytes);
   kept.BeginPicture(bytes - 1);
   EXPECT_EQ(kept.Bytes(), 0u);
+}
+
+/// A cache with room for some bricks, whose pictures use some.
+class Pictures
+{
+public:
+  explicit Pictures(std::uint64_t bricks)
+    : Limit(bricks * PackedBrick::BytesFor(Cells(), false))
+  {
+  }
+
+  static Box Cells() { return { glm::ivec3(0), glm::ivec3(2) }; }
+
+  /// Draws a picture, or begins one that is stopped.
+  void Draw(
+    PackedBrickCache::Picture kind, const std::vector<std::int64_t>& bricks, bool stopped = false)
+  {
+    this->Kept.BeginPicture(this->Limit, kind);
+    for (const std::int64_t brick : bricks)
+    {
+      if (!Find(this->Kept, brick, Cells()))
+      {
+        this->Kept.Keep(brick, Pack(std::vector<double>(27, 1.0), 0.0));
+      }
+    }
+    if (!stopped)
+    {
+      this->Kept.EndPicture();
+    }
+  }
+
+  /// How many of some bricks are kept. They are used from now on: a picture has to begin next.
+  int CountKept(const std::vector<std::int64_t>& bricks) const
+  {
+    return static_cast<int>(std::count_if(bricks.begin(), bricks.end(),
+      [&](std::int64_t brick) { return Find(this->Kept, brick, Cells()) != nullptr; }));
+  }
+
+private:
+  std::uint64_t Limit;
+  PackedBrickCache Kept;
+};
+
+using Kind = PackedBrickCache::Picture;
+
+TEST(PackedBrickCache, CoarsePicturesLetBricksOfExactOnesStay)
+{
+  Pictures pictures(8);
+  pictures.Draw(Kind::Whole, { 0, 1, 2, 3 });
+  for (int move = 0; move < 20; ++move)
+  {
+    pictures.Draw(Kind::Passing, { 10 });
+  }
+  pictures.Draw(Kind::Whole, { 0, 1 });
+  pictures.Draw(Kind::Whole, { 0, 1 });
+  EXPECT_EQ(pictures.CountKept({ 2, 3, 10 }), 3);
+  for (int picture = 0; picture < 4; ++picture)
+  {
+    pictures.Draw(Kind::Whole, { 0, 1 });
+  }
+  EXPECT_EQ(pictures.CountKept({ 2, 3, 10 }), 0);
+  EXPECT_EQ(pictures.CountKept({ 0, 1 }), 2);
+}
+
+TEST(PackedBrickCache, CoarsePicturesTakeAsMuchRoomAsTheyNeed)
+{
+  const std::vector<std::int64_t> exact = { 0, 1, 2, 3, 4, 5, 6, 7 };
+  Pictures pictures(8);
+  pictures.Draw(Kind::Whole, exact);
+  for (int move = 0; move < 4; ++move)
+  {
+    pictures.Draw(Kind::Passing, { 10, 11 });
+  }
+  EXPECT_EQ(pictures.CountKept({ 10, 11 }), 2);
+  EXPECT_EQ(pictures.CountKept(exact), 6);
+}
+
+TEST(PackedBrickCache, AStoppedPictureMakesNoBrickOlder)
+{
+  Pictures pictures(8);
+  pictures.Draw(Kind::Whole, { 0, 1, 2 });
+  for (int pause = 0; pause < 5; ++pause)
+  {
+    pictures.Draw(Kind::Whole, { 0 }, /*stopped=*/true);
+  }
+  EXPECT_EQ(pictures.CountKept({ 0, 1, 2 }), 3);
 }
 
 TEST(PackedBrickCache, OtherCellsOrAnotherLowEndAreOtherBricks)
