@@ -389,7 +389,9 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   numbers.BytesComposited += probes.BytesComposited;
   numbers.MessagesComposited += probes.MessagesComposited;
   const PhaseScope balancing(Phase::Balancing);
-  if (!scene.Reused && !isPart) // what a part of a picture takes says little of the next one
+  // What a part of a picture or a coarse one takes says little of the next exact one, whose bricks
+  // are where its zones are.
+  if (!scene.Reused && !isPart && !wish.Passing)
   {
     frame.ByPicture ? regions.EndFrame(communicator) : drawn.EndFrame(communicator);
   }
