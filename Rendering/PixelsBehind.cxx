@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PixelsBehind.h"
 
+#include "Base/ThreadPool.h"
 #include "Parallel/Composite/Compositing.h"
 
 #include <algorithm>
@@ -18,7 +19,8 @@ constexpr float CoveredDepth = 0.999999f;
 std::uint8_t ToByte(float value)
 {
   // As lround does, which loops cannot hold vectors of: sums of doubles are exact here.
-  return static_cast<std::uint8_t>(double{ std::clamp(value, 0.0f, 1.0f) * 255.0f } + 0.5);
+  constexpr double half = 0.5;
+  return static_cast<std::uint8_t>(double{ std::clamp(value, 0.0f, 1.0f) * 255.0f } + half);
 }
 
 /// Replaces the colours on rank 0 by those of all ranks, blended in the given order.
@@ -119,8 +121,9 @@ void ClearWithoutGeometry(std::vector<OpaquePixel>& pixels)
 void BlendOver(const FloatImage& picture, const PixelRect& part, const PixelRect& rect,
   std::vector<OpaquePixel>& pixels)
 {
-  for (int y = part.Lo.y; y < part.Hi.y; ++y)
+  const auto blendRow = [&](std::int64_t row)
   {
+    const int y = part.Lo.y + static_cast<int>(row);
     const glm::vec4* front = &picture.At(part.Lo.x, y);
     const glm::vec4* const end = front + part.Size().x;
     OpaquePixel* pixel =
@@ -137,6 +140,10 @@ void BlendOver(const FloatImage& picture, const PixelRect& part, const PixelRect
       }
       pixel->Depth = std::min(pixel->Depth, CoveredDepth);
     }
+  };
+  if (!part.Empty())
+  {
+    ThreadPool::Process().ParallelFor(part.Size().y, blendRow);
   }
 }
 

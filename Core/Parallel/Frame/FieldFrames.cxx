@@ -208,6 +208,7 @@ FieldFrames::Frame FieldFrames::Draw(
   Communicator& communicator, DistributedField& field, RayScene& scene, const Wish& wish)
 {
   Frame frame;
+  scene.Passing = wish.Passing;
   if (wish.Passing || !wish.Whole.Empty())
   {
     const Hash128 name = SceneOf(scene, wish);
@@ -340,7 +341,6 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
 {
   const Timer drawing;
   DrawnField& drawn = field.Drawn();
-  scene.Passing = wish.Passing;
   const bool isPart = !wish.Whole.Empty();
   std::optional<RayScene> whole;
   if (isPart)
@@ -389,9 +389,7 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   numbers.BytesComposited += probes.BytesComposited;
   numbers.MessagesComposited += probes.MessagesComposited;
   const PhaseScope balancing(Phase::Balancing);
-  // What a part of a picture or a coarse one takes says little of the next exact one, whose bricks
-  // are where its zones are.
-  if (!scene.Reused && !isPart && !wish.Passing)
+  if (!scene.Reused && !isPart && !wish.Passing) // others say little of the next exact one
   {
     frame.ByPicture ? regions.EndFrame(communicator) : drawn.EndFrame(communicator);
   }

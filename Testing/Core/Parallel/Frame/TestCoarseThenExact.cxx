@@ -134,6 +134,24 @@ TEST(CoarseThenExact, AnotherSceneStopsWhatIsUnderWay)
     });
 }
 
+TEST(CoarseThenExact, CoarsePicturesDoNotMoveZones)
+{
+  OnRanks(
+    [](Volume& volume)
+    {
+      volume.Player.Field.SetLoadBalancing(LoadBalancing::MeasuredCost);
+      const auto zones = [&] { return volume.Player.Field.Drawn().Zones(); };
+      const Situation now;
+      volume.DrawCoarse(now);
+      const std::vector<Box> first = zones();
+      for (int move = 0; move < 4; ++move)
+      {
+        volume.DrawCoarse(now);
+        EXPECT_EQ(zones(), first);
+      }
+    });
+}
+
 TEST(CoarseThenExact, AfterACoarsePictureOfAnotherSceneTheLastOneIsDrawnAnew)
 {
   OnRanks(
