@@ -59,7 +59,8 @@ struct WallColumn
 /// are made from.
 inline PixelRect DrawnForTile(const RayScene& scene, const PicturePlace& tile)
 {
-  const int margin = scene.Samplings ? RaySampling::LargestStride : 0;
+  const int stride = scene.Samplings ? scene.Samplings->LargestStride() : 1;
+  const int margin = stride > 1 ? stride : 0;
   return Intersection(scene.Viewport, { tile.Rect.Lo - margin, tile.Rect.Hi + margin });
 }
 
