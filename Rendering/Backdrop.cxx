@@ -35,8 +35,8 @@ PixelRect UnionOfAll(Communicator& communicator, const PixelRect& mine)
 }
 
 /// Copies a part of one rectangle of pixels to the same place in another one.
-void CopyPart(const PixelRect& part, const PixelRect& fromRect,
-  const std::vector<OpaquePixel>& from, const PixelRect& toRect, std::vector<OpaquePixel>& to)
+void CopyPart(const PixelRect& part, const PixelRect& fromRect, const OpaquePixels& from,
+  const PixelRect& toRect, OpaquePixels& to)
 {
   const auto at = [&part](const PixelRect& rect, int y)
   { return std::ptrdiff_t{ y - rect.Lo.y } * rect.Size().x + (part.Lo.x - rect.Lo.x); };
@@ -74,7 +74,7 @@ void Backdrop::Read(Communicator& communicator, vtkRenderer* renderer,
 std::vector<float> Backdrop::Depths(const PixelRect& part) const
 {
   const PixelRect seen = Intersection(part, this->Inner);
-  std::vector<OpaquePixel> pixels(static_cast<std::size_t>(seen.Count()));
+  OpaquePixels pixels(static_cast<std::size_t>(seen.Count()));
   CopyPart(seen, this->Inner, this->InnerPixels, seen, pixels);
   std::vector<float> depths = DepthsOf(pixels);
   return depths.empty() ? depths : DepthPicture{ {}, seen, std::move(depths) }.In(part);
@@ -163,7 +163,7 @@ PixelRect Backdrop::InRenderer(const PixelRect& rect) const
 void Backdrop::Forget()
 {
   this->Inner = {};
-  std::vector<OpaquePixel>().swap(this->InnerPixels);
+  OpaquePixels().swap(this->InnerPixels);
 }
 
 void Backdrop::ReleaseGraphicsResources(vtkWindow* window)

@@ -67,8 +67,8 @@ private:
   PixelRect Rect;
   PixelRect Inner; ///< where some rank shows something else; the same on all ranks
   PixelRect BehindRect;
-  std::vector<OpaquePixel> InnerPixels; ///< of Inner
-  std::vector<OpaquePixel> Pixels; ///< kept for its memory, as pictures come one after the other
+  OpaquePixels InnerPixels; ///< of Inner
+  OpaquePixels Pixels;      ///< kept for its memory, as pictures come one after the other
 };
 
 } // namespace banyan

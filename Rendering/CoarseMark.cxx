@@ -17,7 +17,7 @@ void CoarseMark::Write(vtkRenderer* renderer)
     return;
   }
   constexpr OpaquePixel orange{ 0.0f, { 255, 150, 0, 255 } };
-  const std::vector<OpaquePixel> pixels(static_cast<std::size_t>(rect.Count()), orange);
+  const OpaquePixels pixels(static_cast<std::size_t>(rect.Count()), orange);
   this->Framebuffer.Write(renderer, rect, pixels, { rect }, /*blend=*/true);
 }
 

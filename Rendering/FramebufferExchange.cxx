@@ -116,7 +116,7 @@ FramebufferExchange::~FramebufferExchange() = default;
 
 /// glReadPixels of the framebuffer that is bound for reading.
 void FramebufferExchange::ReadBound(
-  const glm::ivec2& corner, const glm::ivec2& size, std::vector<OpaquePixel>& pixels)
+  const glm::ivec2& corner, const glm::ivec2& size, OpaquePixels& pixels)
 {
   const auto count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
   this->Depths.resize(count);
@@ -135,7 +135,7 @@ void FramebufferExchange::ReadBound(
 
 /// Copies a rectangle of a multisampled framebuffer into a plain one and reads that.
 void FramebufferExchange::ReadResolved(vtkOpenGLRenderWindow* window, int framebuffer, int buffer,
-  const glm::ivec2& corner, const glm::ivec2& size, std::vector<OpaquePixel>& pixels)
+  const glm::ivec2& corner, const glm::ivec2& size, OpaquePixels& pixels)
 {
   vtkOpenGLState* state = window->GetState();
   vtkNew<vtkOpenGLFramebufferObject> resolved;
@@ -164,8 +164,7 @@ void FramebufferExchange::ReadResolved(vtkOpenGLRenderWindow* window, int frameb
   state->PopFramebufferBindings();
 }
 
-void FramebufferExchange::Read(
-  vtkRenderer* renderer, const PixelRect& rect, std::vector<OpaquePixel>& pixels)
+void FramebufferExchange::Read(vtkRenderer* renderer, const PixelRect& rect, OpaquePixels& pixels)
 {
   vtkOpenGLRenderWindow* window = WindowOf(renderer);
   const glm::ivec2 corner = OriginOf(renderer) + rect.Lo;
@@ -187,7 +186,7 @@ void FramebufferExchange::Read(
 }
 
 void FramebufferExchange::Write(vtkRenderer* renderer, const PixelRect& rect,
-  const std::vector<OpaquePixel>& pixels, const std::vector<PixelRect>& parts, bool blend)
+  const OpaquePixels& pixels, const std::vector<PixelRect>& parts, bool blend)
 {
   vtkOpenGLRenderWindow* window = WindowOf(renderer);
   vtkOpenGLState* state = window->GetState();

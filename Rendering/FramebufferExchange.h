@@ -27,7 +27,7 @@ public:
   ~FramebufferExchange();
 
   /// Colours (8 bit) and depths, `[y][x]`, y up. A multisampled framebuffer is resolved first.
-  void Read(vtkRenderer* renderer, const PixelRect& rect, std::vector<OpaquePixel>& pixels);
+  void Read(vtkRenderer* renderer, const PixelRect& rect, OpaquePixels& pixels);
 
   /// Writes colours and depths of parts of a rectangle; depths always replace what is there.
   /// @param pixels rect.Count() of them, premultiplied
@@ -35,7 +35,7 @@ public:
   /// software
   /// @param blend over the colours that are there, as ParaView's compositor does with what several
   ///        ranks have drawn; otherwise replaces them
-  void Write(vtkRenderer* renderer, const PixelRect& rect, const std::vector<OpaquePixel>& pixels,
+  void Write(vtkRenderer* renderer, const PixelRect& rect, const OpaquePixels& pixels,
     const std::vector<PixelRect>& parts, bool blend);
 
   /// Of one window, with its context current; of all of them when it is null.
@@ -44,10 +44,9 @@ public:
 private:
   struct Resources;
 
-  void ReadBound(
-    const glm::ivec2& corner, const glm::ivec2& size, std::vector<OpaquePixel>& pixels);
+  void ReadBound(const glm::ivec2& corner, const glm::ivec2& size, OpaquePixels& pixels);
   void ReadResolved(vtkOpenGLRenderWindow* window, int framebuffer, int buffer,
-    const glm::ivec2& corner, const glm::ivec2& size, std::vector<OpaquePixel>& pixels);
+    const glm::ivec2& corner, const glm::ivec2& size, OpaquePixels& pixels);
 
   std::map<vtkWindow*, std::unique_ptr<Resources>> OfWindow; ///< each has a context of its own
   std::vector<std::uint8_t> Colors; ///< on their way; kept, as pictures come one after the other

@@ -25,7 +25,7 @@ std::uint8_t ToByte(float value)
 
 /// Replaces the colours on rank 0 by those of all ranks, blended in the given order.
 void OverBlendInOrder(Communicator& communicator, const std::vector<int>& rankOrder,
-  const PixelRect& rect, std::vector<OpaquePixel>& pixels, CompositeStatistics& statistics)
+  const PixelRect& rect, OpaquePixels& pixels, CompositeStatistics& statistics)
 {
   FloatImage mine;
   mine.Rect = rect;
@@ -62,13 +62,13 @@ bool Covers(const OpaquePixel& pixel)
 } // namespace
 
 PixelRect CombineBehind(Communicator& communicator, const std::vector<int>& rankOrder,
-  const PixelRect& rect, std::vector<OpaquePixel>& pixels, CompositeStatistics& statistics)
+  const PixelRect& rect, OpaquePixels& pixels, CompositeStatistics& statistics)
 {
   if (communicator.Size() == 1)
   {
     return {};
   }
-  std::vector<OpaquePixel> nearest = pixels;
+  OpaquePixels nearest = pixels;
   if (!rankOrder.empty())
   {
     OverBlendInOrder(communicator, rankOrder, rect, pixels, statistics);
@@ -93,7 +93,7 @@ PixelRect CombineBehind(Communicator& communicator, const std::vector<int>& rank
   return Union(geometry, coloured);
 }
 
-std::vector<float> DepthsOf(const std::vector<OpaquePixel>& pixels)
+std::vector<float> DepthsOf(const OpaquePixels& pixels)
 {
   std::vector<float> depths;
   if (std::any_of(pixels.begin(), pixels.end(), Covers))
@@ -107,7 +107,7 @@ std::vector<float> DepthsOf(const std::vector<OpaquePixel>& pixels)
   return depths;
 }
 
-void ClearWithoutGeometry(std::vector<OpaquePixel>& pixels)
+void ClearWithoutGeometry(OpaquePixels& pixels)
 {
   for (OpaquePixel& pixel : pixels)
   {
@@ -118,8 +118,8 @@ void ClearWithoutGeometry(std::vector<OpaquePixel>& pixels)
   }
 }
 
-void BlendOver(const FloatImage& picture, const PixelRect& part, const PixelRect& rect,
-  std::vector<OpaquePixel>& pixels)
+void BlendOver(
+  const FloatImage& picture, const PixelRect& part, const PixelRect& rect, OpaquePixels& pixels)
 {
   const auto blendRow = [&](std::int64_t row)
   {

@@ -16,19 +16,19 @@ namespace banyan
 /// @param statistics is added to
 /// @return on all ranks, the rectangle around what rank 0 will blend the volume over; may be empty
 PixelRect CombineBehind(Communicator& communicator, const std::vector<int>& rankOrder,
-  const PixelRect& rect, std::vector<OpaquePixel>& pixels, CompositeStatistics& statistics);
+  const PixelRect& rect, OpaquePixels& pixels, CompositeStatistics& statistics);
 
 /// Depths of the pixels; none when nothing was drawn there.
-std::vector<float> DepthsOf(const std::vector<OpaquePixel>& pixels);
+std::vector<float> DepthsOf(const OpaquePixels& pixels);
 
 /// Makes pixels transparent where there is no opaque geometry.
-void ClearWithoutGeometry(std::vector<OpaquePixel>& pixels);
+void ClearWithoutGeometry(OpaquePixels& pixels);
 
 /// Blends a part of a premultiplied picture over the pixels of a rectangle that holds it: in float,
 /// rounded to 8 bit once. Covered pixels get a depth below 1, so that a compositor that compares
 /// depths prefers them to blank ones.
-void BlendOver(const FloatImage& picture, const PixelRect& part, const PixelRect& rect,
-  std::vector<OpaquePixel>& pixels);
+void BlendOver(
+  const FloatImage& picture, const PixelRect& part, const PixelRect& rect, OpaquePixels& pixels);
 
 } // namespace banyan
 

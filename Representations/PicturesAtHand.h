@@ -82,7 +82,7 @@ private:
   FramebufferExchange Framebuffer;
   std::shared_ptr<const DepthPicture> Others =
     std::make_shared<DepthPicture>(); ///< in the last view
-  std::vector<OpaquePixel> Pixels;    ///< kept for its memory
+  OpaquePixels Pixels;                ///< kept for its memory
   unsigned char Told = 0;             ///< bits of NotInDepth
 };
 

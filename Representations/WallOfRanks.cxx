@@ -363,7 +363,7 @@ DepthPicture DepthsInCave(vtkPVRenderView* view, FramebufferExchange& framebuffe
   {
     picture.Size = ViewOf(renderer).Size;
     picture.Rect = { glm::ivec2(0), picture.Size };
-    std::vector<OpaquePixel> pixels;
+    OpaquePixels pixels;
     framebuffer.Read(renderer, picture.Rect, pixels);
     picture.Depths = DepthsOf(pixels);
   }
@@ -381,7 +381,7 @@ DrawnPart DepthsOfCall(vtkRenderer* renderer, FramebufferExchange& framebuffer)
   DrawnPart part{ ViewOf(renderer), {} };
   part.View.Size = { window[0], window[1] };
   const PixelRect all{ glm::ivec2(0), part.View.Size };
-  std::vector<OpaquePixel> pixels;
+  OpaquePixels pixels;
   framebuffer.Read(renderer, all, pixels);
   std::vector<float> depths = DepthsOf(pixels);
   if (!depths.empty())

@@ -3,7 +3,6 @@
 #define banyan_Benchmarks_Wall_h
 
 #include "Parallel/Composite/PicturePlace.h"
-#include "Render/Scene/RayScene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,15 +53,6 @@ struct WallColumn
   int Tiles = 1; ///< of the first ranks
   int Ranks = 1;
 };
-
-/// What is drawn for a tile: as DrawDistributed has it, with pixels around that those without rays
-/// are made from.
-inline PixelRect DrawnForTile(const RayScene& scene, const PicturePlace& tile)
-{
-  const int stride = scene.Samplings ? scene.Samplings->LargestStride() : 1;
-  const int margin = stride > 1 ? stride : 0;
-  return Intersection(scene.Viewport, { tile.Rect.Lo - margin, tile.Rect.Hi + margin });
-}
 
 } // namespace banyan::bench
 

@@ -9,6 +9,7 @@
 #include "Parallel/Composite/Compositing.h"
 #include "Parallel/Fields/DrawnField.h"
 #include "Render/Levels/RayCaster.h"
+#include "Render/Raycast/InterpolateSkippedPixels.h"
 
 #include <ctime>
 
@@ -145,7 +146,7 @@ void WallRanks::DrawTile(
   const RayScene& scene, const PicturePlace& tile, const std::string& folder, int every)
 {
   RayScene ofTile = scene;
-  ofTile.Viewport = DrawnForTile(scene, tile);
+  ofTile.Viewport = WithMargin(scene, tile.Rect);
   const auto ranks = static_cast<int>(this->Parts.size());
   std::vector<FloatImage> images;
   for (int rank = 0; rank < ranks; ++rank)

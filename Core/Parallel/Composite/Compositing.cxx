@@ -288,6 +288,31 @@ std::string ProblemOf(int rank, int ranks, const FloatImage& mine,
   return {};
 }
 
+std::size_t EndOfBatch(
+  const std::vector<PictureOfRanks>& pictures, std::size_t first, std::uint64_t mostBytes)
+{
+  std::vector<std::uint64_t> bytes; // per rank
+  for (std::size_t number = first; number < pictures.size(); ++number)
+  {
+    const std::vector<Footprint>& footprints = pictures[number].Options.Footprints;
+    bytes.resize(footprints.size());
+    bool fits = true;
+    for (std::size_t rank = 0; rank < footprints.size(); ++rank)
+    {
+      const Footprint& footprint = footprints[rank];
+      bytes[rank] += footprint.Empty()
+                       ? 0
+                       : sizeof(glm::vec4) * static_cast<std::uint64_t>(footprint.Rect.Count());
+      fits = fits && bytes[rank] <= mostBytes;
+    }
+    if (!fits && number > first)
+    {
+      return number;
+    }
+  }
+  return pictures.size();
+}
+
 std::vector<FloatImage> CompositeTogether(Communicator& communicator,
   const std::vector<PictureOfRanks>& pictures, CompositeStatistics& statistics)
 {

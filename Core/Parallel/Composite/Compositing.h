@@ -56,6 +56,10 @@ struct CompositeOptions
   /// rank that sends at once (Communicator::SendsAtOnce). The picture is the same to the last bit.
   bool WhileCasting = true;
 
+  /// How many bytes of pixels any rank may have cast for several places before they are composited.
+  /// One place may take more.
+  std::uint64_t MostBytes = std::uint64_t{ 256 } << 20;
+
   /// Called by DrawDistributed when this rank has cast its rays: begins what can go on in the
   /// background while pictures are composited and shown. Must not throw.
   std::function<void()> AfterCasting;
@@ -87,6 +91,14 @@ struct PictureOfRanks
 /// @return each as of Composite
 std::vector<FloatImage> CompositeTogether(Communicator& communicator,
   const std::vector<PictureOfRanks>& pictures, CompositeStatistics& statistics);
+
+/// How many pictures fit into memory together, before they are composited: at least one. All ranks
+/// come to the same.
+/// @param pictures with footprints
+/// @param mostBytes of pixels, on the rank that has most of them
+/// @return the number behind that of the last picture, counted from 0
+std::size_t EndOfBatch(
+  const std::vector<PictureOfRanks>& pictures, std::size_t first, std::uint64_t mostBytes);
 
 /// Why Composite cannot work with these arguments on this rank; empty if it can.
 std::string ProblemOf(int rank, int ranks, const FloatImage& mine,

@@ -35,7 +35,7 @@ void CheckSizes(Communicator& communicator, std::uint64_t mine)
 
 /// Every rank decides one part of the picture: each pixel crosses the network twice and no rank
 /// carries more than another, whatever the number of ranks.
-void NearestTogether(Communicator& communicator, std::vector<OpaquePixel>& pixels)
+void NearestTogether(Communicator& communicator, OpaquePixels& pixels)
 {
   const std::size_t ranks = static_cast<std::size_t>(communicator.Size());
   const std::size_t self = static_cast<std::size_t>(communicator.Rank());
@@ -54,7 +54,7 @@ void NearestTogether(Communicator& communicator, std::vector<OpaquePixel>& pixel
   };
 
   const std::size_t count = begin(self + 1) - begin(self);
-  std::vector<OpaquePixel> candidates(count * ranks);
+  OpaquePixels candidates(count * ranks);
   std::copy_n(pixels.data() + begin(self), count, candidates.data() + self * count);
   forEachOther([&](std::size_t rank, int peer)
     { communicator.Receive(peer, TagCandidates, candidates.data() + rank * count, bytes(self)); });
@@ -82,14 +82,14 @@ void NearestTogether(Communicator& communicator, std::vector<OpaquePixel>& pixel
 
 } // namespace
 
-void ReduceNearest(Communicator& communicator, std::vector<OpaquePixel>& pixels)
+void ReduceNearest(Communicator& communicator, OpaquePixels& pixels)
 {
   CheckSizes(communicator, pixels.size());
   communicator.Together([&](Communicator& ranks) { NearestTogether(ranks, pixels); });
 }
 
 PixelRect ReduceNearestGeometry(Communicator& communicator, const PixelRect& rect,
-  std::vector<OpaquePixel>& pixels, CompositeStatistics& statistics)
+  OpaquePixels& pixels, CompositeStatistics& statistics)
 {
   const PixelRect mine =
     RectAround(rect, pixels, [](const OpaquePixel& pixel) { return pixel.Depth < 1.0f; });
@@ -105,7 +105,7 @@ PixelRect ReduceNearestGeometry(Communicator& communicator, const PixelRect& rec
     return geometry;
   }
   const glm::ivec2 size = geometry.Size();
-  std::vector<OpaquePixel> part;
+  OpaquePixels part;
   part.reserve(static_cast<std::size_t>(geometry.Count()));
   const auto rowOf = [&](int y)
   {

@@ -2,6 +2,7 @@
 #ifndef banyan_Parallel_Composite_ReduceNearest_h
 #define banyan_Parallel_Composite_ReduceNearest_h
 
+#include "Base/RecycledMemory.h"
 #include "Parallel/Communicate/Communicator.h"
 #include "Parallel/Composite/CompositeStatistics.h"
 #include "Render/Scene/FloatImage.h"
@@ -19,20 +20,22 @@ struct OpaquePixel
   std::uint8_t Color[4]; ///< RGBA, premultiplied
 };
 
+/// Pixels in memory of the picture before: as the camera moves, each picture has another size.
+using OpaquePixels = std::vector<OpaquePixel, RecycledMemory<OpaquePixel>>;
+
 /// Collective: every rank gets, per pixel, the nearest of all ranks (the lower rank wins a tie).
-void ReduceNearest(Communicator& communicator, std::vector<OpaquePixel>& pixels);
+void ReduceNearest(Communicator& communicator, OpaquePixels& pixels);
 
 /// ReduceNearest where some rank has geometry (a depth below 1); elsewhere nothing is sent, and
 /// every rank keeps its own pixels. Collective.
 /// @param pixels of `rect`, `[y][x]`
 /// @return the rectangle around the geometry of all ranks, in which pixels were sent; may be empty
 PixelRect ReduceNearestGeometry(Communicator& communicator, const PixelRect& rect,
-  std::vector<OpaquePixel>& pixels, CompositeStatistics& statistics);
+  OpaquePixels& pixels, CompositeStatistics& statistics);
 
 /// Smallest rectangle around the pixels of `rect` for which `wanted` holds.
 template <typename Wanted>
-PixelRect RectAround(
-  const PixelRect& rect, const std::vector<OpaquePixel>& pixels, const Wanted& wanted)
+PixelRect RectAround(const PixelRect& rect, const OpaquePixels& pixels, const Wanted& wanted)
 {
   PixelRect around;
   std::size_t next = 0;

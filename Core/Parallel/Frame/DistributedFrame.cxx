@@ -5,7 +5,6 @@
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
 #include "Parallel/Balance/LevelZones.h"
-#include "Parallel/Balance/Rebalance.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Composite/CompositeWhileCasting.h"
 #include "Render/Raycast/InterpolateSkippedPixels.h"
@@ -13,8 +12,6 @@
 #include "Render/Scene/DepthPicture.h"
 
 #include <algorithm>
-#include <cmath>
-#include <deque>
 #include <iterator>
 #include <numeric>
 #include <optional>
@@ -84,61 +81,6 @@ FloatImage CastOwn(OwnPart& own, const PartOfPicture& part, const Function& cast
     part.AfterCasting();
   }
   return mine;
-}
-
-/// Is told by a rank to the others about a frame. It has plain numbers: all are sent in one
-/// message.
-struct Report
-{
-  double RenderSeconds;
-  double CompositeSeconds;
-  double TotalSeconds;
-  double SamplesTaken;
-  double BricksDrawn;
-  double BricksUniform;
-  double BricksSkipped;
-  double ReusedFraction;
-  double BytesComposited;
-  double MessagesComposited;
-};
-
-/// Collective.
-/// @param root a rank that has pixels
-void Publish(Communicator& communicator, const Report& mine, int root, FrameStatistics& statistics)
-{
-  std::vector<Report> all(static_cast<std::size_t>(communicator.Size()));
-  communicator.AllGather(&mine, sizeof(mine), all.data());
-  const auto values = [&all](double Report::*of)
-  {
-    std::vector<double> list;
-    list.reserve(all.size());
-    for (const Report& report : all)
-    {
-      list.push_back(report.*of);
-    }
-    return list;
-  };
-  const auto largest = [&values](double Report::*of)
-  {
-    const std::vector<double> list = values(of);
-    return *std::max_element(list.begin(), list.end());
-  };
-  const auto sum = [&values](double Report::*of)
-  {
-    const std::vector<double> list = values(of);
-    return std::llround(std::accumulate(list.begin(), list.end(), 0.0));
-  };
-  statistics.RenderSeconds = largest(&Report::RenderSeconds);
-  statistics.Imbalance = ImbalanceOf(values(&Report::RenderSeconds));
-  statistics.CompositeSeconds = largest(&Report::CompositeSeconds);
-  statistics.TotalSeconds = largest(&Report::TotalSeconds);
-  statistics.SamplesTaken = sum(&Report::SamplesTaken);
-  statistics.BricksDrawn = sum(&Report::BricksDrawn);
-  statistics.BricksUniform = sum(&Report::BricksUniform);
-  statistics.BricksSkipped = sum(&Report::BricksSkipped);
-  statistics.ReusedFraction = all[static_cast<std::size_t>(root)].ReusedFraction;
-  statistics.BytesComposited = static_cast<std::uint64_t>(sum(&Report::BytesComposited));
-  statistics.MessagesComposited = static_cast<std::uint64_t>(sum(&Report::MessagesComposited));
 }
 
 /// The order in which pixels of ranks are blended.
@@ -240,14 +182,6 @@ FloatImage Cut(FloatImage picture, const PixelRect& rect)
   return cut;
 }
 
-/// What has to be drawn for a place: pixels without rays are made from those around them.
-PixelRect WithMargin(const RayScene& scene, const PixelRect& rect)
-{
-  const int stride = scene.Samplings ? scene.Samplings->LargestStride() : 1;
-  const int margin = stride > 1 ? stride : 0;
-  return Intersection(scene.Viewport, { rect.Lo - margin, rect.Hi + margin });
-}
-
 /// What a place's own rank does with its picture.
 /// @param reused as of PutBackReused
 /// @return the part of the scene's viewport that is in the place
@@ -323,37 +257,52 @@ struct DrawnPlaces
   }
 };
 
-/// Collective: casts for all places, one after the other, before any is composited. So nobody waits
-/// between places for who has more to cast there.
+/// Collective: casts for as many places as memory allows, one after the other, before any of them
+/// is composited. So nobody waits between places for who has more to cast there.
 /// @return a picture for each place; empty on ranks without it
 std::vector<FloatImage> CastThenComposite(
   Communicator& communicator, OwnPart& own, const DrawnPlaces& drawn)
 {
   static const std::function<void()> nothing;
-  std::deque<FloatImage> cast; // referred to
+  const std::size_t count = drawn.Places.size();
+  std::vector<FloatImage> cast(count); // referred to
   std::vector<PictureOfRanks> pictures;
-  bool begun = false;
-  for (const PicturePlace& place : drawn.Places)
+  for (std::size_t i = 0; i < count; ++i)
   {
-    const PlaceScenes scenes = drawn.ScenesOf(place, begun);
-    const bool isLast = cast.size() + 1 == drawn.Places.size();
-    const PartOfPicture part = scenes.Part(isLast ? drawn.Compositing.AfterCasting : nothing);
-    const FloatImage& mine = cast.emplace_back(CastOwn(own, part, CastRays));
-    pictures.push_back(
-      { mine, OrderOf(part), part.Scene.Viewport, CompleteOptions(drawn.OptionsOf(place), part) });
-    const PictureOfRanks& picture = pictures.back();
-    if (own.Failure.empty())
-    {
-      own.Failure = ProblemOf(communicator.Rank(), communicator.Size(), mine, picture.FrontToBack,
-        picture.Viewport, picture.Options);
-    }
-    begun = begun || !part.Own.Viewport.Empty();
+    const PlaceScenes scenes = drawn.ScenesOf(drawn.Places[i]);
+    const PartOfPicture part = scenes.Part(nothing);
+    pictures.push_back({ cast[i], OrderOf(part), part.Scene.Viewport,
+      CompleteOptions(drawn.OptionsOf(drawn.Places[i]), part) });
   }
-  ThrowTogether(communicator, own.Failure);
-  const PhaseScope phase(Phase::Compositing);
-  const Timer timer;
-  std::vector<FloatImage> composited = CompositeTogether(communicator, pictures, own.Sent);
-  own.CompositeSeconds += timer.Seconds();
+  std::vector<FloatImage> composited;
+  bool begun = false;
+  for (std::size_t first = 0, end = 0; first < count; first = end)
+  {
+    end = EndOfBatch(pictures, first, drawn.Compositing.MostBytes);
+    for (std::size_t i = first; i < end; ++i)
+    {
+      const PlaceScenes scenes = drawn.ScenesOf(drawn.Places[i], begun);
+      const PartOfPicture part =
+        scenes.Part(i + 1 == count ? drawn.Compositing.AfterCasting : nothing);
+      cast[i] = CastOwn(own, part, CastRays);
+      begun = begun || !part.Own.Viewport.Empty();
+      if (own.Failure.empty())
+      {
+        own.Failure = ProblemOf(communicator.Rank(), communicator.Size(), cast[i],
+          pictures[i].FrontToBack, pictures[i].Viewport, pictures[i].Options);
+      }
+    }
+    ThrowTogether(communicator, own.Failure);
+    const PhaseScope phase(Phase::Compositing);
+    const Timer timer;
+    const auto at = [&pictures](std::size_t number)
+    { return std::next(pictures.begin(), static_cast<std::ptrdiff_t>(number)); };
+    std::vector<FloatImage> batch =
+      CompositeTogether(communicator, { at(first), at(end) }, own.Sent);
+    std::move(batch.begin(), batch.end(), std::back_inserter(composited));
+    std::fill(cast.begin(), cast.end(), FloatImage{});
+    own.CompositeSeconds += timer.Seconds();
+  }
   return composited;
 }
 
@@ -378,24 +327,6 @@ std::vector<FloatImage> DrawPlaces(
 }
 
 } // namespace
-
-void FrameStatistics::Add(const FrameStatistics& other)
-{
-  this->TotalSeconds += other.TotalSeconds;
-  this->RenderSeconds += other.RenderSeconds;
-  this->CompositeSeconds += other.CompositeSeconds;
-  this->ProbeSeconds += other.ProbeSeconds;
-  this->StrideSeconds += other.StrideSeconds;
-  this->Probes += other.Probes;
-  this->Imbalance = std::max(this->Imbalance, other.Imbalance);
-  this->SamplesTaken += other.SamplesTaken;
-  this->BricksDrawn += other.BricksDrawn;
-  this->BricksUniform += other.BricksUniform;
-  this->BricksSkipped += other.BricksSkipped;
-  this->ReusedFraction = std::min(this->ReusedFraction, other.ReusedFraction);
-  this->BytesComposited += other.BytesComposited;
-  this->MessagesComposited += other.MessagesComposited;
-}
 
 FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene,
   const RankShare& share, FrameStatistics& statistics, const CompositeOptions& compositing,

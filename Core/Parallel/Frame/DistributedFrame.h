@@ -5,6 +5,7 @@
 #include "Parallel/Communicate/Communicator.h"
 #include "Parallel/Composite/Compositing.h"
 #include "Parallel/Composite/PicturePlace.h"
+#include "Parallel/Frame/FrameStatistics.h"
 #include "Render/Levels/RayCaster.h"
 
 #include <string>
@@ -12,28 +13,6 @@
 
 namespace banyan
 {
-
-/// Says what one frame took. Numbers are summed over ranks; the seconds are the slowest rank's.
-struct FrameStatistics
-{
-  double TotalSeconds = 0;
-  double RenderSeconds = 0;    ///< until the last ray; with what was composited meanwhile
-  double CompositeSeconds = 0; ///< after the last ray; with waiting, where compositing began before
-  double ProbeSeconds = 0;     ///< before that, of a plan: finding distances and levels
-  double StrideSeconds = 0;    ///< and pixels that need no rays
-  int Probes = 0;              ///< small pictures that these took
-  double Imbalance = 1;        ///< slowest rank's render seconds over the mean, >= 1
-  std::int64_t SamplesTaken = 0;
-  std::int64_t BricksDrawn = 0;
-  std::int64_t BricksUniform = 0;
-  std::int64_t BricksSkipped = 0;
-  double ReusedFraction = 0.0;          ///< PutBackReused
-  std::uint64_t BytesComposited = 0;    ///< sent between ranks to make one picture of N
-  std::uint64_t MessagesComposited = 0; ///< in so many messages
-
-  /// Adds what another picture took that was drawn after this one: the worse of what is no sum.
-  void Add(const FrameStatistics& other);
-};
 
 /// Holds what a rank brings to a picture of all ranks.
 struct RankShare

@@ -112,4 +112,11 @@ void InterpolateSkippedPixels(const RayScene& scene, FloatImage& picture, Thread
   }
 }
 
+PixelRect WithMargin(const RayScene& scene, const PixelRect& rect)
+{
+  const int stride = scene.Samplings ? scene.Samplings->LargestStride() : 1;
+  const int margin = stride > 1 ? stride : 0;
+  return Intersection(scene.Viewport, { rect.Lo - margin, rect.Hi + margin });
+}
+
 } // namespace banyan

@@ -20,6 +20,10 @@ struct RayScene;
 /// @param picture a part of the scene's; all outside of it counts as empty
 void InterpolateSkippedPixels(const RayScene& scene, FloatImage& picture, ThreadPool& pool);
 
+/// What has to be drawn of a scene's viewport for all pixels of a rectangle: those around it, too,
+/// that pixels without rays are made from.
+PixelRect WithMargin(const RayScene& scene, const PixelRect& rect);
+
 } // namespace banyan
 
 #endif

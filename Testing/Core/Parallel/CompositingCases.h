@@ -232,9 +232,9 @@ inline std::string CheckComposite(
 }
 
 /// Opaque pixels of a rank: few different depths, so that ties are common; the colour tells whose.
-inline std::vector<OpaquePixel> OpaqueOf(int rank, std::size_t count)
+inline OpaquePixels OpaqueOf(int rank, std::size_t count)
 {
-  std::vector<OpaquePixel> pixels(count);
+  OpaquePixels pixels(count);
   std::mt19937 random(static_cast<unsigned>(rank) + 1u);
   for (OpaquePixel& pixel : pixels)
   {
@@ -250,16 +250,16 @@ inline std::vector<OpaquePixel> OpaqueOf(int rank, std::size_t count)
 /// @return what is wrong, or an empty string
 inline std::string CheckNearest(Communicator& communicator, std::size_t count)
 {
-  std::vector<OpaquePixel> expected = OpaqueOf(0, count);
+  OpaquePixels expected = OpaqueOf(0, count);
   for (int rank = 1; rank < communicator.Size(); ++rank)
   {
-    const std::vector<OpaquePixel> other = OpaqueOf(rank, count);
+    const OpaquePixels other = OpaqueOf(rank, count);
     for (std::size_t i = 0; i < count; ++i)
     {
       expected[i] = other[i].Depth < expected[i].Depth ? other[i] : expected[i];
     }
   }
-  std::vector<OpaquePixel> pixels = OpaqueOf(communicator.Rank(), count);
+  OpaquePixels pixels = OpaqueOf(communicator.Rank(), count);
   ReduceNearest(communicator, pixels);
   for (std::size_t i = 0; i < count; ++i)
   {

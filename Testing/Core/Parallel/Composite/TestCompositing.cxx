@@ -104,6 +104,33 @@ TEST_P(Compositing, KnowsLargestNumbersAndSums)
 
 INSTANTIATE_TEST_SUITE_P(Ranks, Compositing, ::testing::Range(1, 17));
 
+// Pictures of which a rank has more than memory allows are composited in several batches.
+TEST(CompositingBatches, AreAsLargeAsMemoryAllows)
+{
+  const PixelRect viewport{ { 0, 0 }, { 100, 10 } };
+  const auto pictureOf = [&viewport](int first, int second)
+  {
+    static const FloatImage none;
+    CompositeOptions options;
+    for (const int width : { first, second })
+    {
+      options.Footprints.push_back(FootprintOf({ { 0, 0 }, { width, 10 } }, viewport));
+    }
+    return PictureOfRanks{ none, { 0, 1 }, viewport, options };
+  };
+  // 16 bytes a pixel: the first rank has 1600, 0, 3200 and 160 bytes, the other 320 of each.
+  const std::vector<PictureOfRanks> pictures{ pictureOf(10, 2), pictureOf(0, 2), pictureOf(20, 2),
+    pictureOf(1, 2) };
+  EXPECT_EQ(EndOfBatch(pictures, 0, CompositeOptions().MostBytes), 4);
+  EXPECT_EQ(EndOfBatch(pictures, 0, 4960), 4);
+  EXPECT_EQ(EndOfBatch(pictures, 0, 4959), 3);
+  EXPECT_EQ(EndOfBatch(pictures, 0, 4799), 2);
+  EXPECT_EQ(EndOfBatch({ pictureOf(1, 2), pictureOf(1, 2) }, 0, 639), 1); // the other rank's
+  EXPECT_EQ(EndOfBatch(pictures, 2, 1), 3);                               // one may take more
+  EXPECT_EQ(EndOfBatch(pictures, 3, 1), 4);
+  EXPECT_EQ(CompositeOptions().MostBytes, std::uint64_t{ 256 } << 20);
+}
+
 /// Every rank draws in every pixel of several tiles and chunks.
 std::string CheckDepth(int size, PixelTransport transport, PixelPacking packing)
 {

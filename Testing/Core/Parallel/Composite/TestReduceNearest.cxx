@@ -38,7 +38,7 @@ TEST(ReduceNearest, CostsNothingWithoutGeometryAndOnlyItsRectangleWithSome)
       [&](Communicator& communicator)
       {
         const auto rank = static_cast<std::uint8_t>(communicator.Rank());
-        std::vector<OpaquePixel> pixels(
+        OpaquePixels pixels(
           static_cast<std::size_t>(rect.Count()), OpaquePixel{ 1.0f, { rank, 0, 0, 0 } });
         const auto indexOf = [&](int x, int y)
         { return static_cast<std::size_t>((y - rect.Lo.y) * rect.Size().x + x - rect.Lo.x); };

@@ -135,7 +135,7 @@ TEST_P(EveryRankCount, DrawsThePictureOfOneRankInFewBits)
 /// Draws the series for places on ranks, and puts these together.
 /// @param byPicture whether each rank draws a column of the picture, all cells
 Outcome DrawPlaces(const EncodedField& field, const RayScene& scene, int ranks, bool byPicture,
-  const std::vector<PicturePlace>& places)
+  const std::vector<PicturePlace>& places, const CompositeOptions& options = {})
 {
   Outcome whole;
   whole.Picture.Rect = scene.Viewport;
@@ -161,7 +161,8 @@ Outcome DrawPlaces(const EncodedField& field, const RayScene& scene, int ranks, 
         }
       }
       FrameStatistics statistics;
-      const FloatImage mine = DrawDistributed(communicator, scene, share, statistics, {}, places);
+      const FloatImage mine =
+        DrawDistributed(communicator, scene, share, statistics, options, places);
       const std::lock_guard<std::mutex> lock(mutex);
       whole.Statistics = statistics;
       for (int y = mine.Rect.Lo.y; y < mine.Rect.Hi.y && !mine.Pixels.empty(); ++y)
@@ -216,6 +217,21 @@ TEST_P(EveryRankCount, PixelsEndOnTheRankThatShowsThem)
       EXPECT_EQ(MaxDifference(alone.Picture, regions.Picture), 0.0);
     }
   }
+}
+
+/// Where pixels of all places take too much memory, some places are composited before others are
+/// cast.
+TEST_P(EveryRankCount, PlacesMayBeCompositedOneAfterTheOther)
+{
+  const EncodedField field;
+  const RayScene scene = SceneOf(1.4, false);
+  const std::vector<PicturePlace> places = PlacesOn(scene, GetParam());
+  CompositeOptions options;
+  const Outcome together = DrawPlaces(field, scene, GetParam(), false, places, options);
+  options.MostBytes = 1;
+  const Outcome inTurn = DrawPlaces(field, scene, GetParam(), false, places, options);
+  EXPECT_EQ(MaxDifference(together.Picture, inTurn.Picture), 0.0);
+  EXPECT_EQ(together.Statistics.SamplesTaken, inTurn.Statistics.SamplesTaken);
 }
 
 class Counting : public ArrayBrickSource
