@@ -93,7 +93,7 @@ void ServedWindow::Observe()
                            vtkCommand::RenderEvent, this, &ServedWindow::Move, BeforeParaView),
     interactor->AddObserver(vtkCommand::StartInteractionEvent, this, &ServedWindow::BeginMoves),
     interactor->AddObserver(
-      vtkCommand::EndInteractionEvent, this, &ServedWindow::EndMoves, BeforeParaView),
+      vtkCommand::EndInteractionEvent, this, &ServedWindow::Release, BeforeParaView),
     interactor->AddObserver(vtkCommand::TimerEvent, this, &ServedWindow::Look) };
 }
 
@@ -194,11 +194,17 @@ void ServedWindow::AfterRender(vtkObject*, unsigned long, void* interactive)
   }
 }
 
+/// Whether the window may have the server draw, outside of a picture of ParaView's.
+bool ServedWindow::MayAsk() const
+{
+  return this->IsServed() && !this->HasFailed() && !this->Busy && !this->View->GetNeedsUpdate() &&
+         IsIdle(this->View) && !IsLinked(this->View);
+}
+
 /// In place of a picture of ParaView's while the camera moves, which would wait for the server.
 bool ServedWindow::Move(vtkObject*, unsigned long, void*)
 {
-  if (!this->IsServed() || this->HasFailed() || this->Busy || this->View->GetNeedsUpdate() ||
-      !IsIdle(this->View) || IsLinked(this->View))
+  if (!this->MayAsk())
   {
     return false;
   }
@@ -230,6 +236,18 @@ void ServedWindow::BeginMoves()
   this->Moving = true;
   this->EndsAtRest = false;
   this->Path.Begin();
+}
+
+/// The mouse is released: ranks begin with the picture before ParaView asks for its own, which takes
+/// a round trip. Depths of other data are sent once, after that.
+void ServedWindow::Release()
+{
+  this->EndMoves();
+  if (this->MayAsk() && !this->HasOthersInView())
+  {
+    this->ReadPictures(); // until these are read, no other may be asked for
+    this->Want(ViewOf(this->View->GetRenderer()), /*moves=*/false);
+  }
 }
 
 glm::dmat4 ServedWindow::WorldToEye() const

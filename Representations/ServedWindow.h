@@ -64,6 +64,8 @@ private:
   void AfterRender(vtkObject* caller, unsigned long event, void* interactive);
   bool Move(vtkObject* caller, unsigned long event, void* data);
   void BeginMoves();
+  bool MayAsk() const;
+  void Release();
   void EndMoves() { this->Moving = this->EndsAtRest = false; }
   glm::dmat4 WorldToEye() const;
   void Look(vtkObject* caller, unsigned long event, void* timer);
