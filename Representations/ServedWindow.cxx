@@ -238,8 +238,8 @@ void ServedWindow::BeginMoves()
   this->Path.Begin();
 }
 
-/// The mouse is released: ranks begin with the picture before ParaView asks for its own, which takes
-/// a round trip. Depths of other data are sent once, after that.
+/// The mouse is released: ranks begin with the picture before ParaView asks for its own, which
+/// takes a round trip. Depths of other data are sent once, after that.
 void ServedWindow::Release()
 {
   this->EndMoves();
