@@ -13,7 +13,8 @@
 #                  interaction-series in the build folder)
 #   --scenes LIST  only these, separated by commas: S1, S2 (256^3), large (S2 with 1024^3), earthquake (a mesh),
 #                  isabel
-#   --modes LIST   only these, separated by commas: builtin, server, line, and each with -off or -volume
+#   --modes LIST   only these, separated by commas: builtin, server, line, and each with -off or -volume; server and line
+#                  with -remote or -remote-off, too, which are in no list by default
 #
 # Columns, modes and scenes are explained in README.md. Needs paraview, ffmpeg, and a display or Xvfb. Installs what
 # is missing, and builds in build-benchmark (BANYAN_BUILD_DIR names another folder). BANYAN_SKIP_INSTALL=1 leaves the
@@ -111,7 +112,7 @@ measure()
 filmed="${scenes%%,*}"
 [[ ",$scenes," != *,S2,* ]] || filmed=S2
 require_known scene "$scenes" S1 S2 large earthquake isabel
-require_known mode "$modes" {builtin,server,line}{,-off,-volume}
+require_known mode "$modes" {builtin,server,line}{,-off,-volume} {server,line}-remote{,-off}
 stage 1 4 "Installing what is missing and building"
 with_paraview=ON install_and_build
 plugin="$BuildFolder/lib/Banyan/Banyan.so"

@@ -3,16 +3,25 @@
 
 #include "RendererCamera.h"
 
+#include "Parallel/Composite/Footprints.h"
+
 #include "vtkRenderer.h"
 
 namespace banyan
 {
 
-void CoarseMark::Write(vtkRenderer* renderer)
+void CoarseMark::Write(vtkRenderer* renderer, const double* bounds)
 {
-  const glm::ivec2 high = ViewOf(renderer).Size - Margin;
+  PixelRect part{ glm::ivec2(0), ViewOf(renderer).Size };
+  if (bounds)
+  {
+    part = FootprintOf(CameraOf(renderer, glm::dvec3(0.0)), { bounds[0], bounds[2], bounds[4] },
+      { bounds[1], bounds[3], bounds[5] }, part)
+             .Rect;
+  }
+  const glm::ivec2 high = part.Hi - Margin;
   const PixelRect rect{ high - Side, high };
-  if (rect.Lo.x < 0 || rect.Lo.y < 0)
+  if (rect.Lo.x < part.Lo.x || rect.Lo.y < part.Lo.y)
   {
     return;
   }

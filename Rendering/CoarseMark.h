@@ -7,14 +7,16 @@
 namespace banyan
 {
 
-/// A small orange square in the upper right corner of a view: its picture will become better.
+/// A small orange square in the upper right corner of a view, or of a part of it: its picture will
+/// become better.
 class CoarseMark
 {
 public:
   static constexpr int Side = 10;  ///< pixels
-  static constexpr int Margin = 6; ///< to the edges of the view
+  static constexpr int Margin = 6; ///< to the edges
 
-  void Write(vtkRenderer* renderer);
+  /// @param bounds the part is the rectangle around these on the screen; null for the whole view
+  void Write(vtkRenderer* renderer, const double* bounds = nullptr);
 
   void ReleaseGraphicsResources(vtkWindow* window)
   {

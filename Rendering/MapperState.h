@@ -35,6 +35,7 @@ struct MapperState
   LateFrames Late{ Frames };
   std::vector<std::unique_ptr<FieldFrames>> WallFrames; ///< of each picture of a wall
   LateFramesOfRanks Served{ Frames };
+  bool ServesWindow = false; ///< of a client: exact pictures may come late to ParaView's own, too
   RenderWhenDrawn Again;
   bool ShowsCoarse = false;                  ///< the last picture: the exact one comes by itself
   const vtkRenderer* LastRenderer = nullptr; ///< only to compare with

@@ -53,9 +53,20 @@ PictureServer::~PictureServer()
 
 void PictureServer::Take(const PictureTicket& ticket, const Line& line)
 {
+  constexpr std::chrono::milliseconds most{ 250 };
+  const auto end = std::chrono::steady_clock::now() + most;
+  // Whoever has nothing more to say may have left: somebody else may want something.
+  const auto leaves = [&] { return line.HasMore() || std::chrono::steady_clock::now() > end; };
   this->Number = ticket.Number;
   this->HasAnswered = false;
   int credit = ticket.Credit;
+  if (ticket.Scene == PictureTicket::OfParaView)
+  {
+    this->Asked = ticket;
+    this->GoOnForParaView(leaves);
+    this->Answer(line, credit);
+    return;
+  }
   const bool isNews = ticket.IsNew() || !ticket.Depths.empty();
   if (isNews)
   {
@@ -76,25 +87,57 @@ void PictureServer::Take(const PictureTicket& ticket, const Line& line)
       }
     });
   this->Answer(line, credit);
-  // Whoever has nothing more to say may have left: somebody else may want something.
-  constexpr std::chrono::milliseconds most{ 250 };
-  const auto end = std::chrono::steady_clock::now() + most;
-  const auto leaves = [&] { return line.HasMore() || std::chrono::steady_clock::now() > end; };
   // What threads of another volume draw comes first.
-  const auto draws = [](const PictureServer* server)
-  { return server->Mapper->State->Served.IsDrawing(); };
-  const auto other = std::find_if(All().begin(), All().end(), draws);
-  if (other != All().end() && *other != this)
+  PictureServer* const other = WhoDraws();
+  if (other && other != this)
   {
-    (*other)->GoOn(leaves, line, credit);
+    other->GoOn(leaves, line, credit);
   }
   this->GoOn(leaves, line, credit);
 }
 
-void PictureServer::Stop()
+void PictureServer::Serve(bool serves)
 {
-  this->Mapper->State->Served.Stop();
-  this->Waiting.clear();
+  this->Mapper->State->ServesWindow = serves;
+  if (!serves)
+  {
+    this->Mapper->State->Served.Stop();
+    this->Waiting.clear();
+  }
+}
+
+/// Of this main thread: whose threads draw now. Null for none.
+PictureServer* PictureServer::WhoDraws()
+{
+  const auto draws = [](const PictureServer* server)
+  { return server->Mapper->State->Served.IsDrawing(); };
+  const auto found = std::find_if(All().begin(), All().end(), draws);
+  return found == All().end() ? nullptr : *found;
+}
+
+/// Collective: works on exact pictures of what ParaView has drawn, and says when this volume's is
+/// there.
+void PictureServer::GoOnForParaView(const std::function<bool()>& leaves)
+{
+  const auto goOn = [&leaves](PictureServer& server)
+  {
+    LateFramesOfRanks& served = server.Mapper->State->Served;
+    if (served.IsComing())
+    {
+      server.Attempt([&] { served.GoOn(leaves); });
+    }
+  };
+  PictureServer* const other = WhoDraws();
+  if (other && other != this)
+  {
+    goOn(*other);
+  }
+  goOn(*this);
+  if (!this->Mapper->State->Served.IsComing())
+  {
+    const bool isShown = this->Mapper->GetStatistics()->GetPictureIsExact() != 0;
+    this->Put(isShown ? PictureParcel::Same : PictureParcel::Exact, {});
+  }
 }
 
 /// Collective. What fails is sent as a sentence.

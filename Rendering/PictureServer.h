@@ -48,8 +48,8 @@ public:
   /// nowhere.
   void Take(const PictureTicket& ticket, const Line& line);
 
-  /// The client wants nothing any more.
-  void Stop();
+  /// Whether the client's window does not wait. It wants nothing any more if not.
+  void Serve(bool serves);
 
 private:
   /// Something for the client, of which a part was sent.
@@ -62,6 +62,8 @@ private:
 
   void Attempt(const std::function<void()>& action);
   void Draw();
+  static PictureServer* WhoDraws();
+  void GoOnForParaView(const std::function<bool()>& leaves);
   void GoOn(const std::function<bool()>& leaves, const Line& line, int& credit);
   void AddDepths(RayScene& scene, RayScene& coarse) const;
   void Rename();

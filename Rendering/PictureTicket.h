@@ -15,8 +15,12 @@ namespace banyan
 /// What a client sends to all ranks of its server: "draw this for me", or "go on with it".
 struct PictureTicket
 {
-  static constexpr int Version = 2;  ///< also in Representations/BanyanRepresentations.xml.in
+  static constexpr int Version = 3;  ///< also in Representations/BanyanRepresentations.xml.in
   static constexpr int Numbers = 29; ///< that it is sent as, besides the depths
+
+  /// In place of a scene: what ParaView has drawn last is to become exact. What is exact is told by
+  /// a message without content: Exact if it is to be shown, Same if it is shown.
+  static constexpr int OfParaView = 0;
 
   int Number = 0;      ///< from 1, one more each time
   int Display = 0;     ///< of the client's proxy, for which pictures are meant

@@ -93,6 +93,12 @@ bool VolumeFrame::MayBeLate(vtkRenderer* renderer, const Together& others) const
          window->GetSwapBuffers() != 0 && RenderWhenDrawn::CanWatch(window);
 }
 
+/// Whether ParaView's picture on ranks of a server may become exact later: the client asks for it.
+bool VolumeFrame::MayBeLateForClient(const Together& others) const
+{
+  return this->State->ServesWindow && others.OfMapper == 1 && this->Owner->GetDecoupled();
+}
+
 /// Nothing of this picture comes later.
 void VolumeFrame::DrawsAtOnce(bool exact)
 {
@@ -114,6 +120,15 @@ FieldFrames::Frame VolumeFrame::Draw(
   vtkBanyanFrameStatistics* const out = this->Owner->GetStatistics();
   const bool late = this->MayBeLate(renderer, others);
   state.LastRenderer = renderer;
+  if (this->MayBeLateForClient(others))
+  {
+    wish.Sampling.Interacting
+      ? state.Served.DrawCoarse(communicator, state.Field, *this->Wanted, wish)
+      : void(state.Served.Draw(
+          communicator, state.Field, *this->Wanted, *this->Wanted, wish, /*shows=*/true));
+    out->SetPictureIsExact(state.Served.Last().Exact ? 1 : 0);
+    return state.Served.Last().Frame;
+  }
   if (!late)
   {
     state.Late.Settle(state.Field, *this->Wanted, wish);
@@ -166,7 +181,8 @@ std::shared_ptr<const FloatImage> VolumeFrame::CastOnWall(
 
 bool VolumeFrame::HasSpectator(vtkRenderer* renderer, const Together& others) const
 {
-  return IsInteracting(renderer) || this->MayBeLate(renderer, others);
+  return IsInteracting(renderer) || this->MayBeLate(renderer, others) ||
+         this->MayBeLateForClient(others);
 }
 
 std::shared_ptr<const FloatImage> VolumeFrame::CastPart(

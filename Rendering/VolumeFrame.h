@@ -99,6 +99,7 @@ public:
 
 private:
   bool MayBeLate(vtkRenderer* renderer, const Together& others) const;
+  bool MayBeLateForClient(const Together& others) const;
   void TellMore(FieldFrames::Frame frame);
   void DrawsAtOnce(bool exact);
   FieldFrames::Frame Draw(

@@ -237,6 +237,15 @@ void ServedVolume::Take(const void* message, std::size_t bytes)
 void ServedVolume::Take(ParcelAssembly::Whole whole)
 {
   const PictureParcel& head = whole.Head;
+  if (head.Scene == PictureTicket::OfParaView && head.Kind != PictureParcel::Failure)
+  {
+    if (head.Kind != PictureParcel::Answer && head.Ticket > this->AwaitedSince)
+    {
+      this->AwaitsExact = false;
+      this->ExactNews = head.Kind == PictureParcel::Exact;
+    }
+    return;
+  }
   while (!this->Views.empty() && this->Views.front().Scene < head.Scene)
   {
     this->Views.pop_front();
@@ -290,6 +299,32 @@ void ServedVolume::FunctionsHaveChanged()
   {
     this->Window->StartTimer();
   }
+}
+
+void ServedVolume::WaitForExact(bool waits)
+{
+  this->AwaitsExact = waits;
+  this->ExactNews = false;
+  this->AwaitedSince = this->Number;
+}
+
+bool ServedVolume::GoOnWithExact()
+{
+  if (!this->AwaitsExact || this->HasFailed())
+  {
+    return false;
+  }
+  if (this->Number - this->Seen < MostUnseen && this->SinceTicket.Seconds() >= GoOnSeconds)
+  {
+    PictureTicket ticket;
+    ticket.Number = ++this->Number;
+    ticket.Display = this->Display;
+    ticket.Scene = PictureTicket::OfParaView;
+    ticket.Volumes = this->Volumes;
+    this->Proxy->SendTicket(ticket);
+    this->SinceTicket = banyan::Timer();
+  }
+  return true;
 }
 
 bool ServedVolume::GoOn()

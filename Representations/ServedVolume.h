@@ -44,6 +44,8 @@ public:
   bool IsServed() const;
   /// Whether they could.
   bool IsServable() const;
+  /// Whether the server was told that they do, if the client draws the window.
+  bool Serves() const { return this->Served; }
   /// @param volumes of the window that share the line
   void Serve(bool serves, int volumes);
 
@@ -54,6 +56,14 @@ public:
   /// Has the server go on. To be called now and then.
   /// @return whether something is still to come, or to be shown
   bool GoOn();
+
+  /// After a picture that the server has drawn for ParaView: whether it is to become exact.
+  void WaitForExact(bool waits);
+  /// Has the server go on with that. To be called now and then.
+  /// @return whether its exact picture is still to come
+  bool GoOnWithExact();
+  /// Whether the exact picture has come, and ParaView has to ask for it.
+  bool HasExactNews() const { return this->ExactNews; }
 
   /// Whether the view is still to be sent.
   bool HasNews() const { return this->IsNew; }
@@ -98,7 +108,10 @@ private:
   vtkSMBanyanVolumeProxy* Proxy;
   std::shared_ptr<ServedWindow> Window;
   vtkWeakPointer<vtkMultiProcessController> Server;
-  int Display;                ///< number that its pictures come with
+  int Display;              ///< number that its pictures come with
+  bool AwaitsExact = false; ///< for ParaView's own picture
+  bool ExactNews = false;
+  int AwaitedSince = 0;       ///< the last ticket before that
   unsigned long Messages = 0; ///< the server's, that are observed
   unsigned long OfDisplay = 0;
   bool Served = false;

@@ -192,6 +192,40 @@ void ServedWindow::AfterRender(vtkObject*, unsigned long, void* interactive)
     }
     this->StartTimer();
   }
+  else if (this->IsLate())
+  {
+    this->WaitForExact(!moves);
+  }
+}
+
+/// The server has drawn what could be had at once, and works on the exact picture.
+void ServedWindow::WaitForExact(bool waits)
+{
+  for (ServedVolume* const volume : this->Volumes)
+  {
+    volume->WaitForExact(waits && volume->Serves());
+  }
+  waits ? this->StartTimer() : this->StopTimer();
+}
+
+/// Once all exact pictures are there, ParaView asks for its own once more.
+void ServedWindow::LookForExact()
+{
+  bool comes = false;
+  bool isThere = false;
+  for (ServedVolume* const volume : this->Volumes)
+  {
+    comes = volume->GoOnWithExact() || comes;
+    isThere = isThere || volume->HasExactNews() || (volume->Serves() && volume->HasFailed());
+  }
+  if (!comes)
+  {
+    this->StopTimer();
+  }
+  if (!comes && isThere && !this->View->GetNeedsUpdate())
+  {
+    this->View->StillRender();
+  }
 }
 
 /// Whether the window may have the server draw, outside of a picture of ParaView's.
@@ -328,9 +362,17 @@ void ServedWindow::Look(vtkObject*, unsigned long, void* timer)
     return;
   }
   const std::shared_ptr<ServedWindow> stays = this->shared_from_this();
-  if (this->IsServed() && IsIdle(this->View))
+  if ((this->IsServed() || this->IsLate()) && IsIdle(this->View))
   {
     this->ReadPictures();
+  }
+  if (this->IsLate())
+  {
+    if (IsIdle(this->View))
+    {
+      this->LookForExact();
+    }
+    return;
   }
   if (!this->IsServed())
   {

@@ -33,9 +33,9 @@ class ServedVolume;
 ///
 /// Depths of other data in the view, which the client has and draws, go with the tickets. Where
 /// there are none, views of a moving camera are those that it will have when their pictures come.
-/// Where this does not do (stereo, walls, screenshots, steps of a play, scripts, failures, more
-/// data than a client gets, a volume that is not Decoupled), the server draws as ParaView asks for
-/// it.
+/// Where there are more data than a client gets, the server draws as ParaView asks for it: a coarse
+/// picture, and the exact one once it is there. Where neither does (stereo, walls, screenshots,
+/// steps of a play, scripts, failures, a volume that is not Decoupled), ParaView waits for it.
 class ServedWindow : public std::enable_shared_from_this<ServedWindow>
 {
 public:
@@ -54,6 +54,8 @@ public:
   vtkSMRenderViewProxy* GetView() const { return this->View; }
   /// Whether pictures come as messages now.
   bool IsServed() const { return this->Served && this->View && !IsRemote(this->View); }
+  /// Whether the server draws for ParaView, and exact pictures may come later.
+  bool IsLate() const { return this->Served && this->View && IsRemote(this->View); }
   /// Has what is missing asked for, and what comes be shown.
   void StartTimer();
 
@@ -71,6 +73,8 @@ private:
   void Look(vtkObject* caller, unsigned long event, void* timer);
   void ReadPictures();
   void ShowPictures();
+  void WaitForExact(bool waits);
+  void LookForExact();
 
   std::vector<ServedVolume*> InView() const;
   std::vector<ServedVolume*> InUse() const;

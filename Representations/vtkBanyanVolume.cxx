@@ -327,7 +327,9 @@ void vtkBanyanVolume::MarkUnless(bool exact, vtkRenderer* renderer)
   {
     this->Mark = std::make_unique<banyan::CoarseMark>();
   }
-  this->Mark->Write(renderer);
+  // Where several processes render, ParaView puts together what lies in the bounds of data.
+  const bool isPart = this->View && this->View->GetUseDistributedRenderingForRender();
+  this->Mark->Write(renderer, isPart ? this->GetBounds() : nullptr);
 }
 
 double* vtkBanyanVolume::GetBounds()

@@ -228,10 +228,7 @@ int vtkBanyanVolumeRepresentation::ProcessViewRequest(
 
 void vtkBanyanVolumeRepresentation::SetServed(bool served)
 {
-  if (!served)
-  {
-    this->Server->Stop();
-  }
+  this->Server->Serve(served);
   this->Served = served;
   this->Prop->SetPictures(served && IsClient() ? this->Pictures : nullptr);
 }

@@ -160,6 +160,9 @@ def show(arguments, view):
     display.SetRepresentationType("Volume" if arguments.mode.endswith("-volume") else "Banyan Volume")
     display.SetScalarBarVisibility(view, False)
     view.CenterOfRotation = list(view.CameraFocalPoint)
+    if "-remote" in arguments.mode:
+        simple.Show(simple.Sphere(Center=list(view.CameraFocalPoint), Radius=0.05 * bounds[1]), view)
+        view.RemoteRenderThreshold = 1e-3  # more data than this are left to the server
     return display
 
 

@@ -21,7 +21,9 @@ from tables import in_order, read  # noqa: E402
 
 WORDS = ("scene", "mode", "path")
 KINDS = {"": ("Banyan Volume, Decoupled", "tab:blue"), "off": ("Banyan Volume, not Decoupled", "tab:red"),
-         "volume": ("ParaView's own Volume", "tab:purple")}
+         "volume": ("ParaView's own Volume", "tab:purple"),
+         "remote": ("drawn by the server, Decoupled", "tab:green"),
+         "remote-off": ("drawn by the server, not Decoupled", "tab:orange")}
 PLACES = {"builtin": "without a server", "server": "with a server on this machine", "line": "with a server on a line"}
 EQUAL_DB = 62  # where equal pictures are drawn
 LATEST_MS = 1.3  # times the last picture's: where curves end

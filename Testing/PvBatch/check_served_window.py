@@ -6,6 +6,7 @@ import os
 import signal
 import time
 
+import numpy
 from paraview import simple
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
@@ -29,6 +30,11 @@ def is_server(process, port):
     return os.path.basename(command[0]) == "pvserver" and f"--server-port={port}" in command
 
 
+def has_mark(picture):
+    """Whether anything has the colour of the mark: on ranks of a server it is in the corner of the data."""
+    return (numpy.abs(picture - (255.0, 150.0, 0.0)) < 3).all(axis=-1).sum() > 50
+
+
 class ServedWindow:
     def __init__(self, folder):
         self.folder = folder
@@ -37,6 +43,7 @@ class ServedWindow:
         wavelet = simple.Wavelet(WholeExtent=[-60, 60, -60, 60, -60, 60])
         self.display = picture_scenes.volume(wavelet, self.view, "RTData")
         self.display.Shade = 1
+        self.displays = [self.display]  # that are shown
         self.display.MarkCoarsePictures = 1
         self.interactor = self.view.GetInteractor()
         self.window = self.view.GetRenderWindow()
@@ -90,8 +97,9 @@ class ServedWindow:
             self.wait(0.04)
 
     def is_exact(self):
-        self.display.UpdatePropertyInformation()
-        return self.display.GetPropertyValue("PictureIsExact") == 1
+        for display in self.displays:
+            display.UpdatePropertyInformation()
+        return all(display.GetPropertyValue("PictureIsExact") == 1 for display in self.displays)
 
     def require_exact(self, what):
         end = time.monotonic() + PATIENCE
@@ -214,6 +222,29 @@ class ServedWindow:
         self.require_exact(what)
         self.require_same(what, self.shown(what))
 
+    def require_late(self, what):
+        """Where the server draws for ParaView, it does not wait for the exact picture either."""
+        opacity = self.display.ScalarOpacityFunction
+        points = list(opacity.Points)
+        opacity.Points = [0.02 * value if i % 4 == 1 else value for i, value in enumerate(points)]
+        self.display.SampleDistanceVoxels = 0.2  # with little opacity this takes long
+        simple.Render(self.view)
+        self.require_exact(what + " first")
+        self.press()
+        self.move(3)
+        asked = self.asked_at_all
+        self.mouse("LeftButtonReleaseEvent")
+        exact, coarse = self.is_exact(), self.shown(what + " coarse")
+        session.require(self.asked_at_all == asked + 1 and not exact, f"{what}: a coarse picture comes first ({self.asked_at_all - asked}, {exact})")
+        session.require(has_mark(coarse), f"{what}: it has a mark")
+        self.require_exact(what)
+        session.require(self.asked_at_all == asked + 2, f"{what}: ParaView asks once more ({self.asked_at_all - asked})")
+        still = self.shown(what)
+        session.require(not has_mark(still), f"{what}: the exact picture has no mark")
+        self.require_same(what, still)
+        self.display.SampleDistanceVoxels = 0.0
+        opacity.Points = points
+
     def run(self):
         simple.ResetCamera(self.view)
         simple.Render(self.view)
@@ -271,13 +302,16 @@ class ServedWindow:
         self.view.RemoteRenderThreshold = 1e-3
         self.require_waits("with more data than a client gets")
         session.require(pictures.difference(self.shown("remote"), changed).max() > 50, "the server shows other data")
+        self.require_late("with more data than a client gets, at rest")
         self.view.RemoteRenderThreshold = threshold
 
         self.view.LODThreshold = whole  # or ParaView delivers coarse data after each still picture of its own
         wavelet = simple.Wavelet(WholeExtent=[-90, -70, -40, 40, -40, 40], Center=[-80.0, 0.0, 0.0])
         second = picture_scenes.volume(wavelet, self.view, "RTData")
+        self.displays.append(second)
         simple.Render(self.view)
-        self.require_exact("a second volume")  # the window renders once more by itself
+        self.wait(0.5)  # the window renders once more by itself
+        self.require_exact("a second volume")
         _, two = self.drag("with a second volume")
         session.require(pictures.difference(others, two).max() > 20, "a second volume is shown")
         self.view.GetActiveCamera().Azimuth(180.0)
@@ -287,6 +321,7 @@ class ServedWindow:
         self.require_waits("with a second volume that is waited for")
         second.Decoupled = 1
         simple.Hide(wavelet, self.view)
+        self.displays.remove(second)
 
         link = simple.CreateView("RenderView")
         simple.SetActiveView(self.view)

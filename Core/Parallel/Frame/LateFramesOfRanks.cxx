@@ -61,7 +61,7 @@ bool LateFramesOfRanks::AnyDraws()
 }
 
 bool LateFramesOfRanks::Draw(Communicator& communicator, DistributedField& field,
-  const RayScene& scene, const RayScene& coarse, const FieldFrames::Wish& wish)
+  const RayScene& scene, const RayScene& coarse, const FieldFrames::Wish& wish, bool shows)
 {
   const Hash128 name = LateFrames::NameOf(field, scene, wish);
   if (AllMax(communicator, name == this->Name ? 0.0 : 1.0) == 0.0)
@@ -73,9 +73,10 @@ bool LateFramesOfRanks::Draw(Communicator& communicator, DistributedField& field
   this->Name = Hash128{};
   FieldFrames::Wish exact = wish;
   exact.Sampling.Interacting = false;
-  const bool waits =
-    !wish.Sampling.Interacting && this->ExactSeconds && *this->ExactSeconds <= this->Waits.AtRest;
-  this->DrawBest(communicator, field, scene, waits ? nullptr : &coarse, exact);
+  const bool waits = !shows && !wish.Sampling.Interacting && this->ExactSeconds &&
+                     *this->ExactSeconds <= this->Waits.AtRest;
+  this->DrawBest(communicator, field, scene, waits ? nullptr : &coarse, exact,
+    shows ? this->Waits.AtRest : this->Waits.Patience);
   if (!this->Best.Exact)
   {
     this->Begin = [this, &communicator, &field, scene, exact]
@@ -110,12 +111,13 @@ void LateFramesOfRanks::Learn(const LateFrames::Drawn& drawn)
 
 /// Collective: draws what can be had at once.
 /// @param coarse null when it is not worth its time
+/// @param patience seconds that an exact picture may take that is waited for
 void LateFramesOfRanks::DrawBest(Communicator& communicator, DistributedField& field,
-  const RayScene& scene, const RayScene* coarse, const FieldFrames::Wish& exact)
+  const RayScene& scene, const RayScene* coarse, const FieldFrames::Wish& exact, double patience)
 {
   this->Any = true;
   RayScene own = scene;
-  if (this->ExactSeconds && *this->ExactSeconds <= this->Waits.Patience)
+  if (this->ExactSeconds && *this->ExactSeconds <= patience)
   {
     const Timer timer;
     this->Best = { this->Frames.Draw(communicator, field, own, exact), true };

@@ -36,10 +36,12 @@ public:
   /// anew may be better than a coarse one.
   /// @param communicator and the field have to stay, and the field as it is, until Stop
   /// @param coarse the same scene in the picture that a coarse one has: of another size, perhaps
+  /// @param shows whether Last is shown at once, and has to be there: then an exact picture that
+  /// takes Times::AtRest at most is waited for
   /// @return whether Last has changed
   /// Throws CollectiveError on all ranks when one of them fails.
   bool Draw(Communicator& communicator, DistributedField& field, const RayScene& scene,
-    const RayScene& coarse, const FieldFrames::Wish& wish);
+    const RayScene& coarse, const FieldFrames::Wish& wish, bool shows = false);
 
   /// Collective: draws a coarse picture, and begins no exact one: something of the scene is still
   /// to come. Another scene, of any object of this main thread, is stopped. Throws CollectiveError
@@ -77,7 +79,7 @@ public:
 private:
   void Learn(const LateFrames::Drawn& drawn);
   void DrawBest(Communicator& communicator, DistributedField& field, const RayScene& scene,
-    const RayScene* coarse, const FieldFrames::Wish& exact);
+    const RayScene* coarse, const FieldFrames::Wish& exact, double patience);
   void Start(Communicator& communicator, DistributedField& field, const RayScene& scene,
     const FieldFrames::Wish& exact);
 

@@ -26,14 +26,14 @@ public:
     this->Direct.Field.SetLoadBalancing(LoadBalancing::Off);
   }
 
-  bool Draw(const Situation& now)
+  bool Draw(const Situation& now, bool shows = false)
   {
     const RayScene scene = this->Player.Take(now);
     Situation coarse = now;
     coarse.Width /= 2;
     coarse.Height /= 2;
-    return this->Served.Draw(
-      this->Ranks, this->Player.Field, scene, SceneOf(coarse), PlainPlayer::WishOf(now, true));
+    return this->Served.Draw(this->Ranks, this->Player.Field, scene, SceneOf(coarse),
+      PlainPlayer::WishOf(now, true), shows);
   }
   void DrawCoarse(const Situation& now)
   {
@@ -269,6 +269,35 @@ TEST(CoarseThenExact, AtRestQuickPicturesHaveNoCoarseOne)
       volume.ExpectCoarse(now);
     },
     times);
+}
+
+TEST(CoarseThenExact, WhatIsShownAtOnceWaitsForQuickPictures)
+{
+  for (const double atRest : { 1e6, 0.0 })
+  {
+    LateFrames::Times times;
+    times.Patience = 0.0;
+    times.AtRest = atRest;
+    OnRanks(
+      [atRest](Volume& volume)
+      {
+        Situation now;
+        volume.Draw(now, /*shows=*/true);
+        volume.ExpectCoarse(now); // nobody knows yet what an exact one takes
+        volume.Finish();
+        now.Eye = 0.3;
+        EXPECT_TRUE(volume.Draw(now, /*shows=*/true));
+        EXPECT_TRUE(volume.Served.HasAny());
+        EXPECT_EQ(volume.Served.IsComing(), atRest == 0.0);
+        if (atRest == 0.0)
+        {
+          volume.ExpectCoarse(now);
+          volume.Finish();
+        }
+        volume.ExpectExact(now);
+      },
+      times);
+  }
 }
 
 TEST(CoarseThenExact, WhatWasPausedForAnotherViewGoesOn)
