@@ -76,7 +76,7 @@ bool LateFramesOfRanks::Draw(Communicator& communicator, DistributedField& field
   const bool waits = !shows && !wish.Sampling.Interacting && this->ExactSeconds &&
                      *this->ExactSeconds <= this->Waits.AtRest;
   this->DrawBest(communicator, field, scene, waits ? nullptr : &coarse, exact,
-    shows ? this->Waits.AtRest : this->Waits.Patience);
+    shows ? this->Waits.Shown : this->Waits.Patience);
   if (!this->Best.Exact)
   {
     this->Begin = [this, &communicator, &field, scene, exact]

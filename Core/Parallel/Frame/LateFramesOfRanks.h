@@ -37,7 +37,7 @@ public:
   /// @param communicator and the field have to stay, and the field as it is, until Stop
   /// @param coarse the same scene in the picture that a coarse one has: of another size, perhaps
   /// @param shows whether Last is shown at once, and has to be there: then an exact picture that
-  /// takes Times::AtRest at most is waited for
+  /// takes Times::Shown at most is waited for
   /// @return whether Last has changed
   /// Throws CollectiveError on all ranks when one of them fails.
   bool Draw(Communicator& communicator, DistributedField& field, const RayScene& scene,

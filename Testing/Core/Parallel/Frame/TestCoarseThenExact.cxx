@@ -273,13 +273,13 @@ TEST(CoarseThenExact, AtRestQuickPicturesHaveNoCoarseOne)
 
 TEST(CoarseThenExact, WhatIsShownAtOnceWaitsForQuickPictures)
 {
-  for (const double atRest : { 1e6, 0.0 })
+  for (const double shown : { 1e6, 0.0 })
   {
     LateFrames::Times times;
     times.Patience = 0.0;
-    times.AtRest = atRest;
+    times.Shown = shown;
     OnRanks(
-      [atRest](Volume& volume)
+      [shown](Volume& volume)
       {
         Situation now;
         volume.Draw(now, /*shows=*/true);
@@ -288,8 +288,8 @@ TEST(CoarseThenExact, WhatIsShownAtOnceWaitsForQuickPictures)
         now.Eye = 0.3;
         EXPECT_TRUE(volume.Draw(now, /*shows=*/true));
         EXPECT_TRUE(volume.Served.HasAny());
-        EXPECT_EQ(volume.Served.IsComing(), atRest == 0.0);
-        if (atRest == 0.0)
+        EXPECT_EQ(volume.Served.IsComing(), shown == 0.0);
+        if (shown == 0.0)
         {
           volume.ExpectCoarse(now);
           volume.Finish();
