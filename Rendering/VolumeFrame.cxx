@@ -122,10 +122,15 @@ FieldFrames::Frame VolumeFrame::Draw(
   state.LastRenderer = renderer;
   if (this->MayBeLateForClient(others))
   {
-    wish.Sampling.Interacting
-      ? state.Served.DrawCoarse(communicator, state.Field, *this->Wanted, wish)
-      : void(state.Served.Draw(
-          communicator, state.Field, *this->Wanted, *this->Wanted, wish, /*shows=*/true));
+    const RayScene& scene = *this->Wanted;
+    if (wish.Sampling.Interacting)
+    {
+      state.Served.DrawCoarse(communicator, state.Field, scene, wish);
+    }
+    else
+    {
+      state.Served.Draw(communicator, state.Field, scene, scene, wish, /*shows=*/true);
+    }
     out->SetPictureIsExact(state.Served.Last().Exact ? 1 : 0);
     return state.Served.Last().Frame;
   }

@@ -108,10 +108,7 @@ private:
   vtkSMBanyanVolumeProxy* Proxy;
   std::shared_ptr<ServedWindow> Window;
   vtkWeakPointer<vtkMultiProcessController> Server;
-  int Display;              ///< number that its pictures come with
-  bool AwaitsExact = false; ///< for ParaView's own picture
-  bool ExactNews = false;
-  int AwaitedSince = 0;       ///< the last ticket before that
+  int Display;                ///< number that its pictures come with
   unsigned long Messages = 0; ///< the server's, that are observed
   unsigned long OfDisplay = 0;
   bool Served = false;
@@ -141,6 +138,9 @@ private:
   double HadNone = 0.0; ///< when no message was waiting, by that
   std::shared_ptr<PicturesAtHand> Pictures;
   bool Better = false;
+  bool AwaitsExact = false; ///< of ParaView's own picture
+  bool ExactNews = false;
+  int AwaitedSince = 0; ///< the last ticket before that
   banyan::Timer SinceTicket;
 };
 

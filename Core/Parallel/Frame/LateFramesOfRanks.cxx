@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Frame/LateFramesOfRanks.h"
 
+#include "Base/Digest.h"
+
 #include <algorithm>
 #include <set>
 #include <utility>
@@ -63,7 +65,11 @@ bool LateFramesOfRanks::AnyDraws()
 bool LateFramesOfRanks::Draw(Communicator& communicator, DistributedField& field,
   const RayScene& scene, const RayScene& coarse, const FieldFrames::Wish& wish, bool shows)
 {
-  const Hash128 name = LateFrames::NameOf(field, scene, wish);
+  // Coarse pictures of both kinds have other sizes, and whoever shows one has not the other.
+  Digest digest;
+  digest.Add(LateFrames::NameOf(field, scene, wish));
+  digest.Add(shows);
+  const Hash128 name = digest.Get();
   if (AllMax(communicator, name == this->Name ? 0.0 : 1.0) == 0.0)
   {
     return false;

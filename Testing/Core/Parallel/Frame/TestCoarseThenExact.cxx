@@ -295,6 +295,9 @@ TEST(CoarseThenExact, WhatIsShownAtOnceWaitsForQuickPictures)
           volume.Finish();
         }
         volume.ExpectExact(now);
+        EXPECT_FALSE(volume.Draw(now, /*shows=*/true));
+        EXPECT_TRUE(volume.Draw(now)) << "a client that shows it itself has no picture yet";
+        volume.ExpectExact(now);
       },
       times);
   }
