@@ -5,7 +5,7 @@
 #include "VoxelCells.h"
 
 #include "Base/Error.h"
-#include "Mesh/Octree/Morton.h"
+#include "Base/Morton.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -173,7 +173,7 @@ private:
 vtkSmartPointer<vtkUnstructuredGrid> GridOfHyperTrees(
   vtkHyperTreeGrid* trees, const std::string& array)
 {
-  const auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   if (!trees || trees->GetNumberOfCells() == 0)
   {
     return grid;

@@ -5,9 +5,9 @@
 #include "Base/Box.h"
 #include "Base/Hash.h"
 #include "Base/HeldArray.h"
+#include "Base/Morton.h"
 #include "Mesh/Octree/HexMesh.h"
 #include "Mesh/Octree/MeshSurvey.h"
-#include "Mesh/Octree/Morton.h"
 
 #include <glm/mat4x4.hpp>
 

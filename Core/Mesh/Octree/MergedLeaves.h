@@ -2,7 +2,7 @@
 #ifndef banyan_Mesh_Octree_MergedLeaves_h
 #define banyan_Mesh_Octree_MergedLeaves_h
 
-#include "Mesh/Octree/Morton.h"
+#include "Base/Morton.h"
 
 #include <algorithm>
 #include <cstddef>

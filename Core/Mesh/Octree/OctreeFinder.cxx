@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Mesh/Octree/OctreeFinder.h"
 
+#include "Base/RadixSort.h"
 #include "Mesh/Octree/CellPlacer.h"
-#include "Mesh/Octree/RadixSort.h"
 
 #include <cmath>
 

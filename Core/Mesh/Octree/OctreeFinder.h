@@ -2,8 +2,8 @@
 #ifndef banyan_Mesh_Octree_OctreeFinder_h
 #define banyan_Mesh_Octree_OctreeFinder_h
 
+#include "Base/FirstFailure.h"
 #include "Mesh/Octree/ElementOctree.h"
-#include "Mesh/Octree/FirstFailure.h"
 
 #include <mutex>
 #include <string>

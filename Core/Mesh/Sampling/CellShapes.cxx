@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Mesh/Sampling/CellShapes.h"
 
-#include "Mesh/Octree/FirstFailure.h"
+#include "Base/FirstFailure.h"
 
 #include <glm/matrix.hpp>
 

@@ -3,7 +3,7 @@
 #define banyan_Mesh_Sampling_CubeRefiner_h
 
 #include "Base/Interruption.h"
-#include "Mesh/Octree/Morton.h"
+#include "Base/Morton.h"
 #include "Mesh/Sampling/PlaceInCell.h"
 
 #include <cstdint>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Mesh/Sampling/OneNumberPerPlace.h"
 
+#include "Base/FirstFailure.h"
 #include "Base/Hash.h"
+#include "Base/RadixSort.h"
 #include "Base/ThreadPool.h"
-#include "Mesh/Octree/FirstFailure.h"
-#include "Mesh/Octree/RadixSort.h"
 
 #include <glm/vec3.hpp>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Mesh/Sampling/SampledMesh.h"
 
+#include "Base/FirstFailure.h"
+#include "Base/RadixSort.h"
 #include "Base/ThreadPool.h"
-#include "Mesh/Octree/FirstFailure.h"
-#include "Mesh/Octree/RadixSort.h"
 #include "Mesh/Octree/TakenComponent.h"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ std::shared_ptr<SampledMesh> SampledMesh::Of(
   {
     throw Error("The mesh has no place that a box fits into");
   }
-  const std::shared_ptr<SampledMesh> made(new SampledMesh);
+  std::shared_ptr<SampledMesh> made(new SampledMesh);
   made->LargestDeviation = cubes.Deviation;
   made->BoxesAbove = cubes.Above;
   made->Coarse = cubes.Denied;

@@ -2,7 +2,7 @@
 #ifndef banyan_Mesh_Series_MeshAtlas_h
 #define banyan_Mesh_Series_MeshAtlas_h
 
-#include "Mesh/Octree/Morton.h"
+#include "Base/Morton.h"
 
 #include <glm/vec3.hpp>
 

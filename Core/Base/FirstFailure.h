@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Mesh_Octree_FirstFailure_h
-#define banyan_Mesh_Octree_FirstFailure_h
+#ifndef banyan_Base_FirstFailure_h
+#define banyan_Base_FirstFailure_h
 
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"

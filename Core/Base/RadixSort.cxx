@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Mesh/Octree/RadixSort.h"
+#include "Base/RadixSort.h"
 
 #include "Base/ThreadPool.h"
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace banyan
 {
 namespace
 {
 
-constexpr int DigitBits = 11;
-constexpr std::size_t Buckets = std::size_t{ 1 } << DigitBits;
+constexpr std::size_t Buckets = std::size_t{ 1 } << RadixDigitBits;
 
 using Counts = std::array<std::size_t, Buckets>;
 
@@ -20,9 +20,10 @@ using Counts = std::array<std::size_t, Buckets>;
 class Pass
 {
 public:
-  Pass(std::size_t count, int shift, ThreadPool& pool)
+  Pass(std::size_t count, int shift, int bits, ThreadPool& pool)
     : Count(count)
     , Shift(shift)
+    , Mask((std::size_t{ 1 } << bits) - 1)
     , Parts(static_cast<std::size_t>(pool.Width()))
     , Pool(pool)
     , Starts(Parts)
@@ -30,7 +31,7 @@ public:
   }
 
   /// @return false when all keys have the same digit
-  bool Plan(const std::vector<std::uint64_t>& keys)
+  bool Plan(const std::uint64_t* keys)
   {
     this->ForParts(
       [&](std::size_t part, std::size_t begin, std::size_t end)
@@ -58,8 +59,8 @@ public:
     return several;
   }
 
-  void Move(const std::vector<std::uint64_t>& keys, const std::vector<std::uint32_t>& values,
-    std::vector<std::uint64_t>& toKeys, std::vector<std::uint32_t>& toValues)
+  void Move(const std::uint64_t* keys, const std::uint32_t* values, std::uint64_t* toKeys,
+    std::uint32_t* toValues)
   {
     this->ForParts(
       [&](std::size_t part, std::size_t begin, std::size_t end)
@@ -75,7 +76,7 @@ public:
   }
 
 private:
-  std::size_t DigitOf(std::uint64_t key) const { return key >> this->Shift & (Buckets - 1); }
+  std::size_t DigitOf(std::uint64_t key) const { return key >> this->Shift & this->Mask; }
 
   template <class Function>
   void ForParts(Function&& function)
@@ -90,10 +91,35 @@ private:
 
   std::size_t Count;
   int Shift;
+  std::size_t Mask; ///< of the digit's bits
   std::size_t Parts;
   ThreadPool& Pool;
   std::vector<Counts> Starts; ///< per part and bucket: where the next key goes
 };
+
+/// Where keys and values are, and where they can be moved to.
+struct TwoPlaces
+{
+  std::uint64_t* Keys[2];
+  std::uint32_t* Values[2];
+};
+
+/// Sorts by one digit after the other, from one place to the other.
+/// @return which place the sorted keys are in
+int SortByDigits(const TwoPlaces& places, std::size_t count, int first, int end, ThreadPool& pool)
+{
+  int at = 0;
+  for (int shift = first; shift < end; shift += RadixDigitBits)
+  {
+    Pass pass(count, shift, std::min(RadixDigitBits, end - shift), pool);
+    if (pass.Plan(places.Keys[at]))
+    {
+      pass.Move(places.Keys[at], places.Values[at], places.Keys[1 - at], places.Values[1 - at]);
+      at = 1 - at;
+    }
+  }
+  return at;
+}
 
 } // namespace
 
@@ -106,15 +132,27 @@ void RadixSort(
   }
   std::vector<std::uint64_t> otherKeys(keys.size());
   std::vector<std::uint32_t> otherValues(values.size());
-  for (int shift = 0; shift < bits; shift += DigitBits)
+  const TwoPlaces places{ { keys.data(), otherKeys.data() },
+    { values.data(), otherValues.data() } };
+  if (SortByDigits(places, keys.size(), 0, bits, pool) == 1)
   {
-    Pass pass(keys.size(), shift, pool);
-    if (pass.Plan(keys))
-    {
-      pass.Move(keys, values, otherKeys, otherValues);
-      keys.swap(otherKeys);
-      values.swap(otherValues);
-    }
+    keys.swap(otherKeys);
+    values.swap(otherValues);
+  }
+}
+
+void RadixSort(KeyedNumbers& numbers, int first, int end, ThreadPool& pool)
+{
+  if (std::is_sorted(numbers.Keys.get(), numbers.Keys.get() + numbers.Count))
+  {
+    return;
+  }
+  KeyedNumbers others(numbers.Count);
+  const TwoPlaces places{ { numbers.Keys.get(), others.Keys.get() },
+    { numbers.Values.get(), others.Values.get() } };
+  if (SortByDigits(places, numbers.Count, first, end, pool) == 1)
+  {
+    std::swap(numbers, others);
   }
 }
 

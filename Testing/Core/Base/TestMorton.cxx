@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Mesh/Octree/Morton.h"
-#include "Mesh/Octree/RadixSort.h"
+#include "Base/Morton.h"
+#include "Base/RadixSort.h"
 
 #include "Base/ThreadPool.h"
 
@@ -65,6 +65,31 @@ TEST_P(RadixSortTest, SortsAsTheLibraryDoes)
       {
         ASSERT_EQ(keys[i], unsorted[values[i]]);
       }
+    }
+  }
+}
+
+TEST_P(RadixSortTest, SortsByABitRangeAlone)
+{
+  ThreadPool pool(GetParam());
+  std::mt19937_64 random(6);
+  for (const auto& [first, end] : { std::pair(3, 4), std::pair(5, 27), std::pair(31, 64) })
+  {
+    KeyedNumbers numbers(20011);
+    std::generate_n(numbers.Keys.get(), numbers.Count, random);
+    std::iota(numbers.Values.get(), numbers.Values.get() + numbers.Count, 0u);
+    const std::vector<std::uint64_t> keys(numbers.Keys.get(), numbers.Keys.get() + numbers.Count);
+    std::vector<std::uint32_t> expected(keys.size());
+    std::iota(expected.begin(), expected.end(), 0u);
+    const auto part = [&, from = first, to = end](std::uint32_t i)
+    { return keys[i] << (64 - to) >> (64 - to + from); };
+    std::stable_sort(expected.begin(), expected.end(),
+      [&](std::uint32_t a, std::uint32_t b) { return part(a) < part(b); });
+    RadixSort(numbers, first, end, pool);
+    for (std::size_t i = 0; i < keys.size(); ++i)
+    {
+      ASSERT_EQ(numbers.Values[i], expected[i]);
+      ASSERT_EQ(numbers.Keys[i], keys[expected[i]]);
     }
   }
 }

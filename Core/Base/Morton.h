@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Mesh_Octree_Morton_h
-#define banyan_Mesh_Octree_Morton_h
+#ifndef banyan_Base_Morton_h
+#define banyan_Base_Morton_h
 
 #include "Base/Box.h"
 
