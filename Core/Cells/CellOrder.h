@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Cells_CellOrder_h
+#define banyan_Cells_CellOrder_h
+
+#include "Cells/CellLattice.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace banyan
+{
+
+class ThreadPool;
+
+/// The numbers of all drawn cells in the one order that they are drawn in: along a Morton curve by
+/// their middles, quantised to 21 bits along the longest axis of the lattice. Cells with the same
+/// key follow one another by a hash of the places of their corners, which does not depend on how
+/// these are numbered. So the same cells come in the same order, however a mesh numbers its cells
+/// and points, for any number of threads. Cells with all corners in common stay in the order of
+/// their numbers.
+///
+/// Takes 4 bytes per cell, and 24 more meanwhile.
+/// @param lattice around all drawn cells
+/// Throws Error when the mesh has 2^32 cells or more.
+std::vector<std::uint32_t> OrderOfCells(
+  const CellMesh& mesh, const CellFacts& facts, const CellLattice& lattice, ThreadPool& pool);
+
+} // namespace banyan
+
+#endif

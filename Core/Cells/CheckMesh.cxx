@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Cells/CheckMesh.h"
+
+#include "Base/FirstFailure.h"
+#include "Base/ThreadPool.h"
+#include "Cells/CellCorners.h"
+#include "Cells/CellJacobian.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace banyan
+{
+namespace
+{
+
+void Note(CellFacts::Some& some, std::int64_t cell)
+{
+  some.First = some.Count == 0 ? cell : std::min(some.First, cell);
+  ++some.Count;
+}
+
+/// @return whether the first of all is one of these
+bool Add(CellFacts::Some& to, const CellFacts::Some& from)
+{
+  const bool first = from.Count > 0 && (to.Count == 0 || from.First < to.First);
+  to.First = first ? from.First : to.First;
+  to.Count += from.Count;
+  return first;
+}
+
+void Add(CellFacts& to, const CellFacts& from)
+{
+  for (std::size_t shape = 0; shape < to.PerShape.size(); ++shape)
+  {
+    to.PerShape[shape] += from.PerShape[shape];
+  }
+  Add(to.NotFinite, from.NotFinite);
+  Add(to.WithoutVolume, from.WithoutVolume);
+  Add(to.Folded, from.Folded);
+  if (Add(to.OtherTypes, from.OtherTypes))
+  {
+    to.FirstOtherType = from.FirstOtherType;
+  }
+}
+
+/// Whether all coordinates can be computed with.
+bool AreUsable(const CellPlaces& places, int corners)
+{
+  return std::all_of(places.begin(), places.begin() + corners,
+    [](const glm::dvec3& p)
+    {
+      // False for what is no number.
+      return std::abs(p.x) <= CellFacts::MostCoordinate &&
+             std::abs(p.y) <= CellFacts::MostCoordinate &&
+             std::abs(p.z) <= CellFacts::MostCoordinate;
+    });
+}
+
+/// Looks at cells one after the other.
+template <class Real>
+class Checker
+{
+public:
+  Checker(const CellMesh& mesh, const CornerReader<Real>& reader, FirstFailure& failure)
+    : Mesh(mesh)
+    , Reader(reader)
+    , Failure(failure)
+  {
+  }
+
+  /// @return whether the cell is drawn
+  bool Draws(std::int64_t cell, CellFacts& facts) const
+  {
+    if (this->Mesh.Hidden && this->Mesh.Hidden[cell] != 0)
+    {
+      return false;
+    }
+    const MeshCell is = this->Mesh.Cell(cell);
+    const int corners = CornersOf(is.Shape);
+    if (corners == 0)
+    {
+      Note(facts.OtherTypes, cell);
+      // Cells come in the order of their numbers.
+      facts.FirstOtherType =
+        facts.OtherTypes.Count == 1 ? this->Mesh.Types[cell] : facts.FirstOtherType;
+      return false;
+    }
+    if (!this->AreInRange(cell, is, corners))
+    {
+      return false;
+    }
+    const CellPlaces places = this->Reader.At(cell, is);
+    if (!AreUsable(places, corners))
+    {
+      Note(facts.NotFinite, cell);
+      return false;
+    }
+    const JacobianSigns signs = SignsOfJacobian(is.Shape, places);
+    if (!signs.Positive && !signs.Negative)
+    {
+      Note(facts.WithoutVolume, cell);
+      return false;
+    }
+    if (signs.Positive && signs.Negative)
+    {
+      Note(facts.Folded, cell);
+    }
+    ++facts.PerShape[static_cast<std::size_t>(is.Shape)];
+    return true;
+  }
+
+private:
+  bool AreInRange(std::int64_t cell, const MeshCell& is, int corners) const
+  {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(corners); ++i)
+    {
+      if (is.Points[i] < 0 || is.Points[i] >= this->Mesh.PointCount)
+      {
+        this->Failure.Report(cell, "Cell " + std::to_string(cell) + " refers to point " +
+                                     std::to_string(is.Points[i]) + ", and the mesh has " +
+                                     std::to_string(this->Mesh.PointCount) + " points");
+        return false;
+      }
+    }
+    return true;
+  }
+
+  const CellMesh& Mesh;
+  const CornerReader<Real>& Reader;
+  FirstFailure& Failure;
+};
+
+void CheckSize(const CellMesh& mesh)
+{
+  if (mesh.Is == CellMesh::Kind::Cells)
+  {
+    return;
+  }
+  const std::array<std::int64_t, 3> size{ mesh.Size.x, mesh.Size.y, mesh.Size.z };
+  if (*std::min_element(size.begin(), size.end()) < 2)
+  {
+    throw Error("A grid whose cells are drawn needs two points along each axis, and this one has " +
+                std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
+                std::to_string(size[2]));
+  }
+  const std::int64_t points = size[0] * size[1] * size[2];
+  const std::int64_t cells = (size[0] - 1) * (size[1] - 1) * (size[2] - 1);
+  if (mesh.PointCount != points || mesh.CellCount != cells)
+  {
+    throw Error("A grid of this size has " + std::to_string(points) + " points and " +
+                std::to_string(cells) + " cells, and not " + std::to_string(mesh.PointCount) +
+                " and " + std::to_string(mesh.CellCount));
+  }
+}
+
+std::string Sentence(const CellFacts::Some& some, const std::string& have)
+{
+  const std::string cell = std::to_string(some.First);
+  return some.Count == 1
+           ? "Cell " + cell + ' ' + have
+           : std::to_string(some.Count) + " cells, the first of which is " + cell + ", " + have;
+}
+
+} // namespace
+
+std::int64_t CellFacts::Drawn() const
+{
+  return std::accumulate(this->PerShape.begin(), this->PerShape.end(), std::int64_t{ 0 });
+}
+
+std::vector<std::string> CellFacts::Remarks() const
+{
+  std::vector<std::string> remarks;
+  const auto say = [&remarks](const Some& some, const std::string& one, const std::string& many)
+  {
+    if (some.Count > 0)
+    {
+      remarks.push_back(Sentence(some, some.Count == 1 ? one : many));
+    }
+  };
+  const std::string points = "left out: coordinates are not finite, or beyond 1e150";
+  say(this->NotFinite, "is " + points, "are " + points);
+  const std::string flat = "left out: all corners lie in a plane";
+  say(this->WithoutVolume, "is " + flat, "are " + flat);
+  const std::string type = std::to_string(this->FirstOtherType) + " of VTK is not drawn";
+  say(this->OtherTypes, "is left out: type " + type, "are left out: type " + type);
+  say(this->Folded, "is folded over at a corner, and may have a hole there",
+    "are folded over at a corner, and may have holes there");
+  return remarks;
+}
+
+CellFacts CheckCells(const CellMesh& mesh, ThreadPool& pool)
+{
+  CheckSize(mesh);
+  CellFacts facts;
+  facts.LeftOut.resize(static_cast<std::size_t>(mesh.CellCount));
+  std::vector<CellFacts> parts(static_cast<std::size_t>(pool.Width()));
+  FirstFailure failure;
+  WithCorners(mesh,
+    [&](const auto& reader)
+    {
+      const Checker checker(mesh, reader, failure);
+      ForRuns(mesh.CellCount, pool, failure,
+        [&](std::int64_t begin, std::int64_t end, int worker)
+        {
+          CellFacts part;
+          for (std::int64_t cell = begin; cell < end; ++cell)
+          {
+            facts.LeftOut[static_cast<std::size_t>(cell)] = checker.Draws(cell, part) ? 0 : 1;
+          }
+          Add(parts[static_cast<std::size_t>(worker)], part);
+        });
+    });
+  for (const CellFacts& part : parts)
+  {
+    Add(facts, part);
+  }
+  if (facts.Drawn() == mesh.CellCount)
+  {
+    facts.LeftOut = {};
+  }
+  return facts;
+}
+
+} // namespace banyan

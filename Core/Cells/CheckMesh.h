@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Cells_CheckMesh_h
+#define banyan_Cells_CheckMesh_h
+
+#include "Cells/CellMesh.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace banyan
+{
+
+class ThreadPool;
+
+/// Which cells of a mesh are drawn, and what is wrong with the others. Takes a byte per cell where
+/// some are not drawn.
+struct CellFacts
+{
+  /// Coordinates beyond this are not drawn: their products would not be finite.
+  static constexpr double MostCoordinate = 1e150;
+
+  /// Cells with something in common.
+  struct Some
+  {
+    std::int64_t Count = 0;
+    std::int64_t First = -1; ///< the lowest number of them
+  };
+
+  std::array<std::int64_t, 5> PerShape{}; ///< drawn cells, by the number of their CellShape
+  Some NotFinite;                         ///< left out: coordinates not finite, or too large
+  Some WithoutVolume;                     ///< left out: all corners in a plane
+  Some OtherTypes;                        ///< left out: not of a shape that is drawn
+  int FirstOtherType = 0;                 ///< as VTK numbers types
+  Some Folded; ///< drawn, but with corners at which they are mirrored, and others where not
+
+  std::vector<std::uint8_t> LeftOut; ///< not 0 for cells that are not drawn; empty where all are
+
+  bool Draws(std::int64_t cell) const
+  {
+    return this->LeftOut.empty() || this->LeftOut[static_cast<std::size_t>(cell)] == 0;
+  }
+
+  /// How many cells are drawn.
+  std::int64_t Drawn() const;
+
+  /// Sentences about cells that are left out or folded, each with the first of them.
+  std::vector<std::string> Remarks() const;
+};
+
+/// Looks at all cells, in parallel. Hidden ones are not looked at, and not counted.
+/// Throws Error when a cell refers to a point that is not there, or a grid has not the points and
+/// cells that follow from its size.
+CellFacts CheckCells(const CellMesh& mesh, ThreadPool& pool);
+
+} // namespace banyan
+
+#endif
