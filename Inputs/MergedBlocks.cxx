@@ -6,7 +6,9 @@
 #include "vtkAppendFilter.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkCellType.h"
 #include "vtkDataArray.h"
+#include "vtkDataArrayRange.h"
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkNew.h"
@@ -15,6 +17,7 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <algorithm>
 #include <string>
 
 namespace banyan
@@ -54,15 +57,22 @@ std::string Names(vtkDataSetAttributes* attributes)
   return text;
 }
 
+bool HasPolyhedra(vtkUnstructuredGrid* grid)
+{
+  const auto types = PlainCellTypesOf(grid);
+  const auto values = vtk::DataArrayValueRange<1>(types.GetPointer());
+  return std::find(values.begin(), values.end(), VTK_POLYHEDRON) != values.end();
+}
+
 /// Makes a key of the cells and of the names of arrays; false where something is no unstructured
-/// grid.
+/// grid, or has faces of polyhedra, which no key tells apart.
 bool KeyOf(const Blocks& blocks, Hash128& key)
 {
   key = {};
   for (const auto& block : blocks)
   {
     vtkUnstructuredGrid* const grid = vtkUnstructuredGrid::SafeDownCast(block);
-    if (!grid || !grid->GetPoints() || grid->GetNumberOfCells() == 0)
+    if (!grid || !grid->GetPoints() || grid->GetNumberOfCells() == 0 || HasPolyhedra(grid))
     {
       return false;
     }
@@ -83,7 +93,7 @@ template <class ArrayOf>
 vtkSmartPointer<vtkAbstractArray> Joined(
   vtkAbstractArray* kept, const Blocks& blocks, const ArrayOf& arrayOf)
 {
-  const auto joined = vtkSmartPointer<vtkAbstractArray>::Take(kept->NewInstance());
+  auto joined = vtkSmartPointer<vtkAbstractArray>::Take(kept->NewInstance());
   joined->SetName(kept->GetName());
   joined->SetNumberOfComponents(kept->GetNumberOfComponents());
   joined->CopyComponentNames(kept);
@@ -170,7 +180,7 @@ void KeepArrays(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
 /// Copies what the next steps need, without values.
 vtkSmartPointer<vtkUnstructuredGrid> CellsAndNames(vtkUnstructuredGrid* grid)
 {
-  const auto kept = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  auto kept = vtkSmartPointer<vtkUnstructuredGrid>::New();
   kept->CopyStructure(grid);
   vtkNew<vtkPoints> none;
   none->SetDataType(grid->GetPoints()->GetDataType());
@@ -199,11 +209,16 @@ vtkSmartPointer<vtkUnstructuredGrid> MergedBlocks::Of(const Blocks& blocks)
     append->AddInputData(block);
   }
   append->Update();
-  const vtkSmartPointer<vtkUnstructuredGrid> grid = append->GetOutput();
+  vtkSmartPointer<vtkUnstructuredGrid> grid = append->GetOutput();
   ++this->Merged;
   this->Kept = keeps ? CellsAndNames(grid) : nullptr;
   this->Key = key;
   return grid;
+}
+
+vtkSmartPointer<vtkDataSet> MergedBlocks::AsOne(const Blocks& blocks)
+{
+  return blocks.size() == 1 ? blocks[0] : vtkSmartPointer<vtkDataSet>(this->Of(blocks));
 }
 
 } // namespace banyan

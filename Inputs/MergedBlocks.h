@@ -26,6 +26,10 @@ public:
   /// @param blocks at least one
   vtkSmartPointer<vtkUnstructuredGrid> Of(const std::vector<vtkSmartPointer<vtkDataSet>>& blocks);
 
+  /// One block as it is, of whatever type; several as `Of` makes them.
+  /// @param blocks at least one
+  vtkSmartPointer<vtkDataSet> AsOne(const std::vector<vtkSmartPointer<vtkDataSet>>& blocks);
+
   /// How often cells were merged.
   int CellsMerged() const { return this->Merged; }
 

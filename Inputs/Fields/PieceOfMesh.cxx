@@ -9,8 +9,6 @@
 
 namespace banyan
 {
-namespace
-{
 
 NodeArray NodesOf(vtkDataArray* values, int component)
 {
@@ -31,8 +29,6 @@ NodeArray NodesOf(vtkDataArray* values, int component)
   }
   return nodes;
 }
-
-} // namespace
 
 MeshField::Piece PieceOfMesh(const FieldPiece& piece, vtkSmartPointer<vtkDataArray>& kept)
 {

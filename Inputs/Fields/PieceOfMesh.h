@@ -11,6 +11,10 @@
 namespace banyan
 {
 
+/// An array as Core takes it; no values where it is null.
+/// Throws Error when the type is none of numbers.
+NodeArray NodesOf(vtkDataArray* values, int component);
+
 /// The hexahedra of this rank, and their values.
 /// @param piece its Grid is null on ranks without cells; its Array, of the points or cells of the
 /// grid as Where says, may be anything there

@@ -7,16 +7,21 @@
 #include "vtkAppendFilter.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkCellType.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
+#include "vtkIdList.h"
 #include "vtkIntArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
+#include "vtkRectilinearGrid.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 namespace
 {
@@ -175,4 +180,51 @@ TEST(MergedBlocks, OneBlockIsHandedOn)
   ExpectAppended(grid, one);
   EXPECT_EQ(grid->GetCells()->GetConnectivityArray(),
     vtkUnstructuredGrid::SafeDownCast(one[0])->GetCells()->GetConnectivityArray());
+}
+
+TEST(MergedBlocks, OneBlockOfAnyTypeStaysAsItIs)
+{
+  banyan::MergedBlocks merged;
+  vtkNew<vtkRectilinearGrid> boxes;
+  boxes->SetDimensions(2, 3, 4);
+  const vtkSmartPointer<vtkDataSet> one = boxes.GetPointer();
+  EXPECT_EQ(merged.AsOne({ one }), one);
+  EXPECT_EQ(merged.CellsMerged(), 0);
+  // Blocks of several kinds become cells.
+  const auto both = merged.AsOne({ one, Row(3, 0.0, 0) });
+  ASSERT_TRUE(vtkUnstructuredGrid::SafeDownCast(both));
+  EXPECT_EQ(both->GetNumberOfCells(), 6 + 3);
+}
+
+TEST(MergedBlocks, FacesOfPolyhedraAreTakenAnew)
+{
+  // A cube whose last side is one square, or two triangles.
+  const auto cube = [](bool cut)
+  {
+    const auto grid = Row(1, 0.0, 0);
+    vtkNew<vtkUnstructuredGrid> polyhedron;
+    polyhedron->SetPoints(grid->GetPoints());
+    vtkNew<vtkIdList> faces;
+    faces->InsertNextId(cut ? 7 : 6);
+    for (const std::vector<vtkIdType>& face : { std::vector<vtkIdType>{ 0, 1, 3, 2 },
+           { 4, 6, 7, 5 }, { 0, 4, 5, 1 }, { 2, 3, 7, 6 }, { 0, 2, 6, 4 } })
+    {
+      faces->InsertNextId(4);
+      std::for_each(face.begin(), face.end(), [&](vtkIdType id) { faces->InsertNextId(id); });
+    }
+    const std::vector<vtkIdType> side = cut ? std::vector<vtkIdType>{ 3, 1, 5, 7, 3, 1, 7, 3 }
+                                            : std::vector<vtkIdType>{ 4, 1, 5, 7, 3 };
+    std::for_each(side.begin(), side.end(), [&](vtkIdType id) { faces->InsertNextId(id); });
+    polyhedron->Allocate(1);
+    polyhedron->InsertNextCell(VTK_POLYHEDRON, faces);
+    return vtkSmartPointer<vtkDataSet>(polyhedron.GetPointer());
+  };
+  banyan::MergedBlocks merged;
+  for (const bool cut : { false, true })
+  {
+    const auto grid = merged.Of({ cube(cut), cube(cut) });
+    vtkNew<vtkIdList> faces;
+    grid->GetFaceStream(1, faces);
+    EXPECT_EQ(faces->GetId(0), cut ? 7 : 6);
+  }
 }
