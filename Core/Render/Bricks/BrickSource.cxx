@@ -3,6 +3,7 @@
 
 #include "Render/Bricks/SampledBox.h"
 #include "Render/Bricks/SummaryTree.h"
+#include "Render/Scene/PictureCaster.h"
 
 #include <optional>
 #include <vector>
@@ -178,6 +179,12 @@ void BrickSource::TakeKept(BrickSource& other, const Box& domain)
 }
 
 std::unique_ptr<BrickSource> BrickSource::MakeLevel(int, const Box&)
+{
+  return nullptr;
+}
+
+std::unique_ptr<PictureCaster> BrickSource::MakeCaster(
+  const RayScene&, const Box&, ThreadPool&, RayStatistics&)
 {
   return nullptr;
 }

@@ -23,7 +23,11 @@
 namespace banyan
 {
 
+class PictureCaster;
 class SummaryTree;
+class ThreadPool;
+struct RayScene;
+struct RayStatistics;
 
 /// One finite value, and the type that samples have.
 struct UniformValue
@@ -96,6 +100,13 @@ public:
 
   /// Memory that one loaded brick takes (0 when the values are in memory anyway).
   virtual std::size_t LoadBytes(std::int64_t brick) const = 0;
+
+  /// What draws this level of a picture in place of bricks; null where bricks are drawn. Everything
+  /// referred to must stay.
+  /// @param cells samples elsewhere are left out
+  /// @param statistics is added to
+  virtual std::unique_ptr<PictureCaster> MakeCaster(
+    const RayScene& scene, const Box& cells, ThreadPool& pool, RayStatistics& statistics);
 
   /// Called from many threads. Throws Error when the brick cannot be read.
   virtual BrickView Load(std::int64_t brick) = 0;

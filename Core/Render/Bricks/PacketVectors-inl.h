@@ -13,6 +13,7 @@
 #include <hwy/highway.h>
 
 #include <cstring>
+#include <limits>
 
 HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
@@ -55,6 +56,7 @@ struct Blocks
   VF Of[4];
 };
 
+#if HWY_TARGET != HWY_SCALAR
 /// Blocks at the first, fifth, ... distance.
 HWY_INLINE VF LoadBlocks(const char* base, const std::int32_t* bytes)
 {
@@ -229,13 +231,15 @@ HWY_INLINE Blocks Transposed(const Blocks& blocks)
     hn::BitCast(d, hn::InterleaveUpper(wide, highAB, highCD)) } };
 }
 
+#endif
+
 // No fused operations: all targets give the same bits, and those of the scalar interpolator.
 HWY_INLINE VF Mix(VF a, VF b, VF part)
 {
   return hn::Add(a, hn::Mul(part, hn::Sub(b, a)));
 }
 
-#if BANYAN_HAS_PAIRS
+#if HWY_TARGET != HWY_SCALAR && BANYAN_HAS_PAIRS
 HWY_INLINE Pairs Mix(const Pairs& a, const Pairs& b, const Pairs& part)
 {
   return { { Mix(a.Of[0], b.Of[0], part.Of[0]), Mix(a.Of[1], b.Of[1], part.Of[1]) } };
@@ -269,6 +273,31 @@ HWY_INLINE VI EntriesOf(const TableLookup& lookup, VI buckets, VF value)
     entries = hn::Add(entries, hn::IfThenElseZero(above, hn::Set(di, step)));
   }
   return entries;
+}
+
+/// As TableLookup::IndexOf.
+/// @tparam Special whether values may not be finite, or the table may have edges
+template <bool Special>
+HWY_INLINE VI IndicesIn(const TableLookup& lookup, VF value)
+{
+  const D d;
+  const VF position =
+    hn::Add(hn::Mul(hn::Sub(value, hn::Set(d, lookup.Low)), hn::Set(d, lookup.Scale)),
+      hn::Set(d, lookup.Bias));
+  const VF last = hn::Set(d, lookup.Last);
+  if (!Special)
+  {
+    const VF inside = hn::Min(hn::Max(position, hn::Zero(d)), last);
+    return Truncated(inside);
+  }
+  const VF notBelow = hn::IfThenElseZero(hn::Gt(position, hn::Zero(d)), position);
+  VI index = Truncated(hn::IfThenElse(hn::Lt(notBelow, last), notBelow, last));
+  if (lookup.Edges)
+  {
+    index = EntriesOf(lookup, index, value);
+  }
+  const auto finite = hn::Le(hn::Abs(value), hn::Set(d, std::numeric_limits<float>::max()));
+  return hn::IfThenElse(hn::RebindMask(DI(), finite), index, hn::Set(DI(), lookup.Transparent));
 }
 
 /// As OpacityOfDepth::Of.

@@ -3,6 +3,7 @@
 #define banyan_Render_Levels_LevelCaster_h
 
 #include "Render/Levels/BrickPlan.h"
+#include "Render/Scene/PictureCaster.h"
 
 #include <cstdint>
 #include <memory>
@@ -10,12 +11,10 @@
 namespace banyan
 {
 
-class PictureWatcher;
-
 /// Casts the rays of those tiles of a picture that are sampled at one level: CastRays for that
 /// level. It plans once (BrickPlan), then goes through the plan batch by batch: BatchQueue takes a
 /// batch, BrickLoader loads it, and BatchDrawer draws it to the LevelTiles.
-class LevelCaster
+class LevelCaster final : public PictureCaster
 {
 public:
   /// Everything referred to must stay. Finds the bricks that can be seen.
@@ -25,14 +24,8 @@ public:
   LevelCaster(const RayScene& scene, BrickSource& source, const Box& cells,
     std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics);
 
-  /// Pixels that the visible bricks may touch, those of other levels' tiles included.
-  const PixelRect& Rect() const { return this->Plan->Touched; }
-
-  /// Draws the tiles of the level, and makes them final: premultiplied colours and opacities.
-  /// @param picture its pixels in tiles of the level are set, whatever they were; while they are
-  /// drawn, they have the *transmittance* in the fourth component
-  /// @param watcher is told of tiles that are final; null for none
-  void Draw(FloatImage& picture, PictureWatcher* watcher);
+  const PixelRect& Rect() const override { return this->Plan->Touched; }
+  void Draw(FloatImage& picture, PictureWatcher* watcher) override;
 
 private:
   LevelScene Level;

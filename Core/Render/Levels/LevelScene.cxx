@@ -24,7 +24,8 @@ std::unique_ptr<const ShadingTable> ShadingOf(const RayScene& scene, const glm::
 } // namespace
 
 LevelSampling::LevelSampling(const RayScene& scene, double distance, const BrickSource& source)
-  : Lattice(scene, distance, source.CellEdges() * (1 << source.CoarsestBrickLevel()),
+  : Distance(distance)
+  , Lattice(scene, distance, source.CellEdges() * (1 << source.CoarsestBrickLevel()),
       source.CoarsestBrickLevel())
   , Steps(FunctionTables::Process().StepsOf(scene.Transfer, distance))
   , Table(*Steps)

@@ -17,6 +17,7 @@ namespace banyan
 /// One way to sample rays at a level: where samples lie, and what colours they get.
 struct LevelSampling
 {
+  double Distance;    ///< world length between samples
   RayLattice Lattice; ///< made for the largest cells of the source
   std::shared_ptr<const StepTable> Steps;
   const StepTable& Table;                            ///< *Steps

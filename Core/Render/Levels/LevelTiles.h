@@ -44,6 +44,7 @@ public:
     PictureWatcher* watcher, std::size_t workers);
 
   std::size_t Count() const { return this->Tiles.size(); }
+  const TileGrid& Cut() const { return this->Grid; }
   LevelTile& operator[](std::size_t tile) { return this->Tiles[tile]; }
   const LevelTile& operator[](std::size_t tile) const { return this->Tiles[tile]; }
   PixelRect RectOf(std::size_t tile) const { return this->Grid.RectOf(tile); }

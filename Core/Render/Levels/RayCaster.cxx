@@ -54,12 +54,15 @@ FloatImage Cast(const RayScene& scene, BrickSource& source, const Box& cells,
   const Box inside = Intersection(cells, scene.DomainCells);
   FloatImage picture;
   picture.Rect = least;
-  std::vector<std::unique_ptr<LevelCaster>> casters;
+  std::vector<std::unique_ptr<PictureCaster>> casters;
   for (const int level : LevelsOf(scene))
   {
     BrickSource& at = SourceAt(source, level, scene);
-    casters.push_back(std::make_unique<LevelCaster>(
-      scene, at, CellsAtLevel(inside, at.CellEdges()), budgetBytes, pool, statistics));
+    const Box drawn = CellsAtLevel(inside, at.CellEdges());
+    std::unique_ptr<PictureCaster> caster = at.MakeCaster(scene, drawn, pool, statistics);
+    casters.push_back(
+      caster ? std::move(caster)
+             : std::make_unique<LevelCaster>(scene, at, drawn, budgetBytes, pool, statistics));
     picture.Rect = Union(picture.Rect, casters.back()->Rect());
   }
   source.Kept().BeginPicture(PackedBrickCache::PartOf(budgetBytes), KindOf(scene));

@@ -12,7 +12,7 @@
 #include "Render/Bricks/PacketVectors-inl.h"
 #include "Render/Raycast/ColourLanes-inl.h"
 #include "Render/Raycast/HiddenLanes-inl.h"
-#include "Render/Scene/ShadingTable.h"
+#include "Render/Raycast/LightLanes-inl.h"
 
 #include <hwy/cache_control.h>
 
@@ -29,32 +29,6 @@ struct Position
   VU Y;
   VU Z;
 };
-
-/// The direction of a ray per lane: RayTile::Direction.
-struct Direction
-{
-  VF X;
-  VF Y;
-  VF Z;
-};
-
-/// What one sample per lane adds: premultiplied colour and transmittance.
-struct Steps
-{
-  VF R;
-  VF G;
-  VF B;
-  VF Transmittance;
-};
-
-/// As StepTable::Partial, with transmittance in place of opacity.
-/// @param depths of entries: colour and optical depth
-HWY_INLINE Steps OverFraction(const Blocks& depths, VF fraction)
-{
-  const VF opacity = OpacityOf(hn::Mul(depths.Of[3], fraction));
-  return { hn::Mul(depths.Of[0], opacity), hn::Mul(depths.Of[1], opacity),
-    hn::Mul(depths.Of[2], opacity), hn::Sub(hn::Set(D(), 1.0f), opacity) };
-}
 
 /// Samples of a packed brick: value by value what PlainInterpolator and TableLookup give.
 /// @tparam Special whether values may not be finite, or the table may have edges
@@ -134,8 +108,7 @@ public:
   struct Found
   {
     Offsets Entries;
-    VF Colour;              ///< as Shade has it; set if Shaded
-    VF Highlight;           ///< set if Shaded and there are highlights
+    Light Shade;            ///< set if Shaded
     ColourLanes::Tint Tint; ///< set if Coloured
   };
 
@@ -168,40 +141,19 @@ public:
   }
 
   /// As TableLookup::IndexOf.
-  HWY_INLINE VI IndicesOf(VF value) const
-  {
-    const D d;
-    const VF position =
-      hn::Add(hn::Mul(hn::Sub(value, hn::Set(d, this->Lookup.Low)), hn::Set(d, this->Lookup.Scale)),
-        hn::Set(d, this->Lookup.Bias));
-    const VF last = hn::Set(d, this->Lookup.Last);
-    if (!Special)
-    {
-      const VF inside = hn::Min(hn::Max(position, hn::Zero(d)), last);
-      return Truncated(inside);
-    }
-    const VF notBelow = hn::IfThenElseZero(hn::Gt(position, hn::Zero(d)), position);
-    VI index = Truncated(hn::IfThenElse(hn::Lt(notBelow, last), notBelow, last));
-    if (this->Lookup.Edges)
-    {
-      index = EntriesOf(this->Lookup, index, value);
-    }
-    const auto finite = hn::Le(hn::Abs(value), hn::Set(d, std::numeric_limits<float>::max()));
-    return hn::IfThenElse(
-      hn::RebindMask(DI(), finite), index, hn::Set(DI(), this->Lookup.Transparent));
-  }
+  HWY_INLINE VI IndicesOf(VF value) const { return IndicesIn<Special>(this->Lookup, value); }
 
   HWY_INLINE Steps LookUp(const Found& found) const
   {
     const Blocks steps = Transposed(LoadBlocks(this->Table, found.Entries));
-    return this->Lit({ steps.Of[0], steps.Of[1], steps.Of[2], steps.Of[3] }, found);
+    return this->Shown({ steps.Of[0], steps.Of[1], steps.Of[2], steps.Of[3] }, found);
   }
 
   /// As StepTable::Partial, with transmittance in place of opacity.
   HWY_INLINE Steps LookUp(const Found& found, VF fraction) const
   {
     const Blocks depths = Transposed(LoadBlocks(this->Depths, found.Entries));
-    return this->Lit(OverFraction(depths, fraction), found);
+    return this->Shown(OverFraction(depths, fraction), found);
   }
 
 private:
@@ -243,7 +195,7 @@ private:
     }
   }
 
-  HWY_INLINE Steps Lit(const Steps& steps, const Found& found) const
+  HWY_INLINE Steps Shown(const Steps& steps, const Found& found) const
   {
     Steps lit = steps;
     if constexpr (Coloured)
@@ -254,17 +206,7 @@ private:
     }
     if constexpr (Shaded)
     {
-      lit.R = hn::Mul(lit.R, found.Colour);
-      lit.G = hn::Mul(lit.G, found.Colour);
-      lit.B = hn::Mul(lit.B, found.Colour);
-      if (this->Shading->HasHighlights)
-      {
-        const VF opacity = hn::Sub(hn::Set(D(), 1.0f), steps.Transmittance);
-        const VF white = hn::Mul(found.Highlight, opacity);
-        lit.R = hn::Add(lit.R, white);
-        lit.G = hn::Add(lit.G, white);
-        lit.B = hn::Add(lit.B, white);
-      }
+      lit = Lit(lit, found.Shade, *this->Shading);
     }
     return lit;
   }
@@ -299,31 +241,9 @@ private:
     }
   }
 
-  /// As ShadingTable::Of.
   HWY_INLINE void ShadeOf(VF x, VF y, VF z, const Direction& direction, Found& found) const
   {
-    const D d;
-    const ShadingTable& table = *this->Shading;
-    const auto metric = [&](int i) HWY_ATTR { return hn::Set(d, table.Metric[i]); };
-    const VF along =
-      hn::Add(hn::Add(hn::Mul(x, direction.X), hn::Mul(y, direction.Y)), hn::Mul(z, direction.Z));
-    const VF mx =
-      hn::Add(hn::Add(hn::Mul(x, metric(0)), hn::Mul(y, metric(3))), hn::Mul(z, metric(4)));
-    const VF my = hn::Add(hn::Mul(y, metric(1)), hn::Mul(z, metric(5)));
-    const VF mz = hn::Mul(z, metric(2));
-    const VF length = hn::Add(hn::Add(hn::Mul(x, mx), hn::Mul(y, my)), hn::Mul(z, mz));
-    const VF squared = hn::Div(hn::Mul(along, along), length);
-    const VF one = hn::Set(d, 1.0f);
-    const VF atMost = hn::IfThenElse(hn::Lt(squared, one), squared, one);
-    const VF inside = hn::IfThenElseZero(hn::Ge(squared, hn::Zero(d)), atMost);
-    const VF cosine = hn::Sqrt(inside);
-    found.Colour = hn::Add(hn::Set(d, table.Ambient), hn::Mul(hn::Set(d, table.Diffuse), cosine));
-    if (table.HasHighlights)
-    {
-      const VF last = hn::Set(d, static_cast<float>(ShadingTable::Entries - 1));
-      const VI entry = Truncated(hn::Add(hn::Mul(cosine, last), hn::Set(d, 0.5f)));
-      found.Highlight = hn::GatherIndex(d, table.Highlights.data(), entry);
-    }
+    found.Shade = LightOf(*this->Shading, CosineOf(*this->Shading, x, y, z, direction));
   }
 
   HWY_INLINE Blocks ValuesAndGradients(const Place& place) const

@@ -80,6 +80,7 @@ public:
     const VD count = hn::IfThenElseZero(whole, hn::Sub(last, first));
     hn::Store(hn::DemoteTo(DHalf(), count), DHalf(), this->Tile.Count + slot);
     this->StoreWhole(slot, first, count, alive);
+    hn::Store(first, d, this->Tile.Number + slot);
     for (int axis = 0; axis < 3; ++axis)
     {
       const VD scaled = hn::Mul(this->Direction[axis], this->Set(this->Setup.ShadingScale));

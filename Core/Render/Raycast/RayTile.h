@@ -143,6 +143,7 @@ struct RayTile
   alignas(64) double Start[3][Slots];       ///< in cells; never a whole number where Step is 0
   alignas(64) double Inverse[3][Slots];     ///< samples per cell; infinite where Step is 0
   alignas(64) std::int32_t Count[Slots];
+  alignas(64) double Number[Slots]; ///< of whole sample 0 along its ray, counted from t = 0
   alignas(
     64) float Direction[3][Slots]; ///< LatticeSetup::ShadingScale times cells per world length
   Ends Head;

@@ -68,7 +68,9 @@ public:
   glm::dvec3 Eye() const { return this->EyePoint; }          ///< perspective only
   glm::dvec3 ViewDirection() const { return this->Forward; } ///< of the centre ray, unit
 
-  /// The inverse of the matrix it was made from, or its negative: points before the eye have w > 0.
+  /// The matrix it was made from, or its negative: points before the eye have w > 0.
+  const glm::dmat4& WorldToClipMatrix() const { return this->WorldToClip; }
+  /// The inverse of that.
   const glm::dmat4& ClipToWorldMatrix() const { return this->ClipToWorld; }
   const glm::dvec3& AnchorPoint() const { return this->Anchor; }
 

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Render/Cells/CellBins.h"
+
+#include "Base/ThreadPool.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace banyan
+{
+namespace
+{
+
+constexpr std::size_t CellsAtOnce = 4096;
+
+/// Brings cells to the screen.
+class CellPlacer
+{
+public:
+  CellPlacer(const RayScene& scene, const CellField& field, const VisibleValues* visible)
+    : Scene(scene)
+    , Field(field)
+    , Cells(*field.Cells)
+    , Visible(visible)
+    , Size(scene.Camera.ImageSize())
+  {
+    const double edge = this->Cells.Lattice.Edge;
+    glm::dmat4 toIndex(1.0);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      toIndex[axis][axis] = 1.0 / edge;
+      toIndex[3][axis] = -this->Cells.Lattice.Origin[axis] / edge;
+    }
+    this->ToWorld = scene.IndexToWorld * toIndex;
+    this->ToClip = scene.Camera.WorldToClipMatrix() * this->ToWorld;
+  }
+
+  /// Adds a cell, and its faces at the border, if they can be seen.
+  /// @param face the first one of this cell or a later one; goes to that of the next cell
+  void Place(std::uint32_t place, std::size_t& face, std::vector<PlacedCell>& placed)
+  {
+    const std::vector<BorderFace>& border = this->Cells.Border;
+    const std::size_t first = face;
+    while (face < border.size() && border[face].Cell == place)
+    {
+      ++face;
+    }
+    const std::int64_t number = this->Cells.Order[place];
+    const MeshCell cell = this->Cells.Mesh.Cell(number);
+    if (!this->CanBeSeen(number, cell))
+    {
+      return;
+    }
+    const int corners = CornersOf(cell.Shape);
+    int all[8];
+    for (int i = 0; i < corners; ++i)
+    {
+      all[i] = i;
+      this->Project(i, this->Cells.Mesh.Point(cell.Points[static_cast<std::size_t>(i)]));
+    }
+    PlacedCell found;
+    found.Place = place;
+    if (!this->Cover(all, corners, found))
+    {
+      return;
+    }
+    placed.push_back(found);
+    for (std::size_t i = first; i < face; ++i)
+    {
+      const CellFace& part = FacesOf(cell.Shape).Faces[border[i].Face];
+      found.Face = border[i].Face;
+      if (this->Cover(part.Corners.data(), part.Count, found))
+      {
+        placed.push_back(found);
+      }
+    }
+  }
+
+private:
+  bool CanBeSeen(std::int64_t number, const MeshCell& cell) const
+  {
+    float values[8] = {};
+    this->Field.CornerValues(number, cell, values);
+    float low = values[0];
+    float high = values[0];
+    bool finite = true;
+    for (int i = 0; i < CornersOf(cell.Shape); ++i)
+    {
+      finite = finite && std::isfinite(values[i]);
+      low = std::min(low, values[i]);
+      high = std::max(high, values[i]);
+    }
+    return finite &&
+           (!this->Visible || this->Visible->Any(low + this->Field.Base, high + this->Field.Base));
+  }
+
+  void Project(int corner, const glm::dvec3& point)
+  {
+    const glm::dvec4 clip = this->ToClip * glm::dvec4(point, 1.0);
+    // Before the near plane, where it still has a place.
+    this->Before[corner] = clip.z + clip.w > 0.0 && clip.w > 0.0;
+    this->Pixels[corner] = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(this->Size);
+    this->World[corner] = glm::dvec3(this->ToWorld * glm::dvec4(point, 1.0));
+  }
+
+  /// Finds pixels and distances of some corners together.
+  /// @return false where no pixel of the viewport is met
+  bool Cover(const int* corners, int count, PlacedCell& found) const
+  {
+    glm::dvec2 low(std::numeric_limits<double>::infinity());
+    glm::dvec2 high(-std::numeric_limits<double>::infinity());
+    glm::dvec3 middle(0.0);
+    bool whole = true;
+    bool any = false;
+    for (int i = 0; i < count; ++i)
+    {
+      const int corner = corners[i];
+      low = glm::min(low, this->Pixels[corner]);
+      high = glm::max(high, this->Pixels[corner]);
+      whole = whole && this->Before[corner];
+      any = any || this->Before[corner];
+      middle += this->World[corner] / static_cast<double>(count);
+    }
+    if (!any)
+    {
+      return false;
+    }
+    found.Pixels = this->Scene.Viewport;
+    if (whole)
+    {
+      constexpr double slack = 0.51;
+      const glm::dvec2 limit(this->Size);
+      const glm::ivec2 first(glm::clamp(glm::ceil(low - slack), glm::dvec2(0.0), limit));
+      const glm::ivec2 last(glm::clamp(glm::floor(high + (slack - 1.0)), glm::dvec2(-1.0), limit));
+      found.Pixels = Intersection({ first, last + 1 }, this->Scene.Viewport);
+    }
+    if (found.Pixels.Empty())
+    {
+      return false;
+    }
+    double radius = 0.0;
+    for (int i = 0; i < count; ++i)
+    {
+      radius = std::max(radius, glm::length(this->World[corners[i]] - middle));
+    }
+    const RayCamera& camera = this->Scene.Camera;
+    const double t = camera.Parallel()
+                       ? glm::dot(middle - camera.AnchorPoint(), camera.ViewDirection())
+                       : glm::length(middle - camera.Eye());
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    found.Near = std::nextafter(static_cast<float>(t - 1.0001 * radius), -infinity);
+    found.Far = std::nextafter(static_cast<float>(t + 1.0001 * radius), infinity);
+    return true;
+  }
+
+  const RayScene& Scene;
+  const CellField& Field;
+  const DrawnCells& Cells;
+  const VisibleValues* Visible;
+  const glm::ivec2 Size;
+  glm::dmat4 ToWorld{ 1.0 };
+  glm::dmat4 ToClip{ 1.0 };
+  // Of the corners of a cell.
+  bool Before[8] = {};
+  glm::dvec2 Pixels[8];
+  glm::dvec3 World[8];
+};
+
+} // namespace
+
+CellBins::CellBins(
+  const RayScene& scene, const CellField& field, const VisibleValues* visible, ThreadPool& pool)
+{
+  const DrawnCells& cells = *field.Cells;
+  const std::size_t count = cells.Order.size();
+  const std::size_t chunks = (count + CellsAtOnce - 1) / CellsAtOnce;
+  std::vector<std::vector<PlacedCell>> parts(chunks);
+  pool.ParallelFor(static_cast<std::int64_t>(chunks),
+    [&](std::int64_t chunk)
+    {
+      CellPlacer placer(scene, field, visible);
+      const std::size_t begin = static_cast<std::size_t>(chunk) * CellsAtOnce;
+      const std::size_t end = std::min(begin + CellsAtOnce, count);
+      const auto from = std::lower_bound(cells.Border.begin(), cells.Border.end(), begin,
+        [](const BorderFace& face, std::size_t place) { return face.Cell < place; });
+      auto face = static_cast<std::size_t>(from - cells.Border.begin());
+      std::vector<PlacedCell>& part = parts[static_cast<std::size_t>(chunk)];
+      part.reserve(end - begin);
+      for (std::size_t place = begin; place < end; ++place)
+      {
+        placer.Place(static_cast<std::uint32_t>(place), face, part);
+      }
+    });
+  std::size_t all = 0;
+  for (const std::vector<PlacedCell>& part : parts)
+  {
+    all += part.size();
+  }
+  this->All.reserve(all);
+  std::int64_t whole = 0;
+  for (std::vector<PlacedCell>& part : parts)
+  {
+    for (const PlacedCell& placed : part)
+    {
+      this->Touched = Union(this->Touched, placed.Pixels);
+      whole += placed.Face == PlacedCell::Whole ? 1 : 0;
+    }
+    this->All.insert(this->All.end(), part.begin(), part.end());
+    part = {};
+  }
+  this->NotSeen = static_cast<std::int64_t>(count) - whole;
+}
+
+void CellBins::Sort(const TileGrid& grid, ThreadPool& pool)
+{
+  // Chunks are counted first, so that each knows where its items begin.
+  const std::size_t tiles = grid.Count();
+  const std::size_t count = this->All.size();
+  const auto chunks = static_cast<std::size_t>(
+    std::min<std::int64_t>(16 * pool.Width(), static_cast<std::int64_t>(count / 1024 + 1)));
+  std::vector<std::uint32_t> counts(tiles * chunks, 0);
+  const auto forChunks = [&](auto&& function)
+  {
+    pool.ParallelFor(static_cast<std::int64_t>(chunks),
+      [&](std::int64_t number)
+      {
+        const auto chunk = static_cast<std::size_t>(number);
+        std::uint32_t* const mine = counts.data() + tiles * chunk;
+        for (std::size_t i = count * chunk / chunks; i < count * (chunk + 1) / chunks; ++i)
+        {
+          grid.ForEachUnder(
+            this->All[i].Pixels, [&](std::size_t tile) { function(i, mine[tile]); });
+        }
+      });
+  };
+  forChunks([](std::size_t, std::uint32_t& number) { ++number; });
+  this->Begins.assign(tiles + 1, 0);
+  std::size_t sum = 0;
+  std::vector<std::size_t> offsets(tiles * chunks);
+  for (std::size_t tile = 0; tile < tiles; ++tile)
+  {
+    this->Begins[tile] = sum;
+    for (std::size_t chunk = 0; chunk < chunks; ++chunk)
+    {
+      offsets[tiles * chunk + tile] = sum;
+      sum += counts[tiles * chunk + tile];
+      counts[tiles * chunk + tile] = 0;
+    }
+  }
+  this->Begins[tiles] = sum;
+  this->Items.resize(sum);
+  forChunks(
+    [&](std::size_t item, std::uint32_t& number)
+    {
+      const auto slot = static_cast<std::size_t>(&number - counts.data());
+      this->Items[offsets[slot] + number++] = static_cast<std::uint32_t>(item);
+    });
+}
+
+} // namespace banyan

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Render/Cells/CellCaster.h"
+
+#include "Base/StopFlag.h"
+#include "Base/ThreadPool.h"
+#include "Render/Levels/LevelTiles.h"
+#include "Render/Levels/PictureWatcher.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace banyan
+{
+
+/// What a thread works with: about 1 MB.
+struct CellCaster::Scratch
+{
+  RayTile Rays;
+  TileRows Rows;
+  SampleSlab Slab;
+  std::vector<std::size_t> Begins;  ///< of slabs, in Items
+  std::vector<std::uint32_t> Items; ///< numbers of what is placed, slab by slab
+};
+
+CellCaster::CellCaster(const RayScene& scene, CellSource& source, const Box& cells,
+  ThreadPool& pool, RayStatistics& statistics)
+  : Level(scene, source)
+  , Field(this->Level.IsShaded() ? source.WithGradients(pool) : source.Cells())
+  , Drawn(cells)
+  , Pool(pool)
+  , Statistics(statistics)
+  , Bins(scene, source.Cells(),
+      scene.Blend.Mode == BlendMode::Composite ? this->Level.Visible.get() : nullptr, pool)
+{
+  this->Statistics.BricksSkipped += this->Bins.Skipped();
+}
+
+CellCaster::~CellCaster() = default;
+
+void CellCaster::Draw(FloatImage& picture, PictureWatcher* watcher)
+{
+  const auto workers = static_cast<std::size_t>(this->Pool.Width());
+  LevelTiles tiles(this->Level, {}, picture, watcher, workers);
+  this->Bins.Sort(tiles.Cut(), this->Pool);
+  std::vector<std::unique_ptr<Scratch>> scratch(workers);
+  std::atomic<std::int64_t> samples{ 0 };
+  const std::function<void(std::int64_t, int)> draw = [&](std::int64_t number, int worker)
+  {
+    if (this->Level.Scene.Stop)
+    {
+      this->Level.Scene.Stop->Check();
+    }
+    std::unique_ptr<Scratch>& mine = scratch[static_cast<std::size_t>(worker)];
+    if (!mine)
+    {
+      mine = std::make_unique<Scratch>();
+    }
+    const auto tile = static_cast<std::size_t>(number);
+    if (!tiles[tile].Done && this->Bins.Over(tile).Count > 0)
+    {
+      this->DrawTile(tiles, tile, *mine);
+      samples += mine->Rays.SamplesTaken;
+    }
+    tiles.Finish(tile, 0);
+    // The first worker is the thread that casts.
+    if (watcher && worker == 0)
+    {
+      watcher->BetweenTiles();
+    }
+  };
+  this->Pool.ParallelFor(static_cast<std::int64_t>(tiles.Count()), draw);
+  this->Statistics.SamplesTaken += samples;
+  this->Statistics.BricksDrawn += this->Bins.Count();
+}
+
+void CellCaster::DrawTile(LevelTiles& tiles, std::size_t number, Scratch& scratch) const
+{
+  LevelTile& tile = tiles[number];
+  const PixelRect rect = tiles.RectOf(number);
+  RayTile& rays = scratch.Rays;
+  rays.Open(tile.Sampling->Lattice, rect, tiles.Picture(), this->Level.TransmittanceLimit(),
+    tile.PixelStride, false, rect, tile.Cast);
+  rays.CellShift = 0;
+  rays.BrickShift = 0;
+  const FixedBox drawn(this->Drawn);
+  const bool all =
+    Intersection(this->Drawn, this->Level.Scene.DomainCells) == this->Level.Scene.DomainCells;
+  scratch.Rows.Take(rays, tile.Sampling->Lattice.Setup(), all ? nullptr : &drawn);
+  if (scratch.Rows.Count > 0)
+  {
+    this->DrawSlabs(*tile.Sampling, number, scratch);
+  }
+  if (tile.PixelStride > 1)
+  {
+    tiles.Clear(rect);
+  }
+  rays.Close(tiles.Picture());
+  tile.Begun = true;
+  tile.Done = true;
+}
+
+/// Sorts what lies over a tile by slabs, and draws one after the other until all rays have ended.
+void CellCaster::DrawSlabs(
+  const LevelSampling& sampling, std::size_t number, Scratch& scratch) const
+{
+  const CellBins::Span over = this->Bins.Over(number);
+  const TileRows& rows = scratch.Rows;
+  const double perDistance = 1.0 / sampling.Distance;
+  const std::size_t slabs = static_cast<std::size_t>(rows.Count - 1) / SampleSlab::Rows + 1;
+  const PlacedCell* const placed = this->Bins.Placed();
+  const auto forSlabs = [&](auto&& function)
+  {
+    for (std::size_t i = 0; i < over.Count; ++i)
+    {
+      const PlacedCell& cell = placed[over.Items[i]];
+      const double last = rows.Count - 1.0;
+      const double first = std::floor(cell.Near * perDistance) - rows.FirstNumber;
+      const double end = std::floor(cell.Far * perDistance) - rows.FirstNumber;
+      if (end < 0.0 || first > last)
+      {
+        continue;
+      }
+      const auto from = static_cast<std::size_t>(std::max(first, 0.0)) / SampleSlab::Rows;
+      const auto to = static_cast<std::size_t>(std::min(end, last)) / SampleSlab::Rows;
+      for (std::size_t slab = from; slab <= to; ++slab)
+      {
+        function(slab, over.Items[i]);
+      }
+    }
+  };
+  scratch.Begins.assign(slabs + 2, 0);
+  forSlabs([&](std::size_t slab, std::uint32_t) { ++scratch.Begins[slab + 2]; });
+  for (std::size_t i = 2; i < slabs + 2; ++i)
+  {
+    scratch.Begins[i] += scratch.Begins[i - 1];
+  }
+  scratch.Items.resize(scratch.Begins[slabs + 1]);
+  forSlabs([&](std::size_t slab, std::uint32_t item)
+    { scratch.Items[scratch.Begins[slab + 1]++] = item; });
+  const bool relative = this->Field.Base != 0.0;
+  const ShadingTable* const shading = this->Level.Shading.get();
+  const SlabBlend blend{ sampling.Table, sampling.Projection.get(), shading, relative,
+    relative ? static_cast<float>(this->Field.Base - sampling.Table.Low()) : 0.0f };
+  for (std::size_t slab = 0; slab < slabs && scratch.Rays.ActiveRays > 0; ++slab)
+  {
+    const std::size_t begin = scratch.Begins[slab];
+    const std::size_t count = scratch.Begins[slab + 1] - begin;
+    if (count == 0)
+    {
+      continue;
+    }
+    const int firstRow = static_cast<int>(slab) * SampleSlab::Rows;
+    DrawSlab({ this->Field, placed, scratch.Items.data() + begin, count, perDistance, firstRow,
+      shading, scratch.Rays, rows, scratch.Slab });
+    BlendSlab(scratch.Slab, rows, firstRow, blend, scratch.Rays);
+  }
+}
+
+} // namespace banyan

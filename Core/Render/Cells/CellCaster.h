@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Render_Cells_CellCaster_h
+#define banyan_Render_Cells_CellCaster_h
+
+#include "Render/Cells/CellBins.h"
+#include "Render/Cells/CellSource.h"
+#include "Render/Levels/LevelScene.h"
+#include "Render/Scene/PictureCaster.h"
+
+#include <memory>
+#include <vector>
+
+namespace banyan
+{
+
+class LevelTiles;
+class ThreadPool;
+
+/// Draws the cells of a mesh: tile by tile, and in each tile slab by slab from the eye on.
+class CellCaster final : public PictureCaster
+{
+public:
+  /// Everything referred to must stay. Finds the cells that can be seen.
+  /// @param cells of the index space: samples elsewhere are left out
+  /// @param statistics is added to
+  CellCaster(const RayScene& scene, CellSource& source, const Box& cells, ThreadPool& pool,
+    RayStatistics& statistics);
+  ~CellCaster() override;
+
+  const PixelRect& Rect() const override { return this->Bins.Rect(); }
+  void Draw(FloatImage& picture, PictureWatcher* watcher) override;
+
+private:
+  struct Scratch;
+
+  void DrawTile(LevelTiles& tiles, std::size_t number, Scratch& scratch) const;
+  void DrawSlabs(const LevelSampling& sampling, std::size_t number, Scratch& scratch) const;
+
+  LevelScene Level;
+  const CellField& Field;
+  const Box Drawn;
+  ThreadPool& Pool;
+  RayStatistics& Statistics;
+  CellBins Bins;
+};
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Render_Cells_CellField_h
+#define banyan_Render_Cells_CellField_h
+
+#include "Cells/BorderFaces.h"
+#include "Cells/CellLattice.h"
+#include "Cells/CellMesh.h"
+#include "Cells/CheckMesh.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace banyan
+{
+
+class ThreadPool;
+
+/// A mesh as it is drawn: found once for its points and cells, whatever the values.
+struct DrawnCells
+{
+  CellMesh Mesh;
+  CellLattice Lattice;
+  std::vector<std::uint32_t> Order; ///< numbers of the cells that are drawn, in the global order
+  std::vector<BorderFace> Border;   ///< faces that one cell of them has alone
+
+  /// Checks a mesh and finds all that drawing it takes. There is room around the mesh in the index
+  /// space, so that rays begin and end outside of it.
+  /// @param facts says which cells are left out, and why
+  /// Throws Error: see CheckCells and OrderOfCells; and where the points lie apart too far.
+  static std::shared_ptr<const DrawnCells> Of(
+    const CellMesh& mesh, CellFacts& facts, ThreadPool& pool);
+
+  /// Takes points of the mesh to index space.
+  glm::dvec3 ToIndex(const glm::dvec3& point) const { return this->Lattice.ToLattice(point); }
+
+  /// Bytes that it takes beside the mesh.
+  std::size_t Bytes() const;
+};
+
+/// Values on a mesh.
+struct CellField
+{
+  std::shared_ptr<const DrawnCells> Cells;
+  std::vector<float> Values; ///< of points, or of cells; without Base
+  double Base = 0.0;         ///< was subtracted from values in double
+  bool OfCells = false;      ///< one value all over a cell, in place of those of points
+  /// Of points, in index space: x, y, z. Empty unless shaded.
+  std::vector<float> Gradients;
+
+  /// Values of a cell's corners, or one value for all.
+  /// @param number of the cell
+  void CornerValues(std::int64_t number, const MeshCell& cell, float (&values)[8]) const
+  {
+    const int corners = CornersOf(cell.Shape);
+    for (int i = 0; i < corners; ++i)
+    {
+      const std::int64_t from = this->OfCells ? number : cell.Points[static_cast<std::size_t>(i)];
+      values[i] = this->Values[static_cast<std::size_t>(from)];
+    }
+  }
+};
+
+} // namespace banyan
+
+#endif

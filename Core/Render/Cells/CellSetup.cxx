@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Render/Cells/CellSetup.h"
+
+#include "Render/Scene/RayLattice.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace banyan
+{
+namespace
+{
+
+constexpr double Unit = 1 << FractionBits;
+/// Bent terms below this part of a cell's edge change no value that anybody can see.
+constexpr double LeastBend = 1.0 / (1 << 17);
+/// Where bent terms lead places further away than this, taking them once brings a first guess no
+/// nearer: cells may fold, and Newton's method is to come from their middle.
+constexpr double MostLean = 0.5;
+/// Cells that extend further than this may lie further than 128 cells from their middle.
+constexpr double WidestNarrow = 60.0;
+/// Below this part of the product of its edges a cell's middle counts as flat.
+constexpr double LeastVolume = 1e-9;
+
+/// A polynomial with values in T: double or glm::dvec3.
+template <class T>
+struct Terms
+{
+  T Base{ 0.0 };
+  T Linear[3] = { T(0.0), T(0.0), T(0.0) };
+  T Bent[4] = { T(0.0), T(0.0), T(0.0), T(0.0) };
+};
+
+template <class T>
+Terms<T> TermsOfHexahedron(const T* c)
+{
+  // Sums and differences along one axis after the other.
+  T x[8];
+  for (int i = 0; i < 4; ++i)
+  {
+    x[i] = c[2 * i] + c[2 * i + 1];
+    x[4 + i] = c[2 * i + 1] - c[2 * i];
+  }
+  T y[8];
+  for (int i = 0; i < 2; ++i)
+  {
+    y[i] = x[2 * i] + x[2 * i + 1];
+    y[2 + i] = x[2 * i + 1] - x[2 * i];
+    y[4 + i] = x[4 + 2 * i] + x[5 + 2 * i];
+    y[6 + i] = x[5 + 2 * i] - x[4 + 2 * i];
+  }
+  const double eighth = 0.125;
+  Terms<T> terms;
+  terms.Base = eighth * (y[0] + y[1]);
+  terms.Linear[0] = eighth * (y[4] + y[5]);
+  terms.Linear[1] = eighth * (y[2] + y[3]);
+  terms.Linear[2] = eighth * (y[1] - y[0]);
+  terms.Bent[0] = eighth * (y[6] + y[7]);
+  terms.Bent[1] = eighth * (y[3] - y[2]);
+  terms.Bent[2] = eighth * (y[5] - y[4]);
+  terms.Bent[3] = eighth * (y[7] - y[6]);
+  return terms;
+}
+
+template <class T>
+Terms<T> TermsOfTetrahedron(const T* c)
+{
+  Terms<T> terms;
+  terms.Base = c[0];
+  for (int i = 0; i < 3; ++i)
+  {
+    terms.Linear[i] = c[i + 1] - c[0];
+  }
+  return terms;
+}
+
+template <class T>
+Terms<T> TermsOfWedge(const T* c)
+{
+  Terms<T> terms;
+  terms.Base = 0.5 * (c[0] + c[3]);
+  terms.Linear[2] = 0.5 * (c[3] - c[0]);
+  for (int i = 0; i < 2; ++i)
+  {
+    const T below = c[i + 1] - c[0];
+    const T above = c[i + 4] - c[3];
+    terms.Linear[i] = 0.5 * (above + below);
+    terms.Bent[i] = 0.5 * (above - below);
+  }
+  return terms;
+}
+
+template <class T>
+Terms<T> TermsOfPyramid(const T* c)
+{
+  Terms<T> terms;
+  terms.Base = c[4];
+  terms.Linear[0] = 0.25 * ((c[1] - c[0]) + (c[2] - c[3]));
+  terms.Linear[1] = 0.25 * ((c[3] - c[0]) + (c[2] - c[1]));
+  terms.Linear[2] = 0.25 * ((c[0] + c[2]) + (c[1] + c[3])) - c[4];
+  terms.Bent[0] = 0.25 * ((c[0] - c[1]) + (c[2] - c[3]));
+  return terms;
+}
+
+template <class T>
+Terms<T> TermsOf(CellShape shape, const T* corners)
+{
+  switch (shape)
+  {
+    case CellShape::Tetrahedron:
+      return TermsOfTetrahedron(corners);
+    case CellShape::Wedge:
+      return TermsOfWedge(corners);
+    case CellShape::Pyramid:
+      return TermsOfPyramid(corners);
+    default:
+      return TermsOfHexahedron(corners);
+  }
+}
+
+/// The matrix that takes positions to places, without the bent terms.
+/// @return false when there is none
+bool Invert(const Terms<glm::dvec3>& terms, glm::dmat3& inverse)
+{
+  const glm::dmat3 linear(terms.Linear[0], terms.Linear[1], terms.Linear[2]);
+  const double volume = glm::determinant(linear);
+  const double edges =
+    glm::length(terms.Linear[0]) * glm::length(terms.Linear[1]) * glm::length(terms.Linear[2]);
+  if (!(std::abs(volume) > LeastVolume * edges))
+  {
+    return false;
+  }
+  const glm::dvec3 rows[3] = { glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+    glm::cross(linear[0], linear[1]) };
+  for (int i = 0; i < 3; ++i)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      inverse[axis][i] = rows[i][axis] / volume;
+    }
+  }
+  return std::isfinite(inverse[0][0] + inverse[1][1] + inverse[2][2]);
+}
+
+/// Where bent terms lead places.
+struct Leans
+{
+  glm::dvec3 Of[4] = { glm::dvec3(0.0), glm::dvec3(0.0), glm::dvec3(0.0), glm::dvec3(0.0) };
+  double Most = 0.0; ///< of all together, at most
+};
+
+Leans LeansOf(const Terms<glm::dvec3>& terms, const glm::dmat3& inverse)
+{
+  Leans leans;
+  glm::dvec3 sum(0.0);
+  for (int i = 0; i < 4; ++i)
+  {
+    leans.Of[i] = inverse * terms.Bent[i];
+    sum += glm::abs(leans.Of[i]);
+  }
+  leans.Most = std::max({ sum.x, sum.y, sum.z });
+  return leans;
+}
+
+} // namespace
+
+/// A cell lies within the hull of its corners, so these bound what is linear.
+/// @param offsets of corners from the middle
+void CellSetup::SetBounds(const glm::dvec3 (&offsets)[8])
+{
+  // More than rounding, and than how far outside of a cell samples count as its own.
+  constexpr double margin = 0.001;
+  const bool tetrahedron = this->Shape == CellShape::Tetrahedron;
+  this->HasSum = tetrahedron || this->Shape == CellShape::Wedge;
+  double low[3] = {};
+  double high[3] = {};
+  double highSum = 0.0;
+  for (int corner = 0; corner < CornersOf(this->Shape); ++corner)
+  {
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i)
+    {
+      double place = 0.0;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        place += double{ this->Inverse[i][axis] } * (offsets[corner][axis] - this->Base[axis]);
+      }
+      low[i] = corner == 0 ? place : std::min(low[i], place);
+      high[i] = corner == 0 ? place : std::max(high[i], place);
+      sum += i < 2 || tetrahedron ? place : 0.0;
+    }
+    highSum = corner == 0 ? sum : std::max(highSum, sum);
+  }
+  this->HighSum = static_cast<float>(highSum + margin);
+  for (int i = 0; i < 3; ++i)
+  {
+    this->Low[i] = static_cast<float>(low[i] - margin);
+    this->High[i] = static_cast<float>(high[i] + margin);
+  }
+}
+
+void CellTerms::Set(CellShape shape, const float (&values)[8])
+{
+  double numbers[8] = {};
+  for (int i = 0; i < CornersOf(shape); ++i)
+  {
+    numbers[i] = values[i];
+  }
+  const Terms<double> terms = TermsOf(shape, numbers);
+  this->Base = static_cast<float>(terms.Base);
+  for (int i = 0; i < 3; ++i)
+  {
+    this->Linear[i] = static_cast<float>(terms.Linear[i]);
+  }
+  for (int i = 0; i < 4; ++i)
+  {
+    this->Bent[i] = static_cast<float>(terms.Bent[i]);
+  }
+}
+
+bool CellSetup::Set(CellShape shape, const glm::dvec3 (&corners)[8])
+{
+  this->Shape = shape;
+  const int count = CornersOf(shape);
+  glm::dvec3 low = corners[0];
+  glm::dvec3 high = corners[0];
+  for (int i = 1; i < count; ++i)
+  {
+    low = glm::min(low, corners[i]);
+    high = glm::max(high, corners[i]);
+  }
+  glm::dvec3 middle(0.0);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Middle[axis] = std::floor(0.5 * (low[axis] + high[axis]) * Unit);
+    middle[axis] = this->Middle[axis] / Unit;
+    this->Reach[axis] = (0.51 * (high[axis] - low[axis]) + 0.001) * Unit;
+  }
+  const glm::dvec3 size = high - low;
+  this->IsWide = !(std::max({ size.x, size.y, size.z }) < WidestNarrow);
+  glm::dvec3 offsets[8];
+  for (int i = 0; i < count; ++i)
+  {
+    offsets[i] = corners[i] - middle;
+  }
+  const Terms<glm::dvec3> terms = TermsOf(shape, offsets);
+  glm::dmat3 inverse(1.0);
+  const bool inverts = Invert(terms, inverse);
+  if (!inverts && shape == CellShape::Tetrahedron)
+  {
+    return false;
+  }
+  // Where the middle is flat, places are positions until Newton's method finds them.
+  const Leans leans = inverts ? LeansOf(terms, inverse) : Leans{};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Base[axis] = static_cast<float>(terms.Base[axis]);
+  }
+  for (int i = 0; i < 4; ++i)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Bent[i][axis] = static_cast<float>(terms.Bent[i][axis]);
+      this->Lean[i][axis] = leans.Most <= MostLean ? static_cast<float>(leans.Of[i][axis]) : 0.0f;
+    }
+  }
+  this->IsBent = !inverts || leans.Most > LeastBend;
+  for (int i = 0; i < 3; ++i)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      this->Linear[i][axis] = static_cast<float>(terms.Linear[i][axis]);
+      this->Inverse[i][axis] = static_cast<float>(inverse[axis][i]);
+    }
+  }
+  this->SetBounds(offsets);
+  return true;
+}
+
+} // namespace banyan

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Render_Cells_CellSetup_h
+#define banyan_Render_Cells_CellSetup_h
+
+#include "Cells/CellShape.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+
+namespace banyan
+{
+
+/// A field in a cell: a sum over its places, as CellSetup says.
+struct CellTerms
+{
+  float Base = 0.0f;
+  float Linear[3] = {};
+  float Bent[4] = {};
+
+  /// @param values of the corners
+  void Set(CellShape shape, const float (&values)[8]);
+};
+
+/// What a kernel needs of a cell: its shape as polynomials about a point in its middle.
+///
+/// A point of the cell is Base + sum of Linear[i] * x_i + the bent terms, in cells of the index
+/// space from Middle on. Places x are
+///   - hexahedra: r, s, t from -1 to 1; bent terms r s, s t, t r, r s t;
+///   - tetrahedra: r, s, t from 0 on, with a sum of at most 1; none;
+///   - wedges: r, s from 0 on, with a sum of at most 1, and t from -1 to 1; r t, s t;
+///   - pyramids: u, v from -h to h, and h from 0 (apex) to 1 (base); u v / h. So the apex is a
+///     place like others.
+/// Fields are the same sums.
+struct CellSetup
+{
+  CellShape Shape = CellShape::None;
+  bool IsBent = false;   ///< whether the bent terms count
+  bool IsWide = false;   ///< whether positions in the cell do not fit into 256 cells
+  double Middle[3] = {}; ///< fixed-point, whole
+  double Reach[3] = {};  ///< fixed-point: no point of the cell is further from the middle
+  float Base[3] = {};
+  float Linear[3][3] = {}; ///< `[place][axis]`
+  float Bent[4][3] = {};   ///< `[term][axis]`
+  CellTerms Value;
+  CellTerms Gradient[3]; ///< where it is wanted
+
+  // Inverse * (position - Base) is the place, but for the bent terms. What this is for the points
+  // of the cell, and their sums, lies between these bounds.
+  float Inverse[3][3] = {}; ///< `[place][axis]`
+  float Lean[4][3] = {};    ///< Inverse * Bent, `[term][place]`; 0 if large
+  float Low[3] = {};
+  float High[3] = {};
+  bool HasSum = false; ///< whether x_0 + x_1 (+ x_2 of tetrahedra) is at most HighSum
+  float HighSum = 0.0f;
+
+  /// Sets all but fields.
+  /// @param corners in index space
+  /// @return false when nothing of the cell can be drawn
+  bool Set(CellShape shape, const glm::dvec3 (&corners)[8]);
+
+private:
+  void SetBounds(const glm::dvec3 (&offsets)[8]);
+};
+
+} // namespace banyan
+
+#endif

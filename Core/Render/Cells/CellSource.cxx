@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Render/Cells/CellSource.h"
+
+#include "Base/Error.h"
+#include "Base/ThreadPool.h"
+#include "Render/Cells/CellCaster.h"
+#include "Render/Cells/PointMeans.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace banyan
+{
+namespace
+{
+
+/// Most bricks along an axis: they say where values are, and 32 along each axis take 0.5 MB.
+constexpr int MostBricks = 32;
+constexpr std::int64_t CellsAtOnce = 16384;
+
+} // namespace
+
+CellSource::CellSource(CellField field, ThreadPool& pool)
+  : Field(std::move(field))
+  , Size(this->Field.Cells->Lattice.Size)
+{
+  const int longest = std::max({ this->Size.x, this->Size.y, this->Size.z });
+  while ((longest - 1) / this->Edge + 1 > MostBricks)
+  {
+    this->Edge *= 2;
+  }
+  this->Counts = (this->Size - 1) / this->Edge + 1;
+  this->FindRanges(pool);
+}
+
+const CellField& CellSource::WithGradients(ThreadPool& pool)
+{
+  std::call_once(this->GradientsMade,
+    [&]
+    {
+      CellField& field = this->Field;
+      const DrawnCells& cells = *field.Cells;
+      field.Gradients = PointGradients(
+        cells, field.OfCells ? PointMeans(cells, field.Values, pool) : field.Values, pool);
+    });
+  return this->Field;
+}
+
+Box CellSource::CellsOf(std::int64_t brick) const
+{
+  const glm::ivec3 at(brick % this->Counts.x, brick / this->Counts.x % this->Counts.y,
+    brick / this->Counts.x / this->Counts.y);
+  return { at * this->Edge, glm::min((at + 1) * this->Edge, this->Size) };
+}
+
+ValueMask CellSource::MaskOf(std::int64_t brick) const
+{
+  const ValueRange& range = this->Ranges[static_cast<std::size_t>(brick)];
+  return range.Empty() ? 0
+                       : MaskOfBins(this->Masks.BinOf(range.Low), this->Masks.BinOf(range.High));
+}
+
+std::unique_ptr<PictureCaster> CellSource::MakeCaster(
+  const RayScene& scene, const Box& cells, ThreadPool& pool, RayStatistics& statistics)
+{
+  return std::make_unique<CellCaster>(scene, *this, cells, pool, statistics);
+}
+
+BrickView CellSource::Load(std::int64_t)
+{
+  throw Error("Cells of a mesh have no samples on a grid that could be loaded");
+}
+
+/// The box around a cell in index space, and the range of its values.
+/// @return false when the cell is not drawn for its values
+bool CellSource::BoundsOf(
+  std::uint32_t number, glm::dvec3& low, glm::dvec3& high, ValueRange& range) const
+{
+  const DrawnCells& cells = *this->Field.Cells;
+  const MeshCell cell = cells.Mesh.Cell(number);
+  float values[8] = {};
+  this->Field.CornerValues(number, cell, values);
+  bool finite = true;
+  range = ValueRange();
+  for (int corner = 0; corner < CornersOf(cell.Shape); ++corner)
+  {
+    const glm::dvec3 point =
+      cells.ToIndex(cells.Mesh.Point(cell.Points[static_cast<std::size_t>(corner)]));
+    low = corner == 0 ? point : glm::min(low, point);
+    high = corner == 0 ? point : glm::max(high, point);
+    finite = finite && std::isfinite(values[corner]);
+    range.Include(values[corner] + this->Field.Base);
+  }
+  return finite;
+}
+
+/// Finds the values of the cells that reach into each brick.
+void CellSource::FindRanges(ThreadPool& pool)
+{
+  const std::vector<std::uint32_t>& order = this->Field.Cells->Order;
+  const auto count = static_cast<std::int64_t>(order.size());
+  const auto bricks = static_cast<std::size_t>(this->Counts.x) *
+                      static_cast<std::size_t>(this->Counts.y) *
+                      static_cast<std::size_t>(this->Counts.z);
+  std::vector<std::vector<ValueRange>> parts(static_cast<std::size_t>(pool.Width()));
+  const std::function<void(std::int64_t, int)> look = [&](std::int64_t chunk, int worker)
+  {
+    std::vector<ValueRange>& ranges = parts[static_cast<std::size_t>(worker)];
+    ranges.resize(bricks);
+    const std::int64_t end = std::min(count, (chunk + 1) * CellsAtOnce);
+    for (std::int64_t i = chunk * CellsAtOnce; i < end; ++i)
+    {
+      glm::dvec3 low;
+      glm::dvec3 high;
+      ValueRange range;
+      if (!this->BoundsOf(order[static_cast<std::size_t>(i)], low, high, range))
+      {
+        continue;
+      }
+      // Samples somewhat beyond a cell's faces are its own.
+      const glm::dvec3 margin = 0.001 * (high - low);
+      const auto brickAt = [&](const glm::dvec3& place) {
+        return glm::clamp(
+          glm::ivec3(glm::floor(place)) / this->Edge, glm::ivec3(0), this->Counts - 1);
+      };
+      const glm::ivec3 first = brickAt(low - margin);
+      const glm::ivec3 last = brickAt(high + margin);
+      for (glm::ivec3 at = first; at.z <= last.z; ++at.z)
+      {
+        for (at.y = first.y; at.y <= last.y; ++at.y)
+        {
+          for (at.x = first.x; at.x <= last.x; ++at.x)
+          {
+            ranges[static_cast<std::size_t>(NumberOf(at, this->Counts))].Include(range);
+          }
+        }
+      }
+    }
+  };
+  pool.ParallelFor((count + CellsAtOnce - 1) / CellsAtOnce, look);
+  this->Ranges.resize(bricks);
+  ValueRange all;
+  for (const std::vector<ValueRange>& part : parts)
+  {
+    for (std::size_t i = 0; i < part.size(); ++i)
+    {
+      this->Ranges[i].Include(part[i]);
+      all.Include(part[i]);
+    }
+  }
+  this->Masks = all.Empty() ? MaskRange{} : MaskRange{ all.Low, all.High };
+}
+
+} // namespace banyan

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Render_Cells_CellSource_h
+#define banyan_Render_Cells_CellSource_h
+
+#include "Render/Bricks/BrickSource.h"
+#include "Render/Cells/CellField.h"
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace banyan
+{
+
+class ThreadPool;
+
+/// A mesh of cells as the ray caster's source. Its bricks are cubes of the index space that say
+/// which values the cells in them have; they cannot be loaded, for CellCaster draws the cells.
+class CellSource final : public BrickSource
+{
+public:
+  CellSource(CellField field, ThreadPool& pool);
+
+  const CellField& Cells() const { return this->Field; }
+  /// The same, with gradients, which are made when they are first asked for.
+  const CellField& WithGradients(ThreadPool& pool);
+
+  glm::ivec3 Bricks() const override { return this->Counts; }
+  Box CellsOf(std::int64_t brick) const override;
+  ValueRange RangeOf(std::int64_t brick) const override
+  {
+    return this->Ranges[static_cast<std::size_t>(brick)];
+  }
+  ValueMask MaskOf(std::int64_t brick) const override;
+  MaskRange MasksAreOver() const override { return this->Masks; }
+  std::size_t LoadBytes(std::int64_t) const override { return 0; }
+  std::unique_ptr<PictureCaster> MakeCaster(
+    const RayScene& scene, const Box& cells, ThreadPool& pool, RayStatistics& statistics) override;
+  /// Throws Error: there are no samples on a grid.
+  BrickView Load(std::int64_t brick) override;
+
+private:
+  bool BoundsOf(std::uint32_t number, glm::dvec3& low, glm::dvec3& high, ValueRange& range) const;
+  void FindRanges(ThreadPool& pool);
+
+  CellField Field;
+  std::once_flag GradientsMade;
+  glm::ivec3 Size;   ///< of the index space
+  int Edge = 1;      ///< of bricks
+  glm::ivec3 Counts; ///< of bricks
+  std::vector<ValueRange> Ranges;
+  MaskRange Masks;
+};
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Render_Cells_PointMeans_h
+#define banyan_Render_Cells_PointMeans_h
+
+#include "Render/Cells/CellField.h"
+
+#include <vector>
+
+namespace banyan
+{
+
+class ThreadPool;
+
+/// Gradients of a field at the points of a mesh: the means of those that its cells have in that
+/// corner, weighted by how large they are there. Exact for linear fields. Cells whose gradient is
+/// not finite do not count; 0 where none is left. The same bits for any number of threads, and any
+/// order of the cells and points in memory.
+/// @param values of points
+/// @return x, y, z of each point, in index space: per edge of the lattice. Takes 32 bytes more per
+/// point meanwhile
+std::vector<float> PointGradients(
+  const DrawnCells& cells, const std::vector<float>& values, ThreadPool& pool);
+
+/// Values at the points of a mesh, made of those of its cells: means, weighted by how large the
+/// cells are in that corner. NaN at points of no cell.
+/// @param values of cells, by their numbers in the mesh
+std::vector<float> PointMeans(
+  const DrawnCells& cells, const std::vector<float>& values, ThreadPool& pool);
+
+} // namespace banyan
+
+#endif
