@@ -43,6 +43,7 @@ struct CellMesh
 
   // Cells.
   const void* Connectivity = nullptr; ///< numbers of points, cell after cell
+  std::size_t ConnectivityCount = 0;  ///< of these numbers
   const void* Offsets = nullptr;      ///< where cells begin in Connectivity, and one more; may be
                                       ///< null where all cells have as many points as PerCell
   ScalarType IdType = ScalarType::Int64; ///< of both, or Int32
@@ -66,7 +67,9 @@ struct CellMesh
 
   glm::dvec3 Point(std::int64_t point) const;
 
-  /// Ask the caches for what Cell and Point will need.
+  /// Ask the caches for what Cell and Point will need. The place of a cell is where its numbers of
+  /// points begin: it is wanted sooner.
+  void PrefetchPlace(std::int64_t cell) const;
   void PrefetchCell(std::int64_t cell) const;
   void PrefetchPoint(std::int64_t point) const;
 
@@ -170,6 +173,19 @@ inline glm::dvec3 CellMesh::Point(std::int64_t point) const
   }
   return { at(this->Points, 3 * point), at(this->Points, 3 * point + 1),
     at(this->Points, 3 * point + 2) };
+}
+
+inline void CellMesh::PrefetchPlace(std::int64_t cell) const
+{
+  if (this->Is == Kind::Cells)
+  {
+    const auto size = static_cast<std::int64_t>(SizeOf(this->IdType));
+    __builtin_prefetch(this->Types + cell);
+    if (this->Offsets)
+    {
+      __builtin_prefetch(static_cast<const char*>(this->Offsets) + cell * size);
+    }
+  }
 }
 
 inline void CellMesh::PrefetchCell(std::int64_t cell) const

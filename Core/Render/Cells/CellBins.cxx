@@ -16,6 +16,7 @@ namespace
 {
 
 constexpr std::size_t CellsAtOnce = 4096;
+constexpr std::size_t Ahead = 12; ///< cells that caches are asked for meanwhile
 
 /// Brings cells to the screen.
 class CellPlacer
@@ -192,6 +193,8 @@ CellBins::CellBins(
       part.reserve(end - begin);
       for (std::size_t place = begin; place < end; ++place)
       {
+        cells.Mesh.PrefetchPlace(cells.Order[std::min(place + 2 * Ahead, count - 1)]);
+        cells.Mesh.PrefetchCell(cells.Order[std::min(place + Ahead, count - 1)]);
         placer.Place(static_cast<std::uint32_t>(place), face, part);
       }
     });

@@ -118,7 +118,18 @@ public:
   /// @param i one after the other from 0 on
   const MeshCell& Take(std::size_t i)
   {
-    this->AskForCell(i + Numbers);
+    if (i + Items < this->Job.Count)
+    {
+      hwy::Prefetch(this->Job.Placed + this->Job.Items[i + Items]);
+    }
+    if (i + Places < this->Job.Count)
+    {
+      this->Mesh.PrefetchPlace(this->NumberOf(i + Places));
+    }
+    if (i + Numbers < this->Job.Count)
+    {
+      this->Mesh.PrefetchCell(this->NumberOf(i + Numbers));
+    }
     this->Current = this->Cells[i % Points];
     this->AskForPoints(i + Points);
     return this->Current;
@@ -126,19 +137,13 @@ public:
 
 private:
   static constexpr std::size_t Points = 8;
-  static constexpr std::size_t Numbers = 24;
+  static constexpr std::size_t Numbers = 20;
+  static constexpr std::size_t Places = 34;
+  static constexpr std::size_t Items = 48;
 
   std::int64_t NumberOf(std::size_t i) const
   {
     return this->Job.Field.Cells->Order[this->Job.Placed[this->Job.Items[i]].Place];
-  }
-
-  void AskForCell(std::size_t i) const
-  {
-    if (i < this->Job.Count)
-    {
-      this->Mesh.PrefetchCell(this->NumberOf(i));
-    }
   }
 
   void AskForPoints(std::size_t i)
@@ -212,14 +217,14 @@ void DrawSlabHere(const SlabJob& job)
     }
     const auto rowOf = [&](double t)
     { return std::floor(t * job.PerDistance) - job.Rows.FirstNumber; };
-    // It may be no row of the tile, but is the same for all tiles: what is rounded depends on it.
-    const double row = rowOf(0.5 * (double{ placed.Near } + double{ placed.Far }));
     if (placed.Face == PlacedCell::Whole)
     {
-      packets.Draw(setup, under, row, rowOf(placed.Near), rowOf(placed.Far));
+      packets.Draw(setup, under, rowOf(placed.Near), rowOf(placed.Far));
     }
     else
     {
+      // It may be no row of the tile, but is the same for all: what is rounded depends on it.
+      const double row = rowOf(0.5 * (double{ placed.Near } + double{ placed.Far }));
       faces.Draw(PatchOf(setup, placed.Face, corners, job.Shading != nullptr), under, row);
     }
   }

@@ -8,63 +8,13 @@
 #endif
 
 #include "Render/Cells/CellPlaces-inl.h"
+#include "Render/Cells/CellRows-inl.h"
 #include "Render/Cells/CellTile.h"
 #include "Render/Raycast/LightLanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace banyan::HWY_NAMESPACE
 {
-
-#if HWY_TARGET != HWY_SCALAR
-using DD = hn::Repartition<double, D>;
-using DHalfFloat = hn::Rebind<float, DD>;
-using VD = hn::Vec<DD>;
-#endif
-
-/// Where the rays of a vector are from a point of reference on, at one row, and how they go on.
-struct RayLanes
-{
-  Triple At;   ///< in cells
-  Triple Step; ///< from row to row
-};
-
-/// @param middle fixed-point, whole
-HWY_INLINE RayLanes RaysAt(const SlabJob& job, int slot, double row, const double (&middle)[3])
-{
-  const D d;
-  constexpr double perUnit = 1.0 / (1 << FractionBits);
-#if HWY_TARGET == HWY_SCALAR
-  const auto at = [&](int axis)
-  {
-    const double whole = job.Rows.Zero[axis][slot] + row * job.Rays.WholeStep[axis][slot];
-    return hn::Set(d, static_cast<float>((whole - middle[axis]) * perUnit));
-  };
-#else
-  const DD dd;
-  constexpr int half = static_cast<int>(hn::MaxLanes(DD()));
-  const VD n = hn::Set(dd, row);
-  const auto at = [&](int axis) HWY_ATTR
-  {
-    const VD from = hn::Set(dd, middle[axis]);
-    const auto part = [&](int first) HWY_ATTR
-    {
-      const VD whole = hn::Add(hn::Load(dd, job.Rows.Zero[axis] + first),
-        hn::Mul(n, hn::Load(dd, job.Rays.WholeStep[axis] + first)));
-      return hn::DemoteTo(DHalfFloat(), hn::Mul(hn::Sub(whole, from), hn::Set(dd, perUnit)));
-    };
-    return hn::Combine(d, part(slot + half), part(slot));
-  };
-#endif
-  return { { at(0), at(1), at(2) },
-    { hn::Load(d, job.Rows.Step[0] + slot), hn::Load(d, job.Rows.Step[1] + slot),
-      hn::Load(d, job.Rows.Step[2] + slot) } };
-}
-
-/// Lanes in which a <= b.
-HWY_INLINE hn::Mask<DI> AtMost(VI a, VI b)
-{
-  return hn::Not(hn::Gt(a, b));
-}
 
 /// Draws one cell after the other into a slab. Samples that may lie in a cell are collected until
 /// they fill a vector, and found in it together.
@@ -73,17 +23,19 @@ class CellPackets
 public:
   explicit CellPackets(const SlabJob& job)
     : Job(job)
+    , Rows(job)
   {
   }
 
-  /// @param row of the tile near the cell's middle
   /// @param first, last rows of the tile that samples of the cell may be in
-  void Draw(const CellSetup& cell, const PixelRect& packets, double row, double first, double last)
+  void Draw(const CellSetup& cell, const PixelRect& packets, double first, double last)
   {
     this->Cell = &cell;
     this->FirstRow = std::max(first, static_cast<double>(this->Job.FirstRow));
     this->LastRow = std::min(last, static_cast<double>(this->Job.FirstRow + SampleSlab::Rows - 1));
-    this->Row = row;
+    this->RowMarks = MarksOf(static_cast<int>(this->FirstRow) - this->Job.FirstRow,
+      static_cast<int>(this->LastRow) - this->Job.FirstRow);
+    this->Rows.Begin(cell);
     for (int axis = 0; axis < 3; ++axis)
     {
       this->MiddleLow[axis] =
@@ -107,14 +59,13 @@ private:
     for (int i = 0; i < RayTile::PacketSize; i += Lanes)
     {
       const int slot = packet * RayTile::PacketSize + i;
-      const RayLanes rays = RaysAt(this->Job, slot, this->Row, this->Cell->Middle);
       VI first;
       VI last;
-      this->RowsInside(rays, slot, first, last);
+      this->Rows.Inside(slot, first, last);
       const auto some = AtMost(first, last);
       if (!hn::AllFalse(DI(), some))
       {
-        this->Collect(packet, slot, rays, first, last);
+        this->Collect(packet, slot, first, last);
       }
     }
     if (this->Job.Rows.AnyEnds)
@@ -126,87 +77,16 @@ private:
     }
   }
 
-  /// Rows of the slab in which whole samples of rays may be in the cell, from its first row on.
-  HWY_INLINE void RowsInside(const RayLanes& rays, int slot, VI& first, VI& last) const
-  {
-    const D d;
-    const DI di;
-    const CellSetup& cell = *this->Cell;
-    const Triple from = Minus(rays.At, InAllLanes(cell.Base));
-    const VI none = hn::Set(di, this->Job.FirstRow);
-    const VI begin = hn::Sub(hn::Load(di, this->Job.Rows.First + slot), none);
-    const VI end = hn::Sub(hn::Load(di, this->Job.Rows.End + slot), none);
-    first = hn::Max(begin, hn::Zero(di));
-    last = hn::Sub(hn::Min(end, hn::Set(di, SampleSlab::Rows)), hn::Set(di, 1));
-    // In rows from this->Row on.
-    const VF toRow = hn::Set(d, static_cast<float>(this->Row - this->Job.FirstRow));
-    VF enter = hn::Sub(hn::ConvertTo(d, first), toRow);
-    VF leave = hn::Sub(hn::ConvertTo(d, last), toRow);
-    VF sumAt = hn::Zero(d);
-    VF sumAlong = hn::Zero(d);
-    VF sumSlack = hn::Zero(d);
-    const bool tetrahedron = cell.Shape == CellShape::Tetrahedron;
-    for (int i = 0; i < 3; ++i)
-    {
-      const Triple inverse = InAllLanes(cell.Inverse[i]);
-      const VF at = DotOf(inverse, from);
-      const VF along = DotOf(inverse, rays.Step);
-      // What rounding may have done.
-      const Triple size{ hn::Abs(hn::Mul(inverse.X, from.X)), hn::Abs(hn::Mul(inverse.Y, from.Y)),
-        hn::Abs(hn::Mul(inverse.Z, from.Z)) };
-      const VF slack = hn::Mul(hn::Add(hn::Add(size.X, size.Y), size.Z), hn::Set(d, 1e-6f));
-      Clip(at, along, hn::Sub(hn::Set(d, cell.Low[i]), slack),
-        hn::Add(hn::Set(d, cell.High[i]), slack), enter, leave);
-      if (i < 2 || tetrahedron)
-      {
-        sumAt = hn::Add(sumAt, at);
-        sumAlong = hn::Add(sumAlong, along);
-        sumSlack = hn::Add(sumSlack, slack);
-      }
-    }
-    if (cell.HasSum)
-    {
-      Clip(sumAt, sumAlong, hn::Set(d, -1e30f), hn::Add(hn::Set(d, cell.HighSum), sumSlack), enter,
-        leave);
-    }
-    const VF little = hn::Set(d, 0.01f);
-    const auto some = hn::Le(enter, hn::Add(leave, little));
-    const VI low = hn::ConvertTo(di, hn::Add(hn::Ceil(hn::Sub(enter, little)), toRow));
-    const VI high = hn::ConvertTo(di, hn::Add(hn::Floor(hn::Add(leave, little)), toRow));
-    first =
-      hn::Max(first, hn::IfThenElse(hn::RebindMask(di, some), low, hn::Set(di, SampleSlab::Rows)));
-    last = hn::Min(last, high);
-  }
-
-  /// Narrows where low <= at + n * along <= high.
-  static HWY_INLINE void Clip(VF at, VF along, VF low, VF high, VF& enter, VF& leave)
-  {
-    const D d;
-    const VF least = hn::Set(d, 1e-30f);
-    const VF safe = hn::IfThenElse(hn::Lt(hn::Abs(along), least), least, along);
-    const VF inverse = hn::Div(hn::Set(d, 1.0f), safe);
-    const VF a = hn::Mul(hn::Sub(low, at), inverse);
-    const VF b = hn::Mul(hn::Sub(high, at), inverse);
-    enter = hn::Max(enter, hn::Min(a, b));
-    leave = hn::Min(leave, hn::Max(a, b));
-  }
-
   /// Each ray goes from its first row to its last one.
-  HWY_INLINE void Collect(int packet, int slot, const RayLanes& rays, VI first, VI last)
+  HWY_INLINE void Collect(int packet, int slot, VI first, VI last)
   {
     const DI di;
     const DU du;
     const VI one = hn::Set(di, 1);
-    std::uint64_t& marks = this->Job.Slab.Marks[packet];
+    this->Job.Slab.Marks[packet] |= this->RowMarks;
     const VI lane = hn::Iota(di, SampleSlab::IndexOf(slot, 0));
     VI row = first;
     auto lanes = AtMost(row, last);
-    int lowest = SampleSlab::Rows;
-    int highest = -1;
-    LimitsOf(first, last, lanes, lowest, highest);
-    const std::uint64_t upTo =
-      highest >= 63 ? ~std::uint64_t{ 0 } : (std::uint64_t{ 1 } << (highest + 1)) - 1;
-    marks |= upTo & ~((std::uint64_t{ 1 } << lowest) - 1);
     if (this->Cell->IsWide)
     {
       this->CollectWide(slot, row, last, lane);
@@ -225,30 +105,34 @@ private:
     while (!hn::AllFalse(di, lanes))
     {
       const VI index = hn::Add(lane, hn::ShiftLeft<4>(row));
-      const std::size_t count = hn::CompressStore(index, lanes, di, this->Index + this->Filled);
+      // Stored whole: to compress into memory takes some processors ten times as long.
+      hn::StoreU(hn::Compress(index, lanes), di, this->Index + this->Filled);
       for (int axis = 0; axis < 3; ++axis)
       {
-        (void)hn::CompressStore(
-          hn::BitCast(di, position[axis]), lanes, di, this->Fixed[axis] + this->Filled);
+        hn::StoreU(hn::Compress(hn::BitCast(di, position[axis]), lanes), di,
+          this->Fixed[axis] + this->Filled);
         position[axis] = hn::Add(position[axis], step[axis]);
       }
-      this->Filled += static_cast<int>(count);
+      this->Filled += static_cast<int>(hn::CountTrue(di, lanes));
       row = hn::Add(row, one);
       lanes = AtMost(row, last);
-      if (this->Filled >= Lanes)
+      if (this->Filled >= 2 * Lanes)
       {
-        this->FindFixed(Lanes);
+        this->FindFixed(2 * Lanes);
       }
     }
-    (void)rays;
   }
 
-  static HWY_INLINE void LimitsOf(VI first, VI last, hn::Mask<DI> lanes, int& lowest, int& highest)
+  /// Bits of rows of a slab, both ends included.
+  static std::uint64_t MarksOf(int first, int last)
   {
-    const DI di;
-    lowest =
-      hn::GetLane(hn::MinOfLanes(di, hn::IfThenElse(lanes, first, hn::Set(di, SampleSlab::Rows))));
-    highest = hn::GetLane(hn::MaxOfLanes(di, hn::IfThenElse(lanes, last, hn::Set(di, -1))));
+    if (first > last)
+    {
+      return 0;
+    }
+    const std::uint64_t upTo =
+      last >= SampleSlab::Rows - 1 ? ~std::uint64_t{ 0 } : (std::uint64_t{ 1 } << (last + 1)) - 1;
+    return upTo & ~((std::uint64_t{ 1 } << first) - 1);
   }
 
   /// The same for cells that are too large for fixed-point numbers of 32 bits.
@@ -339,75 +223,98 @@ private:
   }
 
   /// Finds the first samples of those collected.
+  /// @param count at most two vectors
   void FindFixed(int count)
   {
-    const D d;
     const DI di;
-    if (count == 0)
+    if (count > Lanes)
     {
-      return;
+      this->Find<2>([this](int i, int axis) HWY_ATTR { return this->FixedAt(i, axis); }, count);
     }
-    const VF unit = hn::Set(d, 1.0f / (1 << FractionBits));
-    const auto at = [&](int axis) HWY_ATTR
-    { return hn::Mul(hn::ConvertTo(d, hn::LoadU(di, this->Fixed[axis])), unit); };
-    this->Find({ at(0), at(1), at(2) }, count);
+    else if (count > 0)
+    {
+      this->Find<1>([this](int i, int axis) HWY_ATTR { return this->FixedAt(i, axis); }, count);
+    }
     this->Filled -= count;
-    hn::StoreU(hn::LoadU(di, this->Index + Lanes), di, this->Index);
-    for (auto& fixed : this->Fixed)
+    if (this->Filled > 0)
     {
-      hn::StoreU(hn::LoadU(di, fixed + Lanes), di, fixed);
+      hn::StoreU(hn::LoadU(di, this->Index + count), di, this->Index);
+      for (auto& fixed : this->Fixed)
+      {
+        hn::StoreU(hn::LoadU(di, fixed + count), di, fixed);
+      }
     }
+  }
+
+  HWY_INLINE VF FixedAt(int i, int axis) const
+  {
+    const VI fixed = hn::LoadU(DI(), this->Fixed[axis] + i * Lanes);
+    return hn::Mul(hn::ConvertTo(D(), fixed), hn::Set(D(), 1.0f / (1 << FractionBits)));
   }
 
   void FindFloat(int count)
   {
-    const D d;
     if (count > 0)
     {
-      this->Find({ hn::LoadU(d, this->Float[0]), hn::LoadU(d, this->Float[1]),
-                   hn::LoadU(d, this->Float[2]) },
-        count);
+      this->Find<1>(
+        [this](int, int axis) HWY_ATTR { return hn::LoadU(D(), this->Float[axis]); }, count);
       this->Filled = 0;
     }
   }
 
-  HWY_INLINE void Find(const Triple& position, int count)
+  /// @param at gives a vector of positions along an axis
+  /// @param count samples, in so many vectors
+  template <int vectors, class At>
+  HWY_INLINE void Find(At&& at, int count)
   {
     const D d;
-    Triple place;
     const CellPlaces places(*this->Cell);
-    const auto found =
-      hn::And(places.Find(position, place), hn::FirstN(d, static_cast<std::size_t>(count)));
-    std::uint64_t bits = 0;
-    hn::StoreMaskBits(d, found, reinterpret_cast<std::uint8_t*>(&bits));
-    this->Put(places.At(this->Cell->Value, place), bits, this->Job.Slab.Value);
-    if (this->Job.Shading)
+    Triple positions[vectors];
+    Triple found[vectors];
+    hn::Mask<D> inside[vectors];
+    for (int i = 0; i < vectors; ++i)
     {
-      const VF cosine = CosineOf(*this->Job.Shading, places.At(this->Cell->Gradient[0], place),
-        places.At(this->Cell->Gradient[1], place), places.At(this->Cell->Gradient[2], place),
-        this->DirectionsOfSlots());
-      this->Put(cosine, bits, this->Job.Slab.Cosine);
+      positions[i] = { at(i, 0), at(i, 1), at(i, 2) };
+    }
+    places.Find(positions, found, inside);
+    for (int i = 0; i < vectors; ++i)
+    {
+      const auto rest = static_cast<std::size_t>(count - i * Lanes);
+      const auto lanes = hn::And(inside[i], hn::FirstN(d, std::min<std::size_t>(rest, Lanes)));
+      std::uint64_t bits = 0;
+      hn::StoreMaskBits(d, lanes, reinterpret_cast<std::uint8_t*>(&bits));
+      const std::int32_t* const indices = this->Index + i * Lanes;
+      Put(places.At(this->Cell->Value, found[i]), bits, indices, this->Job.Slab.Value);
+      if (this->Job.Shading)
+      {
+        const auto gradient = [&](int axis) HWY_ATTR
+        { return places.At(this->Cell->Gradient[axis], found[i]); };
+        const VF cosine = CosineOf(
+          *this->Job.Shading, gradient(0), gradient(1), gradient(2), this->DirectionsAt(indices));
+        Put(cosine, bits, indices, this->Job.Slab.Cosine);
+      }
     }
   }
 
-  HWY_INLINE void Put(VF numbers, std::uint64_t lanes, float* to) const
+  static HWY_INLINE void Put(
+    VF numbers, std::uint64_t lanes, const std::int32_t* indices, float* to)
   {
     alignas(64) float values[RayTile::PacketSize];
     hn::Store(numbers, D(), values);
     for (; lanes != 0; lanes &= lanes - 1)
     {
       const int lane = __builtin_ctzll(lanes);
-      to[this->Index[lane]] = values[lane];
+      to[indices[lane]] = values[lane];
     }
   }
 
-  /// Of the rays whose samples wait.
-  HWY_INLINE Direction DirectionsOfSlots() const
+  /// Of the rays of samples in the slab.
+  HWY_INLINE Direction DirectionsAt(const std::int32_t* indices) const
   {
     const D d;
     const DI di;
     static_assert(SampleSlab::Rows * SampleSlab::Lanes == 1 << 10, "packets have 2^10 samples");
-    const VI index = hn::LoadU(di, this->Index);
+    const VI index = hn::LoadU(di, indices);
     const VI slot = hn::Or(hn::ShiftLeft<4>(hn::ShiftRight<10>(index)),
       hn::And(index, hn::Set(di, SampleSlab::Lanes - 1)));
     return { hn::GatherIndex(d, this->Job.Rays.Direction[0], slot),
@@ -415,17 +322,18 @@ private:
       hn::GatherIndex(d, this->Job.Rays.Direction[2], slot) };
   }
 
-  const SlabJob& Job;
-  const CellSetup* Cell = nullptr;
-  double Row = 0.0; ///< whole
-  double FirstRow = 0.0;
-  double LastRow = 0.0;
-  std::uint32_t MiddleLow[3] = {};
-  // Samples that wait: a vector of them at most, and one more that may come at once.
-  int Filled = 0;
+  // Samples that wait: less than two vectors of them, and one more that may come at once.
   alignas(64) std::int32_t Index[3 * RayTile::PacketSize] = {};
   alignas(64) std::int32_t Fixed[3][3 * RayTile::PacketSize] = {};
   alignas(64) float Float[3][RayTile::PacketSize] = {};
+  int Filled = 0;
+  std::uint32_t MiddleLow[3] = {};
+  const CellSetup* Cell = nullptr;
+  std::uint64_t RowMarks = 0; ///< of rows that the cell may have samples in
+  double FirstRow = 0.0;
+  double LastRow = 0.0;
+  const SlabJob& Job;
+  CellRows Rows;
 };
 
 } // namespace banyan::HWY_NAMESPACE

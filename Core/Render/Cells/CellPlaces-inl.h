@@ -70,31 +70,34 @@ public:
   {
   }
 
-  /// @param position from the cell's middle on
-  /// @param place set in lanes that are inside
-  /// @return lanes that are inside
-  HWY_INLINE hn::Mask<D> Find(const Triple& position, Triple& place) const
+  /// Finds places of several vectors of positions: while one waits for a division, another goes on.
+  /// @param positions from the cell's middle on
+  /// @param places set in lanes that are inside
+  /// @param inside lanes that are
+  template <int count>
+  HWY_INLINE void Find(
+    const Triple (&positions)[count], Triple (&places)[count], hn::Mask<D> (&inside)[count]) const
   {
-    place = this->LinearPlace(position);
+    for (int i = 0; i < count; ++i)
+    {
+      places[i] = this->LinearPlace(positions[i]);
+    }
     switch (this->Cell.Shape)
     {
       case CellShape::Tetrahedron:
-        return InTetrahedron(place);
+        for (int i = 0; i < count; ++i)
+        {
+          inside[i] = InTetrahedron(places[i]);
+        }
+        break;
       case CellShape::Wedge:
-      {
-        const auto met = this->Refine<CellShape::Wedge>(position, place);
-        return hn::And(met, InWedge(place));
-      }
+        this->Refine<CellShape::Wedge>(positions, places, inside);
+        break;
       case CellShape::Pyramid:
-      {
-        const auto met = this->Refine<CellShape::Pyramid>(position, place);
-        return hn::And(met, InPyramid(place));
-      }
+        this->Refine<CellShape::Pyramid>(positions, places, inside);
+        break;
       default:
-      {
-        const auto met = this->Refine<CellShape::Hexahedron>(position, place);
-        return hn::And(met, InCube(place));
-      }
+        this->Refine<CellShape::Hexahedron>(positions, places, inside);
     }
   }
 
@@ -249,44 +252,93 @@ private:
     }
   }
 
-  /// Newton's method. Each lane stops by its own step, so that a place depends on nothing but the
-  /// cell and the position.
-  /// @return lanes that have met the position
   template <CellShape shape>
-  HWY_INLINE hn::Mask<D> Refine(const Triple& position, Triple& place) const
+  static HWY_INLINE hn::Mask<D> Inside(const Triple& place)
+  {
+    if constexpr (shape == CellShape::Wedge)
+    {
+      return InWedge(place);
+    }
+    else if constexpr (shape == CellShape::Pyramid)
+    {
+      return InPyramid(place);
+    }
+    else
+    {
+      return InCube(place);
+    }
+  }
+
+  /// The first guess of Newton's method.
+  template <CellShape shape>
+  HWY_INLINE void Begin(Triple& place) const
   {
     const D d;
-    if (!this->Cell.IsBent)
-    {
-      return hn::Eq(place.X, place.X);
-    }
-    this->Straighten<shape>(place);
     const VF most = hn::Set(d, 1.5f);
     const VF least = hn::Set(d, -1.5f);
+    this->Straighten<shape>(place);
     place = { hn::Min(hn::Max(place.X, least), most), hn::Min(hn::Max(place.Y, least), most),
       hn::Min(hn::Max(place.Z, least), most) };
-    auto moving = hn::Eq(place.X, place.X);
-    for (int step = 0; step < MostSteps; ++step)
+  }
+
+  /// One step of Newton's method.
+  /// @param moving lanes that go on; those are left whose steps are not small
+  template <CellShape shape>
+  HWY_INLINE void Step(const Triple& position, Triple& place, hn::Mask<D>& moving) const
+  {
+    const D d;
+    const Tangent tangent = this->TangentAt<shape>(place);
+    const Triple off = Minus(position, tangent.At);
+    const Triple across0 = CrossOf(tangent.Along[1], tangent.Along[2]);
+    const VF inverse = hn::Div(hn::Set(d, 1.0f), DotOf(tangent.Along[0], across0));
+    const Triple by{ hn::Mul(DotOf(off, across0), inverse),
+      hn::Mul(DotOf(off, CrossOf(tangent.Along[2], tangent.Along[0])), inverse),
+      hn::Mul(DotOf(off, CrossOf(tangent.Along[0], tangent.Along[1])), inverse) };
+    place = { hn::IfThenElse(moving, hn::Add(place.X, by.X), place.X),
+      hn::IfThenElse(moving, hn::Add(place.Y, by.Y), place.Y),
+      hn::IfThenElse(moving, hn::Add(place.Z, by.Z), place.Z) };
+    const VF largest = hn::Max(hn::Max(hn::Abs(by.X), hn::Abs(by.Y)), hn::Abs(by.Z));
+    // Steps that are no numbers go on to the end, and have met nothing.
+    moving = hn::And(moving, hn::Not(hn::Lt(largest, hn::Set(d, LastStep))));
+  }
+
+  /// Newton's method. Each lane stops by its own step, so that a place depends on nothing but the
+  /// cell and the position.
+  /// @param inside set: lanes that have met the position in the cell
+  template <CellShape shape, int count>
+  HWY_INLINE void Refine(
+    const Triple (&positions)[count], Triple (&places)[count], hn::Mask<D> (&inside)[count]) const
+  {
+    const D d;
+    hn::Mask<D> moving[count];
+    for (int i = 0; i < count; ++i)
     {
-      const Tangent tangent = this->TangentAt<shape>(place);
-      const Triple off = Minus(position, tangent.At);
-      const Triple across0 = CrossOf(tangent.Along[1], tangent.Along[2]);
-      const VF inverse = hn::Div(hn::Set(d, 1.0f), DotOf(tangent.Along[0], across0));
-      const Triple by{ hn::Mul(DotOf(off, across0), inverse),
-        hn::Mul(DotOf(off, CrossOf(tangent.Along[2], tangent.Along[0])), inverse),
-        hn::Mul(DotOf(off, CrossOf(tangent.Along[0], tangent.Along[1])), inverse) };
-      place = { hn::IfThenElse(moving, hn::Add(place.X, by.X), place.X),
-        hn::IfThenElse(moving, hn::Add(place.Y, by.Y), place.Y),
-        hn::IfThenElse(moving, hn::Add(place.Z, by.Z), place.Z) };
-      const VF largest = hn::Max(hn::Max(hn::Abs(by.X), hn::Abs(by.Y)), hn::Abs(by.Z));
-      // Steps that are no numbers go on to the end, and have met nothing.
-      moving = hn::And(moving, hn::Not(hn::Lt(largest, hn::Set(d, LastStep))));
-      if (hn::AllFalse(d, moving))
+      moving[i] = this->Cell.IsBent ? hn::Eq(places[i].X, places[i].X) : hn::FirstN(d, 0);
+    }
+    if (this->Cell.IsBent)
+    {
+      for (int i = 0; i < count; ++i)
       {
-        break;
+        this->Begin<shape>(places[i]);
+      }
+      for (int step = 0; step < MostSteps; ++step)
+      {
+        hn::Mask<D> any = hn::FirstN(d, 0);
+        for (int i = 0; i < count; ++i)
+        {
+          this->Step<shape>(positions[i], places[i], moving[i]);
+          any = hn::Or(any, moving[i]);
+        }
+        if (hn::AllFalse(d, any))
+        {
+          break;
+        }
       }
     }
-    return hn::Not(moving);
+    for (int i = 0; i < count; ++i)
+    {
+      inside[i] = hn::AndNot(moving[i], Inside<shape>(places[i]));
+    }
   }
 
   const CellSetup& Cell;

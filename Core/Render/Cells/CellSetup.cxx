@@ -171,30 +171,22 @@ Leans LeansOf(const Terms<glm::dvec3>& terms, const glm::dmat3& inverse)
 
 /// A cell lies within the hull of its corners, so these bound what is linear.
 /// @param offsets of corners from the middle
-void CellSetup::SetBounds(const glm::dvec3 (&offsets)[8])
+void CellSetup::SetBounds(const glm::dvec3 (&offsets)[8], const glm::dmat3& inverse)
 {
   // More than rounding, and than how far outside of a cell samples count as its own.
   constexpr double margin = 0.001;
   const bool tetrahedron = this->Shape == CellShape::Tetrahedron;
   this->HasSum = tetrahedron || this->Shape == CellShape::Wedge;
-  double low[3] = {};
-  double high[3] = {};
-  double highSum = 0.0;
-  for (int corner = 0; corner < CornersOf(this->Shape); ++corner)
+  const glm::dvec3 base(this->Base[0], this->Base[1], this->Base[2]);
+  glm::dvec3 low(inverse * (offsets[0] - base));
+  glm::dvec3 high(low);
+  double highSum = low.x + low.y + (tetrahedron ? low.z : 0.0);
+  for (int corner = 1; corner < CornersOf(this->Shape); ++corner)
   {
-    double sum = 0.0;
-    for (int i = 0; i < 3; ++i)
-    {
-      double place = 0.0;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        place += double{ this->Inverse[i][axis] } * (offsets[corner][axis] - this->Base[axis]);
-      }
-      low[i] = corner == 0 ? place : std::min(low[i], place);
-      high[i] = corner == 0 ? place : std::max(high[i], place);
-      sum += i < 2 || tetrahedron ? place : 0.0;
-    }
-    highSum = corner == 0 ? sum : std::max(highSum, sum);
+    const glm::dvec3 place = inverse * (offsets[corner] - base);
+    low = glm::min(low, place);
+    high = glm::max(high, place);
+    highSum = std::max(highSum, place.x + place.y + (tetrahedron ? place.z : 0.0));
   }
   this->HighSum = static_cast<float>(highSum + margin);
   for (int i = 0; i < 3; ++i)
@@ -278,7 +270,7 @@ bool CellSetup::Set(CellShape shape, const glm::dvec3 (&corners)[8])
       this->Inverse[i][axis] = static_cast<float>(inverse[axis][i]);
     }
   }
-  this->SetBounds(offsets);
+  this->SetBounds(offsets, inverse);
   return true;
 }
 

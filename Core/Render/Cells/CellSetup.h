@@ -4,6 +4,7 @@
 
 #include "Cells/CellShape.h"
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstdint>
@@ -60,7 +61,7 @@ struct CellSetup
   bool Set(CellShape shape, const glm::dvec3 (&corners)[8]);
 
 private:
-  void SetBounds(const glm::dvec3 (&offsets)[8]);
+  void SetBounds(const glm::dvec3 (&offsets)[8], const glm::dmat3& inverse);
 };
 
 } // namespace banyan
