@@ -43,7 +43,7 @@ struct CellMesh
 
   // Cells.
   const void* Connectivity = nullptr; ///< numbers of points, cell after cell
-  std::size_t ConnectivityCount = 0;  ///< of these numbers
+  std::int64_t ConnectivityCount = 0; ///< how many these are
   const void* Offsets = nullptr;      ///< where cells begin in Connectivity, and one more; may be
                                       ///< null where all cells have as many points as PerCell
   ScalarType IdType = ScalarType::Int64; ///< of both, or Int32
@@ -60,6 +60,14 @@ struct CellMesh
 
   /// The shape of a type of VTK.
   static CellShape ShapeOf(std::uint8_t type);
+
+  /// Where a cell of Kind::Cells begins and ends in Connectivity, as the arrays say: see CheckMesh.
+  struct Listed
+  {
+    std::int64_t Begin;
+    std::int64_t End;
+  };
+  Listed ListOf(std::int64_t cell) const;
 
   /// A cell; its shape is None when it is hidden, or of a type that is not drawn. Points may be out
   /// of range: see CheckMesh.
@@ -95,6 +103,20 @@ inline CellShape CellMesh::ShapeOf(std::uint8_t type)
     default:
       return CellShape::None;
   }
+}
+
+inline CellMesh::Listed CellMesh::ListOf(std::int64_t cell) const
+{
+  if (!this->Offsets)
+  {
+    return { cell * this->PerCell, (cell + 1) * this->PerCell };
+  }
+  const auto at = [this](std::int64_t i)
+  {
+    return this->IdType == ScalarType::Int64 ? static_cast<const std::int64_t*>(this->Offsets)[i]
+                                             : static_cast<const std::int32_t*>(this->Offsets)[i];
+  };
+  return { at(cell), at(cell + 1) };
 }
 
 template <class Id>

@@ -77,6 +77,10 @@ public:
     {
       return false;
     }
+    if (!this->IsListed(cell))
+    {
+      return false;
+    }
     const MeshCell is = this->Mesh.Cell(cell);
     const int corners = CornersOf(is.Shape);
     if (corners == 0)
@@ -112,6 +116,25 @@ public:
   }
 
 private:
+  /// Whether the mesh has as many numbers of points as a cell needs: before any is read.
+  bool IsListed(std::int64_t cell) const
+  {
+    if (this->Mesh.Is != CellMesh::Kind::Cells)
+    {
+      return true;
+    }
+    const CellMesh::Listed list = this->Mesh.ListOf(cell);
+    if (list.Begin < 0 || list.End < list.Begin || list.End > this->Mesh.ConnectivityCount)
+    {
+      this->Failure.Report(cell, "Cell " + std::to_string(cell) + " has its points from number " +
+                                   std::to_string(list.Begin) + " to " + std::to_string(list.End) +
+                                   " of the connectivity, which has " +
+                                   std::to_string(this->Mesh.ConnectivityCount));
+      return false;
+    }
+    return true;
+  }
+
   bool AreInRange(std::int64_t cell, const MeshCell& is, int corners) const
   {
     for (std::size_t i = 0; i < static_cast<std::size_t>(corners); ++i)

@@ -295,7 +295,7 @@ private:
     }
     mesh.IdType = ids->GetDataTypeSize() == 4 ? ScalarType::Int32 : ScalarType::Int64;
     mesh.Connectivity = this->Keep(ids);
-    mesh.ConnectivityCount = static_cast<std::size_t>(ids->GetNumberOfValues());
+    mesh.ConnectivityCount = ids->GetNumberOfValues();
     mesh.Offsets = offsets ? this->Keep(offsets) : nullptr;
   }
 

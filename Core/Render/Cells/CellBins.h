@@ -28,7 +28,6 @@ public:
   const PixelRect& Rect() const { return this->Touched; }
 
   const PlacedCell* Placed() const { return this->All.data(); }
-  std::int64_t Count() const { return static_cast<std::int64_t>(this->All.size()); }
   /// Cells that cannot be seen, or are off screen.
   std::int64_t Skipped() const { return this->NotSeen; }
 
@@ -44,12 +43,6 @@ public:
   Span Over(std::size_t tile) const
   {
     return { this->Items.data() + this->Begins[tile], this->Begins[tile + 1] - this->Begins[tile] };
-  }
-
-  std::size_t Bytes() const
-  {
-    return this->All.capacity() * sizeof(PlacedCell) +
-           this->Items.capacity() * sizeof(std::uint32_t);
   }
 
 private:

@@ -147,6 +147,7 @@ CellMesh OwnedCellMesh::View() const
   }
   view.Points = isFloat ? static_cast<const void*>(this->FloatPoints.data()) : this->Points.data();
   view.Connectivity = this->Ids.data();
+  view.ConnectivityCount = static_cast<std::int64_t>(this->Ids.size());
   view.Offsets = this->Offsets.data();
   view.Types = this->Types.data();
   return view;

@@ -78,6 +78,7 @@ struct OwnMesh
     mesh.PointType = ScalarType::Float64;
     mesh.PointCount = static_cast<std::int64_t>(this->Points.size() / 3);
     mesh.Connectivity = this->Ids.data();
+    mesh.ConnectivityCount = static_cast<std::int64_t>(this->Ids.size());
     mesh.Offsets = this->Offsets.data();
     mesh.Types = this->Types.data();
     mesh.CellCount = static_cast<std::int64_t>(this->Types.size());

@@ -246,6 +246,41 @@ TEST(CheckMesh, HiddenCellsAreNotCounted)
   EXPECT_TRUE(facts.Draws(0) && !facts.Draws(1) && !facts.Draws(2) && facts.Draws(3));
 }
 
+TEST(CheckMesh, RefusesListsThatAreNotThere)
+{
+  const auto refused = [](const CellMesh& mesh)
+  {
+    try
+    {
+      Check(mesh);
+      return std::string();
+    }
+    catch (const Error& error)
+    {
+      return std::string(error.what());
+    }
+  };
+  const OwnMesh good = BoxOf(Split::Hexahedra, 4, 1, 1);
+  EXPECT_EQ(refused(good.View()), "");
+  OwnMesh mesh = good;
+  mesh.Offsets[3] += 1; // cell 2 has nine points, and cell 3 seven
+  EXPECT_EQ(Check(mesh.View()).OtherTypes.Count, 2);
+  mesh = good;
+  mesh.Offsets[4] = 1000;
+  EXPECT_EQ(refused(mesh.View()),
+    "Cell 3 has its points from number 24 to 1000 of the connectivity, which has 32");
+  mesh = good;
+  mesh.Offsets[2] = -5;
+  EXPECT_NE(
+    refused(mesh.View()).find("Cell 1 has its points from number 8 to -5"), std::string::npos);
+  CellMesh view = good.View();
+  view.Offsets = nullptr;
+  view.PerCell = 8;
+  EXPECT_EQ(refused(view), "");
+  view.ConnectivityCount = 31;
+  EXPECT_NE(refused(view).find("Cell 3 has its points from number 24 to 32"), std::string::npos);
+}
+
 TEST(CheckMesh, RefusesGridsOfOtherSizes)
 {
   const std::vector<double> axis{ 0, 1, 2 };
