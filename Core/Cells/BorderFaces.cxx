@@ -418,4 +418,14 @@ std::vector<BorderFace> BorderFacesOf(const CellMesh& mesh, const CellFacts& fac
   return InOrder(faces, order.size(), pool);
 }
 
+std::vector<std::uint8_t> BorderBitsOf(const std::vector<BorderFace>& border, std::size_t cells)
+{
+  std::vector<std::uint8_t> bits(border.empty() ? 0 : cells);
+  for (const BorderFace& face : border)
+  {
+    bits[face.Cell] = static_cast<std::uint8_t>(bits[face.Cell] | 1u << face.Face);
+  }
+  return bits;
+}
+
 } // namespace banyan

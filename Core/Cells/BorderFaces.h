@@ -4,6 +4,7 @@
 
 #include "Cells/CheckMesh.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -42,6 +43,11 @@ struct BorderFace
 /// @return the same for any number of threads
 std::vector<BorderFace> BorderFacesOf(const CellMesh& mesh, const CellFacts& facts,
   const std::vector<std::uint32_t>& order, ThreadPool& pool);
+
+/// The same by cell: bit n of a cell's byte for its face n.
+/// @param cells in the order
+/// @return empty where there is no border
+std::vector<std::uint8_t> BorderBitsOf(const std::vector<BorderFace>& border, std::size_t cells);
 
 } // namespace banyan
 

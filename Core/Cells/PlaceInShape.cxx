@@ -115,21 +115,19 @@ public:
       this->Z + product.z * this->XY };
   }
 
-  bool Inside(const glm::dvec3& p, double tolerance) const
+  bool Inside(const glm::dvec3& p, const FaceTolerances& tolerances) const
   {
-    switch (this->Shape)
+    const FaceTolerances inwards = this->FromFaces(p);
+    for (std::size_t face = 0; face < static_cast<std::size_t>(FacesOf(this->Shape).Count); ++face)
     {
-      case CellShape::Tetrahedron:
-        return std::min({ p.x, p.y, p.z, 1.0 - p.x - p.y - p.z }) >= -tolerance;
-      case CellShape::Pyramid:
-        return std::max(std::abs(p.x), std::abs(p.y)) <= p.z + tolerance && p.z >= -tolerance &&
-               p.z <= 1.0 + tolerance;
-      case CellShape::Wedge:
-        return std::min({ p.x, p.y, 1.0 - p.x - p.y }) >= -tolerance &&
-               std::abs(p.z) <= 1.0 + tolerance;
-      default:
-        return Largest(p) <= 1.0 + tolerance;
+      if (!(inwards[face] >= -tolerances[face]))
+      {
+        return false;
+      }
     }
+    // Beyond its apex a pyramid would begin again.
+    return this->Shape != CellShape::Pyramid ||
+           p.z >= -*std::max_element(tolerances.begin() + 1, tolerances.begin() + 5);
   }
 
   /// Unknowns as VTK's parametric coordinates.
@@ -152,6 +150,22 @@ public:
   }
 
 private:
+  /// How far inside of each face a place is.
+  FaceTolerances FromFaces(const glm::dvec3& p) const
+  {
+    switch (this->Shape)
+    {
+      case CellShape::Tetrahedron:
+        return { p.z, p.y, 1.0 - p.x - p.y - p.z, p.x };
+      case CellShape::Pyramid:
+        return { 1.0 - p.z, p.z + p.y, p.z - p.x, p.z - p.y, p.z + p.x };
+      case CellShape::Wedge:
+        return { 1.0 + p.z, 1.0 - p.z, p.y, 1.0 - p.x - p.y, p.x };
+      default:
+        return { 1.0 + p.x, 1.0 - p.x, 1.0 + p.y, 1.0 - p.y, 1.0 + p.z, 1.0 - p.z };
+    }
+  }
+
   /// h where a pyramid is wide enough. Near the apex the smallest one at which u and v are inside:
   /// beside the pyramid, which ends there, u v / h would have no bound.
   static double Height(const glm::dvec3& p)
@@ -265,6 +279,14 @@ glm::dvec3 PositionAt(CellShape shape, const CellCorners& corners, const glm::dv
 bool FindPlace(CellShape shape, const CellCorners& corners, const glm::dvec3& point,
   double tolerance, glm::dvec3& place)
 {
+  FaceTolerances tolerances;
+  tolerances.fill(tolerance);
+  return FindPlace(shape, corners, point, tolerances, place);
+}
+
+bool FindPlace(CellShape shape, const CellCorners& corners, const glm::dvec3& point,
+  const FaceTolerances& tolerances, glm::dvec3& place)
+{
   if (shape == CellShape::None)
   {
     return false;
@@ -287,7 +309,7 @@ bool FindPlace(CellShape shape, const CellCorners& corners, const glm::dvec3& po
     if (Largest(step) < Converged)
     {
       place = map.PlaceOf(at);
-      return map.Inside(at, tolerance);
+      return map.Inside(at, tolerances);
     }
   }
   return false;

@@ -65,6 +65,7 @@ public:
     }
     PlacedCell found;
     found.Place = place;
+    found.Border = this->Cells.BorderBits.empty() ? 0 : this->Cells.BorderBits[place];
     if (!this->Cover(all, corners, found))
     {
       return;

@@ -25,6 +25,7 @@ std::shared_ptr<const DrawnCells> DrawnCells::Of(
   const CellLattice tight = LatticeOf(ExtentOf(mesh, facts, pool));
   cells->Order = OrderOfCells(mesh, facts, tight, pool);
   cells->Border = BorderFacesOf(mesh, facts, cells->Order, pool);
+  cells->BorderBits = BorderBitsOf(cells->Border, cells->Order.size());
   const int longest = std::max({ tight.Size.x, tight.Size.y, tight.Size.z });
   const int room = std::max(longest / RoomPart, LeastRoom);
   cells->Lattice = tight;
@@ -36,7 +37,7 @@ std::shared_ptr<const DrawnCells> DrawnCells::Of(
 std::size_t DrawnCells::Bytes() const
 {
   return this->Order.capacity() * sizeof(this->Order[0]) +
-         this->Border.capacity() * sizeof(this->Border[0]);
+         this->Border.capacity() * sizeof(this->Border[0]) + this->BorderBits.capacity();
 }
 
 } // namespace banyan

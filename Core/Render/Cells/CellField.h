@@ -24,6 +24,9 @@ struct DrawnCells
   CellLattice Lattice;
   std::vector<std::uint32_t> Order; ///< numbers of the cells that are drawn, in the global order
   std::vector<BorderFace> Border;   ///< faces that one cell of them has alone
+  /// By place in the order: which faces of a cell end the mesh, a bit each. So its samples do not
+  /// reach beyond them. Empty where none does.
+  std::vector<std::uint8_t> BorderBits;
 
   /// Checks a mesh and finds all that drawing it takes. There is room around the mesh in the index
   /// space, so that rays begin and end outside of it.

@@ -172,8 +172,8 @@ private:
 };
 
 /// @return false when nothing of the cell can be drawn
-bool TakeCell(const SlabJob& job, std::int64_t number, const MeshCell& cell, CellCorners& corners,
-  CellSetup& setup)
+bool TakeCell(const SlabJob& job, const PlacedCell& placed, const MeshCell& cell,
+  CellCorners& corners, CellSetup& setup)
 {
   const DrawnCells& cells = *job.Field.Cells;
   const int count = CornersOf(cell.Shape);
@@ -181,11 +181,11 @@ bool TakeCell(const SlabJob& job, std::int64_t number, const MeshCell& cell, Cel
   {
     corners.At[i] = cells.ToIndex(cells.Mesh.Point(cell.Points[static_cast<std::size_t>(i)]));
   }
-  if (!setup.Set(cell.Shape, corners.At))
+  if (!setup.Set(cell.Shape, corners.At, placed.Border))
   {
     return false;
   }
-  job.Field.CornerValues(number, cell, corners.Values);
+  job.Field.CornerValues(cells.Order[placed.Place], cell, corners.Values);
   setup.Value.Set(cell.Shape, corners.Values);
   for (int axis = 0; axis < 3 && job.Shading; ++axis)
   {
@@ -211,7 +211,7 @@ void DrawSlabHere(const SlabJob& job)
     const PlacedCell& placed = job.Placed[job.Items[i]];
     const MeshCell& cell = ahead.Take(i);
     const PixelRect under = PacketsOf(job, placed);
-    if (under.Empty() || !TakeCell(job, job.Field.Cells->Order[placed.Place], cell, corners, setup))
+    if (under.Empty() || !TakeCell(job, placed, cell, corners, setup))
     {
       continue;
     }

@@ -59,10 +59,6 @@ HWY_INLINE Triple InAllLanes(const float (&v)[3])
 class CellPlaces
 {
 public:
-  /// Of places beyond the faces that count as those of the cell.
-  static constexpr float Margin = 1.0f / (1 << 13);
-  /// A step of Newton's method that is smaller is the last one: the next would be about its square.
-  static constexpr float LastStep = 4e-3f;
   static constexpr int MostSteps = 8;
 
   explicit CellPlaces(const CellSetup& cell)
@@ -87,7 +83,7 @@ public:
       case CellShape::Tetrahedron:
         for (int i = 0; i < count; ++i)
         {
-          inside[i] = InTetrahedron(places[i]);
+          inside[i] = this->InTetrahedron(places[i]);
         }
         break;
       case CellShape::Wedge:
@@ -128,8 +124,15 @@ public:
 
 private:
   static HWY_INLINE VF Set(float value) { return hn::Set(D(), value); }
-  static HWY_INLINE VF Most() { return Set(1.0f + Margin); }
-  static HWY_INLINE VF Least() { return Set(-Margin); }
+  /// Lanes in which a number is at least, or at most, what the cell has along an axis.
+  HWY_INLINE hn::Mask<D> IsFrom(VF x, int axis) const
+  {
+    return hn::Ge(x, Set(this->Cell.Least[axis]));
+  }
+  HWY_INLINE hn::Mask<D> IsUpTo(VF x, int axis) const
+  {
+    return hn::Le(x, Set(this->Cell.Most[axis]));
+  }
 
   HWY_INLINE Triple LinearPlace(const Triple& position) const
   {
@@ -139,28 +142,33 @@ private:
       DotOf(InAllLanes(this->Cell.Inverse[2]), from) };
   }
 
-  static HWY_INLINE hn::Mask<D> InTetrahedron(const Triple& p)
+  HWY_INLINE hn::Mask<D> InTetrahedron(const Triple& p) const
   {
-    const VF least = hn::Min(hn::Min(p.X, p.Y), p.Z);
-    return hn::And(hn::Ge(least, Least()), hn::Le(hn::Add(hn::Add(p.X, p.Y), p.Z), Most()));
+    const VF sum = hn::Add(hn::Add(p.X, p.Y), p.Z);
+    return hn::And(hn::And(this->IsFrom(p.X, 0), this->IsFrom(p.Y, 1)),
+      hn::And(this->IsFrom(p.Z, 2), hn::Le(sum, Set(this->Cell.MostSum))));
   }
 
-  static HWY_INLINE hn::Mask<D> InWedge(const Triple& p)
+  HWY_INLINE hn::Mask<D> InWedge(const Triple& p) const
   {
-    return hn::And(hn::And(hn::Ge(hn::Min(p.X, p.Y), Least()), hn::Le(hn::Add(p.X, p.Y), Most())),
-      hn::Le(hn::Abs(p.Z), Most()));
+    const auto within = hn::Le(hn::Add(p.X, p.Y), Set(this->Cell.MostSum));
+    return hn::And(hn::And(hn::And(this->IsFrom(p.X, 0), this->IsFrom(p.Y, 1)), within),
+      hn::And(this->IsFrom(p.Z, 2), this->IsUpTo(p.Z, 2)));
   }
 
-  static HWY_INLINE hn::Mask<D> InPyramid(const Triple& p)
+  HWY_INLINE hn::Mask<D> InPyramid(const Triple& p) const
   {
-    const VF widest = hn::Add(p.Z, Set(Margin));
-    return hn::And(hn::Le(hn::Max(hn::Abs(p.X), hn::Abs(p.Y)), widest),
-      hn::And(hn::Ge(p.Z, Least()), hn::Le(p.Z, Most())));
+    const auto between = [&](VF x, int axis) HWY_ATTR
+    { return hn::And(this->IsFrom(hn::Add(x, p.Z), axis), this->IsUpTo(hn::Sub(x, p.Z), axis)); };
+    return hn::And(hn::And(between(p.X, 0), between(p.Y, 1)),
+      hn::And(this->IsFrom(p.Z, 2), this->IsUpTo(p.Z, 2)));
   }
 
-  static HWY_INLINE hn::Mask<D> InCube(const Triple& p)
+  HWY_INLINE hn::Mask<D> InCube(const Triple& p) const
   {
-    return hn::Le(hn::Max(hn::Max(hn::Abs(p.X), hn::Abs(p.Y)), hn::Abs(p.Z)), Most());
+    return hn::And(hn::And(hn::And(this->IsFrom(p.X, 0), this->IsUpTo(p.X, 0)),
+                     hn::And(this->IsFrom(p.Y, 1), this->IsUpTo(p.Y, 1))),
+      hn::And(this->IsFrom(p.Z, 2), this->IsUpTo(p.Z, 2)));
   }
 
   /// What u v is divided by: h, but not much less than u and v just outside of the apex, where the
@@ -253,19 +261,19 @@ private:
   }
 
   template <CellShape shape>
-  static HWY_INLINE hn::Mask<D> Inside(const Triple& place)
+  HWY_INLINE hn::Mask<D> Inside(const Triple& place) const
   {
     if constexpr (shape == CellShape::Wedge)
     {
-      return InWedge(place);
+      return this->InWedge(place);
     }
     else if constexpr (shape == CellShape::Pyramid)
     {
-      return InPyramid(place);
+      return this->InPyramid(place);
     }
     else
     {
-      return InCube(place);
+      return this->InCube(place);
     }
   }
 
@@ -299,7 +307,7 @@ private:
       hn::IfThenElse(moving, hn::Add(place.Z, by.Z), place.Z) };
     const VF largest = hn::Max(hn::Max(hn::Abs(by.X), hn::Abs(by.Y)), hn::Abs(by.Z));
     // Steps that are no numbers go on to the end, and have met nothing.
-    moving = hn::And(moving, hn::Not(hn::Lt(largest, hn::Set(d, LastStep))));
+    moving = hn::And(moving, hn::Not(hn::Lt(largest, hn::Set(d, CellSetup::LastStep))));
   }
 
   /// Newton's method. Each lane stops by its own step, so that a place depends on nothing but the
@@ -337,7 +345,7 @@ private:
     }
     for (int i = 0; i < count; ++i)
     {
-      inside[i] = hn::AndNot(moving[i], Inside<shape>(places[i]));
+      inside[i] = hn::AndNot(moving[i], this->Inside<shape>(places[i]));
     }
   }
 

@@ -18,8 +18,10 @@ namespace banyan
 namespace
 {
 
-/// How far outside of a cell its samples may be, in places from -1 to 1.
+/// How far outside of a cell its samples may be, in places from -1 to 1: where another cell begins,
+/// and at the border of the mesh.
 constexpr double OutsideOfCell = 0x1p-13;
+constexpr double OutsideOfMesh = 0x1p-20;
 /// How much larger boxes around cells are, in parts of their edges: more than OutsideOfCell makes
 /// bent ones.
 constexpr double AroundBox = 0.01;
@@ -34,13 +36,14 @@ struct DrawnCell
   glm::dvec3 Middle{ 0.0 };
   glm::dvec3 Low{ 0.0 };
   glm::dvec3 High{ 0.0 };
+  FaceTolerances Outside{};
   std::vector<ReferenceFace> Border;
 
   bool Holds(const glm::dvec3& position, glm::dvec3& place) const
   {
     return glm::all(glm::greaterThanEqual(position, this->Low)) &&
            glm::all(glm::lessThanEqual(position, this->High)) &&
-           FindPlace(this->Shape, this->Corners, position, OutsideOfCell, place);
+           FindPlace(this->Shape, this->Corners, position, this->Outside, place);
   }
 };
 
@@ -52,6 +55,7 @@ DrawnCell MakeCell(const CellMesh& mesh, std::int64_t number, const glm::dmat4& 
   DrawnCell drawn;
   drawn.Number = number;
   drawn.Shape = cell.Shape;
+  drawn.Outside.fill(OutsideOfCell);
   const int count = CornersOf(cell.Shape);
   drawn.Low = glm::dvec3(std::numeric_limits<double>::infinity());
   drawn.High = -drawn.Low;
@@ -165,6 +169,7 @@ public:
           face.Values[k] = cell.Values[static_cast<std::size_t>(of.Corners[k])];
         }
         cell.Border.push_back(face);
+        cell.Outside[static_cast<std::size_t>(number)] = OutsideOfMesh;
       }
       this->Cells.push_back(std::move(cell));
     }

@@ -167,6 +167,28 @@ Leans LeansOf(const Terms<glm::dvec3>& terms, const glm::dmat3& inverse)
   return leans;
 }
 
+/// How far places may be off. Beyond faces at the border of the mesh, samples that may lie on the
+/// face are the cell's, and no others: a ray that passes beside the mesh would stand for an
+/// interval in it. Where faces hang, the border is that of two cells, and a sample between them is
+/// in one.
+/// @param size of the box around the cell
+float MarginAtBorder(const glm::dmat3& inverse, const glm::dvec3& size, double lean)
+{
+  // Each place is a sum of three products, of numbers up to the size with errors of 2^-25 of it.
+  constexpr double rounding = 1.0 / (1 << 21);
+  constexpr double lastStep = CellSetup::LastStep;
+  double most = 0.0;
+  for (int i = 0; i < 3; ++i)
+  {
+    most = std::max(most, std::abs(inverse[0][i]) * size.x + std::abs(inverse[1][i]) * size.y +
+                            std::abs(inverse[2][i]) * size.z);
+  }
+  // Below the least bend there is no Newton's method, and the bent terms are missing. Elsewhere
+  // their part grows from the middle to the faces, here up to twice.
+  const double bent = lean > LeastBend ? 2.0 * lastStep * lastStep * lean : lean;
+  return static_cast<float>(std::min(rounding * most + bent, double{ CellSetup::Margin }));
+}
+
 } // namespace
 
 /// A cell lies within the hull of its corners, so these bound what is linear.
@@ -215,7 +237,43 @@ void CellTerms::Set(CellShape shape, const float (&values)[8])
   }
 }
 
-bool CellSetup::Set(CellShape shape, const glm::dvec3 (&corners)[8])
+/// Where places of the cell end.
+void CellSetup::SetFaces(unsigned border, float marginAtBorder)
+{
+  const auto beyond = [&](int face) { return (border >> face & 1) != 0 ? marginAtBorder : Margin; };
+  switch (this->Shape)
+  {
+    case CellShape::Tetrahedron:
+      this->Least[0] = -beyond(3);
+      this->Least[1] = -beyond(1);
+      this->Least[2] = -beyond(0);
+      this->MostSum = 1.0f + beyond(2);
+      break;
+    case CellShape::Wedge:
+      this->Least[0] = -beyond(4);
+      this->Least[1] = -beyond(2);
+      this->Least[2] = -1.0f - beyond(0);
+      this->Most[2] = 1.0f + beyond(1);
+      this->MostSum = 1.0f + beyond(3);
+      break;
+    case CellShape::Pyramid:
+      this->Least[0] = -beyond(4);
+      this->Most[0] = beyond(2);
+      this->Least[1] = -beyond(1);
+      this->Most[1] = beyond(3);
+      this->Least[2] = -Margin; // the apex is no face
+      this->Most[2] = 1.0f + beyond(0);
+      break;
+    default:
+      for (int i = 0; i < 3; ++i)
+      {
+        this->Least[i] = -1.0f - beyond(2 * i);
+        this->Most[i] = 1.0f + beyond(2 * i + 1);
+      }
+  }
+}
+
+bool CellSetup::Set(CellShape shape, const glm::dvec3 (&corners)[8], unsigned border)
 {
   this->Shape = shape;
   const int count = CornersOf(shape);
@@ -271,6 +329,8 @@ bool CellSetup::Set(CellShape shape, const glm::dvec3 (&corners)[8])
     }
   }
   this->SetBounds(offsets, inverse);
+  this->SetFaces(
+    border, border != 0 && inverts ? MarginAtBorder(inverse, size, leans.Most) : Margin);
   return true;
 }
 

@@ -35,6 +35,12 @@ struct CellTerms
 /// Fields are the same sums.
 struct CellSetup
 {
+  /// Of places beyond a face that count as those of the cell, so that no sample between two cells
+  /// is missed.
+  static constexpr float Margin = 1.0f / (1 << 13);
+  /// A step of Newton's method that is smaller is the last one: the next would be about its square.
+  static constexpr float LastStep = 4e-3f;
+
   CellShape Shape = CellShape::None;
   bool IsBent = false;   ///< whether the bent terms count
   bool IsWide = false;   ///< whether positions in the cell do not fit into 256 cells
@@ -55,13 +61,22 @@ struct CellSetup
   bool HasSum = false; ///< whether x_0 + x_1 (+ x_2 of tetrahedra) is at most HighSum
   float HighSum = 0.0f;
 
+  // Places within these bounds are those of the cell: x from Least to Most, and x_0 + x_1 (+ x_2 of
+  // tetrahedra) up to MostSum. For pyramids u and v are from Least - h to Most + h.
+  float Least[3] = {};
+  float Most[3] = {};
+  float MostSum = 0.0f;
+
   /// Sets all but fields.
   /// @param corners in index space
+  /// @param border bits of faces at the border of the mesh, beyond which nothing is the cell's but
+  /// what cannot be told from the face
   /// @return false when nothing of the cell can be drawn
-  bool Set(CellShape shape, const glm::dvec3 (&corners)[8]);
+  bool Set(CellShape shape, const glm::dvec3 (&corners)[8], unsigned border);
 
 private:
   void SetBounds(const glm::dvec3 (&offsets)[8], const glm::dmat3& inverse);
+  void SetFaces(unsigned border, float marginAtBorder);
 };
 
 } // namespace banyan

@@ -21,9 +21,11 @@ struct PlacedCell
   PixelRect Pixels;
   std::uint32_t Place = 0;   ///< of the cell in the order
   std::uint8_t Face = Whole; ///< of its faces, or Whole: the cell itself
+  std::uint8_t Border = 0;   ///< bits of its faces at the border
   float Near = 0.0f;         ///< bounds of t, world lengths along all rays
   float Far = 0.0f;
 };
+static_assert(sizeof(PlacedCell) == 32, "there is one for each cell that is seen");
 
 /// Draws the cells of one slab of a tile.
 struct SlabJob

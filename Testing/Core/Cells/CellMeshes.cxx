@@ -281,6 +281,22 @@ OwnedCellMesh AsCells(const OwnedCellMesh& grid)
   return mesh;
 }
 
+void Append(OwnedCellMesh& mesh, const OwnedCellMesh& other)
+{
+  const std::int64_t first = mesh.PointCount();
+  mesh.Points.insert(mesh.Points.end(), other.Points.begin(), other.Points.end());
+  mesh.Values.insert(mesh.Values.end(), other.Values.begin(), other.Values.end());
+  for (std::int64_t cell = 0; cell < other.CellCount(); ++cell)
+  {
+    std::vector<std::int64_t> corners;
+    for (std::int64_t i = other.Offsets[Index(cell)]; i < other.Offsets[Index(cell + 1)]; ++i)
+    {
+      corners.push_back(first + other.Ids[Index(i)]);
+    }
+    mesh.AddCell(other.Types[Index(cell)], corners);
+  }
+}
+
 void MirrorCells(OwnedCellMesh& mesh)
 {
   for (std::int64_t cell = 0; cell < mesh.CellCount(); ++cell)

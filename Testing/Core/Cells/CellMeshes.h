@@ -90,6 +90,8 @@ OwnedCellMesh FoldedCell();
 /// A grid as cells with numbers of points.
 OwnedCellMesh AsCells(const OwnedCellMesh& grid);
 
+/// Adds the cells and points of another mesh; neither is a grid.
+void Append(OwnedCellMesh& mesh, const OwnedCellMesh& other);
 /// The same cells in the same places with corners in the order of mirrored ones.
 void MirrorCells(OwnedCellMesh& mesh);
 /// Other orders of cells and points.

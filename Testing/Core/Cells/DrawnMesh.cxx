@@ -177,6 +177,7 @@ void DrawnMesh::SetCells(const DrawnCells& cells)
       }
     }
   }
+  mine->BorderBits = banyan::BorderBitsOf(mine->Border, mine->Order.size());
   this->Field.Cells = mine;
 }
 

@@ -94,6 +94,16 @@ std::size_t ExpectAsSlow(const CellMesh& mesh)
 {
   const Border border = BorderOf(mesh);
   EXPECT_EQ(border.Faces, SlowBorder(mesh, border.Order));
+  const std::vector<std::uint8_t> bits = BorderBitsOf(border.Faces, border.Order.size());
+  std::vector<BorderFace> ofBits;
+  for (std::size_t i = 0; i < 8 * bits.size(); ++i)
+  {
+    if ((bits[i / 8] >> i % 8 & 1) != 0)
+    {
+      ofBits.push_back({ static_cast<std::uint32_t>(i / 8), static_cast<std::uint8_t>(i % 8) });
+    }
+  }
+  EXPECT_EQ(ofBits, border.Faces);
   for (const int threads : { 1, 5 })
   {
     EXPECT_EQ(BorderOf(mesh, threads).Faces, border.Faces) << threads;

@@ -94,21 +94,9 @@ TEST(CellCasterPrecision, WideCells)
     // A small mesh beside one cell, or a few, of 200 lattice edges.
     OwnedCellMesh mesh = cellmeshes::Cube(1, cut, { 0.03, 0.05, false, 3 });
     cellmeshes::SetValues(mesh, scenes::Radial);
-    const std::int64_t first = mesh.PointCount();
     OwnedCellMesh small = BentCube(cut);
     cellmeshes::Place(small, glm::dvec3(5.0 / 200), glm::dvec3(1.1, 0.4, 0.4));
-    mesh.Points.insert(mesh.Points.end(), small.Points.begin(), small.Points.end());
-    mesh.Values.insert(mesh.Values.end(), small.Values.begin(), small.Values.end());
-    for (std::int64_t cell = 0; cell < small.CellCount(); ++cell)
-    {
-      std::vector<std::int64_t> corners;
-      for (std::int64_t i = small.Offsets[cellmeshes::Index(cell)];
-           i < small.Offsets[cellmeshes::Index(cell + 1)]; ++i)
-      {
-        corners.push_back(first + small.Ids[cellmeshes::Index(i)]);
-      }
-      mesh.AddCell(small.Types[cellmeshes::Index(cell)], corners);
-    }
+    cellmeshes::Append(mesh, small);
     for (const double step : { 0.7, 9.0 })
     {
       SCOPED_TRACE(testing::Message() << int(cut) << " " << step);

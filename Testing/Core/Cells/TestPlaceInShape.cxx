@@ -219,6 +219,42 @@ TEST(PlaceInShape, InsideEndsAtTheTolerance)
   }
 }
 
+/// Each face has its own tolerance.
+TEST(PlaceInShape, TolerancesAreThoseOfFaces)
+{
+  Numbers numbers(8);
+  for (const CellShape shape : AllShapes)
+  {
+    const CellCorners corners = RandomCell(shape, 0.1, numbers);
+    const CellFaces& faces = FacesOf(shape);
+    glm::dvec3 middle(0.0);
+    for (int i = 0; i < CornersOf(shape); ++i)
+    {
+      middle += corners[static_cast<std::size_t>(i)] / double(CornersOf(shape));
+    }
+    for (int face = 0; face < faces.Count; ++face)
+    {
+      // The middle of a bilinear face lies on it, too.
+      const CellFace& is = faces.Faces[static_cast<std::size_t>(face)];
+      glm::dvec3 at(0.0);
+      for (int i = 0; i < is.Count; ++i)
+      {
+        const int corner = is.Corners[static_cast<std::size_t>(i)];
+        at += corners[static_cast<std::size_t>(corner)] / double(is.Count);
+      }
+      const glm::dvec3 outside = at + 1e-3 * (at - middle);
+      for (int wide = 0; wide < faces.Count; ++wide)
+      {
+        FaceTolerances tolerances{};
+        tolerances[static_cast<std::size_t>(wide)] = 0.01;
+        glm::dvec3 found;
+        EXPECT_EQ(FindPlace(shape, corners, outside, tolerances, found), wide == face)
+          << int(shape) << " " << face << " " << wide;
+      }
+    }
+  }
+}
+
 TEST(PlaceInShape, PyramidsAreSmoothAtTheirApex)
 {
   Numbers numbers(6);
