@@ -7,8 +7,10 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace banyan
 {
@@ -27,7 +29,6 @@ public:
     , Field(field)
     , Cells(*field.Cells)
     , Visible(visible)
-    , Size(scene.Camera.ImageSize())
   {
     const double edge = this->Cells.Lattice.Edge;
     glm::dmat4 toIndex(1.0);
@@ -105,14 +106,15 @@ private:
     const glm::dvec4 clip = this->ToClip * glm::dvec4(point, 1.0);
     // Before the near plane, where it still has a place.
     this->Before[corner] = clip.z + clip.w > 0.0 && clip.w > 0.0;
-    this->Pixels[corner] = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(this->Size);
+    this->Picture[corner] = glm::dvec2(clip) / clip.w * 0.5 + 0.5;
     this->World[corner] = glm::dvec3(this->ToWorld * glm::dvec4(point, 1.0));
   }
 
-  /// Finds pixels and distances of some corners together.
-  /// @return false where no pixel of the viewport is met
+  /// Finds the part of the picture, and distances, of some corners together.
+  /// @return false where they are off screen
   bool Cover(const int* corners, int count, PlacedCell& found) const
   {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
     glm::dvec2 low(std::numeric_limits<double>::infinity());
     glm::dvec2 high(-std::numeric_limits<double>::infinity());
     glm::dvec3 middle(0.0);
@@ -121,61 +123,72 @@ private:
     for (int i = 0; i < count; ++i)
     {
       const int corner = corners[i];
-      low = glm::min(low, this->Pixels[corner]);
-      high = glm::max(high, this->Pixels[corner]);
+      low = glm::min(low, this->Picture[corner]);
+      high = glm::max(high, this->Picture[corner]);
       whole = whole && this->Before[corner];
       any = any || this->Before[corner];
       middle += this->World[corner] / static_cast<double>(count);
     }
-    if (!any)
+    const bool beside = low.x > 1.0 || low.y > 1.0 || high.x < 0.0 || high.y < 0.0;
+    if (!any || (whole && beside))
     {
       return false;
     }
-    found.Pixels = this->Scene.Viewport;
-    if (whole)
-    {
-      constexpr double slack = 0.51;
-      const glm::dvec2 limit(this->Size);
-      const glm::ivec2 first(glm::clamp(glm::ceil(low - slack), glm::dvec2(0.0), limit));
-      const glm::ivec2 last(glm::clamp(glm::floor(high + (slack - 1.0)), glm::dvec2(-1.0), limit));
-      found.Pixels = Intersection({ first, last + 1 }, this->Scene.Viewport);
-    }
-    if (found.Pixels.Empty())
-    {
-      return false;
-    }
-    double radius = 0.0;
+    // Rounding to float is far less than the slack of pixels.
+    found.Low = whole ? glm::vec2(low) : glm::vec2(-infinity);
+    found.High = whole ? glm::vec2(high) : glm::vec2(infinity);
+    this->SetDistances(corners, count, middle, found);
+    return true;
+  }
+
+  /// A cell lies within the hull of its corners: none of its points is further than they are, nor
+  /// nearer than along the direction to their middle.
+  void SetDistances(
+    const int* corners, int count, const glm::dvec3& middle, PlacedCell& found) const
+  {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    const RayCamera& camera = this->Scene.Camera;
+    const bool parallel = camera.Parallel();
+    const glm::dvec3 from = parallel ? camera.AnchorPoint() : camera.Eye();
+    const glm::dvec3 away = middle - from;
+    const double far = glm::length(away);
+    const glm::dvec3 along = parallel || far == 0.0 ? camera.ViewDirection() : away * (1.0 / far);
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
     for (int i = 0; i < count; ++i)
     {
-      radius = std::max(radius, glm::length(this->World[corners[i]] - middle));
+      const glm::dvec3 off = this->World[corners[i]] - from;
+      const double t = glm::dot(off, along);
+      least = std::min(least, t);
+      most = std::max(most, parallel ? t : glm::dot(off, off));
     }
-    const RayCamera& camera = this->Scene.Camera;
-    const double t = camera.Parallel()
-                       ? glm::dot(middle - camera.AnchorPoint(), camera.ViewDirection())
-                       : glm::length(middle - camera.Eye());
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    found.Near = std::nextafter(static_cast<float>(t - 1.0001 * radius), -infinity);
-    found.Far = std::nextafter(static_cast<float>(t + 1.0001 * radius), infinity);
-    return true;
+    most = parallel ? most : std::sqrt(most);
+    // Samples count as those of a cell somewhat beyond its faces.
+    const double slack = 0.001 * (most - least) + 1e-6 * (std::abs(most) + std::abs(least));
+    found.Near = std::nextafter(static_cast<float>(least - slack), -infinity);
+    found.Far = std::nextafter(static_cast<float>(most + slack), infinity);
   }
 
   const RayScene& Scene;
   const CellField& Field;
   const DrawnCells& Cells;
   const VisibleValues* Visible;
-  const glm::ivec2 Size;
   glm::dmat4 ToWorld{ 1.0 };
   glm::dmat4 ToClip{ 1.0 };
   // Of the corners of a cell.
   bool Before[8] = {};
-  glm::dvec2 Pixels[8];
+  glm::dvec2 Picture[8];
   glm::dvec3 World[8];
 };
 
 } // namespace
 
-CellBins::CellBins(
-  const RayScene& scene, const CellField& field, const VisibleValues* visible, ThreadPool& pool)
+SeenCells::SeenCells(const RayScene& scene, const CellField& field,
+  std::shared_ptr<const VisibleValues> visible, ThreadPool& pool)
+  : WorldToClip(scene.Camera.WorldToClipMatrix())
+  , Anchor(scene.Camera.AnchorPoint())
+  , IndexToWorld(scene.IndexToWorld)
+  , Visible(std::move(visible))
 {
   const DrawnCells& cells = *field.Cells;
   const std::size_t count = cells.Order.size();
@@ -184,7 +197,7 @@ CellBins::CellBins(
   pool.ParallelFor(static_cast<std::int64_t>(chunks),
     [&](std::int64_t chunk)
     {
-      CellPlacer placer(scene, field, visible);
+      CellPlacer placer(scene, field, this->Visible.get());
       const std::size_t begin = static_cast<std::size_t>(chunk) * CellsAtOnce;
       const std::size_t end = std::min(begin + CellsAtOnce, count);
       const auto from = std::lower_bound(cells.Border.begin(), cells.Border.end(), begin,
@@ -205,12 +218,15 @@ CellBins::CellBins(
     all += part.size();
   }
   this->All.reserve(all);
+  this->Bounds.Low = glm::vec2(std::numeric_limits<float>::infinity());
+  this->Bounds.High = -this->Bounds.Low;
   std::int64_t whole = 0;
   for (std::vector<PlacedCell>& part : parts)
   {
     for (const PlacedCell& placed : part)
     {
-      this->Touched = Union(this->Touched, placed.Pixels);
+      this->Bounds.Low = glm::min(this->Bounds.Low, placed.Low);
+      this->Bounds.High = glm::max(this->Bounds.High, placed.High);
       whole += placed.Face == PlacedCell::Whole ? 1 : 0;
     }
     this->All.insert(this->All.end(), part.begin(), part.end());
@@ -219,14 +235,33 @@ CellBins::CellBins(
   this->NotSeen = static_cast<std::int64_t>(count) - whole;
 }
 
+bool SeenCells::AreOf(const RayScene& scene, const VisibleValues* visible) const
+{
+  return this->Visible.get() == visible && this->WorldToClip == scene.Camera.WorldToClipMatrix() &&
+         this->Anchor == scene.Camera.AnchorPoint() && this->IndexToWorld == scene.IndexToWorld;
+}
+
+CellBins::CellBins(const RayScene& scene, std::shared_ptr<const SeenCells> cells)
+  : Cells(std::move(cells))
+  , Size(scene.Camera.ImageSize())
+{
+  if (!this->Cells->Placed().empty())
+  {
+    this->Touched =
+      Intersection(this->Cells->Around().PixelsIn(this->Size, scene.Viewport), scene.Viewport);
+  }
+}
+
 void CellBins::Sort(const TileGrid& grid, ThreadPool& pool)
 {
   // Chunks are counted first, so that each knows where its items begin.
   const std::size_t tiles = grid.Count();
-  const std::size_t count = this->All.size();
+  const std::vector<PlacedCell>& all = this->Cells->Placed();
+  const std::size_t count = all.size();
   const auto chunks = static_cast<std::size_t>(
     std::min<std::int64_t>(16 * pool.Width(), static_cast<std::int64_t>(count / 1024 + 1)));
   std::vector<std::uint32_t> counts(tiles * chunks, 0);
+  std::atomic<std::int64_t> between{ 0 };
   const auto forChunks = [&](auto&& function)
   {
     pool.ParallelFor(static_cast<std::int64_t>(chunks),
@@ -234,14 +269,21 @@ void CellBins::Sort(const TileGrid& grid, ThreadPool& pool)
       {
         const auto chunk = static_cast<std::size_t>(number);
         std::uint32_t* const mine = counts.data() + tiles * chunk;
+        std::int64_t without = 0;
         for (std::size_t i = count * chunk / chunks; i < count * (chunk + 1) / chunks; ++i)
         {
-          grid.ForEachUnder(
-            this->All[i].Pixels, [&](std::size_t tile) { function(i, mine[tile]); });
+          const PixelRect pixels = all[i].PixelsIn(this->Size, this->Touched);
+          if (!pixels.Empty())
+          {
+            grid.ForEachUnder(pixels, [&](std::size_t tile) { function(i, mine[tile]); });
+          }
+          without += pixels.Empty() && all[i].Face == PlacedCell::Whole ? 1 : 0;
         }
+        between += without;
       });
   };
   forChunks([](std::size_t, std::uint32_t& number) { ++number; });
+  this->NotDrawn = this->Cells->Skipped() + between;
   this->Begins.assign(tiles + 1, 0);
   std::size_t sum = 0;
   std::vector<std::size_t> offsets(tiles * chunks);

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace banyan
@@ -15,21 +16,53 @@ namespace banyan
 
 class ThreadPool;
 
-/// The cells of a field that can be seen in a picture, and which tiles each lies over.
-class CellBins
+/// The cells of a field that can be seen by a camera, with their places in its pictures: the same
+/// for pictures of any size and viewport, and for any distance between samples.
+class SeenCells
 {
 public:
   /// Looks at each cell once: its values, and where its corners are.
   /// @param visible null where all values count
-  CellBins(
-    const RayScene& scene, const CellField& field, const VisibleValues* visible, ThreadPool& pool);
+  SeenCells(const RayScene& scene, const CellField& field,
+    std::shared_ptr<const VisibleValues> visible, ThreadPool& pool);
+
+  /// Whether they are those of another scene, too.
+  bool AreOf(const RayScene& scene, const VisibleValues* visible) const;
+
+  /// In the global order of cells: each before its faces at the border.
+  const std::vector<PlacedCell>& Placed() const { return this->All; }
+  /// All of them together.
+  const PlacedCell& Around() const { return this->Bounds; }
+  /// Cells that cannot be seen, or are off screen.
+  std::int64_t Skipped() const { return this->NotSeen; }
+  std::size_t Bytes() const { return this->All.capacity() * sizeof(PlacedCell); }
+
+private:
+  // What they follow from.
+  glm::dmat4 WorldToClip;
+  glm::dvec3 Anchor;
+  glm::dmat4 IndexToWorld;
+  std::shared_ptr<const VisibleValues> Visible;
+
+  std::vector<PlacedCell> All;
+  PlacedCell Bounds;
+  std::int64_t NotSeen = 0;
+};
+
+/// Which of the cells lie over each tile of a picture.
+class CellBins
+{
+public:
+  CellBins(const RayScene& scene, std::shared_ptr<const SeenCells> cells);
 
   /// Pixels inside the viewport that cells may touch.
   const PixelRect& Rect() const { return this->Touched; }
 
-  const PlacedCell* Placed() const { return this->All.data(); }
-  /// Cells that cannot be seen, or are off screen.
-  std::int64_t Skipped() const { return this->NotSeen; }
+  const PlacedCell* Placed() const { return this->Cells->Placed().data(); }
+  /// Cells that cannot be seen, are off screen, or lie over no pixel's centre. After Sort.
+  std::int64_t Skipped() const { return this->NotDrawn; }
+  /// Pixels of the whole picture.
+  const glm::vec2& PictureSize() const { return this->Size; }
 
   /// Finds what lies over each tile of a grid around Rect().
   void Sort(const TileGrid& grid, ThreadPool& pool);
@@ -46,11 +79,12 @@ public:
   }
 
 private:
-  std::vector<PlacedCell> All;
+  std::shared_ptr<const SeenCells> Cells;
+  glm::vec2 Size;
   std::vector<std::uint32_t> Items;
   std::vector<std::size_t> Begins; ///< of tiles, in Items
   PixelRect Touched;
-  std::int64_t NotSeen = 0;
+  std::int64_t NotDrawn = 0;
 };
 
 } // namespace banyan

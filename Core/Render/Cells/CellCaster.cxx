@@ -30,10 +30,9 @@ CellCaster::CellCaster(const RayScene& scene, CellSource& source, const Box& cel
   , Drawn(cells)
   , Pool(pool)
   , Statistics(statistics)
-  , Bins(scene, source.Cells(),
-      scene.Blend.Mode == BlendMode::Composite ? this->Level.Visible.get() : nullptr, pool)
+  , Bins(scene, source.SeenIn(scene,
+                  scene.Blend.Mode == BlendMode::Composite ? this->Level.Visible : nullptr, pool))
 {
-  this->Statistics.BricksSkipped += this->Bins.Skipped();
 }
 
 CellCaster::~CellCaster() = default;
@@ -71,6 +70,7 @@ void CellCaster::Draw(FloatImage& picture, PictureWatcher* watcher)
   };
   this->Pool.ParallelFor(static_cast<std::int64_t>(tiles.Count()), draw);
   this->Statistics.SamplesTaken += samples;
+  this->Statistics.BricksSkipped += this->Bins.Skipped();
   this->Statistics.BricksDrawn +=
     static_cast<std::int64_t>(this->Field.Cells->Order.size()) - this->Bins.Skipped();
 }
@@ -101,6 +101,21 @@ void CellCaster::DrawTile(LevelTiles& tiles, std::size_t number, Scratch& scratc
   tile.Done = true;
 }
 
+/// Whether a cell may have samples of a tile, or rays cross the face: few do where samples and rays
+/// are far apart.
+bool CellCaster::MayDraw(
+  const PlacedCell& cell, const RayTile& rays, const TileRows& rows, double perDistance) const
+{
+  if (cell.Face == PlacedCell::Whole && !rows.AnyEnds && !cell.HoldsSamples(perDistance))
+  {
+    return false;
+  }
+  const int stride = rays.Stride;
+  const PixelRect pixels = cell.PixelsIn(this->Bins.PictureSize(), rays.Rect);
+  const glm::ivec2 first = (pixels.Lo + (stride - 1)) / stride * stride;
+  return first.x < pixels.Hi.x && first.y < pixels.Hi.y;
+}
+
 /// Sorts what lies over a tile by slabs, and draws one after the other until all rays have ended.
 void CellCaster::DrawSlabs(
   const LevelSampling& sampling, std::size_t number, Scratch& scratch) const
@@ -115,6 +130,10 @@ void CellCaster::DrawSlabs(
     for (std::size_t i = 0; i < over.Count; ++i)
     {
       const PlacedCell& cell = placed[over.Items[i]];
+      if (!this->MayDraw(cell, scratch.Rays, rows, perDistance))
+      {
+        continue;
+      }
       const double last = rows.Count - 1.0;
       const double first = std::floor(cell.Near * perDistance) - rows.FirstNumber;
       const double end = std::floor(cell.Far * perDistance) - rows.FirstNumber;
@@ -152,8 +171,8 @@ void CellCaster::DrawSlabs(
       continue;
     }
     const int firstRow = static_cast<int>(slab) * SampleSlab::Rows;
-    DrawSlab({ this->Field, placed, scratch.Items.data() + begin, count, perDistance, firstRow,
-      shading, scratch.Rays, rows, scratch.Slab });
+    DrawSlab({ this->Field, placed, scratch.Items.data() + begin, count, this->Bins.PictureSize(),
+      perDistance, firstRow, shading, scratch.Rays, rows, scratch.Slab });
     BlendSlab(scratch.Slab, rows, firstRow, blend, scratch.Rays);
   }
 }

@@ -34,6 +34,8 @@ private:
   struct Scratch;
 
   void DrawTile(LevelTiles& tiles, std::size_t number, Scratch& scratch) const;
+  bool MayDraw(
+    const PlacedCell& cell, const RayTile& rays, const TileRows& rows, double perDistance) const;
   void DrawSlabs(const LevelSampling& sampling, std::size_t number, Scratch& scratch) const;
 
   LevelScene Level;

@@ -96,7 +96,7 @@ BorderPatch PatchOf(const CellSetup& setup, int number, const CellCorners& corne
 /// Packets of the tile that a placed cell may touch.
 PixelRect PacketsOf(const SlabJob& job, const PlacedCell& placed)
 {
-  const PixelRect here = Intersection(placed.Pixels, job.Rays.Rect);
+  const PixelRect here = placed.PixelsIn(job.PictureSize, job.Rays.Rect);
   return here.Empty() ? here : job.Rays.PacketsUnder(here);
 }
 

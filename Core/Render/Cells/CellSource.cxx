@@ -49,6 +49,30 @@ const CellField& CellSource::WithGradients(ThreadPool& pool)
   return this->Field;
 }
 
+std::shared_ptr<const SeenCells> CellSource::SeenIn(
+  const RayScene& scene, std::shared_ptr<const VisibleValues> visible, ThreadPool& pool)
+{
+  {
+    const std::lock_guard<std::mutex> lock(this->SeenMutex);
+    if (this->LastSeen && this->LastSeen->AreOf(scene, visible.get()))
+    {
+      return this->LastSeen;
+    }
+    this->LastSeen = nullptr; // its memory is there for the next one
+  }
+  ++this->Looks;
+  auto seen = std::make_shared<const SeenCells>(scene, this->Field, std::move(visible), pool);
+  const std::lock_guard<std::mutex> lock(this->SeenMutex);
+  this->LastSeen = seen;
+  return seen;
+}
+
+std::size_t CellSource::SeenBytes() const
+{
+  const std::lock_guard<std::mutex> lock(this->SeenMutex);
+  return this->LastSeen ? this->LastSeen->Bytes() : 0;
+}
+
 Box CellSource::CellsOf(std::int64_t brick) const
 {
   const glm::ivec3 at(brick % this->Counts.x, brick / this->Counts.x % this->Counts.y,

@@ -5,6 +5,7 @@
 #include "Render/Bricks/BrickSource.h"
 #include "Render/Cells/CellField.h"
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -12,7 +13,9 @@
 namespace banyan
 {
 
+class SeenCells;
 class ThreadPool;
+class VisibleValues;
 
 /// A mesh of cells as the ray caster's source. Its bricks are cubes of the index space that say
 /// which values the cells in them have; they cannot be loaded, for CellCaster draws the cells.
@@ -24,6 +27,16 @@ public:
   const CellField& Cells() const { return this->Field; }
   /// The same, with gradients, which are made when they are first asked for.
   const CellField& WithGradients(ThreadPool& pool);
+
+  /// Which cells the camera of a scene sees, and where. Those of the last scene are kept: probes of
+  /// a frame, and the frame, share them. May be called from any thread.
+  /// @param visible null where all values count
+  std::shared_ptr<const SeenCells> SeenIn(
+    const RayScene& scene, std::shared_ptr<const VisibleValues> visible, ThreadPool& pool);
+  /// Bytes of what is kept of the last scene.
+  std::size_t SeenBytes() const;
+  /// How often cells were looked at.
+  int TimesSeen() const { return this->Looks; }
 
   glm::ivec3 Bricks() const override { return this->Counts; }
   Box CellsOf(std::int64_t brick) const override;
@@ -50,6 +63,9 @@ private:
   glm::ivec3 Counts; ///< of bricks
   std::vector<ValueRange> Ranges;
   MaskRange Masks;
+  mutable std::mutex SeenMutex;
+  std::shared_ptr<const SeenCells> LastSeen;
+  std::atomic<int> Looks{ 0 };
 };
 
 } // namespace banyan

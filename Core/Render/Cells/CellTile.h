@@ -8,22 +8,45 @@
 #include "Render/Scene/ProjectionTable.h"
 #include "Render/Scene/ShadingTable.h"
 
+#include <glm/common.hpp>
+#include <glm/vec2.hpp>
+
+#include <cmath>
 #include <cstdint>
 
 namespace banyan
 {
 
-/// Where a cell, or a face of its, lies in a picture.
+/// Where a cell, or a face of its, lies in pictures of a camera, whatever their size.
 struct PlacedCell
 {
   static constexpr std::uint8_t Whole = 255;
 
-  PixelRect Pixels;
+  /// The part of the picture, which goes from 0 to 1; infinite where that is not known.
+  glm::vec2 Low{ 0.0f };
+  glm::vec2 High{ 0.0f };
   std::uint32_t Place = 0;   ///< of the cell in the order
   std::uint8_t Face = Whole; ///< of its faces, or Whole: the cell itself
   std::uint8_t Border = 0;   ///< bits of its faces at the border
   float Near = 0.0f;         ///< bounds of t, world lengths along all rays
   float Far = 0.0f;
+
+  /// Pixels of a picture, inside a part of it, whose centres it may lie over.
+  PixelRect PixelsIn(const glm::vec2& size, const PixelRect& part) const
+  {
+    // Somewhat more, for centres beside the cell that count as its own.
+    constexpr float slack = 0.51f;
+    const glm::vec2 first = glm::ceil(this->Low * size - slack);
+    const glm::vec2 last = glm::floor(this->High * size + (slack - 1.0f));
+    return { glm::ivec2(glm::clamp(first, glm::vec2(part.Lo), glm::vec2(part.Hi))),
+      glm::ivec2(glm::clamp(last + 1.0f, glm::vec2(part.Lo), glm::vec2(part.Hi))) };
+  }
+
+  /// Whether a sample that stands for a whole interval may be in it.
+  bool HoldsSamples(double perDistance) const
+  {
+    return std::floor(this->Far * perDistance - 0.5) >= std::ceil(this->Near * perDistance - 0.5);
+  }
 };
 static_assert(sizeof(PlacedCell) == 32, "there is one for each cell that is seen");
 
@@ -31,9 +54,10 @@ static_assert(sizeof(PlacedCell) == 32, "there is one for each cell that is seen
 struct SlabJob
 {
   const CellField& Field;
-  const PlacedCell* Placed;   ///< of the picture
+  const PlacedCell* Placed;   ///< of the camera
   const std::uint32_t* Items; ///< those of this slab, in the global order; faces among them
   std::size_t Count;
+  glm::vec2 PictureSize;       ///< pixels of the whole picture
   double PerDistance;          ///< samples per world length
   int FirstRow;                ///< of the tile, which is row 0 of the slab
   const ShadingTable* Shading; ///< null for none
