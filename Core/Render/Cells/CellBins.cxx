@@ -24,9 +24,11 @@ constexpr std::size_t Ahead = 12; ///< cells that caches are asked for meanwhile
 class CellPlacer
 {
 public:
-  CellPlacer(const RayScene& scene, const CellField& field, const VisibleValues* visible)
+  CellPlacer(const RayScene& scene, const CellField& field, SeenCells::Kind kind,
+    const VisibleValues* visible)
     : Scene(scene)
     , Field(field)
+    , Kind(kind)
     , Cells(*field.Cells)
     , Visible(visible)
   {
@@ -47,6 +49,11 @@ public:
   {
     const std::vector<BorderFace>& border = this->Cells.Border;
     const std::size_t first = face;
+    if (this->Kind == SeenCells::Kind::Borders &&
+        (face == border.size() || border[face].Cell != place))
+    {
+      return;
+    }
     while (face < border.size() && border[face].Cell == place)
     {
       ++face;
@@ -71,7 +78,10 @@ public:
     {
       return;
     }
-    placed.push_back(found);
+    if (this->Kind == SeenCells::Kind::All)
+    {
+      placed.push_back(found);
+    }
     for (std::size_t i = first; i < face; ++i)
     {
       const CellFace& part = FacesOf(cell.Shape).Faces[border[i].Face];
@@ -171,6 +181,7 @@ private:
 
   const RayScene& Scene;
   const CellField& Field;
+  const SeenCells::Kind Kind;
   const DrawnCells& Cells;
   const VisibleValues* Visible;
   glm::dmat4 ToWorld{ 1.0 };
@@ -183,7 +194,7 @@ private:
 
 } // namespace
 
-SeenCells::SeenCells(const RayScene& scene, const CellField& field,
+SeenCells::SeenCells(const RayScene& scene, const CellField& field, Kind kind,
   std::shared_ptr<const VisibleValues> visible, ThreadPool& pool)
   : WorldToClip(scene.Camera.WorldToClipMatrix())
   , Anchor(scene.Camera.AnchorPoint())
@@ -197,18 +208,21 @@ SeenCells::SeenCells(const RayScene& scene, const CellField& field,
   pool.ParallelFor(static_cast<std::int64_t>(chunks),
     [&](std::int64_t chunk)
     {
-      CellPlacer placer(scene, field, this->Visible.get());
+      CellPlacer placer(scene, field, kind, this->Visible.get());
       const std::size_t begin = static_cast<std::size_t>(chunk) * CellsAtOnce;
       const std::size_t end = std::min(begin + CellsAtOnce, count);
       const auto from = std::lower_bound(cells.Border.begin(), cells.Border.end(), begin,
         [](const BorderFace& face, std::size_t place) { return face.Cell < place; });
       auto face = static_cast<std::size_t>(from - cells.Border.begin());
       std::vector<PlacedCell>& part = parts[static_cast<std::size_t>(chunk)];
-      part.reserve(end - begin);
+      part.reserve(kind == Kind::All ? end - begin : 0);
       for (std::size_t place = begin; place < end; ++place)
       {
-        cells.Mesh.PrefetchPlace(cells.Order[std::min(place + 2 * Ahead, count - 1)]);
-        cells.Mesh.PrefetchCell(cells.Order[std::min(place + Ahead, count - 1)]);
+        if (kind == Kind::All)
+        {
+          cells.Mesh.PrefetchPlace(cells.Order[std::min(place + 2 * Ahead, count - 1)]);
+          cells.Mesh.PrefetchCell(cells.Order[std::min(place + Ahead, count - 1)]);
+        }
         placer.Place(static_cast<std::uint32_t>(place), face, part);
       }
     });

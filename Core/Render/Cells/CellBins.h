@@ -21,9 +21,16 @@ class ThreadPool;
 class SeenCells
 {
 public:
+  /// What is looked for.
+  enum class Kind
+  {
+    All,    ///< cells, and their faces at the border
+    Borders ///< only these faces, of all cells that are drawn
+  };
+
   /// Looks at each cell once: its values, and where its corners are.
   /// @param visible null where all values count
-  SeenCells(const RayScene& scene, const CellField& field,
+  SeenCells(const RayScene& scene, const CellField& field, Kind kind,
     std::shared_ptr<const VisibleValues> visible, ThreadPool& pool);
 
   /// Whether they are those of another scene, too.

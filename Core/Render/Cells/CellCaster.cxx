@@ -19,19 +19,25 @@ struct CellCaster::Scratch
   RayTile Rays;
   TileRows Rows;
   SampleSlab Slab;
-  std::vector<std::size_t> Begins;  ///< of slabs, in Items
-  std::vector<std::uint32_t> Items; ///< numbers of what is placed, slab by slab
+  std::vector<std::size_t> Begins;          ///< of slabs, in Items
+  std::vector<std::uint32_t> Items;         ///< numbers of what is placed, slab by slab
+  alignas(64) float Inside[RayTile::Slots]; ///< see LatticeJob
 };
 
-CellCaster::CellCaster(const RayScene& scene, CellSource& source, const Box& cells,
-  ThreadPool& pool, RayStatistics& statistics)
-  : Level(scene, source)
+CellCaster::CellCaster(const RayScene& scene, CellSource& source, BrickSource& level,
+  std::shared_ptr<const MeshLattice> lattice, const Box& cells, ThreadPool& pool,
+  RayStatistics& statistics)
+  : Level(scene, level)
   , Field(this->Level.IsShaded() ? source.WithGradients(pool) : source.Cells())
+  , Lattice(std::move(lattice))
   , Drawn(cells)
   , Pool(pool)
   , Statistics(statistics)
-  , Bins(scene, source.SeenIn(scene,
-                  scene.Blend.Mode == BlendMode::Composite ? this->Level.Visible : nullptr, pool))
+  , Bins(
+      scene, this->Lattice
+               ? source.BordersIn(scene, pool)
+               : source.SeenIn(scene,
+                   scene.Blend.Mode == BlendMode::Composite ? this->Level.Visible : nullptr, pool))
 {
 }
 
@@ -116,8 +122,8 @@ bool CellCaster::MayDraw(
   return first.x < pixels.Hi.x && first.y < pixels.Hi.y;
 }
 
-/// Sorts what lies over a tile by slabs, and draws one after the other until all rays have ended.
-void CellCaster::DrawSlabs(
+/// Sorts what lies over a tile by slabs.
+void CellCaster::SortBySlabs(
   const LevelSampling& sampling, std::size_t number, Scratch& scratch) const
 {
   const CellBins::Span over = this->Bins.Over(number);
@@ -158,21 +164,40 @@ void CellCaster::DrawSlabs(
   scratch.Items.resize(scratch.Begins[slabs + 1]);
   forSlabs([&](std::size_t slab, std::uint32_t item)
     { scratch.Items[scratch.Begins[slab + 1]++] = item; });
+}
+
+/// Draws slab after slab, until all rays have ended.
+void CellCaster::DrawSlabs(
+  const LevelSampling& sampling, std::size_t number, Scratch& scratch) const
+{
+  this->SortBySlabs(sampling, number, scratch);
+  const TileRows& rows = scratch.Rows;
+  const std::size_t slabs = static_cast<std::size_t>(rows.Count - 1) / SampleSlab::Rows + 1;
   const bool relative = this->Field.Base != 0.0;
   const ShadingTable* const shading = this->Level.Shading.get();
   const SlabBlend blend{ sampling.Table, sampling.Projection.get(), shading, relative,
     relative ? static_cast<float>(this->Field.Base - sampling.Table.Low()) : 0.0f };
+  std::fill_n(scratch.Inside, RayTile::Slots, -1.0f);
   for (std::size_t slab = 0; slab < slabs && scratch.Rays.ActiveRays > 0; ++slab)
   {
     const std::size_t begin = scratch.Begins[slab];
     const std::size_t count = scratch.Begins[slab + 1] - begin;
-    if (count == 0)
+    if (count == 0 && !this->Lattice)
     {
       continue;
     }
     const int firstRow = static_cast<int>(slab) * SampleSlab::Rows;
-    DrawSlab({ this->Field, placed, scratch.Items.data() + begin, count, this->Bins.PictureSize(),
-      perDistance, firstRow, shading, scratch.Rays, rows, scratch.Slab });
+    const SlabJob job{ this->Field, this->Bins.Placed(), scratch.Items.data() + begin, count,
+      this->Bins.PictureSize(), 1.0 / sampling.Distance, firstRow, shading, scratch.Rays, rows,
+      scratch.Slab };
+    if (this->Lattice)
+    {
+      DrawLatticeSlab(job, { *this->Lattice, scratch.Inside, blend.Projection != nullptr });
+    }
+    else
+    {
+      DrawSlab(job);
+    }
     BlendSlab(scratch.Slab, rows, firstRow, blend, scratch.Rays);
   }
 }

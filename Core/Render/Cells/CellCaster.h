@@ -16,14 +16,18 @@ namespace banyan
 class LevelTiles;
 class ThreadPool;
 
-/// Draws the cells of a mesh: tile by tile, and in each tile slab by slab from the eye on.
+/// Draws the cells of a mesh, or a lattice with its values: tile by tile, and in each tile slab by
+/// slab from the eye on.
 class CellCaster final : public PictureCaster
 {
 public:
   /// Everything referred to must stay. Finds the cells that can be seen.
   /// @param cells of the index space: samples elsewhere are left out
+  /// @param level the source itself, or that of a coarser level
+  /// @param lattice of the coarser level; null where cells are drawn
   /// @param statistics is added to
-  CellCaster(const RayScene& scene, CellSource& source, const Box& cells, ThreadPool& pool,
+  CellCaster(const RayScene& scene, CellSource& source, BrickSource& level,
+    std::shared_ptr<const MeshLattice> lattice, const Box& cells, ThreadPool& pool,
     RayStatistics& statistics);
   ~CellCaster() override;
 
@@ -36,10 +40,12 @@ private:
   void DrawTile(LevelTiles& tiles, std::size_t number, Scratch& scratch) const;
   bool MayDraw(
     const PlacedCell& cell, const RayTile& rays, const TileRows& rows, double perDistance) const;
+  void SortBySlabs(const LevelSampling& sampling, std::size_t number, Scratch& scratch) const;
   void DrawSlabs(const LevelSampling& sampling, std::size_t number, Scratch& scratch) const;
 
   LevelScene Level;
   const CellField& Field;
+  const std::shared_ptr<const MeshLattice> Lattice;
   const Box Drawn;
   ThreadPool& Pool;
   RayStatistics& Statistics;

@@ -14,6 +14,7 @@
 
 #include "Render/Cells/CellPackets-inl.h"
 #include "Render/Cells/FacePackets-inl.h"
+#include "Render/Cells/LatticeRows-inl.h"
 #include "Render/Cells/SlabBlender-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -230,6 +231,12 @@ void DrawSlabHere(const SlabJob& job)
   }
 }
 
+void DrawLatticeSlabHere(const SlabJob& job, const LatticeJob& lattice)
+{
+  DrawSlabHere(job);
+  LatticeRows(job, lattice).Fill();
+}
+
 void BlendSlabHere(
   SampleSlab& slab, const TileRows& rows, int firstRow, const SlabBlend& blend, RayTile& rays)
 {
@@ -255,11 +262,17 @@ namespace banyan
 {
 
 HWY_EXPORT(DrawSlabHere);
+HWY_EXPORT(DrawLatticeSlabHere);
 HWY_EXPORT(BlendSlabHere);
 
 void DrawSlab(const SlabJob& job)
 {
   HWY_DYNAMIC_DISPATCH(DrawSlabHere)(job);
+}
+
+void DrawLatticeSlab(const SlabJob& job, const LatticeJob& lattice)
+{
+  HWY_DYNAMIC_DISPATCH(DrawLatticeSlabHere)(job, lattice);
 }
 
 void BlendSlab(

@@ -4,6 +4,7 @@
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Render/Cells/CellCaster.h"
+#include "Render/Cells/MeshLattice.h"
 #include "Render/Cells/PointMeans.h"
 
 #include <glm/common.hpp>
@@ -20,6 +21,47 @@ namespace
 /// Most bricks along an axis: they say where values are, and 32 along each axis take 0.5 MB.
 constexpr int MostBricks = 32;
 constexpr std::int64_t CellsAtOnce = 16384;
+/// Places of the finest lattice are so far apart, in edges of the index space, or further: there
+/// are at most so many of them per cell, and MostPlaces, 128 MB, in all. LeastMostPlaces are never
+/// too many.
+constexpr double FinestEdge = 0.5;
+constexpr std::size_t PlacesPerCell = 32;
+constexpr std::size_t LeastMostPlaces = std::size_t{ 1 } << 20;
+constexpr std::size_t MostPlaces = std::size_t{ 1 } << 25;
+/// Lattices with fewer places along the longest axis say nothing.
+constexpr int LeastPlaces = 16;
+
+/// A coarser level of a mesh.
+class LatticeSource final : public BrickSource
+{
+public:
+  LatticeSource(CellSource& source, int level)
+    : Source(source)
+    , LatticeLevel(level)
+  {
+  }
+
+  glm::ivec3 Bricks() const override { return this->Source.Bricks(); }
+  Box CellsOf(std::int64_t brick) const override { return this->Source.CellsOf(brick); }
+  ValueRange RangeOf(std::int64_t brick) const override { return this->Source.RangeOf(brick); }
+  ValueMask MaskOf(std::int64_t brick) const override { return this->Source.MaskOf(brick); }
+  MaskRange MasksAreOver() const override { return this->Source.MasksAreOver(); }
+  std::size_t LoadBytes(std::int64_t) const override { return 0; }
+  /// Positions are those of the index space at all levels.
+  glm::ivec3 CellEdges() const override { return glm::ivec3(1); }
+  BrickView Load(std::int64_t brick) override { return this->Source.Load(brick); }
+  std::unique_ptr<PictureCaster> MakeCaster(
+    const RayScene& scene, const Box& cells, ThreadPool& pool, RayStatistics& statistics) override
+  {
+    const bool shaded = scene.Shading.On && scene.Blend.Mode == BlendMode::Composite;
+    return std::make_unique<CellCaster>(scene, this->Source, *this,
+      this->Source.LatticeOf(this->LatticeLevel, shaded, pool), cells, pool, statistics);
+  }
+
+private:
+  CellSource& Source;
+  int LatticeLevel;
+};
 
 } // namespace
 
@@ -52,25 +94,100 @@ const CellField& CellSource::WithGradients(ThreadPool& pool)
 std::shared_ptr<const SeenCells> CellSource::SeenIn(
   const RayScene& scene, std::shared_ptr<const VisibleValues> visible, ThreadPool& pool)
 {
+  return this->Seen(this->LastSeen, scene, std::move(visible), pool);
+}
+
+std::shared_ptr<const SeenCells> CellSource::BordersIn(const RayScene& scene, ThreadPool& pool)
+{
+  return this->Seen(this->LastBorders, scene, nullptr, pool);
+}
+
+/// @param last LastSeen or LastBorders
+std::shared_ptr<const SeenCells> CellSource::Seen(std::shared_ptr<const SeenCells>& last,
+  const RayScene& scene, std::shared_ptr<const VisibleValues> visible, ThreadPool& pool)
+{
   {
     const std::lock_guard<std::mutex> lock(this->SeenMutex);
-    if (this->LastSeen && this->LastSeen->AreOf(scene, visible.get()))
+    if (last && last->AreOf(scene, visible.get()))
     {
-      return this->LastSeen;
+      return last;
     }
-    this->LastSeen = nullptr; // its memory is there for the next one
+    last = nullptr; // its memory is there for the next one
   }
-  ++this->Looks;
-  auto seen = std::make_shared<const SeenCells>(scene, this->Field, std::move(visible), pool);
+  const bool all = &last == &this->LastSeen;
+  this->Looks += all ? 1 : 0;
+  auto seen = std::make_shared<const SeenCells>(scene, this->Field,
+    all ? SeenCells::Kind::All : SeenCells::Kind::Borders, std::move(visible), pool);
   const std::lock_guard<std::mutex> lock(this->SeenMutex);
-  this->LastSeen = seen;
+  last = seen;
   return seen;
 }
 
 std::size_t CellSource::SeenBytes() const
 {
   const std::lock_guard<std::mutex> lock(this->SeenMutex);
-  return this->LastSeen ? this->LastSeen->Bytes() : 0;
+  return (this->LastSeen ? this->LastSeen->Bytes() : 0) +
+         (this->LastBorders ? this->LastBorders->Bytes() : 0);
+}
+
+/// Of the lattice of a level, in edges of the index space.
+double CellSource::EdgeOf(int level)
+{
+  std::call_once(this->EdgeFound,
+    [&]
+    {
+      const DrawnCells& cells = *this->Field.Cells;
+      const std::size_t most =
+        std::clamp(PlacesPerCell * cells.Order.size(), LeastMostPlaces, MostPlaces);
+      this->FinestLatticeEdge = FinestEdge;
+      while (MeshLattice::PlacesFor(cells, this->FinestLatticeEdge).Size() > most)
+      {
+        this->FinestLatticeEdge *= 2.0;
+      }
+    });
+  return std::ldexp(this->FinestLatticeEdge, level - 1);
+}
+
+std::shared_ptr<const MeshLattice> CellSource::LatticeOf(int level, bool shaded, ThreadPool& pool)
+{
+  const std::lock_guard<std::mutex> lock(this->LatticesMutex);
+  // Coarser ones take an eighth of the time from the finest, which most plans come to.
+  for (const int each : { 1, level })
+  {
+    std::shared_ptr<const MeshLattice>& lattice = this->Lattices[each];
+    const MeshLattice* const finer = each > 1 ? this->Lattices[1].get() : nullptr;
+    if (!lattice)
+    {
+      lattice = std::make_shared<MeshLattice>(this->Field, this->EdgeOf(each), finer, pool);
+    }
+    if (shaded && !lattice->HasGradients())
+    {
+      // Others may be drawing with the one without.
+      auto with = std::make_shared<MeshLattice>(*lattice);
+      with->AddGradients(this->WithGradients(pool), finer, pool);
+      lattice = with;
+    }
+  }
+  return this->Lattices[level];
+}
+
+std::size_t CellSource::LatticeBytes() const
+{
+  const std::lock_guard<std::mutex> lock(this->LatticesMutex);
+  std::size_t bytes = 0;
+  for (const auto& [level, lattice] : this->Lattices)
+  {
+    bytes += lattice->Bytes();
+  }
+  return bytes;
+}
+
+std::unique_ptr<BrickSource> CellSource::MakeLevel(int level, const Box&)
+{
+  const int longest = std::max({ this->Size.x, this->Size.y, this->Size.z });
+  return longest < LeastPlaces * this->EdgeOf(level)
+           ? nullptr
+           : std::make_unique<LatticeSource>(*this, level);
 }
 
 Box CellSource::CellsOf(std::int64_t brick) const
@@ -90,7 +207,7 @@ ValueMask CellSource::MaskOf(std::int64_t brick) const
 std::unique_ptr<PictureCaster> CellSource::MakeCaster(
   const RayScene& scene, const Box& cells, ThreadPool& pool, RayStatistics& statistics)
 {
-  return std::make_unique<CellCaster>(scene, *this, cells, pool, statistics);
+  return std::make_unique<CellCaster>(scene, *this, *this, nullptr, cells, pool, statistics);
 }
 
 BrickView CellSource::Load(std::int64_t)

@@ -6,6 +6,7 @@
 #include "Render/Cells/CellField.h"
 
 #include <atomic>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -13,6 +14,7 @@
 namespace banyan
 {
 
+class MeshLattice;
 class SeenCells;
 class ThreadPool;
 class VisibleValues;
@@ -33,6 +35,8 @@ public:
   /// @param visible null where all values count
   std::shared_ptr<const SeenCells> SeenIn(
     const RayScene& scene, std::shared_ptr<const VisibleValues> visible, ThreadPool& pool);
+  /// The same for faces at the border, of cells with any values.
+  std::shared_ptr<const SeenCells> BordersIn(const RayScene& scene, ThreadPool& pool);
   /// Bytes of what is kept of the last scene.
   std::size_t SeenBytes() const;
   /// How often cells were looked at.
@@ -52,7 +56,21 @@ public:
   /// Throws Error: there are no samples on a grid.
   BrickView Load(std::int64_t brick) override;
 
+  /// The lattice of a coarser level, made when it is first asked for.
+  /// @param shaded with gradients
+  std::shared_ptr<const MeshLattice> LatticeOf(int level, bool shaded, ThreadPool& pool);
+  /// Bytes of the lattices that pictures have asked for so far.
+  std::size_t LatticeBytes() const;
+
+protected:
+  /// Levels are lattices. The finest has places half as far apart as points of the mesh, unless
+  /// these would be too many.
+  std::unique_ptr<BrickSource> MakeLevel(int level, const Box& domain) override;
+
 private:
+  double EdgeOf(int level);
+  std::shared_ptr<const SeenCells> Seen(std::shared_ptr<const SeenCells>& last,
+    const RayScene& scene, std::shared_ptr<const VisibleValues> visible, ThreadPool& pool);
   bool BoundsOf(std::uint32_t number, glm::dvec3& low, glm::dvec3& high, ValueRange& range) const;
   void FindRanges(ThreadPool& pool);
 
@@ -65,6 +83,11 @@ private:
   MaskRange Masks;
   mutable std::mutex SeenMutex;
   std::shared_ptr<const SeenCells> LastSeen;
+  std::shared_ptr<const SeenCells> LastBorders;
+  std::once_flag EdgeFound;
+  double FinestLatticeEdge = 0.0;
+  mutable std::mutex LatticesMutex;
+  std::map<int, std::shared_ptr<const MeshLattice>> Lattices; ///< by level
   std::atomic<int> Looks{ 0 };
 };
 

@@ -17,6 +17,8 @@
 namespace banyan
 {
 
+class MeshLattice;
+
 /// Where a cell, or a face of its, lies in pictures of a camera, whatever their size.
 struct PlacedCell
 {
@@ -69,6 +71,19 @@ struct SlabJob
 /// Puts the values of the slab's samples, and what is covered of intervals at the border, into it.
 /// Bit for bit the same on all processors.
 void DrawSlab(const SlabJob& job);
+
+/// What a slab takes from a lattice in place of cells.
+struct LatticeJob
+{
+  const MeshLattice& Lattice;
+  /// Per slot: whether the ray is in the mesh where the slab begins, 1 or 0, below 0 where that is
+  /// not known. Set to what is so where it ends.
+  float* Inside;
+  bool EndsNever; ///< whether rays go on whatever they have met
+};
+
+/// The same with values of a lattice. Items are faces at the border.
+void DrawLatticeSlab(const SlabJob& job, const LatticeJob& lattice);
 
 /// How the samples of a slab become part of pixels.
 struct SlabBlend

@@ -114,7 +114,7 @@ PlacedCell PlacedCube(double low, double high)
   drawn.LookFrom(
     { 0, 0, -4 }, glm::dvec3(0.0), glm::perspective(std::atan(0.5) * 2.0, 1.0, 0.1, 100.0));
   ThreadPool pool(1);
-  const SeenCells seen(drawn.Scene, drawn.Field, nullptr, pool);
+  const SeenCells seen(drawn.Scene, drawn.Field, SeenCells::Kind::All, nullptr, pool);
   return seen.Placed().empty() ? PlacedCell() : seen.Placed().front();
 }
 
