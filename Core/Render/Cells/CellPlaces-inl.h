@@ -171,6 +171,20 @@ private:
       hn::And(this->IsFrom(p.Z, 2), this->IsUpTo(p.Z, 2)));
   }
 
+  /// Where four triangles end the cell in place of a bilinear face.
+  static HWY_INLINE hn::Mask<D> InFan(const FanBound& fan, const Triple& p)
+  {
+    const D d;
+    const VF u = hn::Add(DotOf({ Set(fan.U[0]), Set(fan.U[1]), Set(fan.U[2]) }, p), Set(fan.U[3]));
+    const VF v = DotOf(InAllLanes(fan.V), p);
+    const VF smaller = hn::Min(hn::Abs(u), hn::Abs(v));
+    const VF larger = hn::Max(hn::Abs(u), hn::Abs(v));
+    const VF away =
+      hn::CopySign(hn::Mul(smaller, hn::Sub(hn::Set(d, 1.0f), larger)), hn::Mul(u, v));
+    const VF out = DotOf(InAllLanes(fan.Out), p);
+    return hn::Le(hn::Sub(out, hn::Mul(away, Set(fan.Bulge))), Set(fan.Most));
+  }
+
   /// What u v is divided by: h, but not much less than u and v just outside of the apex, where the
   /// bent term would have no bound. 1 in the apex itself.
   static HWY_INLINE VF HeightAt(const Triple& p)
@@ -346,6 +360,10 @@ private:
     for (int i = 0; i < count; ++i)
     {
       inside[i] = hn::AndNot(moving[i], this->Inside<shape>(places[i]));
+      for (int fan = 0; fan < this->Cell.FanCount; ++fan)
+      {
+        inside[i] = hn::And(inside[i], InFan(this->Cell.Fans[fan], places[i]));
+      }
     }
   }
 

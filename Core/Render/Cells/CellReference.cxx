@@ -6,6 +6,7 @@
 #include "Render/Scene/RayLattice.h"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
@@ -22,6 +23,8 @@ namespace
 /// and at the border of the mesh.
 constexpr double OutsideOfCell = 0x1p-13;
 constexpr double OutsideOfMesh = 0x1p-20;
+/// More than triangles are outside of bilinear faces of cells that are no butterflies.
+constexpr double OutsideOfBent = 0.25;
 /// How much larger boxes around cells are, in parts of their edges: more than OutsideOfCell makes
 /// bent ones.
 constexpr double AroundBox = 0.01;
@@ -38,12 +41,50 @@ struct DrawnCell
   glm::dvec3 High{ 0.0 };
   FaceTolerances Outside{};
   std::vector<ReferenceFace> Border;
+  std::vector<int> Quads; ///< numbers of border faces
 
   bool Holds(const glm::dvec3& position, glm::dvec3& place) const
   {
     return glm::all(glm::greaterThanEqual(position, this->Low)) &&
            glm::all(glm::lessThanEqual(position, this->High)) &&
-           FindPlace(this->Shape, this->Corners, position, this->Outside, place);
+           FindPlace(this->Shape, this->Corners, position, this->Outside, place) &&
+           std::all_of(this->Quads.begin(), this->Quads.end(),
+             [&](int face) { return this->EndsBeyond(face, place); });
+  }
+
+private:
+  /// Whether a place is on this side of the four triangles of a border face, to first order in how
+  /// far they are from the bilinear face.
+  bool EndsBeyond(int number, const glm::dvec3& place) const
+  {
+    const CellFace& face = FacesOf(this->Shape).Faces[static_cast<std::size_t>(number)];
+    const std::array<double, 8> weights = WeightsAt(this->Shape, place);
+    const int count = CornersOf(this->Shape);
+    std::array<glm::dvec3, 4> c;
+    std::array<double, 4> w{};
+    glm::dvec3 middle(0.0);
+    for (std::size_t i = 0; i < 4; ++i)
+    {
+      c[i] = this->Corners[static_cast<std::size_t>(face.Corners[i])];
+      w[i] = weights[static_cast<std::size_t>(face.Corners[i])];
+      middle += 0.25 * c[i];
+    }
+    // The middle of the other corners lies as much deeper as there are places between.
+    const glm::dvec3 other =
+      (static_cast<double>(count) * this->Middle - 4.0 * middle) / static_cast<double>(count - 4);
+    const double places = this->Shape == CellShape::Hexahedron ? 2.0 : 1.0;
+    const glm::dvec3 normal = glm::cross(c[2] - c[0], c[3] - c[1]);
+    const glm::dvec3 twist = 0.25 * ((c[0] - c[1]) + (c[2] - c[3]));
+    const double bulge = places * glm::dot(normal, twist) / glm::dot(normal, middle - other);
+    const double sum = w[0] + w[1] + w[2] + w[3];
+    const double u = (w[1] + w[2] - w[0] - w[3]) / sum;
+    const double v = (w[2] + w[3] - w[0] - w[1]) / sum;
+    // In each of the four triangles u v is linear, with the same values at corners and middle.
+    const double flat = std::abs(u) > std::abs(v) ? (u > 0.0 ? v : -v) : (v > 0.0 ? u : -u);
+    const double beyond = places * (sum - 1.0);
+    // A cell that folds ends at the bilinear face. At an apex u and v are no numbers.
+    const double away = std::abs(bulge) < 1.0 && sum > 0.0 ? bulge * (flat - u * v) : 0.0;
+    return beyond - away <= OutsideOfMesh;
   }
 };
 
@@ -170,6 +211,11 @@ public:
         }
         cell.Border.push_back(face);
         cell.Outside[static_cast<std::size_t>(number)] = OutsideOfMesh;
+        if (of.Count == 4)
+        {
+          cell.Outside[static_cast<std::size_t>(number)] = OutsideOfBent;
+          cell.Quads.push_back(number);
+        }
       }
       this->Cells.push_back(std::move(cell));
     }

@@ -33,9 +33,10 @@ struct ReferenceSample
 ///
 /// Samples are those of RayLattice, at their fixed-point positions. One belongs to the last cell in
 /// the order that holds it, within 2^-13 of places from -1 to 1 (see FindPlace), and 2^-20 beyond
-/// border faces where there are ends. Cells are not drawn which the transfer function does not
-/// show, by the range of their corners' values, or which have a value that is not finite: as if
-/// they were not there.
+/// border faces where there are ends; there, four triangles around the mean of its corners end a
+/// cell in place of a quad. Cells are not drawn which the transfer function does not show, by the
+/// range of their corners' values, or which have a value that is not finite: as if they were not
+/// there.
 ///
 /// With ends, a sample stands for that part of its interval that the mesh covers. Border faces,
 /// which one cell alone has, are crossed by the ray: triangles as they are, quads as four triangles

@@ -22,6 +22,9 @@ constexpr double LeastBend = 1.0 / (1 << 17);
 /// Where bent terms lead places further away than this, taking them once brings a first guess no
 /// nearer: cells may fold, and Newton's method is to come from their middle.
 constexpr double MostLean = 0.5;
+/// Of a face whose middle is this far from where two of its corners have it, in places: its cell
+/// folds.
+constexpr float MostBulge = 1.0f;
 /// Cells that extend further than this may lie further than 128 cells from their middle.
 constexpr double WidestNarrow = 60.0;
 /// Below this part of the product of its edges a cell's middle counts as flat.
@@ -189,6 +192,35 @@ float MarginAtBorder(const glm::dmat3& inverse, const glm::dvec3& size, double l
   return static_cast<float>(std::min(rounding * most + bent, double{ CellSetup::Margin }));
 }
 
+/// Which places a quad has; its first corner is where u and v are -1.
+FanBound BoundOf(CellShape shape, int face)
+{
+  FanBound bound;
+  if (shape == CellShape::Pyramid)
+  {
+    return { { 0.0f, 0.0f, 1.0f }, { 1.0f, 0.0f, 0.0f, 0.0f }, { 0.0f, 1.0f, 0.0f }, 0.0f, 1.0f };
+  }
+  if (shape == CellShape::Wedge)
+  {
+    switch (face)
+    {
+      case 2:
+        return { { 0.0f, -1.0f, 0.0f }, { 2.0f, 0.0f, 0.0f, -1.0f }, { 0.0f, 0.0f, 1.0f } };
+      case 3:
+        return { { 1.0f, 1.0f, 0.0f }, { 0.0f, 2.0f, 0.0f, -1.0f }, { 0.0f, 0.0f, 1.0f }, 0.0f,
+          1.0f };
+      default:
+        return { { -1.0f, 0.0f, 0.0f }, { 0.0f, -2.0f, 0.0f, 1.0f }, { 0.0f, 0.0f, 1.0f } };
+    }
+  }
+  const int axis = face / 2;
+  bound.Out[axis] = face % 2 == 0 ? -1.0f : 1.0f;
+  bound.U[(axis + 1) % 3] = 1.0f;
+  bound.V[(axis + 2) % 3] = 1.0f;
+  bound.Most = 1.0f;
+  return bound;
+}
+
 } // namespace
 
 /// A cell lies within the hull of its corners, so these bound what is linear.
@@ -238,39 +270,86 @@ void CellTerms::Set(CellShape shape, const float (&values)[8])
 }
 
 /// Where places of the cell end.
-void CellSetup::SetFaces(unsigned border, float marginAtBorder)
+/// @param beyond of places, by face
+void CellSetup::SetFaces(const float (&beyond)[6])
 {
-  const auto beyond = [&](int face) { return (border >> face & 1) != 0 ? marginAtBorder : Margin; };
   switch (this->Shape)
   {
     case CellShape::Tetrahedron:
-      this->Least[0] = -beyond(3);
-      this->Least[1] = -beyond(1);
-      this->Least[2] = -beyond(0);
-      this->MostSum = 1.0f + beyond(2);
+      this->Least[0] = -beyond[3];
+      this->Least[1] = -beyond[1];
+      this->Least[2] = -beyond[0];
+      this->MostSum = 1.0f + beyond[2];
       break;
     case CellShape::Wedge:
-      this->Least[0] = -beyond(4);
-      this->Least[1] = -beyond(2);
-      this->Least[2] = -1.0f - beyond(0);
-      this->Most[2] = 1.0f + beyond(1);
-      this->MostSum = 1.0f + beyond(3);
+      this->Least[0] = -beyond[4];
+      this->Least[1] = -beyond[2];
+      this->Least[2] = -1.0f - beyond[0];
+      this->Most[2] = 1.0f + beyond[1];
+      this->MostSum = 1.0f + beyond[3];
       break;
     case CellShape::Pyramid:
-      this->Least[0] = -beyond(4);
-      this->Most[0] = beyond(2);
-      this->Least[1] = -beyond(1);
-      this->Most[1] = beyond(3);
+      this->Least[0] = -beyond[4];
+      this->Most[0] = beyond[2];
+      this->Least[1] = -beyond[1];
+      this->Most[1] = beyond[3];
       this->Least[2] = -Margin; // the apex is no face
-      this->Most[2] = 1.0f + beyond(0);
+      this->Most[2] = 1.0f + beyond[0];
       break;
     default:
       for (int i = 0; i < 3; ++i)
       {
-        this->Least[i] = -1.0f - beyond(2 * i);
-        this->Most[i] = 1.0f + beyond(2 * i + 1);
+        this->Least[i] = -1.0f - beyond[2 * i];
+        this->Most[i] = 1.0f + beyond[2 * i + 1];
       }
   }
+}
+
+/// Takes faces whose four triangles lie elsewhere than the bilinear face. To first order: the
+/// cell's linear part says where.
+/// @param beyond grows by what is outside of the bilinear faces
+void CellSetup::SetFans(const glm::dvec3 (&corners)[8], unsigned border, float (&beyond)[6])
+{
+  const CellFaces& faces = FacesOf(this->Shape);
+  for (int number = 0; number < faces.Count; ++number)
+  {
+    const CellFace& face = faces.Faces[static_cast<std::size_t>(number)];
+    if ((border >> number & 1) == 0 || face.Count != 4)
+    {
+      continue;
+    }
+    const auto corner = [&](std::size_t i) { return corners[face.Corners[i]]; };
+    const glm::dvec3 twist = 0.25 * ((corner(0) - corner(1)) + (corner(2) - corner(3)));
+    const glm::dvec3 normal = glm::cross(corner(2) - corner(0), corner(3) - corner(1));
+    FanBound fan = BoundOf(this->Shape, number);
+    const int axis = fan.Out[0] != 0.0f ? 0 : (fan.Out[1] != 0.0f ? 1 : 2);
+    const float(&linear)[3] = this->Linear[axis];
+    const glm::dvec3 out = double{ fan.Out[axis] } * glm::dvec3(linear[0], linear[1], linear[2]);
+    fan.Bulge = static_cast<float>(glm::dot(normal, twist) / glm::dot(normal, out));
+    fan.Most += beyond[number];
+    if (std::abs(fan.Bulge) > beyond[number] && std::abs(fan.Bulge) < MostBulge)
+    {
+      // Triangles are a fourth of it away at most.
+      beyond[number] += 0.25f * std::abs(fan.Bulge);
+      this->Fans[this->FanCount++] = fan;
+    }
+  }
+}
+
+/// @param margin beyond faces at the border
+void CellSetup::SetBorder(const glm::dvec3 (&corners)[8], unsigned border, float margin)
+{
+  float beyond[6];
+  for (int face = 0; face < 6; ++face)
+  {
+    beyond[face] = (border >> face & 1) != 0 ? margin : Margin;
+  }
+  this->FanCount = 0;
+  if (border != 0 && this->IsBent)
+  {
+    this->SetFans(corners, border, beyond);
+  }
+  this->SetFaces(beyond);
 }
 
 bool CellSetup::Set(CellShape shape, const glm::dvec3 (&corners)[8], unsigned border)
@@ -329,8 +408,8 @@ bool CellSetup::Set(CellShape shape, const glm::dvec3 (&corners)[8], unsigned bo
     }
   }
   this->SetBounds(offsets, inverse);
-  this->SetFaces(
-    border, border != 0 && inverts ? MarginAtBorder(inverse, size, leans.Most) : Margin);
+  this->SetBorder(
+    corners, border, border != 0 && inverts ? MarginAtBorder(inverse, size, leans.Most) : Margin);
   return true;
 }
 

@@ -23,6 +23,21 @@ struct CellTerms
   void Set(CellShape shape, const float (&values)[8]);
 };
 
+/// A bilinear face at the border of a mesh. Rays cross it as four triangles around its middle, so
+/// samples of the cell end there, too: where
+///
+///     (Out . x) - Bulge * w(u, v) <= Most, with u = U . x, v = V . x
+///
+/// Here w is how far the triangles are from u v, and v from -1 to 1 over the face.
+struct FanBound
+{
+  float Out[3] = {};
+  float U[4] = {}; ///< and a constant
+  float V[3] = {};
+  float Bulge = 0.0f;
+  float Most = 0.0f;
+};
+
 /// What a kernel needs of a cell: its shape as polynomials about a point in its middle.
 ///
 /// A point of the cell is Base + sum of Linear[i] * x_i + the bent terms, in cells of the index
@@ -66,6 +81,8 @@ struct CellSetup
   float Least[3] = {};
   float Most[3] = {};
   float MostSum = 0.0f;
+  FanBound Fans[6]; ///< of bent faces at the border: further bounds
+  int FanCount = 0;
 
   /// Sets all but fields.
   /// @param corners in index space
@@ -76,7 +93,9 @@ struct CellSetup
 
 private:
   void SetBounds(const glm::dvec3 (&offsets)[8], const glm::dmat3& inverse);
-  void SetFaces(unsigned border, float marginAtBorder);
+  void SetBorder(const glm::dvec3 (&corners)[8], unsigned border, float margin);
+  void SetFaces(const float (&beyond)[6]);
+  void SetFans(const glm::dvec3 (&corners)[8], unsigned border, float (&beyond)[6]);
 };
 
 } // namespace banyan
