@@ -119,6 +119,9 @@ KeyedNumbers KeysOfCells(
   return result;
 }
 
+/// Stands for a cell that is there once more.
+constexpr std::uint32_t Repeated = std::numeric_limits<std::uint32_t>::max();
+
 /// Brings cells into order whose keys agree in the bits that were sorted by.
 class RunSorter
 {
@@ -177,6 +180,13 @@ private:
     std::sort(first, last,
       [](const Entry& a, const Entry& b)
       { return a.Hash != b.Hash ? a.Hash < b.Hash : a.Cell < b.Cell; });
+    for (Entry* entry = first; entry + 1 != last; ++entry)
+    {
+      if (entry->Hash == (entry + 1)->Hash)
+      {
+        entry->Cell = Repeated;
+      }
+    }
   }
 
   const CellMesh& Mesh;
@@ -203,7 +213,7 @@ void SortRuns(const CellMesh& mesh, int firstBit, KeyedNumbers& cells, ThreadPoo
 std::vector<std::uint32_t> OrderOfCells(
   const CellMesh& mesh, const CellFacts& facts, const CellLattice& lattice, ThreadPool& pool)
 {
-  if (mesh.CellCount > std::numeric_limits<std::uint32_t>::max())
+  if (mesh.CellCount >= Repeated)
   {
     throw Error("The mesh has " + std::to_string(mesh.CellCount) +
                 " cells, and a process draws fewer than 2^32: divide it among more processes");
@@ -216,7 +226,9 @@ std::vector<std::uint32_t> OrderOfCells(
   const int firstBit = std::max(0, KeyBits - digits * RadixDigitBits);
   RadixSort(cells, firstBit, KeyBits, pool);
   SortRuns(mesh, firstBit, cells, pool);
-  return { cells.Values.get(), cells.Values.get() + cells.Count };
+  std::vector<std::uint32_t> order(cells.Values.get(), cells.Values.get() + cells.Count);
+  order.erase(std::remove(order.begin(), order.end(), Repeated), order.end());
+  return order;
 }
 
 } // namespace banyan

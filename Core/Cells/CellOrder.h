@@ -16,8 +16,8 @@ class ThreadPool;
 /// their middles, quantised to 21 bits along the longest axis of the lattice. Cells with the same
 /// key follow one another by a hash of the places of their corners, which does not depend on how
 /// these are numbered. So the same cells come in the same order, however a mesh numbers its cells
-/// and points, for any number of threads. Cells with all corners in common stay in the order of
-/// their numbers.
+/// and points, for any number of threads. Of cells with all corners in common the last one counts,
+/// and the others are left out.
 ///
 /// Takes 4 bytes per cell, and 24 more meanwhile.
 /// @param lattice around all drawn cells

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 namespace banyan
 {
@@ -24,8 +25,11 @@ void Note(CellFacts::Some& some, std::int64_t cell)
 /// @return whether the first of all is one of these
 bool Add(CellFacts::Some& to, const CellFacts::Some& from)
 {
-  const bool first = from.Count > 0 && (to.Count == 0 || from.First < to.First);
+  const bool first =
+    from.Count > 0 &&
+    (to.Count == 0 || std::tie(from.Rank, from.First) < std::tie(to.Rank, to.First));
   to.First = first ? from.First : to.First;
+  to.Rank = first ? from.Rank : to.Rank;
   to.Count += from.Count;
   return first;
 }
@@ -180,7 +184,8 @@ void CheckSize(const CellMesh& mesh)
 
 std::string Sentence(const CellFacts::Some& some, const std::string& have)
 {
-  const std::string cell = std::to_string(some.First);
+  const std::string cell = std::to_string(some.First) +
+                           (some.Rank < 0 ? "" : " of rank " + std::to_string(some.Rank));
   return some.Count == 1
            ? "Cell " + cell + ' ' + have
            : std::to_string(some.Count) + " cells, the first of which is " + cell + ", " + have;
@@ -191,6 +196,16 @@ std::string Sentence(const CellFacts::Some& some, const std::string& have)
 std::int64_t CellFacts::Drawn() const
 {
   return std::accumulate(this->PerShape.begin(), this->PerShape.end(), std::int64_t{ 0 });
+}
+
+void CellFacts::Count(CellFacts other, int rank)
+{
+  for (Some* const some :
+    { &other.NotFinite, &other.WithoutVolume, &other.OtherTypes, &other.Folded })
+  {
+    some->Rank = rank;
+  }
+  Add(*this, other);
 }
 
 std::vector<std::string> CellFacts::Remarks() const
@@ -209,6 +224,12 @@ std::vector<std::string> CellFacts::Remarks() const
   say(this->WithoutVolume, "is " + flat, "are " + flat);
   const std::string type = std::to_string(this->FirstOtherType) + " of VTK is not drawn";
   say(this->OtherTypes, "is left out: type " + type, "are left out: type " + type);
+  if (this->Repeated > 0)
+  {
+    remarks.push_back(std::to_string(this->Repeated) +
+                      (this->Repeated == 1 ? " cell has" : " cells have") +
+                      " the corners of another one, and one of both is drawn");
+  }
   say(this->Folded, "is folded over at a corner, and may have a hole there",
     "are folded over at a corner, and may have holes there");
   return remarks;

@@ -27,6 +27,7 @@ struct CellFacts
   {
     std::int64_t Count = 0;
     std::int64_t First = -1; ///< the lowest number of them
+    std::int64_t Rank = -1;  ///< where the first is; -1 where all cells are on one rank
   };
 
   std::array<std::int64_t, 5> PerShape{}; ///< drawn cells, by the number of their CellShape
@@ -35,6 +36,8 @@ struct CellFacts
   Some OtherTypes;                        ///< left out: not of a shape that is drawn
   int FirstOtherType = 0;                 ///< as VTK numbers types
   Some Folded; ///< drawn, but with corners at which they are mirrored, and others where not
+
+  std::int64_t Repeated = 0; ///< left out by OrderOfCells; CheckCells does not count them
 
   std::vector<std::uint8_t> LeftOut; ///< not 0 for cells that are not drawn; empty where all are
 
@@ -45,6 +48,10 @@ struct CellFacts
 
   /// How many cells are drawn.
   std::int64_t Drawn() const;
+
+  /// Counts cells of another rank's piece, too.
+  /// @param rank higher than those that were counted before
+  void Count(CellFacts other, int rank);
 
   /// Sentences about cells that are left out or folded, each with the first of them.
   std::vector<std::string> Remarks() const;

@@ -22,8 +22,12 @@ std::shared_ptr<const DrawnCells> DrawnCells::Of(
   auto cells = std::make_shared<DrawnCells>();
   cells->Mesh = mesh;
   facts = CheckCells(mesh, pool);
-  const CellLattice tight = LatticeOf(ExtentOf(mesh, facts, pool));
+  const CellExtent extent = ExtentOf(mesh, facts, pool);
+  const CellLattice tight = LatticeOf(extent);
+  cells->Low = extent.Low;
+  cells->High = extent.High;
   cells->Order = OrderOfCells(mesh, facts, tight, pool);
+  facts.Repeated = facts.Drawn() - static_cast<std::int64_t>(cells->Order.size());
   cells->Border = BorderFacesOf(mesh, facts, cells->Order, pool);
   cells->BorderBits = BorderBitsOf(cells->Border, cells->Order.size());
   const int longest = std::max({ tight.Size.x, tight.Size.y, tight.Size.z });

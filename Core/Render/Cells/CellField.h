@@ -27,6 +27,8 @@ struct DrawnCells
   /// By place in the order: which faces of a cell end the mesh, a bit each. So its samples do not
   /// reach beyond them. Empty where none does.
   std::vector<std::uint8_t> BorderBits;
+  glm::dvec3 Low{ 0.0 };            ///< the box around them
+  glm::dvec3 High{ 0.0 };
 
   /// Checks a mesh and finds all that drawing it takes. There is room around the mesh in the index
   /// space, so that rays begin and end outside of it.
