@@ -201,8 +201,8 @@ int vtkBanyanHexOctree::RequestData(
     vtkErrorMacro(<< "The mesh is no octree of hexahedra. " << reason
                   << (this->SampleGeneralMeshes || leaves || !banyan::CanBeSampled(grid)
                          ? ""
-                         : ". Switch on 'Sample General Meshes' for the boxes that \"Banyan "
-                           "Volume\" draws of such meshes"));
+                         : ". Switch on 'Sample General Meshes' for boxes with its values, "
+                           "which a series can keep"));
     output->Initialize();
     return 0;
   }

@@ -11,6 +11,7 @@
 #include "vtkCellTypes.h"
 #include "vtkDataArray.h"
 #include "vtkIdList.h"
+#include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkSmartPointer.h"
 #include "vtkTypeInt64Array.h"
@@ -73,7 +74,7 @@ vtkSmartPointer<vtkIdList> KeptCells(vtkUnstructuredGrid* grid, const OtherCells
   {
     return nullptr;
   }
-  const auto kept = vtkSmartPointer<vtkIdList>::New();
+  auto kept = vtkSmartPointer<vtkIdList>::New();
   for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
   {
     if ((!ghosts || (ghosts->GetValue(cell) & GhostBits) == 0) &&
@@ -170,6 +171,30 @@ bool Extends(const Coordinate* points, std::int64_t count, const Id* corners)
   return high[0] > low[0] && high[1] > low[1] && high[2] > low[2];
 }
 
+/// Whether the points of a cell lie in two places along an axis, but for an eighth of their
+/// distance.
+bool HasTwoPlaces(vtkUnstructuredGrid* grid, vtkIdList* ids, int axis)
+{
+  double low = 0.0;
+  double high = 0.0;
+  const auto at = [&](vtkIdType i)
+  {
+    const vtkIdType point = ids->GetId(i);
+    return point >= 0 && point < grid->GetNumberOfPoints() ? grid->GetPoint(point)[axis] : 0.0;
+  };
+  for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
+  {
+    low = i == 0 ? at(i) : std::min(low, at(i));
+    high = i == 0 ? at(i) : std::max(high, at(i));
+  }
+  bool two = true;
+  for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
+  {
+    two = two && std::min(at(i) - low, high - at(i)) <= 0.125 * (high - low);
+  }
+  return two;
+}
+
 } // namespace
 
 std::string OtherCells::Text() const
@@ -255,6 +280,39 @@ bool CanBeSampled(vtkUnstructuredGrid* grid)
   {
     return false;
   }
+}
+
+bool HasBoxesAlone(vtkUnstructuredGrid* grid)
+{
+  // Of others one in so many is enough to tell: what is no octree is found out later, too.
+  constexpr vtkIdType most = 1000;
+  const vtkIdType count = grid->GetNumberOfCells();
+  const vtkIdType step = count / most + 1;
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < count; ++cell)
+  {
+    const int type = grid->GetCellType(cell);
+    if (!IsHexahedron(type))
+    {
+      if (vtkCellTypes::IsLinear(static_cast<unsigned char>(type)) == 0 ||
+          (type >= VTK_TETRA && type <= VTK_HEXAGONAL_PRISM))
+      {
+        return false;
+      }
+    }
+    else if (cell % step == 0)
+    {
+      grid->GetCells()->GetCellAtId(cell, ids);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        if (!HasTwoPlaces(grid, ids, axis))
+        {
+          return false;
+        }
+      }
+    }
+  }
+  return true;
 }
 
 vtkSmartPointer<vtkDataArray> ValuesOfCells(vtkUnstructuredGrid* grid, vtkDataArray* values)

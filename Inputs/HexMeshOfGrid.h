@@ -38,6 +38,10 @@ BANYANINPUTS_EXPORT HexMesh HexMeshOf(vtkUnstructuredGrid* grid, OtherCells* oth
 /// whose points exist, are finite, and lie apart along x, y and z.
 bool CanBeSampled(vtkUnstructuredGrid* grid);
 
+/// Whether all cells that have a volume are hexahedra and voxels, and some that are looked at have
+/// edges along x, y and z: the mesh may be an octree then.
+BANYANINPUTS_EXPORT bool HasBoxesAlone(vtkUnstructuredGrid* grid);
+
 /// Values of the cells that HexMeshOf takes when it may leave out others, in its order: the array
 /// itself unless cells are left out.
 /// @param values of all cells of the grid; may be null

@@ -26,6 +26,8 @@ class vtkVolume;
 namespace banyan
 {
 
+struct LinearParts;
+
 /// What vtkBanyanVolumeMapper keeps from frame to frame.
 struct MapperState
 {
@@ -40,6 +42,7 @@ struct MapperState
   bool ShowsCoarse = false;                  ///< the last picture: the exact one comes by itself
   const vtkRenderer* LastRenderer = nullptr; ///< only to compare with
   MotionEnhancement Motion;
+  std::shared_ptr<const LinearParts> Parts; ///< of cells of the last step that are not linear
   banyan::Backdrop Backdrop;
   std::array<glm::dmat4, 2> LastViews{ glm::dmat4(0.0), glm::dmat4(0.0) }; ///< PictureOf, by eye
   KeptTransferFunction Function;

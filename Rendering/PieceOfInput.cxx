@@ -139,14 +139,7 @@ FieldPiece PieceOfInput(vtkBanyanVolumeMapper* mapper, vtkVolumeProperty* proper
 {
   vtkDataObject* const data = mapper->GetDataObjectInput();
   FieldPiece piece = PieceOfData(data);
-  piece.Mesh.Tolerance = mapper->GetMeshTolerance();
-  piece.Mesh.Sampling.Tolerance = mapper->GetMeshSamplingTolerance();
-  piece.Mesh.Sampling.MostCubes = mapper->GetMeshSamplingBoxes();
-  piece.Mesh.Sampling.Watch = [mapper](double part)
-  {
-    mapper->UpdateProgress(part);
-    return mapper->GetAbortExecute() == 0;
-  };
+  piece.MeshTolerance = mapper->GetMeshTolerance();
   if (!piece.HasData() || !piece.Problem.empty())
   {
     return piece;

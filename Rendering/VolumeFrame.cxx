@@ -280,7 +280,6 @@ void VolumeFrame::Tell(const FieldFrames::Frame& frame)
   out->SetImageErrorLimit(frame.Picture.Limit.c_str());
   out->SetEncodingErrorOfValues(
     field.Drawn().IsMesh() ? std::numeric_limits<double>::quiet_NaN() : field.EncodingError());
-  out->SetMeshDeviation(field.Drawn().Deviation());
 }
 
 void VolumeFrame::Finish(const CompositeStatistics& geometry, double writeSeconds)

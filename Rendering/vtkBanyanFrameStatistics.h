@@ -82,9 +82,6 @@
   Number(double, EncodingErrorOfValues, 0.0, panel,                                                \
     "Largest error of the drawn values by encoding, over all steps, in the units of the "          \
     "data. 0 for plain data; NaN for meshes, where it is not known.")                              \
-  Number(double, MeshDeviation, 0.0, script,                                                       \
-    "General hexahedra: largest difference between the drawn field and that of the mesh, as "      \
-    "a share of the spread of the values nearby. 0 for octrees and image data.")                   \
   Number(vtkIdType, Frames, 0, script,                                                             \
     "Frames drawn since the representation was made.")
 // clang-format on

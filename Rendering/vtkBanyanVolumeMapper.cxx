@@ -52,6 +52,9 @@ int vtkBanyanVolumeMapper::FillInputPortInformation(int, vtkInformation* info)
   info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUnstructuredGrid");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkStructuredGrid");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkRectilinearGrid");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkExplicitStructuredGrid");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkHyperTreeGrid");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkOverlappingAMR");
   // A rank without data takes part in drawing all the same.
@@ -173,7 +176,7 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
     this->GetDataObjectInput(), piece);
   const bool mapped = piece.Array && piece.Array->GetNumberOfComponents() > 1 &&
                       piece.Component != banyan::SampleArray::Colours;
-  banyan::InputOfPiece input(std::move(piece));
+  banyan::InputOfPiece input(std::move(piece), &self.Parts);
   const bool isOther = !self.Field.IsOf(input);
   if (isOther)
   {

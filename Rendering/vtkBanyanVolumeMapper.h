@@ -53,26 +53,18 @@ class vtkRenderWindow;
     "to 0.7 suit waves. Colours then mean enhanced values: switch it off to read "                 \
     "amplitudes.")                                                                                 \
   Real(SampleDistanceVoxels, edges, 0, 0, 100, 4, advanced, all,                                   \
-    "Fixed distance between samples along a ray, in edges of the smallest cell. Default: 0, "      \
-    "the tolerance decides.")                                                                      \
+    "Fixed distance between samples along a ray, in edges of the smallest cell; of meshes that "   \
+    "are no octrees, in edges of a middling cell. Default: 0, the tolerance decides.")             \
   Real(ScreenErrorPixels, pixels, 0, 0, 1024, 64, advanced, all,                                   \
     "Longest edge of a cell on the screen, in pixels. Everything is drawn from the coarsest "      \
     "levels that keep it, with one sample per cell. Default: 0, the tolerance decides.")           \
   Real(MaxElementsPerPixel, elements, 0, 0, 1000000, 1000000, advanced, cells,                     \
-    "Meshes of hexahedra: most elements side by side in a pixel. Where there are more, a "         \
+    "Octree meshes: most elements side by side in a pixel. Where there are more, a "               \
     "coarser level is drawn, whatever the tolerance. Default: 0, the tolerance decides.")          \
   Real(MeshTolerance, edges, 0.0009765625, 0, 0.0625, 0.0625, advanced, cells,                     \
-    "Largest distance of the points of hexahedra from the lattice of their octree, in edges "      \
+    "Octree meshes: largest distance of points from the lattice of the octree, in edges "          \
     "of the smallest cell. Default: 1/1024. They are drawn on the lattice. Raise it for "          \
     "meshes whose points were moved by displacements.")                                            \
-  Real(MeshSamplingTolerance, spread, 0.25, 0, 1, 1, advanced, meshes,                             \
-    "Hexahedra that are no octree of boxes (curved, warped, topography) are sampled. This "        \
-    "is the largest difference to their own field between samples, as a share of the spread "      \
-    "of the values nearby. Default: 0.25. 0 refuses such meshes and names the cell. Mesh "         \
-    "Deviation is the difference that was reached.")                                               \
-  Whole(MeshSamplingBoxes, boxes, 1048576, 1024, 67108864, advanced, meshes,                       \
-    "Most boxes for sampling such meshes. Default: 1048576. Where more are needed, the "           \
-    "sampling stays coarser, with a warning.")                                                     \
   Switch(CompositeInFewBits, false, advanced, all,                                                 \
     "Sends pixels between ranks in as few bits as keep them within 1/255, about a ninth of "       \
     "the bytes of floats. Default: off. ParaView blends the background later in 8 bits, so "       \
@@ -105,15 +97,14 @@ class vtkRenderWindow;
 
 /**
  * @class vtkBanyanVolumeMapper
- * @brief draws image data, encoded or plain, meshes of hexahedra that are the leaves of an octree,
- * hyper tree grids and overlapping AMR, on one rank or many, with Banyan's own ray caster
+ * @brief draws image data, encoded or plain, meshes of any cells, hyper tree grids and overlapping
+ * AMR, on one rank or many, with Banyan's own ray caster
  *
  * Use it like any volume mapper: give it image data (the output of vtkBanyanSeriesReader draws
- * without being decoded), or an unstructured grid of axis-aligned hexahedra or voxels (each is
- * drawn as the trilinear element that it is; vtkBanyanHexOctree says what is wrong with others), a
- * vtkHyperTreeGrid or a vtkOverlappingAMR (their visible leaves are such elements), and put it into
- * a vtkVolume with a colour and an opacity function. Rays end at opaque geometry that was drawn
- * before.
+ * without being decoded), an unstructured, structured, rectilinear or explicit structured grid
+ * (each cell in three dimensions is drawn as it is), a vtkHyperTreeGrid or a vtkOverlappingAMR
+ * (their visible leaves are trilinear elements), and put it into a vtkVolume with a colour and an
+ * opacity function. Rays end at opaque geometry that was drawn before.
  *
  * With a controller of several ranks, Render() is collective: each rank draws its zone and rank 0
  * receives the finished picture, opaque geometry of all ranks included; the other ranks are left
@@ -169,8 +160,6 @@ public:
    *   samples as far apart as SampleDistanceVoxels says, if it does. No error is estimated.
    * - MaxElementsPerPixel: decided for each tile (banyan::FinestLevelsOfTiles). Without effect on
    *   other data, and with SampleDistanceVoxels.
-   * - MeshSamplingTolerance: see banyan::CubeDeviation. A box of MeshSamplingBoxes takes about 200
-   *   bytes.
    * - TemporalEnhancement: see banyan::TemporalEnhancement. Its scale is the largest magnitude that
    *   the opacity function knows. For plain data the steps around must be there as point arrays
    *   (banyan::MotionEnhancement); the representation sees to that.

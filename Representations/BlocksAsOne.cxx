@@ -60,7 +60,10 @@ vtkSmartPointer<vtkDataObject> BlocksAsOne(vtkDataObject* data, MergedBlocks& me
       sets.push_back(block);
     }
   }
-  return sets.empty() ? nullptr : merged.Of(sets);
+  const bool image = sets.size() == 1 && vtkImageData::SafeDownCast(sets.front());
+  return sets.empty() ? nullptr
+         : image      ? vtkSmartPointer<vtkDataObject>(merged.Of(sets))
+                      : vtkSmartPointer<vtkDataObject>(merged.AsOne(sets));
 }
 
 void BoundsOf(vtkDataObject* data, double bounds[6])

@@ -29,7 +29,7 @@ class StepWindow;
 /**
  * @class vtkBanyanVolumeRepresentation
  * @brief ParaView's representation "Banyan Volume" of image data, encoded or plain, and of
- * hexahedral octree meshes
+ * meshes of any cells
  *
  * Draws in parallel with its own compositing; data is never redistributed. Colour map, opacity
  * function and opacity unit distance are those of ParaView's own "Volume". With no array selected

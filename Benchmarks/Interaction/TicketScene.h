@@ -40,7 +40,8 @@ public:
   TemporalEnhancement Enhancement() const override { return { 0.0, 1.0, 0.0 }; }
   SampleArray Samples(const glm::ivec3& first) const override;
   void HideCells(const glm::ivec3&, HiddenCells&) const override {}
-  MeshOptions Meshing() const override { return {}; }
+  double MeshTolerance() const override { return 0.0; }
+  CellsField::Piece Cells() override { return {}; }
   MeshField::Piece Mesh(Communicator&, bool) override { return {}; }
 
 private:

@@ -25,9 +25,8 @@ void Note(CellFacts::Some& some, std::int64_t cell)
 /// @return whether the first of all is one of these
 bool Add(CellFacts::Some& to, const CellFacts::Some& from)
 {
-  const bool first =
-    from.Count > 0 &&
-    (to.Count == 0 || std::tie(from.Rank, from.First) < std::tie(to.Rank, to.First));
+  const bool first = from.Count > 0 && (to.Count == 0 || std::tie(from.Rank, from.First) <
+                                                           std::tie(to.Rank, to.First));
   to.First = first ? from.First : to.First;
   to.Rank = first ? from.Rank : to.Rank;
   to.Count += from.Count;
@@ -184,8 +183,8 @@ void CheckSize(const CellMesh& mesh)
 
 std::string Sentence(const CellFacts::Some& some, const std::string& have)
 {
-  const std::string cell = std::to_string(some.First) +
-                           (some.Rank < 0 ? "" : " of rank " + std::to_string(some.Rank));
+  const std::string cell =
+    std::to_string(some.First) + (some.Rank < 0 ? "" : " of rank " + std::to_string(some.Rank));
   return some.Count == 1
            ? "Cell " + cell + ' ' + have
            : std::to_string(some.Count) + " cells, the first of which is " + cell + ", " + have;

@@ -5,10 +5,13 @@
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkExplicitStructuredGrid.h"
 #include "vtkHyperTreeGrid.h"
 #include "vtkImageData.h"
 #include "vtkMath.h"
 #include "vtkOverlappingAMR.h"
+#include "vtkRectilinearGrid.h"
+#include "vtkStructuredGrid.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <cstring>
@@ -23,17 +26,26 @@ bool HasCells(vtkDataObject* data)
   if (vtkDataSet* const set = vtkDataSet::SafeDownCast(data))
   {
     // Points alone are nothing that a ray meets.
-    return vtkUnstructuredGrid::SafeDownCast(set) ? set->GetNumberOfCells() > 0
-                                                  : set->GetNumberOfPoints() > 0;
+    return vtkImageData::SafeDownCast(set) ? set->GetNumberOfPoints() > 0
+                                           : set->GetNumberOfCells() > 0;
   }
   return data && data->GetNumberOfElements(vtkDataObject::CELL) > 0;
+}
+
+/// Grids of cells in three dimensions that are neither images nor lists of cells.
+vtkDataSet* CurvedGrid(vtkDataObject* data)
+{
+  const bool is = vtkStructuredGrid::SafeDownCast(data) || vtkRectilinearGrid::SafeDownCast(data) ||
+                  vtkExplicitStructuredGrid::SafeDownCast(data);
+  return is ? vtkDataSet::SafeDownCast(data) : nullptr;
 }
 
 /// What is no error of VTK's own, such as blocks that come from an object instead of a filter.
 std::string WrongType(vtkDataObject* data)
 {
   if (vtkImageData::SafeDownCast(data) || vtkUnstructuredGrid::SafeDownCast(data) ||
-      vtkHyperTreeGrid::SafeDownCast(data) || vtkOverlappingAMR::SafeDownCast(data))
+      CurvedGrid(data) || vtkHyperTreeGrid::SafeDownCast(data) ||
+      vtkOverlappingAMR::SafeDownCast(data))
   {
     return {};
   }
@@ -52,7 +64,7 @@ std::string WrongPlace(const FieldPiece& piece)
                    "Point Data'.";
   }
   const vtkIdType values = piece.Array->GetNumberOfTuples();
-  vtkDataSet* const set = piece.Image ? static_cast<vtkDataSet*>(piece.Image) : piece.Grid;
+  vtkDataSet* const set = piece.Image ? static_cast<vtkDataSet*>(piece.Image) : piece.Cells();
   const vtkIdType expected = !set                              ? values
                              : piece.Where == ValuesOn::Points ? set->GetNumberOfPoints()
                                                                : set->GetNumberOfCells();
@@ -62,6 +74,11 @@ std::string WrongPlace(const FieldPiece& piece)
 }
 
 } // namespace
+
+vtkDataSet* FieldPiece::Cells() const
+{
+  return this->Grid ? this->Grid : this->Curved;
+}
 
 vtkDataArray* FirstDrawable(vtkDataSetAttributes* attributes)
 {
@@ -91,7 +108,9 @@ FieldPiece PieceOfData(vtkDataObject* data)
   piece.Problem = WrongType(data);
   piece.Image = vtkImageData::SafeDownCast(data);
   piece.Grid = vtkUnstructuredGrid::SafeDownCast(data);
-  piece.Leaves = piece.Image || piece.Grid || !piece.Problem.empty() ? nullptr : data;
+  piece.Curved = CurvedGrid(data);
+  piece.Leaves =
+    piece.Image || piece.Grid || piece.Curved || !piece.Problem.empty() ? nullptr : data;
   return piece;
 }
 

@@ -4,13 +4,13 @@
 
 #include "BanyanInputsModule.h" // for export macro
 #include "Mesh/Octree/CellNodes.h"
-#include "Mesh/Sampling/MeshOptions.h"
 #include "Render/Steps/TemporalEnhancement.h"
 
 #include <string>
 
 class vtkDataArray;
 class vtkDataObject;
+class vtkDataSet;
 class vtkDataSetAttributes;
 class vtkImageData;
 class vtkUnstructuredGrid;
@@ -29,19 +29,22 @@ struct DrawnArray
 struct FieldPiece
 {
   vtkImageData* Image = nullptr;       ///< null on ranks without data
-  vtkUnstructuredGrid* Grid = nullptr; ///< in place of Image: hexahedra
+  vtkUnstructuredGrid* Grid = nullptr; ///< in place of Image: cells of any shapes
+  vtkDataSet* Curved = nullptr;        ///< in place of both: any other grid of cells
   vtkDataObject* Leaves = nullptr;     ///< in place of both: vtkHyperTreeGrid or vtkOverlappingAMR
   vtkDataArray* Array = nullptr;       ///< of Image or Grid
   std::string ArrayName;               ///< of Leaves
   ValuesOn Where = ValuesOn::Points;   ///< points of Image; points or cells of Grid or Leaves
-  int Component = 0; ///< or SampleArray::Magnitude; of an image also SampleArray::Colours
-  MeshOptions Mesh;  ///< of Grid and Leaves; the same on all ranks
+  int Component = 0;          ///< or SampleArray::Magnitude; of an image also SampleArray::Colours
+  double MeshTolerance = 0.0; ///< of Grid and Leaves: FieldInput::MeshTolerance
   /// Of pieces of an encoded series, as they are drawn; plain ones have it already. The same on all
   /// ranks. Off where Strength is 0.
   TemporalEnhancement Enhancement{ 0.0, 1.0, 0.0 };
   std::string Problem; ///< why this rank's data cannot be drawn; empty if it can
 
-  bool HasData() const { return this->Image || this->Grid || this->Leaves; }
+  bool HasData() const { return this->Image || this->Grid || this->Curved || this->Leaves; }
+  /// Cells as they are; null for images and leaves.
+  vtkDataSet* Cells() const;
 };
 
 /// Returns the first array that something may be drawn of: the active scalars, or the first array

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Fields/InputOfPiece.h"
 
+#include "AnyMesh/CellMeshOfData.h"
 #include "Fields/GridOfLeaves.h"
 #include "Fields/HiddenInImage.h"
 #include "Fields/PieceOfMesh.h"
 #include "Fields/PlainSamples.h"
+#include "HexMeshOfGrid.h"
 
 #include "Base/Error.h"
 #include "Series/Decode/SeriesFile.h"
@@ -77,8 +79,9 @@ PieceFacts FactsOfImage(vtkImageData* image, vtkDataArray* array, int component)
 
 } // namespace
 
-InputOfPiece::InputOfPiece(FieldPiece piece)
+InputOfPiece::InputOfPiece(FieldPiece piece, std::shared_ptr<const LinearParts>* parts)
   : Piece(std::move(piece))
+  , Parts(parts)
 {
 }
 
@@ -90,13 +93,12 @@ InputStamp InputOfPiece::Stamp() const
   InputStamp stamp;
   stamp.AddObject(piece.Image);
   stamp.AddObject(piece.Grid);
+  stamp.AddObject(piece.Curved);
   stamp.AddObject(piece.Leaves);
   stamp.AddObject(piece.Array);
   stamp.Add(piece.Where);
   stamp.Add(piece.Component);
-  stamp.Add(piece.Mesh.Tolerance);
-  stamp.Add(piece.Mesh.Sampling.Tolerance);
-  stamp.Add(piece.Mesh.Sampling.MostCubes);
+  stamp.Add(piece.MeshTolerance);
   stamp.Add(piece.Enhancement.Strength);
   stamp.Add(piece.Enhancement.Scale);
   stamp.Add(piece.Problem);
@@ -114,9 +116,10 @@ PieceFacts InputOfPiece::Facts() const
   {
     facts.Has = PieceFacts::Kind::Leaves;
   }
-  else if (this->Piece.Grid)
+  else if (this->Piece.Cells())
   {
-    facts.Has = PieceFacts::Kind::Mesh;
+    facts.Has = this->Piece.Grid && HasBoxesAlone(this->Piece.Grid) ? PieceFacts::Kind::Mesh
+                                                                    : PieceFacts::Kind::Cells;
   }
   else if (this->Piece.Image && this->Piece.Array)
   {
@@ -148,6 +151,27 @@ MeshField::Piece InputOfPiece::Mesh(Communicator& communicator, bool leaves)
     TakeLeaves(communicator, this->Piece, this->Voxels);
   }
   return PieceOfMesh(this->Piece, this->Values);
+}
+
+CellsField::Piece InputOfPiece::Cells()
+{
+  CellsField::Piece piece;
+  MeshOfData before;
+  before.Parts = this->Parts ? *this->Parts : nullptr;
+  const MeshOfData mesh = CellMeshOf(this->Piece.Cells(), before);
+  if (this->Parts)
+  {
+    *this->Parts = mesh.Parts;
+  }
+  piece.Mesh = mesh.Mesh;
+  piece.Where = this->Piece.Where;
+  piece.OtherCells = mesh.Others.Count > 0 ? mesh.Others.Text() : std::string();
+  if (piece.Mesh.CellCount > 0)
+  {
+    this->Values = mesh.ValuesOf(this->Piece.Array, piece.Where);
+    piece.Values = NodesOf(this->Values, this->Piece.Component);
+  }
+  return piece;
 }
 
 } // namespace banyan

@@ -9,15 +9,21 @@
 
 #include "vtkSmartPointer.h"
 
+#include <memory>
+
 namespace banyan
 {
+
+struct LinearParts;
 
 /// A piece of VTK's data as the input of a field.
 class BANYANINPUTS_EXPORT InputOfPiece final : public FieldInput
 {
 public:
   /// @param piece its objects must stay as long as the input is used
-  explicit InputOfPiece(FieldPiece piece);
+  /// @param parts of cells that are not linear: those of the step before, and then of this one;
+  /// may be null
+  explicit InputOfPiece(FieldPiece piece, std::shared_ptr<const LinearParts>* parts = nullptr);
   ~InputOfPiece() override;
 
   InputStamp Stamp() const override;
@@ -26,11 +32,13 @@ public:
   TemporalEnhancement Enhancement() const override { return this->Piece.Enhancement; }
   SampleArray Samples(const glm::ivec3& first) const override;
   void HideCells(const glm::ivec3& first, HiddenCells& hidden) const override;
-  MeshOptions Meshing() const override { return this->Piece.Mesh; }
+  double MeshTolerance() const override { return this->Piece.MeshTolerance; }
   MeshField::Piece Mesh(Communicator& communicator, bool leaves) override;
+  CellsField::Piece Cells() override;
 
 private:
   FieldPiece Piece;
+  std::shared_ptr<const LinearParts>* Parts;
   vtkSmartPointer<vtkUnstructuredGrid> Voxels; ///< of leaves
   vtkSmartPointer<vtkDataArray> Values;        ///< of the mesh
 };

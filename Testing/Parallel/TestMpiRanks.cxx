@@ -193,7 +193,7 @@ std::string MeshOfThisMachine(Communicator& communicator)
   array.Values = values.data();
   array.Type = ScalarType::Float64;
   const std::int64_t before = ElementOctree::FoundSoFar();
-  SharedMesh mesh(communicator, piece, ValuesOn::Points, 16, {});
+  SharedMesh mesh(communicator, piece, 16, 0.0);
   const std::int64_t found = ElementOctree::FoundSoFar() - before;
   if (AllSum(communicator, static_cast<double>(found)) != 1.0)
   {

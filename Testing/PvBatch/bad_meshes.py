@@ -52,12 +52,13 @@ for number, (kind, ids) in enumerate(cells):
 """
 GAP = "del cells[17]; del cells[3]"
 TWICE = "cells.append(cells[5])"
+OTHER_TWICE = "cells.append(cells[30])"
 MIXED = "cells[7] = (10, cells[7][1][:4]); cells[9] = (13, cells[9][1][:6]); cells.append((1, [0]))"
 NO_VALUES = "values = [float('nan')] * len(values)"
 HOLE = "values[26] = float('nan')"
 
-# What is broken, whether cells are bent, and what must be said: None where nothing is, and a picture is drawn. A sentence
-# in brackets is said beside a picture.
+# What is broken, whether cells are bent, and what the filter that samples boxes must say: None where nothing is. A
+# sentence in brackets is said beside a result.
 CASES = {
     "good": ("", 0, None),
     "good_bent": ("", 1, None),
@@ -79,9 +80,10 @@ CASES = {
     "gap": (GAP, 0, None),
     "gap_bent": (GAP, 1, None),
     "twice": (TWICE, 0, None),
+    "other_twice": (OTHER_TWICE, 0, None),
     "twice_bent": (TWICE, 1, None),
-    "mixed": (MIXED, 0, ["hexahedra and voxels are drawn, without"]),
-    "mixed_bent": (MIXED, 1, ["hexahedra and voxels are drawn, without"]),
+    "mixed": (MIXED, 0, ["hexahedra and voxels are sampled, without"]),
+    "mixed_bent": (MIXED, 1, ["hexahedra and voxels are sampled, without"]),
     "hole": (HOLE, 1, None),
     "no_values": (NO_VALUES, 1, None),
 }

@@ -179,7 +179,7 @@ def flips_of_pictures(path, count):
 
 
 DISPLAY = ("ImageErrorTolerance", "InteractiveImageErrorTolerance", "InteractiveFrameSeconds",
-           "SampleDistanceVoxels", "ScreenErrorPixels", "MeshTolerance", "MeshSamplingTolerance",
+           "SampleDistanceVoxels", "ScreenErrorPixels", "MeshTolerance",
            "MaxElementsPerPixel", "TemporalEnhancement", "Ambient", "Diffuse", "Specular",
            "SpecularPower")
 BAD = (math.nan, math.inf, -math.inf, -0.5)

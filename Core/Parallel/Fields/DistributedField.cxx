@@ -162,17 +162,66 @@ void DistributedField::Take(Communicator& communicator, FieldInput& input)
 void DistributedField::TakeMesh(
   Communicator& communicator, FieldInput& input, const std::vector<PieceFacts>& all)
 {
+  ThrowTogether(communicator, FactsHere(all, communicator).IsImage()
+                                ? "One rank has image data and another one a mesh of cells."
+                                : "");
+  const auto some = [&](PieceFacts::Kind kind)
+  {
+    return std::any_of(
+      all.begin(), all.end(), [&](const PieceFacts& facts) { return facts.Has == kind; });
+  };
+  const bool leaves = some(PieceFacts::Kind::Leaves);
+  if (leaves || (!some(PieceFacts::Kind::Cells) && !this->HasBeenCells(communicator, input)))
+  {
+    if (this->TakeOctree(communicator, input, leaves))
+    {
+      return;
+    }
+  }
+  auto& field = this->Become<CellsField>();
+  field.Clear();
+  CellsField::Piece cells;
+  Collective(communicator, [&] { cells = input.Cells(); });
+  const bool has = field.Has(communicator, cells.Mesh);
+  field.Take(communicator, std::move(cells), has, this->Balancing);
+  this->NoOctreeAt = input.MeshTolerance();
+  this->Where = field.Place();
+}
+
+/// Collective: whether the mesh was taken before, and was no octree.
+bool DistributedField::HasBeenCells(Communicator& communicator, FieldInput& input)
+{
+  auto* const field = dynamic_cast<CellsField*>(this->Field.get());
+  if (!field || input.MeshTolerance() != this->NoOctreeAt)
+  {
+    return false;
+  }
+  CellMesh mesh;
+  Collective(communicator, [&] { mesh = input.Cells().Mesh; });
+  return field->Has(communicator, mesh);
+}
+
+/// Collective. @return false when the mesh is no octree
+bool DistributedField::TakeOctree(Communicator& communicator, FieldInput& input, bool leaves)
+{
   auto& field = this->Become<MeshField>();
   field.Clear();
-  ThrowTogether(communicator, FactsHere(all, communicator).IsImage()
-                                ? "One rank has image data and another one hexahedra."
-                                : "");
-  const bool leaves = std::any_of(all.begin(), all.end(),
-    [](const PieceFacts& facts) { return facts.Has == PieceFacts::Kind::Leaves; });
-  MeshField::Piece cells;
-  Collective(communicator, [&] { cells = input.Mesh(communicator, leaves); });
-  field.Take(communicator, std::move(cells), input.Meshing(), this->Balancing, {});
+  try
+  {
+    MeshField::Piece cells;
+    Collective(communicator, [&] { cells = input.Mesh(communicator, leaves); });
+    field.Take(communicator, std::move(cells), input.MeshTolerance(), this->Balancing);
+  }
+  catch (const CollectiveError&)
+  {
+    if (leaves)
+    {
+      throw;
+    }
+    return false; // whatever is wrong with it, cells say so
+  }
   this->Where = field.Place();
+  return true;
 }
 
 /// Collective, where some rank has an image, and none a mesh.
@@ -227,6 +276,7 @@ bool DistributedField::TakeSeries(Communicator& communicator, const FieldInput& 
   const std::vector<PieceFacts>& all, const Box& samples)
 {
   std::vector<SeriesField::Piece> pieces;
+  pieces.reserve(all.size());
   for (const PieceFacts& facts : all)
   {
     pieces.push_back(

@@ -76,6 +76,8 @@ private:
 
   void Take(Communicator& communicator, FieldInput& input);
   void TakeMesh(Communicator& communicator, FieldInput& input, const std::vector<PieceFacts>& all);
+  bool HasBeenCells(Communicator& communicator, FieldInput& input);
+  bool TakeOctree(Communicator& communicator, FieldInput& input, bool leaves);
   void TakeImages(
     Communicator& communicator, FieldInput& input, const std::vector<PieceFacts>& all);
   bool TakeSeries(Communicator& communicator, const FieldInput& input,
@@ -94,6 +96,7 @@ private:
   ValueRange ValuesRange;
   bool Colours = false;
   double LargestEncodingError = 0.0;
+  double NoOctreeAt = 0.0; ///< the tolerance that a CellsField's mesh was tried with
 
   struct KnownContent
   {

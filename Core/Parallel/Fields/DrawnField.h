@@ -123,8 +123,6 @@ public:
   virtual std::uint64_t BytesRead() const { return 0; }
   /// What a user should know of a mesh; empty if nothing. The same on all ranks.
   virtual std::string Note() const { return {}; }
-  /// How far the drawn field may be from that of a mesh: see CubeDeviation. 0 where it is exact.
-  virtual double Deviation() const { return 0.0; }
   /// What this rank holds of a mesh: its octree, the cells that were gathered for it, and values.
   virtual MeshBytes Bytes() const { return {}; }
 };

@@ -2,7 +2,7 @@
 #ifndef banyan_Parallel_Fields_FieldInput_h
 #define banyan_Parallel_Fields_FieldInput_h
 
-#include "Mesh/Sampling/MeshOptions.h"
+#include "Parallel/Fields/CellsField.h"
 #include "Parallel/Fields/InputStamp.h"
 #include "Parallel/Fields/MeshField.h"
 #include "Parallel/Fields/PieceFacts.h"
@@ -45,13 +45,17 @@ public:
   /// @param first see Samples
   virtual void HideCells(const glm::ivec3& first, HiddenCells& hidden) const = 0;
 
-  /// How hexahedra become an octree; the same on all ranks.
-  virtual MeshOptions Meshing() const = 0;
+  /// How far points of an octree may be from its lattice, in edges of the smallest cell: see
+  /// ElementOctree::Find. The same on all ranks.
+  virtual double MeshTolerance() const = 0;
   /// Collective: the hexahedra of this rank and their values, which stay until the next call.
   /// @param leaves whether some rank has leaves of trees or AMR
   /// Throws Error, possibly on one rank alone, when they cannot be drawn. Messages are complete
   /// then.
   virtual MeshField::Piece Mesh(Communicator& communicator, bool leaves) = 0;
+  /// The cells of this rank, of any shapes, and their values, which stay until the next call.
+  /// Throws Error when they cannot be drawn.
+  virtual CellsField::Piece Cells() = 0;
 };
 
 } // namespace banyan

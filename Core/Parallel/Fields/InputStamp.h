@@ -2,6 +2,7 @@
 #ifndef banyan_Parallel_Fields_InputStamp_h
 #define banyan_Parallel_Fields_InputStamp_h
 
+#include <cstdint>
 #include <string>
 #include <type_traits>
 
@@ -19,8 +20,15 @@ public:
   template <class T>
   void Add(const T& value)
   {
-    static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T> || std::is_pointer_v<T>);
-    this->Bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+    if constexpr (std::is_pointer_v<T>)
+    {
+      this->Add(reinterpret_cast<std::uintptr_t>(value));
+    }
+    else
+    {
+      static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
+      this->Bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+    }
   }
   void Add(const std::string& text)
   {

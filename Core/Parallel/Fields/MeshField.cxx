@@ -3,6 +3,7 @@
 
 #include "Base/Digest.h"
 #include "Parallel/Communicate/Collective.h"
+#include "Parallel/Fields/MeshGathering.h"
 #include "Parallel/Fields/MeshZones.h"
 
 #include <algorithm>
@@ -24,47 +25,23 @@ Hash128 HashOfMesh(const HexMesh& mesh)
   return HashOf(mesh.Connectivity, ids, first.Low ^ first.High);
 }
 
-/// Collective: what the ranks that have cells say values belong to.
-ValuesOn Agreed(Communicator& communicator, ValuesOn where, bool cells)
-{
-  const double mine = static_cast<double>(where);
-  const double high = AllMax(communicator, cells ? mine : -1.0);
-  const double low = -AllMax(communicator, cells ? -mine : -3.0);
-  if (low < high)
-  {
-    throw CollectiveError(
-      "The array to draw is a point array on one rank and a cell array on another: rename one "
-      "of them.");
-  }
-  return static_cast<ValuesOn>(static_cast<int>(std::max(high, 0.0)));
-}
-
 } // namespace
 
-void MeshField::Take(Communicator& communicator, Piece piece, const MeshOptions& options,
-  LoadBalancing balancing, std::string failure)
+void MeshField::Take(
+  Communicator& communicator, Piece piece, double tolerance, LoadBalancing balancing)
 {
   this->Bricks.reset();
-  ThrowTogether(communicator, failure);
-  if (AllMax(communicator, static_cast<double>(piece.Mesh.CellCount)) == 0.0)
-  {
-    ThrowTogether(
-      communicator, piece.OtherCells.empty()
-                      ? failure
-                      : "The mesh has no hexahedra or voxels, but " + piece.OtherCells + ".");
-  }
   if (piece.Mesh.CellCount == 0)
   {
     piece.Mesh.PointCount = 0;
   }
-  const ValuesOn where = Agreed(communicator, piece.Where, piece.Mesh.CellCount > 0);
+  const ValuesOn where = AgreedPlace(communicator, piece.Where, piece.Mesh.CellCount > 0);
   const bool sameMesh = this->SameMesh(communicator, piece.Mesh);
-  if (!sameMesh || !(options == this->Options))
+  if (!sameMesh || tolerance != this->Tolerance)
   {
     this->Mesh.reset();
-    this->Options = options;
-    this->Mesh =
-      std::make_unique<SharedMesh>(communicator, piece.Mesh, where, MeshBrickCells, options);
+    this->Tolerance = tolerance;
+    this->Mesh = std::make_unique<SharedMesh>(communicator, piece.Mesh, MeshBrickCells, tolerance);
     this->Describe(communicator, piece.OtherCells);
   }
   this->Bricks = this->Mesh->Field(communicator, piece.Values,
@@ -130,24 +107,10 @@ MeshBytes MeshField::Bytes() const
 
 void MeshField::Describe(Communicator& communicator, const std::string& otherCells)
 {
-  const SharedMesh::Facts& facts = this->Mesh->About();
   std::string note;
   if (!otherCells.empty())
   {
-    note = "Only hexahedra and voxels are drawn, without " + otherCells + ". ";
-  }
-  if (facts.TangledCells > 0)
-  {
-    note += std::to_string(facts.TangledCells) +
-            " hexahedra are turned inside out at a corner, cell " +
-            std::to_string(facts.FirstTangledCell) + " first: what is drawn in them means little. ";
-  }
-  if (facts.KeptCoarse > 0)
-  {
-    note += "The mesh is no octree and is drawn from " + std::to_string(facts.Boxes) + " boxes; " +
-            std::to_string(facts.KeptCoarse) +
-            " places are coarser than they should be: allow more boxes, 'Mesh Sampling Boxes' "
-            "(MeshSamplingBoxes). ";
+    note = "Not drawn: " + otherCells + ". ";
   }
   if (!this->Mesh->WhyNotShared().empty())
   {

@@ -30,11 +30,9 @@ public:
   };
 
   /// Collective: takes the pieces of all ranks.
-  /// @param options the same on all ranks, as is the balancing
-  /// @param failure why this rank has no piece to give; empty if it has
-  /// Throws CollectiveError when one rank cannot draw or read the mesh.
-  void Take(Communicator& communicator, Piece piece, const MeshOptions& options,
-    LoadBalancing balancing, std::string failure);
+  /// @param tolerance see ElementOctree::Find; the same on all ranks, as is the balancing
+  /// Throws CollectiveError when the mesh is no octree, or one rank cannot read it.
+  void Take(Communicator& communicator, Piece piece, double tolerance, LoadBalancing balancing);
 
   /// Of the last Take.
   FieldPlace Place() const;
@@ -52,7 +50,6 @@ public:
   bool IsOnEachRank() const override { return true; }
   /// Cells that were left out, say.
   std::string Note() const override { return this->NoteText; }
-  double Deviation() const override { return this->Mesh ? this->Mesh->About().Deviation : 0.0; }
   MeshBytes Bytes() const override;
 
 private:
@@ -61,8 +58,8 @@ private:
 
   std::unique_ptr<SharedMesh> Mesh; ///< null when the last one cannot be drawn
   std::string NoteText;
-  Hash128 PieceHash;   ///< of this rank's points and cells
-  MeshOptions Options; ///< that the octree was found with
+  Hash128 PieceHash;      ///< of this rank's points and cells
+  double Tolerance = 0.0; ///< that the octree was found with
   std::unique_ptr<HexBrickSource> Bricks;
   FrameBalancer Balancer;
   std::vector<Box> ZoneCells;

@@ -4,6 +4,7 @@
 #include "Mesh/Octree/TakenComponent.h"
 #include "Parallel/Communicate/Collective.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -68,7 +69,7 @@ Gathered GatherArray(
   {
     begins[rank + 1] = begins[rank] + sizes[rank];
   }
-  const Gathered all{ machines.Allocate(communicator, begins.back()), begins.back() };
+  Gathered all{ machines.Allocate(communicator, begins.back()), begins.back() };
   char* const memory = all.Memory.get();
   fill(reinterpret_cast<T*>(memory + begins[static_cast<std::size_t>(communicator.Rank())]));
   if (machines.Shares())
@@ -187,6 +188,20 @@ HexMesh GatherMesh(Communicator& communicator, NodeCommunicator& machines, const
   mesh.PointType = wide ? ScalarType::Float64 : ScalarType::Float32;
   mesh.IdType = longIds ? ScalarType::Int64 : ScalarType::Int32;
   return mesh;
+}
+
+ValuesOn AgreedPlace(Communicator& communicator, ValuesOn where, bool cells)
+{
+  const double mine = static_cast<double>(where);
+  const double high = AllMax(communicator, cells ? mine : -1.0);
+  const double low = -AllMax(communicator, cells ? -mine : -3.0);
+  if (low < high)
+  {
+    throw CollectiveError(
+      "The array to draw is a point array on one rank and a cell array on another: rename one "
+      "of them.");
+  }
+  return static_cast<ValuesOn>(static_cast<int>(std::max(high, 0.0)));
 }
 
 GatheredValues GatherNodes(Communicator& communicator, NodeCommunicator& machines,

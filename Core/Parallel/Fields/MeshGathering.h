@@ -2,6 +2,7 @@
 #ifndef banyan_Parallel_Fields_MeshGathering_h
 #define banyan_Parallel_Fields_MeshGathering_h
 
+#include "Mesh/Octree/CellNodes.h"
 #include "Mesh/Octree/HexMesh.h"
 #include "Mesh/Octree/NodalField.h"
 #include "Parallel/Communicate/Communicator.h"
@@ -24,6 +25,11 @@ namespace banyan
 /// Throws CollectiveError when a cell of a piece refers to a point that the piece has not, and
 /// when there is not enough memory.
 HexMesh GatherMesh(Communicator& communicator, NodeCommunicator& machines, const HexMesh& piece);
+
+/// Collective: what the ranks that have cells say values belong to.
+/// @param cells whether this rank has some
+/// Throws CollectiveError when they do not say the same.
+ValuesOn AgreedPlace(Communicator& communicator, ValuesOn where, bool cells);
 
 /// Values at the points or cells of a gathered mesh, one component of them, for every rank;
 /// those of a machine have them together, if they can.

@@ -17,7 +17,8 @@ struct PieceFacts
   {
     Nothing,
     Image, ///< samples on a grid; all numbers below are those of images
-    Mesh,  ///< hexahedra
+    Mesh,  ///< axis-aligned boxes, which may be the leaves of an octree
+    Cells, ///< of any shapes
     Leaves ///< of trees or AMR, which become hexahedra
   };
 
@@ -39,7 +40,7 @@ struct PieceFacts
   std::int32_t Level = 0;
 
   bool IsImage() const { return this->Has == Kind::Image; }
-  bool IsMesh() const { return this->Has == Kind::Mesh || this->Has == Kind::Leaves; }
+  bool IsMesh() const { return this->Has != Kind::Nothing && this->Has != Kind::Image; }
 
   Box Samples() const
   {

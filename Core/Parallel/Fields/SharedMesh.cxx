@@ -4,14 +4,11 @@
 #include "Base/ProcessCores.h"
 #include "Base/ThreadPool.h"
 #include "Mesh/Octree/OctreeBytes.h"
-#include "Mesh/Sampling/CellMeans.h"
-#include "Mesh/Sampling/OneNumberPerPlace.h"
 #include "Parallel/Communicate/Collective.h"
 
 #include <algorithm>
 #include <cstring>
 #include <optional>
-#include <type_traits>
 #include <vector>
 
 namespace banyan
@@ -22,14 +19,6 @@ namespace
 void Add(std::size_t bytes, bool together, MeshBytes& sum)
 {
   (together ? sum.Together : sum.Own) += bytes;
-}
-
-SharedMesh::Facts FirstFacts(Communicator& communicator, const SharedMesh::Facts& mine)
-{
-  static_assert(std::is_trivially_copyable_v<SharedMesh::Facts>);
-  std::vector<SharedMesh::Facts> all(static_cast<std::size_t>(communicator.Size()));
-  communicator.AllGather(&mine, sizeof(mine), all.data());
-  return all.front(); // the first rank always leads
 }
 
 /// Collective: a field that leaders have, for all ranks.
@@ -61,31 +50,27 @@ HexBrickSummary GiveSummary(Communicator& communicator, NodeCommunicator& machin
 
 } // namespace
 
-SharedMesh::SharedMesh(Communicator& communicator, const HexMesh& piece, ValuesOn where,
-  int brickCells, const MeshOptions& options, const std::string& machine)
+SharedMesh::SharedMesh(Communicator& communicator, const HexMesh& piece, int brickCells,
+  double tolerance, const std::string& machine)
   : Machines(communicator, machine)
 {
   HexMesh mesh = GatherMesh(communicator, this->Machines, piece);
   const bool together = this->Machines.RanksHere() > 1;
   std::shared_ptr<const ElementOctree> tree;
-  OnLeaders(communicator, this->Machines, [&] { tree = this->Find(mesh, where, options); });
-  this->Known = FirstFacts(communicator, this->Known);
-  const bool sampled = this->Known.IsSampled != 0;
+  OnLeaders(communicator, this->Machines,
+    [&] { tree = ElementOctree::Find(mesh, this->Threads(this->Machines), tolerance); });
   if (mesh.PointOwner)
   {
     mesh.Points = nullptr;
     mesh.PointOwner.reset();
   }
-  const bool renumbered = this->Sampled && this->Mesh.Connectivity != mesh.Connectivity;
   // A mesh that one process draws alone belongs to the pipeline.
-  Add(
-    communicator.Size() > 1 && !renumbered ? mesh.ConnectivityBytes() : 0, together, this->OfMesh);
-  Add(renumbered ? this->Mesh.ConnectivityBytes() : 0, false, this->OfMesh);
+  Add(communicator.Size() > 1 ? mesh.ConnectivityBytes() : 0, together, this->OfMesh);
   if (this->Machines.Shares())
   {
     NodeCommunicator machines = this->Machines;
     std::optional<OctreeBytes> packed;
-    OnLeaders(communicator, machines, [&] { packed.emplace(tree, sampled); });
+    OnLeaders(communicator, machines, [&] { packed.emplace(tree, false); });
     const MachineBytes bytes = NodeBroadcast(
       communicator, machines, packed ? packed->Count() : 0, [&](char* to) { packed->WriteTo(to); });
     Collective(communicator, [&] { tree = OctreeBytes::Read(mesh, bytes.Memory); });
@@ -94,48 +79,11 @@ SharedMesh::SharedMesh(Communicator& communicator, const HexMesh& piece, ValuesO
   else
   {
     Add(tree->Bytes(), false, this->OfMesh);
-    Add(sampled ? tree->Mesh().ConnectivityBytes() : 0, false, this->OfMesh);
-  }
-  if (this->Sampled)
-  {
-    Add(this->Sampled->Bytes(), false, this->OfMesh);
   }
   Collective(communicator, [&] { this->Cut = std::make_shared<HexBricks>(tree, brickCells); });
 }
 
 SharedMesh::~SharedMesh() = default;
-
-/// The octree that the mesh is, or that it is sampled as.
-std::shared_ptr<const ElementOctree> SharedMesh::Find(
-  const HexMesh& mesh, ValuesOn where, const MeshOptions& options)
-{
-  ThreadPool& pool = this->Threads(this->Machines);
-  try
-  {
-    return ElementOctree::Find(mesh, pool, options.Tolerance);
-  }
-  catch (const Error&)
-  {
-    if (options.Sampling.Tolerance <= 0.0 || where == ValuesOn::CellCorners)
-    {
-      throw;
-    }
-  }
-  this->Mesh = OneNumberPerPlace(mesh, pool);
-  this->Sampled = SampledMesh::Of(this->Mesh, options.Sampling, pool);
-  this->Mesh.Points = nullptr;
-  this->Mesh.PointOwner.reset();
-  const std::shared_ptr<const ElementOctree> tree =
-    ElementOctree::Find(this->Sampled->Boxes(), pool);
-  this->Known.IsSampled = 1;
-  this->Known.Deviation = this->Sampled->Deviation();
-  this->Known.Boxes = this->Sampled->Boxes().CellCount;
-  this->Known.KeptCoarse = this->Sampled->KeptCoarse();
-  this->Known.TangledCells = this->Sampled->TangledCells();
-  this->Known.FirstTangledCell = this->Sampled->FirstTangledCell();
-  this->Sampled->DropBoxes();
-  return tree;
-}
 
 /// Returns the threads of all ranks of the machine: the others wait.
 ThreadPool& SharedMesh::Threads(const NodeCommunicator& machines)
@@ -156,14 +104,6 @@ ThreadPool& SharedMesh::Threads(const NodeCommunicator& machines)
 NodalField SharedMesh::MakeField(const NodeArray& values, ValuesOn where, ThreadPool& pool) const
 {
   const std::shared_ptr<const ElementOctree> tree(this->Cut, &this->Tree());
-  if (this->Sampled)
-  {
-    const std::unique_ptr<CellMeans> means =
-      where == ValuesOn::Cells ? std::make_unique<CellMeans>(this->Mesh, values) : nullptr;
-    const SampledMesh::Values sampled =
-      this->Sampled->Sample(means ? means->Nodes() : values, pool);
-    return NodalField(tree, sampled.Array(), pool);
-  }
   if (where == ValuesOn::Points)
   {
     return NodalField(tree, values, pool);
@@ -179,12 +119,11 @@ std::unique_ptr<HexBrickSource> SharedMesh::Field(
   const std::shared_ptr<const ElementOctree> tree(this->Cut, &this->Tree());
   NodeCommunicator gathering = this->Machines;
   GatheredValues all = GatherNodes(communicator, gathering, piece, count);
-  // Where memory cannot be had together any more, leaders still make what others have no octree,
-  // or no samples, for: they were agreed on with the mesh.
+  // Where memory cannot be had together any more, leaders still make what others have no octree
+  // for: it was agreed on with the mesh.
   NodeCommunicator machines = this->Machines;
   std::optional<NodalField> field;
-  if (where == ValuesOn::Points && this->Known.IsSampled == 0 && all.Memory &&
-      gathering.Shares() == machines.Shares())
+  if (where == ValuesOn::Points && all.Memory && gathering.Shares() == machines.Shares())
   {
     OnLeaders(communicator, machines,
       [&] { NodalField::MakeContinuous(*tree, all.Memory.get(), all.Array.Type); });

@@ -2,8 +2,6 @@
 #ifndef banyan_Testing_Core_Parallel_MeshMadeAlone_h
 #define banyan_Testing_Core_Parallel_MeshMadeAlone_h
 
-#include "Mesh/Sampling/CellMeans.h"
-#include "Mesh/Sampling/OneNumberPerPlace.h"
 #include "Parallel/Fields/SharedMesh.h"
 #include "Parallel/MeshPieces.h"
 
@@ -23,14 +21,6 @@ using namespace banyan;
 using mesh_pieces::Piece;
 
 constexpr int BrickCells = 4;
-
-inline MeshOptions Options()
-{
-  MeshOptions options;
-  options.Tolerance = ElementOctree::DefaultTolerance;
-  options.Sampling.MostCubes = 3000;
-  return options;
-}
 
 inline NodeArray ArrayOf(const Piece& piece, ValuesOn where, int component)
 {
@@ -56,7 +46,6 @@ inline std::int64_t CountOf(const Piece& piece, ValuesOn where)
 /// What a rank makes alone, slowly and step by step, of what was gathered.
 struct Alone
 {
-  std::shared_ptr<const SampledMesh> Sampled;
   std::shared_ptr<const HexBricks> Bricks;
   std::unique_ptr<HexBrickSource> Source;
 
@@ -64,29 +53,11 @@ struct Alone
   {
     ThreadPool pool(1);
     NodeCommunicator machines(communicator, "");
-    HexMesh mesh = GatherMesh(communicator, machines, piece.Mesh.Mesh());
+    const HexMesh mesh = GatherMesh(communicator, machines, piece.Mesh.Mesh());
     const GatheredValues all =
       GatherNodes(communicator, machines, ArrayOf(piece, where, component), CountOf(piece, where));
-    std::shared_ptr<const ElementOctree> tree;
-    try
-    {
-      tree = ElementOctree::Find(mesh, pool);
-    }
-    catch (const Error&)
-    {
-      mesh = OneNumberPerPlace(mesh, pool);
-      this->Sampled = SampledMesh::Of(mesh, Options().Sampling, pool);
-      tree = ElementOctree::Find(this->Sampled->Boxes(), pool);
-    }
+    const std::shared_ptr<const ElementOctree> tree = ElementOctree::Find(mesh, pool);
     this->Bricks = std::make_shared<const HexBricks>(tree, BrickCells);
-    const bool onCells = where == ValuesOn::Cells;
-    if (this->Sampled)
-    {
-      const auto means = onCells ? std::make_unique<CellMeans>(mesh, all.Array) : nullptr;
-      const auto sampled = this->Sampled->Sample(means ? means->Nodes() : all.Array, pool);
-      this->Source = std::make_unique<HexBrickSource>(this->Bricks, sampled.Array(), pool);
-      return;
-    }
     const auto made = where == ValuesOn::Points
                         ? nullptr
                         : std::make_unique<CellNodes>(*tree, all.Array, where, pool);

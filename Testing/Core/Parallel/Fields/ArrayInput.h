@@ -25,7 +25,9 @@ struct Input final : FieldInput
   std::string Problem;
   std::string Unreadable; ///< fails when values are asked for
   SampleArray Values;     ///< positions begin at 0
-  MeshField::Piece Cells;
+  MeshField::Piece Boxes;
+  CellsField::Piece AnyCells;
+  int Tried = 0; ///< how often an octree was looked for
   TemporalEnhancement Motion{ 0.0, 1.0, 0.0 };
   Box Hidden;
 
@@ -74,8 +76,13 @@ struct Input final : FieldInput
     const std::vector<std::uint8_t> flags(static_cast<std::size_t>(this->Hidden.Count()), 1);
     hidden.Hide({ this->Hidden.Lo - first, this->Hidden.Hi - first }, flags.data(), 1);
   }
-  MeshOptions Meshing() const override { return made_alone::Options(); }
-  MeshField::Piece Mesh(Communicator&, bool) override { return this->Cells; }
+  double MeshTolerance() const override { return ElementOctree::DefaultTolerance; }
+  MeshField::Piece Mesh(Communicator&, bool) override
+  {
+    ++this->Tried;
+    return this->Boxes;
+  }
+  CellsField::Piece Cells() override { return this->AnyCells; }
 };
 
 /// A grid that is dealt to ranks, as an image on each.

@@ -57,7 +57,8 @@ public:
   TemporalEnhancement Enhancement() const override { return this->Motion; }
   SampleArray Samples(const glm::ivec3&) const override { throw Error("It is a series."); }
   void HideCells(const glm::ivec3&, HiddenCells&) const override {}
-  MeshOptions Meshing() const override { return {}; }
+  double MeshTolerance() const override { return 0.0; }
+  CellsField::Piece Cells() override { return {}; }
   MeshField::Piece Mesh(Communicator&, bool) override { return {}; }
 
 private:

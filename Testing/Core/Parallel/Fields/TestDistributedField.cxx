@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which kind of field ranks draw, from what each of them has, and what all of them hear when one
 // cannot.
+#include "Mesh/Sampling/WarpedMeshes.h"
 #include "Parallel/Fields/ArrayInput.h"
 #include "Parallel/Fields/DistributedField.h"
 #include "Parallel/Fields/PiecesField.h"
 #include "Parallel/Fields/WholeField.h"
+#include "Render/Cells/CellSource.h"
 
 #include <gtest/gtest.h>
 
@@ -99,7 +101,7 @@ TEST(DistributedField, AllRanksHearWhatOneCannot)
   ExpectProblem(
     "Rank 1: The pieces of the data do not belong to one grid: the number of components",
     [](Input& input, int rank) { input.Piece.Components = rank == 0 ? 3 : 1; });
-  ExpectProblem("Rank 0: One rank has image data and another one hexahedra.",
+  ExpectProblem("Rank 0: One rank has image data and another one a mesh of cells.",
     [](Input& input, int rank)
     { input.Piece.Has = rank == 1 ? PieceFacts::Kind::Mesh : input.Piece.Has; });
 }
@@ -136,8 +138,8 @@ TEST(DistributedField, HexahedraOfAllRanksAreAMesh)
       const mesh_pieces::Piece piece = mesh_pieces::PieceOf(whole, communicator);
       Input input;
       input.Piece.Has = PieceFacts::Kind::Mesh;
-      input.Cells.Mesh = piece.Mesh.Mesh();
-      input.Cells.Values = made_alone::ArrayOf(piece, ValuesOn::Points, 1);
+      input.Boxes.Mesh = piece.Mesh.Mesh();
+      input.Boxes.Values = made_alone::ArrayOf(piece, ValuesOn::Points, 1);
       DistributedField field;
       field.Update(communicator, input);
       EXPECT_EQ(field.Problem(), "");
@@ -149,6 +151,45 @@ TEST(DistributedField, HexahedraOfAllRanksAreAMesh)
       field.Update(communicator, data.In);
       EXPECT_FALSE(field.Drawn().IsMesh());
       EXPECT_EQ(field.Place().Cells.Hi, GridSamples - 1);
+    });
+}
+
+TEST(DistributedField, HexahedraThatAreNoOctreeAreCells)
+{
+  const mesh_pieces::Whole whole = warped::Grid({ 5, 3, 4 }, warped::Bent);
+  RunOnSimulatedRanks(3,
+    [&](Communicator& communicator)
+    {
+      const mesh_pieces::Piece piece = mesh_pieces::PieceOf(whole, communicator);
+      const HexMesh boxes = piece.Mesh.Mesh();
+      const std::vector<std::uint8_t> types(static_cast<std::size_t>(boxes.CellCount), 12);
+      Input input;
+      input.Piece.Has = PieceFacts::Kind::Mesh;
+      input.Boxes.Mesh = boxes;
+      input.Boxes.Values = made_alone::ArrayOf(piece, ValuesOn::Points, 1);
+      CellMesh& mesh = input.AnyCells.Mesh;
+      mesh.Points = boxes.Points;
+      mesh.PointType = boxes.PointType;
+      mesh.PointCount = boxes.PointCount;
+      mesh.Connectivity = boxes.Connectivity;
+      mesh.ConnectivityCount = 8 * boxes.CellCount;
+      mesh.IdType = boxes.IdType;
+      mesh.PerCell = 8;
+      mesh.CellCount = boxes.CellCount;
+      mesh.Types = types.data();
+      input.AnyCells.Values = input.Boxes.Values;
+      DistributedField field;
+      for (int step = 0; step < 3; ++step)
+      {
+        field.Update(communicator, input);
+        EXPECT_EQ(field.Problem(), "");
+        const auto* const source = dynamic_cast<const CellSource*>(field.Drawn().Source());
+        ASSERT_NE(source, nullptr);
+        EXPECT_EQ(source->Cells().Cells->Order.size(), whole.Ids.size() / 8);
+        EXPECT_EQ(input.Tried, 1) << "a mesh that is known to be no octree is not tried again";
+        ++input.Changes;
+      }
+      communicator.Barrier();
     });
 }
 

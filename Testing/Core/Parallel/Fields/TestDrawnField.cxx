@@ -88,18 +88,15 @@ TEST(DrawnField, PiecesAreDrawnLikeTheWhole)
     });
 }
 
-TEST(DrawnField, AllRanksHearThatAPieceOfAMeshIsMissing)
+TEST(DrawnField, AMeshWithoutCellsIsNoOctree)
 {
   RunOnSimulatedRanks(3,
     [&](Communicator& communicator)
     {
       MeshField field;
-      EXPECT_THROW(field.Take(communicator, {}, {}, LoadBalancing::Off,
-                     communicator.Rank() == 1 ? "no memory" : ""),
-        Error);
       MeshField::Piece piece;
       piece.OtherCells = communicator.Rank() == 2 ? "7 tetrahedra" : "";
-      EXPECT_THROW(field.Take(communicator, piece, {}, LoadBalancing::Off, ""), Error);
+      EXPECT_THROW(field.Take(communicator, piece, 0.0, LoadBalancing::Off), Error);
       EXPECT_EQ(field.Source(), nullptr);
     });
 }

@@ -34,6 +34,8 @@ std::string MachineOf(const Communicator& communicator, int perMachine)
   return std::to_string(communicator.Rank() / perMachine);
 }
 
+constexpr double Tolerance = ElementOctree::DefaultTolerance;
+
 const std::vector<std::pair<int, int>> Layouts{ { 1, 1 }, { 2, 1 }, { 2, 2 }, { 3, 2 }, { 4, 4 },
   { 5, 2 } };
 
@@ -43,67 +45,34 @@ TEST(SharedMesh, OneRankOfAMachineFindsWhatEachFindsAlone)
   {
     const int onEach = perMachine;
     const int machines = (ranks + perMachine - 1) / perMachine;
-    for (const bool curved : { false, true })
-    {
-      const Whole whole = curved ? Curved() : Octree();
-      const std::int64_t before = ElementOctree::FoundSoFar();
-      std::atomic<std::int64_t> found{ 0 };
-      std::atomic<int> checked{ 0 };
-      RunOnSimulatedRanks(ranks,
-        [&](Communicator& communicator)
-        {
-          const Piece piece = PieceOf(whole, communicator);
-          SharedMesh shared(communicator, piece.Mesh.Mesh(), ValuesOn::Points, BrickCells,
-            Options(), MachineOf(communicator, onEach));
-          communicator.Barrier();
-          found = ElementOctree::FoundSoFar() - before;
-          communicator.Barrier();
-          EXPECT_EQ(shared.WhyNotShared(), "");
-          EXPECT_EQ(shared.About().IsSampled != 0, curved);
-          for (const ValuesOn where : { ValuesOn::Points, ValuesOn::Cells, ValuesOn::CellCorners })
-          {
-            if (curved && where == ValuesOn::CellCorners)
-            {
-              continue;
-            }
-            const int component = communicator.Size() % 2 == 0 ? NodeArray::Magnitude : 1;
-            const auto field = shared.Field(
-              communicator, ArrayOf(piece, where, component), CountOf(piece, where), where);
-            const Alone alone(communicator, piece, where, component);
-            ExpectSameTree(shared.Tree(), alone.Bricks->Tree());
-            ExpectSameField(*field, *alone.Source);
-            EXPECT_EQ(shared.About().Deviation, curved ? alone.Sampled->Deviation() : 0.0);
-          }
-          ++checked;
-        });
-      EXPECT_EQ(checked.load(), ranks);
-      EXPECT_EQ(found.load(), machines) << "one octree is found on each machine";
-      EXPECT_TRUE(FilesInMemory().empty()) << "memory is given back";
-    }
-  }
-}
-
-TEST(SharedMesh, PiecesAreSampledAsTheWholeMeshIs)
-{
-  const Whole whole = Curved();
-  const Piece all(whole, 0, whole.Ids.size() / 8);
-  for (const ValuesOn where : { ValuesOn::Points, ValuesOn::Cells })
-  {
-    RunOnSimulatedRanks(4,
+    const Whole whole = Octree();
+    const std::int64_t before = ElementOctree::FoundSoFar();
+    std::atomic<std::int64_t> found{ 0 };
+    std::atomic<int> checked{ 0 };
+    RunOnSimulatedRanks(ranks,
       [&](Communicator& communicator)
       {
-        const auto self = MakeSelfCommunicator();
-        SharedMesh one(*self, all.Mesh.Mesh(), where, BrickCells, Options());
-        const auto expected = one.Field(*self, ArrayOf(all, where, 1), CountOf(all, where), where);
         const Piece piece = PieceOf(whole, communicator);
-        SharedMesh shared(communicator, piece.Mesh.Mesh(), where, BrickCells, Options());
-        const auto field =
-          shared.Field(communicator, ArrayOf(piece, where, 1), CountOf(piece, where), where);
-        ASSERT_EQ(shared.About().Boxes, one.About().Boxes);
-        EXPECT_EQ(shared.About().Deviation, one.About().Deviation);
-        ExpectSameField(*field, *expected);
+        SharedMesh shared(
+          communicator, piece.Mesh.Mesh(), BrickCells, Tolerance, MachineOf(communicator, onEach));
         communicator.Barrier();
+        found = ElementOctree::FoundSoFar() - before;
+        communicator.Barrier();
+        EXPECT_EQ(shared.WhyNotShared(), "");
+        for (const ValuesOn where : { ValuesOn::Points, ValuesOn::Cells, ValuesOn::CellCorners })
+        {
+          const int component = communicator.Size() % 2 == 0 ? NodeArray::Magnitude : 1;
+          const auto field = shared.Field(
+            communicator, ArrayOf(piece, where, component), CountOf(piece, where), where);
+          const Alone alone(communicator, piece, where, component);
+          ExpectSameTree(shared.Tree(), alone.Bricks->Tree());
+          ExpectSameField(*field, *alone.Source);
+        }
+        ++checked;
       });
+    EXPECT_EQ(checked.load(), ranks);
+    EXPECT_EQ(found.load(), machines) << "one octree is found on each machine";
+    EXPECT_TRUE(FilesInMemory().empty()) << "memory is given back";
   }
 }
 
@@ -117,7 +86,7 @@ TEST(SharedMesh, MostOfItIsThereOncePerMachine)
       [&](Communicator& communicator)
       {
         const Piece piece = PieceOf(whole, communicator);
-        SharedMesh shared(communicator, piece.Mesh.Mesh(), ValuesOn::Points, BrickCells, Options(),
+        SharedMesh shared(communicator, piece.Mesh.Mesh(), BrickCells, Tolerance,
           MachineOf(communicator, perMachine));
         const auto field = shared.Field(communicator, ArrayOf(piece, ValuesOn::Points, 1),
           CountOf(piece, ValuesOn::Points), ValuesOn::Points);
@@ -143,45 +112,42 @@ TEST(SharedMesh, MostOfItIsThereOncePerMachine)
 
 TEST(SharedMesh, CoarserMeshesAreMadeOncePerMachine)
 {
-  for (const bool curved : { false, true })
+  const Whole whole = Octree();
+  for (const auto& [ranks, perMachine] : Layouts)
   {
-    const Whole whole = curved ? Curved() : Octree();
-    for (const auto& [ranks, perMachine] : Layouts)
-    {
-      const int onEach = perMachine;
-      RunOnSimulatedRanks(ranks,
-        [&](Communicator& communicator)
+    const int onEach = perMachine;
+    RunOnSimulatedRanks(ranks,
+      [&](Communicator& communicator)
+      {
+        const Piece piece = PieceOf(whole, communicator);
+        SharedMesh shared(
+          communicator, piece.Mesh.Mesh(), BrickCells, Tolerance, MachineOf(communicator, onEach));
+        const auto field = shared.Field(communicator, ArrayOf(piece, ValuesOn::Points, 1),
+          CountOf(piece, ValuesOn::Points), ValuesOn::Points);
+        const Alone alone(communicator, piece, ValuesOn::Points, 1);
+        const MeshBytes before = shared.Bytes();
+        shared.BringLevels(communicator, 2);
+        shared.BringLevels(communicator, 1);
+        shared.BringLevels(communicator, 3);
+        const MeshBytes after = shared.Bytes();
+        // The last rank may be alone on its machine.
+        const int here =
+          std::min(onEach, communicator.Size() - communicator.Rank() / onEach * onEach);
+        EXPECT_EQ(shared.Bricks().LevelCount(), onEach > 1 ? 3 : 0);
+        EXPECT_EQ(after.Together > before.Together, here > 1);
+        EXPECT_EQ(after.Own > before.Own, onEach > 1);
+        for (int level = 1; level <= 3; ++level)
         {
-          const Piece piece = PieceOf(whole, communicator);
-          SharedMesh shared(communicator, piece.Mesh.Mesh(), ValuesOn::Points, BrickCells,
-            Options(), MachineOf(communicator, onEach));
-          const auto field = shared.Field(communicator, ArrayOf(piece, ValuesOn::Points, 1),
-            CountOf(piece, ValuesOn::Points), ValuesOn::Points);
-          const Alone alone(communicator, piece, ValuesOn::Points, 1);
-          const MeshBytes before = shared.Bytes();
-          shared.BringLevels(communicator, 2);
-          shared.BringLevels(communicator, 1);
-          shared.BringLevels(communicator, 3);
-          const MeshBytes after = shared.Bytes();
-          // The last rank may be alone on its machine.
-          const int here =
-            std::min(onEach, communicator.Size() - communicator.Rank() / onEach * onEach);
-          EXPECT_EQ(shared.Bricks().LevelCount(), onEach > 1 ? 3 : 0);
-          EXPECT_EQ(after.Together > before.Together, here > 1);
-          EXPECT_EQ(after.Own > before.Own, onEach > 1);
-          for (int level = 1; level <= 3; ++level)
-          {
-            const Box& domain = shared.Tree().Domain();
-            const auto& a = dynamic_cast<const HexBrickSource&>(*field->AtLevel(level, domain));
-            const auto& b =
-              dynamic_cast<const HexBrickSource&>(*alone.Source->AtLevel(level, domain));
-            ExpectSameTree(a.Field().Tree(), b.Field().Tree());
-            ExpectSameField(a, b);
-          }
-          communicator.Barrier();
-        });
-      EXPECT_TRUE(FilesInMemory().empty());
-    }
+          const Box& domain = shared.Tree().Domain();
+          const auto& a = dynamic_cast<const HexBrickSource&>(*field->AtLevel(level, domain));
+          const auto& b =
+            dynamic_cast<const HexBrickSource&>(*alone.Source->AtLevel(level, domain));
+          ExpectSameTree(a.Field().Tree(), b.Field().Tree());
+          ExpectSameField(a, b);
+        }
+        communicator.Barrier();
+      });
+    EXPECT_TRUE(FilesInMemory().empty());
   }
 }
 
@@ -192,8 +158,7 @@ TEST(SharedMesh, ValuesOfANewStepTakeThePlaceOfOldOnes)
     [&](Communicator& communicator)
     {
       Piece piece = PieceOf(whole, communicator);
-      SharedMesh shared(
-        communicator, piece.Mesh.Mesh(), ValuesOn::Points, BrickCells, Options(), "one");
+      SharedMesh shared(communicator, piece.Mesh.Mesh(), BrickCells, Tolerance, "one");
       std::unique_ptr<HexBrickSource> field;
       for (int step = 0; step < 4; ++step)
       {
@@ -216,95 +181,70 @@ TEST(SharedMesh, ValuesOfANewStepTakeThePlaceOfOldOnes)
 /// the mesh is there already: leaders go on making what they alone can make, and send it.
 TEST(SharedMesh, WhatCannotBeHadTogetherIsSent)
 {
-  for (const bool curved : { false, true })
+  const Whole whole = Octree();
+  for (const bool fromTheFirst : { false, true })
   {
-    const Whole whole = curved ? Curved() : Octree();
-    for (const bool fromTheFirst : { false, true })
-    {
-      std::unique_ptr<LongestFile> limit;
-      RunOnSimulatedRanks(5,
-        [&](Communicator& communicator)
+    std::unique_ptr<LongestFile> limit;
+    RunOnSimulatedRanks(5,
+      [&](Communicator& communicator)
+      {
+        const auto forbid = [&]
         {
-          const auto forbid = [&]
+          communicator.Barrier();
+          if (communicator.Rank() == 0)
           {
-            communicator.Barrier();
-            if (communicator.Rank() == 0)
-            {
-              limit = std::make_unique<LongestFile>(0);
-            }
-            communicator.Barrier();
-          };
-          if (fromTheFirst)
-          {
-            forbid();
-          }
-          const Piece piece = PieceOf(whole, communicator);
-          SharedMesh shared(communicator, piece.Mesh.Mesh(), ValuesOn::Points, BrickCells,
-            Options(), MachineOf(communicator, 3));
-          EXPECT_EQ(shared.WhyNotShared().empty(), !fromTheFirst);
-          if (!fromTheFirst)
-          {
-            forbid();
-          }
-          for (const ValuesOn where : { ValuesOn::Points, ValuesOn::Cells })
-          {
-            const auto field =
-              shared.Field(communicator, ArrayOf(piece, where, 1), CountOf(piece, where), where);
-            const Alone alone(communicator, piece, where, 1);
-            ExpectSameTree(shared.Tree(), alone.Bricks->Tree());
-            ExpectSameField(*field, *alone.Source);
+            limit = std::make_unique<LongestFile>(0);
           }
           communicator.Barrier();
-        });
-    }
+        };
+        if (fromTheFirst)
+        {
+          forbid();
+        }
+        const Piece piece = PieceOf(whole, communicator);
+        SharedMesh shared(
+          communicator, piece.Mesh.Mesh(), BrickCells, Tolerance, MachineOf(communicator, 3));
+        EXPECT_EQ(shared.WhyNotShared().empty(), !fromTheFirst);
+        if (!fromTheFirst)
+        {
+          forbid();
+        }
+        for (const ValuesOn where : { ValuesOn::Points, ValuesOn::Cells })
+        {
+          const auto field =
+            shared.Field(communicator, ArrayOf(piece, where, 1), CountOf(piece, where), where);
+          const Alone alone(communicator, piece, where, 1);
+          ExpectSameTree(shared.Tree(), alone.Bricks->Tree());
+          ExpectSameField(*field, *alone.Source);
+        }
+        communicator.Barrier();
+      });
   }
 }
 
-/// How many of five ranks fail, and how many of them with this sentence.
-std::pair<int, int> Failing(
-  const Whole& whole, ValuesOn where, const MeshOptions& options, const std::string& sentence)
+TEST(SharedMesh, ARefusalFailsOnAllRanksWithOneSentence)
 {
-  std::atomic<int> failed{ 0 };
   std::atomic<int> said{ 0 };
   RunOnSimulatedRanks(5,
     [&](Communicator& communicator)
     {
-      const Piece piece = PieceOf(whole, communicator);
+      const Piece piece = PieceOf(Curved(), communicator);
       try
       {
         const SharedMesh shared(
-          communicator, piece.Mesh.Mesh(), where, BrickCells, options, MachineOf(communicator, 3));
+          communicator, piece.Mesh.Mesh(), BrickCells, Tolerance, MachineOf(communicator, 3));
+        ADD_FAILURE() << "an octree is found of a curved mesh";
       }
       catch (const Error& error)
       {
-        ++failed;
-        said += std::string(error.what()).find(sentence) != std::string::npos ? 1 : 0;
+        const std::string sentence = error.what();
+        said += sentence.find("is not an axis-aligned box") != std::string::npos ? 1 : 0;
       }
       communicator.Barrier();
       EXPECT_TRUE(FilesInMemory().empty()) << "nothing is left of a mesh that is not drawn";
       communicator.Barrier();
     });
-  return { failed.load(), said.load() };
-}
-
-TEST(SharedMesh, ARefusalFailsOnAllRanksWithOneSentence)
-{
-  const std::pair<int, int> expected(5, 5);
-  MeshOptions options = Options();
-  EXPECT_EQ(
-    Failing(Curved(), ValuesOn::CellCorners, options, "is not an axis-aligned box"), expected);
-  options.Sampling.Tolerance = 0.0;
-  EXPECT_EQ(Failing(Curved(), ValuesOn::Points, options, "is not an axis-aligned box"), expected);
-}
-
-TEST(SharedMesh, AnInterruptionLeavesNothing)
-{
-  const std::pair<int, int> expected(5, 5);
-  std::atomic<int> looks{ 0 };
-  MeshOptions options = Options();
-  options.Sampling.Watch = [&](double) { return ++looks < 0; };
-  EXPECT_EQ(Failing(Curved(), ValuesOn::Points, options, "was stopped"), expected);
-  EXPECT_GE(looks.load(), 2);
+  EXPECT_EQ(said.load(), 5);
 }
 
 } // namespace

@@ -42,7 +42,8 @@ public:
   }
   SampleArray Samples(const glm::ivec3&) const override { return {}; }
   void HideCells(const glm::ivec3&, HiddenCells&) const override {}
-  MeshOptions Meshing() const override { return made_alone::Options(); }
+  double MeshTolerance() const override { return ElementOctree::DefaultTolerance; }
+  CellsField::Piece Cells() override { return {}; }
   MeshField::Piece Mesh(Communicator&, bool) override
   {
     const mesh_pieces::Piece& piece = this->Step == Farther ? this->Far : this->Near;

@@ -54,7 +54,8 @@ public:
     const std::vector<std::uint8_t> flags(static_cast<std::size_t>(here.Count()), 1);
     hidden.Hide({ here.Lo - first, here.Hi - first }, flags.data(), 1);
   }
-  MeshOptions Meshing() const override { return {}; }
+  double MeshTolerance() const override { return 0.0; }
+  CellsField::Piece Cells() override { return {}; }
   MeshField::Piece Mesh(Communicator&, bool) override { return {}; }
 
 private:

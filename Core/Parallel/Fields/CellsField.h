@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Parallel_Fields_CellsField_h
+#define banyan_Parallel_Fields_CellsField_h
+
+#include "Base/Hash.h"
+#include "Mesh/Cells/CellArray.h"
+#include "Parallel/Balance/FrameBalancer.h"
+#include "Parallel/Fields/DrawnField.h"
+#include "Render/Cells/CellSource.h"
+
+#include <memory>
+#include <string>
+
+namespace banyan
+{
+
+/// A field on any mesh of cells that lies in pieces on the ranks, drawn cell by cell. Cells are put
+/// in order, and the border is found, once per mesh; new values touch values only. Every rank has
+/// the whole mesh and the values of one component of it, and draws a zone.
+class CellsField final : public DrawnField
+{
+public:
+  /// This rank's part. Values belong to the caller, until Take returns.
+  struct Piece
+  {
+    CellMesh Mesh;    ///< without cells on ranks that have none
+    NodeArray Values; ///< of its points or cells; anything on ranks without cells
+    ValuesOn Where = ValuesOn::Points;
+    std::string OtherCells; ///< that are left out, as a user reads it; empty if none
+  };
+
+  /// Collective: whether the mesh on all ranks is the one that was taken last. Take the pieces
+  /// then.
+  bool Has(Communicator& communicator, const CellMesh& piece);
+
+  /// Collective: takes the pieces of all ranks.
+  /// @param has what Has said of them
+  /// Throws CollectiveError when one rank cannot draw or read the mesh.
+  void Take(Communicator& communicator, Piece piece, bool has, LoadBalancing balancing);
+
+  /// Of the last Take.
+  FieldPlace Place() const;
+
+  void BeginFrame(Communicator& communicator, RayScene& scene) override;
+  void EndFrame(Communicator& communicator) override { this->Balancer.EndFrame(communicator); }
+  void Clear() override { this->Drawn.reset(); }
+  BrickSource* Source() override { return this->Drawn.get(); }
+  const std::vector<Box>& Zones() const override { return this->ZoneCells; }
+  std::vector<Hash128> VisibleContent(const RayScene& scene) override;
+  bool IsMesh() const override { return true; }
+  bool IsOnEachRank() const override { return true; }
+  std::string Note() const override { return this->NoteText; }
+  MeshBytes Bytes() const override;
+
+private:
+  void TakeMesh(Communicator& communicator, const Piece& piece);
+  std::uint64_t HashOfAll(Communicator& communicator) const;
+
+  std::shared_ptr<const DrawnCells> Cells; ///< null when the last mesh cannot be drawn
+  Hash128 PieceHash;                       ///< of this rank's points and cells
+  std::string NoteText;
+  std::unique_ptr<CellSource> Drawn;
+  Hash128 Content; ///< of points, cells and values
+  FrameBalancer Balancer;
+  std::vector<Box> ZoneCells;
+};
+
+} // namespace banyan
+
+#endif

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cells that lie in pieces on the ranks: the picture of all of them on one rank, to the bit.
+#include "Cells/DrawnMesh.h"
+
+#include "Parallel/Communicate/Collective.h"
+#include "Parallel/Fields/CellsField.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+namespace
+{
+
+using namespace banyan;
+using namespace cellmeshes;
+
+OwnedCellMesh Whole()
+{
+  OwnedCellMesh mesh = Cube(4, Cut::Mixed, { 0.05, 0.05 });
+  SetValues(mesh, StandardField());
+  return mesh;
+}
+
+/// Cells of a mesh that are dealt one by one. The last rank has none where there are several.
+OwnedCellMesh PieceOf(const OwnedCellMesh& whole, int rank, int ranks)
+{
+  OwnedCellMesh piece = whole;
+  piece.Ids.clear();
+  piece.Offsets = { 0 };
+  piece.Types.clear();
+  const int dealt = std::max(1, ranks - 1);
+  for (std::size_t cell = 0; cell < whole.Types.size(); ++cell)
+  {
+    if (static_cast<int>(cell) % dealt == rank)
+    {
+      piece.Ids.insert(piece.Ids.end(), whole.Ids.begin() + whole.Offsets[cell],
+        whole.Ids.begin() + whole.Offsets[cell + 1]);
+      piece.Offsets.push_back(static_cast<std::int64_t>(piece.Ids.size()));
+      piece.Types.push_back(whole.Types[cell]);
+    }
+  }
+  return piece;
+}
+
+CellsField::Piece Given(const OwnedCellMesh& mesh)
+{
+  CellsField::Piece piece;
+  piece.Mesh = mesh.View();
+  piece.Values.Values = mesh.Values.data();
+  return piece;
+}
+
+void Take(CellsField& field, Communicator& communicator, const OwnedCellMesh& mesh)
+{
+  CellsField::Piece piece = Given(mesh);
+  const bool has = field.Has(communicator, piece.Mesh);
+  field.Take(communicator, std::move(piece), has, LoadBalancing::Off);
+}
+
+const CellField& Drawn(CellsField& field)
+{
+  return dynamic_cast<CellSource&>(*field.Source()).Cells();
+}
+
+bool SamePixels(const FloatImage& a, const FloatImage& b)
+{
+  return a.Pixels.size() == b.Pixels.size() &&
+         std::memcmp(a.Pixels.data(), b.Pixels.data(), a.Pixels.size() * sizeof(a.Pixels[0])) == 0;
+}
+
+TEST(CellsOfRanks, GiveThePictureOfOne)
+{
+  const OwnedCellMesh whole = Whole();
+  DrawnMesh expected(whole);
+  const auto self = MakeSelfCommunicator();
+  CellsField alone;
+  Take(alone, *self, whole);
+  expected.Field = Drawn(alone);
+  expected.Scene.IndexToWorld = alone.Place().IndexToPhysical;
+  expected.Scene.DomainCells = alone.Place().Cells;
+  const FloatImage picture = expected.Draw();
+  EXPECT_LT(Between(picture, expected.Reference()).Worst, 0.2);
+  for (const int ranks : { 1, 2, 3, 5 })
+  {
+    RunOnSimulatedRanks(ranks,
+      [&](Communicator& communicator)
+      {
+        const OwnedCellMesh piece = PieceOf(whole, communicator.Rank(), ranks);
+        CellsField field;
+        Take(field, communicator, piece);
+        DrawnMesh drawn = expected;
+        drawn.Field = Drawn(field);
+        EXPECT_EQ(drawn.Field.Cells->Order.size(), whole.Types.size());
+        EXPECT_EQ(drawn.Field.Cells->Border.size(), expected.Field.Cells->Border.size());
+        EXPECT_TRUE(SamePixels(drawn.Draw(), picture));
+        EXPECT_EQ(field.Note(), "");
+        communicator.Barrier();
+      });
+  }
+}
+
+TEST(CellsOfRanks, NewValuesKeepTheMesh)
+{
+  const OwnedCellMesh whole = Whole();
+  RunOnSimulatedRanks(3,
+    [&](Communicator& communicator)
+    {
+      OwnedCellMesh piece = PieceOf(whole, communicator.Rank(), 3);
+      CellsField field;
+      Take(field, communicator, piece);
+      const std::shared_ptr<const DrawnCells> cells = Drawn(field).Cells;
+      const RayScene scene = DrawnMesh(whole).Scene;
+      const auto content = field.VisibleContent(scene);
+      for (float& value : piece.Values)
+      {
+        value += 1.0f;
+      }
+      Take(field, communicator, piece);
+      EXPECT_EQ(Drawn(field).Cells, cells);
+      EXPECT_NE(field.VisibleContent(scene), content);
+      if (communicator.Rank() == 1)
+      {
+        piece.Points.front() += 0.01;
+      }
+      Take(field, communicator, piece);
+      EXPECT_NE(Drawn(field).Cells, cells) << "a point of one rank has moved";
+      communicator.Barrier();
+    });
+}
+
+TEST(CellsOfRanks, WhatIsLeftOutIsToldWithItsRank)
+{
+  const OwnedCellMesh whole = Whole();
+  RunOnSimulatedRanks(3,
+    [&](Communicator& communicator)
+    {
+      OwnedCellMesh piece = PieceOf(whole, communicator.Rank(), 3);
+      if (communicator.Rank() == 1)
+      {
+        piece.Ids[static_cast<std::size_t>(piece.Offsets[2])] = piece.PointCount();
+        piece.Points.insert(piece.Points.end(), { 0.0, NAN, 0.0 });
+        piece.Values.push_back(0.0f);
+      }
+      CellsField field;
+      Take(field, communicator, piece);
+      EXPECT_EQ(Drawn(field).Cells->Order.size(), whole.Types.size() - 1);
+      EXPECT_EQ(field.Note(),
+        "Cell 2 of rank 1 is left out: coordinates are not finite, or beyond 1e150. ");
+      communicator.Barrier();
+    });
+}
+
+std::string SentenceOf(int ranks, const std::function<void(int, CellsField::Piece&)>& spoil)
+{
+  const OwnedCellMesh whole = Whole();
+  std::string sentence;
+  RunOnSimulatedRanks(ranks,
+    [&](Communicator& communicator)
+    {
+      const OwnedCellMesh mesh = PieceOf(whole, communicator.Rank(), ranks);
+      CellsField::Piece piece = Given(mesh);
+      spoil(communicator.Rank(), piece);
+      CellsField field;
+      try
+      {
+        const bool has = field.Has(communicator, piece.Mesh);
+        field.Take(communicator, std::move(piece), has, LoadBalancing::Off);
+        ADD_FAILURE() << "rank " << communicator.Rank() << " draws it";
+      }
+      catch (const CollectiveError& error)
+      {
+        EXPECT_EQ(field.Source(), nullptr);
+        if (communicator.Rank() == 0)
+        {
+          sentence = error.what();
+        }
+      }
+      communicator.Barrier();
+    });
+  return sentence;
+}
+
+TEST(CellsOfRanks, WhatCannotBeDrawnIsRefusedOnAllOfThem)
+{
+  const auto out = [](int rank, CellsField::Piece& piece)
+  { piece.Mesh.PointCount = rank == 1 ? 20 : piece.Mesh.PointCount; };
+  EXPECT_NE(SentenceOf(3, out).find("and the mesh has 20 points"), std::string::npos);
+  EXPECT_NE(SentenceOf(3, out).find("Rank 1: "), std::string::npos);
+  const auto listed = [](int rank, CellsField::Piece& piece)
+  { piece.Mesh.ConnectivityCount = rank == 0 ? 5 : piece.Mesh.ConnectivityCount; };
+  EXPECT_NE(SentenceOf(2, listed).find("of the connectivity, which has 5"), std::string::npos);
+  const auto none = [](int rank, CellsField::Piece& piece)
+  {
+    piece.Mesh.CellCount = 0;
+    piece.OtherCells = rank == 1 ? "3 cells, cell 0 of the type vtkTriangle" : "";
+  };
+  EXPECT_NE(
+    SentenceOf(3, none).find("no cells in three dimensions, but 3 cells"), std::string::npos);
+}
+
+} // namespace
