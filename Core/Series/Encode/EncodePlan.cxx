@@ -204,6 +204,10 @@ SeriesIndex PlanSeries(
   {
     AddMesh(*options.Mesh, index);
   }
+  if (options.Points)
+  {
+    index.Points = PointsIndex{ *options.Points, {} };
+  }
   // Cell arrays are numbers of blocks and the like as often as not.
   const auto ofPoints = std::find_if(index.Arrays.begin(), index.Arrays.end(),
     [](const ArrayIndex& array)

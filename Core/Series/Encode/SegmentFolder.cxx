@@ -26,6 +26,8 @@ namespace
 
 const std::string Suffix = ".seg";
 const std::string MeshSuffix = ".mesh";
+const std::string PointsSuffix = ".points";
+const std::string Suffixes[] = { Suffix, MeshSuffix, PointsSuffix };
 const std::string PartSuffix = ".part";  // behind one of these
 const std::string ListSuffix = ".files"; // of those that a run has written
 const std::string Digits = "0123456789abcdef";
@@ -65,8 +67,9 @@ bool IsSegmentName(const std::string& name)
 {
   return name.size() > RunDigits + 1 && name[RunDigits] == '-' &&
          name.find_first_not_of(Digits) == RunDigits && name.find('/') == std::string::npos &&
-         (EndsWith(name, Suffix) || EndsWith(name, Suffix + PartSuffix) ||
-           EndsWith(name, MeshSuffix) || EndsWith(name, MeshSuffix + PartSuffix));
+         std::any_of(std::begin(Suffixes), std::end(Suffixes),
+           [&name](const std::string& suffix)
+           { return EndsWith(name, suffix) || EndsWith(name, suffix + PartSuffix); });
 }
 
 std::vector<std::string> NamesIn(const std::string& folder)
@@ -152,6 +155,12 @@ std::string SegmentFolder::FinalNameOf(const Hash128& content)
 std::string SegmentFolder::FinalNameOfMesh(const Hash128& content)
 {
   return this->NameOf(content, MeshSuffix);
+}
+
+PointsPlace SegmentFolder::PlaceOfPoints()
+{
+  return { this->FolderPath, this->Run + "-" + PointsSuffix,
+    [this](const Hash128& head) { return this->NameOf(head, PointsSuffix); } };
 }
 
 std::string SegmentFolder::NameOf(const Hash128& content, const std::string& suffix)

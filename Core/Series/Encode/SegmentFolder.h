@@ -3,6 +3,7 @@
 #define banyan_Series_Encode_SegmentFolder_h
 
 #include "Base/Hash.h"
+#include "Series/Points/PointsWriter.h"
 
 #include <cstdint>
 #include <optional>
@@ -39,6 +40,8 @@ public:
   std::string FinalNameOf(const Hash128& content);
   /// The same for the file of a mesh.
   std::string FinalNameOfMesh(const Hash128& content);
+  /// Where a file of points goes, and how it is called. The folder must outlive it.
+  PointsPlace PlaceOfPoints();
 
   /// Whether this object made the folder: of several processes that write one series together, only
   /// the first one does, unless they see different disks.

@@ -98,6 +98,10 @@ std::optional<std::vector<std::string>> FilesOfIndex(const std::string& path)
     {
       files.push_back(index.Mesh->File);
     }
+    for (const PointsFile& points : index.Points ? index.Points->Files : std::vector<PointsFile>{})
+    {
+      files.push_back(points.File);
+    }
   }
   catch (const Error&)
   {
@@ -113,6 +117,25 @@ void SeriesAssembly::SetActiveScalars(const std::string& name)
     throw Error("The active array '" + name + "' is not among the arrays");
   }
   this->Current.ActiveScalars = name;
+}
+
+void SeriesAssembly::AddPoints(PointsFile file)
+{
+  this->Points.push_back(std::move(file));
+}
+
+/// The points of the steps that the index has, and no others.
+void SeriesAssembly::NamePoints()
+{
+  if (this->Current.Points)
+  {
+    std::vector<PointsFile>& named = this->Current.Points->Files;
+    while (named.size() < this->Points.size() &&
+           this->Points[named.size()].FirstStep < this->Current.Steps())
+    {
+      named.push_back(this->Points[named.size()]);
+    }
+  }
 }
 
 void SeriesAssembly::Add(int number, EncodedGroup group)
@@ -134,6 +157,7 @@ void SeriesAssembly::Add(int number, EncodedGroup group)
     }
     AddGroup(added, this->Current);
   }
+  this->NamePoints();
   if (!this->KeepOld && this->Current.Segments.size() > before)
   {
     WriteFileAtomically(this->Path, IndexToText(this->Current));
@@ -183,6 +207,17 @@ std::vector<std::string> SeriesAssembly::FilesInFile() const
   if (this->InFile > 0 && this->Current.Mesh)
   {
     files.push_back(this->Current.Mesh->File);
+  }
+  if (this->InFile > 0 && this->Current.Points)
+  {
+    const SegmentIndex& last = this->Current.Segments[static_cast<std::size_t>(this->InFile) - 1];
+    for (const PointsFile& points : this->Current.Points->Files)
+    {
+      if (points.FirstStep < last.FirstStep + last.Steps)
+      {
+        files.push_back(points.File);
+      }
+    }
   }
   return files;
 }

@@ -33,6 +33,10 @@ public:
   /// Default is the first array. Throws Error when there is none of that name.
   void SetActiveScalars(const std::string& name);
 
+  /// Says where the points of a step are: of a series whose grid has some, before the group of the
+  /// step is added; in the order of steps, and only of those whose points are new.
+  void AddPoints(PointsFile file);
+
   /// @param number of the group in the series, each once
   /// Throws Error when the index file cannot be written.
   void Add(int number, EncodedGroup group);
@@ -46,23 +50,26 @@ public:
 
   /// The segments that the index file names now, none when it is not of this series.
   std::vector<std::string> SegmentsInFile() const;
-  /// The same, and the file of the mesh.
+  /// The same, and the files of mesh and points.
   std::vector<std::string> FilesInFile() const;
   /// The files that the index named which was there before; none where it could not be read.
   const std::vector<std::string>& FilesBefore() const { return this->Before; }
 
 private:
+  void NamePoints();
+
   std::string Path;
   SeriesIndex Current;
   std::map<int, EncodedGroup> Waiting; ///< for those before them
+  std::vector<PointsFile> Points;      ///< of all steps so far
   std::set<std::string> Files;         ///< that the groups in order have
   std::vector<std::string> Before;
   bool KeepOld;   ///< a file of that name was there: it stays until Finish
   int InFile = 0; ///< groups that the index file names
 };
 
-/// The files in its folder that an index file names, that of a mesh included: none when there is no
-/// such file, and nothing when it cannot be read.
+/// The files in its folder that an index file names, those of mesh and points included: none when
+/// there is no such file, and nothing when it cannot be read.
 std::optional<std::vector<std::string>> FilesOfIndex(const std::string& path);
 
 } // namespace banyan

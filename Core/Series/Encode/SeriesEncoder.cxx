@@ -10,6 +10,7 @@
 #include "Series/Encode/SeriesAssembly.h"
 #include "Series/Encode/SeriesLock.h"
 #include "Series/Format/SeriesPath.h"
+#include "Series/Points/PointsWriter.h"
 
 #include <cmath>
 
@@ -38,6 +39,7 @@ struct SeriesEncoder::Internals
   bool Failed = false;
   bool Finished = false;
   std::unique_ptr<SegmentFolder> Folder;
+  std::string PointsOfStep;  ///< the file of points that the last step has
   std::vector<double> Times; ///< of the group under way
   using KeptArray = std::vector<std::uint8_t, InLargePages<std::uint8_t>>;
   std::vector<std::vector<KeptArray>> Values; ///< its steps and arrays
@@ -73,6 +75,10 @@ void SeriesEncoder::Internals::CheckStep(double time, const std::vector<ArrayVal
   if (!std::isfinite(time) || (!times.empty() && !(time > times.back())))
   {
     throw Error("Time values must be finite and increase from step to step", { this->Path });
+  }
+  if (index.Points && this->PointsOfStep.empty())
+  {
+    throw Error("A step of a grid with points of its own needs them first", { this->Path });
   }
   if (arrays.size() != index.Arrays.size())
   {
@@ -143,6 +149,27 @@ SeriesEncoder::~SeriesEncoder() = default;
 void SeriesEncoder::SetActiveScalars(const std::string& name)
 {
   this->Self->Assembly.SetActiveScalars(name);
+}
+
+void SeriesEncoder::SetPoints(const PointsView& points)
+{
+  Internals& self = *this->Self;
+  if (self.Failed || self.Finished)
+  {
+    throw Error("The series takes no more points: it is finished or was given up after an error",
+      { self.Path });
+  }
+  self.Failed = true;
+  const SeriesIndex& index = self.Assembly.Index();
+  CheckPoints(points, index);
+  const int step = index.Steps() + static_cast<int>(self.Times.size());
+  const PointsFile file = WritePoints(points, step, self.Folder->PlaceOfPoints(), self.Pool);
+  if (self.PointsOfStep.empty() || self.PointsOfStep != file.File)
+  {
+    self.PointsOfStep = file.File;
+    self.Assembly.AddPoints(file);
+  }
+  self.Failed = false;
 }
 
 void SeriesEncoder::AddStep(double time, const std::vector<ArrayValues>& arrays)

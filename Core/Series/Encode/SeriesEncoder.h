@@ -10,6 +10,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ namespace banyan
 {
 
 class ThreadPool;
+struct PointsView;
 
 /// Says what encoding aims at. Every profile keeps the bound and is read by every reader.
 enum class EncodeProfile
@@ -56,6 +58,7 @@ struct EncodeOptions
   QuantizerOptions Quantizer; ///< of all arrays
   std::map<std::string, QuantizerOptions> QuantizerOfArray; ///< instead, of arrays by name
   std::shared_ptr<const MeshPlan> Mesh;                     ///< null: the series is of images
+  std::optional<PointsForm> Points; ///< of a grid that is not regular: see SetPoints
 
   const QuantizerOptions& QuantizerFor(const std::string& array) const;
   /// Whether an array needs ArrayDescription::Histograms.
@@ -114,6 +117,11 @@ public:
 
   /// Which array is coloured by at first; default is the first one.
   void SetActiveScalars(const std::string& name);
+
+  /// The points of the steps from the next one on. A series whose options have Points needs them
+  /// before its first step, and again before each step whose points are others.
+  /// @param points as options and grid say; they are kept bit by bit. Throws Error.
+  void SetPoints(const PointsView& points);
 
   /// @param time greater than the one before
   /// @param arrays one per description, same order

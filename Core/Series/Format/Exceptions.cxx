@@ -3,10 +3,9 @@
 
 #include "Base/Error.h"
 #include "Base/ForEachScalarType.h"
+#include "Base/OrderedBits.h"
 #include "Base/Varint.h"
 #include "Series/Format/Zstd.h"
-
-#include <type_traits>
 
 namespace banyan
 {
@@ -20,37 +19,6 @@ enum Positions : std::uint8_t
   All = 2
 };
 
-template <class T>
-using BitsOf = std::conditional_t<sizeof(T) == 1, std::uint8_t,
-  std::conditional_t<sizeof(T) == 2, std::uint16_t,
-    std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>>>;
-
-/// Bits of a value such that neighbouring values have neighbouring bits.
-template <class T>
-BitsOf<T> Ordered(T value)
-{
-  using U = BitsOf<T>;
-  U bits = BitCast<U>(value);
-  if constexpr (std::is_floating_point_v<T>)
-  {
-    const U sign = static_cast<U>(U{ 1 } << (8 * sizeof(U) - 1));
-    bits = (bits & sign) != 0 ? static_cast<U>(~bits) : static_cast<U>(bits | sign);
-  }
-  return bits;
-}
-
-template <class T>
-T FromOrdered(BitsOf<T> bits)
-{
-  using U = BitsOf<T>;
-  if constexpr (std::is_floating_point_v<T>)
-  {
-    const U sign = static_cast<U>(U{ 1 } << (8 * sizeof(U) - 1));
-    bits = (bits & sign) != 0 ? static_cast<U>(bits & ~sign) : static_cast<U>(~bits);
-  }
-  return BitCast<T>(bits);
-}
-
 /// Differences between successive values, zigzag coded, as planes of bytes.
 template <class T>
 void AppendValues(const std::vector<T>& values, Bytes& out)
@@ -61,9 +29,7 @@ void AppendValues(const std::vector<T>& values, Bytes& out)
   for (std::size_t i = 0; i < values.size(); ++i)
   {
     const U bits = Ordered(values[i]);
-    const U rest = static_cast<U>(bits - last);
-    const U sign = (rest >> (8 * sizeof(U) - 1)) != 0 ? static_cast<U>(~U{ 0 }) : U{ 0 };
-    codes[i] = static_cast<U>(static_cast<U>(rest << 1) ^ sign);
+    codes[i] = Zigzag(static_cast<U>(bits - last));
     last = bits;
   }
   const std::size_t at = out.size();
@@ -81,9 +47,7 @@ std::vector<T> ReadValues(const std::uint8_t* planes, std::size_t count)
   U last = 0;
   for (std::size_t i = 0; i < count; ++i)
   {
-    const U rest = static_cast<U>(
-      static_cast<U>(codes[i] >> 1) ^ static_cast<U>(U{ 0 } - static_cast<U>(codes[i] & 1)));
-    last = static_cast<U>(last + rest);
+    last = static_cast<U>(last + FromZigzag(codes[i]));
     values[i] = FromOrdered<T>(last);
   }
   return values;

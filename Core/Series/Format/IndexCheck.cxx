@@ -120,6 +120,37 @@ void CheckMesh(const SeriesIndex& index)
   }
 }
 
+void CheckPoints(const SeriesIndex& index)
+{
+  if (!index.Points)
+  {
+    return;
+  }
+  Require(!index.Mesh, "A series of a mesh has points of another grid");
+  Grid plain;
+  plain.Extent = index.Domain.Extent;
+  Require(index.Domain == plain, "A grid with points of its own has an origin or a spacing");
+  const auto& types = index.Points->Form.Types;
+  Require(index.Points->Form.Kind == GridKind::Rectilinear ||
+            (types[0] == types[1] && types[1] == types[2]),
+    "The coordinates of the points have several types");
+  const std::vector<PointsFile>& files = index.Points->Files;
+  Require(files.empty() == index.Times.empty(), "The points of some steps are missing");
+  std::map<std::string, const PointsFile*> named;
+  for (std::size_t i = 0; i < files.size(); ++i)
+  {
+    Require(IsPlainName(files[i].File), "The name of a file of points is not a plain file name");
+    Require(i == 0 ? files[i].FirstStep == 0 : files[i].FirstStep > files[i - 1].FirstStep,
+      "The files of points do not follow one another");
+    const PointsFile& first = *named.emplace(files[i].File, &files[i]).first->second;
+    Require(first.Bytes == files[i].Bytes && first.HashLow == files[i].HashLow &&
+              first.HashHigh == files[i].HashHigh,
+      "Two files of points are the same, and have not the same content");
+  }
+  Require(files.empty() || files.back().FirstStep < index.Steps(),
+    "There are points of a step that does not exist");
+}
+
 void CheckFlags(const SeriesIndex& index)
 {
   int count[3] = {};
@@ -195,6 +226,7 @@ void CheckIndex(const SeriesIndex& index)
   Require(std::isfinite(index.ErrorBound) && index.ErrorBound >= 0,
     "The error bound must be finite and not negative");
   CheckMesh(index);
+  CheckPoints(index);
   CheckArrays(index);
   CheckFlags(index);
   CheckTimes(index.Times);

@@ -121,6 +121,38 @@ MeshIndex MeshFromJson(const Json& json)
   return mesh;
 }
 
+PointsIndex PointsFromJson(const Json& json)
+{
+  PointsIndex points;
+  const std::string kind = TextMember(json, "kind");
+  if (kind != "rectilinear" && kind != "curvilinear")
+  {
+    throw Error("The grid is neither rectilinear nor curvilinear");
+  }
+  points.Form.Kind = kind == "rectilinear" ? GridKind::Rectilinear : GridKind::Curvilinear;
+  const Json& types = ListMember(json, "types");
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    if (types.size() != 3 || !types[axis].is_string())
+    {
+      WrongType("types");
+    }
+    points.Form.Types[axis] = ScalarTypeFromName(types[axis].get<std::string>());
+  }
+  for (const Json& one : ListMember(json, "files"))
+  {
+    PointsFile file;
+    file.File = TextMember(one, "file");
+    file.FirstStep = IntegerMember(one, "firstStep", 0);
+    file.Bytes = static_cast<std::uint64_t>(CountMember(one, "bytes"));
+    const Hash128 hash = FromHex(TextMember(one, "hash"));
+    file.HashLow = hash.Low;
+    file.HashHigh = hash.High;
+    points.Files.push_back(std::move(file));
+  }
+  return points;
+}
+
 EncodeStatistics StatisticsFromJson(const Json& json)
 {
   EncodeStatistics statistics;
@@ -180,6 +212,11 @@ SeriesIndex IndexFromJson(const Json& json)
   if (mesh != json.end())
   {
     index.Mesh = MeshFromJson(*mesh);
+  }
+  const auto points = json.find("gridPoints");
+  if (points != json.end())
+  {
+    index.Points = PointsFromJson(*points);
   }
   index.BrickCells = IntegerMember(json, "brickCells", 1);
   index.Levels = IntegerMember(json, "levels", 1);

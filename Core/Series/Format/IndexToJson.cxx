@@ -117,6 +117,27 @@ Json MeshToJson(const MeshIndex& mesh)
   return json;
 }
 
+Json PointsToJson(const PointsIndex& points)
+{
+  Json json;
+  json["kind"] = points.Form.Kind == GridKind::Rectilinear ? "rectilinear" : "curvilinear";
+  for (const ScalarType type : points.Form.Types)
+  {
+    json["types"].push_back(NameOf(type));
+  }
+  json["files"] = Json::array();
+  for (const PointsFile& file : points.Files)
+  {
+    Json one;
+    one["file"] = file.File;
+    one["firstStep"] = file.FirstStep;
+    one["bytes"] = file.Bytes;
+    one["hash"] = ToHex({ file.HashLow, file.HashHigh });
+    json["files"].push_back(one);
+  }
+  return json;
+}
+
 Json GridToJson(const Grid& grid)
 {
   Json json;
@@ -149,6 +170,10 @@ Json IndexToJson(const SeriesIndex& index)
   if (index.Mesh)
   {
     json["mesh"] = MeshToJson(*index.Mesh);
+  }
+  if (index.Points)
+  {
+    json["gridPoints"] = PointsToJson(*index.Points);
   }
   json["brickCells"] = index.BrickCells;
   json["levels"] = index.Levels;

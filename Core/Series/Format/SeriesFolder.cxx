@@ -34,6 +34,10 @@ std::map<std::string, std::uint64_t> FilesOf(const SeriesIndex& index)
   {
     files[index.Mesh->File] = index.Mesh->Bytes;
   }
+  for (const PointsFile& points : index.Points ? index.Points->Files : std::vector<PointsFile>{})
+  {
+    files[points.File] = points.Bytes;
+  }
   return files;
 }
 
@@ -171,7 +175,8 @@ bool BeginsInFolder(const std::string& folder, const SeriesIndex& index)
     return stat((folder + "/" + name).c_str(), &status) == 0;
   };
   return (index.Segments.empty() || has(index.Segments.front().File)) &&
-         (!index.Mesh || has(index.Mesh->File));
+         (!index.Mesh || has(index.Mesh->File)) &&
+         (!index.Points || index.Points->Files.empty() || has(index.Points->Files.front().File));
 }
 
 void RefuseFolder(const std::string& path)

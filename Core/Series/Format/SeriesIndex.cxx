@@ -23,6 +23,17 @@ const ValueRange& ComponentIndex::ReferenceRange() const
   return chosen && !this->PromisedRange.Empty() ? this->PromisedRange : this->Range;
 }
 
+const PointsFile& PointsIndex::FileOf(int step) const
+{
+  const auto after = std::upper_bound(this->Files.begin(), this->Files.end(), step,
+    [](int wanted, const PointsFile& file) { return wanted < file.FirstStep; });
+  if (after == this->Files.begin())
+  {
+    throw Error("The series has no points of step " + std::to_string(step));
+  }
+  return *(after - 1);
+}
+
 int SeriesIndex::FindFlags(ArrayFlags flags) const
 {
   const auto found = std::find_if(this->Arrays.begin(), this->Arrays.end(),

@@ -9,6 +9,7 @@
 #include "Series/Quantize/Transform.h"
 #include "Series/Quantize/ValueRange.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -106,6 +107,44 @@ struct MeshIndex
   std::int64_t Cells = 0;
 };
 
+/// The kinds of grids whose points a series keeps. Their values are images in i, j, k.
+enum class GridKind
+{
+  Rectilinear, ///< three lists of coordinates, one per axis
+  Curvilinear  ///< x, y, z of each sample
+};
+
+/// What the points of a grid are made of, at all steps.
+struct PointsForm
+{
+  GridKind Kind = GridKind::Curvilinear;
+  /// Of the coordinates along each axis; of curvilinear grids all three the same.
+  std::array<ScalarType, 3> Types{ ScalarType::Float32, ScalarType::Float32, ScalarType::Float32 };
+  friend bool operator==(const PointsForm& a, const PointsForm& b)
+  {
+    return a.Kind == b.Kind && a.Types == b.Types;
+  }
+};
+
+/// The points of a step, and of those behind it up to the next one that has a file.
+struct PointsFile
+{
+  std::string File; ///< name inside `<series>.d/`, without a path
+  int FirstStep = 0;
+  std::uint64_t Bytes = 0;   ///< size of the file
+  std::uint64_t HashLow = 0; ///< of the file's head, through which every other byte is checked
+  std::uint64_t HashHigh = 0;
+};
+
+/// The points of a grid that is not regular (see Points/GridPoints.h).
+struct PointsIndex
+{
+  PointsForm Form;
+  std::vector<PointsFile> Files; ///< in the order of steps; the first one is of step 0
+  /// Throws Error where there is none.
+  const PointsFile& FileOf(int step) const;
+};
+
 /// A group of consecutive steps. Groups of equal content have the same file.
 struct SegmentIndex
 {
@@ -142,6 +181,9 @@ struct SeriesIndex
 {
   Grid Domain;
   std::optional<MeshIndex> Mesh; ///< nothing: the series is of the images themselves
+  /// Nothing: samples lie where Domain says. Domain then has the origin 0, the spacing 1 and no
+  /// direction.
+  std::optional<PointsIndex> Points;
   int BrickCells = 16;
   int Levels = 1;
   int KeyframeInterval = 8;

@@ -53,11 +53,27 @@ GoldenCase OnMesh(const std::string& name, bool cells)
   return series;
 }
 
+/// A grid with points of its own, which move once.
+GoldenCase OnGrid(const std::string& name, GridKind kind)
+{
+  GoldenCase series{ name, At({ -3, 0, 2 }, { 19, 6, 5 }), Within(1, ErrorBoundMode::Absolute, 16),
+    4, {} };
+  const ScalarType type = ScalarType::Float64;
+  series.Options.Points = PointsForm{ kind, { type, type, type } };
+  series.Options.KeyframeInterval = 3;
+  series.Domain.Origin = glm::dvec3(0.0);
+  series.Domain.Spacing = glm::dvec3(1.0);
+  series.Domain.Direction = glm::dmat3(1.0);
+  series.Arrays = { Array("real", ScalarType::Float32, Pattern::Bumps, 20, 1, -2) };
+  return series;
+}
+
 } // namespace
 
 std::vector<GoldenCase> GoldenFeatureCases()
 {
-  return { Hidden(), OnMesh("mesh", false), OnMesh("cells", true) };
+  return { Hidden(), OnMesh("mesh", false), OnMesh("cells", true),
+    OnGrid("curvilinear", GridKind::Curvilinear), OnGrid("rectilinear", GridKind::Rectilinear) };
 }
 
 } // namespace banyan::testing

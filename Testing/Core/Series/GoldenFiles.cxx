@@ -8,8 +8,10 @@
 #include "Series/Format/AtomicFile.h"
 #include "Series/Format/IndexText.h"
 #include "Series/GoldenMesh.h"
+#include "Series/Points/PointsReader.h"
 #include "Series/SeriesTesting.h"
 
+#include <array>
 #include <cstdio>
 #include <sstream>
 
@@ -260,6 +262,36 @@ std::string MeshText(const StoredMesh& mesh)
          ", corners and samples " + Hex(numbers);
 }
 
+/// Hashes of the points of all steps.
+std::string PointsText(const SeriesFile& file)
+{
+  const SeriesIndex& index = file.Index();
+  const PointsForm& form = index.Points->Form;
+  const bool curvilinear = form.Kind == GridKind::Curvilinear;
+  const Box whole{ glm::ivec3(0), index.Domain.Samples() };
+  std::string text = curvilinear ? "curvilinear" : "rectilinear";
+  ThreadPool pool(1);
+  for (int step = 0; step < index.Steps(); ++step)
+  {
+    std::array<Bytes, 3> values;
+    std::array<void*, 3> to{};
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const auto a = static_cast<std::size_t>(axis);
+      const std::int64_t count = curvilinear ? 3 * whole.Count() : whole.Size()[axis];
+      values[a].resize(static_cast<std::size_t>(count) * SizeOf(form.Types[a]));
+      to[a] = values[a].data();
+    }
+    ReadPoints(file.Folder(), index, step, 0, whole, to, pool);
+    text += std::string(", ") + NameOf(form.Types[0]);
+    for (int axis = 0; axis < (curvilinear ? 1 : 3); ++axis)
+    {
+      text += " " + Hex(values[static_cast<std::size_t>(axis)]);
+    }
+  }
+  return text;
+}
+
 void ReadSeries(const std::string& path, const std::string& name, GoldenParts& parts)
 {
   const auto file = SeriesFile::Open(path);
@@ -273,6 +305,10 @@ void ReadSeries(const std::string& path, const std::string& name, GoldenParts& p
   if (file->Index().Mesh)
   {
     parts[name + " mesh"] = MeshText(*ReadMesh(*file));
+  }
+  if (file->Index().Points)
+  {
+    parts[name + " points"] = PointsText(*file);
   }
   for (int a = 0; a < static_cast<int>(file->Index().Arrays.size()); ++a)
   {
@@ -398,6 +434,47 @@ std::shared_ptr<MeshPlan> PlanOf(
   return plan;
 }
 
+/// The points of a golden series at a step, small whole numbers: those of step 0 until step 2, then
+/// others.
+std::vector<std::vector<double>> GoldenPoints(const GoldenCase& series, int step)
+{
+  const glm::ivec3 samples = series.Domain.Samples();
+  const int moved = step < 2 ? 0 : 1;
+  std::vector<std::vector<double>> points(3);
+  const bool curvilinear = series.Options.Points->Kind == GridKind::Curvilinear;
+  for (int axis = 0; axis < 3 && !curvilinear; ++axis)
+  {
+    for (int i = 0; i < samples[axis]; ++i)
+    {
+      points[static_cast<std::size_t>(axis)].push_back(i * i + 10 * axis + moved);
+    }
+  }
+  const auto bend = [&](const glm::ivec3& s)
+  {
+    for (const int number : { 16 * s.x + s.y * s.y, 16 * s.y - s.z * s.x, 16 * s.z + moved * s.x })
+    {
+      points[0].push_back(number);
+    }
+  };
+  if (curvilinear)
+  {
+    ForPositions({ glm::ivec3(0), samples }, bend);
+  }
+  return points;
+}
+
+PointsView ViewOf(const GoldenCase& series, const std::vector<std::vector<double>>& points)
+{
+  PointsView view;
+  view.Form = *series.Options.Points;
+  view.Samples = series.Domain.Samples();
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    view.Values[axis] = points[axis].data();
+  }
+  return view;
+}
+
 } // namespace
 
 SeriesIndex WriteGoldenSeries(const std::string& folder, const GoldenCase& series)
@@ -427,6 +504,10 @@ SeriesIndex WriteGoldenSeries(const std::string& folder, const GoldenCase& serie
       const Bytes own = GoldenValues(series, array, step);
       values.push_back(mesh == nullptr ? own : ImageOf(series, array, own, mesh, pool));
       borrowed.push_back({ values.back().data() });
+    }
+    if (options.Points)
+    {
+      encoder.SetPoints(ViewOf(series, GoldenPoints(series, step)));
     }
     encoder.AddStep(GoldenTime(step), borrowed);
   }
