@@ -7,6 +7,7 @@
 #include "Parallel/Communicate/Communicator.h"
 #include "Series/Encode/EncodePlan.h"
 #include "Series/Encode/GroupMessage.h"
+#include "Series/Points/PointsWriter.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -55,8 +56,8 @@ std::vector<Bytes> GroupsOfRanks(
 
 } // namespace
 
-SeriesGroups::SeriesGroups(const WritingOrder& order, Communicator& ranks, const StepPuller& steps,
-  std::function<void()> tick)
+SeriesGroups::SeriesGroups(
+  const WritingOrder& order, Communicator& ranks, StepPuller& steps, std::function<void()> tick)
   : Order(order)
   , Ranks(ranks)
   , Steps(steps)
@@ -97,6 +98,8 @@ void SeriesGroups::Open(const StepAgreement& series, const SeriesHistograms& his
       [&] { this->Folder = std::make_unique<SegmentFolder>(this->Order.FileName); });
     this->Options.Mesh = this->Steps.Meshes().Write(this->Folder.get());
   }
+  this->Options.Points = this->Steps.Grids().Form();
+  this->Steps.Grids().Forget(); // another save may have begun, and started anew
   const auto plan = [&] { return PlanSeries(series.Whole, descriptions, this->Options); };
   CollectiveOn(0, this->Ranks, [&] { this->OpenIndex(series, plan()); });
   ThreadPool::SetRanksOnThisNode(this->Ranks.RanksOnThisNode());
@@ -152,6 +155,7 @@ void SeriesGroups::Add(int step, const StepAgreement& now)
     this->Encoder->Wait(this->Tick);
   }
   this->Exchange("at " + this->Steps.Named(step));
+  this->WritePointsOf(step, now);
   StepValues none;
   if (receives)
   {
@@ -169,6 +173,24 @@ void SeriesGroups::Add(int step, const StepAgreement& now)
     CollectiveOn(
       owner, this->Ranks, [this, group] { this->Encode(group); }, NoMemoryForGroup);
   }
+}
+
+/// Collective. Rank 0 writes points that are others than those of the step before.
+void SeriesGroups::WritePointsOf(int step, const StepAgreement& now)
+{
+  if (!this->Steps.Grids().Gather(now))
+  {
+    return;
+  }
+  CollectiveOn(0, this->Ranks,
+    [&]
+    {
+      const PointsView points = this->Steps.Grids().Whole();
+      CheckPoints(points, this->Assembly->Index());
+      this->Assembly->AddPoints(
+        WritePoints(points, step, this->Folder->PlaceOfPoints(), ThreadPool::Process()));
+      this->Steps.Grids().Release();
+    });
 }
 
 void SeriesGroups::Encode(int group)

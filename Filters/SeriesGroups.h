@@ -36,8 +36,8 @@ class SeriesGroups
 public:
   /// @param order, ranks, steps must outlive this object
   /// @param tick called again and again while ranks wait
-  SeriesGroups(const WritingOrder& order, Communicator& ranks, const StepPuller& steps,
-    std::function<void()> tick);
+  SeriesGroups(
+    const WritingOrder& order, Communicator& ranks, StepPuller& steps, std::function<void()> tick);
 
   /// Makes the folder, the file of the mesh, and the index. Needs the first step pulled.
   /// @param series grid, arrays, ranges, and what is hidden
@@ -66,6 +66,7 @@ private:
     const StepAgreement& series, const SeriesHistograms& histograms);
   void OpenIndex(const StepAgreement& series, const SeriesIndex& plan);
   void OpenEncoder(SeriesIndex plan);
+  void WritePointsOf(int step, const StepAgreement& now);
   void Encode(int group);
   void Exchange(const std::string& at);
   void TakeEncoded(int& number, Bytes& group);
@@ -74,10 +75,10 @@ private:
 
   const WritingOrder& Order;
   Communicator& Ranks;
-  const StepPuller& Steps;
+  StepPuller& Steps;
   std::function<void()> Tick;
   StepGathering Gathering;
-  EncodeOptions Options;             ///< those of Order, with the mesh
+  EncodeOptions Options;             ///< those of Order, with mesh and points
   std::vector<WrittenArray> Written; ///< what hides points and cells, if any; arrays of the series
 
   std::unique_ptr<SeriesAssembly> Assembly; ///< on rank 0

@@ -28,6 +28,7 @@ StepPuller::StepPuller(const WritingOrder& order, Communicator& ranks, std::func
   , Tick(std::move(tick))
   , Input(order.Producer, order.Port)
   , Mesh(ranks, order.Options, order.Selection, order.CellSelection, order.Displacements)
+  , Grid(ranks)
 {
 }
 
@@ -134,7 +135,12 @@ StepAgreement StepPuller::Pull(int step, Purpose purpose)
   Meet(this->Ranks, this->Tick);
   // Collective: a rank with a problem must not leave it out.
   std::string ofMesh;
-  Attempt(ofMesh, [&] { this->Mesh.Take(this->Data, mine.Problem); });
+  Attempt(ofMesh,
+    [&]
+    {
+      this->Mesh.Take(this->Data, mine.Problem);
+      this->Grid.Take(this->Data, mine.Problem);
+    });
   mine.Problem = mine.Problem.empty() ? ofMesh : mine.Problem;
   const auto report = [&] { mine = this->ReportOfMine(purpose == Purpose::Ranges); };
   Attempt(mine.Problem, report, noMemory);

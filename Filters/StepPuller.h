@@ -2,6 +2,7 @@
 #ifndef banyan_Filters_StepPuller_h
 #define banyan_Filters_StepPuller_h
 
+#include "GridSteps.h"
 #include "MeshSteps.h"
 #include "PipelineInput.h"
 #include "StepReport.h"
@@ -22,7 +23,7 @@ namespace banyan
 class Communicator;
 
 /// Pulls steps out of a pipeline, each rank its own piece, and lets all ranks agree on each step.
-/// Meshes become images (see MeshSteps).
+/// Meshes, and grids with points of their own, become images (see MeshSteps, GridSteps).
 class StepPuller
 {
 public:
@@ -57,6 +58,7 @@ public:
   vtkImageData* Mine() const;
 
   const MeshSteps& Meshes() const { return this->Mesh; }
+  GridSteps& Grids() { return this->Grid; }
 
 private:
   vtkSmartPointer<vtkDataObject> PullMine(int step, bool withFiles) const;
@@ -69,6 +71,7 @@ private:
   std::function<void()> Tick;
   PipelineInput Input;
   MeshSteps Mesh;
+  GridSteps Grid;
   std::vector<double> Times;           ///< none: the input has one step without a time
   vtkSmartPointer<vtkDataObject> Data; ///< of this rank: the last step, as an image
 };

@@ -199,8 +199,9 @@ void CheckBlanking(vtkImageData* image, StepReport& report)
 /// Why data of another kind cannot be written, and what to do.
 std::string OtherKind(vtkDataObject* data)
 {
-  const std::string kinds = "A Banyan series is made from image data (a regular grid) or from an "
-                            "unstructured grid of hexahedra, and the input is ";
+  const std::string kinds =
+    "A Banyan series is made from image data (a regular grid), from a rectilinear or curvilinear "
+    "grid, or from an unstructured grid of hexahedra, and the input is ";
   if (!data)
   {
     return kinds + "nothing: see what its source says.";

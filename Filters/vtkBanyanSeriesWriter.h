@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkBanyanSeriesWriter
- * @brief   writes a time series of image data, or of a mesh, as a Banyan series (name.banyan)
+ * @brief   writes a time series of image data, a grid, or a mesh, as a Banyan series (name.banyan)
  *
  * All steps of the input go into one series, each rank asking for its own piece of every step.
  * Groups of KeyframeInterval steps are dealt out to the ranks of the controller in turn: a rank
@@ -15,6 +15,9 @@
  * warning that names them; when there is nothing else, writing fails. Field data are not written.
  * Arrays that the selection names (all of the first step, if it names none) must be there in all
  * steps. If it names all of the first step, a warning names those that come later.
+ *
+ * vtkStructuredGrid and vtkRectilinearGrid are written as images are, with their points bit by bit:
+ * once, and again at each step where they are others. Points must be finite unless they are hidden.
  *
  * Unstructured grids (alone or as the only block of composite data) whose cells are hexahedra that
  * are the leaves of an octree are written as meshes: see Documentation/hexahedra.md. Rank 0 gathers

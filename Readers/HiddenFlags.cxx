@@ -3,8 +3,8 @@
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkImageData.h"
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -69,7 +69,7 @@ void ForEachCell(const glm::ivec3& samples, const unsigned char* points, Body&& 
 
 } // namespace
 
-void AddHiddenFlags(vtkImageData* image, vtkBanyanDeferred::Handle& handle)
+void AddHiddenFlags(vtkDataSet* image, vtkBanyanDeferred::Handle& handle)
 {
   const SeriesIndex& index = handle.Series->Index();
   vtkBanyanDeferred::Handle own = handle;

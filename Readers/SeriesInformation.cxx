@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SeriesInformation.h"
 
+#include "GridOutput.h"
 #include "SeriesRangeArray.h"
 #include "StepRequest.h"
 
@@ -14,7 +15,9 @@
 #include "Parallel/Communicate/Communicator.h"
 #include "Series/Decode/BetweenSteps.h"
 #include "Series/Decode/PieceRange.h"
+#include "Series/Format/IndexText.h"
 #include "Series/Grid/LevelGrid.h"
+#include "Series/Points/GridPoints.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,14 +30,25 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 namespace banyan
 {
-namespace
+
+bool LooksAsSeries(const std::string& path)
 {
+  const auto endsWith = [&path](const std::string& suffix)
+  {
+    return path.size() > suffix.size() &&
+           path.compare(path.size() - suffix.size(), suffix.size(), suffix) == 0;
+  };
+  return endsWith(".banyan") || endsWith(".banyan.d") || BeginsAsSeries(path);
+}
 
 int VtkTypeOf(ScalarType type)
 {
   return Dispatch(
     type, [](auto tag) -> int { return vtkTypeTraits<typename decltype(tag)::Type>::VTK_TYPE_ID; });
 }
+
+namespace
+{
 
 /// As the user knows it.
 const std::string& NameOf(const ArrayIndex& array)
@@ -63,6 +77,14 @@ namespace
 
 void DescribeGrid(const SeriesIndex& index, int level, vtkInformation& information)
 {
+  information.Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+  if (index.Points)
+  {
+    int whole[6];
+    ToExtent(ExtentOfGrid(index, level), whole);
+    information.Set(Pipeline::WHOLE_EXTENT(), whole, 6);
+    return;
+  }
   const Grid grid = GridOfLevel(index.Domain, level);
   int extent[6];
   ToExtent(grid.Extent, extent);
@@ -78,10 +100,22 @@ void DescribeGrid(const SeriesIndex& index, int level, vtkInformation& informati
     }
   }
   information.Set(vtkDataObject::DIRECTION(), direction, 9);
-  information.Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
 }
 
 } // namespace
+
+int OutputTypeOf(const SeriesFile* series, bool trees)
+{
+  const SeriesIndex* const index = series ? &series->Index() : nullptr;
+  if (index && index->Points)
+  {
+    return index->Points->Form.Kind == GridKind::Curvilinear ? VTK_STRUCTURED_GRID
+                                                             : VTK_RECTILINEAR_GRID;
+  }
+  return !index || !index->Mesh ? VTK_IMAGE_DATA
+         : trees                ? VTK_HYPER_TREE_GRID
+                                : VTK_UNSTRUCTURED_GRID;
+}
 
 void DescribeSeries(const SeriesIndex& index, int level, vtkInformation& information)
 {
@@ -116,6 +150,15 @@ void TakeTime(
   request.Step = place.Step;
   request.Fraction = interpolate ? place.Fraction : 0.0;
   request.Time = request.Fraction > 0.0 ? asked : index.Times[static_cast<std::size_t>(place.Step)];
+}
+
+void TakePiece(vtkInformation& information, StepRequest& request)
+{
+  if (information.Has(Pipeline::UPDATE_NUMBER_OF_PIECES()))
+  {
+    request.Piece = information.Get(Pipeline::UPDATE_PIECE_NUMBER());
+    request.Pieces = std::max(information.Get(Pipeline::UPDATE_NUMBER_OF_PIECES()), 1);
+  }
 }
 
 void HeldArrays::Warn(vtkObject& reader, const StepRequest& request, const Communicator& ranks)
@@ -233,6 +276,12 @@ std::string SummaryOf(const SeriesIndex& index)
     text << samples.x << " x " << samples.y << " x " << samples.z << " points";
   }
   double encoded = index.Mesh ? static_cast<double>(index.Mesh->Bytes) : 0.0;
+  if (index.Points)
+  {
+    text << (index.Points->Form.Kind == GridKind::Curvilinear ? " of a curvilinear grid"
+                                                              : " of a rectilinear grid");
+    encoded += static_cast<double>(BytesOfPoints(index));
+  }
   for (const SegmentIndex& segment : index.Segments)
   {
     encoded += static_cast<double>(segment.Bytes);

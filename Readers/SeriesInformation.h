@@ -22,6 +22,16 @@ struct StepRequest;
 void ToExtent(const Box& box, int extent[6]);
 Box FromExtent(const int extent[6]);
 
+/// Whether a file is taken for a series: by its name, or by how it begins.
+bool LooksAsSeries(const std::string& path);
+
+/// The number that VTK has for a type of values.
+int VtkTypeOf(ScalarType type);
+
+/// The type of data that a series is read as, as a number of VTK's: an image where it is null.
+/// @param trees whether meshes are read as hyper tree grids
+int OutputTypeOf(const SeriesFile* series, bool trees);
+
 /// Tells the pipeline what a series looks like at a level: grid (but that of a mesh), times, active
 /// scalars.
 void DescribeSeries(const SeriesIndex& index, int level, vtkInformation& information);
@@ -31,6 +41,9 @@ void DescribeSeries(const SeriesIndex& index, int level, vtkInformation& informa
 /// @param interpolate whether a time between two steps shows values between them
 void TakeTime(
   const SeriesIndex& index, vtkInformation& information, bool interpolate, StepRequest& request);
+
+/// Sets piece and number of pieces to those that are asked for.
+void TakePiece(vtkInformation& information, StepRequest& request);
 
 /// Arrays that stay at a step while others are interpolated.
 class HeldArrays

@@ -2,6 +2,7 @@
 #include "vtkBanyanSeriesReader.h"
 
 #include "DeferredConsumers.h"
+#include "GridOutput.h"
 #include "ImageOutput.h"
 #include "MeshOutput.h"
 #include "SeriesInformation.h"
@@ -11,6 +12,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataArraySelection.h"
 #include "vtkDataObjectTypes.h"
+#include "vtkDataSet.h"
 #include "vtkErrorCode.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -27,7 +29,6 @@
 #include "Cache/BrickCache.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Series/Decode/SeriesFile.h"
-#include "Series/Format/IndexText.h"
 
 #include <algorithm>
 #include <string>
@@ -40,6 +41,7 @@ struct vtkBanyanSeriesReader::Internals
   banyan::SeriesOfRanks File;
   banyan::ImageOutput Image;
   banyan::MeshOutput Mesh;
+  banyan::GridOutput Grid;
   double LoadSeconds = 0;                      ///< of the last update
   vtkNew<vtkDataArraySelection> Selection;     ///< of point arrays
   vtkNew<vtkDataArraySelection> CellSelection; ///< of cell arrays of meshes
@@ -95,13 +97,7 @@ void vtkBanyanSeriesReader::PrintSelf(ostream& os, vtkIndent indent)
 
 int vtkBanyanSeriesReader::CanReadFile(const char* fileName)
 {
-  const std::string path = fileName ? fileName : "";
-  const auto endsWith = [&path](const std::string& suffix)
-  {
-    return path.size() > suffix.size() &&
-           path.compare(path.size() - suffix.size(), suffix.size(), suffix) == 0;
-  };
-  return endsWith(".banyan") || endsWith(".banyan.d") || banyan::BeginsAsSeries(path) ? 1 : 0;
+  return banyan::LooksAsSeries(fileName ? fileName : "") ? 1 : 0;
 }
 
 int vtkBanyanSeriesReader::GetNumberOfLevels()
@@ -237,6 +233,11 @@ bool vtkBanyanSeriesReader::IsMesh() const
   return this->Series() && this->Series()->Index().Mesh;
 }
 
+bool vtkBanyanSeriesReader::IsImage() const
+{
+  return this->Series() && !this->Series()->Index().Mesh && !this->Series()->Index().Points;
+}
+
 int vtkBanyanSeriesReader::UsedLevel() const
 {
   return std::min(this->Level, this->Series()->Index().Levels - 1);
@@ -276,6 +277,7 @@ bool vtkBanyanSeriesReader::OpenOnAllRanks()
   if (this->Self->File.Series() != before)
   {
     this->Self->Mesh.Open(this->Self->File.Series());
+    this->Self->Grid.Forget();
   }
   return true;
 }
@@ -309,9 +311,7 @@ int vtkBanyanSeriesReader::MakeOutput(vtkInformationVector* outputs)
     open = this->OpenOnAllRanks();
   }
   vtkInformation* const info = outputs->GetInformationObject(0);
-  const int type = !this->IsMesh()             ? VTK_IMAGE_DATA
-                   : this->MeshAsHyperTreeGrid ? VTK_HYPER_TREE_GRID
-                                               : VTK_UNSTRUCTURED_GRID;
+  const int type = banyan::OutputTypeOf(this->Series(), this->MeshAsHyperTreeGrid);
   vtkDataObject* const now = info->Get(vtkDataObject::DATA_OBJECT());
   if (!now || now->GetDataObjectType() != type)
   {
@@ -375,7 +375,7 @@ void vtkBanyanSeriesReader::DecideOnDeferring()
   }
   this->Self->Executed.Modified();
   this->Self->GaveDeferred =
-    this->DeferDecoding && !this->IsMesh() && banyan::ConsumersReadDeferred(*this);
+    this->DeferDecoding && this->IsImage() && banyan::ConsumersReadDeferred(*this);
 }
 
 int vtkBanyanSeriesReader::RequestData(
@@ -430,17 +430,21 @@ void vtkBanyanSeriesReader::FillOutput(vtkInformation* info, vtkDataObject* outp
   request.Progress = [this](double part) { this->UpdateProgress(part); };
   if (this->IsMesh())
   {
-    const bool pieces = info->Has(Pipeline::UPDATE_NUMBER_OF_PIECES());
     request.Level = this->Level;
-    request.Piece = pieces ? info->Get(Pipeline::UPDATE_PIECE_NUMBER()) : 0;
-    request.Pieces = pieces ? std::max(info->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()), 1) : 1;
+    banyan::TakePiece(*info, request);
     this->Self->Mesh.Fill(request, this->ReadAhead, output);
     return;
   }
   request.Level = this->UsedLevel();
+  const banyan::Box wanted = banyan::FromExtent(info->Get(Pipeline::UPDATE_EXTENT()));
+  if (!this->IsImage())
+  {
+    this->Self->Grid.Fill(request, wanted, vtkDataSet::SafeDownCast(output));
+    return;
+  }
   const banyan::ArrayForm form = this->Self->GaveDeferred ? banyan::ArrayForm::Deferred
                                  : this->DeferDecoding    ? banyan::ArrayForm::Decoded
                                                           : banyan::ArrayForm::Plain;
-  this->Self->Image.Fill(request, banyan::FromExtent(info->Get(Pipeline::UPDATE_EXTENT())),
-    info->Get(vtkDataObject::DIRECTION()), form, vtkImageData::SafeDownCast(output));
+  this->Self->Image.Fill(request, wanted, info->Get(vtkDataObject::DIRECTION()), form,
+    vtkImageData::SafeDownCast(output));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkBanyanSeriesReader
- * @brief   reads a Banyan series (name.banyan) with time steps: image data, or an unstructured grid
+ * @brief   reads a Banyan series (name.banyan) with time steps: image data, a grid, or a mesh
  *
  * The output is vtkImageData with the extent, origin, spacing, direction, arrays and times of what
  * was encoded. Any piece or sub-extent can be asked for; only bricks that it touches are read.
@@ -11,6 +11,10 @@
  * vtkBanyanDeferred for renderers that draw from the series itself. Everybody else, and who takes
  * GetOutput() of a reader without consumers, gets plain arrays (vtkBanyanDecodedArray). The reader
  * executes again when the first of them is connected to one that is up to date.
+ *
+ * A series of a curvilinear or rectilinear grid gives back a vtkStructuredGrid or
+ * vtkRectilinearGrid with plain arrays, and with points of the same type, bit by bit. A coarser
+ * level has the points of the samples that it keeps, the last one along each axis among them.
  *
  * A series of a mesh gives back the vtkUnstructuredGrid that was encoded: its points and cells in
  * their order, with plain arrays. Level L merges cells into cubes of 2^L finest ones. A piece is a
@@ -231,6 +235,7 @@ private:
   const banyan::SeriesFile* Series() const;
   int UsedLevel() const;
   bool IsMesh() const;
+  bool IsImage() const;
   int MakeOutput(vtkInformationVector* outputs);
   void DecideOnDeferring();
   void FillOutput(vtkInformation* info, vtkDataObject* output);

@@ -157,10 +157,8 @@ def other_kinds(folder):
         "tetrahedra": (simple.Tetrahedralize(Input=wavelet), "'Resample To Image'"),
         "blocks": (simple.GroupDatasets(Input=[simple.Sphere(), simple.Cone()]), "vtkMultiBlock"),
         "table": (simple.ProgrammableSource(OutputDataSetType="vtkTable"), "'Table To Structured Grid'"),
-        "rectilinear": (simple.ProgrammableSource(OutputDataSetType="vtkRectilinearGrid"),
-                        "'Resample To Image'"),
-        "curvilinear": (simple.ProgrammableSource(OutputDataSetType="vtkStructuredGrid"),
-                        "'Resample To Image'"),
+        "rectilinear": (simple.ProgrammableSource(OutputDataSetType="vtkRectilinearGrid"), "is empty"),
+        "curvilinear": (simple.ProgrammableSource(OutputDataSetType="vtkStructuredGrid"), "is empty"),
         "failure": (simple.LegacyVTKReader(FileNames=["nowhere.vtk"]), "nowhere.vtk"),
     }
     for what, (source, mention) in kinds.items():
