@@ -70,6 +70,26 @@ void CheckMeshes(const SeriesIndex& index, int step, const SourceStep& source)
   }
 }
 
+std::string KindOf(bool points, GridKind kind)
+{
+  return !points                         ? "an image"
+         : kind == GridKind::Curvilinear ? "a curvilinear grid"
+                                         : "a rectilinear grid";
+}
+
+/// Raw files know of no grid.
+void CheckKinds(const SeriesIndex& index, int step, const SourceStep& source)
+{
+  const std::string mine =
+    KindOf(index.Points.has_value(), index.Points ? index.Points->Form.Kind : GridKind{});
+  const std::string theirs =
+    KindOf(source.Points.has_value(), source.Points ? source.Points->Kind : GridKind{});
+  if (source.Domain && mine != theirs)
+  {
+    Refuse(step, "the source is " + theirs + ", and the series is one of " + mine + ".");
+  }
+}
+
 void CheckGrids(const SeriesIndex& index, int step, const SourceStep& source)
 {
   if (source.Mesh || index.Mesh)
@@ -77,6 +97,7 @@ void CheckGrids(const SeriesIndex& index, int step, const SourceStep& source)
     CheckMeshes(index, step, source);
     return;
   }
+  CheckKinds(index, step, source);
   const Grid& series = index.Domain;
   if (source.Domain && source.Domain->Extent != series.Extent)
   {

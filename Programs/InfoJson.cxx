@@ -197,6 +197,12 @@ std::string InfoToJson(const SeriesReport& report, const DecodeTimes* times)
     json["mesh"] = { { "points", index.Mesh->Points }, { "cells", index.Mesh->Cells },
       { "bytes", index.Mesh->Bytes } };
   }
+  if (index.Points)
+  {
+    const bool curvilinear = index.Points->Form.Kind == GridKind::Curvilinear;
+    json["gridPoints"] = { { "kind", curvilinear ? "curvilinear" : "rectilinear" },
+      { "files", index.Points->Files.size() }, { "bytes", BytesOfPoints(index) } };
+  }
   json["grid"] = GridToJson(index.Domain);
   json["times"] = index.Times;
   json["segments"] = index.Segments.size();

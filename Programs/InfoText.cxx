@@ -63,7 +63,16 @@ std::string Heading(const SeriesReport& report)
     text += std::string(axis == 0 ? "  extent" : "") + " " + std::to_string(extent.Lo[axis]) +
             ".." + std::to_string(extent.Hi[axis] - 1);
   }
-  if (!index.Mesh)
+  if (index.Points)
+  {
+    const bool curvilinear = index.Points->Form.Kind == GridKind::Curvilinear;
+    text +=
+      std::string(", points of a ") + (curvilinear ? "curvilinear" : "rectilinear") +
+      " grid: " + Megabytes(BytesOfPoints(index)) + ", " +
+      (index.Points->Files.size() == 1 ? "the same at all steps"
+                                       : "new at " + Counted(index.Points->Files.size(), "step"));
+  }
+  else if (!index.Mesh)
   {
     text +=
       ", origin " + Numbers(index.Domain.Origin) + ", spacing " + Numbers(index.Domain.Spacing);
@@ -116,6 +125,8 @@ std::string Size(const SeriesReport& report)
          Megabytes(report.SegmentBytes - report.Index.Statistics.PayloadBytes) + ", index " +
          Megabytes(report.IndexBytes) +
          (report.Index.Mesh ? ", mesh " + Megabytes(report.Index.Mesh->Bytes) : std::string()) +
+         (report.Index.Points ? ", points " + Megabytes(BytesOfPoints(report.Index))
+                              : std::string()) +
          "\n" + Repeated(report.Index.Statistics) + Chains(report.Index.Statistics);
 }
 

@@ -5,6 +5,7 @@
 #include "InterpolationError.h"
 #include "Series/Decode/BrickTree.h"
 #include "Series/Decode/SeriesFile.h"
+#include "Series/Points/GridPoints.h"
 
 #include <cstdint>
 #include <optional>
@@ -71,10 +72,11 @@ struct SeriesReport
   std::uint64_t SegmentBytes = 0;
   std::vector<ComponentReport> Components; ///< of the arrays that were asked for
 
-  /// With the mesh, if there is one.
+  /// With the mesh or points, if there are some.
   std::uint64_t EncodedBytes() const
   {
-    return this->IndexBytes + this->SegmentBytes + (this->Index.Mesh ? this->Index.Mesh->Bytes : 0);
+    return this->IndexBytes + this->SegmentBytes +
+           (this->Index.Mesh ? this->Index.Mesh->Bytes : 0) + BytesOfPoints(this->Index);
   }
   /// Values of all steps, arrays and components: what "per value" refers to.
   std::int64_t Values() const;

@@ -20,8 +20,12 @@ public:
   void ReadValues(std::size_t array, std::vector<std::uint8_t>& values) override;
 
 private:
+  void AddPoints(SourceStep& step);
+  void ReadPointsOf(std::size_t axis, std::vector<std::uint8_t>& values);
+
   std::shared_ptr<const SeriesFile> File;
-  int Step = -1; ///< at hand
+  std::size_t Points = 0; ///< arrays that are points of the grid
+  int Step = -1;          ///< at hand
 };
 
 } // namespace banyan

@@ -6,6 +6,7 @@
 #include "Series/Format/SeriesIndex.h"
 #include "Series/Grid/Grid.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -39,6 +40,14 @@ struct SourceMesh
   int Corners = -1;     ///< eight points (int64) of each cell, in the order that its type has
 };
 
+/// Says which arrays of a source are the points of its grid.
+struct SourcePoints
+{
+  GridKind Kind = GridKind::Curvilinear;
+  /// Rectilinear: the coordinates along each axis. Curvilinear: x, y, z of each sample first.
+  std::array<int, 3> Arrays{ -1, -1, -1 };
+};
+
 /// Holds what a source says of a step, before its values.
 struct SourceStep
 {
@@ -49,11 +58,27 @@ struct SourceStep
   std::vector<SourceArray> Arrays;
   std::optional<SourceMesh> Mesh{}; ///< samples are points, along x, then
 
-  /// Whether an array holds values, and not the mesh.
+  std::optional<SourcePoints> Points{}; ///< of a grid that is not regular
+
+  /// Whether an array holds values, and neither a mesh nor points.
   bool IsValue(std::size_t array) const
   {
     const int number = static_cast<int>(array);
-    return !this->Mesh || (number != this->Mesh->Coordinates && number != this->Mesh->Corners);
+    const bool ofMesh =
+      this->Mesh && (number == this->Mesh->Coordinates || number == this->Mesh->Corners);
+    return !ofMesh && this->AxisOf(array) < 0;
+  }
+  /// The place of an array in SourcePoints::Arrays, or -1.
+  int AxisOf(std::size_t array) const
+  {
+    for (int axis = 0; this->Points && axis < 3; ++axis)
+    {
+      if (this->Points->Arrays[static_cast<std::size_t>(axis)] == static_cast<int>(array))
+      {
+        return axis;
+      }
+    }
+    return -1;
   }
 };
 

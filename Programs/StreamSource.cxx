@@ -68,6 +68,25 @@ Grid GridFrom(const Json& json)
   return grid;
 }
 
+/// Takes the last array as points of a grid, if that is its role.
+void TakePoints(const std::string& role, SourceStep& step)
+{
+  const int number = static_cast<int>(step.Arrays.size()) - 1;
+  for (int axis = 0; !step.Mesh && axis < 3; ++axis)
+  {
+    if (role == std::string("along ") + "xyz"[axis])
+    {
+      step.Points = step.Points ? step.Points : SourcePoints{ GridKind::Rectilinear };
+      step.Points->Arrays[static_cast<std::size_t>(axis)] = number;
+      step.Arrays.back().Tuples = step.Samples[axis];
+    }
+  }
+  if (!step.Mesh && role == "points")
+  {
+    step.Points = SourcePoints{ GridKind::Curvilinear, { number, -1, -1 } };
+  }
+}
+
 SourceStep StepFrom(const Json& json)
 {
   SourceStep step;
@@ -100,6 +119,7 @@ SourceStep StepFrom(const Json& json)
     step.Arrays.push_back({ array.at("name").get<std::string>(),
       ScalarTypeFromName(array.at("type").get<std::string>()), components });
     const std::string role = array.value("role", "");
+    TakePoints(role, step);
     if (step.Mesh && role == "coordinates")
     {
       step.Mesh->Coordinates = static_cast<int>(step.Arrays.size()) - 1;

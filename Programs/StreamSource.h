@@ -18,6 +18,9 @@ namespace banyan
 ///      "direction": [1, 0, 0, 0, 1, 0, 0, 0, 1],
 ///      "arrays": [{"name": "pressure", "type": "float32", "components": 1}]}
 ///
+/// Points of a grid that is not regular are arrays, too, with a "role": "points", or "along x",
+/// "along y" and "along z". They come before all other arrays.
+///
 /// (in one line; extent and direction as in VTK; "time" may be null). Values are little-endian,
 /// `[z][y][x][component]`. The last line is {"end": true}; or {"error": "A sentence."} when the
 /// program cannot go on. A stream that ends without either is cut short.

@@ -8,9 +8,11 @@
 #include "Cache/BrickCache.h"
 #include "Mesh/Series/AtlasValues.h"
 #include "Mesh/Series/MeshFile.h"
+#include "Series/Points/PointsReader.h"
 #include "Series/Quantize/FillValues.h"
 
 #include <algorithm>
+#include <array>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
@@ -145,6 +147,11 @@ private:
       if (!step.IsValue(a))
       {
         this->Source.ReadValues(a, original);
+        if (step.Points)
+        {
+          this->ComparePoints(number, step.Arrays[a], step.AxisOf(a), original);
+          continue;
+        }
         this->CompareMesh(
           number, step.Arrays[a], static_cast<int>(a) == step.Mesh->Corners, original);
         continue;
@@ -202,6 +209,32 @@ private:
       throw Error("At step " + std::to_string(number) + " the " +
                   (corners ? "corners of cells" : "coordinates of points") +
                   " of the source differ from the series.");
+    }
+  }
+
+  /// Points of a grid must be the same bits.
+  void ComparePoints(
+    int number, const SourceArray& array, int axis, const std::vector<std::uint8_t>& original) const
+  {
+    const PointsForm& form = this->Series.Index().Points->Form;
+    std::array<std::vector<std::uint8_t>, 3> mine;
+    std::array<void*, 3> to{};
+    for (int a = 0; a < 3; ++a)
+    {
+      const auto at = static_cast<std::size_t>(a);
+      const std::int64_t count = form.Kind == GridKind::Rectilinear ? this->Whole.Size()[a]
+                                 : a == 0                           ? 3 * this->Whole.Count()
+                                                                    : 0;
+      mine[at].resize(static_cast<std::size_t>(count) * SizeOf(form.Types[at]));
+      to[at] = mine[at].data();
+    }
+    ReadPoints(this->Series.Folder(), this->Series.Index(), number, 0, this->Whole, to,
+      ThreadPool::Process());
+    const auto at = static_cast<std::size_t>(axis);
+    if (array.Type != form.Types[at] || original != mine[at])
+    {
+      throw Error("At step " + std::to_string(number) +
+                  " the points of the source differ from those of the series.");
     }
   }
 

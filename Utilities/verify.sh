@@ -5,9 +5,10 @@
 #   verify.sh FILE --against SOURCE... --raw-type float32 --dims X Y Z [...]
 #
 #   FILE               the series, name.banyan
-#   --against SOURCE   what it was made from: a file or files, in order of time, of image data or of a
-#                      mesh that ParaView opens (.vti, .vti.series, .pvd, .mhd, .exo, .vtu, ...), or
-#                      another .banyan (of images)
+#   --against SOURCE   what it was made from: a file or files, in order of time, of image data, of a
+#                      curvilinear or rectilinear grid or of a mesh that ParaView opens (.vti,
+#                      .vti.series, .pvd, .mhd, .vts, .vtr, .exo, .vtu, ...), or another .banyan (of
+#                      no mesh)
 #   --raw-type T       SOURCE are raw files without a header, little-endian, x fastest, of type
 #                      float32, float64, uint8, ...; each holds one time step or more
 #   --dims X Y Z       samples of raw files per axis
@@ -17,7 +18,7 @@
 #   --json             the report as JSON instead of text
 #
 # Exit status 0: every finite value of every step is within the bound, NaN and infinities are the same
-# bits, and so are which points and cells are hidden and the values at hidden points; 1: not so, and the worst value is named; 2: the two cannot be compared (steps,
+# bits, and so are the points of grids, which points and cells are hidden and the values at hidden points; 1: not so, and the worst value is named; 2: the two cannot be compared (steps,
 # times, grids, arrays or types differ, or something cannot be read). Neither raw files nor .banyan
 # need ParaView. Builds what it needs when it is missing.
 # How to read the report: Documentation/howto/how-good.md.

@@ -55,6 +55,14 @@ def test_verify(folder):
                path(f"hiding_{name}.vti"))
     expect(2, "the source has hidden points, and the series does not say which", "verify.sh", series, "--array", "heat",
            "--against", path("hiding_0.vti"))
+    for kind in (".vts", ".vtr"):
+        grid, grids = path(f"grid{kind}.banyan"), [path(f"grid_{step}{kind}") for step in range(3)]
+        expect(0, "PROVEN", "verify.sh", grid, "--against", *grids)
+        expect(0, "PROVEN", "verify.sh", grid, "--against", grid)
+        expect(2, "At step 1 the points of the source differ from those of the series", "verify.sh", grid,
+               "--against", grids[0], path("moved" + kind), grids[2])
+        expect(2, "the source is an image, and the series is one of a", "verify.sh", grid, "--array", "heat",
+               "--against", *source)
     status, output, messages = run("verify.sh", series, "--json", "--opacity", "0:0,10:1",
                                    "--against", *source)
     check(status == 0, messages)
@@ -91,6 +99,8 @@ def test_info(folder):
     status, output, messages = run("info.sh", series, "--json", "--step", "1")
     check(status == 0, messages)
     check(json.loads(output)["size"]["values"] == 12 * 11 * 6 * 3 * 4, output)
+    expect(0, "points of a curvilinear grid: ", "info.sh", os.path.join(folder, "grid.vts.banyan"))
+    expect(0, "new at 2 steps", "info.sh", os.path.join(folder, "grid.vtr.banyan"))
     for kind, start in {"png": b"\x89PNG", "svg": b"<?xml", "csv": b"array,step,"}.items():
         figure = os.path.join(folder, "figure." + kind)
         status, _output, messages = run("info.sh", series, "--figure", figure)

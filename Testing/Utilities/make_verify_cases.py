@@ -7,8 +7,9 @@ import sys
 
 from paraview import simple
 from vtkmodules.vtkCommonCore import vtkFloatArray, vtkShortArray
-from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkImageData
-from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkImageData, vtkRectilinearGrid, vtkStructuredGrid
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter, vtkXMLRectilinearGridWriter, vtkXMLStructuredGridWriter
 
 STEPS = 3
 NAN, HIDDEN, CHANGED = 17, 40, 55  # numbers of points
@@ -45,8 +46,33 @@ def hiding_at(step):
     return image
 
 
+def grid_at(step, curvilinear, place=0.0):
+    """The values of an image on a grid with points of its own, which move after the first step."""
+    grid = vtkStructuredGrid() if curvilinear else vtkRectilinearGrid()
+    image = image_at(step)
+    grid.SetExtent(image.GetExtent())
+    grid.GetPointData().AddArray(image.GetPointData().GetArray("heat"))
+    if curvilinear:
+        points = vtkPoints()
+        points.SetDataTypeToDouble()
+        for i in range(image.GetNumberOfPoints()):
+            x, y, z = image.GetPoint(i)
+            points.InsertNextPoint(x + 0.01 * y * y + (step > 0), y, z - 0.1 * x)
+        x, y, z = points.GetPoint(CHANGED)
+        points.SetPoint(CHANGED, x, y + place, z)
+        grid.SetPoints(points)
+        return grid
+    for axis, take in enumerate((grid.SetXCoordinates, grid.SetYCoordinates, grid.SetZCoordinates)):
+        along = vtkFloatArray()
+        for i in range(image.GetDimensions()[axis]):
+            along.InsertNextValue(i * i + axis * (step > 0) + (place if i == 3 else 0.0))
+        take(along)
+    return grid
+
+
 def write(image, path):
-    writer = vtkXMLImageDataWriter()
+    writer = {".vti": vtkXMLImageDataWriter, ".vts": vtkXMLStructuredGridWriter,
+              ".vtr": vtkXMLRectilinearGridWriter}[os.path.splitext(path)[1]]()
     writer.SetFileName(path)
     writer.SetInputData(image)
     writer.SetDataModeToBinary()  # ParaView of Debian 12 cannot read appended data
@@ -89,6 +115,13 @@ def main():
         image = hiding_at(1)
         change(image)
         write(image, os.path.join(folder, f"hiding_{name}.vti"))
+
+    for curvilinear, name in ((True, ".vts"), (False, ".vtr")):
+        grids = [os.path.join(folder, f"grid_{step}{name}") for step in range(STEPS)]
+        for step, path in enumerate(grids):
+            write(grid_at(step, curvilinear), path)
+        encode(grids, os.path.join(folder, f"grid{name}.banyan"))
+        write(grid_at(1, curvilinear, 1e-5), os.path.join(folder, "moved" + name))
 
 
 main()

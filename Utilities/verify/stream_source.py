@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""pvpython stream_source.py [--array NAME]... FILES...: sends image data through a pipe.
+"""pvpython stream_source.py [--array NAME]... FILES...: sends data on a grid through a pipe.
 
 Reads the files, one series in order of time, with ParaView, and writes each step to the standard
 output in the form that Programs/StreamSource.h describes: a line of JSON, then the values of its
@@ -15,6 +15,7 @@ from paraview import simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 GHOSTS = "vtkGhostType"
+KINDS = ["vtkImageData", "vtkStructuredGrid", "vtkRectilinearGrid", "vtkUnstructuredGrid"]
 HIDDEN_POINT, HIDDEN_OR_REFINED_CELL = 2, 32 | 8  # of vtkDataSetAttributes
 
 
@@ -68,10 +69,11 @@ def image_at(reader, time, file):
     image = reader.GetClientSideObject().GetOutputDataObject(0)
     if image is not None and image.IsA("vtkCompositeDataSet"):
         image = only_block(image, file)
-    if image is None or not (image.IsA("vtkImageData") or image.IsA("vtkUnstructuredGrid")):
+    if image is None or not any(image.IsA(kind) for kind in KINDS):
         kind = "nothing" if image is None else image.GetClassName()
-        raise SourceError(f"{file} holds {kind}, and a series holds image data (vtkImageData) or a "
-                          "mesh (vtkUnstructuredGrid).")
+        raise SourceError(f"{file} holds {kind}, and a series holds image data (vtkImageData), a curvilinear "
+                          "or rectilinear grid (vtkStructuredGrid, vtkRectilinearGrid) or a mesh "
+                          "(vtkUnstructuredGrid).")
     if image.GetNumberOfPoints() == 0:
         raise SourceError(f"Nothing could be read from {file} at time {time:.17g}.")
     return image
@@ -117,6 +119,26 @@ def flags_of(image):
     return [(name, numpy.ascontiguousarray(values)) for name, values in flags if values.any()]
 
 
+def points_of(grid):
+    """Name, values and role of the points of a grid that is no image; none of an image."""
+    if grid.IsA("vtkStructuredGrid"):
+        return [("", vtk_to_numpy(grid.GetPoints().GetData()), "points")]
+    if grid.IsA("vtkRectilinearGrid"):
+        along = [grid.GetXCoordinates(), grid.GetYCoordinates(), grid.GetZCoordinates()]
+        return [("", vtk_to_numpy(values).reshape(-1, 1), f"along {axis}") for values, axis in zip(along, "xyz")]
+    return []
+
+
+def placement_of(image):
+    """Where the samples of an image lie; other grids have points."""
+    if not image.IsA("vtkImageData"):
+        identity = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]
+        return {"origin": [0.0] * 3, "spacing": [1.0] * 3, "direction": identity}
+    matrix = image.GetDirectionMatrix()
+    return {"origin": list(image.GetOrigin()), "spacing": list(image.GetSpacing()),
+            "direction": [matrix.GetElement(row, column) for row in range(3) for column in range(3)]}
+
+
 def send_mesh(stream, grid, time, arrays, wanted):
     """Points and corners of cells come before the values."""
     points = vtk_to_numpy(grid.GetPoints().GetData())
@@ -140,16 +162,13 @@ def send_step(stream, image, time, arrays, wanted):
         send_mesh(stream, image, time, arrays, wanted)
         return
     arrays = flags_of(image) + arrays  # by which the others are judged
-    matrix = image.GetDirectionMatrix()
-    header = {"time": time, "extent": list(image.GetExtent()), "origin": list(image.GetOrigin()),
-              "spacing": list(image.GetSpacing()),
-              "direction": [matrix.GetElement(row, column) for row in range(3)
-                            for column in range(3)],
-              "arrays": [{"name": name, "type": type_name(values), "components": values.shape[1]}
-                         for name, values in arrays]}
+    parts = points_of(image) + [(name, values, "") for name, values in arrays]
+    header = {"time": time, "extent": list(image.GetExtent()), **placement_of(image),
+              "arrays": [{"name": name, "type": type_name(values), "components": values.shape[1],
+                          "role": role} for name, values, role in parts]}
     stream.write(json.dumps(header).encode() + b"\n")
-    for _name, values in arrays:
-        stream.write(memoryview(values).cast("B"))
+    for _name, values, _role in parts:
+        stream.write(memoryview(numpy.ascontiguousarray(values)).cast("B"))
     stream.flush()
 
 
