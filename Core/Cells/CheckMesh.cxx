@@ -46,6 +46,11 @@ void Add(CellFacts& to, const CellFacts& from)
   {
     to.FirstOtherType = from.FirstOtherType;
   }
+  if (Add(to.OtherCounts, from.OtherCounts))
+  {
+    to.FirstCount = from.FirstCount;
+    to.FirstCorners = from.FirstCorners;
+  }
 }
 
 /// Whether all coordinates can be computed with.
@@ -88,10 +93,7 @@ public:
     const int corners = CornersOf(is.Shape);
     if (corners == 0)
     {
-      Note(facts.OtherTypes, cell);
-      // Cells come in the order of their numbers.
-      facts.FirstOtherType =
-        facts.OtherTypes.Count == 1 ? this->Mesh.Types[cell] : facts.FirstOtherType;
+      this->NoteUndrawn(cell, facts);
       return false;
     }
     if (!this->AreInRange(cell, is, corners))
@@ -119,6 +121,27 @@ public:
   }
 
 private:
+  /// Cells come in the order of their numbers: the first one of a kind is the first of all.
+  void NoteUndrawn(std::int64_t cell, CellFacts& facts) const
+  {
+    const std::uint8_t type = this->Mesh.Types[cell];
+    const int corners = CornersOf(CellMesh::ShapeOf(type));
+    CellFacts::Some& some = corners == 0 ? facts.OtherTypes : facts.OtherCounts;
+    Note(some, cell);
+    if (some.Count > 1)
+    {
+      return;
+    }
+    if (corners == 0)
+    {
+      facts.FirstOtherType = type;
+      return;
+    }
+    const CellMesh::Listed list = this->Mesh.ListOf(cell);
+    facts.FirstCount = list.End - list.Begin;
+    facts.FirstCorners = corners;
+  }
+
   /// Whether the mesh has as many numbers of points as a cell needs: before any is read.
   bool IsListed(std::int64_t cell) const
   {
@@ -229,6 +252,9 @@ std::vector<std::string> CellFacts::Remarks() const
                       (this->Repeated == 1 ? " cell has" : " cells have") +
                       " the corners of another one, and one of both is drawn");
   }
+  const std::string count =
+    std::to_string(this->FirstCount) + " points in place of " + std::to_string(this->FirstCorners);
+  say(this->OtherCounts, "is left out: it has " + count, "are left out: that one has " + count);
   say(this->Folded, "is folded over at a corner, and may have a hole there",
     "are folded over at a corner, and may have holes there");
   return remarks;

@@ -35,6 +35,9 @@ struct CellFacts
   Some WithoutVolume;                     ///< left out: all corners in a plane
   Some OtherTypes;                        ///< left out: not of a shape that is drawn
   int FirstOtherType = 0;                 ///< as VTK numbers types
+  Some OtherCounts;                       ///< left out: not as many points as their type has
+  std::int64_t FirstCount = 0;            ///< of points that the first of these has
+  int FirstCorners = 0;                   ///< that it should have
   Some Folded; ///< drawn, but with corners at which they are mirrored, and others where not
 
   std::int64_t Repeated = 0; ///< left out by OrderOfCells; CheckCells does not count them

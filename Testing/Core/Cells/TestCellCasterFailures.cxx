@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cells that are not as they should be.
+#include "Base/Error.h"
 #include "Cells/CellParts.h"
 #include "Cells/RayLengths.h"
 
@@ -7,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 
 namespace
 {
@@ -20,7 +23,9 @@ using cellmeshes::OwnedCellMesh;
 using cellmeshes::ShownAs;
 
 /// The slow reference, within its bounds.
-void ExpectReference(const DrawnMesh& drawn, double decibels = 85.0, double worst = 0.2)
+/// @param least pixels with something in them
+void ExpectReference(
+  const DrawnMesh& drawn, double decibels = 85.0, double worst = 0.2, int least = 5)
 {
   const FloatImage image = drawn.Draw();
   const Apart apart = cellmeshes::Between(image, drawn.Reference());
@@ -28,7 +33,7 @@ void ExpectReference(const DrawnMesh& drawn, double decibels = 85.0, double wors
   EXPECT_LE(apart.Worst, worst);
   EXPECT_GT(std::count_if(image.Pixels.begin(), image.Pixels.end(),
               [](const glm::vec4& pixel) { return pixel.a > 0.02f; }),
-    4);
+    least - 1);
 }
 
 OwnedCellMesh BentCube(Cut cut = Cut::Mixed, int n = 4)
@@ -181,6 +186,153 @@ TEST(CellCasterFailures, ManyCellsUnderAPixel)
     SCOPED_TRACE(step);
     ExpectReference(drawn);
   }
+}
+
+TEST(CellCasterFailures, AMeshInAFewPixels)
+{
+  ShownAs as;
+  as.Picture = { 9, 9 };
+  as.Distance = 8.0;
+  DrawnMesh drawn(BentCube(Cut::Hexahedra, 20), as);
+  drawn.Scene.Transfer.UnitDistance = 0.1;
+  ExpectReference(drawn, 85.0, 0.2, 1);
+}
+
+/// The cells of a mesh that are drawn when it is checked, seen as another one.
+DrawnMesh Checked(const OwnedCellMesh& mesh, const OwnedCellMesh& seenAs)
+{
+  ThreadPool pool(2);
+  CellFacts facts;
+  DrawnMesh drawn(seenAs);
+  DrawnCells cells = *DrawnCells::Of(mesh.View(), facts, pool);
+  cells.Lattice = drawn.Field.Cells->Lattice;
+  drawn.SetCells(cells);
+  return drawn;
+}
+
+/// @return the sentence that it is refused with, or none
+std::string RefusalOf(const OwnedCellMesh& mesh)
+{
+  ThreadPool pool(2);
+  CellFacts facts;
+  try
+  {
+    DrawnCells::Of(mesh.View(), facts, pool);
+    return "";
+  }
+  catch (const Error& error)
+  {
+    return error.what();
+  }
+}
+
+TEST(CellCasterFailures, PointsThatAreNoNumbersTakeTheirCellsWithThem)
+{
+  const OwnedCellMesh good = BentCube(Cut::Mixed);
+  const FloatImage whole = Checked(good, good).Draw();
+  const std::int64_t point = good.Ids.back();
+  std::vector<std::uint8_t> hidden(Index(good.CellCount()), 0);
+  for (std::int64_t cell = 0; cell < good.CellCount(); ++cell)
+  {
+    hidden[Index(cell)] = std::count(good.Ids.begin() + good.Offsets[Index(cell)],
+                            good.Ids.begin() + good.Offsets[Index(cell + 1)], point) > 0
+                            ? 1
+                            : 0;
+  }
+  DrawnMesh without = Checked(good, good);
+  DrawnCells cells = *without.Field.Cells;
+  cells.Order.erase(std::remove_if(cells.Order.begin(), cells.Order.end(),
+                      [&](std::uint32_t cell) { return hidden[cell] != 0; }),
+    cells.Order.end());
+  without.SetCells(cells);
+  const FloatImage expected = without.Draw();
+  EXPECT_GT(MaxDifference(expected, whole), 0.01);
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double bad : { double(NAN), infinity, -infinity, 1e200 })
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      OwnedCellMesh mesh = good;
+      mesh.Points[Index(3 * point + axis)] = bad;
+      EXPECT_EQ(MaxDifference(Checked(mesh, good).Draw(), expected), 0.0) << bad << " " << axis;
+    }
+  }
+}
+
+/// The lattice takes them all, and what lies near each other falls into one place of it.
+TEST(CellCasterFailures, OneHugeCellBesideAllOthers)
+{
+  for (const double size : { 1e8, 1e30, 1e149 })
+  {
+    OwnedCellMesh mesh = BentCube();
+    OwnedCellMesh other = cellmeshes::OneCell(CellShape::Hexahedron);
+    cellmeshes::Place(other, glm::dvec3(size), glm::dvec3(2.0));
+    other.Values.assign(Index(other.PointCount()), 0.5f);
+    cellmeshes::Append(mesh, other);
+    ThreadPool pool(2);
+    CellFacts facts;
+    const auto cells = DrawnCells::Of(mesh.View(), facts, pool);
+    EXPECT_EQ(facts.Drawn(), mesh.CellCount());
+    const CellLattice& lattice = cells->Lattice;
+    DrawnMesh drawn(BentCube());
+    drawn.Field.Cells = cells;
+    drawn.Field.Values = mesh.Values;
+    drawn.Scene.IndexToWorld =
+      glm::scale(glm::translate(glm::dmat4(1.0), lattice.Origin / lattice.Edge), glm::dvec3(1.0));
+    drawn.Scene.DomainCells = { glm::ivec3(0), lattice.Size };
+    drawn.Scene.SampleDistance = 1e4;
+    drawn.Scene.Transfer.UnitDistance = 1e5;
+    const double diagonal = drawn.Diagonal();
+    drawn.LookFrom(drawn.Centre() + 1.4 * diagonal * glm::dvec3(0.48, 0.36, 0.8), drawn.Centre(),
+      glm::perspective(0.6, 1.0, 0.1 * diagonal, 4.0 * diagonal));
+    const FloatImage image = drawn.Draw();
+    for (const glm::vec4& pixel : image.Pixels)
+    {
+      ASSERT_TRUE(pixel.a >= 0.0f && pixel.a <= 1.0f) << size;
+    }
+    EXPECT_GT(image.At(24, 24).a, 0.05f) << size;
+  }
+}
+
+TEST(CellCasterFailures, RepeatedPointsDrawNothing)
+{
+  const OwnedCellMesh good = BentCube(Cut::Hexahedra);
+  const FloatImage image = Checked(good, good).Draw();
+  for (const std::vector<std::int64_t>& corners :
+    { std::vector<std::int64_t>{ 3, 3, 3, 3, 3, 3, 3, 3 }, { 3, 3, 3, 3, 60, 60, 60, 60 },
+      { 0, 1, 2, 3, 0, 1, 2, 3 } })
+  {
+    OwnedCellMesh mesh = good;
+    mesh.AddCell(cellmeshes::Hexahedron, corners);
+    EXPECT_EQ(MaxDifference(Checked(mesh, good).Draw(), image), 0.0) << corners[4];
+  }
+}
+
+TEST(CellCasterFailures, CellsThatAreNotDrawnChangeNothing)
+{
+  const OwnedCellMesh good = BentCube(Cut::Mixed);
+  const FloatImage image = Checked(good, good).Draw();
+  OwnedCellMesh mesh = good;
+  mesh.AddCell(5, { 0, 1, 40 });
+  mesh.AddCell(3, { 0, 40 });
+  mesh.AddCell(1, { 7 });
+  mesh.AddCell(0, {});
+  mesh.AddCell(cellmeshes::Hexahedron, { 0, 1, 2, 30, 31, 32, 40 });
+  EXPECT_EQ(MaxDifference(Checked(mesh, good).Draw(), image), 0.0);
+}
+
+TEST(CellCasterFailures, MeshesWithoutCellsToDrawAreRefused)
+{
+  OwnedCellMesh mesh;
+  mesh.Offsets = { 0 };
+  EXPECT_EQ(RefusalOf(mesh), "The mesh has no cells that can be drawn");
+  mesh.Points = { 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0 };
+  mesh.AddCell(5, { 0, 1, 2 });
+  mesh.AddCell(3, { 0, 1 });
+  mesh.AddCell(cellmeshes::Tetrahedron, { 0, 1, 2, 3 });
+  EXPECT_EQ(RefusalOf(mesh), "The mesh has no cells that can be drawn");
+  mesh.AddCell(cellmeshes::Tetrahedron, { 0, 1, 2, 4 });
+  EXPECT_EQ(RefusalOf(mesh), "Cell 3 refers to point 4, and the mesh has 4 points");
 }
 
 } // namespace

@@ -104,7 +104,7 @@ TEST(CheckMesh, NamesTypesThatAreNotDrawn)
   OwnMesh mesh = BoxOf(Split::Hexahedra, 1, 1, 1);
   mesh.AddCell(5, { 0, 1, 2 });
   mesh.AddCell(3, { 0, 1 });
-  mesh.AddCell(10, { 0, 1, 2 }); // a tetrahedron with a corner too few
+  mesh.AddCell(0, {});
   const CellFacts facts = Check(mesh.View());
   EXPECT_EQ(facts.OtherTypes.Count, 3);
   EXPECT_EQ(facts.OtherTypes.First, 1);
@@ -114,6 +114,37 @@ TEST(CheckMesh, NamesTypesThatAreNotDrawn)
     "3 cells, the first of which is 1, are left out: type 5 of VTK is not drawn");
 }
 
+TEST(CheckMesh, CountsPointsThatTypesHave)
+{
+  OwnMesh mesh = BoxOf(Split::Hexahedra, 1, 1, 1);
+  mesh.AddCell(12, { 0, 1, 2, 3, 4, 5, 6 });
+  CellFacts facts = Check(mesh.View());
+  EXPECT_EQ(facts.OtherCounts.Count, 1);
+  EXPECT_EQ(facts.OtherTypes.Count, 0);
+  EXPECT_EQ(facts.Drawn(), 1);
+  ASSERT_EQ(facts.Remarks().size(), 1u);
+  EXPECT_EQ(facts.Remarks()[0], "Cell 1 is left out: it has 7 points in place of 8");
+  mesh.AddCell(10, { 0, 1, 2 });
+  mesh.AddCell(14, { 0, 1, 2, 3, 4, 5 });
+  mesh.AddCell(13, {});
+  mesh.AddCell(22, { 0, 1, 2 });
+  facts = Check(mesh.View());
+  EXPECT_EQ(facts.OtherCounts.Count, 4);
+  EXPECT_EQ(facts.OtherTypes.Count, 1);
+  ASSERT_EQ(facts.Remarks().size(), 2u);
+  EXPECT_EQ(facts.Remarks()[1],
+    "4 cells, the first of which is 1, are left out: that one has 7 points in place of 8");
+  // All cells of a list without offsets.
+  const OwnMesh box = BoxOf(Split::Hexahedra, 2, 1, 1);
+  CellMesh view = box.View();
+  view.Offsets = nullptr;
+  view.PerCell = 6;
+  facts = Check(view);
+  EXPECT_EQ(facts.OtherCounts.Count, 2);
+  EXPECT_EQ(facts.FirstCount, 6);
+  EXPECT_EQ(facts.FirstCorners, 8);
+}
+
 TEST(CheckMesh, FactsDoNotDependOnThreads)
 {
   OwnMesh mesh = BoxOf(Split::Hexahedra, 40, 40, 40);
@@ -121,13 +152,19 @@ TEST(CheckMesh, FactsDoNotDependOnThreads)
   {
     mesh.Types[cell] = static_cast<std::uint8_t>(cell % 7); // none that is drawn
   }
+  for (const std::size_t cell : { 60001u, 21001u })
+  {
+    mesh.Types[cell] = static_cast<std::uint8_t>(cell > 30000 ? 10 : 13); // with 8 points
+  }
   for (const int threads : { 1, 2, 7 })
   {
     const CellFacts facts = Check(mesh.View(), threads);
     EXPECT_EQ(facts.OtherTypes.Count, 4);
     EXPECT_EQ(facts.OtherTypes.First, 20001);
     EXPECT_EQ(facts.FirstOtherType, 20001 % 7);
-    EXPECT_EQ(facts.Drawn(), 64000 - 4);
+    EXPECT_EQ(facts.OtherCounts.First, 21001);
+    EXPECT_EQ(facts.FirstCorners, 6);
+    EXPECT_EQ(facts.Drawn(), 64000 - 6);
   }
 }
 
@@ -264,7 +301,7 @@ TEST(CheckMesh, RefusesListsThatAreNotThere)
   EXPECT_EQ(refused(good.View()), "");
   OwnMesh mesh = good;
   mesh.Offsets[3] += 1; // cell 2 has nine points, and cell 3 seven
-  EXPECT_EQ(Check(mesh.View()).OtherTypes.Count, 2);
+  EXPECT_EQ(Check(mesh.View()).OtherCounts.Count, 2);
   mesh = good;
   mesh.Offsets[4] = 1000;
   EXPECT_EQ(refused(mesh.View()),
