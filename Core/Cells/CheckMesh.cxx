@@ -16,14 +16,14 @@ namespace banyan
 namespace
 {
 
-void Note(CellFacts::Some& some, std::int64_t cell)
+void Note(CellCounts::Some& some, std::int64_t cell)
 {
   some.First = some.Count == 0 ? cell : std::min(some.First, cell);
   ++some.Count;
 }
 
 /// @return whether the first of all is one of these
-bool Add(CellFacts::Some& to, const CellFacts::Some& from)
+bool Add(CellCounts::Some& to, const CellCounts::Some& from)
 {
   const bool first = from.Count > 0 && (to.Count == 0 || std::tie(from.Rank, from.First) <
                                                            std::tie(to.Rank, to.First));
@@ -33,7 +33,7 @@ bool Add(CellFacts::Some& to, const CellFacts::Some& from)
   return first;
 }
 
-void Add(CellFacts& to, const CellFacts& from)
+void Add(CellCounts& to, const CellCounts& from)
 {
   for (std::size_t shape = 0; shape < to.PerShape.size(); ++shape)
   {
@@ -126,7 +126,7 @@ private:
   {
     const std::uint8_t type = this->Mesh.Types[cell];
     const int corners = CornersOf(CellMesh::ShapeOf(type));
-    CellFacts::Some& some = corners == 0 ? facts.OtherTypes : facts.OtherCounts;
+    CellCounts::Some& some = corners == 0 ? facts.OtherTypes : facts.OtherCounts;
     Note(some, cell);
     if (some.Count > 1)
     {
@@ -204,7 +204,7 @@ void CheckSize(const CellMesh& mesh)
   }
 }
 
-std::string Sentence(const CellFacts::Some& some, const std::string& have)
+std::string Sentence(const CellCounts::Some& some, const std::string& have)
 {
   const std::string cell =
     std::to_string(some.First) + (some.Rank < 0 ? "" : " of rank " + std::to_string(some.Rank));
@@ -215,22 +215,22 @@ std::string Sentence(const CellFacts::Some& some, const std::string& have)
 
 } // namespace
 
-std::int64_t CellFacts::Drawn() const
+std::int64_t CellCounts::Drawn() const
 {
   return std::accumulate(this->PerShape.begin(), this->PerShape.end(), std::int64_t{ 0 });
 }
 
-void CellFacts::Count(CellFacts other, int rank)
+void CellCounts::Count(CellCounts other, int rank)
 {
-  for (Some* const some :
-    { &other.NotFinite, &other.WithoutVolume, &other.OtherTypes, &other.Folded })
+  for (Some* const some : { &other.NotFinite, &other.WithoutVolume, &other.OtherTypes,
+         &other.OtherCounts, &other.Folded })
   {
     some->Rank = rank;
   }
   Add(*this, other);
 }
 
-std::vector<std::string> CellFacts::Remarks() const
+std::vector<std::string> CellCounts::Remarks() const
 {
   std::vector<std::string> remarks;
   const auto say = [&remarks](const Some& some, const std::string& one, const std::string& many)

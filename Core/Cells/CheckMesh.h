@@ -15,13 +15,10 @@ namespace banyan
 
 class ThreadPool;
 
-/// Which cells of a mesh are drawn, and what is wrong with the others. Takes a byte per cell where
-/// some are not drawn.
-struct CellFacts
+/// How many cells of a mesh are drawn, and what is wrong with the others. Plain memory: ranks send
+/// it as it is.
+struct CellCounts
 {
-  /// Coordinates beyond this are not drawn: their products would not be finite.
-  static constexpr double MostCoordinate = 1e150;
-
   /// Cells with something in common.
   struct Some
   {
@@ -42,22 +39,29 @@ struct CellFacts
 
   std::int64_t Repeated = 0; ///< left out by OrderOfCells; CheckCells does not count them
 
+  /// How many cells are drawn.
+  std::int64_t Drawn() const;
+
+  /// Counts cells of another rank's piece, too.
+  /// @param rank higher than those that were counted before
+  void Count(CellCounts other, int rank);
+
+  /// Sentences about cells that are left out or folded, each with the first of them.
+  std::vector<std::string> Remarks() const;
+};
+
+/// Which cells of a mesh are drawn. Takes a byte per cell where some are not drawn.
+struct CellFacts : CellCounts
+{
+  /// Coordinates beyond this are not drawn: their products would not be finite.
+  static constexpr double MostCoordinate = 1e150;
+
   std::vector<std::uint8_t> LeftOut; ///< not 0 for cells that are not drawn; empty where all are
 
   bool Draws(std::int64_t cell) const
   {
     return this->LeftOut.empty() || this->LeftOut[static_cast<std::size_t>(cell)] == 0;
   }
-
-  /// How many cells are drawn.
-  std::int64_t Drawn() const;
-
-  /// Counts cells of another rank's piece, too.
-  /// @param rank higher than those that were counted before
-  void Count(CellFacts other, int rank);
-
-  /// Sentences about cells that are left out or folded, each with the first of them.
-  std::vector<std::string> Remarks() const;
 };
 
 /// Looks at all cells, in parallel. Hidden ones are not looked at, and not counted.

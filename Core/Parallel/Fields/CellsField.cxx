@@ -9,8 +9,8 @@
 #include "Parallel/Fields/MeshZones.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 namespace banyan
@@ -49,27 +49,15 @@ Hash128 HashOfMesh(const CellMesh& mesh)
 }
 
 /// Collective: the counts of all ranks.
-CellFacts FactsOfAll(Communicator& communicator, const CellFacts& mine)
+CellCounts CountsOfAll(Communicator& communicator, const CellCounts& mine)
 {
-  struct Counts
-  {
-    std::array<CellFacts::Some, 4> Some;
-    std::int64_t FirstOtherType;
-  };
-  const Counts here{ { mine.NotFinite, mine.WithoutVolume, mine.OtherTypes, mine.Folded },
-    mine.FirstOtherType };
-  std::vector<Counts> counts(static_cast<std::size_t>(communicator.Size()));
-  communicator.AllGather(&here, sizeof(here), counts.data());
-  CellFacts all;
+  static_assert(std::is_trivially_copyable_v<CellCounts>);
+  std::vector<CellCounts> counts(static_cast<std::size_t>(communicator.Size()));
+  communicator.AllGather(&mine, sizeof(mine), counts.data());
+  CellCounts all;
   for (std::size_t rank = 0; rank < counts.size(); ++rank)
   {
-    CellFacts one;
-    one.NotFinite = counts[rank].Some[0];
-    one.WithoutVolume = counts[rank].Some[1];
-    one.OtherTypes = counts[rank].Some[2];
-    one.Folded = counts[rank].Some[3];
-    one.FirstOtherType = static_cast<int>(counts[rank].FirstOtherType);
-    all.Count(one, static_cast<int>(rank));
+    all.Count(counts[rank], static_cast<int>(rank));
   }
   return all;
 }
@@ -122,20 +110,24 @@ void CellsField::TakeMesh(Communicator& communicator, const Piece& piece)
 {
   const bool alone = communicator.Size() == 1;
   ThreadPool& pool = ThreadPool::Process();
-  CellFacts facts;
+  CellCounts counts;
   if (!alone)
   {
     // Before anybody reads points through numbers that may be wrong.
-    Collective(communicator, [&] { facts = CheckCells(piece.Mesh, pool); });
-    facts = FactsOfAll(communicator, facts);
+    Collective(communicator, [&] { counts = CheckCells(piece.Mesh, pool); });
+    counts = CountsOfAll(communicator, counts);
   }
   const CellMesh all = GatherCells(communicator, piece.Mesh);
-  CellFacts known;
-  Collective(communicator, [&] { this->Cells = DrawnCells::Of(all, alone ? facts : known, pool); });
-  facts.Repeated = alone ? facts.Repeated : known.Repeated;
+  CellFacts facts;
+  Collective(communicator, [&] { this->Cells = DrawnCells::Of(all, facts, pool); });
+  if (alone)
+  {
+    counts = facts;
+  }
+  counts.Repeated = facts.Repeated;
   this->NoteText = AgreeOnError(
     communicator, piece.OtherCells.empty() ? "" : "Not drawn: " + piece.OtherCells + ". ");
-  for (const std::string& remark : facts.Remarks())
+  for (const std::string& remark : counts.Remarks())
   {
     this->NoteText += remark + ". ";
   }
