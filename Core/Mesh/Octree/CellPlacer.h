@@ -14,7 +14,7 @@ namespace banyan
 {
 
 /// A cell on the lattice.
-struct PlacedCell
+struct LatticeCell
 {
   glm::ivec3 Corner{ 0 };
   int Level = 0;
@@ -37,7 +37,7 @@ public:
   }
 
   /// @return what is wrong with the cell; empty if nothing is
-  std::string Place(std::int64_t cell, PlacedCell& placed) const
+  std::string Place(std::int64_t cell, LatticeCell& placed) const
   {
     return this->PlaceBox(cell, placed) ? std::string() : this->PlaceClosely(cell, placed);
   }
@@ -73,7 +73,7 @@ private:
 
   /// The quick way for a cell whose points have two coordinates along each axis, without rounding.
   /// @return false when it is none, or does not fit
-  bool PlaceBox(std::int64_t cell, PlacedCell& placed) const
+  bool PlaceBox(std::int64_t cell, LatticeCell& placed) const
   {
     Real corners[3][8];
     for (int i = 0; i < 8; ++i)
@@ -119,7 +119,7 @@ private:
   }
 
   /// Any cell; says what does not fit.
-  std::string PlaceClosely(std::int64_t cell, PlacedCell& placed) const
+  std::string PlaceClosely(std::int64_t cell, LatticeCell& placed) const
   {
     glm::ivec3 corners[8];
     for (int i = 0; i < 8; ++i)
@@ -158,7 +158,7 @@ private:
   }
 
   std::string Fit(std::int64_t cell, const glm::ivec3 (&corners)[8], const glm::ivec3& low,
-    const glm::ivec3& high, PlacedCell& placed) const
+    const glm::ivec3& high, LatticeCell& placed) const
   {
     const glm::ivec3 size = high - low;
     placed.Corner = low;

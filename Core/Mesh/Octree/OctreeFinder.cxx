@@ -102,7 +102,7 @@ void OctreeFinder::PlaceCells()
           OrderMemory& memory = memories[static_cast<std::size_t>(worker)];
           for (std::int64_t cell = begin; cell < end; ++cell)
           {
-            PlacedCell placed;
+            LatticeCell placed;
             const std::string problem = placer.Place(cell, placed);
             if (!problem.empty())
             {
