@@ -178,7 +178,11 @@ MeshBytes CellsField::Bytes() const
 {
   MeshBytes bytes;
   bytes.Own += this->Cells ? this->Cells->Bytes() : 0;
-  bytes.Own += this->Drawn ? this->Drawn->Cells().Values.size() * sizeof(float) : 0;
+  if (this->Drawn)
+  {
+    bytes.Own += this->Drawn->Cells().Values.size() * sizeof(float) + this->Drawn->SeenBytes() +
+                 this->Drawn->LatticeBytes();
+  }
   return bytes;
 }
 

@@ -48,6 +48,8 @@ public:
   const std::vector<Box>& Zones() const override { return this->ZoneCells; }
   std::vector<Hash128> VisibleContent(const RayScene& scene) override;
   bool IsMesh() const override { return true; }
+  /// Level 1 has places half as far apart as points are.
+  int LeastCells() const override { return 16; }
   bool IsOnEachRank() const override { return true; }
   std::string Note() const override { return this->NoteText; }
   MeshBytes Bytes() const override;

@@ -6,6 +6,7 @@
 #include "Parallel/Communicate/Communicator.h"
 #include "Parallel/Fields/MeshBytes.h"
 #include "Render/Bricks/BrickSource.h"
+#include "Render/Sampling/SamplingPlan.h"
 #include "Render/Scene/RayScene.h"
 #include "Series/Grid/Grid.h"
 #include "Series/Quantize/ValueRange.h"
@@ -119,6 +120,8 @@ public:
            : this->IsEncoded() ? LevelEdges()
                                : LevelEdges::Following(cells);
   }
+  /// Of a level that plans may use: SamplingWish::LeastCells.
+  virtual int LeastCells() const { return SamplingWish().LeastCells; }
   /// Bytes read so far from a series by this process.
   virtual std::uint64_t BytesRead() const { return 0; }
   /// What a user should know of a mesh; empty if nothing. The same on all ranks.

@@ -135,6 +135,7 @@ double ToleranceControl::Plan(Communicator& communicator, DistributedField& fiel
   }
   const double tolerance = aim.Coarseness;
   SamplingWish sampling{ tolerance, scene.SampleDistance, levels ? coarsest : 0 };
+  sampling.LeastCells = drawn.LeastCells();
   if (drawn.IsMesh() && wish.MaxElementsPerPixel > 0.0)
   {
     sampling.FinestLevelOfTile =
