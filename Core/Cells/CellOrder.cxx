@@ -122,6 +122,17 @@ KeyedNumbers KeysOfCells(
 /// Stands for a cell that is there once more.
 constexpr std::uint32_t Repeated = std::numeric_limits<std::uint32_t>::max();
 
+/// Of the places of a cell's corners, in any order.
+std::uint64_t HashOf(const CellMesh& mesh, const MeshCell& cell)
+{
+  std::uint64_t hash = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(CornersOf(cell.Shape)); ++i)
+  {
+    hash += HashOfPlace(mesh.Point(cell.Points[i]));
+  }
+  return hash;
+}
+
 /// Brings cells into order whose keys agree in the bits that were sorted by.
 class RunSorter
 {
@@ -171,11 +182,7 @@ private:
   {
     for (Entry* entry = first; entry != last; ++entry)
     {
-      const MeshCell is = this->Mesh.Cell(entry->Cell);
-      for (std::size_t i = 0; i < static_cast<std::size_t>(CornersOf(is.Shape)); ++i)
-      {
-        entry->Hash += HashOfPlace(this->Mesh.Point(is.Points[i]));
-      }
+      entry->Hash = HashOf(this->Mesh, this->Mesh.Cell(entry->Cell));
     }
     std::sort(first, last,
       [](const Entry& a, const Entry& b)
@@ -229,6 +236,17 @@ std::vector<std::uint32_t> OrderOfCells(
   std::vector<std::uint32_t> order(cells.Values.get(), cells.Values.get() + cells.Count);
   order.erase(std::remove(order.begin(), order.end(), Repeated), order.end());
   return order;
+}
+
+CellKey CellKeys::Of(std::int64_t number) const
+{
+  const MeshCell cell = this->Mesh.Cell(number);
+  CellPlaces places{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(CornersOf(cell.Shape)); ++i)
+  {
+    places[i] = this->Mesh.Point(cell.Points[i]);
+  }
+  return { KeyMaker(this->Lattice).KeyOfCell(cell.Shape, places), HashOf(this->Mesh, cell) };
 }
 
 } // namespace banyan

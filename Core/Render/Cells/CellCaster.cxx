@@ -3,6 +3,7 @@
 
 #include "Base/StopFlag.h"
 #include "Base/ThreadPool.h"
+#include "Render/Cells/RunCollector.h"
 #include "Render/Levels/LevelTiles.h"
 #include "Render/Levels/PictureWatcher.h"
 
@@ -19,10 +20,44 @@ struct CellCaster::Scratch
   RayTile Rays;
   TileRows Rows;
   SampleSlab Slab;
+  alignas(64) float Inside[RayTile::Slots]; ///< see LatticeJob
   std::vector<std::size_t> Begins;          ///< of slabs, in Items
   std::vector<std::uint32_t> Items;         ///< numbers of what is placed, slab by slab
-  alignas(64) float Inside[RayTile::Slots]; ///< see LatticeJob
+  /// What runs take besides; null where pixels are drawn.
+  struct ForRuns
+  {
+    SlabOwners Owners;
+    RunCollector Collector;
+  };
+  std::unique_ptr<ForRuns> Runs;
+
+  /// Blends the slab, into pixels or runs.
+  void Blend(int firstRow, const SlabBlend& blend)
+  {
+    if (this->Runs)
+    {
+      BlendSlabInRuns(this->Slab, this->Rows, firstRow, blend, this->Rays, this->Runs->Owners,
+        this->Runs->Collector);
+    }
+    else
+    {
+      BlendSlab(this->Slab, this->Rows, firstRow, blend, this->Rays);
+    }
+  }
 };
+
+namespace
+{
+
+/// @return null where nothing is asked of a tile
+const AskedTile* FindTile(const std::vector<AskedTile>& asked, const glm::ivec2& position)
+{
+  const auto found = std::find_if(
+    asked.begin(), asked.end(), [&](const AskedTile& tile) { return tile.Position == position; });
+  return found == asked.end() ? nullptr : &*found;
+}
+
+} // namespace
 
 CellCaster::CellCaster(const RayScene& scene, CellSource& source, BrickSource& level,
   std::shared_ptr<const MeshLattice> lattice, const Box& cells, ThreadPool& pool,
@@ -30,7 +65,7 @@ CellCaster::CellCaster(const RayScene& scene, CellSource& source, BrickSource& l
   : Level(scene, level)
   , Field(this->Level.IsShaded() ? source.WithGradients(pool) : source.Cells())
   , Lattice(std::move(lattice))
-  , Drawn(cells)
+  , Zone(cells)
   , Pool(pool)
   , Statistics(statistics)
   , Bins(
@@ -76,6 +111,11 @@ void CellCaster::Draw(FloatImage& picture, PictureWatcher* watcher)
   };
   this->Pool.ParallelFor(static_cast<std::int64_t>(tiles.Count()), draw);
   this->Statistics.SamplesTaken += samples;
+  this->CountCells();
+}
+
+void CellCaster::CountCells()
+{
   this->Statistics.BricksSkipped += this->Bins.Skipped();
   this->Statistics.BricksDrawn +=
     static_cast<std::int64_t>(this->Field.Cells->Order.size()) - this->Bins.Skipped();
@@ -86,14 +126,7 @@ void CellCaster::DrawTile(LevelTiles& tiles, std::size_t number, Scratch& scratc
   LevelTile& tile = tiles[number];
   const PixelRect rect = tiles.RectOf(number);
   RayTile& rays = scratch.Rays;
-  rays.Open(tile.Sampling->Lattice, rect, tiles.Picture(), this->Level.TransmittanceLimit(),
-    tile.PixelStride, false, rect, tile.Cast);
-  rays.CellShift = 0;
-  rays.BrickShift = 0;
-  const FixedBox drawn(this->Drawn);
-  const bool all =
-    Intersection(this->Drawn, this->Level.Scene.DomainCells) == this->Level.Scene.DomainCells;
-  scratch.Rows.Take(rays, tile.Sampling->Lattice.Setup(), all ? nullptr : &drawn);
+  this->OpenTile(tiles, number, rect, scratch);
   if (scratch.Rows.Count > 0)
   {
     this->DrawSlabs(*tile.Sampling, number, scratch);
@@ -105,6 +138,97 @@ void CellCaster::DrawTile(LevelTiles& tiles, std::size_t number, Scratch& scratc
   rays.Close(tiles.Picture());
   tile.Begun = true;
   tile.Done = true;
+}
+
+/// Places the rays of a tile, or of some pixels of it.
+void CellCaster::OpenTile(
+  const LevelTiles& tiles, std::size_t number, const PixelRect& rect, Scratch& scratch) const
+{
+  const LevelTile& tile = tiles[number];
+  RayTile& rays = scratch.Rays;
+  rays.Open(tile.Sampling->Lattice, rect, tiles.Picture(), this->Level.TransmittanceLimit(),
+    tile.PixelStride, false, rect, tile.Cast);
+  rays.CellShift = 0;
+  rays.BrickShift = 0;
+  const FixedBox drawn(this->Zone);
+  const bool all =
+    Intersection(this->Zone, this->Level.Scene.DomainCells) == this->Level.Scene.DomainCells;
+  scratch.Rows.Take(rays, tile.Sampling->Lattice.Setup(), all ? nullptr : &drawn);
+}
+
+std::vector<TileRuns> CellCaster::DrawRuns(const std::vector<AskedTile>* asked)
+{
+  const auto workers = static_cast<std::size_t>(this->Pool.Width());
+  FloatImage none; // whose pixels nobody sets
+  none.Rect = this->Bins.Rect();
+  LevelTiles tiles(this->Level, {}, none, nullptr, workers);
+  this->Bins.Sort(tiles.Cut(), this->Pool);
+  std::vector<std::unique_ptr<Scratch>> scratch(workers);
+  std::vector<TileRuns> found(tiles.Count());
+  std::atomic<std::int64_t> samples{ 0 };
+  const std::function<void(std::int64_t, int)> draw = [&](std::int64_t number, int worker)
+  {
+    if (this->Level.Scene.Stop)
+    {
+      this->Level.Scene.Stop->Check();
+    }
+    const auto tile = static_cast<std::size_t>(number);
+    found[tile].Position = tiles.Cut().PositionOf(tile);
+    const AskedTile* const ofTile = asked ? FindTile(*asked, found[tile].Position) : nullptr;
+    if (tiles[tile].Done || this->Bins.Over(tile).Count == 0 || (asked && !ofTile))
+    {
+      return;
+    }
+    std::unique_ptr<Scratch>& mine = scratch[static_cast<std::size_t>(worker)];
+    if (!mine)
+    {
+      mine = std::make_unique<Scratch>();
+      mine->Runs = std::make_unique<Scratch::ForRuns>();
+    }
+    this->DrawRunsOf(tiles, tile, ofTile, *mine, found[tile]);
+    samples += mine->Rays.SamplesTaken;
+  };
+  this->Pool.ParallelFor(static_cast<std::int64_t>(tiles.Count()), draw);
+  this->Statistics.SamplesTaken += samples;
+  if (!asked)
+  {
+    this->CountCells();
+  }
+  return found;
+}
+
+void CellCaster::DrawRunsOf(LevelTiles& tiles, std::size_t number, const AskedTile* asked,
+  Scratch& scratch, TileRuns& found) const
+{
+  PixelRect rect = tiles.RectOf(number);
+  if (asked)
+  {
+    PixelRect wanted;
+    for (const AskedIntervals& intervals : asked->Intervals)
+    {
+      const glm::ivec2 at = asked->PixelOf(intervals.Pixel);
+      wanted = Union(wanted, { at, at + 1 });
+    }
+    rect = Intersection(rect, wanted);
+  }
+  if (rect.Empty())
+  {
+    return;
+  }
+  this->OpenTile(tiles, number, rect, scratch);
+  if (scratch.Rows.Count > 0)
+  {
+    scratch.Runs->Collector.Begin(scratch.Rows, asked);
+    this->DrawSlabs(*tiles[number].Sampling, number, scratch);
+    scratch.Runs->Collector.Finish(scratch.Rays, *this->Field.Cells, found);
+  }
+}
+
+SlabBlend CellCaster::BlendOf(const LevelSampling& sampling) const
+{
+  const bool relative = this->Field.Base != 0.0;
+  return { sampling.Table, sampling.Projection.get(), this->Level.Shading.get(), relative,
+    relative ? static_cast<float>(this->Field.Base - sampling.Table.Low()) : 0.0f };
 }
 
 /// Whether a cell may have samples of a tile, or rays cross the face: few do where samples and rays
@@ -173,10 +297,7 @@ void CellCaster::DrawSlabs(
   this->SortBySlabs(sampling, number, scratch);
   const TileRows& rows = scratch.Rows;
   const std::size_t slabs = static_cast<std::size_t>(rows.Count - 1) / SampleSlab::Rows + 1;
-  const bool relative = this->Field.Base != 0.0;
-  const ShadingTable* const shading = this->Level.Shading.get();
-  const SlabBlend blend{ sampling.Table, sampling.Projection.get(), shading, relative,
-    relative ? static_cast<float>(this->Field.Base - sampling.Table.Low()) : 0.0f };
+  const SlabBlend blend = this->BlendOf(sampling);
   std::fill_n(scratch.Inside, RayTile::Slots, -1.0f);
   for (std::size_t slab = 0; slab < slabs && scratch.Rays.ActiveRays > 0; ++slab)
   {
@@ -188,8 +309,8 @@ void CellCaster::DrawSlabs(
     }
     const int firstRow = static_cast<int>(slab) * SampleSlab::Rows;
     const SlabJob job{ this->Field, this->Bins.Placed(), scratch.Items.data() + begin, count,
-      this->Bins.PictureSize(), 1.0 / sampling.Distance, firstRow, shading, scratch.Rays, rows,
-      scratch.Slab };
+      this->Bins.PictureSize(), 1.0 / sampling.Distance, firstRow, blend.Shading, scratch.Rays,
+      rows, scratch.Slab, scratch.Runs ? &scratch.Runs->Owners : nullptr };
     if (this->Lattice)
     {
       DrawLatticeSlab(job, { *this->Lattice, scratch.Inside, blend.Projection != nullptr });
@@ -198,7 +319,7 @@ void CellCaster::DrawSlabs(
     {
       DrawSlab(job);
     }
-    BlendSlab(scratch.Slab, rows, firstRow, blend, scratch.Rays);
+    scratch.Blend(firstRow, blend);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "Render/Cells/CellBins.h"
 #include "Render/Cells/CellSource.h"
+#include "Render/Cells/RayRuns.h"
 #include "Render/Levels/LevelScene.h"
 #include "Render/Scene/PictureCaster.h"
 
@@ -34,10 +35,24 @@ public:
   const PixelRect& Rect() const override { return this->Bins.Rect(); }
   void Draw(FloatImage& picture, PictureWatcher* watcher) override;
 
+  /// Draws a piece of a mesh: what this rank has of each tile, for RunMerger. Tiles may come in
+  /// several parts. Cells alone: lattices have no owners.
+  /// @param asked null for all of the picture, else tiles of which intervals are wanted raw
+  std::vector<TileRuns> DrawRuns(const std::vector<AskedTile>* asked);
+
+  const LevelScene& Drawn() const { return this->Level; }
+  /// @param sampling of the tile
+  SlabBlend BlendOf(const LevelSampling& sampling) const;
+
 private:
   struct Scratch;
 
+  void CountCells();
   void DrawTile(LevelTiles& tiles, std::size_t number, Scratch& scratch) const;
+  void DrawRunsOf(LevelTiles& tiles, std::size_t number, const AskedTile* asked, Scratch& scratch,
+    TileRuns& found) const;
+  void OpenTile(
+    const LevelTiles& tiles, std::size_t number, const PixelRect& rect, Scratch& scratch) const;
   bool MayDraw(
     const PlacedCell& cell, const RayTile& rays, const TileRows& rows, double perDistance) const;
   void SortBySlabs(const LevelSampling& sampling, std::size_t number, Scratch& scratch) const;
@@ -46,7 +61,7 @@ private:
   LevelScene Level;
   const CellField& Field;
   const std::shared_ptr<const MeshLattice> Lattice;
-  const Box Drawn;
+  const Box Zone;
   ThreadPool& Pool;
   RayStatistics& Statistics;
   CellBins Bins;

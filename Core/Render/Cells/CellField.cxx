@@ -4,6 +4,7 @@
 #include "Cells/CellOrder.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace banyan
 {
@@ -14,22 +15,17 @@ namespace
 constexpr int RoomPart = 16;
 constexpr int LeastRoom = 8;
 
-} // namespace
-
-std::shared_ptr<const DrawnCells> DrawnCells::Of(
-  const CellMesh& mesh, CellFacts& facts, ThreadPool& pool)
+std::shared_ptr<DrawnCells> Made(
+  const CellMesh& mesh, CellFacts& facts, const CellExtent& ofAll, ThreadPool& pool)
 {
   auto cells = std::make_shared<DrawnCells>();
   cells->Mesh = mesh;
-  facts = CheckCells(mesh, pool);
-  const CellExtent extent = ExtentOf(mesh, facts, pool);
-  const CellLattice tight = LatticeOf(extent);
-  cells->Low = extent.Low;
-  cells->High = extent.High;
+  const CellLattice tight = LatticeOf(ofAll);
+  cells->Low = ofAll.Low;
+  cells->High = ofAll.High;
   cells->Order = OrderOfCells(mesh, facts, tight, pool);
   facts.Repeated = facts.Drawn() - static_cast<std::int64_t>(cells->Order.size());
-  cells->Border = BorderFacesOf(mesh, facts, cells->Order, pool);
-  cells->BorderBits = BorderBitsOf(cells->Border, cells->Order.size());
+  cells->OrderedBy = tight;
   const int longest = std::max({ tight.Size.x, tight.Size.y, tight.Size.z });
   const int room = std::max(longest / RoomPart, LeastRoom);
   cells->Lattice = tight;
@@ -38,10 +34,38 @@ std::shared_ptr<const DrawnCells> DrawnCells::Of(
   return cells;
 }
 
+} // namespace
+
+std::shared_ptr<const DrawnCells> DrawnCells::Of(
+  const CellMesh& mesh, CellFacts& facts, ThreadPool& pool)
+{
+  facts = CheckCells(mesh, pool);
+  const std::shared_ptr<DrawnCells> cells = Made(mesh, facts, ExtentOf(mesh, facts, pool), pool);
+  cells->SetBorder(BorderFacesOf(mesh, facts, cells->Order, pool));
+  return cells;
+}
+
+std::shared_ptr<DrawnCells> DrawnCells::OfPiece(
+  const CellMesh& mesh, CellFacts& facts, const CellExtent& ofAll, ThreadPool& pool)
+{
+  std::shared_ptr<DrawnCells> cells = Made(mesh, facts, ofAll, pool);
+  cells->SetBorder(BorderFacesOf(mesh, facts, cells->Order, pool));
+  cells->Alone = cells->BorderBits;
+  cells->Alone.resize(cells->Order.size(), 0);
+  return cells;
+}
+
+void DrawnCells::SetBorder(std::vector<BorderFace> border)
+{
+  this->Border = std::move(border);
+  this->BorderBits = BorderBitsOf(this->Border, this->Order.size());
+}
+
 std::size_t DrawnCells::Bytes() const
 {
   return this->Order.capacity() * sizeof(this->Order[0]) +
-         this->Border.capacity() * sizeof(this->Border[0]) + this->BorderBits.capacity();
+         this->Border.capacity() * sizeof(this->Border[0]) + this->BorderBits.capacity() +
+         this->Alone.capacity();
 }
 
 } // namespace banyan

@@ -27,8 +27,13 @@ struct DrawnCells
   /// By place in the order: which faces of a cell end the mesh, a bit each. So its samples do not
   /// reach beyond them. Empty where none does.
   std::vector<std::uint8_t> BorderBits;
-  glm::dvec3 Low{ 0.0 };            ///< the box around them
+  glm::dvec3 Low{ 0.0 }; ///< the box around them
   glm::dvec3 High{ 0.0 };
+
+  CellLattice OrderedBy; ///< what the order follows: Lattice without the room around it
+  /// Of a piece of a mesh, by place in the order: which faces of a cell no other cell of the piece
+  /// has, a bit each. Empty where it is the whole mesh.
+  std::vector<std::uint8_t> Alone;
 
   /// Checks a mesh and finds all that drawing it takes. There is room around the mesh in the index
   /// space, so that rays begin and end outside of it.
@@ -36,6 +41,15 @@ struct DrawnCells
   /// Throws Error: see CheckCells and OrderOfCells; and where the points lie apart too far.
   static std::shared_ptr<const DrawnCells> Of(
     const CellMesh& mesh, CellFacts& facts, ThreadPool& pool);
+
+  /// The same for a piece of a mesh, which may be empty. Border has all faces that one cell of the
+  /// piece has alone: those which cells of other pieces have, too, are to be taken out.
+  /// @param facts of this piece; Repeated is set
+  /// @param ofAll pieces together
+  static std::shared_ptr<DrawnCells> OfPiece(
+    const CellMesh& mesh, CellFacts& facts, const CellExtent& ofAll, ThreadPool& pool);
+
+  void SetBorder(std::vector<BorderFace> border);
 
   /// Takes points of the mesh to index space.
   glm::dvec3 ToIndex(const glm::dvec3& point) const { return this->Lattice.ToLattice(point); }

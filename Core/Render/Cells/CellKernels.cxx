@@ -15,6 +15,7 @@
 #include "Render/Cells/CellPackets-inl.h"
 #include "Render/Cells/FacePackets-inl.h"
 #include "Render/Cells/LatticeRows-inl.h"
+#include "Render/Cells/RunBlender-inl.h"
 #include "Render/Cells/SlabBlender-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -220,6 +221,10 @@ void DrawSlabHere(const SlabJob& job)
     { return std::floor(t * job.PerDistance) - job.Rows.FirstNumber; };
     if (placed.Face == PlacedCell::Whole)
     {
+      if (job.Owners)
+      {
+        packets.Own(placed.Place, job.Field.Cells->Alone[placed.Place]);
+      }
       packets.Draw(setup, under, rowOf(placed.Near), rowOf(placed.Far));
     }
     else
@@ -254,6 +259,23 @@ void BlendSlabHere(
   }
 }
 
+void BlendSlabInRunsHere(SampleSlab& slab, const TileRows& rows, int firstRow,
+  const SlabBlend& blend, RayTile& rays, const SlabOwners& owners, RunCollector& collector)
+{
+  if (!blend.Projection)
+  {
+    RunBlender<Composited>(slab, rows, firstRow, blend, rays, owners, collector).Blend();
+  }
+  else if (blend.Projection->Averages())
+  {
+    RunBlender<Projected<Sums>>(slab, rows, firstRow, blend, rays, owners, collector).Blend();
+  }
+  else
+  {
+    RunBlender<Projected<Ranks>>(slab, rows, firstRow, blend, rays, owners, collector).Blend();
+  }
+}
+
 } // namespace banyan::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -264,6 +286,7 @@ namespace banyan
 HWY_EXPORT(DrawSlabHere);
 HWY_EXPORT(DrawLatticeSlabHere);
 HWY_EXPORT(BlendSlabHere);
+HWY_EXPORT(BlendSlabInRunsHere);
 
 void DrawSlab(const SlabJob& job)
 {
@@ -279,6 +302,13 @@ void BlendSlab(
   SampleSlab& slab, const TileRows& rows, int firstRow, const SlabBlend& blend, RayTile& rays)
 {
   HWY_DYNAMIC_DISPATCH(BlendSlabHere)(slab, rows, firstRow, blend, rays);
+}
+
+void BlendSlabInRuns(SampleSlab& slab, const TileRows& rows, int firstRow, const SlabBlend& blend,
+  RayTile& rays, const SlabOwners& owners, RunCollector& collector)
+{
+  HWY_DYNAMIC_DISPATCH(BlendSlabInRunsHere)
+  (slab, rows, firstRow, blend, rays, owners, collector);
 }
 
 } // namespace banyan

@@ -10,6 +10,7 @@
 #include "Render/Cells/CellPlaces-inl.h"
 #include "Render/Cells/CellRows-inl.h"
 #include "Render/Cells/CellTile.h"
+#include "Render/Cells/RunCollector.h"
 #include "Render/Raycast/LightLanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -25,6 +26,15 @@ public:
     : Job(job)
     , Rows(job)
   {
+  }
+
+  /// Says whose the values of the next cell are, where owners are wanted.
+  /// @param place of the cell in the order
+  /// @param alone bits of faces that no other cell of the piece has
+  void Own(std::uint32_t place, unsigned alone)
+  {
+    this->Place = place;
+    this->Alone = alone;
   }
 
   /// @param first, last rows of the tile that samples of the cell may be in
@@ -285,6 +295,13 @@ private:
       hn::StoreMaskBits(d, lanes, reinterpret_cast<std::uint8_t*>(&bits));
       const std::int32_t* const indices = this->Index + i * Lanes;
       Put(places.At(this->Cell->Value, found[i]), bits, indices, this->Job.Slab.Value);
+      if (this->Job.Owners)
+      {
+        std::uint64_t near = 0;
+        hn::StoreMaskBits(
+          d, places.AreNear(this->Alone, found[i]), reinterpret_cast<std::uint8_t*>(&near));
+        this->PutOwners(bits, near, indices);
+      }
       if (this->Job.Shading)
       {
         const auto gradient = [&](int axis) HWY_ATTR
@@ -305,6 +322,17 @@ private:
     {
       const int lane = __builtin_ctzll(lanes);
       to[indices[lane]] = values[lane];
+    }
+  }
+
+  /// @param near those of the lanes whose samples other ranks' cells may hold
+  HWY_INLINE void PutOwners(std::uint64_t lanes, std::uint64_t near, const std::int32_t* indices)
+  {
+    for (; lanes != 0; lanes &= lanes - 1)
+    {
+      const int lane = __builtin_ctzll(lanes);
+      this->Job.Owners->Of[indices[lane]] =
+        this->Place | ((near >> lane & 1) != 0 ? SlabOwners::Contested : 0);
     }
   }
 
@@ -329,6 +357,8 @@ private:
   int Filled = 0;
   std::uint32_t MiddleLow[3] = {};
   const CellSetup* Cell = nullptr;
+  std::uint32_t Place = 0;
+  unsigned Alone = 0;
   std::uint64_t RowMarks = 0; ///< of rows that the cell may have samples in
   double FirstRow = 0.0;
   double LastRow = 0.0;

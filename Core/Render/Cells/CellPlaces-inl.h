@@ -122,7 +122,53 @@ public:
     }
   }
 
+  /// Lanes with places inside the cell that are nearer than `NearFace` to one of some faces.
+  /// @param faces bits, by the numbers of FacesOf
+  HWY_INLINE hn::Mask<D> AreNear(unsigned faces, const Triple& p) const
+  {
+    VF nearest = Set(NearFace);
+    for (; faces != 0; faces &= faces - 1)
+    {
+      nearest = hn::Min(nearest, this->DistanceFrom(__builtin_ctz(faces), p));
+    }
+    return hn::Lt(nearest, Set(NearFace));
+  }
+  /// Of places: more than those beyond a face of the same size that belong to the other cell.
+  static constexpr float NearFace = 1.0f / (1 << 10);
+
 private:
+  /// How far a place is inside of a face, in places.
+  HWY_INLINE VF DistanceFrom(int face, const Triple& p) const
+  {
+    const VF one = Set(1.0f);
+    const auto rest = [&](VF sum) HWY_ATTR { return hn::Sub(one, sum); };
+    switch (this->Cell.Shape)
+    {
+      case CellShape::Tetrahedron:
+      {
+        const VF far = rest(hn::Add(hn::Add(p.X, p.Y), p.Z));
+        return face == 0 ? p.Z : face == 1 ? p.Y : face == 2 ? far : p.X;
+      }
+      case CellShape::Wedge:
+        return face == 0   ? hn::Add(one, p.Z)
+               : face == 1 ? rest(p.Z)
+               : face == 2 ? p.Y
+               : face == 3 ? rest(hn::Add(p.X, p.Y))
+                           : p.X;
+      case CellShape::Pyramid:
+        return face == 0   ? rest(p.Z)
+               : face == 1 ? hn::Add(p.Z, p.Y)
+               : face == 2 ? hn::Sub(p.Z, p.X)
+               : face == 3 ? hn::Sub(p.Z, p.Y)
+                           : hn::Add(p.Z, p.X);
+      default:
+      {
+        const VF along = face / 2 == 0 ? p.X : face / 2 == 1 ? p.Y : p.Z;
+        return face % 2 == 0 ? hn::Add(one, along) : rest(along);
+      }
+    }
+  }
+
   static HWY_INLINE VF Set(float value) { return hn::Set(D(), value); }
   /// Lanes in which a number is at least, or at most, what the cell has along an axis.
   HWY_INLINE hn::Mask<D> IsFrom(VF x, int axis) const

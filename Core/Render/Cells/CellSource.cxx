@@ -91,6 +91,11 @@ const CellField& CellSource::WithGradients(ThreadPool& pool)
   return this->Field;
 }
 
+void CellSource::GiveGradients(std::vector<float> gradients)
+{
+  std::call_once(this->GradientsMade, [&] { this->Field.Gradients = std::move(gradients); });
+}
+
 std::shared_ptr<const SeenCells> CellSource::SeenIn(
   const RayScene& scene, std::shared_ptr<const VisibleValues> visible, ThreadPool& pool)
 {

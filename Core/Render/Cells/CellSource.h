@@ -29,6 +29,9 @@ public:
   const CellField& Cells() const { return this->Field; }
   /// The same, with gradients, which are made when they are first asked for.
   const CellField& WithGradients(ThreadPool& pool);
+  /// Gradients of a piece of a mesh, which others' cells have a part in. Without effect where there
+  /// are some.
+  void GiveGradients(std::vector<float> gradients);
 
   /// Which cells the camera of a scene sees, and where. Those of the last scene are kept: probes of
   /// a frame, and the frame, share them. May be called from any thread.

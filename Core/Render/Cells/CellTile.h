@@ -18,6 +18,8 @@ namespace banyan
 {
 
 class MeshLattice;
+class RunCollector;
+struct SlabOwners;
 
 /// Where a cell, or a face of its, lies in pictures of a camera, whatever their size.
 struct PlacedCell
@@ -66,6 +68,7 @@ struct SlabJob
   const RayTile& Rays;
   const TileRows& Rows;
   SampleSlab& Slab;
+  SlabOwners* Owners = nullptr; ///< set too, where ranks draw pieces of a mesh
 };
 
 /// Puts the values of the slab's samples, and what is covered of intervals at the border, into it.
@@ -98,6 +101,10 @@ struct SlabBlend
 /// Blends a slab front to back over what the rays have met so far, and leaves it without values.
 void BlendSlab(
   SampleSlab& slab, const TileRows& rows, int firstRow, const SlabBlend& blend, RayTile& rays);
+
+/// The same into runs, which end where other ranks may have a say.
+void BlendSlabInRuns(SampleSlab& slab, const TileRows& rows, int firstRow, const SlabBlend& blend,
+  RayTile& rays, const SlabOwners& owners, RunCollector& collector);
 
 } // namespace banyan
 

@@ -105,11 +105,10 @@ void ForCorners(const DrawnCells& cells, ThreadPool& pool, const Function& funct
 
 } // namespace
 
-std::vector<float> PointGradients(
-  const DrawnCells& cells, const std::vector<float>& values, ThreadPool& pool)
+PointSums GradientSums(const DrawnCells& cells, const std::vector<float>& values, ThreadPool& pool)
 {
   const auto count = static_cast<std::size_t>(cells.Mesh.PointCount);
-  std::vector<glm::dvec4> sums(count, glm::dvec4(0.0));
+  PointSums sums{ 4, std::vector<double>(4 * count, 0.0) };
   ForCorners(cells, pool,
     [&](const CellInMesh& cell, int corner, std::int64_t point)
     {
@@ -131,43 +130,73 @@ std::vector<float> PointGradients(
       const glm::dvec3 gradient = along * glm::inverse(tangents);
       if (volume > 0.0 && std::isfinite(gradient.x + gradient.y + gradient.z))
       {
-        sums[static_cast<std::size_t>(point)] += volume * glm::dvec4(gradient, 1.0);
+        const glm::dvec4 part = volume * glm::dvec4(gradient, 1.0);
+        for (int i = 0; i < 4; ++i)
+        {
+          sums.Numbers[static_cast<std::size_t>(4 * point + i)] += part[i];
+        }
       }
     });
+  return sums;
+}
+
+std::vector<float> GradientsOf(const PointSums& sums)
+{
+  const std::size_t count = sums.Numbers.size() / 4;
   std::vector<float> gradients(3 * count, 0.0f);
   for (std::size_t point = 0; point < count; ++point)
   {
-    for (int axis = 0; axis < 3 && sums[point].w > 0.0; ++axis)
+    const double* const sum = sums.Numbers.data() + 4 * point;
+    for (std::size_t axis = 0; axis < 3 && sum[3] > 0.0; ++axis)
     {
-      gradients[3 * point + static_cast<std::size_t>(axis)] =
-        static_cast<float>(sums[point][axis] / sums[point].w);
+      gradients[3 * point + axis] = static_cast<float>(sum[axis] / sum[3]);
     }
   }
   return gradients;
 }
 
-std::vector<float> PointMeans(
+std::vector<float> PointGradients(
   const DrawnCells& cells, const std::vector<float>& values, ThreadPool& pool)
 {
+  return GradientsOf(GradientSums(cells, values, pool));
+}
+
+PointSums MeanSums(const DrawnCells& cells, const std::vector<float>& values, ThreadPool& pool)
+{
   const auto count = static_cast<std::size_t>(cells.Mesh.PointCount);
-  std::vector<glm::dvec2> sums(count, glm::dvec2(0.0));
+  PointSums sums{ 2, std::vector<double>(2 * count, 0.0) };
   ForCorners(cells, pool,
     [&](const CellInMesh& cell, int corner, std::int64_t point)
     {
       double volume = 0.0;
       (void)cell.TangentsAt(corner, volume);
       const double value = values[static_cast<std::size_t>(cell.Number)];
-      sums[static_cast<std::size_t>(point)] += volume * glm::dvec2(value, 1.0);
+      double* const sum = sums.Numbers.data() + 2 * point;
+      sum[0] += volume * value;
+      sum[1] += volume;
     });
+  return sums;
+}
+
+std::vector<float> MeansOf(const PointSums& sums)
+{
+  const std::size_t count = sums.Numbers.size() / 2;
   std::vector<float> means(count, std::numeric_limits<float>::quiet_NaN());
   for (std::size_t point = 0; point < count; ++point)
   {
-    if (sums[point].y > 0.0)
+    const double* const sum = sums.Numbers.data() + 2 * point;
+    if (sum[1] > 0.0)
     {
-      means[point] = static_cast<float>(sums[point].x / sums[point].y);
+      means[point] = static_cast<float>(sum[0] / sum[1]);
     }
   }
   return means;
+}
+
+std::vector<float> PointMeans(
+  const DrawnCells& cells, const std::vector<float>& values, ThreadPool& pool)
+{
+  return MeansOf(MeanSums(cells, values, pool));
 }
 
 } // namespace banyan

@@ -11,6 +11,21 @@ namespace banyan
 
 class ThreadPool;
 
+/// Sums over the cells around points, which those of pieces of a mesh are added up from.
+struct PointSums
+{
+  int Width = 0;               ///< numbers per point
+  std::vector<double> Numbers; ///< of each point: weighted sums, then the weights'
+};
+
+/// Sums that PointGradients divides, and its results.
+PointSums GradientSums(const DrawnCells& cells, const std::vector<float>& values, ThreadPool& pool);
+std::vector<float> GradientsOf(const PointSums& sums);
+
+/// Sums that PointMeans divides, and its results.
+PointSums MeanSums(const DrawnCells& cells, const std::vector<float>& values, ThreadPool& pool);
+std::vector<float> MeansOf(const PointSums& sums);
+
 /// Gradients of a field at the points of a mesh: the means of those that its cells have in that
 /// corner, weighted by how large they are there. Exact for linear fields. Cells whose gradient is
 /// not finite do not count; 0 where none is left. The same bits for any number of threads, and any

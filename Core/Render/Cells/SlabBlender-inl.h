@@ -40,6 +40,9 @@ public:
   {
   }
 
+  /// @param through what lies before lets through so much
+  HWY_INLINE void ComesBehind(VF through) { this->Limit = hn::Div(this->Limit, through); }
+
   /// Rays that have not ended.
   HWY_INLINE hn::Mask<D> Open() const { return hn::Gt(this->T, this->Limit); }
 
@@ -99,6 +102,7 @@ public:
   {
   }
 
+  static HWY_INLINE void ComesBehind(VF) {}
   static HWY_INLINE hn::Mask<D> Open() { return hn::Eq(hn::Zero(D()), hn::Zero(D())); }
 
   HWY_INLINE void Add(const RowLanes& row)
@@ -147,22 +151,30 @@ public:
 
   void Blend()
   {
+    this->ForLanes([this](int packet, int lane) { this->BlendLanes(packet, lane); });
+  }
+
+protected:
+  static constexpr int Lanes = static_cast<int>(hn::MaxLanes(D()));
+
+  /// Calls function(packet, lane) for vectors of rays that have something in the slab, and forgets
+  /// that they have.
+  template <class Function>
+  HWY_INLINE void ForLanes(const Function& function)
+  {
     for (int packet = 0; packet < SampleSlab::Packets; ++packet)
     {
       if ((this->Slab.Marks[packet] | this->Slab.Borders[packet]) != 0)
       {
         for (int i = 0; i < RayTile::PacketSize; i += Lanes)
         {
-          this->BlendLanes(packet, i);
+          function(packet, i);
         }
         this->Slab.Marks[packet] = 0;
         this->Slab.Borders[packet] = 0;
       }
     }
   }
-
-private:
-  static constexpr int Lanes = static_cast<int>(hn::MaxLanes(D()));
 
   void BlendLanes(int packet, int lane)
   {
