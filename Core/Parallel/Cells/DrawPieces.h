@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Parallel_Cells_DrawPieces_h
+#define banyan_Parallel_Cells_DrawPieces_h
+
+#include "Render/Cells/CellSource.h"
+#include "Render/Levels/RayCaster.h"
+#include "Render/Scene/FloatImage.h"
+
+#include <cstdint>
+
+namespace banyan
+{
+
+class Communicator;
+class ThreadPool;
+
+/// What a picture of pieces took on this rank.
+struct PieceStatistics
+{
+  RayStatistics Rays;
+  std::int64_t Runs = 0; ///< drawn here, in the first round
+  std::int64_t Raw = 0;
+  std::int64_t Asked = 0;  ///< intervals that this rank had to give raw in the second round
+  std::uint64_t Bytes = 0; ///< sent to others
+  double DrawSeconds = 0.0;
+  double MergeSeconds = 0.0; ///< without waiting for messages
+};
+
+/// Collective: draws a mesh whose cells lie on all ranks, dealt in any way. The picture is the one
+/// that a rank with all cells draws, but for rounding.
+///
+/// Ranks draw their cells and send, per tile, what they have along its rays: RayRun, RawInterval.
+/// Tiles belong to ranks in turn. Their ranks merge them, and ask for intervals raw where one
+/// rank's run meets what another one has; then the tile is merged anew.
+/// @param scene the same on all ranks
+/// @param source of a piece that DrawnPiece has made; the values have the same base on all ranks
+/// @param root has the picture: its pixels are those of the viewport, not finished; others have
+/// none Throws CollectiveError.
+FloatImage DrawPieces(Communicator& communicator, const RayScene& scene, CellSource& source,
+  ThreadPool& pool, int root, PieceStatistics& statistics);
+
+} // namespace banyan
+
+#endif
