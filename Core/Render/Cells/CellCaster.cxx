@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 
 namespace banyan
 {
@@ -30,6 +31,7 @@ struct CellCaster::Scratch
     RunCollector Collector;
   };
   std::unique_ptr<ForRuns> Runs;
+  const AskedPixels* Asked = nullptr; ///< cells elsewhere are left out; null for none
 
   /// Blends the slab, into pixels or runs.
   void Blend(int firstRow, const SlabBlend& blend)
@@ -162,8 +164,12 @@ std::vector<TileRuns> CellCaster::DrawRuns(const std::vector<AskedTile>* asked)
   FloatImage none; // whose pixels nobody sets
   none.Rect = this->Bins.Rect();
   LevelTiles tiles(this->Level, {}, none, nullptr, workers);
-  this->Bins.Sort(tiles.Cut(), this->Pool);
-  std::vector<std::unique_ptr<Scratch>> scratch(workers);
+  if (!asked || !this->Sorted)
+  {
+    this->Bins.Sort(tiles.Cut(), this->Pool);
+    this->Sorted = true;
+  }
+  this->ForRuns.resize(workers);
   std::vector<TileRuns> found(tiles.Count());
   std::atomic<std::int64_t> samples{ 0 };
   const std::function<void(std::int64_t, int)> draw = [&](std::int64_t number, int worker)
@@ -179,7 +185,7 @@ std::vector<TileRuns> CellCaster::DrawRuns(const std::vector<AskedTile>* asked)
     {
       return;
     }
-    std::unique_ptr<Scratch>& mine = scratch[static_cast<std::size_t>(worker)];
+    std::unique_ptr<Scratch>& mine = this->ForRuns[static_cast<std::size_t>(worker)];
     if (!mine)
     {
       mine = std::make_unique<Scratch>();
@@ -201,16 +207,13 @@ void CellCaster::DrawRunsOf(LevelTiles& tiles, std::size_t number, const AskedTi
   Scratch& scratch, TileRuns& found) const
 {
   PixelRect rect = tiles.RectOf(number);
+  std::optional<AskedPixels> pixels;
   if (asked)
   {
-    PixelRect wanted;
-    for (const AskedIntervals& intervals : asked->Intervals)
-    {
-      const glm::ivec2 at = asked->PixelOf(intervals.Pixel);
-      wanted = Union(wanted, { at, at + 1 });
-    }
-    rect = Intersection(rect, wanted);
+    pixels.emplace(*asked);
+    rect = Intersection(rect, pixels->Rect());
   }
+  scratch.Asked = asked ? &*pixels : nullptr;
   if (rect.Empty())
   {
     return;
@@ -233,17 +236,17 @@ SlabBlend CellCaster::BlendOf(const LevelSampling& sampling) const
 
 /// Whether a cell may have samples of a tile, or rays cross the face: few do where samples and rays
 /// are far apart.
-bool CellCaster::MayDraw(
-  const PlacedCell& cell, const RayTile& rays, const TileRows& rows, double perDistance) const
+bool CellCaster::MayDraw(const PlacedCell& cell, const Scratch& scratch, double perDistance) const
 {
-  if (cell.Face == PlacedCell::Whole && !rows.AnyEnds && !cell.HoldsSamples(perDistance))
+  if (cell.Face == PlacedCell::Whole && !scratch.Rows.AnyEnds && !cell.HoldsSamples(perDistance))
   {
     return false;
   }
-  const int stride = rays.Stride;
-  const PixelRect pixels = cell.PixelsIn(this->Bins.PictureSize(), rays.Rect);
+  const int stride = scratch.Rays.Stride;
+  const PixelRect pixels = cell.PixelsIn(this->Bins.PictureSize(), scratch.Rays.Rect);
   const glm::ivec2 first = (pixels.Lo + (stride - 1)) / stride * stride;
-  return first.x < pixels.Hi.x && first.y < pixels.Hi.y;
+  return first.x < pixels.Hi.x && first.y < pixels.Hi.y &&
+         (!scratch.Asked || scratch.Asked->AnyIn(pixels));
 }
 
 /// Sorts what lies over a tile by slabs.
@@ -260,7 +263,7 @@ void CellCaster::SortBySlabs(
     for (std::size_t i = 0; i < over.Count; ++i)
     {
       const PlacedCell& cell = placed[over.Items[i]];
-      if (!this->MayDraw(cell, scratch.Rays, rows, perDistance))
+      if (!this->MayDraw(cell, scratch, perDistance))
       {
         continue;
       }

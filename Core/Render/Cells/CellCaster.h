@@ -53,8 +53,7 @@ private:
     TileRuns& found) const;
   void OpenTile(
     const LevelTiles& tiles, std::size_t number, const PixelRect& rect, Scratch& scratch) const;
-  bool MayDraw(
-    const PlacedCell& cell, const RayTile& rays, const TileRows& rows, double perDistance) const;
+  bool MayDraw(const PlacedCell& cell, const Scratch& scratch, double perDistance) const;
   void SortBySlabs(const LevelSampling& sampling, std::size_t number, Scratch& scratch) const;
   void DrawSlabs(const LevelSampling& sampling, std::size_t number, Scratch& scratch) const;
 
@@ -65,6 +64,9 @@ private:
   ThreadPool& Pool;
   RayStatistics& Statistics;
   CellBins Bins;
+  // What a second round finds of the first one.
+  bool Sorted = false;                           ///< Bins, by tiles
+  std::vector<std::unique_ptr<Scratch>> ForRuns; ///< by worker
 };
 
 } // namespace banyan

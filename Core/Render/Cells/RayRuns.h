@@ -8,6 +8,7 @@
 #include <glm/vec2.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -108,6 +109,44 @@ struct AskedTile
     return this->Position * RayTile::Edge +
            glm::ivec2(pixel % RayTile::Edge, pixel / RayTile::Edge);
   }
+};
+
+/// Pixels of a tile that something is asked of.
+class AskedPixels
+{
+public:
+  explicit AskedPixels(const AskedTile& asked)
+    : Low(asked.Position * RayTile::Edge)
+  {
+    for (const AskedIntervals& intervals : asked.Intervals)
+    {
+      const glm::ivec2 at = asked.PixelOf(intervals.Pixel);
+      this->Rows[static_cast<std::size_t>(at.y - this->Low.y)] |= 1U << (at.x - this->Low.x);
+      this->All = Union(this->All, { at, at + 1 });
+    }
+  }
+
+  /// The rectangle around all.
+  const PixelRect& Rect() const { return this->All; }
+
+  bool AnyIn(const PixelRect& rect) const
+  {
+    const PixelRect here = Intersection(rect, this->All);
+    const int width = here.Size().x;
+    std::uint32_t any = 0;
+    for (int y = here.Lo.y; y < here.Hi.y && width > 0; ++y)
+    {
+      any |= this->Rows[static_cast<std::size_t>(y - this->Low.y)];
+    }
+    return width > 0 &&
+           (any >> (here.Lo.x - this->Low.x) & ~std::uint32_t{ 0 } >> (32 - width)) != 0;
+  }
+
+private:
+  static_assert(RayTile::Edge == 32, "a row has a bit per pixel");
+  glm::ivec2 Low;
+  PixelRect All;
+  std::array<std::uint32_t, RayTile::Edge> Rows{};
 };
 
 /// Brings what is asked for into the order of AskedTile.

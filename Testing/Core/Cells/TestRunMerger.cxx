@@ -514,4 +514,35 @@ TEST(RunMerger, OrderOfRanksDoesNotMatter)
   EXPECT_EQ(Apart(forwards, backwards), 0.0);
 }
 
+TEST(RunMerger, PixelsThatAreAskedFor)
+{
+  Numbers numbers(3);
+  for (const std::uint64_t count : { 1, 3, 40 })
+  {
+    AskedTile asked;
+    asked.Position = { 2, 1 };
+    std::vector<glm::ivec2> at;
+    for (std::uint64_t i = 0; i < count; ++i)
+    {
+      const auto pixel = static_cast<std::uint16_t>(numbers.Below(RayTile::Slots));
+      asked.Intervals.push_back({ 0, 0, pixel });
+      at.emplace_back(64 + pixel % 32, 32 + pixel / 32);
+    }
+    const AskedPixels pixels(asked);
+    int found = 0;
+    for (int i = 0; i < 1000; ++i)
+    {
+      const auto place = [&](int low) { return low - 5 + static_cast<int>(numbers.Below(42)); };
+      PixelRect rect;
+      rect.Lo = { place(64), place(32) };
+      rect.Hi = rect.Lo + glm::ivec2(numbers.Below(33), numbers.Below(33));
+      const bool any = std::any_of(at.begin(), at.end(),
+        [&](const glm::ivec2& p)
+        { return p.x >= rect.Lo.x && p.y >= rect.Lo.y && p.x < rect.Hi.x && p.y < rect.Hi.y; });
+      found += any == pixels.AnyIn(rect) ? 1 : 0;
+    }
+    EXPECT_EQ(found, 1000) << count;
+  }
+}
+
 } // namespace
