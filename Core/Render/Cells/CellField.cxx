@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Render/Cells/CellField.h"
 
+#include "Base/Error.h"
 #include "Cells/CellOrder.h"
 
 #include <algorithm>
@@ -49,6 +50,11 @@ std::shared_ptr<DrawnCells> DrawnCells::OfPiece(
   const CellMesh& mesh, CellFacts& facts, const CellExtent& ofAll, ThreadPool& pool)
 {
   std::shared_ptr<DrawnCells> cells = Made(mesh, facts, ofAll, pool);
+  if (cells->Order.size() >= std::size_t{ 1 } << 31)
+  {
+    throw Error("The piece of the mesh on this process has 2^31 cells or more: divide it among "
+                "more processes");
+  }
   cells->SetBorder(BorderFacesOf(mesh, facts, cells->Order, pool));
   cells->Alone = cells->BorderBits;
   cells->Alone.resize(cells->Order.size(), 0);

@@ -46,6 +46,7 @@ struct DrawnCells
   /// piece has alone: those which cells of other pieces have, too, are to be taken out.
   /// @param facts of this piece; Repeated is set
   /// @param ofAll pieces together
+  /// Throws Error where no piece has a cell, and where this one has 2^31.
   static std::shared_ptr<DrawnCells> OfPiece(
     const CellMesh& mesh, CellFacts& facts, const CellExtent& ofAll, ThreadPool& pool);
 

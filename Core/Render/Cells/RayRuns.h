@@ -16,8 +16,8 @@
 namespace banyan
 {
 
-/// Samples of a ray that follow each other, which one rank has by itself: blended front to back, or
-/// projected.
+/// Intervals of a ray that follow each other, drawn as if no other rank had anything in them:
+/// blended front to back, or projected.
 struct RayRun
 {
   std::int64_t First = 0; ///< intervals of the ray, counted from t = 0

@@ -98,8 +98,8 @@ private:
     return bits;
   }
 
-  /// Where others may have a say: at samples next to faces that no other cell of the piece has, and
-  /// where the border is crossed.
+  /// Lanes whose intervals are given raw: samples next to faces that no other cell of the piece
+  /// has, crossings of the border that cover nothing, and what is asked for.
   HWY_INLINE hn::Mask<D> RawAt(
     const RowLanes& lanes, int slot, int row, bool border, hn::Mask<D> open) const
   {
@@ -107,13 +107,17 @@ private:
     const DI di;
     const int index = SampleSlab::IndexOf(slot, row);
     const VI owners = hn::Load(di, reinterpret_cast<const std::int32_t*>(this->Owners.Of) + index);
-    auto raw = hn::And(
-      lanes.Drawn, hn::RebindMask(d, hn::Lt(owners, hn::Zero(di)))); // SlabOwners::Contested
+    const VF value = hn::Load(d, this->Slab.Value + index);
+    // SlabOwners::Contested, where the sample is a cell's.
+    const auto contested =
+      hn::And(hn::Eq(value, value), hn::RebindMask(d, hn::Lt(owners, hn::Zero(di))));
+    auto some = lanes.Drawn;
     if (border)
     {
       const VF crossings = hn::Load(d, this->Slab.Crossings + index);
-      raw = hn::Or(raw, hn::And(open, hn::Gt(crossings, hn::Zero(d))));
+      some = hn::Or(some, hn::And(open, hn::Gt(crossings, hn::Zero(d))));
     }
+    auto raw = hn::Or(hn::And(some, contested), hn::AndNot(lanes.Drawn, some));
     if (this->Collector.IsAsked())
     {
       alignas(64) std::int32_t asked[RayTile::PacketSize];
@@ -122,7 +126,7 @@ private:
         asked[i] = this->Collector.AsksFor(this->Tile, slot + i, this->FirstRow + row) ? 1 : 0;
       }
       const auto wanted = hn::RebindMask(d, hn::Gt(hn::Load(di, asked), hn::Zero(di)));
-      raw = hn::Or(raw, hn::And(lanes.Drawn, wanted));
+      raw = hn::Or(raw, hn::And(some, wanted));
     }
     return raw;
   }

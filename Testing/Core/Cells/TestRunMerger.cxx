@@ -418,13 +418,13 @@ TEST(RunMerger, SamplesThatSeveralRanksHave)
   }
 }
 
-TEST(RunMerger, OnlyContestedSamplesAndCrossingsTakeNoSecondRound)
+TEST(RunMerger, ContestedSamplesTakeNoSecondRound)
 {
   const Tables tables(BlendMode::Composite, true);
   Deal deal;
   deal.Overlaps = 0.3;
   deal.Contested = 1.0;
-  deal.Crossings = 0.3;
+  deal.Crossings = 0.0;
   const DealtTile tile(deal, 3);
   const Merged merged = Together(tile, deal, tables);
   EXPECT_EQ(merged.Asked, 0u);

@@ -2,6 +2,7 @@
 // What pieces of a mesh know of the whole one.
 #include "Cells/CellOrder.h"
 #include "Parallel/Cells/PieceMeans.h"
+#include "Parallel/Communicate/Collective.h"
 #include "Parallel/PieceCases.h"
 #include "Render/Cells/PointMeans.h"
 
@@ -110,6 +111,30 @@ TEST(CellPieces, IndexSpaceAndBorderAreThoseOfTheWhole)
       EXPECT_EQ((alone - found.size()) % 2, 0u);
     }
   }
+}
+
+TEST(CellPieces, NoCellOnAnyRankIsAnErrorOnAll)
+{
+  OwnedCellMesh none;
+  none.Offsets = { 0 };
+  int errors = 0;
+  std::mutex mutex;
+  RunOnSimulatedRanks(3,
+    [&](Communicator& communicator)
+    {
+      ThreadPool pool(1);
+      CellFacts facts;
+      try
+      {
+        DrawnPiece(communicator, none.View(), facts, pool);
+      }
+      catch (const CollectiveError&)
+      {
+        const std::lock_guard<std::mutex> lock(mutex);
+        ++errors;
+      }
+    });
+  EXPECT_EQ(errors, 3);
 }
 
 TEST(CellPieces, KeysBringCellsIntoTheirOrder)
