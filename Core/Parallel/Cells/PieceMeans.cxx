@@ -18,8 +18,8 @@ namespace
 {
 
 /// Points of faces that no other cell of the piece has: around all others are this rank's cells
-/// alone.
-std::vector<std::int64_t> PointsAtEnds(const DrawnCells& cells)
+/// alone. Of points in the same place, the first one.
+std::vector<std::int64_t> PointsAtEnds(const DrawnCells& cells, const std::vector<PointTwin>& twins)
 {
   std::vector<std::int64_t> points;
   for (std::size_t place = 0; place < cells.Alone.size(); ++place)
@@ -36,7 +36,7 @@ std::vector<std::int64_t> PointsAtEnds(const DrawnCells& cells)
       {
         const auto corner =
           static_cast<std::size_t>(faces.Faces[face].Corners[static_cast<std::size_t>(i)]);
-        points.push_back(cell.Points[corner]);
+        points.push_back(FirstAt(twins, cell.Points[corner]));
       }
     }
   }
@@ -106,7 +106,7 @@ void AddOthers(Communicator& communicator, const DrawnCells& cells, PointSums& s
 {
   const auto size = static_cast<std::uint64_t>(communicator.Size());
   const auto width = static_cast<std::size_t>(sums.Width);
-  const std::vector<std::int64_t> points = PointsAtEnds(cells);
+  const std::vector<std::int64_t> points = PointsAtEnds(cells, sums.Twins);
   std::vector<Bytes> messages(static_cast<std::size_t>(size));
   std::vector<std::size_t> ranks;
   for (const std::int64_t point : points)
@@ -126,6 +126,7 @@ void AddOthers(Communicator& communicator, const DrawnCells& cells, PointSums& s
       answers[ranks[i]].data() + taken[ranks[i]], width * sizeof(double));
     taken[ranks[i]] += width * sizeof(double);
   }
+  sums.GiveToTwins();
 }
 
 /// Sums of this rank's cells, then of all.

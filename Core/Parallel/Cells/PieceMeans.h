@@ -12,10 +12,8 @@ namespace banyan
 class Communicator;
 class ThreadPool;
 
-/// Collective: PointGradients of the whole mesh, at the points of a piece. Points of several pieces
-/// are one where they lie in the same place, as are points of one piece that lie on faces which one
-/// cell of it has alone. The same but for the last bit of a float.
-/// Throws CollectiveError.
+/// Collective: PointGradients of the whole mesh, at the points of a piece. The same but for the
+/// last bit of a float. Throws CollectiveError.
 std::vector<float> PieceGradients(Communicator& communicator, const DrawnCells& cells,
   const std::vector<float>& values, ThreadPool& pool);
 

@@ -7,8 +7,11 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <numeric>
 
 namespace banyan
 {
@@ -64,12 +67,23 @@ struct CellInMesh
   }
 };
 
-/// Goes to the corners of all cells, in the global order at each point. A thread has some of the
+/// Goes to the corners of all cells, in the global order at each place. A thread has some of the
 /// points, and looks at all cells: nothing is added up by two threads.
-/// @param function called as function(cell, corner, point)
+/// @param function called as function(cell, corner, point), with the first point at the place
 template <class Function>
-void ForCorners(const DrawnCells& cells, ThreadPool& pool, const Function& function)
+void ForCorners(const DrawnCells& cells, const std::vector<PointTwin>& twins, ThreadPool& pool,
+  const Function& function)
 {
+  std::vector<std::int64_t> firsts; // of all points; empty where each is the first
+  if (!twins.empty())
+  {
+    firsts.resize(static_cast<std::size_t>(cells.Mesh.PointCount));
+    std::iota(firsts.begin(), firsts.end(), std::int64_t{ 0 });
+    for (const PointTwin& twin : twins)
+    {
+      firsts[static_cast<std::size_t>(twin.Point)] = twin.First;
+    }
+  }
   const std::int64_t parts = pool.Width();
   const std::int64_t points = cells.Mesh.PointCount;
   pool.ParallelFor(parts,
@@ -78,15 +92,17 @@ void ForCorners(const DrawnCells& cells, ThreadPool& pool, const Function& funct
       const std::int64_t begin = points * part / parts;
       const std::int64_t end = points * (part + 1) / parts;
       CellInMesh cell;
-      for (const std::uint32_t number : cells.Order)
+      for (const std::uint32_t of : cells.Order)
       {
-        cell.Number = number;
-        cell.Cell = cells.Mesh.Cell(number);
+        cell.Number = of;
+        cell.Cell = cells.Mesh.Cell(of);
         const int corners = CornersOf(cell.Cell.Shape);
         bool placed = false;
         for (int corner = 0; corner < corners; ++corner)
         {
-          const std::int64_t point = cell.Cell.Points[static_cast<std::size_t>(corner)];
+          const std::int64_t number = cell.Cell.Points[static_cast<std::size_t>(corner)];
+          const std::int64_t point =
+            firsts.empty() ? number : firsts[static_cast<std::size_t>(number)];
           if (point < begin || point >= end)
           {
             continue;
@@ -103,13 +119,29 @@ void ForCorners(const DrawnCells& cells, ThreadPool& pool, const Function& funct
     });
 }
 
+/// @param width numbers per point
+PointSums NoSums(const DrawnCells& cells, int width, ThreadPool& pool)
+{
+  const auto count = static_cast<std::size_t>(cells.Mesh.PointCount);
+  return { width, std::vector<double>(static_cast<std::size_t>(width) * count, 0.0),
+    TwinsOf(cells.Mesh, pool) };
+}
+
 } // namespace
+
+void PointSums::GiveToTwins()
+{
+  for (const PointTwin& twin : this->Twins)
+  {
+    std::copy_n(this->Numbers.begin() + static_cast<std::ptrdiff_t>(this->Width * twin.First),
+      this->Width, this->Numbers.begin() + static_cast<std::ptrdiff_t>(this->Width * twin.Point));
+  }
+}
 
 PointSums GradientSums(const DrawnCells& cells, const std::vector<float>& values, ThreadPool& pool)
 {
-  const auto count = static_cast<std::size_t>(cells.Mesh.PointCount);
-  PointSums sums{ 4, std::vector<double>(4 * count, 0.0) };
-  ForCorners(cells, pool,
+  PointSums sums = NoSums(cells, 4, pool);
+  ForCorners(cells, sums.Twins, pool,
     [&](const CellInMesh& cell, int corner, std::int64_t point)
     {
       double volume = 0.0;
@@ -137,6 +169,7 @@ PointSums GradientSums(const DrawnCells& cells, const std::vector<float>& values
         }
       }
     });
+  sums.GiveToTwins();
   return sums;
 }
 
@@ -163,9 +196,8 @@ std::vector<float> PointGradients(
 
 PointSums MeanSums(const DrawnCells& cells, const std::vector<float>& values, ThreadPool& pool)
 {
-  const auto count = static_cast<std::size_t>(cells.Mesh.PointCount);
-  PointSums sums{ 2, std::vector<double>(2 * count, 0.0) };
-  ForCorners(cells, pool,
+  PointSums sums = NoSums(cells, 2, pool);
+  ForCorners(cells, sums.Twins, pool,
     [&](const CellInMesh& cell, int corner, std::int64_t point)
     {
       double volume = 0.0;
@@ -175,6 +207,7 @@ PointSums MeanSums(const DrawnCells& cells, const std::vector<float>& values, Th
       sum[0] += volume * value;
       sum[1] += volume;
     });
+  sums.GiveToTwins();
   return sums;
 }
 

@@ -179,9 +179,9 @@ std::map<Place, std::vector<float>> ByPlace(
   return by;
 }
 
-TEST(CellPieces, GradientsAndMeansAreThoseOfTheWhole)
+/// @param mesh whose values are those of points
+void ExpectMeansOfTheWhole(const OwnedCellMesh& mesh)
 {
-  OwnedCellMesh mesh = piececases::Cube(5, Cut::Mixed);
   const Whole whole(mesh);
   ThreadPool pool(1);
   const auto gradients = ByPlace(mesh, PointGradients(*whole.Cells, mesh.Values, pool), 3);
@@ -204,6 +204,15 @@ TEST(CellPieces, GradientsAndMeansAreThoseOfTheWhole)
         Communicator& ranks, const DrawnCells& cells, const OwnedCellMesh& piece, ThreadPool& mine)
       { ExpectAsInWhole(PieceMeans(ranks, cells, piece.Values, mine), piece, means, 1); });
   }
+}
+
+TEST(CellPieces, GradientsAndMeansAreThoseOfTheWhole)
+{
+  OwnedCellMesh mesh = piececases::Cube(5, Cut::Mixed);
+  ExpectMeansOfTheWhole(mesh);
+  // Points that are cells' own count as one where they meet, inside of a piece, too.
+  cellmeshes::SeparatePoints(mesh);
+  ExpectMeansOfTheWhole(mesh);
 }
 
 } // namespace
