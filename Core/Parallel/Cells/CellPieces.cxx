@@ -6,6 +6,7 @@
 #include "Cells/FaceKeys.h"
 #include "Cells/PlaceHash.h"
 #include "Parallel/Cells/ExchangeBytes.h"
+#include "Parallel/Cells/RepeatedCells.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Communicate/Communicator.h"
 
@@ -139,15 +140,16 @@ std::shared_ptr<const DrawnCells> DrawnPiece(
   Communicator& communicator, const CellMesh& mesh, CellFacts& facts, ThreadPool& pool)
 {
   std::string failure;
-  CellExtent extent;
+  CellExtent mine;
   Attempt(failure,
     [&]
     {
       facts = CheckCells(mesh, pool);
-      extent = ExtentOf(mesh, facts, pool);
+      mine = ExtentOf(mesh, facts, pool);
     });
   ThrowTogether(communicator, failure);
-  extent = ExtentOfAll(communicator, extent);
+  const CellExtent extent = ExtentOfAll(communicator, mine);
+  LeaveOutRepeated(communicator, mesh, mine, extent, facts);
   std::shared_ptr<DrawnCells> cells;
   Attempt(failure, [&] { cells = DrawnCells::OfPiece(mesh, facts, extent, pool); });
   ThrowTogether(communicator, failure);

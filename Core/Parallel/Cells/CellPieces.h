@@ -13,11 +13,12 @@ class Communicator;
 class ThreadPool;
 
 /// Collective: makes the piece of a mesh that a rank has ready to be drawn. Cells are dealt in any
-/// way, each to one rank; a rank may have none. Index space and order are those of the whole mesh,
-/// and its border is known to those ranks that have cells there: two pieces have all other faces.
+/// way; a rank may have none. Index space and order are those of the whole mesh, and its border is
+/// known to those ranks that have cells there: two pieces have all other faces. A cell that several
+/// ranks have is left out but on the highest of them.
 ///
 /// Faces that one cell of a piece has alone go to a rank for each hash and back, 24 bytes each.
-/// @param facts of this rank's cells
+/// @param facts of this rank's cells, those that are left out among Repeated
 /// Throws CollectiveError: see DrawnCells::Of.
 std::shared_ptr<const DrawnCells> DrawnPiece(
   Communicator& communicator, const CellMesh& mesh, CellFacts& facts, ThreadPool& pool);

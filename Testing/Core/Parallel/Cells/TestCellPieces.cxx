@@ -215,4 +215,44 @@ TEST(CellPieces, GradientsAndMeansAreThoseOfTheWhole)
   ExpectMeansOfTheWhole(mesh);
 }
 
+TEST(CellPieces, OfRepeatedCellsThoseOfTheHighestRankCount)
+{
+  const OwnedCellMesh once = piececases::Cube(5, Cut::Mixed);
+  OwnedCellMesh mesh = once;
+  cellmeshes::Append(mesh, once);
+  cellmeshes::Append(mesh, once);
+  const Whole whole(mesh);
+  ASSERT_EQ(whole.Cells->Order.size(), static_cast<std::size_t>(once.CellCount()));
+  for (const int ranks : { 1, 2, 3, 4, 7 })
+  {
+    std::mutex mutex;
+    std::size_t drawn = 0;
+    std::size_t border = 0;
+    std::int64_t repeated = 0;
+    const std::vector<int> rankOf = piececases::Dealt(mesh, Deal::Slabs, ranks);
+    RunOnSimulatedRanks(ranks,
+      [&](Communicator& communicator)
+      {
+        ThreadPool pool(1);
+        CellFacts facts;
+        const int rank = communicator.Rank();
+        const OwnedCellMesh piece = piececases::PieceOf(mesh, rankOf, rank, false);
+        const auto cells = DrawnPiece(communicator, piece.View(), facts, pool);
+        const std::lock_guard<std::mutex> lock(mutex);
+        drawn += cells->Order.size();
+        border += cells->Border.size();
+        repeated += facts.Repeated;
+        const auto first =
+          static_cast<std::int64_t>(std::find(rankOf.begin(), rankOf.end(), rank) - rankOf.begin());
+        for (const std::uint32_t number : cells->Order)
+        {
+          EXPECT_GE(first + number, 2 * once.CellCount());
+        }
+      });
+    EXPECT_EQ(drawn, whole.Cells->Order.size()) << ranks;
+    EXPECT_EQ(border, whole.Cells->Border.size()) << ranks;
+    EXPECT_EQ(repeated, 2 * once.CellCount()) << ranks;
+  }
+}
+
 } // namespace

@@ -247,4 +247,30 @@ TEST(DrawPieces, LargeCellsAndParallelRays)
   }
 }
 
+TEST(DrawPieces, CellsThatSeveralRanksHave)
+{
+  // Every second cell is there once more, with other values.
+  cellmeshes::OwnedCellMesh mesh = piececases::Cube(6, Cut::Mixed);
+  cellmeshes::OwnedCellMesh other = mesh;
+  cellmeshes::SetValues(other, scenes::Linear);
+  std::vector<int> half(static_cast<std::size_t>(other.CellCount()));
+  for (std::size_t cell = 0; cell < half.size(); ++cell)
+  {
+    half[cell] = static_cast<int>(cell % 2);
+  }
+  const Case plain(mesh);
+  cellmeshes::Append(mesh, piececases::PieceOf(other, half, 1, false));
+  Case is(mesh);
+  EXPECT_GT(MaxDifference(is.Whole(), plain.Whole()), 0.05);
+  for (const bool shaded : { false, true })
+  {
+    is.Scene.Shading.On = shaded;
+    const FloatImage whole = is.Whole();
+    for (const int ranks : { 2, 5 })
+    {
+      EXPECT_LE(MaxDifference(Together(is, Deal::Slabs, ranks).Picture, whole), 1e-5) << ranks;
+    }
+  }
+}
+
 } // namespace
