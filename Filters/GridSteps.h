@@ -45,9 +45,8 @@ public:
   }
 
   /// Collective. Replaces this rank's data by an image when any rank has such a grid, alone or as
-  /// the only block with points. Data stay as
-  /// they are where a rank has a problem. Throws CollectiveError, also where the kind of grid is
-  /// not that of the step before.
+  /// the only block with points. Data stay as they are where a rank has a problem. Throws
+  /// CollectiveError, also where the kind of grid is not that of the step before.
   /// @param problem of this rank so far, or nothing
   void Take(vtkSmartPointer<vtkDataObject>& data, const std::string& problem);
 

@@ -54,7 +54,7 @@ class vtkRenderWindow;
     "amplitudes.")                                                                                 \
   Real(SampleDistanceVoxels, edges, 0, 0, 100, 4, advanced, all,                                   \
     "Fixed distance between samples along a ray, in edges of the smallest cell; of meshes that "   \
-    "are no octrees, in edges of a middling cell. Default: 0, the tolerance decides.")             \
+    "are no octrees, in edges of the median cell. Default: 0, the tolerance decides.")             \
   Real(ScreenErrorPixels, pixels, 0, 0, 1024, 64, advanced, all,                                   \
     "Longest edge of a cell on the screen, in pixels. Everything is drawn from the coarsest "      \
     "levels that keep it, with one sample per cell. Default: 0, the tolerance decides.")           \

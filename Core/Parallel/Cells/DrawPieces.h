@@ -35,7 +35,9 @@ struct PieceStatistics
 /// @param scene the same on all ranks
 /// @param source of a piece that DrawnPiece has made; the values have the same base on all ranks
 /// @param root has the picture: its pixels are those of the viewport, not finished; others have
-/// none Throws CollectiveError.
+/// none
+///
+/// Throws CollectiveError.
 FloatImage DrawPieces(Communicator& communicator, const RayScene& scene, CellSource& source,
   ThreadPool& pool, int root, PieceStatistics& statistics);
 
