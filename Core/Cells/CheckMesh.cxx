@@ -51,6 +51,7 @@ void Add(CellCounts& to, const CellCounts& from)
     to.FirstCount = from.FirstCount;
     to.FirstCorners = from.FirstCorners;
   }
+  to.Repeated += from.Repeated;
 }
 
 /// Whether all coordinates can be computed with.

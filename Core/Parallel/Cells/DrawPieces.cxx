@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Cells/DrawPieces.h"
 
-#include "Base/Bytes.h"
+#include "Base/StopFlag.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
 #include "Base/Varint.h"
 #include "Parallel/Cells/ExchangeBytes.h"
+#include "Parallel/Cells/PieceLattice.h"
 #include "Parallel/Cells/PieceMeans.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Communicate/Communicator.h"
@@ -14,8 +15,10 @@
 #include "Render/Cells/RunMessage.h"
 
 #include <algorithm>
+#include <cstring>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -43,7 +46,6 @@ struct OwnTile
   };
   std::vector<Part> Parts;
   std::vector<std::vector<AskedIntervals>> Asked; ///< by rank; none where ranks agree
-  TilePixels Pixels;
 };
 using OwnTiles = std::map<glm::ivec2, OwnTile, ByPosition>;
 
@@ -58,16 +60,49 @@ public:
     , Source(source)
     , Pool(pool)
     , Statistics(statistics)
+    , Share{ communicator.Rank(), communicator.Size() }
   {
   }
 
   FloatImage Draw(int root)
   {
-    if (this->Scene.Shading.On && this->Scene.Blend.Mode == BlendMode::Composite)
+    const bool shaded = this->Scene.Shading.On && this->Scene.Blend.Mode == BlendMode::Composite;
+    std::string failure;
+    std::set<int> levels{ 0 };
+    Attempt(failure, [&] { levels = SampledLevels(this->Scene); }); // alike on all ranks
+    if (shaded)
     {
       GivePieceGradients(this->Ranks, this->Source, this->Pool);
     }
-    std::string failure;
+    if (*levels.rbegin() > 0)
+    {
+      GivePieceLattice(this->Ranks, this->Source, shaded, this->Pool);
+    }
+    Attempt(failure,
+      [this]
+      {
+        this->Picture.Rect = this->Scene.Viewport;
+        this->Picture.Pixels.assign(
+          static_cast<std::size_t>(this->Picture.Rect.Count()), glm::vec4(0.0f));
+      });
+    for (const int level : levels)
+    {
+      if (level == 0)
+      {
+        this->DrawCells(failure);
+      }
+      else
+      {
+        Attempt(failure, [this, level, shaded] { this->DrawLattice(level, shaded); });
+      }
+    }
+    return this->Gather(root, failure);
+  }
+
+private:
+  /// Collective: draws the tiles that show cells.
+  void DrawCells(std::string& failure)
+  {
     Attempt(failure,
       [this]
       {
@@ -77,20 +112,32 @@ public:
     this->Send(nullptr, failure);
     Attempt(failure, [this] { this->Merge(false); });
     this->AskAgain(failure);
-    return this->Gather(root, failure);
   }
 
-private:
-  int OwnerOf(const glm::ivec2& tile) const { return (tile.x + 7 * tile.y) % this->Ranks.Size(); }
+  /// Draws this rank's tiles that show a coarser level.
+  void DrawLattice(int level, bool shaded)
+  {
+    const Timer timer;
+    BrickSource* const at = this->Source.AtLevel(level, this->Scene.DomainCells);
+    if (!at)
+    {
+      throw Error("There is no level " + std::to_string(level) + " of the mesh");
+    }
+    CellCaster(this->Scene, this->Source, *at, this->Source.LatticeOf(level, shaded, this->Pool),
+      this->Scene.DomainCells, this->Pool, this->Statistics.Rays)
+      .DrawTiles(this->Picture, nullptr, this->Share);
+    this->Statistics.DrawSeconds += timer.Seconds();
+  }
 
-  std::vector<Bytes> Exchange(std::vector<Bytes> messages)
+  std::vector<Bytes> Exchange(std::vector<Bytes> messages, std::string& failure)
   {
     for (std::size_t rank = 0; rank < messages.size(); ++rank)
     {
       const bool mine = rank == static_cast<std::size_t>(this->Ranks.Rank());
       this->Statistics.Bytes += mine ? 0 : messages[rank].size();
+      this->Statistics.Messages += mine || messages[rank].empty() ? 0 : 1;
     }
-    return ExchangeBytes(this->Ranks, std::move(messages));
+    return ExchangeBytes(this->Ranks, std::move(messages), failure);
   }
 
   std::vector<Bytes> NoMessages() const
@@ -109,14 +156,13 @@ private:
         const Timer timer;
         for (const TileRuns& runs : this->Caster->DrawRuns(asked))
         {
-          PutRuns(messages[static_cast<std::size_t>(this->OwnerOf(runs.Position))], runs);
+          PutRuns(messages[static_cast<std::size_t>(this->Share.OwnerOf(runs.Position))], runs);
           this->Statistics.Runs += asked ? 0 : static_cast<std::int64_t>(runs.Runs.size());
           this->Statistics.Raw += asked ? 0 : static_cast<std::int64_t>(runs.Raw.size());
         }
         this->Statistics.DrawSeconds += timer.Seconds();
       });
-    ThrowTogether(this->Ranks, failure);
-    const std::vector<Bytes> from = this->Exchange(std::move(messages));
+    const std::vector<Bytes> from = this->Exchange(std::move(messages), failure);
     Attempt(failure,
       [&]
       {
@@ -158,8 +204,12 @@ private:
     this->Statistics.MergeSeconds += timer.Seconds();
   }
 
-  void MergeTile(const glm::ivec2& position, OwnTile& tile, RunMerger& merger) const
+  void MergeTile(const glm::ivec2& position, OwnTile& tile, RunMerger& merger)
   {
+    if (this->Scene.Stop)
+    {
+      this->Scene.Stop->Check();
+    }
     const LevelScene& level = this->Caster->Drawn();
     const TileSamplings* const samplings = this->Scene.Samplings.get();
     const auto number = static_cast<std::size_t>(samplings ? samplings->NumberAt(position) : 0);
@@ -170,35 +220,48 @@ private:
     std::vector<std::vector<AskedIntervals>> asked(static_cast<std::size_t>(this->Ranks.Size()));
     const bool agree = merger.Agree(asked);
     tile.Asked = agree ? std::vector<std::vector<AskedIntervals>>() : std::move(asked);
+    const auto pixels = std::make_unique<TilePixels>();
     merger.Merge(
-      this->Caster->BlendOf(*level.Samplings.at(number)), level.TransmittanceLimit(), tile.Pixels);
+      this->Caster->BlendOf(*level.Samplings.at(number)), level.TransmittanceLimit(), *pixels);
+    const PixelRect rect = this->RectOf(position);
+    for (int y = rect.Lo.y; y < rect.Hi.y; ++y)
+    {
+      const glm::ivec2 at = glm::ivec2(rect.Lo.x, y) - position * RayTile::Edge;
+      std::copy_n(pixels->data() + at.y * RayTile::Edge + at.x, rect.Size().x,
+        &this->Picture.At(rect.Lo.x, y));
+    }
   }
 
   /// The second round: what ranks have to give raw, they give. All ranks know when none has to.
   void AskAgain(std::string& failure)
   {
-    std::vector<Bytes> messages = this->NoMessages();
+    std::vector<Bytes> messages;
     bool any = false;
-    for (auto& [position, tile] : this->Tiles)
-    {
-      for (std::size_t rank = 0; rank < tile.Asked.size(); ++rank)
+    Attempt(failure,
+      [&]
       {
-        if (!tile.Asked[rank].empty())
+        messages = this->NoMessages();
+        for (auto& [position, tile] : this->Tiles)
         {
-          AskedTile asked{ position, std::move(tile.Asked[rank]) };
-          SortAsked(asked.Intervals);
-          PutAsked(messages[rank], asked);
-          any = true;
-          RemoveAskedOf(tile, static_cast<int>(rank), asked);
+          for (std::size_t rank = 0; rank < tile.Asked.size(); ++rank)
+          {
+            if (!tile.Asked[rank].empty())
+            {
+              AskedTile asked{ position, std::move(tile.Asked[rank]) };
+              SortAsked(asked.Intervals);
+              PutAsked(messages[rank], asked);
+              any = true;
+              RemoveAskedOf(tile, static_cast<int>(rank), asked);
+            }
+          }
         }
-      }
-    }
-    ThrowTogether(this->Ranks, failure);
-    if (AllMax(this->Ranks, any ? 1.0 : 0.0) == 0.0)
+      });
+    // Who has failed takes all others along: Exchange agrees on it.
+    if (AllMax(this->Ranks, any || !failure.empty() ? 1.0 : 0.0) == 0.0)
     {
       return;
     }
-    const std::vector<Bytes> from = this->Exchange(std::move(messages));
+    const std::vector<Bytes> from = this->Exchange(std::move(messages), failure);
     std::vector<AskedTile> asked;
     Attempt(failure,
       [&]
@@ -227,18 +290,39 @@ private:
     }
   }
 
-  /// Pixels with anything, as runs of them in rows of the picture.
-  void PutPixels(Bytes& message, const glm::ivec2& position, const OwnTile& tile) const
+  PixelRect RectOf(const glm::ivec2& tile) const
   {
-    const glm::ivec2 low = position * RayTile::Edge;
-    const PixelRect rect = Intersection({ low, low + RayTile::Edge }, this->Scene.Viewport);
+    const glm::ivec2 low = tile * RayTile::Edge;
+    return Intersection({ low, low + RayTile::Edge }, this->Scene.Viewport);
+  }
+
+  /// Calls function(position) for this rank's tiles.
+  template <class Function>
+  void ForMyTiles(Function&& function) const
+  {
+    const PixelRect& all = this->Scene.Viewport;
+    const glm::ivec2 first = all.Lo / RayTile::Edge;
+    const glm::ivec2 end = (all.Hi + (RayTile::Edge - 1)) / RayTile::Edge;
+    for (int y = first.y; y < end.y; ++y)
+    {
+      for (int x = first.x; x < end.x; ++x)
+      {
+        if (this->Share.Has({ x, y }))
+        {
+          function(glm::ivec2(x, y));
+        }
+      }
+    }
+  }
+
+  /// Pixels with anything, as runs of them in rows of the picture.
+  void PutPixels(Bytes& message, const PixelRect& rect) const
+  {
     for (int y = rect.Lo.y; y < rect.Hi.y; ++y)
     {
-      const glm::vec4* const row =
-        tile.Pixels.data() + static_cast<std::ptrdiff_t>(y - low.y) * RayTile::Edge;
       int begin = rect.Lo.x;
       int end = rect.Hi.x;
-      const auto isNothing = [&](int x) { return row[x - low.x] == glm::vec4(0.0f); };
+      const auto isNothing = [&](int x) { return this->Picture.At(x, y) == glm::vec4(0.0f); };
       for (; begin < end && isNothing(begin); ++begin)
       {
       }
@@ -252,40 +336,52 @@ private:
         const std::size_t at = message.size();
         message.resize(at + sizeof(head) + pixels);
         std::memcpy(message.data() + at, head, sizeof(head));
-        std::memcpy(message.data() + at + sizeof(head), row + (begin - low.x), pixels);
+        std::memcpy(message.data() + at + sizeof(head), &this->Picture.At(begin, y), pixels);
       }
     }
   }
 
-  /// Brings all tiles to the root.
+  void TakePixels(const Bytes& message)
+  {
+    ByteReader in(message.data(), message.size());
+    while (in.Left() > 0)
+    {
+      const int x = in.Number<int>();
+      const int y = in.Number<int>();
+      const auto pixels = static_cast<std::size_t>(in.Number<int>()) * sizeof(glm::vec4);
+      std::memcpy(&this->Picture.At(x, y), in.Skip(pixels), pixels);
+    }
+  }
+
+  /// Collective: brings all tiles to the root, or to all ranks.
   FloatImage Gather(int root, std::string& failure)
   {
-    std::vector<Bytes> messages = this->NoMessages();
-    for (const auto& [position, tile] : this->Tiles)
+    Bytes mine;
+    Attempt(failure,
+      [&] { this->ForMyTiles([&](const glm::ivec2& tile) { this->PutPixels(mine, this->RectOf(tile)); }); });
+    std::vector<Bytes> from;
+    if (root == EveryRank)
     {
-      this->PutPixels(messages[static_cast<std::size_t>(root)], position, tile);
+      const auto others = static_cast<std::uint64_t>(this->Ranks.Size() - 1);
+      this->Statistics.Bytes += mine.size() * others;
+      this->Statistics.Messages += mine.empty() ? 0 : others;
+      from = AllGatherBytes(this->Ranks, std::move(mine), failure);
     }
-    ThrowTogether(this->Ranks, failure);
-    const std::vector<Bytes> from = this->Exchange(std::move(messages));
-    FloatImage picture;
-    if (this->Ranks.Rank() != root)
+    else
     {
-      return picture;
+      std::vector<Bytes> messages = this->NoMessages();
+      messages[static_cast<std::size_t>(root)] = std::move(mine);
+      from = this->Exchange(std::move(messages), failure);
     }
-    picture.Rect = this->Scene.Viewport;
-    picture.Pixels.assign(static_cast<std::size_t>(picture.Rect.Count()), glm::vec4(0.0f));
+    if (root != EveryRank && root != this->Ranks.Rank())
+    {
+      return {};
+    }
     for (const Bytes& message : from)
     {
-      ByteReader in(message.data(), message.size());
-      while (in.Left() > 0)
-      {
-        const int x = in.Number<int>();
-        const int y = in.Number<int>();
-        const auto pixels = static_cast<std::size_t>(in.Number<int>()) * sizeof(glm::vec4);
-        std::memcpy(&picture.At(x, y), in.Skip(pixels), pixels);
-      }
+      this->TakePixels(message);
     }
-    return picture;
+    return std::move(this->Picture);
   }
 
   Communicator& Ranks;
@@ -293,6 +389,8 @@ private:
   CellSource& Source;
   ThreadPool& Pool;
   PieceStatistics& Statistics;
+  const TileShare Share;
+  FloatImage Picture; ///< of the viewport: this rank's tiles
   std::unique_ptr<CellCaster> Caster;
   OwnTiles Tiles;
 };

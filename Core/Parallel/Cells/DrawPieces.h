@@ -14,6 +14,9 @@ namespace banyan
 class Communicator;
 class ThreadPool;
 
+/// For DrawPieces: all ranks get the picture.
+inline constexpr int EveryRank = -1;
+
 /// What a picture of pieces took on this rank.
 struct PieceStatistics
 {
@@ -22,6 +25,7 @@ struct PieceStatistics
   std::int64_t Raw = 0;
   std::int64_t Asked = 0;  ///< intervals that this rank had to give raw in the second round
   std::uint64_t Bytes = 0; ///< sent to others
+  std::uint64_t Messages = 0;
   double DrawSeconds = 0.0;
   double MergeSeconds = 0.0; ///< without waiting for messages
 };
@@ -29,13 +33,14 @@ struct PieceStatistics
 /// Collective: draws a mesh whose cells lie on all ranks, dealt in any way. The picture is the one
 /// that a rank with all cells draws, but for rounding.
 ///
-/// Ranks draw their cells and send, per tile, what they have along its rays: RayRun, RawInterval.
-/// Tiles belong to ranks in turn. Their ranks merge them, and ask for intervals raw where one
-/// rank's run meets what another one has; then the tile is merged anew.
+/// Tiles of the picture belong to ranks in turn. Where cells are drawn, all ranks draw their own
+/// and send, per tile, what they have along its rays: RayRun, RawInterval. The tile's rank merges
+/// them, and asks for intervals raw where one rank's run meets what another one has; then the tile
+/// is merged anew. Coarser levels are lattices of the whole mesh: a tile's rank draws it alone.
 /// @param scene the same on all ranks
 /// @param source of a piece that DrawnPiece has made; the values have the same base on all ranks
-/// @param root has the picture: its pixels are those of the viewport, not finished; others have
-/// none
+/// @param root has the picture, or EveryRank: its pixels are those of the viewport, not finished;
+/// others have none
 ///
 /// Throws CollectiveError.
 FloatImage DrawPieces(Communicator& communicator, const RayScene& scene, CellSource& source,

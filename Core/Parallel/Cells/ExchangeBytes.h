@@ -4,6 +4,7 @@
 
 #include "Base/Bytes.h"
 
+#include <string>
 #include <vector>
 
 namespace banyan
@@ -11,11 +12,20 @@ namespace banyan
 
 class Communicator;
 
-/// Collective: a message from each rank to each. Pairs without one exchange nothing; all sizes are
-/// known to all ranks, 8 bytes per pair.
-/// @param to by rank
-/// @return by rank, what they have sent to this one
-std::vector<Bytes> ExchangeBytes(Communicator& communicator, std::vector<Bytes> to);
+/// Collective: sends a message to each rank, and brings what each has for this one.
+/// @param to by rank, this one too; nothing is sent where a message is empty. May be too short
+/// where this rank has failed
+/// @param failure of this rank so far: its sentence, empty if all is well. All ranks agree on it
+/// before anything is sent
+/// @return by rank
+/// Throws CollectiveError.
+std::vector<Bytes> ExchangeBytes(
+  Communicator& communicator, std::vector<Bytes> to, std::string failure);
+
+/// Collective: brings each rank's message to all.
+/// @return by rank
+/// Throws CollectiveError.
+std::vector<Bytes> AllGatherBytes(Communicator& communicator, Bytes mine, std::string failure);
 
 } // namespace banyan
 

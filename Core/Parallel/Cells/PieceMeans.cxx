@@ -2,7 +2,7 @@
 #include "Parallel/Cells/PieceMeans.h"
 
 #include "Cells/PlaceHash.h"
-#include "Parallel/Cells/ExchangeBytes.h"
+#include "Parallel/Cells/HashedQuestions.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Communicate/Communicator.h"
 #include "Render/Cells/PointMeans.h"
@@ -45,102 +45,96 @@ std::vector<std::int64_t> PointsAtEnds(const DrawnCells& cells, const std::vecto
   return points;
 }
 
-template <class T>
-void Put(Bytes& message, const T* numbers, std::size_t count)
-{
-  const std::size_t at = message.size();
-  message.resize(at + count * sizeof(T));
-  std::memcpy(message.data() + at, numbers, count * sizeof(T));
-}
-
-/// Adds up what ranks have sent of the same points.
-/// @param parts by rank: per point its hash and numbers
-/// @return by rank, the numbers in the order that they came in
+/// Adds up what ranks have sent of the same points: the sums of each.
+/// @param parts by rank: per point its hash and `width` numbers
 std::vector<Bytes> AddUp(const std::vector<Bytes>& parts, std::size_t width)
 {
-  struct Entry
-  {
-    std::uint64_t Hash;
-    std::size_t Rank;
-    std::size_t Index;
-  };
-  const std::size_t size = sizeof(std::uint64_t) + width * sizeof(double);
-  std::vector<Entry> entries;
+  const std::size_t numbers = width * sizeof(double);
+  const std::size_t size = sizeof(std::uint64_t) + numbers;
   std::vector<Bytes> sums(parts.size());
   for (std::size_t rank = 0; rank < parts.size(); ++rank)
   {
-    const std::size_t count = parts[rank].size() / size;
-    sums[rank].resize(count * width * sizeof(double));
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      entries.push_back({ LoadNumber<std::uint64_t>(parts[rank].data() + i * size), rank, i });
-    }
+    sums[rank].resize(parts[rank].size() / size * numbers);
   }
+  using Entry = AskedRecord<std::uint64_t>;
+  std::vector<Entry> entries = RecordsOf<std::uint64_t>(parts, size);
   std::sort(entries.begin(), entries.end(),
     [](const Entry& a, const Entry& b)
-    { return std::tie(a.Hash, a.Rank, a.Index) < std::tie(b.Hash, b.Rank, b.Index); });
+    { return std::tie(a.Of, a.Rank, a.Index) < std::tie(b.Of, b.Rank, b.Index); });
   std::vector<double> sum(width);
-  for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end)
-  {
-    std::fill(sum.begin(), sum.end(), 0.0);
-    for (end = begin; end < entries.size() && entries[end].Hash == entries[begin].Hash; ++end)
+  ForGroups(
+    entries, [](const Entry& a, const Entry& b) { return a.Of == b.Of; },
+    [&](std::size_t begin, std::size_t end)
     {
-      const std::uint8_t* const from =
-        parts[entries[end].Rank].data() + entries[end].Index * size + sizeof(std::uint64_t);
-      for (std::size_t i = 0; i < width; ++i)
+      std::fill(sum.begin(), sum.end(), 0.0);
+      for (std::size_t each = begin; each < end; ++each)
       {
-        sum[i] += LoadNumber<double>(from + i * sizeof(double));
+        const std::uint8_t* const from = parts[entries[each].Rank].data() +
+                                         entries[each].Index * size + sizeof(std::uint64_t);
+        for (std::size_t i = 0; i < width; ++i)
+        {
+          sum[i] += LoadNumber<double>(from + i * sizeof(double));
+        }
       }
-    }
-    for (std::size_t i = begin; i < end; ++i)
-    {
-      std::memcpy(sums[entries[i].Rank].data() + entries[i].Index * width * sizeof(double),
-        sum.data(), width * sizeof(double));
-    }
-  }
+      for (std::size_t each = begin; each < end; ++each)
+      {
+        std::memcpy(sums[entries[each].Rank].data() + entries[each].Index * numbers, sum.data(),
+          numbers);
+      }
+    });
   return sums;
 }
 
-/// Brings in what other ranks' cells have at the points of this one.
-void AddOthers(Communicator& communicator, const DrawnCells& cells, PointSums& sums)
+/// Collective: brings in what other ranks' cells have at the points of this one.
+void AddOthers(
+  Communicator& communicator, const DrawnCells& cells, PointSums& sums, std::string failure)
 {
-  const auto size = static_cast<std::uint64_t>(communicator.Size());
   const auto width = static_cast<std::size_t>(sums.Width);
-  const std::vector<std::int64_t> points = PointsAtEnds(cells, sums.Twins);
-  std::vector<Bytes> messages(static_cast<std::size_t>(size));
-  std::vector<std::size_t> ranks;
-  for (const std::int64_t point : points)
-  {
-    const std::uint64_t hash = HashOfPlace(cells.Mesh.Point(point));
-    ranks.push_back(static_cast<std::size_t>(hash % size));
-    Put(messages[ranks.back()], &hash, 1);
-    Put(
-      messages[ranks.back()], sums.Numbers.data() + static_cast<std::size_t>(point) * width, width);
-  }
-  const std::vector<Bytes> answers =
-    ExchangeBytes(communicator, AddUp(ExchangeBytes(communicator, std::move(messages)), width));
-  std::vector<std::size_t> taken(answers.size(), 0);
+  const std::size_t numbers = width * sizeof(double);
+  const auto sumsAt = [&](std::int64_t point)
+  { return sums.Numbers.data() + static_cast<std::size_t>(point) * width; };
+  std::vector<std::int64_t> points;
+  HashedQuestions questions(communicator.Size(), sizeof(std::uint64_t) + numbers);
+  Attempt(failure,
+    [&]
+    {
+      points = PointsAtEnds(cells, sums.Twins);
+      for (const std::int64_t point : points)
+      {
+        const std::uint64_t hash = HashOfPlace(cells.Mesh.Point(point));
+        std::uint8_t* const record = questions.Add(hash);
+        StoreNumber(record, hash);
+        std::memcpy(record + sizeof(hash), sumsAt(point), numbers);
+      }
+    });
+  const Bytes answers = questions.Ask(
+    communicator, numbers, [&](const std::vector<Bytes>& asked) { return AddUp(asked, width); },
+    failure);
   for (std::size_t i = 0; i < points.size(); ++i)
   {
-    std::memcpy(sums.Numbers.data() + static_cast<std::size_t>(points[i]) * width,
-      answers[ranks[i]].data() + taken[ranks[i]], width * sizeof(double));
-    taken[ranks[i]] += width * sizeof(double);
+    std::memcpy(sumsAt(points[i]), answers.data() + i * numbers, numbers);
   }
-  sums.GiveToTwins();
 }
 
-/// Sums of this rank's cells, then of all.
+/// Collective: what sums of all ranks' cells come to.
 /// @param make GradientSums or MeanSums
-template <class Make>
-PointSums SumsOfAll(Communicator& communicator, const DrawnCells& cells,
-  const std::vector<float>& values, ThreadPool& pool, const Make& make)
+/// @param finish GradientsOf or MeansOf
+template <class Make, class Finish>
+std::vector<float> FromSums(Communicator& communicator, const DrawnCells& cells,
+  const std::vector<float>& values, ThreadPool& pool, const Make& make, const Finish& finish)
 {
   PointSums sums;
   std::string failure;
   Attempt(failure, [&] { sums = make(cells, values, pool); });
-  ThrowTogether(communicator, failure);
-  AddOthers(communicator, cells, sums);
-  return sums;
+  AddOthers(communicator, cells, sums, failure);
+  std::vector<float> found;
+  Collective(communicator,
+    [&]
+    {
+      sums.GiveToTwins();
+      found = finish(sums);
+    });
+  return found;
 }
 
 } // namespace
@@ -148,13 +142,13 @@ PointSums SumsOfAll(Communicator& communicator, const DrawnCells& cells,
 std::vector<float> PieceGradients(Communicator& communicator, const DrawnCells& cells,
   const std::vector<float>& values, ThreadPool& pool)
 {
-  return GradientsOf(SumsOfAll(communicator, cells, values, pool, GradientSums));
+  return FromSums(communicator, cells, values, pool, GradientSums, GradientsOf);
 }
 
 std::vector<float> PieceMeans(Communicator& communicator, const DrawnCells& cells,
   const std::vector<float>& values, ThreadPool& pool)
 {
-  return MeansOf(SumsOfAll(communicator, cells, values, pool, MeanSums));
+  return FromSums(communicator, cells, values, pool, MeanSums, MeansOf);
 }
 
 void GivePieceGradients(Communicator& communicator, CellSource& source, ThreadPool& pool)

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Cells/RepeatedCells.h"
 
-#include "Base/Bytes.h"
 #include "Cells/CellOrder.h"
-#include "Parallel/Cells/ExchangeBytes.h"
+#include "Parallel/Cells/HashedQuestions.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Communicate/Communicator.h"
 
@@ -74,35 +73,27 @@ std::vector<std::int64_t> CellsInBoxes(
 }
 
 /// Which of the cells that ranks ask about a higher rank has, too: one byte each, 1 or 0.
-/// @param asked by rank
 std::vector<Bytes> AnswerAbout(const std::vector<Bytes>& asked)
 {
-  struct Entry
-  {
-    CellKey Key;
-    std::size_t Rank;
-    std::size_t Index;
-  };
-  std::vector<Entry> entries;
   std::vector<Bytes> answers(asked.size());
   for (std::size_t rank = 0; rank < asked.size(); ++rank)
   {
-    const std::size_t count = asked[rank].size() / sizeof(CellKey);
-    answers[rank].assign(count, 0);
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      entries.push_back({ LoadNumber<CellKey>(asked[rank].data() + i * sizeof(CellKey)), rank, i });
-    }
+    answers[rank].assign(asked[rank].size() / sizeof(CellKey), 0);
   }
+  using Entry = AskedRecord<CellKey>;
+  std::vector<Entry> entries = RecordsOf<CellKey>(asked, sizeof(CellKey));
   std::sort(entries.begin(), entries.end(),
     [](const Entry& a, const Entry& b)
-    { return std::tie(a.Key, a.Rank, a.Index) < std::tie(b.Key, b.Rank, b.Index); });
-  // From the last one on: a key's highest rank comes first.
-  for (std::size_t i = entries.size(), last = i; i-- > 0;)
-  {
-    last = i + 1 < entries.size() && entries[i].Key == entries[i + 1].Key ? last : i;
-    answers[entries[i].Rank][entries[i].Index] = entries[i].Rank < entries[last].Rank ? 1 : 0;
-  }
+    { return std::tie(a.Of, a.Rank, a.Index) < std::tie(b.Of, b.Rank, b.Index); });
+  ForGroups(
+    entries, [](const Entry& a, const Entry& b) { return a.Of == b.Of; },
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        answers[entries[i].Rank][entries[i].Index] = entries[i].Rank < entries[end - 1].Rank;
+      }
+    });
   return answers;
 }
 
@@ -111,11 +102,9 @@ std::vector<Bytes> AnswerAbout(const std::vector<Bytes>& asked)
 void LeaveOutRepeated(Communicator& communicator, const CellMesh& mesh, const CellExtent& mine,
   const CellExtent& ofAll, CellFacts& facts)
 {
-  const auto size = static_cast<std::size_t>(communicator.Size());
   const std::vector<WorldBox> boxes = SharedBoxes(communicator, mine);
   std::vector<std::int64_t> cells;
-  std::vector<std::size_t> ranks;
-  std::vector<Bytes> asked(size);
+  HashedQuestions questions(communicator.Size(), sizeof(CellKey));
   std::string failure;
   Attempt(failure,
     [&]
@@ -126,24 +115,22 @@ void LeaveOutRepeated(Communicator& communicator, const CellMesh& mesh, const Ce
       for (const std::int64_t cell : cells)
       {
         const CellKey key = keys.Of(cell);
-        ranks.push_back(static_cast<std::size_t>(key.Hash % size));
-        Bytes& message = asked[ranks.back()];
-        message.resize(message.size() + sizeof(key));
-        StoreNumber(message.data() + message.size() - sizeof(key), key);
+        StoreNumber(questions.Add(key.Hash), key);
       }
     });
-  ThrowTogether(communicator, failure);
-  const std::vector<Bytes> answers =
-    ExchangeBytes(communicator, AnswerAbout(ExchangeBytes(communicator, std::move(asked))));
-  std::vector<std::size_t> taken(size, 0);
-  for (std::size_t i = 0; i < cells.size(); ++i)
-  {
-    if (answers[ranks[i]].at(taken[ranks[i]]++) != 0)
+  const Bytes answers = questions.Ask(communicator, 1, AnswerAbout, failure);
+  Collective(communicator,
+    [&]
     {
-      facts.LeftOut.resize(static_cast<std::size_t>(mesh.CellCount), 0);
-      facts.LeftOut[static_cast<std::size_t>(cells[i])] = 1;
-    }
-  }
+      for (std::size_t i = 0; i < cells.size(); ++i)
+      {
+        if (answers[i] != 0)
+        {
+          facts.LeftOut.resize(static_cast<std::size_t>(mesh.CellCount), 0);
+          facts.LeftOut[static_cast<std::size_t>(cells[i])] = 1;
+        }
+      }
+    });
 }
 
 } // namespace banyan

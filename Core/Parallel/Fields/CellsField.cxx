@@ -3,12 +3,12 @@
 
 #include "Base/Digest.h"
 #include "Base/ThreadPool.h"
-#include "Parallel/Cells/GatheredCells.h"
+#include "Parallel/Cells/CellPieces.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Fields/MeshGathering.h"
-#include "Parallel/Fields/MeshZones.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <type_traits>
 #include <utility>
@@ -64,7 +64,7 @@ CellCounts CountsOfAll(Communicator& communicator, const CellCounts& mine)
 
 } // namespace
 
-void CellsField::Take(Communicator& communicator, Piece piece, bool has, LoadBalancing balancing)
+void CellsField::Take(Communicator& communicator, Piece piece, bool has)
 {
   this->Drawn.reset();
   if (AllMax(communicator, static_cast<double>(piece.Mesh.CellCount)) == 0.0)
@@ -94,15 +94,14 @@ void CellsField::Take(Communicator& communicator, Piece piece, bool has, LoadBal
   field.Cells = this->Cells;
   field.Base = AllMax(communicator, std::abs(array.Base)) > 0.0 ? base : 0.0;
   field.OfCells = where == ValuesOn::Cells;
-  field.Values = GatherFloats(communicator, std::move(array.Values));
-  this->Content =
-    HashOf(field.Values.data(), field.Values.size() * sizeof(float), this->HashOfAll(communicator));
+  field.Values = std::move(array.Values);
+  this->Content = this->HashOfAll(
+    communicator, HashOf(field.Values.data(), field.Values.size() * sizeof(float)));
   Collective(
     communicator, [&] { this->Drawn = std::make_unique<CellSource>(std::move(field), pool); });
-  const Box domain{ glm::ivec3(0), this->Cells->Lattice.Size };
-  this->Balancer.Start(
-    balancing, MeshZones(*this->Drawn, domain, communicator.Size()), communicator.Size());
-  this->ZoneCells = ZonesInside(this->Balancer.Zones(), domain);
+  // Any cell may lie anywhere.
+  this->ZoneCells.assign(static_cast<std::size_t>(communicator.Size()), Box{});
+  this->ZoneCells.front() = { glm::ivec3(0), this->Cells->Lattice.Size };
 }
 
 /// Collective: all that a new mesh takes.
@@ -110,21 +109,16 @@ void CellsField::TakeMesh(Communicator& communicator, const Piece& piece)
 {
   const bool alone = communicator.Size() == 1;
   ThreadPool& pool = ThreadPool::Process();
-  CellCounts counts;
-  if (!alone)
-  {
-    // Before anybody reads points through numbers that may be wrong.
-    Collective(communicator, [&] { counts = CheckCells(piece.Mesh, pool); });
-    counts = CountsOfAll(communicator, counts);
-  }
-  const CellMesh all = GatherCells(communicator, piece.Mesh);
   CellFacts facts;
-  Collective(communicator, [&] { this->Cells = DrawnCells::Of(all, facts, pool); });
   if (alone)
   {
-    counts = facts;
+    Collective(communicator, [&] { this->Cells = DrawnCells::Of(piece.Mesh, facts, pool); });
   }
-  counts.Repeated = facts.Repeated;
+  else
+  {
+    this->Cells = DrawnPiece(communicator, piece.Mesh, facts, pool);
+  }
+  const CellCounts counts = alone ? facts : CountsOfAll(communicator, facts);
   this->NoteText = AgreeOnError(
     communicator, piece.OtherCells.empty() ? "" : "Not drawn: " + piece.OtherCells + ". ");
   for (const std::string& remark : counts.Remarks())
@@ -133,13 +127,14 @@ void CellsField::TakeMesh(Communicator& communicator, const Piece& piece)
   }
 }
 
-/// Collective: of the points and cells of all ranks.
-std::uint64_t CellsField::HashOfAll(Communicator& communicator) const
+/// Collective: of the points, cells and values of all ranks.
+/// @param values of this rank
+Hash128 CellsField::HashOfAll(Communicator& communicator, const Hash128& values) const
 {
-  std::vector<Hash128> all(static_cast<std::size_t>(communicator.Size()));
-  communicator.AllGather(&this->PieceHash, sizeof(Hash128), all.data());
-  const Hash128 hash = HashOf(all.data(), all.size() * sizeof(Hash128));
-  return hash.Low ^ hash.High;
+  const std::array<Hash128, 2> mine{ this->PieceHash, values };
+  std::vector<std::array<Hash128, 2>> all(static_cast<std::size_t>(communicator.Size()));
+  communicator.AllGather(&mine, sizeof(mine), all.data());
+  return HashOf(all.data(), all.size() * sizeof(mine));
 }
 
 FieldPlace CellsField::Place() const
@@ -157,16 +152,6 @@ FieldPlace CellsField::Place() const
   }
   place.CellSize = lattice.Edge;
   return place;
-}
-
-void CellsField::BeginFrame(Communicator&, RayScene& scene)
-{
-  if (this->Drawn)
-  {
-    this->Balancer.BeginFrame(scene, *this->Drawn);
-    this->ZoneCells =
-      ZonesInside(this->Balancer.Zones(), { glm::ivec3(0), this->Cells->Lattice.Size });
-  }
 }
 
 std::vector<Hash128> CellsField::VisibleContent(const RayScene&)

@@ -4,7 +4,6 @@
 
 #include "Base/Hash.h"
 #include "Mesh/Cells/CellArray.h"
-#include "Parallel/Balance/FrameBalancer.h"
 #include "Parallel/Fields/DrawnField.h"
 #include "Render/Cells/CellSource.h"
 
@@ -15,12 +14,13 @@ namespace banyan
 {
 
 /// A field on any mesh of cells that lies in pieces on the ranks, drawn cell by cell. Cells are put
-/// in order, and the border is found, once per mesh; new values touch values only. Every rank has
-/// the whole mesh and the values of one component of it, and draws a zone.
+/// in order, and the border is found, once per mesh; new values touch values only. Cells stay on
+/// their ranks: see DrawPieces.
 class CellsField final : public DrawnField
 {
 public:
-  /// This rank's part. Values belong to the caller, until Take returns.
+  /// This rank's part. Its mesh must stay until the next one is taken; values belong to the caller,
+  /// until Take returns.
   struct Piece
   {
     CellMesh Mesh;    ///< without cells on ranks that have none
@@ -36,34 +36,31 @@ public:
   /// Collective: takes the pieces of all ranks.
   /// @param has what Has said of them
   /// Throws CollectiveError when one rank cannot draw or read the mesh.
-  void Take(Communicator& communicator, Piece piece, bool has, LoadBalancing balancing);
+  void Take(Communicator& communicator, Piece piece, bool has);
 
   /// Of the last Take.
   FieldPlace Place() const;
 
-  void BeginFrame(Communicator& communicator, RayScene& scene) override;
-  void EndFrame(Communicator& communicator) override { this->Balancer.EndFrame(communicator); }
   void Clear() override { this->Drawn.reset(); }
   BrickSource* Source() override { return this->Drawn.get(); }
+  CellSource* PieceOfCells() override { return this->Drawn.get(); }
   const std::vector<Box>& Zones() const override { return this->ZoneCells; }
   std::vector<Hash128> VisibleContent(const RayScene& scene) override;
   bool IsMesh() const override { return true; }
   /// Level 1 has places half as far apart as points are.
   int LeastCells() const override { return 16; }
-  bool IsOnEachRank() const override { return true; }
   std::string Note() const override { return this->NoteText; }
   MeshBytes Bytes() const override;
 
 private:
   void TakeMesh(Communicator& communicator, const Piece& piece);
-  std::uint64_t HashOfAll(Communicator& communicator) const;
+  Hash128 HashOfAll(Communicator& communicator, const Hash128& values) const;
 
-  std::shared_ptr<const DrawnCells> Cells; ///< null when the last mesh cannot be drawn
+  std::shared_ptr<const DrawnCells> Cells; ///< of the piece; null when the mesh cannot be drawn
   Hash128 PieceHash;                       ///< of this rank's points and cells
   std::string NoteText;
   std::unique_ptr<CellSource> Drawn;
-  Hash128 Content; ///< of points, cells and values
-  FrameBalancer Balancer;
+  Hash128 Content; ///< of points, cells and values of all ranks
   std::vector<Box> ZoneCells;
 };
 

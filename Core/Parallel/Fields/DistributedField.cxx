@@ -183,7 +183,7 @@ void DistributedField::TakeMesh(
   CellsField::Piece cells;
   Collective(communicator, [&] { cells = input.Cells(); });
   const bool has = field.Has(communicator, cells.Mesh);
-  field.Take(communicator, std::move(cells), has, this->Balancing);
+  field.Take(communicator, std::move(cells), has);
   this->NoOctreeAt = input.MeshTolerance();
   this->Where = field.Place();
 }

@@ -22,6 +22,8 @@
 namespace banyan
 {
 
+class CellSource;
+
 /// Where a field lies.
 struct FieldPlace
 {
@@ -38,8 +40,8 @@ FieldPlace PlaceOfSamples(const Grid& grid, const Box& samples);
 
 /// One field of scalars as all ranks draw it together: bricks, and one zone of cells per rank. Its
 /// kinds differ in where values are: in an encoded series that every rank can read (SeriesField),
-/// on one rank (WholeField), in pieces on the ranks (PiecesField), or on a mesh that every rank has
-/// (MeshField). Each kind has a collective Take of its own, which brings it the values of a step.
+/// on one rank (WholeField), in pieces on the ranks (PiecesField), on a mesh that every rank has
+/// (MeshField), or on one that lies in pieces (CellsField). Each kind has a collective Take of its own, which brings it the values of a step.
 ///
 /// @par Order of calls in a frame, the same on all ranks:
 ///   1. BeginFrame    collective
@@ -96,7 +98,7 @@ public:
   /// All bricks of another step of the series, as this rank has them. Null where there are none.
   /// May throw Error, on one rank alone.
   virtual std::unique_ptr<BrickSource> SourceOfStep(int) { return nullptr; }
-  /// One per rank.
+  /// One per rank; all but the first are empty where ranks have no zones.
   virtual const std::vector<Box>& Zones() const = 0;
   /// Of the values that this rank knows.
   virtual ValueRange RangeHere();
@@ -108,6 +110,9 @@ public:
   virtual Movement Moved() const { return {}; }
   /// Whether bricks come from an encoded series.
   virtual bool IsEncoded() const { return false; }
+  /// This rank's piece of a mesh whose cells are dealt in any way: ranks have no zones then. Null
+  /// where they have; the same on all ranks.
+  virtual CellSource* PieceOfCells() { return nullptr; }
   /// Whether each rank can draw any cell: the same on all ranks.
   virtual bool IsOnEachRank() const { return false; }
   /// Whether it is a mesh of hexahedra.

@@ -5,6 +5,7 @@
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
 #include "Parallel/Balance/LevelZones.h"
+#include "Parallel/Cells/DrawPieces.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Composite/CompositeWhileCasting.h"
 #include "Render/Raycast/InterpolateSkippedPixels.h"
@@ -306,12 +307,43 @@ std::vector<FloatImage> CastThenComposite(
   return composited;
 }
 
+/// Collective: draws pieces of a mesh.
+/// @return as CastThenComposite
+std::vector<FloatImage> DrawPiecesOfPlaces(
+  Communicator& communicator, OwnPart& own, const DrawnPlaces& drawn)
+{
+  const Timer total;
+  const PhaseScope phase(Phase::Casting);
+  ThrowTogether(communicator, own.Failure);
+  PieceStatistics statistics;
+  std::vector<FloatImage> pictures;
+  for (const PicturePlace& place : drawn.Places)
+  {
+    pictures.push_back(DrawPieces(communicator, drawn.ScenesOf(place).Drawn(), *drawn.Share.Piece,
+      own.Pool, place.Root, statistics));
+  }
+  if (drawn.Compositing.AfterCasting)
+  {
+    drawn.Compositing.AfterCasting();
+  }
+  own.Rays = statistics.Rays;
+  own.Sent.BytesSent += statistics.Bytes;
+  own.Sent.MessagesSent += statistics.Messages;
+  own.RenderSeconds += statistics.DrawSeconds;
+  own.CompositeSeconds += total.Seconds() - statistics.DrawSeconds;
+  return pictures;
+}
+
 /// Collective.
 /// @return as CastThenComposite
 std::vector<FloatImage> DrawPlaces(
   Communicator& communicator, OwnPart& own, const DrawnPlaces& drawn)
 {
   const bool alone = communicator.Size() == 1;
+  if (drawn.Share.Piece && !alone)
+  {
+    return DrawPiecesOfPlaces(communicator, own, drawn);
+  }
   const bool whileCasting = drawn.Compositing.WhileCasting && communicator.SendsAtOnce();
   if (drawn.Places.size() != 1 || !(alone || whileCasting))
   {

@@ -14,6 +14,8 @@
 namespace banyan
 {
 
+class CellSource;
+
 /// Holds what a rank brings to a picture of all ranks.
 struct RankShare
 {
@@ -25,11 +27,14 @@ struct RankShare
   /// Pixels of each rank, disjoint, the same list on all ranks: each draws all cells there, of
   /// which its Source has all bricks. None where each draws the cells of its zone.
   std::vector<PixelRect> Regions = {};
+  /// Where not null, on all ranks: each has a piece of a mesh, and zones do not count.
+  CellSource* Piece = nullptr;
 };
 
 /// Draws one picture on all ranks: each casts rays through the cells of its own zone, and the
 /// pictures are composited, from the first parts on that are final; with several places, after the
-/// last ray. Rays that are reused are neither cast nor sent. Collective.
+/// last ray. Rays that are reused are neither cast nor sent. Pieces of a mesh are drawn by
+/// DrawPieces. Collective.
 ///
 /// @param scene the same on all ranks (depths included)
 /// @param places where pixels end, disjoint, at most one on a rank; the same on all ranks. None

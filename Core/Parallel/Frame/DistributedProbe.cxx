@@ -2,6 +2,7 @@
 #include "Parallel/Frame/DistributedProbe.h"
 
 #include "Parallel/Balance/LevelZones.h"
+#include "Parallel/Cells/DrawPieces.h"
 #include "Parallel/Communicate/Collective.h"
 
 #include <algorithm>
@@ -75,11 +76,29 @@ void BlendUnder(const glm::vec4* pixels, const Footprint& footprint, FloatImage&
   }
 }
 
+/// Collective.
+FloatImage DrawProbeOfPieces(Communicator& communicator, const RayScene& scene,
+  const RankShare& share, FrameStatistics& statistics)
+{
+  PieceStatistics mine;
+  FloatImage picture =
+    DrawPieces(communicator, scene, *share.Piece, share.Pool, EveryRank, mine);
+  statistics.SamplesTaken += static_cast<std::int64_t>(
+    AllSum(communicator, static_cast<double>(mine.Rays.SamplesTaken)));
+  statistics.BytesComposited +=
+    static_cast<std::uint64_t>(AllSum(communicator, static_cast<double>(mine.Bytes)));
+  return picture;
+}
+
 } // namespace
 
 FloatImage DrawDistributedProbe(Communicator& communicator, const RayScene& scene,
   const RankShare& share, FrameStatistics& statistics)
 {
+  if (share.Piece && communicator.Size() > 1)
+  {
+    return DrawProbeOfPieces(communicator, scene, share, statistics);
+  }
   const auto self = static_cast<std::size_t>(communicator.Rank());
   const auto ranks = static_cast<std::size_t>(communicator.Size());
   RayStatistics rays;

@@ -242,8 +242,10 @@ bool FieldFrames::BeginRays(Communicator& communicator, DrawnField& drawn, RaySc
   {
     return false;
   }
-  // Of a picture with places no rank has all pixels.
-  if (!wish.Reuse || !wish.Places.empty() || scene.Blend.Mode != BlendMode::Composite)
+  // Of a picture with places no rank has all pixels. What bricks rays meet is another question on
+  // each rank where cells are dealt in any way.
+  const bool isInPieces = drawn.PieceOfCells() && communicator.Size() > 1;
+  if (!wish.Reuse || !wish.Places.empty() || scene.Blend.Mode != BlendMode::Composite || isInPieces)
   {
     this->Rays.Forget();
     return false;
@@ -357,6 +359,7 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   isPart ? this->PlanPart(communicator, field, *whole, scene, wish, aim, frame.Picture)
          : this->Plan(communicator, field, scene, names.View, wish, aim, frame.Picture);
   RankShare share{ drawn.Source(), drawn.Zones(), field.DrawingBudget(), ThreadPool::Process() };
+  share.Piece = drawn.PieceOfCells();
   frame.ByPicture = DividesPicture(communicator, drawn, wish);
   PictureRegions ofPart;
   PictureRegions& regions = isPart ? ofPart : this->Regions;

@@ -163,8 +163,9 @@ SamplingPlan ToleranceControl::PlanWithin(Communicator& communicator, Distribute
   DrawnField& drawn = field.Drawn();
   const auto planOf = [&](BrickSource* source, std::uint64_t bytes)
   {
-    return PlanDistributed(communicator, scene,
-      { source, drawn.Zones(), bytes, ThreadPool::Process() }, sampling, frame);
+    RankShare share{ source, drawn.Zones(), bytes, ThreadPool::Process() };
+    share.Piece = drawn.PieceOfCells();
+    return PlanDistributed(communicator, scene, share, sampling, frame);
   };
   const DrawnField::Place place = drawn.InSeries();
   if (!wish.PlansOfGroups || wish.Interacting || place.Steps == 1 || drawn.Source()->Hidden())

@@ -65,8 +65,10 @@ CellCaster::CellCaster(const RayScene& scene, CellSource& source, BrickSource& l
   std::shared_ptr<const MeshLattice> lattice, const Box& cells, ThreadPool& pool,
   RayStatistics& statistics)
   : Level(scene, level)
-  , Field(this->Level.IsShaded() ? source.WithGradients(pool) : source.Cells())
   , Lattice(std::move(lattice))
+  , Field(this->Lattice              ? source.WithBorder(this->Level.IsShaded(), pool)
+          : this->Level.IsShaded() ? source.WithGradients(pool)
+                                   : source.Cells())
   , Zone(cells)
   , Pool(pool)
   , Statistics(statistics)
@@ -80,7 +82,7 @@ CellCaster::CellCaster(const RayScene& scene, CellSource& source, BrickSource& l
 
 CellCaster::~CellCaster() = default;
 
-void CellCaster::Draw(FloatImage& picture, PictureWatcher* watcher)
+void CellCaster::DrawTiles(FloatImage& picture, PictureWatcher* watcher, const TileShare& share)
 {
   const auto workers = static_cast<std::size_t>(this->Pool.Width());
   LevelTiles tiles(this->Level, {}, picture, watcher, workers);
@@ -99,7 +101,8 @@ void CellCaster::Draw(FloatImage& picture, PictureWatcher* watcher)
       mine = std::make_unique<Scratch>();
     }
     const auto tile = static_cast<std::size_t>(number);
-    if (!tiles[tile].Done && this->Bins.Over(tile).Count > 0)
+    if (!tiles[tile].Done && this->Bins.Over(tile).Count > 0 &&
+        share.Has(tiles.Cut().PositionOf(tile)))
     {
       this->DrawTile(tiles, tile, *mine);
       samples += mine->Rays.SamplesTaken;

@@ -17,6 +17,17 @@ namespace banyan
 class LevelTiles;
 class ThreadPool;
 
+/// The tiles of a picture that ranks draw or merge in turn: those of one of them.
+struct TileShare
+{
+  int Rank = 0;
+  int Ranks = 1;
+
+  /// @param tile its position
+  int OwnerOf(const glm::ivec2& tile) const { return (tile.x + 7 * tile.y) % this->Ranks; }
+  bool Has(const glm::ivec2& tile) const { return this->OwnerOf(tile) == this->Rank; }
+};
+
 /// Draws the cells of a mesh, or a lattice with its values: tile by tile, and in each tile slab by
 /// slab from the eye on.
 class CellCaster final : public PictureCaster
@@ -33,7 +44,12 @@ public:
   ~CellCaster() override;
 
   const PixelRect& Rect() const override { return this->Bins.Rect(); }
-  void Draw(FloatImage& picture, PictureWatcher* watcher) override;
+  void Draw(FloatImage& picture, PictureWatcher* watcher) override
+  {
+    this->DrawTiles(picture, watcher, {});
+  }
+  /// The same, but for tiles of others: nothing is there.
+  void DrawTiles(FloatImage& picture, PictureWatcher* watcher, const TileShare& share);
 
   /// Draws a piece of a mesh: what this rank has of each tile, for RunMerger. Tiles may come in
   /// several parts. Cells alone: lattices have no owners.
@@ -58,8 +74,8 @@ private:
   void DrawSlabs(const LevelSampling& sampling, std::size_t number, Scratch& scratch) const;
 
   LevelScene Level;
-  const CellField& Field;
   const std::shared_ptr<const MeshLattice> Lattice;
+  const CellField& Field; ///< cells that are drawn, or those with faces at the border
   const Box Zone;
   ThreadPool& Pool;
   RayStatistics& Statistics;

@@ -25,7 +25,8 @@ std::shared_ptr<DrawnCells> Made(
   cells->Low = ofAll.Low;
   cells->High = ofAll.High;
   cells->Order = OrderOfCells(mesh, facts, tight, pool);
-  facts.Repeated = facts.Drawn() - static_cast<std::int64_t>(cells->Order.size());
+  cells->Count = static_cast<std::int64_t>(cells->Order.size());
+  facts.Repeated = facts.Drawn() - cells->Count;
   cells->OrderedBy = tight;
   const int longest = std::max({ tight.Size.x, tight.Size.y, tight.Size.z });
   const int room = std::max(longest / RoomPart, LeastRoom);
@@ -56,6 +57,7 @@ std::shared_ptr<DrawnCells> DrawnCells::OfPiece(
                 "more processes");
   }
   cells->SetBorder(BorderFacesOf(mesh, facts, cells->Order, pool));
+  cells->IsPiece = true;
   cells->Alone = cells->BorderBits;
   cells->Alone.resize(cells->Order.size(), 0);
   return cells;

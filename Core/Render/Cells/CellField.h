@@ -27,12 +27,14 @@ struct DrawnCells
   /// By place in the order: which faces of a cell end the mesh, a bit each. So its samples do not
   /// reach beyond them. Empty where none does.
   std::vector<std::uint8_t> BorderBits;
-  glm::dvec3 Low{ 0.0 }; ///< the box around them
+  glm::dvec3 Low{ 0.0 }; ///< the box around all drawn cells of the whole mesh
   glm::dvec3 High{ 0.0 };
+  std::int64_t Count = 0; ///< of these cells
 
   CellLattice OrderedBy; ///< what the order follows: Lattice without the room around it
+  bool IsPiece = false;  ///< whether other ranks may have cells, too
   /// Of a piece of a mesh, by place in the order: which faces of a cell no other cell of the piece
-  /// has, a bit each. Empty where it is the whole mesh.
+  /// has, a bit each.
   std::vector<std::uint8_t> Alone;
 
   /// Checks a mesh and finds all that drawing it takes. There is room around the mesh in the index
@@ -43,7 +45,8 @@ struct DrawnCells
     const CellMesh& mesh, CellFacts& facts, ThreadPool& pool);
 
   /// The same for a piece of a mesh, which may be empty. Border has all faces that one cell of the
-  /// piece has alone: those which cells of other pieces have, too, are to be taken out.
+  /// piece has alone: those which cells of other pieces have, too, are to be taken out. Count has
+  /// this piece's cells.
   /// @param facts of this piece; Repeated is set
   /// @param ofAll pieces together
   /// Throws Error where no piece has a cell, and where this one has 2^31.

@@ -121,7 +121,8 @@ std::shared_ptr<const SeenCells> CellSource::Seen(std::shared_ptr<const SeenCell
   }
   const bool all = &last == &this->LastSeen;
   this->Looks += all ? 1 : 0;
-  auto seen = std::make_shared<const SeenCells>(scene, this->Field,
+  auto seen = std::make_shared<const SeenCells>(scene,
+    all || !this->Border ? this->Field : *this->Border,
     all ? SeenCells::Kind::All : SeenCells::Kind::Borders, std::move(visible), pool);
   const std::lock_guard<std::mutex> lock(this->SeenMutex);
   last = seen;
@@ -143,7 +144,8 @@ double CellSource::EdgeOf(int level)
     {
       const DrawnCells& cells = *this->Field.Cells;
       const std::size_t most =
-        std::clamp(PlacesPerCell * cells.Order.size(), LeastMostPlaces, MostPlaces);
+        std::clamp(
+          PlacesPerCell * static_cast<std::size_t>(cells.Count), LeastMostPlaces, MostPlaces);
       this->FinestLatticeEdge = FinestEdge;
       while (MeshLattice::PlacesFor(cells, this->FinestLatticeEdge).Size() > most)
       {
@@ -155,6 +157,7 @@ double CellSource::EdgeOf(int level)
 
 std::shared_ptr<const MeshLattice> CellSource::LatticeOf(int level, bool shaded, ThreadPool& pool)
 {
+  const CellField& field = this->WithBorder(shaded, pool);
   const std::lock_guard<std::mutex> lock(this->LatticesMutex);
   // Coarser ones take an eighth of the time from the finest, which most plans come to.
   for (const int each : { 1, level })
@@ -163,13 +166,13 @@ std::shared_ptr<const MeshLattice> CellSource::LatticeOf(int level, bool shaded,
     const MeshLattice* const finer = each > 1 ? this->Lattices[1].get() : nullptr;
     if (!lattice)
     {
-      lattice = std::make_shared<MeshLattice>(this->Field, this->EdgeOf(each), finer, pool);
+      lattice = std::make_shared<MeshLattice>(field, this->EdgeOf(each), finer, pool);
     }
     if (shaded && !lattice->HasGradients())
     {
       // Others may be drawing with the one without.
       auto with = std::make_shared<MeshLattice>(*lattice);
-      with->AddGradients(this->WithGradients(pool), finer, pool);
+      with->AddGradients(field, finer, pool);
       lattice = with;
     }
   }
@@ -184,7 +187,46 @@ std::size_t CellSource::LatticeBytes() const
   {
     bytes += lattice->Bytes();
   }
+  if (this->Border)
+  {
+    const CellMesh& mesh = this->Border->Cells->Mesh;
+    bytes += this->Border->Cells->Bytes() +
+             static_cast<std::size_t>(mesh.PointCount) * sizeof(glm::dvec3) +
+             static_cast<std::size_t>(mesh.ConnectivityCount + mesh.CellCount) *
+               sizeof(std::int64_t) +
+             (this->Border->Values.size() + this->Border->Gradients.size()) * sizeof(float);
+  }
   return bytes;
+}
+
+bool CellSource::HasLattice(bool shaded) const
+{
+  const std::lock_guard<std::mutex> lock(this->LatticesMutex);
+  const auto found = this->Lattices.find(1);
+  return found != this->Lattices.end() && (!shaded || found->second->HasGradients());
+}
+
+void CellSource::GiveLattice(
+  std::shared_ptr<const CellField> border, std::shared_ptr<MeshLattice> finest)
+{
+  const std::scoped_lock lock(this->LatticesMutex, this->SeenMutex);
+  this->Border = std::move(border);
+  this->LastBorders = nullptr;
+  this->Lattices.clear();
+  this->Lattices[1] = std::move(finest);
+}
+
+const CellField& CellSource::WithBorder(bool shaded, ThreadPool& pool)
+{
+  if (!this->Field.Cells->IsPiece)
+  {
+    return shaded ? this->WithGradients(pool) : this->Field;
+  }
+  if (!this->HasLattice(shaded))
+  {
+    throw Error("Lattices of a piece of a mesh take values of all pieces");
+  }
+  return *this->Border;
 }
 
 std::unique_ptr<BrickSource> CellSource::MakeLevel(int level, const Box&)

@@ -59,11 +59,25 @@ public:
   /// Throws Error: there are no samples on a grid.
   BrickView Load(std::int64_t brick) override;
 
-  /// The lattice of a coarser level, made when it is first asked for.
+  /// The lattice of a coarser level, made when it is first asked for. Of a piece of a mesh the
+  /// finest one must have been given.
   /// @param shaded with gradients
   std::shared_ptr<const MeshLattice> LatticeOf(int level, bool shaded, ThreadPool& pool);
-  /// Bytes of the lattices that pictures have asked for so far.
+  /// Bytes of the lattices that pictures have asked for so far, and of the border that came with
+  /// them.
   std::size_t LatticeBytes() const;
+  /// From place to place of the lattice of a level, in edges of the index space: the same for a
+  /// mesh and a piece of it.
+  double EdgeOf(int level);
+
+  // Of a piece of a mesh: what drawing from lattices takes of the whole mesh.
+  bool HasLattice(bool shaded) const;
+  /// @param border the cells at the border, with values; and gradients, if the lattice has them
+  /// @param finest of level 1
+  void GiveLattice(std::shared_ptr<const CellField> border, std::shared_ptr<MeshLattice> finest);
+  /// The cells with all faces at the border of the whole mesh.
+  /// @param shaded with gradients
+  const CellField& WithBorder(bool shaded, ThreadPool& pool);
 
 protected:
   /// Levels are lattices. The finest has places half as far apart as points of the mesh, unless
@@ -71,7 +85,6 @@ protected:
   std::unique_ptr<BrickSource> MakeLevel(int level, const Box& domain) override;
 
 private:
-  double EdgeOf(int level);
   std::shared_ptr<const SeenCells> Seen(std::shared_ptr<const SeenCells>& last,
     const RayScene& scene, std::shared_ptr<const VisibleValues> visible, ThreadPool& pool);
   bool BoundsOf(std::uint32_t number, glm::dvec3& low, glm::dvec3& high, ValueRange& range) const;
@@ -91,6 +104,7 @@ private:
   double FinestLatticeEdge = 0.0;
   mutable std::mutex LatticesMutex;
   std::map<int, std::shared_ptr<const MeshLattice>> Lattices; ///< by level
+  std::shared_ptr<const CellField> Border; ///< of the whole mesh, where this is a piece
   std::atomic<int> Looks{ 0 };
 };
 

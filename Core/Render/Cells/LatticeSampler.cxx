@@ -3,6 +3,7 @@
 
 #include "Base/ThreadPool.h"
 #include "Render/Cells/CellTile.h"
+#include "Render/Cells/RunCollector.h"
 
 #include <glm/common.hpp>
 
@@ -32,11 +33,12 @@ class Sampler
 {
 public:
   Sampler(const CellField& field, const PlacesInRows& places, std::vector<float>& values,
-    ThreadPool& pool)
+    std::vector<std::uint32_t>* owners, ThreadPool& pool)
     : Field(field)
     , Cells(*field.Cells)
     , Places(places)
     , Values(values)
+    , Owners(owners)
     , Pool(pool)
     , Blocks((places.Count + BlockSize - 1) / BlockSize)
   {
@@ -45,6 +47,10 @@ public:
   void Sample()
   {
     this->Values.resize(this->Places.Size());
+    if (this->Owners)
+    {
+      this->Owners->resize(this->Places.Size());
+    }
     this->FindReaches();
     this->Sort();
     std::vector<std::unique_ptr<Scratch>> scratch(static_cast<std::size_t>(this->Pool.Width()));
@@ -55,6 +61,7 @@ public:
       if (!mine)
       {
         mine = std::make_unique<Scratch>();
+        mine->Owners = this->Owners ? std::make_unique<SlabOwners>() : nullptr;
       }
       this->SampleBlock(static_cast<std::size_t>(block), *mine);
     };
@@ -69,6 +76,7 @@ private:
     SampleSlab Slab;
     std::vector<PlacedCell> Placed;
     std::vector<std::uint32_t> Items;
+    std::unique_ptr<SlabOwners> Owners; ///< null where they are not wanted
   };
 
   void FindReaches()
@@ -202,7 +210,8 @@ private:
     }
     // Pixels are places, and so are intervals.
     DrawSlab({ this->Field, scratch.Placed.data(), scratch.Items.data(), scratch.Items.size(),
-      glm::vec2(1.0f), 1.0, 0, nullptr, scratch.Rays, scratch.Rows, scratch.Slab });
+      glm::vec2(1.0f), 1.0, 0, nullptr, scratch.Rays, scratch.Rows, scratch.Slab,
+      scratch.Owners.get() });
     this->Take(low, size, scratch);
   }
 
@@ -250,12 +259,17 @@ private:
     {
       for (int y = 0; y < size.y; ++y)
       {
-        float* const row = this->Values.data() + this->Places.IndexOf(low + glm::ivec3(0, y, z));
+        const std::size_t row = this->Places.IndexOf(low + glm::ivec3(0, y, z));
         for (int x = 0; x < size.x; ++x)
         {
-          float& value = slab.Value[SampleSlab::IndexOf(scratch.Rays.SlotOf(x, y), z)];
-          row[x] = value;
-          value = SampleSlab::Nothing;
+          const int index = SampleSlab::IndexOf(scratch.Rays.SlotOf(x, y), z);
+          const std::size_t at = row + static_cast<std::size_t>(x);
+          this->Values[at] = slab.Value[index];
+          slab.Value[index] = SampleSlab::Nothing;
+          if (this->Owners)
+          {
+            (*this->Owners)[at] = scratch.Owners->Of[index] & ~SlabOwners::Contested;
+          }
         }
       }
     }
@@ -266,6 +280,7 @@ private:
   const DrawnCells& Cells;
   const PlacesInRows& Places;
   std::vector<float>& Values;
+  std::vector<std::uint32_t>* const Owners; ///< null where they are not wanted
   ThreadPool& Pool;
   const glm::ivec3 Blocks;
   std::vector<Reach> Reaches;       ///< in the global order of cells
@@ -275,10 +290,10 @@ private:
 
 } // namespace
 
-void SampleField(
-  const CellField& field, const PlacesInRows& places, std::vector<float>& values, ThreadPool& pool)
+void SampleField(const CellField& field, const PlacesInRows& places, std::vector<float>& values,
+  ThreadPool& pool, std::vector<std::uint32_t>* owners)
 {
-  Sampler(field, places, values, pool).Sample();
+  Sampler(field, places, values, owners, pool).Sample();
 }
 
 } // namespace banyan

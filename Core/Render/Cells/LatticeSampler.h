@@ -38,8 +38,9 @@ struct PlacesInRows
 /// What a field has in places of a regular lattice: what samples of rays have there, by the same
 /// kernel, whose rays are rows along z. Cells without a place between their corners cost little.
 /// @param values set, x fastest; NaN where no cell is. Without Base
-void SampleField(
-  const CellField& field, const PlacesInRows& places, std::vector<float>& values, ThreadPool& pool);
+/// @param owners null, or of a piece of a mesh: set to the place in the order of each value's cell
+void SampleField(const CellField& field, const PlacesInRows& places, std::vector<float>& values,
+  ThreadPool& pool, std::vector<std::uint32_t>* owners = nullptr);
 
 } // namespace banyan
 

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 namespace banyan
 {
@@ -55,21 +56,10 @@ void ForPlaces(const glm::ivec3& low, const glm::ivec3& high, Function&& functio
 PlacesInRows MeshLattice::PlacesFor(const DrawnCells& cells, double edge)
 {
   // Of the mesh, without the room around it.
-  glm::dvec3 low(std::numeric_limits<double>::infinity());
-  glm::dvec3 high(-low);
-  for (const BorderFace& face : cells.Border)
-  {
-    const MeshCell cell = cells.Mesh.Cell(cells.Order[face.Cell]);
-    for (int i = 0; i < CornersOf(cell.Shape); ++i)
-    {
-      const glm::dvec3 at =
-        cells.ToIndex(cells.Mesh.Point(cell.Points[static_cast<std::size_t>(i)]));
-      low = glm::min(low, at);
-      high = glm::max(high, at);
-    }
-  }
+  const glm::dvec3 low = cells.ToIndex(cells.Low);
+  const glm::dvec3 high = cells.ToIndex(cells.High);
   PlacesInRows places;
-  for (int axis = 0; axis < 3 && low.x <= high.x; ++axis)
+  for (int axis = 0; axis < 3; ++axis)
   {
     const double first = std::floor(low[axis] / edge) - Around;
     const double last = std::ceil(high[axis] / edge) + Around;
@@ -93,8 +83,22 @@ MeshLattice::MeshLattice(
   {
     SampleField(field, this->At, this->Numbers, pool);
   }
+  this->Finish(*field.Cells, pool);
+}
+
+MeshLattice::MeshLattice(
+  const DrawnCells& cells, double edge, std::vector<float> values, ThreadPool& pool)
+  : At(PlacesFor(cells, edge))
+  , Numbers(std::move(values))
+{
+  this->Finish(cells, pool);
+}
+
+/// Says in the lowest bits of values what is known of places, and lets values go on.
+void MeshLattice::Finish(const DrawnCells& cells, ThreadPool& pool)
+{
   std::vector<std::uint8_t> bits(this->Numbers.size(), 1);
-  this->FindBorderCells(*field.Cells, bits);
+  this->FindBorderCells(cells, bits);
   this->Without = this->PlacesWithout(bits);
   ForRuns(bits.size(), pool,
     [&](std::size_t i)
@@ -114,27 +118,39 @@ MeshLattice::MeshLattice(
     });
 }
 
-void MeshLattice::AddGradients(const CellField& field, const MeshLattice* finer, ThreadPool& pool)
+CellField MeshLattice::SlopeOf(const CellField& field, std::size_t axis)
 {
   CellField slope;
   slope.Cells = field.Cells;
+  slope.Values.resize(field.Gradients.size() / 3);
+  for (std::size_t i = 0; i < slope.Values.size(); ++i)
+  {
+    slope.Values[i] = field.Gradients[3 * i + axis];
+  }
+  return slope;
+}
+
+void MeshLattice::AddGradients(const CellField& field, const MeshLattice* finer, ThreadPool& pool)
+{
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
+    std::vector<float> slopes;
     if (finer)
     {
-      this->TakeFrom(*finer, finer->Slopes[axis], this->Slopes[axis], pool);
+      this->TakeFrom(*finer, finer->Slopes[axis], slopes, pool);
     }
     else
     {
-      slope.Values.resize(field.Gradients.size() / 3);
-      for (std::size_t i = 0; i < slope.Values.size(); ++i)
-      {
-        slope.Values[i] = field.Gradients[3 * i + axis];
-      }
-      SampleField(slope, this->At, this->Slopes[axis], pool);
+      SampleField(SlopeOf(field, axis), this->At, slopes, pool);
     }
-    this->Widen(this->Slopes[axis], pool);
+    this->AddSlopes(axis, std::move(slopes), pool);
   }
+}
+
+void MeshLattice::AddSlopes(std::size_t axis, std::vector<float> slopes, ThreadPool& pool)
+{
+  this->Slopes[axis] = std::move(slopes);
+  this->Widen(this->Slopes[axis], pool);
 }
 
 /// Takes values of places that a finer lattice has, too, and that are in the mesh.

@@ -27,15 +27,26 @@ public:
   static constexpr std::uint32_t PlaceBit = 4;
 
   /// @param edge from place to place, in edges of the index space: a power of two
-  /// @param finer one of the same field, whose values are taken; null for none
+  /// @param finer one of the same field, whose values are taken; null for none. Of the field its
+  /// border counts alone then
   MeshLattice(const CellField& field, double edge, const MeshLattice* finer, ThreadPool& pool);
-  /// The places that it would have.
+  /// @param cells at the border of the mesh, others or not
+  /// @param values of the places, as SampleField gives them
+  MeshLattice(
+    const DrawnCells& cells, double edge, std::vector<float> values, ThreadPool& pool);
+  /// The places that it would have: the same for a mesh, a piece of it, and its border.
   static PlacesInRows PlacesFor(const DrawnCells& cells, double edge);
 
   /// Adds gradients.
   /// @param field with gradients
   /// @param finer one with gradients; null for none
   void AddGradients(const CellField& field, const MeshLattice* finer, ThreadPool& pool);
+  /// Adds them for one axis.
+  /// @param slopes of the places, as SampleField gives them for SlopeOf
+  void AddSlopes(std::size_t axis, std::vector<float> slopes, ThreadPool& pool);
+  /// A field's gradient along an axis as a field.
+  /// @param field with gradients
+  static CellField SlopeOf(const CellField& field, std::size_t axis);
 
   const PlacesInRows& Places() const { return this->At; }
   /// Floats with bits as above. Outside of the mesh NaN, but for corners of cells at the border,
@@ -46,6 +57,7 @@ public:
   std::size_t Bytes() const;
 
 private:
+  void Finish(const DrawnCells& cells, ThreadPool& pool);
   void TakeFrom(const MeshLattice& finer, const std::vector<float>& from,
     std::vector<float>& values, ThreadPool& pool) const;
   void FindBorderCells(const DrawnCells& cells, std::vector<std::uint8_t>& border) const;

@@ -5,26 +5,10 @@
 #include "Render/Levels/LevelCaster.h"
 #include "Render/Levels/PictureWatcher.h"
 
-#include <set>
-
 namespace banyan
 {
 namespace
 {
-
-/// The levels that tiles are sampled at.
-std::set<int> LevelsOf(const RayScene& scene)
-{
-  if (!scene.Samplings)
-  {
-    return { 0 };
-  }
-  if (scene.Samplings->Tiles() != TileSamplings::TilesOf(scene.Camera.ImageSize()))
-  {
-    throw Error("The samplings are those of a picture of another size");
-  }
-  return scene.Samplings->UsedLevels();
-}
 
 BrickSource& SourceAt(BrickSource& source, int level, const RayScene& scene)
 {
@@ -55,7 +39,7 @@ FloatImage Cast(const RayScene& scene, BrickSource& source, const Box& cells,
   FloatImage picture;
   picture.Rect = least;
   std::vector<std::unique_ptr<PictureCaster>> casters;
-  for (const int level : LevelsOf(scene))
+  for (const int level : SampledLevels(scene))
   {
     BrickSource& at = SourceAt(source, level, scene);
     const Box drawn = CellsAtLevel(inside, at.CellEdges());
@@ -81,6 +65,19 @@ FloatImage Cast(const RayScene& scene, BrickSource& source, const Box& cells,
 }
 
 } // namespace
+
+std::set<int> SampledLevels(const RayScene& scene)
+{
+  if (!scene.Samplings)
+  {
+    return { 0 };
+  }
+  if (scene.Samplings->Tiles() != TileSamplings::TilesOf(scene.Camera.ImageSize()))
+  {
+    throw Error("The samplings are those of a picture of another size");
+  }
+  return scene.Samplings->UsedLevels();
+}
 
 int FinestLevelWithin(
   const RayScene& scene, BrickSource& source, const Box& cells, int coarsest, std::uint64_t bytes)

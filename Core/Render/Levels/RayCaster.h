@@ -9,6 +9,7 @@
 #include <glm/vec4.hpp>
 
 #include <functional>
+#include <set>
 #include <vector>
 
 namespace banyan
@@ -48,6 +49,10 @@ FloatImage CastRays(const RayScene& scene, BrickSource& source, const Box& cells
 /// The same, as the whole viewport: 0 where no brick is.
 FloatImage CastViewport(const RayScene& scene, BrickSource& source, const Box& cells,
   std::uint64_t budgetBytes, ThreadPool& pool, RayStatistics& statistics);
+
+/// The levels that tiles of a picture are sampled at.
+/// Throws Error when they are those of a picture of another size.
+std::set<int> SampledLevels(const RayScene& scene);
 
 /// The finest level of which all that can be seen, as loaded and as packed for drawing, takes at
 /// most `bytes`; `coarsest` if there is none. Nothing is loaded to find out.

@@ -142,6 +142,10 @@ DrawnMesh::DrawnMesh(OwnedCellMesh mesh, const ShownAs& as)
   cells.Mesh = this->Mesh->View();
   cells.Lattice = LatticeFor(cells.Mesh, as.Edge > 0.0 ? as.Edge : EdgeFor(cells.Mesh));
   cells.Order = GeometricOrder(cells.Mesh);
+  const Bounds bounds = BoundsOf(cells.Mesh);
+  cells.Low = bounds.Low;
+  cells.High = bounds.High;
+  cells.Count = static_cast<std::int64_t>(cells.Order.size());
   this->SetCells(cells);
   this->Field.Values = this->Mesh->Values;
   this->Field.OfCells = as.OfCells;

@@ -176,7 +176,7 @@ struct Case
 
   /// Collective.
   /// @param rankOf the rank of each cell
-  /// @return empty but on rank 0
+  /// @return empty but on ranks that are Root
   banyan::FloatImage Together(banyan::Communicator& ranks, const std::vector<int>& rankOf,
     banyan::PieceStatistics& statistics) const
   {
@@ -187,8 +187,8 @@ struct Case
                                 0.0, this->OfCells, {} },
       pool);
     banyan::FloatImage picture =
-      banyan::DrawPieces(ranks, this->Scene, source, pool, 0, statistics);
-    if (ranks.Rank() == 0)
+      banyan::DrawPieces(ranks, this->Scene, source, pool, this->Root, statistics);
+    if (this->Root == banyan::EveryRank || ranks.Rank() == this->Root)
     {
       banyan::FinishPicture(this->Scene, picture);
     }
@@ -198,6 +198,7 @@ struct Case
   OwnedCellMesh Mesh;
   banyan::RayScene Scene;
   bool OfCells = false;
+  int Root = 0;
 };
 
 /// A warped cube whose neighbours' faces match.

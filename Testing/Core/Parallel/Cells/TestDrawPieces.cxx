@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace
 {
 
@@ -271,6 +273,121 @@ TEST(DrawPieces, CellsThatSeveralRanksHave)
       EXPECT_LE(MaxDifference(Together(is, Deal::Slabs, ranks).Picture, whole), 1e-5) << ranks;
     }
   }
+}
+
+std::shared_ptr<const TileSamplings> SamplingsOf(
+  const Case& is, const std::vector<RaySampling>& samplings)
+{
+  auto all = std::make_shared<TileSamplings>(is.Scene.Camera.ImageSize(), samplings);
+  for (int y = 0; y < all->Tiles().y; ++y)
+  {
+    for (int x = 0; x < all->Tiles().x; ++x)
+    {
+      all->SetNumber({ x, y }, (x + y) % static_cast<int>(samplings.size()));
+    }
+  }
+  return all;
+}
+
+TEST(DrawPieces, LatticesAreThoseOfTheWholeMesh)
+{
+  for (const Cut cut : { Cut::Hexahedra, Cut::FiveTetrahedra, Cut::Mixed })
+  {
+    for (const double offset : { 0.1, 0.6 }) // cells fold and overlap where points are far off
+    {
+      Case is(piececases::Cube(6, cut, offset));
+      for (const int level : { 1, 2 })
+      {
+        is.Scene.Samplings = SamplingsOf(is, { { level, is.Scene.SampleDistance } });
+        const FloatImage whole = is.Whole();
+        EXPECT_GT(SeenIn(whole), 1000);
+        for (const Deal deal : Deals)
+        {
+          const Took took = Together(is, deal, 5);
+          EXPECT_LE(MaxDifference(took.Picture, whole), 1e-5)
+            << int(cut) << " " << int(deal) << " " << level;
+          EXPECT_EQ(took.Runs, 0) << "each rank draws its tiles alone";
+        }
+      }
+    }
+  }
+}
+
+TEST(DrawPieces, CellsAndLatticesInOnePicture)
+{
+  Case is(piececases::Cube(6, Cut::Mixed), { 150, 140 });
+  const double step = is.Scene.SampleDistance;
+  const FloatImage cells = is.Whole();
+  is.Scene.Samplings = SamplingsOf(
+    is, { { 0, step }, { 1, step }, { 0, 0.5 * step, 2 }, { 2, 2.0 * step, 4 }, { 1, 0.25 * step } });
+  for (const bool shaded : { false, true })
+  {
+    is.Scene.Shading.On = shaded;
+    const FloatImage whole = is.Whole();
+    EXPECT_GT(MaxDifference(whole, cells), 0.01);
+    for (const int ranks : { 2, 7, 16 })
+    {
+      EXPECT_LE(MaxDifference(Together(is, Deal::Jagged, ranks).Picture, whole), 1e-5) << ranks;
+    }
+  }
+}
+
+TEST(DrawPieces, LatticesOfCellValuesAndProjections)
+{
+  Case is(piececases::Cube(6, Cut::Mixed));
+  is.Scene.Samplings = SamplingsOf(is, { { 1, is.Scene.SampleDistance } });
+  is.Scene.Blend.Mode = BlendMode::Maximum;
+  EXPECT_EQ(MaxDifference(Together(is, Deal::OneByOne, 4).Picture, is.Whole()), 0.0);
+  is.Scene.Blend.Mode = BlendMode::Composite;
+  const CellMesh mesh = is.Mesh.View();
+  is.Mesh.Values.clear();
+  for (std::int64_t cell = 0; cell < mesh.CellCount; ++cell)
+  {
+    is.Mesh.Values.push_back(
+      static_cast<float>(scenes::Standard(piececases::MiddleOf(mesh, cell))));
+  }
+  // Cells without a value are not there, and nor are their faces.
+  is.Mesh.Values[3] = std::numeric_limits<float>::quiet_NaN();
+  is.OfCells = true;
+  for (const bool shaded : { false, true })
+  {
+    is.Scene.Shading.On = shaded;
+    const FloatImage whole = is.Whole();
+    EXPECT_GT(SeenIn(whole), 1000);
+    EXPECT_LE(MaxDifference(Together(is, Deal::OneByOne, 4).Picture, whole), 1e-5) << shaded;
+  }
+}
+
+TEST(DrawPieces, LatticesWhereRanksHaveNoCells)
+{
+  cellmeshes::OwnedCellMesh mesh = cellmeshes::AsCells(cellmeshes::Sector({ 1, 2, 1 }));
+  cellmeshes::SetValues(mesh, scenes::Linear);
+  Case is(mesh);
+  is.Scene.Samplings = SamplingsOf(is, { { 1, is.Scene.SampleDistance } });
+  for (const bool shaded : { false, true })
+  {
+    is.Scene.Shading.On = shaded;
+    const FloatImage whole = is.Whole();
+    EXPECT_GT(SeenIn(whole), 300);
+    EXPECT_LE(MaxDifference(Together(is, Deal::Slabs, 5).Picture, whole), 1e-5);
+  }
+}
+
+TEST(DrawPieces, EveryRankGetsAProbe)
+{
+  Case is(piececases::Cube(6, Cut::Mixed));
+  is.Root = EveryRank;
+  const double step = is.Scene.SampleDistance;
+  is.Scene.Samplings = SamplingsOf(is, { { 0, step }, { 1, step } });
+  const FloatImage whole = is.Whole();
+  const std::vector<int> rankOf = piececases::Dealt(is.Mesh, Deal::Jagged, 3);
+  RunOnSimulatedRanks(3,
+    [&](Communicator& communicator)
+    {
+      PieceStatistics statistics;
+      EXPECT_LE(MaxDifference(is.Together(communicator, rankOf, statistics), whole), 1e-5);
+      communicator.Barrier();
+    });
 }
 
 } // namespace

@@ -185,7 +185,8 @@ TEST(DistributedField, HexahedraThatAreNoOctreeAreCells)
         EXPECT_EQ(field.Problem(), "");
         const auto* const source = dynamic_cast<const CellSource*>(field.Drawn().Source());
         ASSERT_NE(source, nullptr);
-        EXPECT_EQ(source->Cells().Cells->Order.size(), whole.Ids.size() / 8);
+        EXPECT_EQ(source->Cells().Cells->Order.size(), boxes.CellCount);
+        EXPECT_EQ(source->Cells().Cells->Count, whole.Ids.size() / 8);
         EXPECT_EQ(input.Tried, 1) << "a mesh that is known to be no octree is not tried again";
         ++input.Changes;
       }
