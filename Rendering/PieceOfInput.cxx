@@ -140,6 +140,7 @@ FieldPiece PieceOfInput(vtkBanyanVolumeMapper* mapper, vtkVolumeProperty* proper
   vtkDataObject* const data = mapper->GetDataObjectInput();
   FieldPiece piece = PieceOfData(data);
   piece.MeshTolerance = mapper->GetMeshTolerance();
+  piece.KeepsCellValues = mapper->GetCellValues() == 1;
   if (!piece.HasData() || !piece.Problem.empty())
   {
     return piece;

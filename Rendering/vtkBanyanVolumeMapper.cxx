@@ -17,9 +17,11 @@
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
+#include "vtkHyperTreeGrid.h"
 #include "vtkInformation.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
+#include "vtkOverlappingAMR.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
@@ -192,7 +194,8 @@ void vtkBanyanVolumeMapper::UpdateField(vtkVolume* volume)
   self.BoundsTime = self.BoundsOf ? self.BoundsOf->GetMTime() : 0;
   self.BoundsKnown = true;
   this->WarnOnce(
-    self.Motion.Note() + self.Field.Drawn().Note() + this->DivisionNote(), self.LastNote);
+    self.Motion.Note() + self.Field.Drawn().Note() + this->DivisionNote() + this->CellValuesNote(),
+    self.LastNote);
   this->WarnOnce(banyan::IgnoredOptions(this, volume->GetProperty(), mapped), self.LastIgnored);
   if (self.Field.Empty() && !self.Field.Problem().empty())
   {
@@ -207,9 +210,26 @@ std::string vtkBanyanVolumeMapper::DivisionNote() const
   const banyan::MapperState& self = *this->State;
   const bool isElsewhere = this->Division == 2 && self.Communicator->Size() > 1 &&
                            !self.Field.Empty() && !self.Field.Drawn().IsOnEachRank();
-  return isElsewhere ? "'Division' By picture has no effect: no rank has all values of plain data. "
-                       "Encode them, or choose By data."
-                     : "";
+  if (!isElsewhere)
+  {
+    return "";
+  }
+  return self.Field.Drawn().PieceOfCells()
+           ? "'Division' By picture has no effect: cells of a mesh stay on their ranks. Choose "
+             "Automatic."
+           : "'Division' By picture has no effect: no rank has all values of plain data. Encode "
+             "them, or choose By data.";
+}
+
+/// Why values of cells are not drawn as they are, if that is wanted.
+std::string vtkBanyanVolumeMapper::CellValuesNote()
+{
+  vtkDataObject* const data = this->GetDataObjectInput();
+  const bool isLeaves =
+    vtkHyperTreeGrid::SafeDownCast(data) || vtkOverlappingAMR::SafeDownCast(data);
+  return this->CellValues == 1 && isLeaves
+           ? "'CellValues' As they are has no effect on hyper tree grids and AMR. "
+           : "";
 }
 
 double* vtkBanyanVolumeMapper::GetBounds()

@@ -65,6 +65,9 @@ class vtkRenderWindow;
     "Octree meshes: largest distance of points from the lattice of the octree, in edges "          \
     "of the smallest cell. Default: 1/1024. They are drawn on the lattice. Raise it for "          \
     "meshes whose points were moved by displacements.")                                            \
+  Choice(CellValues, 0, 0, 1, advanced, meshes,                                                    \
+    "How values of cells are drawn. Means (default): each point has the mean of the cells around " \
+    "it, weighted by size. As they are: the value is the same all over a cell.")                   \
   Switch(CompositeInFewBits, false, advanced, all,                                                 \
     "Sends pixels between ranks in as few bits as keep them within 1/255, about a ninth of "       \
     "the bytes of floats. Default: off. ParaView blends the background later in 8 bits, so "       \
@@ -91,7 +94,7 @@ class vtkRenderWindow;
   Choice(Division, 0, 0, 2, advanced, all,                                                         \
     "What ranks divide among them. By data: each draws a zone, and pictures are composited. By "   \
     "picture: each draws all cells under a part of the pixels; where each rank can read all, as "  \
-    "it can of an encoded series and of meshes. Automatic (default): by picture where several "    \
+    "it can of an encoded series and of octrees. Automatic (default): by picture where several "   \
     "tiles of a wall show parts of it, otherwise by data.")
 // clang-format on
 
@@ -125,16 +128,15 @@ class vtkRenderWindow;
  * 255. No map colours them, and the opacity function is asked for alpha, or for the luminance (0.30
  * red + 0.59 green + 0.11 blue, rounded) of three components. They are composited only.
  *
- * @par Limits: point data, and cell data of what is not image data, made nodal (see
- * banyan::CellNodes); component 0 of the property, which draws one component of the data or
- * their magnitude, as the vector mode of its colour function says; lights other than the viewer's
- * are ignored, and so is shading in modes other than composite. Averages are grey, from the lowest
- * to the highest value of the data (of all steps of an encoded series). Options that are set and
- * have no effect (gradient opacity, 2D transfer functions, and more: see banyan::IgnoredOptions)
- * are named in a warning, once. vtkVolumePicker and vtkCellPicker pick image data; hardware
- * selection (vtkPropPicker, vtkHardwareSelector) does not see the volume. SetAbortExecute(1) stops
- * what a general mesh takes before its first picture: it is not drawn until the mesh, or an option
- * of it, is another.
+ * @par Limits: point data, and cell data of what is not image data (CellValues); component 0 of the
+ * property, which draws one component of the data or their magnitude, as the vector mode of its
+ * colour function says; lights other than the viewer's are ignored, and so is shading in modes
+ * other than composite. Averages are grey, from the lowest to the highest value of the data (of all
+ * steps of an encoded series). Options that are set and have no effect (gradient opacity, 2D
+ * transfer functions, and more: see banyan::IgnoredOptions) are named in a warning, once.
+ * vtkVolumePicker and vtkCellPicker pick image data; hardware selection (vtkPropPicker,
+ * vtkHardwareSelector) does not see the volume. SetAbortExecute(1) stops what a general mesh takes
+ * before its first picture: it is not drawn until the mesh, or an option of it, is another.
  *
  * @par Errors: Render() throws nothing. What cannot be drawn is said by an ErrorEvent, once as long
  * as it stays the same; nothing of the volume is drawn then, on any rank.
@@ -172,6 +174,7 @@ public:
    * - ReadAhead: takes half of what the cache has for decoded bricks, if the series plays, and a
    *   quarter, if the camera moves.
    * - Division: 0 automatic, 1 by data, 2 by picture
+   * - CellValues: 0 means, 1 as they are
    * - LoadBalancing: 0 not at all, 2 to where measured costs balance, and 1, which was another way,
    *   the same. The same on all ranks. The picture does not change.
    */
@@ -282,6 +285,7 @@ private:
   friend class banyan::VolumesPicture; // draws volumes of several mappers
 
   std::string DivisionNote() const;
+  std::string CellValuesNote();
   bool Attempt(const std::function<bool()>& work);
   void EndFrame(vtkObject* caller, unsigned long event, void* data);
   void ReportOnce(const std::string& problem);

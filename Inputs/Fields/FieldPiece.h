@@ -37,6 +37,7 @@ struct FieldPiece
   ValuesOn Where = ValuesOn::Points;   ///< points of Image; points or cells of Grid or Leaves
   int Component = 0;          ///< or SampleArray::Magnitude; of an image also SampleArray::Colours
   double MeshTolerance = 0.0; ///< of Grid and Leaves: FieldInput::MeshTolerance
+  bool KeepsCellValues = false; ///< of Grid and Curved: FieldInput::KeepsCellValues
   /// Of pieces of an encoded series, as they are drawn; plain ones have it already. The same on all
   /// ranks. Off where Strength is 0.
   TemporalEnhancement Enhancement{ 0.0, 1.0, 0.0 };

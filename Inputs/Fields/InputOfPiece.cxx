@@ -99,6 +99,7 @@ InputStamp InputOfPiece::Stamp() const
   stamp.Add(piece.Where);
   stamp.Add(piece.Component);
   stamp.Add(piece.MeshTolerance);
+  stamp.Add(piece.KeepsCellValues);
   stamp.Add(piece.Enhancement.Strength);
   stamp.Add(piece.Enhancement.Scale);
   stamp.Add(piece.Problem);
@@ -153,9 +154,15 @@ MeshField::Piece InputOfPiece::Mesh(Communicator& communicator, bool leaves)
   return PieceOfMesh(this->Piece, this->Values);
 }
 
+bool InputOfPiece::KeepsCellValues() const
+{
+  return this->Piece.KeepsCellValues && this->Piece.Where == ValuesOn::Cells;
+}
+
 CellsField::Piece InputOfPiece::Cells()
 {
   CellsField::Piece piece;
+  piece.KeepsCellValues = this->KeepsCellValues();
   MeshOfData before;
   before.Parts = this->Parts ? *this->Parts : nullptr;
   const MeshOfData mesh = CellMeshOf(this->Piece.Cells(), before);

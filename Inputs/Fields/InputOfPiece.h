@@ -33,6 +33,7 @@ public:
   SampleArray Samples(const glm::ivec3& first) const override;
   void HideCells(const glm::ivec3& first, HiddenCells& hidden) const override;
   double MeshTolerance() const override { return this->Piece.MeshTolerance; }
+  bool KeepsCellValues() const override;
   MeshField::Piece Mesh(Communicator& communicator, bool leaves) override;
   CellsField::Piece Cells() override;
 

@@ -90,21 +90,22 @@ out.GetPointData().SetScalars(values)
 """)
 
 
-def draw(source, path, shade=0):
-    """Draws a mesh, of which nothing may be said, with default options but for a low tolerance."""
+def draw(source, path, where="POINTS", said="", **options):
+    """Draws a mesh with default options but for a low tolerance. Nothing may be said but `said`."""
     window, before = vtkStringOutputWindow(), vtkOutputWindow.GetInstance()
     vtkOutputWindow.SetInstance(window)
     try:
         source.UpdatePipeline()
         view = session.new_view((220, 180))
         display = simple.Show(source, view)
-        simple.ColorBy(display, ("POINTS", "value"))
+        simple.ColorBy(display, (where, "value"))
         display.SetRepresentationType(session.REPRESENTATION)
         for table in (simple.GetColorTransferFunction("value"), simple.GetOpacityTransferFunction("value")):
             table.RescaleTransferFunction(-2.0, 2.0)
         display.ScalarOpacityUnitDistance = 1.5
         display.ImageErrorTolerance = 0.5
-        display.Shade = shade
+        for name, value in options.items():
+            setattr(display, name, value)
         view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = [24, -14, 17], [5, 4, 3], [0, 0, 1]
         view.CameraParallelScale = 7.0
         view.StillRender()
@@ -115,9 +116,38 @@ def draw(source, path, shade=0):
         vtkOutputWindow.SetInstance(before)
     session.clear()
     picture = pictures.load(path)
-    session.require(not window.GetOutput(), f"{path}: {window.GetOutput()}")
+    output = window.GetOutput()
+    session.require(said in output if said else not output, f"{path}: {output}")
     session.require(picture is None or int(abs(picture.astype(int) - picture[0, 0]).max()) > 60, f"{path} is empty")
     session.require(size > 1000, f"{path} is drawn as a mesh: {size}")
+
+
+def draw_cell_values(out, reference):
+    """Values of cells as means, as VTK makes them of cells of one size, or as they are."""
+    def on_cells(kind):
+        return simple.PointDatatoCellData(Input=grid(kind, 0.6 if kind == "vtkStructuredGrid" else 0.0))
+
+    def path_of(name):
+        return os.path.join(out, name + ".png")
+
+    even = lambda: simple.PointDatatoCellData(Input=as_cells(grid("vtkRectilinearGrid")))
+    cases = {
+        "means": (lambda: on_cells("vtkStructuredGrid"), {}),
+        "kept": (lambda: on_cells("vtkStructuredGrid"), {"CellValues": "As they are"}),
+        "even_means": (even, {}),
+        "even_kept": (even, {"CellValues": "As they are"}),
+    }
+    for name, (make, options) in cases.items():
+        draw(make(), path_of(name), "CELLS", **options)
+        if reference:
+            pictures.require_near(path_of(name), os.path.join(reference, name + ".png"))
+    for prefix in ("", "even_"):
+        error = pictures.difference(pictures.load(path_of(prefix + "kept")).astype(int),
+                                    pictures.load(path_of(prefix + "means")).astype(int))
+        session.require(error.max() > 20, f"{prefix}kept looks like means: {error.max()}")
+    if not reference: # VTK's means know the cells of one rank alone
+        draw(simple.CellDatatoPointData(Input=even()), path_of("nodal"))
+        pictures.require_near(path_of("even_means"), path_of("nodal"))
 
 
 def main():
@@ -146,9 +176,14 @@ def main():
         if arguments.reference and name != "tetrahedra":
             pictures.require_near(path, os.path.join(arguments.reference, name + ".png"))
     path = os.path.join(arguments.out, "shaded.png")
-    draw(as_cells(grid("vtkStructuredGrid", 0.6)), path, shade=1)
+    draw(as_cells(grid("vtkStructuredGrid", 0.6)), path, Shade=1)
+    draw_cell_values(arguments.out, arguments.reference)
     if arguments.reference:
         pictures.require_near(path, os.path.join(arguments.reference, "shaded.png"))
+        divided = os.path.join(arguments.out, "by_picture.png")
+        draw(as_cells(grid("vtkStructuredGrid", 0.6)), divided, Shade=1, Division="By picture",
+             said="'Division' By picture has no effect: cells of a mesh stay on their ranks")
+        pictures.require_near(divided, path, 0)
 
 
 main()

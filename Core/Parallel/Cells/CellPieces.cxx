@@ -132,8 +132,7 @@ std::shared_ptr<const DrawnCells> DrawnPiece(
   std::shared_ptr<DrawnCells> cells;
   Collective(communicator, [&] { cells = DrawnCells::OfPiece(mesh, facts, extent, pool); });
   TakeOutShared(communicator, *cells);
-  cells->Count = static_cast<std::int64_t>(
-    AllSum(communicator, static_cast<double>(cells->Count)));
+  cells->Count = static_cast<std::int64_t>(AllSum(communicator, static_cast<double>(cells->Count)));
   return cells;
 }
 

@@ -106,8 +106,8 @@ private:
     Attempt(failure,
       [this]
       {
-        this->Caster = std::make_unique<CellCaster>(this->Scene, this->Source, this->Source,
-          nullptr, this->Scene.DomainCells, this->Pool, this->Statistics.Rays);
+        this->Caster = std::make_unique<CellCaster>(
+          this->Scene, this->Source, this->Source, nullptr, this->Pool, this->Statistics.Rays);
       });
     this->Send(nullptr, failure);
     Attempt(failure, [this] { this->Merge(false); });
@@ -124,7 +124,7 @@ private:
       throw Error("There is no level " + std::to_string(level) + " of the mesh");
     }
     CellCaster(this->Scene, this->Source, *at, this->Source.LatticeOf(level, shaded, this->Pool),
-      this->Scene.DomainCells, this->Pool, this->Statistics.Rays)
+      this->Pool, this->Statistics.Rays)
       .DrawTiles(this->Picture, nullptr, this->Share);
     this->Statistics.DrawSeconds += timer.Seconds();
   }
@@ -358,7 +358,10 @@ private:
   {
     Bytes mine;
     Attempt(failure,
-      [&] { this->ForMyTiles([&](const glm::ivec2& tile) { this->PutPixels(mine, this->RectOf(tile)); }); });
+      [&] {
+        this->ForMyTiles(
+          [&](const glm::ivec2& tile) { this->PutPixels(mine, this->RectOf(tile)); });
+      });
     std::vector<Bytes> from;
     if (root == EveryRank)
     {

@@ -231,8 +231,7 @@ private:
 
 } // namespace
 
-void GivePieceLattice(
-  Communicator& communicator, CellSource& source, bool shaded, ThreadPool& pool)
+void GivePieceLattice(Communicator& communicator, CellSource& source, bool shaded, ThreadPool& pool)
 {
   if (AllMax(communicator, source.HasLattice(shaded) ? 0.0 : 1.0) == 0.0)
   {
@@ -246,8 +245,7 @@ void GivePieceLattice(
   const std::shared_ptr<const CellField> border = GatherBorder(communicator, field, shaded);
   std::vector<float> values = valuesOf(field);
   std::shared_ptr<MeshLattice> lattice;
-  Collective(communicator,
-    [&]
+  Collective(communicator, [&]
     { lattice = std::make_shared<MeshLattice>(*border->Cells, edge, std::move(values), pool); });
   for (std::size_t axis = 0; axis < 3 && shaded; ++axis)
   {

@@ -69,8 +69,8 @@ std::vector<Bytes> AddUp(const std::vector<Bytes>& parts, std::size_t width)
       std::fill(sum.begin(), sum.end(), 0.0);
       for (std::size_t each = begin; each < end; ++each)
       {
-        const std::uint8_t* const from = parts[entries[each].Rank].data() +
-                                         entries[each].Index * size + sizeof(std::uint64_t);
+        const std::uint8_t* const from =
+          parts[entries[each].Rank].data() + entries[each].Index * size + sizeof(std::uint64_t);
         for (std::size_t i = 0; i < width; ++i)
         {
           sum[i] += LoadNumber<double>(from + i * sizeof(double));
@@ -78,8 +78,8 @@ std::vector<Bytes> AddUp(const std::vector<Bytes>& parts, std::size_t width)
       }
       for (std::size_t each = begin; each < end; ++each)
       {
-        std::memcpy(sums[entries[each].Rank].data() + entries[each].Index * numbers, sum.data(),
-          numbers);
+        std::memcpy(
+          sums[entries[each].Rank].data() + entries[each].Index * numbers, sum.data(), numbers);
       }
     });
   return sums;

@@ -4,8 +4,10 @@
 #include "Base/Digest.h"
 #include "Base/ThreadPool.h"
 #include "Parallel/Cells/CellPieces.h"
+#include "Parallel/Cells/PieceMeans.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Fields/MeshGathering.h"
+#include "Render/Cells/PointMeans.h"
 
 #include <algorithm>
 #include <array>
@@ -95,8 +97,12 @@ void CellsField::Take(Communicator& communicator, Piece piece, bool has)
   field.Base = AllMax(communicator, std::abs(array.Base)) > 0.0 ? base : 0.0;
   field.OfCells = where == ValuesOn::Cells;
   field.Values = std::move(array.Values);
-  this->Content = this->HashOfAll(
-    communicator, HashOf(field.Values.data(), field.Values.size() * sizeof(float)));
+  if (field.OfCells && AllMax(communicator, piece.KeepsCellValues ? 1.0 : 0.0) == 0.0)
+  {
+    this->TakeMeans(communicator, field);
+  }
+  this->Content =
+    this->HashOfAll(communicator, HashOf(field.Values.data(), field.Values.size() * sizeof(float)));
   Collective(
     communicator, [&] { this->Drawn = std::make_unique<CellSource>(std::move(field), pool); });
   // Any cell may lie anywhere.
@@ -125,6 +131,21 @@ void CellsField::TakeMesh(Communicator& communicator, const Piece& piece)
   {
     this->NoteText += remark + ". ";
   }
+}
+
+/// Collective: makes means at points of values of cells.
+void CellsField::TakeMeans(Communicator& communicator, CellField& field) const
+{
+  ThreadPool& pool = ThreadPool::Process();
+  if (communicator.Size() == 1)
+  {
+    Collective(communicator, [&] { field.Values = PointMeans(*this->Cells, field.Values, pool); });
+  }
+  else
+  {
+    field.Values = PieceMeans(communicator, *this->Cells, field.Values, pool);
+  }
+  field.OfCells = false;
 }
 
 /// Collective: of the points, cells and values of all ranks.

@@ -26,7 +26,8 @@ public:
     CellMesh Mesh;    ///< without cells on ranks that have none
     NodeArray Values; ///< of its points or cells; anything on ranks without cells
     ValuesOn Where = ValuesOn::Points;
-    std::string OtherCells; ///< that are left out, as a user reads it; empty if none
+    bool KeepsCellValues = false; ///< FieldInput::KeepsCellValues
+    std::string OtherCells;       ///< that are left out, as a user reads it; empty if none
   };
 
   /// Collective: whether the mesh on all ranks is the one that was taken last. Take the pieces
@@ -43,7 +44,7 @@ public:
 
   void Clear() override { this->Drawn.reset(); }
   BrickSource* Source() override { return this->Drawn.get(); }
-  CellSource* PieceOfCells() override { return this->Drawn.get(); }
+  CellSource* PieceOfCells() const override { return this->Drawn.get(); }
   const std::vector<Box>& Zones() const override { return this->ZoneCells; }
   std::vector<Hash128> VisibleContent(const RayScene& scene) override;
   bool IsMesh() const override { return true; }
@@ -54,6 +55,7 @@ public:
 
 private:
   void TakeMesh(Communicator& communicator, const Piece& piece);
+  void TakeMeans(Communicator& communicator, CellField& field) const;
   Hash128 HashOfAll(Communicator& communicator, const Hash128& values) const;
 
   std::shared_ptr<const DrawnCells> Cells; ///< of the piece; null when the mesh cannot be drawn

@@ -171,7 +171,10 @@ void DistributedField::TakeMesh(
       all.begin(), all.end(), [&](const PieceFacts& facts) { return facts.Has == kind; });
   };
   const bool leaves = some(PieceFacts::Kind::Leaves);
-  if (leaves || (!some(PieceFacts::Kind::Cells) && !this->HasBeenCells(communicator, input)))
+  const bool keeps = !leaves && AllMax(communicator, input.KeepsCellValues() ? 1.0 : 0.0) >
+                                  0.0; // octrees have means
+  if (leaves ||
+      (!keeps && !some(PieceFacts::Kind::Cells) && !this->HasBeenCells(communicator, input)))
   {
     if (this->TakeOctree(communicator, input, leaves))
     {
@@ -184,7 +187,7 @@ void DistributedField::TakeMesh(
   Collective(communicator, [&] { cells = input.Cells(); });
   const bool has = field.Has(communicator, cells.Mesh);
   field.Take(communicator, std::move(cells), has);
-  this->NoOctreeAt = input.MeshTolerance();
+  this->NoOctreeAt = keeps ? NotTried : input.MeshTolerance();
   this->Where = field.Place();
 }
 

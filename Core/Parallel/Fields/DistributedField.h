@@ -96,7 +96,8 @@ private:
   ValueRange ValuesRange;
   bool Colours = false;
   double LargestEncodingError = 0.0;
-  double NoOctreeAt = 0.0; ///< the tolerance that a CellsField's mesh was tried with
+  static constexpr double NotTried = -1.0;
+  double NoOctreeAt = NotTried; ///< the tolerance that a CellsField's mesh was tried with
 
   struct KnownContent
   {

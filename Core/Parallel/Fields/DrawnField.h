@@ -41,7 +41,8 @@ FieldPlace PlaceOfSamples(const Grid& grid, const Box& samples);
 /// One field of scalars as all ranks draw it together: bricks, and one zone of cells per rank. Its
 /// kinds differ in where values are: in an encoded series that every rank can read (SeriesField),
 /// on one rank (WholeField), in pieces on the ranks (PiecesField), on a mesh that every rank has
-/// (MeshField), or on one that lies in pieces (CellsField). Each kind has a collective Take of its own, which brings it the values of a step.
+/// (MeshField), or on one that lies in pieces (CellsField). Each kind has a collective Take of its
+/// own, which brings it the values of a step.
 ///
 /// @par Order of calls in a frame, the same on all ranks:
 ///   1. BeginFrame    collective
@@ -112,7 +113,7 @@ public:
   virtual bool IsEncoded() const { return false; }
   /// This rank's piece of a mesh whose cells are dealt in any way: ranks have no zones then. Null
   /// where they have; the same on all ranks.
-  virtual CellSource* PieceOfCells() { return nullptr; }
+  virtual CellSource* PieceOfCells() const { return nullptr; }
   /// Whether each rank can draw any cell: the same on all ranks.
   virtual bool IsOnEachRank() const { return false; }
   /// Whether it is a mesh of hexahedra.

@@ -48,6 +48,9 @@ public:
   /// How far points of an octree may be from its lattice, in edges of the smallest cell: see
   /// ElementOctree::Find. The same on all ranks.
   virtual double MeshTolerance() const = 0;
+  /// Whether values lie on cells, and are to be drawn as they are: the same all over a cell. Means
+  /// at points are drawn otherwise. Ranks without data say no.
+  virtual bool KeepsCellValues() const { return false; }
   /// Collective: the hexahedra of this rank and their values, which stay until the next call.
   /// @param leaves whether some rank has leaves of trees or AMR
   /// Throws Error, possibly on one rank alone, when they cannot be drawn. Messages are complete

@@ -81,10 +81,9 @@ FloatImage DrawProbeOfPieces(Communicator& communicator, const RayScene& scene,
   const RankShare& share, FrameStatistics& statistics)
 {
   PieceStatistics mine;
-  FloatImage picture =
-    DrawPieces(communicator, scene, *share.Piece, share.Pool, EveryRank, mine);
-  statistics.SamplesTaken += static_cast<std::int64_t>(
-    AllSum(communicator, static_cast<double>(mine.Rays.SamplesTaken)));
+  FloatImage picture = DrawPieces(communicator, scene, *share.Piece, share.Pool, EveryRank, mine);
+  statistics.SamplesTaken +=
+    static_cast<std::int64_t>(AllSum(communicator, static_cast<double>(mine.Rays.SamplesTaken)));
   statistics.BytesComposited +=
     static_cast<std::uint64_t>(AllSum(communicator, static_cast<double>(mine.Bytes)));
   return picture;

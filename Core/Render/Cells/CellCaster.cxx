@@ -62,14 +62,12 @@ const AskedTile* FindTile(const std::vector<AskedTile>& asked, const glm::ivec2&
 } // namespace
 
 CellCaster::CellCaster(const RayScene& scene, CellSource& source, BrickSource& level,
-  std::shared_ptr<const MeshLattice> lattice, const Box& cells, ThreadPool& pool,
-  RayStatistics& statistics)
+  std::shared_ptr<const MeshLattice> lattice, ThreadPool& pool, RayStatistics& statistics)
   : Level(scene, level)
   , Lattice(std::move(lattice))
-  , Field(this->Lattice              ? source.WithBorder(this->Level.IsShaded(), pool)
+  , Field(this->Lattice            ? source.WithBorder(this->Level.IsShaded(), pool)
           : this->Level.IsShaded() ? source.WithGradients(pool)
                                    : source.Cells())
-  , Zone(cells)
   , Pool(pool)
   , Statistics(statistics)
   , Bins(
@@ -155,10 +153,7 @@ void CellCaster::OpenTile(
     tile.PixelStride, false, rect, tile.Cast);
   rays.CellShift = 0;
   rays.BrickShift = 0;
-  const FixedBox drawn(this->Zone);
-  const bool all =
-    Intersection(this->Zone, this->Level.Scene.DomainCells) == this->Level.Scene.DomainCells;
-  scratch.Rows.Take(rays, tile.Sampling->Lattice.Setup(), all ? nullptr : &drawn);
+  scratch.Rows.Take(rays, tile.Sampling->Lattice.Setup());
 }
 
 std::vector<TileRuns> CellCaster::DrawRuns(const std::vector<AskedTile>* asked)

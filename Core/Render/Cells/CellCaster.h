@@ -34,13 +34,11 @@ class CellCaster final : public PictureCaster
 {
 public:
   /// Everything referred to must stay. Finds the cells that can be seen.
-  /// @param cells of the index space: samples elsewhere are left out
   /// @param level the source itself, or that of a coarser level
   /// @param lattice of the coarser level; null where cells are drawn
   /// @param statistics is added to
   CellCaster(const RayScene& scene, CellSource& source, BrickSource& level,
-    std::shared_ptr<const MeshLattice> lattice, const Box& cells, ThreadPool& pool,
-    RayStatistics& statistics);
+    std::shared_ptr<const MeshLattice> lattice, ThreadPool& pool, RayStatistics& statistics);
   ~CellCaster() override;
 
   const PixelRect& Rect() const override { return this->Bins.Rect(); }
@@ -76,7 +74,6 @@ private:
   LevelScene Level;
   const std::shared_ptr<const MeshLattice> Lattice;
   const CellField& Field; ///< cells that are drawn, or those with faces at the border
-  const Box Zone;
   ThreadPool& Pool;
   RayStatistics& Statistics;
   CellBins Bins;

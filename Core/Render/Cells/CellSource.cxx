@@ -31,6 +31,15 @@ constexpr std::size_t MostPlaces = std::size_t{ 1 } << 25;
 /// Lattices with fewer places along the longest axis say nothing.
 constexpr int LeastPlaces = 16;
 
+/// Cells of a mesh are no boxes: nobody draws a part of the index space.
+void CheckDrawsAll(const RayScene& scene, const Box& cells)
+{
+  if (!(Intersection(cells, scene.DomainCells) == scene.DomainCells))
+  {
+    throw Error("A mesh of cells is drawn as a whole");
+  }
+}
+
 /// A coarser level of a mesh.
 class LatticeSource final : public BrickSource
 {
@@ -53,9 +62,10 @@ public:
   std::unique_ptr<PictureCaster> MakeCaster(
     const RayScene& scene, const Box& cells, ThreadPool& pool, RayStatistics& statistics) override
   {
+    CheckDrawsAll(scene, cells);
     const bool shaded = scene.Shading.On && scene.Blend.Mode == BlendMode::Composite;
     return std::make_unique<CellCaster>(scene, this->Source, *this,
-      this->Source.LatticeOf(this->LatticeLevel, shaded, pool), cells, pool, statistics);
+      this->Source.LatticeOf(this->LatticeLevel, shaded, pool), pool, statistics);
   }
 
 private:
@@ -121,9 +131,9 @@ std::shared_ptr<const SeenCells> CellSource::Seen(std::shared_ptr<const SeenCell
   }
   const bool all = &last == &this->LastSeen;
   this->Looks += all ? 1 : 0;
-  auto seen = std::make_shared<const SeenCells>(scene,
-    all || !this->Border ? this->Field : *this->Border,
-    all ? SeenCells::Kind::All : SeenCells::Kind::Borders, std::move(visible), pool);
+  auto seen =
+    std::make_shared<const SeenCells>(scene, all || !this->Border ? this->Field : *this->Border,
+      all ? SeenCells::Kind::All : SeenCells::Kind::Borders, std::move(visible), pool);
   const std::lock_guard<std::mutex> lock(this->SeenMutex);
   last = seen;
   return seen;
@@ -143,9 +153,8 @@ double CellSource::EdgeOf(int level)
     [&]
     {
       const DrawnCells& cells = *this->Field.Cells;
-      const std::size_t most =
-        std::clamp(
-          PlacesPerCell * static_cast<std::size_t>(cells.Count), LeastMostPlaces, MostPlaces);
+      const std::size_t most = std::clamp(
+        PlacesPerCell * static_cast<std::size_t>(cells.Count), LeastMostPlaces, MostPlaces);
       this->FinestLatticeEdge = FinestEdge;
       while (MeshLattice::PlacesFor(cells, this->FinestLatticeEdge).Size() > most)
       {
@@ -190,11 +199,11 @@ std::size_t CellSource::LatticeBytes() const
   if (this->Border)
   {
     const CellMesh& mesh = this->Border->Cells->Mesh;
-    bytes += this->Border->Cells->Bytes() +
-             static_cast<std::size_t>(mesh.PointCount) * sizeof(glm::dvec3) +
-             static_cast<std::size_t>(mesh.ConnectivityCount + mesh.CellCount) *
-               sizeof(std::int64_t) +
-             (this->Border->Values.size() + this->Border->Gradients.size()) * sizeof(float);
+    bytes +=
+      this->Border->Cells->Bytes() +
+      static_cast<std::size_t>(mesh.PointCount) * sizeof(glm::dvec3) +
+      static_cast<std::size_t>(mesh.ConnectivityCount + mesh.CellCount) * sizeof(std::int64_t) +
+      (this->Border->Values.size() + this->Border->Gradients.size()) * sizeof(float);
   }
   return bytes;
 }
@@ -254,7 +263,8 @@ ValueMask CellSource::MaskOf(std::int64_t brick) const
 std::unique_ptr<PictureCaster> CellSource::MakeCaster(
   const RayScene& scene, const Box& cells, ThreadPool& pool, RayStatistics& statistics)
 {
-  return std::make_unique<CellCaster>(scene, *this, *this, nullptr, cells, pool, statistics);
+  CheckDrawsAll(scene, cells);
+  return std::make_unique<CellCaster>(scene, *this, *this, nullptr, pool, statistics);
 }
 
 BrickView CellSource::Load(std::int64_t)

@@ -54,6 +54,7 @@ public:
   ValueMask MaskOf(std::int64_t brick) const override;
   MaskRange MasksAreOver() const override { return this->Masks; }
   std::size_t LoadBytes(std::int64_t) const override { return 0; }
+  /// Throws Error when `cells` are not all of the scene's.
   std::unique_ptr<PictureCaster> MakeCaster(
     const RayScene& scene, const Box& cells, ThreadPool& pool, RayStatistics& statistics) override;
   /// Throws Error: there are no samples on a grid.

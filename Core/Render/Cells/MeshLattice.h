@@ -32,8 +32,7 @@ public:
   MeshLattice(const CellField& field, double edge, const MeshLattice* finer, ThreadPool& pool);
   /// @param cells at the border of the mesh, others or not
   /// @param values of the places, as SampleField gives them
-  MeshLattice(
-    const DrawnCells& cells, double edge, std::vector<float> values, ThreadPool& pool);
+  MeshLattice(const DrawnCells& cells, double edge, std::vector<float> values, ThreadPool& pool);
   /// The places that it would have: the same for a mesh, a piece of it, and its border.
   static PlacesInRows PlacesFor(const DrawnCells& cells, double edge);
 

@@ -18,13 +18,6 @@ std::int64_t PositionOf(const RayTile::Ends& ends, int axis, int slot)
   return ToFixed(ends.Cell[axis][slot]) + (ends.Position[axis][slot] & ((1u << FractionBits) - 1));
 }
 
-bool Contains(const FixedBox& box, const RayTile::Ends& ends, int slot)
-{
-  const std::int64_t position[3] = { PositionOf(ends, 0, slot), PositionOf(ends, 1, slot),
-    PositionOf(ends, 2, slot) };
-  return box.Contains(position);
-}
-
 void Include(TileRows::Range& range, int row)
 {
   if (row != TileRows::None)
@@ -36,7 +29,7 @@ void Include(TileRows::Range& range, int row)
 
 } // namespace
 
-void TileRows::Take(const RayTile& tile, const LatticeSetup& lattice, const FixedBox* drawn)
+void TileRows::Take(const RayTile& tile, const LatticeSetup& lattice)
 {
   const double perDirection = lattice.Distance / lattice.ShadingScale;
   double lowest = std::numeric_limits<double>::infinity();
@@ -77,19 +70,6 @@ void TileRows::Take(const RayTile& tile, const LatticeSetup& lattice, const Fixe
         this->Zero[axis][slot] = static_cast<double>(PositionOf(end, axis, slot));
         this->Step[axis][slot] = static_cast<float>(tile.Direction[axis][slot] * perDirection);
       }
-    }
-    if (drawn && !empty)
-    {
-      std::int32_t begin = 0;
-      std::int32_t end = 0;
-      if (count > 0)
-      {
-        tile.RayOf(slot).SamplesIn(*drawn, begin, end);
-      }
-      this->First[slot] = first + begin;
-      this->End[slot] = first + std::max(begin, end);
-      this->Head[slot] = Contains(*drawn, tile.Head, slot) ? this->Head[slot] : None;
-      this->Tail[slot] = Contains(*drawn, tile.Tail, slot) ? this->Tail[slot] : None;
     }
     Include(this->Heads[slot / RayTile::PacketSize], this->Head[slot]);
     Include(this->Tails[slot / RayTile::PacketSize], this->Tail[slot]);

@@ -17,10 +17,9 @@ struct TileRows
 {
   static constexpr int None = -1;
 
-  /// Takes the samples of a tile that lie in a box of cells.
+  /// Takes the samples of a tile.
   /// @param lattice of the tile's rays
-  /// @param drawn null where all samples are wanted
-  void Take(const RayTile& tile, const LatticeSetup& lattice, const FixedBox* drawn);
+  void Take(const RayTile& tile, const LatticeSetup& lattice);
 
   double FirstNumber = 0.0; ///< of the interval that row 0 holds
   int Count = 0;            ///< rows in all; 0 where no ray has samples
@@ -33,9 +32,9 @@ struct TileRows
   alignas(64) std::uint32_t ZeroLow[3][RayTile::Slots]; ///< the same modulo 256 cells
   alignas(64) float Step[3][RayTile::Slots];            ///< in cells
   // By slot: rows.
-  alignas(64) std::int32_t First[RayTile::Slots]; ///< of the whole samples that are wanted
+  alignas(64) std::int32_t First[RayTile::Slots]; ///< of the whole samples
   alignas(64) std::int32_t End[RayTile::Slots];
-  alignas(64) std::int32_t Head[RayTile::Slots]; ///< None where there is none, or not wanted
+  alignas(64) std::int32_t Head[RayTile::Slots]; ///< None where there is none
   alignas(64) std::int32_t Tail[RayTile::Slots];
   // By packet: the rows that have heads or tails, First > Last where none has.
   struct Range

@@ -214,14 +214,6 @@ FloatImage DrawnMesh::Draw(int threads, banyan::RayStatistics* statistics) const
   return image;
 }
 
-FloatImage DrawnMesh::DrawPart(const banyan::Box& cells) const
-{
-  banyan::ThreadPool pool(1);
-  banyan::CellSource source(this->Field, pool);
-  banyan::RayStatistics unused;
-  return banyan::CastViewport(this->Scene, source, cells, 1 << 30, pool, unused);
-}
-
 glm::dmat4 DrawnMesh::ToIndex() const
 {
   const banyan::CellLattice& lattice = this->Field.Cells->Lattice;

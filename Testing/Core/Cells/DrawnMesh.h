@@ -39,8 +39,6 @@ struct DrawnMesh
   /// The picture, finished.
   /// @param statistics is added to; null for none
   banyan::FloatImage Draw(int threads = 1, banyan::RayStatistics* statistics = nullptr) const;
-  /// The samples in some cells of the index space, not finished, all over the viewport.
-  banyan::FloatImage DrawPart(const banyan::Box& cells) const;
   /// The slow reference for it.
   banyan::FloatImage Reference(const scenes::Function& function = Dense) const;
   /// The samples of all rays.

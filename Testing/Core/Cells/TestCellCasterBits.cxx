@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What must not change a bit of a picture of cells; and pictures of parts of it.
+// What must not change a bit of a picture of cells.
 #include "Cells/DrawnMesh.h"
+#include "Render/Cells/CellSource.h"
+#include "Render/Scene/PictureCaster.h"
 #include "Targets.h"
 
 #include <gtest/gtest.h>
@@ -162,104 +164,19 @@ TEST(CellCasterBits, SkippedPixelsChangeNoOther)
   }
 }
 
-/// Cuts a box across its axes in turn. Parts come back to front.
-/// @param eye in index space
-std::vector<Box> Zones(const Box& whole, const glm::dvec3& eye, int depth, int axis)
+TEST(CellCaster, DrawsNoPartOfTheIndexSpace)
 {
-  if (depth == 0)
+  const DrawnMesh drawn = Scenario(BentCube(), false);
+  ThreadPool pool(1);
+  CellSource source(drawn.Field, pool);
+  RayStatistics unused;
+  Box part = drawn.Scene.DomainCells;
+  part.Hi.x -= 1;
+  for (const int level : { 0, 1 })
   {
-    return { whole };
-  }
-  Box lower = whole;
-  Box upper = whole;
-  const int plane = whole.Lo[axis] + whole.Size()[axis] * 2 / 5;
-  lower.Hi[axis] = plane;
-  upper.Lo[axis] = plane;
-  const bool lowerIsNear = eye[axis] < plane;
-  std::vector<Box> zones = Zones(lowerIsNear ? upper : lower, eye, depth - 1, (axis + 1) % 3);
-  const std::vector<Box> near = Zones(lowerIsNear ? lower : upper, eye, depth - 1, (axis + 1) % 3);
-  zones.insert(zones.end(), near.begin(), near.end());
-  return zones;
-}
-
-TEST(CellCasterZones, BlendToTheWhole)
-{
-  for (const bool shaded : { false, true })
-  {
-    DrawnMesh drawn = Scenario(BentCube(), shaded);
-    drawn.Scene.OpacityLimit = 2.0f;
-    const FloatImage image = drawn.Draw();
-    ExpectSomething(image);
-    const glm::dvec3 eye(
-      glm::inverse(drawn.Scene.IndexToWorld) * glm::dvec4(drawn.Scene.Camera.Eye(), 1.0));
-    for (const int depth : { 1, 3, 6 })
-    {
-      FloatImage blended;
-      blended.Rect = image.Rect;
-      blended.Pixels.assign(image.Pixels.size(), glm::vec4(0.0f));
-      for (const Box& zone : Zones(drawn.Scene.DomainCells, eye, depth, 0))
-      {
-        const FloatImage part = drawn.DrawPart(zone);
-        for (std::size_t i = 0; i < part.Pixels.size(); ++i)
-        {
-          blended.Pixels[i] = part.Pixels[i] + (1.0f - part.Pixels[i].a) * blended.Pixels[i];
-        }
-      }
-      EXPECT_LE(MaxDifference(blended, image), 1e-5) << depth << " " << shaded;
-    }
-  }
-}
-
-/// Each interval is in one zone: lengths add up.
-TEST(CellCasterZones, EverySampleIsInOneOfThem)
-{
-  for (const double offset : { 0.05, 0.6 })
-  {
-    DrawnMesh drawn = Scenario(BentCube(Cut::Mixed, offset), false);
-    drawn.Scene.Transfer = cellmeshes::Tiny(drawn.Scene);
-    const FloatImage image = drawn.Draw();
-    std::vector<double> lengths(image.Pixels.size(), 0.0);
-    for (const Box& zone : Zones(drawn.Scene.DomainCells, glm::dvec3(0.0), 7, 1))
-    {
-      const FloatImage part = drawn.DrawPart(zone);
-      for (std::size_t i = 0; i < lengths.size(); ++i)
-      {
-        lengths[i] += cellmeshes::LengthIn(drawn.Scene, part.Pixels[i]);
-      }
-    }
-    double longest = 0.0;
-    for (std::size_t i = 0; i < lengths.size(); ++i)
-    {
-      const double length = cellmeshes::LengthIn(drawn.Scene, image.Pixels[i]);
-      longest = std::max(longest, length);
-      EXPECT_NEAR(lengths[i], length, 1e-3);
-    }
-    EXPECT_GT(longest, 10.0);
-  }
-}
-
-TEST(CellCasterZones, ProjectionsOfPartsMakeThatOfTheWhole)
-{
-  for (const BlendMode mode : { BlendMode::Maximum, BlendMode::Minimum, BlendMode::Average })
-  {
-    DrawnMesh drawn = Scenario(BentCube(), false);
-    drawn.Scene.Blend.Mode = mode;
-    const FloatImage image = drawn.Draw();
-    FloatImage combined;
-    combined.Rect = image.Rect;
-    combined.Pixels.assign(image.Pixels.size(), glm::vec4(0.0f));
-    for (const Box& zone : Zones(drawn.Scene.DomainCells, glm::dvec3(0.0), 4, 2))
-    {
-      const FloatImage part = drawn.DrawPart(zone);
-      for (std::size_t i = 0; i < part.Pixels.size(); ++i)
-      {
-        glm::vec4& pixel = combined.Pixels[i];
-        pixel =
-          mode == BlendMode::Average ? pixel + part.Pixels[i] : glm::max(pixel, part.Pixels[i]);
-      }
-    }
-    FinishPicture(drawn.Scene, combined);
-    EXPECT_LE(MaxDifference(combined, image), mode == BlendMode::Average ? 1e-5 : 0.0) << int(mode);
+    EXPECT_THROW(
+      source.AtLevel(level, drawn.Scene.DomainCells)->MakeCaster(drawn.Scene, part, pool, unused),
+      Error);
   }
 }
 

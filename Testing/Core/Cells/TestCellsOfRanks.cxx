@@ -131,6 +131,61 @@ TEST(CellsOfRanks, NewValuesKeepTheMesh)
     });
 }
 
+/// @param keeps of this rank
+void TakeCellValues(
+  CellsField& field, Communicator& communicator, const OwnedCellMesh& mesh, bool keeps)
+{
+  CellsField::Piece piece = Given(mesh);
+  piece.Where = ValuesOn::Cells;
+  piece.KeepsCellValues = keeps;
+  const bool has = field.Has(communicator, piece.Mesh);
+  field.Take(communicator, std::move(piece), has);
+}
+
+/// The number of each cell, with the cells that a rank has.
+OwnedCellMesh WithCellValues(OwnedCellMesh mesh, int first, int step)
+{
+  mesh.Values.clear();
+  for (std::size_t cell = 0; cell < mesh.Types.size(); ++cell)
+  {
+    mesh.Values.push_back(static_cast<float>(first + static_cast<int>(cell) * step));
+  }
+  return mesh;
+}
+
+TEST(CellsOfRanks, ValuesOfCellsAreMeansOfAllRanksOrKept)
+{
+  const OwnedCellMesh whole = WithCellValues(Whole(), 0, 1);
+  CellsField alone;
+  const auto self = MakeSelfCommunicator();
+  TakeCellValues(alone, *self, whole, true);
+  EXPECT_TRUE(Drawn(alone).OfCells);
+  EXPECT_EQ(Drawn(alone).Values, whole.Values);
+  TakeCellValues(alone, *self, whole, false);
+  EXPECT_FALSE(Drawn(alone).OfCells);
+  const std::vector<float> means = Drawn(alone).Values;
+  ASSERT_EQ(means.size(), static_cast<std::size_t>(whole.PointCount()));
+  RunOnSimulatedRanks(3,
+    [&](Communicator& communicator)
+    {
+      // The last rank has no cells, and the others every second one. Points are those of all.
+      const int rank = communicator.Rank();
+      const OwnedCellMesh piece = WithCellValues(PieceOf(whole, rank, 3), rank, 2);
+      CellsField field;
+      TakeCellValues(field, communicator, piece, false);
+      EXPECT_FALSE(Drawn(field).OfCells);
+      for (const std::int64_t point : piece.Ids)
+      {
+        const auto at = static_cast<std::size_t>(point);
+        ASSERT_NEAR(Drawn(field).Values[at], means[at], 1e-5 * means[at]);
+      }
+      TakeCellValues(field, communicator, piece, rank == 0);
+      EXPECT_TRUE(Drawn(field).OfCells) << "one rank says so";
+      EXPECT_EQ(Drawn(field).Values, piece.Values);
+      communicator.Barrier();
+    });
+}
+
 TEST(CellsOfRanks, WhatIsLeftOutIsToldWithItsRank)
 {
   const OwnedCellMesh whole = Whole();

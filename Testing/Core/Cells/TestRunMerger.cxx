@@ -34,8 +34,8 @@ struct Tables
     CellFacts facts = CheckCells(mesh, this->Pool);
     this->Cells = DrawnCells::OfPiece(mesh, facts, ExtentOf(mesh, facts, this->Pool), this->Pool);
     this->Source = std::make_unique<CellSource>(this->Drawn.Field, this->Pool);
-    this->Caster = std::make_unique<CellCaster>(this->Drawn.Scene, *this->Source, *this->Source,
-      nullptr, this->Drawn.Scene.DomainCells, this->Pool, this->Statistics);
+    this->Caster = std::make_unique<CellCaster>(
+      this->Drawn.Scene, *this->Source, *this->Source, nullptr, this->Pool, this->Statistics);
   }
 
   static DrawnMesh MakeMesh()

@@ -318,8 +318,8 @@ TEST(DrawPieces, CellsAndLatticesInOnePicture)
   Case is(piececases::Cube(6, Cut::Mixed), { 150, 140 });
   const double step = is.Scene.SampleDistance;
   const FloatImage cells = is.Whole();
-  is.Scene.Samplings = SamplingsOf(
-    is, { { 0, step }, { 1, step }, { 0, 0.5 * step, 2 }, { 2, 2.0 * step, 4 }, { 1, 0.25 * step } });
+  is.Scene.Samplings = SamplingsOf(is,
+    { { 0, step }, { 1, step }, { 0, 0.5 * step, 2 }, { 2, 2.0 * step, 4 }, { 1, 0.25 * step } });
   for (const bool shaded : { false, true })
   {
     is.Scene.Shading.On = shaded;

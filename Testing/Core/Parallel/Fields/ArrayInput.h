@@ -82,6 +82,7 @@ struct Input final : FieldInput
     ++this->Tried;
     return this->Boxes;
   }
+  bool KeepsCellValues() const override { return this->AnyCells.KeepsCellValues; }
   CellsField::Piece Cells() override { return this->AnyCells; }
 };
 

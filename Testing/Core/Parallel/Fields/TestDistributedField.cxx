@@ -154,6 +154,30 @@ TEST(DistributedField, HexahedraOfAllRanksAreAMesh)
     });
 }
 
+/// Gives an input hexahedra that may be an octree.
+/// @param types of cells; must stay
+void GiveHexahedra(Input& input, const mesh_pieces::Piece& piece, ValuesOn where,
+  const std::vector<std::uint8_t>& types)
+{
+  const HexMesh boxes = piece.Mesh.Mesh();
+  input.Piece.Has = PieceFacts::Kind::Mesh;
+  input.Boxes.Mesh = boxes;
+  input.Boxes.Values = made_alone::ArrayOf(piece, where, 1);
+  input.Boxes.Where = where;
+  CellMesh& mesh = input.AnyCells.Mesh;
+  mesh.Points = boxes.Points;
+  mesh.PointType = boxes.PointType;
+  mesh.PointCount = boxes.PointCount;
+  mesh.Connectivity = boxes.Connectivity;
+  mesh.ConnectivityCount = 8 * boxes.CellCount;
+  mesh.IdType = boxes.IdType;
+  mesh.PerCell = 8;
+  mesh.CellCount = boxes.CellCount;
+  mesh.Types = types.data();
+  input.AnyCells.Values = input.Boxes.Values;
+  input.AnyCells.Where = where;
+}
+
 TEST(DistributedField, HexahedraThatAreNoOctreeAreCells)
 {
   const mesh_pieces::Whole whole = warped::Grid({ 5, 3, 4 }, warped::Bent);
@@ -164,20 +188,7 @@ TEST(DistributedField, HexahedraThatAreNoOctreeAreCells)
       const HexMesh boxes = piece.Mesh.Mesh();
       const std::vector<std::uint8_t> types(static_cast<std::size_t>(boxes.CellCount), 12);
       Input input;
-      input.Piece.Has = PieceFacts::Kind::Mesh;
-      input.Boxes.Mesh = boxes;
-      input.Boxes.Values = made_alone::ArrayOf(piece, ValuesOn::Points, 1);
-      CellMesh& mesh = input.AnyCells.Mesh;
-      mesh.Points = boxes.Points;
-      mesh.PointType = boxes.PointType;
-      mesh.PointCount = boxes.PointCount;
-      mesh.Connectivity = boxes.Connectivity;
-      mesh.ConnectivityCount = 8 * boxes.CellCount;
-      mesh.IdType = boxes.IdType;
-      mesh.PerCell = 8;
-      mesh.CellCount = boxes.CellCount;
-      mesh.Types = types.data();
-      input.AnyCells.Values = input.Boxes.Values;
+      GiveHexahedra(input, piece, ValuesOn::Points, types);
       DistributedField field;
       for (int step = 0; step < 3; ++step)
       {
@@ -189,6 +200,34 @@ TEST(DistributedField, HexahedraThatAreNoOctreeAreCells)
         EXPECT_EQ(source->Cells().Cells->Count, whole.Ids.size() / 8);
         EXPECT_EQ(input.Tried, 1) << "a mesh that is known to be no octree is not tried again";
         ++input.Changes;
+      }
+      communicator.Barrier();
+    });
+}
+
+TEST(DistributedField, OctreesWhoseCellValuesAreKeptAreCellsMeanwhile)
+{
+  const mesh_pieces::Whole whole =
+    meshes::Make(meshes::Wild({ 2, 1, 1 }, 3, 5), glm::dvec3(0.0), glm::dvec3(1.0), 3);
+  RunOnSimulatedRanks(2,
+    [&](Communicator& communicator)
+    {
+      const mesh_pieces::Piece piece = mesh_pieces::PieceOf(whole, communicator);
+      const std::vector<std::uint8_t> types(
+        static_cast<std::size_t>(piece.Mesh.Mesh().CellCount), 12);
+      Input input;
+      GiveHexahedra(input, piece, ValuesOn::Cells, types);
+      DistributedField field;
+      for (const bool keeps : { false, true, false, true })
+      {
+        // One rank says so: the other one may have no values of its own.
+        input.AnyCells.KeepsCellValues = keeps && communicator.Rank() == 1;
+        ++input.Changes;
+        field.Update(communicator, input);
+        EXPECT_EQ(field.Problem(), "");
+        const auto* const source = dynamic_cast<const CellSource*>(field.Drawn().Source());
+        EXPECT_EQ(source != nullptr, keeps);
+        EXPECT_TRUE(!source || source->Cells().OfCells);
       }
       communicator.Barrier();
     });
