@@ -173,6 +173,7 @@ private:
   Bytes Decide(const std::vector<Bytes>& bits, const std::vector<Bytes>& values) const
   {
     std::vector<ByteReader> readers;
+    readers.reserve(values.size());
     for (const Bytes& message : values)
     {
       readers.emplace_back(message.data(), message.size());

@@ -23,12 +23,12 @@ struct RankShare
   std::vector<Box> Zones;    ///< cells of each rank, disjoint, the same list on all ranks
   std::uint64_t BudgetBytes; ///< working memory for loaded bricks on this rank
   ThreadPool& Pool;
+  /// Where not null, on all ranks: each has a piece of a mesh, and zones do not count.
+  CellSource* Piece = nullptr;
   std::string Failure = {}; ///< if not empty, this rank cannot draw: all ranks throw it
   /// Pixels of each rank, disjoint, the same list on all ranks: each draws all cells there, of
   /// which its Source has all bricks. None where each draws the cells of its zone.
   std::vector<PixelRect> Regions = {};
-  /// Where not null, on all ranks: each has a piece of a mesh, and zones do not count.
-  CellSource* Piece = nullptr;
 };
 
 /// Draws one picture on all ranks: each casts rays through the cells of its own zone, and the

@@ -45,6 +45,13 @@ RayScene PictureAround(const RayScene& part, const PixelRect& rect)
   return picture;
 }
 
+RankShare ShareOf(DistributedField& field)
+{
+  DrawnField& drawn = field.Drawn();
+  return { drawn.Source(), drawn.Zones(), field.DrawingBudget(), ThreadPool::Process(),
+    drawn.PieceOfCells() };
+}
+
 /// Of what this rank has drawn.
 void ReadAhead(DrawnField& drawn, const RayScene& scene, const RankShare& share, int rank)
 {
@@ -358,8 +365,7 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   FrameStatistics& numbers = frame.Picture.Statistics;
   isPart ? this->PlanPart(communicator, field, *whole, scene, wish, aim, frame.Picture)
          : this->Plan(communicator, field, scene, names.View, wish, aim, frame.Picture);
-  RankShare share{ drawn.Source(), drawn.Zones(), field.DrawingBudget(), ThreadPool::Process() };
-  share.Piece = drawn.PieceOfCells();
+  RankShare share = ShareOf(field);
   frame.ByPicture = DividesPicture(communicator, drawn, wish);
   PictureRegions ofPart;
   PictureRegions& regions = isPart ? ofPart : this->Regions;

@@ -163,8 +163,8 @@ SamplingPlan ToleranceControl::PlanWithin(Communicator& communicator, Distribute
   DrawnField& drawn = field.Drawn();
   const auto planOf = [&](BrickSource* source, std::uint64_t bytes)
   {
-    RankShare share{ source, drawn.Zones(), bytes, ThreadPool::Process() };
-    share.Piece = drawn.PieceOfCells();
+    const RankShare share{ source, drawn.Zones(), bytes, ThreadPool::Process(),
+      drawn.PieceOfCells() };
     return PlanDistributed(communicator, scene, share, sampling, frame);
   };
   const DrawnField::Place place = drawn.InSeries();

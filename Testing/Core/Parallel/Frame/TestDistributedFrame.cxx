@@ -389,7 +389,7 @@ void ExpectFailureOfAll(const std::vector<PicturePlace>& places)
       try
       {
         DrawDistributed(communicator, scene,
-          { &source, zones, Budget, pool,
+          { &source, zones, Budget, pool, nullptr,
             communicator.Rank() == 2 ? "The disk of this rank is gone." : "" },
           statistics, {}, places);
       }
