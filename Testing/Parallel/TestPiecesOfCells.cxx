@@ -25,6 +25,11 @@ std::string DrawAll(Communicator& communicator)
     {
       piececases::Case is(piececases::Cube(6, Cut::Mixed, offset));
       is.Scene.Blend.Mode = mode;
+      const double step = is.Scene.SampleDistance;
+      auto samplings = std::make_shared<TileSamplings>(
+        is.Scene.Camera.ImageSize(), std::vector{ RaySampling{ 0, step }, RaySampling{ 1, step } });
+      samplings->SetNumber({ 1, 1 }, 1); // in the middle
+      is.Scene.Samplings = samplings;
       const FloatImage whole = is.Whole();
       for (const Deal deal : { Deal::OneByOne, Deal::Jagged, Deal::Morton, Deal::Slabs })
       {

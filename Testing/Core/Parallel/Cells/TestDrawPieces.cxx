@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Meshes whose cells are dealt to ranks in any way, against one rank that has all of them.
+#include "Base/StopFlag.h"
+#include "Parallel/Communicate/Collective.h"
 #include "Parallel/PieceCases.h"
 
 #include <gtest/gtest.h>
@@ -388,6 +390,32 @@ TEST(DrawPieces, EveryRankGetsAProbe)
       EXPECT_LE(MaxDifference(is.Together(communicator, rankOf, statistics), whole), 1e-5);
       communicator.Barrier();
     });
+}
+
+TEST(DrawPieces, AllRanksHearOfOneThatStops)
+{
+  for (const int level : { 0, 1 })
+  {
+    RunOnSimulatedRanks(3,
+      [&](Communicator& communicator)
+      {
+        Case is(piececases::Cube(6, Cut::Mixed));
+        is.Scene.Samplings = SamplingsOf(is, { { level, is.Scene.SampleDistance } });
+        StopFlag stop;
+        if (communicator.Rank() == 1)
+        {
+          stop.Ask();
+        }
+        is.Scene.Stop = &stop;
+        const std::vector<int> rankOf = piececases::Dealt(is.Mesh, Deal::Jagged, 3);
+        PieceStatistics statistics;
+        EXPECT_THROW(is.Together(communicator, rankOf, statistics), CollectiveError);
+        is.Scene.Stop = nullptr;
+        const FloatImage picture = is.Together(communicator, rankOf, statistics);
+        EXPECT_EQ(picture.Pixels.empty(), communicator.Rank() != 0);
+        communicator.Barrier();
+      });
+  }
 }
 
 } // namespace
