@@ -45,7 +45,7 @@ public:
 
   /// Adds a cell, and its faces at the border, if they can be seen.
   /// @param face the first one of this cell or a later one; goes to that of the next cell
-  void Place(std::uint32_t place, std::size_t& face, std::vector<PlacedCell>& placed)
+  void Place(std::uint32_t place, std::size_t& face, PlacedCells& placed)
   {
     const std::vector<BorderFace>& border = this->Cells.Border;
     const std::size_t first = face;
@@ -204,7 +204,7 @@ SeenCells::SeenCells(const RayScene& scene, const CellField& field, Kind kind,
   const DrawnCells& cells = *field.Cells;
   const std::size_t count = cells.Order.size();
   const std::size_t chunks = (count + CellsAtOnce - 1) / CellsAtOnce;
-  std::vector<std::vector<PlacedCell>> parts(chunks);
+  std::vector<PlacedCells> parts(chunks);
   pool.ParallelFor(static_cast<std::int64_t>(chunks),
     [&](std::int64_t chunk)
     {
@@ -214,7 +214,7 @@ SeenCells::SeenCells(const RayScene& scene, const CellField& field, Kind kind,
       const auto from = std::lower_bound(cells.Border.begin(), cells.Border.end(), begin,
         [](const BorderFace& face, std::size_t place) { return face.Cell < place; });
       auto face = static_cast<std::size_t>(from - cells.Border.begin());
-      std::vector<PlacedCell>& part = parts[static_cast<std::size_t>(chunk)];
+      PlacedCells& part = parts[static_cast<std::size_t>(chunk)];
       part.reserve(kind == Kind::All ? end - begin : 0);
       for (std::size_t place = begin; place < end; ++place)
       {
@@ -227,7 +227,7 @@ SeenCells::SeenCells(const RayScene& scene, const CellField& field, Kind kind,
       }
     });
   std::size_t all = 0;
-  for (const std::vector<PlacedCell>& part : parts)
+  for (const PlacedCells& part : parts)
   {
     all += part.size();
   }
@@ -235,7 +235,7 @@ SeenCells::SeenCells(const RayScene& scene, const CellField& field, Kind kind,
   this->Bounds.Low = glm::vec2(std::numeric_limits<float>::infinity());
   this->Bounds.High = -this->Bounds.Low;
   std::int64_t whole = 0;
-  for (std::vector<PlacedCell>& part : parts)
+  for (PlacedCells& part : parts)
   {
     for (const PlacedCell& placed : part)
     {
@@ -270,7 +270,7 @@ void CellBins::Sort(const TileGrid& grid, ThreadPool& pool)
 {
   // Chunks are counted first, so that each knows where its items begin.
   const std::size_t tiles = grid.Count();
-  const std::vector<PlacedCell>& all = this->Cells->Placed();
+  const PlacedCells& all = this->Cells->Placed();
   const std::size_t count = all.size();
   const auto chunks = static_cast<std::size_t>(
     std::min<std::int64_t>(16 * pool.Width(), static_cast<std::int64_t>(count / 1024 + 1)));

@@ -2,6 +2,7 @@
 #ifndef banyan_Render_Cells_CellBins_h
 #define banyan_Render_Cells_CellBins_h
 
+#include "Base/RecycledMemory.h"
 #include "Render/Cells/CellTile.h"
 #include "Render/Raycast/TileGrid.h"
 #include "Render/Scene/RayScene.h"
@@ -15,6 +16,9 @@ namespace banyan
 {
 
 class ThreadPool;
+
+/// One for each cell that is seen: as much memory again for the next camera.
+using PlacedCells = std::vector<PlacedCell, RecycledMemory<PlacedCell, LargeMemory::Smallest>>;
 
 /// The cells of a field that can be seen by a camera, with their places in its pictures: the same
 /// for pictures of any size and viewport, and for any distance between samples.
@@ -37,7 +41,7 @@ public:
   bool AreOf(const RayScene& scene, const VisibleValues* visible) const;
 
   /// In the global order of cells: each before its faces at the border.
-  const std::vector<PlacedCell>& Placed() const { return this->All; }
+  const PlacedCells& Placed() const { return this->All; }
   /// All of them together.
   const PlacedCell& Around() const { return this->Bounds; }
   /// Cells that cannot be seen, or are off screen.
@@ -51,7 +55,7 @@ private:
   glm::dmat4 IndexToWorld;
   std::shared_ptr<const VisibleValues> Visible;
 
-  std::vector<PlacedCell> All;
+  PlacedCells All;
   PlacedCell Bounds;
   std::int64_t NotSeen = 0;
 };
@@ -88,7 +92,7 @@ public:
 private:
   std::shared_ptr<const SeenCells> Cells;
   glm::vec2 Size;
-  std::vector<std::uint32_t> Items;
+  std::vector<std::uint32_t, RecycledMemory<std::uint32_t, LargeMemory::Smallest>> Items;
   std::vector<std::size_t> Begins; ///< of tiles, in Items
   PixelRect Touched;
   std::int64_t NotDrawn = 0;

@@ -45,6 +45,19 @@ RayScene Probe(const RayScene& scene, const glm::ivec2& size, double times, int 
   return probe;
 }
 
+TEST(SeenCells, PicturesTakeTheMemoryOfThoseBefore)
+{
+  const DrawnMesh drawn = BentCube();
+  ThreadPool pool(1);
+  LargeMemory::Trim();
+  CellSource source(drawn.Field, pool);
+  const FloatImage first = DrawnFrom(source, drawn.Scene, pool);
+  const std::size_t kept = LargeMemory::KeptBytes();
+  EXPECT_GT(kept, sizeof(SampleSlab) + sizeof(RayTile)) << "of a thread";
+  const FloatImage second = DrawnFrom(source, drawn.Scene, pool);
+  EXPECT_EQ(LargeMemory::KeptBytes(), kept);
+}
+
 TEST(SeenCells, AreLookedAtOnceForAllPicturesOfACamera)
 {
   const DrawnMesh drawn = BentCube();
