@@ -97,7 +97,7 @@ TEST_F(StridePlan, SmoothPicturesNeedFewRays)
   const auto samplesOf = [&](int stride)
   {
     const SamplingPlan plan =
-      PlanSamplings(drawer.Scene, { 64.0, drawer.Scene.SampleDistance, 2, 0, LeastCells, stride },
+      PlanSamplings(drawer.Scene, { 96.0, drawer.Scene.SampleDistance, 2, 0, LeastCells, stride },
         [&](const RayScene& probe) { return drawer.Cast(probe); });
     EXPECT_EQ(TilesWith(plan, 2) > 0, stride > 1);
     EXPECT_EQ(TilesWith(plan, stride + 1), 0);
