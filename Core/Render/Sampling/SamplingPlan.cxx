@@ -234,9 +234,10 @@ private:
       }
     }
     ProbeSequence pictures(this->Pictures);
+    // The finest level leaves all of it to distances.
     const Trial trial{ level,
       std::min(longest, std::ldexp(SamplingChoices::MostCellsPerStep * this->Wish.Distance, level)),
-      std::ldexp(this->Wish.Distance, -MostHalvings), 0.5 * this->Allowed };
+      std::ldexp(this->Wish.Distance, -MostHalvings), (level > 0 ? 0.5 : 1.0) * this->Allowed };
     this->Choices.Distances = this->DistancesOf(trial, pictures);
   }
 
