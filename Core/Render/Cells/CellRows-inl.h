@@ -157,29 +157,40 @@ private:
   /// rows that may be inside are looked for with it, and some slack.
   void Place()
   {
+    const TileRows& rows = this->Job.Rows;
     const double row = this->Job.FirstRow + MiddleRow;
-    bool any = false;
-    float farthest = 0.0f;
-    for (int slot = 0; slot < RayTile::Slots; ++slot)
+    int used = 0;
+    while (used < RayTile::Slots && rows.First[used] >= rows.End[used])
     {
-      const bool used = this->Job.Rows.First[slot] < this->Job.Rows.End[slot];
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        const double at =
-          this->Job.Rows.Zero[axis][slot] + row * this->Job.Rays.WholeStep[axis][slot];
-        if (used && !any)
-        {
-          this->Origin[axis] = at;
-        }
-        const float from =
-          used ? static_cast<float>((at - this->Origin[axis]) / (1 << FractionBits)) : 0.0f;
-        const float step = this->Job.Rows.Step[axis][slot];
-        this->At[axis][slot] = from;
-        farthest = std::max(farthest, used ? std::abs(from) + MiddleRow * std::abs(step) : 0.0f);
-      }
-      any = any || used;
+      ++used;
     }
-    this->Farthest = farthest;
+    for (int axis = 0; axis < 3 && used < RayTile::Slots; ++axis)
+    {
+      this->Origin[axis] = rows.Zero[axis][used] + row * this->Job.Rays.WholeStep[axis][used];
+    }
+    const D d;
+    const DI di;
+    constexpr int lanes = static_cast<int>(hn::MaxLanes(D()));
+    VF farthest = hn::Zero(d);
+    for (int slot = 0; slot < RayTile::Slots; slot += lanes)
+    {
+      const auto has =
+        hn::RebindMask(d, hn::Lt(hn::Load(di, rows.First + slot), hn::Load(di, rows.End + slot)));
+      const RayLanes rays = RaysAt(this->Job, slot, row, this->Origin);
+      const auto take = [&](int axis, VF at, VF step) HWY_ATTR
+      {
+        at = hn::IfThenElseZero(has, at);
+        hn::Store(at, d, this->At[axis] + slot);
+        const VF inSlab = hn::Mul(hn::Set(d, static_cast<float>(MiddleRow)), hn::Abs(step));
+        farthest = hn::Max(farthest, hn::IfThenElseZero(has, hn::Add(hn::Abs(at), inSlab)));
+      };
+      take(0, rays.At.X, rays.Step.X);
+      take(1, rays.At.Y, rays.Step.Y);
+      take(2, rays.At.Z, rays.Step.Z);
+    }
+    alignas(64) float ofLanes[lanes];
+    hn::Store(farthest, d, ofLanes);
+    this->Farthest = *std::max_element(ofLanes, ofLanes + lanes);
   }
 
   /// Narrows where low <= at + n * along <= high.
