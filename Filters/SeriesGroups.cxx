@@ -178,6 +178,17 @@ void SeriesGroups::Add(int step, const StepAgreement& now)
 /// Collective. Rank 0 writes points that are others than those of the step before.
 void SeriesGroups::WritePointsOf(int step, const StepAgreement& now)
 {
+  if (this->Options.Mesh && this->Options.Mesh->Index.OfCells)
+  {
+    const auto write = [&]
+    {
+      if (const auto points = this->Steps.Meshes().WriteMoved(step, *this->Folder))
+      {
+        this->Assembly->AddPoints(*points);
+      }
+    };
+    CollectiveOn(0, this->Ranks, write, NoMemoryForGroup);
+  }
   if (!this->Steps.Grids().Gather(now))
   {
     return;

@@ -57,7 +57,7 @@ public:
   /// This rank's piece of the step that was pulled last, as an image.
   vtkImageData* Mine() const;
 
-  const MeshSteps& Meshes() const { return this->Mesh; }
+  MeshSteps& Meshes() { return this->Mesh; }
   GridSteps& Grids() { return this->Grid; }
 
 private:

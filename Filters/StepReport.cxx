@@ -201,7 +201,7 @@ std::string OtherKind(vtkDataObject* data)
 {
   const std::string kinds =
     "A Banyan series is made from image data (a regular grid), from a rectilinear or curvilinear "
-    "grid, or from an unstructured grid of hexahedra, and the input is ";
+    "grid, or from an unstructured grid, and the input is ";
   if (!data)
   {
     return kinds + "nothing: see what its source says.";

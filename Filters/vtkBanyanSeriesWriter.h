@@ -19,9 +19,10 @@
  * vtkStructuredGrid and vtkRectilinearGrid are written as images are, with their points bit by bit:
  * once, and again at each step where they are others. Points must be finite unless they are hidden.
  *
- * Unstructured grids (alone or as the only block of composite data) whose cells are hexahedra that
- * are the leaves of an octree are written as meshes: see Documentation/hexahedra.md. Rank 0 gathers
- * them. Global and pedigree ids are not written.
+ * Unstructured grids, alone or as blocks that become one, are written as meshes: with the octree
+ * whose leaves their cells are (see Documentation/hexahedra.md), else as cells of any type (see
+ * Documentation/any-mesh.md), whose points are written again at each step where they are others.
+ * Rank 0 gathers them. Global and pedigree ids are not written.
  *
  * @par Exactness:
  * |decoded - original| <= error bound for each finite value, verified in the array's type; NaN,

@@ -5,6 +5,7 @@
 #include "GhostCells.h"
 #include "PieceArrays.h"
 #include "PieceItems.h"
+#include "SetCells.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -194,16 +195,46 @@ private:
 
   void MakeCells(vtkUnstructuredGrid* grid) const
   {
-    grid->Allocate(static_cast<vtkIdType>(this->Cells.size()));
+    vtkNew<vtkCellArray> cells;
+    vtkNew<vtkUnsignedCharArray> types;
     vtkNew<vtkIdList> ids;
+    FaceStreams faces;
     for (const PieceItem& cell : this->Cells)
     {
-      this->Pieces[cell.Piece]->GetCells()->GetCellAtId(cell.Id, ids);
+      vtkUnstructuredGrid* const piece = this->Pieces[cell.Piece];
+      piece->GetCells()->GetCellAtId(cell.Id, ids);
       for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
       {
         ids->SetId(i, this->Merged[cell.Piece][static_cast<std::size_t>(ids->GetId(i))]);
       }
-      grid->InsertNextCell(this->Pieces[cell.Piece]->GetCellType(cell.Id), ids);
+      cells->InsertNextCell(ids);
+      types->InsertNextValue(static_cast<unsigned char>(piece->GetCellType(cell.Id)));
+      if (piece->GetCellType(cell.Id) == VTK_POLYHEDRON)
+      {
+        this->AddFaces(cell, faces);
+      }
+    }
+    SetCells(grid, types, cells, faces);
+  }
+
+  /// The faces of a polyhedron, with the numbers that its points have now.
+  void AddFaces(const PieceItem& cell, FaceStreams& faces) const
+  {
+    vtkNew<vtkIdList> stream;
+    this->Pieces[cell.Piece]->GetFaceStream(cell.Id, stream);
+    const std::vector<vtkIdType>& merged = this->Merged[cell.Piece];
+    const vtkIdType count = stream->GetNumberOfIds();
+    faces.push_back(count > 0 ? stream->GetId(0) : 0);
+    for (vtkIdType at = 1; at < count;)
+    {
+      const vtkIdType corners = stream->GetId(at++);
+      faces.push_back(corners);
+      for (vtkIdType i = 0; i < corners && at < count; ++i, ++at)
+      {
+        const vtkIdType id = stream->GetId(at);
+        const bool known = id >= 0 && id < static_cast<vtkIdType>(merged.size());
+        faces.push_back(known ? merged[static_cast<std::size_t>(id)] : -1);
+      }
     }
   }
 

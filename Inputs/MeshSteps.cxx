@@ -2,15 +2,16 @@
 #include "MeshSteps.h"
 
 #include "CellArrays.h"
+#include "CellsOfGrid.h"
 #include "GhostCells.h"
 #include "HexMeshOfGrid.h"
 #include "LeafSteps.h"
 #include "MeshPieces.h"
+#include "MeshPlanTexts.h"
 #include "PieceValues.h"
 #include "RankMessages.h"
 #include "RestPoints.h"
 
-#include "vtkCellArray.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
@@ -21,12 +22,11 @@
 
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
-#include "Base/Varint.h"
+#include "Mesh/CellSeries/CellsFile.h"
 #include "Mesh/Series/AtlasValues.h"
 #include "Mesh/Series/MeshFile.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Communicate/Communicator.h"
-#include "Series/Format/Zstd.h"
 
 #include <cstring>
 #include <vector>
@@ -36,103 +36,22 @@ namespace banyan
 namespace
 {
 
-bool SameValues(vtkDataArray* a, vtkDataArray* b)
-{
-  if (a == b)
-  {
-    return true;
-  }
-  return a && b && a->GetDataType() == b->GetDataType() &&
-         a->GetNumberOfValues() == b->GetNumberOfValues() &&
-         std::memcmp(a->GetVoidPointer(0), b->GetVoidPointer(0),
-           static_cast<std::size_t>(a->GetNumberOfValues()) * a->GetDataTypeSize()) == 0;
-}
-
 /// Says what changed between the meshes of two steps, or nothing.
-std::string ChangeOf(
-  vtkUnstructuredGrid* before, vtkUnstructuredGrid* now, const std::string& displacements)
+/// @param move whether points may be others
+std::string ChangeOf(vtkUnstructuredGrid* before, vtkUnstructuredGrid* now,
+  const std::string& displacements, bool move)
 {
-  if (before->GetNumberOfCells() != now->GetNumberOfCells() ||
-      before->GetNumberOfPoints() != now->GetNumberOfPoints())
+  std::string change = ChangeOfCells(before, now);
+  if (change.empty() && TypeOfPoints(before) != TypeOfPoints(now))
   {
-    return "it had " + std::to_string(before->GetNumberOfCells()) + " cells and " +
-           std::to_string(before->GetNumberOfPoints()) + " points, and has " +
-           std::to_string(now->GetNumberOfCells()) + " and " +
-           std::to_string(now->GetNumberOfPoints());
+    return "points are of another type";
   }
-  const std::string moved = HowPointsMoved(before, now, displacements);
-  if (!moved.empty())
-  {
-    return moved;
-  }
-  if (!SameValues(
-        before->GetCells()->GetConnectivityArray(), now->GetCells()->GetConnectivityArray()) ||
-      !SameValues(CellTypesOf(before), CellTypesOf(now)))
-  {
-    return "cells have other points or types";
-  }
-  return {};
+  return !change.empty() || move ? change : HowPointsMoved(before, now, displacements);
 }
 
 std::string KindOf(const std::string& cellArray)
 {
   return cellArray.empty() ? "a point array" : "the cell array " + cellArray;
-}
-
-std::shared_ptr<const std::vector<std::uint8_t>> Unpacked(
-  const std::string& packed, std::uint64_t samples)
-{
-  auto mask = std::make_shared<std::vector<std::uint8_t>>(samples);
-  Decompress(reinterpret_cast<const std::uint8_t*>(packed.data()), packed.size(), mask->data(),
-    mask->size());
-  return mask;
-}
-
-/// A plan as texts, to be sent.
-std::vector<std::string> TextsOf(const MeshPlan& plan)
-{
-  const MeshIndex& index = plan.Index;
-  Bytes numbers, needed, ofCells;
-  for (const std::uint64_t number :
-    { index.Bytes, index.HashLow, index.HashHigh, static_cast<std::uint64_t>(index.Points),
-      static_cast<std::uint64_t>(index.Cells), std::uint64_t{ plan.Needed->size() } })
-  {
-    PutVarint(numbers, number);
-  }
-  AppendCompressed(plan.Needed->data(), plan.Needed->size(), 1, needed);
-  AppendCompressed(plan.NeededOfCells->data(), plan.NeededOfCells->size(), 1, ofCells);
-  std::vector<std::string> texts = { index.File };
-  for (const Bytes& bytes : { numbers, needed, ofCells })
-  {
-    texts.emplace_back(bytes.begin(), bytes.end());
-  }
-  for (const auto& array : plan.CellArrays)
-  {
-    texts.insert(texts.end(), { array.first, array.second });
-  }
-  return texts;
-}
-
-/// The inverse of TextsOf.
-std::shared_ptr<const MeshPlan> PlanFrom(const std::vector<std::string>& texts)
-{
-  auto plan = std::make_shared<MeshPlan>();
-  const auto* bytes = reinterpret_cast<const std::uint8_t*>(texts[1].data());
-  ByteReader reader(bytes, texts[1].size());
-  plan->Index.File = texts[0];
-  plan->Index.Bytes = reader.Varint();
-  plan->Index.HashLow = reader.Varint();
-  plan->Index.HashHigh = reader.Varint();
-  plan->Index.Points = static_cast<std::int64_t>(reader.Varint());
-  plan->Index.Cells = static_cast<std::int64_t>(reader.Varint());
-  const std::uint64_t samples = reader.Varint();
-  plan->Needed = Unpacked(texts[2], samples);
-  plan->NeededOfCells = Unpacked(texts[3], samples);
-  for (std::size_t i = 4; i + 1 < texts.size(); i += 2)
-  {
-    plan->CellArrays[texts[i]] = texts[i + 1];
-  }
-  return plan;
 }
 
 /// What ranks have of a step. Plain memory: it is sent as it is.
@@ -156,6 +75,11 @@ Parts PartsOfRanks(Communicator& ranks, const Parts& mine)
     some.CellsOfOthers |= theirs.CellsOfOthers;
   }
   return some;
+}
+
+Hash128 HashOfPoints(const Bytes& points)
+{
+  return HashOf(points.data(), points.size());
 }
 
 constexpr const char* NoMemoryForMesh = "There is not enough memory for the mesh and its values.";
@@ -185,8 +109,10 @@ void MeshSteps::Take(vtkSmartPointer<vtkDataObject>& data, const std::string& pr
   {
     if (!mine.Mesh && data && data->GetNumberOfElements(vtkDataObject::CELL) > 0)
     {
-      throw Error(std::string("Other ranks have a mesh of hexahedra, and this one has ") +
-                  data->GetClassName() + " with other cells");
+      throw Error(
+        std::string("Other ranks have a mesh of cells (vtkUnstructuredGrid), and this one "
+                    "has ") +
+        data->GetClassName());
     }
     this->LookAt(grids);
     piece = this->Merged(grids);
@@ -258,13 +184,15 @@ vtkSmartPointer<vtkUnstructuredGrid> MeshSteps::MergedOfRanks(
 
 void MeshSteps::Remember(vtkUnstructuredGrid* grid)
 {
-  if (this->Mesh)
+  if (this->First)
   {
-    const std::string change = ChangeOf(this->First, grid, this->Displacements);
+    const bool move = this->Cells && this->Displacements.empty();
+    const std::string change = ChangeOf(this->First, grid, this->Displacements, move);
     if (!change.empty())
     {
       throw Error("The mesh of a series must not change, and " + change + ".");
     }
+    this->Now = move ? grid : nullptr;
     if (this->Tree)
     {
       MakeNodal(*this->Tree, grid, this->Arrays.WantedPoints(this->Leaves));
@@ -277,19 +205,21 @@ void MeshSteps::Remember(vtkUnstructuredGrid* grid)
   {
     tree = ElementOctree::Find(HexMeshOf(grid), pool);
   }
-  catch (const Error& error)
+  catch (const Error&)
   {
-    if (!CanBeSampled(grid))
+    if (this->Leaves || grid->GetNumberOfCells() == 0)
     {
       throw;
     }
-    std::string reason = error.what();
-    reason.erase(reason.find_last_not_of('.') + 1);
-    throw Error(reason +
-                ". A mesh of general hexahedra can be written as the boxes that it is sampled at: "
-                "see 'Sample General Meshes' of the filter 'Banyan Hex Octree'");
   }
-  this->Mesh = StoreMesh(*tree, PlainCellTypesOf(grid)->GetPointer(0));
+  if (tree)
+  {
+    this->Mesh = StoreMesh(*tree, PlainCellTypesOf(grid)->GetPointer(0));
+  }
+  else
+  {
+    this->Cells = this->CellsOf(grid);
+  }
   this->First = vtkSmartPointer<vtkUnstructuredGrid>::New();
   this->First->CopyStructure(grid);
   if (this->Leaves)
@@ -299,12 +229,42 @@ void MeshSteps::Remember(vtkUnstructuredGrid* grid)
   }
 }
 
+/// A mesh that is no octree, with an image for the values that are there.
+std::shared_ptr<const StoredCells> MeshSteps::CellsOf(vtkUnstructuredGrid* grid) const
+{
+  std::string warning;
+  StoredValues values{ false, false };
+  for (const MeshArray& array : this->Arrays.Of(grid, false, warning))
+  {
+    (array.CellArray.empty() ? values.AtPoints : values.InCells) = true;
+  }
+  return StoreCells(CellsOfGrid(grid), values);
+}
+
+std::optional<PointsFile> MeshSteps::WriteMoved(int step, SegmentFolder& folder)
+{
+  if (!this->Cells || !this->Now)
+  {
+    return std::nullopt;
+  }
+  const Bytes points = PointsOfGrid(this->Now, this->Cells->PointType);
+  const Hash128 hash = HashOfPoints(points);
+  if (hash == this->LastPoints)
+  {
+    return std::nullopt;
+  }
+  this->LastPoints = hash;
+  return WriteMovedPoints(*this->Cells, points.data(), step, folder);
+}
+
 vtkSmartPointer<vtkImageData> MeshSteps::ImageOf(vtkUnstructuredGrid* grid)
 {
-  const AtlasValues atPoints(this->Mesh);
-  const AtlasValues ofCells(this->Mesh, MeshValues::OfCells);
+  const auto values = [this](MeshValues where)
+  { return this->Cells ? AtlasValues(this->Cells, where) : AtlasValues(this->Mesh, where); };
+  const AtlasValues atPoints = values(MeshValues::OfPoints);
+  const AtlasValues ofCells = values(MeshValues::OfCells);
   const auto image = vtkSmartPointer<vtkImageData>::New();
-  const glm::ivec3 size = this->Mesh->Atlas->Samples();
+  const glm::ivec3 size = this->Cells ? this->Cells->Samples() : this->Mesh->Atlas->Samples();
   image->SetDimensions(size.x, size.y, size.z);
   ThreadPool pool(ThreadPool::DefaultWidth());
   this->LeftOut.clear();
@@ -341,13 +301,15 @@ vtkSmartPointer<vtkImageData> MeshSteps::ImageOf(vtkUnstructuredGrid* grid)
   return image;
 }
 
-std::shared_ptr<const MeshPlan> MeshSteps::Write(SegmentFolder* folder) const
+std::shared_ptr<const MeshPlan> MeshSteps::Write(SegmentFolder* folder)
 {
   std::shared_ptr<const MeshPlan> plan;
   std::vector<std::string> texts;
   const auto write = [&]
   {
-    const std::shared_ptr<MeshPlan> made = WriteMesh(*this->Mesh, *folder);
+    const std::shared_ptr<MeshPlan> made =
+      this->Cells ? WriteCells(*this->Cells, *folder) : WriteMesh(*this->Mesh, *folder);
+    this->LastPoints = this->Cells ? HashOfPoints(this->Cells->Points) : Hash128{};
     made->CellArrays = this->CellArrays;
     plan = made;
     texts = this->Ranks.Size() > 1 ? TextsOf(*plan) : texts;

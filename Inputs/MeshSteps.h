@@ -6,6 +6,8 @@
 
 #include "MeshArrays.h"
 
+#include "Base/Hash.h"
+#include "Mesh/CellSeries/StoredCells.h"
 #include "Mesh/Series/StoredMesh.h"
 #include "Series/Encode/SeriesEncoder.h"
 
@@ -13,6 +15,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,7 +40,8 @@ class SegmentFolder;
 /// Hyper trees and AMR are meshes of their leaves, with their data made nodal (see MakeNodal).
 ///
 /// The octree is found once, at the first step; the mesh of later steps must be the same, apart
-/// from displacements that it carries and that are named.
+/// from displacements that it carries and that are named. A mesh that is no octree is kept as it is
+/// (see StoredCells), and its points may move.
 class BANYANINPUTS_EXPORT MeshSteps
 {
 public:
@@ -67,7 +71,11 @@ public:
   /// Collective; throws CollectiveError. Rank 0 writes the file of the mesh, and all ranks learn
   /// what encoding must know of it.
   /// @param folder on rank 0
-  std::shared_ptr<const MeshPlan> Write(SegmentFolder* folder) const;
+  std::shared_ptr<const MeshPlan> Write(SegmentFolder* folder);
+
+  /// On rank 0, after Write(): writes the points of the step that was taken last, where they are
+  /// others than those that were written last. Throws Error.
+  std::optional<PointsFile> WriteMoved(int step, SegmentFolder& folder);
 
 private:
   void LookAt(const std::vector<vtkUnstructuredGrid*>& grids);
@@ -75,6 +83,7 @@ private:
   vtkSmartPointer<vtkUnstructuredGrid> MergedOfRanks(
     vtkUnstructuredGrid* mine, const std::vector<vtkSmartPointer<vtkDataObject>>& all) const;
   void Remember(vtkUnstructuredGrid* grid);
+  std::shared_ptr<const StoredCells> CellsOf(vtkUnstructuredGrid* grid) const;
   vtkSmartPointer<vtkImageData> ImageOf(vtkUnstructuredGrid* grid);
 
   Communicator& Ranks;
@@ -87,7 +96,10 @@ private:
   std::string HiddenParts;              ///< a sentence, if any are hidden
   // On rank 0:
   vtkSmartPointer<vtkUnstructuredGrid> First; ///< the grid of the first step
-  std::shared_ptr<const StoredMesh> Mesh;
+  vtkSmartPointer<vtkUnstructuredGrid> Now; ///< the one taken last, where its points may have moved
+  std::shared_ptr<const StoredMesh> Mesh;   ///< an octree, or
+  std::shared_ptr<const StoredCells> Cells; ///< any other mesh
+  Hash128 LastPoints;                       ///< those that were written last
   std::map<std::string, std::string> CellArrays; ///< as MeshPlan has them
   /// Says for each array so far, by name, which cell array it is; empty for arrays of points. It is
   /// kept from the first step on.

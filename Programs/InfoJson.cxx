@@ -195,7 +195,8 @@ std::string InfoToJson(const SeriesReport& report, const DecodeTimes* times)
   if (index.Mesh)
   {
     json["mesh"] = { { "points", index.Mesh->Points }, { "cells", index.Mesh->Cells },
-      { "bytes", index.Mesh->Bytes } };
+      { "bytes", index.Mesh->Bytes }, { "kind", index.Mesh->OfCells ? "cells" : "octree" },
+      { "movedFiles", index.Mesh->Moved.size() }, { "movedBytes", BytesOfPoints(index) } };
   }
   if (index.Points)
   {

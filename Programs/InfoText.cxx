@@ -56,7 +56,14 @@ std::string Heading(const SeriesReport& report)
   }
   if (index.Mesh)
   {
-    text += "  the mesh: " + Megabytes(index.Mesh->Bytes) + "; its values: images of " + samples;
+    text += std::string("  the mesh, ") +
+            (index.Mesh->OfCells ? "of cells of any type: " : "an octree: ") +
+            Megabytes(index.Mesh->Bytes) + "; its values: images of " + samples;
+    if (!index.Mesh->Moved.empty())
+    {
+      text += "; moved points: " + Megabytes(BytesOfPoints(index)) + ", new at " +
+              Counted(index.Mesh->Moved.size(), "step");
+    }
   }
   for (int axis = 0; !index.Mesh && axis < 3; ++axis)
   {
@@ -125,8 +132,8 @@ std::string Size(const SeriesReport& report)
          Megabytes(report.SegmentBytes - report.Index.Statistics.PayloadBytes) + ", index " +
          Megabytes(report.IndexBytes) +
          (report.Index.Mesh ? ", mesh " + Megabytes(report.Index.Mesh->Bytes) : std::string()) +
-         (report.Index.Points ? ", points " + Megabytes(BytesOfPoints(report.Index))
-                              : std::string()) +
+         (BytesOfPoints(report.Index) > 0 ? ", points " + Megabytes(BytesOfPoints(report.Index))
+                                          : std::string()) +
          "\n" + Repeated(report.Index.Statistics) + Chains(report.Index.Statistics);
 }
 

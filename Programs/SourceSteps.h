@@ -37,7 +37,16 @@ struct SourceMesh
 {
   std::int64_t Cells = 0;
   int Coordinates = -1; ///< x, y, z of each point
-  int Corners = -1;     ///< eight points (int64) of each cell, in the order that its type has
+  int Corners = -1;     ///< points (int64) of all cells, in the order that their types have
+  int Offsets = -1;     ///< (int64) where those of each cell begin among them, and the end
+  int Types = -1;       ///< (uint8) VTK's numbers
+  int Faces = -1;       ///< (int64) of polyhedra, as StoredCells has them; may be missing
+
+  bool Has(int array) const
+  {
+    return array == this->Coordinates || array == this->Corners || array == this->Offsets ||
+           array == this->Types || array == this->Faces;
+  }
 };
 
 /// Says which arrays of a source are the points of its grid.
@@ -64,9 +73,7 @@ struct SourceStep
   bool IsValue(std::size_t array) const
   {
     const int number = static_cast<int>(array);
-    const bool ofMesh =
-      this->Mesh && (number == this->Mesh->Coordinates || number == this->Mesh->Corners);
-    return !ofMesh && this->AxisOf(array) < 0;
+    return !(this->Mesh && this->Mesh->Has(number)) && this->AxisOf(array) < 0;
   }
   /// The place of an array in SourcePoints::Arrays, or -1.
   int AxisOf(std::size_t array) const

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace banyan
 {
@@ -87,6 +88,31 @@ void TakePoints(const std::string& role, SourceStep& step)
   }
 }
 
+/// Takes the last array as a part of the mesh, if that is its role.
+void TakePartOfMesh(const Json& array, const std::string& role, SourceStep& step)
+{
+  if (!step.Mesh)
+  {
+    return;
+  }
+  SourceMesh& mesh = *step.Mesh;
+  const std::pair<const char*, int*> parts[] = { { "coordinates", &mesh.Coordinates },
+    { "corners", &mesh.Corners }, { "offsets", &mesh.Offsets }, { "types", &mesh.Types },
+    { "faces", &mesh.Faces } };
+  for (const auto& [name, number] : parts)
+  {
+    if (role == name)
+    {
+      *number = static_cast<int>(step.Arrays.size()) - 1;
+      step.Arrays.back().Tuples = array.at("tuples").get<std::int64_t>();
+      if (step.Arrays.back().Tuples < 1)
+      {
+        throw Error("The source has a mesh without " + role);
+      }
+    }
+  }
+}
+
 SourceStep StepFrom(const Json& json)
 {
   SourceStep step;
@@ -120,18 +146,10 @@ SourceStep StepFrom(const Json& json)
       ScalarTypeFromName(array.at("type").get<std::string>()), components });
     const std::string role = array.value("role", "");
     TakePoints(role, step);
-    if (step.Mesh && role == "coordinates")
-    {
-      step.Mesh->Coordinates = static_cast<int>(step.Arrays.size()) - 1;
-    }
+    TakePartOfMesh(array, role, step);
     if (step.Mesh && role == "cells")
     {
       step.Arrays.back().OfCells = true;
-      step.Arrays.back().Tuples = step.Mesh->Cells;
-    }
-    if (step.Mesh && role == "corners")
-    {
-      step.Mesh->Corners = static_cast<int>(step.Arrays.size()) - 1;
       step.Arrays.back().Tuples = step.Mesh->Cells;
     }
   }

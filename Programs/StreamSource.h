@@ -19,7 +19,9 @@ namespace banyan
 ///      "arrays": [{"name": "pressure", "type": "float32", "components": 1}]}
 ///
 /// Points of a grid that is not regular are arrays, too, with a "role": "points", or "along x",
-/// "along y" and "along z". They come before all other arrays.
+/// "along y" and "along z". They come before all other arrays. So do the parts of a mesh:
+/// "coordinates", "corners", "offsets", "types" and "faces", as SourceMesh has them, with their
+/// number of "tuples".
 ///
 /// (in one line; extent and direction as in VTK; "time" may be null). Values are little-endian,
 /// `[z][y][x][component]`. The last line is {"end": true}; or {"error": "A sentence."} when the

@@ -2,12 +2,12 @@
 #include "Verification.h"
 
 #include "Agreement.h"
+#include "VerifiedMesh.h"
+
 #include "Base/Bytes.h"
 #include "Base/Error.h"
 #include "Base/ThreadPool.h"
 #include "Cache/BrickCache.h"
-#include "Mesh/Series/AtlasValues.h"
-#include "Mesh/Series/MeshFile.h"
 #include "Series/Points/PointsReader.h"
 #include "Series/Quantize/FillValues.h"
 
@@ -18,6 +18,7 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
+#include <optional>
 
 namespace banyan
 {
@@ -83,7 +84,7 @@ public:
     const SeriesIndex& index = series.Index();
     if (index.Mesh)
     {
-      this->Mesh = ReadMesh(series);
+      this->Mesh.emplace(series);
     }
     this->Result.Times = index.Times;
     for (const int array : ChosenArrays(index, choice.Arrays))
@@ -140,6 +141,10 @@ private:
   void CompareStep(int number, const SourceStep& step)
   {
     this->Hidden.clear();
+    if (this->Mesh)
+    {
+      this->Mesh->CheckParts(number, *step.Mesh);
+    }
     this->CompareMissingFlags(number, step);
     std::vector<std::uint8_t> original;
     for (std::size_t a = 0; a < step.Arrays.size(); ++a)
@@ -152,8 +157,7 @@ private:
           this->ComparePoints(number, step.Arrays[a], step.AxisOf(a), original);
           continue;
         }
-        this->CompareMesh(
-          number, step.Arrays[a], static_cast<int>(a) == step.Mesh->Corners, original);
+        this->Mesh->Compare(number, *step.Mesh, static_cast<int>(a), step.Arrays[a].Type, original);
         continue;
       }
       bool read = false;
@@ -191,24 +195,6 @@ private:
         this->CompareComponent(
           number, c, std::vector<std::uint8_t>(static_cast<std::size_t>(this->Whole.Count()), 0));
       }
-    }
-  }
-
-  /// Points and cells must be the same bits in the same order.
-  void CompareMesh(int number, const SourceArray& array, bool corners,
-    const std::vector<std::uint8_t>& original) const
-  {
-    const void* const mine = corners ? static_cast<const void*>(this->Mesh->Connectivity.data())
-                                     : this->Mesh->Points.data();
-    const std::size_t bytes =
-      corners ? 8 * this->Mesh->Connectivity.size() : this->Mesh->Points.size();
-    const ScalarType type = corners ? ScalarType::Int64 : this->Mesh->PointType;
-    if (array.Type != type || original.size() != bytes ||
-        std::memcmp(original.data(), mine, bytes) != 0)
-    {
-      throw Error("At step " + std::to_string(number) + " the " +
-                  (corners ? "corners of cells" : "coordinates of points") +
-                  " of the source differ from the series.");
     }
   }
 
@@ -257,12 +243,8 @@ private:
     std::int64_t count = this->Whole.Count();
     if (this->Mesh)
     {
-      const bool points = array.CellArray.empty();
-      count = points ? this->Mesh->PointCount() : this->Mesh->CellCount();
-      std::vector<std::uint8_t> values(static_cast<std::size_t>(count) * size);
-      AtlasValues(this->Mesh, points ? MeshValues::OfPoints : MeshValues::OfCells)
-        .FromImage(array.Type, this->Decoded.data(), 1, values.data());
-      this->Decoded = std::move(values);
+      this->Decoded = this->Mesh->ValuesOf(array, this->Decoded);
+      count = static_cast<std::int64_t>(this->Decoded.size() / size);
     }
     const std::uint8_t* first =
       original.data() + static_cast<std::size_t>(component.Component) * size;
@@ -343,7 +325,7 @@ private:
   SourceSteps& Source;
   const VerificationChoice& Choice;
   Box Whole;
-  std::shared_ptr<const StoredMesh> Mesh; ///< null: the series is of images
+  std::optional<VerifiedMesh> Mesh;       ///< nothing: the series is of images
   std::vector<OpacityFunction> Opacities; ///< one per component of the result
   std::vector<std::uint8_t> Decoded;
   std::vector<std::uint8_t> Hidden; ///< of the source at the step under way; empty: none is

@@ -16,6 +16,7 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
+#include "Base/Error.h"
 #include "Cache/BrickCache.h"
 #include "Mesh/Series/MeanOfLeaves.h"
 #include "Mesh/Series/MeshFile.h"
@@ -74,6 +75,7 @@ void MeshOutput::Open(std::shared_ptr<const SeriesFile> series)
   this->Mesh.reset();
   this->Grid = nullptr;
   this->Trees.Forget();
+  this->Cells.Forget();
   this->Made[0] = -1;
 }
 
@@ -87,8 +89,7 @@ void MeshOutput::Fill(const StepRequest& request, bool readAhead, vtkDataObject*
   }
   else
   {
-    this->FillGrid(
-      request.Level, request.Piece, request.Pieces, vtkUnstructuredGrid::SafeDownCast(output));
+    this->FillGrid(request, vtkUnstructuredGrid::SafeDownCast(output));
   }
   output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), request.Time);
   vtkBanyanDeferred::Handle handle;
@@ -135,6 +136,11 @@ void MeshOutput::Fill(const StepRequest& request, bool readAhead, vtkDataObject*
 
 void MeshOutput::FillTrees(int level, int piece, int pieces, vtkHyperTreeGrid* output)
 {
+  if (this->OfCells())
+  {
+    throw Error("The mesh of the series is no octree, so that it cannot become a hyper tree grid: "
+                "switch 'Mesh As Hyper Tree Grid' off");
+  }
   this->Load();
   level = std::min(level, this->Mesh->Atlas->CoarsestLevel());
   this->Trees.FillTrees(this->Mesh, level, piece, pieces, output);
@@ -148,8 +154,17 @@ void MeshOutput::Load()
   }
 }
 
+bool MeshOutput::OfCells() const
+{
+  return this->Series->Index().Mesh->OfCells;
+}
+
 int MeshOutput::Levels()
 {
+  if (this->OfCells())
+  {
+    return 1;
+  }
   this->Load();
   return this->Mesh->Atlas->CoarsestLevel() + 1;
 }
@@ -231,7 +246,19 @@ void MeshOutput::MakeGrid(int level, int piece, int pieces)
   this->Grid->SetCells(types, CellsOf(corners, place, first, end));
 }
 
-void MeshOutput::FillGrid(int level, int piece, int pieces, vtkUnstructuredGrid* output)
+void MeshOutput::FillGrid(const StepRequest& request, vtkUnstructuredGrid* output)
+{
+  if (!this->OfCells())
+  {
+    this->FillOctree(request.Level, request.Piece, request.Pieces, output);
+    return;
+  }
+  this->Cells.Fill(request, output);
+  this->PointSamples = this->Cells.PointSamples();
+  this->CellSamples = this->Cells.CellSamples();
+}
+
+void MeshOutput::FillOctree(int level, int piece, int pieces, vtkUnstructuredGrid* output)
 {
   this->Load();
   level = std::min(level, this->Mesh->Atlas->CoarsestLevel());

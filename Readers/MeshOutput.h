@@ -2,6 +2,7 @@
 #ifndef banyan_Readers_MeshOutput_h
 #define banyan_Readers_MeshOutput_h
 
+#include "CellsOutput.h"
 #include "MeshStepAhead.h"
 #include "StepRequest.h"
 #include "TreeOutput.h"
@@ -43,7 +44,9 @@ public:
 private:
   /// Points and cells of a piece: a run of the cells, with the points that they use in the order of
   /// the mesh. One piece has all points. Throws Error.
-  void FillGrid(int level, int piece, int pieces, vtkUnstructuredGrid* output);
+  void FillGrid(const StepRequest& request, vtkUnstructuredGrid* output);
+  void FillOctree(int level, int piece, int pieces, vtkUnstructuredGrid* output);
+  bool OfCells() const;
 
   /// The values of an array at the points of the last FillGrid(), or in its cells: at a coarser
   /// level the mean of those that were merged (see MeanOfLeaves). Throws Error.
@@ -69,6 +72,7 @@ private:
   std::shared_ptr<const StoredMesh> Mesh;
   vtkSmartPointer<vtkUnstructuredGrid> Grid;
   TreeOutput Trees;
+  CellsOutput Cells; ///< of a mesh of cells of any type, in place of Mesh and Grid
   MeshStepAhead Ahead;
   int Made[3] = { -1, 0, 0 };        ///< level, piece and pieces of Grid
   ChosenSamples PointSamples;        ///< of its points

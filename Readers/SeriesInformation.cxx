@@ -280,8 +280,8 @@ std::string SummaryOf(const SeriesIndex& index)
   {
     text << (index.Points->Form.Kind == GridKind::Curvilinear ? " of a curvilinear grid"
                                                               : " of a rectilinear grid");
-    encoded += static_cast<double>(BytesOfPoints(index));
   }
+  encoded += static_cast<double>(BytesOfPoints(index));
   for (const SegmentIndex& segment : index.Segments)
   {
     encoded += static_cast<double>(segment.Bytes);

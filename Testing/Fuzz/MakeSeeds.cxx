@@ -4,6 +4,7 @@
 
 #include "Base/ThreadPool.h"
 #include "Base/Varint.h"
+#include "Mesh/CellSeries/StoredCells.h"
 #include "Mesh/Series/StoredMesh.h"
 #include "Series/Format/Exceptions.h"
 #include "Series/Format/GroupFormat.h"
@@ -46,7 +47,7 @@ void CopyGolden(const std::filesystem::path& golden, const std::filesystem::path
   }
 }
 
-/// The sections of the file of a mesh without compression, as FuzzMesh takes them.
+/// The sections of the file of a mesh without compression, as FuzzMesh and FuzzCells take them.
 Bytes SectionsOf(const Bytes& file)
 {
   Bytes input;
@@ -110,6 +111,33 @@ Bytes SmallMesh(bool shared)
   return banyan::MeshToBytes(*banyan::StoreMesh(*banyan::ElementOctree::Find(mesh, pool), nullptr));
 }
 
+/// A hexahedron, a tetrahedron, a cell without points and a polyhedron that share points, or the
+/// first one alone, with coordinates of double.
+Bytes SmallCells(bool mixed)
+{
+  banyan::StoredCells cells;
+  cells.PointType = mixed ? banyan::ScalarType::Float32 : banyan::ScalarType::Float64;
+  for (int i = 0; i < 3 * 9; ++i)
+  {
+    const double at = 0.5 * (i / 3 >> i % 3 & 1) + 0.01 * i;
+    const std::size_t end = cells.Points.size();
+    cells.Points.resize(end + SizeOf(cells.PointType));
+    mixed ? banyan::StoreNumber(cells.Points.data() + end, static_cast<float>(at))
+          : banyan::StoreNumber(cells.Points.data() + end, at);
+  }
+  cells.Types = { 12 };
+  cells.Offsets = { 0, 8 };
+  cells.Connectivity = { 0, 1, 3, 2, 4, 5, 7, 6 };
+  if (mixed)
+  {
+    cells.Types.insert(cells.Types.end(), { 10, 0, banyan::PolyhedronType });
+    cells.Offsets.insert(cells.Offsets.end(), { 12, 12, 16 });
+    cells.Connectivity.insert(cells.Connectivity.end(), { 7, 6, 5, 8, 0, 1, 2, 4 });
+    cells.Faces = { 4, 3, 0, 1, 2, 3, 0, 4, 1, 3, 1, 4, 2, 3, 2, 4, 8 };
+  }
+  return banyan::CellsToBytes(*banyan::StoreCells(std::move(cells), {}));
+}
+
 } // namespace
 
 /// Writes the seeds of Testing/Fuzz/Seeds: MakeSeeds FOLDER. With a second folder, of golden files,
@@ -125,7 +153,7 @@ int main(int argc, char** argv)
   const fs::path folder = argv[1];
   const fs::path scratch = folder / "scratch";
   for (const fs::path& part : { folder / "Group", folder / "Exceptions", folder / "Index",
-         folder / "Block", folder / "Mesh", scratch })
+         folder / "Block", folder / "Mesh", folder / "Cells", scratch })
   {
     fs::create_directories(part);
   }
@@ -166,6 +194,8 @@ int main(int argc, char** argv)
   }
   Write((folder / "Mesh" / "shared").string(), SectionsOf(SmallMesh(true)));
   Write((folder / "Mesh" / "own").string(), SectionsOf(SmallMesh(false)));
+  Write((folder / "Cells" / "mixed").string(), SectionsOf(SmallCells(true)));
+  Write((folder / "Cells" / "single").string(), SectionsOf(SmallCells(false)));
   int number = 0;
   for (const Bytes& block : banyan::fuzz::BlockSeeds())
   {

@@ -4,7 +4,7 @@
 #   run.sh [--seconds N] [--only LIST] [--jobs N] [--output DIR] [--help]
 #
 #   --seconds N   how long each runs (default 600)
-#   --only LIST   these only, separated by commas: Index,Group,Block,Exceptions,Mesh
+#   --only LIST   these only, separated by commas: Index,Group,Block,Exceptions,Mesh,Cells
 #   --jobs N      how many run at a time (default: one per processor)
 #   --output DIR  folder for what they find, which a later run goes on from, and their logs
 #                 (default fuzz-output)
@@ -18,7 +18,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../../Utilities/common.sh"
 
 build="${BANYAN_BUILD_DIR:-$RepositoryRoot/build-fuzz}"
 seconds=600
-only="Index,Group,Block,Exceptions,Mesh"
+only="Index,Group,Block,Exceptions,Mesh,Cells"
 jobs="$(nproc)"
 output="fuzz-output"
 while [[ $# -gt 0 ]]; do

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Real meshes of curved hexahedra, and of mixed cells, are drawn by "Banyan Volume", and kept as boxes.
+"""Real meshes of curved hexahedra, and of mixed cells, are drawn by "Banyan Volume", and kept as they are, or as boxes.
 
     test_general_meshes.py --plugin Banyan.so --out FOLDER [--reference FOLDER]
 
@@ -91,16 +91,20 @@ def draw_mesh(data, out, name, reference):
 
 
 def keep(data, out, name):
-    """Such a mesh is kept in a series as boxes, and drawn as those that the filter makes of it."""
+    """Such a mesh is kept in a series as it is, or as boxes, and drawn as those that the filter makes of it."""
     file, array, boxes, _, _ = MESHES[name]
     source = simple.OpenDataFile(os.path.join(data, file))
     path = os.path.join(out, name + ".banyan")
-    try:
-        simple.SaveData(path, proxy=source)
-    except RuntimeError as error:
-        session.require("see 'Sample General Meshes' of the filter 'Banyan Hex Octree'" in str(error), str(error))
-    else:
-        raise AssertionError(f"{name} was written as it is")
+    simple.SaveData(path, proxy=source, ErrorBound=0.0)
+    kept = simple.OpenDataFile(path)
+    kept.UpdatePipeline()
+    source.UpdatePipeline()
+    mine, theirs = (each.GetDataInformation() for each in (source, kept))
+    counts = [(each.GetNumberOfCells(), each.GetNumberOfPoints(), each.GetBounds()) for each in (mine, theirs)]
+    session.require(counts[0] == counts[1], f"{name}: {counts}")
+    ranges = [each.PointData[array[1]].GetRange(0) for each in (source, kept)]
+    session.require(ranges[0] == ranges[1], f"{name}: {ranges}")
+    simple.Delete(kept)
     sampled = simple.BanyanHexOctree(Input=source, SampleGeneralMeshes=1,
                                      MeshSamplingTolerance=SAMPLING_TOLERANCE, MeshSamplingBoxes=boxes)
     sampled.UpdatePipeline()

@@ -93,12 +93,24 @@ def test_verify(folder):
     check(run("verify.sh", "--help")[0] == 0, "--help failed")
 
 
+def test_verify_cells(folder):
+    """A mesh of any cells, whose points move: the source, other points, and other cells."""
+    series = os.path.join(folder, "mesh.vtu.banyan")
+    meshes = [os.path.join(folder, f"mesh_{step}.vtu") for step in range(3)]
+    expect(0, "PROVEN", "verify.sh", series, "--against", *meshes)
+    for name, mention in (("moved", "coordinates of points"), ("turned", "corners of cells")):
+        expect(2, f"At step 1 the {mention} of the source differ from the series", "verify.sh", series, "--against",
+               meshes[0], os.path.join(folder, name + ".vtu"), meshes[2])
+
+
 def test_info(folder):
     series = os.path.join(folder, "series.banyan")
     expect(0, "12 x 11 x 6 samples, 3 steps", "info.sh", series)
     status, output, messages = run("info.sh", series, "--json", "--step", "1")
     check(status == 0, messages)
     check(json.loads(output)["size"]["values"] == 12 * 11 * 6 * 3 * 4, output)
+    expect(0, "the mesh, of cells of any type: ", "info.sh", os.path.join(folder, "mesh.vtu.banyan"))
+    expect(0, "new at 1 step", "info.sh", os.path.join(folder, "mesh.vtu.banyan"))
     expect(0, "points of a curvilinear grid: ", "info.sh", os.path.join(folder, "grid.vts.banyan"))
     expect(0, "new at 2 steps", "info.sh", os.path.join(folder, "grid.vtr.banyan"))
     for kind, start in {"png": b"\x89PNG", "svg": b"<?xml", "csv": b"array,step,"}.items():
@@ -114,7 +126,7 @@ def test_info(folder):
 
 
 def main():
-    cases = {"info": test_info, "verify": test_verify}
+    cases = {"info": test_info, "verify": test_verify, "cells": test_verify_cells}
     with tempfile.TemporaryDirectory() as folder:
         make_cases(folder)
         cases[sys.argv[1]](folder)

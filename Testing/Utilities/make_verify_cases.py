@@ -6,10 +6,11 @@ import os
 import sys
 
 from paraview import simple
-from vtkmodules.vtkCommonCore import vtkFloatArray, vtkShortArray
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkImageData, vtkRectilinearGrid, vtkStructuredGrid
-from vtkmodules.vtkIOXML import vtkXMLImageDataWriter, vtkXMLRectilinearGridWriter, vtkXMLStructuredGridWriter
+from vtkmodules.vtkCommonCore import vtkFloatArray, vtkIdList, vtkPoints, vtkShortArray
+from vtkmodules.vtkCommonDataModel import (VTK_POLYHEDRON, vtkDataSetAttributes, vtkImageData, vtkRectilinearGrid,
+                                           vtkStructuredGrid, vtkUnstructuredGrid)
+from vtkmodules.vtkIOXML import (vtkXMLImageDataWriter, vtkXMLRectilinearGridWriter, vtkXMLStructuredGridWriter,
+                                 vtkXMLUnstructuredGridWriter)
 
 STEPS = 3
 NAN, HIDDEN, CHANGED = 17, 40, 55  # numbers of points
@@ -70,8 +71,32 @@ def grid_at(step, curvilinear, place=0.0):
     return grid
 
 
+def cells_at(step, place=0.0, corner=None):
+    """A mesh of tetrahedra, a polyhedron and a wedge, whose points move after the first step."""
+    grid, points, heat, age = vtkUnstructuredGrid(), vtkPoints(), vtkFloatArray(), vtkFloatArray()
+    for i in range(27):
+        x, y, z = i % 3, i // 3 % 3, i // 9
+        points.InsertNextPoint(x + 0.1 * y * (step > 0) + (place if i == 13 else 0.0), y + 0.2 * z, z - 0.1 * x)
+        heat.InsertNextValue((i * 37 % 101 + 10 * step) / 7.0)
+    grid.SetPoints(points)
+    cells = [(10, [0, 1, 3, 9]), (10, [1, 4, 3, 13]), (13, [4, 5, 7, 13, 14, corner or 16]), (10, [18, 19, 21, 9])]
+    for kind, ids in cells:
+        grid.InsertNextCell(kind, len(ids), ids)
+    faces = vtkIdList()
+    for number in (4, 3, 10, 11, 13, 3, 10, 14, 11, 3, 11, 14, 13, 3, 10, 13, 14):
+        faces.InsertNextId(number)
+    grid.InsertNextCell(VTK_POLYHEDRON, faces)
+    for cell in range(grid.GetNumberOfCells()):
+        age.InsertNextValue(cell * cell - step)
+    heat.SetName("heat")
+    age.SetName("age")
+    grid.GetPointData().AddArray(heat)
+    grid.GetCellData().AddArray(age)
+    return grid
+
+
 def write(image, path):
-    writer = {".vti": vtkXMLImageDataWriter, ".vts": vtkXMLStructuredGridWriter,
+    writer = {".vtu": vtkXMLUnstructuredGridWriter, ".vti": vtkXMLImageDataWriter, ".vts": vtkXMLStructuredGridWriter,
               ".vtr": vtkXMLRectilinearGridWriter}[os.path.splitext(path)[1]]()
     writer.SetFileName(path)
     writer.SetInputData(image)
@@ -122,6 +147,13 @@ def main():
             write(grid_at(step, curvilinear), path)
         encode(grids, os.path.join(folder, f"grid{name}.banyan"))
         write(grid_at(1, curvilinear, 1e-5), os.path.join(folder, "moved" + name))
+
+    meshes = [os.path.join(folder, f"mesh_{step}.vtu") for step in range(STEPS)]
+    for step, path in enumerate(meshes):
+        write(cells_at(step), path)
+    encode(meshes, os.path.join(folder, "mesh.vtu.banyan"))
+    write(cells_at(1, 1e-5), os.path.join(folder, "moved.vtu"))
+    write(cells_at(1, corner=17), os.path.join(folder, "turned.vtu"))
 
 
 main()

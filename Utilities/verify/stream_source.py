@@ -13,6 +13,8 @@ import os
 import numpy
 from paraview import simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkIdList
+from vtkmodules.vtkCommonDataModel import VTK_POLYHEDRON
 
 GHOSTS = "vtkGhostType"
 KINDS = ["vtkImageData", "vtkStructuredGrid", "vtkRectilinearGrid", "vtkUnstructuredGrid"]
@@ -139,18 +141,38 @@ def placement_of(image):
             "direction": [matrix.GetElement(row, column) for row in range(3) for column in range(3)]}
 
 
+def faces_of(grid):
+    """Of each polyhedron how many faces; per face how many points, and these."""
+    faces = []
+    stream = vtkIdList()
+    for cell in range(grid.GetNumberOfCells()):
+        if grid.GetCellType(cell) == VTK_POLYHEDRON:
+            stream.Reset()
+            grid.GetFaceStream(cell, stream)
+            faces += [stream.GetId(i) for i in range(stream.GetNumberOfIds())] or [0]
+    return numpy.array(faces, numpy.int64)
+
+
+def parts_of(grid):
+    """Values and roles of points and cells."""
+    cells = grid.GetCells()
+    types = numpy.array([grid.GetCellType(cell) for cell in range(grid.GetNumberOfCells())], numpy.uint8)
+    offsets, corners = (vtk_to_numpy(array).astype(numpy.int64)
+                        for array in (cells.GetOffsetsArray(), cells.GetConnectivityArray()))
+    parts = [(vtk_to_numpy(grid.GetPoints().GetData()), "coordinates"), (offsets, "offsets"), (types, "types"),
+             (corners[:offsets[-1]], "corners")]
+    if VTK_POLYHEDRON in types:
+        parts.append((faces_of(grid), "faces"))
+    return [("", values.reshape(len(values), -1), role) for values, role in parts]
+
+
 def send_mesh(stream, grid, time, arrays, wanted):
     """Points and corners of cells come before the values."""
-    points = vtk_to_numpy(grid.GetPoints().GetData())
-    corners = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).astype(numpy.int64)
-    if corners.size != 8 * grid.GetNumberOfCells():
-        raise SourceError("The mesh has cells that are no hexahedra.")
-    parts = [("", points, "coordinates"), ("", corners.reshape(-1, 8), "corners")]
-    parts += [(name, values, "") for name, values in arrays]
+    parts = parts_of(grid) + [(name, values, "") for name, values in arrays]
     parts += [(name, values, "cells") for name, values in arrays_of(grid, wanted, grid.GetCellData())]
     header = {"time": time, "mesh": {"points": grid.GetNumberOfPoints(), "cells": grid.GetNumberOfCells()},
               "arrays": [{"name": name, "type": type_name(values), "components": values.shape[1],
-                          "role": role} for name, values, role in parts]}
+                          "tuples": values.shape[0], "role": role} for name, values, role in parts]}
     stream.write(json.dumps(header).encode() + b"\n")
     for _name, values, _role in parts:
         stream.write(memoryview(numpy.ascontiguousarray(values)).cast("B"))

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Mesh/Series/AtlasValues.h"
 
+#include "Mesh/CellSeries/StoredCells.h"
 #include "Mesh/Series/FreeSamples.h"
 #include "Mesh/Series/Rounded.h"
+#include "Mesh/Series/StoredMesh.h"
 #include "Series/Quantize/FillValues.h"
 
 #include <algorithm>
@@ -19,13 +21,13 @@ class ImageComponent
 {
 public:
   /// @param samples of the values; `copies` as StoredMesh has them
-  ImageComponent(const StoredMesh& mesh, const std::vector<std::uint32_t>& samples,
+  ImageComponent(const glm::ivec3& image, const std::vector<std::uint32_t>& samples,
     const std::vector<std::pair<std::uint32_t, std::uint32_t>>& copies, const FillSet<T>& fills)
-    : Mesh(mesh)
+    : Image(image)
     , Samples(samples)
     , Copies(copies)
     , Fills(fills)
-    , Place(static_cast<std::size_t>(mesh.Atlas->SampleCount()), 0)
+    , Place(static_cast<std::size_t>(std::int64_t{ image.x } * image.y * image.z), 0)
   {
   }
 
@@ -58,7 +60,7 @@ public:
         put(to, image[std::int64_t{ from } * stride]);
       }
     }
-    FillFreeSamples(this->Mesh.Atlas->Samples(), known, smooth, pool);
+    FillFreeSamples(this->Image, known, smooth, pool);
     for (std::size_t sample = 0; sample < this->Place.size(); ++sample)
     {
       if (this->Place[sample] == 0)
@@ -69,7 +71,7 @@ public:
   }
 
 private:
-  const StoredMesh& Mesh;
+  glm::ivec3 Image;
   const std::vector<std::uint32_t>& Samples;
   const std::vector<std::pair<std::uint32_t, std::uint32_t>>& Copies;
   const FillSet<T>& Fills;
@@ -78,15 +80,20 @@ private:
 
 } // namespace
 
-AtlasValues::AtlasValues(std::shared_ptr<const StoredMesh> mesh, MeshValues where)
-  : Mesh(std::move(mesh))
-  , Where(where)
+AtlasValues::AtlasValues(const std::shared_ptr<const StoredMesh>& mesh, MeshValues where)
+  : Mesh(mesh)
+  , Image(mesh->Atlas->Samples())
+  , Samples(where == MeshValues::OfCells ? mesh->SampleOfCell : mesh->SampleOfPoint)
+  // Cells of different levels are no copies of each other.
+  , Copies(where == MeshValues::OfCells ? nullptr : &mesh->Copies)
 {
 }
 
-const std::vector<std::uint32_t>& AtlasValues::Samples() const
+AtlasValues::AtlasValues(const std::shared_ptr<const StoredCells>& mesh, MeshValues where)
+  : Mesh(mesh)
+  , Image(mesh->Samples())
+  , Samples(where == MeshValues::OfCells ? mesh->SampleOfCell : mesh->SampleOfPoint)
 {
-  return this->Where == MeshValues::OfCells ? this->Mesh->SampleOfCell : this->Mesh->SampleOfPoint;
 }
 
 void AtlasValues::ToImage(ScalarType type, const void* values, int components,
@@ -97,10 +104,9 @@ void AtlasValues::ToImage(ScalarType type, const void* values, int components,
     {
       using T = typename decltype(tag)::Type;
       const FillSet<T> set(fills);
-      // Cells of different levels are no copies of each other.
-      const std::vector<std::pair<std::uint32_t, std::uint32_t>> none;
-      ImageComponent<T> component(*this->Mesh, this->Samples(),
-        this->Where == MeshValues::OfCells ? none : this->Mesh->Copies, set);
+      const Pairs none;
+      ImageComponent<T> component(
+        this->Image, this->Samples, this->Copies ? *this->Copies : none, set);
       for (int c = 0; c < components; ++c)
       {
         component.Make(
@@ -117,7 +123,7 @@ void AtlasValues::FromImage(ScalarType type, const void* image, int components, 
       using T = typename decltype(tag)::Type;
       const T* from = static_cast<const T*>(image);
       T* to = static_cast<T*>(values);
-      for (const std::uint32_t sample : this->Samples())
+      for (const std::uint32_t sample : this->Samples)
       {
         to = std::copy_n(from + std::int64_t{ sample } * components, components, to);
       }

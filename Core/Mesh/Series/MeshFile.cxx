@@ -54,9 +54,11 @@ Grid GridOfImages(const StoredMesh& mesh)
 
 std::shared_ptr<const StoredMesh> ReadMesh(const SeriesFile& series)
 {
-  if (!series.Index().Mesh)
+  if (!series.Index().Mesh || series.Index().Mesh->OfCells)
   {
-    throw Error("The series holds image data, not a mesh", { series.Path() });
+    throw Error(series.Index().Mesh ? "The series holds a mesh of cells of any type, not an octree"
+                                    : "The series holds image data, not a mesh",
+      { series.Path() });
   }
   const MeshIndex& index = *series.Index().Mesh;
   const std::string path = series.Folder() + "/" + index.File;

@@ -12,10 +12,8 @@
 namespace banyan::mesh_file
 {
 
-constexpr char Magic[8] = { 'B', 'a', 'n', 'y', 'a', 'n', 'M', 'e' };
+constexpr char MeshMagic[8] = { 'B', 'a', 'n', 'y', 'a', 'n', 'M', 'e' };
 constexpr std::uint32_t Version = 1;
-/// Bytes before the first section: magic, version, number of sections, hash of all that follows.
-constexpr std::size_t HeadBytes = 24;
 
 enum Section
 {

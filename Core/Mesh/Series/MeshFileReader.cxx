@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Mesh/Series/MeshFileParts.h"
 #include "Mesh/Series/MeshPlaces.h"
+#include "Mesh/Series/Sections.h"
 
 #include "Base/Error.h"
-#include "Base/Hash.h"
 #include "Base/Varint.h"
-#include "Series/Format/Zstd.h"
 
 #include <algorithm>
 #include <map>
@@ -17,25 +16,15 @@ namespace
 
 using namespace mesh_file;
 
-/// A section may be at most so many times its stored bytes: zstd does not compress more.
-constexpr std::uint64_t GreatestRatio = 32768;
 constexpr std::uint64_t MostCells = (std::uint64_t{ 1 } << 32) - 2;
-
-void Require(bool good, const char* sentence)
-{
-  if (!good)
-  {
-    throw Error(sentence);
-  }
-}
 
 class MeshReader
 {
 public:
   explicit MeshReader(const Bytes& bytes)
     : Mesh(std::make_shared<StoredMesh>())
+    , Parts(SplitSections(bytes, MeshMagic, Version, Sections))
   {
-    this->Split(bytes);
   }
 
   std::shared_ptr<const StoredMesh> Read()
@@ -64,41 +53,6 @@ private:
   ByteReader ReaderOf(Section section) const
   {
     return { this->Of(section).data(), this->Of(section).size() };
-  }
-
-  void Split(const Bytes& bytes)
-  {
-    Require(bytes.size() >= HeadBytes && std::memcmp(bytes.data(), Magic, sizeof(Magic)) == 0,
-      "This is no file of a mesh");
-    const auto version = LoadNumber<std::uint32_t>(bytes.data() + 8);
-    if (version != Version)
-    {
-      throw Error("The file of the mesh has version " + std::to_string(version) +
-                  ", and this Banyan reads version " + std::to_string(Version));
-    }
-    Require(LoadNumber<std::uint32_t>(bytes.data() + 12) == Sections &&
-              LoadNumber<std::uint64_t>(bytes.data() + 16) ==
-                ShortHashOf(bytes.data() + HeadBytes, bytes.size() - HeadBytes),
-      "The file of the mesh is damaged: its checksum does not fit");
-    ByteReader reader(bytes.data() + HeadBytes, bytes.size() - HeadBytes);
-    for (Bytes& part : this->Parts)
-    {
-      const std::uint64_t whole = reader.Varint();
-      const std::uint64_t stored = reader.Varint();
-      Require(stored <= reader.Left() && stored <= whole && whole / GreatestRatio <= stored,
-        "A part of the mesh has an impossible size");
-      const std::uint8_t* from = reader.Skip(stored);
-      part.resize(whole);
-      if (stored < whole)
-      {
-        Decompress(from, stored, part.data(), whole);
-      }
-      else
-      {
-        std::copy(from, from + stored, part.begin());
-      }
-    }
-    reader.MustBeDone();
   }
 
   void ReadHead()
@@ -352,7 +306,7 @@ private:
   }
 
   std::shared_ptr<StoredMesh> Mesh;
-  std::array<Bytes, Sections> Parts;
+  std::vector<Bytes> Parts;
   std::uint64_t Cells = 0, Points = 0, Nodes = 0, BoxCount = 0, PlacesTaken = 0;
   glm::ivec3 ImageSamples{ 0 };
   int CoarsestLevel = 0;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Mesh/Series/MeshFileParts.h"
 #include "Mesh/Series/MeshPlaces.h"
+#include "Mesh/Series/Sections.h"
 
-#include "Base/Hash.h"
 #include "Base/Varint.h"
-#include "Series/Format/Zstd.h"
 
 #include <algorithm>
 #include <map>
@@ -15,9 +14,6 @@ namespace
 {
 
 using namespace mesh_file;
-
-/// Once per series, so that time matters less than size; higher ones gain little.
-constexpr int CompressionLevel = 15;
 
 class MeshWriter
 {
@@ -42,7 +38,7 @@ public:
         }
       });
     this->WriteHead();
-    return this->Joined();
+    return JoinSections(MeshMagic, Version, this->Parts);
   }
 
 private:
@@ -222,32 +218,9 @@ private:
     }
   }
 
-  Bytes Joined() const
-  {
-    Bytes out(HeadBytes);
-    for (const Bytes& part : this->Parts)
-    {
-      Bytes stored;
-      if (!part.empty())
-      {
-        AppendCompressed(part.data(), part.size(), CompressionLevel, stored);
-      }
-      const bool smaller = stored.size() < part.size();
-      PutVarint(out, part.size());
-      PutVarint(out, smaller ? stored.size() : part.size());
-      const Bytes& kept = smaller ? stored : part;
-      out.insert(out.end(), kept.begin(), kept.end());
-    }
-    std::memcpy(out.data(), Magic, sizeof(Magic));
-    StoreNumber(out.data() + 8, Version);
-    StoreNumber(out.data() + 12, static_cast<std::uint32_t>(Sections));
-    StoreNumber(out.data() + 16, ShortHashOf(out.data() + HeadBytes, out.size() - HeadBytes));
-    return out;
-  }
-
   const StoredMesh& Mesh;
   std::vector<std::uint32_t> NodeOfPoint;
-  std::array<Bytes, Sections> Parts;
+  std::vector<Bytes> Parts = std::vector<Bytes>(Sections);
 };
 
 } // namespace

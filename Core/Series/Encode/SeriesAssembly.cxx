@@ -98,7 +98,7 @@ std::optional<std::vector<std::string>> FilesOfIndex(const std::string& path)
     {
       files.push_back(index.Mesh->File);
     }
-    for (const PointsFile& points : index.Points ? index.Points->Files : std::vector<PointsFile>{})
+    for (const PointsFile& points : index.FilesOfPoints())
     {
       files.push_back(points.File);
     }
@@ -127,9 +127,10 @@ void SeriesAssembly::AddPoints(PointsFile file)
 /// The points of the steps that the index has, and no others.
 void SeriesAssembly::NamePoints()
 {
-  if (this->Current.Points)
+  if (this->Current.Points || this->Current.Mesh)
   {
-    std::vector<PointsFile>& named = this->Current.Points->Files;
+    std::vector<PointsFile>& named =
+      this->Current.Points ? this->Current.Points->Files : this->Current.Mesh->Moved;
     while (named.size() < this->Points.size() &&
            this->Points[named.size()].FirstStep < this->Current.Steps())
     {
@@ -208,10 +209,10 @@ std::vector<std::string> SeriesAssembly::FilesInFile() const
   {
     files.push_back(this->Current.Mesh->File);
   }
-  if (this->InFile > 0 && this->Current.Points)
+  if (this->InFile > 0)
   {
     const SegmentIndex& last = this->Current.Segments[static_cast<std::size_t>(this->InFile) - 1];
-    for (const PointsFile& points : this->Current.Points->Files)
+    for (const PointsFile& points : this->Current.FilesOfPoints())
     {
       if (points.FirstStep < last.FirstStep + last.Steps)
       {

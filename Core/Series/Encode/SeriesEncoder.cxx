@@ -172,6 +172,19 @@ void SeriesEncoder::SetPoints(const PointsView& points)
   self.Failed = false;
 }
 
+void SeriesEncoder::SetMovedPoints(PointsFile points)
+{
+  Internals& self = *this->Self;
+  const SeriesIndex& index = self.Assembly.Index();
+  if (!index.Mesh || !index.Mesh->OfCells ||
+      points.FirstStep != index.Steps() + static_cast<int>(self.Times.size()))
+  {
+    throw Error(
+      "Points that have moved are those of a mesh of cells, and of its next step", { self.Path });
+  }
+  self.Assembly.AddPoints(std::move(points));
+}
+
 void SeriesEncoder::AddStep(double time, const std::vector<ArrayValues>& arrays)
 {
   Internals& self = *this->Self;

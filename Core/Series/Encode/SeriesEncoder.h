@@ -123,6 +123,10 @@ public:
   /// @param points as options and grid say; they are kept bit by bit. Throws Error.
   void SetPoints(const PointsView& points);
 
+  /// The file of the points of a mesh of cells from the next step on, where they have moved. It is
+  /// in the folder of the series (see WriteMovedPoints). Throws Error.
+  void SetMovedPoints(PointsFile points);
+
   /// @param time greater than the one before
   /// @param arrays one per description, same order
   /// Throws Error on bad input or when the disk is full; the encoder can then only be destroyed.

@@ -101,6 +101,23 @@ bool IsPlainName(const std::string& file)
          file.find('\0') == std::string::npos;
 }
 
+void CheckFilesOfPoints(const std::vector<PointsFile>& files, int steps)
+{
+  std::map<std::string, const PointsFile*> named;
+  for (std::size_t i = 0; i < files.size(); ++i)
+  {
+    Require(IsPlainName(files[i].File), "The name of a file of points is not a plain file name");
+    Require(i == 0 || files[i].FirstStep > files[i - 1].FirstStep,
+      "The files of points do not follow one another");
+    const PointsFile& first = *named.emplace(files[i].File, &files[i]).first->second;
+    Require(first.Bytes == files[i].Bytes && first.HashLow == files[i].HashLow &&
+              first.HashHigh == files[i].HashHigh,
+      "Two files of points are the same, and have not the same content");
+  }
+  Require(files.empty() || files.back().FirstStep < steps,
+    "There are points of a step that does not exist");
+}
+
 void CheckMesh(const SeriesIndex& index)
 {
   std::set<std::string> cellArrays;
@@ -110,14 +127,23 @@ void CheckMesh(const SeriesIndex& index)
       "Two cell arrays have the name '" + array.CellArray + "'");
   }
   Require(index.Mesh || cellArrays.empty(), "A series without a mesh has cell arrays");
-  if (index.Mesh)
+  if (!index.Mesh)
   {
-    Require(IsPlainName(index.Mesh->File), "The name of the mesh is not a plain file name");
-    Require(index.Mesh->Points >= 8 && index.Mesh->Cells >= 1 &&
-              index.Mesh->Points <= index.Domain.Extent.Count() &&
-              index.Mesh->Cells <= index.Domain.Extent.Count(),
-      "The mesh has an impossible number of points or cells");
+    return;
   }
+  Require(IsPlainName(index.Mesh->File), "The name of the mesh is not a plain file name");
+  const bool any = index.Mesh->OfCells;
+  // Of cells of any type, only what has values has samples.
+  const bool samplesOfCells = !any || !cellArrays.empty();
+  const bool samplesOfPoints = !any || cellArrays.size() < index.Arrays.size();
+  const std::int64_t samples = index.Domain.Extent.Count();
+  Require(index.Mesh->Points >= (any ? 0 : 8) && index.Mesh->Cells >= 1 &&
+            (!samplesOfPoints || index.Mesh->Points <= samples) &&
+            (!samplesOfCells || index.Mesh->Cells <= samples),
+    "The mesh has an impossible number of points or cells");
+  CheckFilesOfPoints(index.Mesh->Moved, index.Steps());
+  Require(index.Mesh->Moved.empty() || index.Mesh->Moved.front().FirstStep > 0,
+    "Points of the first step are said to have moved");
 }
 
 void CheckPoints(const SeriesIndex& index)
@@ -136,19 +162,9 @@ void CheckPoints(const SeriesIndex& index)
     "The coordinates of the points have several types");
   const std::vector<PointsFile>& files = index.Points->Files;
   Require(files.empty() == index.Times.empty(), "The points of some steps are missing");
-  std::map<std::string, const PointsFile*> named;
-  for (std::size_t i = 0; i < files.size(); ++i)
-  {
-    Require(IsPlainName(files[i].File), "The name of a file of points is not a plain file name");
-    Require(i == 0 ? files[i].FirstStep == 0 : files[i].FirstStep > files[i - 1].FirstStep,
-      "The files of points do not follow one another");
-    const PointsFile& first = *named.emplace(files[i].File, &files[i]).first->second;
-    Require(first.Bytes == files[i].Bytes && first.HashLow == files[i].HashLow &&
-              first.HashHigh == files[i].HashHigh,
-      "Two files of points are the same, and have not the same content");
-  }
-  Require(files.empty() || files.back().FirstStep < index.Steps(),
-    "There are points of a step that does not exist");
+  Require(
+    files.empty() || files.front().FirstStep == 0, "The files of points do not follow one another");
+  CheckFilesOfPoints(files, index.Steps());
 }
 
 void CheckFlags(const SeriesIndex& index)

@@ -108,6 +108,23 @@ SegmentIndex SegmentFromJson(const Json& json)
   return segment;
 }
 
+std::vector<PointsFile> FilesFromJson(const Json& json)
+{
+  std::vector<PointsFile> files;
+  for (const Json& one : json)
+  {
+    PointsFile file;
+    file.File = TextMember(one, "file");
+    file.FirstStep = IntegerMember(one, "firstStep", 0);
+    file.Bytes = static_cast<std::uint64_t>(CountMember(one, "bytes"));
+    const Hash128 hash = FromHex(TextMember(one, "hash"));
+    file.HashLow = hash.Low;
+    file.HashHigh = hash.High;
+    files.push_back(std::move(file));
+  }
+  return files;
+}
+
 MeshIndex MeshFromJson(const Json& json)
 {
   MeshIndex mesh;
@@ -118,6 +135,15 @@ MeshIndex MeshFromJson(const Json& json)
   mesh.HashHigh = hash.High;
   mesh.Points = CountMember(json, "points");
   mesh.Cells = CountMember(json, "cells");
+  if (json.contains("kind"))
+  {
+    if (TextMember(json, "kind") != "cells")
+    {
+      throw Error("The mesh is of an unknown kind");
+    }
+    mesh.OfCells = true;
+    mesh.Moved = FilesFromJson(ListMember(json, "moved"));
+  }
   return mesh;
 }
 
@@ -139,17 +165,7 @@ PointsIndex PointsFromJson(const Json& json)
     }
     points.Form.Types[axis] = ScalarTypeFromName(types[axis].get<std::string>());
   }
-  for (const Json& one : ListMember(json, "files"))
-  {
-    PointsFile file;
-    file.File = TextMember(one, "file");
-    file.FirstStep = IntegerMember(one, "firstStep", 0);
-    file.Bytes = static_cast<std::uint64_t>(CountMember(one, "bytes"));
-    const Hash128 hash = FromHex(TextMember(one, "hash"));
-    file.HashLow = hash.Low;
-    file.HashHigh = hash.High;
-    points.Files.push_back(std::move(file));
-  }
+  points.Files = FilesFromJson(ListMember(json, "files"));
   return points;
 }
 

@@ -20,7 +20,7 @@ namespace
 const std::string Word = "BanyanSeries ";
 const std::string DevelopmentWord = "banyan-series "; ///< before there was a version 1
 constexpr int Version = 1;
-constexpr const char* Features[] = { "mesh", "cell arrays", "hidden", "grid points" };
+constexpr const char* Features[] = { "mesh", "cell arrays", "hidden", "grid points", "any cells" };
 
 /// Splits off the first line, having checked that it fits the rest.
 std::string CheckedBody(const std::string& text)
@@ -93,7 +93,8 @@ std::vector<std::string> FeaturesOf(const SeriesIndex& index)
     cellArrays = cellArrays || !array.CellArray.empty();
     hidden = hidden || array.Flags != ArrayFlags::None;
   }
-  const bool has[] = { index.Mesh.has_value(), cellArrays, hidden, index.Points.has_value() };
+  const bool has[] = { index.Mesh.has_value(), cellArrays, hidden, index.Points.has_value(),
+    index.Mesh && index.Mesh->OfCells };
   std::vector<std::string> features;
   for (std::size_t i = 0; i < std::size(Features); ++i)
   {

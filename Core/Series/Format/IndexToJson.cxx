@@ -106,6 +106,21 @@ Json StatisticsToJson(const EncodeStatistics& statistics)
   return json;
 }
 
+Json FilesToJson(const std::vector<PointsFile>& files)
+{
+  Json json = Json::array();
+  for (const PointsFile& file : files)
+  {
+    Json one;
+    one["file"] = file.File;
+    one["firstStep"] = file.FirstStep;
+    one["bytes"] = file.Bytes;
+    one["hash"] = ToHex({ file.HashLow, file.HashHigh });
+    json.push_back(one);
+  }
+  return json;
+}
+
 Json MeshToJson(const MeshIndex& mesh)
 {
   Json json;
@@ -114,6 +129,11 @@ Json MeshToJson(const MeshIndex& mesh)
   json["hash"] = ToHex({ mesh.HashLow, mesh.HashHigh });
   json["points"] = mesh.Points;
   json["cells"] = mesh.Cells;
+  if (mesh.OfCells)
+  {
+    json["kind"] = "cells";
+    json["moved"] = FilesToJson(mesh.Moved);
+  }
   return json;
 }
 
@@ -125,16 +145,7 @@ Json PointsToJson(const PointsIndex& points)
   {
     json["types"].push_back(NameOf(type));
   }
-  json["files"] = Json::array();
-  for (const PointsFile& file : points.Files)
-  {
-    Json one;
-    one["file"] = file.File;
-    one["firstStep"] = file.FirstStep;
-    one["bytes"] = file.Bytes;
-    one["hash"] = ToHex({ file.HashLow, file.HashHigh });
-    json["files"].push_back(one);
-  }
+  json["files"] = FilesToJson(points.Files);
   return json;
 }
 

@@ -34,7 +34,7 @@ std::map<std::string, std::uint64_t> FilesOf(const SeriesIndex& index)
   {
     files[index.Mesh->File] = index.Mesh->Bytes;
   }
-  for (const PointsFile& points : index.Points ? index.Points->Files : std::vector<PointsFile>{})
+  for (const PointsFile& points : index.FilesOfPoints())
   {
     files[points.File] = points.Bytes;
   }

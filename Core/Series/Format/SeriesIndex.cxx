@@ -23,6 +23,12 @@ const ValueRange& ComponentIndex::ReferenceRange() const
   return chosen && !this->PromisedRange.Empty() ? this->PromisedRange : this->Range;
 }
 
+const std::vector<PointsFile>& SeriesIndex::FilesOfPoints() const
+{
+  static const std::vector<PointsFile> none;
+  return this->Points ? this->Points->Files : this->Mesh ? this->Mesh->Moved : none;
+}
+
 const PointsFile& PointsIndex::FileOf(int step) const
 {
   const auto after = std::upper_bound(this->Files.begin(), this->Files.end(), step,

@@ -96,17 +96,6 @@ struct ArrayIndex
   std::vector<ValueRange> Magnitudes;
 };
 
-/// The mesh whose values a series holds as images (see MeshSeries/StoredMesh.h).
-struct MeshIndex
-{
-  std::string File; ///< name inside `<series>.d/`, without a path
-  std::uint64_t Bytes = 0;
-  std::uint64_t HashLow = 0; ///< of the whole file
-  std::uint64_t HashHigh = 0;
-  std::int64_t Points = 0;
-  std::int64_t Cells = 0;
-};
-
 /// The kinds of grids whose points a series keeps. Their values are images in i, j, k.
 enum class GridKind
 {
@@ -131,9 +120,26 @@ struct PointsFile
 {
   std::string File; ///< name inside `<series>.d/`, without a path
   int FirstStep = 0;
-  std::uint64_t Bytes = 0;   ///< size of the file
-  std::uint64_t HashLow = 0; ///< of the file's head, through which every other byte is checked
+  std::uint64_t Bytes = 0; ///< size of the file
+  /// Of the file's head, through which every other byte is checked; of a mesh: of the whole file.
+  std::uint64_t HashLow = 0;
   std::uint64_t HashHigh = 0;
+};
+
+/// The mesh whose values a series holds as images (see Mesh/Series/StoredMesh.h and
+/// Mesh/CellSeries/StoredCells.h).
+struct MeshIndex
+{
+  bool OfCells = false; ///< of any type; else the cells are leaves of an octree
+  std::string File;     ///< name inside `<series>.d/`, without a path
+  std::uint64_t Bytes = 0;
+  std::uint64_t HashLow = 0; ///< of the whole file
+  std::uint64_t HashHigh = 0;
+  std::int64_t Points = 0;
+  std::int64_t Cells = 0;
+  /// Points of later steps, where they are others than those in the file of the mesh. Hashes are of
+  /// the whole files. Only with OfCells.
+  std::vector<PointsFile> Moved{};
 };
 
 /// The points of a grid that is not regular (see Points/GridPoints.h).
@@ -202,6 +208,8 @@ struct SeriesIndex
   int FindFlags(ArrayFlags flags) const;
   /// Index of the array of that name, or -1.
   int FindArray(const std::string& name) const;
+  /// Files of points, in the order of steps: of a grid, or of a mesh whose points move.
+  const std::vector<PointsFile>& FilesOfPoints() const;
   /// The segment that holds a step. Throws Error when the step does not exist.
   const SegmentIndex& SegmentOf(int step) const;
 };

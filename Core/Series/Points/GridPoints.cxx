@@ -61,7 +61,7 @@ std::uint64_t BytesOfPoints(const SeriesIndex& index)
 {
   std::uint64_t bytes = 0;
   std::set<std::string> seen;
-  for (const PointsFile& file : index.Points ? index.Points->Files : std::vector<PointsFile>{})
+  for (const PointsFile& file : index.FilesOfPoints())
   {
     bytes += seen.insert(file.File).second ? file.Bytes : 0;
   }

@@ -56,7 +56,8 @@ struct GoldenCase
   EncodeOptions Options;
   int Steps = 1;
   std::vector<GoldenArray> Arrays;
-  bool OnMesh = false; ///< values are those of the points or cells of GoldenMesh
+  bool OnMesh = false;  ///< values are those of the points or cells of GoldenMesh
+  bool OnCells = false; ///< the same of GoldenCells
 };
 
 /// The list; it does not depend on the version of the format.

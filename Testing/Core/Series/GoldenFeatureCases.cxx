@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Mesh/CellSeries/CellsFile.h"
 #include "Mesh/Series/MeshFile.h"
 #include "Series/GoldenBuilders.h"
+#include "Series/GoldenCells.h"
 #include "Series/GoldenMesh.h"
 
 namespace banyan::testing
@@ -68,12 +70,23 @@ GoldenCase OnGrid(const std::string& name, GridKind kind)
   return series;
 }
 
+/// A mesh of cells of any type, whose points move once, with values at points and of cells.
+GoldenCase OnCells()
+{
+  GoldenCase series = OnMesh("any_cells", true);
+  series.Domain = GridOfImages(*GoldenCells().Mesh);
+  series.OnMesh = false;
+  series.OnCells = true;
+  return series;
+}
+
 } // namespace
 
 std::vector<GoldenCase> GoldenFeatureCases()
 {
   return { Hidden(), OnMesh("mesh", false), OnMesh("cells", true),
-    OnGrid("curvilinear", GridKind::Curvilinear), OnGrid("rectilinear", GridKind::Rectilinear) };
+    OnGrid("curvilinear", GridKind::Curvilinear), OnGrid("rectilinear", GridKind::Rectilinear),
+    OnCells() };
 }
 
 } // namespace banyan::testing

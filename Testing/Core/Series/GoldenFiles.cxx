@@ -2,11 +2,13 @@
 #include "Series/GoldenFiles.h"
 
 #include "Base/Hash.h"
+#include "Mesh/CellSeries/CellsFile.h"
 #include "Mesh/Series/AtlasValues.h"
 #include "Mesh/Series/MeshFile.h"
 #include "Series/Encode/SegmentFolder.h"
 #include "Series/Format/AtomicFile.h"
 #include "Series/Format/IndexText.h"
+#include "Series/GoldenCells.h"
 #include "Series/GoldenMesh.h"
 #include "Series/Points/PointsReader.h"
 #include "Series/SeriesTesting.h"
@@ -304,7 +306,8 @@ void ReadSeries(const std::string& path, const std::string& name, GoldenParts& p
   }
   if (file->Index().Mesh)
   {
-    parts[name + " mesh"] = MeshText(*ReadMesh(*file));
+    parts[name + " mesh"] =
+      file->Index().Mesh->OfCells ? CellsText(*file) : MeshText(*ReadMesh(*file));
   }
   if (file->Index().Points)
   {
@@ -407,23 +410,32 @@ namespace
 {
 
 /// Values at points or cells as the image that is encoded.
-Bytes ImageOf(const GoldenCase& series, const GoldenArray& array, const Bytes& values,
-  const std::shared_ptr<const StoredMesh>& mesh, ThreadPool& pool)
+Bytes ImageOf(
+  const GoldenCase& series, const GoldenArray& array, const Bytes& values, ThreadPool& pool)
 {
+  if (!series.OnMesh && !series.OnCells)
+  {
+    return values;
+  }
+  const MeshValues where = array.CellArray.empty() ? MeshValues::OfPoints : MeshValues::OfCells;
   const auto components = static_cast<int>(array.Components.size());
   Bytes image(
     static_cast<std::size_t>(series.Domain.Extent.Count() * components) * SizeOf(array.Type));
-  AtlasValues(mesh, array.CellArray.empty() ? MeshValues::OfPoints : MeshValues::OfCells)
+  (series.OnMesh ? AtlasValues(GoldenMesh().Mesh, where) : AtlasValues(GoldenCells().Mesh, where))
     .ToImage(array.Type, values.data(), components, {}, image.data(), pool);
   return image;
 }
 
-/// Writes the mesh of a series.
-std::shared_ptr<MeshPlan> PlanOf(
-  const GoldenCase& series, const StoredMesh& mesh, const std::string& path)
+/// Writes the mesh of a series that has one.
+std::shared_ptr<MeshPlan> PlanOf(const GoldenCase& series, const std::string& path)
 {
+  if (!series.OnMesh && !series.OnCells)
+  {
+    return nullptr;
+  }
   SegmentFolder folder(path);
-  std::shared_ptr<MeshPlan> plan = WriteMesh(mesh, folder);
+  std::shared_ptr<MeshPlan> plan =
+    series.OnMesh ? WriteMesh(*GoldenMesh().Mesh, folder) : WriteCells(*GoldenCells().Mesh, folder);
   for (const GoldenArray& array : series.Arrays)
   {
     if (!array.CellArray.empty())
@@ -482,12 +494,7 @@ SeriesIndex WriteGoldenSeries(const std::string& folder, const GoldenCase& serie
   const std::string path = folder + "/" + series.Name + ".banyan";
   ThreadPool pool(2);
   EncodeOptions options = series.Options;
-  std::shared_ptr<const StoredMesh> mesh;
-  if (series.OnMesh)
-  {
-    mesh = GoldenMesh().Mesh;
-    options.Mesh = PlanOf(series, *mesh, path);
-  }
+  options.Mesh = PlanOf(series, path);
   std::vector<ArrayDescription> descriptions;
   for (const GoldenArray& array : series.Arrays)
   {
@@ -501,13 +508,19 @@ SeriesIndex WriteGoldenSeries(const std::string& folder, const GoldenCase& serie
     std::vector<ArrayValues> borrowed;
     for (const GoldenArray& array : series.Arrays)
     {
-      const Bytes own = GoldenValues(series, array, step);
-      values.push_back(mesh == nullptr ? own : ImageOf(series, array, own, mesh, pool));
+      values.push_back(ImageOf(series, array, GoldenValues(series, array, step), pool));
       borrowed.push_back({ values.back().data() });
     }
     if (options.Points)
     {
       encoder.SetPoints(ViewOf(series, GoldenPoints(series, step)));
+    }
+    if (series.OnCells && step == 2)
+    {
+      const GoldenCells cells;
+      SegmentFolder folder(path);
+      encoder.SetMovedPoints(
+        WriteMovedPoints(*cells.Mesh, cells.PointsAt(step).data(), step, folder));
     }
     encoder.AddStep(GoldenTime(step), borrowed);
   }

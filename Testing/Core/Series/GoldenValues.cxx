@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Series/GoldenCases.h"
+#include "Series/GoldenCells.h"
 #include "Series/GoldenMesh.h"
 
 #include "Series/Quantize/FillValues.h"
@@ -158,6 +159,11 @@ std::vector<glm::ivec3> PlacesOf(const GoldenCase& series, const GoldenArray& ar
   if (series.OnMesh)
   {
     const GoldenMesh mesh;
+    return array.CellArray.empty() ? mesh.Points : mesh.Cells;
+  }
+  if (series.OnCells)
+  {
+    const GoldenCells mesh;
     return array.CellArray.empty() ? mesh.Points : mesh.Cells;
   }
   const glm::ivec3 n = series.Domain.Samples();

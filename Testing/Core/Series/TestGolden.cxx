@@ -10,6 +10,7 @@
 
 #include "Series/GoldenFiles.h"
 
+#include "Mesh/CellSeries/CellsFile.h"
 #include "Mesh/Series/AtlasValues.h"
 #include "Mesh/Series/MeshFile.h"
 #include "Series/Format/AtomicFile.h"
@@ -119,14 +120,15 @@ std::vector<T> DecodedValues(
   const SeriesFile& file, const GoldenCase& series, const GoldenArray& array, const FieldKey& key)
 {
   const std::vector<T> image = ReadAll<T>(file, key);
-  if (!series.OnMesh)
+  if (!series.OnMesh && !series.OnCells)
   {
     return image;
   }
-  const auto mesh = ReadMesh(file);
   const bool ofCells = !array.CellArray.empty();
-  std::vector<T> values(static_cast<std::size_t>(ofCells ? mesh->CellCount() : mesh->PointCount()));
-  AtlasValues(mesh, ofCells ? MeshValues::OfCells : MeshValues::OfPoints)
+  const MeshValues where = ofCells ? MeshValues::OfCells : MeshValues::OfPoints;
+  const MeshIndex& index = *file.Index().Mesh;
+  std::vector<T> values(static_cast<std::size_t>(ofCells ? index.Cells : index.Points));
+  (series.OnMesh ? AtlasValues(ReadMesh(file), where) : AtlasValues(ReadCells(file), where))
     .FromImage(ScalarTypeOf<T>(), image.data(), 1, values.data());
   return values;
 }

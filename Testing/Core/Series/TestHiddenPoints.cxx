@@ -288,7 +288,7 @@ TEST(HiddenPoints, IndexIsRefusedWhereFlagsDoNotFit)
     change(bad);
     EXPECT_THROW(CheckIndex(bad), Error);
   };
-  refused([](SeriesIndex& index) { index.Mesh = MeshIndex{ "a.mesh", 1, 0, 0, 8, 1 }; });
+  refused([](SeriesIndex& index) { index.Mesh = MeshIndex{ false, "a.mesh", 1, 0, 0, 8, 1 }; });
   refused([](SeriesIndex& index) { index.Arrays[0].Type = ScalarType::Int8; });
   refused([](SeriesIndex& index) { index.Arrays[0].Components[0].ErrorBoundAbsolute = 1; });
   refused([](SeriesIndex& index) { std::swap(index.Arrays[0], index.Arrays[1]); });

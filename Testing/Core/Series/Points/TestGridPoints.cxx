@@ -311,7 +311,7 @@ TEST_F(GridPoints, AnIndexThatDoesNotFitIsRefused)
   refused([](SeriesIndex& bad) { bad.Points->Files[2].Bytes += 1; });
   refused([](SeriesIndex& bad) { bad.Points->Form.Types[1] = ScalarType::Float32; });
   refused([](SeriesIndex& bad) { bad.Domain.Spacing.x = 2.0; });
-  refused([](SeriesIndex& bad) { bad.Mesh = MeshIndex{ "a.mesh", 1, 0, 0, 8, 1 }; });
+  refused([](SeriesIndex& bad) { bad.Mesh = MeshIndex{ false, "a.mesh", 1, 0, 0, 8, 1 }; });
 }
 
 TEST_F(GridPoints, AnotherSeriesTakesTheirPlace)
