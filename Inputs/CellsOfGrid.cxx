@@ -2,6 +2,7 @@
 #include "CellsOfGrid.h"
 
 #include "CellArrays.h"
+#include "HexMeshOfGrid.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellType.h"
@@ -12,8 +13,6 @@
 #include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkUnstructuredGrid.h"
-
-#include "Base/Error.h"
 
 #include <algorithm>
 #include <cstring>
@@ -109,15 +108,11 @@ std::vector<std::int64_t> FacesOfGrid(vtkUnstructuredGrid* grid)
 
 StoredCells CellsOfGrid(vtkUnstructuredGrid* grid)
 {
+  CheckWhole(grid);
   StoredCells cells;
   cells.PointType = TypeOfPoints(grid);
   cells.Points = PointsOfGrid(grid, cells.PointType);
   const auto types = PlainCellTypesOf(grid);
-  if (types->GetNumberOfValues() != grid->GetNumberOfCells())
-  {
-    throw Error("The mesh has " + std::to_string(types->GetNumberOfValues()) + " types of " +
-                std::to_string(grid->GetNumberOfCells()) + " cells");
-  }
   cells.Types.assign(types->GetPointer(0), types->GetPointer(0) + types->GetNumberOfValues());
   cells.Offsets = NumbersOf(grid->GetCells()->GetOffsetsArray());
   cells.Connectivity = NumbersOf(grid->GetCells()->GetConnectivityArray());

@@ -13,8 +13,8 @@ namespace banyan
 {
 
 /// A grid of cells of any type in the form of Core: a copy, without the image, not checked.
-/// Coordinates of other types than float become double. Throws Error where cells and their types
-/// are not as many.
+/// Coordinates of other types than float become double. Throws Error as CheckWhole
+/// does.
 StoredCells CellsOfGrid(vtkUnstructuredGrid* grid);
 
 /// The coordinates of all points, as numbers of `type`.

@@ -24,15 +24,7 @@
 
 namespace banyan
 {
-namespace
-{
 
-bool IsHexahedron(int type)
-{
-  return type == VTK_HEXAHEDRON || type == VTK_VOXEL;
-}
-
-/// Throws Error when cells have no points at all, or not each cell has a type and a flag.
 void CheckWhole(vtkUnstructuredGrid* grid)
 {
   const vtkIdType cells = grid->GetNumberOfCells();
@@ -47,6 +39,14 @@ void CheckWhole(vtkUnstructuredGrid* grid)
                 std::to_string(types));
   }
   CheckLength(GhostFlags(grid->GetCellData()), vtkDataObject::CELL, cells);
+}
+
+namespace
+{
+
+bool IsHexahedron(int type)
+{
+  return type == VTK_HEXAHEDRON || type == VTK_VOXEL;
 }
 
 OtherCells FindOthers(vtkUnstructuredGrid* grid)

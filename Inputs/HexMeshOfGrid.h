@@ -27,6 +27,9 @@ struct OtherCells
   std::string Text() const;
 };
 
+/// Throws Error when cells have no points at all, or not each cell has a type and a flag.
+void CheckWhole(vtkUnstructuredGrid* grid);
+
 /// The cells of an unstructured grid for ElementOctree: hexahedra and voxels. Ghost cells (those
 /// that another piece has too, and hidden ones) are left out, which takes a copy of the
 /// connectivity; otherwise nothing is copied, and the grid is kept alive.

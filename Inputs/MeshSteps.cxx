@@ -232,13 +232,19 @@ void MeshSteps::Remember(vtkUnstructuredGrid* grid)
 /// A mesh that is no octree, with an image for the values that are there.
 std::shared_ptr<const StoredCells> MeshSteps::CellsOf(vtkUnstructuredGrid* grid) const
 {
+  StoredCells cells = CellsOfGrid(grid); // what is wrong with the mesh is said first
   std::string warning;
   StoredValues values{ false, false };
+  const bool absolute = this->Options.Mode == ErrorBoundMode::Absolute;
   for (const MeshArray& array : this->Arrays.Of(grid, false, warning))
   {
-    (array.CellArray.empty() ? values.AtPoints : values.InCells) = true;
+    const bool atPoints = array.CellArray.empty();
+    (atPoints ? values.AtPoints : values.InCells) = true;
+    (atPoints ? values.PointArrays : values.CellArrays)
+      .push_back({ TypeOf(array.Values), array.Values->GetVoidPointer(0),
+        array.Values->GetNumberOfComponents(), this->Options.ErrorBound, absolute });
   }
-  return StoreCells(CellsOfGrid(grid), values);
+  return StoreCells(std::move(cells), values);
 }
 
 std::optional<PointsFile> MeshSteps::WriteMoved(int step, SegmentFolder& folder)

@@ -137,7 +137,7 @@ def row(name, source, times, options):
             for array in (each for each in index["arrays"] if "cellArray" not in each):
                 only = os.path.join(options.out, "only.banyan")
                 alone = producer(grid)
-                simple.SaveData(only, proxy=alone, PointArrays=[array["name"]], ErrorBound=options.bound)
+                simple.SaveData(only, proxy=alone, PointArrays=[array["name"]], CellArrays=[], ErrorBound=options.bound)
                 one, size = segments_of(only)
                 boxed += size
                 ordered += in_file_order(grid, array["name"], one["extent"], options.bound, only)

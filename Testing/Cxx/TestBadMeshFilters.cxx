@@ -199,7 +199,7 @@ TEST(BadMeshFiltersInVtk, CellsThatAreNone)
   const vtkIdType ids[] = { 0, 1, 4, 16 };
   others->InsertNextCell(VTK_TETRA, 4, ids);
   others->InsertNextCell(VTK_EMPTY_CELL, 0, ids);
-  Expect(others, { "Cell 27 is of the type vtkTetra", "", "Cell 27 is of the type vtkTetra" });
+  Expect(others, { "Cell 27 is of the type vtkTetra", "", "" }); // series keep any cells
 }
 
 TEST(BadMeshFiltersInVtk, PointsOfCells)
@@ -215,8 +215,9 @@ TEST(BadMeshFiltersInVtk, PointsOfCells)
     grid->GetPoints()->SetPoint(point, x, 0.0, 0.0);
     return grid;
   };
-  ExpectEverywhere(place(1, std::nan("")), "not finite");
-  ExpectEverywhere(place(1, HUGE_VAL), "not finite");
+  // Series keep points bit by bit.
+  Expect(place(1, std::nan("")), { "not finite", "not finite", "" });
+  Expect(place(1, HUGE_VAL), { "not finite", "not finite", "" });
   const auto unused = Mesh();
   unused->GetPoints()->InsertNextPoint(std::nan(""), 0.0, 0.0);
   unused->GetPointData()->SetScalars(Numbers(65, 1, "value"));
@@ -226,7 +227,7 @@ TEST(BadMeshFiltersInVtk, PointsOfCells)
   {
     one->GetPoints()->SetPoint(point, 1.0, 1.0, 1.0);
   }
-  ExpectEverywhere(one, "Cell 0 is flat");
+  Expect(one, { "Cell 0 is flat", "Cell 0 is flat", "" });
 }
 
 TEST(BadMeshFiltersInVtk, ArraysOfAnotherLength)

@@ -350,7 +350,6 @@ def check_refusals(folder, quake):
             return
         raise AssertionError(f"was written, and not refused with '{sentence}'")
 
-    refused(simple.Tetrahedralize(Input=simple.Wavelet(WholeExtent=[0, 3, 0, 3, 0, 3])), "is of the type vtkTetra")
     refused(simple.MergeBlocks(Input=quake, MergePoints=0), "There is no point array nonsense",
             PointArrays=["nonsense"])
     refused(simple.MergeBlocks(Input=quake, MergePoints=0), "There is no cell array nonsense",

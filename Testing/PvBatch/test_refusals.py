@@ -151,10 +151,8 @@ def half_copied(folder):
 
 def other_kinds(folder):
     """What cannot be a series: the writer claims the name, and says what to do."""
-    wavelet = simple.Wavelet(WholeExtent=[0, 4] * 3)
     kinds = {
         "surface": (simple.Sphere(), "'Resample To Image'"),
-        "tetrahedra": (simple.Tetrahedralize(Input=wavelet), "'Resample To Image'"),
         "blocks": (simple.GroupDatasets(Input=[simple.Sphere(), simple.Cone()]), "vtkMultiBlock"),
         "table": (simple.ProgrammableSource(OutputDataSetType="vtkTable"), "'Table To Structured Grid'"),
         "rectilinear": (simple.ProgrammableSource(OutputDataSetType="vtkRectilinearGrid"), "is empty"),

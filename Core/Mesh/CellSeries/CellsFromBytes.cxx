@@ -30,6 +30,13 @@ PointPrediction PredictionOf(ByteReader& reader)
   return static_cast<PointPrediction>(prediction);
 }
 
+ImageOrder OrderOf(ByteReader& reader)
+{
+  const std::uint8_t order = reader.Byte();
+  Require(order <= 1, "The values of the mesh have an unknown order");
+  return static_cast<ImageOrder>(order);
+}
+
 class CellsReader
 {
 public:
@@ -66,6 +73,8 @@ private:
     Require(bytes == 4 || bytes == 8, "The points of the mesh are neither float32 nor float64");
     mesh.PointType = bytes == 4 ? ScalarType::Float32 : ScalarType::Float64;
     this->Prediction = PredictionOf(reader);
+    mesh.PointOrder = OrderOf(reader);
+    mesh.CellOrder = OrderOf(reader);
     this->Cells = reader.Varint();
     this->PointCount = reader.Varint();
     // Other sections say how many there are, so that nothing is made larger than the file explains.
@@ -73,8 +82,8 @@ private:
               this->Of(cells_file::Points).size() == 3 * this->PointCount * bytes,
       "The mesh has an impossible number of cells or points");
     mesh.Points.resize(this->Of(cells_file::Points).size());
-    this->ReadBox(reader, this->PointCount, mesh.PointBox);
-    this->ReadBox(reader, this->Cells, mesh.CellBox);
+    ReadBox(reader, mesh.PointOrder, this->PointCount, mesh.PointBox);
+    ReadBox(reader, mesh.CellOrder, this->Cells, mesh.CellBox);
     const glm::ivec3 samples = mesh.Samples();
     const auto slab = static_cast<std::uint64_t>(samples.x) * static_cast<std::uint64_t>(samples.y);
     Require(slab <= MostItems / static_cast<std::uint64_t>(samples.z),
@@ -83,7 +92,7 @@ private:
   }
 
   /// @param count how many things have samples in it, where any has
-  void ReadBox(ByteReader& reader, std::uint64_t count, glm::ivec3& box) const
+  static void ReadBox(ByteReader& reader, ImageOrder order, std::uint64_t count, glm::ivec3& box)
   {
     std::uint64_t most[3];
     for (int axis = 0; axis < 3; ++axis)
@@ -95,11 +104,15 @@ private:
     {
       return;
     }
-    // No row may be longer than the box.
+    // All must have a place, and no more room be taken than they need.
     const auto part = [](std::uint64_t all, std::uint64_t parts)
     { return parts == 0 ? 0 : (all + parts - 1) / parts; };
-    Require(most[0] > 0 && most[1] > 0 && most[2] > 0 && count > 0 && most[2] <= count &&
-              most[1] <= part(count, most[2]) && most[0] == part(part(count, most[2]), most[1]),
+    const bool fits = order == ImageOrder::OfFile
+                        ? most[0] <= count && most[1] <= part(count, most[0]) &&
+                            most[2] == part(part(count, most[0]), most[1])
+                        : most[2] <= count && most[1] <= part(count, most[2]) &&
+                            most[0] == part(part(count, most[2]), most[1]);
+    Require(most[0] > 0 && most[1] > 0 && most[2] > 0 && count > 0 && fits,
       "A box of the image of the mesh does not fit the number of points or cells");
   }
 

@@ -94,6 +94,8 @@ private:
     Bytes& head = this->Of(Head);
     head.push_back(this->Mesh.PointType == ScalarType::Float64 ? 8 : 4);
     head.push_back(static_cast<std::uint8_t>(prediction));
+    head.push_back(static_cast<std::uint8_t>(this->Mesh.PointOrder));
+    head.push_back(static_cast<std::uint8_t>(this->Mesh.CellOrder));
     PutVarint(head, static_cast<std::uint64_t>(this->Mesh.CellCount()));
     PutVarint(head, static_cast<std::uint64_t>(this->Mesh.PointCount()));
     for (const glm::ivec3& box : { this->Mesh.PointBox, this->Mesh.CellBox })

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Mesh/CellSeries/ImageOrder.h"
 #include "Mesh/CellSeries/OrderInBox.h"
 #include "Mesh/CellSeries/StoredCells.h"
 
@@ -98,6 +99,54 @@ std::vector<glm::dvec3> MiddlesOf(const StoredCells& mesh, const std::vector<glm
   return middles;
 }
 
+/// An image may have so many times the samples of both boxes before others are taken.
+constexpr double MostRoom = 2.0;
+/// The order of the file must be so much better than that of places, in estimated bits per value:
+/// the latter keeps neighbours together at all steps.
+constexpr double MarginOfFile = 0.95;
+
+/// The box of points or cells, and their order in it.
+struct Chosen
+{
+  glm::ivec3 Box{ 0 };
+  ImageOrder Order = ImageOrder::OfPlaces;
+  glm::ivec3 BoxOfPlaces{ 0 };
+};
+
+Chosen OrderOfPlaces(const Chosen& chosen)
+{
+  return { chosen.BoxOfPlaces, ImageOrder::OfPlaces, chosen.BoxOfPlaces };
+}
+
+double VolumeOf(const glm::ivec3& box)
+{
+  return static_cast<double>(box.x) * box.y * box.z;
+}
+
+Chosen BestOrder(const StoredCells& mesh, const std::vector<glm::dvec3>& places,
+  const std::vector<ValuesToKeep>& arrays)
+{
+  Chosen best;
+  best.BoxOfPlaces = best.Box = BoxFor(places);
+  if (arrays.empty())
+  {
+    return best;
+  }
+  double least =
+    MarginOfFile * BitsInOrder(OrderInBox(places, best.Box, best.Box), best.Box, arrays);
+  for (const glm::ivec3& box : BoxesOfFile(mesh, places.size(), best.BoxOfPlaces))
+  {
+    const double bits = BitsInOrder(OrderOfFile(places.size(), box, box), box, arrays);
+    if (bits < least)
+    {
+      least = bits;
+      best.Box = box;
+      best.Order = ImageOrder::OfFile;
+    }
+  }
+  return best;
+}
+
 } // namespace
 
 void CheckCells(const StoredCells& mesh)
@@ -148,11 +197,15 @@ void LayOut(StoredCells& mesh)
   mesh.SampleOfCell.clear();
   if (mesh.PointBox.x > 0)
   {
-    mesh.SampleOfPoint = OrderInBox(places, mesh.PointBox, mesh.Samples());
+    mesh.SampleOfPoint = mesh.PointOrder == ImageOrder::OfFile
+                           ? OrderOfFile(places.size(), mesh.PointBox, mesh.Samples())
+                           : OrderInBox(places, mesh.PointBox, mesh.Samples());
   }
   if (mesh.CellBox.x > 0)
   {
-    mesh.SampleOfCell = OrderInBox(MiddlesOf(mesh, places), mesh.CellBox, mesh.Samples());
+    mesh.SampleOfCell = mesh.CellOrder == ImageOrder::OfFile
+                          ? OrderOfFile(mesh.Types.size(), mesh.CellBox, mesh.Samples())
+                          : OrderInBox(MiddlesOf(mesh, places), mesh.CellBox, mesh.Samples());
   }
 }
 
@@ -160,8 +213,28 @@ std::shared_ptr<const StoredCells> StoreCells(StoredCells mesh, const StoredValu
 {
   CheckCells(mesh);
   const std::vector<glm::dvec3> places = PlacesOf(mesh);
-  mesh.PointBox = values.AtPoints && !places.empty() ? BoxFor(places) : glm::ivec3(0);
-  mesh.CellBox = values.InCells ? BoxFor(MiddlesOf(mesh, places)) : glm::ivec3(0);
+  Chosen ofPoints, ofCells;
+  if (values.AtPoints && !places.empty())
+  {
+    ofPoints = BestOrder(mesh, places, values.PointArrays);
+  }
+  if (values.InCells)
+  {
+    ofCells = BestOrder(mesh, MiddlesOf(mesh, places), values.CellArrays);
+  }
+  mesh.PointBox = ofPoints.Box;
+  mesh.CellBox = ofCells.Box;
+  const double least = VolumeOf(ofPoints.Box) + VolumeOf(ofCells.Box);
+  if (VolumeOf(mesh.Samples()) > MostRoom * least)
+  {
+    // Boxes that are long along different axes do not share an image.
+    ofPoints = OrderOfPlaces(ofPoints);
+    ofCells = OrderOfPlaces(ofCells);
+  }
+  mesh.PointBox = ofPoints.Box;
+  mesh.CellBox = ofCells.Box;
+  mesh.PointOrder = ofPoints.Order;
+  mesh.CellOrder = ofCells.Order;
   const glm::ivec3 samples = mesh.Samples();
   // Box by box, so that no product is too large.
   if (std::int64_t{ samples.x } * samples.y > MostSamples ||

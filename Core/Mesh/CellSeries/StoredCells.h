@@ -18,6 +18,14 @@ namespace banyan
 /// VTK's number of polyhedra, the only cells with faces of their own.
 constexpr std::uint8_t PolyhedronType = 42;
 
+/// The order in which points or cells lie in their box of the image; numbers are those of the
+/// format.
+enum class ImageOrder : std::uint8_t
+{
+  OfPlaces = 0, ///< see OrderInBox
+  OfFile = 1    ///< that of the mesh
+};
+
 /// A mesh of cells of any type as a series keeps it: everything that brings it back as it was, bit
 /// for bit, and where each of its points and cells lies in the image that values are encoded as.
 struct StoredCells
@@ -32,8 +40,10 @@ struct StoredCells
   std::vector<std::int64_t> Faces;
 
   // The image.
-  glm::ivec3 PointBox{ 0 }; ///< samples of the box of points: see OrderInBox. 0: no values
+  glm::ivec3 PointBox{ 0 }; ///< samples of the box of points. 0: no values
   glm::ivec3 CellBox{ 0 };  ///< the same for cells
+  ImageOrder PointOrder = ImageOrder::OfPlaces;
+  ImageOrder CellOrder = ImageOrder::OfPlaces;
   std::vector<std::uint32_t> SampleOfPoint;
   std::vector<std::uint32_t> SampleOfCell;
 
@@ -53,14 +63,27 @@ struct StoredCells
   }
 };
 
+/// Values of a step that are to be kept, to choose an order by: `[tuple][component]`.
+struct ValuesToKeep
+{
+  ScalarType Type = ScalarType::Float32;
+  const void* Values = nullptr;
+  int Components = 1;
+  double Bound = 0.0;    ///< on their error
+  bool Absolute = false; ///< whether the bound is not a share of their range
+};
+
 /// Which values a series of a mesh has.
 struct StoredValues
 {
   bool AtPoints = true;
   bool InCells = true;
+  /// Those of one step. Without any, the order is that of places.
+  std::vector<ValuesToKeep> PointArrays{};
+  std::vector<ValuesToKeep> CellArrays{};
 };
 
-/// Checks a mesh, and finds its image.
+/// Checks a mesh, and finds its image, in the order in which the values cost less.
 /// @param mesh without the image
 /// Throws Error where a cell names a point that is not there, or the mesh is too large for one
 /// series.

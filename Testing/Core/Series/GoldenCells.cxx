@@ -97,7 +97,15 @@ GoldenCells::GoldenCells()
     }
   }
   mesh.Points = this->PointsAt(0);
-  this->Mesh = StoreCells(std::move(mesh), {});
+  // Points are in the order of places then, and cells in that of the file.
+  std::vector<float> numbers;
+  for (std::size_t cell = 0; cell < mesh.Types.size(); ++cell)
+  {
+    numbers.push_back(static_cast<float>(cell));
+  }
+  StoredValues values;
+  values.CellArrays = { { ScalarType::Float32, numbers.data(), 1, 0.0, false } };
+  this->Mesh = StoreCells(std::move(mesh), values);
 }
 
 Bytes GoldenCells::PointsAt(int step) const

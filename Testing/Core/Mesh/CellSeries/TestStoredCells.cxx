@@ -19,7 +19,7 @@ using cell_lattices::Kind;
 namespace
 {
 
-constexpr StoredValues Both{ true, true };
+const StoredValues Both{ true, true, {}, {} };
 
 void ExpectSame(const StoredCells& a, const StoredCells& b)
 {
@@ -29,6 +29,8 @@ void ExpectSame(const StoredCells& a, const StoredCells& b)
   EXPECT_EQ(a.Offsets, b.Offsets);
   EXPECT_EQ(a.Connectivity, b.Connectivity);
   EXPECT_EQ(a.Faces, b.Faces);
+  EXPECT_EQ(a.PointOrder, b.PointOrder);
+  EXPECT_EQ(a.CellOrder, b.CellOrder);
   EXPECT_EQ(a.PointBox, b.PointBox);
   EXPECT_EQ(a.CellBox, b.CellBox);
   EXPECT_EQ(a.SampleOfPoint, b.SampleOfPoint);
@@ -154,11 +156,11 @@ TEST(StoredCells, PointsOfNoCellAndFlatMeshesComeBack)
 TEST(StoredCells, OnlyValuesThatAreThereHaveSamples)
 {
   const StoredCells mesh = cell_lattices::Make<float>(Kind::Tetrahedra, { 4, 4, 4 });
-  const auto points = StoreCells(mesh, { true, false });
+  const auto points = StoreCells(mesh, { true, false, {}, {} });
   EXPECT_EQ(points->CellBox, glm::ivec3(0));
   EXPECT_TRUE(points->SampleOfCell.empty());
   ExpectSame(*points, *CellsFromBytes(CellsToBytes(*points)));
-  const auto cells = StoreCells(mesh, { false, true });
+  const auto cells = StoreCells(mesh, { false, true, {}, {} });
   EXPECT_TRUE(cells->SampleOfPoint.empty());
   ExpectSame(*cells, *CellsFromBytes(CellsToBytes(*cells)));
 }
@@ -275,13 +277,91 @@ TEST(StoredCells, IdsInOrderTakeFewBits)
   for (const Kind kind : { Kind::Hexahedra, Kind::Tetrahedra, Kind::Wedges })
   {
     StoredCells mesh = cell_lattices::Make<float>(kind, { 20, 20, 20 }, 0.0);
-    const auto stored = StoreCells(mesh, { false, false });
+    const auto stored = StoreCells(mesh, { false, false, {}, {} });
     EXPECT_LT(8 * CellsToBytes(*stored).size(), 4 * mesh.Types.size()) << static_cast<int>(kind);
   }
 }
 
 //--------------------------------------------------------------------------------------------------
 // The order in the image
+
+/// A smooth field at the points of a lattice, by the numbers that points have in `order`.
+std::vector<float> FieldOf(const glm::ivec3& n, const std::vector<std::size_t>& order)
+{
+  std::vector<float> values(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+  {
+    const auto at = static_cast<int>(i);
+    values[order[i]] = static_cast<float>(
+      std::sin(0.4 * (at % n.x)) + std::cos(0.3 * (at / n.x % n.y)) + 0.1 * (at / n.x / n.y));
+  }
+  return values;
+}
+
+/// Places say nothing about the lattice: the order of the file is taken, in its rows and slabs. In
+/// any order of points that of places is.
+TEST(ImageOrder, TheOneThatCostsLessIsTaken)
+{
+  const glm::ivec3 n{ 31, 12, 9 };
+  StoredCells mesh = cell_lattices::Make<float>(Kind::Tetrahedra, n - 1);
+  std::vector<std::size_t> order(static_cast<std::size_t>(mesh.PointCount()));
+  for (std::size_t i = 0; i < order.size(); ++i)
+  {
+    order[i] = i;
+  }
+  const std::vector<float> values = FieldOf(n, order);
+  std::vector<float> ofCells(mesh.Types.size());
+  for (std::size_t i = 0; i < ofCells.size(); ++i)
+  {
+    ofCells[i] = static_cast<float>(std::sin(0.01 * static_cast<double>(i)));
+  }
+  const Bytes points = mesh.Points;
+  std::mt19937 random(3);
+  for (std::size_t i = 0; i < mesh.Points.size(); i += 4)
+  {
+    StoreNumber(mesh.Points.data() + i, static_cast<float>(random() % 1000));
+  }
+  StoredValues kept;
+  kept.PointArrays = { { ScalarType::Float32, values.data(), 1, 1.0 / 512.0, false } };
+  kept.CellArrays = { { ScalarType::Float32, ofCells.data(), 1, 1.0 / 512.0, false } };
+  const auto scattered = StoreCells(mesh, kept);
+  EXPECT_EQ(scattered->PointOrder, ImageOrder::OfFile);
+  EXPECT_EQ(scattered->PointBox, n);
+  EXPECT_EQ(scattered->CellOrder, ImageOrder::OfFile);
+  ExpectOwnSamples(*scattered);
+  ExpectSame(*scattered, *CellsFromBytes(CellsToBytes(*scattered)));
+
+  std::shuffle(order.begin(), order.end(), random);
+  for (std::size_t i = 0; i < order.size(); ++i)
+  {
+    std::copy_n(points.begin() + static_cast<std::ptrdiff_t>(12 * i), 12,
+      mesh.Points.begin() + static_cast<std::ptrdiff_t>(12 * order[i]));
+  }
+  for (std::int64_t& id : mesh.Connectivity)
+  {
+    id = static_cast<std::int64_t>(order[static_cast<std::size_t>(id)]);
+  }
+  const std::vector<float> shuffled = FieldOf(n, order);
+  kept.PointArrays[0].Values = shuffled.data();
+  const auto stored = StoreCells(mesh, kept);
+  EXPECT_EQ(stored->PointOrder, ImageOrder::OfPlaces);
+  ExpectSame(*stored, *CellsFromBytes(CellsToBytes(*stored)));
+}
+
+TEST(ImageOrder, OnePointAndOneCellHaveOne)
+{
+  StoredCells mesh;
+  mesh.Offsets = { 0 };
+  mesh.Points.resize(12);
+  cell_lattices::AddCell(mesh, 1, { 0 });
+  const float value = 3.0F;
+  StoredValues kept;
+  kept.PointArrays = { { ScalarType::Float32, &value, 1, 0.0, true } };
+  kept.CellArrays = kept.PointArrays;
+  const auto stored = StoreCells(mesh, kept);
+  EXPECT_EQ(stored->Samples(), glm::ivec3(1));
+  ExpectSame(*stored, *CellsFromBytes(CellsToBytes(*stored)));
+}
 
 TEST(OrderInBox, ALatticeGetsItsOwnOrder)
 {
