@@ -63,18 +63,21 @@ ScalarType TypeOfPoints(vtkUnstructuredGrid* grid)
 Bytes PointsOfGrid(vtkUnstructuredGrid* grid, ScalarType type)
 {
   vtkDataArray* const data = grid->GetPoints() ? grid->GetPoints()->GetData() : nullptr;
-  const bool plain = data && data->HasStandardMemoryLayout() &&
+  if (!data)
+  {
+    return {};
+  }
+  const bool plain = data->HasStandardMemoryLayout() &&
                      data->GetDataType() == (type == ScalarType::Float32 ? VTK_FLOAT : VTK_DOUBLE);
   vtkSmartPointer<vtkDataArray> copy;
-  if (data && !plain)
+  if (!plain)
   {
     copy = vtkSmartPointer<vtkDataArray>::Take(
       vtkDataArray::CreateDataArray(type == ScalarType::Float32 ? VTK_FLOAT : VTK_DOUBLE));
     copy->DeepCopy(data);
   }
   vtkDataArray* const from = copy ? copy.Get() : data;
-  Bytes points(
-    3 * SizeOf(type) * static_cast<std::size_t>(from ? from->GetNumberOfTuples() : vtkIdType{ 0 }));
+  Bytes points(3 * SizeOf(type) * static_cast<std::size_t>(from->GetNumberOfTuples()));
   if (!points.empty())
   {
     std::memcpy(points.data(), from->GetVoidPointer(0), points.size());

@@ -269,7 +269,7 @@ vtkSmartPointer<vtkImageData> MeshSteps::ImageOf(vtkUnstructuredGrid* grid)
   { return this->Cells ? AtlasValues(this->Cells, where) : AtlasValues(this->Mesh, where); };
   const AtlasValues atPoints = values(MeshValues::OfPoints);
   const AtlasValues ofCells = values(MeshValues::OfCells);
-  const auto image = vtkSmartPointer<vtkImageData>::New();
+  auto image = vtkSmartPointer<vtkImageData>::New();
   const glm::ivec3 size = this->Cells ? this->Cells->Samples() : this->Mesh->Atlas->Samples();
   image->SetDimensions(size.x, size.y, size.z);
   ThreadPool pool(ThreadPool::DefaultWidth());

@@ -104,7 +104,7 @@ vtkSmartPointer<vtkCellArray> CellsOf(const StoredCells& mesh,
   const std::vector<std::int64_t>& place, std::size_t first, std::size_t end)
 {
   vtkNew<vtkIdTypeArray> offsets, ids;
-  offsets->SetNumberOfValues(static_cast<vtkIdType>(end - first + 1));
+  offsets->SetNumberOfValues(static_cast<vtkIdType>(end - first) + 1);
   for (std::size_t cell = first; cell <= end; ++cell)
   {
     offsets->SetValue(static_cast<vtkIdType>(cell - first),

@@ -99,7 +99,7 @@ std::shared_ptr<const StoredCells> ReadCells(const SeriesFile& series)
   const Bytes bytes = ReadBytes(path, index.Bytes, { index.HashLow, index.HashHigh });
   try
   {
-    const std::shared_ptr<const StoredCells> mesh = CellsFromBytes(bytes);
+    std::shared_ptr<const StoredCells> mesh = CellsFromBytes(bytes);
     const auto& arrays = series.Index().Arrays;
     const bool ofCells = std::any_of(
       arrays.begin(), arrays.end(), [](const ArrayIndex& one) { return !one.CellArray.empty(); });
