@@ -90,7 +90,7 @@ def draw_mesh(data, out, name, reference):
     session.clear()
 
 
-def keep(data, out, name):
+def keep(data, out, name, alone):
     """Such a mesh is kept in a series as it is, or as boxes, and drawn as those that the filter makes of it."""
     file, array, boxes, _, _ = MESHES[name]
     source = simple.OpenDataFile(os.path.join(data, file))
@@ -100,8 +100,11 @@ def keep(data, out, name):
     kept.UpdatePipeline()
     source.UpdatePipeline()
     mine, theirs = (each.GetDataInformation() for each in (source, kept))
-    counts = [(each.GetNumberOfCells(), each.GetNumberOfPoints(), each.GetBounds()) for each in (mine, theirs)]
+    counts = [(each.GetNumberOfCells(), each.GetBounds()) for each in (mine, theirs)]
     session.require(counts[0] == counts[1], f"{name}: {counts}")
+    # Ranks read runs of cells, and points between these are on several.
+    points = [each.GetNumberOfPoints() for each in (mine, theirs)]
+    session.require(points[0] == points[1] if alone else points[0] <= points[1], f"{name}: {points} points")
     ranges = [each.PointData[array[1]].GetRange(0) for each in (source, kept)]
     session.require(ranges[0] == ranges[1], f"{name}: {ranges}")
     simple.Delete(kept)
@@ -196,7 +199,7 @@ def main():
     for name in MESHES:
         draw_mesh(data, arguments.out, name, arguments.reference)
     for name in ("mountain", "reactor"):
-        keep(data, arguments.out, name)
+        keep(data, arguments.out, name, alone=not arguments.reference)
     if not arguments.reference:
         draw_mixed(data, arguments.out)
         watch_sampling(data)
