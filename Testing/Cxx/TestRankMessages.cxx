@@ -187,7 +187,8 @@ TEST(RankMessages, AMistakeIsSaidOfTheRankThatMadeIt)
     }
     steps.Take(data, {});
   };
-  ExpectAllThrow(3, take, "Rank 2: Other ranks have a mesh of hexahedra");
+  ExpectAllThrow(3, take,
+    "Rank 2: Other ranks have a mesh of cells (vtkUnstructuredGrid), and this one has vtkImageData");
 }
 
 TEST(RankMessages, AMeshThatChangesFailsOnAllRanks)
