@@ -180,19 +180,10 @@ void WhatLimitsAnEstimateIsSaid()
   mapper->SetImageErrorTolerance(0.001);
   Stage stage(mapper);
   stage.LookAt(Bounds);
-  const vtkSmartPointer<vtkPiecewiseFunction> smooth =
-    stage.Volume->GetProperty()->GetScalarOpacity();
-  vtkNew<vtkPiecewiseFunction> narrow;
-  narrow->AddPoint(0.5, 0.0);
-  narrow->AddPoint(0.55, 0.9);
-  narrow->AddPoint(0.6, 0.0);
-  stage.Volume->GetProperty()->SetScalarOpacity(narrow);
   stage.Draw();
-  Check(EstimateOf(mapper) > mapper->GetImageErrorTolerance(),
-    "no sampling keeps such a tolerance of a narrow peak");
+  Check(EstimateOf(mapper) > 0.001, "no sampling keeps such a tolerance");
   Check(Says(mapper, "The finest sampling was reached"), "that is said");
   Check(!Says(mapper, "reaches 1"), "the opacity does not");
-  stage.Volume->GetProperty()->SetScalarOpacity(smooth);
   mapper->SetImageErrorTolerance(20.0);
   stage.Draw();
   Check(EstimateOf(mapper) <= 20.0 && Says(mapper, "") &&

@@ -240,37 +240,6 @@ ProbeErrors ProbeImages::Difference(const ProbeImage& a, const ProbeImage& b) co
   return errors;
 }
 
-double ProbeImages::SafetyFor(const ProbeErrors& errors) const
-{
-  constexpr int every = 4;
-  constexpr double least = 2.0;
-  constexpr double most = 4.0;
-  const int width = this->View.Size().x;
-  float largest[every][every] = {};
-  for (int y = 0; y < this->View.Size().y; ++y)
-  {
-    const float* const row = errors.Pixels.data() + static_cast<std::ptrdiff_t>(y) * width;
-    for (int x = 0; x < width; ++x)
-    {
-      float& ofThese = largest[y % every][x % every];
-      ofThese = std::max(ofThese, row[x]);
-    }
-  }
-  double sum = 0.0;
-  double worst = 0.0;
-  for (const auto& ofRows : largest)
-  {
-    for (const float ofThese : ofRows)
-    {
-      sum += ofThese;
-      worst = std::max(worst, static_cast<double>(ofThese));
-    }
-  }
-  const double growth = sum > 0.0 ? worst * every * every / sum : 1.0;
-  const double times = std::log2(this->Spacing) / std::log2(every);
-  return std::clamp(std::pow(growth, times), least, most);
-}
-
 std::size_t ProbeImages::TileCount() const
 {
   const glm::ivec2 tiles = TileSamplings::TilesOf(this->ImageSize());
@@ -316,7 +285,6 @@ TileErrors ProbeImages::ErrorsOf(const ProbeErrors& errors, double factor, doubl
 std::vector<ProbesAround> ProbeImages::AroundAll(int tiles, int axis) const
 {
   std::vector<ProbesAround> around;
-  around.reserve(static_cast<std::size_t>(tiles));
   for (int tile = 0; tile < tiles; ++tile)
   {
     around.push_back(this->Around(tile, axis));

@@ -89,11 +89,8 @@ public:
 
   glm::ivec2 ImageSize() const { return this->Scene.Camera.ImageSize(); }
   std::size_t TileCount() const;
-  /// How many times worse than the worst of its probes the worst pixel of a tile may be: as much
-  /// worse as the worst of all probes is than that of every fourth along both axes, for each time
-  /// that there are 16 times as many; from 2 to 4. Where many small errors add up it is 2, and
-  /// where a few rays are far off it is 4.
-  double SafetyFor(const ProbeErrors& errors) const;
+  /// The worst pixel of a tile may be so many times worse than the worst of its probes.
+  static constexpr double Safety() { return 4.0; }
 
 private:
   ProbesAround Around(int tile, int axis) const;

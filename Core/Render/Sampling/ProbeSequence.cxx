@@ -24,16 +24,16 @@ void ProbeSequence::Add(ProbeImage picture)
   this->Steps.push_back(this->Pictures.Difference(picture, this->Drawn.back()));
   const ProbeErrors& difference = this->Steps.back();
   const double largest = difference.Largest();
-  const double safety = this->Pictures.SafetyFor(difference);
   if (this->Drawn.size() == 1)
   {
     // Of the first one nothing else is known.
-    this->Errors.front() = this->Pictures.ErrorsOf(difference, 2.0 * safety, 2.0);
+    this->Errors.front() = this->Pictures.ErrorsOf(difference, 2.0 * ProbeImages::Safety(), 2.0);
   }
   const bool known = this->Drawn.size() > 1 && largest > 0.0;
   const double ratio = known ? std::clamp(this->LargestBefore / largest, 1.7, 4.0) : 2.0;
   const double part = 1.0 / (ratio - 1.0);
-  this->Errors.push_back(this->Pictures.ErrorsOf(difference, safety * part, ShareOfLargest * part));
+  this->Errors.push_back(
+    this->Pictures.ErrorsOf(difference, ProbeImages::Safety() * part, ShareOfLargest * part));
   this->Errors.back().Lower(this->Errors[this->Errors.size() - 2]);
   this->LargestBefore = largest;
   this->Drawn.push_back(std::move(picture));
@@ -56,8 +56,7 @@ std::vector<TileErrors> ProbeSequence::AllErrors() const
   const std::size_t last = errors.size() - 1;
   const auto lower = [&](std::size_t i, std::size_t later, const ProbeErrors& difference)
   {
-    TileErrors bound =
-      this->Pictures.ErrorsOf(difference, this->Pictures.SafetyFor(difference), ShareOfLargest);
+    TileErrors bound = this->Pictures.ErrorsOf(difference, ProbeImages::Safety(), ShareOfLargest);
     bound.Add(errors[later]);
     errors[i].Lower(bound);
   };

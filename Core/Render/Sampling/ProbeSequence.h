@@ -15,9 +15,9 @@ namespace banyan
 /// later picture, and that one's error, bound the error too, and so does what is expected of an
 /// earlier one.
 ///
-/// Errors of tiles are those of the probes in and around them, times a factor of safety
-/// (SafetyFor), because the worst of a thousand pixels is worse than that of a few; and at least
-/// the largest error anywhere, because probes may miss what is thin.
+/// Errors of tiles are those of the probes in and around them, times a factor of safety, because
+/// the worst of a thousand pixels is worse than that of a few; and at least the largest error
+/// anywhere, because probes may miss what is thin.
 class ProbeSequence
 {
 public:

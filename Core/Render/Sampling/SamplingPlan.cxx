@@ -120,10 +120,8 @@ private:
     {
       pictures.Add(this->Pictures.Draw({ trial.Level, distance }));
       choices.push_back({ distance, {} });
-      // Pictures with few samples may look alike because all of them miss what is thin. Of two
-      // pictures the errors are known to twice or four times as much only, and another one costs
-      // less than what tiles are then drawn too finely for.
-      content = choices.size() > 2 && distance <= FewestSamples * this->Wish.Distance &&
+      // Pictures with few samples may look alike because all of them miss what is thin.
+      content = distance <= FewestSamples * this->Wish.Distance &&
                 this->LeastErrorAt(distance) <= trial.Allowed &&
                 pictures.LastIsWithin(trial.Allowed);
     }

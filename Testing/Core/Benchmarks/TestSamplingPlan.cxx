@@ -33,7 +33,7 @@ TEST_P(StandardScenesPlan, TheErrorStaysBelowTheEstimate)
     StandardScene(StandardVolume(Samples, pool), GetParam().first, GetParam().second, Pixels);
   const FloatImage converged = ConvergedImage(scene, 1.0 / 16.0, pool);
   std::int64_t samplesBefore = std::numeric_limits<std::int64_t>::max();
-  for (const double tolerance : { 0.25, 1.0, 8.0, 32.0 })
+  for (const double tolerance : { 0.25, 2.0, 8.0, 32.0 })
   {
     SCOPED_TRACE(tolerance);
     for (const int coarsest : { 2, 0 })

@@ -69,10 +69,10 @@ double LongestDistanceOf(const SamplingPlan& plan)
   return longest;
 }
 
-// With a tolerance of 8 a tile may be off by 7, and levels and distances by half of it each. Twice
-// its offset of 1.5, as all pixels are alike, level 2 is off by 3, level 1 by 1 and level 0 not at
-// all; but only when level 0 was drawn is this known, because levels 2 and 1 are 2 apart.
-constexpr Offsets LevelTwoWillDo{ { 0.0, -0.5, 1.5 }, 0.5 };
+// With a tolerance of 8 a tile may be off by 7, and levels and distances by half of it each. Four
+// times its offset of 0.75, level 2 is off by 3, level 1 by 1 and level 0 not at all; but only when
+// level 0 was drawn is this known, because levels 2 and 1 are 1 apart.
+constexpr Offsets LevelTwoWillDo{ { 0.0, -0.25, 0.75 }, 0.25 };
 
 TEST(SamplingPlanLevels, FinerLevelsThanAreNeededAreNotUsed)
 {
@@ -85,10 +85,10 @@ TEST(SamplingPlanLevels, FinerLevelsThanAreNeededAreNotUsed)
 
 TEST(SamplingPlanLevels, FinerLevelsArePutBackWhereDistancesLeaveNoRoom)
 {
-  // However close samples are, they differ by 2.5 from those twice as far apart: off by 5, twice as
-  // much. With the 3 of level 2 that is more than 7, with the 1 of level 1 it is not.
+  // However close samples are, they differ by 1.25 from those twice as far apart: off by 5, four
+  // times as much. With the 3 of level 2 that is more than 7, with the 1 of level 1 it is not.
   Offsets offsets = LevelTwoWillDo;
-  offsets.EverySecondStep = 2.5;
+  offsets.EverySecondStep = 1.25;
   const SamplingPlan plan = PlanOf(offsets, 8.0);
   ASSERT_TRUE(plan.Samplings);
   EXPECT_EQ(FinestLevelOf(plan), 0);
@@ -99,7 +99,7 @@ TEST(SamplingPlanLevels, FinerLevelsArePutBackWhereDistancesLeaveNoRoom)
 TEST(SamplingPlanLevels, TheLeastErrorIsTakenWhereNoneIsSmallEnough)
 {
   Offsets offsets = LevelTwoWillDo;
-  offsets.EverySecondStep = 5.0;
+  offsets.EverySecondStep = 2.5;
   const SamplingPlan plan = PlanOf(offsets, 8.0);
   ASSERT_TRUE(plan.Samplings);
   EXPECT_EQ(LevelOfFirstTile(plan), 0);
@@ -110,7 +110,7 @@ TEST(SamplingPlanLevels, WhatKeepsAPlanFromItsToleranceIsSaid)
 {
   EXPECT_EQ(PlanOf(LevelTwoWillDo, 8.0).Limit, SamplingLimit::None);
   Offsets offsets = LevelTwoWillDo;
-  offsets.EverySecondStep = 5.0;
+  offsets.EverySecondStep = 2.5;
   EXPECT_EQ(PlanOf(offsets, 8.0).Limit, SamplingLimit::Distance);
   const SamplingPlan held = PlanOf({ { 0.0, 5.0, 9.0 }, 0.0 }, 8.0, false, /*finestLevel=*/1);
   EXPECT_EQ(held.Limit, SamplingLimit::Level);

@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <random>
 
 using namespace banyan;
@@ -82,32 +81,6 @@ TEST(ProbeImages, ErrorsOfTilesAreTheLargestAroundThem)
       EXPECT_NEAR(found.Of(static_cast<std::size_t>(i)), expected, 1e-6) << i;
     }
   }
-}
-
-TEST(ProbeImages, FewThatAreFarOffLetWorseBeExpected)
-{
-  const RayScene scene = scenes::Scene(glm::ivec3(9), glm::ivec2(512));
-  const auto safetyWith = [&](int spacing, float worst)
-  {
-    const ProbeImages pictures(scene, Painted, spacing, 2.5);
-    ProbeErrors errors;
-    errors.Pixels.assign(static_cast<std::size_t>(pictures.Part().Count()), 1.0f);
-    errors.Pixels[errors.Pixels.size() / 2] = worst;
-    return pictures.SafetyFor(errors);
-  };
-  // Of 16 pictures of every fourth probe one has the worst.
-  const auto growth = [](double worst) { return 16.0 * worst / (15.0 + worst); };
-  for (const int spacing : { 1, 4, 16 })
-  {
-    SCOPED_TRACE(spacing);
-    EXPECT_DOUBLE_EQ(safetyWith(spacing, 1.0f), 2.0) << "all alike";
-    EXPECT_DOUBLE_EQ(safetyWith(spacing, 0.0f), 2.0) << "one is exact";
-  }
-  EXPECT_DOUBLE_EQ(safetyWith(1, 100.0f), 2.0) << "no pixel is without a probe";
-  EXPECT_NEAR(safetyWith(4, 3.0f), growth(3.0), 1e-6);
-  EXPECT_NEAR(safetyWith(8, 2.0f), std::pow(growth(2.0), 1.5), 1e-6);
-  EXPECT_NEAR(safetyWith(16, 1.8f), growth(1.8) * growth(1.8), 1e-5);
-  EXPECT_DOUBLE_EQ(safetyWith(16, 100.0f), 4.0);
 }
 
 TEST(ProbeImages, NoneIsDrawnTwice)
