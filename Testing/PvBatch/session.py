@@ -117,6 +117,19 @@ def require(condition, sentence):
         raise AssertionError(sentence)
 
 
+def expect_refusal(folder, made, mentions):
+    """Saving this source as a series must fail with a sentence that mentions these words, and leave nothing."""
+    path = os.path.join(folder, "bad.banyan")
+    try:
+        simple.SaveData(path, proxy=made, WriteTimeSteps=1)
+    except RuntimeError as error:
+        for mention in mentions:
+            require(mention in str(error), str(error))
+    else:
+        raise AssertionError(f"{path} was written")
+    require(not os.path.exists(path), "something is left")
+
+
 driven = False  # whether a script of the window goes on when it has returned
 
 

@@ -3,66 +3,23 @@
 
 #include "Base/Error.h"
 #include "Base/Hash.h"
+#include "Mesh/Series/MeshFile.h"
 #include "Series/Decode/SeriesFile.h"
 #include "Series/Encode/SegmentFolder.h"
-#include "Series/Format/AtomicFile.h"
 
 #include <algorithm>
 
 namespace banyan
 {
-namespace
-{
-
-std::shared_ptr<const std::vector<std::uint8_t>> Marked(
-  const glm::ivec3& size, const std::vector<std::uint32_t>& samples)
-{
-  auto marked = std::make_shared<std::vector<std::uint8_t>>(static_cast<std::size_t>(size.x) *
-                                                            static_cast<std::size_t>(size.y) *
-                                                            static_cast<std::size_t>(size.z));
-  for (const std::uint32_t sample : samples)
-  {
-    (*marked)[sample] = 1;
-  }
-  return marked;
-}
-
-void WriteBytes(const Bytes& bytes, const std::string& path)
-{
-  AtomicFile file(path);
-  file.Append(bytes.data(), bytes.size());
-  file.Commit();
-}
-
-/// A whole file that must be what the index says.
-Bytes ReadBytes(const std::string& path, std::uint64_t bytes, const Hash128& hash)
-{
-  const std::string content = ReadWholeFile(path, bytes);
-  if (content.size() != bytes || HashOf(content.data(), content.size()) != hash)
-  {
-    throw Error("The file of the mesh is damaged or not the one that belongs to the series",
-      { path, {}, content.size(), bytes });
-  }
-  return { content.begin(), content.end() };
-}
-
-} // namespace
-
 std::shared_ptr<MeshPlan> WriteCells(const StoredCells& mesh, SegmentFolder& folder)
 {
-  const Bytes bytes = CellsToBytes(mesh);
-  const Hash128 hash = HashOf(bytes.data(), bytes.size());
-  auto plan = std::make_shared<MeshPlan>();
+  const auto plan = mesh_file::WriteFile(CellsToBytes(mesh), folder);
+  const auto samples = static_cast<std::size_t>(GridOfImages(mesh).Extent.Count());
   plan->Index.OfCells = true;
-  plan->Index.File = folder.FinalNameOfMesh(hash);
-  plan->Index.Bytes = bytes.size();
-  plan->Index.HashLow = hash.Low;
-  plan->Index.HashHigh = hash.High;
   plan->Index.Points = mesh.PointCount();
   plan->Index.Cells = mesh.CellCount();
-  plan->Needed = Marked(mesh.Samples(), mesh.SampleOfPoint);
-  plan->NeededOfCells = Marked(mesh.Samples(), mesh.SampleOfCell);
-  WriteBytes(bytes, folder.Path() + "/" + plan->Index.File);
+  plan->Needed = mesh_file::Marked(samples, mesh.SampleOfPoint);
+  plan->NeededOfCells = mesh_file::Marked(samples, mesh.SampleOfCell);
   return plan;
 }
 
@@ -77,7 +34,7 @@ PointsFile WriteMovedPoints(
   file.Bytes = bytes.size();
   file.HashLow = hash.Low;
   file.HashHigh = hash.High;
-  WriteBytes(bytes, folder.Path() + "/" + file.File);
+  mesh_file::WriteFile(bytes, folder.Path() + "/" + file.File);
   return file;
 }
 
@@ -96,7 +53,7 @@ std::shared_ptr<const StoredCells> ReadCells(const SeriesFile& series)
   }
   const MeshIndex& index = *series.Index().Mesh;
   const std::string path = series.Folder() + "/" + index.File;
-  const Bytes bytes = ReadBytes(path, index.Bytes, { index.HashLow, index.HashHigh });
+  const Bytes bytes = mesh_file::ReadFile(path, index.Bytes, { index.HashLow, index.HashHigh });
   try
   {
     std::shared_ptr<const StoredCells> mesh = CellsFromBytes(bytes);
@@ -135,7 +92,7 @@ const PointsFile* MovedPointsOf(const SeriesIndex& index, int step)
 Bytes ReadMovedPoints(const SeriesFile& series, const StoredCells& mesh, const PointsFile& points)
 {
   const std::string path = series.Folder() + "/" + points.File;
-  const Bytes bytes = ReadBytes(path, points.Bytes, { points.HashLow, points.HashHigh });
+  const Bytes bytes = mesh_file::ReadFile(path, points.Bytes, { points.HashLow, points.HashHigh });
   try
   {
     return MovedPointsFromBytes(mesh, bytes);

@@ -2,21 +2,49 @@
 #include "Mesh/Series/MeshFile.h"
 
 #include "Base/Error.h"
-#include "Base/Hash.h"
 #include "Series/Decode/SeriesFile.h"
 #include "Series/Encode/SegmentFolder.h"
 #include "Series/Format/AtomicFile.h"
 
 namespace banyan
 {
-namespace
+namespace mesh_file
 {
 
-std::shared_ptr<const std::vector<std::uint8_t>> Marked(
-  const StoredMesh& mesh, const std::vector<std::uint32_t>& samples)
+std::shared_ptr<MeshPlan> WriteFile(const Bytes& bytes, SegmentFolder& folder)
 {
-  auto marked = std::make_shared<std::vector<std::uint8_t>>(
-    static_cast<std::size_t>(mesh.Atlas->SampleCount()));
+  const Hash128 hash = HashOf(bytes.data(), bytes.size());
+  auto plan = std::make_shared<MeshPlan>();
+  plan->Index.File = folder.FinalNameOfMesh(hash);
+  plan->Index.Bytes = bytes.size();
+  plan->Index.HashLow = hash.Low;
+  plan->Index.HashHigh = hash.High;
+  WriteFile(bytes, folder.Path() + "/" + plan->Index.File);
+  return plan;
+}
+
+void WriteFile(const Bytes& bytes, const std::string& path)
+{
+  AtomicFile file(path);
+  file.Append(bytes.data(), bytes.size());
+  file.Commit();
+}
+
+Bytes ReadFile(const std::string& path, std::uint64_t bytes, const Hash128& hash)
+{
+  const std::string content = ReadWholeFile(path, bytes);
+  if (content.size() != bytes || HashOf(content.data(), content.size()) != hash)
+  {
+    throw Error("The file of the mesh is damaged or not the one that belongs to the series",
+      { path, {}, content.size(), bytes });
+  }
+  return { content.begin(), content.end() };
+}
+
+std::shared_ptr<const std::vector<std::uint8_t>> Marked(
+  std::size_t count, const std::vector<std::uint32_t>& samples)
+{
+  auto marked = std::make_shared<std::vector<std::uint8_t>>(count);
   for (const std::uint32_t sample : samples)
   {
     (*marked)[sample] = 1;
@@ -24,24 +52,16 @@ std::shared_ptr<const std::vector<std::uint8_t>> Marked(
   return marked;
 }
 
-} // namespace
+} // namespace mesh_file
 
 std::shared_ptr<MeshPlan> WriteMesh(const StoredMesh& mesh, SegmentFolder& folder)
 {
-  const Bytes bytes = MeshToBytes(mesh);
-  const Hash128 hash = HashOf(bytes.data(), bytes.size());
-  auto plan = std::make_shared<MeshPlan>();
-  plan->Index.File = folder.FinalNameOfMesh(hash);
-  plan->Index.Bytes = bytes.size();
-  plan->Index.HashLow = hash.Low;
-  plan->Index.HashHigh = hash.High;
+  const auto plan = mesh_file::WriteFile(MeshToBytes(mesh), folder);
+  const auto samples = static_cast<std::size_t>(mesh.Atlas->SampleCount());
   plan->Index.Points = mesh.PointCount();
   plan->Index.Cells = mesh.CellCount();
-  plan->Needed = Marked(mesh, mesh.SampleOfPoint);
-  plan->NeededOfCells = Marked(mesh, mesh.SampleOfCell);
-  AtomicFile file(folder.Path() + "/" + plan->Index.File);
-  file.Append(bytes.data(), bytes.size());
-  file.Commit();
+  plan->Needed = mesh_file::Marked(samples, mesh.SampleOfPoint);
+  plan->NeededOfCells = mesh_file::Marked(samples, mesh.SampleOfCell);
   return plan;
 }
 
@@ -62,17 +82,10 @@ std::shared_ptr<const StoredMesh> ReadMesh(const SeriesFile& series)
   }
   const MeshIndex& index = *series.Index().Mesh;
   const std::string path = series.Folder() + "/" + index.File;
-  const std::string content = ReadWholeFile(path, index.Bytes);
-  const Hash128 hash = HashOf(content.data(), content.size());
-  if (content.size() != index.Bytes || hash != Hash128{ index.HashLow, index.HashHigh })
-  {
-    throw Error("The file of the mesh is damaged or not the one that belongs to the series",
-      { path, {}, content.size(), index.Bytes });
-  }
+  const Bytes bytes = mesh_file::ReadFile(path, index.Bytes, { index.HashLow, index.HashHigh });
   try
   {
-    const std::shared_ptr<const StoredMesh> mesh =
-      MeshFromBytes(Bytes(content.begin(), content.end()));
+    const std::shared_ptr<const StoredMesh> mesh = MeshFromBytes(bytes);
     if (mesh->PointCount() != index.Points || mesh->CellCount() != index.Cells ||
         mesh->Atlas->Samples() != series.Index().Domain.Samples())
     {

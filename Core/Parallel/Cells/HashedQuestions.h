@@ -32,7 +32,7 @@ public:
   /// What a rank answers: by rank, one answer for each of its records, one after the other.
   using Answer = std::function<std::vector<Bytes>(const std::vector<Bytes>& asked)>;
 
-  /// Collective: all answers, in the order of records.
+  /// Collective, once: all answers, in the order of records.
   /// @param bytes of an answer
   /// @param failure of this rank so far
   /// Throws CollectiveError.

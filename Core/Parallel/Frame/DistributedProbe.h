@@ -13,6 +13,7 @@ namespace banyan
 /// what it took, and its pixels, and all of them blend the same picture. The message is as large as
 /// the largest footprint of a zone: what ranks receive together grows like the sum of the
 /// footprints, with the cube root of the number of ranks.
+/// Pieces of a mesh are drawn by DrawPieces, for all ranks.
 ///
 /// Collective; the parameters are those of DrawDistributed.
 /// @param scene composited samples only
