@@ -194,15 +194,7 @@ std::shared_ptr<const FloatImage> VolumeFrame::CastPart(
   vtkRenderer* renderer, const Backdrop& backdrop, const Together& others, const PixelRect& part)
 {
   MapperState& state = *this->State;
-  const bool interacting = IsInteracting(renderer);
-  if (this->PicturesDrawn == 0)
-  {
-    this->BeginFigures();
-    LateFrames::PauseAll();
-    state.LastRenderer = renderer;
-    this->DrawsAtOnce(!interacting);
-  }
-  this->Owner->GetStatistics()->SetPixelsReadBehind(static_cast<vtkIdType>(backdrop.PixelsRead()));
+  this->BeginParts(renderer, backdrop);
   const PixelRect whole = this->Wanted->Viewport;
   const PixelRect own = Intersection(whole, part);
   if (own.Empty())
@@ -214,12 +206,55 @@ std::shared_ptr<const FloatImage> VolumeFrame::CastPart(
   scene.Viewport = Intersection(
     whole, { own.Lo - RaySampling::LargestStride, own.Hi + RaySampling::LargestStride });
   scene.Depth = backdrop.Depths(scene.Viewport);
-  FieldFrames::Wish wish = this->WishFor(interacting, EyeOf(renderer), others.Volumes);
+  FieldFrames::Wish wish =
+    this->WishFor(IsInteracting(renderer), EyeOf(renderer), others.Volumes);
   wish.Whole = whole;
   wish.Places = { { own, 0, Intersection(backdrop.Behind(), own) } };
   const FieldFrames::Frame frame = state.Frames.Draw(*state.Communicator, state.Field, scene, wish);
   this->TellMore(frame);
   return frame.Picture.Pixels;
+}
+
+float VolumeFrame::CastSegments(vtkRenderer* renderer, const Backdrop& backdrop,
+  const Together& others, const PixelRect& part, SegmentPicture& segments)
+{
+  MapperState& state = *this->State;
+  this->BeginParts(renderer, backdrop);
+  const PixelRect whole = this->Wanted->Viewport;
+  RayScene scene = *this->Wanted;
+  scene.Viewport = Intersection(whole, part);
+  if (scene.Viewport.Empty())
+  {
+    return 1.0f;
+  }
+  scene.Depth = backdrop.Depths(scene.Viewport);
+  FieldFrames::Wish wish =
+    this->WishFor(IsInteracting(renderer), EyeOf(renderer), others.Volumes);
+  wish.Whole = whole;
+  wish.Places = { { scene.Viewport, 0, {} } };
+  wish.Reuse = false;
+  wish.Segments = &segments;
+  this->TellMore(state.Frames.Draw(*state.Communicator, state.Field, scene, wish));
+  return 1.0f - scene.OpacityLimit;
+}
+
+void VolumeFrame::SegmentsTook(vtkRenderer* renderer, const Together& others, double seconds)
+{
+  this->State->Frames.FrameTook(*this->State->Communicator,
+    this->WishFor(IsInteracting(renderer), EyeOf(renderer), others.Volumes), seconds);
+}
+
+/// Of a picture that is drawn part by part: nothing of it comes later.
+void VolumeFrame::BeginParts(vtkRenderer* renderer, const Backdrop& backdrop)
+{
+  if (this->PicturesDrawn == 0)
+  {
+    this->BeginFigures();
+    LateFrames::PauseAll();
+    this->State->LastRenderer = renderer;
+    this->DrawsAtOnce(!IsInteracting(renderer));
+  }
+  this->Owner->GetStatistics()->SetPixelsReadBehind(static_cast<vtkIdType>(backdrop.PixelsRead()));
 }
 
 /// Adds what a picture took to what those before it took.

@@ -69,6 +69,17 @@ public:
   std::shared_ptr<const FloatImage> CastPart(
     vtkRenderer* renderer, const Backdrop& backdrop, const Together& others, const PixelRect& part);
 
+  /// Takes what the volume has along the rays of a part of a picture, for volumes that share space
+  /// with it: the statistics of parts add up.
+  /// @param part of the picture
+  /// @param segments get it, as far as this rank has it
+  /// @return the transmittance at which rays end
+  float CastSegments(vtkRenderer* renderer, const Backdrop& backdrop, const Together& others,
+    const PixelRect& part, SegmentPicture& segments);
+  /// Tells what all parts took, with volumes that share the space.
+  /// @param seconds for this volume
+  void SegmentsTook(vtkRenderer* renderer, const Together& others, double seconds);
+
   /// Whether somebody goes on in front of the window while the picture is drawn, or moves the
   /// camera. The same on all ranks.
   bool HasSpectator(vtkRenderer* renderer, const Together& others) const;
@@ -98,6 +109,7 @@ public:
   void Finish(const CompositeStatistics& geometry, double writeSeconds);
 
 private:
+  void BeginParts(vtkRenderer* renderer, const Backdrop& backdrop);
   bool MayBeLate(vtkRenderer* renderer, const Together& others) const;
   bool MayBeLateForClient(const Together& others) const;
   void TellMore(FieldFrames::Frame frame);

@@ -121,14 +121,18 @@ PlacedBody BodyOf(vtkVolume* volume, vtkVolumeMapper* mapper, const std::array<d
 }
 
 std::vector<unsigned char> FindNotInDepth(Communicator& communicator, vtkRenderer* renderer,
-  const RayCamera& camera, const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order)
+  const RayCamera& camera, const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order,
+  const std::vector<int>& groups)
 {
   std::vector<unsigned char> bits(volumes.size(), 0);
   for (const std::array<int, 2>& pair : order.Unknown())
   {
-    for (const int volume : pair)
+    const auto one = static_cast<std::size_t>(pair[0]);
+    const auto other = static_cast<std::size_t>(pair[1]);
+    if (groups.empty() || groups[one] != groups[other])
     {
-      bits[static_cast<std::size_t>(volume)] |= NotInDepth::SharedSpace;
+      bits[one] |= NotInDepth::SharedSpace;
+      bits[other] |= NotInDepth::SharedSpace;
     }
   }
   vtkPropCollection* const props = renderer->GetViewProps();

@@ -44,9 +44,11 @@ enum NotInDepth : unsigned char
 
 /// Collective. Surfaces and volumes of others are drawn before ours: right where they are behind.
 /// @param camera of the picture that the volumes' viewports are in
+/// @param groups of volumes: those of one are drawn together; empty where none are
 /// @return bits of NotInDepth for each volume, the same on all ranks
 std::vector<unsigned char> FindNotInDepth(Communicator& communicator, vtkRenderer* renderer,
-  const RayCamera& camera, const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order);
+  const RayCamera& camera, const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order,
+  const std::vector<int>& groups = {});
 
 /// Bits that were not told before; they are from then on.
 unsigned char NotToldYet(unsigned char bits, unsigned char& told);

@@ -6,7 +6,10 @@
 #include "vtkBanyanVolumeMapper.h"
 
 #include "Base/Progress.h"
+#include "Base/ThreadPool.h"
 #include "Base/Timer.h"
+#include "Parallel/Communicate/Collective.h"
+#include "Parallel/Composite/MixVolumes.h"
 
 #include "vtkCollection.h"
 #include "vtkPropCollection.h"
@@ -15,10 +18,19 @@
 #include "vtkVolume.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
+#include <numeric>
 
 namespace banyan
 {
+namespace
+{
+
+/// What volumes that share space may have along rays at a time, on a rank.
+constexpr double BandBytes = 256e6;
+
+} // namespace
 
 std::vector<VolumeOnScreen> VolumesPicture::OnScreen(const std::vector<VolumeFrame*>& frames)
 {
@@ -43,11 +55,12 @@ DepthOrder OrderInDepth(const std::vector<VolumeOnScreen>& volumes, const Screen
 
 void VolumesPicture::WarnNotInDepth(vtkBanyanVolumeMapper* first, vtkRenderer* renderer,
   const RayCamera& camera, const std::vector<VolumeFrame*>& frames,
-  const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order)
+  const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order,
+  const std::vector<int>& groups)
 {
   Communicator& communicator = *first->State->Communicator;
   const std::vector<unsigned char> bits =
-    FindNotInDepth(communicator, renderer, camera, volumes, order);
+    FindNotInDepth(communicator, renderer, camera, volumes, order, groups);
   unsigned char fresh = 0;
   for (std::size_t i = 0; i < frames.size(); ++i)
   {
@@ -161,8 +174,9 @@ void VolumesPicture::DrawPrepared(vtkBanyanVolumeMapper* first)
     volume.Viewport = Moved(Intersection(volume.Viewport, rect), -this->View.Shown.Lo);
   }
   const DepthOrder order = OrderInDepth(volumes, this->View.View);
-  WarnNotInDepth(
-    first, this->Renderer, CameraOf(this->Renderer, glm::dvec3(0.0)), frames, volumes, order);
+  this->Groups = GroupsOf(frames, order);
+  WarnNotInDepth(first, this->Renderer, CameraOf(this->Renderer, glm::dvec3(0.0)), frames, volumes,
+    order, this->Groups);
   Backdrop& backdrop = state.Backdrop;
   CompositeStatistics geometry;
   backdrop.SetCorner(this->View.Shown.Lo);
@@ -173,7 +187,7 @@ void VolumesPicture::DrawPrepared(vtkBanyanVolumeMapper* first)
   double seconds = 0.0;
   for (const PixelRect& part : parts)
   {
-    Pictures pictures = this->Cast(backdrop, isWhole ? nullptr : &part, failed);
+    Pictures pictures = this->Cast(backdrop, part, isWhole, failed);
     if (failed.size() == frames.size())
     {
       return;
@@ -224,33 +238,192 @@ VolumeFrame::Together VolumesPicture::TogetherWith(const VolumeFrame& frame) con
     static_cast<int>(std::count_if(this->Frames.begin(), this->Frames.end(), same)) };
 }
 
-/// @param part of the picture; null for all of it
+/// @param failed gets the frame if it cannot be drawn
+bool VolumesPicture::Attempt(
+  VolumeFrame& frame, const std::function<void()>& cast, std::set<VolumeFrame*>& failed) const
+{
+  const auto drawn = [&]
+  {
+    if (this->TogetherWith(frame).OfMapper > 1)
+    {
+      frame.Mapper()->UpdateField(frame.Volume());
+    }
+    cast();
+    return true;
+  };
+  if (failed.count(&frame) == 0 && !frame.Mapper()->Attempt(drawn))
+  {
+    failed.insert(&frame);
+  }
+  return failed.count(&frame) == 0;
+}
+
+/// @param part of the picture
+/// @param isWhole whether it is all of it
 /// @param failed gets the frames that could not be drawn
-/// @return pictures of the frames, on rank 0
-VolumesPicture::Pictures VolumesPicture::Cast(
-  const Backdrop& backdrop, const PixelRect* part, std::set<VolumeFrame*>& failed)
+/// @return pictures of the frames, on rank 0; of those that share space the first one has it
+VolumesPicture::Pictures VolumesPicture::Cast(const Backdrop& backdrop, const PixelRect& part,
+  bool isWhole, std::set<VolumeFrame*>& failed)
 {
   Pictures pictures(this->Frames.size());
   for (std::size_t i = 0; i < this->Frames.size(); ++i)
   {
     VolumeFrame& frame = this->Frames[i];
-    const auto cast = [&]
+    std::vector<std::size_t> group;
+    for (std::size_t other = 0; other < this->Frames.size(); ++other)
     {
-      const VolumeFrame::Together together = this->TogetherWith(frame);
-      if (together.OfMapper > 1)
+      if (this->Groups[other] == this->Groups[i])
       {
-        frame.Mapper()->UpdateField(frame.Volume());
+        group.push_back(other);
       }
-      pictures[i] = part ? frame.CastPart(this->Renderer, backdrop, together, *part)
-                         : frame.Cast(this->Renderer, backdrop, together);
-      return true;
-    };
-    if (failed.count(&frame) == 0 && !frame.Mapper()->Attempt(cast))
+    }
+    if (group.size() == 1)
     {
-      failed.insert(&frame);
+      this->Attempt(
+        frame,
+        [&]
+        {
+          const VolumeFrame::Together together = this->TogetherWith(frame);
+          pictures[i] = isWhole ? frame.Cast(this->Renderer, backdrop, together)
+                                : frame.CastPart(this->Renderer, backdrop, together, part);
+        },
+        failed);
+    }
+    else if (group.front() == i)
+    {
+      pictures[i] =
+        std::make_shared<const FloatImage>(this->Mix(group, backdrop, part, failed));
     }
   }
   return pictures;
+}
+
+/// Collective: draws volumes that share space, band after band: what they have along rays takes
+/// much memory.
+/// @param group numbers of frames
+/// @return the picture on rank 0
+FloatImage VolumesPicture::Mix(const std::vector<std::size_t>& group, const Backdrop& backdrop,
+  const PixelRect& rect, std::set<VolumeFrame*>& failed)
+{
+  const Timer timer;
+  Communicator& communicator = *this->Called->State->Communicator;
+  FloatImage picture;
+  if (communicator.Rank() == 0)
+  {
+    picture = { rect, PixelVector(static_cast<std::size_t>(rect.Count()), glm::vec4(0.0f)) };
+  }
+  int rows = RayTile::Edge;
+  for (int low = rect.Lo.y; low < rect.Hi.y;)
+  {
+    // Tiles are whole.
+    const int high = std::min((low / RayTile::Edge * RayTile::Edge) + rows, rect.Hi.y);
+    const PixelRect band{ { rect.Lo.x, low }, { rect.Hi.x, high } };
+    const double bytes = this->MixBand(group, backdrop, band, picture, failed);
+    const double perRow = std::max(bytes / (high - low), 1.0);
+    const double most = std::min(BandBytes / perRow, 65536.0);
+    // What comes next may be more.
+    rows = std::clamp(
+      static_cast<int>(most) / RayTile::Edge * RayTile::Edge, RayTile::Edge, 4 * rows);
+    low = high;
+  }
+  for (const std::size_t i : group)
+  {
+    VolumeFrame& frame = this->Frames[i];
+    this->Attempt(
+      frame,
+      [&]
+      {
+        frame.SegmentsTook(this->Renderer, this->TogetherWith(frame),
+          timer.Seconds() / static_cast<double>(group.size()));
+      },
+      failed);
+  }
+  return picture;
+}
+
+/// Collective.
+/// @param picture gets the band, on rank 0
+/// @return bytes of what volumes had along rays, on the rank with most of it
+double VolumesPicture::MixBand(const std::vector<std::size_t>& group, const Backdrop& backdrop,
+  const PixelRect& band, FloatImage& picture, std::set<VolumeFrame*>& failed)
+{
+  MixedVolumes space;
+  space.Viewport = band;
+  space.TransmittanceLimit = 1.0f;
+  double bytes = 0.0;
+  for (const std::size_t i : group)
+  {
+    VolumeFrame& frame = this->Frames[i];
+    SegmentPicture segments;
+    float limit = 1.0f;
+    const bool isDrawn = this->Attempt(
+      frame,
+      [&]
+      {
+        limit = frame.CastSegments(
+          this->Renderer, backdrop, this->TogetherWith(frame), band, segments);
+      },
+      failed);
+    bytes += static_cast<double>(segments.Bytes());
+    space.Segments.push_back(isDrawn ? segments.Take() : std::vector<TileSegments>());
+    space.TransmittanceLimit = std::min(space.TransmittanceLimit, limit);
+  }
+  Communicator& communicator = *this->Called->State->Communicator;
+  SentBytes sent;
+  const FloatImage mixed =
+    MixVolumes(communicator, std::move(space), ThreadPool::Process(), {}, sent);
+  if (communicator.Rank() == 0)
+  {
+    for (int y = band.Lo.y; y < band.Hi.y; ++y)
+    {
+      std::copy_n(&mixed.At(band.Lo.x, y), band.Size().x, &picture.At(band.Lo.x, y));
+    }
+  }
+  return AllMax(communicator, bytes);
+}
+
+std::vector<int> VolumesPicture::GroupsOf(
+  const std::vector<VolumeFrame*>& frames, const DepthOrder& order)
+{
+  std::vector<int> groups(frames.size());
+  std::iota(groups.begin(), groups.end(), 0);
+  const auto mixes = [&](int volume)
+  {
+    const VolumeFrame& frame = *frames[static_cast<std::size_t>(volume)];
+    return frame.Scene().Blend.Mode == BlendMode::Composite && frame.Mapper()->GetMixVolumes();
+  };
+  const auto groupOf = [&](int volume) { return groups[static_cast<std::size_t>(volume)]; };
+  const auto join = [&](int one, int other)
+  { std::replace(groups.begin(), groups.end(), groupOf(other), groupOf(one)); };
+  for (const std::array<int, 2>& pair : order.Unknown())
+  {
+    if (mixes(pair[0]) && mixes(pair[1]))
+    {
+      join(pair[0], pair[1]);
+    }
+  }
+  // What is before one of a group and behind another one belongs to it.
+  const auto isBetween = [&](int volume, int one, int other)
+  {
+    return mixes(volume) && groupOf(one) == groupOf(other) && groupOf(volume) != groupOf(one) &&
+           order.Nearer(volume, one) != order.Nearer(volume, other);
+  };
+  const int count = static_cast<int>(frames.size());
+  for (bool grows = true; grows;)
+  {
+    grows = false;
+    for (int i = 0; i < count * count * count; ++i)
+    {
+      const int volume = i % count;
+      const int one = i / count % count;
+      if (isBetween(volume, one, i / count / count))
+      {
+        join(one, volume);
+        grows = true;
+      }
+    }
+  }
+  return groups;
 }
 
 } // namespace banyan

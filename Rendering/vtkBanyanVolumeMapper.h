@@ -68,6 +68,10 @@ class vtkRenderWindow;
   Choice(CellValues, 0, 0, 1, advanced, meshes,                                                    \
     "How values of cells are drawn. Means (default): each point has the mean of the cells around " \
     "it, weighted by size. As they are: the value is the same all over a cell.")                   \
+  Switch(MixVolumes, true, advanced, all,                                                          \
+    "Volumes that share space are mixed along each ray: densities add up, and colours count by "   \
+    "density. Default: on, for volumes that all have it on. Off: the one whose middle is nearer "  \
+    "is drawn before the whole of the other one, which is quicker. Projections are not mixed.")    \
   Switch(CompositeInFewBits, false, advanced, all,                                                 \
     "Sends pixels between ranks in as few bits as keep them within 1/255, about a ninth of "       \
     "the bytes of floats. Default: off. ParaView blends the background later in 8 bits, so "       \
@@ -116,8 +120,9 @@ class vtkRenderWindow;
  * The picture does not depend on the number of ranks or threads: at most 1/255 per channel.
  *
  * With several volumes in one renderer, on the same ranks, the first that is rendered draws all, in
- * the order of depth, wherever a plane separates their boxes; for others, and for translucent
- * surfaces or other volumes that are not behind them, a warning says once what is not exact.
+ * the order of depth, wherever a plane separates their boxes. Others are mixed along each ray
+ * (MixVolumes). For projections among these, and for translucent surfaces or other volumes that are
+ * not behind them, a warning says once what is not exact.
  *
  * Blend modes composite, maximum, minimum and average intensity; clipping planes, and cropping to
  * the inside of a box; shading; linear interpolation or, as vtkVolumeProperty has it by default,

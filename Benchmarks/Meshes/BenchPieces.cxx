@@ -187,7 +187,7 @@ void WriteRow(const Options& options, const Case& is, const std::string& deal, i
     sum(frame) / ranks, sum([](const RankTook& took) { return took.Statistics.Runs; }) / rays,
     sum([](const RankTook& took) { return took.Statistics.Raw; }) / rays,
     sum([](const RankTook& took) { return took.Statistics.Asked; }) / rays,
-    sum([](const RankTook& took) { return took.Statistics.Bytes; }) / rays,
+    sum([](const RankTook& took) { return took.Statistics.Sent.Bytes; }) / rays,
     largest([](const RankTook& took) { return took.Bytes; }) / 1e6);
   std::fflush(stdout);
 }

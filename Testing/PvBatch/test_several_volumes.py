@@ -118,6 +118,9 @@ def warnings(stage):
         shown(stage.view)
         session.require("Banyan" not in told.GetOutput(), "nothing to tell: " + told.GetOutput())
         stage.volumes[1].move(numpy.array([0, 0, 4.0]))
+        shown(stage.view)
+        session.require("Banyan" not in told.GetOutput(), "mixed volumes are told of: " + told.GetOutput())
+        stage.volumes[1].display.MixVolumes = 0
         for x in range(3):
             stage.view.CameraPosition = [5 + x, 3, 90]
             shown(stage.view)

@@ -205,12 +205,16 @@ struct Pair
   Shown& Far;
 };
 
+/// Where volumes share space and are not to be mixed.
 void OneWarningWhereVolumesOverlap()
 {
   Pair pair;
   pair.DrawSome();
   Check(pair.Warnings() == 0, "apart, nothing is said");
   pair.Near.Place(glm::translate(glm::dmat4(1.0), glm::dvec3(-3, -3, -6)));
+  pair.DrawSome();
+  Check(pair.Warnings() == 0, "mixed, nothing is said");
+  pair.Near.Mapper->MixVolumesOff();
   pair.DrawSome();
   Check(pair.Warnings() == 1, "overlapping volumes are told of once");
   const std::string text =
@@ -222,6 +226,7 @@ void OneWarningWhereVolumesOverlap()
   Check(pair.Warnings() == 1, "and not again");
 
   Pair cropped;
+  cropped.Near.Mapper->MixVolumesOff();
   cropped.Near.Place(glm::translate(glm::dmat4(1.0), glm::dvec3(-4, -4, -6)));
   cropped.Near.Mapper->CroppingOn();
   cropped.Near.Mapper->SetCroppingRegionFlagsToSubVolume();

@@ -4,8 +4,6 @@
 #include "Base/StopFlag.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
-#include "Base/Varint.h"
-#include "Parallel/Cells/ExchangeBytes.h"
 #include "Parallel/Cells/PieceLattice.h"
 #include "Parallel/Cells/PieceMeans.h"
 #include "Parallel/Communicate/Collective.h"
@@ -60,7 +58,7 @@ public:
     , Source(source)
     , Pool(pool)
     , Statistics(statistics)
-    , Share{ communicator.Rank(), communicator.Size() }
+    , Picture(communicator)
   {
   }
 
@@ -78,13 +76,7 @@ public:
     {
       GivePieceLattice(this->Ranks, this->Source, shaded, this->Pool);
     }
-    Attempt(failure,
-      [this]
-      {
-        this->Picture.Rect = this->Scene.Viewport;
-        this->Picture.Pixels.assign(
-          static_cast<std::size_t>(this->Picture.Rect.Count()), glm::vec4(0.0f));
-      });
+    Attempt(failure, [this] { this->Picture.Clear(this->Scene.Viewport); });
     for (const int level : levels)
     {
       if (level == 0)
@@ -96,7 +88,12 @@ public:
         Attempt(failure, [this, level, shaded] { this->DrawLattice(level, shaded); });
       }
     }
-    return this->Gather(root, failure);
+    if (this->Scene.Segments)
+    {
+      ThrowTogether(this->Ranks, failure);
+      return {};
+    }
+    return this->Picture.Gather(this->Ranks, root, failure, this->Statistics.Sent);
   }
 
 private:
@@ -125,19 +122,8 @@ private:
     }
     CellCaster(this->Scene, this->Source, *at, this->Source.LatticeOf(level, shaded, this->Pool),
       this->Pool, this->Statistics.Rays)
-      .DrawTiles(this->Picture, nullptr, this->Share);
+      .DrawTiles(this->Picture.Pixels(), nullptr, this->Picture.Share());
     this->Statistics.DrawSeconds += timer.Seconds();
-  }
-
-  std::vector<Bytes> Exchange(std::vector<Bytes> messages, std::string& failure)
-  {
-    for (std::size_t rank = 0; rank < messages.size(); ++rank)
-    {
-      const bool mine = rank == static_cast<std::size_t>(this->Ranks.Rank());
-      this->Statistics.Bytes += mine ? 0 : messages[rank].size();
-      this->Statistics.Messages += mine || messages[rank].empty() ? 0 : 1;
-    }
-    return ExchangeBytes(this->Ranks, std::move(messages), failure);
   }
 
   std::vector<Bytes> NoMessages() const
@@ -156,13 +142,13 @@ private:
         const Timer timer;
         for (const TileRuns& runs : this->Caster->DrawRuns(asked))
         {
-          PutRuns(messages[static_cast<std::size_t>(this->Share.OwnerOf(runs.Position))], runs);
+          PutRuns(messages[static_cast<std::size_t>(this->Picture.Share().OwnerOf(runs.Position))], runs);
           this->Statistics.Runs += asked ? 0 : static_cast<std::int64_t>(runs.Runs.size());
           this->Statistics.Raw += asked ? 0 : static_cast<std::int64_t>(runs.Raw.size());
         }
         this->Statistics.DrawSeconds += timer.Seconds();
       });
-    const std::vector<Bytes> from = this->Exchange(std::move(messages), failure);
+    const std::vector<Bytes> from = ExchangeCounted(this->Ranks, std::move(messages), failure, this->Statistics.Sent);
     Attempt(failure,
       [&]
       {
@@ -220,16 +206,22 @@ private:
     std::vector<std::vector<AskedIntervals>> asked(static_cast<std::size_t>(this->Ranks.Size()));
     const bool agree = merger.Agree(asked);
     tile.Asked = agree ? std::vector<std::vector<AskedIntervals>>() : std::move(asked);
-    const auto pixels = std::make_unique<TilePixels>();
-    merger.Merge(
-      this->Caster->BlendOf(*level.Samplings.at(number)), level.TransmittanceLimit(), *pixels);
-    const PixelRect rect = this->RectOf(position);
-    for (int y = rect.Lo.y; y < rect.Hi.y; ++y)
+    const LevelSampling& sampling = *level.Samplings.at(number);
+    const SlabBlend blend = this->Caster->BlendOf(sampling);
+    if (this->Scene.Segments)
     {
-      const glm::ivec2 at = glm::ivec2(rect.Lo.x, y) - position * RayTile::Edge;
-      std::copy_n(pixels->data() + at.y * RayTile::Edge + at.x, rect.Size().x,
-        &this->Picture.At(rect.Lo.x, y));
+      TileSegments segments{ position, {} };
+      merger.MergeToSegments(blend, sampling.Distance, segments.Segments);
+      // Where ranks do not agree the tile is merged again.
+      if (agree)
+      {
+        this->Scene.Segments->Add(std::move(segments));
+      }
+      return;
     }
+    const auto pixels = std::make_unique<TilePixels>();
+    merger.Merge(blend, level.TransmittanceLimit(), *pixels);
+    this->Picture.Set(position, pixels->data());
   }
 
   /// The second round: what ranks have to give raw, they give. All ranks know when none has to.
@@ -261,7 +253,7 @@ private:
     {
       return;
     }
-    const std::vector<Bytes> from = this->Exchange(std::move(messages), failure);
+    const std::vector<Bytes> from = ExchangeCounted(this->Ranks, std::move(messages), failure, this->Statistics.Sent);
     std::vector<AskedTile> asked;
     Attempt(failure,
       [&]
@@ -290,110 +282,12 @@ private:
     }
   }
 
-  PixelRect RectOf(const glm::ivec2& tile) const
-  {
-    const glm::ivec2 low = tile * RayTile::Edge;
-    return Intersection({ low, low + RayTile::Edge }, this->Scene.Viewport);
-  }
-
-  /// Calls function(position) for this rank's tiles.
-  template <class Function>
-  void ForMyTiles(Function&& function) const
-  {
-    const PixelRect& all = this->Scene.Viewport;
-    const glm::ivec2 first = all.Lo / RayTile::Edge;
-    const glm::ivec2 end = (all.Hi + (RayTile::Edge - 1)) / RayTile::Edge;
-    for (int y = first.y; y < end.y; ++y)
-    {
-      for (int x = first.x; x < end.x; ++x)
-      {
-        if (this->Share.Has({ x, y }))
-        {
-          function(glm::ivec2(x, y));
-        }
-      }
-    }
-  }
-
-  /// Pixels with anything, as runs of them in rows of the picture.
-  void PutPixels(Bytes& message, const PixelRect& rect) const
-  {
-    for (int y = rect.Lo.y; y < rect.Hi.y; ++y)
-    {
-      int begin = rect.Lo.x;
-      int end = rect.Hi.x;
-      const auto isNothing = [&](int x) { return this->Picture.At(x, y) == glm::vec4(0.0f); };
-      for (; begin < end && isNothing(begin); ++begin)
-      {
-      }
-      for (; begin < end && isNothing(end - 1); --end)
-      {
-      }
-      if (begin < end)
-      {
-        const int head[3] = { begin, y, end - begin };
-        const auto pixels = static_cast<std::size_t>(end - begin) * sizeof(glm::vec4);
-        const std::size_t at = message.size();
-        message.resize(at + sizeof(head) + pixels);
-        std::memcpy(message.data() + at, head, sizeof(head));
-        std::memcpy(message.data() + at + sizeof(head), &this->Picture.At(begin, y), pixels);
-      }
-    }
-  }
-
-  void TakePixels(const Bytes& message)
-  {
-    ByteReader in(message.data(), message.size());
-    while (in.Left() > 0)
-    {
-      const int x = in.Number<int>();
-      const int y = in.Number<int>();
-      const auto pixels = static_cast<std::size_t>(in.Number<int>()) * sizeof(glm::vec4);
-      std::memcpy(&this->Picture.At(x, y), in.Skip(pixels), pixels);
-    }
-  }
-
-  /// Collective: brings all tiles to the root, or to all ranks.
-  FloatImage Gather(int root, std::string& failure)
-  {
-    Bytes mine;
-    Attempt(failure,
-      [&] {
-        this->ForMyTiles(
-          [&](const glm::ivec2& tile) { this->PutPixels(mine, this->RectOf(tile)); });
-      });
-    std::vector<Bytes> from;
-    if (root == EveryRank)
-    {
-      const auto others = static_cast<std::uint64_t>(this->Ranks.Size() - 1);
-      this->Statistics.Bytes += mine.size() * others;
-      this->Statistics.Messages += mine.empty() ? 0 : others;
-      from = AllGatherBytes(this->Ranks, std::move(mine), failure);
-    }
-    else
-    {
-      std::vector<Bytes> messages = this->NoMessages();
-      messages[static_cast<std::size_t>(root)] = std::move(mine);
-      from = this->Exchange(std::move(messages), failure);
-    }
-    if (root != EveryRank && root != this->Ranks.Rank())
-    {
-      return {};
-    }
-    for (const Bytes& message : from)
-    {
-      this->TakePixels(message);
-    }
-    return std::move(this->Picture);
-  }
-
   Communicator& Ranks;
   const RayScene& Scene;
   CellSource& Source;
   ThreadPool& Pool;
   PieceStatistics& Statistics;
-  const TileShare Share;
-  FloatImage Picture; ///< of the viewport: this rank's tiles
+  TilePicture Picture; ///< of the viewport
   std::unique_ptr<CellCaster> Caster;
   OwnTiles Tiles;
 };

@@ -2,6 +2,7 @@
 #ifndef banyan_Parallel_Cells_DrawPieces_h
 #define banyan_Parallel_Cells_DrawPieces_h
 
+#include "Parallel/Composite/TilePicture.h"
 #include "Render/Cells/CellSource.h"
 #include "Render/Levels/RayCaster.h"
 #include "Render/Scene/FloatImage.h"
@@ -14,9 +15,6 @@ namespace banyan
 class Communicator;
 class ThreadPool;
 
-/// For DrawPieces: all ranks get the picture.
-inline constexpr int EveryRank = -1;
-
 /// What a picture of pieces took on this rank.
 struct PieceStatistics
 {
@@ -24,8 +22,7 @@ struct PieceStatistics
   std::int64_t Runs = 0; ///< drawn here, in the first round
   std::int64_t Raw = 0;
   std::int64_t Asked = 0;  ///< intervals that this rank had to give raw in the second round
-  std::uint64_t Bytes = 0; ///< sent to others
-  std::uint64_t Messages = 0;
+  SentBytes Sent;
   double DrawSeconds = 0.0;
   double MergeSeconds = 0.0; ///< without waiting for messages
 };
@@ -40,7 +37,8 @@ struct PieceStatistics
 /// @param scene the same on all ranks
 /// @param source of a piece that DrawnPiece has made; the values have the same base on all ranks
 /// @param root has the picture, or EveryRank: its pixels are those of the viewport, not finished;
-/// others have none
+/// others have none. Where the scene wants segments, those of tiles are on the tiles' ranks, and
+/// nobody has a picture
 ///
 /// Throws CollectiveError.
 FloatImage DrawPieces(Communicator& communicator, const RayScene& scene, CellSource& source,

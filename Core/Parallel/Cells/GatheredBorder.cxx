@@ -2,7 +2,7 @@
 #include "Parallel/Cells/GatheredBorder.h"
 
 #include "Base/Varint.h"
-#include "Parallel/Cells/ExchangeBytes.h"
+#include "Parallel/Communicate/ExchangeBytes.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Communicate/Communicator.h"
 

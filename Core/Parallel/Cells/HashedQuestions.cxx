@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Cells/HashedQuestions.h"
 
-#include "Parallel/Cells/ExchangeBytes.h"
+#include "Parallel/Communicate/ExchangeBytes.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Communicate/Communicator.h"
 

@@ -3,7 +3,7 @@
 
 #include "Base/Varint.h"
 #include "Cells/CellOrder.h"
-#include "Parallel/Cells/ExchangeBytes.h"
+#include "Parallel/Communicate/ExchangeBytes.h"
 #include "Parallel/Cells/GatheredBorder.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Communicate/Communicator.h"

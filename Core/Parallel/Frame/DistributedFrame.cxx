@@ -327,11 +327,25 @@ std::vector<FloatImage> DrawPiecesOfPlaces(
     drawn.Compositing.AfterCasting();
   }
   own.Rays = statistics.Rays;
-  own.Sent.BytesSent += statistics.Bytes;
-  own.Sent.MessagesSent += statistics.Messages;
+  own.Sent.BytesSent += statistics.Sent.Bytes;
+  own.Sent.MessagesSent += statistics.Sent.Messages;
   own.RenderSeconds += statistics.DrawSeconds;
   own.CompositeSeconds += total.Seconds() - statistics.DrawSeconds;
   return pictures;
+}
+
+/// Casts for the scene's segments: nothing is composited here.
+/// @return pictures of nothing
+std::vector<FloatImage> CastSegments(OwnPart& own, const DrawnPlaces& drawn)
+{
+  bool begun = false;
+  for (const PicturePlace& place : drawn.Places)
+  {
+    const PlaceScenes scenes = drawn.ScenesOf(place, begun);
+    CastOwn(own, scenes.Part(drawn.Compositing.AfterCasting), CastRays);
+    begun = true;
+  }
+  return std::vector<FloatImage>(drawn.Places.size());
 }
 
 /// Collective.
@@ -343,6 +357,10 @@ std::vector<FloatImage> DrawPlaces(
   if (drawn.Share.Piece && !alone)
   {
     return DrawPiecesOfPlaces(communicator, own, drawn);
+  }
+  if (drawn.Scene.Segments)
+  {
+    return CastSegments(own, drawn);
   }
   const bool whileCasting = drawn.Compositing.WhileCasting && communicator.SendsAtOnce();
   if (drawn.Places.size() != 1 || !(alone || whileCasting))
@@ -381,7 +399,7 @@ FloatImage DrawDistributed(Communicator& communicator, const RayScene& scene,
   std::vector<FloatImage> pictures = DrawPlaces(communicator, own, drawn);
   for (std::size_t i = 0; i < shown.size(); ++i)
   {
-    if (shown[i].Root == communicator.Rank())
+    if (shown[i].Root == communicator.Rank() && !scene.Segments)
     {
       const PlaceScenes scenes = drawn.ScenesOf(shown[i]);
       result = Finished(own, scenes.Drawn(), std::move(pictures[i]), shown[i].Rect, reused);

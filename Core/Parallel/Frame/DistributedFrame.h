@@ -34,7 +34,8 @@ struct RankShare
 /// Draws one picture on all ranks: each casts rays through the cells of its own zone, and the
 /// pictures are composited, from the first parts on that are final; with several places, after the
 /// last ray. Rays that are reused are neither cast nor sent. Pieces of a mesh are drawn by
-/// DrawPieces. Collective.
+/// DrawPieces. Where the scene wants segments, ranks put there what they have, and nothing is
+/// composited: no rank has a picture. Collective.
 ///
 /// @param scene the same on all ranks (depths included)
 /// @param places where pixels end, disjoint, at most one on a rank; the same on all ranks. None

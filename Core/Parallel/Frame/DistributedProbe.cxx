@@ -85,7 +85,7 @@ FloatImage DrawProbeOfPieces(Communicator& communicator, const RayScene& scene,
   statistics.SamplesTaken +=
     static_cast<std::int64_t>(AllSum(communicator, static_cast<double>(mine.Rays.SamplesTaken)));
   statistics.BytesComposited +=
-    static_cast<std::uint64_t>(AllSum(communicator, static_cast<double>(mine.Bytes)));
+    static_cast<std::uint64_t>(AllSum(communicator, static_cast<double>(mine.Sent.Bytes)));
   return picture;
 }
 

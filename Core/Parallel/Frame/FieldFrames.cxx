@@ -310,7 +310,7 @@ void FieldFrames::Plan(Communicator& communicator, DistributedField& field, RayS
 void FieldFrames::PlanPart(Communicator& communicator, DistributedField& field, RayScene& whole,
   RayScene& scene, const Wish& wish, const ToleranceControl::Aim& aim, DrawnPicture& picture)
 {
-  const bool isOpen = scene.Depth.empty();
+  const bool isOpen = scene.Depth.empty() || wish.Segments;
   RayScene& planned = isOpen ? whole : scene;
   // All ranks go by the name that the first one has.
   Hash128 view = SceneOf(planned, wish);
@@ -375,6 +375,13 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   }
   const bool keeps = this->BeginRays(communicator, drawn, scene, names.Whole, wish);
   const FrameStatistics probes = numbers;
+  if (wish.Segments)
+  {
+    scene.Segments = wish.Segments;
+    scene.Samplings = scene.Samplings
+                        ? std::make_shared<const TileSamplings>(scene.Samplings->WithAllPixels())
+                        : nullptr;
+  }
   CompositeOptions compositing;
   compositing.Behind = wish.Behind;
   compositing.Transport = wish.Transport;
@@ -386,7 +393,7 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   }
   FloatImage picture =
     DrawDistributed(communicator, scene, share, numbers, compositing, wish.Places);
-  if (GetsPixels(wish, communicator.Rank()))
+  if (GetsPixels(wish, communicator.Rank()) && !wish.Segments)
   {
     frame.Picture.Pixels = std::make_shared<const FloatImage>(std::move(picture));
   }
@@ -402,7 +409,15 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   {
     frame.ByPicture ? regions.EndFrame(communicator) : drawn.EndFrame(communicator);
   }
-  const TimesOfFrame took = LargestOf(communicator, { drawing.Seconds(), wish.ShowSeconds });
+  if (!wish.Segments)
+  {
+    this->FrameTook(communicator, wish, drawing.Seconds());
+  }
+}
+
+void FieldFrames::FrameTook(Communicator& communicator, const Wish& wish, double seconds)
+{
+  const TimesOfFrame took = LargestOf(communicator, { seconds, wish.ShowSeconds });
   this->Tolerance.FrameTook(wish.Sampling, took.Drawing, took.Showing);
 }
 

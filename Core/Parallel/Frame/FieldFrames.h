@@ -43,6 +43,10 @@ public:
     /// is the picture's. One plan of samplings is made for all parts in which nothing opaque is,
     /// and nothing else is kept of them. Zones and bricks are those of the picture.
     PixelRect Whole;
+    /// Not null where the volume shares space with others: what it has along rays comes here, and
+    /// there is no picture. The frame is a part of a picture (Whole), planned without depths. It
+    /// says nothing of the time that frames take: FrameTook does.
+    SegmentPicture* Segments = nullptr;
     double ShowSeconds = 0.0; ///< that putting the picture on the screen is expected to take
   };
 
@@ -76,6 +80,9 @@ public:
 
   /// Of the pictures that this rank keeps: none but those with a place have any.
   std::uint64_t PictureBytes() const { return this->Pictures.Bytes(); }
+
+  /// Collective: tells what a frame took of which all parts went to Segments.
+  void FrameTook(Communicator& communicator, const Wish& wish, double seconds);
 
   /// Forgets all frames: when the ranks are others, say.
   void Forget();

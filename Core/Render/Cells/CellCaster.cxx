@@ -7,6 +7,7 @@
 #include "Render/Cells/RunCollector.h"
 #include "Render/Levels/LevelTiles.h"
 #include "Render/Levels/PictureWatcher.h"
+#include "Render/Raycast/SegmentLog.h"
 
 #include <algorithm>
 #include <atomic>
@@ -36,6 +37,7 @@ struct CellCaster::Scratch
     RunCollector Collector;
   };
   std::unique_ptr<ForRuns> Runs;
+  SegmentLog Log; ///< where the scene wants segments
   const AskedPixels* Asked = nullptr; ///< cells elsewhere are left out; null for none
 
   /// Blends the slab, into pixels or runs.
@@ -135,9 +137,15 @@ void CellCaster::DrawTile(LevelTiles& tiles, std::size_t number, Scratch& scratc
   const PixelRect rect = tiles.RectOf(number);
   RayTile& rays = scratch.Rays;
   this->OpenTile(tiles, number, rect, scratch);
+  SegmentPicture* const segments = this->Level.Scene.Segments;
+  rays.Log = segments ? &scratch.Log : nullptr;
   if (scratch.Rows.Count > 0)
   {
     this->DrawSlabs(*tile.Sampling, number, scratch);
+  }
+  if (segments)
+  {
+    segments->Add(scratch.Log.Take(tiles.Cut().PositionOf(number), rays, tile.Sampling->Distance));
   }
   if (tile.PixelStride > 1)
   {
@@ -224,7 +232,7 @@ void CellCaster::DrawRunsOf(LevelTiles& tiles, std::size_t number, const AskedTi
   this->OpenTile(tiles, number, rect, scratch);
   if (scratch.Rows.Count > 0)
   {
-    scratch.Runs->Collector.Begin(scratch.Rows, asked);
+    scratch.Runs->Collector.Begin(scratch.Rows, asked, this->Level.Scene.Segments != nullptr);
     this->DrawSlabs(*tiles[number].Sampling, number, scratch);
     scratch.Runs->Collector.Finish(scratch.Rays, *this->Field.Cells, found);
   }

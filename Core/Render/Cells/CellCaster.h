@@ -6,6 +6,7 @@
 #include "Render/Cells/CellSource.h"
 #include "Render/Cells/RayRuns.h"
 #include "Render/Levels/LevelScene.h"
+#include "Render/Raycast/TileGrid.h"
 #include "Render/Scene/PictureCaster.h"
 
 #include <memory>
@@ -16,17 +17,6 @@ namespace banyan
 
 class LevelTiles;
 class ThreadPool;
-
-/// The tiles of a picture that ranks draw or merge in turn: those of one of them.
-struct TileShare
-{
-  int Rank = 0;
-  int Ranks = 1;
-
-  /// @param tile its position
-  int OwnerOf(const glm::ivec2& tile) const { return (tile.x + 7 * tile.y) % this->Ranks; }
-  bool Has(const glm::ivec2& tile) const { return this->OwnerOf(tile) == this->Rank; }
-};
 
 /// Draws the cells of a mesh, or a lattice with its values: tile by tile, and in each tile slab by
 /// slab from the eye on.

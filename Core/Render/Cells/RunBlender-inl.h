@@ -71,7 +71,10 @@ private:
       lanes.Drawn = hn::AndNot(raw, lanes.Drawn);
       const VI here = hn::Set(di, this->FirstRow + row);
       const auto runs = hn::RebindMask(d, hn::Gt(last, hn::Set(di, RunCollector::None)));
-      const auto goesOn = hn::RebindMask(d, hn::Eq(last, hn::Sub(here, hn::Set(di, 1))));
+      // With the row before, or with none: where there is no run, nothing goes on.
+      const VI nextTo =
+        this->Collector.IsSingle() ? hn::Set(di, RunCollector::None) : hn::Sub(here, hn::Set(di, 1));
+      const auto goesOn = hn::RebindMask(d, hn::Eq(last, nextTo));
       const auto ends = hn::And(runs, hn::Or(raw, hn::AndNot(goesOn, lanes.Drawn)));
       if (!hn::AllFalse(d, ends))
       {

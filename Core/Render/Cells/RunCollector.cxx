@@ -29,8 +29,9 @@ void AppendByPixel(std::vector<Element>& from, std::vector<Element>& to)
 
 } // namespace
 
-void RunCollector::Begin(const TileRows& rows, const AskedTile* asked)
+void RunCollector::Begin(const TileRows& rows, const AskedTile* asked, bool single)
 {
+  this->Single = single;
   this->FirstNumber = static_cast<std::int64_t>(rows.FirstNumber);
   this->Asked = asked;
   std::fill_n(this->First, RayTile::Slots, None);

@@ -31,7 +31,10 @@ public:
   static constexpr std::int32_t None = -1;
 
   /// @param asked null, or what is asked of the tile: other pixels are left out
-  void Begin(const TileRows& rows, const AskedTile* asked);
+  /// @param single whether each interval is a run of its own
+  void Begin(const TileRows& rows, const AskedTile* asked, bool single = false);
+
+  bool IsSingle() const { return this->Single; }
 
   bool IsAsked() const { return this->Asked != nullptr; }
   /// Whether an interval is to be given raw.
@@ -61,6 +64,7 @@ private:
 
   std::int64_t FirstNumber = 0;
   const AskedTile* Asked = nullptr;
+  bool Single = false;
   std::vector<RayRun> Runs;
   std::vector<RawInterval> Raw; ///< places in the order stand in for keys
 };

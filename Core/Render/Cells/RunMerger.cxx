@@ -176,10 +176,32 @@ void RunMerger::ResolveBatch(const SlabBlend& blend, std::size_t begin, std::siz
   }
 }
 
-void RunMerger::BlendPixels(const SlabBlend& blend, float limit, TilePixels& pixels) const
+void RunMerger::MergeToSegments(
+  const SlabBlend& blend, double distance, std::vector<RaySegment>& segments)
 {
-  const bool sums = blend.Projection && blend.Projection->Averages();
-  pixels.fill(glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
+  this->Sort();
+  this->Resolve(blend);
+  this->ForRuns(
+    [&](const Element& element, const RayRun& run)
+    {
+      if (!run.IsEmpty())
+      {
+        RaySegment segment;
+        segment.Begin = static_cast<double>(element.First) * distance;
+        segment.Length = static_cast<float>(distance);
+        std::copy_n(run.Color, 3, segment.Color);
+        segment.Transmittance = run.Transmittance;
+        segment.Pixel = element.Pixel;
+        segments.push_back(segment);
+      }
+    });
+  this->Elements.clear();
+}
+
+/// Calls function(element, run) for all that was merged, along each ray from the eye on.
+template <class Function>
+void RunMerger::ForRuns(const Function& function) const
+{
   std::size_t resolved = 0;
   const Element* before = nullptr; // raw
   for (const Element& element : this->Elements)
@@ -195,23 +217,34 @@ void RunMerger::BlendPixels(const SlabBlend& blend, float limit, TilePixels& pix
       }
       run = &this->Resolved[resolved++];
     }
-    glm::vec4& pixel = pixels[element.Pixel];
-    for (int i = 0; i < 3; ++i)
-    {
-      if (!blend.Projection)
-      {
-        pixel[i] += pixel.a > limit ? pixel.a * run->Color[i] : 0.0f;
-      }
-      else
-      {
-        pixel[i] = sums ? pixel[i] + run->Color[i] : std::max(pixel[i], run->Color[i]);
-      }
-    }
-    if (!blend.Projection && pixel.a > limit)
-    {
-      pixel.a *= run->Transmittance;
-    }
+    function(element, *run);
   }
+}
+
+void RunMerger::BlendPixels(const SlabBlend& blend, float limit, TilePixels& pixels) const
+{
+  const bool sums = blend.Projection && blend.Projection->Averages();
+  pixels.fill(glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
+  this->ForRuns(
+    [&](const Element& element, const RayRun& run)
+    {
+      glm::vec4& pixel = pixels[element.Pixel];
+      for (int i = 0; i < 3; ++i)
+      {
+        if (!blend.Projection)
+        {
+          pixel[i] += pixel.a > limit ? pixel.a * run.Color[i] : 0.0f;
+        }
+        else
+        {
+          pixel[i] = sums ? pixel[i] + run.Color[i] : std::max(pixel[i], run.Color[i]);
+        }
+      }
+      if (!blend.Projection && pixel.a > limit)
+      {
+        pixel.a *= run.Transmittance;
+      }
+    });
   for (glm::vec4& pixel : pixels)
   {
     pixel.a = 1.0f - pixel.a;

@@ -4,6 +4,7 @@
 
 #include "Render/Cells/CellTile.h"
 #include "Render/Cells/RayRuns.h"
+#include "Render/Raycast/RaySegments.h"
 
 #include <glm/vec4.hpp>
 
@@ -43,6 +44,13 @@ public:
   /// @param pixels set to premultiplied colour and opacity, or to what a projection has met
   void Merge(const SlabBlend& blend, float limit, TilePixels& pixels);
 
+  /// Merges what was added, and forgets it: what is composited stays interval by interval. Runs
+  /// must have one interval each.
+  /// @param distance world length of an interval
+  /// @param segments is added to
+  void MergeToSegments(
+    const SlabBlend& blend, double distance, std::vector<RaySegment>& segments);
+
 private:
   /// Something of a ray that cannot be divided.
   struct Element
@@ -59,6 +67,8 @@ private:
   void Sort() const;
   void Resolve(const SlabBlend& blend);
   void ResolveBatch(const SlabBlend& blend, std::size_t begin, std::size_t end);
+  template <class Function>
+  void ForRuns(const Function& function) const;
   void BlendPixels(const SlabBlend& blend, float limit, TilePixels& pixels) const;
 
   mutable std::vector<Element> Elements;

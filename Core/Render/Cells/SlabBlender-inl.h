@@ -9,6 +9,7 @@
 
 #include "Render/Cells/CellTile.h"
 #include "Render/Raycast/LightLanes-inl.h"
+#include "Render/Raycast/NoteSteps-inl.h"
 #include "Render/Raycast/ProjectedLanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -46,7 +47,7 @@ public:
   /// Rays that have not ended.
   HWY_INLINE hn::Mask<D> Open() const { return hn::Gt(this->T, this->Limit); }
 
-  HWY_INLINE void Add(const RowLanes& row)
+  HWY_INLINE Steps StepsOf(const RowLanes& row) const
   {
     const D d;
     const VI entries = IndicesIn<true>(this->Lookup, row.Value);
@@ -64,6 +65,22 @@ public:
     {
       steps = Lit(steps, LightOf(*this->Blend.Shading, row.Cosine), *this->Blend.Shading);
     }
+    return steps;
+  }
+
+  HWY_INLINE void Add(const RowLanes& row) { this->Add(row, this->StepsOf(row)); }
+
+  /// @param noted called with what is added
+  template <class Function>
+  HWY_INLINE void AddNoted(const RowLanes& row, const Function& noted)
+  {
+    const Steps steps = this->StepsOf(row);
+    noted(steps);
+    this->Add(row, steps);
+  }
+
+  HWY_INLINE void Add(const RowLanes& row, const Steps& steps)
+  {
     const VF weight = hn::IfThenElseZero(row.Drawn, this->T);
     this->R = hn::Add(this->R, hn::Mul(weight, steps.R));
     this->G = hn::Add(this->G, hn::Mul(weight, steps.G));
@@ -115,6 +132,13 @@ public:
     {
       this->So.AddPartial(row.Value, entries, hn::AndNot(whole, row.Drawn), row.Length);
     }
+  }
+
+  /// Projections have no segments.
+  template <class Function>
+  HWY_INLINE void AddNoted(const RowLanes& row, const Function&)
+  {
+    this->Add(row);
   }
 
   HWY_INLINE void Keep(RayTile& tile, int slot) const { this->So.Keep(tile, slot); }
@@ -194,7 +218,15 @@ protected:
       hn::Store(nothing, d, this->Slab.Value + index);
       if (!hn::AllFalse(d, lanes.Drawn))
       {
-        met.Add(lanes);
+        if (this->Tile.Log)
+        {
+          met.AddNoted(
+            lanes, [&](const Steps& steps) HWY_ATTR { this->Note(slot, row, lanes.Drawn, steps); });
+        }
+        else
+        {
+          met.Add(lanes);
+        }
         open = met.Open();
         this->Tile.SamplesTaken += static_cast<std::int64_t>(hn::CountTrue(d, lanes.Drawn));
       }
@@ -202,6 +234,20 @@ protected:
     met.Keep(this->Tile, slot);
     // Rays without samples were never counted, and never end.
     this->Tile.ActiveRays -= static_cast<std::int64_t>(before - hn::CountTrue(d, open));
+  }
+
+  void Note(int slot, int row, hn::Mask<D> lanes, const Steps& steps) const
+  {
+    const int here = this->FirstRow + row;
+    alignas(64) std::int32_t samples[RayTile::PacketSize];
+    for (int i = 0; i < Lanes; ++i)
+    {
+      const int at = slot + i;
+      samples[i] = here == this->Rows.Head[at]   ? SegmentLog::Head
+                   : here == this->Rows.Tail[at] ? SegmentLog::Tail
+                                                 : here - this->Rows.First[at];
+    }
+    NoteSteps(*this->Tile.Log, slot, hn::Load(DI(), samples), lanes, steps);
   }
 
   /// @param border whether rays cross the border of the mesh in this row

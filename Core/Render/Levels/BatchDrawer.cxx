@@ -41,7 +41,12 @@ BatchDrawer::BatchDrawer(
   , Pool(pool)
   , Scratch(new RayTile[static_cast<std::size_t>(pool.Width())])
   , Meters(static_cast<std::size_t>(pool.Width()))
+  , Logs(level.Scene.Segments ? static_cast<std::size_t>(pool.Width()) : 0)
 {
+  for (std::size_t i = 0; i < this->Logs.size(); ++i)
+  {
+    this->Scratch[i].Log = &this->Logs[i];
+  }
 }
 
 std::int64_t BatchDrawer::Draw(const BrickBatch& batch)
@@ -101,6 +106,11 @@ std::int64_t BatchDrawer::DrawTile(const BrickBatch& batch, std::size_t number, 
     tile.PixelStride, tile.Begun, drawn, tile.Cast);
   rays.CellShift = this->Level.Source.CoarsestBrickLevel();
   this->DrawBricks(batch, number, drawn, rays, meter, prefetch && tile.PixelStride <= DensePixels);
+  if (rays.Log)
+  {
+    this->Level.Scene.Segments->Add(
+      rays.Log->Take(this->Tiles.Cut().PositionOf(number), rays, tile.Sampling->Distance));
+  }
   if (!tile.Begun && tile.PixelStride > 1)
   {
     this->Tiles.Clear(rect);

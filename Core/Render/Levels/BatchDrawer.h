@@ -7,6 +7,7 @@
 #include "Render/Levels/LevelTiles.h"
 #include "Render/Raycast/BrickWork.h"
 #include "Render/Raycast/RayTile.h"
+#include "Render/Raycast/SegmentLog.h"
 
 #include <cstdint>
 #include <memory>
@@ -54,6 +55,7 @@ private:
   ThreadPool& Pool;
   std::unique_ptr<RayTile[]> Scratch; ///< one per worker
   std::vector<BatchMeter> Meters;     ///< one per worker
+  std::vector<SegmentLog> Logs;       ///< one per worker where the scene wants segments, else none
 };
 
 } // namespace banyan

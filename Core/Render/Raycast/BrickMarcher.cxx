@@ -2,6 +2,7 @@
 #include "Render/Raycast/BrickMarcher.h"
 
 #include "Render/Bricks/Interpolators.h"
+#include "Render/Raycast/SegmentLog.h"
 
 #include <optional>
 
@@ -132,6 +133,7 @@ public:
     , Colour(colour)
     , Cells(cells, tile.CellShift - tile.BrickShift)
     , Limit(tile.TransmittanceLimit)
+    , Log(tile.Log)
   {
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -139,10 +141,14 @@ public:
     }
   }
 
+  /// @param slot for the log
   /// @return samples taken
-  std::int32_t MarchRay(const RaySamples& ray, const float (&direction)[3], glm::vec4& pixel) const
+  std::int32_t MarchRay(
+    int slot, const RaySamples& ray, const float (&direction)[3], glm::vec4& pixel) const
   {
-    std::int32_t taken = this->MarchEnd(ray.Head, direction, pixel);
+    const Noted head{ slot, SegmentLog::Head };
+    const Noted tail{ slot, SegmentLog::Tail };
+    std::int32_t taken = this->MarchEnd(ray.Head, head, direction, pixel);
     std::int32_t begin = 0;
     std::int32_t end = 0;
     if (ray.Count > 0)
@@ -153,19 +159,27 @@ public:
     ray.PositionOf(begin, position);
     for (; begin < end && pixel.a > this->Limit; ++begin, ++taken)
     {
-      this->Blend(position, direction, this->Table.Steps()[this->EntryAt(position)], pixel);
+      this->Blend(
+        position, { slot, begin }, direction, this->Table.Steps()[this->EntryAt(position)], pixel);
       for (int axis = 0; axis < 3; ++axis)
       {
         position[axis] += ray.Step[axis];
       }
     }
-    return taken + this->MarchEnd(ray.Tail, direction, pixel);
+    return taken + this->MarchEnd(ray.Tail, tail, direction, pixel);
   }
 
 private:
+  /// A sample as SegmentLog has it.
+  struct Noted
+  {
+    int Slot;
+    std::int32_t Sample;
+  };
+
   /// A head or tail, if it lies in the cells.
-  std::int32_t MarchEnd(
-    const PartialSample& sample, const float (&direction)[3], glm::vec4& pixel) const
+  std::int32_t MarchEnd(const PartialSample& sample, const Noted& noted,
+    const float (&direction)[3], glm::vec4& pixel) const
   {
     if (!(sample.Fraction > 0.0f) || !this->Cells.Contains(sample.Position) ||
         !(pixel.a > this->Limit))
@@ -174,7 +188,7 @@ private:
     }
     glm::vec4 step = this->Table.Partial(this->EntryAt(sample.Position), sample.Fraction);
     step.a = 1.0f - step.a;
-    this->Blend(sample.Position, direction, step, pixel);
+    this->Blend(sample.Position, noted, direction, step, pixel);
     return 1;
   }
 
@@ -186,14 +200,18 @@ private:
   }
 
   /// @param step premultiplied colour and transmittance
-  void Blend(const std::int64_t (&position)[3], const float (&direction)[3], glm::vec4 step,
-    glm::vec4& pixel) const
+  void Blend(const std::int64_t (&position)[3], const Noted& noted, const float (&direction)[3],
+    glm::vec4 step, glm::vec4& pixel) const
   {
     if (this->Colour)
     {
       const std::int64_t inBrick[3] = { position[0] - this->Corner[0],
         position[1] - this->Corner[1], position[2] - this->Corner[2] };
       this->Colour->Apply(inBrick, direction, step);
+    }
+    if (this->Log)
+    {
+      this->Log->Add(noted.Slot, noted.Sample, step.r, step.g, step.b, step.a);
     }
     pixel.r += pixel.a * step.r;
     pixel.g += pixel.a * step.g;
@@ -207,6 +225,7 @@ private:
   const SampleColour* Colour;
   FixedBox Cells;
   float Limit;
+  SegmentLog* Log;
 };
 
 template <class Values>
@@ -221,7 +240,7 @@ void MarchRays(const PlainMarcher<Values>& marcher, const PixelRect& rect, RayTi
         const float direction[3] = { tile.Direction[0][slot], tile.Direction[1][slot],
           tile.Direction[2][slot] };
         glm::vec4 pixel = tile.PixelOf(slot);
-        tile.SamplesTaken += marcher.MarchRay(tile.RayOf(slot), direction, pixel);
+        tile.SamplesTaken += marcher.MarchRay(slot, tile.RayOf(slot), direction, pixel);
         tile.ActiveRays -= pixel.a > limit ? 0 : 1;
         tile.SetPixel(slot, pixel);
       }

@@ -33,6 +33,7 @@ struct Estimate
 struct Whole
 {
   VU First[3]; ///< position of the first one from the cells' low corner, modulo 256 cells
+  VI Begin;    ///< its number
   VI Count;
 };
 
@@ -121,7 +122,7 @@ public:
     if (hn::AllFalse(di, hn::Lt(estimate.Begin, estimate.Counts)))
     {
       result.First[0] = result.First[1] = result.First[2] = hn::Zero(DU());
-      result.Count = hn::Zero(di);
+      result.Begin = result.Count = hn::Zero(di);
       return result;
     }
     for (int axis = 0; axis < 3; ++axis)
@@ -157,6 +158,7 @@ public:
       }
       more = hn::And(more, this->MoreAt(last, end, estimate.Counts));
     }
+    result.Begin = begin;
     result.Count = hn::IfThenElseZero(some, hn::Sub(end, begin));
     return result;
   }

@@ -8,6 +8,7 @@
 #endif
 
 #include "Render/Bricks/PackedBrick.h"
+#include "Render/Raycast/NoteSteps-inl.h"
 #include "Render/Raycast/PacketIntervals-inl.h"
 #include "Render/Raycast/PacketSamples-inl.h"
 
@@ -131,7 +132,14 @@ private:
     walk.Step = { this->Intervals.InBrickCells(this->Tile.Step[0] + slot),
       this->Intervals.InBrickCells(this->Tile.Step[1] + slot),
       this->Intervals.InBrickCells(this->Tile.Step[2] + slot) };
-    this->Follow(walk);
+    if (this->Tile.Log)
+    {
+      this->FollowNoting(slot, walk, whole);
+    }
+    else
+    {
+      this->Follow(walk);
+    }
     this->Keep(slot, walk);
     this->Tile.SamplesTaken += static_cast<std::int64_t>(walk.Taken);
   }
@@ -195,6 +203,26 @@ private:
     }
   }
 
+  /// The same samples, which are noted.
+  void FollowNoting(int slot, Walk& walk, const Whole& whole) const
+  {
+    const D d;
+    const DI di;
+    const VI end = hn::Add(whole.Begin, whole.Count);
+    Place place;
+    Found found;
+    for (Lanes lanes = this->Next(walk, place); !hn::AllFalse(d, lanes);
+         lanes = this->Next(walk, place))
+    {
+      this->Samples.Interpolate(place, walk.Ray, found);
+      const Steps steps = this->Samples.LookUp(found);
+      // Next has gone one further.
+      const VI number = hn::Sub(hn::Sub(end, walk.Left), hn::Set(di, 1));
+      NoteSteps(*this->Tile.Log, slot, number, lanes, steps);
+      this->BlendSteps(walk, lanes, steps);
+    }
+  }
+
   /// Locates the next sample that may be seen in some lane. @return these lanes; none at the end
   HWY_INLINE Lanes Next(Walk& walk, Place& place) const
   {
@@ -226,9 +254,14 @@ private:
 
   HWY_INLINE void Blend(Walk& walk, Lanes lanes, const Found& found) const
   {
-    const D d;
     lanes = hn::And(lanes, walk.Open);
-    Add(walk, lanes, this->Samples.LookUp(found));
+    this->BlendSteps(walk, lanes, this->Samples.LookUp(found));
+  }
+
+  HWY_INLINE void BlendSteps(Walk& walk, Lanes lanes, const Steps& steps) const
+  {
+    const D d;
+    Add(walk, lanes, steps);
     walk.Open = hn::And(walk.Open, hn::Gt(walk.T, hn::Set(d, this->Tile.TransmittanceLimit)));
     walk.Taken += hn::CountTrue(d, lanes);
   }
@@ -289,7 +322,14 @@ private:
     Walk walk = this->WalkAt(slot, here);
     this->Samples.Locate({ position[0], position[1], position[2] }, here, place);
     this->Samples.Interpolate(place, walk.Ray, found);
-    Add(walk, here, this->Samples.LookUp(found, fraction));
+    const Steps steps = this->Samples.LookUp(found, fraction);
+    if (this->Tile.Log)
+    {
+      const bool isHead = &ends == &this->Tile.Head;
+      const VI number = hn::Set(DI(), isHead ? SegmentLog::Head : SegmentLog::Tail);
+      NoteSteps(*this->Tile.Log, slot, number, here, steps);
+    }
+    Add(walk, here, steps);
     this->Keep(slot, walk);
     this->Tile.SamplesTaken += static_cast<std::int64_t>(hn::CountTrue(d, here));
   }

@@ -12,6 +12,8 @@
 namespace banyan
 {
 
+class SegmentLog;
+
 /// The rays of a rectangle of pixels while bricks are drawn front to back.
 ///
 /// Rays stand in slots, packet by packet: a packet has the rays of 4 x 4 pixels, row by row, so
@@ -120,6 +122,7 @@ struct RayTile
   std::int64_t SamplesTaken = 0; ///< since Open
   bool PacketsFit = true;        ///< no ray steps further than LongestStep, in the finest cells
   BrickPrefetcher Ahead;         ///< the brick that is drawn next, if it is to be asked for
+  SegmentLog* Log = nullptr;     ///< where kernels note each composited sample; null for nowhere
 
   /// The brick that is being drawn has cells 2^BrickShift times as short as the index space that
   /// rays are made in, and the box of it that is drawn counts in cells 2^CellShift times as short.

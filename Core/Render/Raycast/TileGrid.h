@@ -7,6 +7,17 @@
 namespace banyan
 {
 
+/// The tiles of a picture that ranks draw or merge in turn: those of one of them.
+struct TileShare
+{
+  int Rank = 0;
+  int Ranks = 1;
+
+  /// @param tile its position
+  int OwnerOf(const glm::ivec2& tile) const { return (tile.x + 7 * tile.y) % this->Ranks; }
+  bool Has(const glm::ivec2& tile) const { return this->OwnerOf(tile) == this->Rank; }
+};
+
 /// A part of a picture cut into tiles, numbered x fastest. Tiles are cut from the lower left corner
 /// of the whole picture on, as those of TileSamplings, or are equal parts of those.
 class TileGrid

@@ -87,6 +87,17 @@ public:
     return levels;
   }
 
+  /// The same, but all pixels have rays.
+  TileSamplings WithAllPixels() const
+  {
+    TileSamplings all = *this;
+    for (RaySampling& sampling : all.List)
+    {
+      sampling.PixelStride = 1;
+    }
+    return all;
+  }
+
   /// The largest stride that a tile has.
   int LargestStride() const
   {

@@ -19,6 +19,7 @@ namespace banyan
 {
 
 struct BrickWork;
+class SegmentPicture;
 class SharedPlans;
 class StopFlag;
 struct ReusedRays;
@@ -75,6 +76,9 @@ struct RayScene
   const StopFlag* Stop = nullptr;
   /// Where the ray caster adds what bricks took to draw; null for nowhere. No part of the picture.
   BrickWork* Work = nullptr;
+  /// Where the ray caster puts what it blends, sample by sample; null for nowhere. What it meets is
+  /// composited later, with what other volumes have there. No part of the picture.
+  SegmentPicture* Segments = nullptr;
 };
 
 } // namespace banyan

@@ -48,7 +48,7 @@ Took Together(const Case& is, Deal deal, int ranks)
     took.Runs += of.Runs;
     took.Raw += of.Raw;
     took.Asked += of.Asked;
-    took.Bytes += of.Bytes;
+    took.Bytes += of.Sent.Bytes;
   }
   return took;
 }

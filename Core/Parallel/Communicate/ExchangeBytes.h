@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef banyan_Parallel_Cells_ExchangeBytes_h
-#define banyan_Parallel_Cells_ExchangeBytes_h
+#ifndef banyan_Parallel_Communicate_ExchangeBytes_h
+#define banyan_Parallel_Communicate_ExchangeBytes_h
 
 #include "Base/Bytes.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Parallel/Cells/ExchangeBytes.h"
+#include "Parallel/Communicate/ExchangeBytes.h"
 
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Communicate/Communicator.h"

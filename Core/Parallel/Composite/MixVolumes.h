@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef banyan_Parallel_Composite_MixVolumes_h
+#define banyan_Parallel_Composite_MixVolumes_h
+
+#include "Parallel/Composite/TilePicture.h"
+#include "Render/Raycast/RaySegments.h"
+
+#include <string>
+#include <vector>
+
+namespace banyan
+{
+
+class StopFlag;
+class ThreadPool;
+
+/// Volumes that share space, as ranks have them along rays.
+struct MixedVolumes
+{
+  /// By volume: what this rank has, any part of it.
+  std::vector<std::vector<TileSegments>> Segments;
+  PixelRect Viewport;
+  float TransmittanceLimit = 0.0f; ///< rays end when their transmittance is not above this
+  const StopFlag* Stop = nullptr;
+};
+
+/// Collective: the picture of volumes that share space. Tiles belong to ranks in turn. Each gets
+/// all that ranks have of its tiles, and mixes it (SegmentMixer).
+/// @param space the same on all ranks, but for the segments
+/// @param failure of this rank so far: its sentence, empty if all is well
+/// @param sent is added to
+/// @return the picture on rank 0: premultiplied, within rounding the same for any number of ranks
+/// Throws CollectiveError.
+FloatImage MixVolumes(Communicator& communicator, MixedVolumes space, ThreadPool& pool,
+  std::string failure, SentBytes& sent);
+
+} // namespace banyan
+
+#endif

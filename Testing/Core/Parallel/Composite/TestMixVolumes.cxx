@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Volumes that share space. What one volume has along rays is its own picture; two volumes of half
+// the density are one of the whole; media of one colour are what a formula says.
+#include "Parallel/Balance/Zones.h"
+#include "Parallel/Composite/MixVolumes.h"
+#include "Parallel/Frame/DistributedFrame.h"
+#include "Parallel/PieceCases.h"
+#include "Render/Raycast/SegmentMixer.h"
+#include "Render/Scenes.h"
+#include "Series/SeriesTesting.h"
+
+#include <gtest/gtest.h>
+
+namespace
+{
+
+using namespace banyan;
+
+constexpr std::uint64_t Budget = 1u << 20;
+const glm::ivec3 Samples{ 41, 33, 37 };
+
+RayScene SceneOf(bool parallel = false, double distance = 1.4)
+{
+  RayScene scene = scenes::Scene(Samples, { 75, 70 }, glm::dmat4(1.0), distance, parallel);
+  scene.Transfer = scenes::Tabulate(scenes::Sparse);
+  scene.Transfer.UnitDistance = 0.2;
+  return scene;
+}
+
+/// Grid data of all ranks.
+struct Field
+{
+  explicit Field(const scenes::Field& field = scenes::Standard)
+    : Values(scenes::Sampled<float>(field, Samples))
+  {
+  }
+
+  /// Collective: what this rank has along rays.
+  std::vector<TileSegments> Segments(Communicator& ranks, RayScene scene) const
+  {
+    ThreadPool pool(2);
+    ArrayBrickSource source(scenes::ArrayOf(this->Values, Samples), 16, { 0.0, 1.0 }, pool);
+    const BrickLayout layout(Samples, 16, 0);
+    std::vector<Box> zones;
+    for (const Box& bricks : StaticZones(layout.Bricks(), ranks.Size()))
+    {
+      zones.push_back(CellsOfBricks(bricks, 16, scene.DomainCells.Hi));
+    }
+    SegmentPicture segments;
+    scene.Segments = &segments;
+    FrameStatistics statistics;
+    const FloatImage none =
+      DrawDistributed(ranks, scene, { &source, zones, Budget, pool }, statistics);
+    EXPECT_TRUE(none.Pixels.empty());
+    return segments.Take();
+  }
+
+  FloatImage Alone(const RayScene& scene) const
+  {
+    FloatImage picture = scenes::Draw(scene, scenes::ArrayOf(this->Values, Samples)).Image;
+    FloatImage whole{ scene.Viewport, PixelVector(
+                                        static_cast<std::size_t>(scene.Viewport.Count()),
+                                        glm::vec4(0.0f)) };
+    for (int y = picture.Rect.Lo.y; y < picture.Rect.Hi.y; ++y)
+    {
+      for (int x = picture.Rect.Lo.x; x < picture.Rect.Hi.x; ++x)
+      {
+        whole.At(x, y) = picture.At(x, y);
+      }
+    }
+    return whole;
+  }
+
+  std::vector<float> Values;
+};
+
+using SegmentsOf = std::function<std::vector<TileSegments>(Communicator&)>;
+
+FloatImage Mixed(
+  int ranks, const RayScene& scene, const std::vector<SegmentsOf>& volumes, float limit = -1.0f)
+{
+  FloatImage picture;
+  RunOnSimulatedRanks(ranks,
+    [&](Communicator& communicator)
+    {
+      ThreadPool pool(2);
+      MixedVolumes mixed;
+      mixed.Viewport = scene.Viewport;
+      mixed.TransmittanceLimit = limit;
+      for (const SegmentsOf& volume : volumes)
+      {
+        mixed.Segments.push_back(volume(communicator));
+      }
+      SentBytes sent;
+      FloatImage mine = MixVolumes(communicator, std::move(mixed), pool, {}, sent);
+      if (communicator.Rank() == 0)
+      {
+        picture = std::move(mine);
+      }
+      else
+      {
+        EXPECT_TRUE(mine.Pixels.empty());
+      }
+    });
+  return picture;
+}
+
+std::int64_t SeenIn(const FloatImage& picture)
+{
+  return std::count_if(picture.Pixels.begin(), picture.Pixels.end(),
+    [](const glm::vec4& pixel) { return pixel.a > 0.02f; });
+}
+
+void ExpectItsOwnPicture(const Field& field, const RayScene& scene, const std::string& name)
+{
+  const FloatImage alone = field.Alone(scene);
+  EXPECT_GT(SeenIn(alone), 100) << name;
+  for (const int ranks : { 1, 3 })
+  {
+    const FloatImage mixed = Mixed(
+      ranks, scene, { [&](Communicator& all) { return field.Segments(all, scene); } });
+    EXPECT_LE(MaxDifference(mixed, alone), 1e-5) << name << " on " << ranks;
+  }
+}
+
+TEST(MixVolumes, OneVolumeIsItsOwnPicture)
+{
+  const Field field;
+  ExpectItsOwnPicture(field, SceneOf(), "perspective");
+  ExpectItsOwnPicture(field, SceneOf(true), "parallel");
+  ExpectItsOwnPicture(field, SceneOf(false, 0.1), "inside");
+  RayScene scene = SceneOf();
+  scene.SampleDistance = 0.3;
+  ExpectItsOwnPicture(field, scene, "short steps");
+  scene.SampleDistance = 40.0; // longer than packets are drawn with
+  scene.Transfer.UnitDistance = 2.0;
+  ExpectItsOwnPicture(field, scene, "long steps");
+  scene = SceneOf();
+  scene.Shading = { true, 0.3f, 0.7f, 0.4f, 12.0f };
+  ExpectItsOwnPicture(field, scene, "shaded");
+  scene = SceneOf();
+  scene.Interpolation = SampleInterpolation::Nearest;
+  ExpectItsOwnPicture(field, scene, "nearest");
+  scene = SceneOf();
+  scene.ClipPlanes.push_back({ { 0.6, 0.0, 0.8 }, -20.0 });
+  ExpectItsOwnPicture(field, scene, "clipped");
+  scene = SceneOf();
+  for (int i = 0; i < scene.Viewport.Count(); ++i)
+  {
+    scene.Depth.push_back(i % 7 == 0 ? 1.0f : 0.1f + 0.8f * static_cast<float>(i % 13) / 13.0f);
+  }
+  ExpectItsOwnPicture(field, scene, "before opaque geometry");
+}
+
+TEST(MixVolumes, BricksOfOneValue)
+{
+  const Field field([](const glm::dvec3& p) { return p.x < 0.6 ? 0.8 : 0.9 * p.y; });
+  ExpectItsOwnPicture(field, SceneOf(), "bricks of one value");
+}
+
+TEST(MixVolumes, CellsAreTheirOwnPicture)
+{
+  for (const bool lattice : { false, true })
+  {
+    piececases::Case is(piececases::Cube(6, cellmeshes::Cut::Mixed));
+    if (lattice)
+    {
+      is.Scene.Samplings = std::make_shared<const TileSamplings>(is.Scene.Camera.ImageSize(),
+        std::vector<RaySampling>{ { 1, is.Scene.SampleDistance, 1 } });
+    }
+    const FloatImage whole = is.Whole();
+    EXPECT_GT(SeenIn(whole), 1000);
+    for (const int ranks : { 1, 3, 8 })
+    {
+      const std::vector<int> rankOf =
+        piececases::Dealt(is.Mesh, piececases::Deal::OneByOne, ranks);
+      const FloatImage mixed = Mixed(ranks, is.Scene,
+        { [&](Communicator& all)
+          {
+            SegmentPicture segments;
+            piececases::Case own = is;
+            own.Scene.Segments = &segments;
+            PieceStatistics statistics;
+            own.Together(all, rankOf, statistics);
+            return segments.Take();
+          } });
+      EXPECT_LE(MaxDifference(mixed, whole), 1e-5) << lattice << " on " << ranks;
+    }
+  }
+}
+
+/// Of a volume whose densities are parts of those of the standard one.
+RayScene WithPartOfDensity(const RayScene& scene, double part)
+{
+  RayScene thin = scene;
+  for (glm::vec4& entry : thin.Transfer.Entries)
+  {
+    entry.a = static_cast<float>(-std::expm1(part * std::log1p(-double(entry.a))));
+  }
+  return thin;
+}
+
+TEST(MixVolumes, PartsOfDensityAddUp)
+{
+  const Field field;
+  for (const bool parallel : { false, true })
+  {
+    const RayScene scene = SceneOf(parallel);
+    const FloatImage whole = field.Alone(scene);
+    const auto part = [&](double density)
+    {
+      return [&field, thin = WithPartOfDensity(scene, density)](
+               Communicator& all) { return field.Segments(all, thin); };
+    };
+    for (const int ranks : { 1, 3, 8 })
+    {
+      const FloatImage mixed = Mixed(ranks, scene, { part(0.5), part(0.2), part(0.3) });
+      EXPECT_LE(MaxDifference(mixed, whole), 2e-5) << ranks;
+    }
+  }
+}
+
+TEST(MixVolumes, AnyNumberOfRanks)
+{
+  const Field field;
+  const Field other([](const glm::dvec3& p) { return scenes::Standard({ p.z, p.x, p.y }); });
+  const RayScene scene = SceneOf();
+  RayScene turned = SceneOf();
+  turned.IndexToWorld = glm::translate(glm::dmat4(1.0), glm::dvec3(20.0, 3.0, -2.0)) *
+                        glm::rotate(glm::dmat4(1.0), 0.7, glm::dvec3(0.2, 1.0, 0.3));
+  turned.SampleDistance = 0.73;
+  const auto draw = [&](int ranks)
+  {
+    return Mixed(ranks, scene,
+      { [&](Communicator& all) { return field.Segments(all, scene); },
+        [&](Communicator& all) { return other.Segments(all, turned); } });
+  };
+  const FloatImage alone = draw(1);
+  EXPECT_GT(SeenIn(alone), 700);
+  EXPECT_GT(MaxDifference(alone, field.Alone(scene)), 0.1) << "the other one is seen";
+  for (const int ranks : { 2, 3, 8, 64 })
+  {
+    EXPECT_LE(MaxDifference(draw(ranks), alone), 1e-5) << ranks;
+  }
+}
+
+TEST(MixVolumes, AFailureIsOneOfAll)
+{
+  for (const int ranks : { 1, 3 })
+  {
+    RunOnSimulatedRanks(ranks,
+      [&](Communicator& communicator)
+      {
+        ThreadPool pool(1);
+        SentBytes sent;
+        MixedVolumes mixed;
+        mixed.Segments.resize(2);
+        mixed.Viewport = { glm::ivec2(0), glm::ivec2(10) };
+        EXPECT_THROW(MixVolumes(communicator, std::move(mixed), pool,
+                       communicator.Rank() == 0 ? "It is broken" : "", sent),
+          Error);
+      });
+  }
+}
+
+/// Segments of a pixel in any order, mixed.
+glm::vec4 MixOf(const std::vector<std::vector<RaySegment>>& volumes, float limit = -1.0f)
+{
+  SegmentMixer mixer(volumes.size());
+  for (std::size_t i = 0; i < volumes.size(); ++i)
+  {
+    mixer.Add(i, { glm::ivec2(0), volumes[i] });
+  }
+  std::vector<glm::vec4> pixels(RayTile::Slots, glm::vec4(7.0f));
+  mixer.Mix(limit, pixels.data());
+  EXPECT_EQ(pixels[1], glm::vec4(0.0f));
+  return pixels[0];
+}
+
+/// Of a medium with one colour.
+RaySegment Segment(double begin, double length, const glm::vec3& color, double density)
+{
+  RaySegment segment;
+  segment.Begin = begin;
+  segment.Length = static_cast<float>(length);
+  segment.Transmittance = static_cast<float>(std::exp(-density * length));
+  for (int i = 0; i < 3; ++i)
+  {
+    segment.Color[i] = (1.0f - segment.Transmittance) * color[i];
+  }
+  return segment;
+}
+
+TEST(SegmentMixer, AFormula)
+{
+  const glm::vec3 red(1.0f, 0.1f, 0.0f);
+  const glm::vec3 blue(0.0f, 0.2f, 1.0f);
+  // Red from 0 to 2, blue from 1 to 3: red alone, both, blue alone.
+  const double r = 0.4;
+  const double b = 0.9;
+  const double first = std::exp(-r);
+  const double second = first * std::exp(-r - b);
+  const glm::vec3 both = (float(r) * red + float(b) * blue) / float(r + b);
+  const glm::vec3 expected = float(1.0 - first) * red + float(first - second) * both +
+                             float(second * (1.0 - std::exp(-b))) * blue;
+  const auto check = [&](const glm::vec4& pixel)
+  {
+    EXPECT_NEAR(pixel.a, 1.0 - std::exp(-2.0 * (r + b)), 1e-6);
+    for (int i = 0; i < 3; ++i)
+    {
+      EXPECT_NEAR(pixel[i], expected[i], 1e-6) << i;
+    }
+  };
+  check(MixOf({ { Segment(0, 2, red, r) }, { Segment(1, 2, blue, b) } }));
+  check(MixOf({ { Segment(1, 2, blue, b) }, { Segment(0, 2, red, r) } }));
+  // However they are cut, and in whatever order parts come.
+  std::vector<RaySegment> reds;
+  std::vector<RaySegment> blues;
+  for (int i = 9; i >= 0; --i)
+  {
+    reds.push_back(Segment(0.2 * i, 0.2, red, r));
+  }
+  for (int i = 0; i < 7; ++i)
+  {
+    blues.push_back(Segment(1.0 + i * 2.0 / 7.0, 2.0 / 7.0, blue, b));
+  }
+  check(MixOf({ reds, blues }));
+}
+
+TEST(SegmentMixer, OpaqueAndNothing)
+{
+  RaySegment wall = Segment(1.0, 0.5, glm::vec3(0.0f, 1.0f, 0.0f), 1.0);
+  wall.Transmittance = 0.0f;
+  wall.Color[1] = 1.0f;
+  const RaySegment mist = Segment(0.0, 3.0, glm::vec3(1.0f), 0.1);
+  const glm::vec4 pixel = MixOf({ { mist }, { wall } });
+  EXPECT_NEAR(pixel.a, 1.0f, 1e-6);
+  const double before = std::exp(-0.1);
+  EXPECT_NEAR(pixel.r, 1.0 - before, 2e-3);
+  EXPECT_NEAR(pixel.g, 1.0, 1e-3);
+  EXPECT_EQ(MixOf({ {}, {} }), glm::vec4(0.0f));
+  // Far from where t is 0.
+  const double far = 1e9;
+  const glm::vec4 there = MixOf(
+    { { Segment(far, 1, glm::vec3(1.0f), 0.5) }, { Segment(far + 0.5, 1, glm::vec3(1.0f), 0.5) } });
+  EXPECT_NEAR(there.a, 1.0 - std::exp(-1.0), 1e-6);
+  // A ray ends at the limit.
+  std::vector<RaySegment> many;
+  for (int i = 0; i < 10; ++i)
+  {
+    many.push_back(Segment(i, 1.0, glm::vec3(1.0f), 1.0));
+  }
+  EXPECT_NEAR(MixOf({ many }, 0.05f).a, 1.0 - std::exp(-3.0), 1e-6);
+}
+
+} // namespace
