@@ -159,29 +159,33 @@ std::shared_ptr<const FloatImage> VolumeFrame::CastOnWall(
   vtkRenderer* renderer, const OnWall& wall, const DepthPicture& depths, int volumes)
 {
   MapperState& state = *this->State;
+  this->BeginOnWall(renderer, wall);
   this->Wanted->Depth = depths.In(this->Wanted->Viewport);
-  const bool interacting = IsInteracting(renderer);
-  FieldFrames::Wish wish = this->WishFor(interacting, EyeOf(renderer), volumes);
+  FieldFrames::Wish wish = this->WishFor(IsInteracting(renderer), EyeOf(renderer), volumes);
   wish.Sampling.Seconds /= static_cast<double>(wall.Pictures);
   for (PicturePlace place : wall.Places)
   {
     place.Behind = Intersection(depths.Rect, place.Rect);
     wish.Places.push_back(place);
   }
-  while (state.WallFrames.size() <= wall.Number)
-  {
-    state.WallFrames.push_back(std::make_unique<FieldFrames>());
-  }
-  state.Late.Stop();
-  this->DrawsAtOnce(!interacting);
-  if (this->PicturesDrawn == 0)
-  {
-    this->BeginFigures();
-  }
   FieldFrames::Frame frame =
     state.WallFrames[wall.Number]->Draw(*state.Communicator, state.Field, *this->Wanted, wish);
   this->TellMore(frame);
   return frame.Picture.Pixels;
+}
+
+void VolumeFrame::BeginOnWall(vtkRenderer* renderer, const OnWall& wall)
+{
+  while (this->State->WallFrames.size() <= wall.Number)
+  {
+    this->State->WallFrames.push_back(std::make_unique<FieldFrames>());
+  }
+  this->State->Late.Stop();
+  this->DrawsAtOnce(!IsInteracting(renderer));
+  if (this->PicturesDrawn == 0)
+  {
+    this->BeginFigures();
+  }
 }
 
 bool VolumeFrame::HasSpectator(vtkRenderer* renderer, const Together& others) const
@@ -206,8 +210,7 @@ std::shared_ptr<const FloatImage> VolumeFrame::CastPart(
   scene.Viewport = Intersection(
     whole, { own.Lo - RaySampling::LargestStride, own.Hi + RaySampling::LargestStride });
   scene.Depth = backdrop.Depths(scene.Viewport);
-  FieldFrames::Wish wish =
-    this->WishFor(IsInteracting(renderer), EyeOf(renderer), others.Volumes);
+  FieldFrames::Wish wish = this->WishFor(IsInteracting(renderer), EyeOf(renderer), others.Volumes);
   wish.Whole = whole;
   wish.Places = { { own, 0, Intersection(backdrop.Behind(), own) } };
   const FieldFrames::Frame frame = state.Frames.Draw(*state.Communicator, state.Field, scene, wish);
@@ -220,21 +223,37 @@ float VolumeFrame::CastSegments(vtkRenderer* renderer, const Backdrop& backdrop,
 {
   MapperState& state = *this->State;
   this->BeginParts(renderer, backdrop);
-  const PixelRect whole = this->Wanted->Viewport;
   RayScene scene = *this->Wanted;
-  scene.Viewport = Intersection(whole, part);
+  scene.Viewport = Intersection(scene.Viewport, part);
+  scene.Depth = backdrop.Depths(scene.Viewport);
+  return this->TakeSegments(state.Frames, scene,
+    this->WishFor(IsInteracting(renderer), EyeOf(renderer), others.Volumes), segments);
+}
+
+float VolumeFrame::CastSegmentsOnWall(vtkRenderer* renderer, const OnWall& wall,
+  const DepthPicture& depths, int volumes, const PixelRect& part, SegmentPicture& segments)
+{
+  this->BeginOnWall(renderer, wall);
+  RayScene scene = *this->Wanted;
+  scene.Viewport = Intersection(scene.Viewport, part);
+  scene.Depth = depths.In(scene.Viewport);
+  return this->TakeSegments(*this->State->WallFrames[wall.Number], scene,
+    this->WishFor(IsInteracting(renderer), EyeOf(renderer), volumes), segments);
+}
+
+/// @param scene of the part
+float VolumeFrame::TakeSegments(
+  FieldFrames& frames, RayScene& scene, FieldFrames::Wish wish, SegmentPicture& segments)
+{
   if (scene.Viewport.Empty())
   {
     return 1.0f;
   }
-  scene.Depth = backdrop.Depths(scene.Viewport);
-  FieldFrames::Wish wish =
-    this->WishFor(IsInteracting(renderer), EyeOf(renderer), others.Volumes);
-  wish.Whole = whole;
+  wish.Whole = this->Wanted->Viewport;
   wish.Places = { { scene.Viewport, 0, {} } };
   wish.Reuse = false;
   wish.Segments = &segments;
-  this->TellMore(state.Frames.Draw(*state.Communicator, state.Field, scene, wish));
+  this->TellMore(frames.Draw(*this->State->Communicator, this->State->Field, scene, wish));
   return 1.0f - scene.OpacityLimit;
 }
 

@@ -69,21 +69,6 @@ public:
   std::shared_ptr<const FloatImage> CastPart(
     vtkRenderer* renderer, const Backdrop& backdrop, const Together& others, const PixelRect& part);
 
-  /// Takes what the volume has along the rays of a part of a picture, for volumes that share space
-  /// with it: the statistics of parts add up.
-  /// @param part of the picture
-  /// @param segments get it, as far as this rank has it
-  /// @return the transmittance at which rays end
-  float CastSegments(vtkRenderer* renderer, const Backdrop& backdrop, const Together& others,
-    const PixelRect& part, SegmentPicture& segments);
-  /// Tells what all parts took, with volumes that share the space.
-  /// @param seconds for this volume
-  void SegmentsTook(vtkRenderer* renderer, const Together& others, double seconds);
-
-  /// Whether somebody goes on in front of the window while the picture is drawn, or moves the
-  /// camera. The same on all ranks.
-  bool HasSpectator(vtkRenderer* renderer, const Together& others) const;
-
   /// A picture on displays of ranks.
   struct OnWall
   {
@@ -91,6 +76,25 @@ public:
     std::size_t Number;   ///< of the picture: each has frames of its own
     std::size_t Pictures; ///< that are drawn one after the other
   };
+
+  /// Takes what the volume has along the rays of a part of a picture, for volumes that share space
+  /// with it: the statistics of parts add up.
+  /// @param part of the picture
+  /// @param segments get it, as far as this rank has it
+  /// @return the transmittance at which rays end
+  float CastSegments(vtkRenderer* renderer, const Backdrop& backdrop, const Together& others,
+    const PixelRect& part, SegmentPicture& segments);
+  /// The same for a picture on displays of ranks.
+  /// @param volumes in the picture
+  float CastSegmentsOnWall(vtkRenderer* renderer, const OnWall& wall, const DepthPicture& depths,
+    int volumes, const PixelRect& part, SegmentPicture& segments);
+  /// Tells what all parts took, with volumes that share the space.
+  /// @param seconds for this volume
+  void SegmentsTook(vtkRenderer* renderer, const Together& others, double seconds);
+
+  /// Whether somebody goes on in front of the window while the picture is drawn, or moves the
+  /// camera. The same on all ranks.
+  bool HasSpectator(vtkRenderer* renderer, const Together& others) const;
 
   /// Draws the volume for displays of ranks, picture by picture: their statistics add up.
   /// @param depths at which other data are
@@ -110,6 +114,9 @@ public:
 
 private:
   void BeginParts(vtkRenderer* renderer, const Backdrop& backdrop);
+  void BeginOnWall(vtkRenderer* renderer, const OnWall& wall);
+  float TakeSegments(
+    FieldFrames& frames, RayScene& scene, FieldFrames::Wish wish, SegmentPicture& segments);
   bool MayBeLate(vtkRenderer* renderer, const Together& others) const;
   bool MayBeLateForClient(const Together& others) const;
   void TellMore(FieldFrames::Frame frame);

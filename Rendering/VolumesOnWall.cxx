@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VolumesOnWall.h"
 
+#include "SharedSpace.h"
 #include "VolumesInDepth.h"
 #include "VolumesPicture.h"
 #include "vtkBanyanVolumeMapper.h"
@@ -124,10 +125,12 @@ void VolumesOnWall::DrawPicture(const WallPicture& picture, const VolumeFrame::O
   }
   const std::vector<VolumeOnScreen> volumes = VolumesPicture::OnScreen(frames);
   const DepthOrder order = OrderInDepth(volumes, picture.View);
+  const std::vector<int> groups = GroupsThatMix(frames, order);
   if (wall.Number == 0)
   {
     const RayCamera camera(picture.View.WorldToClip, picture.View.Size, glm::dvec3(0.0));
-    VolumesPicture::WarnNotInDepth(this->Called, this->Renderer, camera, frames, volumes, order);
+    VolumesPicture::WarnNotInDepth(
+      this->Called, this->Renderer, camera, frames, volumes, order, groups);
   }
   const auto place = std::find_if(picture.Places.begin(), picture.Places.end(),
     [&](const PicturePlace& its) { return its.Root == communicator.Rank(); });
@@ -136,13 +139,28 @@ void VolumesOnWall::DrawPicture(const WallPicture& picture, const VolumeFrame::O
   std::vector<std::shared_ptr<const FloatImage>> pictures(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i)
   {
+    std::vector<VolumeFrame*> group;
+    for (std::size_t other = 0; other < frames.size(); ++other)
+    {
+      if (groups[other] == groups[i])
+      {
+        group.push_back(frames[other]);
+      }
+    }
     const auto cast = [&]
     {
       pictures[i] =
         frames[i]->CastOnWall(this->Renderer, wall, depths, static_cast<int>(frames.size()));
       return true;
     };
-    (frames[i]->Mapper()->Attempt(cast) ? drawn : failed).insert(frames[i]);
+    if (group.size() == 1)
+    {
+      (frames[i]->Mapper()->Attempt(cast) ? drawn : failed).insert(frames[i]);
+    }
+    else if (group.front() == frames[i])
+    {
+      pictures[i] = this->Mix(group, wall, depths, drawn, failed);
+    }
   }
   if (shows)
   {
@@ -153,6 +171,41 @@ void VolumesOnWall::DrawPicture(const WallPicture& picture, const VolumeFrame::O
     backdrop.SetCorner(place->Rect.Lo);
     backdrop.WriteOver(this->Renderer, blended);
   }
+}
+
+/// Collective: draws volumes that share space, place after place.
+/// @return the picture in this rank's place
+std::shared_ptr<const FloatImage> VolumesOnWall::Mix(const std::vector<VolumeFrame*>& group,
+  const VolumeFrame::OnWall& wall, const DepthPicture& depths, std::set<VolumeFrame*>& drawn,
+  std::set<VolumeFrame*>& failed)
+{
+  const auto castBand = [&](VolumeFrame& frame, const PixelRect& band, SegmentPicture& segments)
+  {
+    float limit = 1.0f;
+    const auto cast = [&]
+    {
+      limit = frame.CastSegmentsOnWall(
+        this->Renderer, wall, depths, static_cast<int>(this->Frames.size()), band, segments);
+      return true;
+    };
+    if (failed.count(&frame) == 0)
+    {
+      (frame.Mapper()->Attempt(cast) ? drawn : failed).insert(&frame);
+    }
+    if (failed.count(&frame) > 0)
+    {
+      segments.Take();
+    }
+    return limit;
+  };
+  std::shared_ptr<const FloatImage> mine;
+  for (const PicturePlace& place : wall.Places)
+  {
+    std::shared_ptr<const FloatImage> picture =
+      DrawMixed(*this->Called->State->Communicator, group, place.Rect, place.Root, castBand);
+    mine = picture ? std::move(picture) : std::move(mine);
+  }
+  return mine;
 }
 
 } // namespace banyan

@@ -49,6 +49,10 @@ private:
   void DrawPicture(const WallPicture& picture, const VolumeFrame::OnWall& wall,
     const DepthPicture& own, std::set<VolumeFrame*>& drawn, std::set<VolumeFrame*>& failed);
 
+  std::shared_ptr<const FloatImage> Mix(const std::vector<VolumeFrame*>& group,
+    const VolumeFrame::OnWall& wall, const DepthPicture& depths, std::set<VolumeFrame*>& drawn,
+    std::set<VolumeFrame*>& failed);
+
   vtkRenderer* Renderer;
   vtkBanyanVolumeMapper* Called;
   std::vector<VolumeFrame> Frames;

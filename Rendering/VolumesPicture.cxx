@@ -2,14 +2,12 @@
 #include "VolumesPicture.h"
 
 #include "RendererCamera.h"
+#include "SharedSpace.h"
 #include "VolumesInDepth.h"
 #include "vtkBanyanVolumeMapper.h"
 
 #include "Base/Progress.h"
-#include "Base/ThreadPool.h"
 #include "Base/Timer.h"
-#include "Parallel/Communicate/Collective.h"
-#include "Parallel/Composite/MixVolumes.h"
 
 #include "vtkCollection.h"
 #include "vtkPropCollection.h"
@@ -18,20 +16,10 @@
 #include "vtkVolume.h"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
-#include <numeric>
 
 namespace banyan
 {
-namespace
-{
-
-/// What volumes that share space may have along rays at a time, on a rank.
-constexpr double BandBytes = 256e6;
-
-} // namespace
-
 std::vector<VolumeOnScreen> VolumesPicture::OnScreen(const std::vector<VolumeFrame*>& frames)
 {
   std::vector<VolumeOnScreen> volumes;
@@ -174,7 +162,7 @@ void VolumesPicture::DrawPrepared(vtkBanyanVolumeMapper* first)
     volume.Viewport = Moved(Intersection(volume.Viewport, rect), -this->View.Shown.Lo);
   }
   const DepthOrder order = OrderInDepth(volumes, this->View.View);
-  this->Groups = GroupsOf(frames, order);
+  this->Groups = GroupsThatMix(frames, order);
   WarnNotInDepth(first, this->Renderer, CameraOf(this->Renderer, glm::dvec3(0.0)), frames, volumes,
     order, this->Groups);
   Backdrop& backdrop = state.Backdrop;
@@ -262,19 +250,19 @@ bool VolumesPicture::Attempt(
 /// @param isWhole whether it is all of it
 /// @param failed gets the frames that could not be drawn
 /// @return pictures of the frames, on rank 0; of those that share space the first one has it
-VolumesPicture::Pictures VolumesPicture::Cast(const Backdrop& backdrop, const PixelRect& part,
-  bool isWhole, std::set<VolumeFrame*>& failed)
+VolumesPicture::Pictures VolumesPicture::Cast(
+  const Backdrop& backdrop, const PixelRect& part, bool isWhole, std::set<VolumeFrame*>& failed)
 {
   Pictures pictures(this->Frames.size());
   for (std::size_t i = 0; i < this->Frames.size(); ++i)
   {
     VolumeFrame& frame = this->Frames[i];
-    std::vector<std::size_t> group;
+    std::vector<VolumeFrame*> group;
     for (std::size_t other = 0; other < this->Frames.size(); ++other)
     {
       if (this->Groups[other] == this->Groups[i])
       {
-        group.push_back(other);
+        group.push_back(&this->Frames[other]);
       }
     }
     if (group.size() == 1)
@@ -289,141 +277,48 @@ VolumesPicture::Pictures VolumesPicture::Cast(const Backdrop& backdrop, const Pi
         },
         failed);
     }
-    else if (group.front() == i)
+    else if (group.front() == &frame)
     {
-      pictures[i] =
-        std::make_shared<const FloatImage>(this->Mix(group, backdrop, part, failed));
+      pictures[i] = this->Mix(group, backdrop, part, failed);
     }
   }
   return pictures;
 }
 
-/// Collective: draws volumes that share space, band after band: what they have along rays takes
-/// much memory.
-/// @param group numbers of frames
-/// @return the picture on rank 0
-FloatImage VolumesPicture::Mix(const std::vector<std::size_t>& group, const Backdrop& backdrop,
-  const PixelRect& rect, std::set<VolumeFrame*>& failed)
+/// Collective: draws volumes that share space.
+/// @return the picture, on rank 0
+std::shared_ptr<const FloatImage> VolumesPicture::Mix(const std::vector<VolumeFrame*>& group,
+  const Backdrop& backdrop, const PixelRect& rect, std::set<VolumeFrame*>& failed)
 {
   const Timer timer;
-  Communicator& communicator = *this->Called->State->Communicator;
-  FloatImage picture;
-  if (communicator.Rank() == 0)
+  const auto castBand = [&](VolumeFrame& frame, const PixelRect& band, SegmentPicture& segments)
   {
-    picture = { rect, PixelVector(static_cast<std::size_t>(rect.Count()), glm::vec4(0.0f)) };
-  }
-  int rows = RayTile::Edge;
-  for (int low = rect.Lo.y; low < rect.Hi.y;)
+    float limit = 1.0f;
+    const auto cast = [&]
+    {
+      limit =
+        frame.CastSegments(this->Renderer, backdrop, this->TogetherWith(frame), band, segments);
+    };
+    if (!this->Attempt(frame, cast, failed))
+    {
+      segments.Take();
+    }
+    return limit;
+  };
+  std::shared_ptr<const FloatImage> picture =
+    DrawMixed(*this->Called->State->Communicator, group, rect, /*root=*/0, castBand);
+  for (VolumeFrame* const frame : group)
   {
-    // Tiles are whole.
-    const int high = std::min((low / RayTile::Edge * RayTile::Edge) + rows, rect.Hi.y);
-    const PixelRect band{ { rect.Lo.x, low }, { rect.Hi.x, high } };
-    const double bytes = this->MixBand(group, backdrop, band, picture, failed);
-    const double perRow = std::max(bytes / (high - low), 1.0);
-    const double most = std::min(BandBytes / perRow, 65536.0);
-    // What comes next may be more.
-    rows = std::clamp(
-      static_cast<int>(most) / RayTile::Edge * RayTile::Edge, RayTile::Edge, 4 * rows);
-    low = high;
-  }
-  for (const std::size_t i : group)
-  {
-    VolumeFrame& frame = this->Frames[i];
     this->Attempt(
-      frame,
+      *frame,
       [&]
       {
-        frame.SegmentsTook(this->Renderer, this->TogetherWith(frame),
+        frame->SegmentsTook(this->Renderer, this->TogetherWith(*frame),
           timer.Seconds() / static_cast<double>(group.size()));
       },
       failed);
   }
   return picture;
-}
-
-/// Collective.
-/// @param picture gets the band, on rank 0
-/// @return bytes of what volumes had along rays, on the rank with most of it
-double VolumesPicture::MixBand(const std::vector<std::size_t>& group, const Backdrop& backdrop,
-  const PixelRect& band, FloatImage& picture, std::set<VolumeFrame*>& failed)
-{
-  MixedVolumes space;
-  space.Viewport = band;
-  space.TransmittanceLimit = 1.0f;
-  double bytes = 0.0;
-  for (const std::size_t i : group)
-  {
-    VolumeFrame& frame = this->Frames[i];
-    SegmentPicture segments;
-    float limit = 1.0f;
-    const bool isDrawn = this->Attempt(
-      frame,
-      [&]
-      {
-        limit = frame.CastSegments(
-          this->Renderer, backdrop, this->TogetherWith(frame), band, segments);
-      },
-      failed);
-    bytes += static_cast<double>(segments.Bytes());
-    space.Segments.push_back(isDrawn ? segments.Take() : std::vector<TileSegments>());
-    space.TransmittanceLimit = std::min(space.TransmittanceLimit, limit);
-  }
-  Communicator& communicator = *this->Called->State->Communicator;
-  SentBytes sent;
-  const FloatImage mixed =
-    MixVolumes(communicator, std::move(space), ThreadPool::Process(), {}, sent);
-  if (communicator.Rank() == 0)
-  {
-    for (int y = band.Lo.y; y < band.Hi.y; ++y)
-    {
-      std::copy_n(&mixed.At(band.Lo.x, y), band.Size().x, &picture.At(band.Lo.x, y));
-    }
-  }
-  return AllMax(communicator, bytes);
-}
-
-std::vector<int> VolumesPicture::GroupsOf(
-  const std::vector<VolumeFrame*>& frames, const DepthOrder& order)
-{
-  std::vector<int> groups(frames.size());
-  std::iota(groups.begin(), groups.end(), 0);
-  const auto mixes = [&](int volume)
-  {
-    const VolumeFrame& frame = *frames[static_cast<std::size_t>(volume)];
-    return frame.Scene().Blend.Mode == BlendMode::Composite && frame.Mapper()->GetMixVolumes();
-  };
-  const auto groupOf = [&](int volume) { return groups[static_cast<std::size_t>(volume)]; };
-  const auto join = [&](int one, int other)
-  { std::replace(groups.begin(), groups.end(), groupOf(other), groupOf(one)); };
-  for (const std::array<int, 2>& pair : order.Unknown())
-  {
-    if (mixes(pair[0]) && mixes(pair[1]))
-    {
-      join(pair[0], pair[1]);
-    }
-  }
-  // What is before one of a group and behind another one belongs to it.
-  const auto isBetween = [&](int volume, int one, int other)
-  {
-    return mixes(volume) && groupOf(one) == groupOf(other) && groupOf(volume) != groupOf(one) &&
-           order.Nearer(volume, one) != order.Nearer(volume, other);
-  };
-  const int count = static_cast<int>(frames.size());
-  for (bool grows = true; grows;)
-  {
-    grows = false;
-    for (int i = 0; i < count * count * count; ++i)
-    {
-      const int volume = i % count;
-      const int one = i / count % count;
-      if (isBetween(volume, one, i / count / count))
-      {
-        join(one, volume);
-        grows = true;
-      }
-    }
-  }
-  return groups;
 }
 
 } // namespace banyan

@@ -44,10 +44,6 @@ public:
   /// Where volumes that are prepared stand in a picture.
   static std::vector<VolumeOnScreen> OnScreen(const std::vector<VolumeFrame*>& frames);
 
-  /// Which volumes are drawn as one, since they share space: one number per frame.
-  static std::vector<int> GroupsOf(
-    const std::vector<VolumeFrame*>& frames, const DepthOrder& order);
-
   /// Says what is not drawn in the order of depth, once. Collective.
   /// @param first of their mappers
   /// @param camera of the picture that the volumes' viewports are in
@@ -65,14 +61,12 @@ private:
   void DrawPrepared(vtkBanyanVolumeMapper* first);
   std::vector<PixelRect> PartsOf(const PixelRect& rect) const;
   VolumeFrame::Together TogetherWith(const VolumeFrame& frame) const;
-  Pictures Cast(const Backdrop& backdrop, const PixelRect& part, bool isWhole,
-    std::set<VolumeFrame*>& failed);
-  bool Attempt(VolumeFrame& frame, const std::function<void()>& cast,
-    std::set<VolumeFrame*>& failed) const;
-  FloatImage Mix(const std::vector<std::size_t>& group, const Backdrop& backdrop,
-    const PixelRect& rect, std::set<VolumeFrame*>& failed);
-  double MixBand(const std::vector<std::size_t>& group, const Backdrop& backdrop,
-    const PixelRect& band, FloatImage& picture, std::set<VolumeFrame*>& failed);
+  Pictures Cast(
+    const Backdrop& backdrop, const PixelRect& part, bool isWhole, std::set<VolumeFrame*>& failed);
+  bool Attempt(
+    VolumeFrame& frame, const std::function<void()>& cast, std::set<VolumeFrame*>& failed) const;
+  std::shared_ptr<const FloatImage> Mix(const std::vector<VolumeFrame*>& group,
+    const Backdrop& backdrop, const PixelRect& rect, std::set<VolumeFrame*>& failed);
 
   vtkRenderer* Renderer;
   vtkBanyanVolumeMapper* Called;

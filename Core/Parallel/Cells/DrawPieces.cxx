@@ -142,13 +142,15 @@ private:
         const Timer timer;
         for (const TileRuns& runs : this->Caster->DrawRuns(asked))
         {
-          PutRuns(messages[static_cast<std::size_t>(this->Picture.Share().OwnerOf(runs.Position))], runs);
+          PutRuns(
+            messages[static_cast<std::size_t>(this->Picture.Share().OwnerOf(runs.Position))], runs);
           this->Statistics.Runs += asked ? 0 : static_cast<std::int64_t>(runs.Runs.size());
           this->Statistics.Raw += asked ? 0 : static_cast<std::int64_t>(runs.Raw.size());
         }
         this->Statistics.DrawSeconds += timer.Seconds();
       });
-    const std::vector<Bytes> from = ExchangeCounted(this->Ranks, std::move(messages), failure, this->Statistics.Sent);
+    const std::vector<Bytes> from =
+      ExchangeCounted(this->Ranks, std::move(messages), failure, this->Statistics.Sent);
     Attempt(failure,
       [&]
       {
@@ -253,7 +255,8 @@ private:
     {
       return;
     }
-    const std::vector<Bytes> from = ExchangeCounted(this->Ranks, std::move(messages), failure, this->Statistics.Sent);
+    const std::vector<Bytes> from =
+      ExchangeCounted(this->Ranks, std::move(messages), failure, this->Statistics.Sent);
     std::vector<AskedTile> asked;
     Attempt(failure,
       [&]

@@ -21,7 +21,7 @@ struct PieceStatistics
   RayStatistics Rays;
   std::int64_t Runs = 0; ///< drawn here, in the first round
   std::int64_t Raw = 0;
-  std::int64_t Asked = 0;  ///< intervals that this rank had to give raw in the second round
+  std::int64_t Asked = 0; ///< intervals that this rank had to give raw in the second round
   SentBytes Sent;
   double DrawSeconds = 0.0;
   double MergeSeconds = 0.0; ///< without waiting for messages

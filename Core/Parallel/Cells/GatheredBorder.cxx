@@ -2,9 +2,9 @@
 #include "Parallel/Cells/GatheredBorder.h"
 
 #include "Base/Varint.h"
-#include "Parallel/Communicate/ExchangeBytes.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Communicate/Communicator.h"
+#include "Parallel/Communicate/ExchangeBytes.h"
 
 #include <cstring>
 #include <string>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Parallel/Cells/HashedQuestions.h"
 
-#include "Parallel/Communicate/ExchangeBytes.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Communicate/Communicator.h"
+#include "Parallel/Communicate/ExchangeBytes.h"
 
 #include <utility>
 

@@ -3,10 +3,10 @@
 
 #include "Base/Varint.h"
 #include "Cells/CellOrder.h"
-#include "Parallel/Communicate/ExchangeBytes.h"
 #include "Parallel/Cells/GatheredBorder.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Communicate/Communicator.h"
+#include "Parallel/Communicate/ExchangeBytes.h"
 #include "Render/Cells/MeshLattice.h"
 
 #include <algorithm>

@@ -77,8 +77,7 @@ void ToOwners(Communicator& communicator, std::vector<std::vector<TileSegments>>
         segments[volume] = std::move(mine);
       }
     });
-  const std::vector<Bytes> from =
-    ExchangeCounted(communicator, std::move(messages), failure, sent);
+  const std::vector<Bytes> from = ExchangeCounted(communicator, std::move(messages), failure, sent);
   Attempt(failure,
     [&]
     {
@@ -134,7 +133,7 @@ void MixTiles(const MixedVolumes& space, ThreadPool& pool, TilePicture& picture)
 
 } // namespace
 
-FloatImage MixVolumes(Communicator& communicator, MixedVolumes space, ThreadPool& pool,
+FloatImage MixVolumes(Communicator& communicator, MixedVolumes space, ThreadPool& pool, int root,
   std::string failure, SentBytes& sent)
 {
   TilePicture picture(communicator);
@@ -145,7 +144,7 @@ FloatImage MixVolumes(Communicator& communicator, MixedVolumes space, ThreadPool
       picture.Clear(space.Viewport);
       MixTiles(space, pool, picture);
     });
-  return picture.Gather(communicator, 0, failure, sent);
+  return picture.Gather(communicator, root, failure, sent);
 }
 
 } // namespace banyan

@@ -27,11 +27,12 @@ struct MixedVolumes
 /// Collective: the picture of volumes that share space. Tiles belong to ranks in turn. Each gets
 /// all that ranks have of its tiles, and mixes it (SegmentMixer).
 /// @param space the same on all ranks, but for the segments
+/// @param root has the picture
 /// @param failure of this rank so far: its sentence, empty if all is well
 /// @param sent is added to
-/// @return the picture on rank 0: premultiplied, within rounding the same for any number of ranks
+/// @return the picture on the root: premultiplied, within rounding the same for any number of ranks
 /// Throws CollectiveError.
-FloatImage MixVolumes(Communicator& communicator, MixedVolumes space, ThreadPool& pool,
+FloatImage MixVolumes(Communicator& communicator, MixedVolumes space, ThreadPool& pool, int root,
   std::string failure, SentBytes& sent);
 
 } // namespace banyan

@@ -2,9 +2,9 @@
 #include "Parallel/Composite/TilePicture.h"
 
 #include "Base/Varint.h"
-#include "Parallel/Communicate/ExchangeBytes.h"
 #include "Parallel/Communicate/Collective.h"
 #include "Parallel/Communicate/Communicator.h"
+#include "Parallel/Communicate/ExchangeBytes.h"
 
 #include <algorithm>
 #include <cstring>

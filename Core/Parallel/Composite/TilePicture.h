@@ -50,8 +50,7 @@ public:
   /// Collective: brings all tiles to the root, or to all ranks.
   /// @return the picture; empty on ranks that do not get it
   /// Throws CollectiveError.
-  FloatImage Gather(
-    Communicator& communicator, int root, std::string& failure, SentBytes& sent);
+  FloatImage Gather(Communicator& communicator, int root, std::string& failure, SentBytes& sent);
 
 private:
   void PutPixels(Bytes& message, const PixelRect& rect) const;

@@ -37,7 +37,7 @@ struct CellCaster::Scratch
     RunCollector Collector;
   };
   std::unique_ptr<ForRuns> Runs;
-  SegmentLog Log; ///< where the scene wants segments
+  SegmentLog Log;                     ///< where the scene wants segments
   const AskedPixels* Asked = nullptr; ///< cells elsewhere are left out; null for none
 
   /// Blends the slab, into pixels or runs.

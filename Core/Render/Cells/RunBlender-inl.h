@@ -72,8 +72,8 @@ private:
       const VI here = hn::Set(di, this->FirstRow + row);
       const auto runs = hn::RebindMask(d, hn::Gt(last, hn::Set(di, RunCollector::None)));
       // With the row before, or with none: where there is no run, nothing goes on.
-      const VI nextTo =
-        this->Collector.IsSingle() ? hn::Set(di, RunCollector::None) : hn::Sub(here, hn::Set(di, 1));
+      const VI nextTo = this->Collector.IsSingle() ? hn::Set(di, RunCollector::None)
+                                                   : hn::Sub(here, hn::Set(di, 1));
       const auto goesOn = hn::RebindMask(d, hn::Eq(last, nextTo));
       const auto ends = hn::And(runs, hn::Or(raw, hn::AndNot(goesOn, lanes.Drawn)));
       if (!hn::AllFalse(d, ends))

@@ -17,8 +17,7 @@ namespace banyan::HWY_NAMESPACE
 /// Notes a sample of some lanes.
 /// @param slot of the first lane
 /// @param samples their numbers, as SegmentLog has them
-inline void NoteSteps(
-  SegmentLog& log, int slot, VI samples, hn::Mask<D> lanes, const Steps& steps)
+inline void NoteSteps(SegmentLog& log, int slot, VI samples, hn::Mask<D> lanes, const Steps& steps)
 {
   const D d;
   constexpr int most = RayTile::PacketSize;

@@ -16,11 +16,11 @@ namespace banyan
 /// A part of a ray in which a volume has one colour and one density: the interval of a sample.
 struct RaySegment
 {
-  double Begin = 0.0;           ///< t along the ray, a world length
-  float Length = 0.0f;          ///< world length
-  float Color[3] = {};          ///< premultiplied, of the whole segment
-  float Transmittance = 1.0f;   ///< of the whole segment
-  std::uint32_t Pixel = 0;      ///< of the tile, x fastest
+  double Begin = 0.0;         ///< t along the ray, a world length
+  float Length = 0.0f;        ///< world length
+  float Color[3] = {};        ///< premultiplied, of the whole segment
+  float Transmittance = 1.0f; ///< of the whole segment
+  std::uint32_t Pixel = 0;    ///< of the tile, x fastest
 };
 
 /// What a volume has along the rays of a tile of TileSamplings, or of a part of the tile. Segments

@@ -35,8 +35,8 @@ TileSegments SegmentLog::Take(const glm::ivec2& position, const RayTile& tile, d
     std::copy_n(entry.Color, 3, segment.Color);
     segment.Transmittance = entry.Transmittance;
     const glm::ivec2 pixel = tile.PixelAt(slot);
-    segment.Pixel = static_cast<std::uint32_t>(
-      pixel.y % RayTile::Edge * RayTile::Edge + pixel.x % RayTile::Edge);
+    segment.Pixel =
+      static_cast<std::uint32_t>(pixel.y % RayTile::Edge * RayTile::Edge + pixel.x % RayTile::Edge);
     result.Segments.push_back(segment);
   }
   this->Entries.clear();

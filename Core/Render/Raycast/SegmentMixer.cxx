@@ -125,8 +125,7 @@ private:
       depth += its;
       if (opacity > 0.0f)
       {
-        weighted +=
-          its / opacity * glm::vec3(segment.Color[0], segment.Color[1], segment.Color[2]);
+        weighted += its / opacity * glm::vec3(segment.Color[0], segment.Color[1], segment.Color[2]);
       }
     }
     if (depth > 0.0f)

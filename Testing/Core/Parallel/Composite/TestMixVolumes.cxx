@@ -58,9 +58,8 @@ struct Field
   FloatImage Alone(const RayScene& scene) const
   {
     FloatImage picture = scenes::Draw(scene, scenes::ArrayOf(this->Values, Samples)).Image;
-    FloatImage whole{ scene.Viewport, PixelVector(
-                                        static_cast<std::size_t>(scene.Viewport.Count()),
-                                        glm::vec4(0.0f)) };
+    FloatImage whole{ scene.Viewport,
+      PixelVector(static_cast<std::size_t>(scene.Viewport.Count()), glm::vec4(0.0f)) };
     for (int y = picture.Rect.Lo.y; y < picture.Rect.Hi.y; ++y)
     {
       for (int x = picture.Rect.Lo.x; x < picture.Rect.Hi.x; ++x)
@@ -80,6 +79,7 @@ FloatImage Mixed(
   int ranks, const RayScene& scene, const std::vector<SegmentsOf>& volumes, float limit = -1.0f)
 {
   FloatImage picture;
+  const int root = ranks / 2;
   RunOnSimulatedRanks(ranks,
     [&](Communicator& communicator)
     {
@@ -92,8 +92,8 @@ FloatImage Mixed(
         mixed.Segments.push_back(volume(communicator));
       }
       SentBytes sent;
-      FloatImage mine = MixVolumes(communicator, std::move(mixed), pool, {}, sent);
-      if (communicator.Rank() == 0)
+      FloatImage mine = MixVolumes(communicator, std::move(mixed), pool, root, {}, sent);
+      if (communicator.Rank() == root)
       {
         picture = std::move(mine);
       }
@@ -117,8 +117,8 @@ void ExpectItsOwnPicture(const Field& field, const RayScene& scene, const std::s
   EXPECT_GT(SeenIn(alone), 100) << name;
   for (const int ranks : { 1, 3 })
   {
-    const FloatImage mixed = Mixed(
-      ranks, scene, { [&](Communicator& all) { return field.Segments(all, scene); } });
+    const FloatImage mixed =
+      Mixed(ranks, scene, { [&](Communicator& all) { return field.Segments(all, scene); } });
     EXPECT_LE(MaxDifference(mixed, alone), 1e-5) << name << " on " << ranks;
   }
 }
@@ -165,15 +165,14 @@ TEST(MixVolumes, CellsAreTheirOwnPicture)
     piececases::Case is(piececases::Cube(6, cellmeshes::Cut::Mixed));
     if (lattice)
     {
-      is.Scene.Samplings = std::make_shared<const TileSamplings>(is.Scene.Camera.ImageSize(),
-        std::vector<RaySampling>{ { 1, is.Scene.SampleDistance, 1 } });
+      is.Scene.Samplings = std::make_shared<const TileSamplings>(
+        is.Scene.Camera.ImageSize(), std::vector<RaySampling>{ { 1, is.Scene.SampleDistance, 1 } });
     }
     const FloatImage whole = is.Whole();
     EXPECT_GT(SeenIn(whole), 1000);
     for (const int ranks : { 1, 3, 8 })
     {
-      const std::vector<int> rankOf =
-        piececases::Dealt(is.Mesh, piececases::Deal::OneByOne, ranks);
+      const std::vector<int> rankOf = piececases::Dealt(is.Mesh, piececases::Deal::OneByOne, ranks);
       const FloatImage mixed = Mixed(ranks, is.Scene,
         { [&](Communicator& all)
           {
@@ -209,8 +208,8 @@ TEST(MixVolumes, PartsOfDensityAddUp)
     const FloatImage whole = field.Alone(scene);
     const auto part = [&](double density)
     {
-      return [&field, thin = WithPartOfDensity(scene, density)](
-               Communicator& all) { return field.Segments(all, thin); };
+      return [&field, thin = WithPartOfDensity(scene, density)](Communicator& all)
+      { return field.Segments(all, thin); };
     };
     for (const int ranks : { 1, 3, 8 })
     {
@@ -256,7 +255,7 @@ TEST(MixVolumes, AFailureIsOneOfAll)
         MixedVolumes mixed;
         mixed.Segments.resize(2);
         mixed.Viewport = { glm::ivec2(0), glm::ivec2(10) };
-        EXPECT_THROW(MixVolumes(communicator, std::move(mixed), pool,
+        EXPECT_THROW(MixVolumes(communicator, std::move(mixed), pool, 0,
                        communicator.Rank() == 0 ? "It is broken" : "", sent),
           Error);
       });
