@@ -166,11 +166,10 @@ std::string TellNotInDepth(unsigned char bits)
       text += text.empty() ? sentences : std::string(" ") + sentences;
     }
   };
-  tell(NotInDepth::SharedSpace, "Banyan Volumes share a part of space: the one whose middle is "
-                                "nearer is drawn before the whole "
-                                "of the other one, so the picture is not exact where they meet. "
-                                "Move, crop or hide one of them, "
-                                "or join their data.");
+  tell(NotInDepth::SharedSpace,
+    "Banyan Volumes share a part of space and are not mixed: the one whose middle is nearer is "
+    "drawn before the whole of the other one, so the picture is not exact where they meet. Switch "
+    "MixVolumes of both on. Where one is a projection, move, crop or hide it.");
   tell(NotInDepth::Surface, "A translucent surface, or a text in space, is before a Banyan Volume "
                             "or inside it, and is drawn "
                             "as if it were behind the volume: the picture is not exact there. Make "

@@ -91,6 +91,16 @@ bool ServedVolume::IsServable() const
   return this->Failure.empty() && this->Proxy->IsDecoupled() && KnowsTickets(this->Proxy);
 }
 
+bool ServedVolume::Mixes() const
+{
+  return this->Proxy->MixesVolumes();
+}
+
+PlacedBody ServedVolume::Body() const
+{
+  return this->Proxy->GetBody();
+}
+
 void ServedVolume::Serve(bool serves, int volumes)
 {
   this->Volumes = volumes;

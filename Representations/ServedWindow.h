@@ -35,7 +35,8 @@ class ServedVolume;
 /// there are none, views of a moving camera are those that it will have when their pictures come.
 /// Where there are more data than a client gets, the server draws as ParaView asks for it: a coarse
 /// picture, and the exact one once it is there. Where neither does (stereo, walls, screenshots,
-/// steps of a play, scripts, failures, a volume that is not Decoupled), ParaView waits for it.
+/// steps of a play, scripts, failures, a volume that is not Decoupled, volumes that are mixed),
+/// ParaView waits for it.
 class ServedWindow : public std::enable_shared_from_this<ServedWindow>
 {
 public:
@@ -77,6 +78,7 @@ private:
   void LookForExact();
 
   std::vector<ServedVolume*> InView() const;
+  bool MixesSome(const std::vector<ServedVolume*>& volumes) const;
   std::vector<ServedVolume*> InUse() const;
   void Want(const ScreenView& view, bool moves);
   ScreenView Soon(const ScreenView& now);

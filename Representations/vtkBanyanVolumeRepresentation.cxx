@@ -252,6 +252,11 @@ void vtkBanyanVolumeRepresentation::TakeTicket(
   this->Server->Take(ticket, banyan::LineToClient());
 }
 
+vtkMatrix4x4* vtkBanyanVolumeRepresentation::GetPlace()
+{
+  return this->Prop->GetMatrix();
+}
+
 vtkMTimeType vtkBanyanVolumeRepresentation::GetPictureMTime()
 {
   return std::max({ this->GetMTime(), this->Actor->GetMTime(), this->Property->GetMTime(),

@@ -63,6 +63,8 @@ public:
   vtkMTimeType GetPictureMTime();
   /** Of a client that is served, else null. */
   std::shared_ptr<banyan::PicturesAtHand> GetPictures() const { return this->Pictures; }
+  /** Where the user has placed the volume: from its data's space to the world. */
+  vtkMatrix4x4* GetPlace();
   ///@}
 
   ///@{

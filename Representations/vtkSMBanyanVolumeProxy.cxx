@@ -4,16 +4,21 @@
 #include "LiveFunctions.h"
 #include "OptionsWithoutEffect.h"
 #include "PictureTicket.h"
+#include "RendererCamera.h"
 #include "ServableView.h"
 #include "ServedVolume.h"
 #include "vtkBanyanVolumeRepresentation.h"
 
+#include "Render/Raycast/DepthOrder.h"
+
 #include "vtkClientServerStream.h"
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
+#include "vtkMath.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPVDataInformation.h"
 #include "vtkPVSession.h"
 #include "vtkSMArrayListDomain.h"
 #include "vtkSMPVRepresentationProxy.h"
@@ -237,6 +242,24 @@ void vtkSMBanyanVolumeProxy::FetchStatistics()
 bool vtkSMBanyanVolumeProxy::IsDecoupled()
 {
   return this->IsShown() && vtkSMPropertyHelper(this, "Decoupled").GetAsInt() != 0;
+}
+
+bool vtkSMBanyanVolumeProxy::MixesVolumes()
+{
+  return vtkSMPropertyHelper(this, "MixVolumes").GetAsInt() != 0;
+}
+
+std::vector<banyan::PlacedBox> vtkSMBanyanVolumeProxy::GetBody()
+{
+  auto* const display = vtkBanyanVolumeRepresentation::SafeDownCast(this->GetClientSideObject());
+  vtkPVDataInformation* const data = this->GetRepresentedDataInformation();
+  if (!display || !data || !vtkMath::AreBoundsInitialized(data->GetBounds()))
+  {
+    return {};
+  }
+  const double* const bounds = data->GetBounds();
+  return { banyan::PlaceBox({ bounds[0], bounds[2], bounds[4] },
+    { bounds[1], bounds[3], bounds[5] }, banyan::ToGlm(display->GetPlace())) };
 }
 
 void vtkSMBanyanVolumeProxy::SetServed(bool served, vtkSMProxy* view)

@@ -28,12 +28,14 @@
 #include <memory> // for members
 #include <set>    // for members
 #include <string> // for members
+#include <vector> // for members
 
 namespace banyan
 {
 class PicturesAtHand;
 class ServedVolume;
 struct PictureTicket;
+struct PlacedBox;
 }
 
 class vtkSMPVRepresentationProxy;
@@ -58,6 +60,10 @@ public:
   void SendFunctions();
   /** What SetServed has made on the client. */
   std::shared_ptr<banyan::PicturesAtHand> GetPictures();
+  /** Whether it is mixed with others of these that share space with it. */
+  bool MixesVolumes();
+  /** Where the data are in the world, as far as the client knows; nothing where it does not. */
+  std::vector<banyan::PlacedBox> GetBody();
   /** Changes with all of the display that a picture shows, but for the camera. */
   vtkMTimeType GetPictureMTime();
   /** Brings the statistics of the last frame to the client. */

@@ -325,6 +325,11 @@ class ServedWindow:
         second.Decoupled = 0
         self.require_waits("with a second volume that is waited for")
         second.Decoupled = 1
+        session.move_to(second, (40, 0, 0))
+        self.require_waits("with volumes that are mixed")
+        second.MixVolumes = 0
+        simple.Render(self.view)
+        self.drag("with volumes that share space and are not mixed")
         simple.Hide(wavelet, self.view)
         self.displays.remove(second)
 
