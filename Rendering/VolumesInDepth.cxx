@@ -2,6 +2,7 @@
 #include "VolumesInDepth.h"
 
 #include "RendererCamera.h"
+#include "VolumeFrame.h"
 #include "vtkBanyanVolumeMapper.h"
 
 #include "vtkActor.h"
@@ -120,19 +121,33 @@ PlacedBody BodyOf(vtkVolume* volume, vtkVolumeMapper* mapper, const std::array<d
     PlaceBox(glm::dvec3(cells.Lo), glm::dvec3(cells.Hi), toWorld * scene.IndexToWorld) };
 }
 
+Groups GroupsOf(const std::vector<VolumeFrame*>& frames, const DepthOrder& order)
+{
+  std::vector<bool> mixes;
+  for (const VolumeFrame* const frame : frames)
+  {
+    mixes.push_back(
+      frame->Scene().Blend.Mode == BlendMode::Composite && frame->Mapper()->GetMixVolumes());
+  }
+  return GroupsThatMix(order, mixes);
+}
+
 std::vector<unsigned char> FindNotInDepth(Communicator& communicator, vtkRenderer* renderer,
   const RayCamera& camera, const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order,
-  const std::vector<int>& groups)
+  const Groups& groups)
 {
   std::vector<unsigned char> bits(volumes.size(), 0);
   for (const std::array<int, 2>& pair : order.Unknown())
   {
-    const auto one = static_cast<std::size_t>(pair[0]);
-    const auto other = static_cast<std::size_t>(pair[1]);
-    if (groups.empty() || groups[one] != groups[other])
+    const auto hasBoth = [&](const std::vector<int>& group)
     {
-      bits[one] |= NotInDepth::SharedSpace;
-      bits[other] |= NotInDepth::SharedSpace;
+      return std::binary_search(group.begin(), group.end(), pair[0]) &&
+             std::binary_search(group.begin(), group.end(), pair[1]);
+    };
+    if (std::none_of(groups.begin(), groups.end(), hasBoth))
+    {
+      bits[static_cast<std::size_t>(pair[0])] |= NotInDepth::SharedSpace;
+      bits[static_cast<std::size_t>(pair[1])] |= NotInDepth::SharedSpace;
     }
   }
   vtkPropCollection* const props = renderer->GetViewProps();

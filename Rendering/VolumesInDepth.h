@@ -17,6 +17,8 @@ class vtkVolumeMapper;
 namespace banyan
 {
 
+class VolumeFrame;
+
 /// Visible volumes of a renderer that vtkBanyanVolumeMapper draws on the same ranks as `self`, in
 /// the order in which they were added: the same list on all ranks. `self` alone where it stands in
 /// an assembly.
@@ -42,13 +44,19 @@ enum NotInDepth : unsigned char
   Stranger = 4     ///< a volume that others draw is
 };
 
+/// Of volumes, which are mixed: see GroupsThatMix.
+using Groups = std::vector<std::vector<int>>;
+
+/// Those of volumes in a picture.
+Groups GroupsOf(const std::vector<VolumeFrame*>& frames, const DepthOrder& order);
+
 /// Collective. Surfaces and volumes of others are drawn before ours: right where they are behind.
 /// @param camera of the picture that the volumes' viewports are in
-/// @param groups of volumes: those of one are drawn together; empty where none are
+/// @param groups of volumes: those of one are mixed
 /// @return bits of NotInDepth for each volume, the same on all ranks
 std::vector<unsigned char> FindNotInDepth(Communicator& communicator, vtkRenderer* renderer,
   const RayCamera& camera, const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order,
-  const std::vector<int>& groups = {});
+  const Groups& groups = {});
 
 /// Bits that were not told before; they are from then on.
 unsigned char NotToldYet(unsigned char bits, unsigned char& told);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VolumesOnWall.h"
 
-#include "SharedSpace.h"
 #include "VolumesInDepth.h"
 #include "VolumesPicture.h"
 #include "vtkBanyanVolumeMapper.h"
 
 #include "Base/Progress.h"
+#include "Base/ThreadPool.h"
+#include "Parallel/Composite/MixVolumes.h"
 #include "Parallel/Composite/PackedDepths.h"
 
 #include "vtkRenderer.h"
@@ -125,7 +126,7 @@ void VolumesOnWall::DrawPicture(const WallPicture& picture, const VolumeFrame::O
   }
   const std::vector<VolumeOnScreen> volumes = VolumesPicture::OnScreen(frames);
   const DepthOrder order = OrderInDepth(volumes, picture.View);
-  const std::vector<int> groups = GroupsThatMix(frames, order);
+  const Groups groups = GroupsOf(frames, order);
   if (wall.Number == 0)
   {
     const RayCamera camera(picture.View.WorldToClip, picture.View.Size, glm::dvec3(0.0));
@@ -137,30 +138,15 @@ void VolumesOnWall::DrawPicture(const WallPicture& picture, const VolumeFrame::O
   const bool shows = place != picture.Places.end();
   const DepthPicture depths = DepthsOfAll(communicator, picture.View, own);
   std::vector<std::shared_ptr<const FloatImage>> pictures(frames.size());
-  for (std::size_t i = 0; i < frames.size(); ++i)
+  for (const std::vector<int>& group : groups)
   {
-    std::vector<VolumeFrame*> group;
-    for (std::size_t other = 0; other < frames.size(); ++other)
+    std::vector<VolumeFrame*> mixed;
+    for (const int number : group)
     {
-      if (groups[other] == groups[i])
-      {
-        group.push_back(frames[other]);
-      }
+      mixed.push_back(frames[static_cast<std::size_t>(number)]);
     }
-    const auto cast = [&]
-    {
-      pictures[i] =
-        frames[i]->CastOnWall(this->Renderer, wall, depths, static_cast<int>(frames.size()));
-      return true;
-    };
-    if (group.size() == 1)
-    {
-      (frames[i]->Mapper()->Attempt(cast) ? drawn : failed).insert(frames[i]);
-    }
-    else if (group.front() == frames[i])
-    {
-      pictures[i] = this->Mix(group, wall, depths, drawn, failed);
-    }
+    std::shared_ptr<const FloatImage>& mine = pictures[static_cast<std::size_t>(group.front())];
+    mine = this->Cast(mixed, wall, depths, drawn, failed);
   }
   if (shows)
   {
@@ -173,36 +159,51 @@ void VolumesOnWall::DrawPicture(const WallPicture& picture, const VolumeFrame::O
   }
 }
 
-/// Collective: draws volumes that share space, place after place.
+/// Collective: draws a volume, or several that share space, place after place.
 /// @return the picture in this rank's place
-std::shared_ptr<const FloatImage> VolumesOnWall::Mix(const std::vector<VolumeFrame*>& group,
+std::shared_ptr<const FloatImage> VolumesOnWall::Cast(const std::vector<VolumeFrame*>& group,
   const VolumeFrame::OnWall& wall, const DepthPicture& depths, std::set<VolumeFrame*>& drawn,
   std::set<VolumeFrame*>& failed)
 {
-  const auto castBand = [&](VolumeFrame& frame, const PixelRect& band, SegmentPicture& segments)
+  std::shared_ptr<const FloatImage> mine;
+  const int volumes = static_cast<int>(this->Frames.size());
+  const auto attempt = [&](VolumeFrame& frame, const std::function<void()>& cast)
   {
-    float limit = 1.0f;
-    const auto cast = [&]
+    const auto drawing = [&]
     {
-      limit = frame.CastSegmentsOnWall(
-        this->Renderer, wall, depths, static_cast<int>(this->Frames.size()), band, segments);
+      cast();
       return true;
     };
     if (failed.count(&frame) == 0)
     {
-      (frame.Mapper()->Attempt(cast) ? drawn : failed).insert(&frame);
+      (frame.Mapper()->Attempt(drawing) ? drawn : failed).insert(&frame);
     }
-    if (failed.count(&frame) > 0)
+    return failed.count(&frame) == 0;
+  };
+  if (group.size() == 1)
+  {
+    attempt(*group.front(),
+      [&] { mine = group.front()->CastOnWall(this->Renderer, wall, depths, volumes); });
+    return mine;
+  }
+  const auto castBand = [&](std::size_t volume, const PixelRect& band, SegmentPicture& segments)
+  {
+    float limit = 1.0f;
+    const auto cast = [&]
+    {
+      limit =
+        group[volume]->CastSegmentsOnWall(this->Renderer, wall, depths, volumes, band, segments);
+    };
+    if (!attempt(*group[volume], cast))
     {
       segments.Take();
     }
     return limit;
   };
-  std::shared_ptr<const FloatImage> mine;
   for (const PicturePlace& place : wall.Places)
   {
-    std::shared_ptr<const FloatImage> picture =
-      DrawMixed(*this->Called->State->Communicator, group, place.Rect, place.Root, castBand);
+    std::shared_ptr<const FloatImage> picture = MixInBands(*this->Called->State->Communicator,
+      group.size(), place.Rect, place.Root, ThreadPool::Process(), castBand);
     mine = picture ? std::move(picture) : std::move(mine);
   }
   return mine;

@@ -49,7 +49,7 @@ private:
   void DrawPicture(const WallPicture& picture, const VolumeFrame::OnWall& wall,
     const DepthPicture& own, std::set<VolumeFrame*>& drawn, std::set<VolumeFrame*>& failed);
 
-  std::shared_ptr<const FloatImage> Mix(const std::vector<VolumeFrame*>& group,
+  std::shared_ptr<const FloatImage> Cast(const std::vector<VolumeFrame*>& group,
     const VolumeFrame::OnWall& wall, const DepthPicture& depths, std::set<VolumeFrame*>& drawn,
     std::set<VolumeFrame*>& failed);
 

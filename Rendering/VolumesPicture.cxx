@@ -2,12 +2,13 @@
 #include "VolumesPicture.h"
 
 #include "RendererCamera.h"
-#include "SharedSpace.h"
 #include "VolumesInDepth.h"
 #include "vtkBanyanVolumeMapper.h"
 
 #include "Base/Progress.h"
+#include "Base/ThreadPool.h"
 #include "Base/Timer.h"
+#include "Parallel/Composite/MixVolumes.h"
 
 #include "vtkCollection.h"
 #include "vtkPropCollection.h"
@@ -43,8 +44,7 @@ DepthOrder OrderInDepth(const std::vector<VolumeOnScreen>& volumes, const Screen
 
 void VolumesPicture::WarnNotInDepth(vtkBanyanVolumeMapper* first, vtkRenderer* renderer,
   const RayCamera& camera, const std::vector<VolumeFrame*>& frames,
-  const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order,
-  const std::vector<int>& groups)
+  const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order, const Groups& groups)
 {
   Communicator& communicator = *first->State->Communicator;
   const std::vector<unsigned char> bits =
@@ -162,9 +162,9 @@ void VolumesPicture::DrawPrepared(vtkBanyanVolumeMapper* first)
     volume.Viewport = Moved(Intersection(volume.Viewport, rect), -this->View.Shown.Lo);
   }
   const DepthOrder order = OrderInDepth(volumes, this->View.View);
-  this->Groups = GroupsThatMix(frames, order);
+  this->Mixed = GroupsOf(frames, order);
   WarnNotInDepth(first, this->Renderer, CameraOf(this->Renderer, glm::dvec3(0.0)), frames, volumes,
-    order, this->Groups);
+    order, this->Mixed);
   Backdrop& backdrop = state.Backdrop;
   CompositeStatistics geometry;
   backdrop.SetCorner(this->View.Shown.Lo);
@@ -254,32 +254,23 @@ VolumesPicture::Pictures VolumesPicture::Cast(
   const Backdrop& backdrop, const PixelRect& part, bool isWhole, std::set<VolumeFrame*>& failed)
 {
   Pictures pictures(this->Frames.size());
-  for (std::size_t i = 0; i < this->Frames.size(); ++i)
+  for (const std::vector<int>& group : this->Mixed)
   {
-    VolumeFrame& frame = this->Frames[i];
-    std::vector<VolumeFrame*> group;
-    for (std::size_t other = 0; other < this->Frames.size(); ++other)
+    VolumeFrame& frame = this->FrameAt(group.front());
+    std::shared_ptr<const FloatImage>& picture = pictures[static_cast<std::size_t>(group.front())];
+    const auto cast = [&]
     {
-      if (this->Groups[other] == this->Groups[i])
-      {
-        group.push_back(&this->Frames[other]);
-      }
-    }
+      const VolumeFrame::Together together = this->TogetherWith(frame);
+      picture = isWhole ? frame.Cast(this->Renderer, backdrop, together)
+                        : frame.CastPart(this->Renderer, backdrop, together, part);
+    };
     if (group.size() == 1)
     {
-      this->Attempt(
-        frame,
-        [&]
-        {
-          const VolumeFrame::Together together = this->TogetherWith(frame);
-          pictures[i] = isWhole ? frame.Cast(this->Renderer, backdrop, together)
-                                : frame.CastPart(this->Renderer, backdrop, together, part);
-        },
-        failed);
+      this->Attempt(frame, cast, failed);
     }
-    else if (group.front() == &frame)
+    else
     {
-      pictures[i] = this->Mix(group, backdrop, part, failed);
+      picture = this->Mix(group, backdrop, part, failed);
     }
   }
   return pictures;
@@ -287,12 +278,13 @@ VolumesPicture::Pictures VolumesPicture::Cast(
 
 /// Collective: draws volumes that share space.
 /// @return the picture, on rank 0
-std::shared_ptr<const FloatImage> VolumesPicture::Mix(const std::vector<VolumeFrame*>& group,
+std::shared_ptr<const FloatImage> VolumesPicture::Mix(const std::vector<int>& group,
   const Backdrop& backdrop, const PixelRect& rect, std::set<VolumeFrame*>& failed)
 {
   const Timer timer;
-  const auto castBand = [&](VolumeFrame& frame, const PixelRect& band, SegmentPicture& segments)
+  const auto castBand = [&](std::size_t volume, const PixelRect& band, SegmentPicture& segments)
   {
+    VolumeFrame& frame = this->FrameAt(group[volume]);
     float limit = 1.0f;
     const auto cast = [&]
     {
@@ -305,15 +297,16 @@ std::shared_ptr<const FloatImage> VolumesPicture::Mix(const std::vector<VolumeFr
     }
     return limit;
   };
-  std::shared_ptr<const FloatImage> picture =
-    DrawMixed(*this->Called->State->Communicator, group, rect, /*root=*/0, castBand);
-  for (VolumeFrame* const frame : group)
+  std::shared_ptr<const FloatImage> picture = MixInBands(*this->Called->State->Communicator,
+    group.size(), rect, /*root=*/0, ThreadPool::Process(), castBand);
+  for (const int number : group)
   {
+    VolumeFrame& frame = this->FrameAt(number);
     this->Attempt(
-      *frame,
+      frame,
       [&]
       {
-        frame->SegmentsTook(this->Renderer, this->TogetherWith(*frame),
+        frame.SegmentsTook(this->Renderer, this->TogetherWith(frame),
           timer.Seconds() / static_cast<double>(group.size()));
       },
       failed);

@@ -3,6 +3,7 @@
 #define banyan_Rendering_VolumesPicture_h
 
 #include "VolumeFrame.h"
+#include "VolumesInDepth.h"
 
 #include <functional>
 #include <memory>
@@ -15,9 +16,6 @@ class vtkVolume;
 
 namespace banyan
 {
-
-class DepthOrder;
-struct VolumeOnScreen;
 
 /// The order of depth of volumes for a camera.
 DepthOrder OrderInDepth(const std::vector<VolumeOnScreen>& volumes, const ScreenView& view);
@@ -48,15 +46,15 @@ public:
   /// @param first of their mappers
   /// @param camera of the picture that the volumes' viewports are in
   /// @param volumes of the frames
-  /// @param groups of frames that are drawn as one; empty where none are
+  /// @param groups of the frames
   static void WarnNotInDepth(vtkBanyanVolumeMapper* first, vtkRenderer* renderer,
     const RayCamera& camera, const std::vector<VolumeFrame*>& frames,
-    const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order,
-    const std::vector<int>& groups = {});
+    const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order, const Groups& groups);
 
 private:
   using Pictures = std::vector<std::shared_ptr<const FloatImage>>; ///< null where there is none
 
+  VolumeFrame& FrameAt(int number) { return this->Frames[static_cast<std::size_t>(number)]; }
   bool Look();
   void DrawPrepared(vtkBanyanVolumeMapper* first);
   std::vector<PixelRect> PartsOf(const PixelRect& rect) const;
@@ -65,14 +63,14 @@ private:
     const Backdrop& backdrop, const PixelRect& part, bool isWhole, std::set<VolumeFrame*>& failed);
   bool Attempt(
     VolumeFrame& frame, const std::function<void()>& cast, std::set<VolumeFrame*>& failed) const;
-  std::shared_ptr<const FloatImage> Mix(const std::vector<VolumeFrame*>& group,
-    const Backdrop& backdrop, const PixelRect& rect, std::set<VolumeFrame*>& failed);
+  std::shared_ptr<const FloatImage> Mix(const std::vector<int>& group, const Backdrop& backdrop,
+    const PixelRect& rect, std::set<VolumeFrame*>& failed);
 
   vtkRenderer* Renderer;
   vtkBanyanVolumeMapper* Called;
   PictureView View; ///< while it is drawn
   std::vector<VolumeFrame> Frames;
-  std::vector<int> Groups; ///< of frames: those that share space have one number
+  Groups Mixed; ///< of the frames
 };
 
 } // namespace banyan

@@ -91,14 +91,21 @@ bool ServedVolume::IsServable() const
   return this->Failure.empty() && this->Proxy->IsDecoupled() && KnowsTickets(this->Proxy);
 }
 
-bool ServedVolume::Mixes() const
+bool ServedVolume::AnyMixed(const std::vector<ServedVolume*>& volumes)
 {
-  return this->Proxy->MixesVolumes();
-}
-
-PlacedBody ServedVolume::Body() const
-{
-  return this->Proxy->GetBody();
+  std::vector<PlacedBody> bodies;
+  for (const ServedVolume* const volume : volumes)
+  {
+    PlacedBody body =
+      volumes.size() > 1 && volume->Proxy->MixesVolumes() ? volume->Proxy->GetBody() : PlacedBody();
+    if (!body.empty())
+    {
+      bodies.push_back(std::move(body));
+    }
+  }
+  // Whether boxes share space does not depend on the camera.
+  const RayCamera any(glm::dmat4(1.0), glm::ivec2(1), glm::dvec3(0.0));
+  return bodies.size() > 1 && DepthOrder(bodies, any).SomeUnknown();
 }
 
 void ServedVolume::Serve(bool serves, int volumes)

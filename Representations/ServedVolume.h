@@ -46,10 +46,9 @@ public:
   bool IsServable() const;
   /// Whether the server was told that they do, if the client draws the window.
   bool Serves() const { return this->Served; }
-  /// Whether it is mixed with others of these that share space with it.
-  bool Mixes() const;
-  /// Where its data are; nothing where the client does not know.
-  PlacedBody Body() const;
+  /// Whether some of a view are mixed, since they share space as far as the client knows: the
+  /// server's pictures have them apart.
+  static bool AnyMixed(const std::vector<ServedVolume*>& volumes);
   /// @param volumes of the window that share the line
   void Serve(bool serves, int volumes);
 

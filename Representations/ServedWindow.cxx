@@ -2,7 +2,6 @@
 #include "ServedWindow.h"
 
 #include "LineToClient.h"
-#include "RendererCamera.h"
 #include "ServedVolume.h"
 
 #include "vtkCamera.h"
@@ -153,24 +152,6 @@ bool ServedWindow::HasFailed() const
     [](const ServedVolume* volume) { return volume->IsServed() && volume->HasFailed(); });
 }
 
-/// Whether some of these are mixed since they share space: the server's pictures have them apart.
-bool ServedWindow::MixesSome(const std::vector<ServedVolume*>& volumes) const
-{
-  std::vector<PlacedBody> bodies;
-  for (const ServedVolume* const volume : volumes)
-  {
-    if (volumes.size() > 1 && volume->Mixes())
-    {
-      bodies.push_back(volume->Body());
-    }
-  }
-  bodies.erase(std::remove_if(
-                 bodies.begin(), bodies.end(), [](const PlacedBody& body) { return body.empty(); }),
-    bodies.end());
-  return bodies.size() > 1 &&
-         DepthOrder(bodies, CameraOf(this->View->GetRenderer(), glm::dvec3(0.0))).SomeUnknown();
-}
-
 void ServedWindow::BeforeRender()
 {
   this->Observe();
@@ -178,7 +159,7 @@ void ServedWindow::BeforeRender()
   const std::vector<ServedVolume*> seen = this->InView();
   const auto servable = [](const ServedVolume* volume) { return volume->IsServable(); };
   this->Served = !plays && !seen.empty() && banyan::IsServable(this->View) &&
-                 std::all_of(seen.begin(), seen.end(), servable) && !this->MixesSome(seen);
+                 std::all_of(seen.begin(), seen.end(), servable) && !ServedVolume::AnyMixed(seen);
   for (ServedVolume* const volume : this->Volumes)
   {
     const bool isSeen = std::find(seen.begin(), seen.end(), volume) != seen.end();

@@ -78,7 +78,6 @@ private:
   void LookForExact();
 
   std::vector<ServedVolume*> InView() const;
-  bool MixesSome(const std::vector<ServedVolume*>& volumes) const;
   std::vector<ServedVolume*> InUse() const;
   void Want(const ScreenView& view, bool moves);
   ScreenView Soon(const ScreenView& now);

@@ -252,11 +252,6 @@ void vtkBanyanVolumeRepresentation::TakeTicket(
   this->Server->Take(ticket, banyan::LineToClient());
 }
 
-vtkMatrix4x4* vtkBanyanVolumeRepresentation::GetPlace()
-{
-  return this->Prop->GetMatrix();
-}
-
 vtkMTimeType vtkBanyanVolumeRepresentation::GetPictureMTime()
 {
   return std::max({ this->GetMTime(), this->Actor->GetMTime(), this->Property->GetMTime(),

@@ -3,6 +3,7 @@
 #define vtkBanyanVolumeRepresentation_h
 
 #include "BanyanRepresentationsModule.h" // for export macro
+#include "vtkBanyanVolume.h"             // for members
 #include "vtkBanyanVolumeMapper.h"       // for the table of settings
 #include "vtkNew.h"                      // for members
 #include "vtkSmartPointer.h"             // for members
@@ -64,7 +65,7 @@ public:
   /** Of a client that is served, else null. */
   std::shared_ptr<banyan::PicturesAtHand> GetPictures() const { return this->Pictures; }
   /** Where the user has placed the volume: from its data's space to the world. */
-  vtkMatrix4x4* GetPlace();
+  vtkMatrix4x4* GetPlace() { return this->Prop->GetMatrix(); }
   ///@}
 
   ///@{

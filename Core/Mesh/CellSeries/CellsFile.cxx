@@ -13,7 +13,7 @@ namespace banyan
 {
 std::shared_ptr<MeshPlan> WriteCells(const StoredCells& mesh, SegmentFolder& folder)
 {
-  const auto plan = mesh_file::WriteFile(CellsToBytes(mesh), folder);
+  std::shared_ptr<MeshPlan> plan = mesh_file::WriteFile(CellsToBytes(mesh), folder);
   const auto samples = static_cast<std::size_t>(GridOfImages(mesh).Extent.Count());
   plan->Index.OfCells = true;
   plan->Index.Points = mesh.PointCount();

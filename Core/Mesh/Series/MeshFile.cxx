@@ -56,7 +56,7 @@ std::shared_ptr<const std::vector<std::uint8_t>> Marked(
 
 std::shared_ptr<MeshPlan> WriteMesh(const StoredMesh& mesh, SegmentFolder& folder)
 {
-  const auto plan = mesh_file::WriteFile(MeshToBytes(mesh), folder);
+  std::shared_ptr<MeshPlan> plan = mesh_file::WriteFile(MeshToBytes(mesh), folder);
   const auto samples = static_cast<std::size_t>(mesh.Atlas->SampleCount());
   plan->Index.Points = mesh.PointCount();
   plan->Index.Cells = mesh.CellCount();
@@ -85,7 +85,7 @@ std::shared_ptr<const StoredMesh> ReadMesh(const SeriesFile& series)
   const Bytes bytes = mesh_file::ReadFile(path, index.Bytes, { index.HashLow, index.HashHigh });
   try
   {
-    const std::shared_ptr<const StoredMesh> mesh = MeshFromBytes(bytes);
+    std::shared_ptr<const StoredMesh> mesh = MeshFromBytes(bytes);
     if (mesh->PointCount() != index.Points || mesh->CellCount() != index.Cells ||
         mesh->Atlas->Samples() != series.Index().Domain.Samples())
     {

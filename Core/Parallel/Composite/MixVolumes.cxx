@@ -8,6 +8,7 @@
 #include "Parallel/Communicate/Communicator.h"
 #include "Render/Raycast/SegmentMixer.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <functional>
@@ -20,6 +21,9 @@ namespace banyan
 {
 namespace
 {
+
+/// That segments of a band may take on a rank.
+constexpr double BandBytes = 256e6;
 
 static_assert(std::is_trivially_copyable_v<RaySegment>, "sent as it is");
 
@@ -145,6 +149,47 @@ FloatImage MixVolumes(Communicator& communicator, MixedVolumes space, ThreadPool
       MixTiles(space, pool, picture);
     });
   return picture.Gather(communicator, root, failure, sent);
+}
+
+std::shared_ptr<const FloatImage> MixInBands(Communicator& communicator, std::size_t volumes,
+  const PixelRect& rect, int root, ThreadPool& pool, const CastBand& cast)
+{
+  std::shared_ptr<FloatImage> picture;
+  if (communicator.Rank() == root)
+  {
+    picture = std::make_shared<FloatImage>(
+      FloatImage{ rect, PixelVector(static_cast<std::size_t>(rect.Count()), glm::vec4(0.0f)) });
+  }
+  int rows = RayTile::Edge;
+  for (int low = rect.Lo.y; low < rect.Hi.y;)
+  {
+    // Tiles are whole.
+    const int high = std::min(low / RayTile::Edge * RayTile::Edge + rows, rect.Hi.y);
+    MixedVolumes mixed;
+    mixed.Viewport = { { rect.Lo.x, low }, { rect.Hi.x, high } };
+    mixed.TransmittanceLimit = 1.0f;
+    double bytes = 1.0;
+    for (std::size_t volume = 0; volume < volumes; ++volume)
+    {
+      SegmentPicture segments;
+      const float limit = cast(volume, mixed.Viewport, segments);
+      mixed.TransmittanceLimit = std::min(mixed.TransmittanceLimit, limit);
+      bytes += static_cast<double>(segments.Bytes());
+      mixed.Segments.push_back(segments.Take());
+    }
+    SentBytes sent;
+    const FloatImage band = MixVolumes(communicator, std::move(mixed), pool, root, {}, sent);
+    for (int y = low; y < high && picture; ++y)
+    {
+      std::copy_n(&band.At(rect.Lo.x, y), rect.Size().x, &picture->At(rect.Lo.x, y));
+    }
+    // The next band may have more.
+    const double fits = BandBytes / AllMax(communicator, bytes) * (high - low);
+    rows = static_cast<int>(std::min(fits, 4.0 * rows)) / RayTile::Edge * RayTile::Edge;
+    rows = std::max(rows, RayTile::Edge);
+    low = high;
+  }
+  return picture;
 }
 
 } // namespace banyan

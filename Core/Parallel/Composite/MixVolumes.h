@@ -5,6 +5,8 @@
 #include "Parallel/Composite/TilePicture.h"
 #include "Render/Raycast/RaySegments.h"
 
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -34,6 +36,18 @@ struct MixedVolumes
 /// Throws CollectiveError.
 FloatImage MixVolumes(Communicator& communicator, MixedVolumes space, ThreadPool& pool, int root,
   std::string failure, SentBytes& sent);
+
+/// Takes what a volume has along the rays of a band of a picture. Collective.
+/// @return the transmittance at which its rays end; 1 where it could not be drawn
+using CastBand =
+  std::function<float(std::size_t volume, const PixelRect& band, SegmentPicture& segments)>;
+
+/// Collective: the same of a picture, band after band, since segments take much memory: at most
+/// about 256 MB on a rank, or what a row of tiles has.
+/// @param volumes how many there are
+/// @return the picture on the root; null on other ranks
+std::shared_ptr<const FloatImage> MixInBands(Communicator& communicator, std::size_t volumes,
+  const PixelRect& rect, int root, ThreadPool& pool, const CastBand& cast);
 
 } // namespace banyan
 

@@ -66,6 +66,23 @@ void ReadAhead(DrawnField& drawn, const RayScene& scene, const RankShare& share,
   drawn.ReadAhead(mine, scene.DomainCells);
 }
 
+/// Pixels without rays would be made of those around them: mixed pixels are not known yet.
+void BeginSegments(RayScene& scene, const FieldFrames::Wish& wish)
+{
+  scene.Segments = wish.Segments;
+  if (wish.Segments && scene.Samplings)
+  {
+    scene.Samplings = std::make_shared<const TileSamplings>(scene.Samplings->WithAllPixels());
+  }
+}
+
+void AddProbes(FrameStatistics& numbers, const FrameStatistics& probes)
+{
+  numbers.SamplesTaken += probes.SamplesTaken;
+  numbers.BytesComposited += probes.BytesComposited;
+  numbers.MessagesComposited += probes.MessagesComposited;
+}
+
 struct TimesOfFrame
 {
   double Drawing;
@@ -375,13 +392,7 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   }
   const bool keeps = this->BeginRays(communicator, drawn, scene, names.Whole, wish);
   const FrameStatistics probes = numbers;
-  if (wish.Segments)
-  {
-    scene.Segments = wish.Segments;
-    scene.Samplings = scene.Samplings
-                        ? std::make_shared<const TileSamplings>(scene.Samplings->WithAllPixels())
-                        : nullptr;
-  }
+  BeginSegments(scene, wish);
   CompositeOptions compositing;
   compositing.Behind = wish.Behind;
   compositing.Transport = wish.Transport;
@@ -401,9 +412,7 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   {
     this->Rays.Keep(frame.Picture.Pixels);
   }
-  numbers.SamplesTaken += probes.SamplesTaken;
-  numbers.BytesComposited += probes.BytesComposited;
-  numbers.MessagesComposited += probes.MessagesComposited;
+  AddProbes(numbers, probes);
   const PhaseScope balancing(Phase::Balancing);
   if (!scene.Reused && !isPart && !wish.Passing) // others say little of the next exact one
   {

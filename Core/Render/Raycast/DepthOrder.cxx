@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace banyan
 {
@@ -222,6 +223,56 @@ DepthOrder::DepthOrder(const std::vector<PlacedBody>& bodies, const RayCamera& c
       this->Before[this->Place(j, i)] = farther ? 1 : 0;
     }
   }
+}
+
+std::vector<std::vector<int>> GroupsThatMix(const DepthOrder& order, const std::vector<bool>& mixes)
+{
+  const int count = static_cast<int>(mixes.size());
+  std::vector<int> first(mixes.size()); // of each body's group
+  std::iota(first.begin(), first.end(), 0);
+  const auto at = [&](int body) -> int& { return first[static_cast<std::size_t>(body)]; };
+  const auto mayMix = [&](int body) { return mixes[static_cast<std::size_t>(body)]; };
+  const auto join = [&](int one, int other)
+  {
+    const auto [low, high] = std::minmax(at(one), at(other));
+    std::replace(first.begin(), first.end(), int{ high }, int{ low });
+  };
+  for (const std::array<int, 2>& pair : order.Unknown())
+  {
+    if (mayMix(pair[0]) && mayMix(pair[1]))
+    {
+      join(pair[0], pair[1]);
+    }
+  }
+  const auto isBetween = [&](int body, int one, int other)
+  {
+    return mayMix(body) && at(one) == at(other) && at(body) != at(one) &&
+           order.Nearer(body, one) != order.Nearer(body, other);
+  };
+  // Each turn makes at least two groups one.
+  for (bool grows = true; grows;)
+  {
+    grows = false;
+    for (int i = 0; i < count * count * count; ++i)
+    {
+      const int body = i % count;
+      const int one = i / count % count;
+      if (isBetween(body, one, i / count / count))
+      {
+        join(one, body);
+        grows = true;
+      }
+    }
+  }
+  std::vector<std::vector<int>> groups(mixes.size());
+  for (int body = 0; body < count; ++body)
+  {
+    groups[static_cast<std::size_t>(at(body))].push_back(body);
+  }
+  groups.erase(std::remove_if(groups.begin(), groups.end(),
+                 [](const std::vector<int>& group) { return group.empty(); }),
+    groups.end());
+  return groups;
 }
 
 FloatImage BlendInDepth(const std::vector<std::shared_ptr<const FloatImage>>& pictures,

@@ -70,6 +70,13 @@ private:
   std::vector<std::array<int, 2>> UnknownPairs;
 };
 
+/// Groups of bodies that are to be drawn as one, since they share space: the numbers of all bodies,
+/// group by group, each in ascending order, and groups by their first ones. A body that is not
+/// before all of a group, nor behind all of it, belongs to it.
+/// @param mixes by body, whether it may be drawn as one with others
+std::vector<std::vector<int>> GroupsThatMix(
+  const DepthOrder& order, const std::vector<bool>& mixes);
+
 /// Blends pictures of bodies over each other, at each pixel in the order of those that show there:
 /// so that bodies of which each hides a part of the next one, in a circle, are right as well.
 /// @param pictures premultiplied; one per body, null and empty ones are left out

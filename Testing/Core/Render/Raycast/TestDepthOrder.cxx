@@ -265,4 +265,35 @@ TEST(DepthOrder, BoxesThatHideEachOtherInACircleAreBlendedPixelByPixel)
   EXPECT_GT(several, 10);
 }
 
+TEST(GroupsThatMix, ThoseThatShareSpace)
+{
+  const RayCamera camera(glm::ortho(-9.0, 9.0, -9.0, 9.0, 1.0, 90.0) *
+                           glm::lookAt(glm::dvec3(0, 0, 50), glm::dvec3(0.0), glm::dvec3(0, 1, 0)),
+    Picture, {});
+  const auto box = [](double x, double z, double length) -> PlacedBody {
+    return { PlaceBox({ x, 0, z }, { x + 2, 2, z + length }, glm::dmat4(1.0)) };
+  };
+  using Groups = std::vector<std::vector<int>>;
+  const auto groupsOf = [&](const std::vector<PlacedBody>& bodies, const std::vector<bool>& mixes)
+  { return GroupsThatMix(DepthOrder(bodies, camera), mixes); };
+  // Two that share space, one beside them.
+  const std::vector<PlacedBody> three{ box(0, 0, 4), box(5, 0, 4), box(1, 2, 4) };
+  EXPECT_EQ(groupsOf(three, { true, true, true }), (Groups{ { 0, 2 }, { 1 } }));
+  EXPECT_EQ(groupsOf(three, { true, true, false }), (Groups{ { 0 }, { 1 }, { 2 } }));
+  // A chain is one group.
+  EXPECT_EQ(groupsOf({ box(0, 0, 4), box(0, 6, 4), box(0, 3, 4) }, { true, true, true }),
+    (Groups{ { 0, 1, 2 } }));
+  // A third that is before the one of two, and beside the other: no picture of the two is before or
+  // behind it.
+  const PlacedBody below = { PlaceBox({ 0, -4, 0 }, { 2, 2, 1 }, glm::dmat4(1.0)) };
+  const PlacedBody across = { PlaceBox({ 0, 0, 0.5 }, { 2, 2, 8 }, glm::dmat4(1.0)) };
+  const PlacedBody between = { PlaceBox({ 0, -4, 2 }, { 2, -0.5, 3 }, glm::dmat4(1.0)) };
+  EXPECT_EQ(groupsOf({ below, across, between }, { true, true, true }), (Groups{ { 0, 1, 2 } }));
+  EXPECT_EQ(
+    groupsOf({ between, across, below }, { false, true, true }), (Groups{ { 0 }, { 1, 2 } }));
+  const PlacedBody behind = { PlaceBox({ 0, 0, -3 }, { 2, 2, -1 }, glm::dmat4(1.0)) };
+  EXPECT_EQ(groupsOf({ below, across, behind }, { true, true, true }), (Groups{ { 0, 1 }, { 2 } }));
+  EXPECT_EQ(groupsOf({}, {}), Groups{});
+}
+
 } // namespace
