@@ -123,12 +123,11 @@ PlacedBody BodyOf(vtkVolume* volume, vtkVolumeMapper* mapper, const std::array<d
 
 Groups GroupsOf(const std::vector<VolumeFrame*>& frames, const DepthOrder& order)
 {
-  std::vector<bool> mixes;
-  for (const VolumeFrame* const frame : frames)
-  {
-    mixes.push_back(
-      frame->Scene().Blend.Mode == BlendMode::Composite && frame->Mapper()->GetMixVolumes());
-  }
+  std::vector<bool> mixes(frames.size());
+  std::transform(frames.begin(), frames.end(), mixes.begin(),
+    [](const VolumeFrame* frame) {
+      return frame->Scene().Blend.Mode == BlendMode::Composite && frame->Mapper()->GetMixVolumes();
+    });
   return GroupsThatMix(order, mixes);
 }
 

@@ -140,11 +140,9 @@ void VolumesOnWall::DrawPicture(const WallPicture& picture, const VolumeFrame::O
   std::vector<std::shared_ptr<const FloatImage>> pictures(frames.size());
   for (const std::vector<int>& group : groups)
   {
-    std::vector<VolumeFrame*> mixed;
-    for (const int number : group)
-    {
-      mixed.push_back(frames[static_cast<std::size_t>(number)]);
-    }
+    std::vector<VolumeFrame*> mixed(group.size());
+    std::transform(group.begin(), group.end(), mixed.begin(),
+      [&](int number) { return frames[static_cast<std::size_t>(number)]; });
     std::shared_ptr<const FloatImage>& mine = pictures[static_cast<std::size_t>(group.front())];
     mine = this->Cast(mixed, wall, depths, drawn, failed);
   }

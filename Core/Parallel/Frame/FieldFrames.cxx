@@ -368,11 +368,8 @@ void FieldFrames::DrawAnew(Communicator& communicator, DistributedField& field, 
   const Timer drawing;
   DrawnField& drawn = field.Drawn();
   const bool isPart = !wish.Whole.Empty();
-  std::optional<RayScene> whole;
-  if (isPart)
-  {
-    whole = PictureAround(scene, wish.Whole);
-  }
+  std::optional<RayScene> whole =
+    isPart ? std::optional(PictureAround(scene, wish.Whole)) : std::nullopt;
   {
     const PhaseScope fetching(Phase::Fetching);
     RayScene& looksAt = isPart ? *whole : scene;
