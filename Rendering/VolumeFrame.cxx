@@ -222,6 +222,11 @@ float VolumeFrame::CastSegments(vtkRenderer* renderer, const Backdrop& backdrop,
   const Together& others, const PixelRect& part, SegmentPicture& segments)
 {
   MapperState& state = *this->State;
+  if (this->PicturesDrawn == 0)
+  {
+    state.Late.Stop();
+    state.Again.Stop();
+  }
   this->BeginParts(renderer, backdrop);
   RayScene scene = *this->Wanted;
   scene.Viewport = Intersection(scene.Viewport, part);
@@ -257,10 +262,16 @@ float VolumeFrame::TakeSegments(
   return 1.0f - scene.OpacityLimit;
 }
 
-void VolumeFrame::SegmentsTook(vtkRenderer* renderer, const Together& others, double seconds)
+void VolumeFrame::SegmentsTook(vtkRenderer* renderer, const Mixing& mixing, bool onWall)
 {
-  this->State->Frames.FrameTook(*this->State->Communicator,
-    this->WishFor(IsInteracting(renderer), EyeOf(renderer), others.Volumes), seconds);
+  Communicator& communicator = *this->State->Communicator;
+  FieldFrames& frames = onWall ? *this->State->WallFrames.at(mixing.Picture) : this->State->Frames;
+  frames.FrameTook(communicator,
+    this->WishFor(IsInteracting(renderer), EyeOf(renderer), mixing.Volumes), mixing.Seconds);
+  const auto sumOf = [&](std::uint64_t mine)
+  { return static_cast<std::uint64_t>(AllSum(communicator, static_cast<double>(mine))); };
+  this->Statistics.BytesComposited += sumOf(mixing.Sent.Bytes);
+  this->Statistics.MessagesComposited += sumOf(mixing.Sent.Messages);
 }
 
 /// Of a picture that is drawn part by part: nothing of it comes later.

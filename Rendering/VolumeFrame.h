@@ -7,6 +7,7 @@
 #include "RendererCamera.h"
 
 #include "Base/Timer.h"
+#include "Parallel/Composite/TilePicture.h"
 
 #include <memory>
 #include <optional>
@@ -88,9 +89,15 @@ public:
   /// @param volumes in the picture
   float CastSegmentsOnWall(vtkRenderer* renderer, const OnWall& wall, const DepthPicture& depths,
     int volumes, const PixelRect& part, SegmentPicture& segments);
-  /// Tells what all parts took, with volumes that share the space.
-  /// @param seconds for this volume
-  void SegmentsTook(vtkRenderer* renderer, const Together& others, double seconds);
+  /// Tells what all parts of a picture took, with volumes that share the space.
+  struct Mixing
+  {
+    int Volumes = 1;         ///< of the picture
+    double Seconds = 0.0;    ///< for this volume
+    SentBytes Sent;          ///< by this rank, for this volume
+    std::size_t Picture = 0; ///< OnWall::Number
+  };
+  void SegmentsTook(vtkRenderer* renderer, const Mixing& mixing, bool onWall);
 
   /// Whether somebody goes on in front of the window while the picture is drawn, or moves the
   /// camera. The same on all ranks.

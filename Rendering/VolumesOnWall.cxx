@@ -7,6 +7,7 @@
 
 #include "Base/Progress.h"
 #include "Base/ThreadPool.h"
+#include "Base/Timer.h"
 #include "Parallel/Composite/MixVolumes.h"
 #include "Parallel/Composite/PackedDepths.h"
 
@@ -198,11 +199,22 @@ std::shared_ptr<const FloatImage> VolumesOnWall::Cast(const std::vector<VolumeFr
     }
     return limit;
   };
+  const Timer timer;
+  VolumeFrame::Mixing took;
+  took.Volumes = volumes;
+  took.Picture = wall.Number;
   for (const PicturePlace& place : wall.Places)
   {
     std::shared_ptr<const FloatImage> picture = MixInBands(*this->Called->State->Communicator,
-      group.size(), place.Rect, place.Root, ThreadPool::Process(), castBand);
+      group.size(), place.Rect, place.Root, ThreadPool::Process(), castBand, took.Sent);
     mine = picture ? std::move(picture) : std::move(mine);
+  }
+  took.Seconds =
+    timer.Seconds() / static_cast<double>(group.size()) * static_cast<double>(wall.Pictures);
+  for (VolumeFrame* const frame : group)
+  {
+    attempt(*frame, [&] { frame->SegmentsTook(this->Renderer, took, /*onWall=*/true); });
+    took.Sent = {}; // the first one has them all
   }
   return mine;
 }

@@ -282,6 +282,8 @@ std::shared_ptr<const FloatImage> VolumesPicture::Mix(const std::vector<int>& gr
   const Backdrop& backdrop, const PixelRect& rect, std::set<VolumeFrame*>& failed)
 {
   const Timer timer;
+  VolumeFrame::Mixing took;
+  took.Volumes = static_cast<int>(this->Frames.size());
   const auto castBand = [&](std::size_t volume, const PixelRect& band, SegmentPicture& segments)
   {
     VolumeFrame& frame = this->FrameAt(group[volume]);
@@ -298,18 +300,14 @@ std::shared_ptr<const FloatImage> VolumesPicture::Mix(const std::vector<int>& gr
     return limit;
   };
   std::shared_ptr<const FloatImage> picture = MixInBands(*this->Called->State->Communicator,
-    group.size(), rect, /*root=*/0, ThreadPool::Process(), castBand);
+    group.size(), rect, /*root=*/0, ThreadPool::Process(), castBand, took.Sent);
+  took.Seconds = timer.Seconds() / static_cast<double>(group.size());
   for (const int number : group)
   {
     VolumeFrame& frame = this->FrameAt(number);
     this->Attempt(
-      frame,
-      [&]
-      {
-        frame.SegmentsTook(this->Renderer, this->TogetherWith(frame),
-          timer.Seconds() / static_cast<double>(group.size()));
-      },
-      failed);
+      frame, [&] { frame.SegmentsTook(this->Renderer, took, /*onWall=*/false); }, failed);
+    took.Sent = {}; // the first one has them all
   }
   return picture;
 }

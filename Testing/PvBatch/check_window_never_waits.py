@@ -141,6 +141,29 @@ class Window:
         worst = pictures.difference(saved, self.synchronous("saved, waited for")).max()
         session.require(worst == 0, f"a saved picture is exact ({worst})")
 
+    def mix(self):
+        """Volumes that share space are waited for, whatever was to come; one alone is not, again."""
+        yield from self.drag(2)
+        ball = simple.Wavelet(WholeExtent=[60, 120, -30, 30, -30, 30], Center=[90.0, 0.0, 0.0])
+        second = picture_scenes.volume(ball, self.view, "RTData")
+        simple.Render(self.view)
+        session.require(self.is_exact(), "mixed volumes are exact at once")
+        mixed = self.grab("mixed")
+        for _ in range(50):  # the window renders once or twice more by itself
+            yield
+        renders = self.renders
+        for _ in range(50):
+            yield
+        session.require(self.renders == renders, "nothing is drawn again")
+        path = os.path.join(self.folder, "mixed saved.png")
+        simple.SaveScreenshot(path, self.view, ImageResolution=list(self.window.GetSize()))
+        worst = pictures.difference(mixed, pictures.load(path)).max()
+        session.require(worst <= 1, f"they are saved as they are shown ({worst})")
+        second.Visibility = 0
+        simple.Render(self.view)
+        yield from self.becomes_exact("the first one alone")
+        session.require(pictures.difference(mixed, self.grab("not mixed")).max() > 20, "the second one was seen")
+
     def run(self):
         simple.ResetCamera(self.view)
         simple.Render(self.view)
@@ -149,6 +172,7 @@ class Window:
         yield from self.pause()
         yield from self.drag_opacity()
         yield from self.save()
+        yield from self.mix()
         print("ok: the window never waits")
 
 

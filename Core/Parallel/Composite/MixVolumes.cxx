@@ -152,7 +152,7 @@ FloatImage MixVolumes(Communicator& communicator, MixedVolumes space, ThreadPool
 }
 
 std::shared_ptr<const FloatImage> MixInBands(Communicator& communicator, std::size_t volumes,
-  const PixelRect& rect, int root, ThreadPool& pool, const CastBand& cast)
+  const PixelRect& rect, int root, ThreadPool& pool, const CastBand& cast, SentBytes& sent)
 {
   std::shared_ptr<FloatImage> picture;
   if (communicator.Rank() == root)
@@ -177,7 +177,6 @@ std::shared_ptr<const FloatImage> MixInBands(Communicator& communicator, std::si
       bytes += static_cast<double>(segments.Bytes());
       mixed.Segments.push_back(segments.Take());
     }
-    SentBytes sent;
     const FloatImage band = MixVolumes(communicator, std::move(mixed), pool, root, {}, sent);
     for (int y = low; y < high && picture; ++y)
     {

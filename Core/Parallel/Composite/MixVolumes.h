@@ -45,9 +45,10 @@ using CastBand =
 /// Collective: the same of a picture, band after band, since segments take much memory: at most
 /// about 256 MB on a rank, or what a row of tiles has.
 /// @param volumes how many there are
+/// @param sent this rank's bytes are added
 /// @return the picture on the root; null on other ranks
 std::shared_ptr<const FloatImage> MixInBands(Communicator& communicator, std::size_t volumes,
-  const PixelRect& rect, int root, ThreadPool& pool, const CastBand& cast);
+  const PixelRect& rect, int root, ThreadPool& pool, const CastBand& cast, SentBytes& sent);
 
 } // namespace banyan
 

@@ -104,7 +104,7 @@ ToleranceControl::Aim ToleranceControl::Begin(const Wish& wish)
     const int step = this->Steps.Step(wish.BeginsCoarse);
     return { static_cast<double>(wish.Between ? step / 2 : step), true };
   }
-  return { wish.Interactive * this->Slack, true };
+  return { wish.Interactive * (wish.Seconds > 0.0 ? this->Slack : 1.0), true };
 }
 
 double ToleranceControl::Plan(Communicator& communicator, DistributedField& field, RayScene& scene,
