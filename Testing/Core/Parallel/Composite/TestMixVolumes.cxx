@@ -36,7 +36,9 @@ struct Field
   }
 
   /// Collective: what this rank has along rays.
-  std::vector<TileSegments> Segments(Communicator& ranks, RayScene scene) const
+  /// @param byPicture whether ranks divide the picture, in slabs that cut tiles; else the cells
+  std::vector<TileSegments> Segments(
+    Communicator& ranks, RayScene scene, bool byPicture = false) const
   {
     ThreadPool pool(2);
     ArrayBrickSource source(scenes::ArrayOf(this->Values, Samples), 16, { 0.0, 1.0 }, pool);
@@ -49,8 +51,14 @@ struct Field
     SegmentPicture segments;
     scene.Segments = &segments;
     FrameStatistics statistics;
-    const FloatImage none =
-      DrawDistributed(ranks, scene, { &source, zones, Budget, pool }, statistics);
+    RankShare share{ &source, zones, Budget, pool };
+    for (int rank = 0; byPicture && rank < ranks.Size(); ++rank)
+    {
+      const glm::ivec2 size = scene.Viewport.Size();
+      share.Regions.push_back(
+        { { 0, size.y * rank / ranks.Size() }, { size.x, size.y * (rank + 1) / ranks.Size() } });
+    }
+    const FloatImage none = DrawDistributed(ranks, scene, share, statistics);
     EXPECT_TRUE(none.Pixels.empty());
     return segments.Take();
   }
@@ -241,6 +249,52 @@ TEST(MixVolumes, AnyNumberOfRanks)
   {
     EXPECT_LE(MaxDifference(draw(ranks), alone), 1e-5) << ranks;
   }
+}
+
+TEST(MixVolumes, RanksThatDivideThePicture)
+{
+  const Field field;
+  const RayScene scene = SceneOf();
+  const FloatImage alone = field.Alone(scene);
+  const FloatImage mixed = Mixed(5, scene,
+    { [&](Communicator& all) { return field.Segments(all, scene, /*byPicture=*/true); } });
+  EXPECT_LE(MaxDifference(mixed, alone), 1e-5);
+}
+
+TEST(MixVolumes, BandsAreOnePicture)
+{
+  const Field field;
+  const RayScene scene = SceneOf();
+  const FloatImage alone = field.Alone(scene);
+  const PixelRect part{ { 5, 9 }, { 71, 68 } }; // cuts tiles
+  RunOnSimulatedRanks(3,
+    [&](Communicator& ranks)
+    {
+      ThreadPool pool(1);
+      SentBytes sent;
+      int bands = 0;
+      const auto cast = [&](std::size_t, const PixelRect& band, SegmentPicture& segments)
+      {
+        ++bands;
+        RayScene ofBand = scene;
+        ofBand.Viewport = band;
+        for (TileSegments& tile : field.Segments(ranks, ofBand))
+        {
+          segments.Add(std::move(tile));
+        }
+        return 0.0f;
+      };
+      const auto picture = MixInBands(ranks, 1, part, 2, pool, cast, sent);
+      EXPECT_GT(bands, 1);
+      ASSERT_EQ(picture != nullptr, ranks.Rank() == 2);
+      for (int y = part.Lo.y; picture && y < part.Hi.y; ++y)
+      {
+        for (int x = part.Lo.x; x < part.Hi.x; ++x)
+        {
+          ASSERT_LE(glm::length(picture->At(x, y) - alone.At(x, y)), 1e-5f) << x << " " << y;
+        }
+      }
+    });
 }
 
 TEST(MixVolumes, AFailureIsOneOfAll)
