@@ -23,7 +23,7 @@ namespace
 {
 
 /// That segments of a band may take on a rank.
-constexpr double BandBytes = 256e6;
+constexpr double BandBytes = 32e6;
 
 static_assert(std::is_trivially_copyable_v<RaySegment>, "sent as it is");
 
@@ -127,7 +127,7 @@ void MixTiles(const MixedVolumes& space, ThreadPool& pool, TilePicture& picture)
     const auto& [position, ofTile] = tiles[static_cast<std::size_t>(number)];
     for (const Part& part : ofTile)
     {
-      mine->Mixer.Add(part.first, *part.second);
+      mine->Mixer.Add(part.first, part.second->Segments);
     }
     mine->Mixer.Mix(space.TransmittanceLimit, mine->Pixels.data());
     picture.Set({ position.second, position.first }, mine->Pixels.data());

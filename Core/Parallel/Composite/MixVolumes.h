@@ -43,7 +43,7 @@ using CastBand =
   std::function<float(std::size_t volume, const PixelRect& band, SegmentPicture& segments)>;
 
 /// Collective: the same of a picture, band after band, since segments take much memory: at most
-/// about 256 MB on a rank, or what a row of tiles has.
+/// about 32 MB on a rank, or what a row of tiles has.
 /// @param volumes how many there are
 /// @param sent this rank's bytes are added
 /// @return the picture on the root; null on other ranks

@@ -176,8 +176,7 @@ void RunMerger::ResolveBatch(const SlabBlend& blend, std::size_t begin, std::siz
   }
 }
 
-void RunMerger::MergeToSegments(
-  const SlabBlend& blend, double distance, std::vector<RaySegment>& segments)
+void RunMerger::MergeToSegments(const SlabBlend& blend, double distance, RaySegments& segments)
 {
   this->Sort();
   this->Resolve(blend);

@@ -48,7 +48,7 @@ public:
   /// must have one interval each.
   /// @param distance world length of an interval
   /// @param segments is added to
-  void MergeToSegments(const SlabBlend& blend, double distance, std::vector<RaySegment>& segments);
+  void MergeToSegments(const SlabBlend& blend, double distance, RaySegments& segments);
 
 private:
   /// Something of a ray that cannot be divided.

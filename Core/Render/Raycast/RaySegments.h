@@ -2,6 +2,8 @@
 #ifndef banyan_Render_Raycast_RaySegments_h
 #define banyan_Render_Raycast_RaySegments_h
 
+#include "Base/RecycledMemory.h"
+
 #include <glm/vec2.hpp>
 
 #include <cstddef>
@@ -23,12 +25,15 @@ struct RaySegment
   std::uint32_t Pixel = 0;    ///< of the tile, x fastest
 };
 
+/// Many, again and again: from the system it would come cleared, which takes longer than drawing.
+using RaySegments = std::vector<RaySegment, RecycledMemory<RaySegment, LargeMemory::Smallest>>;
+
 /// What a volume has along the rays of a tile of TileSamplings, or of a part of the tile. Segments
 /// of a pixel are in the order of the ray, and have no point in common.
 struct TileSegments
 {
   glm::ivec2 Position{ 0 };
-  std::vector<RaySegment> Segments;
+  RaySegments Segments;
 };
 
 /// What one rank has of a volume along the rays of a picture. A tile may be in it in several parts.

@@ -164,31 +164,39 @@ private:
   float Through = 1.0f;
 };
 
-void SegmentMixer::Add(std::size_t volume, const TileSegments& part)
+void SegmentMixer::Add(std::size_t volume, const RaySegments& part)
 {
-  std::vector<RaySegment>& all = this->Volumes[volume].Segments;
-  all.insert(all.end(), part.Segments.begin(), part.Segments.end());
+  this->Volumes[volume].Parts.push_back(&part);
 }
 
 /// By pixel, then along the ray: parts come in any order.
 void SegmentMixer::Sort(OneVolume& volume)
 {
   volume.Begins.assign(RayTile::Slots + 1, 0);
-  for (const RaySegment& segment : volume.Segments)
+  for (const RaySegments* const part : volume.Parts)
   {
-    ++volume.Begins[segment.Pixel + 1];
+    for (const RaySegment& segment : *part)
+    {
+      ++volume.Begins[segment.Pixel + 1];
+    }
   }
   for (int pixel = 0; pixel < RayTile::Slots; ++pixel)
   {
     volume.Begins[pixel + 1] += volume.Begins[pixel];
   }
-  this->Room.resize(volume.Segments.size());
-  std::vector<std::uint32_t> at(volume.Begins.begin(), volume.Begins.end() - 1);
-  for (const RaySegment& segment : volume.Segments)
+  if (volume.Segments.size() < volume.Begins.back())
   {
-    this->Room[at[segment.Pixel]++] = segment;
+    volume.Segments.clear(); // nothing is to be moved
+    volume.Segments.resize(volume.Begins.back());
   }
-  volume.Segments.swap(this->Room);
+  std::vector<std::uint32_t> at(volume.Begins.begin(), volume.Begins.end() - 1);
+  for (const RaySegments* const part : volume.Parts)
+  {
+    for (const RaySegment& segment : *part)
+    {
+      volume.Segments[at[segment.Pixel]++] = segment;
+    }
+  }
   const auto nearer = [](const RaySegment& a, const RaySegment& b) { return a.Begin < b.Begin; };
   for (int pixel = 0; pixel < RayTile::Slots; ++pixel)
   {
@@ -220,7 +228,7 @@ void SegmentMixer::Mix(float limit, glm::vec4* pixels)
   }
   for (OneVolume& volume : this->Volumes)
   {
-    volume.Segments.clear();
+    volume.Parts.clear();
   }
 }
 

@@ -26,8 +26,9 @@ public:
   {
   }
 
-  /// Adds a part of what a volume has in the tile. Parts may come in any order.
-  void Add(std::size_t volume, const TileSegments& part);
+  /// Adds a part of what a volume has in the tile. Parts may come in any order. They have to stay
+  /// until they are mixed.
+  void Add(std::size_t volume, const RaySegments& part);
 
   /// Mixes what was added, and forgets it.
   /// @param limit rays end when their transmittance is not above this
@@ -47,14 +48,14 @@ private:
   /// Segments of a volume by pixel.
   struct OneVolume
   {
-    std::vector<RaySegment> Segments;
+    std::vector<const RaySegments*> Parts;
+    RaySegments Segments; ///< of all parts, by pixel; what comes behind them is left over
     std::vector<std::uint32_t> Begins; ///< per pixel, and the end
   };
 
-  void Sort(OneVolume& volume);
+  static void Sort(OneVolume& volume);
 
   std::vector<OneVolume> Volumes;
-  std::vector<RaySegment> Room;
 };
 
 } // namespace banyan

@@ -317,12 +317,12 @@ TEST(MixVolumes, AFailureIsOneOfAll)
 }
 
 /// Segments of a pixel in any order, mixed.
-glm::vec4 MixOf(const std::vector<std::vector<RaySegment>>& volumes, float limit = -1.0f)
+glm::vec4 MixOf(const std::vector<RaySegments>& volumes, float limit = -1.0f)
 {
   SegmentMixer mixer(volumes.size());
   for (std::size_t i = 0; i < volumes.size(); ++i)
   {
-    mixer.Add(i, { glm::ivec2(0), volumes[i] });
+    mixer.Add(i, volumes[i]);
   }
   std::vector<glm::vec4> pixels(RayTile::Slots, glm::vec4(7.0f));
   mixer.Mix(limit, pixels.data());
@@ -367,8 +367,8 @@ TEST(SegmentMixer, AFormula)
   check(MixOf({ { Segment(0, 2, red, r) }, { Segment(1, 2, blue, b) } }));
   check(MixOf({ { Segment(1, 2, blue, b) }, { Segment(0, 2, red, r) } }));
   // However they are cut, and in whatever order parts come.
-  std::vector<RaySegment> reds;
-  std::vector<RaySegment> blues;
+  RaySegments reds;
+  RaySegments blues;
   for (int i = 9; i >= 0; --i)
   {
     reds.push_back(Segment(0.2 * i, 0.2, red, r));
@@ -398,7 +398,7 @@ TEST(SegmentMixer, OpaqueAndNothing)
     { { Segment(far, 1, glm::vec3(1.0f), 0.5) }, { Segment(far + 0.5, 1, glm::vec3(1.0f), 0.5) } });
   EXPECT_NEAR(there.a, 1.0 - std::exp(-1.0), 1e-6);
   // A ray ends at the limit.
-  std::vector<RaySegment> many;
+  RaySegments many;
   for (int i = 0; i < 10; ++i)
   {
     many.push_back(Segment(i, 1.0, glm::vec3(1.0f), 1.0));
