@@ -9,6 +9,7 @@
 #include "Base/Progress.h"
 #include "Parallel/Communicate/Collective.h"
 
+#include "Render/Raycast/SegmentsToWorld.h"
 #include "Render/Scene/DepthPicture.h"
 
 #include "vtkRenderWindow.h"
@@ -259,6 +260,12 @@ float VolumeFrame::TakeSegments(
   wish.Reuse = false;
   wish.Segments = &segments;
   this->TellMore(frames.Draw(*this->State->Communicator, this->State->Field, scene, wish));
+  std::vector<TileSegments> tiles = segments.Take();
+  SegmentsToWorld(tiles, scene.Camera, ToGlm(this->Prop->GetMatrix()));
+  for (TileSegments& tile : tiles)
+  {
+    segments.Add(std::move(tile));
+  }
   return 1.0f - scene.OpacityLimit;
 }
 

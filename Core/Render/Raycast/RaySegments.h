@@ -18,8 +18,8 @@ namespace banyan
 /// A part of a ray in which a volume has one colour and one density: the interval of a sample.
 struct RaySegment
 {
-  double Begin = 0.0;         ///< t along the ray, a world length
-  float Length = 0.0f;        ///< world length
+  double Begin = 0.0;         ///< t along the ray, in the space of the scene's camera
+  float Length = 0.0f;        ///< the same
   float Color[3] = {};        ///< premultiplied, of the whole segment
   float Transmittance = 1.0f; ///< of the whole segment
   std::uint32_t Pixel = 0;    ///< of the tile, x fastest

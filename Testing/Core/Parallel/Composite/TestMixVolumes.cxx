@@ -6,6 +6,7 @@
 #include "Parallel/Frame/DistributedFrame.h"
 #include "Parallel/PieceCases.h"
 #include "Render/Raycast/SegmentMixer.h"
+#include "Render/Raycast/SegmentsToWorld.h"
 #include "Render/Scenes.h"
 #include "Series/SeriesTesting.h"
 
@@ -404,6 +405,44 @@ TEST(SegmentMixer, OpaqueAndNothing)
     many.push_back(Segment(i, 1.0, glm::vec3(1.0f), 1.0));
   }
   EXPECT_NEAR(MixOf({ many }, 0.05f).a, 1.0 - std::exp(-3.0), 1e-6);
+}
+
+/// Points of a ray are the same ones, wherever the volume's space has its middle and however it is
+/// scaled.
+TEST(SegmentsToWorld, PointsStayWhereTheyAre)
+{
+  const glm::dmat4 toWorld =
+    glm::scale(glm::rotate(glm::translate(glm::dmat4(1.0), glm::dvec3(20.0, 3.0, -2.0)), 0.7,
+                 glm::dvec3(0.2, 1.0, 0.3)),
+      glm::dvec3(0.25, 3.0, 1.5));
+  for (const bool parallel : { false, true })
+  {
+    const RayCamera seen = SceneOf(parallel).Camera;
+    const RayCamera world(seen.WorldToClipMatrix(), seen.ImageSize(), glm::dvec3(0.0));
+    const RayCamera camera =
+      RayCamera(seen.WorldToClipMatrix(), seen.ImageSize(), glm::dvec3(5.0, -7.0, 30.0))
+        .InSpace(toWorld);
+    RaySegment segment;
+    segment.Begin = 3.5;
+    segment.Length = 2.0f;
+    segment.Pixel = 5 * RayTile::Edge + 9;
+    std::vector<TileSegments> tiles{ { glm::ivec2(1, 0), { segment, segment } } };
+    tiles[0].Segments[1].Pixel = 7;
+    SegmentsToWorld(tiles, camera, toWorld);
+    for (const RaySegment& moved : tiles[0].Segments)
+    {
+      const glm::ivec2 at(RayTile::Edge + moved.Pixel % RayTile::Edge, moved.Pixel / RayTile::Edge);
+      const Ray own = camera.RayOf(at.x, at.y);
+      const Ray ray = world.RayOf(at.x, at.y);
+      for (const double part : { 0.0, 1.0 })
+      {
+        const glm::dvec4 point(own.Origin + (3.5 + part * 2.0) * own.Direction, 1.0);
+        const double t = moved.Begin + part * static_cast<double>(moved.Length);
+        const glm::dvec3 off = glm::dvec3(toWorld * point) - (ray.Origin + t * ray.Direction);
+        EXPECT_LE(glm::length(off), 1e-6) << parallel << " " << part;
+      }
+    }
+  }
 }
 
 } // namespace
