@@ -3,6 +3,8 @@
 
 A module of its own: scripts of programmable sources replace names of the main one.
 """
+import os
+
 import numpy
 from paraview import simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -10,6 +12,7 @@ from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
 import picture_scenes
+import pictures
 import session
 
 SIZE = (200, 150)
@@ -31,6 +34,20 @@ def window_of(view):
     width, height, _ = image.GetDimensions()
     values = vtk_to_numpy(image.GetPointData().GetScalars())
     return values.reshape(height, width, -1)[:, :, :3].astype(int)
+
+
+class Pictures:
+    """Saves pictures, and compares them with those of another run."""
+
+    def __init__(self, arguments):
+        self.folder, self.reference = arguments.out, arguments.reference
+
+    def take(self, name, picture, allowed=1):
+        pictures.save(os.path.join(self.folder, name + ".png"), picture)
+        if self.reference:
+            expected = pictures.load(os.path.join(self.reference, name + ".png"))
+            error = pictures.difference(expected, picture)
+            session.require(error.max() <= allowed, f"{name} is off by {error.max()} from one rank's")
 
 
 class Spheres:

@@ -17,27 +17,13 @@ from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 import picture_scenes
 import pictures
 import session
-from placed_volumes import SIZE, Stage, blended, shown, window_of
+from placed_volumes import SIZE, Pictures, Stage, blended, shown, window_of
 
 ARRANGEMENTS = 16
 COMPARED_WITH_SINGLE_ONES = 6  # of them, on one rank
 ROUNDING = 4  # of 255: several rounded pictures are multiplied
 STEREO = ("No stereo", "Left Eye Only", "Right Eye Only", "Red-Blue", "Interlaced", "Anaglyph",
           "Checkerboard", "Side-by-Side Horizontal", "Dresden")
-
-
-class Pictures:
-    """Saves pictures, and compares them with those of another run."""
-
-    def __init__(self, arguments):
-        self.folder, self.reference = arguments.out, arguments.reference
-
-    def take(self, name, picture, allowed=1):
-        pictures.save(os.path.join(self.folder, name + ".png"), picture)
-        if self.reference:
-            expected = pictures.load(os.path.join(self.reference, name + ".png"))
-            error = pictures.difference(expected, picture)
-            session.require(error.max() <= allowed, f"{name} is off by {error.max()} from one rank's")
 
 
 def arrangements(stage, keep):
