@@ -10,7 +10,7 @@
 #                      build folder)
 #   --scenes LIST      only these, separated by commas: one-grid, crossed, image-and-mesh
 #   --renderers LIST   only these: banyan, banyan-every-sample, banyan-apart, banyan-apart-every-sample, or
-#                      vtk-multi-volume-D with samples D voxels apart (default: all, with D of 1, 0.5 and 0.125)
+#                      vtk-multi-volume-D with samples D voxels apart (default: all, with D of 1 and 0.5)
 #
 # Columns are explained in README.md. A process for each row. Installs what is missing, and builds in build-benchmark
 # (BANYAN_BUILD_DIR names another folder). BANYAN_SKIP_INSTALL=1 leaves the packages of the system alone,
@@ -22,8 +22,7 @@ output="benchmark-output"
 work=""
 quick=0
 scenes="one-grid,crossed,image-and-mesh"
-renderers="banyan,banyan-every-sample,banyan-apart,banyan-apart-every-sample"
-renderers="$renderers,vtk-multi-volume-1,vtk-multi-volume-0.5,vtk-multi-volume-0.125"
+renderers="banyan,banyan-every-sample,banyan-apart,banyan-apart-every-sample,vtk-multi-volume-1,vtk-multi-volume-0.5"
 read_options "quick" "output work scenes renderers" "$@"
 samples=$((quick ? 128 : 256))
 pixels=$((quick ? 512 : 1024))

@@ -68,7 +68,7 @@ def draw(rows, path):
 def side_by_side(rows, folder, path):
     scenes, renderers = in_order(rows, "scene"), ["reference", *in_order(rows, "renderer")]
     figure, panels = plot.subplots(len(scenes), len(renderers), squeeze=False,
-                                   figsize=(3 * len(renderers), 3.2 * len(scenes)))
+                                   figsize=(3 * len(renderers), 3.6 * len(scenes)))
     for line, scene in zip(panels, scenes):
         for axes, renderer in zip(line, renderers):
             picture = os.path.join(folder, f"{scene}-{renderer}.png")
