@@ -2,15 +2,14 @@
 #include "VolumesInDepth.h"
 
 #include "RendererCamera.h"
+#include "Surfaces/SurfaceLayers.h"
 #include "VolumeFrame.h"
 #include "vtkBanyanVolumeMapper.h"
 
-#include "vtkActor.h"
 #include "vtkBillboardTextActor3D.h"
 #include "vtkCollection.h"
 #include "vtkMath.h"
 #include "vtkPropCollection.h"
-#include "vtkProperty.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
 
@@ -40,14 +39,11 @@ unsigned char KindOf(vtkProp* prop)
   {
     return NotInDepth::Stranger;
   }
-  vtkActor* const actor = vtkActor::SafeDownCast(prop);
-  if (actor && actor->GetProperty()->GetOpacity() <= 0.0)
-  {
-    return 0;
-  }
   // Axes with labels call themselves translucent, too.
-  const bool surface = actor || vtkBillboardTextActor3D::SafeDownCast(prop);
-  return surface && prop->HasTranslucentPolygonalGeometry() ? NotInDepth::Surface : 0;
+  const bool isText = vtkBillboardTextActor3D::SafeDownCast(prop) != nullptr;
+  return IsTranslucentSurface(prop)                               ? NotInDepth::Surface
+         : isText && prop->HasTranslucentPolygonalGeometry() != 0 ? NotInDepth::Text
+                                                                  : 0;
 }
 
 /// Whether a prop may show at pixels of a volume, and is not behind it.
@@ -121,13 +117,16 @@ PlacedBody BodyOf(vtkVolume* volume, vtkVolumeMapper* mapper, const std::array<d
     PlaceBox(glm::dvec3(cells.Lo), glm::dvec3(cells.Hi), toWorld * scene.IndexToWorld) };
 }
 
+bool CanMix(const VolumeFrame& frame)
+{
+  return frame.Scene().Blend.Mode == BlendMode::Composite && frame.Mapper()->GetMixVolumes();
+}
+
 Groups GroupsOf(const std::vector<VolumeFrame*>& frames, const DepthOrder& order)
 {
   std::vector<bool> mixes(frames.size());
   std::transform(frames.begin(), frames.end(), mixes.begin(),
-    [](const VolumeFrame* frame) {
-      return frame->Scene().Blend.Mode == BlendMode::Composite && frame->Mapper()->GetMixVolumes();
-    });
+    [](const VolumeFrame* frame) { return CanMix(*frame); });
   return GroupsThatMix(order, mixes);
 }
 
@@ -184,11 +183,17 @@ std::string TellNotInDepth(unsigned char bits)
     "Banyan Volumes share a part of space and are not mixed: the one whose middle is nearer is "
     "drawn before the whole of the other one, so the picture is not exact where they meet. Switch "
     "MixVolumes of both on. Where one is a projection, move, crop or hide it.");
-  tell(NotInDepth::Surface, "A translucent surface, or a text in space, is before a Banyan Volume "
-                            "or inside it, and is drawn "
-                            "as if it were behind the volume: the picture is not exact there. Make "
-                            "the surface opaque, move "
-                            "or hide it, or show the volume as 'Volume'.");
+  tell(NotInDepth::Surface,
+    "A translucent surface is before a Banyan Volume or inside it, and is drawn as if it were "
+    "behind the volume: the picture is not exact there. Switch MixVolumes of the volume on, or "
+    "make the surface opaque, move or hide it. Projections, walls of displays, windows of clients "
+    "and views with other kinds of volumes have no such surfaces.");
+  tell(NotInDepth::Text,
+    "A text in space is before a Banyan Volume or inside it, and is drawn as if it were behind the "
+    "volume: the picture is not exact there. Move or hide it, or show the volume as 'Volume'.");
+  tell(NotInDepth::Layers,
+    "A translucent surface has more than 64 layers one behind the other: those behind these are "
+    "left out where a Banyan Volume is. Make the surface opaque, or show less of it.");
   tell(NotInDepth::Stranger,
     "Another kind of volume is before a Banyan Volume or inside it, and is drawn as if it were "
     "behind "

@@ -41,16 +41,21 @@ enum NotInDepth : unsigned char
 {
   SharedSpace = 1, ///< with another volume of ours
   Surface = 2,     ///< a translucent surface is before it, or in it
-  Stranger = 4     ///< a volume that others draw is
+  Stranger = 4,    ///< a volume that others draw is
+  Text = 8,        ///< a text in space is
+  Layers = 16      ///< a translucent surface has more layers than are drawn
 };
 
 /// Of volumes, which are mixed: see GroupsThatMix.
 using Groups = std::vector<std::vector<int>>;
 
+/// Whether a volume may be mixed with others, and with surfaces.
+bool CanMix(const VolumeFrame& frame);
+
 /// Those of volumes in a picture.
 Groups GroupsOf(const std::vector<VolumeFrame*>& frames, const DepthOrder& order);
 
-/// Collective. Surfaces and volumes of others are drawn before ours: right where they are behind.
+/// Collective. What others draw is drawn before our volumes: right where it is behind them.
 /// @param camera of the picture that the volumes' viewports are in
 /// @param groups of volumes: those of one are mixed
 /// @return bits of NotInDepth for each volume, the same on all ranks

@@ -131,8 +131,8 @@ void VolumesOnWall::DrawPicture(const WallPicture& picture, const VolumeFrame::O
   if (wall.Number == 0)
   {
     const RayCamera camera(picture.View.WorldToClip, picture.View.Size, glm::dvec3(0.0));
-    VolumesPicture::WarnNotInDepth(
-      this->Called, this->Renderer, camera, frames, volumes, order, groups);
+    VolumesPicture::WarnNotInDepth(this->Called, frames,
+      FindNotInDepth(communicator, this->Renderer, camera, volumes, order, groups));
   }
   const auto place = std::find_if(picture.Places.begin(), picture.Places.end(),
     [&](const PicturePlace& its) { return its.Root == communicator.Rank(); });

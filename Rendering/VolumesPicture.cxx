@@ -8,6 +8,7 @@
 #include "Base/Progress.h"
 #include "Base/ThreadPool.h"
 #include "Base/Timer.h"
+#include "Parallel/Communicate/Collective.h"
 #include "Parallel/Composite/MixVolumes.h"
 
 #include "vtkCollection.h"
@@ -21,6 +22,14 @@
 
 namespace banyan
 {
+namespace
+{
+
+/// Surfaces behind less of it are not seen.
+constexpr float LeastLight = 1e-3f;
+
+} // namespace
+
 std::vector<VolumeOnScreen> VolumesPicture::OnScreen(const std::vector<VolumeFrame*>& frames)
 {
   std::vector<VolumeOnScreen> volumes;
@@ -42,20 +51,16 @@ DepthOrder OrderInDepth(const std::vector<VolumeOnScreen>& volumes, const Screen
   return DepthOrder(bodies, RayCamera(view.WorldToClip, view.Size, glm::dvec3(0.0)));
 }
 
-void VolumesPicture::WarnNotInDepth(vtkBanyanVolumeMapper* first, vtkRenderer* renderer,
-  const RayCamera& camera, const std::vector<VolumeFrame*>& frames,
-  const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order, const Groups& groups)
+void VolumesPicture::WarnNotInDepth(vtkBanyanVolumeMapper* first,
+  const std::vector<VolumeFrame*>& frames, const std::vector<unsigned char>& bits)
 {
-  Communicator& communicator = *first->State->Communicator;
-  const std::vector<unsigned char> bits =
-    FindNotInDepth(communicator, renderer, camera, volumes, order, groups);
   unsigned char fresh = 0;
   for (std::size_t i = 0; i < frames.size(); ++i)
   {
     fresh |= NotToldYet(bits[i], frames[i]->Mapper()->State->ToldNotInDepth);
   }
   const std::string note = TellNotInDepth(fresh);
-  if (!note.empty() && communicator.Rank() == 0)
+  if (!note.empty() && first->State->Communicator->Rank() == 0)
   {
     vtkWarningWithObjectMacro(first, << note);
   }
@@ -65,6 +70,7 @@ VolumesPicture::VolumesPicture(
   vtkRenderer* renderer, vtkBanyanVolumeMapper* mapper, vtkVolume* volume)
   : Renderer(renderer)
   , Called(mapper)
+  , CalledVolume(volume)
 {
   for (vtkVolume* const shown : VolumesDrawnWith(renderer, volume))
   {
@@ -162,13 +168,13 @@ void VolumesPicture::DrawPrepared(vtkBanyanVolumeMapper* first)
     volume.Viewport = Moved(Intersection(volume.Viewport, rect), -this->View.Shown.Lo);
   }
   const DepthOrder order = OrderInDepth(volumes, this->View.View);
-  this->Mixed = GroupsOf(frames, order);
-  WarnNotInDepth(first, this->Renderer, CameraOf(this->Renderer, glm::dvec3(0.0)), frames, volumes,
-    order, this->Mixed);
+  this->FindGroups(first, frames, volumes, order);
   Backdrop& backdrop = state.Backdrop;
   CompositeStatistics geometry;
   backdrop.SetCorner(this->View.Shown.Lo);
+  this->TakeSurfaces(first, rect);
   backdrop.Read(*state.Communicator, this->Renderer, props, rect, state.RankOrderBehind, geometry);
+  this->Surfaces.Place(this->View, rect, backdrop);
   const std::vector<PixelRect> parts = this->PartsOf(rect);
   const bool isWhole = parts.size() == 1 && this->View.ShowsAll();
   std::set<VolumeFrame*> failed;
@@ -200,6 +206,60 @@ void VolumesPicture::DrawPrepared(vtkBanyanVolumeMapper* first)
     {
       frame->Finish(geometry, seconds / static_cast<double>(frames.size() - failed.size()));
     }
+  }
+}
+
+/// Collective: finds what is drawn together, and says what is not in the order of depth.
+/// @param volumes of the frames
+void VolumesPicture::FindGroups(vtkBanyanVolumeMapper* first,
+  const std::vector<VolumeFrame*>& frames, const std::vector<VolumeOnScreen>& volumes,
+  const DepthOrder& order)
+{
+  Communicator& communicator = *first->State->Communicator;
+  this->Mixed = GroupsOf(frames, order);
+  std::vector<unsigned char> bits = FindNotInDepth(communicator, this->Renderer,
+    CameraOf(this->Renderer, glm::dvec3(0.0)), volumes, order, this->Mixed);
+  std::vector<int> mixing;
+  std::vector<vtkVolume*> own;
+  bool wanted = false;
+  for (std::size_t i = 0; i < frames.size(); ++i)
+  {
+    own.push_back(frames[i]->Volume());
+    if (CanMix(*frames[i]))
+    {
+      mixing.push_back(static_cast<int>(i));
+      wanted = wanted || (bits[i] & NotInDepth::Surface) != 0;
+    }
+  }
+  this->MixesSurfaces =
+    wanted && AllMax(communicator, CanHideSurfaces(this->Renderer, own) ? 0.0 : 1.0) == 0.0;
+  if (this->MixesSurfaces)
+  {
+    // Surfaces may be anywhere: what is before them, and what is behind, is mixed with them.
+    const auto mixes = [&](const std::vector<int>& group)
+    { return CanMix(*frames[static_cast<std::size_t>(group.front())]); };
+    this->Mixed.erase(
+      std::remove_if(this->Mixed.begin(), this->Mixed.end(), mixes), this->Mixed.end());
+    this->Mixed.push_back(mixing);
+    for (const int number : mixing)
+    {
+      unsigned char& its = bits[static_cast<std::size_t>(number)];
+      its = static_cast<unsigned char>(its & ~NotInDepth::Surface);
+    }
+  }
+  WarnNotInDepth(first, frames, bits);
+}
+
+/// Takes translucent surfaces off the screen, if they are mixed.
+void VolumesPicture::TakeSurfaces(vtkBanyanVolumeMapper* first, const PixelRect& rect)
+{
+  const bool all = !this->MixesSurfaces ||
+                   this->Surfaces.Take(this->Renderer, this->View, rect, this->CalledVolume);
+  const unsigned char bits = all ? 0 : NotInDepth::Layers;
+  const std::string note = TellNotInDepth(NotToldYet(bits, first->State->ToldNotInDepth));
+  if (!note.empty())
+  {
+    vtkWarningWithObjectMacro(first, << note); // on the rank that has the surface
   }
 }
 
@@ -264,7 +324,7 @@ VolumesPicture::Pictures VolumesPicture::Cast(
       picture = isWhole ? frame.Cast(this->Renderer, backdrop, together)
                         : frame.CastPart(this->Renderer, backdrop, together, part);
     };
-    if (group.size() == 1)
+    if (group.size() == 1 && !(this->MixesSurfaces && CanMix(frame)))
     {
       this->Attempt(frame, cast, failed);
     }
@@ -276,7 +336,7 @@ VolumesPicture::Pictures VolumesPicture::Cast(
   return pictures;
 }
 
-/// Collective: draws volumes that share space.
+/// Collective: draws volumes that share space, with each other or with surfaces.
 /// @return the picture, on rank 0
 std::shared_ptr<const FloatImage> VolumesPicture::Mix(const std::vector<int>& group,
   const Backdrop& backdrop, const PixelRect& rect, std::set<VolumeFrame*>& failed)
@@ -284,8 +344,15 @@ std::shared_ptr<const FloatImage> VolumesPicture::Mix(const std::vector<int>& gr
   const Timer timer;
   VolumeFrame::Mixing took;
   took.Volumes = static_cast<int>(this->Frames.size());
+  const bool hasSurfaces = this->MixesSurfaces && CanMix(this->FrameAt(group.front()));
+  const std::size_t count = group.size() + (hasSurfaces ? 1 : 0);
   const auto castBand = [&](std::size_t volume, const PixelRect& band, SegmentPicture& segments)
   {
+    if (volume == group.size())
+    {
+      this->Surfaces.AddTo(segments, band);
+      return LeastLight;
+    }
     VolumeFrame& frame = this->FrameAt(group[volume]);
     float limit = 1.0f;
     const auto cast = [&]
@@ -299,8 +366,8 @@ std::shared_ptr<const FloatImage> VolumesPicture::Mix(const std::vector<int>& gr
     }
     return limit;
   };
-  std::shared_ptr<const FloatImage> picture = MixInBands(*this->Called->State->Communicator,
-    group.size(), rect, /*root=*/0, ThreadPool::Process(), castBand, took.Sent);
+  std::shared_ptr<const FloatImage> picture = MixInBands(*this->Called->State->Communicator, count,
+    rect, /*root=*/0, ThreadPool::Process(), castBand, took.Sent);
   took.Seconds = timer.Seconds() / static_cast<double>(group.size());
   for (const int number : group)
   {

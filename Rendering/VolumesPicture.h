@@ -2,6 +2,7 @@
 #ifndef banyan_Rendering_VolumesPicture_h
 #define banyan_Rendering_VolumesPicture_h
 
+#include "Surfaces/SurfaceLayers.h"
 #include "VolumeFrame.h"
 #include "VolumesInDepth.h"
 
@@ -42,14 +43,11 @@ public:
   /// Where volumes that are prepared stand in a picture.
   static std::vector<VolumeOnScreen> OnScreen(const std::vector<VolumeFrame*>& frames);
 
-  /// Says what is not drawn in the order of depth, once. Collective.
+  /// Says what is not drawn in the order of depth, once.
   /// @param first of their mappers
-  /// @param camera of the picture that the volumes' viewports are in
-  /// @param volumes of the frames
-  /// @param groups of the frames
-  static void WarnNotInDepth(vtkBanyanVolumeMapper* first, vtkRenderer* renderer,
-    const RayCamera& camera, const std::vector<VolumeFrame*>& frames,
-    const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order, const Groups& groups);
+  /// @param bits of NotInDepth, of each frame
+  static void WarnNotInDepth(vtkBanyanVolumeMapper* first, const std::vector<VolumeFrame*>& frames,
+    const std::vector<unsigned char>& bits);
 
 private:
   using Pictures = std::vector<std::shared_ptr<const FloatImage>>; ///< null where there is none
@@ -57,6 +55,9 @@ private:
   VolumeFrame& FrameAt(int number) { return this->Frames[static_cast<std::size_t>(number)]; }
   bool Look();
   void DrawPrepared(vtkBanyanVolumeMapper* first);
+  void FindGroups(vtkBanyanVolumeMapper* first, const std::vector<VolumeFrame*>& frames,
+    const std::vector<VolumeOnScreen>& volumes, const DepthOrder& order);
+  void TakeSurfaces(vtkBanyanVolumeMapper* first, const PixelRect& rect);
   std::vector<PixelRect> PartsOf(const PixelRect& rect) const;
   VolumeFrame::Together TogetherWith(const VolumeFrame& frame) const;
   Pictures Cast(
@@ -68,9 +69,12 @@ private:
 
   vtkRenderer* Renderer;
   vtkBanyanVolumeMapper* Called;
+  vtkVolume* CalledVolume;
   PictureView View; ///< while it is drawn
   std::vector<VolumeFrame> Frames;
-  Groups Mixed; ///< of the frames
+  Groups Mixed;               ///< of the frames
+  bool MixesSurfaces = false; ///< translucent ones, with all volumes that can be mixed
+  SurfaceLayers Surfaces;     ///< these
 };
 
 } // namespace banyan

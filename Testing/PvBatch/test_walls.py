@@ -72,7 +72,9 @@ def poses(scene, wall):
     if not wall.off:  # ParaView shrinks surfaces beside gaps, one rank's more than another's
         scene.second.Visibility = 0
         scene.coarse.Visibility = scene.glass.Visibility = 1
+        scene.first.MixVolumes = 0  # walls do not mix surfaces
         yield "translucent"
+        scene.first.MixVolumes = 1
         scene.second.Visibility = 1
         scene.coarse.Visibility = scene.glass.Visibility = 0
     view.StereoRender = 1

@@ -19,7 +19,7 @@ namespace banyan
 struct RaySegment
 {
   double Begin = 0.0;         ///< t along the ray, in the space of the scene's camera
-  float Length = 0.0f;        ///< the same
+  float Length = 0.0f;        ///< the same; 0 for a surface
   float Color[3] = {};        ///< premultiplied, of the whole segment
   float Transmittance = 1.0f; ///< of the whole segment
   std::uint32_t Pixel = 0;    ///< of the tile, x fastest

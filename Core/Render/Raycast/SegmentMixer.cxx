@@ -17,6 +17,11 @@ constexpr double SamePlace = 1e-5;
 /// Less light counts as none: its logarithm is finite.
 constexpr float LeastLight = 1e-30f;
 
+bool IsSurface(const RaySegment& segment)
+{
+  return segment.Length <= 0.0f;
+}
+
 double EndOf(const RaySegment& segment)
 {
   return segment.Begin + static_cast<double>(segment.Length);
@@ -39,6 +44,7 @@ public:
     double at = this->NextBegin();
     while (this->Through > this->Limit && at < std::numeric_limits<double>::infinity())
     {
+      this->BlendSurfaces(at);
       const double end = this->EndOfPart(at);
       this->BlendPart(at, end);
       at = this->Skip(end);
@@ -108,30 +114,58 @@ private:
   }
 
   /// Densities add up, and colours count by density.
-  void BlendTogether(double at, double end)
+  struct Mixture
   {
-    float depth = 0.0f;
-    glm::vec3 weighted(0.0f);
-    for (const Span& span : this->Spans)
+    void Add(const RaySegment& segment, double part)
     {
-      if (!Covers(span, at))
-      {
-        continue;
-      }
-      const RaySegment& segment = *span.At;
       const float whole = -std::log(std::max(segment.Transmittance, LeastLight));
-      const float its = whole * static_cast<float>(PartOf(segment, at, end));
+      const float its = whole * static_cast<float>(part);
       const float opacity = 1.0f - segment.Transmittance;
-      depth += its;
+      this->Depth += its;
       if (opacity > 0.0f)
       {
-        weighted += its / opacity * glm::vec3(segment.Color[0], segment.Color[1], segment.Color[2]);
+        this->Weighted +=
+          its / opacity * glm::vec3(segment.Color[0], segment.Color[1], segment.Color[2]);
       }
     }
-    if (depth > 0.0f)
+
+    float Depth = 0.0f;
+    glm::vec3 Weighted{ 0.0f };
+  };
+
+  void BlendTogether(double at, double end)
+  {
+    Mixture mixture;
+    for (const Span& span : this->Spans)
     {
-      const float opacity = -std::expm1(-depth);
-      this->Blend(opacity / depth * weighted, 1.0f - opacity);
+      if (Covers(span, at))
+      {
+        mixture.Add(*span.At, PartOf(*span.At, at, end));
+      }
+    }
+    this->Blend(mixture);
+  }
+
+  /// Blends the surfaces at a place, and goes behind them.
+  void BlendSurfaces(double at)
+  {
+    Mixture mixture;
+    for (Span& span : this->Spans)
+    {
+      for (; span.At != span.End && IsSurface(*span.At) && span.At->Begin <= at; ++span.At)
+      {
+        mixture.Add(*span.At, 1.0);
+      }
+    }
+    this->Blend(mixture);
+  }
+
+  void Blend(const Mixture& mixture)
+  {
+    if (mixture.Depth > 0.0f)
+    {
+      const float opacity = -std::expm1(-mixture.Depth);
+      this->Blend(opacity / mixture.Depth * mixture.Weighted, 1.0f - opacity);
     }
   }
 
@@ -148,7 +182,7 @@ private:
     double next = std::numeric_limits<double>::infinity();
     for (Span& span : this->Spans)
     {
-      while (span.At != span.End &&
+      while (span.At != span.End && !IsSurface(*span.At) &&
              EndOf(*span.At) <= end + SamePlace * static_cast<double>(span.At->Length))
       {
         ++span.At;

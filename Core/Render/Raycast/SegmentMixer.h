@@ -17,6 +17,9 @@ namespace banyan
 /// of a ray their densities add up, and their colours count by density: what light meets in such a
 /// mixture. A segment of one volume is cut where one of another begins or ends, so volumes need no
 /// common distance between samples. Exact, but for rounding, for what the segments say.
+///
+/// A segment of length 0 is a surface. Segments are cut where it is, and it is blended there. All
+/// surfaces in one place are a mixture, too, so their order does not matter.
 class SegmentMixer
 {
 public:

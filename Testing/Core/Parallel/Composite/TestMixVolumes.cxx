@@ -381,6 +381,81 @@ TEST(SegmentMixer, AFormula)
   check(MixOf({ reds, blues }));
 }
 
+RaySegment Surface(double at, const glm::vec3& color, float opacity)
+{
+  RaySegment surface;
+  surface.Begin = at;
+  surface.Transmittance = 1.0f - opacity;
+  for (int i = 0; i < 3; ++i)
+  {
+    surface.Color[i] = opacity * color[i];
+  }
+  return surface;
+}
+
+/// Layers one behind the other: colour and opacity.
+glm::vec4 Layered(const std::vector<glm::vec4>& layers)
+{
+  glm::dvec4 pixel(0.0);
+  for (const glm::vec4& layer : layers)
+  {
+    pixel += (1.0 - pixel.a) * layer.a * glm::dvec4(layer.r, layer.g, layer.b, 1.0);
+  }
+  return pixel;
+}
+
+TEST(SegmentMixer, SurfacesCutVolumes)
+{
+  const glm::vec3 red(1.0f, 0.1f, 0.0f);
+  const glm::vec3 blue(0.0f, 0.2f, 1.0f);
+  const auto medium = [&](double length)
+  { return glm::vec4(red, float(1.0 - std::exp(-0.6 * length))); };
+  const glm::vec4 surface(blue, 0.3f);
+  const auto check = [&](const RaySegments& surfaces, int cuts, glm::vec4 expected)
+  {
+    RaySegments reds;
+    for (int i = 0; i < cuts; ++i)
+    {
+      reds.push_back(Segment(2.0 + 2.0 * i / cuts, 2.0 / cuts, red, 0.6));
+    }
+    for (const glm::vec4& pixel : { MixOf({ surfaces, reds }), MixOf({ reds, surfaces }) })
+    {
+      for (int i = 0; i < 4; ++i)
+      {
+        EXPECT_NEAR(pixel[i], expected[i], 1e-6) << cuts << ", " << i;
+      }
+    }
+  };
+  for (const int cuts : { 1, 2, 7 })
+  {
+    // Before the volume, where it begins, in it, where it ends, and behind it.
+    for (const double at : { 1.0, 2.0, 2.7, 3.0, 4.0, 5.0 })
+    {
+      const double inside = std::clamp(at - 2.0, 0.0, 2.0);
+      check({ Surface(at, blue, 0.3f) }, cuts,
+        Layered({ medium(inside), surface, medium(2.0 - inside) }));
+    }
+    // One behind the other, in any order.
+    check({ Surface(3.5, red, 0.8f), Surface(1.0, blue, 0.3f), Surface(2.5, blue, 0.3f) }, cuts,
+      Layered({ surface, medium(0.5), surface, medium(1.0), glm::vec4(red, 0.8f), medium(0.5) }));
+    // An opaque one hides what is behind it.
+    check({ Surface(3.0, blue, 1.0f) }, cuts, Layered({ medium(1.0), glm::vec4(blue, 1.0f) }));
+    // Two of one colour in one place let through what both do.
+    check({ Surface(3.0, blue, 0.3f), Surface(3.0, blue, 0.5f) }, cuts,
+      Layered({ medium(1.0), glm::vec4(blue, 0.65f), medium(1.0) }));
+    // Of two colours, equally opaque, each counts the same.
+    check({ Surface(3.0, blue, 0.5f), Surface(3.0, red, 0.5f) }, cuts,
+      Layered({ medium(1.0), glm::vec4(0.5f * (red + blue), 0.75f), medium(1.0) }));
+  }
+  // Without a volume, on surfaces of two volumes.
+  const glm::vec4 both = MixOf({ { Surface(3.0, blue, 0.3f) }, { Surface(1.0, red, 0.5f) } });
+  const glm::vec4 expected = Layered({ glm::vec4(red, 0.5f), surface });
+  for (int i = 0; i < 4; ++i)
+  {
+    EXPECT_NEAR(both[i], expected[i], 1e-6) << i;
+  }
+}
+
 TEST(SegmentMixer, OpaqueAndNothing)
 {
   RaySegment wall = Segment(1.0, 0.5, glm::vec3(0.0f, 1.0f, 0.0f), 1.0);
